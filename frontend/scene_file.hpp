@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "kernel/camera.hpp"
+#include "kernel/geometry.hpp"
+
+namespace grelha {
+
+/// What the file holds, as it says it: a polygon is one `p` however many triangles it becomes; `mesh` and `ply`
+/// count faces.
+struct EntityCounts {
+  std::uint64_t s = 0, p = 0, pp = 0, c = 0, pl = 0, box = 0, mesh = 0, ply = 0, lights = 0, materials = 0;
+  bool operator==(const EntityCounts&) const = default;
+};
+
+/// Primitives left out because nothing can be drawn of them.
+struct Dropped {
+  std::uint64_t not_finite = 0, zero_area = 0;
+};
+
+/// Lens fields as the file states them; `present` when any of them stood there.
+struct LensHint {
+  bool present = false;
+  double aperture = 0;  ///< lens diameter in pixels of the view plane at `at`; 0: pinhole
+  double focal = 1;     ///< focal distance as a multiple of the distance from eye to `at`
+};
+
+/// A parallelogram light: corner, two edges. Kept for renderers of soft shadows; until then the scene's point lights hold
+/// a point light of the same colour at its centre.
+struct AreaLight {
+  Float3 corner, edge1, edge2, color;
+  int samples = 0;              ///< as the file asks; 0: not said
+  std::uint32_t point_light = 0;  ///< index into Scene::lights of its stand-in
+};
+
+/// A scene file after all checks: everything the kernel needs and what the file said besides.
+struct SceneFile {
+  Scene scene;
+  Camera camera;
+  EntityCounts counts;
+  Dropped dropped;
+  LensHint lens;
+  std::vector<AreaLight> area_lights;
+  std::string accelerator;    ///< `accel` hint as written, or empty
+  int samples_per_pixel = 0;  ///< `spp` hint, 0: none
+  std::string environment;    ///< `env` folder as written, or empty
+  bool default_camera = false, default_light = false;  ///< made up, for a bare PLY
+};
+
+/// Called with one line per warning, `file:line:column: warning: ...`.
+using Warn = std::function<void(const std::string&)>;
+
+/// Reads .nff, .p3f or .ply, each also with .gz behind it (told apart by the extension; gzip by its first bytes).
+/// Throws ParseError (wrong content) or FileError (cannot be read).
+SceneFile read_scene(const std::string& path, const Warn& warn);
+
+}  // namespace grelha

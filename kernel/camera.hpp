@@ -1,0 +1,17 @@
+#pragma once
+
+#include "kernel/geometry.hpp"
+
+namespace grelha {
+
+/// A pinhole looking from `eye` to `at`. Pixel (0,0) is the upper left one; primary rays go through pixel centres.
+struct Camera {
+  Float3 eye{0, 0, 1}, at, up{0, 1, 0};  ///< up: neither zero nor parallel to the view (see camera_is_sound)
+  double angle_deg = 45;                 ///< full vertical field of view, between the outer edges of the outermost rows
+  int width = 512, height = 512;         ///< pixels, each >= 1; pixels are square
+};
+
+/// Whether the frame can be built: finite numbers, eye != at, up not along the view, 0 < angle < 180.
+bool camera_is_sound(const Camera& camera);
+
+}  // namespace grelha

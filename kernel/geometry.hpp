@@ -1,0 +1,100 @@
+#pragma once
+// What a caller fills in: plain arrays, one per component, every kind apart. The kernel reads them; it never
+// parses, prints or owns a file. Units are scene units throughout.
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace grelha {
+
+struct Float3 {
+  float x = 0, y = 0, z = 0;
+  bool operator==(const Float3&) const = default;
+};
+
+/// Balls. A negative radius shows only the inside (NFF).
+struct Spheres {
+  std::vector<float> x, y, z, radius;   ///< [count]
+  std::vector<std::uint32_t> material;  ///< [count] index into Scene::materials
+  std::size_t size() const { return radius.size(); }
+  void add(Float3 center, float r, std::uint32_t m) {
+    x.push_back(center.x), y.push_back(center.y), z.push_back(center.z), radius.push_back(r), material.push_back(m);
+  }
+};
+
+/// Sides of cone frusta without end caps; equal radii make cylinders. Both radii negative: only the inside shows.
+struct Cones {
+  std::vector<float> base_x, base_y, base_z, base_radius;  ///< [count]
+  std::vector<float> apex_x, apex_y, apex_z, apex_radius;  ///< [count]
+  std::vector<std::uint32_t> material;                     ///< [count]
+  std::size_t size() const { return material.size(); }
+  void add(Float3 base, float rb, Float3 apex, float ra, std::uint32_t m) {
+    base_x.push_back(base.x), base_y.push_back(base.y), base_z.push_back(base.z), base_radius.push_back(rb);
+    apex_x.push_back(apex.x), apex_y.push_back(apex.y), apex_z.push_back(apex.z), apex_radius.push_back(ra);
+    material.push_back(m);
+  }
+};
+
+/// Infinite planes through a point; the normal need not have unit length.
+struct Planes {
+  std::vector<float> x, y, z;     ///< [count] a point of the plane
+  std::vector<float> nx, ny, nz;  ///< [count] normal
+  std::vector<std::uint32_t> material;
+  std::size_t size() const { return material.size(); }
+  void add(Float3 p, Float3 n, std::uint32_t m) {
+    x.push_back(p.x), y.push_back(p.y), z.push_back(p.z), nx.push_back(n.x), ny.push_back(n.y), nz.push_back(n.z);
+    material.push_back(m);
+  }
+};
+
+/// Triangles over shared vertices, of all meshes and loose polygons together. Triangles of neighbours that name
+/// vertices with equal coordinates are watertight along the edge they share, whether the indices are equal or not.
+struct Triangles {
+  std::vector<float> x, y, z;           ///< [vertices]
+  std::vector<float> nx, ny, nz;        ///< [vertices] normals of any length, or empty when no vertex has one; (0,0,0): none
+  std::vector<std::uint32_t> a, b, c;   ///< [count] vertices of each triangle, counter-clockwise from the front
+  std::vector<std::uint32_t> material;  ///< [count]
+  std::size_t size() const { return a.size(); }
+  std::size_t vertex_count() const { return x.size(); }
+};
+
+/// A run of triangles that belong together (a PLY file, an inline mesh) and get a grid of their own.
+struct Object {
+  std::uint32_t first_triangle = 0, triangle_count = 0;
+};
+
+struct Geometry {
+  Spheres spheres;
+  Triangles triangles;
+  Cones cones;
+  Planes planes;
+  std::vector<Object> objects;  ///< disjoint, ascending; triangles in none of them are loose and share a grid with spheres and cones
+};
+
+/// How a surface answers light; every weight is already multiplied out (Kd times colour and so on).
+struct Material {
+  Float3 diffuse;            ///< weight of the Lambert term
+  Float3 specular;           ///< weight of the Blinn-Phong highlight
+  Float3 mirror;             ///< weight of the reflected ray; with `fresnel` the weight comes from Schlick's formula
+  float transmission = 0;    ///< weight of the refracted ray; 0: opaque
+  float shine = 0;           ///< exponent of the highlight
+  float ior = 1;             ///< index of refraction of the inside against 1 outside; read only when transmission > 0
+  bool fresnel = false;      ///< split between mirror and refraction by Schlick (1994) where transmission > 0
+  Float3 emission;           ///< light given off
+  float roughness = 0;       ///< spread of the mirror lobe
+  bool operator==(const Material&) const = default;
+};
+
+struct PointLight {
+  Float3 position, color;
+};
+
+struct Scene {
+  Geometry geometry;
+  std::vector<Material> materials;
+  std::vector<PointLight> lights;
+  Float3 background;
+};
+
+}  // namespace grelha
