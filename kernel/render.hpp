@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "kernel/camera.hpp"
+#include "kernel/geometry.hpp"
+#include "kernel/image.hpp"
+#include "kernel/stats.hpp"
+
+namespace grelha {
+
+struct BuildOptions {
+  bool grid = true;   ///< false: every ray meets every primitive
+  float density = 0;  ///< M of the grid's resolution M cbrt(count / volume) per unit length; 0: the kernel chooses
+};
+
+/// A scene made ready for rays. It refers to the Scene it was built from, which must outlive it unchanged.
+class World {
+ public:
+  World(const Scene& scene, const BuildOptions& options);
+  ~World();
+  World(World&&) noexcept;
+  World& operator=(World&&) noexcept;
+
+  std::vector<GridStats> grids() const;
+  std::size_t geometry_bytes() const;  ///< the scene's own arrays
+  std::size_t grid_bytes() const;      ///< everything built beside them
+
+  struct Impl;
+  const Impl& impl() const { return *impl_; }
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
+/// One compiled copy of the kernel's hot loops.
+struct Isa {
+  std::string_view name;  ///< "scalar", "sse2", "avx2", "avx512"
+  bool compiled, runs_here;
+};
+/// All copies this version knows, scalar first.
+std::vector<Isa> isas();
+
+struct RenderOptions {
+  int threads = 0;              ///< 0: one per processor
+  int depth = 5;                ///< longest path, the eye ray counted as 1; at its end the background is seen
+  int packet = 0;               ///< rays that march together: 1, 16 or 64; 0: chosen by the kind of ray
+  bool mailbox = true;          ///< skip primitives a ray or packet has already met in another cell
+  std::string_view isa = "best";
+  /// Called now and then from one thread at a time with the share done, 0 to 1; returns false to stop.
+  std::function<bool(double)> progress;
+};
+
+/// Renders. The picture is the same, bit for bit, for every value of threads, packet, mailbox, isa, density and grid.
+/// Throws std::invalid_argument for an instruction set that is unknown or does not run here, or a bad camera or option.
+/// When `progress` stops it, the rows not yet rendered are black.
+Image render(const World& world, const Camera& camera, const RenderOptions& options, RenderStats& stats);
+
+}  // namespace grelha

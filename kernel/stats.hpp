@@ -1,0 +1,47 @@
+#pragma once
+// What a build and a render did, in numbers. Counting never changes a picture; some counts (visits, tests, packets)
+// depend on packet size and instruction set, those of rays do not.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace grelha {
+
+struct RayCounts {
+  std::uint64_t primary = 0, shadow = 0, reflection = 0, refraction = 0;
+  std::uint64_t total() const { return primary + shadow + reflection + refraction; }
+};
+
+struct TestCounts {
+  std::uint64_t sphere = 0, triangle = 0, cone = 0, plane = 0;  ///< one ray against one primitive
+};
+
+struct PacketCounts {
+  std::uint64_t formed = 0;        ///< packets that marched together to the end
+  std::uint64_t fell_back = 0;     ///< packets that spread and went on as single rays
+  std::uint64_t lanes_issued = 0;  ///< SIMD lanes of the tests of many rays against one primitive
+  std::uint64_t lanes_busy = 0;    ///< those of them that carried a ray still searching
+};
+
+struct TraceCounts {
+  std::uint64_t visits = 0;  ///< grid cells looked into, by a packet or by a ray
+  TestCounts tests;
+  PacketCounts packets;
+};
+
+struct RenderStats {
+  RayCounts rays;
+  TraceCounts trace;
+  int threads = 0;
+  const char* isa = "";
+};
+
+struct GridStats {
+  std::array<std::uint32_t, 3> cells{};  ///< per axis
+  std::uint64_t occupied = 0;            ///< cells that hold at least one reference
+  std::uint64_t references = 0;          ///< primitives over cells
+  std::uint64_t bytes = 0;
+};
+
+}  // namespace grelha
