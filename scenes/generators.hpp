@@ -1,0 +1,38 @@
+#pragma once
+
+#include <iosfwd>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace grelha::scenes {
+
+struct SceneOptions {
+  int size = 1;           ///< the scene's size factor, inside the generator's bounds
+  bool spd = false;       ///< balls, mount: Haines' own form in place of the course's (below)
+  std::string mesh_file;  ///< boat: name of the mesh as the scene file states it
+};
+
+/// The scenes this project can make. Constructions: Haines, "A Proposal for Standard Graphics Environments" (1987) and
+/// the programs of his Standard Procedural Databases 3.14; distant, boat and stadium are our own.
+///
+///   name     size     size n gives                                                      default
+///   balls    1-7      (9^(n+1) - 1) / 8 spheres and one plane (--spd: a 4-gon)          4: 7381
+///   mount    1-10     2 4^n triangles and 4 spheres; from n = 8 on our own heights      7: 32768
+///
+/// The course's form of balls and mount: lights carry the colour 1 1 1, the floor is an infinite plane, the glass has
+/// index 1.2 and three of its four balls shrink so that they do not touch.
+struct Generator {
+  std::string_view name, summary;
+  int min_size, max_size, default_size;
+  void (*write)(std::ostream& out, const SceneOptions& options);
+  void (*write_mesh)(std::ostream& out, int size) = nullptr;  ///< the PLY file the scene refers to, when it has one
+};
+
+std::span<const Generator> generators();
+const Generator* find_generator(std::string_view name);  ///< null when there is none
+
+void write_balls(std::ostream& out, const SceneOptions& options);
+void write_mount(std::ostream& out, const SceneOptions& options);
+
+}  // namespace grelha::scenes
