@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+
+#include "kernel/image.hpp"
+
+namespace grelha {
+
+/// How far two pictures of one size lie apart, over all channels of all pixels. Equal infinities and a NaN in both are no
+/// difference; a NaN or an infinity in one of them only is an infinite one, so it can never pass for small.
+struct Comparison {
+  double rmse = 0;
+  double psnr_db = 0;  ///< against white 1; infinite for equal pictures
+  double largest = 0;  ///< of the differences between channels
+  int largest_x = 0, largest_y = 0;
+  std::uint64_t pixels = 0, differing = 0;
+};
+
+Comparison compare(const Image& a, const Image& b);
+
+/// |a - b|, times `scale`.
+Image difference(const Image& a, const Image& b, double scale);
+
+}  // namespace grelha

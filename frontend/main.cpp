@@ -1,0 +1,220 @@
+// The program. Errors become exit statuses here and nowhere else: 1 when a file cannot be read or written, 2 for bad
+// usage or a scene that cannot be one. It is the one file of the frontend that knows the generators.
+#include "frontend/atomic_file.hpp"
+#include "frontend/compare.hpp"
+#include "frontend/image_file.hpp"
+#include "frontend/options.hpp"
+#include "frontend/parse_error.hpp"
+#include "frontend/progress.hpp"
+#include "frontend/report.hpp"
+#include "frontend/scene_file.hpp"
+#include "kernel/render.hpp"
+#include "scenes/generators.hpp"
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <new>
+
+namespace grelha {
+
+namespace {
+
+constexpr int kOk = 0, kFileFailed = 1, kBadInput = 2, kAboveBound = 1;
+
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point start_ = Clock::now();
+};
+
+void warn(const std::string& line) { std::cerr << line << '\n'; }
+
+void print(const std::string& text) {
+  std::cout << text << std::flush;
+  if (!std::cout) throw FileError("stdout", "cannot write");
+}
+
+/// Asks before the scene is read: a large one takes seconds to read.
+void want_isa(std::string_view name) {
+  if (name == "best") return;
+  for (const Isa& isa : isas()) {
+    if (isa.name != name) continue;
+    if (!isa.compiled) throw UsageError("this build has no " + std::string(name));
+    if (!isa.runs_here) throw UsageError("this processor has no " + std::string(name));
+    return;
+  }
+  throw UsageError("this build has no " + std::string(name));
+}
+
+void want_room(const std::string& path, int width, int height) {
+  if (!image_fits(*image_format(path), width, height))
+    throw UsageError("a picture of " + std::to_string(width) + 'x' + std::to_string(height) +
+                     " is too large for .png and .hdr, write a .pfm");
+}
+
+Camera camera_of(const SceneFile& file, const RenderCommand& command) {
+  Camera camera = file.camera;
+  if (command.width > 0) camera.width = command.width, camera.height = command.height;
+  return camera;
+}
+
+Image render_with_bar(const World& world, const Camera& camera, const RenderCommand& command, RenderStats& stats) {
+  ProgressBar bar(!command.quiet && stderr_is_terminal());
+  RenderOptions options = command.render;
+  options.progress = [&bar](double share) {
+    bar.update(share);
+    return true;
+  };
+  return render(world, camera, options, stats);
+}
+
+int run(const RenderCommand& command) {
+  want_isa(command.render.isa);
+  check_writable(command.image);
+  if (!command.stats.empty()) check_writable(command.stats);
+  RunReport report;
+  const Stopwatch load;
+  const SceneFile file = read_scene(command.scene, warn);
+  report.seconds.load = load.seconds();
+  const Camera camera = camera_of(file, command);
+  want_room(command.image, camera.width, camera.height);
+
+  const Stopwatch build;
+  const World world(file.scene, command.build);
+  report.seconds.build = build.seconds();
+
+  const Stopwatch render;
+  const Image image = render_with_bar(world, camera, command, report.render);
+  report.seconds.render = render.seconds();
+
+  const Stopwatch write;
+  write_image(command.image, image, command.srgb ? Tone::srgb : Tone::authored);
+  report.seconds.write = write.seconds();
+
+  const Geometry& geometry = file.scene.geometry;
+  report.counts = file.counts;
+  report.spheres = geometry.spheres.size(), report.triangles = geometry.triangles.size();
+  report.cones = geometry.cones.size(), report.planes = geometry.planes.size();
+  report.width = camera.width, report.height = camera.height;
+  report.grids = world.grids();
+  report.geometry_bytes = world.geometry_bytes(), report.grid_bytes = world.grid_bytes();
+  if (!command.stats.empty()) write_file(command.stats, stats_json(command, report));
+  if (!command.quiet) print(summary_line(command, report));
+  return kOk;
+}
+
+int run(const InfoCommand& command) {
+  const SceneFile file = read_scene(command.scene, warn);
+  const World world(file.scene, command.build);
+  print(command.json ? info_json(file, world.grids()) : info_text(command.scene, file, world.grids()));
+  return kOk;
+}
+
+std::string size_text(const Image& image) { return std::to_string(image.width) + 'x' + std::to_string(image.height); }
+
+void write_difference(const CompareCommand& command, const Image& a, const Image& b, double largest) {
+  const bool stretch = image_format(command.diff) == ImageFormat::png && largest > 0 && largest <= 1e30;
+  write_image(command.diff, difference(a, b, stretch ? 1 / largest : 1));
+}
+
+int run(const CompareCommand& command) {
+  const Image a = read_image(command.a), b = read_image(command.b);
+  if (a.width != b.width || a.height != b.height)
+    throw UsageError("the pictures have unequal sizes, " + size_text(a) + " and " + size_text(b));
+  const Comparison c = compare(a, b);
+  if (!command.diff.empty()) write_difference(command, a, b, c.largest);
+  char text[256];
+  std::snprintf(text, sizeof text,
+                "RMSE %.6g, PSNR %.4g dB, largest difference %.6g at (%d, %d), %llu of %llu pixels differ\n", c.rmse,
+                c.psnr_db, c.largest, c.largest_x, c.largest_y, static_cast<unsigned long long>(c.differing),
+                static_cast<unsigned long long>(c.pixels));
+  print(text);
+  return command.max_rmse && !(c.rmse <= *command.max_rmse) ? kAboveBound : kOk;
+}
+
+int list_scenes() {
+  std::string text;
+  for (const scenes::Generator& g : scenes::generators()) {
+    char line[256];
+    std::snprintf(line, sizeof line, "%-8s sizes %d to %d, default %d: %s\n", std::string(g.name).c_str(), g.min_size,
+                  g.max_size, g.default_size, std::string(g.summary).c_str());
+    text += line;
+  }
+  print(text);
+  return kOk;
+}
+
+/// The mesh goes first: a scene must not stand there without what it refers to.
+void write_with_mesh(const scenes::Generator& generator, scenes::SceneOptions options, const std::string& path) {
+  const auto mesh_path = std::filesystem::path(path).replace_extension(".ply");
+  if (mesh_path == std::filesystem::path(path)) throw UsageError("-o: wanted a name that does not end in .ply, found \"" + path + '"');
+  options.mesh_file = mesh_path.filename().string();
+  AtomicFile mesh(mesh_path.string()), scene(path);
+  generator.write_mesh(mesh.stream(), options.size);
+  generator.write(scene.stream(), options);
+  mesh.commit();
+  scene.commit();
+}
+
+int run(const SceneCommand& command) {
+  if (command.list) return list_scenes();
+  const scenes::Generator* generator = scenes::find_generator(command.name);
+  if (!generator) throw UsageError("no scene \"" + command.name + "\" (see grelha scene --list)");
+  scenes::SceneOptions options{command.size.value_or(generator->default_size), command.spd, {}};
+  if (options.size < generator->min_size || options.size > generator->max_size)
+    throw UsageError("--size: " + command.name + " has sizes " + std::to_string(generator->min_size) + " to " +
+                     std::to_string(generator->max_size) + ", found \"" + std::to_string(options.size) + '"');
+  if (generator->write_mesh) {
+    write_with_mesh(*generator, options, command.output.empty() ? command.name + ".nff" : command.output);
+  } else if (command.output.empty()) {
+    generator->write(std::cout, options);
+    print("");
+  } else {
+    AtomicFile file(command.output);
+    generator->write(file.stream(), options);
+    file.commit();
+  }
+  return kOk;
+}
+
+int run(const TextCommand& command) {
+  print(command.text);
+  return kOk;
+}
+
+int fail(int status, const std::string& line) {
+  std::cerr << line << '\n';
+  return status;
+}
+
+int run_program(int argc, char** argv) {
+  try {
+    return std::visit([](const auto& command) { return run(command); }, parse_command(argc, argv));
+  } catch (const ParseError& error) {
+    return fail(kBadInput, error.what());
+  } catch (const FileError& error) {
+    return fail(kFileFailed, error.what());
+  } catch (const UsageError& error) {
+    return fail(kBadInput, std::string("grelha: error: ") + error.what());
+  } catch (const std::invalid_argument& error) {
+    return fail(kBadInput, std::string("grelha: error: ") + error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(kFileFailed, "grelha: error: out of memory");
+  } catch (const std::length_error&) {  // a vector beyond its largest size
+    return fail(kFileFailed, "grelha: error: out of memory");
+  }
+}
+
+}  // namespace
+
+}  // namespace grelha
+
+int main(int argc, char** argv) {
+  std::ios::sync_with_stdio(false);
+  return grelha::run_program(argc, argv);
+}

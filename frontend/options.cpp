@@ -1,0 +1,217 @@
+#include "frontend/options.hpp"
+
+#include "frontend/image_file.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+
+namespace grelha {
+
+namespace {
+
+constexpr int kMaxSide = 65536, kMaxThreads = 1024, kMaxDepth = 10000;
+constexpr double kMaxDensity = 1000;
+
+[[noreturn]] void refuse(const std::string& option, const std::string& wanted, const std::string& found) {
+  throw UsageError(option + ": wanted " + wanted + ", found \"" + found + '"');
+}
+
+/// The whole of `text` as a number; the locale has no say.
+template <class T>
+std::optional<T> number(std::string_view text) {
+  T value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return {};
+  return value;
+}
+
+int whole(const std::string& option, const std::string& text, int low, int high) {
+  const auto value = number<int>(text);
+  if (!value || *value < low || *value > high)
+    refuse(option, "a whole number from " + std::to_string(low) + " to " + std::to_string(high), text);
+  return *value;
+}
+
+float density(const std::string& text) {
+  const auto value = number<double>(text);
+  if (!value || !(*value > 0) || *value > kMaxDensity) refuse("--density", "a number above 0 and up to 1000", text);
+  return float(*value);
+}
+
+double rmse_bound(const std::string& text) {
+  const auto value = number<double>(text);
+  if (!value || !(*value >= 0)) refuse("--max-rmse", "a number that is not negative", text);
+  return *value;
+}
+
+void parse_size(const std::string& text, int& width, int& height) {
+  const auto cross = text.find('x');
+  const auto w = number<int>(std::string_view(text).substr(0, cross));
+  const auto h = cross == std::string::npos ? std::nullopt : number<int>(std::string_view(text).substr(cross + 1));
+  if (!w || !h || *w < 1 || *h < 1 || *w > kMaxSide || *h > kMaxSide)
+    refuse("--size", "WIDTHxHEIGHT, each from 1 to 65536", text);
+  width = *w;
+  height = *h;
+}
+
+/// One of the words an option takes, and what each stands for.
+template <class T, std::size_t N>
+T choice(const std::string& option, const std::string& text, const std::array<std::pair<std::string_view, T>, N>& words) {
+  std::string wanted;
+  for (const auto& [word, value] : words) {
+    if (word == text) return value;
+    wanted += (wanted.empty() ? "" : ", ") + std::string(word);
+  }
+  refuse(option, "one of " + wanted, text);
+}
+
+using Word = std::pair<std::string_view, int>;
+using Name = std::pair<std::string_view, std::string_view>;
+constexpr std::array kAccelerators{Word{"grid", 1}, Word{"none", 0}};
+constexpr std::array kSwitch{Word{"on", 1}, Word{"off", 0}};
+constexpr std::array kPackets{Word{"1", 1}, Word{"16", 16}, Word{"64", 64}, Word{"auto", 0}};
+constexpr std::array kIsas{Name{"scalar", "scalar"}, Name{"sse2", "sse2"}, Name{"avx2", "avx2"}, Name{"avx512", "avx512"},
+                           Name{"best", "best"}};
+
+void want_image_name(const std::string& option, const std::string& path) {
+  if (!image_format(path)) refuse(option, "a name ending in .png, .hdr or .pfm", path);
+}
+
+/// Wires one option: CLI11 finds its text, `take` makes a value of it, and our own words complain.
+void value(CLI::App& app, const char* names, const char* placeholder, const char* help,
+           std::function<void(const std::string&)> take) {
+  app.add_option_function<std::string>(names, std::move(take), help)->type_name(placeholder);
+}
+
+void positional(CLI::App& app, const char* name, std::string& target, const char* help) {
+  app.add_option(name, target, help)->required()->type_name("");
+}
+
+void add_build_options(CLI::App& app, BuildOptions& build) {
+  value(app, "--density", "M", "grid cells: M per axis of a cube that holds one primitive [chosen by the kernel]",
+        [&build](const std::string& text) { build.density = density(text); });
+  value(app, "--accel", "grid|none", "none: every ray meets every primitive [grid]",
+        [&build](const std::string& text) { build.grid = choice("--accel", text, kAccelerators) == 1; });
+}
+
+void add_render(CLI::App& app, RenderCommand& command) {
+  CLI::App& sub = *app.add_subcommand("render", "Render SCENE (.nff, .p3f, .ply, each also .gz) to a picture");
+  sub.footer("Example: grelha render scenes/data/balls.nff -o balls.png --size 800x600");
+  positional(sub, "SCENE", command.scene, "scene file");
+  value(sub, "-o,--output", "FILE", ".png, .hdr or .pfm (linear floats) [SCENE's name with .png, in this folder]",
+        [&command](const std::string& text) { want_image_name("-o", text), command.image = text; });
+  value(sub, "--size", "WxH", "pixels [as the scene says]",
+        [&command](const std::string& text) { parse_size(text, command.width, command.height); });
+  value(sub, "--threads", "N", "threads [one per processor]",
+        [&command](const std::string& text) { command.render.threads = whole("--threads", text, 1, kMaxThreads); });
+  value(sub, "--depth", "N", "longest path of a ray, the eye ray counted as 1 [5]",
+        [&command](const std::string& text) { command.render.depth = whole("--depth", text, 1, kMaxDepth); });
+  add_build_options(sub, command.build);
+  value(sub, "--mailbox", "on|off", "test a primitive once per ray however many cells hold it [on]",
+        [&command](const std::string& text) { command.render.mailbox = choice("--mailbox", text, kSwitch) == 1; });
+  value(sub, "--isa", "NAME", "scalar, sse2, avx2, avx512 or best [best]",
+        [&command](const std::string& text) { command.render.isa = choice("--isa", text, kIsas); });
+  value(sub, "--packet", "N", "rays that march together: 1, 16, 64 or auto [auto]",
+        [&command](const std::string& text) { command.render.packet = choice("--packet", text, kPackets); });
+  value(sub, "--stats", "FILE", "write counts and times as JSON",
+        [&command](const std::string& text) { command.stats = text; });
+  sub.add_flag("--quiet", command.quiet, "no progress bar, no summary line");
+  sub.add_flag("--srgb", command.srgb, "PNG: colours are light, show them through the sRGB curve");
+}
+
+void add_info(CLI::App& app, InfoCommand& command) {
+  CLI::App& sub = *app.add_subcommand("info", "Say what SCENE holds and what it needs of the renderer");
+  positional(sub, "SCENE", command.scene, "scene file");
+  sub.add_flag("--json", command.json, "as JSON");
+  add_build_options(sub, command.build);
+}
+
+void add_compare(CLI::App& app, CompareCommand& command) {
+  CLI::App& sub = *app.add_subcommand("compare", "Measure how far two pictures of one size lie apart");
+  sub.footer("Exit status: 0; 1 above --max-rmse or when a file cannot be read; 2 for bad usage or unequal sizes.");
+  positional(sub, "A", command.a, "picture (.png, .hdr, .pfm)");
+  positional(sub, "B", command.b, "picture");
+  value(sub, "--max-rmse", "X", "exit with status 1 when the RMSE is above X (white is 1)",
+        [&command](const std::string& text) { command.max_rmse = rmse_bound(text); });
+  value(sub, "--diff", "FILE", "write |A - B|; in a .png the largest difference is made white",
+        [&command](const std::string& text) { want_image_name("--diff", text), command.diff = text; });
+}
+
+void add_scene(CLI::App& app, SceneCommand& command) {
+  CLI::App& sub = *app.add_subcommand("scene", "Write one of the built-in scenes");
+  sub.footer("Example: grelha scene balls --size 4 -o balls4.nff");
+  sub.add_option("NAME", command.name, "which scene (see --list)")->type_name("");
+  value(sub, "--size", "N", "size factor [by scene, see --list]", [&command](const std::string& text) {
+    command.size = whole("--size", text, 1, 1000);
+  });
+  value(sub, "-o,--output", "FILE", "[stdout; a scene with a mesh: its name with .nff and .ply]",
+        [&command](const std::string& text) { command.output = text; });
+  sub.add_flag("--spd", command.spd, "balls, mount: as SPD writes them, not as the course does");
+  sub.add_flag("--list", command.list, "list the scenes and their sizes");
+}
+
+/// CLI11 would only say that a command is missing.
+void want_known_command(const CLI::App& app, const std::string& word) {
+  if (word.empty() || word.front() == '-') return;
+  std::string commands;
+  for (const CLI::App* sub : app.get_subcommands({})) {
+    if (sub->get_name() == word) return;
+    commands += (commands.empty() ? "" : ", ") + sub->get_name();
+  }
+  refuse("command", "one of " + commands, word);
+}
+
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+}  // namespace
+
+std::string default_image(const std::string& scene) {
+  std::filesystem::path name = std::filesystem::path(scene).filename();
+  if (name.extension() == ".gz") name = name.stem();
+  return name.stem().string() + ".png";
+}
+
+Command parse_command(int argc, const char* const* argv) {
+  CLI::App app{"Data-oriented SIMD ray tracer on a uniform grid.", "grelha"};
+  app.footer("Examples:\n"
+             "  grelha render scenes/data/balls.nff -o balls.png\n"
+             "  grelha info scenes/data/balls.nff\n"
+             "  grelha scene mount --size 7 -o mount.nff\n"
+             "  grelha compare a.png b.png --max-rmse 0.01\n"
+             "Each command has its own --help. Exit status: 0; 1 when reading or writing a file fails;\n"
+             "2 for bad usage or a scene that cannot be one.");
+  app.set_version_flag("--version", "grelha " GRELHA_VERSION);
+  app.require_subcommand(1);
+  RenderCommand render;
+  InfoCommand info;
+  CompareCommand compare;
+  SceneCommand scene;
+  add_render(app, render);
+  add_info(app, info);
+  add_compare(app, compare);
+  add_scene(app, scene);
+  if (argc > 1) want_known_command(app, argv[1]);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    return TextCommand{app.help()};
+  } catch (const CLI::CallForVersion& version) {
+    return TextCommand{std::string(version.what()) + '\n'};
+  } catch (const CLI::ParseError& error) {
+    throw UsageError(first_line(error.what()) + " (see --help)");
+  }
+  if (app.got_subcommand("info")) return info;
+  if (app.got_subcommand("compare")) return compare;
+  if (app.got_subcommand("scene")) {
+    if (scene.name.empty() && !scene.list) throw UsageError("NAME is required (see grelha scene --list)");
+    return scene;
+  }
+  if (render.image.empty()) render.image = default_image(render.scene);
+  return render;
+}
+
+}  // namespace grelha

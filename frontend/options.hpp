@@ -1,0 +1,58 @@
+#pragma once
+
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <variant>
+
+#include "kernel/render.hpp"
+
+namespace grelha {
+
+/// The command line cannot be understood; what() is one line without the program's name.
+struct UsageError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+struct RenderCommand {
+  std::string scene, image;   ///< image: named after the scene when -o is absent
+  int width = 0, height = 0;  ///< 0: as the scene says
+  BuildOptions build;
+  RenderOptions render;
+  std::string stats;  ///< file for the counts, or empty
+  bool quiet = false, srgb = false;
+};
+
+struct InfoCommand {
+  std::string scene;
+  BuildOptions build;
+  bool json = false;
+};
+
+struct CompareCommand {
+  std::string a, b;
+  std::optional<double> max_rmse;
+  std::string diff;  ///< file for the difference picture, or empty
+};
+
+struct SceneCommand {
+  std::string name;
+  std::optional<int> size;
+  std::string output;  ///< empty: stdout
+  bool list = false, spd = false;
+};
+
+/// What --help or --version print.
+struct TextCommand {
+  std::string text;
+};
+
+using Command = std::variant<RenderCommand, InfoCommand, CompareCommand, SceneCommand, TextCommand>;
+
+/// Throws UsageError.
+Command parse_command(int argc, const char* const* argv);
+
+/// `dir/x.nff.gz` gives `x.png`: the picture lies in the current folder.
+std::string default_image(const std::string& scene);
+
+}  // namespace grelha

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+
+namespace grelha {
+
+/// `[#####.....]  50 %  3 s left`: what the bar says after `elapsed_s` seconds with `share` (0 to 1) done.
+std::string progress_text(double share, double elapsed_s);
+
+/// A bar on stderr that redraws itself in place a few times a second, and wipes itself off at the end.
+class ProgressBar {
+ public:
+  explicit ProgressBar(bool shown) : shown_(shown) {}
+  ~ProgressBar();
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
+
+  void update(double share);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  const bool shown_;
+  bool drawn_ = false;
+  const Clock::time_point start_ = Clock::now();
+  Clock::time_point last_ = start_;
+};
+
+bool stderr_is_terminal();
+
+}  // namespace grelha

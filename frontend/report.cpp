@@ -1,0 +1,187 @@
+#include "frontend/report.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <sys/resource.h>
+
+#include <charconv>
+#include <cstdarg>
+#include <cstdio>
+
+namespace grelha {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// A float as the shortest decimal that names it: 0.1, not 0.10000000149011612.
+Json tidy(float value) {
+  char text[32];
+  double result = 0;
+  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
+  std::from_chars(text, end, result);
+  return result;
+}
+
+Json to_json(Float3 v) { return {tidy(v.x), tidy(v.y), tidy(v.z)}; }
+
+Json to_json(const EntityCounts& c) {
+  return {{"s", c.s}, {"p", c.p}, {"pp", c.pp}, {"c", c.c}, {"pl", c.pl}, {"box", c.box}, {"mesh", c.mesh}, {"ply", c.ply},
+          {"lights", c.lights}, {"materials", c.materials}};
+}
+
+Json to_json(const std::vector<GridStats>& grids) {
+  Json list = Json::array();
+  for (const GridStats& grid : grids)
+    list.push_back({{"cells", grid.cells}, {"occupied", grid.occupied}, {"references", grid.references},
+                    {"bytes", grid.bytes}});
+  return list;
+}
+
+Json to_json(const SceneBounds& bounds) {
+  if (bounds.empty) return nullptr;
+  return {{"min", to_json(bounds.low)}, {"max", to_json(bounds.high)}};
+}
+
+/// Name and answer, in one order for both forms of the report.
+std::vector<std::pair<const char*, bool>> listed(const Needs& n) {
+  return {{"spheres", n.spheres}, {"triangles", n.triangles}, {"cones", n.cones}, {"planes", n.planes},
+          {"smooth_normals", n.smooth_normals}, {"reflection", n.reflection}, {"refraction", n.refraction},
+          {"fresnel", n.fresnel}, {"emission", n.emission}, {"roughness", n.roughness}, {"area_lights", n.area_lights},
+          {"lens", n.lens}, {"environment", n.environment}};
+}
+
+std::uint64_t peak_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+#ifdef __APPLE__
+  return std::uint64_t(usage.ru_maxrss);
+#else
+  return std::uint64_t(usage.ru_maxrss) * 1024;
+#endif
+}
+
+double share(std::uint64_t part, std::uint64_t whole) { return whole ? double(part) / double(whole) : 0; }
+
+__attribute__((format(printf, 1, 2))) std::string print(const char* format, ...) {
+  char text[512];
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(text, sizeof text, format, arguments);
+  va_end(arguments);
+  return text;
+}
+
+void list_count(std::string& text, std::uint64_t count, const char* name) {
+  if (count == 0) return;
+  if (!text.empty()) text += ", ";
+  text += std::to_string(count) + ' ' + name + (count == 1 ? "" : "s");
+}
+
+std::string grids_text(const std::vector<GridStats>& grids) {
+  if (grids.empty()) return "no grid";
+  const auto& cells = grids.front().cells;
+  const std::string first = print("%ux%ux%u", cells[0], cells[1], cells[2]);
+  if (grids.size() == 1) return "grid " + first;
+  return std::to_string(grids.size()) + " grids (" + first + ", ...)";
+}
+
+std::string point_text(Float3 v) { return print("(%g, %g, %g)", double(v.x), double(v.y), double(v.z)); }
+
+void list_entities(std::string& text, const EntityCounts& c) {
+  const std::pair<const char*, std::uint64_t> entities[] = {{"s", c.s}, {"p", c.p}, {"pp", c.pp}, {"c", c.c},
+      {"pl", c.pl}, {"box", c.box}, {"mesh faces", c.mesh}, {"ply faces", c.ply}};
+  std::string line;
+  for (const auto& [name, count] : entities)
+    if (count > 0) line += (line.empty() ? "" : ", ") + std::to_string(count) + ' ' + name;
+  text += "in the file   " + (line.empty() ? "no primitives" : line) + '\n';
+}
+
+std::string primitives_text(std::size_t spheres, std::size_t triangles, std::size_t cones, std::size_t planes) {
+  std::string text;
+  list_count(text, spheres, "sphere");
+  list_count(text, triangles, "triangle");
+  list_count(text, cones, "cone");
+  list_count(text, planes, "plane");
+  return text.empty() ? "no primitives" : text;
+}
+
+}  // namespace
+
+std::string stats_json(const RenderCommand& command, const RunReport& report) {
+  const RenderStats& render = report.render;
+  const auto& [rays, trace] = std::tie(render.rays, render.trace);
+  Json json;
+  json["version"] = GRELHA_VERSION;
+  json["file"] = command.scene;
+  json["isa"] = render.isa;
+  json["threads"] = render.threads;
+  json["size"] = {report.width, report.height};
+  json["options"] = {{"depth", command.render.depth}, {"density", tidy(command.build.density)},
+                     {"accel", command.build.grid ? "grid" : "none"}, {"mailbox", command.render.mailbox},
+                     {"isa", command.render.isa}, {"packet", command.render.packet}, {"threads", command.render.threads}};
+  json["scene"] = to_json(report.counts);
+  json["grids"] = to_json(report.grids);
+  json["rays"] = {{"primary", rays.primary}, {"shadow", rays.shadow}, {"reflection", rays.reflection},
+                  {"refraction", rays.refraction}};
+  json["visits"] = trace.visits;
+  json["tests"] = {{"sphere", trace.tests.sphere}, {"triangle", trace.tests.triangle}, {"cone", trace.tests.cone},
+                   {"plane", trace.tests.plane}};
+  json["packets"] = {{"formed", trace.packets.formed}, {"fell_back", trace.packets.fell_back},
+                     {"lanes_busy", share(trace.packets.lanes_busy, trace.packets.lanes_issued)}};
+  json["seconds"] = {{"load", report.seconds.load}, {"build", report.seconds.build}, {"render", report.seconds.render},
+                     {"write", report.seconds.write}};
+  json["bytes"] = {{"geometry", report.geometry_bytes}, {"grids", report.grid_bytes}, {"peak", peak_bytes()}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+std::string info_json(const SceneFile& file, const std::vector<GridStats>& grids) {
+  const Geometry& geometry = file.scene.geometry;
+  Json json;
+  json["scene"] = to_json(file.counts);
+  json["kernel"] = {{"spheres", geometry.spheres.size()}, {"triangles", geometry.triangles.size()},
+                    {"vertices", geometry.triangles.vertex_count()}, {"cones", geometry.cones.size()},
+                    {"planes", geometry.planes.size()}, {"objects", geometry.objects.size()}};
+  json["dropped"] = {{"not_finite", file.dropped.not_finite}, {"zero_area", file.dropped.zero_area}};
+  json["resolution"] = {file.camera.width, file.camera.height};
+  json["bounds"] = to_json(bounds_of(geometry));
+  json["grids"] = to_json(grids);
+  for (const auto& [name, needed] : listed(needs_of(file))) json["needs"][name] = needed;
+  json["made_up"] = {{"camera", file.default_camera}, {"light", file.default_light}};
+  return json.dump(2) + '\n';
+}
+
+std::string info_text(const std::string& path, const SceneFile& file, const std::vector<GridStats>& grids) {
+  const Geometry& g = file.scene.geometry;
+  std::string text = path + ": " + std::to_string(file.camera.width) + 'x' + std::to_string(file.camera.height) + '\n';
+  list_entities(text, file.counts);
+  text += "primitives    " + primitives_text(g.spheres.size(), g.triangles.size(), g.cones.size(), g.planes.size()) + '\n';
+  if (const auto dropped = file.dropped.not_finite + file.dropped.zero_area; dropped > 0)
+    text += "dropped       " + std::to_string(dropped) + " that cannot be drawn\n";
+  text += "lights        " + std::to_string(file.counts.lights) + (file.default_light ? " (and a made-up one)\n" : "\n");
+  text += "materials     " + std::to_string(file.counts.materials) + '\n';
+  if (const SceneBounds bounds = bounds_of(g); !bounds.empty)
+    text += "bounds        " + point_text(bounds.low) + " to " + point_text(bounds.high) + '\n';
+  for (const GridStats& grid : grids)
+    text += print("grid          %u x %u x %u cells, %llu occupied, %llu references, %.1f MB\n", grid.cells[0],
+                  grid.cells[1], grid.cells[2], static_cast<unsigned long long>(grid.occupied),
+                  static_cast<unsigned long long>(grid.references), double(grid.bytes) / 1e6);
+  std::string needs;
+  for (const auto& [name, needed] : listed(needs_of(file)))
+    if (needed) needs += (needs.empty() ? "" : ", ") + std::string(name);
+  return text + "needs         " + (needs.empty() ? "nothing but the background" : needs) + '\n';
+}
+
+std::string summary_line(const RenderCommand& command, const RunReport& report) {
+  const Seconds& s = report.seconds;
+  const double rays = double(report.render.rays.total());
+  const std::string times =
+      print("load %.2f, build %.2f, render %.2f, write %.2f s", s.load, s.build, s.render, s.write);
+  const double speed = s.render > 0 ? rays / s.render / 1e6 : 0;
+  return command.image + ": " + primitives_text(report.spheres, report.triangles, report.cones, report.planes) + "; " +
+         grids_text(report.grids) + "; " + print("%.3f Mrays in ", rays / 1e6) + times +
+         print("; %.2f Mrays/s (%s, %d thread%s)\n", speed, report.render.isa, report.render.threads,
+               report.render.threads == 1 ? "" : "s");
+}
+
+}  // namespace grelha

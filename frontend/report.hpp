@@ -1,0 +1,52 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "frontend/options.hpp"
+#include "frontend/scene_file.hpp"
+#include "kernel/render.hpp"
+
+namespace grelha {
+
+struct Seconds {
+  double load = 0, build = 0, render = 0, write = 0;
+};
+
+/// What one run of `grelha render` did.
+struct RunReport {
+  EntityCounts counts;
+  std::size_t spheres = 0, triangles = 0, cones = 0, planes = 0;  ///< as the kernel holds them
+  int width = 0, height = 0;
+  std::vector<GridStats> grids;
+  RenderStats render;
+  Seconds seconds;
+  std::size_t geometry_bytes = 0, grid_bytes = 0;
+};
+
+/// Which parts of a renderer a scene calls for, from what its primitives use: an unused material asks for nothing.
+struct Needs {
+  bool spheres = false, triangles = false, cones = false, planes = false;
+  bool smooth_normals = false;
+  bool reflection = false;  ///< a mirror weight, or glass, which reflects totally at grazing angles
+  bool refraction = false, fresnel = false, emission = false, roughness = false;
+  bool area_lights = false, lens = false, environment = false;
+  bool operator==(const Needs&) const = default;
+};
+
+Needs needs_of(const SceneFile& file);
+
+/// The least box around everything but planes; `empty` when there is nothing.
+struct SceneBounds {
+  bool empty = true;
+  Float3 low, high;
+};
+
+SceneBounds bounds_of(const Geometry& geometry);
+
+std::string stats_json(const RenderCommand& command, const RunReport& report);
+std::string info_json(const SceneFile& file, const std::vector<GridStats>& grids);
+std::string info_text(const std::string& path, const SceneFile& file, const std::vector<GridStats>& grids);
+std::string summary_line(const RenderCommand& command, const RunReport& report);
+
+}  // namespace grelha

@@ -1,0 +1,30 @@
+// The one file that compiles stb, so that its warnings and its macros stay here.
+#include <zlib.h>
+
+#include <cstdlib>
+
+namespace {
+
+/// zlib's deflate in place of stb's own, which is slower and packs worse.
+unsigned char* deflate_by_zlib(unsigned char* data, int size, int* packed_size, int level) {
+  uLongf length = compressBound(uLong(size));
+  auto* packed = static_cast<unsigned char*>(std::malloc(length));
+  if (packed && compress2(packed, &length, data, uLong(size), level) != Z_OK) {
+    std::free(packed);
+    packed = nullptr;
+  }
+  *packed_size = int(length);
+  return packed;
+}
+
+}  // namespace
+
+#define STBIW_ZLIB_COMPRESS deflate_by_zlib
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#include <stb/stb_image_write.h>
+
+#define STBI_ONLY_PNG
+#define STBI_ONLY_HDR
+#define STBI_NO_STDIO
+#define STB_IMAGE_IMPLEMENTATION
+#include <stb/stb_image.h>
