@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string_view>
+
+#include "frontend/nff_input.hpp"
+#include "frontend/scene_file.hpp"
+
+namespace grelha {
+
+/// The lines of `v` and `camera`. They are taken in any order and wherever they stand; what must be there is checked at
+/// the end of the file.
+class NffView {
+ public:
+  /// Reads the entity if `word` is one of the view's; false if it is not.
+  bool read(std::string_view word, NffInput& input, LensHint& lens);
+  /// The camera, or a ParseError at what is wrong with it. `end` is the end of the file.
+  Camera finish(NffInput& input, std::string_view end) const;
+
+ private:
+  void begin(std::string_view word, NffInput& input);
+  void read_angle(NffInput& input);
+  void read_resolution(NffInput& input);
+  void read_aperture(NffInput& input, LensHint& lens);
+
+  Camera camera_;
+  std::string_view view_, from_, at_, up_, angle_, resolution_;  ///< the words themselves; empty: not there
+};
+
+}  // namespace grelha

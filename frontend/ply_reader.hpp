@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "frontend/mesh.hpp"
+
+namespace grelha {
+
+/// The vertices and faces of a PLY file; whatever else it holds is stepped over. `tristrips` become triangles, without
+/// those that repeat a vertex: they only stitch. Every index is checked. Throws ParseError, which names the byte inside
+/// binary data.
+Mesh read_ply_mesh(const std::string& path, std::string_view bytes);
+
+}  // namespace grelha

@@ -1,0 +1,66 @@
+#include <algorithm>
+#include <utility>
+
+#include "frontend/default_view.hpp"
+#include "frontend/nff_reader.hpp"
+#include "frontend/ply_reader.hpp"
+#include "frontend/scene_builder.hpp"
+#include "frontend/text.hpp"
+#include "frontend/warnings.hpp"
+
+namespace grelha {
+namespace {
+
+/// Extension in small letters, without a ".gz" behind it.
+std::string extension(const std::string& path) {
+  std::string name = path.substr(path.find_last_of('/') + 1);
+  std::transform(name.begin(), name.end(), name.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 32) : c; });
+  if (name.ends_with(".gz")) name.resize(name.size() - 3);
+  const std::size_t point = name.find_last_of('.');
+  return point == std::string::npos ? "" : name.substr(point);
+}
+
+/// By the extension; a file with another one is PLY when it says so.
+bool is_ply(const std::string& path, std::string_view bytes) {
+  const std::string kind = extension(path);
+  if (kind == ".ply") return true;
+  if (kind == ".nff" || kind == ".p3f") return false;
+  return bytes.starts_with("ply\n") || bytes.starts_with("ply\r");
+}
+
+void refuse_placeholders(const std::string& path, std::string_view bytes) {
+  const Position start{path, 1, 1, 0};
+  if (bytes.empty()) throw ParseError(start, "wanted a scene, found an empty file");
+  if (bytes.starts_with("version https://git-lfs"))
+    throw ParseError(start, "wanted a scene, found a Git LFS pointer: the file it stands for was not downloaded");
+}
+
+SceneFile read_mesh_alone(const std::string& path, std::string_view bytes) {
+  SceneFile file;
+  Mesh mesh = read_ply_mesh(path, bytes);
+  file.counts.ply = mesh.face_count();
+  file.scene.materials.push_back(default_mesh_material());
+  SceneBuilder(file).mesh(std::move(mesh), 0);
+  add_default_view(file);
+  return file;
+}
+
+void warn_of_dropped(const std::string& path, const Dropped& dropped, const Warn& warn) {
+  const std::uint64_t all = dropped.not_finite + dropped.zero_area;
+  if (all == 0 || !warn) return;
+  warn(path + ": warning: " + std::to_string(all) + (all == 1 ? " primitive is" : " primitives are") + " left out: " +
+       std::to_string(dropped.not_finite) + " not finite (or beyond 1e18), " + std::to_string(dropped.zero_area) +
+       " without area");
+}
+
+}  // namespace
+
+SceneFile read_scene(const std::string& path, const Warn& warn) {
+  const std::string bytes = load_file(path);
+  refuse_placeholders(path, bytes);
+  SceneFile file = is_ply(path, bytes) ? read_mesh_alone(path, bytes) : read_nff(path, bytes, warn);
+  warn_of_dropped(path, file.dropped, warn);
+  return file;
+}
+
+}  // namespace grelha
