@@ -15,6 +15,7 @@ constexpr std::array kGenerators{
     Generator{"stadium", "fine knot on a ground a thousand times its size", 1, 40, 6, write_stadium},
     Generator{"tetra", "tetrahedral pyramid of triangles", 1, 10, 6, write_tetra},
     Generator{"gears", "meshing gears of concave 144-gons, some of glass", 1, 10, 4, write_gears},
+    Generator{"rings", "pyramid of interlocked rings of rods and balls", 1, 40, 7, write_rings},
     Generator{"tree", "tree of cones and spheres under seven lights", 0, 16, 11, write_tree},
     Generator{"lattice", "cube of balls joined by rods", 1, 50, 12, write_lattice},
 };

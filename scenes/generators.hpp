@@ -14,16 +14,18 @@ struct SceneOptions {
 };
 
 /// The scenes this project can make. Constructions: Haines, "A Proposal for Standard Graphics Environments" (1987) and
-/// the programs of his Standard Procedural Databases 3.14; distant, boat and stadium are our own.
+/// the programs of his Standard Procedural Databases 3.14; distant, boat and stadium are our own, and so are the colours of
+/// gears and the heights of mount beyond size 7.
 ///
 ///   name     size     size n gives                                                      default
 ///   balls    1-7      (9^(n+1) - 1) / 8 spheres and one plane (--spd: a 4-gon)          4: 7381
-///   mount    1-10     2 4^n triangles and 4 spheres; from n = 8 on our own heights      7: 32768
+///   mount    1-10     2 4^n triangles and 4 spheres                                     7: 32768
 ///   distant  1-100    n spheres over a plane, seen through a lens                       3
 ///   boat     1-40     46 n^2 + 10 n triangles of a PLY file, three planes               10: 4700
 ///   stadium  1-40     288 n^2 patches of three vertices, one 4-gon                      6: 10368
 ///   tetra    1-10     4^n triangles                                                     6: 4096
 ///   gears    1-10     2 n^3 144-gons and 144 n^3 + 1 4-gons                             4: 128, 9217
+///   rings    1-40     5n (n+1) (2n+1) spheres and as many cylinders, one 4-gon          7: 4200
 ///   tree     0-16     2^(n+1) - 1 cones and as many spheres, one 4-gon                  11: 4095
 ///   lattice  1-50     (n+1)^3 spheres, 3n (n+1)^2 cylinders                             12: 2197, 6084
 ///
@@ -47,6 +49,7 @@ void write_boat_mesh(std::ostream& out, int size);
 void write_stadium(std::ostream& out, const SceneOptions& options);
 void write_tetra(std::ostream& out, const SceneOptions& options);
 void write_gears(std::ostream& out, const SceneOptions& options);
+void write_rings(std::ostream& out, const SceneOptions& options);
 void write_tree(std::ostream& out, const SceneOptions& options);
 void write_lattice(std::ostream& out, const SceneOptions& options);
 
