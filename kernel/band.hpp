@@ -1,0 +1,64 @@
+#pragma once
+// One band of image rows from camera to finished sums: no recursion, bounces wait on a stack and are traced in batches.
+
+#include "kernel/shade.hpp"
+
+namespace grelha::GRELHA_ISA {
+
+/// Directions of the rays through the centres of a tile's pixels, by rows; returns how many were put behind `count`.
+inline int tile_rays(const FrameView& f, Batch& b, int count, int x0, int x1, int y0, int y1, int band_top) {
+  for (int y = y0; y < y1; ++y)
+    for (int x = x0; x < x1; ++x, ++count) {
+      const float sx = (static_cast<float>(x) + .5f) - .5f * static_cast<float>(f.width);
+      const float sy = .5f * static_cast<float>(f.height) - (static_cast<float>(y) + .5f);
+      b.ox[count] = f.eye[0], b.oy[count] = f.eye[1], b.oz[count] = f.eye[2];
+      const Vec3<float> d = normalize(Vec3<float>{(f.forward[0] + sx * f.right[0]) + sy * f.up[0],
+                                                  (f.forward[1] + sx * f.right[1]) + sy * f.up[1],
+                                                  (f.forward[2] + sx * f.right[2]) + sy * f.up[2]});
+      b.dx[count] = d.x, b.dy[count] = d.y, b.dz[count] = d.z;
+      b.wr[count] = b.wg[count] = b.wb[count] = 1;
+      b.pixel[count] = static_cast<std::uint32_t>((y - band_top) * f.width + x);
+      b.depth[count] = 1;
+    }
+  return count;
+}
+
+/// Takes the youngest rays off the stack into the batch.
+inline int pop(RayStack& stack, Batch& b, int most) {
+  const int n = stack.size < most ? stack.size : most, at = stack.size - n;
+  const std::size_t bytes = static_cast<std::size_t>(n) * 4;
+  __builtin_memcpy(b.ox, stack.ox + at, bytes), __builtin_memcpy(b.oy, stack.oy + at, bytes);
+  __builtin_memcpy(b.oz, stack.oz + at, bytes), __builtin_memcpy(b.dx, stack.dx + at, bytes);
+  __builtin_memcpy(b.dy, stack.dy + at, bytes), __builtin_memcpy(b.dz, stack.dz + at, bytes);
+  __builtin_memcpy(b.wr, stack.wr + at, bytes), __builtin_memcpy(b.wg, stack.wg + at, bytes);
+  __builtin_memcpy(b.wb, stack.wb + at, bytes), __builtin_memcpy(b.pixel, stack.pixel + at, bytes);
+  __builtin_memcpy(b.depth, stack.depth + at, bytes);
+  stack.size = at;
+  return n;
+}
+
+/// Renders rows [y0, y1), at most kBandRows, into work.sums.
+///
+/// Depths never fall towards the top of the stack, and rays of depth d + 1 are only added when fewer than `take` of them
+/// are there, by at most 2 take: the stack holds at most 2 kBatch + 2 take (depth - 2) rays however the light bounces.
+inline void render_band(const SceneView& scene, const ShadingView& shading, const FrameView& frame, int y0, int y1,
+                        const BandWork& work, Counters& counters, RayTally& rays) {
+  Batch& b = *work.batch;
+  const Shader shader{scene, shading, work, counters, rays, b};
+  RayStack stack = work.stack;
+  stack.size = 0;
+  const auto finish = [&](int count) {
+    rays.primary += static_cast<unsigned>(count);
+    shade_batch(shader, stack, count, true);
+    while (stack.size > 0) shade_batch(shader, stack, pop(stack, b, work.take), false);
+  };
+  int count = 0;
+  for (int x0 = 0; x0 < frame.width; x0 += kTile) {
+    const int x1 = x0 + kTile < frame.width ? x0 + kTile : frame.width;
+    count = tile_rays(frame, b, count, x0, x1, y0, y1, y0);
+    if (count + kTile * kBandRows > kBatch) finish(count), count = 0;
+  }
+  if (count > 0) finish(count);
+}
+
+}  // namespace grelha::GRELHA_ISA

@@ -1,0 +1,329 @@
+#pragma once
+// A packet through a grid: all rays together, slice by slice along their major axis, between four bounding planes.
+// After Wald, Ize, Kensler, Knoll, Parker, "Ray Tracing Animated Scenes using Coherent Grid Traversal", SIGGRAPH 2006.
+
+#include "kernel/single.hpp"
+
+namespace grelha::GRELHA_ISA {
+
+/// Primitives a packet has already been tested against: a small table that may forget and is never wrong.
+struct Mailbox {
+  static constexpr unsigned kSize = 128;
+  std::uint32_t held[kSize];
+  void clear() { __builtin_memset(held, 0xFF, sizeof held); }
+  bool seen(std::uint32_t id) {
+    std::uint32_t& slot = held[id % kSize];
+    if (slot == id) return true;
+    slot = id;
+    return false;
+  }
+};
+
+/// The volume a packet marches through, in the grid's cells: K is the major axis (flipped when the rays run against it, so
+/// slices always ascend), U and V the others. Between slices `from` and `to` every ray stays between lo and hi, straight
+/// lines in s: a chord lies below the concave least of straight lines, and above the convex greatest.
+struct Frustum {
+  int k, u, v;
+  bool flip;
+  float from, to;
+  float lo[2], lo_slope[2], hi[2], hi_slope[2];  ///< at s = from, and per slice
+  float margin;                                  ///< rounding of all of these, in cells
+  float steepest;                                ///< greatest |slope|, at least 1
+  alignas(64) float position[kPacket];           ///< of each ray's origin along K
+  alignas(64) float per_slice[kPacket];          ///< t a slice takes
+  alignas(64) float leave[kPacket];              ///< t at which the ray leaves the grid; -infinity: never meets it
+  /// Four planes f(x) = a xu + b xk + c, negative outside, for culling; reach = length of the gradient.
+  float a[4], b[4], c[4], reach[4];
+};
+
+enum class Spread { kNothing, kTogether, kApart };
+
+inline float lane_min(const Lanes& v) {
+  float f[kWidth<Lanes>], m;
+  store(f, v);
+  m = f[0];
+  for (int i = 1; i < kWidth<Lanes>; ++i) m = lesser(f[i], m);
+  return m;
+}
+inline float lane_max(const Lanes& v) {
+  float f[kWidth<Lanes>], m;
+  store(f, v);
+  m = f[0];
+  for (int i = 1; i < kWidth<Lanes>; ++i) m = greater(f[i], m);
+  return m;
+}
+
+/// Entry and exit of every ray, then the frustum around those that meet the grid. kApart when they have no common major
+/// axis along which all of them make headway.
+inline Spread bound(const GridView& g, const Packet& p, Frustum& f) {
+  alignas(64) float enter[kPacket];
+  int first = -1;
+  each_live_group(p, [&](int i, int) {
+    Lanes t0 = load<Lanes>(p.t_min + i), t1 = load<Lanes>(p.best + i);
+    for (int a = 0; a < 3; ++a) {
+      const Lanes d = load<Lanes>(p.dir[a] + i), o = load<Lanes>(p.org[a] + i);
+      const Mask<Lanes> tiny = magnitude(d) < Lanes(1e-18f);
+      const Lanes inv = Lanes(1) / select(tiny, Lanes(1e-18f), d);
+      const Lanes x = (Lanes(g.lo_f[a]) - o) * inv, y = (Lanes(g.hi_f[a]) - o) * inv;
+      t0 = greater(lesser(x, y), t0), t1 = lesser(greater(x, y), t1);
+    }
+    const Mask<Lanes> meets = t0 <= t1;
+    store(enter + i, t0);
+    store(f.leave + i, select(meets, t1, Lanes(-kInfinity)));
+    if (const unsigned lanes = bits(meets); lanes != 0 && first < 0) first = i + __builtin_ctz(lanes);
+  });
+  if (first < 0) return Spread::kNothing;
+
+  int k = 0;
+  float most = -1;
+  for (int a = 0; a < 3; ++a)
+    if (const float m = magnitude(p.dir[a][first] * g.inv_cell_f[a]); m > most) most = m, k = a;
+  f.k = k, f.u = k == 2 ? 0 : k + 1, f.v = k == 0 ? 2 : k - 1;
+  f.flip = p.dir[k][first] < 0;
+  const float sign = f.flip ? -1.f : 1.f, size = static_cast<float>(g.n[k]);
+
+  Lanes s0(kInfinity), s1(-kInfinity), far(0);
+  bool apart = false;
+  each_live_group(p, [&](int i, int) {
+    const Lanes leave = load<Lanes>(f.leave + i);
+    const Mask<Lanes> meets = leave > Lanes(-kInfinity);
+    const Lanes dk = load<Lanes>(p.dir[k] + i) * Lanes(sign);
+    const Lanes du = magnitude(load<Lanes>(p.dir[f.u] + i)), dv = magnitude(load<Lanes>(p.dir[f.v] + i));
+    apart |= any(but_not(meets, dk >= Lanes(.15f) * ((du + dv) + dk)));
+    Lanes at = (load<Lanes>(p.org[k] + i) - Lanes(g.lo_f[k])) * Lanes(g.inv_cell_f[k]);
+    if (f.flip) at = Lanes(size) - at;
+    const Lanes q = dk * Lanes(g.inv_cell_f[k]);
+    store(f.position + i, at), store(f.per_slice + i, Lanes(1) / q);
+    s0 = lesser(select(meets, at + load<Lanes>(enter + i) * q, Lanes(kInfinity)), s0);
+    s1 = greater(select(meets, at + leave * q, Lanes(-kInfinity)), s1);
+    far = greater(select(meets, magnitude(at), Lanes(0)), far);
+  });
+  if (apart) return Spread::kApart;
+  f.from = greater(lane_min(s0), 0.f), f.to = lesser(lane_max(s1), size);
+  if (!(f.from <= f.to)) f.to = f.from;
+
+  float farthest = lane_max(far);
+  const float span = f.to - f.from;
+  for (int j = 0; j < 2; ++j) {
+    const int a = j == 0 ? f.u : f.v;
+    Lanes lo0(kInfinity), lo1(kInfinity), hi0(-kInfinity), hi1(-kInfinity), wide(0);
+    each_live_group(p, [&](int i, int) {
+      const Mask<Lanes> meets = load<Lanes>(f.leave + i) > Lanes(-kInfinity);
+      const Lanes at = (load<Lanes>(p.org[a] + i) - Lanes(g.lo_f[a])) * Lanes(g.inv_cell_f[a]);
+      const Lanes slope = (load<Lanes>(p.dir[a] + i) * Lanes(g.inv_cell_f[a])) * load<Lanes>(f.per_slice + i);
+      const Lanes k_at = load<Lanes>(f.position + i);
+      const Lanes x0 = at + (Lanes(f.from) - k_at) * slope, x1 = at + (Lanes(f.to) - k_at) * slope;
+      lo0 = lesser(select(meets, x0, Lanes(kInfinity)), lo0), lo1 = lesser(select(meets, x1, Lanes(kInfinity)), lo1);
+      hi0 = greater(select(meets, x0, Lanes(-kInfinity)), hi0), hi1 = greater(select(meets, x1, Lanes(-kInfinity)), hi1);
+      wide = greater(select(meets, magnitude(at), Lanes(0)), wide);
+    });
+    farthest = greater(farthest, lane_max(wide));
+    float l0 = lane_min(lo0), l1 = lane_min(lo1), h0 = lane_max(hi0), h1 = lane_max(hi1);
+    if (span < 1e-3f) l0 = l1 = lesser(l0, l1), h0 = h1 = greater(h0, h1);
+    const float per = span < 1e-3f ? 0.f : 1.f / span;
+    f.lo[j] = l0, f.lo_slope[j] = (l1 - l0) * per, f.hi[j] = h0, f.hi_slope[j] = (h1 - h0) * per;
+  }
+
+  // Everything above is a few roundings of numbers no larger than `size of the scene in cells * slope`.
+  f.steepest = 1;
+  float corner = 0;  // the grid's corner in cells: what cancels in the planes below when the grid lies far from 0
+  for (int a = 0; a < 3; ++a) {
+    farthest = greater(static_cast<float>(g.n[a]), farthest);
+    corner = greater(magnitude(g.lo_f[a] * g.inv_cell_f[a]), corner);
+  }
+  for (int j = 0; j < 2; ++j) f.steepest = greater(greater(magnitude(f.lo_slope[j]), magnitude(f.hi_slope[j])), f.steepest);
+  f.margin = 1e-3f + 1e-6f * (farthest * f.steepest);
+
+  const float cull = f.margin + 1e-6f * ((corner + farthest) * f.steepest), ik = g.inv_cell_f[k];
+  const float along = f.flip ? -ik : ik, start = f.flip ? size + g.lo_f[k] * ik : -(g.lo_f[k] * ik);  // s = along x + start
+  for (int j = 0; j < 2; ++j) {
+    const int a = j == 0 ? f.u : f.v;
+    const float iu = g.inv_cell_f[a], zero = g.lo_f[a] * iu;
+    f.a[2 * j] = iu, f.b[2 * j] = -(f.lo_slope[j] * along);
+    f.c[2 * j] = cull - zero - f.lo[j] - f.lo_slope[j] * (start - f.from);
+    f.a[2 * j + 1] = -iu, f.b[2 * j + 1] = f.hi_slope[j] * along;
+    f.c[2 * j + 1] = cull + zero + f.hi[j] + f.hi_slope[j] * (start - f.from);
+  }
+  for (int j = 0; j < 4; ++j) f.reach[j] = square_root(f.a[j] * f.a[j] + f.b[j] * f.b[j]) * 1.00001f;
+  return Spread::kTogether;
+}
+
+/// Rows and columns of cells the packet can touch between slices s and s + 1; false when it is outside the grid there.
+inline bool rectangle(const GridView& g, const Frustum& f, int slice, int (&least)[2], int (&most)[2]) {
+  const float s = static_cast<float>(slice), next = s + 1;
+  const float s0 = (s > f.from ? s : f.from) - f.from, s1 = (next < f.to ? next : f.to) - f.from;
+  for (int j = 0; j < 2; ++j) {
+    const float lo = lesser(f.lo[j] + s0 * f.lo_slope[j], f.lo[j] + s1 * f.lo_slope[j]) - f.margin;
+    const float hi = greater(f.hi[j] + s0 * f.hi_slope[j], f.hi[j] + s1 * f.hi_slope[j]) + f.margin;
+    const int n = g.n[j == 0 ? f.u : f.v];
+    if (!(hi >= 0) || !(lo <= static_cast<float>(n))) return false;
+    least[j] = clamp_cell(static_cast<double>(lo), n), most[j] = clamp_cell(static_cast<double>(hi), n);
+  }
+  return true;
+}
+
+/// Bits of the lanes of a block for which `value(plane)` is not negative for all four planes of the frustum.
+template <class Value>
+inline unsigned inside_planes(const Value& value) {
+  const Block o(0);
+  const Mask<Block> out = either(either(value(0) < o, value(1) < o), either(value(2) < o, value(3) < o));
+  return ~bits(out) & ((1u << kWidth<Block>) - 1u);
+}
+
+template <bool kAny>
+inline void test_triangles(const Frustum& f, Packet& p, const TriangleBlock& block, Mailbox* mailbox, Counters& n) {
+  for (int i = 0; i < kBlock; i += kWidth<Block>) {
+    const Block au = load<Block>(block.a[f.u] + i), av = load<Block>(block.a[f.v] + i), ak = load<Block>(block.a[f.k] + i);
+    const Block bu = load<Block>(block.b[f.u] + i), bv = load<Block>(block.b[f.v] + i), bk = load<Block>(block.b[f.k] + i);
+    const Block cu = load<Block>(block.c[f.u] + i), cv = load<Block>(block.c[f.v] + i), ck = load<Block>(block.c[f.k] + i);
+    unsigned left = inside_planes([&](int j) {  // the corner farthest inside
+      const Block s(f.a[j]), r(f.b[j]);
+      const Block fa = s * (j < 2 ? au : av) + r * ak, fb = s * (j < 2 ? bu : bv) + r * bk, fc = s * (j < 2 ? cu : cv) + r * ck;
+      return greater(greater(fa, fb), fc) + Block(f.c[j]);
+    });
+    left &= bits(au == au);  // padding is NaN
+    for (; left != 0; left &= left - 1) {
+      const int at = i + __builtin_ctz(left);
+      const std::uint32_t id = block.id[at];
+      if (mailbox && mailbox->seen(id)) continue;
+      const float a[3] = {block.a[0][at], block.a[1][at], block.a[2][at]};
+      const float b[3] = {block.b[0][at], block.b[1][at], block.b[2][at]};
+      const float c[3] = {block.c[0][at], block.c[1][at], block.c[2][at]};
+      count_lanes(p, n, n.triangle);
+      test_triangle<kAny>(p, a, b, c, id);
+    }
+  }
+}
+
+template <bool kAny>
+inline void test_spheres(const Frustum& f, Packet& p, const CellLists& lists, std::size_t cell, Mailbox* mailbox, Counters& n) {
+  const std::uint32_t end = lists.sphere_first[cell + 1];
+  for (std::uint32_t i = lists.sphere_first[cell]; i < end; i += kWidth<Block>) {
+    const float* const at[3] = {lists.sx, lists.sy, lists.sz};
+    const Block u = load<Block>(at[f.u] + i), v = load<Block>(at[f.v] + i), k = load<Block>(at[f.k] + i);
+    const Block r = magnitude(load<Block>(lists.sr + i));
+    unsigned left = inside_planes([&](int j) {
+      return ((Block(f.a[j]) * (j < 2 ? u : v) + Block(f.b[j]) * k) + Block(f.c[j])) + r * Block(f.reach[j]);
+    });
+    if (end - i < static_cast<unsigned>(kWidth<Block>)) left &= (1u << (end - i)) - 1u;
+    for (; left != 0; left &= left - 1) {
+      const std::uint32_t s = i + static_cast<unsigned>(__builtin_ctz(left)), id = lists.sphere_id[s];
+      if (mailbox && mailbox->seen(id)) continue;
+      count_lanes(p, n, n.sphere);
+      test_sphere<kAny>(p, lists.sx[s], lists.sy[s], lists.sz[s], lists.sr[s], id);
+    }
+  }
+}
+
+/// A cone lies in the hull of the balls around its two ends.
+template <bool kAny>
+inline void test_cones(const Frustum& f, Packet& p, const CellLists& lists, std::size_t cell, Mailbox* mailbox, Counters& n) {
+  const std::uint32_t end = lists.cone_first[cell + 1];
+  for (std::uint32_t i = lists.cone_first[cell]; i < end; i += kWidth<Block>) {
+    const auto at = [&](int k) { return load<Block>(lists.cone[k] + i); };
+    const Block h = at(6), r0 = at(7), r1 = r0 + at(8) * h;
+    const Block u0 = at(f.u), v0 = at(f.v), k0 = at(f.k);
+    const Block u1 = u0 + h * at(3 + f.u), v1 = v0 + h * at(3 + f.v), k1 = k0 + h * at(3 + f.k);
+    unsigned left = inside_planes([&](int j) {
+      const Block s(f.a[j]), q(f.b[j]), reach(f.reach[j]);
+      const Block base = (s * (j < 2 ? u0 : v0) + q * k0) + r0 * reach, apex = (s * (j < 2 ? u1 : v1) + q * k1) + r1 * reach;
+      return greater(base, apex) + Block(f.c[j]);
+    });
+    if (end - i < static_cast<unsigned>(kWidth<Block>)) left &= (1u << (end - i)) - 1u;
+    for (; left != 0; left &= left - 1) {
+      const std::uint32_t c = i + static_cast<unsigned>(__builtin_ctz(left)), id = lists.cone_id[c];
+      if (mailbox && mailbox->seen(id)) continue;
+      count_lanes(p, n, n.cone);
+      test_cone<kAny>(p, lists.cone, c, id);
+    }
+  }
+}
+
+/// Groups with a ray whose answer may still change beyond t(s), s a plane along K; also how many such rays.
+inline int update_live(const Frustum& f, Packet& p, float s) {
+  std::uint64_t live = 0;
+  int rays = 0;
+  for (int g = 0; g < p.groups; ++g) {
+    const int i = g * kWidth<Lanes>;
+    const Lanes t = (Lanes(s) - load<Lanes>(f.position + i)) * load<Lanes>(f.per_slice + i);
+    const unsigned on = bits(lesser(load<Lanes>(p.best + i), load<Lanes>(f.leave + i)) > t);
+    if (on != 0) live |= std::uint64_t{1} << g;
+    rays += __builtin_popcount(on);
+  }
+  p.live = live;
+  return rays;
+}
+
+/// All rays of a packet through one grid. On return `live` is what it was.
+template <bool kAny>
+inline void march(const GridView& g, Packet& p, bool use_mailbox, bool any_triangles, Counters& n) {
+  const std::uint64_t live = p.live;
+  Frustum f;
+  const auto alone = [&](float s) {  // the rest of the way, ray by ray
+    for (int i = 0; i < p.size; ++i) {
+      double from = p.t_min[i];
+      if (s > 0) {
+        if (!(f.leave[i] > -kInfinity)) continue;
+        from = (static_cast<double>(s) - f.position[i]) * f.per_slice[i];
+      }
+      if (!(p.best[i] > from) || !(p.best[i] > p.t_min[i])) continue;
+      Single r = single_of(p, i, any_triangles);
+      walk<kAny>(g, r, from, n);
+      p.best[i] = r.best, p.id[i] = bits_of(r.id);
+    }
+  };
+  switch (bound(g, p, f)) {
+    case Spread::kNothing: return;
+    case Spread::kApart:
+      ++n.fell_back;
+      alone(0);
+      return;
+    case Spread::kTogether: break;
+  }
+  Mailbox mailbox;
+  if (use_mailbox) mailbox.clear();
+  Mailbox* const box = use_mailbox ? &mailbox : nullptr;
+  const int nk = g.n[f.k];
+  const std::size_t stride[3] = {1, static_cast<std::size_t>(g.n[0]), static_cast<std::size_t>(g.n[0]) * static_cast<std::size_t>(g.n[1])};
+  // Beyond this many cells a slice, looking into each costs more than every ray walking alone (measured).
+  const int limit = p.size > 16 ? 60 : 32;
+  int active = update_live(f, p, f.from - f.margin);
+  int slice = clamp_cell(static_cast<double>(f.from - f.margin), nk);
+  const int last = clamp_cell(static_cast<double>(f.to + f.margin), nk);
+  for (; slice <= last && active > 0; ++slice) {
+    int least[2], most[2];
+    if (!rectangle(g, f, slice, least, most)) continue;
+    const long cells = static_cast<long>(most[0] - least[0] + 1) * (most[1] - least[1] + 1);
+    if (cells > 1 && cells * p.size > static_cast<long>(limit) * active) {
+      p.live = live;
+      ++n.fell_back;
+      alone(static_cast<float>(slice) - f.margin);
+      return;
+    }
+    const int sk = f.flip ? nk - 1 - slice : slice;
+    int nearest = 255;
+    for (int v = least[1]; v <= most[1]; ++v)
+      for (int u = least[0]; u <= most[0]; ++u) {
+        const std::size_t cell = static_cast<std::size_t>(sk) * stride[f.k] + static_cast<std::size_t>(u) * stride[f.u] +
+                                 static_cast<std::size_t>(v) * stride[f.v];
+        ++n.visits;
+        const int distance = g.distance[cell];
+        nearest = distance < nearest ? distance : nearest;
+        if (distance != 0) continue;
+        if (g.lists.triangle_first)
+          for (std::uint32_t b = g.lists.triangle_first[cell]; b < g.lists.triangle_first[cell + 1]; ++b)
+            test_triangles<kAny>(f, p, g.lists.triangles[b], box, n);
+        if (g.lists.sphere_first) test_spheres<kAny>(f, p, g.lists, cell, box, n);
+        if (g.lists.cone_first) test_cones<kAny>(f, p, g.lists, cell, box, n);
+      }
+    if (nearest == 0) {
+      active = update_live(f, p, static_cast<float>(slice + 1) - f.margin);
+    } else if (nearest > 1) {  // nothing within nearest - 1 cells: the packet shifts sideways by at most steepest a slice
+      slice += f.steepest > 1 ? static_cast<int>(static_cast<float>(nearest - 1) / f.steepest) : nearest - 1;
+    }
+  }
+  ++n.formed;
+  p.live = live;
+}
+
+}  // namespace grelha::GRELHA_ISA

@@ -1,0 +1,253 @@
+#pragma once
+// Whitted shading of a batch of hits: local light with shadow rays, then the reflected and refracted rays they send on.
+//
+// Whitted, "An Improved Illumination Model for Shaded Display", 1980, with Blinn's highlight and, for materials that ask
+// for it, Schlick's Fresnel term (1994). No falloff, no ambient light, any hit blocks light (the course's rules).
+
+#include "kernel/power.hpp"
+#include "kernel/surface.hpp"
+#include "kernel/trace.hpp"
+
+namespace grelha::GRELHA_ISA {
+
+inline std::int64_t light_units(float x) {
+  if (!(x == x)) return 0;
+  const float c = x > kMostLight ? kMostLight : x < 0 - kMostLight ? 0 - kMostLight : x;
+  const double u = static_cast<double>(c) * kLightUnit;
+  return static_cast<std::int64_t>(u < 0 ? u - .5 : u + .5);
+}
+
+inline void add_light(std::int64_t* sums, std::uint32_t pixel, float r, float g, float b) {
+  std::int64_t* const s = sums + static_cast<std::size_t>(pixel) * 3;
+  s[0] += light_units(r), s[1] += light_units(g), s[2] += light_units(b);
+}
+
+struct RayTally {
+  std::uint64_t primary = 0, shadow = 0, reflection = 0, refraction = 0;
+};
+
+/// Everything a thread's shading needs to know.
+struct Shader {
+  const SceneView& scene;
+  const ShadingView& shading;
+  const BandWork& work;
+  Counters& counters;
+  RayTally& rays;
+  Batch& b;
+};
+
+/// Fills the hit arrays from rays [0, count); misses send the background. Returns the number of hits.
+inline int find_surfaces(const Shader& s, int count) {
+  Batch& b = s.b;
+  const float* const bg = s.shading.background;
+  int hits = 0;
+  for (int i = 0; i < count; ++i) {
+    if (b.id[i] == kNoPrimitive) {
+      add_light(s.work.sums, b.pixel[i], b.wr[i] * bg[0], b.wg[i] * bg[1], b.wb[i] * bg[2]);
+      continue;
+    }
+    const float org[3] = {b.ox[i], b.oy[i], b.oz[i]}, dir[3] = {b.dx[i], b.dy[i], b.dz[i]};
+    const Surface f = surface_of(s.scene, b.id[i], org, dir, b.t[i], s.shading.smooth);
+    const Vec3<float> d{dir[0], dir[1], dir[2]};
+    const bool inside = dot(d, f.normal) > 0;
+    const float side = inside ? -1.f : 1.f;
+    const Vec3<float> v = normalize(Vec3<float>{0, 0, 0} - d);
+    const int h = hits++;
+    b.px[h] = f.point.x, b.py[h] = f.point.y, b.pz[h] = f.point.z;
+    b.gx[h] = side * f.normal.x, b.gy[h] = side * f.normal.y, b.gz[h] = side * f.normal.z;
+    b.nx[h] = side * f.shading.x, b.ny[h] = side * f.shading.y, b.nz[h] = side * f.shading.z;
+    b.vx[h] = v.x, b.vy[h] = v.y, b.vz[h] = v.z;
+    b.away[h] = f.away, b.inside[h] = inside ? 1.f : 0.f;
+    b.hr[h] = b.wr[i], b.hg[h] = b.wg[i], b.hb[h] = b.wb[i];
+    b.hit_pixel[h] = b.pixel[i], b.hit_depth[h] = b.depth[i], b.material[h] = f.material;
+  }
+  return hits;
+}
+
+inline Vec3<Lanes> load3(const float* x, const float* y, const float* z, int i) {
+  return {load<Lanes>(x + i), load<Lanes>(y + i), load<Lanes>(z + i)};
+}
+
+/// One material value for each of the hits i, i + 1, ...; the batch's tail repeats stale but valid indices, see pad_tail.
+inline Lanes gather(const ShadingView& s, MaterialField field, const std::uint32_t* material) {
+  float v[kWidth<Lanes>];
+  for (int k = 0; k < kWidth<Lanes>; ++k) v[k] = s.materials.field[field][material[k]];
+  return load<Lanes>(v);
+}
+
+inline Vec3<Lanes> gather3(const ShadingView& s, MaterialField r, const std::uint32_t* material) {
+  return {gather(s, r, material), gather(s, static_cast<MaterialField>(r + 1), material),
+          gather(s, static_cast<MaterialField>(r + 2), material)};
+}
+
+/// Makes the lanes beyond the last hit harmless: copies of the last one.
+inline void pad_tail(Batch& b, int hits) {
+  const int end = (hits + kWidth<Lanes> - 1) / kWidth<Lanes> * kWidth<Lanes>;
+  for (int i = hits; i < end; ++i) b.material[i] = b.material[hits - 1];
+}
+
+inline unsigned lanes_of(int first, int count) {
+  const int left = count - first;
+  return left >= kWidth<Lanes> ? ~0u >> (32 - kWidth<Lanes>) : (1u << left) - 1u;
+}
+
+/// Light of one source on all hits: a shadow ray for each that faces it, and what that ray carries if nothing stands in its
+/// way.
+inline void light_hits(const Shader& s, int hits, const float* light) {
+  Batch& b = s.b;
+  const Vec3<Lanes> at{Lanes(light[0]), Lanes(light[1]), Lanes(light[2])};
+  const Vec3<Lanes> color{Lanes(light[3]), Lanes(light[4]), Lanes(light[5])};
+  const Lanes o(0);
+  int n = 0;
+  for (int i = 0; i < hits; i += kWidth<Lanes>) {
+    const Vec3<Lanes> p = load3(b.px, b.py, b.pz, i), g = load3(b.gx, b.gy, b.gz, i), normal = load3(b.nx, b.ny, b.nz, i);
+    const Vec3<Lanes> org = p + load<Lanes>(b.away + i) * g;  // the lit side is the viewer's side
+    const Vec3<Lanes> dir = at - org, l = normalize(dir);
+    const Lanes nl = dot(normal, l);
+    const unsigned lit = bits(both(nl > o, dot(g, l) > o)) & lanes_of(i, hits);
+    if (lit == 0) continue;
+    Vec3<Lanes> c = nl * gather3(s.shading, kDiffuseR, b.material + i);
+    if (s.shading.highlights) {
+      const Vec3<Lanes> half = normalize(l + load3(b.vx, b.vy, b.vz, i));
+      const Lanes nh = greater(dot(normal, half), o);
+      c = c + power(nh, gather(s.shading, kShine, b.material + i)) * gather3(s.shading, kSpecularR, b.material + i);
+    }
+    c = color * (load3(b.hr, b.hg, b.hb, i) * c);
+    float out[9][kWidth<Lanes>];
+    store(out[0], org.x), store(out[1], org.y), store(out[2], org.z);
+    store(out[3], dir.x), store(out[4], dir.y), store(out[5], dir.z);
+    store(out[6], c.x), store(out[7], c.y), store(out[8], c.z);
+    for (unsigned left = lit; left != 0; left &= left - 1) {
+      const int k = __builtin_ctz(left);
+      b.lox[n] = out[0][k], b.loy[n] = out[1][k], b.loz[n] = out[2][k];
+      b.ldx[n] = out[3][k], b.ldy[n] = out[4][k], b.ldz[n] = out[5][k];
+      b.lr[n] = out[6][k], b.lg[n] = out[7][k], b.lb[n] = out[8][k];
+      b.light_pixel[n] = b.hit_pixel[i + k];
+      b.lt_min[n] = 0, b.lt[n] = 1;
+      ++n;
+    }
+  }
+  if (n == 0) return;
+  s.rays.shadow += static_cast<unsigned>(n);
+  for (int i = 0; i < n; ++i) {
+    float org[3] = {b.lox[i], b.loy[i], b.loz[i]};
+    const float dir[3] = {b.ldx[i], b.ldy[i], b.ldz[i]};
+    if (const double shift = approach(s.scene, org, dir); shift > 0) {
+      b.lox[i] = org[0], b.loy[i] = org[1], b.loz[i] = org[2];
+      b.lt_min[i] = static_cast<float>(-shift), b.lt[i] = static_cast<float>(1 - shift);
+    }
+  }
+  const RayArrays rays{b.lox, b.loy, b.loz, b.ldx, b.ldy, b.ldz, b.lt_min, b.lt, b.lid};
+  trace<true>(s.scene, rays, n, {s.work.packet == 0 ? 64 : s.work.packet, s.work.mailbox}, s.counters);
+  for (int i = 0; i < n; ++i)
+    if (b.lid[i] == kNoPrimitive) add_light(s.work.sums, b.light_pixel[i], b.lr[i], b.lg[i], b.lb[i]);
+}
+
+inline void push(RayStack& stack, const Vec3<float>& org, const Vec3<float>& dir, const Vec3<float>& weight, std::uint32_t pixel,
+                 std::uint32_t depth) {
+  const int i = stack.size++;
+  stack.ox[i] = org.x, stack.oy[i] = org.y, stack.oz[i] = org.z;
+  stack.dx[i] = dir.x, stack.dy[i] = dir.y, stack.dz[i] = dir.z;
+  stack.wr[i] = weight.x, stack.wg[i] = weight.y, stack.wb[i] = weight.z;
+  stack.pixel[i] = pixel, stack.depth[i] = depth;
+}
+
+/// Sends the reflected and refracted rays of all hits. At the end of the longest path they see the background.
+inline void send_on(const Shader& s, RayStack& stack, int hits) {
+  Batch& b = s.b;
+  const float* const bg = s.shading.background;
+  const Lanes o(0), one(1);
+  for (int i = 0; i < hits; i += kWidth<Lanes>) {
+    const Vec3<Lanes> n = load3(b.nx, b.ny, b.nz, i), g = load3(b.gx, b.gy, b.gz, i), v = load3(b.vx, b.vy, b.vz, i);
+    const Vec3<Lanes> mirror = gather3(s.shading, kMirrorR, b.material + i);
+    Vec3<Lanes> up = mirror;
+    Vec3<Lanes> down{o, o, o}, through{o, o, o};
+    const Lanes nv = dot(n, v);
+    if (s.shading.refracts) {
+      const Lanes t = gather(s.shading, kTransmission, b.material + i), ior = gather(s.shading, kIor, b.material + i);
+      const Mask<Lanes> clear = t > o, inside = load<Lanes>(b.inside + i) > o;
+      const Lanes eta = select(inside, ior, one / ior);
+      const Lanes c1 = greater(nv, o), left = one - (eta * eta) * (one - c1 * c1);  // Snell: cos^2 on the other side
+      const Mask<Lanes> passes = left >= o;
+      const Lanes c2 = square_root(greater(left, o));
+      through = (eta * c1 - c2) * n - eta * v;
+      Lanes tw = t;
+      Vec3<Lanes> rw = mirror;
+      if (s.shading.fresnel) {
+        const Mask<Lanes> schlick = gather(s.shading, kFresnel, b.material + i) > o;
+        const Lanes r = (ior - one) / (ior + one), r0 = r * r;
+        const Lanes c = one - select(eta > one, c2, c1), cc = c * c;  // the angle on the thinner side
+        const Lanes kr = r0 + (one - r0) * ((cc * cc) * c);
+        tw = select(schlick, one - kr, tw);
+        rw = select(schlick, Vec3<Lanes>{kr, kr, kr}, rw);
+      }
+      const Mask<Lanes> refracted = both(clear, passes), total = but_not(clear, passes);
+      tw = select(refracted, tw, o);
+      down = {tw, tw, tw};
+      // On total reflection the mirror ray takes over what would have passed.
+      const Mask<Lanes> additive = gather(s.shading, kFresnel, b.material + i) == o;
+      const Lanes all = select(additive, t, o), whole = select(additive, o, one);
+      up = select(clear, rw, up);
+      up = select(total, select(additive, Vec3<Lanes>{up.x + all, up.y + all, up.z + all}, Vec3<Lanes>{whole, whole, whole}), up);
+    }
+    const Vec3<Lanes> w = load3(b.hr, b.hg, b.hb, i);
+    up = w * up, down = w * down;
+    Vec3<Lanes> reflected = (nv + nv) * n - v;
+    // A smooth normal can send a reflection under the true surface; bend it back above.
+    const Lanes under = lesser(dot(reflected, g), o);
+    reflected = reflected - (under + under) * g;
+    const unsigned in = lanes_of(i, hits);
+    const unsigned mirrors = bits(either(either(up.x != o, up.y != o), up.z != o)) & in;
+    const unsigned clears = bits(either(either(down.x != o, down.y != o), down.z != o)) & in;
+    if ((mirrors | clears) == 0) continue;
+    float r[3][kWidth<Lanes>], q[3][kWidth<Lanes>], u[3][kWidth<Lanes>], d[3][kWidth<Lanes>];
+    store(r[0], reflected.x), store(r[1], reflected.y), store(r[2], reflected.z);
+    store(q[0], through.x), store(q[1], through.y), store(q[2], through.z);
+    store(u[0], up.x), store(u[1], up.y), store(u[2], up.z);
+    store(d[0], down.x), store(d[1], down.y), store(d[2], down.z);
+    for (unsigned rest = mirrors | clears; rest != 0; rest &= rest - 1) {
+      const int k = __builtin_ctz(rest), h = i + k;
+      const std::uint32_t depth = b.hit_depth[h] + 1, pixel = b.hit_pixel[h];
+      const Vec3<float> p{b.px[h], b.py[h], b.pz[h]}, ng{b.gx[h], b.gy[h], b.gz[h]};
+      const auto send = [&](const float (&dir)[3][kWidth<Lanes>], const float (&weight)[3][kWidth<Lanes>], std::uint64_t& count) {
+        if (depth > static_cast<std::uint32_t>(s.work.depth)) {
+          add_light(s.work.sums, pixel, weight[0][k] * bg[0], weight[1][k] * bg[1], weight[2][k] * bg[2]);
+          return;
+        }
+        const Vec3<float> to{dir[0][k], dir[1][k], dir[2][k]};
+        push(stack, leave(p, ng, b.away[h], to), to, {weight[0][k], weight[1][k], weight[2][k]}, pixel, depth);
+        ++count;
+      };
+      if (mirrors >> k & 1) send(r, u, s.rays.reflection);
+      if (clears >> k & 1) send(q, d, s.rays.refraction);
+    }
+  }
+}
+
+/// Traces and shades rays [0, count) of the batch.
+inline void shade_batch(const Shader& s, RayStack& stack, int count, bool primary) {
+  Batch& b = s.b;
+  for (int i = 0; i < count; ++i) {
+    float org[3] = {b.ox[i], b.oy[i], b.oz[i]};
+    const float dir[3] = {b.dx[i], b.dy[i], b.dz[i]};
+    b.t_min[i] = 0, b.t[i] = kInfinity;
+    if (const double shift = approach(s.scene, org, dir); shift > 0) {
+      b.ox[i] = org[0], b.oy[i] = org[1], b.oz[i] = org[2];
+      b.t_min[i] = static_cast<float>(-shift);
+    }
+  }
+  const int packet = s.work.packet != 0 ? s.work.packet : primary ? 64 : 16;
+  trace<false>(s.scene, {b.ox, b.oy, b.oz, b.dx, b.dy, b.dz, b.t_min, b.t, b.id}, count, {packet, s.work.mailbox}, s.counters);
+  const int hits = find_surfaces(s, count);
+  if (hits == 0) return;
+  pad_tail(b, hits);
+  if (s.shading.emits)
+    for (int i = 0; i < hits; ++i) {
+      const auto e = [&](MaterialField f) { return s.shading.materials.field[f][b.material[i]]; };
+      add_light(s.work.sums, b.hit_pixel[i], b.hr[i] * e(kEmissionR), b.hg[i] * e(kEmissionG), b.hb[i] * e(kEmissionB));
+    }
+  for (int l = 0; l < s.shading.light_count; ++l) light_hits(s, hits, s.shading.lights + 6 * l);
+  if (s.shading.reflects) send_on(s, stack, hits);
+}
+
+}  // namespace grelha::GRELHA_ISA

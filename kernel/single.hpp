@@ -1,0 +1,175 @@
+#pragma once
+// One ray at a time: against blocks of primitives (SIMD over primitives), through a grid by leaps. The way a packet goes
+// on when its rays have nothing left in common.
+
+#include "kernel/packet.hpp"
+
+namespace grelha::GRELHA_ISA {
+
+struct Single {
+  float org[3], dir[3], inv_dd, t_min, best;
+  std::uint32_t id;
+  int axis;
+  float shear[3];
+};
+
+inline Single single_of(const Packet& p, int i, bool any_triangles) {
+  Single r;
+  for (int a = 0; a < 3; ++a) r.org[a] = p.org[a][i], r.dir[a] = p.dir[a][i];
+  r.inv_dd = p.inv_dd[i], r.t_min = p.t_min[i], r.best = p.best[i], r.id = id_of(p.id[i]);
+  r.axis = 0;
+  if (any_triangles) {
+    r.axis = static_cast<int>(p.axis[i]);
+    for (int a = 0; a < 3; ++a) r.shear[a] = p.shear[a][i];
+  }
+  return r;
+}
+
+/// Takes the hits of a block in order of place. Returns whether the search is over (kAny and something was hit).
+template <bool kAny>
+inline bool note(Single& r, const Mask<Block>& hit, const Block& t, const std::uint32_t* ids) {
+  unsigned lanes = bits(both(hit, t <= Block(r.best)));
+  if (lanes == 0) return false;
+  float at[kWidth<Block>];
+  store(at, t);
+  for (; lanes != 0; lanes &= lanes - 1) {
+    const int k = __builtin_ctz(lanes);
+    const bool closer = at[k] < r.best, tie = at[k] == r.best && r.id != kNoPrimitive && ids[k] < r.id;
+    if (kAny && closer) {
+      r.best = -kInfinity, r.id = ids[k];
+      return true;
+    }
+    if (!kAny && (closer || tie)) r.best = at[k], r.id = ids[k];
+  }
+  return false;
+}
+
+inline Vec3<Block> spread(const float (&v)[3]) { return {Block(v[0]), Block(v[1]), Block(v[2])}; }
+
+template <bool kAny>
+inline bool test_block(Single& r, const TriangleBlock& block, Counters& n) {
+  const int k = r.axis, kx = k == 2 ? 0 : k + 1, ky = k == 0 ? 2 : k - 1;
+  const Vec3<Block> org{Block(r.org[kx]), Block(r.org[ky]), Block(r.org[k])};
+  const Shear<Block> shear{Block(r.shear[0]), Block(r.shear[1]), Block(r.shear[2])};
+  const auto corner = [&](const float (&v)[3][kBlock], int i) {
+    return Vec3<Block>{load<Block>(v[kx] + i), load<Block>(v[ky] + i), load<Block>(v[k] + i)};
+  };
+  n.triangle += kBlock;
+  for (int i = 0; i < kBlock; i += kWidth<Block>) {
+    Block t(0);
+    const Mask<Block> hit = hit_triangle<Block>(org, shear, Block(r.t_min), corner(block.a, i), corner(block.b, i),
+                                                corner(block.c, i), t);
+    if (note<kAny>(r, hit, t, block.id + i)) return true;
+  }
+  return false;
+}
+
+/// All primitives of one cell. Reading past a cell's spheres or cones meets those of the next, which costs nothing and is
+/// never wrong: a hit is a hit.
+template <bool kAny>
+inline bool test_cell(Single& r, const CellLists& lists, std::size_t cell, Counters& n) {
+  if (lists.triangle_first)
+    for (std::uint32_t i = lists.triangle_first[cell]; i < lists.triangle_first[cell + 1]; ++i)
+      if (test_block<kAny>(r, lists.triangles[i], n)) return true;
+  if (lists.sphere_first) {
+    const Vec3<Block> org = spread(r.org), dir = spread(r.dir);
+    const std::uint32_t end = lists.sphere_first[cell + 1];
+    for (std::uint32_t i = lists.sphere_first[cell]; i < end; i += kWidth<Block>) {
+      n.sphere += kWidth<Block>;
+      Block t(0);
+      const Mask<Block> hit = hit_sphere<Block>(org, dir, Block(r.inv_dd), Block(r.t_min),
+                                                {load<Block>(lists.sx + i), load<Block>(lists.sy + i), load<Block>(lists.sz + i)},
+                                                load<Block>(lists.sr + i), t);
+      if (note<kAny>(r, hit, t, lists.sphere_id + i)) return true;
+    }
+  }
+  if (lists.cone_first) {
+    const Vec3<Block> org = spread(r.org), dir = spread(r.dir);
+    const std::uint32_t end = lists.cone_first[cell + 1];
+    for (std::uint32_t i = lists.cone_first[cell]; i < end; i += kWidth<Block>) {
+      n.cone += kWidth<Block>;
+      const auto at = [&](int k) { return load<Block>(lists.cone[k] + i); };
+      const ConeSide<Block> side{{at(0), at(1), at(2)}, {at(3), at(4), at(5)}, at(6), at(7), at(8), at(9)};
+      Block t(0);
+      const Mask<Block> hit = hit_cone<Block>(org, dir, Block(r.inv_dd), Block(r.t_min), side, t);
+      if (note<kAny>(r, hit, t, lists.cone_id + i)) return true;
+    }
+  }
+  return false;
+}
+
+/// A ray in the units of one grid's cells, in double: plane distances come from the plane's index, never by adding up, and
+/// the cell of a point is the one the builder gives it (cell_of in grid.cpp).
+struct GridRay {
+  double p[3], q[3], iq[3];
+};
+
+inline double tame(double d) {  // a direction component that is (almost) zero never meets its planes, and never makes NaN
+  if (d < 0) return d > -1e-18 ? -1e-18 : d;
+  return d < 1e-18 ? 1e-18 : d;
+}
+
+inline GridRay to_grid(const GridView& g, const float (&org)[3], const float (&dir)[3]) {
+  GridRay r;
+  for (int a = 0; a < 3; ++a) {
+    r.p[a] = (static_cast<double>(org[a]) - g.lo[a]) * g.inv_cell[a];
+    r.q[a] = tame(static_cast<double>(dir[a])) * g.inv_cell[a];
+    r.iq[a] = 1 / r.q[a];
+  }
+  return r;
+}
+
+/// Part of [t0, t1] inside the box of all cells; empty when t0 > t1 (or anything is NaN: !(t0 <= t1)).
+inline void clip_to_grid(const GridView& g, const GridRay& r, double& t0, double& t1) {
+  for (int a = 0; a < 3; ++a) {
+    const double near = (r.q[a] > 0 ? -r.p[a] : g.n[a] - r.p[a]) * r.iq[a];
+    const double far = (r.q[a] > 0 ? g.n[a] - r.p[a] : -r.p[a]) * r.iq[a];
+    if (near > t0) t0 = near;
+    if (!(far >= t1)) t1 = far;
+  }
+}
+
+inline int clamp_cell(double x, int n) {
+  if (!(x > 0)) return 0;
+  const int i = static_cast<int>(x < n ? x : n);
+  return i < n ? i : n - 1;
+}
+
+/// Walks one ray through a grid from t_from on: tests the cells it meets in order, leaps over empty ones by their distance
+/// (Cohen & Sheffer, "Proximity Clouds", 1994). A hit is never clipped to its cell; the walk ends once it lies at or before
+/// the exit of the cell.
+template <bool kAny>
+inline void walk(const GridView& g, Single& r, double t_from, Counters& n) {
+  const GridRay ray = to_grid(g, r.org, r.dir);
+  double t0 = t_from > r.t_min ? t_from : r.t_min, t1 = r.best;
+  clip_to_grid(g, ray, t0, t1);
+  if (!(t0 <= t1)) return;
+  int at[3];
+  for (int a = 0; a < 3; ++a) at[a] = clamp_cell(ray.p[a] + t0 * ray.q[a], g.n[a]);
+  const int most = g.n[0] + g.n[1] + g.n[2] + 3;  // no walk crosses more planes than there are
+  for (int step = 0; step < most; ++step) {
+    const std::size_t cell = at[0] + static_cast<std::size_t>(g.n[0]) * (at[1] + static_cast<std::size_t>(g.n[1]) * at[2]);
+    const int distance = g.distance[cell];
+    ++n.visits;
+    if (distance == 0 && test_cell<kAny>(r, g.lists, cell, n)) return;
+    const int leap = distance > 1 ? distance - 1 : 0;  // cells this far on each side are empty too
+    double exit = 0;
+    int axis = 0;
+    for (int a = 0; a < 3; ++a) {
+      const double plane = ray.q[a] > 0 ? at[a] + 1 + leap : at[a] - leap;
+      const double t = (plane - ray.p[a]) * ray.iq[a];
+      if (a == 0 || t < exit) exit = t, axis = a;
+    }
+    if (r.best <= exit || !(exit <= t1)) return;
+    if (leap > 0)
+      for (int a = 0; a < 3; ++a) {
+        const int lo = at[a] - leap > 0 ? at[a] - leap : 0, hi = at[a] + leap < g.n[a] - 1 ? at[a] + leap : g.n[a] - 1;
+        const int i = clamp_cell(ray.p[a] + exit * ray.q[a], g.n[a]);
+        if (a != axis) at[a] = i < lo ? lo : i > hi ? hi : i;
+      }
+    at[axis] += ray.q[axis] > 0 ? 1 + leap : -1 - leap;
+    if (at[axis] < 0 || at[axis] >= g.n[axis]) return;
+  }
+}
+
+}  // namespace grelha::GRELHA_ISA

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "kernel/vec3.hpp"
+
+namespace grelha::GRELHA_ISA {
+
+/// First point of each ray on one sphere, from outside or inside.
+///
+/// Shapes    rays and spheres pair up lane by lane; either side may be a broadcast.
+/// Units     center, radius: scene units; t: multiples of dir. inv_dd is 1 / dot(dir, dir), computed once a ray.
+/// Requires  |radius| > 0; a negative radius shows only the inside. A lane with a NaN reports a miss.
+/// Returns   lanes whose t is above t_min; t is written in all lanes and means nothing in the others.
+/// Accuracy  hit point within 8 eps max(|radius|, |org - center|) of the surface (tests/sphere_test.cpp).
+/// Source    Haines, Günther, Akenine-Möller, "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems
+///           (2019), ch. 7, in units of t so that one division is left.
+template <class Real>
+inline Mask<Real> hit_sphere(const Vec3<Real>& org, const Vec3<Real>& dir, const Real& inv_dd, const Real& t_min,
+                             const Vec3<Real>& center, const Real& radius, Real& t) {
+  const Vec3<Real> to_center = center - org;
+  const Real middle = dot(to_center, dir) * inv_dd;
+  const Vec3<Real> gap = middle * dir - to_center;           // center to the line's nearest point
+  const Real rr = radius * radius;
+  const Real inside = rr - dot(gap, gap);                    // b*b - a*c would cancel from afar
+  const Mask<Real> crosses = inside >= Real(0);
+  if (none(crosses)) return crosses;
+  const Real half = square_root(inside * inv_dd);
+  const Real q = select(middle < Real(0), middle - half, middle + half);  // like signs add: nothing cancels
+  const Real other = ((dot(to_center, to_center) - rr) * inv_dd) / q;
+  const Real enter = lesser(other, q), leave = greater(other, q);
+  t = select(both(enter > t_min, radius > Real(0)), enter, leave);
+  return both(crosses, t > t_min);
+}
+
+}  // namespace grelha::GRELHA_ISA

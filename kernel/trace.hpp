@@ -1,0 +1,116 @@
+#pragma once
+// Rays in arrays against a whole scene: planes and outside primitives first, then each grid with what t is left.
+
+#include "kernel/march.hpp"
+
+namespace grelha::GRELHA_ISA {
+
+/// Rays as the caller holds them. t: in, the end of the search; out, the nearest hit (closest) or -infinity (occluded).
+struct RayArrays {
+  const float *ox, *oy, *oz, *dx, *dy, *dz, *t_min;
+  float* t;
+  std::uint32_t* id;  ///< out; kNoPrimitive: nothing
+};
+
+struct TraceOptions {
+  int packet;    ///< 1, 16 or 64
+  bool mailbox;  ///< for packets
+};
+
+template <bool kAny>
+inline void test_planes(const SceneView& scene, Packet& p, Counters& n) {
+  const GeometryView& g = scene.geometry;
+  for (std::uint32_t i = 0; i < g.plane_count; ++i) {
+    count_lanes(p, n, n.plane);
+    test_plane<kAny>(p, {g.px[i], g.py[i], g.pz[i]}, {g.pnx[i], g.pny[i], g.pnz[i]}, i);
+  }
+}
+
+/// The few primitives that lie in no grid, each against all rays.
+template <bool kAny>
+inline void test_outside(const CellLists& lists, Packet& p, Counters& n) {
+  if (lists.triangle_first)
+    for (std::uint32_t b = 0; b < lists.triangle_first[1]; ++b) {
+      const TriangleBlock& block = lists.triangles[b];
+      for (int i = 0; i < kBlock && block.a[0][i] == block.a[0][i]; ++i) {
+        const float c0[3] = {block.a[0][i], block.a[1][i], block.a[2][i]};
+        const float c1[3] = {block.b[0][i], block.b[1][i], block.b[2][i]};
+        const float c2[3] = {block.c[0][i], block.c[1][i], block.c[2][i]};
+        count_lanes(p, n, n.triangle);
+        test_triangle<kAny>(p, c0, c1, c2, block.id[i]);
+      }
+    }
+  if (lists.sphere_first)
+    for (std::uint32_t i = 0; i < lists.sphere_first[1]; ++i) {
+      count_lanes(p, n, n.sphere);
+      test_sphere<kAny>(p, lists.sx[i], lists.sy[i], lists.sz[i], lists.sr[i], lists.sphere_id[i]);
+    }
+  if (lists.cone_first)
+    for (std::uint32_t i = 0; i < lists.cone_first[1]; ++i) {
+      count_lanes(p, n, n.cone);
+      test_cone<kAny>(p, lists.cone, i, lists.cone_id[i]);
+    }
+}
+
+template <bool kAny>
+inline void trace_alone(const SceneView& scene, Packet& p, bool any_triangles, Counters& n) {
+  test_planes<kAny>(scene, p, n);
+  for (int i = 0; i < p.size; ++i) {
+    if (!(p.best[i] > p.t_min[i])) continue;
+    Single r = single_of(p, i, any_triangles);
+    bool done = test_cell<kAny>(r, scene.outside, 0, n);
+    for (int g = 0; g < scene.grid_count && !done; ++g) {
+      walk<kAny>(scene.grids[g], r, r.t_min, n);
+      done = kAny && r.best == -kInfinity;
+    }
+    p.best[i] = r.best, p.id[i] = bits_of(r.id);
+  }
+}
+
+template <bool kAny>
+inline void trace_packet(const SceneView& scene, Packet& p, const TraceOptions& options, Counters& n) {
+  const bool any_triangles = scene.geometry.triangle_count > 0;
+  prepare(p, any_triangles);
+  if (options.packet == 1) return trace_alone<kAny>(scene, p, any_triangles, n);
+  test_planes<kAny>(scene, p, n);
+  test_outside<kAny>(scene.outside, p, n);
+  for (int g = 0; g < scene.grid_count; ++g) march<kAny>(scene.grids[g], p, options.mailbox, any_triangles, n);
+}
+
+/// Closest hits (kAny false) or occlusion (kAny true) of rays [0, count), `options.packet` neighbours at a time.
+template <bool kAny>
+inline void trace(const SceneView& scene, const RayArrays& rays, int count, const TraceOptions& options, Counters& n) {
+  Packet p;
+  const int most = options.packet == 1 ? kPacket : options.packet;
+  for (int first = 0; first < count; first += most) {
+    p.size = count - first < most ? count - first : most;
+    const std::size_t bytes = static_cast<std::size_t>(p.size) * sizeof(float);
+    __builtin_memcpy(p.org[0], rays.ox + first, bytes), __builtin_memcpy(p.org[1], rays.oy + first, bytes);
+    __builtin_memcpy(p.org[2], rays.oz + first, bytes), __builtin_memcpy(p.dir[0], rays.dx + first, bytes);
+    __builtin_memcpy(p.dir[1], rays.dy + first, bytes), __builtin_memcpy(p.dir[2], rays.dz + first, bytes);
+    __builtin_memcpy(p.t_min, rays.t_min + first, bytes), __builtin_memcpy(p.best, rays.t + first, bytes);
+    trace_packet<kAny>(scene, p, options, n);
+    __builtin_memcpy(rays.t + first, p.best, bytes);
+    __builtin_memcpy(rays.id + first, p.id, bytes);
+  }
+}
+
+/// Moves the origin of a ray that starts far from everything finite to where it comes near, in double: from afar float
+/// tests would be off by eps times the distance, more than the grids allow for. Returns the t it moved by. A function of
+/// ray and scene alone, so every way of tracing sees the same ray.
+inline double approach(const SceneView& scene, float (&org)[3], const float (&dir)[3]) {
+  bool far = false;
+  for (int a = 0; a < 3; ++a) far |= org[a] < scene.box_lo[a] - scene.reach || org[a] > scene.box_hi[a] + scene.reach;
+  if (!far || !scene.finite) return 0;
+  double dd = 0, along = 0;
+  for (int a = 0; a < 3; ++a) {
+    const double d = dir[a], c = .5 * (static_cast<double>(scene.box_lo[a]) + scene.box_hi[a]) - org[a];
+    dd += d * d, along += c * d;
+  }
+  const double shift = along / dd - scene.reach / __builtin_sqrt(dd);
+  if (!(shift > 0) || !(shift < 1e300)) return 0;
+  for (int a = 0; a < 3; ++a) org[a] = static_cast<float>(org[a] + shift * dir[a]);
+  return shift;
+}
+
+}  // namespace grelha::GRELHA_ISA

@@ -1,0 +1,75 @@
+#pragma once
+
+#include "kernel/vec3.hpp"
+
+namespace grelha::GRELHA_ISA {
+
+/// A ray's own frame for triangle tests: axis `k` is where |dir| is largest (x before y before z on equality), and the
+/// shear that lays dir along it. Function of the direction alone, so every triangle sees the same frame.
+template <class Real>
+struct Shear {
+  Real x, y, z;  ///< dir[kx] / dir[kz], dir[ky] / dir[kz], 1 / dir[kz]
+};
+
+/// Index of the axis the frame stands on; the other two follow cyclically.
+inline int shear_axis(float dx, float dy, float dz) {
+  const float ax = magnitude(dx), ay = magnitude(dy), az = magnitude(dz);
+  if (ax >= ay && ax >= az) return 0;
+  return ay >= az ? 1 : 2;
+}
+
+/// Edge functions that came out as zero in float, again in double, where the products are exact and so is the sign.
+template <class Real>
+[[gnu::noinline, gnu::cold]] void exact_edges(const Mask<Real>& zero, const Real (&v)[6], Real& u_out, Real& v_out,
+                                              Real& w_out) {
+  constexpr int n = kWidth<Real>;
+  float c[6][n], u[n], vv[n], w[n];
+  for (int i = 0; i < 6; ++i) store(c[i], v[i]);
+  store(u, u_out), store(vv, v_out), store(w, w_out);
+  const unsigned lanes = bits(zero);
+  for (int i = 0; i < n; ++i) {
+    if (!(lanes >> i & 1)) continue;
+    const double ax = c[0][i], ay = c[1][i], bx = c[2][i], by = c[3][i], cx = c[4][i], cy = c[5][i];
+    const double e[3] = {cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax};
+    float r[3];
+    for (int k = 0; k < 3; ++k) {
+      r[k] = static_cast<float>(e[k]);
+      if (r[k] == 0 && e[k] != 0) r[k] = e[k] < 0 ? -1e-45f : 1e-45f;  // keep the sign through underflow
+    }
+    u[i] = r[0], vv[i] = r[1], w[i] = r[2];
+  }
+  load(u, u_out), load(vv, v_out), load(w, w_out);
+}
+
+/// Point where each ray meets one triangle, from either side; watertight along shared edges and at shared vertices.
+///
+/// Shapes    a, b, c: corners in the ray's permuted axes (kx, ky, kz), lane by lane or broadcast; org likewise.
+/// Returns   lanes whose ray crosses the triangle, edges and corners included, with t above t_min.
+/// Accuracy  Inside or outside is decided by the exact sign of each edge function of the sheared corners: rounding is
+///           monotonic, so a difference of two rounded products has the right sign or is zero, and zeros are taken again
+///           in double. Neighbours round a shared edge alike, hence no leaks (tests/watertight_test.cpp).
+/// Source    Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013.
+template <class Real>
+inline Mask<Real> hit_triangle(const Vec3<Real>& org, const Shear<Real>& shear, const Real& t_min, const Vec3<Real>& a,
+                               const Vec3<Real>& b, const Vec3<Real>& c, Real& t, Vec3<Real>* weights = nullptr) {
+  const Vec3<Real> oa = a - org, ob = b - org, oc = c - org;
+  const Real ax = oa.x - shear.x * oa.z, ay = oa.y - shear.y * oa.z;
+  const Real bx = ob.x - shear.x * ob.z, by = ob.y - shear.y * ob.z;
+  const Real cx = oc.x - shear.x * oc.z, cy = oc.y - shear.y * oc.z;
+  Real u = cx * by - cy * bx;
+  Real v = ax * cy - ay * cx;
+  Real w = bx * ay - by * ax;
+  const Real o(0);
+  const Mask<Real> zero = either(either(u == o, v == o), w == o);
+  if (any(zero)) exact_edges<Real>(zero, {ax, ay, bx, by, cx, cy}, u, v, w);
+  const Mask<Real> below = either(either(u < o, v < o), w < o);
+  const Mask<Real> above = either(either(u > o, v > o), w > o);
+  const Real det = (u + v) + w;
+  const Mask<Real> crosses = but_not(det != o, both(below, above));
+  if (none(crosses)) return crosses;
+  t = ((u * (shear.z * oa.z) + v * (shear.z * ob.z)) + w * (shear.z * oc.z)) / det;
+  if (weights) *weights = {u / det, v / det, w / det};
+  return both(crosses, t > t_min);  // a NaN anywhere fails here
+}
+
+}  // namespace grelha::GRELHA_ISA

@@ -1,0 +1,57 @@
+#pragma once
+
+#include "kernel/lanes.hpp"
+
+namespace grelha::GRELHA_ISA {
+
+/// Three components over Real (float, or one vector per SIMD lane).
+template <class Real>
+struct Vec3 {
+  Real x, y, z;
+};
+
+template <class Real>
+inline Vec3<Real> operator+(const Vec3<Real>& a, const Vec3<Real>& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <class Real>
+inline Vec3<Real> operator-(const Vec3<Real>& a, const Vec3<Real>& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+template <class Real>
+inline Vec3<Real> operator*(const Vec3<Real>& a, const Vec3<Real>& b) {
+  return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
+template <class Real>
+inline Vec3<Real> operator*(const Real& s, const Vec3<Real>& a) {
+  return {s * a.x, s * a.y, s * a.z};
+}
+template <class Real>
+inline Real dot(const Vec3<Real>& a, const Vec3<Real>& b) {
+  return (a.x * b.x + a.y * b.y) + a.z * b.z;
+}
+template <class Real>
+inline Vec3<Real> cross(const Vec3<Real>& a, const Vec3<Real>& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+template <class Real>
+inline Real length(const Vec3<Real>& a) {
+  return square_root(dot(a, a));
+}
+/// Unit vector; (0,0,0) and lengths that underflow give NaN or infinity, which every comparison then fails.
+template <class Real>
+inline Vec3<Real> normalize(const Vec3<Real>& a) {
+  const Real s = Real(1) / length(a);
+  return s * a;
+}
+template <class Real>
+inline Vec3<Real> select(const Mask<Real>& m, const Vec3<Real>& a, const Vec3<Real>& b) {
+  return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)};
+}
+/// Largest magnitude of the components.
+template <class Real>
+inline Real largest(const Vec3<Real>& a) {
+  return greater(greater(magnitude(a.x), magnitude(a.y)), magnitude(a.z));
+}
+
+}  // namespace grelha::GRELHA_ISA

@@ -1,0 +1,66 @@
+#pragma once
+// A built scene as plain pointers: all that the hot loops see. No containers here, whose members would be shared
+// between the copies of the kernel.
+
+#include <cstdint>
+
+namespace grelha {
+
+inline constexpr std::uint32_t kNoPrimitive = 0xFFFFFFFFu;
+inline constexpr int kBlock = 8;  ///< primitives side by side in memory
+
+/// Eight triangles side by side; unused places hold NaN corners, which no ray can meet.
+struct alignas(64) TriangleBlock {
+  float a[3][kBlock], b[3][kBlock], c[3][kBlock];
+  std::uint32_t id[kBlock];
+};
+
+/// Cells of one grid, one after the other, each kind apart: cell i owns places first[i] up to first[i + 1] - 1 of the
+/// kind's arrays (blocks for triangles). A kind the grid lacks has first == nullptr. Arrays of spheres and cones are
+/// padded with kBlock NaN entries, so a whole block can be read from any place.
+struct CellLists {
+  const std::uint32_t* triangle_first = nullptr;
+  const TriangleBlock* triangles = nullptr;
+
+  const std::uint32_t* sphere_first = nullptr;
+  const float *sx = nullptr, *sy = nullptr, *sz = nullptr, *sr = nullptr;
+  const std::uint32_t* sphere_id = nullptr;
+
+  const std::uint32_t* cone_first = nullptr;
+  const float* cone[10] = {};  ///< base xyz, axis xyz, height, radius, slope, side
+  const std::uint32_t* cone_id = nullptr;
+};
+
+struct GridView {
+  CellLists lists;
+  const std::uint8_t* distance = nullptr;  ///< [cells] Chebyshev distance to the nearest cell that holds something; 0: this one does
+  int n[3] = {};                           ///< cells per axis; x runs fastest
+  double lo[3] = {}, cell[3] = {}, inv_cell[3] = {};
+  float lo_f[3] = {}, hi_f[3] = {}, cell_f[3] = {}, inv_cell_f[3] = {};
+};
+
+/// The primitives themselves, by index, for what is done once a hit rather than once a test.
+struct GeometryView {
+  const float *tx = nullptr, *ty = nullptr, *tz = nullptr;     ///< triangle vertices
+  const float *tnx = nullptr, *tny = nullptr, *tnz = nullptr;  ///< their normals, or null
+  const std::uint32_t *ta = nullptr, *tb = nullptr, *tc = nullptr;
+  const float *sx = nullptr, *sy = nullptr, *sz = nullptr, *sr = nullptr;
+  const float* cone[10] = {};
+  const float *px = nullptr, *py = nullptr, *pz = nullptr, *pnx = nullptr, *pny = nullptr, *pnz = nullptr;
+  const std::uint32_t *plane_material = nullptr, *sphere_material = nullptr, *triangle_material = nullptr, *cone_material = nullptr;
+  std::uint32_t plane_count = 0, sphere_count = 0, triangle_count = 0, cone_count = 0;
+};
+
+/// Ids run over planes, spheres, triangles, cones in this order; of two hits at equal t the lower id wins.
+struct SceneView {
+  GeometryView geometry;
+  CellLists outside;  ///< one "cell" of primitives that no grid holds: few, or as large as the scene
+  const GridView* grids = nullptr;
+  int grid_count = 0;
+  std::uint32_t sphere_base = 0, triangle_base = 0, cone_base = 0, primitive_end = 0;
+  float box_lo[3] = {}, box_hi[3] = {};  ///< of all finite primitives, grown
+  float reach = 0;                       ///< rays that start further than this from the box are moved nearer first; see approach()
+  bool finite = false;                   ///< there is something besides planes
+};
+
+}  // namespace grelha

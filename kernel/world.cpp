@@ -1,0 +1,198 @@
+#include "kernel/world.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+namespace grelha {
+namespace {
+
+constexpr std::size_t kFewest = 8;        ///< so few primitives are faster looped over than walked through
+constexpr std::size_t kMostOutside = 32;  ///< primitives without a grid, each met by every ray
+constexpr std::size_t kSmallObject = 256; ///< triangles; smaller objects share the grid of the loose ones
+constexpr std::size_t kMostGrids = 16;
+constexpr double kHuge = .5;              ///< of the diagonal of what it lies among: larger primitives get no grid
+constexpr double kDensity = 1;            ///< M; packets like it coarser than the report's 2 (docs/performance.md)
+
+using Ids = std::vector<std::uint32_t>;
+
+/// One group of ids a grid: first what is loose (with small objects), then each larger object.
+std::vector<Ids> group(const Primitives& p) {
+  std::vector<Ids> groups(1);
+  Ids& loose = groups.front();
+  for (std::uint32_t id = p.sphere_base; id < p.triangle_base; ++id) loose.push_back(id);
+  std::uint32_t next = 0;
+  const auto take = [&](Ids& to, std::uint32_t first, std::uint32_t end) {
+    for (std::uint32_t i = first; i < end; ++i) to.push_back(p.triangle_base + i);
+  };
+  for (const Object& o : p.geometry.objects) {
+    take(groups.front(), next, o.first_triangle);
+    next = o.first_triangle + o.triangle_count;
+    if (o.triangle_count < kSmallObject || groups.size() > kMostGrids) {
+      take(groups.front(), o.first_triangle, next);
+    } else {
+      groups.emplace_back();
+      take(groups.back(), o.first_triangle, next);
+    }
+  }
+  take(groups.front(), next, static_cast<std::uint32_t>(p.geometry.triangles.size()));
+  for (std::uint32_t id = p.cone_base; id < p.end; ++id) groups.front().push_back(id);
+  std::erase_if(groups, [](const Ids& g) { return g.empty(); });
+  return groups;
+}
+
+/// Takes primitives as large as all the rest out of a group, again and again while any is: a ground under a teapot, a
+/// stadium around that. What is left is of one scale, which is what a uniform grid wants.
+void set_huge_apart(const Primitives& p, Ids& ids, Ids& outside) {
+  for (;;) {
+    Box all;
+    for (const std::uint32_t id : ids) all.add(p.box(id));
+    const double huge = kHuge * all.diagonal();
+    const auto is_huge = [&](std::uint32_t id) { return p.box(id).diagonal() > huge; };
+    const auto n = static_cast<std::size_t>(std::count_if(ids.begin(), ids.end(), is_huge));
+    if (n == 0 || outside.size() + n > kMostOutside) return;
+    std::copy_if(ids.begin(), ids.end(), std::back_inserter(outside), is_huge);
+    std::erase_if(ids, is_huge);
+  }
+}
+
+void check(const Scene& scene) {
+  const Geometry& g = scene.geometry;
+  const std::size_t total = g.spheres.size() + g.triangles.size() + g.cones.size() + g.planes.size();
+  if (total >= kNoPrimitive) throw std::invalid_argument("more primitives than ids: at most 4294967294");
+  const auto materials = scene.materials.size();
+  for (const auto* m : {&g.spheres.material, &g.triangles.material, &g.cones.material, &g.planes.material})
+    for (const std::uint32_t i : *m)
+      if (i >= materials) throw std::invalid_argument("a primitive names a material that is not there");
+  const auto vertices = g.triangles.vertex_count();
+  for (const auto* v : {&g.triangles.a, &g.triangles.b, &g.triangles.c})
+    for (const std::uint32_t i : *v)
+      if (i >= vertices) throw std::invalid_argument("a triangle names a vertex that is not there");
+  std::uint64_t next = 0;
+  for (const Object& o : g.objects) {
+    if (o.first_triangle < next) throw std::invalid_argument("objects must be disjoint and ascend");
+    next = std::uint64_t{o.first_triangle} + o.triangle_count;
+  }
+  if (next > g.triangles.size()) throw std::invalid_argument("an object names a triangle that is not there");
+}
+
+template <class T>
+std::size_t bytes_of(const std::vector<T>& v) {
+  return v.size() * sizeof(T);
+}
+
+}  // namespace
+
+MaterialTable::MaterialTable(const Scene& scene) {
+  for (auto& f : fields) f.resize(scene.materials.size());
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+    const Material& m = scene.materials[i];
+    const bool clear = m.transmission > 0;
+    const float values[kMaterialFields] = {m.diffuse.x,  m.diffuse.y,  m.diffuse.z,  m.specular.x, m.specular.y, m.specular.z,
+                                           m.mirror.x,   m.mirror.y,   m.mirror.z,   m.emission.x, m.emission.y, m.emission.z,
+                                           m.transmission, m.shine,    clear ? m.ior : 1.f, clear && m.fresnel ? 1.f : 0.f};
+    for (std::size_t k = 0; k < kMaterialFields; ++k) fields[k][i] = values[k];
+    reflects |= clear || m.mirror != Float3{};
+    refracts |= clear;
+    fresnel |= clear && m.fresnel;
+    emits |= m.emission != Float3{};
+    highlights |= m.specular != Float3{};
+  }
+}
+
+MaterialView MaterialTable::view() const {
+  MaterialView v;
+  for (std::size_t k = 0; k < kMaterialFields; ++k) v.field[k] = fields[k].data();
+  return v;
+}
+
+World::Impl::Impl(const Scene& s, const BuildOptions& options) : scene((check(s), s)), primitives(s.geometry), materials(s) {
+  const Geometry& g = s.geometry;
+  Box all;
+  for (std::uint32_t id = primitives.sphere_base; id < primitives.end; ++id) all.add(primitives.box(id));
+  const double diagonal = all.diagonal();
+  // Float tests of rays that start within `reach` of the scene are off by at most k eps distance, k < 18 for every
+  // kind and distance <= 3.5 diagonals: 64 eps diagonal covers it (docs/numerics.md).
+  const double pad = diagonal * 64 / 16777216;
+
+  Ids apart;
+  if (options.grid) {
+    for (Ids& ids : group(primitives)) {
+      set_huge_apart(primitives, ids, apart);
+      if (ids.size() <= kFewest && apart.size() + ids.size() <= kMostOutside) {
+        apart.insert(apart.end(), ids.begin(), ids.end());
+      } else if (!ids.empty()) {
+        grids.push_back(build_grid(primitives, ids, options.density > 0 ? options.density : kDensity, pad));
+      }
+    }
+    std::sort(apart.begin(), apart.end());
+  } else {
+    apart.resize(primitives.end - primitives.sphere_base);
+    std::iota(apart.begin(), apart.end(), primitives.sphere_base);
+  }
+  outside = build_list(primitives, apart);
+  for (const Grid& grid : grids) grid_views.push_back(grid.view());
+
+  GeometryView& v = view.geometry;
+  const Triangles& t = g.triangles;
+  v.tx = t.x.data(), v.ty = t.y.data(), v.tz = t.z.data();
+  if (!t.nx.empty()) v.tnx = t.nx.data(), v.tny = t.ny.data(), v.tnz = t.nz.data();
+  v.ta = t.a.data(), v.tb = t.b.data(), v.tc = t.c.data();
+  v.sx = g.spheres.x.data(), v.sy = g.spheres.y.data(), v.sz = g.spheres.z.data(), v.sr = g.spheres.radius.data();
+  for (std::size_t k = 0; k < 10; ++k) v.cone[k] = primitives.cones[k].data();
+  v.px = g.planes.x.data(), v.py = g.planes.y.data(), v.pz = g.planes.z.data();
+  v.pnx = g.planes.nx.data(), v.pny = g.planes.ny.data(), v.pnz = g.planes.nz.data();
+  v.plane_material = g.planes.material.data(), v.sphere_material = g.spheres.material.data();
+  v.triangle_material = t.material.data(), v.cone_material = g.cones.material.data();
+  v.plane_count = primitives.sphere_base;
+  v.sphere_count = primitives.triangle_base - primitives.sphere_base;
+  v.triangle_count = primitives.cone_base - primitives.triangle_base;
+  v.cone_count = primitives.end - primitives.cone_base;
+  view.outside = outside.lists();
+  view.grids = grid_views.data(), view.grid_count = static_cast<int>(grid_views.size());
+  view.sphere_base = primitives.sphere_base, view.triangle_base = primitives.triangle_base;
+  view.cone_base = primitives.cone_base, view.primitive_end = primitives.end;
+  view.finite = !all.empty();
+  if (view.finite) {
+    for (int a = 0; a < 3; ++a) view.box_lo[a] = static_cast<float>(all.lo[a]), view.box_hi[a] = static_cast<float>(all.hi[a]);
+    view.reach = static_cast<float>(2 * diagonal);
+  }
+
+  for (const PointLight& l : s.lights)
+    lights.insert(lights.end(), {l.position.x, l.position.y, l.position.z, l.color.x, l.color.y, l.color.z});
+  shading.materials = materials.view();
+  shading.lights = lights.data(), shading.light_count = static_cast<int>(s.lights.size());
+  shading.background[0] = s.background.x, shading.background[1] = s.background.y, shading.background[2] = s.background.z;
+  shading.smooth = !t.nx.empty();
+  shading.reflects = materials.reflects, shading.refracts = materials.refracts, shading.fresnel = materials.fresnel;
+  shading.emits = materials.emits, shading.highlights = materials.highlights;
+}
+
+World::World(const Scene& scene, const BuildOptions& options) : impl_(std::make_unique<Impl>(scene, options)) {}
+World::~World() = default;
+World::World(World&&) noexcept = default;
+World& World::operator=(World&&) noexcept = default;
+
+std::vector<GridStats> World::grids() const {
+  std::vector<GridStats> out;
+  for (const Grid& g : impl_->grids) out.push_back(g.stats());
+  return out;
+}
+
+std::size_t World::geometry_bytes() const {
+  const Geometry& g = impl_->scene.geometry;
+  const Triangles& t = g.triangles;
+  std::size_t sum = bytes_of(t.a) * 3 + bytes_of(t.material) + bytes_of(t.x) * 3 + bytes_of(t.nx) * 3;
+  sum += bytes_of(g.spheres.radius) * 5 + bytes_of(g.cones.material) * 9 + bytes_of(g.planes.material) * 7;
+  return sum;
+}
+
+std::size_t World::grid_bytes() const {
+  std::size_t sum = impl_->outside.bytes();
+  for (const Grid& g : impl_->grids) sum += g.stats().bytes;
+  for (const auto& v : impl_->primitives.cones) sum += bytes_of(v);
+  return sum;
+}
+
+}  // namespace grelha

@@ -1,0 +1,35 @@
+#pragma once
+// What World holds: the built grids and the views of them that the hot loops see.
+
+#include <array>
+#include <vector>
+
+#include "kernel/grid.hpp"
+#include "kernel/render.hpp"
+#include "kernel/shading_view.hpp"
+
+namespace grelha {
+
+/// Materials one array per component, so that lanes gather what they need and no more.
+struct MaterialTable {
+  explicit MaterialTable(const Scene& scene);
+  MaterialView view() const;
+  std::array<std::vector<float>, kMaterialFields> fields;
+  bool reflects = false, refracts = false, fresnel = false, emits = false, highlights = false;
+};
+
+struct World::Impl {
+  const Scene& scene;
+  Primitives primitives;
+  std::vector<Grid> grids;
+  CellStore outside;
+  std::vector<GridView> grid_views;
+  MaterialTable materials;
+  std::vector<float> lights;  ///< [6 * count] position, colour
+  SceneView view;
+  ShadingView shading;
+
+  Impl(const Scene& scene, const BuildOptions& options);
+};
+
+}  // namespace grelha
