@@ -1,0 +1,159 @@
+// The rungs from brute force to packets, camera rays, one thread, all in one process: how much each is worth.
+//
+//   ladder [--benchmark_filter=...] [other Google Benchmark options]
+//
+// Every rung runs at several densities M of the grid; the table at the end takes each at its own best. Brute force traces an
+// evenly spread sample of the rays and is reported per ray like the others.
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+
+#include "perf/workloads.hpp"
+
+namespace {
+
+using namespace grelha;
+using namespace grelha::perf;
+
+struct Place {
+  std::string name;
+  SceneFile file;
+  RayBuffer rays;
+  Answers truth;  ///< of the reference walk
+  std::map<float, std::unique_ptr<World>> worlds;  ///< by density; 0: no grid
+
+  Place(std::string scene, int size) : name(scene + " " + std::to_string(size)), file(make_scene(scene, size)) {
+    rays = camera_rays(file.camera);
+    TraceCounts unused;
+    trace(world(2), *find_variant("scalar"), {.method = Method::kReference}, rays, 0, rays.size(), truth, unused);
+  }
+  const World& world(float density) {
+    auto& w = worlds[density];
+    if (!w) w = std::make_unique<World>(file.scene, BuildOptions{.grid = density > 0, .density = density});
+    return *w;
+  }
+};
+
+struct Rung {
+  const char* name;
+  const char* isa;
+  TraceSettings settings;
+  bool brute = false;
+};
+
+const Rung kRungs[] = {
+    {"brute force, scalar", "scalar", {.method = Method::kReference, .mailbox = false}, true},
+    {"grid, scalar", "scalar", {.method = Method::kReference, .mailbox = false}},
+    {"grid, scalar, mailboxes", "scalar", {.method = Method::kReference, .mailbox = true}},
+    {"grid, scalar, leaping over empty cells", "scalar", {.method = Method::kSingle}},
+    {"single rays, SIMD over primitives", "best", {.method = Method::kSingle}},
+    {"packets of 16, sse2", "sse2", {.method = Method::kPackets, .packet = 16}},
+    {"packets of 16", "best", {.method = Method::kPackets, .packet = 16}},
+    {"packets of 64, no mailbox", "best", {.method = Method::kPackets, .packet = 64, .mailbox = false}},
+    {"packets of 64, sse2", "sse2", {.method = Method::kPackets, .packet = 64}},
+    {"packets of 64", "best", {.method = Method::kPackets, .packet = 64}},
+};
+constexpr float kDensities[] = {.5f, .7f, 1, 1.4f, 2, 2.8f, 4, 5.6f};
+
+void run(benchmark::State& state, Place& place, const Rung& rung, float density) {
+  const Variant& variant = *find_variant(rung.isa);
+  const World& world = place.world(density);
+  // Brute force: a few rows of tiles, spread over the picture.
+  const std::size_t total = place.rays.size(), slice = rung.brute ? 256 : total, stride = rung.brute ? total / 8 : total;
+  Answers answers;
+  TraceCounts counts;
+  std::size_t traced = 0;
+  for (auto _ : state) {
+    for (std::size_t first = 0; first < total; first += stride) {
+      trace(world, variant, rung.settings, place.rays, first, slice, answers, counts);
+      traced += slice;
+      benchmark::DoNotOptimize(answers.t.data());
+      state.PauseTiming();
+      if (!std::equal(answers.id.begin(), answers.id.end(), place.truth.id.begin() + std::ptrdiff_t(first)) ||
+          !std::equal(answers.t.begin(), answers.t.end(), place.truth.t.begin() + std::ptrdiff_t(first)))
+        state.SkipWithError("wrong hits");
+      state.ResumeTiming();
+    }
+  }
+  const double n = static_cast<double>(traced);
+  state.counters["ns/ray"] =
+      benchmark::Counter(n * 1e-9, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  const TestCounts& t = counts.tests;
+  state.counters["tests/ray"] = static_cast<double>(t.sphere + t.triangle + t.cone + t.plane) / n;
+  state.counters["cells/ray"] = static_cast<double>(counts.visits) / n;
+  state.counters["lanes busy"] =
+      static_cast<double>(counts.packets.lanes_busy) / static_cast<double>(std::max<std::uint64_t>(counts.packets.lanes_issued, 1));
+}
+
+/// The console's own report, then the table of each rung at its best density.
+class Table : public benchmark::ConsoleReporter {
+ public:
+  void ReportRuns(const std::vector<Run>& runs) override {
+    ConsoleReporter::ReportRuns(runs);
+    for (const Run& r : runs) {
+      if (r.error_occurred) failed = true;
+      if (r.error_occurred || r.run_type != Run::RT_Iteration) continue;
+      const std::string name = r.run_name.function_name;  // scene/rung/M
+      const std::size_t a = name.find('/'), b = name.rfind('/');
+      Times& t = times_[name.substr(0, a)][name.substr(a + 1, b - a - 1)][name.substr(b + 1)];
+      t.push_back(r.counters.at("ns/ray").value);
+    }
+  }
+  void print() {
+    for (auto& [scene, rungs] : times_) {
+      const auto best = [&](const std::string& rung) {
+        std::pair<double, std::string> least{1e300, ""};
+        for (auto& [density, t] : rungs[rung]) {
+          std::sort(t.begin(), t.end());
+          least = std::min(least, {t[t.size() / 2], density});
+        }
+        return least;
+      };
+      const double base = rungs.count("grid, scalar") ? best("grid, scalar").first : 0;
+      std::printf("\n%s, camera rays, each rung at its best density\n", scene.c_str());
+      std::printf("| %-40s | %10s | %5s | %12s |\n|---|--:|--:|--:|\n", "rung", "ns a ray", "M", "grid scalar /");
+      for (const Rung& r : kRungs)
+        if (rungs.count(r.name)) {
+          const auto [ns, density] = best(r.name);
+          std::printf("| %-40s | %10.2f | %5s | %12.2f |\n", r.name, ns, density.c_str(), base / ns);
+        }
+    }
+  }
+  bool failed = false;
+
+ private:
+  using Times = std::vector<double>;
+  std::map<std::string, std::map<std::string, std::map<std::string, Times>>> times_;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  std::vector<std::unique_ptr<Place>> places;
+  places.push_back(std::make_unique<Place>("balls", 4));
+  places.push_back(std::make_unique<Place>("mount", 7));
+  for (const auto& place : places)
+    for (const Rung& rung : kRungs) {
+      if (!find_variant(rung.isa) || !find_variant(rung.isa)->runs_here()) continue;
+      for (const float density : kDensities) {
+        if (rung.brute && density != kDensities[0]) continue;
+        char m[16];
+        std::snprintf(m, sizeof m, "%g", rung.brute ? 0. : static_cast<double>(density));
+        benchmark::RegisterBenchmark((place->name + "/" + rung.name + "/" + m).c_str(),
+                                     [p = place.get(), &rung, density](benchmark::State& s) { run(s, *p, rung, rung.brute ? 0 : density); })
+            ->Unit(benchmark::kMillisecond);
+      }
+    }
+  Table table;
+  benchmark::RunSpecifiedBenchmarks(&table);
+  table.print();
+  return table.failed ? 1 : 0;
+}
