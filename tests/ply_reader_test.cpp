@@ -1,0 +1,257 @@
+#include "frontend/ply_reader.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <tuple>
+
+#include "tests/support/reading.hpp"
+
+namespace grelha {
+namespace {
+
+using test::TemporaryFolder;
+
+/// Writes rows in one of the three encodings, value by value.
+class PlyWriter {
+ public:
+  explicit PlyWriter(const std::string& format) : format_(format), data_("ply\nformat " + format + " 1.0\n") {}
+  PlyWriter& line(const std::string& text) {
+    data_ += text + '\n';
+    return *this;
+  }
+  PlyWriter& value(const std::string& type, double v) {
+    if (format_ == "ascii") {
+      char text[32];
+      std::snprintf(text, sizeof text, "%g ", v);
+      data_ += text;
+    } else if (type == "char" || type == "int8") put(std::int8_t(v));
+    else if (type == "uchar" || type == "uint8") put(std::uint8_t(v));
+    else if (type == "short" || type == "int16") put(std::int16_t(v));
+    else if (type == "ushort" || type == "uint16") put(std::uint16_t(v));
+    else if (type == "int" || type == "int32") put(std::int32_t(v));
+    else if (type == "uint" || type == "uint32") put(std::uint32_t(v));
+    else if (type == "float" || type == "float32") put(float(v));
+    else put(v);
+    return *this;
+  }
+  PlyWriter& values(const std::string& type, const std::vector<double>& all) {
+    for (const double v : all) value(type, v);
+    return *this;
+  }
+  PlyWriter& end_row() {
+    if (format_ == "ascii") data_ += '\n';
+    return *this;
+  }
+  const std::string& bytes() const { return data_; }
+
+ private:
+  template <class T>
+  void put(T v) {  // the machines this runs on are little endian
+    char bytes[sizeof v];
+    std::memcpy(bytes, &v, sizeof v);
+    if (format_ == "binary_big_endian") std::reverse(bytes, bytes + sizeof v);
+    data_.append(bytes, sizeof v);
+  }
+  std::string format_, data_;
+};
+
+const std::string kFormats[] = {"ascii", "binary_little_endian", "binary_big_endian"};
+const std::string kIntegers[] = {"char",  "int8",   "uchar", "uint8", "short", "int16",
+                                 "ushort", "uint16", "int",   "int32", "uint",  "uint32"};
+
+class EveryType : public testing::TestWithParam<std::tuple<std::string, std::string>> {};
+
+TEST_P(EveryType, AsCoordinateAndAsSomethingToStepOver) {
+  const auto& [format, type] = GetParam();
+  PlyWriter w(format);
+  w.line("element vertex 3").line("property " + type + " skipped").line("property " + type + " z");
+  w.line("property " + type + " x").line("property double also").line("property " + type + " y");
+  w.line("element face 1").line("property " + type + " flag").line("property list uchar int vertex_indices");
+  w.line("property list int " + type + " more").line("end_header");
+  for (const double v : {1.0, 5.0, 9.0}) w.value(type, 77).value(type, v).value(type, v + 1).value("double", .5).value(type, v + 2).end_row();
+  w.value(type, 1).value("uchar", 3).values("int", {2, 0, 1}).value("int", 2).values(type, {7, 8}).end_row();
+  const Mesh mesh = read_ply_mesh("m.ply", w.bytes());
+  EXPECT_EQ(mesh.z, (std::vector<float>{1, 5, 9}));
+  EXPECT_EQ(mesh.x, (std::vector<float>{2, 6, 10}));
+  EXPECT_EQ(mesh.y, (std::vector<float>{3, 7, 11}));
+  EXPECT_EQ(mesh.corners, (std::vector<std::uint32_t>{2, 0, 1}));
+}
+INSTANTIATE_TEST_SUITE_P(Ply, EveryType,
+                         testing::Combine(testing::ValuesIn(kFormats),
+                                          testing::Values("char", "int8", "uchar", "uint8", "short", "int16", "ushort", "uint16",
+                                                          "int", "int32", "uint", "uint32", "float", "float32", "double", "float64")));
+
+class EveryIndexType : public testing::TestWithParam<std::tuple<std::string, std::string, std::string>> {};
+
+TEST_P(EveryIndexType, InFacesOfAnySize) {
+  const auto& [format, count, item] = GetParam();
+  PlyWriter w(format);
+  w.line("comment faces first").line("element face 4").line("property list " + count + ' ' + item + " vertex_index");
+  w.line("element vertex 5").line("property float x").line("property float y").line("property float z").line("end_header");
+  w.value(count, 3).values(item, {0, 1, 2}).end_row();
+  w.value(count, 5).values(item, {0, 1, 2, 3, 4}).end_row();
+  w.value(count, 2).values(item, {0, 1}).end_row();
+  w.value(count, 0).end_row();
+  for (int i = 0; i < 5; ++i) w.values("float", {double(i), double(i * i), 0}).end_row();
+  const Mesh mesh = read_ply_mesh("m.ply", w.bytes());
+  EXPECT_EQ(mesh.face_count(), 4u);
+  EXPECT_EQ(mesh.sizes, (std::vector<std::uint32_t>{3, 5, 2, 0}));
+  EXPECT_EQ(mesh.corners, (std::vector<std::uint32_t>{0, 1, 2, 0, 1, 2, 3, 4, 0, 1}));
+  EXPECT_EQ(mesh.y[4], 16);
+}
+INSTANTIATE_TEST_SUITE_P(Ply, EveryIndexType,
+                         testing::Combine(testing::ValuesIn(kFormats), testing::ValuesIn(kIntegers), testing::ValuesIn(kIntegers)));
+
+class EveryFormat : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Ply, EveryFormat, testing::ValuesIn(kFormats));
+
+PlyWriter& vertex_header(PlyWriter& w, int count) {
+  return w.line("element vertex " + std::to_string(count)).line("property float x").line("property float y").line("property float z");
+}
+
+TEST_P(EveryFormat, StripsTurnEverySecondTriangle) {
+  PlyWriter w(GetParam());
+  vertex_header(w, 6).line("element tristrips 1").line("property list int int vertex_indices").line("end_header");
+  for (int i = 0; i < 6; ++i) w.values("float", {double(i), double(i % 2), 0}).end_row();
+  const std::vector<double> strip{0, 1, 2, 3, -1, 2, 3, 3, 4, 5, -1, 1};
+  w.value("int", double(strip.size())).values("int", strip).end_row();
+  const Mesh mesh = read_ply_mesh("m.ply", w.bytes());
+  EXPECT_EQ(mesh.corners, (std::vector<std::uint32_t>{0, 1, 2, 2, 1, 3, 3, 4, 5}));
+  EXPECT_EQ(mesh.face_count(), 3u);  // 2 3 3 and 3 3 4 only stitch
+}
+
+TEST_P(EveryFormat, OtherElementsAndNormals) {
+  PlyWriter w(GetParam());
+  w.line("obj_info made up").line("comment").line("element camera 1").line("property float view_px").line("property list uchar short k");
+  w.line("element nothing 1000000").line("");
+  w.line("  element\tvertex   3 ").line("property float nx").line("property float ny").line("property float nz");
+  w.line("comment between").line("property double x").line("property double y").line("property double z");
+  w.line("element material 2").line("property uchar r").line("element face 1").line("property list uchar uint vertex_indices").line("end_header");
+  w.value("float", 1).value("uchar", 2).values("short", {4, 5}).end_row();
+  for (int i = 0; i < 3; ++i) w.values("float", {0, 0, i + 1.0}).values("double", {i + .5, i * i + .25, 0}).end_row();
+  w.value("uchar", 1).end_row().value("uchar", 2).end_row();
+  w.value("uchar", 3).values("uint", {0, 1, 2}).end_row();
+  const Mesh mesh = read_ply_mesh("m.ply", w.bytes() + "trailing bytes 1 2 3");
+  EXPECT_EQ(mesh.nz, (std::vector<float>{1, 2, 3}));
+  EXPECT_EQ(mesh.x, (std::vector<float>{.5f, 1.5f, 2.5f}));
+  EXPECT_EQ(mesh.face_count(), 1u);
+}
+
+TEST_P(EveryFormat, NoVerticesNoFaces) {
+  PlyWriter w(GetParam());
+  vertex_header(w, 0).line("element face 0").line("property list uchar int vertex_indices").line("end_header");
+  EXPECT_EQ(read_ply_mesh("m.ply", w.bytes()).face_count(), 0u);
+  PlyWriter cloud(GetParam());
+  vertex_header(cloud, 1).line("end_header").values("float", {1, 2, 3});
+  EXPECT_EQ(read_ply_mesh("m.ply", cloud.bytes()).vertex_count(), 1u);
+  PlyWriter none(GetParam());
+  none.line("end_header");
+  EXPECT_EQ(read_ply_mesh("m.ply", none.bytes()).vertex_count(), 0u);
+}
+
+/// One uchar coordinate a row, whose first byte is a line end itself.
+class EveryLineEnd : public testing::TestWithParam<std::tuple<std::string, int>> {};
+
+TEST_P(EveryLineEnd, LeavesTheFirstDataByte) {
+  const auto& [end, first] = GetParam();
+  std::string text = "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty uchar x\nproperty uchar y\nproperty uchar z\nend_header\n";
+  std::string file;
+  for (const char c : text) c == '\n' ? file += end : file += c;
+  file += char(first);
+  file += "\x0A\x0D";
+  const Mesh mesh = read_ply_mesh("m.ply", file);
+  EXPECT_EQ(mesh.x, std::vector<float>{float(first)});
+  EXPECT_EQ(mesh.y, std::vector<float>{10});
+  EXPECT_EQ(mesh.z, std::vector<float>{13});
+}
+INSTANTIATE_TEST_SUITE_P(Ply, EveryLineEnd, testing::Combine(testing::Values("\n", "\r\n", "\r"), testing::Values(10, 13, 65)));
+
+const std::string kAsciiTriangle =
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+    "element face 2\nproperty list uchar int vertex_indices\nend_header\n";
+
+TEST(PlyAscii, RowsMayBreakAndJoin) {
+  const std::vector<std::uint32_t> expected{0, 1, 2, 2, 1, 0};
+  for (const char* rows : {"0 0 0\n1 0\n0\n0\n1 0\n3 0 1\n2\n3 2 1 0", "0 0 0 1 0 0 0 1 0 3 0 1 2 3 2 1 0\n",
+                           "0 0 0 1 0 0\r\n0 1 0\r\n\r\n3 0 1 2 3 2 1 0", "000 0 0\r1 0 0\r0 1 0\r3 0 1 2\r3 2 1 0\rtail"}) {
+    const Mesh mesh = read_ply_mesh("m.ply", kAsciiTriangle + rows);
+    EXPECT_EQ(mesh.corners, expected) << rows;
+    EXPECT_EQ(mesh.x, (std::vector<float>{0, 1, 0})) << rows;
+  }
+}
+
+TEST(PlyAscii, RowsTooLongAreCut) {
+  const Mesh mesh = read_ply_mesh("m.ply", kAsciiTriangle + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2 6 .5 .5 .5 .5\n3 2 1 0 6 1 1 1 1\n");
+  EXPECT_EQ(mesh.corners, (std::vector<std::uint32_t>{0, 1, 2, 2, 1, 0}));
+}
+
+TEST(PlyAlone, PolygonsAreCutAndBadFacesCounted) {
+  const TemporaryFolder folder;
+  const std::string path = folder.add(
+      "m.ply",
+      "ply\nformat ascii 1.0\nelement vertex 9\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 6\nproperty list uchar int vertex_indices\nend_header\n"
+      "0 0 0\n4 0 0\n1 1 0\n0 4 0\n0 0 0\n+inf 0 0\n8 0 0\n0 0 1e19\n-3 0 0\n"
+      "4 0 1 2 3\n3 0 0 1\n3 0 4 1\n3 0 1 5\n2 0 1\n3 0 1 7\n");
+  std::vector<std::string> warnings;
+  const SceneFile file = read_scene(path, [&](const std::string& line) { warnings.push_back(line); });
+  EXPECT_EQ(file.counts.ply, 6u);
+  EXPECT_EQ(file.counts.materials, 0u);
+  EXPECT_EQ(file.scene.geometry.triangles.size(), 2u);
+  EXPECT_EQ(file.dropped.zero_area, 3u);
+  EXPECT_EQ(file.dropped.not_finite, 2u);
+  EXPECT_EQ(warnings, std::vector<std::string>{path + ": warning: 5 primitives are left out: 2 not finite (or beyond 1e18), 3 without area"});
+}
+
+/// Every corner of the mesh projects into the picture, and the picture is not mostly empty.
+TEST(PlyAlone, IsFramed) {
+  const TemporaryFolder folder;
+  for (const double scale : {1e-6, .1, 1.0, 2000.0, 1e9}) {
+    for (const double shift : {0.0, 100.0}) {
+      std::string text = "ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\nproperty double y\nproperty double z\nelement face 4\n"
+                         "property list uchar int vertex_indices\nend_header\n";
+      for (const double p : {0., 0., 0., 3., 0., 0., 0., 1., 0., 0., 0., 2.}) {
+        char number[64];
+        std::snprintf(number, sizeof number, "%.9g ", (p + shift) * scale);
+        text += number;
+      }
+      text += "\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
+      const SceneFile file = read_scene(folder.add("m.ply", text), nullptr);
+      ASSERT_EQ(file.scene.geometry.triangles.size(), 4u);
+      const Camera& c = file.camera;
+      const Triangles& t = file.scene.geometry.triangles;
+      const double view[] = {double(c.at.x) - c.eye.x, double(c.at.y) - c.eye.y, double(c.at.z) - c.eye.z};
+      const double distance = std::hypot(view[0], view[1], view[2]);
+      double widest = 0;
+      for (std::size_t i = 0; i < 4; ++i) {
+        const double p[] = {double(t.x[i]) - c.eye.x, double(t.y[i]) - c.eye.y, double(t.z[i]) - c.eye.z};
+        const double along = (p[0] * view[0] + p[1] * view[1] + p[2] * view[2]) / distance, all = std::hypot(p[0], p[1], p[2]);
+        widest = std::max(widest, std::acos(std::min(1.0, along / all)));
+      }
+      EXPECT_LT(widest, 22.6 * 3.14159 / 180);  // half of 45 degrees and float rounding
+      EXPECT_GT(widest, 10 * 3.14159 / 180);
+      EXPECT_EQ(file.scene.lights.size(), 1u);
+    }
+  }
+}
+
+TEST(PlyAlone, EmptyMeshHasAView) {
+  const TemporaryFolder folder;
+  const SceneFile file = read_scene(folder.add("m.ply", "ply\nformat ascii 1.0\nend_header\n"), nullptr);
+  EXPECT_TRUE(file.default_camera);
+  EXPECT_TRUE(std::isfinite(file.camera.eye.x));
+  EXPECT_TRUE(file.scene.geometry.objects.empty());
+}
+
+TEST(PlyAlone, IsToldByItsExtensionOrItsFirstWord) {
+  const TemporaryFolder folder;
+  for (const char* name : {"m.PLY", "m.mesh", "m"})
+    EXPECT_TRUE(read_scene(folder.add(name, "ply\nformat ascii 1.0\nend_header\n"), nullptr).default_camera) << name;
+}
+
+}  // namespace
+}  // namespace grelha

@@ -1,0 +1,200 @@
+#include "frontend/polygon.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace grelha {
+namespace {
+
+using Outline = std::vector<Float3>;
+using Triangle = PolygonCutter::Triangle;
+
+std::vector<Triangle> cut(const Outline& corners) {
+  std::vector<Triangle> triangles;
+  PolygonCutter().cut(corners, triangles);
+  return triangles;
+}
+
+/// Signed, in the plane z = const, seen from +z.
+double area(const Float3& a, const Float3& b, const Float3& c) {
+  return 0.5 * ((double(b.x) - a.x) * (double(c.y) - a.y) - (double(b.y) - a.y) * (double(c.x) - a.x));
+}
+double area(const Outline& p) {
+  double sum = 0;
+  for (std::size_t i = 2; i < p.size(); ++i) sum += area(p[0], p[i - 1], p[i]);
+  return sum;
+}
+
+/// Triangles that all turn with the outline and whose areas add up to its area cover it once each: any overlap would
+/// have to be paid by a gap, and every triangle is shown to turn the right way. Each sum of n terms in double errs by
+/// at most n eps times the sum of their sizes.
+void expect_cover(const Outline& outline, const std::vector<Triangle>& triangles) {
+  const double whole = area(outline);
+  double sum = 0;
+  for (const auto& [a, b, c] : triangles) {
+    ASSERT_LT(std::max({a, b, c}), outline.size());
+    const double piece = area(outline[a], outline[b], outline[c]);
+    EXPECT_GT(piece * whole, 0);
+    sum += piece;
+  }
+  double sizes = 0;
+  for (std::size_t i = 2; i < outline.size(); ++i) sizes += std::abs(area(outline[0], outline[i - 1], outline[i]));
+  EXPECT_NEAR(sum, whole, double(outline.size()) * 2.3e-16 * 4 * sizes);
+  EXPECT_LE(triangles.size(), outline.size() - 2);
+}
+
+Outline reversed(Outline p) {
+  return {p.rbegin(), p.rend()};
+}
+
+void expect_cover_any_way(const Outline& outline) {
+  expect_cover(outline, cut(outline));
+  expect_cover(reversed(outline), cut(reversed(outline)));
+  for (std::size_t shift = 1; shift < std::min<std::size_t>(outline.size(), 8); ++shift) {
+    Outline turned = outline;
+    std::rotate(turned.begin(), turned.begin() + std::ptrdiff_t(shift), turned.end());
+    expect_cover(turned, cut(turned));
+  }
+}
+
+Outline star(int corners, double inner) {
+  Outline p;
+  for (int i = 0; i < corners; ++i) {
+    const double angle = 2 * std::numbers::pi * i / corners, r = i % 4 < 2 ? 1 : inner;
+    p.push_back({float(r * std::cos(angle)), float(r * std::sin(angle)), 0});
+  }
+  return p;
+}
+
+/// Teeth upwards from a spine: half of the corners are reflex, and the spine left at the end is one flat row of them.
+Outline comb(int teeth) {
+  Outline p{{0, 0, 0}, {float(2 * teeth), 0, 0}};
+  for (int i = teeth; i-- > 0;) {
+    p.push_back({float(2 * i + 2), 1, 0}), p.push_back({float(2 * i + 2), 9, 0});
+    p.push_back({float(2 * i + 1), 9, 0}), p.push_back({float(2 * i + 1), 1, 0});
+  }
+  return p;
+}
+
+TEST(Polygon, ConvexOnesBecomeFans) {
+  EXPECT_EQ(cut({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}).size(), 1u);
+  const Outline square{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  EXPECT_EQ(cut(square), (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
+  expect_cover_any_way(square);
+  expect_cover_any_way(star(30, 1.0));
+}
+
+TEST(Polygon, ConcaveQuadIsSplitAtItsReflexCorner) {
+  expect_cover_any_way({{0, 0, 0}, {4, 0, 0}, {1, 1, 0}, {0, 4, 0}});
+}
+
+TEST(Polygon, ConcaveOnes) {
+  expect_cover_any_way({{0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {2, 3, 0}, {2, 1, 0}, {1, 1, 0}, {1, 3, 0}, {0, 3, 0}});
+  expect_cover_any_way(star(144, 0.8));
+  expect_cover_any_way(star(12, 0.05));
+  expect_cover_any_way(comb(50));
+}
+
+TEST(Polygon, CornersInARow) {
+  expect_cover_any_way({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 2, 0}, {1, 2, 0}, {0, 2, 0}, {0, 1, 0}});
+  expect_cover_any_way({{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {2, 2, 0}, {1, 1, 0}, {0, 2, 0}});
+  expect_cover_any_way({{0, 0, 0}, {0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {2, 2, 0}, {0, 2, 0}});
+}
+
+/// A square with a square hole, joined by a seam that is walked both ways.
+TEST(Polygon, KeyholeKeepsItsHole) {
+  expect_cover_any_way({{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {0, 0, 0}, {1, 1, 0}, {1, 3, 0}, {3, 3, 0}, {3, 1, 0}, {1, 1, 0}});
+}
+
+/// Corners at rising angles around a point, at any distance: simple, and reflex about as often as not.
+TEST(Polygon, RandomOutlines) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> radius(0.1f, 10.0f);
+  for (int round = 0; round < 300; ++round) {
+    const int n = 4 + round;
+    Outline p;
+    for (int i = 0; i < n; ++i) {
+      const double angle = 2 * std::numbers::pi * i / n;
+      const float r = radius(random);
+      p.push_back({float(r * std::cos(angle)), float(r * std::sin(angle)), 3});
+    }
+    expect_cover_any_way(p);
+  }
+}
+
+TEST(Polygon, AnyPlaneGivesTheSameCut) {
+  const Outline flat = star(40, 0.5);
+  const auto expected = cut(flat);
+  Outline yz, zx;
+  for (const Float3& p : flat) yz.push_back({5, p.x, p.y}), zx.push_back({p.y, 5, p.x});
+  EXPECT_EQ(cut(yz), expected);
+  EXPECT_EQ(cut(zx), expected);
+}
+
+TEST(Polygon, NormalIsTwiceTheArea) {
+  PolygonCutter cutter;
+  std::vector<Triangle> triangles;
+  ASSERT_TRUE(cutter.cut(std::vector<Float3>{{0, 0, 1}, {2, 0, 1}, {2, 3, 1}, {0, 3, 1}}, triangles));
+  EXPECT_EQ(cutter.normal(), (std::array<double, 3>{0, 0, 12}));
+}
+
+TEST(Polygon, WithoutAreaThereIsNothing) {
+  PolygonCutter cutter;
+  std::vector<Triangle> triangles;
+  EXPECT_FALSE(cutter.cut(std::vector<Float3>{{0.1f, 0.1f, 0.1f}, {0.2f, 0.2f, 0.2f}, {0.7f, 0.7f, 0.7f}, {0.3f, 0.3f, 0.3f}}, triangles));
+  EXPECT_FALSE(cutter.cut(std::vector<Float3>{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}, triangles));
+  EXPECT_FALSE(cutter.cut(std::vector<Float3>{{1, 1, 1}, {1, 2, 1}}, triangles));
+  EXPECT_TRUE(triangles.empty());
+}
+
+double seconds_for(const Outline& outline, std::vector<Triangle>& triangles) {
+  const auto start = std::chrono::steady_clock::now();
+  triangles = cut(outline);
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// Generous: about 0.02 s were measured; testing every corner against every other took minutes.
+constexpr double kPatience = 10;
+
+TEST(Polygon, CombsOfManyCornersEndSoon) {
+  std::vector<Triangle> triangles;
+  const Outline outline = comb(25000);  // 100,002 corners
+  EXPECT_LT(seconds_for(outline, triangles), kPatience);
+  expect_cover(outline, triangles);
+}
+
+TEST(Polygon, SpiralsEndSoon) {
+  Outline outline;
+  constexpr int kTurns = 100, kSteps = 50000;
+  for (int side = 0; side < 2; ++side)
+    for (int k = 0; k < kSteps; ++k) {
+      const double t = side == 0 ? k : kSteps - 1 - k, angle = 2 * std::numbers::pi * kTurns * t / kSteps;
+      const double r = 1 + angle / (2 * std::numbers::pi) - (side == 0 ? 0 : 0.5);
+      outline.push_back({float(r * std::cos(angle)), float(r * std::sin(angle)), 0});
+    }
+  std::vector<Triangle> triangles;
+  EXPECT_LT(seconds_for(outline, triangles), kPatience);
+  expect_cover(outline, triangles);
+}
+
+TEST(Polygon, NoiseEndsSoon) {
+  std::mt19937 random(11);
+  std::uniform_int_distribution<int> coordinate(-20, 20);
+  for (const int n : {4, 5, 6, 7, 8, 50, 1000, 50000}) {
+    for (int round = 0; round < (n < 100 ? 2000 : 1); ++round) {
+      Outline outline;
+      for (int i = 0; i < n; ++i) outline.push_back({float(coordinate(random)), float(coordinate(random)), 0});
+      std::vector<Triangle> triangles;
+      EXPECT_LT(seconds_for(outline, triangles), kPatience);
+      EXPECT_LE(triangles.size(), outline.size() - 2);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace grelha

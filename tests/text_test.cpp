@@ -1,0 +1,165 @@
+#include "frontend/text.hpp"
+
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/support/reading.hpp"
+
+namespace grelha {
+namespace {
+
+using test::message_of;
+using test::TemporaryFolder;
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+float number(std::string_view word) {
+  float value = -77;
+  EXPECT_TRUE(to_number(word, value)) << word;
+  return value;
+}
+
+TEST(Number, ReadsWhatFilesHold) {
+  EXPECT_EQ(number("1.11022e-16"), 1.11022e-16f);
+  EXPECT_EQ(number("-.5"), -0.5f);
+  EXPECT_EQ(number("+3"), 3.0f);
+  EXPECT_EQ(number("1e5"), 1e5f);
+  EXPECT_EQ(number("000"), 0.0f);
+  EXPECT_EQ(number("5."), 5.0f);
+  EXPECT_TRUE(std::signbit(number("-0")));
+  EXPECT_EQ(number("+inf"), kInfinity);
+  EXPECT_EQ(number("-inf"), -kInfinity);
+  EXPECT_TRUE(std::isnan(number("nan")));
+}
+
+TEST(Number, TooLargeIsInfiniteTooSmallIsZero) {
+  EXPECT_EQ(number("1e39"), kInfinity);
+  EXPECT_EQ(number("-1e39"), -kInfinity);
+  EXPECT_EQ(number("1e-60"), 0.0f);
+  EXPECT_EQ(number("1e99999999999999999999"), kInfinity);
+  EXPECT_EQ(number("1e-99999999999999999999"), 0.0f);
+  EXPECT_EQ(number("0.0000000000000000000000000000000000000000000000000000000000001"), 0.0f);
+  EXPECT_EQ(number(std::string(60, '9')), kInfinity);
+  EXPECT_EQ(number("+1e+400"), kInfinity);
+}
+
+TEST(Number, RefusesTheRest) {
+  float value;
+  for (const char* word : {"", "x", "1.5.2", "0.0780.3610.753", "1e", "--1", "+-1", "+", "-", ".", "0x10", "1,5", "1f"})
+    EXPECT_FALSE(to_number(word, value)) << word;
+}
+
+TEST(Integer, ReadsWholeNumbersOnly) {
+  std::int64_t value;
+  EXPECT_TRUE(to_integer("512", value) && value == 512);
+  EXPECT_TRUE(to_integer("+4", value) && value == 4);
+  EXPECT_TRUE(to_integer("3.0", value) && value == 3);
+  EXPECT_TRUE(to_integer("-1", value) && value == -1);
+  for (const char* word : {"", "3.5", "1e300", "nan", "3x", "99999999999999999999"}) EXPECT_FALSE(to_integer(word, value)) << word;
+}
+
+TEST(Integer, LooksLikeANumber) {
+  for (const char* word : {"1", "-.5", "+3", ".5x", "1.5.2", "nan", "-inf"}) EXPECT_TRUE(looks_like_number(word)) << word;
+  for (const char* word : {"", "s", "-", "+x", ".", "/1", "infinite"}) EXPECT_FALSE(looks_like_number(word)) << word;
+}
+
+TEST(Words, SplitAtBlanksAndComments) {
+  Words words("f", "  a\tb#c d\r\n# e\rf\n\n\fg", 0, '#');
+  for (const char* expected : {"a", "b", "f", "g", "", ""}) EXPECT_EQ(words.next(), expected);
+}
+
+TEST(Words, KnowWhereTheLineEnds) {
+  Words words("f", "a b # c\n\nd", 0, '#');
+  words.next();
+  EXPECT_TRUE(words.fresh_line());
+  EXPECT_EQ(words.peek_on_line(), "b");
+  words.next();
+  EXPECT_FALSE(words.fresh_line());
+  EXPECT_EQ(words.peek_on_line(), "");
+  EXPECT_EQ(words.peek(), "d");
+  words.next();
+  EXPECT_TRUE(words.fresh_line());
+}
+
+TEST(Words, SkipLinesAndTakeTheirRest) {
+  Words words("f", "a  b c  # d\re f\r\ng", 0, '#');
+  words.next();
+  EXPECT_EQ(words.rest_of_line(), "b c");
+  EXPECT_EQ(words.next(), "e");
+  words.skip_line();
+  EXPECT_EQ(words.next(), "g");
+  EXPECT_TRUE(words.fresh_line());
+}
+
+TEST(Words, CountLinesByAnyEnd) {
+  Words words("f", "a\nb\r\nc\rd\n\re", 0, '#');
+  const char* const expected[] = {"f:1:1", "f:2:1", "f:3:1", "f:4:1", "f:6:1", "f:6:2"};
+  std::vector<std::string_view> found;
+  for (const char* place : expected) {
+    found.push_back(words.next());
+    EXPECT_EQ(words.position(found.back()).text(), place);
+  }
+  EXPECT_EQ(words.position(found[1]).text(), "f:2:1");  // also backwards
+}
+
+TEST(Words, QuotedStayOnOneLine) {
+  EXPECT_EQ(grelha::quoted(std::string_view("a\x01\xff", 3)), "\"a??\"");
+  EXPECT_EQ(grelha::quoted(std::string(50, 'x')), '"' + std::string(40, 'x') + "...\"");
+  EXPECT_EQ(grelha::quoted(""), "end of file");
+}
+
+std::string gzip(std::string_view text) {
+  z_stream stream{};
+  deflateInit2(&stream, 9, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY);
+  std::string out(deflateBound(&stream, text.size()), '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
+  stream.avail_in = uInt(text.size());
+  stream.next_out = reinterpret_cast<Bytef*>(out.data());
+  stream.avail_out = uInt(out.size());
+  deflate(&stream, Z_FINISH);
+  out.resize(stream.total_out);
+  deflateEnd(&stream);
+  return out;
+}
+
+TEST(Gzip, InflatesMembersOneAfterTheOther) {
+  const std::string long_text(1000000, 'a');
+  EXPECT_EQ(inflate_gzip("f.gz", gzip(long_text), 1 << 20), long_text);
+  EXPECT_EQ(inflate_gzip("f.gz", gzip("abc") + gzip("def"), 100), "abcdef");
+  EXPECT_EQ(inflate_gzip("f.gz", gzip("abc") + "tail", 100), "abc");
+  EXPECT_EQ(inflate_gzip("f.gz", gzip(""), 100), "");
+}
+
+TEST(Gzip, RefusesBrokenAndBoundlessData) {
+  const std::string whole = gzip("some words and some more words");
+  EXPECT_EQ(message_of([&] { inflate_gzip("f.gz", whole.substr(0, 20), 100); }),
+            "f.gz:byte 20: error: wanted more gzip data, found end of file");
+  std::string broken = whole;
+  broken[12] = char(~broken[12]);
+  EXPECT_NE(message_of([&] { inflate_gzip("f.gz", broken, 100); }).find(": error: wanted sound gzip data, found "),
+            std::string::npos);
+  const std::string bomb = gzip(std::string(1 << 20, '\0'));
+  EXPECT_NE(message_of([&] { inflate_gzip("f.gz", bomb, 5000); })
+                .find("error: wanted data that inflate to at most 5000 bytes, found more"), std::string::npos);
+}
+
+TEST(LoadFile, TellsGzipByItsFirstBytes) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(load_file(folder.add("a.nff", gzip("packed"))), "packed");
+  EXPECT_EQ(load_file(folder.add("b.gz", "plain")), "plain");
+}
+
+TEST(LoadFile, SaysWhyItCannot) {
+  const TemporaryFolder folder;
+  const std::string missing = (folder.path() / "none").string();
+  EXPECT_EQ(message_of([&] { load_file(missing); }), missing + ": error: cannot open: No such file or directory");
+  const std::string self = folder.path().string();
+  EXPECT_EQ(message_of([&] { load_file(self); }), self + ": error: cannot read: Is a directory");
+  EXPECT_THROW(load_file("/dev/null"), FileError);
+}
+
+}  // namespace
+}  // namespace grelha
