@@ -112,9 +112,9 @@ World::Impl::Impl(const Scene& s, const BuildOptions& options) : scene((check(s)
   Box all;
   for (std::uint32_t id = primitives.sphere_base; id < primitives.end; ++id) all.add(primitives.box(id));
   const double diagonal = all.diagonal();
-  // Float tests of rays that start within `reach` of the scene are off by at most k eps distance, k < 18 for every
-  // kind and distance <= 3.5 diagonals: 64 eps diagonal covers it (docs/numerics.md).
-  const double pad = diagonal * 64 / 16777216;
+  // A ray that starts within one diagonal of the box on each axis is at most 1 + sqrt 3 diagonals from any primitive, and a
+  // float test is off by at most 46 eps of that distance (docs/numerics.md derives 12, 24 and 32 for the three kinds).
+  const double pad = diagonal * 128 / 16777216;
 
   Ids apart;
   if (options.grid) {
@@ -156,7 +156,7 @@ World::Impl::Impl(const Scene& s, const BuildOptions& options) : scene((check(s)
   view.finite = !all.empty();
   if (view.finite) {
     for (int a = 0; a < 3; ++a) view.box_lo[a] = static_cast<float>(all.lo[a]), view.box_hi[a] = static_cast<float>(all.hi[a]);
-    view.reach = static_cast<float>(2 * diagonal);
+    view.reach = static_cast<float>(diagonal);
   }
 
   for (const PointLight& l : s.lights)

@@ -1,0 +1,1 @@
+grelha_test(spd_counts image grelha::frontend grelha::scenes)
