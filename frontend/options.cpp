@@ -38,7 +38,7 @@ int whole(const std::string& option, const std::string& text, int low, int high)
 
 float density(const std::string& text) {
   const auto value = number<double>(text);
-  if (!value || !(*value > 0) || *value > kMaxDensity) refuse("--density", "a number above 0 and up to 1000", text);
+  if (!value || !(float(*value) > 0) || *value > kMaxDensity) refuse("--density", "a number above 0 and up to 1000", text);
   return float(*value);
 }
 
@@ -146,7 +146,7 @@ void add_scene(CLI::App& app, SceneCommand& command) {
   sub.footer("Example: grelha scene balls --size 4 -o balls4.nff");
   sub.add_option("NAME", command.name, "which scene (see --list)")->type_name("");
   value(sub, "--size", "N", "size factor [by scene, see --list]", [&command](const std::string& text) {
-    command.size = whole("--size", text, 1, 1000);
+    command.size = whole("--size", text, 0, 1000);
   });
   value(sub, "-o,--output", "FILE", "[stdout; a scene with a mesh: its name with .nff and .ply]",
         [&command](const std::string& text) { command.output = text; });

@@ -29,9 +29,9 @@ Vec hull_point(double u, double angle_rad) {
 
 void add_hull(Mesh& mesh, int n) {
   add_surface(mesh, 4 * n, 2 * n, [](double u, double v) { return hull_point(u, kPi * (0.5 - v)); });
-  add_surface(mesh, n, 1, [](double u, double v) {  // the stern, from its middle line down to the hull
-    const Vec rim = hull_point(0, kPi * (u - 0.5));
-    return Vec{rim.x, rim.y, edge_z(0) + v * 0.999 * (rim.z - edge_z(0)) - 1e-4 * (1 - v)};
+  add_surface(mesh, 1, n, [](double u, double v) {  // the stern in level strips, stopping short of the very keel
+    const double down = 0.97 * v * kPi / 2;
+    return Vec{hull_x(0), (2 * u - 1) * half_beam(0) * std::cos(down), edge_z(0) - kDraught * std::sin(down)};
   });
   add_surface(mesh, 2 * n, n, [](double u, double v) {  // the deck, arched and a little below the edge
     const double across = 2 * v - 1;

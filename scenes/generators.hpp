@@ -21,7 +21,7 @@ struct SceneOptions {
 ///   balls    1-7      (9^(n+1) - 1) / 8 spheres and one plane (--spd: a 4-gon)          4: 7381
 ///   mount    1-10     2 4^n triangles and 4 spheres                                     7: 32768
 ///   distant  1-100    n spheres over a plane, seen through a lens                       3
-///   boat     1-40     46 n^2 + 10 n triangles of a PLY file, three planes               10: 4700
+///   boat     4-40     46 n^2 + 10 n triangles of a PLY file, three planes               10: 4700
 ///   stadium  1-40     288 n^2 patches of three vertices, one 4-gon                      6: 10368
 ///   tetra    1-10     4^n triangles                                                     6: 4096
 ///   gears    1-10     2 n^3 144-gons and 144 n^3 + 1 4-gons                             4: 128, 9217

@@ -1,0 +1,228 @@
+#include "frontend/image_file.hpp"
+
+#include "frontend/atomic_file.hpp"
+#include "frontend/parse_error.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace grelha {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+Image odd_image() {
+  Image image(3, 2);
+  const float values[] = {0, 1, 0.5f, -1, 2, 0.25f, 1e-30f, 1e30f, 0.1f, -0.0f, kNan, kInfinity, 3, 4, 5, 1.0f / 3, 7, 8};
+  std::copy(std::begin(values), std::end(values), image.rgb.begin());
+  return image;
+}
+
+std::string error_of(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const FileError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(ToByte, RoundsToNearestAndClamps) {
+  for (int k = 0; k < 256; ++k) EXPECT_EQ(to_byte(float(k) / 255, Tone::authored), k);
+  EXPECT_EQ(to_byte(0.4999f / 255, Tone::authored), 0);
+  EXPECT_EQ(to_byte(0.5001f / 255, Tone::authored), 1);
+  EXPECT_EQ(to_byte(254.4999f / 255, Tone::authored), 254);
+  for (const Tone tone : {Tone::authored, Tone::srgb}) {
+    EXPECT_EQ(to_byte(-1, tone), 0);
+    EXPECT_EQ(to_byte(7, tone), 255);
+    EXPECT_EQ(to_byte(kInfinity, tone), 255);
+    EXPECT_EQ(to_byte(-kInfinity, tone), 0);
+    EXPECT_EQ(to_byte(kNan, tone), 0);
+  }
+}
+
+/// IEC 61966-2-1, evaluated in long double.
+TEST(ToByte, FollowsTheSrgbCurve) {
+  for (int i = 0; i <= 4000; ++i) {
+    const float light = float(i) / 4000;
+    const long double encoded = light <= 0.0031308L ? 12.92L * light : 1.055L * std::pow((long double)light, 1 / 2.4L) - 0.055L;
+    const long double exact = 255 * encoded;
+    EXPECT_LE(std::abs(exact - to_byte(light, Tone::srgb)), 0.5L + 1e-4L) << light;
+  }
+  EXPECT_EQ(to_byte(0.5f, Tone::srgb), 188);
+}
+
+TEST(Png, HoldsTheBytesOfKnownColours) {
+  TemporaryFolder folder;
+  Image image(2, 2);
+  const float values[] = {1, 0, 0, 0, 0.5f, 0, 0, 0, 2, 0.25f, kNan, -1};
+  std::copy(std::begin(values), std::end(values), image.rgb.begin());
+  write_image(folder.file("a.png"), image);
+  EXPECT_EQ(folder.read("a.png").substr(0, 8), "\x89PNG\r\n\x1a\n");
+  const Image back = read_image(folder.file("a.png"));
+  ASSERT_EQ(back.width, 2);
+  ASSERT_EQ(back.height, 2);
+  const int expected[] = {255, 0, 0, 0, 128, 0, 0, 0, 255, 64, 0, 0};
+  for (std::size_t i = 0; i < back.rgb.size(); ++i) EXPECT_EQ(back.rgb[i], float(expected[i]) / 255) << i;
+}
+
+TEST(Png, SrgbBendsTheBytes) {
+  TemporaryFolder folder;
+  Image image(1, 1);
+  image.rgb = {0.5f, 0, 1};
+  write_image(folder.file("a.png"), image, Tone::srgb);
+  EXPECT_EQ(read_image(folder.file("a.png")).rgb, (std::vector{188 / 255.0f, 0.0f, 1.0f}));
+}
+
+TEST(Pfm, ComesBackBitForBit) {
+  TemporaryFolder folder;
+  const Image image = odd_image();
+  write_image(folder.file("a.pfm"), image);
+  const Image back = read_image(folder.file("a.pfm"));
+  ASSERT_EQ(back.width, image.width);
+  ASSERT_EQ(back.height, image.height);
+  EXPECT_EQ(std::memcmp(back.rgb.data(), image.rgb.data(), image.rgb.size() * sizeof(float)), 0);
+}
+
+TEST(Pfm, IsLittleEndianFromTheBottom) {
+  Image image(1, 2);
+  image.rgb = {1, 1, 1, 2, 2, 2};
+  const std::string two("\x00\x00\x00\x40", 4), one("\x00\x00\x80\x3f", 4);
+  EXPECT_EQ(encode_pfm(image), "PF\n1 2\n-1.0\n" + two + two + two + one + one + one);
+}
+
+TEST(Pfm, BigEndianAndGreyAreRead) {
+  TemporaryFolder folder;
+  const auto path = folder.write("a.pfm", "Pf\n2 1\n1\n" + std::string("\x3f\x80\x00\x00\x40\x00\x00\x00", 8));
+  EXPECT_EQ(read_image(path).rgb, (std::vector<float>{1, 1, 1, 2, 2, 2}));
+}
+
+TEST(Pfm, WrongFilesSayWhatIsWrong) {
+  TemporaryFolder folder;
+  const std::pair<std::string, const char*> wrong[] = {
+      {"", "wanted PF or Pf at the start"},          {"PX\n1 1\n-1\n", "wanted PF or Pf at the start"},
+      {"PF\n1", "the header ends early"},            {"PF\n0 1\n-1\n", "width and height must be 1 to 65536"},
+      {"PF\n1 x\n-1\n", "width and height must be 1 to 65536"},
+      {"PF\n99999 1\n-1\n", "width and height must be 1 to 65536"},
+      {"PF\n1 1\n0\n", "the scale is no number but 0"}, {"PF\n1 1\n-1\nabc", "too few floats"},
+      {"PF\n65536 65536\n-1\nabc", "too few floats"}};
+  for (const auto& [bytes, message] : wrong) {
+    const auto path = folder.write("a.pfm", bytes);
+    const std::string wanted = bytes.empty() ? "the header ends early" : message;
+    EXPECT_EQ(error_of([&] { read_image(path); }), path + ": error: not a PFM picture: " + wanted);
+  }
+}
+
+TEST(Hdr, KeepsLightWithinItsPrecision) {
+  TemporaryFolder folder;
+  Image image(40, 3);
+  for (std::size_t i = 0; i < image.rgb.size(); ++i) image.rgb[i] = 0.01f * float(1 + i % 90);
+  write_image(folder.file("a.hdr"), image);
+  EXPECT_EQ(folder.read("a.hdr").substr(0, 10), "#?RADIANCE");
+  const Image back = read_image(folder.file("a.hdr"));
+  ASSERT_EQ(back.rgb.size(), image.rgb.size());
+  for (std::size_t i = 0; i < image.rgb.size(); ++i) EXPECT_NEAR(back.rgb[i], image.rgb[i], 0.01f) << i;
+}
+
+TEST(Hdr, SurvivesWhatIsNoLight) {
+  TemporaryFolder folder;
+  write_image(folder.file("a.hdr"), odd_image());
+  for (const float value : read_image(folder.file("a.hdr")).rgb) EXPECT_TRUE(value >= 0 && value < kInfinity);
+}
+
+TEST(ReadImage, RefusesWhatItIsNot) {
+  TemporaryFolder folder;
+  for (const char* name : {"a.png", "a.hdr", "a.pfm"}) {
+    EXPECT_EQ(error_of([&] { read_image(folder.file(name)); }),
+              folder.file(name) + ": error: cannot read: No such file or directory");
+    const auto path = folder.write(name, "GIF89a, not what the name says");
+    EXPECT_NE(error_of([&] { read_image(path); }).find(": error: not a "), std::string::npos);
+  }
+  Image image(8, 8);
+  write_image(folder.file("b.png"), image);
+  const auto cut = folder.write("cut.png", folder.read("b.png").substr(0, 50));
+  EXPECT_NE(error_of([&] { read_image(cut); }).find(": error: cannot read the picture: "), std::string::npos);
+  std::filesystem::create_directory(folder.file("d.png"));
+  EXPECT_EQ(error_of([&] { read_image(folder.file("d.png")); }), folder.file("d.png") + ": error: cannot read: Is a directory");
+  EXPECT_EQ(error_of([&] { read_image("x.jpg"); }), "x.jpg: error: not a picture this program reads (.png, .hdr, .pfm)");
+}
+
+TEST(ImageFormat, GoesByTheEnding) {
+  EXPECT_EQ(image_format("a.png"), ImageFormat::png);
+  EXPECT_EQ(image_format("a.b.HDR"), ImageFormat::hdr);
+  EXPECT_EQ(image_format(".pfm"), ImageFormat::pfm);
+  for (const char* name : {"", "png", "a.jpg", "a.png.gz", "a.pn"}) EXPECT_FALSE(image_format(name)) << name;
+}
+
+TEST(ImageFits, KnowsTheWritersLimits) {
+  EXPECT_TRUE(image_fits(ImageFormat::png, 65536, 10000));
+  EXPECT_FALSE(image_fits(ImageFormat::png, 65536, 65536));
+  EXPECT_FALSE(image_fits(ImageFormat::hdr, 65536, 65536));
+  EXPECT_TRUE(image_fits(ImageFormat::pfm, 65536, 65536));
+  EXPECT_FALSE(image_fits(ImageFormat::pfm, 65537, 1));
+  EXPECT_FALSE(image_fits(ImageFormat::png, 0, 1));
+}
+
+TEST(AtomicFile, AppearsOnCommitOnly) {
+  TemporaryFolder folder;
+  folder.write("a", "old");
+  {
+    AtomicFile file(folder.file("a"));
+    file.stream() << "new";
+    file.stream().flush();
+    EXPECT_EQ(folder.read("a"), "old");
+  }
+  EXPECT_EQ(folder.read("a"), "old");
+  EXPECT_EQ(folder.list(), "a");
+  write_file(folder.file("a"), "new");
+  EXPECT_EQ(folder.read("a"), "new");
+  EXPECT_EQ(folder.list(), "a");
+}
+
+TEST(AtomicFile, FailuresNameThePathAndLeaveNothing) {
+  TemporaryFolder folder;
+  const auto missing = folder.file("no/a.png");
+  EXPECT_EQ(error_of([&] { write_file(missing, "x"); }), missing + ": error: cannot write: No such file or directory");
+  std::filesystem::create_directory(folder.file("d"));
+  EXPECT_EQ(error_of([&] { write_file(folder.file("d"), "x"); }), folder.file("d") + ": error: cannot write: Is a directory");
+  const auto below_file = folder.write("f", "") + "/a";
+  EXPECT_EQ(error_of([&] { check_writable(below_file); }), below_file + ": error: cannot write: Not a directory");
+  check_writable(folder.file("fine"));
+  EXPECT_EQ(folder.list(), "d f");
+}
+
+TEST(AtomicFile, ReadOnlyFolder) {
+  TemporaryFolder folder;
+  std::filesystem::permissions(folder.path(), std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+  const std::string error = error_of([&] { write_file(folder.file("a"), "x"); });
+  std::filesystem::permissions(folder.path(), std::filesystem::perms::owner_all);
+  if (error == "no error") GTEST_SKIP() << "this user may write everywhere";
+  EXPECT_EQ(error, folder.file("a") + ": error: cannot write: Permission denied");
+}
+
+TEST(AtomicFile, AFullDiskIsAnErrorAndDevicesStay) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
+  EXPECT_EQ(error_of([] { write_file("/dev/full", "x"); }), "/dev/full: error: cannot write: No space left on device");
+  EXPECT_EQ(error_of([] { write_file("/dev/full", std::string(100000, 'x')); }),
+            "/dev/full: error: cannot write: No space left on device");
+  write_file("/dev/null", "x");
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+}
+
+TEST(AtomicFile, WritesThroughALink) {
+  TemporaryFolder folder;
+  folder.write("real", "old");
+  std::filesystem::create_symlink("real", folder.file("link"));
+  write_file(folder.file("link"), "new");
+  EXPECT_EQ(folder.read("real"), "new");
+  EXPECT_TRUE(std::filesystem::is_symlink(folder.file("link")));
+}
+
+}  // namespace
+}  // namespace grelha

@@ -1,0 +1,148 @@
+#include "frontend/options.hpp"
+
+#include "frontend/progress.hpp"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+#include <vector>
+
+namespace grelha {
+namespace {
+
+Command parse(const std::string& line) {
+  std::vector<std::string> words{"grelha"};
+  std::istringstream in(line);
+  for (std::string word; in >> word;) words.push_back(word);
+  std::vector<const char*> argv;
+  for (const auto& word : words) argv.push_back(word.c_str());
+  return parse_command(int(argv.size()), argv.data());
+}
+
+std::string error_of(const std::string& line) {
+  try {
+    parse(line);
+  } catch (const UsageError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(Render, Defaults) {
+  const auto command = std::get<RenderCommand>(parse("render dir/x.nff"));
+  EXPECT_EQ(command.scene, "dir/x.nff");
+  EXPECT_EQ(command.image, "x.png");
+  EXPECT_EQ(command.width, 0);
+  EXPECT_EQ(command.render.threads, 0);
+  EXPECT_EQ(command.render.depth, 5);
+  EXPECT_EQ(command.render.packet, 0);
+  EXPECT_TRUE(command.render.mailbox);
+  EXPECT_EQ(command.render.isa, "best");
+  EXPECT_TRUE(command.build.grid);
+  EXPECT_EQ(command.build.density, 0);
+  EXPECT_EQ(command.stats, "");
+  EXPECT_FALSE(command.quiet);
+  EXPECT_FALSE(command.srgb);
+}
+
+TEST(Render, EveryOption) {
+  const auto command = std::get<RenderCommand>(
+      parse("render x.nff -o y.pfm --size 640x480 --threads 7 --depth 3 --density 2.5 --accel none --mailbox off "
+            "--isa avx2 --packet 64 --stats s.json --quiet --srgb"));
+  EXPECT_EQ(command.image, "y.pfm");
+  EXPECT_EQ(command.width, 640);
+  EXPECT_EQ(command.height, 480);
+  EXPECT_EQ(command.render.threads, 7);
+  EXPECT_EQ(command.render.depth, 3);
+  EXPECT_EQ(command.render.packet, 64);
+  EXPECT_FALSE(command.render.mailbox);
+  EXPECT_EQ(command.render.isa, "avx2");
+  EXPECT_FALSE(command.build.grid);
+  EXPECT_EQ(command.build.density, 2.5f);
+  EXPECT_EQ(command.stats, "s.json");
+  EXPECT_TRUE(command.quiet);
+  EXPECT_TRUE(command.srgb);
+}
+
+TEST(Render, OptionsMayStandBeforeTheSceneAndCarryTheirValue) {
+  const auto command = std::get<RenderCommand>(parse("render --size=65536x1 --quiet x.ply"));
+  EXPECT_EQ(command.width, 65536);
+  EXPECT_EQ(command.scene, "x.ply");
+}
+
+TEST(DefaultImage, TakesTheStemInTheCurrentFolder) {
+  EXPECT_EQ(default_image("x.nff"), "x.png");
+  EXPECT_EQ(default_image("/a/b/x.p3f"), "x.png");
+  EXPECT_EQ(default_image("a/balls_6.nff.gz"), "balls_6.png");
+  EXPECT_EQ(default_image("a/v1.2.nff"), "v1.2.png");
+  EXPECT_EQ(default_image("plain"), "plain.png");
+}
+
+TEST(Others, AreParsed) {
+  EXPECT_TRUE(std::get<InfoCommand>(parse("info x.nff --json")).json);
+  const auto compare = std::get<CompareCommand>(parse("compare a.png b.png --max-rmse 0 --diff d.png"));
+  EXPECT_EQ(compare.max_rmse, 0.0);
+  EXPECT_EQ(compare.diff, "d.png");
+  EXPECT_FALSE(std::get<CompareCommand>(parse("compare a b")).max_rmse);
+  const auto scene = std::get<SceneCommand>(parse("scene balls --size 4 -o b.nff --spd"));
+  EXPECT_EQ(scene.name, "balls");
+  EXPECT_EQ(scene.size, 4);
+  EXPECT_TRUE(scene.spd);
+  EXPECT_TRUE(std::get<SceneCommand>(parse("scene --list")).list);
+}
+
+TEST(Help, FitsAScreenAndSaysHow) {
+  for (const char* line : {"--help", "render --help", "info -h", "compare --help", "scene --help"}) {
+    const std::string text = std::get<TextCommand>(parse(line)).text;
+    EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 24) << line;
+    EXPECT_NE(text.find("Usage: grelha"), std::string::npos) << line;
+  }
+  EXPECT_NE(std::get<TextCommand>(parse("render --help")).text.find("--packet"), std::string::npos);
+  EXPECT_EQ(std::get<TextCommand>(parse("--version")).text.find("grelha "), 0u);
+}
+
+TEST(Errors, SayWhatWasWantedAndFound) {
+  const std::pair<const char*, const char*> table[] = {
+      {"", "A subcommand is required (see --help)"},
+      {"rendr x.nff", "command: wanted one of render, info, compare, scene, found \"rendr\""},
+      {"render", "SCENE is required (see --help)"},
+      {"render a b", "The following argument was not expected: b (see --help)"},
+      {"render a --foo", "The following argument was not expected: --foo (see --help)"},
+      {"render a -o", "--output: 1 required FILE missing (see --help)"},
+      {"render a -o b.jpg", "-o: wanted a name ending in .png, .hdr or .pfm, found \"b.jpg\""},
+      {"render a --size 640", "--size: wanted WIDTHxHEIGHT, each from 1 to 65536, found \"640\""},
+      {"render a --size 0x1", "--size: wanted WIDTHxHEIGHT, each from 1 to 65536, found \"0x1\""},
+      {"render a --size 1x65537", "--size: wanted WIDTHxHEIGHT, each from 1 to 65536, found \"1x65537\""},
+      {"render a --size 1x1x1", "--size: wanted WIDTHxHEIGHT, each from 1 to 65536, found \"1x1x1\""},
+      {"render a --size -1x1", "--size: wanted WIDTHxHEIGHT, each from 1 to 65536, found \"-1x1\""},
+      {"render a --threads 0", "--threads: wanted a whole number from 1 to 1024, found \"0\""},
+      {"render a --threads 1.5", "--threads: wanted a whole number from 1 to 1024, found \"1.5\""},
+      {"render a --threads 99999999999", "--threads: wanted a whole number from 1 to 1024, found \"99999999999\""},
+      {"render a --depth -1", "--depth: wanted a whole number from 1 to 10000, found \"-1\""},
+      {"render a --density 0", "--density: wanted a number above 0 and up to 1000, found \"0\""},
+      {"render a --density nan", "--density: wanted a number above 0 and up to 1000, found \"nan\""},
+      {"render a --density 1e-60", "--density: wanted a number above 0 and up to 1000, found \"1e-60\""},
+      {"render a --accel bvh", "--accel: wanted one of grid, none, found \"bvh\""},
+      {"render a --mailbox yes", "--mailbox: wanted one of on, off, found \"yes\""},
+      {"render a --isa neon", "--isa: wanted one of scalar, sse2, avx2, avx512, best, found \"neon\""},
+      {"render a --packet 8", "--packet: wanted one of 1, 16, 64, auto, found \"8\""},
+      {"compare a", "B is required (see --help)"},
+      {"compare a b --max-rmse -1", "--max-rmse: wanted a number that is not negative, found \"-1\""},
+      {"compare a b --max-rmse nan", "--max-rmse: wanted a number that is not negative, found \"nan\""},
+      {"compare a b --diff d.txt", "--diff: wanted a name ending in .png, .hdr or .pfm, found \"d.txt\""},
+      {"scene", "NAME is required (see grelha scene --list)"},
+      {"scene balls --size x", "--size: wanted a whole number from 0 to 1000, found \"x\""},
+  };
+  for (const auto& [line, message] : table) EXPECT_EQ(error_of(line), message) << line;
+}
+
+TEST(Progress, TellsShareAndRemainingTime) {
+  EXPECT_EQ(progress_text(0, 1), "[........................................]   0 %");
+  EXPECT_EQ(progress_text(0.5, 3), "[####################....................]  50 %  3 s left");
+  EXPECT_EQ(progress_text(1, 3), "[########################################] 100 %  0 s left");
+  EXPECT_EQ(progress_text(0.25, 30), "[##########..............................]  25 %  1 min 30 s left");
+  EXPECT_EQ(progress_text(0.1, 800), "[####....................................]  10 %  2 h 0 min left");
+}
+
+}  // namespace
+}  // namespace grelha

@@ -1,0 +1,234 @@
+// The built program as a user meets it: exit statuses, files, one line per error.
+#include "tests/support/temporary_folder.hpp"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <cstring>
+#include <sstream>
+
+namespace grelha {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr char kBall[] =
+    "b 0 0 1\nv\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 40\nhither 1\nresolution 24 16\n"
+    "l 5 5 5 1 1 1\nf 1 0 0 1 0 1 0 1\ns 0 0 0 1\n";
+
+struct Outcome {
+  int status;
+  std::string out, err;
+};
+
+/// Runs the program inside `folder`. Its output goes to files elsewhere, so that the folder holds what it wrote itself.
+Outcome run(const TemporaryFolder& folder, const std::string& arguments) {
+  TemporaryFolder log;
+  const std::string line = "cd '" + folder.path().string() + "' && '" GRELHA_PROGRAM "' " + arguments + " >'" +
+                           log.file("out") + "' 2>'" + log.file("err") + "' </dev/null";
+  const int status = std::system(line.c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, log.read("out"), log.read("err")};
+}
+
+class Program : public testing::Test {
+ protected:
+  Program() { folder_.write("ball.nff", kBall); }
+  Outcome run(const std::string& arguments) { return grelha::run(folder_, arguments); }
+  TemporaryFolder folder_;
+};
+
+TEST_F(Program, RendersToADefaultName) {
+  const Outcome outcome = run("render ball.nff");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_EQ(folder_.list(), "ball.nff ball.png");
+  EXPECT_EQ(outcome.out.substr(0, 20), "ball.png: 1 sphere; ");
+  EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 1);
+}
+
+TEST_F(Program, QuietSaysNothing) {
+  const Outcome outcome = run("render ball.nff -o x.pfm --size 8x4 --quiet");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(outcome.out + outcome.err, "");
+  EXPECT_EQ(folder_.read("x.pfm").substr(0, 12), "PF\n8 4\n-1.0\n");
+}
+
+TEST_F(Program, PictureIsABallBeforeTheBackground) {
+  ASSERT_EQ(run("render ball.nff -o x.pfm").status, 0);
+  const std::string bytes = folder_.read("x.pfm");
+  const std::size_t header = std::string("PF\n24 16\n-1.0\n").size();
+  ASSERT_EQ(bytes.size(), header + 24 * 16 * 12);
+  const auto pixel = [&](int x, int y_from_bottom) {
+    std::array<float, 3> rgb;
+    std::memcpy(rgb.data(), bytes.data() + header + std::size_t(y_from_bottom * 24 + x) * 12, 12);
+    return rgb;
+  };
+  EXPECT_EQ(pixel(0, 0), (std::array<float, 3>{0, 0, 1}));
+  EXPECT_GT(pixel(13, 9)[0], 0.3f);
+  EXPECT_EQ(pixel(13, 9)[1], 0);
+  EXPECT_GT(pixel(14, 10)[0], pixel(10, 6)[0]) << "the light stands up and to the right";
+}
+
+TEST_F(Program, StatsTellTheRun) {
+  const Outcome outcome = run("render ball.nff --stats s.json --threads 1 --isa scalar");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Json json = Json::parse(folder_.read("s.json"));
+  EXPECT_EQ(json["scene"]["s"], 1);
+  EXPECT_EQ(json["scene"]["lights"], 1);
+  EXPECT_EQ(json["rays"]["primary"], 24 * 16);
+  EXPECT_GT(json["rays"]["shadow"], 0);
+  EXPECT_EQ(json["rays"]["reflection"], 0);
+  EXPECT_GT(json["tests"]["sphere"], 0);
+  EXPECT_EQ(json["isa"], "scalar");
+  EXPECT_EQ(json["threads"], 1);
+  EXPECT_EQ(json["size"], Json::parse("[24,16]"));
+}
+
+TEST_F(Program, InfoAgreesWithTheStats) {
+  ASSERT_EQ(run("render ball.nff --stats s.json").status, 0);
+  const Outcome outcome = run("info ball.nff --json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Json info = Json::parse(outcome.out), stats = Json::parse(folder_.read("s.json"));
+  EXPECT_EQ(info["scene"], stats["scene"]);
+  EXPECT_EQ(info["grids"], stats["grids"]);
+  EXPECT_EQ(info["needs"]["spheres"], true);
+  EXPECT_EQ(info["needs"]["reflection"], false);
+  EXPECT_NE(run("info ball.nff").out.find("needs         spheres\n"), std::string::npos);
+}
+
+TEST_F(Program, ComparesAndSetsItsStatus) {
+  ASSERT_EQ(run("render ball.nff -o a.pfm --quiet").status, 0);
+  ASSERT_EQ(run("render ball.nff -o b.png --quiet").status, 0);
+  ASSERT_EQ(run("render ball.nff -o c.png --quiet --size 8x8").status, 0);
+  EXPECT_EQ(run("compare a.pfm a.pfm --max-rmse 0").out,
+            "RMSE 0, PSNR inf dB, largest difference 0 at (0, 0), 0 of 384 pixels differ\n");
+  EXPECT_EQ(run("compare a.pfm a.pfm --max-rmse 0").status, 0);
+  EXPECT_EQ(run("compare a.pfm b.png --max-rmse 0.01").status, 0) << "half a byte at most";
+  EXPECT_EQ(run("compare a.pfm b.png --max-rmse 0 --diff d.png").status, 1);
+  EXPECT_EQ(folder_.read("d.png").substr(1, 3), "PNG");
+  const Outcome sizes = run("compare a.pfm c.png");
+  EXPECT_EQ(sizes.status, 2);
+  EXPECT_EQ(sizes.err, "grelha: error: the pictures have unequal sizes, 24x16 and 8x8\n");
+  EXPECT_EQ(run("compare a.pfm no.png").status, 1);
+}
+
+TEST_F(Program, MissingSceneIsStatusOne) {
+  const Outcome outcome = run("render no.nff");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_EQ(outcome.err.substr(0, 14), "no.nff: error:");
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1);
+  EXPECT_EQ(folder_.list(), "ball.nff");
+}
+
+TEST_F(Program, WrongSceneIsStatusTwo) {
+  folder_.write("bad.nff", "b 0 0 1\nv\nfrom 0 0 x\n");
+  const Outcome outcome = run("render bad.nff");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_EQ(outcome.err.substr(0, 19), "bad.nff:3:10: error");
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1);
+}
+
+TEST_F(Program, WrongUsageIsStatusTwoAndOneLine) {
+  for (const char* arguments : {"", "rendr", "render", "render ball.nff -o x.jpg", "render ball.nff --size 0x0",
+                                "render ball.nff --isa neon", "scene nothing", "scene balls --size 8", "scene mount --size 0"}) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.status, 2) << arguments;
+    EXPECT_EQ(outcome.err.substr(0, 15), "grelha: error: ") << arguments;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << arguments;
+    EXPECT_EQ(outcome.out, "") << arguments;
+  }
+  EXPECT_EQ(folder_.list(), "ball.nff");
+}
+
+TEST_F(Program, UnwritablePicturesAreFoundOutFirst) {
+  const Outcome outcome = run("render ball.nff -o no/x.png");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_EQ(outcome.err, "no/x.png: error: cannot write: No such file or directory\n");
+  EXPECT_EQ(run("render missing.nff -o no/x.png").err, outcome.err) << "before the scene is read";
+  EXPECT_EQ(run("render ball.nff --stats no/s.json").err, "no/s.json: error: cannot write: No such file or directory\n");
+  EXPECT_EQ(folder_.list(), "ball.nff");
+}
+
+TEST_F(Program, TooLargeForPngIsSaidBeforeTheRender) {
+  const Outcome outcome = run("render ball.nff --size 65536x65536");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_EQ(outcome.err, "grelha: error: a picture of 65536x65536 is too large for .png and .hdr, write a .pfm\n");
+}
+
+TEST_F(Program, SceneGoesToStdoutOrAFile) {
+  const Outcome outcome = run("scene balls --size 2");
+  EXPECT_EQ(outcome.status, 0);
+  ASSERT_EQ(run("scene balls --size 2 -o b.nff").status, 0);
+  EXPECT_EQ(folder_.read("b.nff"), outcome.out);
+  const Outcome info = run("info b.nff --json");
+  ASSERT_EQ(info.status, 0) << info.err;
+  EXPECT_EQ(Json::parse(info.out)["scene"]["s"], 91);
+  EXPECT_EQ(Json::parse(info.out)["scene"]["pl"], 1);
+}
+
+TEST_F(Program, BoatComesWithItsMesh) {
+  ASSERT_EQ(run("scene boat").status, 0);
+  ASSERT_EQ(run("scene boat --size 4 -o small.nff").status, 0);
+  EXPECT_EQ(folder_.list(), "ball.nff boat.nff boat.ply small.nff small.ply");
+  const Outcome info = run("info boat.nff --json");
+  ASSERT_EQ(info.status, 0) << info.err;
+  const Json json = Json::parse(info.out);
+  EXPECT_EQ(json["scene"]["ply"], 4700);
+  EXPECT_EQ(json["scene"]["pl"], 3);
+  EXPECT_EQ(json["dropped"], Json::parse(R"({"not_finite":0,"zero_area":0})"));
+  EXPECT_EQ(json["needs"]["smooth_normals"], true);
+  EXPECT_EQ(run("scene boat -o x.ply").status, 2);
+}
+
+/// Every generator's text is a scene to our own readers, at its least size too and without a warning.
+TEST_F(Program, EverySceneIsRead) {
+  const Outcome list = run("scene --list");
+  EXPECT_EQ(list.status, 0);
+  std::istringstream lines(list.out);
+  int scenes = 0;
+  for (std::string name, word, size, rest; lines >> name >> word >> size && std::getline(lines, rest); ++scenes) {
+    ASSERT_EQ(run("scene " + name + " --size " + size + " -o " + name + ".nff").status, 0) << name;
+    const Outcome info = run("info " + name + ".nff --json");
+    EXPECT_EQ(info.status, 0) << info.err;
+    EXPECT_EQ(info.err.find("warning"), name == "distant" ? info.err.find("warning: a lens") : std::string::npos)
+        << info.err;
+  }
+  EXPECT_EQ(scenes, 10);
+}
+
+TEST_F(Program, AFullOutputIsStatusOne) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
+  const std::string line = "'" GRELHA_PROGRAM "' scene balls --size 3 >/dev/full 2>'" + folder_.file("err") + "'";
+  EXPECT_EQ(WEXITSTATUS(std::system(line.c_str())), 1);
+  EXPECT_EQ(folder_.read("err"), "stdout: error: cannot write\n");
+}
+
+TEST_F(Program, HelpAndVersionAreStatusZero) {
+  EXPECT_EQ(run("--help").status, 0);
+  EXPECT_EQ(run("render --help").status, 0);
+  EXPECT_EQ(run("--version").out.substr(0, 7), "grelha ");
+}
+
+/// The ready scenes say what they are for, and each is read without a complaint.
+TEST_F(Program, ReadyScenesAreSound) {
+  int scenes = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(GRELHA_SOURCE_DIR "/scenes/data")) {
+    const std::string path = entry.path().string();
+    const Outcome outcome = run("render '" + path + "' --size 32x32 --quiet -o x.png");
+    EXPECT_EQ(outcome.status, 0) << path;
+    EXPECT_EQ(outcome.out + outcome.err, "") << path;
+    std::ifstream in(path);
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    EXPECT_TRUE(text.starts_with("# ") || text.find("\ncomment ") < 100) << path << " does not say what it is for";
+    ++scenes;
+  }
+  EXPECT_GE(scenes, 5);
+}
+
+}  // namespace
+}  // namespace grelha

@@ -1,0 +1,182 @@
+#include "frontend/report.hpp"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <set>
+
+namespace grelha {
+namespace {
+
+using Json = nlohmann::json;
+
+std::set<std::string> keys(const Json& json) {
+  std::set<std::string> names;
+  for (const auto& item : json.items()) names.insert(item.key());
+  return names;
+}
+
+template <class Change>
+Material material_with(Change change) {
+  Material material;
+  change(material);
+  return material;
+}
+
+/// One ball of that material, beside a material that has everything and is on nothing.
+SceneFile one_ball(const Material& material) {
+  SceneFile file;
+  file.scene.materials = {material, material_with([](Material& m) {
+                            m.transmission = m.roughness = 1, m.fresnel = true, m.emission = m.mirror = {1, 1, 1};
+                          })};
+  file.scene.geometry.spheres.add({1, 2, 3}, 0.5f, 0);
+  return file;
+}
+
+TEST(Needs, AskNothingForAMaterialNobodyUses) {
+  Needs expected;
+  expected.spheres = true;
+  EXPECT_EQ(needs_of(one_ball(material_with([](Material& m) { m.diffuse = {1, 1, 1}, m.ior = 2; }))), expected);
+}
+
+TEST(Needs, FollowTheMaterialsInUse) {
+  EXPECT_TRUE(needs_of(one_ball(material_with([](Material& m) { m.mirror = {0, 0, 0.1f}; }))).reflection);
+  EXPECT_FALSE(needs_of(one_ball(material_with([](Material& m) { m.mirror = {0, 0, 0.1f}; }))).refraction);
+  const Needs glass = needs_of(one_ball(material_with([](Material& m) { m.transmission = 0.5f; })));
+  EXPECT_TRUE(glass.refraction);
+  EXPECT_TRUE(glass.reflection) << "total reflection";
+  EXPECT_FALSE(glass.fresnel);
+  EXPECT_TRUE(needs_of(one_ball(material_with([](Material& m) { m.transmission = 0.5f, m.fresnel = true; }))).fresnel);
+  EXPECT_FALSE(needs_of(one_ball(material_with([](Material& m) { m.fresnel = true; }))).fresnel) << "opaque";
+  EXPECT_TRUE(needs_of(one_ball(material_with([](Material& m) { m.emission = {0, 1, 0}; }))).emission);
+  EXPECT_TRUE(needs_of(one_ball(material_with([](Material& m) { m.roughness = 0.1f; }))).roughness);
+}
+
+TEST(Needs, FollowGeometryAndCamera) {
+  SceneFile file;
+  Triangles& t = file.scene.geometry.triangles;
+  t.x = t.y = t.z = {0, 1, 2};
+  t.nx = t.ny = t.nz = {0, 0, 0};
+  t.a = {0}, t.b = {1}, t.c = {2}, t.material = {0};
+  file.scene.materials = {{}};
+  file.lens = {true, 0, 1};
+  EXPECT_FALSE(needs_of(file).smooth_normals) << "normals of length zero are none";
+  EXPECT_FALSE(needs_of(file).lens) << "a lens without width is a pinhole";
+  t.nz[1] = 1;
+  file.lens.aperture = 2;
+  file.area_lights.push_back({});
+  EXPECT_TRUE(needs_of(file).smooth_normals);
+  EXPECT_TRUE(needs_of(file).lens);
+  EXPECT_TRUE(needs_of(file).area_lights);
+}
+
+TEST(Bounds, HoldEveryKindButPlanes) {
+  Geometry geometry;
+  geometry.planes.add({1000, 0, 0}, {1, 0, 0}, 0);
+  EXPECT_TRUE(bounds_of(geometry).empty);
+  geometry.spheres.add({1, 2, 3}, -0.5f, 0);
+  SceneBounds bounds = bounds_of(geometry);
+  EXPECT_EQ(bounds.low, (Float3{0.5f, 1.5f, 2.5f}));
+  EXPECT_EQ(bounds.high, (Float3{1.5f, 2.5f, 3.5f}));
+  geometry.cones.add({0, 0, 0}, 2, {0, 0, 4}, 1, 0);
+  bounds = bounds_of(geometry);
+  EXPECT_EQ(bounds.low, (Float3{-2, -2, 0}));
+  EXPECT_EQ(bounds.high, (Float3{2, 2.5f, 4}));
+  Triangles& t = geometry.triangles;  // the last vertex belongs to no triangle
+  t.x = t.y = t.z = {0, 5, 0, 100};
+  t.a = {0}, t.b = {1}, t.c = {2}, t.material = {0};
+  EXPECT_EQ(bounds_of(geometry).high, (Float3{5, 5, 5}));
+}
+
+TEST(Bounds, TiltedDiscsReachAsFarAsTheyDo) {
+  Geometry geometry;
+  geometry.cones.add({0, 0, 0}, 1, {3, 3, 0}, 1, 0);
+  const SceneBounds bounds = bounds_of(geometry);
+  EXPECT_FLOAT_EQ(bounds.low.x, -std::sqrt(0.5f));
+  EXPECT_FLOAT_EQ(bounds.high.y, 3 + std::sqrt(0.5f));
+  EXPECT_EQ(bounds.low.z, -1);
+}
+
+RunReport some_run() {
+  RunReport report;
+  report.counts = {.s = 1, .p = 2, .pp = 3, .c = 4, .pl = 5, .box = 6, .mesh = 7, .ply = 8, .lights = 9, .materials = 10};
+  report.spheres = 1, report.triangles = 30;
+  report.width = 4, report.height = 3;
+  report.grids = {{{2, 3, 4}, 5, 6, 7}};
+  report.render.rays = {12, 13, 14, 15};
+  report.render.trace = {16, {17, 18, 19, 20}, {21, 22, 80, 60}};
+  report.render.threads = 2;
+  report.render.isa = "avx2";
+  report.seconds = {1, 2, 3, 4};
+  report.geometry_bytes = 100, report.grid_bytes = 200;
+  return report;
+}
+
+TEST(Stats, HoldWhatWasCounted) {
+  RenderCommand command;
+  command.scene = "x.nff";
+  const Json json = Json::parse(stats_json(command, some_run()));
+  EXPECT_EQ(json["scene"], Json::parse(R"({"s":1,"p":2,"pp":3,"c":4,"pl":5,"box":6,"mesh":7,"ply":8,"lights":9,"materials":10})"));
+  EXPECT_EQ(json["grids"], Json::parse(R"([{"cells":[2,3,4],"occupied":5,"references":6,"bytes":7}])"));
+  EXPECT_EQ(json["rays"], Json::parse(R"({"primary":12,"shadow":13,"reflection":14,"refraction":15})"));
+  EXPECT_EQ(json["visits"], 16);
+  EXPECT_EQ(json["tests"], Json::parse(R"({"sphere":17,"triangle":18,"cone":19,"plane":20})"));
+  EXPECT_EQ(json["packets"], Json::parse(R"({"formed":21,"fell_back":22,"lanes_busy":0.75})"));
+  EXPECT_EQ(json["seconds"], Json::parse(R"({"load":1.0,"build":2.0,"render":3.0,"write":4.0})"));
+  EXPECT_EQ(json["bytes"]["geometry"], 100);
+  EXPECT_EQ(json["bytes"]["grids"], 200);
+  EXPECT_GT(json["bytes"]["peak"], 100000);
+  EXPECT_EQ(json["size"], Json::parse("[4,3]"));
+  EXPECT_EQ(json["isa"], "avx2");
+  EXPECT_EQ(json["threads"], 2);
+  EXPECT_EQ(json["options"]["accel"], "grid");
+}
+
+TEST(Stats, NoLaneIssuedIsNoneBusy) {
+  EXPECT_EQ(Json::parse(stats_json({}, {}))["packets"]["lanes_busy"], 0.0);
+}
+
+TEST(Info, JsonSaysWhatTheSceneHolds) {
+  SceneFile file = one_ball(material_with([](Material& m) { m.transmission = 0.5f; }));
+  file.counts = {.s = 1, .lights = 2, .materials = 1};
+  file.dropped = {3, 4};
+  file.camera.width = 640;
+  const Json json = Json::parse(info_json(file, {}));
+  EXPECT_EQ(keys(json), (std::set<std::string>{"scene", "kernel", "dropped", "resolution", "bounds", "grids", "needs", "made_up"}));
+  EXPECT_EQ(json["scene"]["s"], 1);
+  EXPECT_EQ(json["kernel"]["spheres"], 1);
+  EXPECT_EQ(json["dropped"], Json::parse(R"({"not_finite":3,"zero_area":4})"));
+  EXPECT_EQ(json["resolution"], Json::parse("[640,512]"));
+  EXPECT_EQ(json["bounds"], Json::parse(R"({"min":[0.5,1.5,2.5],"max":[1.5,2.5,3.5]})"));
+  EXPECT_EQ(json["grids"], Json::array());
+  EXPECT_EQ(json["needs"]["refraction"], true);
+  EXPECT_EQ(json["needs"]["cones"], false);
+}
+
+TEST(Info, NothingHasNoBounds) { EXPECT_TRUE(Json::parse(info_json({}, {}))["bounds"].is_null()); }
+
+TEST(Info, TextListsTheSame) {
+  SceneFile file = one_ball(material_with([](Material& m) { m.mirror = {1, 1, 1}; }));
+  file.counts = {.s = 1, .lights = 2, .materials = 1};
+  EXPECT_EQ(info_text("x.nff", file, {{{2, 3, 4}, 5, 6, 7}}),
+            "x.nff: 512x512\n"
+            "in the file   1 s\n"
+            "primitives    1 sphere\n"
+            "lights        2\n"
+            "materials     1\n"
+            "bounds        (0.5, 1.5, 2.5) to (1.5, 2.5, 3.5)\n"
+            "grid          2 x 3 x 4 cells, 5 occupied, 6 references, 0.0 MB\n"
+            "needs         spheres, reflection\n");
+}
+
+TEST(Summary, IsOneLine) {
+  RenderCommand command;
+  command.image = "x.png";
+  EXPECT_EQ(summary_line(command, some_run()),
+            "x.png: 1 sphere, 30 triangles; grid 2x3x4; 0.000 Mrays in load 1.00, build 2.00, render 3.00, write 4.00 s; "
+            "0.00 Mrays/s (avx2, 2 threads)\n");
+}
+
+}  // namespace
+}  // namespace grelha
