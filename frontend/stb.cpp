@@ -5,11 +5,13 @@
 
 namespace {
 
+constexpr int kLevel = 4;  // stb asks for 8: five times the time for 7 % fewer bytes (ready scene balls at 640x480)
+
 /// zlib's deflate in place of stb's own, which is slower and packs worse.
-unsigned char* deflate_by_zlib(unsigned char* data, int size, int* packed_size, int level) {
+unsigned char* deflate_by_zlib(unsigned char* data, int size, int* packed_size, int) {
   uLongf length = compressBound(uLong(size));
   auto* packed = static_cast<unsigned char*>(std::malloc(length));
-  if (packed && compress2(packed, &length, data, uLong(size), level) != Z_OK) {
+  if (packed && compress2(packed, &length, data, uLong(size), kLevel) != Z_OK) {
     std::free(packed);
     packed = nullptr;
   }
