@@ -5,6 +5,10 @@
 
 namespace grelha::GRELHA_ISA {
 
+/// Rays that march together best: reflected ones and refracted ones, each in the order of the points they left. Sorting by
+/// direction as well scatters neighbours and costs more than it brings (docs/performance.md).
+inline constexpr int kClasses = 2;
+
 /// Directions of the rays through the centres of a tile's pixels, by rows; returns how many were put behind `count`.
 inline int tile_rays(const FrameView& f, Batch& b, int count, int x0, int x1, int y0, int y1, int band_top) {
   for (int y = y0; y < y1; ++y)
@@ -23,18 +27,28 @@ inline int tile_rays(const FrameView& f, Batch& b, int count, int x0, int x1, in
   return count;
 }
 
-/// Takes the youngest rays off the stack into the batch.
-inline int pop(RayStack& stack, Batch& b, int most) {
+/// Takes the youngest rays off the stack into the batch, class by class (a stable counting sort); ends[c] is where class c
+/// ends.
+inline void pop(RayStack& stack, Batch& b, int most, int (&ends)[kClasses]) {
   const int n = stack.size < most ? stack.size : most, at = stack.size - n;
-  const std::size_t bytes = static_cast<std::size_t>(n) * 4;
-  __builtin_memcpy(b.ox, stack.ox + at, bytes), __builtin_memcpy(b.oy, stack.oy + at, bytes);
-  __builtin_memcpy(b.oz, stack.oz + at, bytes), __builtin_memcpy(b.dx, stack.dx + at, bytes);
-  __builtin_memcpy(b.dy, stack.dy + at, bytes), __builtin_memcpy(b.dz, stack.dz + at, bytes);
-  __builtin_memcpy(b.wr, stack.wr + at, bytes), __builtin_memcpy(b.wg, stack.wg + at, bytes);
-  __builtin_memcpy(b.wb, stack.wb + at, bytes), __builtin_memcpy(b.pixel, stack.pixel + at, bytes);
-  __builtin_memcpy(b.depth, stack.depth + at, bytes);
+  unsigned char of[kBatch];
+  int next[kClasses] = {};
+  for (int i = 0; i < n; ++i) {
+    of[i] = stack.depth[at + i] & kRefracted ? 1 : 0;
+    ++next[of[i]];
+  }
+  for (int c = 0, sum = 0; c < kClasses; ++c) {
+    const int here = next[c];
+    next[c] = sum, sum += here, ends[c] = sum;
+  }
+  for (int i = 0; i < n; ++i) {
+    const int from = at + i, to = next[of[i]]++;
+    b.ox[to] = stack.ox[from], b.oy[to] = stack.oy[from], b.oz[to] = stack.oz[from];
+    b.dx[to] = stack.dx[from], b.dy[to] = stack.dy[from], b.dz[to] = stack.dz[from];
+    b.wr[to] = stack.wr[from], b.wg[to] = stack.wg[from], b.wb[to] = stack.wb[from];
+    b.pixel[to] = stack.pixel[from], b.depth[to] = stack.depth[from] & ~kRefracted;
+  }
   stack.size = at;
-  return n;
 }
 
 /// Renders rows [y0, y1), at most kBandRows, into work.sums.
@@ -49,8 +63,12 @@ inline void render_band(const SceneView& scene, const ShadingView& shading, cons
   stack.size = 0;
   const auto finish = [&](int count) {
     rays.primary += static_cast<unsigned>(count);
-    shade_batch(shader, stack, count, true);
-    while (stack.size > 0) shade_batch(shader, stack, pop(stack, b, work.take), false);
+    shade_batch(shader, stack, &count, 1, 64);
+    int ends[kClasses];
+    while (stack.size > 0) {
+      pop(stack, b, work.take, ends);
+      shade_batch(shader, stack, ends, kClasses, 16);
+    }
   };
   int count = 0;
   for (int x0 = 0; x0 < frame.width; x0 += kTile) {

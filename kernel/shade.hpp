@@ -209,24 +209,27 @@ inline void send_on(const Shader& s, RayStack& stack, int hits) {
       const int k = __builtin_ctz(rest), h = i + k;
       const std::uint32_t depth = b.hit_depth[h] + 1, pixel = b.hit_pixel[h];
       const Vec3<float> p{b.px[h], b.py[h], b.pz[h]}, ng{b.gx[h], b.gy[h], b.gz[h]};
-      const auto send = [&](const float (&dir)[3][kWidth<Lanes>], const float (&weight)[3][kWidth<Lanes>], std::uint64_t& count) {
+      const auto send = [&](const float (&dir)[3][kWidth<Lanes>], const float (&weight)[3][kWidth<Lanes>], std::uint64_t& count,
+                            std::uint32_t kind) {
         if (depth > static_cast<std::uint32_t>(s.work.depth)) {
           add_light(s.work.sums, pixel, weight[0][k] * bg[0], weight[1][k] * bg[1], weight[2][k] * bg[2]);
           return;
         }
         const Vec3<float> to{dir[0][k], dir[1][k], dir[2][k]};
-        push(stack, leave(p, ng, b.away[h], to), to, {weight[0][k], weight[1][k], weight[2][k]}, pixel, depth);
+        push(stack, leave(p, ng, b.away[h], to), to, {weight[0][k], weight[1][k], weight[2][k]}, pixel, depth | kind);
         ++count;
       };
-      if (mirrors >> k & 1) send(r, u, s.rays.reflection);
-      if (clears >> k & 1) send(q, d, s.rays.refraction);
+      if (mirrors >> k & 1) send(r, u, s.rays.reflection, 0);
+      if (clears >> k & 1) send(q, d, s.rays.refraction, kRefracted);
     }
   }
 }
 
-/// Traces and shades rays [0, count) of the batch.
-inline void shade_batch(const Shader& s, RayStack& stack, int count, bool primary) {
+/// Traces and shades the batch: runs of rays that go together, the k-th ending at ends[k], in packets of `packet` unless the
+/// user said otherwise.
+inline void shade_batch(const Shader& s, RayStack& stack, const int* ends, int runs, int packet) {
   Batch& b = s.b;
+  const int count = ends[runs - 1];
   for (int i = 0; i < count; ++i) {
     float org[3] = {b.ox[i], b.oy[i], b.oz[i]};
     const float dir[3] = {b.dx[i], b.dy[i], b.dz[i]};
@@ -236,8 +239,10 @@ inline void shade_batch(const Shader& s, RayStack& stack, int count, bool primar
       b.t_min[i] = static_cast<float>(-shift);
     }
   }
-  const int packet = s.work.packet != 0 ? s.work.packet : primary ? 64 : 16;
-  trace<false>(s.scene, {b.ox, b.oy, b.oz, b.dx, b.dy, b.dz, b.t_min, b.t, b.id}, count, {packet, s.work.mailbox}, s.counters);
+  const TraceOptions options{s.work.packet != 0 ? s.work.packet : packet, s.work.mailbox};
+  for (int k = 0, at = 0; k < runs; at = ends[k++])
+    trace<false>(s.scene, {b.ox + at, b.oy + at, b.oz + at, b.dx + at, b.dy + at, b.dz + at, b.t_min + at, b.t + at, b.id + at},
+                 ends[k] - at, options, s.counters);
   const int hits = find_surfaces(s, count);
   if (hits == 0) return;
   pad_tail(b, hits);

@@ -38,6 +38,9 @@ inline constexpr int kBatch = 512;     ///< rays shaded together
 inline constexpr int kBandRows = 8;    ///< image rows a thread takes at a time: one row of 8 x 8 packets
 inline constexpr int kTile = 8;
 
+/// Set in the depth of a waiting ray that was refracted.
+inline constexpr std::uint32_t kRefracted = 1u << 31;
+
 /// Rays waiting for their turn, last in first out. Arrays of `capacity` floats each.
 struct RayStack {
   float *ox, *oy, *oz, *dx, *dy, *dz, *wr, *wg, *wb;
