@@ -1,0 +1,151 @@
+// hit_cone: every instruction set and method against the scalar one bit for bit; the scalar one against long double.
+#define GRELHA_ISA scalar
+#include "kernel/cone.hpp"
+
+#include "kernel/grid.hpp"
+#include "tests/support/oracle.hpp"
+#include "tests/support/rays.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace grelha::test {
+namespace {
+
+class Cone : public EveryVariant {};
+GRELHA_FOR_EVERY_ISA(Cone);
+
+struct Shape {
+  Float3 base, apex;
+  float r0, r1;
+};
+
+/// Cylinders, cones with a tip, frusta, needles and flat collars; one in five shows its inside alone.
+Shape random_shape(Random& random, double& size) {
+  size = random.log_in(1e-6, 1e6);
+  const double height = size * random.log_in(.05, 20);
+  Shape s;
+  s.base = random.chance(.3) ? Float3{} : random.point(size * random.log_in(1e-2, 1e2));
+  const Float3 axis = random.chance(.3) ? Float3{0, random.chance(.5) ? 1.f : -1.f, 0} : random.direction();
+  s.apex = at(s.base, height, axis);
+  const double sign = random.chance(.2) ? -1 : 1;
+  s.r0 = static_cast<float>(sign * size * random.in(.05, 1));
+  s.r1 = random.chance(.3) ? s.r0 : random.chance(.2) ? 0.f : static_cast<float>(sign * size * random.in(.05, 1));
+  if (random.chance(.2)) std::swap(s.r0, s.r1);
+  size = std::max(size, height);
+  return s;
+}
+
+TEST_P(Cone, ReturnsTheScalarBits) {
+  std::size_t hits = 0;
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    Random random(seed);
+    double size;
+    const Shape c = random_shape(random, size);
+    const Scene scene = one_cone(c.base, c.r0, c.apex, c.r1);
+    const World world(scene, {.grid = false});
+    const Rays rays = with_odd_values(random, rays_about(random, c.base, size, kManyRays), seed % 2 ? .1 : 0);
+    const Truth truth = truth_of(scene, rays);
+    expect_truth(variant(), world, rays, truth, "seed " + std::to_string(seed));
+    hits += hits_of(truth.closest);
+  }
+  EXPECT_GT(hits, 60u * kManyRays / 12);
+}
+
+struct Hit {
+  bool hit;
+  float t;
+};
+
+Hit hit(const Float3& o, const Float3& d, const Shape& s, float t_min = 0) {
+  Cones cones;
+  cones.add(s.base, s.r0, s.apex, s.r1, 0);
+  const PreparedCones c = prepare_cones(cones);
+  const float inv_dd = 1 / ((d.x * d.x + d.y * d.y) + d.z * d.z);
+  float t = -1;
+  const bool h = scalar::hit_cone<float>({o.x, o.y, o.z}, {d.x, d.y, d.z}, inv_dd, t_min,
+                                         {{c[0][0], c[1][0], c[2][0]}, {c[3][0], c[4][0], c[5][0]}, c[6][0], c[7][0], c[8][0], c[9][0]}, t);
+  return {h, t};
+}
+
+struct Case {
+  Shape shape;
+  Float3 org, dir;
+  oracle::Real unit;  ///< eps (|org - base| + height + radius): what the header counts in
+};
+
+Case random_case(std::uint64_t seed, double farthest) {
+  Random random(seed);
+  double size;
+  Case k;
+  k.shape = random_shape(random, size);
+  const oracle::Frustum f{k.shape.base, k.shape.apex, k.shape.r0, k.shape.r1};
+  k.org = at(k.shape.base, size * (random.chance(.2) ? random.unit() : random.log_in(.5, farthest)), random.direction());
+  const Float3 aim = at(at(k.shape.base, random.unit(), minus(k.shape.apex, k.shape.base)), size * random.in(0, .5), random.direction());
+  k.dir = scaled(minus(aim, k.org), random.log_in(1e-2, 1e2));
+  k.unit = oracle::kEps * (length(oracle::V(k.org) - f.base) + f.height() + std::max(std::abs(f.r0), std::abs(f.r1)));
+  return k;
+}
+
+TEST(ConeOracle, PointsLieOnTheSurface) {
+  oracle::Real worst = 0;
+  int hits = 0, over = 0;
+  for (std::uint64_t seed = 0; seed < 300000; ++seed) {
+    const Case k = random_case(seed, 1e4);
+    const auto [found, t] = hit(k.org, k.dir, k.shape);
+    if (!found) continue;
+    ++hits;
+    const oracle::Frustum f{k.shape.base, k.shape.apex, k.shape.r0, k.shape.r1};
+    const oracle::Real off = f.distance(oracle::Ray{k.org, k.dir}.point(t)) / k.unit;
+    if (!(off <= 32) && ++over <= 3) ADD_FAILURE() << "seed " << seed << ": " << static_cast<double>(off) << " units off";
+    worst = std::max(worst, off);
+  }
+  std::printf("cone: %d hits, %d over, worst %.2f eps (|o - base| + h + r)\n", hits, over, static_cast<double>(worst));
+  EXPECT_EQ(over, 0);
+  EXPECT_GT(hits, 60000);
+}
+
+/// Where the ray crosses steeply and far from the rims, the same crossing is found; where nothing is near, none.
+TEST(ConeOracle, FindsTheFirstCrossing) {
+  int judged = 0, wrong = 0;
+  oracle::Real worst = 0;
+  for (std::uint64_t seed = 0; seed < 300000; ++seed) {
+    const Case k = random_case(seed, 1e3);
+    const oracle::Frustum f{k.shape.base, k.shape.apex, k.shape.r0, k.shape.r1};
+    const oracle::Ray ray{k.org, k.dir};
+    const oracle::Real tolerance = 32 * k.unit;
+    const auto wanted = f.first(ray, 0);
+    if (!wanted || f.distance(ray.org) <= tolerance) continue;
+    const oracle::V p = ray.point(wanted->t);
+    const oracle::Real z = f.height_at(p), rho = length(cross(f.axis(), p - f.base));
+    // Off by `tolerance` across the surface is tolerance / cosine along the ray; that must stay small against what bends.
+    const oracle::Real along = tolerance / wanted->cosine;
+    if (wanted->cosine < .05L || 20 * along > rho || z < along || z > f.height() - along) continue;
+    ++judged;
+    const auto [found, t] = hit(k.org, k.dir, k.shape);
+    if (found && t < wanted->t && f.distance(ray.point(t)) <= tolerance) continue;  // met the other rim, which is as near as none
+    const oracle::Real off = found ? std::abs(t - wanted->t) * length(ray.dir) / along * 32 : 1e9L;
+    worst = std::max(worst, off);
+    if (!(off <= 2 * 32) && ++wrong <= 3)
+      ADD_FAILURE() << "seed " << seed << ": found " << found << " t " << t << " against " << static_cast<double>(wanted->t);
+  }
+  std::printf("cone: %d judged, worst along the ray %.2f units / cosine\n", judged, static_cast<double>(worst));
+  EXPECT_EQ(wrong, 0);
+  EXPECT_GT(judged, 40000);
+}
+
+TEST(ConeCorners, EndsSidesAndAxes) {
+  const Shape pipe{{0, 0, 0}, {0, 2, 0}, 1, 1}, lining{{0, 0, 0}, {0, 2, 0}, -1, -1}, tip{{0, 0, 0}, {0, 2, 0}, 1, 0};
+  EXPECT_EQ(hit({3, 1, 0}, {-1, 0, 0}, pipe).t, 2);
+  EXPECT_EQ(hit({3, 1, 0}, {-1, 0, 0}, lining).t, 4);
+  EXPECT_EQ(hit({0, 1, 0}, {-.5f, 0, 0}, pipe).t, 2);
+  EXPECT_FALSE(hit({3, 2.01f, 0}, {-1, 0, 0}, pipe).hit);   // past the rim
+  EXPECT_FALSE(hit({3, -.01f, 0}, {-1, 0, 0}, pipe).hit);
+  EXPECT_FALSE(hit({0, 5, 0}, {0, -1, 0}, pipe).hit);       // down the middle: no caps
+  EXPECT_TRUE(hit({.5f, 4, 0}, {0, -1, 0}, tip).hit);
+  EXPECT_EQ(hit({.5f, 4, 0}, {0, -1, 0}, tip).t, 3);
+  EXPECT_FALSE(hit({-1.5f, 4, 0}, {0, -1, 0}, tip).hit);
+  EXPECT_EQ(hit({.25f, 5, 0}, {0, -1, 0}, tip).t, 3.5f);    // and not the mirrored cone above the tip
+  EXPECT_EQ(hit({1.5f, .5f, 0}, {-1, 0, 0}, tip, .75f).t, 2.25f);  // the interval is open: t .75 itself does not count
+}
+
+}  // namespace
+}  // namespace grelha::test

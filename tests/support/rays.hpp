@@ -1,0 +1,193 @@
+#pragma once
+// Bundles of rays, every way the kernel has of tracing them, and the comparison of two answers bit for bit.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "kernel/render.hpp"
+#include "kernel/variants.hpp"
+#include "kernel/world.hpp"
+#include "tests/support/random.hpp"
+
+namespace grelha {
+inline void PrintTo(const Variant* v, std::ostream* out) { *out << v->name; }
+}  // namespace grelha
+
+namespace grelha::test {
+
+/// Long enough for many packets of each size; 1021 is prime, so every width and packet size has a tail.
+inline constexpr int kManyRays = 1021;
+
+struct Rays {
+  std::vector<float> ox, oy, oz, dx, dy, dz, t_min, t;
+
+  void add(const Float3& o, const Float3& d, float from = 0, float to = kInf) {
+    ox.push_back(o.x), oy.push_back(o.y), oz.push_back(o.z), dx.push_back(d.x), dy.push_back(d.y), dz.push_back(d.z);
+    t_min.push_back(from), t.push_back(to);
+  }
+  void add(const Rays& other) {
+    for (std::size_t i = 0; i < other.size(); ++i) add(other.org(i), other.dir(i), other.t_min[i], other.t[i]);
+  }
+  std::size_t size() const { return t.size(); }
+  Float3 org(std::size_t i) const { return {ox[i], oy[i], oz[i]}; }
+  Float3 dir(std::size_t i) const { return {dx[i], dy[i], dz[i]}; }
+  /// In hexadecimal, to be pasted into a smaller test.
+  std::string describe(std::size_t i) const {
+    std::ostringstream s;
+    s << "ray " << i << std::hexfloat << ": org {" << ox[i] << ", " << oy[i] << ", " << oz[i] << "} dir {" << dx[i] << ", " << dy[i]
+      << ", " << dz[i] << "} t (" << t_min[i] << ", " << t[i] << ")";
+    return s.str();
+  }
+};
+
+struct Answers {
+  std::vector<float> t;
+  std::vector<std::uint32_t> id;
+  TraceCounts counts;
+};
+
+enum class Query { kClosest, kOccluded };
+
+inline Answers trace(const Variant& variant, const World& world, const Rays& rays, const TraceSettings& settings, Query query) {
+  Answers a;
+  a.t = rays.t;
+  a.id.assign(rays.size(), 12345u);  // what no trace may leave behind
+  const RaySpan span{rays.ox.data(), rays.oy.data(), rays.oz.data(), rays.dx.data(), rays.dy.data(), rays.dz.data(),
+                     rays.t_min.data(), a.t.data(), a.id.data(), static_cast<int>(rays.size())};
+  (query == Query::kClosest ? variant.loops.closest : variant.loops.occluded)(world.impl().view, span, settings, a.counts);
+  return a;
+}
+
+struct Way {
+  const char* name;
+  TraceSettings settings;
+};
+
+inline const std::vector<Way>& every_way() {
+  static const std::vector<Way> ways{{"packets of 64", {Method::kPackets, 64, true}},
+                                     {"packets of 64 without mailboxes", {Method::kPackets, 64, false}},
+                                     {"packets of 16", {Method::kPackets, 16, true}},
+                                     {"packets of 16 without mailboxes", {Method::kPackets, 16, false}},
+                                     {"single", {Method::kSingle, 1, true}},
+                                     {"reference", {Method::kReference, 1, true}},
+                                     {"reference without mailboxes", {Method::kReference, 1, false}}};
+  return ways;
+}
+
+/// Brute force by the plainest path there is: scalar, one ray, one primitive at a time, no grid.
+struct Truth {
+  Answers closest, occluded;
+};
+
+inline Truth truth_of(const Scene& scene, const Rays& rays) {
+  const World plain(scene, {.grid = false});
+  const Variant& scalar = *find_variant("scalar");
+  const TraceSettings reference{Method::kReference, 1, false};
+  return {trace(scalar, plain, rays, reference, Query::kClosest), trace(scalar, plain, rays, reference, Query::kOccluded)};
+}
+
+inline std::string show(float t, std::uint32_t id) {
+  std::ostringstream s;
+  s << "t " << t << " (" << std::hexfloat << t << std::dec << ") id " << static_cast<std::int64_t>(id == kNoPrimitive ? -1 : std::int64_t{id});
+  return s.str();
+}
+
+/// Numbers whose squares are finite, and a direction: anything else meets nothing, whatever it points at.
+inline bool sound(const Rays& rays, std::size_t i) {
+  const Float3 o = rays.org(i), d = rays.dir(i);
+  if (std::max({std::abs(o.x), std::abs(o.y), std::abs(o.z)}) > 1e18f) return false;
+  const float dd = (d.x * d.x + d.y * d.y) + d.z * d.z;
+  return std::isfinite(o.x + o.y + o.z) && std::isfinite(dd) && std::isfinite(1 / dd);
+}
+
+/// Same primitive and same bits of t for closest hits; same yes or no, told the same way, for occlusion. What t is left in a
+/// ray that cannot be traced at all is variants_test's to say.
+inline testing::AssertionResult same(const Answers& wanted, const Answers& got, const Rays& rays, Query query) {
+  std::size_t wrong = 0, first = 0;
+  for (std::size_t i = rays.size(); i-- > 0;) {
+    const bool ids = query == Query::kClosest ? wanted.id[i] == got.id[i]
+                                              : (wanted.id[i] == kNoPrimitive) == (got.id[i] == kNoPrimitive);
+    if (ids && wanted.id[i] == kNoPrimitive && !sound(rays, i)) continue;
+    if (ids && std::bit_cast<std::uint32_t>(wanted.t[i]) == std::bit_cast<std::uint32_t>(got.t[i])) continue;
+    ++wrong, first = i;
+  }
+  if (wrong == 0) return testing::AssertionSuccess();
+  return testing::AssertionFailure() << wrong << " of " << rays.size() << " differ; " << rays.describe(first) << "\n  wanted "
+                                     << show(wanted.t[first], wanted.id[first]) << "\n  got    " << show(got.t[first], got.id[first]);
+}
+
+/// Every way of one variant through one world against the truth; stops at the first that differs.
+inline void expect_truth(const Variant& variant, const World& world, const Rays& rays, const Truth& truth, const std::string& what) {
+  for (const Way& way : every_way())
+    for (const Query query : {Query::kClosest, Query::kOccluded}) {
+      const bool closest = query == Query::kClosest;
+      const auto result = same(closest ? truth.closest : truth.occluded, trace(variant, world, rays, way.settings, query), rays, query);
+      if (result) continue;
+      ADD_FAILURE() << what << (closest ? ", closest, " : ", occluded, ") << way.name << ", " << variant.name << ": " << result.message();
+      return;
+    }
+}
+
+inline std::size_t hits_of(const Answers& a) {
+  std::size_t n = 0;
+  for (const std::uint32_t id : a.id) n += id != kNoPrimitive;
+  return n;
+}
+
+/// A test for each compiled instruction set; those this processor lacks say so.
+class EveryVariant : public testing::TestWithParam<const Variant*> {
+ protected:
+  void SetUp() override {
+    if (!GetParam()->runs_here()) GTEST_SKIP() << "this processor has no " << GetParam()->name;
+  }
+  const Variant& variant() const { return *GetParam(); }
+};
+
+inline std::string isa_name(const testing::TestParamInfo<const Variant*>& info) { return std::string(info.param->name); }
+
+/// Put once into each file with tests of a fixture `name` that derives from EveryVariant.
+#define GRELHA_FOR_EVERY_ISA(name)                                                                              \
+  INSTANTIATE_TEST_SUITE_P(Isa, name, testing::ValuesIn(variants().begin(), variants().end()), isa_name)
+
+// ---- bundles ----------------------------------------------------------------------------------------------------
+
+/// Rays about a ball of the given size: most aimed at it from any distance, some from inside, some past it, some along the
+/// axes, with ends and lengths of all kinds.
+inline Rays rays_about(Random& random, const Float3& center, double size, int count, double farthest = 1e3) {
+  Rays rays;
+  for (int i = 0; i < count; ++i) {
+    const double away = size * (random.chance(.2) ? random.unit() : random.log_in(.5, farthest));
+    const Float3 org = at(center, away, random.direction());
+    const Float3 aim = at(center, size * random.in(0, 1.3), random.direction());
+    Float3 dir = minus(aim, org);
+    if (random.chance(.2)) {  // along an axis, with zeros of both signs beside it
+      const std::uint32_t a = random.below(3);
+      const float length = static_cast<float>(random.sign());
+      for (std::uint32_t b = 0; b < 3; ++b) component(dir, b) = b == a ? length : random.zero();
+    } else if (random.chance(.15)) {
+      component(dir, random.below(3)) = random.chance(.5) ? random.zero() : 1e-41f;
+    }
+    if (random.chance(.5)) dir = scaled(dir, random.log_in(1e-3, 1e3));
+    const float from = random.chance(.8) ? 0.f : static_cast<float>(random.in(-1, 1));
+    rays.add(org, dir, from, random.chance(.7) ? kInf : static_cast<float>(random.log_in(1e-2, 1e2)));
+  }
+  return rays;
+}
+
+/// The same with one component of some rays replaced by a value no caller should send.
+inline Rays with_odd_values(Random& random, Rays rays, double share) {
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (!random.chance(share)) continue;
+    std::vector<float>* const fields[] = {&rays.ox, &rays.oy, &rays.oz, &rays.dx, &rays.dy, &rays.dz, &rays.t_min, &rays.t};
+    (*fields[random.below(8)])[i] = random.odd();
+  }
+  return rays;
+}
+
+}  // namespace grelha::test
