@@ -49,7 +49,8 @@ std::string read_bytes(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::ostringstream bytes;
   if (file.peek() != std::ifstream::traits_type::eof()) bytes << file.rdbuf();  // << takes an empty file for a failure
-  if (!file.is_open() || file.bad() || !bytes) throw FileError(path, std::string("cannot read: ") + std::strerror(errno ? errno : EIO));
+  if (!file.is_open() || file.bad() || !bytes)
+    throw FileError(path, std::string("cannot read: ") + std::strerror(errno ? errno : EIO));
   return std::move(bytes).str();
 }
 
@@ -71,7 +72,9 @@ class PfmHeader {
     big_endian = scale > 0;
   }
 
-  [[noreturn]] void refuse(const char* what) const { throw FileError(path_, std::string("not a PFM picture: ") + what); }
+  [[noreturn]] void refuse(const char* what) const {
+    throw FileError(path_, std::string("not a PFM picture: ") + what);
+  }
 
   int channels, width, height;
   bool big_endian;

@@ -23,7 +23,8 @@ std::uint8_t to_byte(float value, Tone tone);
 /// Whether the format's writer can hold a picture of that size.
 bool image_fits(ImageFormat format, int width, int height);
 
-/// The file's bytes. .hdr (Radiance RGBE) and .pfm (little endian, bottom row first) hold linear floats; only .pfm is exact.
+/// The file's bytes. .hdr (Radiance RGBE) and .pfm (little endian, bottom row first) hold linear floats; only .pfm is
+/// exact.
 std::string encode_png(const Image& image, Tone tone);
 std::string encode_hdr(const Image& image);
 std::string encode_pfm(const Image& image);

@@ -152,7 +152,8 @@ int list_scenes() {
 /// The mesh goes first: a scene must not stand there without what it refers to.
 void write_with_mesh(const scenes::Generator& generator, scenes::SceneOptions options, const std::string& path) {
   const auto mesh_path = std::filesystem::path(path).replace_extension(".ply");
-  if (mesh_path == std::filesystem::path(path)) throw UsageError("-o: wanted a name that does not end in .ply, found \"" + path + '"');
+  if (mesh_path == std::filesystem::path(path))
+    throw UsageError("-o: wanted a name that does not end in .ply, found \"" + path + '"');
   options.mesh_file = mesh_path.filename().string();
   AtomicFile mesh(mesh_path.string()), scene(path);
   generator.write_mesh(mesh.stream(), options.size);
@@ -207,6 +208,8 @@ int run_program(int argc, char** argv) {
     return fail(kFileFailed, "grelha: error: out of memory");
   } catch (const std::length_error&) {  // a vector beyond its largest size
     return fail(kFileFailed, "grelha: error: out of memory");
+  } catch (const std::exception& error) {
+    return fail(kFileFailed, std::string("grelha: error: ") + error.what());
   }
 }
 

@@ -38,7 +38,8 @@ int whole(const std::string& option, const std::string& text, int low, int high)
 
 float density(const std::string& text) {
   const auto value = number<double>(text);
-  if (!value || !(float(*value) > 0) || *value > kMaxDensity) refuse("--density", "a number above 0 and up to 1000", text);
+  if (!value || !(float(*value) > 0) || *value > kMaxDensity)
+    refuse("--density", "a number above 0 and up to 1000", text);
   return float(*value);
 }
 
@@ -60,7 +61,8 @@ void parse_size(const std::string& text, int& width, int& height) {
 
 /// One of the words an option takes, and what each stands for.
 template <class T, std::size_t N>
-T choice(const std::string& option, const std::string& text, const std::array<std::pair<std::string_view, T>, N>& words) {
+T choice(const std::string& option, const std::string& text,
+         const std::array<std::pair<std::string_view, T>, N>& words) {
   std::string wanted;
   for (const auto& [word, value] : words) {
     if (word == text) return value;
@@ -74,8 +76,8 @@ using Name = std::pair<std::string_view, std::string_view>;
 constexpr std::array kAccelerators{Word{"grid", 1}, Word{"none", 0}};
 constexpr std::array kSwitch{Word{"on", 1}, Word{"off", 0}};
 constexpr std::array kPackets{Word{"1", 1}, Word{"16", 16}, Word{"64", 64}, Word{"auto", 0}};
-constexpr std::array kIsas{Name{"scalar", "scalar"}, Name{"sse2", "sse2"}, Name{"avx2", "avx2"}, Name{"avx512", "avx512"},
-                           Name{"best", "best"}};
+constexpr std::array kIsas{Name{"scalar", "scalar"}, Name{"sse2", "sse2"}, Name{"avx2", "avx2"},
+                           Name{"avx512", "avx512"}, Name{"best", "best"}};
 
 void want_image_name(const std::string& option, const std::string& path) {
   if (!image_format(path)) refuse(option, "a name ending in .png, .hdr or .pfm", path);

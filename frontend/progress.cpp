@@ -26,8 +26,8 @@ std::string progress_text(double share, double elapsed_s) {
   share = std::clamp(share, 0.0, 1.0);
   const int full = int(share * kBarWidth);
   const std::string percent = std::to_string(int(share * 100));
-  std::string text = '[' + std::string(std::size_t(full), '#') + std::string(std::size_t(kBarWidth - full), '.') + "] " +
-                     std::string(3 - std::min<std::size_t>(3, percent.size()), ' ') + percent + " %";
+  std::string text = '[' + std::string(std::size_t(full), '#') + std::string(std::size_t(kBarWidth - full), '.') +
+                     "] " + std::string(3 - std::min<std::size_t>(3, percent.size()), ' ') + percent + " %";
   if (share > 0) text += "  " + duration_text(elapsed_s * (1 - share) / share) + " left";
   return text;
 }

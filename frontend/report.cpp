@@ -26,8 +26,8 @@ Json tidy(float value) {
 Json to_json(Float3 v) { return {tidy(v.x), tidy(v.y), tidy(v.z)}; }
 
 Json to_json(const EntityCounts& c) {
-  return {{"s", c.s}, {"p", c.p}, {"pp", c.pp}, {"c", c.c}, {"pl", c.pl}, {"box", c.box}, {"mesh", c.mesh}, {"ply", c.ply},
-          {"lights", c.lights}, {"materials", c.materials}};
+  return {{"s", c.s},     {"p", c.p},       {"pp", c.pp},   {"c", c.c},           {"pl", c.pl},
+          {"box", c.box}, {"mesh", c.mesh}, {"ply", c.ply}, {"lights", c.lights}, {"materials", c.materials}};
 }
 
 Json to_json(const std::vector<GridStats>& grids) {
@@ -117,9 +117,13 @@ std::string stats_json(const RenderCommand& command, const RunReport& report) {
   json["isa"] = render.isa;
   json["threads"] = render.threads;
   json["size"] = {report.width, report.height};
-  json["options"] = {{"depth", command.render.depth}, {"density", tidy(command.build.density)},
-                     {"accel", command.build.grid ? "grid" : "none"}, {"mailbox", command.render.mailbox},
-                     {"isa", command.render.isa}, {"packet", command.render.packet}, {"threads", command.render.threads}};
+  json["options"] = {{"depth", command.render.depth},
+                     {"density", tidy(command.build.density)},
+                     {"accel", command.build.grid ? "grid" : "none"},
+                     {"mailbox", command.render.mailbox},
+                     {"isa", command.render.isa},
+                     {"packet", command.render.packet},
+                     {"threads", command.render.threads}};
   json["scene"] = to_json(report.counts);
   json["grids"] = to_json(report.grids);
   json["rays"] = {{"primary", rays.primary}, {"shadow", rays.shadow}, {"reflection", rays.reflection},
@@ -155,10 +159,12 @@ std::string info_text(const std::string& path, const SceneFile& file, const std:
   const Geometry& g = file.scene.geometry;
   std::string text = path + ": " + std::to_string(file.camera.width) + 'x' + std::to_string(file.camera.height) + '\n';
   list_entities(text, file.counts);
-  text += "primitives    " + primitives_text(g.spheres.size(), g.triangles.size(), g.cones.size(), g.planes.size()) + '\n';
+  text +=
+      "primitives    " + primitives_text(g.spheres.size(), g.triangles.size(), g.cones.size(), g.planes.size()) + '\n';
   if (const auto dropped = file.dropped.not_finite + file.dropped.zero_area; dropped > 0)
     text += "dropped       " + std::to_string(dropped) + " that cannot be drawn\n";
-  text += "lights        " + std::to_string(file.counts.lights) + (file.default_light ? " (and a made-up one)\n" : "\n");
+  text +=
+      "lights        " + std::to_string(file.counts.lights) + (file.default_light ? " (and a made-up one)\n" : "\n");
   text += "materials     " + std::to_string(file.counts.materials) + '\n';
   if (const SceneBounds bounds = bounds_of(g); !bounds.empty)
     text += "bounds        " + point_text(bounds.low) + " to " + point_text(bounds.high) + '\n';

@@ -14,8 +14,8 @@ struct SceneOptions {
 };
 
 /// The scenes this project can make. Constructions: Haines, "A Proposal for Standard Graphics Environments" (1987) and
-/// the programs of his Standard Procedural Databases 3.14; distant, boat and stadium are our own, and so are the colours of
-/// gears and the heights of mount beyond size 7.
+/// the programs of his Standard Procedural Databases 3.14; distant, boat and stadium are our own, and so are the
+/// colours of gears and the heights of mount beyond size 7.
 ///
 ///   name     size     size n gives                                                      default
 ///   balls    1-7      (9^(n+1) - 1) / 8 spheres and one plane (--spd: a 4-gon)          4: 7381

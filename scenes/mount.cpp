@@ -78,7 +78,8 @@ void write_balls_of_glass(NffWriter& nff, bool spd) {
   const double radius = 0.17;
   const Vec top{0, 0, radius * std::sqrt(1.5)};
   const Vec lower = turn(top, normalise({1, 1, 0}), std::acos(-1.0 / 3.0));
-  nff.surface({.color = {1, 1, 1}, .kd = 0.1, .ks = 0.1, .shine = 101.148, .transmission = 0.9, .ior = spd ? 1.5 : 1.2});
+  nff.surface(
+      {.color = {1, 1, 1}, .kd = 0.1, .ks = 0.1, .shine = 101.148, .transmission = 0.9, .ior = spd ? 1.5 : 1.2});
   nff.sphere(middle + top, radius);
   for (int third = 0; third < 3; ++third)
     nff.sphere(middle + turn(lower, {0, 0, 1}, degrees(120.0 * third)), spd ? radius : radius - 0.001 * (third + 1));

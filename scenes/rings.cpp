@@ -1,4 +1,5 @@
-// A pyramid of clusters; a cluster is six interlocked pentagons of rods and balls, one across each axis of an icosahedron.
+// A pyramid of clusters; a cluster is six interlocked pentagons of rods and balls, one across each axis of an
+// icosahedron.
 #include <array>
 #include <cmath>
 
@@ -23,7 +24,8 @@ std::array<Ring, kRings> rings() {
   result[0] = {{0, 0, 1}, {1, 0, 0}, kColors[0]};
   for (std::size_t i = 1; i < result.size(); ++i) {
     const double around = degrees(72.0 * double(i - 1) - 54), s = 1 / std::sqrt(5.0);
-    result[i] = {{2 * s * std::cos(around), 2 * s * std::sin(around), s}, {-std::sin(around), std::cos(around), 0}, kColors[i]};
+    result[i] = {
+        {2 * s * std::cos(around), 2 * s * std::sin(around), s}, {-std::sin(around), std::cos(around), 0}, kColors[i]};
   }
   return result;
 }

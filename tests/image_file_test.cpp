@@ -19,7 +19,8 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 Image odd_image() {
   Image image(3, 2);
-  const float values[] = {0, 1, 0.5f, -1, 2, 0.25f, 1e-30f, 1e30f, 0.1f, -0.0f, kNan, kInfinity, 3, 4, 5, 1.0f / 3, 7, 8};
+  const float values[] = {0,     1,    0.5f,      -1, 2, 0.25f, 1e-30f,   1e30f, 0.1f,
+                          -0.0f, kNan, kInfinity, 3,  4, 5,     1.0f / 3, 7,     8};
   std::copy(std::begin(values), std::end(values), image.rgb.begin());
   return image;
 }
@@ -51,7 +52,8 @@ TEST(ToByte, RoundsToNearestAndClamps) {
 TEST(ToByte, FollowsTheSrgbCurve) {
   for (int i = 0; i <= 4000; ++i) {
     const float light = float(i) / 4000;
-    const long double encoded = light <= 0.0031308L ? 12.92L * light : 1.055L * std::pow((long double)light, 1 / 2.4L) - 0.055L;
+    const long double encoded =
+        light <= 0.0031308L ? 12.92L * light : 1.055L * std::pow((long double)light, 1 / 2.4L) - 0.055L;
     const long double exact = 255 * encoded;
     EXPECT_LE(std::abs(exact - to_byte(light, Tone::srgb)), 0.5L + 1e-4L) << light;
   }
@@ -149,8 +151,10 @@ TEST(ReadImage, RefusesWhatItIsNot) {
   const auto cut = folder.write("cut.png", folder.read("b.png").substr(0, 50));
   EXPECT_NE(error_of([&] { read_image(cut); }).find(": error: cannot read the picture: "), std::string::npos);
   std::filesystem::create_directory(folder.file("d.png"));
-  EXPECT_EQ(error_of([&] { read_image(folder.file("d.png")); }), folder.file("d.png") + ": error: cannot read: Is a directory");
-  EXPECT_EQ(error_of([&] { read_image("x.jpg"); }), "x.jpg: error: not a picture this program reads (.png, .hdr, .pfm)");
+  EXPECT_EQ(error_of([&] { read_image(folder.file("d.png")); }),
+            folder.file("d.png") + ": error: cannot read: Is a directory");
+  EXPECT_EQ(error_of([&] { read_image("x.jpg"); }),
+            "x.jpg: error: not a picture this program reads (.png, .hdr, .pfm)");
 }
 
 TEST(ImageFormat, GoesByTheEnding) {
@@ -190,7 +194,8 @@ TEST(AtomicFile, FailuresNameThePathAndLeaveNothing) {
   const auto missing = folder.file("no/a.png");
   EXPECT_EQ(error_of([&] { write_file(missing, "x"); }), missing + ": error: cannot write: No such file or directory");
   std::filesystem::create_directory(folder.file("d"));
-  EXPECT_EQ(error_of([&] { write_file(folder.file("d"), "x"); }), folder.file("d") + ": error: cannot write: Is a directory");
+  EXPECT_EQ(error_of([&] { write_file(folder.file("d"), "x"); }),
+            folder.file("d") + ": error: cannot write: Is a directory");
   const auto below_file = folder.write("f", "") + "/a";
   EXPECT_EQ(error_of([&] { check_writable(below_file); }), below_file + ": error: cannot write: Not a directory");
   check_writable(folder.file("fine"));

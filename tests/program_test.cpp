@@ -134,8 +134,9 @@ TEST_F(Program, WrongSceneIsStatusTwo) {
 }
 
 TEST_F(Program, WrongUsageIsStatusTwoAndOneLine) {
-  for (const char* arguments : {"", "rendr", "render", "render ball.nff -o x.jpg", "render ball.nff --size 0x0",
-                                "render ball.nff --isa neon", "scene nothing", "scene balls --size 8", "scene mount --size 0"}) {
+  for (const char* arguments :
+       {"", "rendr", "render", "render ball.nff -o x.jpg", "render ball.nff --size 0x0", "render ball.nff --isa neon",
+        "scene nothing", "scene balls --size 8", "scene mount --size 0"}) {
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.status, 2) << arguments;
     EXPECT_EQ(outcome.err.substr(0, 15), "grelha: error: ") << arguments;
@@ -150,7 +151,8 @@ TEST_F(Program, UnwritablePicturesAreFoundOutFirst) {
   EXPECT_EQ(outcome.status, 1);
   EXPECT_EQ(outcome.err, "no/x.png: error: cannot write: No such file or directory\n");
   EXPECT_EQ(run("render missing.nff -o no/x.png").err, outcome.err) << "before the scene is read";
-  EXPECT_EQ(run("render ball.nff --stats no/s.json").err, "no/s.json: error: cannot write: No such file or directory\n");
+  EXPECT_EQ(run("render ball.nff --stats no/s.json").err,
+            "no/s.json: error: cannot write: No such file or directory\n");
   EXPECT_EQ(folder_.list(), "ball.nff");
 }
 

@@ -100,7 +100,8 @@ TEST(Bounds, TiltedDiscsReachAsFarAsTheyDo) {
 
 RunReport some_run() {
   RunReport report;
-  report.counts = {.s = 1, .p = 2, .pp = 3, .c = 4, .pl = 5, .box = 6, .mesh = 7, .ply = 8, .lights = 9, .materials = 10};
+  report.counts = {
+      .s = 1, .p = 2, .pp = 3, .c = 4, .pl = 5, .box = 6, .mesh = 7, .ply = 8, .lights = 9, .materials = 10};
   report.spheres = 1, report.triangles = 30;
   report.width = 4, report.height = 3;
   report.grids = {{{2, 3, 4}, 5, 6, 7}};
@@ -117,7 +118,8 @@ TEST(Stats, HoldWhatWasCounted) {
   RenderCommand command;
   command.scene = "x.nff";
   const Json json = Json::parse(stats_json(command, some_run()));
-  EXPECT_EQ(json["scene"], Json::parse(R"({"s":1,"p":2,"pp":3,"c":4,"pl":5,"box":6,"mesh":7,"ply":8,"lights":9,"materials":10})"));
+  EXPECT_EQ(json["scene"],
+            Json::parse(R"({"s":1,"p":2,"pp":3,"c":4,"pl":5,"box":6,"mesh":7,"ply":8,"lights":9,"materials":10})"));
   EXPECT_EQ(json["grids"], Json::parse(R"([{"cells":[2,3,4],"occupied":5,"references":6,"bytes":7}])"));
   EXPECT_EQ(json["rays"], Json::parse(R"({"primary":12,"shadow":13,"reflection":14,"refraction":15})"));
   EXPECT_EQ(json["visits"], 16);
@@ -143,7 +145,8 @@ TEST(Info, JsonSaysWhatTheSceneHolds) {
   file.dropped = {3, 4};
   file.camera.width = 640;
   const Json json = Json::parse(info_json(file, {}));
-  EXPECT_EQ(keys(json), (std::set<std::string>{"scene", "kernel", "dropped", "resolution", "bounds", "grids", "needs", "made_up"}));
+  EXPECT_EQ(keys(json),
+            (std::set<std::string>{"scene", "kernel", "dropped", "resolution", "bounds", "grids", "needs", "made_up"}));
   EXPECT_EQ(json["scene"]["s"], 1);
   EXPECT_EQ(json["kernel"]["spheres"], 1);
   EXPECT_EQ(json["dropped"], Json::parse(R"({"not_finite":3,"zero_area":4})"));
@@ -173,9 +176,10 @@ TEST(Info, TextListsTheSame) {
 TEST(Summary, IsOneLine) {
   RenderCommand command;
   command.image = "x.png";
-  EXPECT_EQ(summary_line(command, some_run()),
-            "x.png: 1 sphere, 30 triangles; grid 2x3x4; 0.000 Mrays in load 1.00, build 2.00, render 3.00, write 4.00 s; "
-            "0.00 Mrays/s (avx2, 2 threads)\n");
+  EXPECT_EQ(
+      summary_line(command, some_run()),
+      "x.png: 1 sphere, 30 triangles; grid 2x3x4; 0.000 Mrays in load 1.00, build 2.00, render 3.00, write 4.00 s; "
+      "0.00 Mrays/s (avx2, 2 threads)\n");
 }
 
 }  // namespace

@@ -11,7 +11,8 @@ add_dependencies(program_test grelha)
 
 # Includes point one way. The second test plants a wrong arrow of each kind and wants each found.
 foreach(case layering layering_self_test)
-  add_test(NAME ${case} COMMAND ${CMAKE_COMMAND} -D ROOT=${PROJECT_SOURCE_DIR} -D SELF_TEST=$<STREQUAL:${case},layering_self_test>
-    -D SCRATCH=${CMAKE_CURRENT_BINARY_DIR}/layering -P ${CMAKE_CURRENT_SOURCE_DIR}/layering.cmake)
+  add_test(NAME ${case} COMMAND ${CMAKE_COMMAND} -D ROOT=${PROJECT_SOURCE_DIR}
+    -D SELF_TEST=$<STREQUAL:${case},layering_self_test> -D SCRATCH=${CMAKE_CURRENT_BINARY_DIR}/layering
+    -P ${CMAKE_CURRENT_SOURCE_DIR}/layering.cmake)
   set_tests_properties(${case} PROPERTIES LABELS build)
 endforeach()

@@ -227,7 +227,8 @@ TEST(NffWriter, PrintsAsPrintfDoes) {
     nff.sphere({value, 0, 0}, 1);
   nff.finish();
   std::string expected;
-  for (const char* text : {"0", "-0.5", "0.333333", "1e-16", "1.23457e+08", "0.000123457", "-0", "100000", "1.23457e+06"})
+  for (const char* text :
+       {"0", "-0.5", "0.333333", "1e-16", "1.23457e+08", "0.000123457", "-0", "100000", "1.23457e+06"})
     expected += std::string("s ") + text + " 0 0 1\n";
   EXPECT_EQ(out.str(), expected);
 }

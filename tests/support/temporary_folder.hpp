@@ -38,7 +38,8 @@ class TemporaryFolder {
   std::string list() const {
     std::string names;
     std::vector<std::string> all;
-    for (const auto& entry : std::filesystem::directory_iterator(path_)) all.push_back(entry.path().filename().string());
+    for (const auto& entry : std::filesystem::directory_iterator(path_))
+      all.push_back(entry.path().filename().string());
     std::sort(all.begin(), all.end());
     for (const auto& name : all) names += (names.empty() ? "" : " ") + name;
     return names;
