@@ -117,11 +117,13 @@ class Table : public benchmark::ConsoleReporter {
       };
       const double base = rungs.count("grid, scalar") ? best("grid, scalar").first : 0;
       std::printf("\n%s, camera rays, each rung at its best density\n", scene.c_str());
-      std::printf("| %-40s | %10s | %5s | %12s |\n|---|--:|--:|--:|\n", "rung", "ns a ray", "M", "grid scalar /");
+      std::printf("| %-40s | %10s | %5s | %20s |\n|---|--:|--:|--:|\n", "rung", "ns a ray", "M", "times grid, scalar");
       for (const Rung& r : kRungs)
         if (rungs.count(r.name)) {
           const auto [ns, density] = best(r.name);
-          std::printf("| %-40s | %10.2f | %5s | %12.2f |\n", r.name, ns, density.c_str(), base / ns);
+          char times[32];
+          std::snprintf(times, sizeof times, base < ns / 10 ? "1/%.0f" : "%.2f", base < ns / 10 ? ns / base : base / ns);
+          std::printf("| %-40s | %10.1f | %5s | %20s |\n", r.name, ns, r.brute ? "" : density.c_str(), times);
         }
     }
   }

@@ -1,0 +1,15 @@
+#!/bin/sh
+# Makes every picture the README and docs/ show:  docs/pictures.sh
+set -eu
+cd "$(dirname "$0")/.."
+out=docs/images
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+mkdir -p "$out"
+
+./run render scenes/data/balls.nff -o "$out/balls.png"
+for scene in mount:7 gears:3 boat:10 tree:11; do
+  name=${scene%:*}
+  ./run scene "$name" --size "${scene#*:}" -o "$work/$name.nff"
+  ./run render "$work/$name.nff" --size 384x384 -o "$out/$name.png"
+done
