@@ -1,0 +1,287 @@
+// What a built grid promises: sound rows, every primitive in each cell its surface touches, exact distances.
+#include "kernel/grid.hpp"
+
+#include <numeric>
+#include <set>
+
+#include "tests/support/rays.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace grelha::test {
+namespace {
+
+// ---- distances --------------------------------------------------------------------------------------------------
+
+int naive_distance(const std::vector<std::uint8_t>& occupied, const std::array<std::uint32_t, 3>& n, std::uint32_t at) {
+  const auto place = [&](std::uint32_t c) { return std::array<int, 3>{int(c % n[0]), int(c / n[0] % n[1]), int(c / n[0] / n[1])}; };
+  const auto p = place(at);
+  int least = 255;
+  for (std::uint32_t c = 0; c < occupied.size(); ++c) {
+    if (!occupied[c]) continue;
+    const auto q = place(c);
+    least = std::min(least, std::max({std::abs(p[0] - q[0]), std::abs(p[1] - q[1]), std::abs(p[2] - q[2])}));
+  }
+  return least;
+}
+
+TEST(Distance, IsThatOfTheNearestOccupiedCell) {
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    Random random(seed);
+    const std::array<std::uint32_t, 3> n{1 + random.below(14), 1 + random.below(14), 1 + random.below(14)};
+    std::vector<std::uint8_t> occupied(std::size_t{n[0]} * n[1] * n[2]);
+    const double share = random.log_in(1e-3, .5);
+    for (auto& o : occupied) o = random.chance(share);
+    const auto distance = chebyshev_distance(occupied, n);
+    for (std::uint32_t c = 0; c < occupied.size(); ++c) ASSERT_EQ(distance[c], naive_distance(occupied, n, c)) << "seed " << seed << ", cell " << c;
+  }
+}
+
+TEST(Distance, StopsAt255) {
+  const std::array<std::uint32_t, 3> n{600, 2, 1};
+  std::vector<std::uint8_t> occupied(1200);
+  occupied[0] = 1;
+  const auto distance = chebyshev_distance(occupied, n);
+  for (std::uint32_t x = 0; x < 600; ++x) EXPECT_EQ(distance[x], std::min(x, 255u)) << x;
+  EXPECT_EQ(chebyshev_distance(std::vector<std::uint8_t>(8), {2, 2, 2}), std::vector<std::uint8_t>(8, 255));  // nothing anywhere
+}
+
+// ---- rows -------------------------------------------------------------------------------------------------------
+
+/// Ids in one cell, in the order they stand there.
+std::vector<std::uint32_t> ids_of(const CellStore& s, std::size_t cell) {
+  std::vector<std::uint32_t> out;
+  if (!s.sphere_first.empty())
+    for (std::uint32_t i = s.sphere_first[cell]; i < s.sphere_first[cell + 1]; ++i) out.push_back(s.sphere_id[i]);
+  if (!s.triangle_first.empty())
+    for (std::uint32_t b = s.triangle_first[cell]; b < s.triangle_first[cell + 1]; ++b)
+      for (const std::uint32_t id : s.triangles[b].id)
+        if (id != kNoPrimitive) out.push_back(id);
+  if (!s.cone_first.empty())
+    for (std::uint32_t i = s.cone_first[cell]; i < s.cone_first[cell + 1]; ++i) out.push_back(s.cone_id[i]);
+  return out;
+}
+
+void expect_sound_rows(const CellStore& s, std::size_t cells) {
+  for (const auto* first : {&s.sphere_first, &s.triangle_first, &s.cone_first}) {
+    if (first->empty()) continue;
+    ASSERT_EQ(first->size(), cells + 1);
+    EXPECT_EQ(first->front(), 0u);
+    EXPECT_TRUE(std::is_sorted(first->begin(), first->end()));
+  }
+  if (!s.triangle_first.empty()) {
+    EXPECT_EQ(s.triangle_first.back(), s.triangles.size());
+  }
+  if (!s.sphere_first.empty()) {
+    EXPECT_EQ(s.sphere_first.back() + kBlock, s.sphere_id.size());  // a whole block can be read from any place
+    for (const auto& v : s.spheres) EXPECT_EQ(v.size(), s.sphere_id.size());
+    for (std::size_t i = s.sphere_first.back(); i < s.sphere_id.size(); ++i) EXPECT_TRUE(std::isnan(s.spheres[3][i]));
+  }
+  if (!s.cone_first.empty()) {
+    EXPECT_EQ(s.cone_first.back() + kBlock, s.cone_id.size());
+    for (const auto& v : s.cones) EXPECT_EQ(v.size(), s.cone_id.size());
+  }
+  for (const TriangleBlock& b : s.triangles)
+    for (int i = 0; i < kBlock; ++i) {
+      EXPECT_EQ(b.id[i] == kNoPrimitive, std::isnan(b.a[0][i]));
+      if (i > 0 && b.id[i - 1] == kNoPrimitive) {
+        EXPECT_EQ(b.id[i], kNoPrimitive);  // gaps at the end alone
+      }
+    }
+  std::uint64_t references = 0;
+  for (std::size_t c = 0; c < cells; ++c) {
+    const auto ids = ids_of(s, c);
+    references += ids.size();
+    EXPECT_TRUE(std::is_sorted(ids.begin(), ids.end(), std::less_equal<>())) << "cell " << c;  // ascending, none twice
+  }
+  EXPECT_EQ(references, s.references);
+}
+
+struct Point {
+  double x[3];
+};
+Point mixed(const Float3& p, double s, const Float3& d, double t = 0, const Float3& e = {}) {
+  return {{p.x + s * d.x + t * e.x, p.y + s * d.y + t * e.y, p.z + s * d.z + t * e.z}};
+}
+double dot(const Point& a, const Point& b) { return a.x[0] * b.x[0] + a.x[1] * b.x[1] + a.x[2] * b.x[2]; }
+
+/// Points on the surface of a primitive, corners and edges among them, in double: far from 0 a float would lie beside it.
+std::vector<Point> surface_points(const Scene& s, const Primitives& p, std::uint32_t id, Random& random, int count) {
+  std::vector<Point> out;
+  const Geometry& g = s.geometry;
+  for (int i = 0; i < count; ++i) {
+    if (id < p.triangle_base) {
+      const std::uint32_t k = id - p.sphere_base;
+      Float3 d = random.direction();
+      if (i < 6) d = {}, component(d, i % 3u) = i < 3 ? 1.f : -1.f;
+      const Point unit = mixed({}, 1, d);
+      out.push_back(mixed({g.spheres.x[k], g.spheres.y[k], g.spheres.z[k]}, std::abs(double{g.spheres.radius[k]}) / std::sqrt(dot(unit, unit)), d));
+    } else if (id < p.cone_base) {
+      const std::uint32_t k = id - p.triangle_base;
+      const Float3 a = vertex(s, g.triangles.a[k]), b = vertex(s, g.triangles.b[k]), c = vertex(s, g.triangles.c[k]);
+      const double u = i < 8 ? i % 2 : random.unit(), v = (1 - u) * (i < 8 ? i / 2 % 2 : random.unit());
+      Point q;
+      for (std::uint32_t k2 = 0; k2 < 3; ++k2) {
+        Float3 corner[3] = {a, b, c};
+        const double x[3] = {component(corner[0], k2), component(corner[1], k2), component(corner[2], k2)};
+        q.x[k2] = x[0] + u * (x[1] - x[0]) + v * (x[2] - x[0]);
+      }
+      out.push_back(q);
+    } else {
+      const std::uint32_t k = id - p.cone_base;
+      const Cones& c = g.cones;
+      const double base[3] = {c.base_x[k], c.base_y[k], c.base_z[k]};
+      const Point axis{{c.apex_x[k] - base[0], c.apex_y[k] - base[1], c.apex_z[k] - base[2]}};
+      const double h = i < 8 ? i % 2 : random.unit();
+      const double r = std::abs(c.base_radius[k]) * (1 - h) + std::abs(c.apex_radius[k]) * h;
+      for (;;) {
+        const Point d = mixed({}, 1, random.direction());
+        const double along = dot(d, axis) / dot(axis, axis);
+        Point across;
+        for (int a = 0; a < 3; ++a) across.x[a] = d.x[a] - along * axis.x[a];
+        const double l = std::sqrt(dot(across, across));
+        if (l < .1) continue;
+        Point q;
+        for (int a = 0; a < 3; ++a) q.x[a] = base[a] + h * axis.x[a] + r / l * across.x[a];
+        out.push_back(q);
+        break;
+      }
+    }
+  }
+  return out;
+}
+
+struct Case {
+  const char* name;
+  Scene scene;
+};
+
+std::vector<Case> cases() {
+  const Float3 far{148376, 1234, -223423};
+  return {{"spheres", random_spheres(3, 300)},  {"triangles", random_triangles(3, 300)}, {"cones", random_cones(3, 200)},
+          {"mixture", random_mixture(3, 300)},  {"flat", flat_sheet(3, 200)},            {"needles", needles(3, 90)},
+          {"heap", heap(3, 20)},                {"stadium", stadium(3, 300)},            {"lattice", lattice_patch(9)},
+          {"tiny", placed(random_mixture(3, 300), 1e-6, {})}, {"far", placed(random_mixture(3, 300), 2, far)}};
+}
+
+TEST(GridRows, HoldWhatTheyPromise) {
+  for (const Case& c : cases())
+    for (const float density : {.5f, 1.f, 2.f, 4.f}) {
+      SCOPED_TRACE(c.name);
+      const World world(c.scene, {.density = density});
+      const World::Impl& w = world.impl();
+      std::vector<int> seen(w.primitives.end);
+      expect_sound_rows(w.outside, 1);
+      for (const std::uint32_t id : ids_of(w.outside, 0)) ++seen[id];
+      for (const Grid& g : w.grids) {
+        const std::size_t cells = std::size_t{g.cells[0]} * g.cells[1] * g.cells[2];
+        expect_sound_rows(g.store, cells);
+        std::vector<std::uint8_t> occupied(cells);
+        std::set<std::uint32_t> members;
+        for (std::size_t i = 0; i < cells; ++i) {
+          const auto ids = ids_of(g.store, i);
+          occupied[i] = !ids.empty();
+          members.insert(ids.begin(), ids.end());
+        }
+        for (const std::uint32_t id : members) ++seen[id];
+        EXPECT_EQ(g.occupied, std::accumulate(occupied.begin(), occupied.end(), std::uint64_t{0}));
+        EXPECT_EQ(g.distance, chebyshev_distance(occupied, g.cells));
+      }
+      for (std::uint32_t id = w.primitives.sphere_base; id < w.primitives.end; ++id) EXPECT_EQ(seen[id], 1) << "primitive " << id;
+    }
+}
+
+TEST(GridRows, HoldAPrimitiveInEachCellItsSurfaceTouches) {
+  std::size_t points = 0;
+  for (const Case& c : cases())
+    for (const float density : {.5f, 1.f, 4.f}) {
+      const World world(c.scene, {.density = density});
+      const World::Impl& w = world.impl();
+      Random random(11);
+      for (const Grid& g : w.grids) {
+        std::vector<std::vector<std::uint32_t>> rows(std::size_t{g.cells[0]} * g.cells[1] * g.cells[2]);
+        std::set<std::uint32_t> members;
+        for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = ids_of(g.store, i), members.insert(rows[i].begin(), rows[i].end());
+        for (const std::uint32_t id : members)
+          for (const Point& p : surface_points(c.scene, w.primitives, id, random, 60)) {
+            std::size_t at[3];
+            for (std::size_t a = 0; a < 3; ++a)
+              at[a] = static_cast<std::size_t>(cell_of(p.x[a], g.lo[a], 1 / g.cell[a], static_cast<int>(g.cells[a])));
+            const auto& row = rows[at[0] + g.cells[0] * (at[1] + std::size_t{g.cells[1]} * at[2])];
+            ASSERT_TRUE(std::binary_search(row.begin(), row.end(), id)) << c.name << ", density " << density << ", primitive " << id;
+            ++points;
+          }
+      }
+    }
+  EXPECT_GT(points, 300000u);
+}
+
+// ---- sizes and choices ------------------------------------------------------------------------------------------
+
+TEST(GridSize, FollowsTheFormula) {
+  Scene s = empty_scene();
+  for (int z = 0; z < 10; ++z)
+    for (int y = 0; y < 10; ++y)
+      for (int x = 0; x < 10; ++x) s.geometry.spheres.add({float(x), float(y), float(z)}, .5f, 0);
+  for (const float density : {1.f, 2.f, 3.f}) {
+    const auto grids = World(s, {.density = density}).grids();
+    ASSERT_EQ(grids.size(), 1u);
+    for (const std::uint32_t n : grids[0].cells) EXPECT_EQ(n, static_cast<std::uint32_t>(density * 10) + 1) << density;
+  }
+}
+
+TEST(GridSize, StaysWithinItsBounds) {
+  Scene s = empty_scene();
+  for (int i = 0; i < 2000; ++i) add_triangle(s, {float(i), 0, 0}, {float(i), 1e-3f, 0}, {float(i), 0, 1e-3f});
+  for (const float density : {.01f, 1.f, 100.f})
+    for (const GridStats& g : World(s, {.density = density}).grids())
+      for (const std::uint32_t n : g.cells) EXPECT_TRUE(n >= 1 && n <= 1024) << n;
+}
+
+TEST(GridChoice, HugePrimitivesStandOutside) {
+  const Scene scene = stadium(3, 300);
+  const World world(scene, {});
+  ASSERT_EQ(world.impl().grids.size(), 1u);
+  const auto outside = ids_of(world.impl().outside, 0);
+  const std::uint32_t ground = world.impl().primitives.triangle_base + 300;  // two triangles behind the crowd
+  EXPECT_TRUE(std::binary_search(outside.begin(), outside.end(), ground));
+  EXPECT_TRUE(std::binary_search(outside.begin(), outside.end(), ground + 1));
+}
+
+TEST(GridChoice, LargeObjectsGetTheirOwnGrid) {
+  Scene scene = ball_mesh(32, 16);
+  const auto n = static_cast<std::uint32_t>(scene.geometry.triangles.size());
+  scene.geometry.objects.push_back({0, n});
+  Random random(1);
+  add_triangles(scene, random, 100, 30, .1, 1);
+  EXPECT_EQ(World(scene, {}).grids().size(), 2u);
+  EXPECT_EQ(World(scene, {.grid = false}).grids().size(), 0u);
+  const World world(scene, {});
+  Rays rays = rays_about(random, {}, 20, kManyRays);
+  expect_truth(*find_variant("best"), world, rays, truth_of(scene, rays), "two grids");
+}
+
+TEST(WorldCheck, RefusesWhatWouldReadOutOfBounds) {
+  Scene s = random_mixture(1, 30);
+  s.geometry.spheres.material[0] = 9;
+  EXPECT_THROW(World(s, {}), std::invalid_argument);
+  s = random_mixture(1, 30);
+  s.geometry.triangles.b[3] = 1u << 20;
+  EXPECT_THROW(World(s, {}), std::invalid_argument);
+  s = random_mixture(1, 30);
+  s.geometry.objects = {{5, 3}, {7, 2}};
+  EXPECT_THROW(World(s, {}), std::invalid_argument);
+  s.geometry.objects = {{5, 3000}};
+  EXPECT_THROW(World(s, {}), std::invalid_argument);
+}
+
+TEST(WorldCheck, AnEmptySceneIsOne) {
+  const Scene scene = empty_scene();
+  const World world(scene, {});
+  Random random(1);
+  const Rays rays = rays_about(random, {}, 1, 100);
+  for (const Way& way : every_way())
+    EXPECT_EQ(hits_of(trace(*find_variant("best"), world, rays, way.settings, Query::kClosest)), 0u) << way.name;
+}
+
+}  // namespace
+}  // namespace grelha::test

@@ -1,0 +1,206 @@
+// Every way through a grid against brute force: the same primitive and the same bits of t, whatever the scene and the ray.
+#include "tests/support/rays.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace grelha::test {
+namespace {
+
+struct Case {
+  std::string name;
+  Scene (*make)();
+  double size;        ///< half the extent rays are aimed over
+  Float3 center{};
+};
+
+void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+
+template <auto Make, int Count>
+Scene crowd() {
+  return Make(7, Count);
+}
+template <auto Make>
+Scene at_scale(double scale, const Float3& offset) {
+  return placed(Make(), scale, offset);
+}
+
+const std::vector<Case>& cases() {
+  static constexpr auto spheres = crowd<random_spheres, 300>;
+  static constexpr auto triangles = crowd<random_triangles, 300>;
+  static constexpr auto cones = crowd<random_cones, 200>;
+  static constexpr auto mixture = crowd<random_mixture, 300>;
+  static const std::vector<Case> all{
+      {"spheres", spheres, 1},
+      {"triangles", triangles, 1},
+      {"cones", cones, 1},
+      {"mixture", mixture, 1},
+      {"flat", crowd<flat_sheet, 200>, 1, {0, .25f, 0}},
+      {"lattice", [] { return lattice_patch(12); }, 6, {6, 1, 6}},
+      {"heap", crowd<heap, 20>, 1},
+      {"needles", crowd<needles, 150>, 1},
+      {"stadium", crowd<stadium, 400>, 1},
+      {"stadium_seen_from_the_stands", crowd<stadium, 400>, 900},
+      {"one_sphere_many_times", [] { Scene s = empty_scene(); for (int i = 0; i < 50; ++i) s.geometry.spheres.add({1, 2, 3}, .5f, 0); return s; }, 1, {1, 2, 3}},
+      {"points", [] { Scene s = empty_scene(); for (int i = 0; i < 40; ++i) s.geometry.spheres.add({}, 1e-12f, 0); return s; }, 1e-12},
+      {"tiny", [] { return at_scale<mixture>(1e-6, {}); }, 1e-6},
+      {"huge", [] { return at_scale<mixture>(1e6, {}); }, 1e6},
+      {"far_1e3", [] { return at_scale<mixture>(1, {1000, -500, 2000}); }, 1, {1000, -500, 2000}},
+      {"far_1e4", [] { return at_scale<mixture>(1, {1e4f, 2e4f, -1e4f}); }, 1, {1e4f, 2e4f, -1e4f}},
+      {"few_ulps_a_cell", [] { return at_scale<mixture>(2, {148376, 1234, -223423}); }, 2, {148376, 1234, -223423}},
+      {"far_spheres", [] { return at_scale<spheres>(1, {1e5f, 1e5f, 1e5f}); }, 1, {1e5f, 1e5f, 1e5f}},
+      {"far_lattice", [] { return placed(lattice_patch(12), 1, {65536, 0, -131072}); }, 6, {65542, 1, -131066}},
+      {"closed_ball", [] { return ball_mesh(24, 12, .2); }, 1},
+      {"closed_ball_far", [] { return placed(ball_mesh(24, 12), 1, {3e4f, 0, 0}); }, 1, {3e4f, 0, 0}},
+  };
+  return all;
+}
+
+/// Rays that lie in planes between cells, run along edges between them, pass through their corners, or along their diagonals.
+Rays rays_on_cells(Random& random, const World& world, int count) {
+  Rays rays;
+  const auto& grids = world.impl().grids;
+  if (grids.empty()) return rays;
+  for (int i = 0; i < count; ++i) {
+    const Grid& g = grids[random.below(static_cast<std::uint32_t>(grids.size()))];
+    const auto corner = [&] {
+      Float3 p;
+      for (std::uint32_t a = 0; a < 3; ++a) component(p, a) = static_cast<float>(g.lo[a] + random.below(g.cells[a] + 1) * g.cell[a]);
+      return p;
+    };
+    const Float3 from = corner(), to = corner();
+    Float3 org = from, dir = minus(to, from);
+    switch (random.below(4)) {
+      case 0: {  // in a plane
+        const std::uint32_t a = random.below(3);
+        for (std::uint32_t b = 0; b < 3; ++b) component(dir, b) = b == a ? random.zero() : static_cast<float>(random.in(-1, 1) * g.cell[b]);
+        org = at(from, -random.in(0, 20), dir);
+        component(org, a) = a == 0 ? from.x : a == 1 ? from.y : from.z;
+        break;
+      }
+      case 1: {  // along an edge
+        const std::uint32_t a = random.below(3);
+        const float length = static_cast<float>(random.sign() * g.cell[a]);
+        for (std::uint32_t b = 0; b < 3; ++b) component(dir, b) = b == a ? length : random.zero();
+        org = at(from, -random.in(0, 20), dir);
+        break;
+      }
+      case 2:  // down the diagonals of cells
+        for (std::uint32_t b = 0; b < 3; ++b) component(dir, b) = static_cast<float>(random.sign() * g.cell[b]);
+        org = at(from, -double(random.below(20)), dir);
+        break;
+      default: break;  // from corner to corner
+    }
+    if (dir == Float3{}) continue;
+    rays.add(org, random.chance(.3) ? scaled(dir, random.log_in(1e-3, 1e3)) : dir, random.chance(.5) ? 0 : -kInf);
+  }
+  return rays;
+}
+
+/// Neighbours that point nearly the same way, so that packets stay together: an eye ray's case. Some bundles cross an axis.
+Rays coherent_rays(Random& random, const Float3& center, double size, int bundles) {
+  Rays rays;
+  for (int b = 0; b < bundles; ++b) {
+    const Float3 eye = at(center, size * random.log_in(.3, 20), random.direction());
+    const Float3 aim = at(center, size * random.unit(), random.direction());
+    Float3 main = minus(aim, eye);
+    if (b % 4 == 0) main = {0, 0, static_cast<float>(b % 8 == 0 ? size : -size)};
+    const double spread = random.log_in(1e-3, 1) * size;
+    for (int i = 0; i < 64; ++i) rays.add(eye, at(main, spread, random.point(1)));
+  }
+  return rays;
+}
+
+class Walk : public testing::TestWithParam<std::tuple<const Variant*, Case>> {
+ protected:
+  void SetUp() override {
+    if (!variant().runs_here()) GTEST_SKIP() << "this processor has no " << variant().name;
+  }
+  static const Variant& variant() { return *std::get<0>(GetParam()); }
+};
+
+TEST_P(Walk, FindsWhatBruteForceFinds) {
+  const Case& c = std::get<1>(GetParam());
+  const Scene scene = c.make();
+  Random random(99);
+  Rays rays = rays_about(random, c.center, c.size, kManyRays, 1e6);
+  rays.add(with_odd_values(random, rays_about(random, c.center, c.size, 300), .3));
+  rays.add(coherent_rays(random, c.center, c.size, 24));
+  std::size_t grids = 0;
+  for (const float density : {.5f, 1.f, 2.f, 4.f}) {
+    const World world(scene, {.density = density});
+    grids += world.impl().grids.size();
+    Rays all = rays;
+    all.add(rays_on_cells(random, world, 500));
+    const Truth truth = truth_of(scene, all);
+    EXPECT_GT(hits_of(truth.closest), 30u);
+    std::ostringstream what;
+    what << c.name << ", density " << density;
+    expect_truth(variant(), world, all, truth, what.str());
+    if (HasFailure()) return;
+  }
+  EXPECT_GT(grids, 0u) << "no grid was built: nothing was walked";
+}
+
+INSTANTIATE_TEST_SUITE_P(Isa, Walk, testing::Combine(testing::ValuesIn(variants().begin(), variants().end()), testing::ValuesIn(cases())),
+                         [](const auto& p) { return std::string(std::get<0>(p.param)->name) + "_" + std::get<1>(p.param).name; });
+
+// ---- ties -------------------------------------------------------------------------------------------------------
+
+class Ties : public EveryVariant {};
+GRELHA_FOR_EVERY_ISA(Ties);
+
+/// Of copies at the same place the lower id is met, with every method, in any order of cells; and of different kinds at
+/// equal t too: planes, spheres, triangles, cones.
+TEST_P(Ties, TheLowerIdWins) {
+  Scene scene = empty_scene();
+  for (int copy = 0; copy < 3; ++copy)
+    for (int z = 0; z < 6; ++z)
+      for (int x = 0; x < 6; ++x) {
+        const float a = static_cast<float>(x), b = static_cast<float>(z);
+        add_triangle(scene, {a, 0, b}, {a + 1, 0, b}, {a + 1, 0, b + 1});
+        add_triangle(scene, {a, 0, b}, {a + 1, 0, b + 1}, {a, 0, b + 1});
+        scene.geometry.spheres.add({a + .5f, 0, b + .5f}, .25f, 0);
+      }
+  add_triangle(scene, {-3, 0, -3}, {9, 0, -3}, {3, 0, 9});  // over all of them, later and in no grid
+  Random random(5);
+  Rays rays;
+  for (int i = 0; i < 2048; ++i) {
+    const Float3 aim{static_cast<float>(random.below(24)) * .25f, 0, static_cast<float>(random.below(24)) * .25f};
+    rays.add(random.chance(.5) ? Float3{aim.x, 4, aim.z} : at(aim, 4, {random.below(3) - 1.f, random.chance(.5) ? 1.f : -1.f, random.below(3) - 1.f}), {0, 0, 0});
+    const Float3 d = minus(aim, rays.org(rays.size() - 1));
+    rays.dx.back() = d.x, rays.dy.back() = d.y, rays.dz.back() = d.z;
+  }
+  for (const float density : {.5f, 1.f, 3.f}) {
+    const World world(scene, {.density = density});
+    ASSERT_FALSE(world.impl().grids.empty());
+    const Truth truth = truth_of(scene, rays);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (truth.closest.id[i] == kNoPrimitive) continue;
+      EXPECT_LT(truth.closest.id[i], 3 * 36u + 72) << rays.describe(i);  // never a second or third copy of a triangle
+      if (truth.closest.id[i] < 108u) {
+        EXPECT_LT(truth.closest.id[i], 36u) << rays.describe(i);
+      }
+    }
+    expect_truth(variant(), world, rays, truth, "ties");
+  }
+}
+
+TEST_P(Ties, KindsComeInTheOrderOfTheirIds) {
+  Scene scene = empty_scene();
+  scene.geometry.cones.add({-1, 0, 1}, 1, {1, 0, 1}, 1, 0);       // its side touches y = 1 along x, z = 1
+  scene.geometry.spheres.add({0, 0, 1}, 1, 0);
+  add_triangle(scene, {-5, 1, -5}, {5, 1, -5}, {0, 1, 9});
+  Rays rays;
+  rays.add({0, 3, 1}, {0, -1, 0});
+  for (int planes = 1; planes >= 0; --planes) {
+    if (planes) scene.geometry.planes.add({0, 1, 0}, {0, 1, 0}, 0); else scene.geometry.planes = {};
+    const World world(scene, {});
+    for (const Way& way : every_way()) {
+      const Answers a = trace(variant(), world, rays, way.settings, Query::kClosest);
+      EXPECT_EQ(a.t[0], 2.f) << way.name;
+      EXPECT_EQ(a.id[0], 0u) << way.name;  // the plane; without it the sphere
+    }
+  }
+}
+
+}  // namespace
+}  // namespace grelha::test
