@@ -13,7 +13,7 @@ namespace grelha {
 
 namespace {
 
-constexpr int kMaxSide = 65536, kMaxThreads = 1024, kMaxDepth = 10000;
+constexpr int kMaxSide = 65536, kMaxThreads = 1024;
 constexpr double kMaxDensity = 1000;
 
 [[noreturn]] void refuse(const std::string& option, const std::string& wanted, const std::string& found) {
@@ -111,7 +111,7 @@ void add_render(CLI::App& app, RenderCommand& command) {
   value(sub, "--threads", "N", "threads [one per processor]",
         [&command](const std::string& text) { command.render.threads = whole("--threads", text, 1, kMaxThreads); });
   value(sub, "--depth", "N", "longest path of a ray, the eye ray counted as 1 [5]",
-        [&command](const std::string& text) { command.render.depth = whole("--depth", text, 1, kMaxDepth); });
+        [&command](const std::string& text) { command.render.depth = whole("--depth", text, 1, kMostDepth); });
   add_build_options(sub, command.build);
   value(sub, "--mailbox", "on|off", "test a primitive once per ray however many cells hold it [on]",
         [&command](const std::string& text) { command.render.mailbox = choice("--mailbox", text, kSwitch) == 1; });

@@ -16,8 +16,6 @@
 namespace grelha {
 namespace {
 
-constexpr int kMostDepth = 4096;
-
 /// What one thread works in; allocated before the first ray, never grown.
 class Workspace {
  public:

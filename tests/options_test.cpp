@@ -118,7 +118,7 @@ TEST(Errors, SayWhatWasWantedAndFound) {
       {"render a --threads 0", "--threads: wanted a whole number from 1 to 1024, found \"0\""},
       {"render a --threads 1.5", "--threads: wanted a whole number from 1 to 1024, found \"1.5\""},
       {"render a --threads 99999999999", "--threads: wanted a whole number from 1 to 1024, found \"99999999999\""},
-      {"render a --depth -1", "--depth: wanted a whole number from 1 to 10000, found \"-1\""},
+      {"render a --depth -1", "--depth: wanted a whole number from 1 to 4096, found \"-1\""},
       {"render a --density 0", "--density: wanted a number above 0 and up to 1000, found \"0\""},
       {"render a --density nan", "--density: wanted a number above 0 and up to 1000, found \"nan\""},
       {"render a --density 1e-60", "--density: wanted a number above 0 and up to 1000, found \"1e-60\""},
