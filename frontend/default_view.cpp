@@ -1,6 +1,7 @@
 #include "frontend/default_view.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace grelha {
@@ -12,16 +13,21 @@ struct Extent {
   double size() const { return upper - lower; }
 };
 
-/// Of the vertices that triangles name; others may lie anywhere.
-Extent extent(const Triangles& t, const std::vector<float>& along) {
-  if (t.size() == 0) return {-1, 1};
-  Extent e{double(along[t.a[0]]), double(along[t.a[0]])};
-  for (std::size_t i = 0; i < t.size(); ++i) {
-    const double a = along[t.a[i]], b = along[t.b[i]], c = along[t.c[i]];
-    e.lower = std::min({e.lower, a, b, c});
-    e.upper = std::max({e.upper, a, b, c});
+/// Of the vertices that triangles name, along x, y and z; others may lie anywhere.
+std::array<Extent, 3> extents(const Triangles& t) {
+  if (t.size() == 0) return {Extent{-1, 1}, Extent{-1, 1}, Extent{-1, 1}};
+  std::vector<bool> named(t.vertex_count());
+  for (const auto* corners : {&t.a, &t.b, &t.c})
+    for (const std::uint32_t v : *corners) named[v] = true;
+  const std::uint32_t first = t.a[0];
+  std::array<Extent, 3> all{Extent{t.x[first], t.x[first]}, Extent{t.y[first], t.y[first]}, Extent{t.z[first], t.z[first]}};
+  for (std::size_t v = 0; v < t.vertex_count(); ++v) {
+    if (!named[v]) continue;
+    const double point[] = {t.x[v], t.y[v], t.z[v]};
+    for (std::size_t i = 0; i < 3; ++i)
+      all[i] = {std::min(all[i].lower, point[i]), std::max(all[i].upper, point[i])};
   }
-  return e;
+  return all;
 }
 
 }  // namespace
@@ -35,8 +41,7 @@ Material default_mesh_material() {
 }
 
 void add_default_view(SceneFile& file) {
-  const Triangles& t = file.scene.geometry.triangles;
-  const Extent x = extent(t, t.x), y = extent(t, t.y), z = extent(t, t.z);
+  const auto [x, y, z] = extents(file.scene.geometry.triangles);
   const double radius = std::hypot(x.size(), y.size(), z.size()) / 2;
   const double farthest = std::max({std::abs(x.lower), std::abs(x.upper), std::abs(y.lower), std::abs(y.upper),
                                     std::abs(z.lower), std::abs(z.upper)});

@@ -59,7 +59,7 @@ void PlyBinary::fail(const char* at, const std::string& wanted, const std::strin
 
 /// Steps over `bytes` bytes, which must be there, and returns where they begin.
 const char* PlyBinary::take(std::size_t bytes, const PlyElement& element, std::uint64_t row) {
-  if (std::size_t(end_ - at_) < bytes)
+  if (std::size_t(end_ - at_) < bytes) [[unlikely]]
     fail(end_, "row " + std::to_string(row + 1) + " of " + std::to_string(element.count) + " of \"" + element.name + '"',
          "end of file");
   const char* const here = at_;
@@ -95,6 +95,11 @@ void PlyBinary::read_list(const PlyElement& element, const PlyProperty& list, st
   const std::size_t item = size_of(list.type);
   const char* p = take(std::size_t(size) * item, element, row);
   if (!faces) return;
+  const bool done = size == 3 && with_type(list.type, [&](auto t) {
+    const auto index = [&](std::size_t i) { return std::int64_t(load<decltype(t)>(p + i * item, swap_)); };
+    return faces->add_triangle(index(0), index(1), index(2));
+  });
+  if (done) return;
   with_type(list.type, [&](auto t) {
     for (std::int64_t i = 0; i < size; ++i, p += item) {
       const auto index = std::int64_t(load<decltype(t)>(p, swap_));

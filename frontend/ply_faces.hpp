@@ -19,6 +19,13 @@ class PlyFaces {
     if (strips_) add_to_strip(index);
     else mesh_.corners.push_back(std::uint32_t(index));
   }
+  /// A whole triangle at once, when it is one and sound; false: take it item by item.
+  bool add_triangle(std::int64_t a, std::int64_t b, std::int64_t c) {
+    if (strips_ || !accepts(a) || !accepts(b) || !accepts(c)) return false;
+    mesh_.corners.insert(mesh_.corners.end(), {std::uint32_t(a), std::uint32_t(b), std::uint32_t(c)});
+    mesh_.close_face(3);
+    return true;
+  }
   void end(std::uint32_t size) {
     run_ = 0;
     if (!strips_) mesh_.close_face(size);

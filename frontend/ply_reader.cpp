@@ -42,8 +42,16 @@ PlyPlan plan_faces(const PlyElement& element) {
   return PlyPlan{};
 }
 
+/// Corners of as many triangles as there are rows, if the file can hold them: most meshes are of triangles.
+std::size_t likely_corners(const PlyHeader& header, const PlyElement& element, int list, std::size_t bytes) {
+  if (list < 0) return 0;
+  const bool ascii = header.format == PlyFormat::kAscii;
+  const std::size_t item = ascii ? 2 : size_of(element.properties[std::size_t(list)].type);
+  return std::min(std::size_t(3 * element.count), bytes / item);
+}
+
 template <class Rows>
-Mesh read_rows(const PlyHeader& header, Rows& rows) {
+Mesh read_rows(const PlyHeader& header, std::size_t bytes, Rows& rows) {
   Mesh mesh;
   std::uint64_t vertices = 0;
   for (const PlyElement& element : header.elements)
@@ -54,7 +62,7 @@ Mesh read_rows(const PlyHeader& header, Rows& rows) {
     PlyPlan plan;
     if (element.name == "vertex") plan = plan_vertex(element);
     if (element.name == "face" || is_strips) plan = plan_faces(element);
-    if (element.name == "face") mesh.corners.reserve(std::size_t(element.count));
+    if (element.name == "face") mesh.corners.reserve(likely_corners(header, element, plan.list, bytes));
     rows.read(element, plan, mesh, is_strips ? strips : polygons);
   }
   return mesh;
@@ -66,10 +74,10 @@ Mesh read_ply_mesh(const std::string& path, std::string_view bytes) {
   const PlyHeader header = read_ply_header(path, bytes);
   if (header.format == PlyFormat::kAscii) {
     PlyAscii rows(path, bytes, header);
-    return read_rows(header, rows);
+    return read_rows(header, bytes.size(), rows);
   }
   PlyBinary rows(path, bytes, header);
-  return read_rows(header, rows);
+  return read_rows(header, bytes.size(), rows);
 }
 
 }  // namespace grelha

@@ -215,6 +215,29 @@ void SceneBuilder::mesh(Mesh mesh, std::uint32_t material) {
     const std::size_t room = std::max(wanted, 2 * t.a.capacity());
     t.a.reserve(room), t.b.reserve(room), t.c.reserve(room), t.material.reserve(room);
   }
+  if (mesh.sizes.empty() && bad.empty()) mesh_triangles(mesh.corners, first_vertex, material);
+  else mesh_faces(mesh, bad, first_vertex, material);
+  const auto count = std::uint32_t(t.size()) - first_triangle;
+  if (count > 0) file_.scene.geometry.objects.push_back({first_triangle, count});
+}
+
+/// The common case, without a look at each face's size.
+void SceneBuilder::mesh_triangles(std::span<const std::uint32_t> corners, std::uint32_t first_vertex, std::uint32_t material) {
+  Triangles& t = file_.scene.geometry.triangles;
+  std::size_t at = t.size();
+  const std::size_t most = at + corners.size() / 3;
+  t.a.resize(most), t.b.resize(most), t.c.resize(most), t.material.resize(most, material);
+  for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
+    const std::uint32_t a = first_vertex + corners[i], b = first_vertex + corners[i + 1], c = first_vertex + corners[i + 2];
+    t.a[at] = a, t.b[at] = b, t.c[at] = c;
+    at += has_area(a, b, c) ? 1 : 0;  // the next one overwrites what has none
+  }
+  file_.dropped.zero_area += most - at;
+  t.a.resize(at), t.b.resize(at), t.c.resize(at), t.material.resize(at);
+}
+
+void SceneBuilder::mesh_faces(const Mesh& mesh, const std::vector<bool>& bad, std::uint32_t first_vertex,
+                              std::uint32_t material) {
   std::size_t at = 0;
   for (std::size_t f = 0, faces = mesh.face_count(); f < faces; ++f) {
     const std::size_t size = mesh.sizes.empty() ? 3 : mesh.sizes[f];
@@ -225,8 +248,6 @@ void SceneBuilder::mesh(Mesh mesh, std::uint32_t material) {
     else
       mesh_face(corners, first_vertex, material);
   }
-  const auto count = std::uint32_t(t.size()) - first_triangle;
-  if (count > 0) file_.scene.geometry.objects.push_back({first_triangle, count});
 }
 
 }  // namespace grelha
