@@ -1,0 +1,186 @@
+// Rays that leave a surface: none meets the surface it left, and none starts far enough away to skip what is near.
+#define GRELHA_ISA scalar
+#include "kernel/surface.hpp"
+#include "kernel/trace.hpp"
+
+#include "tests/support/oracle.hpp"
+#include "tests/support/rays.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace grelha::test {
+namespace {
+
+struct Result {
+  std::uint64_t hits = 0, rays = 0, met_again = 0;
+  double gap = 0;      ///< largest distance between the surface and where a ray starts, in sizes of the primitive
+  std::string first;
+  void print(const char* what) const {
+    std::printf("%s: %llu hits, %llu rays leave, %llu meet the same primitive again, largest gap %.3g sizes\n", what,
+                static_cast<unsigned long long>(hits), static_cast<unsigned long long>(rays), static_cast<unsigned long long>(met_again), gap);
+  }
+};
+
+/// `make` builds the scene of one primitive of the given size at a place; `convex`: no ray that goes out meets it again;
+/// otherwise none at all does, on either side.
+template <class Make, class Near>
+Result leave_from(std::uint64_t seeds, double most_offset, bool convex, const Make& make, const Near& farthest) {
+  Result r;
+  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+    Random random(seed);
+    const double size = random.log_in(1e-6, 1e6), offset = most_offset > 0 ? random.log_in(1e-2, most_offset) : 0;
+    const Float3 place = random.point(size * offset);
+    const Scene scene = make(random, size, place);
+    const World world(scene, {.grid = false});
+    const SceneView& view = world.impl().view;
+    Rays rays;
+    for (int i = 0; i < 16; ++i) {
+      const Float3 org = at(place, size * random.log_in(1.5, farthest), random.direction());
+      rays.add(org, scaled(minus(at(place, size * random.unit(), random.direction()), org), random.log_in(1e-2, 1e2)));
+    }
+    // Hits as the renderer finds them: what the trace returned, at the origin the trace used.
+    Rays leaving;
+    std::vector<std::uint32_t> from;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      float org[3] = {rays.ox[i], rays.oy[i], rays.oz[i]};
+      const float dir[3] = {rays.dx[i], rays.dy[i], rays.dz[i]};
+      scalar::approach(view, org, dir);
+      rays.ox[i] = org[0], rays.oy[i] = org[1], rays.oz[i] = org[2];
+    }
+    const Answers hits = trace(*find_variant("scalar"), world, rays, {Method::kSingle, 1, true}, Query::kClosest);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (hits.id[i] == kNoPrimitive) continue;
+      ++r.hits;
+      const float org[3] = {rays.ox[i], rays.oy[i], rays.oz[i]}, dir[3] = {rays.dx[i], rays.dy[i], rays.dz[i]};
+      const scalar::Surface s = scalar::surface_of(view, hits.id[i], org, dir, hits.t[i], false);
+      for (int k = 0; k < 16; ++k) {
+        Float3 d = random.direction();
+        if (k % 4 == 0) {  // along the surface: the worst
+          const float n = d.x * s.normal.x + d.y * s.normal.y + d.z * s.normal.z;
+          d = at(d, -n * (1 - random.log_in(1e-6, 1e-1)), {s.normal.x, s.normal.y, s.normal.z});
+        }
+        // So nearly along the surface that rounding decides which side it points to: either answer is right.
+        if (std::abs(oracle::dot(d, oracle::unit({s.normal.x, s.normal.y, s.normal.z}))) < 8 * oracle::kEps) continue;
+        scalar::Vec3<float> to{d.x, d.y, d.z};
+        if (convex && scalar::dot(to, s.normal) < 0) to = scalar::Vec3<float>{0, 0, 0} - to, d = {to.x, to.y, to.z};
+        const scalar::Vec3<float> start = scalar::leave(s.point, s.normal, s.away, to);
+        leaving.add({start.x, start.y, start.z}, d);
+        from.push_back(hits.id[i]);
+      }
+      r.gap = std::max(r.gap, 2 * double(s.away) / size);  // the rounding of the start itself included
+    }
+    r.rays += leaving.size();
+    const Answers again = trace(*find_variant("scalar"), world, leaving, {Method::kSingle, 1, true}, Query::kClosest);
+    for (std::size_t i = 0; i < leaving.size(); ++i) {
+      if (again.id[i] != from[i]) continue;
+      if (r.met_again++ == 0) r.first = "seed " + std::to_string(seed) + ", size " + std::to_string(size) + ", offset " + std::to_string(offset) + " sizes, t " + show(again.t[i], again.id[i]) + ", " + leaving.describe(i);
+    }
+  }
+  return r;
+}
+
+Scene make_sphere(Random&, double size, const Float3& place) { return one_sphere(place, static_cast<float>(size)); }
+Scene make_plane(Random& random, double, const Float3& place) { return one_plane(place, scaled(random.direction(), random.log_in(1e-3, 1e3))); }
+Scene make_triangle(Random& random, double size, const Float3& place) {
+  Float3 b = at(place, size, random.direction()), c = at(place, size * random.in(.1, 1), random.direction());
+  if (random.chance(.2)) b.y = c.y = place.y;
+  return one_triangle(place, b, c);
+}
+Scene make_cone(Random& random, double size, const Float3& place) {
+  const double r0 = size * random.in(.1, 1), r1 = random.chance(.3) ? r0 : size * random.in(0, 1);
+  return one_cone(place, static_cast<float>(r0), at(place, size * random.in(.3, 2), random.direction()), static_cast<float>(r1));
+}
+
+struct Row {
+  double offset, farthest;
+  double gap;  ///< wanted at most, in sizes
+};
+/// The bounds of surface.hpp in sizes: 16 (sphere) to 64 eps (cone: height up to 2 sizes, radius up to 1, 32 eps of both) and
+/// 4 eps of the largest coordinate, which is the offset; doubled as print() does. 2e-5 and 5e-7 offset cover each kind.
+constexpr Row kRows[] = {{0, 10, 2e-5}, {0, 1e5, 2e-5}, {10, 1e3, 3e-5}, {1e3, 10, 6e-4}, {1e3, 1e5, 6e-4}, {1e6, 1e3, .6}};
+
+template <class Make>
+void check(const char* name, bool convex, const Make& make) {
+  for (const Row& row : kRows) {
+    const Result r = leave_from(4000, row.offset, convex, make, row.farthest);
+    r.print((std::string(name) + ", offset up to " + std::to_string(row.offset) + ", seen from up to " + std::to_string(row.farthest)).c_str());
+    EXPECT_GT(r.hits, 4000u);
+    EXPECT_EQ(r.met_again, 0u) << name << ": " << r.first;
+    EXPECT_LT(r.gap, row.gap);
+  }
+}
+
+TEST(Leaving, Spheres) { check("sphere", true, make_sphere); }
+TEST(Leaving, Planes) {
+  // A plane's error is that of the point met, which grows with the distance of the origin.
+  for (const Row& row : kRows) {
+    const Result r = leave_from(4000, row.offset, false, make_plane, row.farthest);
+    r.print(("plane, offset up to " + std::to_string(row.offset) + ", seen from up to " + std::to_string(row.farthest)).c_str());
+    EXPECT_GT(r.hits, 4000u);
+    EXPECT_EQ(r.met_again, 0u) << r.first;
+  }
+}
+TEST(Leaving, Triangles) { check("triangle", false, make_triangle); }
+TEST(Leaving, Cones) { check("cone", true, make_cone); }
+
+/// Rays sent inwards cross the body: what they meet is its far side, not the place they left.
+TEST(Leaving, InwardsMeetsTheFarSide) {
+  std::uint64_t judged = 0;
+  for (std::uint64_t seed = 0; seed < 20000; ++seed) {
+    Random random(seed);
+    const double size = random.log_in(1e-6, 1e6);
+    const Float3 center = random.point(size * random.log_in(1e-2, 1e3));
+    const Scene scene = one_sphere(center, static_cast<float>(size));
+    const World world(scene, {.grid = false});
+    const Float3 eye = at(center, size * random.log_in(1.5, 100), random.direction());
+    Rays rays;
+    rays.add(eye, minus(at(center, .9 * size, random.direction()), eye));
+    const Answers hit = trace(*find_variant("scalar"), world, rays, {Method::kSingle, 1, true}, Query::kClosest);
+    if (hit.id[0] == kNoPrimitive) continue;
+    const float org[3] = {eye.x, eye.y, eye.z}, dir[3] = {rays.dx[0], rays.dy[0], rays.dz[0]};
+    const scalar::Surface s = scalar::surface_of(world.impl().view, 0, org, dir, hit.t[0], false);
+    Float3 d = random.direction();
+    float cosine = d.x * s.normal.x + d.y * s.normal.y + d.z * s.normal.z;
+    if (cosine > 0) d = scaled(d, -1), cosine = -cosine;
+    if (cosine > -.05f) continue;
+    const scalar::Vec3<float> start = scalar::leave(s.point, s.normal, s.away, {d.x, d.y, d.z});
+    Rays inwards;
+    inwards.add({start.x, start.y, start.z}, d);
+    const Answers far = trace(*find_variant("scalar"), world, inwards, {Method::kSingle, 1, true}, Query::kClosest);
+    ASSERT_EQ(far.id[0], 0u) << "seed " << seed;
+    // The chord is -2 r cosine. The start stands off by `away` and its rounding, which the chord feels by 1 / |cosine|.
+    EXPECT_NEAR(far.t[0], -2 * size * cosine, 4 * s.away / -cosine + 1e-5 * size) << "seed " << seed;
+    ++judged;
+  }
+  EXPECT_GT(judged, 10000u);
+}
+
+/// Something a thousandth of the size above a surface is met, not skipped, wherever that is far above the spacing of floats.
+TEST(Leaving, SeesWhatIsNear) {
+  std::uint64_t rays = 0;
+  for (std::uint64_t seed = 0; seed < 20000; ++seed) {
+    Random random(seed);
+    const double size = random.log_in(1e-6, 1e6);
+    const Float3 place = random.point(size * random.log_in(1e-2, 100));
+    const float gap = static_cast<float>(1e-3 * size);
+    Scene scene = empty_scene();
+    for (const float up : {0.f, gap}) {
+      const float y = place.y + up;
+      add_triangle(scene, {place.x - float(size), y, place.z - float(size)}, {place.x + float(size), y, place.z - float(size)}, {place.x, y, place.z + float(size)});
+    }
+    const World world(scene, {.grid = false});
+    const float org[3] = {place.x, place.y + gap / 2, place.z}, dir[3] = {0, -1, 0};
+    const scalar::Surface s = scalar::surface_of(world.impl().view, 0, org, dir, gap / 2, false);
+    Float3 d = random.direction();
+    if (d.y < 0) d = scaled(d, -1);
+    if (d.y < .1f) continue;
+    const scalar::Vec3<float> start = scalar::leave(s.point, s.normal, s.away, {d.x, d.y, d.z});
+    Rays up;
+    up.add({start.x, start.y, start.z}, d);
+    EXPECT_EQ(trace(*find_variant("scalar"), world, up, {Method::kSingle, 1, true}, Query::kClosest).id[0], 1u) << "seed " << seed;
+    ++rays;
+  }
+  EXPECT_GT(rays, 15000u);
+}
+
+}  // namespace
+}  // namespace grelha::test
