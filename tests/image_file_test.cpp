@@ -135,7 +135,11 @@ TEST(Hdr, KeepsLightWithinItsPrecision) {
 TEST(Hdr, SurvivesWhatIsNoLight) {
   TemporaryFolder folder;
   write_image(folder.file("a.hdr"), odd_image());
-  for (const float value : read_image(folder.file("a.hdr")).rgb) EXPECT_TRUE(value >= 0 && value < kInfinity);
+  const std::vector<float> back = read_image(folder.file("a.hdr")).rgb;
+  for (const float value : back) EXPECT_TRUE(value >= 0 && value < kInfinity);
+  EXPECT_EQ(back[3], 0) << "from -1";
+  EXPECT_EQ(back[10], 0) << "from NaN";
+  EXPECT_GT(back[11], 9e37f) << "from infinity";
 }
 
 TEST(ReadImage, RefusesWhatItIsNot) {
