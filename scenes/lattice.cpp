@@ -19,7 +19,9 @@ void write_lattice(std::ostream& out, const SceneOptions& options) {
   const double half = 0.5 / n;
   NffWriter nff(out);
   nff.background({0.078, 0.361, 0.753});
-  nff.view({.from = {0.5 + half, 1, 1 - half}, .at = {0.5 + half, -1, -1 - half}, .up = {0.2, 1, 0}, .angle_deg = 60,
+  // Between two layers of rods. SPD has 1/2 + half at every size, which for odd ones is inside a rod: a black picture.
+  const double middle = n % 2 == 0 ? 0.5 + half : 0.5;
+  nff.view({.from = {middle, 1, 1 - half}, .at = {middle, -1, -1 - half}, .up = {0.2, 1, 0}, .angle_deg = 60,
             .hither = 0});
   for (const Vec& light : {Vec{2, 0.5, 0.5}, Vec{-1, 0.5, 0.5}, Vec{0.5, 2, 0.5}, Vec{0.5, -1, 0.5}, Vec{0.5, 0.5, 2},
                            Vec{0.5, 0.5, -1}})
