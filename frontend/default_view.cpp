@@ -20,12 +20,12 @@ std::array<Extent, 3> extents(const Triangles& t) {
   for (const auto* corners : {&t.a, &t.b, &t.c})
     for (const std::uint32_t v : *corners) named[v] = true;
   const std::uint32_t first = t.a[0];
-  std::array<Extent, 3> all{Extent{t.x[first], t.x[first]}, Extent{t.y[first], t.y[first]}, Extent{t.z[first], t.z[first]}};
+  std::array<Extent, 3> all{Extent{t.x[first], t.x[first]}, Extent{t.y[first], t.y[first]},
+                            Extent{t.z[first], t.z[first]}};
   for (std::size_t v = 0; v < t.vertex_count(); ++v) {
     if (!named[v]) continue;
     const double point[] = {t.x[v], t.y[v], t.z[v]};
-    for (std::size_t i = 0; i < 3; ++i)
-      all[i] = {std::min(all[i].lower, point[i]), std::max(all[i].upper, point[i])};
+    for (std::size_t i = 0; i < 3; ++i) all[i] = {std::min(all[i].lower, point[i]), std::max(all[i].upper, point[i])};
   }
   return all;
 }
@@ -60,7 +60,8 @@ void add_default_view(SceneFile& file) {
     };
     return Float3{part(0), part(1), part(2)};
   };
-  file.camera = {place(1, 0, 0), {float(middle[0]), float(middle[1]), float(middle[2])}, {0, 1, 0}, kAngleDeg, 512, 512};
+  file.camera = {
+      place(1, 0, 0), {float(middle[0]), float(middle[1]), float(middle[2])}, {0, 1, 0}, kAngleDeg, 512, 512};
   file.scene.lights = {{place(1, -0.5, 0.7), {1, 1, 1}}};
   file.scene.background = {0.62f, 0.68f, 0.76f};
   file.default_camera = file.default_light = true;

@@ -56,7 +56,8 @@ class Inflater {
     std::size_t made = 0;
     while (!step(out, made)) {
       if (made < out.size()) continue;
-      if (out.size() >= limit) fail("wanted data that inflate to at most " + std::to_string(limit) + " bytes, found more");
+      if (out.size() >= limit)
+        fail("wanted data that inflate to at most " + std::to_string(limit) + " bytes, found more");
       out.resize(std::min(limit, 2 * out.size()));
     }
     out.resize(made);
@@ -66,9 +67,7 @@ class Inflater {
  private:
   static constexpr std::size_t kChunk = std::size_t(1) << 30;
 
-  [[noreturn]] void fail(const std::string& message) const {
-    throw ParseError(Position{path_, 0, 0, taken_}, message);
-  }
+  [[noreturn]] void fail(const std::string& message) const { throw ParseError(Position{path_, 0, 0, taken_}, message); }
 
   /// One call of inflate; true when the last member has ended.
   bool step(std::string& out, std::size_t& made) {

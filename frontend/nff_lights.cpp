@@ -58,7 +58,8 @@ void NffLights::read_point(NffInput& input) {
 
 void NffLights::add_area(NffInput& input, std::string_view keyword, AreaLight light) {
   const Float3 center = light.corner + 0.5f * (light.edge1 + light.edge2);
-  if (!drawable(center)) throw ParseError(input.position(keyword), "wanted an area light within 1e18, found a larger one");
+  if (!drawable(center))
+    throw ParseError(input.position(keyword), "wanted an area light within 1e18, found a larger one");
   light.point_light = std::uint32_t(file_.scene.lights.size());
   file_.area_lights.push_back(light);
   add_point(center, light.color);
@@ -90,7 +91,8 @@ void NffLights::read_light(NffInput& input, std::string_view keyword) {
 void NffLights::read_area(NffInput& input, std::string_view keyword) {
   const std::vector<NumberWord> n = input.numbers(11, "the area light");
   if (n.size() < 11)
-    input.fail(input.words.peek(), "a number for the area light (field " + std::to_string(n.size() + 1) + " of 11 or 12)");
+    input.fail(input.words.peek(),
+               "a number for the area light (field " + std::to_string(n.size() + 1) + " of 11 or 12)");
   if (n.size() == 11) {
     add_area(input, keyword, facing(triple(n, 0), triple(n, 3), n[6].value, n[7].value, triple(n, 8)));
     return;

@@ -75,11 +75,11 @@ class NffReader {
 
 // The frequent ones first: the search is linear.
 const NffReader::Named NffReader::kEntities[] = {
-    {"s", &NffReader::read_s},       {"p", &NffReader::read_p},         {"pp", &NffReader::read_pp},
-    {"c", &NffReader::read_c},       {"f", &NffReader::read_f},         {"mat", &NffReader::read_mat},
-    {"l", &NffReader::read_l},       {"b", &NffReader::read_b},         {"bclr", &NffReader::read_b},
-    {"pl", &NffReader::read_pl},     {"npl", &NffReader::read_npl},     {"box", &NffReader::read_box},
-    {"aabb", &NffReader::read_aabb}, {"mesh", &NffReader::read_mesh},   {"ply", &NffReader::read_ply},
+    {"s", &NffReader::read_s},         {"p", &NffReader::read_p},       {"pp", &NffReader::read_pp},
+    {"c", &NffReader::read_c},         {"f", &NffReader::read_f},       {"mat", &NffReader::read_mat},
+    {"l", &NffReader::read_l},         {"b", &NffReader::read_b},       {"bclr", &NffReader::read_b},
+    {"pl", &NffReader::read_pl},       {"npl", &NffReader::read_npl},   {"box", &NffReader::read_box},
+    {"aabb", &NffReader::read_aabb},   {"mesh", &NffReader::read_mesh}, {"ply", &NffReader::read_ply},
     {"light", &NffReader::read_light}, {"al", &NffReader::read_al},     {"env", &NffReader::read_env},
     {"accel", &NffReader::read_accel}, {"spp", &NffReader::read_spp},
 };
@@ -94,8 +94,10 @@ SceneFile NffReader::read() {
       lights_.finish();
       return std::move(file_);
     }
-    if (read_entity(word)) last_entity = word;
-    else skip_other(word, last_entity);
+    if (read_entity(word))
+      last_entity = word;
+    else
+      skip_other(word, last_entity);
   }
 }
 
@@ -201,8 +203,10 @@ void NffReader::read_aabb(std::string_view keyword) {
   const bool pairs = p.x <= p.y && p.z <= q.x && q.y <= q.z;
   const bool ascending = p.x <= q.x && p.y <= q.y && p.z <= q.z;
   const bool descending = p.x >= q.x && p.y >= q.y && p.z >= q.z;
-  if (pairs && !ascending && !descending) build_.box({p.x, p.z, q.y}, {p.y, q.x, q.z}, material(keyword));
-  else build_.box(p, q, material(keyword));
+  if (pairs && !ascending && !descending)
+    build_.box({p.x, p.z, q.y}, {p.y, q.x, q.z}, material(keyword));
+  else
+    build_.box(p, q, material(keyword));
   ++file_.counts.box;
 }
 
@@ -215,7 +219,8 @@ std::vector<std::uint32_t> NffReader::mesh_corners(std::size_t faces, std::size_
     const std::string_view word = words_.next();
     std::int64_t index = 0;
     if (!to_integer(word, index) || index == 0 || index > last || index < -last)
-      input_.fail(word, "a vertex of the mesh, from 1 to " + std::to_string(last) + " or -" + std::to_string(last) + " to -1");
+      input_.fail(
+          word, "a vertex of the mesh, from 1 to " + std::to_string(last) + " or -" + std::to_string(last) + " to -1");
     corners.push_back(std::uint32_t(index > 0 ? index - 1 : last + index));
   }
   return corners;

@@ -27,17 +27,28 @@ int pixels(NffInput& input) {
 }  // namespace
 
 bool NffView::read(std::string_view word, NffInput& input, LensHint& lens) {
-  if (word == "v" || word == "camera") begin(word, input);
-  else if (word == "from" || word == "eye") from_ = word, camera_.eye = input.bounded_point("the view's eye");
-  else if (word == "at") at_ = word, camera_.at = input.bounded_point("the point looked at");
-  else if (word == "up") up_ = word, camera_.up = input.bounded_point("the view's up direction");
-  else if (word == "angle") read_angle(input);
-  else if (word == "hither") input.number("the hither distance");
-  else if (word == "resolution") resolution_ = word, read_resolution(input);
-  else if (word == "aperture" || word == "apperture") read_aperture(input, lens);
-  else if (word == "focal") lens.present = true, lens.focal = double(input.bounded("the focal ratio"));
-  else if (word == "view") input.number("the view distance");
-  else return false;
+  if (word == "v" || word == "camera")
+    begin(word, input);
+  else if (word == "from" || word == "eye")
+    from_ = word, camera_.eye = input.bounded_point("the view's eye");
+  else if (word == "at")
+    at_ = word, camera_.at = input.bounded_point("the point looked at");
+  else if (word == "up")
+    up_ = word, camera_.up = input.bounded_point("the view's up direction");
+  else if (word == "angle")
+    read_angle(input);
+  else if (word == "hither")
+    input.number("the hither distance");
+  else if (word == "resolution")
+    resolution_ = word, read_resolution(input);
+  else if (word == "aperture" || word == "apperture")
+    read_aperture(input, lens);
+  else if (word == "focal")
+    lens.present = true, lens.focal = double(input.bounded("the focal ratio"));
+  else if (word == "view")
+    input.number("the view distance");
+  else
+    return false;
   return true;
 }
 
@@ -64,14 +75,16 @@ void NffView::read_aperture(NffInput& input, LensHint& lens) {
   const std::string_view word = input.words.peek();
   lens.present = true;
   lens.aperture = double(input.bounded("the lens aperture"));
-  if (lens.aperture > 0) input.warn_once("aperture", word, "a lens is not rendered yet; the picture will be sharp everywhere");
+  if (lens.aperture > 0)
+    input.warn_once("aperture", word, "a lens is not rendered yet; the picture will be sharp everywhere");
 }
 
 Camera NffView::finish(NffInput& input, std::string_view end) const {
   if (view_.empty() && from_.empty()) input.fail(end, "a view (\"v\" or \"camera\")");
   const std::string_view start = view_.empty() ? from_ : view_;
   const auto need = [&](std::string_view word, const char* name) {
-    if (word.empty()) throw ParseError(input.position(start), std::string("wanted \"") + name + "\" in the view, found none");
+    if (word.empty())
+      throw ParseError(input.position(start), std::string("wanted \"") + name + "\" in the view, found none");
   };
   need(from_, "from"), need(at_, "at"), need(up_, "up"), need(angle_, "angle");
   if (resolution_.empty()) input.warn_once("resolution", start, "the view has no resolution; 512 512 is taken");
@@ -79,7 +92,8 @@ Camera NffView::finish(NffInput& input, std::string_view end) const {
   const Direction view{double(camera_.at.x) - camera_.eye.x, double(camera_.at.y) - camera_.eye.y,
                        double(camera_.at.z) - camera_.eye.z};
   const Direction up{camera_.up.x, camera_.up.y, camera_.up.z};
-  if (view.length() == 0) throw ParseError(input.position(at_), "wanted a point to look at apart from the eye, found the same point");
+  if (view.length() == 0)
+    throw ParseError(input.position(at_), "wanted a point to look at apart from the eye, found the same point");
   if (up.length() == 0) throw ParseError(input.position(up_), "wanted an up direction, found 0 0 0");
   // Floats of a nearly parallel pair leave no digits for the picture's horizon below about 1e-6.
   constexpr double kLeastSine = 1e-6;

@@ -8,9 +8,10 @@ namespace grelha {
 std::string_view PlyAscii::word(const PlyElement& element, std::uint64_t row) {
   const std::string_view found = words_.next();
   if (found.empty())
-    throw ParseError(words_.position(found),
-                     "row " + std::to_string(row + 1) + " of " + std::to_string(element.count) + " of \"" + element.name + '"',
-                     quoted(found));
+    throw ParseError(
+        words_.position(found),
+        "row " + std::to_string(row + 1) + " of " + std::to_string(element.count) + " of \"" + element.name + '"',
+        quoted(found));
   return found;
 }
 

@@ -19,14 +19,22 @@ T load(const char* p, bool swap) {
 template <class Use>
 decltype(auto) with_type(PlyType type, Use&& use) {
   switch (type) {
-    case PlyType::kInt8: return use(std::int8_t());
-    case PlyType::kUint8: return use(std::uint8_t());
-    case PlyType::kInt16: return use(std::int16_t());
-    case PlyType::kUint16: return use(std::uint16_t());
-    case PlyType::kInt32: return use(std::int32_t());
-    case PlyType::kUint32: return use(std::uint32_t());
-    case PlyType::kFloat32: return use(float());
-    case PlyType::kFloat64: break;
+    case PlyType::kInt8:
+      return use(std::int8_t());
+    case PlyType::kUint8:
+      return use(std::uint8_t());
+    case PlyType::kInt16:
+      return use(std::int16_t());
+    case PlyType::kUint16:
+      return use(std::uint16_t());
+    case PlyType::kInt32:
+      return use(std::int32_t());
+    case PlyType::kUint32:
+      return use(std::uint32_t());
+    case PlyType::kFloat32:
+      return use(float());
+    case PlyType::kFloat64:
+      break;
   }
   return use(double());
 }
@@ -35,7 +43,8 @@ std::int64_t load_integer(PlyType type, const char* p, bool swap) {
   return with_type(type, [&](auto t) { return std::int64_t(load<decltype(t)>(p, swap)); });
 }
 
-void append_column(PlyType type, const char* p, std::size_t stride, std::size_t rows, bool swap, std::vector<float>& out) {
+void append_column(PlyType type, const char* p, std::size_t stride, std::size_t rows, bool swap,
+                   std::vector<float>& out) {
   const std::size_t before = out.size();
   out.resize(before + rows);
   with_type(type, [&](auto t) {
@@ -60,7 +69,8 @@ void PlyBinary::fail(const char* at, const std::string& wanted, const std::strin
 /// Steps over `bytes` bytes, which must be there, and returns where they begin.
 const char* PlyBinary::take(std::size_t bytes, const PlyElement& element, std::uint64_t row) {
   if (std::size_t(end_ - at_) < bytes) [[unlikely]]
-    fail(end_, "row " + std::to_string(row + 1) + " of " + std::to_string(element.count) + " of \"" + element.name + '"',
+    fail(end_,
+         "row " + std::to_string(row + 1) + " of " + std::to_string(element.count) + " of \"" + element.name + '"',
          "end of file");
   const char* const here = at_;
   at_ += bytes;
@@ -95,15 +105,17 @@ void PlyBinary::read_list(const PlyElement& element, const PlyProperty& list, st
   const std::size_t item = size_of(list.type);
   const char* p = take(std::size_t(size) * item, element, row);
   if (!faces) return;
-  const bool done = size == 3 && with_type(list.type, [&](auto t) {
-    const auto index = [&](std::size_t i) { return std::int64_t(load<decltype(t)>(p + i * item, swap_)); };
-    return faces->add_triangle(index(0), index(1), index(2));
-  });
+  const bool done =
+      size == 3 && with_type(list.type, [&](auto t) {
+        const auto index = [&](std::size_t i) { return std::int64_t(load<decltype(t)>(p + i * item, swap_)); };
+        return faces->add_triangle(index(0), index(1), index(2));
+      });
   if (done) return;
   with_type(list.type, [&](auto t) {
     for (std::int64_t i = 0; i < size; ++i, p += item) {
       const auto index = std::int64_t(load<decltype(t)>(p, swap_));
-      if (!faces->accepts(index)) fail(p, "the index of a vertex, 0 or more and below their number", std::to_string(index));
+      if (!faces->accepts(index))
+        fail(p, "the index of a vertex, 0 or more and below their number", std::to_string(index));
       faces->add(index);
     }
   });
@@ -128,8 +140,10 @@ void PlyBinary::read_rows(const PlyElement& element, const PlyPlan& plan, Mesh& 
 }
 
 void PlyBinary::read(const PlyElement& element, const PlyPlan& plan, Mesh& mesh, PlyFaces& faces) {
-  if (element.has_lists) read_rows(element, plan, mesh, faces);
-  else read_fixed(element, plan, mesh);
+  if (element.has_lists)
+    read_rows(element, plan, mesh, faces);
+  else
+    read_fixed(element, plan, mesh);
 }
 
 }  // namespace grelha

@@ -16,8 +16,10 @@ class PlyFaces {
     return (index >= 0 && std::uint64_t(index) < vertices_) || (strips_ && index == -1);
   }
   void add(std::int64_t index) {
-    if (strips_) add_to_strip(index);
-    else mesh_.corners.push_back(std::uint32_t(index));
+    if (strips_)
+      add_to_strip(index);
+    else
+      mesh_.corners.push_back(std::uint32_t(index));
   }
   /// A whole triangle at once, when it is one and sound; false: take it item by item.
   bool add_triangle(std::int64_t a, std::int64_t b, std::int64_t c) {

@@ -24,8 +24,7 @@ std::optional<PlyType> type_named(std::string_view name) {
 
 class HeaderReader {
  public:
-  HeaderReader(const std::string& path, std::string_view bytes)
-      : bytes_(bytes), whole_(path, bytes, 0, '\0') {}
+  HeaderReader(const std::string& path, std::string_view bytes) : bytes_(bytes), whole_(path, bytes, 0, '\0') {}
 
   PlyHeader read();
 
@@ -44,10 +43,10 @@ class HeaderReader {
   void check_counts() const;
 
   std::string_view bytes_;
-  Words whole_;             ///< only to name positions
+  Words whole_;  ///< only to name positions
   char line_end_ = '\n';
-  std::size_t next_ = 0;    ///< first byte of the next line
-  std::string_view line_;   ///< what is left of the present one
+  std::size_t next_ = 0;   ///< first byte of the next line
+  std::string_view line_;  ///< what is left of the present one
   PlyHeader header_;
   std::vector<std::string_view> count_words_;  ///< [elements]
 };
@@ -88,10 +87,14 @@ PlyType HeaderReader::type(const char* what) {
 
 void HeaderReader::read_format() {
   const std::string_view name = word();
-  if (name == "ascii") header_.format = PlyFormat::kAscii;
-  else if (name == "binary_little_endian") header_.format = PlyFormat::kLittleEndian;
-  else if (name == "binary_big_endian") header_.format = PlyFormat::kBigEndian;
-  else fail(name, "ascii, binary_little_endian or binary_big_endian");
+  if (name == "ascii")
+    header_.format = PlyFormat::kAscii;
+  else if (name == "binary_little_endian")
+    header_.format = PlyFormat::kLittleEndian;
+  else if (name == "binary_big_endian")
+    header_.format = PlyFormat::kBigEndian;
+  else
+    fail(name, "ascii, binary_little_endian or binary_big_endian");
   const std::string_view version = word();
   if (version != "1.0") fail(version, "format version 1.0");
 }

@@ -20,18 +20,18 @@ enum class PlyFormat : std::uint8_t { kAscii, kLittleEndian, kBigEndian };
 
 struct PlyProperty {
   std::string name;
-  PlyType type = PlyType::kFloat32;        ///< of the items, for a list
+  PlyType type = PlyType::kFloat32;  ///< of the items, for a list
   bool is_list = false;
-  PlyType count_type = PlyType::kUint8;    ///< an integer type
+  PlyType count_type = PlyType::kUint8;  ///< an integer type
 };
 
 struct PlyElement {
   std::string name;
   std::uint64_t count = 0;
   std::vector<PlyProperty> properties;
-  std::size_t row_bytes = 0;      ///< in binary: all properties, lists with no item; in ASCII: two for each
+  std::size_t row_bytes = 0;  ///< in binary: all properties, lists with no item; in ASCII: two for each
   bool has_lists = false;
-  Position position;              ///< of the name
+  Position position;  ///< of the name
 };
 
 struct PlyHeader {

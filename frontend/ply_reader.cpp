@@ -20,9 +20,11 @@ PlyPlan plan_vertex(const PlyElement& element) {
   for (int i = 0; i < 6; ++i) {
     const int found = find_property(element, kNames[i]);
     const bool scalar = found >= 0 && !element.properties[std::size_t(found)].is_list;
-    if (scalar) plan.columns[i] = found;
+    if (scalar)
+      plan.columns[i] = found;
     else if (i < 3 && element.count > 0)
-      throw ParseError(element.position, "wanted a property \"" + std::string(kNames[i]) + "\" of \"vertex\", found none");
+      throw ParseError(element.position,
+                       "wanted a property \"" + std::string(kNames[i]) + "\" of \"vertex\", found none");
   }
   const bool normals = plan.columns[3] >= 0 && plan.columns[4] >= 0 && plan.columns[5] >= 0;
   if (!normals) std::fill(plan.columns + 3, plan.columns + 6, -1);

@@ -40,10 +40,10 @@ class PointTree {
   void settle(const Range& range);
 
   std::span<const Point2> points_;
-  std::vector<std::uint32_t> order_;    ///< ids, each node's in a run
-  std::vector<std::uint32_t> slot_;     ///< [points] where an id stands in order_
-  std::vector<std::uint8_t> present_;   ///< [order_] not yet removed
-  std::vector<Node> nodes_;             ///< root 0, children 2k+1 and 2k+2
+  std::vector<std::uint32_t> order_;   ///< ids, each node's in a run
+  std::vector<std::uint32_t> slot_;    ///< [points] where an id stands in order_
+  std::vector<std::uint8_t> present_;  ///< [order_] not yet removed
+  std::vector<Node> nodes_;            ///< root 0, children 2k+1 and 2k+2
 };
 
 }  // namespace grelha

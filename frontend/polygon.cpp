@@ -59,20 +59,13 @@ void PolygonCutter::project(std::span<const Float3> corners) {
   for (std::size_t i = 0; i < corners.size(); ++i) points_[i] = {component(corners[i], u), component(corners[i], v)};
 }
 
-/// Every corner turns left, and the outline goes round once (its edges change between leftward and rightward twice; a
-/// star drawn in one stroke turns left as well).
+/// Every corner turns left. An outline that does so while it goes round more than once crosses itself, and then a fan
+/// is as good as anything.
 bool PolygonCutter::convex() const {
   const std::size_t n = points_.size();
-  int changes = 0, direction = 0, first_direction = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const Point2 &a = points_[i], &b = points_[(i + 1) % n], &c = points_[(i + 2) % n];
-    if (!(grelha::turn(a, b, c) > 0)) return false;
-    const int now = b.x > a.x ? 1 : b.x < a.x ? -1 : direction;
-    if (direction != 0 && now != direction) ++changes;
-    direction = now;
-    if (first_direction == 0) first_direction = now;
-  }
-  return changes + (direction != first_direction) <= 2;
+  for (std::size_t i = 0; i < n; ++i)
+    if (!(grelha::turn(points_[i], points_[(i + 1) % n], points_[(i + 2) % n]) > 0)) return false;
+  return true;
 }
 
 /// A ring without corners that repeat the one before.
@@ -141,7 +134,8 @@ bool PolygonCutter::try_clip(std::uint32_t corner, std::vector<Triangle>& triang
   const Point2 &a = points_[before], &b = points_[corner], &c = points_[after];
   const double area = turn(corner);
   if (area < 0) return false;
-  if (area == 0) {  // a spike or a repeated corner goes without a trace; a flat corner stays, it bounds its neighbours' ears
+  if (area ==
+      0) {  // a spike or a repeated corner goes without a trace; a flat corner stays, it bounds its neighbours' ears
     const bool spike = b == a || b == c || (a.x - b.x) * (c.x - b.x) + (a.y - b.y) * (c.y - b.y) > 0;
     if (!spike) return false;
   } else {

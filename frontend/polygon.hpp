@@ -40,7 +40,7 @@ class PolygonCutter {
   bool blocked(std::uint32_t corner) const;
 
   std::array<double, 3> normal_{};
-  std::vector<Point2> points_;                     ///< [corners] seen along the normal's largest axis; front side up
+  std::vector<Point2> points_;                       ///< [corners] seen along the normal's largest axis; front side up
   std::vector<std::uint32_t> previous_, following_;  ///< ring of the corners left
   std::vector<std::uint8_t> gone_, queued_, in_tree_;
   std::vector<std::uint32_t> candidates_, next_candidates_;

@@ -14,7 +14,8 @@ namespace {
 /// Extension in small letters, without a ".gz" behind it.
 std::string extension(const std::string& path) {
   std::string name = path.substr(path.find_last_of('/') + 1);
-  std::transform(name.begin(), name.end(), name.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 32) : c; });
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 32) : c; });
   if (name.ends_with(".gz")) name.resize(name.size() - 3);
   const std::size_t point = name.find_last_of('.');
   return point == std::string::npos ? "" : name.substr(point);
@@ -48,9 +49,9 @@ SceneFile read_mesh_alone(const std::string& path, std::string_view bytes) {
 void warn_of_dropped(const std::string& path, const Dropped& dropped, const Warn& warn) {
   const std::uint64_t all = dropped.not_finite + dropped.zero_area;
   if (all == 0 || !warn) return;
-  warn(path + ": warning: " + std::to_string(all) + (all == 1 ? " primitive is" : " primitives are") + " left out: " +
-       std::to_string(dropped.not_finite) + " not finite (or beyond 1e18), " + std::to_string(dropped.zero_area) +
-       " without area");
+  warn(path + ": warning: " + std::to_string(all) + (all == 1 ? " primitive is" : " primitives are") +
+       " left out: " + std::to_string(dropped.not_finite) + " not finite (or beyond 1e18), " +
+       std::to_string(dropped.zero_area) + " without area");
 }
 
 }  // namespace

@@ -39,15 +39,21 @@ bool is_none(const Float3& n) { return n == Float3{}; }
 }  // namespace
 
 void SceneBuilder::sphere(Float3 center, float radius, std::uint32_t material) {
-  if (!drawable(center) || !drawable(radius)) ++file_.dropped.not_finite;
-  else if (radius == 0) ++file_.dropped.zero_area;
-  else file_.scene.geometry.spheres.add(center, radius, material);
+  if (!drawable(center) || !drawable(radius))
+    ++file_.dropped.not_finite;
+  else if (radius == 0)
+    ++file_.dropped.zero_area;
+  else
+    file_.scene.geometry.spheres.add(center, radius, material);
 }
 
 void SceneBuilder::cone(Float3 base, float base_radius, Float3 apex, float apex_radius, std::uint32_t material) {
-  if (!drawable(base) || !drawable(apex) || !drawable(base_radius) || !drawable(apex_radius)) ++file_.dropped.not_finite;
-  else if (base == apex || (base_radius == 0 && apex_radius == 0)) ++file_.dropped.zero_area;
-  else file_.scene.geometry.cones.add(base, base_radius, apex, apex_radius, material);
+  if (!drawable(base) || !drawable(apex) || !drawable(base_radius) || !drawable(apex_radius))
+    ++file_.dropped.not_finite;
+  else if (base == apex || (base_radius == 0 && apex_radius == 0))
+    ++file_.dropped.zero_area;
+  else
+    file_.scene.geometry.cones.add(base, base_radius, apex, apex_radius, material);
 }
 
 void SceneBuilder::plane(Float3 a, Float3 b, Float3 c, std::uint32_t material) {
@@ -56,8 +62,10 @@ void SceneBuilder::plane(Float3 a, Float3 b, Float3 c, std::uint32_t material) {
     return;
   }
   const Double3 normal = cross(difference(b, a), difference(c, a));
-  if (vanishes(normal)) ++file_.dropped.zero_area;
-  else file_.scene.geometry.planes.add(a, unit(normal), material);
+  if (vanishes(normal))
+    ++file_.dropped.zero_area;
+  else
+    file_.scene.geometry.planes.add(a, unit(normal), material);
 }
 
 void SceneBuilder::plane(Float3 normal, float distance, std::uint32_t material) {
@@ -71,9 +79,12 @@ void SceneBuilder::plane(Float3 normal, float distance, std::uint32_t material) 
     ++file_.dropped.zero_area;
     return;
   }
-  const Float3 point{float(n[0] * distance / squared), float(n[1] * distance / squared), float(n[2] * distance / squared)};
-  if (!drawable(point)) ++file_.dropped.not_finite;
-  else file_.scene.geometry.planes.add(point, unit(n), material);
+  const Float3 point{float(n[0] * distance / squared), float(n[1] * distance / squared),
+                     float(n[2] * distance / squared)};
+  if (!drawable(point))
+    ++file_.dropped.not_finite;
+  else
+    file_.scene.geometry.planes.add(point, unit(n), material);
 }
 
 std::uint32_t SceneBuilder::add_vertex(Float3 point, Float3 normal) {
@@ -157,8 +168,10 @@ void SceneBuilder::append_vertices(Mesh& mesh) {
   Triangles& t = file_.scene.geometry.triangles;
   const std::size_t before = t.x.size(), count = mesh.vertex_count();
   const auto append = [before](std::vector<float>& all, std::vector<float>& more) {
-    if (before == 0) all = std::move(more);
-    else all.insert(all.end(), more.begin(), more.end());
+    if (before == 0)
+      all = std::move(more);
+    else
+      all.insert(all.end(), more.begin(), more.end());
   };
   bool any_normal = false;
   for (std::size_t i = 0; i < mesh.nx.size(); ++i) {
@@ -175,11 +188,14 @@ void SceneBuilder::append_vertices(Mesh& mesh) {
   append(t.x, mesh.x), append(t.y, mesh.y), append(t.z, mesh.z);
 }
 
-void SceneBuilder::mesh_face(std::span<const std::uint32_t> corners, std::uint32_t first_vertex, std::uint32_t material) {
+void SceneBuilder::mesh_face(std::span<const std::uint32_t> corners, std::uint32_t first_vertex,
+                             std::uint32_t material) {
   if (corners.size() == 3) {
     const std::uint32_t a = first_vertex + corners[0], b = first_vertex + corners[1], c = first_vertex + corners[2];
-    if (has_area(a, b, c)) add_triangle(a, b, c, material);
-    else ++file_.dropped.zero_area;
+    if (has_area(a, b, c))
+      add_triangle(a, b, c, material);
+    else
+      ++file_.dropped.zero_area;
     return;
   }
   const Triangles& t = file_.scene.geometry.triangles;
@@ -215,20 +231,24 @@ void SceneBuilder::mesh(Mesh mesh, std::uint32_t material) {
     const std::size_t room = std::max(wanted, 2 * t.a.capacity());
     t.a.reserve(room), t.b.reserve(room), t.c.reserve(room), t.material.reserve(room);
   }
-  if (mesh.sizes.empty() && bad.empty()) mesh_triangles(mesh.corners, first_vertex, material);
-  else mesh_faces(mesh, bad, first_vertex, material);
+  if (mesh.sizes.empty() && bad.empty())
+    mesh_triangles(mesh.corners, first_vertex, material);
+  else
+    mesh_faces(mesh, bad, first_vertex, material);
   const auto count = std::uint32_t(t.size()) - first_triangle;
   if (count > 0) file_.scene.geometry.objects.push_back({first_triangle, count});
 }
 
 /// The common case, without a look at each face's size.
-void SceneBuilder::mesh_triangles(std::span<const std::uint32_t> corners, std::uint32_t first_vertex, std::uint32_t material) {
+void SceneBuilder::mesh_triangles(std::span<const std::uint32_t> corners, std::uint32_t first_vertex,
+                                  std::uint32_t material) {
   Triangles& t = file_.scene.geometry.triangles;
   std::size_t at = t.size();
   const std::size_t most = at + corners.size() / 3;
   t.a.resize(most), t.b.resize(most), t.c.resize(most), t.material.resize(most, material);
   for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
-    const std::uint32_t a = first_vertex + corners[i], b = first_vertex + corners[i + 1], c = first_vertex + corners[i + 2];
+    const std::uint32_t a = first_vertex + corners[i], b = first_vertex + corners[i + 1],
+                        c = first_vertex + corners[i + 2];
     t.a[at] = a, t.b[at] = b, t.c[at] = c;
     at += has_area(a, b, c) ? 1 : 0;  // the next one overwrites what has none
   }

@@ -37,10 +37,12 @@ class Words {
   /// wherever it stands; '\0': there are none.
   Words(std::string file, std::string_view text, std::size_t begin, char comment);
 
-  std::string_view next();          ///< next word on any line; empty at the end of the file
-  std::string_view peek() const;    ///< the same, left in place
+  std::string_view next();                ///< next word on any line; empty at the end of the file
+  std::string_view peek() const;          ///< the same, left in place
   std::string_view peek_on_line() const;  ///< empty when the line ends first; then data() is where it ends
-  bool fresh_line() const { return fresh_line_; }  ///< whether the last next() stepped over a line end, or was the first
+  bool fresh_line() const {
+    return fresh_line_;
+  }                                 ///< whether the last next() stepped over a line end, or was the first
   void skip_line();                 ///< to the end of this line; the next word is fresh
   std::string_view rest_of_line();  ///< up to the comment or line end, trimmed; consumes it
 

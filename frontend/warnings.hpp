@@ -15,7 +15,9 @@ class Warnings {
  public:
   explicit Warnings(const Warn& warn) : warn_(warn) {}
   /// Whether `kind` is new: only then is the (costlier) message worth making.
-  bool first(std::string_view kind) { return said_.size() < kMost && said_.insert(std::string(kind.substr(0, 64))).second; }
+  bool first(std::string_view kind) {
+    return said_.size() < kMost && said_.insert(std::string(kind.substr(0, 64))).second;
+  }
   void say(const Position& at, std::string_view message) { say(at.text() + ": warning: " + std::string(message)); }
   void say(const std::string& line) {
     if (warn_) warn_(line);

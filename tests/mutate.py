@@ -18,9 +18,10 @@ import sys
 import tempfile
 
 TIMEOUT_S = 10
-HOSTILE = [b"nan", b"inf", b"-inf", b"1e39", b"-1", b"0", b"1e-45", b"4294967296", b"99999999999999999999", b"1e18",
-           b"-0", b"#", b"s", b"p", b"pp", b"mesh", b"ply", b"v", b"x", b"\xff\xfe", b"2147483647", b"end_header", b"list"]
-TROUBLE = re.compile(rb"AddressSanitizer|LeakSanitizer|UndefinedBehavior|runtime error:|ThreadSanitizer|terminate called")
+HOSTILE = [b"nan", b"inf", b"-inf", b"1e39", b"-1", b"0", b"1e-45", b"4294967296", b"99999999999999999999",
+           b"1e18", b"-0", b"#", b"s", b"p", b"pp", b"mesh", b"ply", b"v", b"x", b"\xff\xfe", b"2147483647",
+           b"end_header", b"list"]
+TROUBLE = re.compile(rb"(Address|Leak|Thread)Sanitizer|UndefinedBehavior|runtime error:|terminate called")
 
 
 def flip_bits(data, rng):
@@ -119,7 +120,8 @@ def main():
                 copy.write_bytes(damaged)
                 commands = [[options.program, "info", str(copy)]]
                 if options.render:
-                    commands.append([options.program, "render", str(copy), "--size", "16x16", "--quiet", "-o", str(work / "picture.pfm")])
+                    picture = str(work / "picture.pfm")
+                    commands.append([options.program, "render", str(copy), "--size", "16x16", "--quiet", "-o", picture])
                 for command in commands:
                     run, error_text = attempt(command)
                     status = run.returncode if run else "timeout"

@@ -22,7 +22,8 @@ const std::string kFill = "f 1 .5 0 .8 .2 10 0 1\n";
 const Triangles& triangles(const Reading& r) { return r.file.scene.geometry.triangles; }
 
 TEST(NffView, FieldsInAnyOrder) {
-  const Reading r = read_text("b .1 .2 .3 v resolution 640 480.0 angle 30.5 hither 0 up 0 0 1\nat 1 2 3 from -4 +5 6e0");
+  const Reading r =
+      read_text("b .1 .2 .3 v resolution 640 480.0 angle 30.5 hither 0 up 0 0 1\nat 1 2 3 from -4 +5 6e0");
   EXPECT_EQ(r.warnings, Lines{});
   const Camera& c = r.file.camera;
   EXPECT_EQ(c.eye, (Float3{-4, 5, 6}));
@@ -49,10 +50,12 @@ TEST(NffView, CameraAndEyeOf2023) {
 }
 
 TEST(NffView, LensInsideTheViewIsKept) {
-  const Reading r = read_text("v\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nfocal 4\nview 1\napperture .5\nangle 45\nhither 1\nresolution 8 6\n");
+  const Reading r = read_text(
+      "v\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nfocal 4\nview 1\napperture .5\nangle 45\nhither 1\nresolution 8 6\n");
   EXPECT_EQ(r.file.lens.aperture, .5);
   EXPECT_EQ(r.file.lens.focal, 4);
-  EXPECT_EQ(r.warnings, Lines{"scene.nff:7:11: warning: a lens is not rendered yet; the picture will be sharp everywhere"});
+  EXPECT_EQ(r.warnings,
+            Lines{"scene.nff:7:11: warning: a lens is not rendered yet; the picture will be sharp everywhere"});
 }
 
 TEST(NffView, EnvironmentIsNamedAndLeftOut) {
@@ -90,9 +93,9 @@ TEST(NffLights, Punctual) {
 
 TEST(NffLights, AreasKeepTheirShapeAndGetAPoint) {
   const Reading r = read_with_view(
-      "light quad -1 4 -1 1 1 1 1 4 -1 -1 4 3 16\n"           // three corners, color behind the first
-      "al 0 0 5  2 0 0  0 4 0  1 .5 .25\n"                    // corner, two edges, color
-      "al 0 0 5  0 0 0  2 4  1 1 0\n");                       // position, at, width, height, color
+      "light quad -1 4 -1 1 1 1 1 4 -1 -1 4 3 16\n"  // three corners, color behind the first
+      "al 0 0 5  2 0 0  0 4 0  1 .5 .25\n"           // corner, two edges, color
+      "al 0 0 5  0 0 0  2 4  1 1 0\n");              // position, at, width, height, color
   ASSERT_EQ(r.file.area_lights.size(), 3u);
   const AreaLight& quad = r.file.area_lights[0];
   EXPECT_EQ(quad.edge1, (Float3{2, 0, 0}));
@@ -107,7 +110,8 @@ TEST(NffLights, AreasKeepTheirShapeAndGetAPoint) {
   EXPECT_EQ(std::abs(facing.edge1.x) + std::abs(facing.edge1.y), 2);
   EXPECT_EQ(std::abs(facing.edge2.x) + std::abs(facing.edge2.y), 4);
   EXPECT_EQ(facing.edge1.z, 0);
-  EXPECT_EQ(r.warnings, Lines{"scene.nff:8:1: warning: area lights are not rendered yet; a point light at the center stands in"});
+  EXPECT_EQ(r.warnings,
+            Lines{"scene.nff:8:1: warning: area lights are not rendered yet; a point light at the center stands in"});
 }
 
 Material only_material(const std::string& text) {
@@ -209,7 +213,8 @@ TEST(NffShapes, PolygonsShareTheirOwnCorners) {
 }
 
 TEST(NffShapes, PatchesBringNormals) {
-  const Reading r = read_with_view(kFill + "p 3 0 0 0 1 0 0 0 1 0\npp 4\n0 0 0 0 0 1\n2 0 0 1 0 1\n2 2 0 0 0 1\n0 2 0 nan 0 1");
+  const Reading r =
+      read_with_view(kFill + "p 3 0 0 0 1 0 0 0 1 0\npp 4\n0 0 0 0 0 1\n2 0 0 1 0 1\n2 2 0 0 0 1\n0 2 0 nan 0 1");
   const Triangles& t = triangles(r);
   EXPECT_EQ(r.file.counts.pp, 1u);
   EXPECT_EQ(t.size(), 3u);
@@ -247,7 +252,8 @@ double signed_volume(const Triangles& t) {
 }
 
 TEST(NffShapes, BoxesFromCornersInEitherOrder) {
-  for (const char* text : {"box 0 0 0 1 2 3", "box 1 2 3 0 0 0", "box 1 0 3 0 2 0", "aabb 0 0 0 1 2 3", "aabb 1 2 3 0 0 0"}) {
+  for (const char* text :
+       {"box 0 0 0 1 2 3", "box 1 2 3 0 0 0", "box 1 0 3 0 2 0", "aabb 0 0 0 1 2 3", "aabb 1 2 3 0 0 0"}) {
     const Reading r = read_with_view(kFill + text);
     EXPECT_EQ(triangles(r).size(), 12u);
     EXPECT_EQ(signed_volume(triangles(r)), 6) << text;  // small whole numbers: exact
@@ -257,9 +263,9 @@ TEST(NffShapes, BoxesFromCornersInEitherOrder) {
 
 TEST(NffShapes, AabbInPairs) {
   // As corners (0,4,-1) and (1,2,3) would be unordered on y; as pairs x 0..4 fails, so corners it stays.
-  EXPECT_EQ(signed_volume(triangles(read_with_view(kFill + "aabb 0 4 -1 1 2 3"))), 8);    // pairs: 4 x 2 x 1
-  EXPECT_EQ(signed_volume(triangles(read_with_view(kFill + "aabb 5 4 -1 1 2 3"))), 32);   // corners: 4 x 2 x 4
-  EXPECT_EQ(signed_volume(triangles(read_with_view(kFill + "aabb 0 1 2 3 4 5"))), 27);    // both: corners
+  EXPECT_EQ(signed_volume(triangles(read_with_view(kFill + "aabb 0 4 -1 1 2 3"))), 8);   // pairs: 4 x 2 x 1
+  EXPECT_EQ(signed_volume(triangles(read_with_view(kFill + "aabb 5 4 -1 1 2 3"))), 32);  // corners: 4 x 2 x 4
+  EXPECT_EQ(signed_volume(triangles(read_with_view(kFill + "aabb 0 1 2 3 4 5"))), 27);   // both: corners
 }
 
 TEST(NffShapes, BoxWithoutThicknessIsTwoFaces) {
@@ -270,8 +276,9 @@ TEST(NffShapes, BoxWithoutThicknessIsTwoFaces) {
 }
 
 TEST(NffShapes, MeshesAreObjects) {
-  const Reading r = read_with_view(kFill + "p 3 0 0 0 1 0 0 0 1 0\nmesh 4 2\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n1 2 3\n-4 -2 -1\n" +
-                                   "p 3 0 0 0 1 0 0 0 1 0\nmesh 3 1 0 0 0 1 0 0 1 1 0 1 2 3");
+  const Reading r =
+      read_with_view(kFill + "p 3 0 0 0 1 0 0 0 1 0\nmesh 4 2\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n1 2 3\n-4 -2 -1\n" +
+                     "p 3 0 0 0 1 0 0 0 1 0\nmesh 3 1 0 0 0 1 0 0 1 1 0 1 2 3");
   const Geometry& g = r.file.scene.geometry;
   EXPECT_EQ(r.file.counts.mesh, 3u);
   ASSERT_EQ(g.objects.size(), 2u);
@@ -284,9 +291,11 @@ TEST(NffShapes, MeshesAreObjects) {
 
 TEST(NffShapes, PlyFilesStandBesideTheScene) {
   const TemporaryFolder folder;
-  folder.add("a mesh.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
-                           "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
-  const std::string scene = folder.add("scene.nff", kView + kFill + "ply a mesh.ply # twice\n" + kFill + "ply a mesh.ply\r\ns 0 0 0 1");
+  folder.add("a mesh.ply",
+             "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+             "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  const std::string scene =
+      folder.add("scene.nff", kView + kFill + "ply a mesh.ply # twice\n" + kFill + "ply a mesh.ply\r\ns 0 0 0 1");
   const SceneFile file = read_scene(scene, nullptr);
   EXPECT_EQ(file.counts.ply, 2u);
   EXPECT_EQ(file.counts.s, 1u);
@@ -295,10 +304,11 @@ TEST(NffShapes, PlyFilesStandBesideTheScene) {
 }
 
 TEST(NffDropped, CountedByReason) {
-  const Reading r = read_with_view(kFill +
-                                   "s 0 0 0 0\ns nan 0 0 1\ns 0 0 0 inf\ns 1e39 0 0 1\ns 0 0 2e18 1\nc 0 0 0 1 0 0 0 1\nc 0 0 0 0 0 0 1 0\n"
-                                   "p 3 0 0 0 1 1 1 2 2 2\np 3 0 0 0 nan 0 0 1 1 1\npl 0 0 0 1 1 1 2 2 2\nnpl 0 0 0 1\n"
-                                   "mesh 4 3 0 0 0 1 0 0 0 1 0 nan 0 0 1 2 3 1 2 4 1 1 2\npp 3 0 0 0 0 0 1 0 0 0 0 0 1 1 1 1 0 0 1");
+  const Reading r = read_with_view(
+      kFill +
+      "s 0 0 0 0\ns nan 0 0 1\ns 0 0 0 inf\ns 1e39 0 0 1\ns 0 0 2e18 1\nc 0 0 0 1 0 0 0 1\nc 0 0 0 0 0 0 1 0\n"
+      "p 3 0 0 0 1 1 1 2 2 2\np 3 0 0 0 nan 0 0 1 1 1\npl 0 0 0 1 1 1 2 2 2\nnpl 0 0 0 1\n"
+      "mesh 4 3 0 0 0 1 0 0 0 1 0 nan 0 0 1 2 3 1 2 4 1 1 2\npp 3 0 0 0 0 0 1 0 0 0 0 0 1 1 1 1 0 0 1");
   EXPECT_EQ(r.file.dropped.not_finite, 6u);
   EXPECT_EQ(r.file.dropped.zero_area, 8u);
   EXPECT_EQ(r.file.counts.s, 5u);
@@ -312,19 +322,22 @@ TEST(NffDropped, OneWarningForTheFile) {
   const std::string scene = folder.add("scene.nff", kView + kFill + "s 0 0 0 0\ns nan 0 0 1\ns 0 0 0 0\n");
   Lines warnings;
   read_scene(scene, [&](const std::string& line) { warnings.push_back(line); });
-  EXPECT_EQ(warnings, Lines{scene + ": warning: 3 primitives are left out: 1 not finite (or beyond 1e18), 2 without area"});
+  EXPECT_EQ(warnings,
+            Lines{scene + ": warning: 3 primitives are left out: 1 not finite (or beyond 1e18), 2 without area"});
 }
 
 TEST(NffNoise, IsWarnedOfOnceAKindAndSkipped) {
-  const Reading r = read_with_view("# a comment\n/ another\nFloor of wood\n" + kFill +
-                                   "s 0 0 0 1 7 7\ns 0 0 0 1 8\n12 12 12\n1 2 3\nxp 3\n0 0 0\na 1 2 3\na 4 5 6\ns 0 0 0 2#end");
+  const Reading r =
+      read_with_view("# a comment\n/ another\nFloor of wood\n" + kFill +
+                     "s 0 0 0 1 7 7\ns 0 0 0 1 8\n12 12 12\n1 2 3\nxp 3\n0 0 0\na 1 2 3\na 4 5 6\ns 0 0 0 2#end");
   EXPECT_EQ(r.file.counts.s, 3u);
-  EXPECT_EQ(r.warnings, (Lines{"scene.nff:9:1: warning: unknown word \"/\"; its line is skipped",
-                               "scene.nff:10:1: warning: unknown word \"Floor\"; its line is skipped",
-                               "scene.nff:12:11: warning: more numbers than \"s\" takes; the rest of the line is skipped",
-                               "scene.nff:14:1: warning: numbers that belong to no entity; their line is skipped",
-                               "scene.nff:16:1: warning: unknown word \"xp\"; its line is skipped",
-                               "scene.nff:18:1: warning: unknown word \"a\"; its line is skipped"}));
+  EXPECT_EQ(r.warnings,
+            (Lines{"scene.nff:9:1: warning: unknown word \"/\"; its line is skipped",
+                   "scene.nff:10:1: warning: unknown word \"Floor\"; its line is skipped",
+                   "scene.nff:12:11: warning: more numbers than \"s\" takes; the rest of the line is skipped",
+                   "scene.nff:14:1: warning: numbers that belong to no entity; their line is skipped",
+                   "scene.nff:16:1: warning: unknown word \"xp\"; its line is skipped",
+                   "scene.nff:18:1: warning: unknown word \"a\"; its line is skipped"}));
 }
 
 TEST(NffNoise, FilesOfItStayReadable) {

@@ -28,14 +28,22 @@ class PlyWriter {
       char text[32];
       std::snprintf(text, sizeof text, "%g ", v);
       data_ += text;
-    } else if (type == "char" || type == "int8") put(std::int8_t(v));
-    else if (type == "uchar" || type == "uint8") put(std::uint8_t(v));
-    else if (type == "short" || type == "int16") put(std::int16_t(v));
-    else if (type == "ushort" || type == "uint16") put(std::uint16_t(v));
-    else if (type == "int" || type == "int32") put(std::int32_t(v));
-    else if (type == "uint" || type == "uint32") put(std::uint32_t(v));
-    else if (type == "float" || type == "float32") put(float(v));
-    else put(v);
+    } else if (type == "char" || type == "int8")
+      put(std::int8_t(v));
+    else if (type == "uchar" || type == "uint8")
+      put(std::uint8_t(v));
+    else if (type == "short" || type == "int16")
+      put(std::int16_t(v));
+    else if (type == "ushort" || type == "uint16")
+      put(std::uint16_t(v));
+    else if (type == "int" || type == "int32")
+      put(std::int32_t(v));
+    else if (type == "uint" || type == "uint32")
+      put(std::uint32_t(v));
+    else if (type == "float" || type == "float32")
+      put(float(v));
+    else
+      put(v);
     return *this;
   }
   PlyWriter& values(const std::string& type, const std::vector<double>& all) {
@@ -60,7 +68,7 @@ class PlyWriter {
 };
 
 const std::string kFormats[] = {"ascii", "binary_little_endian", "binary_big_endian"};
-const std::string kIntegers[] = {"char",  "int8",   "uchar", "uint8", "short", "int16",
+const std::string kIntegers[] = {"char",   "int8",   "uchar", "uint8", "short", "int16",
                                  "ushort", "uint16", "int",   "int32", "uint",  "uint32"};
 
 class EveryType : public testing::TestWithParam<std::tuple<std::string, std::string>> {};
@@ -72,7 +80,8 @@ TEST_P(EveryType, AsCoordinateAndAsSomethingToStepOver) {
   w.line("property " + type + " x").line("property double also").line("property " + type + " y");
   w.line("element face 1").line("property " + type + " flag").line("property list uchar int vertex_indices");
   w.line("property list int " + type + " more").line("end_header");
-  for (const double v : {1.0, 5.0, 9.0}) w.value(type, 77).value(type, v).value(type, v + 1).value("double", .5).value(type, v + 2).end_row();
+  for (const double v : {1.0, 5.0, 9.0})
+    w.value(type, 77).value(type, v).value(type, v + 1).value("double", .5).value(type, v + 2).end_row();
   w.value(type, 1).value("uchar", 3).values("int", {2, 0, 1}).value("int", 2).values(type, {7, 8}).end_row();
   const Mesh mesh = read_ply_mesh("m.ply", w.bytes());
   EXPECT_EQ(mesh.z, (std::vector<float>{1, 5, 9}));
@@ -82,8 +91,9 @@ TEST_P(EveryType, AsCoordinateAndAsSomethingToStepOver) {
 }
 INSTANTIATE_TEST_SUITE_P(Ply, EveryType,
                          testing::Combine(testing::ValuesIn(kFormats),
-                                          testing::Values("char", "int8", "uchar", "uint8", "short", "int16", "ushort", "uint16",
-                                                          "int", "int32", "uint", "uint32", "float", "float32", "double", "float64")));
+                                          testing::Values("char", "int8", "uchar", "uint8", "short", "int16", "ushort",
+                                                          "uint16", "int", "int32", "uint", "uint32", "float",
+                                                          "float32", "double", "float64")));
 
 class EveryIndexType : public testing::TestWithParam<std::tuple<std::string, std::string, std::string>> {};
 
@@ -91,7 +101,11 @@ TEST_P(EveryIndexType, InFacesOfAnySize) {
   const auto& [format, count, item] = GetParam();
   PlyWriter w(format);
   w.line("comment faces first").line("element face 4").line("property list " + count + ' ' + item + " vertex_index");
-  w.line("element vertex 5").line("property float x").line("property float y").line("property float z").line("end_header");
+  w.line("element vertex 5")
+      .line("property float x")
+      .line("property float y")
+      .line("property float z")
+      .line("end_header");
   w.value(count, 3).values(item, {0, 1, 2}).end_row();
   w.value(count, 5).values(item, {0, 1, 2, 3, 4}).end_row();
   w.value(count, 2).values(item, {0, 1}).end_row();
@@ -104,13 +118,17 @@ TEST_P(EveryIndexType, InFacesOfAnySize) {
   EXPECT_EQ(mesh.y[4], 16);
 }
 INSTANTIATE_TEST_SUITE_P(Ply, EveryIndexType,
-                         testing::Combine(testing::ValuesIn(kFormats), testing::ValuesIn(kIntegers), testing::ValuesIn(kIntegers)));
+                         testing::Combine(testing::ValuesIn(kFormats), testing::ValuesIn(kIntegers),
+                                          testing::ValuesIn(kIntegers)));
 
 class EveryFormat : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Ply, EveryFormat, testing::ValuesIn(kFormats));
 
 PlyWriter& vertex_header(PlyWriter& w, int count) {
-  return w.line("element vertex " + std::to_string(count)).line("property float x").line("property float y").line("property float z");
+  return w.line("element vertex " + std::to_string(count))
+      .line("property float x")
+      .line("property float y")
+      .line("property float z");
 }
 
 TEST_P(EveryFormat, StripsTurnEverySecondTriangle) {
@@ -126,11 +144,19 @@ TEST_P(EveryFormat, StripsTurnEverySecondTriangle) {
 
 TEST_P(EveryFormat, OtherElementsAndNormals) {
   PlyWriter w(GetParam());
-  w.line("obj_info made up").line("comment").line("element camera 1").line("property float view_px").line("property list uchar short k");
+  w.line("obj_info made up")
+      .line("comment")
+      .line("element camera 1")
+      .line("property float view_px")
+      .line("property list uchar short k");
   w.line("element nothing 1000000").line("");
   w.line("  element\tvertex   3 ").line("property float nx").line("property float ny").line("property float nz");
   w.line("comment between").line("property double x").line("property double y").line("property double z");
-  w.line("element material 2").line("property uchar r").line("element face 1").line("property list uchar uint vertex_indices").line("end_header");
+  w.line("element material 2")
+      .line("property uchar r")
+      .line("element face 1")
+      .line("property list uchar uint vertex_indices")
+      .line("end_header");
   w.value("float", 1).value("uchar", 2).values("short", {4, 5}).end_row();
   for (int i = 0; i < 3; ++i) w.values("float", {0, 0, i + 1.0}).values("double", {i + .5, i * i + .25, 0}).end_row();
   w.value("uchar", 1).end_row().value("uchar", 2).end_row();
@@ -158,7 +184,9 @@ class EveryLineEnd : public testing::TestWithParam<std::tuple<std::string, int>>
 
 TEST_P(EveryLineEnd, LeavesTheFirstDataByte) {
   const auto& [end, first] = GetParam();
-  std::string text = "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty uchar x\nproperty uchar y\nproperty uchar z\nend_header\n";
+  std::string text =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty uchar x\nproperty uchar y\nproperty uchar "
+      "z\nend_header\n";
   std::string file;
   for (const char c : text) c == '\n' ? file += end : file += c;
   file += char(first);
@@ -168,7 +196,8 @@ TEST_P(EveryLineEnd, LeavesTheFirstDataByte) {
   EXPECT_EQ(mesh.y, std::vector<float>{10});
   EXPECT_EQ(mesh.z, std::vector<float>{13});
 }
-INSTANTIATE_TEST_SUITE_P(Ply, EveryLineEnd, testing::Combine(testing::Values("\n", "\r\n", "\r"), testing::Values(10, 13, 65)));
+INSTANTIATE_TEST_SUITE_P(Ply, EveryLineEnd,
+                         testing::Combine(testing::Values("\n", "\r\n", "\r"), testing::Values(10, 13, 65)));
 
 const std::string kAsciiTriangle =
     "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
@@ -176,8 +205,9 @@ const std::string kAsciiTriangle =
 
 TEST(PlyAscii, RowsMayBreakAndJoin) {
   const std::vector<std::uint32_t> expected{0, 1, 2, 2, 1, 0};
-  for (const char* rows : {"0 0 0\n1 0\n0\n0\n1 0\n3 0 1\n2\n3 2 1 0", "0 0 0 1 0 0 0 1 0 3 0 1 2 3 2 1 0\n",
-                           "0 0 0 1 0 0\r\n0 1 0\r\n\r\n3 0 1 2 3 2 1 0", "000 0 0\r1 0 0\r0 1 0\r3 0 1 2\r3 2 1 0\rtail"}) {
+  for (const char* rows :
+       {"0 0 0\n1 0\n0\n0\n1 0\n3 0 1\n2\n3 2 1 0", "0 0 0 1 0 0 0 1 0 3 0 1 2 3 2 1 0\n",
+        "0 0 0 1 0 0\r\n0 1 0\r\n\r\n3 0 1 2 3 2 1 0", "000 0 0\r1 0 0\r0 1 0\r3 0 1 2\r3 2 1 0\rtail"}) {
     const Mesh mesh = read_ply_mesh("m.ply", kAsciiTriangle + rows);
     EXPECT_EQ(mesh.corners, expected) << rows;
     EXPECT_EQ(mesh.x, (std::vector<float>{0, 1, 0})) << rows;
@@ -185,18 +215,19 @@ TEST(PlyAscii, RowsMayBreakAndJoin) {
 }
 
 TEST(PlyAscii, RowsTooLongAreCut) {
-  const Mesh mesh = read_ply_mesh("m.ply", kAsciiTriangle + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2 6 .5 .5 .5 .5\n3 2 1 0 6 1 1 1 1\n");
+  const Mesh mesh =
+      read_ply_mesh("m.ply", kAsciiTriangle + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2 6 .5 .5 .5 .5\n3 2 1 0 6 1 1 1 1\n");
   EXPECT_EQ(mesh.corners, (std::vector<std::uint32_t>{0, 1, 2, 2, 1, 0}));
 }
 
 TEST(PlyAlone, PolygonsAreCutAndBadFacesCounted) {
   const TemporaryFolder folder;
-  const std::string path = folder.add(
-      "m.ply",
-      "ply\nformat ascii 1.0\nelement vertex 9\nproperty float x\nproperty float y\nproperty float z\n"
-      "element face 6\nproperty list uchar int vertex_indices\nend_header\n"
-      "0 0 0\n4 0 0\n1 1 0\n0 4 0\n0 0 0\n+inf 0 0\n8 0 0\n0 0 1e19\n-3 0 0\n"
-      "4 0 1 2 3\n3 0 0 1\n3 0 4 1\n3 0 1 5\n2 0 1\n3 0 1 7\n");
+  const std::string path =
+      folder.add("m.ply",
+                 "ply\nformat ascii 1.0\nelement vertex 9\nproperty float x\nproperty float y\nproperty float z\n"
+                 "element face 6\nproperty list uchar int vertex_indices\nend_header\n"
+                 "0 0 0\n4 0 0\n1 1 0\n0 4 0\n0 0 0\n+inf 0 0\n8 0 0\n0 0 1e19\n-3 0 0\n"
+                 "4 0 1 2 3\n3 0 0 1\n3 0 4 1\n3 0 1 5\n2 0 1\n3 0 1 7\n");
   std::vector<std::string> warnings;
   const SceneFile file = read_scene(path, [&](const std::string& line) { warnings.push_back(line); });
   EXPECT_EQ(file.counts.ply, 6u);
@@ -204,7 +235,19 @@ TEST(PlyAlone, PolygonsAreCutAndBadFacesCounted) {
   EXPECT_EQ(file.scene.geometry.triangles.size(), 2u);
   EXPECT_EQ(file.dropped.zero_area, 3u);
   EXPECT_EQ(file.dropped.not_finite, 2u);
-  EXPECT_EQ(warnings, std::vector<std::string>{path + ": warning: 5 primitives are left out: 2 not finite (or beyond 1e18), 3 without area"});
+  EXPECT_EQ(warnings,
+            std::vector<std::string>{
+                path + ": warning: 5 primitives are left out: 2 not finite (or beyond 1e18), 3 without area"});
+}
+
+TEST(PlyAlone, TrianglesWithoutAreaAreLeftOut) {
+  const TemporaryFolder folder;
+  const SceneFile file =
+      read_scene(folder.add("m.ply", kAsciiTriangle + "0 0 0\n1 0 0\n0 1 0\n3 0 1 1\n3 2 1 0\n"), nullptr);
+  EXPECT_EQ(file.dropped.zero_area, 1u);
+  EXPECT_EQ(file.scene.geometry.triangles.a, std::vector<std::uint32_t>{2});
+  EXPECT_EQ(file.scene.geometry.triangles.material.size(), 1u);
+  EXPECT_EQ(file.counts.ply, 2u);
 }
 
 /// Every corner of the mesh projects into the picture, and the picture is not mostly empty.
@@ -212,8 +255,10 @@ TEST(PlyAlone, IsFramed) {
   const TemporaryFolder folder;
   for (const double scale : {1e-6, .1, 1.0, 2000.0, 1e9}) {
     for (const double shift : {0.0, 100.0}) {
-      std::string text = "ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\nproperty double y\nproperty double z\nelement face 4\n"
-                         "property list uchar int vertex_indices\nend_header\n";
+      std::string text =
+          "ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\nproperty double y\nproperty double z\nelement "
+          "face 4\n"
+          "property list uchar int vertex_indices\nend_header\n";
       for (const double p : {0., 0., 0., 3., 0., 0., 0., 1., 0., 0., 0., 2.}) {
         char number[64];
         std::snprintf(number, sizeof number, "%.9g ", (p + shift) * scale);
@@ -229,7 +274,8 @@ TEST(PlyAlone, IsFramed) {
       double widest = 0;
       for (std::size_t i = 0; i < 4; ++i) {
         const double p[] = {double(t.x[i]) - c.eye.x, double(t.y[i]) - c.eye.y, double(t.z[i]) - c.eye.z};
-        const double along = (p[0] * view[0] + p[1] * view[1] + p[2] * view[2]) / distance, all = std::hypot(p[0], p[1], p[2]);
+        const double along = (p[0] * view[0] + p[1] * view[1] + p[2] * view[2]) / distance,
+                     all = std::hypot(p[0], p[1], p[2]);
         widest = std::max(widest, std::acos(std::min(1.0, along / all)));
       }
       EXPECT_LT(widest, 22.6 * 3.14159 / 180);  // half of 45 degrees and float rounding

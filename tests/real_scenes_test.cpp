@@ -62,11 +62,17 @@ EntityCounts expected_counts(const Row& row, const std::map<std::string, std::ui
     return expected;
   }
   const std::string& text = row.content;
-  expected = {.s = number_behind(text, "s"), .p = number_behind(text, "p"), .pp = number_behind(text, "pp"),
-              .c = number_behind(text, "c"), .pl = number_behind(text, "pl"), .box = number_behind(text, "box"),
-              .lights = std::stoull(row.lights), .materials = number_behind(text, "materials")};
+  expected = {.s = number_behind(text, "s"),
+              .p = number_behind(text, "p"),
+              .pp = number_behind(text, "pp"),
+              .c = number_behind(text, "c"),
+              .pl = number_behind(text, "pl"),
+              .box = number_behind(text, "box"),
+              .lights = std::stoull(row.lights),
+              .materials = number_behind(text, "materials")};
   std::smatch mesh;
-  if (std::regex_search(text, mesh, std::regex(R"(mesh \d+ \(\d+ vertices (\d+) faces\))"))) expected.mesh = std::stoull(mesh[1]);
+  if (std::regex_search(text, mesh, std::regex(R"(mesh \d+ \(\d+ vertices (\d+) faces\))")))
+    expected.mesh = std::stoull(mesh[1]);
   if (number_behind(text, "ply") > 0) expected.ply = faces_named_by(kFolder / row.file, faces);
   return expected;
 }
@@ -89,10 +95,13 @@ TEST(RealScenes, HoldWhatTheirTableSays) {
     SCOPED_TRACE(row.file);
     SceneFile file;
     ASSERT_NO_THROW(file = read_scene((kFolder / row.file).string(), nullptr));
-    EXPECT_EQ(shown(file.counts), shown(expected_counts(row, faces))) << "order: s p pp c pl box mesh ply lights materials";
+    EXPECT_EQ(shown(file.counts), shown(expected_counts(row, faces)))
+        << "order: s p pp c pl box mesh ply lights materials";
     EXPECT_EQ(file.dropped.not_finite, 0u);
-    if (row.file.ends_with(".ply")) EXPECT_TRUE(file.default_camera && file.default_light);
-    else EXPECT_EQ(std::to_string(file.camera.width) + 'x' + std::to_string(file.camera.height), row.resolution);
+    if (row.file.ends_with(".ply"))
+      EXPECT_TRUE(file.default_camera && file.default_light);
+    else
+      EXPECT_EQ(std::to_string(file.camera.width) + 'x' + std::to_string(file.camera.height), row.resolution);
   }
 }
 

@@ -58,11 +58,13 @@ TEST(Integer, ReadsWholeNumbersOnly) {
   EXPECT_TRUE(to_integer("+4", value) && value == 4);
   EXPECT_TRUE(to_integer("3.0", value) && value == 3);
   EXPECT_TRUE(to_integer("-1", value) && value == -1);
-  for (const char* word : {"", "3.5", "1e300", "nan", "3x", "99999999999999999999"}) EXPECT_FALSE(to_integer(word, value)) << word;
+  for (const char* word : {"", "3.5", "1e300", "nan", "3x", "99999999999999999999"})
+    EXPECT_FALSE(to_integer(word, value)) << word;
 }
 
 TEST(Integer, LooksLikeANumber) {
-  for (const char* word : {"1", "-.5", "+3", ".5x", "1.5.2", "nan", "-inf"}) EXPECT_TRUE(looks_like_number(word)) << word;
+  for (const char* word : {"1", "-.5", "+3", ".5x", "1.5.2", "nan", "-inf"})
+    EXPECT_TRUE(looks_like_number(word)) << word;
   for (const char* word : {"", "s", "-", "+x", ".", "/1", "infinite"}) EXPECT_FALSE(looks_like_number(word)) << word;
 }
 
@@ -142,8 +144,10 @@ TEST(Gzip, RefusesBrokenAndBoundlessData) {
   EXPECT_NE(message_of([&] { inflate_gzip("f.gz", broken, 100); }).find(": error: wanted sound gzip data, found "),
             std::string::npos);
   const std::string bomb = gzip(std::string(1 << 20, '\0'));
-  EXPECT_NE(message_of([&] { inflate_gzip("f.gz", bomb, 5000); })
-                .find("error: wanted data that inflate to at most 5000 bytes, found more"), std::string::npos);
+  EXPECT_NE(message_of([&] {
+              inflate_gzip("f.gz", bomb, 5000);
+            }).find("error: wanted data that inflate to at most 5000 bytes, found more"),
+            std::string::npos);
 }
 
 TEST(LoadFile, TellsGzipByItsFirstBytes) {
