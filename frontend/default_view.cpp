@@ -62,7 +62,7 @@ void add_default_view(SceneFile& file) {
   };
   file.camera = {
       place(1, 0, 0), {float(middle[0]), float(middle[1]), float(middle[2])}, {0, 1, 0}, kAngleDeg, 512, 512};
-  file.scene.lights = {{place(1, -0.5, 0.7), {1, 1, 1}}};
+  file.scene.lights = {{place(1, -0.5, 0.7), {1, 1, 1}, {}, {}}};
   file.scene.background = {0.62f, 0.68f, 0.76f};
   file.default_camera = file.default_light = true;
 }

@@ -79,7 +79,9 @@ int run(const RenderCommand& command) {
   if (!command.stats.empty()) check_writable(command.stats);
   RunReport report;
   const Stopwatch load;
-  const SceneFile file = read_scene(command.scene, warn);
+  SceneFile file = read_scene(command.scene, warn);
+  RenderCommand prepared = command;
+  apply_effects(command.effects, file, prepared.render);
   report.seconds.load = load.seconds();
   const Camera camera = camera_of(file, command);
   want_room(command.image, camera.width, camera.height);
@@ -89,7 +91,7 @@ int run(const RenderCommand& command) {
   report.seconds.build = build.seconds();
 
   const Stopwatch render;
-  const Image image = render_with_bar(world, camera, command, report.render);
+  const Image image = render_with_bar(world, camera, prepared, report.render);
   report.seconds.render = render.seconds();
 
   const Stopwatch write;

@@ -36,7 +36,7 @@ AreaLight facing(const Float3& center, const Float3& at, float width, float heig
 }  // namespace
 
 void NffLights::add_point(Float3 position, Float3 color) {
-  file_.scene.lights.push_back({position, color});
+  file_.scene.lights.push_back({position, color, {}, {}});
   ++file_.counts.lights;
 }
 
@@ -60,10 +60,11 @@ void NffLights::add_area(NffInput& input, std::string_view keyword, AreaLight li
   const Float3 center = light.corner + 0.5f * (light.edge1 + light.edge2);
   if (!drawable(center))
     throw ParseError(input.position(keyword), "wanted an area light within 1e18, found a larger one");
-  light.point_light = std::uint32_t(file_.scene.lights.size());
+  light.light = std::uint32_t(file_.scene.lights.size());
   file_.area_lights.push_back(light);
   add_point(center, light.color);
-  input.warn_once("area light", keyword, "area lights are not rendered yet; a point light at the center stands in");
+  file_.scene.lights.back().edge1 = light.edge1;
+  file_.scene.lights.back().edge2 = light.edge2;
 }
 
 void NffLights::read_light(NffInput& input, std::string_view keyword) {

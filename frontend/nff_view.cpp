@@ -72,11 +72,8 @@ void NffView::read_resolution(NffInput& input) {
 }
 
 void NffView::read_aperture(NffInput& input, LensHint& lens) {
-  const std::string_view word = input.words.peek();
   lens.present = true;
   lens.aperture = double(input.bounded("the lens aperture"));
-  if (lens.aperture > 0)
-    input.warn_once("aperture", word, "a lens is not rendered yet; the picture will be sharp everywhere");
 }
 
 Camera NffView::finish(NffInput& input, std::string_view end) const {

@@ -43,6 +43,64 @@ float density(const std::string& text) {
   return float(*value);
 }
 
+/// "a,b,c" as its parts; refuses another number of them.
+std::vector<std::string> parts(const std::string& option, const std::string& text, std::size_t least, std::size_t most, const char* wanted) {
+  std::vector<std::string> found(1);
+  for (const char c : text) {
+    if (c == ',') found.emplace_back();
+    else found.back() += c;
+  }
+  if (found.size() < least || found.size() > most) refuse(option, wanted, text);
+  return found;
+}
+
+double not_negative(const std::string& option, const std::string& text, const char* what) {
+  const auto value = number<double>(text);
+  if (!value || !(*value >= 0) || *value > 1e18) refuse(option, std::string(what) + " that is not negative", text);
+  return *value;
+}
+
+void parse_aa(const std::string& text, Effects& effects) {
+  constexpr std::string_view kJitter = "jitter:";
+  if (text == "off") effects.jitter = 1;
+  else if (text.starts_with(kJitter)) effects.jitter = whole("--aa", text.substr(kJitter.size()), 1, 256);
+  else refuse("--aa", "off or jitter:N", text);
+}
+
+void parse_shadows(const std::string& text, Effects& effects) {
+  constexpr std::string_view kRandom = "random:", kArea = "area:";
+  Effects::Shadows s;
+  if (text == "hard") {
+    s.hard = true;
+  } else if (text.starts_with(kRandom)) {
+    s.size = float(not_negative("--shadows", text.substr(kRandom.size()), "a size"));
+  } else if (text.starts_with(kArea)) {
+    const auto p = parts("--shadows", text.substr(kArea.size()), 2, 2, "area:SIZE,N");
+    s.size = float(not_negative("--shadows", p[0], "a size"));
+    s.positions = whole("--shadows", p[1], 1, 64);
+  } else {
+    refuse("--shadows", "hard, random:SIZE or area:SIZE,N", text);
+  }
+  effects.shadows = s;
+}
+
+void parse_lens(const std::string& text, Effects& effects) {
+  const auto p = parts("--lens", text, 1, 3, "APERTURE,FOCUS,N");
+  Effects::Lens lens;
+  lens.aperture = not_negative("--lens", p[0], "an aperture");
+  if (p.size() > 1) lens.focus = not_negative("--lens", p[1], "a focal distance");
+  if (p.size() > 2) lens.samples = whole("--lens", p[2], 1, kMostSamples);
+  effects.lens = lens;
+}
+
+void parse_glossy(const std::string& text, Effects& effects) {
+  const auto p = parts("--glossy", text, 1, 2, "ROUGHNESS,N");
+  Effects::Glossy g;
+  g.roughness = float(not_negative("--glossy", p[0], "a roughness"));
+  if (p.size() > 1) g.rays = whole("--glossy", p[1], 1, 256);
+  effects.glossy = g;
+}
+
 double rmse_bound(const std::string& text) {
   const auto value = number<double>(text);
   if (!value || !(*value >= 0)) refuse("--max-rmse", "a number that is not negative", text);
@@ -76,6 +134,9 @@ using Name = std::pair<std::string_view, std::string_view>;
 constexpr std::array kAccelerators{Word{"grid", 1}, Word{"none", 0}};
 constexpr std::array kSwitch{Word{"on", 1}, Word{"off", 0}};
 constexpr std::array kPackets{Word{"1", 1}, Word{"16", 16}, Word{"64", 64}, Word{"auto", 0}};
+constexpr std::array kSamplers{std::pair<std::string_view, Sampler>{"sobol", Sampler::kSobol},
+                              std::pair<std::string_view, Sampler>{"jitter", Sampler::kJitter},
+                              std::pair<std::string_view, Sampler>{"random", Sampler::kRandom}};
 constexpr std::array kIsas{Name{"scalar", "scalar"}, Name{"sse2", "sse2"}, Name{"avx2", "avx2"},
                            Name{"avx512", "avx512"}, Name{"best", "best"}};
 
@@ -112,6 +173,21 @@ void add_render(CLI::App& app, RenderCommand& command) {
         [&command](const std::string& text) { command.render.threads = whole("--threads", text, 1, kMaxThreads); });
   value(sub, "--depth", "N", "longest path of a ray, the eye ray counted as 1 [5]",
         [&command](const std::string& text) { command.render.depth = whole("--depth", text, 1, kMostDepth); });
+  Effects& effects = command.effects;
+  value(sub, "--samples", "N", "rays through each pixel [1; with a lens, area light or rough mirror 16]",
+        [&effects](const std::string& text) { effects.samples = whole("--samples", text, 1, kMostSamples); });
+  value(sub, "--sampler", "NAME", "where they lie: sobol, jitter or random [sobol]",
+        [&effects](const std::string& text) { effects.sampler = choice("--sampler", text, kSamplers); });
+  value(sub, "--seed", "N", "another seed, an independent picture [0]",
+        [&effects](const std::string& text) { effects.seed = std::uint32_t(whole("--seed", text, 0, 2147483647)); });
+  value(sub, "--aa", "jitter:N", "N x N jittered subpixels",
+        [&effects](const std::string& text) { parse_aa(text, effects); });
+  value(sub, "--shadows", "KIND", "hard, random:SIZE or area:SIZE,N: point lights become squares of this side",
+        [&effects](const std::string& text) { parse_shadows(text, effects); });
+  value(sub, "--lens", "A,F,N", "aperture in pixels, focal distance, lens points a subpixel",
+        [&effects](const std::string& text) { parse_lens(text, effects); });
+  value(sub, "--glossy", "R,N", "roughness of mirrors; N rays around the mirror direction",
+        [&effects](const std::string& text) { parse_glossy(text, effects); });
   add_build_options(sub, command.build);
   value(sub, "--mailbox", "on|off", "test a primitive once per ray however many cells hold it [on]",
         [&command](const std::string& text) { command.render.mailbox = choice("--mailbox", text, kSwitch) == 1; });

@@ -5,6 +5,7 @@
 #include <string>
 #include <variant>
 
+#include "frontend/effects.hpp"
 #include "kernel/render.hpp"
 
 namespace grelha {
@@ -19,6 +20,7 @@ struct RenderCommand {
   int width = 0, height = 0;  ///< 0: as the scene says
   BuildOptions build;
   RenderOptions render;
+  Effects effects;
   std::string stats;  ///< file for the counts, or empty
   bool quiet = false, srgb = false;
 };

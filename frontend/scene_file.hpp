@@ -30,12 +30,11 @@ struct LensHint {
   double focal = 1;     ///< focal distance as a multiple of the distance from eye to `at`
 };
 
-/// A parallelogram light: corner, two edges. Kept for renderers of soft shadows; until then the scene's point lights hold
-/// a point light of the same colour at its centre.
+/// A parallelogram light as the file states it: corner, two edges. Its light in the scene stands at its centre.
 struct AreaLight {
   Float3 corner, edge1, edge2, color;
   int samples = 0;              ///< as the file asks; 0: not said
-  std::uint32_t point_light = 0;  ///< index into Scene::lights of its stand-in
+  std::uint32_t light = 0;  ///< index into Scene::lights
 };
 
 /// A scene file after all checks: everything the kernel needs and what the file said besides.

@@ -27,9 +27,34 @@ inline int tile_rays(const FrameView& f, Batch& b, int count, int x0, int x1, in
   return count;
 }
 
+/// One ray of a pixel: sample `index`, at its place in the pixel and, if there is a lens, on the lens.
+inline void sampled_ray(const FrameView& f, const SamplePlan& plan, Batch& b, int at, int x, int y, std::uint32_t index, int band_top) {
+  const std::uint32_t pixel = static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(f.width) + static_cast<std::uint32_t>(x);
+  Pair in{.5f, .5f};
+  if (plan.samples > 1) in = sample_pair(plan, pixel, index, 0, 0, plan.pixel_strata);
+  const float sx = (static_cast<float>(x) + in.u) - .5f * static_cast<float>(f.width);
+  const float sy = .5f * static_cast<float>(f.height) - (static_cast<float>(y) + in.v);
+  const Vec3<float> eye{f.eye[0], f.eye[1], f.eye[2]};
+  Vec3<float> d{(f.forward[0] + sx * f.right[0]) + sy * f.up[0], (f.forward[1] + sx * f.right[1]) + sy * f.up[1],
+                (f.forward[2] + sx * f.right[2]) + sy * f.up[2]};
+  Vec3<float> org = eye;
+  if (f.lens) {
+    const Pair p = disc_point(sample_pair(plan, pixel, index, plan.lens, 0, plan.pixel_strata));
+    const Vec3<float> on{p.u * f.lens_right[0] + p.v * f.lens_up[0], p.u * f.lens_right[1] + p.v * f.lens_up[1],
+                         p.u * f.lens_right[2] + p.v * f.lens_up[2]};
+    org = eye + on, d = f.focus * d - on;
+  }
+  d = normalize(d);
+  b.ox[at] = org.x, b.oy[at] = org.y, b.oz[at] = org.z;
+  b.dx[at] = d.x, b.dy[at] = d.y, b.dz[at] = d.z;
+  b.wr[at] = b.wg[at] = b.wb[at] = 1;
+  b.pixel[at] = static_cast<std::uint32_t>((y - band_top) * f.width + x);
+  b.depth[at] = 1, b.sample[at] = index, b.path[at] = 0;
+}
+
 /// Takes the youngest rays off the stack into the batch, class by class (a stable counting sort); ends[c] is where class c
 /// ends.
-inline void pop(RayStack& stack, Batch& b, int most, int (&ends)[kClasses]) {
+inline void pop(RayStack& stack, Batch& b, int most, bool sampled, int (&ends)[kClasses]) {
   const int n = stack.size < most ? stack.size : most, at = stack.size - n;
   unsigned char of[kBatch];
   int next[kClasses] = {};
@@ -47,6 +72,7 @@ inline void pop(RayStack& stack, Batch& b, int most, int (&ends)[kClasses]) {
     b.dx[to] = stack.dx[from], b.dy[to] = stack.dy[from], b.dz[to] = stack.dz[from];
     b.wr[to] = stack.wr[from], b.wg[to] = stack.wg[from], b.wb[to] = stack.wb[from];
     b.pixel[to] = stack.pixel[from], b.depth[to] = stack.depth[from] & ~kRefracted;
+    if (sampled) b.sample[to] = stack.sample[from], b.path[to] = stack.path[from];
   }
   stack.size = at;
 }
@@ -54,7 +80,8 @@ inline void pop(RayStack& stack, Batch& b, int most, int (&ends)[kClasses]) {
 /// Renders rows [y0, y1), at most kBandRows, into work.sums.
 ///
 /// Depths never fall towards the top of the stack, and rays of depth d + 1 are only added when fewer than `take` of them
-/// are there, by at most 2 take: the stack holds at most 2 kBatch + 2 take (depth - 2) rays however the light bounces.
+/// are there, by at most c take, c = 2 or with rough mirrors gloss_rays + 2 rays a hit: the stack holds at most
+/// c kBatch + c take (depth - 2) rays however the light bounces.
 inline void render_band(const SceneView& scene, const ShadingView& shading, const FrameView& frame, int y0, int y1,
                         const BandWork& work, Counters& counters, RayTally& rays) {
   Batch& b = *work.batch;
@@ -66,13 +93,22 @@ inline void render_band(const SceneView& scene, const ShadingView& shading, cons
     shade_batch(shader, stack, &count, 1, 64);
     int ends[kClasses];
     while (stack.size > 0) {
-      pop(stack, b, work.take, ends);
+      pop(stack, b, work.take, work.plan.on, ends);
       shade_batch(shader, stack, ends, kClasses, 16);
     }
   };
   int count = 0;
   for (int x0 = 0; x0 < frame.width; x0 += kTile) {
     const int x1 = x0 + kTile < frame.width ? x0 + kTile : frame.width;
+    if (work.plan.on) {  // all samples of a pixel next to each other: they are what goes together best
+      for (int y = y0; y < y1; ++y)
+        for (int x = x0; x < x1; ++x)
+          for (int i = 0; i < work.plan.samples; ++i) {
+            sampled_ray(frame, work.plan, b, count, x, y, static_cast<std::uint32_t>(i), y0);
+            if (++count == kBatch) finish(count), count = 0;
+          }
+      continue;
+    }
     count = tile_rays(frame, b, count, x0, x1, y0, y1, y0);
     if (count + kTile * kBandRows > kBatch) finish(count), count = 0;
   }

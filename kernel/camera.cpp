@@ -39,6 +39,7 @@ void put(float (&to)[3], const Double3& v) {
 bool camera_is_sound(const Camera& c) {
   if (!finite(c.eye) || !finite(c.at) || !finite(c.up) || c.width < 1 || c.height < 1) return false;
   if (!(c.angle_deg > 0) || !(c.angle_deg < 180)) return false;
+  if (!(c.aperture >= 0) || !std::isfinite(c.aperture) || !(c.focus > 0) || !std::isfinite(c.focus)) return false;
   const Double3 view = minus(c.at, c.eye), up{c.up.x, c.up.y, c.up.z};
   const double vv = dot(view, view), uu = dot(up, up);
   if (!(vv > 0) || !(uu > 0)) return false;
@@ -55,6 +56,9 @@ FrameView make_frame(const Camera& c) {
   f.eye[0] = c.eye.x, f.eye[1] = c.eye.y, f.eye[2] = c.eye.z;
   put(f.forward, forward), put(f.right, scaled(right, pixel)), put(f.up, scaled(up, pixel));
   f.width = c.width, f.height = c.height;
+  f.lens = c.aperture > 0;
+  f.focus = static_cast<float>(c.focus);
+  put(f.lens_right, scaled(right, c.aperture / 2)), put(f.lens_up, scaled(up, c.aperture / 2));
   return f;
 }
 

@@ -82,18 +82,22 @@ struct Material {
   float ior = 1;             ///< index of refraction of the inside against 1 outside; read only when transmission > 0
   bool fresnel = false;      ///< split between mirror and refraction by Schlick (1994) where transmission > 0
   Float3 emission;           ///< light given off
-  float roughness = 0;       ///< spread of the mirror lobe
+  float roughness = 0;       ///< spread of the mirror lobe: radius of a disc across the unit mirror direction at its tip
   bool operator==(const Material&) const = default;
 };
 
-struct PointLight {
-  Float3 position, color;
+/// A point light, or a parallelogram of such: each shadow ray goes to one point of it, and the light a surface gets is the
+/// mean over its points. Edges of zero: a point.
+struct Light {
+  Float3 position, color;  ///< position: the centre
+  Float3 edge1, edge2;     ///< full edges
+  bool is_area() const { return edge1 != Float3{} || edge2 != Float3{}; }
 };
 
 struct Scene {
   Geometry geometry;
   std::vector<Material> materials;
-  std::vector<PointLight> lights;
+  std::vector<Light> lights;
   Float3 background;
 };
 

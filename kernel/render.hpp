@@ -45,7 +45,22 @@ struct Isa {
 /// All copies this version knows, scalar first.
 std::vector<Isa> isas();
 
-inline constexpr int kMostDepth = 4096;
+inline constexpr int kMostDepth = 4096, kMostSamples = 65536;
+
+enum class Sampler {
+  kSobol,   ///< one Owen-scrambled Sobol sequence over the dimensions in use
+  kJitter,  ///< a jittered grid for each pair of dimensions, those after the pixel's shuffled
+  kRandom,  ///< independent
+};
+
+/// Where the samples of a picture lie: pure functions of (seed, pixel, sample, dimension).
+struct SampleOptions {
+  int samples = 1;     ///< rays through each pixel; 1 with no effect to sample: through its centre
+  Sampler sampler = Sampler::kSobol;
+  std::uint32_t seed = 0;
+  int light_rays = 1;  ///< shadow rays from each point towards each area light
+  int gloss_rays = 0;  ///< on rough mirrors: so many rays around the mirror direction and that direction; 0: one in its place
+};
 
 struct RenderOptions {
   int threads = 0;              ///< 0: one per processor
@@ -53,6 +68,7 @@ struct RenderOptions {
   int packet = 0;               ///< rays that march together: 1, 16 or 64; 0: chosen by the kind of ray
   bool mailbox = true;          ///< skip primitives a ray or packet has already met in another cell
   std::string_view isa = "best";
+  SampleOptions sampling;
   /// Called now and then from one thread at a time with the share done, 0 to 1; returns false to stop.
   std::function<bool(double)> progress;
 };

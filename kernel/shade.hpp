@@ -5,21 +5,22 @@
 // for it, Schlick's Fresnel term (1994). No falloff, no ambient light, any hit blocks light (the course's rules).
 
 #include "kernel/power.hpp"
+#include "kernel/sampling.hpp"
 #include "kernel/surface.hpp"
 #include "kernel/trace.hpp"
 
 namespace grelha::GRELHA_ISA {
 
-inline std::int64_t light_units(float x) {
+inline std::int64_t light_units(float x, float most) {
   if (!(x == x)) return 0;
-  const float c = x > kMostLight ? kMostLight : x < 0 - kMostLight ? 0 - kMostLight : x;
+  const float c = x > most ? most : x < 0 - most ? 0 - most : x;
   const double u = static_cast<double>(c) * kLightUnit;
   return static_cast<std::int64_t>(u < 0 ? u - .5 : u + .5);
 }
 
-inline void add_light(std::int64_t* sums, std::uint32_t pixel, float r, float g, float b) {
-  std::int64_t* const s = sums + static_cast<std::size_t>(pixel) * 3;
-  s[0] += light_units(r), s[1] += light_units(g), s[2] += light_units(b);
+inline void add_light(const BandWork& work, std::uint32_t pixel, float r, float g, float b) {
+  std::int64_t* const s = work.sums + static_cast<std::size_t>(pixel) * 3;
+  s[0] += light_units(r, work.most_light), s[1] += light_units(g, work.most_light), s[2] += light_units(b, work.most_light);
 }
 
 struct RayTally {
@@ -43,7 +44,7 @@ inline int find_surfaces(const Shader& s, int count) {
   int hits = 0;
   for (int i = 0; i < count; ++i) {
     if (b.id[i] == kNoPrimitive) {
-      add_light(s.work.sums, b.pixel[i], b.wr[i] * bg[0], b.wg[i] * bg[1], b.wb[i] * bg[2]);
+      add_light(s.work, b.pixel[i], b.wr[i] * bg[0], b.wg[i] * bg[1], b.wb[i] * bg[2]);
       continue;
     }
     const float org[3] = {b.ox[i], b.oy[i], b.oz[i]}, dir[3] = {b.dx[i], b.dy[i], b.dz[i]};
@@ -60,6 +61,7 @@ inline int find_surfaces(const Shader& s, int count) {
     b.away[h] = f.away, b.inside[h] = inside ? 1.f : 0.f;
     b.hr[h] = b.wr[i], b.hg[h] = b.wg[i], b.hb[h] = b.wb[i];
     b.hit_pixel[h] = b.pixel[i], b.hit_depth[h] = b.depth[i], b.material[h] = f.material;
+    if (s.work.plan.on) b.hit_sample[h] = b.sample[i], b.hit_path[h] = b.path[i];
   }
   return hits;
 }
@@ -91,16 +93,40 @@ inline unsigned lanes_of(int first, int count) {
   return left >= kWidth<Lanes> ? ~0u >> (32 - kWidth<Lanes>) : (1u << left) - 1u;
 }
 
+/// Tells apart the uses of a pair of dimensions along one path; 0 for the first light, or lobe, that a camera ray meets.
+inline std::uint32_t sample_key(std::uint32_t path, std::uint32_t use) {
+  return path == 0 && use == 0 ? 0 : scatter(path, use) | 1u;
+}
+
+/// Points of an area light for the hits i, i + 1, ...: each pixel's sample has its own.
+inline Vec3<Lanes> light_points(const Shader& s, int i, int hits, const float* light, int light_index, int ray) {
+  const SamplePlan& plan = s.work.plan;
+  float u[kWidth<Lanes>] = {}, v[kWidth<Lanes>] = {};
+  for (int k = 0; k < kWidth<Lanes> && i + k < hits; ++k) {
+    const std::uint32_t index = s.b.hit_sample[i + k] * static_cast<std::uint32_t>(plan.light_rays) + static_cast<std::uint32_t>(ray);
+    const Pair p = sample_pair(plan, s.work.first_pixel + s.b.hit_pixel[i + k], index, plan.light,
+                               sample_key(s.b.hit_path[i + k], static_cast<std::uint32_t>(light_index)), plan.light_strata);
+    u[k] = p.u - .5f, v[k] = p.v - .5f;
+  }
+  const Lanes a = load<Lanes>(u), c = load<Lanes>(v);
+  return {Lanes(light[0]) + (a * Lanes(light[6]) + c * Lanes(light[9])),
+          Lanes(light[1]) + (a * Lanes(light[7]) + c * Lanes(light[10])),
+          Lanes(light[2]) + (a * Lanes(light[8]) + c * Lanes(light[11]))};
+}
+
 /// Light of one source on all hits: a shadow ray for each that faces it, and what that ray carries if nothing stands in its
-/// way.
-inline void light_hits(const Shader& s, int hits, const float* light) {
+/// way. `ray` counts the rays to an area light, each of which carries its share.
+inline void light_hits(const Shader& s, int hits, int light_index, bool area, int ray) {
   Batch& b = s.b;
-  const Vec3<Lanes> at{Lanes(light[0]), Lanes(light[1]), Lanes(light[2])};
-  const Vec3<Lanes> color{Lanes(light[3]), Lanes(light[4]), Lanes(light[5])};
+  const float* const light = s.shading.lights + kLightFloats * light_index;
+  Vec3<Lanes> at{Lanes(light[0]), Lanes(light[1]), Lanes(light[2])};
+  const float share = area ? 1.f / static_cast<float>(s.work.plan.light_rays) : 1.f;
+  const Vec3<Lanes> color{Lanes(light[3] * share), Lanes(light[4] * share), Lanes(light[5] * share)};
   const Lanes o(0);
   int n = 0;
   for (int i = 0; i < hits; i += kWidth<Lanes>) {
     const Vec3<Lanes> p = load3(b.px, b.py, b.pz, i), g = load3(b.gx, b.gy, b.gz, i), normal = load3(b.nx, b.ny, b.nz, i);
+    if (area) at = light_points(s, i, hits, light, light_index, ray);
     const Vec3<Lanes> org = p + load<Lanes>(b.away + i) * g;  // the lit side is the viewer's side
     const Vec3<Lanes> dir = at - org, l = normalize(dir);
     const Lanes nl = dot(normal, l);
@@ -140,7 +166,7 @@ inline void light_hits(const Shader& s, int hits, const float* light) {
   const RayArrays rays{b.lox, b.loy, b.loz, b.ldx, b.ldy, b.ldz, b.lt_min, b.lt, b.lid};
   trace<true>(s.scene, rays, n, {s.work.packet == 0 ? 64 : s.work.packet, s.work.mailbox}, s.counters);
   for (int i = 0; i < n; ++i)
-    if (b.lid[i] == kNoPrimitive) add_light(s.work.sums, b.light_pixel[i], b.lr[i], b.lg[i], b.lb[i]);
+    if (b.lid[i] == kNoPrimitive) add_light(s.work, b.light_pixel[i], b.lr[i], b.lg[i], b.lb[i]);
 }
 
 inline void push(RayStack& stack, const Vec3<float>& org, const Vec3<float>& dir, const Vec3<float>& weight, std::uint32_t pixel,
@@ -150,6 +176,26 @@ inline void push(RayStack& stack, const Vec3<float>& org, const Vec3<float>& dir
   stack.dx[i] = dir.x, stack.dy[i] = dir.y, stack.dz[i] = dir.z;
   stack.wr[i] = weight.x, stack.wg[i] = weight.y, stack.wb[i] = weight.z;
   stack.pixel[i] = pixel, stack.depth[i] = depth;
+}
+
+/// Two unit vectors across a third, by + - * / alone: Duff et al., "Building an Orthonormal Basis, Revisited", 2017.
+inline void across(const Vec3<float>& n, Vec3<float>& u, Vec3<float>& v) {
+  const float sign = n.z < 0 ? -1.f : 1.f, a = -1.f / (sign + n.z), b = n.x * n.y * a;
+  u = {1 + sign * n.x * n.x * a, sign * b, 0 - sign * n.x};
+  v = {b, sign + n.y * n.y * a, 0 - n.y};
+}
+
+/// A direction of the lobe of a rough mirror: the unit mirror direction moved within a disc across it, kept above the surface.
+inline Vec3<float> lobe_direction(const Shader& s, int hit, const Vec3<float>& mirror, float roughness, int ray, int rays) {
+  const SamplePlan& plan = s.work.plan;
+  const std::uint32_t index = s.b.hit_sample[hit] * static_cast<std::uint32_t>(rays) + static_cast<std::uint32_t>(ray);
+  const Pair d = disc_point(sample_pair(plan, s.work.first_pixel + s.b.hit_pixel[hit], index, plan.gloss,
+                                        sample_key(s.b.hit_path[hit], 0), plan.gloss_strata));
+  Vec3<float> u, v;
+  across(mirror, u, v);
+  const Vec3<float> to = mirror + (roughness * d.u) * u + (roughness * d.v) * v, g{s.b.gx[hit], s.b.gy[hit], s.b.gz[hit]};
+  const float under = dot(to, g);
+  return normalize(under < 0 ? to - (under + under) * g : to);
 }
 
 /// Sends the reflected and refracted rays of all hits. At the end of the longest path they see the background.
@@ -212,12 +258,27 @@ inline void send_on(const Shader& s, RayStack& stack, int hits) {
       const auto send = [&](const float (&dir)[3][kWidth<Lanes>], const float (&weight)[3][kWidth<Lanes>], std::uint64_t& count,
                             std::uint32_t kind) {
         if (depth > static_cast<std::uint32_t>(s.work.depth)) {
-          add_light(s.work.sums, pixel, weight[0][k] * bg[0], weight[1][k] * bg[1], weight[2][k] * bg[2]);
+          add_light(s.work, pixel, weight[0][k] * bg[0], weight[1][k] * bg[1], weight[2][k] * bg[2]);
           return;
         }
         const Vec3<float> to{dir[0][k], dir[1][k], dir[2][k]};
-        push(stack, leave(p, ng, b.away[h], to), to, {weight[0][k], weight[1][k], weight[2][k]}, pixel, depth | kind);
-        ++count;
+        const Vec3<float> w3{weight[0][k], weight[1][k], weight[2][k]};
+        const auto go = [&](const Vec3<float>& way, const Vec3<float>& carried, std::uint32_t branch) {
+          if (s.work.plan.on) {
+            stack.sample[stack.size] = b.hit_sample[h];
+            stack.path[stack.size] = scatter(b.hit_path[h], branch + (kind != 0 ? 0x10001u : 1u));
+          }
+          push(stack, leave(p, ng, b.away[h], way), way, carried, pixel, depth | kind);
+          ++count;
+        };
+        const float roughness = s.shading.gloss && kind == 0 ? s.shading.materials.field[kRoughness][b.material[h]] : 0.f;
+        if (!(roughness > 0)) return go(to, w3, 0);
+        const int around = s.work.plan.gloss_rays;
+        if (around == 0) return go(lobe_direction(s, h, to, roughness, 0, 1), w3, 0);
+        const Vec3<float> part = (1.f / static_cast<float>(around + 1)) * w3;
+        go(to, part, 0);
+        for (int j = 0; j < around; ++j)
+          go(lobe_direction(s, h, to, roughness, j, around), part, static_cast<std::uint32_t>(j + 1));
       };
       if (mirrors >> k & 1) send(r, u, s.rays.reflection, 0);
       if (clears >> k & 1) send(q, d, s.rays.refraction, kRefracted);
@@ -249,9 +310,14 @@ inline void shade_batch(const Shader& s, RayStack& stack, const int* ends, int r
   if (s.shading.emits)
     for (int i = 0; i < hits; ++i) {
       const auto e = [&](MaterialField f) { return s.shading.materials.field[f][b.material[i]]; };
-      add_light(s.work.sums, b.hit_pixel[i], b.hr[i] * e(kEmissionR), b.hg[i] * e(kEmissionG), b.hb[i] * e(kEmissionB));
+      add_light(s.work, b.hit_pixel[i], b.hr[i] * e(kEmissionR), b.hg[i] * e(kEmissionG), b.hb[i] * e(kEmissionB));
     }
-  for (int l = 0; l < s.shading.light_count; ++l) light_hits(s, hits, s.shading.lights + 6 * l);
+  for (int l = 0; l < s.shading.light_count; ++l) {
+    const float* const edges = s.shading.lights + kLightFloats * l + 6;
+    bool area = false;
+    for (int k = 0; s.shading.area && k < 6; ++k) area |= edges[k] != 0;
+    for (int ray = 0; ray < (area ? s.work.plan.light_rays : 1); ++ray) light_hits(s, hits, l, area, ray);
+  }
   if (s.shading.reflects) send_on(s, stack, hits);
 }
 

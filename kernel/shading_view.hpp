@@ -7,7 +7,7 @@ namespace grelha {
 
 enum MaterialField {
   kDiffuseR, kDiffuseG, kDiffuseB, kSpecularR, kSpecularG, kSpecularB, kMirrorR, kMirrorG, kMirrorB,
-  kEmissionR, kEmissionG, kEmissionB, kTransmission, kShine, kIor, kFresnel, kMaterialFields
+  kEmissionR, kEmissionG, kEmissionB, kTransmission, kShine, kIor, kFresnel, kRoughness, kMaterialFields
 };
 
 struct MaterialView {
@@ -17,22 +17,47 @@ struct MaterialView {
 /// The scene's light and colour, and which of its effects exist at all: what no material asks for is never computed.
 struct ShadingView {
   MaterialView materials;
-  const float* lights = nullptr;  ///< [6 * light_count] position, colour
+  const float* lights = nullptr;  ///< [kLightFloats * light_count] centre, colour, edge, edge
   int light_count = 0;
   float background[3] = {};
   bool smooth = false, reflects = false, refracts = false, fresnel = false, emits = false, highlights = false;
+  bool area = false, gloss = false;
 };
 
-/// A pinhole camera's frame: direction of a point (x, y) of the image, in pixels = forward + (x - w/2) right + (h/2 - y) up.
+inline constexpr int kLightFloats = 12;
+
+/// A camera's frame: direction of a point (x, y) of the image, in pixels = forward + (x - w/2) right + (h/2 - y) up. Through
+/// the point (a, b) of the unit disc of its lens a ray starts at eye + a lens_right + b lens_up and goes to the point of that
+/// direction at depth `focus`.
 struct FrameView {
-  float eye[3] = {}, forward[3] = {}, right[3] = {}, up[3] = {};
+  float eye[3] = {}, forward[3] = {}, right[3] = {}, up[3] = {}, lens_right[3] = {}, lens_up[3] = {};
+  float focus = 1;
   int width = 0, height = 0;
+  bool lens = false;
+};
+
+/// A near-square grid of at least `count` cells, for jittered samples.
+struct Strata {
+  std::uint32_t columns = 1, rows = 1;
+};
+
+/// Which samples a picture takes. Only effects that are there get dimensions: pixel 2, then lens, light, gloss 2 each.
+struct SamplePlan {
+  enum Kind : int { kSobol, kJitter, kRandom };
+  bool on = false;          ///< false: one ray through each pixel's centre and nothing to sample
+  int samples = 1;          ///< a pixel
+  Kind kind = kSobol;
+  std::uint32_t seed = 0;
+  int lens = -1, light = -1, gloss = -1;  ///< first of the effect's two dimensions
+  int light_rays = 1;       ///< shadow rays a hit sends to an area light
+  int gloss_rays = 0;       ///< rays around the mirror direction, added to that direction itself; 0: one ray in its place
+  Strata pixel_strata, light_strata, gloss_strata;
 };
 
 /// Sums of light are integers in units of 2^-32, so that they come out the same in whatever order terms arrive.
 inline constexpr double kLightUnit = 4294967296.0;
-/// Terms are clamped to this, so that 2^11 of the largest still fit.
-inline constexpr float kMostLight = 1048576.f;
+/// Terms are clamped to this divided by the samples a pixel, at most 2^20: then 64 of the largest a sample still fit.
+inline constexpr float kMostLight = 33554432.f;
 
 inline constexpr int kBatch = 512;     ///< rays shaded together
 inline constexpr int kBandRows = 8;    ///< image rows a thread takes at a time: one row of 8 x 8 packets
@@ -44,7 +69,7 @@ inline constexpr std::uint32_t kRefracted = 1u << 31;
 /// Rays waiting for their turn, last in first out. Arrays of `capacity` floats each.
 struct RayStack {
   float *ox, *oy, *oz, *dx, *dy, *dz, *wr, *wg, *wb;
-  std::uint32_t *pixel, *depth;
+  std::uint32_t *pixel, *depth, *sample, *path;  ///< the last two: only when the plan is on
   int size, capacity;
 };
 
@@ -54,6 +79,7 @@ struct Batch {
   alignas(64) float ox[kBatch], oy[kBatch], oz[kBatch], dx[kBatch], dy[kBatch], dz[kBatch], t_min[kBatch], t[kBatch];
   alignas(64) float wr[kBatch], wg[kBatch], wb[kBatch];
   std::uint32_t id[kBatch], pixel[kBatch], depth[kBatch];
+  std::uint32_t sample[kBatch], path[kBatch];  ///< of its pixel; which bounces led here (0: none)
   // what they met, misses left out
   alignas(64) float px[kBatch], py[kBatch], pz[kBatch];     ///< point on the surface
   alignas(64) float gx[kBatch], gy[kBatch], gz[kBatch];     ///< geometric normal, unit, towards the viewer
@@ -62,7 +88,7 @@ struct Batch {
   alignas(64) float away[kBatch];                           ///< how far along g a ray must start so as not to meet its own surface
   alignas(64) float inside[kBatch];                         ///< 1: met from within
   alignas(64) float hr[kBatch], hg[kBatch], hb[kBatch];     ///< weight of what this point sends
-  std::uint32_t hit_pixel[kBatch], hit_depth[kBatch], material[kBatch];
+  std::uint32_t hit_pixel[kBatch], hit_depth[kBatch], material[kBatch], hit_sample[kBatch], hit_path[kBatch];
   // shadow rays and the light each lets through
   alignas(64) float lox[kBatch], loy[kBatch], loz[kBatch], ldx[kBatch], ldy[kBatch], ldz[kBatch], lt_min[kBatch], lt[kBatch];
   alignas(64) float lr[kBatch], lg[kBatch], lb[kBatch];
@@ -76,6 +102,9 @@ struct BandWork {
   int depth, packet;   ///< packet 0: chosen by kind of ray
   int take;            ///< rays taken off the stack at a time, at most kBatch
   bool mailbox;
+  std::uint32_t first_pixel;  ///< of the band, counted through the picture
+  float most_light;           ///< bound of a term
+  SamplePlan plan;
 };
 
 }  // namespace grelha

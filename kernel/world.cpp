@@ -91,13 +91,15 @@ MaterialTable::MaterialTable(const Scene& scene) {
     const bool clear = m.transmission > 0;
     const float values[kMaterialFields] = {m.diffuse.x,  m.diffuse.y,  m.diffuse.z,  m.specular.x, m.specular.y, m.specular.z,
                                            m.mirror.x,   m.mirror.y,   m.mirror.z,   m.emission.x, m.emission.y, m.emission.z,
-                                           m.transmission, m.shine,    clear ? m.ior : 1.f, clear && m.fresnel ? 1.f : 0.f};
+                                           m.transmission, m.shine,    clear ? m.ior : 1.f, clear && m.fresnel ? 1.f : 0.f,
+                                           m.roughness};
     for (std::size_t k = 0; k < kMaterialFields; ++k) fields[k][i] = values[k];
     reflects |= clear || m.mirror != Float3{};
     refracts |= clear;
     fresnel |= clear && m.fresnel;
     emits |= m.emission != Float3{};
     highlights |= m.specular != Float3{};
+    gloss |= m.roughness > 0 && (clear || m.mirror != Float3{});
   }
 }
 
@@ -159,14 +161,16 @@ World::Impl::Impl(const Scene& s, const BuildOptions& options) : scene((check(s)
     view.reach = static_cast<float>(diagonal);
   }
 
-  for (const PointLight& l : s.lights)
-    lights.insert(lights.end(), {l.position.x, l.position.y, l.position.z, l.color.x, l.color.y, l.color.z});
+  for (const Light& l : s.lights) {
+    for (const Float3& part : {l.position, l.color, l.edge1, l.edge2}) lights.insert(lights.end(), {part.x, part.y, part.z});
+    shading.area |= l.is_area();
+  }
   shading.materials = materials.view();
   shading.lights = lights.data(), shading.light_count = static_cast<int>(s.lights.size());
   shading.background[0] = s.background.x, shading.background[1] = s.background.y, shading.background[2] = s.background.z;
   shading.smooth = !t.nx.empty();
   shading.reflects = materials.reflects, shading.refracts = materials.refracts, shading.fresnel = materials.fresnel;
-  shading.emits = materials.emits, shading.highlights = materials.highlights;
+  shading.emits = materials.emits, shading.highlights = materials.highlights, shading.gloss = materials.gloss;
 }
 
 World::World(const Scene& scene, const BuildOptions& options) : impl_(std::make_unique<Impl>(scene, options)) {}

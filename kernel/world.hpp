@@ -15,7 +15,7 @@ struct MaterialTable {
   explicit MaterialTable(const Scene& scene);
   MaterialView view() const;
   std::array<std::vector<float>, kMaterialFields> fields;
-  bool reflects = false, refracts = false, fresnel = false, emits = false, highlights = false;
+  bool reflects = false, refracts = false, fresnel = false, emits = false, highlights = false, gloss = false;
 };
 
 struct World::Impl {
@@ -25,7 +25,7 @@ struct World::Impl {
   CellStore outside;
   std::vector<GridView> grid_views;
   MaterialTable materials;
-  std::vector<float> lights;  ///< [6 * count] position, colour
+  std::vector<float> lights;  ///< [kLightFloats * count], see ShadingView
   SceneView view;
   ShadingView shading;
 

@@ -105,7 +105,7 @@ TEST(NffLights, AreasKeepTheirShapeAndGetAPoint) {
   EXPECT_EQ(r.file.scene.lights[1].position, (Float3{1, 2, 5}));
   EXPECT_EQ(r.file.scene.lights[1].color, (Float3{1, .5f, .25f}));
   const AreaLight& facing = r.file.area_lights[2];
-  EXPECT_EQ(facing.point_light, 2u);
+  EXPECT_EQ(facing.light, 2u);
   EXPECT_EQ(r.file.scene.lights[2].position, (Float3{0, 0, 5}));
   EXPECT_EQ(std::abs(facing.edge1.x) + std::abs(facing.edge1.y), 2);
   EXPECT_EQ(std::abs(facing.edge2.x) + std::abs(facing.edge2.y), 4);
