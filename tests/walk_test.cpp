@@ -23,6 +23,19 @@ Scene at_scale(double scale, const Float3& offset) {
   return placed(Make(), scale, offset);
 }
 
+/// Three grids one behind another: what is left of a packet's rays after one goes on through the next.
+Scene objects_in_a_row() {
+  Scene s = random_spheres(8, 60);
+  for (int i = 0; i < 2; ++i) {
+    const Scene ball = placed(ball_mesh(24, 12, .3, 5), .9, {i - .5f, 0, .25f * static_cast<float>(i)});
+    const auto first = static_cast<std::uint32_t>(s.geometry.triangles.size());
+    for (std::size_t t = 0; t < ball.geometry.triangles.size(); ++t)
+      add_triangle(s, vertex(ball, ball.geometry.triangles.a[t]), vertex(ball, ball.geometry.triangles.b[t]), vertex(ball, ball.geometry.triangles.c[t]));
+    s.geometry.objects.push_back({first, static_cast<std::uint32_t>(ball.geometry.triangles.size())});
+  }
+  return s;
+}
+
 const std::vector<Case>& cases() {
   static constexpr auto spheres = crowd<random_spheres, 300>;
   static constexpr auto triangles = crowd<random_triangles, 300>;
@@ -48,6 +61,7 @@ const std::vector<Case>& cases() {
       {"few_ulps_a_cell", [] { return at_scale<mixture>(2, {148376, 1234, -223423}); }, 2, {148376, 1234, -223423}},
       {"far_spheres", [] { return at_scale<spheres>(1, {1e5f, 1e5f, 1e5f}); }, 1, {1e5f, 1e5f, 1e5f}},
       {"far_lattice", [] { return placed(lattice_patch(12), 1, {65536, 0, -131072}); }, 6, {65542, 1, -131066}},
+      {"objects_in_a_row", objects_in_a_row, 1.5},
       {"closed_ball", [] { return ball_mesh(24, 12, .2); }, 1},
       {"closed_ball_far", [] { return placed(ball_mesh(24, 12), 1, {3e4f, 0, 0}); }, 1, {3e4f, 0, 0}},
   };
