@@ -90,8 +90,7 @@ TEST_P(Copies, TakeAnyNumberOfRays) {
     }
 }
 
-/// variants.hpp: where nothing is met t keeps its old value; so too for rays that cannot be traced. Packets and single rays
-/// leave -infinity there instead, with the id that says nothing was met; the reference does as promised.
+/// variants.hpp: where nothing is met t keeps its old value; so too for rays that cannot be traced.
 TEST_P(Copies, LeaveTOfUnsoundRaysAlone) {
   const Scene scene = random_mixture(2, 60);
   const World world(scene, {});
