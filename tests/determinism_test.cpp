@@ -23,7 +23,8 @@ Picture generated(const char* name, int size) {
   return {std::move(file.scene), file.camera};
 }
 
-/// Every kind and every effect at once: glass of both sorts, mirrors, highlights, smooth normals, emission, lights on all sides.
+/// Every kind and every effect at once: glass of both sorts, mirrors, highlights, smooth normals, emission, lights on
+/// all sides.
 Picture mixture() {
   Picture p;
   Scene& s = p.scene = random_mixture(12, 240);
@@ -34,7 +35,8 @@ Picture mixture() {
   s.materials[4].emission = {.3f, .2f, .1f}, s.materials[4].diffuse = {.2f, .5f, .9f};
   s.materials[5].diffuse = {.4f, .4f, .2f}, s.materials[5].specular = {1, 1, 1}, s.materials[5].shine = 7.3f;
   Random random(1);
-  for (auto* m : {&s.geometry.spheres.material, &s.geometry.triangles.material, &s.geometry.cones.material, &s.geometry.planes.material})
+  for (auto* m : {&s.geometry.spheres.material, &s.geometry.triangles.material, &s.geometry.cones.material,
+                  &s.geometry.planes.material})
     for (std::uint32_t& i : *m) i = random.below(6);
   Triangles& t = s.geometry.triangles;
   for (std::size_t i = 0; i < t.vertex_count(); ++i) {
@@ -59,7 +61,8 @@ class Determinism : public testing::TestWithParam<const char*> {
 
 std::size_t differing(const Image& a, const Image& b) {
   std::size_t n = 0;
-  for (std::size_t i = 0; i < a.rgb.size(); ++i) n += std::bit_cast<std::uint32_t>(a.rgb[i]) != std::bit_cast<std::uint32_t>(b.rgb[i]);
+  for (std::size_t i = 0; i < a.rgb.size(); ++i)
+    n += std::bit_cast<std::uint32_t>(a.rgb[i]) != std::bit_cast<std::uint32_t>(b.rgb[i]);
   return n;
 }
 
@@ -71,7 +74,8 @@ struct Built {
 std::vector<Built> builds(const Scene& scene) {
   std::vector<Built> out;
   out.push_back({"no grid", World(scene, {.grid = false})});
-  for (const float density : {0.f, .5f, 3.f}) out.push_back({"density " + std::to_string(density), World(scene, {.density = density})});
+  for (const float density : {0.f, .5f, 3.f})
+    out.push_back({"density " + std::to_string(density), World(scene, {.density = density})});
   return out;
 }
 
@@ -100,13 +104,14 @@ TEST_P(Determinism, OnePictureForEveryWayOfTracing) {
       for (const int packet : {0, 1, 16, 64})
         for (const bool mailbox : {true, false})
           for (const int threads : {1, 2, 7}) {
-            if (threads != 2 && (packet == 1 || !mailbox)) continue;  // threads do not see the packet: the rest is covered
+            if (threads != 2 && (packet == 1 || !mailbox))
+              continue;  // threads do not see the packet: the rest is covered
             RenderOptions o;
             o.threads = threads, o.packet = packet, o.mailbox = mailbox, o.isa = v->name;
             RenderStats stats;
             const Image image = render(built.world, p.camera, o, stats);
-            ASSERT_EQ(differing(image, wanted), 0u) << built.name << ", " << v->name << ", packet " << packet << ", mailbox " << mailbox
-                                                    << ", " << threads << " threads";
+            ASSERT_EQ(differing(image, wanted), 0u) << built.name << ", " << v->name << ", packet " << packet
+                                                    << ", mailbox " << mailbox << ", " << threads << " threads";
             expect_same_rays(stats.rays, first.rays);
           }
     }
@@ -116,7 +121,8 @@ TEST_P(Determinism, AtEveryDepth) {
   const Picture p = make();
   const std::vector<Built> worlds = builds(p.scene);
   std::uint64_t last = 0;
-  // Glass sends two rays a hit: the longest path is as long as its doubling allows, and 40 where there are mirrors alone.
+  // Glass sends two rays a hit: the longest path is as long as its doubling allows, and 40 where there are mirrors
+  // alone.
   const std::string name = GetParam();
   for (const int depth : {1, 2, name == "balls" ? 40 : name == "mount" ? 16 : 8}) {
     RenderStats first;
@@ -150,7 +156,8 @@ TEST_P(Determinism, AtOddSizes) {
       RenderOptions o;
       o.threads = threads;
       RenderStats stats;
-      EXPECT_EQ(differing(render(worlds[1].world, p.camera, o, stats), wanted), 0u) << w << 'x' << h << ", " << threads << " threads";
+      EXPECT_EQ(differing(render(worlds[1].world, p.camera, o, stats), wanted), 0u)
+          << w << 'x' << h << ", " << threads << " threads";
     }
   }
 }
@@ -167,7 +174,8 @@ TEST_P(Determinism, ShowsSomething) {
   EXPECT_GT(lit, 67u * 43 / 4);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, Determinism, testing::Values("balls", "mount", "mixture"), [](const auto& p) { return std::string(p.param); });
+INSTANTIATE_TEST_SUITE_P(Scenes, Determinism, testing::Values("balls", "mount", "mixture"),
+                         [](const auto& p) { return std::string(p.param); });
 
 }  // namespace
 }  // namespace grelha::test

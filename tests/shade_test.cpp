@@ -51,20 +51,22 @@ Scene floor_scene(const Material& m) {
   return s;
 }
 
-/// What a handful of float operations may add up to: the direction (12 eps, camera_test) and the hit point move the cosine by
-/// that much each, the light's direction, its normalising and the products take about 20 roundings more.
+/// What a handful of float operations may add up to: the direction (12 eps, camera_test) and the hit point move the
+/// cosine by that much each, the light's direction, its normalising and the products take about 20 roundings more.
 constexpr double kFew = 64 * 6e-8;
 
 TEST(Shade, LambertOnAFloor) {
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     Random random(seed);
     Scene s = floor_scene(plain({.5f, .25f, .125f}));
-    const Float3 light{static_cast<float>(random.in(-3, 3)), static_cast<float>(random.log_in(.3, 10)), static_cast<float>(random.in(-3, 3))};
+    const Float3 light{static_cast<float>(random.in(-3, 3)), static_cast<float>(random.log_in(.3, 10)),
+                       static_cast<float>(random.in(-3, 3))};
     s.lights = {{light, {.5f, 1, 2}}};
     const Float3 spot{static_cast<float>(random.in(-1, 1)), 0, static_cast<float>(random.in(-1, 1))};
     const Pixel p = look(s, {0, 5, 1}, spot);
     const Real cosine = oracle::unit(V(light) - V(spot)).y;
-    EXPECT_NEAR(p.r, double(.25L * cosine), 10 * kFew) << seed;  // light .3 above: the spot's own error weighs ten times there
+    EXPECT_NEAR(p.r, double(.25L * cosine), 10 * kFew)
+        << seed;  // light .3 above: the spot's own error weighs ten times there
     EXPECT_NEAR(p.g, double(.25L * cosine), 10 * kFew) << seed;
     EXPECT_NEAR(p.b, double(.25L * cosine), 10 * kFew) << seed;
     EXPECT_EQ(p.stats.rays.shadow, 1u);
@@ -108,7 +110,8 @@ TEST(Shade, ShadowsAreHardAndWhole) {
   s.lights = {{{0, 4, 0}, {1, 1, 1}}};
   s.materials.push_back(plain({}));
   s.geometry.spheres.add({0, 2, 0}, .5f, 1);
-  // The cone of shadow from height 4 about the ball's rim: sin = 1/4, so its radius on the floor is 4 tan(asin(1/4)) = 1.0328.
+  // The cone of shadow from height 4 about the ball's rim: sin = 1/4, so its radius on the floor is 4 tan(asin(1/4))
+  // = 1.0328.
   EXPECT_EQ(look(s, {1.5f, 1, 3}, {1.02f, 0, 0}).r, 0);
   EXPECT_GT(look(s, {1.5f, 1, 3}, {1.04f, 0, 0}).r, .9f);
   s.materials[1].transmission = 1;  // any hit blocks, glass too
@@ -170,11 +173,13 @@ TEST(Shade, DepthCountsTheEyeRayAsOne) {
   m.emission = {1, 0, 0};
   Scene s;
   s.materials = {m};
-  s.geometry.planes.add({0, 0, 0}, {0, 1, 0}, 0), s.geometry.planes.add({0, 2, 0}, {0, 1, 0}, 0);  // two mirrors face to face
+  s.geometry.planes.add({0, 0, 0}, {0, 1, 0}, 0),
+      s.geometry.planes.add({0, 2, 0}, {0, 1, 0}, 0);  // two mirrors face to face
   s.background = {0, 1, 0};
   for (int depth = 1; depth <= 40; ++depth) {
     const Pixel p = look(s, {0, 1, 0}, {0, 0, .25f}, depth);
-    // Each of `depth` hits sends 1, halved at each bounce; the last one's reflection sees the background. Powers of two: exact.
+    // Each of `depth` hits sends 1, halved at each bounce; the last one's reflection sees the background. Powers of
+    // two: exact.
     EXPECT_FLOAT_EQ(p.r, static_cast<float>(2 - std::ldexp(1., 1 - depth))) << depth;
     EXPECT_NEAR(p.g, std::ldexp(1., -depth), 1e-9) << depth;  // sums count in 2^-32
     EXPECT_EQ(p.stats.rays.reflection, static_cast<std::uint64_t>(depth - 1));
@@ -234,7 +239,8 @@ TEST(Shade, SchlickFromWithin) {
     const Float3 eye{0, -.5f, static_cast<float>(.5L * std::tan(angle))};
     const Pixel p = look(water(ior, true), eye, {0, 0, 0});
     const Real sine = ior * length(V{eye.x, 0, eye.z}) / length(V(eye)), kr = schlick(ior, std::sqrt(1 - sine * sine));
-    // cos = sqrt(1 - sin^2) steepens towards the critical angle: d cos / d sin = tan of the angle outside, below 3 here.
+    // cos = sqrt(1 - sin^2) steepens towards the critical angle: d cos / d sin = tan of the angle outside, below 3
+    // here.
     EXPECT_NEAR(p.g, double(kr), 50 * kFew) << i;
     EXPECT_NEAR(p.r, double(1 - kr), 50 * kFew) << i;
   }
@@ -274,10 +280,12 @@ TEST(Shade, PaneShiftsByWhatSnellSays) {
     const Real outside = i * 4.5L * 3.14159265358979L / 180;
     const Float3 eye{static_cast<float>(-std::tan(outside)), 1, 0};
     const Real sine = length(V{eye.x, 0, 0}) / length(V(eye)), inner = sine / 1.5L;
-    const Real x = inner / std::sqrt(1 - inner * inner) + 2 * std::abs(Real(eye.x));  // through the pane, then 2 down to the floor
+    const Real x =
+        inner / std::sqrt(1 - inner * inner) + 2 * std::abs(Real(eye.x));  // through the pane, then 2 down to the floor
     const Real cosine = oracle::unit(V(light) - V{x, -3, 0}).y;
     const Pixel p = look(s, eye, {0, 0, 0});
-    // The floor's point is off by a few eps of the path times 1 / cos^2 of its slant, up to 80 there; the light hangs .5 above.
+    // The floor's point is off by a few eps of the path times 1 / cos^2 of its slant, up to 80 there; the light hangs
+    // .5 above.
     const Real slant = 1 - sine * sine;
     EXPECT_NEAR(p.r, double(cosine), double(16 * 6e-8L * (1 + x) / slant / .5L)) << i << ", at x " << double(x);
     EXPECT_EQ(p.stats.rays.refraction, 2u) << i;
@@ -307,7 +315,8 @@ TEST(Shade, SmoothNormalsAreMixed) {
   Scene s;
   s.materials = {plain({1, 1, 1})};
   add_triangle(s, {-1, 0, -1}, {-1, 0, 3}, {3, 0, -1});
-  s.geometry.triangles.nx = {0, 1, 0}, s.geometry.triangles.ny = {2, 1, 3}, s.geometry.triangles.nz = {0, 0, 3};  // any length
+  s.geometry.triangles.nx = {0, 1, 0}, s.geometry.triangles.ny = {2, 1, 3},
+  s.geometry.triangles.nz = {0, 0, 3};  // any length
   s.lights = {{{0, 4, 0}, {1, 1, 1}}};
   const Pixel p = look(s, {0, 3, 1}, {0, 0, 0});
   // At the origin the corners weigh 1/2, 1/4, 1/4.
@@ -327,11 +336,31 @@ TEST(Shade, EveryKindHasItsNormal) {
     return look(s, eye, at).r;
   };
   EXPECT_NEAR(head_on([](Scene& s) { s.geometry.spheres.add({1, 2, 3}, 1, 0); }, {1, 2, 9}, {1, 2, 3}), 1, kFew);
-  EXPECT_NEAR(head_on([](Scene& s) { s.geometry.spheres.add({1, 2, 3}, 4, 0); }, {1, 2, 4}, {1, 2, 9}), 1, kFew);  // from within
-  EXPECT_NEAR(head_on([](Scene& s) { s.geometry.cones.add({0, 0, 0}, 1, {0, 4, 0}, 1, 0); }, {5, 2, 0}, {0, 2, 0}), 1, kFew);
-  EXPECT_NEAR(head_on([](Scene& s) { s.geometry.cones.add({0, 0, 0}, 2, {0, 2, 0}, 0, 0); }, {3, 3, 0}, {1, 1, 0}), 1, kFew);
+  EXPECT_NEAR(head_on(
+                  [](Scene& s) {
+                    s.geometry.spheres.add({1, 2, 3}, 4, 0);
+                  },
+                  {1, 2, 4}, {1, 2, 9}),
+              1, kFew);  // from within
+  EXPECT_NEAR(head_on(
+                  [](Scene& s) {
+                    s.geometry.cones.add({0, 0, 0}, 1, {0, 4, 0}, 1, 0);
+                  },
+                  {5, 2, 0}, {0, 2, 0}),
+              1, kFew);
+  EXPECT_NEAR(head_on(
+                  [](Scene& s) {
+                    s.geometry.cones.add({0, 0, 0}, 2, {0, 2, 0}, 0, 0);
+                  },
+                  {3, 3, 0}, {1, 1, 0}),
+              1, kFew);
   EXPECT_NEAR(head_on([](Scene& s) { s.geometry.planes.add({0, 1, 0}, {3, 3, 0}, 0); }, {4, 5, 0}, {0, 1, 0}), 1, kFew);
-  EXPECT_NEAR(head_on([](Scene& s) { add_triangle(s, {-1, -1, 0}, {1, -1, 0}, {0, 1, 0}); }, {0, 0, -4}, {0, 0, 0}), 1, kFew);
+  EXPECT_NEAR(head_on(
+                  [](Scene& s) {
+                    add_triangle(s, {-1, -1, 0}, {1, -1, 0}, {0, 1, 0});
+                  },
+                  {0, 0, -4}, {0, 0, 0}),
+              1, kFew);
 }
 
 }  // namespace
