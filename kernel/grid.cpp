@@ -331,7 +331,8 @@ Grid build_grid(const Primitives& p, std::span<const std::uint32_t> ids, double 
   const double per_length = density / cube_root(extent[0] * extent[1] * extent[2] / static_cast<double>(ids.size()));
   std::size_t cells = 1;
   for (std::size_t a = 0; a < 3; ++a) {
-    const double n = extent[a] * per_length + 1;
+    // Cells no smaller than 2 pad: one outlier a million scenes away makes a pad that would put everything in every cell.
+    const double n = std::min(extent[a] * per_length + 1, extent[a] / (2 * pad));
     g.cells[a] = static_cast<std::uint32_t>(std::clamp(n, 1., 1024.));
     g.cell[a] = extent[a] / g.cells[a];
     cells *= g.cells[a];

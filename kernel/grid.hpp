@@ -79,7 +79,7 @@ inline int cell_of(double x, double lo, double inv_cell, int n) {
 /// Builds a grid over some primitives (ids ascending, at least one), M = density.
 ///
 /// Resolution  cells per axis = M extent / cbrt(volume / count) + 1 (Cleary & Wyvill 1988; Amanatides & Woo's report form),
-///             extents below 1/1000 of the largest counted as that, at most 1024 an axis.
+///             extents below 1/1000 of the largest counted as that, at most 1024 an axis, no cell smaller than 2 pad.
 /// Guarantee   every primitive stands in each cell that its box grown by `pad` touches, unless the cell lies beyond `pad`
 ///             of its surface; in each cell primitives ascend by id. Same lists on every machine.
 /// Source      Lagae & Dutré, "Compact, Fast and Robust Grids for Ray Tracing", 2008: count, sum, scatter.

@@ -46,13 +46,14 @@ TEST(Camera, FrameIsTheExactOneRounded) {
     if (!camera_is_sound(c)) continue;
     const FrameView f = make_frame(c);
     const Frame exact(c);
-    const auto expect_near = [&](const float (&got)[3], const V& wanted, const char* what) {
+    const auto expect_near = [&](const float(&got)[3], const V& wanted, const char* what) {
       const oracle::Real bound = 1.01L * oracle::kEps * length(wanted);
       ASSERT_LE(std::abs(got[0] - wanted.x), bound) << what << ", seed " << seed;
       ASSERT_LE(std::abs(got[1] - wanted.y), bound) << what << ", seed " << seed;
       ASSERT_LE(std::abs(got[2] - wanted.z), bound) << what << ", seed " << seed;
     };
-    expect_near(f.forward, exact.forward, "forward"), expect_near(f.right, exact.right, "right"), expect_near(f.up, exact.up, "up");
+    expect_near(f.forward, exact.forward, "forward"), expect_near(f.right, exact.right, "right"),
+        expect_near(f.up, exact.up, "up");
     EXPECT_EQ(Float3({f.eye[0], f.eye[1], f.eye[2]}), c.eye);
   }
 }
@@ -66,14 +67,16 @@ TEST(Camera, RaysGoThroughPixelCentres) {
     const Camera c = random_camera(random);
     if (!camera_is_sound(c)) continue;
     const Frame exact(c);
-    const int x0 = static_cast<int>(random.below(static_cast<std::uint32_t>(c.width))), y0 = static_cast<int>(random.below(static_cast<std::uint32_t>(c.height)));
+    const int x0 = static_cast<int>(random.below(static_cast<std::uint32_t>(c.width))),
+              y0 = static_cast<int>(random.below(static_cast<std::uint32_t>(c.height)));
     const int x1 = std::min(x0 + kTile, c.width), y1 = std::min(y0 + kBandRows, c.height);
     const int n = scalar::tile_rays(make_frame(c), *batch, 0, x0, x1, y0, y1, y0);
     ASSERT_EQ(n, (x1 - x0) * (y1 - y0));
     for (int i = 0; i < n; ++i) {
       const int x = x0 + i % (x1 - x0), y = y0 + i / (x1 - x0);
       const V got{batch->dx[i], batch->dy[i], batch->dz[i]};
-      ASSERT_LE(length(got - exact.through(c, x, y)), 12 * oracle::kEps) << "seed " << seed << ", pixel " << x << ' ' << y;
+      ASSERT_LE(length(got - exact.through(c, x, y)), 12 * oracle::kEps)
+          << "seed " << seed << ", pixel " << x << ' ' << y;
       ASSERT_EQ(batch->pixel[i], static_cast<std::uint32_t>((y - y0) * c.width + x));
     }
   }
@@ -84,7 +87,8 @@ TEST(Camera, PictureStandsUpright) {
   Scene scene = empty_scene();
   scene.materials[0] = {};
   scene.materials[0].emission = {1, 1, 1};
-  add_triangle(scene, {0, 0, 0}, {3, 0, 0}, {3, 2, 0});  // right and above the middle: [0, 3] x [0, 2] of [-3, 3] x [-2, 2]
+  add_triangle(scene, {0, 0, 0}, {3, 0, 0},
+               {3, 2, 0});  // right and above the middle: [0, 3] x [0, 2] of [-3, 3] x [-2, 2]
   add_triangle(scene, {0, 0, 0}, {3, 2, 0}, {0, 2, 0});
   const World world(scene, {});
   Camera c;
@@ -96,8 +100,9 @@ TEST(Camera, PictureStandsUpright) {
     for (int y = 0; y < h; ++y)
       for (int x = 0; x < w; ++x) {
         const double px = (x + .5 - w / 2.) * 4 / h, py = (h / 2. - y - .5) * 4 / h;  // where the centre meets z = 0
-        if (px == 0 || py == 0) continue;                                            // on the square's very edge
-        EXPECT_EQ(image.row(y)[3 * x], px > 0 && py > 0 && px < 3 ? 1.f : 0.f) << w << 'x' << h << ", pixel " << x << ' ' << y;
+        if (px == 0 || py == 0) continue;                                             // on the square's very edge
+        EXPECT_EQ(image.row(y)[3 * x], px > 0 && py > 0 && px < 3 ? 1.f : 0.f)
+            << w << 'x' << h << ", pixel " << x << ' ' << y;
       }
     EXPECT_EQ(stats.rays.primary, static_cast<std::uint64_t>(w * h));
   }
@@ -131,7 +136,9 @@ TEST(RenderOptions, RefusesWhatItCannotDo) {
   const Scene scene = random_mixture(1, 30);
   const World world(scene, {});
   RenderStats stats;
-  const auto refused = [&](const RenderOptions& o) { EXPECT_THROW(render(world, {}, o, stats), std::invalid_argument); };
+  const auto refused = [&](const RenderOptions& o) {
+    EXPECT_THROW(render(world, {}, o, stats), std::invalid_argument);
+  };
   RenderOptions o;
   o.depth = 0, refused(o);
   o.depth = 100000, refused(o), o = {};

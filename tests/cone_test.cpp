@@ -61,8 +61,9 @@ Hit hit(const Float3& o, const Float3& d, const Shape& s, float t_min = 0) {
   const PreparedCones c = prepare_cones(cones);
   const float inv_dd = 1 / ((d.x * d.x + d.y * d.y) + d.z * d.z);
   float t = -1;
-  const bool h = scalar::hit_cone<float>({o.x, o.y, o.z}, {d.x, d.y, d.z}, inv_dd, t_min,
-                                         {{c[0][0], c[1][0], c[2][0]}, {c[3][0], c[4][0], c[5][0]}, c[6][0], c[7][0], c[8][0], c[9][0]}, t);
+  const bool h = scalar::hit_cone<float>(
+      {o.x, o.y, o.z}, {d.x, d.y, d.z}, inv_dd, t_min,
+      {{c[0][0], c[1][0], c[2][0]}, {c[3][0], c[4][0], c[5][0]}, c[6][0], c[7][0], c[8][0], c[9][0]}, t);
   return {h, t};
 }
 
@@ -78,8 +79,10 @@ Case random_case(std::uint64_t seed, double farthest) {
   Case k;
   k.shape = random_shape(random, size);
   const oracle::Frustum f{k.shape.base, k.shape.apex, k.shape.r0, k.shape.r1};
-  k.org = at(k.shape.base, size * (random.chance(.2) ? random.unit() : random.log_in(.5, farthest)), random.direction());
-  const Float3 aim = at(at(k.shape.base, random.unit(), minus(k.shape.apex, k.shape.base)), size * random.in(0, .5), random.direction());
+  k.org =
+      at(k.shape.base, size * (random.chance(.2) ? random.unit() : random.log_in(.5, farthest)), random.direction());
+  const Float3 aim = at(at(k.shape.base, random.unit(), minus(k.shape.apex, k.shape.base)), size * random.in(0, .5),
+                        random.direction());
   k.dir = scaled(minus(aim, k.org), random.log_in(1e-2, 1e2));
   k.unit = oracle::kEps * (length(oracle::V(k.org) - f.base) + f.height() + std::max(std::abs(f.r0), std::abs(f.r1)));
   return k;
@@ -95,7 +98,8 @@ TEST(ConeOracle, PointsLieOnTheSurface) {
     ++hits;
     const oracle::Frustum f{k.shape.base, k.shape.apex, k.shape.r0, k.shape.r1};
     const oracle::Real off = f.distance(oracle::Ray{k.org, k.dir}.point(t)) / k.unit;
-    if (!(off <= 32) && ++over <= 3) ADD_FAILURE() << "seed " << seed << ": " << static_cast<double>(off) << " units off";
+    if (!(off <= 32) && ++over <= 3)
+      ADD_FAILURE() << "seed " << seed << ": " << static_cast<double>(off) << " units off";
     worst = std::max(worst, off);
   }
   std::printf("cone: %d hits, %d over, worst %.2f eps (|o - base| + h + r)\n", hits, over, static_cast<double>(worst));
@@ -116,16 +120,19 @@ TEST(ConeOracle, FindsTheFirstCrossing) {
     if (!wanted || f.distance(ray.org) <= tolerance) continue;
     const oracle::V p = ray.point(wanted->t);
     const oracle::Real z = f.height_at(p), rho = length(cross(f.axis(), p - f.base));
-    // Off by `tolerance` across the surface is tolerance / cosine along the ray; that must stay small against what bends.
+    // Off by `tolerance` across the surface is tolerance / cosine along the ray; that must stay small against what
+    // bends.
     const oracle::Real along = tolerance / wanted->cosine;
     if (wanted->cosine < .05L || 20 * along > rho || z < along || z > f.height() - along) continue;
     ++judged;
     const auto [found, t] = hit(k.org, k.dir, k.shape);
-    if (found && t < wanted->t && f.distance(ray.point(t)) <= tolerance) continue;  // met the other rim, which is as near as none
+    if (found && t < wanted->t && f.distance(ray.point(t)) <= tolerance)
+      continue;  // met the other rim, which is as near as none
     const oracle::Real off = found ? std::abs(t - wanted->t) * length(ray.dir) / along * 32 : 1e9L;
     worst = std::max(worst, off);
     if (!(off <= 2 * 32) && ++wrong <= 3)
-      ADD_FAILURE() << "seed " << seed << ": found " << found << " t " << t << " against " << static_cast<double>(wanted->t);
+      ADD_FAILURE() << "seed " << seed << ": found " << found << " t " << t << " against "
+                    << static_cast<double>(wanted->t);
   }
   std::printf("cone: %d judged, worst along the ray %.2f units / cosine\n", judged, static_cast<double>(worst));
   EXPECT_EQ(wrong, 0);
@@ -137,13 +144,13 @@ TEST(ConeCorners, EndsSidesAndAxes) {
   EXPECT_EQ(hit({3, 1, 0}, {-1, 0, 0}, pipe).t, 2);
   EXPECT_EQ(hit({3, 1, 0}, {-1, 0, 0}, lining).t, 4);
   EXPECT_EQ(hit({0, 1, 0}, {-.5f, 0, 0}, pipe).t, 2);
-  EXPECT_FALSE(hit({3, 2.01f, 0}, {-1, 0, 0}, pipe).hit);   // past the rim
+  EXPECT_FALSE(hit({3, 2.01f, 0}, {-1, 0, 0}, pipe).hit);  // past the rim
   EXPECT_FALSE(hit({3, -.01f, 0}, {-1, 0, 0}, pipe).hit);
-  EXPECT_FALSE(hit({0, 5, 0}, {0, -1, 0}, pipe).hit);       // down the middle: no caps
+  EXPECT_FALSE(hit({0, 5, 0}, {0, -1, 0}, pipe).hit);  // down the middle: no caps
   EXPECT_TRUE(hit({.5f, 4, 0}, {0, -1, 0}, tip).hit);
   EXPECT_EQ(hit({.5f, 4, 0}, {0, -1, 0}, tip).t, 3);
   EXPECT_FALSE(hit({-1.5f, 4, 0}, {0, -1, 0}, tip).hit);
-  EXPECT_EQ(hit({.25f, 5, 0}, {0, -1, 0}, tip).t, 3.5f);    // and not the mirrored cone above the tip
+  EXPECT_EQ(hit({.25f, 5, 0}, {0, -1, 0}, tip).t, 3.5f);           // and not the mirrored cone above the tip
   EXPECT_EQ(hit({1.5f, .5f, 0}, {-1, 0, 0}, tip, .75f).t, 2.25f);  // the interval is open: t .75 itself does not count
 }
 

@@ -237,6 +237,19 @@ TEST(GridSize, StaysWithinItsBounds) {
       for (const std::uint32_t n : g.cells) EXPECT_TRUE(n >= 1 && n <= 1024) << n;
 }
 
+TEST(GridSize, AnOutlierDoesNotPutEverythingEverywhere) {
+  // The outlier's extent sets the pad; at one part in 16,777,216 * 128 of it a whole scene lies within pad of itself.
+  Scene s = empty_scene();
+  for (int i = 0; i < 2000; ++i) {
+    const auto x = static_cast<float>(i % 50), y = static_cast<float>(i / 50);
+    add_triangle(s, {x, y, 0}, {x + 1, y, 0}, {x, y + 1, 1});
+  }
+  s.geometry.triangles.z[0] = 4294967296.f;
+  const World world(s, {});
+  // Cells of at least 2 pad: a grown box, at most 3 pad + its own size across, touches at most 3 of them on an axis.
+  for (const GridStats& g : world.grids()) EXPECT_LE(g.references, 27u * 2000u);
+}
+
 TEST(GridChoice, HugePrimitivesStandOutside) {
   const Scene scene = stadium(3, 300);
   const World world(scene, {});

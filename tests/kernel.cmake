@@ -10,3 +10,13 @@ grelha_test(power property grelha::kernel)
 grelha_test(leaving property grelha::kernel)
 grelha_test(camera unit grelha::kernel)
 grelha_test(variants property grelha::kernel)
+grelha_test(shade unit grelha::kernel)
+grelha_test(determinism image grelha::frontend grelha::scenes)
+
+# No function of one instruction set's copy can be linked into another. The self test plants three that could.
+add_library(leaky_variant OBJECT ${CMAKE_CURRENT_LIST_DIR}/support/leaky_variant.cpp)
+add_test(NAME isa_symbols COMMAND ${CMAKE_COMMAND} -D NM=${CMAKE_NM} "-DOBJECTS=$<TARGET_OBJECTS:grelha_kernel>"
+  -P ${CMAKE_CURRENT_LIST_DIR}/isa_symbols.cmake)
+add_test(NAME isa_symbols_self_test COMMAND ${CMAKE_COMMAND} -D NM=${CMAKE_NM} -D SELF_TEST=$<TARGET_OBJECTS:leaky_variant>
+  -P ${CMAKE_CURRENT_LIST_DIR}/isa_symbols.cmake)
+set_tests_properties(isa_symbols isa_symbols_self_test PROPERTIES LABELS build)

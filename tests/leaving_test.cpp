@@ -12,16 +12,17 @@ namespace {
 
 struct Result {
   std::uint64_t hits = 0, rays = 0, met_again = 0;
-  double gap = 0;      ///< largest distance between the surface and where a ray starts, in sizes of the primitive
+  double gap = 0;  ///< largest distance between the surface and where a ray starts, in sizes of the primitive
   std::string first;
   void print(const char* what) const {
     std::printf("%s: %llu hits, %llu rays leave, %llu meet the same primitive again, largest gap %.3g sizes\n", what,
-                static_cast<unsigned long long>(hits), static_cast<unsigned long long>(rays), static_cast<unsigned long long>(met_again), gap);
+                static_cast<unsigned long long>(hits), static_cast<unsigned long long>(rays),
+                static_cast<unsigned long long>(met_again), gap);
   }
 };
 
-/// `make` builds the scene of one primitive of the given size at a place; `convex`: no ray that goes out meets it again;
-/// otherwise none at all does, on either side.
+/// `make` builds the scene of one primitive of the given size at a place; `convex`: no ray that goes out meets it
+/// again; otherwise none at all does, on either side.
 template <class Make, class Near>
 Result leave_from(std::uint64_t seeds, double most_offset, bool convex, const Make& make, const Near& farthest) {
   Result r;
@@ -72,14 +73,18 @@ Result leave_from(std::uint64_t seeds, double most_offset, bool convex, const Ma
     const Answers again = trace(*find_variant("scalar"), world, leaving, {Method::kSingle, 1, true}, Query::kClosest);
     for (std::size_t i = 0; i < leaving.size(); ++i) {
       if (again.id[i] != from[i]) continue;
-      if (r.met_again++ == 0) r.first = "seed " + std::to_string(seed) + ", size " + std::to_string(size) + ", offset " + std::to_string(offset) + " sizes, t " + show(again.t[i], again.id[i]) + ", " + leaving.describe(i);
+      if (r.met_again++ == 0)
+        r.first = "seed " + std::to_string(seed) + ", size " + std::to_string(size) + ", offset " +
+                  std::to_string(offset) + " sizes, t " + show(again.t[i], again.id[i]) + ", " + leaving.describe(i);
     }
   }
   return r;
 }
 
 Scene make_sphere(Random&, double size, const Float3& place) { return one_sphere(place, static_cast<float>(size)); }
-Scene make_plane(Random& random, double, const Float3& place) { return one_plane(place, scaled(random.direction(), random.log_in(1e-3, 1e3))); }
+Scene make_plane(Random& random, double, const Float3& place) {
+  return one_plane(place, scaled(random.direction(), random.log_in(1e-3, 1e3)));
+}
 Scene make_triangle(Random& random, double size, const Float3& place) {
   Float3 b = at(place, size, random.direction()), c = at(place, size * random.in(.1, 1), random.direction());
   if (random.chance(.2)) b.y = c.y = place.y;
@@ -87,22 +92,27 @@ Scene make_triangle(Random& random, double size, const Float3& place) {
 }
 Scene make_cone(Random& random, double size, const Float3& place) {
   const double r0 = size * random.in(.1, 1), r1 = random.chance(.3) ? r0 : size * random.in(0, 1);
-  return one_cone(place, static_cast<float>(r0), at(place, size * random.in(.3, 2), random.direction()), static_cast<float>(r1));
+  return one_cone(place, static_cast<float>(r0), at(place, size * random.in(.3, 2), random.direction()),
+                  static_cast<float>(r1));
 }
 
 struct Row {
   double offset, farthest;
   double gap;  ///< wanted at most, in sizes
 };
-/// The bounds of surface.hpp in sizes: 16 (sphere) to 64 eps (cone: height up to 2 sizes, radius up to 1, 32 eps of both) and
-/// 4 eps of the largest coordinate, which is the offset; doubled as print() does. 2e-5 and 5e-7 offset cover each kind.
-constexpr Row kRows[] = {{0, 10, 2e-5}, {0, 1e5, 2e-5}, {10, 1e3, 3e-5}, {1e3, 10, 6e-4}, {1e3, 1e5, 6e-4}, {1e6, 1e3, .6}};
+/// The bounds of surface.hpp in sizes: 16 (sphere) to 64 eps (cone: height up to 2 sizes, radius up to 1, 32 eps of
+/// both) and 4 eps of the largest coordinate, which is the offset; doubled as print() does. 2e-5 and 5e-7 offset cover
+/// each kind.
+constexpr Row kRows[] = {{0, 10, 2e-5},   {0, 1e5, 2e-5},   {10, 1e3, 3e-5},
+                         {1e3, 10, 6e-4}, {1e3, 1e5, 6e-4}, {1e6, 1e3, .6}};
 
 template <class Make>
 void check(const char* name, bool convex, const Make& make) {
   for (const Row& row : kRows) {
     const Result r = leave_from(4000, row.offset, convex, make, row.farthest);
-    r.print((std::string(name) + ", offset up to " + std::to_string(row.offset) + ", seen from up to " + std::to_string(row.farthest)).c_str());
+    r.print((std::string(name) + ", offset up to " + std::to_string(row.offset) + ", seen from up to " +
+             std::to_string(row.farthest))
+                .c_str());
     EXPECT_GT(r.hits, 4000u);
     EXPECT_EQ(r.met_again, 0u) << name << ": " << r.first;
     EXPECT_LT(r.gap, row.gap);
@@ -114,7 +124,8 @@ TEST(Leaving, Planes) {
   // A plane's error is that of the point met, which grows with the distance of the origin.
   for (const Row& row : kRows) {
     const Result r = leave_from(4000, row.offset, false, make_plane, row.farthest);
-    r.print(("plane, offset up to " + std::to_string(row.offset) + ", seen from up to " + std::to_string(row.farthest)).c_str());
+    r.print(("plane, offset up to " + std::to_string(row.offset) + ", seen from up to " + std::to_string(row.farthest))
+                .c_str());
     EXPECT_GT(r.hits, 4000u);
     EXPECT_EQ(r.met_again, 0u) << r.first;
   }
@@ -154,7 +165,8 @@ TEST(Leaving, InwardsMeetsTheFarSide) {
   EXPECT_GT(judged, 10000u);
 }
 
-/// Something a thousandth of the size above a surface is met, not skipped, wherever that is far above the spacing of floats.
+/// Something a thousandth of the size above a surface is met, not skipped, wherever that is far above the spacing of
+/// floats.
 TEST(Leaving, SeesWhatIsNear) {
   std::uint64_t rays = 0;
   for (std::uint64_t seed = 0; seed < 20000; ++seed) {
@@ -165,7 +177,8 @@ TEST(Leaving, SeesWhatIsNear) {
     Scene scene = empty_scene();
     for (const float up : {0.f, gap}) {
       const float y = place.y + up;
-      add_triangle(scene, {place.x - float(size), y, place.z - float(size)}, {place.x + float(size), y, place.z - float(size)}, {place.x, y, place.z + float(size)});
+      add_triangle(scene, {place.x - float(size), y, place.z - float(size)},
+                   {place.x + float(size), y, place.z - float(size)}, {place.x, y, place.z + float(size)});
     }
     const World world(scene, {.grid = false});
     const float org[3] = {place.x, place.y + gap / 2, place.z}, dir[3] = {0, -1, 0};
@@ -176,7 +189,8 @@ TEST(Leaving, SeesWhatIsNear) {
     const scalar::Vec3<float> start = scalar::leave(s.point, s.normal, s.away, {d.x, d.y, d.z});
     Rays up;
     up.add({start.x, start.y, start.z}, d);
-    EXPECT_EQ(trace(*find_variant("scalar"), world, up, {Method::kSingle, 1, true}, Query::kClosest).id[0], 1u) << "seed " << seed;
+    EXPECT_EQ(trace(*find_variant("scalar"), world, up, {Method::kSingle, 1, true}, Query::kClosest).id[0], 1u)
+        << "seed " << seed;
     ++rays;
   }
   EXPECT_GT(rays, 15000u);

@@ -30,8 +30,8 @@ TEST_P(Plane, ReturnsTheScalarBits) {
   EXPECT_GT(hits, 60u * kManyRays / 5);
 }
 
-/// The header's bound: t within 6 eps |point - org| |normal| / |dir . normal| of the exact one. The dot product below the
-/// fraction cancels for grazing rays, which costs t itself a share of eps |dir| |normal| / |dir . normal|.
+/// The header's bound: t within 6 eps |point - org| |normal| / |dir . normal| of the exact one. The dot product below
+/// the fraction cancels for grazing rays, which costs t itself a share of eps |dir| |normal| / |dir . normal|.
 TEST(PlaneOracle, KeepsTheBound) {
   oracle::Real worst = 0;
   int hits = 0;
@@ -40,13 +40,16 @@ TEST(PlaneOracle, KeepsTheBound) {
     const double size = random.log_in(1e-6, 1e6);
     const Float3 p = random.point(size), o = random.point(size * random.log_in(1, 1e4));
     const Float3 n = scaled(random.direction(), random.log_in(1e-3, 1e3));
-    const Float3 d = scaled(minus(at(p, size * random.log_in(1e-2, 1e2), random.direction()), o), random.log_in(1e-3, 1e3));
+    const Float3 d =
+        scaled(minus(at(p, size * random.log_in(1e-2, 1e2), random.direction()), o), random.log_in(1e-3, 1e3));
     const oracle::Sheet sheet{p, n};
     const oracle::Ray ray{o, d};
-    const oracle::Real along = std::abs(dot(ray.dir, sheet.normal)), sine = along / (length(ray.dir) * length(sheet.normal));
+    const oracle::Real along = std::abs(dot(ray.dir, sheet.normal)),
+                       sine = along / (length(ray.dir) * length(sheet.normal));
     if (sine < 1e-3L) continue;  // from here on the bound's first order is all there is
     float t = -1;
-    const bool found = scalar::hit_plane<float>({o.x, o.y, o.z}, {d.x, d.y, d.z}, 0, {p.x, p.y, p.z}, {n.x, n.y, n.z}, t);
+    const bool found =
+        scalar::hit_plane<float>({o.x, o.y, o.z}, {d.x, d.y, d.z}, 0, {p.x, p.y, p.z}, {n.x, n.y, n.z}, t);
     const auto wanted = sheet.first(ray, -1e30L);
     const oracle::Real bound = oracle::kEps * (length(sheet.point - ray.org) * length(sheet.normal) / along +
                                                std::abs(wanted->t) * (1 + 1 / sine));

@@ -64,8 +64,8 @@ TEST(SphereOracle, PointsLieOnTheSurface) {
   EXPECT_GT(hits, 100000);
 }
 
-/// Misses and hits agree with the exact ones, and the first crossing is found, wherever 8 eps cannot tip the balance: a ray
-/// whose line keeps further than that from the silhouette, that starts further than that from the surface.
+/// Misses and hits agree with the exact ones, and the first crossing is found, wherever 8 eps cannot tip the balance: a
+/// ray whose line keeps further than that from the silhouette, that starts further than that from the surface.
 TEST(SphereOracle, FindsTheFirstCrossing) {
   int judged = 0;
   for (std::uint64_t seed = 0; seed < 300000; ++seed) {
@@ -87,7 +87,8 @@ TEST(SphereOracle, FindsTheFirstCrossing) {
     if (!found) continue;
     // Across a sphere the point moves 1/cosine as far along the ray as off the surface; twice for its curvature.
     const oracle::Real along = std::abs(t - wanted->t) * length(ray.dir);
-    ASSERT_LE(along * wanted->cosine, 2 * tolerance) << "seed " << seed << ": t " << t << " against " << static_cast<double>(wanted->t);
+    ASSERT_LE(along * wanted->cosine, 2 * tolerance)
+        << "seed " << seed << ": t " << t << " against " << static_cast<double>(wanted->t);
   }
   EXPECT_GT(judged, 280000);
 }

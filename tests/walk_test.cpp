@@ -1,4 +1,5 @@
-// Every way through a grid against brute force: the same primitive and the same bits of t, whatever the scene and the ray.
+// Every way through a grid against brute force: the same primitive and the same bits of t, whatever the scene and the
+// ray.
 #include "tests/support/rays.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -8,7 +9,7 @@ namespace {
 struct Case {
   std::string name;
   Scene (*make)();
-  double size;        ///< half the extent rays are aimed over
+  double size;  ///< half the extent rays are aimed over
   Float3 center{};
 };
 
@@ -21,6 +22,20 @@ Scene crowd() {
 template <auto Make>
 Scene at_scale(double scale, const Float3& offset) {
   return placed(Make(), scale, offset);
+}
+
+/// Three grids one behind another: what is left of a packet's rays after one goes on through the next.
+Scene objects_in_a_row() {
+  Scene s = random_spheres(8, 60);
+  for (int i = 0; i < 2; ++i) {
+    const Scene ball = placed(ball_mesh(24, 12, .3, 5), .9, {i - .5f, 0, .25f * static_cast<float>(i)});
+    const auto first = static_cast<std::uint32_t>(s.geometry.triangles.size());
+    for (std::size_t t = 0; t < ball.geometry.triangles.size(); ++t)
+      add_triangle(s, vertex(ball, ball.geometry.triangles.a[t]), vertex(ball, ball.geometry.triangles.b[t]),
+                   vertex(ball, ball.geometry.triangles.c[t]));
+    s.geometry.objects.push_back({first, static_cast<std::uint32_t>(ball.geometry.triangles.size())});
+  }
+  return s;
 }
 
 const std::vector<Case>& cases() {
@@ -39,22 +54,67 @@ const std::vector<Case>& cases() {
       {"needles", crowd<needles, 150>, 1},
       {"stadium", crowd<stadium, 400>, 1},
       {"stadium_seen_from_the_stands", crowd<stadium, 400>, 900},
-      {"one_sphere_many_times", [] { Scene s = empty_scene(); for (int i = 0; i < 50; ++i) s.geometry.spheres.add({1, 2, 3}, .5f, 0); return s; }, 1, {1, 2, 3}},
-      {"points", [] { Scene s = empty_scene(); for (int i = 0; i < 40; ++i) s.geometry.spheres.add({}, 1e-12f, 0); return s; }, 1e-12},
+      {"one_sphere_many_times",
+       [] {
+         Scene s = empty_scene();
+         for (int i = 0; i < 50; ++i) s.geometry.spheres.add({1, 2, 3}, .5f, 0);
+         return s;
+       },
+       1,
+       {1, 2, 3}},
+      {"points",
+       [] {
+         Scene s = empty_scene();
+         for (int i = 0; i < 40; ++i) s.geometry.spheres.add({}, 1e-12f, 0);
+         return s;
+       },
+       1e-12},
       {"tiny", [] { return at_scale<mixture>(1e-6, {}); }, 1e-6},
       {"huge", [] { return at_scale<mixture>(1e6, {}); }, 1e6},
-      {"far_1e3", [] { return at_scale<mixture>(1, {1000, -500, 2000}); }, 1, {1000, -500, 2000}},
-      {"far_1e4", [] { return at_scale<mixture>(1, {1e4f, 2e4f, -1e4f}); }, 1, {1e4f, 2e4f, -1e4f}},
-      {"few_ulps_a_cell", [] { return at_scale<mixture>(2, {148376, 1234, -223423}); }, 2, {148376, 1234, -223423}},
-      {"far_spheres", [] { return at_scale<spheres>(1, {1e5f, 1e5f, 1e5f}); }, 1, {1e5f, 1e5f, 1e5f}},
-      {"far_lattice", [] { return placed(lattice_patch(12), 1, {65536, 0, -131072}); }, 6, {65542, 1, -131066}},
+      {"far_1e3",
+       [] {
+         return at_scale<mixture>(1, {1000, -500, 2000});
+       },
+       1,
+       {1000, -500, 2000}},
+      {"far_1e4",
+       [] {
+         return at_scale<mixture>(1, {1e4f, 2e4f, -1e4f});
+       },
+       1,
+       {1e4f, 2e4f, -1e4f}},
+      {"few_ulps_a_cell",
+       [] {
+         return at_scale<mixture>(2, {148376, 1234, -223423});
+       },
+       2,
+       {148376, 1234, -223423}},
+      {"far_spheres",
+       [] {
+         return at_scale<spheres>(1, {1e5f, 1e5f, 1e5f});
+       },
+       1,
+       {1e5f, 1e5f, 1e5f}},
+      {"far_lattice",
+       [] {
+         return placed(lattice_patch(12), 1, {65536, 0, -131072});
+       },
+       6,
+       {65542, 1, -131066}},
+      {"objects_in_a_row", objects_in_a_row, 1.5},
       {"closed_ball", [] { return ball_mesh(24, 12, .2); }, 1},
-      {"closed_ball_far", [] { return placed(ball_mesh(24, 12), 1, {3e4f, 0, 0}); }, 1, {3e4f, 0, 0}},
+      {"closed_ball_far",
+       [] {
+         return placed(ball_mesh(24, 12), 1, {3e4f, 0, 0});
+       },
+       1,
+       {3e4f, 0, 0}},
   };
   return all;
 }
 
-/// Rays that lie in planes between cells, run along edges between them, pass through their corners, or along their diagonals.
+/// Rays that lie in planes between cells, run along edges between them, pass through their corners, or along their
+/// diagonals.
 Rays rays_on_cells(Random& random, const World& world, int count) {
   Rays rays;
   const auto& grids = world.impl().grids;
@@ -63,7 +123,8 @@ Rays rays_on_cells(Random& random, const World& world, int count) {
     const Grid& g = grids[random.below(static_cast<std::uint32_t>(grids.size()))];
     const auto corner = [&] {
       Float3 p;
-      for (std::uint32_t a = 0; a < 3; ++a) component(p, a) = static_cast<float>(g.lo[a] + random.below(g.cells[a] + 1) * g.cell[a]);
+      for (std::uint32_t a = 0; a < 3; ++a)
+        component(p, a) = static_cast<float>(g.lo[a] + random.below(g.cells[a] + 1) * g.cell[a]);
       return p;
     };
     const Float3 from = corner(), to = corner();
@@ -71,7 +132,8 @@ Rays rays_on_cells(Random& random, const World& world, int count) {
     switch (random.below(4)) {
       case 0: {  // in a plane
         const std::uint32_t a = random.below(3);
-        for (std::uint32_t b = 0; b < 3; ++b) component(dir, b) = b == a ? random.zero() : static_cast<float>(random.in(-1, 1) * g.cell[b]);
+        for (std::uint32_t b = 0; b < 3; ++b)
+          component(dir, b) = b == a ? random.zero() : static_cast<float>(random.in(-1, 1) * g.cell[b]);
         org = at(from, -random.in(0, 20), dir);
         component(org, a) = a == 0 ? from.x : a == 1 ? from.y : from.z;
         break;
@@ -87,7 +149,8 @@ Rays rays_on_cells(Random& random, const World& world, int count) {
         for (std::uint32_t b = 0; b < 3; ++b) component(dir, b) = static_cast<float>(random.sign() * g.cell[b]);
         org = at(from, -double(random.below(20)), dir);
         break;
-      default: break;  // from corner to corner
+      default:
+        break;  // from corner to corner
     }
     if (dir == Float3{}) continue;
     rays.add(org, random.chance(.3) ? scaled(dir, random.log_in(1e-3, 1e3)) : dir, random.chance(.5) ? 0 : -kInf);
@@ -95,7 +158,8 @@ Rays rays_on_cells(Random& random, const World& world, int count) {
   return rays;
 }
 
-/// Neighbours that point nearly the same way, so that packets stay together: an eye ray's case. Some bundles cross an axis.
+/// Neighbours that point nearly the same way, so that packets stay together: an eye ray's case. Some bundles cross an
+/// axis.
 Rays coherent_rays(Random& random, const Float3& center, double size, int bundles) {
   Rays rays;
   for (int b = 0; b < bundles; ++b) {
@@ -140,8 +204,9 @@ TEST_P(Walk, FindsWhatBruteForceFinds) {
   EXPECT_GT(grids, 0u) << "no grid was built: nothing was walked";
 }
 
-INSTANTIATE_TEST_SUITE_P(Isa, Walk, testing::Combine(testing::ValuesIn(variants().begin(), variants().end()), testing::ValuesIn(cases())),
-                         [](const auto& p) { return std::string(std::get<0>(p.param)->name) + "_" + std::get<1>(p.param).name; });
+INSTANTIATE_TEST_SUITE_P(
+    Isa, Walk, testing::Combine(testing::ValuesIn(variants().begin(), variants().end()), testing::ValuesIn(cases())),
+    [](const auto& p) { return std::string(std::get<0>(p.param)->name) + "_" + std::get<1>(p.param).name; });
 
 // ---- ties -------------------------------------------------------------------------------------------------------
 
@@ -165,7 +230,10 @@ TEST_P(Ties, TheLowerIdWins) {
   Rays rays;
   for (int i = 0; i < 2048; ++i) {
     const Float3 aim{static_cast<float>(random.below(24)) * .25f, 0, static_cast<float>(random.below(24)) * .25f};
-    rays.add(random.chance(.5) ? Float3{aim.x, 4, aim.z} : at(aim, 4, {random.below(3) - 1.f, random.chance(.5) ? 1.f : -1.f, random.below(3) - 1.f}), {0, 0, 0});
+    rays.add(random.chance(.5)
+                 ? Float3{aim.x, 4, aim.z}
+                 : at(aim, 4, {random.below(3) - 1.f, random.chance(.5) ? 1.f : -1.f, random.below(3) - 1.f}),
+             {0, 0, 0});
     const Float3 d = minus(aim, rays.org(rays.size() - 1));
     rays.dx.back() = d.x, rays.dy.back() = d.y, rays.dz.back() = d.z;
   }
@@ -186,13 +254,16 @@ TEST_P(Ties, TheLowerIdWins) {
 
 TEST_P(Ties, KindsComeInTheOrderOfTheirIds) {
   Scene scene = empty_scene();
-  scene.geometry.cones.add({-1, 0, 1}, 1, {1, 0, 1}, 1, 0);       // its side touches y = 1 along x, z = 1
+  scene.geometry.cones.add({-1, 0, 1}, 1, {1, 0, 1}, 1, 0);  // its side touches y = 1 along x, z = 1
   scene.geometry.spheres.add({0, 0, 1}, 1, 0);
   add_triangle(scene, {-5, 1, -5}, {5, 1, -5}, {0, 1, 9});
   Rays rays;
   rays.add({0, 3, 1}, {0, -1, 0});
   for (int planes = 1; planes >= 0; --planes) {
-    if (planes) scene.geometry.planes.add({0, 1, 0}, {0, 1, 0}, 0); else scene.geometry.planes = {};
+    if (planes)
+      scene.geometry.planes.add({0, 1, 0}, {0, 1, 0}, 0);
+    else
+      scene.geometry.planes = {};
     const World world(scene, {});
     for (const Way& way : every_way()) {
       const Answers a = trace(variant(), world, rays, way.settings, Query::kClosest);

@@ -1,6 +1,6 @@
-// Closed meshes have no holes: rays aimed at vertices, at the middle of edges and anywhere along them never slip through.
-// pbrt-v4's test of this name is switched off, and a robust Plücker test leaks at 4 vertices in a thousand; random rays alone
-// find none of it, hence the aim.
+// Closed meshes have no holes: rays aimed at vertices, at the middle of edges and anywhere along them never slip
+// through. pbrt-v4's test of this name is switched off, and a robust Plücker test leaks at 4 vertices in a thousand;
+// random rays alone find none of it, hence the aim.
 #include "tests/support/rays.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -51,12 +51,14 @@ std::vector<Float3> targets(const Scene& s, Random& random) {
 Float3 inside(Random& random, bool torus) {
   if (!torus) return random.point(.12);
   const double a = random.in(0, 6.283185307);
-  return at({static_cast<float>(std::cos(a)), 0, static_cast<float>(std::sin(a))}, .3 * kTube * random.unit(), random.direction());
+  return at({static_cast<float>(std::cos(a)), 0, static_cast<float>(std::sin(a))}, .3 * kTube * random.unit(),
+            random.direction());
 }
 
 /// No ray from inside gets out, whichever way it is traced, and none from outside gets through where it meets the body
 /// steeply: it meets something no later than at its aim.
-void expect_no_leak(const Variant& variant, const Scene& unit_scene, bool torus, double scale, const Float3& offset, const std::string& what) {
+void expect_no_leak(const Variant& variant, const Scene& unit_scene, bool torus, double scale, const Float3& offset,
+                    const std::string& what) {
   const Scene scene = placed(unit_scene, scale, offset);
   Random random(17);
   const auto place = [&](const Float3& p) { return at(offset, scale, p); };
@@ -80,17 +82,20 @@ void expect_no_leak(const Variant& variant, const Scene& unit_scene, bool torus,
   std::size_t leaks = 0, passed = 0;
   const auto count = [&](const World& w, const TraceSettings& settings, const char* way) {
     for (const Query query : {Query::kClosest, Query::kOccluded}) {
-      const Answers in = trace(variant, w, from_inside, settings, query), out = trace(variant, w, from_outside, settings, query);
+      const Answers in = trace(variant, w, from_inside, settings, query),
+                    out = trace(variant, w, from_outside, settings, query);
       std::size_t first = 0, lost = 0;
       for (std::size_t i = aims.size(); i-- > 0;)
         if (in.id[i] == kNoPrimitive) ++lost, first = i;
-      if (lost > 0 && leaks == 0) ADD_FAILURE() << what << ", " << way << ": " << lost << " leaks from inside, " << from_inside.describe(first);
+      if (lost > 0 && leaks == 0)
+        ADD_FAILURE() << what << ", " << way << ": " << lost << " leaks from inside, " << from_inside.describe(first);
       leaks += lost, lost = 0;
       for (std::size_t i = aims.size(); i-- > 0;)
-        // Bumps and facets turn the true normal from the ball's, by less than the 60 degrees of the body beneath leave room for:
-        // the ray comes through the far side of the first wall before t = 1.2 unless it slipped through.
+        // Bumps and facets turn the true normal from the ball's, by less than the 60 degrees of the body beneath leave
+        // room for: the ray comes through the far side of the first wall before t = 1.2 unless it slipped through.
         if (out.id[i] == kNoPrimitive || (query == Query::kClosest && out.t[i] > 1.2f)) ++lost, first = i;
-      if (lost > 0 && passed == 0) ADD_FAILURE() << what << ", " << way << ": " << lost << " leaks from outside, " << from_outside.describe(first);
+      if (lost > 0 && passed == 0)
+        ADD_FAILURE() << what << ", " << way << ": " << lost << " leaks from outside, " << from_outside.describe(first);
       passed += lost;
     }
   };
@@ -118,8 +123,12 @@ TEST_P(Watertight, AtEverySizeAndPlace) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Isa, Watertight, testing::Combine(testing::ValuesIn(variants().begin(), variants().end()), testing::ValuesIn(kCases)),
-                         [](const auto& p) { return std::string(std::get<0>(p.param)->name) + "_" + std::get<1>(p.param).name; });
+INSTANTIATE_TEST_SUITE_P(Isa, Watertight,
+                         testing::Combine(testing::ValuesIn(variants().begin(), variants().end()),
+                                          testing::ValuesIn(kCases)),
+                         [](const auto& p) {
+                           return std::string(std::get<0>(p.param)->name) + "_" + std::get<1>(p.param).name;
+                         });
 
 /// Neighbours that name their own copies of the corners are as tight as those that share them.
 TEST(WatertightCopies, EqualCoordinatesAreEnough) {

@@ -1,7 +1,7 @@
 #pragma once
-// Where a ray meets a primitive, in long double (64 bits of mantissa), from the definition of the primitive alone: no formula
-// here is the kernel's. Distances to a surface judge an answer better than differences of t, which grow without bound for
-// grazing rays while the point found stays as good as any.
+// Where a ray meets a primitive, in long double (64 bits of mantissa), from the definition of the primitive alone: no
+// formula here is the kernel's. Distances to a surface judge an answer better than differences of t, which grow without
+// bound for grazing rays while the point found stays as good as any.
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
-// Seeded values for sweeps. Own arithmetic throughout: the standard distributions differ between libraries, and a seed in
-// a failure message must mean the same numbers everywhere.
+// Seeded values for sweeps. Own arithmetic throughout: the standard distributions differ between libraries, and a seed
+// in a failure message must mean the same numbers everywhere.
 
 #include <cmath>
 #include <cstdint>
@@ -47,7 +47,8 @@ class Random {
   }
   /// A value that breaks careless comparisons.
   float odd() {
-    static constexpr float values[] = {0.f, -0.f, kNaN, kInf, -kInf, 1e-45f, -1e-45f, 1e-40f, -3e-39f, 1.2e-38f, 3e38f, -3e38f, 1e-20f};
+    static constexpr float values[] = {0.f,    -0.f,    kNaN,     kInf,  -kInf,  1e-45f, -1e-45f,
+                                       1e-40f, -3e-39f, 1.2e-38f, 3e38f, -3e38f, 1e-20f};
     return values[below(sizeof values / sizeof *values)];
   }
   float zero() { return chance(.5) ? 0.f : -0.f; }

@@ -40,8 +40,8 @@ struct Rays {
   /// In hexadecimal, to be pasted into a smaller test.
   std::string describe(std::size_t i) const {
     std::ostringstream s;
-    s << "ray " << i << std::hexfloat << ": org {" << ox[i] << ", " << oy[i] << ", " << oz[i] << "} dir {" << dx[i] << ", " << dy[i]
-      << ", " << dz[i] << "} t (" << t_min[i] << ", " << t[i] << ")";
+    s << "ray " << i << std::hexfloat << ": org {" << ox[i] << ", " << oy[i] << ", " << oz[i] << "} dir {" << dx[i]
+      << ", " << dy[i] << ", " << dz[i] << "} t (" << t_min[i] << ", " << t[i] << ")";
     return s.str();
   }
 };
@@ -54,13 +54,15 @@ struct Answers {
 
 enum class Query { kClosest, kOccluded };
 
-inline Answers trace(const Variant& variant, const World& world, const Rays& rays, const TraceSettings& settings, Query query) {
+inline Answers trace(const Variant& variant, const World& world, const Rays& rays, const TraceSettings& settings,
+                     Query query) {
   Answers a;
   a.t = rays.t;
   a.id.assign(rays.size(), 12345u);  // what no trace may leave behind
-  const RaySpan span{rays.ox.data(), rays.oy.data(), rays.oz.data(), rays.dx.data(), rays.dy.data(), rays.dz.data(),
-                     rays.t_min.data(), a.t.data(), a.id.data(), static_cast<int>(rays.size())};
-  (query == Query::kClosest ? variant.loops.closest : variant.loops.occluded)(world.impl().view, span, settings, a.counts);
+  const RaySpan span{rays.ox.data(), rays.oy.data(),    rays.oz.data(), rays.dx.data(), rays.dy.data(),
+                     rays.dz.data(), rays.t_min.data(), a.t.data(),     a.id.data(),    static_cast<int>(rays.size())};
+  (query == Query::kClosest ? variant.loops.closest : variant.loops.occluded)(world.impl().view, span, settings,
+                                                                              a.counts);
   return a;
 }
 
@@ -89,12 +91,14 @@ inline Truth truth_of(const Scene& scene, const Rays& rays) {
   const World plain(scene, {.grid = false});
   const Variant& scalar = *find_variant("scalar");
   const TraceSettings reference{Method::kReference, 1, false};
-  return {trace(scalar, plain, rays, reference, Query::kClosest), trace(scalar, plain, rays, reference, Query::kOccluded)};
+  return {trace(scalar, plain, rays, reference, Query::kClosest),
+          trace(scalar, plain, rays, reference, Query::kOccluded)};
 }
 
 inline std::string show(float t, std::uint32_t id) {
   std::ostringstream s;
-  s << "t " << t << " (" << std::hexfloat << t << std::dec << ") id " << static_cast<std::int64_t>(id == kNoPrimitive ? -1 : std::int64_t{id});
+  s << "t " << t << " (" << std::hexfloat << t << std::dec << ") id "
+    << static_cast<std::int64_t>(id == kNoPrimitive ? -1 : std::int64_t{id});
   return s.str();
 }
 
@@ -106,8 +110,8 @@ inline bool sound(const Rays& rays, std::size_t i) {
   return std::isfinite(o.x + o.y + o.z) && std::isfinite(dd) && std::isfinite(1 / dd);
 }
 
-/// Same primitive and same bits of t for closest hits; same yes or no, told the same way, for occlusion. What t is left in a
-/// ray that cannot be traced at all is variants_test's to say.
+/// Same primitive and same bits of t for closest hits; same yes or no, told the same way, for occlusion. What t is left
+/// in a ray that cannot be traced at all is variants_test's to say.
 inline testing::AssertionResult same(const Answers& wanted, const Answers& got, const Rays& rays, Query query) {
   std::size_t wrong = 0, first = 0;
   for (std::size_t i = rays.size(); i-- > 0;) {
@@ -118,18 +122,22 @@ inline testing::AssertionResult same(const Answers& wanted, const Answers& got, 
     ++wrong, first = i;
   }
   if (wrong == 0) return testing::AssertionSuccess();
-  return testing::AssertionFailure() << wrong << " of " << rays.size() << " differ; " << rays.describe(first) << "\n  wanted "
-                                     << show(wanted.t[first], wanted.id[first]) << "\n  got    " << show(got.t[first], got.id[first]);
+  return testing::AssertionFailure() << wrong << " of " << rays.size() << " differ; " << rays.describe(first)
+                                     << "\n  wanted " << show(wanted.t[first], wanted.id[first]) << "\n  got    "
+                                     << show(got.t[first], got.id[first]);
 }
 
 /// Every way of one variant through one world against the truth; stops at the first that differs.
-inline void expect_truth(const Variant& variant, const World& world, const Rays& rays, const Truth& truth, const std::string& what) {
+inline void expect_truth(const Variant& variant, const World& world, const Rays& rays, const Truth& truth,
+                         const std::string& what) {
   for (const Way& way : every_way())
     for (const Query query : {Query::kClosest, Query::kOccluded}) {
       const bool closest = query == Query::kClosest;
-      const auto result = same(closest ? truth.closest : truth.occluded, trace(variant, world, rays, way.settings, query), rays, query);
+      const auto result =
+          same(closest ? truth.closest : truth.occluded, trace(variant, world, rays, way.settings, query), rays, query);
       if (result) continue;
-      ADD_FAILURE() << what << (closest ? ", closest, " : ", occluded, ") << way.name << ", " << variant.name << ": " << result.message();
+      ADD_FAILURE() << what << (closest ? ", closest, " : ", occluded, ") << way.name << ", " << variant.name << ": "
+                    << result.message();
       return;
     }
 }
@@ -149,16 +157,18 @@ class EveryVariant : public testing::TestWithParam<const Variant*> {
   const Variant& variant() const { return *GetParam(); }
 };
 
-inline std::string isa_name(const testing::TestParamInfo<const Variant*>& info) { return std::string(info.param->name); }
+inline std::string isa_name(const testing::TestParamInfo<const Variant*>& info) {
+  return std::string(info.param->name);
+}
 
 /// Put once into each file with tests of a fixture `name` that derives from EveryVariant.
-#define GRELHA_FOR_EVERY_ISA(name)                                                                              \
+#define GRELHA_FOR_EVERY_ISA(name) \
   INSTANTIATE_TEST_SUITE_P(Isa, name, testing::ValuesIn(variants().begin(), variants().end()), isa_name)
 
 // ---- bundles ----------------------------------------------------------------------------------------------------
 
-/// Rays about a ball of the given size: most aimed at it from any distance, some from inside, some past it, some along the
-/// axes, with ends and lengths of all kinds.
+/// Rays about a ball of the given size: most aimed at it from any distance, some from inside, some past it, some along
+/// the axes, with ends and lengths of all kinds.
 inline Rays rays_about(Random& random, const Float3& center, double size, int count, double farthest = 1e3) {
   Rays rays;
   for (int i = 0; i < count; ++i) {
@@ -184,7 +194,8 @@ inline Rays rays_about(Random& random, const Float3& center, double size, int co
 inline Rays with_odd_values(Random& random, Rays rays, double share) {
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (!random.chance(share)) continue;
-    std::vector<float>* const fields[] = {&rays.ox, &rays.oy, &rays.oz, &rays.dx, &rays.dy, &rays.dz, &rays.t_min, &rays.t};
+    std::vector<float>* const fields[] = {&rays.ox, &rays.oy, &rays.oz,    &rays.dx,
+                                          &rays.dy, &rays.dz, &rays.t_min, &rays.t};
     (*fields[random.below(8)])[i] = random.odd();
   }
   return rays;

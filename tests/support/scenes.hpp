@@ -69,7 +69,8 @@ inline void add_cones(Scene& s, Random& random, int n, double half, double least
     const double size = random.log_in(least, most), sign = random.chance(.1) ? -1 : 1;
     const Float3 base = random.point(half);
     const double r0 = size * random.unit(), r1 = random.chance(.3) ? r0 : size * random.unit();
-    s.geometry.cones.add(base, static_cast<float>(sign * r0), at(base, size, random.direction()), static_cast<float>(sign * r1), 0);
+    s.geometry.cones.add(base, static_cast<float>(sign * r0), at(base, size, random.direction()),
+                         static_cast<float>(sign * r1), 0);
   }
 }
 
@@ -107,7 +108,8 @@ inline Scene flat_sheet(std::uint64_t seed, int n) {
   Random random(seed);
   Scene s = empty_scene();
   for (int i = 0; i < n; ++i) {
-    Float3 a = random.point(1), b = at(a, random.log_in(.02, .3), random.direction()), c = at(a, .1, random.direction());
+    Float3 a = random.point(1), b = at(a, random.log_in(.02, .3), random.direction()),
+           c = at(a, .1, random.direction());
     a.y = b.y = c.y = .25f;
     add_triangle(s, a, b, c);
   }
@@ -197,13 +199,15 @@ inline Scene closed_mesh(int nu, int nv, bool poles, const std::function<Float3(
     for (int i = 0; i < nu; ++i) put(point(double(i) / nu, double(poles ? j + 1 : j) / nv));
   for (int j = 0; j + (poles ? 1 : 0) < rings; ++j)
     for (int i = 0; i < nu; ++i) {
-      const int a = j * nu + i, b = j * nu + (i + 1) % nu, c = (j + 1) % rings * nu + i, d = (j + 1) % rings * nu + (i + 1) % nu;
+      const int a = j * nu + i, b = j * nu + (i + 1) % nu, c = (j + 1) % rings * nu + i,
+                d = (j + 1) % rings * nu + (i + 1) % nu;
       tri(a, b, d), tri(a, d, c);
     }
   if (poles) {
     put(point(0, 0)), put(point(0, 1));
     const int south = rings * nu, north = south + 1;
-    for (int i = 0; i < nu; ++i) tri(south, (i + 1) % nu, i), tri(north, (rings - 1) * nu + i, (rings - 1) * nu + (i + 1) % nu);
+    for (int i = 0; i < nu; ++i)
+      tri(south, (i + 1) % nu, i), tri(north, (rings - 1) * nu + i, (rings - 1) * nu + (i + 1) % nu);
   }
   return s;
 }
@@ -220,7 +224,8 @@ inline Scene ball_mesh(int nu, int nv, double bumps = 0, std::uint64_t seed = 1)
 inline Scene torus_mesh(int nu, int nv, double tube) {
   return closed_mesh(nu, nv, false, [&](double u, double v) {
     const double a = 2 * std::numbers::pi * u, b = 2 * std::numbers::pi * v, r = 1 + tube * std::cos(b);
-    return Float3{static_cast<float>(r * std::cos(a)), static_cast<float>(tube * std::sin(b)), static_cast<float>(r * std::sin(a))};
+    return Float3{static_cast<float>(r * std::cos(a)), static_cast<float>(tube * std::sin(b)),
+                  static_cast<float>(r * std::sin(a))};
   });
 }
 inline Float3 vertex(const Scene& s, std::uint32_t i) {

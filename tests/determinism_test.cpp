@@ -1,0 +1,181 @@
+// One picture: the same bits for every number of threads, instruction set, packet size, mailbox, density and grid.
+#include <cstring>
+#include <sstream>
+
+#include "frontend/nff_reader.hpp"
+#include "kernel/render.hpp"
+#include "scenes/generators.hpp"
+#include "tests/support/rays.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace grelha::test {
+namespace {
+
+struct Picture {
+  Scene scene;
+  Camera camera;
+};
+
+Picture generated(const char* name, int size) {
+  std::ostringstream text;
+  scenes::find_generator(name)->write(text, {size, false, ""});
+  SceneFile file = read_nff(std::string(name) + ".nff", text.str(), [](const std::string&) {});
+  return {std::move(file.scene), file.camera};
+}
+
+/// Every kind and every effect at once: glass of both sorts, mirrors, highlights, smooth normals, emission, lights on
+/// all sides.
+Picture mixture() {
+  Picture p;
+  Scene& s = p.scene = random_mixture(12, 240);
+  s.materials.resize(6);
+  s.materials[1].mirror = {.8f, .7f, .9f}, s.materials[1].specular = {.5f, .5f, .5f}, s.materials[1].shine = 40;
+  s.materials[2].transmission = .9f, s.materials[2].ior = 1.5f, s.materials[2].fresnel = true;
+  s.materials[3].transmission = .7f, s.materials[3].ior = 1.2f, s.materials[3].mirror = {.2f, .3f, .2f};
+  s.materials[4].emission = {.3f, .2f, .1f}, s.materials[4].diffuse = {.2f, .5f, .9f};
+  s.materials[5].diffuse = {.4f, .4f, .2f}, s.materials[5].specular = {1, 1, 1}, s.materials[5].shine = 7.3f;
+  Random random(1);
+  for (auto* m : {&s.geometry.spheres.material, &s.geometry.triangles.material, &s.geometry.cones.material,
+                  &s.geometry.planes.material})
+    for (std::uint32_t& i : *m) i = random.below(6);
+  Triangles& t = s.geometry.triangles;
+  for (std::size_t i = 0; i < t.vertex_count(); ++i) {
+    const Float3 n = random.chance(.2) ? Float3{} : random.direction();
+    t.nx.push_back(n.x), t.ny.push_back(n.y), t.nz.push_back(n.z);
+  }
+  s.lights = {{{3, 4, 5}, {.6f, .6f, .6f}}, {{-4, 2, 1}, {.3f, .1f, .2f}}, {{0, 0, 0}, {.2f, .4f, .1f}}};
+  s.background = {.08f, .36f, .57f};
+  p.camera.eye = {.3f, .5f, 3.5f}, p.camera.at = {0, 0, 0};
+  return p;
+}
+
+class Determinism : public testing::TestWithParam<const char*> {
+ protected:
+  static Picture make() {
+    const std::string name = GetParam();
+    Picture p = name == "mixture" ? mixture() : generated(GetParam(), name == "balls" ? 2 : name == "mount" ? 4 : 2);
+    p.camera.width = 67, p.camera.height = 43;  // no multiple of tile, band, packet or register
+    return p;
+  }
+};
+
+std::size_t differing(const Image& a, const Image& b) {
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < a.rgb.size(); ++i)
+    n += std::bit_cast<std::uint32_t>(a.rgb[i]) != std::bit_cast<std::uint32_t>(b.rgb[i]);
+  return n;
+}
+
+struct Built {
+  std::string name;
+  World world;
+};
+
+std::vector<Built> builds(const Scene& scene) {
+  std::vector<Built> out;
+  out.push_back({"no grid", World(scene, {.grid = false})});
+  for (const float density : {0.f, .5f, 3.f})
+    out.push_back({"density " + std::to_string(density), World(scene, {.density = density})});
+  return out;
+}
+
+/// The plainest: scalar, one thread, one ray, no grid.
+Image plainest(const std::vector<Built>& worlds, const Camera& camera, int depth, RenderStats& stats) {
+  RenderOptions o;
+  o.depth = depth, o.threads = 1, o.packet = 1, o.isa = "scalar", o.mailbox = false;
+  return render(worlds.front().world, camera, o, stats);
+}
+
+void expect_same_rays(const RayCounts& a, const RayCounts& b) {
+  EXPECT_EQ(a.primary, b.primary);
+  EXPECT_EQ(a.shadow, b.shadow);
+  EXPECT_EQ(a.reflection, b.reflection);
+  EXPECT_EQ(a.refraction, b.refraction);
+}
+
+TEST_P(Determinism, OnePictureForEveryWayOfTracing) {
+  const Picture p = make();
+  const std::vector<Built> worlds = builds(p.scene);
+  RenderStats first;
+  const Image wanted = plainest(worlds, p.camera, 5, first);
+  for (const Built& built : worlds)
+    for (const Variant* v : variants()) {
+      if (!v->runs_here()) continue;
+      for (const int packet : {0, 1, 16, 64})
+        for (const bool mailbox : {true, false})
+          for (const int threads : {1, 2, 7}) {
+            if (threads != 2 && (packet == 1 || !mailbox))
+              continue;  // threads do not see the packet: the rest is covered
+            RenderOptions o;
+            o.threads = threads, o.packet = packet, o.mailbox = mailbox, o.isa = v->name;
+            RenderStats stats;
+            const Image image = render(built.world, p.camera, o, stats);
+            ASSERT_EQ(differing(image, wanted), 0u) << built.name << ", " << v->name << ", packet " << packet
+                                                    << ", mailbox " << mailbox << ", " << threads << " threads";
+            expect_same_rays(stats.rays, first.rays);
+          }
+    }
+}
+
+TEST_P(Determinism, AtEveryDepth) {
+  const Picture p = make();
+  const std::vector<Built> worlds = builds(p.scene);
+  std::uint64_t last = 0;
+  // Glass sends two rays a hit: the longest path is as long as its doubling allows, and 40 where there are mirrors
+  // alone.
+  const std::string name = GetParam();
+  for (const int depth : {1, 2, name == "balls" ? 40 : name == "mount" ? 16 : 8}) {
+    RenderStats first;
+    const Image wanted = plainest(worlds, p.camera, depth, first);
+    EXPECT_GE(first.rays.total(), last);
+    last = first.rays.total();
+    for (const Variant* v : variants()) {
+      if (!v->runs_here()) continue;
+      for (const int packet : {0, 16, 64}) {
+        RenderOptions o;
+        o.depth = depth, o.threads = 2, o.packet = packet, o.isa = v->name;
+        RenderStats stats;
+        const Image image = render(worlds[1].world, p.camera, o, stats);
+        ASSERT_EQ(differing(image, wanted), 0u) << v->name << ", packet " << packet << ", depth " << depth;
+        expect_same_rays(stats.rays, first.rays);
+      }
+    }
+  }
+}
+
+/// A crop of odd sizes is the same picture only if no pixel depends on its tile: seen by rendering thin and small ones.
+TEST_P(Determinism, AtOddSizes) {
+  Picture p = make();
+  for (const auto& [w, h] : {std::pair{1, 1}, {1, 43}, {67, 1}, {9, 17}, {8, 8}, {65, 7}}) {
+    p.camera.width = w, p.camera.height = h;
+    const std::vector<Built> worlds = builds(p.scene);
+    RenderStats first;
+    const Image wanted = plainest(worlds, p.camera, 5, first);
+    EXPECT_EQ(first.rays.primary, static_cast<std::uint64_t>(w * h));
+    for (const int threads : {1, 7}) {
+      RenderOptions o;
+      o.threads = threads;
+      RenderStats stats;
+      EXPECT_EQ(differing(render(worlds[1].world, p.camera, o, stats), wanted), 0u)
+          << w << 'x' << h << ", " << threads << " threads";
+    }
+  }
+}
+
+TEST_P(Determinism, ShowsSomething) {
+  const Picture p = make();
+  RenderStats stats;
+  const Image image = render(World(p.scene, {}), p.camera, {}, stats);
+  std::size_t lit = 0;
+  for (std::size_t i = 0; i < image.rgb.size(); i += 3) {
+    ASSERT_TRUE(std::isfinite(image.rgb[i] + image.rgb[i + 1] + image.rgb[i + 2]));
+    lit += image.rgb[i] != p.scene.background.x;
+  }
+  EXPECT_GT(lit, 67u * 43 / 4);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Determinism, testing::Values("balls", "mount", "mixture"),
+                         [](const auto& p) { return std::string(p.param); });
+
+}  // namespace
+}  // namespace grelha::test
