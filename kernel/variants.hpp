@@ -12,7 +12,8 @@
 namespace grelha {
 
 /// Rays in arrays of `count`. t: in, where the search ends; out, the nearest hit, or the old value when there is none (closest);
-/// -infinity when something is in the way (occluded). Directions of any length that is not zero; t counts multiples of it.
+/// -infinity when something is in the way (occluded). Directions of any length from 1e-18 to 1e18 (others meet nothing); t counts
+/// multiples of it. Rays with a NaN or an infinity meet nothing.
 struct RaySpan {
   const float *ox, *oy, *oz, *dx, *dy, *dz, *t_min;
   float* t;

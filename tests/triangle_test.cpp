@@ -84,7 +84,7 @@ oracle::Real reach_of(const Float3& o, const Shape& s) {
 /// A sheared coordinate takes the roundings of a difference (1 eps), of the shear (1), of its product (1) and of the
 /// last difference (1), with |shear| <= 1: each corner is off by at most 4 eps max|corner - org| on each of two axes,
 /// hence the ray passes the sheared outline within 4 sqrt(2) < 6 of these of where it passes the true one. World::Impl
-/// counts on 18.
+/// counts on 46.
 constexpr oracle::Real kOutline = 6;
 
 TEST(TriangleOracle, DecidesLikeTheExactOutline) {
@@ -110,13 +110,13 @@ TEST(TriangleOracle, DecidesLikeTheExactOutline) {
   EXPECT_GT(inside, 20000);
 }
 
-/// How far the point found lies from the triangle. Two parts: the sheared corners are off by eps reach (above); and the
-/// edge functions are differences of products of about L^2, so each weight is off by about 2 eps L^2 / det, and the
-/// point slides along the triangle by that times L. For a compact triangle seen from the front L^2 / det is about 1;
-/// for a sliver it is the aspect ratio.
+/// How far the point found lies from the triangle, slivers included. Two parts: the sheared corners are off by eps reach
+/// (above); and the edge functions are differences of products of about L^2, so each weight is off by about 2 eps L^2 / det,
+/// and the point slides along the triangle by that times L. Where L^3 / det exceeds 4 reach the test takes them in double,
+/// so both together stay below (1 + 4) 6 eps reach; World::Impl counts on 46.
 TEST(TriangleOracle, PointsLieOnTheTriangle) {
-  oracle::Real worst = 0, worst_weights = 0, worst_compact = 0;
-  int hits = 0, over = 0;
+  oracle::Real worst = 0, worst_weights = 0;
+  int hits = 0, slivers = 0, over = 0;
   for (std::uint64_t seed = 0; seed < 400000; ++seed) {
     Random random(seed);
     double size;
@@ -132,22 +132,20 @@ TEST(TriangleOracle, PointsLieOnTheTriangle) {
     const oracle::Ray ray{o, d};
     const oracle::V direction = oracle::unit(d);
     const oracle::Real l = std::max({length(facet.b - facet.a), length(facet.c - facet.a), length(facet.c - facet.b)});
-    const oracle::Real stretch = l * l / std::abs(dot(facet.normal(), direction)), reach = reach_of(o, s);
-    const oracle::Real unit = oracle::kEps * (reach + stretch * l), off = facet.distance(ray.point(h.t));
+    slivers += l * l / std::abs(dot(facet.normal(), direction)) > 1000;
+    const oracle::Real unit = oracle::kEps * reach_of(o, s), off = facet.distance(ray.point(h.t));
     const oracle::V gap = (facet.a - ray.org) + h.weights[1] * (facet.b - facet.a) + h.weights[2] * (facet.c - facet.a);
     const oracle::Real beside = length(gap - dot(gap, direction) * direction);
-    if (!(off <= 6 * unit && beside <= 6 * unit) && ++over <= 3)
+    if (!(off <= 32 * unit && beside <= 32 * unit) && ++over <= 3)
       ADD_FAILURE() << "seed " << seed << ": " << double(off / unit) << " and " << double(beside / unit)
                     << " units off";
     worst = std::max(worst, off / unit), worst_weights = std::max(worst_weights, beside / unit);
-    if (stretch < 10) worst_compact = std::max(worst_compact, std::max(off, beside) / (oracle::kEps * reach));
   }
-  std::printf(
-      "triangle: %d hits, off the triangle %.2f, off the ray %.2f eps (reach + L^3 / det); compact ones %.2f eps "
-      "reach\n",
-      hits, double(worst), double(worst_weights), double(worst_compact));
+  std::printf("triangle: %d hits, %d on slivers, off the triangle %.2f, off the ray %.2f eps reach\n", hits, slivers,
+              double(worst), double(worst_weights));
   EXPECT_EQ(over, 0);
   EXPECT_GT(hits, 100000);
+  EXPECT_GT(slivers, 1000);
 }
 
 TEST(TriangleCorners, EdgesCornersAndSides) {
