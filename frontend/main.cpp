@@ -105,7 +105,7 @@ int run(const RenderCommand& command) {
   report.width = camera.width, report.height = camera.height;
   report.grids = world.grids();
   report.geometry_bytes = world.geometry_bytes(), report.grid_bytes = world.grid_bytes();
-  if (!command.stats.empty()) write_file(command.stats, stats_json(command, report));
+  if (!command.stats.empty()) write_file(command.stats, stats_json(prepared, report));
   if (!command.quiet) print(summary_line(command, report));
   return kOk;
 }

@@ -106,6 +106,10 @@ std::string primitives_text(std::size_t spheres, std::size_t triangles, std::siz
   return text.empty() ? "no primitives" : text;
 }
 
+const char* sampler_name(Sampler sampler) {
+  return sampler == Sampler::kSobol ? "sobol" : sampler == Sampler::kJitter ? "jitter" : "random";
+}
+
 }  // namespace
 
 std::string stats_json(const RenderCommand& command, const RunReport& report) {
@@ -123,6 +127,11 @@ std::string stats_json(const RenderCommand& command, const RunReport& report) {
                      {"mailbox", command.render.mailbox},
                      {"isa", command.render.isa},
                      {"packet", command.render.packet},
+                     {"samples", command.render.sampling.samples},
+                     {"sampler", sampler_name(command.render.sampling.sampler)},
+                     {"seed", command.render.sampling.seed},
+                     {"light_rays", command.render.sampling.light_rays},
+                     {"gloss_rays", command.render.sampling.gloss_rays},
                      {"threads", command.render.threads}};
   json["scene"] = to_json(report.counts);
   json["grids"] = to_json(report.grids);

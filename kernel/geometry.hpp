@@ -90,7 +90,7 @@ struct Material {
 /// mean over its points. Edges of zero: a point.
 struct Light {
   Float3 position, color;  ///< position: the centre
-  Float3 edge1, edge2;     ///< full edges
+  Float3 edge1{}, edge2{};  ///< full edges
   bool is_area() const { return edge1 != Float3{} || edge2 != Float3{}; }
 };
 

@@ -3,3 +3,5 @@ grelha_test(spd_counts image grelha::frontend grelha::scenes)
 add_test(NAME readme COMMAND ${CMAKE_COMMAND} -D ROOT=${PROJECT_SOURCE_DIR} -D PROGRAM=$<TARGET_FILE:grelha>
   -D SCRATCH=${CMAKE_CURRENT_BINARY_DIR}/readme -P ${CMAKE_CURRENT_SOURCE_DIR}/readme.cmake)
 set_tests_properties(readme PROPERTIES LABELS image)
+grelha_test(sampling property grelha::kernel)
+grelha_test(effects image grelha::frontend)
