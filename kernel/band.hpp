@@ -28,7 +28,7 @@ inline int tile_rays(const FrameView& f, Batch& b, int count, int x0, int x1, in
 }
 
 /// One ray of a pixel: sample `index`, at its place in the pixel and, if there is a lens, on the lens.
-inline void sampled_ray(const FrameView& f, const SamplePlan& plan, Batch& b, int at, int x, int y, std::uint32_t index, int band_top) {
+[[gnu::noinline]] inline void sampled_ray(const FrameView& f, const SamplePlan& plan, Batch& b, int at, int x, int y, std::uint32_t index, int band_top) {
   const std::uint32_t pixel = static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(f.width) + static_cast<std::uint32_t>(x);
   Pair in{.5f, .5f};
   if (plan.samples > 1) in = sample_pair(plan, pixel, index, 0, 0, plan.pixel_strata);

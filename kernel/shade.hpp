@@ -99,7 +99,7 @@ inline std::uint32_t sample_key(std::uint32_t path, std::uint32_t use) {
 }
 
 /// Points of an area light for the hits i, i + 1, ...: each pixel's sample has its own.
-inline Vec3<Lanes> light_points(const Shader& s, int i, int hits, const float* light, int light_index, int ray) {
+[[gnu::noinline]] inline Vec3<Lanes> light_points(const Shader& s, int i, int hits, const float* light, int light_index, int ray) {
   const SamplePlan& plan = s.work.plan;
   float u[kWidth<Lanes>] = {}, v[kWidth<Lanes>] = {};
   for (int k = 0; k < kWidth<Lanes> && i + k < hits; ++k) {
@@ -186,7 +186,7 @@ inline void across(const Vec3<float>& n, Vec3<float>& u, Vec3<float>& v) {
 }
 
 /// A direction of the lobe of a rough mirror: the unit mirror direction moved within a disc across it, kept above the surface.
-inline Vec3<float> lobe_direction(const Shader& s, int hit, const Vec3<float>& mirror, float roughness, int ray, int rays) {
+[[gnu::noinline]] inline Vec3<float> lobe_direction(const Shader& s, int hit, const Vec3<float>& mirror, float roughness, int ray, int rays) {
   const SamplePlan& plan = s.work.plan;
   const std::uint32_t index = s.b.hit_sample[hit] * static_cast<std::uint32_t>(rays) + static_cast<std::uint32_t>(ray);
   const Pair d = disc_point(sample_pair(plan, s.work.first_pixel + s.b.hit_pixel[hit], index, plan.gloss,
