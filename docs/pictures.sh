@@ -8,6 +8,7 @@ trap 'rm -rf "$work"' EXIT
 mkdir -p "$out"
 
 ./run render scenes/data/balls.nff -o "$out/balls.png"
+./run render scenes/data/balls.nff -o "$out/effects.png" --samples 64 --shadows area:1,8 --lens 12 --glossy .08
 for scene in mount:7 gears:3 boat:10 tree:11; do
   name=${scene%:*}
   ./run scene "$name" --size "${scene#*:}" -o "$work/$name.nff"
