@@ -23,6 +23,11 @@ inline void add_light(const BandWork& work, std::uint32_t pixel, float r, float 
   s[0] += light_units(r, work.most_light), s[1] += light_units(g, work.most_light), s[2] += light_units(b, work.most_light);
 }
 
+/// The pixel whose samples the rays of one sum are.
+inline std::uint32_t pixel_of(const BandWork& work, std::uint32_t sum) {
+  return work.pixels ? work.pixels[sum] : work.first_pixel + sum;
+}
+
 struct RayTally {
   std::uint64_t primary = 0, shadow = 0, reflection = 0, refraction = 0;
 };
@@ -104,7 +109,7 @@ inline std::uint32_t sample_key(std::uint32_t path, std::uint32_t use) {
   float u[kWidth<Lanes>] = {}, v[kWidth<Lanes>] = {};
   for (int k = 0; k < kWidth<Lanes> && i + k < hits; ++k) {
     const std::uint32_t index = s.b.hit_sample[i + k] * static_cast<std::uint32_t>(plan.light_rays) + static_cast<std::uint32_t>(ray);
-    const Pair p = sample_pair(plan, s.work.first_pixel + s.b.hit_pixel[i + k], index, plan.light,
+    const Pair p = sample_pair(plan, pixel_of(s.work, s.b.hit_pixel[i + k]), index, plan.light,
                                sample_key(s.b.hit_path[i + k], static_cast<std::uint32_t>(light_index)), plan.light_strata);
     u[k] = p.u - .5f, v[k] = p.v - .5f;
   }
@@ -189,7 +194,7 @@ inline void across(const Vec3<float>& n, Vec3<float>& u, Vec3<float>& v) {
 [[gnu::noinline]] inline Vec3<float> lobe_direction(const Shader& s, int hit, const Vec3<float>& mirror, float roughness, int ray, int rays) {
   const SamplePlan& plan = s.work.plan;
   const std::uint32_t index = s.b.hit_sample[hit] * static_cast<std::uint32_t>(rays) + static_cast<std::uint32_t>(ray);
-  const Pair d = disc_point(sample_pair(plan, s.work.first_pixel + s.b.hit_pixel[hit], index, plan.gloss,
+  const Pair d = disc_point(sample_pair(plan, pixel_of(s.work, s.b.hit_pixel[hit]), index, plan.gloss,
                                         sample_key(s.b.hit_path[hit], 0), plan.gloss_strata));
   Vec3<float> u, v;
   across(mirror, u, v);

@@ -105,6 +105,7 @@ struct BandWork {
   std::uint32_t first_pixel;  ///< of the band, counted through the picture
   float most_light;           ///< bound of a term
   SamplePlan plan;
+  const std::uint32_t* pixels = nullptr;  ///< [sums] the pixel each sum belongs to; null: sum i to first_pixel + i
 };
 
 }  // namespace grelha
