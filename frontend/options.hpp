@@ -22,6 +22,7 @@ struct RenderCommand {
   RenderOptions render;
   Effects effects;
   std::string stats;  ///< file for the counts, or empty
+  std::string samples_map, error_map;  ///< pictures of what was spent and what it bought, or empty
   bool quiet = false, srgb = false;
 };
 

@@ -77,6 +77,17 @@ inline void pop(RayStack& stack, Batch& b, int most, bool sampled, int (&ends)[k
   stack.size = at;
 }
 
+/// Camera rays [0, count) of the batch and all that comes of them. The stack is empty before and after.
+inline void follow(const Shader& s, RayStack& stack, int count) {
+  s.rays.primary += static_cast<unsigned>(count);
+  shade_batch(s, stack, &count, 1, 64);
+  int ends[kClasses];
+  while (stack.size > 0) {
+    pop(stack, s.b, s.work.take, s.work.plan.on, ends);
+    shade_batch(s, stack, ends, kClasses, 16);
+  }
+}
+
 /// Renders rows [y0, y1), at most kBandRows, into work.sums.
 ///
 /// Depths never fall towards the top of the stack, and rays of depth d + 1 are only added when fewer than `take` of them
@@ -88,15 +99,7 @@ inline void render_band(const SceneView& scene, const ShadingView& shading, cons
   const Shader shader{scene, shading, work, counters, rays, b};
   RayStack stack = work.stack;
   stack.size = 0;
-  const auto finish = [&](int count) {
-    rays.primary += static_cast<unsigned>(count);
-    shade_batch(shader, stack, &count, 1, 64);
-    int ends[kClasses];
-    while (stack.size > 0) {
-      pop(stack, b, work.take, work.plan.on, ends);
-      shade_batch(shader, stack, ends, kClasses, 16);
-    }
-  };
+  const auto finish = [&](int count) { follow(shader, stack, count); };
   int count = 0;
   for (int x0 = 0; x0 < frame.width; x0 += kTile) {
     const int x1 = x0 + kTile < frame.width ? x0 + kTile : frame.width;
@@ -113,6 +116,27 @@ inline void render_band(const SceneView& scene, const ShadingView& shading, cons
     if (count + kTile * kBandRows > kBatch) finish(count), count = 0;
   }
   if (count > 0) finish(count);
+}
+
+/// Runs of samples; part p of run r goes into sum kParts r + p of work.sums, whose pixel work.pixels must name.
+inline void render_runs(const SceneView& scene, const ShadingView& shading, const FrameView& frame, const PixelRun* runs, int count,
+                        const BandWork& work, Counters& counters, RayTally& rays) {
+  Batch& b = *work.batch;
+  const Shader shader{scene, shading, work, counters, rays, b};
+  RayStack stack = work.stack;
+  stack.size = 0;
+  int filled = 0;
+  for (int r = 0; r < count; ++r) {
+    const PixelRun& run = runs[r];
+    const int x = static_cast<int>(run.pixel % static_cast<std::uint32_t>(frame.width)), y = static_cast<int>(run.pixel / static_cast<std::uint32_t>(frame.width));
+    const std::uint32_t part = run.count / kParts;
+    for (std::uint32_t i = 0; i < run.count; ++i) {
+      sampled_ray(frame, work.plan, b, filled, x, y, run.first + i, 0);
+      b.pixel[filled] = static_cast<std::uint32_t>(r * kParts) + i / part;
+      if (++filled == kBatch) follow(shader, stack, filled), filled = 0;
+    }
+  }
+  if (filled > 0) follow(shader, stack, filled);
 }
 
 }  // namespace grelha::GRELHA_ISA

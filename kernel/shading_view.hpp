@@ -95,6 +95,12 @@ struct Batch {
   std::uint32_t lid[kBatch], light_pixel[kBatch];
 };
 
+/// Consecutive samples of one pixel, in kParts parts of equal size with a sum each.
+struct PixelRun {
+  std::uint32_t pixel, first, count;  ///< count: a multiple of kParts
+};
+inline constexpr int kParts = 4;
+
 struct BandWork {
   Batch* batch;
   RayStack stack;

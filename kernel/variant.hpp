@@ -49,14 +49,26 @@ inline void occluded(const SceneView& scene, const RaySpan& rays, const TraceSet
   trace_span<true>(scene, rays, s, counts);
 }
 
+inline void tally(const Counters& n, const RayTally& rays, TraceCounts& trace_counts, RayCounts& ray_counts) {
+  add(n, trace_counts);
+  ray_counts.primary += rays.primary, ray_counts.shadow += rays.shadow;
+  ray_counts.reflection += rays.reflection, ray_counts.refraction += rays.refraction;
+}
+
 inline void band(const SceneView& scene, const ShadingView& shading, const FrameView& frame, int y0, int y1, const BandWork& work,
                  TraceCounts& trace_counts, RayCounts& ray_counts) {
   Counters n;
   RayTally rays;
   render_band(scene, shading, frame, y0, y1, work, n, rays);
-  add(n, trace_counts);
-  ray_counts.primary += rays.primary, ray_counts.shadow += rays.shadow;
-  ray_counts.reflection += rays.reflection, ray_counts.refraction += rays.refraction;
+  tally(n, rays, trace_counts, ray_counts);
+}
+
+inline void pixel_runs(const SceneView& scene, const ShadingView& shading, const FrameView& frame, const PixelRun* runs, int count,
+                       const BandWork& work, TraceCounts& trace_counts, RayCounts& ray_counts) {
+  Counters n;
+  RayTally rays;
+  render_runs(scene, shading, frame, runs, count, work, n, rays);
+  tally(n, rays, trace_counts, ray_counts);
 }
 
 inline void powers(const float* x, const float* y, float* out, int count) {
@@ -71,4 +83,4 @@ inline void powers(const float* x, const float* y, float* out, int count) {
 
 }  // namespace grelha::GRELHA_ISA
 
-#define GRELHA_LOOPS {GRELHA_ISA::closest, GRELHA_ISA::occluded, GRELHA_ISA::band, GRELHA_ISA::powers}
+#define GRELHA_LOOPS {GRELHA_ISA::closest, GRELHA_ISA::occluded, GRELHA_ISA::band, GRELHA_ISA::pixel_runs, GRELHA_ISA::powers}

@@ -38,6 +38,8 @@ struct VariantLoops {
   void (*closest)(const SceneView&, const RaySpan&, const TraceSettings&, TraceCounts&);
   void (*occluded)(const SceneView&, const RaySpan&, const TraceSettings&, TraceCounts&);
   void (*render_band)(const SceneView&, const ShadingView&, const FrameView&, int y0, int y1, const BandWork&, TraceCounts&, RayCounts&);
+  /// Samples of chosen pixels, kParts sums a run; see render_runs.
+  void (*render_runs)(const SceneView&, const ShadingView&, const FrameView&, const PixelRun*, int runs, const BandWork&, TraceCounts&, RayCounts&);
   /// power(x[i], y[i]) for tests.
   void (*power)(const float* x, const float* y, float* out, int count);
 };
