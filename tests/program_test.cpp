@@ -207,7 +207,7 @@ TEST_F(Program, EverySceneIsRead) {
     EXPECT_EQ(info.status, 0) << info.err;
     EXPECT_EQ(info.err.find("warning"), std::string::npos) << info.err;
   }
-  EXPECT_EQ(scenes, 12);
+  EXPECT_EQ(scenes, 13);
 }
 
 TEST_F(Program, AFullOutputIsStatusOne) {

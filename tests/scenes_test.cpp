@@ -115,6 +115,7 @@ TEST(Counts, AreThoseOfTheTable) {
   EXPECT_EQ(count_entities(generate("boat", 10))["pl"], 3);
   EXPECT_EQ(count_entities(generate("stadium", 6))["pp 3"], 10368);
   EXPECT_EQ(count_entities(generate("stadium", 1))["p 4"], 1);
+  EXPECT_EQ(count_entities(generate("knot", 2))["ply"], 1);
   EXPECT_EQ(count_entities(generate("tetra", 4))["p 3"], 256);
   EXPECT_EQ(count_entities(generate("gears", 2))["p 144"], 16);
   EXPECT_EQ(count_entities(generate("gears", 2))["p 4"], 1153);
@@ -227,6 +228,14 @@ TEST(Boat, MeshIsWholeAndNamedByTheScene) {
     ASSERT_LT(std::max({a, b, c}), 2624);
   }
   EXPECT_NE(generate("boat", 10).find("\nply boat.ply\n"), std::string::npos);
+}
+
+TEST(Knot, MeshHasTheTablesFaces) {
+  for (const int n : {1, 8}) {
+    std::ostringstream out;
+    find_generator("knot")->write_mesh(out, n);
+    EXPECT_NE(out.str().find("\nelement face " + std::to_string(288 * n * n) + '\n'), std::string::npos);
+  }
 }
 
 /// From the corners in order, the geometric normal agrees with the ones written: front is front.
