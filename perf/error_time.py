@@ -20,6 +20,7 @@ import sys
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+from matplotlib.ticker import NullFormatter
 import numpy as np
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -49,7 +50,7 @@ METHODS = {
 # Colours after Okabe and Ito, told apart by the colour-blind too; marker and dash say the same again.
 LOOKS = {"random": ("#999999", "o", ":"), "jitter": ("#E69F00", "s", "--"), "adaptive": ("#CC79A7", "^", "-."),
          "sobol": ("#0072B2", "D", "-"), "error": ("#000000", "*", "-")}
-LABELS = {"random": "random", "jitter": "jitter", "adaptive": "adaptive:0.1,D", "sobol": "sobol", "error": "--error"}
+LABELS = {"random": "random", "jitter": "jitter", "adaptive": "adaptive:0.1,D", "sobol": "sobol", "error": "--error E"}
 
 
 class Refused(Exception):
@@ -180,13 +181,17 @@ def draw(results, size, path):
                 color, marker, dash = LOOKS[method]
                 panel.plot([p["seconds"] for p in curve], [p["rmse"] for p in curve], dash, color=color, marker=marker,
                            markersize=9 if marker == "*" else 6, label=LABELS[method])
-        panel.set(xscale="log", yscale="log", title=title, xlabel="render time, s", ylabel="RMSE, white is 1")
+        panel.set(xscale="log", yscale="log", title=title, xlabel="render time, s", ylabel="RMSE (white is 1; lower is better)")
+        for axis in (panel.xaxis, panel.yaxis):  # 0.01, not 10^-2; the powers of ten alone
+            axis.set_major_formatter("{x:g}")
+            axis.set_minor_formatter(NullFormatter())
         panel.grid(which="major", alpha=.4)
         panel.axhline(floor, color="#009E73", linewidth=1, linestyle=(0, (1, 3)), label="the reference's own error")
         panel.legend(fontsize=9)
     for panel in list(panels.flat)[len(results):]:
         panel.axis("off")
-    fig.suptitle(f"{size}x{size}; random, jitter, sobol: 1, 4, 16, 64, 256 samples a pixel; down and left is better")
+    fig.suptitle(f"{size}x{size}: random, jitter and sobol with 1, 4, 16, 64, 256 samples a pixel; adaptive with D from 1 to 5; "
+                 "--error .08, .04, .02, .01, .005", fontsize=10)
     fig.savefig(path, dpi=90)
 
 
