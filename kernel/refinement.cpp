@@ -15,6 +15,7 @@ namespace {
 
 constexpr int kRunsOfChunk = 256, kSamplesOfChunk = 4096;  ///< work handed to a thread at a time: at most so much
 constexpr int kMostLog = 16;                               ///< kMostSamples = 2^16
+constexpr int kBouncesWatched = 2;                         ///< mirrors
 constexpr float kStep = .70710678f;                        ///< the bar falls by this a round: about five rounds double all samples
 static_assert(1 << kMostLog == kMostSamples);
 
@@ -47,7 +48,7 @@ class Refinement {
         count_(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height)),
         first_log_(plan.lens >= 0 || plan.light >= 0 || plan.gloss >= 0 ? 3 : 2),
         order_(pixel_order(camera.width, camera.height)), sums_(count_ * 3), squares_{std::vector<float>(count_ * 3), std::vector<float>(count_ * 3), std::vector<float>(count_ * 3)},
-        variance_(count_), widest_(count_), log_(count_, 0) {
+        variance_(count_), widest_(count_), log_(count_, 0), doubt_(count_, 1) {
     wanted_.reserve(count_);
     const int threads = std::max(1, options.threads > 0 ? options.threads : omp_get_num_procs());
     for (int i = 0; i < threads; ++i)
@@ -61,6 +62,7 @@ class Refinement {
     const RefineOptions& o = options_.refine;
     wanted_ = order_;
     take_round();
+    watch();
     float bar = .25f;
     int rounds = 1;
     for (; !stopped_; ++rounds) {
@@ -173,6 +175,37 @@ class Refinement {
     judge(p);
   }
 
+  /// Asks of every tile with a pixel whose samples agree whether anything can hide there.
+  void watch() {
+    const int columns = (camera_.width + 7) / 8, rows = (camera_.height + 7) / 8;
+#pragma omp parallel num_threads(stats_.threads)
+    {
+      TraceCounts trace;
+#pragma omp for schedule(dynamic, 4)
+      for (int tile = 0; tile < columns * rows; ++tile) {
+        const int x0 = tile % columns * 8, y0 = tile / columns * 8;
+        const int x1 = std::min(x0 + 8, camera_.width), y1 = std::min(y0 + 8, camera_.height);
+        bool agree = false;
+        for (int y = y0; y < y1; ++y)
+          for (int x = x0; x < x1; ++x) agree |= widest_[at(x, y)] <= doubt_width(at(x, y));
+        if (!agree) continue;
+        float doubt[kTile * kTile];
+        variant_.loops.doubt(world_.view, world_.shading, frame_, x0, y0, kBouncesWatched, doubt, trace);
+        for (int y = y0; y < y1; ++y)
+          for (int x = x0; x < x1; ++x) {
+            doubt_[at(x, y)] = doubt[(y - y0) * 8 + (x - x0)];
+            judge(at(x, y));
+          }
+      }
+#pragma omp critical(grelha_stats)
+      stats_.trace += trace;
+    }
+  }
+
+  std::size_t at(int x, int y) const { return static_cast<std::size_t>(y) * static_cast<std::size_t>(camera_.width) + static_cast<std::size_t>(x); }
+  /// What none of n samples met covers at most 3 / n of the pixel, at 95 % confidence (the rule of three), on either side.
+  float doubt_width(std::size_t p) const { return 6 * doubt_[p] / samples(p); }
+
   /// Variance and widest interval of a pixel from its differences: of the three levels there are 1, 2 and 4.
   void judge(std::size_t p) {
     const bool young = log_[p] == first_log_;
@@ -188,6 +221,13 @@ class Refinement {
       most = std::max(most, v > 0 ? 2 * half : 0.f);
     }
     variance_[p] = sum / 3, widest_[p] = most;
+    // What none of n samples met has a share of the pixel of Beta(1, n + 1), whose second moment is 2 / n^2; it differs from what
+    // they met by the doubt at most, by about a quarter of it in the mean. One sample that differed by .1 would show as .005 / n^2:
+    // beyond that something was met.
+    const float miss = doubt_[p] / samples(p);
+    if (miss == 0 || variance_[p] > .005f / (samples(p) * samples(p))) return;
+    variance_[p] = std::max(variance_[p], .15f * miss * miss);
+    widest_[p] = std::max(widest_[p], doubt_width(p));
   }
 
   float mean(std::size_t i) const {
@@ -249,6 +289,7 @@ class Refinement {
   std::vector<float> squares_[3];    ///< [pixels][3] squared differences of halves, quarters, eighths, summed by level
   std::vector<float> variance_, widest_;
   std::vector<std::uint8_t> log_;    ///< of a pixel's samples; 0: none yet
+  std::vector<float> doubt_;         ///< weight of what may hide from the pixel's samples, 0 to 1
   std::vector<std::unique_ptr<Workspace>> spaces_;
   double fall_ = 0, level_ = 0;
   float rho_ = .4f;

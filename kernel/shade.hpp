@@ -183,13 +183,6 @@ inline void push(RayStack& stack, const Vec3<float>& org, const Vec3<float>& dir
   stack.pixel[i] = pixel, stack.depth[i] = depth;
 }
 
-/// Two unit vectors across a third, by + - * / alone: Duff et al., "Building an Orthonormal Basis, Revisited", 2017.
-inline void across(const Vec3<float>& n, Vec3<float>& u, Vec3<float>& v) {
-  const float sign = n.z < 0 ? -1.f : 1.f, a = -1.f / (sign + n.z), b = n.x * n.y * a;
-  u = {1 + sign * n.x * n.x * a, sign * b, 0 - sign * n.x};
-  v = {b, sign + n.y * n.y * a, 0 - n.y};
-}
-
 /// A direction of the lobe of a rough mirror: the unit mirror direction moved within a disc across it, kept above the surface.
 [[gnu::noinline]] inline Vec3<float> lobe_direction(const Shader& s, int hit, const Vec3<float>& mirror, float roughness, int ray, int rays) {
   const SamplePlan& plan = s.work.plan;

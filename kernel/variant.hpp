@@ -2,6 +2,7 @@
 // What each variant_*.cpp compiles: the hot loops behind the functions of a Variant. Included once per instruction set.
 
 #include "kernel/band.hpp"
+#include "kernel/beam.hpp"
 #include "kernel/reference.hpp"
 #include "kernel/variants.hpp"
 
@@ -71,6 +72,14 @@ inline void pixel_runs(const SceneView& scene, const ShadingView& shading, const
   tally(n, rays, trace_counts, ray_counts);
 }
 
+inline void doubt(const SceneView& scene, const ShadingView& shading, const FrameView& frame, int x0, int y0, int bounces,
+                  float (&out)[kTile * kTile], TraceCounts& trace_counts) {
+  Counters n;
+  Watcher watcher(scene, shading, n);
+  tile_doubt(watcher, frame, x0, y0, kTile, bounces, out);
+  add(n, trace_counts);
+}
+
 inline void powers(const float* x, const float* y, float* out, int count) {
   for (int i = 0; i < count; i += kWidth<Lanes>) {
     alignas(64) float in[2][kWidth<Lanes>], r[kWidth<Lanes>];
@@ -83,4 +92,4 @@ inline void powers(const float* x, const float* y, float* out, int count) {
 
 }  // namespace grelha::GRELHA_ISA
 
-#define GRELHA_LOOPS {GRELHA_ISA::closest, GRELHA_ISA::occluded, GRELHA_ISA::band, GRELHA_ISA::pixel_runs, GRELHA_ISA::powers}
+#define GRELHA_LOOPS {GRELHA_ISA::closest, GRELHA_ISA::occluded, GRELHA_ISA::band, GRELHA_ISA::pixel_runs, GRELHA_ISA::doubt, GRELHA_ISA::powers}
