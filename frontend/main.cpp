@@ -140,9 +140,10 @@ void write_difference(const CompareCommand& command, const Image& a, const Image
 }
 
 int run(const CompareCommand& command) {
-  const Image a = read_image(command.a), b = read_image(command.b);
+  Image a = read_image(command.a), b = read_image(command.b);
   if (a.width != b.width || a.height != b.height)
     throw UsageError("the pictures have unequal sizes, " + size_text(a) + " and " + size_text(b));
+  if (command.display) a = displayed(std::move(a)), b = displayed(std::move(b));
   const Comparison c = compare(a, b);
   if (!command.diff.empty()) write_difference(command, a, b, c.largest);
   char text[256];

@@ -240,6 +240,7 @@ void add_compare(CLI::App& app, CompareCommand& command) {
   positional(sub, "B", command.b, "picture");
   value(sub, "--max-rmse", "X", "exit with status 1 when the RMSE is above X (white is 1)",
         [&command](const std::string& text) { command.max_rmse = rmse_bound(text); });
+  sub.add_flag("--display", command.display, "compare what a screen shows: each channel cut to 0 to 1 first");
   value(sub, "--diff", "FILE", "write |A - B|; in a .png the largest difference is made white",
         [&command](const std::string& text) { want_image_name("--diff", text), command.diff = text; });
 }

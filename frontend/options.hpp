@@ -35,6 +35,7 @@ struct InfoCommand {
 struct CompareCommand {
   std::string a, b;
   std::optional<double> max_rmse;
+  bool display = false;  ///< compare what a screen shows, channels from 0 to 1
   std::string diff;  ///< file for the difference picture, or empty
 };
 

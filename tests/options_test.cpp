@@ -102,6 +102,8 @@ TEST(Others, AreParsed) {
   EXPECT_EQ(compare.max_rmse, 0.0);
   EXPECT_EQ(compare.diff, "d.png");
   EXPECT_FALSE(std::get<CompareCommand>(parse("compare a b")).max_rmse);
+  EXPECT_FALSE(compare.display);
+  EXPECT_TRUE(std::get<CompareCommand>(parse("compare a b --display")).display);
   const auto scene = std::get<SceneCommand>(parse("scene balls --size 4 -o b.nff --spd"));
   EXPECT_EQ(scene.name, "balls");
   EXPECT_EQ(scene.size, 4);
