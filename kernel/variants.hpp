@@ -45,6 +45,10 @@ struct VariantLoops {
   void (*doubt)(const SceneView&, const ShadingView&, const FrameView&, int x0, int y0, int bounces, float (&)[kTile * kTile], TraceCounts&);
   /// power(x[i], y[i]) for tests.
   void (*power)(const float* x, const float* y, float* out, int count);
+  /// sample_pairs of pixel[i], index[i], key[i], and sampled_rays, for tests.
+  void (*samples)(const SamplePlan&, const std::uint32_t* pixel, const std::uint32_t* index, int dimension, const std::uint32_t* key,
+                  const Strata&, float* u, float* v, int count);
+  void (*sampled_rays)(const FrameView&, const SamplePlan&, Batch&, int at, int x, int y, std::uint32_t first, int count, std::uint32_t sum);
 };
 
 struct Variant {

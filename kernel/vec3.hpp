@@ -55,10 +55,12 @@ inline Real largest(const Vec3<Real>& a) {
 }
 
 /// Two unit vectors across a third, by + - * / alone: Duff et al., "Building an Orthonormal Basis, Revisited", 2017.
-inline void across(const Vec3<float>& n, Vec3<float>& u, Vec3<float>& v) {
-  const float sign = n.z < 0 ? -1.f : 1.f, a = -1.f / (sign + n.z), b = n.x * n.y * a;
-  u = {1 + sign * n.x * n.x * a, sign * b, 0 - sign * n.x};
-  v = {b, sign + n.y * n.y * a, 0 - n.y};
+template <class Real>
+inline void across(const Vec3<Real>& n, Vec3<Real>& u, Vec3<Real>& v) {
+  const Real o(0), one(1), below(-1);
+  const Real sign = select(n.z < o, below, one), a = below / (sign + n.z), b = n.x * n.y * a;
+  u = {one + sign * n.x * n.x * a, sign * b, o - sign * n.x};
+  v = {b, sign + n.y * n.y * a, o - n.y};
 }
 
 }  // namespace grelha::GRELHA_ISA
