@@ -22,8 +22,7 @@ static_assert(1 << kMostLog == kMostSamples);
 /// Differences a pixel holds after its first round and later, and what its neighbours' count for.
 constexpr float kYoung = 3, kOld = 7, kNeighbours = 7;
 
-/// 97.5 % point of Student's t, within 1 % from 3 degrees of freedom on.
-float student(float dof) { return 1.96f + (2.4f + 3.6f / dof) / dof; }
+constexpr float kNormal = 1.96f;  ///< 97.5 % point: with what neighbours tell, Student's t is no wider
 
 /// Pixels in the order their samples are taken: tile by tile of 8 x 8, along a Z in each, so that neighbours share packets.
 std::vector<std::uint32_t> pixel_order(int width, int height) {
@@ -240,7 +239,7 @@ class Refinement {
       for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
           const std::size_t p = at(x, y);
-          float v = own_[p], dof = held(p);
+          float v = own_[p];
           if (effects_ || doubt_[p] > 0) {
             float sum = 0, count = 0;
             for (int j = std::max(y - 1, 0); j <= std::min(y + 1, height - 1); ++j)
@@ -249,10 +248,10 @@ class Refinement {
                 if (q == p || !(effects_ || doubt_[q] > 0)) continue;
                 sum += own_[q] * scale[kMostLog + log_[p] - log_[q]], count += 1;
               }
-            const float weight = kNeighbours * count / 8;
-            if (count > 0) v = (v * dof + sum / count * weight) / (dof + weight), dof += weight;
+            const float mine = held(p), theirs = kNeighbours * count / 8;
+            if (count > 0) v = (v * mine + sum / count * theirs) / (mine + theirs);
           }
-          float wide = 2 * student(dof) * std::sqrt(v);
+          float wide = 2 * kNormal * std::sqrt(v);
           // What none of n samples met has a share of the pixel of Beta(1, n + 1), whose second moment is 2 / n^2; it differs from
           // what they met by the doubt at most, by about a quarter of it in the mean.
           if (const float miss = doubt_[p] / samples(p); miss > 0 && agrees(own_[p], p))
@@ -299,7 +298,7 @@ class Refinement {
       e.samples += n, e.least = std::min(e.least, n), e.most = std::max(e.most, n);
     }
     if (maps) {
-      maps->samples.resize(count_), maps->error.resize(count_);
+      maps->samples.resize(count_), maps->error.resize(count_), maps->width = widest_;
       for (std::size_t p = 0; p < count_; ++p) maps->samples[p] = 1u << log_[p], maps->error[p] = std::sqrt(variance_[p]);
     }
     return image;
