@@ -53,14 +53,15 @@ inline float lane_max(const Lanes& v) {
   return m;
 }
 
-/// Entry and exit of every ray, then the frustum around those that meet the grid, along `axis` (-1: that along which the first
-/// of them crosses most cells). kApart when not all of them make headway along it.
+/// Entry and exit of every ray, then the frustum around those that meet the grid, along the axis on which the first of them
+/// crosses most cells; or, with `axis`, around all of them along that one, whether they meet the grid themselves or pass it by on
+/// both sides. kApart when not all of them make headway along it.
 inline Spread bound(const GridView& g, const Packet& p, Frustum& f, int axis = -1) {
   alignas(64) float enter[kPacket];
   int first = -1;
   each_live_group(p, [&](int i, int) {
     Lanes t0 = load<Lanes>(p.t_min + i), t1 = load<Lanes>(p.best + i);
-    for (int a = 0; a < 3; ++a) {
+    for (int a = axis < 0 ? 0 : axis; a < (axis < 0 ? 3 : axis + 1); ++a) {
       const Lanes d = load<Lanes>(p.dir[a] + i), o = load<Lanes>(p.org[a] + i);
       const Mask<Lanes> tiny = magnitude(d) < Lanes(1e-18f);
       const Lanes inv = Lanes(1) / select(tiny, Lanes(1e-18f), d);
@@ -73,6 +74,11 @@ inline Spread bound(const GridView& g, const Packet& p, Frustum& f, int axis = -
     if (const unsigned lanes = bits(meets); lanes != 0 && first < 0) first = i + __builtin_ctz(lanes);
   });
   if (first < 0) return Spread::kNothing;
+  if (axis >= 0)
+    each_live_group(p, [&](int i, int) {
+      const Mask<Lanes> ray = load<Lanes>(p.best + i) > load<Lanes>(p.t_min + i);
+      store(f.leave + i, select(ray, greater(load<Lanes>(f.leave + i), load<Lanes>(enter + i)), Lanes(-kInfinity)));
+    });
 
   int k = axis < 0 ? 0 : axis;
   float most = -1;

@@ -15,11 +15,14 @@ namespace {
 
 constexpr int kRunsOfChunk = 256, kSamplesOfChunk = 4096;  ///< work handed to a thread at a time: at most so much
 constexpr int kMostLog = 16;                               ///< kMostSamples = 2^16
+constexpr int kBouncesWatched = 2;                         ///< mirrors
 constexpr float kStep = .70710678f;                        ///< the bar falls by this a round: about five rounds double all samples
 static_assert(1 << kMostLog == kMostSamples);
 
-/// 97.5 % points of Student's t with 3 and 7 degrees of freedom: the differences a pixel holds after one round and later.
-constexpr float kStudent3 = 3.182f, kStudent7 = 2.365f;
+/// Differences a pixel holds after its first round and later, and what its neighbours' count for.
+constexpr float kYoung = 3, kOld = 7, kNeighbours = 7;
+
+constexpr float kNormal = 1.96f;  ///< 97.5 % point: with what neighbours tell, Student's t is no wider
 
 /// Pixels in the order their samples are taken: tile by tile of 8 x 8, along a Z in each, so that neighbours share packets.
 std::vector<std::uint32_t> pixel_order(int width, int height) {
@@ -45,9 +48,9 @@ class Refinement {
              const RenderOptions& options, RenderStats& stats)
       : world_(world), camera_(camera), frame_(frame), plan_(plan), variant_(variant), options_(options), stats_(stats),
         count_(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height)),
-        first_log_(plan.lens >= 0 || plan.light >= 0 || plan.gloss >= 0 ? 3 : 2),
+        effects_(plan.lens >= 0 || plan.light >= 0 || plan.gloss >= 0), first_log_(effects_ ? 3 : 2),
         order_(pixel_order(camera.width, camera.height)), sums_(count_ * 3), squares_{std::vector<float>(count_ * 3), std::vector<float>(count_ * 3), std::vector<float>(count_ * 3)},
-        variance_(count_), widest_(count_), log_(count_, 0) {
+        own_(count_), variance_(count_), widest_(count_), cost_(count_, 1), log_(count_, 0), doubt_(count_, 1) {
     wanted_.reserve(count_);
     const int threads = std::max(1, options.threads > 0 ? options.threads : omp_get_num_procs());
     for (int i = 0; i < threads; ++i)
@@ -61,6 +64,8 @@ class Refinement {
     const RefineOptions& o = options_.refine;
     wanted_ = order_;
     take_round();
+    watch();
+    judge();
     float bar = .25f;
     int rounds = 1;
     for (; !stopped_; ++rounds) {
@@ -76,7 +81,7 @@ class Refinement {
       }
       if (wanted_.empty() && (met || bar < 1e-20f)) break;
       if (o.seconds > 0 && !wanted_.empty() && seconds() + predicted() > o.seconds) break;
-      if (!wanted_.empty()) take_round();
+      if (!wanted_.empty()) take_round(), judge();
       report(totals);
     }
     stats_.error.rounds = rounds;
@@ -89,7 +94,7 @@ class Refinement {
   };
 
   float samples(std::size_t p) const { return static_cast<float>(1u << log_[p]); }
-  float gain(std::size_t p) const { return log_[p] < kMostLog ? variance_[p] * (1 - rho_) / samples(p) : 0; }
+  float gain(std::size_t p) const { return log_[p] < kMostLog ? variance_[p] * (1 - rho_) / (samples(p) * cost_[p]) : 0; }
   double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
   template <class Test>
@@ -142,8 +147,11 @@ class Refinement {
       runs[r] = {p, log_[p] == 0 ? 0u : 1u << log_[p], next_count(p)};
       std::fill_n(space.pixels().begin() + static_cast<std::ptrdiff_t>(r * kParts), kParts, p);
     }
+    const RayCounts before = rays;
     variant_.loops.render_runs(world_.view, world_.shading, frame_, runs, static_cast<int>(count), space.work(options_, 0, true), trace, rays);
     for (std::size_t r = 0; r < count; ++r) add_run(runs[r], space.sums().data() + r * kParts * 3, chunk);
+    const float cost = static_cast<float>(rays.total() - before.total()) / static_cast<float>(rays.primary - before.primary);
+    for (std::size_t r = 0; r < count; ++r) cost_[runs[r].pixel] = cost;
   }
 
   void add_run(const PixelRun& run, const std::int64_t* sums, Chunk& chunk) {
@@ -170,24 +178,87 @@ class Refinement {
       sums_[i] += all;
     }
     log_[p] = static_cast<std::uint8_t>(first ? first_log_ : log_[p] + 1);
-    judge(p);
   }
 
-  /// Variance and widest interval of a pixel from its differences: of the three levels there are 1, 2 and 4.
-  void judge(std::size_t p) {
-    const bool young = log_[p] == first_log_;
-    const float dof = young ? 3 : 7, t = young ? kStudent3 : kStudent7;
-    float sum = 0, most = 0;
+  /// Asks of every tile with a pixel whose samples agree whether anything can hide there.
+  void watch() {
+    const int columns = (camera_.width + 7) / 8, rows = (camera_.height + 7) / 8;
+#pragma omp parallel num_threads(stats_.threads)
+    {
+      TraceCounts trace;
+#pragma omp for schedule(dynamic, 4)
+      for (int tile = 0; tile < columns * rows; ++tile) {
+        const int x0 = tile % columns * 8, y0 = tile / columns * 8;
+        const int x1 = std::min(x0 + 8, camera_.width), y1 = std::min(y0 + 8, camera_.height);
+        bool agree = false;
+        for (int y = y0; y < y1; ++y)
+          for (int x = x0; x < x1; ++x) agree |= agrees(own_variance(at(x, y)), at(x, y));
+        if (!agree) continue;
+        float doubt[kTile * kTile];
+        variant_.loops.doubt(world_.view, world_.shading, frame_, x0, y0, kBouncesWatched, doubt, trace);
+        for (int y = y0; y < y1; ++y)
+          for (int x = x0; x < x1; ++x) doubt_[at(x, y)] = doubt[(y - y0) * 8 + (x - x0)];
+      }
+#pragma omp critical(grelha_stats)
+      stats_.trace += trace;
+    }
+  }
+
+  std::size_t at(int x, int y) const { return static_cast<std::size_t>(y) * static_cast<std::size_t>(camera_.width) + static_cast<std::size_t>(x); }
+  /// What none of n samples met covers at most 3 / n of the pixel, at 95 % confidence (the rule of three), on either side.
+  float doubt_width(std::size_t p) const { return 6 * doubt_[p] / samples(p); }
+
+  /// Whether no sample of a pixel differed: one of n that does so by .1 shows as a variance of .005 / n^2.
+  bool agrees(float variance, std::size_t p) const { return variance <= .005f / (samples(p) * samples(p)); }
+
+  /// Variance of a pixel, mean of its channels, from its own differences: of the three levels there are 1, 2 and 4.
+  float own_variance(std::size_t p) const {
+    float sum = 0;
     for (std::size_t c = 0; c < 3; ++c) {
       const std::size_t i = p * 3 + c;
-      const float fall = (squares_[0][i] + rho_ * (squares_[1][i] + rho_ * squares_[2][i])) / (4 * dof);
-      float v = fall * rho_ / (1 - rho_);
-      const float half = t * std::sqrt(v);
-      if (mean(i) - half > 1) v = 0;  // white on any screen
-      sum += v;
-      most = std::max(most, v > 0 ? 2 * half : 0.f);
+      const float fall = (squares_[0][i] + rho_ * (squares_[1][i] + rho_ * squares_[2][i])) / (4 * held(p));
+      const float v = fall * rho_ / (1 - rho_);
+      if (!(mean(i) - 3 * std::sqrt(v) > 1)) sum += v;  // else white on any screen
     }
-    variance_[p] = sum / 3, widest_[p] = most;
+    return sum / 3;
+  }
+  float held(std::size_t p) const { return log_[p] == first_log_ ? kYoung : kOld; }
+
+  /// Variance and interval of every pixel. Few differences tell little: pixels that may hold more than one surface, or an effect,
+  /// borrow from their neighbours of the same kind, so that chance stops no pixel and drives none on.
+  void judge() {
+    float scale[2 * kMostLog + 1];  // rho^(i - kMostLog)
+    scale[kMostLog] = 1;
+    for (int i = 0; i < kMostLog; ++i) scale[kMostLog + i + 1] = scale[kMostLog + i] * rho_, scale[kMostLog - i - 1] = scale[kMostLog - i] / rho_;
+    const int width = camera_.width, height = camera_.height;
+#pragma omp parallel num_threads(stats_.threads)
+    {
+#pragma omp for schedule(static)
+      for (std::size_t p = 0; p < count_; ++p) own_[p] = own_variance(p);
+#pragma omp for schedule(static)
+      for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+          const std::size_t p = at(x, y);
+          float v = own_[p];
+          if (effects_ || doubt_[p] > 0) {
+            float sum = 0, count = 0;
+            for (int j = std::max(y - 1, 0); j <= std::min(y + 1, height - 1); ++j)
+              for (int i = std::max(x - 1, 0); i <= std::min(x + 1, width - 1); ++i) {
+                const std::size_t q = at(i, j);
+                if (q == p || !(effects_ || doubt_[q] > 0)) continue;
+                sum += own_[q] * scale[kMostLog + log_[p] - log_[q]], count += 1;
+              }
+            const float mine = held(p), theirs = kNeighbours * count / 8;
+            if (count > 0) v = (v * mine + sum / count * theirs) / (mine + theirs);
+          }
+          float wide = 2 * kNormal * std::sqrt(v);
+          // What none of n samples met has a share of the pixel of Beta(1, n + 1), whose second moment is 2 / n^2; it differs from
+          // what they met by the doubt at most, by about a quarter of it in the mean.
+          if (const float miss = doubt_[p] / samples(p); miss > 0 && agrees(own_[p], p))
+            v = std::max(v, .15f * miss * miss), wide = std::max(wide, doubt_width(p));
+          variance_[p] = v, widest_[p] = wide;
+        }
+    }
   }
 
   float mean(std::size_t i) const {
@@ -227,7 +298,7 @@ class Refinement {
       e.samples += n, e.least = std::min(e.least, n), e.most = std::max(e.most, n);
     }
     if (maps) {
-      maps->samples.resize(count_), maps->error.resize(count_);
+      maps->samples.resize(count_), maps->error.resize(count_), maps->width = widest_;
       for (std::size_t p = 0; p < count_; ++p) maps->samples[p] = 1u << log_[p], maps->error[p] = std::sqrt(variance_[p]);
     }
     return image;
@@ -243,12 +314,15 @@ class Refinement {
   const RenderOptions& options_;
   RenderStats& stats_;
   std::size_t count_;
+  bool effects_;   ///< there is more to sample than the pixel
   int first_log_;
   std::vector<std::uint32_t> order_, wanted_;
   std::vector<std::int64_t> sums_;   ///< [pixels][3]
   std::vector<float> squares_[3];    ///< [pixels][3] squared differences of halves, quarters, eighths, summed by level
-  std::vector<float> variance_, widest_;
+  std::vector<float> own_, variance_, widest_;  ///< by pixel: mean over channels, the same with its neighbours', width of the 95 % interval
+  std::vector<float> cost_;                     ///< rays a sample takes, of the part of the picture last sampled with the pixel
   std::vector<std::uint8_t> log_;    ///< of a pixel's samples; 0: none yet
+  std::vector<float> doubt_;         ///< weight of what may hide from the pixel's samples, 0 to 1
   std::vector<std::unique_ptr<Workspace>> spaces_;
   double fall_ = 0, level_ = 0;
   float rho_ = .4f;

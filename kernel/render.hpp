@@ -64,8 +64,8 @@ struct SampleOptions {
 
 /// Samples spent where they help most, instead of SampleOptions::samples a pixel. Wants the sampler kSobol or kRandom.
 struct RefineOptions {
-  double error = 0;    ///< > 0: until the RMSE is at most this at 95 % confidence and no channel of a pixel has a 95 % interval wider
-                       ///< than 8 times this; display units, 0 to 1
+  double error = 0;    ///< > 0: until the RMSE is at most this at 95 % confidence and no pixel's 95 % interval is wider than
+                       ///< 8 times this; display units, 0 to 1
   double seconds = 0;  ///< > 0: until these are spent, which depends on the machine; ErrorStats::rounds says what to ask for to repeat it
   int rounds = 0;      ///< > 0: so many rounds
   bool on() const { return error > 0 || seconds > 0 || rounds > 0; }
@@ -75,6 +75,7 @@ struct RefineOptions {
 struct SampleMaps {
   std::vector<std::uint32_t> samples;  ///< [height * width] spent
   std::vector<float> error;            ///< [height * width] estimated standard error, root mean square of the channels
+  std::vector<float> width;            ///< [height * width] of the 95 % interval, what may hide from the samples counted in
 };
 
 struct RenderOptions {

@@ -2,6 +2,7 @@
 // What each variant_*.cpp compiles: the hot loops behind the functions of a Variant. Included once per instruction set.
 
 #include "kernel/band.hpp"
+#include "kernel/beam.hpp"
 #include "kernel/reference.hpp"
 #include "kernel/variants.hpp"
 
@@ -71,6 +72,14 @@ inline void pixel_runs(const SceneView& scene, const ShadingView& shading, const
   tally(n, rays, trace_counts, ray_counts);
 }
 
+inline void doubt(const SceneView& scene, const ShadingView& shading, const FrameView& frame, int x0, int y0, int bounces,
+                  float (&out)[kTile * kTile], TraceCounts& trace_counts) {
+  Counters n;
+  Watcher watcher(scene, shading, n);
+  tile_doubt(watcher, frame, x0, y0, kTile, bounces, out);
+  add(n, trace_counts);
+}
+
 inline void powers(const float* x, const float* y, float* out, int count) {
   for (int i = 0; i < count; i += kWidth<Lanes>) {
     alignas(64) float in[2][kWidth<Lanes>], r[kWidth<Lanes>];
@@ -81,6 +90,22 @@ inline void powers(const float* x, const float* y, float* out, int count) {
   }
 }
 
+inline void samples(const SamplePlan& plan, const std::uint32_t* pixel, const std::uint32_t* index, int dimension, const std::uint32_t* key,
+                    const Strata& strata, float* u, float* v, int count) {
+  for (int i = 0; i < count; i += kWidth<Lanes>) {
+    std::uint32_t in[3][kWidth<Lanes>];
+    const int left = count - i < kWidth<Lanes> ? count - i : kWidth<Lanes>;
+    for (int k = 0; k < kWidth<Lanes>; ++k) {
+      const int from = i + (k < left ? k : 0);
+      in[0][k] = pixel[from], in[1][k] = index[from], in[2][k] = key[from];
+    }
+    const PairOf<Lanes> p = sample_pairs<Lanes>(plan, load_words<Lanes>(in[0]), load_words<Lanes>(in[1]), dimension, load_words<Lanes>(in[2]), strata);
+    store_some(u + i, p.u, left), store_some(v + i, p.v, left);
+  }
+}
+
 }  // namespace grelha::GRELHA_ISA
 
-#define GRELHA_LOOPS {GRELHA_ISA::closest, GRELHA_ISA::occluded, GRELHA_ISA::band, GRELHA_ISA::pixel_runs, GRELHA_ISA::powers}
+#define GRELHA_LOOPS                                                                                                       \
+  {GRELHA_ISA::closest, GRELHA_ISA::occluded, GRELHA_ISA::band, GRELHA_ISA::pixel_runs, GRELHA_ISA::doubt, GRELHA_ISA::powers, \
+   GRELHA_ISA::samples, GRELHA_ISA::sampled_rays}

@@ -18,7 +18,7 @@ class Workspace {
       : batch_(std::make_unique<Batch>()),
         plan_(plan),
         take_(std::clamp(65536 / (depth * (plan.gloss_rays + 1)), 16, kBatch)),
-        capacity_((plan.gloss_rays + 2) * (kBatch + take_ * depth)),
+        capacity_((plan.gloss_rays + 2) * (kBatch + take_ * depth) + kCacheLine),  // the line: see kBatchRow
         floats_(static_cast<std::size_t>(capacity_) * 9),
         words_(static_cast<std::size_t>(capacity_) * 4),
         sums_(sums * 3),
