@@ -19,11 +19,13 @@ struct Beam {
   Vec3<float> org[kCorners], dir[kCorners];  ///< around the beam, in order; unit directions
 };
 
-/// A beam seen along its axis: w along it, u and v across. Its rays seem to come from the apex.
+/// A beam as a pyramid over a parallelogram: its rays seem to come from the apex, and a point apex + w (axis + x right + y up) lies
+/// inside when |x| and |y| are at most 1.
 struct BeamFrame {
-  Vec3<float> apex, axis, u, v;
-  float depth;  ///< of the corner rays' origins from the apex, along the axis
-  float corner[kCorners][2];  ///< slopes of the corner rays from the apex
+  Vec3<float> apex, axis, right, up;
+  Vec3<float> to_x, to_y;  ///< x = dot(p, to_x) / dot(p, unit), p from the apex; y likewise
+  Vec3<float> unit;        ///< the axis without what right and up add to it: w = dot(p, unit)
+  float depth;             ///< w of the corner rays' origins
 };
 
 struct Sight {
@@ -36,80 +38,84 @@ inline Vec3<float> middle(const Vec3<float> (&p)[kCorners]) { return .25f * ((p[
 /// False when the rays spread too far to be a beam.
 inline bool frame_of(const Beam& b, BeamFrame& f) {
   const Vec3<float> org = middle(b.org);
-  f.axis = normalize(middle(b.dir));
-  if (!(f.axis.x == f.axis.x)) return false;
-  across(f.axis, f.u, f.v);
+  f.unit = normalize(middle(b.dir));
+  if (!(f.unit.x == f.unit.x)) return false;
   float offset = 0, growth = 0;
   for (int i = 0; i < kCorners; ++i) {
-    const float along = dot(b.dir[i], f.axis);
+    const float along = dot(b.dir[i], f.unit);
     if (!(along > kNarrow)) return false;
-    const Vec3<float> o = b.org[i] - org, d = (1 / along) * b.dir[i] - f.axis;
+    const Vec3<float> o = b.org[i] - org, d = (1 / along) * b.dir[i] - f.unit;
     offset += length(o), growth += dot(o, d) > 0 || dot(o, o) == 0 ? length(d) : 0 - length(d);
   }
   // Rays that run together or keep apart have no apex behind them: one far away stands for it.
-  const float back = offset == 0 ? 0.f : growth > 1e-4f * offset ? lesser(offset / growth, 1e4f * offset) : 1e4f * offset;
-  f.apex = org - back * f.axis;
-  f.depth = back;
+  f.depth = offset == 0 ? 0.f : growth > 1e-4f * offset ? lesser(offset / growth, 1e4f * offset) : 1e4f * offset;
+  f.apex = org - f.depth * f.unit;
+  Vec3<float> c[kCorners];  // where the corner rays pierce w = 1
   for (int i = 0; i < kCorners; ++i) {
-    // The ray's place where it starts, or anywhere on it when it starts at the apex.
-    const Vec3<float> at = b.org[i] + (back > 0 ? 0.f : 1.f) * b.dir[i] - f.apex;
-    const float w = dot(at, f.axis);
-    f.corner[i][0] = dot(at, f.u) / w, f.corner[i][1] = dot(at, f.v) / w;
+    const Vec3<float> at = b.org[i] + (f.depth > 0 ? 0.f : 1.f) * b.dir[i] - f.apex;  // any place on a ray from the apex will do
+    c[i] = (1 / dot(at, f.unit)) * at;
   }
+  f.axis = middle(c);
+  f.right = .25f * ((c[1] - c[0]) + (c[2] - c[3])), f.up = .25f * ((c[3] - c[0]) + (c[2] - c[1]));
+  const Vec3<float> n = cross(f.right, f.up);  // along the axis: x = det(p, up, axis) / det(right, up, axis), over w
+  const float det = dot(n, f.axis);
+  if (!(det * det > 0)) return false;
+  f.to_x = (1 / det) * cross(f.up, f.axis), f.to_y = (1 / det) * cross(f.axis, f.right);
   return true;
 }
 
-/// Whether the direction of slopes (u, v) lies between the corner rays.
-inline bool between(const BeamFrame& f, float u, float v) {
-  int left = 0, right = 0;
-  for (int i = 0; i < kCorners; ++i) {
-    const float* const a = f.corner[i];
-    const float* const b = f.corner[(i + 1) % kCorners];
-    const float side = (b[0] - a[0]) * (v - a[1]) - (b[1] - a[1]) * (u - a[0]);
-    left += side >= 0, right += side <= 0;
-  }
-  return left == kCorners || right == kCorners;
-}
-
-struct Slopes {
-  float u, v, depth;
+/// Place in the beam, see BeamFrame.
+struct Place {
+  float x, y, w;
 };
-inline Slopes slopes(const BeamFrame& f, const Vec3<float>& p) {
+inline Place place(const BeamFrame& f, const Vec3<float>& p) {
   const Vec3<float> d = p - f.apex;
-  const float w = dot(d, f.axis);
-  return {dot(d, f.u) / w, dot(d, f.v) / w, w};
+  const float w = dot(d, f.unit);
+  return {dot(d, f.to_x) / w, dot(d, f.to_y) / w, w};
+}
+/// How far out: at most 1 inside.
+inline float outness(float x, float y) { return greater(magnitude(x), magnitude(y)); }
+
+/// Point of least outness of the stretch between two points: least at an end, on a diagonal or where it crosses an axis.
+inline Place innermost(const Place& a, const Place& b) {
+  const float dx = b.x - a.x, dy = b.y - a.y;
+  const float at[6] = {0, 1, (a.y - a.x) / (dx - dy), (0 - (a.x + a.y)) / (dx + dy), (0 - a.x) / dx, (0 - a.y) / dy};
+  Place best{a.x, a.y, outness(a.x, a.y)};
+  for (const float t : at) {
+    if (!(t >= 0) || !(t <= 1)) continue;
+    const float x = a.x + t * dx, y = a.y + t * dy, out = outness(x, y);
+    if (out < best.w) best = {x, y, out};
+  }
+  return best;  // w: the outness
 }
 
 /// Point of a ball nearest to the axis.
 inline Vec3<float> ball_point(const BeamFrame& f, const Vec3<float>& c, float r) {
-  const Vec3<float> d = c - f.apex, off = d - dot(d, f.axis) * f.axis;
+  const Vec3<float> d = c - f.apex, off = d - (dot(d, f.axis) / dot(f.axis, f.axis)) * f.axis;
   const float far = length(off);
   return far <= r ? c - off : c - ((.99f * r) / far) * off;
 }
 
-/// Point of a triangle, seen from the apex, nearest to the axis; false when a corner lies behind.
+/// Innermost point of a triangle; false when a corner lies behind the apex.
 inline bool triangle_point(const BeamFrame& f, const Vec3<float> (&c)[3], Vec3<float>& out) {
-  float u[3], v[3];
+  Place q[3];
   for (int i = 0; i < 3; ++i) {
-    const Slopes s = slopes(f, c[i]);
-    if (!(s.depth > 0)) return false;
-    u[i] = s.u, v[i] = s.v;
+    q[i] = place(f, c[i]);
+    if (!(q[i].w > 0)) return false;
   }
   int left = 0, right = 0;
-  float best = kInfinity, bu = 0, bv = 0;
+  Place best{0, 0, kInfinity};
   for (int i = 0; i < 3; ++i) {
-    const int j = (i + 1) % 3;
-    const float du = u[j] - u[i], dv = v[j] - v[i], side = u[i] * dv - v[i] * du, dd = du * du + dv * dv;
+    const Place &a = q[i], &b = q[(i + 1) % 3];
+    const float side = a.x * (b.y - a.y) - a.y * (b.x - a.x);
     left += side >= 0, right += side <= 0;
-    float at = dd > 0 ? (0 - (u[i] * du + v[i] * dv)) / dd : 0;
-    at = at < 0 ? 0 : at > 1 ? 1 : at;
-    const float x = u[i] + at * du, y = v[i] + at * dv, away = x * x + y * y;
-    if (away < best) best = away, bu = x, bv = y;
+    const Place in = innermost(a, b);
+    if (in.w < best.w) best = in;
   }
-  if (left == 3 || right == 3) bu = bv = 0;
-  const float mu = (1.f / 3) * ((u[0] + u[1]) + u[2]), mv = (1.f / 3) * ((v[0] + v[1]) + v[2]);
-  bu += .01f * (mu - bu), bv += .01f * (mv - bv);  // off the edge
-  const Vec3<float> n = cross(c[1] - c[0], c[2] - c[0]), dir = f.axis + bu * f.u + bv * f.v;
+  if (left == 3 || right == 3) best = {0, 0, 0};
+  const float mx = (1.f / 3) * ((q[0].x + q[1].x) + q[2].x), my = (1.f / 3) * ((q[0].y + q[1].y) + q[2].y);
+  const float x = best.x + .01f * (mx - best.x), y = best.y + .01f * (my - best.y);  // off the edge
+  const Vec3<float> n = cross(c[1] - c[0], c[2] - c[0]), dir = f.axis + x * f.right + y * f.up;
   const float t = dot(c[0] - f.apex, n) / dot(dir, n);
   if (!(t > 0) || !(t < kInfinity)) return false;
   out = f.apex + t * dir;
@@ -146,8 +152,8 @@ inline bool meets(const SceneView& scene, const BeamFrame& f, std::uint32_t id, 
     h = h < 0 ? 0 : h > height ? height : h;
     p = ball_point(f, base + h * axis, g.cone[7][i] + g.cone[8][i] * h);
   }
-  const Slopes s = slopes(f, p);
-  return s.depth > f.depth && s.depth < far && between(f, s.u, s.v);
+  const Place at = place(f, p);
+  return at.w > f.depth && at.w < far && outness(at.x, at.y) <= 1;
 }
 
 /// The primitives, other than those of `known`, that meet() a beam; each once.
@@ -232,17 +238,17 @@ class Watcher {
     BeamFrame f;
     if (!frame_of(beam, f)) return lost;
     Sight sight;
-    trace_corners(beam, kInfinity, sight);
+    trace_corners(beam, sight);
     float far = 0;
     for (int i = 0; i < kCorners; ++i) {
       const bool hit = sight.id[i] != kNoPrimitive;
       if (hit != (sight.id[0] != kNoPrimitive) || (whole && sight.id[i] != sight.id[0])) return weight;
-      far = greater(hit ? slopes(f, beam.org[i] + sight.t[i] * beam.dir[i]).depth * 1.0001f : kInfinity, far);
+      far = greater(hit ? place(f, beam.org[i] + sight.t[i] * beam.dir[i]).w * 1.0001f : kInfinity, far);
     }
     if (whole && sight.id[0] >= scene_.cone_base && sight.id[0] != kNoPrimitive) return weight;
     Met met;
     if (!collect(beam, f, sight.t, far, sight.id, whole, met)) return lost;
-    if (!one_surface(sight.id) || !hidden(f, met, sight.id)) return weight;
+    if (!one_surface(sight.id) || !hidden(f, met, sight.id) || !closed(f, met, sight.id)) return weight;
     if (sight.id[0] == kNoPrimitive) return 0;
 
     Surface s[kCorners];
@@ -276,24 +282,20 @@ class Watcher {
   }
 
  private:
-  /// Nearest hits of the corner rays before t = `end`.
-  void trace_corners(const Beam& beam, float end, Sight& sight) {
+  /// Nearest hits of the corner rays.
+  void trace_corners(const Beam& beam, Sight& sight) {
     Packet p;
-    fill(beam, end, p);
+    fill(beam, p);
     trace_packet<false>(scene_, p, {16, true}, n_);
-    for (int i = 0; i < kCorners; ++i) sight.id[i] = id_of(p.id[i]), sight.t[i] = p.best[i] + shift_[i];
+    for (int i = 0; i < kCorners; ++i) sight.id[i] = id_of(p.id[i]), sight.t[i] = p.moved ? p.best[i] + p.shift[i] : p.best[i];
   }
 
-  /// The beam as a packet, its rays brought near.
-  void fill(const Beam& beam, float end, Packet& p) {
+  static void fill(const Beam& beam, Packet& p) {
     p.size = kCorners;
     for (int i = 0; i < kCorners; ++i) {
-      float org[3] = {beam.org[i].x, beam.org[i].y, beam.org[i].z};
-      const float dir[3] = {beam.dir[i].x, beam.dir[i].y, beam.dir[i].z};
-      const double shift = approach(scene_, org, dir);
-      for (int a = 0; a < 3; ++a) p.org[a][i] = org[a], p.dir[a][i] = dir[a];
-      shift_[i] = static_cast<float>(shift);
-      p.t_min[i] = 0 - shift_[i], p.best[i] = end - shift_[i];
+      p.org[0][i] = beam.org[i].x, p.org[1][i] = beam.org[i].y, p.org[2][i] = beam.org[i].z;
+      p.dir[0][i] = beam.dir[i].x, p.dir[1][i] = beam.dir[i].y, p.dir[2][i] = beam.dir[i].z;
+      p.t_min[i] = 0, p.best[i] = kInfinity;
     }
   }
 
@@ -317,13 +319,13 @@ class Watcher {
     if (met.full) return false;
     if (scene_.grid_count == 0) return true;
     Packet p;
-    fill(beam, kInfinity, p);
-    for (int i = 0; i < kCorners; ++i) p.best[i] = t[i] < kInfinity ? t[i] * 1.001f - shift_[i] : kInfinity;
+    fill(beam, p);
     float end = 0;  // all rays as far as the farthest: between them a surface may lie deeper
-    for (int i = 0; i < kCorners; ++i) end = greater(p.best[i], end);
+    for (int i = 0; i < kCorners; ++i) end = greater(t[i] * 1.001f, end);
     for (int i = 0; i < kCorners; ++i) p.best[i] = end;
     prepare(p, false);
-    const float m[3] = {magnitude(f.axis.x), magnitude(f.axis.y), magnitude(f.axis.z)};
+    bring_near(scene_, p);
+    const float m[3] = {magnitude(f.unit.x), magnitude(f.unit.y), magnitude(f.unit.z)};
     const int axis = m[0] >= m[1] && m[0] >= m[2] ? 0 : m[1] >= m[2] ? 1 : 2;
     for (int g = 0; g < scene_.grid_count; ++g)
       if (!walk_beam(scene_.grids[g], p, axis, see, n_) || met.full) return false;
@@ -369,17 +371,44 @@ class Watcher {
       Packet p;
       p.size = met.size - first < 16 ? met.size - first : 16;
       for (int i = 0; i < p.size; ++i) {
-        const Vec3<float> to = normalize(met.point[first + i] - f.apex), start = f.apex + (f.depth / dot(to, f.axis)) * to;
-        float org[3] = {start.x, start.y, start.z};
-        const float dir[3] = {to.x, to.y, to.z};
-        const float shift = static_cast<float>(approach(scene_, org, dir));
-        for (int a = 0; a < 3; ++a) p.org[a][i] = org[a], p.dir[a][i] = dir[a];
-        p.t_min[i] = 0 - shift, p.best[i] = kInfinity;
+        const Vec3<float> to = normalize(met.point[first + i] - f.apex), start = f.apex + (f.depth / dot(to, f.unit)) * to;
+        p.org[0][i] = start.x, p.org[1][i] = start.y, p.org[2][i] = start.z;
+        p.dir[0][i] = to.x, p.dir[1][i] = to.y, p.dir[2][i] = to.z;
+        p.t_min[i] = 0, p.best[i] = kInfinity;
       }
       trace_packet<false>(scene_, p, {16, true}, n_);
       for (int i = 0; i < p.size; ++i)
         if (!alike(front[0], id_of(p.id[i]))) return false;
     }
+    return true;
+  }
+
+  /// Whether the triangles that pass for one surface leave no gap in the beam: each edge inside it belongs to two of them.
+  bool closed(const BeamFrame& f, const Met& met, const std::uint32_t (&front)[kCorners]) const {
+    if (!is_triangle(front[0])) return true;
+    std::uint32_t sheet[kMostMet + kCorners];
+    int size = 0;
+    const auto add = [&](std::uint32_t id) {
+      for (int i = 0; i < size; ++i)
+        if (sheet[i] == id) return;
+      sheet[size++] = id;
+    };
+    for (const std::uint32_t id : front) add(id);
+    for (int i = 0; i < met.size; ++i)
+      if (alike(front[0], met.id[i])) add(met.id[i]);
+    if (size == 1) return true;
+    Corners3 c[kMostMet + kCorners];
+    for (int i = 0; i < size; ++i) c[i] = triangle_corners(scene_.geometry, sheet[i] - scene_.triangle_base);
+    const auto same = [](const Vec3<float>& a, const Vec3<float>& b) { return a.x == b.x && a.y == b.y && a.z == b.z; };
+    const auto has = [&](const Corners3& t, const Vec3<float>& p) { return same(t.at[0], p) || same(t.at[1], p) || same(t.at[2], p); };
+    for (int i = 0; i < size; ++i)
+      for (int k = 0; k < 3; ++k) {
+        const Vec3<float>&a = c[i].at[k], &b = c[i].at[(k + 1) % 3];
+        if (innermost(place(f, a), place(f, b)).w > .95f) continue;  // its other triangle may lie just outside
+        bool shared = false;
+        for (int j = 0; j < size && !shared; ++j) shared = j != i && has(c[j], a) && has(c[j], b);
+        if (!shared) return false;
+      }
     return true;
   }
 
@@ -401,13 +430,15 @@ class Watcher {
     Sight sight;
     float least = kInfinity;
     for (int i = 0; i < kCorners; ++i) least = lesser(away[i], least), far = greater(away[i], far);
-    trace_corners(beam, kInfinity, sight);
+    trace_corners(beam, sight);
     int lit = 0;
     for (int i = 0; i < kCorners; ++i) lit += !(sight.t[i] < away[i] * .9999f) || touches(on, sight.id[i]);
     if (lit != 0 && lit != kCorners) return 1;
     if (lit == 0) {
       const bool one = sight.id[0] == sight.id[1] && sight.id[0] == sight.id[2] && sight.id[0] == sight.id[3] && sight.id[0] < scene_.cone_base;
-      return one || (!whole && one_surface(sight.id)) ? 0 : .25f;
+      if (one) return 0;
+      Met shade;
+      return !whole && one_surface(sight.id) && collect(beam, f, sight.t, far, sight.id, false, shade) && closed(f, shade, sight.id) ? 0 : .25f;
     }
     // Lit at its corners: whatever stands between throws its shadow inside.
     Met met;
@@ -421,7 +452,6 @@ class Watcher {
   const SceneView& scene_;
   const ShadingView& shading_;
   Counters& n_;
-  float shift_[kCorners] = {};
 };
 
 /// Beam through the square of `size` pixels at (x0, y0), grown a little about its centre: what only touches its edge counts as

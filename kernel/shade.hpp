@@ -169,14 +169,6 @@ inline void light_hits(const Shader& s, int hits, int light_index, bool area, in
   }
   if (n == 0) return;
   s.rays.shadow += static_cast<unsigned>(n);
-  for (int i = 0; i < n; ++i) {
-    float org[3] = {b.lox[i], b.loy[i], b.loz[i]};
-    const float dir[3] = {b.ldx[i], b.ldy[i], b.ldz[i]};
-    if (const double shift = approach(s.scene, org, dir); shift > 0) {
-      b.lox[i] = org[0], b.loy[i] = org[1], b.loz[i] = org[2];
-      b.lt_min[i] = static_cast<float>(-shift), b.lt[i] = static_cast<float>(1 - shift);
-    }
-  }
   const RayArrays rays{b.lox, b.loy, b.loz, b.ldx, b.ldy, b.ldz, b.lt_min, b.lt, b.lid};
   trace<true>(s.scene, rays, n, {s.work.packet == 0 ? 64 : s.work.packet, s.work.mailbox}, s.counters);
   for (int i = 0; i < n; ++i)
@@ -305,15 +297,7 @@ inline void send_on(const Shader& s, RayStack& stack, int hits) {
 inline void shade_batch(const Shader& s, RayStack& stack, const int* ends, int runs, int packet) {
   Batch& b = s.b;
   const int count = ends[runs - 1];
-  for (int i = 0; i < count; ++i) {
-    float org[3] = {b.ox[i], b.oy[i], b.oz[i]};
-    const float dir[3] = {b.dx[i], b.dy[i], b.dz[i]};
-    b.t_min[i] = 0, b.t[i] = kInfinity;
-    if (const double shift = approach(s.scene, org, dir); shift > 0) {
-      b.ox[i] = org[0], b.oy[i] = org[1], b.oz[i] = org[2];
-      b.t_min[i] = static_cast<float>(-shift);
-    }
-  }
+  for (int i = 0; i < count; ++i) b.t_min[i] = 0, b.t[i] = kInfinity;
   const TraceOptions options{s.work.packet != 0 ? s.work.packet : packet, s.work.mailbox};
   for (int k = 0, at = 0; k < runs; at = ends[k++])
     trace<false>(s.scene, {b.ox + at, b.oy + at, b.oz + at, b.dx + at, b.dy + at, b.dz + at, b.t_min + at, b.t + at, b.id + at},

@@ -15,30 +15,26 @@ inline void add(const Counters& n, TraceCounts& to) {
   to.packets.lanes_issued += n.issued, to.packets.lanes_busy += n.busy;
 }
 
-/// Rays are traced in arrays of our own, far ones brought near; t is written back where something was met.
+/// Rays are traced in arrays of our own; t is written back where something was met.
 template <bool kAny>
 inline void trace_span(const SceneView& scene, const RaySpan& rays, const TraceSettings& settings, TraceCounts& counts) {
   constexpr int kChunk = 256;
-  alignas(64) float moved[7][kChunk], t[kChunk], shifts[kChunk];
+  alignas(64) float org[3][kChunk], t_min[kChunk], t[kChunk], shift[kChunk];
   Counters n;
   for (int first = 0; first < rays.count; first += kChunk) {
     const int count = rays.count - first < kChunk ? rays.count - first : kChunk;
     for (int i = 0; i < count; ++i) {
       const int r = first + i;
-      float org[3] = {rays.ox[r], rays.oy[r], rays.oz[r]};
-      const float dir[3] = {rays.dx[r], rays.dy[r], rays.dz[r]};
-      const double shift = approach(scene, org, dir);
-      for (int a = 0; a < 3; ++a) moved[a][i] = org[a], moved[3 + a][i] = dir[a];
-      moved[6][i] = static_cast<float>(rays.t_min[r] - shift), t[i] = static_cast<float>(rays.t[r] - shift);
-      shifts[i] = static_cast<float>(shift);
+      org[0][i] = rays.ox[r], org[1][i] = rays.oy[r], org[2][i] = rays.oz[r];
+      t_min[i] = rays.t_min[r], t[i] = rays.t[r], shift[i] = 0;
     }
-    const RayArrays arrays{moved[0], moved[1], moved[2], moved[3], moved[4], moved[5], moved[6], t, rays.id + first};
+    const RayArrays arrays{org[0], org[1], org[2], rays.dx + first, rays.dy + first, rays.dz + first, t_min, t, rays.id + first, shift};
     if (settings.method == Method::kReference)
       trace_reference<kAny>(scene, arrays, count, settings.mailbox, n);
     else
       trace<kAny>(scene, arrays, count, {settings.method == Method::kSingle ? 1 : settings.packet, settings.mailbox}, n);
     for (int i = 0; i < count; ++i)
-      if (rays.id[first + i] != kNoPrimitive) rays.t[first + i] = t[i] + shifts[i];
+      if (rays.id[first + i] != kNoPrimitive) rays.t[first + i] = t[i] + shift[i];
   }
   add(n, counts);
 }

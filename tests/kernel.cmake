@@ -10,6 +10,7 @@ grelha_test(power property grelha::kernel)
 grelha_test(leaving property grelha::kernel)
 grelha_test(camera unit grelha::kernel)
 grelha_test(variants property grelha::kernel)
+grelha_test(beam unit grelha::kernel)
 grelha_test(shade unit grelha::kernel)
 grelha_test(determinism image grelha::frontend grelha::scenes)
 
