@@ -93,7 +93,7 @@ inline Place innermost(const Place& a, const Place& b) {
 inline Vec3<float> ball_point(const BeamFrame& f, const Vec3<float>& c, float r) {
   const Vec3<float> d = c - f.apex, off = d - (dot(d, f.axis) / dot(f.axis, f.axis)) * f.axis;
   const float far = length(off);
-  return far <= r ? c - off : c - ((.99f * r) / far) * off;
+  return far <= r ? c - off : c - ((.9f * r) / far) * off;
 }
 
 /// Innermost point of a triangle; false when a corner lies behind the apex.
@@ -132,28 +132,45 @@ inline Corners3 triangle_corners(const GeometryView& g, std::uint32_t i) {
   return c;
 }
 
-/// A primitive's point inside the beam, nearer than `far` along the axis; false when it has none that this finds.
+/// A point of a primitive's surface inside the beam, nearer than w = `far`; false when it has none that this finds. The point lies
+/// in a cell that lists the primitive and that the beam walks through, whatever the grid.
 inline bool meets(const SceneView& scene, const BeamFrame& f, std::uint32_t id, float far, Vec3<float>& p) {
   const GeometryView& g = scene.geometry;
   if (id < scene.sphere_base) return false;  // a plane ends nowhere inside a beam: its corners see it
+  if (id >= scene.triangle_base && id < scene.cone_base) {
+    if (!triangle_point(f, triangle_corners(g, id - scene.triangle_base).at, p)) return false;
+    const Place at = place(f, p);
+    return at.w > f.depth && at.w < far && outness(at.x, at.y) <= 1;
+  }
+  Vec3<float> center, base{}, axis{};
+  float radius = 0;
   if (id < scene.triangle_base) {
     const std::uint32_t i = id - scene.sphere_base;
-    p = ball_point(f, {g.sx[i], g.sy[i], g.sz[i]}, magnitude(g.sr[i]));
-  } else if (id < scene.cone_base) {
-    if (!triangle_point(f, triangle_corners(g, id - scene.triangle_base).at, p)) return false;
+    center = {g.sx[i], g.sy[i], g.sz[i]}, radius = magnitude(g.sr[i]);
+  } else {  // the ball around the cone's axis where that passes nearest to the beam's
+    const std::uint32_t i = id - scene.cone_base;
+    base = {g.cone[0][i], g.cone[1][i], g.cone[2][i]}, axis = {g.cone[3][i], g.cone[4][i], g.cone[5][i]};
+    const float height = g.cone[6][i];
+    const Vec3<float> d = base - f.apex;
+    const float ab = dot(axis, f.unit), k = 1 - ab * ab;
+    float h = k > 1e-6f ? (ab * dot(d, f.unit) - dot(d, axis)) / k : .5f * height;
+    h = h < 0 ? 0 : h > height ? height : h;
+    center = base + h * axis, radius = g.cone[7][i] + g.cone[8][i] * h;
+  }
+  const Place toward = place(f, ball_point(f, center, radius));
+  if (!(toward.w > 0) || !(outness(toward.x, toward.y) <= 1)) return false;
+  const Vec3<float> dir = f.axis + toward.x * f.right + toward.y * f.up, org = f.apex + f.depth * dir;
+  const float inv_dd = 1 / dot(dir, dir);
+  float t = 0;
+  bool hit;
+  if (id < scene.triangle_base) {
+    hit = hit_sphere<float>(org, dir, inv_dd, 0, center, g.sr[id - scene.sphere_base], t);
   } else {
     const std::uint32_t i = id - scene.cone_base;
-    const Vec3<float> base{g.cone[0][i], g.cone[1][i], g.cone[2][i]}, axis{g.cone[3][i], g.cone[4][i], g.cone[5][i]};
-    const float height = g.cone[6][i];
-    // Where the cone's axis passes nearest to the beam's.
-    const Vec3<float> d = base - f.apex;
-    const float ab = dot(axis, f.axis), k = 1 - ab * ab;
-    float h = k > 1e-6f ? (ab * dot(d, f.axis) - dot(d, axis)) / k : .5f * height;
-    h = h < 0 ? 0 : h > height ? height : h;
-    p = ball_point(f, base + h * axis, g.cone[7][i] + g.cone[8][i] * h);
+    hit = hit_cone<float>(org, dir, inv_dd, 0, {base, axis, g.cone[6][i], g.cone[7][i], g.cone[8][i], g.cone[9][i]}, t);
   }
-  const Place at = place(f, p);
-  return at.w > f.depth && at.w < far && outness(at.x, at.y) <= 1;
+  p = org + t * dir;
+  return hit && f.depth + t < far;
 }
 
 /// The primitives, other than those of `known`, that meet() a beam; each once.
@@ -247,7 +264,7 @@ class Watcher {
     }
     if (whole && sight.id[0] >= scene_.cone_base && sight.id[0] != kNoPrimitive) return weight;
     Met met;
-    if (!collect(beam, f, sight.t, far, sight.id, whole, met)) return lost;
+    if (!collect(f, far, sight.id, whole, met)) return lost;
     if (!one_surface(sight.id) || !hidden(f, met, sight.id) || !closed(f, met, sight.id)) return weight;
     if (sight.id[0] == kNoPrimitive) return 0;
 
@@ -299,10 +316,9 @@ class Watcher {
     }
   }
 
-  /// Primitives that meet the beam before depth `far`, other than `known`; false when no answer can be had, or when `single` and
+  /// Primitives that meet the beam before w = `far`, other than `known`; false when no answer can be had, or when `single` and
   /// there is one.
-  bool collect(const Beam& beam, const BeamFrame& f, const float (&t)[kCorners], float far, const std::uint32_t (&known)[kCorners], bool single,
-               Met& met) {
+  bool collect(const BeamFrame& f, float far, const std::uint32_t (&known)[kCorners], bool single, Met& met) {
     const auto see = [&](std::uint32_t id) {
       if (met.full || id == known[0] || id == known[1] || id == known[2] || id == known[3]) return;
       Vec3<float> point;
@@ -319,10 +335,13 @@ class Watcher {
     if (met.full) return false;
     if (scene_.grid_count == 0) return true;
     Packet p;
-    fill(beam, p);
-    float end = 0;  // all rays as far as the farthest: between them a surface may lie deeper
-    for (int i = 0; i < kCorners; ++i) end = greater(t[i] * 1.001f, end);
-    for (int i = 0; i < kCorners; ++i) p.best[i] = end;
+    p.size = kCorners;
+    for (int i = 0; i < kCorners; ++i) {  // the edges of the pyramid, with w for t
+      const Vec3<float> dir = f.axis + (i == 1 || i == 2 ? 1.f : -1.f) * f.right + (i >= 2 ? 1.f : -1.f) * f.up, org = f.apex + f.depth * dir;
+      p.org[0][i] = org.x, p.org[1][i] = org.y, p.org[2][i] = org.z;
+      p.dir[0][i] = dir.x, p.dir[1][i] = dir.y, p.dir[2][i] = dir.z;
+      p.t_min[i] = 0, p.best[i] = 1.001f * (far - f.depth);
+    }
     prepare(p, false);
     bring_near(scene_, p);
     const float m[3] = {magnitude(f.unit.x), magnitude(f.unit.y), magnitude(f.unit.z)};
@@ -438,12 +457,11 @@ class Watcher {
       const bool one = sight.id[0] == sight.id[1] && sight.id[0] == sight.id[2] && sight.id[0] == sight.id[3] && sight.id[0] < scene_.cone_base;
       if (one) return 0;
       Met shade;
-      return !whole && one_surface(sight.id) && collect(beam, f, sight.t, far, sight.id, false, shade) && closed(f, shade, sight.id) ? 0 : .25f;
+      return !whole && one_surface(sight.id) && collect(f, far, sight.id, false, shade) && closed(f, shade, sight.id) ? 0 : .25f;
     }
     // Lit at its corners: whatever stands between throws its shadow inside.
     Met met;
-    for (int i = 0; i < kCorners; ++i) sight.t[i] = away[i];
-    if (!collect(beam, f, sight.t, least * .9999f, on, whole, met)) return .25f;
+    if (!collect(f, least * .9999f, on, whole, met)) return .25f;
     for (int i = 0; i < met.size; ++i)
       if (!touches(on, met.id[i])) return 1;
     return 0;

@@ -5,3 +5,4 @@ add_test(NAME readme COMMAND ${CMAKE_COMMAND} -D ROOT=${PROJECT_SOURCE_DIR} -D P
 set_tests_properties(readme PROPERTIES LABELS image)
 grelha_test(sampling property grelha::kernel)
 grelha_test(effects image grelha::frontend)
+grelha_test(refinement image grelha::frontend grelha::scenes)

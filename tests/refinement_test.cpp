@@ -1,0 +1,236 @@
+// Samples spent by error: that the error asked for is met and not overspent, that intervals hold what they claim, and that nothing
+// small enough to be missed is.
+#include <cmath>
+#include <sstream>
+
+#include "frontend/effects.hpp"
+#include "frontend/nff_reader.hpp"
+#include "scenes/generators.hpp"
+#include "tests/support/rays.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace grelha::test {
+namespace {
+
+SceneFile generated(const char* name, int size) {
+  std::ostringstream text;
+  scenes::find_generator(name)->write(text, {size, false, ""});
+  return read_nff(std::string(name) + ".nff", text.str(), [](const std::string&) {});
+}
+
+struct Case {
+  std::string name;
+  SceneFile file;
+  RenderOptions options;
+};
+
+/// Three kinds of error: edges and reflected edges; soft shadows; and everything at once.
+std::vector<Case> cases(int side) {
+  std::vector<Case> out;
+  const auto add = [&](const char* label, const char* scene, int size, const Effects& effects) {
+    Case c{label, generated(scene, size), {}};
+    apply_effects(effects, c.file, c.options);
+    c.file.camera.width = c.file.camera.height = side;
+    c.options.threads = 2;
+    out.push_back(std::move(c));
+  };
+  Effects soft, all;
+  soft.shadows = Effects::Shadows{false, 2, 1};
+  all.shadows = Effects::Shadows{false, 1, 1}, all.lens = Effects::Lens{12, 0, 0}, all.glossy = Effects::Glossy{.08f, 0};
+  add("edges", "balls", 2, {});
+  add("soft shadows", "mount", 4, soft);
+  add("lens, light and gloss", "balls", 1, all);
+  return out;
+}
+
+struct Outcome {
+  Image image;
+  RenderStats stats;
+  SampleMaps maps;
+};
+
+Outcome refined(const Case& c, const RefineOptions& refine, std::uint32_t seed = 0) {
+  const World world(c.file.scene, {});
+  RenderOptions o = c.options;
+  o.refine = refine, o.sampling.samples = 1, o.sampling.seed = seed;
+  Outcome out;
+  out.image = render(world, c.file.camera, o, out.stats, &out.maps);
+  return out;
+}
+
+RefineOptions to_error(double e) {
+  RefineOptions r;
+  r.error = e;
+  return r;
+}
+
+Image converged(const Case& c, int samples) {
+  const World world(c.file.scene, {});
+  RenderOptions o = c.options;
+  o.sampling.samples = samples, o.sampling.seed = 77;
+  RenderStats stats;
+  return render(world, c.file.camera, o, stats);
+}
+
+double shown(float v) { return v < 0 ? 0 : v > 1 ? 1 : v; }
+
+/// Root mean square over a pixel's channels of what a screen would show of two pictures.
+double pixel_error(const Image& a, const Image& b, std::size_t p) {
+  double sum = 0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double d = shown(a.rgb[3 * p + c]) - shown(b.rgb[3 * p + c]);
+    sum += d * d;
+  }
+  return std::sqrt(sum / 3);
+}
+
+double rmse(const Image& a, const Image& b) {
+  double sum = 0;
+  const std::size_t n = a.rgb.size() / 3;
+  for (std::size_t p = 0; p < n; ++p) sum += std::pow(pixel_error(a, b, p), 2);
+  return std::sqrt(sum / static_cast<double>(n));
+}
+
+std::size_t differing(const Image& a, const Image& b) {
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < a.rgb.size(); ++i) n += std::bit_cast<std::uint32_t>(a.rgb[i]) != std::bit_cast<std::uint32_t>(b.rgb[i]);
+  return n;
+}
+
+/// 3 x 60 x 60 pixels. The reference has at least 8 times the samples of the hardest pixel, so it adds under 6 % to an error that
+/// falls with their root; coverage moves by less than .005.
+TEST(Refinement, MeetsItsErrorAndItsIntervalsHold) {
+  constexpr double kAsked = .02;
+  std::size_t pixels = 0, inside = 0;
+  for (const Case& c : cases(60)) {
+    const Outcome got = refined(c, to_error(kAsked));
+    const Image truth = converged(c, 4096);
+    ASSERT_LE(got.stats.error.most, 512u) << c.name;
+    const double error = rmse(got.image, truth);
+    const ErrorStats& e = got.stats.error;
+    EXPECT_LE(error, kAsked) << c.name;
+    EXPECT_GE(error, kAsked / 3) << c.name;
+    EXPECT_LE(e.rmse_bound, kAsked) << c.name;
+    EXPECT_LE(e.widest, 8 * kAsked) << c.name;
+    EXPECT_NEAR(e.rmse / error, 1, .3) << c.name;
+    for (std::size_t p = 0; p < got.maps.width.size(); ++p) {
+      ++pixels;
+      inside += pixel_error(got.image, truth, p) <= .5 * static_cast<double>(got.maps.width[p]) + 1e-6;
+    }
+  }
+  EXPECT_GE(pixels, 10000u);
+  const double coverage = static_cast<double>(inside) / static_cast<double>(pixels);
+  EXPECT_GE(coverage, .93);
+  EXPECT_LE(coverage, .99);
+}
+
+/// 4096 discs of a tenth of a pixel, contrast 1, each inside one pixel of 512 x 512: 1 % of them may stay unseen.
+TEST(Refinement, FindsDiscsOfATenthOfAPixel) {
+  Case c{"discs", generated("discs", 64), {}};
+  const Outcome got = refined(c, to_error(.01));
+  int seen = 0;
+  for (std::size_t p = 0; p < got.image.rgb.size(); p += 3) seen += got.image.rgb[p] > 0 || got.image.rgb[p + 1] > 0 || got.image.rgb[p + 2] > 0;
+  EXPECT_GE(seen, 4096 * 99 / 100);
+  EXPECT_LE(seen, 4096);
+}
+
+/// A pixel between thin spokes whose first samples all meet spokes: half of it is background. An interval of 8 E at 95 % is four
+/// standard errors wide; eight are allowed for the worst of 9216 pixels, whose errors have longer tails than the normal.
+TEST(Refinement, IsNotFooledBySamplesThatAgree) {
+  Case c{"star", generated("star", 36), {}};
+  c.file.camera.width = c.file.camera.height = 96;
+  const Outcome got = refined(c, to_error(.01));
+  const Image truth = converged(c, 4096);
+  for (std::size_t p = 0; p < 96 * 96; ++p) EXPECT_LE(pixel_error(got.image, truth, p), 16 * .01) << p % 96 << ' ' << p / 96;
+  EXPECT_LE(rmse(got.image, truth), .01);
+}
+
+/// Where nothing can hide and nothing varies the smallest number of samples is enough.
+TEST(Refinement, SpendsNothingOnAFlatPicture) {
+  Case c{"flat", {}, {}};
+  c.file.scene = one_sphere({0, 0, 0}, 50);
+  c.file.scene.materials[0].diffuse = {0, 0, 0}, c.file.scene.materials[0].emission = {.25f, .5f, .75f};
+  c.file.camera.eye = {0, 0, 60}, c.file.camera.at = {0, 0, 0}, c.file.camera.width = 40, c.file.camera.height = 24;
+  const Outcome got = refined(c, to_error(1e-4));
+  EXPECT_EQ(got.stats.error.most, 4u);
+  EXPECT_EQ(got.stats.rays.primary, 40u * 24 * 4);
+  EXPECT_EQ(got.stats.error.rmse, 0);
+  for (std::size_t p = 0; p < 40 * 24; ++p) EXPECT_EQ(got.image.rgb[3 * p + 1], .5f);
+}
+
+TEST(Refinement, GivesIndependentPicturesForTwoSeeds) {
+  const Case c = std::move(cases(48).front());
+  const Image truth = converged(c, 4096), a = refined(c, to_error(.03)).image, b = refined(c, to_error(.03), 1).image;
+  double aa = 0, bb = 0, ab = 0;
+  for (std::size_t i = 0; i < truth.rgb.size(); ++i) {
+    const double x = shown(a.rgb[i]) - shown(truth.rgb[i]), y = shown(b.rgb[i]) - shown(truth.rgb[i]);
+    aa += x * x, bb += y * y, ab += x * y;
+  }
+  // Of 2304 independent pixels the correlation has a standard deviation of 1 / 48; but a few hold most of the error: 300, say.
+  EXPECT_LT(std::abs(ab) / std::sqrt(aa * bb), 4 / std::sqrt(300.));
+}
+
+TEST(Refinement, IsOnePictureForEveryWayOfTracing) {
+  for (const Case& c : cases(37)) {
+    const Outcome want = refined(c, to_error(.05));
+    for (const Variant* v : variants()) {
+      if (!v->runs_here()) continue;
+      for (const int packet : {0, 1, 16, 64})
+        for (const bool grid : {true, false}) {
+          Case d = c;
+          d.options.isa = v->name, d.options.packet = packet, d.options.threads = packet == 16 ? 7 : 1;
+          const World world(d.file.scene, {.grid = grid, .density = packet == 1 ? 3.f : 0.f});
+          RenderOptions o = d.options;
+          o.refine = to_error(.05), o.sampling.samples = 1;
+          RenderStats stats;
+          SampleMaps maps;
+          const Image image = render(world, d.file.camera, o, stats, &maps);
+          ASSERT_EQ(differing(image, want.image), 0u) << c.name << ' ' << v->name << ' ' << packet << ' ' << grid;
+          ASSERT_EQ(maps.samples, want.maps.samples) << c.name << ' ' << v->name << ' ' << packet << ' ' << grid;
+          ASSERT_EQ(maps.error, want.maps.error) << c.name << ' ' << v->name << ' ' << packet << ' ' << grid;
+        }
+    }
+  }
+}
+
+TEST(Refinement, RepeatsWhatATimeBought) {
+  const Case c = std::move(cases(48).back());
+  RefineOptions timed, again;
+  timed.seconds = .3;
+  const Outcome first = refined(c, timed);
+  ASSERT_GE(first.stats.error.rounds, 1);
+  again.rounds = first.stats.error.rounds;
+  const Outcome second = refined(c, again);
+  EXPECT_EQ(second.stats.error.rounds, first.stats.error.rounds);
+  EXPECT_EQ(second.maps.samples, first.maps.samples);
+  EXPECT_EQ(differing(first.image, second.image), 0u);
+}
+
+TEST(Refinement, RefusesWhatItCannotDo) {
+  Case c = std::move(cases(16).front());
+  EXPECT_THROW(refined(c, to_error(-1)), std::invalid_argument);
+  EXPECT_THROW(refined(c, to_error(std::nan(""))), std::invalid_argument);
+  c.options.sampling.sampler = Sampler::kJitter;
+  EXPECT_THROW(refined(c, to_error(.1)), std::invalid_argument);
+  c.options.sampling.sampler = Sampler::kSobol, c.options.sampling.light_rays = 4;
+  EXPECT_THROW(refined(c, to_error(.1)), std::invalid_argument);
+}
+
+TEST(Refinement, StopsWhenToldTo) {
+  const Case c = std::move(cases(48).back());
+  const World world(c.file.scene, {});
+  RenderOptions o = c.options;
+  o.refine = to_error(1e-5);
+  int calls = 0;
+  o.progress = [&](double share) {
+    EXPECT_GE(share, 0);
+    EXPECT_LE(share, 1);
+    return ++calls < 3;
+  };
+  RenderStats stats;
+  render(world, c.file.camera, o, stats);
+  EXPECT_EQ(calls, 3);
+}
+
+}  // namespace
+}  // namespace grelha::test
