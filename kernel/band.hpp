@@ -77,6 +77,17 @@ inline void pop(RayStack& stack, Batch& b, int most, bool sampled, int (&ends)[k
   stack.size = at;
 }
 
+/// Shades `count` camera rays and all they lead to.
+inline void finish_batch(const Shader& shader, RayStack& stack, int count) {
+  shader.rays.primary += static_cast<unsigned>(count);
+  shade_batch(shader, stack, &count, 1, 64);
+  int ends[kClasses];
+  while (stack.size > 0) {
+    pop(stack, shader.b, shader.work.take, shader.work.plan.on, ends);
+    shade_batch(shader, stack, ends, kClasses, 16);
+  }
+}
+
 /// Renders rows [y0, y1), at most kBandRows, into work.sums.
 ///
 /// Depths never fall towards the top of the stack, and rays of depth d + 1 are only added when fewer than `take` of them
@@ -88,15 +99,7 @@ inline void render_band(const SceneView& scene, const ShadingView& shading, cons
   const Shader shader{scene, shading, work, counters, rays, b};
   RayStack stack = work.stack;
   stack.size = 0;
-  const auto finish = [&](int count) {
-    rays.primary += static_cast<unsigned>(count);
-    shade_batch(shader, stack, &count, 1, 64);
-    int ends[kClasses];
-    while (stack.size > 0) {
-      pop(stack, b, work.take, work.plan.on, ends);
-      shade_batch(shader, stack, ends, kClasses, 16);
-    }
-  };
+  const auto finish = [&](int count) { finish_batch(shader, stack, count); };
   int count = 0;
   for (int x0 = 0; x0 < frame.width; x0 += kTile) {
     const int x1 = x0 + kTile < frame.width ? x0 + kTile : frame.width;

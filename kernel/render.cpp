@@ -4,12 +4,14 @@
 #include <atomic>
 #include <memory>
 #include <new>
+#include <span>
 #include <stdexcept>
 #include <string>
 
 #include <omp.h>
 
 #include "kernel/frame.hpp"
+#include "kernel/subdivision.hpp"
 #include "kernel/variants.hpp"
 #include "kernel/world.hpp"
 
@@ -19,14 +21,14 @@ namespace {
 /// What one thread works in; allocated before the first ray, never grown.
 class Workspace {
  public:
-  Workspace(int width, int depth, const SamplePlan& plan)
+  Workspace(std::size_t sums, int depth, const SamplePlan& plan)
       : batch_(std::make_unique<Batch>()),
         plan_(plan),
         take_(std::clamp(65536 / (depth * (plan.gloss_rays + 1)), 16, kBatch)),
         capacity_((plan.gloss_rays + 2) * (kBatch + take_ * depth)),
         floats_(static_cast<std::size_t>(capacity_) * 9),
         words_(static_cast<std::size_t>(capacity_) * 4),
-        sums_(static_cast<std::size_t>(width) * kBandRows * 3) {}
+        sums_(3 * sums) {}
 
   BandWork work(const RenderOptions& options, int first_row, int width) {
     std::fill(sums_.begin(), sums_.end(), 0);
@@ -111,6 +113,91 @@ void add(const RayCounts& from, RayCounts& to) {
   to.primary += from.primary, to.shadow += from.shadow, to.reflection += from.reflection, to.refraction += from.refraction;
 }
 
+/// One thread's share of a list of points: as its own arrays, then as colours.
+struct PointSpace {
+  static constexpr int kMost = 2048;
+  explicit PointSpace(int depth, const SamplePlan& plan) : space(kMost, depth, plan) {}
+  Workspace space;
+  float x[kMost], y[kMost];
+  std::uint32_t hash[kMost];
+  TraceCounts trace;
+  RayCounts rays;
+};
+
+/// Sees points of a picture for subdivision, in parallel.
+class PointTracer {
+ public:
+  PointTracer(const World::Impl& world, const Camera& camera, const RenderOptions& options, const SamplePlan& plan,
+              const Variant& variant, int threads)
+      : world_(world), frame_(make_frame(camera)), options_(options), plan_(plan), variant_(variant) {
+    for (int i = 0; i < threads; ++i) spaces_.push_back(std::make_unique<PointSpace>(options.depth, plan));
+  }
+
+  bool operator()(std::span<const LatticePoint> points, Float3* colours, double from, double to) {
+    const auto count = static_cast<std::int64_t>(points.size()), threads = static_cast<std::int64_t>(spaces_.size());
+    // Whole packets, large enough to be worth taking, small enough that no thread waits long for the last.
+    const std::int64_t chunk = std::clamp<std::int64_t>(count / (8 * threads) / 64 * 64, 64, PointSpace::kMost);
+    const std::int64_t chunks = (count + chunk - 1) / chunk;
+    std::atomic<bool> stopped = false;
+    std::int64_t done = 0;
+#pragma omp parallel for schedule(dynamic) num_threads(static_cast<int>(threads))
+    for (std::int64_t c = 0; c < chunks; ++c) {
+      if (stopped) continue;
+      const std::int64_t first = c * chunk, last = std::min(first + chunk, count);
+      see(*spaces_[static_cast<std::size_t>(omp_get_thread_num())], points.data() + first, static_cast<int>(last - first), colours + first);
+#pragma omp critical(grelha_progress)
+      {
+        ++done;
+        const double share = from + (to - from) * static_cast<double>(done) / static_cast<double>(chunks);
+        if (options_.progress && !stopped && !options_.progress(share)) stopped = true;
+      }
+    }
+    return !stopped;
+  }
+
+  void count(RenderStats& stats) const {
+    for (const auto& s : spaces_) add(s->trace, stats.trace), add(s->rays, stats.rays);
+  }
+
+ private:
+  void see(PointSpace& s, const LatticePoint* points, int count, Float3* colours) const {
+    for (int i = 0; i < count; ++i) {  // exact: no coordinate is above 2^24
+      s.x[i] = static_cast<float>(points[i].x) / kLatticeSteps, s.y[i] = static_cast<float>(points[i].y) / kLatticeSteps;
+      s.hash[i] = lattice_hash(points[i]);
+    }
+    BandWork work = s.space.work(options_, 0, 0);
+    work.pixels = s.hash;
+    variant_.loops.render_points(world_.view, world_.shading, frame_, {s.x, s.y, s.hash, count}, work, s.trace, s.rays);
+    const double share = 1 / (kLightUnit * plan_.samples);
+    const std::int64_t* sum = s.space.sums().data();
+    for (int i = 0; i < count; ++i, sum += 3)
+      colours[i] = {static_cast<float>(static_cast<double>(sum[0]) * share), static_cast<float>(static_cast<double>(sum[1]) * share),
+                    static_cast<float>(static_cast<double>(sum[2]) * share)};
+  }
+
+  const World::Impl& world_;
+  const FrameView frame_;
+  const RenderOptions& options_;
+  const SamplePlan& plan_;
+  const Variant& variant_;
+  std::vector<std::unique_ptr<PointSpace>> spaces_;
+};
+
+Image render_subdivided(const World::Impl& world, const Camera& camera, const RenderOptions& options, const Variant& variant,
+                        RenderStats& stats) {
+  SampleOptions sampling = options.sampling;
+  const bool to_sample = camera.aperture > 0 || world.shading.area || world.shading.gloss;
+  if (!to_sample) sampling.samples = 1;  // rays through one point would all see the same
+  const SamplePlan plan = plan_samples(sampling, camera, world.shading);
+  stats = {};
+  stats.threads = options.threads > 0 ? options.threads : omp_get_num_procs();
+  stats.isa = variant.name.data();
+  PointTracer tracer(world, camera, options, plan, variant, stats.threads);
+  Image image = subdivide(camera.width, camera.height, options.subdivision, std::ref(tracer));
+  tracer.count(stats);
+  return image;
+}
+
 }  // namespace
 
 std::vector<Isa> isas() {
@@ -126,6 +213,7 @@ Image render(const World& world, const Camera& camera, const RenderOptions& opti
   check(camera, options);
   const Variant& variant = choose(options.isa);
   const World::Impl& w = world.impl();
+  if (options.subdivision.on) return render_subdivided(w, camera, options, variant, stats);
   const FrameView frame = make_frame(camera);
   const SamplePlan plan = plan_samples(options.sampling, camera, w.shading);
   Image image(camera.width, camera.height);
@@ -133,7 +221,7 @@ Image render(const World& world, const Camera& camera, const RenderOptions& opti
   const int threads = std::min(options.threads > 0 ? options.threads : omp_get_num_procs(), std::max(bands, 1));
   // Allocated here, where running out of memory can still be told: an exception must not leave a parallel region.
   std::vector<std::unique_ptr<Workspace>> spaces;
-  for (int i = 0; i < threads; ++i) spaces.push_back(std::make_unique<Workspace>(camera.width, options.depth, plan));
+  for (int i = 0; i < threads; ++i) spaces.push_back(std::make_unique<Workspace>(static_cast<std::size_t>(camera.width) * kBandRows, options.depth, plan));
   stats = {};
   stats.threads = threads;
   stats.isa = variant.name.data();

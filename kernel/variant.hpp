@@ -2,6 +2,7 @@
 // What each variant_*.cpp compiles: the hot loops behind the functions of a Variant. Included once per instruction set.
 
 #include "kernel/band.hpp"
+#include "kernel/points.hpp"
 #include "kernel/reference.hpp"
 #include "kernel/variants.hpp"
 
@@ -59,6 +60,16 @@ inline void band(const SceneView& scene, const ShadingView& shading, const Frame
   ray_counts.reflection += rays.reflection, ray_counts.refraction += rays.refraction;
 }
 
+inline void points(const SceneView& scene, const ShadingView& shading, const FrameView& frame, const PointList& list, const BandWork& work,
+                   TraceCounts& trace_counts, RayCounts& ray_counts) {
+  Counters n;
+  RayTally rays;
+  render_points(scene, shading, frame, list, work, n, rays);
+  add(n, trace_counts);
+  ray_counts.primary += rays.primary, ray_counts.shadow += rays.shadow;
+  ray_counts.reflection += rays.reflection, ray_counts.refraction += rays.refraction;
+}
+
 inline void powers(const float* x, const float* y, float* out, int count) {
   for (int i = 0; i < count; i += kWidth<Lanes>) {
     alignas(64) float in[2][kWidth<Lanes>], r[kWidth<Lanes>];
@@ -71,4 +82,4 @@ inline void powers(const float* x, const float* y, float* out, int count) {
 
 }  // namespace grelha::GRELHA_ISA
 
-#define GRELHA_LOOPS {GRELHA_ISA::closest, GRELHA_ISA::occluded, GRELHA_ISA::band, GRELHA_ISA::powers}
+#define GRELHA_LOOPS {GRELHA_ISA::closest, GRELHA_ISA::occluded, GRELHA_ISA::band, GRELHA_ISA::powers, GRELHA_ISA::points}

@@ -40,6 +40,7 @@ struct VariantLoops {
   void (*render_band)(const SceneView&, const ShadingView&, const FrameView&, int y0, int y1, const BandWork&, TraceCounts&, RayCounts&);
   /// power(x[i], y[i]) for tests.
   void (*power)(const float* x, const float* y, float* out, int count);
+  void (*render_points)(const SceneView&, const ShadingView&, const FrameView&, const PointList&, const BandWork&, TraceCounts&, RayCounts&);
 };
 
 struct Variant {
