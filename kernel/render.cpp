@@ -140,7 +140,8 @@ class PointTracer {
     const std::int64_t chunks = (count + chunk - 1) / chunk;
     std::atomic<bool> stopped = false;
     std::int64_t done = 0;
-#pragma omp parallel for schedule(dynamic) num_threads(static_cast<int>(threads))
+    const int team = static_cast<int>(std::min(threads, std::max<std::int64_t>(chunks, 1)));
+#pragma omp parallel for schedule(dynamic) num_threads(team)
     for (std::int64_t c = 0; c < chunks; ++c) {
       if (stopped) continue;
       const std::int64_t first = c * chunk, last = std::min(first + chunk, count);

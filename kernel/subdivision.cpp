@@ -75,9 +75,8 @@ class Subdivider {
     sums_.assign(static_cast<std::size_t>(x1_ - x0_) * static_cast<std::size_t>(y1_ - y0_), {});
     split_.clear();
     if (!corners()) return false;
-    for (int level = 0; level < options_.depth; ++level) {
+    for (int level = 0; level < options_.depth && !split_.empty(); ++level)
       if (!split_all(level)) return false;
-    }
     finish(above_[static_cast<std::size_t>(column)]);
     return true;
   }
