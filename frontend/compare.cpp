@@ -1,5 +1,6 @@
 #include "frontend/compare.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -36,6 +37,11 @@ Comparison compare(const Image& a, const Image& b) {
   result.rmse = std::sqrt(sum / double(3 * result.pixels));
   result.psnr_db = result.rmse > 0 ? -20 * std::log10(result.rmse) : kInfinity;
   return result;
+}
+
+Image displayed(Image image) {
+  for (float& c : image.rgb) c = std::isnan(c) ? c : std::clamp(c, 0.f, 1.f);
+  return image;
 }
 
 Image difference(const Image& a, const Image& b, double scale) {

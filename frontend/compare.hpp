@@ -18,6 +18,9 @@ struct Comparison {
 
 Comparison compare(const Image& a, const Image& b);
 
+/// What a screen shows of it: every channel from 0 to 1, infinities too. A NaN stays one.
+Image displayed(Image image);
+
 /// |a - b|, times `scale`.
 Image difference(const Image& a, const Image& b, double scale);
 

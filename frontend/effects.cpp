@@ -80,7 +80,7 @@ void apply_effects(const Effects& e, SceneFile& file, RenderOptions& options) {
   s.sampler = e.sampler.value_or(e.jitter > 0 ? Sampler::kJitter : Sampler::kSobol);
   s.seed = e.seed;
   options.subdivision = e.adaptive;
-  if (e.shadows && e.shadows->positions > 1)
+  if (e.shadows && e.shadows->positions > 1 && !options.refine.on())
     s.light_rays = ceiling_share(1LL * e.shadows->positions * e.shadows->positions, s.samples);
   if (e.glossy) s.gloss_rays = e.glossy->rays;
 }

@@ -63,20 +63,32 @@ Camera camera_of(const SceneFile& file, const RenderCommand& command) {
   return camera;
 }
 
-Image render_with_bar(const World& world, const Camera& camera, const RenderCommand& command, RenderStats& stats) {
+Image render_with_bar(const World& world, const Camera& camera, const RenderCommand& command, RenderStats& stats, SampleMaps& maps) {
   ProgressBar bar(!command.quiet && stderr_is_terminal());
   RenderOptions options = command.render;
   options.progress = [&bar](double share) {
     bar.update(share);
     return true;
   };
-  return render(world, camera, options, stats);
+  return render(world, camera, options, stats, &maps);
+}
+
+/// A map as a picture: .pfm and .hdr hold the numbers, a .png is scaled so that the largest is white.
+template <class T>
+void write_map(const std::string& path, const std::vector<T>& values, int width, int height) {
+  if (path.empty()) return;
+  T largest = 0;
+  for (const T v : values) largest = std::max(largest, v);
+  const double scale = image_format(path) == ImageFormat::png && largest > 0 ? 1 / double(largest) : 1;
+  Image image(width, height);
+  for (std::size_t i = 0; i < image.rgb.size(); ++i) image.rgb[i] = float(double(values[i / 3]) * scale);
+  write_image(path, image);
 }
 
 int run(const RenderCommand& command) {
   want_isa(command.render.isa);
-  check_writable(command.image);
-  if (!command.stats.empty()) check_writable(command.stats);
+  for (const std::string& file : {command.image, command.stats, command.samples_map, command.error_map})
+    if (!file.empty()) check_writable(file);
   RunReport report;
   const Stopwatch load;
   SceneFile file = read_scene(command.scene, warn);
@@ -91,11 +103,14 @@ int run(const RenderCommand& command) {
   report.seconds.build = build.seconds();
 
   const Stopwatch render;
-  const Image image = render_with_bar(world, camera, prepared, report.render);
+  SampleMaps maps;
+  const Image image = render_with_bar(world, camera, prepared, report.render, maps);
   report.seconds.render = render.seconds();
 
   const Stopwatch write;
   write_image(command.image, image, command.srgb ? Tone::srgb : Tone::authored);
+  write_map(command.samples_map, maps.samples, camera.width, camera.height);
+  write_map(command.error_map, maps.error, camera.width, camera.height);
   report.seconds.write = write.seconds();
 
   const Geometry& geometry = file.scene.geometry;
@@ -125,9 +140,10 @@ void write_difference(const CompareCommand& command, const Image& a, const Image
 }
 
 int run(const CompareCommand& command) {
-  const Image a = read_image(command.a), b = read_image(command.b);
+  Image a = read_image(command.a), b = read_image(command.b);
   if (a.width != b.width || a.height != b.height)
     throw UsageError("the pictures have unequal sizes, " + size_text(a) + " and " + size_text(b));
+  if (command.display) a = displayed(std::move(a)), b = displayed(std::move(b));
   const Comparison c = compare(a, b);
   if (!command.diff.empty()) write_difference(command, a, b, c.largest);
   char text[256];

@@ -109,6 +109,23 @@ void parse_glossy(const std::string& text, Effects& effects) {
   effects.glossy = g;
 }
 
+void parse_error_bound(const std::string& text, RefineOptions& refine) {
+  const auto value = number<double>(text);
+  if (!value || !(*value >= 1e-6) || *value > 1) refuse("--error", "a number from 0.000001 to 1", text);
+  refine.error = *value;
+}
+
+void parse_time(const std::string& text, RefineOptions& refine) {
+  constexpr std::string_view kRounds = "rounds:";
+  if (text.starts_with(kRounds)) {
+    refine.rounds = whole("--time", text.substr(kRounds.size()), 1, 1000);
+    return;
+  }
+  const auto value = number<double>(text);
+  if (!value || !(*value > 0) || *value > 1e9) refuse("--time", "seconds above 0, or rounds:N", text);
+  refine.seconds = *value;
+}
+
 double rmse_bound(const std::string& text) {
   const auto value = number<double>(text);
   if (!value || !(*value >= 0)) refuse("--max-rmse", "a number that is not negative", text);
@@ -184,6 +201,14 @@ void add_render(CLI::App& app, RenderCommand& command) {
   Effects& effects = command.effects;
   value(sub, "--samples", "N", "rays through each pixel [1; with a lens, area light or rough mirror 16]",
         [&effects](const std::string& text) { effects.samples = whole("--samples", text, 1, kMostSamples); });
+  value(sub, "--error", "E", "as many samples, where they help most, as an RMSE of E takes (white is 1)",
+        [&command](const std::string& text) { parse_error_bound(text, command.render.refine); });
+  value(sub, "--time", "SECONDS", "the same for so long; rounds:N repeats what a run reported",
+        [&command](const std::string& text) { parse_time(text, command.render.refine); });
+  value(sub, "--samples-map", "FILE", "with --error or --time: picture of the samples of each pixel",
+        [&command](const std::string& text) { want_image_name("--samples-map", text), command.samples_map = text; });
+  value(sub, "--error-map", "FILE", "and of its estimated standard error",
+        [&command](const std::string& text) { want_image_name("--error-map", text), command.error_map = text; });
   value(sub, "--sampler", "NAME", "where they lie: sobol, jitter or random [sobol]",
         [&effects](const std::string& text) { effects.sampler = choice("--sampler", text, kSamplers); });
   value(sub, "--seed", "N", "another seed, an independent picture [0]",
@@ -223,6 +248,7 @@ void add_compare(CLI::App& app, CompareCommand& command) {
   positional(sub, "B", command.b, "picture");
   value(sub, "--max-rmse", "X", "exit with status 1 when the RMSE is above X (white is 1)",
         [&command](const std::string& text) { command.max_rmse = rmse_bound(text); });
+  sub.add_flag("--display", command.display, "compare what a screen shows: each channel cut to 0 to 1 first");
   value(sub, "--diff", "FILE", "write |A - B|; in a .png the largest difference is made white",
         [&command](const std::string& text) { want_image_name("--diff", text), command.diff = text; });
 }
@@ -249,6 +275,17 @@ void want_known_command(const CLI::App& app, const std::string& word) {
     commands += (commands.empty() ? "" : ", ") + sub->get_name();
   }
   refuse("command", "one of " + commands, word);
+}
+
+/// Options that say two things at once, or something about nothing.
+void check_together(const RenderCommand& command) {
+  const RefineOptions& r = command.render.refine;
+  const Effects& e = command.effects;
+  if (int(r.error > 0) + int(r.seconds > 0) + int(r.rounds > 0) > 1) throw UsageError("--error and --time: one of them, found both");
+  if (r.on() && (e.samples || e.jitter > 0 || e.adaptive.on)) throw UsageError("--error and --time choose the samples: no --samples or --aa beside them");
+  if (r.on() && e.sampler == Sampler::kJitter) throw UsageError("--sampler: wanted sobol or random with --error or --time, found \"jitter\"");
+  if (!r.on() && !(command.samples_map.empty() && command.error_map.empty()))
+    throw UsageError("--samples-map and --error-map want --error or --time");
 }
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
@@ -297,6 +334,7 @@ Command parse_command(int argc, const char* const* argv) {
     return scene;
   }
   if (render.image.empty()) render.image = default_image(render.scene);
+  check_together(render);
   return render;
 }
 

@@ -22,6 +22,7 @@ struct RenderCommand {
   RenderOptions render;
   Effects effects;
   std::string stats;  ///< file for the counts, or empty
+  std::string samples_map, error_map;  ///< pictures of what was spent and what it bought, or empty
   bool quiet = false, srgb = false;
 };
 
@@ -34,6 +35,7 @@ struct InfoCommand {
 struct CompareCommand {
   std::string a, b;
   std::optional<double> max_rmse;
+  bool display = false;  ///< compare what a screen shows, channels from 0 to 1
   std::string diff;  ///< file for the difference picture, or empty
 };
 

@@ -143,6 +143,12 @@ std::string stats_json(const RenderCommand& command, const RunReport& report) {
   json["grids"] = to_json(report.grids);
   json["rays"] = {{"primary", rays.primary}, {"shadow", rays.shadow}, {"reflection", rays.reflection},
                   {"refraction", rays.refraction}};
+  if (command.render.refine.on()) {
+    const RefineOptions& asked = command.render.refine;
+    const ErrorStats& e = render.error;
+    json["error"] = {{"asked", asked.error}, {"seconds", asked.seconds}, {"rmse", e.rmse}, {"rmse_bound", e.rmse_bound},
+                     {"widest", e.widest}, {"rounds", e.rounds}, {"samples", e.samples}, {"least", e.least}, {"most", e.most}};
+  }
   json["visits"] = trace.visits;
   json["tests"] = {{"sphere", trace.tests.sphere}, {"triangle", trace.tests.triangle}, {"cone", trace.tests.cone},
                    {"plane", trace.tests.plane}};
@@ -199,10 +205,14 @@ std::string summary_line(const RenderCommand& command, const RunReport& report) 
   const std::string times =
       print("load %.2f, build %.2f, render %.2f, write %.2f s", s.load, s.build, s.render, s.write);
   const double speed = s.render > 0 ? rays / s.render / 1e6 : 0;
+  const ErrorStats& e = report.render.error;
+  const std::string error = e.samples == 0 ? "" :
+      print("; RMSE about %.2g, at most %.2g (95 %%); %.1f samples a pixel, %u to %u, %d rounds", e.rmse, e.rmse_bound,
+            double(e.samples) / report.width / report.height, e.least, e.most, e.rounds);
   return command.image + ": " + primitives_text(report.spheres, report.triangles, report.cones, report.planes) + "; " +
          grids_text(report.grids) + "; " + print("%.3f Mrays in ", rays / 1e6) + times +
-         print("; %.2f Mrays/s (%s, %d thread%s)\n", speed, report.render.isa, report.render.threads,
-               report.render.threads == 1 ? "" : "s");
+         print("; %.2f Mrays/s (%s, %d thread%s)", speed, report.render.isa, report.render.threads,
+               report.render.threads == 1 ? "" : "s") + error + '\n';
 }
 
 }  // namespace grelha

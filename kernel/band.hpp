@@ -27,29 +27,43 @@ inline int tile_rays(const FrameView& f, Batch& b, int count, int x0, int x1, in
   return count;
 }
 
-/// One ray of a pixel: sample `index`, at its place in the pixel and, if there is a lens, on the lens.
-[[gnu::noinline]] inline void sampled_ray(const FrameView& f, const SamplePlan& plan, Batch& b, int at, int x, int y, std::uint32_t index, int band_top) {
-  const std::uint32_t pixel = static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(f.width) + static_cast<std::uint32_t>(x);
-  Pair in{.5f, .5f};
-  if (plan.samples > 1) in = sample_pair(plan, pixel, index, 0, 0, plan.pixel_strata);
-  const float sx = (static_cast<float>(x) + in.u) - .5f * static_cast<float>(f.width);
-  const float sy = .5f * static_cast<float>(f.height) - (static_cast<float>(y) + in.v);
-  const Vec3<float> eye{f.eye[0], f.eye[1], f.eye[2]};
-  Vec3<float> d{(f.forward[0] + sx * f.right[0]) + sy * f.up[0], (f.forward[1] + sx * f.right[1]) + sy * f.up[1],
-                (f.forward[2] + sx * f.right[2]) + sy * f.up[2]};
-  Vec3<float> org = eye;
-  if (f.lens) {
-    const Pair p = disc_point(sample_pair(plan, pixel, index, plan.lens, 0, plan.pixel_strata));
-    const Vec3<float> on{p.u * f.lens_right[0] + p.v * f.lens_up[0], p.u * f.lens_right[1] + p.v * f.lens_up[1],
-                         p.u * f.lens_right[2] + p.v * f.lens_up[2]};
-    org = eye + on, d = f.focus * d - on;
+/// Writes the lanes of the samples left.
+inline void store_some(float* p, const Lanes& a, int left) {
+  if (left >= kWidth<Lanes>) return store(p, a);
+  float v[kWidth<Lanes>];
+  store(v, a);
+  for (int k = 0; k < left; ++k) p[k] = v[k];
+}
+
+/// Rays of one pixel from `at` on: samples first, first + 1, ..., each at its place in the pixel and, if there is a lens, on
+/// the lens. Their light goes to sum `sum`.
+[[gnu::noinline]] inline void sampled_rays(const FrameView& f, const SamplePlan& plan, Batch& b, int at, int x, int y, std::uint32_t first, int count,
+                                           std::uint32_t sum) {
+  const auto splat = [](const float (&v)[3]) { return Vec3<Lanes>{Lanes(v[0]), Lanes(v[1]), Lanes(v[2])}; };
+  const Vec3<Lanes> eye = splat(f.eye), forward = splat(f.forward), right = splat(f.right), up = splat(f.up);
+  const Lanes across(static_cast<float>(x)), down(static_cast<float>(y));
+  const Lanes half_width(.5f * static_cast<float>(f.width)), half_height(.5f * static_cast<float>(f.height));
+  const Words<Lanes> zero{}, pixel = zero + (static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(f.width) + static_cast<std::uint32_t>(x));
+  for (int i = 0; i < count; i += kWidth<Lanes>) {
+    const Words<Lanes> index = counted_words<Lanes>(first + static_cast<std::uint32_t>(i));
+    PairOf<Lanes> in{Lanes(.5f), Lanes(.5f)};
+    if (plan.samples > 1) in = sample_pairs<Lanes>(plan, pixel, index, 0, zero, plan.pixel_strata);
+    const Lanes sx = (across + in.u) - half_width, sy = half_height - (down + in.v);
+    Vec3<Lanes> d = (forward + sx * right) + sy * up, org = eye;
+    if (f.lens) {
+      const PairOf<Lanes> p = disc_point(sample_pairs<Lanes>(plan, pixel, index, plan.lens, zero, plan.pixel_strata));
+      const Vec3<Lanes> on = p.u * splat(f.lens_right) + p.v * splat(f.lens_up);
+      org = eye + on, d = Lanes(f.focus) * d - on;
+    }
+    d = normalize(d);
+    const int to = at + i, left = count - i;
+    store_some(b.ox + to, org.x, left), store_some(b.oy + to, org.y, left), store_some(b.oz + to, org.z, left);
+    store_some(b.dx + to, d.x, left), store_some(b.dy + to, d.y, left), store_some(b.dz + to, d.z, left);
   }
-  d = normalize(d);
-  b.ox[at] = org.x, b.oy[at] = org.y, b.oz[at] = org.z;
-  b.dx[at] = d.x, b.dy[at] = d.y, b.dz[at] = d.z;
-  b.wr[at] = b.wg[at] = b.wb[at] = 1;
-  b.pixel[at] = static_cast<std::uint32_t>((y - band_top) * f.width + x);
-  b.depth[at] = 1, b.sample[at] = index, b.path[at] = 0;
+  for (int i = 0; i < count; ++i) {
+    b.wr[at + i] = b.wg[at + i] = b.wb[at + i] = 1;
+    b.pixel[at + i] = sum, b.depth[at + i] = 1, b.sample[at + i] = first + static_cast<std::uint32_t>(i), b.path[at + i] = 0;
+  }
 }
 
 /// Takes the youngest rays off the stack into the batch, class by class (a stable counting sort); ends[c] is where class c
@@ -77,14 +91,14 @@ inline void pop(RayStack& stack, Batch& b, int most, bool sampled, int (&ends)[k
   stack.size = at;
 }
 
-/// Shades `count` camera rays and all they lead to.
-inline void finish_batch(const Shader& shader, RayStack& stack, int count) {
-  shader.rays.primary += static_cast<unsigned>(count);
-  shade_batch(shader, stack, &count, 1, 64);
+/// Camera rays [0, count) of the batch and all that comes of them. The stack is empty before and after.
+inline void follow(const Shader& s, RayStack& stack, int count) {
+  s.rays.primary += static_cast<unsigned>(count);
+  shade_batch(s, stack, &count, 1, 64);
   int ends[kClasses];
   while (stack.size > 0) {
-    pop(stack, shader.b, shader.work.take, shader.work.plan.on, ends);
-    shade_batch(shader, stack, ends, kClasses, 16);
+    pop(stack, s.b, s.work.take, s.work.plan.on, ends);
+    shade_batch(s, stack, ends, kClasses, 16);
   }
 }
 
@@ -99,16 +113,18 @@ inline void render_band(const SceneView& scene, const ShadingView& shading, cons
   const Shader shader{scene, shading, work, counters, rays, b};
   RayStack stack = work.stack;
   stack.size = 0;
-  const auto finish = [&](int count) { finish_batch(shader, stack, count); };
+  const auto finish = [&](int count) { follow(shader, stack, count); };
   int count = 0;
   for (int x0 = 0; x0 < frame.width; x0 += kTile) {
     const int x1 = x0 + kTile < frame.width ? x0 + kTile : frame.width;
     if (work.plan.on) {  // all samples of a pixel next to each other: they are what goes together best
       for (int y = y0; y < y1; ++y)
         for (int x = x0; x < x1; ++x)
-          for (int i = 0; i < work.plan.samples; ++i) {
-            sampled_ray(frame, work.plan, b, count, x, y, static_cast<std::uint32_t>(i), y0);
-            if (++count == kBatch) finish(count), count = 0;
+          for (int i = 0; i < work.plan.samples;) {
+            const int left = work.plan.samples - i, room = kBatch - count, n = left < room ? left : room;
+            sampled_rays(frame, work.plan, b, count, x, y, static_cast<std::uint32_t>(i), n, static_cast<std::uint32_t>((y - y0) * frame.width + x));
+            i += n, count += n;
+            if (count == kBatch) finish(count), count = 0;
           }
       continue;
     }
@@ -116,6 +132,29 @@ inline void render_band(const SceneView& scene, const ShadingView& shading, cons
     if (count + kTile * kBandRows > kBatch) finish(count), count = 0;
   }
   if (count > 0) finish(count);
+}
+
+/// Runs of samples; part p of run r goes into sum kParts r + p of work.sums, whose pixel work.pixels must name.
+inline void render_runs(const SceneView& scene, const ShadingView& shading, const FrameView& frame, const PixelRun* runs, int count,
+                        const BandWork& work, Counters& counters, RayTally& rays) {
+  Batch& b = *work.batch;
+  const Shader shader{scene, shading, work, counters, rays, b};
+  RayStack stack = work.stack;
+  stack.size = 0;
+  int filled = 0;
+  for (int r = 0; r < count; ++r) {
+    const PixelRun& run = runs[r];
+    const int x = static_cast<int>(run.pixel % static_cast<std::uint32_t>(frame.width)), y = static_cast<int>(run.pixel / static_cast<std::uint32_t>(frame.width));
+    const int all = static_cast<int>(run.count), part = all / kParts;
+    for (int i = 0; i < all;) {
+      const int room = kBatch - filled, n = all - i < room ? all - i : room;
+      sampled_rays(frame, work.plan, b, filled, x, y, run.first + static_cast<std::uint32_t>(i), n, 0);
+      for (int k = 0; k < n; ++k) b.pixel[filled + k] = static_cast<std::uint32_t>(r * kParts + (i + k) / part);
+      i += n, filled += n;
+      if (filled == kBatch) follow(shader, stack, filled), filled = 0;
+    }
+  }
+  if (filled > 0) follow(shader, stack, filled);
 }
 
 }  // namespace grelha::GRELHA_ISA

@@ -5,6 +5,7 @@
 //   Lanes   one float per SIMD lane, as wide as the machine's registers: one ray a lane
 //   Block   the same, at most 8 wide: one primitive of a block a lane
 //   float   the scalar twin; every function below exists for it too, with the same bits
+//   Words<Lanes>, Words<float>   unsigned 32-bit integers beside them: + - * ^ & | << >>, == and ?: are written as for one
 //
 // Only + - * / sqrt, comparisons and selects: these give the same bits at every width. No reciprocal, no rsqrt, no
 // fused multiply-add, no unary minus (it loses -0 on AVX-512).
@@ -39,6 +40,7 @@ template <>
 struct LaneTraits<float> {
   using Mask = bool;
   using Int = std::int32_t;
+  using Words = std::uint32_t;
   static constexpr int kWidth = 1;
 };
 
@@ -67,6 +69,8 @@ inline std::int32_t to_int(float a) { return static_cast<std::int32_t>(a); }
 inline float to_float(std::int32_t a) { return static_cast<float>(a); }
 inline void load(const float* p, float& r) { r = *p; }
 inline void store(float* p, float a) { *p = a; }
+inline bool any_set(std::uint32_t a) { return a != 0; }                           ///< whether any lane is not 0
+inline float small_to_float(std::uint32_t a) { return static_cast<float>(a); }  ///< a < 2^24: exact
 
 // ---- SIMD -------------------------------------------------------------------------------------------------------
 
@@ -84,10 +88,27 @@ using SimdMask = xsimd::batch_bool<float, Arch>;
 template <class Arch>
 using SimdInt = xsimd::batch<std::int32_t, Arch>;
 
+// The compiler's own vectors: it knows how to multiply where the instruction set does not.
+template <class Arch>
+struct SimdWords;
+template <>
+struct SimdWords<xsimd::sse2> {
+  using Type = std::uint32_t __attribute__((vector_size(16)));
+};
+template <>
+struct SimdWords<xsimd::avx2> {
+  using Type = std::uint32_t __attribute__((vector_size(32)));
+};
+template <>
+struct SimdWords<xsimd::avx512bw> {
+  using Type = std::uint32_t __attribute__((vector_size(64)));
+};
+
 template <class Arch>
 struct LaneTraits<Simd<Arch>> {
   using Mask = SimdMask<Arch>;
   using Int = SimdInt<Arch>;
+  using Words = typename SimdWords<Arch>::Type;
   static constexpr int kWidth = int(Simd<Arch>::size);
 };
 
@@ -152,6 +173,10 @@ inline unsigned bits(const SimdMask<xsimd::sse2>& m) { return unsigned(_mm_movem
 inline SimdMask<xsimd::sse2> but_not(const SimdMask<xsimd::sse2>& a, const SimdMask<xsimd::sse2>& b) {
   return SimdMask<xsimd::sse2>(_mm_andnot_ps(b.data, a.data));
 }
+inline bool any_set(SimdWords<xsimd::sse2>::Type a) {
+  return _mm_movemask_epi8(_mm_cmpeq_epi32(reinterpret_cast<__m128i>(a), _mm_setzero_si128())) != 0xFFFF;
+}
+inline Lanes small_to_float(SimdWords<xsimd::sse2>::Type a) { return Lanes(_mm_cvtepi32_ps(reinterpret_cast<__m128i>(a))); }
 #else
 inline Simd<xsimd::avx2> lesser(const Simd<xsimd::avx2>& a, const Simd<xsimd::avx2>& b) {
   return Simd<xsimd::avx2>(_mm256_min_ps(a.data, b.data));
@@ -164,6 +189,13 @@ inline SimdMask<xsimd::avx2> but_not(const SimdMask<xsimd::avx2>& a, const SimdM
   return SimdMask<xsimd::avx2>(_mm256_andnot_ps(b.data, a.data));
 }
 #endif
+#if GRELHA_ISA_NUMBER == 3
+inline bool any_set(SimdWords<xsimd::avx2>::Type a) {
+  const __m256i w = reinterpret_cast<__m256i>(a);
+  return _mm256_testz_si256(w, w) == 0;
+}
+inline Lanes small_to_float(SimdWords<xsimd::avx2>::Type a) { return Lanes(_mm256_cvtepi32_ps(reinterpret_cast<__m256i>(a))); }
+#endif
 #if GRELHA_ISA_NUMBER == 4
 inline Lanes lesser(const Lanes& a, const Lanes& b) { return Lanes(_mm512_min_ps(a.data, b.data)); }
 inline Lanes greater(const Lanes& a, const Lanes& b) { return Lanes(_mm512_max_ps(a.data, b.data)); }
@@ -171,6 +203,11 @@ inline unsigned bits(const SimdMask<xsimd::avx512bw>& m) { return unsigned(m.dat
 inline SimdMask<xsimd::avx512bw> but_not(const SimdMask<xsimd::avx512bw>& a, const SimdMask<xsimd::avx512bw>& b) {
   return SimdMask<xsimd::avx512bw>(static_cast<__mmask16>(a.data & ~b.data));
 }
+inline bool any_set(SimdWords<xsimd::avx512bw>::Type a) {
+  const __m512i w = reinterpret_cast<__m512i>(a);
+  return _mm512_test_epi32_mask(w, w) != 0;
+}
+inline Lanes small_to_float(SimdWords<xsimd::avx512bw>::Type a) { return Lanes(_mm512_cvtepi32_ps(reinterpret_cast<__m512i>(a))); }
 #endif
 
 template <class A>
@@ -189,6 +226,8 @@ using Mask = typename LaneTraits<Real>::Mask;
 template <class Real>
 using Int = typename LaneTraits<Real>::Int;
 template <class Real>
+using Words = typename LaneTraits<Real>::Words;
+template <class Real>
 inline constexpr int kWidth = LaneTraits<Real>::kWidth;
 
 template <class Real>
@@ -196,6 +235,23 @@ inline Real load(const float* p) {
   Real r;
   load(p, r);
   return r;
+}
+template <class Real>
+inline Words<Real> load_words(const std::uint32_t* p) {
+  Words<Real> r;
+  __builtin_memcpy(&r, p, sizeof r);
+  return r;
+}
+template <class Word>
+inline void store_words(std::uint32_t* p, const Word& a) {
+  __builtin_memcpy(p, &a, sizeof a);
+}
+/// first, first + 1, ... one a lane.
+template <class Real>
+inline Words<Real> counted_words(std::uint32_t first) {
+  std::uint32_t w[kWidth<Real>];
+  for (int k = 0; k < kWidth<Real>; ++k) w[k] = first + static_cast<std::uint32_t>(k);
+  return load_words<Real>(w);
 }
 /// |a| without touching the sign bit of anything else.
 template <class Real>

@@ -53,14 +53,15 @@ inline float lane_max(const Lanes& v) {
   return m;
 }
 
-/// Entry and exit of every ray, then the frustum around those that meet the grid. kApart when they have no common major
-/// axis along which all of them make headway.
-inline Spread bound(const GridView& g, const Packet& p, Frustum& f) {
+/// Entry and exit of every ray, then the frustum around those that meet the grid, along the axis on which the first of them
+/// crosses most cells; or, with `axis`, around all of them along that one, whether they meet the grid themselves or pass it by on
+/// both sides. kApart when not all of them make headway along it.
+inline Spread bound(const GridView& g, const Packet& p, Frustum& f, int axis = -1) {
   alignas(64) float enter[kPacket];
   int first = -1;
   each_live_group(p, [&](int i, int) {
     Lanes t0 = load<Lanes>(p.t_min + i), t1 = load<Lanes>(p.best + i);
-    for (int a = 0; a < 3; ++a) {
+    for (int a = axis < 0 ? 0 : axis; a < (axis < 0 ? 3 : axis + 1); ++a) {
       const Lanes d = load<Lanes>(p.dir[a] + i), o = load<Lanes>(p.org[a] + i);
       const Mask<Lanes> tiny = magnitude(d) < Lanes(1e-18f);
       const Lanes inv = Lanes(1) / select(tiny, Lanes(1e-18f), d);
@@ -73,10 +74,15 @@ inline Spread bound(const GridView& g, const Packet& p, Frustum& f) {
     if (const unsigned lanes = bits(meets); lanes != 0 && first < 0) first = i + __builtin_ctz(lanes);
   });
   if (first < 0) return Spread::kNothing;
+  if (axis >= 0)
+    each_live_group(p, [&](int i, int) {
+      const Mask<Lanes> ray = load<Lanes>(p.best + i) > load<Lanes>(p.t_min + i);
+      store(f.leave + i, select(ray, greater(load<Lanes>(f.leave + i), load<Lanes>(enter + i)), Lanes(-kInfinity)));
+    });
 
-  int k = 0;
+  int k = axis < 0 ? 0 : axis;
   float most = -1;
-  for (int a = 0; a < 3; ++a)
+  for (int a = 0; a < 3 && axis < 0; ++a)
     if (const float m = magnitude(p.dir[a][first] * g.inv_cell_f[a]); m > most) most = m, k = a;
   f.k = k, f.u = k == 2 ? 0 : k + 1, f.v = k == 0 ? 2 : k - 1;
   f.flip = p.dir[k][first] < 0;
@@ -170,19 +176,23 @@ inline unsigned inside_planes(const Value& value) {
   return ~bits(out) & ((1u << kWidth<Block>) - 1u);
 }
 
+/// Lanes of triangles i, i + 1, ... of a block that reach into the frustum.
+inline unsigned triangles_inside(const Frustum& f, const TriangleBlock& block, int i) {
+  const Block au = load<Block>(block.a[f.u] + i), av = load<Block>(block.a[f.v] + i), ak = load<Block>(block.a[f.k] + i);
+  const Block bu = load<Block>(block.b[f.u] + i), bv = load<Block>(block.b[f.v] + i), bk = load<Block>(block.b[f.k] + i);
+  const Block cu = load<Block>(block.c[f.u] + i), cv = load<Block>(block.c[f.v] + i), ck = load<Block>(block.c[f.k] + i);
+  const unsigned left = inside_planes([&](int j) {  // the corner farthest inside
+    const Block s(f.a[j]), r(f.b[j]);
+    const Block fa = s * (j < 2 ? au : av) + r * ak, fb = s * (j < 2 ? bu : bv) + r * bk, fc = s * (j < 2 ? cu : cv) + r * ck;
+    return greater(greater(fa, fb), fc) + Block(f.c[j]);
+  });
+  return left & bits(au == au);  // padding is NaN
+}
+
 template <bool kAny>
 inline void test_triangles(const Frustum& f, Packet& p, const TriangleBlock& block, Mailbox* mailbox, Counters& n) {
   for (int i = 0; i < kBlock; i += kWidth<Block>) {
-    const Block au = load<Block>(block.a[f.u] + i), av = load<Block>(block.a[f.v] + i), ak = load<Block>(block.a[f.k] + i);
-    const Block bu = load<Block>(block.b[f.u] + i), bv = load<Block>(block.b[f.v] + i), bk = load<Block>(block.b[f.k] + i);
-    const Block cu = load<Block>(block.c[f.u] + i), cv = load<Block>(block.c[f.v] + i), ck = load<Block>(block.c[f.k] + i);
-    unsigned left = inside_planes([&](int j) {  // the corner farthest inside
-      const Block s(f.a[j]), r(f.b[j]);
-      const Block fa = s * (j < 2 ? au : av) + r * ak, fb = s * (j < 2 ? bu : bv) + r * bk, fc = s * (j < 2 ? cu : cv) + r * ck;
-      return greater(greater(fa, fb), fc) + Block(f.c[j]);
-    });
-    left &= bits(au == au);  // padding is NaN
-    for (; left != 0; left &= left - 1) {
+    for (unsigned left = triangles_inside(f, block, i); left != 0; left &= left - 1) {
       const int at = i + __builtin_ctz(left);
       const std::uint32_t id = block.id[at];
       if (mailbox && mailbox->seen(id)) continue;
@@ -195,18 +205,22 @@ inline void test_triangles(const Frustum& f, Packet& p, const TriangleBlock& blo
   }
 }
 
+/// Lanes of spheres i, i + 1, ... before `end` that reach into the frustum.
+inline unsigned spheres_inside(const Frustum& f, const CellLists& lists, std::uint32_t i, std::uint32_t end) {
+  const float* const at[3] = {lists.sx, lists.sy, lists.sz};
+  const Block u = load<Block>(at[f.u] + i), v = load<Block>(at[f.v] + i), k = load<Block>(at[f.k] + i);
+  const Block r = magnitude(load<Block>(lists.sr + i));
+  const unsigned left = inside_planes([&](int j) {
+    return ((Block(f.a[j]) * (j < 2 ? u : v) + Block(f.b[j]) * k) + Block(f.c[j])) + r * Block(f.reach[j]);
+  });
+  return end - i < static_cast<unsigned>(kWidth<Block>) ? left & ((1u << (end - i)) - 1u) : left;
+}
+
 template <bool kAny>
 inline void test_spheres(const Frustum& f, Packet& p, const CellLists& lists, std::size_t cell, Mailbox* mailbox, Counters& n) {
   const std::uint32_t end = lists.sphere_first[cell + 1];
   for (std::uint32_t i = lists.sphere_first[cell]; i < end; i += kWidth<Block>) {
-    const float* const at[3] = {lists.sx, lists.sy, lists.sz};
-    const Block u = load<Block>(at[f.u] + i), v = load<Block>(at[f.v] + i), k = load<Block>(at[f.k] + i);
-    const Block r = magnitude(load<Block>(lists.sr + i));
-    unsigned left = inside_planes([&](int j) {
-      return ((Block(f.a[j]) * (j < 2 ? u : v) + Block(f.b[j]) * k) + Block(f.c[j])) + r * Block(f.reach[j]);
-    });
-    if (end - i < static_cast<unsigned>(kWidth<Block>)) left &= (1u << (end - i)) - 1u;
-    for (; left != 0; left &= left - 1) {
+    for (unsigned left = spheres_inside(f, lists, i, end); left != 0; left &= left - 1) {
       const std::uint32_t s = i + static_cast<unsigned>(__builtin_ctz(left)), id = lists.sphere_id[s];
       if (mailbox && mailbox->seen(id)) continue;
       count_lanes(p, n, n.sphere);
@@ -215,22 +229,26 @@ inline void test_spheres(const Frustum& f, Packet& p, const CellLists& lists, st
   }
 }
 
-/// A cone lies in the hull of the balls around its two ends.
+/// Lanes of cones i, i + 1, ... before `end` that may reach into the frustum: a cone lies in the hull of the balls around its
+/// two ends.
+inline unsigned cones_inside(const Frustum& f, const CellLists& lists, std::uint32_t i, std::uint32_t end) {
+  const auto at = [&](int k) { return load<Block>(lists.cone[k] + i); };
+  const Block h = at(6), r0 = at(7), r1 = r0 + at(8) * h;
+  const Block u0 = at(f.u), v0 = at(f.v), k0 = at(f.k);
+  const Block u1 = u0 + h * at(3 + f.u), v1 = v0 + h * at(3 + f.v), k1 = k0 + h * at(3 + f.k);
+  const unsigned left = inside_planes([&](int j) {
+    const Block s(f.a[j]), q(f.b[j]), reach(f.reach[j]);
+    const Block base = (s * (j < 2 ? u0 : v0) + q * k0) + r0 * reach, apex = (s * (j < 2 ? u1 : v1) + q * k1) + r1 * reach;
+    return greater(base, apex) + Block(f.c[j]);
+  });
+  return end - i < static_cast<unsigned>(kWidth<Block>) ? left & ((1u << (end - i)) - 1u) : left;
+}
+
 template <bool kAny>
 inline void test_cones(const Frustum& f, Packet& p, const CellLists& lists, std::size_t cell, Mailbox* mailbox, Counters& n) {
   const std::uint32_t end = lists.cone_first[cell + 1];
   for (std::uint32_t i = lists.cone_first[cell]; i < end; i += kWidth<Block>) {
-    const auto at = [&](int k) { return load<Block>(lists.cone[k] + i); };
-    const Block h = at(6), r0 = at(7), r1 = r0 + at(8) * h;
-    const Block u0 = at(f.u), v0 = at(f.v), k0 = at(f.k);
-    const Block u1 = u0 + h * at(3 + f.u), v1 = v0 + h * at(3 + f.v), k1 = k0 + h * at(3 + f.k);
-    unsigned left = inside_planes([&](int j) {
-      const Block s(f.a[j]), q(f.b[j]), reach(f.reach[j]);
-      const Block base = (s * (j < 2 ? u0 : v0) + q * k0) + r0 * reach, apex = (s * (j < 2 ? u1 : v1) + q * k1) + r1 * reach;
-      return greater(base, apex) + Block(f.c[j]);
-    });
-    if (end - i < static_cast<unsigned>(kWidth<Block>)) left &= (1u << (end - i)) - 1u;
-    for (; left != 0; left &= left - 1) {
+    for (unsigned left = cones_inside(f, lists, i, end); left != 0; left &= left - 1) {
       const std::uint32_t c = i + static_cast<unsigned>(__builtin_ctz(left)), id = lists.cone_id[c];
       if (mailbox && mailbox->seen(id)) continue;
       count_lanes(p, n, n.cone);

@@ -30,6 +30,8 @@ struct Packet {
   alignas(64) float id[kPacket];
   alignas(64) float shear[3][kPacket];
   alignas(64) float axis[kPacket];        ///< of the shear: 0, 1 or 2
+  alignas(64) float shift[kPacket];       ///< how far a ray was brought near, in t; set only when `moved`
+  bool moved = false;
   int group_axis[kPacket / kWidth<Lanes>];  ///< the axis all rays of a group share, or -1
   int size, groups;
   std::uint64_t live;  ///< bit g: group g has a ray that still searches

@@ -5,39 +5,56 @@
 
 namespace grelha::GRELHA_ISA {
 
-/// Ray `index` through point `point` of the picture. The point is given: the only thing to sample is the lens.
-inline void point_ray(const FrameView& f, const SamplePlan& plan, Batch& b, int at, const PointList& points, int point, std::uint32_t index) {
-  const float sx = points.x[point] - .5f * static_cast<float>(f.width), sy = .5f * static_cast<float>(f.height) - points.y[point];
-  Vec3<float> org{f.eye[0], f.eye[1], f.eye[2]};
-  Vec3<float> d{(f.forward[0] + sx * f.right[0]) + sy * f.up[0], (f.forward[1] + sx * f.right[1]) + sy * f.up[1],
-                (f.forward[2] + sx * f.right[2]) + sy * f.up[2]};
-  if (f.lens) {
-    const Pair p = disc_point(sample_pair(plan, points.hash[point], index, plan.lens, 0, plan.pixel_strata));
-    const Vec3<float> on{p.u * f.lens_right[0] + p.v * f.lens_up[0], p.u * f.lens_right[1] + p.v * f.lens_up[1],
-                         p.u * f.lens_right[2] + p.v * f.lens_up[2]};
-    org = org + on, d = f.focus * d - on;
+/// Rays of the batch through points of the picture, one a ray and given: the only thing to sample is the lens. Arrays are as
+/// long as the batch; what they hold behind `count` is harmless.
+struct PointRays {
+  alignas(64) float x[kBatch] = {}, y[kBatch] = {};
+  alignas(64) std::uint32_t name[kBatch] = {}, index[kBatch] = {};
+};
+
+[[gnu::noinline]] inline void point_rays(const FrameView& f, const SamplePlan& plan, Batch& b, const PointRays& rays, int count) {
+  const auto splat = [](const float (&v)[3]) { return Vec3<Lanes>{Lanes(v[0]), Lanes(v[1]), Lanes(v[2])}; };
+  const Vec3<Lanes> eye = splat(f.eye), forward = splat(f.forward), right = splat(f.right), up = splat(f.up);
+  const Lanes half_width(.5f * static_cast<float>(f.width)), half_height(.5f * static_cast<float>(f.height));
+  for (int i = 0; i < count; i += kWidth<Lanes>) {
+    const Lanes sx = load<Lanes>(rays.x + i) - half_width, sy = half_height - load<Lanes>(rays.y + i);
+    Vec3<Lanes> d = (forward + sx * right) + sy * up, org = eye;
+    if (f.lens) {
+      const PairOf<Lanes> p = disc_point(sample_pairs<Lanes>(plan, load_words<Lanes>(rays.name + i), load_words<Lanes>(rays.index + i), plan.lens,
+                                                             Words<Lanes>{}, plan.pixel_strata));
+      const Vec3<Lanes> on = p.u * splat(f.lens_right) + p.v * splat(f.lens_up);
+      org = eye + on, d = Lanes(f.focus) * d - on;
+    }
+    d = normalize(d);
+    store(b.ox + i, org.x), store(b.oy + i, org.y), store(b.oz + i, org.z);
+    store(b.dx + i, d.x), store(b.dy + i, d.y), store(b.dz + i, d.z);
   }
-  d = normalize(d);
-  b.ox[at] = org.x, b.oy[at] = org.y, b.oz[at] = org.z;
-  b.dx[at] = d.x, b.dy[at] = d.y, b.dz[at] = d.z;
-  b.wr[at] = b.wg[at] = b.wb[at] = 1;
-  b.pixel[at] = static_cast<std::uint32_t>(point), b.depth[at] = 1;
-  if (plan.on) b.sample[at] = index, b.path[at] = 0;
 }
 
 /// Renders all samples of each point into the point's sum. Points that stand next to each other make a packet.
 inline void render_points(const SceneView& scene, const ShadingView& shading, const FrameView& frame, const PointList& points,
-                          const BandWork& work, Counters& counters, RayTally& rays) {
-  const Shader shader{scene, shading, work, counters, rays, *work.batch};
+                          const BandWork& work, Counters& counters, RayTally& tally) {
+  Batch& b = *work.batch;
+  const Shader shader{scene, shading, work, counters, tally, b};
   RayStack stack = work.stack;
   stack.size = 0;
+  PointRays rays;
   int count = 0;
+  const auto finish = [&] {
+    point_rays(frame, work.plan, b, rays, count);
+    follow(shader, stack, count);
+    count = 0;
+  };
   for (int point = 0; point < points.count; ++point)
     for (int i = 0; i < work.plan.samples; ++i) {
-      point_ray(frame, work.plan, *work.batch, count, points, point, static_cast<std::uint32_t>(i));
-      if (++count == kBatch) finish_batch(shader, stack, count), count = 0;
+      rays.x[count] = points.x[point], rays.y[count] = points.y[point];
+      rays.name[count] = work.pixels[point], rays.index[count] = static_cast<std::uint32_t>(i);
+      b.wr[count] = b.wg[count] = b.wb[count] = 1;
+      b.pixel[count] = static_cast<std::uint32_t>(point), b.depth[count] = 1;
+      b.sample[count] = static_cast<std::uint32_t>(i), b.path[count] = 0;
+      if (++count == kBatch) finish();
     }
-  if (count > 0) finish_batch(shader, stack, count);
+  if (count > 0) finish();
 }
 
 }  // namespace grelha::GRELHA_ISA

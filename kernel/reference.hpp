@@ -124,6 +124,10 @@ inline void trace_reference(const SceneView& scene, const RayArrays& rays, int c
                                         {g.px[p], g.py[p], g.pz[p]}, {g.pnx[p], g.pny[p], g.pnz[p]}, t);
       done = take<kAny>(r, hit, t, p);
     }
+    if (const double shift = done ? 0 : approach(scene, r.org, r.dir); shift > 0) {
+      r.t_min = static_cast<float>(r.t_min - shift), r.best = static_cast<float>(r.best - shift);
+      rays.shift[i] = static_cast<float>(shift);
+    }
     done = done || reference_cell<kAny>(r, scene.outside, 0, nullptr, n);
     for (int k2 = 0; k2 < scene.grid_count && !done; ++k2) done = reference_walk<kAny>(scene.grids[k2], r, m, n);
     rays.t[i] = r.best, rays.id[i] = r.id;

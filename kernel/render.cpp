@@ -4,53 +4,20 @@
 #include <atomic>
 #include <memory>
 #include <new>
-#include <span>
 #include <stdexcept>
 #include <string>
 
 #include <omp.h>
 
 #include "kernel/frame.hpp"
-#include "kernel/subdivision.hpp"
+#include "kernel/point_tracer.hpp"
+#include "kernel/refinement.hpp"
 #include "kernel/variants.hpp"
+#include "kernel/workspace.hpp"
 #include "kernel/world.hpp"
 
 namespace grelha {
 namespace {
-
-/// What one thread works in; allocated before the first ray, never grown.
-class Workspace {
- public:
-  Workspace(std::size_t sums, int depth, const SamplePlan& plan)
-      : batch_(std::make_unique<Batch>()),
-        plan_(plan),
-        take_(std::clamp(65536 / (depth * (plan.gloss_rays + 1)), 16, kBatch)),
-        capacity_((plan.gloss_rays + 2) * (kBatch + take_ * depth)),
-        floats_(static_cast<std::size_t>(capacity_) * 9),
-        words_(static_cast<std::size_t>(capacity_) * 4),
-        sums_(3 * sums) {}
-
-  BandWork work(const RenderOptions& options, int first_row, int width) {
-    std::fill(sums_.begin(), sums_.end(), 0);
-    float* f[9];
-    for (std::size_t i = 0; i < 9; ++i) f[i] = floats_.data() + i * static_cast<std::size_t>(capacity_);
-    std::uint32_t* w[4];
-    for (std::size_t i = 0; i < 4; ++i) w[i] = words_.data() + i * static_cast<std::size_t>(capacity_);
-    const RayStack stack{f[0], f[1], f[2], f[3], f[4], f[5], f[6], f[7], f[8], w[0], w[1], w[2], w[3], 0, capacity_};
-    const float most = std::min(1048576.f, kMostLight / static_cast<float>(plan_.samples));
-    return {batch_.get(), stack, sums_.data(), options.depth, options.packet, take_, options.mailbox,
-            static_cast<std::uint32_t>(first_row) * static_cast<std::uint32_t>(width), most, plan_};
-  }
-  const std::vector<std::int64_t>& sums() const { return sums_; }
-
- private:
-  std::unique_ptr<Batch> batch_;
-  SamplePlan plan_;
-  int take_, capacity_;
-  std::vector<float> floats_;
-  std::vector<std::uint32_t> words_;
-  std::vector<std::int64_t> sums_;
-};
 
 const Variant& choose(std::string_view name) {
   const Variant* const v = find_variant(name);
@@ -68,6 +35,12 @@ void check(const Camera& camera, const RenderOptions& o) {
   if (s.samples < 1 || s.samples > kMostSamples) throw std::invalid_argument("samples must be from 1 to " + std::to_string(kMostSamples));
   if (s.light_rays < 1 || s.light_rays > 4096) throw std::invalid_argument("shadow rays to an area light must be from 1 to 4096");
   if (s.gloss_rays < 0 || s.gloss_rays > 256) throw std::invalid_argument("rays around the mirror direction must be from 0 to 256");
+  const RefineOptions& r = o.refine;
+  if (!(r.error >= 0) || !(r.seconds >= 0) || r.rounds < 0) throw std::invalid_argument("an error, a time and rounds must not be negative");
+  if (r.on() && s.sampler == Sampler::kJitter)
+    throw std::invalid_argument("jittered samples must be counted before they are taken: to meet an error, use sobol or random");
+  if (r.on() && s.light_rays > 1) throw std::invalid_argument("to meet an error every sample sends one ray to a light");
+  if (r.on() && o.subdivision.on) throw std::invalid_argument("samples are spent by error or by subdivision, not by both");
   if (o.threads < 0) throw std::invalid_argument("threads must not be negative");
 }
 
@@ -101,104 +74,6 @@ void finish_rows(const std::vector<std::int64_t>& sums, int samples, Image& imag
   for (std::size_t i = 0; i < n; ++i) out[i] = static_cast<float>(static_cast<double>(sums[i]) * share);
 }
 
-void add(const TraceCounts& from, TraceCounts& to) {
-  to.visits += from.visits;
-  to.tests.sphere += from.tests.sphere, to.tests.triangle += from.tests.triangle;
-  to.tests.cone += from.tests.cone, to.tests.plane += from.tests.plane;
-  to.packets.formed += from.packets.formed, to.packets.fell_back += from.packets.fell_back;
-  to.packets.lanes_issued += from.packets.lanes_issued, to.packets.lanes_busy += from.packets.lanes_busy;
-}
-
-void add(const RayCounts& from, RayCounts& to) {
-  to.primary += from.primary, to.shadow += from.shadow, to.reflection += from.reflection, to.refraction += from.refraction;
-}
-
-/// One thread's share of a list of points: as its own arrays, then as colours.
-struct PointSpace {
-  static constexpr int kMost = 2048;
-  explicit PointSpace(int depth, const SamplePlan& plan) : space(kMost, depth, plan) {}
-  Workspace space;
-  float x[kMost], y[kMost];
-  std::uint32_t hash[kMost];
-  TraceCounts trace;
-  RayCounts rays;
-};
-
-/// Sees points of a picture for subdivision, in parallel.
-class PointTracer {
- public:
-  PointTracer(const World::Impl& world, const Camera& camera, const RenderOptions& options, const SamplePlan& plan,
-              const Variant& variant, int threads)
-      : world_(world), frame_(make_frame(camera)), options_(options), plan_(plan), variant_(variant) {
-    for (int i = 0; i < threads; ++i) spaces_.push_back(std::make_unique<PointSpace>(options.depth, plan));
-  }
-
-  bool operator()(std::span<const LatticePoint> points, Float3* colours, double from, double to) {
-    const auto count = static_cast<std::int64_t>(points.size()), threads = static_cast<std::int64_t>(spaces_.size());
-    // Whole packets, large enough to be worth taking, small enough that no thread waits long for the last.
-    const std::int64_t chunk = std::clamp<std::int64_t>(count / (8 * threads) / 64 * 64, 64, PointSpace::kMost);
-    const std::int64_t chunks = (count + chunk - 1) / chunk;
-    std::atomic<bool> stopped = false;
-    std::int64_t done = 0;
-    const int team = static_cast<int>(std::min(threads, std::max<std::int64_t>(chunks, 1)));
-#pragma omp parallel for schedule(dynamic) num_threads(team)
-    for (std::int64_t c = 0; c < chunks; ++c) {
-      if (stopped) continue;
-      const std::int64_t first = c * chunk, last = std::min(first + chunk, count);
-      see(*spaces_[static_cast<std::size_t>(omp_get_thread_num())], points.data() + first, static_cast<int>(last - first), colours + first);
-#pragma omp critical(grelha_progress)
-      {
-        ++done;
-        const double share = from + (to - from) * static_cast<double>(done) / static_cast<double>(chunks);
-        if (options_.progress && !stopped && !options_.progress(share)) stopped = true;
-      }
-    }
-    return !stopped;
-  }
-
-  void count(RenderStats& stats) const {
-    for (const auto& s : spaces_) add(s->trace, stats.trace), add(s->rays, stats.rays);
-  }
-
- private:
-  void see(PointSpace& s, const LatticePoint* points, int count, Float3* colours) const {
-    for (int i = 0; i < count; ++i) {  // exact: no coordinate is above 2^24
-      s.x[i] = static_cast<float>(points[i].x) / kLatticeSteps, s.y[i] = static_cast<float>(points[i].y) / kLatticeSteps;
-      s.hash[i] = lattice_hash(points[i]);
-    }
-    BandWork work = s.space.work(options_, 0, 0);
-    work.pixels = s.hash;
-    variant_.loops.render_points(world_.view, world_.shading, frame_, {s.x, s.y, s.hash, count}, work, s.trace, s.rays);
-    const double share = 1 / (kLightUnit * plan_.samples);
-    const std::int64_t* sum = s.space.sums().data();
-    for (int i = 0; i < count; ++i, sum += 3)
-      colours[i] = {static_cast<float>(static_cast<double>(sum[0]) * share), static_cast<float>(static_cast<double>(sum[1]) * share),
-                    static_cast<float>(static_cast<double>(sum[2]) * share)};
-  }
-
-  const World::Impl& world_;
-  const FrameView frame_;
-  const RenderOptions& options_;
-  const SamplePlan& plan_;
-  const Variant& variant_;
-  std::vector<std::unique_ptr<PointSpace>> spaces_;
-};
-
-Image render_subdivided(const World::Impl& world, const Camera& camera, const RenderOptions& options, const Variant& variant,
-                        RenderStats& stats) {
-  SampleOptions sampling = options.sampling;
-  const bool to_sample = camera.aperture > 0 || world.shading.area || world.shading.gloss;
-  if (!to_sample) sampling.samples = 1;  // rays through one point would all see the same
-  const SamplePlan plan = plan_samples(sampling, camera, world.shading);
-  stats = {};
-  stats.threads = options.threads > 0 ? options.threads : omp_get_num_procs();
-  stats.isa = variant.name.data();
-  PointTracer tracer(world, camera, options, plan, variant, stats.threads);
-  Image image = subdivide(camera.width, camera.height, options.subdivision, std::ref(tracer));
-  tracer.count(stats);
-  return image;
-}
-
 }  // namespace
 
 std::vector<Isa> isas() {
@@ -210,13 +85,20 @@ std::vector<Isa> isas() {
   return out;
 }
 
-Image render(const World& world, const Camera& camera, const RenderOptions& options, RenderStats& stats) {
+Image render(const World& world, const Camera& camera, const RenderOptions& options, RenderStats& stats, SampleMaps* maps) {
   check(camera, options);
   const Variant& variant = choose(options.isa);
   const World::Impl& w = world.impl();
-  if (options.subdivision.on) return render_subdivided(w, camera, options, variant, stats);
   const FrameView frame = make_frame(camera);
-  const SamplePlan plan = plan_samples(options.sampling, camera, w.shading);
+  SampleOptions sampling = options.sampling;
+  const bool to_sample = camera.aperture > 0 || w.shading.area || w.shading.gloss;
+  if (options.subdivision.on && !to_sample) sampling.samples = 1;  // rays through one point would all see the same
+  SamplePlan plan = plan_samples(sampling, camera, w.shading);
+  if (options.subdivision.on) return render_subdivided(w, camera, frame, plan, variant, options, stats);
+  if (options.refine.on()) {
+    plan.on = true, plan.samples = kMostSamples;
+    return refine(w, camera, frame, plan, variant, options, stats, maps);
+  }
   Image image(camera.width, camera.height);
   const int bands = (camera.height + kBandRows - 1) / kBandRows;
   const int threads = std::min(options.threads > 0 ? options.threads : omp_get_num_procs(), std::max(bands, 1));
@@ -237,7 +119,7 @@ Image render(const World& world, const Camera& camera, const RenderOptions& opti
     for (int band = 0; band < bands; ++band) {
       if (stopped) continue;
       const int y0 = band * kBandRows, y1 = std::min(y0 + kBandRows, camera.height);
-      variant.loops.render_band(w.view, w.shading, frame, y0, y1, space.work(options, y0, camera.width), trace, rays);
+      variant.loops.render_band(w.view, w.shading, frame, y0, y1, space.work(options, static_cast<std::uint32_t>(y0) * static_cast<std::uint32_t>(camera.width)), trace, rays);
       finish_rows(space.sums(), plan.samples, image, y0, y1);
 #pragma omp critical(grelha_progress)
       {
@@ -246,7 +128,7 @@ Image render(const World& world, const Camera& camera, const RenderOptions& opti
       }
     }
 #pragma omp critical(grelha_stats)
-    add(trace, stats.trace), add(rays, stats.rays);
+    stats.trace += trace, stats.rays += rays;
   }
   return image;
 }

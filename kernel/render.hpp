@@ -63,6 +63,22 @@ struct SampleOptions {
   int gloss_rays = 0;  ///< on rough mirrors: so many rays around the mirror direction and that direction; 0: one in its place
 };
 
+/// Samples spent where they help most, instead of SampleOptions::samples a pixel. Wants the sampler kSobol or kRandom.
+struct RefineOptions {
+  double error = 0;    ///< > 0: until the RMSE is at most this at 95 % confidence and no pixel's 95 % interval is wider than
+                       ///< 8 times this; display units, 0 to 1
+  double seconds = 0;  ///< > 0: until these are spent, which depends on the machine; ErrorStats::rounds says what to ask for to repeat it
+  int rounds = 0;      ///< > 0: so many rounds
+  bool on() const { return error > 0 || seconds > 0 || rounds > 0; }
+};
+
+/// By pixel, row 0 on top.
+struct SampleMaps {
+  std::vector<std::uint32_t> samples;  ///< [height * width] spent
+  std::vector<float> error;            ///< [height * width] estimated standard error, root mean square of the channels
+  std::vector<float> width;            ///< [height * width] of the 95 % interval, what may hide from the samples counted in
+};
+
 struct RenderOptions {
   int threads = 0;              ///< 0: one per processor
   int depth = 5;                ///< longest path, at most kMostDepth, the eye ray counted as 1; at its end the background is seen
@@ -70,6 +86,7 @@ struct RenderOptions {
   bool mailbox = true;          ///< skip primitives a ray or packet has already met in another cell
   std::string_view isa = "best";
   SampleOptions sampling;
+  RefineOptions refine;
   Subdivision subdivision;  ///< on: pixels are averages of points of a lattice, `samples` rays through each; one with no effect to sample
   /// Called now and then from one thread at a time with the share done, 0 to 1; returns false to stop.
   std::function<bool(double)> progress;
@@ -78,6 +95,7 @@ struct RenderOptions {
 /// Renders. The picture is the same, bit for bit, for every value of threads, packet, mailbox, isa, density and grid.
 /// Throws std::invalid_argument for an instruction set that is unknown or does not run here, or a bad camera or option.
 /// When `progress` stops it, the rows, or tiles of a subdivided picture, not yet rendered are black.
-Image render(const World& world, const Camera& camera, const RenderOptions& options, RenderStats& stats);
+/// `maps` is filled when samples are spent by error.
+Image render(const World& world, const Camera& camera, const RenderOptions& options, RenderStats& stats, SampleMaps* maps = nullptr);
 
 }  // namespace grelha

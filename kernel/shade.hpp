@@ -23,9 +23,12 @@ inline void add_light(const BandWork& work, std::uint32_t pixel, float r, float 
   s[0] += light_units(r, work.most_light), s[1] += light_units(g, work.most_light), s[2] += light_units(b, work.most_light);
 }
 
-/// The pixel whose samples the rays of one sum are.
-inline std::uint32_t pixel_of(const BandWork& work, std::uint32_t sum) {
-  return work.pixels ? work.pixels[sum] : work.first_pixel + sum;
+/// The pixels whose samples the rays of these sums are.
+inline Words<Lanes> pixels_of(const BandWork& work, const std::uint32_t* sums) {
+  if (!work.pixels) return load_words<Lanes>(sums) + work.first_pixel;
+  std::uint32_t pixel[kWidth<Lanes>];
+  for (int k = 0; k < kWidth<Lanes>; ++k) pixel[k] = work.pixels[sums[k]];
+  return load_words<Lanes>(pixel);
 }
 
 struct RayTally {
@@ -88,9 +91,12 @@ inline Vec3<Lanes> gather3(const ShadingView& s, MaterialField r, const std::uin
 }
 
 /// Makes the lanes beyond the last hit harmless: copies of the last one.
-inline void pad_tail(Batch& b, int hits) {
-  const int end = (hits + kWidth<Lanes> - 1) / kWidth<Lanes> * kWidth<Lanes>;
-  for (int i = hits; i < end; ++i) b.material[i] = b.material[hits - 1];
+inline void pad_tail(Batch& b, int hits, bool sampled) {
+  const int end = (hits + kWidth<Lanes> - 1) / kWidth<Lanes> * kWidth<Lanes>, last = hits - 1;
+  for (int i = hits; i < end; ++i) {
+    b.material[i] = b.material[last];
+    if (sampled) b.hit_pixel[i] = b.hit_pixel[last], b.hit_sample[i] = b.hit_sample[last], b.hit_path[i] = b.hit_path[last];
+  }
 }
 
 inline unsigned lanes_of(int first, int count) {
@@ -99,21 +105,24 @@ inline unsigned lanes_of(int first, int count) {
 }
 
 /// Tells apart the uses of a pair of dimensions along one path; 0 for the first light, or lobe, that a camera ray meets.
-inline std::uint32_t sample_key(std::uint32_t path, std::uint32_t use) {
-  return path == 0 && use == 0 ? 0 : scatter(path, use) | 1u;
+template <class Word>
+inline Word sample_keys(Word path, std::uint32_t use) {
+  const Word key = scatter(path, use) | 1u;
+  return use != 0 ? key : path == 0u ? Word{} : key;
+}
+
+/// Numbers for an effect at the hits i, i + 1, ..., which takes `count` samples for each of the pixel's: the `number`-th.
+inline PairOf<Lanes> hit_samples(const Shader& s, int i, int dimension, std::uint32_t use, int number, int count, const Strata& strata) {
+  const Words<Lanes> index = load_words<Lanes>(s.b.hit_sample + i) * static_cast<std::uint32_t>(count) + static_cast<std::uint32_t>(number);
+  return sample_pairs<Lanes>(s.work.plan, pixels_of(s.work, s.b.hit_pixel + i), index, dimension,
+                             sample_keys(load_words<Lanes>(s.b.hit_path + i), use), strata);
 }
 
 /// Points of an area light for the hits i, i + 1, ...: each pixel's sample has its own.
-[[gnu::noinline]] inline Vec3<Lanes> light_points(const Shader& s, int i, int hits, const float* light, int light_index, int ray) {
+[[gnu::noinline]] inline Vec3<Lanes> light_points(const Shader& s, int i, const float* light, int light_index, int ray) {
   const SamplePlan& plan = s.work.plan;
-  float u[kWidth<Lanes>] = {}, v[kWidth<Lanes>] = {};
-  for (int k = 0; k < kWidth<Lanes> && i + k < hits; ++k) {
-    const std::uint32_t index = s.b.hit_sample[i + k] * static_cast<std::uint32_t>(plan.light_rays) + static_cast<std::uint32_t>(ray);
-    const Pair p = sample_pair(plan, pixel_of(s.work, s.b.hit_pixel[i + k]), index, plan.light,
-                               sample_key(s.b.hit_path[i + k], static_cast<std::uint32_t>(light_index)), plan.light_strata);
-    u[k] = p.u - .5f, v[k] = p.v - .5f;
-  }
-  const Lanes a = load<Lanes>(u), c = load<Lanes>(v);
+  const PairOf<Lanes> p = hit_samples(s, i, plan.light, static_cast<std::uint32_t>(light_index), ray, plan.light_rays, plan.light_strata);
+  const Lanes a = p.u - Lanes(.5f), c = p.v - Lanes(.5f);
   return {Lanes(light[0]) + (a * Lanes(light[6]) + c * Lanes(light[9])),
           Lanes(light[1]) + (a * Lanes(light[7]) + c * Lanes(light[10])),
           Lanes(light[2]) + (a * Lanes(light[8]) + c * Lanes(light[11]))};
@@ -131,7 +140,7 @@ inline void light_hits(const Shader& s, int hits, int light_index, bool area, in
   int n = 0;
   for (int i = 0; i < hits; i += kWidth<Lanes>) {
     const Vec3<Lanes> p = load3(b.px, b.py, b.pz, i), g = load3(b.gx, b.gy, b.gz, i), normal = load3(b.nx, b.ny, b.nz, i);
-    if (area) at = light_points(s, i, hits, light, light_index, ray);
+    if (area) at = light_points(s, i, light, light_index, ray);
     const Vec3<Lanes> org = p + load<Lanes>(b.away + i) * g;  // the lit side is the viewer's side
     const Vec3<Lanes> dir = at - org, l = normalize(dir);
     const Lanes nl = dot(normal, l);
@@ -160,14 +169,6 @@ inline void light_hits(const Shader& s, int hits, int light_index, bool area, in
   }
   if (n == 0) return;
   s.rays.shadow += static_cast<unsigned>(n);
-  for (int i = 0; i < n; ++i) {
-    float org[3] = {b.lox[i], b.loy[i], b.loz[i]};
-    const float dir[3] = {b.ldx[i], b.ldy[i], b.ldz[i]};
-    if (const double shift = approach(s.scene, org, dir); shift > 0) {
-      b.lox[i] = org[0], b.loy[i] = org[1], b.loz[i] = org[2];
-      b.lt_min[i] = static_cast<float>(-shift), b.lt[i] = static_cast<float>(1 - shift);
-    }
-  }
   const RayArrays rays{b.lox, b.loy, b.loz, b.ldx, b.ldy, b.ldz, b.lt_min, b.lt, b.lid};
   trace<true>(s.scene, rays, n, {s.work.packet == 0 ? 64 : s.work.packet, s.work.mailbox}, s.counters);
   for (int i = 0; i < n; ++i)
@@ -183,24 +184,16 @@ inline void push(RayStack& stack, const Vec3<float>& org, const Vec3<float>& dir
   stack.pixel[i] = pixel, stack.depth[i] = depth;
 }
 
-/// Two unit vectors across a third, by + - * / alone: Duff et al., "Building an Orthonormal Basis, Revisited", 2017.
-inline void across(const Vec3<float>& n, Vec3<float>& u, Vec3<float>& v) {
-  const float sign = n.z < 0 ? -1.f : 1.f, a = -1.f / (sign + n.z), b = n.x * n.y * a;
-  u = {1 + sign * n.x * n.x * a, sign * b, 0 - sign * n.x};
-  v = {b, sign + n.y * n.y * a, 0 - n.y};
-}
-
-/// A direction of the lobe of a rough mirror: the unit mirror direction moved within a disc across it, kept above the surface.
-[[gnu::noinline]] inline Vec3<float> lobe_direction(const Shader& s, int hit, const Vec3<float>& mirror, float roughness, int ray, int rays) {
+/// Directions in the lobes of the rough mirrors at the hits i, i + 1, ...: the unit mirror directions moved within a disc
+/// across them, kept above the surface. Each takes `rays` of them; this is the `ray`-th.
+[[gnu::noinline]] inline Vec3<Lanes> lobe_directions(const Shader& s, int i, const Vec3<Lanes>& mirror, const Lanes& roughness, int ray, int rays) {
   const SamplePlan& plan = s.work.plan;
-  const std::uint32_t index = s.b.hit_sample[hit] * static_cast<std::uint32_t>(rays) + static_cast<std::uint32_t>(ray);
-  const Pair d = disc_point(sample_pair(plan, pixel_of(s.work, s.b.hit_pixel[hit]), index, plan.gloss,
-                                        sample_key(s.b.hit_path[hit], 0), plan.gloss_strata));
-  Vec3<float> u, v;
+  const PairOf<Lanes> d = disc_point(hit_samples(s, i, plan.gloss, 0, ray, rays, plan.gloss_strata));
+  Vec3<Lanes> u, v;
   across(mirror, u, v);
-  const Vec3<float> to = mirror + (roughness * d.u) * u + (roughness * d.v) * v, g{s.b.gx[hit], s.b.gy[hit], s.b.gz[hit]};
-  const float under = dot(to, g);
-  return normalize(under < 0 ? to - (under + under) * g : to);
+  const Vec3<Lanes> to = mirror + (roughness * d.u) * u + (roughness * d.v) * v, g = load3(s.b.gx, s.b.gy, s.b.gz, i);
+  const Lanes under = dot(to, g);
+  return normalize(select(under < Lanes(0), to - (under + under) * g, to));
 }
 
 /// Sends the reflected and refracted rays of all hits. At the end of the longest path they see the background.
@@ -208,6 +201,8 @@ inline void send_on(const Shader& s, RayStack& stack, int hits) {
   Batch& b = s.b;
   const float* const bg = s.shading.background;
   const Lanes o(0), one(1);
+  const int around = s.work.plan.gloss_rays;
+  const float part = 1.f / static_cast<float>(around + 1);
   for (int i = 0; i < hits; i += kWidth<Lanes>) {
     const Vec3<Lanes> n = load3(b.nx, b.ny, b.nz, i), g = load3(b.gx, b.gy, b.gz, i), v = load3(b.vx, b.vy, b.vz, i);
     const Vec3<Lanes> mirror = gather3(s.shading, kMirrorR, b.material + i);
@@ -251,42 +246,48 @@ inline void send_on(const Shader& s, RayStack& stack, int hits) {
     const unsigned mirrors = bits(either(either(up.x != o, up.y != o), up.z != o)) & in;
     const unsigned clears = bits(either(either(down.x != o, down.y != o), down.z != o)) & in;
     if ((mirrors | clears) == 0) continue;
+    unsigned rough = 0;
+    Lanes roughness(0);
+    Vec3<Lanes> first = reflected;
+    if (s.shading.gloss) {
+      roughness = gather(s.shading, kRoughness, b.material + i);
+      const Mask<Lanes> spread = roughness > o;
+      rough = bits(spread) & mirrors;
+      if (rough != 0 && around == 0) first = select(spread, lobe_directions(s, i, reflected, roughness, 0, 1), reflected);
+    }
     float r[3][kWidth<Lanes>], q[3][kWidth<Lanes>], u[3][kWidth<Lanes>], d[3][kWidth<Lanes>];
-    store(r[0], reflected.x), store(r[1], reflected.y), store(r[2], reflected.z);
+    store(r[0], first.x), store(r[1], first.y), store(r[2], first.z);
     store(q[0], through.x), store(q[1], through.y), store(q[2], through.z);
     store(u[0], up.x), store(u[1], up.y), store(u[2], up.z);
     store(d[0], down.x), store(d[1], down.y), store(d[2], down.z);
+    const auto ends = [&](int k) { return b.hit_depth[i + k] >= static_cast<std::uint32_t>(s.work.depth); };
+    const auto go = [&](int k, const float (&dir)[3][kWidth<Lanes>], const float (&weight)[3][kWidth<Lanes>], float share,
+                        std::uint32_t kind, std::uint32_t branch) {
+      const int h = i + k;
+      const Vec3<float> p{b.px[h], b.py[h], b.pz[h]}, ng{b.gx[h], b.gy[h], b.gz[h]}, way{dir[0][k], dir[1][k], dir[2][k]};
+      if (s.work.plan.on) {
+        stack.sample[stack.size] = b.hit_sample[h];
+        stack.path[stack.size] = scatter(b.hit_path[h], branch + (kind != 0 ? 0x10001u : 1u));
+      }
+      push(stack, leave(p, ng, b.away[h], way), way, share * Vec3<float>{weight[0][k], weight[1][k], weight[2][k]}, b.hit_pixel[h],
+           (b.hit_depth[h] + 1) | kind);
+      ++(kind != 0 ? s.rays.refraction : s.rays.reflection);
+    };
     for (unsigned rest = mirrors | clears; rest != 0; rest &= rest - 1) {
-      const int k = __builtin_ctz(rest), h = i + k;
-      const std::uint32_t depth = b.hit_depth[h] + 1, pixel = b.hit_pixel[h];
-      const Vec3<float> p{b.px[h], b.py[h], b.pz[h]}, ng{b.gx[h], b.gy[h], b.gz[h]};
-      const auto send = [&](const float (&dir)[3][kWidth<Lanes>], const float (&weight)[3][kWidth<Lanes>], std::uint64_t& count,
-                            std::uint32_t kind) {
-        if (depth > static_cast<std::uint32_t>(s.work.depth)) {
-          add_light(s.work, pixel, weight[0][k] * bg[0], weight[1][k] * bg[1], weight[2][k] * bg[2]);
-          return;
-        }
-        const Vec3<float> to{dir[0][k], dir[1][k], dir[2][k]};
-        const Vec3<float> w3{weight[0][k], weight[1][k], weight[2][k]};
-        const auto go = [&](const Vec3<float>& way, const Vec3<float>& carried, std::uint32_t branch) {
-          if (s.work.plan.on) {
-            stack.sample[stack.size] = b.hit_sample[h];
-            stack.path[stack.size] = scatter(b.hit_path[h], branch + (kind != 0 ? 0x10001u : 1u));
-          }
-          push(stack, leave(p, ng, b.away[h], way), way, carried, pixel, depth | kind);
-          ++count;
-        };
-        const float roughness = s.shading.gloss && kind == 0 ? s.shading.materials.field[kRoughness][b.material[h]] : 0.f;
-        if (!(roughness > 0)) return go(to, w3, 0);
-        const int around = s.work.plan.gloss_rays;
-        if (around == 0) return go(lobe_direction(s, h, to, roughness, 0, 1), w3, 0);
-        const Vec3<float> part = (1.f / static_cast<float>(around + 1)) * w3;
-        go(to, part, 0);
-        for (int j = 0; j < around; ++j)
-          go(lobe_direction(s, h, to, roughness, j, around), part, static_cast<std::uint32_t>(j + 1));
+      const int k = __builtin_ctz(rest);
+      const auto send = [&](const float (&dir)[3][kWidth<Lanes>], const float (&weight)[3][kWidth<Lanes>], float share, std::uint32_t kind) {
+        if (!ends(k)) return go(k, dir, weight, share, kind, 0);
+        add_light(s.work, b.hit_pixel[i + k], weight[0][k] * bg[0], weight[1][k] * bg[1], weight[2][k] * bg[2]);
       };
-      if (mirrors >> k & 1) send(r, u, s.rays.reflection, 0);
-      if (clears >> k & 1) send(q, d, s.rays.refraction, kRefracted);
+      if (mirrors >> k & 1) send(r, u, rough >> k & 1 ? part : 1.f, 0);
+      if (clears >> k & 1) send(q, d, 1, kRefracted);
+    }
+    if (rough == 0) continue;
+    for (int j = 0; j < around; ++j) {  // the rays around the mirror direction
+      const Vec3<Lanes> lobe = lobe_directions(s, i, reflected, roughness, j, around);
+      store(r[0], lobe.x), store(r[1], lobe.y), store(r[2], lobe.z);
+      for (unsigned rest = rough; rest != 0; rest &= rest - 1)
+        if (const int k = __builtin_ctz(rest); !ends(k)) go(k, r, u, part, 0, static_cast<std::uint32_t>(j + 1));
     }
   }
 }
@@ -296,22 +297,14 @@ inline void send_on(const Shader& s, RayStack& stack, int hits) {
 inline void shade_batch(const Shader& s, RayStack& stack, const int* ends, int runs, int packet) {
   Batch& b = s.b;
   const int count = ends[runs - 1];
-  for (int i = 0; i < count; ++i) {
-    float org[3] = {b.ox[i], b.oy[i], b.oz[i]};
-    const float dir[3] = {b.dx[i], b.dy[i], b.dz[i]};
-    b.t_min[i] = 0, b.t[i] = kInfinity;
-    if (const double shift = approach(s.scene, org, dir); shift > 0) {
-      b.ox[i] = org[0], b.oy[i] = org[1], b.oz[i] = org[2];
-      b.t_min[i] = static_cast<float>(-shift);
-    }
-  }
+  for (int i = 0; i < count; ++i) b.t_min[i] = 0, b.t[i] = kInfinity;
   const TraceOptions options{s.work.packet != 0 ? s.work.packet : packet, s.work.mailbox};
   for (int k = 0, at = 0; k < runs; at = ends[k++])
     trace<false>(s.scene, {b.ox + at, b.oy + at, b.oz + at, b.dx + at, b.dy + at, b.dz + at, b.t_min + at, b.t + at, b.id + at},
                  ends[k] - at, options, s.counters);
   const int hits = find_surfaces(s, count);
   if (hits == 0) return;
-  pad_tail(b, hits);
+  pad_tail(b, hits, s.work.plan.on);
   if (s.shading.emits)
     for (int i = 0; i < hits; ++i) {
       const auto e = [&](MaterialField f) { return s.shading.materials.field[f][b.material[i]]; };

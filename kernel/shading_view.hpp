@@ -60,6 +60,10 @@ inline constexpr double kLightUnit = 4294967296.0;
 inline constexpr float kMostLight = 33554432.f;
 
 inline constexpr int kBatch = 512;     ///< rays shaded together
+inline constexpr int kCacheLine = 16;  ///< floats
+/// Length of an array of a batch. A cache keeps few lines whose addresses are equal modulo 4 KiB, and each hit writes to some
+/// thirty arrays side by side: a line more than the power of two lets all of them stay.
+inline constexpr int kBatchRow = kBatch + kCacheLine;
 inline constexpr int kBandRows = 8;    ///< image rows a thread takes at a time: one row of 8 x 8 packets
 inline constexpr int kTile = 8;
 
@@ -76,24 +80,30 @@ struct RayStack {
 /// One thread's arrays for one batch; the caller allocates one a thread.
 struct Batch {
   // the rays
-  alignas(64) float ox[kBatch], oy[kBatch], oz[kBatch], dx[kBatch], dy[kBatch], dz[kBatch], t_min[kBatch], t[kBatch];
-  alignas(64) float wr[kBatch], wg[kBatch], wb[kBatch];
-  std::uint32_t id[kBatch], pixel[kBatch], depth[kBatch];
-  std::uint32_t sample[kBatch], path[kBatch];  ///< of its pixel; which bounces led here (0: none)
+  alignas(64) float ox[kBatchRow], oy[kBatchRow], oz[kBatchRow], dx[kBatchRow], dy[kBatchRow], dz[kBatchRow], t_min[kBatchRow], t[kBatchRow];
+  alignas(64) float wr[kBatchRow], wg[kBatchRow], wb[kBatchRow];
+  std::uint32_t id[kBatchRow], pixel[kBatchRow], depth[kBatchRow];
+  std::uint32_t sample[kBatchRow], path[kBatchRow];  ///< of its pixel; which bounces led here (0: none)
   // what they met, misses left out
-  alignas(64) float px[kBatch], py[kBatch], pz[kBatch];     ///< point on the surface
-  alignas(64) float gx[kBatch], gy[kBatch], gz[kBatch];     ///< geometric normal, unit, towards the viewer
-  alignas(64) float nx[kBatch], ny[kBatch], nz[kBatch];     ///< shading normal, unit, towards the viewer
-  alignas(64) float vx[kBatch], vy[kBatch], vz[kBatch];     ///< unit vector to the viewer
-  alignas(64) float away[kBatch];                           ///< how far along g a ray must start so as not to meet its own surface
-  alignas(64) float inside[kBatch];                         ///< 1: met from within
-  alignas(64) float hr[kBatch], hg[kBatch], hb[kBatch];     ///< weight of what this point sends
-  std::uint32_t hit_pixel[kBatch], hit_depth[kBatch], material[kBatch], hit_sample[kBatch], hit_path[kBatch];
+  alignas(64) float px[kBatchRow], py[kBatchRow], pz[kBatchRow];     ///< point on the surface
+  alignas(64) float gx[kBatchRow], gy[kBatchRow], gz[kBatchRow];     ///< geometric normal, unit, towards the viewer
+  alignas(64) float nx[kBatchRow], ny[kBatchRow], nz[kBatchRow];     ///< shading normal, unit, towards the viewer
+  alignas(64) float vx[kBatchRow], vy[kBatchRow], vz[kBatchRow];     ///< unit vector to the viewer
+  alignas(64) float away[kBatchRow];                           ///< how far along g a ray must start so as not to meet its own surface
+  alignas(64) float inside[kBatchRow];                         ///< 1: met from within
+  alignas(64) float hr[kBatchRow], hg[kBatchRow], hb[kBatchRow];     ///< weight of what this point sends
+  std::uint32_t hit_pixel[kBatchRow], hit_depth[kBatchRow], material[kBatchRow], hit_sample[kBatchRow], hit_path[kBatchRow];
   // shadow rays and the light each lets through
-  alignas(64) float lox[kBatch], loy[kBatch], loz[kBatch], ldx[kBatch], ldy[kBatch], ldz[kBatch], lt_min[kBatch], lt[kBatch];
-  alignas(64) float lr[kBatch], lg[kBatch], lb[kBatch];
-  std::uint32_t lid[kBatch], light_pixel[kBatch];
+  alignas(64) float lox[kBatchRow], loy[kBatchRow], loz[kBatchRow], ldx[kBatchRow], ldy[kBatchRow], ldz[kBatchRow], lt_min[kBatchRow], lt[kBatchRow];
+  alignas(64) float lr[kBatchRow], lg[kBatchRow], lb[kBatchRow];
+  std::uint32_t lid[kBatchRow], light_pixel[kBatchRow];
 };
+
+/// Consecutive samples of one pixel, in kParts parts of equal size with a sum each.
+struct PixelRun {
+  std::uint32_t pixel, first, count;  ///< count: a multiple of kParts
+};
+inline constexpr int kParts = 4;
 
 struct BandWork {
   Batch* batch;
@@ -110,8 +120,7 @@ struct BandWork {
 
 /// Points of the picture in pixels from its upper left corner, neighbours next to each other; point i has sum i.
 struct PointList {
-  const float *x, *y;         ///< [count]
-  const std::uint32_t* hash;  ///< [count] in place of a pixel's number: names the point's random numbers
+  const float *x, *y;  ///< [count]
   int count;
 };
 

@@ -11,6 +11,9 @@ namespace grelha {
 struct RayCounts {
   std::uint64_t primary = 0, shadow = 0, reflection = 0, refraction = 0;
   std::uint64_t total() const { return primary + shadow + reflection + refraction; }
+  void operator+=(const RayCounts& o) {
+    primary += o.primary, shadow += o.shadow, reflection += o.reflection, refraction += o.refraction;
+  }
 };
 
 struct TestCounts {
@@ -28,11 +31,28 @@ struct TraceCounts {
   std::uint64_t visits = 0;  ///< grid cells looked into, by a packet or by a ray
   TestCounts tests;
   PacketCounts packets;
+  void operator+=(const TraceCounts& o) {
+    visits += o.visits;
+    tests.sphere += o.tests.sphere, tests.triangle += o.tests.triangle, tests.cone += o.tests.cone, tests.plane += o.tests.plane;
+    packets.formed += o.packets.formed, packets.fell_back += o.packets.fell_back;
+    packets.lanes_issued += o.packets.lanes_issued, packets.lanes_busy += o.packets.lanes_busy;
+  }
+};
+
+/// What is known of the error of a picture whose samples were spent by error; display units, 0 to 1.
+struct ErrorStats {
+  double rmse = 0;             ///< of all pixels and channels against the converged picture, estimated
+  double rmse_bound = 0;       ///< not exceeded at 95 % confidence
+  double widest = 0;           ///< widest 95 % interval of a pixel
+  std::uint64_t samples = 0;   ///< of all pixels
+  std::uint32_t least = 0, most = 0;  ///< of one pixel
+  int rounds = 0;              ///< of doubling; RefineOptions::rounds repeats them
 };
 
 struct RenderStats {
   RayCounts rays;
   TraceCounts trace;
+  ErrorStats error;  ///< only with RefineOptions
   int threads = 0;
   const char* isa = "";
 };

@@ -5,17 +5,64 @@
 
 namespace grelha::GRELHA_ISA {
 
-/// Rays as the caller holds them. t: in, the end of the search; out, the nearest hit (closest) or -infinity (occluded).
+/// Rays as the caller holds them. t: in, the end of the search; out, the nearest hit (closest) or -infinity (occluded). Origins,
+/// t_min and t come back as those of rays moved near, see bring_near(); `shift`, zero on entry, says how far. All may be changed.
 struct RayArrays {
-  const float *ox, *oy, *oz, *dx, *dy, *dz, *t_min;
-  float* t;
-  std::uint32_t* id;  ///< out; kNoPrimitive: nothing
+  float *ox, *oy, *oz;
+  const float *dx, *dy, *dz;
+  float *t_min, *t;
+  std::uint32_t* id;       ///< out; kNoPrimitive: nothing
+  float* shift = nullptr;  ///< out, or null
 };
 
 struct TraceOptions {
   int packet;    ///< 1, 16 or 64
   bool mailbox;  ///< for packets
 };
+
+/// Moves the origin of a ray that starts far from everything finite to where it comes near, in double: from afar float
+/// tests would be off by eps times the distance, more than the grids allow for. Returns the t it moved by. A function of
+/// ray and scene alone, so every way of tracing sees the same ray.
+inline double approach(const SceneView& scene, float (&org)[3], const float (&dir)[3]) {
+  bool far = false;
+  for (int a = 0; a < 3; ++a) far |= org[a] < scene.box_lo[a] - scene.reach || org[a] > scene.box_hi[a] + scene.reach;
+  if (!far || !scene.finite) return 0;
+  double dd = 0, along = 0;
+  for (int a = 0; a < 3; ++a) {
+    const double d = dir[a], c = .5 * (static_cast<double>(scene.box_lo[a]) + scene.box_hi[a]) - org[a];
+    dd += d * d, along += c * d;
+  }
+  const double shift = along / dd - scene.reach / __builtin_sqrt(dd);
+  if (!(shift > 0) || !(shift < 1e300)) return 0;
+  for (int a = 0; a < 3; ++a) org[a] = static_cast<float>(org[a] + shift * dir[a]);
+  return shift;
+}
+
+/// The same for the rays of a packet. Planes come first: a ray that leaves a plane and is then moved along would meet it again,
+/// by as little as the rounding of the way.
+inline void bring_near(const SceneView& scene, Packet& p) {
+  p.moved = false;
+  if (!scene.finite) return;
+  for (int i = 0; i < p.size; i += kWidth<Lanes>) {
+    Mask<Lanes> far = Lanes(0) != Lanes(0);
+    for (int a = 0; a < 3; ++a) {
+      const Lanes o = load<Lanes>(p.org[a] + i);
+      far = either(far, either(o < Lanes(scene.box_lo[a] - scene.reach), o > Lanes(scene.box_hi[a] + scene.reach)));
+    }
+    if (none(far)) continue;
+    if (!p.moved) __builtin_memset(p.shift, 0, sizeof p.shift);
+    p.moved = true;
+    for (int k = i; k < i + kWidth<Lanes> && k < p.size; ++k) {
+      float org[3] = {p.org[0][k], p.org[1][k], p.org[2][k]};
+      const float dir[3] = {p.dir[0][k], p.dir[1][k], p.dir[2][k]};
+      const double shift = approach(scene, org, dir);
+      if (!(shift > 0)) continue;
+      for (int a = 0; a < 3; ++a) p.org[a][k] = org[a];
+      p.t_min[k] = static_cast<float>(p.t_min[k] - shift), p.best[k] = static_cast<float>(p.best[k] - shift);
+      p.shift[k] = static_cast<float>(shift);
+    }
+  }
+}
 
 template <bool kAny>
 inline void test_planes(const SceneView& scene, Packet& p, Counters& n) {
@@ -54,7 +101,6 @@ inline void test_outside(const CellLists& lists, Packet& p, Counters& n) {
 
 template <bool kAny>
 inline void trace_alone(const SceneView& scene, Packet& p, bool any_triangles, Counters& n) {
-  test_planes<kAny>(scene, p, n);
   for (int i = 0; i < p.size; ++i) {
     if (!(p.best[i] > p.t_min[i])) continue;
     Single r = single_of(p, i, any_triangles);
@@ -71,8 +117,9 @@ template <bool kAny>
 inline void trace_packet(const SceneView& scene, Packet& p, const TraceOptions& options, Counters& n) {
   const bool any_triangles = scene.geometry.triangle_count > 0;
   prepare(p, any_triangles);
-  if (options.packet == 1) return trace_alone<kAny>(scene, p, any_triangles, n);
   test_planes<kAny>(scene, p, n);
+  bring_near(scene, p);
+  if (options.packet == 1) return trace_alone<kAny>(scene, p, any_triangles, n);
   test_outside<kAny>(scene.outside, p, n);
   for (int g = 0; g < scene.grid_count; ++g) march<kAny>(scene.grids[g], p, options.mailbox, any_triangles, n);
 }
@@ -92,25 +139,11 @@ inline void trace(const SceneView& scene, const RayArrays& rays, int count, cons
     trace_packet<kAny>(scene, p, options, n);
     __builtin_memcpy(rays.t + first, p.best, bytes);
     __builtin_memcpy(rays.id + first, p.id, bytes);
+    if (!p.moved) continue;
+    __builtin_memcpy(rays.ox + first, p.org[0], bytes), __builtin_memcpy(rays.oy + first, p.org[1], bytes);
+    __builtin_memcpy(rays.oz + first, p.org[2], bytes), __builtin_memcpy(rays.t_min + first, p.t_min, bytes);
+    if (rays.shift) __builtin_memcpy(rays.shift + first, p.shift, bytes);
   }
-}
-
-/// Moves the origin of a ray that starts far from everything finite to where it comes near, in double: from afar float
-/// tests would be off by eps times the distance, more than the grids allow for. Returns the t it moved by. A function of
-/// ray and scene alone, so every way of tracing sees the same ray.
-inline double approach(const SceneView& scene, float (&org)[3], const float (&dir)[3]) {
-  bool far = false;
-  for (int a = 0; a < 3; ++a) far |= org[a] < scene.box_lo[a] - scene.reach || org[a] > scene.box_hi[a] + scene.reach;
-  if (!far || !scene.finite) return 0;
-  double dd = 0, along = 0;
-  for (int a = 0; a < 3; ++a) {
-    const double d = dir[a], c = .5 * (static_cast<double>(scene.box_lo[a]) + scene.box_hi[a]) - org[a];
-    dd += d * d, along += c * d;
-  }
-  const double shift = along / dd - scene.reach / __builtin_sqrt(dd);
-  if (!(shift > 0) || !(shift < 1e300)) return 0;
-  for (int a = 0; a < 3; ++a) org[a] = static_cast<float>(org[a] + shift * dir[a]);
-  return shift;
 }
 
 }  // namespace grelha::GRELHA_ISA

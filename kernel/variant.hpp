@@ -2,6 +2,7 @@
 // What each variant_*.cpp compiles: the hot loops behind the functions of a Variant. Included once per instruction set.
 
 #include "kernel/band.hpp"
+#include "kernel/beam.hpp"
 #include "kernel/points.hpp"
 #include "kernel/reference.hpp"
 #include "kernel/variants.hpp"
@@ -15,30 +16,26 @@ inline void add(const Counters& n, TraceCounts& to) {
   to.packets.lanes_issued += n.issued, to.packets.lanes_busy += n.busy;
 }
 
-/// Rays are traced in arrays of our own, far ones brought near; t is written back where something was met.
+/// Rays are traced in arrays of our own; t is written back where something was met.
 template <bool kAny>
 inline void trace_span(const SceneView& scene, const RaySpan& rays, const TraceSettings& settings, TraceCounts& counts) {
   constexpr int kChunk = 256;
-  alignas(64) float moved[7][kChunk], t[kChunk], shifts[kChunk];
+  alignas(64) float org[3][kChunk], t_min[kChunk], t[kChunk], shift[kChunk];
   Counters n;
   for (int first = 0; first < rays.count; first += kChunk) {
     const int count = rays.count - first < kChunk ? rays.count - first : kChunk;
     for (int i = 0; i < count; ++i) {
       const int r = first + i;
-      float org[3] = {rays.ox[r], rays.oy[r], rays.oz[r]};
-      const float dir[3] = {rays.dx[r], rays.dy[r], rays.dz[r]};
-      const double shift = approach(scene, org, dir);
-      for (int a = 0; a < 3; ++a) moved[a][i] = org[a], moved[3 + a][i] = dir[a];
-      moved[6][i] = static_cast<float>(rays.t_min[r] - shift), t[i] = static_cast<float>(rays.t[r] - shift);
-      shifts[i] = static_cast<float>(shift);
+      org[0][i] = rays.ox[r], org[1][i] = rays.oy[r], org[2][i] = rays.oz[r];
+      t_min[i] = rays.t_min[r], t[i] = rays.t[r], shift[i] = 0;
     }
-    const RayArrays arrays{moved[0], moved[1], moved[2], moved[3], moved[4], moved[5], moved[6], t, rays.id + first};
+    const RayArrays arrays{org[0], org[1], org[2], rays.dx + first, rays.dy + first, rays.dz + first, t_min, t, rays.id + first, shift};
     if (settings.method == Method::kReference)
       trace_reference<kAny>(scene, arrays, count, settings.mailbox, n);
     else
       trace<kAny>(scene, arrays, count, {settings.method == Method::kSingle ? 1 : settings.packet, settings.mailbox}, n);
     for (int i = 0; i < count; ++i)
-      if (rays.id[first + i] != kNoPrimitive) rays.t[first + i] = t[i] + shifts[i];
+      if (rays.id[first + i] != kNoPrimitive) rays.t[first + i] = t[i] + shift[i];
   }
   add(n, counts);
 }
@@ -50,14 +47,34 @@ inline void occluded(const SceneView& scene, const RaySpan& rays, const TraceSet
   trace_span<true>(scene, rays, s, counts);
 }
 
+inline void tally(const Counters& n, const RayTally& rays, TraceCounts& trace_counts, RayCounts& ray_counts) {
+  add(n, trace_counts);
+  ray_counts.primary += rays.primary, ray_counts.shadow += rays.shadow;
+  ray_counts.reflection += rays.reflection, ray_counts.refraction += rays.refraction;
+}
+
 inline void band(const SceneView& scene, const ShadingView& shading, const FrameView& frame, int y0, int y1, const BandWork& work,
                  TraceCounts& trace_counts, RayCounts& ray_counts) {
   Counters n;
   RayTally rays;
   render_band(scene, shading, frame, y0, y1, work, n, rays);
+  tally(n, rays, trace_counts, ray_counts);
+}
+
+inline void pixel_runs(const SceneView& scene, const ShadingView& shading, const FrameView& frame, const PixelRun* runs, int count,
+                       const BandWork& work, TraceCounts& trace_counts, RayCounts& ray_counts) {
+  Counters n;
+  RayTally rays;
+  render_runs(scene, shading, frame, runs, count, work, n, rays);
+  tally(n, rays, trace_counts, ray_counts);
+}
+
+inline void doubt(const SceneView& scene, const ShadingView& shading, const FrameView& frame, int x0, int y0, int bounces,
+                  float (&out)[kTile * kTile], TraceCounts& trace_counts) {
+  Counters n;
+  Watcher watcher(scene, shading, n);
+  tile_doubt(watcher, frame, x0, y0, kTile, bounces, out);
   add(n, trace_counts);
-  ray_counts.primary += rays.primary, ray_counts.shadow += rays.shadow;
-  ray_counts.reflection += rays.reflection, ray_counts.refraction += rays.refraction;
 }
 
 inline void points(const SceneView& scene, const ShadingView& shading, const FrameView& frame, const PointList& list, const BandWork& work,
@@ -65,9 +82,7 @@ inline void points(const SceneView& scene, const ShadingView& shading, const Fra
   Counters n;
   RayTally rays;
   render_points(scene, shading, frame, list, work, n, rays);
-  add(n, trace_counts);
-  ray_counts.primary += rays.primary, ray_counts.shadow += rays.shadow;
-  ray_counts.reflection += rays.reflection, ray_counts.refraction += rays.refraction;
+  tally(n, rays, trace_counts, ray_counts);
 }
 
 inline void powers(const float* x, const float* y, float* out, int count) {
@@ -80,6 +95,22 @@ inline void powers(const float* x, const float* y, float* out, int count) {
   }
 }
 
+inline void samples(const SamplePlan& plan, const std::uint32_t* pixel, const std::uint32_t* index, int dimension, const std::uint32_t* key,
+                    const Strata& strata, float* u, float* v, int count) {
+  for (int i = 0; i < count; i += kWidth<Lanes>) {
+    std::uint32_t in[3][kWidth<Lanes>];
+    const int left = count - i < kWidth<Lanes> ? count - i : kWidth<Lanes>;
+    for (int k = 0; k < kWidth<Lanes>; ++k) {
+      const int from = i + (k < left ? k : 0);
+      in[0][k] = pixel[from], in[1][k] = index[from], in[2][k] = key[from];
+    }
+    const PairOf<Lanes> p = sample_pairs<Lanes>(plan, load_words<Lanes>(in[0]), load_words<Lanes>(in[1]), dimension, load_words<Lanes>(in[2]), strata);
+    store_some(u + i, p.u, left), store_some(v + i, p.v, left);
+  }
+}
+
 }  // namespace grelha::GRELHA_ISA
 
-#define GRELHA_LOOPS {GRELHA_ISA::closest, GRELHA_ISA::occluded, GRELHA_ISA::band, GRELHA_ISA::powers, GRELHA_ISA::points}
+#define GRELHA_LOOPS                                                                                                       \
+  {GRELHA_ISA::closest, GRELHA_ISA::occluded, GRELHA_ISA::band, GRELHA_ISA::pixel_runs, GRELHA_ISA::doubt, GRELHA_ISA::powers, \
+   GRELHA_ISA::samples, GRELHA_ISA::sampled_rays, GRELHA_ISA::points}

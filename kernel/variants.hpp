@@ -38,8 +38,18 @@ struct VariantLoops {
   void (*closest)(const SceneView&, const RaySpan&, const TraceSettings&, TraceCounts&);
   void (*occluded)(const SceneView&, const RaySpan&, const TraceSettings&, TraceCounts&);
   void (*render_band)(const SceneView&, const ShadingView&, const FrameView&, int y0, int y1, const BandWork&, TraceCounts&, RayCounts&);
+  /// Samples of chosen pixels, kParts sums a run; see render_runs.
+  void (*render_runs)(const SceneView&, const ShadingView&, const FrameView&, const PixelRun*, int runs, const BandWork&, TraceCounts&, RayCounts&);
+  /// Doubt of the pixels of the 8 x 8 tile at (x0, y0), [8 y + x]: the weight, 0 to 1, of what could hide from samples there,
+  /// followed into `bounces` mirrors; 0: nothing can.
+  void (*doubt)(const SceneView&, const ShadingView&, const FrameView&, int x0, int y0, int bounces, float (&)[kTile * kTile], TraceCounts&);
   /// power(x[i], y[i]) for tests.
   void (*power)(const float* x, const float* y, float* out, int count);
+  /// sample_pairs of pixel[i], index[i], key[i], and sampled_rays, for tests.
+  void (*samples)(const SamplePlan&, const std::uint32_t* pixel, const std::uint32_t* index, int dimension, const std::uint32_t* key,
+                  const Strata&, float* u, float* v, int count);
+  void (*sampled_rays)(const FrameView&, const SamplePlan&, Batch&, int at, int x, int y, std::uint32_t first, int count, std::uint32_t sum);
+  /// All samples of points of the picture, whose names work.pixels holds.
   void (*render_points)(const SceneView&, const ShadingView&, const FrameView&, const PointList&, const BandWork&, TraceCounts&, RayCounts&);
 };
 

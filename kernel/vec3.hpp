@@ -54,4 +54,13 @@ inline Real largest(const Vec3<Real>& a) {
   return greater(greater(magnitude(a.x), magnitude(a.y)), magnitude(a.z));
 }
 
+/// Two unit vectors across a third, by + - * / alone: Duff et al., "Building an Orthonormal Basis, Revisited", 2017.
+template <class Real>
+inline void across(const Vec3<Real>& n, Vec3<Real>& u, Vec3<Real>& v) {
+  const Real o(0), one(1), below(-1);
+  const Real sign = select(n.z < o, below, one), a = below / (sign + n.z), b = n.x * n.y * a;
+  u = {one + sign * n.x * n.x * a, sign * b, o - sign * n.x};
+  v = {b, sign + n.y * n.y * a, o - n.y};
+}
+
 }  // namespace grelha::GRELHA_ISA

@@ -14,11 +14,14 @@ constexpr std::array kGenerators{
     Generator{"boat", "sailing boat between three mirrors, a scene and a PLY file", 4, 40, 10, write_boat,
               write_boat_mesh},
     Generator{"stadium", "fine knot on a ground a thousand times its size", 1, 40, 6, write_stadium},
+    Generator{"knot", "knot of brass and a ball of glass, a scene and a PLY file", 1, 40, 8, write_knot, write_knot_mesh},
     Generator{"tetra", "tetrahedral pyramid of triangles", 1, 10, 6, write_tetra},
     Generator{"gears", "meshing gears of concave 144-gons, some of glass", 1, 10, 4, write_gears},
     Generator{"rings", "pyramid of interlocked rings of rods and balls", 1, 40, 7, write_rings},
     Generator{"tree", "tree of cones and spheres under seven lights", 0, 16, 11, write_tree},
     Generator{"lattice", "cube of balls joined by rods", 1, 50, 12, write_lattice},
+    Generator{"discs", "discs far smaller than a pixel, each within one", 1, 512, 64, write_discs},
+    Generator{"star", "Siemens star: edges at every angle", 2, 1000, 36, write_star},
 };
 
 }  // namespace

@@ -58,6 +58,8 @@ void NffWriter::surface(const Surface& surface) {
   end_line();
 }
 
+void NffWriter::glow(Vec color) { word("f 0 0 0 0 0 0 0 0 1 0 1"), vector(color), end_line(); }
+
 void NffWriter::sphere(Vec center, double radius) { word("s"), vector(center), number(radius), end_line(); }
 
 void NffWriter::cone(Vec base, double base_radius, Vec apex, double apex_radius) {

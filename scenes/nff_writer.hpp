@@ -39,6 +39,7 @@ class NffWriter {
   void light(Vec position);
   void light(Vec position, Vec color);
   void surface(const Surface& surface);
+  void glow(Vec color);  ///< black but for light of its own: no lamp and no other surface changes it (14 fields)
   void sphere(Vec center, double radius);
   void cone(Vec base, double base_radius, Vec apex, double apex_radius);
   void plane(Vec a, Vec b, Vec c);  ///< infinite; seen from where a, b, c turn counter-clockwise

@@ -1,8 +1,6 @@
 // A teapot in a stadium: a fine mesh in a ground a thousand times its size, the case that one uniform grid cannot fit.
-#include <cmath>
-
 #include "scenes/generators.hpp"
-#include "scenes/mesh.hpp"
+#include "scenes/knot_mesh.hpp"
 #include "scenes/nff_writer.hpp"
 
 namespace grelha::scenes {
@@ -10,26 +8,11 @@ namespace grelha::scenes {
 namespace {
 
 constexpr double kObject = 2, kGround = 1000 * kObject;  // widths, scene units
-constexpr double kTube = 0.14;
-
-/// A trefoil knot of that width, standing above z = 0.
-Vec knot(double t) {
-  const double a = 2 * kPi * t, reach = 0.57 + 0.29 * std::cos(3 * a);
-  return {reach * std::cos(2 * a), reach * std::sin(2 * a), 0.44 + 0.29 * std::sin(3 * a)};
-}
-
-Vec tube(double u, double v) {
-  constexpr double kStep = 1e-5;
-  const Vec along = normalise(knot(u + kStep) - knot(u - kStep));
-  const Vec side = normalise(cross({0, 0, 1}, along));
-  return knot(u) + kTube * turn(side, along, -2 * kPi * v);
-}
 
 }  // namespace
 
 void write_stadium(std::ostream& out, const SceneOptions& options) {
-  Mesh mesh;
-  add_surface(mesh, 36 * options.size, 4 * options.size, tube);
+  const Mesh mesh = knot_mesh(options.size);
   NffWriter nff(out);
   nff.comment("A fine mesh in a ground a thousand times its size.");
   nff.background({0.45, 0.65, 0.9});

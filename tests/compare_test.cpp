@@ -59,6 +59,16 @@ TEST(Compare, ZerosOfBothSignsAreEqual) {
   EXPECT_EQ(compare(image_of(1, 1, {0, 0, 0}), image_of(1, 1, {-0.0f, -0.0f, 0})).differing, 0u);
 }
 
+/// A light twice as bright as white differs from one a hundred times as bright by nothing a screen shows.
+TEST(Displayed, CutsToWhatAScreenShows) {
+  const Image a = displayed(image_of(2, 1, {2, 0.25f, -1, kInfinity, -kInfinity, kNan}));
+  const Image b = displayed(image_of(2, 1, {100, 0.75f, 0, 1, 0, 0}));
+  EXPECT_EQ(std::vector(a.rgb.begin(), a.rgb.end() - 1), (std::vector{1.0f, 0.25f, 0.0f, 1.0f, 0.0f}));
+  EXPECT_TRUE(std::isnan(a.rgb.back())) << "never passes for a colour";
+  EXPECT_EQ(compare(a, b).largest, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(compare(displayed(image_of(1, 1, {2, 0.25f, -1})), displayed(image_of(1, 1, {100, 0.75f, 0}))).largest, 0.5);
+}
+
 TEST(Difference, IsAbsoluteAndScaled) {
   const Image d = difference(image_of(1, 1, {1, 0, 0.5f}), image_of(1, 1, {0.75f, 0.5f, 0.5f}), 2);
   EXPECT_EQ(d.rgb, (std::vector{0.5f, 1.0f, 0.0f}));

@@ -107,6 +107,8 @@ TEST(Others, AreParsed) {
   EXPECT_EQ(compare.max_rmse, 0.0);
   EXPECT_EQ(compare.diff, "d.png");
   EXPECT_FALSE(std::get<CompareCommand>(parse("compare a b")).max_rmse);
+  EXPECT_FALSE(compare.display);
+  EXPECT_TRUE(std::get<CompareCommand>(parse("compare a b --display")).display);
   const auto scene = std::get<SceneCommand>(parse("scene balls --size 4 -o b.nff --spd"));
   EXPECT_EQ(scene.name, "balls");
   EXPECT_EQ(scene.size, 4);
@@ -156,6 +158,7 @@ TEST(Errors, SayWhatWasWantedAndFound) {
       {"render a --aa adaptive:.1", "--aa: wanted adaptive:THRESHOLD,DEPTH, found \".1\""},
       {"render a --aa adaptive:1.5,3", "--aa: wanted a threshold from 0 to 1, found \"1.5\""},
       {"render a --aa adaptive:nan,3", "--aa: wanted a threshold from 0 to 1, found \"nan\""},
+      {"render a --aa adaptive:.1,3 --error .01", "--error and --time choose the samples: no --samples or --aa beside them"},
       {"render a --aa adaptive:.1,9", "--aa: wanted a whole number from 0 to 8, found \"9\""},
       {"render a --aa jitter:0", "--aa: wanted a whole number from 1 to 256, found \"0\""},
       {"render a --shadows soft", "--shadows: wanted hard, random:SIZE or area:SIZE,N, found \"soft\""},

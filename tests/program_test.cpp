@@ -117,6 +117,14 @@ TEST_F(Program, ComparesAndSetsItsStatus) {
   EXPECT_EQ(run("compare a.pfm no.png").status, 1);
 }
 
+TEST_F(Program, ComparesWhatAScreenShows) {
+  using namespace std::string_literals;
+  folder_.write("two.pfm", "PF\n1 1\n-1\n\0\0\0\x40\0\0\0\x40\0\0\0\x40"s);
+  folder_.write("four.pfm", "PF\n1 1\n-1\n\0\0\x80\x40\0\0\x80\x40\0\0\x80\x40"s);
+  EXPECT_EQ(run("compare two.pfm four.pfm --max-rmse 1").status, 1);
+  EXPECT_EQ(run("compare two.pfm four.pfm --max-rmse 0 --display").status, 0);
+}
+
 TEST_F(Program, MissingSceneIsStatusOne) {
   const Outcome outcome = run("render no.nff");
   EXPECT_EQ(outcome.status, 1);
@@ -199,7 +207,7 @@ TEST_F(Program, EverySceneIsRead) {
     EXPECT_EQ(info.status, 0) << info.err;
     EXPECT_EQ(info.err.find("warning"), std::string::npos) << info.err;
   }
-  EXPECT_EQ(scenes, 10);
+  EXPECT_EQ(scenes, 13);
 }
 
 TEST_F(Program, AFullOutputIsStatusOne) {

@@ -1,15 +1,20 @@
 // Where samples lie: nets, slopes of convergence, pairings without bias.
 #define GRELHA_ISA scalar
-#include "kernel/sampling.hpp"
+#include "kernel/band.hpp"
 
+#include <bit>
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <memory>
 #include <numbers>
 #include <set>
 #include <vector>
 
 #include <gtest/gtest.h>
+
+#include "kernel/variants.hpp"
+#include "tests/support/rays.hpp"
 
 namespace grelha::scalar {
 namespace {
@@ -60,7 +65,7 @@ double rmse(SamplePlan::Kind kind, int n, double truth, const Integrand& f, doub
     int inside = 0;
     for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(n); ++i) {
       const Pair a = sample_pair(p, pixel, i, 0, 0, p.pixel_strata);
-      const Pair b = shuffled ? sample_pair(p, pixel, i, 2, 0, p.light_strata) : jittered(scatter(pixel, 99), i, p.light_strata, false);
+      const Pair b = shuffled ? sample_pair(p, pixel, i, 2, 0, p.light_strata) : jittered<float>(scatter(pixel, 99), i, p.light_strata, 0);
       inside += f(a, b);
     }
     const double e = static_cast<double>(inside) / n - truth;
@@ -122,16 +127,130 @@ TEST(Disc, IsRoundAndEven) {
   int inner = 0;
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) {
-      const Pair p = disc_point({(static_cast<float>(i) + .5f) / n, (static_cast<float>(j) + .5f) / n});
+      const Pair p = disc_point<float>({(static_cast<float>(i) + .5f) / n, (static_cast<float>(j) + .5f) / n});
       const double r2 = static_cast<double>(p.u) * p.u + static_cast<double>(p.v) * p.v;
       ASSERT_LE(r2, 1 + 1e-6);
       inner += r2 < .5;
     }
   // Squares keep their share of the area: half of them within radius sqrt(1/2), but for the ring of squares on the border.
   EXPECT_NEAR(inner, n * n / 2, 4 * n);
-  const Pair edge = disc_point({1 - 0x1p-24f, .75f});
+  const Pair edge = disc_point<float>({1 - 0x1p-24f, .75f});
   EXPECT_NEAR(edge.u, std::cos(std::numbers::pi / 8), 1e-6);
   EXPECT_NEAR(edge.v, std::sin(std::numbers::pi / 8), 1e-6);
+  const Pair centre = disc_point<float>({.5f, .5f});
+  EXPECT_TRUE(centre.u == 0 && centre.v == 0);
+}
+
+// ---- Samples as the papers write them, one at a time: what every copy has to return ----
+
+namespace plain {
+
+std::uint32_t sobol_bits(std::uint32_t index, int dimension) {
+  std::uint32_t x = 0;
+  for (int i = 0; i < 32; ++i)
+    if (index >> i & 1) x ^= reversed(kSobol.column[dimension][i]);
+  return x;
+}
+std::uint32_t owen_scrambled(std::uint32_t x, std::uint32_t seed) { return reversed(owen_hash(reversed(x), seed)); }
+float unit(std::uint32_t x) { return static_cast<float>(x >> 8) / 16777216; }
+float sobol(std::uint32_t seed, std::uint32_t index, int dimension) {
+  return unit(owen_scrambled(sobol_bits(index, dimension), scatter(seed, static_cast<std::uint32_t>(dimension))));
+}
+
+Pair sample(const SamplePlan& plan, std::uint32_t pixel, std::uint32_t index, int dimension, std::uint32_t key, const Strata& strata) {
+  const std::uint32_t base = scatter(plan.seed, pixel), own = scatter(base, scatter(key, static_cast<std::uint32_t>(dimension)));
+  const float x = unit(scatter(own, 2 * index)), y = unit(scatter(own, 2 * index + 1));
+  if (plan.kind == SamplePlan::kRandom) return {x, y};
+  if (plan.kind == SamplePlan::kSobol) {
+    if (key == 0) return {sobol(base, index, dimension), sobol(base, index, dimension + 1)};
+    const std::uint32_t at = owen_scrambled(index, scatter(own, 0x68E31DA4u));
+    return {sobol(own, at, 0), sobol(own, at, 1)};
+  }
+  const std::uint32_t cells = strata.columns * strata.rows;
+  std::uint32_t cell = index % cells;
+  if (dimension != 0 || key != 0) cell = permuted(cell, cells, scatter(own, 0x51ED270Bu));
+  return {(static_cast<float>(cell % strata.columns) + x) / static_cast<float>(strata.columns),
+          (static_cast<float>(cell / strata.columns) + y) / static_cast<float>(strata.rows)};
+}
+
+struct Ray {
+  Vec3<float> org, dir;
+};
+Ray ray(const FrameView& f, const SamplePlan& plan, int x, int y, std::uint32_t index) {
+  const std::uint32_t pixel = static_cast<std::uint32_t>(y * f.width + x);
+  const Pair in = plan.samples > 1 ? sample(plan, pixel, index, 0, 0, plan.pixel_strata) : Pair{.5f, .5f};
+  const float sx = (static_cast<float>(x) + in.u) - .5f * static_cast<float>(f.width);
+  const float sy = .5f * static_cast<float>(f.height) - (static_cast<float>(y) + in.v);
+  const auto vector = [](const float(&v)[3]) { return Vec3<float>{v[0], v[1], v[2]}; };
+  const Vec3<float> d = (vector(f.forward) + sx * vector(f.right)) + sy * vector(f.up);
+  if (!f.lens) return {vector(f.eye), normalize(d)};
+  const Pair p = disc_point(sample(plan, pixel, index, plan.lens, 0, plan.pixel_strata));
+  const Vec3<float> on = p.u * vector(f.lens_right) + p.v * vector(f.lens_up);
+  return {vector(f.eye) + on, normalize(f.focus * d - on)};
+}
+
+}  // namespace plain
+
+constexpr SamplePlan::Kind kKinds[] = {SamplePlan::kSobol, SamplePlan::kJitter, SamplePlan::kRandom};
+std::uint32_t bits_of(float x) { return std::bit_cast<std::uint32_t>(x); }
+
+using test::EveryVariant;
+using test::isa_name;
+class SampleBits : public EveryVariant {};
+GRELHA_FOR_EVERY_ISA(SampleBits);
+
+TEST_P(SampleBits, AreThePlainOnesInEveryLane) {
+  constexpr int n = 203;
+  test::Random random(11);
+  const auto word = [&] { return static_cast<std::uint32_t>(random.below(65536)) << 16 | static_cast<std::uint32_t>(random.below(65536)); };
+  for (const auto kind : kKinds)
+    for (int d = 0; d < kSobolDimensions; d += 2)
+      for (int keys = 0; keys < 3; ++keys)  // all the joint sequence, none, some
+        for (const Strata strata : {Strata{1, 1}, Strata{4, 5}, Strata{64, 64}}) {
+          const SamplePlan plan = plan_of(kind, word(), 16);
+          std::uint32_t pixel[n], index[n], key[n];
+          for (int i = 0; i < n; ++i) {
+            pixel[i] = word(), index[i] = i < 100 ? static_cast<std::uint32_t>(i) : word() >> random.below(32);
+            key[i] = keys == 0 || (keys == 2 && random.chance(.5)) ? 0 : word() | 1;
+          }
+          float x[n], y[n];
+          variant().loops.samples(plan, pixel, index, d, key, strata, x, y, n);
+          for (int i = 0; i < n; ++i) {
+            const Pair wanted = plain::sample(plan, pixel[i], index[i], d, key[i], strata);
+            ASSERT_TRUE(bits_of(x[i]) == bits_of(wanted.u) && bits_of(y[i]) == bits_of(wanted.v))
+                << "sampler " << kind << ", dimension " << d << ", key " << key[i] << ", index " << index[i];
+          }
+        }
+}
+
+TEST_P(SampleBits, OfRaysAreThePlainOnesAndNoNeighbourIsTouched) {
+  FrameView f{{.1f, .2f, 3}, {.3f, -.1f, -2}, {.01f, .002f, .001f}, {-.002f, .01f, .0005f}, {.1f, .02f, .01f}, {-.02f, .1f, .005f}};
+  f.focus = 1.7f, f.width = 67, f.height = 43;
+  const auto batch = std::make_unique<Batch>();
+  for (const auto kind : kKinds)
+    for (const bool lens : {false, true})
+      for (const int samples : {1, 7, 64})
+        for (const int count : {1, 2, 3, 4, 5, 7, 8, 9, 15, 16, 17, 31, 33, 61})
+          for (const int at : {0, 3, kBatch - count}) {
+            SamplePlan plan = plan_of(kind, 5, samples);
+            f.lens = lens, plan.lens = lens ? 2 : -1;
+            for (float* a : {batch->ox, batch->oy, batch->oz, batch->dx, batch->dy, batch->dz, batch->wr, batch->wg, batch->wb})
+              std::fill(a, a + kBatch, -7.f);
+            variant().loops.sampled_rays(f, plan, *batch, at, 13, 41, 2, count, 99);
+            for (int i = 0; i < kBatch; ++i) {
+              const float got[] = {batch->ox[i], batch->oy[i], batch->oz[i], batch->dx[i], batch->dy[i],
+                                   batch->dz[i], batch->wr[i], batch->wg[i], batch->wb[i]};
+              if (i < at || i >= at + count) {
+                for (const float g : got) ASSERT_EQ(g, -7) << "ray " << i << " of [" << at << ", " << at + count << ")";
+                continue;
+              }
+              const auto index = static_cast<std::uint32_t>(2 + i - at);
+              const auto [o, d] = plain::ray(f, plan, 13, 41, index);
+              const float wanted[] = {o.x, o.y, o.z, d.x, d.y, d.z, 1, 1, 1};
+              for (int k = 0; k < 9; ++k) ASSERT_EQ(bits_of(got[k]), bits_of(wanted[k])) << "sampler " << kind << ", sample " << index;
+              ASSERT_TRUE(batch->sample[i] == index && batch->pixel[i] == 99 && batch->depth[i] == 1 && batch->path[i] == 0);
+            }
+          }
 }
 
 }  // namespace

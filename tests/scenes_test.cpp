@@ -115,6 +115,7 @@ TEST(Counts, AreThoseOfTheTable) {
   EXPECT_EQ(count_entities(generate("boat", 10))["pl"], 3);
   EXPECT_EQ(count_entities(generate("stadium", 6))["pp 3"], 10368);
   EXPECT_EQ(count_entities(generate("stadium", 1))["p 4"], 1);
+  EXPECT_EQ(count_entities(generate("knot", 2))["ply"], 1);
   EXPECT_EQ(count_entities(generate("tetra", 4))["p 3"], 256);
   EXPECT_EQ(count_entities(generate("gears", 2))["p 144"], 16);
   EXPECT_EQ(count_entities(generate("gears", 2))["p 4"], 1153);
@@ -123,6 +124,8 @@ TEST(Counts, AreThoseOfTheTable) {
   EXPECT_EQ(count_entities(generate("tree", 5))["c"], 63);
   EXPECT_EQ(count_entities(generate("lattice", 3))["s"], 64);
   EXPECT_EQ(count_entities(generate("lattice", 3))["c"], 144);
+  EXPECT_EQ(count_entities(generate("discs", 64))["s"], 4096);
+  EXPECT_EQ(count_entities(generate("star", 36))["p 3"], 36);
 }
 
 TEST(Balls, FirstBallsAndFloor) {
@@ -227,6 +230,14 @@ TEST(Boat, MeshIsWholeAndNamedByTheScene) {
   EXPECT_NE(generate("boat", 10).find("\nply boat.ply\n"), std::string::npos);
 }
 
+TEST(Knot, MeshHasTheTablesFaces) {
+  for (const int n : {1, 8}) {
+    std::ostringstream out;
+    find_generator("knot")->write_mesh(out, n);
+    EXPECT_NE(out.str().find("\nelement face " + std::to_string(288 * n * n) + '\n'), std::string::npos);
+  }
+}
+
 /// From the corners in order, the geometric normal agrees with the ones written: front is front.
 TEST(Stadium, NormalsAgreeWithTheWinding) {
   std::istringstream in(generate("stadium", 2));
@@ -243,6 +254,49 @@ TEST(Stadium, NormalsAgreeWithTheWinding) {
   }
   EXPECT_GT(top_normal.z, 0.9) << "front is outside";
   EXPECT_EQ(patches, 1152);
+}
+
+/// No pixel has two discs, and no disc has two pixels: each pixel's answer is known, 0 or pi / 100.
+TEST(Discs, LieInPixelsOfTheirOwn) {
+  for (const int n : {1, 7, 64, 512}) {
+    std::istringstream in(generate("discs", n));
+    std::set<std::pair<int, int>> pixels;
+    for (std::string line; std::getline(in, line);) {
+      if (!line.starts_with("s ")) continue;
+      std::istringstream numbers(line.substr(2));
+      double at[2], z, r;
+      int pixel[2];
+      ASSERT_TRUE(numbers >> at[0] >> at[1] >> z >> r);
+      for (int a = 0; a < 2; ++a) {
+        pixel[a] = int(std::floor(at[a]));
+        ASSERT_GE(pixel[a], -256) << line;
+        ASSERT_LT(pixel[a], 256) << line;
+        ASSERT_GT(at[a] - r - pixel[a], 0.04) << line;
+        ASSERT_LT(at[a] + r - pixel[a], 0.96) << line;
+      }
+      ASSERT_TRUE(pixels.emplace(pixel[0], pixel[1]).second) << line;
+    }
+    EXPECT_EQ(pixels.size(), std::size_t(n) * std::size_t(n));
+  }
+}
+
+/// The same bits on every machine, so these words too.
+TEST(Discs, FirstPlaces) {
+  const std::string text = generate("discs", 64);
+  EXPECT_NE(text.find("\nf 0 0 0 0 0 0 0 0 1 0 1 1 1 1\ns -255.85 -255.85 0 0.1\ns -247.2 -250.32 0 0.1\n"), std::string::npos);
+}
+
+TEST(Star, HalfOfTheDiscShines) {
+  std::istringstream in(generate("star", 36));
+  double area = 0;
+  for (std::string line; std::getline(in, line);) {
+    if (line != "p 3") continue;
+    Vec v[3];
+    for (Vec& p : v) in >> p.x >> p.y >> p.z;
+    ASSERT_EQ(v[0], Vec{});
+    area += cross(v[1], v[2]).z / 2;
+  }
+  EXPECT_NEAR(area, 36 * 0.9 * 0.9 * std::sin(kPi / 36) / 2, 1e-5);
 }
 
 TEST(NffWriter, PrintsAsPrintfDoes) {

@@ -411,6 +411,9 @@ TEST(Adaptive, RefusesBadOptions) {
   const Scene s = everything();
   EXPECT_THROW(rendered(s, upon_everything(), adaptive(kNaN, 2)), std::invalid_argument);
   EXPECT_THROW(rendered(s, upon_everything(), adaptive(.1f, 9)), std::invalid_argument);
+  RenderOptions both = adaptive(.1f, 2);
+  both.refine.error = .01;
+  EXPECT_THROW(rendered(s, upon_everything(), both), std::invalid_argument);
 }
 
 }  // namespace

@@ -1,0 +1,152 @@
+// What a pixel's beam knows: whether something may hide from its samples, before any is taken.
+#include <array>
+
+#include "kernel/frame.hpp"
+#include "kernel/variants.hpp"
+#include "kernel/world.hpp"
+#include "tests/support/rays.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace grelha::test {
+namespace {
+
+using Tile = std::array<float, kTile * kTile>;
+
+/// Looks along -z from z = 200 at 8 x 8 pixels, each one unit across at z = 0: pixel (x, y) there covers [x - 4, x - 3] x [3 - y, 4 - y].
+Camera over_units() {
+  Camera c;
+  c.eye = {0, 0, 200}, c.at = {0, 0, 0}, c.up = {0, 1, 0};
+  c.width = c.height = 8, c.angle_deg = 2 * 1.1457628381751033;  // atan(4 / 200)
+  return c;
+}
+
+Tile doubt(const Scene& scene, const Variant& variant, bool grid = true, float density = 0) {
+  BuildOptions build;
+  build.grid = grid, build.density = density;
+  const World world(scene, build);
+  const World::Impl& w = world.impl();
+  float tile[kTile * kTile];
+  TraceCounts counts;
+  variant.loops.doubt(w.view, w.shading, make_frame(over_units()), 0, 0, 2, tile, counts);
+  Tile out;
+  std::copy(std::begin(tile), std::end(tile), out.begin());
+  return out;
+}
+
+float at(const Tile& tile, int x, int y) { return tile[static_cast<std::size_t>(8 * y + x)]; }
+
+class Beam : public testing::TestWithParam<const Variant*> {
+ protected:
+  void SetUp() override {
+    if (!GetParam()->runs_here()) GTEST_SKIP() << "this processor has no " << GetParam()->name;
+  }
+  Tile look(const Scene& s) const { return doubt(s, *GetParam()); }
+};
+
+/// A wall at z = 0 that fills the picture, lit from the eye's side.
+Scene wall() {
+  Scene s = one_plane({0, 0, 0}, {0, 0, 1});
+  s.lights = {{{30, 0, 40}, {1, 1, 1}}};
+  return s;
+}
+
+TEST_P(Beam, DoubtsNothingWhereThereIsNothing) {
+  for (const float d : look(empty_scene())) EXPECT_EQ(d, 0);
+  for (const float d : look(wall())) EXPECT_EQ(d, 0);
+}
+
+TEST_P(Beam, DoubtsOnlyThePixelWithTheSpeck) {
+  Scene s = wall();
+  s.geometry.spheres.add({-1.3f, 2.4f, 0}, .02f, 0);  // pixel (2, 1)
+  s.lights.clear();
+  const Tile tile = look(s);
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 8; ++x) EXPECT_EQ(at(tile, x, y), x == 2 && y == 1 ? 1 : 0) << x << ' ' << y;
+}
+
+TEST_P(Beam, DoubtsTheOutlineOfABallAndNotItsInside) {
+  Scene s = wall();
+  s.lights.clear();
+  s.geometry.spheres.add({0, 0, 0}, 3.6f, 0);
+  const Tile tile = look(s);
+  EXPECT_EQ(at(tile, 3, 3), 0);
+  EXPECT_EQ(at(tile, 3, 0), 1);  // its top, y = 3.6, lies in (3, 4)
+}
+
+TEST_P(Beam, DoubtsNothingHiddenBehind) {
+  Scene s = wall();
+  s.geometry.spheres.add({-1.3f, 2.4f, -3}, .02f, 0);
+  for (const float d : look(s)) EXPECT_EQ(d, 0);
+}
+
+TEST_P(Beam, DoubtsWhereTheShadowOfASpeckFalls) {
+  Scene s = wall();
+  // Half way from the light to (-1.5, 2.5, 0), the middle of pixel (2, 1), and out of the camera's sight.
+  s.geometry.spheres.add({14.25f, 1.25f, 20}, .02f, 0);
+  const Tile tile = look(s);
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 8; ++x) EXPECT_EQ(at(tile, x, y) > 0, x == 2 && y == 1) << x << ' ' << y;
+}
+
+TEST_P(Beam, DoubtsNothingInAShadowThatOneBallCasts) {
+  Scene s = wall();
+  s.geometry.spheres.add({14.25f, 1.25f, 20}, 1.8f, 0);  // shadow of radius 3.6 around (-1.5, 2.5)
+  const Tile tile = look(s);
+  EXPECT_EQ(at(tile, 2, 1), 0);
+  EXPECT_EQ(at(tile, 7, 7), 0);
+  bool edge = false;
+  for (const float d : tile) edge |= d > 0;
+  EXPECT_TRUE(edge);
+}
+
+TEST_P(Beam, DoubtsWhatAMirrorShowsByItsWeight) {
+  Scene s = wall();
+  s.lights.clear();
+  s.materials[0].diffuse = {0, 0, 0}, s.materials[0].mirror = {.5f, .5f, .5f};
+  // The ray to (-1.5, 2.5, 0), the middle of pixel (2, 1), comes back from there to 1.3 times that at height 60. The eye sees that
+  // point against (-2.8, 4.6, 0), outside the picture.
+  s.geometry.spheres.add({-1.95f, 3.25f, 60}, .02f, 0);
+  const Tile tile = look(s);
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 8; ++x) EXPECT_EQ(at(tile, x, y), x == 2 && y == 1 ? .5f : 0) << x << ' ' << y;
+}
+
+TEST_P(Beam, TakesASmoothMeshForOneSurface) {
+  Scene s = empty_scene();
+  for (int y = -6; y < 6; ++y)  // a gently bent sheet, several triangles a pixel
+    for (int x = -12; x < 12; ++x) {
+      const auto p = [](int i, int j) { return Float3{.5f * float(i), float(j), -.01f * float(i) * float(i)}; };
+      add_triangle(s, p(x, y), p(x + 1, y), p(x + 1, y + 1)), add_triangle(s, p(x, y), p(x + 1, y + 1), p(x, y + 1));
+    }
+  for (const float d : look(s)) EXPECT_EQ(d, 0);
+}
+
+TEST_P(Beam, DoubtsASlitBetweenTrianglesOfOneSurface) {
+  Scene s = empty_scene();
+  const auto strip = [&](float x0, float x1) {
+    add_triangle(s, {x0, -6, 0}, {x1, -6, 0}, {x1, 6, 0}), add_triangle(s, {x0, -6, 0}, {x1, 6, 0}, {x0, 6, 0});
+  };
+  strip(-6, 1.6f), strip(1.62f, 6);
+  const Tile tile = look(s);
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 8; ++x) EXPECT_EQ(at(tile, x, y), x == 5 ? 1 : 0) << x << ' ' << y;
+}
+
+TEST_P(Beam, IsTheSameForEveryGridAndCopy) {
+  Scene s = wall();
+  Random random(7);
+  add_spheres(s, random, 60, 6, .01, .4);
+  add_triangles(s, random, 60, 6, .1, 2);
+  s.materials[0].mirror = {.6f, .6f, .6f};
+  const Tile want = doubt(s, *variants().front(), false);
+  for (const float density : {.5f, 1.f, 4.f}) EXPECT_EQ(doubt(s, *GetParam(), true, density), want) << density;
+  int plain = 0;
+  for (const float d : want) plain += d == 0;
+  EXPECT_GT(plain, 0);
+  EXPECT_LT(plain, 64);
+}
+
+INSTANTIATE_TEST_SUITE_P(, Beam, testing::ValuesIn(variants().begin(), variants().end()), [](const auto& p) { return std::string(p.param->name); });
+
+}  // namespace
+}  // namespace grelha::test
