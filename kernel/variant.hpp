@@ -35,7 +35,7 @@ inline void trace_span(const SceneView& scene, const RaySpan& rays, const TraceS
     else
       trace<kAny>(scene, arrays, count, {settings.method == Method::kSingle ? 1 : settings.packet, settings.mailbox}, n);
     for (int i = 0; i < count; ++i)
-      if (rays.id[first + i] != kNoPrimitive) rays.t[first + i] = t[i] + shift[i];
+      if (rays.id[first + i] != kNoPrimitive) rays.t[first + i] = kAny ? t[i] : t[i] + shift[i];
   }
   add(n, counts);
 }
