@@ -74,11 +74,12 @@ void apply_effects(const Effects& e, SceneFile& file, RenderOptions& options) {
   const int lens_samples = e.lens && e.lens->aperture > 0 ? std::max(e.lens->samples, 1) : 1;
   if (e.samples) s.samples = *e.samples;
   else if (e.jitter > 0) s.samples = e.jitter * e.jitter * lens_samples;
-  else if (lens_samples > 1) s.samples = lens_samples;
+  else if (lens_samples > 1 || e.adaptive.on) s.samples = lens_samples;
   else if (has_something_to_sample(file, e)) s.samples = file.samples_per_pixel > 0 ? file.samples_per_pixel : kSamplesOfEffects;
   s.samples = std::clamp(s.samples, 1, kMostSamples);
   s.sampler = e.sampler.value_or(e.jitter > 0 ? Sampler::kJitter : Sampler::kSobol);
   s.seed = e.seed;
+  options.subdivision = e.adaptive;
   if (e.shadows && e.shadows->positions > 1 && !options.refine.on())
     s.light_rays = ceiling_share(1LL * e.shadows->positions * e.shadows->positions, s.samples);
   if (e.glossy) s.gloss_rays = e.glossy->rays;

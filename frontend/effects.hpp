@@ -26,6 +26,7 @@ struct Effects {
 
   std::optional<int> samples;  ///< a pixel
   int jitter = 0;              ///< N x N jittered subpixels; 0: none
+  Subdivision adaptive;        ///< on: squares that share their corners, in place of samples within pixels
   std::optional<Sampler> sampler;
   std::uint32_t seed = 0;
   std::optional<Shadows> shadows;
@@ -34,7 +35,8 @@ struct Effects {
 };
 
 /// Puts effects into scene, camera and options. Without --samples or --aa a scene with something to sample (a lens, an area
-/// light, a rough mirror) takes its own `spp`, or 16 rays a pixel; any other takes one.
+/// light, a rough mirror) takes its own `spp`, or 16 rays a pixel; any other takes one. A point of a subdivided picture takes
+/// one ray, or with --samples, or a lens of N points, so many.
 void apply_effects(const Effects& effects, SceneFile& file, RenderOptions& options);
 
 }  // namespace grelha

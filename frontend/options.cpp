@@ -60,11 +60,19 @@ double not_negative(const std::string& option, const std::string& text, const ch
   return *value;
 }
 
+Subdivision subdivision(const std::string& text) {
+  const auto p = parts("--aa", text, 2, 2, "adaptive:THRESHOLD,DEPTH");
+  const auto threshold = number<float>(p[0]);
+  if (!threshold || !(*threshold >= 0) || *threshold > 1) refuse("--aa", "a threshold from 0 to 1", p[0]);
+  return {true, *threshold, whole("--aa", p[1], 0, kMostSubdivisions)};
+}
+
 void parse_aa(const std::string& text, Effects& effects) {
-  constexpr std::string_view kJitter = "jitter:";
+  constexpr std::string_view kJitter = "jitter:", kAdaptive = "adaptive:";
   if (text == "off") effects.jitter = 1;
   else if (text.starts_with(kJitter)) effects.jitter = whole("--aa", text.substr(kJitter.size()), 1, 256);
-  else refuse("--aa", "off or jitter:N", text);
+  else if (text.starts_with(kAdaptive)) effects.adaptive = subdivision(text.substr(kAdaptive.size()));
+  else refuse("--aa", "off, jitter:N or adaptive:THRESHOLD,DEPTH", text);
 }
 
 void parse_shadows(const std::string& text, Effects& effects) {
@@ -205,7 +213,7 @@ void add_render(CLI::App& app, RenderCommand& command) {
         [&effects](const std::string& text) { effects.sampler = choice("--sampler", text, kSamplers); });
   value(sub, "--seed", "N", "another seed, an independent picture [0]",
         [&effects](const std::string& text) { effects.seed = std::uint32_t(whole("--seed", text, 0, 2147483647)); });
-  value(sub, "--aa", "jitter:N", "N x N jittered subpixels",
+  value(sub, "--aa", "KIND", "jitter:N: N x N subpixels; adaptive:T,D: split where corners differ by T, D times",
         [&effects](const std::string& text) { parse_aa(text, effects); });
   value(sub, "--shadows", "KIND", "hard, random:SIZE or area:SIZE,N: point lights become squares of this side",
         [&effects](const std::string& text) { parse_shadows(text, effects); });
@@ -274,7 +282,7 @@ void check_together(const RenderCommand& command) {
   const RefineOptions& r = command.render.refine;
   const Effects& e = command.effects;
   if (int(r.error > 0) + int(r.seconds > 0) + int(r.rounds > 0) > 1) throw UsageError("--error and --time: one of them, found both");
-  if (r.on() && (e.samples || e.jitter > 0)) throw UsageError("--error and --time choose the samples: no --samples or --aa beside them");
+  if (r.on() && (e.samples || e.jitter > 0 || e.adaptive.on)) throw UsageError("--error and --time choose the samples: no --samples or --aa beside them");
   if (r.on() && e.sampler == Sampler::kJitter) throw UsageError("--sampler: wanted sobol or random with --error or --time, found \"jitter\"");
   if (!r.on() && !(command.samples_map.empty() && command.error_map.empty()))
     throw UsageError("--samples-map and --error-map want --error or --time");

@@ -43,6 +43,11 @@ Json to_json(const SceneBounds& bounds) {
   return {{"min", to_json(bounds.low)}, {"max", to_json(bounds.high)}};
 }
 
+Json to_json(const Subdivision& s) {
+  if (!s.on) return nullptr;
+  return {{"threshold", tidy(s.threshold)}, {"depth", s.depth}};
+}
+
 /// Name and answer, in one order for both forms of the report.
 std::vector<std::pair<const char*, bool>> listed(const Needs& n) {
   return {{"spheres", n.spheres}, {"triangles", n.triangles}, {"cones", n.cones}, {"planes", n.planes},
@@ -130,6 +135,7 @@ std::string stats_json(const RenderCommand& command, const RunReport& report) {
                      {"samples", command.render.sampling.samples},
                      {"sampler", sampler_name(command.render.sampling.sampler)},
                      {"seed", command.render.sampling.seed},
+                     {"adaptive", to_json(command.render.subdivision)},
                      {"light_rays", command.render.sampling.light_rays},
                      {"gloss_rays", command.render.sampling.gloss_rays},
                      {"threads", command.render.threads}};

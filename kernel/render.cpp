@@ -10,6 +10,7 @@
 #include <omp.h>
 
 #include "kernel/frame.hpp"
+#include "kernel/point_tracer.hpp"
 #include "kernel/refinement.hpp"
 #include "kernel/variants.hpp"
 #include "kernel/workspace.hpp"
@@ -39,6 +40,7 @@ void check(const Camera& camera, const RenderOptions& o) {
   if (r.on() && s.sampler == Sampler::kJitter)
     throw std::invalid_argument("jittered samples must be counted before they are taken: to meet an error, use sobol or random");
   if (r.on() && s.light_rays > 1) throw std::invalid_argument("to meet an error every sample sends one ray to a light");
+  if (r.on() && o.subdivision.on) throw std::invalid_argument("samples are spent by error or by subdivision, not by both");
   if (o.threads < 0) throw std::invalid_argument("threads must not be negative");
 }
 
@@ -88,7 +90,11 @@ Image render(const World& world, const Camera& camera, const RenderOptions& opti
   const Variant& variant = choose(options.isa);
   const World::Impl& w = world.impl();
   const FrameView frame = make_frame(camera);
-  SamplePlan plan = plan_samples(options.sampling, camera, w.shading);
+  SampleOptions sampling = options.sampling;
+  const bool to_sample = camera.aperture > 0 || w.shading.area || w.shading.gloss;
+  if (options.subdivision.on && !to_sample) sampling.samples = 1;  // rays through one point would all see the same
+  SamplePlan plan = plan_samples(sampling, camera, w.shading);
+  if (options.subdivision.on) return render_subdivided(w, camera, frame, plan, variant, options, stats);
   if (options.refine.on()) {
     plan.on = true, plan.samples = kMostSamples;
     return refine(w, camera, frame, plan, variant, options, stats, maps);

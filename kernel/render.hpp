@@ -10,6 +10,7 @@
 #include "kernel/geometry.hpp"
 #include "kernel/image.hpp"
 #include "kernel/stats.hpp"
+#include "kernel/subdivision.hpp"
 
 namespace grelha {
 
@@ -86,13 +87,14 @@ struct RenderOptions {
   std::string_view isa = "best";
   SampleOptions sampling;
   RefineOptions refine;
+  Subdivision subdivision;  ///< on: pixels are averages of points of a lattice, `samples` rays through each; one with no effect to sample
   /// Called now and then from one thread at a time with the share done, 0 to 1; returns false to stop.
   std::function<bool(double)> progress;
 };
 
 /// Renders. The picture is the same, bit for bit, for every value of threads, packet, mailbox, isa, density and grid.
 /// Throws std::invalid_argument for an instruction set that is unknown or does not run here, or a bad camera or option.
-/// When `progress` stops it, the rows not yet rendered are black.
+/// When `progress` stops it, the rows, or tiles of a subdivided picture, not yet rendered are black.
 /// `maps` is filled when samples are spent by error.
 Image render(const World& world, const Camera& camera, const RenderOptions& options, RenderStats& stats, SampleMaps* maps = nullptr);
 

@@ -118,4 +118,10 @@ struct BandWork {
   const std::uint32_t* pixels = nullptr;  ///< [sums] the pixel each sum belongs to; null: sum i to first_pixel + i
 };
 
+/// Points of the picture in pixels from its upper left corner, neighbours next to each other; point i has sum i.
+struct PointList {
+  const float *x, *y;  ///< [count]
+  int count;
+};
+
 }  // namespace grelha

@@ -3,6 +3,7 @@
 
 #include "kernel/band.hpp"
 #include "kernel/beam.hpp"
+#include "kernel/points.hpp"
 #include "kernel/reference.hpp"
 #include "kernel/variants.hpp"
 
@@ -76,6 +77,14 @@ inline void doubt(const SceneView& scene, const ShadingView& shading, const Fram
   add(n, trace_counts);
 }
 
+inline void points(const SceneView& scene, const ShadingView& shading, const FrameView& frame, const PointList& list, const BandWork& work,
+                   TraceCounts& trace_counts, RayCounts& ray_counts) {
+  Counters n;
+  RayTally rays;
+  render_points(scene, shading, frame, list, work, n, rays);
+  tally(n, rays, trace_counts, ray_counts);
+}
+
 inline void powers(const float* x, const float* y, float* out, int count) {
   for (int i = 0; i < count; i += kWidth<Lanes>) {
     alignas(64) float in[2][kWidth<Lanes>], r[kWidth<Lanes>];
@@ -104,4 +113,4 @@ inline void samples(const SamplePlan& plan, const std::uint32_t* pixel, const st
 
 #define GRELHA_LOOPS                                                                                                       \
   {GRELHA_ISA::closest, GRELHA_ISA::occluded, GRELHA_ISA::band, GRELHA_ISA::pixel_runs, GRELHA_ISA::doubt, GRELHA_ISA::powers, \
-   GRELHA_ISA::samples, GRELHA_ISA::sampled_rays}
+   GRELHA_ISA::samples, GRELHA_ISA::sampled_rays, GRELHA_ISA::points}

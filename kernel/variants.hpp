@@ -49,6 +49,8 @@ struct VariantLoops {
   void (*samples)(const SamplePlan&, const std::uint32_t* pixel, const std::uint32_t* index, int dimension, const std::uint32_t* key,
                   const Strata&, float* u, float* v, int count);
   void (*sampled_rays)(const FrameView&, const SamplePlan&, Batch&, int at, int x, int y, std::uint32_t first, int count, std::uint32_t sum);
+  /// All samples of points of the picture, whose names work.pixels holds.
+  void (*render_points)(const SceneView&, const ShadingView&, const FrameView&, const PointList&, const BandWork&, TraceCounts&, RayCounts&);
 };
 
 struct Variant {

@@ -31,14 +31,6 @@ Material glowing() {
 /// At 1024 samples an Owen-scrambled edge is known to .0022 RMSE (sampling_test); five of these.
 constexpr double kEdge1024 = .011;
 
-/// Looks along -z at the plane z = 0 from 1 above it; the picture is 2 tan(angle/2) wide there.
-Camera straight_down(int width, int height, double across) {
-  Camera c;
-  c.eye = {0, 0, 1}, c.at = {0, 0, 0}, c.up = {0, 1, 0};
-  c.width = width, c.height = height, c.angle_deg = 360 / std::numbers::pi * std::atan(across / 2);
-  return c;
-}
-
 TEST(Coverage, OfAHalfPlane) {
   Scene s;
   s.materials = {glowing()};
@@ -148,20 +140,6 @@ TEST(Gloss, SeesItsShareOfAHalfWhiteWorld) {
   }
 }
 
-Scene everything() {
-  Scene s = random_mixture(5, 120);
-  s.materials.resize(3);
-  s.materials[1].mirror = {.7f, .8f, .9f}, s.materials[1].roughness = .15f, s.materials[1].specular = {.4f, .4f, .4f};
-  s.materials[1].shine = 20;
-  s.materials[2].transmission = .8f, s.materials[2].ior = 1.4f, s.materials[2].mirror = {.1f, .1f, .1f};
-  Random random(4);
-  for (auto* m : {&s.geometry.spheres.material, &s.geometry.triangles.material, &s.geometry.cones.material})
-    for (std::uint32_t& i : *m) i = random.below(3);
-  s.lights = {{{3, 4, 5}, {.7f, .7f, .6f}, {1, 0, 0}, {0, 1, 0}}, {{-4, 2, 3}, {.3f, .3f, .4f}}, {{0, 5, 1}, {.2f, .2f, .2f}, {0, 0, 1}, {1, 0, 0}}};
-  s.background = {.1f, .2f, .3f};
-  return s;
-}
-
 TEST(Effects, GiveTheSameBitsEverywhere) {
   const Scene s = everything();
   Camera c;
@@ -225,6 +203,14 @@ TEST(Effects, AreTakenFromTheCommandLine) {
   EXPECT_EQ(f.camera.focus, 1.5);
   // 20 pixels of a plane 2 away, 45 degrees and 512 rows high.
   EXPECT_NEAR(f.camera.aperture, 20 * 2 * 2 * std::tan(std::numbers::pi / 8) / 512, 1e-12);
+  e.jitter = 0, e.adaptive = {true, .1f, 3};
+  apply_effects(e, f, o);
+  EXPECT_TRUE(o.subdivision.on);
+  EXPECT_EQ(o.sampling.samples, 4) << "lens points through each point";
+  e.lens.reset();
+  apply_effects(e, f, o);
+  EXPECT_EQ(o.sampling.samples, 1);
+  EXPECT_EQ(o.sampling.light_rays, 144);
   e.shadows = Effects::Shadows{true, 0, 1};
   apply_effects(e, f, o);
   for (const Light& l : f.scene.lights) EXPECT_FALSE(l.is_area());

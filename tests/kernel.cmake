@@ -12,6 +12,7 @@ grelha_test(camera unit grelha::kernel)
 grelha_test(variants property grelha::kernel)
 grelha_test(beam unit grelha::kernel)
 grelha_test(shade unit grelha::kernel)
+grelha_test(subdivision image grelha::kernel)
 grelha_test(determinism image grelha::frontend grelha::scenes)
 
 # No function of one instruction set's copy can be linked into another. The self test plants three that could.

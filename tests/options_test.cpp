@@ -59,6 +59,11 @@ TEST(Render, Effects) {
   EXPECT_EQ(e.lens->samples, 32);
   EXPECT_EQ(e.glossy->roughness, .2f);
   EXPECT_EQ(e.glossy->rays, 6);
+  EXPECT_FALSE(e.adaptive.on);
+  const Subdivision s = std::get<RenderCommand>(parse("render x.nff --aa adaptive:.25,4")).effects.adaptive;
+  EXPECT_TRUE(s.on);
+  EXPECT_EQ(s.threshold, .25f);
+  EXPECT_EQ(s.depth, 4);
   EXPECT_TRUE(std::get<RenderCommand>(parse("render x.nff --shadows hard")).effects.shadows->hard);
   EXPECT_EQ(std::get<RenderCommand>(parse("render x.nff --shadows random:.25")).effects.shadows->positions, 1);
 }
@@ -149,7 +154,12 @@ TEST(Errors, SayWhatWasWantedAndFound) {
       {"render a --packet 8", "--packet: wanted one of 1, 16, 64, auto, found \"8\""},
       {"render a --samples 0", "--samples: wanted a whole number from 1 to 65536, found \"0\""},
       {"render a --sampler halton", "--sampler: wanted one of sobol, jitter, random, found \"halton\""},
-      {"render a --aa 3", "--aa: wanted off or jitter:N, found \"3\""},
+      {"render a --aa 3", "--aa: wanted off, jitter:N or adaptive:THRESHOLD,DEPTH, found \"3\""},
+      {"render a --aa adaptive:.1", "--aa: wanted adaptive:THRESHOLD,DEPTH, found \".1\""},
+      {"render a --aa adaptive:1.5,3", "--aa: wanted a threshold from 0 to 1, found \"1.5\""},
+      {"render a --aa adaptive:nan,3", "--aa: wanted a threshold from 0 to 1, found \"nan\""},
+      {"render a --aa adaptive:.1,3 --error .01", "--error and --time choose the samples: no --samples or --aa beside them"},
+      {"render a --aa adaptive:.1,9", "--aa: wanted a whole number from 0 to 8, found \"9\""},
       {"render a --aa jitter:0", "--aa: wanted a whole number from 1 to 256, found \"0\""},
       {"render a --shadows soft", "--shadows: wanted hard, random:SIZE or area:SIZE,N, found \"soft\""},
       {"render a --shadows area:1", "--shadows: wanted area:SIZE,N, found \"1\""},

@@ -133,6 +133,13 @@ TEST(Stats, HoldWhatWasCounted) {
   EXPECT_EQ(json["isa"], "avx2");
   EXPECT_EQ(json["threads"], 2);
   EXPECT_EQ(json["options"]["accel"], "grid");
+  EXPECT_TRUE(json["options"]["adaptive"].is_null());
+}
+
+TEST(Stats, RecordSubdivision) {
+  RenderCommand command;
+  command.render.subdivision = {true, .1f, 3};
+  EXPECT_EQ(Json::parse(stats_json(command, {}))["options"]["adaptive"], Json::parse(R"({"threshold":0.1,"depth":3})"));
 }
 
 TEST(Stats, NoLaneIssuedIsNoneBusy) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "kernel/camera.hpp"
 #include "kernel/geometry.hpp"
 #include "tests/support/random.hpp"
 
@@ -181,6 +182,29 @@ inline Scene placed(Scene s, double scale, const Float3& offset) {
   for (auto* v : {&g.spheres.z, &g.cones.base_z, &g.cones.apex_z, &g.planes.z, &g.triangles.z}) move(*v, offset.z);
   for (auto* v : {&g.spheres.radius, &g.cones.base_radius, &g.cones.apex_radius}) size(*v);
   return s;
+}
+
+/// The mixture with everything to sample but a lens: rough mirrors, glass, area lights among point lights.
+inline Scene everything() {
+  Scene s = random_mixture(5, 120);
+  s.materials.resize(3);
+  s.materials[1].mirror = {.7f, .8f, .9f}, s.materials[1].roughness = .15f, s.materials[1].specular = {.4f, .4f, .4f};
+  s.materials[1].shine = 20;
+  s.materials[2].transmission = .8f, s.materials[2].ior = 1.4f, s.materials[2].mirror = {.1f, .1f, .1f};
+  Random random(4);
+  for (auto* m : {&s.geometry.spheres.material, &s.geometry.triangles.material, &s.geometry.cones.material})
+    for (std::uint32_t& i : *m) i = random.below(3);
+  s.lights = {{{3, 4, 5}, {.7f, .7f, .6f}, {1, 0, 0}, {0, 1, 0}}, {{-4, 2, 3}, {.3f, .3f, .4f}}, {{0, 5, 1}, {.2f, .2f, .2f}, {0, 0, 1}, {1, 0, 0}}};
+  s.background = {.1f, .2f, .3f};
+  return s;
+}
+
+/// Looks along -z at the plane z = 0 from 1 above it; the picture is 2 tan(angle/2) high there.
+inline Camera straight_down(int width, int height, double across) {
+  Camera c;
+  c.eye = {0, 0, 1}, c.at = {0, 0, 0}, c.up = {0, 1, 0};
+  c.width = width, c.height = height, c.angle_deg = 360 / std::numbers::pi * std::atan(across / 2);
+  return c;
 }
 
 // ---- closed meshes ----------------------------------------------------------------------------------------------

@@ -1,0 +1,101 @@
+#include "kernel/point_tracer.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <omp.h>
+
+#include "kernel/subdivision.hpp"
+#include "kernel/workspace.hpp"
+
+namespace grelha {
+namespace {
+
+constexpr int kMostPoints = 2048;  ///< a thread takes at a time
+
+/// What one thread needs.
+struct PointSpace {
+  PointSpace(int depth, const SamplePlan& plan) : space(kMostPoints, depth, plan) {}
+  Workspace space;
+  float x[kMostPoints], y[kMostPoints];
+  TraceCounts trace;
+  RayCounts rays;
+};
+
+/// Sees lists of points in parallel.
+class PointTracer {
+ public:
+  PointTracer(const World::Impl& world, const FrameView& frame, const SamplePlan& plan, const Variant& variant,
+              const RenderOptions& options, int threads)
+      : world_(world), frame_(frame), plan_(plan), variant_(variant), options_(options) {
+    for (int i = 0; i < threads; ++i) spaces_.push_back(std::make_unique<PointSpace>(options.depth, plan));
+  }
+
+  bool operator()(std::span<const LatticePoint> points, Float3* colours, double from, double to) {
+    const auto count = static_cast<std::int64_t>(points.size()), threads = static_cast<std::int64_t>(spaces_.size());
+    // Whole packets, large enough to be worth taking, small enough that no thread waits long for the last.
+    const std::int64_t chunk = std::clamp<std::int64_t>(count / (8 * threads) / 64 * 64, 64, kMostPoints);
+    const std::int64_t chunks = (count + chunk - 1) / chunk;
+    const int team = static_cast<int>(std::min(threads, std::max<std::int64_t>(chunks, 1)));
+    std::atomic<bool> stopped = false;
+    std::int64_t done = 0;
+#pragma omp parallel for schedule(dynamic) num_threads(team)
+    for (std::int64_t c = 0; c < chunks; ++c) {
+      if (stopped) continue;
+      const std::int64_t first = c * chunk, last = std::min(first + chunk, count);
+      see(*spaces_[static_cast<std::size_t>(omp_get_thread_num())], points.data() + first, static_cast<int>(last - first), colours + first);
+#pragma omp critical(grelha_progress)
+      {
+        ++done;
+        const double share = from + (to - from) * static_cast<double>(done) / static_cast<double>(chunks);
+        if (options_.progress && !stopped && !options_.progress(share)) stopped = true;
+      }
+    }
+    return !stopped;
+  }
+
+  void count(RenderStats& stats) const {
+    for (const auto& s : spaces_) stats.trace += s->trace, stats.rays += s->rays;
+  }
+
+ private:
+  void see(PointSpace& s, const LatticePoint* points, int count, Float3* colours) const {
+    std::uint32_t* const names = s.space.pixels().data();
+    for (int i = 0; i < count; ++i) {  // exact: no coordinate is above 2^24
+      s.x[i] = static_cast<float>(points[i].x) / kLatticeSteps, s.y[i] = static_cast<float>(points[i].y) / kLatticeSteps;
+      names[i] = lattice_hash(points[i]);
+    }
+    variant_.loops.render_points(world_.view, world_.shading, frame_, {s.x, s.y, count}, s.space.work(options_, 0, true), s.trace, s.rays);
+    const double share = 1 / (kLightUnit * plan_.samples);
+    const std::int64_t* sum = s.space.sums().data();
+    for (int i = 0; i < count; ++i, sum += 3)
+      colours[i] = {static_cast<float>(static_cast<double>(sum[0]) * share), static_cast<float>(static_cast<double>(sum[1]) * share),
+                    static_cast<float>(static_cast<double>(sum[2]) * share)};
+  }
+
+  const World::Impl& world_;
+  const FrameView& frame_;
+  const SamplePlan& plan_;
+  const Variant& variant_;
+  const RenderOptions& options_;
+  std::vector<std::unique_ptr<PointSpace>> spaces_;
+};
+
+}  // namespace
+
+Image render_subdivided(const World::Impl& world, const Camera& camera, const FrameView& frame, const SamplePlan& plan, const Variant& variant,
+                        const RenderOptions& options, RenderStats& stats) {
+  stats = {};
+  stats.threads = options.threads > 0 ? options.threads : omp_get_num_procs();
+  stats.isa = variant.name.data();
+  PointTracer tracer(world, frame, plan, variant, options, stats.threads);
+  Image image = subdivide(camera.width, camera.height, options.subdivision, std::ref(tracer));
+  tracer.count(stats);
+  return image;
+}
+
+}  // namespace grelha
