@@ -25,7 +25,7 @@ struct BeamFrame {
   Vec3<float> apex, axis, right, up;
   Vec3<float> to_x, to_y;  ///< x = dot(p, to_x) / dot(p, unit), p from the apex; y likewise
   Vec3<float> unit;        ///< the axis without what right and up add to it: w = dot(p, unit)
-  float depth;             ///< w of the corner rays' origins
+  float depth;             ///< w from which the whole beam is on its way: of its farthest origin
 };
 
 struct Sight {
@@ -61,6 +61,13 @@ inline bool frame_of(const Beam& b, BeamFrame& f) {
   const float det = dot(n, f.axis);
   if (!(det * det > 0)) return false;
   f.to_x = (1 / det) * cross(f.up, f.axis), f.to_y = (1 / det) * cross(f.axis, f.right);
+  if (f.depth == 0) return true;
+  float first = kInfinity, last = 0;
+  for (int i = 0; i < kCorners; ++i) {
+    const float w = dot(b.org[i] - f.apex, f.unit);
+    first = lesser(w, first), last = greater(w, last);
+  }
+  f.depth = last + .1f * (last - first);  // a slanting mirror: its corners are the ends, but for the rounding
   return true;
 }
 
@@ -243,30 +250,40 @@ inline void see_outside(const CellLists& lists, const See& see) {
     for (std::uint32_t i = 0; i < lists.cone_first[1]; ++i) see(lists.cone_id[i]);
 }
 
+/// The weight, 0 to 1, of what may hide: `inside`, where something was met that no corner sees; `around`, where the corners differ,
+/// or the beam cannot tell: what hides then shows in the pixels around as well, whose colours bound it.
+struct Doubt {
+  float inside = 0, around = 0;
+  bool none() const { return inside == 0 && around == 0; }
+};
+inline Doubt around(float weight) { return {0, weight}; }
+inline Doubt operator+(const Doubt& a, const Doubt& b) { return {greater(a.inside, b.inside), greater(a.around, b.around)}; }
+
 class Watcher {
  public:
   Watcher(const SceneView& scene, const ShadingView& shading, Counters& counters) : scene_(scene), shading_(shading), n_(counters) {}
 
-  /// Weight, 0 to 1, of what may hide in the light that comes along the beam with `weight`; 0: it is plain, one smooth surface under
-  /// light that is whole or wholly blocked, and so in mirrors `bounces` more times. A quarter of the weight where nothing is known to hide, but the beam cannot follow.
-  /// `whole`: only a surface that is one convex primitive counts, which makes the answer sure.
-  float doubt(const Beam& beam, bool whole, int bounces, float weight) {
-    const float lost = .25f * weight;
+  /// What may hide in the light that comes along the beam with `weight`. None: it is plain, one smooth surface under light that is
+  /// whole or wholly blocked, and so in mirrors `bounces` more times. `whole`: only a surface that is one convex primitive counts,
+  /// which makes the answer sure.
+  Doubt doubt(const Beam& beam, bool whole, int bounces, float weight, std::uint32_t mirror_id = kNoPrimitive) {
     BeamFrame f;
-    if (!frame_of(beam, f)) return lost;
+    if (!frame_of(beam, f)) return around(weight);
     Sight sight;
     trace_corners(beam, sight);
     float far = 0;
+    bool differ = false;
     for (int i = 0; i < kCorners; ++i) {
       const bool hit = sight.id[i] != kNoPrimitive;
-      if (hit != (sight.id[0] != kNoPrimitive) || (whole && sight.id[i] != sight.id[0])) return weight;
+      differ |= whole ? sight.id[i] != sight.id[0] || (hit && sight.id[i] >= scene_.cone_base) : !alike(sight.id[0], sight.id[i]);
       far = greater(hit ? place(f, beam.org[i] + sight.t[i] * beam.dir[i]).w * 1.0001f : kInfinity, far);
     }
-    if (whole && sight.id[0] >= scene_.cone_base && sight.id[0] != kNoPrimitive) return weight;
+    if (whole && differ) return around(weight);
     Met met;
-    if (!collect(f, far, sight.id, whole, met)) return lost;
-    if (!one_surface(sight.id) || !hidden(f, met, sight.id) || !closed(f, met, sight.id)) return weight;
-    if (sight.id[0] == kNoPrimitive) return 0;
+    if (!collect(f, far, sight.id, whole, met)) return around(weight);
+    if (const Doubt found = hidden(f, met, sight.id, mirror_id, weight); !found.none()) return found;
+    if (differ || !closed(f, met, sight.id)) return around(weight);
+    if (sight.id[0] == kNoPrimitive) return {};
 
     Surface s[kCorners];
     for (int i = 0; i < kCorners; ++i) {
@@ -274,28 +291,27 @@ class Watcher {
       s[i] = surface_of(scene_, sight.id[i], org, dir, sight.t[i], shading_.smooth);
       if (dot(beam.dir[i], s[i].normal) > 0)
         s[i].normal = Vec3<float>{0, 0, 0} - s[i].normal, s[i].shading = Vec3<float>{0, 0, 0} - s[i].shading;
-      if (s[i].material != s[0].material || dot(s[i].normal, s[0].normal) < .8f) return weight;
+      if (dot(s[i].normal, s[0].normal) < .8f) return around(weight);
     }
     const auto field = [&](MaterialField k) { return shading_.materials.field[k][s[0].material]; };
-    if (field(kTransmission) > 0) return lost;
+    if (field(kTransmission) > 0) return around(weight);
     const auto color = [&](MaterialField k) { return Vec3<float>{field(k), field(static_cast<MaterialField>(k + 1)), field(static_cast<MaterialField>(k + 2))}; };
     const Vec3<float> answer = color(kDiffuseR) + color(kSpecularR);
-    float most = 0;
+    Doubt most;
     for (int l = 0; l < shading_.light_count; ++l) {
       const float* const light = shading_.lights + kLightFloats * l;
       const float part = lesser(largest(answer * Vec3<float>{light[3], light[4], light[5]}), 1.f) * weight;
-      if (part > most) most = greater(part * uneven_light(light, s, sight.id, whole), most);
+      if (part > most.inside) most = most + uneven_light(light, s, sight.id, whole, part);
     }
     const float mirror = lesser(largest(color(kMirrorR)), 1.f) * weight;
-    if (!(mirror > most) || mirror < 1.f / 64 || field(kRoughness) > 0 || bounces == 0) return most;
+    if (!(mirror > most.inside) || mirror < 1.f / 64 || field(kRoughness) > 0 || bounces == 0) return most;
     Beam mirrored;
     for (int i = 0; i < kCorners; ++i) {
       const float across = dot(beam.dir[i], s[i].shading);
       mirrored.dir[i] = normalize(beam.dir[i] - (across + across) * s[i].shading);
       mirrored.org[i] = s[i].point + s[i].away * s[i].normal;
     }
-    const float there = doubt(mirrored, whole, bounces - 1, mirror);
-    return greater(there, most);
+    return most + doubt(mirrored, whole, bounces - 1, mirror, sight.id[0]);
   }
 
  private:
@@ -380,12 +396,20 @@ class Watcher {
       for (int l = 0; l < 3; ++l) found |= p.at[k].x == q.at[l].x && p.at[k].y == q.at[l].y && p.at[k].z == q.at[l].z;
     return found;
   }
-  bool touches(const std::uint32_t (&on)[kCorners], std::uint32_t id) const {
-    return touch(on[0], id) || touch(on[1], id) || touch(on[2], id) || touch(on[3], id);
+  /// Triangles of one material: pieces of one mesh, most likely.
+  bool kin(std::uint32_t a, std::uint32_t b) const {
+    return is_triangle(a) && is_triangle(b) &&
+           scene_.geometry.triangle_material[a - scene_.triangle_base] == scene_.geometry.triangle_material[b - scene_.triangle_base];
+  }
+  template <class Test>
+  static bool any_of(const std::uint32_t (&id)[kCorners], const Test& test) {
+    return test(id[0]) || test(id[1]) || test(id[2]) || test(id[3]);
   }
 
-  /// Sends a ray to each point met; whether all of them end on what passes for the surface `front`.
-  bool hidden(const BeamFrame& f, const Met& met, const std::uint32_t (&front)[kCorners]) {
+  /// Sends a ray to each point met. Where all of them end on what passes for a surface that the corners see, nothing hides; where
+  /// one ends on another side of their mesh, that shows around as well.
+  Doubt hidden(const BeamFrame& f, const Met& met, const std::uint32_t (&front)[kCorners], std::uint32_t mirror_id, float weight) {
+    Doubt found;
     for (int first = 0; first < met.size; first += 16) {
       Packet p;
       p.size = met.size - first < 16 ? met.size - first : 16;
@@ -396,10 +420,15 @@ class Watcher {
         p.t_min[i] = 0, p.best[i] = kInfinity;
       }
       trace_packet<false>(scene_, p, {16, true}, n_);
-      for (int i = 0; i < p.size; ++i)
-        if (!alike(front[0], id_of(p.id[i]))) return false;
+      for (int i = 0; i < p.size; ++i) {
+        const std::uint32_t id = id_of(p.id[i]);
+        if (any_of(front, [&](std::uint32_t seen) { return alike(seen, id); })) continue;
+        const bool own = mirror_id != kNoPrimitive && (id == mirror_id || kin(id, mirror_id));  // a bulging mirror in its own way
+        if (!own && !any_of(front, [&](std::uint32_t seen) { return kin(seen, id); })) return {weight, weight};
+        found = around(weight);
+      }
     }
-    return true;
+    return found;
   }
 
   /// Whether the triangles that pass for one surface leave no gap in the beam: each edge inside it belongs to two of them.
@@ -431,8 +460,8 @@ class Watcher {
     return true;
   }
 
-  /// 0: the light reaches all of the patch between four points, or none of it; 1: something throws a shadow inside; between: unknown.
-  float uneven_light(const float* light, const Surface (&s)[kCorners], const std::uint32_t (&on)[kCorners], bool whole) {
+  /// Doubt whether the light, of weight `part`, reaches all of the patch between four points, or none of it.
+  Doubt uneven_light(const float* light, const Surface (&s)[kCorners], const std::uint32_t (&on)[kCorners], bool whole, float part) {
     const Vec3<float> at{light[0], light[1], light[2]};
     Beam beam;
     float away[kCorners], far = 0;
@@ -443,28 +472,32 @@ class Watcher {
       beam.org[i] = at, beam.dir[i] = (1 / away[i]) * to;
       facing += dot(to, s[i].normal) < 0;
     }
-    if (facing == 0) return 0;
+    if (facing == 0) return {};
     BeamFrame f;
-    if (!frame_of(beam, f)) return .25f;
+    if (!frame_of(beam, f)) return around(part);
     Sight sight;
     float least = kInfinity;
     for (int i = 0; i < kCorners; ++i) least = lesser(away[i], least), far = greater(away[i], far);
     trace_corners(beam, sight);
     int lit = 0;
-    for (int i = 0; i < kCorners; ++i) lit += !(sight.t[i] < away[i] * .9999f) || touches(on, sight.id[i]);
-    if (lit != 0 && lit != kCorners) return 1;
+    for (int i = 0; i < kCorners; ++i) lit += !(sight.t[i] < away[i] * .9999f) || any_of(on, [&](std::uint32_t own) { return touch(own, sight.id[i]); });
+    if (lit != 0 && lit != kCorners) return around(part);
     if (lit == 0) {
       const bool one = sight.id[0] == sight.id[1] && sight.id[0] == sight.id[2] && sight.id[0] == sight.id[3] && sight.id[0] < scene_.cone_base;
-      if (one) return 0;
+      if (one) return {};
       Met shade;
-      return !whole && one_surface(sight.id) && collect(f, far, sight.id, false, shade) && closed(f, shade, sight.id) ? 0 : .25f;
+      return !whole && one_surface(sight.id) && collect(f, far, sight.id, false, shade) && closed(f, shade, sight.id) ? Doubt{} : around(part);
     }
     // Lit at its corners: whatever stands between throws its shadow inside.
     Met met;
-    if (!collect(f, least * .9999f, on, whole, met)) return .25f;
-    for (int i = 0; i < met.size; ++i)
-      if (!touches(on, met.id[i])) return 1;
-    return 0;
+    if (!collect(f, least * .9999f, on, whole, met)) return around(part);
+    Doubt found;
+    for (int i = 0; i < met.size; ++i) {
+      if (any_of(on, [&](std::uint32_t own) { return touch(own, met.id[i]); })) continue;
+      if (!any_of(on, [&](std::uint32_t own) { return kin(own, met.id[i]); })) return {part, part};
+      found = around(part);
+    }
+    return found;
   }
 
   const SceneView& scene_;
@@ -490,16 +523,17 @@ inline Beam pixel_beam(const FrameView& f, int x0, int y0, int size) {
 }
 
 /// Doubt of the pixels of an 8 x 8 tile, [8 y + x]. Squares that are plain as a whole save their parts.
-inline void tile_doubt(Watcher& watcher, const FrameView& f, int x0, int y0, int size, int bounces, float (&out)[kTile * kTile]) {
+inline void tile_doubt(Watcher& watcher, const FrameView& f, int x0, int y0, int size, int bounces, float (&inside)[kTile * kTile],
+                       float (&around)[kTile * kTile]) {
   if (x0 >= f.width || y0 >= f.height) return;
-  const float doubt = watcher.doubt(pixel_beam(f, x0, y0, size), size > 1, bounces, 1);
-  if (size == 1 || doubt == 0) {
+  const Doubt doubt = watcher.doubt(pixel_beam(f, x0, y0, size), size > 1, bounces, 1);
+  if (size == 1 || doubt.none()) {
     for (int y = y0; y < y0 + size; ++y)
-      for (int x = x0; x < x0 + size; ++x) out[y % kTile * kTile + x % kTile] = doubt;
+      for (int x = x0; x < x0 + size; ++x) inside[y % kTile * kTile + x % kTile] = doubt.inside, around[y % kTile * kTile + x % kTile] = doubt.around;
     return;
   }
   const int h = size / 2;
-  for (int i = 0; i < 4; ++i) tile_doubt(watcher, f, x0 + i % 2 * h, y0 + i / 2 * h, h, bounces, out);
+  for (int i = 0; i < 4; ++i) tile_doubt(watcher, f, x0 + i % 2 * h, y0 + i / 2 * h, h, bounces, inside, around);
 }
 
 }  // namespace grelha::GRELHA_ISA

@@ -50,7 +50,7 @@ class Refinement {
         count_(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height)),
         effects_(plan.lens >= 0 || plan.light >= 0 || plan.gloss >= 0), first_log_(effects_ ? 3 : 2),
         order_(pixel_order(camera.width, camera.height)), sums_(count_ * 3), squares_{std::vector<float>(count_ * 3), std::vector<float>(count_ * 3), std::vector<float>(count_ * 3)},
-        own_(count_), variance_(count_), widest_(count_), cost_(count_, 1), log_(count_, 0), doubt_(count_, 1) {
+        own_(count_), variance_(count_), widest_(count_), cost_(count_, 1), log_(count_, 0), inside_(count_, 0), around_(count_, 1) {
     wanted_.reserve(count_);
     const int threads = std::max(1, options.threads > 0 ? options.threads : omp_get_num_procs());
     for (int i = 0; i < threads; ++i)
@@ -194,10 +194,13 @@ class Refinement {
         for (int y = y0; y < y1; ++y)
           for (int x = x0; x < x1; ++x) agree |= agrees(own_variance(at(x, y)), at(x, y));
         if (!agree) continue;
-        float doubt[kTile * kTile];
-        variant_.loops.doubt(world_.view, world_.shading, frame_, x0, y0, kBouncesWatched, doubt, trace);
+        float inside[kTile * kTile], around[kTile * kTile];
+        variant_.loops.doubt(world_.view, world_.shading, frame_, x0, y0, kBouncesWatched, inside, around, trace);
         for (int y = y0; y < y1; ++y)
-          for (int x = x0; x < x1; ++x) doubt_[at(x, y)] = doubt[(y - y0) * 8 + (x - x0)];
+          for (int x = x0; x < x1; ++x) {
+            const std::size_t i = static_cast<std::size_t>((y - y0) * kTile + (x - x0));
+            inside_[at(x, y)] = inside[i], around_[at(x, y)] = around[i];
+          }
       }
 #pragma omp critical(grelha_stats)
       stats_.trace += trace;
@@ -206,7 +209,18 @@ class Refinement {
 
   std::size_t at(int x, int y) const { return static_cast<std::size_t>(y) * static_cast<std::size_t>(camera_.width) + static_cast<std::size_t>(x); }
   /// What none of n samples met covers at most 3 / n of the pixel, at 95 % confidence (the rule of three), on either side.
-  float doubt_width(std::size_t p) const { return 6 * doubt_[p] / samples(p); }
+  float doubt_width(float doubt, std::size_t p) const { return 6 * doubt / samples(p); }
+  bool watched(std::size_t p) const { return effects_ || inside_[p] > 0 || around_[p] > 0; }
+
+  /// The greatest difference a channel of a pixel shows to one around it, on a screen.
+  float contrast(int x, int y) const {
+    const auto shown = [&](std::size_t i) { return std::clamp(mean(i), 0.f, 1.f); };
+    float most = 0;
+    for (int j = std::max(y - 1, 0); j <= std::min(y + 1, camera_.height - 1); ++j)
+      for (int i = std::max(x - 1, 0); i <= std::min(x + 1, camera_.width - 1); ++i)
+        for (std::size_t c = 0; c < 3; ++c) most = std::max(most, std::abs(shown(at(i, j) * 3 + c) - shown(at(x, y) * 3 + c)));
+    return most;
+  }
 
   /// Whether no sample of a pixel differed: one of n that does so by .1 shows as a variance of .005 / n^2.
   bool agrees(float variance, std::size_t p) const { return variance <= .005f / (samples(p) * samples(p)); }
@@ -240,12 +254,12 @@ class Refinement {
         for (int x = 0; x < width; ++x) {
           const std::size_t p = at(x, y);
           float v = own_[p];
-          if (effects_ || doubt_[p] > 0) {
+          if (watched(p)) {
             float sum = 0, count = 0;
             for (int j = std::max(y - 1, 0); j <= std::min(y + 1, height - 1); ++j)
               for (int i = std::max(x - 1, 0); i <= std::min(x + 1, width - 1); ++i) {
                 const std::size_t q = at(i, j);
-                if (q == p || !(effects_ || doubt_[q] > 0)) continue;
+                if (q == p || !watched(q)) continue;
                 sum += own_[q] * scale[kMostLog + log_[p] - log_[q]], count += 1;
               }
             const float mine = held(p), theirs = kNeighbours * count / 8;
@@ -254,8 +268,11 @@ class Refinement {
           float wide = 2 * kNormal * std::sqrt(v);
           // What none of n samples met has a share of the pixel of Beta(1, n + 1), whose second moment is 2 / n^2; it differs from
           // what they met by the doubt at most, by about a quarter of it in the mean.
-          if (const float miss = doubt_[p] / samples(p); miss > 0 && agrees(own_[p], p))
-            v = std::max(v, .15f * miss * miss), wide = std::max(wide, doubt_width(p));
+          if ((inside_[p] > 0 || around_[p] > 0) && agrees(own_[p], p)) {
+            // An edge that comes in from a neighbour leaves no room among n samples of a net for more than about 1 / n.
+            const float doubt = std::max(inside_[p], around_[p] * contrast(x, y) / 3), miss = doubt / samples(p);
+            v = std::max(v, .15f * miss * miss), wide = std::max(wide, doubt_width(doubt, p));
+          }
           variance_[p] = v, widest_[p] = wide;
         }
     }
@@ -322,7 +339,7 @@ class Refinement {
   std::vector<float> own_, variance_, widest_;  ///< by pixel: mean over channels, the same with its neighbours', width of the 95 % interval
   std::vector<float> cost_;                     ///< rays a sample takes, of the part of the picture last sampled with the pixel
   std::vector<std::uint8_t> log_;    ///< of a pixel's samples; 0: none yet
-  std::vector<float> doubt_;         ///< weight of what may hide from the pixel's samples, 0 to 1
+  std::vector<float> inside_, around_;  ///< [pixels] weights of what may hide from the samples, see Doubt
   std::vector<std::unique_ptr<Workspace>> spaces_;
   double fall_ = 0, level_ = 0;
   float rho_ = .4f;

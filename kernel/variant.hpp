@@ -70,10 +70,10 @@ inline void pixel_runs(const SceneView& scene, const ShadingView& shading, const
 }
 
 inline void doubt(const SceneView& scene, const ShadingView& shading, const FrameView& frame, int x0, int y0, int bounces,
-                  float (&out)[kTile * kTile], TraceCounts& trace_counts) {
+                  float (&inside)[kTile * kTile], float (&around)[kTile * kTile], TraceCounts& trace_counts) {
   Counters n;
   Watcher watcher(scene, shading, n);
-  tile_doubt(watcher, frame, x0, y0, kTile, bounces, out);
+  tile_doubt(watcher, frame, x0, y0, kTile, bounces, inside, around);
   add(n, trace_counts);
 }
 
