@@ -116,13 +116,15 @@ void parse_error_bound(const std::string& text, RefineOptions& refine) {
 }
 
 void parse_time(const std::string& text, RefineOptions& refine) {
-  constexpr std::string_view kRounds = "rounds:";
-  if (text.starts_with(kRounds)) {
-    refine.rounds = whole("--time", text.substr(kRounds.size()), 1, 1000);
+  constexpr std::string_view kSamples = "samples:";
+  if (text.starts_with(kSamples)) {
+    const auto count = number<std::uint64_t>(std::string_view(text).substr(kSamples.size()));
+    if (!count || *count == 0) refuse("--time", "samples:N with N above 0", text);
+    refine.samples = *count;
     return;
   }
   const auto value = number<double>(text);
-  if (!value || !(*value > 0) || *value > 1e9) refuse("--time", "seconds above 0, or rounds:N", text);
+  if (!value || !(*value > 0) || *value > 1e9) refuse("--time", "seconds above 0, or samples:N", text);
   refine.seconds = *value;
 }
 
@@ -203,7 +205,7 @@ void add_render(CLI::App& app, RenderCommand& command) {
         [&effects](const std::string& text) { effects.samples = whole("--samples", text, 1, kMostSamples); });
   value(sub, "--error", "E", "as many samples, where they help most, as an RMSE of E takes (white is 1)",
         [&command](const std::string& text) { parse_error_bound(text, command.render.refine); });
-  value(sub, "--time", "SECONDS", "the same for so long; rounds:N repeats what a run reported",
+  value(sub, "--time", "SECONDS", "the same for so long; samples:N repeats what a run reported",
         [&command](const std::string& text) { parse_time(text, command.render.refine); });
   value(sub, "--samples-map", "FILE", "with --error or --time: picture of the samples of each pixel",
         [&command](const std::string& text) { want_image_name("--samples-map", text), command.samples_map = text; });
@@ -281,7 +283,7 @@ void want_known_command(const CLI::App& app, const std::string& word) {
 void check_together(const RenderCommand& command) {
   const RefineOptions& r = command.render.refine;
   const Effects& e = command.effects;
-  if (int(r.error > 0) + int(r.seconds > 0) + int(r.rounds > 0) > 1) throw UsageError("--error and --time: one of them, found both");
+  if (int(r.error > 0) + int(r.seconds > 0) + int(r.samples > 0) > 1) throw UsageError("--error and --time: one of them, found both");
   if (r.on() && (e.samples || e.jitter > 0 || e.adaptive.on)) throw UsageError("--error and --time choose the samples: no --samples or --aa beside them");
   if (r.on() && e.sampler == Sampler::kJitter) throw UsageError("--sampler: wanted sobol or random with --error or --time, found \"jitter\"");
   if (!r.on() && !(command.samples_map.empty() && command.error_map.empty()))

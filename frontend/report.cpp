@@ -207,8 +207,8 @@ std::string summary_line(const RenderCommand& command, const RunReport& report) 
   const double speed = s.render > 0 ? rays / s.render / 1e6 : 0;
   const ErrorStats& e = report.render.error;
   const std::string error = e.samples == 0 ? "" :
-      print("; RMSE about %.2g, at most %.2g (95 %%); %.1f samples a pixel, %u to %u, %d rounds", e.rmse, e.rmse_bound,
-            double(e.samples) / report.width / report.height, e.least, e.most, e.rounds);
+      print("; RMSE about %.2g, at most %.2g (95 %%); %llu samples, %.1f a pixel, %u to %u", e.rmse, e.rmse_bound,
+            static_cast<unsigned long long>(e.samples), double(e.samples) / report.width / report.height, e.least, e.most);
   return command.image + ": " + primitives_text(report.spheres, report.triangles, report.cones, report.planes) + "; " +
          grids_text(report.grids) + "; " + print("%.3f Mrays in ", rays / 1e6) + times +
          print("; %.2f Mrays/s (%s, %d thread%s)", speed, report.render.isa, report.render.threads,

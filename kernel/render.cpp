@@ -36,7 +36,7 @@ void check(const Camera& camera, const RenderOptions& o) {
   if (s.light_rays < 1 || s.light_rays > 4096) throw std::invalid_argument("shadow rays to an area light must be from 1 to 4096");
   if (s.gloss_rays < 0 || s.gloss_rays > 256) throw std::invalid_argument("rays around the mirror direction must be from 0 to 256");
   const RefineOptions& r = o.refine;
-  if (!(r.error >= 0) || !(r.seconds >= 0) || r.rounds < 0) throw std::invalid_argument("an error, a time and rounds must not be negative");
+  if (!(r.error >= 0) || !(r.seconds >= 0)) throw std::invalid_argument("an error and a time must not be negative");
   if (r.on() && s.sampler == Sampler::kJitter)
     throw std::invalid_argument("jittered samples must be counted before they are taken: to meet an error, use sobol or random");
   if (r.on() && s.light_rays > 1) throw std::invalid_argument("to meet an error every sample sends one ray to a light");

@@ -67,9 +67,9 @@ struct SampleOptions {
 struct RefineOptions {
   double error = 0;    ///< > 0: until the RMSE is at most this at 95 % confidence and no pixel's 95 % interval is wider than
                        ///< 8 times this; display units, 0 to 1
-  double seconds = 0;  ///< > 0: until these are spent, which depends on the machine; ErrorStats::rounds says what to ask for to repeat it
-  int rounds = 0;      ///< > 0: so many rounds
-  bool on() const { return error > 0 || seconds > 0 || rounds > 0; }
+  double seconds = 0;  ///< > 0: until these are spent, which depends on the machine; ErrorStats::samples says what to ask for to repeat it
+  std::uint64_t samples = 0;  ///< > 0: so many in the whole picture, and at least the first few of every pixel
+  bool on() const { return error > 0 || seconds > 0 || samples > 0; }
 };
 
 /// By pixel, row 0 on top.

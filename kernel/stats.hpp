@@ -44,9 +44,9 @@ struct ErrorStats {
   double rmse = 0;             ///< of all pixels and channels against the converged picture, estimated
   double rmse_bound = 0;       ///< not exceeded at 95 % confidence
   double widest = 0;           ///< widest 95 % interval of a pixel
-  std::uint64_t samples = 0;   ///< of all pixels
+  std::uint64_t samples = 0;   ///< of all pixels; RefineOptions::samples repeats a run by time
   std::uint32_t least = 0, most = 0;  ///< of one pixel
-  int rounds = 0;              ///< of doubling; RefineOptions::rounds repeats them
+  int rounds = 0;              ///< of doubling
 };
 
 struct RenderStats {

@@ -198,12 +198,22 @@ TEST(Refinement, RepeatsWhatATimeBought) {
   RefineOptions timed, again;
   timed.seconds = .3;
   const Outcome first = refined(c, timed);
-  ASSERT_GE(first.stats.error.rounds, 1);
-  again.rounds = first.stats.error.rounds;
+  again.samples = first.stats.error.samples;
   const Outcome second = refined(c, again);
-  EXPECT_EQ(second.stats.error.rounds, first.stats.error.rounds);
+  EXPECT_EQ(second.stats.error.samples, first.stats.error.samples);
   EXPECT_EQ(second.maps.samples, first.maps.samples);
   EXPECT_EQ(differing(first.image, second.image), 0u);
+}
+
+TEST(Refinement, SpendsTheSamplesItIsGiven) {
+  const Case c = std::move(cases(48).back());
+  for (const std::uint64_t samples : {1ull, 48ull * 48 * 8, 100000ull, 123456ull}) {
+    RefineOptions given;
+    given.samples = samples;
+    const ErrorStats spent = refined(c, given).stats.error;
+    EXPECT_LE(spent.samples, std::max<std::uint64_t>(samples, 48 * 48 * 8));  // every pixel takes its first 8
+    EXPECT_GE(spent.samples + spent.most, samples);                          // the next pixel's would not have fitted
+  }
 }
 
 TEST(Refinement, RefusesWhatItCannotDo) {
