@@ -11,7 +11,9 @@
 #include "kernel/render.hpp"
 #include "scenes/generators.hpp"
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
@@ -73,15 +75,17 @@ Image render_with_bar(const World& world, const Camera& camera, const RenderComm
   return render(world, camera, options, stats, &maps);
 }
 
-/// A map as a picture: .pfm and .hdr hold the numbers, a .png is scaled so that the largest is white.
-template <class T>
-void write_map(const std::string& path, const std::vector<T>& values, int width, int height) {
+/// Numbers by pixel as a picture: .pfm and .hdr hold them as they are; in a .png `shade` of the largest is white.
+template <class T, class Shade>
+void write_map(const std::string& path, const std::vector<T>& values, const Camera& camera, const Shade& shade) {
   if (path.empty()) return;
-  T largest = 0;
-  for (const T v : values) largest = std::max(largest, v);
-  const double scale = image_format(path) == ImageFormat::png && largest > 0 ? 1 / double(largest) : 1;
-  Image image(width, height);
-  for (std::size_t i = 0; i < image.rgb.size(); ++i) image.rgb[i] = float(double(values[i / 3]) * scale);
+  const bool png = image_format(path) == ImageFormat::png;
+  const double largest = shade(double(*std::max_element(values.begin(), values.end())));
+  Image image(camera.width, camera.height);
+  for (std::size_t i = 0; i < image.rgb.size(); ++i) {
+    const double v = double(values[i / 3]);
+    image.rgb[i] = float(png ? (largest > 0 ? shade(v) / largest : 0) : v);
+  }
   write_image(path, image);
 }
 
@@ -109,8 +113,8 @@ int run(const RenderCommand& command) {
 
   const Stopwatch write;
   write_image(command.image, image, command.srgb ? Tone::srgb : Tone::authored);
-  write_map(command.samples_map, maps.samples, camera.width, camera.height);
-  write_map(command.error_map, maps.error, camera.width, camera.height);
+  write_map(command.samples_map, maps.samples, camera, [](double n) { return std::log2(n); });
+  write_map(command.error_map, maps.error, camera, [](double e) { return e; });
   report.seconds.write = write.seconds();
 
   const Geometry& geometry = file.scene.geometry;

@@ -21,6 +21,7 @@ constexpr std::array kGenerators{
     Generator{"tree", "tree of cones and spheres under seven lights", 0, 16, 11, write_tree},
     Generator{"lattice", "cube of balls joined by rods", 1, 50, 12, write_lattice},
     Generator{"discs", "discs far smaller than a pixel, each within one", 1, 512, 64, write_discs},
+    Generator{"awning", "plates that throw soft shadows a pixel wide", 1, 500, 64, write_awning},
     Generator{"star", "Siemens star: edges at every angle", 2, 1000, 36, write_star},
 };
 

@@ -14,8 +14,8 @@ struct SceneOptions {
 };
 
 /// The scenes this project can make. Constructions: Haines, "A Proposal for Standard Graphics Environments" (1987) and
-/// the programs of his Standard Procedural Databases 3.14; distant, boat, stadium, knot, discs and star are our own, and so
-/// are the colours of gears and the heights of mount beyond size 7.
+/// the programs of his Standard Procedural Databases 3.14; distant, boat, stadium, knot, discs, star and awning are our
+/// own, and so are the colours of gears and the heights of mount beyond size 7.
 ///
 ///   name     size     size n gives                                                      default
 ///   balls    1-7      (9^(n+1) - 1) / 8 spheres and one plane (--spd: a 4-gon)          4: 7381
@@ -31,6 +31,7 @@ struct SceneOptions {
 ///   lattice  1-50     (n+1)^3 spheres, 3n (n+1)^2 cylinders                             12: 2197, 6084
 ///   discs    1-512    n^2 spheres of a tenth of a pixel's radius at 512x512             64: 4096
 ///   star     2-1000   n spokes, a triangle each                                         36
+///   awning   1-500    n^2 4-gons between an area light and a plane                      64: 4096
 ///
 /// The course's form of balls and mount: lights carry the colour 1 1 1, the floor is an infinite plane, the glass has
 /// index 1.2 and three of its four balls shrink so that they do not touch.
@@ -58,6 +59,7 @@ void write_rings(std::ostream& out, const SceneOptions& options);
 void write_tree(std::ostream& out, const SceneOptions& options);
 void write_lattice(std::ostream& out, const SceneOptions& options);
 void write_discs(std::ostream& out, const SceneOptions& options);
+void write_awning(std::ostream& out, const SceneOptions& options);
 void write_star(std::ostream& out, const SceneOptions& options);
 
 }  // namespace grelha::scenes

@@ -52,6 +52,12 @@ void NffWriter::light(Vec position) { word("l"), vector(position), end_line(); }
 
 void NffWriter::light(Vec position, Vec color) { word("l"), vector(position), vector(color), end_line(); }
 
+void NffWriter::area_light(Vec corner, Vec edge1, Vec edge2, Vec color) {
+  word("al");
+  vector(corner), vector(edge1), vector(edge2), vector(color);
+  end_line();
+}
+
 void NffWriter::surface(const Surface& surface) {
   word("f"), vector(surface.color);
   for (const double field : {surface.kd, surface.ks, surface.shine, surface.transmission, surface.ior}) number(field);

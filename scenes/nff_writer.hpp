@@ -38,6 +38,7 @@ class NffWriter {
   void lens(double aperture_pixels, double focal_ratio);  ///< the course's fields, straight after the view
   void light(Vec position);
   void light(Vec position, Vec color);
+  void area_light(Vec corner, Vec edge1, Vec edge2, Vec color);  ///< the course's `al`
   void surface(const Surface& surface);
   void glow(Vec color);  ///< black but for light of its own: no lamp and no other surface changes it (14 fields)
   void sphere(Vec center, double radius);

@@ -126,6 +126,7 @@ TEST(Counts, AreThoseOfTheTable) {
   EXPECT_EQ(count_entities(generate("lattice", 3))["c"], 144);
   EXPECT_EQ(count_entities(generate("discs", 64))["s"], 4096);
   EXPECT_EQ(count_entities(generate("star", 36))["p 3"], 36);
+  EXPECT_EQ(count_entities(generate("awning", 64))["p 4"], 4096);
 }
 
 TEST(Balls, FirstBallsAndFloor) {
