@@ -68,6 +68,16 @@ TEST(Render, Effects) {
   EXPECT_EQ(std::get<RenderCommand>(parse("render x.nff --shadows random:.25")).effects.shadows->positions, 1);
 }
 
+TEST(Render, ErrorAndTime) {
+  const auto by_error = std::get<RenderCommand>(parse("render x.nff --error .02 --samples-map s.pfm --error-map e.png --seed 3"));
+  EXPECT_EQ(by_error.render.refine.error, .02);
+  EXPECT_EQ(by_error.samples_map, "s.pfm");
+  EXPECT_EQ(by_error.error_map, "e.png");
+  EXPECT_EQ(std::get<RenderCommand>(parse("render x.nff --time 1.5")).render.refine.seconds, 1.5);
+  EXPECT_EQ(std::get<RenderCommand>(parse("render x.nff --time samples:12345678901")).render.refine.samples, 12345678901u);
+  EXPECT_FALSE(std::get<RenderCommand>(parse("render x.nff")).render.refine.on());
+}
+
 TEST(Render, EveryOption) {
   const auto command = std::get<RenderCommand>(
       parse("render x.nff -o y.pfm --size 640x480 --threads 7 --depth 3 --density 2.5 --accel none --mailbox off "
@@ -154,6 +164,16 @@ TEST(Errors, SayWhatWasWantedAndFound) {
       {"render a --packet 8", "--packet: wanted one of 1, 16, 64, auto, found \"8\""},
       {"render a --samples 0", "--samples: wanted a whole number from 1 to 65536, found \"0\""},
       {"render a --sampler halton", "--sampler: wanted one of sobol, jitter, random, found \"halton\""},
+      {"render a --error 0", "--error: wanted a number from 0.000001 to 1, found \"0\""},
+      {"render a --error nan", "--error: wanted a number from 0.000001 to 1, found \"nan\""},
+      {"render a --time -1", "--time: wanted seconds above 0, or samples:N, found \"-1\""},
+      {"render a --time samples:0", "--time: wanted samples:N with N above 0, found \"samples:0\""},
+      {"render a --error .1 --time 1", "--error and --time: one of them, found both"},
+      {"render a --error .1 --samples 4", "--error and --time choose the samples: no --samples or --aa beside them"},
+      {"render a --time 1 --aa jitter:2", "--error and --time choose the samples: no --samples or --aa beside them"},
+      {"render a --error .1 --sampler jitter", "--sampler: wanted sobol or random with --error or --time, found \"jitter\""},
+      {"render a --samples-map s.png", "--samples-map and --error-map want --error or --time"},
+      {"render a --error .1 --error-map s.txt", "--error-map: wanted a name ending in .png, .hdr or .pfm, found \"s.txt\""},
       {"render a --aa 3", "--aa: wanted off, jitter:N or adaptive:THRESHOLD,DEPTH, found \"3\""},
       {"render a --aa adaptive:.1", "--aa: wanted adaptive:THRESHOLD,DEPTH, found \".1\""},
       {"render a --aa adaptive:1.5,3", "--aa: wanted a threshold from 0 to 1, found \"1.5\""},

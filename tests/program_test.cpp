@@ -1,4 +1,5 @@
 // The built program as a user meets it: exit statuses, files, one line per error.
+#include "frontend/image_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -7,6 +8,7 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <cmath>
 #include <array>
 #include <cstdlib>
 #include <cstring>
@@ -87,6 +89,25 @@ TEST_F(Program, StatsTellTheRun) {
   EXPECT_EQ(json["isa"], "scalar");
   EXPECT_EQ(json["threads"], 1);
   EXPECT_EQ(json["size"], Json::parse("[24,16]"));
+}
+
+TEST_F(Program, SpendsSamplesByErrorAndSaysSo) {
+  const Outcome outcome = run("render ball.nff -o a.pfm --error .02 --stats s.json --samples-map n.pfm --error-map e.pfm");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("; RMSE about "), std::string::npos) << outcome.out;
+  const Json error = Json::parse(folder_.read("s.json"))["error"];
+  EXPECT_EQ(error["asked"], .02);
+  EXPECT_LE(error["rmse_bound"], .02);
+  EXPECT_LE(error["widest"], 8 * .02);
+  const Image samples = read_image(folder_.file("n.pfm")), errors = read_image(folder_.file("e.pfm"));
+  double all = 0, squares = 0;
+  for (std::size_t i = 0; i < samples.rgb.size(); i += 3) all += samples.rgb[i], squares += double(errors.rgb[i]) * errors.rgb[i];
+  EXPECT_EQ(all, error["samples"]);
+  EXPECT_NEAR(std::sqrt(squares / (24 * 16)), double(error["rmse"]), 1e-6);
+
+  const std::string again = "render ball.nff -o b.pfm --quiet --time samples:" + std::to_string(std::uint64_t(error["samples"]));
+  EXPECT_EQ(run(again).status, 0);
+  EXPECT_EQ(run("render ball.nff -o c.pfm --quiet --time .2").status, 0);
 }
 
 TEST_F(Program, InfoAgreesWithTheStats) {
@@ -207,7 +228,7 @@ TEST_F(Program, EverySceneIsRead) {
     EXPECT_EQ(info.status, 0) << info.err;
     EXPECT_EQ(info.err.find("warning"), std::string::npos) << info.err;
   }
-  EXPECT_EQ(scenes, 13);
+  EXPECT_EQ(scenes, 14);
 }
 
 TEST_F(Program, AFullOutputIsStatusOne) {
