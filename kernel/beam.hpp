@@ -522,18 +522,22 @@ inline Beam pixel_beam(const FrameView& f, int x0, int y0, int size) {
   return b;
 }
 
-/// Doubt of the pixels of an 8 x 8 tile, [8 y + x]. Squares that are plain as a whole save their parts.
-inline void tile_doubt(Watcher& watcher, const FrameView& f, int x0, int y0, int size, int bounces, float (&inside)[kTile * kTile],
-                       float (&around)[kTile * kTile]) {
-  if (x0 >= f.width || y0 >= f.height) return;
+/// Doubt of the pixels of an 8 x 8 tile, [8 y + x], those with a bit in `asked`. Squares that are plain as a whole save their parts.
+inline void tile_doubt(Watcher& watcher, const FrameView& f, int x0, int y0, int size, int bounces, std::uint64_t asked,
+                       float (&inside)[kTile * kTile], float (&around)[kTile * kTile]) {
+  const int first = y0 % kTile * kTile + x0 % kTile;
+  const std::uint64_t row = ~std::uint64_t{0} >> (64 - size);
+  std::uint64_t here = 0;
+  for (int y = 0; y < size; ++y) here |= row << (first + y * kTile);
+  if ((asked & here) == 0) return;
   const Doubt doubt = watcher.doubt(pixel_beam(f, x0, y0, size), size > 1, bounces, 1);
   if (size == 1 || doubt.none()) {
-    for (int y = y0; y < y0 + size; ++y)
-      for (int x = x0; x < x0 + size; ++x) inside[y % kTile * kTile + x % kTile] = doubt.inside, around[y % kTile * kTile + x % kTile] = doubt.around;
+    for (int y = 0; y < size; ++y)
+      for (int x = 0; x < size; ++x) inside[first + y * kTile + x] = doubt.inside, around[first + y * kTile + x] = doubt.around;
     return;
   }
   const int h = size / 2;
-  for (int i = 0; i < 4; ++i) tile_doubt(watcher, f, x0 + i % 2 * h, y0 + i / 2 * h, h, bounces, inside, around);
+  for (int i = 0; i < 4; ++i) tile_doubt(watcher, f, x0 + i % 2 * h, y0 + i / 2 * h, h, bounces, asked, inside, around);
 }
 
 }  // namespace grelha::GRELHA_ISA

@@ -207,7 +207,7 @@ class Refinement {
     log_[p] = static_cast<std::uint8_t>(first ? first_log_ : log_[p] + 1);
   }
 
-  /// Asks of every tile with a pixel whose samples agree whether anything can hide there.
+  /// Asks of every pixel whose samples agree whether anything can hide there.
   void watch() {
     const int columns = (camera_.width + 7) / 8, rows = (camera_.height + 7) / 8;
 #pragma omp parallel num_threads(stats_.threads)
@@ -217,14 +217,17 @@ class Refinement {
       for (int tile = 0; tile < columns * rows; ++tile) {
         const int x0 = tile % columns * 8, y0 = tile / columns * 8;
         const int x1 = std::min(x0 + 8, camera_.width), y1 = std::min(y0 + 8, camera_.height);
-        bool agree = false;
+        std::uint64_t agree = 0;
+        const auto bit = [&](int x, int y) { return std::uint64_t{1} << ((y - y0) * kTile + (x - x0)); };
         for (int y = y0; y < y1; ++y)
-          for (int x = x0; x < x1; ++x) agree |= agrees(own_variance(at(x, y)), at(x, y));
-        if (!agree) continue;
+          for (int x = x0; x < x1; ++x)
+            if (agrees(own_variance(at(x, y)), at(x, y))) agree |= bit(x, y);
+        if (agree == 0) continue;
         float inside[kTile * kTile], around[kTile * kTile];
-        variant_.loops.doubt(world_.view, world_.shading, frame_, x0, y0, kBouncesWatched, inside, around, trace);
+        variant_.loops.doubt(world_.view, world_.shading, frame_, x0, y0, kBouncesWatched, agree, inside, around, trace);
         for (int y = y0; y < y1; ++y)
           for (int x = x0; x < x1; ++x) {
+            if (!(agree & bit(x, y))) continue;  // what varies was met; should it agree later, its neighbours tell
             const std::size_t i = static_cast<std::size_t>((y - y0) * kTile + (x - x0));
             inside_[at(x, y)] = inside[i], around_[at(x, y)] = around[i];
           }

@@ -69,11 +69,11 @@ inline void pixel_runs(const SceneView& scene, const ShadingView& shading, const
   tally(n, rays, trace_counts, ray_counts);
 }
 
-inline void doubt(const SceneView& scene, const ShadingView& shading, const FrameView& frame, int x0, int y0, int bounces,
+inline void doubt(const SceneView& scene, const ShadingView& shading, const FrameView& frame, int x0, int y0, int bounces, std::uint64_t asked,
                   float (&inside)[kTile * kTile], float (&around)[kTile * kTile], TraceCounts& trace_counts) {
   Counters n;
   Watcher watcher(scene, shading, n);
-  tile_doubt(watcher, frame, x0, y0, kTile, bounces, inside, around);
+  tile_doubt(watcher, frame, x0, y0, kTile, bounces, asked, inside, around);
   add(n, trace_counts);
 }
 

@@ -28,7 +28,7 @@ Tile doubt(const Scene& scene, const Variant& variant, bool grid = true, float d
   const World::Impl& w = world.impl();
   float inside[kTile * kTile], around[kTile * kTile];
   TraceCounts counts;
-  variant.loops.doubt(w.view, w.shading, make_frame(over_units()), 0, 0, 2, inside, around, counts);
+  variant.loops.doubt(w.view, w.shading, make_frame(over_units()), 0, 0, 2, ~std::uint64_t{0}, inside, around, counts);
   Tile out;
   for (std::size_t i = 0; i < out.size(); ++i) out[i] = std::max(2 * inside[i], around[i]);
   return out;

@@ -5,7 +5,7 @@ grelha_test(image_file unit grelha::frontend)
 grelha_test(compare unit grelha::frontend)
 grelha_test(options unit grelha::frontend)
 grelha_test(report unit grelha::frontend nlohmann_json::nlohmann_json)
-grelha_test(program image grelha::scenes nlohmann_json::nlohmann_json)
+grelha_test(program image grelha::frontend grelha::scenes nlohmann_json::nlohmann_json)
 target_compile_definitions(program_test PRIVATE GRELHA_PROGRAM="$<TARGET_FILE:grelha>")
 add_dependencies(program_test grelha)
 
