@@ -2,7 +2,7 @@
 // What each variant_*.cpp compiles: the hot loops behind the functions of a Variant. Included once per instruction set.
 
 #include "kernel/band.hpp"
-#include "kernel/beam.hpp"
+#include "kernel/doubt.hpp"
 #include "kernel/points.hpp"
 #include "kernel/reference.hpp"
 #include "kernel/variants.hpp"

@@ -42,7 +42,7 @@ struct VariantLoops {
   void (*render_runs)(const SceneView&, const ShadingView&, const FrameView&, const PixelRun*, int runs, const BandWork&, TraceCounts&, RayCounts&);
   /// Doubt of the pixels of the 8 x 8 tile at (x0, y0), [8 y + x] each: the weight, 0 to 1, of what could hide from samples there,
   /// followed into `bounces` mirrors; both 0: nothing can. Of pixels with a bit in `asked`, all within the picture; the others keep
-  /// what they hold, or get theirs as well. See Doubt in beam.hpp.
+  /// what they hold, or get theirs as well. See Doubt in doubt.hpp.
   void (*doubt)(const SceneView&, const ShadingView&, const FrameView&, int x0, int y0, int bounces, std::uint64_t asked, float (&inside)[kTile * kTile],
                 float (&around)[kTile * kTile], TraceCounts&);
   /// power(x[i], y[i]) for tests.
