@@ -130,6 +130,37 @@ TEST(Leaving, Planes) {
     EXPECT_EQ(r.met_again, 0u) << r.first;
   }
 }
+/// A speck far from where rays leave a plane: they are moved near it before grids are walked, and must not find the plane on the way.
+TEST(Leaving, PlanesWithAllElseFarAway) {
+  int left = 0;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    Random random(seed);
+    Scene scene = one_plane(random.point(10), random.direction());
+    scene.geometry.spheres.add(random.point(100), static_cast<float>(random.log_in(1e-4, 1e-1)), 0);
+    const World world(scene, {});
+    const SceneView& view = world.impl().view;
+    Rays rays;
+    for (int i = 0; i < 64; ++i) {
+      const Float3 eye = random.point(200), to = random.direction();
+      const float org[3] = {eye.x, eye.y, eye.z}, dir[3] = {to.x, to.y, to.z};
+      const scalar::Surface s = scalar::surface_of(view, 0, org, dir, static_cast<float>(random.in(1, 100)), false);
+      scalar::Vec3<float> away{to.x, to.y, to.z};
+      if (scalar::dot(away, s.normal) < 0) away = scalar::Vec3<float>{0, 0, 0} - away;
+      const scalar::Vec3<float> start = scalar::leave(s.point, s.normal, s.away, away);
+      rays.add({start.x, start.y, start.z}, {away.x, away.y, away.z});
+    }
+    for (const Method method : {Method::kPackets, Method::kSingle, Method::kReference})
+      for (const Query query : {Query::kClosest, Query::kOccluded}) {
+        const Answers a = trace(*find_variant("best"), world, rays, {method, 16, true}, query);
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+          ++left;
+          EXPECT_NE(a.id[i], 0u) << rays.describe(i);
+        }
+      }
+  }
+  EXPECT_EQ(left, 200 * 64 * 6);
+}
+
 TEST(Leaving, Triangles) { check("triangle", false, make_triangle); }
 TEST(Leaving, Cones) { check("cone", true, make_cone); }
 
