@@ -124,8 +124,10 @@ inline void trace_reference(const SceneView& scene, const RayArrays& rays, int c
                                         {g.px[p], g.py[p], g.pz[p]}, {g.pnx[p], g.pny[p], g.pnz[p]}, t);
       done = take<kAny>(r, hit, t, p);
     }
+    const float from[3] = {r.org[0], r.org[1], r.org[2]};
     if (const double shift = done ? 0 : approach(scene, r.org, r.dir); shift > 0) {
-      r.t_min = static_cast<float>(r.t_min - shift), r.best = static_cast<float>(r.best - shift);
+      const double best = r.id != kNoPrimitive ? plane_t(g, r.id, from, r.dir) : r.best;
+      r.t_min = static_cast<float>(r.t_min - shift), r.best = static_cast<float>(best - shift);
       rays.shift[i] = static_cast<float>(shift);
     }
     done = done || reference_cell<kAny>(r, scene.outside, 0, nullptr, n);

@@ -38,8 +38,17 @@ inline double approach(const SceneView& scene, float (&org)[3], const float (&di
   return shift;
 }
 
-/// The same for the rays of a packet. Planes come first: a ray that leaves a plane and is then moved along would meet it again,
-/// by as little as the rounding of the way.
+/// Where a ray meets a plane, in double.
+inline double plane_t(const GeometryView& g, std::uint32_t i, const float (&org)[3], const float (&dir)[3]) {
+  const double n[3] = {g.pnx[i], g.pny[i], g.pnz[i]}, p[3] = {g.px[i], g.py[i], g.pz[i]};
+  double away = 0, along = 0;
+  for (int a = 0; a < 3; ++a) away += n[a] * (p[a] - org[a]), along += n[a] * dir[a];
+  return away / along;
+}
+
+/// The same for the rays of a packet that have met planes and nothing else yet. Planes come first, since a ray that leaves a plane
+/// and is then moved along would meet it again, by as little as the rounding of the way; and how far a moved ray is from its plane
+/// is taken again in double, lest it hides what stands before it.
 inline void bring_near(const SceneView& scene, Packet& p) {
   p.moved = false;
   if (!scene.finite) return;
@@ -57,8 +66,12 @@ inline void bring_near(const SceneView& scene, Packet& p) {
       const float dir[3] = {p.dir[0][k], p.dir[1][k], p.dir[2][k]};
       const double shift = approach(scene, org, dir);
       if (!(shift > 0)) continue;
+      const float from[3] = {p.org[0][k], p.org[1][k], p.org[2][k]};
+      const std::uint32_t plane = id_of(p.id[k]);
+      const bool met = plane != kNoPrimitive && p.best[k] > -kInfinity;
+      const double best = met ? plane_t(scene.geometry, plane, from, dir) : p.best[k];
       for (int a = 0; a < 3; ++a) p.org[a][k] = org[a];
-      p.t_min[k] = static_cast<float>(p.t_min[k] - shift), p.best[k] = static_cast<float>(p.best[k] - shift);
+      p.t_min[k] = static_cast<float>(p.t_min[k] - shift), p.best[k] = static_cast<float>(best - shift);
       p.shift[k] = static_cast<float>(shift);
     }
   }

@@ -161,6 +161,27 @@ TEST(Leaving, PlanesWithAllElseFarAway) {
   EXPECT_EQ(left, 200 * 64 * 6);
 }
 
+/// A ball half sunk into a plane, from ten million times its size away, where t in single precision is off by .6: the ball stands at
+/// least .1 above the plane where it is hit.
+TEST(FarEyes, SeeWhatStandsOnAPlane) {
+  Scene scene = one_plane({0, 0, 0}, {0, 0, 1});
+  scene.geometry.spheres.add({0, 0, 0}, .5f, 0);
+  for (const bool grid : {true, false}) {
+    const World world(scene, {.grid = grid});
+    Random random(1);
+    Rays rays;
+    for (int i = 0; i < 4000; ++i) {
+      const Float3 eye{static_cast<float>(random.in(-1e7, 1e7)), static_cast<float>(random.in(-1e7, 1e7)), static_cast<float>(random.in(5e6, 1e7))};
+      // Exactly towards the ball's middle: met on the side of the eye, at least .5 sin(atan(.5 / sqrt(2))) = .16 above the plane.
+      rays.add(eye, {-eye.x, -eye.y, -eye.z});
+    }
+    for (const Method method : {Method::kPackets, Method::kSingle, Method::kReference}) {
+      const Answers a = trace(*find_variant("best"), world, rays, {method, 64, true}, Query::kClosest);
+      for (std::size_t i = 0; i < rays.size(); ++i) EXPECT_EQ(a.id[i], 1u) << rays.describe(i);
+    }
+  }
+}
+
 TEST(Leaving, Triangles) { check("triangle", false, make_triangle); }
 TEST(Leaving, Cones) { check("cone", true, make_cone); }
 
