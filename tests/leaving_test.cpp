@@ -135,15 +135,16 @@ TEST(Leaving, PlanesWithAllElseFarAway) {
   int left = 0;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     Random random(seed);
-    Scene scene = one_plane(random.point(10), random.direction());
-    scene.geometry.spheres.add(random.point(100), static_cast<float>(random.log_in(1e-4, 1e-1)), 0);
+    Scene scene = one_plane(random.point(1), random.direction());
+    const Float3 far = at({0, 0, 0}, random.log_in(1e2, 1e4), random.direction());
+    scene.geometry.spheres.add(far, static_cast<float>(random.log_in(1e-4, 1e-1)), 0);
     const World world(scene, {});
     const SceneView& view = world.impl().view;
     Rays rays;
     for (int i = 0; i < 64; ++i) {
-      const Float3 eye = random.point(200), to = random.direction();
+      const Float3 eye = random.point(2), to = random.direction();
       const float org[3] = {eye.x, eye.y, eye.z}, dir[3] = {to.x, to.y, to.z};
-      const scalar::Surface s = scalar::surface_of(view, 0, org, dir, static_cast<float>(random.in(1, 100)), false);
+      const scalar::Surface s = scalar::surface_of(view, 0, org, dir, static_cast<float>(random.in(.1, 1)), false);
       scalar::Vec3<float> away{to.x, to.y, to.z};
       if (scalar::dot(away, s.normal) < 0) away = scalar::Vec3<float>{0, 0, 0} - away;
       const scalar::Vec3<float> start = scalar::leave(s.point, s.normal, s.away, away);
@@ -161,19 +162,25 @@ TEST(Leaving, PlanesWithAllElseFarAway) {
   EXPECT_EQ(left, 200 * 64 * 6);
 }
 
-/// A ball half sunk into a plane, from ten million times its size away, where t in single precision is off by .6: the ball stands at
-/// least .1 above the plane where it is hit.
+/// A ball of radius 20 half sunk into a plane, from up to 10^8 away, where t in single precision is off by up to 10. Rays go through
+/// the ball where it stands at least 1 above the plane.
 TEST(FarEyes, SeeWhatStandsOnAPlane) {
-  Scene scene = one_plane({0, 0, 0}, {0, 0, 1});
-  scene.geometry.spheres.add({0, 0, 0}, .5f, 0);
+  Scene scene = one_plane({0, 0, 0}, {.05f, .1f, 1});
+  scene.geometry.spheres.add({0, 0, 0}, 20, 0);
   for (const bool grid : {true, false}) {
     const World world(scene, {.grid = grid});
     Random random(1);
     Rays rays;
-    for (int i = 0; i < 4000; ++i) {
-      const Float3 eye{static_cast<float>(random.in(-1e7, 1e7)), static_cast<float>(random.in(-1e7, 1e7)), static_cast<float>(random.in(5e6, 1e7))};
-      // Exactly towards the ball's middle: met on the side of the eye, at least .5 sin(atan(.5 / sqrt(2))) = .16 above the plane.
-      rays.add(eye, {-eye.x, -eye.y, -eye.z});
+    while (rays.size() < 2000) {
+      const auto far = [&](double lo, double hi) { return 8 * std::floor(static_cast<float>(random.in(lo, hi)) / 8); };  // whole ulps: what follows is exact
+      const Float3 eye{far(-1e8, 1e8), far(-1e8, 1e8), far(2e7, 1e8)};
+      const Float3 target{8.f * static_cast<float>(random.below(3)) - 8, 8.f * static_cast<float>(random.below(3)) - 8, 8.f * static_cast<float>(random.below(2))};
+      const Float3 dir = minus(target, eye);
+      const double n = std::sqrt(double(dir.x) * dir.x + double(dir.y) * dir.y + double(dir.z) * dir.z), u[3] = {dir.x / n, dir.y / n, dir.z / n};
+      const double b = target.x * u[0] + target.y * u[1] + target.z * u[2];
+      const double back = b + std::sqrt(b * b + 400 - (double(target.x) * target.x + double(target.y) * target.y + double(target.z) * target.z));
+      const double hit[3] = {target.x - back * u[0], target.y - back * u[1], target.z - back * u[2]};
+      if (.05 * hit[0] + .1 * hit[1] + hit[2] > 1) rays.add(eye, dir);
     }
     for (const Method method : {Method::kPackets, Method::kSingle, Method::kReference}) {
       const Answers a = trace(*find_variant("best"), world, rays, {method, 64, true}, Query::kClosest);
