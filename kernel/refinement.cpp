@@ -19,8 +19,8 @@ constexpr int kBouncesWatched = 2;                         ///< mirrors
 constexpr float kStep = .5f;                               ///< the bar falls by this a round: two or three rounds double all samples
 static_assert(1 << kMostLog == kMostSamples);
 
-/// Differences a pixel holds after its first round and later, and what its neighbours' count for.
-constexpr float kYoung = 3, kOld = 7, kNeighbours = 7;
+/// Differences a pixel holds after its first round, and later.
+constexpr float kYoung = 3, kOld = 7;
 
 /// One rate for the whole picture, and pixels that stop when their differences are small, leave estimates up to 15 % too low (measured:
 /// docs/sampling.md); the bound allows for 12 %, its spread for the rest.
@@ -292,7 +292,7 @@ class Refinement {
                 if (q == p || !watched(q)) continue;
                 sum += own_[q] * scale[kMostLog + log_[p] - log_[q]], count += 1;
               }
-            const float mine = held(p), theirs = kNeighbours * count / 8;
+            const float mine = held(p), theirs = mine * count / 8;
             if (count > 0) v = (v * mine + sum / count * theirs) / (mine + theirs);
           }
           float wide = 2 * kNormal * std::sqrt(v);
