@@ -14,3 +14,4 @@ for scene in mount:7 gears:3 boat:10 tree:11; do
   ./run scene "$name" --size "${scene#*:}" -o "$work/$name.nff"
   ./run render "$work/$name.nff" --size 384x384 -o "$out/$name.png"
 done
+./run render "$work/boat.nff" --size 384x384 --error 0.005 -o "$work/fine.png" --samples-map "$out/samples-map.png"
