@@ -1,7 +1,6 @@
 #include "kernel/refinement.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <memory>

@@ -135,7 +135,8 @@ TEST(Refinement, FindsDiscsOfATenthOfAPixel) {
 }
 
 /// A pixel between thin spokes whose first samples all meet spokes: half of it is background. An interval of 8 E at 95 % is four
-/// standard errors wide; eight are allowed for the worst of 9216 pixels, whose errors have longer tails than the normal.
+/// standard errors wide; eight are allowed for the worst of 9216 pixels, whose errors have longer tails than the normal
+/// (measured: 4.6). A pixel taken for plain was off by .52.
 TEST(Refinement, IsNotFooledBySamplesThatAgree) {
   Case c{"star", generated("star", 36), {}};
   c.file.camera.width = c.file.camera.height = 96;
