@@ -163,6 +163,7 @@ constexpr std::array kSwitch{Word{"on", 1}, Word{"off", 0}};
 constexpr std::array kPackets{Word{"1", 1}, Word{"16", 16}, Word{"64", 64}, Word{"auto", 0}};
 constexpr std::array kSamplers{std::pair<std::string_view, Sampler>{"sobol", Sampler::kSobol},
                               std::pair<std::string_view, Sampler>{"jitter", Sampler::kJitter},
+                              std::pair<std::string_view, Sampler>{"unshuffled", Sampler::kUnshuffled},
                               std::pair<std::string_view, Sampler>{"random", Sampler::kRandom}};
 constexpr std::array kIsas{Name{"scalar", "scalar"}, Name{"sse2", "sse2"}, Name{"avx2", "avx2"},
                            Name{"avx512", "avx512"}, Name{"best", "best"}};
@@ -285,7 +286,7 @@ void check_together(const RenderCommand& command) {
   const Effects& e = command.effects;
   if (int(r.error > 0) + int(r.seconds > 0) + int(r.samples > 0) > 1) throw UsageError("--error and --time: one of them, found both");
   if (r.on() && (e.samples || e.jitter > 0 || e.adaptive.on)) throw UsageError("--error and --time choose the samples: no --samples or --aa beside them");
-  if (r.on() && e.sampler == Sampler::kJitter) throw UsageError("--sampler: wanted sobol or random with --error or --time, found \"jitter\"");
+  if (r.on() && e.sampler && is_jittered(*e.sampler)) throw UsageError("--sampler: wanted sobol or random with --error or --time");
   if (!r.on() && !(command.samples_map.empty() && command.error_map.empty()))
     throw UsageError("--samples-map and --error-map want --error or --time");
 }

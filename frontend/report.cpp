@@ -112,7 +112,13 @@ std::string primitives_text(std::size_t spheres, std::size_t triangles, std::siz
 }
 
 const char* sampler_name(Sampler sampler) {
-  return sampler == Sampler::kSobol ? "sobol" : sampler == Sampler::kJitter ? "jitter" : "random";
+  switch (sampler) {
+    case Sampler::kSobol: return "sobol";
+    case Sampler::kJitter: return "jitter";
+    case Sampler::kUnshuffled: return "unshuffled";
+    case Sampler::kRandom: return "random";
+  }
+  return "";
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ void check(const Camera& camera, const RenderOptions& o) {
   if (s.gloss_rays < 0 || s.gloss_rays > 256) throw std::invalid_argument("rays around the mirror direction must be from 0 to 256");
   const RefineOptions& r = o.refine;
   if (!(r.error >= 0) || !(r.seconds >= 0)) throw std::invalid_argument("an error and a time must not be negative");
-  if (r.on() && s.sampler == Sampler::kJitter)
+  if (r.on() && is_jittered(s.sampler))
     throw std::invalid_argument("jittered samples must be counted before they are taken: to meet an error, use sobol or random");
   if (r.on() && s.light_rays > 1) throw std::invalid_argument("to meet an error every sample sends one ray to a light");
   if (r.on() && o.subdivision.on) throw std::invalid_argument("samples are spent by error or by subdivision, not by both");
@@ -56,7 +56,12 @@ Strata strata_for(int count) {
 SamplePlan plan_samples(const SampleOptions& o, const Camera& camera, const ShadingView& shading) {
   SamplePlan p;
   p.samples = o.samples, p.seed = o.seed, p.light_rays = o.light_rays, p.gloss_rays = shading.gloss ? o.gloss_rays : 0;
-  p.kind = o.sampler == Sampler::kSobol ? SamplePlan::kSobol : o.sampler == Sampler::kJitter ? SamplePlan::kJitter : SamplePlan::kRandom;
+  switch (o.sampler) {
+    case Sampler::kSobol: p.kind = SamplePlan::kSobol; break;
+    case Sampler::kJitter: p.kind = SamplePlan::kJitter; break;
+    case Sampler::kUnshuffled: p.kind = SamplePlan::kUnshuffled; break;
+    case Sampler::kRandom: p.kind = SamplePlan::kRandom; break;
+  }
   int next = 2;
   const auto pair = [&next](bool present) { return present ? (next += 2) - 2 : -1; };
   p.lens = pair(camera.aperture > 0), p.light = pair(shading.area), p.gloss = pair(shading.gloss);

@@ -51,8 +51,12 @@ inline constexpr int kMostDepth = 4096, kMostSamples = 65536;
 enum class Sampler {
   kSobol,   ///< one Owen-scrambled Sobol sequence over the dimensions in use
   kJitter,  ///< a jittered grid for each pair of dimensions, those after the pixel's shuffled
+  kUnshuffled,  ///< jittered grids in one order: biased where two pairs matter together, to see what shuffling is for
   kRandom,  ///< independent
 };
+
+/// Whether samples lie in a grid, whose cells must be counted before the first is taken.
+constexpr bool is_jittered(Sampler s) { return s == Sampler::kJitter || s == Sampler::kUnshuffled; }
 
 /// Where the samples of a picture lie: pure functions of (seed, pixel, sample, dimension).
 struct SampleOptions {

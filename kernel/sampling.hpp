@@ -154,6 +154,7 @@ inline PairOf<Real> sample_pairs(const SamplePlan& plan, Words<Real> pixel, Word
   using Word = Words<Real>;
   const Word base = scatter(plan.seed, pixel), own = scatter(base, scatter(key, static_cast<std::uint32_t>(dimension)));
   if (plan.kind == SamplePlan::kJitter) return jittered<Real>(own, index, strata, key | static_cast<std::uint32_t>(dimension));
+  if (plan.kind == SamplePlan::kUnshuffled) return jittered<Real>(own, index, strata, Word{});
   if (plan.kind == SamplePlan::kRandom)
     return {unit_float(scatter(own, index + index)), unit_float(scatter(own, index + index + 1u))};
   const auto joint = key == 0u;

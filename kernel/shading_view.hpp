@@ -43,7 +43,7 @@ struct Strata {
 
 /// Which samples a picture takes. Only effects that are there get dimensions: pixel 2, then lens, light, gloss 2 each.
 struct SamplePlan {
-  enum Kind : int { kSobol, kJitter, kRandom };
+  enum Kind : int { kSobol, kJitter, kUnshuffled, kRandom };
   bool on = false;          ///< false: one ray through each pixel's centre and nothing to sample
   int samples = 1;          ///< a pixel
   Kind kind = kSobol;

@@ -40,18 +40,19 @@ SCENES = [
 ]
 
 SAMPLES = [1, 4, 16, 64, FINEST]
-# `jitter` pairs pixel and light, lens or lobe by shuffled jitter; where the pixel alone is sampled nothing needs shuffling.
+# `jitter` pairs pixel and light, lens or lobe by shuffled jitter, `unshuffled` in one order; of the pixel alone they are the same.
 METHODS = {
     "random": [(str(n), ["--sampler", "random", "--samples", str(n)]) for n in SAMPLES],
     "jitter": [(str(n), ["--sampler", "jitter", "--samples", str(n)]) for n in SAMPLES],
+    "unshuffled": [(str(n), ["--sampler", "unshuffled", "--samples", str(n)]) for n in SAMPLES],
     "adaptive": [(f"0.1,{d}", ["--aa", f"adaptive:0.1,{d}"]) for d in range(1, 6)],
     "sobol": [(str(n), ["--sampler", "sobol", "--samples", str(n)]) for n in SAMPLES],
     "error": [(str(e), ["--error", str(e)]) for e in (.08, .04, .02, .01, .005, .0025, .00125, .000625)],
 }
 # Colours after Okabe and Ito, told apart by the colour-blind too; marker and dash say the same again.
-LOOKS = {"random": ("#999999", "o", ":"), "jitter": ("#E69F00", "s", "--"), "adaptive": ("#CC79A7", "^", "-."),
+LOOKS = {"random": ("#999999", "o", ":"), "jitter": ("#E69F00", "s", "--"), "unshuffled": ("#D55E00", "v", "--"), "adaptive": ("#CC79A7", "^", "-."),
          "sobol": ("#0072B2", "D", "-"), "error": ("#000000", "*", "-")}
-LABELS = {"random": "random", "jitter": "jitter", "adaptive": "adaptive:0.1,D", "sobol": "sobol", "error": "--error E"}
+LABELS = {"random": "random", "jitter": "jitter, shuffled", "unshuffled": "jitter, unshuffled", "adaptive": "adaptive:0.1,D", "sobol": "sobol", "error": "--error E"}
 
 
 class Refused(Exception):
@@ -193,7 +194,7 @@ def draw(results, size, path):
         panel.legend(fontsize=9)
     for panel in list(panels.flat)[len(results):]:
         panel.axis("off")
-    fig.suptitle(f"{size}x{size}: random, jitter and sobol with 1, 4, 16, 64, 256 samples a pixel; adaptive with D from 1 to 5; "
+    fig.suptitle(f"{size}x{size}: random, both jitters and sobol with 1, 4, 16, 64, 256 samples a pixel; adaptive with D from 1 to 5; "
                  "--error from .08 to .000625", fontsize=10)
     fig.savefig(path, dpi=90)
 
