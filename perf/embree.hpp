@@ -1,0 +1,34 @@
+#pragma once
+// Embree on the same scene and the same rays, where CMake found it.
+
+#include <memory>
+#include <vector>
+
+#include "perf/workloads.hpp"
+
+namespace grelha::perf {
+
+/// How Embree is asked: rays one by one or `width` side by side, with its hint that they are coherent or that they are not.
+struct EmbreeMode {
+  const char* name;
+  int width;
+  bool coherent;
+};
+
+/// A scene built by Embree, quality MEDIUM. Spheres are sphere points, cones cone curves (which have caps; Grelha's have none),
+/// planes two triangles 100 times as wide as the scene.
+class EmbreeScene {
+ public:
+  virtual ~EmbreeScene() = default;
+  /// Loads each ray, traces it, stores t and what Embree names the primitive by: closest hits, or with `any` whether there is one.
+  virtual void trace(const RayBuffer& rays, bool any, const EmbreeMode& mode) = 0;
+  /// The last trace's answers with Grelha's ids.
+  virtual Answers answers() const = 0;
+};
+
+/// Empty without Embree.
+std::vector<EmbreeMode> embree_modes();
+/// Null without Embree.
+std::unique_ptr<EmbreeScene> make_embree_scene(const Scene& scene, bool robust);
+
+}  // namespace grelha::perf

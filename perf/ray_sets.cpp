@@ -1,0 +1,176 @@
+// The kernel's own surfaces and samples, in their scalar form: only the making of rays is done with it, never the timing.
+#define GRELHA_ISA scalar
+#include "perf/ray_sets.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <random>
+
+#include "frontend/effects.hpp"
+#include "kernel/frame.hpp"
+#include "kernel/sampling.hpp"
+#include "kernel/surface.hpp"
+#include "kernel/world.hpp"
+
+namespace grelha::perf {
+
+using namespace grelha::scalar;
+using V = Vec3<float>;
+
+namespace {
+
+constexpr int kSamples = 16, kSide = 4;
+constexpr float kRoughness = .1f;
+/// Rays start this many times as far from their surface as Grelha's own bound of its errors asks for, so that none of what is
+/// timed meets the surface it left.
+constexpr float kClearance = 8;
+constexpr float kPlaneClearance = 4e-5f;  ///< times the scene's width: what large triangles, Embree's stand-ins for planes, are off by
+
+void add(RayBuffer& rays, const V& org, const V& dir, float t_end) { rays.add({org.x, org.y, org.z}, {dir.x, dir.y, dir.z}, t_end); }
+
+/// Uniform in [0, 1), the same numbers everywhere.
+struct Random {
+  std::mt19937 bits{1};
+  float operator()() { return unit_float(static_cast<std::uint32_t>(bits())); }
+};
+
+}  // namespace
+
+struct RayMaker::Hit {
+  V point, normal, mirror;  ///< normal: geometric, unit, towards the viewer; mirror: unit
+  float away;
+};
+
+RayMaker::RayMaker(const SceneFile& file, const World& world, int size) : world_(world) {
+  SceneFile own;
+  own.camera = file.camera, own.lens = file.lens, own.scene.lights = file.scene.lights;
+  Effects effects;
+  effects.samples = kSamples;
+  if (!(file.lens.present && file.lens.aperture > 0)) effects.lens = Effects::Lens{.aperture = 12};
+  if (!own.scene.lights.empty()) {
+    const Float3 p = own.scene.lights[0].position, at = own.camera.at;
+    effects.shadows = Effects::Shadows{.size = .1f * std::hypot(p.x - at.x, p.y - at.y, p.z - at.z)};
+  }
+  RenderOptions unused;
+  apply_effects(effects, own, unused);
+  if ((lit_ = !own.scene.lights.empty())) light_ = own.scene.lights[0];
+  Camera camera = own.camera;
+  camera.width = camera.height = size;
+  lens_ = make_frame(camera);
+  camera.aperture = 0;
+  pinhole_ = make_frame(camera);
+}
+
+RayBuffer RayMaker::through_pixels(const FrameView& f, int samples, bool every_tile) const {
+  SamplePlan plan;
+  plan.on = samples > 1, plan.samples = samples, plan.lens = 2;
+  const auto batch = std::make_unique<Batch>();
+  RayBuffer rays;
+  for (int ty = 0; ty < f.height / kTile; ++ty)
+    for (int tx = 0; tx < f.width / kTile; ++tx) {
+      const auto one_of_16 = scatter(static_cast<std::uint32_t>(tx / 4), static_cast<std::uint32_t>(ty / 4)) % 16;
+      if (!every_tile && one_of_16 != static_cast<std::uint32_t>(tx % 4 + 4 * (ty % 4))) continue;
+      for (int k = 0; k < kTile * kTile; ++k) {
+        find_variant("best")->loops.sampled_rays(f, plan, *batch, 0, tx * kTile + k % kTile, ty * kTile + k / kTile, 0, samples, 0);
+        for (int i = 0; i < samples; ++i)
+          rays.add({batch->ox[i], batch->oy[i], batch->oz[i]}, {batch->dx[i], batch->dy[i], batch->dz[i]}, kInfinity);
+      }
+    }
+  return rays;
+}
+
+std::vector<RayMaker::Hit> RayMaker::first_hits(bool every_tile) const {
+  const RayBuffer rays = through_pixels(pinhole_, 1, every_tile);
+  const SceneView& scene = world_.impl().view;
+  Answers found;
+  TraceCounts unused;
+  trace(world_, *find_variant("best"), {}, rays, 0, rays.size(), found, unused);
+  float extent = 0;
+  for (int a = 0; a < 3 && scene.finite; ++a) extent = std::max(extent, scene.box_hi[a] - scene.box_lo[a]);
+  std::vector<Hit> hits;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (found.id[i] == kNoPrimitive) continue;
+    const float org[3] = {rays.ox[i], rays.oy[i], rays.oz[i]}, dir[3] = {rays.dx[i], rays.dy[i], rays.dz[i]};
+    const Surface s = surface_of(scene, found.id[i], org, dir, found.t[i], world_.impl().shading.smooth);
+    const V d{dir[0], dir[1], dir[2]};
+    const float side = dot(d, s.normal) > 0 ? -1.f : 1.f;
+    Hit h;
+    h.point = s.point, h.normal = side * s.normal;
+    const V n = side * s.shading, reflected = d - (2 * dot(d, n)) * n;
+    h.mirror = normalize(reflected - (2 * lesser(dot(reflected, h.normal), 0.f)) * h.normal);  // kept above the surface, as shading does
+    h.away = kClearance * s.away;
+    if (found.id[i] < scene.sphere_base) h.away += kPlaneClearance * (extent + largest(s.point));
+    hits.push_back(h);
+  }
+  return hits;
+}
+
+/// Whether a render would send a shadow ray there.
+bool RayMaker::facing(const Hit& h, const Float3& light) const {
+  return dot(h.normal, V{light.x, light.y, light.z} - (h.point + h.away * h.normal)) > 0;
+}
+
+RayBuffer RayMaker::make(RayKind kind) const {
+  if (kind == RayKind::kPrimary) return through_pixels(pinhole_, 1, true);
+  if (kind == RayKind::kLens) return through_pixels(lens_, kSamples, false);
+  RayBuffer rays;
+  Random random;
+  const std::vector<Hit> hits = first_hits(kind != RayKind::kArea && kind != RayKind::kGlossy);
+  const auto on_light = [&](float u, float v) {
+    const Float3 &p = light_.position, &e = light_.edge1, &f = light_.edge2;
+    return Float3{p.x + (u * e.x + v * f.x), p.y + (u * e.y + v * f.y), p.z + (u * e.z + v * f.z)};
+  };
+  const auto to_light = [&](const Hit& h, const Float3& at) {
+    const V org = h.point + h.away * h.normal;
+    add(rays, org, V{at.x, at.y, at.z} - org, 1);
+  };
+  for (const Hit& h : hits) {
+    const V org = h.point + h.away * h.normal;
+    switch (kind) {
+      case RayKind::kShadow:
+        if (lit_ && facing(h, light_.position)) to_light(h, light_.position);
+        break;
+      case RayKind::kArea: {
+        bool all = lit_;
+        for (const float u : {-.5f, .5f})
+          for (const float v : {-.5f, .5f}) all = all && facing(h, on_light(u, v));
+        for (int i = 0; all && i < kSamples; ++i) {
+          const float u = (static_cast<float>(i % kSide) + random()) / kSide, v = (static_cast<float>(i / kSide) + random()) / kSide;
+          to_light(h, on_light(u - .5f, v - .5f));
+        }
+        break;
+      }
+      case RayKind::kMirror: add(rays, org, h.mirror, kInfinity); break;
+      case RayKind::kGlossy: {
+        V u, v;
+        across(h.mirror, u, v);
+        for (int i = 0; i < kSamples; ++i) {
+          const float x = (static_cast<float>(i % kSide) + random()) / kSide, y = (static_cast<float>(i / kSide) + random()) / kSide;
+          const Pair d = disc_point(Pair{x, y});
+          const V to = h.mirror + (kRoughness * d.u) * u + (kRoughness * d.v) * v;
+          add(rays, org, normalize(to - (2 * lesser(dot(to, h.normal), 0.f)) * h.normal), kInfinity);
+        }
+        break;
+      }
+      default: {  // a point of the disc, lifted to the half ball: density as the cosine
+        V u, v;
+        across(h.normal, u, v);
+        const float x = random(), y = random();
+        const Pair d = disc_point(Pair{x, y});
+        const float up = square_root(greater(1 - (d.u * d.u + d.v * d.v), 1e-6f));
+        add(rays, org, normalize(d.u * u + d.v * v + up * h.normal), kInfinity);
+      }
+    }
+  }
+  if (kind != RayKind::kIncoherent) return rays;
+  RayBuffer shuffled;
+  const auto count = static_cast<std::uint32_t>(rays.size());
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t k = permuted(i, count, 0x9E3779B9u);
+    shuffled.add({rays.ox[k], rays.oy[k], rays.oz[k]}, {rays.dx[k], rays.dy[k], rays.dz[k]}, kInfinity);
+  }
+  return shuffled;
+}
+
+}  // namespace grelha::perf
