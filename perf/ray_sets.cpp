@@ -21,6 +21,7 @@ using V = Vec3<float>;
 namespace {
 
 constexpr int kSamples = 16, kSide = 4;
+constexpr int kMostAcross = 512;  ///< pixels with rays, in a row of the picture
 constexpr float kRoughness = .1f;
 /// Rays start this many times as far from their surface as Grelha's own bound of its errors asks for, so that none of what is
 /// timed meets the surface it left.
@@ -62,17 +63,19 @@ RayMaker::RayMaker(const SceneFile& file, const World& world, int size) : world_
   pinhole_ = make_frame(camera);
 }
 
-RayBuffer RayMaker::through_pixels(const FrameView& f, int samples, bool every_tile) const {
+RayBuffer RayMaker::through_pixels(const FrameView& f, int samples, bool few) const {
   SamplePlan plan;
   plan.on = samples > 1, plan.samples = samples, plan.lens = 2;
   const auto batch = std::make_unique<Batch>();
   RayBuffer rays;
-  for (int ty = 0; ty < f.height / kTile; ++ty)
-    for (int tx = 0; tx < f.width / kTile; ++tx) {
-      const auto one_of_16 = scatter(static_cast<std::uint32_t>(tx / 4), static_cast<std::uint32_t>(ty / 4)) % 16;
-      if (!every_tile && one_of_16 != static_cast<std::uint32_t>(tx % 4 + 4 * (ty % 4))) continue;
+  const int block = std::max(1, f.width / kMostAcross) * (few ? kSide : 1), across = f.width / (kTile * block);  // tiles, blocks
+  for (int by = 0; by < across; ++by)
+    for (int bx = 0; bx < across; ++bx) {
+      const auto pick = scatter(static_cast<std::uint32_t>(bx), static_cast<std::uint32_t>(by));
+      const int x0 = (bx * block + static_cast<int>(pick % static_cast<unsigned>(block))) * kTile;
+      const int y0 = (by * block + static_cast<int>(pick / 64 % static_cast<unsigned>(block))) * kTile;
       for (int k = 0; k < kTile * kTile; ++k) {
-        find_variant("best")->loops.sampled_rays(f, plan, *batch, 0, tx * kTile + k % kTile, ty * kTile + k / kTile, 0, samples, 0);
+        find_variant("best")->loops.sampled_rays(f, plan, *batch, 0, x0 + k % kTile, y0 + k / kTile, 0, samples, 0);
         for (int i = 0; i < samples; ++i)
           rays.add({batch->ox[i], batch->oy[i], batch->oz[i]}, {batch->dx[i], batch->dy[i], batch->dz[i]}, kInfinity);
       }
@@ -80,8 +83,8 @@ RayBuffer RayMaker::through_pixels(const FrameView& f, int samples, bool every_t
   return rays;
 }
 
-std::vector<RayMaker::Hit> RayMaker::first_hits(bool every_tile) const {
-  const RayBuffer rays = through_pixels(pinhole_, 1, every_tile);
+std::vector<RayMaker::Hit> RayMaker::first_hits(bool few) const {
+  const RayBuffer rays = through_pixels(pinhole_, 1, few);
   const SceneView& scene = world_.impl().view;
   Answers found;
   TraceCounts unused;
@@ -112,18 +115,18 @@ bool RayMaker::facing(const Hit& h, const Float3& light) const {
 }
 
 RayBuffer RayMaker::make(RayKind kind) const {
-  if (kind == RayKind::kPrimary) return through_pixels(pinhole_, 1, true);
-  if (kind == RayKind::kLens) return through_pixels(lens_, kSamples, false);
+  if (kind == RayKind::kPrimary) return through_pixels(pinhole_, 1, false);
+  if (kind == RayKind::kLens) return through_pixels(lens_, kSamples, true);
   RayBuffer rays;
   Random random;
-  const std::vector<Hit> hits = first_hits(kind != RayKind::kArea && kind != RayKind::kGlossy);
+  const std::vector<Hit> hits = first_hits(kind == RayKind::kArea || kind == RayKind::kGlossy);
   const auto on_light = [&](float u, float v) {
     const Float3 &p = light_.position, &e = light_.edge1, &f = light_.edge2;
     return Float3{p.x + (u * e.x + v * f.x), p.y + (u * e.y + v * f.y), p.z + (u * e.z + v * f.z)};
   };
   const auto to_light = [&](const Hit& h, const Float3& at) {
-    const V org = h.point + h.away * h.normal;
-    add(rays, org, V{at.x, at.y, at.z} - org, 1);
+    const V org = h.point + h.away * h.normal, dir = V{at.x, at.y, at.z} - org;
+    add(rays, org, normalize(dir), length(dir));  // of unit length, as Embree's cone curves want them: with others a third of rays is wrong
   };
   for (const Hit& h : hits) {
     const V org = h.point + h.away * h.normal;

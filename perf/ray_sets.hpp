@@ -11,10 +11,10 @@ namespace grelha::perf {
 enum class RayKind { kPrimary, kLens, kShadow, kArea, kMirror, kGlossy, kIncoherent };
 inline constexpr std::array<const char*, 7> kRayKinds = {"primary", "AA + lens", "hard shadow", "area 16", "mirror", "glossy 16", "incoherent"};
 
-/// Makes ray sets of a picture of size x size. Kinds of 16 rays a point or pixel take one tile of 8 x 8 pixels in 16, spread
-/// over the picture, so that all sets are about as large.
+/// Makes ray sets of a picture of size x size, in tiles of 8 x 8 pixels. Of larger pictures than 512 x 512 one tile of each
+/// block of tiles is taken, so that sets are about as large; of all, one in 16 for the kinds of 16 rays a point or pixel.
 ///
-///   primary      through the centre of every pixel, in tiles of 8 x 8
+///   primary      through the centre of every pixel
 ///   AA + lens    16 samples of a pixel side by side, through the scene's own lens or one of 12 pixels
 ///   hard shadow  from each first hit that faces the first light to that light
 ///   area 16      16 from each such hit to a square in its place, a tenth as wide as it is far from the point looked at
@@ -23,14 +23,14 @@ inline constexpr std::array<const char*, 7> kRayKinds = {"primary", "AA + lens",
 ///   incoherent   from each first hit in a direction spread as diffuse light is, then all shuffled
 class RayMaker {
  public:
-  RayMaker(const SceneFile& file, const World& world, int size);  ///< size: a multiple of 32
+  RayMaker(const SceneFile& file, const World& world, int size);  ///< size: at least 32
   RayBuffer make(RayKind kind) const;
   static bool any_hit(RayKind kind) { return kind == RayKind::kShadow || kind == RayKind::kArea; }
 
  private:
   struct Hit;
-  RayBuffer through_pixels(const FrameView& frame, int samples, bool every_tile) const;
-  std::vector<Hit> first_hits(bool every_tile) const;
+  RayBuffer through_pixels(const FrameView& frame, int samples, bool few) const;
+  std::vector<Hit> first_hits(bool few) const;
   bool facing(const Hit& hit, const Float3& light) const;
 
   const World& world_;

@@ -60,7 +60,7 @@ const std::vector<Row> kRows{
 struct Options {
   std::vector<Row> rows;
   std::vector<std::size_t> kinds;
-  int size = 512, rounds = 5;
+  int size = 1024, rounds = 5;
   std::string scenes = GRELHA_SHARED_SCENES;
 };
 
@@ -367,7 +367,7 @@ bool parse(int argc, char** argv, Options& o) {
   }
   if (o.rows.empty()) o.rows = kRows;
   for (std::size_t k = 0; o.kinds.size() < kRayKinds.size() && k < kRayKinds.size() && (k == 0 ? o.kinds.empty() : o.kinds.size() == k); ++k) o.kinds.push_back(k);
-  return o.size >= 32 && o.size % 32 == 0 && o.size <= 4096 && o.rounds >= 1;
+  return o.size >= 32 && o.size <= 16384 && o.rounds >= 1;
 }
 
 }  // namespace
@@ -378,7 +378,7 @@ int main(int argc, char** argv) {
   if (!parse(argc, argv, options)) {
     std::fprintf(stderr,
                  "usage: trace [--scene NAME]... [--kind NAME]... [--size N] [--rounds N] [--scenes DIR] [Google Benchmark options]\n"
-                 "  scenes: a row of the table, GENERATOR SIZE, or a file; size: a multiple of 32 up to 4096; kinds:");
+                 "  scenes: a row of the table, GENERATOR SIZE, or a file; size: 32 to 16384; kinds:");
     for (const char* k : kRayKinds) std::fprintf(stderr, " '%s'", k);
     std::fprintf(stderr, "\n");
     return 2;
