@@ -17,8 +17,6 @@
 namespace grelha::perf {
 namespace {
 
-constexpr double kPlaneWidth = 100;  ///< half a plane's side in widths of the scene
-
 /// Denormals count as zero while Embree works, as its manual recommends; Grelha's own arithmetic does not allow it.
 class FlushDenormals {
 #if defined(__SSE__)
@@ -119,7 +117,7 @@ class Built final : public EmbreeScene {
     for (std::size_t i = 0; i < s.size(); ++i) all.add(s.x[i], s.y[i], s.z[i], std::abs(s.radius[i]));
     for (std::size_t i = 0; i < t.vertex_count(); ++i) all.add(t.x[i], t.y[i], t.z[i]);
     for (std::size_t i = 0; i < c.size(); ++i) all.add(c.base_x[i], c.base_y[i], c.base_z[i]), all.add(c.apex_x[i], c.apex_y[i], c.apex_z[i]);
-    const double half = kPlaneWidth * std::max(all.width(), 1e-3);
+    const double half = kPlaneReach * std::max(all.width(), 1e-3);
     RTCGeometry g = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* const v = static_cast<float*>(room(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, 12, 4 * p.size()));
     auto* const index = static_cast<unsigned*>(room(g, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, 12, 2 * p.size()));

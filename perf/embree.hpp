@@ -15,8 +15,10 @@ struct EmbreeMode {
   bool coherent;
 };
 
+inline constexpr double kPlaneReach = 100;
+
 /// A scene built by Embree, quality MEDIUM. Spheres are sphere points, cones cone curves (which have caps; Grelha's have none),
-/// planes two triangles 100 times as wide as the scene.
+/// planes squares of two triangles that end kPlaneReach widths of the scene away from its middle: larger ones would be met inexactly.
 class EmbreeScene {
  public:
   virtual ~EmbreeScene() = default;

@@ -1,0 +1,101 @@
+#!/usr/bin/env python3
+"""What a ray costs beside Embree, by kind and scene: runs perf/trace.cpp, keeps its figures and draws its ratios.
+
+    ./run perf trace [--quick] [options of the benchmark: --scene NAME, --kind NAME, --size N, --rounds N, --scenes DIR, ...]
+
+The benchmark prints the tables. A whole run writes docs/trace.csv and docs/images/trace.svg, a part of one, or --quick, the same
+beside the program; the benchmark's own JSON stays there in either case.
+"""
+import argparse
+import csv
+import json
+import pathlib
+import subprocess
+import sys
+
+import matplotlib
+matplotlib.use("Agg")
+matplotlib.rcParams.update({"svg.hashsalt": "trace", "svg.fonttype": "none"})  # the same file from the same figures; text as text
+import matplotlib.pyplot as plt
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+FIRST = ["rays", "hits", "disagree", "tests/ray", "cells/ray", "lanes busy", "fell back", "ratio", "ratio of the best", "ratio to fast",
+         "target"]
+CHOICE, BEST, TARGET, MISSED = "#0072B2", "#56B4E9", "#000000", "#D55E00"  # after Okabe and Ito
+
+
+def cells_of(path):
+    """Counters by (scene, kind), in the order they were measured."""
+    cells = {}
+    for b in json.loads(path.read_text())["benchmarks"]:
+        if not b.get("error_occurred") and b["run_type"] == "iteration":
+            *scene, kind = b["name"].split("/iterations:")[0].split("/")
+            known = ("repetition_index", "family_index", "per_family_instance_index", "repetitions", "threads", "iterations",
+                     "real_time", "cpu_time")
+            cells["/".join(scene), kind] = {k: v for k, v in b.items() if isinstance(v, (int, float)) and k not in known}
+    return cells
+
+
+def write_csv(cells, path):
+    ways = sorted({k for c in cells.values() for k in c if k.endswith(" ns")}, key=lambda k: (not k.startswith("grelha"), k))
+    with open(path, "w", newline="") as f:
+        table = csv.writer(f, lineterminator="\n")
+        table.writerow(["scene", "kind", *(k.replace(" ", "_").replace("/", "_a_") for k in FIRST + ways)])
+        for (scene, kind), c in cells.items():
+            table.writerow([scene, kind, *("" if k not in c else int(c[k]) if k == "rays" else f"{c[k]:.4g}" for k in FIRST + ways)])
+
+
+def draw(cells, path):
+    scenes = list(dict.fromkeys(s for s, _ in cells))[::-1]
+    kinds = list(dict.fromkeys(k for _, k in cells))
+    fig, panels = plt.subplots(1, len(kinds), figsize=(1.2 + 1.7 * len(kinds), 1.4 + .32 * len(scenes)), sharex=True, sharey=True,
+                               layout="constrained", squeeze=False)
+    for panel, kind in zip(panels[0], kinds):
+        panel.axvline(1, color="#999999", linewidth=1)
+        for y, scene in enumerate(scenes):
+            c = cells.get((scene, kind))
+            if not c:
+                continue
+            ratio, best, target = c["ratio"], c["ratio of the best"], c.get("target")
+            if target:
+                panel.plot([target, target], [y - .35, y + .35], color=TARGET, linewidth=2)
+            panel.plot(best, y, "o", markersize=6, markerfacecolor="none", markeredgecolor=BEST)
+            panel.plot(ratio, y, "o", markersize=6, color=MISSED if target and ratio > target else CHOICE)
+        panel.set(xscale="log", title=kind, yticks=range(len(scenes)), yticklabels=scenes, xticks=[.2, .5, 1, 2, 5])
+        panel.xaxis.set_major_formatter("{x:g}")
+        panel.xaxis.set_minor_formatter("")
+        panel.grid(axis="x", alpha=.3)
+    fig.suptitle("Time of Grelha / time of Embree's best mode, robust, one thread (left of 1: Grelha is faster)\n"
+                 "dot: packets as a render forms them, orange where the target (bar) is missed; ring: the best of Grelha's ways", fontsize=10)
+    fig.savefig(path, metadata={"Date": None})
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0], epilog="Other options go to the benchmark.")
+    parser.add_argument("--program", default=ROOT / "build/release/grelha", help="the benchmark stands beside it [build/release/grelha]")
+    parser.add_argument("--quick", action="store_true", help="small pictures, two rounds")
+    asked, rest = parser.parse_known_args()
+    folder = pathlib.Path(asked.program).resolve().parent
+    if asked.quick:
+        rest = ["--size", "128", "--rounds", "2", *rest]
+    figures = folder / "trace.json"
+    done = subprocess.run([folder / "trace", f"--benchmark_out={figures}", "--benchmark_out_format=json", *rest])
+    if done.returncode == 2 or not figures.exists():
+        sys.exit(done.returncode)
+    cells = cells_of(figures)
+    if not cells:
+        sys.exit(done.returncode or 1)
+    whole = not rest
+    table = (ROOT / "docs" if whole else folder) / "trace.csv"
+    write_csv(cells, table)
+    told = [str(table)]
+    if all("ratio" in c for c in cells.values()):
+        picture = (ROOT / "docs/images" if whole else folder) / "trace.svg"
+        draw(cells, picture)
+        told.append(str(picture))
+    print("\n" + ", ".join(told))
+    sys.exit(done.returncode)
+
+
+if __name__ == "__main__":
+    main()
