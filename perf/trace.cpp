@@ -271,6 +271,7 @@ void run(benchmark::State& state, const Row& row, std::size_t kind, const Option
   state.counters["rays"] = n;
   state.counters["hits"] = cell.hit_share;
   state.counters["disagree"] = cell.disagree;
+  state.counters["ns/ray"] = median(cell.ways[cell.chosen].ns);
   state.counters["tests/ray"] = static_cast<double>(c.tests.sphere + c.tests.triangle + c.tests.cone + c.tests.plane) / n;
   state.counters["cells/ray"] = static_cast<double>(c.visits) / n;
   state.counters["lanes busy"] = static_cast<double>(c.packets.lanes_busy) / static_cast<double>(std::max<std::uint64_t>(c.packets.lanes_issued, 1));

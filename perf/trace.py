@@ -3,13 +3,14 @@
 
     ./run perf trace [--quick] [options of the benchmark: --scene NAME, --kind NAME, --size N, --rounds N, --scenes DIR, ...]
 
-The benchmark prints the tables. A whole run writes docs/trace.csv and docs/images/trace.svg, a part of one, or --quick, the same
-beside the program; the benchmark's own JSON stays there in either case.
+The benchmark prints the tables. A whole run (--rounds may be given) writes docs/trace.csv, docs/images/trace.svg and the tables of
+docs/performance.md; any other the first two beside the program. The benchmark's own JSON stays there in either case.
 """
 import argparse
 import csv
 import json
 import pathlib
+import re
 import subprocess
 import sys
 
@@ -19,7 +20,7 @@ matplotlib.rcParams.update({"svg.hashsalt": "trace", "svg.fonttype": "none"})  #
 import matplotlib.pyplot as plt
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-FIRST = ["rays", "hits", "disagree", "tests/ray", "cells/ray", "lanes busy", "fell back", "ratio", "ratio of the best", "ratio to fast",
+FIRST = ["rays", "hits", "disagree", "ns/ray", "tests/ray", "cells/ray", "lanes busy", "fell back", "ratio", "ratio of the best", "ratio to fast",
          "target"]
 CHOICE, BEST, TARGET, MISSED = "#0072B2", "#56B4E9", "#000000", "#D55E00"  # after Okabe and Ito
 
@@ -43,6 +44,28 @@ def write_csv(cells, path):
         table.writerow(["scene", "kind", *(k.replace(" ", "_").replace("/", "_a_") for k in FIRST + ways)])
         for (scene, kind), c in cells.items():
             table.writerow([scene, kind, *("" if k not in c else int(c[k]) if k == "rays" else f"{c[k]:.4g}" for k in FIRST + ways)])
+
+
+def tables(cells):
+    """Markdown: the ratios, a missed target beside its ratio; and what a ray costs."""
+    kinds = list(dict.fromkeys(k for _, k in cells))
+
+    def ratio(c):
+        missed = c["ratio"] > c.get("target", c["ratio"])
+        best = f", best {c['ratio of the best']:.2f}" if round(c["ratio of the best"], 2) < round(c["ratio"], 2) else ""
+        return f"{c['ratio']:.2f}{best}" + (f" (> {c['target']:g})" if missed else "")
+
+    def cost(c):
+        return (f"{c['ns/ray']:.0f}; {1e3 / c['ns/ray']:.1f}; {100 * c['lanes busy']:.0f} %; {c['tests/ray']:.1f}; {c['cells/ray']:.1f}; "
+                f"{100 * c['fell back']:.0f} %")
+
+    def table(text):
+        rows = [["", *kinds], ["---"] + ["--:"] * len(kinds)]
+        rows += [[scene, *(text(cells[scene, k]) if (scene, k) in cells else "" for k in kinds)] for scene in dict.fromkeys(s for s, _ in cells)]
+        return "".join("|" + "|".join(f" {c} " if c[:2] != "--" else c for c in row) + "|\n" for row in rows)
+
+    return (table(ratio) + "\nPackets as a render forms them: ns a ray; millions of rays a second; lanes busy; tests a ray; cells a ray; "
+            "packets that fell back to single rays:\n\n" + table(cost))
 
 
 def draw(cells, path):
@@ -85,7 +108,7 @@ def main():
     cells = cells_of(figures)
     if not cells:
         sys.exit(done.returncode or 1)
-    whole = not rest
+    whole = not rest or rest[0] == "--rounds" and len(rest) == 2
     table = (ROOT / "docs" if whole else folder) / "trace.csv"
     write_csv(cells, table)
     told = [str(table)]
@@ -93,6 +116,11 @@ def main():
         picture = (ROOT / "docs/images" if whole else folder) / "trace.svg"
         draw(cells, picture)
         told.append(str(picture))
+        if whole:
+            page = ROOT / "docs/performance.md"
+            page.write_text(re.sub(r"(<!-- trace -->\n).*(<!-- end of trace -->)", lambda m: m[1] + "\n" + tables(cells) + "\n" + m[2],
+                                   page.read_text(), flags=re.S))
+            told.append(str(page))
     print("\n" + ", ".join(told))
     sys.exit(done.returncode)
 
