@@ -86,7 +86,8 @@ Place& place(const Row& row, const Options& options) {
   if (!real && row.generator.empty()) throw std::invalid_argument("no scene " + row.name);
   if (!real && !row.file.empty())
     std::printf("%s: %s is not there; %s %d in its place\n", row.name.c_str(), row.file.c_str(), row.generator.c_str(), row.size);
-  last = std::make_unique<Place>(row.name, real ? read_scene(path, [](const std::string&) {}) : make_scene(row.generator, row.size), options.size);
+  SceneFile file = real ? read_scene(path, [](const std::string&) {}) : make_scene(row.generator, row.size);
+  last = std::make_unique<Place>(row.name, std::move(file), options.size);
   return *last;
 }
 
@@ -125,6 +126,10 @@ double cpu_ns() {
   return 1e9 * static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec);
 }
 
+double share_of(std::uint64_t part, std::uint64_t all) {
+  return static_cast<double>(part) / static_cast<double>(std::max<std::uint64_t>(all, 1));
+}
+
 double median(std::vector<double> v) {
   if (v.empty()) return 0;
   std::sort(v.begin(), v.end());
@@ -138,6 +143,13 @@ struct Cell {
   std::vector<Way> ways;
   std::size_t best[kSides] = {}, chosen = 0;
   TraceCounts counts;  ///< of the render's choice
+  double tests() const {
+    const TestCounts& t = counts.tests;
+    return share_of(t.sphere + t.triangle + t.cone + t.plane, rays);
+  }
+  double cells() const { return share_of(counts.visits, rays); }
+  double lanes_busy() const { return share_of(counts.packets.lanes_busy, counts.packets.lanes_issued); }
+  double fell_back() const { return share_of(counts.packets.fell_back, counts.packets.fell_back + counts.packets.formed); }
   bool has_embree() const { return ways[best[kRobust]].side == kRobust; }
   /// Median over rounds of the times of one way over those of another.
   double ratio(std::size_t a, std::size_t b) const {
@@ -202,7 +214,8 @@ std::string check(const Place& p, const RayBuffer& rays, bool any, Cell& cell) {
       if (e == p.robust.get()) cell.disagree = std::max(cell.disagree, share);
       if (share > kDisagree) {
         char text[160];
-        std::snprintf(text, sizeof text, "Embree %s, %s: %.2f %% of rays meet something else", e == p.robust.get() ? "robust" : "fast", mode.name, 100 * share);
+        std::snprintf(text, sizeof text, "Embree %s, %s: %.2f %% of rays meet something else",
+                      e == p.robust.get() ? "robust" : "fast", mode.name, 100 * share);
         return text;
       }
     }
@@ -266,19 +279,17 @@ void run(benchmark::State& state, const Row& row, std::size_t kind, const Option
 
   constexpr const char* kSideNames[] = {"grelha ", "embree robust ", "embree fast "};
   for (const Way& w : cell.ways) state.counters[kSideNames[w.side] + w.name + " ns"] = median(w.ns);
-  const double n = static_cast<double>(rays.size());
-  const TraceCounts& c = cell.counts;
-  state.counters["rays"] = n;
+  state.counters["rays"] = static_cast<double>(rays.size());
   state.counters["hits"] = cell.hit_share;
   state.counters["disagree"] = cell.disagree;
   state.counters["ns/ray"] = median(cell.ways[cell.chosen].ns);
-  state.counters["tests/ray"] = static_cast<double>(c.tests.sphere + c.tests.triangle + c.tests.cone + c.tests.plane) / n;
-  state.counters["cells/ray"] = static_cast<double>(c.visits) / n;
-  state.counters["lanes busy"] = static_cast<double>(c.packets.lanes_busy) / static_cast<double>(std::max<std::uint64_t>(c.packets.lanes_issued, 1));
-  state.counters["fell back"] =
-      static_cast<double>(c.packets.fell_back) / static_cast<double>(std::max<std::uint64_t>(c.packets.fell_back + c.packets.formed, 1));
+  state.counters["tests/ray"] = cell.tests();
+  state.counters["cells/ray"] = cell.cells();
+  state.counters["lanes busy"] = cell.lanes_busy();
+  state.counters["fell back"] = cell.fell_back();
   const Way &chosen = cell.ways[cell.chosen], &best = cell.ways[cell.best[kGrelha]];
-  std::printf("%-8s %-11s %6.1f ns %5.1f Mrays/s %s", row.name.c_str(), kRayKinds[kind], median(chosen.ns), 1e3 / median(chosen.ns), chosen.name.c_str());
+  std::printf("%-8s %-11s %6.1f ns %5.1f Mrays/s %s", row.name.c_str(), kRayKinds[kind], median(chosen.ns), 1e3 / median(chosen.ns),
+              chosen.name.c_str());
   if (&best != &chosen) std::printf(" (%s: %.1f ns)", best.name.c_str(), median(best.ns));
   if (cell.has_embree()) {
     const Way &robust = cell.ways[cell.best[kRobust]], &fast = cell.ways[cell.best[kFast]];
@@ -301,7 +312,9 @@ class Silent : public benchmark::BenchmarkReporter {
   void ReportRuns(const std::vector<Run>&) override {}
 };
 
-void print_table(const Options& options, const std::string& title, const std::function<std::string(const Row&, std::size_t, const Cell&)>& text) {
+using CellText = std::function<std::string(const Row&, std::size_t, const Cell&)>;
+
+void print_table(const Options& options, const std::string& title, const CellText& text) {
   std::printf("\n%s\n\n| %-8s |", title.c_str(), "");
   for (const std::size_t k : options.kinds) std::printf(" %s |", kRayKinds[k]);
   std::printf("\n|---|");
@@ -333,20 +346,17 @@ void print_tables(const Options& options) {
     };
   };
   if (!embree_modes().empty()) {
-    print_table(options, "Time of Grelha, packets as a render forms them / time of Embree's best mode, robust (> target, where missed)", against(kRobust, true));
+    print_table(options, "Time of Grelha, packets as a render forms them / time of Embree's best mode, robust (> target, where missed)",
+                against(kRobust, true));
     print_table(options, "Grelha's best / Embree's best, robust", against(kRobust, false));
     print_table(options, "As a render forms them / Embree's best, not robust", against(kFast, true));
   } else {
     std::printf("\nBuilt without Embree: no ratios.\n");
   }
-  print_table(options, "ns a ray, as a render forms packets", [](const Row&, std::size_t, const Cell& c) { return format("%.1f", median(c.ways[c.chosen].ns)); });
+  print_table(options, "ns a ray, as a render forms packets",
+              [](const Row&, std::size_t, const Cell& c) { return format("%.1f", median(c.ways[c.chosen].ns)); });
   print_table(options, "Lanes busy; tests a ray; cells a ray; packets that fell back", [](const Row&, std::size_t, const Cell& c) {
-    const double n = static_cast<double>(c.rays);
-    const auto share = [](std::uint64_t a, std::uint64_t all) { return 100 * static_cast<double>(a) / static_cast<double>(std::max<std::uint64_t>(all, 1)); };
-    const TestCounts& t = c.counts.tests;
-    const PacketCounts& p = c.counts.packets;
-    return format("%.0f %%; %.1f; %.1f; %.0f %%", share(p.lanes_busy, p.lanes_issued), static_cast<double>(t.sphere + t.triangle + t.cone + t.plane) / n,
-                  static_cast<double>(c.counts.visits) / n, share(p.fell_back, p.fell_back + p.formed));
+    return format("%.0f %%; %.1f; %.1f; %.0f %%", 100 * c.lanes_busy(), c.tests(), c.cells(), 100 * c.fell_back());
   });
 }
 
@@ -354,7 +364,8 @@ void print_tables(const Options& options) {
 Row row_named(const std::string& name) {
   for (const Row& row : kRows)
     if (row.name == name) return row;
-  if (const auto space = name.find(' '); space != std::string::npos) return {name, "", name.substr(0, space), std::atoi(name.c_str() + space), {}};
+  const auto space = name.find(' ');
+  if (space != std::string::npos) return {name, "", name.substr(0, space), std::atoi(name.c_str() + space), {}};
   return {name, name, "", 0, {}};
 }
 
@@ -381,7 +392,8 @@ bool parse(int argc, char** argv, Options& o) {
     }
   }
   if (o.rows.empty()) o.rows = kRows;
-  for (std::size_t k = 0; o.kinds.size() < kRayKinds.size() && k < kRayKinds.size() && (k == 0 ? o.kinds.empty() : o.kinds.size() == k); ++k) o.kinds.push_back(k);
+  if (o.kinds.empty())
+    for (std::size_t k = 0; k < kRayKinds.size(); ++k) o.kinds.push_back(k);
   return o.size >= 32 && o.size <= 16384 && o.rounds >= 1;
 }
 
