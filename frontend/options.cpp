@@ -198,7 +198,7 @@ void add_render(CLI::App& app, RenderCommand& command) {
   value(sub, "--size", "WxH", "pixels [as the scene says]",
         [&command](const std::string& text) { parse_size(text, command.width, command.height); });
   value(sub, "--threads", "N", "threads [one per processor]",
-        [&command](const std::string& text) { command.render.threads = whole("--threads", text, 1, kMaxThreads); });
+        [&command](const std::string& text) { command.render.threads = command.build.threads = whole("--threads", text, 1, kMaxThreads); });
   value(sub, "--depth", "N", "longest path of a ray, the eye ray counted as 1 [5]",
         [&command](const std::string& text) { command.render.depth = whole("--depth", text, 1, kMostDepth); });
   Effects& effects = command.effects;

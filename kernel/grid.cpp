@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <limits>
+#include <stdexcept>
+#include <utility>
 
 namespace grelha {
 namespace {
@@ -37,165 +40,328 @@ Corners corners_of(const Primitives& p, std::uint32_t id) {
   return c;
 }
 
-/// Whether a cell is nearer than pad to the plane of a triangle, or to a ball: what a box alone cannot tell.
-class Touch {
+/// A cell grown by pad against a triangle: the plane, and each edge seen along the axes across which the triangle spans
+/// several cells. Together with boxes that meet these are all the separating axes, so what is left is touched.
+class TriangleTouch {
  public:
-  Touch(const Primitives& p, std::uint32_t id, const Grid& g, double pad) : kind_(kind_of(p, id)) {
-    for (int a = 0; a < 3; ++a) cell_[a] = g.cell[a], lo_[a] = g.lo[a];
-    if (kind_ == Kind::kTriangle) {
-      const Corners c = corners_of(p, id);
-      double e[3], f[3];
-      for (int a = 0; a < 3; ++a) e[a] = c.v[1][a] - c.v[0][a], f[a] = c.v[2][a] - c.v[0][a];
-      double sum = 0;
-      for (int a = 0; a < 3; ++a) {
-        const int b = (a + 1) % 3, d = (a + 2) % 3;
-        n_[a] = e[b] * f[d] - e[d] * f[b];
-        sum += std::abs(n_[a]);
+  TriangleTouch(const Corners& c, const Grid& g, double pad, const int (&lo)[3], const int (&hi)[3]) {
+    double v[3][3], e[3][3], half[3];
+    for (int a = 0; a < 3; ++a) {
+      cell_[a] = g.cell[a], half[a] = g.cell[a] / 2 + pad;
+      for (int k = 0; k < 3; ++k) v[k][a] = c.v[k][a] - g.lo[a];
+      for (int k = 0; k < 3; ++k) e[k][a] = v[(k + 1) % 3][a] - v[k][a];
+    }
+    double offset = 0, reach = 0, rounding[3];
+    for (int a = 0; a < 3; ++a) {
+      const int b = (a + 1) % 3, d = (a + 2) % 3;
+      const double p = e[0][d] * e[2][b], q = e[0][b] * e[2][d];
+      n_[a] = p - q, rounding[a] = (std::abs(p) + std::abs(q)) * 1e-14;
+      offset += n_[a] * v[0][a], reach += std::abs(n_[a]) * half[a];
+    }
+    offset_ = offset, reach_ = reach + std::abs(offset) * 1e-12;
+    for (int a = 0; a < 3; ++a) {
+      const int b = (a + 1) % 3, d = (a + 2) % 3;
+      if (lo[b] == hi[b] || lo[d] == hi[d]) continue;  // one row of cells: its box says it all
+      const double sign = n_[a] < 0 ? -1 : 1;
+      for (int k = 0; k < 3; ++k) {  // inward across the edge; rounding can turn it only where the triangle is seen edge-on
+        const double mb = -sign * e[k][d], md = sign * e[k][b];
+        const double at = mb * v[k][b] + md * v[k][d];
+        edges_[count_++] = {b, d, mb, md, at - (std::abs(mb) * half[b] + std::abs(md) * half[d]) - rounding[a] - std::abs(at) * 1e-12};
       }
-      offset_ = 0;
-      reach_ = sum * pad;
-      for (int a = 0; a < 3; ++a) {
-        offset_ += n_[a] * (c.v[0][a] - lo_[a]);
-        reach_ += std::abs(n_[a]) * cell_[a] / 2;
-      }
-      reach_ += std::abs(offset_) * 1e-12;
-    } else if (kind_ == Kind::kSphere) {
-      const Spheres& s = p.geometry.spheres;
-      const std::uint32_t i = id - p.sphere_base;
-      n_[0] = s.x[i] - lo_[0], n_[1] = s.y[i] - lo_[1], n_[2] = s.z[i] - lo_[2];
-      const double r = std::abs(static_cast<double>(s.radius[i])) + pad;
-      const double inner = std::abs(static_cast<double>(s.radius[i])) - pad;
-      reach_ = r * r * (1 + 1e-12);
-      inner_ = inner > 0 ? inner * inner * (1 - 1e-12) : -1;
     }
   }
-
   bool operator()(const int (&at)[3]) const {
-    if (kind_ == Kind::kTriangle) {
-      double s = -offset_;
-      for (int a = 0; a < 3; ++a) s += n_[a] * ((at[a] + .5) * cell_[a]);
-      return std::abs(s) <= reach_;
-    }
-    if (kind_ == Kind::kSphere) {  // the surface crosses the cell: nearest point inside, farthest outside
-      double near = 0, far = 0;
-      for (int a = 0; a < 3; ++a) {
-        const double lo = at[a] * cell_[a] - n_[a], hi = (at[a] + 1) * cell_[a] - n_[a];
-        const double least = lo > 0 ? lo : hi < 0 ? -hi : 0, most = std::max(std::abs(lo), std::abs(hi));
-        near += least * least, far += most * most;
-      }
-      return near <= reach_ && far >= inner_;
-    }
+    const double c[3] = {(at[0] + .5) * cell_[0], (at[1] + .5) * cell_[1], (at[2] + .5) * cell_[2]};
+    if (!(std::abs(n_[0] * c[0] + n_[1] * c[1] + n_[2] * c[2] - offset_) <= reach_)) return false;
+    for (int i = 0; i < count_; ++i)
+      if (edges_[i].mb * c[edges_[i].b] + edges_[i].md * c[edges_[i].d] < edges_[i].least) return false;
     return true;
   }
 
  private:
-  Kind kind_;
-  double cell_[3], lo_[3], n_[3] = {}, offset_ = 0, reach_ = 0, inner_ = -1;
+  struct Edge {
+    int b, d;  ///< axes it is seen in
+    double mb, md, least;
+  };
+  double cell_[3], n_[3], offset_, reach_;
+  int count_ = 0;
+  Edge edges_[9];
 };
 
-/// Calls visit(cell) for every cell the primitive is to stand in, ascending.
-template <class Visit>
-void each_cell(const Primitives& p, const Grid& g, std::uint32_t id, double pad, const Visit& visit) {
-  Box b = p.box(id);
-  b.grow(pad);
-  int lo[3], hi[3];
-  bool several = false;
-  for (int a = 0; a < 3; ++a) {
-    const int n = static_cast<int>(g.cells[a]);
-    lo[a] = cell_of(b.lo[a], g.lo[a], 1 / g.cell[a], n), hi[a] = cell_of(b.hi[a], g.lo[a], 1 / g.cell[a], n);
-    several |= hi[a] > lo[a];
+/// A cell grown by pad against a ball's surface: nearest point inside, farthest outside.
+class SphereTouch {
+ public:
+  SphereTouch(const Primitives& p, std::uint32_t id, const Grid& g, double pad) {
+    const Spheres& s = p.geometry.spheres;
+    const std::uint32_t i = id - p.sphere_base;
+    const double center[3] = {s.x[i], s.y[i], s.z[i]}, radius = std::abs(static_cast<double>(s.radius[i]));
+    for (int a = 0; a < 3; ++a) cell_[a] = g.cell[a], center_[a] = center[a] - g.lo[a];
+    const double r = radius + pad, inner = radius - pad;
+    reach_ = r * r * (1 + 1e-12);
+    inner_ = inner > 0 ? inner * inner * (1 - 1e-12) : -1;
   }
-  const std::size_t nx = g.cells[0], nxy = nx * g.cells[1];
-  if (!several) return visit(lo[0] + nx * static_cast<std::size_t>(lo[1]) + nxy * static_cast<std::size_t>(lo[2]));
-  const Touch touch(p, id, g, pad);
-  for (int z = lo[2]; z <= hi[2]; ++z)
-    for (int y = lo[1]; y <= hi[1]; ++y)
-      for (int x = lo[0]; x <= hi[0]; ++x)
-        if (touch({x, y, z})) visit(x + nx * static_cast<std::size_t>(y) + nxy * static_cast<std::size_t>(z));
-}
+  bool operator()(const int (&at)[3]) const {
+    double near = 0, far = 0;
+    for (int a = 0; a < 3; ++a) {
+      const double lo = at[a] * cell_[a] - center_[a], hi = (at[a] + 1) * cell_[a] - center_[a];
+      const double least = lo > 0 ? lo : hi < 0 ? -hi : 0, most = std::max(std::abs(lo), std::abs(hi));
+      near += least * least, far += most * most;
+    }
+    return near <= reach_ && far >= inner_;
+  }
+
+ private:
+  double cell_[3], center_[3], reach_, inner_;
+};
+
+/// Calls visit(cell) for every cell a primitive is to stand in, ascending.
+class CellFinder {
+ public:
+  CellFinder(const Primitives& p, const Grid& g, double pad) : p_(p), g_(g), pad_(pad) {
+    for (int a = 0; a < 3; ++a) inv_[a] = 1 / g.cell[a];
+  }
+  template <class Visit>
+  void operator()(std::uint32_t id, const Visit& visit) const {
+    const Kind kind = kind_of(p_, id);
+    Corners corners;
+    Box b;
+    if (kind == Kind::kTriangle) {
+      corners = corners_of(p_, id);
+      for (int a = 0; a < 3; ++a) {
+        b.lo[a] = std::min(std::min(corners.v[0][a], corners.v[1][a]), corners.v[2][a]);
+        b.hi[a] = std::max(std::max(corners.v[0][a], corners.v[1][a]), corners.v[2][a]);
+      }
+    } else {
+      b = p_.box(id);
+    }
+    int lo[3], hi[3];
+    bool several = false;
+    for (int a = 0; a < 3; ++a) {
+      const int n = static_cast<int>(g_.cells[static_cast<std::size_t>(a)]);
+      lo[a] = cell_of(b.lo[a] - pad_, g_.lo[a], inv_[a], n), hi[a] = cell_of(b.hi[a] + pad_, g_.lo[a], inv_[a], n);
+      several |= hi[a] > lo[a];
+    }
+    if (!several || kind == Kind::kCone) return all(lo, hi, visit, [](const int (&)[3]) { return true; });
+    if (kind == Kind::kSphere) return all(lo, hi, visit, SphereTouch(p_, id, g_, pad_));
+    all(lo, hi, visit, TriangleTouch(corners, g_, pad_, lo, hi));
+  }
+
+ private:
+  template <class Visit, class Touch>
+  void all(const int (&lo)[3], const int (&hi)[3], const Visit& visit, const Touch& touch) const {
+    const std::size_t nx = g_.cells[0], nxy = nx * g_.cells[1];
+    for (int z = lo[2]; z <= hi[2]; ++z)
+      for (int y = lo[1]; y <= hi[1]; ++y)
+        for (int x = lo[0]; x <= hi[0]; ++x)
+          if (touch({x, y, z})) visit(static_cast<std::size_t>(x) + nx * static_cast<std::size_t>(y) + nxy * static_cast<std::size_t>(z));
+  }
+  const Primitives& p_;
+  const Grid& g_;
+  double pad_, inv_[3];
+};
 
 void put_triangle(TriangleBlock& block, std::size_t at, const Primitives& p, std::uint32_t id) {
-  const Corners c = corners_of(p, id);
-  for (int a = 0; a < 3; ++a) {
-    block.a[a][at] = static_cast<float>(c.v[0][a]);
-    block.b[a][at] = static_cast<float>(c.v[1][a]);
-    block.c[a][at] = static_cast<float>(c.v[2][a]);
-  }
+  const Triangles& t = p.geometry.triangles;
+  const std::uint32_t i = id - p.triangle_base, v[3] = {t.a[i], t.b[i], t.c[i]};
+  float(*const corner[3])[kBlock] = {block.a, block.b, block.c};
+  for (int k = 0; k < 3; ++k) corner[k][0][at] = t.x[v[k]], corner[k][1][at] = t.y[v[k]], corner[k][2][at] = t.z[v[k]];
   block.id[at] = id;
 }
 
-TriangleBlock empty_block() {
-  TriangleBlock b;
-  for (int a = 0; a < 3; ++a)
-    for (int i = 0; i < kBlock; ++i) b.a[a][i] = b.b[a][i] = b.c[a][i] = kNaN;
-  for (std::uint32_t& i : b.id) i = kNoPrimitive;
-  return b;
+/// Places from `used` on hold nothing.
+void pad_block(TriangleBlock& block, std::size_t used) {
+  for (std::size_t i = used; i < kBlock; ++i) {
+    for (int a = 0; a < 3; ++a) block.a[a][i] = block.b[a][i] = block.c[a][i] = kNaN;
+    block.id[i] = kNoPrimitive;
+  }
 }
 
-/// Running sum in place: counts become first places, with the total behind the last.
-std::size_t sum_up(std::vector<std::uint32_t>& counts) {
-  std::uint32_t sum = 0;
-  for (std::uint32_t& c : counts) {
-    const std::uint32_t here = c;
-    c = sum;
-    sum += here;
-  }
-  return sum;
+/// Threads that have enough to do: starting one costs as much as some hundred primitives.
+int useful_threads(int threads, std::size_t work) {
+  return static_cast<int>(std::clamp<std::size_t>(work / 512, 1, static_cast<std::size_t>(threads)));
 }
 
-/// Count, sum, scatter. `cells_of(id, visit)` must visit the same cells in both passes.
-template <class CellsOf>
-CellStore fill(const Primitives& p, std::span<const std::uint32_t> ids, std::size_t cells, const CellsOf& cells_of) {
-  CellStore s;
-  std::vector<std::uint32_t>* const first[3] = {&s.sphere_first, &s.triangle_first, &s.cone_first};
-  for (const std::uint32_t id : ids) {
-    std::vector<std::uint32_t>& counts = *first[static_cast<int>(kind_of(p, id))];
-    if (counts.empty()) counts.resize(cells + 1);
-    cells_of(id, [&](std::size_t c) { ++counts[c], ++s.references; });
+/// Fills a store in three passes, each shared among threads that write to places of their own:
+/// - a chunk of primitives becomes pairs (cell, id), sorted by bucket, a run of neighbouring cells;
+/// - each bucket counts its cells; the sums over buckets are the places where its lists begin;
+/// - each bucket writes its lists, taking chunks in turn, so that ids ascend.
+class Filling {
+ public:
+  Filling(const Primitives& p, std::span<const std::uint32_t> ids, std::size_t cells, int threads)
+      : p_(p), ids_(ids), cells_(cells), threads_(threads) {
+    while (((cells_ - 1) >> shift_) >= kMostBuckets) ++shift_;
+    buckets_ = ((cells_ - 1) >> shift_) + 1;
+    chunks_.resize((ids.size() + kChunk - 1) / kChunk);
   }
-  std::vector<std::uint32_t> fill_at[3];
-  if (!s.triangle_first.empty()) {
-    for (std::uint32_t& c : s.triangle_first) c = (c + kBlock - 1) / kBlock;
-    s.triangles.resize(sum_up(s.triangle_first), empty_block());
-    fill_at[1].resize(cells);
-  }
-  if (!s.sphere_first.empty()) {
-    const std::size_t n = sum_up(s.sphere_first) + kBlock;
-    for (auto& v : s.spheres) v.resize(n, kNaN);
-    s.sphere_id.resize(n, kNoPrimitive);
-    fill_at[0].resize(cells);
-  }
-  if (!s.cone_first.empty()) {
-    const std::size_t n = sum_up(s.cone_first) + kBlock;
-    for (auto& v : s.cones) v.resize(n, kNaN);
-    s.cone_id.resize(n, kNoPrimitive);
-    fill_at[2].resize(cells);
-  }
-  for (const std::uint32_t id : ids) {
-    const Kind kind = kind_of(p, id);
-    std::vector<std::uint32_t>& at = fill_at[static_cast<int>(kind)];
-    cells_of(id, [&](std::size_t c) {
-      const std::size_t place = at[c]++;
-      if (kind == Kind::kTriangle) {
-        put_triangle(s.triangles[s.triangle_first[c] + place / kBlock], place % kBlock, p, id);
-      } else if (kind == Kind::kSphere) {
-        const Spheres& from = p.geometry.spheres;
-        const std::size_t i = id - p.sphere_base, to = s.sphere_first[c] + place;
-        s.spheres[0][to] = from.x[i], s.spheres[1][to] = from.y[i], s.spheres[2][to] = from.z[i];
-        s.spheres[3][to] = from.radius[i], s.sphere_id[to] = id;
-      } else {
-        const std::size_t to = s.cone_first[c] + place;
-        for (std::size_t k = 0; k < 10; ++k) s.cones[k][to] = p.cones[k][id - p.cone_base];
-        s.cone_id[to] = id;
+
+  /// `cells_of(id, visit)` names the cells. `empty`, where given, becomes 0 for cells that hold something and 255 for others.
+  template <class CellsOf>
+  CellStore run(const CellsOf& cells_of, std::uint8_t* empty, std::uint64_t& occupied) {
+    for (int kind = 0; kind < 3; ++kind) {
+      const auto first = std::lower_bound(ids_.begin(), ids_.end(), kind == 0 ? 0 : kind == 1 ? p_.triangle_base : p_.cone_base);
+      has_[kind] = first != ids_.end() && static_cast<int>(kind_of(p_, *first)) == kind;
+      if (has_[kind]) firsts(kind).resize(cells_ + 1);
+    }
+    const auto chunks = static_cast<std::ptrdiff_t>(chunks_.size()), buckets = static_cast<std::ptrdiff_t>(buckets_);
+    std::vector<std::array<std::uint64_t, 3>> sums(buckets_);
+    std::uint64_t taken = 0;
+    // An exception cannot leave a thread: the first is kept and thrown again behind the loops.
+    std::exception_ptr trouble;
+    const auto guarded = [&](const auto& work) {
+      try {
+        work();
+      } catch (...) {
+#pragma omp critical
+        trouble = std::current_exception();
       }
-    });
+    };
+#pragma omp parallel num_threads(threads_)
+    {
+      std::vector<Pair> pairs;
+#pragma omp for schedule(dynamic)
+      for (std::ptrdiff_t i = 0; i < chunks; ++i) guarded([&] { emit(static_cast<std::size_t>(i), cells_of, pairs); });
+    }
+    if (trouble) std::rethrow_exception(trouble);
+#pragma omp parallel for schedule(dynamic) num_threads(threads_)
+    for (std::ptrdiff_t i = 0; i < buckets; ++i) sums[static_cast<std::size_t>(i)] = count(static_cast<std::size_t>(i));
+    std::array<std::uint64_t, 3> total{};
+    for (auto& sum : sums)
+      for (std::size_t k = 0; k < 3; ++k) total[k] += std::exchange(sum[k], total[k]);
+    for (const std::uint64_t n : total)
+      if (n > 0xFFFFFF00u) throw std::length_error("the grid's lists are too long: choose a smaller density");
+    for (const Chunk& c : chunks_) store_.references += c.pairs.size();
+    make_room(total);
+#pragma omp parallel num_threads(threads_)
+    {
+      std::vector<std::uint32_t> at;
+#pragma omp for schedule(dynamic) reduction(+ : taken)
+      for (std::ptrdiff_t i = 0; i < buckets; ++i)
+        guarded([&] { taken += write(static_cast<std::size_t>(i), sums[static_cast<std::size_t>(i)], at, empty); });
+    }
+    if (trouble) std::rethrow_exception(trouble);
+    occupied = taken;
+    return std::move(store_);
   }
-  return s;
-}
 
-template <class T>
-std::size_t bytes_of(const std::vector<T>& v) {
-  return v.size() * sizeof(T);
+ private:
+  static constexpr std::size_t kChunk = 2048, kMostBuckets = 256;
+  struct Pair {
+    std::uint32_t cell, id;
+  };
+  struct Chunk {
+    RawVector<Pair> pairs;             ///< by bucket; within one as they came
+    std::vector<std::uint32_t> first;  ///< [buckets + 1]
+  };
+
+  RawVector<std::uint32_t>& firsts(int kind) { return kind == 0 ? store_.sphere_first : kind == 1 ? store_.triangle_first : store_.cone_first; }
+  std::size_t begin_of(std::size_t bucket) const { return bucket << shift_; }
+  std::size_t end_of(std::size_t bucket) const { return std::min((bucket + 1) << shift_, cells_); }
+
+  template <class CellsOf>
+  void emit(std::size_t index, const CellsOf& cells_of, std::vector<Pair>& pairs) {
+    Chunk& chunk = chunks_[index];
+    pairs.clear();
+    chunk.first.assign(buckets_ + 1, 0);
+    for (std::size_t i = index * kChunk; i < std::min((index + 1) * kChunk, ids_.size()); ++i)
+      cells_of(ids_[i], [&](std::size_t c) {
+        pairs.push_back({static_cast<std::uint32_t>(c), ids_[i]});
+        ++chunk.first[c >> shift_];
+      });
+    std::uint32_t sum = 0;
+    for (std::uint32_t& f : chunk.first) sum += std::exchange(f, sum);
+    chunk.pairs.resize(pairs.size());
+    for (const Pair& pair : pairs) chunk.pairs[chunk.first[pair.cell >> shift_]++] = pair;
+    for (std::size_t b = buckets_; b > 0; --b) chunk.first[b] = chunk.first[b - 1];
+    chunk.first[0] = 0;
+  }
+
+  template <class Visit>
+  void each_pair(std::size_t bucket, const Visit& visit) const {
+    for (const Chunk& chunk : chunks_)
+      for (std::uint32_t i = chunk.first[bucket]; i < chunk.first[bucket + 1]; ++i) visit(chunk.pairs[i]);
+  }
+
+  /// Entries of each cell (blocks, of triangles), and their sums over the bucket.
+  std::array<std::uint64_t, 3> count(std::size_t bucket) {
+    std::array<std::uint64_t, 3> sums{};
+    std::uint32_t* n[3] = {};
+    for (int k = 0; k < 3; ++k)
+      if (has_[k]) n[k] = firsts(k).data(), std::fill(n[k] + begin_of(bucket), n[k] + end_of(bucket), 0u);
+    each_pair(bucket, [&](const Pair& pair) { ++n[static_cast<int>(kind_of(p_, pair.id))][pair.cell]; });
+    for (std::size_t k = 0; k < 3; ++k)
+      for (std::size_t c = begin_of(bucket); n[k] && c < end_of(bucket); ++c) {
+        if (k == 1) n[k][c] = (n[k][c] + kBlock - 1) / kBlock;
+        sums[k] += n[k][c];
+      }
+    return sums;
+  }
+
+  void make_room(const std::array<std::uint64_t, 3>& total) {
+    const auto padded = [&](auto& arrays, auto& ids, std::uint64_t n) {
+      for (auto& v : arrays) v.resize(n + kBlock), std::fill(v.begin() + static_cast<std::ptrdiff_t>(n), v.end(), kNaN);
+      ids.resize(n + kBlock), std::fill(ids.begin() + static_cast<std::ptrdiff_t>(n), ids.end(), kNoPrimitive);
+    };
+    if (has_[0]) padded(store_.spheres, store_.sphere_id, total[0]);
+    if (has_[1]) store_.triangles.resize(total[1]);
+    if (has_[2]) padded(store_.cones, store_.cone_id, total[2]);
+    for (int k = 0; k < 3; ++k)
+      if (has_[k]) firsts(k)[cells_] = static_cast<std::uint32_t>(total[static_cast<std::size_t>(k)]);
+  }
+
+  /// The bucket's lists; returns how many of its cells hold something.
+  std::uint64_t write(std::size_t bucket, const std::array<std::uint64_t, 3>& start, std::vector<std::uint32_t>& at, std::uint8_t* empty) {
+    const std::size_t begin = begin_of(bucket), end = end_of(bucket), size = end - begin;
+    at.assign(3 * size, 0);  // entries written so far, by kind and cell
+    std::uint64_t held = 0;
+    std::uint32_t* first[3] = {};
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (!has_[k]) continue;
+      first[k] = firsts(static_cast<int>(k)).data();
+      auto sum = static_cast<std::uint32_t>(start[k]);
+      for (std::size_t c = begin; c < end; ++c) sum += std::exchange(first[k][c], sum);
+    }
+    each_pair(bucket, [&](const Pair& pair) {
+      const Kind kind = kind_of(p_, pair.id);
+      const auto k = static_cast<std::size_t>(kind);
+      const std::size_t place = at[k * size + pair.cell - begin]++, from = first[k][pair.cell];
+      if (kind == Kind::kTriangle) put_triangle(store_.triangles[from + place / kBlock], place % kBlock, p_, pair.id);
+      else if (kind == Kind::kSphere) put_sphere(from + place, pair.id);
+      else put_cone(from + place, pair.id);
+    });
+    for (std::size_t i = 0; i < size; ++i) {
+      if (at[size + i] % kBlock != 0)
+        pad_block(store_.triangles[first[1][begin + i] + at[size + i] / kBlock], at[size + i] % kBlock);
+      const bool any = (at[i] | at[size + i] | at[2 * size + i]) != 0;
+      held += any;
+      if (empty) empty[begin + i] = any ? 0 : 255;
+    }
+    return held;
+  }
+
+  void put_sphere(std::size_t to, std::uint32_t id) {
+    const Spheres& from = p_.geometry.spheres;
+    const std::size_t i = id - p_.sphere_base;
+    store_.spheres[0][to] = from.x[i], store_.spheres[1][to] = from.y[i], store_.spheres[2][to] = from.z[i];
+    store_.spheres[3][to] = from.radius[i], store_.sphere_id[to] = id;
+  }
+  void put_cone(std::size_t to, std::uint32_t id) {
+    for (std::size_t k = 0; k < 10; ++k) store_.cones[k][to] = p_.cones[k][id - p_.cone_base];
+    store_.cone_id[to] = id;
+  }
+
+  const Primitives& p_;
+  std::span<const std::uint32_t> ids_;
+  std::size_t cells_, buckets_ = 0;
+  unsigned shift_ = 8;
+  int threads_;
+  bool has_[3] = {};
+  std::vector<Chunk> chunks_;
+  CellStore store_;
+};
+
+template <class V>
+std::size_t bytes_of(const V& v) {
+  return v.size() * sizeof v[0];
 }
 
 }  // namespace
@@ -312,9 +478,34 @@ GridStats Grid::stats() const {
   return {cells, occupied, store.references, store.bytes() + bytes_of(distance)};
 }
 
-Grid build_grid(const Primitives& p, std::span<const std::uint32_t> ids, double density, double pad) {
-  Box b;
-  for (const std::uint32_t id : ids) b.add(p.box(id));
+Extent extent_of(const Primitives& p, std::span<const std::uint32_t> ids, int threads) {
+  Extent all;
+  const auto count = static_cast<std::ptrdiff_t>(ids.size());
+#pragma omp parallel num_threads(useful_threads(threads, ids.size()))
+  {
+    Box mine;
+    double longest = 0;  // squared: one root in the end
+#pragma omp for schedule(static) nowait
+    for (std::ptrdiff_t i = 0; i < count; ++i) {
+      const Box b = p.box(ids[static_cast<std::size_t>(i)]);
+      double sum = 0;
+      for (int a = 0; a < 3; ++a) {
+        sum += (b.hi[a] - b.lo[a]) * (b.hi[a] - b.lo[a]);
+        mine.lo[a] = std::min(mine.lo[a], b.lo[a]), mine.hi[a] = std::max(mine.hi[a], b.hi[a]);
+      }
+      longest = std::max(longest, sum);
+    }
+#pragma omp critical  // least and most do not depend on the order
+    {
+      if (!mine.empty()) all.box.add(mine);
+      all.longest = std::max(all.longest, std::sqrt(longest));
+    }
+  }
+  return all;
+}
+
+Grid build_grid(const Primitives& p, std::span<const std::uint32_t> ids, const Box& box, double density, double pad, int threads) {
+  Box b = box;
   b.grow(2 * pad);  // once for the cells' contents, once for the entry of rays
   Grid g;
   double extent[3], largest = 0;
@@ -337,53 +528,17 @@ Grid build_grid(const Primitives& p, std::span<const std::uint32_t> ids, double 
     g.cell[a] = extent[a] / g.cells[a];
     cells *= g.cells[a];
   }
-  g.store = fill(p, ids, cells, [&](std::uint32_t id, const auto& visit) { each_cell(p, g, id, pad, visit); });
-  std::vector<std::uint8_t> occupied(cells);
-  for (const auto* first : {&g.store.triangle_first, &g.store.sphere_first, &g.store.cone_first})
-    for (std::size_t c = 0; c + 1 < first->size(); ++c) occupied[c] |= (*first)[c + 1] > (*first)[c];
-  for (const std::uint8_t o : occupied) g.occupied += o;
-  g.distance = chebyshev_distance(occupied, g.cells);
+  g.distance.resize(cells);
+  const CellFinder finder(p, g, pad);
+  g.store = Filling(p, ids, cells, useful_threads(threads, ids.size())).run([&](std::uint32_t id, const auto& visit) { finder(id, visit); },
+                                                                           g.distance.data(), g.occupied);
+  chebyshev_distance(g.distance, g.cells, useful_threads(threads, cells));
   return g;
 }
 
 CellStore build_list(const Primitives& p, std::span<const std::uint32_t> ids) {
-  return fill(p, ids, 1, [](std::uint32_t, const auto& visit) { visit(std::size_t{0}); });
-}
-
-std::vector<std::uint8_t> chebyshev_distance(const std::vector<std::uint8_t>& occupied, const std::array<std::uint32_t, 3>& cells) {
-  const std::ptrdiff_t nx = cells[0], ny = cells[1], nz = cells[2];
-  // A border of one cell all round, as far away as can be, spares the sweeps their bounds.
-  const std::ptrdiff_t sy = nx + 2, sz = sy * (ny + 2);
-  std::vector<std::uint8_t> d(static_cast<std::size_t>(sz * (nz + 2)), 255);
-  const auto at = [&](std::ptrdiff_t x, std::ptrdiff_t y, std::ptrdiff_t z) { return x + 1 + sy * (y + 1) + sz * (z + 1); };
-  for (std::ptrdiff_t z = 0; z < nz; ++z)
-    for (std::ptrdiff_t y = 0; y < ny; ++y)
-      for (std::ptrdiff_t x = 0; x < nx; ++x)
-        if (occupied[static_cast<std::size_t>(x + nx * (y + ny * z))]) d[static_cast<std::size_t>(at(x, y, z))] = 0;
-  std::array<std::ptrdiff_t, 13> before{};  // the neighbours a forward sweep has already passed
-  std::size_t k = 0;
-  for (std::ptrdiff_t z = -1; z <= 1; ++z)
-    for (std::ptrdiff_t y = -1; y <= 1; ++y)
-      for (std::ptrdiff_t x = -1; x <= 1; ++x)
-        if (const std::ptrdiff_t o = x + sy * y + sz * z; z < 0 || (z == 0 && (y < 0 || (y == 0 && x < 0)))) before[k++] = o;
-  const auto relax = [&](std::ptrdiff_t c, std::ptrdiff_t sign) {
-    std::uint8_t& here = d[static_cast<std::size_t>(c)];
-    if (here == 0) return;
-    std::uint8_t least = 254;
-    for (const std::ptrdiff_t o : before) least = std::min(least, d[static_cast<std::size_t>(c + sign * o)]);
-    here = std::min<std::uint8_t>(here, static_cast<std::uint8_t>(least + 1));
-  };
-  for (std::ptrdiff_t z = 0; z < nz; ++z)
-    for (std::ptrdiff_t y = 0; y < ny; ++y)
-      for (std::ptrdiff_t x = 0; x < nx; ++x) relax(at(x, y, z), 1);
-  for (std::ptrdiff_t z = nz; z-- > 0;)
-    for (std::ptrdiff_t y = ny; y-- > 0;)
-      for (std::ptrdiff_t x = nx; x-- > 0;) relax(at(x, y, z), -1);
-  std::vector<std::uint8_t> out(occupied.size());
-  for (std::ptrdiff_t z = 0; z < nz; ++z)
-    for (std::ptrdiff_t y = 0; y < ny; ++y)
-      for (std::ptrdiff_t x = 0; x < nx; ++x) out[static_cast<std::size_t>(x + nx * (y + ny * z))] = d[static_cast<std::size_t>(at(x, y, z))];
-  return out;
+  std::uint64_t occupied = 0;
+  return Filling(p, ids, 1, 1).run([](std::uint32_t, const auto& visit) { visit(std::size_t{0}); }, nullptr, occupied);
 }
 
 }  // namespace grelha

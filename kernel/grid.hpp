@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "kernel/geometry.hpp"
+#include "kernel/raw_vector.hpp"
 #include "kernel/stats.hpp"
 #include "kernel/view.hpp"
 
@@ -45,12 +46,12 @@ struct Primitives {
 
 /// Runs of primitives, cell after cell, that own the memory a CellLists points to.
 struct CellStore {
-  std::vector<std::uint32_t> triangle_first, sphere_first, cone_first;
-  std::vector<TriangleBlock> triangles;
-  std::array<std::vector<float>, 4> spheres;
-  std::vector<std::uint32_t> sphere_id;
-  std::array<std::vector<float>, 10> cones;
-  std::vector<std::uint32_t> cone_id;
+  RawVector<std::uint32_t> triangle_first, sphere_first, cone_first;
+  RawVector<TriangleBlock> triangles;
+  std::array<RawVector<float>, 4> spheres;
+  RawVector<std::uint32_t> sphere_id;
+  std::array<RawVector<float>, 10> cones;
+  RawVector<std::uint32_t> cone_id;
   std::uint64_t references = 0;
 
   CellLists lists() const;
@@ -81,15 +82,27 @@ inline int cell_of(double x, double lo, double inv_cell, int n) {
 /// Resolution  cells per axis = M extent / cbrt(volume / count) + 1 (Cleary & Wyvill 1988; Amanatides & Woo's report form),
 ///             extents below 1/1000 of the largest counted as that, at most 1024 an axis, no cell smaller than 2 pad.
 /// Guarantee   every primitive stands in each cell that its box grown by `pad` touches, unless the cell lies beyond `pad`
-///             of its surface; in each cell primitives ascend by id. Same lists on every machine.
-/// Source      Lagae & Dutré, "Compact, Fast and Robust Grids for Ray Tracing", 2008: count, sum, scatter.
-Grid build_grid(const Primitives& primitives, std::span<const std::uint32_t> ids, double density, double pad);
+///             of its surface; in each cell primitives ascend by id. Same lists on every machine, by any number of threads.
+/// Source      Lagae & Dutré, "Compact, Fast and Robust Grids for Ray Tracing", 2008: count, sum, scatter. Kalojanov & Slusallek,
+///             "A Parallel Algorithm for Construction of Uniform Grids", 2009: pairs of cell and primitive, sorted by cell.
+Grid build_grid(const Primitives& primitives, std::span<const std::uint32_t> ids, const Box& box, double density, double pad, int threads);
+
+/// Box of some finite primitives, and the longest diagonal of any.
+struct Extent {
+  Box box;
+  double longest = 0;
+};
+Extent extent_of(const Primitives& primitives, std::span<const std::uint32_t> ids, int threads);
 
 /// All of `ids` as the one cell of a store without a grid.
 CellStore build_list(const Primitives& primitives, std::span<const std::uint32_t> ids);
 
-/// Chebyshev distance of each cell to the nearest with occupied != 0: two sweeps of a chamfer whose steps all cost one,
-/// exact for this metric.
+/// Chebyshev distance of each cell to the nearest with occupied != 0, at most 255; exact.
+///
+/// Method  the least of max(|dx|, |dy|, |dz|) taken along x, then y, then z, so that each step reads whole rows of bytes and
+///         threads share nothing.
 std::vector<std::uint8_t> chebyshev_distance(const std::vector<std::uint8_t>& occupied, const std::array<std::uint32_t, 3>& cells);
+/// In place: `d` holds 0 where a cell is occupied and 255 elsewhere.
+void chebyshev_distance(std::vector<std::uint8_t>& d, const std::array<std::uint32_t, 3>& cells, int threads);
 
 }  // namespace grelha

@@ -17,6 +17,7 @@ namespace grelha {
 struct BuildOptions {
   bool grid = true;   ///< false: every ray meets every primitive
   float density = 0;  ///< M of the grid's resolution M cbrt(count / volume) per unit length; 0: the kernel chooses
+  int threads = 0;    ///< 0: one per processor; the grid is the same, bit for bit, for every number
 };
 
 /// A scene made ready for rays. It refers to the Scene it was built from, which must outlive it unchanged.

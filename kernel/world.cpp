@@ -5,6 +5,8 @@
 #include <numeric>
 #include <stdexcept>
 
+#include <omp.h>
+
 namespace grelha {
 namespace {
 
@@ -44,17 +46,23 @@ std::vector<Ids> group(const Primitives& p) {
 
 /// Takes primitives as large as all the rest out of a group, again and again while any is: a ground under a teapot, a
 /// stadium around that. What is left is of one scale, which is what a uniform grid wants.
-void set_huge_apart(const Primitives& p, Ids& ids, Ids& outside) {
-  for (;;) {
-    Box all;
-    for (const std::uint32_t id : ids) all.add(p.box(id));
-    const double huge = kHuge * all.diagonal();
+Extent set_huge_apart(const Primitives& p, Ids& ids, Extent all, Ids& outside, int threads) {
+  for (;; all = extent_of(p, ids, threads)) {
+    const double huge = kHuge * all.box.diagonal();
+    if (!(all.longest > huge)) return all;
     const auto is_huge = [&](std::uint32_t id) { return p.box(id).diagonal() > huge; };
     const auto n = static_cast<std::size_t>(std::count_if(ids.begin(), ids.end(), is_huge));
-    if (n == 0 || outside.size() + n > kMostOutside) return;
+    if (n == 0 || outside.size() + n > kMostOutside) return all;
     std::copy_if(ids.begin(), ids.end(), std::back_inserter(outside), is_huge);
     std::erase_if(ids, is_huge);
   }
+}
+
+/// Whether an index reaches `end`.
+bool beyond(const std::vector<std::uint32_t>& indices, std::size_t end) {
+  std::uint32_t most = 0;
+  for (const std::uint32_t i : indices) most = std::max(most, i);
+  return !indices.empty() && most >= end;
 }
 
 void check(const Scene& scene) {
@@ -63,12 +71,10 @@ void check(const Scene& scene) {
   if (total >= kNoPrimitive) throw std::invalid_argument("more primitives than ids: at most 4294967294");
   const auto materials = scene.materials.size();
   for (const auto* m : {&g.spheres.material, &g.triangles.material, &g.cones.material, &g.planes.material})
-    for (const std::uint32_t i : *m)
-      if (i >= materials) throw std::invalid_argument("a primitive names a material that is not there");
+    if (beyond(*m, materials)) throw std::invalid_argument("a primitive names a material that is not there");
   const auto vertices = g.triangles.vertex_count();
   for (const auto* v : {&g.triangles.a, &g.triangles.b, &g.triangles.c})
-    for (const std::uint32_t i : *v)
-      if (i >= vertices) throw std::invalid_argument("a triangle names a vertex that is not there");
+    if (beyond(*v, vertices)) throw std::invalid_argument("a triangle names a vertex that is not there");
   std::uint64_t next = 0;
   for (const Object& o : g.objects) {
     if (o.first_triangle < next) throw std::invalid_argument("objects must be disjoint and ascend");
@@ -111,8 +117,14 @@ MaterialView MaterialTable::view() const {
 
 World::Impl::Impl(const Scene& s, const BuildOptions& options) : scene((check(s), s)), primitives(s.geometry), materials(s) {
   const Geometry& g = s.geometry;
+  const int threads = options.threads > 0 ? options.threads : omp_get_num_procs();
+  std::vector<Ids> groups = group(primitives);
+  std::vector<Extent> extents;
   Box all;
-  for (std::uint32_t id = primitives.sphere_base; id < primitives.end; ++id) all.add(primitives.box(id));
+  for (const Ids& ids : groups) {
+    extents.push_back(extent_of(primitives, ids, threads));
+    all.add(extents.back().box);
+  }
   const double diagonal = all.diagonal();
   // A ray that starts within one diagonal of the box on each axis is at most 1 + sqrt 3 diagonals from any primitive, and a
   // float test is off by at most 46 eps of that distance (docs/numerics.md derives 12, 24 and 32 for the three kinds).
@@ -120,12 +132,13 @@ World::Impl::Impl(const Scene& s, const BuildOptions& options) : scene((check(s)
 
   Ids apart;
   if (options.grid) {
-    for (Ids& ids : group(primitives)) {
-      set_huge_apart(primitives, ids, apart);
+    for (std::size_t i = 0; i < groups.size(); ++i) {
+      Ids ids = std::move(groups[i]);
+      const Extent extent = set_huge_apart(primitives, ids, extents[i], apart, threads);
       if (ids.size() <= kFewest && apart.size() + ids.size() <= kMostOutside) {
         apart.insert(apart.end(), ids.begin(), ids.end());
       } else if (!ids.empty()) {
-        grids.push_back(build_grid(primitives, ids, options.density > 0 ? options.density : kDensity, pad));
+        grids.push_back(build_grid(primitives, ids, extent.box, options.density > 0 ? options.density : kDensity, pad, threads));
       }
     }
     std::sort(apart.begin(), apart.end());

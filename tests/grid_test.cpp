@@ -1,6 +1,7 @@
 // What a built grid promises: sound rows, every primitive in each cell its surface touches, exact distances.
 #include "kernel/grid.hpp"
 
+#include <cstring>
 #include <numeric>
 #include <set>
 
@@ -96,6 +97,23 @@ void expect_sound_rows(const CellStore& s, std::size_t cells) {
   EXPECT_EQ(references, s.references);
 }
 
+template <class T>
+void expect_same_bytes(const T& a, const T& b) {
+  ASSERT_EQ(a.size(), b.size());
+  if (!a.empty()) {
+    EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]), 0);
+  }
+}
+
+void expect_same_store(const CellStore& a, const CellStore& b) {
+  for (const auto list : {&CellStore::triangle_first, &CellStore::sphere_first, &CellStore::cone_first, &CellStore::sphere_id, &CellStore::cone_id})
+    expect_same_bytes(a.*list, b.*list);
+  expect_same_bytes(a.triangles, b.triangles);
+  for (std::size_t k = 0; k < a.spheres.size(); ++k) expect_same_bytes(a.spheres[k], b.spheres[k]);
+  for (std::size_t k = 0; k < a.cones.size(); ++k) expect_same_bytes(a.cones[k], b.cones[k]);
+  EXPECT_EQ(a.references, b.references);
+}
+
 struct Point {
   double x[3];
 };
@@ -161,6 +179,27 @@ std::vector<Case> cases() {
           {"mixture", random_mixture(3, 300)},  {"flat", flat_sheet(3, 200)},            {"needles", needles(3, 90)},
           {"heap", heap(3, 20)},                {"stadium", stadium(3, 300)},            {"lattice", lattice_patch(9)},
           {"tiny", placed(random_mixture(3, 300), 1e-6, {})}, {"far", placed(random_mixture(3, 300), 2, far)}};
+}
+
+TEST(GridRows, AreTheSameForAnyNumberOfThreads) {
+  std::vector<Case> all = cases();
+  all.push_back({"many", random_mixture(5, 20000)});  // several chunks of primitives, several buckets of cells
+  for (const Case& c : all) {
+    SCOPED_TRACE(c.name);
+    const World one(c.scene, {.threads = 1});
+    for (const int threads : {2, 3, 8}) {
+      const World many(c.scene, {.threads = threads});
+      expect_same_store(one.impl().outside, many.impl().outside);
+      ASSERT_EQ(one.impl().grids.size(), many.impl().grids.size());
+      for (std::size_t i = 0; i < one.impl().grids.size(); ++i) {
+        const Grid &a = one.impl().grids[i], &b = many.impl().grids[i];
+        EXPECT_EQ(a.cells, b.cells);
+        EXPECT_EQ(a.distance, b.distance);
+        EXPECT_EQ(a.occupied, b.occupied);
+        expect_same_store(a.store, b.store);
+      }
+    }
+  }
 }
 
 TEST(GridRows, HoldWhatTheyPromise) {
