@@ -68,6 +68,7 @@ Camera camera_of(const SceneFile& file, const RenderCommand& command) {
 Image render_with_bar(const World& world, const Camera& camera, const RenderCommand& command, RenderStats& stats, SampleMaps& maps) {
   ProgressBar bar(!command.quiet && stderr_is_terminal());
   RenderOptions options = command.render;
+  options.phases = !command.stats.empty();
   options.progress = [&bar](double share) {
     bar.update(share);
     return true;

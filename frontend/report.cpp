@@ -162,6 +162,8 @@ std::string stats_json(const RenderCommand& command, const RunReport& report) {
                      {"lanes_busy", share(trace.packets.lanes_busy, trace.packets.lanes_issued)}};
   json["seconds"] = {{"load", report.seconds.load}, {"build", report.seconds.build}, {"render", report.seconds.render},
                      {"write", report.seconds.write}};
+  static constexpr const char* kPhaseNames[kPhases] = {"camera", "primary", "bounce", "surface", "light", "shadow", "children", "sums"};
+  for (std::size_t i = 0; i < kPhases; ++i) json["phases"][kPhaseNames[i]] = render.phases[i];  // of all threads together
   json["bytes"] = {{"geometry", report.geometry_bytes}, {"grids", report.grid_bytes}, {"peak", peak_bytes()}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
