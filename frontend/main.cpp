@@ -15,6 +15,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <filesystem>
 #include <iostream>
 #include <new>
@@ -108,9 +109,11 @@ int run(const RenderCommand& command) {
   report.seconds.build = build.seconds();
 
   const Stopwatch render;
+  const std::clock_t cpu = std::clock();
   SampleMaps maps;
   const Image image = render_with_bar(world, camera, prepared, report.render, maps);
   report.seconds.render = render.seconds();
+  report.seconds.render_cpu = double(std::clock() - cpu) / CLOCKS_PER_SEC;
 
   const Stopwatch write;
   write_image(command.image, image, command.srgb ? Tone::srgb : Tone::authored);
