@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Whole pictures, from scene file to picture file: where the time goes, and POV-Ray's beside ours.
 
-    ./run perf frame [--rounds N] [--no-povray] [--keep]
+    ./run perf frame [--rounds N] [--only profile|povray] [--keep]
 
 Times are CPU seconds where one thread renders and seconds by the clock where all do; the least of several runs taking turns, fewer of
 long ones. POV-Ray draws the same scenes, converted by lib/nff_to_pov.py; how alike its pictures are is measured. frame.cpp measures
@@ -22,7 +22,7 @@ from bench import Bench, COLOURS, arguments, cores, cpu_name, plt, seconds, tabl
 from nff_to_pov import convert
 
 SIDE, DEPTH = 512, 5
-LONG = 20  # seconds of rendering a thing is given; at least one run, at most as many as rounds
+LONG = 8  # seconds of rendering a thing is given; at least one run, at most as many as rounds
 SCENES = [("balls 4", ("balls", 4), 1, (12, 2.4)), ("mount 8", ("mount", 8), 20, (12, 2)), ("Distant", ("distant", 3), 1, (20, 2.4))]
 PHASES = ("camera", "primary", "bounce", "surface", "light", "shadow", "children", "sums")
 PLAIN = ["--samples", "1", "--lens", "0"]
@@ -32,8 +32,8 @@ def cases(side, lens):
     """title, ours, POV-Ray's options, what its scene needs"""
     aperture, focus = lens
     return [("plain", PLAIN, [], {}),
-            ("anti-aliased, method 1", ["--lens", "0", "--aa", "adaptive:0.1,3"], ["+A0.3", "+R3", "+AM1"], {}),
-            ("anti-aliased, method 2", ["--lens", "0", "--aa", "adaptive:0.1,3"], ["+A0.3", "+R3", "+AM2"], {}),
+            ("anti-aliased, method 1", ["--lens", "0", "--aa", "adaptive:0.2,2"], ["+A0.3", "+R3", "+AM1"], {}),
+            ("anti-aliased, method 2", ["--lens", "0", "--aa", "adaptive:0.3,3"], ["+A0.3", "+R3", "+AM2"], {}),
             ("area light 4 x 4", [*PLAIN, "--shadows", f"area:{side},4"], [], {"area": (side, 4)}),
             ("lens, 32 samples", ["--samples", "32", "--lens", f"{aperture},{focus},32"], [], {"lens": (aperture, focus, 32)})]
 
@@ -94,9 +94,10 @@ def compare(bench, povray, name, title, scene, ours, options, extra):
 def profile(bench, scenes):
     """Where the time of plain pictures goes: by phase, of whole runs on one thread."""
     got = {}
-    for _ in range(2 * bench.rounds):
+    for _ in range(4 * bench.rounds):
         for name, scene, *_ in scenes:
             run = grelha(bench, scene, PLAIN, 1)
+            run["other"] = run["clock"] - sum(run[p] for p in PHASES)
             if name not in got or run["clock"] < got[name]["clock"]:
                 got[name] = run  # all phases of one and the same run
     return got
@@ -104,34 +105,38 @@ def profile(bench, scenes):
 
 def main():
     parser = arguments(__doc__, rounds=5)
-    parser.add_argument("--no-povray", action="store_true", help="the profile alone")
+    parser.add_argument("--only", choices=("profile", "povray"), help="this part alone")
     asked = parser.parse_args()
     bench = Bench("frame", asked)
     scenes = [(name, bench.scene(*generator), side, lens) for name, generator, side, lens in SCENES]
+    if asked.only != "povray":
+        make_profile(bench, scenes)
+    povray = Povray(bench.folder)
+    if asked.only == "profile" or not povray.program:
+        print("no comparison: POV-Ray " + ("was not asked" if povray.program else "is not installed"))
+        return
+    results = []
+    for name, scene, side, lens in scenes:
+        for title, ours, options, extra in cases(side, lens):
+            got = compare(bench, povray, name, title, scene, ours, options, extra)
+            results.append((name, title, got))
+            o, p = got["ours", 1], got["pov", 1]
+            print(f"{name}, {title}: ours {o['cpu']:.3f} s, POV-Ray {p['cpu']:.3f} s, RMSE {got['rmse']:.3f}, {got['rounds']} rounds", flush=True)
+    bench.section(tell_povray(bench, results), "povray")
+
+
+def make_profile(bench, scenes):
     profiled = [*scenes[:1], ("mount 7", bench.scene("mount", 7)), *scenes[1:]]
     phases = profile(bench, profiled)
     alone = {}
     for name, scene, *_ in profiled:
-        alone[name] = bench.tool(scene, 2 * bench.rounds + 1)
+        alone[name] = bench.tool(scene, 8 * bench.rounds)
     draw(bench, phases)
-    text = tell_profile(phases, alone)
-    columns = ("load", "build", *PHASES, "write", "clock", "whole", "rays")
-    bench.write_csv("frame-profile", ["scene", *columns, "trace_alone", "render", "render_two_threads"],
-                    [[name, *[f"{p[c]:.5g}" if c != "rays" else p[c] for c in columns], alone[name]["trace"], alone[name]["render"],
+    columns = ("load", "build", *PHASES, "other", "write", "clock", "whole", "rays")
+    bench.write_csv("frame-profile", ["scene", *columns, "trace_alone_cpu", "render_cpu", "render", "render_two_threads"],
+                    [[name, *[f"{p[c]:.5g}" if c != "rays" else p[c] for c in columns], alone[name]["trace"], alone[name]["render cpu"], alone[name]["render"],
                       alone[name]["render two threads"]] for name, p in phases.items()])
-    povray = Povray(bench.folder)
-    if asked.no_povray or not povray.program:
-        text += "\nPOV-Ray was not asked, or is not installed.\n"
-    else:
-        results = []
-        for name, scene, side, lens in scenes:
-            for title, ours, options, extra in cases(side, lens):
-                got = compare(bench, povray, name, title, scene, ours, options, extra)
-                results.append((name, title, got))
-                o, p = got["ours", 1], got["pov", 1]
-                print(f"{name}, {title}: ours {o['cpu']:.3f} s, POV-Ray {p['cpu']:.3f} s, RMSE {got['rmse']:.3f}, {got['rounds']} rounds", flush=True)
-        text += tell_povray(bench, results)
-    bench.section(text)
+    bench.section(tell_profile(phases, alone), "profile")
 
 
 def tell_profile(phases, alone):
@@ -142,23 +147,23 @@ def tell_profile(phases, alone):
     rows = [row(title, [share(phases[n], key) for n in names]) for title, key in
             (("load: read and parse the scene", "load"), ("build the grids", "build"), ("make camera rays", "camera"), ("trace them", "primary"),
              ("trace bounces", "bounce"), ("trace shadow rays", "shadow"), ("surfaces of hits", "surface"), ("local light, make shadow rays", "light"),
-             ("make bounces, stack", "children"), ("sums to pixels", "sums"), ("write the PNG", "write"))]
+             ("make bounces, stack", "children"), ("sums to pixels", "sums"), ("memory, threads, what no phase tells", "other"), ("write the PNG", "write"))]
     rows.append(row("**render, by the clock**", [f"{phases[n]['clock'] * 1e3:.1f}" for n in names]))
     rows.append(row("**the whole program**", [f"{phases[n]['whole'] * 1e3:.1f}" for n in names]))
     rows.append(row("load and write / render", [f"{(phases[n]['load'] + phases[n]['write']) / phases[n]['clock']:.2f}" for n in names]))
-    rows.append(row("render / its rays alone", [f"{alone[n]['render'] / alone[n]['trace']:.2f}" for n in names]))
+    rows.append(row("render / its rays alone", [f"{alone[n]['render cpu'] / alone[n]['trace']:.2f}" for n in names]))
     rows.append(row("one thread / two", [f"{alone[n]['render'] / alone[n]['render two threads']:.2f}" for n in names]))
     return f"""## Whole pictures
 
 Plain pictures of {SIDE} x {SIDE}, paths of at most {DEPTH} rays, one thread, on a virtual {cpu_name()}; milliseconds of the fastest of several runs,
-phases as `--stats` tells them. The last two rows are from one process: a whole render beside the same rays traced alone, recorded from it,
-and beside two threads.
+phases as `--stats` tells them. The last two rows are from one process: a whole render beside the same rays, recorded from it and traced alone (CPU
+time), and beside two threads (by the clock).
 
 {table(["", *names], rows)}
 
 ![where the time of a picture goes](images/frame.svg)
 
-The rest of a picture (all but tracing) is about the same for every ray, so it weighs most where rays are cheapest.
+What is not tracing costs about as much for every ray, so it weighs most where rays are cheapest: Distant, three balls and a plane.
 """
 
 
@@ -167,17 +172,17 @@ def tell_povray(bench, results):
     all_threads = cores()
     for name, title, got in results:
         o1, p1, o2, p2 = got["ours", 1], got["pov", 1], got["ours", all_threads], got["pov", all_threads]
-        spent = lambda r: f"{r['samples'] or (32 if title.startswith('lens') else 1):.1f}"
+        # POV-Ray counts what it adds to the first ray, and nothing where it adds by other means
+        theirs, ours = (32 if title.startswith("lens") else 1 + p1["samples"]), o1["samples"]
         rows.append([f"{name}, {title}", seconds(p1["cpu"]), seconds(o1["cpu"]), f"**{times(p1['cpu'] / o1['cpu'])}**", seconds(p2["clock"]),
-                     seconds(o2["clock"]), f"{times(p2['clock'] / o2['clock'])}", f"{spent(p1)}, {spent(o1)}", f"{got['rmse']:.3f}"])
+                     seconds(o2["clock"]), f"{times(p2['clock'] / o2['clock'])}", f"{theirs:.1f}, {ours:.1f}", times(p1["cpu"] / theirs * ours / o1["cpu"]), f"{got['rmse']:.3f}"])
         for who, threads in got.keys() & {("ours", 1), ("pov", 1), ("ours", all_threads), ("pov", all_threads)}:
             r = got[who, threads]
             csv_rows.append([name, title, "Grelha" if who == "ours" else "POV-Ray", threads, r["clock"], r["cpu"], f"{r['whole']:.4g}", r["rays"],
-                             spent(r), f"{got['rmse']:.4f}", got["rounds"]])
+                             f"{ours if who == 'ours' else theirs:.3g}", f"{got['rmse']:.4f}", got["rounds"]])
     bench.write_csv("frame-povray", ["scene", "case", "program", "threads", "render_seconds", "render_cpu_seconds", "whole_seconds", "rays",
                                      "samples_per_pixel", "rmse", "rounds"], sorted(csv_rows, key=lambda r: ([n for n, *_ in SCENES].index(r[0]), r[1:4])))
-    return f"""
-### Beside POV-Ray
+    return f"""### Beside POV-Ray
 
 POV-Ray 3.7 from Debian's package, in turns with ours on the same geometry, lights, mirrors, depth ({DEPTH}) and size; rendering alone, CPU seconds of
 one thread (`+WT1`; what a busy machine cannot stretch) and seconds by the clock of {all_threads}. POV-Ray has its BSP tree (`+BM2`), as
@@ -185,12 +190,12 @@ fast as its default or faster. Pictures are compared as
 8-bit linear PNGs: the RMSE is what sampling at other points, and glass that lets POV-Ray's shadow rays through, leave.
 
 - plain: one ray a pixel. Anti-aliased: POV-Ray's `+A0.3 +R3` by method 1 (9 samples where neighbours differ) and 2 (recursive); ours
-  `--aa adaptive:0.1,3`, as POV-Ray adds the differences of three channels where ours takes the largest.
+  `--aa adaptive:0.2,2` and `0.3,3`, settings that spend about as many samples; `times, a sample` makes up for the rest.
 - area light: 16 shadow rays a point and light for both (POV-Ray without `adaptive`). Lens: 32 rays a pixel for both (`variance 0`).
 
-{table(["", "POV-Ray, CPU s", "ours, CPU s", "times", f"POV-Ray, {all_threads} threads, s", "ours, s", "times", "samples a pixel: theirs, ours", "RMSE"], rows)}
+{table(["", "POV-Ray, CPU s", "ours, CPU s", "times", f"POV-Ray, {all_threads} threads, s", "ours, s", "times", "samples a pixel: theirs, ours", "times, a sample", "RMSE"], rows)}
 
-`./run perf frame --keep` makes tables, chart, [frame-profile.csv](frame-profile.csv) and [frame-povray.csv](frame-povray.csv).
+`./run perf frame --keep` makes both tables, the chart, [frame-profile.csv](frame-profile.csv) and [frame-povray.csv](frame-povray.csv).
 """
 
 

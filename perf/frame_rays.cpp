@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 
 #include <omp.h>
 
@@ -30,6 +31,7 @@ class Recorder : public Observer {
 }  // namespace
 
 double now_seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 FrameRays rays_of_frame(const World& world, const Camera& camera, RenderOptions options) {
   FrameRays frame;
@@ -58,7 +60,8 @@ std::array<double, 3> trace_seconds(const World& world, const Variant& variant, 
     const RayBuffer& r = frame[kind].rays;
     const auto& runs = frame[kind].runs;
     const auto loop = kind == 2 ? variant.loops.occluded : variant.loops.closest;
-    const double start = now_seconds();
+    const auto now = threads == 1 ? cpu_seconds : now_seconds;
+    const double start = now();
 #pragma omp parallel num_threads(threads)
     {
       float t[kBatch];
@@ -73,7 +76,7 @@ std::array<double, 3> trace_seconds(const World& world, const Variant& variant, 
         loop(world.impl().view, {&r.ox[i], &r.oy[i], &r.oz[i], &r.dx[i], &r.dy[i], &r.dz[i], &r.t_min[i], t, id, runs[k].count}, here, counts);
       }
     }
-    seconds[kind] = now_seconds() - start;
+    seconds[kind] = now() - start;
   }
   return seconds;
 }

@@ -29,10 +29,12 @@ FrameRays rays_of_frame(const World& world, const Camera& camera, RenderOptions 
 /// Every stride-th ray alone.
 FrameRays thinned(const FrameRays& frame, std::size_t stride);
 
-/// Seconds that tracing takes, by kind. `packet` of the settings 0: as each run was traced in the render.
+/// Seconds that tracing takes, by kind: of the processor for one thread, by the clock for more. `packet` of the settings 0: as each run was traced in the render.
 std::array<double, 3> trace_seconds(const World& world, const Variant& variant, const TraceSettings& settings, const FrameRays& frame,
                                     int threads);
 
+/// Since some moment: by the clock, and of this process on all processors, which other programs stretch less.
 double now_seconds();
+double cpu_seconds();
 
 }  // namespace grelha::perf

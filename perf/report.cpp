@@ -57,9 +57,10 @@ int measure(const char* path, int samples, int rounds) {
       RenderOptions o = options;
       o.threads = n;
       RenderStats stats;
-      const double start = now_seconds();
+      const auto now = n == 1 ? cpu_seconds : now_seconds;
+      const double start = now();
       render(world, camera, o, stats);
-      const double whole = now_seconds() - start;
+      const double whole = now() - start;
       const std::string with = n == 1 ? "" : " threads";
       keep("packets" + with, whole);
       double rest = 0;

@@ -78,9 +78,8 @@ traced again each way; shading and queues, measured in a whole render, are added
 
 ![seconds of each step, ours and the report's](images/report.svg)
 
-Their machine and ours differ, so compare gains rather than seconds. Two rows say most: our plain walk with a grid is already 10 to 30
-times as fast as theirs, as they stored primitives behind pointers and virtual calls; and packets on one thread are as much again as two
-threads and more. Distant has three balls and a plane: a grid can only cost there, so that `packets` builds none and wins by SIMD alone.
+Their machine and ours differ, so compare gains rather than seconds. Distant has three balls and a plane: a grid has nothing to win there,
+and the kernel builds none.
 
 `./run perf report --keep` makes table, chart and [report.csv](report.csv).
 """)

@@ -71,14 +71,15 @@ class Bench:
         figure.savefig(self.folder / f"{name}.png", dpi=80)  # to look at
         plt.close(figure)
 
-    def section(self, text):
+    def section(self, text, part=""):
         """Prints the section; when kept, puts it between its two marks in docs/performance.md."""
+        part = part and f", {part}"
         print(text)
         if self.docs != DOCS:
             return
         page = DOCS / "performance.md"
-        old, new = page.read_text(), f"<!-- made by perf/{self.name}.py -->\n{text.strip()}\n<!-- end of {self.name} -->"
-        marks = re.compile(f"<!-- made by perf/{self.name}.py -->.*<!-- end of {self.name} -->", re.S)
+        old, new = page.read_text(), f"<!-- made by perf/{self.name}.py{part} -->\n{text.strip()}\n<!-- end of {self.name}{part} -->"
+        marks = re.compile(f"<!-- made by perf/{self.name}.py{part} -->.*<!-- end of {self.name}{part} -->", re.S)
         page.write_text(marks.sub(lambda _: new, old) if marks.search(old) else old.rstrip() + "\n\n" + new + "\n")
 
 
