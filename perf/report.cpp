@@ -63,9 +63,10 @@ int measure(const char* path, int samples, int rounds) {
       const double whole = now() - start;
       const std::string with = n == 1 ? "" : " threads";
       keep("packets" + with, whole);
-      double rest = 0;
-      for (const Phase p : {Phase::camera, Phase::surface, Phase::light, Phase::children, Phase::sums}) rest += stats.phases[static_cast<std::size_t>(p)];
-      keep("rest" + with, rest / stats.threads);
+      const auto of = [&](Phase p) { return stats.phases[static_cast<std::size_t>(p)]; };
+      double all = 0;
+      for (const double s : stats.phases) all += s;
+      keep("rest" + with, whole * (1 - (of(Phase::primary) + of(Phase::bounce) + of(Phase::shadow)) / all));
     }
     keep("grid", trace_all(coarse, "scalar", plain, rays, 1));
     keep("mailboxes", trace_all(coarse, "scalar", mailbox, rays, 1));
