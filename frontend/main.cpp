@@ -15,6 +15,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <filesystem>
 #include <iostream>
 #include <new>
@@ -68,6 +69,7 @@ Camera camera_of(const SceneFile& file, const RenderCommand& command) {
 Image render_with_bar(const World& world, const Camera& camera, const RenderCommand& command, RenderStats& stats, SampleMaps& maps) {
   ProgressBar bar(!command.quiet && stderr_is_terminal());
   RenderOptions options = command.render;
+  options.phases = !command.stats.empty();
   options.progress = [&bar](double share) {
     bar.update(share);
     return true;
@@ -107,9 +109,11 @@ int run(const RenderCommand& command) {
   report.seconds.build = build.seconds();
 
   const Stopwatch render;
+  const std::clock_t cpu = std::clock();
   SampleMaps maps;
   const Image image = render_with_bar(world, camera, prepared, report.render, maps);
   report.seconds.render = render.seconds();
+  report.seconds.render_cpu = double(std::clock() - cpu) / CLOCKS_PER_SEC;
 
   const Stopwatch write;
   write_image(command.image, image, command.srgb ? Tone::srgb : Tone::authored);

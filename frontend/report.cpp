@@ -161,7 +161,9 @@ std::string stats_json(const RenderCommand& command, const RunReport& report) {
   json["packets"] = {{"formed", trace.packets.formed}, {"fell_back", trace.packets.fell_back},
                      {"lanes_busy", share(trace.packets.lanes_busy, trace.packets.lanes_issued)}};
   json["seconds"] = {{"load", report.seconds.load}, {"build", report.seconds.build}, {"render", report.seconds.render},
-                     {"write", report.seconds.write}};
+                     {"write", report.seconds.write}, {"render_cpu", report.seconds.render_cpu}};
+  static constexpr const char* kPhaseNames[kPhases] = {"camera", "primary", "bounce", "surface", "light", "shadow", "children", "sums"};
+  for (std::size_t i = 0; i < kPhases; ++i) json["phases"][kPhaseNames[i]] = render.phases[i];  // of all threads together
   json["bytes"] = {{"geometry", report.geometry_bytes}, {"grids", report.grid_bytes}, {"peak", peak_bytes()}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }

@@ -11,6 +11,7 @@ namespace grelha {
 
 struct Seconds {
   double load = 0, build = 0, render = 0, write = 0;
+  double render_cpu = 0;  ///< of all threads together: what a busy machine cannot stretch
 };
 
 /// What one run of `grelha render` did.

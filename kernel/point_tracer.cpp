@@ -59,7 +59,7 @@ class PointTracer {
   }
 
   void count(RenderStats& stats) const {
-    for (const auto& s : spaces_) stats.trace += s->trace, stats.rays += s->rays;
+    for (const auto& s : spaces_) stats.trace += s->trace, stats.rays += s->rays, stats.phases += s->space.phases();
   }
 
  private:
@@ -75,6 +75,7 @@ class PointTracer {
     for (int i = 0; i < count; ++i, sum += 3)
       colours[i] = {static_cast<float>(static_cast<double>(sum[0]) * share), static_cast<float>(static_cast<double>(sum[1]) * share),
                     static_cast<float>(static_cast<double>(sum[2]) * share)};
+    s.space.done(options_);
   }
 
   const World::Impl& world_;

@@ -101,6 +101,7 @@ class Refinement {
     }
     sum_up();
     stats_.error.rounds = rounds;
+    for (const auto& space : spaces_) stats_.phases += space->phases();
     return finish(maps);
   }
 
@@ -176,6 +177,7 @@ class Refinement {
     const RayCounts before = rays;
     variant_.loops.render_runs(world_.view, world_.shading, frame_, runs, static_cast<int>(count), space.work(options_, 0, true), trace, rays);
     for (std::size_t r = 0; r < count; ++r) add_run(runs[r], space.sums().data() + r * kParts * 3, chunk);
+    space.done(options_);
     const float cost = static_cast<float>(rays.total() - before.total()) / static_cast<float>(rays.primary - before.primary);
     for (std::size_t r = 0; r < count; ++r) cost_[runs[r].pixel] = cost;
   }

@@ -126,6 +126,7 @@ Image render(const World& world, const Camera& camera, const RenderOptions& opti
       const int y0 = band * kBandRows, y1 = std::min(y0 + kBandRows, camera.height);
       variant.loops.render_band(w.view, w.shading, frame, y0, y1, space.work(options, static_cast<std::uint32_t>(y0) * static_cast<std::uint32_t>(camera.width)), trace, rays);
       finish_rows(space.sums(), plan.samples, image, y0, y1);
+      space.done(options);
 #pragma omp critical(grelha_progress)
       {
         ++done;
@@ -133,7 +134,7 @@ Image render(const World& world, const Camera& camera, const RenderOptions& opti
       }
     }
 #pragma omp critical(grelha_stats)
-    stats.trace += trace, stats.rays += rays;
+    stats.trace += trace, stats.rays += rays, stats.phases += space.phases();
   }
   return image;
 }

@@ -92,6 +92,8 @@ struct RenderOptions {
   std::string_view isa = "best";
   SampleOptions sampling;
   RefineOptions refine;
+  bool phases = false;      ///< measure where the time goes
+  Observer* observer = nullptr;  ///< told of the phases by every thread, instead of measuring them
   Subdivision subdivision;  ///< on: pixels are averages of points of a lattice, `samples` rays through each; one with no effect to sample
   /// Called now and then from one thread at a time with the share done, 0 to 1; returns false to stop.
   std::function<bool(double)> progress;

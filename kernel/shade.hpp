@@ -31,6 +31,16 @@ inline Words<Lanes> pixels_of(const BandWork& work, const std::uint32_t* sums) {
   return load_words<Lanes>(pixel);
 }
 
+/// Says what comes next, to whoever asks; nothing else depends on it.
+inline void enter(const BandWork& work, Phase phase) {
+  if (work.observer) work.observer->enter(*work.observer, phase, nullptr);
+}
+inline void enter(const BandWork& work, Phase phase, const RayArrays& r, int count, int packet) {
+  if (!work.observer) return;
+  const ObservedRays rays{r.ox, r.oy, r.oz, r.dx, r.dy, r.dz, r.t_min, r.t, count, packet};
+  work.observer->enter(*work.observer, phase, &rays);
+}
+
 struct RayTally {
   std::uint64_t primary = 0, shadow = 0, reflection = 0, refraction = 0;
 };
@@ -170,7 +180,10 @@ inline void light_hits(const Shader& s, int hits, int light_index, bool area, in
   if (n == 0) return;
   s.rays.shadow += static_cast<unsigned>(n);
   const RayArrays rays{b.lox, b.loy, b.loz, b.ldx, b.ldy, b.ldz, b.lt_min, b.lt, b.lid};
-  trace<true>(s.scene, rays, n, {s.work.packet == 0 ? 64 : s.work.packet, s.work.mailbox}, s.counters);
+  const TraceOptions options{s.work.packet == 0 ? 64 : s.work.packet, s.work.mailbox};
+  enter(s.work, Phase::shadow, rays, n, options.packet);
+  trace<true>(s.scene, rays, n, options, s.counters);
+  enter(s.work, Phase::light);
   for (int i = 0; i < n; ++i)
     if (b.lid[i] == kNoPrimitive) add_light(s.work, b.light_pixel[i], b.lr[i], b.lg[i], b.lb[i]);
 }
@@ -293,15 +306,18 @@ inline void send_on(const Shader& s, RayStack& stack, int hits) {
 }
 
 /// Traces and shades the batch: runs of rays that go together, the k-th ending at ends[k], in packets of `packet` unless the
-/// user said otherwise.
-inline void shade_batch(const Shader& s, RayStack& stack, const int* ends, int runs, int packet) {
+/// user said otherwise. `phase`: primary or bounce.
+inline void shade_batch(const Shader& s, RayStack& stack, const int* ends, int runs, int packet, Phase phase) {
   Batch& b = s.b;
   const int count = ends[runs - 1];
   for (int i = 0; i < count; ++i) b.t_min[i] = 0, b.t[i] = kInfinity;
   const TraceOptions options{s.work.packet != 0 ? s.work.packet : packet, s.work.mailbox};
-  for (int k = 0, at = 0; k < runs; at = ends[k++])
-    trace<false>(s.scene, {b.ox + at, b.oy + at, b.oz + at, b.dx + at, b.dy + at, b.dz + at, b.t_min + at, b.t + at, b.id + at},
-                 ends[k] - at, options, s.counters);
+  for (int k = 0, at = 0; k < runs; at = ends[k++]) {
+    const RayArrays rays{b.ox + at, b.oy + at, b.oz + at, b.dx + at, b.dy + at, b.dz + at, b.t_min + at, b.t + at, b.id + at};
+    enter(s.work, phase, rays, ends[k] - at, options.packet);
+    trace<false>(s.scene, rays, ends[k] - at, options, s.counters);
+  }
+  enter(s.work, Phase::surface);
   const int hits = find_surfaces(s, count);
   if (hits == 0) return;
   pad_tail(b, hits, s.work.plan.on);
@@ -310,12 +326,14 @@ inline void shade_batch(const Shader& s, RayStack& stack, const int* ends, int r
       const auto e = [&](MaterialField f) { return s.shading.materials.field[f][b.material[i]]; };
       add_light(s.work, b.hit_pixel[i], b.hr[i] * e(kEmissionR), b.hg[i] * e(kEmissionG), b.hb[i] * e(kEmissionB));
     }
+  enter(s.work, Phase::light);
   for (int l = 0; l < s.shading.light_count; ++l) {
     const float* const edges = s.shading.lights + kLightFloats * l + 6;
     bool area = false;
     for (int k = 0; s.shading.area && k < 6; ++k) area |= edges[k] != 0;
     for (int ray = 0; ray < (area ? s.work.plan.light_rays : 1); ++ray) light_hits(s, hits, l, area, ray);
   }
+  enter(s.work, Phase::children);
   if (s.shading.reflects) send_on(s, stack, hits);
 }
 

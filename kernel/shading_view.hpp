@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "kernel/phase.hpp"
+
 namespace grelha {
 
 enum MaterialField {
@@ -116,6 +118,7 @@ struct BandWork {
   float most_light;           ///< bound of a term
   SamplePlan plan;
   const std::uint32_t* pixels = nullptr;  ///< [sums] the pixel each sum belongs to; null: sum i to first_pixel + i
+  Observer* observer = nullptr;           ///< null: nobody asks
 };
 
 /// Points of the picture in pixels from its upper left corner, neighbours next to each other; point i has sum i.

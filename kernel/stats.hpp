@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "kernel/phase.hpp"
+
 namespace grelha {
 
 struct RayCounts {
@@ -49,9 +51,18 @@ struct ErrorStats {
   int rounds = 0;              ///< of doubling
 };
 
+/// Seconds of all threads together, by Phase.
+struct PhaseSeconds : std::array<double, kPhases> {
+  PhaseSeconds() : array{} {}
+  void operator+=(const PhaseSeconds& o) {
+    for (std::size_t i = 0; i < size(); ++i) (*this)[i] += o[i];
+  }
+};
+
 struct RenderStats {
   RayCounts rays;
   TraceCounts trace;
+  PhaseSeconds phases;  ///< only with RenderOptions::phases
   ErrorStats error;  ///< only with RefineOptions
   int threads = 0;
   const char* isa = "";

@@ -2,6 +2,7 @@
 // What one thread works in; allocated before the first ray, never grown.
 
 #include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -10,6 +11,25 @@
 #include "kernel/shading_view.hpp"
 
 namespace grelha {
+
+/// Where one thread's time goes. It looks at the clock some ten times a batch of 512 rays and their shadow rays.
+class PhaseClock : public Observer {
+ public:
+  PhaseClock() : Observer{[](Observer& o, Phase next, const ObservedRays*) { static_cast<PhaseClock&>(o).go_on(next); }} {}
+  void start(Phase first) { since_ = Clock::now(), phase_ = first; }
+  void go_on(Phase next) {
+    const Clock::time_point now = Clock::now();
+    seconds_[static_cast<std::size_t>(phase_)] += std::chrono::duration<double>(now - since_).count();
+    since_ = now, phase_ = next;
+  }
+  const PhaseSeconds& seconds() const { return seconds_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point since_;
+  Phase phase_ = Phase::sums;
+  PhaseSeconds seconds_;
+};
 
 class Workspace {
  public:
@@ -26,6 +46,7 @@ class Workspace {
 
   /// Empty sums, of pixels first_pixel, first_pixel + 1, ... or, when `named`, of those that pixels() is filled with.
   BandWork work(const RenderOptions& options, std::uint32_t first_pixel, bool named = false) {
+    if (options.phases) clock_.start(Phase::sums);
     std::fill(sums_.begin(), sums_.end(), 0);
     float* f[9];
     for (std::size_t i = 0; i < 9; ++i) f[i] = floats_.data() + i * static_cast<std::size_t>(capacity_);
@@ -33,14 +54,21 @@ class Workspace {
     for (std::size_t i = 0; i < 4; ++i) w[i] = words_.data() + i * static_cast<std::size_t>(capacity_);
     const RayStack stack{f[0], f[1], f[2], f[3], f[4], f[5], f[6], f[7], f[8], w[0], w[1], w[2], w[3], 0, capacity_};
     const float most = std::min(1048576.f, kMostLight / static_cast<float>(plan_.samples));
+    if (options.phases) clock_.go_on(Phase::camera);
     return {batch_.get(), stack, sums_.data(), options.depth, options.packet, take_, options.mailbox, first_pixel, most, plan_,
-            named ? pixels_.data() : nullptr};
+            named ? pixels_.data() : nullptr, options.observer ? options.observer : options.phases ? &clock_ : nullptr};
   }
+  /// Call when the sums of a work() are used up.
+  void done(const RenderOptions& options) {
+    if (options.phases) clock_.go_on(Phase::sums);
+  }
+  const PhaseSeconds& phases() const { return clock_.seconds(); }
   const std::vector<std::int64_t>& sums() const { return sums_; }
   std::vector<std::uint32_t>& pixels() { return pixels_; }
 
  private:
   std::unique_ptr<Batch> batch_;
+  PhaseClock clock_;
   SamplePlan plan_;
   int take_, capacity_;
   std::vector<float> floats_;

@@ -89,6 +89,12 @@ TEST_F(Program, StatsTellTheRun) {
   EXPECT_EQ(json["isa"], "scalar");
   EXPECT_EQ(json["threads"], 1);
   EXPECT_EQ(json["size"], Json::parse("[24,16]"));
+  double phases = 0;
+  for (const Json& seconds : json["phases"]) phases += double(seconds);
+  EXPECT_GT(json["phases"]["primary"], 0);
+  EXPECT_GT(json["phases"]["shadow"], 0);
+  EXPECT_EQ(json["phases"]["bounce"], 0);
+  EXPECT_LE(phases, double(json["seconds"]["render"])) << "one thread is at one thing at a time";
 }
 
 TEST_F(Program, SpendsSamplesByErrorAndSaysSo) {

@@ -1,0 +1,32 @@
+#pragma once
+// What a thread is at while it renders, and who may ask.
+
+#include <cstdint>
+
+namespace grelha {
+
+enum class Phase : int {
+  camera,    ///< making camera rays
+  primary,   ///< tracing them
+  bounce,    ///< tracing reflected and refracted rays
+  surface,   ///< points and normals of hits, the background of misses
+  light,     ///< local light and the making of shadow rays
+  shadow,    ///< tracing those
+  children,  ///< making reflected and refracted rays, putting them by and taking them up
+  sums,      ///< sums of light to pixels
+};
+inline constexpr int kPhases = 8;
+
+/// Rays about to be traced, in arrays of `count`, `packet` at a time; t: where the search ends.
+struct ObservedRays {
+  const float *ox, *oy, *oz, *dx, *dy, *dz, *t_min, *t;
+  int count, packet;
+};
+
+/// Told whenever its thread goes from one phase to another, some ten times a batch; `rays` on the way into primary, bounce and
+/// shadow, once for each run of rays. A function pointer, so that the hot loops need nothing from another file.
+struct Observer {
+  void (*enter)(Observer&, Phase, const ObservedRays* rays);
+};
+
+}  // namespace grelha

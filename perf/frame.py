@@ -1,0 +1,219 @@
+#!/usr/bin/env python3
+"""Whole pictures, from scene file to picture file: where the time goes, and POV-Ray's beside ours.
+
+    ./run perf frame [--rounds N] [--only profile|povray] [--keep]
+
+Times are CPU seconds where one thread renders and seconds by the clock where all do; the least of several runs taking turns, fewer of
+long ones. POV-Ray draws the same scenes, converted by lib/nff_to_pov.py; how alike its pictures are is measured. frame.cpp measures
+what a picture's rays cost alone.
+"""
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import time
+
+import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "lib"))
+from bench import Bench, COLOURS, arguments, cores, cpu_name, plt, seconds, table, times
+from nff_to_pov import convert
+
+SIDE, DEPTH = 512, 5
+LONG = 8  # seconds of rendering a thing is given; at least one run, at most as many as rounds
+SCENES = [("balls 4", ("balls", 4), 1, (12, 2.4)), ("mount 8", ("mount", 8), 20, (12, 2)), ("Distant", ("distant", 3), 1, (20, 2.4))]
+PHASES = ("camera", "primary", "bounce", "surface", "light", "shadow", "children", "sums")
+PLAIN = ["--samples", "1", "--lens", "0"]
+
+
+def cases(side, lens):
+    """title, ours, POV-Ray's options, what its scene needs"""
+    aperture, focus = lens
+    return [("plain", PLAIN, [], {}),
+            ("anti-aliased, method 1", ["--lens", "0", "--aa", "adaptive:0.2,2"], ["+A0.3", "+R3", "+AM1"], {}),
+            ("anti-aliased, method 2", ["--lens", "0", "--aa", "adaptive:0.3,3"], ["+A0.3", "+R3", "+AM2"], {}),
+            ("area light 4 x 4", [*PLAIN, "--shadows", f"area:{side},4"], [], {"area": (side, 4)}),
+            ("lens, 32 samples", ["--samples", "32", "--lens", f"{aperture},{focus},32"], [], {"lens": (aperture, focus, 32)})]
+
+
+class Povray:
+    def __init__(self, folder):
+        self.folder, self.program = folder, shutil.which("povray")
+
+    def render(self, text, options, threads):
+        (self.folder / "scene.pov").write_text(text)
+        start = time.monotonic()
+        done = subprocess.run([self.program, "+Iscene.pov", "+Opov.png", f"+W{SIDE}", f"+H{SIDE}", f"+WT{threads}", "-D", "-V", "+FN8", "+BM2",
+                               "File_Gamma=1.0", *options], cwd=self.folder, env={**os.environ, "HOME": str(self.folder)}, stderr=subprocess.PIPE, text=True)
+        whole, told = time.monotonic() - start, done.stderr
+        trace = re.search(r"Trace Time:.*\(([\d.]+) seconds\)\s+using \d+ thread\(s\) with ([\d.]+) CPU-seconds", told)
+        if done.returncode or not trace:
+            sys.exit(told)
+        parse = re.search(r"Parse Time:.*\(([\d.]+) seconds\)", told)
+        rays = int(re.search(r"Rays: +(\d+)", told)[1]) + int((re.search(r"Shadow Ray Tests: +(\d+)", told) or [0, 0])[1])
+        samples = re.search(r"Smpls/Pxl: ([\d.]+)", told)
+        return {"clock": float(trace[1]), "cpu": float(trace[2]), "whole": whole, "parse": float(parse[1]), "rays": rays,
+                "samples": float(samples[1])}
+
+
+def least(old, new):
+    return {k: min(old[k], v) if old else v for k, v in new.items()}
+
+
+def grelha(bench, scene, options, threads):
+    start = time.monotonic()
+    stats = bench.render(scene, "--size", f"{SIDE}x{SIDE}", "--depth", DEPTH, "--threads", threads, *options, picture=bench.folder / "ours.png")
+    whole, s = time.monotonic() - start, stats["seconds"]
+    return {"clock": s["render"], "cpu": s["render_cpu"], "whole": whole, "load": s["load"], "build": s["build"], "write": s["write"],
+            "rays": sum(stats["rays"].values()), "samples": stats["rays"]["primary"] / SIDE ** 2, **stats["phases"]}
+
+
+def alike(bench):
+    ours, theirs = (plt.imread(bench.folder / f)[..., :3].astype(float) for f in ("ours.png", "pov.png"))
+    return float(np.sqrt(np.mean((ours - theirs) ** 2)))
+
+
+def compare(bench, povray, name, title, scene, ours, options, extra):
+    """Both programs taking turns, one thread and all of them."""
+    text = convert(scene.read_text(), DEPTH, **extra)
+    spent, rounds, got = 0, 0, {}
+    while rounds < bench.rounds and (rounds == 0 or spent * (rounds + 1) / rounds < LONG):
+        for threads in (1, cores()):
+            for who, run in (("ours", lambda: grelha(bench, scene, ours, threads)), ("pov", lambda: povray.render(text, options, threads))):
+                got[who, threads] = least(got.get((who, threads)), run())
+                spent += got[who, threads]["clock"]
+        rounds += 1
+    got["rmse"], got["rounds"] = alike(bench), rounds
+    shutil.copy(bench.folder / "ours.png", bench.folder / f"{name}, {title}, ours.png")
+    shutil.copy(bench.folder / "pov.png", bench.folder / f"{name}, {title}, pov.png")
+    return got
+
+
+def profile(bench, scenes):
+    """Where the time of plain pictures goes: by phase, of whole runs on one thread."""
+    got = {}
+    for _ in range(4 * bench.rounds):
+        for name, scene, *_ in scenes:
+            run = grelha(bench, scene, PLAIN, 1)
+            run["other"] = run["clock"] - sum(run[p] for p in PHASES)
+            if name not in got or run["clock"] < got[name]["clock"]:
+                got[name] = run  # all phases of one and the same run
+    return got
+
+
+def main():
+    parser = arguments(__doc__, rounds=5)
+    parser.add_argument("--only", choices=("profile", "povray"), help="this part alone")
+    asked = parser.parse_args()
+    bench = Bench("frame", asked)
+    scenes = [(name, bench.scene(*generator), side, lens) for name, generator, side, lens in SCENES]
+    if asked.only != "povray":
+        make_profile(bench, scenes)
+    povray = Povray(bench.folder)
+    if asked.only == "profile" or not povray.program:
+        print("no comparison: POV-Ray " + ("was not asked" if povray.program else "is not installed"))
+        return
+    results = []
+    for name, scene, side, lens in scenes:
+        for title, ours, options, extra in cases(side, lens):
+            got = compare(bench, povray, name, title, scene, ours, options, extra)
+            results.append((name, title, got))
+            o, p = got["ours", 1], got["pov", 1]
+            print(f"{name}, {title}: ours {o['cpu']:.3f} s, POV-Ray {p['cpu']:.3f} s, RMSE {got['rmse']:.3f}, {got['rounds']} rounds", flush=True)
+    bench.section(tell_povray(bench, results), "povray")
+
+
+def make_profile(bench, scenes):
+    profiled = [*scenes[:1], ("mount 7", bench.scene("mount", 7)), *scenes[1:]]
+    phases = profile(bench, profiled)
+    alone = {}
+    for name, scene, *_ in profiled:
+        alone[name] = bench.tool(scene, 8 * bench.rounds)
+    draw(bench, phases)
+    columns = ("load", "build", *PHASES, "other", "write", "clock", "whole", "rays")
+    bench.write_csv("frame-profile", ["scene", *columns, "trace_alone_cpu", "render_cpu", "render", "render_two_threads"],
+                    [[name, *[f"{p[c]:.5g}" if c != "rays" else p[c] for c in columns], alone[name]["trace"], alone[name]["render cpu"], alone[name]["render"],
+                      alone[name]["render two threads"]] for name, p in phases.items()])
+    bench.section(tell_profile(phases, alone), "profile")
+
+
+def tell_profile(phases, alone):
+    names = list(phases)
+    def row(title, values):
+        return [title, *values]
+    share = lambda p, key: f"{p[key] * 1e3:.1f}"
+    rows = [row(title, [share(phases[n], key) for n in names]) for title, key in
+            (("load: read and parse the scene", "load"), ("build the grids", "build"), ("make camera rays", "camera"), ("trace them", "primary"),
+             ("trace bounces", "bounce"), ("trace shadow rays", "shadow"), ("surfaces of hits", "surface"), ("local light, make shadow rays", "light"),
+             ("make bounces, stack", "children"), ("sums to pixels", "sums"), ("memory, threads, what no phase tells", "other"), ("write the PNG", "write"))]
+    rows.append(row("**render, by the clock**", [f"{phases[n]['clock'] * 1e3:.1f}" for n in names]))
+    rows.append(row("**the whole program**", [f"{phases[n]['whole'] * 1e3:.1f}" for n in names]))
+    rows.append(row("load and write / render", [f"{(phases[n]['load'] + phases[n]['write']) / phases[n]['clock']:.2f}" for n in names]))
+    rows.append(row("render / its rays alone", [f"{alone[n]['render cpu'] / alone[n]['trace']:.2f}" for n in names]))
+    rows.append(row("one thread / two", [f"{alone[n]['render'] / alone[n]['render two threads']:.2f}" for n in names]))
+    return f"""## Whole pictures
+
+Plain pictures of {SIDE} x {SIDE}, paths of at most {DEPTH} rays, one thread, on a virtual {cpu_name()}; milliseconds of the fastest of several runs,
+phases as `--stats` tells them. The last two rows are from one process: a whole render beside the same rays, recorded from it and traced alone (CPU
+time), and beside two threads (by the clock).
+
+{table(["", *names], rows)}
+
+![where the time of a picture goes](images/frame.svg)
+
+What is not tracing costs about as much for every ray, so it weighs most where rays are cheapest: Distant, three balls and a plane.
+"""
+
+
+def tell_povray(bench, results):
+    rows, csv_rows = [], []
+    all_threads = cores()
+    for name, title, got in results:
+        o1, p1, o2, p2 = got["ours", 1], got["pov", 1], got["ours", all_threads], got["pov", all_threads]
+        # POV-Ray counts what it adds to the first ray, and nothing where it adds by other means
+        theirs, ours = (32 if title.startswith("lens") else 1 + p1["samples"]), o1["samples"]
+        rows.append([f"{name}, {title}", seconds(p1["cpu"]), seconds(o1["cpu"]), f"**{times(p1['cpu'] / o1['cpu'])}**", seconds(p2["clock"]),
+                     seconds(o2["clock"]), f"{times(p2['clock'] / o2['clock'])}", f"{theirs:.1f}, {ours:.1f}", times(p1["cpu"] / theirs * ours / o1["cpu"]), f"{got['rmse']:.3f}"])
+        for who, threads in got.keys() & {("ours", 1), ("pov", 1), ("ours", all_threads), ("pov", all_threads)}:
+            r = got[who, threads]
+            csv_rows.append([name, title, "Grelha" if who == "ours" else "POV-Ray", threads, r["clock"], r["cpu"], f"{r['whole']:.4g}", r["rays"],
+                             f"{ours if who == 'ours' else theirs:.3g}", f"{got['rmse']:.4f}", got["rounds"]])
+    bench.write_csv("frame-povray", ["scene", "case", "program", "threads", "render_seconds", "render_cpu_seconds", "whole_seconds", "rays",
+                                     "samples_per_pixel", "rmse", "rounds"], sorted(csv_rows, key=lambda r: ([n for n, *_ in SCENES].index(r[0]), r[1:4])))
+    return f"""### Beside POV-Ray
+
+POV-Ray 3.7 from Debian's package, in turns with ours on the same geometry, lights, mirrors, depth ({DEPTH}) and size; rendering alone, CPU seconds of
+one thread (`+WT1`; what a busy machine cannot stretch) and seconds by the clock of {all_threads}. POV-Ray has its BSP tree (`+BM2`), as
+fast as its default or faster. Pictures are compared as
+8-bit linear PNGs: the RMSE is what sampling at other points, and glass that lets POV-Ray's shadow rays through, leave.
+
+- plain: one ray a pixel. Anti-aliased: POV-Ray's `+A0.3 +R3` by method 1 (9 samples where neighbours differ) and 2 (recursive); ours
+  `--aa adaptive:0.2,2` and `0.3,3`, settings that spend about as many samples; `times, a sample` makes up for the rest.
+- area light: 16 shadow rays a point and light for both (POV-Ray without `adaptive`). Lens: 32 rays a pixel for both (`variance 0`).
+
+{table(["", "POV-Ray, CPU s", "ours, CPU s", "times", f"POV-Ray, {all_threads} threads, s", "ours, s", "times", "samples a pixel: theirs, ours", "times, a sample", "RMSE"], rows)}
+
+`./run perf frame --keep` makes both tables, the chart, [frame-profile.csv](frame-profile.csv) and [frame-povray.csv](frame-povray.csv).
+"""
+
+
+def draw(bench, phases):
+    figure, axis = plt.subplots(figsize=(9, 3.2), layout="constrained")
+    keys = [("load", "load"), ("build", "build"), ("camera", "camera rays"), ("primary", "trace camera rays"), ("bounce", "trace bounces"),
+            ("shadow", "trace shadow rays"), ("surface", "surfaces"), ("light", "local light"), ("children", "make bounces"), ("write", "write PNG")]
+    shades = ["#999999", "#555555", "#F0E442", "#0072B2", "#2E9BD6", "#8CCBEE", "#D55E00", "#E69F00", "#F5C77E", "#CC79A7"]
+    names = list(phases)[::-1]
+    left = [0.] * len(names)
+    for (key, label), shade in zip(keys, shades):
+        wide = [phases[n][key] * 1e3 for n in names]
+        axis.barh(names, wide, left=left, color=shade, label=label, height=.65)
+        left = [a + b for a, b in zip(left, wide)]
+    axis.set(xlabel=f"ms, {SIDE} x {SIDE}, one thread", title="Where the time of a picture goes, from file to file")
+    axis.legend(frameon=False, fontsize=8, ncols=1, bbox_to_anchor=(1.01, 1), loc="upper left")
+    bench.save(figure, "frame")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,108 @@
+"""What the benchmark scripts share: scenes, runs of the program, results as CSV, and sections of docs/performance.md made from them."""
+import argparse
+import csv
+import json
+import os
+import pathlib
+import re
+import subprocess
+
+import matplotlib
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+DOCS = ROOT / "docs"
+# After Okabe and Ito: told apart by the colour-blind too.
+COLOURS = ["#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#999999", "#F0E442"]
+plt.rcParams.update({"svg.hashsalt": "grelha", "svg.fonttype": "none", "font.family": "sans-serif",
+                     "font.sans-serif": ["Helvetica", "Arial", "DejaVu Sans"], "axes.spines.top": False, "axes.spines.right": False})
+
+
+def arguments(doc, rounds):
+    parser = argparse.ArgumentParser(description=doc.partition("\n")[0])
+    parser.add_argument("--program", default=ROOT / "build/release/grelha", help="[build/release/grelha]")
+    parser.add_argument("--rounds", type=int, default=rounds, help="of all measurements in turn; the least time counts")
+    parser.add_argument("--keep", action="store_true", help="write CSV, chart and section into docs/, not into the build folder")
+    return parser
+
+
+def cores():
+    return len(os.sched_getaffinity(0))
+
+
+class Bench:
+    """A name, a program, a folder to work in, and where results go."""
+
+    def __init__(self, name, asked):
+        self.name, self.rounds = name, asked.rounds
+        self.program = pathlib.Path(asked.program).resolve()
+        self.folder = self.program.parent / f"perf-{name}"
+        self.folder.mkdir(exist_ok=True)
+        self.docs = DOCS if asked.keep else self.folder
+        (self.docs / "images").mkdir(exist_ok=True)
+
+    def scene(self, name, size):
+        path = self.folder / f"{name}-{size}.nff"
+        if not path.exists():
+            subprocess.run([self.program, "scene", name, "--size", str(size), "-o", path], check=True)
+        return path
+
+    def render(self, scene, *options, picture=None):
+        stats = self.folder / "stats.json"
+        subprocess.run([self.program, "render", scene, "-o", picture or self.folder / "picture.png", "--quiet", "--stats", stats,
+                        *map(str, options)], check=True)
+        return json.loads(stats.read_text())
+
+    def tool(self, *words):
+        """JSON of the benchmark program beside the script."""
+        done = subprocess.run([self.program.parent / self.name, *map(str, words)], check=True, stdout=subprocess.PIPE, text=True)
+        return json.loads(done.stdout)
+
+    def write_csv(self, name, header, rows):
+        with open(self.docs / f"{name}.csv", "w", newline="") as f:
+            table = csv.writer(f, lineterminator="\n")
+            table.writerow(header)
+            table.writerows(rows)
+
+    def save(self, figure, name):
+        path = self.docs / "images" / f"{name}.svg"
+        figure.savefig(path, metadata={"Date": None})
+        figure.savefig(self.folder / f"{name}.png", dpi=80)  # to look at
+        plt.close(figure)
+
+    def section(self, text, part=""):
+        """Prints the section; when kept, puts it between its two marks in docs/performance.md."""
+        part = part and f", {part}"
+        print(text)
+        if self.docs != DOCS:
+            return
+        page = DOCS / "performance.md"
+        old, new = page.read_text(), f"<!-- made by perf/{self.name}.py{part} -->\n{text.strip()}\n<!-- end of {self.name}{part} -->"
+        marks = re.compile(f"<!-- made by perf/{self.name}.py{part} -->.*<!-- end of {self.name}{part} -->", re.S)
+        page.write_text(marks.sub(lambda _: new, old) if marks.search(old) else old.rstrip() + "\n\n" + new + "\n")
+
+
+def cpu_name():
+    for line in open("/proc/cpuinfo"):
+        if line.startswith("model name"):
+            return line.split(":", 1)[1].strip()
+    return "an unnamed processor"
+
+
+def table(header, rows):
+    """Markdown, the first column to the left."""
+    lines = ["| " + " | ".join(header) + " |", "|---" + "|--:" * (len(header) - 1) + "|"]
+    return "\n".join(lines + ["| " + " | ".join(map(str, row)) + " |" for row in rows])
+
+
+def seconds(value):
+    if value is None:
+        return "–"
+    if value >= 100:
+        return f"{value:.0f}"
+    return f"{value:.3g}" if value >= 1 else f"{value:.3f}".lstrip("0") if value >= .0995 else f"{value:.4f}".lstrip("0")
+
+
+def times(value):
+    return "–" if value is None else f"{value:.0f}" if value >= 20 else f"{value:.1f}"
