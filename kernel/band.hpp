@@ -9,21 +9,22 @@ namespace grelha::GRELHA_ISA {
 /// direction as well scatters neighbours and costs more than it brings (docs/performance.md).
 inline constexpr int kClasses = 2;
 
-/// Directions of the rays through the centres of a tile's pixels, by rows; returns how many were put behind `count`.
+/// Directions of the rays through the centres of a tile's pixels, in its order; returns how many were put behind `count`.
 inline int tile_rays(const FrameView& f, Batch& b, int count, int x0, int x1, int y0, int y1, int band_top) {
-  for (int y = y0; y < y1; ++y)
-    for (int x = x0; x < x1; ++x, ++count) {
-      const float sx = (static_cast<float>(x) + .5f) - .5f * static_cast<float>(f.width);
-      const float sy = .5f * static_cast<float>(f.height) - (static_cast<float>(y) + .5f);
-      b.ox[count] = f.eye[0], b.oy[count] = f.eye[1], b.oz[count] = f.eye[2];
-      const Vec3<float> d = normalize(Vec3<float>{(f.forward[0] + sx * f.right[0]) + sy * f.up[0],
-                                                  (f.forward[1] + sx * f.right[1]) + sy * f.up[1],
-                                                  (f.forward[2] + sx * f.right[2]) + sy * f.up[2]});
-      b.dx[count] = d.x, b.dy[count] = d.y, b.dz[count] = d.z;
-      b.wr[count] = b.wg[count] = b.wb[count] = 1;
-      b.pixel[count] = static_cast<std::uint32_t>((y - band_top) * f.width + x);
-      b.depth[count] = 1;
-    }
+  for (int k = 0; k < kTile * kTile; ++k) {
+    const int x = x0 + tile_x(k), y = y0 + tile_y(k);
+    if (x >= x1 || y >= y1) continue;
+    const float sx = (static_cast<float>(x) + .5f) - .5f * static_cast<float>(f.width);
+    const float sy = .5f * static_cast<float>(f.height) - (static_cast<float>(y) + .5f);
+    b.ox[count] = f.eye[0], b.oy[count] = f.eye[1], b.oz[count] = f.eye[2];
+    const Vec3<float> d = normalize(Vec3<float>{(f.forward[0] + sx * f.right[0]) + sy * f.up[0],
+                                                (f.forward[1] + sx * f.right[1]) + sy * f.up[1],
+                                                (f.forward[2] + sx * f.right[2]) + sy * f.up[2]});
+    b.dx[count] = d.x, b.dy[count] = d.y, b.dz[count] = d.z;
+    b.wr[count] = b.wg[count] = b.wb[count] = 1;
+    b.pixel[count] = static_cast<std::uint32_t>((y - band_top) * f.width + x);
+    b.depth[count++] = 1;
+  }
   return count;
 }
 

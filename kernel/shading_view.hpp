@@ -68,6 +68,9 @@ inline constexpr int kCacheLine = 16;  ///< floats
 inline constexpr int kBatchRow = kBatch + kCacheLine;
 inline constexpr int kBandRows = 8;    ///< image rows a thread takes at a time: one row of 8 x 8 packets
 inline constexpr int kTile = 8;
+/// Pixel k of a tile, along Morton's curve: any 4, 16 or 64 in a row from a multiple of that are a square.
+constexpr int tile_x(int k) { return (k & 1) | (k >> 1 & 2) | (k >> 2 & 4); }
+constexpr int tile_y(int k) { return tile_x(k >> 1); }
 
 /// Set in the depth of a waiting ray that was refracted.
 inline constexpr std::uint32_t kRefracted = 1u << 31;

@@ -46,15 +46,16 @@ RayBuffer camera_rays(const Camera& camera) {
   RayBuffer rays;
   for (int y0 = 0; y0 < f.height; y0 += kTile)
     for (int x0 = 0; x0 < f.width; x0 += kTile)
-      for (int y = y0; y < std::min(y0 + kTile, f.height); ++y)
-        for (int x = x0; x < std::min(x0 + kTile, f.width); ++x) {
-          const float sx = (static_cast<float>(x) + .5f) - .5f * static_cast<float>(f.width);
-          const float sy = .5f * static_cast<float>(f.height) - (static_cast<float>(y) + .5f);
-          float d[3], dd = 0;
-          for (int a = 0; a < 3; ++a) d[a] = (f.forward[a] + sx * f.right[a]) + sy * f.up[a], dd += d[a] * d[a];
-          for (float& c : d) c /= __builtin_sqrtf(dd);
-          rays.add(f.eye, d, __builtin_inff());
-        }
+      for (int k = 0; k < kTile * kTile; ++k) {
+        const int x = x0 + tile_x(k), y = y0 + tile_y(k);
+        if (x >= f.width || y >= f.height) continue;
+        const float sx = (static_cast<float>(x) + .5f) - .5f * static_cast<float>(f.width);
+        const float sy = .5f * static_cast<float>(f.height) - (static_cast<float>(y) + .5f);
+        float d[3], dd = 0;
+        for (int a = 0; a < 3; ++a) d[a] = (f.forward[a] + sx * f.right[a]) + sy * f.up[a], dd += d[a] * d[a];
+        for (float& c : d) c /= __builtin_sqrtf(dd);
+        rays.add(f.eye, d, __builtin_inff());
+      }
   return rays;
 }
 
