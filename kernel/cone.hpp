@@ -19,7 +19,7 @@ struct ConeSide {
 ///           quadratic is solved about the ray's point nearest to the base, where its coefficients do not cancel.
 /// Source    Haines, NFF document 3.9 (SPD), "c"; stable roots as in Press et al., Numerical Recipes, 5.6.
 template <class Real>
-inline Mask<Real> hit_cone(const Vec3<Real>& org, const Vec3<Real>& dir, const Real& inv_dd, const Real& t_min,
+[[gnu::always_inline]] inline Mask<Real> hit_cone(const Vec3<Real>& org, const Vec3<Real>& dir, const Real& inv_dd, const Real& t_min,
                            const ConeSide<Real>& cone, Real& t) {
   const Real o(0);
   const Vec3<Real> to_base = cone.base - org;

@@ -87,7 +87,7 @@ class Watcher {
     for (int i = 0; i < kCorners; ++i) {
       p.org[0][i] = beam.org[i].x, p.org[1][i] = beam.org[i].y, p.org[2][i] = beam.org[i].z;
       p.dir[0][i] = beam.dir[i].x, p.dir[1][i] = beam.dir[i].y, p.dir[2][i] = beam.dir[i].z;
-      p.t_min[i] = 0, p.best[i] = kInfinity;
+      p.t_min[i] = p.start[i] = 0, p.best[i] = kInfinity;
     }
   }
 
@@ -115,7 +115,7 @@ class Watcher {
       const Vec3<float> dir = f.axis + (i == 1 || i == 2 ? 1.f : -1.f) * f.right + (i >= 2 ? 1.f : -1.f) * f.up, org = f.apex + f.depth * dir;
       p.org[0][i] = org.x, p.org[1][i] = org.y, p.org[2][i] = org.z;
       p.dir[0][i] = dir.x, p.dir[1][i] = dir.y, p.dir[2][i] = dir.z;
-      p.t_min[i] = 0, p.best[i] = 1.001f * (far - f.depth);
+      p.t_min[i] = p.start[i] = 0, p.best[i] = 1.001f * (far - f.depth);
     }
     prepare(p, false);
     bring_near(scene_, p);
@@ -176,7 +176,7 @@ class Watcher {
         const Vec3<float> to = normalize(met.point[first + i] - f.apex), start = f.apex + (f.depth / dot(to, f.unit)) * to;
         p.org[0][i] = start.x, p.org[1][i] = start.y, p.org[2][i] = start.z;
         p.dir[0][i] = to.x, p.dir[1][i] = to.y, p.dir[2][i] = to.z;
-        p.t_min[i] = 0, p.best[i] = kInfinity;
+        p.t_min[i] = p.start[i] = 0, p.best[i] = kInfinity;
       }
       trace_packet<false>(scene_, p, {16, true}, n_);
       for (int i = 0; i < p.size; ++i) {

@@ -437,7 +437,7 @@ Box Primitives::box(std::uint32_t id) const {
 
 CellLists CellStore::lists() const {
   CellLists l;
-  if (!triangle_first.empty()) l.triangle_first = triangle_first.data(), l.triangles = triangles.data();
+  if (!triangle_first.empty()) l.triangle_first = triangle_first.data(), l.triangles = triangles.data(), l.boxes = boxes.empty() ? nullptr : boxes.data();
   if (!sphere_first.empty()) {
     l.sphere_first = sphere_first.data();
     l.sx = spheres[0].data(), l.sy = spheres[1].data(), l.sz = spheres[2].data(), l.sr = spheres[3].data();
@@ -451,7 +451,7 @@ CellLists CellStore::lists() const {
 }
 
 std::size_t CellStore::bytes() const {
-  std::size_t sum = bytes_of(triangle_first) + bytes_of(sphere_first) + bytes_of(cone_first) + bytes_of(triangles) +
+  std::size_t sum = bytes_of(triangle_first) + bytes_of(sphere_first) + bytes_of(cone_first) + bytes_of(triangles) + bytes_of(boxes) +
                     bytes_of(sphere_id) + bytes_of(cone_id);
   for (const auto& v : spheres) sum += bytes_of(v);
   for (const auto& v : cones) sum += bytes_of(v);
@@ -528,11 +528,12 @@ Grid build_grid(const Primitives& p, std::span<const std::uint32_t> ids, const B
     g.cell[a] = extent[a] / g.cells[a];
     cells *= g.cells[a];
   }
-  g.distance.resize(cells);
+  g.distance.resize(cells + 3);  // so that four bytes can be read from any place
   const CellFinder finder(p, g, pad);
   g.store = Filling(p, ids, cells, useful_threads(threads, ids.size())).run([&](std::uint32_t id, const auto& visit) { finder(id, visit); },
                                                                            g.distance.data(), g.occupied);
   chebyshev_distance(g.distance, g.cells, useful_threads(threads, cells));
+  g.store.boxes = bound_blocks(g, pad, useful_threads(threads, ids.size()));
   return g;
 }
 

@@ -48,6 +48,7 @@ struct Primitives {
 struct CellStore {
   RawVector<std::uint32_t> triangle_first, sphere_first, cone_first;
   RawVector<TriangleBlock> triangles;
+  RawVector<BlockBox> boxes;
   std::array<RawVector<float>, 4> spheres;
   RawVector<std::uint32_t> sphere_id;
   std::array<RawVector<float>, 10> cones;
@@ -62,7 +63,7 @@ struct Grid {
   std::array<std::uint32_t, 3> cells{1, 1, 1};  ///< per axis, each >= 1; x runs fastest
   double lo[3] = {}, cell[3] = {};              ///< corner (a float's value, so that walks subtract it exactly) and cell size
   CellStore store;
-  std::vector<std::uint8_t> distance;           ///< [cells] Chebyshev distance to the nearest non-empty cell, at most 255
+  std::vector<std::uint8_t> distance;           ///< [cells + 3] Chebyshev distance to the nearest non-empty cell, at most 255
   std::uint64_t occupied = 0;
 
   GridView view() const;
@@ -93,6 +94,10 @@ struct Extent {
   double longest = 0;
 };
 Extent extent_of(const Primitives& primitives, std::span<const std::uint32_t> ids, int threads);
+
+/// A box for each block of triangles of a grid: of the part of them within the cell. Both are grown by `pad` as when triangles are
+/// given to cells, and by a quarter more for the rounding of a test of it.
+RawVector<BlockBox> bound_blocks(const Grid& grid, double pad, int threads);
 
 /// All of `ids` as the one cell of a store without a grid.
 CellStore build_list(const Primitives& primitives, std::span<const std::uint32_t> ids);

@@ -221,6 +221,86 @@ inline bool none(const SimdMask<A>& m) {
 
 #endif
 
+/// Least and greatest of the lanes, none of them NaN.
+#if GRELHA_ISA_NUMBER == 1
+inline float lane_min(float a) { return a; }
+inline float lane_max(float a) { return a; }
+#else
+template <class Take4, class Take1>
+inline float lane_extreme(__m128 v, const Take4& take4, const Take1& take1) {
+  v = take4(v, _mm_movehl_ps(v, v));
+  return _mm_cvtss_f32(take1(v, _mm_shuffle_ps(v, v, 1)));
+}
+inline float lane_min(const Simd<xsimd::sse2>& a) {
+  return lane_extreme(a.data, [](__m128 x, __m128 y) { return _mm_min_ps(x, y); }, [](__m128 x, __m128 y) { return _mm_min_ss(x, y); });
+}
+inline float lane_max(const Simd<xsimd::sse2>& a) {
+  return lane_extreme(a.data, [](__m128 x, __m128 y) { return _mm_max_ps(x, y); }, [](__m128 x, __m128 y) { return _mm_max_ss(x, y); });
+}
+#if GRELHA_ISA_NUMBER > 2
+inline float lane_min(const Simd<xsimd::avx2>& a) {
+  return lane_min(Simd<xsimd::sse2>(_mm_min_ps(_mm256_castps256_ps128(a.data), _mm256_extractf128_ps(a.data, 1))));
+}
+inline float lane_max(const Simd<xsimd::avx2>& a) {
+  return lane_max(Simd<xsimd::sse2>(_mm_max_ps(_mm256_castps256_ps128(a.data), _mm256_extractf128_ps(a.data, 1))));
+}
+#endif
+#if GRELHA_ISA_NUMBER > 3
+inline float lane_min(const Lanes& a) {
+  return lane_min(lesser(Block(_mm512_castps512_ps256(a.data)), Block(_mm512_extractf32x8_ps(a.data, 1))));
+}
+inline float lane_max(const Lanes& a) {
+  return lane_max(greater(Block(_mm512_castps512_ps256(a.data)), Block(_mm512_extractf32x8_ps(a.data, 1))));
+}
+#endif
+#endif
+
+/// Numbers without their fractions, of [0, 2^24); bytes at places `at` of an array that has three more behind its last.
+#if GRELHA_ISA_NUMBER == 1
+inline float whole(float a) { return static_cast<float>(static_cast<std::int32_t>(a)); }
+inline std::uint32_t to_words(float a) { return static_cast<std::uint32_t>(a); }
+inline float bytes_at(const std::uint8_t* from, std::uint32_t at) { return from[at]; }
+#else
+inline Lanes whole(const Lanes& a) { return xsimd::to_float(xsimd::to_int(a)); }
+inline LaneTraits<Lanes>::Words to_words(const Lanes& a) { return reinterpret_cast<LaneTraits<Lanes>::Words>(xsimd::to_int(a).data); }
+inline Lanes bytes_at(const std::uint8_t* from, LaneTraits<Lanes>::Words at) {
+#if GRELHA_ISA_NUMBER == 2
+  return Lanes(_mm_cvtepi32_ps(_mm_setr_epi32(from[at[0]], from[at[1]], from[at[2]], from[at[3]])));
+#elif GRELHA_ISA_NUMBER == 3
+  const __m256i four = _mm256_i32gather_epi32(reinterpret_cast<const int*>(from), reinterpret_cast<__m256i>(at), 1);
+  return Lanes(_mm256_cvtepi32_ps(_mm256_and_si256(four, _mm256_set1_epi32(255))));
+#else
+  const __m512i four = _mm512_i32gather_epi32(reinterpret_cast<__m512i>(at), reinterpret_cast<const int*>(from), 1);
+  return Lanes(_mm512_cvtepi32_ps(_mm512_and_si512(four, _mm512_set1_epi32(255))));
+#endif
+}
+#endif
+
+/// Whether a line passes a box between t0 and t1: box holds lo and hi, org the origin twice, inv the inverse of the direction
+/// twice, four numbers each of which the last means nothing.
+inline bool passes_box(const float* box, const float* org, const float* inv, float t0, float t1) {
+#if GRELHA_ISA_NUMBER == 1
+  for (int a = 0; a < 3; ++a) {
+    const float x = (box[a] - org[a]) * inv[a], y = (box[4 + a] - org[a]) * inv[a];
+    t0 = greater(lesser(x, y), t0), t1 = lesser(greater(x, y), t1);
+  }
+  return t0 <= t1;
+#else
+#if GRELHA_ISA_NUMBER == 2
+  const __m128 x = _mm_mul_ps(_mm_sub_ps(_mm_load_ps(box), _mm_load_ps(org)), _mm_load_ps(inv));
+  const __m128 y = _mm_mul_ps(_mm_sub_ps(_mm_load_ps(box + 4), _mm_load_ps(org)), _mm_load_ps(inv));
+#else
+  const __m256 t = _mm256_mul_ps(_mm256_sub_ps(_mm256_load_ps(box), _mm256_load_ps(org)), _mm256_load_ps(inv));
+  const __m128 x = _mm256_castps256_ps128(t), y = _mm256_extractf128_ps(t, 1);
+#endif
+  const __m128 near = _mm_min_ps(x, y), far = _mm_max_ps(x, y);
+  __m128 enter = _mm_max_ss(_mm_max_ss(near, _mm_movehl_ps(near, near)), _mm_shuffle_ps(near, near, 1));
+  __m128 leave = _mm_min_ss(_mm_min_ss(far, _mm_movehl_ps(far, far)), _mm_shuffle_ps(far, far, 1));
+  enter = _mm_max_ss(enter, _mm_set_ss(t0)), leave = _mm_min_ss(leave, _mm_set_ss(t1));
+  return _mm_comile_ss(enter, leave) != 0;
+#endif
+}
+
 template <class Real>
 using Mask = typename LaneTraits<Real>::Mask;
 template <class Real>

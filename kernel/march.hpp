@@ -2,7 +2,7 @@
 // A packet through a grid: all rays together, slice by slice along their major axis, between four bounding planes.
 // After Wald, Ize, Kensler, Knoll, Parker, "Ray Tracing Animated Scenes using Coherent Grid Traversal", SIGGRAPH 2006.
 
-#include "kernel/single.hpp"
+#include "kernel/abreast.hpp"
 
 namespace grelha::GRELHA_ISA {
 
@@ -19,6 +19,8 @@ struct Mailbox {
   }
 };
 
+inline constexpr int kGroups = kPacket / kWidth<Lanes>, kGroupRow = kGroups > kWidth<Lanes> ? kGroups : kWidth<Lanes>;
+
 /// The volume a packet marches through, in the grid's cells: K is the major axis (flipped when the rays run against it, so
 /// slices always ascend), U and V the others. Between slices `from` and `to` every ray stays between lo and hi, straight
 /// lines in s: a chord lies below the concave least of straight lines, and above the convex greatest.
@@ -34,23 +36,48 @@ struct Frustum {
   alignas(64) float leave[kPacket];              ///< t at which the ray leaves the grid; -infinity: never meets it
   /// Four planes f(x) = a xu + b xk + c, negative outside, for culling; reach = length of the gradient.
   float a[4], b[4], c[4], reach[4];
+  /// The same planes for each group of a large packet alone; the a are those above. Of groups without a ray here c = -infinity.
+  bool by_group;
+  alignas(64) float group_b[4][kGroupRow], group_c[4][kGroupRow], group_reach[4][kGroupRow];
+  int across[4], along[4];  ///< which of a box's lo[4], hi[4] are farthest inside each
 };
+
+inline constexpr int kSmall = 16;  ///< rays of the packets that a large one falls apart into
 
 enum class Spread { kNothing, kTogether, kApart };
 
-inline float lane_min(const Lanes& v) {
-  float f[kWidth<Lanes>], m;
-  store(f, v);
-  m = f[0];
-  for (int i = 1; i < kWidth<Lanes>; ++i) m = lesser(f[i], m);
-  return m;
+/// The planes of each group, from where its rays lie on the slices `from` and `to`.
+inline void bound_groups(const GridView& g, Frustum& f, const float (&lo0)[2][kGroupRow], const float (&lo1)[2][kGroupRow],
+                         const float (&hi0)[2][kGroupRow], const float (&hi1)[2][kGroupRow], float farthest, float along, float back, float per) {
+  const Lanes nowhere(-kInfinity), o(0);
+  for (int i = 0; i < kGroups; i += kWidth<Lanes>)
+    for (int j = 0; j < 2; ++j) {
+      Lanes l0 = load<Lanes>(lo0[j] + i), l1 = load<Lanes>(lo1[j] + i), h0 = load<Lanes>(hi0[j] + i), h1 = load<Lanes>(hi1[j] + i);
+      const Mask<Lanes> some = l0 <= h0;
+      if (per == 0) l0 = l1 = lesser(l0, l1), h0 = h1 = greater(h0, h1);
+      const Lanes lo_slope = select(some, (l1 - l0) * Lanes(per), o), hi_slope = select(some, (h1 - h0) * Lanes(per), o);
+      const Lanes steepest = greater(greater(magnitude(lo_slope), magnitude(hi_slope)), Lanes(1));
+      const Lanes cull = Lanes(f.margin) + Lanes(1e-6f * farthest) * steepest;
+      const float zero = g.lo_f[j == 0 ? f.u : f.v] * f.a[2 * j];
+      const Lanes b0 = o - lo_slope * Lanes(along), b1 = hi_slope * Lanes(along), a(f.a[2 * j]);
+      store(f.group_b[2 * j] + i, b0), store(f.group_b[2 * j + 1] + i, b1);
+      store(f.group_c[2 * j] + i, select(some, cull - Lanes(zero) - l0 - lo_slope * Lanes(back), nowhere));
+      store(f.group_c[2 * j + 1] + i, select(some, cull + Lanes(zero) + h0 + hi_slope * Lanes(back), nowhere));
+      store(f.group_reach[2 * j] + i, square_root(a * a + b0 * b0) * Lanes(1.00001f));
+      store(f.group_reach[2 * j + 1] + i, square_root(a * a + b1 * b1) * Lanes(1.00001f));
+    }
 }
-inline float lane_max(const Lanes& v) {
-  float f[kWidth<Lanes>], m;
-  store(f, v);
-  m = f[0];
-  for (int i = 1; i < kWidth<Lanes>; ++i) m = greater(f[i], m);
-  return m;
+
+/// Bits of the groups for which `value(plane, first group)` is not negative for all four planes.
+template <class Value>
+inline std::uint64_t groups_inside(const Value& value) {
+  std::uint64_t in = 0;
+  const Lanes o(0);
+  for (int i = 0; i < kGroups; i += kWidth<Lanes>) {
+    const Mask<Lanes> out = either(either(value(0, i) < o, value(1, i) < o), either(value(2, i) < o, value(3, i) < o));
+    in |= (~static_cast<std::uint64_t>(bits(out)) & ((std::uint64_t{1} << kWidth<Lanes>) - 1)) << i;
+  }
+  return in;
 }
 
 /// Entry and exit of every ray, then the frustum around those that meet the grid, along the axis on which the first of them
@@ -60,7 +87,7 @@ inline Spread bound(const GridView& g, const Packet& p, Frustum& f, int axis = -
   alignas(64) float enter[kPacket];
   int first = -1;
   each_live_group(p, [&](int i, int) {
-    Lanes t0 = load<Lanes>(p.t_min + i), t1 = load<Lanes>(p.best + i);
+    Lanes t0 = load<Lanes>(p.start + i), t1 = load<Lanes>(p.best + i);
     for (int a = axis < 0 ? 0 : axis; a < (axis < 0 ? 3 : axis + 1); ++a) {
       const Lanes d = load<Lanes>(p.dir[a] + i), o = load<Lanes>(p.org[a] + i);
       const Mask<Lanes> tiny = magnitude(d) < Lanes(1e-18f);
@@ -109,24 +136,34 @@ inline Spread bound(const GridView& g, const Packet& p, Frustum& f, int axis = -
   if (!(f.from <= f.to)) f.to = f.from;
 
   float farthest = lane_max(far);
-  const float span = f.to - f.from;
+  const float span = f.to - f.from, per = span < 1e-3f ? 0.f : 1.f / span;
+  // Rays apart by more than a group are culled by groups: worth it where there are many, and where a group is more than a ray.
+  f.by_group = kWidth<Lanes> > 1 && __builtin_popcountll(p.live) * kWidth<Lanes> > kSmall;
+  alignas(64) float lo0[2][kGroupRow], lo1[2][kGroupRow], hi0[2][kGroupRow], hi1[2][kGroupRow];
+  if (f.by_group)
+    for (int j = 0; j < 2; ++j)
+      for (int i = 0; i < kGroupRow; ++i) lo0[j][i] = lo1[j][i] = kInfinity, hi0[j][i] = hi1[j][i] = -kInfinity;
   for (int j = 0; j < 2; ++j) {
     const int a = j == 0 ? f.u : f.v;
-    Lanes lo0(kInfinity), lo1(kInfinity), hi0(-kInfinity), hi1(-kInfinity), wide(0);
-    each_live_group(p, [&](int i, int) {
+    Lanes l0s(kInfinity), l1s(kInfinity), h0s(-kInfinity), h1s(-kInfinity), wide(0);
+    each_live_group(p, [&](int i, int group) {
       const Mask<Lanes> meets = load<Lanes>(f.leave + i) > Lanes(-kInfinity);
       const Lanes at = (load<Lanes>(p.org[a] + i) - Lanes(g.lo_f[a])) * Lanes(g.inv_cell_f[a]);
       const Lanes slope = (load<Lanes>(p.dir[a] + i) * Lanes(g.inv_cell_f[a])) * load<Lanes>(f.per_slice + i);
       const Lanes k_at = load<Lanes>(f.position + i);
       const Lanes x0 = at + (Lanes(f.from) - k_at) * slope, x1 = at + (Lanes(f.to) - k_at) * slope;
-      lo0 = lesser(select(meets, x0, Lanes(kInfinity)), lo0), lo1 = lesser(select(meets, x1, Lanes(kInfinity)), lo1);
-      hi0 = greater(select(meets, x0, Lanes(-kInfinity)), hi0), hi1 = greater(select(meets, x1, Lanes(-kInfinity)), hi1);
+      const Lanes least0 = select(meets, x0, Lanes(kInfinity)), least1 = select(meets, x1, Lanes(kInfinity));
+      const Lanes most0 = select(meets, x0, Lanes(-kInfinity)), most1 = select(meets, x1, Lanes(-kInfinity));
+      l0s = lesser(least0, l0s), l1s = lesser(least1, l1s), h0s = greater(most0, h0s), h1s = greater(most1, h1s);
       wide = greater(select(meets, magnitude(at), Lanes(0)), wide);
+      if (f.by_group) {
+        lo0[j][group] = lane_min(least0), lo1[j][group] = lane_min(least1);
+        hi0[j][group] = lane_max(most0), hi1[j][group] = lane_max(most1);
+      }
     });
     farthest = greater(farthest, lane_max(wide));
-    float l0 = lane_min(lo0), l1 = lane_min(lo1), h0 = lane_max(hi0), h1 = lane_max(hi1);
+    float l0 = lane_min(l0s), l1 = lane_min(l1s), h0 = lane_max(h0s), h1 = lane_max(h1s);
     if (span < 1e-3f) l0 = l1 = lesser(l0, l1), h0 = h1 = greater(h0, h1);
-    const float per = span < 1e-3f ? 0.f : 1.f / span;
     f.lo[j] = l0, f.lo_slope[j] = (l1 - l0) * per, f.hi[j] = h0, f.hi_slope[j] = (h1 - h0) * per;
   }
 
@@ -150,7 +187,11 @@ inline Spread bound(const GridView& g, const Packet& p, Frustum& f, int axis = -
     f.a[2 * j + 1] = -iu, f.b[2 * j + 1] = f.hi_slope[j] * along;
     f.c[2 * j + 1] = cull + zero + f.hi[j] + f.hi_slope[j] * (start - f.from);
   }
-  for (int j = 0; j < 4; ++j) f.reach[j] = square_root(f.a[j] * f.a[j] + f.b[j] * f.b[j]) * 1.00001f;
+  for (int j = 0; j < 4; ++j) {
+    f.reach[j] = square_root(f.a[j] * f.a[j] + f.b[j] * f.b[j]) * 1.00001f;
+    f.across[j] = (j < 2 ? f.u : f.v) + (f.a[j] > 0 ? 4 : 0), f.along[j] = k + (f.b[j] > 0 ? 4 : 0);
+  }
+  if (f.by_group) bound_groups(g, f, lo0, lo1, hi0, hi1, corner + farthest, along, start - f.from, per);
   return Spread::kTogether;
 }
 
@@ -176,6 +217,13 @@ inline unsigned inside_planes(const Value& value) {
   return ~bits(out) & ((1u << kWidth<Block>) - 1u);
 }
 
+/// Whether a box reaches into the frustum.
+inline bool box_inside(const Frustum& f, const BlockBox& box) {
+  bool out = false;
+  for (int j = 0; j < 4; ++j) out |= (f.a[j] * box.lo[f.across[j]] + f.b[j] * box.lo[f.along[j]]) + f.c[j] < 0;
+  return !out;
+}
+
 /// Lanes of triangles i, i + 1, ... of a block that reach into the frustum.
 inline unsigned triangles_inside(const Frustum& f, const TriangleBlock& block, int i) {
   const Block au = load<Block>(block.a[f.u] + i), av = load<Block>(block.a[f.v] + i), ak = load<Block>(block.a[f.k] + i);
@@ -199,8 +247,20 @@ inline void test_triangles(const Frustum& f, Packet& p, const TriangleBlock& blo
       const float a[3] = {block.a[0][at], block.a[1][at], block.a[2][at]};
       const float b[3] = {block.b[0][at], block.b[1][at], block.b[2][at]};
       const float c[3] = {block.c[0][at], block.c[1][at], block.c[2][at]};
-      count_lanes(p, n, n.triangle);
-      test_triangle<kAny>(p, a, b, c, id);
+      const std::uint64_t live = p.live;
+      if (f.by_group)
+        p.live &= groups_inside([&](int j, int first) {
+          const int u = j < 2 ? f.u : f.v;
+          const Lanes s = load<Lanes>(f.group_b[j] + first);
+          const Lanes fa = Lanes(f.a[j] * a[u]) + s * Lanes(a[f.k]), fb = Lanes(f.a[j] * b[u]) + s * Lanes(b[f.k]);
+          const Lanes fc = Lanes(f.a[j] * c[u]) + s * Lanes(c[f.k]);
+          return greater(greater(fa, fb), fc) + load<Lanes>(f.group_c[j] + first);
+        });
+      if (p.live != 0) {
+        count_lanes(p, n, n.triangle);
+        test_triangle<kAny>(p, a, b, c, id);
+      }
+      p.live = live;
     }
   }
 }
@@ -223,8 +283,18 @@ inline void test_spheres(const Frustum& f, Packet& p, const CellLists& lists, st
     for (unsigned left = spheres_inside(f, lists, i, end); left != 0; left &= left - 1) {
       const std::uint32_t s = i + static_cast<unsigned>(__builtin_ctz(left)), id = lists.sphere_id[s];
       if (mailbox && mailbox->seen(id)) continue;
-      count_lanes(p, n, n.sphere);
-      test_sphere<kAny>(p, lists.sx[s], lists.sy[s], lists.sz[s], lists.sr[s], id);
+      const float center[3] = {lists.sx[s], lists.sy[s], lists.sz[s]}, radius = magnitude(lists.sr[s]);
+      const std::uint64_t live = p.live;
+      if (f.by_group)
+        p.live &= groups_inside([&](int j, int first) {
+          const Lanes across = Lanes(f.a[j] * center[j < 2 ? f.u : f.v]) + load<Lanes>(f.group_b[j] + first) * Lanes(center[f.k]);
+          return (across + load<Lanes>(f.group_c[j] + first)) + Lanes(radius) * load<Lanes>(f.group_reach[j] + first);
+        });
+      if (p.live != 0) {
+        count_lanes(p, n, n.sphere);
+        test_sphere<kAny>(p, center[0], center[1], center[2], lists.sr[s], id);
+      }
+      p.live = live;
     }
   }
 }
@@ -257,45 +327,38 @@ inline void test_cones(const Frustum& f, Packet& p, const CellLists& lists, std:
   }
 }
 
-/// Groups with a ray whose answer may still change beyond t(s), s a plane along K; also how many such rays.
+/// Leaves live those groups with a ray whose answer may still change beyond t(s), s a plane along K. Returns how many such rays
+/// there are.
 inline int update_live(const Frustum& f, Packet& p, float s) {
   std::uint64_t live = 0;
   int rays = 0;
-  for (int g = 0; g < p.groups; ++g) {
-    const int i = g * kWidth<Lanes>;
+  each_live_group(p, [&](int i, int g) {
     const Lanes t = (Lanes(s) - load<Lanes>(f.position + i)) * load<Lanes>(f.per_slice + i);
     const unsigned on = bits(lesser(load<Lanes>(p.best + i), load<Lanes>(f.leave + i)) > t);
     if (on != 0) live |= std::uint64_t{1} << g;
     rays += __builtin_popcount(on);
-  }
+  });
   p.live = live;
   return rays;
 }
 
-/// All rays of a packet through one grid. On return `live` is what it was.
+/// The live rays of a packet, `width` at most, through one grid, each from p.start on. On return `live` is what it was.
 template <bool kAny>
-inline void march(const GridView& g, Packet& p, bool use_mailbox, bool any_triangles, Counters& n) {
+inline void march_from(const GridView& g, Packet& p, int width, bool use_mailbox, bool any_triangles, Counters& n) {
   const std::uint64_t live = p.live;
   Frustum f;
-  const auto alone = [&](float s) {  // the rest of the way, ray by ray
-    for (int i = 0; i < p.size; ++i) {
-      double from = p.t_min[i];
-      if (s > 0) {
-        if (!(f.leave[i] > -kInfinity)) continue;
-        from = (static_cast<double>(s) - f.position[i]) * f.per_slice[i];
-      }
-      if (!(p.best[i] > from) || !(p.best[i] > p.t_min[i])) continue;
-      Single r = single_of(p, i, any_triangles);
-      walk<kAny>(g, r, from, n);
-      p.best[i] = r.best, p.id[i] = bits_of(r.id);
-    }
+  const auto part = [&] {  // what does not go together in one packet may in four; what does not in these goes ray by ray
+    ++n.fell_back;
+    if (width <= kSmall) return walk_apart<kAny>(g, p, any_triangles, n);
+    constexpr int kEach = kSmall / kWidth<Lanes>;
+    for (int first = 0; first < p.groups; first += kEach)
+      if ((p.live = live & ((std::uint64_t{1} << kEach) - 1) << first) != 0)
+        march_from<kAny>(g, p, kSmall, use_mailbox, any_triangles, n);
+    p.live = live;
   };
   switch (bound(g, p, f)) {
     case Spread::kNothing: return;
-    case Spread::kApart:
-      ++n.fell_back;
-      alone(0);
-      return;
+    case Spread::kApart: return part();
     case Spread::kTogether: break;
   }
   Mailbox mailbox;
@@ -304,7 +367,7 @@ inline void march(const GridView& g, Packet& p, bool use_mailbox, bool any_trian
   const int nk = g.n[f.k];
   const std::size_t stride[3] = {1, static_cast<std::size_t>(g.n[0]), static_cast<std::size_t>(g.n[0]) * static_cast<std::size_t>(g.n[1])};
   // Beyond this many cells a slice, looking into each costs more than every ray walking alone (measured).
-  const int limit = p.size > 16 ? 60 : 32;
+  const int limit = width > kSmall ? 16 : 8;
   int active = update_live(f, p, f.from - f.margin);
   int slice = clamp_cell(static_cast<double>(f.from - f.margin), nk);
   const int last = clamp_cell(static_cast<double>(f.to + f.margin), nk);
@@ -312,11 +375,15 @@ inline void march(const GridView& g, Packet& p, bool use_mailbox, bool any_trian
     int least[2], most[2];
     if (!rectangle(g, f, slice, least, most)) continue;
     const long cells = static_cast<long>(most[0] - least[0] + 1) * (most[1] - least[1] + 1);
-    if (cells > 1 && cells * p.size > static_cast<long>(limit) * active) {
+    if (cells > 1 && cells * width > static_cast<long>(limit) * active) {
       p.live = live;
-      ++n.fell_back;
-      alone(static_cast<float>(slice) - f.margin);
-      return;
+      const Lanes s(static_cast<float>(slice) - f.margin);  // what lies before this is done
+      each_live_group(p, [&](int i, int) {
+        const Lanes t = (s - load<Lanes>(f.position + i)) * load<Lanes>(f.per_slice + i);
+        const Mask<Lanes> meets = load<Lanes>(f.leave + i) > Lanes(-kInfinity);
+        store(p.start + i, select(meets, greater(t, load<Lanes>(p.start + i)), Lanes(kInfinity)));
+      });
+      return part();
     }
     const int sk = f.flip ? nk - 1 - slice : slice;
     int nearest = 255;
@@ -330,7 +397,7 @@ inline void march(const GridView& g, Packet& p, bool use_mailbox, bool any_trian
         if (distance != 0) continue;
         if (g.lists.triangle_first)
           for (std::uint32_t b = g.lists.triangle_first[cell]; b < g.lists.triangle_first[cell + 1]; ++b)
-            test_triangles<kAny>(f, p, g.lists.triangles[b], box, n);
+            if (box_inside(f, g.lists.boxes[b])) test_triangles<kAny>(f, p, g.lists.triangles[b], box, n);
         if (g.lists.sphere_first) test_spheres<kAny>(f, p, g.lists, cell, box, n);
         if (g.lists.cone_first) test_cones<kAny>(f, p, g.lists, cell, box, n);
       }
@@ -342,6 +409,13 @@ inline void march(const GridView& g, Packet& p, bool use_mailbox, bool any_trian
   }
   ++n.formed;
   p.live = live;
+}
+
+/// All rays of a packet through one grid.
+template <bool kAny>
+inline void march(const GridView& g, Packet& p, bool use_mailbox, bool any_triangles, Counters& n) {
+  __builtin_memcpy(p.start, p.t_min, sizeof p.start);
+  march_from<kAny>(g, p, p.size, use_mailbox, any_triangles, n);
 }
 
 }  // namespace grelha::GRELHA_ISA

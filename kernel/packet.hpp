@@ -27,6 +27,7 @@ struct Packet {
   alignas(64) float inv_dd[kPacket];
   alignas(64) float t_min[kPacket];
   alignas(64) float best[kPacket];
+  alignas(64) float start[kPacket];       ///< t from which a grid is still to be searched
   alignas(64) float id[kPacket];
   alignas(64) float shear[3][kPacket];
   alignas(64) float axis[kPacket];        ///< of the shear: 0, 1 or 2

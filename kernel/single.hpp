@@ -11,6 +11,7 @@ struct Single {
   std::uint32_t id;
   int axis;
   float shear[3];
+  alignas(32) float org2[8], inv2[8];  ///< origin and inverse of the direction as passes_box() wants them; with triangles only
 };
 
 inline Single single_of(const Packet& p, int i, bool any_triangles) {
@@ -20,7 +21,12 @@ inline Single single_of(const Packet& p, int i, bool any_triangles) {
   r.axis = 0;
   if (any_triangles) {
     r.axis = static_cast<int>(p.axis[i]);
-    for (int a = 0; a < 3; ++a) r.shear[a] = p.shear[a][i];
+    for (int a = 0; a < 3; ++a) {
+      r.shear[a] = p.shear[a][i];
+      r.org2[a] = r.org2[4 + a] = r.org[a];
+      r.inv2[a] = r.inv2[4 + a] = 1 / (magnitude(r.dir[a]) < 1e-18f ? 1e-18f : r.dir[a]);
+    }
+    r.org2[3] = r.org2[7] = 0, r.inv2[3] = r.inv2[7] = 0;
   }
   return r;
 }
@@ -64,13 +70,10 @@ inline bool test_block(Single& r, const TriangleBlock& block, Counters& n) {
   return false;
 }
 
-/// All primitives of one cell. Reading past a cell's spheres or cones meets those of the next, which costs nothing and is
-/// never wrong: a hit is a hit.
+/// The spheres and cones of one cell. Reading past its end meets those of the next, which costs nothing and is never wrong: a
+/// hit is a hit.
 template <bool kAny>
-inline bool test_cell(Single& r, const CellLists& lists, std::size_t cell, Counters& n) {
-  if (lists.triangle_first)
-    for (std::uint32_t i = lists.triangle_first[cell]; i < lists.triangle_first[cell + 1]; ++i)
-      if (test_block<kAny>(r, lists.triangles[i], n)) return true;
+inline bool test_round(Single& r, const CellLists& lists, std::size_t cell, Counters& n) {
   if (lists.sphere_first) {
     const Vec3<Block> org = spread(r.org), dir = spread(r.dir);
     const std::uint32_t end = lists.sphere_first[cell + 1];
@@ -96,6 +99,17 @@ inline bool test_cell(Single& r, const CellLists& lists, std::size_t cell, Count
     }
   }
   return false;
+}
+
+/// All primitives of one cell.
+template <bool kAny>
+inline bool test_cell(Single& r, const CellLists& lists, std::size_t cell, Counters& n) {
+  if (lists.triangle_first)
+    for (std::uint32_t i = lists.triangle_first[cell]; i < lists.triangle_first[cell + 1]; ++i) {
+      if (lists.boxes && !passes_box(lists.boxes[i].lo, r.org2, r.inv2, r.t_min, r.best)) continue;
+      if (test_block<kAny>(r, lists.triangles[i], n)) return true;
+    }
+  return test_round<kAny>(r, lists, cell, n);
 }
 
 /// A ray in the units of one grid's cells, in double: plane distances come from the plane's index, never by adding up, and
@@ -133,43 +147,6 @@ inline int clamp_cell(double x, int n) {
   if (!(x > 0)) return 0;
   const int i = static_cast<int>(x < n ? x : n);
   return i < n ? i : n - 1;
-}
-
-/// Walks one ray through a grid from t_from on: tests the cells it meets in order, leaps over empty ones by their distance
-/// (Cohen & Sheffer, "Proximity Clouds", 1994). A hit is never clipped to its cell; the walk ends once it lies at or before
-/// the exit of the cell.
-template <bool kAny>
-inline void walk(const GridView& g, Single& r, double t_from, Counters& n) {
-  const GridRay ray = to_grid(g, r.org, r.dir);
-  double t0 = t_from > r.t_min ? t_from : r.t_min, t1 = r.best;
-  clip_to_grid(g, ray, t0, t1);
-  if (!(t0 <= t1)) return;
-  int at[3];
-  for (int a = 0; a < 3; ++a) at[a] = clamp_cell(ray.p[a] + t0 * ray.q[a], g.n[a]);
-  const int most = g.n[0] + g.n[1] + g.n[2] + 3;  // no walk crosses more planes than there are
-  for (int step = 0; step < most; ++step) {
-    const std::size_t cell = at[0] + static_cast<std::size_t>(g.n[0]) * (at[1] + static_cast<std::size_t>(g.n[1]) * at[2]);
-    const int distance = g.distance[cell];
-    ++n.visits;
-    if (distance == 0 && test_cell<kAny>(r, g.lists, cell, n)) return;
-    const int leap = distance > 1 ? distance - 1 : 0;  // cells this far on each side are empty too
-    double exit = 0;
-    int axis = 0;
-    for (int a = 0; a < 3; ++a) {
-      const double plane = ray.q[a] > 0 ? at[a] + 1 + leap : at[a] - leap;
-      const double t = (plane - ray.p[a]) * ray.iq[a];
-      if (a == 0 || t < exit) exit = t, axis = a;
-    }
-    if (r.best <= exit || !(exit <= t1)) return;
-    if (leap > 0)
-      for (int a = 0; a < 3; ++a) {
-        const int lo = at[a] - leap > 0 ? at[a] - leap : 0, hi = at[a] + leap < g.n[a] - 1 ? at[a] + leap : g.n[a] - 1;
-        const int i = clamp_cell(ray.p[a] + exit * ray.q[a], g.n[a]);
-        if (a != axis) at[a] = i < lo ? lo : i > hi ? hi : i;
-      }
-    at[axis] += ray.q[axis] > 0 ? 1 + leap : -1 - leap;
-    if (at[axis] < 0 || at[axis] >= g.n[axis]) return;
-  }
 }
 
 }  // namespace grelha::GRELHA_ISA

@@ -14,7 +14,7 @@ namespace grelha::GRELHA_ISA {
 /// Source    Haines, Günther, Akenine-Möller, "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems
 ///           (2019), ch. 7, in units of t so that one division is left.
 template <class Real>
-inline Mask<Real> hit_sphere(const Vec3<Real>& org, const Vec3<Real>& dir, const Real& inv_dd, const Real& t_min,
+[[gnu::always_inline]] inline Mask<Real> hit_sphere(const Vec3<Real>& org, const Vec3<Real>& dir, const Real& inv_dd, const Real& t_min,
                              const Vec3<Real>& center, const Real& radius, Real& t) {
   const Vec3<Real> to_center = center - org;
   const Real middle = dot(to_center, dir) * inv_dd;

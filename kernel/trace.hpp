@@ -117,13 +117,12 @@ inline void trace_alone(const SceneView& scene, Packet& p, bool any_triangles, C
   for (int i = 0; i < p.size; ++i) {
     if (!(p.best[i] > p.t_min[i])) continue;
     Single r = single_of(p, i, any_triangles);
-    bool done = test_cell<kAny>(r, scene.outside, 0, n);
-    for (int g = 0; g < scene.grid_count && !done; ++g) {
-      walk<kAny>(scene.grids[g], r, r.t_min, n);
-      done = kAny && r.best == -kInfinity;
-    }
+    test_cell<kAny>(r, scene.outside, 0, n);
     p.best[i] = r.best, p.id[i] = bits_of(r.id);
   }
+  __builtin_memcpy(p.start, p.t_min, sizeof p.start);
+  for (int g = 0; g < scene.grid_count; ++g)
+    walk_apart<kAny>(scene.grids[g], p, any_triangles, n);
 }
 
 template <bool kAny>

@@ -52,7 +52,7 @@ template <class Real>
 ///           is within 32 eps of the farthest corner's distance of the triangle (tests/triangle_test.cpp).
 /// Source    Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013.
 template <class Real>
-inline Mask<Real> hit_triangle(const Vec3<Real>& org, const Shear<Real>& shear, const Real& t_min, const Vec3<Real>& a,
+[[gnu::always_inline]] inline Mask<Real> hit_triangle(const Vec3<Real>& org, const Shear<Real>& shear, const Real& t_min, const Vec3<Real>& a,
                                const Vec3<Real>& b, const Vec3<Real>& c, Real& t, Vec3<Real>* weights = nullptr) {
   const Vec3<Real> oa = a - org, ob = b - org, oc = c - org;
   const Real ax = oa.x - shear.x * oa.z, ay = oa.y - shear.y * oa.z;

@@ -15,12 +15,18 @@ struct alignas(64) TriangleBlock {
   std::uint32_t id[kBlock];
 };
 
+/// What of a block's triangles lies in its cell, boxed and grown: a ray that meets one of them there passes through this.
+struct alignas(32) BlockBox {
+  float lo[4], hi[4];  ///< x, y, z and a 0; read as eight numbers in a row
+};
+
 /// Cells of one grid, one after the other, each kind apart: cell i owns places first[i] up to first[i + 1] - 1 of the
 /// kind's arrays (blocks for triangles). A kind the grid lacks has first == nullptr. Arrays of spheres and cones are
 /// padded with kBlock NaN entries, so a whole block can be read from any place.
 struct CellLists {
   const std::uint32_t* triangle_first = nullptr;
   const TriangleBlock* triangles = nullptr;
+  const BlockBox* boxes = nullptr;  ///< one a block, or none
 
   const std::uint32_t* sphere_first = nullptr;
   const float *sx = nullptr, *sy = nullptr, *sz = nullptr, *sr = nullptr;

@@ -15,7 +15,7 @@ constexpr std::size_t kMostOutside = 32;  ///< primitives without a grid, each m
 constexpr std::size_t kSmallObject = 256; ///< triangles; smaller objects share the grid of the loose ones
 constexpr std::size_t kMostGrids = 16;
 constexpr double kHuge = .5;              ///< of the diagonal of what it lies among: larger primitives get no grid
-constexpr double kDensity = 1;            ///< M; packets like it coarser than the report's 2 (docs/performance.md)
+constexpr double kDensity = .7;           ///< M; packets like it coarser than the report's 2 (docs/performance.md)
 
 using Ids = std::vector<std::uint32_t>;
 
@@ -56,6 +56,16 @@ Extent set_huge_apart(const Primitives& p, Ids& ids, Extent all, Ids& outside, i
     std::copy_if(ids.begin(), ids.end(), std::back_inserter(outside), is_huge);
     std::erase_if(ids, is_huge);
   }
+}
+
+/// A handful of round things among many triangles: a loop over them costs less than asking every cell for its share.
+bool set_few_apart(const Primitives& p, Ids& ids, Ids& outside) {
+  const auto is_triangle = [&](std::uint32_t id) { return id >= p.triangle_base && id < p.cone_base; };
+  const auto others = ids.size() - static_cast<std::size_t>(std::count_if(ids.begin(), ids.end(), is_triangle));
+  if (others == 0 || others == ids.size() || others > kFewest || outside.size() + others > kMostOutside) return false;
+  std::copy_if(ids.begin(), ids.end(), std::back_inserter(outside), [&](std::uint32_t id) { return !is_triangle(id); });
+  std::erase_if(ids, [&](std::uint32_t id) { return !is_triangle(id); });
+  return true;
 }
 
 /// Whether an index reaches `end`.
@@ -126,15 +136,16 @@ World::Impl::Impl(const Scene& s, const BuildOptions& options) : scene((check(s)
     all.add(extents.back().box);
   }
   const double diagonal = all.diagonal();
-  // A ray that starts within one diagonal of the box on each axis is at most 1 + sqrt 3 diagonals from any primitive, and a
-  // float test is off by at most 46 eps of that distance (docs/numerics.md derives 12, 24 and 32 for the three kinds).
-  const double pad = diagonal * 128 / 16777216;
+  // A ray that starts within one diagonal of the box on each axis is at most 1 + sqrt 3 diagonals from any primitive; a float
+  // test is off by at most 46 eps of that distance, and a walk by 32 eps of the diagonal (derived in docs/numerics.md).
+  const double pad = diagonal * 192 / 16777216;
 
   Ids apart;
   if (options.grid) {
     for (std::size_t i = 0; i < groups.size(); ++i) {
       Ids ids = std::move(groups[i]);
-      const Extent extent = set_huge_apart(primitives, ids, extents[i], apart, threads);
+      Extent extent = set_huge_apart(primitives, ids, extents[i], apart, threads);
+      if (set_few_apart(primitives, ids, apart)) extent = extent_of(primitives, ids, threads);
       if (ids.size() <= kFewest && apart.size() + ids.size() <= kMostOutside) {
         apart.insert(apart.end(), ids.begin(), ids.end());
       } else if (!ids.empty()) {
