@@ -21,7 +21,7 @@ float not_below(double x) {
 }  // namespace
 
 // A hit h, off by no more than `pad` from its triangle, is found in the cell whose part of the ray h lies on: h is in that cell and in
-// the triangle's box grown by pad, so in the box below, and pad / 4 = 32 u diagonals inside it. A slab test in float is off by
+// the triangle's box grown by pad, so in the box below, and pad / 4 = 64 u diagonals inside it. A slab test in float is off by
 // 3 u of the way to each plane, which is at most 2.8 diagonals (approach()), and compares two of them: 17 u diagonals.
 RawVector<BlockBox> bound_blocks(const Grid& g, double pad, int threads) {
   const CellStore& s = g.store;

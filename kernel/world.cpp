@@ -137,8 +137,8 @@ World::Impl::Impl(const Scene& s, const BuildOptions& options) : scene((check(s)
   }
   const double diagonal = all.diagonal();
   // A ray that starts within one diagonal of the box on each axis is at most 1 + sqrt 3 diagonals from any primitive; a float
-  // test is off by at most 46 eps of that distance, and a walk by 32 eps of the diagonal (derived in docs/numerics.md).
-  const double pad = diagonal * 192 / 16777216;
+  // test is off by at most 62 eps of that distance, and a walk by 32 eps of the diagonal (derived in docs/numerics.md).
+  const double pad = diagonal * 256 / 16777216;
 
   Ids apart;
   if (options.grid) {

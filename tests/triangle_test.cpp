@@ -69,9 +69,10 @@ Hit hit(const Float3& o, const Float3& d, const Shape& s, float t_min = 0) {
   };
   const scalar::Vec3<float> dir = permute(d);
   scalar::Vec3<float> w{0, 0, 0};
-  float t = -1;
-  const bool h = scalar::hit_triangle<float>(permute(o), {dir.x / dir.z, dir.y / dir.z, 1 / dir.z}, t_min, permute(s.a),
-                                             permute(s.b), permute(s.c), t, &w);
+  float t = -1, again = -1;
+  const scalar::Shear<float> shear{dir.x / dir.z, dir.y / dir.z, 1 / dir.z};
+  const bool h = scalar::hit_triangle<float>(permute(o), shear, t_min, permute(s.a), permute(s.b), permute(s.c), t);  // as when traced
+  scalar::hit_triangle<float>(permute(o), shear, t_min, permute(s.a), permute(s.b), permute(s.c), again, &w);         // as when shaded
   return {h, t, {w.x, w.y, w.z}};
 }
 
