@@ -9,8 +9,11 @@ namespace grelha::GRELHA_ISA {
 /// Primitives a packet has already been tested against: a small table that may forget and is never wrong.
 struct Mailbox {
   static constexpr unsigned kSize = 128;
-  std::uint32_t held[kSize];
-  void clear() { __builtin_memset(held, 0xFF, sizeof held); }
+  alignas(64) std::uint32_t held[kSize];
+  void clear() {
+    const Words<Lanes> none = Words<Lanes>{} + kNoPrimitive;  // memset would be a slow call for so few
+    for (unsigned i = 0; i < kSize; i += kWidth<Lanes>) store_words(held + i, none);
+  }
   bool seen(std::uint32_t id) {
     std::uint32_t& slot = held[id % kSize];
     if (slot == id) return true;

@@ -24,11 +24,10 @@ inline void trace_span(const SceneView& scene, const RaySpan& rays, const TraceS
   Counters n;
   for (int first = 0; first < rays.count; first += kChunk) {
     const int count = rays.count - first < kChunk ? rays.count - first : kChunk;
-    for (int i = 0; i < count; ++i) {
-      const int r = first + i;
-      org[0][i] = rays.ox[r], org[1][i] = rays.oy[r], org[2][i] = rays.oz[r];
-      t_min[i] = rays.t_min[r], t[i] = rays.t[r], shift[i] = 0;
-    }
+    const std::size_t bytes = static_cast<std::size_t>(count) * sizeof(float);
+    __builtin_memcpy(org[0], rays.ox + first, bytes), __builtin_memcpy(org[1], rays.oy + first, bytes);
+    __builtin_memcpy(org[2], rays.oz + first, bytes), __builtin_memcpy(t_min, rays.t_min + first, bytes);
+    __builtin_memcpy(t, rays.t + first, bytes), __builtin_memset(shift, 0, bytes);
     const RayArrays arrays{org[0], org[1], org[2], rays.dx + first, rays.dy + first, rays.dz + first, t_min, t, rays.id + first, shift};
     if (settings.method == Method::kReference)
       trace_reference<kAny>(scene, arrays, count, settings.mailbox, n);
