@@ -95,12 +95,12 @@ inline void pop(RayStack& stack, Batch& b, int most, bool sampled, int (&ends)[k
 /// Camera rays [0, count) of the batch and all that comes of them. The stack is empty before and after.
 inline void follow(const Shader& s, RayStack& stack, int count) {
   s.rays.primary += static_cast<unsigned>(count);
-  shade_batch(s, stack, &count, 1, 64, Phase::primary);
+  shade_batch(s, stack, &count, 1, Phase::primary);
   int ends[kClasses];
   while (stack.size > 0) {
     enter(s.work, Phase::children);
     pop(stack, s.b, s.work.take, s.work.plan.on, ends);
-    shade_batch(s, stack, ends, kClasses, 16, Phase::bounce);
+    shade_batch(s, stack, ends, kClasses, Phase::bounce);
   }
   enter(s.work, Phase::camera);
 }

@@ -17,10 +17,10 @@ enum class Phase : int {
 };
 inline constexpr int kPhases = 8;
 
-/// Rays about to be traced, in arrays of `count`, `packet` at a time; t: where the search ends.
+/// Rays about to be traced, in arrays of `count`; t: where the search ends.
 struct ObservedRays {
   const float *ox, *oy, *oz, *dx, *dy, *dz, *t_min, *t;
-  int count, packet;
+  int count;
 };
 
 /// Told whenever its thread goes from one phase to another, some ten times a batch; `rays` on the way into primary, bounce and

@@ -35,9 +35,9 @@ inline Words<Lanes> pixels_of(const BandWork& work, const std::uint32_t* sums) {
 inline void enter(const BandWork& work, Phase phase) {
   if (work.observer) work.observer->enter(*work.observer, phase, nullptr);
 }
-inline void enter(const BandWork& work, Phase phase, const RayArrays& r, int count, int packet) {
+inline void enter(const BandWork& work, Phase phase, const RayArrays& r, int count) {
   if (!work.observer) return;
-  const ObservedRays rays{r.ox, r.oy, r.oz, r.dx, r.dy, r.dz, r.t_min, r.t, count, packet};
+  const ObservedRays rays{r.ox, r.oy, r.oz, r.dx, r.dy, r.dz, r.t_min, r.t, count};
   work.observer->enter(*work.observer, phase, &rays);
 }
 
@@ -180,8 +180,8 @@ inline void light_hits(const Shader& s, int hits, int light_index, bool area, in
   if (n == 0) return;
   s.rays.shadow += static_cast<unsigned>(n);
   const RayArrays rays{b.lox, b.loy, b.loz, b.ldx, b.ldy, b.ldz, b.lt_min, b.lt, b.lid};
-  const TraceOptions options{s.work.packet == 0 ? 64 : s.work.packet, s.work.mailbox};
-  enter(s.work, Phase::shadow, rays, n, options.packet);
+  const TraceOptions options{s.work.packet, s.work.mailbox};
+  enter(s.work, Phase::shadow, rays, n);
   trace<true>(s.scene, rays, n, options, s.counters);
   enter(s.work, Phase::light);
   for (int i = 0; i < n; ++i)
@@ -305,16 +305,15 @@ inline void send_on(const Shader& s, RayStack& stack, int hits) {
   }
 }
 
-/// Traces and shades the batch: runs of rays that go together, the k-th ending at ends[k], in packets of `packet` unless the
-/// user said otherwise. `phase`: primary or bounce.
-inline void shade_batch(const Shader& s, RayStack& stack, const int* ends, int runs, int packet, Phase phase) {
+/// Traces and shades the batch: runs of rays that go together, the k-th ending at ends[k]. `phase`: primary or bounce.
+inline void shade_batch(const Shader& s, RayStack& stack, const int* ends, int runs, Phase phase) {
   Batch& b = s.b;
   const int count = ends[runs - 1];
   for (int i = 0; i < count; ++i) b.t_min[i] = 0, b.t[i] = kInfinity;
-  const TraceOptions options{s.work.packet != 0 ? s.work.packet : packet, s.work.mailbox};
+  const TraceOptions options{s.work.packet, s.work.mailbox};
   for (int k = 0, at = 0; k < runs; at = ends[k++]) {
     const RayArrays rays{b.ox + at, b.oy + at, b.oz + at, b.dx + at, b.dy + at, b.dz + at, b.t_min + at, b.t + at, b.id + at};
-    enter(s.work, phase, rays, ends[k] - at, options.packet);
+    enter(s.work, phase, rays, ends[k] - at);
     trace<false>(s.scene, rays, ends[k] - at, options, s.counters);
   }
   enter(s.work, Phase::surface);

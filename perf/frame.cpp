@@ -39,7 +39,7 @@ int measure(const char* path, int rounds) {
   for (int round = 0; round < rounds; ++round) {
     const auto [clock, cpu] = whole(1);
     one = std::min(one, clock), one_cpu = std::min(one_cpu, cpu);
-    const auto t = trace_seconds(world, *find_variant("best"), {.packet = 0}, rays, 1);
+    const auto t = trace_seconds(world, *find_variant("best"), {}, rays, 1);
     for (std::size_t k = 0; k < 3; ++k) least[k] = std::min(least[k], t[k]);
     alone = std::min(alone, t[0] + t[1] + t[2]);
     two = std::min(two, whole(2).first);

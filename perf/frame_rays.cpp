@@ -19,7 +19,7 @@ class Recorder : public Observer {
   static void enter(Observer& self, Phase phase, const ObservedRays* rays) {
     if (!rays || rays->count == 0) return;
     RaySet& set = static_cast<Recorder&>(self).frame_[phase == Phase::primary ? 0 : phase == Phase::bounce ? 1 : 2];
-    set.runs.push_back({set.rays.size(), rays->count, rays->packet});
+    set.runs.push_back({set.rays.size(), rays->count});
     RayBuffer& r = set.rays;
     const auto put = [n = rays->count](std::vector<float>& to, const float* from) { to.insert(to.end(), from, from + n); };
     put(r.ox, rays->ox), put(r.oy, rays->oy), put(r.oz, rays->oz), put(r.dx, rays->dx), put(r.dy, rays->dy), put(r.dz, rays->dz);
@@ -48,7 +48,7 @@ FrameRays thinned(const FrameRays& frame, std::size_t stride) {
     const RayBuffer& r = frame[kind].rays;
     RaySet& to = out[kind];
     for (std::size_t i = stride / 2; i < r.size(); i += stride) to.rays.add({r.ox[i], r.oy[i], r.oz[i]}, {r.dx[i], r.dy[i], r.dz[i]}, r.t_max[i]);
-    for (std::size_t i = 0; i < to.rays.size(); i += kBatch) to.runs.push_back({i, static_cast<int>(std::min<std::size_t>(kBatch, to.rays.size() - i)), 64});
+    for (std::size_t i = 0; i < to.rays.size(); i += kBatch) to.runs.push_back({i, static_cast<int>(std::min<std::size_t>(kBatch, to.rays.size() - i))});
   }
   return out;
 }
@@ -70,10 +70,8 @@ std::array<double, 3> trace_seconds(const World& world, const Variant& variant, 
 #pragma omp for schedule(dynamic, 8)
       for (std::size_t k = 0; k < runs.size(); ++k) {
         const std::size_t i = runs[k].first;
-        TraceSettings here = settings;
-        if (here.packet == 0) here.packet = runs[k].packet;
         std::copy_n(&r.t_max[i], runs[k].count, t);
-        loop(world.impl().view, {&r.ox[i], &r.oy[i], &r.oz[i], &r.dx[i], &r.dy[i], &r.dz[i], &r.t_min[i], t, id, runs[k].count}, here, counts);
+        loop(world.impl().view, {&r.ox[i], &r.oy[i], &r.oz[i], &r.dx[i], &r.dy[i], &r.dz[i], &r.t_min[i], t, id, runs[k].count}, settings, counts);
       }
     }
     seconds[kind] = now() - start;

@@ -13,7 +13,7 @@ namespace grelha::perf {
 struct RaySet {
   struct Run {
     std::size_t first;
-    int count, packet;
+    int count;
   };
   RayBuffer rays;
   std::vector<Run> runs;
@@ -29,7 +29,7 @@ FrameRays rays_of_frame(const World& world, const Camera& camera, RenderOptions 
 /// Every stride-th ray alone.
 FrameRays thinned(const FrameRays& frame, std::size_t stride);
 
-/// Seconds that tracing takes, by kind: of the processor for one thread, by the clock for more. `packet` of the settings 0: as each run was traced in the render.
+/// Seconds that tracing takes, by kind: of the processor for one thread, by the clock for more.
 std::array<double, 3> trace_seconds(const World& world, const Variant& variant, const TraceSettings& settings, const FrameRays& frame,
                                     int threads);
 

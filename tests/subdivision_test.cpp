@@ -312,9 +312,9 @@ TEST(Adaptive, GivesTheSameBitsEverywhere) {
     EXPECT_EQ(wanted.rays.primary % std::uint64_t(samples), 0u);
     for (const Isa& isa : isas()) {
       if (!isa.runs_here) continue;
-      for (const int packet : {0, 1, 16, 64})
+      for (const int packet : {1, 16, 64})
         for (const int threads : {1, 2, 7}) {
-          if (threads != 2 && packet != 0) continue;  // threads do not see the packet
+          if (threads != 2 && packet != 64) continue;  // threads do not see the packet
           o.isa = isa.name, o.packet = packet, o.threads = threads;
           const Rendered r = rendered(s, c, o);
           ASSERT_TRUE(same_bits(r.image, wanted.image)) << isa.name << ", packet " << packet << ", " << threads << " threads";
