@@ -128,42 +128,76 @@ inline PairOf<Lanes> hit_samples(const Shader& s, int i, int dimension, std::uin
                              sample_keys(load_words<Lanes>(s.b.hit_path + i), use), strata);
 }
 
-/// Points of an area light for the hits i, i + 1, ...: each pixel's sample has its own.
-[[gnu::noinline]] inline Vec3<Lanes> light_points(const Shader& s, int i, const float* light, int light_index, int ray) {
+/// Points of an area light: lane k's is the `number[k]`-th of hit of[k].
+[[gnu::noinline]] inline Vec3<Lanes> light_points(const Shader& s, const int* of, const std::uint32_t* number, const float* light, int light_index) {
   const SamplePlan& plan = s.work.plan;
-  const PairOf<Lanes> p = hit_samples(s, i, plan.light, static_cast<std::uint32_t>(light_index), ray, plan.light_rays, plan.light_strata);
+  std::uint32_t pixel[kWidth<Lanes>], index[kWidth<Lanes>], path[kWidth<Lanes>];
+  for (int k = 0; k < kWidth<Lanes>; ++k) {
+    pixel[k] = s.b.hit_pixel[of[k]], path[k] = s.b.hit_path[of[k]];
+    index[k] = s.b.hit_sample[of[k]] * static_cast<std::uint32_t>(plan.light_rays) + number[k];
+  }
+  const PairOf<Lanes> p = sample_pairs<Lanes>(plan, pixels_of(s.work, pixel), load_words<Lanes>(index), plan.light,
+                                              sample_keys(load_words<Lanes>(path), static_cast<std::uint32_t>(light_index)), plan.light_strata);
   const Lanes a = p.u - Lanes(.5f), c = p.v - Lanes(.5f);
   return {Lanes(light[0]) + (a * Lanes(light[6]) + c * Lanes(light[9])),
           Lanes(light[1]) + (a * Lanes(light[7]) + c * Lanes(light[10])),
           Lanes(light[2]) + (a * Lanes(light[8]) + c * Lanes(light[11]))};
 }
 
+/// Traces the first n shadow rays of the batch and adds what those carry that nothing stands in the way of.
+inline void light_up(const Shader& s, int n) {
+  Batch& b = s.b;
+  if (n == 0) return;
+  s.rays.shadow += static_cast<unsigned>(n);
+  const RayArrays rays{b.lox, b.loy, b.loz, b.ldx, b.ldy, b.ldz, b.lt_min, b.lt, b.lid};
+  enter(s.work, Phase::shadow, rays, n);
+  trace<true>(s.scene, rays, n, {s.work.packet, s.work.mailbox}, s.counters);
+  enter(s.work, Phase::light);
+  for (int i = 0; i < n; ++i)
+    if (b.lid[i] == kNoPrimitive) add_light(s.work, b.light_pixel[i], b.lr[i], b.lg[i], b.lb[i]);
+}
+
 /// Light of one source on all hits: a shadow ray for each that faces it, and what that ray carries if nothing stands in its
-/// way. `ray` counts the rays to an area light, each of which carries its share.
-inline void light_hits(const Shader& s, int hits, int light_index, bool area, int ray) {
+/// way; from an area light `light_rays` to each hit, which stand next to each other and carry a share each.
+inline void light_hits(const Shader& s, int hits, int light_index, bool area) {
+  constexpr int w = kWidth<Lanes>;
   Batch& b = s.b;
   const float* const light = s.shading.lights + kLightFloats * light_index;
   Vec3<Lanes> at{Lanes(light[0]), Lanes(light[1]), Lanes(light[2])};
-  const float share = area ? 1.f / static_cast<float>(s.work.plan.light_rays) : 1.f;
+  const int each = area ? s.work.plan.light_rays : 1, total = hits * each;
+  const float share = 1.f / static_cast<float>(each);
   const Vec3<Lanes> color{Lanes(light[3] * share), Lanes(light[4] * share), Lanes(light[5] * share)};
   const Lanes o(0);
-  int n = 0;
-  for (int i = 0; i < hits; i += kWidth<Lanes>) {
-    const Vec3<Lanes> p = load3(b.px, b.py, b.pz, i), g = load3(b.gx, b.gy, b.gz, i), normal = load3(b.nx, b.ny, b.nz, i);
-    if (area) at = light_points(s, i, light, light_index, ray);
-    const Vec3<Lanes> org = p + load<Lanes>(b.away + i) * g;  // the lit side is the viewer's side
+  int n = 0, of[w], hit = 0, ray = 0;
+  std::uint32_t number[w], material[w];
+  for (int i = 0; i < total; i += w) {
+    if (n + w > kBatch) light_up(s, n), n = 0;
+    for (int k = 0; k < w; ++k) {
+      of[k] = hit, number[k] = static_cast<std::uint32_t>(ray), material[k] = b.material[hit];
+      if (++ray == each) ray = 0, hit += hit + 1 < hits;
+    }
+    const auto of_hits = [&](const float* from) {
+      if (each == 1) return load<Lanes>(from + i);
+      float v[w];
+      for (int k = 0; k < w; ++k) v[k] = from[of[k]];
+      return load<Lanes>(v);
+    };
+    const auto three = [&](const float* x, const float* y, const float* z) { return Vec3<Lanes>{of_hits(x), of_hits(y), of_hits(z)}; };
+    const Vec3<Lanes> p = three(b.px, b.py, b.pz), g = three(b.gx, b.gy, b.gz), normal = three(b.nx, b.ny, b.nz);
+    if (area) at = light_points(s, of, number, light, light_index);
+    const Vec3<Lanes> org = p + of_hits(b.away) * g;  // the lit side is the viewer's side
     const Vec3<Lanes> dir = at - org, l = normalize(dir);
     const Lanes nl = dot(normal, l);
-    const unsigned lit = bits(both(nl > o, dot(g, l) > o)) & lanes_of(i, hits);
+    const unsigned lit = bits(both(nl > o, dot(g, l) > o)) & lanes_of(i, total);
     if (lit == 0) continue;
-    Vec3<Lanes> c = nl * gather3(s.shading, kDiffuseR, b.material + i);
+    Vec3<Lanes> c = nl * gather3(s.shading, kDiffuseR, material);
     if (s.shading.highlights) {
-      const Vec3<Lanes> half = normalize(l + load3(b.vx, b.vy, b.vz, i));
+      const Vec3<Lanes> half = normalize(l + three(b.vx, b.vy, b.vz));
       const Lanes nh = greater(dot(normal, half), o);
-      c = c + power(nh, gather(s.shading, kShine, b.material + i)) * gather3(s.shading, kSpecularR, b.material + i);
+      c = c + power(nh, gather(s.shading, kShine, material)) * gather3(s.shading, kSpecularR, material);
     }
-    c = color * (load3(b.hr, b.hg, b.hb, i) * c);
-    float out[9][kWidth<Lanes>];
+    c = color * (three(b.hr, b.hg, b.hb) * c);
+    float out[9][w];
     store(out[0], org.x), store(out[1], org.y), store(out[2], org.z);
     store(out[3], dir.x), store(out[4], dir.y), store(out[5], dir.z);
     store(out[6], c.x), store(out[7], c.y), store(out[8], c.z);
@@ -172,20 +206,12 @@ inline void light_hits(const Shader& s, int hits, int light_index, bool area, in
       b.lox[n] = out[0][k], b.loy[n] = out[1][k], b.loz[n] = out[2][k];
       b.ldx[n] = out[3][k], b.ldy[n] = out[4][k], b.ldz[n] = out[5][k];
       b.lr[n] = out[6][k], b.lg[n] = out[7][k], b.lb[n] = out[8][k];
-      b.light_pixel[n] = b.hit_pixel[i + k];
+      b.light_pixel[n] = b.hit_pixel[of[k]];
       b.lt_min[n] = 0, b.lt[n] = 1;
       ++n;
     }
   }
-  if (n == 0) return;
-  s.rays.shadow += static_cast<unsigned>(n);
-  const RayArrays rays{b.lox, b.loy, b.loz, b.ldx, b.ldy, b.ldz, b.lt_min, b.lt, b.lid};
-  const TraceOptions options{s.work.packet, s.work.mailbox};
-  enter(s.work, Phase::shadow, rays, n);
-  trace<true>(s.scene, rays, n, options, s.counters);
-  enter(s.work, Phase::light);
-  for (int i = 0; i < n; ++i)
-    if (b.lid[i] == kNoPrimitive) add_light(s.work, b.light_pixel[i], b.lr[i], b.lg[i], b.lb[i]);
+  light_up(s, n);
 }
 
 inline void push(RayStack& stack, const Vec3<float>& org, const Vec3<float>& dir, const Vec3<float>& weight, std::uint32_t pixel,
@@ -330,7 +356,7 @@ inline void shade_batch(const Shader& s, RayStack& stack, const int* ends, int r
     const float* const edges = s.shading.lights + kLightFloats * l + 6;
     bool area = false;
     for (int k = 0; s.shading.area && k < 6; ++k) area |= edges[k] != 0;
-    for (int ray = 0; ray < (area ? s.work.plan.light_rays : 1); ++ray) light_hits(s, hits, l, area, ray);
+    light_hits(s, hits, l, area);
   }
   enter(s.work, Phase::children);
   if (s.shading.reflects) send_on(s, stack, hits);
