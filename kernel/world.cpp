@@ -50,11 +50,11 @@ Extent set_huge_apart(const Primitives& p, Ids& ids, Extent all, Ids& outside, i
   for (;; all = extent_of(p, ids, threads)) {
     const double huge = kHuge * all.box.diagonal();
     if (!(all.longest > huge)) return all;
-    const auto is_huge = [&](std::uint32_t id) { return p.box(id).diagonal() > huge; };
-    const auto n = static_cast<std::size_t>(std::count_if(ids.begin(), ids.end(), is_huge));
-    if (n == 0 || outside.size() + n > kMostOutside) return all;
-    std::copy_if(ids.begin(), ids.end(), std::back_inserter(outside), is_huge);
-    std::erase_if(ids, is_huge);
+    Ids large;  // ascending
+    std::copy_if(ids.begin(), ids.end(), std::back_inserter(large), [&](std::uint32_t id) { return p.box(id).diagonal() > huge; });
+    if (large.empty() || outside.size() + large.size() > kMostOutside) return all;
+    outside.insert(outside.end(), large.begin(), large.end());
+    std::erase_if(ids, [&](std::uint32_t id) { return std::binary_search(large.begin(), large.end(), id); });
   }
 }
 

@@ -197,7 +197,7 @@ void run(benchmark::State& state, const Row& row, const Options& options) {
       sum += seconds;
     };
     for (std::size_t i = 0; i < threads.size(); ++i) {
-      const std::string suffix = " " + std::to_string(threads[i]);
+      const std::string suffix = std::string(" ").append(std::to_string(threads[i]));
       {
         const Clock clock;
         const World world(file.scene, {.threads = threads[i]});
