@@ -39,7 +39,7 @@ inline unsigned test_cells(Single* r, const CellLists& lists, const std::uint32_
     for (unsigned left = full; left != 0; left &= left - 1) {
       const int i = __builtin_ctz(left);
       for (std::uint32_t b = first[i]; b < end[i]; ++b) {
-        if (!passes_box(lists.boxes[b].lo, r[i].org2, r[i].inv2, r[i].t_min, r[i].best)) continue;
+        if (!passes_box(lists.boxes[b].side, r[i].org2, r[i].inv2, r[i].t_min, r[i].best)) continue;
         const char* const lines = reinterpret_cast<const char*>(lists.triangles + b);
         for (std::size_t at = 0; at < sizeof(TriangleBlock); at += 64) __builtin_prefetch(lines + at);
         due[count++] = {i, b};

@@ -42,10 +42,10 @@ RawVector<BlockBox> bound_blocks(const Grid& g, double pad, int threads) {
             for (int i = 0; i < kBlock; ++i)  // unused places are NaN and change neither
               for (const float v : {block.a[a][i], block.b[a][i], block.c[a][i]}) lo = v < lo ? v : lo, hi = v > hi ? v : hi;
             const double cell_lo = g.lo[a] + at[a] * g.cell[a], cell_hi = g.lo[a] + (at[a] + 1) * g.cell[a];
-            out[b].lo[a] = not_above(std::max(lo - pad, cell_lo) - pad / 4);
-            out[b].hi[a] = not_below(std::min(hi + pad, cell_hi) + pad / 4);
+            out[b].side[a] = not_above(std::max(lo - pad, cell_lo) - pad / 4);
+            out[b].side[4 + a] = not_below(std::min(hi + pad, cell_hi) + pad / 4);
           }
-          out[b].lo[3] = out[b].hi[3] = 0;
+          out[b].side[3] = out[b].side[7] = 0;
         }
       }
   return out;

@@ -42,7 +42,7 @@ struct Frustum {
   /// The same planes for each group of a large packet alone; the a are those above. Of groups without a ray here c = -infinity.
   bool by_group;
   alignas(64) float group_b[4][kGroupRow], group_c[4][kGroupRow], group_reach[4][kGroupRow];
-  int across[4], along[4];  ///< which of a box's lo[4], hi[4] are farthest inside each
+  int across[4], along[4];  ///< which of a box's sides are farthest inside each
 };
 
 inline constexpr int kSmall = 16;  ///< rays of the packets that a large one falls apart into
@@ -223,7 +223,7 @@ inline unsigned inside_planes(const Value& value) {
 /// Whether a box reaches into the frustum.
 inline bool box_inside(const Frustum& f, const BlockBox& box) {
   bool out = false;
-  for (int j = 0; j < 4; ++j) out |= (f.a[j] * box.lo[f.across[j]] + f.b[j] * box.lo[f.along[j]]) + f.c[j] < 0;
+  for (int j = 0; j < 4; ++j) out |= (f.a[j] * box.side[f.across[j]] + f.b[j] * box.side[f.along[j]]) + f.c[j] < 0;
   return !out;
 }
 

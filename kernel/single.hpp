@@ -106,7 +106,7 @@ template <bool kAny>
 inline bool test_cell(Single& r, const CellLists& lists, std::size_t cell, Counters& n) {
   if (lists.triangle_first)
     for (std::uint32_t i = lists.triangle_first[cell]; i < lists.triangle_first[cell + 1]; ++i) {
-      if (lists.boxes && !passes_box(lists.boxes[i].lo, r.org2, r.inv2, r.t_min, r.best)) continue;
+      if (lists.boxes && !passes_box(lists.boxes[i].side, r.org2, r.inv2, r.t_min, r.best)) continue;
       if (test_block<kAny>(r, lists.triangles[i], n)) return true;
     }
   return test_round<kAny>(r, lists, cell, n);

@@ -17,7 +17,7 @@ struct alignas(64) TriangleBlock {
 
 /// What of a block's triangles lies in its cell, boxed and grown: a ray that meets one of them there passes through this.
 struct alignas(32) BlockBox {
-  float lo[4], hi[4];  ///< x, y, z and a 0; read as eight numbers in a row
+  float side[8];  ///< least x, y, z and a 0, greatest x, y, z and a 0
 };
 
 /// Cells of one grid, one after the other, each kind apart: cell i owns places first[i] up to first[i + 1] - 1 of the
