@@ -101,8 +101,16 @@ inline void walk_apart(const GridView& g, Packet& p, bool any_triangles, Counter
   Single r[kAbreast];
   int of[kAbreast] = {};
   unsigned walking = 0;
+  const auto retire = [&](unsigned done) {
+    for (; done != 0; done &= done - 1) {
+      const int k = __builtin_ctz(done);
+      p.best[of[k]] = r[k].best, p.id[of[k]] = bits_of(r[k].id);
+    }
+  };
+  // No walk crosses more planes than there are, whatever rounding does.
+  const std::int64_t most = static_cast<std::int64_t>(__builtin_popcountll(waiting)) * (g.n[0] + g.n[1] + g.n[2] + 3);
   const std::uint32_t nx = static_cast<std::uint32_t>(g.n[0]), ny = static_cast<std::uint32_t>(g.n[1]);
-  for (;;) {
+  for (std::int64_t step = 0; step < most; ++step) {
     if (waiting != 0 && 2 * __builtin_popcount(walking) <= kAbreast)
       for (unsigned idle = ~walking & ((1u << kAbreast) - 1u); idle != 0 && waiting != 0; idle &= idle - 1, waiting &= waiting - 1) {
         const int k = __builtin_ctz(idle), i = __builtin_ctzll(waiting);
@@ -152,12 +160,10 @@ inline void walk_apart(const GridView& g, Packet& p, bool any_triangles, Counter
     }
     over |= ~bits(going);
     for (int a = 0; a < 3; ++a) store(now[Course::kCell + a], select(going, at[a], Lanes(0)));
-    for (unsigned done = over & walking; done != 0; done &= done - 1) {
-      const int k = __builtin_ctz(done);
-      p.best[of[k]] = r[k].best, p.id[of[k]] = bits_of(r[k].id);
-    }
+    retire(over & walking);
     walking &= ~over;
   }
+  retire(walking);
 }
 
 }  // namespace grelha::GRELHA_ISA
