@@ -48,7 +48,7 @@ class Refinement {
  public:
   Refinement(const World::Impl& world, const Camera& camera, const FrameView& frame, const SamplePlan& plan, const Variant& variant,
              const RenderOptions& options, RenderStats& stats)
-      : world_(world), camera_(camera), frame_(frame), plan_(plan), variant_(variant), options_(options), stats_(stats),
+      : world_(world), camera_(camera), frame_(frame), variant_(variant), options_(options), stats_(stats),
         count_(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height)),
         effects_(plan.lens >= 0 || plan.light >= 0 || plan.gloss >= 0), first_log_(effects_ ? 3 : 2),
         order_(pixel_order(camera.width, camera.height)), sums_(count_ * 3), squares_{std::vector<float>(count_ * 3), std::vector<float>(count_ * 3), std::vector<float>(count_ * 3)},
@@ -357,7 +357,6 @@ class Refinement {
   const World::Impl& world_;
   const Camera& camera_;
   const FrameView& frame_;
-  const SamplePlan& plan_;
   const Variant& variant_;
   const RenderOptions& options_;
   RenderStats& stats_;

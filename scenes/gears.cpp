@@ -43,8 +43,8 @@ void write_gear(NffWriter& nff, const Gear& gear) {
     const std::size_t next = (i + 1) % top.size();
     nff.polygon({top[i], bottom[i], bottom[next], top[next]});
   }
-  std::ranges::reverse(bottom);
-  std::ranges::rotate(bottom, bottom.end() - 2);  // begins on a tooth: a polygon's second corner must be convex
+  std::reverse(bottom.begin(), bottom.end());
+  std::rotate(bottom.begin(), bottom.end() - 2, bottom.end());  // begins on a tooth: a polygon's second corner must be convex
   nff.polygon(bottom);
 }
 

@@ -6,3 +6,11 @@ set_tests_properties(readme PROPERTIES LABELS image)
 grelha_test(sampling property grelha::kernel)
 grelha_test(effects image grelha::frontend)
 grelha_test(refinement image grelha::frontend grelha::scenes)
+
+file(STRINGS ${CMAKE_CURRENT_SOURCE_DIR}/hashes.txt lines REGEX "^[a-z]")
+foreach(line IN LISTS lines)
+  string(REGEX MATCH "^[a-z]+" name "${line}")
+  add_test(NAME hash_${name} COMMAND ${CMAKE_COMMAND} -D PROGRAM=$<TARGET_FILE:grelha> -D NAME=${name} -D ROOT=${PROJECT_SOURCE_DIR}
+    -D SCRATCH=${CMAKE_CURRENT_BINARY_DIR}/hashes -P ${CMAKE_CURRENT_SOURCE_DIR}/hashes.cmake)
+  set_tests_properties(hash_${name} PROPERTIES LABELS image SKIP_REGULAR_EXPRESSION "SKIPPED")
+endforeach()
