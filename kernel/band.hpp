@@ -67,29 +67,29 @@ inline void store_some(float* p, const Lanes& a, int left) {
   }
 }
 
-/// Takes the youngest rays off the stack into the batch, class by class (a stable counting sort); ends[c] is where class c
-/// ends.
+/// Takes the youngest rays off the stack into the batch, class by class, in their order; ends[c] is where class c ends.
 inline void pop(RayStack& stack, Batch& b, int most, bool sampled, int (&ends)[kClasses]) {
-  const int n = stack.size < most ? stack.size : most, at = stack.size - n;
-  unsigned char of[kBatch];
-  int next[kClasses] = {};
-  for (int i = 0; i < n; ++i) {
-    of[i] = stack.depth[at + i] & kRefracted ? 1 : 0;
-    ++next[of[i]];
+  const int n = stack.size < most ? stack.size : most, top = stack.size;
+  stack.size -= n;
+  int to = 0;
+  for (int c = 0; c < kClasses; ++c) {
+    for (int i = 0; i < n; i += kWidth<Lanes>) {
+      const int from = stack.size + i;
+      const Words<Lanes> depth = load_words<Lanes>(stack.depth + from);
+      const unsigned refracted = bits(mask_of(Words<Lanes>(depth >= kRefracted))), lanes = lanes_of(from, top);
+      const Chosen here((c == 0 ? ~refracted : refracted) & lanes);
+      if (here.count() == 0) continue;
+      const auto move = [&](float* into, const float* of) { here.store(into + to, load<Lanes>(of + from)); };
+      const auto move_words = [&](std::uint32_t* into, const std::uint32_t* of) { here.store(into + to, load_words<Lanes>(of + from)); };
+      move(b.ox, stack.ox), move(b.oy, stack.oy), move(b.oz, stack.oz);
+      move(b.dx, stack.dx), move(b.dy, stack.dy), move(b.dz, stack.dz);
+      move(b.wr, stack.wr), move(b.wg, stack.wg), move(b.wb, stack.wb);
+      move_words(b.pixel, stack.pixel), here.store(b.depth + to, depth & ~kRefracted);
+      if (sampled) move_words(b.sample, stack.sample), move_words(b.path, stack.path);
+      to += here.count();
+    }
+    ends[c] = to;
   }
-  for (int c = 0, sum = 0; c < kClasses; ++c) {
-    const int here = next[c];
-    next[c] = sum, sum += here, ends[c] = sum;
-  }
-  for (int i = 0; i < n; ++i) {
-    const int from = at + i, to = next[of[i]]++;
-    b.ox[to] = stack.ox[from], b.oy[to] = stack.oy[from], b.oz[to] = stack.oz[from];
-    b.dx[to] = stack.dx[from], b.dy[to] = stack.dy[from], b.dz[to] = stack.dz[from];
-    b.wr[to] = stack.wr[from], b.wg[to] = stack.wg[from], b.wb[to] = stack.wb[from];
-    b.pixel[to] = stack.pixel[from], b.depth[to] = stack.depth[from] & ~kRefracted;
-    if (sampled) b.sample[to] = stack.sample[from], b.path[to] = stack.path[from];
-  }
-  stack.size = at;
 }
 
 /// Camera rays [0, count) of the batch and all that comes of them. The stack is empty before and after.

@@ -44,10 +44,9 @@ class Watcher {
     if (differ || !closed(f, met, sight.id)) return around(weight);
     if (sight.id[0] == kNoPrimitive) return {};
 
-    Surface s[kCorners];
+    Surface<float> s[kCorners];
     for (int i = 0; i < kCorners; ++i) {
-      const float org[3] = {beam.org[i].x, beam.org[i].y, beam.org[i].z}, dir[3] = {beam.dir[i].x, beam.dir[i].y, beam.dir[i].z};
-      s[i] = surface_of(scene_, sight.id[i], org, dir, sight.t[i], shading_.smooth);
+      s[i] = surface_of<float>(scene_, sight.id[i], beam.org[i], beam.dir[i], sight.t[i], shading_.smooth);
       if (dot(beam.dir[i], s[i].normal) > 0)
         s[i].normal = Vec3<float>{0, 0, 0} - s[i].normal, s[i].shading = Vec3<float>{0, 0, 0} - s[i].shading;
       if (dot(s[i].normal, s[0].normal) < .8f) return around(weight);
@@ -220,7 +219,7 @@ class Watcher {
   }
 
   /// Doubt whether the light, of weight `part`, reaches all of the patch between four points, or none of it.
-  Doubt uneven_light(const float* light, const Surface (&s)[kCorners], const std::uint32_t (&on)[kCorners], bool whole, float part) {
+  Doubt uneven_light(const float* light, const Surface<float> (&s)[kCorners], const std::uint32_t (&on)[kCorners], bool whole, float part) {
     const Vec3<float> at{light[0], light[1], light[2]};
     Beam beam;
     float away[kCorners], far = 0;

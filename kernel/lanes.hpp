@@ -276,6 +276,81 @@ inline Lanes bytes_at(const std::uint8_t* from, LaneTraits<Lanes>::Words at) {
 }
 #endif
 
+/// The lanes in which a comparison of words holds.
+inline bool mask_of(std::uint32_t a) { return a != 0; }
+/// Numbers and words at places `at` < 2^31 of an array.
+inline float floats_at(const float* from, std::uint32_t at) { return from[at]; }
+inline std::uint32_t words_at(const std::uint32_t* from, std::uint32_t at) { return from[at]; }
+#if GRELHA_ISA_NUMBER == 2
+inline SimdMask<xsimd::sse2> mask_of(LaneTraits<Lanes>::Words a) { return SimdMask<xsimd::sse2>(reinterpret_cast<__m128>(a)); }
+inline Lanes floats_at(const float* from, LaneTraits<Lanes>::Words at) {
+  return Lanes(_mm_setr_ps(from[at[0]], from[at[1]], from[at[2]], from[at[3]]));
+}
+inline LaneTraits<Lanes>::Words words_at(const std::uint32_t* from, LaneTraits<Lanes>::Words at) {
+  return LaneTraits<Lanes>::Words{from[at[0]], from[at[1]], from[at[2]], from[at[3]]};
+}
+#elif GRELHA_ISA_NUMBER == 3
+inline SimdMask<xsimd::avx2> mask_of(LaneTraits<Lanes>::Words a) { return SimdMask<xsimd::avx2>(reinterpret_cast<__m256>(a)); }
+inline Lanes floats_at(const float* from, LaneTraits<Lanes>::Words at) { return Lanes(_mm256_i32gather_ps(from, reinterpret_cast<__m256i>(at), 4)); }
+inline LaneTraits<Lanes>::Words words_at(const std::uint32_t* from, LaneTraits<Lanes>::Words at) {
+  return reinterpret_cast<LaneTraits<Lanes>::Words>(_mm256_i32gather_epi32(reinterpret_cast<const int*>(from), reinterpret_cast<__m256i>(at), 4));
+}
+#elif GRELHA_ISA_NUMBER == 4
+inline SimdMask<xsimd::avx512bw> mask_of(LaneTraits<Lanes>::Words a) {
+  return SimdMask<xsimd::avx512bw>(_mm512_movepi32_mask(reinterpret_cast<__m512i>(a)));
+}
+inline Lanes floats_at(const float* from, LaneTraits<Lanes>::Words at) { return Lanes(_mm512_i32gather_ps(reinterpret_cast<__m512i>(at), from, 4)); }
+inline LaneTraits<Lanes>::Words words_at(const std::uint32_t* from, LaneTraits<Lanes>::Words at) {
+  return reinterpret_cast<LaneTraits<Lanes>::Words>(_mm512_i32gather_epi32(reinterpret_cast<__m512i>(at), reinterpret_cast<const int*>(from), 4));
+}
+#endif
+
+#if GRELHA_ISA_NUMBER == 3
+/// Row m: the numbers of the bits set in m, a byte each.
+struct SetBits {
+  std::uint64_t row[256];
+  constexpr SetBits() : row{} {
+    for (unsigned m = 0; m < 256; ++m)
+      for (std::uint64_t k = 0, at = 0; k < 8; ++k)
+        if (m >> k & 1) row[m] |= k << at, at += 8;
+  }
+};
+inline constexpr SetBits kSetBits;
+#endif
+
+/// Lanes to be stored one behind another. A store may write as much as all lanes would take.
+class Chosen {
+ public:
+  explicit Chosen(unsigned lanes) : lanes_(lanes) {}
+  int count() const { return __builtin_popcount(lanes_); }
+  /// T: float or std::uint32_t, from Lanes or their Words.
+  template <class T, class Vector>
+  void store(T* to, const Vector& a) const {
+#if GRELHA_ISA_NUMBER == 3
+    const __m256i order = _mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(kSetBits.row + lanes_)));
+    __m256i v;
+    __builtin_memcpy(&v, &a, sizeof v);
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm256_permutevar8x32_epi32(v, order));
+#elif GRELHA_ISA_NUMBER == 4
+    __m512i v;
+    __builtin_memcpy(&v, &a, sizeof v);
+    _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(static_cast<__mmask16>(lanes_), v));
+#else
+    T v[LaneTraits<Lanes>::kWidth];
+    __builtin_memcpy(v, &a, sizeof v);
+    for (unsigned left = lanes_; left != 0; left &= left - 1) *to++ = v[__builtin_ctz(left)];
+#endif
+  }
+  /// The same of three components.
+  template <class Vector>
+  void store(float* x, float* y, float* z, const Vector& a) const {
+    store(x, a.x), store(y, a.y), store(z, a.z);
+  }
+
+ private:
+  unsigned lanes_;
+};
+
 /// Whether a line passes a box between t0 and t1: box holds lo and hi, org the origin twice, inv the inverse of the direction
 /// twice, four numbers each of which the last means nothing.
 inline bool passes_box(const float* box, const float* org, const float* inv, float t0, float t1) {

@@ -13,98 +13,107 @@ namespace grelha::GRELHA_ISA {
 
 inline constexpr float kEps = 5.9604645e-8f;  ///< half an ulp of 1
 
+template <class Real>
 struct Surface {
-  Vec3<float> point, normal, shading;  ///< outward geometric normal, unit; shading normal, unit, same side
-  float away;
-  std::uint32_t material;
+  Vec3<Real> point, normal, shading;  ///< outward geometric normal, unit; shading normal, unit, same side
+  Real away;
+  Words<Real> material;
 };
 
-inline Surface plane_surface(const GeometryView& g, std::uint32_t i, const Vec3<float>& at) {
-  const Vec3<float> p{g.px[i], g.py[i], g.pz[i]};
-  const Vec3<float> n = normalize(Vec3<float>{g.pnx[i], g.pny[i], g.pnz[i]});
-  Surface s;
-  s.point = at - dot(at - p, n) * n;
-  s.normal = s.shading = n;
-  s.away = 8 * kEps * (largest(at) + largest(p));
-  s.material = g.plane_material[i];
-  return s;
+/// Three numbers of the primitives, or vertices, i.
+template <class Word>
+inline auto three_at(const float* x, const float* y, const float* z, const Word& i) {
+  return Vec3<decltype(floats_at(x, i))>{floats_at(x, i), floats_at(y, i), floats_at(z, i)};
 }
 
-inline Surface sphere_surface(const GeometryView& g, std::uint32_t i, const Vec3<float>& at) {
-  const Vec3<float> c{g.sx[i], g.sy[i], g.sz[i]};
-  const float r = magnitude(g.sr[i]);
-  Surface s;
-  s.normal = s.shading = normalize(at - c);
-  s.point = c + r * s.normal;
-  s.away = 16 * kEps * r + 4 * kEps * largest(s.point);
-  s.material = g.sphere_material[i];
-  return s;
+template <class Real>
+inline Surface<Real> plane_surface(const GeometryView& g, const Words<Real>& i, const Vec3<Real>& at) {
+  const Vec3<Real> p = three_at(g.px, g.py, g.pz, i), n = normalize(three_at(g.pnx, g.pny, g.pnz, i));
+  return {at - dot(at - p, n) * n, n, n, Real(8 * kEps) * (largest(at) + largest(p)), words_at(g.plane_material, i)};
 }
 
-inline Surface cone_surface(const GeometryView& g, std::uint32_t i, const Vec3<float>& at) {
-  const Vec3<float> base{g.cone[0][i], g.cone[1][i], g.cone[2][i]}, axis{g.cone[3][i], g.cone[4][i], g.cone[5][i]};
-  const float height = g.cone[6][i], radius = g.cone[7][i], slope = g.cone[8][i];
-  const Vec3<float> from_base = at - base;
-  float h = dot(from_base, axis);
-  h = h < 0 ? 0 : h > height ? height : h;
-  const Vec3<float> out = normalize(from_base - h * axis);
-  Surface s;
-  s.point = base + h * axis + (radius + slope * h) * out;
-  s.normal = s.shading = normalize(out - slope * axis);
-  s.away = 32 * kEps * (height + radius) + 4 * kEps * largest(s.point);
-  s.material = g.cone_material[i];
-  return s;
+template <class Real>
+inline Surface<Real> sphere_surface(const GeometryView& g, const Words<Real>& i, const Vec3<Real>& at) {
+  const Vec3<Real> c = three_at(g.sx, g.sy, g.sz, i), n = normalize(at - c);
+  const Real r = magnitude(floats_at(g.sr, i));
+  const Vec3<Real> point = c + r * n;
+  return {point, n, n, Real(16 * kEps) * r + Real(4 * kEps) * largest(point), words_at(g.sphere_material, i)};
 }
 
-inline Surface triangle_surface(const GeometryView& g, std::uint32_t i, const float (&org)[3], const float (&dir)[3], bool smooth) {
-  const std::uint32_t v[3] = {g.ta[i], g.tb[i], g.tc[i]};
-  Vec3<float> c[3];
-  for (int k = 0; k < 3; ++k) c[k] = {g.tx[v[k]], g.ty[v[k]], g.tz[v[k]]};
-  const int k = shear_axis(dir[0], dir[1], dir[2]), kx = k == 2 ? 0 : k + 1, ky = k == 0 ? 2 : k - 1;
-  const auto permute = [&](const Vec3<float>& p) {
-    const float q[3] = {p.x, p.y, p.z};
-    return Vec3<float>{q[kx], q[ky], q[k]};
+template <class Real>
+inline Surface<Real> cone_surface(const GeometryView& g, const Words<Real>& i, const Vec3<Real>& at) {
+  const Vec3<Real> base = three_at(g.cone[0], g.cone[1], g.cone[2], i), axis = three_at(g.cone[3], g.cone[4], g.cone[5], i);
+  const Real height = floats_at(g.cone[6], i), radius = floats_at(g.cone[7], i), slope = floats_at(g.cone[8], i);
+  const Vec3<Real> from_base = at - base;
+  const Real along = dot(from_base, axis);
+  const Real h = select(along < Real(0), Real(0), select(along > height, height, along));
+  const Vec3<Real> out = normalize(from_base - h * axis);
+  const Vec3<Real> point = base + h * axis + (radius + slope * h) * out, n = normalize(out - slope * axis);
+  return {point, n, n, Real(32 * kEps) * (height + radius) + Real(4 * kEps) * largest(point), words_at(g.cone_material, i)};
+}
+
+template <class Real>
+inline Surface<Real> triangle_surface(const GeometryView& g, const Words<Real>& i, const Vec3<Real>& org, const Vec3<Real>& dir, bool smooth) {
+  const Words<Real> v[3] = {words_at(g.ta, i), words_at(g.tb, i), words_at(g.tc, i)};
+  const Vec3<Real> a = three_at(g.tx, g.ty, g.tz, v[0]), b = three_at(g.tx, g.ty, g.tz, v[1]), c = three_at(g.tx, g.ty, g.tz, v[2]);
+  const Real o(0), one(1), mx = magnitude(dir.x), my = magnitude(dir.y), mz = magnitude(dir.z);
+  const Mask<Real> x_first = both(mx >= my, mx >= mz), y_first = my >= mz;  // the axis prepare() gave the ray
+  const auto permute = [&](const Vec3<Real>& p) {
+    return Vec3<Real>{select(x_first, p.y, select(y_first, p.z, p.x)), select(x_first, p.z, select(y_first, p.x, p.y)),
+                      select(x_first, p.x, select(y_first, p.y, p.z))};
   };
-  const Shear<float> shear{dir[kx] / dir[k], dir[ky] / dir[k], 1 / dir[k]};
-  Vec3<float> w{1, 0, 0};
-  float t;
-  hit_triangle<float>({org[kx], org[ky], org[k]}, shear, -kInfinity, permute(c[0]), permute(c[1]), permute(c[2]), t, &w);
-  const Vec3<float> e1 = c[1] - c[0], e2 = c[2] - c[0];
-  Surface s;
-  s.point = c[0] + (w.y * e1 + w.z * e2);
-  s.normal = normalize(cross(e1, e2));
-  s.shading = s.normal;
-  s.away = 16 * kEps * (largest(e1) + largest(e2)) + 4 * kEps * largest(s.point);
-  s.material = g.triangle_material[i];
+  const Vec3<Real> way = permute(dir);
+  const Shear<Real> shear{way.x / way.z, way.y / way.z, one / way.z};
+  Vec3<Real> w{one, o, o};
+  Real t(0);
+  const Mask<Real> met = hit_triangle<Real>(permute(org), shear, Real(-kInfinity), permute(a), permute(b), permute(c), t, &w);
+  w = select(met, w, Vec3<Real>{one, o, o});
+  const Vec3<Real> e1 = b - a, e2 = c - a, point = a + (w.y * e1 + w.z * e2), n = normalize(cross(e1, e2));
+  Surface<Real> s{point, n, n, Real(16 * kEps) * (largest(e1) + largest(e2)) + Real(4 * kEps) * largest(point), words_at(g.triangle_material, i)};
   if (!smooth) return s;
-  Vec3<float> n[3];
-  for (int j = 0; j < 3; ++j) {
-    n[j] = {g.tnx[v[j]], g.tny[v[j]], g.tnz[v[j]]};
-    const float nn = dot(n[j], n[j]);
-    if (!(nn > 0)) return s;
-    n[j] = (1 / square_root(nn)) * n[j];
-  }
-  const Vec3<float> mix = w.x * n[0] + (w.y * n[1] + w.z * n[2]);
-  const float mm = dot(mix, mix);
-  if (!(mm > 1e-12f)) return s;
-  s.shading = (1 / square_root(mm)) * mix;
-  if (dot(s.shading, s.normal) < 0) s.shading = Vec3<float>{0, 0, 0} - s.shading;
+  Mask<Real> sound = one > o;
+  const auto vertex_normal = [&](const Words<Real>& vertex) {
+    const Vec3<Real> m = three_at(g.tnx, g.tny, g.tnz, vertex);
+    const Real mm = dot(m, m);
+    sound = both(sound, mm > o);
+    return (one / square_root(mm)) * m;
+  };
+  const Vec3<Real> na = vertex_normal(v[0]), nb = vertex_normal(v[1]), nc = vertex_normal(v[2]);
+  const Vec3<Real> mix = w.x * na + (w.y * nb + w.z * nc);
+  const Real mm = dot(mix, mix);
+  const Vec3<Real> m = (one / square_root(mm)) * mix;
+  const Vec3<Real> same_side = select(dot(m, n) < o, Vec3<Real>{o, o, o} - m, m);
+  s.shading = select(both(sound, mm > Real(1e-12f)), same_side, n);
   return s;
 }
 
-inline Surface surface_of(const SceneView& scene, std::uint32_t id, const float (&org)[3], const float (&dir)[3], float t, bool smooth) {
+/// Surfaces of primitives `id`, where rays met them; of lanes that met nothing, anything. What the lanes met decides which kinds
+/// are looked at; mostly it is one.
+template <class Real>
+inline Surface<Real> surface_of(const SceneView& scene, const Words<Real>& id, const Vec3<Real>& org, const Vec3<Real>& dir, const Real& t,
+                                bool smooth) {
   const GeometryView& g = scene.geometry;
-  if (id >= scene.triangle_base && id < scene.cone_base) return triangle_surface(g, id - scene.triangle_base, org, dir, smooth);
-  const Vec3<float> at{org[0] + t * dir[0], org[1] + t * dir[1], org[2] + t * dir[2]};
-  if (id < scene.sphere_base) return plane_surface(g, id, at);
-  if (id < scene.triangle_base) return sphere_surface(g, id - scene.sphere_base, at);
-  return cone_surface(g, id - scene.cone_base, at);
+  const Vec3<Real> at{org.x + t * dir.x, org.y + t * dir.y, org.z + t * dir.z};
+  Surface<Real> s{};
+  const auto of_kind = [&](std::uint32_t first, std::uint32_t end, const auto& surface) {
+    const auto here = id - first < end - first;
+    const Mask<Real> chosen = mask_of(Words<Real>(here));
+    if (none(chosen)) return;
+    const Surface<Real> f = surface(Words<Real>(here ? id - first : Words<Real>{}));
+    s = {select(chosen, f.point, s.point), select(chosen, f.normal, s.normal), select(chosen, f.shading, s.shading),
+         select(chosen, f.away, s.away), here ? f.material : s.material};
+  };
+  of_kind(0, scene.sphere_base, [&](const Words<Real>& i) { return plane_surface<Real>(g, i, at); });
+  of_kind(scene.sphere_base, scene.triangle_base, [&](const Words<Real>& i) { return sphere_surface<Real>(g, i, at); });
+  of_kind(scene.triangle_base, scene.cone_base, [&](const Words<Real>& i) { return triangle_surface<Real>(g, i, org, dir, smooth); });
+  of_kind(scene.cone_base, scene.primitive_end, [&](const Words<Real>& i) { return cone_surface<Real>(g, i, at); });
+  return s;
 }
 
 /// Where a ray that leaves `point` on the side its direction points to must start. `normal` is unit.
-inline Vec3<float> leave(const Vec3<float>& point, const Vec3<float>& normal, float away, const Vec3<float>& dir) {
-  const float side = dot(dir, normal) < 0 ? 0 - away : away;
-  return point + side * normal;
+template <class Real>
+inline Vec3<Real> leave(const Vec3<Real>& point, const Vec3<Real>& normal, const Real& away, const Vec3<Real>& dir) {
+  return point + select(dot(dir, normal) < Real(0), Real(0) - away, away) * normal;
 }
 
 }  // namespace grelha::GRELHA_ISA

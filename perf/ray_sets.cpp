@@ -94,9 +94,8 @@ std::vector<RayMaker::Hit> RayMaker::first_hits(bool few) const {
   std::vector<Hit> hits;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (found.id[i] == kNoPrimitive) continue;
-    const float org[3] = {rays.ox[i], rays.oy[i], rays.oz[i]}, dir[3] = {rays.dx[i], rays.dy[i], rays.dz[i]};
-    const Surface s = surface_of(scene, found.id[i], org, dir, found.t[i], world_.impl().shading.smooth);
-    const V d{dir[0], dir[1], dir[2]};
+    const V org{rays.ox[i], rays.oy[i], rays.oz[i]}, d{rays.dx[i], rays.dy[i], rays.dz[i]};
+    const Surface<float> s = surface_of<float>(scene, found.id[i], org, d, found.t[i], world_.impl().shading.smooth);
     const float side = dot(d, s.normal) > 0 ? -1.f : 1.f;
     Hit h;
     h.point = s.point, h.normal = side * s.normal;

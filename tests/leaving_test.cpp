@@ -51,8 +51,8 @@ Result leave_from(std::uint64_t seeds, double most_offset, bool convex, const Ma
     for (std::size_t i = 0; i < rays.size(); ++i) {
       if (hits.id[i] == kNoPrimitive) continue;
       ++r.hits;
-      const float org[3] = {rays.ox[i], rays.oy[i], rays.oz[i]}, dir[3] = {rays.dx[i], rays.dy[i], rays.dz[i]};
-      const scalar::Surface s = scalar::surface_of(view, hits.id[i], org, dir, hits.t[i], false);
+      const scalar::Vec3<float> org{rays.ox[i], rays.oy[i], rays.oz[i]}, dir{rays.dx[i], rays.dy[i], rays.dz[i]};
+      const scalar::Surface<float> s = scalar::surface_of<float>(view, hits.id[i], org, dir, hits.t[i], false);
       for (int k = 0; k < 16; ++k) {
         Float3 d = random.direction();
         if (k % 4 == 0) {  // along the surface: the worst
@@ -143,8 +143,8 @@ TEST(Leaving, PlanesWithAllElseFarAway) {
     Rays rays;
     for (int i = 0; i < 64; ++i) {
       const Float3 eye = random.point(2), to = random.direction();
-      const float org[3] = {eye.x, eye.y, eye.z}, dir[3] = {to.x, to.y, to.z};
-      const scalar::Surface s = scalar::surface_of(view, 0, org, dir, static_cast<float>(random.in(.1, 1)), false);
+      const scalar::Vec3<float> org{eye.x, eye.y, eye.z}, dir{to.x, to.y, to.z};
+      const scalar::Surface<float> s = scalar::surface_of<float>(view, 0, org, dir, static_cast<float>(random.in(.1, 1)), false);
       scalar::Vec3<float> away{to.x, to.y, to.z};
       if (scalar::dot(away, s.normal) < 0) away = scalar::Vec3<float>{0, 0, 0} - away;
       const scalar::Vec3<float> start = scalar::leave(s.point, s.normal, s.away, away);
@@ -206,8 +206,8 @@ TEST(Leaving, InwardsMeetsTheFarSide) {
     rays.add(eye, minus(at(center, .9 * size, random.direction()), eye));
     const Answers hit = trace(*find_variant("scalar"), world, rays, {Method::kSingle, 1, true}, Query::kClosest);
     if (hit.id[0] == kNoPrimitive) continue;
-    const float org[3] = {eye.x, eye.y, eye.z}, dir[3] = {rays.dx[0], rays.dy[0], rays.dz[0]};
-    const scalar::Surface s = scalar::surface_of(world.impl().view, 0, org, dir, hit.t[0], false);
+    const scalar::Vec3<float> org{eye.x, eye.y, eye.z}, dir{rays.dx[0], rays.dy[0], rays.dz[0]};
+    const scalar::Surface<float> s = scalar::surface_of<float>(world.impl().view, 0, org, dir, hit.t[0], false);
     Float3 d = random.direction();
     float cosine = d.x * s.normal.x + d.y * s.normal.y + d.z * s.normal.z;
     if (cosine > 0) d = scaled(d, -1), cosine = -cosine;
@@ -240,8 +240,8 @@ TEST(Leaving, SeesWhatIsNear) {
                    {place.x + float(size), y, place.z - float(size)}, {place.x, y, place.z + float(size)});
     }
     const World world(scene, {.grid = false});
-    const float org[3] = {place.x, place.y + gap / 2, place.z}, dir[3] = {0, -1, 0};
-    const scalar::Surface s = scalar::surface_of(world.impl().view, 0, org, dir, gap / 2, false);
+    const scalar::Vec3<float> org{place.x, place.y + gap / 2, place.z}, dir{0, -1, 0};
+    const scalar::Surface<float> s = scalar::surface_of<float>(world.impl().view, 0, org, dir, gap / 2, false);
     Float3 d = random.direction();
     if (d.y < 0) d = scaled(d, -1);
     if (d.y < .1f) continue;
