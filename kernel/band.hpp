@@ -9,47 +9,21 @@ namespace grelha::GRELHA_ISA {
 /// direction as well scatters neighbours and costs more than it brings (docs/performance.md).
 inline constexpr int kClasses = 2;
 
-/// Directions of the rays through the centres of a tile's pixels, in its order; returns how many were put behind `count`.
-inline int tile_rays(const FrameView& f, Batch& b, int count, int x0, int x1, int y0, int y1, int band_top) {
-  for (int k = 0; k < kTile * kTile; ++k) {
-    const int x = x0 + tile_x(k), y = y0 + tile_y(k);
-    if (x >= x1 || y >= y1) continue;
-    const float sx = (static_cast<float>(x) + .5f) - .5f * static_cast<float>(f.width);
-    const float sy = .5f * static_cast<float>(f.height) - (static_cast<float>(y) + .5f);
-    b.ox[count] = f.eye[0], b.oy[count] = f.eye[1], b.oz[count] = f.eye[2];
-    const Vec3<float> d = normalize(Vec3<float>{(f.forward[0] + sx * f.right[0]) + sy * f.up[0],
-                                                (f.forward[1] + sx * f.right[1]) + sy * f.up[1],
-                                                (f.forward[2] + sx * f.right[2]) + sy * f.up[2]});
-    b.dx[count] = d.x, b.dy[count] = d.y, b.dz[count] = d.z;
-    b.wr[count] = b.wg[count] = b.wb[count] = 1;
-    b.pixel[count] = static_cast<std::uint32_t>((y - band_top) * f.width + x);
-    b.depth[count++] = 1;
-  }
-  return count;
-}
-
-/// Writes the lanes of the samples left.
-inline void store_some(float* p, const Lanes& a, int left) {
-  if (left >= kWidth<Lanes>) return store(p, a);
-  float v[kWidth<Lanes>];
-  store(v, a);
-  for (int k = 0; k < left; ++k) p[k] = v[k];
-}
-
-/// Rays of one pixel from `at` on: samples first, first + 1, ..., each at its place in the pixel and, if there is a lens, on
-/// the lens. Their light goes to sum `sum`.
-[[gnu::noinline]] inline void sampled_rays(const FrameView& f, const SamplePlan& plan, Batch& b, int at, int x, int y, std::uint32_t first, int count,
-                                           std::uint32_t sum) {
-  const auto splat = [](const float (&v)[3]) { return Vec3<Lanes>{Lanes(v[0]), Lanes(v[1]), Lanes(v[2])}; };
+/// Makes camera rays [0, count) of the batch. Each goes through a place of the picture, which ox and oy hold, its pixel or point is
+/// that of its sum, and `sample` its number there. `in_pixels`: the place is a pixel's upper left corner, and the ray goes through
+/// the pixel's centre or is one of its samples; otherwise it goes through the place. Writes whole registers.
+[[gnu::noinline]] inline void camera_rays(const FrameView& f, const BandWork& work, int count, bool in_pixels) {
+  Batch& b = *work.batch;
+  const SamplePlan& plan = work.plan;
   const Vec3<Lanes> eye = splat(f.eye), forward = splat(f.forward), right = splat(f.right), up = splat(f.up);
-  const Lanes across(static_cast<float>(x)), down(static_cast<float>(y));
   const Lanes half_width(.5f * static_cast<float>(f.width)), half_height(.5f * static_cast<float>(f.height));
-  const Words<Lanes> zero{}, pixel = zero + (static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(f.width) + static_cast<std::uint32_t>(x));
+  const Lanes middle(in_pixels ? .5f : 0.f), one(1);
+  const Words<Lanes> zero{};
   for (int i = 0; i < count; i += kWidth<Lanes>) {
-    const Words<Lanes> index = counted_words<Lanes>(first + static_cast<std::uint32_t>(i));
-    PairOf<Lanes> in{Lanes(.5f), Lanes(.5f)};
-    if (plan.samples > 1) in = sample_pairs<Lanes>(plan, pixel, index, 0, zero, plan.pixel_strata);
-    const Lanes sx = (across + in.u) - half_width, sy = half_height - (down + in.v);
+    const Words<Lanes> pixel = pixels_of(work, load_words<Lanes>(b.pixel + i)), index = load_words<Lanes>(b.sample + i);
+    PairOf<Lanes> in{middle, middle};
+    if (in_pixels && plan.samples > 1) in = sample_pairs<Lanes>(plan, pixel, index, 0, zero, plan.pixel_strata);
+    const Lanes sx = (load<Lanes>(b.ox + i) + in.u) - half_width, sy = half_height - (load<Lanes>(b.oy + i) + in.v);
     Vec3<Lanes> d = (forward + sx * right) + sy * up, org = eye;
     if (f.lens) {
       const PairOf<Lanes> p = disc_point(sample_pairs<Lanes>(plan, pixel, index, plan.lens, zero, plan.pixel_strata));
@@ -57,13 +31,10 @@ inline void store_some(float* p, const Lanes& a, int left) {
       org = eye + on, d = Lanes(f.focus) * d - on;
     }
     d = normalize(d);
-    const int to = at + i, left = count - i;
-    store_some(b.ox + to, org.x, left), store_some(b.oy + to, org.y, left), store_some(b.oz + to, org.z, left);
-    store_some(b.dx + to, d.x, left), store_some(b.dy + to, d.y, left), store_some(b.dz + to, d.z, left);
-  }
-  for (int i = 0; i < count; ++i) {
-    b.wr[at + i] = b.wg[at + i] = b.wb[at + i] = 1;
-    b.pixel[at + i] = sum, b.depth[at + i] = 1, b.sample[at + i] = first + static_cast<std::uint32_t>(i), b.path[at + i] = 0;
+    store(b.ox + i, org.x), store(b.oy + i, org.y), store(b.oz + i, org.z);
+    store(b.dx + i, d.x), store(b.dy + i, d.y), store(b.dz + i, d.z);
+    store(b.wr + i, one), store(b.wg + i, one), store(b.wb + i, one);
+    store_words(b.depth + i, zero + 1u), store_words(b.path + i, zero);
   }
 }
 
@@ -105,6 +76,37 @@ inline void follow(const Shader& s, RayStack& stack, int count) {
   enter(s.work, Phase::camera);
 }
 
+/// Collects samples of places of the picture and renders them, a full batch at a time; see camera_rays().
+class CameraBatch {
+ public:
+  CameraBatch(const Shader& s, const FrameView& frame, bool in_pixels) : s_(s), frame_(frame), stack_(s.work.stack), in_pixels_(in_pixels) {
+    stack_.size = 0;
+  }
+  void add(float x, float y, std::uint32_t sum, std::uint32_t first, std::uint32_t count) {
+    Batch& b = s_.b;
+    int at = size_;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      b.ox[at] = x, b.oy[at] = y, b.pixel[at] = sum, b.sample[at] = first + i;
+      if (++at < kBatch) continue;
+      size_ = at, finish(), at = 0;
+    }
+    size_ = at;
+  }
+  [[gnu::noinline]] void finish() {
+    if (size_ == 0) return;
+    camera_rays(frame_, s_.work, size_, in_pixels_);
+    follow(s_, stack_, size_);
+    size_ = 0;
+  }
+
+ private:
+  const Shader& s_;
+  const FrameView& frame_;
+  RayStack stack_;
+  bool in_pixels_;
+  int size_ = 0;
+};
+
 /// Renders rows [y0, y1), at most kBandRows, into work.sums.
 ///
 /// Depths never fall towards the top of the stack, and rays of depth d + 1 are only added when fewer than `take` of them
@@ -112,52 +114,43 @@ inline void follow(const Shader& s, RayStack& stack, int count) {
 /// c kBatch + c take (depth - 2) rays however the light bounces.
 inline void render_band(const SceneView& scene, const ShadingView& shading, const FrameView& frame, int y0, int y1,
                         const BandWork& work, Counters& counters, RayTally& rays) {
-  Batch& b = *work.batch;
-  const Shader shader{scene, shading, work, counters, rays, b};
-  RayStack stack = work.stack;
-  stack.size = 0;
-  const auto finish = [&](int count) { follow(shader, stack, count); };
-  int count = 0;
-  for (int x0 = 0; x0 < frame.width; x0 += kTile) {
-    const int x1 = x0 + kTile < frame.width ? x0 + kTile : frame.width;
-    if (work.plan.on) {  // all samples of a pixel next to each other: they are what goes together best
-      for (int y = y0; y < y1; ++y)
-        for (int x = x0; x < x1; ++x)
-          for (int i = 0; i < work.plan.samples;) {
-            const int left = work.plan.samples - i, room = kBatch - count, n = left < room ? left : room;
-            sampled_rays(frame, work.plan, b, count, x, y, static_cast<std::uint32_t>(i), n, static_cast<std::uint32_t>((y - y0) * frame.width + x));
-            i += n, count += n;
-            if (count == kBatch) finish(count), count = 0;
-          }
-      continue;
+  const Shader shader{scene, shading, work, counters, rays, *work.batch};
+  CameraBatch batch(shader, frame, true);
+  for (int x0 = 0; x0 < frame.width; x0 += kTile)
+    for (int k = 0; k < kTile * kTile; ++k) {
+      const int x = x0 + tile_x(k), y = y0 + tile_y(k);
+      if (x >= frame.width || y >= y1) continue;
+      batch.add(static_cast<float>(x), static_cast<float>(y), static_cast<std::uint32_t>((y - y0) * frame.width + x), 0,
+                static_cast<std::uint32_t>(work.plan.samples));
     }
-    count = tile_rays(frame, b, count, x0, x1, y0, y1, y0);
-    if (count + kTile * kBandRows > kBatch) finish(count), count = 0;
-  }
-  if (count > 0) finish(count);
+  batch.finish();
 }
 
 /// Runs of samples; part p of run r goes into sum kParts r + p of work.sums, whose pixel work.pixels must name.
 inline void render_runs(const SceneView& scene, const ShadingView& shading, const FrameView& frame, const PixelRun* runs, int count,
                         const BandWork& work, Counters& counters, RayTally& rays) {
-  Batch& b = *work.batch;
-  const Shader shader{scene, shading, work, counters, rays, b};
-  RayStack stack = work.stack;
-  stack.size = 0;
-  int filled = 0;
-  for (int r = 0; r < count; ++r) {
-    const PixelRun& run = runs[r];
-    const int x = static_cast<int>(run.pixel % static_cast<std::uint32_t>(frame.width)), y = static_cast<int>(run.pixel / static_cast<std::uint32_t>(frame.width));
-    const int all = static_cast<int>(run.count), part = all / kParts;
-    for (int i = 0; i < all;) {
-      const int room = kBatch - filled, n = all - i < room ? all - i : room;
-      sampled_rays(frame, work.plan, b, filled, x, y, run.first + static_cast<std::uint32_t>(i), n, 0);
-      for (int k = 0; k < n; ++k) b.pixel[filled + k] = static_cast<std::uint32_t>(r * kParts + (i + k) / part);
-      i += n, filled += n;
-      if (filled == kBatch) follow(shader, stack, filled), filled = 0;
+  const Shader shader{scene, shading, work, counters, rays, *work.batch};
+  CameraBatch batch(shader, frame, true);
+  const auto width = static_cast<std::uint32_t>(frame.width);
+  for (int r = 0; r < count; ++r)
+    for (std::uint32_t p = 0; p < kParts; ++p) {
+      const PixelRun& run = runs[r];
+      const std::uint32_t part = run.count / kParts;
+      batch.add(static_cast<float>(run.pixel % width), static_cast<float>(run.pixel / width), static_cast<std::uint32_t>(r) * kParts + p,
+                run.first + p * part, part);
     }
-  }
-  if (filled > 0) follow(shader, stack, filled);
+  batch.finish();
+}
+
+/// All samples of each point into the point's sum: what adaptive subdivision asks for. Points that stand next to each other make a
+/// packet.
+inline void render_points(const SceneView& scene, const ShadingView& shading, const FrameView& frame, const PointList& points,
+                          const BandWork& work, Counters& counters, RayTally& rays) {
+  const Shader shader{scene, shading, work, counters, rays, *work.batch};
+  CameraBatch batch(shader, frame, false);
+  for (int i = 0; i < points.count; ++i)
+    batch.add(points.x[i], points.y[i], static_cast<std::uint32_t>(i), 0, static_cast<std::uint32_t>(work.plan.samples));
+  batch.finish();
 }
 
 }  // namespace grelha::GRELHA_ISA

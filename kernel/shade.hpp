@@ -11,13 +11,21 @@
 
 namespace grelha::GRELHA_ISA {
 
-/// Light in units of the sums, ties away from zero; what is not a number counts nothing.
+/// Light in units of the sums, ties away from zero; what is not a number counts nothing. The compiler's own vectors know which
+/// instruction sets can make such integers.
 inline void light_units(const Lanes& x, float most, std::int64_t (&units)[kWidth<Lanes>]) {
+  constexpr int n = kWidth<Lanes> < 8 ? kWidth<Lanes> : 8;
+  using Floats = float __attribute__((vector_size(4 * n)));
+  using Doubles = double __attribute__((vector_size(8 * n)));
+  using Integers = std::int64_t __attribute__((vector_size(8 * n)));
   float c[kWidth<Lanes>];
   store(c, greater(lesser(select(x == x, x, Lanes(0)), Lanes(most)), Lanes(0 - most)));
-  for (int k = 0; k < kWidth<Lanes>; ++k) {
-    const double u = static_cast<double>(c[k]) * kLightUnit;
-    units[k] = static_cast<std::int64_t>(u + (u < 0 ? -.5 : .5));
+  for (int k = 0; k < kWidth<Lanes>; k += n) {
+    Floats f;
+    __builtin_memcpy(&f, c + k, sizeof f);
+    const Doubles u = __builtin_convertvector(f, Doubles) * kLightUnit, half = Doubles{} + .5;
+    const Integers i = __builtin_convertvector(u + (u < 0 ? 0 - half : half), Integers);
+    __builtin_memcpy(units + k, &i, sizeof i);
   }
 }
 

@@ -111,15 +111,15 @@ struct PixelRun {
 inline constexpr int kParts = 4;
 
 struct BandWork {
-  Batch* batch;
-  RayStack stack;
-  std::int64_t* sums;  ///< [rows of the band][width][3], units of 1 / kLightUnit, zero on entry
-  int depth, packet;   ///< packet 0: chosen by kind of ray
-  int take;            ///< rays taken off the stack at a time, at most kBatch
-  bool mailbox;
-  std::uint32_t first_pixel;  ///< of the band, counted through the picture
-  float most_light;           ///< bound of a term
-  SamplePlan plan;
+  Batch* batch = nullptr;
+  RayStack stack = {};
+  std::int64_t* sums = nullptr;  ///< [rows of the band][width][3], units of 1 / kLightUnit, zero on entry
+  int depth = 1, packet = 64;
+  int take = kBatch;             ///< rays taken off the stack at a time, at most kBatch
+  bool mailbox = true;
+  std::uint32_t first_pixel = 0;  ///< of the band, counted through the picture
+  float most_light = 0;           ///< bound of a term
+  SamplePlan plan = {};
   const std::uint32_t* pixels = nullptr;  ///< [sums] the pixel each sum belongs to; null: sum i to first_pixel + i
   Observer* observer = nullptr;           ///< null: nobody asks
 };

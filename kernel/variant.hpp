@@ -3,7 +3,6 @@
 
 #include "kernel/band.hpp"
 #include "kernel/doubt.hpp"
-#include "kernel/points.hpp"
 #include "kernel/reference.hpp"
 #include "kernel/variants.hpp"
 
@@ -94,6 +93,13 @@ inline void powers(const float* x, const float* y, float* out, int count) {
   }
 }
 
+/// Writes the lanes of the samples left.
+inline void store_some(float* p, const Lanes& a, int left) {
+  float v[kWidth<Lanes>];
+  store(v, a);
+  for (int k = 0; k < kWidth<Lanes> && k < left; ++k) p[k] = v[k];
+}
+
 inline void samples(const SamplePlan& plan, const std::uint32_t* pixel, const std::uint32_t* index, int dimension, const std::uint32_t* key,
                     const Strata& strata, float* u, float* v, int count) {
   for (int i = 0; i < count; i += kWidth<Lanes>) {
@@ -112,4 +118,4 @@ inline void samples(const SamplePlan& plan, const std::uint32_t* pixel, const st
 
 #define GRELHA_LOOPS                                                                                                       \
   {GRELHA_ISA::closest, GRELHA_ISA::occluded, GRELHA_ISA::band, GRELHA_ISA::pixel_runs, GRELHA_ISA::doubt, GRELHA_ISA::powers, \
-   GRELHA_ISA::samples, GRELHA_ISA::sampled_rays, GRELHA_ISA::points}
+   GRELHA_ISA::samples, GRELHA_ISA::camera_rays, GRELHA_ISA::points}

@@ -47,10 +47,11 @@ struct VariantLoops {
                 float (&around)[kTile * kTile], TraceCounts&);
   /// power(x[i], y[i]) for tests.
   void (*power)(const float* x, const float* y, float* out, int count);
-  /// sample_pairs of pixel[i], index[i], key[i], and sampled_rays, for tests.
+  /// sample_pairs of pixel[i], index[i], key[i], for tests.
   void (*samples)(const SamplePlan&, const std::uint32_t* pixel, const std::uint32_t* index, int dimension, const std::uint32_t* key,
                   const Strata&, float* u, float* v, int count);
-  void (*sampled_rays)(const FrameView&, const SamplePlan&, Batch&, int at, int x, int y, std::uint32_t first, int count, std::uint32_t sum);
+  /// Camera rays of the work's batch, for tests and measurements.
+  void (*camera_rays)(const FrameView&, const BandWork&, int count, bool in_pixels);
   /// All samples of points of the picture, whose names work.pixels holds.
   void (*render_points)(const SceneView&, const ShadingView&, const FrameView&, const PointList&, const BandWork&, TraceCounts&, RayCounts&);
 };

@@ -75,7 +75,12 @@ RayBuffer RayMaker::through_pixels(const FrameView& f, int samples, bool few) co
       const int x0 = (bx * block + static_cast<int>(pick % static_cast<unsigned>(block))) * kTile;
       const int y0 = (by * block + static_cast<int>(pick / 64 % static_cast<unsigned>(block))) * kTile;
       for (int k = 0; k < kTile * kTile; ++k) {
-        find_variant("best")->loops.sampled_rays(f, plan, *batch, 0, x0 + tile_x(k), y0 + tile_y(k), 0, samples, 0);
+        const int x = x0 + tile_x(k), y = y0 + tile_y(k);
+        for (int i = 0; i < samples; ++i) {
+          batch->ox[i] = static_cast<float>(x), batch->oy[i] = static_cast<float>(y);
+          batch->pixel[i] = static_cast<std::uint32_t>(y * f.width + x), batch->sample[i] = static_cast<std::uint32_t>(i);
+        }
+        find_variant("best")->loops.camera_rays(f, {.batch = batch.get(), .plan = plan}, samples, true);
         for (int i = 0; i < samples; ++i)
           rays.add({batch->ox[i], batch->oy[i], batch->oz[i]}, {batch->dx[i], batch->dy[i], batch->dz[i]}, kInfinity);
       }
