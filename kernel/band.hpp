@@ -88,18 +88,22 @@ class CameraBatch {
     for (std::uint32_t i = 0; i < count; ++i) {
       b.ox[at] = x, b.oy[at] = y, b.pixel[at] = sum, b.sample[at] = first + i;
       if (++at < kBatch) continue;
-      size_ = at, finish(), at = 0;
+      render(at), at = 0;
     }
     size_ = at;
   }
-  [[gnu::noinline]] void finish() {
-    if (size_ == 0) return;
-    camera_rays(frame_, s_.work, size_, in_pixels_);
-    follow(s_, stack_, size_);
-    size_ = 0;
+  /// Call once, at the end.
+  void finish() {
+    if (size_ != 0) render(size_);
+    enter(s_.work, Phase::sums);
   }
 
  private:
+  [[gnu::noinline]] void render(int count) {
+    camera_rays(frame_, s_.work, count, in_pixels_);
+    follow(s_, stack_, count);
+  }
+
   const Shader& s_;
   const FrameView& frame_;
   RayStack stack_;

@@ -404,9 +404,8 @@ inline void store_words(std::uint32_t* p, const Word& a) {
 /// first, first + 1, ... one a lane.
 template <class Real>
 inline Words<Real> counted_words(std::uint32_t first) {
-  std::uint32_t w[kWidth<Real>];
-  for (int k = 0; k < kWidth<Real>; ++k) w[k] = first + static_cast<std::uint32_t>(k);
-  return load_words<Real>(w);
+  static constexpr std::uint32_t kCount[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+  return load_words<Real>(kCount) + first;
 }
 /// |a| without touching the sign bit of anything else.
 template <class Real>

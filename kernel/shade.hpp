@@ -200,10 +200,11 @@ inline int send_to_light(const Shader& s, const HitLanes<kOne>& at, const Vec3<L
   const Chosen lit(bits(both(nl > o, dot(g, l) > o)) & lanes);
   if (lit.count() == 0) return n;
   Vec3<Lanes> c = nl * gather3(s, kDiffuseR, at);
-  if (s.shading.highlights) {
+  const Vec3<Lanes> specular = s.shading.highlights ? gather3(s, kSpecularR, at) : Vec3<Lanes>{o, o, o};
+  if (any(either(either(specular.x != o, specular.y != o), specular.z != o))) {
     const Vec3<Lanes> half = normalize(l + at(b.vx, b.vy, b.vz));
     const Lanes nh = greater(dot(normal, half), o);
-    c = c + power(nh, gather(s, kShine, at)) * gather3(s, kSpecularR, at);
+    c = c + power(nh, gather(s, kShine, at)) * specular;
   }
   c = Vec3<Lanes>{Lanes(color[0] * share), Lanes(color[1] * share), Lanes(color[2] * share)} * (at(b.hr, b.hg, b.hb) * c);
   lit.store(b.lox + n, b.loy + n, b.loz + n, org);
