@@ -122,7 +122,7 @@ inline void render_band(const SceneView& scene, const ShadingView& shading, cons
   CameraBatch batch(shader, frame, true);
   for (int x0 = 0; x0 < frame.width; x0 += kTile)
     for (int k = 0; k < kTile * kTile; ++k) {
-      const int x = x0 + tile_x(k), y = y0 + tile_y(k);
+      const int x = x0 + kTilePlaces.x[k], y = y0 + kTilePlaces.y[k];
       if (x >= frame.width || y >= y1) continue;
       batch.add(static_cast<float>(x), static_cast<float>(y), static_cast<std::uint32_t>((y - y0) * frame.width + x), 0,
                 static_cast<std::uint32_t>(work.plan.samples));

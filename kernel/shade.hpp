@@ -134,6 +134,9 @@ struct HitLanes {
   Vec3<Lanes> operator()(const float* x, const float* y, const float* z) const { return {(*this)(x), (*this)(y), (*this)(z)}; }
 };
 
+/// Lanes of which a component is not 0.
+inline Mask<Lanes> any_component(const Vec3<Lanes>& a) { return either(either(a.x != Lanes(0), a.y != Lanes(0)), a.z != Lanes(0)); }
+
 /// What the hits' materials hold.
 template <bool kOne>
 inline Lanes gather(const Shader& s, MaterialField field, const HitLanes<kOne>& at) {
@@ -201,7 +204,7 @@ inline int send_to_light(const Shader& s, const HitLanes<kOne>& at, const Vec3<L
   if (lit.count() == 0) return n;
   Vec3<Lanes> c = nl * gather3(s, kDiffuseR, at);
   const Vec3<Lanes> specular = s.shading.highlights ? gather3(s, kSpecularR, at) : Vec3<Lanes>{o, o, o};
-  if (any(either(either(specular.x != o, specular.y != o), specular.z != o))) {
+  if (any(any_component(specular))) {
     const Vec3<Lanes> half = normalize(l + at(b.vx, b.vy, b.vz));
     const Lanes nh = greater(dot(normal, half), o);
     c = c + power(nh, gather(s, kShine, at)) * specular;
@@ -281,13 +284,15 @@ inline void send_on(const Shader& s, RayStack& stack, int hits) {
   const float part = 1.f / static_cast<float>(around + 1);
   for (int i = 0; i < hits; i += kWidth<Lanes>) {
     const HitLanes<false> at{i};
-    const Vec3<Lanes> n = load3(b.nx, b.ny, b.nz, i), g = load3(b.gx, b.gy, b.gz, i), v = load3(b.vx, b.vy, b.vz, i);
     const Vec3<Lanes> mirror = gather3(s, kMirrorR, at);
+    const Lanes t = s.shading.refracts ? gather(s, kTransmission, at) : o;
+    if (none(either(any_component(mirror), t > o))) continue;
+    const Vec3<Lanes> n = load3(b.nx, b.ny, b.nz, i), g = load3(b.gx, b.gy, b.gz, i), v = load3(b.vx, b.vy, b.vz, i);
     Vec3<Lanes> up = mirror;
     Vec3<Lanes> down{o, o, o}, through{o, o, o};
     const Lanes nv = dot(n, v);
     if (s.shading.refracts) {
-      const Lanes t = gather(s, kTransmission, at), ior = gather(s, kIor, at);
+      const Lanes ior = gather(s, kIor, at);
       const Mask<Lanes> clear = t > o, inside = load<Lanes>(b.inside + i) > o;
       const Lanes eta = select(inside, ior, one / ior);
       const Lanes c1 = greater(nv, o), left = one - (eta * eta) * (one - c1 * c1);  // Snell: cos^2 on the other side
@@ -320,8 +325,8 @@ inline void send_on(const Shader& s, RayStack& stack, int hits) {
     const Lanes under = lesser(dot(reflected, g), o);
     reflected = reflected - (under + under) * g;
     const unsigned in = lanes_of(i, hits);
-    const unsigned mirrors = bits(either(either(up.x != o, up.y != o), up.z != o)) & in;
-    const unsigned clears = bits(either(either(down.x != o, down.y != o), down.z != o)) & in;
+    const unsigned mirrors = bits(any_component(up)) & in;
+    const unsigned clears = bits(any_component(down)) & in;
     if ((mirrors | clears) == 0) continue;
     const unsigned end = bits(mask_of(Words<Lanes>(load_words<Lanes>(b.hit_depth + i) >= last)));
     add_light(s.work, b.hit_pixel + i, up * background, mirrors & end);
