@@ -34,17 +34,19 @@ inline unsigned test_cells(Single* r, const CellLists& lists, const std::uint32_
     for (unsigned left = full; left != 0; left &= left - 1) {
       const int i = __builtin_ctz(left);
       first[i] = lists.triangle_first[cells[i]], end[i] = lists.triangle_first[cells[i] + 1];
-      __builtin_prefetch(lists.boxes + first[i]), __builtin_prefetch(lists.boxes + first[i] + 2);
+      const char* const boxes = reinterpret_cast<const char*>(lists.boxes + first[i] / kBlock);
+      for (std::size_t at = 0; at < sizeof(BlockBoxes); at += 64) __builtin_prefetch(boxes + at);
     }
     for (unsigned left = full; left != 0; left &= left - 1) {
       const int i = __builtin_ctz(left);
-      for (std::uint32_t b = first[i]; b < end[i]; ++b) {
-        if (!passes_box(lists.boxes[b].side, r[i].org2, r[i].inv2, r[i].t_min, r[i].best)) continue;
-        const char* const lines = reinterpret_cast<const char*>(lists.triangles + b);
-        for (std::size_t at = 0; at < sizeof(TriangleBlock); at += 64) __builtin_prefetch(lines + at);
-        due[count++] = {i, b};
-        if (count == kMost) settle();
-      }
+      for (std::uint32_t at = first[i] / kBlock * kBlock; at < end[i]; at += kBlock)
+        for (unsigned passed = passed_boxes(r[i], lists.boxes[at / kBlock]) & blocks_between(at, first[i], end[i]); passed != 0; passed &= passed - 1) {
+          const std::uint32_t b = at + static_cast<unsigned>(__builtin_ctz(passed));
+          const char* const lines = reinterpret_cast<const char*>(lists.triangles + b);
+          for (std::size_t line = 0; line < sizeof(TriangleBlock); line += 64) __builtin_prefetch(lines + line);
+          due[count++] = {i, b};
+          if (count == kMost) settle();
+        }
     }
     settle();
   }

@@ -23,12 +23,13 @@ float not_below(double x) {
 // A hit h, off by no more than `pad` from its triangle, is found in the cell whose part of the ray h lies on: h is in that cell and in
 // the triangle's box grown by pad, so in the box below, and pad / 4 = 64 u diagonals inside it. A slab test in float is off by
 // 3 u of the way to each plane, which is at most 2.8 diagonals (approach()), and compares two of them: 17 u diagonals.
-RawVector<BlockBox> bound_blocks(const Grid& g, double pad, int threads) {
+RawVector<BlockBoxes> bound_blocks(const Grid& g, double pad, int threads) {
   const CellStore& s = g.store;
-  RawVector<BlockBox> out;
-  out.resize(s.triangles.size());
+  RawVector<BlockBoxes> out;
+  out.resize((s.triangles.size() + kBlock - 1) / kBlock);
   const int nx = static_cast<int>(g.cells[0]), ny = static_cast<int>(g.cells[1]), nz = static_cast<int>(g.cells[2]);
   if (out.empty()) return out;
+  for (auto& side : out.back().side) std::fill(std::begin(side), std::end(side), kInfinity);  // places without a block
 #pragma omp parallel for schedule(dynamic) num_threads(threads)
   for (int z = 0; z < nz; ++z)
     for (int y = 0; y < ny; ++y)
@@ -42,10 +43,9 @@ RawVector<BlockBox> bound_blocks(const Grid& g, double pad, int threads) {
             for (int i = 0; i < kBlock; ++i)  // unused places are NaN and change neither
               for (const float v : {block.a[a][i], block.b[a][i], block.c[a][i]}) lo = v < lo ? v : lo, hi = v > hi ? v : hi;
             const double cell_lo = g.lo[a] + at[a] * g.cell[a], cell_hi = g.lo[a] + (at[a] + 1) * g.cell[a];
-            out[b].side[a] = not_above(std::max(lo - pad, cell_lo) - pad / 4);
-            out[b].side[4 + a] = not_below(std::min(hi + pad, cell_hi) + pad / 4);
+            out[b / kBlock].side[a][b % kBlock] = not_above(std::max(lo - pad, cell_lo) - pad / 4);
+            out[b / kBlock].side[3 + a][b % kBlock] = not_below(std::min(hi + pad, cell_hi) + pad / 4);
           }
-          out[b].side[3] = out[b].side[7] = 0;
         }
       }
   return out;

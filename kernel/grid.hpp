@@ -48,7 +48,7 @@ struct Primitives {
 struct CellStore {
   RawVector<std::uint32_t> triangle_first, sphere_first, cone_first;
   RawVector<TriangleBlock> triangles;
-  RawVector<BlockBox> boxes;
+  RawVector<BlockBoxes> boxes;
   std::array<RawVector<float>, 4> spheres;
   RawVector<std::uint32_t> sphere_id;
   std::array<RawVector<float>, 10> cones;
@@ -97,7 +97,7 @@ Extent extent_of(const Primitives& primitives, std::span<const std::uint32_t> id
 
 /// A box for each block of triangles of a grid: of the part of them within the cell. Both are grown by `pad` as when triangles are
 /// given to cells, and by a quarter more for the rounding of a test of it.
-RawVector<BlockBox> bound_blocks(const Grid& grid, double pad, int threads);
+RawVector<BlockBoxes> bound_blocks(const Grid& grid, double pad, int threads);
 
 /// All of `ids` as the one cell of a store without a grid.
 CellStore build_list(const Primitives& primitives, std::span<const std::uint32_t> ids);

@@ -351,31 +351,6 @@ class Chosen {
   unsigned lanes_;
 };
 
-/// Whether a line passes a box between t0 and t1: box holds lo and hi, org the origin twice, inv the inverse of the direction
-/// twice, four numbers each of which the last means nothing.
-inline bool passes_box(const float* box, const float* org, const float* inv, float t0, float t1) {
-#if GRELHA_ISA_NUMBER == 1
-  for (int a = 0; a < 3; ++a) {
-    const float x = (box[a] - org[a]) * inv[a], y = (box[4 + a] - org[a]) * inv[a];
-    t0 = greater(lesser(x, y), t0), t1 = lesser(greater(x, y), t1);
-  }
-  return t0 <= t1;
-#else
-#if GRELHA_ISA_NUMBER == 2
-  const __m128 x = _mm_mul_ps(_mm_sub_ps(_mm_load_ps(box), _mm_load_ps(org)), _mm_load_ps(inv));
-  const __m128 y = _mm_mul_ps(_mm_sub_ps(_mm_load_ps(box + 4), _mm_load_ps(org)), _mm_load_ps(inv));
-#else
-  const __m256 t = _mm256_mul_ps(_mm256_sub_ps(_mm256_load_ps(box), _mm256_load_ps(org)), _mm256_load_ps(inv));
-  const __m128 x = _mm256_castps256_ps128(t), y = _mm256_extractf128_ps(t, 1);
-#endif
-  const __m128 near = _mm_min_ps(x, y), far = _mm_max_ps(x, y);
-  __m128 enter = _mm_max_ss(_mm_max_ss(near, _mm_movehl_ps(near, near)), _mm_shuffle_ps(near, near, 1));
-  __m128 leave = _mm_min_ss(_mm_min_ss(far, _mm_movehl_ps(far, far)), _mm_shuffle_ps(far, far, 1));
-  enter = _mm_max_ss(enter, _mm_set_ss(t0)), leave = _mm_min_ss(leave, _mm_set_ss(t1));
-  return _mm_comile_ss(enter, leave) != 0;
-#endif
-}
-
 template <class Real>
 using Mask = typename LaneTraits<Real>::Mask;
 template <class Real>

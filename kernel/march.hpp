@@ -192,7 +192,7 @@ inline Spread bound(const GridView& g, const Packet& p, Frustum& f, int axis = -
   }
   for (int j = 0; j < 4; ++j) {
     f.reach[j] = square_root(f.a[j] * f.a[j] + f.b[j] * f.b[j]) * 1.00001f;
-    f.across[j] = (j < 2 ? f.u : f.v) + (f.a[j] > 0 ? 4 : 0), f.along[j] = k + (f.b[j] > 0 ? 4 : 0);
+    f.across[j] = (j < 2 ? f.u : f.v) + (f.a[j] > 0 ? 3 : 0), f.along[j] = k + (f.b[j] > 0 ? 3 : 0);
   }
   if (f.by_group) bound_groups(g, f, lo0, lo1, hi0, hi1, corner + farthest, along, start - f.from, per);
   return Spread::kTogether;
@@ -220,11 +220,15 @@ inline unsigned inside_planes(const Value& value) {
   return ~bits(out) & ((1u << kWidth<Block>) - 1u);
 }
 
-/// Whether a box reaches into the frustum.
-inline bool box_inside(const Frustum& f, const BlockBox& box) {
-  bool out = false;
-  for (int j = 0; j < 4; ++j) out |= (f.a[j] * box.side[f.across[j]] + f.b[j] * box.side[f.along[j]]) + f.c[j] < 0;
-  return !out;
+/// Bits of the boxes that reach into the frustum.
+inline unsigned boxes_inside(const Frustum& f, const BlockBoxes& boxes) {
+  unsigned inside = 0;
+  for (int i = 0; i < kBlock; i += kWidth<Block>)
+    inside |= inside_planes([&](int j) {
+                return (Block(f.a[j]) * load<Block>(boxes.side[f.across[j]] + i) + Block(f.b[j]) * load<Block>(boxes.side[f.along[j]] + i)) +
+                       Block(f.c[j]);
+              }) << i;
+  return inside;
 }
 
 /// Lanes of triangles i, i + 1, ... of a block that reach into the frustum.
@@ -241,7 +245,7 @@ inline unsigned triangles_inside(const Frustum& f, const TriangleBlock& block, i
 }
 
 template <bool kAny>
-inline void test_triangles(const Frustum& f, Packet& p, const TriangleBlock& block, Mailbox* mailbox, Counters& n) {
+inline void test_block(const Frustum& f, Packet& p, const TriangleBlock& block, Mailbox* mailbox, Counters& n) {
   for (int i = 0; i < kBlock; i += kWidth<Block>) {
     for (unsigned left = triangles_inside(f, block, i); left != 0; left &= left - 1) {
       const int at = i + __builtin_ctz(left);
@@ -266,6 +270,14 @@ inline void test_triangles(const Frustum& f, Packet& p, const TriangleBlock& blo
       p.live = live;
     }
   }
+}
+
+template <bool kAny>
+inline void test_triangles(const Frustum& f, Packet& p, const CellLists& lists, std::size_t cell, Mailbox* mailbox, Counters& n) {
+  const std::uint32_t first = lists.triangle_first[cell], end = lists.triangle_first[cell + 1];
+  for (std::uint32_t at = first / kBlock * kBlock; at < end; at += kBlock)
+    for (unsigned left = boxes_inside(f, lists.boxes[at / kBlock]) & blocks_between(at, first, end); left != 0; left &= left - 1)
+      test_block<kAny>(f, p, lists.triangles[at + static_cast<unsigned>(__builtin_ctz(left))], mailbox, n);
 }
 
 /// Lanes of spheres i, i + 1, ... before `end` that reach into the frustum.
@@ -398,9 +410,7 @@ inline void march_from(const GridView& g, Packet& p, int width, bool use_mailbox
         const int distance = g.distance[cell];
         nearest = distance < nearest ? distance : nearest;
         if (distance != 0) continue;
-        if (g.lists.triangle_first)
-          for (std::uint32_t b = g.lists.triangle_first[cell]; b < g.lists.triangle_first[cell + 1]; ++b)
-            if (box_inside(f, g.lists.boxes[b])) test_triangles<kAny>(f, p, g.lists.triangles[b], box, n);
+        if (g.lists.triangle_first) test_triangles<kAny>(f, p, g.lists, cell, box, n);
         if (g.lists.sphere_first) test_spheres<kAny>(f, p, g.lists, cell, box, n);
         if (g.lists.cone_first) test_cones<kAny>(f, p, g.lists, cell, box, n);
       }

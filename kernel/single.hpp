@@ -11,7 +11,8 @@ struct Single {
   std::uint32_t id;
   int axis;
   float shear[3];
-  alignas(32) float org2[8], inv2[8];  ///< origin and inverse of the direction as passes_box() wants them; with triangles only
+  float inv[3];  ///< inverse of the direction; this and what follows with triangles only
+  int near[3];   ///< the side of a box that the ray meets first, along each axis; the other is 3 places on or back
 };
 
 inline Single single_of(const Packet& p, int i, bool any_triangles) {
@@ -23,10 +24,9 @@ inline Single single_of(const Packet& p, int i, bool any_triangles) {
     r.axis = static_cast<int>(p.axis[i]);
     for (int a = 0; a < 3; ++a) {
       r.shear[a] = p.shear[a][i];
-      r.org2[a] = r.org2[4 + a] = r.org[a];
-      r.inv2[a] = r.inv2[4 + a] = 1 / (magnitude(r.dir[a]) < 1e-18f ? 1e-18f : r.dir[a]);
+      r.inv[a] = 1 / (magnitude(r.dir[a]) < 1e-18f ? 1e-18f : r.dir[a]);
+      r.near[a] = r.inv[a] < 0 ? 3 + a : a;
     }
-    r.org2[3] = r.org2[7] = 0, r.inv2[3] = r.inv2[7] = 0;
   }
   return r;
 }
@@ -48,6 +48,28 @@ inline bool note(Single& r, const Mask<Block>& hit, const Block& t, const std::u
     if (!kAny && (closer || tie)) r.best = at[k], r.id = ids[k];
   }
   return false;
+}
+
+/// Bits of the boxes that a ray passes through before its search ends.
+inline unsigned passed_boxes(const Single& r, const BlockBoxes& boxes) {
+  unsigned passed = 0;
+  for (int i = 0; i < kBlock; i += kWidth<Block>) {
+    Block enter(r.t_min), leave(r.best);
+    for (int a = 0; a < 3; ++a) {
+      const Block org(r.org[a]), inv(r.inv[a]);
+      enter = greater((load<Block>(boxes.side[r.near[a]] + i) - org) * inv, enter);
+      leave = lesser((load<Block>(boxes.side[2 * a + 3 - r.near[a]] + i) - org) * inv, leave);
+    }
+    passed |= bits(enter <= leave) << i;
+  }
+  return passed;
+}
+
+/// Bits of those eight blocks from `at` on (a multiple of eight) that lie in [first, end).
+inline unsigned blocks_between(std::uint32_t at, std::uint32_t first, std::uint32_t end) {
+  constexpr unsigned kAll = (1u << kBlock) - 1;
+  const unsigned from = first > at ? kAll << (first - at) : kAll;
+  return end - at < kBlock ? from & ~(kAll << (end - at)) & kAll : from & kAll;
 }
 
 inline Vec3<Block> spread(const float (&v)[3]) { return {Block(v[0]), Block(v[1]), Block(v[2])}; }
@@ -105,10 +127,8 @@ inline bool test_round(Single& r, const CellLists& lists, std::size_t cell, Coun
 template <bool kAny>
 inline bool test_cell(Single& r, const CellLists& lists, std::size_t cell, Counters& n) {
   if (lists.triangle_first)
-    for (std::uint32_t i = lists.triangle_first[cell]; i < lists.triangle_first[cell + 1]; ++i) {
-      if (lists.boxes && !passes_box(lists.boxes[i].side, r.org2, r.inv2, r.t_min, r.best)) continue;
+    for (std::uint32_t i = lists.triangle_first[cell]; i < lists.triangle_first[cell + 1]; ++i)
       if (test_block<kAny>(r, lists.triangles[i], n)) return true;
-    }
   return test_round<kAny>(r, lists, cell, n);
 }
 

@@ -15,9 +15,10 @@ struct alignas(64) TriangleBlock {
   std::uint32_t id[kBlock];
 };
 
-/// What of a block's triangles lies in its cell, boxed and grown: a ray that meets one of them there passes through this.
-struct alignas(32) BlockBox {
-  float side[8];  ///< least x, y, z and a 0, greatest x, y, z and a 0
+/// Of eight blocks, each: what of its triangles lies in its cell, boxed and grown. A ray that meets one of them there passes through.
+/// Block b has place b % kBlock of boxes b / kBlock.
+struct alignas(64) BlockBoxes {
+  float side[6][kBlock];  ///< least x, y, z, greatest x, y, z
 };
 
 /// Cells of one grid, one after the other, each kind apart: cell i owns places first[i] up to first[i + 1] - 1 of the
@@ -26,7 +27,7 @@ struct alignas(32) BlockBox {
 struct CellLists {
   const std::uint32_t* triangle_first = nullptr;
   const TriangleBlock* triangles = nullptr;
-  const BlockBox* boxes = nullptr;  ///< one a block, or none
+  const BlockBoxes* boxes = nullptr;  ///< of all blocks, or none
 
   const std::uint32_t* sphere_first = nullptr;
   const float *sx = nullptr, *sy = nullptr, *sz = nullptr, *sr = nullptr;

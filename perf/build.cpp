@@ -89,7 +89,7 @@ bool same(const T& a, const T& b) {
 
 bool same(const CellStore& a, const CellStore& b) {
   bool all = same(a.triangle_first, b.triangle_first) && same(a.sphere_first, b.sphere_first) && same(a.cone_first, b.cone_first) &&
-             same(a.triangles, b.triangles) && same(a.sphere_id, b.sphere_id) && same(a.cone_id, b.cone_id);
+             same(a.triangles, b.triangles) && same(a.boxes, b.boxes) && same(a.sphere_id, b.sphere_id) && same(a.cone_id, b.cone_id);
   for (std::size_t k = 0; k < a.spheres.size(); ++k) all = all && same(a.spheres[k], b.spheres[k]);
   for (std::size_t k = 0; k < a.cones.size(); ++k) all = all && same(a.cones[k], b.cones[k]);
   return all;
