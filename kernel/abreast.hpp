@@ -40,7 +40,8 @@ inline unsigned test_cells(Single* r, const CellLists& lists, const std::uint32_
     for (unsigned left = full; left != 0; left &= left - 1) {
       const int i = __builtin_ctz(left);
       for (std::uint32_t at = first[i] / kBlock * kBlock; at < end[i]; at += kBlock)
-        for (unsigned passed = passed_boxes(r[i], lists.boxes[at / kBlock]) & blocks_between(at, first[i], end[i]); passed != 0; passed &= passed - 1) {
+        for (unsigned passed = passed_boxes(r[i], lists.boxes[at / kBlock]) & blocks_between(at, first[i], end[i]); passed != 0;
+             passed &= passed - 1) {
           const std::uint32_t b = at + static_cast<unsigned>(__builtin_ctz(passed));
           const char* const lines = reinterpret_cast<const char*>(lists.triangles + b);
           for (std::size_t line = 0; line < sizeof(TriangleBlock); line += 64) __builtin_prefetch(lines + line);

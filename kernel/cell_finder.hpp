@@ -26,6 +26,15 @@ inline Corners corners_of(const Primitives& p, std::uint32_t id) {
   return c;
 }
 
+inline Box box_of(const Corners& c) {
+  Box b;
+  for (int a = 0; a < 3; ++a) {
+    b.lo[a] = std::min(std::min(c.v[0][a], c.v[1][a]), c.v[2][a]);
+    b.hi[a] = std::max(std::max(c.v[0][a], c.v[1][a]), c.v[2][a]);
+  }
+  return b;
+}
+
 /// A cell grown by pad against a triangle: the plane, and each edge seen along the axes across which the triangle spans
 /// several cells. Together with boxes that meet these are all the separating axes, so what is left is touched.
 class TriangleTouch {
@@ -113,10 +122,7 @@ class CellFinder {
     Box b;
     if (kind == Kind::kTriangle) {
       corners = corners_of(p_, id);
-      for (int a = 0; a < 3; ++a) {
-        b.lo[a] = std::min(std::min(corners.v[0][a], corners.v[1][a]), corners.v[2][a]);
-        b.hi[a] = std::max(std::max(corners.v[0][a], corners.v[1][a]), corners.v[2][a]);
-      }
+      b = box_of(corners);
     } else {
       b = p_.box(id);
     }

@@ -4,9 +4,11 @@
 #include <cmath>
 #include <exception>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
+#include "kernel/block_order.hpp"
 #include "kernel/cell_finder.hpp"
 
 namespace grelha {
@@ -48,11 +50,12 @@ int useful_threads(int threads, std::size_t work) {
 /// Fills a store in three passes, each shared among threads that write to places of their own:
 /// - a chunk of primitives becomes pairs (cell, id), sorted by bucket, a run of neighbouring cells;
 /// - each bucket counts its cells; the sums over buckets are the places where its lists begin;
-/// - each bucket writes its lists, taking chunks in turn, so that ids ascend.
+/// - each bucket writes its lists, taking chunks in turn, so that ids ascend, but for triangles, which stand as their blocks want it.
 class Filling {
  public:
-  Filling(const Primitives& p, std::span<const std::uint32_t> ids, std::size_t cells, int threads)
-      : p_(p), ids_(ids), cells_(cells), threads_(threads) {
+  /// With `pad`, blocks get boxes, and neighbours share them.
+  Filling(const Primitives& p, std::span<const std::uint32_t> ids, const Grid& grid, std::optional<double> pad, int threads)
+      : p_(p), ids_(ids), grid_(grid), pad_(pad), cells_(std::size_t{grid.cells[0]} * grid.cells[1] * grid.cells[2]), threads_(threads) {
     while (((cells_ - 1) >> shift_) >= kMostBuckets) ++shift_;
     buckets_ = ((cells_ - 1) >> shift_) + 1;
     chunks_.resize((ids.size() + kChunk - 1) / kChunk);
@@ -97,10 +100,10 @@ class Filling {
     make_room(total);
 #pragma omp parallel num_threads(threads_)
     {
-      std::vector<std::uint32_t> at;
+      Room room;
 #pragma omp for schedule(dynamic) reduction(+ : taken)
       for (std::ptrdiff_t i = 0; i < buckets; ++i)
-        guarded([&] { taken += write(static_cast<std::size_t>(i), sums[static_cast<std::size_t>(i)], at, empty); });
+        guarded([&] { taken += write(static_cast<std::size_t>(i), sums[static_cast<std::size_t>(i)], room, empty); });
     }
     if (trouble) std::rethrow_exception(trouble);
     occupied = taken;
@@ -167,15 +170,26 @@ class Filling {
     };
     if (has_[0]) padded(store_.spheres, store_.sphere_id, total[0]);
     if (has_[1]) store_.triangles.resize(total[1]);
+    if (has_[1] && pad_) {
+      store_.boxes.resize((total[1] + kBlock - 1) / kBlock);
+      for (auto& side : store_.boxes.back().side) std::fill(std::begin(side), std::end(side), kNaN);  // places without a block
+    }
     if (has_[2]) padded(store_.cones, store_.cone_id, total[2]);
     for (int k = 0; k < 3; ++k)
       if (has_[k]) firsts(k)[cells_] = static_cast<std::uint32_t>(total[static_cast<std::size_t>(k)]);
   }
 
+  struct Room {
+    std::vector<std::uint32_t> at;         ///< entries written so far, by kind and cell
+    RawVector<std::uint32_t> triangles;  ///< ids of the bucket, cell after cell, each from a multiple of kBlock on
+    BlockOrder order;
+  };
+
   /// The bucket's lists; returns how many of its cells hold something.
-  std::uint64_t write(std::size_t bucket, const std::array<std::uint64_t, 3>& start, std::vector<std::uint32_t>& at, std::uint8_t* empty) {
+  std::uint64_t write(std::size_t bucket, const std::array<std::uint64_t, 3>& start, Room& room, std::uint8_t* empty) {
     const std::size_t begin = begin_of(bucket), end = end_of(bucket), size = end - begin;
-    at.assign(3 * size, 0);  // entries written so far, by kind and cell
+    std::vector<std::uint32_t>& at = room.at;
+    at.assign(3 * size, 0);
     std::uint64_t held = 0;
     std::uint32_t* first[3] = {};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -183,23 +197,36 @@ class Filling {
       first[k] = firsts(static_cast<int>(k)).data();
       auto sum = static_cast<std::uint32_t>(start[k]);
       for (std::size_t c = begin; c < end; ++c) sum += std::exchange(first[k][c], sum);
+      if (k == 1) room.triangles.resize((sum - start[1]) * kBlock);
     }
     each_pair(bucket, [&](const Pair& pair) {
       const Kind kind = kind_of(p_, pair.id);
       const auto k = static_cast<std::size_t>(kind);
       const std::size_t place = at[k * size + pair.cell - begin]++, from = first[k][pair.cell];
-      if (kind == Kind::kTriangle) put_triangle(store_.triangles[from + place / kBlock], place % kBlock, p_, pair.id);
+      if (kind == Kind::kTriangle) room.triangles[(from - start[1]) * kBlock + place] = pair.id;
       else if (kind == Kind::kSphere) put_sphere(from + place, pair.id);
       else put_cone(from + place, pair.id);
     });
     for (std::size_t i = 0; i < size; ++i) {
-      if (at[size + i] % kBlock != 0)
-        pad_block(store_.triangles[first[1][begin + i] + at[size + i] / kBlock], at[size + i] % kBlock);
+      if (at[size + i] != 0)
+        put_triangles(first[1][begin + i], {&room.triangles[(first[1][begin + i] - start[1]) * kBlock], at[size + i]}, begin + i, room.order);
       const bool any = (at[i] | at[size + i] | at[2 * size + i]) != 0;
       held += any;
       if (empty) empty[begin + i] = any ? 0 : 255;
     }
     return held;
+  }
+
+  /// A cell's triangles, neighbours in one block; of a list, as they come.
+  void put_triangles(std::uint32_t first, std::span<const std::uint32_t> ids, std::size_t cell, BlockOrder& order) {
+    std::span<const std::uint32_t> places;
+    if (pad_) places = order.places(p_, ids, grid_, cell);
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      const std::size_t place = pad_ ? places[i] : i;
+      put_triangle(store_.triangles[first + place / kBlock], place % kBlock, p_, ids[i]);
+    }
+    if (ids.size() % kBlock != 0) pad_block(store_.triangles[first + ids.size() / kBlock], ids.size() % kBlock);
+    if (pad_) bound_blocks(grid_, *pad_, cell, first, static_cast<std::uint32_t>(first + (ids.size() + kBlock - 1) / kBlock), store_);
   }
 
   void put_sphere(std::size_t to, std::uint32_t id) {
@@ -215,6 +242,8 @@ class Filling {
 
   const Primitives& p_;
   std::span<const std::uint32_t> ids_;
+  const Grid& grid_;  ///< its cells; no more
+  std::optional<double> pad_;
   std::size_t cells_, buckets_ = 0;
   unsigned shift_ = 8;
   int threads_;
@@ -275,8 +304,7 @@ Box Primitives::box(std::uint32_t id) const {
       break;
     }
     case Kind::kTriangle:
-      for (const auto& v : corners_of(*this, id).v) b.add(v[0], v[1], v[2]);
-      break;
+      return box_of(corners_of(*this, id));
     case Kind::kCone: {  // the discs at both ends: a disc of radius r across a unit axis d reaches r sqrt(1 - d_a^2)
       const Cones& c = geometry.cones;
       const std::uint32_t i = id - cone_base;
@@ -351,7 +379,8 @@ Extent extent_of(const Primitives& p, std::span<const std::uint32_t> ids, int th
     double longest = 0;  // squared: one root in the end
 #pragma omp for schedule(static) nowait
     for (std::ptrdiff_t i = 0; i < count; ++i) {
-      const Box b = p.box(ids[static_cast<std::size_t>(i)]);
+      const std::uint32_t id = ids[static_cast<std::size_t>(i)];
+      const Box b = kind_of(p, id) == Kind::kTriangle ? box_of(corners_of(p, id)) : p.box(id);
       double sum = 0;
       for (int a = 0; a < 3; ++a) {
         sum += (b.hi[a] - b.lo[a]) * (b.hi[a] - b.lo[a]);
@@ -394,16 +423,16 @@ Grid build_grid(const Primitives& p, std::span<const std::uint32_t> ids, const B
   }
   g.distance.resize(cells + 3);  // so that four bytes can be read from any place
   const CellFinder finder(p, g, pad);
-  g.store = Filling(p, ids, cells, useful_threads(threads, ids.size())).run([&](std::uint32_t id, const auto& visit) { finder(id, visit); },
+  g.store = Filling(p, ids, g, pad, useful_threads(threads, ids.size())).run([&](std::uint32_t id, const auto& visit) { finder(id, visit); },
                                                                            g.distance.data(), g.occupied);
   chebyshev_distance(g.distance, g.cells, useful_threads(threads, cells));
-  g.store.boxes = bound_blocks(g, pad, useful_threads(threads, ids.size()));
   return g;
 }
 
 CellStore build_list(const Primitives& p, std::span<const std::uint32_t> ids) {
   std::uint64_t occupied = 0;
-  return Filling(p, ids, 1, 1).run([](std::uint32_t, const auto& visit) { visit(std::size_t{0}); }, nullptr, occupied);
+  const Grid one;
+  return Filling(p, ids, one, {}, 1).run([](std::uint32_t, const auto& visit) { visit(std::size_t{0}); }, nullptr, occupied);
 }
 
 }  // namespace grelha

@@ -83,7 +83,8 @@ inline int cell_of(double x, double lo, double inv_cell, int n) {
 /// Resolution  cells per axis = M extent / cbrt(volume / count) + 1 (Cleary & Wyvill 1988; Amanatides & Woo's report form),
 ///             extents below 1/1000 of the largest counted as that, at most 1024 an axis, no cell smaller than 2 pad.
 /// Guarantee   every primitive stands in each cell that its box grown by `pad` touches, unless the cell lies beyond `pad`
-///             of its surface; in each cell primitives ascend by id. Same lists on every machine, by any number of threads.
+///             of its surface; in each cell spheres and cones ascend by id, triangles stand as BlockOrder says. Same lists on
+///             every machine, by any number of threads.
 /// Source      Lagae & Dutré, "Compact, Fast and Robust Grids for Ray Tracing", 2008: count, sum, scatter. Kalojanov & Slusallek,
 ///             "A Parallel Algorithm for Construction of Uniform Grids", 2009: pairs of cell and primitive, sorted by cell.
 Grid build_grid(const Primitives& primitives, std::span<const std::uint32_t> ids, const Box& box, double density, double pad, int threads);
@@ -95,9 +96,9 @@ struct Extent {
 };
 Extent extent_of(const Primitives& primitives, std::span<const std::uint32_t> ids, int threads);
 
-/// A box for each block of triangles of a grid: of the part of them within the cell. Both are grown by `pad` as when triangles are
+/// A box for each block of triangles of one cell: of the part of them within the cell. Both are grown by `pad` as when triangles are
 /// given to cells, and by a quarter more for the rounding of a test of it.
-RawVector<BlockBoxes> bound_blocks(const Grid& grid, double pad, int threads);
+void bound_blocks(const Grid& grid, double pad, std::size_t cell, std::uint32_t first, std::uint32_t end, CellStore& store);
 
 /// All of `ids` as the one cell of a store without a grid.
 CellStore build_list(const Primitives& primitives, std::span<const std::uint32_t> ids);

@@ -1,10 +1,12 @@
 // What a built grid promises: sound rows, every primitive in each cell its surface touches, exact distances.
 #include "kernel/grid.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <numeric>
 #include <set>
 
+#include "kernel/block_order.hpp"
 #include "tests/support/rays.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -48,15 +50,17 @@ TEST(Distance, StopsAt255) {
 
 // ---- rows -------------------------------------------------------------------------------------------------------
 
-/// Ids in one cell, in the order they stand there.
+/// Ids in one cell, in the order they stand there; those of triangles, which stand as their blocks want it, ascending.
 std::vector<std::uint32_t> ids_of(const CellStore& s, std::size_t cell) {
   std::vector<std::uint32_t> out;
   if (!s.sphere_first.empty())
     for (std::uint32_t i = s.sphere_first[cell]; i < s.sphere_first[cell + 1]; ++i) out.push_back(s.sphere_id[i]);
+  const auto spheres = static_cast<std::ptrdiff_t>(out.size());
   if (!s.triangle_first.empty())
     for (std::uint32_t b = s.triangle_first[cell]; b < s.triangle_first[cell + 1]; ++b)
       for (const std::uint32_t id : s.triangles[b].id)
         if (id != kNoPrimitive) out.push_back(id);
+  std::sort(out.begin() + spheres, out.end());
   if (!s.cone_first.empty())
     for (std::uint32_t i = s.cone_first[cell]; i < s.cone_first[cell + 1]; ++i) out.push_back(s.cone_id[i]);
   return out;
@@ -109,6 +113,7 @@ void expect_same_store(const CellStore& a, const CellStore& b) {
   for (const auto list : {&CellStore::triangle_first, &CellStore::sphere_first, &CellStore::cone_first, &CellStore::sphere_id, &CellStore::cone_id})
     expect_same_bytes(a.*list, b.*list);
   expect_same_bytes(a.triangles, b.triangles);
+  expect_same_bytes(a.boxes, b.boxes);
   for (std::size_t k = 0; k < a.spheres.size(); ++k) expect_same_bytes(a.spheres[k], b.spheres[k]);
   for (std::size_t k = 0; k < a.cones.size(); ++k) expect_same_bytes(a.cones[k], b.cones[k]);
   EXPECT_EQ(a.references, b.references);
@@ -254,6 +259,97 @@ TEST(GridRows, HoldAPrimitiveInEachCellItsSurfaceTouches) {
       }
     }
   EXPECT_GT(points, 300000u);
+}
+
+// ---- blocks -----------------------------------------------------------------------------------------------------
+
+/// A sheet of n x n small triangles across the cell of a grid of one, in an order drawn by lot.
+Scene shuffled_sheet(int n) {
+  Random random(7);
+  std::vector<int> at(static_cast<std::size_t>(n * n));
+  std::iota(at.begin(), at.end(), 0);
+  for (std::size_t i = at.size(); i > 1; --i)
+    std::swap(at[i - 1], at[std::min(i - 1, static_cast<std::size_t>(random.unit() * static_cast<double>(i)))]);
+  Scene s = empty_scene();
+  const float step = 1.f / static_cast<float>(n);
+  for (const int k : at) {
+    const float x = static_cast<float>(k % n) * step, y = static_cast<float>(k / n) * step;
+    add_triangle(s, {x, y, .5f}, {x + step, y, .5f}, {x, y + step, .5f});
+  }
+  return s;
+}
+
+TEST(BlockOrder, GivesEachTriangleAPlaceOfItsOwn) {
+  for (const int n : {1, 2, 3, 5, 11, 12, 20}) {  // up to 400: few are ranked in another way than many
+    for (const bool heaped : {false, true}) {
+      Scene scene = shuffled_sheet(n);
+      Triangles& t = scene.geometry.triangles;
+      if (heaped)
+        for (auto* const v : {&t.x, &t.y, &t.z}) std::fill(v->begin(), v->end(), n % 2 == 0 ? .5f : std::numeric_limits<float>::quiet_NaN());
+      const Primitives p(scene.geometry);
+      std::vector<std::uint32_t> ids(t.size()), places;
+      std::iota(ids.begin(), ids.end(), p.triangle_base);
+      Grid one;
+      for (double& c : one.cell) c = 1;
+      BlockOrder order;
+      for (const std::uint32_t place : order.places(p, ids, one, 0)) places.push_back(place);
+      std::sort(places.begin(), places.end());
+      for (std::uint32_t i = 0; i < ids.size(); ++i) ASSERT_EQ(places[i], i) << n;
+    }
+  }
+}
+
+TEST(BlockOrder, PutsNeighboursInOneBlock) {
+  for (const int n : {8, 20}) {
+    const Scene scene = shuffled_sheet(n);
+    const Primitives p(scene.geometry);
+    std::vector<std::uint32_t> ids(scene.geometry.triangles.size());
+    std::iota(ids.begin(), ids.end(), p.triangle_base);
+    Grid one;
+    for (double& c : one.cell) c = 1;
+    BlockOrder order;
+    const auto places = order.places(p, ids, one, 0);
+    std::vector<Box> blocks((ids.size() + kBlock - 1) / kBlock);
+    for (std::size_t i = 0; i < ids.size(); ++i) blocks[places[i] / kBlock].add(p.box(ids[i]));
+    double area = 0;
+    for (const Box& b : blocks) area += (b.hi[0] - b.lo[0]) * (b.hi[1] - b.lo[1]);
+    // The boxes of blocks cover the sheet 1.0 to 1.4 times when blocks are whole pieces of it, 20 times or more when drawn by lot.
+    EXPECT_LT(area, 1.5) << n;
+  }
+}
+
+TEST(BlockBoxes, HoldWhatLiesInTheirCell) {
+  std::size_t points = 0;
+  for (const Case& c : cases()) {
+    const World world(c.scene, {.density = 1});
+    const World::Impl& w = world.impl();
+    Random random(13);
+    for (const Grid& g : w.grids) {
+      const CellStore& s = g.store;
+      if (s.triangle_first.empty()) continue;
+      const double pad = w.view.reach * 256 / 16777216.;
+      for (std::size_t cell = 0; cell + 1 < s.triangle_first.size(); ++cell) {
+        const std::size_t at[3] = {cell % g.cells[0], cell / g.cells[0] % g.cells[1], cell / g.cells[0] / g.cells[1]};
+        for (std::uint32_t b = s.triangle_first[cell]; b < s.triangle_first[cell + 1]; ++b)
+          for (const std::uint32_t id : s.triangles[b].id) {
+            if (id == kNoPrimitive) continue;
+            for (const Point& q : surface_points(c.scene, w.primitives, id, random, 4)) {
+              bool inside = true, boxed = true;
+              for (std::size_t a = 0; a < 3; ++a) {
+                inside &= q.x[a] >= g.lo[a] + double(at[a]) * g.cell[a] && q.x[a] <= g.lo[a] + double(at[a] + 1) * g.cell[a];
+                // A quarter of pad, less the rounding of what it is taken from (the scene's diagonal, as a float).
+                const auto& side = s.boxes[b / kBlock].side;
+                boxed &= q.x[a] - .24 * pad >= side[a][b % kBlock] && q.x[a] + .24 * pad <= side[3 + a][b % kBlock];
+              }
+              if (!inside) continue;
+              ASSERT_TRUE(boxed) << c.name << ", cell " << cell << ", primitive " << id;
+              ++points;
+            }
+          }
+      }
+    }
+  }
+  EXPECT_GT(points, 5000u);
 }
 
 // ---- sizes and choices ------------------------------------------------------------------------------------------
