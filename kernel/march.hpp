@@ -357,22 +357,24 @@ inline int update_live(const Frustum& f, Packet& p, float s) {
   return rays;
 }
 
-/// The live rays of a packet, `width` at most, through one grid, each from p.start on. On return `live` is what it was.
+/// The live rays of a packet, `width` at most, through one grid, each from p.start on, as far as they go together. Returns the groups
+/// whose rays are to go on by themselves, from p.start on. On return `live` is what it was.
 template <bool kAny>
-inline void march_from(const GridView& g, Packet& p, int width, bool use_mailbox, bool any_triangles, Counters& n) {
+inline std::uint64_t march_from(const GridView& g, Packet& p, int width, bool use_mailbox, Counters& n) {
   const std::uint64_t live = p.live;
   Frustum f;
   const auto part = [&] {  // what does not go together in one packet may in four; what does not in these goes ray by ray
     ++n.fell_back;
-    if (width <= kSmall) return walk_apart<kAny>(g, p, any_triangles, n);
+    if (width <= kSmall) return live;
     constexpr int kEach = kSmall / kWidth<Lanes>;
+    std::uint64_t apart = 0;
     for (int first = 0; first < p.groups; first += kEach)
-      if ((p.live = live & ((std::uint64_t{1} << kEach) - 1) << first) != 0)
-        march_from<kAny>(g, p, kSmall, use_mailbox, any_triangles, n);
+      if ((p.live = live & ((std::uint64_t{1} << kEach) - 1) << first) != 0) apart |= march_from<kAny>(g, p, kSmall, use_mailbox, n);
     p.live = live;
+    return apart;
   };
   switch (bound(g, p, f)) {
-    case Spread::kNothing: return;
+    case Spread::kNothing: return 0;
     case Spread::kApart: return part();
     case Spread::kTogether: break;
   }
@@ -422,13 +424,16 @@ inline void march_from(const GridView& g, Packet& p, int width, bool use_mailbox
   }
   ++n.formed;
   p.live = live;
+  return 0;
 }
 
 /// All rays of a packet through one grid.
 template <bool kAny>
 inline void march(const GridView& g, Packet& p, bool use_mailbox, bool any_triangles, Counters& n) {
   __builtin_memcpy(p.start, p.t_min, sizeof p.start);
-  march_from<kAny>(g, p, p.size, use_mailbox, any_triangles, n);
+  const std::uint64_t live = p.live;
+  if ((p.live = march_from<kAny>(g, p, p.size, use_mailbox, n)) != 0) walk_apart<kAny>(g, p, any_triangles, n);
+  p.live = live;
 }
 
 }  // namespace grelha::GRELHA_ISA
