@@ -21,12 +21,13 @@ inline unsigned test_cells(Single* r, const CellLists& lists, const std::uint32_
     struct Due {
       int ray;
       std::uint32_t block;
+      float enter;  ///< t of its box; what was met since may be nearer
     } due[kMost];
     int count = 0;
     const auto settle = [&] {
       for (int k = 0; k < count; ++k) {
         const int i = due[k].ray;
-        if (!(over >> i & 1) && test_block<kAny>(r[i], lists.triangles[due[k].block], n)) over |= 1u << i;
+        if (!(over >> i & 1) && due[k].enter <= r[i].best && test_block<kAny>(r[i], lists.triangles[due[k].block], n)) over |= 1u << i;
       }
       count = 0;
     };
@@ -37,15 +38,16 @@ inline unsigned test_cells(Single* r, const CellLists& lists, const std::uint32_
       const char* const boxes = reinterpret_cast<const char*>(lists.boxes + first[i] / kBlock);
       for (std::size_t at = 0; at < sizeof(BlockBoxes); at += 64) __builtin_prefetch(boxes + at);
     }
+    float enters[kBlock];
     for (unsigned left = full; left != 0; left &= left - 1) {
       const int i = __builtin_ctz(left);
       for (std::uint32_t at = first[i] / kBlock * kBlock; at < end[i]; at += kBlock)
-        for (unsigned passed = passed_boxes(r[i], lists.boxes[at / kBlock]) & blocks_between(at, first[i], end[i]); passed != 0;
+        for (unsigned passed = passed_boxes(r[i], lists.boxes[at / kBlock], enters) & blocks_between(at, first[i], end[i]); passed != 0;
              passed &= passed - 1) {
           const std::uint32_t b = at + static_cast<unsigned>(__builtin_ctz(passed));
           const char* const lines = reinterpret_cast<const char*>(lists.triangles + b);
           for (std::size_t line = 0; line < sizeof(TriangleBlock); line += 64) __builtin_prefetch(lines + line);
-          due[count++] = {i, b};
+          due[count++] = {i, b, enters[b - at]};
           if (count == kMost) settle();
         }
     }

@@ -50,8 +50,8 @@ inline bool note(Single& r, const Mask<Block>& hit, const Block& t, const std::u
   return false;
 }
 
-/// Bits of the boxes that a ray passes through before its search ends.
-inline unsigned passed_boxes(const Single& r, const BlockBoxes& boxes) {
+/// Bits of the boxes that a ray passes through before its search ends, and where it enters them.
+inline unsigned passed_boxes(const Single& r, const BlockBoxes& boxes, float (&enters)[kBlock]) {
   unsigned passed = 0;
   for (int i = 0; i < kBlock; i += kWidth<Block>) {
     Block enter(r.t_min), leave(r.best);
@@ -61,6 +61,7 @@ inline unsigned passed_boxes(const Single& r, const BlockBoxes& boxes) {
       leave = lesser((load<Block>(boxes.side[2 * a + 3 - r.near[a]] + i) - org) * inv, leave);
     }
     passed |= bits(enter <= leave) << i;
+    store(enters + i, enter);
   }
   return passed;
 }
