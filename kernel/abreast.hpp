@@ -53,6 +53,12 @@ inline unsigned test_cells(Single* r, const CellLists& lists, const std::uint32_
     }
     settle();
   }
+  if (lists.sphere_first)
+    for (unsigned left = full & ~over; left != 0; left &= left - 1) {
+      const std::uint32_t first = lists.sphere_first[cells[__builtin_ctz(left)]];
+      for (const float* const from : {lists.sx, lists.sy, lists.sz, lists.sr})
+        __builtin_prefetch(from + first), __builtin_prefetch(from + first + 16);
+    }
   if (lists.sphere_first || lists.cone_first)
     for (unsigned left = full & ~over; left != 0; left &= left - 1) {
       const int i = __builtin_ctz(left);
