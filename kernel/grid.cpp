@@ -1,6 +1,7 @@
 #include "kernel/grid.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <exception>
 #include <limits>
@@ -293,16 +294,10 @@ Primitives::Primitives(const Geometry& g)
       cone_base(triangle_base + static_cast<std::uint32_t>(g.triangles.size())),
       end(cone_base + static_cast<std::uint32_t>(g.cones.size())) {}
 
-Box Primitives::box(std::uint32_t id) const {
+Box Primitives::flat_box(std::uint32_t id) const {
   Box b;
   switch (kind_of(*this, id)) {
-    case Kind::kSphere: {
-      const std::uint32_t i = id - sphere_base;
-      const Spheres& s = geometry.spheres;
-      b.add(s.x[i], s.y[i], s.z[i]);
-      b.grow(std::abs(static_cast<double>(s.radius[i])));
-      break;
-    }
+    case Kind::kSphere: break;
     case Kind::kTriangle:
       return box_of(corners_of(*this, id));
     case Kind::kCone: {  // the discs at both ends: a disc of radius r across a unit axis d reaches r sqrt(1 - d_a^2)
@@ -395,6 +390,21 @@ Extent extent_of(const Primitives& p, std::span<const std::uint32_t> ids, int th
     }
   }
   return all;
+}
+
+std::vector<std::uint32_t> longer_than(const Primitives& p, std::span<const std::uint32_t> ids, double diagonal, std::size_t most, int threads) {
+  std::vector<std::uint32_t> found(most + 1);
+  std::atomic<std::size_t> next = 0;
+  const auto count = static_cast<std::ptrdiff_t>(ids.size());
+#pragma omp parallel for schedule(static) num_threads(useful_threads(threads, ids.size()))
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    const std::uint32_t id = ids[static_cast<std::size_t>(i)];
+    if (!(p.box(id).diagonal() > diagonal)) continue;
+    if (const std::size_t at = next++; at < found.size()) found[at] = id;
+  }
+  found.resize(std::min(next.load(), found.size()));
+  std::sort(found.begin(), found.end());
+  return found;
 }
 
 Grid build_grid(const Primitives& p, std::span<const std::uint32_t> ids, const Box& box, double density, double pad, int threads) {

@@ -41,7 +41,18 @@ struct Primitives {
   PreparedCones cones;
   std::uint32_t sphere_base, triangle_base, cone_base, end;
   explicit Primitives(const Geometry& geometry);
-  Box box(std::uint32_t id) const;  ///< of a finite primitive (id >= sphere_base)
+  /// Of a finite primitive (id >= sphere_base).
+  Box box(std::uint32_t id) const { return id < triangle_base ? sphere_box(id - sphere_base) : flat_box(id); }
+
+ private:
+  Box sphere_box(std::size_t i) const {
+    const Spheres& s = geometry.spheres;
+    const double center[3] = {s.x[i], s.y[i], s.z[i]}, radius = s.radius[i] < 0 ? -s.radius[i] : s.radius[i];
+    Box b;
+    for (int a = 0; a < 3; ++a) b.lo[a] = center[a] - radius, b.hi[a] = center[a] + radius;
+    return b;
+  }
+  Box flat_box(std::uint32_t id) const;  ///< of a triangle or a cone
 };
 
 /// Runs of primitives, cell after cell, that own the memory a CellLists points to.
@@ -95,6 +106,9 @@ struct Extent {
   double longest = 0;
 };
 Extent extent_of(const Primitives& primitives, std::span<const std::uint32_t> ids, int threads);
+/// Those of `ids` whose box has a longer diagonal, ascending; most + 1 of them, whichever, when there are more than `most`.
+std::vector<std::uint32_t> longer_than(const Primitives& primitives, std::span<const std::uint32_t> ids, double diagonal, std::size_t most,
+                                       int threads);
 
 /// A box for each block of triangles of one cell: of the part of them within the cell. Both are grown by `pad` as when triangles are
 /// given to cells, and by a quarter more for the rounding of a test of it.

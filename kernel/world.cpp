@@ -50,8 +50,7 @@ Extent set_huge_apart(const Primitives& p, Ids& ids, Extent all, Ids& outside, i
   for (;; all = extent_of(p, ids, threads)) {
     const double huge = kHuge * all.box.diagonal();
     if (!(all.longest > huge)) return all;
-    Ids large;  // ascending
-    std::copy_if(ids.begin(), ids.end(), std::back_inserter(large), [&](std::uint32_t id) { return p.box(id).diagonal() > huge; });
+    const Ids large = longer_than(p, ids, huge, kMostOutside, threads);
     if (large.empty() || outside.size() + large.size() > kMostOutside) return all;
     outside.insert(outside.end(), large.begin(), large.end());
     std::erase_if(ids, [&](std::uint32_t id) { return std::binary_search(large.begin(), large.end(), id); });
