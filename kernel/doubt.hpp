@@ -121,8 +121,18 @@ class Watcher {
     const float m[3] = {magnitude(f.unit.x), magnitude(f.unit.y), magnitude(f.unit.z)};
     const int axis = m[0] >= m[1] && m[0] >= m[2] ? 0 : m[1] >= m[2] ? 1 : 2;
     for (int g = 0; g < scene_.grid_count; ++g)
-      if (!walk_beam(scene_.grids[g], p, axis, see, n_) || met.full) return false;
+      if (for_beam(scene_.grids[g], p) && (!walk_beam(scene_.grids[g], p, axis, see, n_) || met.full)) return false;
     return true;
+  }
+
+  /// A beam goes where all of its edges go: the grid of rays that start far away holds for those that start near as well.
+  static bool for_beam(const GridView& g, const Packet& p) {
+    bool all = true, some = false;
+    for (int i = 0; i < kCorners; ++i) {
+      const bool served = serves(g, {p.org[0][i], p.org[1][i], p.org[2][i]});
+      all &= served, some |= served;
+    }
+    return g.serves == Serves::kNear ? all : some;
   }
 
   bool is_triangle(std::uint32_t id) const { return id >= scene_.triangle_base && id < scene_.cone_base; }

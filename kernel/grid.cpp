@@ -16,6 +16,7 @@ namespace grelha {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr double kMostCells = 1024;  ///< along an axis
 
 /// A cube root from + - * / alone, so that resolutions agree between machines; Newton's steps until they stop falling.
 double cube_root(double x) {
@@ -348,10 +349,11 @@ std::size_t CellStore::bytes() const {
 GridView Grid::view() const {
   GridView v;
   v.lists = store.lists();
+  v.serves = serves;
   v.distance = distance.data();
   for (int a = 0; a < 3; ++a) {
     const auto i = static_cast<std::size_t>(a);
-    v.n[a] = static_cast<int>(cells[i]);
+    v.n[a] = static_cast<int>(cells[i]), v.near_lo[a] = near_lo[a], v.near_hi[a] = near_hi[a];
     v.lo[a] = lo[a], v.cell[a] = cell[a], v.inv_cell[a] = 1 / cell[a];
     v.lo_f[a] = static_cast<float>(lo[a]);
     v.hi_f[a] = static_cast<float>(lo[a] + cell[a] * cells[i]);
@@ -407,27 +409,42 @@ std::vector<std::uint32_t> longer_than(const Primitives& p, std::span<const std:
   return found;
 }
 
+namespace {
+
+/// Cells that a density asks for per length; extents that are nothing beside the largest become a thousandth of it.
+double cells_per_length(double (&extent)[3], std::size_t count, double density) {
+  double largest = std::max({extent[0], extent[1], extent[2]});
+  if (!(largest > 0)) largest = 1e-30;  // every primitive at one point of the origin: any cell does
+  for (double& e : extent) e = std::max(e, largest / 1000);
+  return density / cube_root(extent[0] * extent[1] * extent[2] / static_cast<double>(count));
+}
+
+}  // namespace
+
+double cell_edge(const Box& box, std::size_t count, double density) {
+  double extent[3] = {box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2]};
+  const double per_length = cells_per_length(extent, count, density);
+  return std::max(1 / per_length, std::max({extent[0], extent[1], extent[2]}) / kMostCells);
+}
+
 Grid build_grid(const Primitives& p, std::span<const std::uint32_t> ids, const Box& box, double density, double pad, int threads) {
   Box b = box;
   b.grow(2 * pad);  // once for the cells' contents, once for the entry of rays
   Grid g;
-  double extent[3], largest = 0;
+  double extent[3];
   for (int a = 0; a < 3; ++a) {
     // Down to a float, so that walks in float subtract the corner without an error of its own.
     float lo = static_cast<float>(b.lo[a]);
     if (lo > b.lo[a]) lo = std::nextafter(lo, -std::numeric_limits<float>::infinity());
     g.lo[a] = lo;
     extent[a] = b.hi[a] - g.lo[a];
-    largest = std::max(largest, extent[a]);
   }
-  if (!(largest > 0)) largest = 1e-30;  // every primitive at one point of the origin: any cell does
-  for (double& e : extent) e = std::max(e, largest / 1000);
-  const double per_length = density / cube_root(extent[0] * extent[1] * extent[2] / static_cast<double>(ids.size()));
+  const double per_length = cells_per_length(extent, ids.size(), density);
   std::size_t cells = 1;
   for (std::size_t a = 0; a < 3; ++a) {
     // Cells no smaller than 2 pad: one outlier a million scenes away makes a pad that would put everything in every cell.
     const double n = std::min(extent[a] * per_length + 1, extent[a] / (2 * pad));
-    g.cells[a] = static_cast<std::uint32_t>(std::clamp(n, 1., 1024.));
+    g.cells[a] = static_cast<std::uint32_t>(std::clamp(n, 1., kMostCells));
     g.cell[a] = extent[a] / g.cells[a];
     cells *= g.cells[a];
   }

@@ -76,6 +76,8 @@ struct Grid {
   CellStore store;
   std::vector<std::uint8_t> distance;           ///< [cells + 3] Chebyshev distance to the nearest non-empty cell, at most 255
   std::uint64_t occupied = 0;
+  Serves serves = Serves::kAll;
+  float near_lo[3] = {}, near_hi[3] = {};  ///< see Serves
 
   GridView view() const;
   GridStats stats() const;
@@ -99,6 +101,9 @@ inline int cell_of(double x, double lo, double inv_cell, int n) {
 /// Source      Lagae & Dutré, "Compact, Fast and Robust Grids for Ray Tracing", 2008: count, sum, scatter. Kalojanov & Slusallek,
 ///             "A Parallel Algorithm for Construction of Uniform Grids", 2009: pairs of cell and primitive, sorted by cell.
 Grid build_grid(const Primitives& primitives, std::span<const std::uint32_t> ids, const Box& box, double density, double pad, int threads);
+
+/// The edge of the cells that a density asks for; what build_grid() makes of it also depends on the pad.
+double cell_edge(const Box& box, std::size_t count, double density);
 
 /// Box of some finite primitives, and the longest diagonal of any.
 struct Extent {

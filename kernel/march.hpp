@@ -427,10 +427,9 @@ inline std::uint64_t march_from(const GridView& g, Packet& p, int width, bool us
   return 0;
 }
 
-/// All rays of a packet through one grid.
+/// All rays of a packet through one grid, from p.start on.
 template <bool kAny>
 inline void march(const GridView& g, Packet& p, bool use_mailbox, bool any_triangles, Counters& n) {
-  __builtin_memcpy(p.start, p.t_min, sizeof p.start);
   const std::uint64_t live = p.live;
   if ((p.live = march_from<kAny>(g, p, p.size, use_mailbox, n)) != 0) walk_apart<kAny>(g, p, any_triangles, n);
   p.live = live;

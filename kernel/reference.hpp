@@ -131,7 +131,8 @@ inline void trace_reference(const SceneView& scene, const RayArrays& rays, int c
       rays.shift[i] = static_cast<float>(shift);
     }
     done = done || reference_cell<kAny>(r, scene.outside, 0, nullptr, n);
-    for (int k2 = 0; k2 < scene.grid_count && !done; ++k2) done = reference_walk<kAny>(scene.grids[k2], r, m, n);
+    for (int k2 = 0; k2 < scene.grid_count && !done; ++k2)
+      if (serves(scene.grids[k2], r.org)) done = reference_walk<kAny>(scene.grids[k2], r, m, n);
     rays.t[i] = r.best, rays.id[i] = r.id;
   }
 }

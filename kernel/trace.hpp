@@ -112,6 +112,33 @@ inline void test_outside(const CellLists& lists, Packet& p, Counters& n) {
     }
 }
 
+inline bool serves(const GridView& g, const float (&org)[3]) {
+  if (g.serves == Serves::kAll) return true;
+  bool near = true;
+  for (int a = 0; a < 3; ++a) near &= org[a] >= g.near_lo[a] && org[a] <= g.near_hi[a];
+  return near == (g.serves == Serves::kNear);
+}
+
+/// Sets where each ray is to be searched from in a grid: nowhere when the grid is not for it. False: it is for none.
+inline bool start_in(const GridView& g, Packet& p) {
+  __builtin_memcpy(p.start, p.t_min, sizeof p.start);
+  if (g.serves == Serves::kAll) return true;
+  bool some = false;
+  each_live_group(p, [&](int i, int) {
+    Mask<Lanes> away = Lanes(0) != Lanes(0);
+    for (int a = 0; a < 3; ++a) {
+      const Lanes o = load<Lanes>(p.org[a] + i);
+      away = either(away, either(o < Lanes(g.near_lo[a]), o > Lanes(g.near_hi[a])));
+    }
+    const bool near = g.serves == Serves::kNear;
+    const Lanes start = load<Lanes>(p.start + i), never(kInfinity);
+    const Lanes from = select(away, near ? never : start, near ? start : never);
+    some |= any(from < never);
+    store(p.start + i, from);
+  });
+  return some;
+}
+
 template <bool kAny>
 inline void trace_alone(const SceneView& scene, Packet& p, bool any_triangles, Counters& n) {
   for (int i = 0; i < p.size; ++i) {
@@ -120,9 +147,8 @@ inline void trace_alone(const SceneView& scene, Packet& p, bool any_triangles, C
     test_cell<kAny>(r, scene.outside, 0, n);
     p.best[i] = r.best, p.id[i] = bits_of(r.id);
   }
-  __builtin_memcpy(p.start, p.t_min, sizeof p.start);
   for (int g = 0; g < scene.grid_count; ++g)
-    walk_apart<kAny>(scene.grids[g], p, any_triangles, n);
+    if (start_in(scene.grids[g], p)) walk_apart<kAny>(scene.grids[g], p, any_triangles, n);
 }
 
 template <bool kAny>
@@ -133,7 +159,8 @@ inline void trace_packet(const SceneView& scene, Packet& p, const TraceOptions& 
   bring_near(scene, p);
   if (options.packet == 1) return trace_alone<kAny>(scene, p, any_triangles, n);
   test_outside<kAny>(scene.outside, p, n);
-  for (int g = 0; g < scene.grid_count; ++g) march<kAny>(scene.grids[g], p, options.mailbox, any_triangles, n);
+  for (int g = 0; g < scene.grid_count; ++g)
+    if (start_in(scene.grids[g], p)) march<kAny>(scene.grids[g], p, options.mailbox, any_triangles, n);
 }
 
 /// Closest hits (kAny false) or occlusion (kAny true) of rays [0, count), `options.packet` neighbours at a time.

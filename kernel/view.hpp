@@ -38,8 +38,14 @@ struct CellLists {
   const std::uint32_t* cone_id = nullptr;
 };
 
+/// The rays a grid is for, by where they start: anywhere, in the box `near_lo` to `near_hi`, or outside of it. Primitives stand in one
+/// grid for all, or in one for the rays that start near and one for those that start far away, whose tests are off by more.
+enum class Serves : std::uint8_t { kAll, kNear, kFar };
+
 struct GridView {
   CellLists lists;
+  Serves serves = Serves::kAll;
+  float near_lo[3] = {}, near_hi[3] = {};
   const std::uint8_t* distance = nullptr;  ///< [cells] Chebyshev distance to the nearest cell that holds something; 0: this one does
   int n[3] = {};                           ///< cells per axis; x runs fastest
   double lo[3] = {}, cell[3] = {}, inv_cell[3] = {};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <stdexcept>
 
@@ -15,6 +16,9 @@ constexpr std::size_t kMostOutside = 32;  ///< primitives without a grid, each m
 constexpr std::size_t kSmallObject = 256; ///< triangles; smaller objects share the grid of the loose ones
 constexpr std::size_t kMostGrids = 16;
 constexpr double kHuge = .5;              ///< of the diagonal of what it lies among: larger primitives get no grid
+constexpr double kMostPads = 64;          ///< a cell, of a grid for near rays: more would not make its lists shorter
+constexpr double kFewestPads = 8;         ///< a cell, of a grid for far rays: with fewer, lists are long, and no faster
+constexpr double kVast = 4;               ///< scenes so many times as wide as near rays reach have both: in others it would gain little
 constexpr double kDensity = .7;           ///< M; packets like it coarser than the report's 2 (docs/performance.md)
 
 using Ids = std::vector<std::uint32_t>;
@@ -65,6 +69,31 @@ bool set_few_apart(const Primitives& p, Ids& ids, Ids& outside) {
   std::copy_if(ids.begin(), ids.end(), std::back_inserter(outside), [&](std::uint32_t id) { return !is_triangle(id); });
   std::erase_if(ids, [&](std::uint32_t id) { return !is_triangle(id); });
   return true;
+}
+
+/// What primitives are grown by for rays that start within `reach` of their box on each axis, `reach` no less than its diagonal. Such
+/// rays are at most 1 + sqrt 3 reaches from any of them; a float test is off by at most 62 eps of that distance, and a walk by 32 eps of the
+/// reach (derived in docs/numerics.md).
+double pad_of(double reach) { return reach * 256 / 16777216; }
+
+/// The grid of some primitives in a scene of that diagonal. Where the pad that rays from all over the scene ask for is large beside
+/// the cells, there are two: one with such a pad, and one for the rays that start near, which are most.
+void add_grids(const Primitives& p, const Ids& ids, const Box& box, double density, double diagonal, int threads, std::vector<Grid>& grids) {
+  const double edge = cell_edge(box, ids.size(), density), reach = std::max(box.diagonal(), edge / pad_of(kMostPads));
+  if (!(diagonal > kVast * reach)) {
+    grids.push_back(build_grid(p, ids, box, density, pad_of(diagonal), threads));
+    return;
+  }
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  for (const Serves serves : {Serves::kNear, Serves::kFar}) {
+    const double pad = pad_of(serves == Serves::kNear ? reach : diagonal);
+    Grid& g = grids.emplace_back(build_grid(p, ids, box, density * std::min(1., edge / (kFewestPads * pad)), pad, threads));
+    g.serves = serves;
+    for (int a = 0; a < 3; ++a) {  // rounded inwards
+      g.near_lo[a] = std::nextafter(static_cast<float>(box.lo[a] - reach), infinity);
+      g.near_hi[a] = std::nextafter(static_cast<float>(box.hi[a] + reach), -infinity);
+    }
+  }
 }
 
 /// Whether an index reaches `end`.
@@ -134,10 +163,7 @@ World::Impl::Impl(const Scene& s, const BuildOptions& options) : scene((check(s)
     extents.push_back(extent_of(primitives, ids, threads));
     all.add(extents.back().box);
   }
-  const double diagonal = all.diagonal();
-  // A ray that starts within one diagonal of the box on each axis is at most 1 + sqrt 3 diagonals from any primitive; a float
-  // test is off by at most 62 eps of that distance, and a walk by 32 eps of the diagonal (derived in docs/numerics.md).
-  const double pad = diagonal * 256 / 16777216;
+  const double diagonal = all.diagonal(), density = options.density > 0 ? options.density : kDensity;
 
   Ids apart;
   if (options.grid) {
@@ -148,7 +174,7 @@ World::Impl::Impl(const Scene& s, const BuildOptions& options) : scene((check(s)
       if (ids.size() <= kFewest && apart.size() + ids.size() <= kMostOutside) {
         apart.insert(apart.end(), ids.begin(), ids.end());
       } else if (!ids.empty()) {
-        grids.push_back(build_grid(primitives, ids, extent.box, options.density > 0 ? options.density : kDensity, pad, threads));
+        add_grids(primitives, ids, extent.box, density, diagonal, threads, grids);
       }
     }
     std::sort(apart.begin(), apart.end());

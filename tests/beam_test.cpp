@@ -147,6 +147,24 @@ TEST_P(Beam, IsTheSameForEveryGridAndCopy) {
   EXPECT_LT(plain, 64);
 }
 
+TEST_P(Beam, IsTheSameWhereGridsServeNearRaysOrFarOnes) {
+  Scene s = wall();
+  Random random(7);
+  add_spheres(s, random, 60, 6, .01, .4);
+  add_triangle(s, {-1e6f, -1e6f, -9}, {1e6f, -1e6f, -9}, {0, 1e6f, -9});  // behind the wall
+  const Tile want = doubt(s, *variants().front(), false);
+  bool near[2] = {};
+  for (const float density : {1.f, 40.f}) {
+    const World world(s, {.density = density});
+    const GridView& g = world.impl().grid_views.front();
+    ASSERT_EQ(g.serves, Serves::kNear);
+    near[density > 1] = over_units().eye.z <= g.near_hi[2];
+    EXPECT_EQ(doubt(s, *GetParam(), true, density), want) << density;
+  }
+  EXPECT_TRUE(near[0]);
+  EXPECT_FALSE(near[1]);
+}
+
 INSTANTIATE_TEST_SUITE_P(, Beam, testing::ValuesIn(variants().begin(), variants().end()), [](const auto& p) { return std::string(p.param->name); });
 
 }  // namespace

@@ -182,7 +182,8 @@ std::vector<Case> cases() {
   const Float3 far{148376, 1234, -223423};
   return {{"spheres", random_spheres(3, 300)},  {"triangles", random_triangles(3, 300)}, {"cones", random_cones(3, 200)},
           {"mixture", random_mixture(3, 300)},  {"flat", flat_sheet(3, 200)},            {"needles", needles(3, 90)},
-          {"heap", heap(3, 20)},                {"stadium", stadium(3, 300)},            {"lattice", lattice_patch(9)},
+          {"heap", heap(3, 20)},                {"stadium", stadium(3, 300)},            {"wide plain", crowd_on_a_wide_plain(3, 300)},
+          {"lattice", lattice_patch(9)},
           {"tiny", placed(random_mixture(3, 300), 1e-6, {})}, {"far", placed(random_mixture(3, 300), 2, far)}};
 }
 
@@ -213,9 +214,9 @@ TEST(GridRows, HoldWhatTheyPromise) {
       SCOPED_TRACE(c.name);
       const World world(c.scene, {.density = density});
       const World::Impl& w = world.impl();
-      std::vector<int> seen(w.primitives.end);
+      std::vector<int> near(w.primitives.end), far(w.primitives.end);  // what rays that start near, and far away, may meet
       expect_sound_rows(w.outside, 1);
-      for (const std::uint32_t id : ids_of(w.outside, 0)) ++seen[id];
+      for (const std::uint32_t id : ids_of(w.outside, 0)) ++near[id], ++far[id];
       for (const Grid& g : w.grids) {
         const std::size_t cells = std::size_t{g.cells[0]} * g.cells[1] * g.cells[2];
         expect_sound_rows(g.store, cells);
@@ -226,13 +227,14 @@ TEST(GridRows, HoldWhatTheyPromise) {
           occupied[i] = !ids.empty();
           members.insert(ids.begin(), ids.end());
         }
-        for (const std::uint32_t id : members) ++seen[id];
+        for (const std::uint32_t id : members) near[id] += g.serves != Serves::kFar, far[id] += g.serves != Serves::kNear;
         EXPECT_EQ(g.occupied, std::accumulate(occupied.begin(), occupied.end(), std::uint64_t{0}));
         const auto distance = chebyshev_distance(occupied, g.cells);
         ASSERT_GE(g.distance.size(), cells + 3) << "four bytes are read at once";
         EXPECT_TRUE(std::equal(distance.begin(), distance.end(), g.distance.begin()));
       }
-      for (std::uint32_t id = w.primitives.sphere_base; id < w.primitives.end; ++id) EXPECT_EQ(seen[id], 1) << "primitive " << id;
+      for (std::uint32_t id = w.primitives.sphere_base; id < w.primitives.end; ++id)
+        EXPECT_TRUE(near[id] == 1 && far[id] == 1) << "primitive " << id;
     }
 }
 
@@ -385,6 +387,29 @@ TEST(GridSize, AnOutlierDoesNotPutEverythingEverywhere) {
   const World world(s, {});
   // Cells of at least 2 pad: a grown box, at most 3 pad + its own size across, touches at most 3 of them on an axis.
   for (const GridStats& g : world.grids()) EXPECT_LE(g.references, 27u * 2000u);
+  // For rays that start near, the rest have cells like theirs alone, but for a pad of a 64th on each side.
+  s.geometry.triangles.z[0] = 0;
+  const World alone(s, {});
+  ASSERT_EQ(world.grids().size(), 2u);
+  ASSERT_EQ(alone.grids().size(), 1u);
+  EXPECT_LE(static_cast<double>(world.grids()[0].references), std::pow(1 + 2. / 64, 3) * static_cast<double>(alone.grids()[0].references));
+}
+
+TEST(GridChoice, OnlyVastScenesHaveGridsForNearAndForFarRays) {
+  for (const float half : {100.f, 500.f, 1e5f}) {
+    const Scene scene = crowd_on_a_plain(3, 300, half);
+    const World world(scene, {});
+    const auto& grids = world.impl().grids;
+    if (half < 1000) {
+      ASSERT_EQ(grids.size(), 1u) << half;
+      EXPECT_EQ(grids[0].serves, Serves::kAll);
+      continue;
+    }
+    ASSERT_EQ(grids.size(), 2u);
+    EXPECT_EQ(grids[0].serves, Serves::kNear);
+    EXPECT_EQ(grids[1].serves, Serves::kFar);
+    EXPECT_GT(grids[0].cells[0], grids[1].cells[0]);
+  }
 }
 
 TEST(GridChoice, HugePrimitivesStandOutside) {

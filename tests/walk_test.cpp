@@ -54,6 +54,8 @@ const std::vector<Case>& cases() {
       {"needles", crowd<needles, 150>, 1},
       {"stadium", crowd<stadium, 400>, 1},
       {"stadium_seen_from_the_stands", crowd<stadium, 400>, 900},
+      {"wide_plain", crowd<crowd_on_a_wide_plain, 400>, 1},
+      {"wide_plain_seen_from_all_over", crowd<crowd_on_a_wide_plain, 400>, 300},
       {"one_sphere_many_times",
        [] {
          Scene s = empty_scene();
@@ -207,6 +209,24 @@ TEST_P(Walk, FindsWhatBruteForceFinds) {
 INSTANTIATE_TEST_SUITE_P(
     Isa, Walk, testing::Combine(testing::ValuesIn(variants().begin(), variants().end()), testing::ValuesIn(cases())),
     [](const auto& p) { return std::string(std::get<0>(p.param)->name) + "_" + std::get<1>(p.param).name; });
+
+/// From so far away that what is met lies beside its primitive by more than the cells of near rays allow for.
+TEST(FarRays, FindWhatBruteForceFinds) {
+  const Scene scene = crowd_on_a_wide_plain(7, 400);
+  const World world(scene, {.density = 4});
+  ASSERT_EQ(world.impl().grids.size(), 2u);
+  Random random(3);
+  Rays rays;
+  for (int i = 0; i < 20000; ++i) {
+    const Float3 eye = at({}, random.log_in(1e4, 2e6), random.direction()), aim = random.point(1);
+    rays.add({eye.x, std::abs(eye.y), eye.z}, minus(aim, {eye.x, std::abs(eye.y), eye.z}));
+  }
+  const Truth truth = truth_of(scene, rays);
+  std::size_t met = 0;
+  for (const std::uint32_t id : truth.closest.id) met += id < 400u + 50u;
+  EXPECT_GT(met, 2000u);
+  expect_truth(*find_variant("best"), world, rays, truth, "far rays");
+}
 
 // ---- ties -------------------------------------------------------------------------------------------------------
 

@@ -153,13 +153,23 @@ inline Scene needles(std::uint64_t seed, int n) {
   return s;
 }
 /// A fine teapot-like crowd in the middle of a ground and walls a thousand times larger.
-inline Scene stadium(std::uint64_t seed, int n) {
+/// A crowd on two triangles, `half` from their middle to their sides.
+inline Scene crowd_on_a_plain(std::uint64_t seed, int n, float half) {
   Random random(seed);
   Scene s = empty_scene();
   add_triangles(s, random, n, 1, .02, .1);
   add_spheres(s, random, n / 8, 1, .02, .1);
-  add_triangle(s, {-1000, -1.05f, -1000}, {1000, -1.05f, -1000}, {1000, -1.05f, 1000});
-  add_triangle(s, {-1000, -1.05f, -1000}, {1000, -1.05f, 1000}, {-1000, -1.05f, 1000});
+  add_triangle(s, {-half, -1.05f, -half}, {half, -1.05f, -half}, {half, -1.05f, half});
+  add_triangle(s, {-half, -1.05f, -half}, {half, -1.05f, half}, {-half, -1.05f, half});
+  return s;
+}
+
+/// So wide that the crowd has a grid for rays that start near and one for those that start far away.
+inline Scene crowd_on_a_wide_plain(std::uint64_t seed, int n) { return crowd_on_a_plain(seed, n, 1e6f); }
+
+inline Scene stadium(std::uint64_t seed, int n) {
+  Random random(seed + 1);
+  Scene s = crowd_on_a_plain(seed, n, 1000);
   for (int i = 0; i < 60; ++i) {  // stands: more than are kept outside of grids
     const double w = i * std::numbers::pi / 30;
     const Float3 foot{static_cast<float>(900 * std::cos(w)), -1, static_cast<float>(900 * std::sin(w))};
