@@ -139,6 +139,37 @@ inline bool start_in(const GridView& g, Packet& p) {
   return some;
 }
 
+/// Where the first ray of a packet comes to a grid; infinity: never.
+inline float entry(const GridView& g, const Packet& p) {
+  float t0 = p.t_min[0], t1 = kInfinity;
+  for (int a = 0; a < 3; ++a) {
+    const float d = p.dir[a][0], inv = 1 / (magnitude(d) < 1e-18f ? 1e-18f : d);
+    const float x = (g.lo_f[a] - p.org[a][0]) * inv, y = (g.hi_f[a] - p.org[a][0]) * inv;
+    t0 = greater(lesser(x, y), t0), t1 = lesser(greater(x, y), t1);
+  }
+  return t0 <= t1 ? t0 : kInfinity;
+}
+
+/// The grids, for closest hits front to back as the first ray meets them: what is met early cuts the others short. Answers do not
+/// depend on it, since ties go to the lower id.
+template <bool kAny, class Visit>
+inline void each_grid(const SceneView& scene, const Packet& p, const Visit& visit) {
+  const int count = scene.grid_count;
+  if (kAny || count < 2) {
+    for (int g = 0; g < count; ++g) visit(scene.grids[g]);
+    return;
+  }
+  int order[kMostGrids];
+  float at[kMostGrids];
+  for (int g = 0; g < count; ++g) {
+    const float t = entry(scene.grids[g], p);
+    int i = g;
+    for (; i > 0 && at[i - 1] > t; --i) at[i] = at[i - 1], order[i] = order[i - 1];
+    at[i] = t, order[i] = g;
+  }
+  for (int i = 0; i < count; ++i) visit(scene.grids[order[i]]);
+}
+
 template <bool kAny>
 inline void trace_alone(const SceneView& scene, Packet& p, bool any_triangles, Counters& n) {
   for (int i = 0; i < p.size; ++i) {
@@ -147,8 +178,9 @@ inline void trace_alone(const SceneView& scene, Packet& p, bool any_triangles, C
     test_cell<kAny>(r, scene.outside, 0, n);
     p.best[i] = r.best, p.id[i] = bits_of(r.id);
   }
-  for (int g = 0; g < scene.grid_count; ++g)
-    if (start_in(scene.grids[g], p)) walk_apart<kAny>(scene.grids[g], p, any_triangles, n);
+  each_grid<kAny>(scene, p, [&](const GridView& g) {
+    if (start_in(g, p)) walk_apart<kAny>(g, p, any_triangles, n);
+  });
 }
 
 template <bool kAny>
@@ -159,8 +191,9 @@ inline void trace_packet(const SceneView& scene, Packet& p, const TraceOptions& 
   bring_near(scene, p);
   if (options.packet == 1) return trace_alone<kAny>(scene, p, any_triangles, n);
   test_outside<kAny>(scene.outside, p, n);
-  for (int g = 0; g < scene.grid_count; ++g)
-    if (start_in(scene.grids[g], p)) march<kAny>(scene.grids[g], p, options.mailbox, any_triangles, n);
+  each_grid<kAny>(scene, p, [&](const GridView& g) {
+    if (start_in(g, p)) march<kAny>(g, p, options.mailbox, any_triangles, n);
+  });
 }
 
 /// Closest hits (kAny false) or occlusion (kAny true) of rays [0, count), `options.packet` neighbours at a time.

@@ -38,6 +38,9 @@ struct CellLists {
   const std::uint32_t* cone_id = nullptr;
 };
 
+inline constexpr int kMostGroups = 17;              ///< of primitives
+inline constexpr int kMostGrids = 2 * kMostGroups;  ///< each has one or two
+
 /// The rays a grid is for, by where they start: anywhere, in the box `near_lo` to `near_hi`, or outside of it. Primitives stand in one
 /// grid for all, or in one for the rays that start near and one for those that start far away, whose tests are off by more.
 enum class Serves : std::uint8_t { kAll, kNear, kFar };

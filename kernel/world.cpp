@@ -14,7 +14,6 @@ namespace {
 constexpr std::size_t kFewest = 8;        ///< so few primitives are faster looped over than walked through
 constexpr std::size_t kMostOutside = 32;  ///< primitives without a grid, each met by every ray
 constexpr std::size_t kSmallObject = 256; ///< triangles; smaller objects share the grid of the loose ones
-constexpr std::size_t kMostGrids = 16;
 constexpr double kHuge = .5;              ///< of the diagonal of what it lies among: larger primitives get no grid
 constexpr double kMostPads = 64;          ///< a cell, of a grid for near rays: more would not make its lists shorter
 constexpr double kFewestPads = 8;         ///< a cell, of a grid for far rays: with fewer, lists are long, and no faster
@@ -35,7 +34,7 @@ std::vector<Ids> group(const Primitives& p) {
   for (const Object& o : p.geometry.objects) {
     take(groups.front(), next, o.first_triangle);
     next = o.first_triangle + o.triangle_count;
-    if (o.triangle_count < kSmallObject || groups.size() > kMostGrids) {
+    if (o.triangle_count < kSmallObject || groups.size() >= kMostGroups) {
       take(groups.front(), o.first_triangle, next);
     } else {
       groups.emplace_back();

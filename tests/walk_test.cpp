@@ -228,6 +228,32 @@ TEST(FarRays, FindWhatBruteForceFinds) {
   expect_truth(*find_variant("best"), world, rays, truth, "far rays");
 }
 
+/// What hides behind a mesh costs closest hits nothing, in whatever order meshes are listed.
+TEST(GridOrder, IsFrontToBack) {
+  std::uint64_t tests[2] = {};
+  for (const bool near_first : {true, false}) {
+    Scene s = empty_scene();
+    for (int i = 0; i < 3; ++i) {
+      const Scene ball = placed(ball_mesh(24, 12), 1, {0, 0, near_first ? -3.f * static_cast<float>(i) : 3.f * static_cast<float>(i - 2)});
+      const auto first = static_cast<std::uint32_t>(s.geometry.triangles.size());
+      for (std::size_t t = 0; t < ball.geometry.triangles.size(); ++t)
+        add_triangle(s, vertex(ball, ball.geometry.triangles.a[t]), vertex(ball, ball.geometry.triangles.b[t]),
+                     vertex(ball, ball.geometry.triangles.c[t]));
+      s.geometry.objects.push_back({first, static_cast<std::uint32_t>(ball.geometry.triangles.size())});
+    }
+    const World world(s, {});
+    ASSERT_EQ(world.impl().grids.size(), 3u);
+    Rays rays;
+    for (int i = 0; i < 64; ++i) rays.add({0, 0, 9}, {.004f * static_cast<float>(i % 8 - 4), .004f * static_cast<float>(i / 8 - 4), -1});
+    for (const Method method : {Method::kPackets, Method::kSingle}) {
+      const Answers a = trace(*find_variant("best"), world, rays, {method, 64, true}, Query::kClosest);
+      EXPECT_EQ(hits_of(a), 64u);
+      tests[near_first] += a.counts.tests.triangle;
+    }
+  }
+  EXPECT_EQ(tests[0], tests[1]);
+}
+
 // ---- ties -------------------------------------------------------------------------------------------------------
 
 class Ties : public EveryVariant {};
