@@ -5,6 +5,7 @@
 //   Lanes   one float per SIMD lane, as wide as the machine's registers: one ray a lane
 //   Block   the same, at most 8 wide: one primitive of a block a lane
 //   float   the scalar twin; every function below exists for it too, with the same bits
+//   DoubleLanes, double   the same in double precision, half as many lanes, for what is computed precisely
 //   Words<Lanes>, Words<float>   unsigned 32-bit integers beside them: + - * ^ & | << >>, == and ?: are written as for one
 //
 // Only + - * / sqrt, comparisons and selects: these give the same bits at every width. No reciprocal, no rsqrt, no
@@ -38,17 +39,29 @@ struct LaneTraits;
 
 template <>
 struct LaneTraits<float> {
+  using Scalar = float;
   using Mask = bool;
   using Int = std::int32_t;
   using Words = std::uint32_t;
   static constexpr int kWidth = 1;
 };
 
+template <>
+struct LaneTraits<double> {
+  using Scalar = double;
+  using Mask = bool;
+  static constexpr int kWidth = 1;
+};
+
 inline float select(bool m, float a, float b) { return m ? a : b; }
+inline double select(bool m, double a, double b) { return m ? a : b; }
 inline std::int32_t select_int(bool m, std::int32_t a, std::int32_t b) { return m ? a : b; }
 inline float lesser(float a, float b) { return a < b ? a : b; }   ///< b when either is NaN
 inline float greater(float a, float b) { return a > b ? a : b; }  ///< b when either is NaN
+inline double lesser(double a, double b) { return a < b ? a : b; }
+inline double greater(double a, double b) { return a > b ? a : b; }
 inline float square_root(float a) { return __builtin_sqrtf(a); }
+inline double square_root(double a) { return __builtin_sqrt(a); }
 inline bool any(bool m) { return m; }
 inline bool none(bool m) { return !m; }
 inline unsigned bits(bool m) { return m; }
@@ -68,7 +81,9 @@ inline float bits_float(std::int32_t a) {
 inline std::int32_t to_int(float a) { return static_cast<std::int32_t>(a); }
 inline float to_float(std::int32_t a) { return static_cast<float>(a); }
 inline void load(const float* p, float& r) { r = *p; }
+inline void load(const double* p, double& r) { r = *p; }
 inline void store(float* p, float a) { *p = a; }
+inline void store(double* p, double a) { *p = a; }
 inline bool any_set(std::uint32_t a) { return a != 0; }                           ///< whether any lane is not 0
 inline float small_to_float(std::uint32_t a) { return static_cast<float>(a); }  ///< a < 2^24: exact
 
@@ -78,13 +93,18 @@ inline float small_to_float(std::uint32_t a) { return static_cast<float>(a); }  
 
 using Lanes = float;
 using Block = float;
+using DoubleLanes = double;
 
 #else
 
 template <class Arch>
 using Simd = xsimd::batch<float, Arch>;
 template <class Arch>
+using SimdDouble = xsimd::batch<double, Arch>;
+template <class Arch>
 using SimdMask = xsimd::batch_bool<float, Arch>;
+template <class Arch>
+using SimdDoubleMask = xsimd::batch_bool<double, Arch>;
 template <class Arch>
 using SimdInt = xsimd::batch<std::int32_t, Arch>;
 
@@ -106,21 +126,32 @@ struct SimdWords<xsimd::avx512bw> {
 
 template <class Arch>
 struct LaneTraits<Simd<Arch>> {
+  using Scalar = float;
   using Mask = SimdMask<Arch>;
   using Int = SimdInt<Arch>;
   using Words = typename SimdWords<Arch>::Type;
   static constexpr int kWidth = int(Simd<Arch>::size);
 };
 
+template <class Arch>
+struct LaneTraits<SimdDouble<Arch>> {
+  using Scalar = double;
+  using Mask = SimdDoubleMask<Arch>;
+  static constexpr int kWidth = int(SimdDouble<Arch>::size);
+};
+
 #if GRELHA_ISA_NUMBER == 2
 using Lanes = Simd<xsimd::sse2>;
 using Block = Lanes;
+using DoubleLanes = SimdDouble<xsimd::sse2>;
 #elif GRELHA_ISA_NUMBER == 3
 using Lanes = Simd<xsimd::avx2>;
 using Block = Lanes;
+using DoubleLanes = SimdDouble<xsimd::avx2>;
 #else
 using Lanes = Simd<xsimd::avx512bw>;
 using Block = Simd<xsimd::avx2>;
+using DoubleLanes = SimdDouble<xsimd::avx512bw>;
 #endif
 
 template <class A>
@@ -210,12 +241,68 @@ inline bool any_set(SimdWords<xsimd::avx512bw>::Type a) {
 inline Lanes small_to_float(SimdWords<xsimd::avx512bw>::Type a) { return Lanes(_mm512_cvtepi32_ps(reinterpret_cast<__m512i>(a))); }
 #endif
 
+// The same for doubles. Spelled out, as xsimd's own templates of the same names would be as good a match for one over both.
+template <class A>
+inline SimdDouble<A> select(const SimdDoubleMask<A>& m, const SimdDouble<A>& a, const SimdDouble<A>& b) {
+  return xsimd::select(m, a, b);
+}
+template <class A>
+inline SimdDoubleMask<A> both(const SimdDoubleMask<A>& a, const SimdDoubleMask<A>& b) {
+  return a & b;
+}
+template <class A>
+inline SimdDoubleMask<A> either(const SimdDoubleMask<A>& a, const SimdDoubleMask<A>& b) {
+  return a | b;
+}
+template <class A>
+inline SimdDouble<A> square_root(const SimdDouble<A>& a) {
+  return xsimd::sqrt(a);
+}
+template <class A>
+inline void load(const double* p, SimdDouble<A>& r) {
+  r = SimdDouble<A>::load_unaligned(p);
+}
+template <class A>
+inline void store(double* p, const SimdDouble<A>& a) {
+  a.store_unaligned(p);
+}
+#if GRELHA_ISA_NUMBER == 2
+inline DoubleLanes lesser(const DoubleLanes& a, const DoubleLanes& b) { return DoubleLanes(_mm_min_pd(a.data, b.data)); }
+inline DoubleLanes greater(const DoubleLanes& a, const DoubleLanes& b) { return DoubleLanes(_mm_max_pd(a.data, b.data)); }
+inline unsigned bits(const LaneTraits<DoubleLanes>::Mask& m) { return unsigned(_mm_movemask_pd(m.data)); }
+inline LaneTraits<DoubleLanes>::Mask but_not(const LaneTraits<DoubleLanes>::Mask& a, const LaneTraits<DoubleLanes>::Mask& b) {
+  return LaneTraits<DoubleLanes>::Mask(_mm_andnot_pd(b.data, a.data));
+}
+#elif GRELHA_ISA_NUMBER == 3
+inline DoubleLanes lesser(const DoubleLanes& a, const DoubleLanes& b) { return DoubleLanes(_mm256_min_pd(a.data, b.data)); }
+inline DoubleLanes greater(const DoubleLanes& a, const DoubleLanes& b) { return DoubleLanes(_mm256_max_pd(a.data, b.data)); }
+inline unsigned bits(const LaneTraits<DoubleLanes>::Mask& m) { return unsigned(_mm256_movemask_pd(m.data)); }
+inline LaneTraits<DoubleLanes>::Mask but_not(const LaneTraits<DoubleLanes>::Mask& a, const LaneTraits<DoubleLanes>::Mask& b) {
+  return LaneTraits<DoubleLanes>::Mask(_mm256_andnot_pd(b.data, a.data));
+}
+#else
+inline DoubleLanes lesser(const DoubleLanes& a, const DoubleLanes& b) { return DoubleLanes(_mm512_min_pd(a.data, b.data)); }
+inline DoubleLanes greater(const DoubleLanes& a, const DoubleLanes& b) { return DoubleLanes(_mm512_max_pd(a.data, b.data)); }
+inline unsigned bits(const LaneTraits<DoubleLanes>::Mask& m) { return unsigned(m.data); }
+inline LaneTraits<DoubleLanes>::Mask but_not(const LaneTraits<DoubleLanes>::Mask& a, const LaneTraits<DoubleLanes>::Mask& b) {
+  return LaneTraits<DoubleLanes>::Mask(static_cast<__mmask8>(a.data & ~b.data));
+}
+#endif
+
 template <class A>
 inline bool any(const SimdMask<A>& m) {
   return bits(m) != 0;
 }
 template <class A>
 inline bool none(const SimdMask<A>& m) {
+  return bits(m) == 0;
+}
+template <class A>
+inline bool any(const SimdDoubleMask<A>& m) {
+  return bits(m) != 0;
+}
+template <class A>
+inline bool none(const SimdDoubleMask<A>& m) {
   return bits(m) == 0;
 }
 
@@ -352,6 +439,8 @@ class Chosen {
 };
 
 template <class Real>
+using Scalar = typename LaneTraits<Real>::Scalar;
+template <class Real>
 using Mask = typename LaneTraits<Real>::Mask;
 template <class Real>
 using Int = typename LaneTraits<Real>::Int;
@@ -361,7 +450,7 @@ template <class Real>
 inline constexpr int kWidth = LaneTraits<Real>::kWidth;
 
 template <class Real>
-inline Real load(const float* p) {
+inline Real load(const Scalar<Real>* p) {
   Real r;
   load(p, r);
   return r;

@@ -18,26 +18,45 @@ inline int shear_axis(float dx, float dy, float dz) {
   return ay >= az ? 1 : 2;
 }
 
-/// Edge functions again in double, where the products are exact: for those that came out as zero in float the sign is
-/// right then, for those of slivers the size.
+/// a b - c d with the right sign, and its size to within 2^-50 even where the products nearly agree.
+inline double difference_of_products(float a, float b, float c, float d) {  // products of floats are exact in double
+  return static_cast<double>(a) * b - static_cast<double>(c) * d;
+}
+inline double difference_of_products(double a, double b, double c, double d) {
+  // A product and what rounding took from it: Dekker, "A Floating-Point Technique for Extending the Available Precision", 1971.
+  const auto rest = [](double x, double y, double xy) {
+    const double p = 134217729. * x, q = 134217729. * y;
+    const double x1 = p - (p - x), x2 = x - x1, y1 = q - (q - y), y2 = y - y1;
+    return ((x1 * y1 - xy) + x1 * y2 + x2 * y1) + x2 * y2;
+  };
+  const double ab = a * b, cd = c * d;
+  return (ab - cd) + (rest(a, b, ab) - rest(c, d, cd));
+}
+
+/// The number itself, or where it is too small for a float the smallest float of its sign.
+template <class To>
+inline To keep_sign(double e) {
+  const To r = static_cast<To>(e);
+  if (r == 0 && e != 0) return e < 0 ? To(-1e-45f) : To(1e-45f);
+  return r;
+}
+
+/// Edge functions again with twice the digits: for those that came out as zero the sign is right then, for those of slivers the
+/// size.
 template <class Real>
 [[gnu::noinline, gnu::cold]] void exact_edges(const Mask<Real>& chosen, const Real (&v)[6], Real& u_out, Real& v_out,
                                               Real& w_out) {
   constexpr int n = kWidth<Real>;
-  float c[6][n], u[n], vv[n], w[n];
+  Scalar<Real> c[6][n], u[n], vv[n], w[n];
   for (int i = 0; i < 6; ++i) store(c[i], v[i]);
   store(u, u_out), store(vv, v_out), store(w, w_out);
   const unsigned lanes = bits(chosen);
   for (int i = 0; i < n; ++i) {
     if (!(lanes >> i & 1)) continue;
-    const double ax = c[0][i], ay = c[1][i], bx = c[2][i], by = c[3][i], cx = c[4][i], cy = c[5][i];
-    const double e[3] = {cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax};
-    float r[3];
-    for (int k = 0; k < 3; ++k) {
-      r[k] = static_cast<float>(e[k]);
-      if (r[k] == 0 && e[k] != 0) r[k] = e[k] < 0 ? -1e-45f : 1e-45f;  // keep the sign through underflow
-    }
-    u[i] = r[0], vv[i] = r[1], w[i] = r[2];
+    const Scalar<Real> ax = c[0][i], ay = c[1][i], bx = c[2][i], by = c[3][i], cx = c[4][i], cy = c[5][i];
+    u[i] = keep_sign<Scalar<Real>>(difference_of_products(cx, by, cy, bx));
+    vv[i] = keep_sign<Scalar<Real>>(difference_of_products(ax, cy, ay, cx));
+    w[i] = keep_sign<Scalar<Real>>(difference_of_products(bx, ay, by, ax));
   }
   load(u, u_out), load(vv, v_out), load(w, w_out);
 }
