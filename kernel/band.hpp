@@ -111,6 +111,14 @@ class CameraBatch {
   int size_ = 0;
 };
 
+struct TilePlaces {
+  std::uint8_t x[kTile * kTile], y[kTile * kTile];
+  constexpr TilePlaces() : x{}, y{} {
+    for (int k = 0; k < kTile * kTile; ++k) x[k] = static_cast<std::uint8_t>(tile_x(k)), y[k] = static_cast<std::uint8_t>(tile_y(k));
+  }
+};
+inline constexpr TilePlaces kTilePlaces;
+
 /// Renders rows [y0, y1), at most kBandRows, into work.sums.
 ///
 /// Depths never fall towards the top of the stack, and rays of depth d + 1 are only added when fewer than `take` of them

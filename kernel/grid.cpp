@@ -431,6 +431,7 @@ Grid build_grid(const Primitives& p, std::span<const std::uint32_t> ids, const B
   Box b = box;
   b.grow(2 * pad);  // once for the cells' contents, once for the entry of rays
   Grid g;
+  g.pad = pad;
   double extent[3];
   for (int a = 0; a < 3; ++a) {
     // Down to a float, so that walks in float subtract the corner without an error of its own.

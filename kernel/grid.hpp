@@ -72,6 +72,7 @@ struct CellStore {
 
 struct Grid {
   std::array<std::uint32_t, 3> cells{1, 1, 1};  ///< per axis, each >= 1; x runs fastest
+  double pad = 0;                               ///< what primitives were grown by
   double lo[3] = {}, cell[3] = {};              ///< corner (a float's value, so that walks subtract it exactly) and cell size
   CellStore store;
   std::vector<std::uint8_t> distance;           ///< [cells + 3] Chebyshev distance to the nearest non-empty cell, at most 255

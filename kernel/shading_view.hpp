@@ -71,13 +71,6 @@ inline constexpr int kTile = 8;
 /// Pixel k of a tile, along Morton's curve: any 4, 16 or 64 in a row from a multiple of that are a square.
 constexpr int tile_x(int k) { return (k & 1) | (k >> 1 & 2) | (k >> 2 & 4); }
 constexpr int tile_y(int k) { return tile_x(k >> 1); }
-struct TilePlaces {
-  std::uint8_t x[kTile * kTile], y[kTile * kTile];
-  constexpr TilePlaces() : x{}, y{} {
-    for (int k = 0; k < kTile * kTile; ++k) x[k] = static_cast<std::uint8_t>(tile_x(k)), y[k] = static_cast<std::uint8_t>(tile_y(k));
-  }
-};
-inline constexpr TilePlaces kTilePlaces;
 
 /// Set in the depth of a waiting ray that was refracted.
 inline constexpr std::uint32_t kRefracted = 1u << 31;

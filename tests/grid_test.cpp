@@ -329,7 +329,7 @@ TEST(BlockBoxes, HoldWhatLiesInTheirCell) {
     for (const Grid& g : w.grids) {
       const CellStore& s = g.store;
       if (s.triangle_first.empty()) continue;
-      const double pad = w.view.reach * 256 / 16777216.;
+      const double pad = g.pad;
       for (std::size_t cell = 0; cell + 1 < s.triangle_first.size(); ++cell) {
         const std::size_t at[3] = {cell % g.cells[0], cell / g.cells[0] % g.cells[1], cell / g.cells[0] / g.cells[1]};
         for (std::uint32_t b = s.triangle_first[cell]; b < s.triangle_first[cell + 1]; ++b)
@@ -339,7 +339,7 @@ TEST(BlockBoxes, HoldWhatLiesInTheirCell) {
               bool inside = true, boxed = true;
               for (std::size_t a = 0; a < 3; ++a) {
                 inside &= q.x[a] >= g.lo[a] + double(at[a]) * g.cell[a] && q.x[a] <= g.lo[a] + double(at[a] + 1) * g.cell[a];
-                // A quarter of pad, less the rounding of what it is taken from (the scene's diagonal, as a float).
+                // A quarter of pad, less the rounding of boxes to floats.
                 const auto& side = s.boxes[b / kBlock].side;
                 boxed &= q.x[a] - .24 * pad >= side[a][b % kBlock] && q.x[a] + .24 * pad <= side[3 + a][b % kBlock];
               }
