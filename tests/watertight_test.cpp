@@ -1,6 +1,7 @@
 // Closed meshes have no holes: rays aimed at vertices, at the middle of edges and anywhere along them never slip
 // through. pbrt-v4's test of this name is switched off, and a robust Plücker test leaks at 4 vertices in a thousand;
 // random rays alone find none of it, hence the aim.
+#include "tests/support/closed.hpp"
 #include "tests/support/rays.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -13,8 +14,6 @@ struct Case {
   bool torus = false;
 };
 void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
-
-constexpr double kTube = .4;
 
 const Case kCases[] = {{"ball", [] { return ball_mesh(50, 25); }},
                        {"bumpy_ball", [] { return ball_mesh(16, 16, .15); }},
@@ -30,31 +29,6 @@ class Watertight : public testing::TestWithParam<std::tuple<const Variant*, Case
   static const Case& mesh() { return std::get<1>(GetParam()); }
 };
 
-/// Points to aim at: every vertex; the middle and a random point of every edge, as near as floats get.
-std::vector<Float3> targets(const Scene& s, Random& random) {
-  std::vector<Float3> out;
-  for (std::uint32_t i = 0; i < s.geometry.triangles.vertex_count(); ++i) out.push_back(vertex(s, i));
-  const Triangles& t = s.geometry.triangles;
-  for (std::size_t i = 0; i < t.size(); ++i) {
-    const std::uint32_t v[3] = {t.a[i], t.b[i], t.c[i]};
-    for (int k = 0; k < 3; ++k) {
-      if (v[k] > v[(k + 1) % 3]) continue;  // the neighbour's turn
-      const Float3 a = vertex(s, v[k]), edge = minus(vertex(s, v[(k + 1) % 3]), a);
-      out.push_back(at(a, .5, edge));
-      out.push_back(at(a, random.unit(), edge));
-    }
-  }
-  return out;
-}
-
-/// Somewhere well inside the body: the inner quarter of the ball, the core of the torus' tube.
-Float3 inside(Random& random, bool torus) {
-  if (!torus) return random.point(.12);
-  const double a = random.in(0, 6.283185307);
-  return at({static_cast<float>(std::cos(a)), 0, static_cast<float>(std::sin(a))}, .3 * kTube * random.unit(),
-            random.direction());
-}
-
 /// No ray from inside gets out, whichever way it is traced, and none from outside gets through where it meets the body
 /// steeply: it meets something no later than at its aim.
 void expect_no_leak(const Variant& variant, const Scene& unit_scene, bool torus, double scale, const Float3& offset,
@@ -62,20 +36,14 @@ void expect_no_leak(const Variant& variant, const Scene& unit_scene, bool torus,
   const Scene scene = placed(unit_scene, scale, offset);
   Random random(17);
   const auto place = [&](const Float3& p) { return at(offset, scale, p); };
-  const std::vector<Float3> aims = targets(unit_scene, random);
+  const Aims all = aims_at(unit_scene, random);
+  std::vector<Float3> aims = all.vertices;
+  for (const auto* more : {&all.middles, &all.along}) aims.insert(aims.end(), more->begin(), more->end());
   Rays from_inside, from_outside;
   for (const Float3& aim : aims) {
     const Float3 org = place(inside(random, torus)), to = place(aim);
     from_inside.add(org, scaled(minus(to, org), random.log_in(.1, 10)));
-    // Out along the aim's normal, which a ball has from its centre and a torus from its core; steep within 60 degrees.
-    Float3 core{};
-    if (torus) {
-      const double l = std::hypot(aim.x, aim.z);
-      core = {static_cast<float>(aim.x / l), 0, static_cast<float>(aim.z / l)};
-    }
-    const Float3 normal = minus(aim, core);
-    const double n = std::sqrt(double(normal.x) * normal.x + double(normal.y) * normal.y + double(normal.z) * normal.z);
-    const Float3 eye = place(at(at(aim, 3 / n, normal), 1.5, random.direction()));
+    const Float3 eye = place(outside(random, aim, torus));
     from_outside.add(eye, minus(to, eye));
   }
   const World world(scene, {});
