@@ -15,6 +15,10 @@ grelha_test(shade unit grelha::kernel)
 grelha_test(subdivision image grelha::kernel)
 grelha_test(determinism image grelha::frontend grelha::scenes)
 
+# What breaks ray tracers, row by row; perf/stability.cpp asks the same rows with millions of rays, and Embree beside.
+add_subdirectory(stability)
+grelha_test(stability property grelha::stability)
+
 # No function of one instruction set's copy can be linked into another. The self test plants three that could.
 add_library(leaky_variant OBJECT ${CMAKE_CURRENT_LIST_DIR}/support/leaky_variant.cpp)
 add_test(NAME isa_symbols COMMAND ${CMAKE_COMMAND} -D NM=${CMAKE_NM} "-DOBJECTS=$<TARGET_OBJECTS:grelha_kernel>"

@@ -41,7 +41,7 @@ void expect_no_leak(const Variant& variant, const Scene& unit_scene, bool torus,
   for (const auto* more : {&all.middles, &all.along}) aims.insert(aims.end(), more->begin(), more->end());
   Rays from_inside, from_outside;
   for (const Float3& aim : aims) {
-    const Float3 org = place(inside(random, torus)), to = place(aim);
+    const Float3 org = place(inside(random, aim, torus)), to = place(aim);
     from_inside.add(org, scaled(minus(to, org), random.log_in(.1, 10)));
     const Float3 eye = place(outside(random, aim, torus));
     from_outside.add(eye, minus(to, eye));

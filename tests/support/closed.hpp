@@ -28,10 +28,11 @@ inline Aims aims_at(const Scene& s, Random& random) {
   return out;
 }
 
-/// Somewhere well inside the body: the inner quarter of the ball, the core of the torus' tube.
-inline Float3 inside(Random& random, bool torus) {
+/// Somewhere well inside the body: the inner quarter of the ball; the core of the torus' tube not far from the aim, lest the ray
+/// first grazes the tube's inner side, which is concave from within.
+inline Float3 inside(Random& random, const Float3& aim, bool torus) {
   if (!torus) return random.point(.12);
-  const double a = random.in(0, 6.283185307);
+  const double a = std::atan2(aim.z, aim.x) + random.in(-.15, .15);
   return at({static_cast<float>(std::cos(a)), 0, static_cast<float>(std::sin(a))}, .3 * kTube * random.unit(),
             random.direction());
 }

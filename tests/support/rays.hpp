@@ -121,40 +121,4 @@ inline std::string isa_name(const testing::TestParamInfo<const Variant*>& info) 
 #define GRELHA_FOR_EVERY_ISA(name) \
   INSTANTIATE_TEST_SUITE_P(Isa, name, testing::ValuesIn(variants().begin(), variants().end()), isa_name)
 
-// ---- bundles ----------------------------------------------------------------------------------------------------
-
-/// Rays about a ball of the given size: most aimed at it from any distance, some from inside, some past it, some along
-/// the axes, with ends and lengths of all kinds.
-inline Rays rays_about(Random& random, const Float3& center, double size, int count, double farthest = 1e3) {
-  Rays rays;
-  for (int i = 0; i < count; ++i) {
-    const double away = size * (random.chance(.2) ? random.unit() : random.log_in(.5, farthest));
-    const Float3 org = at(center, away, random.direction());
-    const Float3 aim = at(center, size * random.in(0, 1.3), random.direction());
-    Float3 dir = minus(aim, org);
-    if (random.chance(.2)) {  // along an axis, with zeros of both signs beside it
-      const std::uint32_t a = random.below(3);
-      const float length = static_cast<float>(random.sign());
-      for (std::uint32_t b = 0; b < 3; ++b) component(dir, b) = b == a ? length : random.zero();
-    } else if (random.chance(.15)) {
-      component(dir, random.below(3)) = random.chance(.5) ? random.zero() : 1e-41f;
-    }
-    if (random.chance(.5)) dir = scaled(dir, random.log_in(1e-3, 1e3));
-    const float from = random.chance(.8) ? 0.f : static_cast<float>(random.in(-1, 1));
-    rays.add(org, dir, from, random.chance(.7) ? kInf : static_cast<float>(random.log_in(1e-2, 1e2)));
-  }
-  return rays;
-}
-
-/// The same with one component of some rays replaced by a value no caller should send.
-inline Rays with_odd_values(Random& random, Rays rays, double share) {
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (!random.chance(share)) continue;
-    std::vector<float>* const fields[] = {&rays.ox, &rays.oy, &rays.oz,    &rays.dx,
-                                          &rays.dy, &rays.dz, &rays.t_min, &rays.t};
-    (*fields[random.below(8)])[i] = random.odd();
-  }
-  return rays;
-}
-
 }  // namespace grelha::test

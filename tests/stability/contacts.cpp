@@ -1,0 +1,199 @@
+// Rays that leave surfaces: none meets what it left, none skips what is close, shadow rays tell a light before a wall from one
+// behind it. Both tracers get the same start points, those the renderer uses (kernel/surface.hpp): its rule is what is judged,
+// and each tracer's test of it.
+#define GRELHA_ISA scalar
+#include "kernel/surface.hpp"
+#include "kernel/trace.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/stability/rows.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace grelha::stability {
+namespace {
+
+using namespace test;
+
+Float3 of(const scalar::Vec3<float>& v) { return {v.x, v.y, v.z}; }
+
+/// Walls with a lid over each, `gap` away: triangle 2i the wall, 2i + 1 the lid, three times as large.
+struct Walls {
+  Scene scene = empty_scene();
+  std::vector<Float3> middle, normal;
+  double gap;
+
+  Walls(Random& random, double size, const Float3& place, double gap_) : gap(gap_) {
+    for (int i = 0; i < 40; ++i) {
+      const Float3 n = random.direction();
+      const oracle::V along = oracle::unit(oracle::cross(n, random.direction())), other = oracle::cross(n, along);
+      const Float3 c = at(place, size * 40, random.point(1));
+      const auto corner = [&](double k, double a) {
+        const double x = k * size * std::cos(a), y = k * size * std::sin(a);
+        return Float3{static_cast<float>(c.x + x * static_cast<double>(along.x) + y * static_cast<double>(other.x)),
+                      static_cast<float>(c.y + x * static_cast<double>(along.y) + y * static_cast<double>(other.y)),
+                      static_cast<float>(c.z + x * static_cast<double>(along.z) + y * static_cast<double>(other.z))};
+      };
+      const double turn = random.in(0, 6);
+      add_triangle(scene, corner(1, turn), corner(1, turn + 2), corner(1, turn + 4));
+      add_triangle(scene, at(corner(3, turn), gap, n), at(corner(3, turn + 2), gap, n), at(corner(3, turn + 4), gap, n));
+      middle.push_back(c), normal.push_back(n);
+    }
+  }
+};
+
+/// The surface at the point of triangle `id` that a ray from org along dir meets.
+scalar::Surface surface(const World& world, std::uint32_t id, const Float3& org, const Float3& dir) {
+  const float o[3] = {org.x, org.y, org.z}, d[3] = {dir.x, dir.y, dir.z};
+  return scalar::triangle_surface(world.impl().view.geometry, id, o, d, false);
+}
+
+/// Size from 1e-8 to 1e8, offset from 1e-8 to 1e8, but for walls of fewer than 2000 ulp, whose corners alone are off by as much.
+bool draw(Random& random, double& size, Float3& place) {
+  size = random.log_in(1e-8, 1e8);
+  const double offset = random.log_in(1e-8, 1e8);
+  place = at({0, 0, 0}, offset, random.direction());
+  return size > 2000 * 6e-8 * offset;
+}
+
+/// Rays from the walls, up to the lids.
+void contacts(Random& random, std::size_t rays, const Sink& sink) {
+  const std::size_t each = 1000;
+  for (std::size_t done = 0; done < rays;) {
+    double size;
+    Float3 place;
+    if (!draw(random, size, place)) continue;
+    const double coarse = 6e-8 * (size * 40 + std::abs(place.x) + std::abs(place.y) + std::abs(place.z));
+    // Wide enough for both walls' rounding and the start's: 16 (e1 + e2) u + 4 u p (docs/numerics.md), doubled.
+    Batch batch;
+    const Walls walls(random, size, place, std::max(1e-3 * size, 100 * coarse));
+    batch.scene = walls.scene;
+    const World world(batch.scene, {.grid = false});
+    for (std::size_t i = 0; i < each; ++i) {
+      const std::uint32_t k = random.below(40);
+      const Float3 to = at(walls.middle[k], .2 * size, random.direction());
+      const Float3 eye = at(to, size * random.log_in(1, 1e3), at(random.direction(), 1.5, walls.normal[k]));
+      const scalar::Surface s = surface(world, 2 * k, eye, minus(walls.middle[k], eye));
+      Float3 d = random.direction();
+      if (d.x * walls.normal[k].x + d.y * walls.normal[k].y + d.z * walls.normal[k].z < 0) d = scaled(d, -1);
+      const double cosine = d.x * walls.normal[k].x + d.y * walls.normal[k].y + d.z * walls.normal[k].z;
+      if (cosine < .1) continue;
+      Wanted w;
+      w.hit = true, w.left = 2 * k, w.latest = 2 * walls.gap / cosine;
+      batch.add(of(scalar::leave(s.point, s.normal, s.away, {d.x, d.y, d.z})), d, w);
+    }
+    // Another wall may stand nearer: then something is met all the same, and sooner.
+    done += each;
+    sink(batch);
+  }
+}
+
+/// Rays from the walls along them or away from the lids: the wall they left is not met. Others may be.
+void self_hits(Random& random, std::size_t rays, const Sink& sink) {
+  const std::size_t each = 1000;
+  for (std::size_t done = 0; done < rays;) {
+    double size;
+    Float3 place;
+    if (!draw(random, size, place)) continue;
+    Batch batch;
+    batch.occlusion = false;  // whether anything is in the way says nothing about the wall
+    const Walls walls(random, size, place, size);
+    batch.scene = walls.scene;
+    const World world(batch.scene, {.grid = false});
+    for (std::size_t i = 0; i < each; ++i) {
+      const std::uint32_t k = random.below(80);
+      const Float3 eye = at(walls.middle[k / 2], size * random.log_in(1, 1e3), random.direction());
+      const scalar::Surface s = surface(world, k, eye, minus(at(walls.middle[k / 2], .1 * size, random.direction()), eye));
+      Float3 d = random.direction();
+      const double n = d.x * s.normal.x + d.y * s.normal.y + d.z * s.normal.z;
+      if (i % 4 == 0) d = at(d, -n * (1 - random.log_in(1e-6, 1e-1)), of(s.normal));
+      if (std::abs(d.x * double(s.normal.x) + d.y * double(s.normal.y) + d.z * double(s.normal.z)) < 8 * 6e-8) continue;
+      Wanted w;
+      w.left = k;
+      batch.add(of(scalar::leave(s.point, s.normal, s.away, {d.x, d.y, d.z})), d, w);
+    }
+    done += each;
+    sink(batch);
+  }
+}
+
+/// Outwards from a sphere, nothing else in the scene.
+void sphere_self_hits(Random& random, std::size_t rays, const Sink& sink) {
+  for (std::size_t done = 0; done < rays; done += 1000) {
+    double size = random.log_in(1e-8, 1e8);
+    const Float3 place = random.point(size * random.log_in(1e-2, 1e4));
+    Batch batch;
+    batch.scene = one_sphere(place, static_cast<float>(size));
+    const World world(batch.scene, {.grid = false});
+    for (int i = 0; i < 1000; ++i) {
+      const Float3 on = at(place, size, random.direction());
+      const scalar::Surface s = scalar::sphere_surface(world.impl().view.geometry, 0, {on.x, on.y, on.z});
+      Float3 d = random.direction();
+      const double n = d.x * s.normal.x + d.y * s.normal.y + d.z * s.normal.z;
+      if (i % 4 == 0) d = at(d, -n * (1 - random.log_in(1e-6, 1e-1)), of(s.normal));
+      const double cosine = d.x * double(s.normal.x) + d.y * double(s.normal.y) + d.z * double(s.normal.z);
+      if (std::abs(cosine) < 8 * 6e-8) continue;
+      if (cosine < 0) d = scaled(d, -1);
+      Wanted w;
+      w.miss = true, w.left = 0;
+      batch.add(of(scalar::leave(s.point, s.normal, s.away, {d.x, d.y, d.z})), d, w);
+    }
+    sink(batch);
+  }
+}
+
+/// Shadow rays from a wall to lights above it: before its lid, behind it, and in it, where both answers are right. What tells them
+/// apart is 8 ulp of the coordinates and more.
+void lights(Random& random, std::size_t rays, const Sink& sink) {
+  const std::size_t each = 1000;
+  for (std::size_t done = 0; done < rays;) {
+    double size;
+    Float3 place;
+    if (!draw(random, size, place)) continue;
+    Batch batch;
+    const Walls walls(random, size, place, size);
+    // One pair of walls alone: no other may stand in the way.
+    batch.scene = empty_scene();
+    for (std::uint32_t i = 0; i < 2; ++i) add_triangle(batch.scene, vertex(walls.scene, 3 * i), vertex(walls.scene, 3 * i + 1), vertex(walls.scene, 3 * i + 2));
+    const World world(batch.scene, {.grid = false});
+    const Size extent = size_of(batch.scene);
+    const oracle::Facet lid{vertex(batch.scene, 3), vertex(batch.scene, 4), vertex(batch.scene, 5)};
+    const oracle::V across = oracle::unit(lid.normal());
+    for (std::size_t i = 0; i < each; ++i) {
+      const Float3 eye = at(walls.middle[0], size * random.log_in(1, 1e3), at(random.direction(), 1.5, walls.normal[0]));
+      const scalar::Surface s = surface(world, 0, eye, minus(at(walls.middle[0], .2 * size, random.direction()), eye));
+      // At a point of the lid, off it by nothing or by anything from an ulp to the size.
+      const double off = random.chance(.2) ? 0 : random.sign() * size * random.log_in(1e-8, .5);
+      const Float3 on = at(at(walls.middle[0], size, walls.normal[0]), .3 * size, random.direction());
+      const oracle::V p = oracle::V(on) - dot(oracle::V(on) - lid.a, across) * across;
+      const double side = static_cast<double>(dot(across, walls.normal[0])) > 0 ? 1 : -1;
+      const oracle::V q = p + oracle::Real(off * side) * across;
+      const Float3 light{static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z)};
+      const Float3 up = minus(light, of(s.point));
+      const Float3 start = of(scalar::leave(s.point, s.normal, s.away, {up.x, up.y, up.z})), dir = minus(light, start);
+      // Where the float light is: beyond the lid (positive) or before it.
+      const oracle::Real beyond = oracle::Real(side) * dot(oracle::V(start) + oracle::V(dir) - lid.a, across);
+      const oracle::Real open = allowed(extent.diagonal, extent.diagonal, extent.largest);
+      Wanted w;
+      w.hit = beyond > open, w.miss = beyond < -open;
+      w.latest = 1;
+      batch.add(start, dir, w, 1);
+    }
+    done += each;
+    sink(batch);
+  }
+}
+
+}  // namespace
+
+std::vector<Row> contact_rows() {
+  return {
+      {"lost contacts", "a lid .001 of the size over a wall; size and offset 1e-8 to 1e8", "the lid, or something nearer", contacts},
+      {"self-hits of triangles", "in all directions and along the surface; the same sizes", "not the triangle left", self_hits},
+      {"self-hits of spheres", "outwards and along the surface", "nothing", sphere_self_hits},
+      {"shadow rays to a light at a wall", "before, in and behind it; the same sizes", "the side the light is on", lights},
+  };
+}
+
+}  // namespace grelha::stability

@@ -1,0 +1,195 @@
+// Truth by long double, and the comparison of a tracer's answers with it.
+#include <algorithm>
+#include <cmath>
+
+#include "tests/stability/rows.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace grelha::stability {
+
+using test::oracle::Ball;
+using test::oracle::Facet;
+using test::oracle::Ray;
+using test::oracle::Real;
+using test::oracle::V;
+
+namespace {
+
+constexpr Real kU = test::oracle::kEps;
+
+Facet facet(const Scene& s, std::size_t i) {
+  const Triangles& t = s.geometry.triangles;
+  return {test::vertex(s, t.a[i]), test::vertex(s, t.b[i]), test::vertex(s, t.c[i])};
+}
+Ball ball(const Scene& s, std::size_t i) {
+  const Spheres& b = s.geometry.spheres;
+  return {V{b.x[i], b.y[i], b.z[i]}, b.radius[i]};
+}
+
+Real farthest(const Facet& f, const V& p) { return std::max({length(f.a - p), length(f.b - p), length(f.c - p)}); }
+Real farthest(const Ball& b, const V& p) { return length(b.center - p) + std::abs(b.radius); }
+
+/// Gathers what may be met and what must be.
+class Found {
+ public:
+  Found(Real end) : end_(end) {}
+  void operator()(Real from, Real to, bool certain) {
+    const Real slack = 4 * kU * std::max(std::abs(from), std::abs(to));
+    from -= slack, to += slack;
+    if (to <= 0 || from >= end_) return;
+    possible_ = true, earliest_ = std::min(earliest_, std::max(from, Real(0)));
+    if (certain && from > 0 && to < end_) certain_ = true, latest_ = std::min(latest_, to);
+  }
+  Wanted wanted() const {
+    Wanted w;
+    w.hit = certain_, w.miss = !possible_;
+    w.earliest = static_cast<double>(earliest_), w.latest = certain_ ? static_cast<double>(latest_) : double{test::kInf};
+    return w;
+  }
+
+ private:
+  Real end_, earliest_ = 1e300L, latest_ = 1e300L;
+  bool possible_ = false, certain_ = false;
+};
+
+void meet(const Ball& b, const Ray& ray, Real margin, Found& found) {
+  const Real dd = dot(ray.dir, ray.dir), scale = std::sqrt(dd), foot = dot(b.center - ray.org, ray.dir) / dd;
+  const Real miss = length(cross(ray.dir, b.center - ray.org)) / scale, r = std::abs(b.radius);
+  const Real out = r + margin, in = r - margin;
+  if (miss >= out) return;
+  const Real outer = std::sqrt((out - miss) * (out + miss)) / scale;
+  if (miss >= in) return found(foot - outer, foot + outer, false);
+  const Real inner = std::sqrt((in - miss) * (in + miss)) / scale;
+  found(foot - outer, foot - inner, true);
+  found(foot + inner, foot + outer, true);
+}
+
+void meet(const Facet& f, const Ray& ray, Real margin, Found& found) {
+  const Real dd = dot(ray.dir, ray.dir), scale = std::sqrt(dd);
+  const V middle = (Real(1) / 3) * (f.a + f.b + f.c);
+  const Real radius = farthest(f, middle) + margin, foot = dot(middle - ray.org, ray.dir) / dd;
+  const Real miss = length(cross(ray.dir, middle - ray.org)) / scale;
+  if (miss > radius) return;
+  const V n = f.normal();
+  const Real nn = length(n), along = dot(ray.dir, n), half = std::sqrt((radius - miss) * (radius + miss)) / scale;
+  if (std::abs(f.clearance(ray)) <= margin) {  // near an edge
+    if (nn > 0 && std::abs(along) * radius > nn * scale * 4 * margin) {
+      const Real t = dot(f.a - ray.org, n) / along, off = 2 * margin * nn / std::abs(along);
+      return found(std::max(t - off, foot - half), std::min(t + off, foot + half), false);
+    }
+    return found(foot - half, foot + half, false);
+  }
+  if (f.clearance(ray) < 0) return;
+  const Real t = dot(f.a - ray.org, n) / along, off = margin * nn / std::abs(along);
+  found(std::max(t - off, foot - half), std::min(t + off, foot + half), true);
+}
+
+/// How far a reported hit lies beside the primitive it names, beyond what is allowed.
+Real beyond(const Batch& batch, const Size& size, std::size_t i, float t, std::uint32_t id) {
+  const Ray ray{batch.rays.org(i), batch.rays.dir(i)};
+  const V p = ray.point(t);
+  const std::size_t planes = batch.scene.geometry.planes.size(), spheres = batch.scene.geometry.spheres.size();
+  if (id < planes || id - planes >= spheres + batch.scene.geometry.triangles.size()) return 0;  // planes are plane_test's
+  id -= static_cast<std::uint32_t>(planes);
+  const auto off = [&](const auto& shape) { return shape.distance(p) - allowed(farthest(shape, ray.org), size.diagonal, size.largest); };
+  return id < spheres ? off(ball(batch.scene, id)) : off(facet(batch.scene, id - spheres));
+}
+
+enum class Verdict { kRight, kLost, kFalse, kSelf };
+
+Verdict verdict_closest(const Batch& batch, const Size& size, std::size_t i, const Answers& a) {
+  const Wanted& w = batch.wanted[i];
+  const float t = a.t[i];
+  const std::uint32_t id = a.id[i];
+  if (id == kNoPrimitive) return w.hit ? Verdict::kLost : Verdict::kRight;
+  if (id == w.left) return Verdict::kSelf;
+  if (w.miss || !w.traces) return Verdict::kFalse;
+  if (!(t <= w.latest)) return Verdict::kLost;
+  if (!(t >= w.earliest) || beyond(batch, size, i, t, id) > 0) return Verdict::kFalse;
+  return Verdict::kRight;
+}
+
+Verdict verdict_occluded(const Batch& batch, std::size_t i, const Answers& a) {
+  const Wanted& w = batch.wanted[i];
+  const bool met = a.id[i] != kNoPrimitive;
+  if (!met) return w.hit ? Verdict::kLost : Verdict::kRight;
+  return w.miss || !w.traces ? w.left != kNoPrimitive ? Verdict::kSelf : Verdict::kFalse : Verdict::kRight;
+}
+
+}  // namespace
+
+Real allowed(Real distance, Real diagonal, Real largest) {
+  return 64 * kU * std::min(distance, 4 * diagonal) + 8 * kU * largest + 2 * kU * distance;
+}
+
+Size size_of(const Scene& scene) {
+  const Spheres& s = scene.geometry.spheres;
+  const Triangles& t = scene.geometry.triangles;
+  double lo[3] = {1e300, 1e300, 1e300}, hi[3] = {-1e300, -1e300, -1e300};
+  const auto add = [&](double x, double y, double z, double r) {
+    const double p[3] = {x, y, z};
+    if (!std::isfinite(x + y + z)) return;
+    for (int a = 0; a < 3; ++a) lo[a] = std::min(lo[a], p[a] - r), hi[a] = std::max(hi[a], p[a] + r);
+  };
+  for (std::size_t i = 0; i < s.size(); ++i) add(s.x[i], s.y[i], s.z[i], std::abs(s.radius[i]));
+  for (std::size_t i = 0; i < t.vertex_count(); ++i) add(t.x[i], t.y[i], t.z[i], 0);
+  Size out;
+  if (lo[0] > hi[0]) return out;
+  for (int a = 0; a < 3; ++a) out.largest = std::max({out.largest, std::abs(lo[a]), std::abs(hi[a])});
+  out.diagonal = std::hypot(hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]);
+  return out;
+}
+
+Wanted brute_force(const Scene& scene, const Size& size, const Float3& org, const Float3& dir, float end) {
+  const Ray ray{org, dir};
+  Found found(end);
+  for (std::size_t i = 0; i < scene.geometry.spheres.size(); ++i) {
+    const Ball b = ball(scene, i);
+    meet(b, ray, allowed(farthest(b, ray.org), size.diagonal, size.largest), found);
+  }
+  for (std::size_t i = 0; i < scene.geometry.triangles.size(); ++i) {
+    const Facet f = facet(scene, i);
+    meet(f, ray, allowed(farthest(f, ray.org), size.diagonal, size.largest), found);
+  }
+  return found.wanted();
+}
+
+Counts judge(Tracer& tracer, const Batch& batch) {
+  Counts counts;
+  const Size size = size_of(batch.scene);
+  tracer.build(batch);
+  for (int way = 0; way < tracer.ways(); ++way)
+    for (int any = 0; any < (batch.occlusion ? 2 : 1); ++any) {
+      const Answers a = any ? tracer.occluded(batch.rays, way) : tracer.closest(batch.rays, way);
+      counts.answers += batch.rays.size();
+      for (std::size_t i = 0; i < batch.rays.size(); ++i) {
+        const Verdict v = any ? verdict_occluded(batch, i, a) : verdict_closest(batch, size, i, a);
+        if (v == Verdict::kRight) continue;
+        ++(v == Verdict::kLost ? counts.lost : v == Verdict::kFalse ? counts.false_ : counts.self);
+        if (!counts.first.empty()) continue;
+        std::ostringstream s;
+        const Wanted& w = batch.wanted[i];
+        s << tracer.way_name(way) << (any ? ", occluded" : ", closest") << (v == Verdict::kLost ? ": lost, " : v == Verdict::kFalse ? ": false, " : ": self-hit, ")
+          << batch.rays.describe(i) << std::defaultfloat << "; t " << a.t[i] << " id " << static_cast<std::int32_t>(a.id[i]) << ", wanted "
+          << (w.hit ? "hit" : w.miss ? "miss" : "either") << " in [" << w.earliest << ", " << w.latest << "]";
+        if (!any && a.id[i] != kNoPrimitive) s << ", beside it by " << static_cast<double>(beyond(batch, size, i, a.t[i], a.id[i])) << " too much";
+        counts.first = s.str();
+      }
+    }
+  return counts;
+}
+
+Counts run(const Row& row, Tracer& tracer, std::size_t rays, std::uint64_t seed) {
+  Counts counts;
+  Random random(seed);
+  row.make(random, rays, [&](const Batch& batch) { counts += judge(tracer, batch); });
+  return counts;
+}
+
+std::vector<Row> all_rows() {
+  std::vector<Row> all;
+  for (const auto& part : {mesh_rows(), sphere_rows(), walk_rows(), contact_rows()}) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+}  // namespace grelha::stability
