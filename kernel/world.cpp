@@ -1,9 +1,9 @@
 #include "kernel/world.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <stdexcept>
 
 #include <omp.h>
@@ -21,6 +21,36 @@ constexpr double kVast = 4;               ///< scenes so many times as wide as n
 constexpr double kDensity = .7;           ///< M; packets like it coarser than the report's 2 (docs/performance.md)
 
 using Ids = std::vector<std::uint32_t>;
+
+/// A NaN or an infinity: all bits of the exponent set.
+bool is_number(float x) { return (std::bit_cast<std::uint32_t>(x) & 0x7F800000u) != 0x7F800000u; }
+bool are_numbers(const std::vector<float>& v) {
+  std::uint32_t found = 0;
+  for (const float x : v) found |= is_number(x) ? 0 : 1;
+  return found == 0;
+}
+
+/// Whether every primitive has a place. The arrays are asked as they lie, many at a time.
+bool all_are_sound(const Geometry& g) {
+  for (const auto* v : {&g.triangles.x, &g.triangles.y, &g.triangles.z, &g.spheres.x, &g.spheres.y, &g.spheres.z, &g.spheres.radius,
+                        &g.cones.base_x, &g.cones.base_y, &g.cones.base_z, &g.cones.base_radius, &g.cones.apex_x, &g.cones.apex_y,
+                        &g.cones.apex_z, &g.cones.apex_radius})
+    if (!are_numbers(*v)) return false;
+  return true;
+}
+
+bool is_sound(const Primitives& p, std::uint32_t id) {
+  const Geometry& g = p.geometry;
+  if (id < p.triangle_base) {
+    const std::uint32_t i = id - p.sphere_base;
+    return is_number(g.spheres.x[i]) && is_number(g.spheres.y[i]) && is_number(g.spheres.z[i]) && is_number(g.spheres.radius[i]);
+  }
+  if (id >= p.cone_base)
+    return std::all_of(p.cones.begin(), p.cones.end(), [&](const std::vector<float>& v) { return is_number(v[id - p.cone_base]); });
+  const std::uint32_t i = id - p.triangle_base;
+  const auto at = [&](std::uint32_t v) { return is_number(g.triangles.x[v]) && is_number(g.triangles.y[v]) && is_number(g.triangles.z[v]); };
+  return at(g.triangles.a[i]) && at(g.triangles.b[i]) && at(g.triangles.c[i]);
+}
 
 /// One group of ids a grid: first what is loose (with small objects), then each larger object.
 std::vector<Ids> group(const Primitives& p) {
@@ -43,6 +73,9 @@ std::vector<Ids> group(const Primitives& p) {
   }
   take(groups.front(), next, static_cast<std::uint32_t>(p.geometry.triangles.size()));
   for (std::uint32_t id = p.cone_base; id < p.end; ++id) groups.front().push_back(id);
+  // What has no place is met by no ray, and would put every cell in doubt.
+  if (!all_are_sound(p.geometry))
+    for (Ids& ids : groups) std::erase_if(ids, [&](std::uint32_t id) { return !is_sound(p, id); });
   std::erase_if(groups, [](const Ids& g) { return g.empty(); });
   return groups;
 }
@@ -176,11 +209,10 @@ World::Impl::Impl(const Scene& s, const BuildOptions& options) : scene((check(s)
         add_grids(primitives, ids, extent.box, density, diagonal, threads, grids);
       }
     }
-    std::sort(apart.begin(), apart.end());
   } else {
-    apart.resize(primitives.end - primitives.sphere_base);
-    std::iota(apart.begin(), apart.end(), primitives.sphere_base);
+    for (const Ids& ids : groups) apart.insert(apart.end(), ids.begin(), ids.end());
   }
+  std::sort(apart.begin(), apart.end());
   outside = build_list(primitives, apart);
   for (const Grid& grid : grids) grid_views.push_back(grid.view());
 
