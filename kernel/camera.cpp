@@ -1,5 +1,6 @@
 #include "kernel/camera.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "kernel/frame.hpp"
@@ -57,7 +58,9 @@ FrameView make_frame(const Camera& c) {
   put(f.forward, forward), put(f.right, scaled(right, pixel)), put(f.up, scaled(up, pixel));
   f.width = c.width, f.height = c.height;
   f.lens = c.aperture > 0;
-  f.focus = static_cast<float>(c.focus);
+  // Directions are as long as the focus is far, and rays take lengths whose squares are floats. A lens whose focus lies that far has none
+  // of its rays bent against the others by a rounding.
+  f.focus = static_cast<float>(std::clamp(c.focus, 1e-15, 1e15));
   put(f.lens_right, scaled(right, c.aperture / 2)), put(f.lens_up, scaled(up, c.aperture / 2));
   return f;
 }

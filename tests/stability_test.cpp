@@ -2,10 +2,12 @@
 #include <gtest/gtest.h>
 
 #include "tests/stability/grelha_tracer.hpp"
+#include "tests/stability/pictures.hpp"
 
 namespace grelha::stability {
 
 void PrintTo(const Row& row, std::ostream* out) { *out << row.name; }
+void PrintTo(const PictureRow& row, std::ostream* out) { *out << row.name; }
 
 namespace {
 
@@ -14,17 +16,30 @@ class Stability : public testing::TestWithParam<Row> {};
 TEST_P(Stability, NothingIsLostFalseOrMetAgain) {
   for (const char* const isa : {"scalar", "best"}) {
     GrelhaTracer grelha(*find_variant(isa));
-    const Counts c = run(GetParam(), grelha, 3000, 7);
+    const Counts c = run(GetParam(), grelha, 2000, 7);
     EXPECT_GT(c.answers, 50u);
     EXPECT_EQ(c.wrong(), 0u) << c.lost << " lost, " << c.false_ << " false, " << c.self << " self-hits of " << c.answers << ", " << isa << ", " << c.first;
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Rows, Stability, testing::ValuesIn(all_rows()), [](const auto& p) {
+template <class Info>
+std::string name_of(const Info& info) {
   std::string name;
-  for (const char* c = p.param.name; *c; ++c) name += std::isalnum(static_cast<unsigned char>(*c)) ? *c : '_';
+  for (const char* c = info.param.name; *c; ++c) name += std::isalnum(static_cast<unsigned char>(*c)) ? *c : '_';
   return name;
-});
+}
+
+INSTANTIATE_TEST_SUITE_P(Rows, Stability, testing::ValuesIn(all_rows()), [](const auto& p) { return name_of(p); });
+
+class StabilityOfPictures : public testing::TestWithParam<PictureRow> {};
+
+TEST_P(StabilityOfPictures, NoPixelIsWrong) {
+  const PictureCounts c = GetParam().run(16);
+  EXPECT_GT(c.pixels, 0u);
+  EXPECT_EQ(c.wrong, 0u) << "of " << c.pixels << ": " << c.first;
+}
+
+INSTANTIATE_TEST_SUITE_P(Rows, StabilityOfPictures, testing::ValuesIn(picture_rows()), [](const auto& p) { return name_of(p); });
 
 }  // namespace
 }  // namespace grelha::stability

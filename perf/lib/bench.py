@@ -73,14 +73,18 @@ class Bench:
 
     def section(self, text, part=""):
         """Prints the section; when kept, puts it between its two marks in docs/performance.md."""
-        part = part and f", {part}"
         print(text)
-        if self.docs != DOCS:
-            return
-        page = DOCS / "performance.md"
-        old, new = page.read_text(), f"<!-- made by perf/{self.name}.py{part} -->\n{text.strip()}\n<!-- end of {self.name}{part} -->"
-        marks = re.compile(f"<!-- made by perf/{self.name}.py{part} -->.*<!-- end of {self.name}{part} -->", re.S)
-        page.write_text(marks.sub(lambda _: new, old) if marks.search(old) else old.rstrip() + "\n\n" + new + "\n")
+        if self.docs == DOCS:
+            put_section(DOCS / "performance.md", f"perf/{self.name}.py", text, part)
+
+
+def put_section(page, maker, text, part=""):
+    """Between its two marks, where the page has them, or at its end."""
+    part = part and f", {part}"
+    name = pathlib.Path(maker).stem
+    old, new = page.read_text(), f"<!-- made by {maker}{part} -->\n{text.strip()}\n<!-- end of {name}{part} -->"
+    marks = re.compile(f"<!-- made by {re.escape(maker)}{part} -->.*<!-- end of {name}{part} -->", re.S)
+    page.write_text(marks.sub(lambda _: new, old) if marks.search(old) else old.rstrip() + "\n\n" + new + "\n")
 
 
 def cpu_name():

@@ -66,10 +66,10 @@ void contacts(Random& random, std::size_t rays, const Sink& sink) {
     if (!draw(random, size, place)) continue;
     const double coarse = 6e-8 * (size * 40 + std::abs(place.x) + std::abs(place.y) + std::abs(place.z));
     // Wide enough for both walls' rounding and the start's: 16 (e1 + e2) u + 4 u p (docs/numerics.md), doubled.
-    Batch batch;
+    Trial trial;
     const Walls walls(random, size, place, std::max(1e-3 * size, 100 * coarse));
-    batch.scene = walls.scene;
-    const World world(batch.scene, {.grid = false});
+    trial.scene = walls.scene;
+    const World world(trial.scene, {.grid = false});
     for (std::size_t i = 0; i < each; ++i) {
       const std::uint32_t k = random.below(40);
       const Float3 to = at(walls.middle[k], .2 * size, random.direction());
@@ -81,11 +81,11 @@ void contacts(Random& random, std::size_t rays, const Sink& sink) {
       if (cosine < .1) continue;
       Wanted w;
       w.hit = true, w.left = 2 * k, w.latest = 2 * walls.gap / cosine;
-      batch.add(of(scalar::leave(s.point, s.normal, s.away, {d.x, d.y, d.z})), d, w);
+      trial.add(of(scalar::leave(s.point, s.normal, s.away, {d.x, d.y, d.z})), d, w);
     }
     // Another wall may stand nearer: then something is met all the same, and sooner.
     done += each;
-    sink(batch);
+    sink(trial);
   }
 }
 
@@ -96,11 +96,11 @@ void self_hits(Random& random, std::size_t rays, const Sink& sink) {
     double size;
     Float3 place;
     if (!draw(random, size, place)) continue;
-    Batch batch;
-    batch.occlusion = false;  // whether anything is in the way says nothing about the wall
+    Trial trial;
+    trial.occlusion = false;  // whether anything is in the way says nothing about the wall
     const Walls walls(random, size, place, size);
-    batch.scene = walls.scene;
-    const World world(batch.scene, {.grid = false});
+    trial.scene = walls.scene;
+    const World world(trial.scene, {.grid = false});
     for (std::size_t i = 0; i < each; ++i) {
       const std::uint32_t k = random.below(80);
       const Float3 eye = at(walls.middle[k / 2], size * random.log_in(1, 1e3), random.direction());
@@ -111,10 +111,10 @@ void self_hits(Random& random, std::size_t rays, const Sink& sink) {
       if (std::abs(d.x * double(s.normal.x) + d.y * double(s.normal.y) + d.z * double(s.normal.z)) < 8 * 6e-8) continue;
       Wanted w;
       w.left = k;
-      batch.add(of(scalar::leave(s.point, s.normal, s.away, {d.x, d.y, d.z})), d, w);
+      trial.add(of(scalar::leave(s.point, s.normal, s.away, {d.x, d.y, d.z})), d, w);
     }
     done += each;
-    sink(batch);
+    sink(trial);
   }
 }
 
@@ -123,9 +123,9 @@ void sphere_self_hits(Random& random, std::size_t rays, const Sink& sink) {
   for (std::size_t done = 0; done < rays; done += 1000) {
     double size = random.log_in(1e-8, 1e8);
     const Float3 place = random.point(size * random.log_in(1e-2, 1e4));
-    Batch batch;
-    batch.scene = one_sphere(place, static_cast<float>(size));
-    const World world(batch.scene, {.grid = false});
+    Trial trial;
+    trial.scene = one_sphere(place, static_cast<float>(size));
+    const World world(trial.scene, {.grid = false});
     for (int i = 0; i < 1000; ++i) {
       const Float3 on = at(place, size, random.direction());
       const scalar::Surface s = scalar::sphere_surface(world.impl().view.geometry, 0, {on.x, on.y, on.z});
@@ -137,9 +137,9 @@ void sphere_self_hits(Random& random, std::size_t rays, const Sink& sink) {
       if (cosine < 0) d = scaled(d, -1);
       Wanted w;
       w.miss = true, w.left = 0;
-      batch.add(of(scalar::leave(s.point, s.normal, s.away, {d.x, d.y, d.z})), d, w);
+      trial.add(of(scalar::leave(s.point, s.normal, s.away, {d.x, d.y, d.z})), d, w);
     }
-    sink(batch);
+    sink(trial);
   }
 }
 
@@ -151,14 +151,14 @@ void lights(Random& random, std::size_t rays, const Sink& sink) {
     double size;
     Float3 place;
     if (!draw(random, size, place)) continue;
-    Batch batch;
+    Trial trial;
     const Walls walls(random, size, place, size);
     // One pair of walls alone: no other may stand in the way.
-    batch.scene = empty_scene();
-    for (std::uint32_t i = 0; i < 2; ++i) add_triangle(batch.scene, vertex(walls.scene, 3 * i), vertex(walls.scene, 3 * i + 1), vertex(walls.scene, 3 * i + 2));
-    const World world(batch.scene, {.grid = false});
-    const Size extent = size_of(batch.scene);
-    const oracle::Facet lid{vertex(batch.scene, 3), vertex(batch.scene, 4), vertex(batch.scene, 5)};
+    trial.scene = empty_scene();
+    for (std::uint32_t i = 0; i < 2; ++i) add_triangle(trial.scene, vertex(walls.scene, 3 * i), vertex(walls.scene, 3 * i + 1), vertex(walls.scene, 3 * i + 2));
+    const World world(trial.scene, {.grid = false});
+    const Size extent = size_of(trial.scene);
+    const oracle::Facet lid{vertex(trial.scene, 3), vertex(trial.scene, 4), vertex(trial.scene, 5)};
     const oracle::V across = oracle::unit(lid.normal());
     for (std::size_t i = 0; i < each; ++i) {
       const Float3 eye = at(walls.middle[0], size * random.log_in(1, 1e3), at(random.direction(), 1.5, walls.normal[0]));
@@ -178,10 +178,10 @@ void lights(Random& random, std::size_t rays, const Sink& sink) {
       Wanted w;
       w.hit = beyond > open, w.miss = beyond < -open;
       w.latest = 1;
-      batch.add(start, dir, w, 1);
+      trial.add(start, dir, w, 1);
     }
     done += each;
-    sink(batch);
+    sink(trial);
   }
 }
 

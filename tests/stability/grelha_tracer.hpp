@@ -10,7 +10,7 @@ namespace grelha::stability {
 class GrelhaTracer final : public Tracer {
  public:
   explicit GrelhaTracer(const Variant& variant) : variant_(variant) {}
-  void build(const Batch& batch) override { world_.emplace(batch.scene, BuildOptions{.density = batch.density}); }
+  void build(const Trial& trial) override { world_.emplace(trial.scene, BuildOptions{.density = trial.density}); }
   int ways() const override { return 2; }
   const char* way_name(int way) const override { return way == 0 ? "packets" : "single"; }
   Answers closest(const Rays& rays, int way) override { return trace(variant_, *world_, rays, settings(way), test::Query::kClosest); }

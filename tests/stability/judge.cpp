@@ -85,32 +85,32 @@ void meet(const Facet& f, const Ray& ray, Real margin, Found& found) {
 }
 
 /// How far a reported hit lies beside the primitive it names, beyond what is allowed.
-Real beyond(const Batch& batch, const Size& size, std::size_t i, float t, std::uint32_t id) {
-  const Ray ray{batch.rays.org(i), batch.rays.dir(i)};
+Real beyond(const Trial& trial, const Size& size, std::size_t i, float t, std::uint32_t id) {
+  const Ray ray{trial.rays.org(i), trial.rays.dir(i)};
   const V p = ray.point(t);
-  const std::size_t planes = batch.scene.geometry.planes.size(), spheres = batch.scene.geometry.spheres.size();
-  if (id < planes || id - planes >= spheres + batch.scene.geometry.triangles.size()) return 0;  // planes are plane_test's
+  const std::size_t planes = trial.scene.geometry.planes.size(), spheres = trial.scene.geometry.spheres.size();
+  if (id < planes || id - planes >= spheres + trial.scene.geometry.triangles.size()) return 0;  // planes are plane_test's
   id -= static_cast<std::uint32_t>(planes);
   const auto off = [&](const auto& shape) { return shape.distance(p) - allowed(farthest(shape, ray.org), size.diagonal, size.largest); };
-  return id < spheres ? off(ball(batch.scene, id)) : off(facet(batch.scene, id - spheres));
+  return id < spheres ? off(ball(trial.scene, id)) : off(facet(trial.scene, id - spheres));
 }
 
 enum class Verdict { kRight, kLost, kFalse, kSelf };
 
-Verdict verdict_closest(const Batch& batch, const Size& size, std::size_t i, const Answers& a) {
-  const Wanted& w = batch.wanted[i];
+Verdict verdict_closest(const Trial& trial, const Size& size, std::size_t i, const Answers& a) {
+  const Wanted& w = trial.wanted[i];
   const float t = a.t[i];
   const std::uint32_t id = a.id[i];
   if (id == kNoPrimitive) return w.hit ? Verdict::kLost : Verdict::kRight;
   if (id == w.left) return Verdict::kSelf;
   if (w.miss || !w.traces) return Verdict::kFalse;
   if (!(t <= w.latest)) return Verdict::kLost;
-  if (!(t >= w.earliest) || beyond(batch, size, i, t, id) > 0) return Verdict::kFalse;
+  if (!(t >= w.earliest) || beyond(trial, size, i, t, id) > 0) return Verdict::kFalse;
   return Verdict::kRight;
 }
 
-Verdict verdict_occluded(const Batch& batch, std::size_t i, const Answers& a) {
-  const Wanted& w = batch.wanted[i];
+Verdict verdict_occluded(const Trial& trial, std::size_t i, const Answers& a) {
+  const Wanted& w = trial.wanted[i];
   const bool met = a.id[i] != kNoPrimitive;
   if (!met) return w.hit ? Verdict::kLost : Verdict::kRight;
   return w.miss || !w.traces ? w.left != kNoPrimitive ? Verdict::kSelf : Verdict::kFalse : Verdict::kRight;
@@ -154,25 +154,25 @@ Wanted brute_force(const Scene& scene, const Size& size, const Float3& org, cons
   return found.wanted();
 }
 
-Counts judge(Tracer& tracer, const Batch& batch) {
+Counts judge(Tracer& tracer, const Trial& trial) {
   Counts counts;
-  const Size size = size_of(batch.scene);
-  tracer.build(batch);
+  const Size size = size_of(trial.scene);
+  tracer.build(trial);
   for (int way = 0; way < tracer.ways(); ++way)
-    for (int any = 0; any < (batch.occlusion ? 2 : 1); ++any) {
-      const Answers a = any ? tracer.occluded(batch.rays, way) : tracer.closest(batch.rays, way);
-      counts.answers += batch.rays.size();
-      for (std::size_t i = 0; i < batch.rays.size(); ++i) {
-        const Verdict v = any ? verdict_occluded(batch, i, a) : verdict_closest(batch, size, i, a);
+    for (int any = 0; any < (trial.occlusion ? 2 : 1); ++any) {
+      const Answers a = any ? tracer.occluded(trial.rays, way) : tracer.closest(trial.rays, way);
+      counts.answers += trial.rays.size();
+      for (std::size_t i = 0; i < trial.rays.size(); ++i) {
+        const Verdict v = any ? verdict_occluded(trial, i, a) : verdict_closest(trial, size, i, a);
         if (v == Verdict::kRight) continue;
         ++(v == Verdict::kLost ? counts.lost : v == Verdict::kFalse ? counts.false_ : counts.self);
         if (!counts.first.empty()) continue;
         std::ostringstream s;
-        const Wanted& w = batch.wanted[i];
+        const Wanted& w = trial.wanted[i];
         s << tracer.way_name(way) << (any ? ", occluded" : ", closest") << (v == Verdict::kLost ? ": lost, " : v == Verdict::kFalse ? ": false, " : ": self-hit, ")
-          << batch.rays.describe(i) << std::defaultfloat << "; t " << a.t[i] << " id " << static_cast<std::int32_t>(a.id[i]) << ", wanted "
+          << trial.rays.describe(i) << std::defaultfloat << "; t " << a.t[i] << " id " << static_cast<std::int32_t>(a.id[i]) << ", wanted "
           << (w.hit ? "hit" : w.miss ? "miss" : "either") << " in [" << w.earliest << ", " << w.latest << "]";
-        if (!any && a.id[i] != kNoPrimitive) s << ", beside it by " << static_cast<double>(beyond(batch, size, i, a.t[i], a.id[i])) << " too much";
+        if (!any && a.id[i] != kNoPrimitive) s << ", beside it by " << static_cast<double>(beyond(trial, size, i, a.t[i], a.id[i])) << " too much";
         counts.first = s.str();
       }
     }
@@ -182,7 +182,7 @@ Counts judge(Tracer& tracer, const Batch& batch) {
 Counts run(const Row& row, Tracer& tracer, std::size_t rays, std::uint64_t seed) {
   Counts counts;
   Random random(seed);
-  row.make(random, rays, [&](const Batch& batch) { counts += judge(tracer, batch); });
+  row.make(random, rays, [&](const Trial& trial) { counts += judge(tracer, trial); });
   return counts;
 }
 

@@ -30,8 +30,8 @@ const std::vector<Body>& bodies() {
 void closed(Random& random, std::size_t rays, const Sink& sink, const Body& body, At what, double scale, const Float3& offset) {
   const Aims aims = aims_at(body.scene, random);
   const std::vector<Float3>& targets = pick(aims, what);
-  Batch batch;
-  batch.scene = placed(body.scene, scale, offset);
+  Trial trial;
+  trial.scene = placed(body.scene, scale, offset);
   const auto place = [&](const Float3& p) { return at(offset, scale, p); };
   Wanted w;
   w.hit = true;
@@ -43,14 +43,14 @@ void closed(Random& random, std::size_t rays, const Sink& sink, const Body& body
       const double k = random.log_in(.1, 10);
       // Bumps may stand in the way; a leak goes on to the far side of the tube or out of everything.
       w.latest = 1.2 / k;
-      batch.add(org, scaled(minus(to, org), k), w);
+      trial.add(org, scaled(minus(to, org), k), w);
     } else {
       const Float3 eye = place(outside(random, aim, body.torus));
       w.latest = 1.2;
-      batch.add(eye, minus(to, eye), w);
+      trial.add(eye, minus(to, eye), w);
     }
   }
-  sink(batch);
+  sink(trial);
 }
 
 /// So many rays in pieces, each at another body of the list, place and size.
@@ -87,21 +87,21 @@ void slivers(Random& random, std::size_t rays, const Sink& sink) {
 void grazed(Random& random, std::size_t rays, const Sink& sink) {
   const std::size_t pieces = std::max<std::size_t>(1, rays / 2000);
   for (std::size_t k = 0; k < pieces; ++k) {
-    Batch batch;
-    batch.scene = empty_scene();
+    Trial trial;
+    trial.scene = empty_scene();
     constexpr int kCount = 60;
     std::vector<Float3> middle, along, normal;
     for (int i = 0; i < kCount; ++i) {
       const Float3 a = random.point(10), d = random.direction(), e = random.direction();
       const double length = random.log_in(.1, 10), width = length * random.log_in(1e-5, .3);
       const Float3 b = at(a, length, d), c = at(at(a, length * random.unit(), d), width, e);
-      add_triangle(batch.scene, a, b, c);
+      add_triangle(trial.scene, a, b, c);
       middle.push_back(scaled({a.x + b.x + c.x, a.y + b.y + c.y, a.z + b.z + c.z}, 1. / 3)), along.push_back(d);
       const oracle::V n = oracle::cross(d, e);
       const oracle::V u = oracle::unit(n);
       normal.push_back({static_cast<float>(u.x), static_cast<float>(u.y), static_cast<float>(u.z)});
     }
-    const Size size = size_of(batch.scene);
+    const Size size = size_of(trial.scene);
     for (std::size_t i = 0; i < rays / pieces; ++i) {
       const std::uint32_t s = random.below(kCount);
       const double angle = random.log_in(1e-4, 1), away = random.log_in(.1, 600), turn = random.in(0, 6.283185307);
@@ -110,23 +110,23 @@ void grazed(Random& random, std::size_t rays, const Sink& sink) {
       const Float3 in_plane = at(scaled(along[s], std::cos(turn)), std::sin(turn), across);
       const Float3 org = at(at(middle[s], away * std::cos(angle), in_plane), away * std::sin(angle) * random.sign(), normal[s]);
       const Float3 dir = minus(middle[s], org);
-      batch.add(org, dir, brute_force(batch.scene, size, org, dir));
+      trial.add(org, dir, brute_force(trial.scene, size, org, dir));
     }
-    sink(batch);
+    sink(trial);
   }
 }
 
 /// A rough sheet of 20,000 triangles with edges of 1, seen from up to a million away: it is met, and the triangle named lies where the
 /// exact ray comes down.
 void far_small(Random& random, std::size_t rays, const Sink& sink) {
-  Batch batch;
-  batch.scene = empty_scene();
+  Trial trial;
+  trial.scene = empty_scene();
   constexpr int kSide = 100;
   for (int z = 0; z < kSide; ++z)
     for (int x = 0; x < kSide; ++x) {
       const float a = static_cast<float>(x - kSide / 2), b = static_cast<float>(z - kSide / 2);
-      add_triangle(batch.scene, {a, 0, b}, {a + 1, 0, b}, {a + 1, 0, b + 1});
-      add_triangle(batch.scene, {a, 0, b}, {a + 1, 0, b + 1}, {a, 0, b + 1});
+      add_triangle(trial.scene, {a, 0, b}, {a + 1, 0, b}, {a + 1, 0, b + 1});
+      add_triangle(trial.scene, {a, 0, b}, {a + 1, 0, b + 1}, {a, 0, b + 1});
     }
   for (std::size_t i = 0; i < rays; ++i) {
     const Float3 aim{static_cast<float>(random.in(-45, 45)), 0, static_cast<float>(random.in(-45, 45))};
@@ -141,9 +141,9 @@ void far_small(Random& random, std::size_t rays, const Sink& sink) {
     const oracle::Ray ray{org, dir};
     const oracle::V p = ray.point(t);
     if (std::abs(p.x) > 49 || std::abs(p.z) > 49) continue;  // the floats of ray and aim are too coarse to stay on the sheet
-    batch.add(org, dir, w);
+    trial.add(org, dir, w);
   }
-  sink(batch);
+  sink(trial);
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ struct Wanted {
 };
 
 /// One scene with its rays.
-struct Batch {
+struct Trial {
   Scene scene;
   Rays rays;
   std::vector<Wanted> wanted;
@@ -62,21 +62,20 @@ struct Counts {
 class Tracer {
  public:
   virtual ~Tracer() = default;
-  virtual void build(const Batch& batch) = 0;
+  virtual void build(const Trial& trial) = 0;
   virtual int ways() const = 0;  ///< of tracing; each is asked
   virtual const char* way_name(int way) const = 0;
   virtual Answers closest(const Rays& rays, int way) = 0;
   virtual Answers occluded(const Rays& rays, int way) = 0;  ///< id: kNoPrimitive or anything
 };
 
-using Sink = std::function<void(const Batch&)>;
+using Sink = std::function<void(const Trial&)>;
 
 struct Row {
   const char* name;
   const char* condition;
   const char* truth;  ///< and what is open
   void (*make)(Random& random, std::size_t rays, const Sink& sink);
-  bool sound = true;  ///< false: no peer can be asked (rays that are not numbers end Debian's Embree)
 };
 
 std::vector<Row> mesh_rows();     ///< meshes.cpp: nothing falls between two triangles
@@ -85,8 +84,8 @@ std::vector<Row> walk_rows();     ///< walks.cpp: acceleration loses nothing
 std::vector<Row> contact_rows();  ///< contacts.cpp: rays that leave surfaces
 std::vector<Row> all_rows();
 
-/// Every way of a tracer through one batch.
-Counts judge(Tracer& tracer, const Batch& batch);
+/// Every way of a tracer through one trial.
+Counts judge(Tracer& tracer, const Trial& trial);
 /// Every way of a tracer through a row.
 Counts run(const Row& row, Tracer& tracer, std::size_t rays, std::uint64_t seed);
 

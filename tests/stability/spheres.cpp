@@ -14,51 +14,51 @@ using namespace test;
 /// beside it, so that there is a grid to walk.
 template <int kExponent>
 void far_sphere(Random& random, std::size_t rays, const Sink& sink) {
-  Batch batch;
-  batch.scene = one_sphere({0, 0, 0}, 1);
-  for (int i = 0; i < 20; ++i) batch.scene.geometry.spheres.add(at({0, 0, 0}, 4, random.direction()), .5f, 0);
-  const Size size = size_of(batch.scene);
+  Trial trial;
+  trial.scene = one_sphere({0, 0, 0}, 1);
+  for (int i = 0; i < 20; ++i) trial.scene.geometry.spheres.add(at({0, 0, 0}, 4, random.direction()), .5f, 0);
+  const Size size = size_of(trial.scene);
   for (std::size_t i = 0; i < rays; ++i) {
     const Float3 eye = at({0, 0, 0}, std::pow(10., kExponent) * random.in(.3, 1), random.direction());
     const oracle::V out = oracle::unit(oracle::cross(eye, random.direction()));
     const double miss = random.chance(.5) ? .99 * random.unit() : random.in(1.01, 1.1);
     const Float3 aim{static_cast<float>(out.x * miss), static_cast<float>(out.y * miss), static_cast<float>(out.z * miss)}, dir = minus(aim, eye);
-    batch.add(eye, dir, brute_force(batch.scene, size, eye, dir));
+    trial.add(eye, dir, brute_force(trial.scene, size, eye, dir));
   }
-  sink(batch);
+  sink(trial);
 }
 
 /// Spheres of radius 1 scattered about a point so far from the origin, looked at from among them and from 10 away.
 template <int kExponent>
 void moved_spheres(Random& random, std::size_t rays, const Sink& sink) {
-  Batch batch;
+  Trial trial;
   const Float3 center = scaled({1, -.013f, 1.5f}, std::pow(10., kExponent));
-  batch.scene = placed(random_spheres(3, 60), 6, center);
-  for (float& r : batch.scene.geometry.spheres.radius) r = std::abs(r);  // only Grelha knows spheres seen from inside alone
-  const Size size = size_of(batch.scene);
+  trial.scene = placed(random_spheres(3, 60), 6, center);
+  for (float& r : trial.scene.geometry.spheres.radius) r = std::abs(r);  // only Grelha knows spheres seen from inside alone
+  const Size size = size_of(trial.scene);
   for (std::size_t i = 0; i < rays; ++i) {
     const Float3 eye = at(center, random.chance(.3) ? 6 * random.unit() : random.log_in(6, 60), random.direction());
     const Float3 dir = minus(at(center, 7 * random.unit(), random.direction()), eye);
     if (dir == Float3{}) continue;
-    batch.add(eye, dir, brute_force(batch.scene, size, eye, dir));
+    trial.add(eye, dir, brute_force(trial.scene, size, eye, dir));
   }
-  sink(batch);
+  sink(trial);
 }
 
 /// A sphere as a floor below an eye 1 above it.
 template <int kExponent>
 void floor_sphere(Random& random, std::size_t rays, const Sink& sink) {
-  Batch batch;
+  Trial trial;
   const double r = std::pow(10., kExponent);
-  batch.scene = one_sphere({0, static_cast<float>(-r), 0}, static_cast<float>(r));
-  const Size size = size_of(batch.scene);
+  trial.scene = one_sphere({0, static_cast<float>(-r), 0}, static_cast<float>(r));
+  const Size size = size_of(trial.scene);
   for (std::size_t i = 0; i < rays; ++i) {
     Float3 dir = random.direction();
     dir.y = -std::abs(dir.y);
     const Float3 eye{static_cast<float>(random.in(-1, 1)), 1, static_cast<float>(random.in(-1, 1))};
-    batch.add(eye, dir, brute_force(batch.scene, size, eye, dir));
+    trial.add(eye, dir, brute_force(trial.scene, size, eye, dir));
   }
-  sink(batch);
+  sink(trial);
 }
 
 }  // namespace

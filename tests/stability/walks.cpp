@@ -22,29 +22,30 @@ Scene crowd(std::uint64_t seed, int n) {
   return s;
 }
 
-void judge_all(Batch& batch, const Rays& rays) {
-  const Size size = size_of(batch.scene);
+void judge_all(Trial& trial, const Rays& rays) {
+  const Size size = size_of(trial.scene);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (rays.dir(i) == Float3{}) continue;
-    batch.add(rays.org(i), rays.dir(i), brute_force(batch.scene, size, rays.org(i), rays.dir(i)));
+    trial.add(rays.org(i), rays.dir(i), brute_force(trial.scene, size, rays.org(i), rays.dir(i)));
   }
 }
 
 /// In planes between cells, along their edges, through their corners, down their diagonals: the cells of Grelha's own grid.
 void on_cells(Random& random, std::size_t rays, const Sink& sink) {
   for (const bool lattice : {false, true}) {
-    Batch batch;
-    batch.scene = lattice ? lattice_patch(6) : crowd(random.next(), 100);
-    const World world(batch.scene, {});
-    judge_all(batch, rays_on_cells(random, world, static_cast<int>(rays / 2)));
-    sink(batch);
+    Trial trial;
+    trial.scene = lattice ? lattice_patch(6) : crowd(random.next(), 100);
+    const World world(trial.scene, {});
+    judge_all(trial, rays_on_cells(random, world, static_cast<int>(rays / 2)));
+    sink(trial);
   }
 }
 
-/// Along axes, with zeros of both signs or a denormal beside, of any length from 1e-17 to 1e17.
+/// Along axes, with zeros of both signs or a denormal beside; of any length up to so many powers of ten from 1.
+template <int kExponent>
 void odd_directions(Random& random, std::size_t rays, const Sink& sink) {
-  Batch batch;
-  batch.scene = crowd(random.next(), 100);
+  Trial trial;
+  trial.scene = crowd(random.next(), 100);
   Rays list;
   for (std::size_t i = 0; i < rays; ++i) {
     const Float3 aim = random.point(1);
@@ -54,40 +55,40 @@ void odd_directions(Random& random, std::size_t rays, const Sink& sink) {
     for (std::uint32_t b = 0; b < 3; ++b)
       if (kind < .4 ? b != a : kind < .7 && b == a) component(dir, b) = random.chance(.5) ? random.zero() : static_cast<float>(random.sign() * 1e-40);
     const Float3 org = at(aim, -random.log_in(.1, 10), dir);
-    list.add(org, scaled(dir, random.log_in(1e-17, 1e17)));
+    list.add(org, scaled(dir, random.log_in(std::pow(10., -kExponent), std::pow(10., kExponent))));
   }
-  judge_all(batch, list);
-  sink(batch);
+  judge_all(trial, list);
+  sink(trial);
 }
 
 /// A third of the rays have a NaN or an infinity somewhere; their neighbours in a packet must not feel it.
 void unsound_rays(Random& random, std::size_t rays, const Sink& sink) {
-  Batch batch;
-  batch.scene = crowd(random.next(), 100);
-  const Size size = size_of(batch.scene);
+  Trial trial;
+  trial.scene = crowd(random.next(), 100);
+  const Size size = size_of(trial.scene);
   for (std::size_t i = 0; i < rays; ++i) {
     Float3 org = at({0, 0, 0}, random.log_in(.1, 10), random.direction()), dir = minus(random.point(1), org);
     if (!random.chance(1. / 3)) {
-      batch.add(org, dir, brute_force(batch.scene, size, org, dir));
+      trial.add(org, dir, brute_force(trial.scene, size, org, dir));
       continue;
     }
     const float odd[] = {kNaN, kInf, -kInf, 3e38f};
     component(random.chance(.5) ? org : dir, random.below(3)) = odd[random.below(4)];
     Wanted w;
     w.miss = true, w.traces = false;
-    batch.add(org, dir, w);
+    trial.add(org, dir, w);
   }
-  sink(batch);
+  sink(trial);
 }
 
 template <Scene (*kMake)(Random&)>
 void scene_of(Random& random, std::size_t rays, const Sink& sink) {
-  Batch batch;
-  batch.scene = kMake(random);
-  const Size size = size_of(batch.scene);
+  Trial trial;
+  trial.scene = kMake(random);
+  const Size size = size_of(trial.scene);
   const double reach = size.diagonal > 0 ? size.diagonal / 2 : 1;
-  judge_all(batch, rays_about(random, {}, reach, static_cast<int>(rays), 1e3));
-  sink(batch);
+  judge_all(trial, rays_about(random, {}, reach, static_cast<int>(rays), 1e3));
+  sink(trial);
 }
 
 Scene flat(Random& random) {
@@ -118,55 +119,55 @@ Scene diagonals(Random& random) {
 /// So many copies of one triangle and one sphere: what is met must be there, and the search must end.
 void copies(Random& random, std::size_t rays, const Sink& sink) {
   const std::size_t count = std::clamp<std::size_t>(rays / 2, 500, 500000);
-  Batch batch;
-  batch.scene = empty_scene();
+  Trial trial;
+  trial.scene = empty_scene();
   const Float3 a = random.point(1), b = random.point(1), c = random.point(1);
-  for (std::size_t i = 0; i < count; ++i) add_triangle(batch.scene, a, b, c), batch.scene.geometry.spheres.add({2, 2, 2}, .5f, 0);
+  for (std::size_t i = 0; i < count; ++i) add_triangle(trial.scene, a, b, c), trial.scene.geometry.spheres.add({2, 2, 2}, .5f, 0);
   Scene one = one_triangle(a, b, c);
   one.geometry.spheres.add({2, 2, 2}, .5f, 0);
   const Size size = size_of(one);
   const Rays list = rays_about(random, {1, 1, 1}, 1.5, static_cast<int>(std::clamp<std::size_t>(200000000 / count / 4, 16, 1000)), 1e3);
   for (std::size_t i = 0; i < list.size(); ++i)
-    if (list.dir(i) != Float3{}) batch.add(list.org(i), list.dir(i), brute_force(one, size, list.org(i), list.dir(i)));
-  sink(batch);
+    if (list.dir(i) != Float3{}) trial.add(list.org(i), list.dir(i), brute_force(one, size, list.org(i), list.dir(i)));
+  sink(trial);
 }
 
 /// A grid of one cell an axis, and one of 1024 along the only axis there is.
 void bounds_of_resolution(Random& random, std::size_t rays, const Sink& sink) {
   for (const float density : {1e-3f, 1e3f}) {
-    Batch batch;
-    batch.density = density;
-    batch.scene = empty_scene();
-    for (int i = 0; i < 100; ++i) add_triangle(batch.scene, {float(i), 0, 0}, {i + .9f, 1e-2f, 0}, {float(i), 0, 1e-2f});
+    Trial trial;
+    trial.density = density;
+    trial.scene = empty_scene();
+    for (int i = 0; i < 100; ++i) add_triangle(trial.scene, {float(i), 0, 0}, {i + .9f, 1e-2f, 0}, {float(i), 0, 1e-2f});
     Rays list;
     for (std::size_t i = 0; i < rays / 2; ++i) {
       const Float3 aim{static_cast<float>(random.in(0, 100)), 5e-3f, 2e-3f}, org = at(aim, random.log_in(.01, 100), random.direction());
       list.add(org, minus(aim, org));
     }
-    judge_all(batch, list);
-    sink(batch);
+    judge_all(trial, list);
+    sink(trial);
   }
 }
 
 /// Three corners and a centre are no numbers: those primitives are not there, and all others are.
 void unsound_vertices(Random& random, std::size_t rays, const Sink& sink) {
-  Batch batch;
-  batch.scene = crowd(random.next(), 100);
-  Scene sound = batch.scene;
+  Trial trial;
+  trial.scene = crowd(random.next(), 100);
+  Scene sound = trial.scene;
   const float odd[] = {kNaN, kInf, -kInf};
   for (std::uint32_t i = 0; i < 3; ++i) {
     const std::uint32_t corner = 3 * (10 * i + random.below(10));
-    batch.scene.geometry.triangles.x[corner + i] = odd[i];
+    trial.scene.geometry.triangles.x[corner + i] = odd[i];
     Triangles& t = sound.geometry.triangles;
     for (std::uint32_t j = corner; j < corner + 3; ++j) t.x[j] = t.y[j] = t.z[j] = 100;  // somewhere else, and without extent
   }
-  batch.scene.geometry.spheres.x[7] = kNaN;
+  trial.scene.geometry.spheres.x[7] = kNaN;
   sound.geometry.spheres.x[7] = 100;
-  const Size size = size_of(batch.scene);
+  const Size size = size_of(trial.scene);
   const Rays list = rays_about(random, {}, 1, static_cast<int>(rays), 10);
   for (std::size_t i = 0; i < list.size(); ++i)
-    if (list.dir(i) != Float3{}) batch.add(list.org(i), list.dir(i), brute_force(sound, size, list.org(i), list.dir(i)));
-  sink(batch);
+    if (list.dir(i) != Float3{}) trial.add(list.org(i), list.dir(i), brute_force(sound, size, list.org(i), list.dir(i)));
+  sink(trial);
 }
 
 }  // namespace
@@ -175,8 +176,9 @@ std::vector<Row> walk_rows() {
   const char* const truth = "brute force in long double";
   return {
       {"rays on cells", "in planes between cells, along edges, through corners, down diagonals", truth, on_cells},
-      {"odd directions", "along axes, -0, denormals, lengths 1e-17 to 1e17", truth, odd_directions},
-      {"rays of NaN and infinity", "a third of the rays", "they meet nothing, their neighbours what they should", unsound_rays, false},
+      {"odd directions", "along axes, -0, denormals, lengths 1e-3 to 1e3", truth, odd_directions<3>},
+      {"directions of any length", "the same, 1e-17 to 1e17", truth, odd_directions<17>},
+      {"rays of NaN and infinity", "a third of the rays", "they meet nothing, their neighbours what they should", unsound_rays},
       {"flat scene", "no extent along y", truth, scene_of<flat>},
       {"one triangle", "", truth, scene_of<single>},
       {"no primitive", "", "nothing is met", scene_of<nothing>},
