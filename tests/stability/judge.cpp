@@ -119,7 +119,7 @@ Verdict verdict_occluded(const Trial& trial, std::size_t i, const Answers& a) {
 }  // namespace
 
 Real allowed(Real distance, Real diagonal, Real largest) {
-  return 64 * kU * std::min(distance, 4 * diagonal) + 8 * kU * largest + 2 * kU * distance;
+  return 64 * kU * std::min(distance, 4 * diagonal) + 2 * kU * distance + (distance > diagonal ? 8 * kU * largest : 0);
 }
 
 Size size_of(const Scene& scene) {

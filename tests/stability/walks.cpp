@@ -155,14 +155,13 @@ void unsound_vertices(Random& random, std::size_t rays, const Sink& sink) {
   trial.scene = crowd(random.next(), 100);
   Scene sound = trial.scene;
   const float odd[] = {kNaN, kInf, -kInf};
-  for (std::uint32_t i = 0; i < 3; ++i) {
-    const std::uint32_t corner = 3 * (10 * i + random.below(10));
-    trial.scene.geometry.triangles.x[corner + i] = odd[i];
-    Triangles& t = sound.geometry.triangles;
-    for (std::uint32_t j = corner; j < corner + 3; ++j) t.x[j] = t.y[j] = t.z[j] = 100;  // somewhere else, and without extent
+  for (std::uint32_t i = 3; i-- > 0;) {
+    const std::uint32_t k = 10 * i + random.below(10);
+    trial.scene.geometry.triangles.x[3 * k + i] = odd[i];
+    for (auto* v : {&sound.geometry.triangles.a, &sound.geometry.triangles.b, &sound.geometry.triangles.c}) v->erase(v->begin() + k);
   }
   trial.scene.geometry.spheres.x[7] = kNaN;
-  sound.geometry.spheres.x[7] = 100;
+  for (auto* v : {&sound.geometry.spheres.x, &sound.geometry.spheres.y, &sound.geometry.spheres.z, &sound.geometry.spheres.radius}) v->erase(v->begin() + 7);
   const Size size = size_of(trial.scene);
   const Rays list = rays_about(random, {}, 1, static_cast<int>(rays), 10);
   for (std::size_t i = 0; i < list.size(); ++i)
