@@ -3,7 +3,6 @@
 // and each tracer's test of it.
 #define GRELHA_ISA scalar
 #include "kernel/surface.hpp"
-#include "kernel/trace.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,6 +16,26 @@ namespace {
 using namespace test;
 
 Float3 of(const scalar::Vec3<float>& v) { return {v.x, v.y, v.z}; }
+double dot(const Float3& a, const Float3& b) { return double(a.x) * b.x + double(a.y) * b.y + double(a.z) * b.z; }
+
+/// A place on a surface as the renderer knows it, and where it lets a ray start that leaves it.
+struct Spot {
+  Float3 point, normal;
+  float away;
+  Float3 start(const Float3& d) const { return of(scalar::leave({point.x, point.y, point.z}, {normal.x, normal.y, normal.z}, away, {d.x, d.y, d.z})); }
+};
+
+/// Where the ray meets primitive `id` at t, which a triangle takes from the ray again.
+Spot spot(const World& world, std::uint32_t id, const Float3& org, const Float3& dir, float t = 0) {
+  const float o[3] = {org.x, org.y, org.z}, d[3] = {dir.x, dir.y, dir.z};
+  const scalar::Surface s = scalar::surface_of(world.impl().view, id, o, d, t, false);
+  return {of(s.point), of(s.normal), s.away};
+}
+
+/// Nearly along the surface: the worst to leave it by.
+Float3 flattened(Random& random, const Float3& d, const Float3& normal) { return at(d, -dot(d, normal) * (1 - random.log_in(1e-6, 1e-1)), normal); }
+/// So nearly along that rounding decides which side it points to: either answer is right.
+bool undecided(const Float3& d, const Float3& normal) { return std::abs(dot(d, normal)) < 8 * 6e-8; }
 
 /// Walls with a lid over each, `gap` away: triangle 2i the wall, 2i + 1 the lid, three times as large.
 struct Walls {
@@ -43,12 +62,6 @@ struct Walls {
   }
 };
 
-/// The surface at the point of triangle `id` that a ray from org along dir meets.
-scalar::Surface surface(const World& world, std::uint32_t id, const Float3& org, const Float3& dir) {
-  const float o[3] = {org.x, org.y, org.z}, d[3] = {dir.x, dir.y, dir.z};
-  return scalar::triangle_surface(world.impl().view.geometry, id, o, d, false);
-}
-
 /// Size from 1e-8 to 1e8, offset from 1e-8 to 1e8, but for walls of fewer than 2000 ulp, whose corners alone are off by as much.
 bool draw(Random& random, double& size, Float3& place) {
   size = random.log_in(1e-8, 1e8);
@@ -74,14 +87,14 @@ void contacts(Random& random, std::size_t rays, const Sink& sink) {
       const std::uint32_t k = random.below(40);
       const Float3 to = at(walls.middle[k], .2 * size, random.direction());
       const Float3 eye = at(to, size * random.log_in(1, 1e3), at(random.direction(), 1.5, walls.normal[k]));
-      const scalar::Surface s = surface(world, 2 * k, eye, minus(walls.middle[k], eye));
+      const Spot s = spot(world, 2 * k, eye, minus(walls.middle[k], eye));
       Float3 d = random.direction();
-      if (d.x * walls.normal[k].x + d.y * walls.normal[k].y + d.z * walls.normal[k].z < 0) d = scaled(d, -1);
-      const double cosine = d.x * walls.normal[k].x + d.y * walls.normal[k].y + d.z * walls.normal[k].z;
+      if (dot(d, walls.normal[k]) < 0) d = scaled(d, -1);
+      const double cosine = dot(d, walls.normal[k]);
       if (cosine < .1) continue;
       Wanted w;
       w.hit = true, w.left = 2 * k, w.latest = 2 * walls.gap / cosine;
-      trial.add(of(scalar::leave(s.point, s.normal, s.away, {d.x, d.y, d.z})), d, w);
+      trial.add(s.start(d), d, w);
     }
     // Another wall may stand nearer: then something is met all the same, and sooner.
     done += each;
@@ -104,14 +117,13 @@ void self_hits(Random& random, std::size_t rays, const Sink& sink) {
     for (std::size_t i = 0; i < each; ++i) {
       const std::uint32_t k = random.below(80);
       const Float3 eye = at(walls.middle[k / 2], size * random.log_in(1, 1e3), random.direction());
-      const scalar::Surface s = surface(world, k, eye, minus(at(walls.middle[k / 2], .1 * size, random.direction()), eye));
+      const Spot s = spot(world, k, eye, minus(at(walls.middle[k / 2], .1 * size, random.direction()), eye));
       Float3 d = random.direction();
-      const double n = d.x * s.normal.x + d.y * s.normal.y + d.z * s.normal.z;
-      if (i % 4 == 0) d = at(d, -n * (1 - random.log_in(1e-6, 1e-1)), of(s.normal));
-      if (std::abs(d.x * double(s.normal.x) + d.y * double(s.normal.y) + d.z * double(s.normal.z)) < 8 * 6e-8) continue;
+      if (i % 4 == 0) d = flattened(random, d, s.normal);
+      if (undecided(d, s.normal)) continue;
       Wanted w;
       w.left = k;
-      trial.add(of(scalar::leave(s.point, s.normal, s.away, {d.x, d.y, d.z})), d, w);
+      trial.add(s.start(d), d, w);
     }
     done += each;
     sink(trial);
@@ -128,16 +140,14 @@ void sphere_self_hits(Random& random, std::size_t rays, const Sink& sink) {
     const World world(trial.scene, {.grid = false});
     for (int i = 0; i < 1000; ++i) {
       const Float3 on = at(place, size, random.direction());
-      const scalar::Surface s = scalar::sphere_surface(world.impl().view.geometry, 0, {on.x, on.y, on.z});
+      const Spot s = spot(world, 0, on, {0, 0, 1});
       Float3 d = random.direction();
-      const double n = d.x * s.normal.x + d.y * s.normal.y + d.z * s.normal.z;
-      if (i % 4 == 0) d = at(d, -n * (1 - random.log_in(1e-6, 1e-1)), of(s.normal));
-      const double cosine = d.x * double(s.normal.x) + d.y * double(s.normal.y) + d.z * double(s.normal.z);
-      if (std::abs(cosine) < 8 * 6e-8) continue;
-      if (cosine < 0) d = scaled(d, -1);
+      if (i % 4 == 0) d = flattened(random, d, s.normal);
+      if (undecided(d, s.normal)) continue;
+      if (dot(d, s.normal) < 0) d = scaled(d, -1);
       Wanted w;
       w.miss = true, w.left = 0;
-      trial.add(of(scalar::leave(s.point, s.normal, s.away, {d.x, d.y, d.z})), d, w);
+      trial.add(s.start(d), d, w);
     }
     sink(trial);
   }
@@ -162,7 +172,7 @@ void lights(Random& random, std::size_t rays, const Sink& sink) {
     const oracle::V across = oracle::unit(lid.normal());
     for (std::size_t i = 0; i < each; ++i) {
       const Float3 eye = at(walls.middle[0], size * random.log_in(1, 1e3), at(random.direction(), 1.5, walls.normal[0]));
-      const scalar::Surface s = surface(world, 0, eye, minus(at(walls.middle[0], .2 * size, random.direction()), eye));
+      const Spot s = spot(world, 0, eye, minus(at(walls.middle[0], .2 * size, random.direction()), eye));
       // At a point of the lid, off it by nothing or by anything from an ulp to the size.
       const double off = random.chance(.2) ? 0 : random.sign() * size * random.log_in(1e-8, .5);
       const Float3 on = at(at(walls.middle[0], size, walls.normal[0]), .3 * size, random.direction());
@@ -170,8 +180,8 @@ void lights(Random& random, std::size_t rays, const Sink& sink) {
       const double side = static_cast<double>(dot(across, walls.normal[0])) > 0 ? 1 : -1;
       const oracle::V q = p + oracle::Real(off * side) * across;
       const Float3 light{static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z)};
-      const Float3 up = minus(light, of(s.point));
-      const Float3 start = of(scalar::leave(s.point, s.normal, s.away, {up.x, up.y, up.z})), dir = minus(light, start);
+      const Float3 up = minus(light, s.point);
+      const Float3 start = s.start(up), dir = minus(light, start);
       // Where the float light is: beyond the lid (positive) or before it.
       const oracle::Real beyond = oracle::Real(side) * dot(oracle::V(start) + oracle::V(dir) - lid.a, across);
       const oracle::Real open = allowed(extent.diagonal, extent.diagonal, extent.largest);

@@ -1,0 +1,118 @@
+#!/usr/bin/env python3
+"""Plants known faults, one at a time, in a copy of the sources, and checks that the test named for each turns red.
+
+  tests/plant.py [--only PART OF A NAME] [--folder FOLDER] [--list]
+
+A fault is a piece of text and what replaces it; one that is not found exactly once ends the script, so that no fault is thought
+planted that is not. All are built without SIMD copies and with -O1, but the one that wants them. Exits 1 when a test stayed green.
+Takes some ten minutes; the list with its last outcome is in docs/numerics.md.
+"""
+import argparse
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+
+
+@dataclass
+class Fault:
+    name: str
+    file: str
+    old: str
+    new: str
+    test: str           # the program, without _test
+    cases: str          # --gtest_filter
+    simd: bool = False  # wants copies of more than one width
+
+
+ROW = "Rows/Stability.NothingIsLostFalseOrMetAgain/"
+FAULTS = [
+    Fault("no growth of boxes", "kernel/world.cpp", "const double pad = diagonal * 256 / 16777216;", "const double pad = 0;", "stability", ROW + "*"),
+    Fault("< for <= in the walk", "kernel/march.hpp", "for (; slice <= last && active > 0; ++slice) {", "for (; slice < last && active > 0; ++slice) {",
+          "walk", "Isa/Walk.*"),
+    Fault("adding up instead of computing again", "kernel/abreast.hpp", "t[a] = (plane - load<Lanes>(now[Course::kPlace + a])) * inverse;",
+          """t[a] = [&] {
+        const float from = load<Lanes>(now[Course::kPlace + a]), to = plane, step = inverse;
+        float k = to > from ? __builtin_ceilf(from) : __builtin_floorf(from), sum = (k - from) * step;
+        for (; k < to; ++k) sum += step;
+        for (; k > to; --k) sum -= step;
+        return sum;
+      }();""", "stability", ROW + "resolution_at_its_bounds"),
+    Fault("contraction", "CMakeLists.txt", "-ffp-contract=off)", "-ffp-contract=fast)", "variants", "*ReturnTheScalarBits*", simd=True),
+    Fault("unshuffled light samples", "kernel/sampling.hpp", "if (plan.kind == SamplePlan::kUnshuffled) return", "if (plan.kind != SamplePlan::kSobol) return",
+          "stability", "Rows/StabilityOfPictures.NoPixelIsWrong/correlated_samples"),
+    Fault("skipping a slice too far", "kernel/march.hpp", ": nearest - 1;", ": nearest;", "walk", "Isa/Walk.*"),
+    Fault("a mailbox that is kept for the next packet", "kernel/march.hpp", "if (use_mailbox) mailbox.clear();", "", "walk", "Isa/Walk.*"),
+    Fault("a sphere by the textbook", "kernel/sphere.hpp", "const Real inside = rr - dot(gap, gap);",
+          "const Real inside = middle * middle / inv_dd - (dot(to_center, to_center) - rr);", "stability", ROW + "spheres_from_*"),
+    Fault("epsilon 1e-4 instead of bounds", "kernel/surface.hpp", "s.away = 16 * kEps * (largest(e1) + largest(e2)) + 4 * kEps * largest(s.point);", "s.away = 1e-4f;",
+          "stability", ROW + "lost_contacts:" + ROW + "self_hits_of_triangles"),
+    Fault("ties by arrival", "kernel/packet.hpp", "if ((ties >> k & 1) && (held == kNoPrimitive || held <= id)) continue;", "if (ties >> k & 1) continue;", "walk", "Isa/Ties.*"),
+]
+
+
+def run(command, log, **more):
+    with open(log, "ab") as out:
+        return subprocess.run(command, stdout=out, stderr=subprocess.STDOUT, **more).returncode
+
+
+def configure(source, build, simd, log):
+    launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
+    if run(["cmake", "-S", source, "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=None", "-DCMAKE_CXX_FLAGS=-O1", "-DGRELHA_TESTS=ON", "-DGRELHA_PERF=OFF",
+            f"-DGRELHA_SIMD={'ON' if simd else 'OFF'}", *launcher], log):
+        sys.exit(f"plant: {log}: no build can be set up")
+
+
+def outcome(source, fault, log):
+    """Whether the fault's test passes on what the folder holds."""
+    build = source / ("build-simd" if fault.simd else "build")
+    if not build.exists():
+        configure(source, build, fault.simd, log)
+    if run(["ninja", "-C", build, f"{fault.test}_test"], log):
+        sys.exit(f"plant: {log}: does not compile with '{fault.name}'")
+    # A walk that has lost its way may not end: that is as red.
+    try:
+        return run([build / "tests" / f"{fault.test}_test", f"--gtest_filter={fault.cases}", "--gtest_brief=1"], log, timeout=300) == 0
+    except subprocess.TimeoutExpired:
+        return False
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--only", default="", help="faults whose name holds this")
+    parser.add_argument("--folder", type=pathlib.Path, help="where to copy to and build; a second run finds it built [a temporary one]")
+    parser.add_argument("--list", action="store_true", help="name the faults and their tests, and check that each can be planted")
+    asked = parser.parse_args()
+    faults = [f for f in FAULTS if asked.only in f.name]
+    for f in faults:
+        if (n := (ROOT / f.file).read_text().count(f.old)) != 1:
+            sys.exit(f"plant: '{f.name}': the text is found {n} times in {f.file}, not once")
+        if asked.list:
+            print(f"{f.name}: {f.file}; {f.test}_test {f.cases}")
+    if asked.list:
+        return 0
+    with tempfile.TemporaryDirectory() as temporary:
+        source = asked.folder or pathlib.Path(temporary)
+        shutil.copytree(ROOT, source, dirs_exist_ok=True, ignore=lambda folder, names: {"build", ".git"} & set(names) if pathlib.Path(folder) == ROOT else set(),
+                        copy_function=lambda a, b: None if pathlib.Path(b).exists() and pathlib.Path(a).read_bytes() == pathlib.Path(b).read_bytes() else shutil.copy(a, b))
+        green = []
+        for f in faults:
+            log, file = source / "plant.log", source / f.file
+            sound = file.read_text()
+            if not outcome(source, f, log):
+                sys.exit(f"plant: {log}: {f.test}_test {f.cases} is red without '{f.name}'")
+            file.write_text(sound.replace(f.old, f.new))
+            passed = outcome(source, f, log)
+            file.write_text(sound)
+            print(f"{'GREEN' if passed else 'red'}: {f.name}: {f.test}_test {f.cases}", flush=True)
+            green += [f.name] * passed
+        print(f"{len(faults) - len(green)} of {len(faults)} faults were noticed")
+        return 1 if green else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
