@@ -90,11 +90,12 @@ inline void walk_apart(const GridView& g, Packet& p, bool any_triangles, Counter
     const Lanes begin = greater(load<Lanes>(p.start + i), load<Lanes>(p.t_min + i));
     Lanes t0 = begin, t1 = load<Lanes>(p.best + i), place[3], speed[3];
     const Mask<Lanes> search = t1 > begin;
+    const Lanes least = least_headway(p, i);
     for (int a = 0; a < 3; ++a) {
       const Lanes d = load<Lanes>(p.dir[a] + i), size(static_cast<float>(g.n[a]));
       place[a] = (load<Lanes>(p.org[a] + i) - Lanes(g.lo_f[a])) * Lanes(g.inv_cell_f[a]);
-      const Lanes tiny = select(d < Lanes(0), Lanes(-1e-18f), Lanes(1e-18f));  // never meets its planes, and never makes NaN
-      speed[a] = select(magnitude(d) < Lanes(1e-18f), tiny, d) * Lanes(g.inv_cell_f[a]);
+      const Lanes tiny = select(d < Lanes(0), Lanes(0) - least, least);
+      speed[a] = select(magnitude(d) < least, tiny, d) * Lanes(g.inv_cell_f[a]);
       const Lanes inverse = Lanes(1) / speed[a];
       const Lanes x = (Lanes(0) - place[a]) * inverse, y = (size - place[a]) * inverse;
       t0 = greater(lesser(x, y), t0), t1 = lesser(greater(x, y), t1);

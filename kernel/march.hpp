@@ -91,10 +91,10 @@ inline Spread bound(const GridView& g, const Packet& p, Frustum& f, int axis = -
   int first = -1;
   each_live_group(p, [&](int i, int) {
     Lanes t0 = load<Lanes>(p.start + i), t1 = load<Lanes>(p.best + i);
+    const Lanes least = least_headway(p, i);
     for (int a = axis < 0 ? 0 : axis; a < (axis < 0 ? 3 : axis + 1); ++a) {
       const Lanes d = load<Lanes>(p.dir[a] + i), o = load<Lanes>(p.org[a] + i);
-      const Mask<Lanes> tiny = magnitude(d) < Lanes(1e-18f);
-      const Lanes inv = Lanes(1) / select(tiny, Lanes(1e-18f), d);
+      const Lanes inv = Lanes(1) / select(magnitude(d) < least, least, d);
       const Lanes x = (Lanes(g.lo_f[a]) - o) * inv, y = (Lanes(g.hi_f[a]) - o) * inv;
       t0 = greater(lesser(x, y), t0), t1 = lesser(greater(x, y), t1);
     }

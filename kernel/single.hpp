@@ -22,9 +22,10 @@ inline Single single_of(const Packet& p, int i, bool any_triangles) {
   r.axis = 0;
   if (any_triangles) {
     r.axis = static_cast<int>(p.axis[i]);
+    const float least = least_headway(r.dir[0], r.dir[1], r.dir[2]);
     for (int a = 0; a < 3; ++a) {
       r.shear[a] = p.shear[a][i];
-      r.inv[a] = 1 / (magnitude(r.dir[a]) < 1e-18f ? 1e-18f : r.dir[a]);
+      r.inv[a] = 1 / (magnitude(r.dir[a]) < least ? least : r.dir[a]);
       r.near[a] = r.inv[a] < 0 ? 3 + a : a;
     }
   }
@@ -139,16 +140,17 @@ struct GridRay {
   double p[3], q[3], iq[3];
 };
 
-inline double tame(double d) {  // a direction component that is (almost) zero never meets its planes, and never makes NaN
-  if (d < 0) return d > -1e-18 ? -1e-18 : d;
-  return d < 1e-18 ? 1e-18 : d;
+inline double tame(double d, double least) {
+  if (d < 0) return d > -least ? -least : d;
+  return d < least ? least : d;
 }
 
 inline GridRay to_grid(const GridView& g, const float (&org)[3], const float (&dir)[3]) {
   GridRay r;
+  const double least = least_headway(dir[0], dir[1], dir[2]);
   for (int a = 0; a < 3; ++a) {
     r.p[a] = (static_cast<double>(org[a]) - g.lo[a]) * g.inv_cell[a];
-    r.q[a] = tame(static_cast<double>(dir[a])) * g.inv_cell[a];
+    r.q[a] = tame(static_cast<double>(dir[a]), least) * g.inv_cell[a];
     r.iq[a] = 1 / r.q[a];
   }
   return r;
