@@ -3,9 +3,8 @@
 
     ./run perf stability [--rays 1000000] [--pixels 128] [--keep] [options of the benchmark: --rows PART OF A NAME, --seed N]
 
-Runs perf/stability.cpp, prints its tables and says which row is not as it must be: of Grelha's answers none may be wrong, but in rows
-docs/numerics.md gives a reason for, and there no more than of Embree robust. With --keep docs/stability.csv and a section of
-docs/numerics.md are written; otherwise the CSV lies beside the program.
+Runs perf/stability.cpp, prints its tables and says which row is not as it must be: of Grelha's answers none may be wrong. With --keep
+docs/stability.csv and a section of docs/numerics.md are written; otherwise the CSV lies beside the program.
 """
 import argparse
 import csv
@@ -55,12 +54,9 @@ def costs_table(rows):
 
 def complaints(data):
     for r in data.get("rows", []):
-        grelha, robust = r["tracers"]["grelha"], r["tracers"].get("embree robust")
-        wrong = sum(grelha[k] for k in KINDS)
-        if wrong and r["required"]:
+        grelha = r["tracers"]["grelha"]
+        if wrong := sum(grelha[k] for k in KINDS):
             yield f"{r['name']}: {wrong} wrong; {grelha['first']}"
-        elif wrong and robust and not robust["aborts"] and wrong > sum(robust[k] for k in KINDS):
-            yield f"{r['name']}: {wrong} wrong, more than of Embree robust"
     for r in data.get("pictures", []):
         if r["wrong"]:
             yield f"{r['name']}: {r['wrong']} wrong; {r['first']}"

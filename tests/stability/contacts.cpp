@@ -22,7 +22,9 @@ double dot(const Float3& a, const Float3& b) { return double(a.x) * b.x + double
 struct Spot {
   Float3 point, normal;
   float away;
-  Float3 start(const Float3& d) const { return of(scalar::leave({point.x, point.y, point.z}, {normal.x, normal.y, normal.z}, away, {d.x, d.y, d.z})); }
+  Float3 start(const Float3& d) const {
+    return of(scalar::leave({point.x, point.y, point.z}, {normal.x, normal.y, normal.z}, away, {d.x, d.y, d.z}));
+  }
 };
 
 /// Where the ray meets primitive `id` at t, which a triangle takes from the ray again.
@@ -165,7 +167,8 @@ void lights(Random& random, std::size_t rays, const Sink& sink) {
     const Walls walls(random, size, place, size);
     // One pair of walls alone: no other may stand in the way.
     trial.scene = empty_scene();
-    for (std::uint32_t i = 0; i < 2; ++i) add_triangle(trial.scene, vertex(walls.scene, 3 * i), vertex(walls.scene, 3 * i + 1), vertex(walls.scene, 3 * i + 2));
+    const auto corner = [&](std::uint32_t i) { return vertex(walls.scene, i); };
+    for (std::uint32_t i = 0; i < 6; i += 3) add_triangle(trial.scene, corner(i), corner(i + 1), corner(i + 2));
     const World world(trial.scene, {.grid = false});
     const Size extent = size_of(trial.scene);
     const oracle::Facet lid{vertex(trial.scene, 3), vertex(trial.scene, 4), vertex(trial.scene, 5)};

@@ -169,8 +169,8 @@ Counts judge(Tracer& tracer, const Trial& trial) {
         if (!counts.first.empty()) continue;
         std::ostringstream s;
         const Wanted& w = trial.wanted[i];
-        s << tracer.way_name(way) << (any ? ", occluded" : ", closest") << (v == Verdict::kLost ? ": lost, " : v == Verdict::kFalse ? ": false, " : ": self-hit, ")
-          << trial.rays.describe(i) << std::defaultfloat << "; t " << a.t[i] << " id " << static_cast<std::int32_t>(a.id[i]) << ", wanted "
+        s << tracer.way_name(way) << (any ? ", occluded: " : ", closest: ")
+          << (v == Verdict::kLost ? "lost, " : v == Verdict::kFalse ? "false, " : "self-hit, ") << trial.rays.describe(i) << std::defaultfloat << "; t " << a.t[i] << " id " << static_cast<std::int32_t>(a.id[i]) << ", wanted "
           << (w.hit ? "hit" : w.miss ? "miss" : "either") << " in [" << w.earliest << ", " << w.latest << "]";
         if (!any && a.id[i] != kNoPrimitive) s << ", beside it by " << static_cast<double>(beyond(trial, size, i, a.t[i], a.id[i])) << " too much";
         counts.first = s.str();

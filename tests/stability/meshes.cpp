@@ -22,7 +22,8 @@ struct Body {
 };
 
 const std::vector<Body>& bodies() {
-  static const std::vector<Body> all{{ball_mesh(50, 25), false}, {ball_mesh(16, 16, .15), false}, {ball_mesh(5, 3), false}, {torus_mesh(40, 20, kTube), true}};
+  static const std::vector<Body> all{{ball_mesh(50, 25), false}, {ball_mesh(16, 16, .15), false}, {ball_mesh(5, 3), false},
+                                     {torus_mesh(40, 20, kTube), true}};
   return all;
 }
 
@@ -105,8 +106,8 @@ void grazed(Random& random, std::size_t rays, const Sink& sink) {
     for (std::size_t i = 0; i < rays / pieces; ++i) {
       const std::uint32_t s = random.below(kCount);
       const double angle = random.log_in(1e-4, 1), away = random.log_in(.1, 600), turn = random.in(0, 6.283185307);
-      const Float3 across = at({0, 0, 0}, 1, {along[s].y * normal[s].z - along[s].z * normal[s].y, along[s].z * normal[s].x - along[s].x * normal[s].z,
-                                              along[s].x * normal[s].y - along[s].y * normal[s].x});
+      const oracle::V other = oracle::cross(along[s], normal[s]);
+      const Float3 across{static_cast<float>(other.x), static_cast<float>(other.y), static_cast<float>(other.z)};
       const Float3 in_plane = at(scaled(along[s], std::cos(turn)), std::sin(turn), across);
       const Float3 org = at(at(middle[s], away * std::cos(angle), in_plane), away * std::sin(angle) * random.sign(), normal[s]);
       const Float3 dir = minus(middle[s], org);
@@ -150,7 +151,8 @@ void far_small(Random& random, std::size_t rays, const Sink& sink) {
 
 std::vector<Row> mesh_rows() {
   return {
-      {"vertices of closed meshes", "rays aimed exactly at vertices, from inside and outside", "a wall is met no later than behind the aim", aimed<At::kVertices>},
+      {"vertices of closed meshes", "rays aimed exactly at vertices, from inside and outside", "a wall is met no later than behind the aim",
+       aimed<At::kVertices>},
       {"middles of edges", "the same, at the middles of edges", "the same", aimed<At::kMiddles>},
       {"anywhere on edges", "the same, at random points of edges", "the same", aimed<At::kAlong>},
       {"closed meshes of size 1e-6", "vertices, middles and edges", "the same", sized<-6>},

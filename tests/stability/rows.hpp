@@ -76,7 +76,6 @@ struct Row {
   const char* condition;
   const char* truth;  ///< and what is open
   void (*make)(Random& random, std::size_t rays, const Sink& sink);
-  bool required = true;  ///< none wrong; otherwise docs/numerics.md says why not, and Embree robust is no better
 };
 
 std::vector<Row> mesh_rows();     ///< meshes.cpp: nothing falls between two triangles

@@ -161,7 +161,8 @@ void unsound_vertices(Random& random, std::size_t rays, const Sink& sink) {
     for (auto* v : {&sound.geometry.triangles.a, &sound.geometry.triangles.b, &sound.geometry.triangles.c}) v->erase(v->begin() + k);
   }
   trial.scene.geometry.spheres.x[7] = kNaN;
-  for (auto* v : {&sound.geometry.spheres.x, &sound.geometry.spheres.y, &sound.geometry.spheres.z, &sound.geometry.spheres.radius}) v->erase(v->begin() + 7);
+  Spheres& balls = sound.geometry.spheres;
+  for (auto* v : {&balls.x, &balls.y, &balls.z, &balls.radius}) v->erase(v->begin() + 7);
   const Size size = size_of(trial.scene);
   const Rays list = rays_about(random, {}, 1, static_cast<int>(rays), 10);
   for (std::size_t i = 0; i < list.size(); ++i)
