@@ -55,7 +55,9 @@ void odd_directions(Random& random, std::size_t rays, const Sink& sink) {
     for (std::uint32_t b = 0; b < 3; ++b)
       if (kind < .4 ? b != a : kind < .7 && b == a) component(dir, b) = random.chance(.5) ? random.zero() : static_cast<float>(random.sign() * 1e-40);
     const Float3 org = at(aim, -random.log_in(.1, 10), dir);
-    list.add(org, scaled(dir, random.log_in(std::pow(10., -kExponent), std::pow(10., kExponent))));
+    const Float3 d = scaled(dir, random.log_in(std::pow(10., -kExponent), std::pow(10., kExponent)));
+    const double length = std::hypot(double(d.x), double(d.y), double(d.z));
+    if (length > 2e-18 && length < 5e17) list.add(org, d);  // beyond these no directions are promised to be traced
   }
   judge_all(trial, list);
   sink(trial);
