@@ -88,9 +88,10 @@ def main():
     data = json.loads(done.stdout)
     parts = []
     if "rows" in data:
-        parts.append(f"""Answers that are wrong, each ray asked for its closest hit and for occlusion, in packets and alone; {bench.cpu_name()}, rows of about
-{number(data['rays'])} rays, seed {data['seed']} (`./run perf stability`). A bare number counts hits that were lost, *false* those that are not there or lie
-farther beside their primitive than the bound above, *self* those of a surface just left. Embree 3 is Debian's; *aborts*: an assertion of its own ends the program.
+        command = f"./run perf stability --rays {data['rays']} --pixels {data['pixels']} --seed {data['seed']}"
+        parts.append(f"""Answers that are wrong, each ray asked for its closest hit and for occlusion, in packets and alone; {bench.cpu_name()}, `{command}`.
+A bare number counts hits that were lost, *false* those that are not there or lie farther beside their primitive than the bound above,
+*self* those of a surface just left. Embree 3 is Debian's; *aborts*: an assertion of its own ends the program.
 
 {rays_table(data['rows'])}""")
     if "pictures" in data:

@@ -267,7 +267,7 @@ PictureCounts roughness_of_nothing(int size) {
 /// Discs of a tenth of a pixel, one in every fourth pixel each way. Four corners that agree miss them; `--error` must show each, as it
 /// doubts every pixel in which something may hide.
 PictureCounts small_discs(int size) {
-  size = std::max(size, 16);  // beams of pixels a tenth of a radian wide tell nothing
+  size = std::max(size, 16);  // pixels an eighth of a radian wide are too wide to be watched (docs/numerics.md)
   PictureCounts c;
   Scene s;
   s.materials.resize(1);
