@@ -31,7 +31,7 @@ class Fault:
 
 ROW = "Rows/Stability.NothingIsLostFalseOrMetAgain/"
 FAULTS = [
-    Fault("no growth of boxes", "kernel/world.cpp", "const double pad = diagonal * 256 / 16777216;", "const double pad = 0;",
+    Fault("no growth of boxes", "kernel/world.cpp", "return reach * 256 / 16777216;", "return reach * 0;",
           "stability", ROW + "rays_on_cells"),
     Fault("< for <= in the walk", "kernel/march.hpp", "slice <= last && active > 0;", "slice < last && active > 0;", "walk", "Isa/Walk.*"),
     Fault("adding up instead of computing again", "kernel/abreast.hpp", "t[a] = (plane - load<Lanes>(now[Course::kPlace + a])) * inverse;",
@@ -49,8 +49,8 @@ FAULTS = [
     Fault("a mailbox that is kept for the next packet", "kernel/march.hpp", "if (use_mailbox) mailbox.clear();", "", "walk", "Isa/Walk.*"),
     Fault("a sphere by the textbook", "kernel/sphere.hpp", "const Real inside = rr - dot(gap, gap);",
           "const Real inside = middle * middle / inv_dd - (dot(to_center, to_center) - rr);", "stability", ROW + "specks_in_a_large_scene"),
-    Fault("epsilon 1e-4 instead of bounds", "kernel/surface.hpp", "s.away = 16 * kEps * (largest(e1) + largest(e2)) + 4 * kEps * largest(s.point);",
-          "s.away = 1e-4f;", "stability", ROW + "lost_contacts:" + ROW + "self_hits_of_triangles"),
+    Fault("epsilon 1e-4 instead of bounds", "kernel/surface.hpp", "Surface<Real> s{point, n, n, Real(16 * kEps) * (largest(e1) + largest(e2)) + Real(4 * kEps) * largest(point),",
+          "Surface<Real> s{point, n, n, Real(1e-4f),", "stability", ROW + "lost_contacts:" + ROW + "self_hits_of_triangles"),
     Fault("ties by arrival", "kernel/packet.hpp", "if ((ties >> k & 1) && (held == kNoPrimitive || held <= id)) continue;",
           "if (ties >> k & 1) continue;", "walk", "Isa/Ties.*"),
 ]

@@ -29,8 +29,7 @@ struct Spot {
 
 /// Where the ray meets primitive `id` at t, which a triangle takes from the ray again.
 Spot spot(const World& world, std::uint32_t id, const Float3& org, const Float3& dir, float t = 0) {
-  const float o[3] = {org.x, org.y, org.z}, d[3] = {dir.x, dir.y, dir.z};
-  const scalar::Surface s = scalar::surface_of(world.impl().view, id, o, d, t, false);
+  const scalar::Surface<float> s = scalar::surface_of<float>(world.impl().view, id, {org.x, org.y, org.z}, {dir.x, dir.y, dir.z}, t, false);
   return {of(s.point), of(s.normal), s.away};
 }
 
