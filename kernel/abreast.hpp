@@ -85,7 +85,8 @@ struct Course {
 template <bool kAny>
 inline void walk_apart(const GridView& g, Packet& p, bool any_triangles, Counters& n) {
   alignas(64) float course[Course::kFields][kPacket];
-  std::uint64_t waiting = 0;
+  std::uint8_t waiting[kPacket];
+  int first = 0, end = 0;
   each_live_group(p, [&](int i, int) {
     const Lanes begin = greater(load<Lanes>(p.start + i), load<Lanes>(p.t_min + i));
     Lanes t0 = begin, t1 = load<Lanes>(p.best + i), place[3], speed[3];
@@ -104,9 +105,9 @@ inline void walk_apart(const GridView& g, Packet& p, bool any_triangles, Counter
     }
     for (int a = 0; a < 3; ++a) store(course[Course::kCell + a] + i, clamp_cells(place[a] + t0 * speed[a], g.n[a]));
     store(course[Course::kEnd] + i, t1);
-    waiting |= static_cast<std::uint64_t>(bits(both(search, t0 <= t1))) << i;
+    for (unsigned rays = bits(both(search, t0 <= t1)); rays != 0; rays &= rays - 1) waiting[end++] = static_cast<std::uint8_t>(i + __builtin_ctz(rays));
   });
-  if (waiting == 0) return;
+  if (end == 0) return;
 
   // What is not walking goes on computing, within the grid, and is not looked at.
   alignas(64) float now[Course::kFields][kAbreast] = {}, best[kAbreast] = {};
@@ -120,12 +121,12 @@ inline void walk_apart(const GridView& g, Packet& p, bool any_triangles, Counter
     }
   };
   // No walk crosses more planes than there are, whatever rounding does.
-  const std::int64_t most = static_cast<std::int64_t>(__builtin_popcountll(waiting)) * (g.n[0] + g.n[1] + g.n[2] + 3);
+  const std::int64_t most = std::int64_t{end} * (g.n[0] + g.n[1] + g.n[2] + 3);
   const std::uint32_t nx = static_cast<std::uint32_t>(g.n[0]), ny = static_cast<std::uint32_t>(g.n[1]);
   for (std::int64_t step = 0; step < most; ++step) {
-    if (waiting != 0 && 2 * __builtin_popcount(walking) <= kAbreast)
-      for (unsigned idle = ~walking & ((1u << kAbreast) - 1u); idle != 0 && waiting != 0; idle &= idle - 1, waiting &= waiting - 1) {
-        const int k = __builtin_ctz(idle), i = __builtin_ctzll(waiting);
+    if (first < end && 2 * __builtin_popcount(walking) <= kAbreast)
+      for (unsigned idle = ~walking & ((1u << kAbreast) - 1u); idle != 0 && first < end; idle &= idle - 1) {
+        const int k = __builtin_ctz(idle), i = waiting[first++];
         for (int f = 0; f < Course::kFields; ++f) now[f][k] = course[f][i];
         r[k] = single_of(p, i, any_triangles), best[k] = r[k].best, of[k] = i;
         walking |= 1u << k;

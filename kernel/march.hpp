@@ -45,7 +45,7 @@ struct Frustum {
   int across[4], along[4];  ///< which of a box's sides are farthest inside each
 };
 
-inline constexpr int kSmall = 16;  ///< rays of the packets that a large one falls apart into
+inline constexpr int kSmall = 16, kMiddle = 64;  ///< rays of the packets that larger ones fall apart into
 
 enum class Spread { kNothing, kTogether, kApart };
 
@@ -366,10 +366,10 @@ inline std::uint64_t march_from(const GridView& g, Packet& p, int width, bool us
   const auto part = [&] {  // what does not go together in one packet may in four; what does not in these goes ray by ray
     ++n.fell_back;
     if (width <= kSmall) return live;
-    constexpr int kEach = kSmall / kWidth<Lanes>;
+    const int rays = width > kMiddle ? kMiddle : kSmall, each = rays / kWidth<Lanes>;
     std::uint64_t apart = 0;
-    for (int first = 0; first < p.groups; first += kEach)
-      if ((p.live = live & ((std::uint64_t{1} << kEach) - 1) << first) != 0) apart |= march_from<kAny>(g, p, kSmall, use_mailbox, n);
+    for (int first = 0; first < p.groups; first += each)
+      if ((p.live = live & ((std::uint64_t{1} << each) - 1) << first) != 0) apart |= march_from<kAny>(g, p, rays, use_mailbox, n);
     p.live = live;
     return apart;
   };
@@ -384,7 +384,7 @@ inline std::uint64_t march_from(const GridView& g, Packet& p, int width, bool us
   const int nk = g.n[f.k];
   const std::size_t stride[3] = {1, static_cast<std::size_t>(g.n[0]), static_cast<std::size_t>(g.n[0]) * static_cast<std::size_t>(g.n[1])};
   // Beyond this many cells a slice, looking into each costs more than every ray walking alone (measured).
-  const int limit = width > kSmall ? 16 : 8;
+  const int limit = width > kMiddle ? 32 : width > kSmall ? 16 : 8;
   int active = update_live(f, p, f.from - f.margin);
   int slice = clamp_cell(static_cast<double>(f.from - f.margin), nk);
   const int last = clamp_cell(static_cast<double>(f.to + f.margin), nk);

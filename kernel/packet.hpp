@@ -10,7 +10,8 @@
 
 namespace grelha::GRELHA_ISA {
 
-inline constexpr int kPacket = 64;  ///< most rays in a packet
+/// Most rays in a packet. A word has a bit for each group of lanes.
+inline constexpr int kPacket = kWidth<Lanes> == 1 ? 64 : 256;
 inline constexpr float kInfinity = __builtin_inff();
 
 /// What a trace counts, by the kind of its tests.
@@ -19,7 +20,7 @@ struct Counters {
   std::uint64_t formed = 0, fell_back = 0, issued = 0, busy = 0;
 };
 
-/// Up to 64 rays as arrays. A ray searches (t_min, best); best <= t_min switches it off. Places between `size` and the
+/// Up to kPacket rays as arrays. A ray searches (t_min, best); best <= t_min switches it off. Places between `size` and the
 /// end of the last group are switched off. `id` holds the bits of the nearest primitive so far.
 struct Packet {
   alignas(64) float org[3][kPacket];

@@ -29,8 +29,8 @@ const Variant& choose(std::string_view name) {
 void check(const Camera& camera, const RenderOptions& o) {
   if (!camera_is_sound(camera)) throw std::invalid_argument("the camera cannot see: check eye, at, up, angle and size");
   if (o.depth < 1 || o.depth > kMostDepth) throw std::invalid_argument("depth must be from 1 to " + std::to_string(kMostDepth));
-  if (o.packet != 1 && o.packet != 16 && o.packet != 64)
-    throw std::invalid_argument("a packet holds 1, 16 or 64 rays");
+  if (o.packet != 1 && o.packet != 16 && o.packet != 64 && o.packet != 256)
+    throw std::invalid_argument("a packet holds 1, 16, 64 or 256 rays");
   const SampleOptions& s = o.sampling;
   if (s.samples < 1 || s.samples > kMostSamples) throw std::invalid_argument("samples must be from 1 to " + std::to_string(kMostSamples));
   if (s.light_rays < 1 || s.light_rays > 4096) throw std::invalid_argument("shadow rays to an area light must be from 1 to 4096");

@@ -87,7 +87,7 @@ struct SampleMaps {
 struct RenderOptions {
   int threads = 0;              ///< 0: one per processor
   int depth = 5;                ///< longest path, at most kMostDepth, the eye ray counted as 1; at its end the background is seen
-  int packet = 64;              ///< most rays that march together: 1, 16 or 64; see march_from()
+  int packet = 256;             ///< most rays that march together: 1, 16, 64 or 256; see march_from()
   bool mailbox = true;          ///< skip primitives a ray or packet has already met in another cell
   std::string_view isa = "best";
   SampleOptions sampling;

@@ -174,6 +174,12 @@ inline Vec3<Lanes> light_points(const Shader& s, const HitLanes<kOne>& at, const
   return splat(light) + (a * splat(light + 6) + c * splat(light + 9));
 }
 
+/// Rays of several samples of a pixel go together by the hundred; of one sample, those from the camera alone (docs/performance.md).
+inline TraceOptions options_for(const Shader& s, Phase phase) {
+  const bool near = s.work.plan.on || phase == Phase::primary;
+  return {near || s.work.packet < kMiddle ? s.work.packet : kMiddle, s.work.mailbox};
+}
+
 /// Traces the first n shadow rays of the batch and adds what those carry that nothing stands in the way of.
 inline void light_up(const Shader& s, int n) {
   Batch& b = s.b;
@@ -182,7 +188,7 @@ inline void light_up(const Shader& s, int n) {
   s.rays.shadow += static_cast<unsigned>(n);
   const RayArrays rays{b.lox, b.loy, b.loz, b.ldx, b.ldy, b.ldz, b.lt_min, b.lt, b.lid};
   enter(s.work, Phase::shadow, rays, n);
-  trace<true>(s.scene, rays, n, {s.work.packet, s.work.mailbox}, s.counters);
+  trace<true>(s.scene, rays, n, options_for(s, Phase::shadow), s.counters);
   enter(s.work, Phase::light);
   for (int i = 0; i < n; i += kWidth<Lanes>) {
     const unsigned free = bits(mask_of(Words<Lanes>(load_words<Lanes>(b.lid + i) == kNoPrimitive))) & lanes_of(i, n);
@@ -350,7 +356,7 @@ inline void shade_batch(const Shader& s, RayStack& stack, const int* ends, int r
   Batch& b = s.b;
   const int count = ends[runs - 1];
   for (int i = 0; i < count; ++i) b.t_min[i] = 0, b.t[i] = kInfinity;
-  const TraceOptions options{s.work.packet, s.work.mailbox};
+  const TraceOptions options = options_for(s, phase);
   for (int k = 0, at = 0; k < runs; at = ends[k++]) {
     const RayArrays rays{b.ox + at, b.oy + at, b.oz + at, b.dx + at, b.dy + at, b.dz + at, b.t_min + at, b.t + at, b.id + at};
     enter(s.work, phase, rays, ends[k] - at);

@@ -16,7 +16,7 @@ struct RayArrays {
 };
 
 struct TraceOptions {
-  int packet;    ///< 1, 16 or 64
+  int packet;    ///< 1, 16, 64 or 256
   bool mailbox;  ///< for packets
 };
 
@@ -200,7 +200,7 @@ inline void trace_packet(const SceneView& scene, Packet& p, const TraceOptions& 
 template <bool kAny>
 inline void trace(const SceneView& scene, const RayArrays& rays, int count, const TraceOptions& options, Counters& n) {
   Packet p;
-  const int most = options.packet == 1 ? kPacket : options.packet;
+  const int most = options.packet == 1 || options.packet > kPacket ? kPacket : options.packet;
   for (int first = 0; first < count; first += most) {
     p.size = count - first < most ? count - first : most;
     const std::size_t bytes = static_cast<std::size_t>(p.size) * sizeof(float);

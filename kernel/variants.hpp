@@ -29,7 +29,7 @@ enum class Method {
 
 struct TraceSettings {
   Method method = Method::kPackets;
-  int packet = 64;      ///< 16 or 64
+  int packet = 256;     ///< 16, 64 or 256
   bool mailbox = true;
 };
 

@@ -58,6 +58,8 @@ const Rung kRungs[] = {
     {"packets of 64, no mailbox", "best", {.method = Method::kPackets, .packet = 64, .mailbox = false}},
     {"packets of 64, sse2", "sse2", {.method = Method::kPackets, .packet = 64}},
     {"packets of 64", "best", {.method = Method::kPackets, .packet = 64}},
+    {"packets of 256, sse2", "sse2", {.method = Method::kPackets, .packet = 256}},
+    {"packets of 256", "best", {.method = Method::kPackets, .packet = 256}},
 };
 constexpr float kDensities[] = {.5f, .7f, 1, 1.4f, 2, 2.8f, 4, 5.6f};
 

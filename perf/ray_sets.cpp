@@ -21,6 +21,7 @@ using V = Vec3<float>;
 namespace {
 
 constexpr int kSamples = 16, kSide = 4;
+constexpr int kStrip = 4;         ///< tiles side by side
 constexpr int kMostAcross = 512;  ///< pixels with rays, in a row of the picture
 constexpr float kRoughness = .1f;
 /// Rays start this many times as far from their surface as Grelha's own bound of its errors asks for, so that none of what is
@@ -68,14 +69,15 @@ RayBuffer RayMaker::through_pixels(const FrameView& f, int samples, bool few) co
   plan.on = samples > 1, plan.samples = samples, plan.lens = 2;
   const auto batch = std::make_unique<Batch>();
   RayBuffer rays;
-  const int block = std::max(1, f.width / kMostAcross) * (few ? kSide : 1), across = f.width / (kTile * block);  // tiles, blocks
-  for (int by = 0; by < across; ++by)
-    for (int bx = 0; bx < across; ++bx) {
+  // Strips, of each block of strips one: what a render has in a packet of 256.
+  const int block = std::max(1, f.width / kMostAcross) * (few ? kSide : 1), strip = std::min(kStrip, f.width / kTile / block);
+  for (int by = 0; by < f.width / (kTile * block); ++by)
+    for (int bx = 0; bx < f.width / (strip * kTile * block); ++bx) {
       const auto pick = scatter(static_cast<std::uint32_t>(bx), static_cast<std::uint32_t>(by));
-      const int x0 = (bx * block + static_cast<int>(pick % static_cast<unsigned>(block))) * kTile;
+      const int x0 = (bx * block + static_cast<int>(pick % static_cast<unsigned>(block))) * strip * kTile;
       const int y0 = (by * block + static_cast<int>(pick / 64 % static_cast<unsigned>(block))) * kTile;
-      for (int k = 0; k < kTile * kTile; ++k) {
-        const int x = x0 + tile_x(k), y = y0 + tile_y(k);
+      for (int k = 0; k < strip * kTile * kTile; ++k) {
+        const int in = k % (kTile * kTile), x = x0 + k / (kTile * kTile) * kTile + tile_x(in), y = y0 + tile_y(in);
         for (int i = 0; i < samples; ++i) {
           batch->ox[i] = static_cast<float>(x), batch->oy[i] = static_cast<float>(y);
           batch->pixel[i] = static_cast<std::uint32_t>(y * f.width + x), batch->sample[i] = static_cast<std::uint32_t>(i);

@@ -11,8 +11,8 @@ namespace grelha::perf {
 enum class RayKind { kPrimary, kLens, kShadow, kArea, kMirror, kGlossy, kIncoherent };
 inline constexpr std::array<const char*, 7> kRayKinds = {"primary", "AA + lens", "hard shadow", "area 16", "mirror", "glossy 16", "incoherent"};
 
-/// Makes ray sets of a picture of size x size, in tiles of 8 x 8 pixels. Of larger pictures than 512 x 512 one tile of each
-/// block of tiles is taken, so that sets are about as large; of all, one in 16 for the kinds of 16 rays a point or pixel.
+/// Makes ray sets of a picture of size x size, in tiles of 8 x 8 pixels. Of larger pictures than 512 x 512 one strip of
+/// four tiles of each block of strips is taken, so that sets are about as large; of all, one in 16 for the kinds of 16 rays a point or pixel.
 ///
 ///   primary      through the centre of every pixel
 ///   AA + lens    16 samples of a pixel side by side, through the scene's own lens or one of 12 pixels

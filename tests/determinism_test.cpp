@@ -101,7 +101,7 @@ TEST_P(Determinism, OnePictureForEveryWayOfTracing) {
   for (const Built& built : worlds)
     for (const Variant* v : variants()) {
       if (!v->runs_here()) continue;
-      for (const int packet : {1, 16, 64})
+      for (const int packet : {1, 16, 64, 256})
         for (const bool mailbox : {true, false})
           for (const int threads : {1, 2, 7}) {
             if (threads != 2 && (packet == 1 || !mailbox))
@@ -131,7 +131,7 @@ TEST_P(Determinism, AtEveryDepth) {
     last = first.rays.total();
     for (const Variant* v : variants()) {
       if (!v->runs_here()) continue;
-      for (const int packet : {16, 64}) {
+      for (const int packet : {16, 64, 256}) {
         RenderOptions o;
         o.depth = depth, o.threads = 2, o.packet = packet, o.isa = v->name;
         RenderStats stats;

@@ -151,7 +151,7 @@ TEST(Effects, GiveTheSameBitsEverywhere) {
       const Image wanted = picture(s, c, o);
       for (const Isa& isa : isas()) {
         if (!isa.runs_here) continue;
-        for (const int packet : {1, 16, 64})
+        for (const int packet : {1, 16, 64, 256})
           for (const int threads : {2, 7}) {
             o.isa = isa.name, o.packet = packet, o.threads = threads;
             const Image image = picture(s, c, o);

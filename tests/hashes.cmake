@@ -56,7 +56,7 @@ file(SHA256 "${file}" scene_hash)
 set(picture_hash)
 set(instruction_sets)
 foreach(isa scalar sse2 avx2 avx512)
-  foreach(packet 1 64)
+  foreach(packet 1 64 256)
     set(image "${SCRATCH}/${NAME}-${isa}-${packet}.pfm")
     execute_process(COMMAND "${PROGRAM}" render "${file}" --quiet --size 96x72 --packet ${packet} --isa ${isa} ${options} -o "${image}"
       RESULT_VARIABLE status ERROR_VARIABLE words)

@@ -35,7 +35,7 @@ TEST(Render, Defaults) {
   EXPECT_EQ(command.width, 0);
   EXPECT_EQ(command.render.threads, 0);
   EXPECT_EQ(command.render.depth, 5);
-  EXPECT_EQ(command.render.packet, 64);
+  EXPECT_EQ(command.render.packet, 256);
   EXPECT_TRUE(command.render.mailbox);
   EXPECT_EQ(command.render.isa, "best");
   EXPECT_TRUE(command.build.grid);
@@ -161,7 +161,7 @@ TEST(Errors, SayWhatWasWantedAndFound) {
       {"render a --accel bvh", "--accel: wanted one of grid, none, found \"bvh\""},
       {"render a --mailbox yes", "--mailbox: wanted one of on, off, found \"yes\""},
       {"render a --isa neon", "--isa: wanted one of scalar, sse2, avx2, avx512, best, found \"neon\""},
-      {"render a --packet 8", "--packet: wanted one of 1, 16, 64, found \"8\""},
+      {"render a --packet 8", "--packet: wanted one of 1, 16, 64, 256, found \"8\""},
       {"render a --samples 0", "--samples: wanted a whole number from 1 to 65536, found \"0\""},
       {"render a --sampler halton", "--sampler: wanted one of sobol, jitter, unshuffled, random, found \"halton\""},
       {"render a --error 0", "--error: wanted a number from 0.000001 to 1, found \"0\""},

@@ -176,7 +176,7 @@ TEST(Refinement, IsOnePictureForEveryWayOfTracing) {
     const Outcome want = refined(c, to_error(.05));
     for (const Variant* v : variants()) {
       if (!v->runs_here()) continue;
-      for (const int packet : {1, 16, 64})
+      for (const int packet : {1, 16, 64, 256})
         for (const bool grid : {true, false}) {
           Case d = c;
           d.options.isa = v->name, d.options.packet = packet, d.options.threads = packet == 16 ? 7 : 1;

@@ -312,7 +312,7 @@ TEST(Adaptive, GivesTheSameBitsEverywhere) {
     EXPECT_EQ(wanted.rays.primary % std::uint64_t(samples), 0u);
     for (const Isa& isa : isas()) {
       if (!isa.runs_here) continue;
-      for (const int packet : {1, 16, 64})
+      for (const int packet : {1, 16, 64, 256})
         for (const int threads : {1, 2, 7}) {
           if (threads != 2 && packet != 64) continue;  // threads do not see the packet
           o.isa = isa.name, o.packet = packet, o.threads = threads;

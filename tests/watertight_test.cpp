@@ -70,7 +70,7 @@ void expect_no_leak(const Variant& variant, const Scene& unit_scene, bool torus,
   for (const Way& way : every_way()) count(world, way.settings, way.name);
   if (what == "scale 1") {  // without a grid nothing but the triangle test can leak, and one place shows it
     const World plain(scene, {.grid = false});
-    count(plain, {Method::kPackets, 64, true}, "brute force");
+    count(plain, {Method::kPackets, 256, true}, "brute force");
     count(plain, {Method::kSingle, 1, true}, "brute force, single");
   }
   EXPECT_EQ(leaks, 0u) << what;

@@ -17,7 +17,7 @@ class GrelhaTracer final : public Tracer {
   Answers occluded(const Rays& rays, int way) override { return trace(variant_, *world_, rays, settings(way), test::Query::kOccluded); }
 
  private:
-  static TraceSettings settings(int way) { return way == 0 ? TraceSettings{Method::kPackets, 64, true} : TraceSettings{Method::kSingle, 1, true}; }
+  static TraceSettings settings(int way) { return way == 0 ? TraceSettings{Method::kPackets, 256, true} : TraceSettings{Method::kSingle, 1, true}; }
   const Variant& variant_;
   std::optional<World> world_;
 };

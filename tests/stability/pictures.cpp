@@ -343,7 +343,7 @@ PictureCounts one_picture(int size) {
   const Image wanted = picture(s, cam, o);
   for (const Isa& isa : isas()) {
     if (!isa.runs_here) continue;
-    for (const int packet : {1, 16, 64})
+    for (const int packet : {1, 16, 64, 256})
       for (const int threads : {1, 3}) {
         o.isa = isa.name, o.packet = packet, o.threads = threads, o.mailbox = packet != 16;
         count_same(c, picture(s, cam, o, packet == 64 ? 2.f : 0.f), wanted, "one picture");

@@ -28,7 +28,9 @@ struct Way {
 };
 
 inline const std::vector<Way>& every_way() {
-  static const std::vector<Way> ways{{"packets of 64", {Method::kPackets, 64, true}},
+  static const std::vector<Way> ways{{"packets of 256", {Method::kPackets, 256, true}},
+                                     {"packets of 256 without mailboxes", {Method::kPackets, 256, false}},
+                                     {"packets of 64", {Method::kPackets, 64, true}},
                                      {"packets of 64 without mailboxes", {Method::kPackets, 64, false}},
                                      {"packets of 16", {Method::kPackets, 16, true}},
                                      {"packets of 16 without mailboxes", {Method::kPackets, 16, false}},
