@@ -43,6 +43,10 @@ struct Frustum {
   bool by_group;
   alignas(64) float group_b[4][kGroupRow], group_c[4][kGroupRow], group_reach[4][kGroupRow];
   int across[4], along[4];  ///< which of a box's sides are farthest inside each
+  /// s = to_slice x + zero_slice along K; nothing that ends before `near` is met, or of a group before `group_near`.
+  float to_slice, zero_slice, near;
+  int last;  ///< which of a box's sides is farthest along
+  alignas(64) float group_near[kGroupRow];
 };
 
 inline constexpr int kSmall = 16, kMiddle = 64;  ///< rays of the packets that larger ones fall apart into
@@ -120,7 +124,8 @@ inline Spread bound(const GridView& g, const Packet& p, Frustum& f, int axis = -
 
   Lanes s0(kInfinity), s1(-kInfinity), far(0);
   bool apart = false;
-  each_live_group(p, [&](int i, int) {
+  for (int i = 0; i < kGroupRow; ++i) f.group_near[i] = kInfinity;
+  each_live_group(p, [&](int i, int group) {
     const Lanes leave = load<Lanes>(f.leave + i);
     const Mask<Lanes> meets = leave > Lanes(-kInfinity);
     const Lanes dk = load<Lanes>(p.dir[k] + i) * Lanes(sign);
@@ -130,7 +135,9 @@ inline Spread bound(const GridView& g, const Packet& p, Frustum& f, int axis = -
     if (f.flip) at = Lanes(size) - at;
     const Lanes q = dk * Lanes(g.inv_cell_f[k]);
     store(f.position + i, at), store(f.per_slice + i, Lanes(1) / q);
-    s0 = lesser(select(meets, at + load<Lanes>(enter + i) * q, Lanes(kInfinity)), s0);
+    const Lanes in = select(meets, at + load<Lanes>(enter + i) * q, Lanes(kInfinity));
+    f.group_near[group] = lane_min(in);
+    s0 = lesser(in, s0);
     s1 = greater(select(meets, at + leave * q, Lanes(-kInfinity)), s1);
     far = greater(select(meets, magnitude(at), Lanes(0)), far);
   });
@@ -194,6 +201,10 @@ inline Spread bound(const GridView& g, const Packet& p, Frustum& f, int axis = -
     f.reach[j] = square_root(f.a[j] * f.a[j] + f.b[j] * f.b[j]) * 1.00001f;
     f.across[j] = (j < 2 ? f.u : f.v) + (f.a[j] > 0 ? 3 : 0), f.along[j] = k + (f.b[j] > 0 ? 3 : 0);
   }
+  // A hit's t is off by up to 46 u of its distance (docs/numerics.md), which is at most 2 sqrt 3 times the farthest: 9.5e-6.
+  const float early = cull + 1.2e-5f * farthest;
+  f.to_slice = along, f.zero_slice = start, f.near = f.from - early, f.last = k + (f.flip ? 0 : 3);
+  for (int i = 0; i < kGroupRow; i += kWidth<Lanes>) store(f.group_near + i, load<Lanes>(f.group_near + i) - Lanes(early));
   if (f.by_group) bound_groups(g, f, lo0, lo1, hi0, hi1, corner + farthest, along, start - f.from, per);
   return Spread::kTogether;
 }
@@ -220,6 +231,14 @@ inline unsigned inside_planes(const Value& value) {
   return ~bits(out) & ((1u << kWidth<Block>) - 1u);
 }
 
+/// Bits of the groups with a ray that has not passed slice s when it begins.
+inline std::uint64_t groups_ahead(const Frustum& f, float s) {
+  std::uint64_t in = 0;
+  for (int i = 0; i < kGroups; i += kWidth<Lanes>)
+    in |= (static_cast<std::uint64_t>(bits(load<Lanes>(f.group_near + i) <= Lanes(s))) & ((std::uint64_t{1} << kWidth<Lanes>) - 1)) << i;
+  return in;
+}
+
 /// Bits of the boxes that reach into the frustum.
 inline unsigned boxes_inside(const Frustum& f, const BlockBoxes& boxes) {
   unsigned inside = 0;
@@ -228,7 +247,10 @@ inline unsigned boxes_inside(const Frustum& f, const BlockBoxes& boxes) {
                 return (Block(f.a[j]) * load<Block>(boxes.side[f.across[j]] + i) + Block(f.b[j]) * load<Block>(boxes.side[f.along[j]] + i)) +
                        Block(f.c[j]);
               }) << i;
-  return inside;
+  unsigned ahead = 0;
+  for (int i = 0; i < kBlock; i += kWidth<Block>)
+    ahead |= bits(Block(f.to_slice) * load<Block>(boxes.side[f.last] + i) + Block(f.zero_slice) >= Block(f.near)) << i;
+  return inside & ahead;
 }
 
 /// Lanes of triangles i, i + 1, ... of a block that reach into the frustum.
@@ -241,7 +263,9 @@ inline unsigned triangles_inside(const Frustum& f, const TriangleBlock& block, i
     const Block fa = s * (j < 2 ? au : av) + r * ak, fb = s * (j < 2 ? bu : bv) + r * bk, fc = s * (j < 2 ? cu : cv) + r * ck;
     return greater(greater(fa, fb), fc) + Block(f.c[j]);
   });
-  return left & bits(au == au);  // padding is NaN
+  const Block s(f.to_slice);
+  const Mask<Block> ahead = greater(greater(s * ak, s * bk), s * ck) + Block(f.zero_slice) >= Block(f.near);
+  return left & bits(both(ahead, au == au));  // padding is NaN
 }
 
 template <bool kAny>
@@ -255,7 +279,9 @@ inline void test_block(const Frustum& f, Packet& p, const TriangleBlock& block, 
       const float b[3] = {block.b[0][at], block.b[1][at], block.b[2][at]};
       const float c[3] = {block.c[0][at], block.c[1][at], block.c[2][at]};
       const std::uint64_t live = p.live;
-      if (f.by_group)
+      if (f.by_group) {
+        const float end = greater(greater(f.to_slice * a[f.k], f.to_slice * b[f.k]), f.to_slice * c[f.k]) + f.zero_slice;
+        p.live &= groups_ahead(f, end);
         p.live &= groups_inside([&](int j, int first) {
           const int u = j < 2 ? f.u : f.v;
           const Lanes s = load<Lanes>(f.group_b[j] + first);
@@ -263,6 +289,7 @@ inline void test_block(const Frustum& f, Packet& p, const TriangleBlock& block, 
           const Lanes fc = Lanes(f.a[j] * c[u]) + s * Lanes(c[f.k]);
           return greater(greater(fa, fb), fc) + load<Lanes>(f.group_c[j] + first);
         });
+      }
       if (p.live != 0) {
         count_lanes(p, n, n.triangle);
         test_triangle<kAny>(p, a, b, c, id);
