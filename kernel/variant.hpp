@@ -32,8 +32,10 @@ inline void trace_span(const SceneView& scene, const RaySpan& rays, const TraceS
       trace_reference<kAny>(scene, arrays, count, settings.mailbox, n);
     else
       trace<kAny>(scene, arrays, count, {settings.method == Method::kSingle ? 1 : settings.packet, settings.mailbox}, n);
-    for (int i = 0; i < count; ++i)
-      if (rays.id[first + i] != kNoPrimitive) rays.t[first + i] = kAny ? t[i] : t[i] + shift[i];
+    for (int i = 0; i < count; ++i) {  // without a branch: SIMD
+      const float met = kAny ? t[i] : t[i] + shift[i];
+      rays.t[first + i] = rays.id[first + i] != kNoPrimitive ? met : rays.t[first + i];
+    }
   }
   add(n, counts);
 }
