@@ -18,8 +18,9 @@ import tempfile
 
 import numpy as np
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from error_time import ROOT, read_pfm, rmse  # noqa: E402
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "lib"))
+from bench import ROOT  # noqa: E402
+from image_error import read_pfm, rmse  # noqa: E402
 
 ERRORS = (.02, .01, .005)
 REFERENCE_SEED, SEED = 1001, 1

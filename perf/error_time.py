@@ -10,23 +10,18 @@ draw the same picture as when they were made, so delete error_time/ there when i
 """
 import argparse
 import csv
-import hashlib
-import json
 import math
 import pathlib
-import subprocess
 import sys
 
-import matplotlib
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 from matplotlib.ticker import NullFormatter
-import numpy as np
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "lib"))
+from bench import ROOT, plt
+from image_error import Refused, Workshop, read_pfm, rmse, time_to_reach
+
 FINEST = 256                   # samples of the finest fixed setting
 REFERENCE = 100 * FINEST       # in two halves
-REFERENCE_SEEDS = (1001, 1002)
 SEED = 1
 
 # name, title, generator and its size or file, options
@@ -53,65 +48,6 @@ METHODS = {
 LOOKS = {"random": ("#999999", "o", ":"), "jitter": ("#E69F00", "s", "--"), "unshuffled": ("#D55E00", "v", "--"), "adaptive": ("#CC79A7", "^", "-."),
          "sobol": ("#0072B2", "D", "-"), "error": ("#000000", "*", "-")}
 LABELS = {"random": "random", "jitter": "jitter, shuffled", "unshuffled": "jitter, unshuffled", "adaptive": "adaptive:0.1,D", "sobol": "sobol", "error": "--error E"}
-
-
-class Refused(Exception):
-    """The program does not know an option, or refuses it here."""
-
-
-def read_pfm(path):
-    with open(path, "rb") as f:
-        if f.readline().strip() != b"PF":
-            raise ValueError(f"{path}: not a colour PFM")
-        width, height = map(int, f.readline().split())
-        order = "<" if float(f.readline()) < 0 else ">"
-        pixels = np.frombuffer(f.read(), order + "f4", width * height * 3)
-    return pixels.reshape(height, width, 3)[::-1].astype(np.float64)  # rows are stored bottom first
-
-
-def rmse(a, b):
-    return float(np.sqrt(np.mean((np.clip(a, 0, 1) - np.clip(b, 0, 1)) ** 2)))
-
-
-class Workshop:
-    """Renders into a folder of its own."""
-
-    def __init__(self, program, size):
-        self.program = pathlib.Path(program).resolve()
-        self.folder = self.program.parent / "error_time"
-        self.folder.mkdir(exist_ok=True)
-        self.size = ["--size", f"{size}x{size}"]
-
-    def scene(self, source):
-        if isinstance(source, str):
-            return ROOT / source
-        name, size = source
-        path = self.folder / f"{name}-{size}.nff"
-        subprocess.run([self.program, "scene", name, "--size", str(size), "-o", path], check=True)
-        return path
-
-    def render(self, scene, options, picture):
-        stats = self.folder / "stats.json"
-        done = subprocess.run([self.program, "render", scene, "-o", picture, "--quiet", "--stats", stats, *self.size, *options],
-                              stderr=subprocess.PIPE, text=True)
-        if done.returncode == 2:
-            raise Refused(done.stderr.strip())
-        if done.returncode:
-            sys.exit(done.stderr)
-        return json.loads(stats.read_text())
-
-    def reference(self, scene, options, samples):
-        """The mean of two halves, and the error it is estimated to have."""
-        halves = []
-        for seed in REFERENCE_SEEDS:
-            settings = [*options, "--sampler", "sobol", "--samples", str(samples // 2), "--seed", str(seed)]
-            words = "\0".join([*map(str, settings), *self.size]).encode() + scene.read_bytes()
-            path = self.folder / f"{scene.stem}-{hashlib.sha256(words).hexdigest()[:16]}.pfm"
-            if not path.exists():
-                self.render(scene, settings, path.with_suffix(".part.pfm"))
-                path.with_suffix(".part.pfm").rename(path)
-            halves.append(read_pfm(path))
-        return (halves[0] + halves[1]) / 2, rmse(*halves) / 2
 
 
 def measure(shop, scene, options, methods, reference, repeats):
@@ -143,16 +79,6 @@ def of(points, method):
     return [p for (m, _), p in points.items() if m == method]
 
 
-def time_to_reach(points, method, error):
-    """Between the settings on either side of `error`, on straight lines of the log-log chart; None beyond its ends."""
-    curve = sorted((math.log(p["rmse"]), math.log(p["seconds"])) for p in of(points, method) if p["rmse"] > 0)
-    at = math.log(error)
-    for (e0, t0), (e1, t1) in zip(curve, curve[1:]):
-        if e0 <= at <= e1 and e1 > e0:
-            return math.exp(t0 + (t1 - t0) * (at - e0) / (e1 - e0))
-    return None
-
-
 def tell_ratios(points, fixed_finest):
     def error_of(method):
         return points.get((method, fixed_finest), {}).get("rmse")
@@ -167,7 +93,7 @@ def tell_ratios(points, fixed_finest):
             curve = of(points, method)
             if not curve:
                 continue
-            reached = time_to_reach(points, method, aim["rmse"])
+            reached = time_to_reach(curve, aim["rmse"])
             told = (f"{reached / aim['seconds']:.2f} of its time" if reached
                     else f"beyond its settings, RMSE {min(p['rmse'] for p in curve):.2g} to {max(p['rmse'] for p in curve):.2g}")
             print(f"  {LABELS[method]} to the RMSE of {' '.join(target)}, {aim['rmse']:.2g}: {told}")
@@ -211,7 +137,7 @@ def main():
     if asked.quick:
         size, repeats, finest, reference_samples = 32, 1, str(SAMPLES[2]), 100 * SAMPLES[2]
         methods = {m: settings[:3] for m, settings in METHODS.items()}
-    shop = Workshop(asked.program, size)
+    shop = Workshop(asked.program, "error_time", size)
     out = shop.folder if asked.quick or asked.scene else ROOT / "docs"
     images = out if out == shop.folder else out / "images"
 
