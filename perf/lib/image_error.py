@@ -67,6 +67,19 @@ class Workshop:
         subprocess.run([self.program, "scene", name, "--size", str(size), "-o", path], check=True)
         return path
 
+    def info(self, scene):
+        return json.loads(subprocess.run([self.program, "info", "--json", scene], check=True, stdout=subprocess.PIPE, text=True).stdout)
+
+    def command(self, source, options, tail=()):
+        """What a reader types to repeat a render; `tail`: lines added to the end of the scene."""
+        name, make = str(source), ""
+        if not isinstance(source, str):
+            name = f"{source[0]}-{source[1]}.nff"
+            make = f"./run scene {source[0]} --size {source[1]} -o {name} && "
+        if tail:
+            make += "printf '%s\\n' " + " ".join(f"'{line}'" for line in tail) + f" >> {name} && "
+        return make + " ".join(["./run render", name, "-o p.pfm --stats p.json", *self.size, *map(str, options)])
+
     def render(self, scene, options, picture):
         stats = self.folder / "stats.json"
         done = subprocess.run([self.program, "render", scene, "-o", picture, "--quiet", "--stats", stats, *self.size, *map(str, options)],
@@ -89,6 +102,15 @@ class Workshop:
                 path.with_suffix(".part.pfm").rename(path)
             halves.append(read_pfm(path))
         return (halves[0] + halves[1]) / 2, rmse(*halves) / 2
+
+
+def turns(plan, spent):
+    """Numbers the renders of a set that takes turns: `spent()` tells the CPU seconds so far. As many as the plan's rounds, and of short renders up to
+    four times as many while they come to less than the seconds a set is given."""
+    for turn in range(4 * plan.rounds):
+        if turn >= plan.rounds and spent() * (turn + 1) / turn > plan.seconds:
+            return
+        yield turn
 
 
 def reference_settings(options, samples, seed):

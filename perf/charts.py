@@ -1,0 +1,128 @@
+#!/usr/bin/env python3
+"""Charts of speed against accuracy, as CSV and SVG in docs/, and one page for all of them.
+
+    ./run charts [rays] [picture] [grid] [features] [--quick] [--rounds N] [--draw]
+
+Without a name, all. Every point tells the command that repeats it: in the CSV, in the SVG when the mouse rests on it, and in report.html, which
+opens without a network. --quick: smaller pictures, fewer points, and nothing kept in docs/. What is measured stays in the build folder beside the
+references, so that the page shows all charts whichever was made last; references are made anew when their scene or options change (delete charts/
+there when the program draws other pictures).
+"""
+import argparse
+import csv
+import dataclasses
+import importlib
+import json
+import pathlib
+import resource
+import sys
+import textwrap
+import time
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE / "lib"), str(HERE / "charts")]
+from bench import DOCS, ROOT, cpu_name, put_section, table  # noqa: E402
+from chart import draw  # noqa: E402
+from image_error import Workshop  # noqa: E402
+from page import make_page  # noqa: E402
+
+NAMES = ("rays", "picture", "grid", "features")
+
+
+@dataclasses.dataclass
+class Plan:
+    rounds: int
+    seconds: float  # of CPU time for what takes turns, before rounds are added
+    size: int       # side of pictures whose error is measured
+    side: int       # and of those that are only timed
+    scenes: int     # at most so many
+    settings: int   # of each method, at most
+    reference: int  # samples a pixel
+    quick: bool = True
+
+
+FULL = Plan(rounds=5, seconds=12, size=128, side=256, scenes=99, settings=99, reference=16384, quick=False)
+QUICK = Plan(rounds=2, seconds=.5, size=64, side=128, scenes=99, settings=4, reference=4096)
+SMOKE = Plan(rounds=1, seconds=0, size=16, side=16, scenes=1, settings=3, reference=64)  # of the tests: does it run at all
+
+
+def write_csv(path, header, rows):
+    with open(path, "w", newline="") as f:
+        lines = csv.writer(f, lineterminator="\n")
+        lines.writerow(header)
+        lines.writerows(rows)
+
+
+def spent():
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
+
+
+def measured(name, module, shop, plan, kept):
+    start, cpu = time.monotonic(), spent()
+    result = module.measure(shop, plan)
+    print(f"{name}: {time.monotonic() - start:.0f} s, of it {spent() - cpu:.0f} CPU seconds of what was measured", flush=True)
+    if result is None:
+        kept.unlink(missing_ok=True)
+    else:
+        kept.write_text(json.dumps({"cpu": cpu_name(), "rounds": plan.rounds, "result": result}))
+
+
+def wrapped(text):
+    """Its paragraphs in lines; tables as they are."""
+    fill = textwrap.TextWrapper(width=140, break_long_words=False, break_on_hyphens=False).fill
+    return "\n\n".join(block if block.startswith("|") else fill(block) for block in text.split("\n\n"))
+
+
+def show(name, module, kept, out, folder):
+    """Table, charts and words from what was measured; None when nothing was."""
+    if not kept.exists():
+        return None
+    known = json.loads(kept.read_text())
+    result = known["result"]
+    write_csv(out / f"charts-{name}.csv", *module.csv(result))
+    charts = module.charts(result)
+    told = wrapped(f"{module.tell(result, table)}\n\n{known['cpu']}; the least of {known['rounds']} renders or more. `./run charts {name}`")
+    for chart in charts:
+        draw(chart, out / "images" / f"charts-{chart['name']}.svg", folder / f"charts-{chart['name']}.png")
+    if out == DOCS:
+        put_section(DOCS / "accuracy.md", "perf/charts.py", told, name)
+    return {"told": told, "charts": charts}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--program", default=ROOT / "build/release/grelha", help="[build/release/grelha]")
+    parser.add_argument("names", nargs="*", metavar="NAME", help=f"{', '.join(NAMES)} [all]")
+    parser.add_argument("--quick", action="store_true", help="three minutes instead of thirty; nothing kept in docs/")
+    parser.add_argument("--draw", action="store_true", help="measure nothing, draw again what was measured last")
+    parser.add_argument("--smoke", action="store_true", help=argparse.SUPPRESS)
+    parser.add_argument("--rounds", type=int, help="renders of each point, the least time counts [5; quick 2]")
+    asked = parser.parse_args()
+    if unknown := set(asked.names) - set(NAMES):
+        parser.error(f"no such chart: {', '.join(sorted(unknown))}; there are {', '.join(NAMES)}")
+    plan = SMOKE if asked.smoke else QUICK if asked.quick else FULL
+    if asked.rounds:
+        plan = dataclasses.replace(plan, rounds=asked.rounds)
+    name = "charts-smoke" if asked.smoke else "charts-quick" if asked.quick else "charts"
+    pictures = Workshop(asked.program, name, plan.size)
+    timed = Workshop(asked.program, name, plan.side)
+    out = pictures.folder if plan.quick else DOCS
+    for folder in (pictures.folder, out):
+        (folder / "images").mkdir(exist_ok=True)
+    kinds = {}
+    for name in NAMES:
+        module, kept = importlib.import_module(name), pictures.folder / f"{name}.json"
+        chosen = name in (asked.names or NAMES)
+        if chosen and not asked.draw:
+            measured(name, module, pictures if name == "picture" else timed, plan, kept)
+        kinds[name] = show(name, module, kept, out if chosen else pictures.folder, pictures.folder)
+        if chosen and kinds[name]:
+            print(kinds[name]["told"], flush=True)
+    page = pictures.folder / "report.html"
+    make_page(page, kinds)
+    print(f"{out}/charts-*.csv, {out}/images/charts-*.svg, {page}")
+
+
+if __name__ == "__main__":
+    main()

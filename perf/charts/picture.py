@@ -1,0 +1,205 @@
+"""Error of pictures against the time they take: per effect one panel, per method one curve, the Pareto front behind them.
+
+Error is the RMSE, and 1 - SSIM, of what a screen shows against a reference of other seeds made of two halves; time the CPU seconds of
+rendering on one thread, the least of several renders that take turns.
+"""
+import math
+
+import numpy as np
+from PIL import Image
+
+from chart import pareto_front, slope
+from image_error import REFERENCE_SEEDS, Refused, read_pfm, reference_settings, rmse, ssim, time_to_reach
+
+NAME, TITLE = "picture", "Error of a picture against its time"
+SEED = 1
+CROP = 64  # pixels a side
+COUNTS = [1, 4, 16, 64, 256]
+LONG = 3  # CPU seconds a point is given; at least one render, at most as many as rounds
+
+BALLS = "scenes/data/balls.nff"
+# name, title, scene, options of the effect
+EFFECTS = [
+    ("edges", "edges: star", ("star", 36), []),
+    ("shadows", "area light: boat", ("boat", 10), ["--shadows", "random:2"]),
+    ("awning", "area light of which pixels see a part: awning", ("awning", 64), []),
+    ("lens", "lens: distant", ("distant", 8), ["--lens", "40"]),
+    ("glossy", "rough mirrors: balls", BALLS, ["--glossy", ".1", "--depth", "3"]),
+    ("all", "lens, area lights, rough mirrors: balls", BALLS, ["--shadows", "random:.5", "--lens", "12", "--glossy", ".08", "--depth", "3"]),
+]
+
+
+def fixed(sampler):
+    return [(str(n), ["--sampler", sampler, "--samples", str(n)]) for n in COUNTS]
+
+
+# series, look, settings; only of effects named, where any are
+METHODS = [
+    ("random: N samples", 0, fixed("random"), None),
+    ("jitter: N samples (--aa jitter:√N)", 1, [(str(n * n), ["--aa", f"jitter:{n}"]) for n in (1, 2, 4, 8, 16)], None),
+    ("jitter, unshuffled", 2, fixed("unshuffled"), ("shadows", "awning", "lens", "glossy", "all")),
+    ("adaptive:0.1,D", 3, [(f"0.1,{d}", ["--aa", f"adaptive:0.1,{d}"]) for d in (1, 2, 3, 4, 5)], None),
+    ("adaptive:T,3", 4, [(f"{t},3", ["--aa", f"adaptive:{t},3"]) for t in (.8, .4, .2, .05, .025)], None),
+    ("sobol: N samples", 5, fixed("sobol"), None),
+    ("--error E", 6, [(str(e), ["--error", str(e)]) for e in (.08, .04, .02, .01, .005, .0025, .00125)], None),
+    ("sobol, area:S,2√N: 4 points of each light a sample", 8,
+     [(str(n), ["--samples", str(n), "--shadows", f"area:2,{m}"]) for n, m in ((1, 2), (4, 4), (16, 8), (64, 16))], ("shadows",)),
+    ("sobol, glossy:R,N: 4 samples, N rays beside the mirror's", 8,
+     [(f".1,{n}", ["--samples", "4", "--glossy", f".1,{n}"]) for n in (1, 2, 4, 8)], ("glossy",)),
+]
+
+
+def joined(options, more):
+    """Both, an option given twice taken from `more`."""
+    pairs = {options[i]: options[i + 1] for i in range(0, len(options), 2)}
+    pairs.update({more[i]: more[i + 1] for i in range(0, len(more), 2)})
+    return [word for pair in pairs.items() for word in pair]
+
+
+def settings_of(effect, plan):
+    """Series, label and options of every point."""
+    for series, _, settings, only in METHODS:
+        if only is None or effect in only:
+            for label, words in settings[:plan.settings]:
+                yield series, label, words
+
+
+class Crops:
+    """Where the first picture of an effect errs most: that part of each, and of its error, as small pictures."""
+
+    def __init__(self, folder):
+        self.folder, self.at = folder, None
+        folder.mkdir(exist_ok=True)
+
+    def place(self, error):
+        side = min(CROP, *error.shape)
+        sums = np.pad(error, ((1, 0), (1, 0))).cumsum(0).cumsum(1)
+        windows = sums[side:, side:] - sums[:-side, side:] - sums[side:, :-side] + sums[:-side, :-side]
+        y, x = np.unravel_index(np.argmax(windows), windows.shape)
+        return np.s_[y:y + side, x:x + side]
+
+    def save(self, name, picture, reference):
+        error = np.abs(np.clip(picture, 0, 1) - np.clip(reference, 0, 1)).max(axis=2)
+        if self.at is None:
+            self.at = self.place(error ** 2)
+        shown = (np.clip(picture[self.at], 0, 1) * 255 + .5).astype(np.uint8)
+        # black at .001 and below, white at 1: three decades
+        grey = (np.clip(1 + np.log10(np.maximum(error[self.at], 1e-9)) / 3, 0, 1) * 255 + .5).astype(np.uint8)
+        paths = [self.folder / f"{name}-{kind}.webp" for kind in ("picture", "error")]
+        for path, pixels in zip(paths, (shown, grey)):
+            Image.fromarray(pixels).save(path, quality=85, method=6)
+        return [str(path) for path in paths]
+
+
+def measure_effect(shop, plan, effect, source, options):
+    scene = shop.scene(source)
+    reference, floor = shop.reference(scene, options, plan.reference)
+    picture = shop.folder / "point.pfm"
+    crops = Crops(shop.folder / "crops")
+    points, refused = {}, set()
+    for turn in range(plan.rounds):
+        for series, label, words in settings_of(effect, plan):
+            point = points.setdefault((series, label), {"series": series, "label": label, "spent": 0, "seconds": math.inf})
+            if series in refused or point["spent"] * (turn + 1) > LONG * max(turn, 1) and turn:
+                continue
+            told = ["--threads", "1", "--seed", SEED, *joined(options, words)]
+            try:
+                stats = shop.render(scene, told, picture)
+            except Refused as why:
+                print(f"  {effect}: {series} left out: {why}", flush=True)
+                refused.add(series)
+                del points[series, label]
+                continue
+            seconds = stats["seconds"]["render_cpu"]
+            point["spent"] += seconds
+            point["seconds"] = max(min(point["seconds"], seconds), 1e-5)  # of a clock that counts microseconds
+            if turn == 0:
+                image = read_pfm(picture)
+                point["rays"] = sum(stats["rays"].values())
+                point["samples"] = stats["rays"]["primary"] / math.prod(stats["size"])
+                point["rmse"], point["ssim"] = rmse(image, reference), ssim(image, reference)
+                point["command"] = shop.command(source, told)
+                point["crops"] = crops.save(f"{effect}-{len(points)}", image, reference)
+    halves = [shop.command(source, reference_settings(options, plan.reference, seed)) for seed in REFERENCE_SEEDS]
+    return {"effect": effect, "floor": floor, "reference": plan.reference, "halves": halves, "points": list(points.values())}
+
+
+def measure(shop, plan):
+    results = []
+    for effect, title, source, options in EFFECTS[:plan.scenes]:
+        print(f"picture: {title}", flush=True)
+        results.append({"title": title, **measure_effect(shop, plan, effect, source, options)})
+    return {"size": shop.size[1], "effects": results}
+
+
+def csv(result):
+    header = ["effect", "method", "setting", "samples_per_pixel", "rays", "cpu_seconds", "rmse", "ssim", "command"]
+    rows = []
+    for e in result["effects"]:
+        rows += [[e["effect"], p["series"], p["label"], f"{p['samples']:.4g}", p["rays"], f"{p['seconds']:.4g}", f"{p['rmse']:.4g}",
+                  f"{p['ssim']:.5f}", p["command"]] for p in e["points"]]
+        rows.append([e["effect"], "reference: mean of two", e["reference"], e["reference"], "", "", f"{e['floor']:.2g}", "", "; ".join(e["halves"])])
+    return header, rows
+
+
+def panel_of(effect, key, label):
+    series = []
+    for name, look, _, _ in METHODS:
+        points = [{"x": p["seconds"], "y": max(key(p), 1e-7), "label": p["label"], "command": p["command"],
+                   "picture": p["crops"][0], "error": p["crops"][1],
+                   "facts": f"RMSE {p['rmse']:.2g}, SSIM {p['ssim']:.4f}, {p['seconds']:.3g} CPU s, {p['samples']:.3g} samples a pixel"}
+                  for p in effect["points"] if p["series"] == name]
+        if points:
+            series.append({"name": name, "look": look, "joined": True, "points": points})
+    panel = {"title": effect["title"], "x": {"label": "CPU seconds, one thread", "log": True}, "y": {"label": label, "log": True}, "series": series,
+             "front": [{"x": p["x"], "y": p["y"]} for p in pareto_front([p for s in series for p in s["points"]])]}
+    return panel
+
+
+def charts(result):
+    panels = [panel_of(e, lambda p: p["rmse"], "RMSE (white is 1)") for e in result["effects"]]
+    for panel, e in zip(panels, result["effects"]):
+        panel["lines"] = [{"y": e["floor"], "label": "error of the reference itself"}]
+    alike = [panel_of(e, lambda p: 1 - p["ssim"], "1 - SSIM (0: alike)") for e in result["effects"]]
+    note = ("Crops are of where one sample a pixel errs most; in error maps black is an error of .001 or less, white one of 1, three decades evenly "
+            "between.")
+    return [{"name": "picture", "title": f"{TITLE}, {result['size']}: down and left is better", "note": note, "panels": panels},
+            {"name": "picture-ssim", "title": f"Structural error against time, {result['size']}: down and left is better", "note": note,
+             "panels": alike}]
+
+
+def finest_slope(points):
+    """Of the three finest settings: what more time buys."""
+    chosen = [{"x": p["seconds"], "y": p["rmse"]} for p in points if p["rmse"] > 0][-3:]
+    return slope(chosen) if len(chosen) == 3 else math.nan
+
+
+def speed_up(points, goal):
+    """How much sooner than `goal` its error is reached; '–' where it never is."""
+    reached = time_to_reach(points, goal["rmse"])
+    if reached:
+        return f"{goal['seconds'] / reached:.2g}"
+    first = points[0]
+    return f"> {goal['seconds'] / first['seconds']:.2g}" if first["rmse"] < goal["rmse"] else "–"
+
+
+def tell(result, table):
+    names = [name for name, *_ in METHODS if any(p["series"] == name for e in result["effects"] for p in e["points"])]
+    slopes, gains, goals = [], [], []
+    for e in result["effects"]:
+        of = {name: [p for p in e["points"] if p["series"] == name] for name in names}
+        goal = of[METHODS[0][0]][-1]
+        goals.append(f"{e['effect']} {goal['rmse']:.2g}")
+        slopes.append([f"{finest_slope(of[n]):.2f}" if len(of[n]) >= 3 else "" for n in names])
+        gains.append([("1" if n == METHODS[0][0] else speed_up(of[n], goal)) if of[n] else "" for n in names])
+    header = ["", *[e["effect"] for e in result["effects"]]]
+    turned = lambda cells: [[n, *column] for n, column in zip(names, zip(*cells))]
+    return f"""Slope of the logarithm of the RMSE over that of time, at each method's three finest settings (-.5: four times the time for half the
+error; 0: more time buys nothing):
+
+{table(header, turned(slopes))}
+
+Times as fast as random samples to the error of the finest of them (RMSE: {", ".join(goals)}); –: never got there; >: its coarsest
+setting already had:
+
+{table(header, turned(gains))}"""

@@ -1,0 +1,142 @@
+"""A chart as plain data, drawn as SVG by Matplotlib and, from the same data, by the page that report.py makes.
+
+A chart is a dict: name, title, note, panels. A panel: title, x and y (dicts of label, and perhaps log, span, ticks, names: words for 0, 1, 2, ...),
+series, and perhaps front (points of the Pareto front), lines (dicts of x or y and label). A series: name, look (index into LOOKS), joined, points.
+A point: x, y, label, command, and perhaps star (it is marked), picture and error (files to show beside it).
+"""
+import math
+import re
+
+from matplotlib.lines import Line2D
+from matplotlib.ticker import LogLocator, NullFormatter
+
+from bench import plt
+
+# Colour, marker and dash say the same thing, for those who do not see colours.
+LOOKS = [("#999999", "o", ":"), ("#E69F00", "s", "--"), ("#D55E00", "v", "--"), ("#CC79A7", "^", "-."), ("#882255", "<", ":"), ("#0072B2", "D", "-"),
+         ("#000000", "*", "-"), ("#009E73", "P", "--"), ("#56B4E9", "X", "--"), ("#8C6D31", "h", "-."), ("#F0E442", "p", "-"),
+         ("#332288", "d", "--")]
+FRONT = "#FFD92F"
+STAR = "the kernel's choice"
+
+
+def pareto_front(points):
+    """Of points the ones that no other beats in both x and y, smaller being better, by ascending x."""
+    front = []
+    for p in sorted(points, key=lambda p: (p["x"], p["y"])):
+        if not front or p["y"] < front[-1]["y"]:
+            front.append(p)
+    return front
+
+
+def slope(points):
+    """Of the straight line through log y over log x, least squares."""
+    xs, ys = [math.log(p["x"]) for p in points], [math.log(p["y"]) for p in points]
+    mx, my = sum(xs) / len(xs), sum(ys) / len(ys)
+    spread = sum((x - mx) ** 2 for x in xs)
+    return sum((x - mx) * (y - my) for x, y in zip(xs, ys)) / spread if spread else math.nan
+
+
+def plain(value, _=None):
+    """0.01 and 200k rather than powers of ten."""
+    for unit, letter in ((1e9, "G"), (1e6, "M"), (1e3, "k")):
+        if value >= 10 * unit or (unit > 1e3 and value >= unit):
+            return f"{value / unit:g}{letter}"
+    return f"{value:g}" if value >= 1e-3 else f"{value:.9f}".rstrip("0")
+
+
+def set_axis(axis, low, high, how):
+    """Few and legible ticks: powers of ten, with halves and fifths of them where the axis spans little."""
+    if "names" in how:
+        axis.set_ticks(range(len(how["names"])), how["names"])
+        return
+    if not how.get("log"):
+        return
+    if "ticks" in how:
+        axis.set_ticks(how["ticks"])
+    else:
+        decades = math.log10(high / low) if low > 0 else 1
+        axis.set_major_locator(LogLocator(subs=(1,) if decades > 2 else (1, 2, 5), numticks=12))
+    axis.set_major_formatter(plain)
+    axis.set_minor_formatter(NullFormatter())
+
+
+def draw_panel(axes, panel, ids, hints):
+    axes.set(title=panel["title"], xlabel=panel["x"]["label"], ylabel=panel["y"].get("label", ""))
+    for which in "xy":
+        if panel[which].get("log"):
+            getattr(axes, f"set_{which}scale")("log")
+    if panel.get("front"):
+        xs, ys = ([p[which] for p in panel["front"]] for which in "xy")
+        axes.plot(xs, ys, color=FRONT, linewidth=7, alpha=.6, drawstyle="steps-post", zorder=1)
+    for line in panel.get("lines", []):
+        (axes.axhline if "y" in line else axes.axvline)(line.get("y", line.get("x")), color="#009E73", linewidth=1, linestyle=(0, (1, 3)))
+    for series in panel["series"]:
+        colour, marker, dash = LOOKS[series["look"] % len(LOOKS)]
+        points = series["points"]
+        if series["joined"]:
+            joined = [p for p in points if not p.get("star")]
+            axes.plot([p["x"] for p in joined], [p["y"] for p in joined], dash, color=colour, linewidth=1.3, zorder=2)
+        for p in points:  # each on its own, so that each can tell its command
+            name = f"point{next(ids)}"
+            hints[name] = f"{series['name']} {p['label']}\n{p['command']}"
+            axes.plot([p["x"]], [p["y"]], color=colour, marker="*" if p.get("star") else marker, gid=name, zorder=4 if p.get("star") else 3,
+                      markersize=13 if p.get("star") else 8 if marker == "*" else 5.5, markeredgecolor="black" if p.get("star") else colour,
+                      markeredgewidth=.7)
+    for which, axis in (("x", axes.xaxis), ("y", axes.yaxis)):
+        values = [p[which] for s in panel["series"] for p in s["points"]]
+        set_axis(axis, min(values), max(values), panel[which])
+    if "span" in panel["x"]:
+        axes.set_xlim(*panel["x"]["span"])
+    if "names" in panel["y"]:
+        axes.set_ylim(len(panel["y"]["names"]) - .5, -.5)
+    elif "span" in panel["y"]:
+        axes.set_ylim(*panel["y"]["span"])
+    axes.grid(which="major", alpha=.35)
+
+
+def legend_of(chart):
+    """One for all panels: every series' look, then what the other marks mean."""
+    handles = {}
+    for series in (s for panel in chart["panels"] for s in panel["series"]):
+        colour, marker, dash = LOOKS[series["look"] % len(LOOKS)]
+        handles.setdefault(series["name"], Line2D([], [], color=colour, marker=marker, linestyle=dash if series["joined"] else "", markersize=6))
+    if any(p.get("star") for panel in chart["panels"] for s in panel["series"] for p in s["points"]):
+        handles[STAR] = Line2D([], [], color="#999999", marker="*", linestyle="", markersize=12, markeredgecolor="black")
+    if any(panel.get("front") for panel in chart["panels"]):
+        handles["Pareto front: nothing else is both faster and better"] = Line2D([], [], color=FRONT, linewidth=7, alpha=.6)
+    for line in (line for panel in chart["panels"] for line in panel.get("lines", [])):
+        handles.setdefault(line["label"], Line2D([], [], color="#009E73", linewidth=1, linestyle=(0, (1, 3))))
+    return handles
+
+
+def add_hints(path, hints):
+    """A browser shows a title when the mouse rests on its point."""
+    def titled(match):
+        text = hints[match[1]].replace("&", "&amp;").replace("<", "&lt;")
+        return f"{match[0]}<title>{text}</title>"
+    path.write_text(re.sub(r'<g id="(point\d+)">', titled, path.read_text()))
+
+
+def draw(chart, svg, png):
+    panels, columns = chart["panels"], min(chart.get("columns", 2), len(chart["panels"]))
+    rows = -(-len(panels) // columns)
+    handles = legend_of(chart)
+    width, height = chart.get("panel_size", (5.2, 3.7))
+    across = max(1, int(width * columns / 3.4))  # columns of the legend
+    legend = .15 + .22 * -(-len(handles) // across)
+    size = (width * columns, height * rows + legend + .35)
+    figure = plt.figure(figsize=size, layout="constrained")
+    figure.get_layout_engine().set(rect=(0, legend / size[1], 1, 1 - legend / size[1]))
+    ids, hints = iter(range(10 ** 6)), {}
+    for i, panel in enumerate(panels):
+        axes = figure.add_subplot(rows, columns, i + 1)
+        draw_panel(axes, panel, ids, hints)
+        if "names" in panel["y"] and i % columns:
+            axes.set_yticklabels([])  # as in the first column
+    figure.suptitle(chart["title"], fontsize=12)
+    figure.legend(handles.values(), handles.keys(), loc="lower center", ncols=across, fontsize=9, frameon=False)
+    figure.savefig(svg, metadata={"Date": None})
+    figure.savefig(png, dpi=80)  # to look at
+    plt.close(figure)
+    add_hints(svg, hints)
