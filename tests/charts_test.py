@@ -1,0 +1,186 @@
+#!/usr/bin/env python3
+"""What `./run charts` computes, on cases with known answers; a small run of all of it; and its commands, typed in again.
+
+    charts_test.py PROGRAM
+
+Exit status 77: a package the charts need is missing.
+"""
+import csv
+import math
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import types
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.path[:0] = [str(ROOT / "perf" / name) for name in ("lib", "charts")]
+PROGRAM = pathlib.Path(sys.argv.pop(1)).resolve()
+try:
+    import numpy as np
+    import chart
+    import features
+    import image_error
+    import page
+    import picture
+    import rays
+    from bench import table
+except ImportError as missing:
+    print(f"skipped: {missing}")
+    sys.exit(77)
+if not page.LIBRARY.exists():
+    print(f"skipped: no {page.LIBRARY}")
+    sys.exit(77)
+
+
+def points(*pairs):
+    return [{"x": x, "y": y} for x, y in pairs]
+
+
+class Curves(unittest.TestCase):
+    def test_the_front_holds_what_nothing_beats(self):
+        front = chart.pareto_front(points((1, 9), (2, 4), (2, 5), (3, 4), (4, 1), (5, 2)))
+        self.assertEqual(front, points((1, 9), (2, 4), (4, 1)))
+
+    def test_a_power_law_has_its_exponent_as_slope(self):
+        self.assertAlmostEqual(chart.slope(points(*[(x, 3 * x ** -.75) for x in (1, 2, 5, 40)])), -.75)
+
+    def test_time_to_an_error_lies_on_the_line_between(self):
+        curve = [{"rmse": t ** -.5, "seconds": t} for t in (1, 4, 64)]
+        self.assertAlmostEqual(image_error.time_to_reach(curve, .25), 16)
+        self.assertIsNone(image_error.time_to_reach(curve, .01))
+
+    def test_speed_up_tells_of_what_never_arrives_and_of_what_was_there(self):
+        goal = {"rmse": .1, "seconds": 8}
+        self.assertEqual(picture.speed_up([{"rmse": .2, "seconds": 1}, {"rmse": .05, "seconds": 4}], goal), "4")
+        self.assertEqual(picture.speed_up([{"rmse": .3, "seconds": 1}, {"rmse": .2, "seconds": 9}], goal), "–")
+        self.assertEqual(picture.speed_up([{"rmse": .05, "seconds": 2}], goal), "> 4")
+
+    def test_rounds_end_with_the_time_they_are_given(self):
+        plan = types.SimpleNamespace(rounds=3, seconds=10)
+        for cost, expected in ((1, 10), (100, 3), (.01, 12)):
+            spent = 0
+            for turn in image_error.turns(plan, lambda: spent):
+                spent += cost
+            self.assertEqual(turn + 1, expected, cost)
+
+
+class Pictures(unittest.TestCase):
+    def test_ssim_of_even_pictures_is_its_first_factor(self):
+        a, b = np.full((16, 16, 3), .5), np.full((16, 16, 3), .25)
+        self.assertAlmostEqual(image_error.ssim(a, a), 1)
+        self.assertAlmostEqual(image_error.ssim(a, b), (2 * .125 + 1e-4) / (.25 + .0625 + 1e-4), 6)
+
+    def test_ssim_of_a_negative_is_below_zero(self):
+        noise = np.random.default_rng(1).random((24, 24, 1)).repeat(3, axis=2)
+        self.assertLess(image_error.ssim(noise, 1 - noise), -.9)
+
+    def test_a_crop_is_where_the_error_is(self):
+        with tempfile.TemporaryDirectory() as folder:
+            error = np.zeros((128, 128))
+            error[70:80, 100:110] = 1
+            at = picture.Crops(pathlib.Path(folder)).place(error)
+        self.assertEqual(error[at].shape, (picture.CROP, picture.CROP))
+        self.assertEqual(error[at].sum(), 100)
+
+    def test_an_option_given_twice_counts_once(self):
+        both = picture.joined(["--shadows", "random:2", "--lens", "4"], ["--shadows", "area:2,4"])
+        self.assertEqual(both, ["--shadows", "area:2,4", "--lens", "4"])
+
+
+class Twins(unittest.TestCase):
+    needs = {name: name == "spheres" for name in features.NAMES.values()}
+    bounds = {"min": [0, 0, 0], "max": [1, 1, 1]}
+
+    def tail(self, wanted):
+        return features.tail_of(wanted, self.needs, self.bounds)
+
+    def test_geometry_does_not_depend_on_materials(self):
+        shapes = lambda lines: [line for line in lines if not line.startswith("f ")]
+        kinds = {"triangles", "cones", "smooth normals"}
+        self.assertEqual(shapes(self.tail(kinds)), shapes(self.tail(features.EVERYTHING)))
+        self.assertEqual(len(shapes(self.tail(set()))), 3)
+        self.assertEqual(len(shapes(self.tail(kinds))), 6)
+
+    def test_every_feature_left_out_is_not_asked_for(self):
+        with tempfile.TemporaryDirectory() as folder:
+            shop = image_error.Workshop(PROGRAM, folder, 16)
+            scene = shop.scene(("tetra", 2))
+            for title, out in [("everything", set()), *features.LEFT_OUT]:
+                told = shop.info(scene)
+                twin = scene.with_name("twin.nff")
+                wanted = features.EVERYTHING - out
+                twin.write_text(scene.read_text() + "\n".join(features.tail_of(wanted, told["needs"], told["bounds"])) + "\n")
+                asks = {f for f, name in features.NAMES.items() if shop.info(twin)["needs"][name]} | set(features.OPTIONS)
+                self.assertEqual(asks, wanted | {"triangles"} | set(features.OPTIONS), title)
+
+
+class Page(unittest.TestCase):
+    def test_tables_become_tables(self):
+        self.assertEqual(page.markdown("![x](x.svg)\n\nA < B\n\n" + table(["", "x"], [["a", "**1**"]])),
+                         "<p>A &lt; B</p>\n<table><tr><th></th><th>x</th></tr><tr><td>a</td><td><b>1</b></td></tr></table>")
+
+    def test_rays_are_drawn_from_what_the_benchmark_writes(self):
+        rows = [{"isa": isa, "precision": precision, "method": method, "fma": False, "scene": "balls", "rays": 1000, "max_ulp": ulp,
+                 "p999_ulp": ulp / 2, "wrong": wrong, "ns": ns} for isa, precision, method, ulp, wrong, ns in
+                [("scalar", "single", "watertight", 3, 0, 90), ("avx2", "single", "watertight", 3, 0, 20), ("embree", "single", "robust", 40, 2, 15),
+                 ("avx2", "double", "moeller", 0, 0, 35)]]
+        (drawn,) = rays.charts({"rows": rows})
+        self.assertEqual([s["name"] for s in drawn["panels"][0]["series"]], ["single watertight", "double moeller", "Embree single robust"])
+        with tempfile.TemporaryDirectory() as folder:
+            svg = pathlib.Path(folder) / "rays.svg"
+            chart.draw(drawn, svg, pathlib.Path(folder) / "rays.png")
+            self.assertEqual(svg.read_text().count("<title>"), 3 * len(rows))
+        self.assertIn("| balls | Embree | single robust | 40 | 20 | 2 of 1000 | 15 |", rays.tell({"rows": rows}, table))
+
+
+class Smoke(unittest.TestCase):
+    """All charts of tiny pictures; then commands of their tables, as a reader types them."""
+
+    @classmethod
+    def setUpClass(cls):
+        subprocess.run([sys.executable, ROOT / "perf/charts.py", "--program", PROGRAM, "--smoke"], check=True, stdout=subprocess.DEVNULL)
+        cls.folder = PROGRAM.parent / "charts-smoke"
+
+    def rows(self, name):
+        with open(self.folder / f"charts-{name}.csv") as f:
+            return list(csv.DictReader(f))
+
+    def type(self, command, folder):
+        subprocess.run(command.replace("./run", str(PROGRAM)), shell=True, check=True, cwd=folder, stdout=subprocess.DEVNULL,
+                       stderr=subprocess.DEVNULL)
+
+    def picture(self, command):
+        with tempfile.TemporaryDirectory() as folder:
+            self.type(command, folder)
+            return image_error.read_pfm(pathlib.Path(folder) / "p.pfm")
+
+    def test_every_row_has_a_command_and_every_point_a_title(self):
+        for name in ("picture", "grid", "features"):
+            rows = self.rows(name)
+            self.assertGreater(len(rows), 5)
+            self.assertTrue(all("./run render" in row["command"] for row in rows), name)
+            titles = re.findall(r"<title>[^<]*\./run", (self.folder / f"images/charts-{name}.svg").read_text())
+            self.assertGreaterEqual(len(titles), len(rows) // 2, name)
+
+    def test_commands_repeat_the_pictures_errors(self):
+        rows = self.rows("picture")
+        reference = next(row for row in rows if row["method"].startswith("reference"))
+        halves = [self.picture(command) for command in reference["command"].split("; ")]
+        sobol = next(row for row in rows if row["method"].startswith("sobol") and row["setting"] == "16")
+        error = image_error.rmse(self.picture(sobol["command"]), (halves[0] + halves[1]) / 2)
+        self.assertEqual(f"{error:.4g}", sobol["rmse"])
+
+    def test_a_twins_command_makes_the_twin(self):
+        row = next(row for row in self.rows("features") if row["features"] == features.ALL)
+        scene = re.search(r"render (\S+)", row["command"])[1]
+        with tempfile.TemporaryDirectory() as folder:
+            self.type(row["command"], folder)
+            made = (pathlib.Path(folder) / scene).read_text()
+        self.assertEqual(made, (self.folder / f"{pathlib.Path(scene).stem}-twin-0.nff").read_text())
+
+
+if __name__ == "__main__":
+    unittest.main()
