@@ -16,8 +16,6 @@ import subprocess
 import sys
 import tempfile
 
-import numpy as np
-
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "lib"))
 from bench import ROOT  # noqa: E402
 from image_error import read_pfm, rmse  # noqa: E402

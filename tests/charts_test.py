@@ -6,7 +6,6 @@
 Exit status 77: a package the charts need is missing.
 """
 import csv
-import math
 import pathlib
 import re
 import subprocess

@@ -9,7 +9,6 @@ import math
 from image_error import read_pfm, rmse, turns
 
 NAME, TITLE = "features", "What is not needed is not computed"
-SIDE = 256
 SAMPLES = 4
 UNSEEN = 2e-3  # a picture of a twin may differ by this RMSE: no more than a pixel or two
 SCENES = [("star", 36), ("tetra", 8), ("tree", 11), ("distant", 3), ("balls", 4), ("mount", 7), ("boat", 10), ("rings", 7)]

@@ -10,7 +10,6 @@ import sys
 from image_error import turns
 
 NAME, TITLE = "grid", "Time and memory of grids"
-SIDE = 256
 SCENES = [("balls", 4), ("balls", 6), ("mount", 6), ("mount", 8), ("boat", 10), ("knot", 8), ("gears", 4), ("rings", 7), ("tree", 11),
           ("lattice", 12), ("stadium", 6), ("tetra", 8)]
 DENSITIES = (.25, .35, .5, .7, 1, 1.4, 2, 3)
