@@ -123,7 +123,7 @@ class Page(unittest.TestCase):
 
     def test_rays_are_drawn_from_what_the_benchmark_writes(self):
         rows = [{"isa": isa, "precision": precision, "method": method, "fma": False, "scene": "balls", "rays": 1000, "max_ulp": ulp,
-                 "p999_ulp": ulp / 2, "wrong": wrong, "ns": ns} for isa, precision, method, ulp, wrong, ns in
+                 "p999_ulp": ulp / 2, "wrong": wrong, "leaks": 0, "ns": ns} for isa, precision, method, ulp, wrong, ns in
                 [("scalar", "single", "watertight", 3, 0, 90), ("avx2", "single", "watertight", 3, 0, 20), ("embree", "single", "robust", 40, 2, 15),
                  ("avx2", "double", "moeller", 0, 0, 35)]]
         (drawn,) = rays.charts({"rows": rows})
@@ -132,7 +132,7 @@ class Page(unittest.TestCase):
             svg = pathlib.Path(folder) / "rays.svg"
             chart.draw(drawn, svg, pathlib.Path(folder) / "rays.png")
             self.assertEqual(svg.read_text().count("<title>"), 3 * len(rows))
-        self.assertIn("| balls | Embree | single robust | 40 | 20 | 2 of 1000 | 15 |", rays.tell({"rows": rows}, table))
+        self.assertIn("| balls | Embree | single robust | 40 | 20 | 2 of 1000 | 0 | 15 |", rays.tell({"rows": rows}, table))
 
 
 class Smoke(unittest.TestCase):
