@@ -12,7 +12,7 @@ from chart import pareto_front
 NAME, TITLE = "rays", "Error of a ray against its time"
 ISAS = ("scalar", "sse2", "avx2", "avx512", "embree")
 SCENE = "triangles"
-LEAST_ULP = .1  # what is less, zero too, is drawn here
+LEAST_ULP = 1e-7  # what is less, zero too, is drawn here
 
 
 def row_of(benchmark):
@@ -77,7 +77,7 @@ def charts(result):
     panels = []
     for scene in dict.fromkeys(r["scene"] for r in result["rows"]):
         rows = sorted((r for r in result["rows"] if r["scene"] == scene), key=lambda r: ISAS.index(r["isa"]))
-        ulp = f"ulp of a float ({LEAST_ULP:g}: that or less)"
+        ulp = f"ulp of a float (.0000001: that or less)"
         panels += [panel(rows, f"{scene}: distance, 99.9 %", ulp, lambda r: max(r["p999_ulp"], LEAST_ULP)),
                    panel(rows, f"{scene}: distance, largest", ulp, lambda r: max(r["max_ulp"], LEAST_ULP)),
                    panel(rows, f"{scene}: wrong hits", "wrong a million rays (.1: none)", lambda r: max(1e6 * r["wrong"] / r["rays"], .1))]
