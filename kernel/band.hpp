@@ -1,6 +1,7 @@
 #pragma once
 // One band of image rows from camera to finished sums: no recursion, bounces wait on a stack and are traced in batches.
 
+#include "kernel/part.hpp"
 #include "kernel/shade.hpp"
 
 namespace grelha::GRELHA_ISA {
@@ -119,21 +120,22 @@ struct TilePlaces {
 };
 inline constexpr TilePlaces kTilePlaces;
 
-/// Renders rows [y0, y1), at most kBandRows, into work.sums.
+/// Renders a part of at most kBandRows rows into work.sums.
 ///
 /// Depths never fall towards the top of the stack, and rays of depth d + 1 are only added when fewer than `take` of them
 /// are there, by at most c take, c = 2 or with rough mirrors gloss_rays + 2 rays a hit: the stack holds at most
 /// c kBatch + c take (depth - 2) rays however the light bounces.
-inline void render_band(const SceneView& scene, const ShadingView& shading, const FrameView& frame, int y0, int y1,
+inline void render_band(const SceneView& scene, const ShadingView& shading, const FrameView& frame, const Part& part,
                         const BandWork& work, Counters& counters, RayTally& rays) {
+  const int y0 = part.rows.begin, y1 = part.rows.end;
   const Shader shader{scene, shading, work, counters, rays, *work.batch};
   CameraBatch batch(shader, frame, true);
   for (int x0 = 0; x0 < frame.width; x0 += kTile)
     for (int k = 0; k < kTile * kTile; ++k) {
       const int x = x0 + kTilePlaces.x[k], y = y0 + kTilePlaces.y[k];
       if (x >= frame.width || y >= y1) continue;
-      batch.add(static_cast<float>(x), static_cast<float>(y), static_cast<std::uint32_t>((y - y0) * frame.width + x), 0,
-                static_cast<std::uint32_t>(work.plan.samples));
+      batch.add(static_cast<float>(x), static_cast<float>(y), static_cast<std::uint32_t>((y - y0) * frame.width + x),
+                static_cast<std::uint32_t>(part.samples.begin), static_cast<std::uint32_t>(part.samples.end - part.samples.begin));
     }
   batch.finish();
 }

@@ -53,11 +53,11 @@ inline void tally(const Counters& n, const RayTally& rays, TraceCounts& trace_co
   ray_counts.reflection += rays.reflection, ray_counts.refraction += rays.refraction;
 }
 
-inline void band(const SceneView& scene, const ShadingView& shading, const FrameView& frame, int y0, int y1, const BandWork& work,
+inline void band(const SceneView& scene, const ShadingView& shading, const FrameView& frame, const Part& part, const BandWork& work,
                  TraceCounts& trace_counts, RayCounts& ray_counts) {
   Counters n;
   RayTally rays;
-  render_band(scene, shading, frame, y0, y1, work, n, rays);
+  render_band(scene, shading, frame, part, work, n, rays);
   tally(n, rays, trace_counts, ray_counts);
 }
 

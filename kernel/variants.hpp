@@ -5,6 +5,7 @@
 #include <span>
 #include <string_view>
 
+#include "kernel/part.hpp"
 #include "kernel/shading_view.hpp"
 #include "kernel/stats.hpp"
 #include "kernel/view.hpp"
@@ -37,7 +38,7 @@ struct TraceSettings {
 struct VariantLoops {
   void (*closest)(const SceneView&, const RaySpan&, const TraceSettings&, TraceCounts&);
   void (*occluded)(const SceneView&, const RaySpan&, const TraceSettings&, TraceCounts&);
-  void (*render_band)(const SceneView&, const ShadingView&, const FrameView&, int y0, int y1, const BandWork&, TraceCounts&, RayCounts&);
+  void (*render_band)(const SceneView&, const ShadingView&, const FrameView&, const Part&, const BandWork&, TraceCounts&, RayCounts&);
   /// Samples of chosen pixels, kParts sums a run; see render_runs.
   void (*render_runs)(const SceneView&, const ShadingView&, const FrameView&, const PixelRun*, int runs, const BandWork&, TraceCounts&, RayCounts&);
   /// Doubt of the pixels of the 8 x 8 tile at (x0, y0), [8 y + x] each: the weight, 0 to 1, of what could hide from samples there,
