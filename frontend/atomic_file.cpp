@@ -39,6 +39,15 @@ bool is_special(const std::string& path) {
   return !S_ISREG(info.st_mode);
 }
 
+/// Has what was written to a file, or the names in a folder, reach the disk.
+void sync(const std::string& path, const std::string& file) {
+  const int handle = open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (handle < 0) fail(path, "cannot write", errno);
+  const int error = fsync(handle) == 0 ? 0 : errno;
+  close(handle);
+  if (error != 0 && error != EINVAL) fail(path, "cannot write", error);  // EINVAL: nothing that could be synchronised
+}
+
 /// Creates an empty file nobody else has, in the same folder so that renaming cannot cross file systems.
 std::string create_beside(const std::string& path, const std::string& target) {
   static std::atomic<unsigned> serial{0};
@@ -58,8 +67,8 @@ std::string create_beside(const std::string& path, const std::string& target) {
 
 }  // namespace
 
-AtomicFile::AtomicFile(const std::string& path) : path_(path), target_(resolve(path)) {
-  if (!is_special(target_)) beside_ = create_beside(path_, target_);
+AtomicFile::AtomicFile(const std::string& path, bool durable) : path_(path), target_(resolve(path)), durable_(durable) {
+  if (!is_special(target_)) beside_ = durable ? target_ + ".new" : create_beside(path_, target_);
   errno = 0;
   stream_.open(beside_.empty() ? target_ : beside_, std::ios::binary);
   if (!stream_) fail(path_, "cannot write", errno);
@@ -76,8 +85,11 @@ void AtomicFile::commit() {
   stream_.close();
   if (!stream_) fail(path_, "cannot write", error);
   if (beside_.empty()) return;
+  if (durable_) sync(path_, beside_);
   if (std::rename(beside_.c_str(), target_.c_str()) != 0) fail(path_, "cannot write", errno);
   beside_.clear();
+  const std::string folder = std::filesystem::path(target_).parent_path().string();
+  if (durable_) sync(path_, folder.empty() ? "." : folder);
 }
 
 void write_file(const std::string& path, const std::string& bytes) {

@@ -8,9 +8,13 @@ namespace grelha {
 /// A file that appears whole or not at all: written beside its place under another name, then renamed onto it. What is
 /// not a regular file (/dev/stdout, a pipe) is written directly, for renaming would replace it.
 /// Every failure is a FileError that names `path`.
+///
+/// A durable one is on the disk when commit() returns, so that a machine that stops a moment later finds the old file or the new one.
+/// It is written again and again, by programs that are killed: the name beside it, `path` and .new, is always the same, and what such
+/// a program leaves the next one writes over. One program at a time then.
 class AtomicFile {
  public:
-  explicit AtomicFile(const std::string& path);
+  explicit AtomicFile(const std::string& path, bool durable = false);
   ~AtomicFile();  ///< without commit() nothing is left behind
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
@@ -20,6 +24,7 @@ class AtomicFile {
 
  private:
   std::string path_, target_, beside_;  ///< beside_ is empty when written directly
+  bool durable_;
   std::ofstream stream_;
 };
 

@@ -1,8 +1,10 @@
 // The program. Errors become exit statuses here and nowhere else: 1 when a file cannot be read or written, 2 for bad
-// usage or a scene that cannot be one. It is the one file of the frontend that knows the generators.
+// usage or a scene that cannot be one, 128 and its number when a signal stopped a render that can go on. It is the one file of the frontend that knows the generators.
 #include "frontend/atomic_file.hpp"
 #include "frontend/compare.hpp"
 #include "frontend/image_file.hpp"
+#include "frontend/long_render.hpp"
+#include "frontend/merge.hpp"
 #include "frontend/options.hpp"
 #include "frontend/parse_error.hpp"
 #include "frontend/progress.hpp"
@@ -14,6 +16,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
@@ -24,7 +27,7 @@ namespace grelha {
 
 namespace {
 
-constexpr int kOk = 0, kFileFailed = 1, kBadInput = 2, kAboveBound = 1;
+constexpr int kOk = 0, kFileFailed = 1, kBadInput = 2, kAboveBound = 1, kSignalled = 128;
 
 class Stopwatch {
  public:
@@ -69,12 +72,24 @@ Camera camera_of(const SceneFile& file, const RenderCommand& command) {
 Image render_with_bar(const World& world, const Camera& camera, const RenderCommand& command, RenderStats& stats, SampleMaps& maps) {
   ProgressBar bar(!command.quiet && stderr_is_terminal());
   RenderOptions options = command.render;
-  options.phases = !command.stats.empty();
   options.progress = [&bar](double share) {
     bar.update(share);
     return true;
   };
   return render(world, camera, options, stats, &maps);
+}
+
+/// The signal that stopped it, or 0.
+int render_long(LongRender& work, const World& world, const Camera& camera, const RenderCommand& command, RenderStats& stats) {
+  ProgressBar bar(!command.quiet && stderr_is_terminal(), work.share_done());
+  return work.run(world, camera, [&bar](double share) { bar.update(share); }, stats);
+}
+
+int stopped(int signal, const RenderCommand& command, double share) {
+  char text[64];
+  std::snprintf(text, sizeof text, "grelha: stopped by %s, %.1f %% done", signal == SIGINT ? "SIGINT" : "SIGTERM", 100 * share);
+  warn(text + (" and saved in " + command.work.checkpoint) + ": the same command goes on from there");
+  return kSignalled + signal;
 }
 
 /// Numbers by pixel as a picture: .pfm and .hdr hold them as they are; in a .png `shade` of the largest is white.
@@ -93,16 +108,20 @@ void write_map(const std::string& path, const std::vector<T>& values, const Came
 
 int run(const RenderCommand& command) {
   want_isa(command.render.isa);
-  for (const std::string& file : {command.image, command.stats, command.samples_map, command.error_map})
+  for (const std::string& file : {command.image, command.stats, command.samples_map, command.error_map, command.work.checkpoint})
     if (!file.empty()) check_writable(file);
   RunReport report;
   const Stopwatch load;
   SceneFile file = read_scene(command.scene, warn);
+  const std::string scene = wants_sums(command) ? scene_digest(file) : "";
   RenderCommand prepared = command;
+  prepared.render.phases = !command.stats.empty();
   apply_effects(command.effects, file, prepared.render);
   report.seconds.load = load.seconds();
   const Camera camera = camera_of(file, command);
-  want_room(command.image, camera.width, camera.height);
+  if (!is_partial_name(command.image)) want_room(command.image, camera.width, camera.height);
+  std::optional<LongRender> work;
+  if (wants_sums(command)) work.emplace(prepared, camera, scene, warn);
 
   const Stopwatch build;
   const World world(file.scene, command.build);
@@ -111,12 +130,15 @@ int run(const RenderCommand& command) {
   const Stopwatch render;
   const std::clock_t cpu = std::clock();
   SampleMaps maps;
-  const Image image = render_with_bar(world, camera, prepared, report.render, maps);
+  Image image;
+  if (!work) image = render_with_bar(world, camera, prepared, report.render, maps);
+  else if (const int signal = render_long(*work, world, camera, prepared, report.render)) return stopped(signal, command, work->share_done());
   report.seconds.render = render.seconds();
   report.seconds.render_cpu = double(std::clock() - cpu) / CLOCKS_PER_SEC;
 
   const Stopwatch write;
-  write_image(command.image, image, command.srgb ? Tone::srgb : Tone::authored);
+  if (work) work->finish();
+  else write_image(command.image, image, command.srgb ? Tone::srgb : Tone::authored);
   write_map(command.samples_map, maps.samples, camera, [](double n) { return std::log2(n); });
   write_map(command.error_map, maps.error, camera, [](double e) { return e; });
   report.seconds.write = write.seconds();
@@ -161,6 +183,23 @@ int run(const CompareCommand& command) {
                 static_cast<unsigned long long>(c.pixels));
   print(text);
   return command.max_rmse && !(c.rmse <= *command.max_rmse) ? kAboveBound : kOk;
+}
+
+int run(const MergeCommand& command) {
+  check_writable(command.output);
+  const Partial joined = merge_parts(command.parts);
+  const Accumulator& a = joined.sums;
+  if (is_partial_name(command.output)) {
+    write_partial(command.output, joined);
+  } else {
+    const Part whole{{0, a.height}, {0, a.samples}};
+    if (a.part != whole) throw UsageError("the parts are " + part_text(a.part) + ", the picture is " + part_text(whole) + ": join them to a .grelha");
+    want_room(command.output, a.width, a.height);
+    write_image(command.output, picture_so_far(a), command.srgb ? Tone::srgb : Tone::authored);
+  }
+  const std::size_t n = command.parts.size();
+  if (!command.quiet) print(command.output + ": " + part_text(a.part) + " from " + std::to_string(n) + (n == 1 ? " part\n" : " parts\n"));
+  return kOk;
 }
 
 int list_scenes() {

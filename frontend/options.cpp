@@ -1,6 +1,7 @@
 #include "frontend/options.hpp"
 
 #include "frontend/image_file.hpp"
+#include "frontend/partial.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -144,6 +145,33 @@ void parse_size(const std::string& text, int& width, int& height) {
   height = *h;
 }
 
+/// "A:B"
+Range range(const std::string& option, const std::string& text, int most) {
+  const auto colon = text.find(':');
+  const auto begin = number<int>(std::string_view(text).substr(0, colon));
+  const auto end = colon == std::string::npos ? std::nullopt : number<int>(std::string_view(text).substr(colon + 1));
+  if (!begin || !end || *begin < 0 || *begin >= *end || *end > most)
+    refuse(option, "A:B, whole numbers, 0 or more, A below B, B at most " + std::to_string(most), text);
+  return {*begin, *end};
+}
+
+/// "N", "I:J" or "I:J/N"
+void parse_samples(const std::string& text, RenderCommand& command) {
+  if (text.find(':') == std::string::npos) {
+    command.effects.samples = whole("--samples", text, 1, kMostSamples);
+    return;
+  }
+  const auto slash = text.find('/');
+  if (slash != std::string::npos) command.effects.samples = whole("--samples", text.substr(slash + 1), 1, kMostSamples);
+  command.work.samples = range("--samples", text.substr(0, slash), command.effects.samples.value_or(kMostSamples));
+}
+
+double interval(const std::string& option, const std::string& text) {
+  const auto value = number<double>(text);
+  if (!value || !(*value > 0) || *value > 1e9) refuse(option, "seconds above 0", text);
+  return *value;
+}
+
 /// One of the words an option takes, and what each stands for.
 template <class T, std::size_t N>
 T choice(const std::string& option, const std::string& text,
@@ -172,10 +200,14 @@ void want_image_name(const std::string& option, const std::string& path) {
   if (!image_format(path)) refuse(option, "a name ending in .png, .hdr or .pfm", path);
 }
 
+void want_output_name(const std::string& path) {
+  if (!image_format(path) && !is_partial_name(path)) refuse("-o", "a name ending in .png, .hdr, .pfm or .grelha", path);
+}
+
 /// Wires one option: CLI11 finds its text, `take` makes a value of it, and our own words complain.
-void value(CLI::App& app, const char* names, const char* placeholder, const char* help,
-           std::function<void(const std::string&)> take) {
-  app.add_option_function<std::string>(names, std::move(take), help)->type_name(placeholder);
+CLI::Option* value(CLI::App& app, const char* names, const char* placeholder, const char* help,
+                   std::function<void(const std::string&)> take) {
+  return app.add_option_function<std::string>(names, std::move(take), help)->type_name(placeholder);
 }
 
 void positional(CLI::App& app, const char* name, std::string& target, const char* help) {
@@ -189,12 +221,24 @@ void add_build_options(CLI::App& app, BuildOptions& build) {
         [&build](const std::string& text) { build.grid = choice("--accel", text, kAccelerators) == 1; });
 }
 
+void add_long_work(CLI::App& app, LongWork& work) {
+  constexpr char kGroup[] = "Long work (docs/parts.md)";
+  value(app, "--rows", "A:B", "render rows A up to B alone, to a .grelha that `grelha merge` takes (so does --samples I:J)",
+        [&work](const std::string& text) { work.rows = range("--rows", text, kMaxSide); })->group(kGroup);
+  value(app, "--checkpoint", "FILE", "save now and then, and when stopped by SIGINT or SIGTERM; the same command goes on from it",
+        [&work](const std::string& text) { work.checkpoint = text; })->group(kGroup);
+  value(app, "--checkpoint-every", "SECONDS", "how often [60]",
+        [&work](const std::string& text) { work.save_every = interval("--checkpoint-every", text); })->group(kGroup);
+  value(app, "--preview", "SECONDS", "write the picture so far as often",
+        [&work](const std::string& text) { work.show_every = interval("--preview", text); })->group(kGroup);
+}
+
 void add_render(CLI::App& app, RenderCommand& command) {
   CLI::App& sub = *app.add_subcommand("render", "Render SCENE (.nff, .p3f, .ply, each also .gz) to a picture");
   sub.footer("Example: grelha render scenes/data/balls.nff -o balls.png --size 800x600");
   positional(sub, "SCENE", command.scene, "scene file");
-  value(sub, "-o,--output", "FILE", ".png, .hdr or .pfm (linear floats) [SCENE's name with .png, in this folder]",
-        [&command](const std::string& text) { want_image_name("-o", text), command.image = text; });
+  value(sub, "-o,--output", "FILE", ".png, .hdr or .pfm (linear floats), or .grelha to merge [SCENE's name with .png, in this folder]",
+        [&command](const std::string& text) { want_output_name(text), command.image = text; });
   value(sub, "--size", "WxH", "pixels [as the scene says]",
         [&command](const std::string& text) { parse_size(text, command.width, command.height); });
   value(sub, "--threads", "N", "threads [one per processor]",
@@ -202,8 +246,8 @@ void add_render(CLI::App& app, RenderCommand& command) {
   value(sub, "--depth", "N", "longest path of a ray, the eye ray counted as 1 [5]",
         [&command](const std::string& text) { command.render.depth = whole("--depth", text, 1, kMostDepth); });
   Effects& effects = command.effects;
-  value(sub, "--samples", "N", "rays through each pixel [1; with a lens, area light or rough mirror 16]",
-        [&effects](const std::string& text) { effects.samples = whole("--samples", text, 1, kMostSamples); });
+  value(sub, "--samples", "N", "rays through each pixel [1; with a lens, area light or rough mirror 16]; I:J/N: those from I up to J",
+        [&command](const std::string& text) { parse_samples(text, command); });
   value(sub, "--error", "E", "as many samples, where they help most, as an RMSE of E takes (white is 1)",
         [&command](const std::string& text) { parse_error_bound(text, command.render.refine); });
   value(sub, "--time", "SECONDS", "the same for so long; samples:N repeats what a run reported",
@@ -235,6 +279,7 @@ void add_render(CLI::App& app, RenderCommand& command) {
         [&command](const std::string& text) { command.stats = text; });
   sub.add_flag("--quiet", command.quiet, "no progress bar, no summary line");
   sub.add_flag("--srgb", command.srgb, "PNG: colours are light, show them through the sRGB curve");
+  add_long_work(sub, command.work);
 }
 
 void add_info(CLI::App& app, InfoCommand& command) {
@@ -254,6 +299,16 @@ void add_compare(CLI::App& app, CompareCommand& command) {
   sub.add_flag("--display", command.display, "compare what a screen shows: each channel cut to 0 to 1 first");
   value(sub, "--diff", "FILE", "write |A - B|; in a .png the largest difference is made white",
         [&command](const std::string& text) { want_image_name("--diff", text), command.diff = text; });
+}
+
+void add_merge(CLI::App& app, MergeCommand& command) {
+  CLI::App& sub = *app.add_subcommand("merge", "Join parts of a picture (.grelha) to the picture, or to a larger part");
+  sub.footer("Example: grelha merge a.grelha b.grelha -o whole.png");
+  sub.add_option("PARTS", command.parts, "what render --rows and --samples I:J made")->required()->type_name("");
+  value(sub, "-o,--output", "FILE", ".png, .hdr, .pfm or .grelha",
+        [&command](const std::string& text) { want_output_name(text), command.output = text; })->required();
+  sub.add_flag("--srgb", command.srgb, "PNG: colours are light, show them through the sRGB curve");
+  sub.add_flag("--quiet", command.quiet, "no summary line");
 }
 
 void add_scene(CLI::App& app, SceneCommand& command) {
@@ -289,6 +344,13 @@ void check_together(const RenderCommand& command) {
   if (r.on() && e.sampler && is_jittered(*e.sampler)) throw UsageError("--sampler: wanted sobol or random with --error or --time");
   if (!r.on() && !(command.samples_map.empty() && command.error_map.empty()))
     throw UsageError("--samples-map and --error-map want --error or --time");
+  const LongWork& w = command.work;
+  const bool sums = !r.on() && !e.adaptive.on, part_file = is_partial_name(command.image);
+  if (!sums && (w.is_part() || part_file)) throw UsageError("parts are of pictures with as many samples in every pixel: no --error, --time or --aa adaptive");
+  if (!sums && (!w.checkpoint.empty() || w.show_every > 0)) throw UsageError("--checkpoint and --preview do not go with --error, --time or --aa adaptive");
+  if (w.is_part() && !part_file) refuse("-o", "a name ending in .grelha for a part of a picture", command.image);
+  if (part_file && w.show_every > 0) throw UsageError("--preview wants a picture to write, not a .grelha");
+  if (part_file && command.srgb) throw UsageError("--srgb: a .grelha holds no colours for a screen, say it to merge");
 }
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
@@ -308,17 +370,20 @@ Command parse_command(int argc, const char* const* argv) {
              "  grelha info scenes/data/balls.nff\n"
              "  grelha scene mount --size 7 -o mount.nff\n"
              "  grelha compare a.png b.png --max-rmse 0.01\n"
+             "  grelha merge upper.grelha lower.grelha -o whole.png\n"
              "Each command has its own --help. Exit status: 0; 1 when reading or writing a file fails;\n"
-             "2 for bad usage or a scene that cannot be one.");
+             "2 for bad usage or a scene that cannot be one; 130, 143: stopped by SIGINT, SIGTERM.");
   app.set_version_flag("--version", "grelha " GRELHA_VERSION);
   app.require_subcommand(1);
   RenderCommand render;
   InfoCommand info;
   CompareCommand compare;
+  MergeCommand merge;
   SceneCommand scene;
   add_render(app, render);
   add_info(app, info);
   add_compare(app, compare);
+  add_merge(app, merge);
   add_scene(app, scene);
   if (argc > 1) want_known_command(app, argv[1]);
   try {
@@ -332,6 +397,7 @@ Command parse_command(int argc, const char* const* argv) {
   }
   if (app.got_subcommand("info")) return info;
   if (app.got_subcommand("compare")) return compare;
+  if (app.got_subcommand("merge")) return merge;
   if (app.got_subcommand("scene")) {
     if (scene.name.empty() && !scene.list) throw UsageError("NAME is required (see grelha scene --list)");
     return scene;

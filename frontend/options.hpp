@@ -4,8 +4,10 @@
 #include <stdexcept>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "frontend/effects.hpp"
+#include "kernel/part.hpp"
 #include "kernel/render.hpp"
 
 namespace grelha {
@@ -15,8 +17,18 @@ struct UsageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Work that may be cut to pieces, interrupted and gone on with.
+struct LongWork {
+  std::optional<Range> rows, samples;  ///< the part to render; absent: all
+  std::string checkpoint;              ///< file to save to, and to go on from, or empty
+  double save_every = 60;              ///< seconds
+  double show_every = 0;               ///< seconds between pictures of what there is so far; 0: none
+  bool is_part() const { return rows || samples; }
+};
+
 struct RenderCommand {
-  std::string scene, image;   ///< image: named after the scene when -o is absent
+  std::string scene, image;   ///< image: named after the scene when -o is absent; or a .grelha
+  LongWork work;
   int width = 0, height = 0;  ///< 0: as the scene says
   BuildOptions build;
   RenderOptions render;
@@ -39,6 +51,12 @@ struct CompareCommand {
   std::string diff;  ///< file for the difference picture, or empty
 };
 
+struct MergeCommand {
+  std::vector<std::string> parts;
+  std::string output;  ///< a picture or a .grelha
+  bool srgb = false, quiet = false;
+};
+
 struct SceneCommand {
   std::string name;
   std::optional<int> size;
@@ -51,7 +69,7 @@ struct TextCommand {
   std::string text;
 };
 
-using Command = std::variant<RenderCommand, InfoCommand, CompareCommand, SceneCommand, TextCommand>;
+using Command = std::variant<RenderCommand, InfoCommand, CompareCommand, MergeCommand, SceneCommand, TextCommand>;
 
 /// Throws UsageError.
 Command parse_command(int argc, const char* const* argv);

@@ -42,7 +42,8 @@ void ProgressBar::update(double share) {
   last_ = now;
   drawn_ = true;
   const std::chrono::duration<double> elapsed = now - start_;
-  std::fprintf(stderr, "\r%s\033[K", progress_text(share, elapsed.count()).c_str());
+  const double as_from_zero = share > first_ ? elapsed.count() * share / (share - first_) : 0;
+  std::fprintf(stderr, "\r%s\033[K", progress_text(share, as_from_zero).c_str());
 }
 
 bool stderr_is_terminal() { return isatty(STDERR_FILENO) == 1; }

@@ -11,7 +11,8 @@ std::string progress_text(double share, double elapsed_s);
 /// A bar on stderr that redraws itself in place a few times a second, and wipes itself off at the end.
 class ProgressBar {
  public:
-  explicit ProgressBar(bool shown) : shown_(shown) {}
+  /// `share`: done before it began.
+  explicit ProgressBar(bool shown, double share = 0) : shown_(shown), first_(share) {}
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
@@ -21,6 +22,7 @@ class ProgressBar {
  private:
   using Clock = std::chrono::steady_clock;
   const bool shown_;
+  const double first_;
   bool drawn_ = false;
   const Clock::time_point start_ = Clock::now();
   Clock::time_point last_ = start_;

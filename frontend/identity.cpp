@@ -1,0 +1,101 @@
+#include "frontend/identity.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <iterator>
+#include <sstream>
+
+#include "frontend/digest.hpp"
+
+namespace grelha {
+namespace {
+
+/// Lengths go in as well: else what ends one array could begin the next.
+template <class T>
+void take(Digest& digest, const std::vector<T>& values) {
+  const std::uint64_t size = values.size();
+  digest.numbers(std::span(&size, 1));
+  digest.numbers(std::span<const T>(values));
+}
+
+void take(Digest& digest, const Float3& v) {
+  const float values[] = {v.x, v.y, v.z};
+  digest.numbers(std::span<const float>(values));
+}
+
+template <class... T>
+void take_all(Digest& digest, const T&... values) {
+  (take(digest, values), ...);
+}
+
+void take(Digest& digest, const Material& m) {
+  take_all(digest, m.diffuse, m.specular, m.mirror, m.emission);
+  const float values[] = {m.transmission, m.shine, m.ior, m.fresnel ? 1.f : 0.f, m.roughness};
+  digest.numbers(std::span<const float>(values));
+}
+
+void take(Digest& digest, const Geometry& g) {
+  const auto& [s, t, c, p, objects] = g;  // objects are how the kernel lays triangles out: no pixel depends on it
+  take_all(digest, s.x, s.y, s.z, s.radius, s.material);
+  take_all(digest, t.x, t.y, t.z, t.nx, t.ny, t.nz, t.a, t.b, t.c, t.material);
+  take_all(digest, c.base_x, c.base_y, c.base_z, c.base_radius, c.apex_x, c.apex_y, c.apex_z, c.apex_radius, c.material);
+  take_all(digest, p.x, p.y, p.z, p.nx, p.ny, p.nz, p.material);
+}
+
+std::string text(double value) {
+  char buffer[32];
+  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr};  // the shortest that reads back as the same number
+}
+
+const char* name(Sampler sampler) {
+  switch (sampler) {
+    case Sampler::kSobol: return "sobol";
+    case Sampler::kJitter: return "jitter";
+    case Sampler::kUnshuffled: return "unshuffled";
+    case Sampler::kRandom: return "random";
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string scene_digest(const SceneFile& file) {
+  Digest digest;
+  take(digest, file.scene.geometry);
+  for (const Material& m : file.scene.materials) take(digest, m);
+  for (const Light& l : file.scene.lights) take_all(digest, l.position, l.color, l.edge1, l.edge2);
+  take_all(digest, file.scene.background, file.camera.eye, file.camera.at, file.camera.up);
+  digest.numbers(std::span(&file.camera.angle_deg, 1));
+  return digest.hex();
+}
+
+std::string settings_text(const RenderCommand& prepared, const Camera& camera) {
+  const RenderOptions& o = prepared.render;
+  const SampleOptions& s = o.sampling;
+  const Effects& e = prepared.effects;
+  std::string words = "version=" GRELHA_VERSION " size=" + std::to_string(camera.width) + 'x' + std::to_string(camera.height) +
+                      " samples=" + std::to_string(s.samples) + " sampler=" + name(s.sampler) + " seed=" + std::to_string(s.seed) +
+                      " depth=" + std::to_string(o.depth);
+  if (e.shadows) words += std::string(" shadows=") + (e.shadows->hard ? "hard" : text(e.shadows->size));
+  if (s.light_rays > 1) words += " light-rays=" + std::to_string(s.light_rays);
+  if (camera.aperture > 0) words += " aperture=" + text(camera.aperture) + " focus=" + text(camera.focus);
+  if (e.glossy) words += " roughness=" + text(e.glossy->roughness) + " gloss-rays=" + std::to_string(s.gloss_rays);
+  return words;
+}
+
+std::string difference(const std::string& settings, const std::string& from) {
+  const auto words = [](const std::string& all) {
+    std::istringstream in(all);
+    return std::vector<std::string>(std::istream_iterator<std::string>(in), {});
+  };
+  const auto missing = [](const std::vector<std::string>& of, const std::vector<std::string>& in) {
+    std::string found;
+    for (const std::string& w : of)
+      if (std::find(in.begin(), in.end(), w) == in.end()) found += (found.empty() ? "" : " ") + w;
+    return found.empty() ? std::string("nothing") : found;
+  };
+  const auto here = words(settings), there = words(from);
+  return missing(here, there) + ", not " + missing(there, here);
+}
+
+}  // namespace grelha

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+
+#include "frontend/options.hpp"
+#include "frontend/scene_file.hpp"
+
+namespace grelha {
+
+/// What two parts must have in common to be parts of one picture.
+struct Identity {
+  std::string scene;     ///< digest of what a ray can see of the scene as read, and of the view
+  std::string settings;  ///< all else that pixels depend on, as words: version=0.1.0 size=512x512 samples=16 ...
+  bool operator==(const Identity&) const = default;
+};
+
+/// `file`: before apply_effects().
+std::string scene_digest(const SceneFile& file);
+
+/// `camera` and `prepared.render`: after apply_effects(). What changes no bit (threads, isa, packet, grid ...) is left out.
+std::string settings_text(const RenderCommand& prepared, const Camera& camera);
+
+/// The words in which the second differs from the first: `seed=1, not seed=0`.
+std::string difference(const std::string& settings, const std::string& from);
+
+}  // namespace grelha

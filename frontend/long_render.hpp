@@ -1,0 +1,48 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <string>
+
+#include "frontend/options.hpp"
+#include "frontend/partial.hpp"
+
+namespace grelha {
+
+/// Whether a command asks for anything that sums must be kept for.
+bool wants_sums(const RenderCommand& command);
+
+/// A render that saves what it has, shows it, and can be stopped.
+class LongRender {
+ public:
+  using Warn = std::function<void(const std::string&)>;
+
+  /// `prepared`: after apply_effects(); it must outlive this. Goes on from the checkpoint if that is there: throws UsageError when it is of
+  /// another picture, FileError when it cannot be read.
+  LongRender(const RenderCommand& prepared, const Camera& camera, std::string scene_digest, Warn warn);
+
+  double share_done() const { return grelha::share_done(partial_.sums); }
+
+  /// `progress` is told the share done. With a checkpoint SIGINT and SIGTERM stop it after the rows in work: saves and returns the
+  /// signal, otherwise 0. Saves that fail on the way are warned of once, and tried again.
+  int run(const World& world, const Camera& camera, const std::function<void(double)>& progress, RenderStats& stats);
+
+  /// Writes picture or partial; then the checkpoint has done its work and is removed. Should the writing fail it holds everything.
+  void finish();
+
+ private:
+  /// Something done now and then. What fails is warned of once and tried again.
+  struct Habit {
+    double every;  ///< seconds; 0: never
+    std::function<void()> act;
+    std::chrono::steady_clock::time_point last = std::chrono::steady_clock::now();
+    bool warned = false;
+  };
+  void pursue(Habit& habit);
+
+  const RenderCommand& command_;
+  const Warn warn_;
+  Partial partial_;
+};
+
+}  // namespace grelha

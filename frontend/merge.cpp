@@ -1,0 +1,109 @@
+#include "frontend/merge.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "frontend/options.hpp"
+
+namespace grelha {
+namespace {
+
+Range common(const Range& a, const Range& b) { return {std::max(a.begin, b.begin), std::min(a.end, b.end)}; }
+bool empty(const Range& r) { return r.begin >= r.end; }
+void widen(Range& r, const Range& by) { r = {std::min(r.begin, by.begin), std::max(r.end, by.end)}; }
+
+/// The first samples among `wanted` that none of the parts has of row `y`.
+Range missing_of_row(const std::vector<Part>& parts, const Range& wanted, int y) {
+  std::vector<Range> here;
+  for (const Part& p : parts)
+    if (p.rows.begin <= y && y < p.rows.end) here.push_back(p.samples);
+  std::sort(here.begin(), here.end(), [](const Range& a, const Range& b) { return a.begin < b.begin; });
+  int at = wanted.begin;
+  for (const Range& r : here) {
+    if (r.begin > at) return {at, r.begin};
+    at = r.end;
+  }
+  return {at, wanted.end};
+}
+
+/// What is missing of `whole`, the first of it. Rows change only where a part begins or ends.
+std::optional<Part> first_gap(const std::vector<Part>& parts, const Part& whole) {
+  std::vector<int> cuts{whole.rows.end};
+  for (const Part& p : parts) cuts.push_back(p.rows.begin), cuts.push_back(p.rows.end);
+  std::sort(cuts.begin(), cuts.end());
+  cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
+  std::optional<Part> gap;
+  int y = whole.rows.begin;
+  for (const int cut : cuts) {
+    if (cut <= y) continue;
+    const Range samples = missing_of_row(parts, whole.samples, y);
+    if (gap && samples != gap->samples) break;
+    if (gap) gap->rows.end = cut;
+    else if (!empty(samples)) gap = Part{{y, cut}, samples};
+    y = cut;
+  }
+  return gap;
+}
+
+std::string percent(double share) { return std::to_string(int(share * 100)) + " %"; }
+
+class Joiner {
+ public:
+  explicit Joiner(const std::vector<std::string>& files) : files_(files) {}
+
+  Partial run() {
+    for (const std::string& file : files_) take(file, read_partial(file));
+    Part whole = parts_.front();
+    for (const Part& p : parts_) widen(whole.rows, p.rows), widen(whole.samples, p.samples);
+    if (const auto gap = first_gap(parts_, whole)) throw UsageError("no part has " + part_text(*gap));
+    return cut(whole);
+  }
+
+ private:
+  void take(const std::string& file, const Partial& p) {
+    const Accumulator& a = p.sums;
+    if (parts_.empty()) begin(p);
+    else want_same(file, p.identity);
+    if (!is_complete(a)) throw UsageError(file + " is not finished, " + percent(share_done(a)) + " are done: the command that made it goes on");
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      const Part both{common(a.part.rows, parts_[i].rows), common(a.part.samples, parts_[i].samples)};
+      if (!empty(both.rows) && !empty(both.samples)) throw UsageError(file + " and " + files_[i] + " both have " + part_text(both));
+    }
+    add(joined_.sums, a);
+    parts_.push_back(a.part);
+  }
+
+  void begin(const Partial& p) {
+    joined_.identity = p.identity;
+    const Accumulator& a = p.sums;
+    joined_.sums = {a.width, a.height, a.samples, {{0, a.height}, {0, a.samples}}, {}, {}};
+    joined_.sums.sums.resize(std::size_t(a.height) * std::size_t(a.width) * 3);
+  }
+
+  void want_same(const std::string& file, const Identity& identity) const {
+    if (identity.scene != joined_.identity.scene) throw UsageError(file + " is of another scene than " + files_.front());
+    if (identity.settings != joined_.identity.settings)
+      throw UsageError(file + " has " + difference(identity.settings, joined_.identity.settings) + " as " + files_.front());
+  }
+
+  /// Of the sums of the whole picture those of `part`.
+  Partial cut(const Part& part) {
+    Accumulator& a = joined_.sums;
+    const std::size_t row = std::size_t(a.width) * 3;
+    a.sums.erase(a.sums.begin() + std::ptrdiff_t(std::size_t(part.rows.end) * row), a.sums.end());
+    a.sums.erase(a.sums.begin(), a.sums.begin() + std::ptrdiff_t(std::size_t(part.rows.begin) * row));
+    a.part = part;
+    a.done.assign(piece_count(part), 1);
+    return std::move(joined_);
+  }
+
+  const std::vector<std::string>& files_;
+  std::vector<Part> parts_;  ///< of files_, those taken
+  Partial joined_;
+};
+
+}  // namespace
+
+Partial merge_parts(const std::vector<std::string>& files) { return Joiner(files).run(); }
+
+}  // namespace grelha
