@@ -6,6 +6,7 @@
 #include <cerrno>
 
 #include "frontend/image_file.hpp"
+#include "frontend/parse_error.hpp"
 #include "frontend/stop_signals.hpp"
 
 namespace grelha {
@@ -68,26 +69,37 @@ void LongRender::pursue(Habit& habit) {
 
 int LongRender::run(const World& world, const Camera& camera, const std::function<void(double)>& progress, RenderStats& stats) {
   const bool keeps = !command_.work.checkpoint.empty();
-  const auto save = [this] { write_partial(command_.work.checkpoint, partial_, true); };
   std::optional<StopSignals> signals;
   if (keeps) signals.emplace();
-  Habit saving{keeps ? command_.work.save_every : 0, save};
-  Habit showing{command_.work.show_every, [this] { write_image(command_.image, picture_so_far(partial_.sums), command_.srgb ? Tone::srgb : Tone::authored); }};
+  Habit saving{keeps ? command_.work.save_every : 0, [this] { save(); }};
+  Habit showing{command_.work.show_every, [this] { write(); }};
   RenderOptions options = command_.render;
   options.progress = [&](double share) {
     progress(share);
     pursue(saving), pursue(showing);
     return !signals || StopSignals::seen() == 0;
   };
-  accumulate(world, camera, options, partial_.sums, stats);
-  if (keeps) save();
-  return is_complete(partial_.sums) || !signals ? 0 : StopSignals::seen();
+  if (accumulate(world, camera, options, partial_.sums, stats) || is_complete(partial_.sums)) return 0;
+  save();
+  return StopSignals::seen();
 }
 
 void LongRender::finish() {
+  const std::string& checkpoint = command_.work.checkpoint;
+  try {
+    write();
+  } catch (const FileError&) {
+    if (!checkpoint.empty()) save();
+    throw;
+  }
+  if (!checkpoint.empty()) unlink(checkpoint.c_str());
+}
+
+void LongRender::save() const { write_partial(command_.work.checkpoint, partial_, true); }
+
+void LongRender::write() const {
   if (is_partial_name(command_.image)) write_partial(command_.image, partial_);
   else write_image(command_.image, picture_so_far(partial_.sums), command_.srgb ? Tone::srgb : Tone::authored);
-  if (!command_.work.checkpoint.empty()) unlink(command_.work.checkpoint.c_str());
 }
 
 }  // namespace grelha

@@ -39,6 +39,8 @@ class LongRender {
     bool warned = false;
   };
   void pursue(Habit& habit);
+  void save() const;
+  void write() const;
 
   const RenderCommand& command_;
   const Warn warn_;

@@ -284,5 +284,6 @@ int run_program(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   std::ios::sync_with_stdio(false);
+  std::signal(SIGXFSZ, SIG_IGN);  // then writing fails, and can be told
   return grelha::run_program(argc, argv);
 }

@@ -349,6 +349,9 @@ void check_together(const RenderCommand& command) {
   if (!sums && (w.is_part() || part_file)) throw UsageError("parts are of pictures with as many samples in every pixel: no --error, --time or --aa adaptive");
   if (!sums && (!w.checkpoint.empty() || w.show_every > 0)) throw UsageError("--checkpoint and --preview do not go with --error, --time or --aa adaptive");
   if (w.is_part() && !part_file) refuse("-o", "a name ending in .grelha for a part of a picture", command.image);
+  const auto whole_name = [](const std::string& path) { return std::filesystem::weakly_canonical(std::filesystem::absolute(path)); };
+  if (!w.checkpoint.empty() && whole_name(w.checkpoint) == whole_name(command.image))
+    throw UsageError("--checkpoint and -o: wanted two files, found \"" + command.image + "\" twice");
   if (part_file && w.show_every > 0) throw UsageError("--preview wants a picture to write, not a .grelha");
   if (part_file && command.srgb) throw UsageError("--srgb: a .grelha holds no colours for a screen, say it to merge");
 }

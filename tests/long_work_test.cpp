@@ -1,0 +1,195 @@
+// Parts, checkpoints and signals as a user of the program meets them.
+#include "frontend/partial.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+
+namespace grelha {
+namespace {
+
+constexpr char kBall[] =
+    "b 0 0 1\nv\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 40\nhither 1\nresolution 24 16\n"
+    "l 5 5 5 1 1 1\nf 1 0 0 1 0 1 0 1\ns 0 0 0 1\n";
+
+struct Outcome {
+  int status;
+  std::string out, err;
+};
+
+class LongWork : public testing::Test {
+ protected:
+  LongWork() { folder_.write("ball.nff", kBall); }
+
+  /// `before`: of the shell's line, as `ulimit -f 8;`.
+  Outcome run(const std::string& arguments, const std::string& before = "") {
+    TemporaryFolder log;
+    const std::string line = "cd '" + folder_.path().string() + "' && " + before + " '" GRELHA_PROGRAM "' " + arguments + " >'" + log.file("out") +
+                             "' 2>'" + log.file("err") + "' </dev/null";
+    const int status = std::system(line.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, log.read("out"), log.read("err")};
+  }
+  void expect_line(const Outcome& outcome, int status, const std::string& line) {
+    EXPECT_EQ(outcome.status, status);
+    EXPECT_EQ(outcome.err, line + '\n');
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(LongWork, PartsMergeToTheBytesOfTheWhole) {
+  const std::string job = "render ball.nff --quiet --lens 2 --shadows random:2 ";
+  ASSERT_EQ(run(job + "--samples 20 -o whole.png").status, 0);
+  ASSERT_EQ(run(job + "--samples 20 -o whole.grelha").status, 0);
+  ASSERT_EQ(run(job + "--samples 0:5/20 -o a.grelha --threads 1").status, 0);
+  ASSERT_EQ(run(job + "--samples 5:20/20 --rows 0:3 -o b.grelha --isa scalar").status, 0);
+  ASSERT_EQ(run(job + "--samples 5:20/20 --rows 3:16 -o c.grelha --accel none").status, 0);
+  const Outcome merged = run("merge c.grelha a.grelha b.grelha -o merged.png");
+  EXPECT_EQ(merged.status, 0) << merged.err;
+  EXPECT_EQ(merged.out, "merged.png: rows 0:16, samples 0:20 from 3 parts\n");
+  EXPECT_EQ(folder_.read("merged.png"), folder_.read("whole.png"));
+  EXPECT_EQ(run("merge b.grelha c.grelha -o rest.grelha --quiet").out, "");
+  ASSERT_EQ(run("merge rest.grelha a.grelha -o merged.grelha").status, 0);
+  EXPECT_EQ(folder_.read("merged.grelha"), folder_.read("whole.grelha"));
+}
+
+TEST_F(LongWork, SamplesOfAPartAreThoseTheSceneTakes) {
+  ASSERT_EQ(run("render ball.nff --aa jitter:3 -o whole.pfm").status, 0);
+  ASSERT_EQ(run("render ball.nff --aa jitter:3 --samples 0:4 -o a.grelha").status, 0);
+  ASSERT_EQ(run("render ball.nff --aa jitter:3 --samples 4:9 -o b.grelha").status, 0);
+  ASSERT_EQ(run("merge a.grelha b.grelha -o merged.pfm").status, 0);
+  EXPECT_EQ(folder_.read("merged.pfm"), folder_.read("whole.pfm"));
+  expect_line(run("render ball.nff --samples 0:4 -o c.grelha"), 2, "grelha: error: --samples: 0:4 are not among the 1 samples of a pixel (I:J/N: of N)");
+  expect_line(run("render ball.nff --rows 8:17 -o c.grelha"), 2, "grelha: error: --rows: 8:17 are not among the 16 rows of the picture");
+}
+
+TEST_F(LongWork, RefusesPartsThatDoNotFitByName) {
+  folder_.write("other.nff", std::string(kBall) + "s 0 0 0 2\n");
+  ASSERT_EQ(run("render ball.nff --rows 0:8 -o a.grelha").status, 0);
+  ASSERT_EQ(run("render ball.nff --rows 7:16 -o b.grelha").status, 0);
+  ASSERT_EQ(run("render ball.nff --rows 9:16 -o c.grelha").status, 0);
+  ASSERT_EQ(run("render other.nff --rows 8:16 -o other.grelha").status, 0);
+  ASSERT_EQ(run("render ball.nff --rows 8:16 --depth 4 -o depth.grelha").status, 0);
+  expect_line(run("merge a.grelha b.grelha -o x.png"), 2, "grelha: error: b.grelha and a.grelha both have rows 7:8, samples 0:1");
+  expect_line(run("merge a.grelha c.grelha -o x.png"), 2, "grelha: error: no part has rows 8:9, samples 0:1");
+  expect_line(run("merge a.grelha -o x.png"), 2,
+              "grelha: error: the parts are rows 0:8, samples 0:1, the picture is rows 0:16, samples 0:1: join them to a .grelha");
+  expect_line(run("merge a.grelha other.grelha -o x.png"), 2, "grelha: error: other.grelha is of another scene than a.grelha");
+  expect_line(run("merge a.grelha depth.grelha -o x.png"), 2, "grelha: error: depth.grelha has depth=4, not depth=5 as a.grelha");
+  expect_line(run("merge a.grelha gone.grelha -o x.png"), 1, "gone.grelha: error: cannot open: No such file or directory");
+  expect_line(run("merge a.grelha ball.nff -o x.png"), 1, "ball.nff: error: not a .grelha partial this program reads");
+  std::string bytes = folder_.read("a.grelha");
+  bytes[bytes.size() / 2] ^= 4;
+  folder_.write("bad.grelha", bytes);
+  expect_line(run("merge bad.grelha -o x.grelha"), 1, "bad.grelha: error: damaged: its checksum is wrong");
+  EXPECT_FALSE(std::filesystem::exists(folder_.file("x.png")));
+}
+
+TEST_F(LongWork, RefusesOptionsThatContradict) {
+  const auto refused = [&](const std::string& options, const std::string& why) {
+    expect_line(run("render ball.nff " + options), 2, "grelha: error: " + why);
+  };
+  refused("--rows 0:8", "-o: wanted a name ending in .grelha for a part of a picture, found \"ball.png\"");
+  refused("--rows 8:8 -o a.grelha", "--rows: wanted A:B, whole numbers, 0 or more, A below B, B at most 65536, found \"8:8\"");
+  refused("--samples 0:8/7 -o a.grelha", "--samples: wanted A:B, whole numbers, 0 or more, A below B, B at most 7, found \"0:8\"");
+  refused("--samples :8 -o a.grelha", "--samples: wanted A:B, whole numbers, 0 or more, A below B, B at most 65536, found \":8\"");
+  refused("--rows 0:8 --error .1 -o a.grelha", "parts are of pictures with as many samples in every pixel: no --error, --time or --aa adaptive");
+  refused("--aa adaptive:.1,2 -o a.grelha", "parts are of pictures with as many samples in every pixel: no --error, --time or --aa adaptive");
+  refused("--preview 1 -o a.grelha", "--preview wants a picture to write, not a .grelha");
+  refused("--preview 0", "--preview: wanted seconds above 0, found \"0\"");
+  refused("-o a.grelha --checkpoint ./a.grelha", "--checkpoint and -o: wanted two files, found \"a.grelha\" twice");
+}
+
+/// Some 0.4 s of work for one thread.
+constexpr char kJob[] = "render ball.nff --quiet --size 120x80 --samples 130 --threads 1 ";
+
+TEST_F(LongWork, SignalsStopItAndTheSameCommandGoesOn) {
+  ASSERT_EQ(run(std::string(kJob) + "-o whole.pfm").status, 0);
+  for (const auto& [name, status] : {std::pair("INT", 130), std::pair("TERM", 143)}) {
+    SCOPED_TRACE(name);
+    const std::string job = std::string(kJob) + "-o x.pfm --checkpoint kept";
+    int stopped = 0;
+    Outcome outcome;
+    // A little more time each turn, so that a slow machine comes to an end as well.
+    for (double seconds = .05; (outcome = run(job, "timeout --preserve-status -s " + std::string(name) + ' ' + std::to_string(seconds))).status != 0; seconds *= 1.3) {
+      if (outcome.status == 128 + (status == 130 ? 2 : 15) && outcome.err.empty()) continue;  // before it had begun
+      ASSERT_EQ(outcome.status, status);
+      ++stopped;
+      EXPECT_TRUE(outcome.err.starts_with(std::string("grelha: stopped by SIG") + name + ", ")) << outcome.err;
+      EXPECT_TRUE(outcome.err.ends_with(" % done and saved in kept: the same command goes on from there\n")) << outcome.err;
+      EXPECT_GT(share_done(read_partial(folder_.file("kept")).sums), 0);
+      EXPECT_FALSE(std::filesystem::exists(folder_.file("x.pfm")));
+    }
+    EXPECT_GE(stopped, 1);
+    EXPECT_EQ(folder_.read("x.pfm"), folder_.read("whole.pfm"));
+    EXPECT_EQ(folder_.list(), "ball.nff whole.pfm x.pfm");
+    std::filesystem::remove(folder_.file("x.pfm"));
+  }
+}
+
+TEST_F(LongWork, ACheckpointOfAnotherPictureIsLeftAlone) {
+  ASSERT_EQ(run("render ball.nff --rows 0:8 -o kept.grelha").status, 0);
+  const std::string bytes = folder_.read("kept.grelha"), advice = ": name another file, or remove this one to begin again";
+  const std::string error = "grelha: error: --checkpoint: kept.grelha ";
+  expect_line(run("render ball.nff --checkpoint kept.grelha"), 2, error + "is of another part, rows 0:8, samples 0:1" + advice);
+  expect_line(run("render ball.nff --checkpoint kept.grelha --seed 2 --rows 0:8 -o x.grelha"), 2, error + "has seed=0, not seed=2" + advice);
+  folder_.write("other.nff", std::string(kBall) + "s 0 0 0 2\n");
+  expect_line(run("render other.nff --checkpoint kept.grelha --rows 0:8 -o x.grelha"), 2, error + "is of another scene" + advice);
+  expect_line(run("render ball.nff --checkpoint ball.nff"), 1, "ball.nff: error: not a .grelha partial this program reads");
+  EXPECT_EQ(folder_.read("kept.grelha"), bytes);
+  EXPECT_EQ(run("render ball.nff --checkpoint kept.grelha --rows 0:8 -o x.grelha").status, 0) << "all done: there is only the file to write";
+  EXPECT_EQ(folder_.read("x.grelha"), bytes);
+}
+
+/// The picture of 64 x 64 has 48 KiB, its sums 96. Files may have 70: the shell counts in 512 bytes.
+TEST_F(LongWork, AFullDiskIsOneLine) {
+  const std::string full = "ulimit -f 140;", job = "render ball.nff --quiet --size 64x64 --samples 65 ";
+  expect_line(run(job + "-o x.grelha", full), 1, "x.grelha: error: cannot write: File too large");
+  expect_line(run(job + "-o x.pfm --checkpoint kept --checkpoint-every 1e-9", full), 0, "kept: error: cannot write: File too large (rendering goes on)");
+  EXPECT_EQ(folder_.list(), "ball.nff x.pfm");
+  ASSERT_EQ(run(job + "-o a.grelha").status, 0);
+  expect_line(run("merge a.grelha -o b.grelha", full), 1, "b.grelha: error: cannot write: File too large");
+  EXPECT_EQ(folder_.list(), "a.grelha ball.nff x.pfm");
+}
+
+TEST_F(LongWork, APictureThatCannotBeWrittenLeavesTheCheckpoint) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
+  std::filesystem::create_symlink("/dev/full", folder_.file("full.pfm"));
+  expect_line(run("render ball.nff --quiet -o full.pfm --checkpoint kept"), 1, "full.pfm: error: cannot write: No space left on device");
+  ASSERT_EQ(run("render ball.nff --quiet -o whole.pfm").status, 0);
+  EXPECT_EQ(share_done(read_partial(folder_.file("kept")).sums), 1);
+  ASSERT_EQ(run("render ball.nff --quiet -o x.pfm --checkpoint kept").status, 0);
+  EXPECT_EQ(folder_.read("x.pfm"), folder_.read("whole.pfm"));
+}
+
+TEST_F(LongWork, AFolderThatCannotBeWrittenIsToldBeforeTheWork) {
+  const std::string file = geteuid() == 0 ? "/proc/x.grelha" : "locked/x.grelha";  // to root no folder is read-only
+  std::filesystem::create_directory(folder_.file("locked"));
+  std::filesystem::permissions(folder_.file("locked"), std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+  for (const std::string option : {"-o ", "--checkpoint "}) {
+    const Outcome outcome = run("render ball.nff --samples 65536 --size 4000x4000 " + option + file);
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_TRUE(outcome.err.starts_with(file + ": error: cannot write: ")) << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1);
+  }
+}
+
+TEST_F(LongWork, PreviewsShowThePictureSoFar) {
+  ASSERT_EQ(run(std::string(kJob) + "-o whole.pfm").status, 0);
+  // Stopped by a signal nothing can be done about: what is there is a preview, whole and of the right size.
+  for (double seconds = .1; seconds < 100 && !std::filesystem::exists(folder_.file("x.pfm")); seconds *= 1.5)
+    run("render ball.nff --size 120x80 --samples 65536 -o x.pfm --preview .01", "timeout -s KILL " + std::to_string(seconds));
+  EXPECT_EQ(folder_.read("x.pfm").size(), folder_.read("whole.pfm").size());
+  EXPECT_NE(folder_.read("x.pfm"), folder_.read("whole.pfm"));
+  ASSERT_EQ(run(std::string(kJob) + "-o x.pfm --preview .01").status, 0);
+  EXPECT_EQ(folder_.read("x.pfm"), folder_.read("whole.pfm"));
+}
+
+}  // namespace
+}  // namespace grelha

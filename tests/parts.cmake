@@ -1,0 +1,11 @@
+# Long work: parts, checkpoints, signals, ranks.
+grelha_test(parts image grelha::frontend grelha::scenes)
+grelha_test(long_work image grelha::frontend)
+target_compile_definitions(long_work_test PRIVATE GRELHA_PROGRAM="$<TARGET_FILE:grelha>")
+add_dependencies(long_work_test grelha)
+find_package(Python3 COMPONENTS Interpreter)
+if(Python3_FOUND)
+  add_test(NAME kill_resume COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/kill_resume.py $<TARGET_FILE:grelha>
+    ${PROJECT_SOURCE_DIR}/scenes/data/balls.nff)
+  set_tests_properties(kill_resume PROPERTIES LABELS image)
+endif()
