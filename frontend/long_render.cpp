@@ -46,10 +46,16 @@ Accumulator saved_sums(const std::string& path, const Identity& wanted, const Pa
 
 }  // namespace
 
-bool wants_sums(const RenderCommand& c) { return is_partial_name(c.image) || !c.work.checkpoint.empty() || c.work.show_every > 0; }
+bool wants_sums(const RenderCommand& c, const Ranks& ranks) {
+  const bool asks = is_partial_name(c.image) || !c.work.checkpoint.empty() || c.work.show_every > 0;
+  if (ranks.count() > 1 && (c.render.refine.on() || c.effects.adaptive.on))
+    throw UsageError("several ranks share pictures with as many samples in every pixel: no --error, --time or --aa adaptive");
+  return asks || ranks.count() > 1;
+}
 
-LongRender::LongRender(const RenderCommand& prepared, const Camera& camera, std::string scene, Warn warn)
-    : command_(prepared), warn_(std::move(warn)), partial_{{std::move(scene), settings_text(prepared, camera)}, {}} {
+LongRender::LongRender(const RenderCommand& prepared, const Camera& camera, std::string scene, Ranks& ranks, Warn warn)
+    : command_(prepared), ranks_(ranks), warn_(std::move(warn)), partial_{{std::move(scene), settings_text(prepared, camera)}, {}} {
+  ranks_.agree_on(partial_.identity.scene + partial_.identity.settings);
   const Part part = part_of(prepared, camera);
   const std::string& checkpoint = prepared.work.checkpoint;
   if (!checkpoint.empty() && exists(checkpoint)) partial_.sums = saved_sums(checkpoint, partial_.identity, part);
@@ -79,7 +85,8 @@ int LongRender::run(const World& world, const Camera& camera, const std::functio
     pursue(saving), pursue(showing);
     return !signals || StopSignals::seen() == 0;
   };
-  if (accumulate(world, camera, options, partial_.sums, stats) || is_complete(partial_.sums)) return 0;
+  if (ranks_.accumulate(world, camera, options, partial_.sums, stats, [&] { return signals && StopSignals::seen() != 0; })) return 0;
+  if (!ranks_.first()) return 0;
   save();
   return StopSignals::seen();
 }

@@ -6,11 +6,12 @@
 
 #include "frontend/options.hpp"
 #include "frontend/partial.hpp"
+#include "frontend/ranks.hpp"
 
 namespace grelha {
 
 /// Whether a command asks for anything that sums must be kept for.
-bool wants_sums(const RenderCommand& command);
+bool wants_sums(const RenderCommand& command, const Ranks& ranks);
 
 /// A render that saves what it has, shows it, and can be stopped.
 class LongRender {
@@ -19,7 +20,7 @@ class LongRender {
 
   /// `prepared`: after apply_effects(); it must outlive this. Goes on from the checkpoint if that is there: throws UsageError when it is of
   /// another picture, FileError when it cannot be read.
-  LongRender(const RenderCommand& prepared, const Camera& camera, std::string scene_digest, Warn warn);
+  LongRender(const RenderCommand& prepared, const Camera& camera, std::string scene_digest, Ranks& ranks, Warn warn);
 
   double share_done() const { return grelha::share_done(partial_.sums); }
 
@@ -27,7 +28,7 @@ class LongRender {
   /// signal, otherwise 0. Saves that fail on the way are warned of once, and tried again.
   int run(const World& world, const Camera& camera, const std::function<void(double)>& progress, RenderStats& stats);
 
-  /// Writes picture or partial; then the checkpoint has done its work and is removed. Should the writing fail it holds everything.
+  /// By the first rank alone: writes picture or partial; then the checkpoint has done its work and is removed. Should the writing fail it holds everything.
   void finish();
 
  private:
@@ -43,6 +44,7 @@ class LongRender {
   void write() const;
 
   const RenderCommand& command_;
+  Ranks& ranks_;
   const Warn warn_;
   Partial partial_;
 };

@@ -8,6 +8,7 @@
 #include "frontend/options.hpp"
 #include "frontend/parse_error.hpp"
 #include "frontend/progress.hpp"
+#include "frontend/ranks.hpp"
 #include "frontend/report.hpp"
 #include "frontend/scene_file.hpp"
 #include "kernel/render.hpp"
@@ -22,6 +23,8 @@
 #include <filesystem>
 #include <iostream>
 #include <new>
+#include <thread>
+#include <type_traits>
 
 namespace grelha {
 
@@ -106,14 +109,24 @@ void write_map(const std::string& path, const std::vector<T>& values, const Came
   write_image(path, image);
 }
 
-int run(const RenderCommand& command) {
+/// What of a command is for a rank that neither writes nor speaks.
+RenderCommand silent(RenderCommand command) {
+  command.work.checkpoint.clear(), command.stats.clear();
+  command.work.show_every = 0;
+  command.quiet = true;
+  return command;
+}
+
+int run(const RenderCommand& given, Ranks& ranks) {
+  const RenderCommand command = ranks.first() ? given : silent(given);
   want_isa(command.render.isa);
-  for (const std::string& file : {command.image, command.stats, command.samples_map, command.error_map, command.work.checkpoint})
+  if (ranks.first()) for (const std::string& file : {command.image, command.stats, command.samples_map, command.error_map, command.work.checkpoint})
     if (!file.empty()) check_writable(file);
   RunReport report;
   const Stopwatch load;
   SceneFile file = read_scene(command.scene, warn);
-  const std::string scene = wants_sums(command) ? scene_digest(file) : "";
+  const bool sums = wants_sums(command, ranks);
+  const std::string scene = sums ? scene_digest(file) : "";
   RenderCommand prepared = command;
   prepared.render.phases = !command.stats.empty();
   apply_effects(command.effects, file, prepared.render);
@@ -121,7 +134,7 @@ int run(const RenderCommand& command) {
   const Camera camera = camera_of(file, command);
   if (!is_partial_name(command.image)) want_room(command.image, camera.width, camera.height);
   std::optional<LongRender> work;
-  if (wants_sums(command)) work.emplace(prepared, camera, scene, warn);
+  if (sums) work.emplace(prepared, camera, scene, ranks, warn);
 
   const Stopwatch build;
   const World world(file.scene, command.build);
@@ -133,6 +146,7 @@ int run(const RenderCommand& command) {
   Image image;
   if (!work) image = render_with_bar(world, camera, prepared, report.render, maps);
   else if (const int signal = render_long(*work, world, camera, prepared, report.render)) return stopped(signal, command, work->share_done());
+  if (!ranks.first()) return kOk;
   report.seconds.render = render.seconds();
   report.seconds.render_cpu = double(std::clock() - cpu) / CLOCKS_PER_SEC;
 
@@ -253,14 +267,20 @@ int run(const TextCommand& command) {
   return kOk;
 }
 
-int fail(int status, const std::string& line) {
-  std::cerr << line << '\n';
-  return status;
-}
-
-int run_program(int argc, char** argv) {
+int run_program(int argc, char** argv, Ranks& ranks) {
+  const auto fail = [&ranks](int status, const std::string& line) {
+    if (!ranks.first()) std::this_thread::sleep_for(std::chrono::seconds(3));  // what failed everywhere the first says, and ends all
+    std::cerr << line << '\n';
+    return status;
+  };
   try {
-    return std::visit([](const auto& command) { return run(command); }, parse_command(argc, argv));
+    const Command command = parse_command(argc, argv);
+    if (const auto* render = std::get_if<RenderCommand>(&command)) return run(*render, ranks);
+    if (!ranks.first()) return kOk;
+    return std::visit([](const auto& c) {
+      if constexpr (std::is_same_v<decltype(c), const RenderCommand&>) return kOk;
+      else return run(c);
+    }, command);
   } catch (const ParseError& error) {
     return fail(kBadInput, error.what());
   } catch (const FileError& error) {
@@ -285,5 +305,8 @@ int run_program(int argc, char** argv) {
 int main(int argc, char** argv) {
   std::ios::sync_with_stdio(false);
   std::signal(SIGXFSZ, SIG_IGN);  // then writing fails, and can be told
-  return grelha::run_program(argc, argv);
+  grelha::Ranks ranks(argc, argv);
+  const int status = grelha::run_program(argc, argv, ranks);
+  if (status != 0) ranks.abandon();
+  return status;
 }

@@ -1,6 +1,7 @@
 #include "kernel/accumulator.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <stdexcept>
 #include <string>
 
@@ -18,11 +19,6 @@ int pieces(const Range& r, int piece) { return (size(r) + piece - 1) / piece; }
 Range cut(const Range& r, int piece, std::size_t k) {
   const int begin = r.begin + static_cast<int>(k) * piece;
   return {begin, std::min(begin + piece, r.end)};
-}
-
-Part piece(const Part& part, std::size_t i) {
-  const std::size_t bands = static_cast<std::size_t>(pieces(part.rows, kPieceRows));
-  return {cut(part.rows, kPieceRows, i % bands), cut(part.samples, kPieceSamples, i / bands)};
 }
 
 std::size_t first_sum(const Accumulator& a, int row) {
@@ -67,29 +63,46 @@ std::size_t piece_count(const Part& part) {
   return static_cast<std::size_t>(pieces(part.rows, kPieceRows)) * static_cast<std::size_t>(pieces(part.samples, kPieceSamples));
 }
 
+Part piece_of(const Part& part, std::size_t i) {
+  const std::size_t bands = static_cast<std::size_t>(pieces(part.rows, kPieceRows));
+  return {cut(part.rows, kPieceRows, i % bands), cut(part.samples, kPieceSamples, i / bands)};
+}
+
 double share_done(const Accumulator& a) {
   const auto done = std::count(a.done.begin(), a.done.end(), std::uint8_t{1});
   return static_cast<double>(done) / static_cast<double>(a.done.size());
 }
 
-bool accumulate(const World& world, const Camera& camera, const RenderOptions& options, Accumulator& a, RenderStats& stats) {
+bool accumulate(const World& world, const Camera& camera, const RenderOptions& options, Accumulator& a, RenderStats& stats, const NextPiece& next) {
   const Setup setup = set_up(world, camera, options);
   check(a, camera, options);
   std::vector<std::size_t> left;
-  std::vector<Part> bands;
   for (std::size_t i = 0; i < a.done.size(); ++i)
-    if (a.done[i] == 0) left.push_back(i), bands.push_back(piece(a.part, i));
+    if (a.done[i] == 0) left.push_back(i);
   std::size_t done = a.done.size() - left.size();
-  return render_bands(world.impl(), setup, options, bands, [&](std::size_t i, const std::int64_t* sums) {
+  std::atomic<std::size_t> begun = 0;
+  const auto next_band = [&](Band& band) {
+    if (next) {
+      band.number = next();
+    } else {
+      const std::size_t at = begun++;
+      band.number = at < left.size() ? left[at] : a.done.size();
+    }
+    if (band.number >= a.done.size()) return false;
+    band.part = piece_of(a.part, band.number);
+    return true;
+  };
+  render_bands(world.impl(), setup, options, left.size(), next_band, [&](const Band& band, const std::int64_t* sums) {
     bool go_on = true;
 #pragma omp critical(grelha_progress)
     {
-      add_rows(a, bands[i].rows, sums);
-      a.done[left[i]] = 1, ++done;
+      add_rows(a, band.part.rows, sums);
+      a.done[band.number] = 1, ++done;
       if (options.progress) go_on = options.progress(static_cast<double>(done) / static_cast<double>(a.done.size()));
     }
     return go_on;
   }, stats);
+  return is_complete(a);
 }
 
 void add(Accumulator& whole, const Accumulator& part) {
@@ -108,8 +121,8 @@ Image picture_so_far(const Accumulator& a) {
   for (std::size_t b = 0; b < bands; ++b) {
     int samples = 0;
     for (std::size_t i = b; i < a.done.size(); i += bands)
-      if (a.done[i] != 0) samples += size(piece(a.part, i).samples);
-    const Range rows = piece(a.part, b).rows;
+      if (a.done[i] != 0) samples += size(piece_of(a.part, i).samples);
+    const Range rows = piece_of(a.part, b).rows;
     if (samples > 0) mean_light(a.sums.data() + first_sum(a, rows.begin), samples, image, rows);
   }
   return image;

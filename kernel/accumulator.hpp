@@ -3,6 +3,7 @@
 // rendered whole. For pictures with a fixed number of samples a pixel (neither RefineOptions nor Subdivision).
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "kernel/image.hpp"
@@ -36,9 +37,16 @@ std::size_t piece_count(const Part& part);
 double share_done(const Accumulator& a);
 inline bool is_complete(const Accumulator& a) { return share_done(a) == 1; }
 
+/// The part that piece i is.
+Part piece_of(const Part& part, std::size_t i);
+
+/// Names a piece that is not done, each once; piece_count() or more: none is left. Called by all threads, two at a time as well.
+using NextPiece = std::function<std::size_t()>;
+
 /// Renders the pieces that are not done; whether all are now. options.progress is called, by one thread at a time, between additions:
-/// it may read the accumulator, and keep a copy from which another call goes on, here or on another machine. Throws like render().
-bool accumulate(const World& world, const Camera& camera, const RenderOptions& options, Accumulator& a, RenderStats& stats);
+/// it may read the accumulator, and keep a copy from which another call goes on, here or on another machine. `next` says which pieces
+/// are for this call, where several share the work; without it all are. Throws like render().
+bool accumulate(const World& world, const Camera& camera, const RenderOptions& options, Accumulator& a, RenderStats& stats, const NextPiece& next = {});
 
 /// Adds a complete part to sums of a larger one that lack it. Marks nothing done: the pieces of the two need not be the same, and whoever
 /// adds parts knows when all are there.

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <span>
 
 #include "kernel/part.hpp"
 #include "kernel/setup.hpp"
@@ -9,14 +8,21 @@
 
 namespace grelha {
 
-/// Parts of a picture, at most kBandRows rows each.
-using Bands = std::span<const Part>;
+/// A part of a picture, at most kBandRows rows, and the number its renderer knows it by.
+struct Band {
+  std::size_t number;
+  Part part;
+};
 
-/// Handed the sums of band `i`, [rows][width][3] in units of 1 / kLightUnit, by the thread that rendered it, while others do the
-/// same; returns false to stop. What it throws ends the program.
-using TakeBand = std::function<bool(std::size_t i, const std::int64_t* sums)>;
+/// Sets the next band to render; false when there is none left. Called by all threads, two at a time as well.
+using NextBand = std::function<bool(Band&)>;
 
-/// Renders the bands in parallel, in about their order. Whether all were rendered.
-bool render_bands(const World::Impl& world, const Setup& setup, const RenderOptions& options, Bands bands, const TakeBand& take, RenderStats& stats);
+/// Handed the sums of a band, [rows][width][3] in units of 1 / kLightUnit, by the thread that rendered it, while others do the
+/// same; returns false to stop.
+using TakeBand = std::function<bool(const Band&, const std::int64_t* sums)>;
+
+/// Renders bands in parallel, by no more threads than there are bands, `most`. What the functions throw ends the program.
+void render_bands(const World::Impl& world, const Setup& setup, const RenderOptions& options, std::size_t most, const NextBand& next, const TakeBand& take,
+                  RenderStats& stats);
 
 }  // namespace grelha

@@ -1,6 +1,7 @@
 #include "kernel/render.hpp"
 
 #include <algorithm>
+#include <atomic>
 
 #include "kernel/accumulator.hpp"
 #include "kernel/bands.hpp"
@@ -12,17 +13,23 @@ namespace {
 
 Image render_whole(const World::Impl& world, const Camera& camera, const Setup& setup, const RenderOptions& options, RenderStats& stats) {
   const int samples = setup.plan.samples;
-  std::vector<Part> bands;
-  for (int y = 0; y < camera.height; y += kBandRows) bands.push_back({{y, std::min(y + kBandRows, camera.height)}, {0, samples}});
+  const auto bands = static_cast<std::size_t>((camera.height + kBandRows - 1) / kBandRows);
   Image image(camera.width, camera.height);
+  std::atomic<std::size_t> begun = 0;
+  const auto next = [&](Band& band) {
+    band.number = begun++;
+    const int y = static_cast<int>(band.number) * kBandRows;
+    band.part = {{y, std::min(y + kBandRows, camera.height)}, {0, samples}};
+    return band.number < bands;
+  };
   std::size_t done = 0;
-  render_bands(world, setup, options, bands, [&](std::size_t i, const std::int64_t* sums) {
-    mean_light(sums, samples, image, bands[i].rows);
+  render_bands(world, setup, options, bands, next, [&](const Band& band, const std::int64_t* sums) {
+    mean_light(sums, samples, image, band.part.rows);
     bool go_on = true;
 #pragma omp critical(grelha_progress)
     {
       ++done;
-      if (options.progress) go_on = options.progress(static_cast<double>(done) / static_cast<double>(bands.size()));
+      if (options.progress) go_on = options.progress(static_cast<double>(done) / static_cast<double>(bands));
     }
     return go_on;
   }, stats);

@@ -108,7 +108,7 @@ TEST_P(Parts, StoppedAnywhereGoesOnToTheSameBits) {
   for (bool complete = false; !complete;) {
     left = 1 + static_cast<int>(random.below(3));
     options.threads = 1 + static_cast<int>(random.below(3));
-    complete = accumulate(world, job.file.camera, options, p.sums, stats) && is_complete(p.sums);
+    complete = accumulate(world, job.file.camera, options, p.sums, stats);
     const TemporaryFolder folder;
     write_partial(folder.file("x"), p, true);
     EXPECT_EQ(folder.list(), "x");
@@ -191,6 +191,8 @@ TEST_F(Merge, NamesFilesThatOverlapAndWhere) {
 TEST_F(Merge, NamesWhatIsMissing) {
   put("a", part_of({0, 3}, {0, 8})), put("b", part_of({3, 10}, {0, 5})), put("c", part_of({6, 10}, {5, 8})), put("d", part_of({9, 10}, {0, 8}));
   EXPECT_EQ(complaint({"a", "b", "c"}), "no part has rows 3:6, samples 5:8");
+  put("e", part_of({0, 10}, {0, 2})), put("f", part_of({0, 10}, {5, 8}));
+  EXPECT_EQ(complaint({"f", "e"}), "no part has rows 0:10, samples 2:5");
   EXPECT_EQ(complaint({"a", "d"}), "no part has rows 3:9, samples 0:8");
   EXPECT_EQ(complaint({"a", "b"}), "no part has rows 3:10, samples 5:8");
   EXPECT_EQ(complaint({"b", "c"}), "no part has rows 3:6, samples 5:8");

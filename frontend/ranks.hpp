@@ -1,0 +1,38 @@
+#pragma once
+// One render by several processes on several machines. Built with GRELHA_MPI they are the ranks of an MPI run, otherwise there is one.
+
+#include <functional>
+#include <string>
+
+#include "kernel/accumulator.hpp"
+
+namespace grelha {
+
+/// Lives as long as the program: MPI may be begun once.
+class Ranks {
+ public:
+  Ranks(int& argc, char**& argv);
+  ~Ranks();
+  Ranks(const Ranks&) = delete;
+  Ranks& operator=(const Ranks&) = delete;
+
+  int count() const { return count_; }
+  bool first() const { return rank_ == 0; }  ///< the one that writes and speaks
+
+  /// Throws UsageError on ranks to whom `what` is not what it is to the first.
+  void agree_on(const std::string& what) const;
+
+  /// The others will not come to the end, or need not: this one leaves without waiting for them, and MPI ends them.
+  void abandon() { abandoned_ = true; }
+
+  /// accumulate() by all ranks together: pieces are handed out one by one to whoever asks. The first rank's accumulator counts, and gets
+  /// all of them; the others' are for them to work in, of the same part. `stop_seen` tells the first rank to wait for nobody any more.
+  bool accumulate(const World& world, const Camera& camera, const RenderOptions& options, Accumulator& a, RenderStats& stats,
+                  const std::function<bool()>& stop_seen);
+
+ private:
+  int count_ = 1, rank_ = 0;
+  bool abandoned_ = false;
+};
+
+}  // namespace grelha

@@ -1,0 +1,15 @@
+// The build without MPI.
+#include "frontend/ranks.hpp"
+
+namespace grelha {
+
+Ranks::Ranks(int&, char**&) {}
+Ranks::~Ranks() = default;
+void Ranks::agree_on(const std::string&) const {}
+
+bool Ranks::accumulate(const World& world, const Camera& camera, const RenderOptions& options, Accumulator& a, RenderStats& stats,
+                       const std::function<bool()>&) {
+  return grelha::accumulate(world, camera, options, a, stats);
+}
+
+}  // namespace grelha

@@ -1,0 +1,70 @@
+#!/usr/bin/env python3
+"""Renders by MPI: ranks.py PROGRAM SCENE [MPIRUN]
+
+1 to 4 ranks make the bytes of one process; a rank that dies ends the run, and what the checkpoint kept is gone on with by another
+number of ranks; so it is after SIGTERM.
+"""
+import os, signal, subprocess, sys, tempfile, time
+
+program, scene = sys.argv[1:3]
+mpirun = sys.argv[3] if len(sys.argv) > 3 else "mpirun"
+environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+job = [program, "render", os.path.abspath(scene), "--quiet", "--threads", "2", "--size", "150x107", "--samples", "200", "--lens", "3"]
+
+
+def ranks(n, *more):
+    # mpirun sends SIGTERM and, by default a second later, SIGKILL: too soon for what is in work where processors are shared
+    return [mpirun, "--oversubscribe", "--mca", "odls_base_sigkill_timeout", "30", "-n", str(n)] + job + list(more)
+
+
+def rank_of(pid):
+    with open(f"/proc/{pid}/environ", "rb") as file:
+        for word in file.read().split(b"\0"):
+            if word.startswith(b"OMPI_COMM_WORLD_RANK="):
+                return int(word.split(b"=")[1])
+
+
+def processes(parent):
+    with open(f"/proc/{parent}/task/{parent}/children") as file:
+        return [int(pid) for pid in file.read().split()]
+
+
+def want(truth, what):
+    if not truth:
+        sys.exit(what)
+
+
+with tempfile.TemporaryDirectory() as folder:
+    whole, picture, kept = (os.path.join(folder, n) for n in ("whole.pfm", "x.pfm", "kept"))
+
+    def want_same(who):
+        want(open(whole, "rb").read() == open(picture, "rb").read(), f"{who}: another picture")
+        want(not os.path.exists(kept), f"{who}: the checkpoint is still there")
+        os.remove(picture)
+
+    begin = time.monotonic()
+    subprocess.run(job + ["-o", whole], check=True)
+    alone = time.monotonic() - begin
+    for n in range(1, 5):
+        subprocess.run(ranks(n, "-o", picture), check=True, env=environment)
+        want_same(f"{n} ranks")
+
+    for what, killed, message in (("a rank killed", 2, "rank 2"), ("SIGTERM", None, "grelha: stopped by SIGTERM")):
+        run = subprocess.Popen(ranks(3, "-o", picture, "--checkpoint", kept, "--checkpoint-every", str(alone / 50)), env=environment,
+                               stderr=subprocess.PIPE, text=True)
+        while not os.path.exists(kept) and run.poll() is None:
+            time.sleep(alone / 100)
+        if killed is None:
+            run.terminate()
+        else:
+            for pid in processes(run.pid):
+                if rank_of(pid) == killed:
+                    os.kill(pid, signal.SIGKILL)
+        said = run.communicate(timeout=60)[1]
+        want(run.returncode != 0, f"{what}: ended as if all were well")
+        want(message in said, f"{what}: {said}")
+        want(os.path.exists(kept), f"{what}: nothing is kept")
+        subprocess.run(ranks(2, "-o", picture, "--checkpoint", kept), check=True, env=environment)
+        want_same(what)
+        print(f"--- {what}:\n{said}")
+print("ranks 1 to 4: the same bytes, also after a rank died")
