@@ -2,7 +2,7 @@
 """Renders by MPI: ranks.py PROGRAM SCENE [MPIRUN]
 
 1 to 4 ranks make the bytes of one process; a rank that dies ends the run, and what the checkpoint kept is gone on with by another
-number of ranks; so it is after SIGTERM.
+number of ranks; so it is after SIGINT.
 """
 import os, signal, subprocess, sys, tempfile, time
 
@@ -49,13 +49,13 @@ with tempfile.TemporaryDirectory() as folder:
         subprocess.run(ranks(n, "-o", picture), check=True, env=environment)
         want_same(f"{n} ranks")
 
-    for what, killed, message in (("a rank killed", 2, "rank 2"), ("SIGTERM", None, "grelha: stopped by SIGTERM")):
+    for what, killed, message in (("a rank killed", 2, "rank 2"), ("SIGINT", None, "")):
         run = subprocess.Popen(ranks(3, "-o", picture, "--checkpoint", kept, "--checkpoint-every", str(alone / 50)), env=environment,
                                stderr=subprocess.PIPE, text=True)
         while not os.path.exists(kept) and run.poll() is None:
             time.sleep(alone / 100)
         if killed is None:
-            run.terminate()
+            run.send_signal(signal.SIGINT)  # which mpirun makes a SIGTERM of
         else:
             for pid in processes(run.pid):
                 if rank_of(pid) == killed:
