@@ -15,3 +15,6 @@ if(GRELHA_MPI AND Python3_FOUND)
     ${PROJECT_SOURCE_DIR}/scenes/data/balls.nff ${MPIEXEC_EXECUTABLE})
   set_tests_properties(ranks PROPERTIES LABELS image)
 endif()
+add_test(NAME farm_script COMMAND ${CMAKE_COMMAND} -D SCRIPT=${PROJECT_SOURCE_DIR}/docs/farm.sh -D PROGRAM=$<TARGET_FILE:grelha>
+  -D SCENE=${PROJECT_SOURCE_DIR}/scenes/data/balls.nff -D SCRATCH=${CMAKE_CURRENT_BINARY_DIR}/farm -P ${CMAKE_CURRENT_SOURCE_DIR}/farm_script.cmake)
+set_tests_properties(farm_script PROPERTIES LABELS image)
