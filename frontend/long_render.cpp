@@ -19,7 +19,8 @@ Part part_of(const RenderCommand& command, const Camera& camera) {
   const int samples = command.render.sampling.samples;
   const auto want = [](const char* option, const Range& r, int most, const char* of) {
     if (r.end > most)
-      throw UsageError(std::string(option) + ": " + std::to_string(r.begin) + ':' + std::to_string(r.end) + " are not among the " + std::to_string(most) + of);
+      throw UsageError(std::string(option) + ": " + std::to_string(r.begin) + ':' + std::to_string(r.end) + " are not among the " +
+                       std::to_string(most) + of);
   };
   const Part part{w.rows.value_or(Range{0, camera.height}), w.samples.value_or(Range{0, samples})};
   want("--rows", part.rows, camera.height, " rows of the picture");

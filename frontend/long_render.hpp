@@ -28,7 +28,8 @@ class LongRender {
   /// signal, otherwise 0. Saves that fail on the way are warned of once, and tried again.
   int run(const World& world, const Camera& camera, const std::function<void(double)>& progress, RenderStats& stats);
 
-  /// By the first rank alone: writes picture or partial; then the checkpoint has done its work and is removed. Should the writing fail it holds everything.
+  /// By the first rank alone: writes picture or partial; then the checkpoint has done its work and is removed. Should the
+  /// writing fail it holds everything.
   void finish();
 
  private:

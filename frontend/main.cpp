@@ -1,5 +1,6 @@
 // The program. Errors become exit statuses here and nowhere else: 1 when a file cannot be read or written, 2 for bad
-// usage or a scene that cannot be one, 128 and its number when a signal stopped a render that can go on. It is the one file of the frontend that knows the generators.
+// usage or a scene that cannot be one, 128 and its number when a signal stopped a render that can go on. It is the one
+// file of the frontend that knows the generators.
 #include "frontend/atomic_file.hpp"
 #include "frontend/compare.hpp"
 #include "frontend/image_file.hpp"

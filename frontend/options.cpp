@@ -335,6 +335,21 @@ void want_known_command(const CLI::App& app, const std::string& word) {
   refuse("command", "one of " + commands, word);
 }
 
+void check_long_work(const RenderCommand& command) {
+  const LongWork& w = command.work;
+  const bool sums = !command.render.refine.on() && !command.effects.adaptive.on, part_file = is_partial_name(command.image);
+  if (!sums && (w.is_part() || part_file))
+    throw UsageError("parts are of pictures with as many samples in every pixel: no --error, --time or --aa adaptive");
+  if (!sums && (!w.checkpoint.empty() || w.show_every > 0))
+    throw UsageError("--checkpoint and --preview do not go with --error, --time or --aa adaptive");
+  if (w.is_part() && !part_file) refuse("-o", "a name ending in .grelha for a part of a picture", command.image);
+  const auto whole_name = [](const std::string& path) { return std::filesystem::weakly_canonical(std::filesystem::absolute(path)); };
+  if (!w.checkpoint.empty() && whole_name(w.checkpoint) == whole_name(command.image))
+    throw UsageError("--checkpoint and -o: wanted two files, found \"" + command.image + "\" twice");
+  if (part_file && w.show_every > 0) throw UsageError("--preview wants a picture to write, not a .grelha");
+  if (part_file && command.srgb) throw UsageError("--srgb: a .grelha holds no colours for a screen, say it to merge");
+}
+
 /// Options that say two things at once, or something about nothing.
 void check_together(const RenderCommand& command) {
   const RefineOptions& r = command.render.refine;
@@ -344,16 +359,6 @@ void check_together(const RenderCommand& command) {
   if (r.on() && e.sampler && is_jittered(*e.sampler)) throw UsageError("--sampler: wanted sobol or random with --error or --time");
   if (!r.on() && !(command.samples_map.empty() && command.error_map.empty()))
     throw UsageError("--samples-map and --error-map want --error or --time");
-  const LongWork& w = command.work;
-  const bool sums = !r.on() && !e.adaptive.on, part_file = is_partial_name(command.image);
-  if (!sums && (w.is_part() || part_file)) throw UsageError("parts are of pictures with as many samples in every pixel: no --error, --time or --aa adaptive");
-  if (!sums && (!w.checkpoint.empty() || w.show_every > 0)) throw UsageError("--checkpoint and --preview do not go with --error, --time or --aa adaptive");
-  if (w.is_part() && !part_file) refuse("-o", "a name ending in .grelha for a part of a picture", command.image);
-  const auto whole_name = [](const std::string& path) { return std::filesystem::weakly_canonical(std::filesystem::absolute(path)); };
-  if (!w.checkpoint.empty() && whole_name(w.checkpoint) == whole_name(command.image))
-    throw UsageError("--checkpoint and -o: wanted two files, found \"" + command.image + "\" twice");
-  if (part_file && w.show_every > 0) throw UsageError("--preview wants a picture to write, not a .grelha");
-  if (part_file && command.srgb) throw UsageError("--srgb: a .grelha holds no colours for a screen, say it to merge");
 }
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
@@ -407,6 +412,7 @@ Command parse_command(int argc, const char* const* argv) {
   }
   if (render.image.empty()) render.image = default_image(render.scene);
   check_together(render);
+  check_long_work(render);
   return render;
 }
 

@@ -32,7 +32,8 @@ void add_rows(Accumulator& to, const Range& rows, const std::int64_t* sums) {
 }
 
 [[noreturn]] void refuse(const char* what, const Range& r, int most) {
-  throw std::invalid_argument(std::string(what) + ' ' + std::to_string(r.begin) + ':' + std::to_string(r.end) + " are not among 0:" + std::to_string(most));
+  throw std::invalid_argument(std::string(what) + ' ' + std::to_string(r.begin) + ':' + std::to_string(r.end) + " are not among 0:" +
+                              std::to_string(most));
 }
 
 bool within(const Range& r, int most) { return r.begin >= 0 && r.begin < r.end && r.end <= most; }

@@ -46,7 +46,8 @@ using NextPiece = std::function<std::size_t()>;
 /// Renders the pieces that are not done; whether all are now. options.progress is called, by one thread at a time, between additions:
 /// it may read the accumulator, and keep a copy from which another call goes on, here or on another machine. `next` says which pieces
 /// are for this call, where several share the work; without it all are. Throws like render().
-bool accumulate(const World& world, const Camera& camera, const RenderOptions& options, Accumulator& a, RenderStats& stats, const NextPiece& next = {});
+bool accumulate(const World& world, const Camera& camera, const RenderOptions& options, Accumulator& a, RenderStats& stats,
+                const NextPiece& next = {});
 
 /// Adds a complete part to sums of a larger one that lack it. Marks nothing done: the pieces of the two need not be the same, and whoever
 /// adds parts knows when all are there.

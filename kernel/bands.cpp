@@ -9,8 +9,8 @@
 
 namespace grelha {
 
-void render_bands(const World::Impl& world, const Setup& setup, const RenderOptions& options, std::size_t most, const NextBand& next, const TakeBand& take,
-                  RenderStats& stats) {
+void render_bands(const World::Impl& world, const Setup& setup, const RenderOptions& options, std::size_t most, const NextBand& next,
+                  const TakeBand& take, RenderStats& stats) {
   const std::size_t width = static_cast<std::size_t>(setup.frame.width);
   stats = {};
   stats.threads = thread_count(options, most);

@@ -22,7 +22,7 @@ using NextBand = std::function<bool(Band&)>;
 using TakeBand = std::function<bool(const Band&, const std::int64_t* sums)>;
 
 /// Renders bands in parallel, by no more threads than there are bands, `most`. What the functions throw ends the program.
-void render_bands(const World::Impl& world, const Setup& setup, const RenderOptions& options, std::size_t most, const NextBand& next, const TakeBand& take,
-                  RenderStats& stats);
+void render_bands(const World::Impl& world, const Setup& setup, const RenderOptions& options, std::size_t most, const NextBand& next,
+                  const TakeBand& take, RenderStats& stats);
 
 }  // namespace grelha

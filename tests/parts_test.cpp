@@ -135,9 +135,10 @@ TEST(PictureSoFar, IsTheMeanOfWhatIsThereAndBlackElsewhere) {
   EXPECT_FALSE(accumulate(world, job.file.camera, options, a, stats));
   EXPECT_EQ(share_done(a), .5);
   const Image image = picture_so_far(a);
-  const double unit = 4294967296.0;
-  for (int y = 0; y < 29; ++y)
-    EXPECT_EQ(image.row(y)[40], static_cast<float>(static_cast<double>(a.sums[static_cast<std::size_t>(y) * 111 + 40]) / (unit * (y < 16 ? 128 : 64)))) << y;
+  for (int y = 0; y < 29; ++y) {
+    const double sum = static_cast<double>(a.sums[static_cast<std::size_t>(y) * 111 + 40]) / 4294967296.0;
+    EXPECT_EQ(image.row(y)[40], static_cast<float>(sum / (y < 16 ? 128 : 64))) << y;
+  }
   left = 2, a = make_accumulator(job.file.camera, job.options);
   accumulate(world, job.file.camera, options, a, stats);
   const Image begun = picture_so_far(a);
@@ -303,13 +304,15 @@ TEST(Identity, NamesAllThatPixelsDependOn) {
     return difference(settings_text(c, k), plain);
   };
   EXPECT_EQ(words([](RenderCommand&, Camera& k) { k.width = 7; }), "size=7x512, not size=512x512");
-  EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.sampling.samples = 2, c.render.sampling.seed = 4; }), "samples=2 seed=4, not samples=1 seed=0");
+  EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.sampling.samples = 2, c.render.sampling.seed = 4; }),
+            "samples=2 seed=4, not samples=1 seed=0");
   EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.sampling.sampler = Sampler::kJitter; }), "sampler=jitter, not sampler=sobol");
   EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.depth = 6; }), "depth=6, not depth=5");
   EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.effects.shadows = Effects::Shadows{true}; }), "shadows=hard, not nothing");
   EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.sampling.light_rays = 3; }), "light-rays=3, not nothing");
   EXPECT_EQ(words([](RenderCommand&, Camera& k) { k.aperture = .1, k.focus = 2; }), "aperture=0.1 focus=2, not nothing");
-  EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.effects.glossy = {.5f, 2}, c.render.sampling.gloss_rays = 2; }), "roughness=0.5 gloss-rays=2, not nothing");
+  EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.effects.glossy = {.5f, 2}, c.render.sampling.gloss_rays = 2; }),
+            "roughness=0.5 gloss-rays=2, not nothing");
   EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.threads = 3, c.render.isa = "sse2", c.render.packet = 16; }), "nothing, not nothing");
 }
 
