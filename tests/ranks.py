@@ -14,7 +14,7 @@ job = [program, "render", os.path.abspath(scene), "--quiet", "--threads", "2", "
 
 def ranks(n, *more):
     # mpirun sends SIGTERM and, by default a second later, SIGKILL: too soon for what is in work where processors are shared
-    return [mpirun, "--oversubscribe", "--mca", "odls_base_sigkill_timeout", "30", "-n", str(n)] + job + list(more)
+    return [mpirun, "--oversubscribe", "--mca", "odls_base_sigkill_timeout", "5", "-n", str(n)] + job + list(more)
 
 
 def rank_of(pid):
