@@ -35,8 +35,8 @@ void rank(std::span<const std::int16_t> values, std::uint32_t* ranks) {
 
 void BlockOrder::find_parts(const Primitives& p, std::span<const std::uint32_t> ids, const Grid& grid, std::size_t cell) {
   const std::size_t nx = grid.cells[0], ny = grid.cells[1], at[3] = {cell % nx, cell / nx % ny, cell / nx / ny};
-  const Triangles& t = p.geometry.triangles;
-  const std::vector<float>* const of[3] = {&t.x, &t.y, &t.z};
+  const TriangleSpans& t = p.geometry.triangles;
+  const Floats* const of[3] = {&t.x, &t.y, &t.z};
   float half[3], lo[3], hi[3];
   for (std::size_t a = 0; a < 3; ++a) {
     half[a] = static_cast<float>(kParts / (2 * grid.cell[a]));

@@ -19,7 +19,7 @@ struct Corners {
 };
 
 inline Corners corners_of(const Primitives& p, std::uint32_t id) {
-  const Triangles& t = p.geometry.triangles;
+  const TriangleSpans& t = p.geometry.triangles;
   const std::uint32_t i = id - p.triangle_base, v[3] = {t.a[i], t.b[i], t.c[i]};
   Corners c;
   for (int k = 0; k < 3; ++k) c.v[k][0] = t.x[v[k]], c.v[k][1] = t.y[v[k]], c.v[k][2] = t.z[v[k]];
@@ -87,7 +87,7 @@ class TriangleTouch {
 class SphereTouch {
  public:
   SphereTouch(const Primitives& p, std::uint32_t id, const Grid& g, double pad) {
-    const Spheres& s = p.geometry.spheres;
+    const SphereSpans& s = p.geometry.spheres;
     const std::uint32_t i = id - p.sphere_base;
     const double center[3] = {s.x[i], s.y[i], s.z[i]}, radius = std::abs(static_cast<double>(s.radius[i]));
     for (int a = 0; a < 3; ++a) cell_[a] = g.cell[a], center_[a] = center[a] - g.lo[a];

@@ -29,7 +29,7 @@ double cube_root(double x) {
 }
 
 void put_triangle(TriangleBlock& block, std::size_t at, const Primitives& p, std::uint32_t id) {
-  const Triangles& t = p.geometry.triangles;
+  const TriangleSpans& t = p.geometry.triangles;
   const std::uint32_t i = id - p.triangle_base, v[3] = {t.a[i], t.b[i], t.c[i]};
   float(*const corner[3])[kBlock] = {block.a, block.b, block.c};
   for (int k = 0; k < 3; ++k) corner[k][0][at] = t.x[v[k]], corner[k][1][at] = t.y[v[k]], corner[k][2][at] = t.z[v[k]];
@@ -232,7 +232,7 @@ class Filling {
   }
 
   void put_sphere(std::size_t to, std::uint32_t id) {
-    const Spheres& from = p_.geometry.spheres;
+    const SphereSpans& from = p_.geometry.spheres;
     const std::size_t i = id - p_.sphere_base;
     store_.spheres[0][to] = from.x[i], store_.spheres[1][to] = from.y[i], store_.spheres[2][to] = from.z[i];
     store_.spheres[3][to] = from.radius[i], store_.sphere_id[to] = id;
@@ -268,7 +268,7 @@ double Box::diagonal() const {
   return std::sqrt(sum);
 }
 
-PreparedCones prepare_cones(const Cones& c) {
+PreparedCones prepare_cones(const ConeSpans& c) {
   PreparedCones out;
   for (auto& v : out) v.resize(c.size());
   for (std::size_t i = 0; i < c.size(); ++i) {
@@ -288,7 +288,7 @@ PreparedCones prepare_cones(const Cones& c) {
   return out;
 }
 
-Primitives::Primitives(const Geometry& g)
+Primitives::Primitives(const GeometrySpans& g)
     : geometry(g), cones(prepare_cones(g.cones)),
       sphere_base(static_cast<std::uint32_t>(g.planes.size())),
       triangle_base(sphere_base + static_cast<std::uint32_t>(g.spheres.size())),
@@ -302,7 +302,7 @@ Box Primitives::flat_box(std::uint32_t id) const {
     case Kind::kTriangle:
       return box_of(corners_of(*this, id));
     case Kind::kCone: {  // the discs at both ends: a disc of radius r across a unit axis d reaches r sqrt(1 - d_a^2)
-      const Cones& c = geometry.cones;
+      const ConeSpans& c = geometry.cones;
       const std::uint32_t i = id - cone_base;
       const double ends[2][4] = {{c.base_x[i], c.base_y[i], c.base_z[i], c.base_radius[i]},
                                  {c.apex_x[i], c.apex_y[i], c.apex_z[i], c.apex_radius[i]}};

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "kernel/geometry.hpp"
 #include "kernel/raw_vector.hpp"
+#include "kernel/scene_spans.hpp"
 #include "kernel/stats.hpp"
 #include "kernel/view.hpp"
 
@@ -33,20 +33,20 @@ struct Box {
 
 /// Cones as the tests want them, see ConeSide: base xyz, axis xyz, height, radius, slope, side; [count] each.
 using PreparedCones = std::array<std::vector<float>, 10>;
-PreparedCones prepare_cones(const Cones& cones);
+PreparedCones prepare_cones(const ConeSpans& cones);
 
 /// The caller's arrays with what is derived from them; ids run over planes, spheres, triangles, cones.
 struct Primitives {
-  const Geometry& geometry;
+  GeometrySpans geometry;
   PreparedCones cones;
   std::uint32_t sphere_base, triangle_base, cone_base, end;
-  explicit Primitives(const Geometry& geometry);
+  explicit Primitives(const GeometrySpans& geometry);
   /// Of a finite primitive (id >= sphere_base).
   Box box(std::uint32_t id) const { return id < triangle_base ? sphere_box(id - sphere_base) : flat_box(id); }
 
  private:
   Box sphere_box(std::size_t i) const {
-    const Spheres& s = geometry.spheres;
+    const SphereSpans& s = geometry.spheres;
     const double center[3] = {s.x[i], s.y[i], s.z[i]}, radius = s.radius[i] < 0 ? -s.radius[i] : s.radius[i];
     Box b;
     for (int a = 0; a < 3; ++a) b.lo[a] = center[a] - radius, b.hi[a] = center[a] + radius;

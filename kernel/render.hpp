@@ -9,6 +9,7 @@
 #include "kernel/camera.hpp"
 #include "kernel/geometry.hpp"
 #include "kernel/image.hpp"
+#include "kernel/scene_spans.hpp"
 #include "kernel/stats.hpp"
 #include "kernel/subdivision.hpp"
 
@@ -20,10 +21,12 @@ struct BuildOptions {
   int threads = 0;    ///< 0: one per processor; the grid is the same, bit for bit, for every number
 };
 
-/// A scene made ready for rays. It refers to the Scene it was built from, which must outlive it unchanged.
+/// A scene made ready for rays. It refers to the arrays of the geometry it was built from, which must outlive it unchanged;
+/// materials and lights are copied. Nothing of it changes once it is built, so threads may share it, and there may be many.
 class World {
  public:
-  World(const Scene& scene, const BuildOptions& options);
+  /// Throws std::invalid_argument for arrays of unequal lengths and for indices of what is not there.
+  World(const SceneSpans& scene, const BuildOptions& options);
   ~World();
   World(World&&) noexcept;
   World& operator=(World&&) noexcept;

@@ -11,13 +11,6 @@
 namespace grelha {
 namespace {
 
-const Variant& choose(std::string_view name) {
-  const Variant* const v = find_variant(name);
-  if (!v) throw std::invalid_argument("this build has no instruction set \"" + std::string(name) + "\"");
-  if (!v->runs_here()) throw std::invalid_argument("this processor has no " + std::string(name));
-  return *v;
-}
-
 void check(const Camera& camera, const RenderOptions& o) {
   if (!camera_is_sound(camera)) throw std::invalid_argument("the camera cannot see: check eye, at, up, angle and size");
   if (o.depth < 1 || o.depth > kMostDepth) throw std::invalid_argument("depth must be from 1 to " + std::to_string(kMostDepth));
@@ -72,7 +65,7 @@ Setup set_up(const World& world, const Camera& camera, const RenderOptions& opti
   SampleOptions sampling = options.sampling;
   const bool to_sample = camera.aperture > 0 || w.shading.area || w.shading.gloss;
   if (options.subdivision.on && !to_sample) sampling.samples = 1;  // rays through one point would all see the same
-  return {choose(options.isa), make_frame(camera), plan_samples(sampling, camera, w.shading)};
+  return {choose_variant(options.isa), make_frame(camera), plan_samples(sampling, camera, w.shading)};
 }
 
 int thread_count(const RenderOptions& options, std::size_t pieces) {

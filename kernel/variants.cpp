@@ -1,7 +1,8 @@
 #include "kernel/variants.hpp"
 
 #include <array>
-#include <vector>
+#include <stdexcept>
+#include <string>
 
 namespace grelha {
 
@@ -42,6 +43,13 @@ const Variant* find_variant(std::string_view name) {
   for (const Variant* v : kVariants)
     if (v->name == name || (name == "best" && v->runs_here())) found = v;
   return found;
+}
+
+const Variant& choose_variant(std::string_view name) {
+  const Variant* const v = find_variant(name);
+  if (!v) throw std::invalid_argument("this build has no instruction set \"" + std::string(name) + "\"");
+  if (!v->runs_here()) throw std::invalid_argument("this processor has no " + std::string(name));
+  return *v;
 }
 
 }  // namespace grelha

@@ -6,21 +6,12 @@
 #include <string_view>
 
 #include "kernel/part.hpp"
+#include "kernel/rays.hpp"
 #include "kernel/shading_view.hpp"
 #include "kernel/stats.hpp"
 #include "kernel/view.hpp"
 
 namespace grelha {
-
-/// Rays in arrays of `count`. t: in, where the search ends; out, the nearest hit, or the old value when there is none (closest);
-/// -infinity when something is in the way (occluded). Directions of any length from 1e-18 to 1e18 (others meet nothing); t counts
-/// multiples of it. Rays with a NaN or an infinity meet nothing.
-struct RaySpan {
-  const float *ox, *oy, *oz, *dx, *dy, *dz, *t_min;
-  float* t;
-  std::uint32_t* id;  ///< out: the primitive, kNoPrimitive where nothing was met
-  int count;
-};
 
 enum class Method {
   kPackets,    ///< `packet` rays march together
@@ -68,5 +59,7 @@ struct Variant {
 std::span<const Variant* const> variants();
 /// The named copy; "best" is the widest that runs here. nullptr: not compiled or unknown.
 const Variant* find_variant(std::string_view name);
+/// The same; throws std::invalid_argument when it is not compiled, unknown or does not run here.
+const Variant& choose_variant(std::string_view name);
 
 }  // namespace grelha

@@ -4,9 +4,10 @@
 
 #include <cstdint>
 
+#include "kernel/rays.hpp"
+
 namespace grelha {
 
-inline constexpr std::uint32_t kNoPrimitive = 0xFFFFFFFFu;
 inline constexpr int kBlock = 8;  ///< primitives side by side in memory
 
 /// Eight triangles side by side; unused places hold NaN corners, which no ray can meet.

@@ -24,14 +24,14 @@ using Ids = std::vector<std::uint32_t>;
 
 /// A NaN or an infinity: all bits of the exponent set.
 bool is_number(float x) { return (std::bit_cast<std::uint32_t>(x) & 0x7F800000u) != 0x7F800000u; }
-bool are_numbers(const std::vector<float>& v) {
+bool are_numbers(Floats v) {
   std::uint32_t found = 0;
   for (const float x : v) found |= is_number(x) ? 0 : 1;
   return found == 0;
 }
 
 /// Whether every primitive has a place. The arrays are asked as they lie, many at a time.
-bool all_are_sound(const Geometry& g) {
+bool all_are_sound(const GeometrySpans& g) {
   for (const auto* v : {&g.triangles.x, &g.triangles.y, &g.triangles.z, &g.spheres.x, &g.spheres.y, &g.spheres.z, &g.spheres.radius,
                         &g.cones.base_x, &g.cones.base_y, &g.cones.base_z, &g.cones.base_radius, &g.cones.apex_x, &g.cones.apex_y,
                         &g.cones.apex_z, &g.cones.apex_radius})
@@ -40,7 +40,7 @@ bool all_are_sound(const Geometry& g) {
 }
 
 bool is_sound(const Primitives& p, std::uint32_t id) {
-  const Geometry& g = p.geometry;
+  const GeometrySpans& g = p.geometry;
   if (id < p.triangle_base) {
     const std::uint32_t i = id - p.sphere_base;
     return is_number(g.spheres.x[i]) && is_number(g.spheres.y[i]) && is_number(g.spheres.z[i]) && is_number(g.spheres.radius[i]);
@@ -129,14 +129,34 @@ void add_grids(const Primitives& p, const Ids& ids, const Box& box, double densi
 }
 
 /// Whether an index reaches `end`.
-bool beyond(const std::vector<std::uint32_t>& indices, std::size_t end) {
+bool beyond(Indices indices, std::size_t end) {
   std::uint32_t most = 0;
   for (const std::uint32_t i : indices) most = std::max(most, i);
   return !indices.empty() && most >= end;
 }
 
-void check(const Scene& scene) {
-  const Geometry& g = scene.geometry;
+/// Whether arrays of one kind have one length.
+bool uneven(std::size_t count, std::initializer_list<std::size_t> sizes) {
+  return std::any_of(sizes.begin(), sizes.end(), [count](std::size_t size) { return size != count; });
+}
+
+void check_lengths(const GeometrySpans& g) {
+  const SphereSpans& s = g.spheres;
+  const TriangleSpans& t = g.triangles;
+  const ConeSpans& c = g.cones;
+  const PlaneSpans& p = g.planes;
+  if (uneven(s.size(), {s.x.size(), s.y.size(), s.z.size(), s.material.size()}) ||
+      uneven(t.size(), {t.b.size(), t.c.size(), t.material.size()}) || uneven(t.vertex_count(), {t.y.size(), t.z.size()}) ||
+      uneven(t.nx.empty() ? 0 : t.vertex_count(), {t.nx.size(), t.ny.size(), t.nz.size()}) ||
+      uneven(c.size(), {c.base_x.size(), c.base_y.size(), c.base_z.size(), c.base_radius.size(), c.apex_x.size(), c.apex_y.size(),
+                        c.apex_z.size(), c.apex_radius.size()}) ||
+      uneven(p.size(), {p.x.size(), p.y.size(), p.z.size(), p.nx.size(), p.ny.size(), p.nz.size()}))
+    throw std::invalid_argument("arrays of one kind of primitive have unequal lengths");
+}
+
+void check(const SceneSpans& scene) {
+  const GeometrySpans& g = scene.geometry;
+  check_lengths(g);
   const std::size_t total = g.spheres.size() + g.triangles.size() + g.cones.size() + g.planes.size();
   if (total >= kNoPrimitive) throw std::invalid_argument("more primitives than ids: at most 4294967294");
   const auto materials = scene.materials.size();
@@ -153,17 +173,17 @@ void check(const Scene& scene) {
   if (next > g.triangles.size()) throw std::invalid_argument("an object names a triangle that is not there");
 }
 
-template <class T>
-std::size_t bytes_of(const std::vector<T>& v) {
-  return v.size() * sizeof(T);
+template <class V>
+std::size_t bytes_of(const V& v) {
+  return v.size() * sizeof v[0];
 }
 
 }  // namespace
 
-MaterialTable::MaterialTable(const Scene& scene) {
-  for (auto& f : fields) f.resize(scene.materials.size());
-  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
-    const Material& m = scene.materials[i];
+MaterialTable::MaterialTable(std::span<const Material> materials) {
+  for (auto& f : fields) f.resize(materials.size());
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    const Material& m = materials[i];
     const bool clear = m.transmission > 0;
     const float values[kMaterialFields] = {m.diffuse.x,  m.diffuse.y,  m.diffuse.z,  m.specular.x, m.specular.y, m.specular.z,
                                            m.mirror.x,   m.mirror.y,   m.mirror.z,   m.emission.x, m.emission.y, m.emission.z,
@@ -185,8 +205,8 @@ MaterialView MaterialTable::view() const {
   return v;
 }
 
-World::Impl::Impl(const Scene& s, const BuildOptions& options) : scene((check(s), s)), primitives(s.geometry), materials(s) {
-  const Geometry& g = s.geometry;
+World::Impl::Impl(const SceneSpans& s, const BuildOptions& options) : scene((check(s), s)), primitives(s.geometry), materials(s.materials) {
+  const GeometrySpans& g = s.geometry;
   const int threads = options.threads > 0 ? options.threads : omp_get_num_procs();
   std::vector<Ids> groups = group(primitives);
   std::vector<Extent> extents;
@@ -217,7 +237,7 @@ World::Impl::Impl(const Scene& s, const BuildOptions& options) : scene((check(s)
   for (const Grid& grid : grids) grid_views.push_back(grid.view());
 
   GeometryView& v = view.geometry;
-  const Triangles& t = g.triangles;
+  const TriangleSpans& t = g.triangles;
   v.tx = t.x.data(), v.ty = t.y.data(), v.tz = t.z.data();
   if (!t.nx.empty()) v.tnx = t.nx.data(), v.tny = t.ny.data(), v.tnz = t.nz.data();
   v.ta = t.a.data(), v.tb = t.b.data(), v.tc = t.c.data();
@@ -253,7 +273,7 @@ World::Impl::Impl(const Scene& s, const BuildOptions& options) : scene((check(s)
   shading.emits = materials.emits, shading.highlights = materials.highlights, shading.gloss = materials.gloss;
 }
 
-World::World(const Scene& scene, const BuildOptions& options) : impl_(std::make_unique<Impl>(scene, options)) {}
+World::World(const SceneSpans& scene, const BuildOptions& options) : impl_(std::make_unique<Impl>(scene, options)) {}
 World::~World() = default;
 World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
@@ -265,8 +285,8 @@ std::vector<GridStats> World::grids() const {
 }
 
 std::size_t World::geometry_bytes() const {
-  const Geometry& g = impl_->scene.geometry;
-  const Triangles& t = g.triangles;
+  const GeometrySpans& g = impl_->scene.geometry;
+  const TriangleSpans& t = g.triangles;
   std::size_t sum = bytes_of(t.a) * 3 + bytes_of(t.material) + bytes_of(t.x) * 3 + bytes_of(t.nx) * 3;
   sum += bytes_of(g.spheres.radius) * 5 + bytes_of(g.cones.material) * 9 + bytes_of(g.planes.material) * 7;
   return sum;

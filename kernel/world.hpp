@@ -12,14 +12,14 @@ namespace grelha {
 
 /// Materials one array per component, so that lanes gather what they need and no more.
 struct MaterialTable {
-  explicit MaterialTable(const Scene& scene);
+  explicit MaterialTable(std::span<const Material> materials);
   MaterialView view() const;
   std::array<std::vector<float>, kMaterialFields> fields;
   bool reflects = false, refracts = false, fresnel = false, emits = false, highlights = false, gloss = false;
 };
 
 struct World::Impl {
-  const Scene& scene;
+  SceneSpans scene;
   Primitives primitives;
   std::vector<Grid> grids;
   CellStore outside;
@@ -29,7 +29,7 @@ struct World::Impl {
   SceneView view;
   ShadingView shading;
 
-  Impl(const Scene& scene, const BuildOptions& options);
+  Impl(const SceneSpans& scene, const BuildOptions& options);
 };
 
 }  // namespace grelha

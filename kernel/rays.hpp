@@ -1,0 +1,21 @@
+#pragma once
+// Rays in the caller's arrays, and what comes back in them.
+
+#include <cstdint>
+
+namespace grelha {
+
+inline constexpr std::uint32_t kNoPrimitive = 0xFFFFFFFFu;
+
+/// Rays in arrays of `count`. t: in, where the search ends; out, the nearest hit, or the old value when there is none (closest);
+/// -infinity when something is in the way (occluded). Directions of any length from 1e-18 to 1e18 (others meet nothing); t counts
+/// multiples of it. Rays with a NaN or an infinity meet nothing.
+struct RaySpan {
+  const float *ox, *oy, *oz, *dx, *dy, *dz;  ///< where rays start, and where to
+  const float* t_min;                        ///< what is met at or before this t does not count
+  float* t;                                  ///< in and out, see above
+  std::uint32_t* id;  ///< out: the primitive, kNoPrimitive where nothing was met
+  int count;          ///< length of every array
+};
+
+}  // namespace grelha

@@ -1,0 +1,160 @@
+// The library as a program that embeds it sees it: its own arrays in, answers out, from any thread and of several scenes at once.
+#include "kernel/grelha.hpp"
+
+#include <array>
+#include <atomic>
+#include <thread>
+
+#include "tests/support/rays.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace grelha::test {
+namespace {
+
+/// Rays about a scene of unit size, some from so far away that the kernel moves them near.
+Rays some_rays(unsigned seed) {
+  Random random(seed);
+  Rays rays = rays_about(random, {}, 1, kManyRays);
+  rays.add(rays_about(random, {}, 1e5, 200));
+  rays.add({1e6f, 2e6f, -3e6f}, {-1, -2, 3});
+  return rays;
+}
+
+Answers ask(const World& world, const Rays& rays, Query query, const QueryOptions& options = {}) {
+  Answers a{rays.t, std::vector<std::uint32_t>(rays.size(), 12345u), {}};
+  const RaySpan span{rays.ox.data(), rays.oy.data(),    rays.oz.data(), rays.dx.data(), rays.dy.data(),
+                     rays.dz.data(), rays.t_min.data(), a.t.data(),     a.id.data(),    int(rays.size())};
+  if (query == Query::kClosest)
+    closest(world, span, options, &a.counts);
+  else
+    occluded(world, span, options, &a.counts);
+  return a;
+}
+
+bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
+  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](float x, float y) {
+    return std::bit_cast<std::uint32_t>(x) == std::bit_cast<std::uint32_t>(y);
+  });
+}
+
+TEST(Query, OneRayAPacketAndAStreamSeeWhatBruteForceSees) {
+  const Scene scene = random_mixture(5, 400);
+  const World world(scene, {});
+  const Rays rays = some_rays(1);
+  const Truth truth = truth_of(scene, rays);
+  for (const int packet : {1, 16, 64}) {
+    const Answers a = ask(world, rays, Query::kClosest, {.packet = packet});
+    EXPECT_TRUE(same_bits(a.t, truth.closest.t)) << packet;
+    EXPECT_EQ(a.id, truth.closest.id) << packet;
+    EXPECT_GT(a.counts.tests.sphere + a.counts.tests.triangle, 0u);
+  }
+  std::size_t hits = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Hit hit = closest(world, Ray{rays.org(i), rays.dir(i), rays.t_min[i], rays.t[i]});
+    ASSERT_EQ(hit.id, truth.closest.id[i]) << rays.describe(i);
+    ASSERT_EQ(std::bit_cast<std::uint32_t>(hit.t), std::bit_cast<std::uint32_t>(truth.closest.t[i])) << rays.describe(i);
+    hits += bool(hit);
+  }
+  EXPECT_GT(hits, rays.size() / 10);
+}
+
+TEST(Query, SomethingIsInTheWayWhereSomethingIsMet) {
+  const Scene scene = random_mixture(6, 400);
+  const World world(scene, {});
+  const Rays rays = some_rays(2);
+  const Answers met = ask(world, rays, Query::kClosest), blocked = ask(world, rays, Query::kOccluded);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    ASSERT_EQ(blocked.id[i] != kNoPrimitive, met.id[i] != kNoPrimitive) << rays.describe(i);
+    ASSERT_EQ(blocked.t[i] == -kInf, met.id[i] != kNoPrimitive) << rays.describe(i);
+    ASSERT_EQ(occluded(world, Ray{rays.org(i), rays.dir(i), rays.t_min[i], rays.t[i]}), met.id[i] != kNoPrimitive);
+  }
+}
+
+TEST(Query, TheCallersArraysAreUsedWhereTheyLie) {
+  const std::array<float, 3> x{0, 3, 6}, y{}, z{}, radius{1, 1, 1};
+  const std::array<std::uint32_t, 3> material{};
+  const Material dull;
+  SceneSpans scene;
+  scene.geometry.spheres.x = x, scene.geometry.spheres.y = y, scene.geometry.spheres.z = z;
+  scene.geometry.spheres.radius = radius, scene.geometry.spheres.material = material;
+  scene.materials = {&dull, 1};
+  const World world(scene, {});
+  EXPECT_EQ(world.impl().view.geometry.sx, x.data());
+  EXPECT_EQ(world.impl().view.geometry.sphere_material, material.data());
+  const Hit hit = closest(world, Ray{{6, 0, 10}, {0, 0, -2}});
+  EXPECT_EQ(hit.t, 4.5f);
+  EXPECT_EQ(hit.id, 2u);
+  EXPECT_FALSE(closest(world, Ray{{6, 0, 10}, {0, 0, -2}, 0, 4}));
+}
+
+TEST(Query, IdsAreOfTheCallersKindsInTheCallersOrder) {
+  Scene s = empty_scene();
+  s.geometry.planes.add({0, 0, -9}, {0, 0, 1}, 0);
+  s.geometry.spheres.add({}, 1, 0);
+  s.geometry.spheres.add({5, 0, 0}, 1, 0);
+  add_triangle(s, {9, -1, 0}, {11, -1, 0}, {10, 1, 0});
+  s.geometry.cones.add({15, 0, -1}, 1, {15, 0, 1}, 1, 0);
+  const World world(s, {});
+  const auto seen = [&](Float3 from, Float3 to) {
+    const Hit hit = closest(world, Ray{from, to});
+    EXPECT_TRUE(hit);
+    const Primitive p = primitive_of(world, hit.id);
+    return std::pair(p.kind, p.index);
+  };
+  EXPECT_EQ(seen({50, 50, 9}, {0, 0, -1}), std::pair(PrimitiveKind::kPlane, 0u));
+  EXPECT_EQ(seen({5, 0, 9}, {0, 0, -1}), std::pair(PrimitiveKind::kSphere, 1u));
+  EXPECT_EQ(seen({10, 0, 9}, {0, 0, -1}), std::pair(PrimitiveKind::kTriangle, 0u));
+  EXPECT_EQ(seen({15, 20, 0}, {0, -1, 0}), std::pair(PrimitiveKind::kCone, 0u));
+}
+
+/// Two scenes in one process, each asked and rendered by several threads at once, while a render of one of them is cancelled.
+TEST(Query, ThreadsAndScenesDoNotMeet) {
+  const Scene scenes[2] = {random_mixture(7, 300), random_triangles(8, 300)};
+  const World worlds[2] = {World(scenes[0], {}), World(scenes[1], {})};
+  const Rays rays = some_rays(3);
+  Camera camera;
+  camera.eye = {0, 0, 4}, camera.width = camera.height = 48;
+  RenderOptions options;
+  options.threads = 2;
+  const auto picture = [&](int w) {
+    RenderStats stats;
+    return render(worlds[w], camera, options, stats).rgb;
+  };
+  const Answers alone[2] = {ask(worlds[0], rays, Query::kClosest), ask(worlds[1], rays, Query::kClosest)};
+  const std::vector<float> drawn[2] = {picture(0), picture(1)};
+  std::atomic<int> wrong = 0;
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 6; ++i)
+    threads.emplace_back([&, w = i % 2] {
+      for (int round = 0; round < 4; ++round) {
+        const Answers a = ask(worlds[w], rays, Query::kClosest);
+        wrong += !same_bits(a.t, alone[w].t) || a.id != alone[w].id || !same_bits(picture(w), drawn[w]);
+      }
+    });
+  RenderStats stats;
+  RenderOptions cancelled = options;
+  cancelled.progress = [](double) { return false; };
+  render(worlds[0], camera, cancelled, stats);
+  for (std::thread& t : threads) t.join();
+  EXPECT_EQ(wrong, 0);
+  EXPECT_LT(stats.rays.primary, 48u * 48u);
+}
+
+TEST(Query, RefusesWhatItCannotDo) {
+  Scene scene = random_spheres(1, 30);
+  const World world(scene, {});
+  const Rays rays = some_rays(4);
+  EXPECT_THROW(ask(world, rays, Query::kClosest, {.packet = 8}), std::invalid_argument);
+  EXPECT_THROW(ask(world, rays, Query::kOccluded, {.isa = "neon"}), std::invalid_argument);
+  scene.geometry.spheres.y.pop_back();
+  EXPECT_THROW(World(scene, {}), std::invalid_argument);
+  scene = random_triangles(1, 30);
+  scene.geometry.triangles.c.pop_back();
+  EXPECT_THROW(World(scene, {}), std::invalid_argument);
+  scene = random_triangles(1, 30);
+  scene.geometry.triangles.ny.resize(scene.geometry.triangles.vertex_count());
+  EXPECT_THROW(World(scene, {}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace grelha::test
