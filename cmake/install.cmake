@@ -1,0 +1,21 @@
+# What `cmake --install` puts where: the program, the library with the headers it is used by, and what a shell wants.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+install(TARGETS grelha RUNTIME COMPONENT grelha)
+
+# The headers a program may include, and no others: kernel/ keeps its insides, and xsimd, to itself. They lie in a folder of
+# their own, so that "kernel/..." names nothing of anyone else's.
+set(headers ${CMAKE_INSTALL_INCLUDEDIR}/grelha)
+set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/grelha)
+install(FILES kernel/grelha.hpp DESTINATION ${headers} COMPONENT grelha)
+install(TARGETS grelha_kernel EXPORT grelhaTargets ARCHIVE COMPONENT grelha
+  FILE_SET HEADERS DESTINATION ${headers} COMPONENT grelha)
+install(EXPORT grelhaTargets NAMESPACE grelha:: DESTINATION ${package_folder} COMPONENT grelha)
+configure_package_config_file(cmake/grelhaConfig.cmake.in ${PROJECT_BINARY_DIR}/grelhaConfig.cmake INSTALL_DESTINATION ${package_folder})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/grelhaConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/grelhaConfig.cmake ${PROJECT_BINARY_DIR}/grelhaConfigVersion.cmake
+  DESTINATION ${package_folder} COMPONENT grelha)
+
+install(DIRECTORY scenes/data/ DESTINATION ${CMAKE_INSTALL_DATADIR}/grelha/scenes COMPONENT grelha)
+install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT grelha)

@@ -1,0 +1,48 @@
+# Installs into SCRATCH and uses what is there as a stranger would: includes each header alone, builds examples/ and runs it.
+# cmake -D BUILD=folder -D ROOT=project -D CONFIG=Release -D SCRATCH=folder -D COMPILER=c++ -D FLAGS=... -D GENERATOR=Ninja -P installed.cmake
+cmake_minimum_required(VERSION 3.23)
+function(run what)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE out ERROR_VARIABLE out)
+  if(NOT status EQUAL 0)
+    message(FATAL_ERROR "${what} ended with ${status}:\n${out}")
+  endif()
+  set(output "${out}" PARENT_SCOPE)
+endfunction()
+
+file(REMOVE_RECURSE ${SCRATCH})
+set(prefix ${SCRATCH}/prefix)
+run("cmake --install" ${CMAKE_COMMAND} --install ${BUILD} --config ${CONFIG} --prefix ${prefix})
+
+# Headers name each other and the standard library, nothing else, and each compiles by itself.
+set(include ${prefix}/include/grelha)
+file(GLOB_RECURSE headers RELATIVE ${include} ${include}/*)
+list(LENGTH headers count)
+if(count LESS 10)
+  message(FATAL_ERROR "only these headers were installed: ${headers}")
+endif()
+foreach(header ${headers})
+  file(STRINGS ${include}/${header} lines REGEX "^[ \t]*#[ \t]*include")
+  foreach(line ${lines})
+    string(REGEX REPLACE "^[^\"<]*([\"<])([^\">]*)[\">].*$" "\\1\\2" included "${line}")
+    if(included MATCHES "^<[a-z_]+$")
+      continue()
+    endif()
+    string(SUBSTRING "${included}" 1 -1 name)
+    if(NOT name IN_LIST headers)
+      message(FATAL_ERROR "${header} includes ${name}, which is neither standard nor installed")
+    endif()
+  endforeach()
+  separate_arguments(flags UNIX_COMMAND "${FLAGS}")
+  run("compiling ${header} alone" ${COMPILER} ${flags} -std=c++20 -Wall -Wextra -Wpedantic -Wshadow -Werror -fsyntax-only -x c++
+    -I ${include} -I ${prefix}/include -include ${include}/${header} /dev/null)
+endforeach()
+
+run("configuring the example" ${CMAKE_COMMAND} -S ${ROOT}/examples -B ${SCRATCH}/build -G ${GENERATOR} -D CMAKE_BUILD_TYPE=${CONFIG}
+  -D CMAKE_CXX_COMPILER=${COMPILER} "-DCMAKE_CXX_FLAGS=${FLAGS} -Wall -Wextra -Wno-missing-field-initializers -Werror" -D CMAKE_PREFIX_PATH=${prefix})
+run("building the example" ${CMAKE_COMMAND} --build ${SCRATCH}/build)
+run("the example" ${SCRATCH}/build/embed)
+# The front of the middle ball, radius .8 around z = 1, seen from z = 5; balls from x = -1.6 to 1.6 under rays .004 apart.
+if(NOT output MATCHES "^sphere 1 at t = 3.2, blocked\n800 of 1000 rays meet something\n160x120, [0-9]+ rays by [a-z0-9]+\n$")
+  message(FATAL_ERROR "the example said\n${output}")
+endif()
+run("the program" ${prefix}/bin/grelha info ${prefix}/share/grelha/scenes/balls.nff)

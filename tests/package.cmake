@@ -1,0 +1,5 @@
+# The installed package: what is put where, that the headers stand alone, and the example built and run against it.
+add_test(NAME package COMMAND ${CMAKE_COMMAND} -D BUILD=${PROJECT_BINARY_DIR} -D ROOT=${PROJECT_SOURCE_DIR} -D CONFIG=$<CONFIG>
+  -D SCRATCH=${CMAKE_CURRENT_BINARY_DIR}/package -D COMPILER=${CMAKE_CXX_COMPILER} "-DFLAGS=${CMAKE_CXX_FLAGS}" -D GENERATOR=${CMAKE_GENERATOR}
+  -P ${CMAKE_CURRENT_SOURCE_DIR}/installed.cmake)
+set_tests_properties(package PROPERTIES LABELS build)
