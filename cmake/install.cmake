@@ -19,3 +19,8 @@ install(FILES ${PROJECT_BINARY_DIR}/grelhaConfig.cmake ${PROJECT_BINARY_DIR}/gre
 
 install(DIRECTORY scenes/data/ DESTINATION ${CMAKE_INSTALL_DATADIR}/grelha/scenes COMPONENT grelha)
 install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT grelha)
+
+install(FILES ${GRELHA_PAGES}/grelha.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT grelha)
+install(FILES ${GRELHA_PAGES}/grelha.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME grelha COMPONENT grelha)
+install(FILES ${GRELHA_PAGES}/_grelha DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions COMPONENT grelha)
+install(FILES ${GRELHA_PAGES}/grelha.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT grelha)

@@ -6,6 +6,7 @@
 #include "frontend/image_file.hpp"
 #include "frontend/long_render.hpp"
 #include "frontend/merge.hpp"
+#include "frontend/nearest.hpp"
 #include "frontend/options.hpp"
 #include "frontend/parse_error.hpp"
 #include "frontend/progress.hpp"
@@ -245,7 +246,11 @@ void write_with_mesh(const scenes::Generator& generator, scenes::SceneOptions op
 int run(const SceneCommand& command) {
   if (command.list) return list_scenes();
   const scenes::Generator* generator = scenes::find_generator(command.name);
-  if (!generator) throw UsageError("no scene \"" + command.name + "\" (see grelha scene --list)");
+  if (!generator) {
+    std::vector<std::string_view> names;
+    for (const scenes::Generator& g : scenes::generators()) names.push_back(g.name);
+    throw UsageError("no scene \"" + command.name + '"' + did_you_mean(command.name, names) + " (see grelha scene --list)");
+  }
   scenes::SceneOptions options{command.size.value_or(generator->default_size), command.spd, {}};
   if (options.size < generator->min_size || options.size > generator->max_size)
     throw UsageError("--size: " + command.name + " has sizes " + std::to_string(generator->min_size) + " to " +

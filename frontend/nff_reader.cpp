@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "frontend/nearest.hpp"
 #include "frontend/nff_input.hpp"
 #include "frontend/nff_lights.hpp"
 #include "frontend/nff_material.hpp"
@@ -37,6 +38,7 @@ class NffReader {
 
   bool read_entity(std::string_view word);
   void skip_other(std::string_view word, std::string_view last_entity);
+  static std::string meant(std::string_view word);
   void refuse_sense8(std::string_view word);
   std::uint32_t material(std::string_view keyword);
   void polygon(std::string_view keyword, bool patch);
@@ -110,10 +112,18 @@ bool NffReader::read_entity(std::string_view word) {
   return view_.read(word, input_, file_.lens);
 }
 
+/// ` (did you mean "angle"?)`, or nothing.
+std::string NffReader::meant(std::string_view word) {
+  std::vector<std::string_view> known(NffView::words().begin(), NffView::words().end());
+  for (const Named& entity : kEntities) known.push_back(entity.name);
+  const std::string_view near = nearest(word, known);
+  return near.empty() ? "" : " (did you mean " + quoted(near) + "?)";
+}
+
 /// What no entity asked for: warned of once a kind, and the rest of its line with it.
 void NffReader::skip_other(std::string_view word, std::string_view last_entity) {
   if (!looks_like_number(word)) {
-    input_.warn_once("word " + std::string(word), word, "unknown word " + quoted(word) + "; its line is skipped");
+    input_.warn_once("word " + std::string(word), word, "unknown word " + quoted(word) + meant(word) + "; its line is skipped");
   } else if (words_.fresh_line() || last_entity.empty()) {
     input_.warn_once("stray", word, "numbers that belong to no entity; their line is skipped");
   } else {

@@ -26,6 +26,11 @@ int pixels(NffInput& input) {
 
 }  // namespace
 
+std::span<const std::string_view> NffView::words() {
+  static constexpr std::string_view kWords[] = {"camera", "from", "eye", "at", "up", "angle", "hither", "resolution", "aperture", "focal", "view"};
+  return kWords;
+}
+
 bool NffView::read(std::string_view word, NffInput& input, LensHint& lens) {
   if (word == "v" || word == "camera")
     begin(word, input);

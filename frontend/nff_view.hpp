@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string_view>
 
 #include "frontend/nff_input.hpp"
@@ -11,6 +12,8 @@ namespace grelha {
 /// the end of the file.
 class NffView {
  public:
+  /// All that it knows.
+  static std::span<const std::string_view> words();
   /// Reads the entity if `word` is one of the view's; false if it is not.
   bool read(std::string_view word, NffInput& input, LensHint& lens);
   /// The camera, or a ParseError at what is wrong with it. `end` is the end of the file.

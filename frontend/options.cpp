@@ -1,10 +1,13 @@
 #include "frontend/options.hpp"
 
+#include "frontend/help.hpp"
 #include "frontend/image_file.hpp"
+#include "frontend/nearest.hpp"
 #include "frontend/partial.hpp"
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -177,11 +180,13 @@ template <class T, std::size_t N>
 T choice(const std::string& option, const std::string& text,
          const std::array<std::pair<std::string_view, T>, N>& words) {
   std::string wanted;
+  std::vector<std::string_view> all;
   for (const auto& [word, value] : words) {
     if (word == text) return value;
     wanted += (wanted.empty() ? "" : ", ") + std::string(word);
+    all.push_back(word);
   }
-  refuse(option, "one of " + wanted, text);
+  throw UsageError(option + ": wanted one of " + wanted + ", found \"" + text + '"' + did_you_mean(text, all));
 }
 
 using Word = std::pair<std::string_view, int>;
@@ -235,7 +240,9 @@ void add_long_work(CLI::App& app, LongWork& work) {
 
 void add_render(CLI::App& app, RenderCommand& command) {
   CLI::App& sub = *app.add_subcommand("render", "Render SCENE (.nff, .p3f, .ply, each also .gz) to a picture");
-  sub.footer("Example: grelha render scenes/data/balls.nff -o balls.png --size 800x600");
+  sub.footer("Examples:\n"
+             "  grelha render scenes/data/balls.nff -o balls.png --size 800x600\n"
+             "  grelha render scenes/data/balls.nff -o fine.hdr --error 0.01");
   positional(sub, "SCENE", command.scene, "scene file");
   value(sub, "-o,--output", "FILE", ".png, .hdr or .pfm (linear floats), or .grelha to merge [SCENE's name with .png, in this folder]",
         [&command](const std::string& text) { want_output_name(text), command.image = text; });
@@ -273,7 +280,7 @@ void add_render(CLI::App& app, RenderCommand& command) {
         [&command](const std::string& text) { command.render.mailbox = choice("--mailbox", text, kSwitch) == 1; });
   value(sub, "--isa", "NAME", "scalar, sse2, avx2, avx512 or best [best]",
         [&command](const std::string& text) { command.render.isa = choice("--isa", text, kIsas); });
-  value(sub, "--packet", "N", "most rays that march together: 1, 16, 64 or 256 [256]",
+  value(sub, "--packet", "1|16|64|256", "most rays that march together [256]",
         [&command](const std::string& text) { command.render.packet = choice("--packet", text, kPackets); });
   value(sub, "--stats", "FILE", "write counts and times as JSON",
         [&command](const std::string& text) { command.stats = text; });
@@ -285,13 +292,16 @@ void add_render(CLI::App& app, RenderCommand& command) {
 void add_info(CLI::App& app, InfoCommand& command) {
   CLI::App& sub = *app.add_subcommand("info", "Say what SCENE holds and what it needs of the renderer");
   positional(sub, "SCENE", command.scene, "scene file");
+  sub.footer("Example: grelha info scenes/data/balls.nff --json");
   sub.add_flag("--json", command.json, "as JSON");
   add_build_options(sub, command.build);
 }
 
 void add_compare(CLI::App& app, CompareCommand& command) {
   CLI::App& sub = *app.add_subcommand("compare", "Measure how far two pictures of one size lie apart");
-  sub.footer("Exit status: 0; 1 above --max-rmse or when a file cannot be read; 2 for bad usage or unequal sizes.");
+  sub.footer("Example: grelha compare a.png b.png --max-rmse 0.01 --diff d.png\n"
+             "Exit status: 0; 1 above --max-rmse or when a file cannot be read;\n"
+             "2 for bad usage or unequal sizes.");
   positional(sub, "A", command.a, "picture (.png, .hdr, .pfm)");
   positional(sub, "B", command.b, "picture");
   value(sub, "--max-rmse", "X", "exit with status 1 when the RMSE is above X (white is 1)",
@@ -328,11 +338,13 @@ void add_scene(CLI::App& app, SceneCommand& command) {
 void want_known_command(const CLI::App& app, const std::string& word) {
   if (word.empty() || word.front() == '-') return;
   std::string commands;
+  std::vector<std::string_view> names;
   for (const CLI::App* sub : app.get_subcommands({})) {
     if (sub->get_name() == word) return;
     commands += (commands.empty() ? "" : ", ") + sub->get_name();
+    names.push_back(sub->get_name());
   }
-  refuse("command", "one of " + commands, word);
+  throw UsageError("command: wanted one of " + commands + ", found \"" + word + '"' + did_you_mean(word, names));
 }
 
 void check_long_work(const RenderCommand& command) {
@@ -363,6 +375,60 @@ void check_together(const RenderCommand& command) {
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
+/// The command that was asked for, or the program itself.
+const CLI::App& asked(const CLI::App& app) {
+  const auto commands = app.get_subcommands();
+  return commands.empty() ? app : *commands.front();
+}
+
+/// The option that the first word nobody took was probably meant to be.
+std::string meant_option(const CLI::App& app) {
+  const std::vector<std::string> left = app.remaining(true);
+  const auto option = std::find_if(left.begin(), left.end(), [](const std::string& word) { return word.starts_with('-'); });
+  if (option == left.end()) return "";
+  std::vector<std::string> names;
+  for (const CLI::Option* o : asked(app).get_options())
+    for (const std::string& name : o->get_lnames()) names.push_back("--" + name);
+  return did_you_mean(option->substr(0, option->find('=')), std::vector<std::string_view>(names.begin(), names.end()));
+}
+
+struct Commands {
+  RenderCommand render;
+  InfoCommand info;
+  CompareCommand compare;
+  MergeCommand merge;
+  SceneCommand scene;
+};
+
+void add_commands(CLI::App& app, Commands& commands) {
+  app.set_help_all_flag("--help-all");  // before the commands, which inherit it
+  add_render(app, commands.render);
+  add_info(app, commands.info);
+  add_compare(app, commands.compare);
+  add_merge(app, commands.merge);
+  add_scene(app, commands.scene);
+}
+
+CommandHelp help_of(const CLI::App& sub) {
+  CommandHelp help{sub.get_name(), sub.get_description(), {}, {}, sub.get_footer()};
+  for (const CLI::Option* o : sub.get_options()) {
+    if (o->get_positional()) {
+      help.usage += (help.usage.empty() ? "" : " ") + (o->get_required() ? o->get_name(true) : "[" + o->get_name(true) + "]");
+      continue;
+    }
+    OptionHelp option{{}, o->get_type_name(), o->get_description()};
+    for (const std::string& name : o->get_snames()) option.names.push_back("-" + name);
+    for (const std::string& name : o->get_lnames()) option.names.push_back("--" + name);
+    if (o != sub.get_help_ptr() && o != sub.get_help_all_ptr()) help.options.push_back(std::move(option));
+  }
+  return help;
+}
+
+TextCommand asked_help(const CLI::App& app, bool all) {
+  const CLI::App& about = asked(app);
+  return {&about == &app ? program_help(all_commands(), all) : help_text(help_of(about), all)};
+}
+
 }  // namespace
 
 std::string default_image(const std::string& scene) {
@@ -371,45 +437,43 @@ std::string default_image(const std::string& scene) {
   return name.stem().string() + ".png";
 }
 
+std::vector<CommandHelp> all_commands() {
+  CLI::App app;
+  Commands unread;
+  add_commands(app, unread);
+  std::vector<CommandHelp> all;
+  for (const CLI::App* sub : app.get_subcommands({})) all.push_back(help_of(*sub));
+  return all;
+}
+
 Command parse_command(int argc, const char* const* argv) {
-  CLI::App app{"Data-oriented SIMD ray tracer on a uniform grid.", "grelha"};
-  app.footer("Examples:\n"
-             "  grelha render scenes/data/balls.nff -o balls.png\n"
-             "  grelha info scenes/data/balls.nff\n"
-             "  grelha scene mount --size 7 -o mount.nff\n"
-             "  grelha compare a.png b.png --max-rmse 0.01\n"
-             "  grelha merge upper.grelha lower.grelha -o whole.png\n"
-             "Each command has its own --help. Exit status: 0; 1 when reading or writing a file fails;\n"
-             "2 for bad usage or a scene that cannot be one; 130, 143: stopped by SIGINT, SIGTERM.");
+  CLI::App app{"", "grelha"};
   app.set_version_flag("--version", "grelha " GRELHA_VERSION);
   app.require_subcommand(1);
-  RenderCommand render;
-  InfoCommand info;
-  CompareCommand compare;
-  MergeCommand merge;
-  SceneCommand scene;
-  add_render(app, render);
-  add_info(app, info);
-  add_compare(app, compare);
-  add_merge(app, merge);
-  add_scene(app, scene);
+  Commands commands;
+  add_commands(app, commands);
   if (argc > 1) want_known_command(app, argv[1]);
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
-    return TextCommand{app.help()};
+    return asked_help(app, false);
+  } catch (const CLI::CallForAllHelp&) {
+    return asked_help(app, true);
   } catch (const CLI::CallForVersion& version) {
     return TextCommand{std::string(version.what()) + '\n'};
+  } catch (const CLI::ExtrasError& error) {
+    throw UsageError(first_line(error.what()) + meant_option(app) + " (see --help)");
   } catch (const CLI::ParseError& error) {
     throw UsageError(first_line(error.what()) + " (see --help)");
   }
-  if (app.got_subcommand("info")) return info;
-  if (app.got_subcommand("compare")) return compare;
-  if (app.got_subcommand("merge")) return merge;
+  if (app.got_subcommand("info")) return commands.info;
+  if (app.got_subcommand("compare")) return commands.compare;
+  if (app.got_subcommand("merge")) return commands.merge;
   if (app.got_subcommand("scene")) {
-    if (scene.name.empty() && !scene.list) throw UsageError("NAME is required (see grelha scene --list)");
-    return scene;
+    if (commands.scene.name.empty() && !commands.scene.list) throw UsageError("NAME is required (see grelha scene --list)");
+    return commands.scene;
   }
+  RenderCommand& render = commands.render;
   if (render.image.empty()) render.image = default_image(render.scene);
   check_together(render);
   check_long_work(render);

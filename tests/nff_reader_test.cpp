@@ -340,6 +340,13 @@ TEST(NffNoise, IsWarnedOfOnceAKindAndSkipped) {
                    "scene.nff:18:1: warning: unknown word \"a\"; its line is skipped"}));
 }
 
+TEST(NffNoise, IsComparedWithTheWordsThereAre) {
+  const Reading r = read_with_view("resoluton 3 3\nmehs 1\nsphere 0 0 0 1\n");
+  EXPECT_EQ(r.warnings, (Lines{"scene.nff:8:1: warning: unknown word \"resoluton\" (did you mean \"resolution\"?); its line is skipped",
+                               "scene.nff:9:1: warning: unknown word \"mehs\" (did you mean \"mesh\"?); its line is skipped",
+                               "scene.nff:10:1: warning: unknown word \"sphere\"; its line is skipped"}));
+}
+
 TEST(NffNoise, FilesOfItStayReadable) {
   std::string text = kView;
   for (int i = 0; i < 100000; ++i) text += "word" + std::to_string(i) + '\n';

@@ -168,6 +168,11 @@ TEST_F(Program, WrongSceneIsStatusTwo) {
   EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1);
 }
 
+TEST_F(Program, SuggestsTheSceneThatWasMeant) {
+  EXPECT_EQ(run("scene bals").err, "grelha: error: no scene \"bals\"; did you mean balls? (see grelha scene --list)\n");
+  EXPECT_EQ(run("scene teapot").err, "grelha: error: no scene \"teapot\" (see grelha scene --list)\n");
+}
+
 TEST_F(Program, WrongUsageIsStatusTwoAndOneLine) {
   for (const char* arguments :
        {"", "rendr", "render", "render ball.nff -o x.jpg", "render ball.nff --size 0x0", "render ball.nff --isa neon",

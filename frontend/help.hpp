@@ -1,0 +1,37 @@
+#pragma once
+// What the command line takes, as data: options.cpp says it once; --help, the man page and the completions are made of it.
+
+#include <string>
+#include <vector>
+
+namespace grelha {
+
+struct OptionHelp {
+  std::vector<std::string> names;  ///< "-o", "--output"
+  std::string placeholder;         ///< of its value: FILE, or words with | between them; empty: a switch
+  std::string text;
+};
+
+struct CommandHelp {
+  std::string name, text;
+  std::string usage;  ///< what stands behind the command: "SCENE..."
+  std::vector<OptionHelp> options;
+  std::string footer;  ///< examples, exit status; lines
+  /// Whether --help shows the option, or only --help-all, the man page and the completions.
+  bool shows(const OptionHelp& option) const;
+};
+
+/// Every command, as parse_command() knows it.
+std::vector<CommandHelp> all_commands();
+
+/// At most 80 columns wide; `all`: with the options that --help leaves out.
+std::string help_text(const CommandHelp& command, bool all);
+/// Of the program itself; `all`: with everything of every command.
+std::string program_help(const std::vector<CommandHelp>& commands, bool all);
+
+std::string man_page(const std::vector<CommandHelp>& commands);
+std::string bash_completion(const std::vector<CommandHelp>& commands);
+std::string zsh_completion(const std::vector<CommandHelp>& commands);
+std::string fish_completion(const std::vector<CommandHelp>& commands);
+
+}  // namespace grelha

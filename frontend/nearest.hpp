@@ -1,0 +1,19 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace grelha {
+
+/// Letters to add, drop, change or swap with their neighbour to make `b` of `a` (each place edited once).
+std::size_t edit_distance(std::string_view a, std::string_view b);
+
+/// The word that `found` was probably meant to be: the first of the nearest, at most a third of its letters away;
+/// empty when there is none.
+std::string_view nearest(std::string_view found, std::span<const std::string_view> words);
+
+/// `; did you mean WORD?`, or nothing.
+std::string did_you_mean(std::string_view found, std::span<const std::string_view> words);
+
+}  // namespace grelha
