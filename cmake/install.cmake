@@ -24,3 +24,5 @@ install(FILES ${GRELHA_PAGES}/grelha.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 
 install(FILES ${GRELHA_PAGES}/grelha.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME grelha COMPONENT grelha)
 install(FILES ${GRELHA_PAGES}/_grelha DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions COMPONENT grelha)
 install(FILES ${GRELHA_PAGES}/grelha.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT grelha)
+
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT grelha)
