@@ -2,9 +2,11 @@
 // usage or a scene that cannot be one, 128 and its number when a signal stopped a render that can go on. It is the one
 // file of the frontend that knows the generators.
 #include "frontend/atomic_file.hpp"
+#include "frontend/batch.hpp"
 #include "frontend/compare.hpp"
 #include "frontend/image_file.hpp"
 #include "frontend/long_render.hpp"
+#include "frontend/memory_limit.hpp"
 #include "frontend/merge.hpp"
 #include "frontend/nearest.hpp"
 #include "frontend/options.hpp"
@@ -32,7 +34,35 @@ namespace grelha {
 
 namespace {
 
+constexpr const char* kOutOfMemory = "grelha: error: out of memory (--max-memory sets how much there is)";
 constexpr int kOk = 0, kFileFailed = 1, kBadInput = 2, kAboveBound = 1, kSignalled = 128;
+
+/// Of `work`, or of the error it ends with, which is told in one line.
+template <class Work>
+int status_of(const Ranks& ranks, const Work& work) {
+  const auto fail = [&ranks](int status, const std::string& line) {
+    if (!ranks.first()) std::this_thread::sleep_for(std::chrono::seconds(3));  // what failed everywhere the first says, and ends all
+    std::cerr << line << '\n';
+    return status;
+  };
+  try {
+    return work();
+  } catch (const ParseError& error) {
+    return fail(kBadInput, error.what());
+  } catch (const FileError& error) {
+    return fail(kFileFailed, error.what());
+  } catch (const UsageError& error) {
+    return fail(kBadInput, std::string("grelha: error: ") + error.what());
+  } catch (const std::invalid_argument& error) {
+    return fail(kBadInput, std::string("grelha: error: ") + error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(kFileFailed, kOutOfMemory);
+  } catch (const std::length_error&) {  // a vector beyond its largest size
+    return fail(kFileFailed, kOutOfMemory);
+  } catch (const std::exception& error) {
+    return fail(kFileFailed, std::string("grelha: error: ") + error.what());
+  }
+}
 
 class Stopwatch {
  public:
@@ -119,14 +149,14 @@ RenderCommand silent(RenderCommand command) {
   return command;
 }
 
-int run(const RenderCommand& given, Ranks& ranks) {
+int render_scene(const RenderCommand& given, Ranks& ranks) {
   const RenderCommand command = ranks.first() ? given : silent(given);
   want_isa(command.render.isa);
   if (ranks.first()) for (const std::string& file : {command.image, command.stats, command.samples_map, command.error_map, command.work.checkpoint})
     if (!file.empty()) check_writable(file);
   RunReport report;
   const Stopwatch load;
-  SceneFile file = read_scene(command.scene, warn);
+  SceneFile file = read_scene(command.scene, warn, command.input.read);
   const bool sums = wants_sums(command, ranks);
   const std::string scene = sums ? scene_digest(file) : "";
   RenderCommand prepared = command;
@@ -171,11 +201,36 @@ int run(const RenderCommand& given, Ranks& ranks) {
   return kOk;
 }
 
-int run(const InfoCommand& command) {
-  const SceneFile file = read_scene(command.scene, warn);
+void bound_memory(const InputOptions& input) { limit_memory(input.max_memory > 0 ? input.max_memory : machine_memory()); }
+
+/// Of several scenes each is tried, whatever becomes of the others, until a signal stops one. Ranks go on together or not at all.
+int run(const RenderCommand& command, Ranks& ranks) {
+  bound_memory(command.input);
+  int worst = kOk;
+  for (const RenderCommand& one : commands_for(command)) {
+    if (worst >= kSignalled) break;
+    worst = std::max(worst, ranks.count() > 1 ? render_scene(one, ranks) : status_of(ranks, [&] { return render_scene(one, ranks); }));
+  }
+  return worst;
+}
+
+std::string info_of(const std::string& scene, const InfoCommand& command) {
+  const SceneFile file = read_scene(scene, warn, command.input.read);
   const World world(file.scene, command.build);
-  print(command.json ? info_json(file, world.grids()) : info_text(command.scene, file, world.grids()));
-  return kOk;
+  return command.json ? info_json(file, world.grids()) : info_text(scene, file, world.grids());
+}
+
+int run(const InfoCommand& command, const Ranks& ranks) {
+  bound_memory(command.input);
+  const std::vector<std::string> scenes = scene_files(command.scenes);
+  std::vector<std::pair<std::string, std::string>> found;
+  int worst = kOk;
+  for (const std::string& scene : scenes)
+    worst = std::max(worst, status_of(ranks, [&] { return found.emplace_back(scene, info_of(scene, command)), kOk; }));
+  std::string text;
+  for (const auto& [scene, of_scene] : found) text += (text.empty() ? "" : "\n") + of_scene;
+  print(command.json && scenes.size() > 1 ? info_json(found) : text);
+  return worst;
 }
 
 std::string size_text(const Image& image) { return std::to_string(image.width) + 'x' + std::to_string(image.height); }
@@ -274,34 +329,16 @@ int run(const TextCommand& command) {
 }
 
 int run_program(int argc, char** argv, Ranks& ranks) {
-  const auto fail = [&ranks](int status, const std::string& line) {
-    if (!ranks.first()) std::this_thread::sleep_for(std::chrono::seconds(3));  // what failed everywhere the first says, and ends all
-    std::cerr << line << '\n';
-    return status;
-  };
-  try {
+  return status_of(ranks, [&] {
     const Command command = parse_command(argc, argv);
     if (const auto* render = std::get_if<RenderCommand>(&command)) return run(*render, ranks);
     if (!ranks.first()) return kOk;
-    return std::visit([](const auto& c) {
+    return std::visit([&ranks](const auto& c) {
       if constexpr (std::is_same_v<decltype(c), const RenderCommand&>) return kOk;
+      else if constexpr (std::is_same_v<decltype(c), const InfoCommand&>) return run(c, ranks);
       else return run(c);
     }, command);
-  } catch (const ParseError& error) {
-    return fail(kBadInput, error.what());
-  } catch (const FileError& error) {
-    return fail(kFileFailed, error.what());
-  } catch (const UsageError& error) {
-    return fail(kBadInput, std::string("grelha: error: ") + error.what());
-  } catch (const std::invalid_argument& error) {
-    return fail(kBadInput, std::string("grelha: error: ") + error.what());
-  } catch (const std::bad_alloc&) {
-    return fail(kFileFailed, "grelha: error: out of memory");
-  } catch (const std::length_error&) {  // a vector beyond its largest size
-    return fail(kFileFailed, "grelha: error: out of memory");
-  } catch (const std::exception& error) {
-    return fail(kFileFailed, std::string("grelha: error: ") + error.what());
-  }
+  });
 }
 
 }  // namespace

@@ -18,8 +18,9 @@ namespace {
 
 class NffReader {
  public:
-  NffReader(const std::string& path, std::string_view text, const Warn& warn)
-      : folder_(std::filesystem::path(path).parent_path()),
+  NffReader(const std::string& path, std::string_view text, const Warn& warn, const ReadOptions& options)
+      : options_(options),
+        folder_(std::filesystem::path(path).parent_path()),
         words_(path, text, text.starts_with("\xEF\xBB\xBF") ? 3 : 0, '#'),
         warnings_(warn),
         input_(words_, warnings_),
@@ -41,6 +42,7 @@ class NffReader {
   static std::string meant(std::string_view word);
   void refuse_sense8(std::string_view word);
   std::uint32_t material(std::string_view keyword);
+  bool is_outside(const std::string& path) const;
   void polygon(std::string_view keyword, bool patch);
   std::vector<std::uint32_t> mesh_corners(std::size_t faces, std::size_t vertices);
 
@@ -64,6 +66,7 @@ class NffReader {
   void read_accel(std::string_view keyword);
   void read_spp(std::string_view keyword);
 
+  ReadOptions options_;
   std::filesystem::path folder_;
   SceneFile file_;
   Words words_;
@@ -249,10 +252,23 @@ void NffReader::read_mesh(std::string_view keyword) {
   file_.counts.mesh += faces;
 }
 
+/// Whether a file lies elsewhere than in the scene's folder or below, all links followed; asked before it is opened, so that a
+/// scene cannot even find out what there is.
+bool NffReader::is_outside(const std::string& path) const {
+  std::error_code error;
+  const std::filesystem::path home = std::filesystem::canonical(folder_.empty() ? "." : folder_, error);
+  if (error) return true;
+  const std::filesystem::path file = std::filesystem::weakly_canonical(path, error);
+  if (error) return true;
+  return std::mismatch(home.begin(), home.end(), file.begin(), file.end()).first != home.end();
+}
+
 void NffReader::read_ply(std::string_view keyword) {
   const std::string_view name = words_.rest_of_line();
   if (name.empty()) throw ParseError(input_.position(name), "a file name after \"ply\"", "end of line");
   const std::string path = (folder_ / std::string(name)).string();
+  if (!options_.allow_outside && is_outside(path))
+    throw ParseError(input_.position(name), "wanted a file in the scene's folder or below it (or --allow-outside), found " + quoted(name));
   std::string bytes;
   try {
     bytes = load_file(path);
@@ -287,8 +303,8 @@ void NffReader::read_spp(std::string_view) {
 
 }  // namespace
 
-SceneFile read_nff(const std::string& path, std::string_view text, const Warn& warn) {
-  return NffReader(path, text, warn).read();
+SceneFile read_nff(const std::string& path, std::string_view text, const Warn& warn, const ReadOptions& options) {
+  return NffReader(path, text, warn, options).read();
 }
 
 }  // namespace grelha

@@ -219,6 +219,26 @@ void positional(CLI::App& app, const char* name, std::string& target, const char
   app.add_option(name, target, help)->required()->type_name("");
 }
 
+void positionals(CLI::App& app, const char* name, std::vector<std::string>& target, const char* help) {
+  app.add_option(name, target, help)->required()->type_name("");
+}
+
+/// A number of bytes, or of powers of 1024 with K, M, G or T behind it.
+std::uint64_t memory_size(const std::string& text) {
+  constexpr std::string_view kUnits = "KMGT";
+  const auto unit = text.empty() ? std::string_view::npos : kUnits.find(text.back());
+  const auto value = number<double>(std::string_view(text).substr(0, text.size() - (unit != std::string_view::npos)));
+  const double bytes = value ? std::ldexp(*value, unit == std::string_view::npos ? 0 : 10 * (int(unit) + 1)) : 0;
+  if (!(bytes >= 1 << 26) || bytes > 1e18) refuse("--max-memory", "a size from 64M, such as 512M or 6G", text);
+  return std::uint64_t(bytes);
+}
+
+void add_input_options(CLI::App& app, InputOptions& input) {
+  value(app, "--max-memory", "SIZE", "fail rather than take more: 512M, 6G [as much as the machine has]",
+        [&input](const std::string& text) { input.max_memory = memory_size(text); });
+  app.add_flag("--allow-outside", input.read.allow_outside, "scenes may name files outside their own folder");
+}
+
 void add_build_options(CLI::App& app, BuildOptions& build) {
   value(app, "--density", "M", "grid cells: M per axis of a cube that holds one primitive [chosen by the kernel]",
         [&build](const std::string& text) { build.density = density(text); });
@@ -239,13 +259,16 @@ void add_long_work(CLI::App& app, LongWork& work) {
 }
 
 void add_render(CLI::App& app, RenderCommand& command) {
-  CLI::App& sub = *app.add_subcommand("render", "Render SCENE (.nff, .p3f, .ply, each also .gz) to a picture");
+  CLI::App& sub = *app.add_subcommand("render", "Render scenes (.nff, .p3f, .ply, each also .gz; folders of them)");
   sub.footer("Examples:\n"
              "  grelha render scenes/data/balls.nff -o balls.png --size 800x600\n"
-             "  grelha render scenes/data/balls.nff -o fine.hdr --error 0.01");
-  positional(sub, "SCENE", command.scene, "scene file");
-  value(sub, "-o,--output", "FILE", ".png, .hdr or .pfm (linear floats), or .grelha to merge [SCENE's name with .png, in this folder]",
-        [&command](const std::string& text) { want_output_name(text), command.image = text; });
+             "  grelha render scenes/data -o pictures/ --error 0.01");
+  positionals(sub, "SCENE", command.scenes, "scene files, or folders of them");
+  value(sub, "-o,--output", "FILE", ".png, .hdr, .pfm (linear floats), .grelha (to merge), or a folder; {} in it is SCENE's name [{}.png]",
+        [&command](const std::string& text) {
+          if (!text.ends_with('/') && !std::filesystem::is_directory(text)) want_output_name(text);
+          command.image = text;
+        });
   value(sub, "--size", "WxH", "pixels [as the scene says]",
         [&command](const std::string& text) { parse_size(text, command.width, command.height); });
   value(sub, "--threads", "N", "threads [one per processor]",
@@ -285,15 +308,17 @@ void add_render(CLI::App& app, RenderCommand& command) {
   value(sub, "--stats", "FILE", "write counts and times as JSON",
         [&command](const std::string& text) { command.stats = text; });
   sub.add_flag("--quiet", command.quiet, "no progress bar, no summary line");
+  add_input_options(sub, command.input);
   sub.add_flag("--srgb", command.srgb, "PNG: colours are light, show them through the sRGB curve");
   add_long_work(sub, command.work);
 }
 
 void add_info(CLI::App& app, InfoCommand& command) {
-  CLI::App& sub = *app.add_subcommand("info", "Say what SCENE holds and what it needs of the renderer");
-  positional(sub, "SCENE", command.scene, "scene file");
+  CLI::App& sub = *app.add_subcommand("info", "Say what scenes hold and what they need of the renderer");
+  positionals(sub, "SCENE", command.scenes, "scene files, or folders of them");
   sub.footer("Example: grelha info scenes/data/balls.nff --json");
   sub.add_flag("--json", command.json, "as JSON");
+  add_input_options(sub, command.input);
   add_build_options(sub, command.build);
 }
 
@@ -413,7 +438,8 @@ CommandHelp help_of(const CLI::App& sub) {
   CommandHelp help{sub.get_name(), sub.get_description(), {}, {}, sub.get_footer()};
   for (const CLI::Option* o : sub.get_options()) {
     if (o->get_positional()) {
-      help.usage += (help.usage.empty() ? "" : " ") + (o->get_required() ? o->get_name(true) : "[" + o->get_name(true) + "]");
+      const std::string name = o->get_name(true) + (o->get_expected_max() > 1 ? "..." : "");
+      help.usage += (help.usage.empty() ? "" : " ") + (o->get_required() ? name : "[" + name + "]");
       continue;
     }
     OptionHelp option{{}, o->get_type_name(), o->get_description()};
@@ -474,9 +500,10 @@ Command parse_command(int argc, const char* const* argv) {
     return commands.scene;
   }
   RenderCommand& render = commands.render;
-  if (render.image.empty()) render.image = default_image(render.scene);
-  check_together(render);
-  check_long_work(render);
+  RenderCommand first = render;  // as commands_for() will name its picture
+  if (first.image.empty()) first.image = default_image(first.scenes.front());
+  check_together(first);
+  check_long_work(first);
   return render;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "frontend/effects.hpp"
+#include "frontend/scene_file.hpp"
 #include "kernel/part.hpp"
 #include "kernel/render.hpp"
 
@@ -15,6 +16,12 @@ namespace grelha {
 /// The command line cannot be understood; what() is one line without the program's name.
 struct UsageError : std::runtime_error {
   using std::runtime_error::runtime_error;
+};
+
+/// Of reading a scene that may be anyone's.
+struct InputOptions {
+  ReadOptions read;
+  std::uint64_t max_memory = 0;  ///< bytes; 0: as much as the machine has
 };
 
 /// Work that may be cut to pieces, interrupted and gone on with.
@@ -27,7 +34,9 @@ struct LongWork {
 };
 
 struct RenderCommand {
-  std::string scene, image;   ///< image: named after the scene when -o is absent; or a .grelha
+  std::vector<std::string> scenes;  ///< files and folders as they were named; commands_for() makes one command of each
+  std::string scene, image;   ///< image: named after the scene when -o is absent, a folder or a pattern; or a .grelha
+  InputOptions input;
   LongWork work;
   int width = 0, height = 0;  ///< 0: as the scene says
   BuildOptions build;
@@ -39,7 +48,8 @@ struct RenderCommand {
 };
 
 struct InfoCommand {
-  std::string scene;
+  std::vector<std::string> scenes;
+  InputOptions input;
   BuildOptions build;
   bool json = false;
 };

@@ -56,10 +56,10 @@ void warn_of_dropped(const std::string& path, const Dropped& dropped, const Warn
 
 }  // namespace
 
-SceneFile read_scene(const std::string& path, const Warn& warn) {
+SceneFile read_scene(const std::string& path, const Warn& warn, const ReadOptions& options) {
   const std::string bytes = load_file(path);
   refuse_placeholders(path, bytes);
-  SceneFile file = is_ply(path, bytes) ? read_mesh_alone(path, bytes) : read_nff(path, bytes, warn);
+  SceneFile file = is_ply(path, bytes) ? read_mesh_alone(path, bytes) : read_nff(path, bytes, warn, options);
   warn_of_dropped(path, file.dropped, warn);
   return file;
 }

@@ -184,6 +184,12 @@ std::string info_json(const SceneFile& file, const std::vector<GridStats>& grids
   return json.dump(2) + '\n';
 }
 
+std::string info_json(const std::vector<std::pair<std::string, std::string>>& of_files) {
+  Json all;
+  for (const auto& [file, text] : of_files) all[file] = Json::parse(text);
+  return all.dump(2) + '\n';
+}
+
 std::string info_text(const std::string& path, const SceneFile& file, const std::vector<GridStats>& grids) {
   const Geometry& g = file.scene.geometry;
   std::string text = path + ": " + std::to_string(file.camera.width) + 'x' + std::to_string(file.camera.height) + '\n';

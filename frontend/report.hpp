@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "frontend/options.hpp"
@@ -47,6 +48,8 @@ SceneBounds bounds_of(const Geometry& geometry);
 
 std::string stats_json(const RenderCommand& command, const RunReport& report);
 std::string info_json(const SceneFile& file, const std::vector<GridStats>& grids);
+/// JSON of several scenes as one object, by file.
+std::string info_json(const std::vector<std::pair<std::string, std::string>>& of_files);
 std::string info_text(const std::string& path, const SceneFile& file, const std::vector<GridStats>& grids);
 std::string summary_line(const RenderCommand& command, const RunReport& report);
 

@@ -54,8 +54,12 @@ struct SceneFile {
 /// Called with one line per warning, `file:line:column: warning: ...`.
 using Warn = std::function<void(const std::string&)>;
 
+struct ReadOptions {
+  bool allow_outside = false;  ///< a scene may name files outside its own folder
+};
+
 /// Reads .nff, .p3f or .ply, each also with .gz behind it (told apart by the extension; gzip by its first bytes).
 /// Throws ParseError (wrong content) or FileError (cannot be read).
-SceneFile read_scene(const std::string& path, const Warn& warn);
+SceneFile read_scene(const std::string& path, const Warn& warn, const ReadOptions& options = {});
 
 }  // namespace grelha

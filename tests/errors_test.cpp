@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "frontend/ply_reader.hpp"
+#include "frontend/text.hpp"
 #include "tests/support/reading.hpp"
 
 namespace grelha {
@@ -161,6 +162,39 @@ TEST(Errors, FilesThatAreNotThere) {
   EXPECT_EQ(message_of([&] { read_scene(scene, nullptr); }),
             mesh + ": error: cannot open: No such file or directory (named at " + scene + ":8:5)");
   EXPECT_THROW(read_scene(scene, nullptr), FileError);
+}
+
+/// A scene stands in home/, a mesh beside it and another outside; every way out is refused before anything is opened.
+TEST(Errors, AScenesMeshesLieInItsFolder) {
+  namespace fs = std::filesystem;
+  const TemporaryFolder folder;
+  const std::string mesh = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+                           "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  const fs::path home = folder.path() / "home", other = folder.path() / "home2";
+  fs::create_directories(home / "sub");
+  fs::create_directory(other);
+  folder.add("home/mesh.ply", mesh), folder.add("home/sub/mesh.ply", mesh), folder.add("home2/mesh.ply", mesh);
+  fs::create_symlink("../home2/mesh.ply", home / "link.ply");
+  fs::create_directory_symlink(other, home / "door");
+  fs::create_symlink("sub/mesh.ply", home / "inner.ply");
+  const auto reading = [&](const std::string& name, const ReadOptions& options) {
+    const std::string scene = folder.add("home/scene.nff", kView + "ply " + name + "\n");
+    return message_of([&] { read_scene(scene, nullptr, options); });
+  };
+  const std::string absolute = (other / "mesh.ply").string();
+  for (const std::string& name : {std::string("../home2/mesh.ply"), absolute, std::string("link.ply"), std::string("door/mesh.ply"),
+                                  std::string("sub/../../home2/mesh.ply")}) {
+    EXPECT_EQ(reading(name, {}), (home / "scene.nff").string() + ":8:5: error: wanted a file in the scene's folder or below it (or "
+                                 "--allow-outside), found " + grelha::quoted(name));
+    EXPECT_EQ(reading(name, {.allow_outside = true}), "") << name;
+  }
+  const std::string beyond = reading("../nowhere.ply", {});
+  EXPECT_NE(beyond.find("--allow-outside"), std::string::npos) << "nor does the scene learn what there is: " << beyond;
+  for (const std::string& name : {std::string("mesh.ply"), std::string("sub/mesh.ply"), std::string("sub/../mesh.ply"), std::string("inner.ply"),
+                                  (home / "mesh.ply").string()})
+    EXPECT_EQ(reading(name, {}), "") << name;
+  fs::create_symlink(home, folder.path() / "alias");
+  EXPECT_EQ(message_of([&] { read_scene((folder.path() / "alias" / "scene.nff").string(), nullptr); }), "");
 }
 
 TEST(Errors, ErrorsOfAMeshNameTheMesh) {

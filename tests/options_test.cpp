@@ -1,5 +1,6 @@
 #include "frontend/options.hpp"
 
+#include "frontend/batch.hpp"
 #include "frontend/help.hpp"
 #include "frontend/nearest.hpp"
 #include "frontend/progress.hpp"
@@ -35,8 +36,11 @@ std::string error_of(const std::string& line) {
 
 TEST(Render, Defaults) {
   const auto command = std::get<RenderCommand>(parse("render dir/x.nff"));
-  EXPECT_EQ(command.scene, "dir/x.nff");
-  EXPECT_EQ(command.image, "x.png");
+  EXPECT_EQ(command.scenes, std::vector<std::string>{"dir/x.nff"});
+  EXPECT_EQ(commands_for(command).at(0).scene, "dir/x.nff");
+  EXPECT_EQ(commands_for(command).at(0).image, "x.png");
+  EXPECT_EQ(command.input.max_memory, 0u);
+  EXPECT_FALSE(command.input.read.allow_outside);
   EXPECT_EQ(command.width, 0);
   EXPECT_EQ(command.render.threads, 0);
   EXPECT_EQ(command.render.depth, 5);
@@ -105,7 +109,7 @@ TEST(Render, EveryOption) {
 TEST(Render, OptionsMayStandBeforeTheSceneAndCarryTheirValue) {
   const auto command = std::get<RenderCommand>(parse("render --size=65536x1 --quiet x.ply"));
   EXPECT_EQ(command.width, 65536);
-  EXPECT_EQ(command.scene, "x.ply");
+  EXPECT_EQ(command.scenes, std::vector<std::string>{"x.ply"});
 }
 
 TEST(DefaultImage, TakesTheStemInTheCurrentFolder) {
@@ -114,6 +118,30 @@ TEST(DefaultImage, TakesTheStemInTheCurrentFolder) {
   EXPECT_EQ(default_image("a/balls_6.nff.gz"), "balls_6.png");
   EXPECT_EQ(default_image("a/v1.2.nff"), "v1.2.png");
   EXPECT_EQ(default_image("plain"), "plain.png");
+}
+
+TEST(Render, ManyScenesHaveManyPictures) {
+  const auto images = [](const std::string& line) {
+    std::string all;
+    for (const RenderCommand& c : commands_for(std::get<RenderCommand>(parse(line)))) all += c.scene + '>' + c.image + ' ' + c.stats + ';';
+    return all;
+  };
+  EXPECT_EQ(images("render a/x.nff b/y.p3f.gz"), "a/x.nff>x.png ;b/y.p3f.gz>y.png ;");
+  EXPECT_EQ(images("render x.nff y.nff -o out/"), "x.nff>out/x.png ;y.nff>out/y.png ;");
+  EXPECT_EQ(images("render x.nff y.nff -o out/{}.hdr --stats {}.json"), "x.nff>out/x.hdr x.json;y.nff>out/y.hdr y.json;");
+  EXPECT_EQ(images("render x.nff -o one.hdr --stats s.json"), "x.nff>one.hdr s.json;");
+  EXPECT_THROW(images("render x.nff y.nff -o one.png"), UsageError);
+  EXPECT_THROW(images("render a/x.nff b/x.nff"), UsageError);
+  EXPECT_THROW(images("render x.nff y.nff --stats s.json"), UsageError);
+}
+
+TEST(Render, MemoryIsCountedInBytes) {
+  const auto size = [](const std::string& text) { return std::get<RenderCommand>(parse("render x --max-memory " + text)).input.max_memory; };
+  EXPECT_EQ(size("67108864"), 67108864u);
+  EXPECT_EQ(size("64M"), 67108864u);
+  EXPECT_EQ(size("1.5G"), 1610612736u);
+  EXPECT_EQ(std::get<InfoCommand>(parse("info x --max-memory 1T --allow-outside")).input.max_memory, std::uint64_t(1) << 40);
+  for (const char* wrong : {"63M", "x", "G", "-1G", "nan", "1e30"}) EXPECT_THROW(size(wrong), UsageError) << wrong;
 }
 
 TEST(Others, AreParsed) {
@@ -161,9 +189,9 @@ TEST(Errors, SayWhatWasWantedAndFound) {
       {"rendr x.nff", "command: wanted one of render, info, compare, merge, scene, found \"rendr\"; did you mean render?"},
       {"nothing x.nff", "command: wanted one of render, info, compare, merge, scene, found \"nothing\""},
       {"render", "SCENE is required (see --help)"},
-      {"render a b", "The following argument was not expected: b (see --help)"},
+      {"compare a b c", "The following argument was not expected: c (see --help)"},
       {"render a --foo", "The following argument was not expected: --foo (see --help)"},
-      {"render a --sampels 3", "The following arguments were not expected: 3 --sampels; did you mean --samples? (see --help)"},
+      {"render a --sampels 3", "The following argument was not expected: --sampels; did you mean --samples? (see --help)"},
       {"render a --dept=3", "The following argument was not expected: --dept=3; did you mean --depth? (see --help)"},
       {"info a --jsno", "The following argument was not expected: --jsno; did you mean --json? (see --help)"},
       {"render a --sampler sobl", "--sampler: wanted one of sobol, jitter, unshuffled, random, found \"sobl\"; did you mean sobol?"},

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <array>
 #include <cstdlib>
+#include <filesystem>
 #include <cstring>
 #include <sstream>
 
@@ -166,6 +167,66 @@ TEST_F(Program, WrongSceneIsStatusTwo) {
   EXPECT_EQ(outcome.status, 2);
   EXPECT_EQ(outcome.err.substr(0, 19), "bad.nff:3:10: error");
   EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1);
+}
+
+TEST_F(Program, TakesFoldersAndSeveralScenes) {
+  std::filesystem::create_directory(folder_.path() / "all");
+  folder_.write("all/a.nff", kBall), folder_.write("all/b.NFF", kBall), folder_.write("all/c.ply", "not rendered: a part of a scene");
+  const Outcome outcome = run("render all ball.nff -o all/ --size 8x4");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 3);
+  for (const char* name : {"all/a.png", "all/b.png", "all/ball.png"}) EXPECT_EQ(folder_.read(name).substr(1, 3), "PNG") << name;
+  EXPECT_EQ(Json::parse(run("info all --json").out)["all/a.nff"]["scene"]["s"], 1);
+  const std::string text = run("info all").out;
+  EXPECT_NE(text.find("all/a.nff: 24x16\n"), std::string::npos);
+  EXPECT_NE(text.find("\n\nall/b.NFF: 24x16\n"), std::string::npos);
+  EXPECT_EQ(run("render all/ -o {}.hdr --size 8x4 --quiet").status, 0);
+  EXPECT_EQ(folder_.list(), "a.hdr all b.hdr ball.nff");
+}
+
+TEST_F(Program, OneBadSceneDoesNotKeepTheOthers) {
+  const Outcome outcome = run("render no.nff ball.nff -o {}.pfm --size 8x4");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_EQ(outcome.err, "no.nff: error: cannot open: No such file or directory\n");
+  EXPECT_EQ(folder_.list(), "ball.nff ball.pfm");
+  std::filesystem::create_directory(folder_.path() / "empty");
+  EXPECT_EQ(run("info empty").err, "empty: error: no .nff, .p3f or .ply file in this folder\n");
+  EXPECT_EQ(run("info nothing/").err, "nothing/: error: cannot read: No such file or directory\n");
+}
+
+TEST_F(Program, ReadsOutsideOfAFolderOnlyWhenAllowed) {
+  std::filesystem::create_directory(folder_.path() / "in");
+  folder_.write("in/scene.nff", std::string(kBall) + "ply ../mesh.ply\n");
+  folder_.write("mesh.ply", "ply\nformat ascii 1.0\nelement vertex 0\nend_header\n");
+  for (const char* command : {"render in/scene.nff -o x.pfm ", "info in/scene.nff "}) {
+    const Outcome refused = run(command);
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_NE(refused.err.find("in/scene.nff:12:5: error: "), std::string::npos) << refused.err;
+    EXPECT_NE(refused.err.find("--allow-outside"), std::string::npos) << refused.err;
+    EXPECT_EQ(run(std::string(command) + "--allow-outside").status, 0);
+  }
+}
+
+/// Files that claim what they do not hold, and pictures no machine has room for, end in one line and take no memory for it.
+TEST_F(Program, HostileFilesAreBounded) {
+  folder_.write("claims.ply", "ply\nformat ascii 1.0\nelement vertex 4000000000\nproperty float x\nproperty float y\nproperty float z\n"
+                              "end_header\n0 0 0\n");
+  folder_.write("faces.ply", "ply\nformat binary_little_endian 1.0\nelement face 4000000000\nproperty list uchar int vertex_indices\n"
+                             "end_header\n....");
+  folder_.write("mesh.nff", std::string(kBall) + "mesh 4000000000 4000000000\n0 0 0\n");
+  folder_.write("corners.nff", std::string(kBall) + "p 4000000000\n0 0 0\n");
+  for (const char* name : {"claims.ply", "faces.ply", "mesh.nff", "corners.nff"}) {
+    const Outcome outcome = run(std::string("info --max-memory 64M ") + name);
+    EXPECT_EQ(outcome.status, 2) << name;
+    EXPECT_NE(outcome.err.find("4000000000"), std::string::npos) << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  }
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  const Outcome large = run("render ball.nff --size 6000x6000 -o x.pfm --max-memory 300M");
+  EXPECT_EQ(large.status, 1);
+  EXPECT_EQ(large.err, "grelha: error: out of memory (--max-memory sets how much there is)\n");
+  EXPECT_EQ(folder_.list(), "ball.nff claims.ply corners.nff faces.ply mesh.nff");
+#endif
 }
 
 TEST_F(Program, SuggestsTheSceneThatWasMeant) {

@@ -1,0 +1,89 @@
+#include "frontend/batch.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+#include "frontend/parse_error.hpp"
+
+namespace grelha {
+namespace {
+
+namespace fs = std::filesystem;
+using Names = std::vector<std::string>;
+
+bool ends_with_any(std::string name, std::initializer_list<std::string_view> extensions) {
+  std::transform(name.begin(), name.end(), name.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 32) : c; });
+  if (name.ends_with(".gz")) name.resize(name.size() - 3);
+  return std::any_of(extensions.begin(), extensions.end(), [&](std::string_view e) { return name.ends_with(e); });
+}
+
+/// Meshes beside scenes are mostly parts of them.
+Names files_of(const std::string& folder) {
+  Names scenes, meshes;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    const std::string name = it->path().string();
+    if (ends_with_any(name, {".nff", ".p3f"})) scenes.push_back(name);
+    if (ends_with_any(name, {".ply"})) meshes.push_back(name);
+  }
+  if (error) throw FileError(folder, "cannot read: " + error.message());
+  Names& files = scenes.empty() ? meshes : scenes;
+  if (files.empty()) throw FileError(folder, "no .nff, .p3f or .ply file in this folder");
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+bool is_folder(const std::string& path) {
+  std::error_code ignored;
+  return path.ends_with('/') || fs::is_directory(path, ignored);
+}
+
+constexpr std::string_view kPlace = "{}";
+
+/// `pattern` with the scene's name in place of {}.
+std::string filled_in(std::string pattern, const std::string& scene) {
+  const std::string name = fs::path(default_image(scene)).stem().string();
+  for (std::size_t at = 0; (at = pattern.find(kPlace, at)) != std::string::npos; at += name.size()) pattern.replace(at, kPlace.size(), name);
+  return pattern;
+}
+
+std::string image_for(const std::string& scene, const std::string& output) {
+  if (output.empty()) return default_image(scene);
+  if (is_folder(output)) return (fs::path(output) / default_image(scene)).string();
+  return filled_in(output, scene);
+}
+
+}  // namespace
+
+Names scene_files(const Names& arguments) {
+  Names files;
+  for (const std::string& argument : arguments) {
+    if (!is_folder(argument)) files.push_back(argument);
+    else for (std::string& file : files_of(argument)) files.push_back(std::move(file));
+  }
+  return files;
+}
+
+std::vector<RenderCommand> commands_for(const RenderCommand& command) {
+  const Names scenes = scene_files(command.scenes);
+  std::vector<RenderCommand> all;
+  std::map<std::string, std::string> written_by;
+  for (const std::string& scene : scenes) {
+    RenderCommand one = command;
+    one.scenes = {scene}, one.scene = scene, one.image = image_for(scene, command.image);
+    const std::pair<const char*, std::string*> files[] = {
+        {"-o", &one.image}, {"--stats", &one.stats}, {"--samples-map", &one.samples_map}, {"--error-map", &one.error_map}, {"--checkpoint", &one.work.checkpoint}};
+    for (const auto& [option, file] : files) {
+      if (file->empty()) continue;
+      *file = filled_in(*file, scene);
+      const auto [other, fresh] = written_by.try_emplace(*file, scene);
+      if (!fresh) throw UsageError(std::string(option) + ": " + other->second + " and " + scene + " would both be written to " + *file +
+                                   "; {} in a name stands for the scene's");
+    }
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
+}  // namespace grelha

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <cstdint>
+
+namespace grelha {
+
+/// Bytes of memory this machine has; 0: it does not say.
+std::uint64_t machine_memory();
+
+/// Lets this process own no more than so many bytes: what would, a hostile file or a large picture, throws std::bad_alloc instead of
+/// bringing the machine down. Sanitizers own more than any machine has: under them nothing is limited.
+void limit_memory(std::uint64_t bytes);
+
+}  // namespace grelha
