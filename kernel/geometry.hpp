@@ -8,16 +8,18 @@
 
 namespace grelha {
 
+/// A point, a direction or a linear RGB colour.
 struct Float3 {
   float x = 0, y = 0, z = 0;
-  bool operator==(const Float3&) const = default;
+  bool operator==(const Float3&) const = default;  ///< component by component
 };
 
 /// Balls. A negative radius shows only the inside (NFF).
 struct Spheres {
   std::vector<float> x, y, z, radius;   ///< [count]
   std::vector<std::uint32_t> material;  ///< [count] index into Scene::materials
-  std::size_t size() const { return radius.size(); }
+  std::size_t size() const { return radius.size(); }  ///< how many
+  /// Appends one; `m`: its material.
   void add(Float3 center, float r, std::uint32_t m) {
     x.push_back(center.x), y.push_back(center.y), z.push_back(center.z), radius.push_back(r), material.push_back(m);
   }
@@ -28,7 +30,8 @@ struct Cones {
   std::vector<float> base_x, base_y, base_z, base_radius;  ///< [count]
   std::vector<float> apex_x, apex_y, apex_z, apex_radius;  ///< [count]
   std::vector<std::uint32_t> material;                     ///< [count]
-  std::size_t size() const { return material.size(); }
+  std::size_t size() const { return material.size(); }  ///< how many
+  /// Appends one; `m`: its material.
   void add(Float3 base, float rb, Float3 apex, float ra, std::uint32_t m) {
     base_x.push_back(base.x), base_y.push_back(base.y), base_z.push_back(base.z), base_radius.push_back(rb);
     apex_x.push_back(apex.x), apex_y.push_back(apex.y), apex_z.push_back(apex.z), apex_radius.push_back(ra);
@@ -41,7 +44,8 @@ struct Planes {
   std::vector<float> x, y, z;     ///< [count] a point of the plane
   std::vector<float> nx, ny, nz;  ///< [count] normal
   std::vector<std::uint32_t> material;
-  std::size_t size() const { return material.size(); }
+  std::size_t size() const { return material.size(); }  ///< how many
+  /// Appends one through `p` with normal `n`; `m`: its material.
   void add(Float3 p, Float3 n, std::uint32_t m) {
     x.push_back(p.x), y.push_back(p.y), z.push_back(p.z), nx.push_back(n.x), ny.push_back(n.y), nz.push_back(n.z);
     material.push_back(m);
@@ -55,8 +59,8 @@ struct Triangles {
   std::vector<float> nx, ny, nz;        ///< [vertices] normals of any length, or empty when no vertex has one; (0,0,0): none
   std::vector<std::uint32_t> a, b, c;   ///< [count] vertices of each triangle, counter-clockwise from the front
   std::vector<std::uint32_t> material;  ///< [count]
-  std::size_t size() const { return a.size(); }
-  std::size_t vertex_count() const { return x.size(); }
+  std::size_t size() const { return a.size(); }          ///< how many
+  std::size_t vertex_count() const { return x.size(); }  ///< how many corners they share
 };
 
 /// A run of triangles that belong together (a PLY file, an inline mesh) and get a grid of their own.
@@ -64,6 +68,7 @@ struct Object {
   std::uint32_t first_triangle = 0, triangle_count = 0;
 };
 
+/// All that rays can meet. Ids run over planes, spheres, triangles, cones, each kind in the order it stands in.
 struct Geometry {
   Spheres spheres;
   Triangles triangles;
@@ -83,7 +88,7 @@ struct Material {
   bool fresnel = false;      ///< split between mirror and refraction by Schlick (1994) where transmission > 0
   Float3 emission;           ///< light given off
   float roughness = 0;       ///< spread of the mirror lobe: radius of a disc across the unit mirror direction at its tip
-  bool operator==(const Material&) const = default;
+  bool operator==(const Material&) const = default;  ///< field by field
 };
 
 /// A point light, or a parallelogram of such: each shadow ray goes to one point of it, and the light a surface gets is the
@@ -91,14 +96,16 @@ struct Material {
 struct Light {
   Float3 position, color;  ///< position: the centre
   Float3 edge1{}, edge2{};  ///< full edges
+  /// Whether it has edges.
   bool is_area() const { return edge1 != Float3{} || edge2 != Float3{}; }
 };
 
+/// What a World is built from.
 struct Scene {
   Geometry geometry;
   std::vector<Material> materials;
   std::vector<Light> lights;
-  Float3 background;
+  Float3 background;  ///< what a ray sees that meets nothing
 };
 
 }  // namespace grelha

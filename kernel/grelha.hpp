@@ -12,3 +12,6 @@
 #include "kernel/render.hpp"
 #include "kernel/scene_spans.hpp"
 #include "kernel/stats.hpp"
+
+/// A ray tracer on uniform grids.
+namespace grelha {}

@@ -5,6 +5,7 @@
 
 namespace grelha {
 
+/// In the order a batch goes through them.
 enum class Phase : int {
   camera,    ///< making camera rays
   primary,   ///< tracing them

@@ -24,6 +24,7 @@ struct Ray {
 struct Hit {
   float t;                           ///< the point is org + t dir; without a hit, the ray's t_max
   std::uint32_t id = kNoPrimitive;  ///< see primitive_of()
+  /// Whether anything was met.
   explicit operator bool() const { return id != kNoPrimitive; }
 };
 
@@ -46,6 +47,7 @@ void occluded(const World& world, const RaySpan& rays, const QueryOptions& optio
 /// The same of one ray.
 bool occluded(const World& world, const Ray& ray);
 
+/// What kinds there are, in the order of ids.
 enum class PrimitiveKind { kPlane, kSphere, kTriangle, kCone };
 
 /// A primitive as the caller knows it.

@@ -15,6 +15,7 @@
 
 namespace grelha {
 
+/// How a World is built. None of it changes a picture.
 struct BuildOptions {
   bool grid = true;   ///< false: every ray meets every primitive
   float density = 0;  ///< M of the grid's resolution M cbrt(count / volume) per unit length; 0: the kernel chooses
@@ -28,14 +29,15 @@ class World {
   /// Throws std::invalid_argument for arrays of unequal lengths and for indices of what is not there.
   World(const SceneSpans& scene, const BuildOptions& options);
   ~World();
-  World(World&&) noexcept;
-  World& operator=(World&&) noexcept;
+  World(World&&) noexcept;             ///< what was moved from can only go or be assigned to
+  World& operator=(World&&) noexcept;  ///< the same
 
-  std::vector<GridStats> grids() const;
+  std::vector<GridStats> grids() const;  ///< one for the loose primitives and one for each larger object
   std::size_t geometry_bytes() const;  ///< the scene's own arrays
   std::size_t grid_bytes() const;      ///< everything built beside them
 
-  struct Impl;
+  struct Impl;  ///< the kernel's own
+  /// For the kernel alone.
   const Impl& impl() const { return *impl_; }
 
  private:
@@ -52,6 +54,7 @@ std::vector<Isa> isas();
 
 inline constexpr int kMostDepth = 4096, kMostSamples = 65536;
 
+/// How the samples of a picture are spread.
 enum class Sampler {
   kSobol,   ///< one Owen-scrambled Sobol sequence over the dimensions in use
   kJitter,  ///< a jittered grid for each pair of dimensions, those after the pixel's shuffled
@@ -77,6 +80,7 @@ struct RefineOptions {
                        ///< 8 times this; display units, 0 to 1
   double seconds = 0;  ///< > 0: until these are spent, which depends on the machine; ErrorStats::samples says what to ask for to repeat it
   std::uint64_t samples = 0;  ///< > 0: so many in the whole picture, and at least the first few of every pixel
+  /// Whether any of them is asked for.
   bool on() const { return error > 0 || seconds > 0 || samples > 0; }
 };
 
@@ -87,6 +91,7 @@ struct SampleMaps {
   std::vector<float> width;            ///< [height * width] of the 95 % interval, what may hide from the samples counted in
 };
 
+/// How a picture is rendered.
 struct RenderOptions {
   int threads = 0;              ///< 0: one per processor
   int depth = 5;                ///< longest path, at most kMostDepth, the eye ray counted as 1; at its end the background is seen

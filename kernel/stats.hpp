@@ -10,18 +10,23 @@
 
 namespace grelha {
 
+/// Rays by what they are for.
 struct RayCounts {
   std::uint64_t primary = 0, shadow = 0, reflection = 0, refraction = 0;
+  /// All of them.
   std::uint64_t total() const { return primary + shadow + reflection + refraction; }
+  /// Adds what another thread or call did.
   void operator+=(const RayCounts& o) {
     primary += o.primary, shadow += o.shadow, reflection += o.reflection, refraction += o.refraction;
   }
 };
 
+/// Tests by kind of primitive.
 struct TestCounts {
   std::uint64_t sphere = 0, triangle = 0, cone = 0, plane = 0;  ///< one ray against one primitive
 };
 
+/// What became of packets.
 struct PacketCounts {
   std::uint64_t formed = 0;        ///< packets that marched together to the end
   std::uint64_t fell_back = 0;     ///< packets that spread and went on as single rays
@@ -29,10 +34,12 @@ struct PacketCounts {
   std::uint64_t lanes_busy = 0;    ///< those of them that carried a ray still searching
 };
 
+/// What tracing did.
 struct TraceCounts {
   std::uint64_t visits = 0;  ///< grid cells looked into, by a packet or by a ray
   TestCounts tests;
   PacketCounts packets;
+  /// Adds what another thread or call did.
   void operator+=(const TraceCounts& o) {
     visits += o.visits;
     tests.sphere += o.tests.sphere, tests.triangle += o.tests.triangle, tests.cone += o.tests.cone, tests.plane += o.tests.plane;
@@ -54,11 +61,13 @@ struct ErrorStats {
 /// Seconds of all threads together, by Phase.
 struct PhaseSeconds : std::array<double, kPhases> {
   PhaseSeconds() : array{} {}
+  /// Adds what another thread or call did.
   void operator+=(const PhaseSeconds& o) {
     for (std::size_t i = 0; i < size(); ++i) (*this)[i] += o[i];
   }
 };
 
+/// What a render did.
 struct RenderStats {
   RayCounts rays;
   TraceCounts trace;
@@ -68,6 +77,7 @@ struct RenderStats {
   const char* isa = "";
 };
 
+/// One grid of a World.
 struct GridStats {
   std::array<std::uint32_t, 3> cells{};  ///< per axis
   std::uint64_t occupied = 0;            ///< cells that hold at least one reference

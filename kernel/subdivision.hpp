@@ -20,12 +20,13 @@ inline constexpr int kMostSubdividedSide = (1 << 24) / static_cast<int>(kLattice
 /// A point of a picture, in lattice steps from its upper left corner.
 struct LatticePoint {
   std::uint32_t x, y;
-  bool operator==(const LatticePoint&) const = default;
+  bool operator==(const LatticePoint&) const = default;  ///< the same place
 };
 
 /// 32 bits for a point, well mixed: what tells its random numbers from those of other points.
 std::uint32_t lattice_hash(LatticePoint point);
 
+/// Adaptive supersampling: `on` or not, and how fine.
 struct Subdivision {
   bool on = false;
   float threshold = .1f;  ///< squares split where a channel of two corners differs by more; display values, clamped to [0, 1]

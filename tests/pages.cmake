@@ -1,3 +1,8 @@
 # The man page and the completions as a shell and man(1) take them.
 add_test(NAME pages COMMAND bash ${CMAKE_CURRENT_LIST_DIR}/pages.sh ${GRELHA_PAGES} $<TARGET_FILE:grelha>)
 set_tests_properties(pages PROPERTIES LABELS build)
+
+# The site builds without a warning, and its picture of what includes what is of these sources; without the tools both skip, and say so.
+add_test(NAME docs COMMAND sh ${PROJECT_SOURCE_DIR}/docs/build.sh ${CMAKE_CURRENT_BINARY_DIR}/docs)
+add_test(NAME architecture COMMAND ${PROJECT_SOURCE_DIR}/docs/architecture.py --check)
+set_tests_properties(docs architecture PROPERTIES LABELS build SKIP_RETURN_CODE 77)

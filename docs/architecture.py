@@ -1,0 +1,77 @@
+#!/usr/bin/python3
+"""Draws docs/images/architecture.svg from the #include lines: what stands on what. Needs graphviz.
+
+A box is a header with its .cpp, or a family (ply_*.hpp); arrows that follow from others are left out. --check: say whether the picture
+is still of these sources.
+"""
+import collections
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+LAYERS = {"frontend": "#e8f1fa", "kernel": "#fbf1dd", "scenes": "#e9f5e6"}
+FAMILIES = ("nff", "ply", "variant")  # one box each
+EVERYWHERE = {"kernel/geometry", "kernel/vec3", "kernel/lanes"}  # below all else; arrows to them would only hide the others
+
+
+def unit(path):
+    stem = path.stem
+    for family in FAMILIES:
+        if stem == family or stem.startswith(family + "_"):
+            return f"{path.parent}/{family}_*"
+    return f"{path.parent}/{stem}"
+
+
+def arrows():
+    found = collections.defaultdict(set)
+    for layer in LAYERS:
+        for file in sorted((ROOT / layer).glob("*.[ch]pp")):
+            here = unit(file.relative_to(ROOT))
+            found[here]
+            for name in re.findall(r'^#include "([^"]+)"', file.read_text(), re.M):
+                there = unit(pathlib.Path(name))
+                if there != here and there not in EVERYWHERE:
+                    found[here].add(there)
+    return found
+
+
+def graph():
+    found = arrows()
+    scenes = [u for u in found if u.startswith("scenes/")]
+    for u in scenes:  # the generators are many and alike
+        del found[u]
+    for targets in found.values():
+        if any(t.startswith("scenes/") for t in targets):
+            targets -= {t for t in targets if t.startswith("scenes/")}
+            targets.add("scenes/*")
+    found["scenes/*"] = set()
+    lines = ["strict digraph {", 'rankdir=LR; ranksep=.35; nodesep=.12; fontname="Helvetica"; node [shape=box style="filled,rounded" '
+             'fillcolor=white fontname="Helvetica" fontsize=11 height=.25 margin="0.08,0.03"]; edge [color="#00000060" arrowsize=.5];']
+    for layer, colour in LAYERS.items():
+        lines.append(f'subgraph cluster_{layer} {{ label="{layer}/"; style=filled; color="{colour}";')
+        lines += [f'"{u}" [label="{u.split("/")[1]}"];' for u in sorted(found) if u.startswith(layer + "/") and u not in EVERYWHERE]
+        lines.append("}")
+    lines += [f'"{u}" -> "{t}";' for u in sorted(found) if u not in EVERYWHERE for t in sorted(found[u])]
+    return "\n".join(lines + ["}"])
+
+
+def main():
+    if not shutil.which("tred"):
+        print("skipped: no graphviz")
+        sys.exit(77)
+    reduced = subprocess.run(["tred"], input=graph(), capture_output=True, text=True, check=True).stdout
+    target = ROOT / "docs/images/architecture.svg"
+    if "--check" in sys.argv:
+        boxes = set(re.findall(r"<title>([^&<]*/[^&<]*)</title>", target.read_text()))
+        wanted = {t for t in re.findall(r'^\s*"([^"]*/[^"]*)"\s*\[', reduced, re.M)}
+        if boxes != wanted:
+            sys.exit(f"docs/images/architecture.svg is of other sources (run docs/architecture.py): {sorted(boxes ^ wanted)}")
+        return
+    svg = subprocess.run(["dot", "-Tsvg"], input=reduced, capture_output=True, text=True, check=True).stdout
+    target.write_text(re.sub(r"<!-- Generated.*?-->\n", "", svg, flags=re.S))
+
+
+main()
