@@ -3,7 +3,23 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#if defined(__has_feature)  // clang
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define GRELHA_SANITIZED
+#endif
+#elif defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define GRELHA_SANITIZED
+#endif
+
 namespace grelha {
+
+bool memory_can_be_limited() {
+#ifdef GRELHA_SANITIZED
+  return false;
+#else
+  return true;
+#endif
+}
 
 std::uint64_t machine_memory() {
   const long pages = sysconf(_SC_PHYS_PAGES), page_size = sysconf(_SC_PAGE_SIZE);
@@ -12,14 +28,10 @@ std::uint64_t machine_memory() {
 
 // RLIMIT_DATA counts what a process can write and does not share, and, unlike RLIMIT_AS, not what malloc only reserves.
 void limit_memory(std::uint64_t bytes) {
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
   rlimit limit{};
-  if (bytes == 0 || getrlimit(RLIMIT_DATA, &limit) != 0) return;
+  if (!memory_can_be_limited() || bytes == 0 || getrlimit(RLIMIT_DATA, &limit) != 0) return;
   if (limit.rlim_max == RLIM_INFINITY || bytes < limit.rlim_max) limit.rlim_cur = bytes;
   setrlimit(RLIMIT_DATA, &limit);
-#else
-  (void)bytes;
-#endif
 }
 
 }  // namespace grelha

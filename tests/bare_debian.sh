@@ -1,0 +1,27 @@
+#!/bin/sh
+# bare_debian.sh DEB FOLDER [MIRROR]: installs the package in a fresh Debian 12 in FOLDER and uses it: the program, the man page, and the
+# example built against the library. As root, with debootstrap; not a test of ctest's, for it downloads some hundred megabytes.
+set -eu
+deb=$1
+root=$2
+[ -e "$root/etc/debian_version" ] || debootstrap --variant=minbase bookworm "$root" "${3:-http://deb.debian.org/debian}"
+mount -t proc proc "$root/proc"
+trap 'umount "$root/proc"' EXIT
+cp "$deb" "$root/root/grelha.deb"
+cat >"$root/root/try" <<'TRY'
+set -eux
+export DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8
+cd /root
+apt-get update -qq
+apt-get install -y -qq --reinstall ./grelha.deb
+grelha --version
+grelha render /usr/share/grelha/scenes/ -o /tmp/ --size 160x120
+apt-get install -y -qq --no-install-recommends man-db g++ cmake make
+man grelha | head -n 24
+rm -rf /tmp/example
+cp -r /usr/share/doc/grelha/examples /tmp/example
+cmake -S /tmp/example -B /tmp/example/build
+cmake --build /tmp/example/build
+/tmp/example/build/embed
+TRY
+chroot "$root" sh /root/try
