@@ -12,12 +12,13 @@ if grep -v 'Member .* (variable) of .* is not documented' "$out/warnings"; then
   echo "docs/build.sh: Doxygen complains" >&2
   exit 1
 fi
-# Pictures are where the pages' own links look for them: README's from the top, the others' from docs/.
-mkdir "$out/html/docs"
-cp -r docs/images "$out/html/docs/images"
-ln -s docs/images "$out/html/images"
+# What pages link to and Doxygen does not make is put where their own links look for it: README's and CONTRIBUTING's from the top, the
+# others' from docs/, and all pages lie in html/.
+cp -r docs "$out/html/docs"
+cp -r docs/images docs/*.csv docs/*.sh CMakePresets.json LICENSE "$out/html"
+cp -r examples "$out"
 cd "$out/html"
-for picture in $(grep -oh '<img src="[^":]*"' ./*.html | sed 's/.*"\(.*\)"/\1/' | sort -u); do
-  [ -e "$picture" ] || { echo "docs/build.sh: no picture $picture" >&2; exit 1; }
+for link in $(grep -ohE '(<img src|<a [^>]*href)="[^":#]+["#]' ./*.html | sed 's/.*"\([^"#]*\)["#]$/\1/' | sort -u); do
+  [ -e "$link" ] || { echo "docs/build.sh: a page links to $link, which is not there" >&2; exit 1; }
 done
 echo "$out/html/index.html"
