@@ -71,7 +71,7 @@ std::string program_help(const std::vector<CommandHelp>& commands, bool all) {
           "or writing a file fails; 2 for bad usage or a scene that cannot be one; 130 and\n"
           "143 when stopped by SIGINT and SIGTERM.\n";
   if (all)
-    for (const CommandHelp& c : commands) text += "\n" + help_text(c, true);
+    for (const CommandHelp& c : commands) (text += '\n') += help_text(c, true);
   return text;
 }
 

@@ -126,7 +126,7 @@ std::string zsh_completion(const std::vector<CommandHelp>& commands) {
 }
 
 std::string fish_completion(const std::vector<CommandHelp>& commands) {
-  const auto quoted = [](const std::string& text) { return "'" + replaced(replaced(text, "\\", "\\\\"), "'", "\\'") + "'"; };
+  const auto quoted = [](const std::string& text) { return replaced(replaced(text, "\\", "\\\\"), "'", "\\'").insert(0, 1, '\'') + '\''; };
   std::string text = "# fish completion of grelha, " + std::string(kMade) + '\n';
   const std::string none = "complete -c grelha -n '__fish_use_subcommand' ";
   text += none + "-l help -d 'commands and examples'\n" + none + "-l help-all -d 'everything'\n" + none + "-l version -d 'which version this is'\n";
