@@ -8,6 +8,8 @@
 
 #include <omp.h>
 
+#include "kernel/crowds.hpp"
+
 namespace grelha {
 namespace {
 
@@ -223,6 +225,13 @@ World::Impl::Impl(const SceneSpans& s, const BuildOptions& options) : scene((che
       Ids ids = std::move(groups[i]);
       Extent extent = set_huge_apart(primitives, ids, extents[i], apart, threads);
       if (set_few_apart(primitives, ids, apart)) extent = extent_of(primitives, ids, threads);
+      if (auto crowds = take_crowds(primitives, ids, extent.box, density, kMostGroups - groups.size()); !crowds.empty()) {
+        extent = extent_of(primitives, ids, threads);
+        for (Ids& crowd : crowds) {
+          extents.push_back(extent_of(primitives, crowd, threads));
+          groups.push_back(std::move(crowd));
+        }
+      }
       if (ids.size() <= kFewest && apart.size() + ids.size() <= kMostOutside) {
         apart.insert(apart.end(), ids.begin(), ids.end());
       } else if (!ids.empty()) {

@@ -183,7 +183,7 @@ std::vector<Case> cases() {
   return {{"spheres", random_spheres(3, 300)},  {"triangles", random_triangles(3, 300)}, {"cones", random_cones(3, 200)},
           {"mixture", random_mixture(3, 300)},  {"flat", flat_sheet(3, 200)},            {"needles", needles(3, 90)},
           {"heap", heap(3, 20)},                {"stadium", stadium(3, 300)},            {"wide plain", crowd_on_a_wide_plain(3, 300)},
-          {"lattice", lattice_patch(9)},
+          {"lattice", lattice_patch(9)},          {"towns", towns_in_a_desert(3, 3000)},
           {"tiny", placed(random_mixture(3, 300), 1e-6, {})}, {"far", placed(random_mixture(3, 300), 2, far)}};
 }
 
@@ -456,6 +456,27 @@ TEST(WorldCheck, AnEmptySceneIsOne) {
   const Rays rays = rays_about(random, {}, 1, 100);
   for (const Way& way : every_way())
     EXPECT_EQ(hits_of(trace(*find_variant("best"), world, rays, way.settings, Query::kClosest)), 0u) << way.name;
+}
+
+// ---- crowds -----------------------------------------------------------------------------------------------------
+
+TEST(Crowds, GetCellsOfTheirOwnSize) {
+  const Scene scene = towns_in_a_desert(5, 6000);
+  const World world(scene, {});
+  std::size_t most = 0;
+  for (const Grid& g : world.impl().grids)
+    for (std::size_t c = 0; g.serves != Serves::kFar && c + 1 < g.store.sphere_first.size(); ++c)
+      most = std::max<std::size_t>(most, g.store.sphere_first[c + 1] - g.store.sphere_first[c]);
+  EXPECT_LT(most, 4096u) << "of 24600 spheres";  // what is called bad; without crowds it is 18001
+}
+
+TEST(Crowds, AreNotSeenWhereThereAreNone) {
+  const Scene even = random_mixture(5, 20000);
+  EXPECT_EQ(World(even, {}).grids().size(), 1u);
+  // All in one place: no cells would help.
+  Scene one_place = empty_scene();
+  for (int i = 0; i < 3000; ++i) one_place.geometry.spheres.add({1, 2, 3}, .5f, 0);
+  EXPECT_EQ(World(one_place, {}).grids().size(), 1u);
 }
 
 }  // namespace

@@ -54,6 +54,7 @@ const std::vector<Case>& cases() {
       {"heap", crowd<heap, 20>, 1},
       {"needles", crowd<needles, 150>, 1},
       {"stadium", crowd<stadium, 400>, 1},
+      {"towns", crowd<towns_in_a_desert, 2000>, 3, {-300, 100, 50}},
       {"stadium_seen_from_the_stands", crowd<stadium, 400>, 900},
       {"wide_plain", crowd<crowd_on_a_wide_plain, 400>, 1},
       {"wide_plain_seen_from_all_over", crowd<crowd_on_a_wide_plain, 400>, 300},

@@ -167,6 +167,20 @@ inline Scene crowd_on_a_plain(std::uint64_t seed, int n, float half) {
 /// So wide that the crowd has a grid for rays that start near and one for those that start far away.
 inline Scene crowd_on_a_wide_plain(std::uint64_t seed, int n) { return crowd_on_a_plain(seed, n, 1e6f); }
 
+/// Two towns, and a hamlet in one of them, in a desert of few spheres: what one level of cells has nothing for.
+inline Scene towns_in_a_desert(std::uint64_t seed, int n) {
+  Random random(seed);
+  Scene s = empty_scene();
+  const auto spread = [&](int count, const Float3& middle, float size) {
+    for (int i = 0; i < count; ++i) s.geometry.spheres.add(at(middle, size * random.in(0, 1), random.direction()), .02f * size, 0);
+  };
+  spread(n / 10, {0, 0, 0}, 1000);
+  spread(n, {200, 0, 0}, 3);
+  spread(n, {-300, 100, 50}, 2);
+  spread(2 * n, {-300, 101, 50}, .01f);
+  return s;
+}
+
 inline Scene stadium(std::uint64_t seed, int n) {
   Random random(seed + 1);
   Scene s = crowd_on_a_plain(seed, n, 1000);
