@@ -137,6 +137,7 @@ std::string stats_json(const RenderCommand& command, const RunReport& report) {
                      {"accel", command.build.grid ? "grid" : "none"},
                      {"mailbox", command.render.mailbox},
                      {"isa", command.render.isa},
+                     {"precision", command.render.precision == Precision::kDouble ? "double" : "single"},
                      {"packet", command.render.packet},
                      {"samples", command.render.sampling.samples},
                      {"sampler", sampler_name(command.render.sampling.sampler)},

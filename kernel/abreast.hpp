@@ -117,7 +117,7 @@ inline void walk_apart(const GridView& g, Packet& p, bool any_triangles, Counter
   const auto retire = [&](unsigned done) {
     for (; done != 0; done &= done - 1) {
       const int k = __builtin_ctz(done);
-      p.best[of[k]] = r[k].best, p.id[of[k]] = bits_of(r[k].id);
+      put_back(r[k], p, of[k]);
     }
   };
   // No walk crosses more planes than there are, whatever rounding does.

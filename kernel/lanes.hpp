@@ -6,6 +6,7 @@
 //   Block   the same, at most 8 wide: one primitive of a block a lane
 //   float   the scalar twin; every function below exists for it too, with the same bits
 //   DoubleLanes, double   the same in double precision, half as many lanes, for what is computed precisely
+//   Exact, ExactBlock     what primitives are tested in: Lanes and Block, or both DoubleLanes in copies compiled with GRELHA_DOUBLE
 //   Words<Lanes>, Words<float>   unsigned 32-bit integers beside them: + - * ^ & | << >>, == and ?: are written as for one
 //
 // Only + - * / sqrt, comparisons and selects: these give the same bits at every width. No reciprocal, no rsqrt, no
@@ -21,6 +22,10 @@
 #define GRELHA_ISA_sse2 2
 #define GRELHA_ISA_avx2 3
 #define GRELHA_ISA_avx512 4
+#define GRELHA_ISA_scalar_double 1
+#define GRELHA_ISA_sse2_double 2
+#define GRELHA_ISA_avx2_double 3
+#define GRELHA_ISA_avx512_double 4
 #define GRELHA_JOIN_(a, b) a##b
 #define GRELHA_JOIN(a, b) GRELHA_JOIN_(a, b)
 #define GRELHA_ISA_NUMBER GRELHA_JOIN(GRELHA_ISA_, GRELHA_ISA)
@@ -471,6 +476,41 @@ inline Words<Real> counted_words(std::uint32_t first) {
   static constexpr std::uint32_t kCount[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
   return load_words<Real>(kCount) + first;
 }
+#ifdef GRELHA_DOUBLE
+inline constexpr bool kDouble = true;
+using Exact = DoubleLanes;
+using ExactBlock = DoubleLanes;
+#else
+inline constexpr bool kDouble = false;
+using Exact = Lanes;
+using ExactBlock = Block;
+#endif
+using Number = Scalar<Exact>;
+
+/// Floats as they are, or widened.
+template <class Real>
+inline Real take(const float* p) {
+  if constexpr (sizeof(Scalar<Real>) == sizeof(float)) return load<Real>(p);
+#if GRELHA_ISA_NUMBER == 2
+  else return Real(_mm_cvtps_pd(_mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(p)))));
+#elif GRELHA_ISA_NUMBER == 3
+  else return Real(_mm256_cvtps_pd(_mm_loadu_ps(p)));
+#elif GRELHA_ISA_NUMBER == 4
+  else return Real(_mm512_cvtps_pd(_mm256_loadu_ps(p)));
+#else
+  else return *p;
+#endif
+}
+
+/// The greatest float not above, and the least not below, a number; NaN for NaN.
+inline float not_above(double a) {
+  const float r = static_cast<float>(a);
+  if (!(r > a)) return r;
+  const std::int32_t b = float_bits(r);
+  return r == 0 ? bits_float(INT32_MIN + 1) : bits_float(r > 0 ? b - 1 : b + 1);
+}
+inline float not_below(double a) { return 0 - not_above(0 - a); }
+
 /// |a| without touching the sign bit of anything else.
 template <class Real>
 inline Real magnitude(const Real& a) {

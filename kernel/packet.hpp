@@ -14,30 +14,46 @@ namespace grelha::GRELHA_ISA {
 inline constexpr int kPacket = kWidth<Lanes> == 1 ? 64 : 256;
 inline constexpr float kInfinity = __builtin_inff();
 
-/// What a trace counts, by the kind of its tests.
-struct Counters {
-  std::uint64_t visits = 0, sphere = 0, triangle = 0, cone = 0, plane = 0;
-  std::uint64_t formed = 0, fell_back = 0, issued = 0, busy = 0;
-};
-
 /// Up to kPacket rays as arrays. A ray searches (t_min, best); best <= t_min switches it off. Places between `size` and the
 /// end of the last group are switched off. `id` holds the bits of the nearest primitive so far.
 struct Packet {
   alignas(64) float org[3][kPacket];
   alignas(64) float dir[3][kPacket];
-  alignas(64) float inv_dd[kPacket];
+  alignas(64) Number inv_dd[kPacket];
   alignas(64) float t_min[kPacket];
   alignas(64) float best[kPacket];
   alignas(64) float start[kPacket];       ///< t from which a grid is still to be searched
   alignas(64) float id[kPacket];
-  alignas(64) float shear[3][kPacket];
+  alignas(64) Number shear[3][kPacket];
   alignas(64) float axis[kPacket];        ///< of the shear: 0, 1 or 2
-  alignas(64) float shift[kPacket];       ///< how far a ray was brought near, in t; set only when `moved`
+  alignas(64) Number shift[kPacket];      ///< how far a ray was brought near, in t; set only when `moved`
+#ifdef GRELHA_DOUBLE
+  // What is tested: rays as they came, with t from their own origins. What is above is for the grids then, org, t_min and best those
+  // of rays brought near; t_min is not above the true one, and best not below.
+  alignas(64) float from[3][kPacket];
+  alignas(64) float after[kPacket];
+  alignas(64) double nearest[kPacket];
+#endif
   bool moved = false;
   int group_axis[kPacket / kWidth<Lanes>];  ///< the axis all rays of a group share, or -1
   int size, groups;
   std::uint64_t live;  ///< bit g: group g has a ray that still searches
 };
+
+/// What tests take of ray i.
+#ifdef GRELHA_DOUBLE
+inline const float* tested_org(const Packet& p, int axis) { return p.from[axis]; }
+inline const float* tested_t_min(const Packet& p) { return p.after; }
+inline const double* tested_best(const Packet& p) { return p.nearest; }
+inline void set_best(Packet& p, int i, double t) {
+  p.nearest[i] = t, p.best[i] = not_below(p.moved ? t - p.shift[i] : t);
+}
+#else
+inline const float* tested_org(const Packet& p, int axis) { return p.org[axis]; }
+inline const float* tested_t_min(const Packet& p) { return p.t_min; }
+inline const float* tested_best(const Packet& p) { return p.best; }
+inline void set_best(Packet& p, int i, float t) { p.best[i] = t; }
+#endif
 
 inline std::uint32_t id_of(float bits) { return static_cast<std::uint32_t>(float_bits(bits)); }
 inline float bits_of(std::uint32_t id) { return bits_float(static_cast<std::int32_t>(id)); }
@@ -50,6 +66,20 @@ inline Real least_headway(const Real& x, const Real& y, const Real& z) {
 }
 inline Lanes least_headway(const Packet& p, int i) {
   return least_headway(load<Lanes>(p.dir[0] + i), load<Lanes>(p.dir[1] + i), load<Lanes>(p.dir[2] + i));
+}
+
+inline Vec3<Exact> origin(const Packet& p, int i) {
+  return {take<Exact>(tested_org(p, 0) + i), take<Exact>(tested_org(p, 1) + i), take<Exact>(tested_org(p, 2) + i)};
+}
+inline Vec3<Exact> direction(const Packet& p, int i) {
+  return {take<Exact>(p.dir[0] + i), take<Exact>(p.dir[1] + i), take<Exact>(p.dir[2] + i)};
+}
+
+/// A vector in the axes of rays that stand on different ones, lane by lane.
+template <class Real>
+inline Vec3<Real> permuted(const Real& axis, const Vec3<Real>& v) {
+  const Mask<Real> x = axis == Real(0), y = axis == Real(1);
+  return {select(x, v.y, select(y, v.z, v.x)), select(x, v.z, select(y, v.x, v.y)), select(x, v.x, select(y, v.y, v.z))};
 }
 
 /// Completes a packet whose org, dir, t_min, best and size are set.
@@ -67,51 +97,54 @@ inline void prepare(Packet& p, bool any_triangles) {
     const Vec3<Lanes> d{load<Lanes>(p.dir[0] + i), load<Lanes>(p.dir[1] + i), load<Lanes>(p.dir[2] + i)};
     const Vec3<Lanes> o{load<Lanes>(p.org[0] + i), load<Lanes>(p.org[1] + i), load<Lanes>(p.org[2] + i)};
     const Lanes dd = dot(d, d), inv = Lanes(1) / dd;
-    store(p.inv_dd + i, inv);
     store(p.id + i, Lanes(no_id));
     // NaN and infinity times zero are NaN; a ray with one, or without a direction, meets nothing.
     const Mask<Lanes> sound = ((o.x + o.y) + (o.z + dd) + inv) * Lanes(0) == Lanes(0);
     store(p.best + i, select(sound, load<Lanes>(p.best + i), Lanes(-kInfinity)));
-    if (!any_triangles) continue;
-    const Lanes ax = magnitude(d.x), ay = magnitude(d.y), az = magnitude(d.z);
-    const Mask<Lanes> x_first = both(ax >= ay, ax >= az), y_first = ay >= az;
-    const Lanes axis = select(x_first, Lanes(0), select(y_first, Lanes(1), Lanes(2)));
-    const Lanes dz = select(x_first, d.x, select(y_first, d.y, d.z));
-    const Lanes dx = select(x_first, d.y, select(y_first, d.z, d.x));
-    const Lanes dy = select(x_first, d.z, select(y_first, d.x, d.y));
-    store(p.axis + i, axis);
-    store(p.shear[0] + i, dx / dz), store(p.shear[1] + i, dy / dz), store(p.shear[2] + i, Lanes(1) / dz);
-    p.group_axis[g] = none(axis != Lanes(p.axis[i])) ? static_cast<int>(p.axis[i]) : -1;
+    if (any_triangles) {
+      const Lanes ax = magnitude(d.x), ay = magnitude(d.y), az = magnitude(d.z);
+      const Mask<Lanes> x_first = both(ax >= ay, ax >= az), y_first = ay >= az;
+      const Lanes axis = select(x_first, Lanes(0), select(y_first, Lanes(1), Lanes(2)));
+      store(p.axis + i, axis);
+      p.group_axis[g] = none(axis != Lanes(p.axis[i])) ? static_cast<int>(p.axis[i]) : -1;
+    }
+    for (int k = i; k < i + w; k += kWidth<Exact>) {
+      const Vec3<Exact> e = direction(p, k);
+      store(p.inv_dd + k, Exact(1) / dot(e, e));
+      if (!any_triangles) continue;
+      const Vec3<Exact> q = permuted(take<Exact>(p.axis + k), e);
+      store(p.shear[0] + k, q.x / q.z), store(p.shear[1] + k, q.y / q.z), store(p.shear[2] + k, Exact(1) / q.z);
+    }
   }
+#ifdef GRELHA_DOUBLE
+  p.moved = false;
+  __builtin_memcpy(p.from, p.org, sizeof p.from), __builtin_memcpy(p.after, p.t_min, sizeof p.after);
+  for (int i = 0; i < p.groups * w; ++i) p.nearest[i] = p.best[i];
+#endif
 }
 
-/// Notes hits of one group against one primitive: nearer wins, then the lower id. With kAny a hit ends the ray's search.
+/// Notes hits of lanes from i on against one primitive: nearer wins, then the lower id. With kAny a hit ends the ray's search.
 template <bool kAny>
-inline void note(Packet& p, int i, const Mask<Lanes>& hit, const Lanes& t, std::uint32_t id) {
-  const Lanes best = load<Lanes>(p.best + i);
-  if constexpr (kAny) {
-    const Mask<Lanes> closer = both(hit, t < best);
-    if (none(closer)) return;
-    store(p.best + i, select(closer, Lanes(-kInfinity), best));
-    store(p.id + i, select(closer, Lanes(bits_of(id)), load<Lanes>(p.id + i)));
-  } else {
-    const Mask<Lanes> candidate = both(hit, t <= best);
-    if (none(candidate)) return;
-    const Mask<Lanes> tie = both(candidate, t == best);
-    if (none(tie)) {
-      store(p.best + i, select(candidate, t, best));
-      store(p.id + i, select(candidate, Lanes(bits_of(id)), load<Lanes>(p.id + i)));
-      return;
-    }
-    float at[kWidth<Lanes>];
-    store(at, t);
-    const unsigned lanes = bits(candidate), ties = bits(tie);
-    for (int k = 0; k < kWidth<Lanes>; ++k) {
-      if (!(lanes >> k & 1)) continue;
-      const std::uint32_t held = id_of(p.id[i + k]);
-      if ((ties >> k & 1) && (held == kNoPrimitive || held <= id)) continue;
-      p.best[i + k] = at[k], p.id[i + k] = bits_of(id);
-    }
+inline void note(Packet& p, int i, const Mask<Exact>& hit, const Exact& t, std::uint32_t id) {
+  const Exact best = load<Exact>(tested_best(p) + i);
+  const Mask<Exact> candidate = both(hit, kAny ? t < best : t <= best);
+  if (none(candidate)) return;
+  const Mask<Exact> tie = both(candidate, t == best);
+#ifndef GRELHA_DOUBLE
+  if (kAny || none(tie)) {
+    store(p.best + i, select(candidate, kAny ? Lanes(-kInfinity) : t, best));
+    store(p.id + i, select(candidate, Lanes(bits_of(id)), load<Lanes>(p.id + i)));
+    return;
+  }
+#endif
+  Number at[kWidth<Exact>];
+  store(at, t);
+  const unsigned ties = bits(tie);
+  for (unsigned left = bits(candidate); left != 0; left &= left - 1) {
+    const int k = __builtin_ctz(left);
+    const std::uint32_t held = id_of(p.id[i + k]);
+    if ((ties >> k & 1) && (held == kNoPrimitive || held <= id)) continue;
+    set_best(p, i + k, kAny ? Number(-kInfinity) : at[k]), p.id[i + k] = bits_of(id);
   }
 }
 
@@ -124,6 +157,14 @@ inline void each_live_group(const Packet& p, const Test& test) {
   }
 }
 
+/// Runs `test(i, g)` for the first lane i of every part, as wide as tests are, of every live group g.
+template <class Test>
+inline void each_tested(const Packet& p, const Test& test) {
+  each_live_group(p, [&](int first, int g) {
+    for (int i = first; i < first + kWidth<Lanes>; i += kWidth<Exact>) test(i, g);
+  });
+}
+
 inline void count_lanes(const Packet& p, Counters& n, std::uint64_t& tests) {
   each_live_group(p, [&](int i, int) {
     n.issued += kWidth<Lanes>;
@@ -133,73 +174,60 @@ inline void count_lanes(const Packet& p, Counters& n, std::uint64_t& tests) {
   });
 }
 
-inline Vec3<Lanes> origin(const Packet& p, int i) {
-  return {load<Lanes>(p.org[0] + i), load<Lanes>(p.org[1] + i), load<Lanes>(p.org[2] + i)};
-}
-inline Vec3<Lanes> direction(const Packet& p, int i) {
-  return {load<Lanes>(p.dir[0] + i), load<Lanes>(p.dir[1] + i), load<Lanes>(p.dir[2] + i)};
-}
-
 template <bool kAny>
 inline void test_sphere(Packet& p, float x, float y, float z, float r, std::uint32_t id) {
-  const Vec3<Lanes> center{Lanes(x), Lanes(y), Lanes(z)};
-  const Lanes radius(r);
-  each_live_group(p, [&](int i, int) {
-    Lanes t(0);
-    const Mask<Lanes> hit = hit_sphere<Lanes>(origin(p, i), direction(p, i), load<Lanes>(p.inv_dd + i),
-                                              load<Lanes>(p.t_min + i), center, radius, t);
+  const Vec3<Exact> center{Exact(x), Exact(y), Exact(z)};
+  const Exact radius(r);
+  each_tested(p, [&](int i, int) {
+    Exact t(0);
+    const Mask<Exact> hit = hit_sphere<Exact>(origin(p, i), direction(p, i), load<Exact>(p.inv_dd + i),
+                                              take<Exact>(tested_t_min(p) + i), center, radius, t);
     note<kAny>(p, i, hit, t, id);
   });
 }
 
 template <bool kAny>
 inline void test_cone(Packet& p, const float* const (&c)[10], std::uint32_t at, std::uint32_t id) {
-  const ConeSide<Lanes> side{{Lanes(c[0][at]), Lanes(c[1][at]), Lanes(c[2][at])},
-                             {Lanes(c[3][at]), Lanes(c[4][at]), Lanes(c[5][at])},
-                             Lanes(c[6][at]), Lanes(c[7][at]), Lanes(c[8][at]), Lanes(c[9][at])};
-  each_live_group(p, [&](int i, int) {
-    Lanes t(0);
-    const Mask<Lanes> hit = hit_cone<Lanes>(origin(p, i), direction(p, i), load<Lanes>(p.inv_dd + i),
-                                            load<Lanes>(p.t_min + i), side, t);
+  const ConeSide<Exact> side{{Exact(c[0][at]), Exact(c[1][at]), Exact(c[2][at])},
+                             {Exact(c[3][at]), Exact(c[4][at]), Exact(c[5][at])},
+                             Exact(c[6][at]), Exact(c[7][at]), Exact(c[8][at]), Exact(c[9][at])};
+  each_tested(p, [&](int i, int) {
+    Exact t(0);
+    const Mask<Exact> hit = hit_cone<Exact>(origin(p, i), direction(p, i), load<Exact>(p.inv_dd + i),
+                                            take<Exact>(tested_t_min(p) + i), side, t);
     note<kAny>(p, i, hit, t, id);
   });
 }
 
 template <bool kAny>
 inline void test_plane(Packet& p, const Vec3<float>& point, const Vec3<float>& normal, std::uint32_t id) {
-  const Vec3<Lanes> q{Lanes(point.x), Lanes(point.y), Lanes(point.z)};
-  const Vec3<Lanes> m{Lanes(normal.x), Lanes(normal.y), Lanes(normal.z)};
-  each_live_group(p, [&](int i, int) {
-    Lanes t(0);
-    const Mask<Lanes> hit = hit_plane<Lanes>(origin(p, i), direction(p, i), load<Lanes>(p.t_min + i), q, m, t);
+  const Vec3<Exact> q{Exact(point.x), Exact(point.y), Exact(point.z)};
+  const Vec3<Exact> m{Exact(normal.x), Exact(normal.y), Exact(normal.z)};
+  each_tested(p, [&](int i, int) {
+    Exact t(0);
+    const Mask<Exact> hit = hit_plane<Exact>(origin(p, i), direction(p, i), take<Exact>(tested_t_min(p) + i), q, m, t);
     note<kAny>(p, i, hit, t, id);
   });
 }
 
-/// Corners and origin of a group whose rays stand on different axes, permuted lane by lane.
-inline Vec3<Lanes> permuted(const Lanes& axis, const Vec3<Lanes>& v) {
-  const Mask<Lanes> x = axis == Lanes(0), y = axis == Lanes(1);
-  return {select(x, v.y, select(y, v.z, v.x)), select(x, v.z, select(y, v.x, v.y)), select(x, v.x, select(y, v.y, v.z))};
-}
-
 template <bool kAny>
 inline void test_triangle(Packet& p, const float (&a)[3], const float (&b)[3], const float (&c)[3], std::uint32_t id) {
-  each_live_group(p, [&](int i, int g) {
-    const Shear<Lanes> shear{load<Lanes>(p.shear[0] + i), load<Lanes>(p.shear[1] + i), load<Lanes>(p.shear[2] + i)};
-    const Lanes t_min = load<Lanes>(p.t_min + i);
-    Lanes t(0);
-    Mask<Lanes> hit;
+  each_tested(p, [&](int i, int g) {
+    const Shear<Exact> shear{load<Exact>(p.shear[0] + i), load<Exact>(p.shear[1] + i), load<Exact>(p.shear[2] + i)};
+    const Exact t_min = take<Exact>(tested_t_min(p) + i);
+    Exact t(0);
+    Mask<Exact> hit;
     if (const int k = p.group_axis[g]; k >= 0) {
       const int kx = k == 2 ? 0 : k + 1, ky = k == 0 ? 2 : k - 1;
-      const Vec3<Lanes> org{load<Lanes>(p.org[kx] + i), load<Lanes>(p.org[ky] + i), load<Lanes>(p.org[k] + i)};
-      hit = hit_triangle<Lanes>(org, shear, t_min, {Lanes(a[kx]), Lanes(a[ky]), Lanes(a[k])},
-                                {Lanes(b[kx]), Lanes(b[ky]), Lanes(b[k])}, {Lanes(c[kx]), Lanes(c[ky]), Lanes(c[k])}, t);
+      const Vec3<Exact> org{take<Exact>(tested_org(p, kx) + i), take<Exact>(tested_org(p, ky) + i), take<Exact>(tested_org(p, k) + i)};
+      hit = hit_triangle<Exact>(org, shear, t_min, {Exact(a[kx]), Exact(a[ky]), Exact(a[k])},
+                                {Exact(b[kx]), Exact(b[ky]), Exact(b[k])}, {Exact(c[kx]), Exact(c[ky]), Exact(c[k])}, t);
     } else {
-      const Lanes axis = load<Lanes>(p.axis + i);
-      hit = hit_triangle<Lanes>(permuted(axis, origin(p, i)), shear, t_min,
-                                permuted(axis, {Lanes(a[0]), Lanes(a[1]), Lanes(a[2])}),
-                                permuted(axis, {Lanes(b[0]), Lanes(b[1]), Lanes(b[2])}),
-                                permuted(axis, {Lanes(c[0]), Lanes(c[1]), Lanes(c[2])}), t);
+      const Exact axis = take<Exact>(p.axis + i);
+      hit = hit_triangle<Exact>(permuted(axis, origin(p, i)), shear, t_min,
+                                permuted<Exact>(axis, {Exact(a[0]), Exact(a[1]), Exact(a[2])}),
+                                permuted<Exact>(axis, {Exact(b[0]), Exact(b[1]), Exact(b[2])}),
+                                permuted<Exact>(axis, {Exact(c[0]), Exact(c[1]), Exact(c[2])}), t);
     }
     note<kAny>(p, i, hit, t, id);
   });

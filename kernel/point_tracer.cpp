@@ -19,7 +19,7 @@ constexpr int kMostPoints = 2048;  ///< a thread takes at a time
 
 /// What one thread needs.
 struct PointSpace {
-  PointSpace(int depth, const SamplePlan& plan) : space(kMostPoints, depth, plan) {}
+  PointSpace(int depth, const SamplePlan& plan, const TraceLoops* in_double) : space(kMostPoints, depth, plan, in_double) {}
   Workspace space;
   float x[kMostPoints], y[kMostPoints];
   TraceCounts trace;
@@ -32,7 +32,7 @@ class PointTracer {
   PointTracer(const World::Impl& world, const FrameView& frame, const SamplePlan& plan, const Variant& variant,
               const RenderOptions& options, int threads)
       : world_(world), frame_(frame), plan_(plan), variant_(variant), options_(options) {
-    for (int i = 0; i < threads; ++i) spaces_.push_back(std::make_unique<PointSpace>(options.depth, plan));
+    for (int i = 0; i < threads; ++i) spaces_.push_back(std::make_unique<PointSpace>(options.depth, plan, loops_of(variant, options.precision)));
   }
 
   bool operator()(std::span<const LatticePoint> points, Float3* colours, double from, double to) {

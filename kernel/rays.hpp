@@ -16,6 +16,7 @@ struct RaySpan {
   float* t;                                  ///< in and out, see above
   std::uint32_t* id;  ///< out: the primitive, kNoPrimitive where nothing was met
   int count;          ///< length of every array
+  double* whole = nullptr;  ///< out, or null: t of what was met as precise as it was computed; others keep theirs
 };
 
 }  // namespace grelha

@@ -56,7 +56,7 @@ class Refinement {
     wanted_.reserve(count_);
     const int threads = std::max(1, options.threads > 0 ? options.threads : omp_get_num_procs());
     for (int i = 0; i < threads; ++i)
-      spaces_.push_back(std::make_unique<Workspace>(std::size_t{kRunsOfChunk} * kParts, options.depth, plan));
+      spaces_.push_back(std::make_unique<Workspace>(std::size_t{kRunsOfChunk} * kParts, options.depth, plan, loops_of(variant, options.precision)));
     stats_ = {};
     stats_.threads = threads;
     stats_.isa = variant.name.data();

@@ -91,6 +91,9 @@ struct SampleMaps {
   std::vector<float> width;            ///< [height * width] of the 95 % interval, what may hide from the samples counted in
 };
 
+/// Of the tests of rays and primitives.
+enum class Precision { kSingle, kDouble };
+
 /// How a picture is rendered.
 struct RenderOptions {
   int threads = 0;              ///< 0: one per processor
@@ -98,6 +101,7 @@ struct RenderOptions {
   int packet = 256;             ///< most rays that march together: 1, 16, 64 or 256; see march_from()
   bool mailbox = true;          ///< skip primitives a ray or packet has already met in another cell
   std::string_view isa = "best";
+  Precision precision = Precision::kSingle;  ///< of the tests of rays and primitives; what is seen there is shaded in single
   SampleOptions sampling;
   RefineOptions refine;
   bool phases = false;      ///< measure where the time goes

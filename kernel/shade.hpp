@@ -180,6 +180,13 @@ inline TraceOptions options_for(const Shader& s, Phase phase) {
   return {near || s.work.packet < kMiddle ? s.work.packet : kMiddle, s.work.mailbox};
 }
 
+template <bool kAny>
+inline void trace(const Shader& s, const RayArrays& rays, int count, Phase phase) {
+  const TraceOptions options = options_for(s, phase);
+  if (const TraceLoops* const loops = s.work.in_double) (kAny ? loops->occluded : loops->closest)(s.scene, rays, count, options, s.counters);
+  else trace<kAny>(s.scene, rays, count, options, s.counters);
+}
+
 /// Traces the first n shadow rays of the batch and adds what those carry that nothing stands in the way of.
 inline void light_up(const Shader& s, int n) {
   Batch& b = s.b;
@@ -188,7 +195,7 @@ inline void light_up(const Shader& s, int n) {
   s.rays.shadow += static_cast<unsigned>(n);
   const RayArrays rays{b.lox, b.loy, b.loz, b.ldx, b.ldy, b.ldz, b.lt_min, b.lt, b.lid};
   enter(s.work, Phase::shadow, rays, n);
-  trace<true>(s.scene, rays, n, options_for(s, Phase::shadow), s.counters);
+  trace<true>(s, rays, n, Phase::shadow);
   enter(s.work, Phase::light);
   for (int i = 0; i < n; i += kWidth<Lanes>) {
     const unsigned free = bits(mask_of(Words<Lanes>(load_words<Lanes>(b.lid + i) == kNoPrimitive))) & lanes_of(i, n);
@@ -356,11 +363,10 @@ inline void shade_batch(const Shader& s, RayStack& stack, const int* ends, int r
   Batch& b = s.b;
   const int count = ends[runs - 1];
   for (int i = 0; i < count; ++i) b.t_min[i] = 0, b.t[i] = kInfinity;
-  const TraceOptions options = options_for(s, phase);
   for (int k = 0, at = 0; k < runs; at = ends[k++]) {
     const RayArrays rays{b.ox + at, b.oy + at, b.oz + at, b.dx + at, b.dy + at, b.dz + at, b.t_min + at, b.t + at, b.id + at};
     enter(s.work, phase, rays, ends[k] - at);
-    trace<false>(s.scene, rays, ends[k] - at, options, s.counters);
+    trace<false>(s, rays, ends[k] - at, phase);
   }
   enter(s.work, Phase::surface);
   const int hits = find_surfaces(s, count);

@@ -110,6 +110,8 @@ struct PixelRun {
 };
 inline constexpr int kParts = 4;
 
+struct TraceLoops;  // view.hpp
+
 struct BandWork {
   Batch* batch = nullptr;
   RayStack stack = {};
@@ -122,6 +124,7 @@ struct BandWork {
   SamplePlan plan = {};
   const std::uint32_t* pixels = nullptr;  ///< [sums] the pixel each sum belongs to; null: sum i to first_pixel + i
   Observer* observer = nullptr;           ///< null: nobody asks
+  const TraceLoops* in_double = nullptr;  ///< what traces; null: the loops of this copy, in single
 };
 
 /// Points of the picture in pixels from its upper left corner, neighbours next to each other; point i has sum i.

@@ -7,18 +7,40 @@
 namespace grelha::GRELHA_ISA {
 
 struct Single {
-  float org[3], dir[3], inv_dd, t_min, best;
+  float org[3], dir[3], t_min, best;
+  Number inv_dd;
   std::uint32_t id;
   int axis;
-  float shear[3];
+  Number shear[3];
   float inv[3];  ///< inverse of the direction; this and what follows with triangles only
   int near[3];   ///< the side of a box that the ray meets first, along each axis; the other is 3 places on or back
+#ifdef GRELHA_DOUBLE
+  float from[3], after;   ///< as in Packet
+  double nearest, shift;  ///< shift: 0 for rays not moved
+#endif
 };
+
+/// What tests take of a ray.
+#ifdef GRELHA_DOUBLE
+inline const float (&tested_org(const Single& r))[3] { return r.from; }
+inline float tested_t_min(const Single& r) { return r.after; }
+inline double tested_best(const Single& r) { return r.nearest; }
+inline void set_best(Single& r, double t) { r.nearest = t, r.best = not_below(t - r.shift); }
+#else
+inline const float (&tested_org(const Single& r))[3] { return r.org; }
+inline float tested_t_min(const Single& r) { return r.t_min; }
+inline float tested_best(const Single& r) { return r.best; }
+inline void set_best(Single& r, float t) { r.best = t; }
+#endif
 
 inline Single single_of(const Packet& p, int i, bool any_triangles) {
   Single r;
   for (int a = 0; a < 3; ++a) r.org[a] = p.org[a][i], r.dir[a] = p.dir[a][i];
   r.inv_dd = p.inv_dd[i], r.t_min = p.t_min[i], r.best = p.best[i], r.id = id_of(p.id[i]);
+#ifdef GRELHA_DOUBLE
+  for (int a = 0; a < 3; ++a) r.from[a] = p.from[a][i];
+  r.after = p.after[i], r.nearest = p.nearest[i], r.shift = p.moved ? p.shift[i] : 0;
+#endif
   r.axis = 0;
   if (any_triangles) {
     r.axis = static_cast<int>(p.axis[i]);
@@ -32,21 +54,29 @@ inline Single single_of(const Packet& p, int i, bool any_triangles) {
   return r;
 }
 
+/// What a ray has met goes back to its packet.
+inline void put_back(const Single& r, Packet& p, int i) {
+  p.best[i] = r.best, p.id[i] = bits_of(r.id);
+#ifdef GRELHA_DOUBLE
+  p.nearest[i] = r.nearest;
+#endif
+}
+
 /// Takes the hits of a block in order of place. Returns whether the search is over (kAny and something was hit).
 template <bool kAny>
-inline bool note(Single& r, const Mask<Block>& hit, const Block& t, const std::uint32_t* ids) {
-  unsigned lanes = bits(both(hit, t <= Block(r.best)));
+inline bool note(Single& r, const Mask<ExactBlock>& hit, const ExactBlock& t, const std::uint32_t* ids) {
+  unsigned lanes = bits(both(hit, t <= ExactBlock(tested_best(r))));
   if (lanes == 0) return false;
-  float at[kWidth<Block>];
+  Number at[kWidth<ExactBlock>];
   store(at, t);
   for (; lanes != 0; lanes &= lanes - 1) {
     const int k = __builtin_ctz(lanes);
-    const bool closer = at[k] < r.best, tie = at[k] == r.best && r.id != kNoPrimitive && ids[k] < r.id;
+    const bool closer = at[k] < tested_best(r), tie = at[k] == tested_best(r) && r.id != kNoPrimitive && ids[k] < r.id;
     if (kAny && closer) {
-      r.best = -kInfinity, r.id = ids[k];
+      set_best(r, -kInfinity), r.id = ids[k];
       return true;
     }
-    if (!kAny && (closer || tie)) r.best = at[k], r.id = ids[k];
+    if (!kAny && (closer || tie)) set_best(r, at[k]), r.id = ids[k];
   }
   return false;
 }
@@ -74,20 +104,21 @@ inline unsigned blocks_between(std::uint32_t at, std::uint32_t first, std::uint3
   return end - at < kBlock ? from & ~(kAll << (end - at)) & kAll : from & kAll;
 }
 
-inline Vec3<Block> spread(const float (&v)[3]) { return {Block(v[0]), Block(v[1]), Block(v[2])}; }
+inline Vec3<ExactBlock> spread(const float (&v)[3]) { return {ExactBlock(v[0]), ExactBlock(v[1]), ExactBlock(v[2])}; }
 
 template <bool kAny>
 inline bool test_block(Single& r, const TriangleBlock& block, Counters& n) {
+  const float(&from)[3] = tested_org(r);
   const int k = r.axis, kx = k == 2 ? 0 : k + 1, ky = k == 0 ? 2 : k - 1;
-  const Vec3<Block> org{Block(r.org[kx]), Block(r.org[ky]), Block(r.org[k])};
-  const Shear<Block> shear{Block(r.shear[0]), Block(r.shear[1]), Block(r.shear[2])};
+  const Vec3<ExactBlock> org{ExactBlock(from[kx]), ExactBlock(from[ky]), ExactBlock(from[k])};
+  const Shear<ExactBlock> shear{ExactBlock(r.shear[0]), ExactBlock(r.shear[1]), ExactBlock(r.shear[2])};
   const auto corner = [&](const float (&v)[3][kBlock], int i) {
-    return Vec3<Block>{load<Block>(v[kx] + i), load<Block>(v[ky] + i), load<Block>(v[k] + i)};
+    return Vec3<ExactBlock>{take<ExactBlock>(v[kx] + i), take<ExactBlock>(v[ky] + i), take<ExactBlock>(v[k] + i)};
   };
   n.triangle += kBlock;
-  for (int i = 0; i < kBlock; i += kWidth<Block>) {
-    Block t(0);
-    const Mask<Block> hit = hit_triangle<Block>(org, shear, Block(r.t_min), corner(block.a, i), corner(block.b, i),
+  for (int i = 0; i < kBlock; i += kWidth<ExactBlock>) {
+    ExactBlock t(0);
+    const Mask<ExactBlock> hit = hit_triangle<ExactBlock>(org, shear, ExactBlock(tested_t_min(r)), corner(block.a, i), corner(block.b, i),
                                                 corner(block.c, i), t);
     if (note<kAny>(r, hit, t, block.id + i)) return true;
   }
@@ -99,26 +130,26 @@ inline bool test_block(Single& r, const TriangleBlock& block, Counters& n) {
 template <bool kAny>
 inline bool test_round(Single& r, const CellLists& lists, std::size_t cell, Counters& n) {
   if (lists.sphere_first) {
-    const Vec3<Block> org = spread(r.org), dir = spread(r.dir);
+    const Vec3<ExactBlock> org = spread(tested_org(r)), dir = spread(r.dir);
     const std::uint32_t end = lists.sphere_first[cell + 1];
-    for (std::uint32_t i = lists.sphere_first[cell]; i < end; i += kWidth<Block>) {
-      n.sphere += kWidth<Block>;
-      Block t(0);
-      const Mask<Block> hit = hit_sphere<Block>(org, dir, Block(r.inv_dd), Block(r.t_min),
-                                                {load<Block>(lists.sx + i), load<Block>(lists.sy + i), load<Block>(lists.sz + i)},
-                                                load<Block>(lists.sr + i), t);
+    for (std::uint32_t i = lists.sphere_first[cell]; i < end; i += kWidth<ExactBlock>) {
+      n.sphere += kWidth<ExactBlock>;
+      ExactBlock t(0);
+      const Mask<ExactBlock> hit = hit_sphere<ExactBlock>(org, dir, ExactBlock(r.inv_dd), ExactBlock(tested_t_min(r)),
+                                                {take<ExactBlock>(lists.sx + i), take<ExactBlock>(lists.sy + i), take<ExactBlock>(lists.sz + i)},
+                                                take<ExactBlock>(lists.sr + i), t);
       if (note<kAny>(r, hit, t, lists.sphere_id + i)) return true;
     }
   }
   if (lists.cone_first) {
-    const Vec3<Block> org = spread(r.org), dir = spread(r.dir);
+    const Vec3<ExactBlock> org = spread(tested_org(r)), dir = spread(r.dir);
     const std::uint32_t end = lists.cone_first[cell + 1];
-    for (std::uint32_t i = lists.cone_first[cell]; i < end; i += kWidth<Block>) {
-      n.cone += kWidth<Block>;
-      const auto at = [&](int k) { return load<Block>(lists.cone[k] + i); };
-      const ConeSide<Block> side{{at(0), at(1), at(2)}, {at(3), at(4), at(5)}, at(6), at(7), at(8), at(9)};
-      Block t(0);
-      const Mask<Block> hit = hit_cone<Block>(org, dir, Block(r.inv_dd), Block(r.t_min), side, t);
+    for (std::uint32_t i = lists.cone_first[cell]; i < end; i += kWidth<ExactBlock>) {
+      n.cone += kWidth<ExactBlock>;
+      const auto at = [&](int k) { return take<ExactBlock>(lists.cone[k] + i); };
+      const ConeSide<ExactBlock> side{{at(0), at(1), at(2)}, {at(3), at(4), at(5)}, at(6), at(7), at(8), at(9)};
+      ExactBlock t(0);
+      const Mask<ExactBlock> hit = hit_cone<ExactBlock>(org, dir, ExactBlock(r.inv_dd), ExactBlock(tested_t_min(r)), side, t);
       if (note<kAny>(r, hit, t, lists.cone_id + i)) return true;
     }
   }

@@ -50,7 +50,8 @@ template <class Real>
   Real power = dot(to_center, to_center) - rr;
   // Of a ray that comes down on a sphere from close above, a floor, the squares leave little but their rounding.
   const Mask<Real> close = both(both(crosses, middle > Real(0)), both(power > Real(0), Real(1024) * power < rr));
-  if (any(close)) exact_power<Real>(close, org, center, radius, power);
+  if constexpr (sizeof(Scalar<Real>) == sizeof(float))
+    if (any(close)) exact_power<Real>(close, org, center, radius, power);
   const Real other = (power * inv_dd) / q;
   const Real enter = lesser(other, q), leave = greater(other, q);
   t = select(both(enter > t_min, radius > Real(0)), enter, leave);

@@ -5,21 +5,6 @@
 
 namespace grelha::GRELHA_ISA {
 
-/// Rays as the caller holds them. t: in, the end of the search; out, the nearest hit (closest) or -infinity (occluded). Origins,
-/// t_min and t come back as those of rays moved near, see bring_near(); `shift`, zero on entry, says how far. All may be changed.
-struct RayArrays {
-  float *ox, *oy, *oz;
-  const float *dx, *dy, *dz;
-  float *t_min, *t;
-  std::uint32_t* id;       ///< out; kNoPrimitive: nothing
-  float* shift = nullptr;  ///< out, or null
-};
-
-struct TraceOptions {
-  int packet;    ///< 1, 16, 64 or 256
-  bool mailbox;  ///< for packets
-};
-
 /// Moves the origin of a ray that starts far from everything finite to where it comes near, in double: from afar float
 /// tests would be off by eps times the distance, more than the grids allow for. Returns the t it moved by. A function of
 /// ray and scene alone, so every way of tracing sees the same ray.
@@ -59,20 +44,25 @@ inline void bring_near(const SceneView& scene, Packet& p) {
       far = either(far, either(o < Lanes(scene.box_lo[a] - scene.reach), o > Lanes(scene.box_hi[a] + scene.reach)));
     }
     if (none(far)) continue;
-    if (!p.moved) __builtin_memset(p.shift, 0, sizeof p.shift);
+    if (!p.moved)
+      for (Number& shift : p.shift) shift = 0;
     p.moved = true;
     for (int k = i; k < i + kWidth<Lanes> && k < p.size; ++k) {
       float org[3] = {p.org[0][k], p.org[1][k], p.org[2][k]};
       const float dir[3] = {p.dir[0][k], p.dir[1][k], p.dir[2][k]};
       const double shift = approach(scene, org, dir);
       if (!(shift > 0)) continue;
+#ifdef GRELHA_DOUBLE
+      p.shift[k] = shift, p.t_min[k] = not_above(p.after[k] - shift), p.best[k] = not_below(p.nearest[k] - shift);
+#else
       const float from[3] = {p.org[0][k], p.org[1][k], p.org[2][k]};
       const std::uint32_t plane = id_of(p.id[k]);
       const bool met = plane != kNoPrimitive && p.best[k] > -kInfinity;
       const double best = met ? plane_t(scene.geometry, plane, from, dir) : p.best[k];
-      for (int a = 0; a < 3; ++a) p.org[a][k] = org[a];
       p.t_min[k] = static_cast<float>(p.t_min[k] - shift), p.best[k] = static_cast<float>(best - shift);
       p.shift[k] = static_cast<float>(shift);
+#endif
+      for (int a = 0; a < 3; ++a) p.org[a][k] = org[a];
     }
   }
 }
@@ -176,7 +166,7 @@ inline void trace_alone(const SceneView& scene, Packet& p, bool any_triangles, C
     if (!(p.best[i] > p.t_min[i])) continue;
     Single r = single_of(p, i, any_triangles);
     test_cell<kAny>(r, scene.outside, 0, n);
-    p.best[i] = r.best, p.id[i] = bits_of(r.id);
+    put_back(r, p, i);
   }
   each_grid<kAny>(scene, p, [&](const GridView& g) {
     if (start_in(g, p)) walk_apart<kAny>(g, p, any_triangles, n);
@@ -196,6 +186,18 @@ inline void trace_packet(const SceneView& scene, Packet& p, const TraceOptions& 
   });
 }
 
+/// t of a ray brought near as that of the ray as it came; -infinity stays what it is, however far that was.
+inline double unmoved(float t, float shift) { return t > -kInfinity ? static_cast<double>(t) + shift : t; }
+
+/// Where a ray of a packet met what it met, as seen from where it started.
+inline double whole_t(const Packet& p, int i) {
+#ifdef GRELHA_DOUBLE
+  return p.nearest[i];
+#else
+  return unmoved(p.best[i], p.moved ? p.shift[i] : 0);
+#endif
+}
+
 /// Closest hits (kAny false) or occlusion (kAny true) of rays [0, count), `options.packet` neighbours at a time.
 template <bool kAny>
 inline void trace(const SceneView& scene, const RayArrays& rays, int count, const TraceOptions& options, Counters& n) {
@@ -209,12 +211,18 @@ inline void trace(const SceneView& scene, const RayArrays& rays, int count, cons
     __builtin_memcpy(p.dir[1], rays.dy + first, bytes), __builtin_memcpy(p.dir[2], rays.dz + first, bytes);
     __builtin_memcpy(p.t_min, rays.t_min + first, bytes), __builtin_memcpy(p.best, rays.t + first, bytes);
     trace_packet<kAny>(scene, p, options, n);
+#ifdef GRELHA_DOUBLE
+    for (int i = 0; i < p.size; ++i) rays.t[first + i] = static_cast<float>(p.moved ? p.nearest[i] - p.shift[i] : p.nearest[i]);
+#else
     __builtin_memcpy(rays.t + first, p.best, bytes);
+#endif
     __builtin_memcpy(rays.id + first, p.id, bytes);
+    if (rays.whole)
+      for (int i = 0; i < p.size; ++i) rays.whole[first + i] = whole_t(p, i);
     if (!p.moved) continue;
     __builtin_memcpy(rays.ox + first, p.org[0], bytes), __builtin_memcpy(rays.oy + first, p.org[1], bytes);
     __builtin_memcpy(rays.oz + first, p.org[2], bytes), __builtin_memcpy(rays.t_min + first, p.t_min, bytes);
-    if (rays.shift) __builtin_memcpy(rays.shift + first, p.shift, bytes);
+    if (!kDouble && rays.shift) __builtin_memcpy(rays.shift + first, p.shift, bytes);
   }
 }
 

@@ -7,8 +7,10 @@
 namespace grelha {
 
 extern const VariantLoops k_scalar_loops;
+extern const ExactLoops k_scalar_double_loops;
 #ifdef GRELHA_X86_VARIANTS
 extern const VariantLoops k_sse2_loops, k_avx2_loops, k_avx512_loops;
+extern const ExactLoops k_sse2_double_loops, k_avx2_double_loops, k_avx512_double_loops;
 #endif
 
 namespace {
@@ -24,11 +26,11 @@ bool has_avx512() {
 #endif
 bool always() { return true; }
 
-const Variant kScalar{"scalar", 1, always, k_scalar_loops};
+const Variant kScalar{"scalar", 1, always, k_scalar_loops, k_scalar_double_loops};
 #ifdef GRELHA_X86_VARIANTS
-const Variant kSse2{"sse2", 4, has_sse2, k_sse2_loops};
-const Variant kAvx2{"avx2", 8, has_avx2, k_avx2_loops};
-const Variant kAvx512{"avx512", 16, has_avx512, k_avx512_loops};
+const Variant kSse2{"sse2", 4, has_sse2, k_sse2_loops, k_sse2_double_loops};
+const Variant kAvx2{"avx2", 8, has_avx2, k_avx2_loops, k_avx2_double_loops};
+const Variant kAvx512{"avx512", 16, has_avx512, k_avx512_loops, k_avx512_double_loops};
 constexpr std::array<const Variant*, 4> kVariants{&kScalar, &kSse2, &kAvx2, &kAvx512};
 #else
 constexpr std::array<const Variant*, 1> kVariants{&kScalar};

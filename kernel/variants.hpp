@@ -48,11 +48,19 @@ struct VariantLoops {
   void (*render_points)(const SceneView&, const ShadingView&, const FrameView&, const PointList&, const BandWork&, TraceCounts&, RayCounts&);
 };
 
+/// What one instruction set's file in double provides: every test of a ray and a primitive in double lanes, one rounding to float at the end.
+struct ExactLoops {
+  void (*closest)(const SceneView&, const RaySpan&, const TraceSettings&, TraceCounts&);
+  void (*occluded)(const SceneView&, const RaySpan&, const TraceSettings&, TraceCounts&);
+  TraceLoops trace;  ///< for shading in single
+};
+
 struct Variant {
   std::string_view name;
   int lanes;
   bool (*runs_here)();
   const VariantLoops& loops;
+  const ExactLoops& in_double;
 };
 
 /// Compiled copies, scalar first, then by growing width.

@@ -80,4 +80,32 @@ struct SceneView {
   bool finite = false;                   ///< there is something besides planes
 };
 
+/// Rays as the caller holds them. t: in, the end of the search; out, the nearest hit (closest) or -infinity (occluded). Origins,
+/// t_min and t come back as those of rays moved near, see bring_near(); `shift`, zero on entry, says how far. All may be changed.
+struct RayArrays {
+  float *ox, *oy, *oz;
+  const float *dx, *dy, *dz;
+  float *t_min, *t;
+  std::uint32_t* id;        ///< out; kNoPrimitive: nothing
+  float* shift = nullptr;   ///< out, or null; of copies in single
+  double* whole = nullptr;  ///< out, or null: t of the rays as they came, as precise as it was computed
+};
+
+struct TraceOptions {
+  int packet;    ///< 1, 16, 64 or 256
+  bool mailbox;  ///< for packets
+};
+
+/// What a trace counts, by the kind of its tests.
+struct Counters {
+  std::uint64_t visits = 0, sphere = 0, triangle = 0, cone = 0, plane = 0;
+  std::uint64_t formed = 0, fell_back = 0, issued = 0, busy = 0;
+};
+
+/// trace() of a copy of the kernel.
+struct TraceLoops {
+  void (*closest)(const SceneView&, const RayArrays&, int count, const TraceOptions&, Counters&);
+  void (*occluded)(const SceneView&, const RayArrays&, int count, const TraceOptions&, Counters&);
+};
+
 }  // namespace grelha

@@ -9,6 +9,7 @@
 
 #include "kernel/render.hpp"
 #include "kernel/shading_view.hpp"
+#include "kernel/variants.hpp"
 
 namespace grelha {
 
@@ -31,12 +32,16 @@ class PhaseClock : public Observer {
   PhaseSeconds seconds_;
 };
 
+/// What traces for this copy's shading: null when that does.
+inline const TraceLoops* loops_of(const Variant& v, Precision p) { return p == Precision::kDouble ? &v.in_double.trace : nullptr; }
+
 class Workspace {
  public:
   /// `sums`: how many sums of light it holds.
-  Workspace(std::size_t sums, int depth, const SamplePlan& plan)
+  Workspace(std::size_t sums, int depth, const SamplePlan& plan, const TraceLoops* in_double)
       : batch_(std::make_unique<Batch>()),
         plan_(plan),
+        in_double_(in_double),
         take_(std::clamp(65536 / (depth * (plan.gloss_rays + 1)), 16, kBatch)),
         capacity_((plan.gloss_rays + 2) * (kBatch + take_ * depth) + kCacheLine),  // the line: see kBatchRow
         floats_(static_cast<std::size_t>(capacity_) * 9),
@@ -56,7 +61,7 @@ class Workspace {
     const float most = std::min(1048576.f, kMostLight / static_cast<float>(plan_.samples));
     if (options.phases) clock_.go_on(Phase::camera);
     return {batch_.get(), stack, sums_.data(), options.depth, options.packet, take_, options.mailbox, first_pixel, most, plan_,
-            named ? pixels_.data() : nullptr, options.observer ? options.observer : options.phases ? &clock_ : nullptr};
+            named ? pixels_.data() : nullptr, options.observer ? options.observer : options.phases ? &clock_ : nullptr, in_double_};
   }
   /// Call when the sums of a work() are used up.
   void done(const RenderOptions& options) {
@@ -70,6 +75,7 @@ class Workspace {
   std::unique_ptr<Batch> batch_;
   PhaseClock clock_;
   SamplePlan plan_;
+  const TraceLoops* in_double_;
   int take_, capacity_;
   std::vector<float> floats_;
   std::vector<std::uint32_t> words_;

@@ -90,13 +90,14 @@ TEST(Render, ErrorAndTime) {
 TEST(Render, EveryOption) {
   const auto command = std::get<RenderCommand>(
       parse("render x.nff -o y.pfm --size 640x480 --threads 7 --depth 3 --density 2.5 --accel none --mailbox off "
-            "--isa avx2 --packet 16 --stats s.json --quiet --srgb"));
+            "--isa avx2 --precision double --packet 16 --stats s.json --quiet --srgb"));
   EXPECT_EQ(command.image, "y.pfm");
   EXPECT_EQ(command.width, 640);
   EXPECT_EQ(command.height, 480);
   EXPECT_EQ(command.render.threads, 7);
   EXPECT_EQ(command.render.depth, 3);
   EXPECT_EQ(command.render.packet, 16);
+  EXPECT_EQ(command.render.precision, Precision::kDouble);
   EXPECT_FALSE(command.render.mailbox);
   EXPECT_EQ(command.render.isa, "avx2");
   EXPECT_FALSE(command.build.grid);
@@ -212,6 +213,7 @@ TEST(Errors, SayWhatWasWantedAndFound) {
       {"render a --accel bvh", "--accel: wanted one of grid, none, found \"bvh\""},
       {"render a --mailbox yes", "--mailbox: wanted one of on, off, found \"yes\""},
       {"render a --isa neon", "--isa: wanted one of scalar, sse2, avx2, avx512, best, found \"neon\""},
+      {"render a --precision half", "--precision: wanted one of single, double, found \"half\""},
       {"render a --packet 8", "--packet: wanted one of 1, 16, 64, 256, found \"8\""},
       {"render a --samples 0", "--samples: wanted a whole number from 1 to 65536, found \"0\""},
       {"render a --sampler halton", "--sampler: wanted one of sobol, jitter, unshuffled, random, found \"halton\""},

@@ -36,6 +36,7 @@ struct Rays {
 
 struct Answers {
   std::vector<float> t;
+  std::vector<double> whole;  ///< t before it was rounded
   std::vector<std::uint32_t> id;
   TraceCounts counts;
 };
@@ -46,9 +47,11 @@ inline Answers trace(const Variant& variant, const World& world, const Rays& ray
                      Query query) {
   Answers a;
   a.t = rays.t;
+  a.whole.assign(rays.t.begin(), rays.t.end());
   a.id.assign(rays.size(), 12345u);  // what no trace may leave behind
   const RaySpan span{rays.ox.data(), rays.oy.data(),    rays.oz.data(), rays.dx.data(), rays.dy.data(),
-                     rays.dz.data(), rays.t_min.data(), a.t.data(),     a.id.data(),    static_cast<int>(rays.size())};
+                     rays.dz.data(), rays.t_min.data(), a.t.data(),     a.id.data(),    static_cast<int>(rays.size()),
+                     a.whole.data()};
   (query == Query::kClosest ? variant.loops.closest : variant.loops.occluded)(world.impl().view, span, settings,
                                                                               a.counts);
   return a;

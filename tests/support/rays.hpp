@@ -76,7 +76,9 @@ inline testing::AssertionResult same(const Answers& wanted, const Answers& got, 
     const bool ids = query == Query::kClosest ? wanted.id[i] == got.id[i]
                                               : (wanted.id[i] == kNoPrimitive) == (got.id[i] == kNoPrimitive);
     if (ids && wanted.id[i] == kNoPrimitive && !sound(rays, i)) continue;
-    if (ids && std::bit_cast<std::uint32_t>(wanted.t[i]) == std::bit_cast<std::uint32_t>(got.t[i])) continue;
+    if (ids && std::bit_cast<std::uint32_t>(wanted.t[i]) == std::bit_cast<std::uint32_t>(got.t[i]) &&
+        std::bit_cast<std::uint64_t>(wanted.whole[i]) == std::bit_cast<std::uint64_t>(got.whole[i]))
+      continue;
     ++wrong, first = i;
   }
   if (wrong == 0) return testing::AssertionSuccess();

@@ -1,0 +1,218 @@
+// Rays and primitives tested in double (--precision double): the same answers and bits whatever finds them, as near the truth as double
+// promises, and pictures made of them.
+#include <bit>
+#include <deque>
+
+#include "tests/support/closed.hpp"
+#include "tests/support/oracle.hpp"
+#include "tests/support/rays.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace grelha::test {
+namespace {
+
+constexpr oracle::Real kEpsDouble = 0x1p-53L;
+
+/// A copy whose closest and occluded are those in double.
+const Variant& in_double(const Variant& v) {
+  struct Doubled {
+    VariantLoops loops;
+    Variant variant;
+    explicit Doubled(const Variant& of) : loops(of.loops), variant{of.name, of.lanes, of.runs_here, loops, of.in_double} {
+      loops.closest = of.in_double.closest, loops.occluded = of.in_double.occluded;
+    }
+  };
+  static std::deque<Doubled> all;
+  for (const Doubled& d : all)
+    if (d.variant.name == v.name) return d.variant;
+  return all.emplace_back(v).variant;
+}
+
+class Double : public EveryVariant {
+ protected:
+  const Variant& tested() const { return in_double(variant()); }
+};
+GRELHA_FOR_EVERY_ISA(Double);
+
+Truth truth_in_double(const Scene& scene, const Rays& rays) {
+  const World plain(scene, {.grid = false});
+  const Variant& scalar = in_double(*find_variant("scalar"));
+  const TraceSettings reference{Method::kReference, 1, false};
+  return {trace(scalar, plain, rays, reference, Query::kClosest), trace(scalar, plain, rays, reference, Query::kOccluded)};
+}
+
+TEST_P(Double, OneSetOfBits) {
+  for (std::uint64_t seed = 0; seed < 16; ++seed) {
+    Random random(seed);
+    const double scale = random.log_in(1e-4, 1e4);
+    const Float3 offset = random.point(scale * random.log_in(.1, 1e3));
+    const Scene scene = placed(random_mixture(seed, 150), scale, offset);
+    const World world(scene, {.density = seed % 4 == 0 ? 4.f : 0.f});
+    Rays rays = with_odd_values(random, rays_about(random, offset, scale, kManyRays, seed % 3 == 0 ? 1e6 : 1e3), seed % 2 ? .1 : 0);
+    const Float3 eye = at(offset, 3 * scale, random.direction());
+    for (int i = 0; i < 256; ++i) rays.add(eye, minus(at(offset, scale * .2, random.point(1)), eye));
+    const Truth truth = truth_in_double(scene, rays);
+    EXPECT_GT(hits_of(truth.closest), 300u);
+    expect_truth(tested(), world, rays, truth, "seed " + std::to_string(seed));
+  }
+}
+
+TEST_P(Double, FromFarAway) {
+  const Scene scene = crowd_on_a_wide_plain(7, 400);
+  const World world(scene, {.density = 4});
+  Random random(3);
+  Rays rays;
+  for (int i = 0; i < 4000; ++i) {
+    const Float3 eye = at({}, random.log_in(1e4, 2e6), random.direction()), aim = random.point(1);
+    rays.add({eye.x, std::abs(eye.y), eye.z}, minus(aim, {eye.x, std::abs(eye.y), eye.z}));
+  }
+  expect_truth(tested(), world, rays, truth_in_double(scene, rays), "far rays");
+}
+
+TEST_P(Double, TiesGoToTheLowerId) {
+  Scene scene = empty_scene();
+  for (int copy = 0; copy < 3; ++copy)
+    for (int i = 0; i < 40; ++i) {
+      const float x = static_cast<float>(i % 8), z = static_cast<float>(i / 8);
+      scene.geometry.spheres.add({x, 0, z}, .5f, 0);
+      add_triangle(scene, {x, 0, z}, {x + 1, 0, z}, {x, 0, z + 1});
+    }
+  Random random(1);
+  Rays rays;
+  for (int i = 0; i < 1000; ++i) {
+    const Float3 eye{static_cast<float>(random.in(0, 8)), 5, static_cast<float>(random.in(0, 5))};
+    rays.add(eye, {static_cast<float>(random.in(-.2, .2)), -1, static_cast<float>(random.in(-.2, .2))});
+  }
+  const Truth truth = truth_in_double(scene, rays);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const std::uint32_t id = truth.closest.id[i];
+    if (id == kNoPrimitive) continue;
+    EXPECT_TRUE(id < 40 || (id >= 120 && id < 160)) << id;
+  }
+  expect_truth(tested(), World(scene, {.density = 2}), rays, truth, "ties");
+}
+
+// ---- how far off ------------------------------------------------------------------------------------------------
+
+/// The derivations of sphere.hpp, plane.hpp and triangle.hpp count roundings, whatever their size: in double the same multiples of
+/// 2^-53. Here t is judged, of rays that meet a surface at a cosine of at least .1: along the ray the point is off by ten times that at
+/// most. From D away 46 eps D is the largest, hence 460; twice that for a scene some of whose far sides lie twice as far as its middle.
+/// Rounded to float such a t is off by half a unit, and by what is left of a millionth of a unit.
+TEST_P(Double, IsOffByRoundingAlone) {
+  Random random(5);
+  Scene scene = random_spheres(5, 60);
+  add_triangles(scene, random, 60, 1, .01, 1);
+  scene.geometry.planes.add({0, -1.5f, 0}, {.1f, 1, .2f}, 0);
+  const World world(scene, {.density = 2});
+  const Rays rays = rays_about(random, {}, 1, 20000, 100);
+  const SceneView& view = world.impl().view;
+  const GeometryView& g = view.geometry;
+  const auto corner = [&](std::uint32_t i) { return Float3{g.tx[i], g.ty[i], g.tz[i]}; };
+  for (const TraceSettings& settings : {TraceSettings{Method::kPackets, 256, true}, TraceSettings{Method::kSingle, 1, true}}) {
+    const Answers a = trace(tested(), world, rays, settings, Query::kClosest);
+    int judged = 0, wrongly_rounded = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (a.id[i] == kNoPrimitive) continue;
+      const oracle::Ray ray{rays.org(i), rays.dir(i)};
+      std::uint32_t k = a.id[i];
+      std::optional<oracle::Crossing> truth;
+      if (k < view.sphere_base)
+        truth = oracle::Sheet{Float3{g.px[k], g.py[k], g.pz[k]}, Float3{g.pnx[k], g.pny[k], g.pnz[k]}}.first(ray, rays.t_min[i]);
+      else if (k < view.triangle_base)
+        k -= view.sphere_base, truth = oracle::Ball{Float3{g.sx[k], g.sy[k], g.sz[k]}, g.sr[k]}.first(ray, rays.t_min[i]);
+      else if (k < view.cone_base)
+        k -= view.triangle_base, truth = oracle::Facet{corner(g.ta[k]), corner(g.tb[k]), corner(g.tc[k])}.first(ray, rays.t_min[i]);
+      if (!truth || truth->cosine < .1L) continue;
+      ++judged;
+      const oracle::Real reach = (length(ray.org) + 4) / length(ray.dir);
+      ASSERT_LE(std::abs(a.whole[i] - truth->t), 920 * kEpsDouble * reach) << rays.describe(i) << " id " << a.id[i];
+      wrongly_rounded += a.t[i] != static_cast<float>(truth->t);
+    }
+    EXPECT_GT(judged, 5000);
+    EXPECT_LE(wrongly_rounded, 2);  // a true t within 1e-13 of the middle of two floats, 1e-6 units: of 20,000 hardly one
+  }
+}
+
+// ---- leaks ------------------------------------------------------------------------------------------------------
+
+TEST_P(Double, ClosedMeshesAreTight) {
+  for (const bool torus : {false, true})
+    for (const double scale : {1., 1e-6, 1e6}) {
+      const Scene unit = torus ? torus_mesh(24, 12, kTube) : ball_mesh(24, 12, .15);
+      const Float3 offset = scale == 1 ? Float3{1e3f, 10, -1.5e3f} : Float3{};
+      const Scene scene = placed(unit, scale, offset);
+      Random random(17);
+      Rays rays;
+      const Aims aims = aims_at(unit, random);
+      for (const auto* some : {&aims.vertices, &aims.middles, &aims.along})
+        for (const Float3& aim : *some) {
+          const Float3 org = at(offset, scale, inside(random, aim, torus));
+          rays.add(org, minus(at(offset, scale, aim), org));
+        }
+      const World world(scene, {});
+      for (const Way& way : every_way()) {
+        if (way.settings.method == Method::kReference) continue;
+        EXPECT_EQ(hits_of(trace(tested(), world, rays, way.settings, Query::kClosest)), rays.size()) << way.name << ", scale " << scale;
+        EXPECT_EQ(hits_of(trace(tested(), world, rays, way.settings, Query::kOccluded)), rays.size()) << way.name << ", scale " << scale;
+      }
+    }
+}
+
+// ---- pictures ---------------------------------------------------------------------------------------------------
+
+Image picture(const World& world, const Camera& camera, RenderOptions o, Precision precision = Precision::kDouble) {
+  o.precision = precision, o.threads = 2;
+  RenderStats stats;
+  return render(world, camera, o, stats);
+}
+
+std::size_t differing(const Image& a, const Image& b) {
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < a.rgb.size(); ++i) n += std::bit_cast<std::uint32_t>(a.rgb[i]) != std::bit_cast<std::uint32_t>(b.rgb[i]);
+  return n;
+}
+
+TEST_P(Double, MakesOnePicture) {
+  Scene scene = random_mixture(12, 200);
+  scene.materials[0].mirror = {.5f, .4f, .3f};
+  scene.lights = {{{3, 4, 5}, {.6f, .6f, .6f}}, {{-4, 2, 1}, {.3f, .1f, .2f}}};
+  Camera camera;
+  camera.eye = {.3f, .5f, 3.5f}, camera.at = {0, 0, 0}, camera.width = 67, camera.height = 43;
+  const World world(scene, {}), plain(scene, {.grid = false});
+  RenderOptions plainest;
+  plainest.isa = "scalar", plainest.packet = 1, plainest.mailbox = false;
+  const Image wanted = picture(plain, camera, plainest);
+  for (const int packet : {1, 16, 64, 256}) {
+    RenderOptions o;
+    o.isa = variant().name, o.packet = packet;
+    EXPECT_EQ(differing(picture(world, camera, o), wanted), 0u) << packet;
+  }
+}
+
+/// Two sheets a float's last place apart, seen from three units away: to single they are at one distance, and of equals the lower id
+/// shows, which is the dark one behind. Whichever way samples are spent.
+TEST_P(Double, TellsApartWhatSingleCannot) {
+  Scene scene = empty_scene();
+  scene.materials.emplace_back().emission = {1, 1, 1};
+  const float behind = std::nextafter(1.f, 0.f);
+  add_triangle(scene, {-50, behind, -50}, {50, behind, -50}, {0, behind, 50}, 0);
+  add_triangle(scene, {-50, 1, -50}, {50, 1, -50}, {0, 1, 50}, 1);
+  const World world(scene, {});
+  Camera camera;
+  camera.eye = {.1f, 4, 0}, camera.at = {0, 0, .3f}, camera.width = camera.height = 32;
+  const auto dark = [](const Image& image) {
+    std::size_t n = 0;
+    for (const float c : image.rgb) n += c < .99f;
+    return n;
+  };
+  RenderOptions every, subdivided, refined;
+  subdivided.subdivision.on = true, refined.refine.samples = 32 * 32 * 4;
+  for (RenderOptions* const o : {&every, &subdivided, &refined}) {
+    o->isa = variant().name;
+    EXPECT_GT(dark(picture(world, camera, *o, Precision::kSingle)), 100u);
+    EXPECT_EQ(dark(picture(world, camera, *o)), 0u);
+  }
+}
+
+}  // namespace
+}  // namespace grelha::test
