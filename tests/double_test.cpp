@@ -49,8 +49,10 @@ TEST_P(Double, OneSetOfBits) {
     const Scene scene = placed(random_mixture(seed, 150), scale, offset);
     const World world(scene, {.density = seed % 4 == 0 ? 4.f : 0.f});
     Rays rays = with_odd_values(random, rays_about(random, offset, scale, kManyRays, seed % 3 == 0 ? 1e6 : 1e3), seed % 2 ? .1 : 0);
-    const Float3 eye = at(offset, 3 * scale, random.direction());
-    for (int i = 0; i < 256; ++i) rays.add(eye, minus(at(offset, scale * .2, random.point(1)), eye));
+    for (const double away : {3., 1e4}) {  // packets that stay together, of rays as they are and of rays brought near
+      const Float3 eye = at(offset, away * scale, random.direction());
+      for (int i = 0; i < 256; ++i) rays.add(eye, minus(at(offset, scale * .2, random.point(1)), eye));
+    }
     const Truth truth = truth_in_double(scene, rays);
     EXPECT_GT(hits_of(truth.closest), 300u);
     expect_truth(tested(), world, rays, truth, "seed " + std::to_string(seed));
@@ -74,20 +76,20 @@ TEST_P(Double, TiesGoToTheLowerId) {
   for (int copy = 0; copy < 3; ++copy)
     for (int i = 0; i < 40; ++i) {
       const float x = static_cast<float>(i % 8), z = static_cast<float>(i / 8);
-      scene.geometry.spheres.add({x, 0, z}, .5f, 0);
+      scene.geometry.spheres.add({x, 0, z}, .25f, 0);
       add_triangle(scene, {x, 0, z}, {x + 1, 0, z}, {x, 0, z + 1});
     }
+  add_triangle(scene, {-4, 0, -4}, {28, 0, -4}, {-4, 0, 28});  // below all of them, in no grid: met first
   Random random(1);
   Rays rays;
-  for (int i = 0; i < 1000; ++i) {
-    const Float3 eye{static_cast<float>(random.in(0, 8)), 5, static_cast<float>(random.in(0, 5))};
-    rays.add(eye, {static_cast<float>(random.in(-.2, .2)), -1, static_cast<float>(random.in(-.2, .2))});
+  for (int i = 0; i < 1024; ++i) {
+    const Float3 eye{static_cast<float>(random.below(64)) * .125f, 4, static_cast<float>(random.below(40)) * .125f};
+    rays.add(eye, {0, -1, 0});  // every number is exact, and equal t are equal bits
   }
   const Truth truth = truth_in_double(scene, rays);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const std::uint32_t id = truth.closest.id[i];
-    if (id == kNoPrimitive) continue;
-    EXPECT_TRUE(id < 40 || (id >= 120 && id < 160)) << id;
+    EXPECT_TRUE(id < 40 || (id >= 120 && id < 160) || id == 240) << id;
   }
   expect_truth(tested(), World(scene, {.density = 2}), rays, truth, "ties");
 }
@@ -212,6 +214,23 @@ TEST_P(Double, TellsApartWhatSingleCannot) {
     EXPECT_GT(dark(picture(world, camera, *o, Precision::kSingle)), 100u);
     EXPECT_EQ(dark(picture(world, camera, *o)), 0u);
   }
+}
+
+/// A sheet before a light by the last place of a float: shadow rays end at the light, at t = 1, and to single many end at the sheet.
+TEST_P(Double, SeesWhatStandsBeforeALight) {
+  Scene scene = empty_scene();
+  const float before = std::nextafter(2.f, 0.f);
+  add_triangle(scene, {-50, 0, -50}, {50, 0, -50}, {0, 0, 50});
+  add_triangle(scene, {-50, before, -50}, {50, before, -50}, {0, before, 50});
+  scene.lights = {{{.1f, 2, 0}, {1, 1, 1}}};
+  const World world(scene, {});
+  Camera camera;
+  camera.eye = {.1f, 1, 0}, camera.at = {0, 0, .3f}, camera.width = camera.height = 32;
+  const auto lit = [](const Image& image) { return std::count_if(image.rgb.begin(), image.rgb.end(), [](float c) { return c > 0; }); };
+  RenderOptions o;
+  o.isa = variant().name;
+  EXPECT_GT(lit(picture(world, camera, o, Precision::kSingle)), 100);
+  EXPECT_EQ(lit(picture(world, camera, o)), 0);
 }
 
 }  // namespace
