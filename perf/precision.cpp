@@ -1,7 +1,7 @@
 // What a ray-triangle test costs and how far off it is: by instruction set, in single and double precision, watertight (Woop,
 // Benthin, Wald 2013) or after Möller and Trumbore (1997), with and without fused multiply-add.
 //
-//   precision [--groups N] [Google Benchmark options; --benchmark_format=json]
+//   precision [--scenes] [--groups N] [Google Benchmark options; --benchmark_format=json]
 //
 // Each test is one benchmark, isa/precision/method; its counters say how it erred, judged in 113 bits, where the six products of
 // three differences of floats are exact for the sizes used here:
@@ -9,6 +9,10 @@
 //   wrong              of these, rays whose nearest triangle is another than the true one
 //   leaks              of rays from within a closed hull aimed at its corners and edges, those that meet nothing
 //   ns                 a test of a ray and a triangle, of triangles at most four times as long as wide
+//
+// With --scenes whole traces instead, isa/precision/scene: camera rays of generated scenes through their grids. Errors are those of t
+// before it is rounded, judged in long double against every primitive of the scene; leaks: rays that meet nothing where there is
+// something; ns: a ray.
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +22,10 @@
 
 #include <benchmark/benchmark.h>
 
+#include "kernel/world.hpp"
 #include "perf/precision_loops.hpp"
+#include "perf/workloads.hpp"
+#include "tests/support/oracle.hpp"
 
 namespace {
 
@@ -167,6 +174,15 @@ PairHits room_for(const Pairs& p) {
   return {std::vector<double>(n), std::vector<int>(n)};
 }
 
+void set_counters(benchmark::State& state, std::vector<double> errors, double rays, double wrong, double leaks) {
+  std::sort(errors.begin(), errors.end());
+  state.counters["max_ulp"] = errors.empty() ? 0 : errors.back();
+  state.counters["p999_ulp"] = errors.empty() ? 0 : errors[errors.size() * 999 / 1000];
+  state.counters["rays"] = rays;
+  state.counters["wrong"] = wrong;
+  state.counters["leaks"] = leaks;
+}
+
 void run(benchmark::State& state, const Workload& work, void (*loop)(const Pairs&, PairHits&)) {
   PairHits hits = room_for(work.random), hulls = room_for(work.hulls);
   loop(work.hulls, hulls);
@@ -178,30 +194,125 @@ void run(benchmark::State& state, const Workload& work, void (*loop)(const Pairs
     else if (hits.triangle[i] >= 0) errors.push_back(ulps(hits.t[i], work.truth.t[i]));
   }
   for (const int t : hulls.triangle) leaks += t < 0;
-  std::sort(errors.begin(), errors.end());
   for (auto _ : state) {
     loop(work.timed, hits);
     benchmark::DoNotOptimize(hits.t.data());
   }
   const double tests = static_cast<double>(hits.t.size()) * kGroup;
   state.counters["ns"] = benchmark::Counter(tests * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
-  state.counters["max_ulp"] = errors.empty() ? 0 : errors.back();
-  state.counters["p999_ulp"] = errors.empty() ? 0 : errors[errors.size() * 999 / 1000];
-  state.counters["rays"] = static_cast<double>(hits.t.size());
-  state.counters["wrong"] = wrong;
-  state.counters["leaks"] = leaks;
+  set_counters(state, std::move(errors), static_cast<double>(hits.t.size()), wrong, leaks);
+}
+
+// ---- scenes -----------------------------------------------------------------------------------------------------
+
+namespace oracle = grelha::test::oracle;
+
+/// A scene, camera rays to judge by and four times as many on a side to time.
+struct SceneWork {
+  std::string name;
+  grelha::SceneFile file;
+  grelha::World world;
+  RayBuffer judged, timed;
+  Truth truth;
+
+  SceneWork(const std::string& scene, int size, int side)
+      : name(scene + " " + std::to_string(size)), file(make_scene(scene, size)), world(file.scene, {}), judged(rays(side)), timed(rays(4 * side)) {
+    for (std::size_t i = 0; i < judged.size(); ++i) judge(i);
+  }
+
+ private:
+  RayBuffer rays(int side) const {
+    grelha::Camera camera = file.camera;
+    camera.width = camera.height = side;
+    return camera_rays(camera);
+  }
+  /// The nearest of all primitives; where two are equally near the first.
+  void judge(std::size_t i) {
+    const auto& v = world.impl().view;
+    const auto& g = v.geometry;
+    const oracle::Ray ray{grelha::Float3{judged.ox[i], judged.oy[i], judged.oz[i]}, grelha::Float3{judged.dx[i], judged.dy[i], judged.dz[i]}};
+    oracle::Real nearest = 1e30L;
+    int which = -1;
+    const auto note = [&](const std::optional<oracle::Crossing>& c, std::uint32_t id) {
+      if (c && c->t < nearest) nearest = c->t, which = static_cast<int>(id);
+    };
+    const auto corner = [&](std::uint32_t k) { return oracle::V(grelha::Float3{g.tx[k], g.ty[k], g.tz[k]}); };
+    for (std::uint32_t k = 0; k < g.plane_count; ++k)
+      note(oracle::Sheet{grelha::Float3{g.px[k], g.py[k], g.pz[k]}, grelha::Float3{g.pnx[k], g.pny[k], g.pnz[k]}}.first(ray, 0), k);
+    for (std::uint32_t k = 0; k < g.sphere_count; ++k) note(oracle::Ball{grelha::Float3{g.sx[k], g.sy[k], g.sz[k]}, g.sr[k]}.first(ray, 0), v.sphere_base + k);
+    for (std::uint32_t k = 0; k < g.triangle_count; ++k)
+      note(oracle::Facet{corner(g.ta[k]), corner(g.tb[k]), corner(g.tc[k])}.first(ray, 0), v.triangle_base + k);
+    truth.t.push_back(static_cast<double>(nearest)), truth.triangle.push_back(which);
+  }
+};
+
+struct SceneHits {
+  std::vector<float> t;
+  std::vector<double> whole;
+  std::vector<std::uint32_t> id;
+};
+
+void trace_scene(const SceneWork& work, const grelha::Variant& variant, bool in_double, const RayBuffer& r, SceneHits& hits) {
+  hits.t = r.t_max, hits.id.resize(r.size());
+  grelha::TraceCounts counts;
+  const grelha::RaySpan span{r.ox.data(), r.oy.data(), r.oz.data(), r.dx.data(), r.dy.data(), r.dz.data(), r.t_min.data(), hits.t.data(), hits.id.data(),
+                             static_cast<int>(r.size()), hits.whole.empty() ? nullptr : hits.whole.data()};
+  (in_double ? variant.in_double.closest : variant.loops.closest)(work.world.impl().view, span, {}, counts);
+}
+
+void run_scene(benchmark::State& state, const SceneWork& work, const grelha::Variant& variant, bool in_double) {
+  SceneHits hits;
+  hits.whole.resize(work.judged.size());
+  trace_scene(work, variant, in_double, work.judged, hits);
+  double wrong = 0, leaks = 0;
+  std::vector<double> errors;
+  for (std::size_t i = 0; i < hits.id.size(); ++i) {
+    const bool met = hits.id[i] != grelha::kNoPrimitive;
+    const int which = met ? static_cast<int>(hits.id[i]) : -1;
+    if (which != work.truth.triangle[i]) ++wrong, leaks += !met;
+    else if (met) errors.push_back(ulps(hits.whole[i], work.truth.t[i]));
+  }
+  hits.whole.clear();
+  for (auto _ : state) {
+    trace_scene(work, variant, in_double, work.timed, hits);
+    benchmark::DoNotOptimize(hits.t.data());
+  }
+  state.counters["ns"] = benchmark::Counter(static_cast<double>(work.timed.size()) * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  set_counters(state, std::move(errors), static_cast<double>(work.judged.size()), wrong, leaks);
+}
+
+int run_scenes(int groups) {
+  const int side = std::max(8, static_cast<int>(std::sqrt(groups)));
+  std::vector<SceneWork> works;
+  works.reserve(2);
+  works.emplace_back("mount", 6, side), works.emplace_back("balls", 3, side);
+  for (const grelha::Variant* v : grelha::variants()) {
+    if (!v->runs_here()) {
+      std::fprintf(stderr, "precision: this processor has no %s: left out\n", std::string(v->name).c_str());
+      continue;
+    }
+    for (const bool in_double : {false, true})
+      for (const SceneWork& work : works)
+        benchmark::RegisterBenchmark((std::string(v->name) + (in_double ? "/double/" : "/single/") + work.name).c_str(),
+                                     [&work, v, in_double](benchmark::State& s) { run_scene(s, work, *v, in_double); });
+  }
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
-  int groups = 4096;
-  if (argc == 3 && std::string(argv[1]) == "--groups") groups = std::atoi(argv[2]);
-  if (groups < 1 || (argc != 1 && argc != 3)) {
-    std::fprintf(stderr, "usage: precision [--groups N] [Google Benchmark options]\n");
+  int groups = 4096, at = 1;
+  const bool scenes = at < argc && std::string(argv[at]) == "--scenes";
+  at += scenes;
+  if (at + 1 < argc && std::string(argv[at]) == "--groups") groups = std::atoi(argv[at + 1]), at += 2;
+  if (groups < 1 || at != argc) {
+    std::fprintf(stderr, "usage: precision [--scenes] [--groups N] [Google Benchmark options]\n");
     return 2;
   }
+  if (scenes) return run_scenes(groups);
   const Workload work(groups);
   std::vector<const PrecisionLoops*> all{&k_scalar_precision};
 #ifdef GRELHA_X86_VARIANTS

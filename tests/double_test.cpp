@@ -80,12 +80,12 @@ TEST_P(Double, TiesGoToTheLowerId) {
       add_triangle(scene, {x, 0, z}, {x + 1, 0, z}, {x, 0, z + 1});
     }
   add_triangle(scene, {-4, 0, -4}, {28, 0, -4}, {-4, 0, 28});  // below all of them, in no grid: met first
-  Random random(1);
   Rays rays;
-  for (int i = 0; i < 1024; ++i) {
-    const Float3 eye{static_cast<float>(random.below(64)) * .125f, 4, static_cast<float>(random.below(40)) * .125f};
-    rays.add(eye, {0, -1, 0});  // every number is exact, and equal t are equal bits
-  }
+  for (int tile = 0; tile < 40; ++tile)
+    for (int i = 0; i < 64; ++i) {
+      const auto at = [](int whole, int eighths) { return static_cast<float>(whole) + .125f * static_cast<float>(eighths); };
+      rays.add({at(tile % 8, i % 8), 4, at(tile / 8, i / 8)}, {0, -1, 0});  // every number is exact, and equal t are equal bits
+    }
   const Truth truth = truth_in_double(scene, rays);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const std::uint32_t id = truth.closest.id[i];
