@@ -509,6 +509,15 @@ inline float not_above(double a) {
   const std::int32_t b = float_bits(r);
   return r == 0 ? bits_float(INT32_MIN + 1) : bits_float(r > 0 ? b - 1 : b + 1);
 }
+#if GRELHA_ISA_NUMBER == 1
+inline void store_narrow(float* p, double a) { *p = static_cast<float>(a); }
+#elif GRELHA_ISA_NUMBER == 2
+inline void store_narrow(float* p, const DoubleLanes& a) { _mm_storel_epi64(reinterpret_cast<__m128i*>(p), _mm_castps_si128(_mm_cvtpd_ps(a.data))); }
+#elif GRELHA_ISA_NUMBER == 3
+inline void store_narrow(float* p, const DoubleLanes& a) { _mm_storeu_ps(p, _mm256_cvtpd_ps(a.data)); }
+#else
+inline void store_narrow(float* p, const DoubleLanes& a) { _mm256_storeu_ps(p, _mm512_cvtpd_ps(a.data)); }
+#endif
 inline float not_below(double a) { return 0 - not_above(0 - a); }
 
 /// |a| without touching the sign bit of anything else.

@@ -136,6 +136,19 @@ inline void note(Packet& p, int i, const Mask<Exact>& hit, const Exact& t, std::
     store(p.id + i, select(candidate, Lanes(bits_of(id)), load<Lanes>(p.id + i)));
     return;
   }
+#else
+  if (!kAny && none(tie)) {  // without a branch for each lane
+    store(p.nearest + i, select(candidate, t, best));
+    float near[kWidth<Exact>];
+    const Exact here = p.moved ? t - load<Exact>(p.shift + i) : t;
+    store_narrow(near, here + (magnitude(here) * Exact(1.2e-7) + Exact(1e-44)));  // more than rounding takes away
+    const unsigned lanes = bits(candidate);
+    for (int k = 0; k < kWidth<Exact>; ++k) {
+      const bool met = lanes >> k & 1;
+      p.best[i + k] = met ? near[k] : p.best[i + k], p.id[i + k] = met ? bits_of(id) : p.id[i + k];
+    }
+    return;
+  }
 #endif
   Number at[kWidth<Exact>];
   store(at, t);
