@@ -17,7 +17,8 @@ void render_bands(const World::Impl& world, const Setup& setup, const RenderOpti
   stats.isa = setup.variant.name.data();
   // Allocated here, where running out of memory can still be told: an exception must not leave a parallel region.
   std::vector<std::unique_ptr<Workspace>> spaces;
-  for (int i = 0; i < stats.threads; ++i) spaces.push_back(std::make_unique<Workspace>(width * kBandRows, options.depth, setup.plan, loops_of(setup.variant, options.precision)));
+  for (int i = 0; i < stats.threads; ++i)
+    spaces.push_back(std::make_unique<Workspace>(width * kBandRows, options.depth, setup.plan, loops_of(setup.variant, options.precision)));
   std::atomic<bool> stopped = false;
 #pragma omp parallel num_threads(stats.threads)
   {

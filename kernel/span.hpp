@@ -26,7 +26,8 @@ inline void trace_span(const SceneView& scene, const RaySpan& rays, const TraceS
     __builtin_memcpy(org[0], rays.ox + first, bytes), __builtin_memcpy(org[1], rays.oy + first, bytes);
     __builtin_memcpy(org[2], rays.oz + first, bytes), __builtin_memcpy(t_min, rays.t_min + first, bytes);
     __builtin_memcpy(t, rays.t + first, bytes), __builtin_memset(shift, 0, bytes);
-    const RayArrays arrays{org[0], org[1], org[2], rays.dx + first, rays.dy + first, rays.dz + first, t_min, t, rays.id + first, shift, kDouble || rays.whole ? whole : nullptr};
+    const RayArrays arrays{org[0], org[1], org[2], rays.dx + first, rays.dy + first, rays.dz + first, t_min, t,
+                            rays.id + first, shift, kDouble || rays.whole ? whole : nullptr};
     if (settings.method == Method::kReference)
       trace_reference<kAny>(scene, arrays, count, settings.mailbox, n);
     else

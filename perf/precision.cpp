@@ -239,7 +239,8 @@ struct SceneWork {
     const auto corner = [&](std::uint32_t k) { return oracle::V(grelha::Float3{g.tx[k], g.ty[k], g.tz[k]}); };
     for (std::uint32_t k = 0; k < g.plane_count; ++k)
       note(oracle::Sheet{grelha::Float3{g.px[k], g.py[k], g.pz[k]}, grelha::Float3{g.pnx[k], g.pny[k], g.pnz[k]}}.first(ray, 0), k);
-    for (std::uint32_t k = 0; k < g.sphere_count; ++k) note(oracle::Ball{grelha::Float3{g.sx[k], g.sy[k], g.sz[k]}, g.sr[k]}.first(ray, 0), v.sphere_base + k);
+    for (std::uint32_t k = 0; k < g.sphere_count; ++k)
+      note(oracle::Ball{grelha::Float3{g.sx[k], g.sy[k], g.sz[k]}, g.sr[k]}.first(ray, 0), v.sphere_base + k);
     for (std::uint32_t k = 0; k < g.triangle_count; ++k)
       note(oracle::Facet{corner(g.ta[k]), corner(g.tb[k]), corner(g.tc[k])}.first(ray, 0), v.triangle_base + k);
     truth.t.push_back(static_cast<double>(nearest)), truth.triangle.push_back(which);
@@ -255,7 +256,8 @@ struct SceneHits {
 void trace_scene(const SceneWork& work, const grelha::Variant& variant, bool in_double, const RayBuffer& r, SceneHits& hits) {
   hits.t = r.t_max, hits.id.resize(r.size());
   grelha::TraceCounts counts;
-  const grelha::RaySpan span{r.ox.data(), r.oy.data(), r.oz.data(), r.dx.data(), r.dy.data(), r.dz.data(), r.t_min.data(), hits.t.data(), hits.id.data(),
+  const grelha::RaySpan span{r.ox.data(), r.oy.data(), r.oz.data(), r.dx.data(), r.dy.data(), r.dz.data(),
+                             r.t_min.data(), hits.t.data(), hits.id.data(),
                              static_cast<int>(r.size()), hits.whole.empty() ? nullptr : hits.whole.data()};
   (in_double ? variant.in_double.closest : variant.loops.closest)(work.world.impl().view, span, {}, counts);
 }
@@ -277,7 +279,8 @@ void run_scene(benchmark::State& state, const SceneWork& work, const grelha::Var
     trace_scene(work, variant, in_double, work.timed, hits);
     benchmark::DoNotOptimize(hits.t.data());
   }
-  state.counters["ns"] = benchmark::Counter(static_cast<double>(work.timed.size()) * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  const double timed = static_cast<double>(work.timed.size());
+  state.counters["ns"] = benchmark::Counter(timed * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
   set_counters(state, std::move(errors), static_cast<double>(work.judged.size()), wrong, leaks);
 }
 
