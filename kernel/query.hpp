@@ -30,7 +30,7 @@ struct Hit {
 
 /// How a stream of rays is traced. None of it changes an answer.
 struct QueryOptions {
-  int packet = 64;                ///< most neighbours that march together: 1, 16 or 64
+  int packet = 64;                ///< most neighbours that march together: 1, 16, 64, or for neighbours very near each other 256
   std::string_view isa = "best";  ///< see isas()
 };
 

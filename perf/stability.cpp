@@ -41,11 +41,11 @@ class EmbreeTracer final : public Tracer {
   const char* way_name(int way) const override { return way == 0 ? "8 coherent" : "single"; }
   Answers closest(const Rays& rays, int way) override {
     const perf::Answers a = ask(rays, false, way);
-    return {a.t, a.id, {}};
+    return {a.t, a.id, {}, {}};
   }
   Answers occluded(const Rays& rays, int way) override {
     const perf::Answers a = ask(rays, true, way);
-    Answers out{a.t, std::vector<std::uint32_t>(a.t.size(), kNoPrimitive), {}};
+    Answers out{a.t, std::vector<std::uint32_t>(a.t.size(), kNoPrimitive), {}, {}};
     for (std::size_t i = 0; i < a.t.size(); ++i)
       if (a.t[i] == -test::kInf) out.id[i] = 0;
     return out;

@@ -21,7 +21,7 @@ Rays some_rays(unsigned seed) {
 }
 
 Answers ask(const World& world, const Rays& rays, Query query, const QueryOptions& options = {}) {
-  Answers a{rays.t, std::vector<std::uint32_t>(rays.size(), 12345u), {}};
+  Answers a{rays.t, std::vector<std::uint32_t>(rays.size(), 12345u), {}, {}};
   const RaySpan span{rays.ox.data(), rays.oy.data(),    rays.oz.data(), rays.dx.data(), rays.dy.data(),
                      rays.dz.data(), rays.t_min.data(), a.t.data(),     a.id.data(),    int(rays.size())};
   if (query == Query::kClosest)

@@ -36,9 +36,9 @@ struct Rays {
 
 struct Answers {
   std::vector<float> t;
-  std::vector<double> whole;  ///< t before it was rounded
   std::vector<std::uint32_t> id;
   TraceCounts counts;
+  std::vector<double> whole;  ///< t before it was rounded
 };
 
 enum class Query { kClosest, kOccluded };
