@@ -2,7 +2,8 @@
 
 Its JSON is Google Benchmark's: a benchmark is named isa[+fma]/precision/method, and its counters are max_ulp and p999_ulp (error of hit
 distances in units of the last place of a float, the largest and the one that 99.9 % do not exceed), rays, wrong (of these, hits of another
-triangle than the true one), leaks (rays at edges and corners of a closed hull that meet nothing) and ns (of one test).
+triangle than the true one), leaks (rays at edges and corners of a closed hull that meet nothing) and ns (of one test). With --scenes it traces
+whole scenes, isa/precision/scene, Embree beside: ns is that of a ray then.
 """
 import json
 import subprocess
@@ -11,7 +12,8 @@ from chart import pareto_front
 
 NAME, TITLE = "rays", "Error of a ray against its time"
 ISAS = ("scalar", "sse2", "avx2", "avx512", "embree")
-SCENE = "triangles"
+TESTS = "bare tests"
+METHODS = ("watertight", "moeller-trumbore")
 LEAST_ULP = 1e-7  # what is less, zero too, is drawn here
 
 
@@ -19,7 +21,8 @@ def row_of(benchmark):
     isa, precision, method = benchmark["run_name"].split("/")
     isa, _, fused = isa.partition("+")
     counted = {key: benchmark[key] for key in ("max_ulp", "p999_ulp", "rays", "wrong", "leaks", "ns")}
-    return {"isa": isa, "precision": precision, "method": method, "fma": bool(fused), "scene": SCENE, **counted}
+    scene, method = (TESTS, method) if method in METHODS else (method, "trace")
+    return {"isa": isa, "precision": precision, "method": method, "fma": bool(fused), "scene": scene, **counted}
 
 
 def rows_of(told):
@@ -39,15 +42,19 @@ def measure(shop, plan):
     if not tool.exists():
         print("rays: LEFT OUT, there is no benchmark `precision` in this build", flush=True)
         return None
-    print("rays: ./run perf precision", flush=True)
-    subprocess.run([tool, f"--benchmark_out={file}", "--benchmark_out_format=json", f"--benchmark_repetitions={plan.rounds}",
-                    f"--benchmark_min_time={.05 if plan.quick else .3}"], check=True, stdout=subprocess.DEVNULL)
-    return {"rows": rows_of(json.loads(file.read_text()))}
+    rows = []
+    for words in ([], ["--scenes"]):
+        print(" ".join(["rays: ./run perf precision", *words]), flush=True)
+        subprocess.run([tool, *words, f"--benchmark_out={file}", "--benchmark_out_format=json", f"--benchmark_repetitions={plan.rounds}",
+                        f"--benchmark_min_time={.05 if plan.quick else .3}"], check=True, stdout=subprocess.DEVNULL)
+        rows += rows_of(json.loads(file.read_text()))
+    return {"rows": rows}
 
 
 def command(row):
     fused = r"\+fma" if row["fma"] else ""
-    return f"./run perf precision --benchmark_filter='^{row['isa']}{fused}/{row['precision']}/{row['method']}$'"
+    scenes, last = ("", row["method"]) if row["scene"] == TESTS else (" --scenes", row["scene"])
+    return f"./run perf precision{scenes} --benchmark_filter='^{row['isa']}{fused}/{row['precision']}/{last}$'"
 
 
 def name_of(row):
@@ -55,7 +62,7 @@ def name_of(row):
 
 
 def csv(result):
-    header = ["scene", "isa", "precision", "method", "fma", "rays", "max_ulp", "p999_ulp", "wrong", "leaks", "ns_a_test", "command"]
+    header = ["scene", "isa", "precision", "method", "fma", "rays", "max_ulp", "p999_ulp", "wrong", "leaks", "ns", "command"]
     return header, [[r["scene"], r["isa"], r["precision"], r["method"], int(r["fma"]), f"{r['rays']:.0f}", f"{r['max_ulp']:.4g}", f"{r['p999_ulp']:.4g}",
                      f"{r['wrong']:.0f}", f"{r['leaks']:.0f}", f"{r['ns']:.4g}", command(r)] for r in result["rows"]]
 
@@ -69,7 +76,8 @@ def panel(rows, title, y, value):
                    "facts": f"{r['ns']:.3g} ns, 99.9 % {r['p999_ulp']:.3g} ulp, max {r['max_ulp']:.3g} ulp, {r['wrong']:.0f} of {r['rays']:.0f} wrong"}
                   for r in own]
         series.append({"name": name, "look": look, "joined": True, "points": points})
-    return {"title": title, "x": {"label": "ns a test", "log": True}, "y": {"label": y, "log": True}, "series": series,
+    x = "ns a test" if rows[0]["scene"] == TESTS else "ns a ray"
+    return {"title": title, "x": {"label": x, "log": True}, "y": {"label": y, "log": True}, "series": series,
             "front": [{"x": p["x"], "y": p["y"]} for p in pareto_front([p for s in series for p in s["points"]])]}
 
 
@@ -88,5 +96,5 @@ def charts(result):
 def tell(result, table):
     rows = [[r["scene"], ("Embree" if r["isa"] == "embree" else r["isa"]), name_of(r), f"{r['max_ulp']:.3g}", f"{r['p999_ulp']:.3g}",
              f"{r['wrong']:.0f} of {r['rays']:.0f}", f"{r['leaks']:.0f}", f"{r['ns']:.3g}"] for r in result["rows"]]
-    header = ["", "lanes", "method", "max ulp", "99.9 % ulp", "wrong hits", "leaks", "ns a test"]
+    header = ["", "lanes", "method", "max ulp", "99.9 % ulp", "wrong hits", "leaks", "ns a test or ray"]
     return "![error of a ray against its time](images/charts-rays.svg)\n\n" + table(header, rows)
