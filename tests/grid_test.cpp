@@ -320,6 +320,26 @@ TEST(BlockOrder, PutsNeighboursInOneBlock) {
   }
 }
 
+/// By what a test and a walk can be off, 170 and 32 u of how far away rays may start (docs/numerics.md).
+TEST(Pads, HoldWhatRoundingTakes) {
+  constexpr double kLeast = 202 * 0x1p-24;
+  for (const Case& c : cases()) {
+    const World world(c.scene, {});
+    for (const Grid& g : world.impl().grids) {
+      double reach = world.impl().view.reach;
+      if (g.serves == Serves::kNear) {  // near_lo to near_hi are the box and the reach on both sides
+        double box = 0;
+        reach = 1e300;
+        for (int a = 0; a < 3; ++a) reach = std::min(reach, .5 * (double(g.near_hi[a]) - g.near_lo[a]));
+        for (int a = 0; a < 3; ++a) box = std::max(box, double(g.near_hi[a]) - g.near_lo[a] - 2 * reach);
+        reach -= .5 * box;
+      }
+      EXPECT_GE(g.pad, kLeast * reach) << c.name;
+      for (int a = 0; a < 3; ++a) EXPECT_GE(g.cell[a], 1.99 * g.pad) << c.name;
+    }
+  }
+}
+
 TEST(BlockBoxes, HoldWhatLiesInTheirCell) {
   std::size_t points = 0;
   for (const Case& c : cases()) {
