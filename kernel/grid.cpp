@@ -17,6 +17,8 @@ namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr double kMostCells = 1024;  ///< along an axis
+constexpr double kMostReferences = 64;   ///< a primitive; the scenes measured have 1.3 to 10
+constexpr std::size_t kProbe = 128;      ///< primitives that say how many there are
 
 /// A cube root from + - * / alone, so that resolutions agree between machines; Newton's steps until they stop falling.
 double cube_root(double x) {
@@ -419,6 +421,28 @@ double cells_per_length(double (&extent)[3], std::size_t count, double density) 
   return density / cube_root(extent[0] * extent[1] * extent[2] / static_cast<double>(count));
 }
 
+/// Cells of a grid whose corner and pad are known; returns how many.
+std::size_t divide(Grid& g, const double (&extent)[3], double per_length) {
+  std::size_t cells = 1;
+  for (std::size_t a = 0; a < 3; ++a) {
+    // Cells no smaller than 2 pad: one outlier a million scenes away makes a pad that would put everything in every cell.
+    const double n = std::min(extent[a] * per_length + 1, extent[a] / (2 * g.pad));
+    g.cells[a] = static_cast<std::uint32_t>(std::clamp(n, 1., kMostCells));
+    g.cell[a] = extent[a] / g.cells[a];
+    cells *= g.cells[a];
+  }
+  return cells;
+}
+
+/// In how many cells the mean primitive stands, by some of them, evenly picked.
+double references(const Primitives& p, std::span<const std::uint32_t> ids, const Grid& g) {
+  const CellFinder finder(p, g, g.pad);
+  const std::size_t stride = std::max<std::size_t>(1, ids.size() / kProbe);
+  std::uint64_t sum = 0, probed = 0;
+  for (std::size_t i = 0; i < ids.size(); i += stride, ++probed) finder(ids[i], [&](std::size_t) { ++sum; });
+  return static_cast<double>(sum) / static_cast<double>(probed);
+}
+
 }  // namespace
 
 double cell_edge(const Box& box, std::size_t count, double density) {
@@ -441,14 +465,10 @@ Grid build_grid(const Primitives& p, std::span<const std::uint32_t> ids, const B
     extent[a] = b.hi[a] - g.lo[a];
   }
   const double per_length = cells_per_length(extent, ids.size(), density);
-  std::size_t cells = 1;
-  for (std::size_t a = 0; a < 3; ++a) {
-    // Cells no smaller than 2 pad: one outlier a million scenes away makes a pad that would put everything in every cell.
-    const double n = std::min(extent[a] * per_length + 1, extent[a] / (2 * pad));
-    g.cells[a] = static_cast<std::uint32_t>(std::clamp(n, 1., kMostCells));
-    g.cell[a] = extent[a] / g.cells[a];
-    cells *= g.cells[a];
-  }
+  std::size_t cells = divide(g, extent, per_length);
+  // A heap of large primitives would stand in thousands of cells each, and memory end.
+  for (double coarser = per_length / 2; cells > kMostReferences && references(p, ids, g) > kMostReferences; coarser /= 2)
+    cells = divide(g, extent, coarser);
   g.distance.resize(cells + 3);  // so that four bytes can be read from any place
   const CellFinder finder(p, g, pad);
   g.store = Filling(p, ids, g, pad, useful_threads(threads, ids.size())).run([&](std::uint32_t id, const auto& visit) { finder(id, visit); },

@@ -95,7 +95,8 @@ inline int cell_of(double x, double lo, double inv_cell, int n) {
 /// Builds a grid over some primitives (ids ascending, at least one), M = density.
 ///
 /// Resolution  cells per axis = M extent / cbrt(volume / count) + 1 (Cleary & Wyvill 1988; Amanatides & Woo's report form),
-///             extents below 1/1000 of the largest counted as that, at most 1024 an axis, no cell smaller than 2 pad.
+///             extents below 1/1000 of the largest counted as that, at most 1024 an axis, no cell smaller than 2 pad; and coarser, by halves,
+///             where the mean of some primitives would stand in more than 64 cells.
 /// Guarantee   every primitive stands in each cell that its box grown by `pad` touches, unless the cell lies beyond `pad`
 ///             of its surface; in each cell spheres and cones ascend by id, triangles stand as BlockOrder says. Same lists on
 ///             every machine, by any number of threads.
