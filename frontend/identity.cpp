@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "frontend/digest.hpp"
+#include "frontend/report.hpp"
 
 namespace grelha {
 namespace {
@@ -47,16 +48,6 @@ std::string text(double value) {
   return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr};  // the shortest that reads back as the same number
 }
 
-const char* name(Sampler sampler) {
-  switch (sampler) {
-    case Sampler::kSobol: return "sobol";
-    case Sampler::kJitter: return "jitter";
-    case Sampler::kUnshuffled: return "unshuffled";
-    case Sampler::kRandom: return "random";
-  }
-  return "";
-}
-
 }  // namespace
 
 std::string scene_digest(const SceneFile& file) {
@@ -74,7 +65,7 @@ std::string settings_text(const RenderCommand& prepared, const Camera& camera) {
   const SampleOptions& s = o.sampling;
   const Effects& e = prepared.effects;
   std::string words = "version=" GRELHA_VERSION " size=" + std::to_string(camera.width) + 'x' + std::to_string(camera.height) +
-                      " samples=" + std::to_string(s.samples) + " sampler=" + name(s.sampler) + " seed=" + std::to_string(s.seed) +
+                      " samples=" + std::to_string(s.samples) + " sampler=" + sampler_name(s.sampler) + " seed=" + std::to_string(s.seed) +
                       " depth=" + std::to_string(o.depth);
   if (e.shadows) words += std::string(" shadows=") + (e.shadows->hard ? "hard" : text(e.shadows->size));
   if (s.light_rays > 1) words += " light-rays=" + std::to_string(s.light_rays);

@@ -111,6 +111,8 @@ std::string primitives_text(std::size_t spheres, std::size_t triangles, std::siz
   return text.empty() ? "no primitives" : text;
 }
 
+}  // namespace
+
 const char* sampler_name(Sampler sampler) {
   switch (sampler) {
     case Sampler::kSobol: return "sobol";
@@ -120,8 +122,6 @@ const char* sampler_name(Sampler sampler) {
   }
   return "";
 }
-
-}  // namespace
 
 std::string stats_json(const RenderCommand& command, const RunReport& report) {
   const RenderStats& render = report.render;

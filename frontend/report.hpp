@@ -10,6 +10,9 @@
 
 namespace grelha {
 
+/// As --sampler calls it.
+const char* sampler_name(Sampler sampler);
+
 struct Seconds {
   double load = 0, build = 0, render = 0, write = 0;
   double render_cpu = 0;  ///< of all threads together: what a busy machine cannot stretch

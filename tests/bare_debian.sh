@@ -4,14 +4,14 @@
 set -eu
 deb=$1
 root=$2
-[ -e "$root/etc/debian_version" ] || debootstrap --variant=minbase bookworm "$root" "${3:-http://deb.debian.org/debian}"
+[ -e "$root/etc/debian_version" ] || debootstrap --variant=minbase bookworm "$root" ${3:+"$3"}
 mount -t proc proc "$root/proc"
 trap 'umount "$root/proc"' EXIT
-cp "$deb" "$root/root/grelha.deb"
-cat >"$root/root/try" <<'TRY'
+cp "$deb" "$root/tmp/grelha.deb"
+cat >"$root/tmp/try" <<'TRY'
 set -eux
 export DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8
-cd /root
+cd /tmp
 apt-get update -qq
 apt-get install -y -qq --reinstall ./grelha.deb
 grelha --version
@@ -24,4 +24,4 @@ cmake -S /tmp/example -B /tmp/example/build
 cmake --build /tmp/example/build
 /tmp/example/build/embed
 TRY
-chroot "$root" sh /root/try
+chroot "$root" sh /tmp/try

@@ -478,33 +478,5 @@ TEST(WorldCheck, AnEmptySceneIsOne) {
     EXPECT_EQ(hits_of(trace(*find_variant("best"), world, rays, way.settings, Query::kClosest)), 0u) << way.name;
 }
 
-// ---- crowds -----------------------------------------------------------------------------------------------------
-
-TEST(Crowds, GetCellsOfTheirOwnSize) {
-  const Scene scene = towns_in_a_desert(5, 6000);
-  const World world(scene, {});
-  std::size_t most = 0;
-  for (const Grid& g : world.impl().grids)
-    for (std::size_t c = 0; g.serves != Serves::kFar && c + 1 < g.store.sphere_first.size(); ++c)
-      most = std::max<std::size_t>(most, g.store.sphere_first[c + 1] - g.store.sphere_first[c]);
-  EXPECT_LT(most, 4096u) << "of 24600 spheres";  // what is called bad; without crowds it is 18001
-}
-
-TEST(Crowds, AreNotSeenWhereThereAreNone) {
-  const Scene even = random_mixture(5, 20000);
-  EXPECT_EQ(World(even, {}).grids().size(), 1u);
-  // All in one place: no cells would help.
-  Scene one_place = empty_scene();
-  for (int i = 0; i < 3000; ++i) one_place.geometry.spheres.add({1, 2, 3}, .5f, 0);
-  EXPECT_EQ(World(one_place, {}).grids().size(), 1u);
-}
-
-TEST(References, AreBounded) {
-  Scene heap_of_copies = empty_scene();
-  for (int i = 0; i < 50000; ++i) add_triangle(heap_of_copies, {0, 0, 0}, {1, .1f, .2f}, {.1f, 1, .9f});
-  const World world(heap_of_copies, {});
-  for (const GridStats& g : world.grids()) EXPECT_LE(g.references, 64u * 50000u);  // 800 each without a bound
-}
-
 }  // namespace
 }  // namespace grelha::test
