@@ -1,5 +1,5 @@
 #pragma once
-// The one file that names xsimd and intrinsics. Every hot header is compiled once per instruction set, inside a
+// With double_lanes.hpp the one file that names xsimd and intrinsics. Every hot header is compiled once per instruction set, inside a
 // namespace of that set's name (GRELHA_ISA), so that no function of one copy can be linked into another.
 //
 //   Lanes   one float per SIMD lane, as wide as the machine's registers: one ray a lane
@@ -246,54 +246,6 @@ inline bool any_set(SimdWords<xsimd::avx512bw>::Type a) {
 inline Lanes small_to_float(SimdWords<xsimd::avx512bw>::Type a) { return Lanes(_mm512_cvtepi32_ps(reinterpret_cast<__m512i>(a))); }
 #endif
 
-// The same for doubles. Spelled out, as xsimd's own templates of the same names would be as good a match for one over both.
-template <class A>
-inline SimdDouble<A> select(const SimdDoubleMask<A>& m, const SimdDouble<A>& a, const SimdDouble<A>& b) {
-  return xsimd::select(m, a, b);
-}
-template <class A>
-inline SimdDoubleMask<A> both(const SimdDoubleMask<A>& a, const SimdDoubleMask<A>& b) {
-  return a & b;
-}
-template <class A>
-inline SimdDoubleMask<A> either(const SimdDoubleMask<A>& a, const SimdDoubleMask<A>& b) {
-  return a | b;
-}
-template <class A>
-inline SimdDouble<A> square_root(const SimdDouble<A>& a) {
-  return xsimd::sqrt(a);
-}
-template <class A>
-inline void load(const double* p, SimdDouble<A>& r) {
-  r = SimdDouble<A>::load_unaligned(p);
-}
-template <class A>
-inline void store(double* p, const SimdDouble<A>& a) {
-  a.store_unaligned(p);
-}
-#if GRELHA_ISA_NUMBER == 2
-inline DoubleLanes lesser(const DoubleLanes& a, const DoubleLanes& b) { return DoubleLanes(_mm_min_pd(a.data, b.data)); }
-inline DoubleLanes greater(const DoubleLanes& a, const DoubleLanes& b) { return DoubleLanes(_mm_max_pd(a.data, b.data)); }
-inline unsigned bits(const LaneTraits<DoubleLanes>::Mask& m) { return unsigned(_mm_movemask_pd(m.data)); }
-inline LaneTraits<DoubleLanes>::Mask but_not(const LaneTraits<DoubleLanes>::Mask& a, const LaneTraits<DoubleLanes>::Mask& b) {
-  return LaneTraits<DoubleLanes>::Mask(_mm_andnot_pd(b.data, a.data));
-}
-#elif GRELHA_ISA_NUMBER == 3
-inline DoubleLanes lesser(const DoubleLanes& a, const DoubleLanes& b) { return DoubleLanes(_mm256_min_pd(a.data, b.data)); }
-inline DoubleLanes greater(const DoubleLanes& a, const DoubleLanes& b) { return DoubleLanes(_mm256_max_pd(a.data, b.data)); }
-inline unsigned bits(const LaneTraits<DoubleLanes>::Mask& m) { return unsigned(_mm256_movemask_pd(m.data)); }
-inline LaneTraits<DoubleLanes>::Mask but_not(const LaneTraits<DoubleLanes>::Mask& a, const LaneTraits<DoubleLanes>::Mask& b) {
-  return LaneTraits<DoubleLanes>::Mask(_mm256_andnot_pd(b.data, a.data));
-}
-#else
-inline DoubleLanes lesser(const DoubleLanes& a, const DoubleLanes& b) { return DoubleLanes(_mm512_min_pd(a.data, b.data)); }
-inline DoubleLanes greater(const DoubleLanes& a, const DoubleLanes& b) { return DoubleLanes(_mm512_max_pd(a.data, b.data)); }
-inline unsigned bits(const LaneTraits<DoubleLanes>::Mask& m) { return unsigned(m.data); }
-inline LaneTraits<DoubleLanes>::Mask but_not(const LaneTraits<DoubleLanes>::Mask& a, const LaneTraits<DoubleLanes>::Mask& b) {
-  return LaneTraits<DoubleLanes>::Mask(static_cast<__mmask8>(a.data & ~b.data));
-}
-#endif
-
 template <class A>
 inline bool any(const SimdMask<A>& m) {
   return bits(m) != 0;
@@ -302,15 +254,10 @@ template <class A>
 inline bool none(const SimdMask<A>& m) {
   return bits(m) == 0;
 }
-template <class A>
-inline bool any(const SimdDoubleMask<A>& m) {
-  return bits(m) != 0;
-}
-template <class A>
-inline bool none(const SimdDoubleMask<A>& m) {
-  return bits(m) == 0;
-}
 
+}  // namespace grelha::GRELHA_ISA
+#include "kernel/double_lanes.hpp"
+namespace grelha::GRELHA_ISA {
 #endif
 
 /// Least and greatest of the lanes, none of them NaN.
