@@ -15,10 +15,11 @@ int main() {
   scene.materials = materials, scene.lights = lights, scene.background = {.2f, .3f, .5f};
   const grelha::World world(scene, {});
 
-  // One ray: what does it meet first, and is anything in the way?
+  // One ray: what does it meet first? Another, from the surface it met: is anything in its way?
   const grelha::Ray ray{{0, 0, 5}, {0, 0, -1}};
   const grelha::Hit hit = grelha::closest(world, ray);
-  std::printf("sphere %u at t = %g, %s\n", grelha::primitive_of(world, hit.id).index, hit.t, occluded(world, ray) ? "blocked" : "free");
+  const grelha::Float3 up = {0, 1, 0}, from = grelha::surface(world, ray, hit).leave(up);
+  std::printf("sphere %u at t = %g, %s\n", grelha::primitive_of(world, hit.id).index, hit.t, occluded(world, {from, up}) ? "shaded" : "lit");
 
   // A stream of rays in arrays, any number of them, from any thread.
   constexpr int kRays = 1000;

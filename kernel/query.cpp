@@ -1,8 +1,10 @@
+#define GRELHA_ISA scalar
 #include "kernel/query.hpp"
 
 #include <cassert>
 #include <stdexcept>
 
+#include "kernel/surface.hpp"
 #include "kernel/variants.hpp"
 #include "kernel/world.hpp"
 
@@ -29,6 +31,9 @@ Hit trace(const World& world, const Ray& r, Loop VariantLoops::*loop) {
   return hit;
 }
 
+scalar::Vec3<float> vec(const Float3& p) { return {p.x, p.y, p.z}; }
+Float3 float3(const scalar::Vec3<float>& v) { return {v.x, v.y, v.z}; }
+
 }  // namespace
 
 void closest(const World& world, const RaySpan& rays, const QueryOptions& options, TraceCounts* counts) {
@@ -40,6 +45,15 @@ void occluded(const World& world, const RaySpan& rays, const QueryOptions& optio
   trace(world, rays, options, counts, &VariantLoops::occluded);
 }
 bool occluded(const World& world, const Ray& ray) { return bool(trace(world, ray, &VariantLoops::occluded)); }
+
+SurfacePoint surface(const World& world, const Ray& ray, const Hit& hit) {
+  assert(hit);
+  const World::Impl& w = world.impl();
+  const scalar::Surface<float> s = scalar::surface_of<float>(w.view, hit.id, vec(ray.org), vec(ray.dir), hit.t, w.shading.smooth);
+  return {float3(s.point), float3(s.normal), float3(s.shading), s.away, s.material};
+}
+
+Float3 SurfacePoint::leave(Float3 dir) const { return float3(scalar::leave(vec(point), vec(normal), away, vec(dir))); }
 
 Primitive primitive_of(const World& world, std::uint32_t id) {
   const SceneView& v = world.impl().view;

@@ -47,6 +47,22 @@ void occluded(const World& world, const RaySpan& rays, const QueryOptions& optio
 /// The same of one ray.
 bool occluded(const World& world, const Ray& ray);
 
+/// Where a ray met a surface, and where new rays leave it.
+struct SurfacePoint {
+  Float3 point;            ///< taken from the primitive, nearer to it than org + t dir
+  Float3 normal;           ///< unit; the primitive's own: outwards, of triangles to the side they are counter-clockwise from
+  Float3 shading;          ///< unit, on the same side: mixed from vertex normals where a triangle has them, else `normal`
+  float away;              ///< so far along the normal a ray is certainly off the surface
+  std::uint32_t material;  ///< the primitive's, index into the scene's
+  /// Where a ray that leaves in direction `dir` starts, with t_min = 0: it does not meet a surface it points away from again, nor skip
+  /// anything farther from it than 2 away. Derivation: docs/numerics.md, after Pharr, Jakob and Humphreys, PBR 4th ed., 6.8.
+  /// A ray to a light starts here, goes to the light itself and searches up to t = 1.
+  Float3 leave(Float3 dir) const;
+};
+
+/// The surface that `ray` met: what a `hit` of closest() names, at its t.
+SurfacePoint surface(const World& world, const Ray& ray, const Hit& hit);
+
 /// What kinds there are, in the order of ids.
 enum class PrimitiveKind { kPlane, kSphere, kTriangle, kCone };
 

@@ -42,7 +42,7 @@ run("configuring the example" ${CMAKE_COMMAND} -S ${ROOT}/examples -B ${SCRATCH}
 run("building the example" ${CMAKE_COMMAND} --build ${SCRATCH}/build)
 run("the example" ${SCRATCH}/build/embed)
 # The front of the middle ball, radius .8 around z = 1, seen from z = 5; balls from x = -1.6 to 1.6 under rays .004 apart.
-if(NOT output MATCHES "^sphere 1 at t = 3.2, blocked\n800 of 1000 rays meet something\n160x120, [0-9]+ rays by [a-z0-9]+\n$")
+if(NOT output MATCHES "^sphere 1 at t = 3.2, lit\n800 of 1000 rays meet something\n160x120, [0-9]+ rays by [a-z0-9]+\n$")
   message(FATAL_ERROR "the example said\n${output}")
 endif()
 run("the program" ${prefix}/bin/grelha info ${prefix}/share/grelha/scenes/balls.nff)

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <thread>
 
+#include "tests/support/oracle.hpp"
 #include "tests/support/rays.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -105,6 +106,57 @@ TEST(Query, IdsAreOfTheCallersKindsInTheCallersOrder) {
   EXPECT_EQ(seen({5, 0, 9}, {0, 0, -1}), std::pair(PrimitiveKind::kSphere, 1u));
   EXPECT_EQ(seen({10, 0, 9}, {0, 0, -1}), std::pair(PrimitiveKind::kTriangle, 0u));
   EXPECT_EQ(seen({15, 20, 0}, {0, -1, 0}), std::pair(PrimitiveKind::kCone, 0u));
+}
+
+/// leaving_test asks the same of every size and place; here it is the caller's way to it that counts, from near and from afar.
+TEST(Query, RaysThatLeaveASurfaceDoNotMeetItAgain) {
+  Scene scene = random_mixture(9, 300);
+  scene.geometry.planes.add({0, 0, -3}, {0, 1, 8}, 0);
+  const World world(scene, {.grid = false});
+  const Rays rays = some_rays(5);
+  Random random(6);
+  int hits = 0, kinds[4] = {};
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Ray ray{rays.org(i), rays.dir(i)};
+    const Hit hit = closest(world, ray);
+    if (!hit) continue;
+    ++hits, ++kinds[int(primitive_of(world, hit.id).kind)];
+    const SurfacePoint s = surface(world, ray, hit);
+    for (int k = 0; k < 8; ++k) {
+      Float3 d = random.direction();
+      const double side = oracle::dot(d, s.normal);
+      if (std::abs(side) < 1e-6) continue;  // rounding decides which side it points to
+      if (side < 0) d = scaled(d, -1);
+      const Hit again = closest(world, Ray{s.leave(d), d});
+      ASSERT_FALSE(again && again.id == hit.id) << rays.describe(i) << ", id " << hit.id << ", t " << again.t;
+    }
+  }
+  EXPECT_GT(hits, 500);
+  for (const int kind : kinds) EXPECT_GT(kind, 10);
+}
+
+TEST(Query, SurfacesAreWhatTheCallerBuilt) {
+  Scene s = empty_scene();
+  s.materials.push_back({});
+  s.geometry.spheres.add({1, 0, 0}, 2, 1);
+  add_triangle(s, {9, -1, 0}, {11, -1, 0}, {10, 1, 0});
+  s.geometry.triangles.nx.assign(3, 3), s.geometry.triangles.ny.assign(3, 0), s.geometry.triangles.nz.assign(3, 4);
+  const World world(s, {});
+  const auto seen = [&](Float3 from, Float3 to) {
+    const Ray ray{from, to};
+    return surface(world, ray, closest(world, ray));
+  };
+  const SurfacePoint ball = seen({1, 0, 9}, {0, 0, -3}), triangle = seen({10, 0, 9}, {0, 0, -1});
+  EXPECT_EQ(ball.point, (Float3{1, 0, 2}));
+  EXPECT_EQ(ball.normal, (Float3{0, 0, 1}));
+  EXPECT_EQ(ball.shading, ball.normal);
+  EXPECT_EQ(ball.material, 1u);
+  EXPECT_GT(ball.leave({0, 1, 1}).z, 2.f);
+  EXPECT_LT(ball.leave({0, 1, -1}).z, 2.f);
+  EXPECT_EQ(triangle.normal, (Float3{0, 0, 1}));
+  EXPECT_NEAR(triangle.shading.x, .6, 4 * oracle::kEps);  // a product, a sum, a root, a quotient: four roundings of .6
+  EXPECT_NEAR(triangle.shading.z, .8, 4 * oracle::kEps);
+  EXPECT_EQ(triangle.material, 0u);
 }
 
 /// Two scenes in one process, each asked and rendered by several threads at once, while a render of one of them is cancelled.
