@@ -9,6 +9,7 @@
 #include <list>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <stdexcept>
 #include <thread>
 
@@ -54,6 +55,24 @@ class Counter {
  private:
   MPI_Win window_;
   std::int64_t* value_ = nullptr;
+};
+
+/// Over a network that cannot read and write memory by itself a rank answers what is asked of its memory only while it is inside MPI, and
+/// the first rank's threads may be a second in a piece: meanwhile this looks in, and others wait for a number no longer than a millisecond.
+class Doorkeeper {
+ public:
+  Doorkeeper(std::mutex& mpi, const std::function<bool()>& stop_seen) : thread_([&](const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      const std::lock_guard lock(mpi);
+      if (stop_seen()) return;  // others may be gone then, and MPI would have this one go with them
+      int there = 0;
+      MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &there, MPI_STATUS_IGNORE);
+    }
+  }) {}
+
+ private:
+  std::jthread thread_;
 };
 
 /// Pieces on their way to the first rank.
@@ -168,7 +187,7 @@ bool Ranks::accumulate(const World& world, const Camera& camera, const RenderOpt
     {
       const std::lock_guard lock(mutex);
       if (first()) {
-        if (!stop_seen()) ended += receive(a, elsewhere);  // others may be gone then, and MPI would have this one go with them
+        if (!stop_seen()) ended += receive(a, elsewhere);  // see Doorkeeper
       } else {
         const auto finished = std::find_if(in_work.begin(), in_work.end(), [&](std::size_t i) { return a.done[i] != 0; });
         outbox.send(a, *finished);
@@ -177,7 +196,11 @@ bool Ranks::accumulate(const World& world, const Camera& camera, const RenderOpt
     }
     return !options.progress || options.progress(share_done(a));
   };
-  grelha::accumulate(world, camera, shared, a, stats, next);
+  {
+    std::optional<Doorkeeper> doorkeeper;
+    if (first()) doorkeeper.emplace(mutex, stop_seen);
+    grelha::accumulate(world, camera, shared, a, stats, next);
+  }
   if (!first()) {
     outbox.finish(stats.rays);
     return true;
