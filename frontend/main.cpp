@@ -193,7 +193,7 @@ int render_scene(const RenderCommand& given, Ranks& ranks) {
   report.counts = file.counts;
   report.spheres = geometry.spheres.size(), report.triangles = geometry.triangles.size();
   report.cones = geometry.cones.size(), report.planes = geometry.planes.size();
-  report.width = camera.width, report.height = camera.height;
+  report.width = camera.width, report.height = camera.height, report.ranks = ranks.count();
   report.grids = world.grids();
   report.geometry_bytes = world.geometry_bytes(), report.grid_bytes = world.grid_bytes();
   if (!command.stats.empty()) write_file(command.stats, stats_json(prepared, report));

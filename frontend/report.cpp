@@ -131,6 +131,7 @@ std::string stats_json(const RenderCommand& command, const RunReport& report) {
   json["file"] = command.scene;
   json["isa"] = render.isa;
   json["threads"] = render.threads;
+  json["ranks"] = report.ranks;
   json["size"] = {report.width, report.height};
   json["options"] = {{"depth", command.render.depth},
                      {"density", tidy(command.build.density)},
@@ -226,8 +227,8 @@ std::string summary_line(const RenderCommand& command, const RunReport& report) 
             static_cast<unsigned long long>(e.samples), double(e.samples) / report.width / report.height, e.least, e.most);
   return command.image + ": " + primitives_text(report.spheres, report.triangles, report.cones, report.planes) + "; " +
          grids_text(report.grids) + "; " + print("%.3f Mrays in ", rays / 1e6) + times +
-         print("; %.2f Mrays/s (%s, %d thread%s)", speed, report.render.isa, report.render.threads,
-               report.render.threads == 1 ? "" : "s") + error + '\n';
+         print("; %.2f Mrays/s (%s, ", speed, report.render.isa) + (report.ranks > 1 ? print("%d ranks, ", report.ranks) : "") +
+         print("%d thread%s%s)", report.render.threads, report.render.threads == 1 ? "" : "s", report.ranks > 1 ? " each" : "") + error + '\n';
 }
 
 }  // namespace grelha

@@ -23,6 +23,7 @@ struct RunReport {
   EntityCounts counts;
   std::size_t spheres = 0, triangles = 0, cones = 0, planes = 0;  ///< as the kernel holds them
   int width = 0, height = 0;
+  int ranks = 1;  ///< processes that shared the work, `render.threads` of the first
   std::vector<GridStats> grids;
   RenderStats render;
   Seconds seconds;

@@ -189,5 +189,13 @@ TEST(Summary, IsOneLine) {
       "0.00 Mrays/s (avx2, 2 threads)\n");
 }
 
+/// mpirun binds each of two ranks to one processor unless told otherwise: whoever reads this sees it.
+TEST(Summary, SaysHowManyRanksAndThreadsEach) {
+  RunReport shared = some_run();
+  shared.ranks = 4;
+  EXPECT_NE(summary_line({}, shared).find("(avx2, 4 ranks, 2 threads each)\n"), std::string::npos);
+  EXPECT_EQ(Json::parse(stats_json({}, shared))["ranks"], 4);
+}
+
 }  // namespace
 }  // namespace grelha
