@@ -4,13 +4,22 @@ include(CMakePackageConfigHelpers)
 
 install(TARGETS grelha RUNTIME COMPONENT grelha)
 
-# The headers a program may include, and no others: kernel/ keeps its insides, and xsimd, to itself. They lie in a folder of
-# their own, so that "kernel/..." names nothing of anyone else's.
+# The headers a program may include, and no others: kernel/ keeps its insides, and xsimd, to itself. They name each other
+# "grelha/kernel/...", lest a folder kernel/ of the program's own be looked into.
 set(headers ${CMAKE_INSTALL_INCLUDEDIR}/grelha)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/grelha)
-install(FILES kernel/grelha.hpp DESTINATION ${headers} COMPONENT grelha)
-install(TARGETS grelha_kernel EXPORT grelhaTargets ARCHIVE COMPONENT grelha
-  FILE_SET HEADERS DESTINATION ${headers} COMPONENT grelha)
+get_target_property(names grelha_kernel GRELHA_HEADERS)
+list(TRANSFORM names PREPEND kernel/)
+install(CODE "
+  foreach(name grelha.hpp ${names})
+    string(REGEX REPLACE \"^grelha\" \"kernel/grelha\" from \${name})
+    file(READ \"${PROJECT_SOURCE_DIR}/\${from}\" text)
+    string(REPLACE \"#include \\\"kernel/\" \"#include \\\"grelha/kernel/\" text \"\${text}\")
+    set(to \"\${CMAKE_INSTALL_PREFIX}/${headers}/\${name}\")
+    file(WRITE \"\$ENV{DESTDIR}\${to}\" \"\${text}\")
+    list(APPEND CMAKE_INSTALL_MANIFEST_FILES \"\${to}\")
+  endforeach()" COMPONENT grelha)
+install(TARGETS grelha_kernel EXPORT grelhaTargets ARCHIVE COMPONENT grelha)
 install(EXPORT grelhaTargets NAMESPACE grelha:: DESTINATION ${package_folder} COMPONENT grelha)
 configure_package_config_file(cmake/grelhaConfig.cmake.in ${PROJECT_BINARY_DIR}/grelhaConfig.cmake INSTALL_DESTINATION ${package_folder})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/grelhaConfigVersion.cmake COMPATIBILITY SameMinorVersion)

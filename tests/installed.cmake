@@ -14,7 +14,7 @@ set(prefix ${SCRATCH}/prefix)
 run("cmake --install" ${CMAKE_COMMAND} --install ${BUILD} --config ${CONFIG} --prefix ${prefix})
 
 # Headers name each other and the standard library, nothing else, and each compiles by itself.
-set(include ${prefix}/include/grelha)
+set(include ${prefix}/include)
 file(GLOB_RECURSE headers RELATIVE ${include} ${include}/*)
 list(LENGTH headers count)
 if(count LESS 10)
@@ -34,8 +34,16 @@ foreach(header ${headers})
   endforeach()
   separate_arguments(flags UNIX_COMMAND "${FLAGS}")
   run("compiling ${header} alone" ${COMPILER} ${flags} -std=c++20 -Wall -Wextra -Wpedantic -Wshadow -Werror -fsyntax-only -x c++
-    -I ${include} -I ${prefix}/include -include ${include}/${header} /dev/null)
+    -I ${include} -include ${include}/${header} /dev/null)
 endforeach()
+
+# A program with a folder kernel/ of its own, and a plug-in: all of the library becomes part of a shared one.
+file(WRITE ${SCRATCH}/own/kernel/geometry.hpp "#error \"the program's own\"\n")
+file(WRITE ${SCRATCH}/plugin.cpp "#include <grelha/grelha.hpp>\n"
+  "grelha::Hit plugin(const grelha::World& w) { return closest(w, {{0, 0, 0}, {0, 0, 1}}); }\n")
+file(GLOB_RECURSE library ${prefix}/*/libgrelha.a)
+run("making a plug-in" ${COMPILER} ${flags} -std=c++20 -fPIC -shared -Wl,-z,defs -I ${SCRATCH}/own -I ${include} ${SCRATCH}/plugin.cpp
+  -Wl,--whole-archive ${library} -Wl,--no-whole-archive -fopenmp -o ${SCRATCH}/plugin.so)
 
 run("configuring the example" ${CMAKE_COMMAND} -S ${ROOT}/examples -B ${SCRATCH}/build -G ${GENERATOR} -D CMAKE_BUILD_TYPE=${CONFIG}
   -D CMAKE_CXX_COMPILER=${COMPILER} "-DCMAKE_CXX_FLAGS=${FLAGS} -Wall -Wextra -Wno-missing-field-initializers -Werror" -D CMAKE_PREFIX_PATH=${prefix})
