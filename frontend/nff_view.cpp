@@ -5,8 +5,6 @@
 namespace grelha {
 namespace {
 
-constexpr std::int64_t kMostPixels = 65536;  ///< a side
-
 struct Direction {
   double x, y, z;
   double length() const { return std::sqrt(x * x + y * y + z * z); }
@@ -19,7 +17,7 @@ Direction cross(const Direction& a, const Direction& b) {
 int pixels(NffInput& input) {
   const std::string_view word = input.words.next();
   std::int64_t value = 0;
-  if (!to_integer(word, value) || value < 1 || value > kMostPixels)
+  if (!to_integer(word, value) || value < 1 || value > kMostSide)
     input.fail(word, "a resolution from 1 to 65536 pixels a side");
   return int(value);
 }

@@ -15,7 +15,6 @@ namespace {
 
 constexpr std::string_view kMagic = "grelha partial 1\n";
 constexpr std::size_t kChecksum = 8;
-constexpr int kMostSide = 65536;
 
 std::string head_of(const Partial& p) {
   const Accumulator& a = p.sums;

@@ -38,7 +38,8 @@ void put(float (&to)[3], const Double3& v) {
 }  // namespace
 
 bool camera_is_sound(const Camera& c) {
-  if (!finite(c.eye) || !finite(c.at) || !finite(c.up) || c.width < 1 || c.height < 1) return false;
+  if (!finite(c.eye) || !finite(c.at) || !finite(c.up) || c.width < 1 || c.height < 1 || c.width > kMostSide || c.height > kMostSide)
+    return false;
   if (!(c.angle_deg > 0) || !(c.angle_deg < 180)) return false;
   if (!(c.aperture >= 0) || !std::isfinite(c.aperture) || !(c.focus > 0) || !std::isfinite(c.focus)) return false;
   const Double3 view = minus(c.at, c.eye), up{c.up.x, c.up.y, c.up.z};

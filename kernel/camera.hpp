@@ -4,11 +4,13 @@
 
 namespace grelha {
 
+inline constexpr int kMostSide = 65536;  ///< of a picture, in pixels
+
 /// A camera looking from `eye` to `at`. Pixel (0,0) is the upper left one; with one sample a pixel rays go through centres.
 struct Camera {
   Float3 eye{0, 0, 1}, at, up{0, 1, 0};  ///< up: neither zero nor parallel to the view (see camera_is_sound)
   double angle_deg = 45;                 ///< full vertical field of view, between the outer edges of the outermost rows
-  int width = 512, height = 512;         ///< pixels, each >= 1; pixels are square
+  int width = 512, height = 512;         ///< pixels, each from 1 to kMostSide; pixels are square
   double aperture = 0;                   ///< diameter of a thin lens, scene units; 0: pinhole
   double focus = 1;                      ///< distance, along the view, of the plane that is sharp; scene units, > 0
 };

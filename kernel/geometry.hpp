@@ -79,14 +79,14 @@ struct Geometry {
 
 /// How a surface answers light; every weight is already multiplied out (Kd times colour and so on).
 struct Material {
-  Float3 diffuse;            ///< weight of the Lambert term
-  Float3 specular;           ///< weight of the Blinn-Phong highlight
-  Float3 mirror;             ///< weight of the reflected ray; with `fresnel` the weight comes from Schlick's formula
+  Float3 diffuse{};          ///< weight of the Lambert term
+  Float3 specular{};         ///< weight of the Blinn-Phong highlight
+  Float3 mirror{};           ///< weight of the reflected ray; with `fresnel` the weight comes from Schlick's formula
   float transmission = 0;    ///< weight of the refracted ray; 0: opaque
   float shine = 0;           ///< exponent of the highlight
   float ior = 1;             ///< index of refraction of the inside against 1 outside; read only when transmission > 0
   bool fresnel = false;      ///< split between mirror and refraction by Schlick (1994) where transmission > 0
-  Float3 emission;           ///< light given off
+  Float3 emission{};         ///< light given off
   float roughness = 0;       ///< spread of the mirror lobe: radius of a disc across the unit mirror direction at its tip
   bool operator==(const Material&) const = default;  ///< field by field
 };
@@ -94,7 +94,7 @@ struct Material {
 /// A point light, or a parallelogram of such: each shadow ray goes to one point of it, and the light a surface gets is the
 /// mean over its points. Edges of zero: a point.
 struct Light {
-  Float3 position, color;  ///< position: the centre
+  Float3 position{}, color{};  ///< position: the centre
   Float3 edge1{}, edge2{};  ///< full edges
   /// Whether it has edges.
   bool is_area() const { return edge1 != Float3{} || edge2 != Float3{}; }

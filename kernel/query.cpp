@@ -20,6 +20,7 @@ TraceSettings settings_of(int packet) {
 using Loop = void (*)(const SceneView&, const RaySpan&, const TraceSettings&, TraceCounts&);
 
 void trace(const World& world, const RaySpan& rays, const QueryOptions& options, TraceCounts* counts, Loop VariantLoops::*loop) {
+  if (rays.count < 0) throw std::invalid_argument("a stream of rays has no negative length");
   TraceCounts unread;
   (choose_variant(options.isa).loops.*loop)(world.impl().view, rays, settings_of(options.packet), counts ? *counts : unread);
 }

@@ -282,7 +282,12 @@ World::Impl::Impl(const SceneSpans& s, const BuildOptions& options) : scene((che
   shading.emits = materials.emits, shading.highlights = materials.highlights, shading.gloss = materials.gloss;
 }
 
-World::World(const SceneSpans& scene, const BuildOptions& options) : impl_(std::make_unique<Impl>(scene, options)) {}
+World::World(const SceneSpans& scene, const BuildOptions& options) {
+  if (!(options.density >= 0) || options.density == std::numeric_limits<float>::infinity())
+    throw std::invalid_argument("density must be a positive number, or 0");
+  if (options.threads < 0) throw std::invalid_argument("threads must not be negative");
+  impl_ = std::make_unique<Impl>(scene, options);
+}
 World::~World() = default;
 World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;

@@ -46,7 +46,7 @@ run("making a plug-in" ${COMPILER} ${flags} -std=c++20 -fPIC -shared -Wl,-z,defs
   -Wl,--whole-archive ${library} -Wl,--no-whole-archive -fopenmp -o ${SCRATCH}/plugin.so)
 
 run("configuring the example" ${CMAKE_COMMAND} -S ${ROOT}/examples -B ${SCRATCH}/build -G ${GENERATOR} -D CMAKE_BUILD_TYPE=${CONFIG}
-  -D CMAKE_CXX_COMPILER=${COMPILER} "-DCMAKE_CXX_FLAGS=${FLAGS} -Wall -Wextra -Wno-missing-field-initializers -Werror" -D CMAKE_PREFIX_PATH=${prefix})
+  -D CMAKE_CXX_COMPILER=${COMPILER} "-DCMAKE_CXX_FLAGS=${FLAGS} -Wall -Wextra -Werror" -D CMAKE_PREFIX_PATH=${prefix})
 run("building the example" ${CMAKE_COMMAND} --build ${SCRATCH}/build)
 run("the example" ${SCRATCH}/build/embed)
 # The front of the middle ball, radius .8 around z = 1, seen from z = 5; balls from x = -1.6 to 1.6 under rays .004 apart.

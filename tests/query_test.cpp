@@ -198,6 +198,13 @@ TEST(Query, RefusesWhatItCannotDo) {
   const Rays rays = some_rays(4);
   EXPECT_THROW(ask(world, rays, Query::kClosest, {.packet = 8}), std::invalid_argument);
   EXPECT_THROW(ask(world, rays, Query::kOccluded, {.isa = "neon"}), std::invalid_argument);
+  EXPECT_THROW(closest(world, RaySpan{.count = -1}), std::invalid_argument);
+  for (const BuildOptions& odd : {BuildOptions{.density = -1}, BuildOptions{.density = kInf}, BuildOptions{.density = kNaN}, BuildOptions{.threads = -1}})
+    EXPECT_THROW(World(scene, odd), std::invalid_argument);
+  Camera wide;
+  wide.width = 65537;
+  RenderStats stats;
+  EXPECT_THROW(render(world, wide, {}, stats), std::invalid_argument);
   scene.geometry.spheres.y.pop_back();
   EXPECT_THROW(World(scene, {}), std::invalid_argument);
   scene = random_triangles(1, 30);
