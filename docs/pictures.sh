@@ -15,3 +15,4 @@ for scene in mount:7 gears:3 boat:10 tree:11; do
   ./run render "$work/$name.nff" --size 384x384 -o "$out/$name.png"
 done
 ./run render "$work/boat.nff" --size 384x384 --error 0.005 -o "$work/fine.png" --samples-map "$out/samples-map.png"
+dot -Tsvg docs/pipeline.dot -o "$out/pipeline.svg"  # Debian: graphviz
