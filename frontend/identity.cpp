@@ -67,6 +67,7 @@ std::string settings_text(const RenderCommand& prepared, const Camera& camera) {
   std::string words = "version=" GRELHA_VERSION " size=" + std::to_string(camera.width) + 'x' + std::to_string(camera.height) +
                       " samples=" + std::to_string(s.samples) + " sampler=" + sampler_name(s.sampler) + " seed=" + std::to_string(s.seed) +
                       " depth=" + std::to_string(o.depth);
+  if (o.precision == Precision::kDouble) words += " precision=double";
   if (e.shadows) words += std::string(" shadows=") + (e.shadows->hard ? "hard" : text(e.shadows->size));
   if (s.light_rays > 1) words += " light-rays=" + std::to_string(s.light_rays);
   if (camera.aperture > 0) words += " aperture=" + text(camera.aperture) + " focus=" + text(camera.focus);

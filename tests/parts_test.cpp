@@ -308,6 +308,7 @@ TEST(Identity, NamesAllThatPixelsDependOn) {
             "samples=2 seed=4, not samples=1 seed=0");
   EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.sampling.sampler = Sampler::kJitter; }), "sampler=jitter, not sampler=sobol");
   EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.depth = 6; }), "depth=6, not depth=5");
+  EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.precision = Precision::kDouble; }), "precision=double, not nothing");
   EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.effects.shadows = Effects::Shadows{true}; }), "shadows=hard, not nothing");
   EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.sampling.light_rays = 3; }), "light-rays=3, not nothing");
   EXPECT_EQ(words([](RenderCommand&, Camera& k) { k.aperture = .1, k.focus = 2; }), "aperture=0.1 focus=2, not nothing");
