@@ -48,12 +48,13 @@ std::vector<Isa> isas() {
 }
 
 Image render(const World& world, const Camera& camera, const RenderOptions& options, RenderStats& stats, SampleMaps* maps) {
-  Setup setup = set_up(world, camera, options);
+  const Setup setup = set_up(world, camera, options);
   const World::Impl& w = world.impl();
   if (options.subdivision.on) return render_subdivided(w, camera, setup.frame, setup.plan, setup.variant, options, stats);
   if (options.refine.on()) {
-    setup.plan.on = true, setup.plan.samples = kMostSamples;
-    return refine(w, camera, setup.frame, setup.plan, setup.variant, options, stats, maps);
+    Refinement r = make_refinement(camera);
+    refine(world, camera, options, r, stats, maps);
+    return picture_so_far(r);
   }
   return render_whole(w, camera, setup, options, stats);
 }

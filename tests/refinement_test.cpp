@@ -5,6 +5,7 @@
 
 #include "frontend/effects.hpp"
 #include "frontend/nff_reader.hpp"
+#include "kernel/refinement.hpp"
 #include "scenes/generators.hpp"
 #include "tests/support/rays.hpp"
 #include "tests/support/scenes.hpp"
@@ -241,6 +242,72 @@ TEST(Refinement, StopsWhenToldTo) {
   RenderStats stats;
   render(world, c.file.camera, o, stats);
   EXPECT_EQ(calls, 3);
+}
+
+/// Stopped after every few chunks, gone on with by other threads from a copy: of the first round, of later ones, and of the last.
+TEST(Refinement, StoppedAnywhereGoesOnToTheSameBits) {
+  RefineOptions of_samples;
+  of_samples.samples = 61 * 61 * 24;
+  for (const RefineOptions& asked : {to_error(.02), of_samples})
+    for (const Case& c : cases(61)) {
+      SCOPED_TRACE(c.name);
+      const Outcome want = refined(c, asked);
+      const World world(c.file.scene, {});
+      Random random(3);
+      RenderOptions o = c.options;
+      o.refine = asked, o.sampling.samples = 1;
+      int left = 0, stops = 0;
+      o.progress = [&](double) { return --left > 0; };
+      Refinement kept = make_refinement(c.file.camera);
+      Outcome got;
+      RayCounts rays;
+      for (bool done = false; !done; ++stops) {
+        left = 1 + static_cast<int>(random.below(3)), o.threads = 1 + static_cast<int>(random.below(3));
+        Refinement copy = kept;
+        done = refine(world, c.file.camera, o, copy, got.stats, &got.maps);
+        ASSERT_TRUE(is_sound(copy));
+        ASSERT_EQ(copy.finished, done);
+        ASSERT_GE(copy.share, kept.share);
+        kept = std::move(copy), rays += got.stats.rays;
+      }
+      EXPECT_GE(stops, 4);
+      EXPECT_EQ(kept.share, 1);
+      EXPECT_EQ(differing(picture_so_far(kept), want.image), 0u);
+      EXPECT_EQ(got.maps.samples, want.maps.samples);
+      EXPECT_EQ(got.maps.error, want.maps.error);
+      EXPECT_EQ(got.maps.width, want.maps.width);
+      EXPECT_EQ(got.stats.error.samples, want.stats.error.samples);
+      EXPECT_EQ(got.stats.error.rounds, want.stats.error.rounds);
+      EXPECT_EQ(rays.total(), want.stats.rays.total()) << "nothing twice";
+      EXPECT_EQ(kept.rays, rays.total());
+      EXPECT_TRUE(refine(world, c.file.camera, o, kept, got.stats, &got.maps)) << "nothing is left to do";
+      EXPECT_EQ(got.stats.rays.total(), 0u);
+      EXPECT_EQ(got.maps.error, want.maps.error);
+    }
+}
+
+/// What the time before bought counts, and the picture is still the one of so many samples.
+TEST(Refinement, TimeSpentBeforeCounts) {
+  const Case c = std::move(cases(48).back());
+  const World world(c.file.scene, {});
+  RenderOptions o = c.options;
+  o.refine.seconds = 1e6, o.sampling.samples = 1;
+  int left = 60;
+  o.progress = [&](double) { return --left > 0; };
+  Refinement kept = make_refinement(c.file.camera);
+  RenderStats stats;
+  ASSERT_FALSE(refine(world, c.file.camera, o, kept, stats));
+  ASSERT_GE(kept.rounds, 1);
+  ASSERT_GT(kept.seconds, 0);
+  kept.seconds = 1e6 - .05;  // as if the machine had been slow
+  left = 4096;
+  const std::uint64_t before = kept.rays;
+  ASSERT_TRUE(refine(world, c.file.camera, o, kept, stats));
+  // Of .05 s no round could be bought at the price of 1e6 s for what there was: only that in work is finished, less than was there before.
+  EXPECT_LT(kept.rays, 3 * before);
+  RefineOptions again;
+  again.samples = stats.error.samples;
+  EXPECT_EQ(differing(refined(c, again).image, picture_so_far(kept)), 0u);
 }
 
 }  // namespace
