@@ -5,12 +5,14 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <stdexcept>
 #include <vector>
 
 #include <omp.h>
 
-#include "kernel/subdivision.hpp"
+#include "kernel/setup.hpp"
 #include "kernel/workspace.hpp"
+#include "kernel/world.hpp"
 
 namespace grelha {
 namespace {
@@ -35,27 +37,28 @@ class PointTracer {
     for (int i = 0; i < threads; ++i) spaces_.push_back(std::make_unique<PointSpace>(options.depth, plan, loops_of(variant, options.precision)));
   }
 
-  bool operator()(std::span<const LatticePoint> points, Float3* colours, double from, double to) {
-    const auto count = static_cast<std::int64_t>(points.size()), threads = static_cast<std::int64_t>(spaces_.size());
+  std::size_t operator()(std::span<const LatticePoint> points, Float3* colours, double from, double to) {
+    const std::size_t count = points.size(), threads = spaces_.size();
     // Whole packets, large enough to be worth taking, small enough that no thread waits long for the last.
-    const std::int64_t chunk = std::clamp<std::int64_t>(count / (8 * threads) / 64 * 64, 64, kMostPoints);
-    const std::int64_t chunks = (count + chunk - 1) / chunk;
-    const int team = static_cast<int>(std::min(threads, std::max<std::int64_t>(chunks, 1)));
-    std::atomic<bool> stopped = false;
-    std::int64_t done = 0;
-#pragma omp parallel for schedule(dynamic) num_threads(team)
-    for (std::int64_t c = 0; c < chunks; ++c) {
-      if (stopped) continue;
-      const std::int64_t first = c * chunk, last = std::min(first + chunk, count);
+    const std::size_t chunk = std::clamp<std::size_t>(count / (8 * threads) / 64 * 64, 64, kMostPoints);
+    const std::size_t chunks = (count + chunk - 1) / chunk;
+    const int team = static_cast<int>(std::min(threads, std::max<std::size_t>(chunks, 1)));
+    std::atomic<std::size_t> begun = 0;
+    std::size_t done = 0;
+#pragma omp parallel num_threads(team)
+    while (!stopped_) {
+      const std::size_t c = begun++;  // what has a number is done, so that what is done is the first so many
+      if (c >= chunks) break;
+      const std::size_t first = c * chunk, last = std::min(first + chunk, count);
       see(*spaces_[static_cast<std::size_t>(omp_get_thread_num())], points.data() + first, static_cast<int>(last - first), colours + first);
 #pragma omp critical(grelha_progress)
       {
         ++done;
         const double share = from + (to - from) * static_cast<double>(done) / static_cast<double>(chunks);
-        if (options_.progress && !stopped && !options_.progress(share)) stopped = true;
+        if (options_.progress && !stopped_ && !options_.progress(share)) stopped_ = true;
       }
     }
-    return !stopped;
+    return std::min(begun * chunk, count);
   }
 
   void count(RenderStats& stats) const {
@@ -84,19 +87,23 @@ class PointTracer {
   const Variant& variant_;
   const RenderOptions& options_;
   std::vector<std::unique_ptr<PointSpace>> spaces_;
+  std::atomic<bool> stopped_ = false;  ///< for good: sees nothing more
 };
 
 }  // namespace
 
-Image render_subdivided(const World::Impl& world, const Camera& camera, const FrameView& frame, const SamplePlan& plan, const Variant& variant,
-                        const RenderOptions& options, RenderStats& stats) {
+bool render_subdivided(const World& world, const Camera& camera, const RenderOptions& options, Subdivided& picture, RenderStats& stats) {
+  const Setup setup = set_up(world, camera, options);
+  if (!options.subdivision.on) throw std::invalid_argument("this picture is one by subdivision");
+  if (picture.image.width != camera.width || picture.image.height != camera.height)
+    throw std::invalid_argument("this picture has another size than the camera's");
   stats = {};
   stats.threads = options.threads > 0 ? options.threads : omp_get_num_procs();
-  stats.isa = variant.name.data();
-  PointTracer tracer(world, frame, plan, variant, options, stats.threads);
-  Image image = subdivide(camera.width, camera.height, options.subdivision, std::ref(tracer));
+  stats.isa = setup.variant.name.data();
+  PointTracer tracer(world.impl(), setup.frame, setup.plan, setup.variant, options, stats.threads);
+  const bool finished = subdivide(picture, options.subdivision, std::ref(tracer));
   tracer.count(stats);
-  return image;
+  return finished;
 }
 
 }  // namespace grelha

@@ -1,14 +1,13 @@
 #pragma once
 
 #include "kernel/render.hpp"
-#include "kernel/shading_view.hpp"
-#include "kernel/variants.hpp"
-#include "kernel/world.hpp"
+#include "kernel/subdivided.hpp"
 
 namespace grelha {
 
-/// Renders by squares that share their corners, see subdivide(): here is what tells it the colours of points.
-Image render_subdivided(const World::Impl& world, const Camera& camera, const FrameView& frame, const SamplePlan& plan, const Variant& variant,
-                        const RenderOptions& options, RenderStats& stats);
+/// Goes on with a picture by subdivision, see subdivide(): here is what tells it the colours of points. Whether it is finished.
+/// options.progress stops it, soon. It must not look at the picture, which is at work; when this has returned another call goes on from it, or
+/// from a copy, here or on another machine. `stats` are of this call. Throws like render().
+bool render_subdivided(const World& world, const Camera& camera, const RenderOptions& options, Subdivided& picture, RenderStats& stats);
 
 }  // namespace grelha

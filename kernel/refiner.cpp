@@ -28,7 +28,7 @@ std::vector<std::uint32_t> pixel_order(int width, int height) {
     for (int tx = 0; tx < width; tx += 8)
       for (int i = 0; i < 64; ++i) {
         const int x = tx + ((i & 1) | (i >> 1 & 2) | (i >> 2 & 4)), y = ty + ((i >> 1 & 1) | (i >> 2 & 2) | (i >> 3 & 4));
-        if (x < width && y < height) order.push_back(static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(width) + static_cast<std::uint32_t>(x));
+        if (x < width && y < height) order.push_back(static_cast<std::uint32_t>(y * static_cast<std::int64_t>(width) + x));
       }
   return order;
 }
@@ -57,7 +57,7 @@ class Refiner {
   void run() {
     if (r_.wanted.empty() && !r_.finished) r_.wanted = order_;
     bool judged = false;
-    while (!r_.finished && take_round()) {
+    while (!r_.finished && !stopped_ && take_round()) {
       if (r_.rounds++ == 0) watch();
       errors_.judge(), judged = true;
       r_.finished = !choose_round();
@@ -89,7 +89,7 @@ class Refiner {
     const RefineOptions& o = options_.refine;
     const PixelErrors::Totals totals = errors_.totals();
     const bool met = o.error > 0 && totals.bound <= o.error;
-    if (o.error > 0) r_.share = met ? 1 : o.error / totals.bound;
+    if (o.error > 0) r_.share = met ? 1 : std::max(r_.share, o.error / totals.bound);  // the bound may rise at first
     if (o.samples > 0) r_.share = std::min(1.0, static_cast<double>(taken_) / static_cast<double>(o.samples));
     if (met) {
       want([&](std::size_t p) { return errors_.widths()[p] > 8 * o.error; });
@@ -156,17 +156,16 @@ class Refiner {
   bool take_round() {
     std::vector<Chunk> chunks = cut_round();
     std::atomic<std::size_t> begun = 0;
-    std::atomic<bool> stopped = false;
 #pragma omp parallel num_threads(stats_.threads)
     {
       Workspace& space = *spaces_[static_cast<std::size_t>(omp_get_thread_num())];
       TraceCounts trace;
       RayCounts rays;
-      while (!stopped) {
+      while (!stopped_) {
         const std::size_t c = begun++;  // what has a number is done, so that what is done is the first so many
         if (c >= chunks.size()) break;
         take_chunk(chunks[c], space, trace, rays);
-        if (options_.progress && !goes_on(stopped)) stopped = true;
+        if (options_.progress) tell_progress();
       }
 #pragma omp critical(grelha_stats)
       stats_.trace += trace, stats_.rays += rays, r_.rays += rays.total(), taken_ += rays.primary;
@@ -184,14 +183,12 @@ class Refiner {
     return true;
   }
 
-  bool goes_on(const std::atomic<bool>& stopped) {
-    bool go_on = true;
+  void tell_progress() {
 #pragma omp critical(grelha_progress)
     {
       if (options_.refine.seconds > 0) r_.share = std::min(1.0, seconds() / options_.refine.seconds);
-      go_on = !stopped && options_.progress(r_.share);
+      if (!stopped_ && !options_.progress(r_.share)) stopped_ = true;
     }
-    return go_on;
   }
 
   void take_chunk(Chunk& chunk, Workspace& space, TraceCounts& trace, RayCounts& rays) {
@@ -286,6 +283,7 @@ class Refiner {
   std::vector<Rank> rank_;
   PixelErrors errors_;
   std::vector<std::unique_ptr<Workspace>> spaces_;
+  std::atomic<bool> stopped_ = false;
 };
 
 }  // namespace

@@ -48,15 +48,17 @@ std::vector<Isa> isas() {
 }
 
 Image render(const World& world, const Camera& camera, const RenderOptions& options, RenderStats& stats, SampleMaps* maps) {
-  const Setup setup = set_up(world, camera, options);
-  const World::Impl& w = world.impl();
-  if (options.subdivision.on) return render_subdivided(w, camera, setup.frame, setup.plan, setup.variant, options, stats);
+  if (options.subdivision.on) {
+    Subdivided s = make_subdivided(camera.width, camera.height);
+    render_subdivided(world, camera, options, s, stats);
+    return std::move(s.image);
+  }
   if (options.refine.on()) {
     Refinement r = make_refinement(camera);
     refine(world, camera, options, r, stats, maps);
     return picture_so_far(r);
   }
-  return render_whole(w, camera, setup, options, stats);
+  return render_whole(world.impl(), camera, set_up(world, camera, options), options, stats);
 }
 
 }  // namespace grelha

@@ -113,7 +113,7 @@ struct RenderOptions {
 
 /// Renders. The picture is the same, bit for bit, for every value of threads, packet, mailbox, isa, density and grid.
 /// Throws std::invalid_argument for an instruction set that is unknown or does not run here, or a bad camera or option.
-/// When `progress` stops it, the rows, or tiles of a subdivided picture, not yet rendered are black.
+/// When `progress` stops it, what has no sample yet is black.
 /// `maps` is filled when samples are spent by error.
 Image render(const World& world, const Camera& camera, const RenderOptions& options, RenderStats& stats, SampleMaps* maps = nullptr);
 

@@ -1,4 +1,4 @@
-#include "kernel/subdivision.hpp"
+#include "kernel/subdivided.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -21,11 +21,7 @@ std::uint64_t spread(std::uint64_t x) {
 /// Place on Morton's curve: points sorted by it are neighbours, for the packets' sake.
 std::uint64_t morton(LatticePoint p) { return spread(p.x) | spread(p.y) << 1; }
 
-/// A point and what it saw, or where in the tile's colours that stands.
-struct Seen {
-  std::uint64_t key;
-  Float3 colour;
-};
+/// A point on a border of the tile, and where in its colours that stands.
 struct Border {
   std::uint64_t key;
   std::uint32_t id;
@@ -47,46 +43,59 @@ float clamped(float x) { return x < 0 ? 0.f : x > 1 ? 1.f : x; }
 
 struct Sum {
   double r = 0, g = 0, b = 0;
+  void add(const Float3 (&c)[4], double share) {
+    r += share * ((static_cast<double>(c[0].x) + c[1].x) + (static_cast<double>(c[2].x) + c[3].x));
+    g += share * ((static_cast<double>(c[0].y) + c[1].y) + (static_cast<double>(c[2].y) + c[3].y));
+    b += share * ((static_cast<double>(c[0].z) + c[1].z) + (static_cast<double>(c[2].z) + c[3].z));
+  }
 };
 
 class Subdivider {
  public:
-  Subdivider(int width, int height, const Subdivision& options, const SeePoints& see, int tile)
-      : options_(options), see_(see), side_(tile), image_(width, height), above_(static_cast<std::size_t>((width - 1) / tile + 1)) {}
+  Subdivider(Subdivided& picture, const Subdivision& options, const SeePoints& see, int tile)
+      : options_(options), see_(see), side_(tile), p_(picture), image_(picture.image) {}
 
-  Image run() {
-    const int rows = (image_.height - 1) / side_ + 1, columns = (image_.width - 1) / side_ + 1;
-    const double tiles = static_cast<double>(rows) * columns;
-    for (int row = 0; row < rows; ++row) {
-      left_.clear();
-      for (int column = 0; column < columns; ++column) {
-        done_ = (static_cast<double>(row) * columns + column) / tiles, part_ = 1 / tiles;
-        if (!tile(column, row)) return std::move(image_);
-      }
+  bool run() {
+    const auto tiles = [this](int side) { return static_cast<std::size_t>((side - 1) / side_ + 1); };
+    const std::size_t rows = tiles(image_.height), columns = tiles(image_.width);
+    if (p_.tiles == 0) p_.above.resize(columns);
+    if (p_.above.size() != columns || p_.tiles > rows * columns) throw std::invalid_argument("this picture was made in tiles of another size");
+    for (part_ = 1 / static_cast<double>(rows * columns); p_.tiles < rows * columns; ++p_.tiles) {
+      const std::size_t column = p_.tiles % columns;
+      if (column == 0) p_.left.clear();
+      done_ = static_cast<double>(p_.tiles) * part_;
+      if (!tile(static_cast<int>(column), static_cast<int>(p_.tiles / columns), p_.above[column])) return false;
     }
-    return std::move(image_);
+    p_.share = 1;
+    return true;
   }
 
  private:
-  bool tile(int column, int row) {
+  bool tile(int column, int row, std::vector<BorderPoint>& above) {
     x0_ = column * side_, y0_ = row * side_;
     x1_ = std::min(x0_ + side_, image_.width), y1_ = std::min(y0_ + side_, image_.height);
-    recall(above_[static_cast<std::size_t>(column)], left_);
+    recall(above, p_.left);
     sums_.assign(static_cast<std::size_t>(x1_ - x0_) * static_cast<std::size_t>(y1_ - y0_), {});
     split_.clear();
-    if (!corners()) return false;
+    if (!corners()) return show_corners(), false;
     for (int level = 0; level < options_.depth && !split_.empty(); ++level)
-      if (!split_all(level)) return false;
-    finish(above_[static_cast<std::size_t>(column)]);
+      if (!split_all(level)) return show_squares(level), false;
+    show();
+    remember(right_border_, p_.left);
+    remember(lower_border_, above);
+    p_.colours.clear();
     return true;
   }
 
   /// Points that tiles above and to the left saw on the borders with this one come first: the number of one is its place.
-  void recall(const std::vector<Seen>& above, const std::vector<Seen>& left) {
-    known_.clear(), colours_.clear(), fresh_.clear(), right_border_.clear(), lower_border_.clear();
+  void recall(const std::vector<BorderPoint>& above, const std::vector<BorderPoint>& left) {
+    known_.clear(), fresh_.clear(), right_border_.clear(), lower_border_.clear();
     std::set_union(above.begin(), above.end(), left.begin(), left.end(), std::back_inserter(known_),
-                   [](const Seen& a, const Seen& b) { return a.key < b.key; });
-    for (const Seen& k : known_) colours_.push_back(k.colour);
+                   [](const BorderPoint& a, const BorderPoint& b) { return a.key < b.key; });
+    numbered_ = known_.size();
+    if (p_.colours.size() >= numbered_) return;  // those of a tile to go on with
+    p_.colours.clear();
+    for (const BorderPoint& k : known_) p_.colours.push_back(k.colour);
   }
 
   /// The number of a point not asked for in this tile before.
@@ -94,24 +103,34 @@ class Subdivider {
     std::uint32_t id = 0;
     bool known = false;
     if (p.x == static_cast<std::uint32_t>(x0_) * kLatticeSteps || p.y == static_cast<std::uint32_t>(y0_) * kLatticeSteps) {
-      const auto at = std::lower_bound(known_.begin(), known_.end(), key, [](const Seen& a, std::uint64_t k) { return a.key < k; });
+      const auto at = std::lower_bound(known_.begin(), known_.end(), key, [](const BorderPoint& a, std::uint64_t k) { return a.key < k; });
       known = at != known_.end() && at->key == key;
       if (known) id = static_cast<std::uint32_t>(at - known_.begin());
     }
-    if (!known) id = static_cast<std::uint32_t>(colours_.size() + fresh_.size()), fresh_.push_back(p);
+    if (!known) id = static_cast<std::uint32_t>(numbered_ + fresh_.size()), fresh_.push_back(p);
     if (p.x == static_cast<std::uint32_t>(x1_) * kLatticeSteps) right_border_.push_back({key, id});
     if (p.y == static_cast<std::uint32_t>(y1_) * kLatticeSteps) lower_border_.push_back({key, id});
     return id;
   }
 
   /// Shares of a tile's work by level, halved from level to level: nobody knows beforehand how much is to come.
+  double share(int level) const { return done_ + part_ * (level > options_.depth ? 1 : 1 - std::ldexp(1, -level)); }
+
+  /// Whether all fresh points have their colours then. Of a tile gone on with they may have them already, or the first of them.
   bool see_fresh(int level) {
-    const std::size_t first = colours_.size();
-    colours_.resize(first + fresh_.size());
-    const auto share = [&](int l) { return done_ + part_ * (l > options_.depth ? 1 : 1 - std::ldexp(1, -l)); };
-    const bool go_on = see_(fresh_, colours_.data() + first, share(level), share(level + 1));
+    const std::size_t begin = p_.colours.size(), end = numbered_ + fresh_.size();
+    if (begin < end) {
+      const auto share_at = [&](std::size_t seen) {
+        return share(level) + (share(level + 1) - share(level)) * static_cast<double>(seen - numbered_) / static_cast<double>(fresh_.size());
+      };
+      p_.colours.resize(end);
+      const std::size_t seen = begin + see_(std::span(fresh_).subspan(begin - numbered_), p_.colours.data() + begin, share_at(begin), share_at(end));
+      p_.colours.resize(seen), p_.share = share_at(seen);
+      if (seen < end) return false;
+    }
+    numbered_ = end;
     fresh_.clear();
-    return go_on;
+    return true;
   }
 
   /// Level 0, in blocks of 8 x 8 points; then every pixel is a square.
@@ -173,16 +192,9 @@ class Subdivider {
   /// A square whose corners are known joins those to be split, or its pixel's sum. The order of a pixel's terms is that of its
   /// own squares alone.
   void settle(const Square& s, int level, std::vector<Square>& to_split) {
-    const Float3 c[4] = {colours_[s.corner[0]], colours_[s.corner[1]], colours_[s.corner[2]], colours_[s.corner[3]]};
-    if (level < options_.depth && (differ(c, &Float3::x) || differ(c, &Float3::y) || differ(c, &Float3::z))) {
-      to_split.push_back(s);
-      return;
-    }
-    const double share = std::ldexp(.25, -2 * level);
-    Sum& sum = sums_[s.pixel];
-    sum.r += share * ((static_cast<double>(c[0].x) + c[1].x) + (static_cast<double>(c[2].x) + c[3].x));
-    sum.g += share * ((static_cast<double>(c[0].y) + c[1].y) + (static_cast<double>(c[2].y) + c[3].y));
-    sum.b += share * ((static_cast<double>(c[0].z) + c[1].z) + (static_cast<double>(c[2].z) + c[3].z));
+    const Float3 c[4] = {p_.colours[s.corner[0]], p_.colours[s.corner[1]], p_.colours[s.corner[2]], p_.colours[s.corner[3]]};
+    if (level < options_.depth && (differ(c, &Float3::x) || differ(c, &Float3::y) || differ(c, &Float3::z))) to_split.push_back(s);
+    else sums_[s.pixel].add(c, std::ldexp(.25, -2 * level));
   }
 
   bool differ(const Float3 (&c)[4], float Float3::*channel) const {
@@ -190,36 +202,50 @@ class Subdivider {
     return most - least > options_.threshold;
   }
 
-  void finish(std::vector<Seen>& above) {
+  void show() {
     const Sum* sum = sums_.data();
     for (int y = y0_; y < y1_; ++y) {
       float* out = image_.row(y) + 3 * static_cast<std::size_t>(x0_);
       for (int x = x0_; x < x1_; ++x, ++sum, out += 3)
         out[0] = static_cast<float>(sum->r), out[1] = static_cast<float>(sum->g), out[2] = static_cast<float>(sum->b);
     }
-    remember(right_border_, left_);
-    remember(lower_border_, above);
   }
 
-  void remember(std::vector<Border>& border, std::vector<Seen>& seen) {
+  /// Of a tile that is stopped: until all corners are seen a pixel is its first one.
+  void show_corners() {
+    const std::size_t width = static_cast<std::size_t>(x1_ - x0_);
+    for (std::size_t i = 0; i < sums_.size(); ++i) {
+      const std::uint32_t id = ids_[i + i / width];  // a row has one corner more than pixels
+      if (id >= p_.colours.size()) continue;
+      const Float3 c = p_.colours[id];
+      sums_[i].add({c, c, c, c}, .25);
+    }
+    show();
+  }
+  /// Squares that wait to be split are what their corners are.
+  void show_squares(int level) {
+    for (const auto& [at, pixel, n] : split_)
+      sums_[pixel].add({p_.colours[n[0]], p_.colours[n[1]], p_.colours[n[2]], p_.colours[n[3]]}, std::ldexp(.25, -2 * level));
+    show();
+  }
+
+  void remember(std::vector<Border>& border, std::vector<BorderPoint>& seen) {
     std::sort(border.begin(), border.end(), [](const Border& a, const Border& b) { return a.key < b.key; });
     seen.clear();
-    for (const Border& b : border) seen.push_back({b.key, colours_[b.id]});
+    for (const Border& b : border) seen.push_back({b.key, p_.colours[b.id]});
   }
 
   const Subdivision& options_;
   const SeePoints& see_;
   const int side_;
-  Image image_;
-  // what passes from tile to tile, sorted by key
-  std::vector<std::vector<Seen>> above_;  ///< [tile columns]
-  std::vector<Seen> left_;
-  // the tile at work
+  Subdivided& p_;
+  Image& image_;
+  // the tile in work
   int x0_ = 0, y0_ = 0, x1_ = 0, y1_ = 0;
   double done_ = 0, part_ = 1;
-  std::vector<Seen> known_;
-  std::vector<Float3> colours_;
-  std::vector<LatticePoint> fresh_;  ///< numbered, not yet seen
+  std::vector<BorderPoint> known_;
+  std::size_t numbered_ = 0;         ///< points before the fresh ones
+  std::vector<LatticePoint> fresh_;  ///< asked for last
   std::vector<Border> right_border_, lower_border_;
   std::vector<std::uint32_t> ids_;
   std::vector<Square> split_, next_;
@@ -236,14 +262,28 @@ std::uint32_t lattice_hash(LatticePoint p) {
   return static_cast<std::uint32_t>(x >> 32);
 }
 
-Image subdivide(int width, int height, const Subdivision& options, const SeePoints& see, int tile) {
+Subdivided make_subdivided(int width, int height) {
+  if (width < 1 || height < 1 || width > kMostSubdividedSide || height > kMostSubdividedSide)
+    throw std::invalid_argument("a subdivided picture has sides from 1 to " + std::to_string(kMostSubdividedSide));
+  return {Image(width, height), 0, {}, {}, {}, 0};
+}
+
+bool is_sound(const Subdivided& s) {
+  const auto ascends = [](const std::vector<BorderPoint>& border) {
+    const auto falls = [](const BorderPoint& a, const BorderPoint& b) { return a.key >= b.key; };
+    return std::adjacent_find(border.begin(), border.end(), falls) == border.end();
+  };
+  const int most = std::max(s.image.width, s.image.height), least = std::min(s.image.width, s.image.height);
+  if (least < 1 || most > kMostSubdividedSide || !(s.share >= 0) || s.share > 1) return false;
+  return ascends(s.left) && std::all_of(s.above.begin(), s.above.end(), ascends);
+}
+
+bool subdivide(Subdivided& picture, const Subdivision& options, const SeePoints& see, int tile) {
   if (!(options.threshold >= 0) || options.threshold > 1) throw std::invalid_argument("the threshold of subdivision must be from 0 to 1");
   if (options.depth < 0 || options.depth > kMostSubdivisions)
     throw std::invalid_argument("the depth of subdivision must be from 0 to " + std::to_string(kMostSubdivisions));
-  if (width < 1 || height < 1 || width > kMostSubdividedSide || height > kMostSubdividedSide)
-    throw std::invalid_argument("a subdivided picture has sides from 1 to " + std::to_string(kMostSubdividedSide));
   if (tile <= 0) tile = std::min(1024, 4096 >> options.depth);
-  return Subdivider(width, height, options, see, tile).run();
+  return Subdivider(picture, options, see, tile).run();
 }
 
 }  // namespace grelha

@@ -1,13 +1,10 @@
 #pragma once
 // Adaptive supersampling by squares that share their corners: a square whose corners disagree is split into four, again and
-// again, as POV-Ray's method 2 does (Whitted 1980, section 4). Knows nothing of rays: whoever calls it says what a point sees.
+// again, as POV-Ray's method 2 does (Whitted 1980, section 4).
 
 #include <cstdint>
-#include <functional>
-#include <span>
 
 #include "kernel/geometry.hpp"
-#include "kernel/image.hpp"
 
 namespace grelha {
 
@@ -32,14 +29,5 @@ struct Subdivision {
   float threshold = .1f;  ///< squares split where a channel of two corners differs by more; display values, clamped to [0, 1]
   int depth = 3;          ///< times a pixel may be split, up to kMostSubdivisions; 0: its corners alone
 };
-
-/// Colours of points, all different and none asked for before. `from` and `to` say which share of the picture is done before
-/// and after. Returns false to stop.
-using SeePoints = std::function<bool(std::span<const LatticePoint> points, Float3* colours, double from, double to)>;
-
-/// The picture whose pixels are their squares: the mean of four corners, or of four quarters where a square is split.
-/// Works in tiles of `tile` pixels a side (0: as large as 2^24 points allow were every square split), which changes nothing
-/// but the order of points. Stopped, tiles not finished stay black.
-Image subdivide(int width, int height, const Subdivision& options, const SeePoints& see, int tile = 0);
 
 }  // namespace grelha

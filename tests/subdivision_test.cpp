@@ -3,7 +3,7 @@
 #include <map>
 #include <set>
 
-#include "kernel/subdivision.hpp"
+#include "kernel/point_tracer.hpp"
 #include "tests/support/rays.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -51,6 +51,12 @@ class Recursion {
   std::set<Place> points_;
 };
 
+Image subdivided(int width, int height, const Subdivision& options, const SeePoints& see, int tile = 0) {
+  Subdivided picture = make_subdivided(width, height);
+  subdivide(picture, options, see, tile);
+  return std::move(picture.image);
+}
+
 /// Discs on top of each other, in eighths from -1/4 to 2: every mean of such colours is exact in double.
 Colour random_discs(std::uint64_t seed, double width, double height) {
   struct Disc {
@@ -82,9 +88,9 @@ TEST(Subdivide, IsTheRecursionAndSeesNoPointTwice) {
           std::size_t twice = 0;
           const auto see = [&](std::span<const LatticePoint> points, Float3* colours, double, double) {
             for (const LatticePoint& p : points) twice += !seen.insert({p.x, p.y}).second, *colours++ = colour(p.x / 256., p.y / 256.);
-            return true;
+            return points.size();
           };
-          const Image image = subdivide(w, h, {true, threshold, depth}, see, tile);
+          const Image image = subdivided(w, h, {true, threshold, depth}, see, tile);
           Recursion recursion(colour, threshold, depth);
           for (int y = 0; y < h; ++y)
             for (int x = 0; x < w; ++x) {
@@ -99,14 +105,14 @@ TEST(Subdivide, IsTheRecursionAndSeesNoPointTwice) {
 }
 
 TEST(Subdivide, RefusesWhatMakesNoSense) {
-  const auto see = [](std::span<const LatticePoint>, Float3*, double, double) { return false; };
-  for (const float threshold : {-.1f, 1.01f, kNaN}) EXPECT_THROW(subdivide(4, 4, {true, threshold, 2}, see), std::invalid_argument);
-  for (const int depth : {-1, 9}) EXPECT_THROW(subdivide(4, 4, {true, .1f, depth}, see), std::invalid_argument);
+  const auto see = [](std::span<const LatticePoint>, Float3*, double, double) { return std::size_t{0}; };
+  for (const float threshold : {-.1f, 1.01f, kNaN}) EXPECT_THROW(subdivided(4, 4, {true, threshold, 2}, see), std::invalid_argument);
+  for (const int depth : {-1, 9}) EXPECT_THROW(subdivided(4, 4, {true, .1f, depth}, see), std::invalid_argument);
   for (const int side : {0, 65537}) {
-    EXPECT_THROW(subdivide(side, 4, {true, .1f, 2}, see), std::invalid_argument);
-    EXPECT_THROW(subdivide(4, side, {true, .1f, 2}, see), std::invalid_argument);
+    EXPECT_THROW(subdivided(side, 4, {true, .1f, 2}, see), std::invalid_argument);
+    EXPECT_THROW(subdivided(4, side, {true, .1f, 2}, see), std::invalid_argument);
   }
-  EXPECT_NO_THROW(subdivide(65536, 1, {true, 1, 8}, see));
+  EXPECT_NO_THROW(subdivided(65536, 1, {true, 1, 8}, see));
 }
 
 TEST(Subdivide, StopsWhenToldAndTellsHowFarItIs) {
@@ -117,18 +123,74 @@ TEST(Subdivide, StopsWhenToldAndTellsHowFarItIs) {
     EXPECT_GE(from, last - 1e-12);
     EXPECT_LE(from, to);
     last = to;
+    if (++calls == stop_at) return std::size_t{0};
     for (const LatticePoint& p : points) *colours++ = colour(p.x / 256., p.y / 256.);
-    return ++calls != stop_at;
+    return points.size();
   };
-  const Image whole = subdivide(8, 8, {true, .1f, 2}, see, 4);
+  const Image whole = subdivided(8, 8, {true, .1f, 2}, see, 4);
   EXPECT_EQ(calls, 12u) << "four tiles, three levels";
   EXPECT_NEAR(last, 1, 1e-12);
   calls = 0, stop_at = 8, last = 0;
-  const Image part = subdivide(8, 8, {true, .1f, 2}, see, 4);
+  const Image part = subdivided(8, 8, {true, .1f, 2}, see, 4);
   EXPECT_EQ(calls, 8u);
   for (int y = 0; y < 8; ++y)
-    for (int x = 0; x < 8; ++x)
-      EXPECT_EQ(part.row(y)[3 * x], y < 4 ? whole.row(y)[3 * x] : 0) << x << ' ' << y << ": two tiles were finished";
+    for (int x = 0; x < 8; ++x) {
+      if (y >= 4 && x < 4) continue;
+      EXPECT_EQ(part.row(y)[3 * x], y < 4 ? whole.row(y)[3 * x] : 0) << x << ' ' << y << ": two tiles are finished, one is not begun";
+    }
+  // Of the third tile the corners are there, and no more.
+  const Image corners = subdivided(8, 8, {true, .1f, 0}, [&](auto points, Float3* colours, double, double) {
+    for (const LatticePoint& p : points) *colours++ = colour(p.x / 256., p.y / 256.);
+    return points.size();
+  });
+  for (int y = 4; y < 8; ++y)
+    for (int x = 0; x < 4; ++x) EXPECT_EQ(part.row(y)[3 * x], corners.row(y)[3 * x]) << x << ' ' << y;
+}
+
+/// Points are seen a few at a time, in a picture that is copied between them: none is seen twice, and the picture is that made in one go.
+TEST(Subdivide, StoppedAnywhereGoesOnToTheSameBits) {
+  Random random(4);
+  for (const int tile : {0, 3, 8})
+    for (const int depth : {0, 1, 4}) {
+      SCOPED_TRACE(testing::Message() << "tile " << tile << ", depth " << depth);
+      const Colour colour = random_discs(11, 19, 12);
+      std::set<Place> seen;
+      std::size_t twice = 0, most = ~std::size_t{0};
+      const auto see = [&](std::span<const LatticePoint> points, Float3* colours, double, double) {
+        const std::size_t n = std::min(points.size(), most);
+        for (const LatticePoint& p : points.first(n)) twice += !seen.insert({p.x, p.y}).second, *colours++ = colour(p.x / 256., p.y / 256.);
+        return n;
+      };
+      const Image whole = subdivided(19, 12, {true, .1f, depth}, see, tile);
+      const std::set<Place> all = std::exchange(seen, {});
+      Subdivided kept = make_subdivided(19, 12);
+      for (bool done = false; !done;) {
+        Subdivided copy = kept;
+        most = random.below(100);
+        done = subdivide(copy, {true, .1f, depth}, see, tile);
+        ASSERT_TRUE(is_sound(copy));
+        ASSERT_GE(copy.share, kept.share);
+        kept = std::move(copy);
+      }
+      EXPECT_EQ(kept.share, 1);
+      EXPECT_EQ(kept.image.rgb, whole.rgb);
+      EXPECT_EQ(seen, all);
+      EXPECT_EQ(twice, 0u);
+      EXPECT_TRUE(subdivide(kept, {true, .1f, depth}, see, tile)) << "nothing is left to do";
+      EXPECT_EQ(twice, 0u);
+    }
+}
+
+/// Until all corners are seen a pixel shows its first, then squares that wait to be split show theirs: all of it lies between what was seen.
+TEST(Subdivide, ShowsOfATileWhatThereIs) {
+  Subdivided picture = make_subdivided(16, 8);
+  const auto see_some = [](std::span<const LatticePoint> points, Float3* colours, double, double) {
+    const std::size_t n = std::min<std::size_t>(points.size(), 64);  // corners come in blocks of 8 x 8
+    for (std::size_t i = 0; i < n; ++i) colours[i] = {static_cast<float>(points[i].x / 256), 0, 0};
+    return n;
+  };
+  EXPECT_FALSE(subdivide(picture, {true, .1f, 0}, see_some));
+  for (int x = 0; x < 16; ++x) EXPECT_EQ(picture.image.row(3)[3 * x], x < 8 ? x : 0) << x;
 }
 
 TEST(LatticeHash, TellsPointsApart) {
@@ -404,7 +466,35 @@ TEST(Adaptive, StopsAndSaysHowFarItIs) {
   o.progress = [](double) { return false; };
   const Rendered part = rendered(s, c, o);
   EXPECT_LT(part.rays.primary, whole.rays.primary / 4);
-  for (const float x : part.image.rgb) ASSERT_EQ(x, 0);
+  std::size_t shown = 0;
+  for (std::size_t i = 0; i < part.image.rgb.size(); i += 3) shown += part.image.rgb[i] + part.image.rgb[i + 1] + part.image.rgb[i + 2] > 0;
+  EXPECT_GT(shown, 0u);
+  EXPECT_LE(shown, part.rays.primary) << "a pixel shows its first corner";
+}
+
+TEST(Adaptive, StoppedAnywhereGoesOnToTheSameBits) {
+  const Scene s = everything();
+  Camera c = upon_everything();
+  c.width = 200, c.height = 150, c.aperture = .05;
+  RenderOptions o = adaptive(.1f, 2);
+  o.sampling.samples = 3;
+  const Rendered whole = rendered(s, c, o);
+  const World world(s, {});
+  Random random(5);
+  int left = 0, stops = 0;
+  o.progress = [&](double) { return --left > 0; };
+  Subdivided kept = make_subdivided(c.width, c.height);
+  RayCounts rays;
+  for (bool done = false; !done; ++stops) {
+    left = 1 + static_cast<int>(random.below(9)), o.threads = 1 + static_cast<int>(random.below(3));
+    Subdivided copy = kept;
+    RenderStats stats;
+    done = render_subdivided(world, c, o, copy, stats);
+    kept = std::move(copy), rays += stats.rays;
+  }
+  EXPECT_GE(stops, 4);
+  EXPECT_TRUE(same_bits(kept.image, whole.image));
+  EXPECT_EQ(rays.total(), whole.rays.total()) << "nothing twice";
 }
 
 TEST(Adaptive, RefusesBadOptions) {
