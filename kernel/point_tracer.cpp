@@ -61,6 +61,8 @@ class PointTracer {
     return std::min(begun * chunk, count);
   }
 
+  void go_on() { stopped_ = false; }
+
   void count(RenderStats& stats) const {
     for (const auto& s : spaces_) stats.trace += s->trace, stats.rays += s->rays, stats.phases += s->space.phases();
   }
@@ -87,12 +89,13 @@ class PointTracer {
   const Variant& variant_;
   const RenderOptions& options_;
   std::vector<std::unique_ptr<PointSpace>> spaces_;
-  std::atomic<bool> stopped_ = false;  ///< for good: sees nothing more
+  std::atomic<bool> stopped_ = false;  ///< sees nothing more
 };
 
 }  // namespace
 
-bool render_subdivided(const World& world, const Camera& camera, const RenderOptions& options, Subdivided& picture, RenderStats& stats) {
+bool render_subdivided(const World& world, const Camera& camera, const RenderOptions& options, Subdivided& picture, RenderStats& stats,
+                       const std::function<bool()>& rest) {
   const Setup setup = set_up(world, camera, options);
   if (!options.subdivision.on) throw std::invalid_argument("this picture is one by subdivision");
   if (picture.image.width != camera.width || picture.image.height != camera.height)
@@ -101,7 +104,11 @@ bool render_subdivided(const World& world, const Camera& camera, const RenderOpt
   stats.threads = options.threads > 0 ? options.threads : omp_get_num_procs();
   stats.isa = setup.variant.name.data();
   PointTracer tracer(world.impl(), setup.frame, setup.plan, setup.variant, options, stats.threads);
-  const bool finished = subdivide(picture, options.subdivision, std::ref(tracer));
+  const bool finished = subdivide(picture, options.subdivision, std::ref(tracer), 0, [&] {
+    const bool go_on = rest && rest();
+    if (go_on) tracer.go_on();
+    return go_on;
+  });
   tracer.count(stats);
   return finished;
 }

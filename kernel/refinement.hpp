@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "kernel/image.hpp"
@@ -35,7 +36,7 @@ struct Refinement {
   bool last = false;      ///< no round follows the one in work
   bool finished = false;
   std::uint64_t rays = 0; ///< sent so far
-  double seconds = 0;     ///< spent so far; whoever keeps the picture may add what that took
+  double seconds = 0;     ///< spent so far
   double share = 0;       ///< of the way to what was asked for, as far as is known
 };
 
@@ -50,8 +51,10 @@ bool is_sound(const Refinement& r);
 Image picture_so_far(const Refinement& r);
 
 /// Goes on until what is asked for is met; whether it is. options.progress stops it, soon: after the pixels in work. It must not look at the
-/// picture, which threads are at work on; when this has returned another call goes on from it, or from a copy, here or on another machine.
+/// picture, which threads are at work on; `rest` may, which is asked then, while none is, whether to go on all the same. From the
+/// picture, or from a copy, another call goes on, here or on another machine.
 /// `stats.error` and `maps`, where wanted, are of the picture so far; other counts are of this call. Throws like render().
-bool refine(const World& world, const Camera& camera, const RenderOptions& options, Refinement& r, RenderStats& stats, SampleMaps* maps = nullptr);
+bool refine(const World& world, const Camera& camera, const RenderOptions& options, Refinement& r, RenderStats& stats, SampleMaps* maps = nullptr,
+            const std::function<bool()>& rest = {});
 
 }  // namespace grelha

@@ -8,6 +8,7 @@
 #include <omp.h>
 
 #include "kernel/pixel_errors.hpp"
+#include "kernel/pixel_order.hpp"
 #include "kernel/refinement.hpp"
 #include "kernel/setup.hpp"
 #include "kernel/workspace.hpp"
@@ -19,19 +20,6 @@ namespace {
 constexpr int kRunsOfChunk = 256, kSamplesOfChunk = 4096;  ///< work handed to a thread at a time: at most so much
 constexpr int kBouncesWatched = 2;                         ///< mirrors
 constexpr float kStep = .5f;                               ///< the bar falls by this a round: two or three rounds double all samples
-
-/// Pixels in the order their samples are taken: tile by tile of 8 x 8, along a Z in each, so that neighbours share packets.
-std::vector<std::uint32_t> pixel_order(int width, int height) {
-  std::vector<std::uint32_t> order;
-  order.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  for (int ty = 0; ty < height; ty += 8)
-    for (int tx = 0; tx < width; tx += 8)
-      for (int i = 0; i < 64; ++i) {
-        const int x = tx + ((i & 1) | (i >> 1 & 2) | (i >> 2 & 4)), y = ty + ((i >> 1 & 1) | (i >> 2 & 2) | (i >> 3 & 4));
-        if (x < width && y < height) order.push_back(static_cast<std::uint32_t>(y * static_cast<std::int64_t>(width) + x));
-      }
-  return order;
-}
 
 struct Chunk {
   std::size_t begin, end;     ///< of the pixels wanted
@@ -54,15 +42,17 @@ class Refiner {
     for (std::size_t p = 0; p < order_.size(); ++p) taken_ += sample_count(r, p);
   }
 
-  void run() {
+  void run(const std::function<bool()>& rest) {
     if (r_.wanted.empty() && !r_.finished) r_.wanted = order_;
     bool judged = false;
-    while (!r_.finished && !stopped_ && take_round()) {
+    while (!r_.finished && (!stopped_ || goes_on(rest))) {
+      judged = take_round();
+      if (!judged) continue;
       if (r_.rounds++ == 0) watch();
-      errors_.judge(), judged = true;
+      errors_.judge();
       r_.finished = !choose_round();
     }
-    if (!judged || !r_.finished) errors_.judge();
+    if (!judged) errors_.judge();
     if (r_.finished) r_.share = 1;
     r_.seconds = seconds();
     for (const auto& space : spaces_) stats_.phases += space->phases();
@@ -81,6 +71,12 @@ class Refiner {
   }
 
  private:
+  bool goes_on(const std::function<bool()>& rest) {
+    r_.seconds = seconds();
+    stopped_ = !rest || !rest();
+    return !stopped_;
+  }
+
   static bool has_effects(const SamplePlan& plan) { return plan.lens >= 0 || plan.light >= 0 || plan.gloss >= 0; }
 
   /// Wants the pixels of the next round; whether there is one.
@@ -288,13 +284,14 @@ class Refiner {
 
 }  // namespace
 
-bool refine(const World& world, const Camera& camera, const RenderOptions& options, Refinement& r, RenderStats& stats, SampleMaps* maps) {
+bool refine(const World& world, const Camera& camera, const RenderOptions& options, Refinement& r, RenderStats& stats, SampleMaps* maps,
+            const std::function<bool()>& rest) {
   Setup setup = set_up(world, camera, options);
   if (!options.refine.on()) throw std::invalid_argument("this picture is one whose samples are spent by error");
   if (r.width != camera.width || r.height != camera.height) throw std::invalid_argument("this picture has another size than the camera's");
   setup.plan.on = true, setup.plan.samples = kMostSamples;
   Refiner refiner(world.impl(), setup, options, r, stats);
-  refiner.run();
+  refiner.run(rest);
   refiner.tell(maps);
   return r.finished;
 }

@@ -39,9 +39,9 @@ bool is_sound(const Subdivided& s);
 using SeePoints = std::function<std::size_t(std::span<const LatticePoint> points, Float3* colours, double from, double to)>;
 
 /// Makes the picture whose pixels are their squares: the mean of four corners, or of four quarters where a square is split. Whether it is
-/// finished: what was stopped another call goes on with.
+/// finished: what was stopped another call goes on with, unless `rest`, which may look at the picture, says to go on all the same.
 /// Works in tiles of `tile` pixels a side (0: as large as 2^24 points allow were every square split), which changes nothing
 /// but the order of points.
-bool subdivide(Subdivided& picture, const Subdivision& options, const SeePoints& see, int tile = 0);
+bool subdivide(Subdivided& picture, const Subdivision& options, const SeePoints& see, int tile = 0, const std::function<bool()>& rest = {});
 
 }  // namespace grelha

@@ -52,8 +52,8 @@ struct Sum {
 
 class Subdivider {
  public:
-  Subdivider(Subdivided& picture, const Subdivision& options, const SeePoints& see, int tile)
-      : options_(options), see_(see), side_(tile), p_(picture), image_(picture.image) {}
+  Subdivider(Subdivided& picture, const Subdivision& options, const SeePoints& see, int tile, const std::function<bool()>& rest)
+      : options_(options), see_(see), rest_(rest), side_(tile), p_(picture), image_(picture.image) {}
 
   bool run() {
     const auto tiles = [this](int side) { return static_cast<std::size_t>((side - 1) / side_ + 1); };
@@ -77,10 +77,10 @@ class Subdivider {
     recall(above, p_.left);
     sums_.assign(static_cast<std::size_t>(x1_ - x0_) * static_cast<std::size_t>(y1_ - y0_), {});
     split_.clear();
-    if (!corners()) return show_corners(), false;
+    if (!corners()) return false;
     for (int level = 0; level < options_.depth && !split_.empty(); ++level)
-      if (!split_all(level)) return show_squares(level), false;
-    show();
+      if (!split_all(level)) return false;
+    show(sums_);
     remember(right_border_, p_.left);
     remember(lower_border_, above);
     p_.colours.clear();
@@ -118,15 +118,18 @@ class Subdivider {
 
   /// Whether all fresh points have their colours then. Of a tile gone on with they may have them already, or the first of them.
   bool see_fresh(int level) {
-    const std::size_t begin = p_.colours.size(), end = numbered_ + fresh_.size();
-    if (begin < end) {
-      const auto share_at = [&](std::size_t seen) {
-        return share(level) + (share(level + 1) - share(level)) * static_cast<double>(seen - numbered_) / static_cast<double>(fresh_.size());
-      };
+    const std::size_t end = numbered_ + fresh_.size();
+    const auto share_at = [&](std::size_t seen) {
+      return share(level) + (share(level + 1) - share(level)) * static_cast<double>(seen - numbered_) / static_cast<double>(fresh_.size());
+    };
+    for (std::size_t begin; (begin = p_.colours.size()) < end;) {
       p_.colours.resize(end);
       const std::size_t seen = begin + see_(std::span(fresh_).subspan(begin - numbered_), p_.colours.data() + begin, share_at(begin), share_at(end));
       p_.colours.resize(seen), p_.share = share_at(seen);
-      if (seen < end) return false;
+      if (seen == end) break;
+      if (level == 0) show_corners();
+      else show_squares(level - 1);
+      if (!rest_ || !rest_()) return false;
     }
     numbered_ = end;
     fresh_.clear();
@@ -202,8 +205,8 @@ class Subdivider {
     return most - least > options_.threshold;
   }
 
-  void show() {
-    const Sum* sum = sums_.data();
+  void show(const std::vector<Sum>& sums) {
+    const Sum* sum = sums.data();
     for (int y = y0_; y < y1_; ++y) {
       float* out = image_.row(y) + 3 * static_cast<std::size_t>(x0_);
       for (int x = x0_; x < x1_; ++x, ++sum, out += 3)
@@ -214,19 +217,21 @@ class Subdivider {
   /// Of a tile that is stopped: until all corners are seen a pixel is its first one.
   void show_corners() {
     const std::size_t width = static_cast<std::size_t>(x1_ - x0_);
-    for (std::size_t i = 0; i < sums_.size(); ++i) {
+    std::vector<Sum> sums(sums_.size());
+    for (std::size_t i = 0; i < sums.size(); ++i) {
       const std::uint32_t id = ids_[i + i / width];  // a row has one corner more than pixels
       if (id >= p_.colours.size()) continue;
       const Float3 c = p_.colours[id];
-      sums_[i].add({c, c, c, c}, .25);
+      sums[i].add({c, c, c, c}, .25);
     }
-    show();
+    show(sums);
   }
   /// Squares that wait to be split are what their corners are.
   void show_squares(int level) {
+    std::vector<Sum> sums = sums_;
     for (const auto& [at, pixel, n] : split_)
-      sums_[pixel].add({p_.colours[n[0]], p_.colours[n[1]], p_.colours[n[2]], p_.colours[n[3]]}, std::ldexp(.25, -2 * level));
-    show();
+      sums[pixel].add({p_.colours[n[0]], p_.colours[n[1]], p_.colours[n[2]], p_.colours[n[3]]}, std::ldexp(.25, -2 * level));
+    show(sums);
   }
 
   void remember(std::vector<Border>& border, std::vector<BorderPoint>& seen) {
@@ -237,6 +242,7 @@ class Subdivider {
 
   const Subdivision& options_;
   const SeePoints& see_;
+  const std::function<bool()>& rest_;
   const int side_;
   Subdivided& p_;
   Image& image_;
@@ -278,12 +284,12 @@ bool is_sound(const Subdivided& s) {
   return ascends(s.left) && std::all_of(s.above.begin(), s.above.end(), ascends);
 }
 
-bool subdivide(Subdivided& picture, const Subdivision& options, const SeePoints& see, int tile) {
+bool subdivide(Subdivided& picture, const Subdivision& options, const SeePoints& see, int tile, const std::function<bool()>& rest) {
   if (!(options.threshold >= 0) || options.threshold > 1) throw std::invalid_argument("the threshold of subdivision must be from 0 to 1");
   if (options.depth < 0 || options.depth > kMostSubdivisions)
     throw std::invalid_argument("the depth of subdivision must be from 0 to " + std::to_string(kMostSubdivisions));
   if (tile <= 0) tile = std::min(1024, 4096 >> options.depth);
-  return Subdivider(picture, options, see, tile).run();
+  return Subdivider(picture, options, see, tile, rest).run();
 }
 
 }  // namespace grelha

@@ -264,7 +264,12 @@ TEST(Refinement, StoppedAnywhereGoesOnToTheSameBits) {
       for (bool done = false; !done; ++stops) {
         left = 1 + static_cast<int>(random.below(3)), o.threads = 1 + static_cast<int>(random.below(3));
         Refinement copy = kept;
-        done = refine(world, c.file.camera, o, copy, got.stats, &got.maps);
+        const auto rest = [&] {  // goes on in place now and then
+          EXPECT_TRUE(is_sound(copy));
+          left = 1 + static_cast<int>(random.below(3)), ++stops;
+          return random.chance(.5);
+        };
+        done = refine(world, c.file.camera, o, copy, got.stats, &got.maps, rest);
         ASSERT_TRUE(is_sound(copy));
         ASSERT_EQ(copy.finished, done);
         ASSERT_GE(copy.share, kept.share);

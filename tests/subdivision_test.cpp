@@ -489,7 +489,11 @@ TEST(Adaptive, StoppedAnywhereGoesOnToTheSameBits) {
     left = 1 + static_cast<int>(random.below(9)), o.threads = 1 + static_cast<int>(random.below(3));
     Subdivided copy = kept;
     RenderStats stats;
-    done = render_subdivided(world, c, o, copy, stats);
+    done = render_subdivided(world, c, o, copy, stats, [&] {  // goes on in place now and then
+      EXPECT_TRUE(is_sound(copy));
+      left = 1 + static_cast<int>(random.below(9)), ++stops;
+      return random.chance(.5);
+    });
     kept = std::move(copy), rays += stats.rays;
   }
   EXPECT_GE(stops, 4);
