@@ -43,9 +43,20 @@ void take(Digest& digest, const Geometry& g) {
   take_all(digest, p.x, p.y, p.z, p.nx, p.ny, p.nz, p.material);
 }
 
-std::string text(double value) {
+template <class Number>
+std::string text(Number value) {
   char buffer[32];
   return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr};  // the shortest that reads back as the same number
+}
+
+/// How many samples a pixel gets, or what decides it.
+std::string samples_text(const RenderOptions& o) {
+  const RefineOptions& r = o.refine;
+  if (r.error > 0) return "error=" + text(r.error);
+  if (r.seconds > 0) return "time=" + text(r.seconds);
+  if (r.samples > 0) return "time=samples:" + std::to_string(r.samples);
+  const std::string count = "samples=" + std::to_string(o.sampling.samples);
+  return o.subdivision.on ? count + " adaptive=" + text(o.subdivision.threshold) + ',' + std::to_string(o.subdivision.depth) : count;
 }
 
 }  // namespace
@@ -65,7 +76,7 @@ std::string settings_text(const RenderCommand& prepared, const Camera& camera) {
   const SampleOptions& s = o.sampling;
   const Effects& e = prepared.effects;
   std::string words = "version=" GRELHA_VERSION " size=" + std::to_string(camera.width) + 'x' + std::to_string(camera.height) +
-                      " samples=" + std::to_string(s.samples) + " sampler=" + sampler_name(s.sampler) + " seed=" + std::to_string(s.seed) +
+                      ' ' + samples_text(o) + " sampler=" + sampler_name(s.sampler) + " seed=" + std::to_string(s.seed) +
                       " depth=" + std::to_string(o.depth);
   if (o.precision == Precision::kDouble) words += " precision=double";
   if (e.shadows) words += std::string(" shadows=") + (e.shadows->hard ? "hard" : text(e.shadows->size));

@@ -7,7 +7,9 @@
 
 #include "frontend/image_file.hpp"
 #include "frontend/parse_error.hpp"
+#include "frontend/partial.hpp"
 #include "frontend/stop_signals.hpp"
+#include "kernel/point_tracer.hpp"
 
 namespace grelha {
 namespace {
@@ -33,21 +35,36 @@ bool exists(const std::string& path) {
   return stat(path.c_str(), &about) == 0 || errno != ENOENT;  // what cannot be looked at is for the reader to complain of
 }
 
-/// Sums and progress to go on from, of the very picture that is asked for.
-Accumulator saved_sums(const std::string& path, const Identity& wanted, const Part& part) {
-  Partial found = read_partial(path);
+Work new_work(const RenderCommand& command, const Camera& camera) {
+  const RenderOptions& o = command.render;
+  if (o.refine.on()) return make_refinement(camera);
+  if (o.subdivision.on) return make_subdivided(camera.width, camera.height);
+  return make_accumulator(camera, o, part_of(command, camera));
+}
+
+/// What is there to go on from, of the very picture that is asked for.
+Work saved_work(const std::string& path, const Identity& wanted, const Work& begun) {
+  Checkpoint found = read_checkpoint(path);
   const auto refuse = [&path](const std::string& why) {
     throw UsageError("--checkpoint: " + path + ' ' + why + ": name another file, or remove this one to begin again");
   };
   if (found.identity.scene != wanted.scene) refuse("is of another scene");
   if (found.identity.settings != wanted.settings) refuse("has " + difference(found.identity.settings, wanted.settings));
-  if (found.sums.part != part) refuse("is of another part, " + part_text(found.sums.part));
-  return std::move(found.sums);
+  if (found.work.index() != begun.index()) refuse("is of another kind");  // whatever its settings claim
+  const auto* const sums = std::get_if<Accumulator>(&found.work);
+  if (sums && sums->part != std::get<Accumulator>(begun).part) refuse("is of another part, " + part_text(sums->part));
+  return std::move(found.work);
+}
+
+Image picture_of(const Work& work) {
+  if (const auto* const s = std::get_if<Subdivided>(&work)) return s->image;
+  if (const auto* const r = std::get_if<Refinement>(&work)) return picture_so_far(*r);
+  return picture_so_far(std::get<Accumulator>(work));
 }
 
 }  // namespace
 
-bool wants_sums(const RenderCommand& c, const Ranks& ranks) {
+bool is_long_work(const RenderCommand& c, const Ranks& ranks) {
   const bool asks = is_partial_name(c.image) || !c.work.checkpoint.empty() || c.work.show_every > 0;
   if (ranks.count() > 1 && (c.render.refine.on() || c.effects.adaptive.on))
     throw UsageError("several ranks share pictures with as many samples in every pixel: no --error, --time or --aa adaptive");
@@ -55,16 +72,23 @@ bool wants_sums(const RenderCommand& c, const Ranks& ranks) {
 }
 
 LongRender::LongRender(const RenderCommand& prepared, const Camera& camera, std::string scene, Ranks& ranks, Warn warn)
-    : command_(prepared), ranks_(ranks), warn_(std::move(warn)), partial_{{std::move(scene), settings_text(prepared, camera)}, {}} {
-  ranks_.agree_on(partial_.identity.scene + partial_.identity.settings);
-  const Part part = part_of(prepared, camera);
+    : command_(prepared), ranks_(ranks), warn_(std::move(warn)), identity_{std::move(scene), settings_text(prepared, camera)} {
+  ranks_.agree_on(identity_.scene + identity_.settings);
+  work_ = new_work(prepared, camera);
   const std::string& checkpoint = prepared.work.checkpoint;
-  if (!checkpoint.empty() && exists(checkpoint)) partial_.sums = saved_sums(checkpoint, partial_.identity, part);
-  else partial_.sums = make_accumulator(camera, prepared.render, part);
+  if (!checkpoint.empty() && exists(checkpoint)) work_ = saved_work(checkpoint, identity_, work_);
 }
 
+double LongRender::share_done() const {
+  if (const auto* const s = std::get_if<Subdivided>(&work_)) return s->share;
+  if (const auto* const r = std::get_if<Refinement>(&work_)) return r->share;
+  return grelha::share_done(std::get<Accumulator>(work_));
+}
+
+bool LongRender::is_due(const Habit& habit) { return habit.every > 0 && Clock::now() - habit.last >= std::chrono::duration<double>(habit.every); }
+
 void LongRender::pursue(Habit& habit) {
-  if (habit.every <= 0 || Clock::now() - habit.last < std::chrono::duration<double>(habit.every)) return;
+  if (!is_due(habit)) return;
   try {
     habit.act();
   } catch (const std::exception& error) {  // the work is worth more than this; nothing may leave a parallel region either
@@ -74,22 +98,28 @@ void LongRender::pursue(Habit& habit) {
   habit.last = Clock::now();
 }
 
-int LongRender::run(const World& world, const Camera& camera, const std::function<void(double)>& progress, RenderStats& stats) {
-  const bool keeps = !command_.work.checkpoint.empty();
+int LongRender::stops() const { return keeps() ? StopSignals::seen() : 0; }
+
+int LongRender::run(const World& world, const Camera& camera, const std::function<void(double)>& progress, RenderStats& stats, SampleMaps& maps) {
   std::optional<StopSignals> signals;
-  if (keeps) signals.emplace();
-  Habit saving{keeps ? command_.work.save_every : 0, [this] { save(); }};
+  if (keeps()) signals.emplace();
+  Habit saving{keeps() ? command_.work.save_every : 0, [this] { save(); }};
   Habit showing{command_.work.show_every, [this] { write(); }};
+  const auto rest = [&] { return pursue(saving), pursue(showing), stops() == 0; };
+  auto* const sums = std::get_if<Accumulator>(&work_);
+  auto* const refinement = std::get_if<Refinement>(&work_);
   RenderOptions options = command_.render;
   options.progress = [&](double share) {
     progress(share);
-    pursue(saving), pursue(showing);
-    return !signals || StopSignals::seen() == 0;
+    if (sums) return rest();  // they may be looked at between additions; of other work threads must keep off meanwhile
+    return stops() == 0 && !is_due(saving) && !is_due(showing);
   };
-  if (ranks_.accumulate(world, camera, options, partial_.sums, stats, [&] { return signals && StopSignals::seen() != 0; })) return 0;
-  if (!ranks_.first()) return 0;
+  const bool done = sums         ? ranks_.accumulate(world, camera, options, *sums, stats, [this] { return stops() != 0; })
+                    : refinement ? refine(world, camera, options, *refinement, stats, &maps, rest)
+                                 : render_subdivided(world, camera, options, std::get<Subdivided>(work_), stats, rest);
+  if (done || !ranks_.first()) return 0;
   save();
-  return StopSignals::seen();
+  return stops();
 }
 
 void LongRender::finish() {
@@ -103,11 +133,11 @@ void LongRender::finish() {
   if (!checkpoint.empty()) unlink(checkpoint.c_str());
 }
 
-void LongRender::save() const { write_partial(command_.work.checkpoint, partial_, true); }
+void LongRender::save() const { write_checkpoint(command_.work.checkpoint, identity_, work_, true); }
 
 void LongRender::write() const {
-  if (is_partial_name(command_.image)) write_partial(command_.image, partial_);
-  else write_image(command_.image, picture_so_far(partial_.sums), command_.srgb ? Tone::srgb : Tone::authored);
+  if (is_partial_name(command_.image)) write_checkpoint(command_.image, identity_, work_, false);
+  else write_image(command_.image, picture_of(work_), command_.srgb ? Tone::srgb : Tone::authored);
 }
 
 }  // namespace grelha

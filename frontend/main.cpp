@@ -115,9 +115,9 @@ Image render_with_bar(const World& world, const Camera& camera, const RenderComm
 }
 
 /// The signal that stopped it, or 0.
-int render_long(LongRender& work, const World& world, const Camera& camera, const RenderCommand& command, RenderStats& stats) {
+int render_long(LongRender& work, const World& world, const Camera& camera, const RenderCommand& command, RenderStats& stats, SampleMaps& maps) {
   ProgressBar bar(!command.quiet && stderr_is_terminal(), work.share_done());
-  return work.run(world, camera, [&bar](double share) { bar.update(share); }, stats);
+  return work.run(world, camera, [&bar](double share) { bar.update(share); }, stats, maps);
 }
 
 int stopped(int signal, const RenderCommand& command, double share) {
@@ -157,8 +157,8 @@ int render_scene(const RenderCommand& given, Ranks& ranks) {
   RunReport report;
   const Stopwatch load;
   SceneFile file = read_scene(command.scene, warn, command.input.read);
-  const bool sums = wants_sums(command, ranks);
-  const std::string scene = sums ? scene_digest(file) : "";
+  const bool is_long = is_long_work(command, ranks);
+  const std::string scene = is_long ? scene_digest(file) : "";
   RenderCommand prepared = command;
   prepared.render.phases = !command.stats.empty();
   apply_effects(command.effects, file, prepared.render);
@@ -166,7 +166,7 @@ int render_scene(const RenderCommand& given, Ranks& ranks) {
   const Camera camera = camera_of(file, command);
   if (!is_partial_name(command.image)) want_room(command.image, camera.width, camera.height);
   std::optional<LongRender> work;
-  if (sums) work.emplace(prepared, camera, scene, ranks, warn);
+  if (is_long) work.emplace(prepared, camera, scene, ranks, warn);
 
   const Stopwatch build;
   const World world(file.scene, command.build);
@@ -177,7 +177,7 @@ int render_scene(const RenderCommand& given, Ranks& ranks) {
   SampleMaps maps;
   Image image;
   if (!work) image = render_with_bar(world, camera, prepared, report.render, maps);
-  else if (const int signal = render_long(*work, world, camera, prepared, report.render)) return stopped(signal, command, work->share_done());
+  else if (const int signal = render_long(*work, world, camera, prepared, report.render, maps)) return stopped(signal, command, work->share_done());
   if (!ranks.first()) return kOk;
   report.seconds.render = render.seconds();
   report.seconds.render_cpu = double(std::clock() - cpu) / CLOCKS_PER_SEC;

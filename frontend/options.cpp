@@ -381,8 +381,6 @@ void check_long_work(const RenderCommand& command) {
   const bool sums = !command.render.refine.on() && !command.effects.adaptive.on, part_file = is_partial_name(command.image);
   if (!sums && (w.is_part() || part_file))
     throw UsageError("parts are of pictures with as many samples in every pixel: no --error, --time or --aa adaptive");
-  if (!sums && (!w.checkpoint.empty() || w.show_every > 0))
-    throw UsageError("--checkpoint and --preview do not go with --error, --time or --aa adaptive");
   if (w.is_part() && !part_file) refuse("-o", "a name ending in .grelha for a part of a picture", command.image);
   const auto whole_name = [](const std::string& path) { return std::filesystem::weakly_canonical(std::filesystem::absolute(path)); };
   if (!w.checkpoint.empty() && whole_name(w.checkpoint) == whole_name(command.image))

@@ -3,12 +3,11 @@
 #include <string>
 #include <string_view>
 
-#include "frontend/identity.hpp"
-#include "kernel/accumulator.hpp"
+#include "frontend/checkpoint.hpp"
 
 namespace grelha {
 
-/// A .grelha file: a part of a picture, finished or not. docs/parts.md has the format.
+/// A part of a picture, finished or not: what `merge` takes of .grelha files.
 struct Partial {
   Identity identity;
   Accumulator sums;
@@ -22,7 +21,7 @@ std::string part_text(const Part& part);
 /// Equal partials make equal files. `durable`: on the disk, come what may, when this returns; see AtomicFile.
 void write_partial(const std::string& path, const Partial& partial, bool durable = false);
 
-/// Throws FileError for a file that is damaged or none of ours.
+/// Throws FileError for a file that is damaged, none of ours, or of a picture that has no parts.
 Partial read_partial(const std::string& path);
 Partial parse_partial(const std::string& path, std::string_view bytes);
 

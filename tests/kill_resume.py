@@ -3,32 +3,52 @@
 
 N times (3) a render with a checkpoint is killed (SIGKILL) after a random time, again and again, each time with other threads, until one
 comes to its end; its picture must be that of an undisturbed one, byte for byte. Says how often it was killed, and how often it went on
-from a checkpoint.
+from a checkpoint. Without options: for every way there is to spend samples. Of a render by time (--time SECONDS) the picture is that of
+the samples it says it took.
 """
-import os, random, signal, subprocess, sys, tempfile, time
+import json, os, random, signal, subprocess, sys, tempfile, time
+
+KINDS = (["--samples", "150", "--lens", "3", "--shadows", "random:.5"],
+         ["--error", ".004", "--lens", "3", "--shadows", "random:.5"],
+         ["--time", "2", "--lens", "3", "--shadows", "random:.5"],
+         ["--aa", "adaptive:.05,4", "--lens", "3,0,2"])
 
 words = sys.argv[1:]
-options = ["--size", "120x80", "--samples", "150", "--lens", "3", "--shadows", "random:.5"]
+kinds = [["--size", "120x80"] + kind for kind in KINDS]
 if "--" in words:
-    options = words[words.index("--") + 1:]
+    kinds = [words[words.index("--") + 1:]]
     words = words[:words.index("--")]
 program, scene = words[:2]
 rounds = int(words[2]) if len(words) > 2 else 3
 seed = int(words[3]) if len(words) > 3 else 1
 rng = random.Random(seed)
 
-with tempfile.TemporaryDirectory() as folder:
-    whole, picture, checkpoint = (os.path.join(folder, n) for n in ("whole.pfm", "picture.pfm", "kept.grelha"))
-    command = [program, "render", os.path.abspath(scene), "--quiet"] + options
+
+def read(path):
+    with open(path, "rb") as file:
+        return file.read()
+
+
+def repeatable(options, stats):
+    """The options whose picture an interrupted render must have made."""
+    if "--time" not in options or options[options.index("--time") + 1].startswith("samples:"):
+        return options
+    at = options.index("--time") + 1
+    return options[:at] + [f"samples:{json.loads(read(stats))['error']['samples']}"] + options[at + 1:]
+
+
+def kill_and_resume(options, folder):
+    whole, picture, checkpoint, stats = (os.path.join(folder, n) for n in ("whole.pfm", "picture.pfm", "kept.grelha", "stats.json"))
+    command = [program, "render", os.path.abspath(scene), "--quiet"]
     begin = time.monotonic()
-    subprocess.run(command + ["-o", whole], check=True)
+    subprocess.run(command + options + ["-o", whole], check=True)
     alone = time.monotonic() - begin
     killed = resumed = 0
     for turn in range(rounds):
         for attempt in range(200):
             resumed += os.path.exists(checkpoint)
-            run = subprocess.Popen(command + ["-o", picture, "--checkpoint", checkpoint, "--checkpoint-every", str(alone / 30),
-                                              "--threads", str(rng.randint(1, 3))])
+            run = subprocess.Popen(command + options + ["-o", picture, "--checkpoint", checkpoint, "--checkpoint-every", str(alone / 30),
+                                                        "--threads", str(rng.randint(1, 3)), "--stats", stats])
             try:
                 run.wait(rng.uniform(0, .5 * alone))
                 break
@@ -36,16 +56,24 @@ with tempfile.TemporaryDirectory() as folder:
                 run.send_signal(signal.SIGKILL)
                 run.wait()
                 killed += 1
+        where = f"{' '.join(options)}, seed {seed}, round {turn}"
         if run.returncode != 0:
-            sys.exit(f"seed {seed}, round {turn}: ended with {run.returncode}")
-        if open(whole, "rb").read() != open(picture, "rb").read():
-            sys.exit(f"seed {seed}, round {turn}: another picture")
+            sys.exit(f"{where}: ended with {run.returncode}")
+        if repeatable(options, stats) != options:
+            subprocess.run(command + repeatable(options, stats) + ["-o", whole], check=True)
+        if read(whole) != read(picture):
+            sys.exit(f"{where}: another picture")
         if os.path.exists(checkpoint):
-            sys.exit(f"seed {seed}, round {turn}: the checkpoint is still there")
-        os.remove(picture)
+            sys.exit(f"{where}: the checkpoint is still there")
+        os.remove(picture), os.remove(stats)
         left = [n for n in os.listdir(folder) if n != "whole.pfm" and not n.startswith(".grelha-") and n != "kept.grelha.new"]
         if left:
-            sys.exit(f"seed {seed}, round {turn}: left behind {left}")
-    print(f"{rounds} renders of {alone:.2f} s, killed {killed} times, went on {resumed} times: the same bytes")
+            sys.exit(f"{where}: left behind {left}")
+    print(f"{' '.join(options)}: {rounds} renders of {alone:.2f} s, killed {killed} times, went on {resumed} times: the same bytes", flush=True)
     if resumed < rounds:
         sys.exit("too few went on from a checkpoint to have shown anything")
+
+
+for options in kinds:
+    with tempfile.TemporaryDirectory() as folder:
+        kill_and_resume(options, folder)

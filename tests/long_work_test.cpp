@@ -102,23 +102,31 @@ TEST_F(LongWork, RefusesOptionsThatContradict) {
   refused("--samples :8 -o a.grelha", "--samples: wanted A:B, whole numbers, 0 or more, A below B, B at most 65536, found \":8\"");
   refused("--rows 0:8 --error .1 -o a.grelha", "parts are of pictures with as many samples in every pixel: no --error, --time or --aa adaptive");
   refused("--aa adaptive:.1,2 -o a.grelha", "parts are of pictures with as many samples in every pixel: no --error, --time or --aa adaptive");
+  refused("--error .1 -o a.grelha", "parts are of pictures with as many samples in every pixel: no --error, --time or --aa adaptive");
   refused("--preview 1 -o a.grelha", "--preview wants a picture to write, not a .grelha");
   refused("--preview 0", "--preview: wanted seconds above 0, found \"0\"");
   refused("-o a.grelha --checkpoint ./a.grelha", "--checkpoint and -o: wanted two files, found \"a.grelha\" twice");
 }
 
-/// Some 0.4 s of work for one thread.
-constexpr char kJob[] = "render ball.nff --quiet --size 120x80 --samples 650 --threads 1 ";
+/// Some 0.3 s of work for one thread each: as many samples in every pixel, by error, so many samples in all, by subdivision.
+constexpr const char* kJobs[] = {"render ball.nff --quiet --size 120x80 --samples 650 --threads 1 ",
+                                 "render ball.nff --quiet --size 120x80 --lens 9 --shadows random:2 --error .0002 --threads 1 ",
+                                 "render ball.nff --quiet --size 120x80 --lens 9 --time samples:7000000 --threads 1 ",
+                                 "render ball.nff --quiet --size 120x80 --lens 9,0,40 --aa adaptive:.02,5 --threads 1 "};
+constexpr const char* kJob = kJobs[0];
 
 TEST_F(LongWork, SignalsStopItAndTheSameCommandGoesOn) {
-  ASSERT_EQ(run(std::string(kJob) + "-o whole.pfm").status, 0);
-  for (const auto& [name, status] : {std::pair("INT", 130), std::pair("TERM", 143)}) {
-    SCOPED_TRACE(name);
-    const std::string job = std::string(kJob) + "-o x.pfm --checkpoint kept";
+  for (const char* const any : kJobs) {
+    const bool by_int = any != kJobs[1];
+    const std::string name = by_int ? "INT" : "TERM";
+    const int status = by_int ? 130 : 143;
+    SCOPED_TRACE(any);
+    ASSERT_EQ(run(std::string(any) + "-o whole.pfm").status, 0);
+    const std::string job = std::string(any) + "-o x.pfm --checkpoint kept";
     int stopped = 0;
     Outcome outcome;
     // A little more time each turn, so that a slow machine comes to an end as well.
-    const std::string stop = "timeout --preserve-status -s " + std::string(name) + ' ';
+    const std::string stop = "timeout --preserve-status -s " + name + ' ';
     for (double seconds = .03; (outcome = run(job, stop + std::to_string(seconds))).status != 0; seconds *= 1.3) {
       if (outcome.status == status && outcome.err.empty()) {  // ended at once: before it had begun, or when it was about to end
         std::filesystem::remove(folder_.file("x.pfm"));
@@ -126,9 +134,9 @@ TEST_F(LongWork, SignalsStopItAndTheSameCommandGoesOn) {
       }
       ASSERT_EQ(outcome.status, status);
       ++stopped;
-      EXPECT_TRUE(outcome.err.starts_with(std::string("grelha: stopped by SIG") + name + ", ")) << outcome.err;
+      EXPECT_TRUE(outcome.err.starts_with("grelha: stopped by SIG" + name + ", ")) << outcome.err;
       EXPECT_TRUE(outcome.err.ends_with(" % done and saved in kept: the same command goes on from there\n")) << outcome.err;
-      EXPECT_GT(share_done(read_partial(folder_.file("kept")).sums), 0);
+      EXPECT_NO_THROW(read_checkpoint(folder_.file("kept")));
       EXPECT_FALSE(std::filesystem::exists(folder_.file("x.pfm")));
     }
     EXPECT_GE(stopped, 1);
@@ -136,6 +144,63 @@ TEST_F(LongWork, SignalsStopItAndTheSameCommandGoesOn) {
     EXPECT_FALSE(std::filesystem::exists(folder_.file("kept"))) << "done with";
     std::filesystem::remove(folder_.file("x.pfm"));
   }
+}
+
+TEST_F(LongWork, MapsAreThoseOfAnUndisturbedRun) {
+  const std::string maps = " --samples-map s.pfm --error-map e.pfm ";
+  for (const std::string kind : {"--error .01 ", "--time samples:300000 "}) {
+    const std::string job = "render ball.nff --quiet --size 120x80 --lens 9 " + kind;
+    ASSERT_EQ(run(job + maps + "-o whole.pfm").status, 0);
+    const std::string samples = folder_.read("s.pfm"), error = folder_.read("e.pfm");
+    std::filesystem::create_symlink("/dev/full", folder_.file("full.pfm"));
+    ASSERT_EQ(run(job + "-o full.pfm --checkpoint kept --checkpoint-every .001").status, 1);
+    ASSERT_EQ(run(job + maps + "-o x.pfm --checkpoint kept").status, 0) << "all is done: there are only the files to write";
+    EXPECT_EQ(folder_.read("x.pfm"), folder_.read("whole.pfm"));
+    EXPECT_EQ(folder_.read("s.pfm"), samples);
+    EXPECT_EQ(folder_.read("e.pfm"), error);
+    std::filesystem::remove(folder_.file("full.pfm"));
+  }
+}
+
+TEST_F(LongWork, TimeCountsOverRuns) {
+  const std::string job = "render ball.nff --size 120x80 --lens 9 --threads 1 --time 1.2 -o x.pfm --checkpoint kept";
+  // Each run gets .5 s. The fourth at the latest finds the time used up, on a machine that saves at once; a slow one gets more turns.
+  int turns = 0;
+  Outcome outcome;
+  while ((outcome = run(job, "timeout --preserve-status -s INT .5 ")).status == 130) ASSERT_LT(++turns, 20);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_GE(turns, 1);
+  const std::size_t at = outcome.out.find(" samples, ");
+  ASSERT_NE(at, outcome.out.npos) << outcome.out;
+  const std::string count = outcome.out.substr(outcome.out.rfind(' ', at - 1) + 1, at - outcome.out.rfind(' ', at - 1) - 1);
+  ASSERT_EQ(run("render ball.nff --size 120x80 --lens 9 -o again.pfm --time samples:" + count).status, 0);
+  EXPECT_EQ(folder_.read("again.pfm"), folder_.read("x.pfm"));
+}
+
+TEST_F(LongWork, ACheckpointOfAnotherKindIsLeftAlone) {
+  const std::string advice = ": name another file, or remove this one to begin again\n", error = "grelha: error: --checkpoint: kept has ";
+  std::filesystem::create_symlink("/dev/full", folder_.file("full.pfm"));
+  const auto refusal = [&](const std::string& options) {
+    const Outcome outcome = run("render ball.nff --quiet --checkpoint kept " + options);
+    EXPECT_EQ(outcome.status, 2);
+    const bool fits = outcome.err.starts_with(error) && outcome.err.ends_with(advice);
+    return fits ? outcome.err.substr(error.size(), outcome.err.size() - error.size() - advice.size()) : outcome.err;
+  };
+  ASSERT_EQ(run("render ball.nff --quiet -o full.pfm --checkpoint kept --error .1").status, 1);
+  const std::string bytes = folder_.read("kept");
+  EXPECT_EQ(refusal("--error .2"), "error=0.1, not error=0.2");
+  EXPECT_EQ(refusal("--time 2"), "error=0.1, not time=2");
+  EXPECT_EQ(refusal(""), "error=0.1, not samples=1");
+  EXPECT_EQ(refusal("--aa adaptive:.1,2"), "error=0.1, not samples=1 adaptive=0.1,2");
+  EXPECT_EQ(refusal("--error .1 --seed 4"), "seed=0, not seed=4");
+  expect_line(run("merge kept -o x.png"), 1,
+              "kept: error: the checkpoint of a picture by --error, --time or --aa adaptive, which has no parts");
+  EXPECT_EQ(folder_.read("kept"), bytes);
+  std::string bad = bytes;
+  bad[bad.size() / 2] ^= 4;
+  folder_.write("kept", bad);
+  expect_line(run("render ball.nff --quiet --checkpoint kept --error .1"), 1, "kept: error: damaged: its checksum is wrong");
+  EXPECT_EQ(folder_.read("kept"), bad);
 }
 
 TEST_F(LongWork, ACheckpointOfAnotherPictureIsLeftAlone) {
@@ -187,14 +252,20 @@ TEST_F(LongWork, AFolderThatCannotBeWrittenIsToldBeforeTheWork) {
 }
 
 TEST_F(LongWork, PreviewsShowThePictureSoFar) {
-  ASSERT_EQ(run(std::string(kJob) + "-o whole.pfm").status, 0);
-  // Stopped by a signal nothing can be done about: what is there is a preview, whole and of the right size.
-  for (double seconds = .1; seconds < 100 && !std::filesystem::exists(folder_.file("x.pfm")); seconds *= 1.5)
-    run("render ball.nff --size 120x80 --samples 65536 -o x.pfm --preview .01", "timeout -s KILL " + std::to_string(seconds));
-  EXPECT_EQ(folder_.read("x.pfm").size(), folder_.read("whole.pfm").size());
-  EXPECT_NE(folder_.read("x.pfm"), folder_.read("whole.pfm"));
-  ASSERT_EQ(run(std::string(kJob) + "-o x.pfm --preview .01").status, 0);
-  EXPECT_EQ(folder_.read("x.pfm"), folder_.read("whole.pfm"));
+  const char* const endless[] = {"--samples 65536", "--error .000002", "--time 1000", "--samples 4000 --lens 9 --aa adaptive:.001,8"};
+  for (std::size_t i = 0; i < 4; ++i) {
+    SCOPED_TRACE(endless[i]);
+    ASSERT_EQ(run(std::string(kJobs[i]) + "-o whole.pfm").status, 0);
+    // Stopped by a signal nothing can be done about: what is there is a preview, whole and of the right size.
+    for (double seconds = .1; seconds < 100 && !std::filesystem::exists(folder_.file("x.pfm")); seconds *= 1.5)
+      run(std::string("render ball.nff --size 120x80 -o x.pfm --preview .01 ") + endless[i], "timeout -s KILL " + std::to_string(seconds));
+    EXPECT_EQ(folder_.read("x.pfm").size(), folder_.read("whole.pfm").size());
+    EXPECT_NE(folder_.read("x.pfm"), folder_.read("whole.pfm"));
+    EXPECT_NE(folder_.read("x.pfm").find_first_not_of('\0', 20), std::string::npos) << "something is to be seen";
+    ASSERT_EQ(run(std::string(kJobs[i]) + "-o x.pfm --preview .01").status, 0);
+    EXPECT_EQ(folder_.read("x.pfm"), folder_.read("whole.pfm"));
+    std::filesystem::remove(folder_.file("x.pfm"));
+  }
 }
 
 }  // namespace

@@ -1,14 +1,18 @@
 // Pictures rendered in parts, interrupted, kept in files and joined: the bits of the whole.
 #include <algorithm>
 #include <cstring>
+#include <limits>
 #include <sstream>
 
+#include "frontend/checkpoint.hpp"
+#include "frontend/digest.hpp"
 #include "frontend/merge.hpp"
 #include "frontend/nff_reader.hpp"
 #include "frontend/options.hpp"
 #include "frontend/parse_error.hpp"
 #include "frontend/partial.hpp"
 #include "kernel/accumulator.hpp"
+#include "kernel/point_tracer.hpp"
 #include "scenes/generators.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -262,6 +266,162 @@ TEST(Partial, BytesAreAsTheyEverWere) {
   EXPECT_EQ(checksum, 4836196064112502952u) << "the lower half of XXH128";
 }
 
+// --- checkpoints of pictures that have no parts
+
+/// Stopped in the middle, with something in every array.
+Work half_done(const Job& job, const RenderOptions& options, std::uint64_t seed) {
+  const World world(job.file.scene, {});
+  Random random(seed);
+  int left = 3 + static_cast<int>(random.below(30));
+  RenderOptions o = options;
+  o.threads = 1, o.progress = [&](double) { return --left > 0; };
+  RenderStats stats;
+  if (o.refine.on()) {
+    Refinement r = make_refinement(job.file.camera);
+    EXPECT_FALSE(refine(world, job.file.camera, o, r, stats));
+    return r;
+  }
+  Subdivided s = make_subdivided(job.file.camera.width, job.file.camera.height);
+  EXPECT_FALSE(render_subdivided(world, job.file.camera, o, s, stats));
+  return s;
+}
+
+/// In a file, as bytes.
+std::string kept(const Work& work) {
+  const TemporaryFolder folder;
+  write_checkpoint(folder.file("x"), {"scene", "settings"}, work, true);
+  EXPECT_EQ(folder.list(), "x");
+  return folder.read("x");
+}
+
+/// With a checksum that fits.
+std::string signed_anew(std::string bytes) {
+  Digest digest;
+  digest.bytes(bytes.data(), bytes.size() - 8);
+  for (std::size_t i = 0; i < 8; ++i) bytes[bytes.size() - 8 + i] = static_cast<char>(digest.low64() >> 8 * i);
+  return bytes;
+}
+
+class Checkpoints : public testing::TestWithParam<bool> {
+ protected:
+  Checkpoints() : job_(make({"balls", 1, "l"})) {
+    if (GetParam()) job_.options.refine.error = 1e-3;
+    else job_.options.subdivision = {true, .05f, 8};  // tiles of 16 pixels: six
+  }
+  Job job_;
+};
+
+TEST_P(Checkpoints, GoOnFromAFileToTheSameBits) {
+  const World world(job_.file.scene, {});
+  RenderStats stats;
+  RenderOptions o = job_.options;
+  o.refine.error *= 4, o.subdivision.depth /= 2;
+  const Image whole = render(world, job_.file.camera, o, stats);
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    const Work half = half_done(job_, o, seed);
+    Work work = parse_checkpoint("x", kept(half)).work;
+    if (auto* const r = std::get_if<Refinement>(&work)) {
+      ASSERT_TRUE(refine(world, job_.file.camera, o, *r, stats));
+      EXPECT_TRUE(same_bits(picture_so_far(*r), whole));
+    } else {
+      Subdivided& s = std::get<Subdivided>(work);
+      EXPECT_EQ(s.colours, std::get<Subdivided>(half).colours) << "or they would be seen again";
+      ASSERT_TRUE(render_subdivided(world, job_.file.camera, o, s, stats));
+      EXPECT_TRUE(same_bits(s.image, whole));
+    }
+    EXPECT_EQ(kept(parse_checkpoint("x", kept(work)).work), kept(work)) << "of what is finished as well";
+  }
+}
+
+TEST_P(Checkpoints, AreRefusedWithAnyByteFlippedOrLost) {
+  const std::string good = kept(half_done(job_, job_.options, 1));
+  EXPECT_EQ(kept(parse_checkpoint("x", good).work), good);
+  for (std::size_t i = 0; i < good.size(); i += 1 + i / 16) {
+    std::string bad = good;
+    bad[i] = static_cast<char>(bad[i] ^ (1 << i % 8));
+    EXPECT_THROW(parse_checkpoint("x", bad), FileError) << "byte " << i;
+    EXPECT_THROW(parse_checkpoint("x", std::string_view(good).substr(0, i)), FileError) << "cut at " << i;
+  }
+  EXPECT_THROW(parse_partial("x", good), FileError) << "it is no part";
+}
+
+/// What lies under a checksum that fits is refused, or can be gone on with: nothing breaks, and work comes to an end.
+TEST_P(Checkpoints, OfHostileBytesBreakNothing) {
+  const World world(job_.file.scene, {});
+  const std::string good = kept(half_done(job_, job_.options, 1));
+  Random random(9);
+  int refused = 0, taken = 0;
+  for (int turn = 0; turn < 120; ++turn) {
+    std::string bad = good;
+    if (random.chance(.2)) bad.resize(bad.size() - 1 - random.below(60));
+    const std::size_t most = random.chance(.5) ? 400 : bad.size() - 8;  // half of them near the head
+    for (int k = 0; k < 3; ++k) bad[random.below(static_cast<std::uint32_t>(most))] = static_cast<char>(random.chance(.5) ? 255 : random.below(256));
+    try {
+      Work work = parse_checkpoint("x", signed_anew(bad)).work;
+      RenderOptions o = job_.options;
+      int left = 20;
+      o.progress = [&](double) { return --left > 0; };
+      RenderStats stats;
+      if (auto* const r = std::get_if<Refinement>(&work)) refine(world, job_.file.camera, o, *r, stats);
+      else if (auto* const s = std::get_if<Subdivided>(&work)) render_subdivided(world, job_.file.camera, o, *s, stats);
+      ++taken;
+    } catch (const FileError&) {
+      ++refused;
+    } catch (const std::invalid_argument&) {  // sound, but of another size
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 10);
+  EXPECT_GT(taken, 10);
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, Checkpoints, testing::Bool(), [](const auto& kind) { return kind.param ? "ByError" : "BySubdivision"; });
+
+TEST(Checkpoint, OfImpossibleNumbersIsRefused) {
+  Job job = make({"balls", 1, "l"});
+  job.options.refine.error = 1e-3;
+  const Refinement good = std::get<Refinement>(half_done(job, job.options, 20));
+  const auto refused = [&](auto change) {
+    Refinement bad = good;
+    change(bad);
+    try {
+      parse_checkpoint("x", kept(bad));
+    } catch (const FileError& error) {
+      return std::string(error.what()) == "x: error: not a .grelha partial this program reads";
+    }
+    return false;
+  };
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_FALSE(refused([](Refinement&) {}));
+  EXPECT_TRUE(refused([&](Refinement& r) { r.cost[5] = nan; })) << "pixels are sorted by it";
+  EXPECT_TRUE(refused([](Refinement& r) { r.cost[5] = 0; }));
+  EXPECT_TRUE(refused([&](Refinement& r) { r.squares[1][7] = nan; }));
+  EXPECT_TRUE(refused([&](Refinement& r) { r.bar = nan; })) << "it would never be low enough";
+  EXPECT_TRUE(refused([](Refinement& r) { r.bar = std::numeric_limits<float>::infinity(); }));
+  EXPECT_TRUE(refused([](Refinement& r) { r.rho = 1; }));
+  EXPECT_TRUE(refused([](Refinement& r) { r.log[3] = 17; }));
+  EXPECT_TRUE(refused([](Refinement& r) { r.log[3] = 1; }));
+  EXPECT_TRUE(refused([](Refinement& r) { r.log[r.wanted[0]] = 16; })) << "it can take no more";
+  EXPECT_TRUE(refused([](Refinement& r) { r.wanted[1] = r.wanted[0]; })) << "two threads would work on it";
+  EXPECT_TRUE(refused([](Refinement& r) { r.wanted[1] = 37 * 29; }));
+  EXPECT_TRUE(refused([](Refinement& r) { r.wanted.clear(); })) << "neither finished nor begun";
+  EXPECT_TRUE(refused([](Refinement& r) { r.finished = true; }));
+  EXPECT_TRUE(refused([](Refinement& r) { r.sums[8] = std::numeric_limits<std::int64_t>::max(); }));
+  EXPECT_TRUE(refused([](Refinement& r) { r.seconds = -1; }));
+  EXPECT_TRUE(refused([](Refinement& r) { r.inside.pop_back(), r.inside.push_back(-1); }));
+}
+
+TEST(Checkpoint, OfBrokenGzipDataIsDamaged) {
+  const TemporaryFolder folder;
+  folder.write("x", "\x1F\x8B\x08");
+  try {
+    read_checkpoint(folder.file("x"));
+    FAIL();
+  } catch (const FileError& error) {
+    EXPECT_TRUE(std::string(error.what()).ends_with("x: error: damaged: its gzip data are broken")) << error.what();
+  }
+}
+
 TEST(Identity, DigestIsAsItEverWas) {
   SceneFile file;
   file.scene.geometry.spheres.add({1, 2, 3}, .5f, 0);
@@ -308,6 +468,10 @@ TEST(Identity, NamesAllThatPixelsDependOn) {
             "samples=2 seed=4, not samples=1 seed=0");
   EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.sampling.sampler = Sampler::kJitter; }), "sampler=jitter, not sampler=sobol");
   EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.depth = 6; }), "depth=6, not depth=5");
+  EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.refine.error = .01; }), "error=0.01, not samples=1");
+  EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.refine.seconds = 2.5; }), "time=2.5, not samples=1");
+  EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.refine.samples = 7; }), "time=samples:7, not samples=1");
+  EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.subdivision = {true, .1f, 2}; }), "adaptive=0.1,2, not nothing");
   EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.precision = Precision::kDouble; }), "precision=double, not nothing");
   EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.effects.shadows = Effects::Shadows{true}; }), "shadows=hard, not nothing");
   EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.sampling.light_rays = 3; }), "light-rays=3, not nothing");
