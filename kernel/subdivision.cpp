@@ -125,7 +125,7 @@ class Subdivider {
     for (std::size_t begin; (begin = p_.colours.size()) < end;) {
       p_.colours.resize(end);
       const std::size_t seen = begin + see_(std::span(fresh_).subspan(begin - numbered_), p_.colours.data() + begin, share_at(begin), share_at(end));
-      p_.colours.resize(seen), p_.share = share_at(seen);
+      p_.colours.resize(seen), p_.share = std::min(1.0, share_at(seen));
       if (seen == end) break;
       if (level == 0) show_corners();
       else show_squares(level - 1);
