@@ -15,6 +15,7 @@ constexpr std::array kGenerators{
               write_boat_mesh},
     Generator{"stadium", "fine knot on a ground a thousand times its size", 1, 40, 6, write_stadium},
     Generator{"knot", "knot of brass and a ball of glass, a scene and a PLY file", 1, 40, 8, write_knot, write_knot_mesh},
+    Generator{"terrain", "land of as many triangles as wanted, a scene and a binary PLY file", 1, 250, 20, write_terrain, write_terrain_mesh},
     Generator{"tetra", "tetrahedral pyramid of triangles", 1, 10, 6, write_tetra},
     Generator{"gears", "meshing gears of concave 144-gons, some of glass", 1, 10, 4, write_gears},
     Generator{"rings", "pyramid of interlocked rings of rods and balls", 1, 40, 7, write_rings},

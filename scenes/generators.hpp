@@ -10,12 +10,12 @@ namespace grelha::scenes {
 struct SceneOptions {
   int size = 1;           ///< the scene's size factor, inside the generator's bounds
   bool spd = false;       ///< balls, mount: Haines' own form in place of the course's (below)
-  std::string mesh_file;  ///< boat, knot: name of the mesh as the scene file states it
+  std::string mesh_file;  ///< boat, knot, terrain: name of the mesh as the scene file states it
 };
 
 /// The scenes this project can make. Constructions: Haines, "A Proposal for Standard Graphics Environments" (1987) and
-/// the programs of his Standard Procedural Databases 3.14; distant, boat, stadium, knot, discs, star and awning are our
-/// own, and so are the colours of gears and the heights of mount beyond size 7.
+/// the programs of his Standard Procedural Databases 3.14; distant, boat, stadium, knot, terrain, discs, star and awning
+/// are our own, and so are the colours of gears and the heights of mount beyond size 7.
 ///
 ///   name     size     size n gives                                                      default
 ///   balls    1-7      (9^(n+1) - 1) / 8 spheres and one plane (--spd: a 4-gon)          4: 7381
@@ -24,6 +24,7 @@ struct SceneOptions {
 ///   boat     4-40     46 n^2 + 10 n triangles of a PLY file, three planes               10: 4700
 ///   stadium  1-40     288 n^2 patches of three vertices, one 4-gon                      6: 10368
 ///   knot     1-40     288 n^2 triangles of a PLY file, one sphere, one plane            8: 18432
+///   terrain  1-250    512 n^2 triangles of a binary PLY file, two spheres               20: 204800
 ///   tetra    1-10     4^n triangles                                                     6: 4096
 ///   gears    1-10     2 n^3 144-gons and 144 n^3 + 1 4-gons                             4: 128, 9217
 ///   rings    1-40     5n (n+1) (2n+1) spheres and as many cylinders, one 4-gon          7: 4200
@@ -53,6 +54,8 @@ void write_boat_mesh(std::ostream& out, int size);
 void write_stadium(std::ostream& out, const SceneOptions& options);
 void write_knot(std::ostream& out, const SceneOptions& options);
 void write_knot_mesh(std::ostream& out, int size);
+void write_terrain(std::ostream& out, const SceneOptions& options);
+void write_terrain_mesh(std::ostream& out, int size);
 void write_tetra(std::ostream& out, const SceneOptions& options);
 void write_gears(std::ostream& out, const SceneOptions& options);
 void write_rings(std::ostream& out, const SceneOptions& options);

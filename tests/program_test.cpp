@@ -300,7 +300,7 @@ TEST_F(Program, EverySceneIsRead) {
     EXPECT_EQ(info.status, 0) << info.err;
     EXPECT_EQ(info.err.find("warning"), std::string::npos) << info.err;
   }
-  EXPECT_EQ(scenes, 14);
+  EXPECT_EQ(scenes, 15);
 }
 
 TEST_F(Program, AFullOutputIsStatusOne) {

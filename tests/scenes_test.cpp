@@ -239,6 +239,20 @@ TEST(Knot, MeshHasTheTablesFaces) {
   }
 }
 
+/// Header, rows of twelve bytes and rows of thirteen; the last face's indices and nothing behind them.
+TEST(Terrain, MeshIsWholeAndTheSameOnEveryMachine) {
+  std::ostringstream out;
+  find_generator("terrain")->write_mesh(out, 2);
+  const std::string bytes = out.str();
+  const std::size_t data = bytes.find("end_header\n") + 11;
+  EXPECT_NE(bytes.find("\nelement vertex 1089\n"), std::string::npos);
+  EXPECT_NE(bytes.find("\nelement face 2048\n"), std::string::npos);
+  ASSERT_EQ(bytes.size(), data + 1089 * 12 + 2048 * 13);
+  EXPECT_EQ(bytes.substr(bytes.size() - 13), std::string("\3\x40\4\0\0\x3f\4\0\0\x1e\4\0\0", 13)) << "1088, 1087, 1054";
+  EXPECT_EQ(bytes.substr(data, 8), std::string("\0\0\x80\xbf\0\0\x80\xbf", 8)) << "-1, -1";
+  EXPECT_EQ(bytes.substr(data + 544 * 12, 12), std::string("\0\0\0\0\0\0\0\0\xDC\x6E\x1B\x3D", 12)) << "the middle";
+}
+
 /// From the corners in order, the geometric normal agrees with the ones written: front is front.
 TEST(Stadium, NormalsAgreeWithTheWinding) {
   std::istringstream in(generate("stadium", 2));
