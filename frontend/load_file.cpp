@@ -105,7 +105,8 @@ std::string inflate_gzip(const std::string& path, std::string_view data, std::si
 
 std::string load_file(const std::string& path) {
   std::string bytes = read_bytes(path);
-  return is_gzip(bytes) ? inflate_gzip(path, bytes, inflate_limit()) : bytes;
+  if (is_gzip(bytes)) return inflate_gzip(path, bytes, inflate_limit());
+  return bytes;
 }
 
 }  // namespace grelha
