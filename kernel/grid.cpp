@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "kernel/block_order.hpp"
+#include "kernel/build_progress.hpp"
 #include "kernel/cell_finder.hpp"
 
 namespace grelha {
@@ -58,8 +59,9 @@ int useful_threads(int threads, std::size_t work) {
 class Filling {
  public:
   /// With `pad`, blocks get boxes, and neighbours share them.
-  Filling(const Primitives& p, std::span<const std::uint32_t> ids, const Grid& grid, std::optional<double> pad, int threads)
-      : p_(p), ids_(ids), grid_(grid), pad_(pad), cells_(std::size_t{grid.cells[0]} * grid.cells[1] * grid.cells[2]), threads_(threads) {
+  Filling(const Primitives& p, std::span<const std::uint32_t> ids, const Grid& grid, std::optional<double> pad, int threads, BuildProgress& progress,
+          double share)
+      : p_(p), ids_(ids), grid_(grid), pad_(pad), cells_(cell_count(grid.cells)), threads_(threads), progress_(progress), share_(share) {
     while (((cells_ - 1) >> shift_) >= kMostBuckets) ++shift_;
     buckets_ = ((cells_ - 1) >> shift_) + 1;
     chunks_.resize((ids.size() + kChunk - 1) / kChunk);
@@ -80,12 +82,15 @@ class Filling {
     std::exception_ptr trouble;
     const auto guarded = [&](const auto& work) {
       try {
+        if (progress_.stopped()) return;
         work();
+        progress_.step();
       } catch (...) {
 #pragma omp critical
         trouble = std::current_exception();
       }
     };
+    progress_.expect(kEmitShare * share_, chunks_.size());
 #pragma omp parallel num_threads(threads_)
     {
       std::vector<Pair> pairs;
@@ -93,6 +98,7 @@ class Filling {
       for (std::ptrdiff_t i = 0; i < chunks; ++i) guarded([&] { emit(static_cast<std::size_t>(i), cells_of, pairs); });
     }
     if (trouble) std::rethrow_exception(trouble);
+    progress_.throw_if_stopped();
 #pragma omp parallel for schedule(dynamic) num_threads(threads_)
     for (std::ptrdiff_t i = 0; i < buckets; ++i) sums[static_cast<std::size_t>(i)] = count(static_cast<std::size_t>(i));
     std::array<std::uint64_t, 3> total{};
@@ -102,6 +108,7 @@ class Filling {
       if (n > 0xFFFFFF00u) throw std::length_error("the grid's lists are too long: choose a smaller density");
     for (const Chunk& c : chunks_) store_.references += c.pairs.size();
     make_room(total);
+    progress_.expect((1 - kEmitShare) * share_, buckets_);
 #pragma omp parallel num_threads(threads_)
     {
       Room room;
@@ -110,12 +117,14 @@ class Filling {
         guarded([&] { taken += write(static_cast<std::size_t>(i), sums[static_cast<std::size_t>(i)], room, empty); });
     }
     if (trouble) std::rethrow_exception(trouble);
+    progress_.throw_if_stopped();
     occupied = taken;
     return std::move(store_);
   }
 
  private:
   static constexpr std::size_t kChunk = 2048, kMostBuckets = 256;
+  static constexpr double kEmitShare = .2;  ///< of the time; counting takes next to none
   struct Pair {
     std::uint32_t cell, id;
   };
@@ -251,6 +260,8 @@ class Filling {
   std::size_t cells_, buckets_ = 0;
   unsigned shift_ = 8;
   int threads_;
+  BuildProgress& progress_;
+  double share_;  ///< of the whole build
   bool has_[3] = {};
   std::vector<Chunk> chunks_;
   CellStore store_;
@@ -451,7 +462,7 @@ double cell_edge(const Box& box, std::size_t count, double density) {
   return std::max(1 / per_length, std::max({extent[0], extent[1], extent[2]}) / kMostCells);
 }
 
-Grid build_grid(const Primitives& p, std::span<const std::uint32_t> ids, const Box& box, double density, double pad, int threads) {
+Grid lay_out_grid(const Primitives& p, std::span<const std::uint32_t> ids, const Box& box, double density, double pad) {
   Box b = box;
   b.grow(2 * pad);  // once for the cells' contents, once for the entry of rays
   Grid g;
@@ -469,18 +480,23 @@ Grid build_grid(const Primitives& p, std::span<const std::uint32_t> ids, const B
   // A heap of large primitives would stand in thousands of cells each, and memory end.
   for (double coarser = per_length / 2; cells > kMostReferences && references(p, ids, g) > kMostReferences; coarser /= 2)
     cells = divide(g, extent, coarser);
-  g.distance.resize(cells + 3);  // so that four bytes can be read from any place
-  const CellFinder finder(p, g, pad);
-  g.store = Filling(p, ids, g, pad, useful_threads(threads, ids.size())).run([&](std::uint32_t id, const auto& visit) { finder(id, visit); },
-                                                                           g.distance.data(), g.occupied);
-  chebyshev_distance(g.distance, g.cells, useful_threads(threads, cells));
   return g;
+}
+
+void fill_grid(const Primitives& p, std::span<const std::uint32_t> ids, Grid& g, int threads, BuildProgress& progress, double share) {
+  const std::size_t cells = cell_count(g.cells);
+  g.distance.resize(cells + 3);  // so that four bytes can be read from any place
+  const CellFinder finder(p, g, g.pad);
+  g.store = Filling(p, ids, g, g.pad, useful_threads(threads, ids.size()), progress, share)
+                .run([&](std::uint32_t id, const auto& visit) { finder(id, visit); }, g.distance.data(), g.occupied);
+  chebyshev_distance(g.distance, g.cells, useful_threads(threads, cells));
 }
 
 CellStore build_list(const Primitives& p, std::span<const std::uint32_t> ids) {
   std::uint64_t occupied = 0;
   const Grid one;
-  return Filling(p, ids, one, {}, 1).run([](std::uint32_t, const auto& visit) { visit(std::size_t{0}); }, nullptr, occupied);
+  BuildProgress nobody;
+  return Filling(p, ids, one, {}, 1, nobody, 0).run([](std::uint32_t, const auto& visit) { visit(std::size_t{0}); }, nullptr, occupied);
 }
 
 }  // namespace grelha

@@ -13,6 +13,8 @@
 
 namespace grelha {
 
+class BuildProgress;
+
 /// Axis-aligned box in double, where sums of floats do not round. Empty when lo > hi.
 struct Box {
   double lo[3] = {1e300, 1e300, 1e300}, hi[3] = {-1e300, -1e300, -1e300};
@@ -55,6 +57,8 @@ struct Primitives {
   Box flat_box(std::uint32_t id) const;  ///< of a triangle or a cone
 };
 
+inline std::size_t cell_count(const std::array<std::uint32_t, 3>& cells) { return std::size_t{cells[0]} * cells[1] * cells[2]; }
+
 /// Runs of primitives, cell after cell, that own the memory a CellLists points to.
 struct CellStore {
   RawVector<std::uint32_t> triangle_first, sphere_first, cone_first;
@@ -92,7 +96,8 @@ inline int cell_of(double x, double lo, double inv_cell, int n) {
   return i < n ? i : n - 1;
 }
 
-/// Builds a grid over some primitives (ids ascending, at least one), M = density.
+/// Chooses the cells of a grid over some primitives (ids ascending, at least one), M = density; fill_grid() then writes its lists, and tells
+/// of its progress, which is that share of the whole.
 ///
 /// Resolution  cells per axis = M extent / cbrt(volume / count) + 1 (Cleary & Wyvill 1988; Amanatides & Woo's report form),
 ///             extents below 1/1000 of the largest counted as that, at most 1024 an axis, no cell smaller than 2 pad; and coarser, by halves,
@@ -102,9 +107,10 @@ inline int cell_of(double x, double lo, double inv_cell, int n) {
 ///             every machine, by any number of threads.
 /// Source      Lagae & Dutré, "Compact, Fast and Robust Grids for Ray Tracing", 2008: count, sum, scatter. Kalojanov & Slusallek,
 ///             "A Parallel Algorithm for Construction of Uniform Grids", 2009: pairs of cell and primitive, sorted by cell.
-Grid build_grid(const Primitives& primitives, std::span<const std::uint32_t> ids, const Box& box, double density, double pad, int threads);
+Grid lay_out_grid(const Primitives& primitives, std::span<const std::uint32_t> ids, const Box& box, double density, double pad);
+void fill_grid(const Primitives& primitives, std::span<const std::uint32_t> ids, Grid& grid, int threads, BuildProgress& progress, double share);
 
-/// The edge of the cells that a density asks for; what build_grid() makes of it also depends on the pad.
+/// The edge of the cells that a density asks for; what lay_out_grid() makes of it also depends on the pad.
 double cell_edge(const Box& box, std::size_t count, double density);
 
 /// Box of some finite primitives, and the longest diagonal of any.

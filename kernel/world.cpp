@@ -1,134 +1,12 @@
 #include "kernel/world.hpp"
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
-#include <limits>
 #include <stdexcept>
 
-#include <omp.h>
-
-#include "kernel/crowds.hpp"
+#include "kernel/plan.hpp"
 
 namespace grelha {
 namespace {
-
-constexpr std::size_t kFewest = 8;        ///< so few primitives are faster looped over than walked through
-constexpr std::size_t kMostOutside = 32;  ///< primitives without a grid, each met by every ray
-constexpr std::size_t kSmallObject = 256; ///< triangles; smaller objects share the grid of the loose ones
-constexpr double kHuge = .5;              ///< of the diagonal of what it lies among: larger primitives get no grid
-constexpr double kMostPads = 64;          ///< a cell, of a grid for near rays: more would not make its lists shorter
-constexpr double kFewestPads = 8;         ///< a cell, of a grid for far rays: with fewer, lists are long, and no faster
-constexpr double kVast = 4;               ///< scenes so many times as wide as near rays reach have both: in others it would gain little
-constexpr double kDensity = .7;           ///< M; packets like it coarser than the report's 2 (docs/performance.md)
-
-using Ids = std::vector<std::uint32_t>;
-
-/// A NaN or an infinity: all bits of the exponent set.
-bool is_number(float x) { return (std::bit_cast<std::uint32_t>(x) & 0x7F800000u) != 0x7F800000u; }
-bool are_numbers(Floats v) {
-  std::uint32_t found = 0;
-  for (const float x : v) found |= is_number(x) ? 0 : 1;
-  return found == 0;
-}
-
-/// Whether every primitive has a place. The arrays are asked as they lie, many at a time.
-bool all_are_sound(const GeometrySpans& g) {
-  for (const auto* v : {&g.triangles.x, &g.triangles.y, &g.triangles.z, &g.spheres.x, &g.spheres.y, &g.spheres.z, &g.spheres.radius,
-                        &g.cones.base_x, &g.cones.base_y, &g.cones.base_z, &g.cones.base_radius, &g.cones.apex_x, &g.cones.apex_y,
-                        &g.cones.apex_z, &g.cones.apex_radius})
-    if (!are_numbers(*v)) return false;
-  return true;
-}
-
-bool is_sound(const Primitives& p, std::uint32_t id) {
-  const GeometrySpans& g = p.geometry;
-  if (id < p.triangle_base) {
-    const std::uint32_t i = id - p.sphere_base;
-    return is_number(g.spheres.x[i]) && is_number(g.spheres.y[i]) && is_number(g.spheres.z[i]) && is_number(g.spheres.radius[i]);
-  }
-  if (id >= p.cone_base)
-    return std::all_of(p.cones.begin(), p.cones.end(), [&](const std::vector<float>& v) { return is_number(v[id - p.cone_base]); });
-  const std::uint32_t i = id - p.triangle_base;
-  const auto at = [&](std::uint32_t v) { return is_number(g.triangles.x[v]) && is_number(g.triangles.y[v]) && is_number(g.triangles.z[v]); };
-  return at(g.triangles.a[i]) && at(g.triangles.b[i]) && at(g.triangles.c[i]);
-}
-
-/// One group of ids a grid: first what is loose (with small objects), then each larger object.
-std::vector<Ids> group(const Primitives& p) {
-  std::vector<Ids> groups(1);
-  Ids& loose = groups.front();
-  for (std::uint32_t id = p.sphere_base; id < p.triangle_base; ++id) loose.push_back(id);
-  std::uint32_t next = 0;
-  const auto take = [&](Ids& to, std::uint32_t first, std::uint32_t end) {
-    for (std::uint32_t i = first; i < end; ++i) to.push_back(p.triangle_base + i);
-  };
-  for (const Object& o : p.geometry.objects) {
-    take(groups.front(), next, o.first_triangle);
-    next = o.first_triangle + o.triangle_count;
-    if (o.triangle_count < kSmallObject || groups.size() >= kMostGroups) {
-      take(groups.front(), o.first_triangle, next);
-    } else {
-      groups.emplace_back();
-      take(groups.back(), o.first_triangle, next);
-    }
-  }
-  take(groups.front(), next, static_cast<std::uint32_t>(p.geometry.triangles.size()));
-  for (std::uint32_t id = p.cone_base; id < p.end; ++id) groups.front().push_back(id);
-  // What has no place is met by no ray, and would put every cell in doubt.
-  if (!all_are_sound(p.geometry))
-    for (Ids& ids : groups) std::erase_if(ids, [&](std::uint32_t id) { return !is_sound(p, id); });
-  std::erase_if(groups, [](const Ids& g) { return g.empty(); });
-  return groups;
-}
-
-/// Takes primitives as large as all the rest out of a group, again and again while any is: a ground under a teapot, a
-/// stadium around that. What is left is of one scale, which is what a uniform grid wants.
-Extent set_huge_apart(const Primitives& p, Ids& ids, Extent all, Ids& outside, int threads) {
-  for (;; all = extent_of(p, ids, threads)) {
-    const double huge = kHuge * all.box.diagonal();
-    if (!(all.longest > huge)) return all;
-    const Ids large = longer_than(p, ids, huge, kMostOutside, threads);
-    if (large.empty() || outside.size() + large.size() > kMostOutside) return all;
-    outside.insert(outside.end(), large.begin(), large.end());
-    std::erase_if(ids, [&](std::uint32_t id) { return std::binary_search(large.begin(), large.end(), id); });
-  }
-}
-
-/// A handful of round things among many triangles: a loop over them costs less than asking every cell for its share.
-bool set_few_apart(const Primitives& p, Ids& ids, Ids& outside) {
-  const auto is_triangle = [&](std::uint32_t id) { return id >= p.triangle_base && id < p.cone_base; };
-  const auto others = ids.size() - static_cast<std::size_t>(std::count_if(ids.begin(), ids.end(), is_triangle));
-  if (others == 0 || others == ids.size() || others > kFewest || outside.size() + others > kMostOutside) return false;
-  std::copy_if(ids.begin(), ids.end(), std::back_inserter(outside), [&](std::uint32_t id) { return !is_triangle(id); });
-  std::erase_if(ids, [&](std::uint32_t id) { return !is_triangle(id); });
-  return true;
-}
-
-/// What primitives are grown by for rays that start within `reach` of their box on each axis, `reach` no less than its diagonal. Such
-/// rays are at most 1 + sqrt 3 reaches from any of them; a float test is off by at most 62 eps of that distance, and a walk by 32 eps of the
-/// reach (derived in docs/numerics.md).
-double pad_of(double reach) { return reach * 256 / 16777216; }
-
-/// The grid of some primitives in a scene of that diagonal. Where the pad that rays from all over the scene ask for is large beside
-/// the cells, there are two: one with such a pad, and one for the rays that start near, which are most.
-void add_grids(const Primitives& p, const Ids& ids, const Box& box, double density, double diagonal, int threads, std::vector<Grid>& grids) {
-  const double edge = cell_edge(box, ids.size(), density), reach = std::max(box.diagonal(), edge / pad_of(kMostPads));
-  if (!(diagonal > kVast * reach)) {
-    grids.push_back(build_grid(p, ids, box, density, pad_of(diagonal), threads));
-    return;
-  }
-  constexpr float infinity = std::numeric_limits<float>::infinity();
-  for (const Serves serves : {Serves::kNear, Serves::kFar}) {
-    const double pad = pad_of(serves == Serves::kNear ? reach : diagonal);
-    Grid& g = grids.emplace_back(build_grid(p, ids, box, density * std::min(1., edge / (kFewestPads * pad)), pad, threads));
-    g.serves = serves;
-    for (int a = 0; a < 3; ++a) {  // rounded inwards
-      g.near_lo[a] = std::nextafter(static_cast<float>(box.lo[a] - reach), infinity);
-      g.near_hi[a] = std::nextafter(static_cast<float>(box.hi[a] + reach), -infinity);
-    }
-  }
-}
 
 /// Whether an index reaches `end`.
 bool beyond(Indices indices, std::size_t end) {
@@ -154,6 +32,12 @@ void check_lengths(const GeometrySpans& g) {
                         c.apex_z.size(), c.apex_radius.size()}) ||
       uneven(p.size(), {p.x.size(), p.y.size(), p.z.size(), p.nx.size(), p.ny.size(), p.nz.size()}))
     throw std::invalid_argument("arrays of one kind of primitive have unequal lengths");
+}
+
+void check(const BuildOptions& o) {
+  if (!(o.density >= 0) || o.density == std::numeric_limits<float>::infinity())
+    throw std::invalid_argument("density must be a positive number, or 0");
+  if (o.threads < 0) throw std::invalid_argument("threads must not be negative");
 }
 
 void check(const SceneSpans& scene) {
@@ -209,40 +93,14 @@ MaterialView MaterialTable::view() const {
 
 World::Impl::Impl(const SceneSpans& s, const BuildOptions& options) : scene((check(s), s)), primitives(s.geometry), materials(s.materials) {
   const GeometrySpans& g = s.geometry;
-  const int threads = options.threads > 0 ? options.threads : omp_get_num_procs();
-  std::vector<Ids> groups = group(primitives);
-  std::vector<Extent> extents;
-  Box all;
-  for (const Ids& ids : groups) {
-    extents.push_back(extent_of(primitives, ids, threads));
-    all.add(extents.back().box);
-  }
-  const double diagonal = all.diagonal(), density = options.density > 0 ? options.density : kDensity;
-
-  Ids apart;
-  if (options.grid) {
-    for (std::size_t i = 0; i < groups.size(); ++i) {
-      Ids ids = std::move(groups[i]);
-      Extent extent = set_huge_apart(primitives, ids, extents[i], apart, threads);
-      if (set_few_apart(primitives, ids, apart)) extent = extent_of(primitives, ids, threads);
-      if (auto crowds = take_crowds(primitives, ids, extent.box, density, kMostGroups - groups.size()); !crowds.empty()) {
-        extent = extent_of(primitives, ids, threads);
-        for (Ids& crowd : crowds) {
-          extents.push_back(extent_of(primitives, crowd, threads));
-          groups.push_back(std::move(crowd));
-        }
-      }
-      if (ids.size() <= kFewest && apart.size() + ids.size() <= kMostOutside) {
-        apart.insert(apart.end(), ids.begin(), ids.end());
-      } else if (!ids.empty()) {
-        add_grids(primitives, ids, extent.box, density, diagonal, threads, grids);
-      }
-    }
-  } else {
-    for (const Ids& ids : groups) apart.insert(apart.end(), ids.begin(), ids.end());
-  }
-  std::sort(apart.begin(), apart.end());
-  outside = build_list(primitives, apart);
+  BuildProgress progress(options.progress);
+  Plan plan = plan_grids(primitives, options, progress);
+  if (options.most_bytes > 0 && !surely_fits(primitives, options.most_bytes))
+    if (const BuildMemory need = memory_of(s, primitives, plan); need.peak > options.most_bytes) throw TooLarge(need);
+  fill(plan, threads_of(options), progress);
+  outside = build_list(primitives, plan.apart);
+  progress.finish();
+  progress.throw_if_stopped();
   for (const Grid& grid : grids) grid_views.push_back(grid.view());
 
   GeometryView& v = view.geometry;
@@ -264,10 +122,10 @@ World::Impl::Impl(const SceneSpans& s, const BuildOptions& options) : scene((che
   view.grids = grid_views.data(), view.grid_count = static_cast<int>(grid_views.size());
   view.sphere_base = primitives.sphere_base, view.triangle_base = primitives.triangle_base;
   view.cone_base = primitives.cone_base, view.primitive_end = primitives.end;
-  view.finite = !all.empty();
+  view.finite = !plan.all.empty();
   if (view.finite) {
-    for (int a = 0; a < 3; ++a) view.box_lo[a] = static_cast<float>(all.lo[a]), view.box_hi[a] = static_cast<float>(all.hi[a]);
-    view.reach = static_cast<float>(diagonal);
+    for (int a = 0; a < 3; ++a) view.box_lo[a] = static_cast<float>(plan.all.lo[a]), view.box_hi[a] = static_cast<float>(plan.all.hi[a]);
+    view.reach = static_cast<float>(plan.all.diagonal());
   }
 
   for (const Light& l : s.lights) {
@@ -282,12 +140,28 @@ World::Impl::Impl(const SceneSpans& s, const BuildOptions& options) : scene((che
   shading.emits = materials.emits, shading.highlights = materials.highlights, shading.gloss = materials.gloss;
 }
 
-World::World(const SceneSpans& scene, const BuildOptions& options) {
-  if (!(options.density >= 0) || options.density == std::numeric_limits<float>::infinity())
-    throw std::invalid_argument("density must be a positive number, or 0");
-  if (options.threads < 0) throw std::invalid_argument("threads must not be negative");
-  impl_ = std::make_unique<Impl>(scene, options);
+/// The plan's grids, each part's ids gone when they are done with.
+void World::Impl::fill(Plan& plan, int threads, BuildProgress& progress) {
+  double work = 0;
+  for (const PlannedGrids& part : plan.parts) work += static_cast<double>(part.ids.size() * part.grids.size());
+  for (PlannedGrids& part : plan.parts) {
+    const std::vector<std::uint32_t> ids = std::move(part.ids);
+    for (Grid& g : part.grids) {
+      progress.throw_if_stopped();
+      grids.push_back(std::move(g));
+      fill_grid(primitives, ids, grids.back(), threads, progress, (1 - kPlanShare) * static_cast<double>(ids.size()) / work);
+    }
+  }
 }
+
+BuildMemory World::estimate(const SceneSpans& scene, const BuildOptions& options) {
+  check(scene), check(options);
+  const Primitives primitives(scene.geometry);
+  BuildProgress nobody;
+  return memory_of(scene, primitives, plan_grids(primitives, options, nobody));
+}
+
+World::World(const SceneSpans& scene, const BuildOptions& options) : impl_((check(options), std::make_unique<Impl>(scene, options))) {}
 World::~World() = default;
 World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;

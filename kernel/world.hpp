@@ -10,6 +10,9 @@
 
 namespace grelha {
 
+class BuildProgress;
+struct Plan;
+
 /// Materials one array per component, so that lanes gather what they need and no more.
 struct MaterialTable {
   explicit MaterialTable(std::span<const Material> materials);
@@ -30,6 +33,9 @@ struct World::Impl {
   ShadingView shading;
 
   Impl(const SceneSpans& scene, const BuildOptions& options);
+
+ private:
+  void fill(Plan& plan, int threads, BuildProgress& progress);
 };
 
 }  // namespace grelha
