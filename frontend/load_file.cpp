@@ -8,10 +8,13 @@
 #include <cstring>
 #include <memory>
 
+#include "frontend/load_progress.hpp"
 #include "frontend/text.hpp"
 
 namespace grelha {
 namespace {
+
+constexpr double kInflating = 10;  ///< times as long as reading
 
 struct CloseFile {
   void operator()(std::FILE* file) const { std::fclose(file); }
@@ -25,7 +28,7 @@ std::size_t inflate_limit() {
   return std::min(kMost, std::size_t(pages) / 2 * std::size_t(page_size));
 }
 
-std::string read_bytes(const std::string& path) {
+std::string read_bytes(const std::string& path, LoadProgress* progress) {
   struct stat about {};
   if (stat(path.c_str(), &about) != 0) throw FileError(path, std::string("cannot open: ") + std::strerror(errno));
   if (S_ISDIR(about.st_mode)) throw FileError(path, std::string("cannot read: ") + std::strerror(EISDIR));
@@ -33,7 +36,14 @@ std::string read_bytes(const std::string& path) {
   const std::unique_ptr<std::FILE, CloseFile> file(std::fopen(path.c_str(), "rb"));
   if (!file) throw FileError(path, std::string("cannot open: ") + std::strerror(errno));
   std::string bytes(std::size_t(about.st_size), '\0');
-  bytes.resize(std::fread(bytes.data(), 1, bytes.size(), file.get()));
+  if (progress) progress->expect((1 + kParsing) * double(bytes.size()));
+  constexpr std::size_t kPiece = std::size_t(1) << 24;
+  std::size_t have = 0;
+  for (std::size_t got = 1; got > 0 && have < bytes.size(); have += got) {
+    got = std::fread(bytes.data() + have, 1, std::min(kPiece, bytes.size() - have), file.get());
+    if (progress) progress->done(double(got));
+  }
+  bytes.resize(have);
   if (std::ferror(file.get())) throw FileError(path, std::string("cannot read: ") + std::strerror(errno));
   return bytes;
 }
@@ -42,10 +52,10 @@ bool is_gzip(std::string_view data) {
   return data.size() >= 2 && static_cast<unsigned char>(data[0]) == 0x1f && static_cast<unsigned char>(data[1]) == 0x8b;
 }
 
-/// Owns zlib's state; feeds it at most 1 GiB at a time because its counters have 32 bits.
+/// Owns zlib's state; feeds it 16 MiB at a time: its counters have 32 bits, and progress is told of each.
 class Inflater {
  public:
-  Inflater(const std::string& path, std::string_view data) : path_(path), data_(data) {
+  Inflater(const std::string& path, std::string_view data, LoadProgress* progress) : path_(path), data_(data), progress_(progress) {
     if (inflateInit2(&stream_, 15 + 16) != Z_OK) throw std::bad_alloc();
   }
   Inflater(const Inflater&) = delete;
@@ -65,7 +75,7 @@ class Inflater {
   }
 
  private:
-  static constexpr std::size_t kChunk = std::size_t(1) << 30;
+  static constexpr std::size_t kChunk = std::size_t(1) << 24;
 
   [[noreturn]] void fail(const std::string& message) const { throw ParseError(Position{path_, 0, 0, taken_}, message); }
 
@@ -79,6 +89,7 @@ class Inflater {
     const int result = inflate(&stream_, Z_NO_FLUSH);
     taken_ += give - stream_.avail_in;
     made += room - stream_.avail_out;
+    if (progress_) progress_->done(kInflating * double(give - stream_.avail_in));
     if (result == Z_STREAM_END) {
       if (!is_gzip(data_.substr(taken_))) return true;  // bytes behind the last member are ignored, as gzip does
       inflateReset(&stream_);
@@ -93,20 +104,24 @@ class Inflater {
 
   const std::string& path_;
   std::string_view data_;
+  LoadProgress* progress_;
   std::size_t taken_ = 0;
   z_stream stream_{};
 };
 
 }  // namespace
 
-std::string inflate_gzip(const std::string& path, std::string_view data, std::size_t limit) {
-  return Inflater(path, data).run(limit);
+std::string inflate_gzip(const std::string& path, std::string_view data, std::size_t limit, LoadProgress* progress) {
+  return Inflater(path, data, progress).run(limit);
 }
 
-std::string load_file(const std::string& path) {
-  std::string bytes = read_bytes(path);
-  if (is_gzip(bytes)) return inflate_gzip(path, bytes, inflate_limit());
-  return bytes;
+std::string load_file(const std::string& path, LoadProgress* progress) {
+  std::string bytes = read_bytes(path, progress);
+  if (!is_gzip(bytes)) return bytes;
+  if (progress) progress->expect(kInflating * double(bytes.size()));
+  std::string inflated = inflate_gzip(path, bytes, inflate_limit(), progress);
+  if (progress) progress->expect(kParsing * (double(inflated.size()) - double(bytes.size())));
+  return inflated;
 }
 
 }  // namespace grelha

@@ -11,6 +11,7 @@
 #include "frontend/nearest.hpp"
 #include "frontend/options.hpp"
 #include "frontend/parse_error.hpp"
+#include "frontend/preparation.hpp"
 #include "frontend/progress.hpp"
 #include "frontend/ranks.hpp"
 #include "frontend/report.hpp"
@@ -47,6 +48,8 @@ int status_of(const Ranks& ranks, const Work& work) {
   };
   try {
     return work();
+  } catch (const Interrupted& stop) {
+    return fail(kSignalled + stop.signal, stop.what());
   } catch (const ParseError& error) {
     return fail(kBadInput, error.what());
   } catch (const FileError& error) {
@@ -141,6 +144,14 @@ void write_map(const std::string& path, const std::vector<T>& values, const Came
   write_image(path, image);
 }
 
+/// Of the picture a command makes, and what it is made of on the way.
+std::uint64_t picture_bytes(const RenderCommand& command, const Camera& camera) {
+  constexpr std::uint64_t kSums = 24, kRefined = 90;  // docs/architecture.md
+  const bool sums = !command.work.checkpoint.empty() || is_partial_name(command.image) || command.work.show_every > 0;
+  const std::uint64_t pixels = std::uint64_t(camera.width) * std::uint64_t(camera.height);
+  return pixels * (kPictureBytes + (sums ? kSums : 0) + (command.render.refine.on() ? kRefined : 0));
+}
+
 /// What of a command is for a rank that neither writes nor speaks.
 RenderCommand silent(RenderCommand command) {
   command.work.checkpoint.clear(), command.stats.clear();
@@ -156,7 +167,8 @@ int render_scene(const RenderCommand& given, Ranks& ranks) {
     if (!file.empty()) check_writable(file);
   RunReport report;
   const Stopwatch load;
-  SceneFile file = read_scene(command.scene, warn, command.input.read);
+  const bool bars = !command.quiet && stderr_is_terminal();
+  SceneFile file = load_scene(command.scene, warn, command.input.read, bars);
   const bool is_long = is_long_work(command, ranks);
   const std::string scene = is_long ? scene_digest(file) : "";
   RenderCommand prepared = command;
@@ -169,7 +181,7 @@ int render_scene(const RenderCommand& given, Ranks& ranks) {
   if (is_long) work.emplace(prepared, camera, scene, ranks, warn);
 
   const Stopwatch build;
-  const World world(file.scene, command.build);
+  const World world = build_world(command.scene, file.scene, command.build, picture_bytes(command, camera), bars);
   report.seconds.build = build.seconds();
 
   const Stopwatch render;
@@ -215,9 +227,12 @@ int run(const RenderCommand& command, Ranks& ranks) {
 }
 
 std::string info_of(const std::string& scene, const InfoCommand& command) {
-  const SceneFile file = read_scene(scene, warn, command.input.read);
-  const World world(file.scene, command.build);
-  return command.json ? info_json(file, world.grids()) : info_text(scene, file, world.grids());
+  const bool bars = stderr_is_terminal();
+  const SceneFile file = load_scene(scene, warn, command.input.read, bars);
+  const SceneMemory memory = memory_of(file, command.build, std::uint64_t(file.camera.width) * std::uint64_t(file.camera.height));
+  std::optional<std::vector<GridStats>> grids;
+  if (memory.peak - memory.scene < own_memory().left()) grids = build_world(scene, file.scene, command.build, 0, bars).grids();
+  return command.json ? info_json(file, memory, grids) : info_text(scene, file, memory, grids);
 }
 
 int run(const InfoCommand& command, const Ranks& ranks) {
@@ -225,8 +240,10 @@ int run(const InfoCommand& command, const Ranks& ranks) {
   const std::vector<std::string> scenes = scene_files(command.scenes);
   std::vector<std::pair<std::string, std::string>> found;
   int worst = kOk;
-  for (const std::string& scene : scenes)
+  for (const std::string& scene : scenes) {
+    if (worst >= kSignalled) return worst;
     worst = std::max(worst, status_of(ranks, [&] { return found.emplace_back(scene, info_of(scene, command)), kOk; }));
+  }
   std::string text;
   for (const auto& [scene, of_scene] : found) text += (text.empty() ? "" : "\n") + of_scene;
   print(command.json && scenes.size() > 1 ? info_json(found) : text);

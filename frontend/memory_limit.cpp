@@ -3,6 +3,10 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <cstdio>
+#include <limits>
+#include <memory>
+
 #if defined(__has_feature)  // clang
 #if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
 #define GRELHA_SANITIZED
@@ -24,6 +28,24 @@ bool memory_can_be_limited() {
 std::uint64_t machine_memory() {
   const long pages = sysconf(_SC_PHYS_PAGES), page_size = sysconf(_SC_PAGE_SIZE);
   return pages > 0 && page_size > 0 ? std::uint64_t(pages) * std::uint64_t(page_size) : 0;
+}
+
+namespace {
+
+/// Bytes that count against RLIMIT_DATA; 0 where the system does not say.
+std::uint64_t memory_owned() {
+  unsigned long long pages[6] = {};  // size, resident, shared, text, libraries, data
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen("/proc/self/statm", "r"), std::fclose);
+  if (!file || std::fscanf(file.get(), "%llu %llu %llu %llu %llu %llu", &pages[0], &pages[1], &pages[2], &pages[3], &pages[4], &pages[5]) != 6) return 0;
+  return pages[5] * std::uint64_t(sysconf(_SC_PAGE_SIZE));
+}
+
+}  // namespace
+
+OwnMemory own_memory() {
+  rlimit limit{};
+  const bool limited = memory_can_be_limited() && getrlimit(RLIMIT_DATA, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
+  return {limited ? std::uint64_t(limit.rlim_cur) : std::numeric_limits<std::uint64_t>::max(), memory_owned()};
 }
 
 // RLIMIT_DATA counts what a process can write and does not share, and, unlike RLIMIT_AS, not what malloc only reserves.

@@ -7,6 +7,13 @@ namespace grelha {
 /// Bytes of memory this machine has; 0: it does not say.
 std::uint64_t machine_memory();
 
+/// Bytes this process may own, and those it does; a limit no number reaches where there is none.
+struct OwnMemory {
+  std::uint64_t limit, owned;
+  std::uint64_t left() const { return limit - (owned < limit ? owned : limit); }
+};
+OwnMemory own_memory();
+
 /// False under sanitizers, which own more than any machine has.
 bool memory_can_be_limited();
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "frontend/load_progress.hpp"
 #include "frontend/nearest.hpp"
 #include "frontend/nff_input.hpp"
 #include "frontend/nff_lights.hpp"
@@ -18,14 +19,18 @@ namespace {
 
 class NffReader {
  public:
-  NffReader(const std::string& path, std::string_view text, const Warn& warn, const ReadOptions& options)
+  NffReader(const std::string& path, std::string_view text, const Warn& warn, const ReadOptions& options, LoadProgress* progress)
       : options_(options),
+        load_(progress),
+        progress_(progress, text.data()),
         folder_(std::filesystem::path(path).parent_path()),
         words_(path, text, text.starts_with("\xEF\xBB\xBF") ? 3 : 0, '#'),
         warnings_(warn),
         input_(words_, warnings_),
         build_(file_),
-        lights_(file_) {}
+        lights_(file_) {
+    file_.source_bytes = text.size();
+  }
 
   SceneFile read();
 
@@ -67,6 +72,8 @@ class NffReader {
   void read_spp(std::string_view keyword);
 
   ReadOptions options_;
+  LoadProgress* load_;
+  ParseProgress progress_;
   std::filesystem::path folder_;
   SceneFile file_;
   Words words_;
@@ -99,6 +106,7 @@ SceneFile NffReader::read() {
       lights_.finish();
       return std::move(file_);
     }
+    progress_.at(words_.cursor());
     if (read_entity(word))
       last_entity = word;
     else
@@ -229,6 +237,7 @@ std::vector<std::uint32_t> NffReader::mesh_corners(std::size_t faces, std::size_
   corners.reserve(3 * faces);
   const auto last = std::int64_t(vertices);
   for (std::size_t i = 0; i < 3 * faces; ++i) {
+    progress_.at(words_.cursor());
     const std::string_view word = words_.next();
     std::int64_t index = 0;
     if (!to_integer(word, index) || index == 0 || index > last || index < -last)
@@ -244,6 +253,7 @@ void NffReader::read_mesh(std::string_view keyword) {
   const std::size_t vertices = input_.count("the mesh's vertices", 6), faces = input_.count("the mesh's faces", 6);
   mesh.x.reserve(vertices), mesh.y.reserve(vertices), mesh.z.reserve(vertices);
   for (std::size_t i = 0; i < vertices; ++i) {
+    progress_.at(words_.cursor());
     const Float3 p = input_.point("the mesh's vertex");
     mesh.x.push_back(p.x), mesh.y.push_back(p.y), mesh.z.push_back(p.z);
   }
@@ -271,12 +281,14 @@ void NffReader::read_ply(std::string_view keyword) {
     throw ParseError(input_.position(name), "wanted a file in the scene's folder or below it (or --allow-outside), found " + quoted(name));
   std::string bytes;
   try {
-    bytes = load_file(path);
+    bytes = load_file(path, load_);
   } catch (const FileError& error) {
     const std::string reason = std::string(error.what()).substr(path.size() + std::string_view(": error: ").size());
     throw FileError(path, reason + " (named at " + input_.position(name).text() + ')');
   }
-  Mesh mesh = read_ply_mesh(path, bytes);
+  Mesh mesh = read_ply_mesh(path, bytes, load_);
+  file_.source_bytes = std::max<std::uint64_t>(file_.source_bytes, words_.size() + bytes.size());
+  std::string().swap(bytes);  // as large as what is made of it
   const std::size_t faces = mesh.face_count();
   const Triangles& triangles = file_.scene.geometry.triangles;
   constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max();
@@ -303,8 +315,8 @@ void NffReader::read_spp(std::string_view) {
 
 }  // namespace
 
-SceneFile read_nff(const std::string& path, std::string_view text, const Warn& warn, const ReadOptions& options) {
-  return NffReader(path, text, warn, options).read();
+SceneFile read_nff(const std::string& path, std::string_view text, const Warn& warn, const ReadOptions& options, LoadProgress* progress) {
+  return NffReader(path, text, warn, options, progress).read();
 }
 
 }  // namespace grelha

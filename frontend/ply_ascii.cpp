@@ -77,6 +77,7 @@ void PlyAscii::read(const PlyElement& element, const PlyPlan& plan, Mesh& mesh, 
       targets[i]->push_back(value);
     }
     end_row(element, row);
+    progress_.at(words_.cursor());
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <string_view>
 
+#include "frontend/load_progress.hpp"
 #include "frontend/ply_faces.hpp"
 #include "frontend/text.hpp"
 
@@ -11,8 +12,8 @@ namespace grelha {
 /// row has properties, the rest is dropped if there are lines enough left for the rows to come.
 class PlyAscii {
  public:
-  PlyAscii(const std::string& path, std::string_view bytes, const PlyHeader& header)
-      : words_(path, bytes, header.data_begin, '\0'), header_(header) {}
+  PlyAscii(const std::string& path, std::string_view bytes, const PlyHeader& header, LoadProgress* progress)
+      : words_(path, bytes, header.data_begin, '\0'), header_(header), progress_(progress, bytes.data()) {}
   void read(const PlyElement& element, const PlyPlan& plan, Mesh& mesh, PlyFaces& faces);
 
  private:
@@ -25,6 +26,7 @@ class PlyAscii {
 
   Words words_;
   const PlyHeader& header_;
+  ParseProgress progress_;
   Extra extra_ = Extra::kUnknown;
 };
 

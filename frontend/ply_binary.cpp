@@ -55,11 +55,12 @@ void append_column(PlyType type, const char* p, std::size_t stride, std::size_t 
 
 }  // namespace
 
-PlyBinary::PlyBinary(const std::string& path, std::string_view bytes, const PlyHeader& header)
+PlyBinary::PlyBinary(const std::string& path, std::string_view bytes, const PlyHeader& header, LoadProgress* progress)
     : path_(path),
       begin_(bytes.data()),
       end_(bytes.data() + bytes.size()),
       at_(bytes.data() + header.data_begin),
+      progress_(progress, bytes.data()),
       swap_((header.format == PlyFormat::kBigEndian) != (std::endian::native == std::endian::big)) {}
 
 void PlyBinary::fail(const char* at, const std::string& wanted, const std::string& found) const {
@@ -95,6 +96,7 @@ void PlyBinary::read_fixed(const PlyElement& element, const PlyPlan& plan, Mesh&
       append_column(element.properties[k].type, at_ + offsets[k], stride, rows, swap_, column(mesh, i));
     }
     at_ += rows * stride;
+    progress_.at(at_);
   }
 }
 
@@ -136,6 +138,7 @@ void PlyBinary::read_rows(const PlyElement& element, const PlyPlan& plan, Mesh& 
       const char* const p = take(size_of(property.type), element, row);
       if (targets[i]) append_column(property.type, p, 0, 1, swap_, *targets[i]);
     }
+    progress_.at(at_);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <string_view>
 
+#include "frontend/load_progress.hpp"
 #include "frontend/ply_faces.hpp"
 #include "frontend/parse_error.hpp"
 
@@ -10,7 +11,7 @@ namespace grelha {
 /// Rows of a binary file of either byte order. Nothing is read before it is known to lie in the file.
 class PlyBinary {
  public:
-  PlyBinary(const std::string& path, std::string_view bytes, const PlyHeader& header);
+  PlyBinary(const std::string& path, std::string_view bytes, const PlyHeader& header, LoadProgress* progress);
   void read(const PlyElement& element, const PlyPlan& plan, Mesh& mesh, PlyFaces& faces);
 
  private:
@@ -22,6 +23,7 @@ class PlyBinary {
 
   const std::string& path_;
   const char *begin_, *end_, *at_;
+  ParseProgress progress_;
   bool swap_;  ///< the file's byte order is not the machine's
 };
 

@@ -64,6 +64,8 @@ Mesh read_rows(const PlyHeader& header, std::size_t bytes, Rows& rows) {
     PlyPlan plan;
     if (element.name == "vertex") plan = plan_vertex(element);
     if (element.name == "face" || is_strips) plan = plan_faces(element);
+    for (int i = 0; i < 6; ++i)
+      if (plan.columns[i] >= 0) column(mesh, i).reserve(std::size_t(element.count));
     if (element.name == "face") mesh.corners.reserve(likely_corners(header, element, plan.list, bytes));
     rows.read(element, plan, mesh, is_strips ? strips : polygons);
   }
@@ -72,13 +74,13 @@ Mesh read_rows(const PlyHeader& header, std::size_t bytes, Rows& rows) {
 
 }  // namespace
 
-Mesh read_ply_mesh(const std::string& path, std::string_view bytes) {
+Mesh read_ply_mesh(const std::string& path, std::string_view bytes, LoadProgress* progress) {
   const PlyHeader header = read_ply_header(path, bytes);
   if (header.format == PlyFormat::kAscii) {
-    PlyAscii rows(path, bytes, header);
+    PlyAscii rows(path, bytes, header, progress);
     return read_rows(header, bytes.size(), rows);
   }
-  PlyBinary rows(path, bytes, header);
+  PlyBinary rows(path, bytes, header, progress);
   return read_rows(header, bytes.size(), rows);
 }
 

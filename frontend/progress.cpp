@@ -43,7 +43,7 @@ void ProgressBar::update(double share) {
   drawn_ = true;
   const std::chrono::duration<double> elapsed = now - start_;
   const double as_from_zero = share > first_ ? elapsed.count() * share / (share - first_) : 0;
-  std::fprintf(stderr, "\r%s\033[K", progress_text(share, as_from_zero).c_str());
+  std::fprintf(stderr, "\r%-6s %s\033[K", name_, progress_text(share, as_from_zero).c_str());
 }
 
 bool stderr_is_terminal() { return isatty(STDERR_FILENO) == 1; }

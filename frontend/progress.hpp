@@ -11,8 +11,8 @@ std::string progress_text(double share, double elapsed_s);
 /// A bar on stderr that redraws itself in place a few times a second, and wipes itself off at the end.
 class ProgressBar {
  public:
-  /// `share`: done before it began.
-  explicit ProgressBar(bool shown, double share = 0) : shown_(shown), first_(share) {}
+  /// `share`: done before it began. `name`: of what is done.
+  explicit ProgressBar(bool shown, double share = 0, const char* name = "render") : shown_(shown), first_(share), name_(name) {}
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
@@ -23,6 +23,7 @@ class ProgressBar {
   using Clock = std::chrono::steady_clock;
   const bool shown_;
   const double first_;
+  const char* const name_;
   bool drawn_ = false;
   const Clock::time_point start_ = Clock::now();
   Clock::time_point last_ = start_;

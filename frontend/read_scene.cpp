@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "frontend/default_view.hpp"
+#include "frontend/load_progress.hpp"
 #include "frontend/nff_reader.hpp"
 #include "frontend/ply_reader.hpp"
 #include "frontend/scene_builder.hpp"
@@ -36,9 +37,11 @@ void refuse_placeholders(const std::string& path, std::string_view bytes) {
     throw ParseError(start, "wanted a scene, found a Git LFS pointer: the file it stands for was not downloaded");
 }
 
-SceneFile read_mesh_alone(const std::string& path, std::string_view bytes) {
+SceneFile read_mesh_alone(const std::string& path, std::string bytes, LoadProgress& progress) {
   SceneFile file;
-  Mesh mesh = read_ply_mesh(path, bytes);
+  file.source_bytes = bytes.size();
+  Mesh mesh = read_ply_mesh(path, bytes, &progress);
+  std::string().swap(bytes);  // as large as what is made of it
   file.counts.ply = mesh.face_count();
   file.scene.materials.push_back(default_mesh_material());
   SceneBuilder(file).mesh(std::move(mesh), 0);
@@ -57,9 +60,11 @@ void warn_of_dropped(const std::string& path, const Dropped& dropped, const Warn
 }  // namespace
 
 SceneFile read_scene(const std::string& path, const Warn& warn, const ReadOptions& options) {
-  const std::string bytes = load_file(path);
+  LoadProgress progress(options.progress);
+  std::string bytes = load_file(path, &progress);
   refuse_placeholders(path, bytes);
-  SceneFile file = is_ply(path, bytes) ? read_mesh_alone(path, bytes) : read_nff(path, bytes, warn, options);
+  SceneFile file = is_ply(path, bytes) ? read_mesh_alone(path, std::move(bytes), progress) : read_nff(path, bytes, warn, options, &progress);
+  progress.finish();
   warn_of_dropped(path, file.dropped, warn);
   return file;
 }

@@ -170,7 +170,7 @@ std::string stats_json(const RenderCommand& command, const RunReport& report) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
-std::string info_json(const SceneFile& file, const std::vector<GridStats>& grids) {
+std::string info_json(const SceneFile& file, const SceneMemory& memory, const std::optional<std::vector<GridStats>>& grids) {
   const Geometry& geometry = file.scene.geometry;
   Json json;
   json["scene"] = to_json(file.counts);
@@ -180,7 +180,8 @@ std::string info_json(const SceneFile& file, const std::vector<GridStats>& grids
   json["dropped"] = {{"not_finite", file.dropped.not_finite}, {"zero_area", file.dropped.zero_area}};
   json["resolution"] = {file.camera.width, file.camera.height};
   json["bounds"] = to_json(bounds_of(geometry));
-  json["grids"] = to_json(grids);
+  json["memory"] = {{"scene", memory.scene}, {"grids", memory.grids}, {"peak", memory.peak}};
+  json["grids"] = grids ? to_json(*grids) : nullptr;
   for (const auto& [name, needed] : listed(needs_of(file))) json["needs"][name] = needed;
   json["made_up"] = {{"camera", file.default_camera}, {"light", file.default_light}};
   return json.dump(2) + '\n';
@@ -192,7 +193,8 @@ std::string info_json(const std::vector<std::pair<std::string, std::string>>& of
   return all.dump(2) + '\n';
 }
 
-std::string info_text(const std::string& path, const SceneFile& file, const std::vector<GridStats>& grids) {
+std::string info_text(const std::string& path, const SceneFile& file, const SceneMemory& memory,
+                      const std::optional<std::vector<GridStats>>& grids) {
   const Geometry& g = file.scene.geometry;
   std::string text = path + ": " + std::to_string(file.camera.width) + 'x' + std::to_string(file.camera.height) + '\n';
   list_entities(text, file.counts);
@@ -205,7 +207,10 @@ std::string info_text(const std::string& path, const SceneFile& file, const std:
   text += "materials     " + std::to_string(file.counts.materials) + '\n';
   if (const SceneBounds bounds = bounds_of(g); !bounds.empty)
     text += "bounds        " + point_text(bounds.low) + " to " + point_text(bounds.high) + '\n';
-  for (const GridStats& grid : grids)
+  text += print("memory        about %.1f MB to render: scene %.1f, grids %.1f, the rest to read, build and draw\n", double(memory.peak) / 1e6, double(memory.scene) / 1e6,
+                double(memory.grids) / 1e6);
+  if (!grids) text += "grid          not built: it would take more memory than there may be (--max-memory)\n";
+  for (const GridStats& grid : grids.value_or(std::vector<GridStats>{}))
     text += print("grid          %u x %u x %u cells, %llu occupied, %llu references, %.1f MB\n", grid.cells[0],
                   grid.cells[1], grid.cells[2], static_cast<unsigned long long>(grid.occupied),
                   static_cast<unsigned long long>(grid.references), double(grid.bytes) / 1e6);

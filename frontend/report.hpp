@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,6 +31,12 @@ struct RunReport {
   std::size_t geometry_bytes = 0, grid_bytes = 0;
 };
 
+/// Bytes that rendering a scene will take, by an estimate.
+struct SceneMemory {
+  std::uint64_t scene = 0, grids = 0;  ///< while it is rendered
+  std::uint64_t peak = 0;              ///< at most, be it while reading, building or rendering
+};
+
 /// Which parts of a renderer a scene calls for, from what its primitives use: an unused material asks for nothing.
 struct Needs {
   bool spheres = false, triangles = false, cones = false, planes = false;
@@ -51,10 +58,11 @@ struct SceneBounds {
 SceneBounds bounds_of(const Geometry& geometry);
 
 std::string stats_json(const RenderCommand& command, const RunReport& report);
-std::string info_json(const SceneFile& file, const std::vector<GridStats>& grids);
+/// `grids`: absent when they were not built.
+std::string info_json(const SceneFile& file, const SceneMemory& memory, const std::optional<std::vector<GridStats>>& grids);
 /// JSON of several scenes as one object, by file.
 std::string info_json(const std::vector<std::pair<std::string, std::string>>& of_files);
-std::string info_text(const std::string& path, const SceneFile& file, const std::vector<GridStats>& grids);
+std::string info_text(const std::string& path, const SceneFile& file, const SceneMemory& memory, const std::optional<std::vector<GridStats>>& grids);
 std::string summary_line(const RenderCommand& command, const RunReport& report);
 
 }  // namespace grelha

@@ -48,6 +48,7 @@ struct SceneFile {
   std::string accelerator;    ///< `accel` hint as written, or empty
   int samples_per_pixel = 0;  ///< `spp` hint, 0: none
   std::string environment;    ///< `env` folder as written, or empty
+  std::uint64_t source_bytes = 0;  ///< of text, or whatever was parsed, that stood in memory at once
   bool default_camera = false, default_light = false;  ///< made up, for a bare PLY
 };
 
@@ -56,6 +57,8 @@ using Warn = std::function<void(const std::string&)>;
 
 struct ReadOptions {
   bool allow_outside = false;  ///< a scene may name files outside its own folder
+  /// Told the share done, 0 to 1, never less than before; returns false to have reading throw Stopped.
+  std::function<bool(double)> progress{};
 };
 
 /// Reads .nff, .p3f or .ply, each also with .gz behind it (told apart by the extension; gzip by its first bytes).

@@ -9,12 +9,15 @@
 
 namespace grelha {
 
+class LoadProgress;
+
 /// The whole file; gzip data (told by their first two bytes) come back inflated.
 /// Throws FileError when it cannot be read, ParseError when the gzip data are broken or inflate beyond reason.
-std::string load_file(const std::string& path);
+/// `progress` is told of what is read, and of what parsing it will be.
+std::string load_file(const std::string& path, LoadProgress* progress = nullptr);
 
 /// Inflates gzip data of one or more members; `path` is for messages. Refuses to grow past `limit` bytes.
-std::string inflate_gzip(const std::string& path, std::string_view data, std::size_t limit);
+std::string inflate_gzip(const std::string& path, std::string_view data, std::size_t limit, LoadProgress* progress = nullptr);
 
 /// A whole word as a number: decimal, with or without sign and exponent, inf or nan. Too large becomes infinite, too
 /// small zero. False when the word is anything else ("1.5.2", "0x10", "").
@@ -47,6 +50,7 @@ class Words {
   std::string_view rest_of_line();  ///< up to the comment or line end, trimmed; consumes it
 
   std::size_t bytes_left() const { return std::size_t(end_ - at_); }
+  std::size_t size() const { return std::size_t(end_ - begin_); }
   const char* cursor() const { return at_; }
   const std::string& file() const { return file_; }
 

@@ -203,6 +203,25 @@ TEST_F(LongWork, ACheckpointOfAnotherKindIsLeftAlone) {
   EXPECT_EQ(folder_.read("kept"), bad);
 }
 
+TEST_F(LongWork, SignalsStopReadingAndBuilding) {
+  ASSERT_EQ(run("scene terrain --size 40 -o t.nff").status, 0);  // 820,000 triangles: some .1 s each
+  bool seen[2] = {};
+  Outcome outcome;
+  for (double seconds = .01; (outcome = run("render t.nff --quiet --size 8x8", "timeout --preserve-status -s INT " + std::to_string(seconds))).status != 0;
+       seconds *= 1.4) {
+    ASSERT_EQ(outcome.status, 130) << outcome.err;
+    const bool reading = outcome.err == "grelha: stopped by SIGINT while reading t.nff\n";
+    const bool building = outcome.err == "grelha: stopped by SIGINT while building the grids of t.nff\n";
+    EXPECT_TRUE(reading || building || outcome.err.empty()) << outcome.err;  // nothing said: it had not begun, or was rendering
+    seen[0] |= reading, seen[1] |= building;
+  }
+  EXPECT_TRUE(seen[0] && seen[1]);
+  EXPECT_EQ(folder_.list(), "ball.nff t.nff t.ply t.png");
+  const Outcome info = run("info t.nff t.nff", "timeout --preserve-status -s TERM .03");
+  EXPECT_EQ(info.status, 143);
+  EXPECT_LE(std::count(info.err.begin(), info.err.end(), '\n'), 1) << "the second is not begun: " << info.err;
+}
+
 TEST_F(LongWork, ACheckpointOfAnotherPictureIsLeftAlone) {
   ASSERT_EQ(run("render ball.nff --rows 0:8 -o kept.grelha").status, 0);
   const std::string bytes = folder_.read("kept.grelha"), advice = ": name another file, or remove this one to begin again";

@@ -2,6 +2,8 @@
 grelha_test(text unit grelha::frontend)
 find_package(ZLIB REQUIRED)
 target_link_libraries(text_test PRIVATE ZLIB::ZLIB)
+grelha_test(loading unit grelha::frontend grelha::scenes)
+target_link_libraries(loading_test PRIVATE ZLIB::ZLIB)
 grelha_test(polygon unit grelha::frontend)
 grelha_test(nff_reader unit grelha::frontend)
 grelha_test(ply_reader unit grelha::frontend)

@@ -151,31 +151,35 @@ TEST(Info, JsonSaysWhatTheSceneHolds) {
   file.counts = {.s = 1, .lights = 2, .materials = 1};
   file.dropped = {3, 4};
   file.camera.width = 640;
-  const Json json = Json::parse(info_json(file, {}));
+  const Json json = Json::parse(info_json(file, {1, 2, 3}, std::vector<GridStats>{}));
   EXPECT_EQ(keys(json),
-            (std::set<std::string>{"scene", "kernel", "dropped", "resolution", "bounds", "grids", "needs", "made_up"}));
+            (std::set<std::string>{"scene", "kernel", "dropped", "resolution", "bounds", "memory", "grids", "needs", "made_up"}));
   EXPECT_EQ(json["scene"]["s"], 1);
   EXPECT_EQ(json["kernel"]["spheres"], 1);
   EXPECT_EQ(json["dropped"], Json::parse(R"({"not_finite":3,"zero_area":4})"));
   EXPECT_EQ(json["resolution"], Json::parse("[640,512]"));
   EXPECT_EQ(json["bounds"], Json::parse(R"({"min":[0.5,1.5,2.5],"max":[1.5,2.5,3.5]})"));
   EXPECT_EQ(json["grids"], Json::array());
+  EXPECT_TRUE(Json::parse(info_json(file, {}, {}))["grids"].is_null()) << "not built";
+  EXPECT_EQ(json["memory"], Json::parse(R"({"scene":1,"grids":2,"peak":3})"));
   EXPECT_EQ(json["needs"]["refraction"], true);
   EXPECT_EQ(json["needs"]["cones"], false);
 }
 
-TEST(Info, NothingHasNoBounds) { EXPECT_TRUE(Json::parse(info_json({}, {}))["bounds"].is_null()); }
+TEST(Info, NothingHasNoBounds) { EXPECT_TRUE(Json::parse(info_json({}, {}, {}))["bounds"].is_null()); }
 
 TEST(Info, TextListsTheSame) {
   SceneFile file = one_ball(material_with([](Material& m) { m.mirror = {1, 1, 1}; }));
   file.counts = {.s = 1, .lights = 2, .materials = 1};
-  EXPECT_EQ(info_text("x.nff", file, {{{2, 3, 4}, 5, 6, 7}}),
+  const SceneMemory memory{100000, 200000, 1250000};
+  EXPECT_EQ(info_text("x.nff", file, memory, std::vector<GridStats>{{{2, 3, 4}, 5, 6, 7}}),
             "x.nff: 512x512\n"
             "in the file   1 s\n"
             "primitives    1 sphere\n"
             "lights        2\n"
             "materials     1\n"
             "bounds        (0.5, 1.5, 2.5) to (1.5, 2.5, 3.5)\n"
+            "memory        about 1.2 MB to render: scene 0.1, grids 0.2, the rest to read, build and draw\n"
             "grid          2 x 3 x 4 cells, 5 occupied, 6 references, 0.0 MB\n"
             "needs         spheres, reflection\n");
 }

@@ -1,0 +1,33 @@
+#pragma once
+// From a file to what rays need, with a bar to look at, an end when a signal asks for it, and no more memory than there may be.
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+
+#include "frontend/options.hpp"
+#include "frontend/report.hpp"
+#include "frontend/scene_file.hpp"
+#include "kernel/render.hpp"
+
+namespace grelha {
+
+inline constexpr std::uint64_t kPictureBytes = 12;  ///< a pixel: three floats
+
+/// SIGINT or SIGTERM came while a scene was read or built. what() is one line.
+struct Interrupted : std::runtime_error {
+  Interrupted(int number, const std::string& during);
+  int signal;
+};
+
+/// read_scene() with `shown`, a bar on stderr. Throws Interrupted.
+SceneFile load_scene(const std::string& path, const Warn& warn, const ReadOptions& options, bool shown);
+
+/// The grids of a scene that `later` more bytes are wanted for. Throws Interrupted, and FileError (in the scene's name) when by its
+/// estimate it would take more than there may be.
+World build_world(const std::string& path, const Scene& scene, const BuildOptions& options, std::uint64_t later, bool shown);
+
+/// What rendering a scene as a picture of so many pixels, one sample each, takes.
+SceneMemory memory_of(const SceneFile& file, const BuildOptions& options, std::uint64_t pixels);
+
+}  // namespace grelha
