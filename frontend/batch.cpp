@@ -34,11 +34,6 @@ Names files_of(const std::string& folder) {
   return files;
 }
 
-bool is_folder(const std::string& path) {
-  std::error_code ignored;
-  return path.ends_with('/') || fs::is_directory(path, ignored);
-}
-
 constexpr std::string_view kPlace = "{}";
 
 /// `pattern` with the scene's name in place of {}.

@@ -268,7 +268,7 @@ void add_render(CLI::App& app, RenderCommand& command) {
   positionals(sub, "SCENE", command.scenes, "scene files, or folders of them");
   value(sub, "-o,--output", "FILE", ".png, .hdr, .pfm (linear floats), .grelha (to merge), or a folder; {} in it is SCENE's name [{}.png]",
         [&command](const std::string& text) {
-          if (!text.ends_with('/') && !std::filesystem::is_directory(text)) want_output_name(text);
+          if (!is_folder(text)) want_output_name(text);
           command.image = text;
         });
   value(sub, "--size", "WxH", "pixels [as the scene says]",
@@ -376,14 +376,21 @@ void want_known_command(const CLI::App& app, const std::string& word) {
   throw UsageError("command: wanted one of " + commands + ", found \"" + word + '"' + did_you_mean(word, names));
 }
 
+/// The same for all ways to write one path, as far as the file system can be asked.
+std::filesystem::path whole_path(const std::string& path) {
+  std::error_code error;
+  const std::filesystem::path absolute = std::filesystem::absolute(path, error);
+  const std::filesystem::path whole = std::filesystem::weakly_canonical(absolute, error);
+  return error ? absolute.lexically_normal() : whole;
+}
+
 void check_long_work(const RenderCommand& command) {
   const LongWork& w = command.work;
   const bool sums = !command.render.refine.on() && !command.effects.adaptive.on, part_file = is_partial_name(command.image);
   if (!sums && (w.is_part() || part_file))
     throw UsageError("parts are of pictures with as many samples in every pixel: no --error, --time or --aa adaptive");
   if (w.is_part() && !part_file) refuse("-o", "a name ending in .grelha for a part of a picture", command.image);
-  const auto whole_name = [](const std::string& path) { return std::filesystem::weakly_canonical(std::filesystem::absolute(path)); };
-  if (!w.checkpoint.empty() && whole_name(w.checkpoint) == whole_name(command.image))
+  if (!w.checkpoint.empty() && whole_path(w.checkpoint) == whole_path(command.image))
     throw UsageError("--checkpoint and -o: wanted two files, found \"" + command.image + "\" twice");
   if (part_file && w.show_every > 0) throw UsageError("--preview wants a picture to write, not a .grelha");
   if (part_file && command.srgb) throw UsageError("--srgb: a .grelha holds no colours for a screen, say it to merge");
@@ -458,6 +465,11 @@ TextCommand asked_help(const CLI::App& app, bool all) {
 }
 
 }  // namespace
+
+bool is_folder(const std::string& path) {
+  std::error_code ignored;
+  return path.ends_with('/') || std::filesystem::is_directory(path, ignored);
+}
 
 std::string default_image(const std::string& scene) {
   std::filesystem::path name = std::filesystem::path(scene).filename();

@@ -84,6 +84,9 @@ using Command = std::variant<RenderCommand, InfoCommand, CompareCommand, MergeCo
 /// Throws UsageError.
 Command parse_command(int argc, const char* const* argv);
 
+/// Whether a path names a folder, there already or, by a / at its end, meant to be. What cannot be looked at is none.
+bool is_folder(const std::string& path);
+
 /// `dir/x.nff.gz` gives `x.png`: the picture lies in the current folder.
 std::string default_image(const std::string& scene);
 

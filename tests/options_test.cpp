@@ -4,6 +4,7 @@
 #include "frontend/help.hpp"
 #include "frontend/nearest.hpp"
 #include "frontend/progress.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
 
@@ -248,6 +249,18 @@ TEST(Errors, SayWhatWasWantedAndFound) {
       {"scene balls --size x", "--size: wanted a whole number from 0 to 1000, found \"x\""},
   };
   for (const auto& [line, message] : table) EXPECT_EQ(error_of(line), message) << line;
+}
+
+/// Of names that the system refuses to look at: the message is ours, or they are left to whoever opens them.
+TEST(Errors, NamesThatCannotBeLookedAt) {
+  const TemporaryFolder folder;
+  const std::string loop = folder.file("loop"), inside = loop + "/x", far(5000, 'x');
+  std::filesystem::create_symlink("loop", loop);
+  EXPECT_EQ(error_of("render a -o " + inside), "-o: wanted a name ending in .png, .hdr, .pfm or .grelha, found \"" + inside + '"');
+  EXPECT_EQ(error_of("render a -o " + far), "-o: wanted a name ending in .png, .hdr, .pfm or .grelha, found \"" + far + '"');
+  EXPECT_EQ(error_of("render a -o " + inside + ".png --checkpoint " + inside), "no error");
+  EXPECT_EQ(error_of("render a -o " + inside + ".png --checkpoint " + loop + "/./x.png"), "--checkpoint and -o: wanted two files, found \"" + inside + ".png\" twice");
+  EXPECT_EQ(error_of("render a -o " + far + ".png --checkpoint " + far), "no error");
 }
 
 TEST(Nearest, CountsEdits) {
