@@ -276,6 +276,7 @@ bool NffReader::is_outside(const std::string& path) const {
 void NffReader::read_ply(std::string_view keyword) {
   const std::string_view name = words_.rest_of_line();
   if (name.empty()) throw ParseError(input_.position(name), "a file name after \"ply\"", "end of line");
+  if (name.find('\0') != name.npos) input_.fail(name, "a file name after \"ply\"");  // the system would read no further, checks would
   const std::string path = (folder_ / std::string(name)).string();
   if (!options_.allow_outside && is_outside(path))
     throw ParseError(input_.position(name), "wanted a file in the scene's folder or below it (or --allow-outside), found " + quoted(name));

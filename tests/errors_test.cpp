@@ -64,6 +64,7 @@ TEST(Errors, Entities) {
           {v + "mesh 3 999999999999\n0 0 0 1 0 0 0 1 0\n",
            ":8:8: error: wanted at most 3 for the mesh's faces (the file ends before), found \"999999999999\""},
           {v + "spp x", ":8:5: error: wanted a whole number of samples per pixel, found \"x\""},
+          {v + std::string("ply a\0b.ply\n", 12), ":8:5: error: wanted a file name after \"ply\", found \"a?b.ply\""},
           {v + "ply # none\n", ":8:5: error: wanted a file name after \"ply\", found end of line"},
       });
 }
