@@ -63,7 +63,7 @@ class Joiner {
   void take(const std::string& file, const Partial& p) {
     const Accumulator& a = p.sums;
     if (parts_.empty()) begin(p);
-    else want_same(file, p.identity);
+    else want_same(file, p);
     if (!is_complete(a)) throw UsageError(file + " is not finished, " + percent(share_done(a)) + " are done: the command that made it goes on");
     for (std::size_t i = 0; i < parts_.size(); ++i) {
       const Part both{common(a.part.rows, parts_[i].rows), common(a.part.samples, parts_[i].samples)};
@@ -80,10 +80,14 @@ class Joiner {
     joined_.sums.sums.resize(std::size_t(a.height) * std::size_t(a.width) * 3);
   }
 
-  void want_same(const std::string& file, const Identity& identity) const {
+  void want_same(const std::string& file, const Partial& p) const {
+    const Identity& identity = p.identity;
+    const Accumulator &a = p.sums, &first = joined_.sums;
     if (identity.scene != joined_.identity.scene) throw UsageError(file + " is of another scene than " + files_.front());
     if (identity.settings != joined_.identity.settings)
       throw UsageError(file + " has " + difference(identity.settings, joined_.identity.settings) + " as " + files_.front());
+    if (a.width != first.width || a.height != first.height || a.samples != first.samples)  // whatever the settings claim
+      throw UsageError(file + " is of a picture of another size than " + files_.front());
   }
 
   /// Of the sums of the whole picture those of `part`.

@@ -210,9 +210,11 @@ TEST_F(Merge, RefusesOtherPictures) {
   p = part_of({5, 10}, {0, 8}), p.identity.settings = "seed=1 depth=5", put("seed", p);
   p = part_of({5, 10}, {0, 8}), p.identity.settings = "seed=0 depth=5 shadows=2", put("shadows", p);
   p = part_of({5, 10}, {0, 8}), p.sums.done[0] = 0, put("begun", p);
+  p = part_of({5, 10}, {0, 8}), p.sums.width = 1, p.sums.sums.resize(15), put("narrow", p);
   EXPECT_EQ(complaint({"a", "scene"}), "scene is of another scene than a");
   EXPECT_EQ(complaint({"a", "seed"}), "seed has seed=1, not seed=0 as a");
   EXPECT_EQ(complaint({"a", "shadows"}), "shadows has shadows=2, not nothing as a");
+  EXPECT_EQ(complaint({"a", "narrow"}), "narrow is of a picture of another size than a");
   EXPECT_EQ(complaint({"a", "begun"}), "begun is not finished, 0 % are done: the command that made it goes on");
   EXPECT_EQ(complaint({"a", "gone"}), "gone: error: cannot open: No such file or directory");
 }
