@@ -25,10 +25,13 @@ std::size_t first_sum(const Accumulator& a, int row) {
   return static_cast<std::size_t>(row - a.part.rows.begin) * static_cast<std::size_t>(a.width) * 3;
 }
 
+/// Sums that a file made up may be of any size: adding these wraps around.
+std::int64_t wrapped_sum(std::int64_t a, std::int64_t b) { return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) + static_cast<std::uint64_t>(b)); }
+
 void add_rows(Accumulator& to, const Range& rows, const std::int64_t* sums) {
   std::int64_t* const out = to.sums.data() + first_sum(to, rows.begin);
   const std::size_t n = static_cast<std::size_t>(size(rows)) * static_cast<std::size_t>(to.width) * 3;
-  for (std::size_t i = 0; i < n; ++i) out[i] += sums[i];
+  for (std::size_t i = 0; i < n; ++i) out[i] = wrapped_sum(out[i], sums[i]);
 }
 
 [[noreturn]] void refuse(const char* what, const Range& r, int most) {
