@@ -190,7 +190,7 @@ std::string info_json(const SceneFile& file, const SceneMemory& memory, const st
 std::string info_json(const std::vector<std::pair<std::string, std::string>>& of_files) {
   Json all;
   for (const auto& [file, text] : of_files) all[file] = Json::parse(text);
-  return all.dump(2) + '\n';
+  return all.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';  // a file may have a name that is no Unicode
 }
 
 std::string info_text(const std::string& path, const SceneFile& file, const SceneMemory& memory,

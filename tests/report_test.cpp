@@ -166,6 +166,12 @@ TEST(Info, JsonSaysWhatTheSceneHolds) {
   EXPECT_EQ(json["needs"]["cones"], false);
 }
 
+/// A file's name is bytes, JSON is Unicode.
+TEST(Info, NamesOfAnyBytes) {
+  const Json json = Json::parse(info_json({{"\xFF.nff", info_json(SceneFile{}, {}, {})}, {"b.nff", info_json(SceneFile{}, {}, {})}}));
+  EXPECT_TRUE(json.contains("\xEF\xBF\xBD.nff") && json.contains("b.nff"));
+}
+
 TEST(Info, NothingHasNoBounds) { EXPECT_TRUE(Json::parse(info_json({}, {}, {}))["bounds"].is_null()); }
 
 TEST(Info, TextListsTheSame) {

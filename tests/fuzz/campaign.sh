@@ -1,28 +1,43 @@
 #!/bin/sh
-# campaign.sh BUILD NAME CPU-MINUTES [FOLDER]: fuzzes one target (nff, ply, partial, options) until it has had so many minutes of a
-# processor, in turns of five minutes by the clock, or finds a fault, which it leaves in FOLDER (/tmp/grelha-fuzz-NAME). New inputs gather in
-# FOLDER/corpus, so that a campaign goes on where the last one ended; tests/fuzz/corpus is only read. With each turn it prints what
-# libFuzzer counts at its end.
+# campaign.sh BUILD MINUTES FOLDER [NAME...]: fuzzes the targets (nff ply partial options) in turns of five minutes by the clock, one at a
+# time, until each has had so many minutes of a processor. A target that finds a fault gets no further turn; the input lies in FOLDER/NAME.
+# New inputs gather in FOLDER/NAME/corpus (tests/fuzz/corpus is only read) and minutes in FOLDER/NAME/spent, so that a campaign that was
+# stopped goes on: begin in a fresh FOLDER, or remove `spent`, to count anew for code that was mended.
 set -eu
-build=$1 name=$2 minutes=$3 out=${4:-/tmp/grelha-fuzz-$2}
-here=$(cd "$(dirname "$0")" && pwd)
-mkdir -p "$out/corpus"
-export UBSAN_OPTIONS=print_stacktrace=1 ASAN_OPTIONS=allocator_may_return_null=0
-spent=0
-count() {  # count(): sets `spent` to the seconds of a processor that children of this shell have had
+build=$(cd "$1" && pwd) minutes=$2
+mkdir -p "$3"
+out=$(cd "$3" && pwd) here=$(cd "$(dirname "$0")" && pwd)
+shift 3
+[ $# -gt 0 ] || set -- nff ply partial options
+export UBSAN_OPTIONS=print_stacktrace=1
+
+children() {  # children(): sets `had` to the seconds of a processor that children of this shell have had
   times >"$out/times"  # not in a pipe: that would be another shell
-  spent=$(tail -1 "$out/times" | awk '{ for (i = 1; i <= 2; ++i) { split($i, t, /[ms]/); s += 60 * t[1] + t[2] } printf "%d\n", s }')
+  had=$(tail -1 "$out/times" | awk '{ for (i = 1; i <= 2; ++i) { split($i, t, /[ms]/); s += 60 * t[1] + t[2] } printf "%d\n", s }')
 }
-turn=0
-while [ "$spent" -lt $((60 * minutes)) ]; do
-  turn=$((turn + 1))
-  nice -n 19 "$build/tests/fuzz/fuzz_$name" "$out/corpus" "$here/corpus/$name" -dict="$here/$name.dict" -artifact_prefix="$out/" \
-    -max_len=4096 -timeout=10 -rss_limit_mb=2048 -max_total_time=300 -print_final_stats=1 >"$out/turn-$turn.log" 2>&1 || {
-    count
-    tail -40 "$out/turn-$turn.log"
-    echo "$name: a fault after $spent s; the input is in $out"
-    exit 1
-  }
-  count
-  echo "turn $turn, $spent s: $(grep -E '^#.* DONE' "$out/turn-$turn.log" | tail -1) $(grep -h stat::number_of_executed_units "$out/turn-$turn.log")"
+
+turn() {  # turn() NAME: one turn; what it took is added to the file `spent`, as seconds and executions
+  children
+  before=$had status=0
+  nice -n 19 "$build/tests/fuzz/fuzz_$1" "$out/$1/corpus" "$here/corpus/$1" -dict="$here/$1.dict" -artifact_prefix="$out/$1/" \
+    -max_len=4096 -timeout=10 -rss_limit_mb=2048 -max_total_time=300 -print_final_stats=1 >"$out/$1/log" 2>&1 || status=$?
+  children
+  runs=$(awk '/stat::number_of_executed_units/ { print $2 }' "$out/$1/log")
+  echo "$((had - before)) ${runs:-0}" >>"$out/$1/spent"
+  echo "$1: $(awk '{ s += $1; n += $2 } END { print s " s, " n " executions" }' "$out/$1/spent"), $(grep -o 'cov: .* corp: [^ ]*' "$out/$1/log" | tail -1)"
+  [ "$status" -eq 0 ] && return
+  cp "$out/$1/log" "$out/$1/fault"
+  grep -E 'ERROR|runtime error|what\(\)|broken promise' "$out/$1/fault" || true
+  echo "$1: a fault, see $out/$1/fault"
+}
+
+left=yes
+while [ -n "$left" ]; do
+  left=
+  for name in "$@"; do
+    mkdir -p "$out/$name/corpus" && touch "$out/$name/spent"
+    [ ! -e "$out/$name/fault" ] && [ "$(awk '{ s += $1 } END { print s + 0 }' "$out/$name/spent")" -lt $((60 * minutes)) ] || continue
+    left=yes
+    turn "$name"
+  done
 done
