@@ -47,37 +47,33 @@ std::optional<Part> first_gap(const std::vector<Part>& parts, const Part& whole)
 
 std::string percent(double share) { return std::to_string(int(share * 100)) + " %"; }
 
+/// Reads every file twice: nothing is allocated before it is known that the parts fill it, so that a small file which claims to be of
+/// a huge picture takes no more than a small file's memory.
 class Joiner {
  public:
   explicit Joiner(const std::vector<std::string>& files) : files_(files) {}
 
   Partial run() {
-    for (const std::string& file : files_) take(file, read_partial(file));
+    for (const std::string& file : files_) look_at(file, read_partial(file));
     Part whole = parts_.front();
     for (const Part& p : parts_) widen(whole.rows, p.rows), widen(whole.samples, p.samples);
     if (const auto gap = first_gap(parts_, whole)) throw UsageError("no part has " + part_text(*gap));
-    return cut(whole);
+    begin(whole);
+    for (std::size_t i = 0; i < files_.size(); ++i) take(files_[i], read_partial(files_[i]), parts_[i]);
+    return std::move(joined_);
   }
 
  private:
-  void take(const std::string& file, const Partial& p) {
+  void look_at(const std::string& file, const Partial& p) {
     const Accumulator& a = p.sums;
-    if (parts_.empty()) begin(p);
+    if (parts_.empty()) joined_ = {p.identity, {a.width, a.height, a.samples, {}, {}, {}}};
     else want_same(file, p);
     if (!is_complete(a)) throw UsageError(file + " is not finished, " + percent(share_done(a)) + " are done: the command that made it goes on");
     for (std::size_t i = 0; i < parts_.size(); ++i) {
       const Part both{common(a.part.rows, parts_[i].rows), common(a.part.samples, parts_[i].samples)};
       if (!empty(both.rows) && !empty(both.samples)) throw UsageError(file + " and " + files_[i] + " both have " + part_text(both));
     }
-    add(joined_.sums, a);
     parts_.push_back(a.part);
-  }
-
-  void begin(const Partial& p) {
-    joined_.identity = p.identity;
-    const Accumulator& a = p.sums;
-    joined_.sums = {a.width, a.height, a.samples, {{0, a.height}, {0, a.samples}}, {}, {}};
-    joined_.sums.sums.resize(std::size_t(a.height) * std::size_t(a.width) * 3);
   }
 
   void want_same(const std::string& file, const Partial& p) const {
@@ -90,19 +86,21 @@ class Joiner {
       throw UsageError(file + " is of a picture of another size than " + files_.front());
   }
 
-  /// Of the sums of the whole picture those of `part`.
-  Partial cut(const Part& part) {
+  void begin(const Part& whole) {
     Accumulator& a = joined_.sums;
-    const std::size_t row = std::size_t(a.width) * 3;
-    a.sums.erase(a.sums.begin() + std::ptrdiff_t(std::size_t(part.rows.end) * row), a.sums.end());
-    a.sums.erase(a.sums.begin(), a.sums.begin() + std::ptrdiff_t(std::size_t(part.rows.begin) * row));
-    a.part = part;
-    a.done.assign(piece_count(part), 1);
-    return std::move(joined_);
+    a.part = whole;
+    a.sums.resize(std::size_t(whole.rows.end - whole.rows.begin) * std::size_t(a.width) * 3);
+    a.done.assign(piece_count(whole), 1);
+  }
+
+  void take(const std::string& file, const Partial& p, const Part& part) {
+    want_same(file, p);
+    if (p.sums.part != part || !is_complete(p.sums)) throw UsageError(file + " was changed while it was read");
+    add(joined_.sums, p.sums);
   }
 
   const std::vector<std::string>& files_;
-  std::vector<Part> parts_;  ///< of files_, those taken
+  std::vector<Part> parts_;  ///< of files_, those looked at
   Partial joined_;
 };
 

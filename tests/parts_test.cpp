@@ -219,6 +219,19 @@ TEST_F(Merge, RefusesOtherPictures) {
   EXPECT_EQ(complaint({"a", "gone"}), "gone: error: cannot open: No such file or directory");
 }
 
+/// 103 GB, were all of the picture kept: of rows that no part has nothing is.
+TEST_F(Merge, TakesTheMemoryOfWhatIsThere) {
+  Partial p = part_of({0, 5}, {0, 8});
+  const int rows[][2] = {{40000, 40001}, {40001, 40003}};
+  for (const auto& [begin, end] : rows) {
+    p.sums.width = p.sums.height = 65536, p.sums.part.rows = {begin, end};
+    p.sums.sums.assign(std::size_t(end - begin) * 65536 * 3, begin);
+    p.sums.done.assign(piece_count(p.sums.part), 1);
+    put(std::to_string(begin), p);
+  }
+  EXPECT_EQ(merge_parts({folder_.file("40001"), folder_.file("40000")}).sums.part, (Part{{40000, 40003}, {0, 8}}));
+}
+
 TEST_F(Merge, RefusesAFileWithAnyByteFlippedOrLost) {
   const Partial p = part_of({0, 5}, {0, 8});
   put("a", p);
