@@ -214,6 +214,8 @@ TEST_F(Merge, RefusesOtherPictures) {
   EXPECT_EQ(complaint({"a", "scene"}), "scene is of another scene than a");
   EXPECT_EQ(complaint({"a", "seed"}), "seed has seed=1, not seed=0 as a");
   EXPECT_EQ(complaint({"a", "shadows"}), "shadows has shadows=2, not nothing as a");
+  folder_.write("squeezed", "\x1F\x8B\x08");
+  EXPECT_EQ(complaint({"a", "squeezed"}), "squeezed: error: damaged: its gzip data are broken");
   EXPECT_EQ(complaint({"a", "narrow"}), "narrow is of a picture of another size than a");
   EXPECT_EQ(complaint({"a", "begun"}), "begun is not finished, 0 % are done: the command that made it goes on");
   EXPECT_EQ(complaint({"a", "gone"}), "gone: error: cannot open: No such file or directory");
