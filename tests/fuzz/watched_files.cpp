@@ -10,9 +10,11 @@
 namespace {
 
 std::filesystem::path watched;  // canonical; empty: nobody watches
+std::size_t looks = 0;
 
 void look_at(const char* path) {
   if (watched.empty()) return;
+  ++looks;
   std::error_code error;
   const std::filesystem::path file = std::filesystem::weakly_canonical(path, error);
   const bool inside = !error && std::mismatch(watched.begin(), watched.end(), file.begin(), file.end()).first == watched.end();
@@ -36,7 +38,10 @@ int __wrap_stat(const char* path, struct stat* about) {
 
 namespace grelha::fuzz {
 
-WatchedFiles::WatchedFiles(const std::filesystem::path& folder) { watched = std::filesystem::canonical(folder); }
-WatchedFiles::~WatchedFiles() { watched.clear(); }
+WatchedFiles::WatchedFiles(const std::filesystem::path& folder) { watched = std::filesystem::canonical(folder), looks = 0; }
+WatchedFiles::~WatchedFiles() {
+  watched.clear();
+  promise(looks > 0, "files are opened where it is watched: by fopen() and stat()");
+}
 
 }  // namespace grelha::fuzz
