@@ -1,5 +1,5 @@
 #!/bin/sh
-# campaign.sh BUILD MINUTES FOLDER [NAME...]: fuzzes the targets (nff ply partial options) in turns of five minutes by the clock, one at a
+# campaign.sh BUILD MINUTES FOLDER [NAME...]: fuzzes the targets (nff ply partial options) in turns of ten minutes by the clock, one at a
 # time, until each has had so many minutes of a processor. A target that finds a fault gets no further turn; the input lies in FOLDER/NAME.
 # New inputs gather in FOLDER/NAME/corpus (tests/fuzz/corpus is only read) and minutes in FOLDER/NAME/spent, so that a campaign that was
 # stopped goes on: begin in a fresh FOLDER, or remove `spent`, to count anew for code that was mended.
@@ -9,7 +9,7 @@ mkdir -p "$3"
 out=$(cd "$3" && pwd) here=$(cd "$(dirname "$0")" && pwd)
 shift 3
 [ $# -gt 0 ] || set -- nff ply partial options
-export UBSAN_OPTIONS=print_stacktrace=1
+export UBSAN_OPTIONS=print_stacktrace=1 ASAN_OPTIONS=malloc_context_size=2  # who allocated is seldom asked, and dear to know
 
 children() {  # children(): sets `had` to the seconds of a processor that children of this shell have had
   times >"$out/times"  # not in a pipe: that would be another shell
@@ -20,7 +20,7 @@ turn() {  # turn() NAME: one turn; what it took is added to the file `spent`, as
   children
   before=$had status=0
   nice -n 19 "$build/tests/fuzz/fuzz_$1" "$out/$1/corpus" "$here/corpus/$1" -dict="$here/$1.dict" -artifact_prefix="$out/$1/" \
-    -max_len=4096 -timeout=10 -rss_limit_mb=2048 -max_total_time=300 -print_final_stats=1 >"$out/$1/log" 2>&1 || status=$?
+    -max_len=4096 -timeout=10 -rss_limit_mb=2048 -max_total_time=600 -print_final_stats=1 >"$out/$1/log" 2>&1 || status=$?
   children
   runs=$(awk '/stat::number_of_executed_units/ { print $2 }' "$out/$1/log")
   echo "$((had - before)) ${runs:-0}" >>"$out/$1/spent"
