@@ -2,14 +2,16 @@
 
 #include <signal.h>
 
-#include <csignal>
+#include <atomic>
 #include <initializer_list>
 
 namespace grelha {
 
 namespace {
 
-volatile std::sig_atomic_t noted = 0;
+/// Any thread may get a signal, and all of them ask: sig_atomic_t would be for one thread alone.
+std::atomic<int> noted = 0;
+static_assert(std::atomic<int>::is_always_lock_free, "a handler may take no lock");
 
 void act(void (*handler)(int), int flags) {
   struct sigaction action {};

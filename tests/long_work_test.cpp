@@ -1,5 +1,6 @@
 // Parts, checkpoints and signals as a user of the program meets them.
 #include "frontend/partial.hpp"
+#include "frontend/stop_signals.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -8,8 +9,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <thread>
 
 namespace grelha {
 namespace {
@@ -220,6 +223,15 @@ TEST_F(LongWork, SignalsStopReadingAndBuilding) {
   const Outcome info = run("info t.nff t.nff", "timeout --preserve-status -s TERM .03");
   EXPECT_EQ(info.status, 143);
   EXPECT_LE(std::count(info.err.begin(), info.err.end(), '\n'), 1) << "the second is not begun: " << info.err;
+}
+
+/// A signal may reach any thread, and any thread may ask; the thread sanitizer sees whether that is a race.
+TEST(StopSignals, OfOneThreadAreSeenByAnother) {
+  const StopSignals signals;
+  std::thread stopped([] { std::raise(SIGTERM); });
+  while (StopSignals::seen() == 0) std::this_thread::yield();
+  EXPECT_EQ(StopSignals::seen(), SIGTERM);
+  stopped.join();
 }
 
 TEST_F(LongWork, ACheckpointOfAnotherPictureIsLeftAlone) {
