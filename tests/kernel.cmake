@@ -25,8 +25,8 @@ grelha_test(stability property grelha::stability)
 
 # No function of one instruction set's copy can be linked into another. The self test plants three that could.
 add_library(leaky_variant OBJECT ${CMAKE_CURRENT_LIST_DIR}/support/leaky_variant.cpp)
-add_test(NAME isa_symbols COMMAND ${CMAKE_COMMAND} -D NM=${CMAKE_NM} "-DOBJECTS=$<TARGET_OBJECTS:grelha_kernel>"
+add_test(NAME isa_symbols COMMAND ${CMAKE_COMMAND} -D NM=${CMAKE_NM} "-DOBJECTS=$<TARGET_OBJECTS:grelha_kernel>" "-DFLAGS=${CMAKE_CXX_FLAGS}"
   -P ${CMAKE_CURRENT_LIST_DIR}/isa_symbols.cmake)
 add_test(NAME isa_symbols_self_test COMMAND ${CMAKE_COMMAND} -D NM=${CMAKE_NM} -D SELF_TEST=$<TARGET_OBJECTS:leaky_variant>
   -P ${CMAKE_CURRENT_LIST_DIR}/isa_symbols.cmake)
-set_tests_properties(isa_symbols isa_symbols_self_test PROPERTIES LABELS build)
+set_tests_properties(isa_symbols isa_symbols_self_test PROPERTIES LABELS build SKIP_REGULAR_EXPRESSION "SKIPPED")
