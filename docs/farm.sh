@@ -1,6 +1,7 @@
 #!/bin/sh
 # One picture by a Slurm array, each task a share of the samples:
 #   sbatch --array=0-15 farm.sh SCENE FOLDER SAMPLES [OPTIONS OF RENDER]
+#   sbatch --array=3 farm.sh THE SAME                                 (task 3 of them again)
 #   sbatch --dependency=afterok:JOB farm.sh merge FOLDER IMAGE        (or on any machine: sh farm.sh merge FOLDER IMAGE)
 # A task that is ended by its time limit, preempted or lost with its node is put back in the queue and goes on from its checkpoint.
 #SBATCH --requeue
@@ -8,16 +9,33 @@
 #SBATCH --signal=B:TERM@60
 set -eu
 program=${GRELHA:-grelha}
-if [ "$1" = merge ]; then
+refuse() { echo "farm.sh: error: $1" >&2; exit 2; }
+if [ "${1:-}" = merge ] && [ $# -eq 3 ]; then
   exec "$program" merge "$2"/part-*.grelha -o "$3"
+fi
+if [ $# -lt 3 ] || [ -z "${SLURM_ARRAY_TASK_ID:-}" ]; then
+  refuse 'usage: sbatch --array=0-15 farm.sh SCENE FOLDER SAMPLES [OPTIONS OF RENDER]; then sh farm.sh merge FOLDER IMAGE'
 fi
 scene=$1 folder=$2 samples=$3
 shift 3
-task=$((SLURM_ARRAY_TASK_ID - SLURM_ARRAY_TASK_MIN))
-first=$((samples * task / SLURM_ARRAY_TASK_COUNT)) last=$((samples * (task + 1) / SLURM_ARRAY_TASK_COUNT))
-part=$folder/part-$(printf %05d "$task")
 mkdir -p "$folder"
-if [ -e "$part.grelha" ]; then exit 0; fi
+# The first array says how many shares there are; a later one, of a few of its tasks, must not share anew.
+if [ ! -e "$folder/tasks" ]; then
+  step=${SLURM_ARRAY_TASK_STEP:-1}
+  [ $((SLURM_ARRAY_TASK_MIN + step * (SLURM_ARRAY_TASK_COUNT - 1))) -eq "$SLURM_ARRAY_TASK_MAX" ] || refuse 'the first array of a folder has no gaps'
+  echo "$SLURM_ARRAY_TASK_MIN $step $SLURM_ARRAY_TASK_COUNT" >"$folder/tasks.$SLURM_ARRAY_TASK_ID"
+  mv "$folder/tasks.$SLURM_ARRAY_TASK_ID" "$folder/tasks"  # all tasks write the same, and each finds a whole one
+fi
+read -r least step count <"$folder/tasks"
+task=$(((SLURM_ARRAY_TASK_ID - least) / step))
+if [ $((least + step * task)) -ne "$SLURM_ARRAY_TASK_ID" ] || [ "$task" -lt 0 ] || [ "$task" -ge "$count" ]; then
+  refuse "task $SLURM_ARRAY_TASK_ID is none of those $folder was begun with, $least to $((least + step * (count - 1)))"
+fi
+first=$((samples * task / count)) last=$((samples * (task + 1) / count))
+if [ $first -eq $last ]; then exit 0; fi  # more tasks than samples
+part=$folder/part-$(printf %05d "$task")
+# A finished part is a checkpoint with nothing left to do: of another scene or other options it is refused by name, else written again.
+if [ -e "$part.grelha" ]; then mv "$part.grelha" "$part.kept"; fi
 status=0
 "$program" render "$scene" "$@" --samples "$first:$last/$samples" --threads "${SLURM_CPUS_PER_TASK:-1}" --quiet \
   -o "$part.grelha" --checkpoint "$part.kept" --checkpoint-every 300 &
