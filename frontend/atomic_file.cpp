@@ -1,12 +1,13 @@
 #include "frontend/atomic_file.hpp"
 
 #include "frontend/parse_error.hpp"
+#include "frontend/place.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -16,26 +17,21 @@ namespace grelha {
 namespace {
 
 constexpr int kNamesToTry = 100;
+constexpr std::size_t kLongestKept = 200;  // of a name, in the name beside it: file systems end names at 255 bytes
 
-[[noreturn]] void fail(const std::string& path, const char* what, int error) {
-  throw FileError(path, std::string(what) + ": " + std::strerror(error));
+[[noreturn]] void fail(const std::string& path, const std::string& what, int error) {
+  throw FileError(path, what + ": " + std::strerror(error));
 }
 
-/// The file behind a symbolic link: the link stays, what it points to is replaced.
-std::string resolve(const std::string& path) {
-  std::error_code error;
-  const auto canonical = std::filesystem::canonical(path, error);
-  return error ? path : canonical.string();
-}
-
-/// Whether something stands at `path` that renaming must not replace.
+/// Whether something stands at `path` that renaming must not replace. A file that cannot be written could be renamed over all the same.
 bool is_special(const std::string& path) {
-  struct stat info;
+  struct stat info {};
   if (stat(path.c_str(), &info) != 0) {
     if (errno == ENOENT) return false;
     fail(path, "cannot write", errno);
   }
   if (S_ISDIR(info.st_mode)) fail(path, "cannot write", EISDIR);
+  if (access(path.c_str(), W_OK) != 0) fail(path, "cannot write", errno);
   return !S_ISREG(info.st_mode);
 }
 
@@ -48,27 +44,53 @@ void sync(const std::string& path, const std::string& file) {
   if (error != 0 && error != EINVAL) fail(path, "cannot write", error);  // EINVAL: nothing that could be synchronised
 }
 
-/// Creates an empty file nobody else has, in the same folder so that renaming cannot cross file systems.
-std::string create_beside(const std::string& path, const std::string& target) {
-  static std::atomic<unsigned> serial{0};
-  const auto folder = std::filesystem::path(target).parent_path();
-  for (int attempt = 0; attempt < kNamesToTry; ++attempt) {
-    const auto name = ".grelha-" + std::to_string(getpid()) + '-' + std::to_string(serial++) + ".tmp";
-    const std::string beside = (folder / name).string();
-    const int file = open(beside.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
-    if (file >= 0) {
-      close(file);
-      return beside;
-    }
-    if (errno != EEXIST) fail(path, "cannot write", errno);
-  }
-  fail(path, "cannot write", EEXIST);
+/// Whether an open file is a file, and the one that stands under this name: whoever had it before may have renamed it away.
+bool stands_there(int file, const std::string& name) {
+  struct stat opened {}, there {};
+  return fstat(file, &opened) == 0 && S_ISREG(opened.st_mode) && stat(name.c_str(), &there) == 0 && opened.st_dev == there.st_dev &&
+         opened.st_ino == there.st_ino;
+}
+
+bool is_there(const std::string& name) {
+  struct stat info {};
+  return lstat(name.c_str(), &info) == 0;
+}
+
+/// What replaces a file has its mode.
+void take_mode(int file, const std::string& from) {
+  struct stat info {};
+  if (stat(from.c_str(), &info) == 0) fchmod(file, info.st_mode & 07777);
 }
 
 }  // namespace
 
-AtomicFile::AtomicFile(const std::string& path, bool durable) : path_(path), target_(resolve(path)), durable_(durable) {
-  if (!is_special(target_)) beside_ = durable ? target_ + ".new" : create_beside(path_, target_);
+/// In the same folder, so that renaming cannot cross file systems. The name is made of the target's: what a killed program left there is
+/// written over. Who writes holds a lock, which dies with him; another who writes the same takes the next name.
+void AtomicFile::create_beside() {
+  const auto target = std::filesystem::path(target_);
+  const std::string name = target.filename().string().substr(0, kLongestKept);
+  for (int attempt = 0; attempt < kNamesToTry; ++attempt) {
+    const std::string beside = (target.parent_path() / ('.' + name + ".grelha-tmp" + (attempt > 0 ? std::to_string(attempt) : ""))).string();
+    lock_ = open(beside.c_str(), O_CREAT | O_WRONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
+    const int error = errno;
+    if (lock_ < 0 && is_there(beside)) continue;  // someone else's, or no file
+    if (lock_ < 0) fail(path_, "cannot write", error);
+    const bool locked = flock(lock_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;  // no locks here: then one program at a time
+    if (locked && stands_there(lock_, beside)) {
+      beside_ = beside;
+      return take_mode(lock_, target_);
+    }
+    close(lock_);
+    lock_ = -1;
+  }
+  fail(path_, "cannot write", EEXIST);
+}
+
+AtomicFile::AtomicFile(const std::string& path, bool durable) : path_(path), target_(behind_links(path)), durable_(durable) {
+  const bool special = is_special(target_);
+  if (durable && special) throw FileError(path, "cannot write: not a regular file");
+  if (durable) beside_ = target_ + ".new";
+  else if (!special) create_beside();
   errno = 0;
   stream_.open(beside_.empty() ? target_ : beside_, std::ios::binary);
   if (!stream_) fail(path_, "cannot write", errno);
@@ -76,6 +98,7 @@ AtomicFile::AtomicFile(const std::string& path, bool durable) : path_(path), tar
 
 AtomicFile::~AtomicFile() {
   if (!beside_.empty()) unlink(beside_.c_str());
+  if (lock_ >= 0) close(lock_);
 }
 
 void AtomicFile::commit() {
@@ -98,6 +121,8 @@ void write_file(const std::string& path, const std::string& bytes) {
   file.commit();
 }
 
-void check_writable(const std::string& path) { AtomicFile probe(path); }
+void check_writable(const std::string& path, bool durable) {
+  if (durable || !is_special(path)) AtomicFile probe(path, durable);  // to open a pipe is to wait for a reader, to close it his end
+}
 
 }  // namespace grelha

@@ -5,13 +5,13 @@
 
 namespace grelha {
 
-/// A file that appears whole or not at all: written beside its place under another name, then renamed onto it. What is
-/// not a regular file (/dev/stdout, a pipe) is written directly, for renaming would replace it.
-/// Every failure is a FileError that names `path`.
+/// A file that appears whole or not at all: written beside its place under another name, then renamed onto it, with the mode of the file
+/// it replaces. A symbolic link stays, also one to nothing yet. What is not a regular file (/dev/stdout, a pipe) is written directly, for
+/// renaming would replace it. Every failure is a FileError that names `path`.
 ///
 /// A durable one is on the disk when commit() returns, so that a machine that stops a moment later finds the old file or the new one.
 /// It is written again and again, by programs that are killed: the name beside it, `path` and .new, is always the same, and what such
-/// a program leaves the next one writes over. One program at a time then.
+/// a program leaves the next one writes over. One program at a time then, and nothing but a regular file.
 class AtomicFile {
  public:
   explicit AtomicFile(const std::string& path, bool durable = false);
@@ -23,14 +23,17 @@ class AtomicFile {
   void commit();
 
  private:
+  void create_beside();
+
   std::string path_, target_, beside_;  ///< beside_ is empty when written directly
   bool durable_;
+  int lock_ = -1;  ///< of what stands under beside_
   std::ofstream stream_;
 };
 
 void write_file(const std::string& path, const std::string& bytes);
 
 /// Throws now what writing would throw later, as far as that can be known: better before a long render than after.
-void check_writable(const std::string& path);
+void check_writable(const std::string& path, bool durable = false);
 
 }  // namespace grelha

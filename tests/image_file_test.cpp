@@ -6,6 +6,10 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -231,6 +235,71 @@ TEST(AtomicFile, WritesThroughALink) {
   write_file(folder.file("link"), "new");
   EXPECT_EQ(folder.read("real"), "new");
   EXPECT_TRUE(std::filesystem::is_symlink(folder.file("link")));
+}
+
+TEST(AtomicFile, ALinkToNothingStaysAndItsTargetIsWritten) {
+  TemporaryFolder folder;
+  std::filesystem::create_directory(folder.file("in"));
+  std::filesystem::create_symlink("in/second", folder.file("link"));
+  std::filesystem::create_symlink("real", folder.file("in/second"));
+  write_file(folder.file("link"), "new");
+  EXPECT_EQ(folder.read("in/real"), "new");
+  EXPECT_TRUE(std::filesystem::is_symlink(folder.file("link")));
+  EXPECT_TRUE(std::filesystem::is_symlink(folder.file("in/second")));
+}
+
+TEST(AtomicFile, KeepsTheModeOfWhatItReplaces) {
+  TemporaryFolder folder;
+  using std::filesystem::perms;
+  const perms mode = perms::owner_read | perms::owner_write | perms::others_read;
+  std::filesystem::permissions(folder.write("a", "old"), mode);
+  write_file(folder.file("a"), "new");
+  EXPECT_EQ(folder.read("a"), "new");
+  EXPECT_EQ(std::filesystem::status(folder.file("a")).permissions(), mode);
+}
+
+TEST(AtomicFile, WritesOverWhatAKilledProgramLeft) {
+  TemporaryFolder folder;
+  if (const pid_t child = fork(); child == 0) {
+    AtomicFile file(folder.file("a"));
+    file.stream() << "half" << std::flush;
+    _exit(0);  // no destructor
+  } else {
+    waitpid(child, nullptr, 0);
+  }
+  ASSERT_EQ(folder.list(), ".a.grelha-tmp");
+  write_file(folder.file("a"), "new");
+  EXPECT_EQ(folder.list(), "a");
+  EXPECT_EQ(folder.read("a"), "new");
+}
+
+TEST(AtomicFile, TwoWritersOfOneFileDoNotClash) {
+  TemporaryFolder folder;
+  const std::string name(250, 'n');  // longer than a name with something added to it may be
+  {
+    AtomicFile first(folder.file(name)), second(folder.file(name));
+    first.stream() << "first", second.stream() << "second";
+    first.commit();
+    EXPECT_EQ(folder.read(name), "first");
+    AtomicFile third(folder.file(name));
+    third.stream() << "third";
+    second.commit();
+    EXPECT_EQ(folder.read(name), "second");
+    third.commit();
+  }
+  EXPECT_EQ(folder.read(name), "third");
+  EXPECT_EQ(folder.list(), name);
+}
+
+/// Whoever may write in the folder could put them in its place; a link would have its target written over.
+TEST(AtomicFile, LeavesAloneWhatStandsBesideItAndIsNoFile) {
+  TemporaryFolder folder;
+  folder.write("mine", "mine");
+  std::filesystem::create_symlink("mine", folder.file(".a.grelha-tmp"));
+  ASSERT_EQ(mkfifo(folder.file(".a.grelha-tmp1").c_str(), 0600), 0);
+  write_file(folder.file("a"), "new");
+  EXPECT_EQ(folder.read("a") + folder.read("mine"), "newmine");
+  EXPECT_EQ(folder.list(), ".a.grelha-tmp .a.grelha-tmp1 a mine");
 }
 
 }  // namespace
