@@ -24,7 +24,7 @@ class LongRender {
 
   double share_done() const;
 
-  /// `progress` is told the share done. With a checkpoint SIGINT and SIGTERM stop it after what is in work: saves and returns the
+  /// `progress` is told the share done. With a checkpoint SIGHUP, SIGINT and SIGTERM stop it after what is in work: saves and returns the
   /// signal, otherwise 0. Saves that fail on the way are warned of once, and tried again. `maps` are filled when samples are spent by error.
   int run(const World& world, const Camera& camera, const std::function<void(double)>& progress, RenderStats& stats, SampleMaps& maps);
 

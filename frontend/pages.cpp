@@ -68,7 +68,7 @@ std::string man_page(const std::vector<CommandHelp>& commands) {
     for (std::string line; std::getline(lines, line);) text += roff(line) + '\n';
     text += ".fi\n";
   }
-  return text + ".SH EXIT STATUS\n0; 1 when reading or writing a file fails; 2 for bad usage or a scene that cannot be one; 130 and 143 when stopped by SIGINT and SIGTERM.\n";
+  return text + ".SH EXIT STATUS\n0; 1 when reading or writing a file fails; 2 for bad usage or a scene that cannot be one; 129, 130 and 143 when stopped by SIGHUP, SIGINT and SIGTERM.\n";
 }
 
 std::string bash_completion(const std::vector<CommandHelp>& commands) {

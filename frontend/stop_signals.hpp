@@ -2,7 +2,7 @@
 
 namespace grelha {
 
-/// While one lives, SIGINT and SIGTERM are noted instead of ending the program, each the first time.
+/// While one lives, SIGHUP, SIGINT and SIGTERM are noted instead of ending the program, each the first time.
 class StopSignals {
  public:
   StopSignals();
@@ -10,7 +10,7 @@ class StopSignals {
   StopSignals(const StopSignals&) = delete;
   StopSignals& operator=(const StopSignals&) = delete;
 
-  static int seen();  ///< SIGINT, SIGTERM or 0
+  static int seen();  ///< one of them, or 0
 };
 
 }  // namespace grelha

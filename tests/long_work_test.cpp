@@ -1,11 +1,10 @@
 // Parts, checkpoints and signals as a user of the program meets them.
 #include "frontend/partial.hpp"
 #include "frontend/stop_signals.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/running.hpp"
 
 #include <gtest/gtest.h>
 
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -17,27 +16,14 @@
 namespace grelha {
 namespace {
 
-constexpr char kBall[] =
-    "b 0 0 1\nv\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 40\nhither 1\nresolution 24 16\n"
-    "l 5 5 5 1 1 1\nf 1 0 0 1 0 1 0 1\ns 0 0 0 1\n";
-
-struct Outcome {
-  int status;
-  std::string out, err;
-};
+using test::kBall;
+using test::Outcome;
 
 class LongWork : public testing::Test {
  protected:
   LongWork() { folder_.write("ball.nff", kBall); }
 
-  /// `before`: of the shell's line, as `ulimit -f 8;`.
-  Outcome run(const std::string& arguments, const std::string& before = "") {
-    TemporaryFolder log;
-    const std::string line = "cd '" + folder_.path().string() + "' && " + before + " '" GRELHA_PROGRAM "' " + arguments + " >'" + log.file("out") +
-                             "' 2>'" + log.file("err") + "' </dev/null";
-    const int status = std::system(line.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, log.read("out"), log.read("err")};
-  }
+  Outcome run(const std::string& arguments, const std::string& before = "") { return test::run(folder_, arguments, before); }
   void expect_line(const Outcome& outcome, int status, const std::string& line) {
     EXPECT_EQ(outcome.status, status);
     EXPECT_EQ(outcome.err, line + '\n');
@@ -119,10 +105,10 @@ constexpr const char* kJobs[] = {"render ball.nff --quiet --size 120x80 --sample
 constexpr const char* kJob = kJobs[0];
 
 TEST_F(LongWork, SignalsStopItAndTheSameCommandGoesOn) {
-  for (const char* const any : kJobs) {
-    const bool by_int = any != kJobs[1];
-    const std::string name = by_int ? "INT" : "TERM";
-    const int status = by_int ? 130 : 143;
+  const std::pair<std::string, int> signals[] = {{"HUP", 129}, {"TERM", 143}, {"INT", 130}, {"INT", 130}};
+  for (std::size_t i = 0; i < std::size(kJobs); ++i) {
+    const char* const any = kJobs[i];
+    const auto& [name, status] = signals[i];
     SCOPED_TRACE(any);
     ASSERT_EQ(run(std::string(any) + "-o whole.pfm").status, 0);
     const std::string job = std::string(any) + "-o x.pfm --checkpoint kept";
@@ -242,7 +228,7 @@ TEST_F(LongWork, ACheckpointOfAnotherPictureIsLeftAlone) {
   expect_line(run("render ball.nff --checkpoint kept.grelha --seed 2 --rows 0:8 -o x.grelha"), 2, error + "has seed=0, not seed=2" + advice);
   folder_.write("other.nff", std::string(kBall) + "s 0 0 0 2\n");
   expect_line(run("render other.nff --checkpoint kept.grelha --rows 0:8 -o x.grelha"), 2, error + "is of another scene" + advice);
-  expect_line(run("render ball.nff --checkpoint ball.nff"), 1, "ball.nff: error: not a .grelha partial this program reads");
+  expect_line(run("render ball.nff --checkpoint other.nff"), 1, "other.nff: error: not a .grelha partial this program reads");
   EXPECT_EQ(folder_.read("kept.grelha"), bytes);
   EXPECT_EQ(run("render ball.nff --checkpoint kept.grelha --rows 0:8 -o x.grelha").status, 0) << "all done: there is only the file to write";
   EXPECT_EQ(folder_.read("x.grelha"), bytes);

@@ -2,12 +2,10 @@
 #include "frontend/image_file.hpp"
 #include "frontend/memory_limit.hpp"
 #include "kernel/geometry.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/running.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-
-#include <sys/wait.h>
 
 #include <algorithm>
 #include <cmath>
@@ -22,28 +20,13 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr char kBall[] =
-    "b 0 0 1\nv\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 40\nhither 1\nresolution 24 16\n"
-    "l 5 5 5 1 1 1\nf 1 0 0 1 0 1 0 1\ns 0 0 0 1\n";
-
-struct Outcome {
-  int status;
-  std::string out, err;
-};
-
-/// Runs the program inside `folder`. Its output goes to files elsewhere, so that the folder holds what it wrote itself.
-Outcome run(const TemporaryFolder& folder, const std::string& arguments) {
-  TemporaryFolder log;
-  const std::string line = "cd '" + folder.path().string() + "' && '" GRELHA_PROGRAM "' " + arguments + " >'" +
-                           log.file("out") + "' 2>'" + log.file("err") + "' </dev/null";
-  const int status = std::system(line.c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, log.read("out"), log.read("err")};
-}
+using test::kBall;
+using test::Outcome;
 
 class Program : public testing::Test {
  protected:
   Program() { folder_.write("ball.nff", kBall); }
-  Outcome run(const std::string& arguments) { return grelha::run(folder_, arguments); }
+  Outcome run(const std::string& arguments) { return test::run(folder_, arguments); }
   TemporaryFolder folder_;
 };
 
