@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <map>
+#include <utility>
 
+#include "frontend/outputs.hpp"
 #include "frontend/parse_error.hpp"
 
 namespace grelha {
@@ -63,21 +64,22 @@ Names scene_files(const Names& arguments) {
 std::vector<RenderCommand> commands_for(const RenderCommand& command) {
   const Names scenes = scene_files(command.scenes);
   std::vector<RenderCommand> all;
-  std::map<std::string, std::string> written_by;
   for (const std::string& scene : scenes) {
     RenderCommand one = command;
     one.scenes = {scene}, one.scene = scene, one.image = image_for(scene, command.image);
-    const std::pair<const char*, std::string*> files[] = {
-        {"-o", &one.image}, {"--stats", &one.stats}, {"--samples-map", &one.samples_map}, {"--error-map", &one.error_map}, {"--checkpoint", &one.work.checkpoint}};
-    for (const auto& [option, file] : files) {
-      if (file->empty()) continue;
-      *file = filled_in(*file, scene);
-      const auto [other, fresh] = written_by.try_emplace(*file, scene);
-      if (!fresh) throw UsageError(std::string(option) + ": " + other->second + " and " + scene + " would both be written to " + *file +
-                                   "; {} in a name stands for the scene's");
-    }
+    const auto want_folder = [&one](const std::string& pattern, const std::string& file) {
+      const fs::path folder = fs::path(file).parent_path();
+      if (!folder.empty() && (pattern.ends_with('/') || pattern.find(kPlace) != std::string::npos)) one.folders.push_back(folder.string());
+    };
+    want_folder(command.image, one.image);
+    each_output(one, [&](const char*, std::string& file) {
+      const std::string pattern = std::exchange(file, filled_in(file, scene));
+      want_folder(pattern, file);
+    });
+    want_not_read(outputs_of(one), scenes);
     all.push_back(std::move(one));
   }
+  want_apart(all);
   return all;
 }
 

@@ -12,7 +12,8 @@ namespace grelha {
 /// also .gz), by name. Throws FileError for a folder that cannot be read or has none.
 std::vector<std::string> scene_files(const std::vector<std::string>& arguments);
 
-/// One command for each scene, with the names of its files: -o may be a folder, and {} in a name stands for the scene's. Throws UsageError when two would write one picture.
+/// One command for each scene, with the names of its files: -o may be a folder, and {} in a name stands for the scene's. Throws UsageError
+/// when a file would be written that is read, or one twice.
 std::vector<RenderCommand> commands_for(const RenderCommand& command);
 
 }  // namespace grelha

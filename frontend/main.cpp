@@ -10,6 +10,7 @@
 #include "frontend/merge.hpp"
 #include "frontend/nearest.hpp"
 #include "frontend/options.hpp"
+#include "frontend/outputs.hpp"
 #include "frontend/parse_error.hpp"
 #include "frontend/preparation.hpp"
 #include "frontend/progress.hpp"
@@ -125,7 +126,7 @@ int render_long(LongRender& work, const World& world, const Camera& camera, cons
 
 int stopped(int signal, const RenderCommand& command, double share) {
   char text[64];
-  std::snprintf(text, sizeof text, "grelha: stopped by %s, %.1f %% done", signal == SIGINT ? "SIGINT" : "SIGTERM", 100 * share);
+  std::snprintf(text, sizeof text, "grelha: stopped by %s, %.1f %% done", signal == SIGHUP ? "SIGHUP" : signal == SIGINT ? "SIGINT" : "SIGTERM", 100 * share);
   warn(text + (" and saved in " + command.work.checkpoint) + ": the same command goes on from there");
   return kSignalled + signal;
 }
@@ -163,12 +164,12 @@ RenderCommand silent(RenderCommand command) {
 int render_scene(const RenderCommand& given, Ranks& ranks) {
   const RenderCommand command = ranks.first() ? given : silent(given);
   want_isa(command.render.isa);
-  if (ranks.first()) for (const std::string& file : {command.image, command.stats, command.samples_map, command.error_map, command.work.checkpoint})
-    if (!file.empty()) check_writable(file);
+  if (ranks.first()) prepare_outputs(command);
   RunReport report;
   const Stopwatch load;
   const bool bars = !command.quiet && stderr_is_terminal();
   SceneFile file = load_scene(command.scene, warn, command.input.read, bars);
+  want_not_read(outputs_of(command), file.meshes);
   const bool is_long = is_long_work(command, ranks);
   const std::string scene = is_long ? scene_digest(file) : "";
   RenderCommand prepared = command;
@@ -258,6 +259,7 @@ void write_difference(const CompareCommand& command, const Image& a, const Image
 }
 
 int run(const CompareCommand& command) {
+  if (!command.diff.empty()) want_not_read({{"--diff", command.diff}}, {command.a, command.b});
   Image a = read_image(command.a), b = read_image(command.b);
   if (a.width != b.width || a.height != b.height)
     throw UsageError("the pictures have unequal sizes, " + size_text(a) + " and " + size_text(b));

@@ -297,6 +297,7 @@ void NffReader::read_ply(std::string_view keyword) {
     throw ParseError(input_.position(name), "wanted fewer than 2^32 vertices and triangles in all, found more");
   build_.mesh(std::move(mesh), material(keyword));
   file_.counts.ply += faces;
+  file_.meshes.push_back(path);
 }
 
 void NffReader::read_env(std::string_view keyword) {

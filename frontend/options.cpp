@@ -252,7 +252,7 @@ void add_long_work(CLI::App& app, LongWork& work) {
   constexpr char kGroup[] = "Long work (docs/parts.md)";
   value(app, "--rows", "A:B", "render rows A up to B alone, to a .grelha that `grelha merge` takes (so does --samples I:J)",
         [&work](const std::string& text) { work.rows = range("--rows", text, kMaxSide); })->group(kGroup);
-  value(app, "--checkpoint", "FILE", "save now and then, and when stopped by SIGINT or SIGTERM; the same command goes on from it",
+  value(app, "--checkpoint", "FILE", "save now and then, and when stopped by SIGHUP, SIGINT or SIGTERM; the same command goes on from it",
         [&work](const std::string& text) { work.checkpoint = text; })->group(kGroup);
   value(app, "--checkpoint-every", "SECONDS", "how often [60]",
         [&work](const std::string& text) { work.save_every = interval("--checkpoint-every", text); })->group(kGroup);
@@ -268,7 +268,7 @@ void add_render(CLI::App& app, RenderCommand& command) {
   positionals(sub, "SCENE", command.scenes, "scene files, or folders of them");
   value(sub, "-o,--output", "FILE", ".png, .hdr, .pfm (linear floats), .grelha (to merge), or a folder; {} in it is SCENE's name [{}.png]",
         [&command](const std::string& text) {
-          if (!is_folder(text)) want_output_name(text);
+          if (!text.ends_with('/') && !is_folder(text)) want_output_name(text);
           command.image = text;
         });
   value(sub, "--size", "WxH", "pixels [as the scene says]",
@@ -390,8 +390,6 @@ void check_long_work(const RenderCommand& command) {
   if (!sums && (w.is_part() || part_file))
     throw UsageError("parts are of pictures with as many samples in every pixel: no --error, --time or --aa adaptive");
   if (w.is_part() && !part_file) refuse("-o", "a name ending in .grelha for a part of a picture", command.image);
-  if (!w.checkpoint.empty() && whole_path(w.checkpoint) == whole_path(command.image))
-    throw UsageError("--checkpoint and -o: wanted two files, found \"" + command.image + "\" twice");
   if (part_file && w.show_every > 0) throw UsageError("--preview wants a picture to write, not a .grelha");
   if (part_file && command.srgb) throw UsageError("--srgb: a .grelha holds no colours for a screen, say it to merge");
 }

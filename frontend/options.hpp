@@ -36,6 +36,7 @@ struct LongWork {
 struct RenderCommand {
   std::vector<std::string> scenes;  ///< files and folders as they were named; commands_for() makes one command of each
   std::string scene, image;   ///< image: named after the scene when -o is absent, a folder or a pattern; or a .grelha
+  std::vector<std::string> folders;  ///< of files named by a pattern: made where they are missing
   InputOptions input;
   LongWork work;
   int width = 0, height = 0;  ///< 0: as the scene says

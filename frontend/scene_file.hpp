@@ -49,6 +49,7 @@ struct SceneFile {
   int samples_per_pixel = 0;  ///< `spp` hint, 0: none
   std::string environment;    ///< `env` folder as written, or empty
   std::uint64_t source_bytes = 0;  ///< of text, or whatever was parsed, that stood in memory at once
+  std::vector<std::string> meshes;  ///< files it named
   bool default_camera = false, default_light = false;  ///< made up, for a bare PLY
 };
 

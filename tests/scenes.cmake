@@ -6,8 +6,11 @@ grelha_test(compare unit grelha::frontend)
 grelha_test(options unit grelha::frontend)
 grelha_test(report unit grelha::frontend nlohmann_json::nlohmann_json)
 grelha_test(program image grelha::frontend grelha::scenes nlohmann_json::nlohmann_json)
-target_compile_definitions(program_test PRIVATE GRELHA_PROGRAM="$<TARGET_FILE:grelha>")
-add_dependencies(program_test grelha)
+grelha_test(files image grelha::frontend)
+foreach(test program_test files_test)
+  target_compile_definitions(${test} PRIVATE GRELHA_PROGRAM="$<TARGET_FILE:grelha>")
+  add_dependencies(${test} grelha)
+endforeach()
 
 # Includes point one way. The second test plants a wrong arrow of each kind and wants each found.
 foreach(case layering layering_self_test)

@@ -1,0 +1,120 @@
+// What the program may write over, and what it may not, however it is called.
+#include "frontend/place.hpp"
+#include "tests/support/running.hpp"
+
+#include <gtest/gtest.h>
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+
+namespace grelha {
+namespace {
+
+using test::kBall;
+using test::Outcome;
+
+class Files : public testing::Test {
+ protected:
+  Files() { folder_.write("ball.nff", kBall); }
+  Outcome run(const std::string& arguments, const std::string& before = "timeout 20 ") { return test::run(folder_, arguments, before); }
+  void expect_refused(const std::string& arguments, const std::string& why) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.status, 2) << arguments;
+    EXPECT_EQ(outcome.err, "grelha: error: " + why + '\n') << arguments;
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(Files, PlacesAreEqualWhereverNamesAreNot) {
+  std::filesystem::create_directory(folder_.file("in"));
+  std::filesystem::create_symlink("in", folder_.file("also-in"));
+  std::filesystem::create_symlink("in/new", folder_.file("link"));
+  std::filesystem::create_hard_link(folder_.file("ball.nff"), folder_.file("hard"));
+  const auto same = [&](const std::string& a, const std::string& b) { return place_of(folder_.file(a)) == place_of(folder_.file(b)); };
+  EXPECT_TRUE(same("ball.nff", "in/../hard"));
+  EXPECT_TRUE(same("in/new", "also-in/./new"));
+  EXPECT_TRUE(same("in/new", "link"));
+  EXPECT_TRUE(same("no/new", "no/./new"));
+  EXPECT_FALSE(same("in/new", "new"));
+  EXPECT_FALSE(same("in/new", "in/old"));
+  EXPECT_FALSE(same("ball.nff", "new"));
+}
+
+TEST_F(Files, NothingIsWrittenOverWhatIsRead) {
+  std::filesystem::create_hard_link(folder_.file("ball.nff"), folder_.file("hard"));
+  std::filesystem::create_symlink("ball.nff", folder_.file("link.png"));
+  std::filesystem::create_symlink("ball.nff", folder_.file("twin.nff"));
+  folder_.write("mesh.ply", "ply\nformat ascii 1.0\nelement vertex 0\nend_header\n");
+  folder_.write("two.nff", std::string(kBall) + "ply mesh.ply\n");
+  const std::string before = folder_.list();
+  for (const char* name : {"ball.nff", "./ball.nff", "hard"})
+    expect_refused(std::string("render ball.nff --stats ") + name, std::string("--stats: wanted another file than ball.nff, which is read, found \"") + name + '"');
+  expect_refused("render twin.nff -o link.png", "-o: wanted another file than twin.nff, which is read, found \"link.png\"");
+  expect_refused("render ball.nff two.nff -o {}.png --checkpoint {}.kept --stats twin.nff",
+                 "--stats: wanted another file than ball.nff, which is read, found \"twin.nff\"");
+  expect_refused("render two.nff -o x.png --stats ./mesh.ply", "--stats: wanted another file than mesh.ply, which is read, found \"./mesh.ply\"");
+  EXPECT_EQ(folder_.list(), before);
+  EXPECT_EQ(folder_.read("ball.nff"), kBall);
+  ASSERT_EQ(run("render ball.nff -o a.png --quiet").status, 0);
+  ASSERT_EQ(run("render ball.nff -o b.png --quiet --depth 1").status, 0);
+  expect_refused("compare a.png b.png --diff ./b.png", "--diff: wanted another file than b.png, which is read, found \"./b.png\"");
+}
+
+TEST_F(Files, NothingIsWrittenTwice) {
+  std::filesystem::create_symlink("x.png", folder_.file("link.png"));
+  expect_refused("render ball.nff -o x.png --stats ./x.png", "--stats and -o: wanted two files, found \"x.png\" twice");
+  expect_refused("render ball.nff -o x.png --error .1 --samples-map link.png", "--samples-map and -o: wanted two files, found \"x.png\" twice");
+  expect_refused("render ball.nff -o x.png --stats s --checkpoint ./s", "--checkpoint and --stats: wanted two files, found \"s\" twice");
+  EXPECT_EQ(run("render ball.nff -o x.png --quiet --stats /dev/null --checkpoint kept").status, 0);
+}
+
+TEST_F(Files, ACheckpointIsARegularFile) {
+  ASSERT_EQ(mkfifo(folder_.file("pipe").c_str(), 0600), 0);
+  std::filesystem::create_symlink("/dev/null", folder_.file("null"));
+  for (const char* name : {"pipe", "null"}) {
+    const Outcome outcome = run(std::string("render ball.nff -o x.png --checkpoint ") + name);
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_EQ(outcome.err, std::string(name) + ": error: cannot write: not a regular file\n");
+  }
+}
+
+TEST_F(Files, APictureGoesIntoAPipe) {
+  ASSERT_EQ(mkfifo(folder_.file("pipe.png").c_str(), 0600), 0);
+  EXPECT_EQ(run("render ball.nff -o pipe.png --quiet", "(timeout 20 cat pipe.png >got.png &) && timeout 20 ").status, 0);
+  EXPECT_EQ(run("render ball.nff -o whole.png --quiet", "sleep .3 && ").status, 0);
+  EXPECT_EQ(folder_.read("got.png"), folder_.read("whole.png"));
+}
+
+TEST_F(Files, WhatCannotBeWrittenIsNotReplaced) {
+  folder_.write("x.png", "old");
+  std::filesystem::permissions(folder_.file("x.png"), std::filesystem::perms::owner_read);
+  std::string other = "timeout 20 ";
+  if (geteuid() == 0) {  // root may write to any file: someone else then
+    std::filesystem::permissions(folder_.path(), std::filesystem::perms::all);
+    other += "setpriv --reuid 65534 --clear-groups ";
+    if (run("--version", other).status != 0) GTEST_SKIP() << "no setpriv, or a program only root may run";
+  }
+  EXPECT_EQ(run("render ball.nff -o x.png", other).err, "x.png: error: cannot write: Permission denied\n");
+  EXPECT_EQ(folder_.read("x.png"), "old");
+}
+
+TEST_F(Files, FoldersForPicturesAreMade) {
+  EXPECT_EQ(run("render ball.nff -o pictures/ --quiet").status, 0);
+  EXPECT_EQ(run("render ball.nff -o deep/er/{}.pfm --stats counts/{}.json --quiet").status, 0);
+  for (const char* name : {"pictures/ball.png", "deep/er/ball.pfm", "counts/ball.json"}) EXPECT_NE(folder_.read(name), "") << name;
+  EXPECT_EQ(run("render ball.nff -o no/x.png").err, "no/x.png: error: cannot write: No such file or directory\n") << "a slip, more likely";
+  EXPECT_EQ(run("render ball.nff -o ball.nff/").err, "ball.nff: error: cannot make this folder: Not a directory\n");
+}
+
+TEST_F(Files, NamesTooLongAreOneLineOfOurs) {
+  const std::string name(300, 'n');
+  EXPECT_EQ(run("render ball.nff -o " + name + ".png").err, name + ".png: error: cannot write: File name too long\n");
+  EXPECT_EQ(run("render " + name + ".nff -o x.png").err, name + ".nff: error: cannot open: File name too long\n");
+  EXPECT_EQ(run("render ball.nff --checkpoint " + name).err, name + ": error: cannot write: File name too long\n");
+}
+
+}  // namespace
+}  // namespace grelha
