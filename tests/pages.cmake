@@ -6,3 +6,7 @@ set_tests_properties(pages PROPERTIES LABELS build)
 add_test(NAME docs COMMAND sh ${PROJECT_SOURCE_DIR}/docs/build.sh ${CMAKE_CURRENT_BINARY_DIR}/docs)
 add_test(NAME architecture COMMAND ${PROJECT_SOURCE_DIR}/docs/architecture.py --check)
 set_tests_properties(docs architecture PROPERTIES LABELS build SKIP_RETURN_CODE 77)
+
+# ./run through a link, and where nothing may be installed.
+add_test(NAME run_script COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/run_script.sh ${PROJECT_SOURCE_DIR}/run ${CMAKE_CURRENT_BINARY_DIR}/run_script)
+set_tests_properties(run_script PROPERTIES LABELS build)
