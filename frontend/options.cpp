@@ -20,8 +20,15 @@ namespace {
 constexpr int kMaxSide = 65536, kMaxThreads = 1024;
 constexpr double kMaxDensity = 1000;
 
-[[noreturn]] void refuse(const std::string& option, const std::string& wanted, const std::string& found) {
-  throw UsageError(option + ": wanted " + wanted + ", found \"" + found + '"');
+[[noreturn]] void refuse(const std::string& option, const std::string& wanted, const std::string& found, const std::string& meant = "") {
+  throw UsageError(option + ": wanted " + wanted + ", found \"" + found + '"' + meant);
+}
+
+/// Of KIND:MORE the kind that was probably meant.
+std::string meant_kind(const std::string& text, std::initializer_list<std::string_view> kinds) {
+  const std::size_t end = std::min(text.find(':'), text.size());
+  const std::string_view kind = nearest(std::string_view(text).substr(0, end), std::span(kinds.begin(), kinds.size()));
+  return kind.empty() || text.starts_with(kind) ? "" : "; did you mean " + std::string(kind) + text.substr(end) + '?';
 }
 
 /// The whole of `text` as a number; the locale has no say.
@@ -76,7 +83,7 @@ void parse_aa(const std::string& text, Effects& effects) {
   if (text == "off") effects.jitter = 1;
   else if (text.starts_with(kJitter)) effects.jitter = whole("--aa", text.substr(kJitter.size()), 1, 256);
   else if (text.starts_with(kAdaptive)) effects.adaptive = subdivision(text.substr(kAdaptive.size()));
-  else refuse("--aa", "off, jitter:N or adaptive:THRESHOLD,DEPTH", text);
+  else refuse("--aa", "off, jitter:N or adaptive:THRESHOLD,DEPTH", text, meant_kind(text, {"off", "jitter", "adaptive"}));
 }
 
 void parse_shadows(const std::string& text, Effects& effects) {
@@ -91,7 +98,7 @@ void parse_shadows(const std::string& text, Effects& effects) {
     s.size = float(not_negative("--shadows", p[0], "a size"));
     s.positions = whole("--shadows", p[1], 1, 64);
   } else {
-    refuse("--shadows", "hard, random:SIZE or area:SIZE,N", text);
+    refuse("--shadows", "hard, random:SIZE or area:SIZE,N", text, meant_kind(text, {"hard", "random", "area"}));
   }
   effects.shadows = s;
 }
@@ -207,6 +214,11 @@ void want_image_name(const std::string& option, const std::string& path) {
   if (!image_format(path)) refuse(option, "a name ending in .png, .hdr or .pfm", path);
 }
 
+std::string file_name(const std::string& option, const std::string& text) {
+  if (text.empty()) refuse(option, "a file name", text);
+  return text;
+}
+
 void want_output_name(const std::string& path) {
   if (!image_format(path) && !is_partial_name(path)) refuse("-o", "a name ending in .png, .hdr, .pfm or .grelha", path);
 }
@@ -253,7 +265,7 @@ void add_long_work(CLI::App& app, LongWork& work) {
   value(app, "--rows", "A:B", "render rows A up to B alone, to a .grelha that `grelha merge` takes (so does --samples I:J)",
         [&work](const std::string& text) { work.rows = range("--rows", text, kMaxSide); })->group(kGroup);
   value(app, "--checkpoint", "FILE", "save now and then, and when stopped by SIGHUP, SIGINT or SIGTERM; the same command goes on from it",
-        [&work](const std::string& text) { work.checkpoint = text; })->group(kGroup);
+        [&work](const std::string& text) { work.checkpoint = file_name("--checkpoint", text); })->group(kGroup);
   value(app, "--checkpoint-every", "SECONDS", "how often [60]",
         [&work](const std::string& text) { work.save_every = interval("--checkpoint-every", text); })->group(kGroup);
   value(app, "--preview", "SECONDS", "write the picture so far as often",
@@ -265,7 +277,7 @@ void add_render(CLI::App& app, RenderCommand& command) {
   sub.footer("Examples:\n"
              "  grelha render scenes/data/balls.nff -o balls.png --size 800x600\n"
              "  grelha render scenes/data -o pictures/ --error 0.01");
-  positionals(sub, "SCENE", command.scenes, "scene files, or folders of them");
+  positionals(sub, "SCENE", command.scenes, "scene files, folders of them, - for stdin");
   value(sub, "-o,--output", "FILE", ".png, .hdr, .pfm (linear floats), .grelha (to merge), or a folder; {} in it is SCENE's name [{}.png]",
         [&command](const std::string& text) {
           if (!text.ends_with('/') && !is_folder(text)) want_output_name(text);
@@ -288,13 +300,13 @@ void add_render(CLI::App& app, RenderCommand& command) {
         [&command](const std::string& text) { want_image_name("--samples-map", text), command.samples_map = text; });
   value(sub, "--error-map", "FILE", "and of its estimated standard error",
         [&command](const std::string& text) { want_image_name("--error-map", text), command.error_map = text; });
-  value(sub, "--sampler", "NAME", "where they lie: sobol, jitter or random [sobol]",
+  value(sub, "--sampler", "sobol|jitter|unshuffled|random", "where they lie [sobol]",
         [&effects](const std::string& text) { effects.sampler = choice("--sampler", text, kSamplers); });
   value(sub, "--seed", "N", "another seed, an independent picture [0]",
         [&effects](const std::string& text) { effects.seed = std::uint32_t(whole("--seed", text, 0, 2147483647)); });
-  value(sub, "--aa", "KIND", "jitter:N: N x N subpixels; adaptive:T,D: split where corners differ by T, D times",
+  value(sub, "--aa", "off|jitter:N|adaptive:T,D", "N x N subpixels; or pixels split where corners differ by T, D times; off: one sample",
         [&effects](const std::string& text) { parse_aa(text, effects); });
-  value(sub, "--shadows", "KIND", "hard, random:SIZE or area:SIZE,N: point lights become squares of this side",
+  value(sub, "--shadows", "hard|random:SIZE|area:SIZE,N", "of point lights, or of squares of this side in their place",
         [&effects](const std::string& text) { parse_shadows(text, effects); });
   value(sub, "--lens", "A,F,N", "aperture in pixels, focal distance, lens points a subpixel",
         [&effects](const std::string& text) { parse_lens(text, effects); });
@@ -303,14 +315,14 @@ void add_render(CLI::App& app, RenderCommand& command) {
   add_build_options(sub, command.build);
   value(sub, "--mailbox", "on|off", "test a primitive once per ray however many cells hold it [on]",
         [&command](const std::string& text) { command.render.mailbox = choice("--mailbox", text, kSwitch) == 1; });
-  value(sub, "--isa", "NAME", "scalar, sse2, avx2, avx512 or best [best]",
+  value(sub, "--isa", "scalar|sse2|avx2|avx512|best", "instruction set [best]",
         [&command](const std::string& text) { command.render.isa = choice("--isa", text, kIsas); });
   value(sub, "--precision", "single|double", "of the tests of rays and primitives [single]",
         [&command](const std::string& text) { command.render.precision = choice("--precision", text, kPrecisions); });
   value(sub, "--packet", "1|16|64|256", "most rays that march together [256]",
         [&command](const std::string& text) { command.render.packet = choice("--packet", text, kPackets); });
   value(sub, "--stats", "FILE", "write counts and times as JSON",
-        [&command](const std::string& text) { command.stats = text; });
+        [&command](const std::string& text) { command.stats = file_name("--stats", text); });
   sub.add_flag("--quiet", command.quiet, "no progress bar, no summary line");
   add_input_options(sub, command.input);
   sub.add_flag("--srgb", command.srgb, "PNG: colours are light, show them through the sRGB curve");
@@ -358,14 +370,35 @@ void add_scene(CLI::App& app, SceneCommand& command) {
     command.size = whole("--size", text, 0, 1000);
   });
   value(sub, "-o,--output", "FILE", "[stdout; a scene with a mesh: its name with .nff and .ply]",
-        [&command](const std::string& text) { command.output = text; });
+        [&command](const std::string& text) { command.output = file_name("-o", text); });
   sub.add_flag("--spd", command.spd, "balls, mount: as SPD writes them, not as the course does");
   sub.add_flag("--list", command.list, "list the scenes and their sizes");
 }
 
+std::vector<std::string> option_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* o : app.get_options()) {
+    for (const std::string& name : o->get_lnames()) names.push_back("--" + name);
+    for (const std::string& name : o->get_snames()) names.push_back("-" + name);
+  }
+  return names;
+}
+
+/// `; did you mean --size?`, or nothing.
+std::string meant_option(const CLI::App& app, const std::string& word) {
+  const std::vector<std::string> names = option_names(app);
+  return did_you_mean(word.substr(0, word.find('=')), std::vector<std::string_view>(names.begin(), names.end()));
+}
+
+void want_known_option(const CLI::App& app, const std::string& word) {
+  const std::vector<std::string> names = option_names(app);
+  if (std::find(names.begin(), names.end(), word) == names.end())
+    throw UsageError("The following argument was not expected: " + word + meant_option(app, word) + " (see --help)");
+}
+
 /// CLI11 would only say that a command is missing.
 void want_known_command(const CLI::App& app, const std::string& word) {
-  if (word.empty() || word.front() == '-') return;
+  if (word.starts_with('-')) return want_known_option(app, word);
   std::string commands;
   std::vector<std::string_view> names;
   for (const CLI::App* sub : app.get_subcommands({})) {
@@ -414,14 +447,17 @@ const CLI::App& asked(const CLI::App& app) {
 }
 
 /// The option that the first word nobody took was probably meant to be.
-std::string meant_option(const CLI::App& app) {
+std::string meant_option_left(const CLI::App& app) {
   const std::vector<std::string> left = app.remaining(true);
   const auto option = std::find_if(left.begin(), left.end(), [](const std::string& word) { return word.starts_with('-'); });
-  if (option == left.end()) return "";
-  std::vector<std::string> names;
+  return option == left.end() ? "" : meant_option(asked(app), *option);
+}
+
+/// Of the first option that was given more than once: CLI11 would count.
+void refuse_twice(const CLI::App& app) {
   for (const CLI::Option* o : asked(app).get_options())
-    for (const std::string& name : o->get_lnames()) names.push_back("--" + name);
-  return did_you_mean(option->substr(0, option->find('=')), std::vector<std::string_view>(names.begin(), names.end()));
+    if (!o->get_positional() && o->get_expected_max() == 1 && o->count() > 1)
+      throw UsageError(o->get_name() + ": wanted once, found \"" + o->results()[0] + "\" and \"" + o->results()[1] + '"');
 }
 
 struct Commands {
@@ -484,12 +520,19 @@ std::vector<CommandHelp> all_commands() {
   return all;
 }
 
+/// `grelha help COMMAND` as `grelha COMMAND --help`
+static Command help_of_command(const char* program, const std::string& command) {
+  const char* const words[] = {program, command.empty() ? "--help" : command.c_str(), "--help"};
+  return parse_command(command.empty() ? 2 : 3, words);
+}
+
 Command parse_command(int argc, const char* const* argv) {
   CLI::App app{"", "grelha"};
   app.set_version_flag("--version", "grelha " GRELHA_VERSION);
   app.require_subcommand(1);
   Commands commands;
   add_commands(app, commands);
+  if (argc > 1 && argv[1] == std::string_view("help")) return help_of_command(argv[0], argc > 2 ? argv[2] : "");
   if (argc > 1) want_known_command(app, argv[1]);
   try {
     app.parse(argc, argv);
@@ -500,8 +543,9 @@ Command parse_command(int argc, const char* const* argv) {
   } catch (const CLI::CallForVersion& version) {
     return TextCommand{std::string(version.what()) + '\n'};
   } catch (const CLI::ExtrasError& error) {
-    throw UsageError(first_line(error.what()) + meant_option(app) + " (see --help)");
+    throw UsageError(first_line(error.what()) + meant_option_left(app) + " (see --help)");
   } catch (const CLI::ParseError& error) {
+    refuse_twice(app);
     throw UsageError(first_line(error.what()) + " (see --help)");
   }
   if (app.got_subcommand("info")) return commands.info;

@@ -23,7 +23,7 @@ std::vector<std::string> choices(const OptionHelp& o) {
   std::vector<std::string> words;
   if (o.placeholder.find('|') == std::string::npos) return words;
   std::istringstream in(o.placeholder);
-  for (std::string w; std::getline(in, w, '|');) words.push_back(w);
+  for (std::string w; std::getline(in, w, '|');) words.push_back(w.substr(0, std::min(w.find(':'), w.size() - 1) + 1));  // adaptive:T,D: up to the colon
   return words;
 }
 
@@ -46,7 +46,7 @@ constexpr const char* kMade = "made by the build from the options themselves";
 }  // namespace
 
 std::string man_page(const std::vector<CommandHelp>& commands) {
-  std::string text = ".\\\" " + std::string(kMade) + "\n.TH GRELHA 1 \"\" \"grelha " GRELHA_VERSION "\" \"User Commands\"\n"
+  std::string text = ".\\\" " + std::string(kMade) + "\n.TH GRELHA 1 \"" GRELHA_DATE "\" \"grelha " GRELHA_VERSION "\" \"User Commands\"\n"
                      ".SH NAME\ngrelha \\- data\\-oriented SIMD ray tracer on a uniform grid\n.SH SYNOPSIS\n";
   for (const CommandHelp& c : commands) text += ".B grelha " + c.name + "\n.RI \"" + roff(c.usage) + " [\" OPTIONS ]\n.br\n";
   text += ".B grelha\n.RB [ \\-\\-help | \\-\\-help\\-all | \\-\\-version ]\n"
@@ -65,10 +65,17 @@ std::string man_page(const std::vector<CommandHelp>& commands) {
     if (c.footer.empty()) continue;
     text += ".PP\n.nf\n";
     std::istringstream lines(c.footer);
-    for (std::string line; std::getline(lines, line);) text += roff(line) + '\n';
+    for (std::string line; std::getline(lines, line);)  // whoever reads this has the scenes where FILES says
+      text += roff(replaced(replaced(line, "scenes/data/", ""), "scenes/data", "scenes")) + '\n';
     text += ".fi\n";
   }
-  return text + ".SH EXIT STATUS\n0; 1 when reading or writing a file fails; 2 for bad usage or a scene that cannot be one; 129, 130 and 143 when stopped by SIGHUP, SIGINT and SIGTERM.\n";
+  text += ".SH FILES\n.TP\n.I PREFIX/share/grelha/scenes\nscenes to begin with; PREFIX is /usr for the Debian package\n"
+          ".TP\n.I PREFIX/share/doc/grelha\nREADME.md, CHANGELOG.md, farm.sh (one picture by a Slurm array), examples of the library\n"
+          ".TP\n.I *.grelha\npart of a picture, or what a checkpoint keeps\n"
+          ".TP\n.IR FILE .new\nthe checkpoint FILE while it is written\n"
+          ".TP\n.RI . FILE .grelha\\-tmp\nany other FILE while it is written\n";
+  return text + ".SH EXIT STATUS\n0; 1 when reading or writing a file fails; 2 for bad usage or a scene that cannot be one; 129, 130 and 143 when stopped by SIGHUP, SIGINT and SIGTERM.\n"
+                ".SH SEE ALSO\n.BR gzip (1),\n.BR mpirun (1),\n.BR sbatch (1)\n";
 }
 
 std::string bash_completion(const std::vector<CommandHelp>& commands) {
@@ -96,6 +103,7 @@ std::string bash_completion(const std::vector<CommandHelp>& commands) {
          "  [ -n \"$words\" ] || [[ $cur != -* ]] || case ${COMP_WORDS[1]} in\n" + options +
          "  esac\n"
          "  [ -z \"$words\" ] || COMPREPLY=($(compgen -W \"$words\" -- \"$cur\"))\n"
+         "  [[ ${COMPREPLY[0]-} != *: ]] || compopt -o nospace 2>/dev/null || true\n"
          "}\n"
          "complete -o bashdefault -o default -F _grelha grelha\n";
 }
@@ -115,7 +123,7 @@ std::string zsh_completion(const std::vector<CommandHelp>& commands) {
       for (const std::string& n : o.names) {
         text += "      '" + n + '[' + quoted(o.text) + ']';
         if (!o.placeholder.empty()) {
-          const std::string words = join(choices(o));
+          const std::string words = replaced(join(choices(o)), ":", "\\:");
           text += ':' + quoted(o.placeholder) + ':' + (takes_file(o) ? "_files" : words.empty() ? " " : '(' + words + ')');
         }
         text += "' \\\n";

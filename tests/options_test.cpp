@@ -168,6 +168,12 @@ std::size_t widest(const std::string& text) {
   return most;
 }
 
+TEST(Help, IsAWordToo) {
+  const auto text = [](const std::string& line) { return std::get<TextCommand>(parse(line)).text; };
+  EXPECT_EQ(text("help"), text("--help"));
+  EXPECT_EQ(text("help render"), text("render --help"));
+}
+
 TEST(Help, FitsAScreenAndSaysHow) {
   for (const char* line : {"--help", "render --help", "info -h", "compare --help", "scene --help"}) {
     const std::string text = std::get<TextCommand>(parse(line)).text;
@@ -188,6 +194,14 @@ TEST(Help, FitsAScreenAndSaysHow) {
 TEST(Errors, SayWhatWasWantedAndFound) {
   const std::pair<const char*, const char*> table[] = {
       {"", "A subcommand is required (see --help)"},
+      {"--hlp", "The following argument was not expected: --hlp; did you mean --help? (see --help)"},
+      {"--quiet render a", "The following argument was not expected: --quiet (see --help)"},
+      {"help rendr", "command: wanted one of render, info, compare, merge, scene, found \"rendr\"; did you mean render?"},
+      {"render a --size 2x2 --depth 3 --size 3x3", "--size: wanted once, found \"2x2\" and \"3x3\""},
+      {"render a -o a.png --output=b.png", "--output: wanted once, found \"a.png\" and \"b.png\""},
+      {"render a --shadows hrd", "--shadows: wanted hard, random:SIZE or area:SIZE,N, found \"hrd\"; did you mean hard?"},
+      {"render a --aa adptive:1,2", "--aa: wanted off, jitter:N or adaptive:THRESHOLD,DEPTH, found \"adptive:1,2\"; did you mean adaptive:1,2?"},
+      {"render a --shadows random", "--shadows: wanted hard, random:SIZE or area:SIZE,N, found \"random\""},
       {"rendr x.nff", "command: wanted one of render, info, compare, merge, scene, found \"rendr\"; did you mean render?"},
       {"nothing x.nff", "command: wanted one of render, info, compare, merge, scene, found \"nothing\""},
       {"render", "SCENE is required (see --help)"},

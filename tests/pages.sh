@@ -15,8 +15,17 @@ expect() { [ "$1" = "$2" ] || fail "wanted \"$2\", found \"$1\""; }
 expect "$(completed grelha re)" "render"
 expect "$(completed grelha render --samples)" "--samples --samples-map"
 expect "$(completed grelha render a.nff --accel '')" "grid none"
+expect "$(completed grelha render a.nff --isa av)" "avx2 avx512"
+expect "$(completed grelha render a.nff --sampler '')" "sobol jitter unshuffled random"
+expect "$(completed grelha render a.nff --aa '')" "off jitter: adaptive:"
+expect "$(completed grelha render a.nff --shadows r)" "random:"
 expect "$(completed grelha scene ba)" "balls"
 expect "$(completed grelha compare a.png)" ""  # then bash offers files
+
+page=$pages/grelha.1
+grep -q '^\.TH GRELHA 1 "[0-9]*-[0-9]*-[0-9]*" "grelha ' "$page" || fail "the man page has no date"
+for section in FILES "SEE ALSO"; do grep -qx ".SH $section" "$page" || fail "the man page has no $section"; done
+if grep -q scenes/data "$page"; then fail "the man page names a folder of the sources"; fi
 
 bash -n "$pages/grelha.bash"
 if command -v zsh >/dev/null; then zsh -n "$pages/_grelha"; fi
