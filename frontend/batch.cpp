@@ -25,6 +25,7 @@ Names files_of(const std::string& folder) {
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
     const std::string name = it->path().string();
+    if (it->is_fifo(error)) continue;  // to read one is to wait for a writer: by its own name only
     if (ends_with_any(name, {".nff", ".p3f"})) scenes.push_back(name);
     if (ends_with_any(name, {".ply"})) meshes.push_back(name);
   }
@@ -55,7 +56,7 @@ std::string image_for(const std::string& scene, const std::string& output) {
 Names scene_files(const Names& arguments) {
   Names files;
   for (const std::string& argument : arguments) {
-    if (!is_folder(argument)) files.push_back(argument);
+    if (!is_folder(argument)) files.push_back(argument == "-" ? "/dev/stdin" : argument);
     else for (std::string& file : files_of(argument)) files.push_back(std::move(file));
   }
   return files;
@@ -67,6 +68,7 @@ std::vector<RenderCommand> commands_for(const RenderCommand& command) {
   for (const std::string& scene : scenes) {
     RenderCommand one = command;
     one.scenes = {scene}, one.scene = scene, one.image = image_for(scene, command.image);
+    one.work.kept_till_the_last = scenes.size() > 1;
     const auto want_folder = [&one](const std::string& pattern, const std::string& file) {
       const fs::path folder = fs::path(file).parent_path();
       if (!folder.empty() && (pattern.ends_with('/') || pattern.find(kPlace) != std::string::npos)) one.folders.push_back(folder.string());

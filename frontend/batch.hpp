@@ -8,7 +8,7 @@
 
 namespace grelha {
 
-/// The files that arguments name: a file itself, in a folder its .nff and .p3f files or, where it has none, its .ply files (each
+/// The files that arguments name: a file itself (- is /dev/stdin), in a folder its .nff and .p3f files or, where it has none, its .ply files (each
 /// also .gz), by name. Throws FileError for a folder that cannot be read or has none.
 std::vector<std::string> scene_files(const std::vector<std::string>& arguments);
 

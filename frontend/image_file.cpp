@@ -50,7 +50,7 @@ std::string read_bytes(const std::string& path) {
   std::ostringstream bytes;
   if (file.peek() != std::ifstream::traits_type::eof()) bytes << file.rdbuf();  // << takes an empty file for a failure
   if (!file.is_open() || file.bad() || !bytes)
-    throw FileError(path, std::string("cannot read: ") + std::strerror(errno ? errno : EIO));
+    throw FileError(path, std::string(file.is_open() ? "cannot read: " : "cannot open: ") + std::strerror(errno ? errno : EIO));
   return std::move(bytes).str();
 }
 
@@ -221,9 +221,9 @@ void write_image(const std::string& path, const Image& image, Tone tone) {
 }
 
 Image read_image(const std::string& path) {
+  const std::string bytes = read_bytes(path);
   const auto format = image_format(path);
   if (!format) throw FileError(path, "not a picture this program reads (.png, .hdr, .pfm)");
-  const std::string bytes = read_bytes(path);
   return *format == ImageFormat::pfm ? read_pfm(path, bytes) : read_by_stb(path, bytes, *format);
 }
 

@@ -20,25 +20,31 @@ struct CloseFile {
   void operator()(std::FILE* file) const { std::fclose(file); }
 };
 
-/// Half of the machine's memory, at most 8 GiB: a scene beyond that could not be built anyway.
-std::size_t inflate_limit() {
-  constexpr std::size_t kMost = std::size_t(8) << 30;
-  const long pages = sysconf(_SC_PHYS_PAGES), page_size = sysconf(_SC_PAGE_SIZE);
-  if (pages <= 0 || page_size <= 0) return kMost;
-  return std::min(kMost, std::size_t(pages) / 2 * std::size_t(page_size));
+/// What a pipe holds is known when it ends.
+std::string read_to_the_end(std::FILE* file) {
+  std::string bytes;
+  std::size_t read = 0;
+  do {
+    bytes.resize(std::max<std::size_t>(1 << 16, 2 * read));
+    read += std::fread(bytes.data() + read, 1, bytes.size() - read, file);
+  } while (read == bytes.size());
+  bytes.resize(read);
+  return bytes;
 }
 
-std::string read_bytes(const std::string& path, LoadProgress* progress) {
+std::string read_bytes(const std::string& path, LoadProgress* progress, bool pipe_too) {
   struct stat about {};
   if (stat(path.c_str(), &about) != 0) throw FileError(path, std::string("cannot open: ") + std::strerror(errno));
   if (S_ISDIR(about.st_mode)) throw FileError(path, std::string("cannot read: ") + std::strerror(EISDIR));
-  if (!S_ISREG(about.st_mode)) throw FileError(path, "cannot read: not a regular file");
+  const bool pipe = pipe_too && S_ISFIFO(about.st_mode);
+  if (!S_ISREG(about.st_mode) && !pipe) throw FileError(path, "cannot read: not a regular file");
   const std::unique_ptr<std::FILE, CloseFile> file(std::fopen(path.c_str(), "rb"));
   if (!file) throw FileError(path, std::string("cannot open: ") + std::strerror(errno));
-  std::string bytes(std::size_t(about.st_size), '\0');
+  std::string bytes(pipe ? 0 : std::size_t(about.st_size), '\0');
+  if (pipe) bytes = read_to_the_end(file.get());
   if (progress) progress->expect((1 + kParsing) * double(bytes.size()));
   constexpr std::size_t kPiece = std::size_t(1) << 24;
-  std::size_t have = 0;
+  std::size_t have = pipe ? bytes.size() : 0;
   for (std::size_t got = 1; got > 0 && have < bytes.size(); have += got) {
     got = std::fread(bytes.data() + have, 1, std::min(kPiece, bytes.size() - have), file.get());
     if (progress) progress->done(double(got));
@@ -115,11 +121,20 @@ std::string inflate_gzip(const std::string& path, std::string_view data, std::si
   return Inflater(path, data, progress).run(limit);
 }
 
-std::string load_file(const std::string& path, LoadProgress* progress) {
-  std::string bytes = read_bytes(path, progress);
+// Half of the machine's memory, at most 8 GiB: a scene beyond that could not be built anyway.
+std::size_t inflate_limit(std::size_t bytes) {
+  constexpr std::size_t kMost = std::size_t(8) << 30, kAlways = std::size_t(1) << 28, kTimes = 64;
+  const std::size_t most = std::min(kMost, bytes < kMost / kTimes ? kAlways + kTimes * bytes : kMost);
+  const long pages = sysconf(_SC_PHYS_PAGES), page_size = sysconf(_SC_PAGE_SIZE);
+  if (pages <= 0 || page_size <= 0) return most;
+  return std::min(most, std::size_t(pages) / 2 * std::size_t(page_size));
+}
+
+std::string load_file(const std::string& path, LoadProgress* progress, bool pipe_too) {
+  std::string bytes = read_bytes(path, progress, pipe_too);
   if (!is_gzip(bytes)) return bytes;
   if (progress) progress->expect(kInflating * double(bytes.size()));
-  std::string inflated = inflate_gzip(path, bytes, inflate_limit(), progress);
+  std::string inflated = inflate_gzip(path, bytes, inflate_limit(bytes.size()), progress);
   if (progress) progress->expect(kParsing * (double(inflated.size()) - double(bytes.size())));
   return inflated;
 }

@@ -268,7 +268,7 @@ bool NffReader::is_outside(const std::string& path) const {
   std::error_code error;
   const std::filesystem::path home = std::filesystem::canonical(folder_.empty() ? "." : folder_, error);
   if (error) return true;
-  const std::filesystem::path file = std::filesystem::weakly_canonical(path, error);
+  const std::filesystem::path file = std::filesystem::weakly_canonical(std::filesystem::absolute(path), error);  // else what is not there stays relative
   if (error) return true;
   return std::mismatch(home.begin(), home.end(), file.begin(), file.end()).first != home.end();
 }
@@ -280,16 +280,17 @@ void NffReader::read_ply(std::string_view keyword) {
   const std::string path = (folder_ / std::string(name)).string();
   if (!options_.allow_outside && is_outside(path))
     throw ParseError(input_.position(name), "wanted a file in the scene's folder or below it (or --allow-outside), found " + quoted(name));
-  std::string bytes;
+  Mesh mesh;
   try {
-    bytes = load_file(path, load_);
+    std::string bytes = load_file(path, load_);
+    mesh = read_ply_mesh(path, bytes, load_);
+    file_.source_bytes = std::max<std::uint64_t>(file_.source_bytes, words_.size() + bytes.size());
+  } catch (const std::bad_alloc&) {
+    throw OutOfMemory(path);
   } catch (const FileError& error) {
     const std::string reason = std::string(error.what()).substr(path.size() + std::string_view(": error: ").size());
     throw FileError(path, reason + " (named at " + input_.position(name).text() + ')');
   }
-  Mesh mesh = read_ply_mesh(path, bytes, load_);
-  file_.source_bytes = std::max<std::uint64_t>(file_.source_bytes, words_.size() + bytes.size());
-  std::string().swap(bytes);  // as large as what is made of it
   const std::size_t faces = mesh.face_count();
   const Triangles& triangles = file_.scene.geometry.triangles;
   constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max();

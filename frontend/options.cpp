@@ -410,13 +410,6 @@ void want_known_command(const CLI::App& app, const std::string& word) {
 }
 
 /// The same for all ways to write one path, as far as the file system can be asked.
-std::filesystem::path whole_path(const std::string& path) {
-  std::error_code error;
-  const std::filesystem::path absolute = std::filesystem::absolute(path, error);
-  const std::filesystem::path whole = std::filesystem::weakly_canonical(absolute, error);
-  return error ? absolute.lexically_normal() : whole;
-}
-
 void check_long_work(const RenderCommand& command) {
   const LongWork& w = command.work;
   const bool sums = !command.render.refine.on() && !command.effects.adaptive.on, part_file = is_partial_name(command.image);

@@ -30,6 +30,7 @@ struct LongWork {
   std::string checkpoint;              ///< file to save to, and to go on from, or empty
   double save_every = 60;              ///< seconds
   double show_every = 0;               ///< seconds between pictures of what there is so far; 0: none
+  bool kept_till_the_last = false;     ///< the checkpoint: until the pictures of all scenes are written
   bool is_part() const { return rows || samples; }
 };
 

@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <new>
+#include <stdexcept>
 #include <utility>
 
 #include "frontend/default_view.hpp"
@@ -59,14 +61,18 @@ void warn_of_dropped(const std::string& path, const Dropped& dropped, const Warn
 
 }  // namespace
 
-SceneFile read_scene(const std::string& path, const Warn& warn, const ReadOptions& options) {
+SceneFile read_scene(const std::string& path, const Warn& warn, const ReadOptions& options) try {
   LoadProgress progress(options.progress);
-  std::string bytes = load_file(path, &progress);
+  std::string bytes = load_file(path, &progress, true);
   refuse_placeholders(path, bytes);
   SceneFile file = is_ply(path, bytes) ? read_mesh_alone(path, std::move(bytes), progress) : read_nff(path, bytes, warn, options, &progress);
   progress.finish();
   warn_of_dropped(path, file.dropped, warn);
   return file;
+} catch (const std::bad_alloc&) {
+  throw OutOfMemory(path);
+} catch (const std::length_error&) {  // a vector beyond its largest size
+  throw OutOfMemory(path);
 }
 
 }  // namespace grelha

@@ -73,14 +73,14 @@ bool looks_like_number(std::string_view word) {
   return to_number(word, ignored);
 }
 
-std::string quoted(std::string_view word) {
+std::string printable(std::string_view word) {
   constexpr std::size_t kLongest = 40;
-  if (word.empty()) return "end of file";
-  std::string shown = "\"";
+  std::string shown;
   for (const char c : word.substr(0, kLongest)) shown += (c >= ' ' && c <= '~') ? c : '?';
-  if (word.size() > kLongest) shown += "...";
-  return shown + '"';
+  return word.size() > kLongest ? shown + "..." : shown;
 }
+
+std::string quoted(std::string_view word) { return word.empty() ? "end of file" : '"' + printable(word) + '"'; }
 
 Words::Words(std::string file, std::string_view text, std::size_t begin, char comment)
     : file_(std::move(file)),

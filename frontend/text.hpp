@@ -11,10 +11,13 @@ namespace grelha {
 
 class LoadProgress;
 
-/// The whole file; gzip data (told by their first two bytes) come back inflated.
+/// The whole file; gzip data (told by their first two bytes) come back inflated. Only `pipe_too` lets it be a pipe, for which one waits.
 /// Throws FileError when it cannot be read, ParseError when the gzip data are broken or inflate beyond reason.
 /// `progress` is told of what is read, and of what parsing it will be.
-std::string load_file(const std::string& path, LoadProgress* progress = nullptr);
+std::string load_file(const std::string& path, LoadProgress* progress = nullptr, bool pipe_too = false);
+
+/// How much so many bytes of gzip data may inflate to: text of scenes shrinks to a third or a tenth, a bomb to a thousandth.
+std::size_t inflate_limit(std::size_t bytes);
 
 /// Inflates gzip data of one or more members; `path` is for messages. Refuses to grow past `limit` bytes.
 std::string inflate_gzip(const std::string& path, std::string_view data, std::size_t limit, LoadProgress* progress = nullptr);
@@ -28,6 +31,9 @@ bool to_integer(std::string_view word, std::int64_t& value);
 
 /// Whether a word is meant as a number, well formed or not: a digit follows its sign and point, or it reads as one.
 bool looks_like_number(std::string_view word);
+
+/// Shortened, nothing unprintable.
+std::string printable(std::string_view word);
 
 /// A word as it stands in a message: quoted, shortened, nothing unprintable; "end of file" for the empty word.
 std::string quoted(std::string_view word);

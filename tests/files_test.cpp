@@ -1,4 +1,5 @@
 // What the program may write over, and what it may not, however it is called.
+#include "frontend/memory_limit.hpp"
 #include "frontend/place.hpp"
 #include "tests/support/running.hpp"
 
@@ -107,6 +108,47 @@ TEST_F(Files, FoldersForPicturesAreMade) {
   for (const char* name : {"pictures/ball.png", "deep/er/ball.pfm", "counts/ball.json"}) EXPECT_NE(folder_.read(name), "") << name;
   EXPECT_EQ(run("render ball.nff -o no/x.png").err, "no/x.png: error: cannot write: No such file or directory\n") << "a slip, more likely";
   EXPECT_EQ(run("render ball.nff -o ball.nff/").err, "ball.nff: error: cannot make this folder: Not a directory\n");
+}
+
+TEST_F(Files, ASceneComesThroughAPipe) {
+  ASSERT_EQ(run("render ball.nff -o whole.pfm --quiet").status, 0);
+  EXPECT_EQ(run("render /dev/stdin -o a.pfm --quiet", "sh -c \"cat ball.nff | \\$0 \\$*\" ").err, "");
+  EXPECT_EQ(run("render - --quiet", "sh -c \"gzip <ball.nff | \\$0 \\$*\" ").err, "");
+  EXPECT_EQ(folder_.read("a.pfm"), folder_.read("whole.pfm"));
+  EXPECT_EQ(folder_.list(), "a.pfm ball.nff stdin.png whole.pfm");
+  EXPECT_EQ(run("render - -o b.pfm").err, "/dev/stdin: error: cannot read: not a regular file\n") << "it is /dev/null";
+}
+
+/// Of meshes, and of what lies in a folder, one does not know that somebody will write into them.
+TEST_F(Files, NoOtherPipeIsWaitedFor) {
+  std::filesystem::create_directory(folder_.file("in"));
+  folder_.write("in/scene.nff", std::string(kBall) + "ply mesh.ply\n");
+  ASSERT_EQ(mkfifo(folder_.file("in/mesh.ply").c_str(), 0600), 0);
+  ASSERT_EQ(mkfifo(folder_.file("in/pipe.nff").c_str(), 0600), 0);
+  EXPECT_EQ(run("info in").err, "in/mesh.ply: error: cannot read: not a regular file (named at in/scene.nff:12:5)\n");
+}
+
+TEST_F(Files, AMeshThatIsNotThereIsNotOutside) {
+  std::filesystem::create_directory(folder_.file("in"));
+  folder_.write("in/scene.nff", std::string(kBall) + "ply nothere.ply\n");
+  const std::string why = "nothere.ply: error: cannot open: No such file or directory (named at ";
+  EXPECT_EQ(run("info in/scene.nff").err, "in/" + why + "in/scene.nff:12:5)\n");
+  EXPECT_EQ(run("info scene.nff", "cd in &&").err, why + "scene.nff:12:5)\n");
+}
+
+TEST_F(Files, TheFileThereIsNoMemoryForIsNamed) {
+  if (!memory_can_be_limited()) GTEST_SKIP() << "sanitizers own more memory than there is";
+  folder_.write("large.nff", std::string(kBall) + std::string(std::size_t(100) << 20, ' '));
+  folder_.write("large.ply", std::string(std::size_t(100) << 20, ' '));
+  folder_.write("mesh.nff", std::string(kBall) + "ply large.ply\n");
+  const std::string why = ": error: out of memory (--max-memory sets how much there is)\n";
+  EXPECT_EQ(run("info ball.nff large.nff --max-memory 64M").err, "large.nff" + why);
+  EXPECT_EQ(run("info mesh.nff --max-memory 64M").err, "large.ply" + why);
+}
+
+TEST_F(Files, AnEmptyNameIsNone) {
+  for (const std::string option : {"--checkpoint", "--stats"}) expect_refused("render ball.nff " + option + " ''", option + ": wanted a file name, found \"\"");
+  expect_refused("scene balls -o ''", "-o: wanted a file name, found \"\"");
 }
 
 TEST_F(Files, NamesTooLongAreOneLineOfOurs) {

@@ -150,7 +150,7 @@ TEST(ReadImage, RefusesWhatItIsNot) {
   TemporaryFolder folder;
   for (const char* name : {"a.png", "a.hdr", "a.pfm"}) {
     EXPECT_EQ(error_of([&] { read_image(folder.file(name)); }),
-              folder.file(name) + ": error: cannot read: No such file or directory");
+              folder.file(name) + ": error: cannot open: No such file or directory");
     const auto path = folder.write(name, "GIF89a, not what the name says");
     EXPECT_NE(error_of([&] { read_image(path); }).find(": error: not a "), std::string::npos);
   }
@@ -161,8 +161,9 @@ TEST(ReadImage, RefusesWhatItIsNot) {
   std::filesystem::create_directory(folder.file("d.png"));
   EXPECT_EQ(error_of([&] { read_image(folder.file("d.png")); }),
             folder.file("d.png") + ": error: cannot read: Is a directory");
-  EXPECT_EQ(error_of([&] { read_image("x.jpg"); }),
-            "x.jpg: error: not a picture this program reads (.png, .hdr, .pfm)");
+  const auto other = folder.write("x.jpg", "");
+  EXPECT_EQ(error_of([&] { read_image(other); }), other + ": error: not a picture this program reads (.png, .hdr, .pfm)");
+  EXPECT_EQ(error_of([&] { read_image("/nothere"); }), "/nothere: error: cannot open: No such file or directory");
 }
 
 TEST(ImageFormat, GoesByTheEnding) {

@@ -1,3 +1,4 @@
+#include "frontend/memory_limit.hpp"
 #include "frontend/text.hpp"
 
 #include <gtest/gtest.h>
@@ -133,6 +134,9 @@ TEST(Gzip, InflatesMembersOneAfterTheOther) {
   EXPECT_EQ(inflate_gzip("f.gz", gzip("abc") + gzip("def"), 100), "abcdef");
   EXPECT_EQ(inflate_gzip("f.gz", gzip("abc") + "tail", 100), "abc");
   EXPECT_EQ(inflate_gzip("f.gz", gzip(""), 100), "");
+  constexpr std::size_t kMiB = std::size_t(1) << 20;
+  EXPECT_LE(inflate_limit(8 * kMiB), 768 * kMiB) << "a bomb of 8 MiB holds 8 GiB";
+  EXPECT_GE(inflate_limit(0), std::min(256 * kMiB, std::size_t(machine_memory() / 2)));
 }
 
 TEST(Gzip, RefusesBrokenAndBoundlessData) {
