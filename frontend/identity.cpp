@@ -7,6 +7,7 @@
 
 #include "frontend/digest.hpp"
 #include "frontend/report.hpp"
+#include "frontend/text.hpp"
 
 namespace grelha {
 namespace {
@@ -86,19 +87,39 @@ std::string settings_text(const RenderCommand& prepared, const Camera& camera) {
   return words;
 }
 
-std::string difference(const std::string& settings, const std::string& from) {
+namespace {
+
+using WordList = std::vector<std::string>;
+
+bool has(const WordList& words, const std::string& word) { return std::find(words.begin(), words.end(), word) != words.end(); }
+std::string key_of(const std::string& word) { return word.substr(0, word.find('=') + 1); }
+
+/// What one says and the other does not, and what it does not say at all. The words may be anyone's.
+std::string own_words(const WordList& here, const WordList& there) {
+  constexpr int kMost = 8;
+  WordList keys;
+  std::transform(here.begin(), here.end(), std::back_inserter(keys), key_of);
+  std::string own;
+  int found = 0;
+  const auto say = [&](const std::string& word) {
+    if (++found <= kMost) own += (own.empty() ? "" : " ") + word;
+  };
+  for (const std::string& w : here)
+    if (!has(there, w)) say(printable(w));
+  for (const std::string& w : there)
+    if (!has(keys, key_of(w))) say("no " + printable(key_of(w)));
+  return found > kMost ? own + " ..." : own;
+}
+
+}  // namespace
+
+std::string difference(const std::string& settings, const std::string& other, const std::string& name) {
   const auto words = [](const std::string& all) {
     std::istringstream in(all);
-    return std::vector<std::string>(std::istream_iterator<std::string>(in), {});
+    return WordList(std::istream_iterator<std::string>(in), {});
   };
-  const auto missing = [](const std::vector<std::string>& of, const std::vector<std::string>& in) {
-    std::string found;
-    for (const std::string& w : of)
-      if (std::find(in.begin(), in.end(), w) == in.end()) found += (found.empty() ? "" : " ") + w;
-    return found.empty() ? std::string("nothing") : found;
-  };
-  const auto here = words(settings), there = words(from);
-  return missing(here, there) + ", not " + missing(there, here);
+  const WordList here = words(settings), there = words(other);
+  return own_words(here, there) + ", " + name + " has " + own_words(there, here);
 }
 
 }  // namespace grelha

@@ -20,7 +20,7 @@ std::string scene_digest(const SceneFile& file);
 /// `camera` and `prepared.render`: after apply_effects(). What changes no bit (threads, isa, packet, grid ...) is left out.
 std::string settings_text(const RenderCommand& prepared, const Camera& camera);
 
-/// The words in which the second differs from the first: `seed=1, not seed=0`.
-std::string difference(const std::string& settings, const std::string& from);
+/// The words in which they differ: `seed=1, NAME has seed=0`.
+std::string difference(const std::string& settings, const std::string& other, const std::string& name);
 
 }  // namespace grelha

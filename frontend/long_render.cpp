@@ -49,7 +49,7 @@ Work saved_work(const std::string& path, const Identity& wanted, const Work& beg
     throw UsageError("--checkpoint: " + path + ' ' + why + ": name another file, or remove this one to begin again");
   };
   if (found.identity.scene != wanted.scene) refuse("is of another scene");
-  if (found.identity.settings != wanted.settings) refuse("has " + difference(found.identity.settings, wanted.settings));
+  if (found.identity.settings != wanted.settings) refuse("has " + difference(found.identity.settings, wanted.settings, "this render"));
   if (found.work.index() != begun.index()) refuse("is of another kind");  // whatever its settings claim
   const auto* const sums = std::get_if<Accumulator>(&found.work);
   if (sums && sums->part != std::get<Accumulator>(begun).part) refuse("is of another part, " + part_text(sums->part));

@@ -81,7 +81,7 @@ class Joiner {
     const Accumulator &a = p.sums, &first = joined_.sums;
     if (identity.scene != joined_.identity.scene) throw UsageError(file + " is of another scene than " + files_.front());
     if (identity.settings != joined_.identity.settings)
-      throw UsageError(file + " has " + difference(identity.settings, joined_.identity.settings) + " as " + files_.front());
+      throw UsageError(file + " has " + difference(identity.settings, joined_.identity.settings, files_.front()));
     if (a.width != first.width || a.height != first.height || a.samples != first.samples)  // whatever the settings claim
       throw UsageError(file + " is of a picture of another size than " + files_.front());
   }

@@ -409,7 +409,6 @@ void want_known_command(const CLI::App& app, const std::string& word) {
   throw UsageError("command: wanted one of " + commands + ", found \"" + word + '"' + did_you_mean(word, names));
 }
 
-/// The same for all ways to write one path, as far as the file system can be asked.
 void check_long_work(const RenderCommand& command) {
   const LongWork& w = command.work;
   const bool sums = !command.render.refine.on() && !command.effects.adaptive.on, part_file = is_partial_name(command.image);

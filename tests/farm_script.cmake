@@ -48,8 +48,8 @@ merged(parts --size 200x150 --samples 33)
 task(8 8 8 2 "^farm.sh: error: task 8 is none of those parts was begun with, 3 to 7\n$" ${job})
 
 # Other options, another scene: refused by name, nothing is lost.
-task(3 3 7 2 "--checkpoint: parts/part-00000.kept has depth=5, not depth=3:" ${job} --depth 3)
-task(4 3 7 2 "--checkpoint: parts/part-00001.kept has samples=33, not samples=66:" ${SCENE} parts 66 --size 200x150)
+task(3 3 7 2 "--checkpoint: parts/part-00000.kept has depth=5, this render has depth=3:" ${job} --depth 3)
+task(4 3 7 2 "--checkpoint: parts/part-00001.kept has samples=33, this render has samples=66:" ${SCENE} parts 66 --size 200x150)
 foreach(id RANGE 3 7)
   task(${id} 3 7 0 "^$" ${job})
 endforeach()

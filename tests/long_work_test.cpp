@@ -71,7 +71,7 @@ TEST_F(LongWork, RefusesPartsThatDoNotFitByName) {
   expect_line(run("merge a.grelha -o x.png"), 2,
               "grelha: error: the parts are rows 0:8, samples 0:1, the picture is rows 0:16, samples 0:1: join them to a .grelha");
   expect_line(run("merge a.grelha other.grelha -o x.png"), 2, "grelha: error: other.grelha is of another scene than a.grelha");
-  expect_line(run("merge a.grelha depth.grelha -o x.png"), 2, "grelha: error: depth.grelha has depth=4, not depth=5 as a.grelha");
+  expect_line(run("merge a.grelha depth.grelha -o x.png"), 2, "grelha: error: depth.grelha has depth=4, a.grelha has depth=5");
   expect_line(run("merge a.grelha gone.grelha -o x.png"), 1, "gone.grelha: error: cannot open: No such file or directory");
   expect_line(run("merge a.grelha ball.nff -o x.png"), 1, "ball.nff: error: not a .grelha partial this program reads");
   std::string bytes = folder_.read("a.grelha");
@@ -177,11 +177,11 @@ TEST_F(LongWork, ACheckpointOfAnotherKindIsLeftAlone) {
   };
   ASSERT_EQ(run("render ball.nff --quiet -o full.pfm --checkpoint kept --error .1").status, 1);
   const std::string bytes = folder_.read("kept");
-  EXPECT_EQ(refusal("--error .2"), "error=0.1, not error=0.2");
-  EXPECT_EQ(refusal("--time 2"), "error=0.1, not time=2");
-  EXPECT_EQ(refusal(""), "error=0.1, not samples=1");
-  EXPECT_EQ(refusal("--aa adaptive:.1,2"), "error=0.1, not samples=1 adaptive=0.1,2");
-  EXPECT_EQ(refusal("--error .1 --seed 4"), "seed=0, not seed=4");
+  EXPECT_EQ(refusal("--error .2"), "error=0.1, this render has error=0.2");
+  EXPECT_EQ(refusal("--time 2"), "error=0.1 no time=, this render has time=2 no error=");
+  EXPECT_EQ(refusal(""), "error=0.1 no samples=, this render has samples=1 no error=");
+  EXPECT_EQ(refusal("--aa adaptive:.1,2"), "error=0.1 no samples= no adaptive=, this render has samples=1 adaptive=0.1,2 no error=");
+  EXPECT_EQ(refusal("--error .1 --seed 4"), "seed=0, this render has seed=4");
   expect_line(run("merge kept -o x.png"), 1,
               "kept: error: the checkpoint of a picture by --error, --time or --aa adaptive, which has no parts");
   EXPECT_EQ(folder_.read("kept"), bytes);
@@ -225,7 +225,7 @@ TEST_F(LongWork, ACheckpointOfAnotherPictureIsLeftAlone) {
   const std::string bytes = folder_.read("kept.grelha"), advice = ": name another file, or remove this one to begin again";
   const std::string error = "grelha: error: --checkpoint: kept.grelha ";
   expect_line(run("render ball.nff --checkpoint kept.grelha"), 2, error + "is of another part, rows 0:8, samples 0:1" + advice);
-  expect_line(run("render ball.nff --checkpoint kept.grelha --seed 2 --rows 0:8 -o x.grelha"), 2, error + "has seed=0, not seed=2" + advice);
+  expect_line(run("render ball.nff --checkpoint kept.grelha --seed 2 --rows 0:8 -o x.grelha"), 2, error + "has seed=0, this render has seed=2" + advice);
   folder_.write("other.nff", std::string(kBall) + "s 0 0 0 2\n");
   expect_line(run("render other.nff --checkpoint kept.grelha --rows 0:8 -o x.grelha"), 2, error + "is of another scene" + advice);
   expect_line(run("render ball.nff --checkpoint other.nff"), 1, "other.nff: error: not a .grelha partial this program reads");

@@ -212,8 +212,9 @@ TEST_F(Merge, RefusesOtherPictures) {
   p = part_of({5, 10}, {0, 8}), p.sums.done[0] = 0, put("begun", p);
   p = part_of({5, 10}, {0, 8}), p.sums.width = 1, p.sums.sums.resize(15), put("narrow", p);
   EXPECT_EQ(complaint({"a", "scene"}), "scene is of another scene than a");
-  EXPECT_EQ(complaint({"a", "seed"}), "seed has seed=1, not seed=0 as a");
-  EXPECT_EQ(complaint({"a", "shadows"}), "shadows has shadows=2, not nothing as a");
+  EXPECT_EQ(complaint({"a", "seed"}), "seed has seed=1, a has seed=0");
+  EXPECT_EQ(complaint({"a", "shadows"}), "shadows has shadows=2, a has no shadows=");
+  EXPECT_EQ(complaint({"shadows", "a"}), "a has no shadows=, shadows has shadows=2");
   folder_.write("squeezed", "\x1F\x8B\x08");
   EXPECT_EQ(complaint({"a", "squeezed"}), "squeezed: error: damaged: its gzip data are broken");
   EXPECT_EQ(complaint({"a", "narrow"}), "narrow is of a picture of another size than a");
@@ -478,24 +479,35 @@ TEST(Identity, NamesAllThatPixelsDependOn) {
     RenderCommand c;
     Camera k;
     change(c, k);
-    return difference(settings_text(c, k), plain);
+    return difference(settings_text(c, k), plain, "a");
   };
-  EXPECT_EQ(words([](RenderCommand&, Camera& k) { k.width = 7; }), "size=7x512, not size=512x512");
+  EXPECT_EQ(words([](RenderCommand&, Camera& k) { k.width = 7; }), "size=7x512, a has size=512x512");
   EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.sampling.samples = 2, c.render.sampling.seed = 4; }),
-            "samples=2 seed=4, not samples=1 seed=0");
-  EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.sampling.sampler = Sampler::kJitter; }), "sampler=jitter, not sampler=sobol");
-  EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.depth = 6; }), "depth=6, not depth=5");
-  EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.refine.error = .01; }), "error=0.01, not samples=1");
-  EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.refine.seconds = 2.5; }), "time=2.5, not samples=1");
-  EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.refine.samples = 7; }), "time=samples:7, not samples=1");
-  EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.subdivision = {true, .1f, 2}; }), "adaptive=0.1,2, not nothing");
-  EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.precision = Precision::kDouble; }), "precision=double, not nothing");
-  EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.effects.shadows = Effects::Shadows{true}; }), "shadows=hard, not nothing");
-  EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.sampling.light_rays = 3; }), "light-rays=3, not nothing");
-  EXPECT_EQ(words([](RenderCommand&, Camera& k) { k.aperture = .1, k.focus = 2; }), "aperture=0.1 focus=2, not nothing");
+            "samples=2 seed=4, a has samples=1 seed=0");
+  EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.sampling.sampler = Sampler::kJitter; }), "sampler=jitter, a has sampler=sobol");
+  EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.depth = 6; }), "depth=6, a has depth=5");
+  EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.refine.error = .01; }), "error=0.01 no samples=, a has samples=1 no error=");
+  EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.refine.seconds = 2.5; }), "time=2.5 no samples=, a has samples=1 no time=");
+  EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.refine.samples = 7; }), "time=samples:7 no samples=, a has samples=1 no time=");
+  EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.subdivision = {true, .1f, 2}; }), "adaptive=0.1,2, a has no adaptive=");
+  EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.precision = Precision::kDouble; }), "precision=double, a has no precision=");
+  EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.effects.shadows = Effects::Shadows{true}; }), "shadows=hard, a has no shadows=");
+  EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.sampling.light_rays = 3; }), "light-rays=3, a has no light-rays=");
+  EXPECT_EQ(words([](RenderCommand&, Camera& k) { k.aperture = .1, k.focus = 2; }), "aperture=0.1 focus=2, a has no aperture= no focus=");
   EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.effects.glossy = {.5f, 2}, c.render.sampling.gloss_rays = 2; }),
-            "roughness=0.5 gloss-rays=2, not nothing");
-  EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.threads = 3, c.render.isa = "sse2", c.render.packet = 16; }), "nothing, not nothing");
+            "roughness=0.5 gloss-rays=2, a has no roughness= no gloss-rays=");
+  RenderCommand other;
+  other.render.threads = 3, other.render.isa = "sse2", other.render.packet = 16;
+  EXPECT_EQ(settings_text(other, camera), plain);
+}
+
+TEST(Identity, PrintsNothingOfAFileAsItStands) {
+  const std::string long_word = "depth=" + std::string(1000, '5'), cut = "depth=" + std::string(34, '5') + "...";
+  EXPECT_EQ(difference("\x1b[2Jseed=\a1 " + long_word, "seed=1", "a"), "?[2Jseed=?1 " + cut + " no seed=, a has seed=1 no ?[2Jseed= no depth=");
+  std::string many;
+  for (int i = 0; i < 1000; ++i) many += " w" + std::to_string(i) + "=1";
+  EXPECT_EQ(difference(many, "w0=1", "a"),
+            "w1=1 w2=1 w3=1 w4=1 w5=1 w6=1 w7=1 w8=1 ..., a has no w1= no w2= no w3= no w4= no w5= no w6= no w7= no w8= ...");
 }
 
 }  // namespace
