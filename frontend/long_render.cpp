@@ -73,8 +73,10 @@ bool is_long_work(const RenderCommand& c, const Ranks& ranks) {
 
 LongRender::LongRender(const RenderCommand& prepared, const Camera& camera, std::string scene, Ranks& ranks, Warn warn)
     : command_(prepared), ranks_(ranks), warn_(std::move(warn)), identity_{std::move(scene), settings_text(prepared, camera)} {
-  ranks_.agree_on(identity_.scene + identity_.settings);
   work_ = new_work(prepared, camera);
+  const auto* const sums = std::get_if<Accumulator>(&work_);
+  ranks_.agree_on(identity_.scene, "has read another scene than the first");
+  ranks_.agree_on(identity_.settings + (sums ? part_text(sums->part) : ""), "was given other options than the first");
   const std::string& checkpoint = prepared.work.checkpoint;
   if (!checkpoint.empty() && exists(checkpoint)) work_ = saved_work(checkpoint, identity_, work_);
 }
@@ -130,7 +132,9 @@ void LongRender::finish() {
     if (!checkpoint.empty()) save();
     throw;
   }
-  if (!checkpoint.empty()) unlink(checkpoint.c_str());
+  if (checkpoint.empty()) return;
+  if (command_.work.kept_till_the_last) save();
+  else unlink(checkpoint.c_str());
 }
 
 void LongRender::save() const { write_checkpoint(command_.work.checkpoint, identity_, work_, true); }

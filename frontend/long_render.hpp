@@ -28,8 +28,8 @@ class LongRender {
   /// signal, otherwise 0. Saves that fail on the way are warned of once, and tried again. `maps` are filled when samples are spent by error.
   int run(const World& world, const Camera& camera, const std::function<void(double)>& progress, RenderStats& stats, SampleMaps& maps);
 
-  /// By the first rank alone: writes picture or partial; then the checkpoint has done its work and is removed. Should the
-  /// writing fail it holds everything.
+  /// By the first rank alone: writes picture or partial; then the checkpoint has done its work and is removed, or, where there are more
+  /// scenes to come, holds everything: so it does should the writing fail.
   void finish();
 
  private:

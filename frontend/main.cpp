@@ -163,13 +163,17 @@ RenderCommand silent(RenderCommand command) {
 
 int render_scene(const RenderCommand& given, Ranks& ranks) {
   const RenderCommand command = ranks.first() ? given : silent(given);
-  want_isa(command.render.isa);
-  if (ranks.first()) prepare_outputs(command);
   RunReport report;
   const Stopwatch load;
   const bool bars = !command.quiet && stderr_is_terminal();
-  SceneFile file = load_scene(command.scene, warn, command.input.read, bars);
-  want_not_read(outputs_of(command), file.meshes);
+  SceneFile file;
+  const auto read = [&] {
+    want_isa(command.render.isa);
+    if (ranks.first()) prepare_outputs(command);
+    file = load_scene(command.scene, warn, command.input.read, bars);
+    want_not_read(outputs_of(command), file.meshes);
+  };
+  if (!ranks.together(read)) return kFileFailed;
   const bool is_long = is_long_work(command, ranks);
   const std::string scene = is_long ? scene_digest(file) : "";
   RenderCommand prepared = command;
@@ -216,14 +220,22 @@ int render_scene(const RenderCommand& given, Ranks& ranks) {
 
 void bound_memory(const InputOptions& input) { limit_memory(input.max_memory > 0 ? input.max_memory : machine_memory()); }
 
-/// Of several scenes each is tried, whatever becomes of the others, until a signal stops one. Ranks go on together or not at all.
+void remove_checkpoint(const RenderCommand& command) {
+  std::error_code ignored;
+  if (command.work.kept_till_the_last && !command.work.checkpoint.empty()) std::filesystem::remove(command.work.checkpoint, ignored);
+}
+
+/// Of several scenes each is tried, whatever becomes of the others, until a signal stops one, or one of several ranks fails alone.
 int run(const RenderCommand& command, Ranks& ranks) {
   bound_memory(command.input);
   int worst = kOk;
-  for (const RenderCommand& one : commands_for(command)) {
-    if (worst >= kSignalled) break;
-    worst = std::max(worst, ranks.count() > 1 ? render_scene(one, ranks) : status_of(ranks, [&] { return render_scene(one, ranks); }));
+  const std::vector<RenderCommand> all = commands_for(command);
+  for (const RenderCommand& one : all) {
+    worst = std::max(worst, status_of(ranks, [&] { return render_scene(one, ranks); }));
+    if (worst >= kSignalled || (ranks.count() > 1 && !ranks.in_step())) break;
   }
+  if (worst == kOk && ranks.first())
+    for (const RenderCommand& one : all) remove_checkpoint(one);
   return worst;
 }
 
@@ -369,6 +381,6 @@ int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // then writing fails, and can be told
   grelha::Ranks ranks(argc, argv);
   const int status = grelha::run_program(argc, argv, ranks);
-  if (status != 0) ranks.abandon();
+  if (status >= grelha::kSignalled || (status != 0 && !ranks.in_step())) ranks.abandon();
   return status;
 }

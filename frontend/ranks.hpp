@@ -19,8 +19,15 @@ class Ranks {
   int count() const { return count_; }
   bool first() const { return rank_ == 0; }  ///< the one that writes and speaks
 
-  /// Throws UsageError on ranks to whom `what` is not what it is to the first.
-  void agree_on(const std::string& what) const;
+  /// Throws UsageError on ranks to whom `what` is not what it is to the first; `otherwise` says what such a rank is or did.
+  void agree_on(const std::string& what, const std::string& otherwise) const;
+
+  /// Runs work that each rank does by itself, and tells each whether all of them managed. Where some did not, theirs is the error that is
+  /// thrown, or the first rank's alone when it is among them: then all go on to something else together.
+  bool together(const std::function<void()>& work);
+
+  /// False from work that all managed to the end of accumulate(): to fail there leaves the others waiting.
+  bool in_step() const { return in_step_; }
 
   /// The others will not come to the end, or need not: this one leaves without waiting for them, and MPI ends them.
   void abandon() { abandoned_ = true; }
@@ -32,7 +39,12 @@ class Ranks {
 
  private:
   int count_ = 1, rank_ = 0;
-  bool abandoned_ = false;
+  bool abandoned_ = false, in_step_ = false;
+
+  struct Managed {
+    bool all, first;
+  };
+  Managed managed(bool here) const;
 };
 
 }  // namespace grelha

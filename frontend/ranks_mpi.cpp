@@ -151,13 +151,20 @@ Ranks::~Ranks() {
   if (!abandoned_) MPI_Finalize();
 }
 
-void Ranks::agree_on(const std::string& what) const {
+Ranks::Managed Ranks::managed(bool here) const {
+  int mine = here, all = 0, by_first = here;
+  MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
+  MPI_Bcast(&by_first, 1, MPI_INT, kFirst, MPI_COMM_WORLD);
+  return {all != 0, by_first != 0};
+}
+
+void Ranks::agree_on(const std::string& what, const std::string& otherwise) const {
   Digest digest;
   digest.bytes(what.data(), what.size());
   const std::uint64_t mine = digest.low64();
   std::uint64_t wanted = mine;
   MPI_Bcast(&wanted, 1, MPI_UINT64_T, kFirst, MPI_COMM_WORLD);
-  if (mine != wanted) throw UsageError("rank " + std::to_string(rank_) + " has read another scene than the first");
+  if (mine != wanted) throw UsageError("rank " + std::to_string(rank_) + ' ' + otherwise);
 }
 
 bool Ranks::accumulate(const World& world, const Camera& camera, const RenderOptions& options, Accumulator& a, RenderStats& stats,
@@ -203,6 +210,7 @@ bool Ranks::accumulate(const World& world, const Camera& camera, const RenderOpt
   }
   if (!first()) {
     outbox.finish(stats.rays);
+    in_step_ = true;
     return true;
   }
   while (ended < count_ - 1 && !stop_seen()) {
@@ -215,6 +223,7 @@ bool Ranks::accumulate(const World& world, const Camera& camera, const RenderOpt
     counter.release();
     abandon();
   }
+  in_step_ = true;
   return is_complete(a);
 }
 

@@ -5,7 +5,8 @@ namespace grelha {
 
 Ranks::Ranks(int&, char**&) {}
 Ranks::~Ranks() = default;
-void Ranks::agree_on(const std::string&) const {}
+Ranks::Managed Ranks::managed(bool here) const { return {here, here}; }
+void Ranks::agree_on(const std::string&, const std::string&) const {}
 
 bool Ranks::accumulate(const World& world, const Camera& camera, const RenderOptions& options, Accumulator& a, RenderStats& stats,
                        const std::function<bool()>&) {

@@ -234,6 +234,19 @@ TEST_F(LongWork, ACheckpointOfAnotherPictureIsLeftAlone) {
   EXPECT_EQ(folder_.read("x.grelha"), bytes);
 }
 
+TEST_F(LongWork, OfSeveralScenesTheFinishedAreNotRenderedAgain) {
+  const std::string job = "render ball.nff later.nff -o {}.pfm --checkpoint {}.kept --stats {}.json ";
+  EXPECT_EQ(run(job).status, 1);
+  EXPECT_EQ(folder_.list(), "ball.json ball.kept ball.nff ball.pfm");
+  EXPECT_NE(folder_.read("ball.json").find("\"primary\": 384"), std::string::npos);
+  const std::string picture = folder_.read("ball.pfm");
+  folder_.write("later.nff", kBall);
+  EXPECT_EQ(run(job).err, "");
+  EXPECT_EQ(folder_.list(), "ball.json ball.nff ball.pfm later.json later.nff later.pfm");
+  EXPECT_NE(folder_.read("ball.json").find("\"primary\": 0"), std::string::npos);
+  EXPECT_TRUE(folder_.read("ball.pfm") == picture && folder_.read("later.pfm") == picture);
+}
+
 /// The picture of 64 x 64 has 48 KiB, its sums 96. Files may have 70: the shell counts in 512 bytes. The thread sanitizer keeps a file of
 /// its own in TMPDIR, which it must not fill either; it does without where it cannot.
 TEST_F(LongWork, AFullDiskIsOneLine) {

@@ -2,7 +2,7 @@
 """Renders by MPI: ranks.py PROGRAM SCENE [MPIRUN]
 
 1 to 4 ranks make the bytes of one process; a rank that dies ends the run, and what the checkpoint kept is gone on with by another
-number of ranks; so it is after SIGINT.
+number of ranks; so it is after SIGINT. Of several scenes all go on after one that cannot be read; ranks given unequal options say so.
 """
 import os, signal, subprocess, sys, tempfile, time
 
@@ -48,6 +48,21 @@ with tempfile.TemporaryDirectory() as folder:
     for n in range(1, 5):
         subprocess.run(ranks(n, "-o", picture), check=True, env=environment)
         want_same(f"{n} ranks")
+
+    small = ["--quiet", "--threads", "1", "--size", "30x20"]
+    subprocess.run(job[:3] + small + ["-o", whole], check=True)
+    for name in ("a.nff", "c.nff"):
+        os.symlink(os.path.abspath(scene), os.path.join(folder, name))
+    run = subprocess.run([mpirun, "--oversubscribe", "-n", "3", program, "render", "a.nff", "missing.nff", "c.nff", "-o", "{}.pfm"] + small,
+                         env=environment, cwd=folder, stderr=subprocess.PIPE, text=True)
+    want(run.returncode == 1, f"with a scene missing: status {run.returncode}")
+    want(run.stderr.count("error:") == 1 and "missing.nff: error: cannot open" in run.stderr, f"with a scene missing: {run.stderr}")
+    for name in ("a.pfm", "c.pfm"):
+        want(open(whole, "rb").read() == open(os.path.join(folder, name), "rb").read(), f"{name}: another picture")
+    one = ["-n", "1", program, "render", os.path.join(folder, "a.nff"), "-o", picture] + small
+    run = subprocess.run([mpirun, "--oversubscribe"] + one + ["--depth", "3", ":"] + one, env=environment, stderr=subprocess.PIPE, text=True)
+    want("grelha: error: rank 1 was given other options than the first\n" in run.stderr, f"unequal options: {run.stderr}")
+    subprocess.run(job + ["-o", whole], check=True)
 
     for what, killed, message in (("a rank killed", 2, "rank 2"), ("SIGINT", None, "")):
         run = subprocess.Popen(ranks(3, "-o", picture, "--checkpoint", kept, "--checkpoint-every", str(alone / 50)), env=environment,
