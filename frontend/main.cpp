@@ -126,7 +126,8 @@ int render_long(LongRender& work, const World& world, const Camera& camera, cons
 
 int stopped(int signal, const RenderCommand& command, double share) {
   char text[64];
-  std::snprintf(text, sizeof text, "grelha: stopped by %s, %.1f %% done", signal == SIGHUP ? "SIGHUP" : signal == SIGINT ? "SIGINT" : "SIGTERM", 100 * share);
+  const char* const name = signal == SIGHUP ? "SIGHUP" : signal == SIGINT ? "SIGINT" : "SIGTERM";
+  std::snprintf(text, sizeof text, "grelha: stopped by %s, %.1f %% done", name, 100 * share);
   warn(text + (" and saved in " + command.work.checkpoint) + ": the same command goes on from there");
   return kSignalled + signal;
 }

@@ -268,7 +268,8 @@ bool NffReader::is_outside(const std::string& path) const {
   std::error_code error;
   const std::filesystem::path home = std::filesystem::canonical(folder_.empty() ? "." : folder_, error);
   if (error) return true;
-  const std::filesystem::path file = std::filesystem::weakly_canonical(std::filesystem::absolute(path), error);  // else what is not there stays relative
+  // Of what is not there weakly_canonical() would leave a relative path.
+  const std::filesystem::path file = std::filesystem::weakly_canonical(std::filesystem::absolute(path), error);
   if (error) return true;
   return std::mismatch(home.begin(), home.end(), file.begin(), file.end()).first != home.end();
 }

@@ -23,7 +23,7 @@ std::vector<std::string> choices(const OptionHelp& o) {
   std::vector<std::string> words;
   if (o.placeholder.find('|') == std::string::npos) return words;
   std::istringstream in(o.placeholder);
-  for (std::string w; std::getline(in, w, '|');) words.push_back(w.substr(0, std::min(w.find(':'), w.size() - 1) + 1));  // adaptive:T,D: up to the colon
+  for (std::string w; std::getline(in, w, '|');) words.push_back(w.substr(0, std::min(w.find(':'), w.size() - 1) + 1));  // of area:N area:
   return words;
 }
 
@@ -74,7 +74,8 @@ std::string man_page(const std::vector<CommandHelp>& commands) {
           ".TP\n.I *.grelha\npart of a picture, or what a checkpoint keeps\n"
           ".TP\n.IR FILE .new\nthe checkpoint FILE while it is written\n"
           ".TP\n.RI . FILE .grelha\\-tmp\nany other FILE while it is written\n";
-  return text + ".SH EXIT STATUS\n0; 1 when reading or writing a file fails; 2 for bad usage or a scene that cannot be one; 129, 130 and 143 when stopped by SIGHUP, SIGINT and SIGTERM.\n"
+  return text + ".SH EXIT STATUS\n0; 1 when reading or writing a file fails; 2 for bad usage or a scene that cannot be one;\n"
+                "129, 130 and 143 when stopped by SIGHUP, SIGINT and SIGTERM.\n"
                 ".SH SEE ALSO\n.BR gzip (1),\n.BR mpirun (1),\n.BR sbatch (1)\n";
 }
 

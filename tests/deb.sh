@@ -12,7 +12,8 @@ deb=$(ls "$2"/grelha_*.deb)
 dpkg-deb -c "$deb" | awk '{print $6}' >"$2/files"
 for file in usr/bin/grelha usr/lib/libgrelha.a usr/lib/cmake/grelha/grelhaConfig.cmake usr/include/grelha/grelha.hpp usr/share/man/man1/grelha.1 \
   usr/share/bash-completion/completions/grelha usr/share/zsh/vendor-completions/_grelha usr/share/fish/vendor_completions.d/grelha.fish \
-  usr/share/grelha/scenes/balls.nff usr/share/doc/grelha/copyright usr/share/doc/grelha/farm.sh usr/share/doc/grelha/README.md usr/share/doc/grelha/CHANGELOG.md usr/share/doc/grelha/examples/embed.cpp; do
+  usr/share/grelha/scenes/balls.nff usr/share/doc/grelha/copyright usr/share/doc/grelha/farm.sh usr/share/doc/grelha/README.md \
+  usr/share/doc/grelha/CHANGELOG.md usr/share/doc/grelha/examples/embed.cpp; do
   grep -qx "./$file" "$2/files" || { echo "the package lacks $file"; exit 1; }
 done
 depends=$(dpkg-deb -f "$deb" Depends)

@@ -52,7 +52,8 @@ TEST_F(Files, NothingIsWrittenOverWhatIsRead) {
   folder_.write("two.nff", std::string(kBall) + "ply mesh.ply\n");
   const std::string before = folder_.list();
   for (const char* name : {"ball.nff", "./ball.nff", "hard"})
-    expect_refused(std::string("render ball.nff --stats ") + name, std::string("--stats: wanted another file than ball.nff, which is read, found \"") + name + '"');
+    expect_refused(std::string("render ball.nff --stats ") + name,
+                   std::string("--stats: wanted another file than ball.nff, which is read, found \"") + name + '"');
   expect_refused("render twin.nff -o link.png", "-o: wanted another file than twin.nff, which is read, found \"link.png\"");
   expect_refused("render ball.nff two.nff -o {}.png --checkpoint {}.kept --stats twin.nff",
                  "--stats: wanted another file than ball.nff, which is read, found \"twin.nff\"");
@@ -147,7 +148,8 @@ TEST_F(Files, TheFileThereIsNoMemoryForIsNamed) {
 }
 
 TEST_F(Files, AnEmptyNameIsNone) {
-  for (const std::string option : {"--checkpoint", "--stats"}) expect_refused("render ball.nff " + option + " ''", option + ": wanted a file name, found \"\"");
+  for (const std::string option : {"--checkpoint", "--stats"})
+    expect_refused("render ball.nff " + option + " ''", option + ": wanted a file name, found \"\"");
   expect_refused("scene balls -o ''", "-o: wanted a file name, found \"\"");
 }
 
