@@ -146,14 +146,6 @@ void write_map(const std::string& path, const std::vector<T>& values, const Came
   write_image(path, image);
 }
 
-/// Of the picture a command makes, and what it is made of on the way.
-std::uint64_t picture_bytes(const RenderCommand& command, const Camera& camera) {
-  constexpr std::uint64_t kSums = 24, kRefined = 90;  // docs/architecture.md
-  const bool sums = !command.work.checkpoint.empty() || is_partial_name(command.image) || command.work.show_every > 0;
-  const std::uint64_t pixels = std::uint64_t(camera.width) * std::uint64_t(camera.height);
-  return pixels * (kPictureBytes + (sums ? kSums : 0) + (command.render.refine.on() ? kRefined : 0));
-}
-
 /// What of a command is for a rank that neither writes nor speaks.
 RenderCommand silent(RenderCommand command) {
   command.work.checkpoint.clear(), command.stats.clear();

@@ -36,7 +36,9 @@ namespace {
 std::uint64_t memory_owned() {
   unsigned long long pages[6] = {};  // size, resident, shared, text, libraries, data
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen("/proc/self/statm", "r"), std::fclose);
-  if (!file || std::fscanf(file.get(), "%llu %llu %llu %llu %llu %llu", &pages[0], &pages[1], &pages[2], &pages[3], &pages[4], &pages[5]) != 6) return 0;
+  if (!file) return 0;
+  for (unsigned long long& n : pages)
+    if (std::fscanf(file.get(), "%llu", &n) != 1) return 0;
   return pages[5] * std::uint64_t(sysconf(_SC_PAGE_SIZE));
 }
 

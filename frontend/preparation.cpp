@@ -2,6 +2,7 @@
 
 #include "frontend/memory_limit.hpp"
 #include "frontend/parse_error.hpp"
+#include "frontend/partial.hpp"
 #include "frontend/progress.hpp"
 #include "frontend/stop_signals.hpp"
 
@@ -14,6 +15,7 @@ namespace grelha {
 
 namespace {
 
+constexpr std::uint64_t kPictureBytes = 12;  ///< a pixel: three floats
 constexpr std::uint64_t kProgram = 12'000'000;  ///< bytes of the program itself: libraries, stacks, threads' batches
 
 std::string gigabytes(std::uint64_t bytes) {
@@ -68,7 +70,8 @@ World build_world(const std::string& path, const Scene& scene, const BuildOption
   const OwnMemory memory = own_memory();
   const std::uint64_t left = memory.left();
   const auto refuse = [&](std::uint64_t need) {
-    throw FileError(path, "wanted about " + gigabytes(memory.owned + need) + " of memory to render it, found " + gigabytes(memory.limit) + " (--max-memory)");
+    throw FileError(path, "wanted about " + gigabytes(memory.owned + need) + " of memory to render it, found " + gigabytes(memory.limit) +
+                              " (--max-memory)");
   };
   if (later >= left) refuse(later);
   try {
@@ -82,6 +85,13 @@ World build_world(const std::string& path, const Scene& scene, const BuildOption
     refuse(error.need.peak + later);
     throw;
   }
+}
+
+std::uint64_t picture_bytes(const RenderCommand& command, const Camera& camera) {
+  constexpr std::uint64_t kSums = 24, kRefined = 90;  // docs/architecture.md
+  const bool sums = !command.work.checkpoint.empty() || is_partial_name(command.image) || command.work.show_every > 0;
+  const std::uint64_t pixels = std::uint64_t(camera.width) * std::uint64_t(camera.height);
+  return pixels * (kPictureBytes + (sums ? kSums : 0) + (command.render.refine.on() ? kRefined : 0));
 }
 
 SceneMemory memory_of(const SceneFile& file, const BuildOptions& options, std::uint64_t pixels) {

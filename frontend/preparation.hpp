@@ -12,8 +12,6 @@
 
 namespace grelha {
 
-inline constexpr std::uint64_t kPictureBytes = 12;  ///< a pixel: three floats
-
 /// SIGINT or SIGTERM came while a scene was read or built. what() is one line.
 struct Interrupted : std::runtime_error {
   Interrupted(int number, const std::string& during);
@@ -26,6 +24,9 @@ SceneFile load_scene(const std::string& path, const Warn& warn, const ReadOption
 /// The grids of a scene that `later` more bytes are wanted for. Throws Interrupted, and FileError (in the scene's name) when by its
 /// estimate it would take more than there may be.
 World build_world(const std::string& path, const Scene& scene, const BuildOptions& options, std::uint64_t later, bool shown);
+
+/// Of the picture a command makes, and what it is made of on the way.
+std::uint64_t picture_bytes(const RenderCommand& command, const Camera& camera);
 
 /// What rendering a scene as a picture of so many pixels, one sample each, takes.
 SceneMemory memory_of(const SceneFile& file, const BuildOptions& options, std::uint64_t pixels);

@@ -207,8 +207,8 @@ std::string info_text(const std::string& path, const SceneFile& file, const Scen
   text += "materials     " + std::to_string(file.counts.materials) + '\n';
   if (const SceneBounds bounds = bounds_of(g); !bounds.empty)
     text += "bounds        " + point_text(bounds.low) + " to " + point_text(bounds.high) + '\n';
-  text += print("memory        about %.1f MB to render: scene %.1f, grids %.1f, the rest to read, build and draw\n", double(memory.peak) / 1e6, double(memory.scene) / 1e6,
-                double(memory.grids) / 1e6);
+  text += print("memory        about %.1f MB to render: scene %.1f, grids %.1f, the rest to read, build and draw\n",
+                double(memory.peak) / 1e6, double(memory.scene) / 1e6, double(memory.grids) / 1e6);
   if (!grids) text += "grid          not built: it would take more memory than there may be (--max-memory)\n";
   for (const GridStats& grid : grids.value_or(std::vector<GridStats>{}))
     text += print("grid          %u x %u x %u cells, %llu occupied, %llu references, %.1f MB\n", grid.cells[0],

@@ -55,7 +55,7 @@ class World {
   /// options say.
   World(const SceneSpans& scene, const BuildOptions& options);
   ~World();
-  /// What building will take, within a third or so (docs/performance.md), for a tenth of the time that it takes.
+  /// What building will take, within a fifth (docs/performance.md), for about a tenth of the time that it takes.
   static BuildMemory estimate(const SceneSpans& scene, const BuildOptions& options);
   World(World&&) noexcept;             ///< what was moved from can only go or be assigned to
   World& operator=(World&&) noexcept;  ///< the same
