@@ -26,7 +26,9 @@ std::size_t first_sum(const Accumulator& a, int row) {
 }
 
 /// Sums that a file made up may be of any size: adding these wraps around.
-std::int64_t wrapped_sum(std::int64_t a, std::int64_t b) { return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) + static_cast<std::uint64_t>(b)); }
+std::int64_t wrapped_sum(std::int64_t a, std::int64_t b) {
+  return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) + static_cast<std::uint64_t>(b));
+}
 
 void add_rows(Accumulator& to, const Range& rows, const std::int64_t* sums) {
   std::int64_t* const out = to.sums.data() + first_sum(to, rows.begin);

@@ -24,7 +24,8 @@ turn() {  # turn() NAME: one turn; what it took is added to the file `spent`, as
   children
   runs=$(awk '/stat::number_of_executed_units/ { print $2 }' "$out/$1/log")
   echo "$((had - before)) ${runs:-0}" >>"$out/$1/spent"
-  echo "$1: $(awk '{ s += $1; n += $2 } END { print s " s, " n " executions" }' "$out/$1/spent"), $(grep -o 'cov: .* corp: [^ ]*' "$out/$1/log" | tail -1)"
+  reached=$(grep -o 'cov: .* corp: [^ ]*' "$out/$1/log" | tail -1)
+  echo "$1: $(awk '{ s += $1; n += $2 } END { print s " s, " n " executions" }' "$out/$1/spent"), $reached"
   [ "$status" -eq 0 ] && return
   cp "$out/$1/log" "$out/$1/fault"
   grep -E 'ERROR|runtime error|what\(\)|broken promise' "$out/$1/fault" || true
