@@ -1,3 +1,5 @@
+#include <fcntl.h>
+#include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <zlib.h>
@@ -20,15 +22,29 @@ struct CloseFile {
   void operator()(std::FILE* file) const { std::fclose(file); }
 };
 
-/// What a pipe holds is known when it ends.
-std::string read_to_the_end(std::FILE* file) {
-  std::string bytes;
-  std::size_t read = 0;
-  do {
-    bytes.resize(std::max<std::size_t>(1 << 16, 2 * read));
-    read += std::fread(bytes.data() + read, 1, bytes.size() - read, file);
-  } while (read == bytes.size());
-  bytes.resize(read);
+using File = std::unique_ptr<std::FILE, CloseFile>;
+
+/// What a pipe holds is known when it ends, which may be never: whoever waits looks up now and then.
+std::string read_pipe(const std::string& path, LoadProgress* progress) {
+  constexpr int kLookUp = 100;  // ms
+  const int handle = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  if (handle < 0) throw FileError(path, std::string("cannot open: ") + std::strerror(errno));
+  const File file(fdopen(handle, "rb"));
+  std::string bytes(1 << 16, '\0');
+  std::size_t have = 0;
+  for (;;) {
+    if (pollfd asked{handle, POLLIN, 0}; poll(&asked, 1, kLookUp) <= 0) {
+      if (progress) progress->waiting();
+      continue;
+    }
+    if (have == bytes.size()) bytes.resize(2 * have);
+    const ssize_t got = read(handle, bytes.data() + have, bytes.size() - have);
+    if (got < 0 && errno != EAGAIN && errno != EINTR) throw FileError(path, std::string("cannot read: ") + std::strerror(errno));
+    if (got == 0) break;
+    have += std::size_t(std::max<ssize_t>(got, 0));
+  }
+  bytes.resize(have);
+  if (progress) progress->expect(kParsing * double(have));
   return bytes;
 }
 
@@ -36,15 +52,14 @@ std::string read_bytes(const std::string& path, LoadProgress* progress, bool pip
   struct stat about {};
   if (stat(path.c_str(), &about) != 0) throw FileError(path, std::string("cannot open: ") + std::strerror(errno));
   if (S_ISDIR(about.st_mode)) throw FileError(path, std::string("cannot read: ") + std::strerror(EISDIR));
-  const bool pipe = pipe_too && S_ISFIFO(about.st_mode);
-  if (!S_ISREG(about.st_mode) && !pipe) throw FileError(path, "cannot read: not a regular file");
-  const std::unique_ptr<std::FILE, CloseFile> file(std::fopen(path.c_str(), "rb"));
+  if (pipe_too && S_ISFIFO(about.st_mode)) return read_pipe(path, progress);
+  if (!S_ISREG(about.st_mode)) throw FileError(path, "cannot read: not a regular file");
+  const File file(std::fopen(path.c_str(), "rb"));
   if (!file) throw FileError(path, std::string("cannot open: ") + std::strerror(errno));
-  std::string bytes(pipe ? 0 : std::size_t(about.st_size), '\0');
-  if (pipe) bytes = read_to_the_end(file.get());
+  std::string bytes(std::size_t(about.st_size), '\0');
   if (progress) progress->expect((1 + kParsing) * double(bytes.size()));
   constexpr std::size_t kPiece = std::size_t(1) << 24;
-  std::size_t have = pipe ? bytes.size() : 0;
+  std::size_t have = 0;
   for (std::size_t got = 1; got > 0 && have < bytes.size(); have += got) {
     got = std::fread(bytes.data() + have, 1, std::min(kPiece, bytes.size() - have), file.get());
     if (progress) progress->done(double(got));

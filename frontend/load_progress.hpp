@@ -21,6 +21,10 @@ class LoadProgress {
   void done(double bytes) {
     share_ += (1 - share_) * (left_ > bytes ? bytes / left_ : 1);
     left_ = std::max(0., left_ - bytes);
+    waiting();
+  }
+  /// Nothing is done. Throws Stopped.
+  void waiting() const {
     if (report_ && !report_(share_)) throw Stopped();
   }
   void finish() { done(left_); }

@@ -17,6 +17,7 @@
 #include "frontend/ranks.hpp"
 #include "frontend/report.hpp"
 #include "frontend/scene_file.hpp"
+#include "frontend/stop_signals.hpp"
 #include "kernel/render.hpp"
 #include "scenes/generators.hpp"
 
@@ -126,8 +127,7 @@ int render_long(LongRender& work, const World& world, const Camera& camera, cons
 
 int stopped(int signal, const RenderCommand& command, double share) {
   char text[64];
-  const char* const name = signal == SIGHUP ? "SIGHUP" : signal == SIGINT ? "SIGINT" : "SIGTERM";
-  std::snprintf(text, sizeof text, "grelha: stopped by %s, %.1f %% done", name, 100 * share);
+  std::snprintf(text, sizeof text, "grelha: stopped by %s, %.1f %% done", signal_name(signal), 100 * share);
   warn(text + (" and saved in " + command.work.checkpoint) + ": the same command goes on from there");
   return kSignalled + signal;
 }

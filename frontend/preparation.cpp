@@ -7,7 +7,6 @@
 #include "frontend/stop_signals.hpp"
 
 #include <algorithm>
-#include <csignal>
 #include <cstdio>
 #include <memory>
 
@@ -56,7 +55,7 @@ auto interruptible(const char* name, const std::string& during, bool shown, cons
 }  // namespace
 
 Interrupted::Interrupted(int number, const std::string& during)
-    : std::runtime_error("grelha: stopped by " + std::string(number == SIGINT ? "SIGINT" : "SIGTERM") + " while " + during), signal(number) {}
+    : std::runtime_error("grelha: stopped by " + std::string(signal_name(number)) + " while " + during), signal(number) {}
 
 SceneFile load_scene(const std::string& path, const Warn& warn, const ReadOptions& options, bool shown) {
   return interruptible("load", "reading " + path, shown, [&](const std::function<bool(double)>& progress) {

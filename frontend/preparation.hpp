@@ -12,7 +12,7 @@
 
 namespace grelha {
 
-/// SIGINT or SIGTERM came while a scene was read or built. what() is one line.
+/// SIGHUP, SIGINT or SIGTERM came while a scene was read or built. what() is one line.
 struct Interrupted : std::runtime_error {
   Interrupted(int number, const std::string& during);
   int signal;

@@ -36,4 +36,6 @@ StopSignals::~StopSignals() { act(SIG_DFL, 0); }
 
 int StopSignals::seen() { return noted; }
 
+const char* signal_name(int signal) { return signal == SIGHUP ? "SIGHUP" : signal == SIGINT ? "SIGINT" : "SIGTERM"; }
+
 }  // namespace grelha

@@ -13,4 +13,7 @@ class StopSignals {
   static int seen();  ///< one of them, or 0
 };
 
+/// Of one of them.
+const char* signal_name(int signal);
+
 }  // namespace grelha

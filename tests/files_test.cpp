@@ -120,6 +120,16 @@ TEST_F(Files, ASceneComesThroughAPipe) {
   EXPECT_EQ(run("render - -o b.pfm").err, "/dev/stdin: error: cannot read: not a regular file\n") << "it is /dev/null";
 }
 
+TEST_F(Files, ASignalEndsTheWaitForAPipe) {
+  ASSERT_EQ(mkfifo(folder_.file("pipe.nff").c_str(), 0600), 0);
+  const std::string stop = "timeout --preserve-status -k 5 -s HUP .5 ";
+  for (const std::string writer : {"", "(sleep 2 >pipe.nff &) && "}) {
+    const Outcome outcome = run("render pipe.nff", writer + stop);
+    EXPECT_EQ(outcome.status, 129);
+    EXPECT_EQ(outcome.err, "grelha: stopped by SIGHUP while reading pipe.nff\n");
+  }
+}
+
 /// Of meshes, and of what lies in a folder, one does not know that somebody will write into them.
 TEST_F(Files, NoOtherPipeIsWaitedFor) {
   std::filesystem::create_directory(folder_.file("in"));
