@@ -56,7 +56,7 @@ Image picture(const SceneFile& file, RenderOptions options, Way way) {
   way.build.threads = options.threads = 1;
   options.isa = way.isa, options.packet = way.packet, options.mailbox = way.mailbox;
   const World world(file.scene, way.build);
-  promise(!info_text("scene", file, world.grids()).empty() && !info_json(file, world.grids()).empty(), "info says something");
+  promise(!info_text("scene", file, {}, world.grids()).empty() && !info_json(file, {}, world.grids()).empty(), "info says something");
   RenderStats stats;
   return render(world, file.camera, options, stats);
 }
