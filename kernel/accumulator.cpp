@@ -6,6 +6,7 @@
 #include <string>
 
 #include "kernel/bands.hpp"
+#include "kernel/told.hpp"
 
 namespace grelha {
 namespace {
@@ -79,7 +80,9 @@ double share_done(const Accumulator& a) {
   return static_cast<double>(done) / static_cast<double>(a.done.size());
 }
 
-bool accumulate(const World& world, const Camera& camera, const RenderOptions& options, Accumulator& a, RenderStats& stats, const NextPiece& next) {
+bool accumulate(const World& world, const Camera& camera, const RenderOptions& given, Accumulator& a, RenderStats& stats, const NextPiece& next) {
+  const Told told(given);
+  const RenderOptions& options = told.options();
   const Setup setup = set_up(world, camera, options);
   check(a, camera, options);
   std::vector<std::size_t> left;
@@ -108,6 +111,7 @@ bool accumulate(const World& world, const Camera& camera, const RenderOptions& o
     }
     return go_on;
   }, stats);
+  told.rethrow();
   return is_complete(a);
 }
 

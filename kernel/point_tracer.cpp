@@ -11,6 +11,7 @@
 #include <omp.h>
 
 #include "kernel/setup.hpp"
+#include "kernel/told.hpp"
 #include "kernel/workspace.hpp"
 #include "kernel/world.hpp"
 
@@ -94,8 +95,10 @@ class PointTracer {
 
 }  // namespace
 
-bool render_subdivided(const World& world, const Camera& camera, const RenderOptions& options, Subdivided& picture, RenderStats& stats,
+bool render_subdivided(const World& world, const Camera& camera, const RenderOptions& given, Subdivided& picture, RenderStats& stats,
                        const std::function<bool()>& rest) {
+  const Told told(given);
+  const RenderOptions& options = told.options();
   const Setup setup = set_up(world, camera, options);
   if (!options.subdivision.on) throw std::invalid_argument("this picture is one by subdivision");
   if (picture.image.width != camera.width || picture.image.height != camera.height)
@@ -105,11 +108,12 @@ bool render_subdivided(const World& world, const Camera& camera, const RenderOpt
   stats.isa = setup.variant.name.data();
   PointTracer tracer(world.impl(), setup.frame, setup.plan, setup.variant, options, stats.threads);
   const bool finished = subdivide(picture, options.subdivision, std::ref(tracer), 0, [&] {
-    const bool go_on = rest && rest();
+    const bool go_on = !told.threw() && rest && rest();
     if (go_on) tracer.go_on();
     return go_on;
   });
   tracer.count(stats);
+  told.rethrow();
   return finished;
 }
 

@@ -11,6 +11,7 @@
 #include "kernel/pixel_order.hpp"
 #include "kernel/refinement.hpp"
 #include "kernel/setup.hpp"
+#include "kernel/told.hpp"
 #include "kernel/workspace.hpp"
 #include "kernel/world.hpp"
 
@@ -284,14 +285,17 @@ class Refiner {
 
 }  // namespace
 
-bool refine(const World& world, const Camera& camera, const RenderOptions& options, Refinement& r, RenderStats& stats, SampleMaps* maps,
+bool refine(const World& world, const Camera& camera, const RenderOptions& given, Refinement& r, RenderStats& stats, SampleMaps* maps,
             const std::function<bool()>& rest) {
+  const Told told(given);
+  const RenderOptions& options = told.options();
   Setup setup = set_up(world, camera, options);
   if (!options.refine.on()) throw std::invalid_argument("this picture is one whose samples are spent by error");
   if (r.width != camera.width || r.height != camera.height) throw std::invalid_argument("this picture has another size than the camera's");
   setup.plan.on = true, setup.plan.samples = kMostSamples;
   Refiner refiner(world.impl(), setup, options, r, stats);
-  refiner.run(rest);
+  refiner.run([&] { return !told.threw() && rest && rest(); });
+  told.rethrow();
   refiner.tell(maps);
   return r.finished;
 }

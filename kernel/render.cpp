@@ -7,6 +7,7 @@
 #include "kernel/bands.hpp"
 #include "kernel/point_tracer.hpp"
 #include "kernel/refinement.hpp"
+#include "kernel/told.hpp"
 
 namespace grelha {
 namespace {
@@ -58,7 +59,10 @@ Image render(const World& world, const Camera& camera, const RenderOptions& opti
     refine(world, camera, options, r, stats, maps);
     return picture_so_far(r);
   }
-  return render_whole(world.impl(), camera, set_up(world, camera, options), options, stats);
+  const Told told(options);
+  Image image = render_whole(world.impl(), camera, set_up(world, camera, options), told.options(), stats);
+  told.rethrow();
+  return image;
 }
 
 }  // namespace grelha

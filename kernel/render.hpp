@@ -135,7 +135,8 @@ struct RenderOptions {
   bool phases = false;      ///< measure where the time goes
   Observer* observer = nullptr;  ///< told of the phases by every thread, instead of measuring them
   Subdivision subdivision;  ///< on: pixels are averages of points of a lattice, `samples` rays through each; one with no effect to sample
-  /// Called now and then from one thread at a time with the share done, 0 to 1; returns false to stop.
+  /// Called now and then from one thread at a time with the share done, 0 to 1; returns false to stop: threads that end what they have in
+  /// work may call it once more. What it throws stops as well, and is thrown by whoever renders.
   std::function<bool(double)> progress;
 };
 

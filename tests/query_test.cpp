@@ -1,4 +1,5 @@
 // The library as a program that embeds it sees it: its own arrays in, answers out, from any thread and of several scenes at once.
+#include "kernel/accumulator.hpp"
 #include "kernel/grelha.hpp"
 
 #include <array>
@@ -190,6 +191,30 @@ TEST(Query, ThreadsAndScenesDoNotMeet) {
   for (std::thread& t : threads) t.join();
   EXPECT_EQ(wrong, 0);
   EXPECT_LT(stats.rays.primary, 48u * 48u);
+}
+
+/// The caller's own exception comes out of whatever renders, from threads of its own.
+TEST(Query, WhatProgressThrowsIsThrown) {
+  const Scene scene = random_mixture(7, 50);
+  const World world(scene, {});
+  struct Trouble {};
+  Camera camera;
+  camera.eye = {0, 0, 4}, camera.width = camera.height = 64;
+  RenderOptions whole, refined, subdivided;
+  refined.refine.error = .001, subdivided.subdivision = {true, .01f, 4};
+  for (RenderOptions* options : {&whole, &refined, &subdivided}) {
+    options->threads = 2;
+    int calls = 0;
+    options->progress = [&calls](double) -> bool { return ++calls < 2 ? true : throw Trouble(); };
+    RenderStats stats;
+    EXPECT_THROW(render(world, camera, *options, stats), Trouble);
+    EXPECT_EQ(calls, 2) << "once it has thrown it is left alone";
+  }
+  Accumulator sums = make_accumulator(camera, whole);
+  RenderStats stats;
+  whole.progress = [](double) -> bool { throw Trouble(); };
+  EXPECT_THROW(accumulate(world, camera, whole, sums, stats), Trouble);
+  EXPECT_GT(share_done(sums), 0);
 }
 
 TEST(Query, RefusesWhatItCannotDo) {
