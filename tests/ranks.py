@@ -6,7 +6,7 @@ number of ranks; so it is after SIGINT. Of several scenes all go on after one th
 """
 import os, signal, subprocess, sys, tempfile, time
 
-program, scene = sys.argv[1:3]
+program, scene = map(os.path.abspath, sys.argv[1:3])
 mpirun = sys.argv[3] if len(sys.argv) > 3 else "mpirun"
 environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
 job = [program, "render", os.path.abspath(scene), "--quiet", "--threads", "2", "--size", "150x107", "--samples", "200", "--lens", "3"]
