@@ -168,6 +168,7 @@ PlyHeader HeaderReader::read() {
       break;
     }
     if (keyword == "format") {
+      if (has_format) fail(keyword, "\"format\" once");  // rows were measured by the first
       read_format();
       has_format = true;
     } else if (!has_format) {

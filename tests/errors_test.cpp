@@ -218,6 +218,7 @@ TEST(Errors, PlyHeaders) {
            ":2:8: error: wanted ascii, binary_little_endian or binary_big_endian, found \"text\""},
           {"ply\nformat ascii 2.0\n", ":2:14: error: wanted format version 1.0, found \"2.0\""},
           {"ply\nformat ascii\n", ":2:13: error: wanted format version 1.0, found end of line"},
+          {start + "element vertex 1\nproperty float x\nformat binary_little_endian 1.0\n", ":5:1: error: wanted \"format\" once, found \"format\""},
           {start + "elephant\n",
            ":3:1: error: wanted a word of the header (format, comment, obj_info, element, property, end_header), found "
            "\"elephant\""},
