@@ -4,8 +4,8 @@
 
 namespace grelha::GRELHA_ISA {
 
-/// The side of a cone frustum, prepared: base centre, unit axis towards the apex, height, base radius, growth of the
-/// radius per unit of height, and +1 (both sides show) or -1 (only the inside).
+/// The side of a cone frustum, prepared: centre of the narrower end (a cone's tip), unit axis towards the other, height, radius at the
+/// narrower end, growth of the radius per unit of height, and +1 (both sides show) or -1 (only the inside).
 template <class Real>
 struct ConeSide {
   Vec3<Real> base, axis;
@@ -15,8 +15,10 @@ struct ConeSide {
 /// First point of each ray on the side of a cone frustum or cylinder, from outside or (through the open ends) inside.
 ///
 /// Returns   lanes whose t is above t_min; t means nothing in the others.
-/// Accuracy  hit point within 32 eps (|org - base| + height + radius) of the surface (tests/cone_test.cpp): the
-///           quadratic is solved about the ray's point nearest to the base, where its coefficients do not cancel.
+/// Accuracy  hit point within 32 eps (|org - base| + height + wider radius) of the surface (tests/cone_test.cpp). The quadratic is solved
+///           about the ray's point nearest to the narrower end, where its coefficients are as small as the hit's surroundings; b b - a c
+///           would cancel even there, and an error of eps in it is one of sqrt(eps) in t. By Lagrange's identity it is a difference of
+///           two squares, and an error of eps in what is squared moves the ray by eps.
 /// Source    Haines, NFF document 3.9 (SPD), "c"; stable roots as in Press et al., Numerical Recipes, 5.6.
 template <class Real>
 [[gnu::always_inline]] inline Mask<Real> hit_cone(const Vec3<Real>& org, const Vec3<Real>& dir, const Real& inv_dd, const Real& t_min,
@@ -24,14 +26,15 @@ template <class Real>
   const Real o(0);
   const Vec3<Real> to_base = cone.base - org;
   const Real near = dot(to_base, dir) * inv_dd;
-  const Vec3<Real> p = near * dir - to_base;  // base centre to the line's nearest point
+  const Vec3<Real> p = near * dir - to_base;  // narrower end to the line's nearest point
   const Real pz = dot(p, cone.axis), dz = dot(dir, cone.axis);
   const Vec3<Real> pr = p - pz * cone.axis, dr = dir - dz * cone.axis;
   const Real r = cone.radius + cone.slope * pz, rd = cone.slope * dz;
   const Real a = dot(dr, dr) - rd * rd;
   const Real b = dot(pr, dr) - r * rd;
   const Real c = dot(pr, pr) - r * r;
-  const Real disc = b * b - a * c;
+  const Vec3<Real> w = rd * pr - r * dr, moment = cross(pr, dr);
+  const Real disc = dot(w, w) - dot(moment, moment);
   const Mask<Real> crosses = disc >= o;
   if (none(crosses)) return crosses;
   const Real root = square_root(disc);
@@ -39,7 +42,7 @@ template <class Real>
   const Real t1 = q / a, t2 = c / q;
   const auto valid = [&](const Real& s) {
     const Real h = pz + s * dz;
-    const Mask<Real> leaving = (a * s + b) > o;
+    const Mask<Real> leaving = (a * s + b) >= o;  // on a tip neither; let no ray out there
     return both(both(both(h >= o, h <= cone.height), (near + s) > t_min), either(cone.side > o, leaving));
   };
   const Mask<Real> ok1 = valid(t1), ok2 = valid(t2);

@@ -285,17 +285,21 @@ PreparedCones prepare_cones(const ConeSpans& c) {
   PreparedCones out;
   for (auto& v : out) v.resize(c.size());
   for (std::size_t i = 0; i < c.size(); ++i) {
-    const double base[3] = {c.base_x[i], c.base_y[i], c.base_z[i]}, apex[3] = {c.apex_x[i], c.apex_y[i], c.apex_z[i]};
+    struct End {
+      double at[3], radius;
+    };
+    End narrow{{c.base_x[i], c.base_y[i], c.base_z[i]}, std::abs(static_cast<double>(c.base_radius[i]))};
+    End wide{{c.apex_x[i], c.apex_y[i], c.apex_z[i]}, std::abs(static_cast<double>(c.apex_radius[i]))};
+    if (wide.radius < narrow.radius) std::swap(narrow, wide);
     double height = 0;
-    for (int a = 0; a < 3; ++a) height += (apex[a] - base[a]) * (apex[a] - base[a]);
+    for (int a = 0; a < 3; ++a) height += (wide.at[a] - narrow.at[a]) * (wide.at[a] - narrow.at[a]);
     height = std::sqrt(height);
-    const double r0 = std::abs(static_cast<double>(c.base_radius[i])), r1 = std::abs(static_cast<double>(c.apex_radius[i]));
     for (std::size_t a = 0; a < 3; ++a) {
-      out[a][i] = static_cast<float>(base[a]);
-      out[3 + a][i] = static_cast<float>((apex[a] - base[a]) / height);
+      out[a][i] = static_cast<float>(narrow.at[a]);
+      out[3 + a][i] = static_cast<float>((wide.at[a] - narrow.at[a]) / height);
     }
-    out[6][i] = static_cast<float>(height), out[7][i] = static_cast<float>(r0);
-    out[8][i] = static_cast<float>((r1 - r0) / height);
+    out[6][i] = static_cast<float>(height), out[7][i] = static_cast<float>(narrow.radius);
+    out[8][i] = static_cast<float>((wide.radius - narrow.radius) / height);
     out[9][i] = c.base_radius[i] + c.apex_radius[i] < 0 ? -1.f : 1.f;
   }
   return out;

@@ -47,9 +47,12 @@ inline Surface<Real> cone_surface(const GeometryView& g, const Words<Real>& i, c
   const Vec3<Real> from_base = at - base;
   const Real along = dot(from_base, axis);
   const Real h = select(along < Real(0), Real(0), select(along > height, height, along));
-  const Vec3<Real> out = normalize(from_base - h * axis);
+  const Vec3<Real> radial = from_base - h * axis;
+  Vec3<Real> u, v;
+  across(axis, u, v);
+  const Vec3<Real> out = select(dot(radial, radial) > Real(0), normalize(radial), u);  // on a tip all directions are as good
   const Vec3<Real> point = base + h * axis + (radius + slope * h) * out, n = normalize(out - slope * axis);
-  return {point, n, n, Real(32 * kEps) * (height + radius) + Real(4 * kEps) * largest(point), words_at(g.cone_material, i)};
+  return {point, n, n, Real(32 * kEps) * (height + (radius + slope * height)) + Real(4 * kEps) * largest(point), words_at(g.cone_material, i)};
 }
 
 template <class Real>

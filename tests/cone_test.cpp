@@ -73,26 +73,59 @@ struct Case {
   oracle::Real unit;  ///< eps (|org - base| + height + radius): what the header counts in
 };
 
-Case random_case(std::uint64_t seed, double farthest) {
+/// What a ray is aimed at. Near a tip the quadratic's roots meet, and its coefficients may be large beside what lies between them.
+enum class Aim { kSide, kNarrowEnd, kAlongTheSide };
+
+/// A point of the wider end's rim, on the side where `out` points.
+Float3 rim_point(const oracle::V& narrow, const oracle::V& wide, oracle::Real radius, const Float3& out) {
+  const oracle::V axis = oracle::unit(wide - narrow), across = oracle::V(out) - dot(axis, oracle::V(out)) * axis;
+  const oracle::V p = wide + radius * oracle::unit(across);
+  return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+}
+
+/// One draw a statement: which of a call's arguments is evaluated first is up to the compiler.
+Case random_case(std::uint64_t seed, double farthest, Aim aim) {
   Random random(seed);
   double size;
   Case k;
   k.shape = random_shape(random, size);
+  if (aim != Aim::kSide) {  // half with a tip, the others down to nearly one, at either end
+    const double share = random.log_in(1e-7, 1);
+    if (k.shape.r0 == 0) k.shape.r0 = k.shape.r1;
+    k.shape.r1 = random.chance(.5) ? 0.f : static_cast<float>(k.shape.r0 * share);
+    if (random.chance(.5)) std::swap(k.shape.r0, k.shape.r1);
+  }
   const oracle::Frustum f{k.shape.base, k.shape.apex, k.shape.r0, k.shape.r1};
-  k.org =
-      at(k.shape.base, size * (random.chance(.2) ? random.unit() : random.log_in(.5, farthest)), random.direction());
-  const Float3 aim = at(at(k.shape.base, random.unit(), minus(k.shape.apex, k.shape.base)), size * random.in(0, .5),
-                        random.direction());
-  k.dir = scaled(minus(aim, k.org), random.log_in(1e-2, 1e2));
+  const bool base_is_wide = std::abs(k.shape.r0) > std::abs(k.shape.r1);
+  const Float3 narrow = base_is_wide ? k.shape.apex : k.shape.base, wide = base_is_wide ? k.shape.base : k.shape.apex;
+  const double distance = random.chance(.2) ? random.unit() : random.log_in(.5, farthest);
+  const Float3 side = random.direction(), off = random.direction();
+  k.org = at(k.shape.base, size * distance, side);
+  Float3 target;
+  if (aim == Aim::kSide) {
+    const double height = random.unit(), beside = random.in(0, .5);
+    target = at(at(k.shape.base, height, minus(k.shape.apex, k.shape.base)), size * beside, off);
+  } else {
+    const double beside = random.log_in(1e-9, 1);
+    target = at(narrow, size * beside, off);
+  }
+  if (aim == Aim::kAlongTheSide) {
+    const Float3 rim = rim_point(narrow, wide, std::max(std::abs(k.shape.r0), std::abs(k.shape.r1)), random.direction());
+    const double sign = random.sign(), lengths = sign * random.log_in(.5, 1e2), beside = random.log_in(1e-9, .1);
+    k.org = at(at(narrow, lengths, minus(rim, narrow)), size * beside, side);
+  }
+  k.dir = scaled(minus(target, k.org), random.log_in(1e-2, 1e2));
   k.unit = oracle::kEps * (length(oracle::V(k.org) - f.base) + f.height() + std::max(std::abs(f.r0), std::abs(f.r1)));
   return k;
 }
 
-TEST(ConeOracle, PointsLieOnTheSurface) {
+class ConePoints : public testing::TestWithParam<Aim> {};
+
+TEST_P(ConePoints, LieOnTheSurface) {
   oracle::Real worst = 0;
   int hits = 0, over = 0;
   for (std::uint64_t seed = 0; seed < 300000; ++seed) {
-    const Case k = random_case(seed, 1e4);
+    const Case k = random_case(seed, 1e4, GetParam());
     const auto [found, t] = hit(k.org, k.dir, k.shape);
     if (!found) continue;
     ++hits;
@@ -107,12 +140,47 @@ TEST(ConeOracle, PointsLieOnTheSurface) {
   EXPECT_GT(hits, 60000);
 }
 
+INSTANTIATE_TEST_SUITE_P(Aims, ConePoints, testing::Values(Aim::kSide, Aim::kNarrowEnd, Aim::kAlongTheSide), [](const auto& aim) {
+  return aim.param == Aim::kSide ? "Side" : aim.param == Aim::kNarrowEnd ? "NarrowEnd" : "AlongTheSide";
+});
+
+/// What a ray surely meets: it, and each of six moved by twice the bound, crosses the surface, and not within the bound of an end. A hole
+/// narrower than the bound may be passed or not.
+TEST(ConeOracle, LosesNoHitNearATip) {
+  int wanted = 0, lost = 0;
+  for (std::uint64_t seed = 0; seed < 300000; ++seed) {
+    const Case k = random_case(seed, 1e3, seed % 2 ? Aim::kNarrowEnd : Aim::kAlongTheSide);
+    const oracle::Frustum f{k.shape.base, k.shape.apex, k.shape.r0, k.shape.r1};
+    const oracle::Real bound = 32 * k.unit, hole = std::min(std::abs(f.r0), std::abs(f.r1));
+    if (hole > 0 && hole < bound) continue;
+    const auto sure = [&](const oracle::Ray& ray) {
+      const auto crossing = f.first(ray, 0);
+      if (!crossing) return false;
+      const oracle::Real z = f.height_at(ray.point(crossing->t));
+      return z > bound && z < f.height() - bound;
+    };
+    const oracle::Ray ray{k.org, k.dir};
+    bool all = sure(ray);
+    for (int i = 0; i < 6 && all; ++i) {
+      oracle::Ray moved = ray;
+      (i / 2 == 0 ? moved.org.x : i / 2 == 1 ? moved.org.y : moved.org.z) += 2 * bound * (i % 2 ? 1 : -1);
+      all = sure(moved);
+    }
+    if (!all) continue;
+    ++wanted;
+    lost += !hit(k.org, k.dir, k.shape).hit;
+  }
+  std::printf("cone: %d surely met, %d lost\n", wanted, lost);
+  EXPECT_EQ(lost, 0);
+  EXPECT_GT(wanted, 40000);
+}
+
 /// Where the ray crosses steeply and far from the rims, the same crossing is found; where nothing is near, none.
 TEST(ConeOracle, FindsTheFirstCrossing) {
   int judged = 0, wrong = 0;
   oracle::Real worst = 0;
   for (std::uint64_t seed = 0; seed < 300000; ++seed) {
-    const Case k = random_case(seed, 1e3);
+    const Case k = random_case(seed, 1e3, Aim::kSide);
     const oracle::Frustum f{k.shape.base, k.shape.apex, k.shape.r0, k.shape.r1};
     const oracle::Ray ray{k.org, k.dir};
     const oracle::Real tolerance = 32 * k.unit;

@@ -91,9 +91,11 @@ Scene make_triangle(Random& random, double size, const Float3& place) {
   return one_triangle(place, b, c);
 }
 Scene make_cone(Random& random, double size, const Float3& place) {
-  const double r0 = size * random.in(.1, 1), r1 = random.chance(.3) ? r0 : size * random.in(0, 1);
-  return one_cone(place, static_cast<float>(r0), at(place, size * random.in(.3, 2), random.direction()),
-                  static_cast<float>(r1));
+  const double r0 = size * random.in(.1, 1), r1 = random.chance(.3) ? r0 : random.chance(.2) ? 0 : size * random.in(0, 1);
+  const double height = size * random.in(.3, 2);
+  const Float3 other = at(place, height, random.direction());
+  if (random.chance(.5)) return one_cone(other, static_cast<float>(r1), place, static_cast<float>(r0));
+  return one_cone(place, static_cast<float>(r0), other, static_cast<float>(r1));
 }
 
 struct Row {
@@ -191,6 +193,19 @@ TEST(FarEyes, SeeWhatStandsOnAPlane) {
 
 TEST(Leaving, Triangles) { check("triangle", false, make_triangle); }
 TEST(Leaving, Cones) { check("cone", true, make_cone); }
+
+/// Where a cone has no radius all directions across its axis are as good, and a normal must be one of them.
+TEST(ConeSurface, HasANormalOnItsTip) {
+  for (const bool tip_first : {false, true}) {
+    const Float3 tip{0, 2, 0}, foot{0, 0, 0};
+    const Scene scene = tip_first ? one_cone(tip, 0, foot, 1) : one_cone(foot, 1, tip, 0);
+    const World world(scene, {.grid = false});
+    const scalar::Surface<float> s = scalar::surface_of<float>(world.impl().view, 0, {0, 2, 5}, {0, 0, -1}, 5, false);
+    EXPECT_NEAR(scalar::length(s.normal), 1, 4 * 0x1p-24);
+    EXPECT_NEAR(s.normal.y, 1 / std::sqrt(5.), 4 * 0x1p-24);
+    EXPECT_EQ(s.point.y, 2);
+  }
+}
 
 /// Rays sent inwards cross the body: what they meet is its far side, not the place they left.
 TEST(Leaving, InwardsMeetsTheFarSide) {
