@@ -108,7 +108,8 @@ class Table : public benchmark::ConsoleReporter {
     }
   }
   void print() {
-    for (auto& [scene, rungs] : times_) {
+    for (auto& [scene, of_rungs] : times_) {
+      auto& rungs = of_rungs;  // clang++ 14 lets no lambda capture a structured binding
       const auto best = [&](const std::string& rung) {
         std::pair<double, std::string> least{1e300, ""};
         for (auto& [density, t] : rungs[rung]) {
