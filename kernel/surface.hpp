@@ -55,6 +55,15 @@ inline Surface<Real> cone_surface(const GeometryView& g, const Words<Real>& i, c
   return {point, n, n, Real(32 * kEps) * (height + (radius + slope * height)) + Real(4 * kEps) * largest(point), words_at(g.cone_material, i)};
 }
 
+/// Unit normal of a triangle's edges. The square of their product overflows from 4e9 on and is 0 below 1e-10, so what is far from 1 is brought
+/// nearer, by powers of two, which change no bit.
+template <class Real>
+inline Vec3<Real> across_both(const Vec3<Real>& e1, const Vec3<Real>& e2) {
+  const Vec3<Real> n = cross(e1, e2);
+  const Real size = largest(n);
+  return normalize(select(size < Real(0x1p-40f), Real(0x1p80f), select(size > Real(0x1p40f), Real(0x1p-80f), Real(1))) * n);
+}
+
 template <class Real>
 inline Surface<Real> triangle_surface(const GeometryView& g, const Words<Real>& i, const Vec3<Real>& org, const Vec3<Real>& dir, bool smooth) {
   const Words<Real> v[3] = {words_at(g.ta, i), words_at(g.tb, i), words_at(g.tc, i)};
@@ -71,7 +80,7 @@ inline Surface<Real> triangle_surface(const GeometryView& g, const Words<Real>& 
   Real t(0);
   const Mask<Real> met = hit_triangle<Real>(permute(org), shear, Real(-kInfinity), permute(a), permute(b), permute(c), t, &w);
   w = select(met, w, Vec3<Real>{one, o, o});
-  const Vec3<Real> e1 = b - a, e2 = c - a, point = a + (w.y * e1 + w.z * e2), n = normalize(cross(e1, e2));
+  const Vec3<Real> e1 = b - a, e2 = c - a, point = a + (w.y * e1 + w.z * e2), n = across_both(e1, e2);
   Surface<Real> s{point, n, n, Real(16 * kEps) * (largest(e1) + largest(e2)) + Real(4 * kEps) * largest(point), words_at(g.triangle_material, i)};
   if (!smooth) return s;
   Mask<Real> sound = one > o;

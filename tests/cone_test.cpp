@@ -20,7 +20,7 @@ struct Shape {
 
 /// Cylinders, cones with a tip, frusta, needles and flat collars; one in five shows its inside alone.
 Shape random_shape(Random& random, double& size) {
-  size = random.log_in(1e-6, 1e6);
+  size = random.log_in(1e-12, 1e12);
   const double height = size * random.log_in(.05, 20);
   Shape s;
   s.base = random.chance(.3) ? Float3{} : random.point(size * random.log_in(1e-2, 1e2));
@@ -205,6 +205,38 @@ TEST(ConeOracle, FindsTheFirstCrossing) {
   std::printf("cone: %d judged, worst along the ray %.2f units / cosine\n", judged, static_cast<double>(worst));
   EXPECT_EQ(wrong, 0);
   EXPECT_GT(judged, 40000);
+}
+
+/// Rays that start a quarter of what surfaces are left by (`away` in surface.hpp) above the side, and go outwards: nearly along it, or nearly
+/// along a line of the cone. Convex as it is, none meets it.
+TEST(ConeOracle, IsNotMetByWhatLeavesIt) {
+  int left = 0, met = 0;
+  for (std::uint64_t seed = 0; seed < 600000; ++seed) {
+    Random random(seed);
+    double size;
+    const Shape shape = random_shape(random, size);
+    if (shape.r0 + shape.r1 <= 0) continue;  // no radius, or only the inside
+    const oracle::Frustum f{shape.base, shape.apex, shape.r0, shape.r1};
+    const oracle::Real slope = (f.r1 - f.r0) / f.height(), z = f.height() * random.unit();
+    const oracle::V out = oracle::V(random.direction()), across = oracle::unit(out - dot(out, f.axis()) * f.axis());
+    const oracle::V normal = oracle::unit(across - slope * f.axis()), line = oracle::unit(f.axis() + slope * across);
+    const oracle::V p = f.base + z * f.axis() + (f.r0 + slope * z) * across;
+    const oracle::Real bound = oracle::kEps * (8 * (f.height() + std::max(f.r0, f.r1)) + 4 * length(p));
+    const auto rounded = [](const oracle::V& v) { return Float3{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; };
+    oracle::V way = random.direction();
+    if (random.chance(.5)) {
+      const double sign = random.sign(), apart = random.log_in(1e-6, 1);
+      way = static_cast<oracle::Real>(sign) * line + static_cast<oracle::Real>(apart) * way;
+    }
+    way = way - dot(way, normal) * normal + static_cast<oracle::Real>(random.log_in(1e-6, .1)) * normal;
+    const Float3 dir = rounded(way);
+    if (dot(oracle::V(dir), normal) < 8 * oracle::kEps * length(way)) continue;
+    ++left;
+    met += hit(rounded(p + bound * normal), dir, shape).hit;
+  }
+  std::printf("cone: %d rays leave, %d meet it again\n", left, met);
+  EXPECT_EQ(met, 0);
+  EXPECT_GT(left, 300000);
 }
 
 TEST(ConeCorners, EndsSidesAndAxes) {

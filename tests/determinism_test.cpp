@@ -117,6 +117,28 @@ TEST_P(Determinism, OnePictureForEveryWayOfTracing) {
     }
 }
 
+/// All lengths times a power of two.
+Picture scaled_by(const Picture& picture, double scale) {
+  Picture p{placed(picture.scene, scale, {}), picture.camera};
+  for (Light& light : p.scene.lights)
+    for (Float3* v : {&light.position, &light.edge1, &light.edge2}) *v = scaled(*v, scale);
+  p.camera.eye = scaled(p.camera.eye, scale), p.camera.at = scaled(p.camera.at, scale);
+  p.camera.aperture *= scale, p.camera.focus *= scale;
+  return p;
+}
+
+/// That changes no bit of a number, and nothing but the exponents of what is computed with it, unless products of lengths leave what floats
+/// can hold: three are multiplied in a triangle's depth, so sizes from 1e-10 to 1e11 are sure to be drawn alike.
+TEST_P(Determinism, AtEverySize) {
+  const Picture p = make();
+  RenderStats stats;
+  const Image wanted = render(World(p.scene, {}), p.camera, {}, stats);
+  for (const int power : {-30, -12, 12, 30}) {
+    const Picture q = scaled_by(p, std::ldexp(1., power));
+    EXPECT_EQ(differing(render(World(q.scene, {}), q.camera, {}, stats), wanted), 0u) << "times 2^" << power;
+  }
+}
+
 TEST_P(Determinism, AtEveryDepth) {
   const Picture p = make();
   const std::vector<Built> worlds = builds(p.scene);

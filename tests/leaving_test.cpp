@@ -28,7 +28,7 @@ Result leave_from(std::uint64_t seeds, double most_offset, bool convex, const Ma
   Result r;
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
     Random random(seed);
-    const double size = random.log_in(1e-6, 1e6), offset = most_offset > 0 ? random.log_in(1e-2, most_offset) : 0;
+    const double size = random.log_in(1e-12, 1e12), offset = most_offset > 0 ? random.log_in(1e-2, most_offset) : 0;
     const Float3 place = random.point(size * offset);
     const Scene scene = make(random, size, place);
     const World world(scene, {.grid = false});
@@ -212,7 +212,7 @@ TEST(Leaving, InwardsMeetsTheFarSide) {
   std::uint64_t judged = 0;
   for (std::uint64_t seed = 0; seed < 20000; ++seed) {
     Random random(seed);
-    const double size = random.log_in(1e-6, 1e6);
+    const double size = random.log_in(1e-12, 1e12);
     const Float3 center = random.point(size * random.log_in(1e-2, 1e3));
     const Scene scene = one_sphere(center, static_cast<float>(size));
     const World world(scene, {.grid = false});
@@ -245,7 +245,7 @@ TEST(Leaving, SeesWhatIsNear) {
   std::uint64_t rays = 0;
   for (std::uint64_t seed = 0; seed < 20000; ++seed) {
     Random random(seed);
-    const double size = random.log_in(1e-6, 1e6);
+    const double size = random.log_in(1e-12, 1e12);
     const Float3 place = random.point(size * random.log_in(1e-2, 100));
     const float gap = static_cast<float>(1e-3 * size);
     Scene scene = empty_scene();

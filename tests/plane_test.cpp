@@ -16,7 +16,7 @@ TEST_P(Plane, ReturnsTheScalarBits) {
   std::size_t hits = 0;
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     Random random(seed);
-    const double size = random.log_in(1e-6, 1e6);
+    const double size = random.log_in(1e-12, 1e12);
     const Float3 point = random.point(size);
     Float3 normal = scaled(random.direction(), random.log_in(1e-3, 1e3));
     if (seed % 4 == 0) normal = {0, random.chance(.5) ? 1.f : -2.f, random.zero()};
@@ -37,7 +37,7 @@ TEST(PlaneOracle, KeepsTheBound) {
   int hits = 0;
   for (std::uint64_t seed = 0; seed < 300000; ++seed) {
     Random random(seed);
-    const double size = random.log_in(1e-6, 1e6);
+    const double size = random.log_in(1e-12, 1e12);
     const Float3 p = random.point(size), o = random.point(size * random.log_in(1, 1e4));
     const Float3 n = scaled(random.direction(), random.log_in(1e-3, 1e3));
     const Float3 d =

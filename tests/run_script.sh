@@ -1,6 +1,7 @@
 #!/bin/sh
 # run_script.sh RUN SCRATCH: ./run through a link, and by someone who may install nothing. The program it would build is a stand-in.
 set -eu
+unset GRELHA_PRESET  # of whoever runs the tests
 rm -rf "$2"
 mkdir -p "$2/project/build/release" "$2/tools"
 cd "$2"

@@ -16,7 +16,7 @@ TEST_P(Sphere, ReturnsTheScalarBits) {
   std::size_t hits = 0;
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     Random random(seed);
-    const double size = random.log_in(1e-6, 1e6);
+    const double size = random.log_in(1e-12, 1e12);
     const Float3 center = random.chance(.3) ? Float3{} : random.point(size * random.log_in(1, 1e4));
     const Scene scene = one_sphere(center, static_cast<float>(random.chance(.2) ? -size : size));
     const World world(scene, {.grid = false});
@@ -46,7 +46,7 @@ TEST(SphereOracle, PointsLieOnTheSurface) {
   int hits = 0;
   for (std::uint64_t seed = 0; seed < 300000; ++seed) {
     Random random(seed);
-    const double r = random.log_in(1e-6, 1e6);
+    const double r = random.log_in(1e-12, 1e12);
     const Float3 c = random.chance(.3) ? Float3{} : random.point(r * random.log_in(1e-2, 1e2));
     const Float3 o = at(c, r * random.log_in(1e-3, 1e5), random.direction());
     const Float3 d = scaled(minus(at(c, r * random.in(0, 1.001), random.direction()), o), random.log_in(1e-2, 1e2));
@@ -70,7 +70,7 @@ TEST(SphereOracle, FindsTheFirstCrossing) {
   int judged = 0;
   for (std::uint64_t seed = 0; seed < 300000; ++seed) {
     Random random(seed);
-    const double size = random.log_in(1e-6, 1e6);
+    const double size = random.log_in(1e-12, 1e12);
     const float r = static_cast<float>(random.chance(.3) ? -size : size);
     const Float3 c = random.point(size * random.log_in(1e-2, 1e3));
     const Float3 o = at(c, size * (random.chance(.3) ? random.unit() : random.log_in(1, 1e4)), random.direction());

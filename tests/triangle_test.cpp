@@ -19,7 +19,7 @@ struct Shape {
 
 /// Any size and place; some slivers, some along the axes, some with whole coordinates.
 Shape random_shape(Random& random, double& size) {
-  size = random.log_in(1e-6, 1e6);
+  size = random.log_in(1e-12, 1e12);
   Shape s;
   s.a = random.chance(.3) ? Float3{} : random.point(size * random.log_in(1e-2, 1e3));
   s.b = at(s.a, size, random.direction());
