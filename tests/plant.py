@@ -31,7 +31,7 @@ class Fault:
 
 ROW = "Rows/Stability.NothingIsLostFalseOrMetAgain/"
 FAULTS = [
-    Fault("no growth of boxes", "kernel/world.cpp", "return reach * 256 / 16777216;", "return reach * 0;",
+    Fault("no growth of boxes", "kernel/plan.cpp", "return reach * 256 / 16777216;", "return reach * 0;",
           "grid", "Pads.*"),
     Fault("< for <= in the walk", "kernel/march.hpp", "slice <= last && active > 0;", "slice < last && active > 0;", "walk", "Isa/Walk.*"),
     Fault("adding up instead of computing again", "kernel/abreast.hpp", "t[a] = (plane - load<Lanes>(now[Course::kPlace + a])) * inverse;",
