@@ -4,7 +4,7 @@ set_tests_properties(pages PROPERTIES LABELS build)
 
 # The site builds without a warning, and its picture of what includes what is of these sources; without the tools both skip, and say so.
 add_test(NAME docs COMMAND sh ${PROJECT_SOURCE_DIR}/docs/build.sh ${CMAKE_CURRENT_BINARY_DIR}/docs)
-add_test(NAME architecture COMMAND ${PROJECT_SOURCE_DIR}/docs/architecture.py --check)
+add_test(NAME architecture COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/with_python.sh ${PROJECT_SOURCE_DIR}/docs/architecture.py --check)
 set_tests_properties(docs architecture PROPERTIES LABELS build SKIP_RETURN_CODE 77)
 
 # ./run through a link, and where nothing may be installed.
