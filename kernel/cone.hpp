@@ -32,12 +32,17 @@ template <class Real>
   const Real r = cone.radius + cone.slope * pz, rd = cone.slope * dz;
   const Vec3<Real> er = inv_dd * dr;  // by dir . dir, or products of four lengths overflow beyond 1e9
   const Real erd = inv_dd * rd;
-  const Real a = dot(dr, er) - rd * erd;
+  const Real de = dot(dr, er), re = rd * erd, pp = dot(pr, pr), rr = r * r;
+  const Real a = de - re;
   const Real b = dot(pr, er) - r * erd;
-  const Real c = inv_dd * (dot(pr, pr) - r * r);
+  const Real c = inv_dd * (pp - rr);
+  const Real bb = b * b, plain = bb - a * c;
+  // Most lines pass by. Both forms of the discriminant are off by some 16 eps of this product at most: below 256 neither is positive.
+  const Mask<Real> near_by = plain >= Real(-0x1p-16f) * ((de + re) * (inv_dd * (pp + rr)));
+  if (none(near_by)) return near_by;
   const Vec3<Real> w = erd * pr - r * er, moment = cross(pr, er);
-  const Real bb = b * b, ww = dot(w, w);
-  const Real disc = select(bb < ww, bb - a * c, ww - dot(moment, moment));
+  const Real ww = dot(w, w);
+  const Real disc = select(bb < ww, plain, ww - dot(moment, moment));
   const Mask<Real> crosses = disc >= o;
   if (none(crosses)) return crosses;
   const Real root = square_root(disc);
