@@ -43,7 +43,7 @@ template <class Real>
   const Vec3<Real> w = erd * pr - r * er, moment = cross(pr, er);
   const Real ww = dot(w, w);
   const Real disc = select(bb < ww, plain, ww - dot(moment, moment));
-  const Mask<Real> crosses = disc >= o;
+  const Mask<Real> crosses = both(near_by, disc >= o);  // so that no lane's answer depends on its neighbours, whatever overflows
   if (none(crosses)) return crosses;
   const Real root = square_root(disc);
   const Real q = select(b < o, root - b, o - (b + root));
