@@ -19,30 +19,35 @@ struct ConeSide {
 ///           not meet it (tests/cone_test.cpp). The quadratic is solved about the ray's point nearest to the narrower end, where what
 ///           it is made of is as small as what surrounds the hit. Its discriminant b b - a c is, by Lagrange's identity, also w w - m m:
 ///           where the roots meet, at a tip, b b is the larger, along the side w w. Less is lost of the smaller.
+///           What lies across the axis (pn, n, e, w) is a cross product with it, as long and turned by a quarter: m is p . e then.
 /// Source    Haines, NFF document 3.9 (SPD), "c"; stable roots as in Press et al., Numerical Recipes, 5.6.
 template <class Real>
 [[gnu::always_inline]] inline Mask<Real> hit_cone(const Vec3<Real>& org, const Vec3<Real>& dir, const Real& inv_dd, const Real& t_min,
                            const ConeSide<Real>& cone, Real& t) {
   const Real o(0);
   const Vec3<Real> to_base = cone.base - org;
+  const Vec3<Real> n = cross(dir, cone.axis);  // what of `dir` runs across the axis, turned by a quarter
+  const Vec3<Real> e = inv_dd * n;             // by dir . dir, or products of four lengths overflow beyond 1e9
+  const Real aside = dot(to_base, e), de = dot(n, e);
+  const Real wide = cone.radius + cone.slope * cone.height;
+  const Real within = (wide * wide) * inv_dd * de - aside * aside;
+  const Mask<Real> near_by = within >= o;  // most lines pass the axis further away than the wider radius
+  if (none(near_by)) return near_by;
   const Real near = dot(to_base, dir) * inv_dd;
   const Vec3<Real> p = near * dir - to_base;  // narrower end to the line's nearest point
   const Real pz = dot(p, cone.axis), dz = dot(dir, cone.axis);
-  const Vec3<Real> pr = p - pz * cone.axis, dr = dir - dz * cone.axis;
-  const Real r = cone.radius + cone.slope * pz, rd = cone.slope * dz;
-  const Vec3<Real> er = inv_dd * dr;  // by dir . dir, or products of four lengths overflow beyond 1e9
-  const Real erd = inv_dd * rd;
-  const Real de = dot(dr, er), re = rd * erd, pp = dot(pr, pr), rr = r * r;
-  const Real a = de - re;
-  const Real b = dot(pr, er) - r * erd;
-  const Real c = inv_dd * (pp - rr);
-  const Real bb = b * b, plain = bb - a * c;
-  // Most lines pass by. Both forms of the discriminant are off by some 16 eps of this product at most: below 256 neither is positive.
-  const Mask<Real> near_by = plain >= Real(-0x1p-16f) * ((de + re) * (inv_dd * (pp + rr)));
-  if (none(near_by)) return near_by;
-  const Vec3<Real> w = erd * pr - r * er, moment = cross(pr, er);
-  const Real ww = dot(w, w);
-  const Real disc = select(bb < ww, plain, ww - dot(moment, moment));
+  const Vec3<Real> pn = cross(p, cone.axis);
+  Real r = cone.radius, a = de, b = dot(pn, e);
+  Vec3<Real> w = r * e;
+  if (const Mask<Real> tapers = cone.slope > o; !none(tapers)) {  // of a cylinder the lines below change no bit
+    const Real rd = cone.slope * dz, erd = inv_dd * rd;
+    r = r + cone.slope * pz;
+    a = a - rd * erd;
+    b = b - r * erd;
+    w = erd * pn - r * e;
+  }
+  const Real c = inv_dd * (dot(pn, pn) - r * r), bb = b * b, ww = dot(w, w), moment = dot(p, e);
+  const Real disc = select(bb < ww, bb - a * c, ww - moment * moment);
   const Mask<Real> crosses = both(near_by, disc >= o);  // so that no lane's answer depends on its neighbours, whatever overflows
   if (none(crosses)) return crosses;
   const Real root = square_root(disc);
