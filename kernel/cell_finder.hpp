@@ -8,33 +8,6 @@
 
 namespace grelha {
 
-enum class Kind { kSphere, kTriangle, kCone };
-
-inline Kind kind_of(const Primitives& p, std::uint32_t id) {
-  return id < p.triangle_base ? Kind::kSphere : id < p.cone_base ? Kind::kTriangle : Kind::kCone;
-}
-
-struct Corners {
-  double v[3][3];
-};
-
-inline Corners corners_of(const Primitives& p, std::uint32_t id) {
-  const TriangleSpans& t = p.geometry.triangles;
-  const std::uint32_t i = id - p.triangle_base, v[3] = {t.a[i], t.b[i], t.c[i]};
-  Corners c;
-  for (int k = 0; k < 3; ++k) c.v[k][0] = t.x[v[k]], c.v[k][1] = t.y[v[k]], c.v[k][2] = t.z[v[k]];
-  return c;
-}
-
-inline Box box_of(const Corners& c) {
-  Box b;
-  for (int a = 0; a < 3; ++a) {
-    b.lo[a] = std::min(std::min(c.v[0][a], c.v[1][a]), c.v[2][a]);
-    b.hi[a] = std::max(std::max(c.v[0][a], c.v[1][a]), c.v[2][a]);
-  }
-  return b;
-}
-
 /// A cell grown by pad against a triangle: the plane, and each edge seen along the axes across which the triangle spans
 /// several cells. Together with boxes that meet these are all the separating axes, so what is left is touched.
 class TriangleTouch {

@@ -6,56 +6,14 @@
 #include <span>
 #include <vector>
 
+#include "kernel/primitives.hpp"
 #include "kernel/raw_vector.hpp"
-#include "kernel/scene_spans.hpp"
 #include "kernel/stats.hpp"
 #include "kernel/view.hpp"
 
 namespace grelha {
 
 class BuildProgress;
-
-/// Axis-aligned box in double, where sums of floats do not round. Empty when lo > hi.
-struct Box {
-  double lo[3] = {1e300, 1e300, 1e300}, hi[3] = {-1e300, -1e300, -1e300};
-  void add(double x, double y, double z) {
-    const double p[3] = {x, y, z};
-    for (int a = 0; a < 3; ++a) {
-      if (p[a] < lo[a]) lo[a] = p[a];
-      if (p[a] > hi[a]) hi[a] = p[a];
-    }
-  }
-  void add(const Box& b) { add(b.lo[0], b.lo[1], b.lo[2]), add(b.hi[0], b.hi[1], b.hi[2]); }
-  bool empty() const { return !(lo[0] <= hi[0]); }
-  void grow(double by) {
-    for (int a = 0; a < 3; ++a) lo[a] -= by, hi[a] += by;
-  }
-  double diagonal() const;
-};
-
-/// Cones as the tests want them, see ConeSide: base xyz, axis xyz, height, radius, slope, side; [count] each.
-using PreparedCones = std::array<std::vector<float>, 10>;
-PreparedCones prepare_cones(const ConeSpans& cones);
-
-/// The caller's arrays with what is derived from them; ids run over planes, spheres, triangles, cones.
-struct Primitives {
-  GeometrySpans geometry;
-  PreparedCones cones;
-  std::uint32_t sphere_base, triangle_base, cone_base, end;
-  explicit Primitives(const GeometrySpans& geometry);
-  /// Of a finite primitive (id >= sphere_base).
-  Box box(std::uint32_t id) const { return id < triangle_base ? sphere_box(id - sphere_base) : flat_box(id); }
-
- private:
-  Box sphere_box(std::size_t i) const {
-    const SphereSpans& s = geometry.spheres;
-    const double center[3] = {s.x[i], s.y[i], s.z[i]}, radius = s.radius[i] < 0 ? -s.radius[i] : s.radius[i];
-    Box b;
-    for (int a = 0; a < 3; ++a) b.lo[a] = center[a] - radius, b.hi[a] = center[a] + radius;
-    return b;
-  }
-  Box flat_box(std::uint32_t id) const;  ///< of a triangle or a cone
-};
 
 inline std::size_t cell_count(const std::array<std::uint32_t, 3>& cells) { return std::size_t{cells[0]} * cells[1] * cells[2]; }
 

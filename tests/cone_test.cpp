@@ -2,7 +2,7 @@
 #define GRELHA_ISA scalar
 #include "kernel/cone.hpp"
 
-#include "kernel/grid.hpp"
+#include "kernel/primitives.hpp"
 #include "tests/support/oracle.hpp"
 #include "tests/support/rays.hpp"
 #include "tests/support/scenes.hpp"
