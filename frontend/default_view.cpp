@@ -42,17 +42,17 @@ Material default_mesh_material() {
 
 void add_default_view(SceneFile& file) {
   const auto [x, y, z] = extents(file.scene.geometry.triangles);
-  const double radius = std::hypot(x.size(), y.size(), z.size()) / 2;
+  const double radius = std::sqrt(x.size() * x.size() + y.size() * y.size() + z.size() * z.size()) / 2;
   const double farthest = std::max({std::abs(x.lower), std::abs(x.upper), std::abs(y.lower), std::abs(y.upper),
                                     std::abs(z.lower), std::abs(z.upper)});
   // The ball around the mesh fills the angle. A tiny mesh far out must not put the eye on what it looks at in floats.
-  constexpr double kAngleDeg = 45, kDegree = 3.14159265358979323846 / 180, kFloatSteps = 1e-5, kLeast = 1e-12;
-  const double distance = std::max({radius / std::sin(kAngleDeg / 2 * kDegree), kFloatSteps * farthest, kLeast});
+  constexpr double kAngleDeg = 45, kSineOfHalf = 0.3826834323650898, kFloatSteps = 1e-5, kLeast = 1e-12;
+  const double distance = std::max({radius / kSineOfHalf, kFloatSteps * farthest, kLeast});
 
   // Unit vectors towards the eye, to the right and up in the picture: 30 degrees to the right, 20 degrees above.
-  const double turn = 30 * kDegree, rise = 20 * kDegree;
-  const double back[] = {std::sin(turn) * std::cos(rise), std::sin(rise), std::cos(turn) * std::cos(rise)};
-  const double right[] = {std::cos(turn), 0, -std::sin(turn)};
+  // Sines and cosines are written down, for the library's last bit depends on the machine.
+  constexpr double kSin30 = 0.5, kCos30 = 0.8660254037844386, kSin20 = 0.3420201433256687, kCos20 = 0.9396926207859084;
+  constexpr double back[] = {kSin30 * kCos20, kSin20, kCos30 * kCos20}, right[] = {kCos30, 0, -kSin30};
   const double middle[] = {x.middle(), y.middle(), z.middle()};
   const auto place = [&](double to_back, double to_right, double up) {
     const auto part = [&](int i) {

@@ -13,12 +13,6 @@ double length(const Float3& a, const Float3& b) {
   return std::sqrt(x * x + y * y + z * z);
 }
 
-/// The course's measure: pixels of the view plane, which lies at the point looked at and has the scene's own resolution.
-double view_plane_pixel(const Camera& camera) {
-  constexpr double kHalfDegree = 3.14159265358979323846 / 360;
-  return 2 * length(camera.eye, camera.at) * std::tan(camera.angle_deg * kHalfDegree) / camera.height;
-}
-
 void apply_lens(const Effects& effects, const LensHint& hint, Camera& camera) {
   const double to_at = length(camera.eye, camera.at);
   double aperture = hint.present ? hint.aperture : 0, focus = hint.present ? hint.focal * to_at : to_at;
@@ -26,7 +20,8 @@ void apply_lens(const Effects& effects, const LensHint& hint, Camera& camera) {
     aperture = effects.lens->aperture;
     if (effects.lens->focus > 0) focus = effects.lens->focus;
   }
-  camera.aperture = aperture > 0 && focus > 0 ? aperture * view_plane_pixel(camera) : 0;
+  // The course's measure: pixels of the view plane, which lies at the point looked at and has the scene's own resolution.
+  camera.aperture = aperture > 0 && focus > 0 ? aperture * (to_at * pixel_size(camera)) : 0;
   camera.focus = focus > 0 ? focus : 1;
 }
 

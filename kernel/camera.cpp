@@ -49,11 +49,13 @@ bool camera_is_sound(const Camera& c) {
   return dot(side, side) > 1e-18;
 }
 
+double pixel_size(const Camera& c) { return 2 * tangent(c.angle_deg * 3.14159265358979323846 / 360) / c.height; }
+
 FrameView make_frame(const Camera& c) {
   const Double3 forward = unit(minus(c.at, c.eye));
   const Double3 right = unit(cross(forward, unit({c.up.x, c.up.y, c.up.z})));
   const Double3 up = cross(right, forward);
-  const double pixel = 2 * tangent(c.angle_deg * 3.14159265358979323846 / 360) / c.height;
+  const double pixel = pixel_size(c);
   FrameView f;
   f.eye[0] = c.eye.x, f.eye[1] = c.eye.y, f.eye[2] = c.eye.z;
   put(f.forward, forward), put(f.right, scaled(right, pixel)), put(f.up, scaled(up, pixel));

@@ -18,4 +18,7 @@ struct Camera {
 /// Whether the frame can be built: finite numbers, eye != at, up not along the view, 0 < angle < 180.
 bool camera_is_sound(const Camera& camera);
 
+/// Width and height of a pixel where the view is 1 away from the eye, scene units. The same bits on every machine.
+double pixel_size(const Camera& camera);
+
 }  // namespace grelha
