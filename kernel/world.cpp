@@ -66,7 +66,12 @@ std::size_t bytes_of(const V& v) {
 
 }  // namespace
 
-MaterialTable::MaterialTable(std::span<const Material> materials) {
+MaterialTable::MaterialTable(const SceneSpans& scene) {
+  const std::span<const Material> materials = scene.materials;
+  const GeometrySpans& g = scene.geometry;
+  std::vector<char> used(materials.size());
+  for (const auto* m : {&g.spheres.material, &g.triangles.material, &g.cones.material, &g.planes.material})
+    for (const std::uint32_t i : *m) used[i] = true;
   for (auto& f : fields) f.resize(materials.size());
   for (std::size_t i = 0; i < materials.size(); ++i) {
     const Material& m = materials[i];
@@ -76,6 +81,7 @@ MaterialTable::MaterialTable(std::span<const Material> materials) {
                                            m.transmission, m.shine,    clear ? m.ior : 1.f, clear && m.fresnel ? 1.f : 0.f,
                                            m.roughness};
     for (std::size_t k = 0; k < kMaterialFields; ++k) fields[k][i] = values[k];
+    if (!used[i]) continue;
     reflects |= clear || m.mirror != Float3{};
     refracts |= clear;
     fresnel |= clear && m.fresnel;
@@ -91,7 +97,7 @@ MaterialView MaterialTable::view() const {
   return v;
 }
 
-World::Impl::Impl(const SceneSpans& s, const BuildOptions& options) : scene((check(s), s)), primitives(s.geometry), materials(s.materials) {
+World::Impl::Impl(const SceneSpans& s, const BuildOptions& options) : scene((check(s), s)), primitives(s.geometry), materials(s) {
   const GeometrySpans& g = s.geometry;
   BuildProgress progress(options.progress);
   Plan plan = plan_grids(primitives, options, progress);

@@ -13,9 +13,9 @@ namespace grelha {
 class BuildProgress;
 struct Plan;
 
-/// Materials one array per component, so that lanes gather what they need and no more.
+/// Materials one array per component, so that lanes gather what they need and no more; and what those that primitives have ask for.
 struct MaterialTable {
-  explicit MaterialTable(std::span<const Material> materials);
+  explicit MaterialTable(const SceneSpans& scene);
   MaterialView view() const;
   std::array<std::vector<float>, kMaterialFields> fields;
   bool reflects = false, refracts = false, fresnel = false, emits = false, highlights = false, gloss = false;

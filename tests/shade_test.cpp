@@ -1,6 +1,7 @@
 // Shading against closed forms in long double: one ray, one pixel, one effect at a time.
 #include <functional>
 
+#include "kernel/world.hpp"
 #include "tests/support/oracle.hpp"
 #include "tests/support/rays.hpp"
 #include "tests/support/scenes.hpp"
@@ -361,6 +362,28 @@ TEST(Shade, EveryKindHasItsNormal) {
                   },
                   {0, 0, -4}, {0, 0, 0}),
               1, kFew);
+}
+
+TEST(Shade, IsSelectedByTheMaterialsThatPrimitivesHave) {
+  Scene s;
+  Material all = plain({1, 1, 1});
+  all.mirror = all.specular = all.emission = {1, 1, 1}, all.transmission = all.roughness = .5f, all.fresnel = true;
+  s.materials = {plain({1, 1, 1}), all};
+  const auto selected = [&s] {
+    const World world(s, {});
+    const ShadingView& v = world.impl().shading;
+    return std::vector<bool>{v.reflects, v.refracts, v.fresnel, v.emits, v.highlights, v.gloss};
+  };
+  s.geometry.spheres.add({0, 0, 0}, 1, 0);
+  EXPECT_EQ(selected(), std::vector<bool>(6, false));
+  const std::function<void()> add[] = {[&] { s.geometry.spheres.add({3, 0, 0}, 1, 1); }, [&] { s.geometry.planes.add({0, -3, 0}, {0, 1, 0}, 1); },
+                                       [&] { s.geometry.cones.add({0, 3, 0}, 1, {0, 4, 0}, 0, 1); }};
+  for (const auto& a : add) {
+    const Scene before = s;
+    a();
+    EXPECT_EQ(selected(), std::vector<bool>(6, true));
+    s = before;
+  }
 }
 
 }  // namespace
