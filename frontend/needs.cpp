@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 
+#include "frontend/effects.hpp"
 #include "frontend/report.hpp"
 
 namespace grelha {
@@ -9,14 +10,6 @@ namespace grelha {
 namespace {
 
 bool any(Float3 v) { return v.x != 0 || v.y != 0 || v.z != 0; }
-
-std::vector<bool> used_materials(const Scene& scene) {
-  std::vector<bool> used(scene.materials.size());
-  const Geometry& g = scene.geometry;
-  for (const auto* ids : {&g.spheres.material, &g.triangles.material, &g.cones.material, &g.planes.material})
-    for (const std::uint32_t id : *ids) used[id] = true;
-  return used;
-}
 
 bool has_normals(const Triangles& triangles) {
   for (const auto* component : {&triangles.nx, &triangles.ny, &triangles.nz})

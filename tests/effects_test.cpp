@@ -180,6 +180,19 @@ TEST(Effects, SeedsGiveIndependentPictures) {
   EXPECT_LT(std::abs(ab), 4 * std::sqrt(abab)) << "errors of the two must be uncorrelated: four standard errors of their product";
 }
 
+TEST(Effects, OfMaterialsThatNothingHasAreNotSampled) {
+  SceneFile f;
+  f.scene.materials.resize(2);
+  f.scene.materials[1].mirror = {1, 1, 1}, f.scene.materials[1].roughness = .1f;
+  f.scene.geometry.spheres.add({0, 0, 0}, 1, 0);
+  RenderOptions o;
+  apply_effects({}, f, o);
+  EXPECT_EQ(o.sampling.samples, 1);
+  f.scene.geometry.planes.add({0, -1, 0}, {0, 1, 0}, 1);
+  apply_effects({}, f, o);
+  EXPECT_EQ(o.sampling.samples, 16);
+}
+
 TEST(Effects, AreTakenFromTheCommandLine) {
   SceneFile f;
   f.scene.materials.resize(2);
