@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
+
+#include "kernel/scene_spans.hpp"
 
 namespace grelha {
 namespace {
@@ -51,7 +54,7 @@ void apply_gloss(float roughness, std::vector<Material>& materials) {
 bool has_rough_mirror(const Scene& scene) {
   const auto rough = [](const Material& m) { return m.roughness > 0 && (m.mirror != Float3{} || m.transmission > 0); };
   if (std::ranges::none_of(scene.materials, rough)) return false;  // millions of primitives need not be asked
-  const std::vector<bool> used = used_materials(scene);
+  const std::vector<char> used = used_materials(scene);
   for (std::size_t i = 0; i < used.size(); ++i)
     if (used[i] && rough(scene.materials[i])) return true;
   return false;
@@ -65,14 +68,6 @@ bool has_something_to_sample(const SceneFile& file, const Effects& effects) {
 int ceiling_share(long long all, int parts) { return static_cast<int>((all + parts - 1) / parts); }
 
 }  // namespace
-
-std::vector<bool> used_materials(const Scene& scene) {
-  std::vector<bool> used(scene.materials.size());
-  const Geometry& g = scene.geometry;
-  for (const auto* ids : {&g.spheres.material, &g.triangles.material, &g.cones.material, &g.planes.material})
-    for (const std::uint32_t id : *ids) used[id] = true;
-  return used;
-}
 
 void apply_effects(const Effects& e, SceneFile& file, RenderOptions& options) {
   apply_lens(e, file.lens, file.camera);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include "frontend/scene_file.hpp"
 #include "kernel/render.hpp"
@@ -39,8 +38,5 @@ struct Effects {
 /// light, a rough mirror) takes its own `spp`, or 16 rays a pixel; any other takes one. A point of a subdivided picture takes
 /// one ray, or with --samples, or a lens of N points, so many.
 void apply_effects(const Effects& effects, SceneFile& file, RenderOptions& options);
-
-/// [materials] whether some primitive has it.
-std::vector<bool> used_materials(const Scene& scene);
 
 }  // namespace grelha

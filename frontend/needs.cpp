@@ -2,8 +2,8 @@
 #include <array>
 #include <cmath>
 
-#include "frontend/effects.hpp"
 #include "frontend/report.hpp"
+#include "kernel/scene_spans.hpp"
 
 namespace grelha {
 
@@ -56,7 +56,7 @@ Needs needs_of(const SceneFile& file) {
   needs.lens = file.lens.present && file.lens.aperture > 0;
   needs.area_lights = !file.area_lights.empty();
   needs.environment = !file.environment.empty();
-  const std::vector<bool> used = used_materials(file.scene);
+  const std::vector<char> used = used_materials(file.scene);
   for (std::size_t i = 0; i < used.size(); ++i) {
     if (!used[i]) continue;
     const Material& material = file.scene.materials[i];

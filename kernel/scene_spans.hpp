@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "kernel/geometry.hpp"
 
@@ -80,5 +81,14 @@ struct SceneSpans {
   SceneSpans(const Scene& s) : geometry(s.geometry), materials(s.materials), lights(s.lights), background(s.background) {}
   SceneSpans(Scene&& gone) = delete;  ///< its arrays would be gone as well
 };
+
+/// [materials] 1 where some primitive has it, 0 elsewhere; what primitives name must be there.
+inline std::vector<char> used_materials(const SceneSpans& scene) {
+  std::vector<char> used(scene.materials.size());
+  const GeometrySpans& g = scene.geometry;
+  for (const Indices& ids : {g.spheres.material, g.triangles.material, g.cones.material, g.planes.material})
+    for (const std::uint32_t i : ids) used[i] = 1;
+  return used;
+}
 
 }  // namespace grelha

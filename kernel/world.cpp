@@ -68,10 +68,7 @@ std::size_t bytes_of(const V& v) {
 
 MaterialTable::MaterialTable(const SceneSpans& scene) {
   const std::span<const Material> materials = scene.materials;
-  const GeometrySpans& g = scene.geometry;
-  std::vector<char> used(materials.size());
-  for (const auto* m : {&g.spheres.material, &g.triangles.material, &g.cones.material, &g.planes.material})
-    for (const std::uint32_t i : *m) used[i] = true;
+  const std::vector<char> used = used_materials(scene);
   for (auto& f : fields) f.resize(materials.size());
   for (std::size_t i = 0; i < materials.size(); ++i) {
     const Material& m = materials[i];

@@ -1,5 +1,6 @@
 # Long work: parts, checkpoints, signals, ranks.
 grelha_test(parts image grelha::frontend grelha::scenes)
+grelha_test(identity unit grelha::frontend grelha::scenes)
 grelha_test(long_work image grelha::frontend)
 target_compile_definitions(long_work_test PRIVATE GRELHA_PROGRAM="$<TARGET_FILE:grelha>")
 add_dependencies(long_work_test grelha)
