@@ -105,7 +105,7 @@ int LongRender::stops() const { return keeps() ? StopSignals::seen() : 0; }
 int LongRender::run(const World& world, const Camera& camera, const std::function<void(double)>& progress, RenderStats& stats, SampleMaps& maps) {
   std::optional<StopSignals> signals;
   if (keeps()) signals.emplace();
-  Habit saving{keeps() ? command_.work.save_every : 0, [this] { save(); }};
+  Habit saving{keeps() ? command_.work.save_every.value_or(kSaveEvery) : 0, [this] { save(); }};
   Habit showing{command_.work.show_every, [this] { write(); }};
   const auto rest = [&] { return pursue(saving), pursue(showing), stops() == 0; };
   auto* const sums = std::get_if<Accumulator>(&work_);

@@ -312,8 +312,6 @@ int list_scenes() {
 /// The mesh goes first: a scene must not stand there without what it refers to.
 void write_with_mesh(const scenes::Generator& generator, scenes::SceneOptions options, const std::string& path) {
   const auto mesh_path = std::filesystem::path(path).replace_extension(".ply");
-  if (mesh_path == std::filesystem::path(path))
-    throw UsageError("-o: wanted a name that does not end in .ply, found \"" + path + '"');
   options.mesh_file = mesh_path.filename().string();
   AtomicFile mesh(mesh_path.string()), scene(path);
   generator.write_mesh(mesh.stream(), options.size);
@@ -330,6 +328,8 @@ int run(const SceneCommand& command) {
     for (const scenes::Generator& g : scenes::generators()) names.push_back(g.name);
     throw UsageError("no scene \"" + command.name + '"' + did_you_mean(command.name, names) + " (see grelha scene --list)");
   }
+  if (command.spd && !generator->has_spd_form)
+    throw UsageError("--spd: wanted a scene that SPD has in another form (balls, mount), found \"" + command.name + '"');
   scenes::SceneOptions options{command.size.value_or(generator->default_size), command.spd, {}};
   if (options.size < generator->min_size || options.size > generator->max_size)
     throw UsageError("--size: " + command.name + " has sizes " + std::to_string(generator->min_size) + " to " +

@@ -2,8 +2,8 @@
 
 #include "frontend/help.hpp"
 #include "frontend/nearest.hpp"
+#include "frontend/option_checks.hpp"
 #include "frontend/option_values.hpp"
-#include "frontend/partial.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -85,7 +85,7 @@ void add_render(CLI::App& app, RenderCommand& command) {
         });
   value(sub, "--size", "WxH", "pixels [as the scene says]",
         [&command](const std::string& text) { parse_size(text, command.width, command.height); });
-  value(sub, "--threads", "N", "threads [one per processor]",
+  value(sub, "-j,--threads", "N", "threads [one per processor]",
         [&command](const std::string& text) { command.render.threads = command.build.threads = whole("--threads", text, 1, kMaxThreads); });
   value(sub, "--depth", "N", "longest path of a ray, the eye ray counted as 1 [5]",
         [&command](const std::string& text) { command.render.depth = whole("--depth", text, 1, kMostDepth); });
@@ -209,27 +209,6 @@ void want_known_command(const CLI::App& app, const std::string& word) {
   throw UsageError("command: wanted one of " + commands + ", found \"" + word + '"' + did_you_mean(word, names));
 }
 
-void check_long_work(const RenderCommand& command) {
-  const LongWork& w = command.work;
-  const bool sums = !command.render.refine.on() && !command.effects.adaptive.on, part_file = is_partial_name(command.image);
-  if (!sums && (w.is_part() || part_file))
-    throw UsageError("parts are of pictures with as many samples in every pixel: no --error, --time or --aa adaptive");
-  if (w.is_part() && !part_file) refuse("-o", "a name ending in .grelha for a part of a picture", command.image);
-  if (part_file && w.show_every > 0) throw UsageError("--preview wants a picture to write, not a .grelha");
-  if (part_file && command.srgb) throw UsageError("--srgb: a .grelha holds no colours for a screen, say it to merge");
-}
-
-/// Options that say two things at once, or something about nothing.
-void check_together(const RenderCommand& command) {
-  const RefineOptions& r = command.render.refine;
-  const Effects& e = command.effects;
-  if (int(r.error > 0) + int(r.seconds > 0) + int(r.samples > 0) > 1) throw UsageError("--error and --time: one of them, found both");
-  if (r.on() && (e.samples || e.jitter > 0 || e.adaptive.on)) throw UsageError("--error and --time choose the samples: no --samples or --aa beside them");
-  if (r.on() && e.sampler && is_jittered(*e.sampler)) throw UsageError("--sampler: wanted sobol or random with --error or --time");
-  if (!r.on() && !(command.samples_map.empty() && command.error_map.empty()))
-    throw UsageError("--samples-map and --error-map want --error or --time");
-}
-
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
 /// The command that was asked for, or the program itself.
@@ -318,16 +297,35 @@ static Command help_of_command(const char* program, const std::string& command) 
   return parse_command(command.empty() ? 2 : 3, words);
 }
 
+/// What follows the program's name, last first as CLI11 takes it. `-o=FILE` means FILE, as `--output=FILE` does.
+static std::vector<std::string> words_of(int argc, const char* const* argv) {
+  constexpr std::size_t kValue = 3;  // behind "-o="
+  std::vector<std::string> words;
+  for (int i = argc - 1; i > 0; --i) {
+    std::string word = argv[i];
+    const bool is_short = word.size() >= kValue && word[0] == '-' && word[1] != '-' && word[2] == '=';
+    if (is_short) words.push_back(word.substr(kValue));
+    words.push_back(is_short ? word.substr(0, kValue - 1) : std::move(word));
+  }
+  return words;
+}
+
+template <class C>
+static C checked(const C& command) {
+  check_together(command);
+  return command;
+}
+
 Command parse_command(int argc, const char* const* argv) {
   CLI::App app{"", "grelha"};
-  app.set_version_flag("--version", "grelha " GRELHA_VERSION);
+  app.set_version_flag("-V,--version", "grelha " GRELHA_VERSION);
   app.require_subcommand(1);
   Commands commands;
   add_commands(app, commands);
   if (argc > 1 && argv[1] == std::string_view("help")) return help_of_command(argv[0], argc > 2 ? argv[2] : "");
   if (argc > 1) want_known_command(app, argv[1]);
   try {
-    app.parse(argc, argv);
+    app.parse(words_of(argc, argv));
   } catch (const CLI::CallForHelp&) {
     return asked_help(app, false);
   } catch (const CLI::CallForAllHelp&) {
@@ -340,18 +338,14 @@ Command parse_command(int argc, const char* const* argv) {
     refuse_twice(app);
     throw UsageError(first_line(error.what()) + " (see --help)");
   }
-  if (app.got_subcommand("info")) return commands.info;
+  if (app.got_subcommand("info")) return checked(commands.info);
   if (app.got_subcommand("compare")) return commands.compare;
-  if (app.got_subcommand("merge")) return commands.merge;
-  if (app.got_subcommand("scene")) {
-    if (commands.scene.name.empty() && !commands.scene.list) throw UsageError("NAME is required (see grelha scene --list)");
-    return commands.scene;
-  }
+  if (app.got_subcommand("merge")) return checked(commands.merge);
+  if (app.got_subcommand("scene")) return checked(commands.scene);
   RenderCommand& render = commands.render;
   RenderCommand first = render;  // as commands_for() will name its picture
-  if (first.image.empty()) first.image = default_image(first.scenes.front());
+  if (first.image.empty() || is_folder(first.image)) first.image += default_image(first.scenes.front());
   check_together(first);
-  check_long_work(first);
   return render;
 }
 

@@ -24,11 +24,13 @@ struct InputOptions {
   std::uint64_t max_memory = 0;  ///< bytes; 0: as much as the machine has
 };
 
+inline constexpr double kSaveEvery = 60;  ///< seconds between saves of a checkpoint
+
 /// Work that may be cut to pieces, interrupted and gone on with.
 struct LongWork {
   std::optional<Range> rows, samples;  ///< the part to render; absent: all
   std::string checkpoint;              ///< file to save to, and to go on from, or empty
-  double save_every = 60;              ///< seconds
+  std::optional<double> save_every;    ///< seconds; absent: kSaveEvery
   double show_every = 0;               ///< seconds between pictures of what there is so far; 0: none
   bool kept_till_the_last = false;     ///< the checkpoint: until the pictures of all scenes are written
   bool is_part() const { return rows || samples; }

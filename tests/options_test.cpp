@@ -56,9 +56,9 @@ TEST(Render, Defaults) {
 }
 
 TEST(Render, Effects) {
-  const Effects e = std::get<RenderCommand>(parse("render x.nff --samples 9 --sampler jitter --seed 7 --aa jitter:3 "
+  const Effects e = std::get<RenderCommand>(parse("render x.nff --samples 288 --sampler jitter --seed 7 --aa jitter:3 "
                                                   "--shadows area:.5,4 --lens 20,1.5,32 --glossy .2,6")).effects;
-  EXPECT_EQ(e.samples, 9);
+  EXPECT_EQ(e.samples, 288);
   EXPECT_EQ(e.sampler, Sampler::kJitter);
   EXPECT_EQ(e.seed, 7u);
   EXPECT_EQ(e.jitter, 3);
@@ -90,9 +90,9 @@ TEST(Render, ErrorAndTime) {
 
 TEST(Render, EveryOption) {
   const auto command = std::get<RenderCommand>(
-      parse("render x.nff -o y.pfm --size 640x480 --threads 7 --depth 3 --density 2.5 --accel none --mailbox off "
+      parse("render x.nff -o y.png --size 640x480 --threads 7 --depth 3 --density 2.5 --mailbox off "
             "--isa avx2 --precision double --packet 16 --stats s.json --quiet --srgb"));
-  EXPECT_EQ(command.image, "y.pfm");
+  EXPECT_EQ(command.image, "y.png");
   EXPECT_EQ(command.width, 640);
   EXPECT_EQ(command.height, 480);
   EXPECT_EQ(command.render.threads, 7);
@@ -101,7 +101,7 @@ TEST(Render, EveryOption) {
   EXPECT_EQ(command.render.precision, Precision::kDouble);
   EXPECT_FALSE(command.render.mailbox);
   EXPECT_EQ(command.render.isa, "avx2");
-  EXPECT_FALSE(command.build.grid);
+  EXPECT_FALSE(std::get<RenderCommand>(parse("render x.nff --accel none")).build.grid);
   EXPECT_EQ(command.build.density, 2.5f);
   EXPECT_EQ(command.stats, "s.json");
   EXPECT_TRUE(command.quiet);
@@ -112,6 +112,69 @@ TEST(Render, OptionsMayStandBeforeTheSceneAndCarryTheirValue) {
   const auto command = std::get<RenderCommand>(parse("render --size=65536x1 --quiet x.ply"));
   EXPECT_EQ(command.width, 65536);
   EXPECT_EQ(command.scenes, std::vector<std::string>{"x.ply"});
+}
+
+TEST(Render, ShortOptionsTakeTheirValueAsInOtherTools) {
+  for (const char* line : {"render x.nff -o=y.png -j=3", "render x.nff -oy.png -j3", "render -j 3 -o y.png x.nff"}) {
+    const auto command = std::get<RenderCommand>(parse(line));
+    EXPECT_EQ(command.image, "y.png") << line;
+    EXPECT_EQ(command.render.threads, 3) << line;
+    EXPECT_EQ(command.build.threads, 3) << line;
+  }
+  EXPECT_EQ(std::get<SceneCommand>(parse("scene balls -o=b.nff")).output, "b.nff");
+  EXPECT_EQ(error_of("render x.nff -o="), "-o: wanted a name ending in .png, .hdr, .pfm or .grelha, found \"\"");
+  EXPECT_EQ(std::get<TextCommand>(parse("-V")).text, std::get<TextCommand>(parse("--version")).text);
+}
+
+/// Pairs that would have one silently win, or say something about nothing; and the nearest pairs that agree.
+TEST(Errors, ContradictionsAreRefusedByName) {
+  const std::pair<const char*, const char*> table[] = {
+      {"render a --aa jitter:4 --samples 3",
+       "--aa jitter:4 and --samples: wanted one number of samples, found 16 and 3"},
+      {"render a --aa off --samples 64",
+       "--aa off and --samples: wanted one number of samples, found 1 and 64"},
+      {"render a --lens 8,7,32 --samples 16",
+       "--lens APERTURE,FOCUS,N and --samples: wanted one number of samples, found 32 and 16"},
+      {"render a --lens 8,7,2 --aa jitter:2 --samples 4",
+       "--aa jitter:2 and --samples: wanted one number of samples, found 8 and 4"},
+      {"render a --aa adaptive:.1,2 --lens 8,7,4 --samples 2",
+       "--lens APERTURE,FOCUS,N and --samples: wanted one number of samples, found 4 and 2"},
+      {"render a --aa jitter:4 --sampler sobol",
+       "--aa jitter:N and --sampler: wanted jitter or unshuffled for jittered subpixels"},
+      {"render a --error .1 --lens 8,7,4",
+       "--error and --time choose the samples: no N in --lens beside them"},
+      {"render a --time 1 --shadows area:1,4",
+       "--error and --time choose the samples: --shadows random:SIZE beside them, not area:SIZE,N"},
+      {"render a --srgb -o a.hdr",
+       "--srgb and -o: wanted a .png, other pictures hold light as it is; found \"a.hdr\""},
+      {"render a --srgb -o a.pfm",
+       "--srgb and -o: wanted a .png, other pictures hold light as it is; found \"a.pfm\""},
+      {"render a --srgb -o a.grelha", "--srgb: a .grelha holds no colours for a screen, say it to merge"},
+      {"merge a.grelha --srgb -o a.hdr",
+       "--srgb and -o: wanted a .png, other pictures hold light as it is; found \"a.hdr\""},
+      {"merge a.grelha --srgb -o b.grelha",
+       "--srgb: a .grelha holds no colours for a screen, say it to merge"},
+      {"render a --checkpoint-every 5", "--checkpoint-every wants --checkpoint"},
+      {"render a --density 2 --accel none", "--density and --accel none: without a grid there are no cells"},
+      {"info a --density 2 --accel none", "--density and --accel none: without a grid there are no cells"},
+      {"render a --mailbox off --accel none",
+       "--mailbox and --accel none: without a grid there are no mailboxes"},
+      {"scene --list balls", "--list: wanted alone, it writes no scene"},
+      {"scene --list -o x.nff", "--list: wanted alone, it writes no scene"},
+      {"scene balls -o x.ply", "-o: wanted a name for an NFF scene, such as balls.nff, found \"x.ply\""},
+      {"scene boat -o x.ply", "-o: wanted a name for an NFF scene, such as boat.nff, found \"x.ply\""},
+      {"scene balls -o x.nff.gz", "-o: wanted a name for an NFF scene, such as balls.nff, found \"x.nff.gz\""},
+      {"scene balls -o x.png", "-o: wanted a name for an NFF scene, such as balls.nff, found \"x.png\""},
+  };
+  for (const auto& [line, message] : table) EXPECT_EQ(error_of(line), message) << line;
+  for (const char* line :
+       {"render a --aa jitter:4 --samples 16", "render a --aa off --samples 1",
+        "render a --aa jitter:2 --samples 0:3 -o a.grelha", "render a --lens 8,7,32 --samples 32",
+        "render a --lens 0,0,8 --samples 4", "render a --srgb -o pictures/",
+        "render a --aa jitter:4 --sampler unshuffled", "render a --error .1 --shadows random:1 --lens 8",
+        "render a --checkpoint k --checkpoint-every 5", "merge a.grelha --srgb -o a.png",
+        "scene balls -o x", "info a --accel none"})
+    EXPECT_EQ(error_of(line), "no error") << line;
 }
 
 TEST(DefaultImage, TakesTheStemInTheCurrentFolder) {
