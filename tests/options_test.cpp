@@ -3,7 +3,6 @@
 #include "frontend/batch.hpp"
 #include "frontend/help.hpp"
 #include "frontend/nearest.hpp"
-#include "frontend/progress.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -386,14 +385,6 @@ TEST(Pages, HoldEveryOptionThatHelpShows) {
     EXPECT_NE(man.find("grelha " + c.name), std::string::npos);
   }
   EXPECT_GE(options, 30u);
-}
-
-TEST(Progress, TellsShareAndRemainingTime) {
-  EXPECT_EQ(progress_text(0, 1), "[........................................]   0 %");
-  EXPECT_EQ(progress_text(0.5, 3), "[####################....................]  50 %  3 s left");
-  EXPECT_EQ(progress_text(1, 3), "[########################################] 100 %  0 s left");
-  EXPECT_EQ(progress_text(0.25, 30), "[##########..............................]  25 %  1 min 30 s left");
-  EXPECT_EQ(progress_text(0.1, 800), "[####....................................]  10 %  2 h 0 min left");
 }
 
 }  // namespace
