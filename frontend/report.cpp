@@ -102,6 +102,8 @@ void list_entities(std::string& text, const EntityCounts& c) {
   text += "in the file   " + (line.empty() ? "no primitives" : line) + '\n';
 }
 
+const char* box_order_name(BoxOrder order) { return order == BoxOrder::kPairs ? "pairs" : "corners"; }
+
 std::string primitives_text(std::size_t spheres, std::size_t triangles, std::size_t cones, std::size_t planes) {
   std::string text;
   list_count(text, spheres, "sphere");
@@ -178,6 +180,8 @@ std::string info_json(const SceneFile& file, const SceneMemory& memory, const st
                     {"vertices", geometry.triangles.vertex_count()}, {"cones", geometry.cones.size()},
                     {"planes", geometry.planes.size()}, {"objects", geometry.objects.size()}};
   json["dropped"] = {{"not_finite", file.dropped.not_finite}, {"zero_area", file.dropped.zero_area}};
+  json["aabb"] = nullptr;
+  if (file.box_order != BoxOrder::kNone) json["aabb"] = box_order_name(file.box_order);
   json["resolution"] = {file.camera.width, file.camera.height};
   json["bounds"] = to_json(bounds_of(geometry));
   json["memory"] = {{"scene", memory.scene}, {"grids", memory.grids}, {"peak", memory.peak}};
@@ -204,6 +208,8 @@ std::string info_text(const std::string& path, const SceneFile& file, const Scen
     text += "dropped       " + std::to_string(dropped) + " that cannot be drawn\n";
   text +=
       "lights        " + std::to_string(file.counts.lights) + (file.default_light ? " (and a made-up one)\n" : "\n");
+  if (file.box_order != BoxOrder::kNone)
+    text += std::string("aabb          read as ") + box_order_name(file.box_order) + '\n';
   text += "materials     " + std::to_string(file.counts.materials) + '\n';
   if (const SceneBounds bounds = bounds_of(g); !bounds.empty)
     text += "bounds        " + point_text(bounds.low) + " to " + point_text(bounds.high) + '\n';
