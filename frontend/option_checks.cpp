@@ -3,6 +3,7 @@
 #include <array>
 #include <string_view>
 
+#include "frontend/atomic_file.hpp"
 #include "frontend/image_file.hpp"
 #include "frontend/option_values.hpp"
 #include "frontend/partial.hpp"
@@ -59,11 +60,20 @@ void check_grid(const BuildOptions& build) {
     throw UsageError("--density and --accel none: without a grid there are no cells");
 }
 
-void check_tone(bool srgb, const std::string& image) {
+/// By its name or by --format, which must not contradict each other.
+void check_output(const std::string& image, std::optional<ImageFormat> asked) {
+  const auto named = image_format(image);
+  const bool part = is_partial_name(image);
+  if (asked && (part || (named && named != asked)))
+    throw UsageError("--format " + std::string(ending_of(*asked)) + " and -o: wanted one format, found \"" + image + '"');
+  if (!format_of(image, asked) && !part) refuse("-o", "a name ending in .png, .hdr, .pfm or .grelha", image);
+}
+
+void check_tone(bool srgb, const std::string& image, std::optional<ImageFormat> asked) {
   if (!srgb) return;
   if (is_partial_name(image))
     throw UsageError("--srgb: a .grelha holds no colours for a screen, say it to merge");
-  if (image_format(image) != ImageFormat::png)
+  if (format_of(image, asked) != ImageFormat::png)
     throw UsageError("--srgb and -o: wanted a .png, other pictures hold light as it is; found \"" +
                      image + '"');
 }
@@ -79,6 +89,8 @@ void check_long_work(const RenderCommand& command) {
     refuse("-o", "a name ending in .grelha for a part of a picture", command.image);
   if (part_file && w.show_every > 0)
     throw UsageError("--preview wants a picture to write, not a .grelha");
+  if (w.show_every > 0 && command.image == kStdout)
+    throw UsageError("--preview wants a picture that can be written again, not stdout");
   if (w.save_every && w.checkpoint.empty())
     throw UsageError("--checkpoint-every wants --checkpoint");
 }
@@ -94,6 +106,7 @@ bool promises_other_format(std::string_view path) {
 }  // namespace
 
 void check_together(const RenderCommand& command) {
+  check_output(command.image, command.format);
   check_refined(command);
   check_samples(command.effects);
   check_sampler(command.effects);
@@ -101,12 +114,15 @@ void check_together(const RenderCommand& command) {
   if (!command.build.grid && !command.render.mailbox)
     throw UsageError("--mailbox and --accel none: without a grid there are no mailboxes");
   check_long_work(command);
-  check_tone(command.srgb, command.image);
+  check_tone(command.srgb, command.image, command.format);
 }
 
 void check_together(const InfoCommand& command) { check_grid(command.build); }
 
-void check_together(const MergeCommand& command) { check_tone(command.srgb, command.output); }
+void check_together(const MergeCommand& command) {
+  check_output(command.output, command.format);
+  check_tone(command.srgb, command.output, command.format);
+}
 
 void check_together(const SceneCommand& command) {
   if (command.list && (!command.name.empty() || command.size || !command.output.empty() || command.spd))

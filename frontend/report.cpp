@@ -1,5 +1,7 @@
 #include "frontend/report.hpp"
 
+#include "frontend/atomic_file.hpp"
+
 #include <nlohmann/json.hpp>
 
 #include <sys/resource.h>
@@ -236,7 +238,7 @@ std::string summary_line(const RenderCommand& command, const RunReport& report) 
   const std::string error = e.samples == 0 ? "" :
       print("; RMSE about %.2g, at most %.2g (95 %%); %llu samples, %.1f a pixel, %u to %u", e.rmse, e.rmse_bound,
             static_cast<unsigned long long>(e.samples), double(e.samples) / report.width / report.height, e.least, e.most);
-  return command.image + ": " + primitives_text(report.spheres, report.triangles, report.cones, report.planes) + "; " +
+  return name_of_file(command.image) + ": " + primitives_text(report.spheres, report.triangles, report.cones, report.planes) + "; " +
          grids_text(report.grids) + "; " + print("%.3f Mrays in ", rays / 1e6) + times +
          print("; %.2f Mrays/s (%s, ", speed, report.render.isa) + (report.ranks > 1 ? print("%d ranks, ", report.ranks) : "") +
          print("%d thread%s%s)", report.render.threads, report.render.threads == 1 ? "" : "s", report.ranks > 1 ? " each" : "") + error + '\n';

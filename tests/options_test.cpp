@@ -3,6 +3,7 @@
 #include "frontend/batch.hpp"
 #include "frontend/help.hpp"
 #include "frontend/nearest.hpp"
+#include "tests/support/parsing.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -16,23 +17,8 @@
 namespace grelha {
 namespace {
 
-Command parse(const std::string& line) {
-  std::vector<std::string> words{"grelha"};
-  std::istringstream in(line);
-  for (std::string word; in >> word;) words.push_back(word);
-  std::vector<const char*> argv;
-  for (const auto& word : words) argv.push_back(word.c_str());
-  return parse_command(int(argv.size()), argv.data());
-}
-
-std::string error_of(const std::string& line) {
-  try {
-    parse(line);
-  } catch (const UsageError& error) {
-    return error.what();
-  }
-  return "no error";
-}
+using test::error_of;
+using test::parse;
 
 TEST(Render, Defaults) {
   const auto command = std::get<RenderCommand>(parse("render dir/x.nff"));
@@ -121,59 +107,22 @@ TEST(Render, ShortOptionsTakeTheirValueAsInOtherTools) {
     EXPECT_EQ(command.build.threads, 3) << line;
   }
   EXPECT_EQ(std::get<SceneCommand>(parse("scene balls -o=b.nff")).output, "b.nff");
-  EXPECT_EQ(error_of("render x.nff -o="), "-o: wanted a name ending in .png, .hdr, .pfm or .grelha, found \"\"");
+  EXPECT_EQ(error_of("render x.nff -o="), "-o: wanted a file name, found \"\"");
   EXPECT_EQ(std::get<TextCommand>(parse("-V")).text, std::get<TextCommand>(parse("--version")).text);
 }
 
-/// Pairs that would have one silently win, or say something about nothing; and the nearest pairs that agree.
-TEST(Errors, ContradictionsAreRefusedByName) {
-  const std::pair<const char*, const char*> table[] = {
-      {"render a --aa jitter:4 --samples 3",
-       "--aa jitter:4 and --samples: wanted one number of samples, found 16 and 3"},
-      {"render a --aa off --samples 64",
-       "--aa off and --samples: wanted one number of samples, found 1 and 64"},
-      {"render a --lens 8,7,32 --samples 16",
-       "--lens APERTURE,FOCUS,N and --samples: wanted one number of samples, found 32 and 16"},
-      {"render a --lens 8,7,2 --aa jitter:2 --samples 4",
-       "--aa jitter:2 and --samples: wanted one number of samples, found 8 and 4"},
-      {"render a --aa adaptive:.1,2 --lens 8,7,4 --samples 2",
-       "--lens APERTURE,FOCUS,N and --samples: wanted one number of samples, found 4 and 2"},
-      {"render a --aa jitter:4 --sampler sobol",
-       "--aa jitter:N and --sampler: wanted jitter or unshuffled for jittered subpixels"},
-      {"render a --error .1 --lens 8,7,4",
-       "--error and --time choose the samples: no N in --lens beside them"},
-      {"render a --time 1 --shadows area:1,4",
-       "--error and --time choose the samples: --shadows random:SIZE beside them, not area:SIZE,N"},
-      {"render a --srgb -o a.hdr",
-       "--srgb and -o: wanted a .png, other pictures hold light as it is; found \"a.hdr\""},
-      {"render a --srgb -o a.pfm",
-       "--srgb and -o: wanted a .png, other pictures hold light as it is; found \"a.pfm\""},
-      {"render a --srgb -o a.grelha", "--srgb: a .grelha holds no colours for a screen, say it to merge"},
-      {"merge a.grelha --srgb -o a.hdr",
-       "--srgb and -o: wanted a .png, other pictures hold light as it is; found \"a.hdr\""},
-      {"merge a.grelha --srgb -o b.grelha",
-       "--srgb: a .grelha holds no colours for a screen, say it to merge"},
-      {"render a --checkpoint-every 5", "--checkpoint-every wants --checkpoint"},
-      {"render a --density 2 --accel none", "--density and --accel none: without a grid there are no cells"},
-      {"info a --density 2 --accel none", "--density and --accel none: without a grid there are no cells"},
-      {"render a --mailbox off --accel none",
-       "--mailbox and --accel none: without a grid there are no mailboxes"},
-      {"scene --list balls", "--list: wanted alone, it writes no scene"},
-      {"scene --list -o x.nff", "--list: wanted alone, it writes no scene"},
-      {"scene balls -o x.ply", "-o: wanted a name for an NFF scene, such as balls.nff, found \"x.ply\""},
-      {"scene boat -o x.ply", "-o: wanted a name for an NFF scene, such as boat.nff, found \"x.ply\""},
-      {"scene balls -o x.nff.gz", "-o: wanted a name for an NFF scene, such as balls.nff, found \"x.nff.gz\""},
-      {"scene balls -o x.png", "-o: wanted a name for an NFF scene, such as balls.nff, found \"x.png\""},
+TEST(Render, FormatNamesWhatTheNameDoesNot) {
+  const auto image = [](const std::string& line) {
+    return commands_for(std::get<RenderCommand>(parse("render a/x.nff " + line))).at(0).image;
   };
-  for (const auto& [line, message] : table) EXPECT_EQ(error_of(line), message) << line;
-  for (const char* line :
-       {"render a --aa jitter:4 --samples 16", "render a --aa off --samples 1",
-        "render a --aa jitter:2 --samples 0:3 -o a.grelha", "render a --lens 8,7,32 --samples 32",
-        "render a --lens 0,0,8 --samples 4", "render a --srgb -o pictures/",
-        "render a --aa jitter:4 --sampler unshuffled", "render a --error .1 --shadows random:1 --lens 8",
-        "render a --checkpoint k --checkpoint-every 5", "merge a.grelha --srgb -o a.png",
-        "scene balls -o x", "info a --accel none"})
-    EXPECT_EQ(error_of(line), "no error") << line;
+  EXPECT_EQ(image("--format hdr"), "x.hdr");
+  EXPECT_EQ(image("--format pfm -o out/"), "out/x.pfm");
+  EXPECT_EQ(image("--format pfm -o {}"), "x");
+  EXPECT_EQ(image("-o -"), "-");
+  EXPECT_EQ(format_of("-", {}), ImageFormat::png);
+  EXPECT_EQ(format_of("-", ImageFormat::hdr), ImageFormat::hdr);
+  EXPECT_EQ(format_of("x.pfm", {}), ImageFormat::pfm);
+  EXPECT_EQ(format_of("x.grelha", {}), std::nullopt);
 }
 
 TEST(DefaultImage, TakesTheStemInTheCurrentFolder) {

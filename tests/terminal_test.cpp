@@ -67,6 +67,14 @@ TEST(Terminal, TheBarIsNoWiderThanTheWindowAlsoWhenItIsResized) {
   EXPECT_LT(narrower, 30u);
 }
 
+TEST(Terminal, IsNoPlaceForAPicture) {
+  const TemporaryFolder folder;
+  folder.write("ball.nff", test::kBall);
+  test::Terminal terminal(folder, "render ball.nff -o -", 80);
+  EXPECT_EQ(terminal.read_all(), "grelha: error: -o -: stdout is a terminal: wanted a pipe or a file behind it\r\n");
+  EXPECT_EQ(terminal.status(), 2);
+}
+
 TEST(Terminal, ADumbOneGetsNoBar) {
   const TemporaryFolder folder;
   folder.write("ball.nff", test::kBall);
