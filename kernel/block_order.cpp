@@ -8,7 +8,7 @@ namespace grelha {
 namespace {
 
 constexpr std::size_t kFew = 128;
-constexpr int kParts = 256;  ///< of a cell, along each axis: kFew kParts = 2^15
+constexpr int kCellParts = 256;  ///< of a cell, along each axis: kFew kCellParts = 2^15
 
 /// How many of `values`, and of the equal ones those before, come before each. Of few, counting them is fastest.
 void rank(std::span<const std::int16_t> values, std::uint32_t* ranks) {
@@ -39,7 +39,7 @@ void BlockOrder::find_parts(const Primitives& p, std::span<const std::uint32_t> 
   const Floats* const of[3] = {&t.x, &t.y, &t.z};
   float half[3], lo[3], hi[3];
   for (std::size_t a = 0; a < 3; ++a) {
-    half[a] = static_cast<float>(kParts / (2 * grid.cell[a]));
+    half[a] = static_cast<float>(kCellParts / (2 * grid.cell[a]));
     lo[a] = static_cast<float>(grid.lo[a] + static_cast<double>(at[a]) * grid.cell[a]);
     hi[a] = static_cast<float>(grid.lo[a] + static_cast<double>(at[a] + 1) * grid.cell[a]);
     part_[a].resize(ids.size());
@@ -50,7 +50,7 @@ void BlockOrder::find_parts(const Primitives& p, std::span<const std::uint32_t> 
       const float x[3] = {(*of[a])[v[0]], (*of[a])[v[1]], (*of[a])[v[2]]};
       const float least = std::max(lo[a], std::min(std::min(x[0], x[1]), x[2])), most = std::min(hi[a], std::max(std::max(x[0], x[1]), x[2]));
       const float in = ((least - lo[a]) + (most - lo[a])) * half[a];
-      part_[a][i] = static_cast<std::int16_t>(std::min(std::max(0.f, in), kParts - 1.f));  // NaN: 0
+      part_[a][i] = static_cast<std::int16_t>(std::min(std::max(0.f, in), kCellParts - 1.f));  // NaN: 0
     }
   }
 }
@@ -65,7 +65,7 @@ std::span<const std::uint32_t> BlockOrder::places(const Primitives& p, std::span
   find_parts(p, ids, grid, cell);
   std::pair<int, std::size_t> extents[3];
   for (std::size_t a = 0; a < 3; ++a) {
-    std::int16_t lo = kParts, hi = 0;
+    std::int16_t lo = kCellParts, hi = 0;
     for (const std::int16_t x : part_[a]) lo = std::min(lo, x), hi = std::max(hi, x);
     extents[a] = {lo - hi, a};
   }

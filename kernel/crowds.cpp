@@ -6,7 +6,7 @@
 namespace grelha {
 namespace {
 
-constexpr std::size_t kProbe = 1024;  ///< primitives looked at
+constexpr std::size_t kLookedAt = 1024;  ///< primitives looked at
 constexpr std::size_t kCrowd = 512;   ///< in one cell
 constexpr std::size_t kBad = 4096;    ///< in the cell of the mean primitive: with fewer, more grids may cost more than they gain (balls 6: 79)
 constexpr std::size_t kSeen = 8;      ///< of the probe, so that chance makes no crowd
@@ -39,7 +39,7 @@ class Cells {
 };
 
 std::vector<Cell> crowded(const Cells& cells, const std::vector<std::uint32_t>& ids) {
-  const std::size_t stride = std::max<std::size_t>(1, ids.size() / kProbe), least = std::max(kSeen, kCrowd / stride);
+  const std::size_t stride = std::max<std::size_t>(1, ids.size() / kLookedAt), least = std::max(kSeen, kCrowd / stride);
   std::vector<Cell> seen, out;
   for (std::size_t i = 0; i < ids.size(); i += stride) seen.push_back(cells.of(ids[i]));
   std::sort(seen.begin(), seen.end());

@@ -267,11 +267,6 @@ class Filling {
   CellStore store_;
 };
 
-template <class V>
-std::size_t bytes_of(const V& v) {
-  return v.size() * sizeof v[0];
-}
-
 }  // namespace
 
 CellLists CellStore::lists() const {

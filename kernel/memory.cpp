@@ -100,8 +100,8 @@ BuildMemory memory_of(const SceneSpans& scene, const Primitives& p, const Plan& 
 }
 
 bool surely_fits(const Primitives& p, std::uint64_t bytes) {
-  constexpr double kMostReferences = 64;  // as in grid.cpp
-  return kMostReferences * (kPair + kBoxed) * static_cast<double>(p.end - p.sphere_base) < static_cast<double>(bytes);
+  constexpr double kReferencesOfOne = 64;  // as in grid.cpp
+  return kReferencesOfOne * (kPair + kBoxed) * static_cast<double>(p.end - p.sphere_base) < static_cast<double>(bytes);
 }
 
 }  // namespace grelha

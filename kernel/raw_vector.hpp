@@ -47,4 +47,10 @@ struct RawAllocator {
 template <class T>
 using RawVector = std::vector<T, RawAllocator<T>>;
 
+/// Bytes of the elements of an array, whatever kind of array.
+template <class V>
+std::size_t bytes_of(const V& v) {
+  return v.size() * sizeof v[0];
+}
+
 }  // namespace grelha

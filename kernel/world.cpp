@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "kernel/plan.hpp"
+#include "kernel/raw_vector.hpp"
 
 namespace grelha {
 namespace {
@@ -57,11 +58,6 @@ void check(const SceneSpans& scene) {
     next = std::uint64_t{o.first_triangle} + o.triangle_count;
   }
   if (next > g.triangles.size()) throw std::invalid_argument("an object names a triangle that is not there");
-}
-
-template <class V>
-std::size_t bytes_of(const V& v) {
-  return v.size() * sizeof v[0];
 }
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace grelha::scenes {
 namespace {
 
 constexpr int kPixels = 512;      // sides of the picture; a scene unit is a pixel of it, the origin its middle
-constexpr double kRadius = 0.1;   // so a disc covers pi / 100 of its pixel
+constexpr double kDiscRadius = 0.1;  // so a disc covers pi / 100 of its pixel
 constexpr double kDistance = 16 * kPixels / 2;  // nearly parallel rays: discs stay round to .4 %, 1/cos at the corners
 constexpr double kAngleDeg = 7.15267;           // 2 atan(1/16)
 
@@ -40,7 +40,7 @@ void write_discs(std::ostream& out, const SceneOptions& options) {
   for (int row = 0; row < n; ++row) {
     for (int column = 0; column < n; ++column) {
       const std::uint32_t bits = scatter(std::uint32_t(row * n + column));
-      nff.sphere({place(column, n, bits), place(row, n, scatter(bits)), 0}, kRadius);
+      nff.sphere({place(column, n, bits), place(row, n, scatter(bits)), 0}, kDiscRadius);
     }
   }
 }

@@ -14,8 +14,8 @@ Vec knot(double t) {
 }
 
 Vec tube(double u, double v) {
-  constexpr double kStep = 1e-5;
-  const Vec along = normalise(knot(u + kStep) - knot(u - kStep));
+  constexpr double kDifference = 1e-5;
+  const Vec along = normalise(knot(u + kDifference) - knot(u - kDifference));
   const Vec side = normalise(cross({0, 0, 1}, along));
   return knot(u) + kTube * turn(side, along, -2 * kPi * v);
 }

@@ -9,13 +9,13 @@ namespace grelha::scenes {
 namespace {
 
 /// Corners of a cube whose coordinates multiply to +1.
-constexpr std::array<Vec, 4> kCorners{Vec{-1, -1, 1}, Vec{-1, 1, -1}, Vec{1, -1, -1}, Vec{1, 1, 1}};
+constexpr std::array<Vec, 4> kCubeCorners{Vec{-1, -1, 1}, Vec{-1, 1, -1}, Vec{1, -1, -1}, Vec{1, 1, 1}};
 
 void write_part(NffWriter& nff, Vec center, double half, int depth) {
   std::array<Vec, 4> v;
-  for (std::size_t i = 0; i < v.size(); ++i) v[i] = center + half * kCorners[i];
+  for (std::size_t i = 0; i < v.size(); ++i) v[i] = center + half * kCubeCorners[i];
   if (depth > 1) {
-    for (const Vec& corner : kCorners) write_part(nff, center + half / 2 * corner, half / 2, depth - 1);
+    for (const Vec& corner : kCubeCorners) write_part(nff, center + half / 2 * corner, half / 2, depth - 1);
     return;
   }
   nff.polygon({v[0], v[1], v[2]});
