@@ -2,6 +2,9 @@
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
+if(NOT GRELHA_ISAS STREQUAL "all")
+  install(CODE "message(FATAL_ERROR \"this build is for one processor: configure it with -D GRELHA_ISAS=all\")" COMPONENT grelha)
+endif()
 install(TARGETS grelha RUNTIME COMPONENT grelha)
 
 # The headers a program may include, and no others: kernel/ keeps its insides, and xsimd, to itself. They name each other

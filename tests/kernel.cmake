@@ -19,6 +19,11 @@ grelha_test(shade unit grelha::kernel)
 grelha_test(subdivision image grelha::kernel)
 grelha_test(determinism image grelha::frontend grelha::scenes)
 
+# What ./run builds first: the copies for one processor, which nobody may install.
+add_test(NAME first_build COMMAND ${CMAKE_COMMAND} -D ROOT=${PROJECT_SOURCE_DIR} -D SCRATCH=${CMAKE_CURRENT_BINARY_DIR}/first_build
+  -D COMPILER=${CMAKE_CXX_COMPILER} -D GENERATOR=${CMAKE_GENERATOR} -P ${CMAKE_CURRENT_LIST_DIR}/first_build.cmake)
+set_tests_properties(first_build PROPERTIES LABELS build)
+
 # What breaks ray tracers, row by row; perf/stability.cpp asks the same rows with millions of rays, and Embree beside.
 add_subdirectory(stability)
 grelha_test(stability property grelha::stability)
