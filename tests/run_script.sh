@@ -14,8 +14,57 @@ ln -s project/run linked
 said=$(./linked info x.nff 2>&1) || true
 [ "$said" = "here: info x.nff" ] || { echo "through a link it said: $said"; exit 1; }
 
+# From nothing, with stand-ins for the tools: one line a step; the program alone at first, everything when it is asked for, and from then on.
+mkdir stand-ins
+for tool in sh dirname readlink find grep mkdir touch cat date wc tail sed head mv rm; do ln -s "$(command -v $tool)" stand-ins/$tool; done
+cat >stand-ins/cmake <<CMAKE
+#!/bin/sh
+echo "cmake \$*" >>$2/asked
+case \$* in
+  *GRELHA_ISAS=*) echo "GRELHA_ISAS:STRING=\${*##*GRELHA_ISAS=}" >$2/project/build/release/CMakeCache.txt; exit ;;
+esac
+echo "[1/2 1.5] one"
+[ ! -e $2/broken ] || { echo "FAILED: two.o"; echo "two.cpp:1:1: error: wrong"; echo "ninja: stopped"; exit 1; }
+echo "[2/2 2.5] two"
+CMAKE
+printf '#!/bin/sh\necho tested\n' >stand-ins/ctest
+chmod +x stand-ins/cmake stand-ins/ctest
+try() {  # try() WANTED COMMAND...: what it says on a pipe, lines joined by |
+  wanted=$1
+  shift
+  said=$(PATH=$scratch/stand-ins project/run "$@" 2>&1 | tr '\n' '|') || true
+  [ "$said" = "$wanted" ] || { printf 'run %s\nwanted %s\nfound  %s\n' "$*" "$wanted" "$said"; exit 1; }
+}
+asked() {  # asked() TEXT: the last build was configured with it
+  grep GRELHA_ISAS asked | tail -n 1 | grep -q -- "$1" || { printf 'wanted %s\n' "$1"; cat asked; exit 1; }
+}
+scratch=$2
+steps='run: configuring (release)|run: building grelha|'
+rm -rf project/build/release/.built-grelha
+try "${steps}here: info x.nff|" info x.nff
+asked GRELHA_ISAS=native
+try 'here: info x.nff|' info x.nff
+try "${steps}here: render --isa avx2|" render --isa avx2
+asked GRELHA_ISAS=all
+touch project/kernel/new.cpp
+try 'run: configuring (release)|run: building everything|tested|' test
+try 'here: info x.nff|' info x.nff
+touch project/kernel/new.cpp
+try "${steps}here: info x.nff|" info x.nff
+asked GRELHA_ISAS=all
+touch broken project/kernel/new.cpp
+try "${steps}FAILED: two.o|two.cpp:1:1: error: wrong|ninja: stopped|run: this failed: building grelha; all that was said is in $2/project/build/release/run.log|" \
+  info x.nff
+grep -q '^\[1/2 1.5\] one$' project/build/release/run.log || { echo "the log is incomplete"; exit 1; }
+rm broken
+# On a terminal the build counts in one line.
+if command -v script >/dev/null; then
+  said=$(PATH=$2/stand-ins "$(command -v script)" -qec "project/run info x.nff" /dev/null | tr '\r\033' '\n^')
+  case $said in *"run: building grelha [1/2], 1 s left^[K"*"run: building grelha [2/2], 0 s left^[K"*) ;; *) echo "on a terminal it said: $said"; exit 1 ;; esac
+fi
+
 rm project/build/release/.built-grelha
-for tool in sh dirname readlink find grep mkdir touch cat; do ln -s "$(command -v $tool)" tools/$tool; done
+for tool in sh dirname readlink find grep mkdir touch cat date; do ln -s "$(command -v $tool)" tools/$tool; done
 printf '#!/bin/sh\necho 1000\n' >tools/id
 printf '#!/bin/sh\nexit 1\n' >tools/dpkg-query
 chmod +x tools/id tools/dpkg-query
