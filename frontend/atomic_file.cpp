@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <iostream>
 
 namespace grelha {
 
@@ -86,7 +87,8 @@ void AtomicFile::create_beside() {
   fail(path_, "cannot write", EEXIST);
 }
 
-AtomicFile::AtomicFile(const std::string& path, bool durable) : path_(path), target_(behind_links(path)), durable_(durable) {
+AtomicFile::AtomicFile(const std::string& path, bool durable) : path_(path), target_(path == kStdout ? path : behind_links(path)), durable_(durable) {
+  if (is_stdout()) return;
   const bool special = is_special(target_);
   if (durable && special) throw FileError(path, "cannot write: not a regular file");
   if (durable) beside_ = target_ + ".new";
@@ -101,7 +103,14 @@ AtomicFile::~AtomicFile() {
   if (lock_ >= 0) close(lock_);
 }
 
+std::ostream& AtomicFile::stream() { return is_stdout() ? std::cout : stream_; }
+
 void AtomicFile::commit() {
+  if (is_stdout()) {
+    std::cout << std::flush;
+    if (!std::cout) throw FileError(name_of_file(path_), "cannot write");
+    return;
+  }
   if (stream_) errno = 0;  // else it tells why an earlier write failed
   stream_.flush();
   const int error = errno ? errno : EIO;
@@ -115,6 +124,8 @@ void AtomicFile::commit() {
   if (durable_) sync(path_, folder.empty() ? "." : folder);
 }
 
+std::string name_of_file(const std::string& path) { return path == kStdout ? "stdout" : path; }
+
 void write_file(const std::string& path, const std::string& bytes) {
   AtomicFile file(path);
   file.stream().write(bytes.data(), std::streamsize(bytes.size()));
@@ -122,6 +133,7 @@ void write_file(const std::string& path, const std::string& bytes) {
 }
 
 void check_writable(const std::string& path, bool durable) {
+  if (path == kStdout) return;
   if (durable || !is_special(path)) AtomicFile probe(path, durable);  // to open a pipe is to wait for a reader, to close it his end
 }
 

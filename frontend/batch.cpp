@@ -45,9 +45,9 @@ std::string filled_in(std::string pattern, const std::string& scene) {
   return pattern;
 }
 
-std::string image_for(const std::string& scene, const std::string& output) {
-  if (output.empty()) return default_image(scene);
-  if (is_folder(output)) return (fs::path(output) / default_image(scene)).string();
+std::string image_for(const std::string& scene, const std::string& output, std::optional<ImageFormat> format) {
+  if (output.empty()) return default_image(scene, format);
+  if (is_folder(output)) return (fs::path(output) / default_image(scene, format)).string();
   return filled_in(output, scene);
 }
 
@@ -67,7 +67,7 @@ std::vector<RenderCommand> commands_for(const RenderCommand& command) {
   std::vector<RenderCommand> all;
   for (const std::string& scene : scenes) {
     RenderCommand one = command;
-    one.scenes = {scene}, one.scene = scene, one.image = image_for(scene, command.image);
+    one.scenes = {scene}, one.scene = scene, one.image = image_for(scene, command.image, command.format);
     one.work.kept_till_the_last = scenes.size() > 1;
     const auto want_folder = [&one](const std::string& pattern, const std::string& file) {
       const fs::path folder = fs::path(file).parent_path();

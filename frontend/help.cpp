@@ -60,7 +60,7 @@ std::string help_text(const CommandHelp& command, bool all) {
 std::string program_help(const std::vector<CommandHelp>& commands, bool all) {
   std::string text = "Usage: grelha COMMAND [OPTIONS]\nData-oriented SIMD ray tracer on a uniform grid.\n\n";
   for (const CommandHelp& c : commands) text += row("  " + c.name, c.text);
-  text += row("  --version", "say which version this is");
+  text += row("  -V, --version", "say which version this is");
   text += "\nExamples:\n"
           "  grelha render scenes/data/balls.nff -o balls.png\n"
           "  grelha info scenes/data/balls.nff\n"

@@ -163,6 +163,15 @@ std::optional<ImageFormat> image_format(std::string_view path) {
   return {};
 }
 
+std::string_view ending_of(ImageFormat format) {
+  switch (format) {
+    case ImageFormat::png: return "png";
+    case ImageFormat::hdr: return "hdr";
+    case ImageFormat::pfm: return "pfm";
+  }
+  return "";
+}
+
 std::uint8_t to_byte(float value, Tone tone) {
   if (!(value > 0)) return 0;
   if (value >= 1) return 255;
@@ -210,11 +219,11 @@ std::string encode_pfm(const Image& image) {
   return bytes;
 }
 
-void write_image(const std::string& path, const Image& image, Tone tone) {
-  const auto format = image_format(path);
+void write_image(const std::string& path, const Image& image, const ImageStyle& style) {
+  const auto format = style.format ? style.format : image_format(path);
   if (!format || !image_fits(*format, image.width, image.height)) throw FileError(path, "cannot hold this picture");
   switch (*format) {
-    case ImageFormat::png: return write_file(path, encode_png(image, tone));
+    case ImageFormat::png: return write_file(path, encode_png(image, style.tone));
     case ImageFormat::hdr: return write_file(path, encode_hdr(image));
     case ImageFormat::pfm: return write_file(path, encode_pfm(image));
   }

@@ -71,6 +71,10 @@ bool is_long_work(const RenderCommand& c, const Ranks& ranks) {
   return asks || ranks.count() > 1;
 }
 
+ImageStyle style_of(const RenderCommand& command) {
+  return {format_of(command.image, command.format), command.srgb ? Tone::srgb : Tone::authored};
+}
+
 LongRender::LongRender(const RenderCommand& prepared, const Camera& camera, std::string scene, Ranks& ranks, Warn warn)
     : command_(prepared), ranks_(ranks), warn_(std::move(warn)), identity_{std::move(scene), settings_text(prepared, camera)} {
   work_ = new_work(prepared, camera);
@@ -105,7 +109,7 @@ int LongRender::stops() const { return keeps() ? StopSignals::seen() : 0; }
 int LongRender::run(const World& world, const Camera& camera, const std::function<void(double)>& progress, RenderStats& stats, SampleMaps& maps) {
   std::optional<StopSignals> signals;
   if (keeps()) signals.emplace();
-  Habit saving{keeps() ? command_.work.save_every : 0, [this] { save(); }};
+  Habit saving{keeps() ? command_.work.save_every.value_or(kSaveEvery) : 0, [this] { save(); }};
   Habit showing{command_.work.show_every, [this] { write(); }};
   const auto rest = [&] { return pursue(saving), pursue(showing), stops() == 0; };
   auto* const sums = std::get_if<Accumulator>(&work_);
@@ -141,7 +145,7 @@ void LongRender::save() const { write_checkpoint(command_.work.checkpoint, ident
 
 void LongRender::write() const {
   if (is_partial_name(command_.image)) write_checkpoint(command_.image, identity_, work_, false);
-  else write_image(command_.image, picture_of(work_), command_.srgb ? Tone::srgb : Tone::authored);
+  else write_image(command_.image, picture_of(work_), style_of(command_));
 }
 
 }  // namespace grelha

@@ -13,6 +13,9 @@ namespace grelha {
 /// Whether a command asks for anything that what is known of the picture must be kept for.
 bool is_long_work(const RenderCommand& command, const Ranks& ranks);
 
+/// Of the picture that a command makes.
+ImageStyle style_of(const RenderCommand& command);
+
 /// A render that saves what it has, shows it, and can be stopped.
 class LongRender {
  public:

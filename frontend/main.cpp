@@ -85,6 +85,12 @@ void print(const std::string& text) {
   if (!std::cout) throw FileError("stdout", "cannot write");
 }
 
+/// What is said goes to stderr where stdout has the results.
+void tell(const std::string& text, bool results_on_stdout) {
+  if (results_on_stdout) std::cerr << text;
+  else print(text);
+}
+
 /// Asks before the scene is read: a large one takes seconds to read.
 void want_isa(std::string_view name) {
   if (name == "best") return;
@@ -97,8 +103,8 @@ void want_isa(std::string_view name) {
   throw UsageError("this build has no " + std::string(name));
 }
 
-void want_room(const std::string& path, int width, int height) {
-  if (!image_fits(*image_format(path), width, height))
+void want_room(std::optional<ImageFormat> format, int width, int height) {
+  if (format && !image_fits(*format, width, height))
     throw UsageError("a picture of " + std::to_string(width) + 'x' + std::to_string(height) +
                      " is too large for .png and .hdr, write a .pfm");
 }
@@ -174,7 +180,7 @@ int render_scene(const RenderCommand& given, Ranks& ranks) {
   apply_effects(command.effects, file, prepared.render);
   report.seconds.load = load.seconds();
   const Camera camera = camera_of(file, command);
-  if (!is_partial_name(command.image)) want_room(command.image, camera.width, camera.height);
+  want_room(format_of(command.image, command.format), camera.width, camera.height);
   std::optional<LongRender> work;
   if (is_long) work.emplace(prepared, camera, scene, ranks, warn);
 
@@ -194,7 +200,7 @@ int render_scene(const RenderCommand& given, Ranks& ranks) {
 
   const Stopwatch write;
   if (work) work->finish();
-  else write_image(command.image, image, command.srgb ? Tone::srgb : Tone::authored);
+  else write_image(command.image, image, style_of(command));
   write_map(command.samples_map, maps.samples, camera, [](double n) { return std::log2(n); });
   write_map(command.error_map, maps.error, camera, [](double e) { return e; });
   report.seconds.write = write.seconds();
@@ -207,7 +213,8 @@ int render_scene(const RenderCommand& given, Ranks& ranks) {
   report.grids = world.grids();
   report.geometry_bytes = world.geometry_bytes(), report.grid_bytes = world.grid_bytes();
   if (!command.stats.empty()) write_file(command.stats, stats_json(prepared, report));
-  if (!command.quiet) print(summary_line(command, report));
+  const std::string summary = summary_line(command, report);
+  if (!command.quiet) tell(summary, writes_to_stdout(command));
   return kOk;
 }
 
@@ -281,6 +288,7 @@ int run(const CompareCommand& command) {
 }
 
 int run(const MergeCommand& command) {
+  want_no_terminal(command.output);
   check_writable(command.output);
   const Partial joined = merge_parts(command.parts);
   const Accumulator& a = joined.sums;
@@ -289,11 +297,14 @@ int run(const MergeCommand& command) {
   } else {
     const Part whole{{0, a.height}, {0, a.samples}};
     if (a.part != whole) throw UsageError("the parts are " + part_text(a.part) + ", the picture is " + part_text(whole) + ": join them to a .grelha");
-    want_room(command.output, a.width, a.height);
-    write_image(command.output, picture_so_far(a), command.srgb ? Tone::srgb : Tone::authored);
+    const auto format = format_of(command.output, command.format);
+    want_room(format, a.width, a.height);
+    write_image(command.output, picture_so_far(a), {format, command.srgb ? Tone::srgb : Tone::authored});
   }
   const std::size_t n = command.parts.size();
-  if (!command.quiet) print(command.output + ": " + part_text(a.part) + " from " + std::to_string(n) + (n == 1 ? " part\n" : " parts\n"));
+  const std::string summary = name_of_file(command.output) + ": " + part_text(a.part) + " from " + std::to_string(n) +
+                              (n == 1 ? " part\n" : " parts\n");
+  if (!command.quiet) tell(summary, command.output == kStdout);
   return kOk;
 }
 
@@ -312,8 +323,6 @@ int list_scenes() {
 /// The mesh goes first: a scene must not stand there without what it refers to.
 void write_with_mesh(const scenes::Generator& generator, scenes::SceneOptions options, const std::string& path) {
   const auto mesh_path = std::filesystem::path(path).replace_extension(".ply");
-  if (mesh_path == std::filesystem::path(path))
-    throw UsageError("-o: wanted a name that does not end in .ply, found \"" + path + '"');
   options.mesh_file = mesh_path.filename().string();
   AtomicFile mesh(mesh_path.string()), scene(path);
   generator.write_mesh(mesh.stream(), options.size);
@@ -330,17 +339,18 @@ int run(const SceneCommand& command) {
     for (const scenes::Generator& g : scenes::generators()) names.push_back(g.name);
     throw UsageError("no scene \"" + command.name + '"' + did_you_mean(command.name, names) + " (see grelha scene --list)");
   }
+  if (command.spd && !generator->has_spd_form)
+    throw UsageError("--spd: wanted a scene that SPD has in another form (balls, mount), found \"" + command.name + '"');
   scenes::SceneOptions options{command.size.value_or(generator->default_size), command.spd, {}};
   if (options.size < generator->min_size || options.size > generator->max_size)
     throw UsageError("--size: " + command.name + " has sizes " + std::to_string(generator->min_size) + " to " +
                      std::to_string(generator->max_size) + ", found \"" + std::to_string(options.size) + '"');
+  if (generator->write_mesh && command.output == kStdout)
+    throw UsageError("-o: wanted a file, for a mesh is written beside it, found \"-\"");
   if (generator->write_mesh) {
     write_with_mesh(*generator, options, command.output.empty() ? command.name + ".nff" : command.output);
-  } else if (command.output.empty()) {
-    generator->write(std::cout, options);
-    print("");
   } else {
-    AtomicFile file(command.output);
+    AtomicFile file(command.output.empty() ? kStdout : command.output);
     generator->write(file.stream(), options);
     file.commit();
   }

@@ -7,6 +7,7 @@
 
 #include "frontend/load_progress.hpp"
 #include "frontend/nearest.hpp"
+#include "frontend/nff_boxes.hpp"
 #include "frontend/nff_input.hpp"
 #include "frontend/nff_lights.hpp"
 #include "frontend/nff_material.hpp"
@@ -205,9 +206,11 @@ void NffReader::read_pl(std::string_view keyword) {
   ++file_.counts.pl;
 }
 
+/// normal . x + constant = 0, as the one reader has it that is known to take `npl`.
 void NffReader::read_npl(std::string_view keyword) {
   const Float3 normal = input_.point("the plane's normal");
-  build_.plane(normal, input_.number("the plane's distance"), material(keyword));
+  const float constant = input_.number("the plane's constant");
+  build_.plane(normal, 0 - constant, material(keyword));  // 0 - 0 is no -0
   ++file_.counts.pl;
 }
 
@@ -217,14 +220,11 @@ void NffReader::read_box(std::string_view keyword) {
   ++file_.counts.box;
 }
 
-/// Two orders are about and nothing tells them apart but the numbers: pairs (xmin xmax ymin ymax zmin zmax) when they
-/// ascend in every pair and are not, read as two corners, in order on every axis; otherwise corners.
 void NffReader::read_aabb(std::string_view keyword) {
-  const Float3 p = input_.point("the box's bounds"), q = input_.point("the box's bounds");
-  const bool pairs = p.x <= p.y && p.z <= q.x && q.y <= q.z;
-  const bool ascending = p.x <= q.x && p.y <= q.y && p.z <= q.z;
-  const bool descending = p.x >= q.x && p.y >= q.y && p.z >= q.z;
-  if (pairs && !ascending && !descending)
+  if (file_.box_order == BoxOrder::kNone) file_.box_order = aabb_order(words_);
+  const Float3 p = input_.point("the box's bounds");
+  const Float3 q = input_.point("the box's bounds");
+  if (file_.box_order == BoxOrder::kPairs)
     build_.box({p.x, p.z, q.y}, {p.y, q.x, q.z}, material(keyword));
   else
     build_.box(p, q, material(keyword));

@@ -1,7 +1,7 @@
 #include "frontend/option_values.hpp"
 
+#include "frontend/atomic_file.hpp"
 #include "frontend/image_file.hpp"
-#include "frontend/partial.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -186,8 +186,9 @@ std::string file_name(const std::string& option, const std::string& text) {
   return text;
 }
 
-void want_output_name(const std::string& path) {
-  if (!image_format(path) && !is_partial_name(path)) refuse("-o", "a name ending in .png, .hdr, .pfm or .grelha", path);
+std::string regular_file_name(const std::string& option, const std::string& text) {
+  if (text == kStdout) refuse(option, "a file that can be read again", text);
+  return file_name(option, text);
 }
 
 std::uint64_t memory_size(const std::string& text) {

@@ -37,7 +37,7 @@ double interval(const std::string& option, const std::string& text);
 
 void want_image_name(const std::string& option, const std::string& path);
 std::string file_name(const std::string& option, const std::string& text);
-void want_output_name(const std::string& path);
+std::string regular_file_name(const std::string& option, const std::string& text);
 
 /// A number of bytes, or of powers of 1024 with K, M, G or T behind it.
 std::uint64_t memory_size(const std::string& text);

@@ -1,9 +1,10 @@
 #include "frontend/options.hpp"
 
+#include "frontend/atomic_file.hpp"
 #include "frontend/help.hpp"
 #include "frontend/nearest.hpp"
+#include "frontend/option_checks.hpp"
 #include "frontend/option_values.hpp"
-#include "frontend/partial.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -30,6 +31,9 @@ constexpr std::array kSamplers{std::pair<std::string_view, Sampler>{"sobol", Sam
                               std::pair<std::string_view, Sampler>{"jitter", Sampler::kJitter},
                               std::pair<std::string_view, Sampler>{"unshuffled", Sampler::kUnshuffled},
                               std::pair<std::string_view, Sampler>{"random", Sampler::kRandom}};
+constexpr std::array kFormats{std::pair<std::string_view, ImageFormat>{"png", ImageFormat::png},
+                              std::pair<std::string_view, ImageFormat>{"hdr", ImageFormat::hdr},
+                              std::pair<std::string_view, ImageFormat>{"pfm", ImageFormat::pfm}};
 constexpr std::array kIsas{Name{"scalar", "scalar"}, Name{"sse2", "sse2"}, Name{"avx2", "avx2"},
                            Name{"avx512", "avx512"}, Name{"best", "best"}};
 
@@ -65,11 +69,16 @@ void add_long_work(CLI::App& app, LongWork& work) {
   value(app, "--rows", "A:B", "render rows A up to B alone, to a .grelha that `grelha merge` takes (so does --samples I:J)",
         [&work](const std::string& text) { work.rows = range("--rows", text, kMaxSide); })->group(kGroup);
   value(app, "--checkpoint", "FILE", "save now and then, and when stopped by SIGHUP, SIGINT or SIGTERM; the same command goes on from it",
-        [&work](const std::string& text) { work.checkpoint = file_name("--checkpoint", text); })->group(kGroup);
+        [&work](const std::string& text) { work.checkpoint = regular_file_name("--checkpoint", text); })->group(kGroup);
   value(app, "--checkpoint-every", "SECONDS", "how often [60]",
         [&work](const std::string& text) { work.save_every = interval("--checkpoint-every", text); })->group(kGroup);
   value(app, "--preview", "SECONDS", "write the picture so far as often",
         [&work](const std::string& text) { work.show_every = interval("--preview", text); })->group(kGroup);
+}
+
+void add_format(CLI::App& app, std::optional<ImageFormat>& format) {
+  value(app, "--format", "png|hdr|pfm", "of the picture, where its name does not say [png]",
+        [&format](const std::string& text) { format = choice("--format", text, kFormats); });
 }
 
 void add_render(CLI::App& app, RenderCommand& command) {
@@ -78,14 +87,12 @@ void add_render(CLI::App& app, RenderCommand& command) {
              "  grelha render scenes/data/balls.nff -o balls.png --size 800x600\n"
              "  grelha render scenes/data -o pictures/ --error 0.01");
   positionals(sub, "SCENE", command.scenes, "scene files, folders of them, - for stdin");
-  value(sub, "-o,--output", "FILE", ".png, .hdr, .pfm (linear floats), .grelha (to merge), or a folder; {} in it is SCENE's name [{}.png]",
-        [&command](const std::string& text) {
-          if (!text.ends_with('/') && !is_folder(text)) want_output_name(text);
-          command.image = text;
-        });
+  value(sub, "-o,--output", "FILE", ".png, .hdr, .pfm (linear floats), .grelha (to merge), a folder, - for stdout; {} in it is SCENE's name [{}.png]",
+        [&command](const std::string& text) { command.image = file_name("-o", text); });
+  add_format(sub, command.format);
   value(sub, "--size", "WxH", "pixels [as the scene says]",
         [&command](const std::string& text) { parse_size(text, command.width, command.height); });
-  value(sub, "--threads", "N", "threads [one per processor]",
+  value(sub, "-j,--threads", "N", "threads [one per processor]",
         [&command](const std::string& text) { command.render.threads = command.build.threads = whole("--threads", text, 1, kMaxThreads); });
   value(sub, "--depth", "N", "longest path of a ray, the eye ray counted as 1 [5]",
         [&command](const std::string& text) { command.render.depth = whole("--depth", text, 1, kMostDepth); });
@@ -121,7 +128,7 @@ void add_render(CLI::App& app, RenderCommand& command) {
         [&command](const std::string& text) { command.render.precision = choice("--precision", text, kPrecisions); });
   value(sub, "--packet", "1|16|64|256", "most rays that march together [256]",
         [&command](const std::string& text) { command.render.packet = choice("--packet", text, kPackets); });
-  value(sub, "--stats", "FILE", "write counts and times as JSON",
+  value(sub, "--stats", "FILE", "write counts and times as JSON; - for stdout",
         [&command](const std::string& text) { command.stats = file_name("--stats", text); });
   sub.add_flag("--quiet", command.quiet, "no progress bar, no summary line");
   add_input_options(sub, command.input);
@@ -156,8 +163,9 @@ void add_merge(CLI::App& app, MergeCommand& command) {
   CLI::App& sub = *app.add_subcommand("merge", "Join parts of a picture (.grelha) to the picture, or to a larger part");
   sub.footer("Example: grelha merge a.grelha b.grelha -o whole.png");
   sub.add_option("PARTS", command.parts, "what render --rows and --samples I:J made")->required()->type_name("");
-  value(sub, "-o,--output", "FILE", ".png, .hdr, .pfm or .grelha",
-        [&command](const std::string& text) { want_output_name(text), command.output = text; })->required();
+  value(sub, "-o,--output", "FILE", ".png, .hdr, .pfm or .grelha, - for stdout",
+        [&command](const std::string& text) { command.output = file_name("-o", text); })->required();
+  add_format(sub, command.format);
   sub.add_flag("--srgb", command.srgb, "PNG: colours are light, show them through the sRGB curve");
   sub.add_flag("--quiet", command.quiet, "no summary line");
 }
@@ -207,27 +215,6 @@ void want_known_command(const CLI::App& app, const std::string& word) {
     names.push_back(sub->get_name());
   }
   throw UsageError("command: wanted one of " + commands + ", found \"" + word + '"' + did_you_mean(word, names));
-}
-
-void check_long_work(const RenderCommand& command) {
-  const LongWork& w = command.work;
-  const bool sums = !command.render.refine.on() && !command.effects.adaptive.on, part_file = is_partial_name(command.image);
-  if (!sums && (w.is_part() || part_file))
-    throw UsageError("parts are of pictures with as many samples in every pixel: no --error, --time or --aa adaptive");
-  if (w.is_part() && !part_file) refuse("-o", "a name ending in .grelha for a part of a picture", command.image);
-  if (part_file && w.show_every > 0) throw UsageError("--preview wants a picture to write, not a .grelha");
-  if (part_file && command.srgb) throw UsageError("--srgb: a .grelha holds no colours for a screen, say it to merge");
-}
-
-/// Options that say two things at once, or something about nothing.
-void check_together(const RenderCommand& command) {
-  const RefineOptions& r = command.render.refine;
-  const Effects& e = command.effects;
-  if (int(r.error > 0) + int(r.seconds > 0) + int(r.samples > 0) > 1) throw UsageError("--error and --time: one of them, found both");
-  if (r.on() && (e.samples || e.jitter > 0 || e.adaptive.on)) throw UsageError("--error and --time choose the samples: no --samples or --aa beside them");
-  if (r.on() && e.sampler && is_jittered(*e.sampler)) throw UsageError("--sampler: wanted sobol or random with --error or --time");
-  if (!r.on() && !(command.samples_map.empty() && command.error_map.empty()))
-    throw UsageError("--samples-map and --error-map want --error or --time");
 }
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
@@ -294,14 +281,21 @@ TextCommand asked_help(const CLI::App& app, bool all) {
 
 bool is_folder(const std::string& path) {
   std::error_code ignored;
-  return path.ends_with('/') || std::filesystem::is_directory(path, ignored);
+  return path != kStdout && (path.ends_with('/') || std::filesystem::is_directory(path, ignored));
 }
 
-std::string default_image(const std::string& scene) {
+std::string default_image(const std::string& scene, std::optional<ImageFormat> format) {
   std::filesystem::path name = std::filesystem::path(scene).filename();
   if (name.extension() == ".gz") name = name.stem();
-  return name.stem().string() + ".png";
+  return name.stem().string() + '.' + std::string(ending_of(format.value_or(ImageFormat::png)));
 }
+
+std::optional<ImageFormat> format_of(const std::string& image, std::optional<ImageFormat> asked) {
+  if (asked) return asked;
+  return image == kStdout ? ImageFormat::png : image_format(image);
+}
+
+bool writes_to_stdout(const RenderCommand& command) { return command.image == kStdout || command.stats == kStdout; }
 
 std::vector<CommandHelp> all_commands() {
   CLI::App app;
@@ -318,16 +312,35 @@ static Command help_of_command(const char* program, const std::string& command) 
   return parse_command(command.empty() ? 2 : 3, words);
 }
 
+/// What follows the program's name, last first as CLI11 takes it. `-o=FILE` means FILE, as `--output=FILE` does.
+static std::vector<std::string> words_of(int argc, const char* const* argv) {
+  constexpr std::size_t kValue = 3;  // behind "-o="
+  std::vector<std::string> words;
+  for (int i = argc - 1; i > 0; --i) {
+    std::string word = argv[i];
+    const bool is_short = word.size() >= kValue && word[0] == '-' && word[1] != '-' && word[2] == '=';
+    if (is_short) words.push_back(word.substr(kValue));
+    words.push_back(is_short ? word.substr(0, kValue - 1) : std::move(word));
+  }
+  return words;
+}
+
+template <class C>
+static C checked(const C& command) {
+  check_together(command);
+  return command;
+}
+
 Command parse_command(int argc, const char* const* argv) {
   CLI::App app{"", "grelha"};
-  app.set_version_flag("--version", "grelha " GRELHA_VERSION);
+  app.set_version_flag("-V,--version", "grelha " GRELHA_VERSION);
   app.require_subcommand(1);
   Commands commands;
   add_commands(app, commands);
   if (argc > 1 && argv[1] == std::string_view("help")) return help_of_command(argv[0], argc > 2 ? argv[2] : "");
   if (argc > 1) want_known_command(app, argv[1]);
   try {
-    app.parse(argc, argv);
+    app.parse(words_of(argc, argv));
   } catch (const CLI::CallForHelp&) {
     return asked_help(app, false);
   } catch (const CLI::CallForAllHelp&) {
@@ -340,18 +353,14 @@ Command parse_command(int argc, const char* const* argv) {
     refuse_twice(app);
     throw UsageError(first_line(error.what()) + " (see --help)");
   }
-  if (app.got_subcommand("info")) return commands.info;
+  if (app.got_subcommand("info")) return checked(commands.info);
   if (app.got_subcommand("compare")) return commands.compare;
-  if (app.got_subcommand("merge")) return commands.merge;
-  if (app.got_subcommand("scene")) {
-    if (commands.scene.name.empty() && !commands.scene.list) throw UsageError("NAME is required (see grelha scene --list)");
-    return commands.scene;
-  }
+  if (app.got_subcommand("merge")) return checked(commands.merge);
+  if (app.got_subcommand("scene")) return checked(commands.scene);
   RenderCommand& render = commands.render;
   RenderCommand first = render;  // as commands_for() will name its picture
-  if (first.image.empty()) first.image = default_image(first.scenes.front());
+  if (first.image.empty() || is_folder(first.image)) first.image += default_image(first.scenes.front(), first.format);
   check_together(first);
-  check_long_work(first);
   return render;
 }
 

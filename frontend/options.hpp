@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "frontend/effects.hpp"
+#include "frontend/image_file.hpp"
 #include "frontend/scene_file.hpp"
 #include "kernel/part.hpp"
 #include "kernel/render.hpp"
@@ -24,11 +25,13 @@ struct InputOptions {
   std::uint64_t max_memory = 0;  ///< bytes; 0: as much as the machine has
 };
 
+inline constexpr double kSaveEvery = 60;  ///< seconds between saves of a checkpoint
+
 /// Work that may be cut to pieces, interrupted and gone on with.
 struct LongWork {
   std::optional<Range> rows, samples;  ///< the part to render; absent: all
   std::string checkpoint;              ///< file to save to, and to go on from, or empty
-  double save_every = 60;              ///< seconds
+  std::optional<double> save_every;    ///< seconds; absent: kSaveEvery
   double show_every = 0;               ///< seconds between pictures of what there is so far; 0: none
   bool kept_till_the_last = false;     ///< the checkpoint: until the pictures of all scenes are written
   bool is_part() const { return rows || samples; }
@@ -37,6 +40,7 @@ struct LongWork {
 struct RenderCommand {
   std::vector<std::string> scenes;  ///< files and folders as they were named; commands_for() makes one command of each
   std::string scene, image;   ///< image: named after the scene when -o is absent, a folder or a pattern; or a .grelha
+  std::optional<ImageFormat> format;  ///< of the picture; absent: by its name, PNG to stdout
   std::vector<std::string> folders;  ///< of files named by a pattern: made where they are missing
   InputOptions input;
   LongWork work;
@@ -66,6 +70,7 @@ struct CompareCommand {
 struct MergeCommand {
   std::vector<std::string> parts;
   std::string output;  ///< a picture or a .grelha
+  std::optional<ImageFormat> format;
   bool srgb = false, quiet = false;
 };
 
@@ -90,6 +95,12 @@ Command parse_command(int argc, const char* const* argv);
 bool is_folder(const std::string& path);
 
 /// `dir/x.nff.gz` gives `x.png`: the picture lies in the current folder.
-std::string default_image(const std::string& scene);
+std::string default_image(const std::string& scene, std::optional<ImageFormat> format = {});
+
+/// Of the picture called `image`; a .grelha has none.
+std::optional<ImageFormat> format_of(const std::string& image, std::optional<ImageFormat> asked);
+
+/// Whether results go to stdout, so that what is said must not.
+bool writes_to_stdout(const RenderCommand& command);
 
 }  // namespace grelha

@@ -1,5 +1,7 @@
 #include "frontend/outputs.hpp"
 
+#include <unistd.h>
+
 #include <filesystem>
 #include <map>
 
@@ -39,8 +41,14 @@ std::vector<Output> outputs_of(const RenderCommand& command) {
 }
 
 void prepare_outputs(const RenderCommand& command) {
+  want_no_terminal(command.image);
   for (const std::string& folder : command.folders) make_folder(folder);
   for (const auto& [option, file] : outputs_of(command)) check_writable(file, option == "--checkpoint");
+}
+
+void want_no_terminal(const std::string& file) {
+  if (file == kStdout && isatty(STDOUT_FILENO) == 1)
+    throw UsageError("-o -: stdout is a terminal: wanted a pipe or a file behind it");
 }
 
 void want_not_read(const std::vector<Output>& outputs, const std::vector<std::string>& read) {

@@ -28,6 +28,9 @@ std::vector<Output> outputs_of(const RenderCommand& command);
 /// Makes the folders that are missing, and throws now, as far as that can be known, what writing would throw after a long render.
 void prepare_outputs(const RenderCommand& command);
 
+/// Throws UsageError when bytes that are no text would go to a terminal.
+void want_no_terminal(const std::string& file);
+
 /// Throws UsageError when one of the outputs is a file that is read, by whatever name.
 void want_not_read(const std::vector<Output>& outputs, const std::vector<std::string>& read);
 

@@ -49,7 +49,7 @@ std::string man_page(const std::vector<CommandHelp>& commands) {
   std::string text = ".\\\" " + std::string(kMade) + "\n.TH GRELHA 1 \"" GRELHA_DATE "\" \"grelha " GRELHA_VERSION "\" \"User Commands\"\n"
                      ".SH NAME\ngrelha \\- data\\-oriented SIMD ray tracer on a uniform grid\n.SH SYNOPSIS\n";
   for (const CommandHelp& c : commands) text += ".B grelha " + c.name + "\n.RI \"" + roff(c.usage) + " [\" OPTIONS ]\n.br\n";
-  text += ".B grelha\n.RB [ \\-\\-help | \\-\\-help\\-all | \\-\\-version ]\n"
+  text += ".B grelha\n.RB [ \\-\\-help | \\-\\-help\\-all | \\-V | \\-\\-version ]\n"
           ".SH DESCRIPTION\nRenders scenes in NFF and the dialects built on it, and PLY meshes, each also gzipped, to PNG, Radiance HDR or PFM.\n"
           "Neither the number of threads nor the processor changes a bit of a picture.\n";
   for (const CommandHelp& c : commands) {
@@ -95,7 +95,7 @@ std::string bash_completion(const std::vector<CommandHelp>& commands) {
          "  local cur=${COMP_WORDS[COMP_CWORD]} prev=${COMP_WORDS[COMP_CWORD-1]} words=\n"
          "  COMPREPLY=()\n"
          "  if [ \"$COMP_CWORD\" -eq 1 ]; then\n"
-         "    COMPREPLY=($(compgen -W \"" + names_of(commands) + " --help --help-all --version\" -- \"$cur\"))\n"
+         "    COMPREPLY=($(compgen -W \"" + names_of(commands) + " --help --help-all --version -V\" -- \"$cur\"))\n"
          "    return\n"
          "  fi\n"
          "  case ${COMP_WORDS[1]},$prev in\n" + values +
@@ -116,7 +116,7 @@ std::string zsh_completion(const std::vector<CommandHelp>& commands) {
   };
   std::string text = "#compdef grelha\n# zsh completion of grelha, " + std::string(kMade) + "\nif (( CURRENT == 2 )); then\n  local -a commands=(\n";
   for (const CommandHelp& c : commands) text += "    '" + c.name + ':' + replaced(c.text, "'", "'\\''") + "'\n";
-  text += "  )\n  _describe command commands\n  _arguments '--help' '--help-all' '--version'\n  return\nfi\n"
+  text += "  )\n  _describe command commands\n  _arguments '--help' '--help-all' '(-V --version)'{-V,--version}'[say which version this is]'\n  return\nfi\n"
           "local command=$words[2]\nshift words; (( CURRENT-- ))\ncase $command in\n";
   for (const CommandHelp& c : commands) {
     text += "  " + c.name + ")\n    _arguments '--help' '--help-all' \\\n";
@@ -138,7 +138,7 @@ std::string fish_completion(const std::vector<CommandHelp>& commands) {
   const auto quoted = [](const std::string& text) { return replaced(replaced(text, "\\", "\\\\"), "'", "\\'").insert(0, 1, '\'') + '\''; };
   std::string text = "# fish completion of grelha, " + std::string(kMade) + '\n';
   const std::string none = "complete -c grelha -n '__fish_use_subcommand' ";
-  text += none + "-l help -d 'commands and examples'\n" + none + "-l help-all -d 'everything'\n" + none + "-l version -d 'which version this is'\n";
+  text += none + "-l help -d 'commands and examples'\n" + none + "-l help-all -d 'everything'\n" + none + "-s V -l version -d 'which version this is'\n";
   for (const CommandHelp& c : commands) text += none + "-f -a " + c.name + " -d " + quoted(c.text) + '\n';
   for (const CommandHelp& c : commands) {
     const std::string here = "complete -c grelha -n '__fish_seen_subcommand_from " + c.name + "' ";

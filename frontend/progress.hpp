@@ -5,10 +5,12 @@
 
 namespace grelha {
 
-/// `[#####.....]  50 %  3 s left`: what the bar says after `elapsed_s` seconds with `share` (0 to 1) done.
-std::string progress_text(double share, double elapsed_s);
+/// `render [#####.....]  50 %  3 s left`: what a bar says after `elapsed_s` seconds with `share` (0 to 1) done. At
+/// most `columns` wide: the bar shrinks first, then time and name are left out.
+std::string progress_text(const std::string& name, double share, double elapsed_s, int columns);
 
-/// A bar on stderr that redraws itself in place a few times a second, and wipes itself off at the end.
+/// A bar on stderr that redraws itself in place a few times a second, as wide as the terminal is then, and wipes itself
+/// off at the end.
 class ProgressBar {
  public:
   /// `share`: done before it began. `name`: of what is done.
@@ -29,6 +31,7 @@ class ProgressBar {
   Clock::time_point last_ = start_;
 };
 
+/// Whether stderr is a terminal that can redraw a line.
 bool stderr_is_terminal();
 
 }  // namespace grelha

@@ -1,5 +1,7 @@
 #include "frontend/report.hpp"
 
+#include "frontend/atomic_file.hpp"
+
 #include <nlohmann/json.hpp>
 
 #include <sys/resource.h>
@@ -102,6 +104,8 @@ void list_entities(std::string& text, const EntityCounts& c) {
   text += "in the file   " + (line.empty() ? "no primitives" : line) + '\n';
 }
 
+const char* box_order_name(BoxOrder order) { return order == BoxOrder::kPairs ? "pairs" : "corners"; }
+
 std::string primitives_text(std::size_t spheres, std::size_t triangles, std::size_t cones, std::size_t planes) {
   std::string text;
   list_count(text, spheres, "sphere");
@@ -178,6 +182,8 @@ std::string info_json(const SceneFile& file, const SceneMemory& memory, const st
                     {"vertices", geometry.triangles.vertex_count()}, {"cones", geometry.cones.size()},
                     {"planes", geometry.planes.size()}, {"objects", geometry.objects.size()}};
   json["dropped"] = {{"not_finite", file.dropped.not_finite}, {"zero_area", file.dropped.zero_area}};
+  json["aabb"] = nullptr;
+  if (file.box_order != BoxOrder::kNone) json["aabb"] = box_order_name(file.box_order);
   json["resolution"] = {file.camera.width, file.camera.height};
   json["bounds"] = to_json(bounds_of(geometry));
   json["memory"] = {{"scene", memory.scene}, {"grids", memory.grids}, {"peak", memory.peak}};
@@ -204,6 +210,8 @@ std::string info_text(const std::string& path, const SceneFile& file, const Scen
     text += "dropped       " + std::to_string(dropped) + " that cannot be drawn\n";
   text +=
       "lights        " + std::to_string(file.counts.lights) + (file.default_light ? " (and a made-up one)\n" : "\n");
+  if (file.box_order != BoxOrder::kNone)
+    text += std::string("aabb          read as ") + box_order_name(file.box_order) + '\n';
   text += "materials     " + std::to_string(file.counts.materials) + '\n';
   if (const SceneBounds bounds = bounds_of(g); !bounds.empty)
     text += "bounds        " + point_text(bounds.low) + " to " + point_text(bounds.high) + '\n';
@@ -230,7 +238,7 @@ std::string summary_line(const RenderCommand& command, const RunReport& report) 
   const std::string error = e.samples == 0 ? "" :
       print("; RMSE about %.2g, at most %.2g (95 %%); %llu samples, %.1f a pixel, %u to %u", e.rmse, e.rmse_bound,
             static_cast<unsigned long long>(e.samples), double(e.samples) / report.width / report.height, e.least, e.most);
-  return command.image + ": " + primitives_text(report.spheres, report.triangles, report.cones, report.planes) + "; " +
+  return name_of_file(command.image) + ": " + primitives_text(report.spheres, report.triangles, report.cones, report.planes) + "; " +
          grids_text(report.grids) + "; " + print("%.3f Mrays in ", rays / 1e6) + times +
          print("; %.2f Mrays/s (%s, ", speed, report.render.isa) + (report.ranks > 1 ? print("%d ranks, ", report.ranks) : "") +
          print("%d thread%s%s)", report.render.threads, report.render.threads == 1 ? "" : "s", report.ranks > 1 ? " each" : "") + error + '\n';

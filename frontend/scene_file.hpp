@@ -37,6 +37,13 @@ struct AreaLight {
   std::uint32_t light = 0;  ///< index into Scene::lights
 };
 
+/// What the six numbers of a file's `aabb` were taken for.
+enum class BoxOrder : std::uint8_t {
+  kNone,     ///< the file has no `aabb`
+  kCorners,  ///< two opposite corners
+  kPairs,    ///< xmin xmax ymin ymax zmin zmax
+};
+
 /// A scene file after all checks: everything the kernel needs and what the file said besides.
 struct SceneFile {
   Scene scene;
@@ -47,6 +54,7 @@ struct SceneFile {
   std::vector<AreaLight> area_lights;
   std::string accelerator;    ///< `accel` hint as written, or empty
   int samples_per_pixel = 0;  ///< `spp` hint, 0: none
+  BoxOrder box_order = BoxOrder::kNone;
   std::string environment;    ///< `env` folder as written, or empty
   std::uint64_t source_bytes = 0;  ///< of text, or whatever was parsed, that stood in memory at once
   std::vector<std::string> meshes;  ///< files it named

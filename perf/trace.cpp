@@ -236,29 +236,7 @@ void run(benchmark::State& state, const Row& row, std::size_t kind, const Option
   };
   Place& p = place(row, options);
   const bool any = RayMaker::any_hit(static_cast<RayKind>(kind));
-  RayBuffer rays = p.maker.make(static_cast<RayKind>(kind));
-  if (const char* how = std::getenv("SORT")) {
-    const std::size_t window = std::strtoul(how, nullptr, 10);
-    const auto& v = p.world.impl().grid_views;
-    const auto key = [&](std::size_t i) -> std::uint64_t {
-      const float o[3] = {rays.ox[i], rays.oy[i], rays.oz[i]}, d[3] = {rays.dx[i], rays.dy[i], rays.dz[i]};
-      std::uint64_t oct = 0, m = 0;
-      for (int a = 0; a < 3; ++a) oct |= std::uint64_t(d[a] < 0) << a;
-      if (!v.empty()) for (int a = 0; a < 3; ++a) {
-        const double at = (o[a] - v[0].lo[a]) * v[0].inv_cell[a];
-        const std::uint64_t c = at < 0 ? 0 : at > v[0].n[a] - 1 ? v[0].n[a] - 1 : at;
-        for (int b = 0; b < 10; ++b) m |= (c >> b & 1) << (3 * b + a);
-      }
-      return m << 3 | oct;
-    };
-    std::vector<std::size_t> order(rays.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-    for (std::size_t f = 0; f < order.size(); f += window)
-      std::stable_sort(order.begin() + f, order.begin() + std::min(order.size(), f + window), [&](std::size_t a, std::size_t b) { return key(a) < key(b); });
-    RayBuffer to;
-    for (std::size_t i : order) to.add({rays.ox[i], rays.oy[i], rays.oz[i]}, {rays.dx[i], rays.dy[i], rays.dz[i]}, rays.t_max[i]);
-    rays = to;
-  }
+  const RayBuffer rays = p.maker.make(static_cast<RayKind>(kind));
   if (rays.size() == 0) return fail("no such rays");
   Cell cell;
   cell.rays = rays.size();

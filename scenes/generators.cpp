@@ -8,8 +8,8 @@ namespace grelha::scenes {
 namespace {
 
 constexpr std::array kGenerators{
-    Generator{"balls", "sphereflake: mirroring spheres that carry nine smaller ones each", 1, 7, 4, write_balls},
-    Generator{"mount", "fractal mountain of triangles under four balls of glass", 1, 11, 7, write_mount},
+    Generator{"balls", "sphereflake: mirroring spheres that carry nine smaller ones each", 1, 7, 4, write_balls, nullptr, true},
+    Generator{"mount", "fractal mountain of triangles under four balls of glass", 1, 11, 7, write_mount, nullptr, true},
     Generator{"distant", "balls in a row that leads away from a camera with a lens", 1, 100, 3, write_distant},
     Generator{"boat", "sailing boat between three mirrors, a scene and a PLY file", 4, 40, 10, write_boat,
               write_boat_mesh},

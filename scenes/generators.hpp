@@ -41,6 +41,7 @@ struct Generator {
   int min_size, max_size, default_size;
   void (*write)(std::ostream& out, const SceneOptions& options);
   void (*write_mesh)(std::ostream& out, int size) = nullptr;  ///< the PLY file the scene refers to, when it has one
+  bool has_spd_form = false;  ///< whether SceneOptions::spd makes another scene
 };
 
 std::span<const Generator> generators();

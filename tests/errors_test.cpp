@@ -55,7 +55,7 @@ TEST(Errors, Entities) {
           {v + "pp 3 0 0 0 0 0 1 1 0 0 0 0 1 0 1 0 0 0 q",
            ":8:40: error: wanted a number for the corner's normal, found \"q\""},
           {v + "pl 0 0 0 1 0 0 s", ":8:16: error: wanted a number for the plane's third point, found \"s\""},
-          {v + "npl 0 0 1 s", ":8:11: error: wanted a number for the plane's distance, found \"s\""},
+          {v + "npl 0 0 1 s", ":8:11: error: wanted a number for the plane's constant, found \"s\""},
           {v + "box 0 0 0 1 0", ":8:14: error: wanted a number for the box's second corner, found end of file"},
           {v + "mesh 3 1\n0 0 0 1 0 0 0 1 0\n1 2 4",
            ":10:5: error: wanted a vertex of the mesh, from 1 to 3 or -3 to -1, found \"4\""},

@@ -170,5 +170,40 @@ TEST_F(Files, NamesTooLongAreOneLineOfOurs) {
   EXPECT_EQ(run("render ball.nff --checkpoint " + name).err, name + ": error: cannot write: File name too long\n");
 }
 
+/// What goes through a pipe is what a file of that name would hold, and nothing else.
+TEST_F(Files, ResultsGoToStdout) {
+  ASSERT_EQ(run("render ball.nff -o a.png --quiet").status, 0);
+  ASSERT_EQ(run("render ball.nff -o a.hdr --quiet").status, 0);
+  ASSERT_EQ(run("render ball.nff -o a.grelha --quiet").status, 0);
+  ASSERT_EQ(run("scene balls --size 2 -o b.nff").status, 0);
+  const std::string before = folder_.list();
+  const Outcome png = run("render ball.nff -o -");
+  EXPECT_EQ(png.status, 0);
+  EXPECT_EQ(png.out, folder_.read("a.png"));
+  EXPECT_TRUE(png.err.starts_with("stdout: 1 sphere; ")) << png.err;
+  EXPECT_EQ(run("render ball.nff -o - --format hdr --quiet").out, folder_.read("a.hdr"));
+  EXPECT_EQ(run("merge a.grelha -o - --format hdr --quiet").out, folder_.read("a.hdr"));
+  EXPECT_EQ(run("merge a.grelha -o -").err, "stdout: rows 0:16, samples 0:1 from 1 part\n");
+  EXPECT_EQ(run("scene balls --size 2 -o -").out, folder_.read("b.nff"));
+  EXPECT_EQ(folder_.list(), before) << "no file called - is made";
+  const Outcome stats = run("render ball.nff -o a.png --stats -");
+  EXPECT_TRUE(stats.out.starts_with("{\n") && stats.out.ends_with("}\n")) << stats.out;
+  EXPECT_TRUE(stats.err.starts_with("a.png: 1 sphere; ")) << stats.err;
+  EXPECT_EQ(run("render ball.nff --format pfm --quiet").status, 0);
+  EXPECT_EQ(folder_.read("ball.pfm").substr(0, 3), "PF\n");
+}
+
+TEST_F(Files, StdoutHoldsOneResult) {
+  const auto refused = [&](const std::string& arguments, const std::string& why) { expect_refused(arguments, why); };
+  refused("render ball.nff -o - --stats -", "--stats and -o: wanted two files, found \"-\" twice");
+  folder_.write("two.nff", kBall);
+  refused("render ball.nff two.nff -o -",
+          "-o: ball.nff and two.nff would both be written to -; {} in a name stands for the scene's");
+  refused("scene boat -o -", "-o: wanted a file, for a mesh is written beside it, found \"-\"");
+  const Outcome full = run("render ball.nff -o - --quiet", "sh -c '\"$0\" \"$@\" >/dev/full' ");
+  EXPECT_EQ(full.status, 1);
+  EXPECT_EQ(full.err, "stdout: error: cannot write\n");
+}
+
 }  // namespace
 }  // namespace grelha

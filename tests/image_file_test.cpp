@@ -82,7 +82,7 @@ TEST(Png, SrgbBendsTheBytes) {
   TemporaryFolder folder;
   Image image(1, 1);
   image.rgb = {0.5f, 0, 1};
-  write_image(folder.file("a.png"), image, Tone::srgb);
+  write_image(folder.file("a.png"), image, {.tone = Tone::srgb});
   EXPECT_EQ(read_image(folder.file("a.png")).rgb, (std::vector{188 / 255.0f, 0.0f, 1.0f}));
 }
 

@@ -1,5 +1,6 @@
 # Reads every #include "..." of ours and fails on one that points up:
 #   scenes -> scenes;  kernel -> kernel;  frontend -> frontend, kernel;  tests, perf -> anything.
+# Nor may any of these ask the environment: what a program does follows from its command line, and a benchmark's numbers from its sources.
 # One exception, by file name: frontend/main.cpp may include scenes/generators.hpp, for `grelha scene` offers them.
 # cmake -D ROOT=folder [-D SELF_TEST=1 -D SCRATCH=folder] -P layering.cmake
 set(allowed_scenes "^scenes/")
@@ -30,7 +31,28 @@ function(find_wrong_arrows root)
   set(wrong "${complaints}" PARENT_SCOPE)
 endfunction()
 
+# Sets `hidden` to the files that read variables of the environment.
+function(find_hidden_settings root)
+  set(complaints "")
+  foreach(layer scenes kernel frontend perf)
+    file(GLOB_RECURSE files RELATIVE ${root} ${root}/${layer}/*.hpp ${root}/${layer}/*.cpp)
+    foreach(file ${files})
+      file(STRINGS ${root}/${file} lines REGEX "getenv|environ\\[")
+      list(FILTER lines EXCLUDE REGEX "getenv\\(\"TERM\"\\)")  # says what a terminal can do: no setting
+      if(lines)
+        list(APPEND complaints ${file})
+      endif()
+    endforeach()
+  endforeach()
+  set(hidden "${complaints}" PARENT_SCOPE)
+endfunction()
+
 if(NOT SELF_TEST)
+  find_hidden_settings(${ROOT})
+  if(hidden)
+    list(JOIN hidden "\n  " text)
+    message(FATAL_ERROR "files that read variables of the environment:\n  ${text}")
+  endif()
   find_wrong_arrows(${ROOT})
   if(wrong)
     list(JOIN wrong "\n  " text)
@@ -54,4 +76,11 @@ string(APPEND expected ";frontend/a.cpp includes scenes/generators.hpp")
 string(APPEND expected ";frontend/main.cpp includes scenes/vec.hpp")
 if(NOT wrong STREQUAL expected)
   message(FATAL_ERROR "planted arrows:\n  wanted ${expected}\n  found  ${wrong}")
+endif()
+
+file(WRITE ${SCRATCH}/perf/a.cpp "const char* how = std::getenv(\"SORT\");\n")
+file(WRITE ${SCRATCH}/perf/b.cpp "const char* how = argv[1];\n")
+find_hidden_settings(${SCRATCH})
+if(NOT hidden STREQUAL "perf/a.cpp")
+  message(FATAL_ERROR "planted settings: wanted perf/a.cpp, found ${hidden}")
 endif()

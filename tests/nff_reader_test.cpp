@@ -237,7 +237,7 @@ TEST(NffShapes, PlanesByPointsAndByDistance) {
   EXPECT_EQ((Float3{p.nx[0], p.ny[0], p.nz[0]}), (Float3{0, 0, 1}));
   EXPECT_EQ(p.z[0], -.5f);
   EXPECT_EQ((Float3{p.nx[1], p.ny[1], p.nz[1]}), (Float3{0, 1, 0}));
-  EXPECT_EQ(p.y[1], 3);  // 2 y = 6
+  EXPECT_EQ(p.y[1], -3);  // 2 y + 6 = 0
 }
 
 /// Six times the volume inside, by the divergence theorem; positive when all triangles face outwards.
@@ -261,11 +261,41 @@ TEST(NffShapes, BoxesFromCornersInEitherOrder) {
   }
 }
 
-TEST(NffShapes, AabbInPairs) {
-  // As corners (0,4,-1) and (1,2,3) would be unordered on y; as pairs x 0..4 fails, so corners it stays.
-  EXPECT_EQ(signed_volume(triangles(read_with_view(kFill + "aabb 0 4 -1 1 2 3"))), 8);   // pairs: 4 x 2 x 1
-  EXPECT_EQ(signed_volume(triangles(read_with_view(kFill + "aabb 5 4 -1 1 2 3"))), 32);  // corners: 4 x 2 x 4
-  EXPECT_EQ(signed_volume(triangles(read_with_view(kFill + "aabb 0 1 2 3 4 5"))), 27);   // both: corners
+/// Volumes of the boxes of one file, in its order.
+std::vector<double> box_volumes(const std::string& boxes) {
+  const Triangles t = triangles(read_with_view(kFill + boxes));
+  std::vector<double> volumes;
+  for (std::size_t first = 0; first + 12 <= t.size(); first += 12) {
+    Triangles one = t;
+    for (auto* corners : {&one.a, &one.b, &one.c}) {
+      corners->erase(corners->begin() + std::ptrdiff_t(first + 12), corners->end());
+      corners->erase(corners->begin(), corners->begin() + std::ptrdiff_t(first));
+    }
+    volumes.push_back(signed_volume(one));
+  }
+  return volumes;
+}
+
+TEST(NffShapes, AabbHasOneOrderAFile) {
+  using Volumes = std::vector<double>;
+  const std::string pairs = "aabb 0 4 -1 1 2 3\n";   // as corners unordered on y
+  const std::string corners = "aabb 5 4 -1 1 2 3\n";  // x 5..4 is no pair
+  const std::string both = "aabb 0 1 2 3 4 5\n";      // pairs: 1 x 1 x 1; corners: 3 x 3 x 3
+  EXPECT_EQ(box_volumes(pairs), Volumes{8});
+  EXPECT_EQ(box_volumes(corners), Volumes{32});
+  EXPECT_EQ(box_volumes(both), Volumes{27});
+  EXPECT_EQ(box_volumes(both + pairs), (Volumes{1, 8})) << "the box in front of the one that tells";
+  EXPECT_EQ(box_volumes(pairs + both), (Volumes{8, 1}));
+  EXPECT_EQ(box_volumes(both + corners + both), (Volumes{27, 32, 27}));
+  EXPECT_EQ(box_volumes(pairs + corners + both), (Volumes{8, 32, 27})) << "any numbers can be corners";
+  EXPECT_EQ(box_volumes(both + "# aabb 0 4 -1 1 2 3\n"), Volumes{27}) << "a comment is no box";
+  EXPECT_EQ(box_volumes(pairs + "aabb nan 4 3 1 2 3\n" + both), (Volumes{8, 1})) << "what is left out has no say";
+}
+
+TEST(NffShapes, TheOrderOfAabbIsSaid) {
+  EXPECT_EQ(read_with_view(kFill + "s 0 0 0 1").file.box_order, BoxOrder::kNone);
+  EXPECT_EQ(read_with_view(kFill + "aabb 0 0 0 1 1 1").file.box_order, BoxOrder::kCorners);
+  EXPECT_EQ(read_with_view(kFill + "aabb 0 1 0 1 0 1").file.box_order, BoxOrder::kPairs);
 }
 
 TEST(NffShapes, BoxWithoutThicknessIsTwoFaces) {

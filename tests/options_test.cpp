@@ -3,7 +3,7 @@
 #include "frontend/batch.hpp"
 #include "frontend/help.hpp"
 #include "frontend/nearest.hpp"
-#include "frontend/progress.hpp"
+#include "tests/support/parsing.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -17,23 +17,8 @@
 namespace grelha {
 namespace {
 
-Command parse(const std::string& line) {
-  std::vector<std::string> words{"grelha"};
-  std::istringstream in(line);
-  for (std::string word; in >> word;) words.push_back(word);
-  std::vector<const char*> argv;
-  for (const auto& word : words) argv.push_back(word.c_str());
-  return parse_command(int(argv.size()), argv.data());
-}
-
-std::string error_of(const std::string& line) {
-  try {
-    parse(line);
-  } catch (const UsageError& error) {
-    return error.what();
-  }
-  return "no error";
-}
+using test::error_of;
+using test::parse;
 
 TEST(Render, Defaults) {
   const auto command = std::get<RenderCommand>(parse("render dir/x.nff"));
@@ -56,9 +41,9 @@ TEST(Render, Defaults) {
 }
 
 TEST(Render, Effects) {
-  const Effects e = std::get<RenderCommand>(parse("render x.nff --samples 9 --sampler jitter --seed 7 --aa jitter:3 "
+  const Effects e = std::get<RenderCommand>(parse("render x.nff --samples 288 --sampler jitter --seed 7 --aa jitter:3 "
                                                   "--shadows area:.5,4 --lens 20,1.5,32 --glossy .2,6")).effects;
-  EXPECT_EQ(e.samples, 9);
+  EXPECT_EQ(e.samples, 288);
   EXPECT_EQ(e.sampler, Sampler::kJitter);
   EXPECT_EQ(e.seed, 7u);
   EXPECT_EQ(e.jitter, 3);
@@ -90,9 +75,9 @@ TEST(Render, ErrorAndTime) {
 
 TEST(Render, EveryOption) {
   const auto command = std::get<RenderCommand>(
-      parse("render x.nff -o y.pfm --size 640x480 --threads 7 --depth 3 --density 2.5 --accel none --mailbox off "
+      parse("render x.nff -o y.png --size 640x480 --threads 7 --depth 3 --density 2.5 --mailbox off "
             "--isa avx2 --precision double --packet 16 --stats s.json --quiet --srgb"));
-  EXPECT_EQ(command.image, "y.pfm");
+  EXPECT_EQ(command.image, "y.png");
   EXPECT_EQ(command.width, 640);
   EXPECT_EQ(command.height, 480);
   EXPECT_EQ(command.render.threads, 7);
@@ -101,7 +86,7 @@ TEST(Render, EveryOption) {
   EXPECT_EQ(command.render.precision, Precision::kDouble);
   EXPECT_FALSE(command.render.mailbox);
   EXPECT_EQ(command.render.isa, "avx2");
-  EXPECT_FALSE(command.build.grid);
+  EXPECT_FALSE(std::get<RenderCommand>(parse("render x.nff --accel none")).build.grid);
   EXPECT_EQ(command.build.density, 2.5f);
   EXPECT_EQ(command.stats, "s.json");
   EXPECT_TRUE(command.quiet);
@@ -112,6 +97,32 @@ TEST(Render, OptionsMayStandBeforeTheSceneAndCarryTheirValue) {
   const auto command = std::get<RenderCommand>(parse("render --size=65536x1 --quiet x.ply"));
   EXPECT_EQ(command.width, 65536);
   EXPECT_EQ(command.scenes, std::vector<std::string>{"x.ply"});
+}
+
+TEST(Render, ShortOptionsTakeTheirValueAsInOtherTools) {
+  for (const char* line : {"render x.nff -o=y.png -j=3", "render x.nff -oy.png -j3", "render -j 3 -o y.png x.nff"}) {
+    const auto command = std::get<RenderCommand>(parse(line));
+    EXPECT_EQ(command.image, "y.png") << line;
+    EXPECT_EQ(command.render.threads, 3) << line;
+    EXPECT_EQ(command.build.threads, 3) << line;
+  }
+  EXPECT_EQ(std::get<SceneCommand>(parse("scene balls -o=b.nff")).output, "b.nff");
+  EXPECT_EQ(error_of("render x.nff -o="), "-o: wanted a file name, found \"\"");
+  EXPECT_EQ(std::get<TextCommand>(parse("-V")).text, std::get<TextCommand>(parse("--version")).text);
+}
+
+TEST(Render, FormatNamesWhatTheNameDoesNot) {
+  const auto image = [](const std::string& line) {
+    return commands_for(std::get<RenderCommand>(parse("render a/x.nff " + line))).at(0).image;
+  };
+  EXPECT_EQ(image("--format hdr"), "x.hdr");
+  EXPECT_EQ(image("--format pfm -o out/"), "out/x.pfm");
+  EXPECT_EQ(image("--format pfm -o {}"), "x");
+  EXPECT_EQ(image("-o -"), "-");
+  EXPECT_EQ(format_of("-", {}), ImageFormat::png);
+  EXPECT_EQ(format_of("-", ImageFormat::hdr), ImageFormat::hdr);
+  EXPECT_EQ(format_of("x.pfm", {}), ImageFormat::pfm);
+  EXPECT_EQ(format_of("x.grelha", {}), std::nullopt);
 }
 
 TEST(DefaultImage, TakesTheStemInTheCurrentFolder) {
@@ -323,14 +334,6 @@ TEST(Pages, HoldEveryOptionThatHelpShows) {
     EXPECT_NE(man.find("grelha " + c.name), std::string::npos);
   }
   EXPECT_GE(options, 30u);
-}
-
-TEST(Progress, TellsShareAndRemainingTime) {
-  EXPECT_EQ(progress_text(0, 1), "[........................................]   0 %");
-  EXPECT_EQ(progress_text(0.5, 3), "[####################....................]  50 %  3 s left");
-  EXPECT_EQ(progress_text(1, 3), "[########################################] 100 %  0 s left");
-  EXPECT_EQ(progress_text(0.25, 30), "[##########..............................]  25 %  1 min 30 s left");
-  EXPECT_EQ(progress_text(0.1, 800), "[####....................................]  10 %  2 h 0 min left");
 }
 
 }  // namespace

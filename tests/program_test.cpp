@@ -244,6 +244,8 @@ TEST_F(Program, SaysWhatMemoryItWillTake) {
 
 TEST_F(Program, SuggestsTheSceneThatWasMeant) {
   EXPECT_EQ(run("scene bals").err, "grelha: error: no scene \"bals\"; did you mean balls? (see grelha scene --list)\n");
+  EXPECT_EQ(run("scene gears --spd").err,
+            "grelha: error: --spd: wanted a scene that SPD has in another form (balls, mount), found \"gears\"\n");
   EXPECT_EQ(run("scene teapot").err, "grelha: error: no scene \"teapot\" (see grelha scene --list)\n");
 }
 

@@ -153,7 +153,7 @@ TEST(Info, JsonSaysWhatTheSceneHolds) {
   file.camera.width = 640;
   const Json json = Json::parse(info_json(file, {1, 2, 3}, std::vector<GridStats>{}));
   EXPECT_EQ(keys(json),
-            (std::set<std::string>{"scene", "kernel", "dropped", "resolution", "bounds", "memory", "grids", "needs", "made_up"}));
+            (std::set<std::string>{"scene", "kernel", "aabb", "dropped", "resolution", "bounds", "memory", "grids", "needs", "made_up"}));
   EXPECT_EQ(json["scene"]["s"], 1);
   EXPECT_EQ(json["kernel"]["spheres"], 1);
   EXPECT_EQ(json["dropped"], Json::parse(R"({"not_finite":3,"zero_area":4})"));
@@ -173,6 +173,17 @@ TEST(Info, NamesOfAnyBytes) {
 }
 
 TEST(Info, NothingHasNoBounds) { EXPECT_TRUE(Json::parse(info_json({}, {}, {}))["bounds"].is_null()); }
+
+TEST(Info, SaysHowBoxesAreRead) {
+  SceneFile file = one_ball(material_with([](Material&) {}));
+  EXPECT_TRUE(Json::parse(info_json(file, {}, {}))["aabb"].is_null());
+  EXPECT_EQ(info_text("x.nff", file, {}, {}).find("aabb"), std::string::npos);
+  file.box_order = BoxOrder::kPairs;
+  EXPECT_EQ(Json::parse(info_json(file, {}, {}))["aabb"], "pairs");
+  EXPECT_NE(info_text("x.nff", file, {}, {}).find("\naabb          read as pairs\n"), std::string::npos);
+  file.box_order = BoxOrder::kCorners;
+  EXPECT_EQ(Json::parse(info_json(file, {}, {}))["aabb"], "corners");
+}
 
 TEST(Info, TextListsTheSame) {
   SceneFile file = one_ball(material_with([](Material& m) { m.mirror = {1, 1, 1}; }));
