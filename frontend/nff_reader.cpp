@@ -26,6 +26,7 @@ class NffReader {
         progress_(progress, text.data()),
         folder_(std::filesystem::path(path).parent_path()),
         words_(path, text, text.starts_with("\xEF\xBB\xBF") ? 3 : 0, '#'),
+        warn_(warn),
         warnings_(warn),
         input_(words_, warnings_),
         build_(file_),
@@ -78,6 +79,7 @@ class NffReader {
   std::filesystem::path folder_;
   SceneFile file_;
   Words words_;
+  const Warn& warn_;
   Warnings warnings_;
   NffInput input_;
   SceneBuilder build_;
@@ -284,7 +286,7 @@ void NffReader::read_ply(std::string_view keyword) {
   Mesh mesh;
   try {
     std::string bytes = load_file(path, load_);
-    mesh = read_ply_mesh(path, bytes, load_);
+    mesh = read_ply_mesh(path, bytes, warn_, load_);
     file_.source_bytes = std::max<std::uint64_t>(file_.source_bytes, words_.size() + bytes.size());
   } catch (const std::bad_alloc&) {
     throw OutOfMemory(path);

@@ -32,6 +32,7 @@ void PlyAscii::read_list(const PlyElement& element, const PlyProperty& list, std
     if (!to_integer(item, index) || !faces->accepts(index))
       throw ParseError(words_.position(item), "the index of a vertex, 0 or more and below their number", quoted(item));
     faces->add(index);
+    progress_.at(words_.cursor());
   }
   if (faces) faces->end(std::uint32_t(size));
 }

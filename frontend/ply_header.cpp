@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <unordered_set>
 #include <utility>
 
 #include "frontend/text.hpp"
@@ -24,7 +25,8 @@ std::optional<PlyType> type_named(std::string_view name) {
 
 class HeaderReader {
  public:
-  HeaderReader(const std::string& path, std::string_view bytes) : bytes_(bytes), whole_(path, bytes, 0, '\0') {}
+  HeaderReader(const std::string& path, std::string_view bytes, Warnings& warnings, LoadProgress* progress)
+      : bytes_(bytes), whole_(path, bytes, 0, '\0'), warnings_(warnings), progress_(progress, bytes.data()) {}
 
   PlyHeader read();
 
@@ -34,6 +36,8 @@ class HeaderReader {
     throw ParseError(whole_.position(word), wanted, word.empty() && !at_end ? "end of line" : quoted(word));
   }
   void find_line_end();
+  void skip_stray(std::string_view keyword);
+  void warn_of_nul() const;
   bool next_line();
   std::string_view word();
   PlyType type(const char* what);
@@ -44,10 +48,14 @@ class HeaderReader {
 
   std::string_view bytes_;
   Words whole_;  ///< only to name positions
+  Warnings& warnings_;
+  ParseProgress progress_;
   char line_end_ = '\n';
   std::size_t next_ = 0;   ///< first byte of the next line
   std::string_view line_;  ///< what is left of the present one
+  bool has_format_ = false;
   PlyHeader header_;
+  std::unordered_set<std::string_view> names_;  ///< of elements
   std::vector<std::string_view> count_words_;  ///< [elements]
 };
 
@@ -66,6 +74,7 @@ bool HeaderReader::next_line() {
   const std::size_t end = std::min(bytes_.find(line_end_, next_), bytes_.size());
   line_ = bytes_.substr(next_, end - next_);
   next_ = std::min(end + 1, bytes_.size());
+  progress_.at(bytes_.data() + next_);
   return true;
 }
 
@@ -86,6 +95,7 @@ PlyType HeaderReader::type(const char* what) {
 }
 
 void HeaderReader::read_format() {
+  has_format_ = true;
   const std::string_view name = word();
   if (name == "ascii")
     header_.format = PlyFormat::kAscii;
@@ -108,8 +118,7 @@ void HeaderReader::read_element() {
   const std::string_view count = word();
   std::int64_t value = 0;
   if (!to_integer(count, value) || value < 0) fail(count, "a whole number of rows");
-  for (const PlyElement& other : header_.elements)
-    if (other.name == name) fail(name, "each element once");
+  if (!names_.insert(name).second) fail(name, "each element once");
   element.count = std::uint64_t(value);
   header_.elements.push_back(element);
   count_words_.push_back(count);
@@ -153,41 +162,56 @@ void HeaderReader::check_counts() const {
   }
 }
 
+/// Exporters leave lines of their own, such as a comment gone on with; binary data are no line.
+void HeaderReader::skip_stray(std::string_view keyword) {
+  const auto is_text = [](char c) { return static_cast<unsigned char>(c) >= ' ' || c == '\t' || c == '\r'; };
+  const std::string_view line{keyword.data(), std::size_t(line_.data() + line_.size() - keyword.data())};
+  if (!std::all_of(line.begin(), line.end(), is_text))
+    fail(keyword, "a word of the header (format, comment, obj_info, element, property, end_header)");
+  if (warnings_.first("line " + std::string(keyword)))
+    warnings_.say(whole_.position(keyword), "no line of a PLY header begins with " + quoted(keyword) + "; it is skipped");
+}
+
+/// They stand between words as blanks do, which is seldom what was meant.
+void HeaderReader::warn_of_nul() const {
+  const bool ascii = header_.format == PlyFormat::kAscii;
+  const std::size_t nul = bytes_.substr(0, ascii ? bytes_.size() : header_.data_begin).find('\0');
+  if (nul != std::string_view::npos) warnings_.say(whole_.position(bytes_.substr(nul)), kNulIsBlank);
+}
+
 PlyHeader HeaderReader::read() {
   find_line_end();
   next_line();
   const std::string_view magic = word();
   if (magic != "ply") fail(magic, "\"ply\" on the first line");
-  bool has_format = false;
   for (;;) {
     if (!next_line()) fail(line_, "\"end_header\"");
     const std::string_view keyword = word();
     if (keyword.empty() || keyword == "comment" || keyword == "obj_info") continue;
-    if (keyword == "end_header") {
-      if (!has_format) fail(keyword, "\"format\" before the end of the header");
-      break;
-    }
     if (keyword == "format") {
-      if (has_format) fail(keyword, "\"format\" once");  // rows were measured by the first
+      if (has_format_) fail(keyword, "\"format\" once");  // rows were measured by the first
       read_format();
-      has_format = true;
-    } else if (!has_format) {
-      fail(keyword, "\"format\" on the second line");
-    } else if (keyword == "element") {
-      read_element();
-    } else if (keyword == "property") {
-      read_property();
+    } else if (keyword == "end_header") {
+      if (!has_format_) fail(keyword, "\"format\" before the end of the header");
+      break;
+    } else if (keyword == "element" || keyword == "property") {
+      if (!has_format_) fail(keyword, "\"format\" before elements");
+      keyword == "element" ? read_element() : read_property();
     } else {
-      fail(keyword, "a word of the header (format, comment, obj_info, element, property, end_header)");
+      skip_stray(keyword);
     }
   }
   header_.data_begin = next_;
   check_counts();
+  warn_of_nul();
   return std::move(header_);
 }
 
 }  // namespace
 
-PlyHeader read_ply_header(const std::string& path, std::string_view bytes) { return HeaderReader(path, bytes).read(); }
+PlyHeader read_ply_header(const std::string& path, std::string_view bytes, Warnings& warnings,
+                          LoadProgress* progress) {
+  return HeaderReader(path, bytes, warnings, progress).read();
+}
 
 }  // namespace grelha

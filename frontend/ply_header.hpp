@@ -6,7 +6,9 @@
 #include <string_view>
 #include <vector>
 
+#include "frontend/load_progress.hpp"
 #include "frontend/parse_error.hpp"
+#include "frontend/warnings.hpp"
 
 namespace grelha {
 
@@ -41,7 +43,9 @@ struct PlyHeader {
 };
 
 /// Everything up to `end_header` and its one line end. Counts are checked against the rest of the file, so that memory
-/// may be taken for them. Throws ParseError.
-PlyHeader read_ply_header(const std::string& path, std::string_view bytes);
+/// may be taken for them. A line of text that is none of a header is warned of and skipped.
+/// Throws ParseError, and Stopped.
+PlyHeader read_ply_header(const std::string& path, std::string_view bytes, Warnings& warnings,
+                          LoadProgress* progress);
 
 }  // namespace grelha

@@ -74,8 +74,9 @@ Mesh read_rows(const PlyHeader& header, std::size_t bytes, Rows& rows) {
 
 }  // namespace
 
-Mesh read_ply_mesh(const std::string& path, std::string_view bytes, LoadProgress* progress) {
-  const PlyHeader header = read_ply_header(path, bytes);
+Mesh read_ply_mesh(const std::string& path, std::string_view bytes, const Warn& warn, LoadProgress* progress) {
+  Warnings warnings(warn);
+  const PlyHeader header = read_ply_header(path, bytes, warnings, progress);
   if (header.format == PlyFormat::kAscii) {
     PlyAscii rows(path, bytes, header, progress);
     return read_rows(header, bytes.size(), rows);

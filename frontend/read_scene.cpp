@@ -39,10 +39,10 @@ void refuse_placeholders(const std::string& path, std::string_view bytes) {
     throw ParseError(start, "wanted a scene, found a Git LFS pointer: the file it stands for was not downloaded");
 }
 
-SceneFile read_mesh_alone(const std::string& path, std::string bytes, LoadProgress& progress) {
+SceneFile read_mesh_alone(const std::string& path, std::string bytes, const Warn& warn, LoadProgress& progress) {
   SceneFile file;
   file.source_bytes = bytes.size();
-  Mesh mesh = read_ply_mesh(path, bytes, &progress);
+  Mesh mesh = read_ply_mesh(path, bytes, warn, &progress);
   std::string().swap(bytes);  // as large as what is made of it
   file.counts.ply = mesh.face_count();
   file.scene.materials.push_back(default_mesh_material());
@@ -65,7 +65,8 @@ SceneFile read_scene(const std::string& path, const Warn& warn, const ReadOption
   LoadProgress progress(options.progress);
   std::string bytes = load_file(path, &progress, true);
   refuse_placeholders(path, bytes);
-  SceneFile file = is_ply(path, bytes) ? read_mesh_alone(path, std::move(bytes), progress) : read_nff(path, bytes, warn, options, &progress);
+  SceneFile file = is_ply(path, bytes) ? read_mesh_alone(path, std::move(bytes), warn, progress)
+                                       : read_nff(path, bytes, warn, options, &progress);
   progress.finish();
   warn_of_dropped(path, file.dropped, warn);
   return file;

@@ -10,6 +10,8 @@
 
 namespace grelha {
 
+inline constexpr std::string_view kNulIsBlank = "the text holds NUL bytes, which count as blanks";
+
 /// Says each thing once; after kMost of them, nothing more, so that a file of noise stays readable.
 class Warnings {
  public:

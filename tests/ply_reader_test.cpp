@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <tuple>
 
+#include "frontend/load_progress.hpp"
 #include "tests/support/reading.hpp"
 
 namespace grelha {
@@ -202,6 +204,63 @@ INSTANTIATE_TEST_SUITE_P(Ply, EveryLineEnd,
 const std::string kAsciiTriangle =
     "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
     "element face 2\nproperty list uchar int vertex_indices\nend_header\n";
+
+using Lines = std::vector<std::string>;
+
+/// What is said of a file on the way to its mesh.
+Lines warnings_of(const std::string& bytes) {
+  Lines lines;
+  EXPECT_EQ(read_ply_mesh("m.ply", bytes, [&](const std::string& line) { lines.push_back(line); }).face_count(), 2u);
+  return lines;
+}
+
+/// A comment that an exporter broke, and words of its own: each kind once, and the mesh is read.
+TEST(PlyHeader, StrayLinesAreSkipped) {
+  const std::string rows = "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 2 1 0\n", header = kAsciiTriangle.substr(4);
+  EXPECT_EQ(warnings_of(kAsciiTriangle + rows), Lines{});
+  EXPECT_EQ(warnings_of("ply\nmade by hand\n" + header + rows),
+            Lines{"m.ply:2:1: warning: no line of a PLY header begins with \"made\"; it is skipped"});
+  const std::string stray = "  going on, \xC3\xA0 la carte\nvertices 3\nvertices 3\n";
+  EXPECT_EQ(warnings_of("ply\n" + header.substr(0, 17) + stray + header.substr(17) + rows),
+            (Lines{"m.ply:3:3: warning: no line of a PLY header begins with \"going\"; it is skipped",
+                   "m.ply:4:1: warning: no line of a PLY header begins with \"vertices\"; it is skipped"}));
+}
+
+TEST(PlyHeader, NulBytesAreToldOf) {
+  using std::string_literals::operator""s;
+  EXPECT_EQ(warnings_of(kAsciiTriangle + "0 0 0\n1\0 0 0\n0 1\0 0\n3 0 1 2\n3 2 1 0\n"s),
+            Lines{"m.ply:11:2: warning: the text holds NUL bytes, which count as blanks"});
+  PlyWriter w("binary_little_endian");
+  vertex_header(w, 1).line("element face 2").line("property list uchar int vertex_indices").line("end_header");
+  w.values("float", {0, 0, 0}).value("uchar", 0).value("uchar", 0);
+  EXPECT_EQ(warnings_of(w.bytes()), Lines{}) << "binary data are no text";
+}
+
+/// 200,000 elements: each was compared with all before it, which took minutes.
+TEST(PlyHeader, ManyElementsEndSoon) {
+  std::string text = "ply\nformat ascii 1.0\n";
+  for (int i = 0; i < 200000; ++i) text += "element e" + std::to_string(i) + " 0\n";
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_EQ(read_ply_mesh("m.ply", text + "end_header\n").face_count(), 0u);
+  constexpr double kPatience = 5;  // .1 s were measured
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), kPatience);
+}
+
+/// Whoever waits for a header, or for one long list, can stop it.
+TEST(PlyReader, AsksWhetherToGoOn) {
+  std::string header = "ply\nformat ascii 1.0\n";
+  while (header.size() < (3u << 20)) header += "comment again and again\n";
+  std::string list = kAsciiTriangle + "0 0 0\n1 0 0\n0 1 0\n2000000";
+  for (int i = 0; i < 2000000; ++i) list += " 0";
+  for (const std::string& text : {header + "end_header\n", list + "\n0\n"}) {
+    int asked = 0;
+    const std::function<bool(double)> report = [&](double) { return ++asked < 2; };
+    LoadProgress progress(report);
+    progress.expect(double(text.size()));
+    EXPECT_THROW(read_ply_mesh("m.ply", text, {}, &progress), Stopped);
+    EXPECT_EQ(asked, 2);
+  }
+}
 
 TEST(PlyAscii, RowsMayBreakAndJoin) {
   const std::vector<std::uint32_t> expected{0, 1, 2, 2, 1, 0};
