@@ -6,14 +6,15 @@
 #include <vector>
 
 #include "frontend/load_progress.hpp"
-#include "frontend/nearest.hpp"
 #include "frontend/nff_boxes.hpp"
 #include "frontend/nff_input.hpp"
 #include "frontend/nff_lights.hpp"
 #include "frontend/nff_material.hpp"
 #include "frontend/nff_view.hpp"
+#include "frontend/nff_words.hpp"
 #include "frontend/ply_reader.hpp"
 #include "frontend/scene_builder.hpp"
+#include "kernel/render.hpp"
 
 namespace grelha {
 namespace {
@@ -34,7 +35,7 @@ class NffReader {
     file_.source_bytes = text.size();
   }
 
-  SceneFile read();
+  SceneFile read(std::string_view text);
 
  private:
   using Entity = void (NffReader::*)(std::string_view keyword);
@@ -44,6 +45,7 @@ class NffReader {
   };
   static const Named kEntities[];
 
+  void warn_of_nul(std::string_view text);
   bool read_entity(std::string_view word);
   void skip_other(std::string_view word, std::string_view last_entity);
   static std::string meant(std::string_view word);
@@ -99,8 +101,15 @@ const NffReader::Named NffReader::kEntities[] = {
     {"accel", &NffReader::read_accel}, {"spp", &NffReader::read_spp},
 };
 
-SceneFile NffReader::read() {
+/// They stand between words as blanks do, which is seldom what was meant.
+void NffReader::warn_of_nul(std::string_view text) {
+  const std::size_t nul = text.find('\0');
+  if (nul != text.npos) warnings_.say(words_.position(text.substr(nul)), kNulIsBlank);
+}
+
+SceneFile NffReader::read(std::string_view text) {
   refuse_sense8(words_.peek());
+  warn_of_nul(text);
   std::string_view last_entity;
   for (;;) {
     const std::string_view word = words_.next();
@@ -130,19 +139,21 @@ bool NffReader::read_entity(std::string_view word) {
 std::string NffReader::meant(std::string_view word) {
   std::vector<std::string_view> known(NffView::words().begin(), NffView::words().end());
   for (const Named& entity : kEntities) known.push_back(entity.name);
-  const std::string_view near = nearest(word, known);
-  return near.empty() ? "" : " (did you mean " + quoted(near) + "?)";
+  const std::string near = meant_keyword(word, known);
+  return near.empty() ? "" : " (did you mean " + grelha::quoted(near) + "?)";
 }
 
-/// What no entity asked for: warned of once a kind, and the rest of its line with it.
+/// What no entity asked for: warned of once a kind, and the rest of its line with it. A file may
+/// hold millions: only the first of a kind is worth a search for the word that was meant.
 void NffReader::skip_other(std::string_view word, std::string_view last_entity) {
   if (!looks_like_number(word)) {
-    input_.warn_once("word " + std::string(word), word, "unknown word " + quoted(word) + meant(word) + "; its line is skipped");
+    if (warnings_.first("word " + std::string(word)))
+      warnings_.say(input_.position(word), "unknown word " + quoted(word) + meant(word) + "; its line is skipped");
   } else if (words_.fresh_line() || last_entity.empty()) {
     input_.warn_once("stray", word, "numbers that belong to no entity; their line is skipped");
-  } else {
-    input_.warn_once("surplus " + std::string(last_entity), word,
-                     "more numbers than " + quoted(last_entity) + " takes; the rest of the line is skipped");
+  } else if (warnings_.first("surplus " + std::string(last_entity))) {
+    warnings_.say(input_.position(word),
+                  "more numbers than " + quoted(last_entity) + " takes; the rest of the line is skipped");
   }
   words_.skip_line();
 }
@@ -311,18 +322,22 @@ void NffReader::read_env(std::string_view keyword) {
 
 void NffReader::read_accel(std::string_view) { file_.accelerator = std::string(words_.rest_of_line()); }
 
+/// A hint; what is too much is cut, and said.
 void NffReader::read_spp(std::string_view) {
   const std::string_view word = words_.next();
+  const std::string most = std::to_string(kMostSamples);
   std::int64_t samples = 0;
-  if (!to_integer(word, samples) || samples < 0 || samples > std::numeric_limits<int>::max())
-    input_.fail(word, "a whole number of samples per pixel");
-  file_.samples_per_pixel = int(samples);
+  if (!to_integer(word, samples) || samples < 0)
+    input_.fail(word, "a whole number of samples per pixel, from 0 to " + most);
+  if (samples > kMostSamples)
+    input_.warn_once("spp", word, quoted(word) + " samples per pixel are more than " + most + ", which are taken");
+  file_.samples_per_pixel = int(std::min<std::int64_t>(samples, kMostSamples));
 }
 
 }  // namespace
 
 SceneFile read_nff(const std::string& path, std::string_view text, const Warn& warn, const ReadOptions& options, LoadProgress* progress) {
-  return NffReader(path, text, warn, options, progress).read();
+  return NffReader(path, text, warn, options, progress).read(text);
 }
 
 }  // namespace grelha

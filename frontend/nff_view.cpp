@@ -25,7 +25,7 @@ int pixels(NffInput& input) {
 }  // namespace
 
 std::span<const std::string_view> NffView::words() {
-  static constexpr std::string_view kWords[] = {"camera", "from", "eye", "at", "up", "angle", "hither", "resolution", "aperture", "focal", "view"};
+  static constexpr std::string_view kWords[] = {"v", "camera", "from", "eye", "at", "up", "angle", "hither", "resolution", "aperture", "focal", "view"};
   return kWords;
 }
 

@@ -22,6 +22,9 @@ long long samples_asked(const Effects& e) {
 
 void check_samples(const Effects& e) {
   const long long asked = samples_asked(e);
+  if (asked > kMostSamples)  // either alone is within bounds
+    throw UsageError("--aa jitter:" + std::to_string(e.jitter) + " and --lens APERTURE,FOCUS,N: wanted at most " +
+                     std::to_string(kMostSamples) + " samples a pixel, found " + std::to_string(asked));
   if (!e.samples || asked == 0 || asked == *e.samples) return;
   const std::string first = e.jitter == 0 ? "--lens APERTURE,FOCUS,N"
                             : e.jitter == 1 ? "--aa off"

@@ -2,6 +2,7 @@
 
 #include "frontend/atomic_file.hpp"
 #include "frontend/image_file.hpp"
+#include "frontend/scene_builder.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -14,6 +15,8 @@ namespace grelha::option_values {
 namespace {
 
 constexpr double kMaxDensity = 1000;
+constexpr double kMaxSeconds = 1e9;  ///< 30 years; a clock counts so far without rounding
+constexpr double kMaxBytes = 1e18;
 
 /// Of KIND:MORE the kind that was probably meant.
 std::string meant_kind(const std::string& text, std::initializer_list<std::string_view> kinds) {
@@ -42,9 +45,10 @@ std::vector<std::string> parts(const std::string& option, const std::string& tex
   return found;
 }
 
+/// Of something in a scene, where no length is larger.
 double not_negative(const std::string& option, const std::string& text, const char* what) {
   const auto value = number<double>(text);
-  if (!value || !(*value >= 0) || *value > 1e18) refuse(option, std::string(what) + " that is not negative", text);
+  if (!value || !(*value >= 0) || *value > kLargest) refuse(option, std::string(what) + " from 0 to 1e18", text);
   return *value;
 }
 
@@ -127,12 +131,13 @@ void parse_time(const std::string& text, RefineOptions& refine) {
   constexpr std::string_view kSamples = "samples:";
   if (text.starts_with(kSamples)) {
     const auto count = number<std::uint64_t>(std::string_view(text).substr(kSamples.size()));
-    if (!count || *count == 0) refuse("--time", "samples:N with N above 0", text);
+    if (!count || *count == 0) refuse("--time", "samples:N with N from 1 to 2^64 - 1", text);
     refine.samples = *count;
     return;
   }
   const auto value = number<double>(text);
-  if (!value || !(*value > 0) || *value > 1e9) refuse("--time", "seconds above 0, or samples:N", text);
+  if (!value || !(*value > 0) || *value > kMaxSeconds)
+    refuse("--time", "seconds above 0 and up to 1e9, or samples:N", text);
   refine.seconds = *value;
 }
 
@@ -173,7 +178,7 @@ void parse_samples(const std::string& text, RenderCommand& command) {
 
 double interval(const std::string& option, const std::string& text) {
   const auto value = number<double>(text);
-  if (!value || !(*value > 0) || *value > 1e9) refuse(option, "seconds above 0", text);
+  if (!value || !(*value > 0) || *value > kMaxSeconds) refuse(option, "seconds above 0 and up to 1e9", text);
   return *value;
 }
 
@@ -196,7 +201,8 @@ std::uint64_t memory_size(const std::string& text) {
   const auto unit = text.empty() ? std::string_view::npos : kUnits.find(text.back());
   const auto value = number<double>(std::string_view(text).substr(0, text.size() - (unit != std::string_view::npos)));
   const double bytes = value ? std::ldexp(*value, unit == std::string_view::npos ? 0 : 10 * (int(unit) + 1)) : 0;
-  if (!(bytes >= 1 << 26) || bytes > 1e18) refuse("--max-memory", "a size from 64M, such as 512M or 6G", text);
+  if (!(bytes >= 1 << 26) || bytes > kMaxBytes)
+    refuse("--max-memory", "a size from 64M to 1e18 bytes, such as 512M or 6G", text);
   return std::uint64_t(bytes);
 }
 

@@ -26,7 +26,8 @@ std::string inflate_gzip(const std::string& path, std::string_view data, std::si
 /// small zero. False when the word is anything else ("1.5.2", "0x10", "").
 bool to_number(std::string_view word, float& value);
 bool to_number(std::string_view word, double& value);
-/// A whole word as an integer; numbers such as "3.0" or "+3" count.
+/// A whole word as an integer; numbers such as "3.0" or "+3" count. What is too large becomes the
+/// largest, so that whoever wants less says how much.
 bool to_integer(std::string_view word, std::int64_t& value);
 
 /// Whether a word is meant as a number, well formed or not: a digit follows its sign and point, or it reads as one.

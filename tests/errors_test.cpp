@@ -51,6 +51,8 @@ TEST(Errors, Entities) {
           {v + "p 3.5 0 0 0", ":8:3: error: wanted a whole number for the polygon's corners, found \"3.5\""},
           {v + "p 1000000000 0 0 0",
            ":8:3: error: wanted at most 1 for the polygon's corners (the file ends before), found \"1000000000\""},
+          {v + "p 99999999999999999999 0 0 0",
+           ":8:3: error: wanted at most 1 for the polygon's corners (the file ends before), found \"99999999999999999999\""},
           {v + "p 3 0 0 0 1 1 1 2.0000 s", ":8:24: error: wanted a number for the polygon's corner, found \"s\""},
           {v + "pp 3 0 0 0 0 0 1 1 0 0 0 0 1 0 1 0 0 0 q",
            ":8:40: error: wanted a number for the corner's normal, found \"q\""},
@@ -63,7 +65,7 @@ TEST(Errors, Entities) {
            ":10:5: error: wanted a vertex of the mesh, from 1 to 3 or -3 to -1, found \"0\""},
           {v + "mesh 3 999999999999\n0 0 0 1 0 0 0 1 0\n",
            ":8:8: error: wanted at most 3 for the mesh's faces (the file ends before), found \"999999999999\""},
-          {v + "spp x", ":8:5: error: wanted a whole number of samples per pixel, found \"x\""},
+          {v + "spp x", ":8:5: error: wanted a whole number of samples per pixel, from 0 to 65536, found \"x\""},
           {v + std::string("ply a\0b.ply\n", 12), ":8:5: error: wanted a file name after \"ply\", found \"a?b.ply\""},
           {v + "ply # none\n", ":8:5: error: wanted a file name after \"ply\", found end of line"},
       });
@@ -222,7 +224,7 @@ TEST(Errors, PlyHeaders) {
           {start + "elephant\n", ":4:1: error: wanted \"end_header\", found end of file"},
           {start + "elephant\3\n",
            ":3:1: error: wanted a word of the header (format, comment, obj_info, element, property, end_header), found "
-           "\"elephant?\""},
+           "\"elephant\""},
           {start + "element vertex\n", ":3:15: error: wanted a whole number of rows, found end of line"},
           {start + "element vertex -1\n", ":3:16: error: wanted a whole number of rows, found \"-1\""},
           {start + "element\n", ":3:8: error: wanted the element's name, found end of line"},

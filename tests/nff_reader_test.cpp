@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 
 #include "tests/support/reading.hpp"
@@ -374,7 +375,48 @@ TEST(NffNoise, IsComparedWithTheWordsThereAre) {
   const Reading r = read_with_view("resoluton 3 3\nmehs 1\nsphere 0 0 0 1\n");
   EXPECT_EQ(r.warnings, (Lines{"scene.nff:8:1: warning: unknown word \"resoluton\" (did you mean \"resolution\"?); its line is skipped",
                                "scene.nff:9:1: warning: unknown word \"mehs\" (did you mean \"mesh\"?); its line is skipped",
-                               "scene.nff:10:1: warning: unknown word \"sphere\"; its line is skipped"}));
+                               "scene.nff:10:1: warning: unknown word \"sphere\" (did you mean \"s\"?); its line is skipped"}));
+}
+
+TEST(NffNoise, FullNamesAreAnsweredWithTheKeyword) {
+  const std::pair<const char*, const char*> table[] = {
+      {"spheres", "s"}, {"Polygon", "p"}, {"TRIANGLE", "p"}, {"plane", "pl"}, {"cylinder", "c"},    {"material", "f"},
+      {"LIGHT", "light"}, {"S", "s"},     {"Box", "box"},    {"lookat", "at"}, {"backgruond", "b"}, {"shpere", "s"}, {"xyzzy", ""}, {"cones", "c"},
+  };
+  for (const auto& [word, keyword] : table) {
+    const Lines warnings = read_with_view(std::string(word) + " 0 0 0 1\n").warnings;
+    const std::string meant = *keyword ? " (did you mean \"" + std::string(keyword) + "\"?)" : "";
+    EXPECT_EQ(warnings, Lines{"scene.nff:8:1: warning: unknown word \"" + std::string(word) + '"' + meant + "; its line is skipped"});
+  }
+}
+
+/// A search for what was meant takes microseconds: only what is said is worth one. Was 7 s a million.
+TEST(NffNoise, AMillionUnknownWordsEndSoon) {
+  for (const bool alike : {true, false}) {
+    std::string text = kView;
+    for (int i = 0; i < 1000000; ++i) text += alike ? "sphere 0\n" : "sphere" + std::to_string(i) + " 0\n";
+    const auto start = std::chrono::steady_clock::now();
+    EXPECT_EQ(read_text(text).warnings.size(), alike ? 1u : 20u);
+    constexpr double kPatience = 2;  // .2 s were measured
+    EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), kPatience);
+  }
+}
+
+TEST(NffNoise, NulBytesAreToldOf) {
+  using std::string_literals::operator""s;
+  const Reading r = read_with_view(kFill + "s 0 0 0\0 1\ns 0 0\0 0 1\n"s);
+  EXPECT_EQ(r.file.counts.s, 2u);
+  EXPECT_EQ(r.warnings, Lines{"scene.nff:9:8: warning: the text holds NUL bytes, which count as blanks"});
+}
+
+TEST(NffHints, SamplesAreBoundedAndSaid) {
+  EXPECT_EQ(read_with_view("spp 65536").file.samples_per_pixel, 65536);
+  EXPECT_EQ(read_with_view("spp 65536").warnings, Lines{});
+  for (const std::string count : {"65537", "1000000000", "4000000000", "1e30"}) {
+    const Reading r = read_with_view("spp " + count);
+    EXPECT_EQ(r.file.samples_per_pixel, 65536) << count;
+    EXPECT_EQ(r.warnings, Lines{"scene.nff:8:5: warning: \"" + count + "\" samples per pixel are more than 65536, which are taken"});
+  }
 }
 
 TEST(NffNoise, FilesOfItStayReadable) {

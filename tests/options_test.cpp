@@ -245,8 +245,8 @@ TEST(Errors, SayWhatWasWantedAndFound) {
       {"render a --sampler halton", "--sampler: wanted one of sobol, jitter, unshuffled, random, found \"halton\""},
       {"render a --error 0", "--error: wanted a number from 0.000001 to 1, found \"0\""},
       {"render a --error nan", "--error: wanted a number from 0.000001 to 1, found \"nan\""},
-      {"render a --time -1", "--time: wanted seconds above 0, or samples:N, found \"-1\""},
-      {"render a --time samples:0", "--time: wanted samples:N with N above 0, found \"samples:0\""},
+      {"render a --time -1", "--time: wanted seconds above 0 and up to 1e9, or samples:N, found \"-1\""},
+      {"render a --time samples:0", "--time: wanted samples:N with N from 1 to 2^64 - 1, found \"samples:0\""},
       {"render a --error .1 --time 1", "--error and --time: one of them, found both"},
       {"render a --error .1 --samples 4", "--error and --time choose the samples: no --samples or --aa beside them"},
       {"render a --time 1 --aa jitter:2", "--error and --time choose the samples: no --samples or --aa beside them"},
@@ -262,9 +262,9 @@ TEST(Errors, SayWhatWasWantedAndFound) {
       {"render a --aa jitter:0", "--aa: wanted a whole number from 1 to 256, found \"0\""},
       {"render a --shadows soft", "--shadows: wanted hard, random:SIZE or area:SIZE,N, found \"soft\""},
       {"render a --shadows area:1", "--shadows: wanted area:SIZE,N, found \"1\""},
-      {"render a --shadows random:-1", "--shadows: wanted a size that is not negative, found \"-1\""},
+      {"render a --shadows random:-1", "--shadows: wanted a size from 0 to 1e18, found \"-1\""},
       {"render a --lens 1,2,3,4", "--lens: wanted APERTURE,FOCUS,N, found \"1,2,3,4\""},
-      {"render a --lens nan", "--lens: wanted an aperture that is not negative, found \"nan\""},
+      {"render a --lens nan", "--lens: wanted an aperture from 0 to 1e18, found \"nan\""},
       {"render a --glossy .1,0", "--glossy: wanted a whole number from 1 to 256, found \"0\""},
       {"compare a", "B is required (see --help)"},
       {"compare a b --max-rmse -1", "--max-rmse: wanted a number that is not negative, found \"-1\""},
@@ -274,6 +274,30 @@ TEST(Errors, SayWhatWasWantedAndFound) {
       {"scene balls --size x", "--size: wanted a whole number from 0 to 1000, found \"x\""},
   };
   for (const auto& [line, message] : table) EXPECT_EQ(error_of(line), message) << line;
+}
+
+/// What is too much is told how much there may be.
+TEST(Errors, SayTheUpperBoundToo) {
+  const std::pair<const char*, const char*> table[] = {
+      {"render a --lens 1e30,1,1", "--lens: wanted an aperture from 0 to 1e18, found \"1e30\""},
+      {"render a --lens 1,1e30,1", "--lens: wanted a focal distance from 0 to 1e18, found \"1e30\""},
+      {"render a --lens 1,1,65537", "--lens: wanted a whole number from 1 to 65536, found \"65537\""},
+      {"render a --glossy 1e30", "--glossy: wanted a roughness from 0 to 1e18, found \"1e30\""},
+      {"render a --shadows area:1e30,2", "--shadows: wanted a size from 0 to 1e18, found \"1e30\""},
+      {"render a --shadows random:1e30", "--shadows: wanted a size from 0 to 1e18, found \"1e30\""},
+      {"render a --time 1e10", "--time: wanted seconds above 0 and up to 1e9, or samples:N, found \"1e10\""},
+      {"render a --time samples:99999999999999999999",
+       "--time: wanted samples:N with N from 1 to 2^64 - 1, found \"samples:99999999999999999999\""},
+      {"render a --preview 1e10", "--preview: wanted seconds above 0 and up to 1e9, found \"1e10\""},
+      {"render a --checkpoint k --checkpoint-every 1e10",
+       "--checkpoint-every: wanted seconds above 0 and up to 1e9, found \"1e10\""},
+      {"render a --max-memory 1e30",
+       "--max-memory: wanted a size from 64M to 1e18 bytes, such as 512M or 6G, found \"1e30\""},
+      {"render a --aa jitter:256 --lens 1,1,2",
+       "--aa jitter:256 and --lens APERTURE,FOCUS,N: wanted at most 65536 samples a pixel, found 131072"},
+  };
+  for (const auto& [line, message] : table) EXPECT_EQ(error_of(line), message) << line;
+  EXPECT_EQ(error_of("render a --aa jitter:256 --lens 1,1,1"), "no error");
 }
 
 /// Of names that the system refuses to look at: the message is ours, or they are left to whoever opens them.

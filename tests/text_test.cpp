@@ -59,8 +59,11 @@ TEST(Integer, ReadsWholeNumbersOnly) {
   EXPECT_TRUE(to_integer("+4", value) && value == 4);
   EXPECT_TRUE(to_integer("3.0", value) && value == 3);
   EXPECT_TRUE(to_integer("-1", value) && value == -1);
-  for (const char* word : {"", "3.5", "1e300", "nan", "3x", "99999999999999999999"})
-    EXPECT_FALSE(to_integer(word, value)) << word;
+  constexpr std::int64_t kLargest = std::numeric_limits<std::int64_t>::max();
+  EXPECT_TRUE(to_integer("1e300", value) && value == kLargest);
+  EXPECT_TRUE(to_integer("99999999999999999999", value) && value == kLargest);
+  EXPECT_TRUE(to_integer("-1e300", value) && value == -kLargest);
+  for (const char* word : {"", "3.5", "inf", "1e400", "nan", "3x"}) EXPECT_FALSE(to_integer(word, value)) << word;
 }
 
 TEST(Integer, LooksLikeANumber) {
