@@ -39,7 +39,7 @@ constexpr std::pair<std::string_view, std::string_view> kFullNames[] = {
     {"environment", "env"},
     {"include", "ply"},
 };
-constexpr std::size_t kLongest = 64;  ///< no keyword is meant by more
+constexpr std::size_t kLongestMeant = 64;  ///< no keyword is meant by more
 
 std::string in_small_letters(std::string_view word) {
   std::string small(word);
@@ -58,7 +58,7 @@ std::string_view short_for(std::string_view word) {
 }  // namespace
 
 std::string meant_keyword(std::string_view word, std::span<const std::string_view> known) {
-  if (word.size() > kLongest) return "";
+  if (word.size() > kLongestMeant) return "";
   const std::string small = in_small_letters(word);
   if (std::find(known.begin(), known.end(), small) != known.end()) return small;
   std::vector<std::string_view> all(known.begin(), known.end());

@@ -61,8 +61,8 @@ bool to_integer(std::string_view word, std::int64_t& value) {
   double number = 0;
   if (!to_number(word, number) || !std::isfinite(number) || number != std::floor(number)) return false;
   constexpr double kWhole = 0x1p53;  // every double from here on is whole, and none the one written
-  constexpr std::int64_t kLargest = std::numeric_limits<std::int64_t>::max();
-  value = std::abs(number) <= kWhole ? std::int64_t(number) : number > 0 ? kLargest : -kLargest;
+  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+  value = std::abs(number) <= kWhole ? std::int64_t(number) : number > 0 ? kMost : -kMost;
   return true;
 }
 
