@@ -37,7 +37,6 @@ namespace grelha {
 
 namespace {
 
-constexpr const char* kOutOfMemory = "grelha: error: out of memory (--max-memory sets how much there is)";
 constexpr int kOk = 0, kFileFailed = 1, kBadInput = 2, kAboveBound = 1, kSignalled = 128;
 
 /// Of `work`, or of the error it ends with, which is told in one line.
@@ -61,9 +60,9 @@ int status_of(const Ranks& ranks, const Work& work) {
   } catch (const std::invalid_argument& error) {
     return fail(kBadInput, std::string("grelha: error: ") + error.what());
   } catch (const std::bad_alloc&) {
-    return fail(kFileFailed, kOutOfMemory);
+    return fail(kFileFailed, "grelha: error: " + out_of_memory());
   } catch (const std::length_error&) {  // a vector beyond its largest size
-    return fail(kFileFailed, kOutOfMemory);
+    return fail(kFileFailed, "grelha: error: " + out_of_memory());
   } catch (const std::exception& error) {
     return fail(kFileFailed, std::string("grelha: error: ") + error.what());
   }
@@ -181,11 +180,13 @@ int render_scene(const RenderCommand& given, Ranks& ranks) {
   report.seconds.load = load.seconds();
   const Camera camera = camera_of(file, command);
   want_room(format_of(command.image, command.format), camera.width, camera.height);
+  const PictureMemory memory = picture_memory(prepared, camera, is_long);
+  want_memory(command.scene, memory.sums + memory.rest);
   std::optional<LongRender> work;
   if (is_long) work.emplace(prepared, camera, scene, ranks, warn);
 
   const Stopwatch build;
-  const World world = build_world(command.scene, file.scene, command.build, picture_bytes(command, camera), bars);
+  const World world = build_world(command.scene, file.scene, command.build, memory.rest, bars);
   report.seconds.build = build.seconds();
 
   const Stopwatch render;
@@ -218,8 +219,6 @@ int render_scene(const RenderCommand& given, Ranks& ranks) {
   return kOk;
 }
 
-void bound_memory(const InputOptions& input) { limit_memory(input.max_memory > 0 ? input.max_memory : machine_memory()); }
-
 void remove_checkpoint(const RenderCommand& command) {
   std::error_code ignored;
   if (command.work.kept_till_the_last && !command.work.checkpoint.empty()) std::filesystem::remove(command.work.checkpoint, ignored);
@@ -227,7 +226,7 @@ void remove_checkpoint(const RenderCommand& command) {
 
 /// Of several scenes each is tried, whatever becomes of the others, until a signal stops one, or one of several ranks fails alone.
 int run(const RenderCommand& command, Ranks& ranks) {
-  bound_memory(command.input);
+  limit_memory(command.input.max_memory);
   int worst = kOk;
   const std::vector<RenderCommand> all = commands_for(command);
   for (const RenderCommand& one : all) {
@@ -242,14 +241,14 @@ int run(const RenderCommand& command, Ranks& ranks) {
 std::string info_of(const std::string& scene, const InfoCommand& command) {
   const bool bars = stderr_is_terminal();
   const SceneFile file = load_scene(scene, warn, command.input.read, bars);
-  const SceneMemory memory = memory_of(file, command.build, std::uint64_t(file.camera.width) * std::uint64_t(file.camera.height));
+  const SceneMemory memory = memory_of(file, command.build);
   std::optional<std::vector<GridStats>> grids;
   if (memory.peak - memory.scene < own_memory().left()) grids = build_world(scene, file.scene, command.build, 0, bars).grids();
   return command.json ? info_json(file, memory, grids) : info_text(scene, file, memory, grids);
 }
 
 int run(const InfoCommand& command, const Ranks& ranks) {
-  bound_memory(command.input);
+  limit_memory(command.input.max_memory);
   const std::vector<std::string> scenes = scene_files(command.scenes);
   std::vector<std::pair<std::string, std::string>> found;
   int worst = kOk;

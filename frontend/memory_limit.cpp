@@ -42,6 +42,8 @@ std::uint64_t memory_owned() {
   return pages[5] * std::uint64_t(sysconf(_SC_PAGE_SIZE));
 }
 
+bool asked_for = false;  ///< the limit, by --max-memory: it is the process's, and so is who set it
+
 }  // namespace
 
 OwnMemory own_memory() {
@@ -53,9 +55,29 @@ OwnMemory own_memory() {
 // RLIMIT_DATA counts what a process can write and does not share, and, unlike RLIMIT_AS, not what malloc only reserves.
 void limit_memory(std::uint64_t bytes) {
   rlimit limit{};
+  asked_for = bytes > 0;
+  if (!asked_for) bytes = machine_memory();
   if (!memory_can_be_limited() || bytes == 0 || getrlimit(RLIMIT_DATA, &limit) != 0) return;
   if (limit.rlim_max == RLIM_INFINITY || bytes < limit.rlim_max) limit.rlim_cur = bytes;
   setrlimit(RLIMIT_DATA, &limit);
 }
+
+std::string gigabytes(std::uint64_t bytes) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g GB", double(bytes) / 1e9);
+  return text;
+}
+
+std::string memory_there_is() {
+  rlimit limit{};
+  const std::uint64_t least = own_memory().limit;
+  if (least == std::numeric_limits<std::uint64_t>::max() || getrlimit(RLIMIT_DATA, &limit) != 0)
+    return gigabytes(machine_memory()) + ", all that this machine has";
+  if (least == limit.rlim_max) return gigabytes(least) + " (ulimit -d)";
+  if (asked_for) return gigabytes(least) + " (--max-memory)";
+  return gigabytes(least) + ", all that this machine has (--max-memory sets another bound)";
+}
+
+std::string out_of_memory() { return "out of memory: wanted more than " + memory_there_is(); }
 
 }  // namespace grelha

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "frontend/load_progress.hpp"
+#include "frontend/memory_limit.hpp"
+#include "frontend/nearest.hpp"
 #include "frontend/nff_boxes.hpp"
 #include "frontend/nff_input.hpp"
 #include "frontend/nff_lights.hpp"

@@ -32,9 +32,4 @@ struct FileError : std::runtime_error {
       : std::runtime_error(path + ": error: " + std::string(message)) {}
 };
 
-/// There is no memory for what a file holds.
-struct OutOfMemory : FileError {
-  explicit OutOfMemory(const std::string& path) : FileError(path, "out of memory (--max-memory sets how much there is)") {}
-};
-
 }  // namespace grelha

@@ -14,14 +14,13 @@ namespace grelha {
 
 namespace {
 
-constexpr std::uint64_t kPictureBytes = 12;  ///< a pixel: three floats
-constexpr std::uint64_t kProgram = 12'000'000;  ///< bytes of the program itself: libraries, stacks, threads' batches
-
-std::string gigabytes(std::uint64_t bytes) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g GB", double(bytes) / 1e9);
-  return text;
-}
+constexpr std::uint64_t kPixel = 12;       ///< bytes of a picture's pixel: three floats
+constexpr std::uint64_t kFilePixel = 12;   ///< and of its file's, before that is written: .pfm and .hdr; a .png takes half of it
+constexpr std::uint64_t kSum = 24;         ///< three sums of light
+constexpr std::uint64_t kRefined = 90;     ///< docs/architecture.md
+constexpr std::uint64_t kSubdivided = 1 << 20, kSubdividedPixel = 56;  ///< most pixels that are subdivided at a time, and bytes of one, measured
+constexpr std::uint64_t kMaps = 12;        ///< samples, errors and widths
+constexpr std::uint64_t kProgram = 12'000'000;  ///< bytes of the program itself: libraries, stacks
 
 std::uint64_t geometry_bytes(const Scene& scene) {
   const Geometry& g = scene.geometry;
@@ -52,6 +51,10 @@ auto interruptible(const char* name, const std::string& during, bool shown, cons
   throw Interrupted(StopSignals::seen(), during);
 }
 
+[[noreturn]] void refuse(const std::string& path, std::uint64_t need) {
+  throw FileError(path, "wanted about " + gigabytes(own_memory().owned + need) + " of memory to render it, found " + memory_there_is());
+}
+
 }  // namespace
 
 Interrupted::Interrupted(int number, const std::string& during)
@@ -65,39 +68,43 @@ SceneFile load_scene(const std::string& path, const Warn& warn, const ReadOption
   });
 }
 
+void want_memory(const std::string& path, std::uint64_t bytes) {
+  if (bytes >= own_memory().left()) refuse(path, bytes);
+}
+
 World build_world(const std::string& path, const Scene& scene, const BuildOptions& options, std::uint64_t later, bool shown) {
-  const OwnMemory memory = own_memory();
-  const std::uint64_t left = memory.left();
-  const auto refuse = [&](std::uint64_t need) {
-    throw FileError(path, "wanted about " + gigabytes(memory.owned + need) + " of memory to render it, found " + gigabytes(memory.limit) +
-                              " (--max-memory)");
-  };
-  if (later >= left) refuse(later);
+  want_memory(path, later);
   try {
     return interruptible("build", "building the grids of " + path, shown, [&](const std::function<bool(double)>& progress) {
       BuildOptions watched_options = options;
       watched_options.progress = progress;
-      watched_options.most_bytes = left - later;
+      watched_options.most_bytes = own_memory().left() - later;
       return World(scene, watched_options);
     });
   } catch (const TooLarge& error) {
-    refuse(error.need.peak + later);
-    throw;
+    refuse(path, error.need.peak + later);
   }
 }
 
-std::uint64_t picture_bytes(const RenderCommand& command, const Camera& camera) {
-  constexpr std::uint64_t kSums = 24, kRefined = 90;  // docs/architecture.md
-  const bool sums = !command.work.checkpoint.empty() || is_partial_name(command.image) || command.work.show_every > 0;
-  const std::uint64_t pixels = std::uint64_t(camera.width) * std::uint64_t(camera.height);
-  return pixels * (kPictureBytes + (sums ? kSums : 0) + (command.render.refine.on() ? kRefined : 0));
+PictureMemory picture_memory(const RenderCommand& command, const Camera& camera, bool is_long) {
+  const bool part = is_partial_name(command.image), refined = command.render.refine.on(), subdivided = command.effects.adaptive.on;
+  const auto width = std::uint64_t(camera.width), pixels = width * std::uint64_t(camera.height);
+  const Range rows = command.work.rows.value_or(Range{0, camera.height});
+  const auto height = std::uint64_t(std::clamp(rows.end - rows.begin, 1, camera.height));  // what the picture lacks is refused later
+  const std::uint64_t kept = refined ? kRefined * pixels : subdivided ? kPixel * pixels : kSum * width * height;
+  PictureMemory memory;
+  memory.sums = is_long ? kept : 0;
+  memory.rest = kProgram + thread_bytes(camera, command.render) + (refined ? kMaps * pixels : subdivided ? kSubdividedPixel * std::min(pixels, kSubdivided) : 0);
+  if (!part) memory.rest += (kPixel + kFilePixel) * pixels + (refined && !is_long ? kept : 0);
+  return memory;
 }
 
-SceneMemory memory_of(const SceneFile& file, const BuildOptions& options, std::uint64_t pixels) {
+SceneMemory memory_of(const SceneFile& file, const BuildOptions& options) {
   const BuildMemory build = World::estimate(file.scene, options);
+  const PictureMemory picture = picture_memory({}, file.camera, false);
   SceneMemory memory;
   memory.scene = geometry_bytes(file.scene), memory.grids = build.kept;
-  memory.peak = kProgram + memory.scene + std::max({file.source_bytes, build.peak, build.kept + kPictureBytes * pixels});
+  memory.peak = memory.scene + std::max(kProgram + std::max(file.source_bytes, build.peak), build.kept + picture.rest);
   return memory;
 }
 

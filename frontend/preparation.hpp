@@ -25,10 +25,19 @@ SceneFile load_scene(const std::string& path, const Warn& warn, const ReadOption
 /// estimate it would take more than there may be.
 World build_world(const std::string& path, const Scene& scene, const BuildOptions& options, std::uint64_t later, bool shown);
 
-/// Of the picture a command makes, and what it is made of on the way.
-std::uint64_t picture_bytes(const RenderCommand& command, const Camera& camera);
+/// Bytes of the picture that a command makes, or of the part of it: --rows.
+struct PictureMemory {
+  std::uint64_t sums = 0;  ///< of work that is kept: taken before the grids are built
+  std::uint64_t rest = 0;  ///< the program, what its threads work in, the picture, and its file
+};
 
-/// What rendering a scene as a picture of so many pixels, one sample each, takes.
-SceneMemory memory_of(const SceneFile& file, const BuildOptions& options, std::uint64_t pixels);
+/// `is_long`: see is_long_work().
+PictureMemory picture_memory(const RenderCommand& command, const Camera& camera, bool is_long);
+
+/// Throws FileError, in the scene's name, when there are not so many bytes left.
+void want_memory(const std::string& path, std::uint64_t bytes);
+
+/// What rendering a scene at its own size, one sample a pixel, takes.
+SceneMemory memory_of(const SceneFile& file, const BuildOptions& options);
 
 }  // namespace grelha

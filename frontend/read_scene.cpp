@@ -5,6 +5,7 @@
 
 #include "frontend/default_view.hpp"
 #include "frontend/load_progress.hpp"
+#include "frontend/memory_limit.hpp"
 #include "frontend/nff_reader.hpp"
 #include "frontend/ply_reader.hpp"
 #include "frontend/scene_builder.hpp"

@@ -1,6 +1,7 @@
 #include "frontend/report.hpp"
 
 #include "frontend/atomic_file.hpp"
+#include "frontend/memory_limit.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -217,7 +218,7 @@ std::string info_text(const std::string& path, const SceneFile& file, const Scen
     text += "bounds        " + point_text(bounds.low) + " to " + point_text(bounds.high) + '\n';
   text += print("memory        about %.1f MB to render: scene %.1f, grids %.1f, the rest to read, build and draw\n",
                 double(memory.peak) / 1e6, double(memory.scene) / 1e6, double(memory.grids) / 1e6);
-  if (!grids) text += "grid          not built: it would take more memory than there may be (--max-memory)\n";
+  if (!grids) text += "grid          not built: it would take more than " + memory_there_is() + '\n';
   for (const GridStats& grid : grids.value_or(std::vector<GridStats>{}))
     text += print("grid          %u x %u x %u cells, %llu occupied, %llu references, %.1f MB\n", grid.cells[0],
                   grid.cells[1], grid.cells[2], static_cast<unsigned long long>(grid.occupied),

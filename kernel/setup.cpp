@@ -6,6 +6,7 @@
 
 #include <omp.h>
 
+#include "kernel/workspace.hpp"
 #include "kernel/world.hpp"
 
 namespace grelha {
@@ -71,6 +72,13 @@ Setup set_up(const World& world, const Camera& camera, const RenderOptions& opti
 int thread_count(const RenderOptions& options, std::size_t pieces) {
   const std::size_t wanted = static_cast<std::size_t>(options.threads > 0 ? options.threads : omp_get_num_procs());
   return static_cast<int>(std::clamp<std::size_t>(pieces, 1, wanted));
+}
+
+std::uint64_t thread_bytes(const Camera& camera, const RenderOptions& options) {
+  const auto bands = static_cast<std::size_t>((camera.height + kBandRows - 1) / kBandRows);
+  const std::size_t sums = static_cast<std::size_t>(camera.width) * kBandRows;
+  const auto threads = static_cast<std::uint64_t>(thread_count(options, bands));
+  return threads * Workspace::bytes(sums, options.depth, options.sampling.gloss_rays);
 }
 
 }  // namespace grelha

@@ -42,21 +42,28 @@ class Workspace {
       : batch_(std::make_unique<Batch>()),
         plan_(plan),
         in_double_(in_double),
-        take_(std::clamp(65536 / (depth * (plan.gloss_rays + 1)), 16, kBatch)),
-        capacity_((plan.gloss_rays + 2) * (kBatch + take_ * depth) + kCacheLine),  // the line: see kBatchRow
-        floats_(static_cast<std::size_t>(capacity_) * 9),
-        words_(static_cast<std::size_t>(capacity_) * 4),
+        take_(take_of(depth, plan.gloss_rays)),
+        capacity_(capacity_of(depth, plan.gloss_rays)),
+        floats_(static_cast<std::size_t>(capacity_) * kStackFloats),
+        words_(static_cast<std::size_t>(capacity_) * kStackWords),
         sums_(sums * 3),
         pixels_(sums) {}
+
+  /// What one takes.
+  static std::uint64_t bytes(std::size_t sums, int depth, int gloss_rays) {
+    constexpr std::uint64_t ray = kStackFloats * sizeof(float) + kStackWords * sizeof(std::uint32_t);
+    constexpr std::uint64_t sum = 3 * sizeof(std::int64_t) + sizeof(std::uint32_t);
+    return sizeof(Batch) + ray * static_cast<std::uint64_t>(capacity_of(depth, gloss_rays)) + sum * sums;
+  }
 
   /// Empty sums, of pixels first_pixel, first_pixel + 1, ... or, when `named`, of those that pixels() is filled with.
   BandWork work(const RenderOptions& options, std::uint32_t first_pixel, bool named = false) {
     if (options.phases) clock_.start(Phase::sums);
     std::fill(sums_.begin(), sums_.end(), 0);
-    float* f[9];
-    for (std::size_t i = 0; i < 9; ++i) f[i] = floats_.data() + i * static_cast<std::size_t>(capacity_);
-    std::uint32_t* w[4];
-    for (std::size_t i = 0; i < 4; ++i) w[i] = words_.data() + i * static_cast<std::size_t>(capacity_);
+    float* f[kStackFloats];
+    for (std::size_t i = 0; i < kStackFloats; ++i) f[i] = floats_.data() + i * static_cast<std::size_t>(capacity_);
+    std::uint32_t* w[kStackWords];
+    for (std::size_t i = 0; i < kStackWords; ++i) w[i] = words_.data() + i * static_cast<std::size_t>(capacity_);
     const RayStack stack{f[0], f[1], f[2], f[3], f[4], f[5], f[6], f[7], f[8], w[0], w[1], w[2], w[3], 0, capacity_};
     const float most = std::min(1048576.f, kMostLight / static_cast<float>(plan_.samples));
     if (options.phases) clock_.go_on(Phase::camera);
@@ -72,6 +79,12 @@ class Workspace {
   std::vector<std::uint32_t>& pixels() { return pixels_; }
 
  private:
+  static constexpr std::size_t kStackFloats = 9, kStackWords = 4;  ///< of a ray that waits, see RayStack
+  static int take_of(int depth, int gloss_rays) { return std::clamp(65536 / (depth * (gloss_rays + 1)), 16, kBatch); }
+  static int capacity_of(int depth, int gloss_rays) {
+    return (gloss_rays + 2) * (kBatch + take_of(depth, gloss_rays) * depth) + kCacheLine;  // the line: see kBatchRow
+  }
+
   std::unique_ptr<Batch> batch_;
   PhaseClock clock_;
   SamplePlan plan_;

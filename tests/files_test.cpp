@@ -152,7 +152,7 @@ TEST_F(Files, TheFileThereIsNoMemoryForIsNamed) {
   folder_.write("large.nff", std::string(kBall) + std::string(std::size_t(100) << 20, ' '));
   folder_.write("large.ply", std::string(std::size_t(100) << 20, ' '));
   folder_.write("mesh.nff", std::string(kBall) + "ply large.ply\n");
-  const std::string why = ": error: out of memory (--max-memory sets how much there is)\n";
+  const std::string why = ": error: out of memory: wanted more than 0.0671 GB (--max-memory)\n";
   EXPECT_EQ(run("info ball.nff large.nff --max-memory 64M").err, "large.nff" + why);
   EXPECT_EQ(run("info mesh.nff --max-memory 64M").err, "large.ply" + why);
 }

@@ -209,9 +209,45 @@ TEST_F(Program, HostileFilesAreBounded) {
   if (!memory_can_be_limited()) GTEST_SKIP() << "sanitizers own more memory than there is";
   const Outcome large = run("render ball.nff --size 6000x6000 -o x.pfm --max-memory 300M");
   EXPECT_EQ(large.status, 1);
-  EXPECT_TRUE(large.err.starts_with("ball.nff: error: wanted about 0.4")) << large.err;
+  EXPECT_TRUE(large.err.starts_with("ball.nff: error: wanted about 0.8")) << large.err;
   EXPECT_TRUE(large.err.ends_with(" GB of memory to render it, found 0.315 GB (--max-memory)\n")) << large.err;
   EXPECT_EQ(folder_.list(), "ball.nff claims.ply corners.nff faces.ply mesh.nff");
+}
+
+/// Of 900 million pixels a row takes megabytes, all of them 21.6 GB: what bounds these is named, be it the machine, which need not say no.
+TEST_F(Program, ARowOfAHugePictureTakesLittle) {
+  if (!memory_can_be_limited()) GTEST_SKIP() << "sanitizers own more memory than there is";
+  const std::string huge = "render ball.nff --quiet --threads 2 --size 30000x30000 -o x.grelha ";
+  const Outcome row = run(huge + "--rows 0:1 --max-memory 100M");
+  EXPECT_EQ(row.status, 0) << row.err;
+  const Outcome all = run(huge + "--max-memory 100M");
+  EXPECT_EQ(all.status, 1);
+  EXPECT_TRUE(all.err.starts_with("ball.nff: error: wanted about 21.6 GB of memory")) << all.err;
+  EXPECT_TRUE(all.err.ends_with(", found 0.105 GB (--max-memory)\n")) << all.err;
+  const Outcome by_system = test::run(folder_, huge, "ulimit -d 204800 &&");
+  EXPECT_TRUE(by_system.err.ends_with(", found 0.21 GB (ulimit -d)\n")) << by_system.err;
+  constexpr std::uint64_t kLargest = std::uint64_t{65536} * 65536 * 24;
+  if (machine_memory() > kLargest) GTEST_SKIP() << "this machine has room for the largest picture";
+  const Outcome by_machine = run("render ball.nff --quiet --size 65536x65536 -o x.pfm");
+  EXPECT_EQ(by_machine.status, 1);
+  EXPECT_NE(by_machine.err.find(", all that this machine has"), std::string::npos) << by_machine.err;
+}
+
+/// What is refused for want of memory names an amount, and that is enough, and not twice what is used: pictures of all kinds.
+TEST_F(Program, WhatMemoryIsWantedIsEnough) {
+  if (!memory_can_be_limited()) GTEST_SKIP() << "sanitizers own more memory than there is";
+  constexpr double kTold = 1.01;  // three digits
+  for (const std::string kind : {"-o x.pfm", "-o x.png", "-o x.hdr", "-o x.grelha", "-o x.grelha --rows 100:1690", "-o x.pfm --checkpoint c",
+                                 "-o x.pfm --error 1 --samples-map s.pfm --error-map e.pfm --checkpoint c",
+                                 "-o x.pfm --aa adaptive:.1,2", "-o x.pfm --aa adaptive:.1,2 --checkpoint c"}) {
+    const std::string command = "render ball.nff --quiet --threads 2 --size 1700x1700 --stats s.json " + kind + " --max-memory ";
+    const Outcome refused = run(command + "64M");
+    double wanted = 0;
+    ASSERT_EQ(std::sscanf(refused.err.c_str(), "ball.nff: error: wanted about %lf GB", &wanted), 1) << kind << ": " << refused.err;
+    const Outcome enough = run(command + std::to_string(std::uint64_t(kTold * wanted * 1e9)));
+    EXPECT_EQ(enough.status, 0) << kind << ": " << enough.err;
+    EXPECT_GT(double(Json::parse(folder_.read("s.json"))["bytes"]["peak"]), wanted * 1e9 / 2) << kind;
+  }
 }
 
 /// 205,000 triangles: 40 MB, of which the 12 taken for the program itself are the least sure; a third of these, and a fifth of what a build
