@@ -4,9 +4,9 @@
     ./run charts [rays] [picture] [grid] [features] [--quick] [--rounds N] [--draw]
 
 Without a name, all. Every point tells the command that repeats it: in the CSV, in the SVG when the mouse rests on it, and in report.html, which
-opens without a network. --quick: smaller pictures, fewer points, and nothing kept in docs/. What is measured stays in the build folder beside the
-references, so that the page shows all charts whichever was made last; references are made anew when their scene or options change (delete charts/
-there when the program draws other pictures).
+opens without a network. --quick: smaller pictures, fewer points, and nothing kept in docs/. --draw: the charts and the page from the CSVs in docs/.
+What is measured stays in the build folder beside the references, so that the page shows all charts whichever was made last, with small pictures;
+references are made anew when their scene or options change (delete charts/ there when the program draws other pictures).
 """
 import argparse
 import csv
@@ -21,7 +21,7 @@ import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE / "lib"), str(HERE / "charts")]
-from bench import DOCS, ROOT, cpu_name, put_section, table  # noqa: E402
+from bench import DOCS, DRAW_HELP, ROOT, cpu_name, put_section, read_csv, table  # noqa: E402
 from chart import draw  # noqa: E402
 from image_error import Workshop  # noqa: E402
 from page import make_page  # noqa: E402
@@ -65,7 +65,8 @@ def measured(name, module, shop, plan, kept):
     if result is None:
         kept.unlink(missing_ok=True)
     else:
-        kept.write_text(json.dumps({"cpu": cpu_name(), "rounds": plan.rounds, "result": result}))
+        told = f"{cpu_name()}; the least of {plan.rounds} renders or more. `./run charts {name}`"
+        kept.write_text(json.dumps({"told": told, "result": result}))
 
 
 def wrapped(text):
@@ -74,18 +75,39 @@ def wrapped(text):
     return "\n\n".join(block if block.startswith("|") else fill(block) for block in text.split("\n\n"))
 
 
-def show(name, module, kept, out, folder):
-    """Table, charts and words from what was measured; None when nothing was."""
-    if not kept.exists():
-        return None
-    known = json.loads(kept.read_text())
-    result = known["result"]
-    write_csv(out / f"charts-{name}.csv", *module.csv(result))
-    charts = module.charts(result)
-    told = wrapped(f"{module.tell(result, table)}\n\n{known['cpu']}; the least of {known['rounds']} renders or more. `./run charts {name}`")
+def known(name, module, kept, plan):
+    """What is known of a chart: what was measured here, unless docs/ keeps other numbers; None when nothing is."""
+    here = json.loads(kept.read_text()) if kept.exists() else None
+    if plan.quick:
+        return here
+    rows = read_csv(f"charts-{name}")
+    if here and [list(map(str, row)) for row in module.csv(here["result"])[1]] == [list(row.values()) for row in rows]:
+        return here  # the same, with small pictures
+    return {"told": f"Drawn from docs/charts-{name}.csv. `./run charts {name}` measures it.", "result": module.from_csv(rows)}
+
+
+def draw_all(charts, out, folder):
     for chart in charts:
         draw(chart, out / "images" / f"charts-{chart['name']}.svg", folder / f"charts-{chart['name']}.png")
-    if out == DOCS:
+
+
+def make(name, shop, asked, plan, out):
+    """Measures, tells and draws it where it is asked for; for the page, in any case, its words and charts."""
+    module, kept = importlib.import_module(name), shop.folder / f"{name}.json"
+    chosen = name in (asked.names or NAMES)
+    if chosen and not asked.draw:
+        measured(name, module, shop, plan, kept)
+        if kept.exists():
+            write_csv(out / f"charts-{name}.csv", *module.csv(json.loads(kept.read_text())["result"]))
+    found = known(name, module, kept, plan)
+    if found is None:
+        return None
+    charts = module.charts(found["result"])
+    told = wrapped(f"{module.tell(found['result'], table)}\n\n{found['told']}")
+    if chosen:
+        draw_all(charts, out, shop.folder)
+        print(told, flush=True)
+    if chosen and out == DOCS and not asked.draw:
         put_section(DOCS / "accuracy.md", "perf/charts.py", told, name)
     return {"told": told, "charts": charts}
 
@@ -95,7 +117,7 @@ def main():
     parser.add_argument("--program", default=ROOT / "build/release/grelha", help="[build/release/grelha]")
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"{', '.join(NAMES)} [all]")
     parser.add_argument("--quick", action="store_true", help="three minutes instead of thirty; nothing kept in docs/")
-    parser.add_argument("--draw", action="store_true", help="measure nothing, draw again what was measured last")
+    parser.add_argument("--draw", action="store_true", help=DRAW_HELP)
     parser.add_argument("--smoke", action="store_true", help=argparse.SUPPRESS)
     parser.add_argument("--rounds", type=int, help="renders of each point, the least time counts [5; quick 2]")
     asked = parser.parse_args()
@@ -110,15 +132,7 @@ def main():
     out = pictures.folder if plan.quick else DOCS
     for folder in (pictures.folder, out):
         (folder / "images").mkdir(exist_ok=True)
-    kinds = {}
-    for name in NAMES:
-        module, kept = importlib.import_module(name), pictures.folder / f"{name}.json"
-        chosen = name in (asked.names or NAMES)
-        if chosen and not asked.draw:
-            measured(name, module, pictures if name == "picture" else timed, plan, kept)
-        kinds[name] = show(name, module, kept, out if chosen else pictures.folder, pictures.folder)
-        if chosen and kinds[name]:
-            print(kinds[name]["told"], flush=True)
+    kinds = {name: make(name, pictures if name == "picture" else timed, asked, plan, out) for name in NAMES}
     page = pictures.folder / "report.html"
     make_page(page, kinds)
     print(f"{out}/charts-*.csv, {out}/images/charts-*.svg, {page}")

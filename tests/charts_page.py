@@ -1,9 +1,12 @@
 #!/usr/bin/env python3
-"""Moves the mouse onto a point of each chart of report.html, in headless Chromium without a network, and looks at what the page then tells.
+"""Moves the mouse onto a point of each chart of report.html, in headless Chromium without a network, and looks at what the page then tells; then
+taps the same points on a window as wide as a phone's.
 
     charts_page.py REPORT FOLDER [SCREENSHOT]
 
-The page must show the command of a point there and, where it has them, its pictures, decoded; and must ask for nothing from outside itself.
+The page must show the command of a point there and, where it has them, its pictures, decoded; and must ask for nothing from outside itself. Until a
+point is chosen it says what to do. No two series of a chart have the same marker. On a phone nothing is cut off at the side, charts have the width
+of the window, and the panel leaves them half of its height.
 Exit status 77: there is no page, or no Chromium to look with.
 """
 import base64
@@ -19,8 +22,9 @@ SKIPPED = 77
 # Of chart i: where the last point of its first series lies in the window, what it should tell and what else lies there
 AIM = """(() => {
   const chart = built[%d], set = chart.data.datasets[0], at = set.data.length - 1;
-  chart.canvas.scrollIntoView({block: "center"});
-  const box = chart.canvas.getBoundingClientRect(), mark = chart.getDatasetMeta(0).data[at];
+  const mark = chart.getDatasetMeta(0).data[at];
+  window.scrollBy(0, chart.canvas.getBoundingClientRect().top + mark.y - innerHeight / 4);
+  const box = chart.canvas.getBoundingClientRect();
   const there = chart.data.datasets.flatMap((d, k) => d.series ? d.data.filter((_, j) => {
     const m = chart.getDatasetMeta(k).data[j]; return Math.hypot(m.x - mark.x, m.y - mark.y) < 16; }) : []);
   return {x: box.left + mark.x, y: box.top + mark.y, title: chart.options.plugins.title.text, commands: there.map(p => p.command),
@@ -36,6 +40,26 @@ LOOK = """new Promise(async done => {
   }
   done({command: document.getElementById("command").textContent, name: document.getElementById("name").textContent, widths});
 })"""
+
+
+# Markers that several series of a chart share, over all its panels
+SHARED = """(() => {
+  const shared = [];
+  let next = 0;
+  for (const chart of data.charts) {
+    const names = {};
+    for (const {data: {datasets}} of built.slice(next, next += chart.panels.length))
+      for (const d of datasets.filter(d => d.series)) (names[[d.pointStyle, d.pointRotation || 0, d.backgroundColor === "#fff"]] ??= new Set()).add(d.label);
+    for (const [marker, series] of Object.entries(names)) if (series.size > 1) shared.push([chart.name, marker, ...series]);
+  }
+  return shared;
+})()"""
+PANEL = """(() => {
+  const rectangle = document.querySelector("aside").getBoundingClientRect();
+  return {words: document.querySelector("aside").innerText, command: document.getElementById("command").offsetHeight, height: rectangle.height,
+          right: document.documentElement.scrollWidth, narrowest: Math.min(...built.map(chart => chart.width))};
+})()"""
+PHONE = (390, 844)
 
 
 class Chromium:
@@ -79,17 +103,53 @@ class Chromium:
             sys.exit(f"the page failed: {told['exceptionDetails']}")
         return told["result"].get("value")
 
-    def open(self, address):
+    def open(self, address, phone=None):
         target = self("Target.createTarget", url="about:blank")["targetId"]
         self.session = self("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
         self("Network.enable")
         self("Page.enable")
+        if phone:
+            self("Emulation.setDeviceMetricsOverride", width=phone[0], height=phone[1], deviceScaleFactor=2, mobile=True)
         self("Page.navigate", url=address)
         for _ in range(200):
             if self.value("document.readyState == 'complete' && typeof built != 'undefined'"):
                 return
             time.sleep(.1)
         sys.exit("the page does not become complete")
+
+
+def point_at(browser, x, y, phone):
+    if not phone:
+        browser("Input.dispatchMouseEvent", type="mouseMoved", x=x, y=y)
+        return
+    browser("Input.dispatchTouchEvent", type="touchStart", touchPoints=[{"x": x, "y": y}])
+    browser("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])
+
+
+def tells(browser, phone=None):
+    """Points at a point of each chart; what the page does not tell of it, and how many had pictures."""
+    wrong, with_pictures = [], 0
+    for i in range(browser.value("built.length")):
+        aim = browser.value(AIM % i)
+        point_at(browser, aim["x"], aim["y"], phone)
+        seen = browser.value(LOOK)
+        with_pictures += len(seen["widths"]) == 2
+        if seen["command"] not in aim["commands"] or len(seen["widths"]) != aim["pictures"] or 0 in seen["widths"]:
+            wrong.append((aim["title"], seen))
+        if phone and browser.value(PANEL)["height"] > phone[1] / 2:
+            wrong.append((aim["title"], "the panel takes more than half the window"))
+    return wrong, with_pictures
+
+
+def lies(browser, phone=None):
+    """What is wrong with the page before anything is pointed at."""
+    panel = browser.value(PANEL)
+    if "tap" not in panel["words"] or panel["command"]:
+        yield "the empty panel", panel
+    for shared in browser.value(SHARED):
+        yield "one marker for several series", shared
+    if phone and (panel["right"] > phone[0] or panel["narrowest"] < .9 * phone[0] or panel["height"] > phone[1] / 2):
+        yield "on a phone", panel
 
 
 def main():
@@ -102,16 +162,14 @@ def main():
     browser = Chromium(program, folder / "profile")
     browser.open(report.as_uri())
     expected = browser.value("data.charts.reduce((n, c) => n + c.panels.length, 0)")
-    charts, wrong, with_pictures = browser.value("built.length"), [], 0
-    for i in range(charts):
-        aim = browser.value(AIM % i)
-        browser("Input.dispatchMouseEvent", type="mouseMoved", x=aim["x"], y=aim["y"])
-        seen = browser.value(LOOK)
-        with_pictures += len(seen["widths"]) == 2
-        if seen["command"] not in aim["commands"] or len(seen["widths"]) != aim["pictures"] or 0 in seen["widths"]:
-            wrong.append((aim["title"], seen))
-        if i == 0 and len(sys.argv) > 3:
-            pathlib.Path(sys.argv[3]).write_bytes(base64.b64decode(browser("Page.captureScreenshot")["data"]))
+    charts, wrong = browser.value("built.length"), list(lies(browser))
+    missed, with_pictures = tells(browser)
+    wrong += missed
+    if len(sys.argv) > 3:
+        pathlib.Path(sys.argv[3]).write_bytes(base64.b64decode(browser("Page.captureScreenshot")["data"]))
+    browser.open(report.as_uri(), PHONE)
+    wrong += lies(browser, PHONE)
+    wrong += tells(browser, PHONE)[0]
     outside = [address for address in browser.asked if not address.startswith(("data:", report.as_uri()))]
     browser("Browser.close")
     browser.process.wait(20)

@@ -6,6 +6,7 @@
 Exit status 77: a package the charts need is missing.
 """
 import csv
+import html
 import pathlib
 import re
 import subprocess
@@ -21,10 +22,12 @@ try:
     import numpy as np
     import chart
     import features
+    import grid
     import image_error
     import page
     import picture
     import rays
+    import bench
     from bench import table
 except ImportError as missing:
     print(f"skipped: {missing}")
@@ -114,6 +117,30 @@ class Twins(unittest.TestCase):
                 twin.write_text(scene.read_text() + "\n".join(features.tail_of(wanted, told["needs"], told["bounds"])) + "\n")
                 asks = {f for f, name in features.NAMES.items() if shop.info(twin)["needs"][name]} | set(features.OPTIONS)
                 self.assertEqual(asks, wanted | {"triangles"} | set(features.OPTIONS), title)
+
+
+class Kept(unittest.TestCase):
+    """Charts of docs/ come from its CSVs."""
+    modules = {"rays": rays, "picture": picture, "grid": grid, "features": features}
+
+    def test_what_is_read_back_is_what_was_written(self):
+        for name, module in self.modules.items():
+            rows = bench.read_csv(f"charts-{name}")
+            header, written = module.csv(module.from_csv(rows))
+            again = [dict(zip(header, map(str, row))) for row in written]
+            for row in again + rows:
+                row.pop("over_everything", None)  # a ratio of columns, which are rounded
+            self.assertEqual(again, rows, name)
+
+    def test_the_charts_shown_are_of_these_numbers(self):
+        for name, module in self.modules.items():
+            for drawn in module.charts(module.from_csv(bench.read_csv(f"charts-{name}"))):
+                shown = (ROOT / f"docs/images/charts-{drawn['name']}.svg").read_text()
+                points = [p for panel in drawn["panels"] for s in panel["series"] for p in s["points"]]
+                self.assertEqual(shown.count("<title>"), len(points), drawn["name"])
+                for panel in drawn["panels"]:
+                    for words in (panel["title"], panel["x"]["label"], panel["y"]["label"]):
+                        self.assertTrue(words and html.escape(words, quote=False) in shown, f"{drawn['name']}: {words}")
 
 
 class Page(unittest.TestCase):

@@ -7,6 +7,7 @@ they change nothing. Time is CPU seconds of rendering on one thread, the least o
 import math
 
 from image_error import read_pfm, rmse, turns
+from kept import by_scene, size_in
 
 NAME, TITLE = "features", "What is not needed is not computed"
 SAMPLES = 4
@@ -121,6 +122,14 @@ def csv(result):
     return ["scene", "features", "cpu_seconds", "over_everything", "rmse_to_plain", "command"], rows
 
 
+def from_csv(rows):
+    """What was measured, as docs/charts-features.csv keeps it."""
+    def point(row):
+        return {"label": row["features"], "seconds": float(row["cpu_seconds"]), "rmse": float(row["rmse_to_plain"]), "command": row["command"]}
+
+    return {"size": size_in(rows[0]["command"]), "scenes": by_scene(rows, point)}
+
+
 def charts(result):
     names = [ALL, *["without " + title for title, _ in LEFT_OUT], UNSEEN_ALONE, PLAIN]
     shares = [share(scene, p) for scene in result["scenes"] for p in scene["points"]]
@@ -130,7 +139,7 @@ def charts(result):
                    "facts": f"{p['seconds'] * 1e3:.3g} ms, {share(scene, p):.2f} of everything"} for p in scene["points"]]
         whole = scene["points"][0]["seconds"] * 1e3
         panels.append({"title": f"{scene['scene']}: {whole:.3g} ms with all", "x": {"label": "time / time with all", "span": span},
-                       "y": {"names": names}, "lines": [{"x": 1, "label": "with everything"}],
+                       "y": {"names": names, "label": "what is asked for"}, "lines": [{"x": 1, "label": "with everything"}],
                        "series": [{"name": "CPU time; no point: the scene needs it", "look": 5, "joined": False, "points": points}]})
     return [{"name": "features", "title": f"{TITLE}: time with a feature left out, {result['size']}, {SAMPLES} samples a pixel", "columns": 4,
              "panel_size": (3.5, 3.3), "panels": panels,

@@ -1,5 +1,6 @@
 """report.html: all charts on one page that needs no network. Chart.js (MIT licence, Debian's libjs-chart.js) is put into it when it is made."""
 import base64
+import dataclasses
 import html
 import json
 import pathlib
@@ -61,7 +62,7 @@ def make_page(path, kinds):
             charts.append(chart)
         sections.append(f'<section id="{name}"><h2>{TITLES[name]}</h2>{"".join(places)}'
                         f'<details><summary>in numbers</summary>{markdown(kind["told"])}</details></section>')
-    looks = [{"colour": c, "marker": m, "dash": d} for c, m, d in LOOKS]
+    looks = [dataclasses.asdict(look) for look in LOOKS]
     data = json.dumps({"charts": charts, "looks": looks, "front": FRONT, "star": STAR, "pictures": [embedded(p) for p in pictures]})
     data = data.replace("</", "<\\/")  # no script ends within
     page = TEMPLATE.read_text()

@@ -10,9 +10,12 @@ from PIL import Image
 
 from chart import pareto_front, slope
 from image_error import REFERENCE_SEEDS, Refused, read_pfm, reference_settings, rmse, ssim, time_to_reach
+from kept import size_in
 
 NAME, TITLE = "picture", "Error of a picture against its time"
 SEED = 1
+REFERENCE = "reference: mean of two"  # its row in the CSV
+LEAST_SSIM = 1e-5  # 1 - SSIM: the CSV has five digits
 CROP = 64  # pixels a side
 COUNTS = [1, 4, 16, 64, 256]
 LONG = 3  # CPU seconds a point is given; at least one render, at most as many as rounds
@@ -44,7 +47,7 @@ METHODS = [
     ("--error E", 6, [(str(e), ["--error", str(e)]) for e in (.08, .04, .02, .01, .005, .0025, .00125)], None),
     ("sobol, area:S,2√N: 4 points of each light a sample", 8,
      [(str(n), ["--samples", str(n), "--shadows", f"area:2,{m}"]) for n, m in ((1, 2), (4, 4), (16, 8), (64, 16))], ("shadows",)),
-    ("sobol, glossy:R,N: 4 samples, N rays beside the mirror's", 8,
+    ("sobol, glossy:R,N: 4 samples, N rays beside the mirror's", 9,
      [(f".1,{n}", ["--samples", "4", "--glossy", f".1,{n}"]) for n in (1, 2, 4, 8)], ("glossy",)),
 ]
 
@@ -138,15 +141,29 @@ def csv(result):
     for e in result["effects"]:
         rows += [[e["effect"], p["series"], p["label"], f"{p['samples']:.4g}", p["rays"], f"{p['seconds']:.4g}", f"{p['rmse']:.4g}",
                   f"{p['ssim']:.5f}", p["command"]] for p in e["points"]]
-        rows.append([e["effect"], "reference: mean of two", e["reference"], e["reference"], "", "", f"{e['floor']:.2g}", "", "; ".join(e["halves"])])
+        rows.append([e["effect"], REFERENCE, e["reference"], e["reference"], "", "", f"{e['floor']:.2g}", "", "; ".join(e["halves"])])
     return header, rows
+
+
+def from_csv(rows):
+    """What was measured, as docs/charts-picture.csv keeps it; the small pictures are not in it."""
+    titles, effects = {name: title for name, title, *_ in EFFECTS}, {}
+    for row in rows:
+        effect = effects.setdefault(row["effect"], {"title": titles[row["effect"]], "effect": row["effect"], "points": []})
+        if row["method"] == REFERENCE:
+            effect |= {"floor": float(row["rmse"]), "reference": int(row["setting"]), "halves": row["command"].split("; ")}
+        else:
+            effect["points"].append({"series": row["method"], "label": row["setting"], "samples": float(row["samples_per_pixel"]),
+                                     "rays": int(row["rays"]), "seconds": float(row["cpu_seconds"]), "rmse": float(row["rmse"]),
+                                     "ssim": float(row["ssim"]), "command": row["command"]})
+    return {"size": size_in(rows[0]["command"]), "effects": list(effects.values())}
 
 
 def panel_of(effect, key, label):
     series = []
     for name, look, _, _ in METHODS:
         points = [{"x": p["seconds"], "y": max(key(p), 1e-7), "label": p["label"], "command": p["command"],
-                   "picture": p["crops"][0], "error": p["crops"][1],
+                   **dict(zip(("picture", "error"), p.get("crops", ()))),
                    "facts": f"RMSE {p['rmse']:.2g}, SSIM {p['ssim']:.4f}, {p['seconds']:.3g} CPU s, {p['samples']:.3g} samples a pixel"}
                   for p in effect["points"] if p["series"] == name]
         if points:
@@ -160,7 +177,7 @@ def charts(result):
     panels = [panel_of(e, lambda p: p["rmse"], "RMSE (white is 1)") for e in result["effects"]]
     for panel, e in zip(panels, result["effects"]):
         panel["lines"] = [{"y": e["floor"], "label": "error of the reference itself"}]
-    alike = [panel_of(e, lambda p: 1 - p["ssim"], "1 - SSIM (0: alike)") for e in result["effects"]]
+    alike = [panel_of(e, lambda p: max(1 - p["ssim"], LEAST_SSIM), "1 - SSIM (.00001: that or less)") for e in result["effects"]]
     note = ("Crops are of where one sample a pixel errs most; in error maps black is an error of .001 or less, white one of 1, three decades evenly "
             "between.")
     return [{"name": "picture", "title": f"{TITLE}, {result['size']}: down and left is better", "note": note, "panels": panels},

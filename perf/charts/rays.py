@@ -67,28 +67,39 @@ def csv(result):
                      f"{r['wrong']:.0f}", f"{r['leaks']:.0f}", f"{r['ns']:.4g}", command(r)] for r in result["rows"]]
 
 
-def panel(rows, title, y, value):
-    names = list(dict.fromkeys(("Embree " if r["isa"] == "embree" else "") + name_of(r) for r in rows))
+def from_csv(rows):
+    """What was measured, as docs/charts-rays.csv keeps it."""
+    numbers = ("rays", "max_ulp", "p999_ulp", "wrong", "leaks", "ns")
+    return {"rows": [{**row, "fma": row["fma"] == "1", **{key: float(row[key]) for key in numbers}} for row in rows]}
+
+
+def series_of(row):
+    return ("Embree " if row["isa"] == "embree" else "") + name_of(row)
+
+
+def panel(rows, looks, title, y, value):
     series = []
-    for look, name in enumerate(names):
-        own = [r for r in rows if ("Embree " if r["isa"] == "embree" else "") + name_of(r) == name]
+    for name in dict.fromkeys(map(series_of, rows)):
+        own = [r for r in rows if series_of(r) == name]
         points = [{"x": r["ns"], "y": value(r), "label": r["isa"], "command": command(r),
                    "facts": f"{r['ns']:.3g} ns, 99.9 % {r['p999_ulp']:.3g} ulp, max {r['max_ulp']:.3g} ulp, {r['wrong']:.0f} of {r['rays']:.0f} wrong"}
                   for r in own]
-        series.append({"name": name, "look": look, "joined": True, "points": points})
+        series.append({"name": name, "look": looks[name], "joined": True, "points": points})
     x = "ns a test" if rows[0]["scene"] == TESTS else "ns a ray"
     return {"title": title, "x": {"label": x, "log": True}, "y": {"label": y, "log": True}, "series": series,
             "front": [{"x": p["x"], "y": p["y"]} for p in pareto_front([p for s in series for p in s["points"]])]}
 
 
 def charts(result):
-    panels = []
+    names, panels = dict.fromkeys(map(series_of, result["rows"])), []
+    looks = {name: look for look, name in enumerate(names)}
     for scene in dict.fromkeys(r["scene"] for r in result["rows"]):
         rows = sorted((r for r in result["rows"] if r["scene"] == scene), key=lambda r: ISAS.index(r["isa"]))
-        ulp = f"ulp of a float (.0000001: that or less)"
-        panels += [panel(rows, f"{scene}: distance, 99.9 %", ulp, lambda r: max(r["p999_ulp"], LEAST_ULP)),
-                   panel(rows, f"{scene}: distance, largest", ulp, lambda r: max(r["max_ulp"], LEAST_ULP)),
-                   panel(rows, f"{scene}: wrong hits", "wrong a million rays (.1: none)", lambda r: max(1e6 * r["wrong"] / r["rays"], .1))]
+        ulp = "ulp of a float (.0000001: that or less)"
+        panels += [panel(rows, looks, f"{scene}: distance, 99.9 %", ulp, lambda r: max(r["p999_ulp"], LEAST_ULP)),
+                   panel(rows, looks, f"{scene}: distance, largest", ulp, lambda r: max(r["max_ulp"], LEAST_ULP)),
+                   panel(rows, looks, f"{scene}: wrong hits", "wrong a million rays (.1: none)",
+                         lambda r: max(1e6 * r["wrong"] / r["rays"], .1))]
     return [{"name": "rays", "title": f"{TITLE}: scalar to AVX-512 along each line", "columns": 3, "panel_size": (4.2, 3.4), "panels": panels,
              "note": "Along each line from scalar over SSE2 and AVX2 to AVX-512, as far as the processor has them."}]
 

@@ -19,12 +19,22 @@ plt.rcParams.update({"svg.hashsalt": "grelha", "svg.fonttype": "none", "font.fam
                      "font.sans-serif": ["Helvetica", "Arial", "DejaVu Sans"], "axes.spines.top": False, "axes.spines.right": False})
 
 
+DRAW_HELP = "measure nothing: draw the chart in docs/images again from the CSV in docs/"
+
+
 def arguments(doc, rounds):
     parser = argparse.ArgumentParser(description=doc.partition("\n")[0])
     parser.add_argument("--program", default=ROOT / "build/release/grelha", help="[build/release/grelha]")
     parser.add_argument("--rounds", type=int, default=rounds, help="of all measurements in turn; the least time counts")
     parser.add_argument("--keep", action="store_true", help="write CSV, chart and section into docs/, not into the build folder")
+    parser.add_argument("--draw", action="store_true", help=DRAW_HELP)
     return parser
+
+
+def read_csv(name):
+    """Rows of a CSV that docs/ keeps, as dicts of words."""
+    with open(DOCS / f"{name}.csv", newline="") as f:
+        return list(csv.DictReader(f))
 
 
 def cores():
@@ -38,8 +48,8 @@ class Bench:
         self.name, self.rounds = name, asked.rounds
         self.program = pathlib.Path(asked.program).resolve()
         self.folder = self.program.parent / f"perf-{name}"
-        self.folder.mkdir(exist_ok=True)
-        self.docs = DOCS if asked.keep else self.folder
+        self.folder.mkdir(parents=True, exist_ok=True)
+        self.docs = DOCS if asked.keep or asked.draw else self.folder
         (self.docs / "images").mkdir(exist_ok=True)
 
     def scene(self, name, size):

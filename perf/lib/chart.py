@@ -1,9 +1,11 @@
 """A chart as plain data, drawn as SVG by Matplotlib and, from the same data, by the page that report.py makes.
 
 A chart is a dict: name, title, note, panels. A panel: title, x and y (dicts of label, and perhaps log, span, ticks, names: words for 0, 1, 2, ...),
-series, and perhaps front (points of the Pareto front), lines (dicts of x or y and label). A series: name, look (index into LOOKS), joined, points.
+series, and perhaps front (points of the Pareto front), lines (dicts of x or y and label). A series: name, look (index into LOOKS), joined, points;
+no two series of a chart have the same look.
 A point: x, y, label, command, and perhaps star (it is marked), picture and error (files to show beside it).
 """
+import dataclasses
 import math
 import re
 
@@ -12,10 +14,27 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from bench import plt
 
-# Colour, marker and dash say the same thing, for those who do not see colours.
-LOOKS = [("#999999", "o", ":"), ("#E69F00", "s", "--"), ("#D55E00", "v", "--"), ("#CC79A7", "^", "-."), ("#882255", "<", ":"), ("#0072B2", "D", "-"),
-         ("#000000", "*", "-"), ("#009E73", "P", "--"), ("#56B4E9", "X", "--"), ("#8C6D31", "h", "-."), ("#F0E442", "p", "-"),
-         ("#332288", "d", "--")]
+
+
+@dataclasses.dataclass(frozen=True)
+class Look:
+    """Colour, marker and dash say the same thing, for those who do not see colours. No two have the same marker."""
+    colour: str
+    marker: str  # Matplotlib's letter
+    dash: str
+    hollow: bool = False
+
+    @property
+    def fill(self):
+        return "white" if self.hollow else self.colour
+
+
+LOOKS = [Look("#999999", "o", ":"), Look("#E69F00", "s", "--"), Look("#D55E00", "v", "--"), Look("#CC79A7", "^", "-."),
+         Look("#882255", "<", ":"), Look("#0072B2", "D", "-"), Look("#000000", "*", "-"), Look("#009E73", "P", "--"),
+         Look("#56B4E9", "X", "--"), Look("#8C6D31", "o", "-.", hollow=True), Look("#666666", "s", "-", hollow=True),
+         Look("#332288", "D", "--", hollow=True), Look("#AA4499", ">", "-.")]
+# For series whose points may be stars of their own
+STARLESS = [i for i, look in enumerate(LOOKS) if look.marker != "*"]
 FRONT = "#FFD92F"
 STAR = "the kernel's choice"
 
@@ -72,17 +91,17 @@ def draw_panel(axes, panel, ids, hints):
     for line in panel.get("lines", []):
         (axes.axhline if "y" in line else axes.axvline)(line.get("y", line.get("x")), color="#009E73", linewidth=1, linestyle=(0, (1, 3)))
     for series in panel["series"]:
-        colour, marker, dash = LOOKS[series["look"] % len(LOOKS)]
-        points = series["points"]
+        look, points = LOOKS[series["look"]], series["points"]
         if series["joined"]:
             joined = [p for p in points if not p.get("star")]
-            axes.plot([p["x"] for p in joined], [p["y"] for p in joined], dash, color=colour, linewidth=1.3, zorder=2)
+            axes.plot([p["x"] for p in joined], [p["y"] for p in joined], look.dash, color=look.colour, linewidth=1.3, zorder=2)
         for p in points:  # each on its own, so that each can tell its command
             name = f"point{next(ids)}"
             hints[name] = f"{series['name']} {p['label']}\n{p['command']}"
-            axes.plot([p["x"]], [p["y"]], color=colour, marker="*" if p.get("star") else marker, gid=name, zorder=4 if p.get("star") else 3,
-                      markersize=13 if p.get("star") else 8 if marker == "*" else 5.5, markeredgecolor="black" if p.get("star") else colour,
-                      markeredgewidth=.7)
+            star = {"marker": "*", "markersize": 13, "markeredgecolor": "black", "markeredgewidth": .7, "zorder": 4}
+            mark = {"marker": look.marker, "markersize": 8 if look.marker == "*" else 5.5, "markeredgecolor": look.colour,
+                    "markeredgewidth": 1.2 if look.hollow else .7, "zorder": 3}
+            axes.plot([p["x"]], [p["y"]], color=look.colour, markerfacecolor=look.fill, gid=name, **(star if p.get("star") else mark))
     for which, axis in (("x", axes.xaxis), ("y", axes.yaxis)):
         values = [p[which] for s in panel["series"] for p in s["points"]]
         set_axis(axis, min(values), max(values), panel[which])
@@ -99,8 +118,9 @@ def legend_of(chart):
     """One for all panels: every series' look, then what the other marks mean."""
     handles = {}
     for series in (s for panel in chart["panels"] for s in panel["series"]):
-        colour, marker, dash = LOOKS[series["look"] % len(LOOKS)]
-        handles.setdefault(series["name"], Line2D([], [], color=colour, marker=marker, linestyle=dash if series["joined"] else "", markersize=6))
+        look = LOOKS[series["look"]]
+        handles.setdefault(series["name"], Line2D([], [], color=look.colour, marker=look.marker, markerfacecolor=look.fill, markersize=6,
+                                                  linestyle=look.dash if series["joined"] else ""))
     if any(p.get("star") for panel in chart["panels"] for s in panel["series"] for p in s["points"]):
         handles[STAR] = Line2D([], [], color="#999999", marker="*", linestyle="", markersize=12, markeredgecolor="black")
     if any(panel.get("front") for panel in chart["panels"]):
@@ -134,6 +154,7 @@ def draw(chart, svg, png):
         draw_panel(axes, panel, ids, hints)
         if "names" in panel["y"] and i % columns:
             axes.set_yticklabels([])  # as in the first column
+            axes.set_ylabel("")
     figure.suptitle(chart["title"], fontsize=12)
     figure.legend(handles.values(), handles.keys(), loc="lower center", ncols=across, fontsize=9, frameon=False)
     figure.savefig(svg, metadata={"Date": None})

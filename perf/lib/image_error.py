@@ -55,7 +55,7 @@ class Workshop:
     def __init__(self, program, folder, size):
         self.program = pathlib.Path(program).resolve()
         self.folder = self.program.parent / folder
-        self.folder.mkdir(exist_ok=True)
+        self.folder.mkdir(parents=True, exist_ok=True)
         self.size = ["--size", f"{size}x{size}"]
 
     def scene(self, source):
