@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Whole pictures, from scene file to picture file: where the time goes, and POV-Ray's beside ours.
 
-    ./run perf frame [--rounds N] [--only profile|povray] [--keep]
+    ./run perf frame [--rounds N] [--only profile|povray] [--keep] [--draw]
 
 Times are CPU seconds where one thread renders and seconds by the clock where all do; the least of several runs taking turns, fewer of
 long ones. POV-Ray draws the same scenes, converted by lib/nff_to_pov.py; how alike its pictures are is measured. frame.cpp measures
@@ -11,6 +11,7 @@ import os
 import pathlib
 import re
 import shutil
+import statistics
 import subprocess
 import sys
 import time
@@ -18,12 +19,13 @@ import time
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "lib"))
-from bench import Bench, COLOURS, arguments, cores, cpu_name, plt, seconds, table, times
+from bench import Bench, arguments, cores, cpu_name, plt, read_csv, seconds, table, times
 from nff_to_pov import convert
 
 SIDE, DEPTH = 512, 5
 LONG = 8  # seconds of rendering a thing is given; at least one run, at most as many as rounds
 SCENES = [("balls 4", ("balls", 4), 1, (12, 2.4)), ("mount 8", ("mount", 8), 20, (12, 2)), ("Distant", ("distant", 3), 1, (20, 2.4))]
+SPREAD = ("least", "median", "most")  # of all runs, from file to file
 PHASES = ("camera", "primary", "bounce", "surface", "light", "shadow", "children", "sums")
 PLAIN = ["--samples", "1", "--lens", "0"]
 
@@ -91,15 +93,21 @@ def compare(bench, povray, name, title, scene, ours, options, extra):
     return got
 
 
+def file_to_file(run):
+    return run["load"] + run["build"] + run["clock"] + run["write"]
+
+
 def profile(bench, scenes):
-    """Where the time of plain pictures goes: by phase, of whole runs on one thread."""
-    got = {}
+    """Where the time of plain pictures goes: by phase, of the fastest of whole runs on one thread, and how far the others lie."""
+    runs = {name: [] for name, *_ in scenes}
     for _ in range(4 * bench.rounds):
         for name, scene, *_ in scenes:
             run = grelha(bench, scene, PLAIN, 1)
             run["other"] = run["clock"] - sum(run[p] for p in PHASES)
-            if name not in got or run["clock"] < got[name]["clock"]:
-                got[name] = run  # all phases of one and the same run
+            runs[name].append(run)
+    got = {name: min(of, key=file_to_file) for name, of in runs.items()}  # all phases of one and the same run
+    for name, run in got.items():
+        run["least"], run["median"], run["most"] = (at([file_to_file(r) for r in runs[name]]) for at in (min, statistics.median, max))
     return got
 
 
@@ -108,6 +116,9 @@ def main():
     parser.add_argument("--only", choices=("profile", "povray"), help="this part alone")
     asked = parser.parse_args()
     bench = Bench("frame", asked)
+    if asked.draw:
+        draw(bench, from_csv(read_csv("frame-profile")))
+        return
     scenes = [(name, bench.scene(*generator), side, lens) for name, generator, side, lens in SCENES]
     if asked.only != "povray":
         make_profile(bench, scenes)
@@ -132,7 +143,7 @@ def make_profile(bench, scenes):
     for name, scene, *_ in profiled:
         alone[name] = bench.tool(scene, 8 * bench.rounds)
     draw(bench, phases)
-    columns = ("load", "build", *PHASES, "other", "write", "clock", "whole", "rays")
+    columns = ("load", "build", *PHASES, "other", "write", "clock", *SPREAD, "whole", "rays")
     bench.write_csv("frame-profile", ["scene", *columns, "trace_alone_cpu", "render_cpu", "render", "render_two_threads"],
                     [[name, *[f"{p[c]:.5g}" if c != "rays" else p[c] for c in columns], alone[name]["trace"], alone[name]["render cpu"], alone[name]["render"],
                       alone[name]["render two threads"]] for name, p in phases.items()])
@@ -156,7 +167,7 @@ def tell_profile(phases, alone):
     return f"""## Whole pictures
 
 Plain pictures of {SIDE} x {SIDE}, paths of at most {DEPTH} rays, one thread, on a virtual {cpu_name()}; milliseconds of the fastest of several runs,
-phases as `--stats` tells them. The last two rows are from one process: a whole render beside the same rays, recorded from it and traced alone (CPU
+phases as `--stats` tells them; the chart has the median and the slowest as well. The last two rows are from one process: a whole render beside the same rays, recorded from it and traced alone (CPU
 time), and beside two threads (by the clock).
 
 {table(["", *names], rows)}
@@ -199,18 +210,28 @@ fast as its default or faster. Pictures are compared as
 """
 
 
+def from_csv(rows):
+    return {r["scene"]: {key: float(value) for key, value in r.items() if key != "scene"} for r in rows}
+
+
 def draw(bench, phases):
-    figure, axis = plt.subplots(figsize=(9, 3.2), layout="constrained")
+    figure, axis = plt.subplots(figsize=(9, 3.6), layout="constrained")
     keys = [("load", "load"), ("build", "build"), ("camera", "camera rays"), ("primary", "trace camera rays"), ("bounce", "trace bounces"),
-            ("shadow", "trace shadow rays"), ("surface", "surfaces"), ("light", "local light"), ("children", "make bounces"), ("write", "write PNG")]
-    shades = ["#999999", "#555555", "#F0E442", "#0072B2", "#2E9BD6", "#8CCBEE", "#D55E00", "#E69F00", "#F5C77E", "#CC79A7"]
+            ("shadow", "trace shadow rays"), ("surface", "surfaces"), ("light", "local light"), ("children", "make bounces"),
+            ("sums", "sums to pixels"), ("other", "memory, threads"), ("write", "write PNG")]
+    shades = ["#999999", "#555555", "#F0E442", "#0072B2", "#2E9BD6", "#8CCBEE", "#D55E00", "#E69F00", "#F5C77E", "#B2DF8A", "#DDDDDD", "#CC79A7"]
     names = list(phases)[::-1]
     left = [0.] * len(names)
     for (key, label), shade in zip(keys, shades):
         wide = [phases[n][key] * 1e3 for n in names]
         axis.barh(names, wide, left=left, color=shade, label=label, height=.65)
         left = [a + b for a, b in zip(left, wide)]
-    axis.set(xlabel=f"ms, {SIDE} x {SIDE}, one thread", title="Where the time of a picture goes, from file to file")
+    least, median, most = ([phases[n][key] * 1e3 for n in names] for key in SPREAD)
+    axis.errorbar(left, names, xerr=[[0] * len(names), [m - a for m, a in zip(most, least)]], fmt="none", ecolor="black", capsize=4,
+                  label="from the fastest run\nto the slowest")
+    axis.plot(median, names, "|", color="black", markersize=9, label="the median run")
+    axis.set(xlabel=f"milliseconds, a picture of {SIDE} x {SIDE}, one thread", ylabel="scene",
+             title="Where the time of a picture goes, from file to file")
     axis.legend(frameon=False, fontsize=8, ncols=1, bbox_to_anchor=(1.01, 1), loc="upper left")
     bench.save(figure, "frame")
 

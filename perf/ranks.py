@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Several ranks share a render by MPI: what of their time is of use, how fast pieces are handed out, and where that saturates.
 
-    ./run perf ranks [--rounds N] [--keep]
+    ./run perf ranks [--rounds N] [--keep] [--draw]
 
 Ranks of one thread each on this machine, in shared memory and over TCP, against one process of one thread; then pictures one pixel wide, all
 handing out; then a model of many threads, with what was measured of a piece. Takes the program of the preset mpi.
@@ -13,7 +13,8 @@ import random
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "lib"))
-from bench import COLOURS, DOCS, Bench, arguments, cores, cpu_name, plt, put_section, table
+from bench import COLOURS, DOCS, Bench, arguments, cores, cpu_name, plt, put_section, read_csv, table
+from chart import set_axis
 
 import json
 import subprocess
@@ -93,23 +94,34 @@ def model(rate):
     return {s: [HEIGHT / simulate(t, s, rate) for t in THREADS] for s in SAMPLES}
 
 
+def from_csv(pieces, rows):
+    """Rates and model, as they were kept in docs/."""
+    modelled = {}
+    for row in rows:
+        modelled.setdefault(int(row["samples"]), []).append(float(row["rows_a_second"]))
+    return {(p["way"], int(p["ranks"])): float(p["pieces_a_second"]) for p in pieces}, modelled
+
+
 def draw(bench, rates, modelled):
     figure, panels = plt.subplots(1, 2, figsize=(11, 4.2), layout="constrained")
-    for (samples, rows), colour in zip(modelled.items(), COLOURS):
-        alone = rows[0]
-        panels[0].plot(THREADS, [r * samples / PIECE_SAMPLES for r in rows], "o-", color=colour, markersize=3, label=f"{samples} samples a pixel")
-        panels[1].plot(THREADS, [r / alone / t for r, t in zip(rows, THREADS)], "o-", color=colour, markersize=3, label=f"{samples} samples a pixel")
+    for (samples, rows), colour, marker in zip(modelled.items(), COLOURS, "osD^"):
+        look = {"color": colour, "marker": marker, "markersize": 4, "label": f"{samples} samples a pixel"}
+        panels[0].plot(THREADS, [r * samples / PIECE_SAMPLES for r in rows], **look)
+        panels[1].plot(THREADS, [r / rows[0] / t for r, t in zip(rows, THREADS)], **look)
     ideal = [modelled[SAMPLES[0]][0] * t for t in THREADS]
     panels[0].plot(THREADS, ideal, "--", color="#555555", linewidth=1, label="as many times as threads")
     panels[0].axhline(BYTES_A_SECOND / (WIDTH * 24), color="#999999", linewidth=1, linestyle=":")
     panels[0].text(1, 1.1 * BYTES_A_SECOND / (WIDTH * 24), "a link of 10 Gbit/s is full", fontsize=8, color="#555555")
     panels[0].axhline(PIECE_ROWS * rates["TCP", 4], color="#999999", linewidth=1, linestyle=":")
     panels[0].text(1, 1.1 * PIECE_ROWS * rates["TCP", 4], "as fast as pieces were handed out over TCP", fontsize=8, color="#555555")
-    panels[0].set(title=f"model, {WIDTH} x {HEIGHT}: rows of {PIECE_SAMPLES} samples", xlabel="threads of all ranks", ylabel="rows a second",
-                  xscale="log", yscale="log")
-    panels[1].set(title="what of the threads' time is of use", xlabel="threads of all ranks", ylabel="efficiency", xscale="log", ylim=(0, 1.05))
+    panels[0].set(title=f"model of a picture of {WIDTH} x {HEIGHT}", xlabel="threads of all ranks", xscale="log", yscale="log",
+                  ylabel=f"rows of {PIECE_SAMPLES} samples a pixel, a second")
+    panels[1].set(title="what of the threads' time is of use", xlabel="threads of all ranks", xscale="log", ylim=(0, 1.05),
+                  ylabel="efficiency: times as fast as one thread / threads")
     for panel in panels:
         panel.grid(alpha=.4)
+        set_axis(panel.xaxis, THREADS[0], THREADS[-1], {"log": True})
+    set_axis(panels[0].yaxis, 1, 1e6, {"log": True})
     panels[0].legend(frameon=False, fontsize=8, loc="lower right")
     bench.save(figure, "ranks")
 
@@ -117,6 +129,9 @@ def draw(bench, rates, modelled):
 def main():
     asked = arguments(__doc__, rounds=5).parse_args()
     bench = Bench("ranks", asked)
+    if asked.draw:
+        draw(bench, *from_csv(read_csv("ranks-pieces"), read_csv("ranks")))
+        return
     shares, rates = efficiency(bench), handing_out(bench)
     modelled = model(rates["TCP", 4])
     draw(bench, rates, modelled)
@@ -139,6 +154,7 @@ rank. Efficiency falls below .8 at {", ".join(f"{t:,} threads with {s} samples" 
 """
     print(text)
     bench.write_csv("ranks", ["samples", "threads", "rows_a_second"], [[s, t, f"{r:.5g}"] for s, rows_ in modelled.items() for t, r in zip(THREADS, rows_)])
+    bench.write_csv("ranks-pieces", ["way", "ranks", "pieces_a_second"], [[w, n, f"{rate:.0f}"] for (w, n), rate in rates.items()])
     if bench.docs == DOCS:
         put_section(DOCS / "farm.md", "perf/ranks.py", text)
 

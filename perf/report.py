@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The four scenes of the 2019 report, step by step: our seconds and gains beside its own.
 
-    ./run perf report [--rounds N] [--scenes DIR] [--keep]
+    ./run perf report [--rounds N] [--scenes DIR] [--keep] [--draw]
 
 DIR holds the course's scene files; where one is missing its generated twin stands in. report.cpp says what is timed.
 """
@@ -9,7 +9,8 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "lib"))
-from bench import Bench, COLOURS, ROOT, arguments, cores, cpu_name, plt, seconds, table, times
+from bench import Bench, COLOURS, ROOT, arguments, cores, cpu_name, plt, read_csv, seconds, table, times
+from chart import set_axis
 
 # name, file of the course, generator and size, samples a pixel; then the report's own seconds without grid, with grid, with grid and threads
 SCENES = [
@@ -44,6 +45,9 @@ def main():
     parser.add_argument("--scenes", type=pathlib.Path, default=ROOT.parent / "shared/scenes", help="folder of the course's scenes")
     asked = parser.parse_args()
     bench = Bench("report", asked)
+    if asked.draw:
+        draw(bench, from_csv(read_csv("report")))
+        return
     results, rows, csv_rows = [], [], []
     for name, course, generator, samples, theirs in SCENES:
         path, source = find(bench, asked.scenes, name, course, generator, samples)
@@ -85,6 +89,12 @@ and the kernel builds none.
 """)
 
 
+def from_csv(rows):
+    """Name, our seconds of all steps and the report's own, as they were kept in docs/."""
+    theirs = {name: seconds for name, *_, seconds in SCENES}
+    return [(name, [float(r["seconds"]) for r in rows if r["scene"] == name], theirs[name]) for name in dict.fromkeys(r["scene"] for r in rows)]
+
+
 def draw(bench, results):
     figure, panels = plt.subplots(1, 4, figsize=(12, 3.6), layout="constrained", sharey=True)
     for panel, (name, ours, theirs) in zip(panels, results):
@@ -95,6 +105,7 @@ def draw(bench, results):
         panel.set(yscale="log", title=name)
         panel.set_xticks(list(at), [s[0] for s in STEPS], rotation=40, ha="right")
         panel.grid(axis="y", alpha=.4)
+    set_axis(panels[0].yaxis, .01, 1e4, {"log": True})
     panels[0].set_ylabel("seconds a picture")
     panels[0].legend(frameon=False)
     bench.save(figure, "report")

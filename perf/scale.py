@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """How time grows: with primitives, threads, the picture's size and the depth of paths.
 
-    ./run perf scale [--rounds N] [--quick] [--keep]
+    ./run perf scale [--rounds N] [--quick] [--keep] [--draw]
 
 Whole runs of the program on scenes of its own generators; times a ray from the phases that --stats keeps, one thread.
 The largest scenes are files of up to a gigabyte and take up to 4 GB of memory; each is deleted once measured. --quick leaves them out.
@@ -11,7 +11,8 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "lib"))
-from bench import Bench, COLOURS, arguments, cores, cpu_name, plt, seconds, table, times
+from bench import Bench, COLOURS, arguments, cores, cpu_name, plt, read_csv, seconds, table, times
+from chart import set_axis
 
 SIDE = 512
 KINDS = ("primary", "bounce", "shadow")
@@ -76,50 +77,81 @@ def by_option(bench, scenes, settings, options, more=1):
     return points
 
 
+def from_csv(rows):
+    """What write_csv kept in docs/: points by primitives, threads, side and depth, each by scene and setting."""
+    found = {"primitives": {}, "threads": {}, "side": {}, "depth": {}}
+    for row in rows:
+        numbers = {key.removesuffix("_ns"): float(value) for key, value in row.items() if key not in ("against", "scene", "setting") and value}
+        found[row["against"]].setdefault(row["scene"], {})[int(row["setting"])] = numbers
+    return found.values()
+
+
+# Colour, marker and dash of a curve: the first scene's and the second's, and of each a second quantity's
+CURVES = [(COLOURS[0], "o", "-"), (COLOURS[1], "s", "-"), (COLOURS[0], "^", ":"), (COLOURS[1], "D", ":")]
+
+
+def curves(panel, points_by_scene, x, *quantities):
+    """One curve for each scene and quantity; a quantity is its words and how it comes of a point (and its setting)."""
+    for quantity, (words, value) in enumerate(quantities):
+        for (colour, marker, dash), (name, points) in zip(CURVES[2 * quantity:], points_by_scene.items()):
+            panel.plot([x(setting, p) for setting, p in points.items()], [value(setting, p) for setting, p in points.items()], marker=marker,
+                       linestyle=dash, color=colour, label=f"{name}{words and ', '}{words}")
+
+
+def named(panel, title, x, y):
+    panel.set(title=title, xlabel=x, ylabel=y, xscale="log", yscale="log")
+    panel.grid(alpha=.4)
+    for axis in (panel.xaxis, panel.yaxis):
+        low, high = axis.get_data_interval()
+        set_axis(axis, low, high, {"log": True})
+    panel.legend(frameon=False, fontsize=9)
+
+
+def guide(panel, xs, ys, words):
+    panel.plot(xs, ys, "--", color="#555555", linewidth=1, label=words)
+
+
 def draw(bench, growth, threads, sizes, depths):
-    figure, panels = plt.subplots(2, 3, figsize=(12, 7.2), layout="constrained")
-    colour = {"balls": COLOURS[0], "mount": COLOURS[1], "balls 4": COLOURS[0], "mount 7": COLOURS[1]}
-    first = panels[0][0]
-    for name, points in growth.items():
-        n = [p["primitives"] for p in points.values()]
-        first.plot(n, [p["all"] for p in points.values()], "o-", color=colour[name], label=f"{name}, all rays")
-        first.plot(n, [p["primary"] for p in points.values()], "s:", color=colour[name], label=f"{name}, camera rays")
-        panels[0][1].plot(n, [p["build"] for p in points.values()], "o-", color=colour[name], label=f"{name}, build")
-        panels[0][1].plot(n, [p["load"] for p in points.values()], "s:", color=colour[name], label=f"{name}, load")
-    points = growth["balls"]
-    ends = [p for s, p in points.items() if s >= 3]
-    n0, t0 = ends[0]["primitives"], ends[0]["all"]
-    n1 = ends[-1]["primitives"]
-    first.plot([n0, n1], [t0, t0 * (n1 / n0) ** .25], "--", color="#555555", linewidth=1, label="$N^{1/4}$")
-    panels[0][1].plot([1e4, 1e6], [2e-4, 2e-2], "--", color="#555555", linewidth=1, label="$N$")
-    first.set(title="time a ray, one thread", xlabel="primitives", ylabel="ns")
-    panels[0][1].set(title="build and load", xlabel="primitives", ylabel="s")
-    for name in threads:
-        t = threads[name]
-        panels[0][2].plot(list(t), [t[1]["render"] / p["render"] for p in t.values()], "o-", color=colour[name], label=name)
-        s = sizes[name]
-        panels[1][0].plot([side * side for side in s], [p["render"] for p in s.values()], "o-", color=colour[name], label=f"{name}, render")
-        panels[1][0].plot([side * side for side in s], [p["write"] for p in s.values()], "s:", color=colour[name], label=f"{name}, write PNG")
-        panels[1][1].plot([side * side for side in s], [p["all"] for p in s.values()], "o-", color=colour[name], label=name)
-        d = depths[name]
-        panels[1][2].plot(list(d), [p["render"] for p in d.values()], "o-", color=colour[name], label=f"{name}, render")
-        panels[1][2].plot(list(d), [p["rays"] * 1e-7 for p in d.values()], "s:", color=colour[name], label=f"{name}, rays / 10 million")
+    figure, panels = plt.subplots(4, 2, figsize=(10, 14.5), layout="constrained")
+    (rays, memory), (building, speed), (pixels, by_size), (depth, traced) = panels
+    primitives, setting, area = (lambda s, p: p["primitives"]), (lambda s, p: s), (lambda s, p: s * s)
+    of = lambda key, factor=1: lambda s, p: p[key] * factor
+
+    curves(rays, growth, primitives, ("all rays", of("all")), ("camera rays", of("primary")))
+    ends = [p for size, p in growth["balls"].items() if size >= 3]
+    n0, t0, n1 = ends[0]["primitives"], ends[0]["all"], ends[-1]["primitives"]
+    guide(rays, [n0, n1], [t0, t0 * (n1 / n0) ** .25], "fourth root of the primitives")
+    named(rays, "Tracing, one thread", "primitives in the scene", "nanoseconds a ray")
+
+    curves(memory, growth, primitives, ("", of("bytes")))
+    named(memory, "Memory of geometry and grids", "primitives in the scene", "bytes a primitive")
+
+    curves(building, growth, primitives, ("building grids", of("build")), ("reading the file", of("load")))
+    guide(building, [1e4, 1e6], [2e-4, 2e-2], "in proportion")
+    named(building, "Building and reading", "primitives in the scene", "seconds")
+
+    gains = {name: {n: {"gain": points[1]["render"] / p["render"]} for n, p in points.items()} for name, points in threads.items()}
+    curves(speed, gains, setting, ("", of("gain")))
     most = max(threads["balls 4"])
-    panels[0][2].plot([1, most], [1, most], "--", color="#555555", linewidth=1, label="as many times as threads")
-    panels[0][2].set(title="threads, a 512 x 512 picture", xlabel="threads", ylabel="times as fast as one")
-    panels[1][0].set(title="size of the picture", xlabel="pixels", ylabel="s")
-    panels[1][1].set(title="time a ray by size", xlabel="pixels", ylabel="ns")
-    panels[1][2].set(title="longest path", xlabel="--depth", ylabel="s")
-    for panel in panels.flat:
-        panel.set(xscale="log", yscale="log")
-        panel.grid(alpha=.4)
-        panel.legend(frameon=False, fontsize=8)
+    guide(speed, [1, most], [1, most], "as many times as threads")
+    named(speed, f"Threads, a picture of {SIDE} x {SIDE}", "threads", "times as fast as one thread")
     ticks = sorted(threads["balls 4"])
-    for axis in (panels[0][2].xaxis, panels[0][2].yaxis):
+    for axis in (speed.xaxis, speed.yaxis):
         axis.set_ticks(ticks, [str(t) for t in ticks])
         axis.set_ticks([], minor=True)
-    panels[1][2].set_xticks(DEPTHS, [str(d) for d in DEPTHS])
-    panels[1][2].set_xticks([], minor=True)
+
+    curves(pixels, sizes, area, ("rendering", of("render")), ("writing the PNG", of("write")))
+    named(pixels, "Size of the picture, one thread", "pixels of the picture", "seconds")
+    curves(by_size, sizes, area, ("", of("all")))
+    named(by_size, "Tracing by size of the picture", "pixels of the picture", "nanoseconds a ray")
+
+    curves(depth, depths, setting, ("", of("render")))
+    named(depth, "Longest path, one thread: time", "rays in the longest path (--depth)", "seconds to render")
+    curves(traced, depths, setting, ("", of("rays", 1e-6)))
+    named(traced, "Longest path: rays", "rays in the longest path (--depth)", "million rays traced")
+    for panel in (depth, traced):
+        panel.set_xticks(DEPTHS, [str(d) for d in DEPTHS])
+        panel.set_xticks([], minor=True)
     bench.save(figure, "scale")
 
 
@@ -128,6 +160,9 @@ def main():
     parser.add_argument("--quick", action="store_true", help="no scene of a million primitives or more")
     asked = parser.parse_args()
     bench = Bench("scale", asked)
+    if asked.draw:
+        draw(bench, *from_csv(read_csv("scale")))
+        return
     growth = {"balls": by_primitives(bench, "balls", range(1, 7 if asked.quick else 8)),
               "mount": by_primitives(bench, "mount", range(3, 10 if asked.quick else 12))}
     scenes = {"balls 4": bench.scene("balls", 4), "mount 7": bench.scene("mount", 7)}

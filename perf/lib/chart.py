@@ -138,16 +138,24 @@ def add_hints(path, hints):
     path.write_text(re.sub(r'<g id="(point\d+)">', titled, path.read_text()))
 
 
+def legend_height(handles, columns):
+    return .15 + .22 * -(-len(handles) // columns)  # inches
+
+
+def legend_below(figure, handles, columns):
+    """One legend for all panels of a figure with a constrained layout, in room of its own at the foot."""
+    room = legend_height(handles, columns) / figure.get_size_inches()[1]
+    figure.get_layout_engine().set(rect=(0, room, 1, 1 - room))
+    figure.legend(handles, [h.get_label() for h in handles], loc="lower center", ncols=columns, fontsize=9, frameon=False)
+
+
 def draw(chart, svg, png):
     panels, columns = chart["panels"], min(chart.get("columns", 2), len(chart["panels"]))
     rows = -(-len(panels) // columns)
     handles = legend_of(chart)
     width, height = chart.get("panel_size", (5.2, 3.7))
     across = max(1, int(width * columns / 3.4))  # columns of the legend
-    legend = .15 + .22 * -(-len(handles) // across)
-    size = (width * columns, height * rows + legend + .35)
-    figure = plt.figure(figsize=size, layout="constrained")
-    figure.get_layout_engine().set(rect=(0, legend / size[1], 1, 1 - legend / size[1]))
+    figure = plt.figure(figsize=(width * columns, height * rows + legend_height(handles, across) + .35), layout="constrained")
     ids, hints = iter(range(10 ** 6)), {}
     for i, panel in enumerate(panels):
         axes = figure.add_subplot(rows, columns, i + 1)
@@ -156,7 +164,9 @@ def draw(chart, svg, png):
             axes.set_yticklabels([])  # as in the first column
             axes.set_ylabel("")
     figure.suptitle(chart["title"], fontsize=12)
-    figure.legend(handles.values(), handles.keys(), loc="lower center", ncols=across, fontsize=9, frameon=False)
+    for label, handle in handles.items():
+        handle.set_label(label)
+    legend_below(figure, list(handles.values()), across)
     figure.savefig(svg, metadata={"Date": None})
     figure.savefig(png, dpi=80)  # to look at
     plt.close(figure)
