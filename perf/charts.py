@@ -75,15 +75,17 @@ def wrapped(text):
     return "\n\n".join(block if block.startswith("|") else fill(block) for block in text.split("\n\n"))
 
 
-def known(name, module, kept, plan):
-    """What is known of a chart: what was measured here, unless docs/ keeps other numbers; None when nothing is."""
+def known(name, module, kept, out):
+    """What the CSV says, and small pictures where it is of what was measured here; None when there is no CSV."""
+    if not (out / f"charts-{name}.csv").exists():
+        return None
+    rows = read_csv(f"charts-{name}", out)
+    kept_rows = module.from_csv(rows)
     here = json.loads(kept.read_text()) if kept.exists() else None
-    if plan.quick:
-        return here
-    rows = read_csv(f"charts-{name}")
+    found = {"words": module.tell(kept_rows, table), "result": kept_rows, "told": f"Drawn from charts-{name}.csv. `./run charts {name}` measures it."}
     if here and [list(map(str, row)) for row in module.csv(here["result"])[1]] == [list(row.values()) for row in rows]:
-        return here  # the same, with small pictures
-    return {"told": f"Drawn from docs/charts-{name}.csv. `./run charts {name}` measures it.", "result": module.from_csv(rows)}
+        found |= here
+    return found
 
 
 def draw_all(charts, out, folder):
@@ -99,11 +101,13 @@ def make(name, shop, asked, plan, out):
         measured(name, module, shop, plan, kept)
         if kept.exists():
             write_csv(out / f"charts-{name}.csv", *module.csv(json.loads(kept.read_text())["result"]))
-    found = known(name, module, kept, plan)
+        elif plan.quick:
+            (out / f"charts-{name}.csv").unlink(missing_ok=True)
+    found = known(name, module, kept, out)
     if found is None:
         return None
     charts = module.charts(found["result"])
-    told = wrapped(f"{module.tell(found['result'], table)}\n\n{found['told']}")
+    told = wrapped(f"{found['words']}\n\n{found['told']}")
     if chosen:
         draw_all(charts, out, shop.folder)
         print(told, flush=True)

@@ -226,10 +226,11 @@ def draw(bench, phases):
         wide = [phases[n][key] * 1e3 for n in names]
         axis.barh(names, wide, left=left, color=shade, label=label, height=.65)
         left = [a + b for a, b in zip(left, wide)]
-    least, median, most = ([phases[n][key] * 1e3 for n in names] for key in SPREAD)
-    axis.errorbar(left, names, xerr=[[0] * len(names), [m - a for m, a in zip(most, least)]], fmt="none", ecolor="black", capsize=4,
-                  label="from the fastest run\nto the slowest")
-    axis.plot(median, names, "|", color="black", markersize=9, label="the median run")
+    if all(key in phases[n] for n in names for key in SPREAD):  # CSVs of before have none
+        least, median, most = ([phases[n][key] * 1e3 for n in names] for key in SPREAD)
+        axis.errorbar(left, names, xerr=[[0] * len(names), [m - a for m, a in zip(most, least)]], fmt="none", ecolor="black", capsize=4,
+                      label="from the fastest run\nto the slowest")
+        axis.plot(median, names, "|", color="black", markersize=9, label="the median run")
     axis.set(xlabel=f"milliseconds, a picture of {SIDE} x {SIDE}, one thread", ylabel="scene",
              title="Where the time of a picture goes, from file to file")
     axis.legend(frameon=False, fontsize=8, ncols=1, bbox_to_anchor=(1.01, 1), loc="upper left")

@@ -16,11 +16,12 @@ import types
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-sys.path[:0] = [str(ROOT / "perf" / name) for name in ("lib", "charts")]
+sys.path[:0] = [str(ROOT / "perf" / name) for name in ("", "lib", "charts")]
 PROGRAM = pathlib.Path(sys.argv.pop(1)).resolve()
 try:
     import numpy as np
     import chart
+    import charts
     import features
     import grid
     import image_error
@@ -141,6 +142,19 @@ class Kept(unittest.TestCase):
                 for panel in drawn["panels"]:
                     for words in (panel["title"], panel["x"]["label"], panel["y"]["label"]):
                         self.assertTrue(words and html.escape(words, quote=False) in shown, f"{drawn['name']}: {words}")
+
+
+    def test_the_tables_of_the_page_are_of_these_numbers(self):
+        words = (ROOT / "docs/accuracy.md").read_text()
+        for name, module in self.modules.items():
+            self.assertIn(charts.wrapped(module.tell(module.from_csv(bench.read_csv(f"charts-{name}")), table)), words, name)
+
+    def test_what_is_said_of_error_is_in_the_numbers(self):
+        effects = picture.from_csv(bench.read_csv("charts-picture"))["effects"]
+        ratios = [float(picture.beside_samples(effect)["0.01"]) for effect in effects]
+        self.assertIn(f"{min(ratios):.1f} to {max(ratios):.1f} times as fast without it", (ROOT / "docs/accuracy.md").read_text())
+        shares = [f"{1 / ratio:.2f}".lstrip("0") for ratio in (max(ratios), min(ratios))]
+        self.assertIn(f"{shares[0]} to {shares[1]} of the time of `--error 0.01`", (ROOT / "README.md").read_text())
 
 
 class Page(unittest.TestCase):

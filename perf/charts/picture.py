@@ -36,6 +36,8 @@ def fixed(sampler):
     return [(str(n), ["--sampler", sampler, "--samples", str(n)]) for n in COUNTS]
 
 
+SOBOL, BY_ERROR = "sobol: N samples", "--error E"
+
 # series, look, settings; only of effects named, where any are
 METHODS = [
     ("random: N samples", 0, fixed("random"), None),
@@ -43,8 +45,8 @@ METHODS = [
     ("jitter, unshuffled", 2, fixed("unshuffled"), ("shadows", "awning", "lens", "glossy", "all")),
     ("adaptive:0.1,D", 3, [(f"0.1,{d}", ["--aa", f"adaptive:0.1,{d}"]) for d in (1, 2, 3, 4, 5)], None),
     ("adaptive:T,3", 4, [(f"{t},3", ["--aa", f"adaptive:{t},3"]) for t in (.8, .4, .2, .05, .025)], None),
-    ("sobol: N samples", 5, fixed("sobol"), None),
-    ("--error E", 6, [(str(e), ["--error", str(e)]) for e in (.08, .04, .02, .01, .005, .0025, .00125)], None),
+    (SOBOL, 5, fixed("sobol"), None),
+    (BY_ERROR, 6, [(str(e), ["--error", str(e)]) for e in (.08, .04, .02, .01, .005, .0025, .00125)], None),
     ("sobol, area:S,2√N: 4 points of each light a sample", 8,
      [(str(n), ["--samples", str(n), "--shadows", f"area:2,{m}"]) for n, m in ((1, 2), (4, 4), (16, 8), (64, 16))], ("shadows",)),
     ("sobol, glossy:R,N: 4 samples, N rays beside the mirror's", 9,
@@ -200,6 +202,13 @@ def speed_up(points, goal):
     return f"> {goal['seconds'] / first['seconds']:.2g}" if first["rmse"] < goal["rmse"] else "–"
 
 
+def beside_samples(effect):
+    """By E: time of --error E over that in which plain samples, interpolated, reach the same error; '–' where 256 do not."""
+    of = {name: [p for p in effect["points"] if p["series"] == name] for name in (SOBOL, BY_ERROR)}
+    reached = {p["label"]: time_to_reach(of[SOBOL], p["rmse"]) for p in of[BY_ERROR]}
+    return {p["label"]: f"{p['seconds'] / reached[p['label']]:.2f}" if reached[p["label"]] else "–" for p in of[BY_ERROR]}
+
+
 def tell(result, table):
     names = [name for name, *_ in METHODS if any(p["series"] == name for e in result["effects"] for p in e["points"])]
     slopes, gains, goals = [], [], []
@@ -211,6 +220,8 @@ def tell(result, table):
         gains.append([("1" if n == METHODS[0][0] else speed_up(of[n], goal)) if of[n] else "" for n in names])
     header = ["", *[e["effect"] for e in result["effects"]]]
     turned = lambda cells: [[n, *column] for n, column in zip(names, zip(*cells))]
+    beside = [beside_samples(e) for e in result["effects"]]
+    errors = [[f"--error {label}", *[b.get(label, "") for b in beside]] for label in beside[0]]
     return f"""Slope of the logarithm of the RMSE over that of time, at each method's three finest settings (-.5: four times the time for half the
 error; 0: more time buys nothing):
 
@@ -219,4 +230,8 @@ error; 0: more time buys nothing):
 Times as fast as random samples to the error of the finest of them (RMSE: {", ".join(goals)}); –: never got there; >: its coarsest
 setting already had:
 
-{table(header, turned(gains))}"""
+{table(header, turned(gains))}
+
+Time of `--error E` over that of sobol samples to the same RMSE, whatever their number (interpolated); –: 256 do not get there:
+
+{table(header, errors)}"""

@@ -31,9 +31,9 @@ def arguments(doc, rounds):
     return parser
 
 
-def read_csv(name):
-    """Rows of a CSV that docs/ keeps, as dicts of words."""
-    with open(DOCS / f"{name}.csv", newline="") as f:
+def read_csv(name, folder=DOCS):
+    """Rows of a CSV, of those that docs/ keeps if no folder is named, as dicts of words."""
+    with open(folder / f"{name}.csv", newline="") as f:
         return list(csv.DictReader(f))
 
 
