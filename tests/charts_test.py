@@ -7,6 +7,7 @@ Exit status 77: a package the charts need is missing.
 """
 import csv
 import html
+import importlib.util
 import pathlib
 import re
 import subprocess
@@ -14,11 +15,13 @@ import sys
 import tempfile
 import types
 import unittest
+import unittest.mock
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT / "perf" / name) for name in ("", "lib", "charts")]
 PROGRAM = pathlib.Path(sys.argv.pop(1)).resolve()
 try:
+    import matplotlib.text
     import numpy as np
     import chart
     import charts
@@ -155,6 +158,81 @@ class Kept(unittest.TestCase):
         self.assertIn(f"{min(ratios):.1f} to {max(ratios):.1f} times as fast without it", (ROOT / "docs/accuracy.md").read_text())
         shares = [f"{1 / ratio:.2f}".lstrip("0") for ratio in (max(ratios), min(ratios))]
         self.assertIn(f"{shares[0]} to {shares[1]} of the time of `--error 0.01`", (ROOT / "README.md").read_text())
+
+
+class Saved:
+    """Takes the place of a benchmark's folder and keeps the figure."""
+    def save(self, figure, name):
+        self.figure = figure
+
+
+def script(name):
+    """A script of perf/ as a module; `trace` is one of Python's own."""
+    spec = importlib.util.spec_from_file_location(f"perf_{name}", ROOT / f"perf/{name}.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def figure_of(name):
+    """The chart of docs/images/NAME.svg, drawn from its CSV."""
+    module, saved = script(name), Saved()
+    if hasattr(module, "write_csv"):  # trace, build
+        known = module.cells_from_csv() if name == "trace" else module.rows_from_csv()
+        with tempfile.TemporaryDirectory() as folder, unittest.mock.patch("matplotlib.pyplot.close") as close:
+            module.draw(known, pathlib.Path(folder) / "chart.svg")
+        return close.call_args[0][0]
+    rows = {"scale": ["scale"], "frame": ["frame-profile"], "ranks": ["ranks-pieces", "ranks"], "report": ["report"]}[name]
+    known = module.from_csv(*map(bench.read_csv, rows))
+    module.draw(saved, *(known if name in ("scale", "ranks") else [known]))
+    return saved.figure
+
+
+def words_of(figure):
+    """All that a figure says in letters."""
+    found = (t.get_text() for t in figure.findobj(matplotlib.text.Text))
+    return {line for text in found for line in text.split("\n") if re.search("[A-Za-z]{2}", line)}
+
+
+class Benchmarks(unittest.TestCase):
+    """The other charts of docs/."""
+    names = ("trace", "build", "scale", "frame", "ranks", "report")
+
+    @classmethod
+    def setUpClass(cls):
+        cls.figures = {name: figure_of(name) for name in cls.names}
+
+    @classmethod
+    def tearDownClass(cls):
+        bench.plt.close("all")
+
+    def test_each_is_of_its_csv(self):
+        for name, figure in self.figures.items():
+            shown = html.unescape((ROOT / f"docs/images/{name}.svg").read_text())
+            self.assertEqual({words for words in words_of(figure) if words not in shown}, set(), name)
+            with tempfile.TemporaryDirectory() as folder:
+                path = pathlib.Path(folder) / "chart.svg"
+                figure.savefig(path)
+                marks = re.compile("<use ")
+                self.assertEqual(len(marks.findall(path.read_text())), len(marks.findall(shown)), name)
+
+    def test_axes_say_what_they_count(self):
+        for name, figure in self.figures.items():
+            for axes in figure.axes:
+                ticks = " ".join(t.get_text() for t in axes.get_xticklabels())
+                self.assertTrue(axes.get_xlabel() or re.search("[a-z]", ticks), name)
+            self.assertTrue(any(axes.get_ylabel() for axes in figure.axes), name)
+            self.assertFalse({words for words in words_of(figure) if re.search(r"\btargets?\b", words)}, name)
+        self.assertTrue(all(axes.get_ylabel() for axes in self.figures["scale"].axes))
+
+    def test_no_two_series_share_a_marker(self):
+        for name, figure in self.figures.items():
+            for axes in figure.axes:
+                looks = {}
+                for line in axes.get_lines():
+                    if not line.get_label().startswith("_") and line.get_marker() not in ("None", "", None):
+                        looks.setdefault((line.get_marker(), line.get_markerfacecolor() == "none"), []).append(line.get_label())
+                self.assertFalse({look: labels for look, labels in looks.items() if len(labels) > 1}, name)
 
 
 class Page(unittest.TestCase):
