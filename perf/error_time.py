@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Error against time: what a second of each way of sampling buys, on five scenes, as a chart, a table and ratios.
 
-    ./run perf error_time [--quick] [--repeats K] [--size N] [--scene NAME]...
+    ./run perf error_time [--quick] [--draw] [--repeats K] [--size N] [--scene NAME]...
 
 Error is the RMSE in display units (channels cut to 0 to 1) against a reference of another seed and 100 times the samples
 of the finest setting, made of two halves whose difference tells its own error. Time is the best of K renders, all settings
@@ -17,11 +17,12 @@ import sys
 from matplotlib.ticker import NullFormatter
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "lib"))
-from bench import ROOT, plt
+from bench import DRAW_HELP, ROOT, plt, read_csv
 from image_error import Refused, Workshop, read_pfm, rmse, time_to_reach
 
 FINEST = 256                   # samples of the finest fixed setting
 REFERENCE = 100 * FINEST       # in two halves
+REFERENCE_ROW = "reference"    # its method in the CSV
 SEED = 1
 
 # name, title, generator and its size or file, options
@@ -117,12 +118,22 @@ def draw(results, size, path):
             axis.set_minor_formatter(NullFormatter())
         panel.grid(which="major", alpha=.4)
         panel.axhline(floor, color="#009E73", linewidth=1, linestyle=(0, (1, 3)), label="the reference's own error")
-        panel.legend(fontsize=9)
     for panel in list(panels.flat)[len(results):]:
         panel.axis("off")
+    handles = dict(zip(*reversed(panels[0][0].get_legend_handles_labels())))
+    panels[-1][-1].legend(handles.values(), handles.keys(), fontsize=11, loc="center", frameon=False)
     fig.suptitle(f"{size}x{size}: random, both jitters and sobol with 1, 4, 16, 64, 256 samples a pixel; adaptive with D from 1 to 5; "
                  "--error from .08 to .000625", fontsize=10)
     fig.savefig(path, dpi=90)
+
+
+def from_csv(rows):
+    """Title, points and the reference's own error of each scene, as they were kept in docs/."""
+    for name, title, *_ in SCENES:
+        own = [r for r in rows if r["scene"] == name]
+        floor = next(float(r["rmse"]) for r in own if r["method"] == REFERENCE_ROW)
+        points = {(r["method"], r["setting"]): {"seconds": float(r["seconds"]), "rmse": float(r["rmse"])} for r in own if r["method"] in METHODS}
+        yield title, points, floor
 
 
 def main():
@@ -132,7 +143,11 @@ def main():
     parser.add_argument("--repeats", type=int, default=5, help="renders of each setting, the best counts [5]")
     parser.add_argument("--scene", action="append", choices=[s[0] for s in SCENES], help="this one alone [all five]")
     parser.add_argument("--quick", action="store_true", help="a smoke run: tiny pictures, few samples, nothing kept in docs/")
+    parser.add_argument("--draw", action="store_true", help=DRAW_HELP)
     asked = parser.parse_args()
+    if asked.draw:
+        draw(list(from_csv(read_csv("error-time"))), asked.size, ROOT / "docs/images/error-time.png")
+        return
     size, repeats, methods, finest, reference_samples = asked.size, asked.repeats, METHODS, str(FINEST), REFERENCE
     if asked.quick:
         size, repeats, finest, reference_samples = 32, 1, str(SAMPLES[2]), 100 * SAMPLES[2]
@@ -154,6 +169,7 @@ def main():
         results.append((title, points, floor))
         rows += [[name, method, setting, f"{p['samples']:.4g}", p["rays"], f"{p['seconds']:.4g}", f"{p['rmse']:.4g}"]
                  for (method, setting), p in points.items()]
+        rows.append([name, REFERENCE_ROW, reference_samples, reference_samples, "", "", f"{floor:.2g}"])
 
     with open(out / "error-time.csv", "w", newline="") as f:
         table = csv.writer(f, lineterminator="\n")
