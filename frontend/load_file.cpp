@@ -9,8 +9,10 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <span>
 
 #include "frontend/load_progress.hpp"
+#include "frontend/plausible.hpp"
 #include "frontend/text.hpp"
 
 namespace grelha {
@@ -24,53 +26,87 @@ struct CloseFile {
 
 using File = std::unique_ptr<std::FILE, CloseFile>;
 
+bool is_gzip(std::string_view data) {
+  return data.size() >= 2 && static_cast<unsigned char>(data[0]) == 0x1f && static_cast<unsigned char>(data[1]) == 0x8b;
+}
+
+/// Bytes as they come, a piece at a time: memory is taken for no more, whatever was promised.
+class Growing {
+ public:
+  Growing(const Judge& judge, std::size_t promised) : judge_(judge) { bytes_.reserve(promised); }
+
+  /// Room for up to `most` bytes more; at least one, unless `most` is none.
+  std::span<char> room(std::size_t most) {
+    if (have_ == bytes_.size()) bytes_.resize(have_ + std::min(most, std::clamp(have_, kLeast, kPiece)));
+    return {bytes_.data() + have_, std::min(most, bytes_.size() - have_)};
+  }
+  /// So many bytes of the room were filled.
+  void filled(std::size_t count) {
+    have_ += count;
+    if (have_ - judged_ >= kPiece) judge();
+  }
+  std::size_t size() const { return have_; }
+  std::string finish() {
+    if (have_ > judged_) judge();
+    bytes_.resize(have_);
+    return std::move(bytes_);
+  }
+
+ private:
+  static constexpr std::size_t kLeast = std::size_t(1) << 16;
+
+  void judge() {
+    const std::string_view all(bytes_.data(), have_);
+    if (judge_ && !is_gzip(all)) judge_(all, judged_);
+    judged_ = have_;
+  }
+
+  const Judge& judge_;
+  std::string bytes_;
+  std::size_t have_ = 0, judged_ = 0;
+};
+
 /// What a pipe holds is known when it ends, which may be never: whoever waits looks up now and then.
-std::string read_pipe(const std::string& path, LoadProgress* progress) {
+std::string read_pipe(const std::string& path, LoadProgress* progress, const Judge& judge) {
   constexpr int kLookUp = 100;  // ms
   const int handle = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   if (handle < 0) throw FileError(path, std::string("cannot open: ") + std::strerror(errno));
   const File file(fdopen(handle, "rb"));
-  std::string bytes(1 << 16, '\0');
-  std::size_t have = 0;
+  Growing bytes(judge, 0);
   for (;;) {
     if (pollfd asked{handle, POLLIN, 0}; poll(&asked, 1, kLookUp) <= 0) {
       if (progress) progress->waiting();
       continue;
     }
-    if (have == bytes.size()) bytes.resize(2 * have);
-    const ssize_t got = read(handle, bytes.data() + have, bytes.size() - have);
+    const std::span<char> room = bytes.room(kPiece);
+    const ssize_t got = read(handle, room.data(), room.size());
     if (got < 0 && errno != EAGAIN && errno != EINTR) throw FileError(path, std::string("cannot read: ") + std::strerror(errno));
     if (got == 0) break;
-    have += std::size_t(std::max<ssize_t>(got, 0));
+    bytes.filled(std::size_t(std::max<ssize_t>(got, 0)));
   }
-  bytes.resize(have);
-  if (progress) progress->expect(kParsing * double(have));
-  return bytes;
+  if (progress) progress->expect(kParsing * double(bytes.size()));
+  return bytes.finish();
 }
 
-std::string read_bytes(const std::string& path, LoadProgress* progress, bool pipe_too) {
+std::string read_bytes(const std::string& path, LoadProgress* progress, bool pipe_too, const Judge& judge) {
   struct stat about {};
   if (stat(path.c_str(), &about) != 0) throw FileError(path, std::string("cannot open: ") + std::strerror(errno));
   if (S_ISDIR(about.st_mode)) throw FileError(path, std::string("cannot read: ") + std::strerror(EISDIR));
-  if (pipe_too && S_ISFIFO(about.st_mode)) return read_pipe(path, progress);
+  if (pipe_too && S_ISFIFO(about.st_mode)) return read_pipe(path, progress, judge);
   if (!S_ISREG(about.st_mode)) throw FileError(path, "cannot read: not a regular file");
   const File file(std::fopen(path.c_str(), "rb"));
   if (!file) throw FileError(path, std::string("cannot open: ") + std::strerror(errno));
-  std::string bytes(std::size_t(about.st_size), '\0');
-  if (progress) progress->expect((1 + kParsing) * double(bytes.size()));
-  constexpr std::size_t kPiece = std::size_t(1) << 24;
-  std::size_t have = 0;
-  for (std::size_t got = 1; got > 0 && have < bytes.size(); have += got) {
-    got = std::fread(bytes.data() + have, 1, std::min(kPiece, bytes.size() - have), file.get());
+  const auto promised = std::size_t(about.st_size);
+  if (progress) progress->expect((1 + kParsing) * double(promised));
+  Growing bytes(judge, promised);
+  for (std::size_t got = 1; got > 0 && bytes.size() < promised;) {
+    const std::span<char> room = bytes.room(promised - bytes.size());
+    got = std::fread(room.data(), 1, room.size(), file.get());
+    bytes.filled(got);
     if (progress) progress->done(double(got));
   }
-  bytes.resize(have);
   if (std::ferror(file.get())) throw FileError(path, std::string("cannot read: ") + std::strerror(errno));
-  return bytes;
-}
-
-bool is_gzip(std::string_view data) {
-  return data.size() >= 2 && static_cast<unsigned char>(data[0]) == 0x1f && static_cast<unsigned char>(data[1]) == 0x8b;
+  return bytes.finish();
 }
 
 /// Owns zlib's state; feeds it 16 MiB at a time: its counters have 32 bits, and progress is told of each.
@@ -82,34 +118,29 @@ class Inflater {
   Inflater(const Inflater&) = delete;
   ~Inflater() { inflateEnd(&stream_); }
 
-  std::string run(std::size_t limit) {
-    std::string out(std::min(limit, std::max<std::size_t>(4 * data_.size(), 4096)), '\0');
-    std::size_t made = 0;
-    while (!step(out, made)) {
-      if (made < out.size()) continue;
-      if (out.size() >= limit)
-        fail("wanted data that inflate to at most " + std::to_string(limit) + " bytes, found more");
-      out.resize(std::min(limit, 2 * out.size()));
-    }
-    out.resize(made);
-    return out;
+  std::string run(std::size_t limit, const Judge& judge) {
+    Growing out(judge, std::min(limit, 4 * data_.size()));
+    while (!step(out, limit)) {}
+    return out.finish();
   }
 
  private:
-  static constexpr std::size_t kChunk = std::size_t(1) << 24;
-
   [[noreturn]] void fail(const std::string& message) const { throw ParseError(Position{path_, 0, 0, taken_}, message); }
 
   /// One call of inflate; true when the last member has ended.
-  bool step(std::string& out, std::size_t& made) {
-    const std::size_t give = std::min(kChunk, data_.size() - taken_), room = std::min(kChunk, out.size() - made);
+  bool step(Growing& out, std::size_t limit) {
+    const std::size_t give = std::min(kPiece, data_.size() - taken_);
+    const std::span<char> room = out.room(limit - out.size());
     stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(data_.data() + taken_));
     stream_.avail_in = uInt(give);
-    stream_.next_out = reinterpret_cast<Bytef*>(out.data() + made);
-    stream_.avail_out = uInt(room);
+    char beyond = 0;  // with no room left the end may still come
+    stream_.next_out = reinterpret_cast<Bytef*>(room.empty() ? &beyond : room.data());
+    stream_.avail_out = room.empty() ? 1 : uInt(room.size());
     const int result = inflate(&stream_, Z_NO_FLUSH);
     taken_ += give - stream_.avail_in;
-    made += room - stream_.avail_out;
+    if (room.empty() && stream_.avail_out == 0)
+      fail("wanted data that inflate to at most " + std::to_string(limit) + " bytes, found more");
+    if (!room.empty()) out.filled(room.size() - stream_.avail_out);
     if (progress_) progress_->done(kInflating * double(give - stream_.avail_in));
     if (result == Z_STREAM_END) {
       if (!is_gzip(data_.substr(taken_))) return true;  // bytes behind the last member are ignored, as gzip does
@@ -132,8 +163,9 @@ class Inflater {
 
 }  // namespace
 
-std::string inflate_gzip(const std::string& path, std::string_view data, std::size_t limit, LoadProgress* progress) {
-  return Inflater(path, data, progress).run(limit);
+std::string inflate_gzip(const std::string& path, std::string_view data, std::size_t limit, LoadProgress* progress,
+                         const Judge& judge) {
+  return Inflater(path, data, progress).run(limit, judge);
 }
 
 // Half of the machine's memory, at most 8 GiB: a scene beyond that could not be built anyway.
@@ -145,11 +177,11 @@ std::size_t inflate_limit(std::size_t bytes) {
   return std::min(most, std::size_t(pages) / 2 * std::size_t(page_size));
 }
 
-std::string load_file(const std::string& path, LoadProgress* progress, bool pipe_too) {
-  std::string bytes = read_bytes(path, progress, pipe_too);
+std::string load_file(const std::string& path, LoadProgress* progress, bool pipe_too, const Judge& judge) {
+  std::string bytes = read_bytes(path, progress, pipe_too, judge);
   if (!is_gzip(bytes)) return bytes;
   if (progress) progress->expect(kInflating * double(bytes.size()));
-  std::string inflated = inflate_gzip(path, bytes, inflate_limit(bytes.size()), progress);
+  std::string inflated = inflate_gzip(path, bytes, inflate_limit(bytes.size()), progress, judge);
   if (progress) progress->expect(kParsing * (double(inflated.size()) - double(bytes.size())));
   return inflated;
 }

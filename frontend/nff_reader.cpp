@@ -14,6 +14,7 @@
 #include "frontend/nff_material.hpp"
 #include "frontend/nff_view.hpp"
 #include "frontend/nff_words.hpp"
+#include "frontend/plausible.hpp"
 #include "frontend/ply_reader.hpp"
 #include "frontend/scene_builder.hpp"
 #include "kernel/render.hpp"
@@ -298,7 +299,9 @@ void NffReader::read_ply(std::string_view keyword) {
     throw ParseError(input_.position(name), "wanted a file in the scene's folder or below it (or --allow-outside), found " + quoted(name));
   Mesh mesh;
   try {
-    std::string bytes = load_file(path, load_);
+    std::string bytes = load_file(path, load_, false, [&](std::string_view text, std::size_t fresh) {
+      judge_beginning(path, true, text, fresh);
+    });
     mesh = read_ply_mesh(path, bytes, warn_, load_);
     file_.source_bytes = std::max<std::uint64_t>(file_.source_bytes, words_.size() + bytes.size());
   } catch (const std::bad_alloc&) {

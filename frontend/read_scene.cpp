@@ -7,6 +7,7 @@
 #include "frontend/load_progress.hpp"
 #include "frontend/memory_limit.hpp"
 #include "frontend/nff_reader.hpp"
+#include "frontend/plausible.hpp"
 #include "frontend/ply_reader.hpp"
 #include "frontend/scene_builder.hpp"
 #include "frontend/text.hpp"
@@ -64,7 +65,9 @@ void warn_of_dropped(const std::string& path, const Dropped& dropped, const Warn
 
 SceneFile read_scene(const std::string& path, const Warn& warn, const ReadOptions& options) try {
   LoadProgress progress(options.progress);
-  std::string bytes = load_file(path, &progress, true);
+  std::string bytes = load_file(path, &progress, true, [&](std::string_view text, std::size_t fresh) {
+    judge_beginning(path, is_ply(path, text), text, fresh);
+  });
   refuse_placeholders(path, bytes);
   SceneFile file = is_ply(path, bytes) ? read_mesh_alone(path, std::move(bytes), warn, progress)
                                        : read_nff(path, bytes, warn, options, &progress);

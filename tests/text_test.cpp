@@ -1,4 +1,5 @@
 #include "frontend/memory_limit.hpp"
+#include "frontend/plausible.hpp"
 #include "frontend/text.hpp"
 
 #include <gtest/gtest.h>
@@ -155,6 +156,42 @@ TEST(Gzip, RefusesBrokenAndBoundlessData) {
               inflate_gzip("f.gz", bomb, 5000);
             }).find("error: wanted data that inflate to at most 5000 bytes, found more"),
             std::string::npos);
+}
+
+/// 256 MiB of zeros in 260 KB: the first piece tells, and no more is inflated.
+TEST(Gzip, IsJudgedAsItComes) {
+  const std::string bomb = gzip(std::string(std::size_t(256) << 20, '\0'));
+  std::size_t largest = 0;
+  const Judge judge = [&](std::string_view text, std::size_t fresh) {
+    largest = std::max(largest, text.size());
+    judge_beginning("f.gz", false, text, fresh);
+  };
+  EXPECT_EQ(message_of([&] { inflate_gzip("f.gz", bomb, std::size_t(1) << 30, nullptr, judge); }),
+            "f.gz:byte 0: error: wanted a scene's numbers, found 16777216 bytes without a digit");
+  EXPECT_LT(largest, 2 * kPiece);
+  std::string late = "s 0 0 0 1\n";
+  late.resize(3 * kPiece, ' ');
+  EXPECT_NE(message_of([&] { inflate_gzip("f.gz", gzip(late), std::size_t(1) << 30, nullptr, judge); }).find("without a digit"),
+            std::string::npos);
+  late.back() = '1';
+  for (std::size_t i = 0; i < late.size(); i += kPiece / 2) late[i] = '1';
+  EXPECT_EQ(inflate_gzip("f.gz", gzip(late), std::size_t(1) << 30, nullptr, judge), late);
+}
+
+/// The same of files and whatever they inflate to, by the way of a scene.
+TEST(LoadFile, JudgesScenesAsTheyCome) {
+  const TemporaryFolder folder;
+  const std::string zeros(2 * kPiece, '\0');
+  for (const char* name : {"zeros.nff", "zeros.ply"}) {
+    const std::string path = folder.add(name, zeros), packed = folder.add(std::string(name) + ".gz", gzip(zeros));
+    for (const std::string& file : {path, packed})
+      EXPECT_TRUE(message_of([&] { read_scene(file, nullptr); })
+                      .starts_with(file + ":byte 0: error: wanted a scene's numbers, found 16777216 bytes")) << file;
+  }
+  const std::string other = folder.add("other.ply.gz", gzip(" plx " + zeros));
+  EXPECT_EQ(message_of([&] { read_scene(other, nullptr); }), other + ":1:2: error: wanted \"ply\" on the first line, found \"plx\"");
+  const std::string scene = folder.add("scene.nff", test::kView + "ply other.ply.gz\n");
+  EXPECT_EQ(message_of([&] { read_scene(scene, nullptr); }), other + ":1:2: error: wanted \"ply\" on the first line, found \"plx\"");
 }
 
 TEST(LoadFile, TellsGzipByItsFirstBytes) {
