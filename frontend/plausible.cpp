@@ -17,6 +17,9 @@ bool has_digit(std::string_view text) {
 
 void judge_beginning(const std::string& path, bool ply, std::string_view text, std::size_t fresh) {
   const std::string_view start = text.substr(0, kStart);
+  if (start.starts_with("version https://git-lfs"))
+    throw ParseError(Position{path, 1, 1, 0},
+                     "wanted a scene, found a Git LFS pointer: the file it stands for was not downloaded");
   if (ply && fresh == 0) {
     Words words(path, start, 0, '\0');
     const std::string_view magic = words.next();

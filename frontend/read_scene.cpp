@@ -34,13 +34,6 @@ bool is_ply(const std::string& path, std::string_view bytes) {
   return bytes.starts_with("ply\n") || bytes.starts_with("ply\r");
 }
 
-void refuse_placeholders(const std::string& path, std::string_view bytes) {
-  const Position start{path, 1, 1, 0};
-  if (bytes.empty()) throw ParseError(start, "wanted a scene, found an empty file");
-  if (bytes.starts_with("version https://git-lfs"))
-    throw ParseError(start, "wanted a scene, found a Git LFS pointer: the file it stands for was not downloaded");
-}
-
 SceneFile read_mesh_alone(const std::string& path, std::string bytes, const Warn& warn, LoadProgress& progress) {
   SceneFile file;
   file.source_bytes = bytes.size();
@@ -68,7 +61,7 @@ SceneFile read_scene(const std::string& path, const Warn& warn, const ReadOption
   std::string bytes = load_file(path, &progress, true, [&](std::string_view text, std::size_t fresh) {
     judge_beginning(path, is_ply(path, text), text, fresh);
   });
-  refuse_placeholders(path, bytes);
+  if (bytes.empty()) throw ParseError(Position{path, 1, 1, 0}, "wanted a scene, found an empty file");
   SceneFile file = is_ply(path, bytes) ? read_mesh_alone(path, std::move(bytes), warn, progress)
                                        : read_nff(path, bytes, warn, options, &progress);
   progress.finish();
