@@ -4,8 +4,10 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 
 #include "frontend/image_file.hpp"
+#include "frontend/kept.hpp"
 #include "frontend/parse_error.hpp"
 #include "frontend/partial.hpp"
 #include "frontend/stop_signals.hpp"
@@ -42,17 +44,22 @@ Work new_work(const RenderCommand& command, const Camera& camera) {
   return make_accumulator(camera, o, part_of(command, camera));
 }
 
-/// What is there to go on from, of the very picture that is asked for.
+/// Why a checkpoint is not of the very picture that is asked for; empty when it is.
+std::string misfit(const Checkpoint& found, const Identity& wanted, const Work& begun) {
+  if (found.identity.scene != wanted.scene) return "is of another scene";
+  if (found.identity.settings != wanted.settings)
+    return "has " + difference(found.identity.settings, wanted.settings, "this render");
+  if (found.work.index() != begun.index()) return "is of another kind";  // whatever its settings claim
+  const auto* const sums = std::get_if<Accumulator>(&found.work);
+  if (sums && sums->part != std::get<Accumulator>(begun).part) return "is of another part, " + part_text(sums->part);
+  return "";
+}
+
 Work saved_work(const std::string& path, const Identity& wanted, const Work& begun) {
   Checkpoint found = read_checkpoint(path);
-  const auto refuse = [&path](const std::string& why) {
+  const std::string why = misfit(found, wanted, begun);
+  if (!why.empty())
     throw UsageError("--checkpoint: " + path + ' ' + why + ": name another file, or remove this one to begin again");
-  };
-  if (found.identity.scene != wanted.scene) refuse("is of another scene");
-  if (found.identity.settings != wanted.settings) refuse("has " + difference(found.identity.settings, wanted.settings, "this render"));
-  if (found.work.index() != begun.index()) refuse("is of another kind");  // whatever its settings claim
-  const auto* const sums = std::get_if<Accumulator>(&found.work);
-  if (sums && sums->part != std::get<Accumulator>(begun).part) refuse("is of another part, " + part_text(sums->part));
   return std::move(found.work);
 }
 
@@ -64,11 +71,9 @@ Image picture_of(const Work& work) {
 
 }  // namespace
 
-bool is_long_work(const RenderCommand& c, const Ranks& ranks) {
-  const bool asks = is_partial_name(c.image) || !c.work.checkpoint.empty() || c.work.show_every > 0;
+void want_shareable(const RenderCommand& c, const Ranks& ranks) {
   if (ranks.count() > 1 && (c.render.refine.on() || c.effects.adaptive.on))
     throw UsageError("several ranks share pictures with as many samples in every pixel: no --error, --time or --aa adaptive");
-  return asks || ranks.count() > 1;
 }
 
 ImageStyle style_of(const RenderCommand& command) {
@@ -81,8 +86,30 @@ LongRender::LongRender(const RenderCommand& prepared, const Camera& camera, std:
   const auto* const sums = std::get_if<Accumulator>(&work_);
   ranks_.agree_on(identity_.scene, "has read another scene than the first");
   ranks_.agree_on(identity_.settings + (sums ? part_text(sums->part) : ""), "was given other options than the first");
-  const std::string& checkpoint = prepared.work.checkpoint;
-  if (!checkpoint.empty() && exists(checkpoint)) work_ = saved_work(checkpoint, identity_, work_);
+  if (!ranks.first()) return;
+  if (!asked_to_save()) {
+    go_on_from_kept();
+    return;
+  }
+  kept_ = prepared.work.checkpoint;
+  went_on_ = exists(kept_);
+  if (went_on_) work_ = saved_work(kept_, identity_, work_);
+}
+
+void LongRender::go_on_from_kept() {
+  kept_ = kept_name(command_, [this](const std::string& path) {
+    try {
+      Checkpoint found = read_checkpoint(path);
+      went_on_ = misfit(found, identity_, work_).empty();
+      if (went_on_) work_ = std::move(found.work);
+    } catch (const std::exception&) {  // nobody said that this file should be one
+    }
+    return went_on_;
+  });
+  if (!went_on_ || command_.quiet) return;
+  char text[32];
+  std::snprintf(text, sizeof text, ", %.1f %% done", 100 * share_done());
+  warn_("grelha: goes on from " + kept_ + text);
 }
 
 double LongRender::share_done() const {
@@ -104,12 +131,40 @@ void LongRender::pursue(Habit& habit) {
   habit.last = Clock::now();
 }
 
-int LongRender::stops() const { return keeps() ? StopSignals::seen() : 0; }
+int LongRender::stops() const { return ranks_.first() ? StopSignals::seen() : 0; }
+
+bool LongRender::tried(const std::function<void()>& write) const {
+  try {
+    write();
+    return true;
+  } catch (const FileError& error) {
+    warn_(error.what());
+    return false;
+  }
+}
+
+void LongRender::keep() {
+  if (asked_to_save()) {
+    save();
+    saved_ = true;
+  }
+  if (share_done() == 0) return;
+  if (!saved_ && !kept_.empty()) saved_ = tried([this] { save(); });
+  const std::string picture = partial_picture(command_);
+  if (!picture.empty()) shown_ = tried([&] { write_image(picture, picture_of(work_), style_of(command_)); });
+}
+
+std::string LongRender::stop_text(int signal) const {
+  char text[64];
+  std::snprintf(text, sizeof text, "grelha: stopped by %s, %.1f %% done", signal_name(signal), 100 * share_done());
+  std::string all = text;
+  if (saved_) all += " and saved in " + kept_ + ": the same command goes on from there";
+  if (shown_) all += (saved_ ? "; " : ": ") + partial_picture(command_) + " is the picture so far";
+  return all;
+}
 
 int LongRender::run(const World& world, const Camera& camera, const std::function<void(double)>& progress, RenderStats& stats, SampleMaps& maps) {
-  std::optional<StopSignals> signals;
-  if (keeps()) signals.emplace();
-  Habit saving{keeps() ? command_.work.save_every.value_or(kSaveEvery) : 0, [this] { save(); }};
+  Habit saving{asked_to_save() ? command_.work.save_every.value_or(kSaveEvery) : 0, [this] { save(); }};
   Habit showing{command_.work.show_every, [this] { write(); }};
   const auto rest = [&] { return pursue(saving), pursue(showing), stops() == 0; };
   auto* const sums = std::get_if<Accumulator>(&work_);
@@ -124,24 +179,33 @@ int LongRender::run(const World& world, const Camera& camera, const std::functio
                     : refinement ? refine(world, camera, options, *refinement, stats, &maps, rest)
                                  : render_subdivided(world, camera, options, std::get<Subdivided>(work_), stats, rest);
   if (done || !ranks_.first()) return 0;
-  save();
+  keep();
   return stops();
 }
 
 void LongRender::finish() {
-  const std::string& checkpoint = command_.work.checkpoint;
   try {
     write();
   } catch (const FileError&) {
-    if (!checkpoint.empty()) save();
+    keep_all();
     throw;
   }
-  if (checkpoint.empty()) return;
-  if (command_.work.kept_till_the_last) save();
-  else unlink(checkpoint.c_str());
+  if (command_.work.kept_till_the_last && asked_to_save()) return save();
+  if (went_on_ || asked_to_save()) unlink(kept_.c_str());
+  if (went_on_) unlink(partial_picture(command_).c_str());
 }
 
-void LongRender::save() const { write_checkpoint(command_.work.checkpoint, identity_, work_, true); }
+void LongRender::keep_all() const {
+  if (asked_to_save()) return save();
+  if (kept_.empty()) return;
+  try {
+    save();
+    warn_("grelha: all of the picture is kept in " + kept_ + ": the same command writes it");
+  } catch (const FileError&) {  // the disk is full, say: why the picture could not be written is told
+  }
+}
+
+void LongRender::save() const { write_checkpoint(kept_, identity_, work_, true); }
 
 void LongRender::write() const {
   if (is_partial_name(command_.image)) write_checkpoint(command_.image, identity_, work_, false);

@@ -10,8 +10,8 @@
 
 namespace grelha {
 
-/// Whether a command asks for anything that what is known of the picture must be kept for.
-bool is_long_work(const RenderCommand& command, const Ranks& ranks);
+/// Throws UsageError when several ranks are to share what only one can render.
+void want_shareable(const RenderCommand& command, const Ranks& ranks);
 
 /// Of the picture that a command makes.
 ImageStyle style_of(const RenderCommand& command);
@@ -21,15 +21,20 @@ class LongRender {
  public:
   using Warn = std::function<void(const std::string&)>;
 
-  /// `prepared`: after apply_effects(); it must outlive this. Goes on from the checkpoint if that is there: throws UsageError when it is of
-  /// another picture, FileError when it cannot be read.
+  /// `prepared`: after apply_effects(); it must outlive this. Goes on from the checkpoint if that is there: throws UsageError when
+  /// it is of another picture, FileError when it cannot be read. Without --checkpoint goes on from what an earlier run of the
+  /// command left when it was stopped.
   LongRender(const RenderCommand& prepared, const Camera& camera, std::string scene_digest, Ranks& ranks, Warn warn);
 
   double share_done() const;
 
-  /// `progress` is told the share done. With a checkpoint SIGHUP, SIGINT and SIGTERM stop it after what is in work: saves and returns the
-  /// signal, otherwise 0. Saves that fail on the way are warned of once, and tried again. `maps` are filled when samples are spent by error.
+  /// `progress` is told the share done. SIGHUP, SIGINT and SIGTERM stop it after what is in work, while StopSignals live: keeps
+  /// what there is and returns the signal, otherwise 0. Saves that fail on the way are warned of once, and tried again. `maps`
+  /// are filled when samples are spent by error.
   int run(const World& world, const Camera& camera, const std::function<void(double)>& progress, RenderStats& stats, SampleMaps& maps);
+
+  /// Of what stopping left, one line.
+  std::string stop_text(int signal) const;
 
   /// By the first rank alone: writes picture or partial; then the checkpoint has done its work and is removed, or, where there are more
   /// scenes to come, holds everything: so it does should the writing fail.
@@ -45,8 +50,12 @@ class LongRender {
   };
   static bool is_due(const Habit& habit);
   void pursue(Habit& habit);
-  bool keeps() const { return !command_.work.checkpoint.empty(); }
+  bool asked_to_save() const { return !command_.work.checkpoint.empty(); }
   int stops() const;  ///< the signal to stop for, or 0
+  void go_on_from_kept();
+  void keep();
+  void keep_all() const;  ///< of a picture that cannot be written
+  bool tried(const std::function<void()>& write) const;  ///< warns of what it throws
   void save() const;
   void write() const;
 
@@ -55,6 +64,9 @@ class LongRender {
   const Warn warn_;
   Identity identity_;
   Work work_;
+  std::string kept_;      ///< what is gone on from: the checkpoint, or a file beside the picture; empty: nothing is kept
+  bool went_on_ = false;  ///< from what was there
+  bool saved_ = false, shown_ = false;  ///< when stopped
 };
 
 }  // namespace grelha

@@ -114,27 +114,10 @@ Camera camera_of(const SceneFile& file, const RenderCommand& command) {
   return camera;
 }
 
-Image render_with_bar(const World& world, const Camera& camera, const RenderCommand& command, RenderStats& stats, SampleMaps& maps) {
-  ProgressBar bar(!command.quiet && stderr_is_terminal());
-  RenderOptions options = command.render;
-  options.progress = [&bar](double share) {
-    bar.update(share);
-    return true;
-  };
-  return render(world, camera, options, stats, &maps);
-}
-
 /// The signal that stopped it, or 0.
 int render_long(LongRender& work, const World& world, const Camera& camera, const RenderCommand& command, RenderStats& stats, SampleMaps& maps) {
   ProgressBar bar(!command.quiet && stderr_is_terminal(), work.share_done());
   return work.run(world, camera, [&bar](double share) { bar.update(share); }, stats, maps);
-}
-
-int stopped(int signal, const RenderCommand& command, double share) {
-  char text[64];
-  std::snprintf(text, sizeof text, "grelha: stopped by %s, %.1f %% done", signal_name(signal), 100 * share);
-  warn(text + (" and saved in " + command.work.checkpoint) + ": the same command goes on from there");
-  return kSignalled + signal;
 }
 
 /// Numbers by pixel as a picture: .pfm and .hdr hold them as they are; in a .png `shade` of the largest is white.
@@ -172,18 +155,17 @@ int render_scene(const RenderCommand& given, Ranks& ranks) {
     want_not_read(outputs_of(command), file.meshes);
   };
   if (!ranks.together(read)) return kFileFailed;
-  const bool is_long = is_long_work(command, ranks);
-  const std::string scene = is_long ? scene_digest(file) : "";
+  want_shareable(command, ranks);
+  const std::string scene = scene_digest(file);
   RenderCommand prepared = command;
   prepared.render.phases = !command.stats.empty();
   apply_effects(command.effects, file, prepared.render);
   report.seconds.load = load.seconds();
   const Camera camera = camera_of(file, command);
   want_room(format_of(command.image, command.format), camera.width, camera.height);
-  const PictureMemory memory = picture_memory(prepared, camera, is_long);
+  const PictureMemory memory = picture_memory(prepared, camera);
   want_memory(command.scene, memory.sums + memory.rest);
-  std::optional<LongRender> work;
-  if (is_long) work.emplace(prepared, camera, scene, ranks, warn);
+  LongRender work(prepared, camera, scene, ranks, warn);
 
   const Stopwatch build;
   const World world = build_world(command.scene, file.scene, command.build, memory.rest, bars);
@@ -192,16 +174,16 @@ int render_scene(const RenderCommand& given, Ranks& ranks) {
   const Stopwatch render;
   const std::clock_t cpu = std::clock();
   SampleMaps maps;
-  Image image;
-  if (!work) image = render_with_bar(world, camera, prepared, report.render, maps);
-  else if (const int signal = render_long(*work, world, camera, prepared, report.render, maps)) return stopped(signal, command, work->share_done());
+  if (const int signal = render_long(work, world, camera, prepared, report.render, maps)) {
+    warn(work.stop_text(signal));
+    return kSignalled + signal;
+  }
   if (!ranks.first()) return kOk;
   report.seconds.render = render.seconds();
   report.seconds.render_cpu = double(std::clock() - cpu) / CLOCKS_PER_SEC;
 
   const Stopwatch write;
-  if (work) work->finish();
-  else write_image(command.image, image, style_of(command));
+  work.finish();
   write_map(command.samples_map, maps.samples, camera, [](double n) { return std::log2(n); });
   write_map(command.error_map, maps.error, camera, [](double e) { return e; });
   report.seconds.write = write.seconds();
@@ -219,6 +201,12 @@ int render_scene(const RenderCommand& given, Ranks& ranks) {
   return kOk;
 }
 
+/// By a signal that came when the picture before was finished, and only had to be written.
+int stopped_between(int signal, const std::string& next) {
+  warn("grelha: stopped by " + std::string(signal_name(signal)) + " before " + next);
+  return kSignalled + signal;
+}
+
 void remove_checkpoint(const RenderCommand& command) {
   std::error_code ignored;
   if (command.work.kept_till_the_last && !command.work.checkpoint.empty()) std::filesystem::remove(command.work.checkpoint, ignored);
@@ -229,7 +217,10 @@ int run(const RenderCommand& command, Ranks& ranks) {
   limit_memory(command.input.max_memory);
   int worst = kOk;
   const std::vector<RenderCommand> all = commands_for(command);
+  std::optional<StopSignals> signals;
+  if (ranks.first()) signals.emplace();
   for (const RenderCommand& one : all) {
+    if (const int signal = StopSignals::seen()) return stopped_between(signal, one.scene);
     worst = std::max(worst, status_of(ranks, [&] { return render_scene(one, ranks); }));
     if (worst >= kSignalled || (ranks.count() > 1 && !ranks.in_step())) break;
   }
@@ -252,10 +243,12 @@ int run(const InfoCommand& command, const Ranks& ranks) {
   const std::vector<std::string> scenes = scene_files(command.scenes);
   std::vector<std::pair<std::string, std::string>> found;
   int worst = kOk;
+  std::optional<StopSignals> signals(std::in_place);
   for (const std::string& scene : scenes) {
     if (worst >= kSignalled) return worst;
     worst = std::max(worst, status_of(ranks, [&] { return found.emplace_back(scene, info_of(scene, command)), kOk; }));
   }
+  signals.reset();
   std::string text;
   for (const auto& [scene, of_scene] : found) text += (text.empty() ? "" : "\n") + of_scene;
   print(command.json && scenes.size() > 1 ? info_json(found) : text);

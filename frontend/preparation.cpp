@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <memory>
 
 namespace grelha {
 
@@ -33,7 +32,6 @@ std::uint64_t geometry_bytes(const Scene& scene) {
 template <class Work>
 auto watched(const char* name, bool shown, const Work& work) {
   ProgressBar bar(shown, 0, name);
-  const auto signals = std::make_unique<StopSignals>();
   return work([&](double share) {
     bar.update(share);
     return StopSignals::seen() == 0;
@@ -86,25 +84,25 @@ World build_world(const std::string& path, const Scene& scene, const BuildOption
   }
 }
 
-PictureMemory picture_memory(const RenderCommand& command, const Camera& camera, bool is_long) {
+PictureMemory picture_memory(const RenderCommand& command, const Camera& camera) {
   const bool part = is_partial_name(command.image), refined = command.render.refine.on(), subdivided = command.effects.adaptive.on;
   const auto width = std::uint64_t(camera.width), pixels = width * std::uint64_t(camera.height);
   const Range rows = command.work.rows.value_or(Range{0, camera.height});
   const auto height = std::uint64_t(std::clamp(rows.end - rows.begin, 1, camera.height));  // what the picture lacks is refused later
   const std::uint64_t kept = refined ? kRefined * pixels : subdivided ? kPixel * pixels : kSum * width * height;
   PictureMemory memory;
-  memory.sums = is_long ? kept : 0;
+  memory.sums = kept;
   memory.rest = kProgram + thread_bytes(camera, command.render) + (refined ? kMaps * pixels : subdivided ? kSubdividedPixel * std::min(pixels, kSubdivided) : 0);
-  if (!part) memory.rest += (kPixel + kFilePixel) * pixels + (refined && !is_long ? kept : 0);
+  if (!part) memory.rest += (kPixel + kFilePixel) * pixels;
   return memory;
 }
 
 SceneMemory memory_of(const SceneFile& file, const BuildOptions& options) {
   const BuildMemory build = World::estimate(file.scene, options);
-  const PictureMemory picture = picture_memory({}, file.camera, false);
+  const PictureMemory picture = picture_memory({}, file.camera);
   SceneMemory memory;
   memory.scene = geometry_bytes(file.scene), memory.grids = build.kept;
-  memory.peak = memory.scene + std::max(kProgram + std::max(file.source_bytes, build.peak), build.kept + picture.rest);
+  memory.peak = memory.scene + std::max(kProgram + std::max(file.source_bytes, build.peak), build.kept + picture.sums + picture.rest);
   return memory;
 }
 

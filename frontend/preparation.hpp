@@ -18,7 +18,7 @@ struct Interrupted : std::runtime_error {
   int signal;
 };
 
-/// read_scene() with `shown`, a bar on stderr. Throws Interrupted.
+/// read_scene() with `shown`, a bar on stderr. Throws Interrupted while StopSignals live.
 SceneFile load_scene(const std::string& path, const Warn& warn, const ReadOptions& options, bool shown);
 
 /// The grids of a scene that `later` more bytes are wanted for. Throws Interrupted, and FileError (in the scene's name) when by its
@@ -31,8 +31,7 @@ struct PictureMemory {
   std::uint64_t rest = 0;  ///< the program, what its threads work in, the picture, and its file
 };
 
-/// `is_long`: see is_long_work().
-PictureMemory picture_memory(const RenderCommand& command, const Camera& camera, bool is_long);
+PictureMemory picture_memory(const RenderCommand& command, const Camera& camera);
 
 /// Throws FileError, in the scene's name, when there are not so many bytes left.
 void want_memory(const std::string& path, std::uint64_t bytes);

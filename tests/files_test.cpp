@@ -126,7 +126,7 @@ TEST_F(Files, ASignalEndsTheWaitForAPipe) {
   for (const std::string writer : {"", "(sleep 2 >pipe.nff &) && "}) {
     const Outcome outcome = run("render pipe.nff", writer + stop);
     EXPECT_EQ(outcome.status, 129);
-    EXPECT_EQ(outcome.err, "grelha: stopped by SIGHUP while reading pipe.nff\n");
+    EXPECT_EQ(outcome.err, std::string(test::kStopping) + "grelha: stopped by SIGHUP while reading pipe.nff\n");
   }
 }
 
@@ -202,7 +202,9 @@ TEST_F(Files, StdoutHoldsOneResult) {
   refused("scene boat -o -", "-o: wanted a file, for a mesh is written beside it, found \"-\"");
   const Outcome full = run("render ball.nff -o - --quiet", "sh -c '\"$0\" \"$@\" >/dev/full' ");
   EXPECT_EQ(full.status, 1);
-  EXPECT_EQ(full.err, "stdout: error: cannot write\n");
+  EXPECT_EQ(full.err, "grelha: all of the picture is kept in ball.png.partial: the same command writes it\n"
+                      "stdout: error: cannot write\n");
+  EXPECT_TRUE(run("render ball.nff -o -").err.starts_with("grelha: goes on from ball.png.partial, 100.0 % done\n"));
 }
 
 }  // namespace

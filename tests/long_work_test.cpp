@@ -93,7 +93,7 @@ TEST_F(LongWork, RefusesOptionsThatContradict) {
   refused("--aa adaptive:.1,2 -o a.grelha", "parts are of pictures with as many samples in every pixel: no --error, --time or --aa adaptive");
   refused("--error .1 -o a.grelha", "parts are of pictures with as many samples in every pixel: no --error, --time or --aa adaptive");
   refused("--preview 1 -o a.grelha", "--preview wants a picture to write, not a .grelha");
-  refused("--preview 0", "--preview: wanted seconds above 0, found \"0\"");
+  refused("--preview 0", "--preview: wanted seconds above 0 and up to 1e9, found \"0\"");
   refused("-o a.grelha --checkpoint ./a.grelha", "--checkpoint and -o: wanted two files, found \"a.grelha\" twice");
 }
 
@@ -118,14 +118,14 @@ TEST_F(LongWork, SignalsStopItAndTheSameCommandGoesOn) {
     const std::string stop = "timeout --preserve-status -s " + name + ' ';
     for (double seconds = .03; (outcome = run(job, stop + std::to_string(seconds))).status != 0; seconds *= 1.3) {
       // Ended at once, before it had begun or when it was about to end; or while there was nothing yet to save.
-      if (outcome.status == status && (outcome.err.empty() || outcome.err == "grelha: stopped by SIG" + name + " while building the grids of ball.nff\n")) {
+      if (outcome.status == status && (outcome.err.empty() || outcome.err == test::kStopping + ("grelha: stopped by SIG" + name) + " while building the grids of ball.nff\n")) {
         std::filesystem::remove(folder_.file("x.pfm"));
         continue;
       }
       ASSERT_EQ(outcome.status, status);
       ++stopped;
-      EXPECT_TRUE(outcome.err.starts_with("grelha: stopped by SIG" + name + ", ")) << outcome.err;
-      EXPECT_TRUE(outcome.err.ends_with(" % done and saved in kept: the same command goes on from there\n")) << outcome.err;
+      EXPECT_TRUE(outcome.err.starts_with(test::kStopping + ("grelha: stopped by SIG" + name) + ", ")) << outcome.err;
+      EXPECT_NE(outcome.err.find(" % done and saved in kept: the same command goes on from there"), outcome.err.npos) << outcome.err;
       EXPECT_NO_THROW(read_checkpoint(folder_.file("kept")));
       EXPECT_FALSE(std::filesystem::exists(folder_.file("x.pfm")));
     }
@@ -134,6 +134,48 @@ TEST_F(LongWork, SignalsStopItAndTheSameCommandGoesOn) {
     EXPECT_FALSE(std::filesystem::exists(folder_.file("kept"))) << "done with";
     std::filesystem::remove(folder_.file("x.pfm"));
   }
+}
+
+/// Without --checkpoint as well: the picture so far beside the picture's name, never under it, and the same command goes on.
+TEST_F(LongWork, StoppingLeavesSomethingToGoOnFrom) {
+  for (const char* const any : kJobs) {
+    SCOPED_TRACE(any);
+    ASSERT_EQ(run(std::string(any) + "-o whole.pfm").status, 0);
+    int stopped = 0;
+    for (double seconds = .1; run(std::string(any) + "-o x.pfm", "timeout --preserve-status -s INT " + std::to_string(seconds)).status != 0;
+         seconds *= 1.3) {
+      EXPECT_FALSE(std::filesystem::exists(folder_.file("x.pfm")));
+      if (!std::filesystem::exists(folder_.file("x.pfm.partial"))) continue;  // nothing was done yet
+      ++stopped;
+      EXPECT_NO_THROW(read_checkpoint(folder_.file("x.pfm.partial")));
+      EXPECT_EQ(folder_.read("x.partial.pfm").size(), folder_.read("whole.pfm").size());
+    }
+    EXPECT_GE(stopped, 1);
+    EXPECT_EQ(folder_.read("x.pfm"), folder_.read("whole.pfm"));
+    std::filesystem::remove(folder_.file("x.pfm"));
+    EXPECT_EQ(folder_.list(), "ball.nff whole.pfm") << "done with";
+  }
+}
+
+TEST_F(LongWork, WhatOtherPicturesLeftStays) {
+  const std::string job = "render ball.nff --size 120x80 --samples 600 -j 1 --seed ";
+  const auto stop = [&](const std::string& seed) {
+    for (double seconds = .1; seconds < 20; seconds *= 1.3) {
+      const Outcome outcome = run(job + seed, "timeout --preserve-status -s INT " + std::to_string(seconds));
+      if (outcome.status == 0) return std::string("finished");
+      const std::size_t at = outcome.err.find("saved in ");
+      if (at != outcome.err.npos) return outcome.err.substr(at, outcome.err.find(':', at) - at);
+    }
+    return std::string("too slow");
+  };
+  EXPECT_EQ(stop("1"), "saved in ball.png.partial");
+  EXPECT_EQ(stop("2"), "saved in ball.png.partial1");
+  EXPECT_TRUE(run(job + "2").err.starts_with("grelha: goes on from ball.png.partial1, "));
+  EXPECT_TRUE(std::filesystem::exists(folder_.file("ball.png.partial"))) << "the first's";
+  EXPECT_FALSE(std::filesystem::exists(folder_.file("ball.png.partial1")));
+  folder_.write("ball.png.partial", "a letter");
+  EXPECT_EQ(run(job + "3").err, "");
+  EXPECT_EQ(folder_.read("ball.png.partial"), "a letter");
 }
 
 TEST_F(LongWork, MapsAreThoseOfAnUndisturbedRun) {
@@ -200,16 +242,19 @@ TEST_F(LongWork, SignalsStopReadingAndBuilding) {
   for (double seconds = .01; (outcome = run("render t.nff --quiet --size 8x8", "timeout --preserve-status -s INT " + std::to_string(seconds))).status != 0;
        seconds *= 1.4) {
     ASSERT_EQ(outcome.status, 130) << outcome.err;
-    const bool reading = outcome.err == "grelha: stopped by SIGINT while reading t.nff\n";
-    const bool building = outcome.err == "grelha: stopped by SIGINT while building the grids of t.nff\n";
-    EXPECT_TRUE(reading || building || outcome.err.empty()) << outcome.err;  // nothing said: it had not begun, or was rendering
+    const std::string stopped = test::kStopping + std::string("grelha: stopped by SIGINT");
+    const bool reading = outcome.err == stopped + " while reading t.nff\n";
+    const bool building = outcome.err == stopped + " while building the grids of t.nff\n";
+    // Nothing said: it had not begun.
+    EXPECT_TRUE(reading || building || outcome.err.empty() || outcome.err.starts_with(stopped + ", ")) << outcome.err;
     seen[0] |= reading, seen[1] |= building;
   }
   EXPECT_TRUE(seen[0] && seen[1]);
+  for (const char* left : {"t.partial.png", "t.png.partial"}) std::filesystem::remove(folder_.file(left));
   EXPECT_EQ(folder_.list(), "ball.nff t.nff t.ply t.png");
   const Outcome info = run("info t.nff t.nff", "timeout --preserve-status -s TERM .03");
   EXPECT_EQ(info.status, 143);
-  EXPECT_LE(std::count(info.err.begin(), info.err.end(), '\n'), 1) << "the second is not begun: " << info.err;
+  EXPECT_LE(std::count(info.err.begin(), info.err.end(), '\n'), 2) << "the second is not begun: " << info.err;
 }
 
 /// A signal may reach any thread, and any thread may ask; the thread sanitizer sees whether that is a race.

@@ -209,7 +209,7 @@ TEST_F(Program, HostileFilesAreBounded) {
   if (!memory_can_be_limited()) GTEST_SKIP() << "sanitizers own more memory than there is";
   const Outcome large = run("render ball.nff --size 6000x6000 -o x.pfm --max-memory 300M");
   EXPECT_EQ(large.status, 1);
-  EXPECT_TRUE(large.err.starts_with("ball.nff: error: wanted about 0.8")) << large.err;
+  EXPECT_TRUE(large.err.starts_with("ball.nff: error: wanted about 1.7")) << large.err;
   EXPECT_TRUE(large.err.ends_with(" GB of memory to render it, found 0.315 GB (--max-memory)\n")) << large.err;
   EXPECT_EQ(folder_.list(), "ball.nff claims.ply corners.nff faces.ply mesh.nff");
 }

@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
+#include <csignal>
 #include <string>
 #include <vector>
 
@@ -43,6 +45,7 @@ std::vector<std::string> drawn(const std::string& output) {
   return lines;
 }
 
+constexpr char kControlC = 3;
 constexpr const char* kSeconds = "render ball.nff -o x.pfm --threads 1 --size 200x200 --samples ";
 
 TEST(Terminal, TheBarIsNoWiderThanTheWindowAlsoWhenItIsResized) {
@@ -65,6 +68,39 @@ TEST(Terminal, TheBarIsNoWiderThanTheWindowAlsoWhenItIsResized) {
   EXPECT_LT(narrow, 50u);
   EXPECT_GT(narrower, 0u) << "no bar was drawn after the window was resized";
   EXPECT_LT(narrower, 30u);
+}
+
+using Clock = std::chrono::steady_clock;
+
+/// One piece of work here is 8 rows of 64 samples of a picture 4000 wide: seconds.
+TEST(Terminal, ControlCIsAnsweredAtOnceWhateverIsInWork) {
+  const TemporaryFolder folder;
+  folder.write("ball.nff", test::kBall);
+  test::Terminal terminal(folder, "render ball.nff -j 1 --samples 64 --size 8000x4000", 80);
+  terminal.read_until("render [");
+  const auto typed = Clock::now();
+  terminal.type(kControlC);
+  const std::string answer = terminal.read_until("once more ends it at once");
+  EXPECT_LT(std::chrono::duration<double>(Clock::now() - typed).count(), .1);
+  EXPECT_NE(answer.find("\r\033[Kgrelha: stopping"), answer.npos) << answer;
+  terminal.type(kControlC);
+  terminal.read_all();
+  EXPECT_EQ(terminal.status(), 128 + SIGINT);
+  EXPECT_LT(std::chrono::duration<double>(Clock::now() - typed).count(), .5) << "the second ends it at once";
+}
+
+/// The stop itself waits for the piece in work; what there is stays, beside the picture's name.
+TEST(Terminal, ControlCLeavesThePictureSoFar) {
+  const TemporaryFolder folder;
+  folder.write("ball.nff", test::kBall);
+  test::Terminal terminal(folder, "render ball.nff -j 1 --samples 3000 --size 300x200", 80);
+  terminal.read_until("left");
+  terminal.type(kControlC);
+  const std::string said = terminal.read_all();
+  EXPECT_EQ(terminal.status(), 128 + SIGINT);
+  EXPECT_NE(said.find(" % done and saved in ball.png.partial: the same command goes on from there; "
+                      "ball.partial.png is the picture so far"), said.npos) << said;
+  EXPECT_EQ(folder.list(), "ball.nff ball.partial.png ball.png.partial");
 }
 
 TEST(Terminal, IsNoPlaceForAPicture) {
