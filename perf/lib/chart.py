@@ -135,7 +135,10 @@ def add_hints(path, hints):
     def titled(match):
         text = hints[match[1]].replace("&", "&amp;").replace("<", "&lt;")
         return f"{match[0]}<title>{text}</title>"
-    path.write_text(re.sub(r'<g id="(point\d+)">', titled, path.read_text()))
+    text = re.sub(r'<g id="(point\d+)">', titled, path.read_text())
+    # Matplotlib names clip paths by the hash of places that a layout may give another last bit
+    names = {name: f"clip{i}" for i, name in enumerate(dict.fromkeys(re.findall(r"p[0-9a-f]{10}(?=\)|\")", text)))}
+    path.write_text(re.sub(r"(?<=[#\"])p[0-9a-f]{10}(?=\)|\")", lambda m: names[m[0]], text))
 
 
 def legend_height(handles, columns):
