@@ -68,8 +68,9 @@ std::string program_help(const std::vector<CommandHelp>& commands, bool all) {
           "  grelha compare a.png b.png --max-rmse 0.01\n"
           "  grelha merge upper.grelha lower.grelha -o whole.png\n"
           "Each command has its own --help and --help-all. Exit status: 0; 1 when reading\n"
-          "or writing a file fails; 2 for bad usage or a scene that cannot be one; 129,\n"
-          "130 and 143 when stopped by SIGHUP, SIGINT and SIGTERM.\n";
+          "or writing a file fails; 2 for bad usage, a scene that cannot be one, or a\n"
+          "warning with --strict; 129, 130 and 143 when stopped by SIGHUP, SIGINT and\n"
+          "SIGTERM.\n";
   if (all)
     for (const CommandHelp& c : commands) (text += '\n') += help_text(c, true);
   return text;

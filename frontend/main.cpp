@@ -9,6 +9,7 @@
 #include "frontend/memory_limit.hpp"
 #include "frontend/merge.hpp"
 #include "frontend/nearest.hpp"
+#include "frontend/nothing_seen.hpp"
 #include "frontend/options.hpp"
 #include "frontend/outputs.hpp"
 #include "frontend/parse_error.hpp"
@@ -18,6 +19,7 @@
 #include "frontend/report.hpp"
 #include "frontend/scene_file.hpp"
 #include "frontend/stop_signals.hpp"
+#include "frontend/warning_log.hpp"
 #include "kernel/render.hpp"
 #include "scenes/generators.hpp"
 
@@ -148,10 +150,11 @@ int render_scene(const RenderCommand& given, Ranks& ranks) {
   const Stopwatch load;
   const bool bars = !command.quiet && stderr_is_terminal();
   SceneFile file;
+  WarningLog log;
   const auto read = [&] {
     want_isa(command.render.isa);
     if (ranks.first()) prepare_outputs(command);
-    file = load_scene(command.scene, warn, command.input.read, bars);
+    file = load_scene(command.scene, log.telling(), command.input.read, bars);
     want_not_read(outputs_of(command), file.meshes);
   };
   if (!ranks.together(read)) return kFileFailed;
@@ -163,9 +166,11 @@ int render_scene(const RenderCommand& given, Ranks& ranks) {
   report.seconds.load = load.seconds();
   const Camera camera = camera_of(file, command);
   want_room(format_of(command.image, command.format), camera.width, camera.height);
+  warn_of_nothing(command.scene, file, camera, log.telling());
+  log.want_none(command.input);
   const PictureMemory memory = picture_memory(prepared, camera);
   want_memory(command.scene, memory.sums + memory.rest);
-  LongRender work(prepared, camera, scene, ranks, warn);
+  LongRender work(prepared, camera, scene, ranks, log.telling());
 
   const Stopwatch build;
   const World world = build_world(command.scene, file.scene, command.build, memory.rest, bars);
@@ -198,6 +203,7 @@ int render_scene(const RenderCommand& given, Ranks& ranks) {
   if (!command.stats.empty()) write_file(command.stats, stats_json(prepared, report));
   const std::string summary = summary_line(command, report);
   if (!command.quiet) tell(summary, writes_to_stdout(command));
+  log.want_none(command.input);  // saves may have failed on the way
   return kOk;
 }
 
@@ -231,7 +237,10 @@ int run(const RenderCommand& command, Ranks& ranks) {
 
 std::string info_of(const std::string& scene, const InfoCommand& command) {
   const bool bars = stderr_is_terminal();
-  const SceneFile file = load_scene(scene, warn, command.input.read, bars);
+  WarningLog log;
+  const SceneFile file = load_scene(scene, log.telling(), command.input.read, bars);
+  warn_of_nothing(scene, file, file.camera, log.telling());
+  log.want_none(command.input);
   const SceneMemory memory = memory_of(file, command.build);
   std::optional<std::vector<GridStats>> grids;
   if (memory.peak - memory.scene < own_memory().left()) grids = build_world(scene, file.scene, command.build, 0, bars).grids();

@@ -311,6 +311,7 @@ void NffReader::read_ply(std::string_view keyword) {
     throw FileError(path, reason + " (named at " + input_.position(name).text() + ')');
   }
   const std::size_t faces = mesh.face_count();
+  if (faces == 0) file_.points += mesh.vertex_count();
   const Triangles& triangles = file_.scene.geometry.triangles;
   constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max();
   if (mesh.vertex_count() > kMost - triangles.vertex_count() || mesh.corners.size() > kMost - triangles.size())

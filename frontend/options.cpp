@@ -55,6 +55,7 @@ void add_input_options(CLI::App& app, InputOptions& input) {
   value(app, "--max-memory", "SIZE", "fail rather than take more: 512M, 6G [as much as the machine has]",
         [&input](const std::string& text) { input.max_memory = memory_size(text); });
   app.add_flag("--allow-outside", input.read.allow_outside, "scenes may name files outside their own folder");
+  app.add_flag("--strict", input.strict, "take a warning for an error: exit status 2");
 }
 
 void add_build_options(CLI::App& app, BuildOptions& build) {

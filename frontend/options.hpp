@@ -22,6 +22,7 @@ struct UsageError : std::runtime_error {
 /// Of reading a scene that may be anyone's.
 struct InputOptions {
   ReadOptions read;
+  bool strict = false;           ///< no warning is let pass
   std::uint64_t max_memory = 0;  ///< bytes; 0: as much as the machine has
 };
 

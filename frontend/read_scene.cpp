@@ -40,6 +40,7 @@ SceneFile read_mesh_alone(const std::string& path, std::string bytes, const Warn
   Mesh mesh = read_ply_mesh(path, bytes, warn, &progress);
   std::string().swap(bytes);  // as large as what is made of it
   file.counts.ply = mesh.face_count();
+  if (file.counts.ply == 0) file.points = mesh.vertex_count();
   file.scene.materials.push_back(default_mesh_material());
   SceneBuilder(file).mesh(std::move(mesh), 0);
   add_default_view(file);

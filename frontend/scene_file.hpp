@@ -50,6 +50,7 @@ struct SceneFile {
   Camera camera;
   EntityCounts counts;
   Dropped dropped;
+  std::uint64_t points = 0;  ///< vertices of meshes without faces
   LensHint lens;
   std::vector<AreaLight> area_lights;
   std::string accelerator;    ///< `accel` hint as written, or empty

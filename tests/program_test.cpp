@@ -169,6 +169,28 @@ TEST_F(Program, TakesFoldersAndSeveralScenes) {
   EXPECT_EQ(folder_.list(), "a.hdr all b.hdr ball.nff");
 }
 
+/// A picture of nothing has one warning and is made; with --strict it is not.
+TEST_F(Program, StrictTakesWarningsForErrors) {
+  const std::string start = std::string(kBall).substr(0, std::string(kBall).find("s 0"));
+  folder_.write("cloud.ply", "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
+                             "end_header\n0 0 0\n1 1 1\n");
+  folder_.write("word.nff", start + "sphere 0 0 0 1\n");
+  for (const char* name : {"cloud.ply", "word.nff"}) {
+    for (const std::string& command : {std::string("render -o x.png --quiet "), std::string("info ")}) {
+      std::filesystem::remove(folder_.file("x.png"));
+      const Outcome let = run(command + name), strict = run(command + "--strict " + name);
+      EXPECT_EQ(let.status, 0) << let.err;
+      EXPECT_NE(let.err.find(": warning: "), std::string::npos) << let.err;
+      EXPECT_EQ(strict.status, 2);
+      EXPECT_TRUE(strict.err.starts_with(let.err)) << strict.err;
+      EXPECT_TRUE(strict.err.substr(let.err.size()).starts_with("grelha: error: --strict: wanted no warning, found ")) << strict.err;
+    }
+  }
+  EXPECT_EQ(run("render -o x.png --quiet --strict cloud.ply").status, 2);
+  EXPECT_FALSE(std::filesystem::exists(folder_.file("x.png")));
+  EXPECT_EQ(run("render -o x.png --quiet --strict ball.nff").status, 0);
+}
+
 TEST_F(Program, OneBadSceneDoesNotKeepTheOthers) {
   const Outcome outcome = run("render no.nff ball.nff -o {}.pfm --size 8x4");
   EXPECT_EQ(outcome.status, 1);
