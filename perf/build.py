@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 """Grid construction beside Embree's trees: runs perf/build.cpp, keeps its figures and draws them.
 
-    ./run perf build [--quick] [--draw] [options of the benchmark: --scene NAME, --rounds N, --threads N, --scenes DIR]
+    ./run perf build [--quick] [--draw] [options of the benchmark: --scene NAME, --rounds N,
+                     --threads N, --scenes DIR]
 
-The benchmark prints the table. A whole run writes docs/build.csv and docs/images/build.svg, a part of one, or --quick, the same
-beside the program; the benchmark's own JSON stays there in either case. --draw: the chart alone, from docs/build.csv.
+The benchmark prints the table. A whole run writes docs/build.csv and docs/images/build.svg, a part
+of one, or --quick, the same beside the program; the benchmark's own JSON stays there in either
+case. --draw: the chart alone, from docs/build.csv.
 """
 import argparse
 import csv
@@ -21,8 +23,11 @@ from bench import DRAW_HELP, ROOT, plt, read_csv
 from chart import legend_below
 
 # Colour (after Okabe and Ito), marker, label
-WAYS = {"grelha": ("#0072B2", "o", "Grelha's grids"), "embree low": ("#E69F00", "s", "Embree's trees, low quality"),
-        "embree medium": ("#D55E00", "^", "Embree's trees, medium quality")}
+WAYS = {
+    "grelha": ("#0072B2", "o", "Grelha's grids"),
+    "embree low": ("#E69F00", "s", "Embree's trees, low quality"),
+    "embree medium": ("#D55E00", "^", "Embree's trees, medium quality")
+}
 
 
 def rows_of(path):
@@ -43,28 +48,55 @@ def write_csv(rows, path):
 
 def rows_from_csv():
     """What write_csv kept in docs/."""
-    return {r["scene"]: {k.replace("_", " "): float(v) for k, v in r.items() if k != "scene" and v} for r in read_csv("build")}
+    return {
+        r["scene"]: {k.replace("_", " "): float(v)
+                     for k, v in r.items()
+                     if k != "scene" and v}
+        for r in read_csv("build")
+    }
 
 
 def draw(rows, path):
     threads = sorted({int(m[1]) for r in rows.values() for k in r if (m := re.match(r"grelha (\d+) least ms", k))})
-    fig, panels = plt.subplots(1, len(threads) + 1, figsize=(4.2 * len(threads) + 5, 1.4 + .5 * len(rows)), sharey=True, layout="constrained")
+    fig, panels = plt.subplots(1,
+                               len(threads) + 1,
+                               figsize=(4.2 * len(threads) + 5, 1.4 + .5 * len(rows)),
+                               sharey=True,
+                               layout="constrained")
     names = list(rows)[::-1]
     for panel, n in zip(panels, [*threads, None]):
         for way, (colour, marker, label) in WAYS.items():
             for y, r in enumerate(rows[s] for s in names):
-                least, middle = (f"{way} bytes",) * 2 if n is None else (f"{way} {n} least ms", f"{way} {n} ms")
+                least, middle = (f"{way} bytes", ) * 2 if n is None else (f"{way} {n} least ms",
+                                                                          f"{way} {n} ms")
                 if least in r:
                     scale = 1 if n is None else 1e6 / r["primitives"]
-                    panel.plot([r[least] * scale, r[middle] * scale], [y, y], color=colour, linewidth=2, alpha=.6)
-                    panel.plot(r[least] * scale, y, marker, color=colour, label=label if y == 0 else None)
-        panel.set(yticks=range(len(names)), yticklabels=names, xlabel="bytes a primitive" if n is None else "nanoseconds a primitive",
-                  title="memory, the scene's own arrays among it" if n is None else f"time, {n} thread{'s' * (n > 1)}")
+                    panel.plot([r[least] * scale, r[middle] * scale], [y, y],
+                               color=colour,
+                               linewidth=2,
+                               alpha=.6)
+                    panel.plot(r[least] * scale,
+                               y,
+                               marker,
+                               color=colour,
+                               label=label if y == 0 else None)
+        panel.set(yticks=range(len(names)),
+                  yticklabels=names,
+                  xlabel="bytes a primitive" if n is None else "nanoseconds a primitive",
+                  title="memory, the scene's own arrays among it"
+                  if n is None else f"time, {n} thread{'s' * (n > 1)}")
         panel.set_xlim(left=0)
         panel.grid(alpha=.3)
     panels[0].set_ylabel("scene")
-    handles = [Line2D([], [], marker=marker, linestyle="", color=colour, label=label) for colour, marker, label in WAYS.values()]
-    handles.append(Line2D([], [], color="#777777", linewidth=2, label="from the least of nine times to their median"))
+    handles = [
+        Line2D([], [], marker=marker, linestyle="", color=colour, label=label)
+        for colour, marker, label in WAYS.values()
+    ]
+    handles.append(
+        Line2D([], [],
+               color="#777777",
+               linewidth=2,
+               label="from the least of nine times to their median"))
     legend_below(fig, handles, 4)
     fig.savefig(path, metadata={"Date": None})
     plt.close(fig)

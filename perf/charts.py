@@ -3,10 +3,12 @@
 
     ./run charts [rays] [picture] [grid] [features] [--quick] [--rounds N] [--draw]
 
-Without a name, all. Every point tells the command that repeats it: in the CSV, in the SVG when the mouse rests on it, and in report.html, which
-opens without a network. --quick: smaller pictures, fewer points, and nothing kept in docs/. --draw: the charts and the page from the CSVs in docs/.
-What is measured stays in the build folder beside the references, so that the page shows all charts whichever was made last, with small pictures;
-references are made anew when their scene or options change (delete charts/ there when the program draws other pictures).
+Without a name, all. Every point tells the command that repeats it: in the CSV, in the SVG when the
+mouse rests on it, and in report.html, which opens without a network. --quick: smaller pictures,
+fewer points, and nothing kept in docs/. --draw: the charts and the page from the CSVs in docs/.
+What is measured stays in the build folder beside the references, so that the page shows all charts
+whichever was made last, with small pictures; references are made anew when their scene or options
+change (delete charts/ there when the program draws other pictures).
 """
 import argparse
 import csv
@@ -76,14 +78,18 @@ def wrapped(text):
 
 
 def known(name, module, kept, out):
-    """What the CSV says, and small pictures where it is of what was measured here; None when there is no CSV."""
+    """What the CSV says, with small pictures where they were measured here; None without a CSV."""
     if not (out / f"charts-{name}.csv").exists():
         return None
     rows = read_csv(f"charts-{name}", out)
     kept_rows = module.from_csv(rows)
     here = json.loads(kept.read_text()) if kept.exists() else None
-    found = {"words": module.tell(kept_rows, table), "result": kept_rows, "told": f"Drawn from charts-{name}.csv. `./run charts {name}` measures it."}
-    if here and [list(map(str, row)) for row in module.csv(here["result"])[1]] == [list(row.values()) for row in rows]:
+    found = {
+        "words": module.tell(kept_rows, table), "result": kept_rows,
+        "told": f"Drawn from charts-{name}.csv. `./run charts {name}` measures it."
+    }
+    if here and [list(map(str, row))
+                 for row in module.csv(here["result"])[1]] == [list(row.values()) for row in rows]:
         found |= here
     return found
 
@@ -94,13 +100,14 @@ def draw_all(charts, out, folder):
 
 
 def make(name, shop, asked, plan, out):
-    """Measures, tells and draws it where it is asked for; for the page, in any case, its words and charts."""
+    """Measures, tells and draws it where it is asked for; its words and charts, for the page."""
     module, kept = importlib.import_module(name), shop.folder / f"{name}.json"
     chosen = name in (asked.names or NAMES)
     if chosen and not asked.draw:
         measured(name, module, shop, plan, kept)
         if kept.exists():
-            write_csv(out / f"charts-{name}.csv", *module.csv(json.loads(kept.read_text())["result"]))
+            write_csv(out / f"charts-{name}.csv",
+                      *module.csv(json.loads(kept.read_text())["result"]))
         elif plan.quick:
             (out / f"charts-{name}.csv").unlink(missing_ok=True)
     found = known(name, module, kept, out)
@@ -136,7 +143,10 @@ def main():
     out = pictures.folder if plan.quick else DOCS
     for folder in (pictures.folder, out):
         (folder / "images").mkdir(exist_ok=True)
-    kinds = {name: make(name, pictures if name == "picture" else timed, asked, plan, out) for name in NAMES}
+    kinds = {
+        name: make(name, pictures if name == "picture" else timed, asked, plan, out)
+        for name in NAMES
+    }
     page = pictures.folder / "report.html"
     make_page(page, kinds)
     print(f"{out}/charts-*.csv, {out}/images/charts-*.svg, {page}")

@@ -121,7 +121,11 @@ def draw(results, size, path):
     for panel in list(panels.flat)[len(results):]:
         panel.axis("off")
     handles = dict(zip(*reversed(panels[0][0].get_legend_handles_labels())))
-    panels[-1][-1].legend(handles.values(), handles.keys(), fontsize=11, loc="center", frameon=False)
+    panels[-1][-1].legend(handles.values(),
+                          handles.keys(),
+                          fontsize=11,
+                          loc="center",
+                          frameon=False)
     fig.suptitle(f"{size}x{size}: random, both jitters and sobol with 1, 4, 16, 64, 256 samples a pixel; adaptive with D from 1 to 5; "
                  "--error from .08 to .000625", fontsize=10)
     fig.savefig(path, dpi=90)
@@ -132,7 +136,10 @@ def from_csv(rows):
     for name, title, *_ in SCENES:
         own = [r for r in rows if r["scene"] == name]
         floor = next(float(r["rmse"]) for r in own if r["method"] == REFERENCE_ROW)
-        points = {(r["method"], r["setting"]): {"seconds": float(r["seconds"]), "rmse": float(r["rmse"])} for r in own if r["method"] in METHODS}
+        points = {(r["method"], r["setting"]):
+                  {"seconds": float(r["seconds"]), "rmse": float(r["rmse"])}
+                  for r in own
+                  if r["method"] in METHODS}
         yield title, points, floor
 
 
@@ -146,7 +153,8 @@ def main():
     parser.add_argument("--draw", action="store_true", help=DRAW_HELP)
     asked = parser.parse_args()
     if asked.draw:
-        draw(list(from_csv(read_csv("error-time"))), asked.size, ROOT / "docs/images/error-time.png")
+        draw(list(from_csv(read_csv("error-time"))), asked.size,
+             ROOT / "docs/images/error-time.png")
         return
     size, repeats, methods, finest, reference_samples = asked.size, asked.repeats, METHODS, str(FINEST), REFERENCE
     if asked.quick:
@@ -169,7 +177,8 @@ def main():
         results.append((title, points, floor))
         rows += [[name, method, setting, f"{p['samples']:.4g}", p["rays"], f"{p['seconds']:.4g}", f"{p['rmse']:.4g}"]
                  for (method, setting), p in points.items()]
-        rows.append([name, REFERENCE_ROW, reference_samples, reference_samples, "", "", f"{floor:.2g}"])
+        rows.append(
+            [name, REFERENCE_ROW, reference_samples, reference_samples, "", "", f"{floor:.2g}"])
 
     with open(out / "error-time.csv", "w", newline="") as f:
         table = csv.writer(f, lineterminator="\n")

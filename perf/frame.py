@@ -98,16 +98,20 @@ def file_to_file(run):
 
 
 def profile(bench, scenes):
-    """Where the time of plain pictures goes: by phase, of the fastest of whole runs on one thread, and how far the others lie."""
+    """Where the time of plain pictures goes: by phase, of the fastest of whole runs on one thread,
+    and how far the others lie."""
     runs = {name: [] for name, *_ in scenes}
     for _ in range(4 * bench.rounds):
         for name, scene, *_ in scenes:
             run = grelha(bench, scene, PLAIN, 1)
             run["other"] = run["clock"] - sum(run[p] for p in PHASES)
             runs[name].append(run)
-    got = {name: min(of, key=file_to_file) for name, of in runs.items()}  # all phases of one and the same run
+    got = {name: min(of, key=file_to_file)
+           for name, of in runs.items()}  # all phases of one and the same run
     for name, run in got.items():
-        run["least"], run["median"], run["most"] = (at([file_to_file(r) for r in runs[name]]) for at in (min, statistics.median, max))
+        run["least"], run["median"], run["most"] = (at([file_to_file(r)
+                                                        for r in runs[name]])
+                                                    for at in (min, statistics.median, max))
     return got
 
 
@@ -167,7 +171,8 @@ def tell_profile(phases, alone):
     return f"""## Whole pictures
 
 Plain pictures of {SIDE} x {SIDE}, paths of at most {DEPTH} rays, one thread, on a virtual {cpu_name()}; milliseconds of the fastest of several runs,
-phases as `--stats` tells them; the chart has the median and the slowest as well. The last two rows are from one process: a whole render beside the same rays, recorded from it and traced alone (CPU
+phases as `--stats` tells them; the chart has the median and the slowest as well. The last two rows
+are from one process: a whole render beside the same rays, recorded from it and traced alone (CPU
 time), and beside two threads (by the clock).
 
 {table(["", *names], rows)}
@@ -211,15 +216,25 @@ fast as its default or faster. Pictures are compared as
 
 
 def from_csv(rows):
-    return {r["scene"]: {key: float(value) for key, value in r.items() if key != "scene"} for r in rows}
+    return {
+        r["scene"]: {key: float(value)
+                     for key, value in r.items()
+                     if key != "scene"}
+        for r in rows
+    }
 
 
 def draw(bench, phases):
     figure, axis = plt.subplots(figsize=(9, 3.6), layout="constrained")
-    keys = [("load", "load"), ("build", "build"), ("camera", "camera rays"), ("primary", "trace camera rays"), ("bounce", "trace bounces"),
-            ("shadow", "trace shadow rays"), ("surface", "surfaces"), ("light", "local light"), ("children", "make bounces"),
-            ("sums", "sums to pixels"), ("other", "memory, threads"), ("write", "write PNG")]
-    shades = ["#999999", "#555555", "#F0E442", "#0072B2", "#2E9BD6", "#8CCBEE", "#D55E00", "#E69F00", "#F5C77E", "#B2DF8A", "#DDDDDD", "#CC79A7"]
+    keys = [("load", "load"), ("build", "build"), ("camera", "camera rays"),
+            ("primary", "trace camera rays"), ("bounce", "trace bounces"),
+            ("shadow", "trace shadow rays"), ("surface", "surfaces"), ("light", "local light"),
+            ("children", "make bounces"), ("sums", "sums to pixels"), ("other", "memory, threads"),
+            ("write", "write PNG")]
+    shades = [
+        "#999999", "#555555", "#F0E442", "#0072B2", "#2E9BD6", "#8CCBEE", "#D55E00", "#E69F00",
+        "#F5C77E", "#B2DF8A", "#DDDDDD", "#CC79A7"
+    ]
     names = list(phases)[::-1]
     left = [0.] * len(names)
     for (key, label), shade in zip(keys, shades):
@@ -228,7 +243,12 @@ def draw(bench, phases):
         left = [a + b for a, b in zip(left, wide)]
     if all(key in phases[n] for n in names for key in SPREAD):  # CSVs of before have none
         least, median, most = ([phases[n][key] * 1e3 for n in names] for key in SPREAD)
-        axis.errorbar(left, names, xerr=[[0] * len(names), [m - a for m, a in zip(most, least)]], fmt="none", ecolor="black", capsize=4,
+        axis.errorbar(left,
+                      names,
+                      xerr=[[0] * len(names), [m - a for m, a in zip(most, least)]],
+                      fmt="none",
+                      ecolor="black",
+                      capsize=4,
                       label="from the fastest run\nto the slowest")
         axis.plot(median, names, "|", color="black", markersize=9, label="the median run")
     axis.set(xlabel=f"milliseconds, a picture of {SIDE} x {SIDE}, one thread", ylabel="scene",

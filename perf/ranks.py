@@ -13,7 +13,8 @@ import random
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "lib"))
-from bench import COLOURS, DOCS, Bench, arguments, cores, cpu_name, plt, put_section, read_csv, table
+from bench import (COLOURS, DOCS, Bench, arguments, cores, cpu_name, plt, put_section, read_csv,
+                   table)
 from chart import set_axis
 
 import json
@@ -105,7 +106,8 @@ def from_csv(pieces, rows):
 def draw(bench, rates, modelled):
     figure, panels = plt.subplots(1, 2, figsize=(11, 4.2), layout="constrained")
     for (samples, rows), colour, marker in zip(modelled.items(), COLOURS, "osD^"):
-        look = {"color": colour, "marker": marker, "markersize": 4, "label": f"{samples} samples a pixel"}
+        look = {"color": colour, "marker": marker, "markersize": 4,
+                "label": f"{samples} samples a pixel"}
         panels[0].plot(THREADS, [r * samples / PIECE_SAMPLES for r in rows], **look)
         panels[1].plot(THREADS, [r / rows[0] / t for r, t in zip(rows, THREADS)], **look)
     ideal = [modelled[SAMPLES[0]][0] * t for t in THREADS]
@@ -114,9 +116,11 @@ def draw(bench, rates, modelled):
     panels[0].text(1, 1.1 * BYTES_A_SECOND / (WIDTH * 24), "a link of 10 Gbit/s is full", fontsize=8, color="#555555")
     panels[0].axhline(PIECE_ROWS * rates["TCP", 4], color="#999999", linewidth=1, linestyle=":")
     panels[0].text(1, 1.1 * PIECE_ROWS * rates["TCP", 4], "as fast as pieces were handed out over TCP", fontsize=8, color="#555555")
-    panels[0].set(title=f"model of a picture of {WIDTH} x {HEIGHT}", xlabel="threads of all ranks", xscale="log", yscale="log",
+    panels[0].set(title=f"model of a picture of {WIDTH} x {HEIGHT}", xscale="log", yscale="log",
+                  xlabel="threads of all ranks",
                   ylabel=f"rows of {PIECE_SAMPLES} samples a pixel, a second")
-    panels[1].set(title="what of the threads' time is of use", xlabel="threads of all ranks", xscale="log", ylim=(0, 1.05),
+    panels[1].set(title="what of the threads' time is of use", xscale="log", ylim=(0, 1.05),
+                  xlabel="threads of all ranks",
                   ylabel="efficiency: times as fast as one thread / threads")
     for panel in panels:
         panel.grid(alpha=.4)
@@ -154,7 +158,8 @@ rank. Efficiency falls below .8 at {", ".join(f"{t:,} threads with {s} samples" 
 """
     print(text)
     bench.write_csv("ranks", ["samples", "threads", "rows_a_second"], [[s, t, f"{r:.5g}"] for s, rows_ in modelled.items() for t, r in zip(THREADS, rows_)])
-    bench.write_csv("ranks-pieces", ["way", "ranks", "pieces_a_second"], [[w, n, f"{rate:.0f}"] for (w, n), rate in rates.items()])
+    bench.write_csv("ranks-pieces", ["way", "ranks", "pieces_a_second"],
+                    [[w, n, f"{rate:.0f}"] for (w, n), rate in rates.items()])
     if bench.docs == DOCS:
         put_section(DOCS / "farm.md", "perf/ranks.py", text)
 

@@ -9,7 +9,8 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "lib"))
-from bench import Bench, COLOURS, ROOT, arguments, cores, cpu_name, plt, read_csv, seconds, table, times
+from bench import (COLOURS, ROOT, Bench, arguments, cores, cpu_name, plt, read_csv, seconds, table,
+                   times)
 from chart import set_axis
 
 # name, file of the course, generator and size, samples a pixel; then the report's own seconds without grid, with grid, with grid and threads
@@ -92,7 +93,10 @@ and the kernel builds none.
 def from_csv(rows):
     """Name, our seconds of all steps and the report's own, as they were kept in docs/."""
     theirs = {name: seconds for name, *_, seconds in SCENES}
-    return [(name, [float(r["seconds"]) for r in rows if r["scene"] == name], theirs[name]) for name in dict.fromkeys(r["scene"] for r in rows)]
+    return [(name, [float(r["seconds"])
+                    for r in rows
+                    if r["scene"] == name], theirs[name])
+            for name in dict.fromkeys(r["scene"] for r in rows)]
 
 
 def draw(bench, results):

@@ -78,24 +78,34 @@ def by_option(bench, scenes, settings, options, more=1):
 
 
 def from_csv(rows):
-    """What write_csv kept in docs/: points by primitives, threads, side and depth, each by scene and setting."""
+    """Points by primitives, threads, side and depth, each by scene and setting."""
     found = {"primitives": {}, "threads": {}, "side": {}, "depth": {}}
     for row in rows:
-        numbers = {key.removesuffix("_ns"): float(value) for key, value in row.items() if key not in ("against", "scene", "setting") and value}
+        numbers = {
+            key.removesuffix("_ns"): float(value)
+            for key, value in row.items()
+            if key not in ("against", "scene", "setting") and value
+        }
         found[row["against"]].setdefault(row["scene"], {})[int(row["setting"])] = numbers
     return found.values()
 
 
-# Colour, marker and dash of a curve: the first scene's and the second's, and of each a second quantity's
-CURVES = [(COLOURS[0], "o", "-"), (COLOURS[1], "s", "-"), (COLOURS[0], "^", ":"), (COLOURS[1], "D", ":")]
+# Colour, marker and dash of a curve: the first scene's and the second's, then of a second quantity
+CURVES = [(COLOURS[0], "o", "-"), (COLOURS[1], "s", "-"), (COLOURS[0], "^", ":"),
+          (COLOURS[1], "D", ":")]
 
 
 def curves(panel, points_by_scene, x, *quantities):
-    """One curve for each scene and quantity; a quantity is its words and how it comes of a point (and its setting)."""
+    """A curve for each scene and quantity: its words, and how it comes of a setting and its point."""
     for quantity, (words, value) in enumerate(quantities):
-        for (colour, marker, dash), (name, points) in zip(CURVES[2 * quantity:], points_by_scene.items()):
-            panel.plot([x(setting, p) for setting, p in points.items()], [value(setting, p) for setting, p in points.items()], marker=marker,
-                       linestyle=dash, color=colour, label=f"{name}{words and ', '}{words}")
+        for (colour, marker, dash), (name, points) in zip(CURVES[2 * quantity:],
+                                                          points_by_scene.items()):
+            panel.plot([x(setting, p) for setting, p in points.items()],
+                       [value(setting, p) for setting, p in points.items()],
+                       marker=marker,
+                       linestyle=dash,
+                       color=colour,
+                       label=f"{name}{words and ', '}{words}")
 
 
 def named(panel, title, x, y):
@@ -114,7 +124,8 @@ def guide(panel, xs, ys, words):
 def draw(bench, growth, threads, sizes, depths):
     figure, panels = plt.subplots(4, 2, figsize=(10, 14.5), layout="constrained")
     (rays, memory), (building, speed), (pixels, by_size), (depth, traced) = panels
-    primitives, setting, area = (lambda s, p: p["primitives"]), (lambda s, p: s), (lambda s, p: s * s)
+    primitives, setting, area = (lambda s, p: p["primitives"]), (lambda s, p: s), (
+        lambda s, p: s * s)
     of = lambda key, factor=1: lambda s, p: p[key] * factor
 
     curves(rays, growth, primitives, ("all rays", of("all")), ("camera rays", of("primary")))
@@ -126,11 +137,16 @@ def draw(bench, growth, threads, sizes, depths):
     curves(memory, growth, primitives, ("", of("bytes")))
     named(memory, "Memory of geometry and grids", "primitives in the scene", "bytes a primitive")
 
-    curves(building, growth, primitives, ("building grids", of("build")), ("reading the file", of("load")))
+    curves(building, growth, primitives, ("building grids", of("build")),
+           ("reading the file", of("load")))
     guide(building, [1e4, 1e6], [2e-4, 2e-2], "in proportion")
     named(building, "Building and reading", "primitives in the scene", "seconds")
 
-    gains = {name: {n: {"gain": points[1]["render"] / p["render"]} for n, p in points.items()} for name, points in threads.items()}
+    gains = {
+        name: {n: {"gain": points[1]["render"] / p["render"]}
+               for n, p in points.items()}
+        for name, points in threads.items()
+    }
     curves(speed, gains, setting, ("", of("gain")))
     most = max(threads["balls 4"])
     guide(speed, [1, most], [1, most], "as many times as threads")
@@ -146,7 +162,8 @@ def draw(bench, growth, threads, sizes, depths):
     named(by_size, "Tracing by size of the picture", "pixels of the picture", "nanoseconds a ray")
 
     curves(depth, depths, setting, ("", of("render")))
-    named(depth, "Longest path, one thread: time", "rays in the longest path (--depth)", "seconds to render")
+    named(depth, "Longest path, one thread: time", "rays in the longest path (--depth)",
+          "seconds to render")
     curves(traced, depths, setting, ("", of("rays", 1e-6)))
     named(traced, "Longest path: rays", "rays in the longest path (--depth)", "million rays traced")
     for panel in (depth, traced):

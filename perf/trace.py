@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 """What a ray costs beside Embree, by kind and scene: runs perf/trace.cpp, keeps its figures and draws its ratios.
 
-    ./run perf trace [--quick] [--draw] [options of the benchmark: --scene NAME, --kind NAME, --size N, --rounds N, --scenes DIR, ...]
+    ./run perf trace [--quick] [--draw] [options of the benchmark: --scene NAME, --kind NAME,
+                     --size N, --rounds N, --scenes DIR, ...]
 
-The benchmark prints the tables. A whole run (--rounds may be given) writes docs/trace.csv, docs/images/trace.svg and the tables of
-docs/performance.md; any other the first two beside the program. The benchmark's own JSON stays there in either case. --draw: the chart alone,
-from docs/trace.csv.
+The benchmark prints the tables. A whole run (--rounds may be given) writes docs/trace.csv,
+docs/images/trace.svg and the tables of docs/performance.md; any other the first two beside the
+program. The benchmark's own JSON stays there in either case. --draw: the chart alone, from
+docs/trace.csv.
 """
 import argparse
 import csv
@@ -26,9 +28,14 @@ FIRST = ["rays", "hits", "disagree", "ns/ray", "tests/ray", "cells/ray", "lanes 
 # Label, then marker and colours (after Okabe and Ito)
 FASTER = ("as a render traces them: faster than Embree", {"marker": "o", "color": "#0072B2"})
 SLOWER = ("as a render traces them: slower than Embree", {"marker": "s", "color": "#D55E00"})
-BEST = ("the best of Grelha's ways, where another is faster", {"marker": "D", "markerfacecolor": "none", "markeredgecolor": "#777777"})
-TITLES = {"primary": "camera rays", "AA + lens": "through a lens,\n16 a pixel", "hard shadow": "to a point light", "area 16": "to an area light,\n16 a point",
-          "mirror": "off mirrors", "glossy 16": "off rough mirrors,\n16 a point", "incoherent": "scattered"}
+BEST = ("the best of Grelha's ways, where another is faster",
+        {"marker": "D", "markerfacecolor": "none", "markeredgecolor": "#777777"})
+TITLES = {
+    "primary": "camera rays", "AA + lens": "through a lens,\n16 a pixel",
+    "hard shadow": "to a point light", "area 16": "to an area light,\n16 a point",
+    "mirror": "off mirrors", "glossy 16": "off rough mirrors,\n16 a point",
+    "incoherent": "scattered"
+}
 
 
 def cells_of(path):
@@ -76,15 +83,22 @@ def tables(cells):
 
 def cells_from_csv():
     """What write_csv kept in docs/; only what the chart shows."""
-    return {(r["scene"], r["kind"]): {"ratio": float(r["ratio"]), "ratio of the best": float(r["ratio_of_the_best"])}
-            for r in read_csv("trace") if r["ratio"]}
+    return {(r["scene"], r["kind"]):
+            {"ratio": float(r["ratio"]), "ratio of the best": float(r["ratio_of_the_best"])}
+            for r in read_csv("trace")
+            if r["ratio"]}
 
 
 def draw(cells, path):
     scenes = list(dict.fromkeys(s for s, _ in cells))[::-1]
     kinds = list(dict.fromkeys(k for _, k in cells))
-    fig, panels = plt.subplots(1, len(kinds), figsize=(1.2 + 1.7 * len(kinds), 1.9 + .32 * len(scenes)), sharex=True, sharey=True,
-                               layout="constrained", squeeze=False)
+    fig, panels = plt.subplots(1,
+                               len(kinds),
+                               figsize=(1.2 + 1.7 * len(kinds), 1.9 + .32 * len(scenes)),
+                               sharex=True,
+                               sharey=True,
+                               layout="constrained",
+                               squeeze=False)
     for panel, kind in zip(panels[0], kinds):
         panel.axvline(1, color="#999999", linewidth=1)
         for y, scene in enumerate(scenes):
@@ -93,16 +107,29 @@ def draw(cells, path):
                 continue
             if c["ratio of the best"] < .98 * c["ratio"]:  # the same mark otherwise
                 panel.plot(c["ratio of the best"], y, markersize=6, linestyle="", **BEST[1])
-            panel.plot(c["ratio"], y, markersize=6, linestyle="", **(FASTER if c["ratio"] < 1 else SLOWER)[1])
-        panel.set(xscale="log", xlabel="time / Embree's", yticks=range(len(scenes)), yticklabels=scenes, xticks=[.2, .5, 1, 2])
+            panel.plot(c["ratio"],
+                       y,
+                       markersize=6,
+                       linestyle="",
+                       **(FASTER if c["ratio"] < 1 else SLOWER)[1])
+        panel.set(xscale="log",
+                  xlabel="time / Embree's",
+                  yticks=range(len(scenes)),
+                  yticklabels=scenes,
+                  xticks=[.2, .5, 1, 2])
         panel.set_title(TITLES.get(kind, kind), fontsize=11)
         panel.xaxis.set_major_formatter("{x:g}")
         panel.xaxis.set_minor_formatter("")
         panel.grid(axis="x", alpha=.3)
     panels[0][0].set_ylabel("scene")
-    fig.suptitle("Time of tracing rays / time of Embree's best mode (robust) on the same rays, one thread; left of 1 Grelha is faster",
-                 fontsize=12)
-    handles = [Line2D([], [], linestyle="", markersize=6, label=label, **look) for label, look in (FASTER, SLOWER, BEST)]
+    fig.suptitle(
+        "Time of tracing rays / time of Embree's best mode (robust) on the same rays, one thread; "
+        "left of 1 Grelha is faster",
+        fontsize=12)
+    handles = [
+        Line2D([], [], linestyle="", markersize=6, label=label, **look)
+        for label, look in (FASTER, SLOWER, BEST)
+    ]
     legend_below(fig, handles, 3)
     fig.savefig(path, metadata={"Date": None})
     plt.close(fig)

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""Moves the mouse onto a point of each chart of report.html, in headless Chromium without a network, and looks at what the page then tells; then
-taps the same points on a window as wide as a phone's.
+"""Moves the mouse onto a point of each chart of report.html, in headless Chromium without a
+network, and looks at what the page then tells; then taps the same points on a window as wide as a phone's.
 
     charts_page.py REPORT FOLDER [SCREENSHOT]
 
-The page must show the command of a point there and, where it has them, its pictures, decoded; and must ask for nothing from outside itself. Until a
-point is chosen it says what to do. No two series of a chart have the same marker. On a phone nothing is cut off at the side, charts have the width
-of the window, and the panel leaves them half of its height.
+The page must show the command of a point there and, where it has them, its pictures, decoded; and
+must ask for nothing from outside itself. Until a point is chosen it says what to do. No two series
+of a chart have the same marker. On a phone nothing is cut off at the side, charts have the width of
+the window, and the panel leaves them half of its height.
 Exit status 77: there is no page, or no Chromium to look with.
 """
 import base64
@@ -49,15 +50,20 @@ SHARED = """(() => {
   for (const chart of data.charts) {
     const names = {};
     for (const {data: {datasets}} of built.slice(next, next += chart.panels.length))
-      for (const d of datasets.filter(d => d.series)) (names[[d.pointStyle, d.pointRotation || 0, d.backgroundColor === "#fff"]] ??= new Set()).add(d.label);
-    for (const [marker, series] of Object.entries(names)) if (series.size > 1) shared.push([chart.name, marker, ...series]);
+      for (const d of datasets.filter(d => d.series)) {
+        const marker = [d.pointStyle, d.pointRotation || 0, d.backgroundColor === "#fff"];
+        (names[marker] ??= new Set()).add(d.label);
+      }
+    for (const [marker, series] of Object.entries(names))
+      if (series.size > 1) shared.push([chart.name, marker, ...series]);
   }
   return shared;
 })()"""
 PANEL = """(() => {
-  const rectangle = document.querySelector("aside").getBoundingClientRect();
-  return {words: document.querySelector("aside").innerText, command: document.getElementById("command").offsetHeight, height: rectangle.height,
-          right: document.documentElement.scrollWidth, narrowest: Math.min(...built.map(chart => chart.width))};
+  const aside = document.querySelector("aside");
+  return {words: aside.innerText, command: document.getElementById("command").offsetHeight,
+          height: aside.getBoundingClientRect().height, right: document.documentElement.scrollWidth,
+          narrowest: Math.min(...built.map(chart => chart.width))};
 })()"""
 PHONE = (390, 844)
 
@@ -109,7 +115,11 @@ class Chromium:
         self("Network.enable")
         self("Page.enable")
         if phone:
-            self("Emulation.setDeviceMetricsOverride", width=phone[0], height=phone[1], deviceScaleFactor=2, mobile=True)
+            self("Emulation.setDeviceMetricsOverride",
+                 width=phone[0],
+                 height=phone[1],
+                 deviceScaleFactor=2,
+                 mobile=True)
         self("Page.navigate", url=address)
         for _ in range(200):
             if self.value("document.readyState == 'complete' && typeof built != 'undefined'"):
@@ -127,14 +137,15 @@ def point_at(browser, x, y, phone):
 
 
 def tells(browser, phone=None):
-    """Points at a point of each chart; what the page does not tell of it, and how many had pictures."""
+    """Points at a point of each chart: what the page does not tell, and how many had pictures."""
     wrong, with_pictures = [], 0
     for i in range(browser.value("built.length")):
         aim = browser.value(AIM % i)
         point_at(browser, aim["x"], aim["y"], phone)
         seen = browser.value(LOOK)
         with_pictures += len(seen["widths"]) == 2
-        if seen["command"] not in aim["commands"] or len(seen["widths"]) != aim["pictures"] or 0 in seen["widths"]:
+        if seen["command"] not in aim["commands"] or len(
+                seen["widths"]) != aim["pictures"] or 0 in seen["widths"]:
             wrong.append((aim["title"], seen))
         if phone and browser.value(PANEL)["height"] > phone[1] / 2:
             wrong.append((aim["title"], "the panel takes more than half the window"))
@@ -148,7 +159,8 @@ def lies(browser, phone=None):
         yield "the empty panel", panel
     for shared in browser.value(SHARED):
         yield "one marker for several series", shared
-    if phone and (panel["right"] > phone[0] or panel["narrowest"] < .9 * phone[0] or panel["height"] > phone[1] / 2):
+    if phone and (panel["right"] > phone[0] or panel["narrowest"] < .9 * phone[0]
+                  or panel["height"] > phone[1] / 2):
         yield "on a phone", panel
 
 
@@ -166,7 +178,8 @@ def main():
     missed, with_pictures = tells(browser)
     wrong += missed
     if len(sys.argv) > 3:
-        pathlib.Path(sys.argv[3]).write_bytes(base64.b64decode(browser("Page.captureScreenshot")["data"]))
+        pathlib.Path(sys.argv[3]).write_bytes(
+            base64.b64decode(browser("Page.captureScreenshot")["data"]))
     browser.open(report.as_uri(), PHONE)
     wrong += lies(browser, PHONE)
     wrong += tells(browser, PHONE)[0]

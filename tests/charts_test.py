@@ -140,24 +140,31 @@ class Kept(unittest.TestCase):
         for name, module in self.modules.items():
             for drawn in module.charts(module.from_csv(bench.read_csv(f"charts-{name}"))):
                 shown = (ROOT / f"docs/images/charts-{drawn['name']}.svg").read_text()
-                points = [p for panel in drawn["panels"] for s in panel["series"] for p in s["points"]]
+                points = [
+                    p for panel in drawn["panels"] for s in panel["series"] for p in s["points"]
+                ]
                 self.assertEqual(shown.count("<title>"), len(points), drawn["name"])
                 for panel in drawn["panels"]:
                     for words in (panel["title"], panel["x"]["label"], panel["y"]["label"]):
-                        self.assertTrue(words and html.escape(words, quote=False) in shown, f"{drawn['name']}: {words}")
+                        self.assertTrue(words and html.escape(words, quote=False) in shown,
+                                        f"{drawn['name']}: {words}")
 
 
     def test_the_tables_of_the_page_are_of_these_numbers(self):
         words = (ROOT / "docs/accuracy.md").read_text()
         for name, module in self.modules.items():
-            self.assertIn(charts.wrapped(module.tell(module.from_csv(bench.read_csv(f"charts-{name}")), table)), words, name)
+            self.assertIn(
+                charts.wrapped(module.tell(module.from_csv(bench.read_csv(f"charts-{name}")),
+                                           table)), words, name)
 
     def test_what_is_said_of_error_is_in_the_numbers(self):
         effects = picture.from_csv(bench.read_csv("charts-picture"))["effects"]
         ratios = [float(picture.beside_samples(effect)["0.01"]) for effect in effects]
-        self.assertIn(f"{min(ratios):.1f} to {max(ratios):.1f} times as fast without it", (ROOT / "docs/accuracy.md").read_text())
+        self.assertIn(f"{min(ratios):.1f} to {max(ratios):.1f} times as fast without it",
+                      (ROOT / "docs/accuracy.md").read_text())
         shares = [f"{1 / ratio:.2f}".lstrip("0") for ratio in (max(ratios), min(ratios))]
-        self.assertIn(f"{shares[0]} to {shares[1]} of the time of `--error 0.01`", (ROOT / "README.md").read_text())
+        self.assertIn(f"{shares[0]} to {shares[1]} of the time of `--error 0.01`",
+                      (ROOT / "README.md").read_text())
 
 
 class Saved:
@@ -179,14 +186,19 @@ def figure_of(name):
     module, saved = script(name), Saved()
     if name == "error_time":
         with tempfile.TemporaryDirectory() as folder:
-            module.draw(list(module.from_csv(bench.read_csv("error-time"))), 192, pathlib.Path(folder) / "chart.png")
+            module.draw(list(module.from_csv(bench.read_csv("error-time"))), 192,
+                        pathlib.Path(folder) / "chart.png")
         return bench.plt.gcf()
     if hasattr(module, "write_csv"):  # trace, build
         known = module.cells_from_csv() if name == "trace" else module.rows_from_csv()
-        with tempfile.TemporaryDirectory() as folder, unittest.mock.patch("matplotlib.pyplot.close") as close:
+        with tempfile.TemporaryDirectory() as folder, unittest.mock.patch(
+                "matplotlib.pyplot.close") as close:
             module.draw(known, pathlib.Path(folder) / "chart.svg")
         return close.call_args[0][0]
-    rows = {"scale": ["scale"], "frame": ["frame-profile"], "ranks": ["ranks-pieces", "ranks"], "report": ["report"]}[name]
+    rows = {
+        "scale": ["scale"], "frame": ["frame-profile"], "ranks": ["ranks-pieces", "ranks"],
+        "report": ["report"]
+    }[name]
     known = module.from_csv(*map(bench.read_csv, rows))
     module.draw(saved, *(known if name in ("scale", "ranks") else [known]))
     return saved.figure
@@ -215,12 +227,15 @@ class Benchmarks(unittest.TestCase):
             if name == "error_time":
                 continue  # a PNG
             shown = html.unescape((ROOT / f"docs/images/{name}.svg").read_text())
-            self.assertEqual({words for words in words_of(figure) if words not in shown}, set(), name)
+            self.assertEqual({words
+                              for words in words_of(figure)
+                              if words not in shown}, set(), name)
             with tempfile.TemporaryDirectory() as folder:
                 path = pathlib.Path(folder) / "chart.svg"
                 figure.savefig(path)
                 marks = re.compile("<use ")
-                self.assertEqual(len(marks.findall(path.read_text())), len(marks.findall(shown)), name)
+                self.assertEqual(len(marks.findall(path.read_text())), len(marks.findall(shown)),
+                                 name)
 
     def test_axes_say_what_they_count(self):
         for name, figure in self.figures.items():
@@ -230,7 +245,10 @@ class Benchmarks(unittest.TestCase):
                 ticks = " ".join(t.get_text() for t in axes.get_xticklabels())
                 self.assertTrue(axes.get_xlabel() or re.search("[a-z]", ticks), name)
             self.assertTrue(any(axes.get_ylabel() for axes in figure.axes), name)
-            self.assertFalse({words for words in words_of(figure) if re.search(r"\btargets?\b", words)}, name)
+            self.assertFalse(
+                {words
+                 for words in words_of(figure)
+                 if re.search(r"\btargets?\b", words)}, name)
         self.assertTrue(all(axes.get_ylabel() for axes in self.figures["scale"].axes))
 
     def test_no_two_series_share_a_marker(self):
@@ -238,9 +256,14 @@ class Benchmarks(unittest.TestCase):
             for axes in figure.axes:
                 looks = {}
                 for line in axes.get_lines():
-                    if not line.get_label().startswith("_") and line.get_marker() not in ("None", "", None):
-                        looks.setdefault((line.get_marker(), line.get_markerfacecolor() == "none"), []).append(line.get_label())
-                self.assertFalse({look: labels for look, labels in looks.items() if len(labels) > 1}, name)
+                    if not line.get_label().startswith("_") and line.get_marker() not in ("None",
+                                                                                          "", None):
+                        looks.setdefault((line.get_marker(), line.get_markerfacecolor() == "none"),
+                                         []).append(line.get_label())
+                self.assertFalse(
+                    {look: labels
+                     for look, labels in looks.items()
+                     if len(labels) > 1}, name)
 
 
 class Page(unittest.TestCase):

@@ -125,7 +125,10 @@ def csv(result):
 def from_csv(rows):
     """What was measured, as docs/charts-features.csv keeps it."""
     def point(row):
-        return {"label": row["features"], "seconds": float(row["cpu_seconds"]), "rmse": float(row["rmse_to_plain"]), "command": row["command"]}
+        return {
+            "label": row["features"], "seconds": float(row["cpu_seconds"]),
+            "rmse": float(row["rmse_to_plain"]), "command": row["command"]
+        }
 
     return {"size": size_in(rows[0]["command"]), "scenes": by_scene(rows, point)}
 
@@ -138,9 +141,15 @@ def charts(result):
         points = [{"x": share(scene, p), "y": names.index(p["label"]), "label": p["label"], "command": p["command"],
                    "facts": f"{p['seconds'] * 1e3:.3g} ms, {share(scene, p):.2f} of everything"} for p in scene["points"]]
         whole = scene["points"][0]["seconds"] * 1e3
-        panels.append({"title": f"{scene['scene']}: {whole:.3g} ms with all", "x": {"label": "time / time with all", "span": span},
-                       "y": {"names": names, "label": "what is asked for"}, "lines": [{"x": 1, "label": "with everything"}],
-                       "series": [{"name": "CPU time; no point: the scene needs it", "look": 5, "joined": False, "points": points}]})
+        panels.append({
+            "title": f"{scene['scene']}: {whole:.3g} ms with all",
+            "x": {"label": "time / time with all",
+                  "span": span}, "y": {"names": names, "label": "what is asked for"},
+            "lines": [{"x": 1, "label": "with everything"}], "series": [{
+                "name": "CPU time; no point: the scene needs it", "look": 5, "joined": False,
+                "points": points
+            }]
+        })
     return [{"name": "features", "title": f"{TITLE}: time with a feature left out, {result['size']}, {SAMPLES} samples a pixel", "columns": 4,
              "panel_size": (3.5, 3.3), "panels": panels,
              "note": "All twins show the same picture; they differ in what they ask for. Where there is no point the scene needs the feature."}]

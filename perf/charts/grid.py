@@ -79,9 +79,12 @@ def from_csv(rows):
     """What was measured, as docs/charts-grid.csv keeps it."""
     def point(row):
         grids = [[int(n) for n in grid.split("x")] for grid in row["cells"].split()]
-        return {"label": row["setting"], "cells": grids, "ns": float(row["trace_ns_a_ray"]), "render": float(row["render_cpu_seconds"]),
-                "build": float(row["build_seconds"]), "bytes": int(row["grid_bytes"]), "primitives": int(row["primitives"]),
-                "command": row["command"]}
+        return {
+            "label": row["setting"], "cells": grids, "ns": float(row["trace_ns_a_ray"]),
+            "render": float(row["render_cpu_seconds"]), "build": float(row["build_seconds"]),
+            "bytes": int(row["grid_bytes"]), "primitives": int(row["primitives"]),
+            "command": row["command"]
+        }
 
     return {"size": size_in(rows[0]["command"]), "scenes": by_scene(rows, point)}
 
@@ -105,8 +108,12 @@ def density_like(chosen, densities):
 
 
 def panel(title, y, series, x="M"):
-    label, ticks = {"M": ("density M (--density)", DENSITIES), "packet": ("rays in a packet", PACKETS)}[x]
-    return {"title": title, "x": {"label": label, "log": True, "ticks": ticks}, "y": y, "series": series}
+    label, ticks = {
+        "M": ("density M (--density)", DENSITIES), "packet": ("rays in a packet", PACKETS)
+    }[x]
+    return {
+        "title": title, "x": {"label": label, "log": True, "ticks": ticks}, "y": y, "series": series
+    }
 
 
 def point(x, y, p):
@@ -128,23 +135,34 @@ def charts(result):
         best = min(p["ns"] for _, p in split(scene)[1])
         series = scene_series(scene, 5, lambda p: p["ns"] / best)
         worst = max(p["y"] for p in series["points"])
-        y = {"label": "time of tracing / best", "span": [.9, math.ceil(20 * min(max(1.35, worst), 2.6)) / 20 + .05]}
+        y = {
+            "label": "time of tracing / best",
+            "span": [.9, math.ceil(20 * min(max(1.35, worst), 2.6)) / 20 + .05]
+        }
         times.append({**panel(f"{scene['scene']}: best {best:.3g} ns a ray", y, [{**series, "name": "tracing with M"}]),
                       "lines": [{"y": WITHIN, "label": "10 % above the best density"}]})
     looked = list(zip(STARLESS, result["scenes"], strict=False))
     memory = [scene_series(s, look, lambda p: p["bytes"] / p["primitives"]) for look, s in looked]
-    build = [scene_series(s, look, lambda p: p["build"] / p["primitives"] * 1e9) for look, s in looked]
+    build = [
+        scene_series(s, look, lambda p: p["build"] / p["primitives"] * 1e9) for look, s in looked
+    ]
     packets = []
     for look, scene in looked:
         chosen, _, sizes = split(scene)
         packets.append({"name": scene["scene"], "look": look, "joined": True, "points": [point(n, p["ns"] / chosen["ns"], p) for n, p in sizes]})
     note = "Whatever M and packet, the picture is the same, bit for bit; each run is checked."
-    return [{"name": "grid", "title": f"Time of tracing against density M, {result['size']}", "columns": 3, "panel_size": (3.7, 2.6), "note": note,
-             "panels": times},
-            {"name": "grid-memory", "title": "Memory, time to build, and packets", "columns": 3, "panel_size": (4.3, 4), "note": note,
-             "panels": [panel("memory of the grids", {"label": "bytes a primitive", "log": True}, memory),
-                        panel("building them, one thread", {"label": "nanoseconds a primitive", "log": True}, build),
-                        panel("packets", {"label": "time / time in packets of 64"}, packets, "packet")]}]
+    return [{
+        "name": "grid", "title": f"Time of tracing against density M, {result['size']}",
+        "columns": 3, "panel_size": (3.7, 2.6), "note": note, "panels": times
+    }, {
+        "name": "grid-memory", "title": "Memory, time to build, and packets", "columns": 3,
+        "panel_size": (4.3, 4), "note": note, "panels": [
+            panel("memory of the grids", {"label": "bytes a primitive", "log": True}, memory),
+            panel("building them, one thread", {"label": "nanoseconds a primitive", "log": True},
+                  build),
+            panel("packets", {"label": "time / time in packets of 64"}, packets, "packet")
+        ]
+    }]
 
 
 def tell(result, table):

@@ -41,16 +41,21 @@ SOBOL, BY_ERROR = "sobol: N samples", "--error E"
 # series, look, settings; only of effects named, where any are
 METHODS = [
     ("random: N samples", 0, fixed("random"), None),
-    ("jitter: N samples (--aa jitter:√N)", 1, [(str(n * n), ["--aa", f"jitter:{n}"]) for n in (1, 2, 4, 8, 16)], None),
+    ("jitter: N samples (--aa jitter:√N)", 1, [(str(n * n), ["--aa", f"jitter:{n}"])
+                                               for n in (1, 2, 4, 8, 16)], None),
     ("jitter, unshuffled", 2, fixed("unshuffled"), ("shadows", "awning", "lens", "glossy", "all")),
-    ("adaptive:0.1,D", 3, [(f"0.1,{d}", ["--aa", f"adaptive:0.1,{d}"]) for d in (1, 2, 3, 4, 5)], None),
-    ("adaptive:T,3", 4, [(f"{t},3", ["--aa", f"adaptive:{t},3"]) for t in (.8, .4, .2, .05, .025)], None),
+    ("adaptive:0.1,D", 3, [(f"0.1,{d}", ["--aa", f"adaptive:0.1,{d}"])
+                           for d in (1, 2, 3, 4, 5)], None),
+    ("adaptive:T,3", 4, [(f"{t},3", ["--aa", f"adaptive:{t},3"])
+                         for t in (.8, .4, .2, .05, .025)], None),
     (SOBOL, 5, fixed("sobol"), None),
-    (BY_ERROR, 6, [(str(e), ["--error", str(e)]) for e in (.08, .04, .02, .01, .005, .0025, .00125)], None),
+    (BY_ERROR, 6, [(str(e), ["--error", str(e)])
+                   for e in (.08, .04, .02, .01, .005, .0025, .00125)], None),
     ("sobol, area:S,2√N: 4 points of each light a sample", 8,
-     [(str(n), ["--samples", str(n), "--shadows", f"area:2,{m}"]) for n, m in ((1, 2), (4, 4), (16, 8), (64, 16))], ("shadows",)),
+     [(str(n), ["--samples", str(n), "--shadows", f"area:2,{m}"])
+      for n, m in ((1, 2), (4, 4), (16, 8), (64, 16))], ("shadows", )),
     ("sobol, glossy:R,N: 4 samples, N rays beside the mirror's", 9,
-     [(f".1,{n}", ["--samples", "4", "--glossy", f".1,{n}"]) for n in (1, 2, 4, 8)], ("glossy",)),
+     [(f".1,{n}", ["--samples", "4", "--glossy", f".1,{n}"]) for n in (1, 2, 4, 8)], ("glossy", )),
 ]
 
 
@@ -143,7 +148,10 @@ def csv(result):
     for e in result["effects"]:
         rows += [[e["effect"], p["series"], p["label"], f"{p['samples']:.4g}", p["rays"], f"{p['seconds']:.4g}", f"{p['rmse']:.4g}",
                   f"{p['ssim']:.5f}", p["command"]] for p in e["points"]]
-        rows.append([e["effect"], REFERENCE, e["reference"], e["reference"], "", "", f"{e['floor']:.2g}", "", "; ".join(e["halves"])])
+        rows.append([
+            e["effect"], REFERENCE, e["reference"], e["reference"], "", "", f"{e['floor']:.2g}", "",
+            "; ".join(e["halves"])
+        ])
     return header, rows
 
 
@@ -151,13 +159,20 @@ def from_csv(rows):
     """What was measured, as docs/charts-picture.csv keeps it; the small pictures are not in it."""
     titles, effects = {name: title for name, title, *_ in EFFECTS}, {}
     for row in rows:
-        effect = effects.setdefault(row["effect"], {"title": titles[row["effect"]], "effect": row["effect"], "points": []})
+        effect = effects.setdefault(
+            row["effect"], {"title": titles[row["effect"]], "effect": row["effect"], "points": []})
         if row["method"] == REFERENCE:
-            effect |= {"floor": float(row["rmse"]), "reference": int(row["setting"]), "halves": row["command"].split("; ")}
+            effect |= {
+                "floor": float(row["rmse"]), "reference": int(row["setting"]),
+                "halves": row["command"].split("; ")
+            }
         else:
-            effect["points"].append({"series": row["method"], "label": row["setting"], "samples": float(row["samples_per_pixel"]),
-                                     "rays": int(row["rays"]), "seconds": float(row["cpu_seconds"]), "rmse": float(row["rmse"]),
-                                     "ssim": float(row["ssim"]), "command": row["command"]})
+            effect["points"].append({
+                "series": row["method"], "label": row["setting"],
+                "samples": float(row["samples_per_pixel"]), "rays": int(row["rays"]),
+                "seconds": float(row["cpu_seconds"]), "rmse": float(row["rmse"]),
+                "ssim": float(row["ssim"]), "command": row["command"]
+            })
     return {"size": size_in(rows[0]["command"]), "effects": list(effects.values())}
 
 
@@ -179,7 +194,10 @@ def charts(result):
     panels = [panel_of(e, lambda p: p["rmse"], "RMSE (white is 1)") for e in result["effects"]]
     for panel, e in zip(panels, result["effects"]):
         panel["lines"] = [{"y": e["floor"], "label": "error of the reference itself"}]
-    alike = [panel_of(e, lambda p: max(1 - p["ssim"], LEAST_SSIM), "1 - SSIM (.00001: that or less)") for e in result["effects"]]
+    alike = [
+        panel_of(e, lambda p: max(1 - p["ssim"], LEAST_SSIM), "1 - SSIM (.00001: that or less)")
+        for e in result["effects"]
+    ]
     note = ("Crops are of where one sample a pixel errs most; in error maps black is an error of .001 or less, white one of 1, three decades evenly "
             "between.")
     return [{"name": "picture", "title": f"{TITLE}, {result['size']}: down and left is better", "note": note, "panels": panels},
@@ -203,10 +221,14 @@ def speed_up(points, goal):
 
 
 def beside_samples(effect):
-    """By E: time of --error E over that in which plain samples, interpolated, reach the same error; '–' where 256 do not."""
+    """By E: time of --error E over that of plain samples, interpolated, to the same error; '–' where
+    256 samples do not get there."""
     of = {name: [p for p in effect["points"] if p["series"] == name] for name in (SOBOL, BY_ERROR)}
     reached = {p["label"]: time_to_reach(of[SOBOL], p["rmse"]) for p in of[BY_ERROR]}
-    return {p["label"]: f"{p['seconds'] / reached[p['label']]:.2f}" if reached[p["label"]] else "–" for p in of[BY_ERROR]}
+    return {
+        p["label"]: f"{p['seconds'] / reached[p['label']]:.2f}" if reached[p["label"]] else "–"
+        for p in of[BY_ERROR]
+    }
 
 
 def tell(result, table):
@@ -232,6 +254,7 @@ setting already had:
 
 {table(header, turned(gains))}
 
-Time of `--error E` over that of sobol samples to the same RMSE, whatever their number (interpolated); –: 256 do not get there:
+Time of `--error E` over that of sobol samples to the same RMSE, whatever their number
+(interpolated); –: 256 do not get there:
 
 {table(header, errors)}"""

@@ -70,7 +70,11 @@ def csv(result):
 def from_csv(rows):
     """What was measured, as docs/charts-rays.csv keeps it."""
     numbers = ("rays", "max_ulp", "p999_ulp", "wrong", "leaks", "ns")
-    return {"rows": [{**row, "fma": row["fma"] == "1", **{key: float(row[key]) for key in numbers}} for row in rows]}
+    return {
+        "rows": [{**row, "fma": row["fma"] == "1", **{key: float(row[key])
+                                                      for key in numbers}}
+                 for row in rows]
+    }
 
 
 def series_of(row):
@@ -96,10 +100,14 @@ def charts(result):
     for scene in dict.fromkeys(r["scene"] for r in result["rows"]):
         rows = sorted((r for r in result["rows"] if r["scene"] == scene), key=lambda r: ISAS.index(r["isa"]))
         ulp = "ulp of a float (.0000001: that or less)"
-        panels += [panel(rows, looks, f"{scene}: distance, 99.9 %", ulp, lambda r: max(r["p999_ulp"], LEAST_ULP)),
-                   panel(rows, looks, f"{scene}: distance, largest", ulp, lambda r: max(r["max_ulp"], LEAST_ULP)),
-                   panel(rows, looks, f"{scene}: wrong hits", "wrong a million rays (.1: none)",
-                         lambda r: max(1e6 * r["wrong"] / r["rays"], .1))]
+        panels += [
+            panel(rows, looks, f"{scene}: distance, 99.9 %", ulp,
+                  lambda r: max(r["p999_ulp"], LEAST_ULP)),
+            panel(rows, looks, f"{scene}: distance, largest", ulp,
+                  lambda r: max(r["max_ulp"], LEAST_ULP)),
+            panel(rows, looks, f"{scene}: wrong hits", "wrong a million rays (.1: none)",
+                  lambda r: max(1e6 * r["wrong"] / r["rays"], .1))
+        ]
     return [{"name": "rays", "title": f"{TITLE}: scalar to AVX-512 along each line", "columns": 3, "panel_size": (4.2, 3.4), "panels": panels,
              "note": "Along each line from scalar over SSE2 and AVX2 to AVX-512, as far as the processor has them."}]
 

@@ -1,9 +1,10 @@
 """A chart as plain data, drawn as SVG by Matplotlib and, from the same data, by the page that report.py makes.
 
-A chart is a dict: name, title, note, panels. A panel: title, x and y (dicts of label, and perhaps log, span, ticks, names: words for 0, 1, 2, ...),
-series, and perhaps front (points of the Pareto front), lines (dicts of x or y and label). A series: name, look (index into LOOKS), joined, points;
-no two series of a chart have the same look.
-A point: x, y, label, command, and perhaps star (it is marked), picture and error (files to show beside it).
+A chart is a dict: name, title, note, panels. A panel: title, x and y (dicts of label, and perhaps
+log, span, ticks, names: words for 0, 1, 2, ...), series, and perhaps front (points of the Pareto
+front), lines (dicts of x or y and label). A series: name, look (index into LOOKS), joined, points;
+no two series of a chart have the same look. A point: x, y, label, command, and perhaps star (it is
+marked), picture and error (files to show beside it).
 """
 import dataclasses
 import math
@@ -18,7 +19,7 @@ from bench import plt
 
 @dataclasses.dataclass(frozen=True)
 class Look:
-    """Colour, marker and dash say the same thing, for those who do not see colours. No two have the same marker."""
+    """Colour, marker and dash say the same, for the colour-blind. No two share a marker."""
     colour: str
     marker: str  # Matplotlib's letter
     dash: str
@@ -29,10 +30,21 @@ class Look:
         return "white" if self.hollow else self.colour
 
 
-LOOKS = [Look("#999999", "o", ":"), Look("#E69F00", "s", "--"), Look("#D55E00", "v", "--"), Look("#CC79A7", "^", "-."),
-         Look("#882255", "<", ":"), Look("#0072B2", "D", "-"), Look("#000000", "*", "-"), Look("#009E73", "P", "--"),
-         Look("#56B4E9", "X", "--"), Look("#8C6D31", "o", "-.", hollow=True), Look("#666666", "s", "-", hollow=True),
-         Look("#332288", "D", "--", hollow=True), Look("#AA4499", ">", "-.")]
+LOOKS = [
+    Look("#999999", "o", ":"),
+    Look("#E69F00", "s", "--"),
+    Look("#D55E00", "v", "--"),
+    Look("#CC79A7", "^", "-."),
+    Look("#882255", "<", ":"),
+    Look("#0072B2", "D", "-"),
+    Look("#000000", "*", "-"),
+    Look("#009E73", "P", "--"),
+    Look("#56B4E9", "X", "--"),
+    Look("#8C6D31", "o", "-.", hollow=True),
+    Look("#666666", "s", "-", hollow=True),
+    Look("#332288", "D", "--", hollow=True),
+    Look("#AA4499", ">", "-.")
+]
 # For series whose points may be stars of their own
 STARLESS = [i for i, look in enumerate(LOOKS) if look.marker != "*"]
 FRONT = "#FFD92F"
@@ -94,14 +106,28 @@ def draw_panel(axes, panel, ids, hints):
         look, points = LOOKS[series["look"]], series["points"]
         if series["joined"]:
             joined = [p for p in points if not p.get("star")]
-            axes.plot([p["x"] for p in joined], [p["y"] for p in joined], look.dash, color=look.colour, linewidth=1.3, zorder=2)
+            axes.plot([p["x"] for p in joined], [p["y"] for p in joined],
+                      look.dash,
+                      color=look.colour,
+                      linewidth=1.3,
+                      zorder=2)
         for p in points:  # each on its own, so that each can tell its command
             name = f"point{next(ids)}"
             hints[name] = f"{series['name']} {p['label']}\n{p['command']}"
-            star = {"marker": "*", "markersize": 13, "markeredgecolor": "black", "markeredgewidth": .7, "zorder": 4}
-            mark = {"marker": look.marker, "markersize": 8 if look.marker == "*" else 5.5, "markeredgecolor": look.colour,
-                    "markeredgewidth": 1.2 if look.hollow else .7, "zorder": 3}
-            axes.plot([p["x"]], [p["y"]], color=look.colour, markerfacecolor=look.fill, gid=name, **(star if p.get("star") else mark))
+            star = {
+                "marker": "*", "markersize": 13, "markeredgecolor": "black", "markeredgewidth": .7,
+                "zorder": 4
+            }
+            mark = {
+                "marker": look.marker, "markersize": 8 if look.marker == "*" else 5.5,
+                "markeredgecolor": look.colour, "markeredgewidth": 1.2 if look.hollow else .7,
+                "zorder": 3
+            }
+            axes.plot([p["x"]], [p["y"]],
+                      color=look.colour,
+                      markerfacecolor=look.fill,
+                      gid=name,
+                      **(star if p.get("star") else mark))
     for which, axis in (("x", axes.xaxis), ("y", axes.yaxis)):
         values = [p[which] for s in panel["series"] for p in s["points"]]
         set_axis(axis, min(values), max(values), panel[which])
@@ -119,8 +145,14 @@ def legend_of(chart):
     handles = {}
     for series in (s for panel in chart["panels"] for s in panel["series"]):
         look = LOOKS[series["look"]]
-        handles.setdefault(series["name"], Line2D([], [], color=look.colour, marker=look.marker, markerfacecolor=look.fill, markersize=6,
-                                                  linestyle=look.dash if series["joined"] else ""))
+        handles.setdefault(
+            series["name"],
+            Line2D([], [],
+                   color=look.colour,
+                   marker=look.marker,
+                   markerfacecolor=look.fill,
+                   markersize=6,
+                   linestyle=look.dash if series["joined"] else ""))
     if any(p.get("star") for panel in chart["panels"] for s in panel["series"] for p in s["points"]):
         handles[STAR] = Line2D([], [], color="#999999", marker="*", linestyle="", markersize=12, markeredgecolor="black")
     if any(panel.get("front") for panel in chart["panels"]):
@@ -137,7 +169,10 @@ def add_hints(path, hints):
         return f"{match[0]}<title>{text}</title>"
     text = re.sub(r'<g id="(point\d+)">', titled, path.read_text())
     # Matplotlib names clip paths by the hash of places that a layout may give another last bit
-    names = {name: f"clip{i}" for i, name in enumerate(dict.fromkeys(re.findall(r"p[0-9a-f]{10}(?=\)|\")", text)))}
+    names = {
+        name: f"clip{i}"
+        for i, name in enumerate(dict.fromkeys(re.findall(r"p[0-9a-f]{10}(?=\)|\")", text)))
+    }
     path.write_text(re.sub(r"(?<=[#\"])p[0-9a-f]{10}(?=\)|\")", lambda m: names[m[0]], text))
 
 
@@ -146,10 +181,14 @@ def legend_height(handles, columns):
 
 
 def legend_below(figure, handles, columns):
-    """One legend for all panels of a figure with a constrained layout, in room of its own at the foot."""
+    """One legend for all panels of a constrained layout, in room of its own at the foot."""
     room = legend_height(handles, columns) / figure.get_size_inches()[1]
     figure.get_layout_engine().set(rect=(0, room, 1, 1 - room))
-    figure.legend(handles, [h.get_label() for h in handles], loc="lower center", ncols=columns, fontsize=9, frameon=False)
+    figure.legend(handles, [h.get_label() for h in handles],
+                  loc="lower center",
+                  ncols=columns,
+                  fontsize=9,
+                  frameon=False)
 
 
 def draw(chart, svg, png):
@@ -158,7 +197,9 @@ def draw(chart, svg, png):
     handles = legend_of(chart)
     width, height = chart.get("panel_size", (5.2, 3.7))
     across = max(1, int(width * columns / 3.4))  # columns of the legend
-    figure = plt.figure(figsize=(width * columns, height * rows + legend_height(handles, across) + .35), layout="constrained")
+    figure = plt.figure(figsize=(width * columns,
+                                 height * rows + legend_height(handles, across) + .35),
+                        layout="constrained")
     ids, hints = iter(range(10 ** 6)), {}
     for i, panel in enumerate(panels):
         axes = figure.add_subplot(rows, columns, i + 1)
