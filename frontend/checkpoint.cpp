@@ -160,6 +160,7 @@ Work read_head(Head& head) {
 Checkpoint parse_body(std::string_view body) {
   Head head(body);
   Checkpoint c;
+  if (head.begins_with("name ")) c.identity.name = printable(head.line("name "));
   c.identity.scene = head.line("scene "), c.identity.settings = head.line("settings ");
   c.work = read_head(head);
   Source source(head.rest());
@@ -171,7 +172,8 @@ template <class W>
 void write(const std::string& path, const Identity& identity, const W& work, bool durable) {
   AtomicFile file(path, durable);
   Sink sink(file.stream());
-  sink.text(std::string(kMagic) + "scene " + identity.scene + "\nsettings " + identity.settings + '\n' + head_of(work));
+  const std::string name = identity.name.empty() ? "" : "name " + identity.name + '\n';
+  sink.text(std::string(kMagic) + name + "scene " + identity.scene + "\nsettings " + identity.settings + '\n' + head_of(work));
   pass(sink, work);
   sink.finish();
   file.commit();

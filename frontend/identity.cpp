@@ -87,6 +87,23 @@ std::string settings_text(const RenderCommand& prepared, const Camera& camera) {
   return words;
 }
 
+std::string scene_name(const std::string& path) {
+  const std::string picture = default_image(path);
+  return printable(picture.substr(0, picture.rfind('.')));
+}
+
+const Note kSoftware{"Software", "grelha " GRELHA_VERSION};
+
+Notes notes_of(const Identity& identity) {
+  const std::string& s = identity.settings;
+  const std::size_t first = s.find(' ');  // behind the version
+  Notes notes{kSoftware};
+  if (!identity.name.empty()) notes.emplace_back("Title", identity.name);
+  notes.emplace_back("Scene", "XXH3 " + identity.scene);
+  notes.emplace_back("Settings", first == s.npos ? s : s.substr(first + 1));
+  return notes;
+}
+
 namespace {
 
 using WordList = std::vector<std::string>;

@@ -2,6 +2,7 @@
 
 #include "frontend/atomic_file.hpp"
 #include "frontend/parse_error.hpp"
+#include "frontend/png_chunks.hpp"
 
 #include <stb/stb_image.h>
 #include <stb/stb_image_write.h>
@@ -12,6 +13,7 @@
 #include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <memory>
@@ -24,7 +26,11 @@ namespace {
 
 constexpr std::int64_t kStbBytes = 2'000'000'000;  // stb counts bytes in an int
 constexpr int kMaxSide = 65536;
-constexpr float kLargestHdr = 1e38f;  // where the shared exponent of Radiance ends
+
+/// IEC 61966-2-1.
+double light_of_srgb(double encoded) {
+  return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+}
 
 /// Byte k begins at thresholds[k - 1]. A table, not a curve per pixel: two machines whose powf differ in the last bit
 /// would otherwise write different files.
@@ -32,8 +38,7 @@ const std::array<float, 255>& srgb_thresholds() {
   static const auto table = [] {
     std::array<float, 255> thresholds;
     for (std::size_t k = 1; k <= thresholds.size(); ++k) {
-      const double encoded = (double(k) - 0.5) / 255;
-      thresholds[k - 1] = float(encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4));
+      thresholds[k - 1] = float(light_of_srgb((double(k) - 0.5) / 255));
     }
     return thresholds;
   }();
@@ -185,22 +190,13 @@ bool image_fits(ImageFormat format, int width, int height) {
   return format == ImageFormat::pfm || (3 * std::int64_t(width) + 1) * height <= kStbBytes;
 }
 
-std::string encode_png(const Image& image, Tone tone) {
+std::string encode_png(const Image& image, Tone tone, const Notes& notes) {
   std::vector<std::uint8_t> pixels(image.rgb.size());
   std::transform(image.rgb.begin(), image.rgb.end(), pixels.begin(), [tone](float v) { return to_byte(v, tone); });
   std::string bytes;
   if (!stbi_write_png_to_func(append, &bytes, image.width, image.height, 3, pixels.data(), 3 * image.width))
     throw std::bad_alloc();
-  return bytes;
-}
-
-std::string encode_hdr(const Image& image) {
-  std::vector<float> light(image.rgb.size());
-  std::transform(image.rgb.begin(), image.rgb.end(), light.begin(),
-                 [](float v) { return v > 0 ? std::min(v, kLargestHdr) : 0.0f; });
-  std::string bytes;
-  if (!stbi_write_hdr_to_func(append, &bytes, image.width, image.height, 3, light.data())) throw std::bad_alloc();
-  return bytes;
+  return with_chunks(bytes, tone, notes);
 }
 
 std::string encode_pfm(const Image& image) {
@@ -223,17 +219,35 @@ void write_image(const std::string& path, const Image& image, const ImageStyle& 
   const auto format = style.format ? style.format : image_format(path);
   if (!format || !image_fits(*format, image.width, image.height)) throw FileError(path, "cannot hold this picture");
   switch (*format) {
-    case ImageFormat::png: return write_file(path, encode_png(image, style.tone));
-    case ImageFormat::hdr: return write_file(path, encode_hdr(image));
+    case ImageFormat::png: return write_file(path, encode_png(image, style.tone, style.notes));
+    case ImageFormat::hdr: return write_file(path, encode_hdr(image, style.notes));
     case ImageFormat::pfm: return write_file(path, encode_pfm(image));
   }
 }
 
-Image read_image(const std::string& path) {
+std::string encoding_text(const Encoding& encoding) {
+  if (encoding.kind == Encoding::Kind::light) return "light";
+  if (encoding.kind == Encoding::Kind::srgb) return "sRGB values";
+  char text[64];
+  std::snprintf(text, sizeof text, "values of gamma %g", encoding.exponent);
+  return text;
+}
+
+Image read_image(const std::string& path, Encoding* encoding) {
   const std::string bytes = read_bytes(path);
   const auto format = image_format(path);
   if (!format) throw FileError(path, "not a picture this program reads (.png, .hdr, .pfm)");
-  return *format == ImageFormat::pfm ? read_pfm(path, bytes) : read_by_stb(path, bytes, *format);
+  if (*format == ImageFormat::pfm) return read_pfm(path, bytes);
+  Image image = read_by_stb(path, bytes, *format);
+  if (encoding && *format == ImageFormat::png) *encoding = png_encoding(bytes);
+  return image;
+}
+
+Image as_light(Image image, const Encoding& encoding) {
+  if (encoding.kind == Encoding::Kind::light) return image;
+  const bool power = encoding.kind == Encoding::Kind::power;
+  for (float& v : image.rgb) v = float(power ? std::pow(double(v), 1 / encoding.exponent) : light_of_srgb(v));
+  return image;
 }
 
 }  // namespace grelha

@@ -63,6 +63,18 @@ Work saved_work(const std::string& path, const Identity& wanted, const Work& beg
   return std::move(found.work);
 }
 
+/// Settings by --time as those by --time samples:N that repeat them.
+std::string repeatable(const std::string& settings, const Refinement& r) {
+  constexpr std::string_view kTime = " time=", kSamples = "samples:";
+  const std::size_t at = settings.find(kTime);
+  if (at == settings.npos || settings.compare(at + kTime.size(), kSamples.size(), kSamples) == 0) return settings;
+  std::uint64_t samples = 0;
+  for (const std::uint8_t log : r.log) samples += log > 0 ? std::uint64_t(1) << log : 0;
+  const std::size_t value = at + kTime.size();
+  return settings.substr(0, value) + std::string(kSamples) + std::to_string(samples) +
+         settings.substr(settings.find(' ', value));
+}
+
 Image picture_of(const Work& work) {
   if (const auto* const s = std::get_if<Subdivided>(&work)) return s->image;
   if (const auto* const r = std::get_if<Refinement>(&work)) return picture_so_far(*r);
@@ -76,12 +88,8 @@ void want_shareable(const RenderCommand& c, const Ranks& ranks) {
     throw UsageError("several ranks share pictures with as many samples in every pixel: no --error, --time or --aa adaptive");
 }
 
-ImageStyle style_of(const RenderCommand& command) {
-  return {format_of(command.image, command.format), command.srgb ? Tone::srgb : Tone::authored};
-}
-
 LongRender::LongRender(const RenderCommand& prepared, const Camera& camera, std::string scene, Ranks& ranks, Warn warn)
-    : command_(prepared), ranks_(ranks), warn_(std::move(warn)), identity_{std::move(scene), settings_text(prepared, camera)} {
+    : command_(prepared), ranks_(ranks), warn_(std::move(warn)), identity_{std::move(scene), settings_text(prepared, camera), scene_name(prepared.scene)} {
   work_ = new_work(prepared, camera);
   const auto* const sums = std::get_if<Accumulator>(&work_);
   ranks_.agree_on(identity_.scene, "has read another scene than the first");
@@ -151,7 +159,7 @@ void LongRender::keep() {
   if (share_done() == 0) return;
   if (!saved_ && !kept_.empty()) saved_ = tried([this] { save(); });
   const std::string picture = partial_picture(command_);
-  if (!picture.empty()) shown_ = tried([&] { write_image(picture, picture_of(work_), style_of(command_)); });
+  if (!picture.empty()) shown_ = tried([&] { write_image(picture, picture_of(work_), style()); });
 }
 
 std::string LongRender::stop_text(int signal) const {
@@ -207,9 +215,23 @@ void LongRender::keep_all() const {
 
 void LongRender::save() const { write_checkpoint(kept_, identity_, work_, true); }
 
+/// By --time the samples that were taken are what makes the picture again; and one that is not done says so.
+ImageStyle LongRender::style() const {
+  Identity identity = identity_;
+  const auto* const refined = std::get_if<Refinement>(&work_);
+  if (refined) identity.settings = repeatable(identity.settings, *refined);
+  ImageStyle style{format_of(command_.image, command_.format), command_.srgb ? Tone::srgb : Tone::authored,
+                   notes_of(identity)};
+  const bool finished = refined ? refined->finished : share_done() == 1;
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f %% of the work", 100 * share_done());
+  if (!finished) style.notes.emplace_back("Comment", text);
+  return style;
+}
+
 void LongRender::write() const {
   if (is_partial_name(command_.image)) write_checkpoint(command_.image, identity_, work_, false);
-  else write_image(command_.image, picture_of(work_), style_of(command_));
+  else write_image(command_.image, picture_of(work_), style());
 }
 
 }  // namespace grelha

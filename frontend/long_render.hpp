@@ -13,9 +13,6 @@ namespace grelha {
 /// Throws UsageError when several ranks are to share what only one can render.
 void want_shareable(const RenderCommand& command, const Ranks& ranks);
 
-/// Of the picture that a command makes.
-ImageStyle style_of(const RenderCommand& command);
-
 /// A render that saves what it has, shows it, and can be stopped.
 class LongRender {
  public:
@@ -57,6 +54,7 @@ class LongRender {
   void keep_all() const;  ///< of a picture that cannot be written
   bool tried(const std::function<void()>& write) const;  ///< warns of what it throws
   void save() const;
+  ImageStyle style() const;
   void write() const;
 
   const RenderCommand& command_;

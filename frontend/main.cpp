@@ -124,7 +124,7 @@ int render_long(LongRender& work, const World& world, const Camera& camera, cons
 
 /// Numbers by pixel as a picture: .pfm and .hdr hold them as they are; in a .png `shade` of the largest is white.
 template <class T, class Shade>
-void write_map(const std::string& path, const std::vector<T>& values, const Camera& camera, const Shade& shade) {
+void write_map(const std::string& path, const char* what, const std::vector<T>& values, const Camera& camera, const Shade& shade) {
   if (path.empty()) return;
   const bool png = image_format(path) == ImageFormat::png;
   const double largest = shade(double(*std::max_element(values.begin(), values.end())));
@@ -133,7 +133,7 @@ void write_map(const std::string& path, const std::vector<T>& values, const Came
     const double v = double(values[i / 3]);
     image.rgb[i] = float(png ? (largest > 0 ? shade(v) / largest : 0) : v);
   }
-  write_image(path, image);
+  write_image(path, image, {.notes = {kSoftware, {"Comment", what}}});
 }
 
 /// What of a command is for a rank that neither writes nor speaks.
@@ -189,8 +189,8 @@ int render_scene(const RenderCommand& given, Ranks& ranks) {
 
   const Stopwatch write;
   work.finish();
-  write_map(command.samples_map, maps.samples, camera, [](double n) { return std::log2(n); });
-  write_map(command.error_map, maps.error, camera, [](double e) { return e; });
+  write_map(command.samples_map, "samples of each pixel", maps.samples, camera, [](double n) { return std::log2(n); });
+  write_map(command.error_map, "estimated standard error of each pixel", maps.error, camera, [](double e) { return e; });
   report.seconds.write = write.seconds();
 
   const Geometry& geometry = file.scene.geometry;
@@ -268,14 +268,20 @@ std::string size_text(const Image& image) { return std::to_string(image.width) +
 
 void write_difference(const CompareCommand& command, const Image& a, const Image& b, double largest) {
   const bool stretch = image_format(command.diff) == ImageFormat::png && largest > 0 && largest <= 1e30;
-  write_image(command.diff, difference(a, b, stretch ? 1 / largest : 1));
+  write_image(command.diff, difference(a, b, stretch ? 1 / largest : 1), {.notes = {kSoftware, {"Comment", "difference of two pictures"}}});
 }
 
 int run(const CompareCommand& command) {
   if (!command.diff.empty()) want_not_read({{"--diff", command.diff}}, {command.a, command.b});
-  Image a = read_image(command.a), b = read_image(command.b);
+  Encoding of_a, of_b;
+  Image a = read_image(command.a, &of_a), b = read_image(command.b, &of_b);
   if (a.width != b.width || a.height != b.height)
     throw UsageError("the pictures have unequal sizes, " + size_text(a) + " and " + size_text(b));
+  if (of_a != of_b) {
+    warn(command.a + " holds " + encoding_text(of_a) + ", " + command.b + ' ' + encoding_text(of_b) + ": compared as light");
+    a = as_light(std::move(a), of_a);
+    b = as_light(std::move(b), of_b);
+  }
   if (command.display) a = displayed(std::move(a)), b = displayed(std::move(b));
   const Comparison c = compare(a, b);
   if (!command.diff.empty()) write_difference(command, a, b, c.largest);
@@ -300,7 +306,7 @@ int run(const MergeCommand& command) {
     if (a.part != whole) throw UsageError("the parts are " + part_text(a.part) + ", the picture is " + part_text(whole) + ": join them to a .grelha");
     const auto format = format_of(command.output, command.format);
     want_room(format, a.width, a.height);
-    write_image(command.output, picture_so_far(a), {format, command.srgb ? Tone::srgb : Tone::authored});
+    write_image(command.output, picture_so_far(a), {format, command.srgb ? Tone::srgb : Tone::authored, notes_of(joined.identity)});
   }
   const std::size_t n = command.parts.size();
   const std::string summary = name_of_file(command.output) + ": " + part_text(a.part) + " from " + std::to_string(n) +

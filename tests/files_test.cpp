@@ -207,5 +207,37 @@ TEST_F(Files, StdoutHoldsOneResult) {
   EXPECT_TRUE(run("render ball.nff -o -").err.starts_with("grelha: goes on from ball.png.partial, 100.0 % done\n"));
 }
 
+/// What is said of a picture makes the picture again, and is the same whatever changes no bit of it.
+TEST_F(Files, PicturesSayWhatTheyAre) {
+  const auto text = [&](const std::string& options) {
+    EXPECT_EQ(run("render ball.nff --quiet -o x.png --size 9x7 " + options).status, 0);
+    return folder_.read("x.png");
+  };
+  const std::string png = text("--samples 3 --seed 5");
+  for (const std::string& chunk : {std::string("Software\0grelha ", 16), std::string("Title\0ball", 10), std::string("Scene\0XXH3 ", 11),
+                                  std::string("Settings\0size=9x7 samples=3 sampler=sobol seed=5 depth=5", 56)})
+    EXPECT_NE(png.find("tEXt" + chunk), png.npos) << chunk;
+  EXPECT_EQ(png.find("sRGB"), png.npos);
+  EXPECT_EQ(png, text("--samples 3 --seed 5 -j 1 --isa scalar --packet 1 --accel none --stats s.json"));
+  EXPECT_NE(text("--srgb").find("sRGB"), png.npos);
+  folder_.write("copy.nff", kBall);
+  EXPECT_EQ(run("render ./copy.nff --quiet -o y.png --size 9x7 --samples 3 --seed 5").status, 0);
+  EXPECT_NE(folder_.read("y.png"), png) << "of another name";
+  EXPECT_EQ(run("compare x.png y.png --max-rmse 0").status, 1);
+  const std::string timed = text("--time .01"), count = timed.substr(timed.find("time=samples:"), 40);
+  EXPECT_EQ(text("--time " + count.substr(5, count.find(' ') - 5)), timed) << count;
+}
+
+TEST_F(Files, ComparesLightWithLight) {
+  ASSERT_EQ(run("render ball.nff -o a.png --srgb --quiet").status, 0);
+  ASSERT_EQ(run("render ball.nff -o b.hdr --quiet").status, 0);
+  ASSERT_EQ(run("render ball.nff -o c.png --quiet").status, 0);
+  const Outcome bent = run("compare a.png b.hdr --max-rmse .01");
+  EXPECT_EQ(bent.err, "a.png holds sRGB values, b.hdr light: compared as light\n");
+  EXPECT_EQ(bent.status, 0) << bent.out;
+  EXPECT_EQ(run("compare b.hdr c.png --max-rmse .01").err, "");
+  EXPECT_EQ(run("compare a.png a.png --max-rmse 0").err, "") << "of one kind: as they are";
+}
+
 }  // namespace
 }  // namespace grelha
