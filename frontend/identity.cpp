@@ -78,7 +78,7 @@ std::string settings_text(const RenderCommand& prepared, const Camera& camera) {
   const Effects& e = prepared.effects;
   std::string words = "version=" GRELHA_VERSION " size=" + std::to_string(camera.width) + 'x' + std::to_string(camera.height) +
                       ' ' + samples_text(o) + " sampler=" + sampler_name(s.sampler) + " seed=" + std::to_string(s.seed) +
-                      " depth=" + std::to_string(o.depth);
+                      " depth=" + std::to_string(o.depth) + " min-weight=" + text(o.min_weight);
   if (o.precision == Precision::kDouble) words += " precision=double";
   if (e.shadows) words += std::string(" shadows=") + (e.shadows->hard ? "hard" : text(e.shadows->size));
   if (s.light_rays > 1) words += " light-rays=" + std::to_string(s.light_rays);

@@ -72,6 +72,12 @@ int whole(const std::string& option, const std::string& text, int low, int high)
   return *value;
 }
 
+double min_weight(const std::string& text) {
+  const auto value = number<double>(text);
+  if (!value || !(*value >= 0) || *value > 1) refuse("--min-weight", "a number from 0 to 1", text);
+  return *value;
+}
+
 float density(const std::string& text) {
   const auto value = number<double>(text);
   if (!value || !(float(*value) > 0) || *value > kMaxDensity)

@@ -20,6 +20,7 @@ inline constexpr int kMaxSide = 65536;  ///< of a picture
 
 int whole(const std::string& option, const std::string& text, int low, int high);
 float density(const std::string& text);
+double min_weight(const std::string& text);
 void parse_aa(const std::string& text, Effects& effects);
 void parse_shadows(const std::string& text, Effects& effects);
 void parse_lens(const std::string& text, Effects& effects);

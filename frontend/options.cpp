@@ -97,6 +97,8 @@ void add_render(CLI::App& app, RenderCommand& command) {
         [&command](const std::string& text) { command.render.threads = command.build.threads = whole("--threads", text, 1, kMaxThreads); });
   value(sub, "--depth", "N", "longest path of a ray, the eye ray counted as 1 [5]",
         [&command](const std::string& text) { command.render.depth = whole("--depth", text, 1, kMostDepth); });
+  value(sub, "--min-weight", "W", "paths end that can bring less than W (white is 1); 0 keeps all [1/16384]",
+        [&command](const std::string& text) { command.render.min_weight = min_weight(text); });
   Effects& effects = command.effects;
   value(sub, "--samples", "N", "rays through each pixel [1; with a lens, area light or rough mirror 16]; I:J/N: those from I up to J",
         [&command](const std::string& text) { parse_samples(text, command); });

@@ -139,6 +139,7 @@ std::string stats_json(const RenderCommand& command, const RunReport& report) {
   json["ranks"] = report.ranks;
   json["size"] = {report.width, report.height};
   json["options"] = {{"depth", command.render.depth},
+                     {"min_weight", command.render.min_weight},
                      {"density", tidy(command.build.density)},
                      {"accel", command.build.grid ? "grid" : "none"},
                      {"mailbox", command.render.mailbox},

@@ -1,6 +1,8 @@
 #pragma once
 // One band of image rows from camera to finished sums: no recursion, bounces wait on a stack and are traced in batches.
 
+#include <algorithm>
+
 #include "kernel/part.hpp"
 #include "kernel/shade.hpp"
 
@@ -40,7 +42,7 @@ inline constexpr int kClasses = 2;
 }
 
 /// Takes the youngest rays off the stack into the batch, class by class, in their order; ends[c] is where class c ends.
-inline void pop(RayStack& stack, Batch& b, int most, bool sampled, int (&ends)[kClasses]) {
+inline void pop(RayStack& stack, Batch& b, int most, bool sampled, bool shares, int (&ends)[kClasses]) {
   const int n = stack.size < most ? stack.size : most, top = stack.size;
   stack.size -= n;
   int to = 0;
@@ -56,6 +58,7 @@ inline void pop(RayStack& stack, Batch& b, int most, bool sampled, int (&ends)[k
       move(b.ox, stack.ox), move(b.oy, stack.oy), move(b.oz, stack.oz);
       move(b.dx, stack.dx), move(b.dy, stack.dy), move(b.dz, stack.dz);
       move(b.wr, stack.wr), move(b.wg, stack.wg), move(b.wb, stack.wb);
+      if (shares) move(b.share, stack.share);
       move_words(b.pixel, stack.pixel), here.store(b.depth + to, depth & ~kRefracted);
       if (sampled) move_words(b.sample, stack.sample), move_words(b.path, stack.path);
       to += here.count();
@@ -67,11 +70,12 @@ inline void pop(RayStack& stack, Batch& b, int most, bool sampled, int (&ends)[k
 /// Camera rays [0, count) of the batch and all that comes of them. The stack is empty before and after.
 inline void follow(const Shader& s, RayStack& stack, int count) {
   s.rays.primary += static_cast<unsigned>(count);
+  if (keeps_shares(s)) std::fill(s.b.share, s.b.share + count, 1.f);
   shade_batch(s, stack, &count, 1, Phase::primary);
   int ends[kClasses];
   while (stack.size > 0) {
     enter(s.work, Phase::children);
-    pop(stack, s.b, s.work.take, s.work.plan.on, ends);
+    pop(stack, s.b, s.work.take, s.work.plan.on, keeps_shares(s), ends);
     shade_batch(s, stack, ends, kClasses, Phase::bounce);
   }
   enter(s.work, Phase::camera);

@@ -126,6 +126,9 @@ enum class Precision { kSingle, kDouble };
 struct RenderOptions {
   int threads = 0;              ///< 0: one per processor
   int depth = 5;                ///< longest path, at most kMostDepth, the eye ray counted as 1; at its end the background is seen
+  /// Paths end whose weight, times the brightest light they can meet, is less: 0 to 1, 0 keeps all. Of the default no channel moves by more
+  /// than 1/1024 at depth 5 (docs/sampling.md).
+  double min_weight = 1. / 16384;
   int packet = 256;             ///< most rays that march together: 1, 16, 64 or 256; see march_from()
   bool mailbox = true;          ///< skip primitives a ray or packet has already met in another cell
   std::string_view isa = "best";

@@ -15,6 +15,7 @@ namespace {
 void check(const Camera& camera, const RenderOptions& o) {
   if (!camera_is_sound(camera)) throw std::invalid_argument("the camera cannot see: check eye, at, up, angle and size");
   if (o.depth < 1 || o.depth > kMostDepth) throw std::invalid_argument("depth must be from 1 to " + std::to_string(kMostDepth));
+  if (!(o.min_weight >= 0 && o.min_weight <= 1)) throw std::invalid_argument("the least weight of a path must be from 0 to 1");
   if (o.packet != 1 && o.packet != 16 && o.packet != 64 && o.packet != 256)
     throw std::invalid_argument("a packet holds 1, 16, 64 or 256 rays");
   const SampleOptions& s = o.sampling;

@@ -76,6 +76,9 @@ struct Shader {
   Batch& b;
 };
 
+/// Whether shares are more than weights tell: see split().
+inline bool keeps_shares(const Shader& s) { return s.shading.gains || s.work.plan.gloss_rays > 0; }
+
 inline Vec3<Lanes> load3(const float* x, const float* y, const float* z, int i) {
   return {load<Lanes>(x + i), load<Lanes>(y + i), load<Lanes>(z + i)};
 }
@@ -111,6 +114,7 @@ inline int find_surfaces(const Shader& s, int count) {
     hit.store(b.vx + h, b.vy + h, b.vz + h, normalize(zero - d));
     hit.store(b.away + h, f.away), hit.store(b.inside + h, select(inside, Lanes(1), Lanes(0)));
     hit.store(b.hr + h, b.hg + h, b.hb + h, weight);
+    if (keeps_shares(s)) hit.store(b.hit_share + h, load<Lanes>(b.share + i));
     hit.store(b.hit_pixel + h, load_words<Lanes>(b.pixel + i)), hit.store(b.hit_depth + h, load_words<Lanes>(b.depth + i));
     hit.store(b.material + h, f.material);
     if (s.work.plan.on) hit.store(b.hit_sample + h, load_words<Lanes>(b.sample + i)), hit.store(b.hit_path + h, load_words<Lanes>(b.path + i));
@@ -255,15 +259,22 @@ inline void light_hits(const Shader& s, int hits, int light_index, bool area) {
   light_up(s, n);
 }
 
+/// What a ray carries of its sample: a weight a channel, and its share, see split().
+struct Carried {
+  Vec3<Lanes> weight;
+  Lanes share;
+};
+
 /// Puts the rays of the chosen hits i, i + 1, ... on the stack.
-inline void push(const Shader& s, RayStack& stack, int i, const Chosen& chosen, const Vec3<Lanes>& dir, const Vec3<Lanes>& weight, std::uint32_t kind,
+inline void push(const Shader& s, RayStack& stack, int i, const Chosen& chosen, const Vec3<Lanes>& dir, const Carried& carried, std::uint32_t kind,
                  std::uint32_t branch) {
   Batch& b = s.b;
   const int to = stack.size;
   const Vec3<Lanes> org = leave(load3(b.px, b.py, b.pz, i), load3(b.gx, b.gy, b.gz, i), load<Lanes>(b.away + i), dir);
   chosen.store(stack.ox + to, stack.oy + to, stack.oz + to, org);
   chosen.store(stack.dx + to, stack.dy + to, stack.dz + to, dir);
-  chosen.store(stack.wr + to, stack.wg + to, stack.wb + to, weight);
+  chosen.store(stack.wr + to, stack.wg + to, stack.wb + to, carried.weight);
+  if (keeps_shares(s)) chosen.store(stack.share + to, carried.share);
   chosen.store(stack.pixel + to, load_words<Lanes>(b.hit_pixel + i));
   chosen.store(stack.depth + to, (load_words<Lanes>(b.hit_depth + i) + 1u) | kind);
   if (s.work.plan.on) {
@@ -287,12 +298,30 @@ inline void push(const Shader& s, RayStack& stack, int i, const Chosen& chosen, 
   return normalize(select(under < Lanes(0), to - (under + under) * g, to));
 }
 
-/// Sends the reflected and refracted rays of all hits. At the end of the longest path they see the background.
+/// What the reflected and the refracted ray of a hit carry; `up`, `down`: what the material sends on of what it gets.
+///
+/// By its share a ray goes on or ends. It is the weight of the brightest channel, but for two cases: of a material that sends on more than it
+/// gets the two have shares of one, so that all shares of a sample together never grow, and rays that fan out in a lobe have the share of one
+/// in their place, since they end together.
+inline void split(const Shader& s, int i, const Vec3<Lanes>& up, const Vec3<Lanes>& down, Carried& reflected, Carried& refracted) {
+  const Vec3<Lanes> w = load3(s.b.hr, s.b.hg, s.b.hb, i);
+  reflected.weight = w * up, refracted.weight = w * down;
+  reflected.share = largest(reflected.weight), refracted.share = largest(refracted.weight);
+  if (!keeps_shares(s)) return;
+  const Lanes r = largest(up), t = largest(down), share = load<Lanes>(s.b.hit_share + i) / greater(r + t, Lanes(1));
+  reflected.share = share * r, refracted.share = share * t;
+}
+
+/// Least weights that a fan of rays in a lobe must have together; else one goes in its place.
+inline constexpr float kFanWeights = 8;
+
+/// Sends the reflected and refracted rays of all hits. At the end of the longest path they see the background, and where what they could
+/// bring is less than would show; docs/sampling.md derives how much less.
 inline void send_on(const Shader& s, RayStack& stack, int hits) {
   Batch& b = s.b;
   const Vec3<Lanes> background = splat(s.shading.background);
   const Words<Lanes> last = Words<Lanes>{} + static_cast<std::uint32_t>(s.work.depth);
-  const Lanes o(0), one(1);
+  const Lanes o(0), one(1), least(s.work.min_weight / s.shading.brightest);
   const int around = s.work.plan.gloss_rays;
   const float part = 1.f / static_cast<float>(around + 1);
   for (int i = 0; i < hits; i += kWidth<Lanes>) {
@@ -331,30 +360,32 @@ inline void send_on(const Shader& s, RayStack& stack, int hits) {
       up = select(clear, rw, up);
       up = select(total, select(additive, Vec3<Lanes>{up.x + all, up.y + all, up.z + all}, Vec3<Lanes>{whole, whole, whole}), up);
     }
-    const Vec3<Lanes> w = load3(b.hr, b.hg, b.hb, i);
-    up = w * up, down = w * down;
+    Carried reflection, refraction;
+    split(s, i, up, down, reflection, refraction);
     Vec3<Lanes> reflected = (nv + nv) * n - v;
     // A smooth normal can send a reflection under the true surface; bend it back above.
     const Lanes under = lesser(dot(reflected, g), o);
     reflected = reflected - (under + under) * g;
     const unsigned in = lanes_of(i, hits);
-    const unsigned mirrors = bits(any_component(up)) & in;
-    const unsigned clears = bits(any_component(down)) & in;
+    const unsigned mirrors = bits(any_component(reflection.weight)) & in;
+    const unsigned clears = bits(any_component(refraction.weight)) & in;
     if ((mirrors | clears) == 0) continue;
     const unsigned end = bits(mask_of(Words<Lanes>(load_words<Lanes>(b.hit_depth + i) >= last)));
-    add_light(s.work, b.hit_pixel + i, up * background, mirrors & end);
-    add_light(s.work, b.hit_pixel + i, down * background, clears & end);
-    const Chosen on_mirrors(mirrors & ~end), on_clears(clears & ~end);
+    const unsigned mirrors_end = end | bits(reflection.share < least), clears_end = end | bits(refraction.share < least);
+    add_light(s.work, b.hit_pixel + i, reflection.weight * background, mirrors & mirrors_end);
+    add_light(s.work, b.hit_pixel + i, refraction.weight * background, clears & clears_end);
+    const Chosen on_mirrors(mirrors & ~mirrors_end), on_clears(clears & ~clears_end);
     Mask<Lanes> rough = o != o;
     if (s.shading.gloss) rough = gather(s, kRoughness, at) > o;
-    const Chosen on_rough(bits(rough) & mirrors & ~end);
+    const Mask<Lanes> many = around == 0 ? o != o : but_not(rough, largest(reflection.weight) < Lanes(kFanWeights) * least);
+    const Chosen on_rough(bits(rough) & mirrors & ~mirrors_end), on_many(bits(many) & mirrors & ~mirrors_end);
     const Lanes roughness = on_rough.count() != 0 ? gather(s, kRoughness, at) : o;
     Vec3<Lanes> first = reflected;
-    if (on_rough.count() != 0 && around == 0) first = select(rough, lobe_directions(s, i, reflected, roughness, 0, 1), reflected);
-    push(s, stack, i, on_mirrors, first, select(rough, Lanes(part), one) * up, 0, 0);
-    push(s, stack, i, on_clears, through, down, kRefracted, 0);
-    for (int j = 0; j < around && on_rough.count() != 0; ++j)  // the rays around the mirror direction
-      push(s, stack, i, on_rough, lobe_directions(s, i, reflected, roughness, j, around), Lanes(part) * up, 0, static_cast<std::uint32_t>(j + 1));
+    if (on_rough.count() != on_many.count()) first = select(but_not(rough, many), lobe_directions(s, i, reflected, roughness, 0, 1), reflected);
+    push(s, stack, i, on_mirrors, first, {select(many, Lanes(part), one) * reflection.weight, reflection.share}, 0, 0);
+    push(s, stack, i, on_clears, through, refraction, kRefracted, 0);
+    for (int j = 0; j < around && on_many.count() != 0; ++j)  // the rays around the mirror direction
+      push(s, stack, i, on_many, lobe_directions(s, i, reflected, roughness, j, around), {Lanes(part) * reflection.weight, reflection.share}, 0, static_cast<std::uint32_t>(j + 1));
   }
 }
 

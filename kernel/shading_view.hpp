@@ -24,6 +24,8 @@ struct ShadingView {
   float background[3] = {};
   bool smooth = false, reflects = false, refracts = false, fresnel = false, emits = false, highlights = false;
   bool area = false, gloss = false;
+  bool gains = false;   ///< some material sends on more than it gets: see split()
+  float brightest = 0;  ///< a point, what its mirror and glass show left out, or the background: sends an eye at most so much
 };
 
 inline constexpr int kLightFloats = 12;
@@ -78,6 +80,7 @@ inline constexpr std::uint32_t kRefracted = 1u << 31;
 /// Rays waiting for their turn, last in first out. Arrays of `capacity` floats each.
 struct RayStack {
   float *ox, *oy, *oz, *dx, *dy, *dz, *wr, *wg, *wb;
+  float* share;                                  ///< only where keeps_shares()
   std::uint32_t *pixel, *depth, *sample, *path;  ///< the last two: only when the plan is on
   int size, capacity;
 };
@@ -86,7 +89,7 @@ struct RayStack {
 struct Batch {
   // the rays
   alignas(64) float ox[kBatchRow], oy[kBatchRow], oz[kBatchRow], dx[kBatchRow], dy[kBatchRow], dz[kBatchRow], t_min[kBatchRow], t[kBatchRow];
-  alignas(64) float wr[kBatchRow], wg[kBatchRow], wb[kBatchRow];
+  alignas(64) float wr[kBatchRow], wg[kBatchRow], wb[kBatchRow], share[kBatchRow];
   std::uint32_t id[kBatchRow], pixel[kBatchRow], depth[kBatchRow];
   std::uint32_t sample[kBatchRow], path[kBatchRow];  ///< of its pixel; which bounces led here (0: none)
   // what they met, misses left out
@@ -97,6 +100,7 @@ struct Batch {
   alignas(64) float away[kBatchRow];                           ///< how far along g a ray must start so as not to meet its own surface
   alignas(64) float inside[kBatchRow];                         ///< 1: met from within
   alignas(64) float hr[kBatchRow], hg[kBatchRow], hb[kBatchRow];     ///< weight of what this point sends
+  alignas(64) float hit_share[kBatchRow];                      ///< see split()
   std::uint32_t hit_pixel[kBatchRow], hit_depth[kBatchRow], material[kBatchRow], hit_sample[kBatchRow], hit_path[kBatchRow];
   // shadow rays and the light each lets through
   alignas(64) float lox[kBatchRow], loy[kBatchRow], loz[kBatchRow], ldx[kBatchRow], ldy[kBatchRow], ldz[kBatchRow], lt_min[kBatchRow], lt[kBatchRow];
@@ -117,6 +121,7 @@ struct BandWork {
   RayStack stack = {};
   std::int64_t* sums = nullptr;  ///< [rows of the band][width][3], units of 1 / kLightUnit, zero on entry
   int depth = 1, packet = 64;
+  float min_weight = 0;          ///< see RenderOptions
   int take = kBatch;             ///< rays taken off the stack at a time, at most kBatch
   bool mailbox = true;
   std::uint32_t first_pixel = 0;  ///< of the band, counted through the picture

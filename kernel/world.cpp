@@ -21,6 +21,8 @@ bool uneven(std::size_t count, std::initializer_list<std::size_t> sizes) {
   return std::any_of(sizes.begin(), sizes.end(), [count](std::size_t size) { return size != count; });
 }
 
+float largest_channel(const Float3& v) { return std::max({v.x, v.y, v.z}); }
+
 void check_lengths(const GeometrySpans& g) {
   const SphereSpans& s = g.spheres;
   const TriangleSpans& t = g.triangles;
@@ -80,6 +82,9 @@ MaterialTable::MaterialTable(const SceneSpans& scene) {
     fresnel |= clear && m.fresnel;
     emits |= m.emission != Float3{};
     highlights |= m.specular != Float3{};
+    constexpr float kRounding = 1.0001f;  // .9 + .1 as floats is no gain
+    gains |= !(clear && m.fresnel) && largest_channel(m.mirror) + (clear ? m.transmission : 0) > kRounding;
+    lit = std::max(lit, largest_channel(m.diffuse) + largest_channel(m.specular)), emitted = std::max(emitted, largest_channel(m.emission));
     gloss |= m.roughness > 0 && (clear || m.mirror != Float3{});
   }
 }
@@ -131,6 +136,10 @@ World::Impl::Impl(const SceneSpans& s, const BuildOptions& options) : scene((che
     for (const Float3& part : {l.position, l.color, l.edge1, l.edge2}) lights.insert(lights.end(), {part.x, part.y, part.z});
     shading.area |= l.is_area();
   }
+  float light = 0;
+  for (const Light& l : s.lights) light += largest_channel(l.color);
+  shading.brightest = std::max(largest_channel(s.background), materials.emitted + materials.lit * light);
+  shading.gains = materials.gains;
   shading.materials = materials.view();
   shading.lights = lights.data(), shading.light_count = static_cast<int>(s.lights.size());
   shading.background[0] = s.background.x, shading.background[1] = s.background.y, shading.background[2] = s.background.z;

@@ -19,6 +19,8 @@ struct MaterialTable {
   MaterialView view() const;
   std::array<std::vector<float>, kMaterialFields> fields;
   bool reflects = false, refracts = false, fresnel = false, emits = false, highlights = false, gloss = false;
+  bool gains = false;
+  float lit = 0, emitted = 0;  ///< of light of 1 a point sends an eye at most so much; and what the brightest sends by itself
 };
 
 struct World::Impl {

@@ -144,6 +144,7 @@ TEST(RenderOptions, RefusesWhatItCannotDo) {
   o.depth = 0, refused(o);
   o.depth = 100000, refused(o), o = {};
   o.packet = 8, refused(o), o = {};
+  for (const double weight : {-1e-9, 1.001, std::nan("")}) o.min_weight = weight, refused(o), o = {};
   o.threads = -1, refused(o), o = {};
   o.isa = "mmx", refused(o), o = {};
   for (const Isa& isa : isas())

@@ -60,6 +60,7 @@ TEST(Identity, NamesAllThatPixelsDependOn) {
             "samples=2 seed=4, a has samples=1 seed=0");
   EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.sampling.sampler = Sampler::kJitter; }), "sampler=jitter, a has sampler=sobol");
   EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.depth = 6; }), "depth=6, a has depth=5");
+  EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.min_weight = 0; }), "min-weight=0, a has min-weight=6.103515625e-05");
   EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.refine.error = .01; }), "error=0.01 no samples=, a has samples=1 no error=");
   EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.refine.seconds = 2.5; }), "time=2.5 no samples=, a has samples=1 no time=");
   EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.refine.samples = 7; }), "time=samples:7 no samples=, a has samples=1 no time=");

@@ -16,6 +16,7 @@ grelha_test(double property grelha::kernel)
 grelha_test(beam unit grelha::kernel)
 grelha_test(query unit grelha::kernel)
 grelha_test(shade unit grelha::kernel)
+grelha_test(path_weight unit grelha::kernel)
 grelha_test(subdivision image grelha::kernel)
 grelha_test(determinism image grelha::frontend grelha::scenes)
 

@@ -30,6 +30,7 @@ TEST(Render, Defaults) {
   EXPECT_EQ(command.width, 0);
   EXPECT_EQ(command.render.threads, 0);
   EXPECT_EQ(command.render.depth, 5);
+  EXPECT_EQ(command.render.min_weight, 1. / 16384);
   EXPECT_EQ(command.render.packet, 256);
   EXPECT_TRUE(command.render.mailbox);
   EXPECT_EQ(command.render.isa, "best");
@@ -75,13 +76,14 @@ TEST(Render, ErrorAndTime) {
 
 TEST(Render, EveryOption) {
   const auto command = std::get<RenderCommand>(
-      parse("render x.nff -o y.png --size 640x480 --threads 7 --depth 3 --density 2.5 --mailbox off "
+      parse("render x.nff -o y.png --size 640x480 --threads 7 --depth 3 --min-weight .25 --density 2.5 --mailbox off "
             "--isa avx2 --precision double --packet 16 --stats s.json --quiet --srgb"));
   EXPECT_EQ(command.image, "y.png");
   EXPECT_EQ(command.width, 640);
   EXPECT_EQ(command.height, 480);
   EXPECT_EQ(command.render.threads, 7);
   EXPECT_EQ(command.render.depth, 3);
+  EXPECT_EQ(command.render.min_weight, .25);
   EXPECT_EQ(command.render.packet, 16);
   EXPECT_EQ(command.render.precision, Precision::kDouble);
   EXPECT_FALSE(command.render.mailbox);
@@ -232,6 +234,8 @@ TEST(Errors, SayWhatWasWantedAndFound) {
       {"render a --threads 0", "--threads: wanted a whole number from 1 to 1024, found \"0\""},
       {"render a --threads 1.5", "--threads: wanted a whole number from 1 to 1024, found \"1.5\""},
       {"render a --threads 99999999999", "--threads: wanted a whole number from 1 to 1024, found \"99999999999\""},
+      {"render a --min-weight nan", "--min-weight: wanted a number from 0 to 1, found \"nan\""},
+      {"render a --min-weight 1.5", "--min-weight: wanted a number from 0 to 1, found \"1.5\""},
       {"render a --depth -1", "--depth: wanted a whole number from 1 to 4096, found \"-1\""},
       {"render a --density 0", "--density: wanted a number above 0 and up to 1000, found \"0\""},
       {"render a --density nan", "--density: wanted a number above 0 and up to 1000, found \"nan\""},

@@ -25,7 +25,7 @@ Pixel look(const Scene& scene, const Float3& eye, const Float3& at, int depth = 
   const Float3 d = minus(at, eye);
   if (d.x == 0 && d.z == 0) c.up = {0, 0, 1};
   RenderOptions o;
-  o.depth = depth, o.threads = 1;
+  o.depth = depth, o.threads = 1, o.min_weight = 0;  // closed forms have all terms
   Pixel p;
   const Image image = render(world, c, o, p.stats);
   p.r = image.rgb[0], p.g = image.rgb[1], p.b = image.rgb[2];
