@@ -91,19 +91,19 @@ PictureCounts total_reflection(int size) {
 /// Fresnel one ray goes on at each surface, and by the symmetry of a ball what enters it leaves it.
 PictureCounts white_furnace(int size) {
   PictureCounts c;
-  struct Body {
+  struct ClearBody {
     const char* name;
     std::function<void(Scene&, float)> add;
     float ior;
   };
-  const Body bodies[] = {
+  const ClearBody bodies[] = {
       {"glass", [](Scene& s, float k) { s.geometry.spheres.add({}, k, 0); }, 1.5f},
       {"index below 1", [](Scene& s, float k) { s.geometry.spheres.add({}, k, 0); }, .7f},
       {"ball in ball", [](Scene& s, float k) { s.geometry.spheres.add({}, k, 0), s.geometry.spheres.add({}, k / 2, 0); }, 1.4f},
       {"equal balls", [](Scene& s, float k) { s.geometry.spheres.add({}, k, 0), s.geometry.spheres.add({}, k, 0); }, 1.f},
       {"touching balls", [](Scene& s, float k) { s.geometry.spheres.add({-k, 0, 0}, k, 0), s.geometry.spheres.add({k, 0, 0}, k, 0); }, 1.5f},
   };
-  for (const Body& body : bodies)
+  for (const ClearBody& body : bodies)
     for (const double scale : {1., 1e-6, 1e6}) {
       Scene s;
       s.materials.resize(1);
