@@ -2,23 +2,59 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 namespace grelha {
-namespace {
 
-/// Whether the box lies wholly to the right of the line a to b. Rounds as turn() does for every point in the box, so
-/// that no point turn() accepts is missed.
-bool beyond(const Point2& a, const Point2& b, const Point2& lower, const Point2& upper) {
-  const Point2 nearest{b.y - a.y > 0 ? lower.x : upper.x, b.x - a.x > 0 ? upper.y : lower.y};
-  return turn(a, b, nearest) < 0;
-}
+/// Its two longer sides come first: of a sliver they tell of nearly every box and point.
+class PointTree::Triangle {
+  /// A side of a triangle, and which corner of any box lies farthest to its left.
+  struct Side {
+    Side(const Point2& from, const Point2& to)
+        : start(from), dx(to.x - from.x), dy(to.y - from.y), x(dy > 0 ? 0 : 1), y(dx > 0 ? 1 : 0) {}
+    double length() const { return dx * dx + dy * dy; }
+    /// As turn() says it of the side and p, bit for bit.
+    double turn(double px, double py) const { return dx * (py - start.y) - dy * (px - start.x); }
 
-}  // namespace
+    Point2 start;
+    double dx, dy;
+    std::size_t x, y;  ///< 0: the box's least, 1: its largest
+  };
+
+ public:
+  Triangle(const Point2& a, const Point2& b, const Point2& c)
+      : corners_{a, b, c},
+        sides_{Side(a, b), Side(b, c), Side(c, a)},
+        lower_{std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y})},
+        upper_{std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y})} {
+    const auto shortest = std::min_element(sides_.begin(), sides_.end(),
+                                           [](const Side& s, const Side& t) { return s.length() < t.length(); });
+    std::swap(*shortest, sides_.back());
+  }
+  /// Whether the box may hold a point of it. Rounds as has() does for every point in the box.
+  bool touches(const Node& n) const {
+    if (n.alive == 0 || n.x[0] > upper_.x || n.x[1] < lower_.x || n.y[0] > upper_.y || n.y[1] < lower_.y) return false;
+    for (const Side& s : sides_)
+      if (s.turn(n.x[s.x], n.y[s.y]) < 0) return false;
+    return true;
+  }
+  /// Whether a point lies in it, other than at a corner; what is no number does not.
+  bool has(const Place& place) const {
+    const Point2 p{place.x, place.y};
+    for (const Side& s : sides_)
+      if (!(s.turn(p.x, p.y) >= 0)) return false;
+    return p != corners_[0] && p != corners_[1] && p != corners_[2];
+  }
+
+ private:
+  std::array<Point2, 3> corners_;
+  std::array<Side, 3> sides_;
+  Point2 lower_, upper_;
+};
 
 void PointTree::build(std::span<const Point2> points, std::span<const std::uint32_t> ids) {
   points_ = points;
   order_.assign(ids.begin(), ids.end());
-  present_.assign(order_.size(), 1);
   slot_.resize(points.size());
   std::size_t levels = 1;
   for (std::size_t size = order_.size(); size > kLeaf; size = (size + 1) / 2) ++levels;
@@ -33,7 +69,11 @@ void PointTree::build(std::span<const Point2> points, std::span<const std::uint3
     todo.push_back(left(range));
     todo.push_back(right(range));
   }
-  for (std::uint32_t i = 0; i < order_.size(); ++i) slot_[order_[i]] = i;
+  places_.resize(order_.size());
+  for (std::uint32_t i = 0; i < order_.size(); ++i) {
+    slot_[order_[i]] = i;
+    places_[i] = {float(points_[order_[i]].x), float(points_[order_[i]].y)};
+  }
 }
 
 /// Fills one node and parts its ids in two halves along its longer side.
@@ -41,14 +81,19 @@ void PointTree::settle(const Range& range) {
   if (range.first == range.last) return;
   Node& node = nodes_[range.node];
   node.alive = range.last - range.first;
-  node.lower = node.upper = points_[order_[range.first]];
+  const Point2& start = points_[order_[range.first]];
+  Point2 least = start, largest = start;
   for (std::uint32_t i = range.first; i != range.last; ++i) {
     const Point2& p = points_[order_[i]];
-    node.lower = {std::min(node.lower.x, p.x), std::min(node.lower.y, p.y)};
-    node.upper = {std::max(node.upper.x, p.x), std::max(node.upper.y, p.y)};
+    least = {std::min(least.x, p.x), std::min(least.y, p.y)};
+    largest = {std::max(largest.x, p.x), std::max(largest.y, p.y)};
   }
+  node.x[0] = float(least.x);
+  node.x[1] = float(largest.x);
+  node.y[0] = float(least.y);
+  node.y[1] = float(largest.y);
   if (node.alive <= kLeaf) return;
-  const bool wide = node.upper.x - node.lower.x > node.upper.y - node.lower.y;
+  const bool wide = node.x[1] - node.x[0] > node.y[1] - node.y[0];
   std::nth_element(order_.begin() + range.first, order_.begin() + left(range).last, order_.begin() + range.last,
                    [&](std::uint32_t i, std::uint32_t j) {
                      return wide ? points_[i].x < points_[j].x : points_[i].y < points_[j].y;
@@ -57,8 +102,8 @@ void PointTree::settle(const Range& range) {
 
 void PointTree::remove(std::uint32_t id) {
   const std::uint32_t slot = slot_[id];
-  if (!present_[slot]) return;
-  present_[slot] = 0;
+  if (places_[slot].x != places_[slot].x) return;
+  places_[slot].x = std::numeric_limits<float>::quiet_NaN();
   Range range{0, 0, std::uint32_t(order_.size())};
   for (;;) {
     --nodes_[range.node].alive;
@@ -68,30 +113,31 @@ void PointTree::remove(std::uint32_t id) {
 }
 
 bool PointTree::any_in(const Point2& a, const Point2& b, const Point2& c) const {
-  const Point2 lower{std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y})};
-  const Point2 upper{std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y})};
-  std::array<Range, 72> todo;  // two per level, and 32-bit counts halve at most 32 times
+  const Triangle triangle(a, b, c);
+  std::array<Range, 36> todo;  // one a level waits, and 32-bit counts halve at most 32 times
   std::size_t depth = 0;
-  todo[depth++] = {0, 0, std::uint32_t(order_.size())};
-  while (depth > 0) {
-    const Range range = todo[--depth];
-    const Node& node = nodes_[range.node];
-    if (node.alive == 0 || node.lower.x > upper.x || node.upper.x < lower.x || node.lower.y > upper.y ||
-        node.upper.y < lower.y || beyond(a, b, node.lower, node.upper) || beyond(b, c, node.lower, node.upper) ||
-        beyond(c, a, node.lower, node.upper))
-      continue;
-    if (range.last - range.first > kLeaf) {
-      todo[depth++] = left(range);
-      todo[depth++] = right(range);
+  Range range{0, 0, std::uint32_t(order_.size())};
+  if (!triangle.touches(nodes_[0])) return false;
+  for (;;) {
+    if (range.last - range.first <= kLeaf) {
+      for (std::uint32_t i = range.first; i != range.last; ++i)
+        if (triangle.has(places_[i])) return true;
+      if (depth == 0) return false;
+      range = todo[--depth];
       continue;
     }
-    for (std::uint32_t i = range.first; i != range.last; ++i) {
-      const Point2& p = points_[order_[i]];
-      if (present_[i] && turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0 && p != a && p != b && p != c)
-        return true;
-    }
+    const Range l = left(range), r = right(range);
+    const bool in_left = triangle.touches(nodes_[l.node]), in_right = triangle.touches(nodes_[r.node]);
+    if (in_left && in_right) todo[depth++] = l;
+    if (in_right)
+      range = r;
+    else if (in_left)
+      range = l;
+    else if (depth == 0)
+      return false;
+    else
+      range = todo[--depth];
   }
-  return false;
 }
 
 }  // namespace grelha

@@ -20,18 +20,24 @@ inline double turn(const Point2& a, const Point2& b, const Point2& c) {
 /// looks at boxes the triangle crosses only, so that a long thin one stays cheap.
 class PointTree {
  public:
-  /// `points[i]` for i in `ids`; `points` must stay in place.
+  /// `points[i]` for i in `ids`; `points` must stay in place. Their coordinates must be floats'.
   void build(std::span<const Point2> points, std::span<const std::uint32_t> ids);
   void remove(std::uint32_t id);
+  /// Whether most of what it was built with is gone: built anew it would answer faster.
+  bool is_thin() const { return 2 * std::size_t(nodes_[0].alive) < order_.size(); }
   /// Whether a point left lies in the closed triangle (which turns left), other than at one of its corners.
   bool any_in(const Point2& a, const Point2& b, const Point2& c) const;
 
  private:
   static constexpr std::uint32_t kLeaf = 8;
   struct Node {
-    Point2 lower, upper;
+    float x[2] = {}, y[2] = {};  ///< least and largest of the points it was built with
     std::uint32_t alive = 0;
   };
+  struct Place {
+    float x, y;
+  };
+  class Triangle;
   struct Range {
     std::uint32_t node, first, last;
   };
@@ -42,7 +48,7 @@ class PointTree {
   std::span<const Point2> points_;
   std::vector<std::uint32_t> order_;   ///< ids, each node's in a run
   std::vector<std::uint32_t> slot_;    ///< [points] where an id stands in order_
-  std::vector<std::uint8_t> present_;  ///< [order_] not yet removed
+  std::vector<Place> places_;          ///< [order_] where they are; no number once removed
   std::vector<Node> nodes_;            ///< root 0, children 2k+1 and 2k+2
 };
 

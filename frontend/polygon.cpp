@@ -9,6 +9,9 @@ namespace {
 /// How often every corner left may be asked again before a corner is taken by force. One pass is enough for a simple
 /// outline but for rare rings of touching corners.
 constexpr int kFullPasses = 8;
+/// Outlines of so many corners are cut evenly: neighbours of an ear wait for the next pass, so that triangles grow by
+/// doubling and stay short. Ears in turn, or a fan, would all reach across, and stand in thousands of a grid's cells.
+constexpr std::uint32_t kMany = 1024;
 /// How far a forced clip looks for a corner that at least has area; bounds the work on hopeless outlines.
 constexpr int kForcedLook = 64;
 
@@ -27,7 +30,8 @@ bool PolygonCutter::cut(std::span<const Float3> corners, std::vector<Triangle>& 
     return true;
   }
   project(corners);
-  if (convex()) {
+  even_ = corners.size() >= kMany;
+  if (!even_ && convex()) {
     for (std::uint32_t i = 2; i < corners.size(); ++i) triangles.push_back({0, i - 1, i});
     return true;
   }
@@ -72,7 +76,7 @@ bool PolygonCutter::convex() const {
 void PolygonCutter::link_corners() {
   const auto n = std::uint32_t(points_.size());
   previous_.resize(n), following_.resize(n);
-  gone_.assign(n, 0), queued_.assign(n, 0), in_tree_.assign(n, 0);
+  gone_.assign(n, 0), queued_.assign(n, 0), waits_.assign(n, 0);
   candidates_.clear();
   for (std::uint32_t i = 0; i < n; ++i)
     if (candidates_.empty() || points_[i] != points_[candidates_.back()]) candidates_.push_back(i);
@@ -88,13 +92,14 @@ void PolygonCutter::link_corners() {
 }
 
 void PolygonCutter::plant_tree() {
-  next_candidates_.clear();
-  for (const std::uint32_t i : candidates_) {
-    if (turn(i) > 0) continue;
-    next_candidates_.push_back(i);
-    in_tree_[i] = 1;
+  in_tree_.assign(points_.size(), 0);
+  std::vector<std::uint32_t> bent;
+  for (std::uint32_t i = 0, corner = start_; i < left_; ++i, corner = following_[corner]) {
+    if (turn(corner) > 0) continue;
+    bent.push_back(corner);
+    in_tree_[corner] = 1;
   }
-  tree_.build(points_, next_candidates_);
+  tree_.build(points_, bent);
 }
 
 double PolygonCutter::turn(std::uint32_t corner) const {
@@ -109,6 +114,13 @@ void PolygonCutter::queue(std::uint32_t corner) {
   if (queued_[corner]) return;
   queued_[corner] = 1;
   next_candidates_.push_back(corner);
+}
+
+void PolygonCutter::take_queue() {
+  candidates_.swap(next_candidates_);
+  next_candidates_.clear();
+  for (const std::uint32_t corner : candidates_) waits_[corner] = 0;
+  if (even_ && tree_.is_thin()) plant_tree();
 }
 
 /// Takes a corner out of the ring. Its neighbours may have become convex and get another turn.
@@ -126,6 +138,7 @@ void PolygonCutter::remove(std::uint32_t corner) {
       in_tree_[neighbour] = 0;
     }
     queue(neighbour);
+    waits_[neighbour] = even_;
   }
 }
 
@@ -163,10 +176,13 @@ void PolygonCutter::clip_ears(std::vector<Triangle>& triangles) {
     for (const std::uint32_t corner : candidates_) {
       queued_[corner] = 0;
       if (gone_[corner] || left_ <= 3) continue;
+      if (waits_[corner]) {
+        queue(corner);
+        continue;
+      }
       clipped = try_clip(corner, triangles) || clipped;
     }
-    candidates_.swap(next_candidates_);
-    next_candidates_.clear();
+    take_queue();
     if (!candidates_.empty() || left_ <= 3) continue;
     if (clipped && full_passes++ < kFullPasses) {
       for (std::uint32_t i = 0, corner = start_; i < left_; ++i, corner = following_[corner]) queue(corner);
@@ -174,8 +190,7 @@ void PolygonCutter::clip_ears(std::vector<Triangle>& triangles) {
     } else {
       force_clip(triangles);
     }
-    candidates_.swap(next_candidates_);
-    next_candidates_.clear();
+    take_queue();
   }
   if (left_ == 3 && turn(start_) > 0) triangles.push_back({previous_[start_], start_, following_[start_]});
 }

@@ -59,7 +59,7 @@ inline int cell_of(double x, double lo, double inv_cell, int n) {
 ///
 /// Resolution  cells per axis = M extent / cbrt(volume / count) + 1 (Cleary & Wyvill 1988; Amanatides & Woo's report form),
 ///             extents below 1/1000 of the largest counted as that, at most 1024 an axis, no cell smaller than 2 pad; and coarser, by halves,
-///             where the mean of some primitives would stand in more than 64 cells.
+///             where the mean of some primitives would stand in more than 64 cells, or, of many, all in more than 2^22 (or 4 each).
 /// Guarantee   every primitive stands in each cell that its box grown by `pad` touches, unless the cell lies beyond `pad`
 ///             of its surface; in each cell spheres and cones ascend by id, triangles stand as BlockOrder says. Same lists on
 ///             every machine, by any number of threads.

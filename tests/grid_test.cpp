@@ -396,6 +396,22 @@ TEST(GridSize, StaysWithinItsBounds) {
       for (const std::uint32_t n : g.cells) EXPECT_TRUE(n >= 1 && n <= 1024) << n;
 }
 
+/// Spikes of a star: each crosses half of the grid, whatever its cells. 128 of them, picked evenly, say how many references there will
+/// be; all are alike but for their direction, which changes the cells on their way by sqrt 2.
+TEST(GridSize, SliversDoNotFillMemory) {
+  Scene s = empty_scene();
+  constexpr int kSpikes = 200000;
+  for (int i = 0; i < kSpikes; ++i) {
+    const double a = 2 * 3.14159265358979 * i / kSpikes;
+    const auto x = static_cast<float>(std::cos(a)), y = static_cast<float>(std::sin(a));
+    add_triangle(s, {x, y, 0}, {2 * x, 2 * y, 0}, {x, y, 1e-5f});
+  }
+  const World world(s, {});
+  ASSERT_EQ(world.grids().size(), 1u);
+  EXPECT_LE(static_cast<double>(world.grids()[0].references), (1 << 22) * std::sqrt(2.));
+  EXPECT_GE(world.grids()[0].references, kSpikes * 4u) << "and no coarser than need be";
+}
+
 TEST(GridSize, AnOutlierDoesNotPutEverythingEverywhere) {
   // The outlier's extent sets the pad; at one part in 16,777,216 * 128 of it a whole scene lies within pad of itself.
   Scene s = empty_scene();

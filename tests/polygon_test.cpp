@@ -174,6 +174,32 @@ double seconds_for(const Outline& outline, std::vector<Triangle>& triangles) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+double perimeter(const Outline& outline, const std::vector<Triangle>& triangles) {
+  double sum = 0;
+  for (const Triangle& t : triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Float3 &a = outline[t[k]], &b = outline[t[(k + 1) % 3]];
+      sum += std::hypot(double(a.x) - b.x, double(a.y) - b.y);
+    }
+  return sum;
+}
+
+/// A fan reaches across with each of its triangles, and would put them all in every cell of a grid. Cut evenly, each
+/// pass of ears draws diagonals once round the circle, and each is a side of two triangles.
+TEST(Polygon, LargeOutlinesAreCutIntoShortTriangles) {
+  constexpr int kCorners = 30000;
+  for (const Outline& outline : {star(kCorners, 1), star(kCorners, .999)}) {
+    const std::vector<Triangle> triangles = cut(outline);
+    expect_cover(outline, triangles);
+    double round = 0;
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+      const Float3 &a = outline[i], &b = outline[(i + 1) % outline.size()];
+      round += std::hypot(double(a.x) - b.x, double(a.y) - b.y);
+    }
+    EXPECT_LT(perimeter(outline, triangles), 2 * round * std::log2(kCorners));
+  }
+}
+
 // Generous: about 0.02 s were measured; testing every corner against every other took minutes.
 constexpr double kPatience = 10;
 
@@ -196,6 +222,24 @@ TEST(Polygon, SpiralsEndSoon) {
   std::vector<Triangle> triangles;
   EXPECT_LT(seconds_for(outline, triangles), kPatience);
   expect_cover(outline, triangles);
+}
+
+/// Spikes of any length that meet near the middle: every ear is a sliver among the corners of all others.
+TEST(Polygon, StarsOfAMillionCornersEndSoon) {
+  constexpr int kCorners = 1000000;
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> length(1, 2);
+  for (const bool regular : {true, false}) {
+    Outline outline;
+    for (int i = 0; i < kCorners; ++i) {
+      const double angle = 2 * std::numbers::pi * i / kCorners, r = regular ? 1 + i % 2 : length(random);
+      outline.push_back({float(r * std::cos(angle)), float(r * std::sin(angle)), 0});
+    }
+    std::vector<Triangle> triangles;
+    EXPECT_LT(seconds_for(outline, triangles), kPatience);
+    expect_cover(outline, triangles);
+    EXPECT_EQ(triangles.size(), outline.size() - 2);
+  }
 }
 
 TEST(Polygon, NoiseEndsSoon) {
