@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cmath>
+#include <ctime>
 
 #include "tests/support/reading.hpp"
 
@@ -395,10 +395,10 @@ TEST(NffNoise, AMillionUnknownWordsEndSoon) {
   for (const bool alike : {true, false}) {
     std::string text = kView;
     for (int i = 0; i < 1000000; ++i) text += alike ? "sphere 0\n" : "sphere" + std::to_string(i) + " 0\n";
-    const auto start = std::chrono::steady_clock::now();
+    const std::clock_t start = std::clock();  // of the processor: others may be busy with it
     EXPECT_EQ(read_text(text).warnings.size(), alike ? 1u : 20u);
     constexpr double kPatience = 2;  // .2 s were measured
-    EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), kPatience);
+    EXPECT_LT(double(std::clock() - start) / CLOCKS_PER_SEC, kPatience);
   }
 }
 

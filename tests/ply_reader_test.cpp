@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <cstring>
 #include <limits>
 #include <tuple>
@@ -240,10 +240,10 @@ TEST(PlyHeader, NulBytesAreToldOf) {
 TEST(PlyHeader, ManyElementsEndSoon) {
   std::string text = "ply\nformat ascii 1.0\n";
   for (int i = 0; i < 200000; ++i) text += "element e" + std::to_string(i) + " 0\n";
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();  // of the processor: others may be busy with it
   EXPECT_EQ(read_ply_mesh("m.ply", text + "end_header\n").face_count(), 0u);
   constexpr double kPatience = 5;  // .1 s were measured
-  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), kPatience);
+  EXPECT_LT(double(std::clock() - start) / CLOCKS_PER_SEC, kPatience);
 }
 
 /// Whoever waits for a header, or for one long list, can stop it.
