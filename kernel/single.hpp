@@ -1,6 +1,6 @@
 #pragma once
-// One ray at a time: against blocks of primitives (SIMD over primitives), through a grid by leaps. The way a packet goes
-// on when its rays have nothing left in common.
+// One ray at a time against blocks of primitives (SIMD over primitives): the way a packet goes on when
+// its rays have nothing left in common. abreast.hpp takes such rays through grids.
 
 #include "kernel/packet.hpp"
 
@@ -166,7 +166,7 @@ inline bool test_cell(Single& r, const CellLists& lists, std::size_t cell, Count
 }
 
 /// A ray in the units of one grid's cells, in double: plane distances come from the plane's index, never by adding up, and
-/// the cell of a point is the one the builder gives it (cell_of in grid.cpp).
+/// the cell of a point is the one the builder gives it (cell_of in grid.hpp).
 struct GridRay {
   double p[3], q[3], iq[3];
 };
