@@ -8,7 +8,7 @@ grelha_test(terminal image grelha::frontend)
 target_compile_definitions(terminal_test PRIVATE GRELHA_PROGRAM="$<TARGET_FILE:grelha>")
 add_dependencies(terminal_test grelha)
 add_test(NAME kill_resume COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/with_python.sh ${CMAKE_CURRENT_SOURCE_DIR}/kill_resume.py $<TARGET_FILE:grelha>
-  ${PROJECT_SOURCE_DIR}/scenes/data/balls.nff)
+  ${PROJECT_SOURCE_DIR}/scenes/data/balls.nff 2)
 set_tests_properties(kill_resume PROPERTIES LABELS image SKIP_RETURN_CODE 77)
 if(GRELHA_MPI)
   find_package(MPI REQUIRED COMPONENTS CXX)
