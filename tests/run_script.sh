@@ -23,9 +23,9 @@ echo "cmake \$*" >>$2/asked
 case \$* in
   *GRELHA_ISAS=*) echo "GRELHA_ISAS:STRING=\${*##*GRELHA_ISAS=}" >$2/project/build/release/CMakeCache.txt; exit ;;
 esac
-echo "[1/2 1.5] one"
+echo "[1/4 9.5 2] one"
 [ ! -e $2/broken ] || { echo "FAILED: two.o"; echo "two.cpp:1:1: error: wrong"; echo "ninja: stopped"; exit 1; }
-echo "[2/2 2.5] two"
+echo "[4/4 12.5 0] two"
 CMAKE
 printf '#!/bin/sh\necho tested\n' >stand-ins/ctest
 chmod +x stand-ins/cmake stand-ins/ctest
@@ -55,12 +55,12 @@ asked GRELHA_ISAS=all
 touch broken project/kernel/new.cpp
 try "${steps}FAILED: two.o|two.cpp:1:1: error: wrong|ninja: stopped|run: this failed: building grelha; all that was said is in $2/project/build/release/run.log|" \
   info x.nff
-grep -q '^\[1/2 1.5\] one$' project/build/release/run.log || { echo "the log is incomplete"; exit 1; }
+grep -q '^\[1/4 9.5 2\] one$' project/build/release/run.log || { echo "the log is incomplete"; exit 1; }
 rm broken
 # On a terminal the build counts in one line.
 if command -v script >/dev/null; then
   said=$(PATH=$2/stand-ins "$(command -v script)" -qec "project/run info x.nff" /dev/null | tr '\r\033' '\n^')
-  case $said in *"run: building grelha [1/2], 1 s left^[K"*"run: building grelha [2/2], 0 s left^[K"*) ;; *) echo "on a terminal it said: $said"; exit 1 ;; esac
+  case $said in *"run: building grelha [1/4], 9 s left^[K"*"run: building grelha [4/4], 0 s left^[K"*) ;; *) echo "on a terminal it said: $said"; exit 1 ;; esac
 fi
 
 rm project/build/release/.built-grelha
