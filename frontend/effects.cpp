@@ -10,6 +10,7 @@ namespace grelha {
 namespace {
 
 constexpr int kSamplesOfEffects = 16;
+constexpr int kSamplesOfMeshes = 16;  ///< alone, whose edges are all there is to see
 
 double length(const Float3& a, const Float3& b) {
   const double x = double(a.x) - b.x, y = double(a.y) - b.y, z = double(a.z) - b.z;
@@ -80,6 +81,7 @@ void apply_effects(const Effects& e, SceneFile& file, RenderOptions& options) {
   else if (e.jitter > 0) s.samples = e.jitter * e.jitter * lens_samples;
   else if (lens_samples > 1 || e.adaptive.on) s.samples = lens_samples;
   else if (has_something_to_sample(file, e)) s.samples = file.samples_per_pixel > 0 ? file.samples_per_pixel : kSamplesOfEffects;
+  else if (file.default_camera) s.samples = kSamplesOfMeshes;
   s.samples = std::clamp(s.samples, 1, kMostSamples);
   s.sampler = e.sampler.value_or(e.jitter > 0 ? Sampler::kJitter : Sampler::kSobol);
   s.seed = e.seed;

@@ -211,7 +211,7 @@ std::string info_text(const std::string& path, const SceneFile& file, const Scen
   if (const auto dropped = file.dropped.not_finite + file.dropped.zero_area; dropped > 0)
     text += "dropped       " + std::to_string(dropped) + " that cannot be drawn\n";
   text +=
-      "lights        " + std::to_string(file.counts.lights) + (file.default_light ? " (and a made-up one)\n" : "\n");
+      "lights        " + std::to_string(file.counts.lights) + (file.default_light ? " (and a made-up ones)\n" : "\n");
   if (file.box_order != BoxOrder::kNone)
     text += std::string("aabb          read as ") + box_order_name(file.box_order) + '\n';
   text += "materials     " + std::to_string(file.counts.materials) + '\n';

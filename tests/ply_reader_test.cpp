@@ -309,41 +309,6 @@ TEST(PlyAlone, TrianglesWithoutAreaAreLeftOut) {
   EXPECT_EQ(file.counts.ply, 2u);
 }
 
-/// Every corner of the mesh projects into the picture, and the picture is not mostly empty.
-TEST(PlyAlone, IsFramed) {
-  const TemporaryFolder folder;
-  for (const double scale : {1e-6, .1, 1.0, 2000.0, 1e9}) {
-    for (const double shift : {0.0, 100.0}) {
-      std::string text =
-          "ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\nproperty double y\nproperty double z\nelement "
-          "face 4\n"
-          "property list uchar int vertex_indices\nend_header\n";
-      for (const double p : {0., 0., 0., 3., 0., 0., 0., 1., 0., 0., 0., 2.}) {
-        char number[64];
-        std::snprintf(number, sizeof number, "%.9g ", (p + shift) * scale);
-        text += number;
-      }
-      text += "\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
-      const SceneFile file = read_scene(folder.add("m.ply", text), nullptr);
-      ASSERT_EQ(file.scene.geometry.triangles.size(), 4u);
-      const Camera& c = file.camera;
-      const Triangles& t = file.scene.geometry.triangles;
-      const double view[] = {double(c.at.x) - c.eye.x, double(c.at.y) - c.eye.y, double(c.at.z) - c.eye.z};
-      const double distance = std::hypot(view[0], view[1], view[2]);
-      double widest = 0;
-      for (std::size_t i = 0; i < 4; ++i) {
-        const double p[] = {double(t.x[i]) - c.eye.x, double(t.y[i]) - c.eye.y, double(t.z[i]) - c.eye.z};
-        const double along = (p[0] * view[0] + p[1] * view[1] + p[2] * view[2]) / distance,
-                     all = std::hypot(p[0], p[1], p[2]);
-        widest = std::max(widest, std::acos(std::min(1.0, along / all)));
-      }
-      EXPECT_LT(widest, 22.6 * 3.14159 / 180);  // half of 45 degrees and float rounding
-      EXPECT_GT(widest, 10 * 3.14159 / 180);
-      EXPECT_EQ(file.scene.lights.size(), 1u);
-    }
-  }
-}
-
 TEST(PlyAlone, EmptyMeshHasAView) {
   const TemporaryFolder folder;
   const SceneFile file = read_scene(folder.add("m.ply", "ply\nformat ascii 1.0\nend_header\n"), nullptr);
