@@ -1,6 +1,7 @@
 #include "frontend/image_file.hpp"
 
 #include "frontend/atomic_file.hpp"
+#include "frontend/exr_file.hpp"
 #include "frontend/parse_error.hpp"
 #include "frontend/png_chunks.hpp"
 
@@ -165,6 +166,7 @@ std::optional<ImageFormat> image_format(std::string_view path) {
   if (ending == ".png") return ImageFormat::png;
   if (ending == ".hdr") return ImageFormat::hdr;
   if (ending == ".pfm") return ImageFormat::pfm;
+  if (ending == ".exr") return ImageFormat::exr;
   return {};
 }
 
@@ -173,6 +175,7 @@ std::string_view ending_of(ImageFormat format) {
     case ImageFormat::png: return "png";
     case ImageFormat::hdr: return "hdr";
     case ImageFormat::pfm: return "pfm";
+    case ImageFormat::exr: return "exr";
   }
   return "";
 }
@@ -187,7 +190,8 @@ std::uint8_t to_byte(float value, Tone tone) {
 
 bool image_fits(ImageFormat format, int width, int height) {
   if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide) return false;
-  return format == ImageFormat::pfm || (3 * std::int64_t(width) + 1) * height <= kStbBytes;
+  const bool by_stb = format == ImageFormat::png || format == ImageFormat::hdr;
+  return !by_stb || (3 * std::int64_t(width) + 1) * height <= kStbBytes;
 }
 
 std::string encode_png(const Image& image, Tone tone, const Notes& notes) {
@@ -222,6 +226,7 @@ void write_image(const std::string& path, const Image& image, const ImageStyle& 
     case ImageFormat::png: return write_file(path, encode_png(image, style.tone, style.notes));
     case ImageFormat::hdr: return write_file(path, encode_hdr(image, style.notes));
     case ImageFormat::pfm: return write_file(path, encode_pfm(image));
+    case ImageFormat::exr: return write_file(path, encode_exr(image, style.layers, style.notes));
   }
 }
 
@@ -236,8 +241,9 @@ std::string encoding_text(const Encoding& encoding) {
 Image read_image(const std::string& path, Encoding* encoding) {
   const std::string bytes = read_bytes(path);
   const auto format = image_format(path);
-  if (!format) throw FileError(path, "not a picture this program reads (.png, .hdr, .pfm)");
+  if (!format) throw FileError(path, "not a picture this program reads (.png, .hdr, .pfm, .exr)");
   if (*format == ImageFormat::pfm) return read_pfm(path, bytes);
+  if (*format == ImageFormat::exr) return read_exr(path, bytes);
   Image image = read_by_stb(path, bytes, *format);
   if (encoding && *format == ImageFormat::png) *encoding = png_encoding(bytes);
   return image;

@@ -11,9 +11,9 @@
 
 namespace grelha {
 
-enum class ImageFormat { png, hdr, pfm };
+enum class ImageFormat { png, hdr, pfm, exr };
 
-/// By the name's ending, upper or lower case; empty when it is none of .png, .hdr, .pfm.
+/// By the name's ending, upper or lower case; empty when it is none of .png, .hdr, .pfm, .exr.
 std::optional<ImageFormat> image_format(std::string_view path);
 
 /// The ending of such files: "png".
@@ -32,17 +32,25 @@ bool image_fits(ImageFormat format, int width, int height);
 using Note = std::pair<std::string, std::string>;
 using Notes = std::vector<Note>;
 
-/// The file's bytes. .hdr (Radiance RGBE) and .pfm (little endian, bottom row first) hold linear floats; only .pfm is
-/// exact, and has no place for notes.
+/// The file's bytes. .hdr (Radiance RGBE) and .pfm (little endian, bottom row first) hold linear floats; .pfm is
+/// exact, and has no place for notes. OpenEXR: exr_file.hpp.
 std::string encode_png(const Image& image, Tone tone, const Notes& notes = {});
 std::string encode_hdr(const Image& image, const Notes& notes = {});
 std::string encode_pfm(const Image& image);
+
+/// What camera rays through the centres of pixels meet first, beside the picture in an OpenEXR file. Empty: not there.
+struct Layers {
+  std::vector<float> depth{};       ///< [pixels] from the eye, scene units; infinite where nothing is met
+  std::vector<float> normal{};      ///< [pixels * 3] unit, as shaded, towards the eye; 0 where nothing is met
+  std::vector<std::uint32_t> id{};  ///< [pixels] of the primitive, see primitive_of(); kNoPrimitive where nothing is met
+};
 
 /// How a picture is written.
 struct ImageStyle {
   std::optional<ImageFormat> format{};  ///< absent: by the name's ending
   Tone tone = Tone::authored;
   Notes notes{};
+  Layers layers{};
 };
 
 /// Writes the file whole or not at all, or to stdout. Throws FileError.

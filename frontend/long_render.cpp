@@ -191,7 +191,8 @@ int LongRender::run(const World& world, const Camera& camera, const std::functio
   return stops();
 }
 
-void LongRender::finish() {
+void LongRender::finish(Layers layers) {
+  layers_ = std::move(layers);
   try {
     write();
   } catch (const FileError&) {
@@ -221,7 +222,7 @@ ImageStyle LongRender::style() const {
   const auto* const refined = std::get_if<Refinement>(&work_);
   if (refined) identity.settings = repeatable(identity.settings, *refined);
   ImageStyle style{format_of(command_.image, command_.format), command_.srgb ? Tone::srgb : Tone::authored,
-                   notes_of(identity)};
+                   notes_of(identity), layers_};
   const bool finished = refined ? refined->finished : share_done() == 1;
   char text[32];
   std::snprintf(text, sizeof text, "%.1f %% of the work", 100 * share_done());

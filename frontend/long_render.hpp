@@ -35,7 +35,7 @@ class LongRender {
 
   /// By the first rank alone: writes picture or partial; then the checkpoint has done its work and is removed, or, where there are more
   /// scenes to come, holds everything: so it does should the writing fail.
-  void finish();
+  void finish(Layers layers = {});
 
  private:
   /// Something done now and then. What fails is warned of once and tried again.
@@ -64,6 +64,7 @@ class LongRender {
   Work work_;
   std::string kept_;      ///< what is gone on from: the checkpoint, or a file beside the picture; empty: nothing is kept
   bool went_on_ = false;  ///< from what was there
+  Layers layers_;         ///< of the picture, when it is done
   bool saved_ = false, shown_ = false;  ///< when stopped
 };
 

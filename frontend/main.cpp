@@ -4,6 +4,7 @@
 #include "frontend/atomic_file.hpp"
 #include "frontend/batch.hpp"
 #include "frontend/compare.hpp"
+#include "frontend/first_hits.hpp"
 #include "frontend/image_file.hpp"
 #include "frontend/long_render.hpp"
 #include "frontend/memory_limit.hpp"
@@ -107,7 +108,7 @@ void want_isa(std::string_view name) {
 void want_room(std::optional<ImageFormat> format, int width, int height) {
   if (format && !image_fits(*format, width, height))
     throw UsageError("a picture of " + std::to_string(width) + 'x' + std::to_string(height) +
-                     " is too large for .png and .hdr, write a .pfm");
+                     " is too large for .png and .hdr, write a .pfm or .exr");
 }
 
 Camera camera_of(const SceneFile& file, const RenderCommand& command) {
@@ -188,7 +189,7 @@ int render_scene(const RenderCommand& given, Ranks& ranks) {
   report.seconds.render_cpu = double(std::clock() - cpu) / CLOCKS_PER_SEC;
 
   const Stopwatch write;
-  work.finish();
+  work.finish(command.layers.any() ? first_hits(world, camera, command.layers) : Layers{});
   write_map(command.samples_map, "samples of each pixel", maps.samples, camera, [](double n) { return std::log2(n); });
   write_map(command.error_map, "estimated standard error of each pixel", maps.error, camera, [](double e) { return e; });
   report.seconds.write = write.seconds();

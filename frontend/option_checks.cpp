@@ -69,7 +69,7 @@ void check_output(const std::string& image, std::optional<ImageFormat> asked) {
   const bool part = is_partial_name(image);
   if (asked && (part || (named && named != asked)))
     throw UsageError("--format " + std::string(ending_of(*asked)) + " and -o: wanted one format, found \"" + image + '"');
-  if (!format_of(image, asked) && !part) refuse("-o", "a name ending in .png, .hdr, .pfm or .grelha", image);
+  if (!format_of(image, asked) && !part) refuse("-o", "a name ending in .png, .hdr, .pfm, .exr or .grelha", image);
 }
 
 void check_tone(bool srgb, const std::string& image, std::optional<ImageFormat> asked) {
@@ -118,6 +118,8 @@ void check_together(const RenderCommand& command) {
     throw UsageError("--mailbox and --accel none: without a grid there are no mailboxes");
   check_long_work(command);
   check_tone(command.srgb, command.image, command.format);
+  if (command.layers.any() && format_of(command.image, command.format) != ImageFormat::exr)
+    refuse("--layers and -o", "a .exr, which alone holds layers", command.image);
 }
 
 void check_together(const InfoCommand& command) { check_grid(command.build); }

@@ -189,7 +189,7 @@ double interval(const std::string& option, const std::string& text) {
 }
 
 void want_image_name(const std::string& option, const std::string& path) {
-  if (!image_format(path)) refuse(option, "a name ending in .png, .hdr or .pfm", path);
+  if (!image_format(path)) refuse(option, "a name ending in .png, .hdr, .pfm or .exr", path);
 }
 
 std::string file_name(const std::string& option, const std::string& text) {
@@ -200,6 +200,17 @@ std::string file_name(const std::string& option, const std::string& text) {
 std::string regular_file_name(const std::string& option, const std::string& text) {
   if (text == kStdout) refuse(option, "a file that can be read again", text);
   return file_name(option, text);
+}
+
+LayerChoice layers(const std::string& text) {
+  constexpr const char* kWanted = "some of depth,normal,id, each once";
+  LayerChoice chosen;
+  for (const std::string& word : parts("--layers", text, 1, 3, kWanted)) {
+    bool* const one = word == "depth" ? &chosen.depth : word == "normal" ? &chosen.normal : word == "id" ? &chosen.id : nullptr;
+    if (!one || *one) refuse("--layers", kWanted, text);
+    *one = true;
+  }
+  return chosen;
 }
 
 std::uint64_t memory_size(const std::string& text) {

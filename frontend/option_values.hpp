@@ -40,6 +40,9 @@ void want_image_name(const std::string& option, const std::string& path);
 std::string file_name(const std::string& option, const std::string& text);
 std::string regular_file_name(const std::string& option, const std::string& text);
 
+/// "depth,normal,id", or some of them.
+LayerChoice layers(const std::string& text);
+
 /// A number of bytes, or of powers of 1024 with K, M, G or T behind it.
 std::uint64_t memory_size(const std::string& text);
 

@@ -33,7 +33,8 @@ constexpr std::array kSamplers{std::pair<std::string_view, Sampler>{"sobol", Sam
                               std::pair<std::string_view, Sampler>{"random", Sampler::kRandom}};
 constexpr std::array kFormats{std::pair<std::string_view, ImageFormat>{"png", ImageFormat::png},
                               std::pair<std::string_view, ImageFormat>{"hdr", ImageFormat::hdr},
-                              std::pair<std::string_view, ImageFormat>{"pfm", ImageFormat::pfm}};
+                              std::pair<std::string_view, ImageFormat>{"pfm", ImageFormat::pfm},
+                              std::pair<std::string_view, ImageFormat>{"exr", ImageFormat::exr}};
 constexpr std::array kIsas{Name{"scalar", "scalar"}, Name{"sse2", "sse2"}, Name{"avx2", "avx2"},
                            Name{"avx512", "avx512"}, Name{"best", "best"}};
 
@@ -78,7 +79,7 @@ void add_long_work(CLI::App& app, LongWork& work) {
 }
 
 void add_format(CLI::App& app, std::optional<ImageFormat>& format) {
-  value(app, "--format", "png|hdr|pfm", "of the picture, where its name does not say [png]",
+  value(app, "--format", "png|hdr|pfm|exr", "of the picture, where its name does not say [png]",
         [&format](const std::string& text) { format = choice("--format", text, kFormats); });
 }
 
@@ -88,9 +89,11 @@ void add_render(CLI::App& app, RenderCommand& command) {
              "  grelha render scenes/data/balls.nff -o balls.png --size 800x600\n"
              "  grelha render scenes/data -o pictures/ --error 0.01");
   positionals(sub, "SCENE", command.scenes, "scene files, folders of them, - for stdin");
-  value(sub, "-o,--output", "FILE", ".png, .hdr, .pfm (linear floats), .grelha (to merge), a folder, - for stdout; {} in it is SCENE's name [{}.png]",
+  value(sub, "-o,--output", "FILE", ".png, .hdr, .pfm, .exr (linear floats), .grelha (to merge), a folder, - for stdout; {} in it is SCENE's name [{}.png]",
         [&command](const std::string& text) { command.image = file_name("-o", text); });
   add_format(sub, command.format);
+  value(sub, "--layers", "LIST", "depth,normal,id or some: .exr: what is seen through the centres of pixels",
+        [&command](const std::string& text) { command.layers = layers(text); });
   value(sub, "--size", "WxH", "pixels [as the scene says]",
         [&command](const std::string& text) { parse_size(text, command.width, command.height); });
   value(sub, "-j,--threads", "N", "threads [one per processor]",
@@ -153,7 +156,7 @@ void add_compare(CLI::App& app, CompareCommand& command) {
   sub.footer("Example: grelha compare a.png b.png --max-rmse 0.01 --diff d.png\n"
              "Exit status: 0; 1 above --max-rmse or when a file cannot be read;\n"
              "2 for bad usage or unequal sizes.");
-  positional(sub, "A", command.a, "picture (.png, .hdr, .pfm)");
+  positional(sub, "A", command.a, "picture (.png, .hdr, .pfm, .exr)");
   positional(sub, "B", command.b, "picture");
   value(sub, "--max-rmse", "X", "exit with status 1 when the RMSE is above X (white is 1)",
         [&command](const std::string& text) { command.max_rmse = rmse_bound(text); });
@@ -166,7 +169,7 @@ void add_merge(CLI::App& app, MergeCommand& command) {
   CLI::App& sub = *app.add_subcommand("merge", "Join parts of a picture (.grelha) to the picture, or to a larger part");
   sub.footer("Example: grelha merge a.grelha b.grelha -o whole.png");
   sub.add_option("PARTS", command.parts, "what render --rows and --samples I:J made")->required()->type_name("");
-  value(sub, "-o,--output", "FILE", ".png, .hdr, .pfm or .grelha, - for stdout",
+  value(sub, "-o,--output", "FILE", ".png, .hdr, .pfm, .exr or .grelha, - for stdout",
         [&command](const std::string& text) { command.output = file_name("-o", text); })->required();
   add_format(sub, command.format);
   sub.add_flag("--srgb", command.srgb, "PNG: colours are light, show them through the sRGB curve");

@@ -38,10 +38,17 @@ struct LongWork {
   bool is_part() const { return rows || samples; }
 };
 
+/// What an OpenEXR picture holds beside its colours.
+struct LayerChoice {
+  bool depth = false, normal = false, id = false;
+  bool any() const { return depth || normal || id; }
+};
+
 struct RenderCommand {
   std::vector<std::string> scenes;  ///< files and folders as they were named; commands_for() makes one command of each
   std::string scene, image;   ///< image: named after the scene when -o is absent, a folder or a pattern; or a .grelha
   std::optional<ImageFormat> format;  ///< of the picture; absent: by its name, PNG to stdout
+  LayerChoice layers;
   std::vector<std::string> folders;  ///< of files named by a pattern: made where they are missing
   InputOptions input;
   LongWork work;

@@ -1,6 +1,8 @@
 // What the program may write over, and what it may not, however it is called.
+#include "frontend/first_hits.hpp"
 #include "frontend/memory_limit.hpp"
 #include "frontend/place.hpp"
+#include "kernel/query.hpp"
 #include "tests/support/running.hpp"
 
 #include <gtest/gtest.h>
@@ -9,6 +11,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 namespace grelha {
@@ -226,6 +229,34 @@ TEST_F(Files, PicturesSayWhatTheyAre) {
   EXPECT_EQ(run("compare x.png y.png --max-rmse 0").status, 1);
   const std::string timed = text("--time .01"), count = timed.substr(timed.find("time=samples:"), 40);
   EXPECT_EQ(text("--time " + count.substr(5, count.find(' ') - 5)), timed) << count;
+}
+
+/// Whether a pixel is on the ball is what its colour says; what is met there, a sphere knows.
+TEST_F(Files, LayersAreOfWhatThePictureShows) {
+  ASSERT_EQ(run("render ball.nff -o a.exr --layers depth,normal,id --quiet").status, 0);
+  ASSERT_EQ(run("render ball.nff -o a.pfm --quiet").status, 0);
+  EXPECT_EQ(run("compare a.exr a.pfm --max-rmse 0").status, 0);
+  const std::string bytes = folder_.read("a.exr");
+  for (const char* channel : {"Z", "id", "normal.X", "normal.Y", "normal.Z"})
+    EXPECT_NE(bytes.find(channel + std::string(1, '\0')), bytes.npos) << channel;
+  const SceneFile file = read_scene(folder_.file("ball.nff"), [](const std::string&) {});
+  const World world(file.scene, {});
+  const Layers layers = first_hits(world, file.camera, {.depth = true, .normal = true, .id = true});
+  const Image picture = read_image(folder_.file("a.pfm"));
+  int met = 0;
+  for (std::size_t i = 0; i < layers.id.size(); ++i) {
+    const bool background = picture.rgb[3 * i] == 0 && picture.rgb[3 * i + 2] == 1;
+    EXPECT_EQ(layers.id[i], background ? kNoPrimitive : 0u) << i;
+    EXPECT_EQ(std::isinf(layers.depth[i]), background) << i;
+    const float* const n = layers.normal.data() + 3 * i;
+    EXPECT_NEAR(n[0] * n[0] + n[1] * n[1] + n[2] * n[2], background ? 0 : 1, 1e-5) << i;
+    if (background) continue;
+    ++met;
+    EXPECT_GE(layers.depth[i], 4) << "the eye is 5 from the middle of a ball of radius 1";
+    EXPECT_LE(layers.depth[i], std::sqrt(24.f) * 1.0001f);
+    EXPECT_GE(n[2], 0) << "towards the eye";
+  }
+  EXPECT_GT(met, 50);
 }
 
 TEST_F(Files, ComparesLightWithLight) {

@@ -48,6 +48,9 @@ TEST(Errors, ContradictionsAreRefusedByName) {
       {"info a --density 2 --accel none", "--density and --accel none: without a grid there are no cells"},
       {"render a --mailbox off --accel none",
        "--mailbox and --accel none: without a grid there are no mailboxes"},
+      {"render a -o a.hdr --layers depth", "--layers and -o: wanted a .exr, which alone holds layers, found \"a.hdr\""},
+      {"render a -o a.exr --layers depth,depth", "--layers: wanted some of depth,normal,id, each once, found \"depth,depth\""},
+      {"render a -o a.exr --layers z", "--layers: wanted some of depth,normal,id, each once, found \"z\""},
       {"scene --list balls", "--list: wanted alone, it writes no scene"},
       {"scene --list -o x.nff", "--list: wanted alone, it writes no scene"},
       {"scene balls -o x.ply", "-o: wanted a name for an NFF scene, such as balls.nff, found \"x.ply\""},
@@ -57,7 +60,7 @@ TEST(Errors, ContradictionsAreRefusedByName) {
   };
   for (const auto& [line, message] : table) EXPECT_EQ(error_of(line), message) << line;
   for (const char* line :
-       {"render a --aa jitter:4 --samples 16", "render a --aa off --samples 1",
+       {"render a --format exr --layers id,depth", "render a --aa jitter:4 --samples 16", "render a --aa off --samples 1",
         "render a --aa jitter:2 --samples 0:3 -o a.grelha", "render a --lens 8,7,32 --samples 32",
         "render a --lens 0,0,8 --samples 4", "render a --srgb -o pictures/",
         "render a --aa jitter:4 --sampler unshuffled", "render a --error .1 --shadows random:1 --lens 8",

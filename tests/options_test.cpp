@@ -225,7 +225,7 @@ TEST(Errors, SayWhatWasWantedAndFound) {
       {"info a --jsno", "The following argument was not expected: --jsno; did you mean --json? (see --help)"},
       {"render a --sampler sobl", "--sampler: wanted one of sobol, jitter, unshuffled, random, found \"sobl\"; did you mean sobol?"},
       {"render a -o", "--output: 1 required FILE missing (see --help)"},
-      {"render a -o b.jpg", "-o: wanted a name ending in .png, .hdr, .pfm or .grelha, found \"b.jpg\""},
+      {"render a -o b.jpg", "-o: wanted a name ending in .png, .hdr, .pfm, .exr or .grelha, found \"b.jpg\""},
       {"render a --size 640", "--size: wanted WIDTHxHEIGHT, each from 1 to 65536, found \"640\""},
       {"render a --size 0x1", "--size: wanted WIDTHxHEIGHT, each from 1 to 65536, found \"0x1\""},
       {"render a --size 1x65537", "--size: wanted WIDTHxHEIGHT, each from 1 to 65536, found \"1x65537\""},
@@ -256,7 +256,7 @@ TEST(Errors, SayWhatWasWantedAndFound) {
       {"render a --time 1 --aa jitter:2", "--error and --time choose the samples: no --samples or --aa beside them"},
       {"render a --error .1 --sampler jitter", "--sampler: wanted sobol or random with --error or --time"},
       {"render a --samples-map s.png", "--samples-map and --error-map want --error or --time"},
-      {"render a --error .1 --error-map s.txt", "--error-map: wanted a name ending in .png, .hdr or .pfm, found \"s.txt\""},
+      {"render a --error .1 --error-map s.txt", "--error-map: wanted a name ending in .png, .hdr, .pfm or .exr, found \"s.txt\""},
       {"render a --aa 3", "--aa: wanted off, jitter:N or adaptive:THRESHOLD,DEPTH, found \"3\""},
       {"render a --aa adaptive:.1", "--aa: wanted adaptive:THRESHOLD,DEPTH, found \".1\""},
       {"render a --aa adaptive:1.5,3", "--aa: wanted a threshold from 0 to 1, found \"1.5\""},
@@ -273,7 +273,7 @@ TEST(Errors, SayWhatWasWantedAndFound) {
       {"compare a", "B is required (see --help)"},
       {"compare a b --max-rmse -1", "--max-rmse: wanted a number that is not negative, found \"-1\""},
       {"compare a b --max-rmse nan", "--max-rmse: wanted a number that is not negative, found \"nan\""},
-      {"compare a b --diff d.txt", "--diff: wanted a name ending in .png, .hdr or .pfm, found \"d.txt\""},
+      {"compare a b --diff d.txt", "--diff: wanted a name ending in .png, .hdr, .pfm or .exr, found \"d.txt\""},
       {"scene", "NAME is required (see grelha scene --list)"},
       {"scene balls --size x", "--size: wanted a whole number from 0 to 1000, found \"x\""},
   };
@@ -309,8 +309,8 @@ TEST(Errors, NamesThatCannotBeLookedAt) {
   const TemporaryFolder folder;
   const std::string loop = folder.file("loop"), inside = loop + "/x", far(5000, 'x');
   std::filesystem::create_symlink("loop", loop);
-  EXPECT_EQ(error_of("render a -o " + inside), "-o: wanted a name ending in .png, .hdr, .pfm or .grelha, found \"" + inside + '"');
-  EXPECT_EQ(error_of("render a -o " + far), "-o: wanted a name ending in .png, .hdr, .pfm or .grelha, found \"" + far + '"');
+  EXPECT_EQ(error_of("render a -o " + inside), "-o: wanted a name ending in .png, .hdr, .pfm, .exr or .grelha, found \"" + inside + '"');
+  EXPECT_EQ(error_of("render a -o " + far), "-o: wanted a name ending in .png, .hdr, .pfm, .exr or .grelha, found \"" + far + '"');
   EXPECT_EQ(error_of("render a -o " + inside + ".png --checkpoint " + inside), "no error");
   try {
     commands_for(std::get<RenderCommand>(parse("render a -o " + inside + ".png --checkpoint " + loop + "/./x.png")));

@@ -333,7 +333,7 @@ TEST_F(Program, UnwritablePicturesAreFoundOutFirst) {
 TEST_F(Program, TooLargeForPngIsSaidBeforeTheRender) {
   const Outcome outcome = run("render ball.nff --size 65536x65536");
   EXPECT_EQ(outcome.status, 2);
-  EXPECT_EQ(outcome.err, "grelha: error: a picture of 65536x65536 is too large for .png and .hdr, write a .pfm\n");
+  EXPECT_EQ(outcome.err, "grelha: error: a picture of 65536x65536 is too large for .png and .hdr, write a .pfm or .exr\n");
 }
 
 TEST_F(Program, SceneGoesToStdoutOrAFile) {
