@@ -89,7 +89,7 @@ void add_render(CLI::App& app, RenderCommand& command) {
              "  grelha render scenes/data/balls.nff -o balls.png --size 800x600\n"
              "  grelha render scenes/data -o pictures/ --error 0.01");
   positionals(sub, "SCENE", command.scenes, "scene files, folders of them, - for stdin");
-  value(sub, "-o,--output", "FILE", ".png, .hdr, .pfm, .exr (linear floats), .grelha (to merge), a folder, - for stdout; {} in it is SCENE's name [{}.png]",
+  value(sub, "-o,--output", "FILE", ".png, .hdr, .pfm, .exr, .grelha (to merge), a folder, - (stdout); {} in it is SCENE's name [{}.png]",
         [&command](const std::string& text) { command.image = file_name("-o", text); });
   add_format(sub, command.format);
   value(sub, "--layers", "LIST", "depth,normal,id or some: .exr: what is seen through the centres of pixels",

@@ -7,6 +7,12 @@ grelha_test(sampling property grelha::kernel)
 grelha_test(effects image grelha::frontend)
 grelha_test(refinement image grelha::frontend grelha::scenes)
 
+# By Debian's Python, where there is one: it has the modules of its packages.
+add_test(NAME other_programs COMMAND ${CMAKE_COMMAND} -E env PATH=/usr/bin:$ENV{PATH}
+  sh ${CMAKE_CURRENT_SOURCE_DIR}/with_python.sh ${CMAKE_CURRENT_SOURCE_DIR}/other_programs.py $<TARGET_FILE:grelha>
+  ${PROJECT_SOURCE_DIR}/scenes/data/balls.nff)
+set_tests_properties(other_programs PROPERTIES LABELS image SKIP_RETURN_CODE 77)
+
 file(STRINGS ${CMAKE_CURRENT_SOURCE_DIR}/hashes.txt lines REGEX "^[a-z]")
 foreach(line IN LISTS lines)
   string(REGEX MATCH "^[a-z]+" name "${line}")
