@@ -13,8 +13,9 @@ namespace grelha {
 namespace {
 
 constexpr int kMostExrSide = 65536;
-constexpr std::uint64_t kMostPixelsAByte = 1024;  ///< deflate packs a thousandfold at most; so does what a file may claim
-constexpr int kExrZipLevel = 4;                   ///< as for PNG
+constexpr std::uint64_t kMostPixelsAByte =
+    1024;  ///< deflate packs a thousandfold at most; so does what a file may claim
+constexpr int kExrZipLevel = 4;  ///< as for PNG
 
 /// A file in memory, and what the library complained of first.
 struct ExrMemory {
@@ -28,8 +29,8 @@ ExrMemory& memory_of(exr_const_context_t context) {
   return *static_cast<ExrMemory*>(memory);
 }
 
-std::int64_t read_from(exr_const_context_t, void* user, void* to, std::uint64_t size, std::uint64_t offset,
-                       exr_stream_error_func_ptr_t) {
+std::int64_t read_from(exr_const_context_t, void* user, void* to, std::uint64_t size,
+                       std::uint64_t offset, exr_stream_error_func_ptr_t) {
   const std::string& bytes = static_cast<ExrMemory*>(user)->bytes;
   if (offset >= bytes.size()) return 0;
   const std::size_t n = std::min<std::size_t>(size, bytes.size() - offset);
@@ -37,8 +38,8 @@ std::int64_t read_from(exr_const_context_t, void* user, void* to, std::uint64_t 
   return std::int64_t(n);
 }
 
-std::int64_t write_to(exr_const_context_t, void* user, const void* from, std::uint64_t size, std::uint64_t offset,
-                      exr_stream_error_func_ptr_t) {
+std::int64_t write_to(exr_const_context_t, void* user, const void* from, std::uint64_t size,
+                      std::uint64_t offset, exr_stream_error_func_ptr_t) {
   std::string& bytes = static_cast<ExrMemory*>(user)->bytes;
   if (offset + size > bytes.size()) bytes.resize(offset + size);
   std::memcpy(bytes.data() + offset, from, size);
@@ -56,7 +57,9 @@ exr_context_initializer_t initializer(ExrMemory& memory) {
   init.error_handler_fn = complain;
   init.user_data = &memory;
   init.read_fn = read_from;
-  init.size_fn = [](exr_const_context_t, void* user) { return std::int64_t(static_cast<ExrMemory*>(user)->bytes.size()); };
+  init.size_fn = [](exr_const_context_t, void* user) {
+    return std::int64_t(static_cast<ExrMemory*>(user)->bytes.size());
+  };
   init.write_fn = write_to;
   init.max_image_width = init.max_image_height = kMostExrSide;
   init.max_tile_width = init.max_tile_height = kMostExrSide;
@@ -88,7 +91,8 @@ struct ExrChannel {
 std::vector<ExrChannel> channels_of(const Image& image, const Layers& layers) {
   constexpr int kThree = 3 * sizeof(float), kOne = sizeof(float);
   const float* const rgb = image.rgb.data();
-  std::vector<ExrChannel> all{{"B", rgb + 2, kThree, false}, {"G", rgb + 1, kThree, false}, {"R", rgb, kThree, false}};
+  std::vector<ExrChannel> all{
+      {"B", rgb + 2, kThree, false}, {"G", rgb + 1, kThree, false}, {"R", rgb, kThree, false}};
   if (!layers.depth.empty()) all.push_back({"Z", layers.depth.data(), kOne, false});
   if (!layers.id.empty()) all.push_back({"id", layers.id.data(), kOne, true});
   const float* const normal = layers.normal.data();
@@ -110,13 +114,17 @@ std::string attribute_name(std::string key) {
   return key;
 }
 
-void write_head(exr_context_t file, const Image& image, const std::vector<ExrChannel>& channels, const Notes& notes) {
+void write_head(exr_context_t file, const Image& image, const std::vector<ExrChannel>& channels,
+                const Notes& notes) {
   int part = 0;
   want_done(exr_add_part(file, "", EXR_STORAGE_SCANLINE, &part));
-  want_done(exr_initialize_required_attr_simple(file, part, image.width, image.height, EXR_COMPRESSION_ZIP));
+  want_done(exr_initialize_required_attr_simple(file, part, image.width, image.height,
+                                                EXR_COMPRESSION_ZIP));
   for (const ExrChannel& c : channels)
-    want_done(exr_add_channel(file, part, c.name, c.whole ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1));
-  for (const auto& [key, text] : notes) want_done(exr_attr_set_string(file, part, attribute_name(key).c_str(), text.c_str()));
+    want_done(exr_add_channel(file, part, c.name, c.whole ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT,
+                              EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1));
+  for (const auto& [key, text] : notes)
+    want_done(exr_attr_set_string(file, part, attribute_name(key).c_str(), text.c_str()));
   want_done(exr_write_header(file));
 }
 
@@ -127,7 +135,8 @@ void write_blocks(exr_context_t file, const Image& image, const std::vector<ExrC
   for (int y = 0; y < image.height; y += rows) {
     exr_chunk_info_t block;
     want_done(exr_write_scanline_chunk_info(file, 0, y, &block));
-    want_done(y == 0 ? exr_encoding_initialize(file, 0, &block, &pipeline) : exr_encoding_update(file, 0, &block, &pipeline));
+    want_done(y == 0 ? exr_encoding_initialize(file, 0, &block, &pipeline)
+                     : exr_encoding_update(file, 0, &block, &pipeline));
     for (std::size_t i = 0; i < channels.size(); ++i) {
       const ExrChannel& c = channels[i];
       const std::size_t line = std::size_t(c.stride) * std::size_t(image.width);
@@ -157,24 +166,32 @@ class ExrReader {
     exr_attr_box2i_t window;
     want(exr_get_data_window(file_.context, part_, &window));
     want(exr_get_display_window(file_.context, part_, &shown_));
-    const std::int64_t width = side(shown_.min.x, shown_.max.x), height = side(shown_.min.y, shown_.max.y);
-    const auto data = std::uint64_t(side(window.min.x, window.max.x)) * std::uint64_t(side(window.min.y, window.max.y));
+    const std::int64_t width = side(shown_.min.x, shown_.max.x),
+                       height = side(shown_.min.y, shown_.max.y);
+    const auto data = std::uint64_t(side(window.min.x, window.max.x)) *
+                      std::uint64_t(side(window.min.y, window.max.y));
     if (std::max(data, std::uint64_t(width * height)) > memory_.bytes.size() * kMostPixelsAByte)
       refuse("it claims more pixels than its bytes can hold");
     image_ = Image(int(width), int(height));
     exr_storage_t storage;
     want(exr_get_storage(file_.context, part_, &storage));
-    if (storage == EXR_STORAGE_SCANLINE) read_rows(window);
-    else if (storage == EXR_STORAGE_TILED) read_tiles();
-    else refuse("its pixels are deep");
+    if (storage == EXR_STORAGE_SCANLINE)
+      read_rows(window);
+    else if (storage == EXR_STORAGE_TILED)
+      read_tiles();
+    else
+      refuse("its pixels are deep");
     return std::move(image_);
   }
 
  private:
-  [[noreturn]] void refuse(const std::string& why) const { throw FileError(path_, "cannot read the picture: " + why); }
+  [[noreturn]] void refuse(const std::string& why) const {
+    throw FileError(path_, "cannot read the picture: " + why);
+  }
   void want(exr_result_t result) const {
     if (result == EXR_ERR_OUT_OF_MEMORY) throw std::bad_alloc();
-    if (result != EXR_ERR_SUCCESS) refuse(memory_.error.empty() ? exr_get_default_error_message(result) : memory_.error);
+    if (result != EXR_ERR_SUCCESS)
+      refuse(memory_.error.empty() ? exr_get_default_error_message(result) : memory_.error);
   }
   std::int64_t side(int from, int to) const {
     const std::int64_t size = std::int64_t(to) - from + 1;
@@ -225,18 +242,21 @@ class ExrReader {
       c.user_bytes_per_element = c.user_pixel_stride = sizeof(float);
       c.user_line_stride = int(sizeof(float)) * block.width;
     }
-    if (result == EXR_ERR_SUCCESS) result = exr_decoding_choose_default_routines(file_.context, part_, &pipeline);
+    if (result == EXR_ERR_SUCCESS)
+      result = exr_decoding_choose_default_routines(file_.context, part_, &pipeline);
     if (result == EXR_ERR_SUCCESS) result = exr_decoding_run(file_.context, part_, &pipeline);
     exr_decoding_destroy(file_.context, &pipeline);
     want(result);
     place(planes, block.width, block.height, x - shown_.min.x, y - shown_.min.y);
   }
 
-  void place(const std::array<std::vector<float>, 3>& planes, int width, int height, int left, int top) {
+  void place(const std::array<std::vector<float>, 3>& planes, int width, int height, int left,
+             int top) {
     for (int y = std::max(0, -top); y < height && top + y < image_.height; ++y)
       for (int x = std::max(0, -left); x < width && left + x < image_.width; ++x)
         for (std::size_t c = 0; c < 3; ++c)
-          image_.row(top + y)[std::size_t(left + x) * 3 + c] = planes[grey_ ? 0 : c][std::size_t(y) * std::size_t(width) + std::size_t(x)];
+          image_.row(top + y)[std::size_t(left + x) * 3 + c] =
+              planes[grey_ ? 0 : c][std::size_t(y) * std::size_t(width) + std::size_t(x)];
   }
 
   void read_rows(const exr_attr_box2i_t& window) {
@@ -288,7 +308,8 @@ std::string encode_exr(const Image& image, const Layers& layers, const Notes& no
 }
 
 Image read_exr(const std::string& path, const std::string& bytes) {
-  if (!bytes.starts_with("\x76\x2f\x31\x01")) throw FileError(path, "not a picture in the OpenEXR format");
+  if (!bytes.starts_with("\x76\x2f\x31\x01"))
+    throw FileError(path, "not a picture in the OpenEXR format");
   return ExrReader(path, bytes).run();
 }
 

@@ -20,7 +20,8 @@ struct RowOfRays {
     for (std::size_t x = 0; x < width; ++x) {
       const float sx = (float(x) + .5f) - .5f * float(frame.width);
       float d[3];
-      for (int k = 0; k < 3; ++k) d[k] = (frame.forward[k] + sx * frame.right[k]) + sy * frame.up[k];
+      for (int k = 0; k < 3; ++k)
+        d[k] = (frame.forward[k] + sx * frame.right[k]) + sy * frame.up[k];
       const float length = std::sqrt((d[0] * d[0] + d[1] * d[1]) + d[2] * d[2]);
       ox[x] = frame.eye[0], oy[x] = frame.eye[1], oz[x] = frame.eye[2];
       dx[x] = d[0] / length, dy[x] = d[1] / length, dz[x] = d[2] / length;

@@ -1,4 +1,5 @@
-// Radiance's format: three mantissas of eight bits that share an exponent. Ward, "Real Pixels", Graphics Gems II (1991).
+// Radiance's format: three mantissas of eight bits that share an exponent. Ward, "Real Pixels",
+// Graphics Gems II (1991).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,7 +14,7 @@ using Rgbe = std::array<std::uint8_t, 4>;
 
 constexpr int kMantissa = 8, kExponentBias = 128;
 constexpr float kDarkest = 1e-38f, kLightest = 1e38f;  ///< of what the shared exponent reaches
-constexpr int kLeastPacked = 8, kMostPacked = 32767;  ///< widths of rows that may be packed
+constexpr int kLeastPacked = 8, kMostPacked = 32767;   ///< widths of rows that may be packed
 constexpr int kLongestRun = 127, kLongestDump = 128, kWorthARun = 4;
 
 float light(float value) { return value > 0 ? std::min(value, kLightest) : 0; }  // a NaN is none
@@ -25,7 +26,9 @@ Rgbe shared_exponent(const float* rgb) {
   if (most < kDarkest) return {};
   int exponent = 0;
   std::frexp(most, &exponent);
-  const auto mantissa = [&](float value) { return std::lround(std::ldexp(value, kMantissa - exponent)); };
+  const auto mantissa = [&](float value) {
+    return std::lround(std::ldexp(value, kMantissa - exponent));
+  };
   if (mantissa(most) == 1 << kMantissa) ++exponent;
   const auto byte = [&](float value) { return std::uint8_t(mantissa(value)); };
   return {byte(r), byte(g), byte(b), std::uint8_t(exponent + kExponentBias)};
@@ -74,7 +77,8 @@ void append_row(const float* rgb, int width, std::string& bytes) {
 std::string encode_hdr(const Image& image, const Notes& notes) {
   std::string bytes = "#?RADIANCE\n";
   for (const auto& [key, text] : notes) bytes += "# " + key + ": " + text + '\n';
-  bytes += "FORMAT=32-bit_rle_rgbe\n\n-Y " + std::to_string(image.height) + " +X " + std::to_string(image.width) + '\n';
+  bytes += "FORMAT=32-bit_rle_rgbe\n\n-Y " + std::to_string(image.height) + " +X " +
+           std::to_string(image.width) + '\n';
   for (int y = 0; y < image.height; ++y) append_row(image.row(y), image.width, bytes);
   return bytes;
 }

@@ -25,10 +25,13 @@ std::string partial_picture(const RenderCommand& command) {
   const fs::path name = picture_name(command);
   const auto format = format_of(name.string(), command.format);
   if (!format) return "";
-  return (name.parent_path() / (name.stem().string() + ".partial." + std::string(ending_of(*format)))).string();
+  return (name.parent_path() /
+          (name.stem().string() + ".partial." + std::string(ending_of(*format))))
+      .string();
 }
 
-std::string kept_name(const RenderCommand& command, const std::function<bool(const std::string&)>& fits) {
+std::string kept_name(const RenderCommand& command,
+                      const std::function<bool(const std::string&)>& fits) {
   const std::string name = picture_name(command) + ".partial";
   for (int i = 0; i < kPlacesToKeep; ++i) {
     const std::string numbered = i == 0 ? name : name + std::to_string(i);

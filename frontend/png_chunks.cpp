@@ -8,7 +8,8 @@ namespace grelha {
 namespace {
 
 constexpr std::size_t kSignature = 8, kLength = 4, kType = 4, kCrc = 4;
-constexpr std::size_t kHeaderEnd = kSignature + kLength + kType + 13 + kCrc;  ///< of IHDR, which comes first
+constexpr std::size_t kHeaderEnd =
+    kSignature + kLength + kType + 13 + kCrc;  ///< of IHDR, which comes first
 
 std::string big_endian(std::uint32_t value) {
   std::string bytes;
@@ -43,7 +44,8 @@ Encoding png_encoding(std::string_view png) {
   std::size_t at = kSignature;
   while (at + kLength + kType <= png.size()) {
     const std::size_t size = big_endian(png.substr(at));
-    const std::string_view type = png.substr(at + kLength, kType), data = png.substr(at + kLength + kType).substr(0, size);
+    const std::string_view type = png.substr(at + kLength, kType),
+                           data = png.substr(at + kLength + kType).substr(0, size);
     if (type == "sRGB") return {Encoding::Kind::srgb, 1};
     if (type == "gAMA" && data.size() == 4 && big_endian(data) > 0)
       found = {Encoding::Kind::power, big_endian(data) / kGammaUnit};

@@ -2,6 +2,7 @@
 find_package(nlohmann_json REQUIRED)
 grelha_test(scenes unit grelha::scenes)
 grelha_test(image_file unit grelha::frontend)
+target_sources(image_file_test PRIVATE exr_file_test.cpp)
 grelha_test(compare unit grelha::frontend)
 grelha_test(options unit grelha::frontend)
 target_sources(options_test PRIVATE option_checks_test.cpp)

@@ -15,12 +15,16 @@ namespace grelha {
 namespace {
 
 TEST(Progress, TellsShareAndRemainingTime) {
-  const auto text = [](double share, double elapsed_s) { return progress_text("load", share, elapsed_s, 80); };
+  const auto text = [](double share, double elapsed_s) {
+    return progress_text("load", share, elapsed_s, 80);
+  };
   EXPECT_EQ(text(0, 1), "load   [........................................]   0 %");
   EXPECT_EQ(text(.5, 3), "load   [####################....................]  50 %  3 s left");
   EXPECT_EQ(text(1, 3), "load   [########################################] 100 %  0 s left");
-  EXPECT_EQ(text(.25, 30), "load   [##########..............................]  25 %  1 min 30 s left");
-  EXPECT_EQ(text(.1, 800), "load   [####....................................]  10 %  2 h 0 min left");
+  EXPECT_EQ(text(.25, 30),
+            "load   [##########..............................]  25 %  1 min 30 s left");
+  EXPECT_EQ(text(.1, 800),
+            "load   [####....................................]  10 %  2 h 0 min left");
 }
 
 TEST(Progress, FitsAnyWidth) {
@@ -38,9 +42,12 @@ TEST(Progress, FitsAnyWidth) {
 std::vector<std::string> drawn(const std::string& output) {
   std::vector<std::string> lines(1);
   for (std::size_t i = 0; i < output.size(); ++i) {
-    if (output.compare(i, 3, "\033[K") == 0) i += 2;
-    else if (output[i] == '\r') lines.emplace_back();
-    else lines.back() += output[i];
+    if (output.compare(i, 3, "\033[K") == 0)
+      i += 2;
+    else if (output[i] == '\r')
+      lines.emplace_back();
+    else
+      lines.back() += output[i];
   }
   return lines;
 }
@@ -52,7 +59,8 @@ TEST(Terminal, TheBarIsNoWiderThanTheWindowAlsoWhenItIsResized) {
   const TemporaryFolder folder;
   folder.write("ball.nff", test::kBall);
   std::size_t narrow = 0, narrower = 0;
-  for (int samples = 500; narrower == 0 && samples <= 64000; samples *= 4) {  // until it takes the fraction of a second
+  for (int samples = 500; narrower == 0 && samples <= 64000;
+       samples *= 4) {  // until it takes the fraction of a second
     test::Terminal terminal(folder, kSeconds + std::to_string(samples), 50);
     const std::string before = terminal.read_until(" left");
     terminal.resize(30);
@@ -86,7 +94,8 @@ TEST(Terminal, ControlCIsAnsweredAtOnceWhateverIsInWork) {
   terminal.type(kControlC);
   terminal.read_all();
   EXPECT_EQ(terminal.status(), 128 + SIGINT);
-  EXPECT_LT(std::chrono::duration<double>(Clock::now() - typed).count(), .5) << "the second ends it at once";
+  EXPECT_LT(std::chrono::duration<double>(Clock::now() - typed).count(), .5)
+      << "the second ends it at once";
 }
 
 /// The stop itself waits for the piece in work; what there is stays, beside the picture's name.
@@ -99,7 +108,9 @@ TEST(Terminal, ControlCLeavesThePictureSoFar) {
   const std::string said = terminal.read_all();
   EXPECT_EQ(terminal.status(), 128 + SIGINT);
   EXPECT_NE(said.find(" % done and saved in ball.png.partial: the same command goes on from there; "
-                      "ball.partial.png is the picture so far"), said.npos) << said;
+                      "ball.partial.png is the picture so far"),
+            said.npos)
+      << said;
   EXPECT_EQ(folder.list(), "ball.nff ball.partial.png ball.png.partial");
 }
 
@@ -107,7 +118,8 @@ TEST(Terminal, IsNoPlaceForAPicture) {
   const TemporaryFolder folder;
   folder.write("ball.nff", test::kBall);
   test::Terminal terminal(folder, "render ball.nff -o -", 80);
-  EXPECT_EQ(terminal.read_all(), "grelha: error: -o -: stdout is a terminal: wanted a pipe or a file behind it\r\n");
+  EXPECT_EQ(terminal.read_all(),
+            "grelha: error: -o -: stdout is a terminal: wanted a pipe or a file behind it\r\n");
   EXPECT_EQ(terminal.status(), 2);
 }
 

@@ -17,9 +17,11 @@ namespace grelha::test {
 
 class Terminal {
  public:
-  Terminal(const TemporaryFolder& folder, const std::string& arguments, int columns, const char* kind = "xterm") {
+  Terminal(const TemporaryFolder& folder, const std::string& arguments, int columns,
+           const char* kind = "xterm") {
     const struct winsize size = size_of(columns);
-    const std::string line = "cd '" + folder.path().string() + "' && exec '" GRELHA_PROGRAM "' " + arguments;
+    const std::string line =
+        "cd '" + folder.path().string() + "' && exec '" GRELHA_PROGRAM "' " + arguments;
     child_ = forkpty(&master_, nullptr, nullptr, &size);
     if (child_ < 0) throw std::runtime_error("no terminal");
     if (child_ > 0) return;
@@ -72,7 +74,9 @@ class Terminal {
 
   bool read_some(std::string& all) const {
     constexpr int kPatience = 60'000;  // milliseconds, for a machine that has much else to do
-    struct pollfd ready {master_, POLLIN, 0};
+    struct pollfd ready {
+      master_, POLLIN, 0
+    };
     if (poll(&ready, 1, kPatience) <= 0) return false;
     char buffer[4096];
     const ssize_t n = read(master_, buffer, sizeof buffer);
