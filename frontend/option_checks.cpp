@@ -23,10 +23,12 @@ long long samples_asked(const Effects& e) {
 void check_samples(const Effects& e) {
   const long long asked = samples_asked(e);
   if (asked > kMostSamples)  // either alone is within bounds
-    throw UsageError("--aa jitter:" + std::to_string(e.jitter) + " and --lens APERTURE,FOCUS,N: wanted at most " +
-                     std::to_string(kMostSamples) + " samples a pixel, found " + std::to_string(asked));
+    throw UsageError("--aa jitter:" + std::to_string(e.jitter) +
+                     " and --lens APERTURE,FOCUS,N: wanted at most " +
+                     std::to_string(kMostSamples) + " samples a pixel, found " +
+                     std::to_string(asked));
   if (!e.samples || asked == 0 || asked == *e.samples) return;
-  const std::string first = e.jitter == 0 ? "--lens APERTURE,FOCUS,N"
+  const std::string first = e.jitter == 0   ? "--lens APERTURE,FOCUS,N"
                             : e.jitter == 1 ? "--aa off"
                                             : "--aa jitter:" + std::to_string(e.jitter);
   throw UsageError(first + " and --samples: wanted one number of samples, found " +
@@ -49,13 +51,15 @@ void check_refined(const RenderCommand& command) {
   if (e.lens && e.lens->samples > 0)
     throw UsageError("--error and --time choose the samples: no N in --lens beside them");
   if (e.shadows && e.shadows->positions > 1)
-    throw UsageError("--error and --time choose the samples: "
-                     "--shadows random:SIZE beside them, not area:SIZE,N");
+    throw UsageError(
+        "--error and --time choose the samples: "
+        "--shadows random:SIZE beside them, not area:SIZE,N");
 }
 
 void check_sampler(const Effects& e) {
   if (e.jitter > 1 && e.sampler && !is_jittered(*e.sampler))
-    throw UsageError("--aa jitter:N and --sampler: wanted jitter or unshuffled for jittered subpixels");
+    throw UsageError(
+        "--aa jitter:N and --sampler: wanted jitter or unshuffled for jittered subpixels");
 }
 
 void check_grid(const BuildOptions& build) {
@@ -68,8 +72,10 @@ void check_output(const std::string& image, std::optional<ImageFormat> asked) {
   const auto named = image_format(image);
   const bool part = is_partial_name(image);
   if (asked && (part || (named && named != asked)))
-    throw UsageError("--format " + std::string(ending_of(*asked)) + " and -o: wanted one format, found \"" + image + '"');
-  if (!format_of(image, asked) && !part) refuse("-o", "a name ending in .png, .hdr, .pfm, .exr or .grelha", image);
+    throw UsageError("--format " + std::string(ending_of(*asked)) +
+                     " and -o: wanted one format, found \"" + image + '"');
+  if (!format_of(image, asked) && !part)
+    refuse("-o", "a name ending in .png, .hdr, .pfm, .exr or .grelha", image);
 }
 
 void check_tone(bool srgb, const std::string& image, std::optional<ImageFormat> asked) {
@@ -86,8 +92,9 @@ void check_long_work(const RenderCommand& command) {
   const bool sums = !command.render.refine.on() && !command.effects.adaptive.on;
   const bool part_file = is_partial_name(command.image);
   if (!sums && (w.is_part() || part_file))
-    throw UsageError("parts are of pictures with as many samples in every pixel: "
-                     "no --error, --time or --aa adaptive");
+    throw UsageError(
+        "parts are of pictures with as many samples in every pixel: "
+        "no --error, --time or --aa adaptive");
   if (w.is_part() && !part_file)
     refuse("-o", "a name ending in .grelha for a part of a picture", command.image);
   if (part_file && w.show_every > 0)
@@ -130,7 +137,8 @@ void check_together(const MergeCommand& command) {
 }
 
 void check_together(const SceneCommand& command) {
-  if (command.list && (!command.name.empty() || command.size || !command.output.empty() || command.spd))
+  if (command.list &&
+      (!command.name.empty() || command.size || !command.output.empty() || command.spd))
     throw UsageError("--list: wanted alone, it writes no scene");
   if (command.list) return;
   if (command.name.empty()) throw UsageError("NAME is required (see grelha scene --list)");
