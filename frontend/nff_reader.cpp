@@ -7,7 +7,6 @@
 
 #include "frontend/load_progress.hpp"
 #include "frontend/memory_limit.hpp"
-#include "frontend/nearest.hpp"
 #include "frontend/nff_boxes.hpp"
 #include "frontend/nff_input.hpp"
 #include "frontend/nff_lights.hpp"

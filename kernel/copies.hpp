@@ -1,5 +1,6 @@
 #pragma once
-// Exact copies of primitives: whatever a ray meets of them it meets of the one with the lowest id, so that the others need not be tested.
+// Exact copies of primitives: whatever a ray meets of them it meets of the one with the lowest id,
+// so that the others need not be tested.
 
 #include <bit>
 #include <cstdint>
@@ -26,8 +27,8 @@ struct Shape {
 /// Of a finite primitive.
 Shape shape_of(const Primitives& p, std::uint32_t id);
 
-/// Those of some primitives (ids ascending) that are copies of another of them with a lower id. Where two shapes have one hash, a copy may
-/// be missed.
+/// Those of some primitives (ids ascending) that are copies of another of them with a lower id.
+/// Where two shapes have one hash, a copy may be missed.
 std::vector<std::uint32_t> copies_among(const Primitives& p, std::span<const std::uint32_t> ids);
 
 /// So many of the first planes are all there are: those behind are copies.

@@ -42,7 +42,9 @@ TEST(Copies, AreNeitherSeenNorTested) {
   const Scene many = with_copies(kCopies), one = with_copies(1);
   const Image seen = picture(many, {}, stats);
   EXPECT_EQ(seen.rgb, picture(one, {}, stats_of_one).rgb);
-  const auto tests = [](const RenderStats& s) { return s.trace.tests.sphere + s.trace.tests.triangle + s.trace.tests.cone + s.trace.tests.plane; };
+  const auto tests = [](const RenderStats& s) {
+    return s.trace.tests.sphere + s.trace.tests.triangle + s.trace.tests.cone + s.trace.tests.plane;
+  };
   EXPECT_LT(tests(stats), 10 * tests(stats_of_one));
   BuildOptions listed;
   listed.grid = false;

@@ -14,11 +14,13 @@
 namespace grelha {
 namespace {
 
-SceneFile file_of(const std::vector<Float3>& points, const std::vector<std::array<std::uint32_t, 3>>& faces) {
+SceneFile file_of(const std::vector<Float3>& points,
+                  const std::vector<std::array<std::uint32_t, 3>>& faces) {
   SceneFile file;
   Triangles& t = file.scene.geometry.triangles;
   for (const Float3& p : points) t.x.push_back(p.x), t.y.push_back(p.y), t.z.push_back(p.z);
-  for (const auto& [a, b, c] : faces) t.a.push_back(a), t.b.push_back(b), t.c.push_back(c), t.material.push_back(0);
+  for (const auto& [a, b, c] : faces)
+    t.a.push_back(a), t.b.push_back(b), t.c.push_back(c), t.material.push_back(0);
   file.scene.materials.push_back(default_mesh_material());
   add_default_view(file);
   return file;
@@ -28,9 +30,12 @@ SceneFile file_of(const std::vector<Float3>& points, const std::vector<std::arra
 SceneFile box(const Float3& size, float shift = 0, float scale = 1, bool inward = false) {
   std::vector<Float3> points;
   for (int i = 0; i < 8; ++i)
-    points.push_back({scale * (shift + size.x * float(i & 1)), scale * (shift + size.y * float(i >> 1 & 1)), scale * (shift + size.z * float(i >> 2))});
+    points.push_back({scale * (shift + size.x * float(i & 1)),
+                      scale * (shift + size.y * float(i >> 1 & 1)),
+                      scale * (shift + size.z * float(i >> 2))});
   std::vector<std::array<std::uint32_t, 3>> faces;
-  for (const auto& [a, b, c, d] : std::vector<std::array<std::uint32_t, 4>>{{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}})
+  for (const auto& [a, b, c, d] : std::vector<std::array<std::uint32_t, 4>>{
+           {0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}})
     faces.push_back({a, b, c}), faces.push_back({a, c, d});
   if (inward)
     for (auto& f : faces) std::swap(f[1], f[2]);
@@ -57,29 +62,36 @@ Seen seen(const SceneFile& file, int side) {
     for (int x = 0; x < side; ++x) {
       const float* const p = image.row(y) + 3 * x;
       if (p[0] == b.x && p[1] == b.y && p[2] == b.z) continue;
-      s.left = std::min(s.left, x), s.right = std::max(s.right, x), s.top = std::min(s.top, y), s.bottom = std::max(s.bottom, y);
+      s.left = std::min(s.left, x), s.right = std::max(s.right, x), s.top = std::min(s.top, y),
+      s.bottom = std::max(s.bottom, y);
       s.darkest = std::min({s.darkest, p[0], p[1], p[2]});
     }
   return s;
 }
 
-/// Of nine tenths of the picture's width or height the mesh fills all, whatever its form, size and place, and none of the rest.
+/// Of nine tenths of the picture's width or height the mesh fills all, whatever its form, size and
+/// place, and none of the rest.
 TEST(DefaultView, FillsThePicture) {
   constexpr int kSide = 200;
-  for (const Float3& size : {Float3{1, 1, 1}, Float3{5, 1, .5f}, Float3{.2f, 4, .2f}, Float3{1, 1, 30}, Float3{1, .01f, 1}})
+  for (const Float3& size : {Float3{1, 1, 1}, Float3{5, 1, .5f}, Float3{.2f, 4, .2f},
+                             Float3{1, 1, 30}, Float3{1, .01f, 1}})
     for (const float scale : {1e-6f, 1.f, 1e9f})
       for (const float shift : {-.5f, 100.f}) {
         const Seen s = seen(box(size, shift, scale), kSide);
         const int across = s.right - s.left + 1, down = s.bottom - s.top + 1;
-        EXPECT_NEAR(std::max(across, down), .9 * kSide, 2.5) << size.x << ' ' << size.y << ' ' << size.z << " times " << scale << ", from " << shift;
-        EXPECT_NEAR(across >= down ? s.left + s.right : s.top + s.bottom, kSide - 1, 3) << "in the middle";
-        EXPECT_GE(std::min({s.left, s.top, kSide - 1 - s.right, kSide - 1 - s.bottom}), .05 * kSide - 2);
+        EXPECT_NEAR(std::max(across, down), .9 * kSide, 2.5)
+            << size.x << ' ' << size.y << ' ' << size.z << " times " << scale << ", from " << shift;
+        EXPECT_NEAR(across >= down ? s.left + s.right : s.top + s.bottom, kSide - 1, 3)
+            << "in the middle";
+        EXPECT_GE(std::min({s.left, s.top, kSide - 1 - s.right, kSide - 1 - s.bottom}),
+                  .05 * kSide - 2);
       }
 }
 
 TEST(DefaultView, NoFaceIsBlack) {
   for (const bool inward : {false, true})
-    for (const Float3& size : {Float3{1, 1, 1}, Float3{3, 1, .2f}, Float3{.1f, 2, 3}}) EXPECT_GT(seen(box(size, 0, 1, inward), 64).darkest, .2f);
+    for (const Float3& size : {Float3{1, 1, 1}, Float3{3, 1, .2f}, Float3{.1f, 2, 3}})
+      EXPECT_GT(seen(box(size, 0, 1, inward), 64).darkest, .2f);
 }
 
 /// Whiter than white is nothing either: the lights together leave a face its shade.
@@ -93,7 +105,9 @@ TEST(DefaultView, AMeshStandsOnItsFeet) {
   const auto table = [](bool z_up) {
     std::vector<Float3> points;
     std::vector<std::array<std::uint32_t, 3>> faces;
-    const auto add = [&](float x, float y, float height) { points.push_back(z_up ? Float3{x, y, height} : Float3{x, height, -y}); };
+    const auto add = [&](float x, float y, float height) {
+      points.push_back(z_up ? Float3{x, y, height} : Float3{x, height, -y});
+    };
     for (const auto& [x, y] : {std::pair{0.f, 0.f}, {4.f, 0.f}, {0.f, 3.f}, {4.f, 3.f}}) {
       const auto first = static_cast<std::uint32_t>(points.size());
       add(x, y, 0), add(x + .1f, y, 3), add(x, y + .1f, 3);

@@ -53,7 +53,8 @@ Scene faint_mixture(std::uint64_t seed) {
     m.diffuse = {.5f, .7f, .3f}, m.specular = {.2f, .2f, .2f}, m.shine = 10;
     s.materials.push_back(m);
   }
-  for (std::size_t i = 0; i < s.geometry.spheres.size(); ++i) s.geometry.spheres.material[i] = static_cast<std::uint32_t>(i % 6);
+  for (std::size_t i = 0; i < s.geometry.spheres.size(); ++i)
+    s.geometry.spheres.material[i] = static_cast<std::uint32_t>(i % 6);
   s.background = {.9f, .8f, .7f};
   s.lights = {{{0, 5, 5}, {1, 1, 1}, {}, {}}};
   return s;
@@ -84,7 +85,8 @@ TEST(PathWeight, APathEndsWhenItsWeightTimesTheBrightestLightIsTooLittle) {
   EXPECT_EQ(RenderOptions{}.min_weight, 1. / 16384);
 }
 
-/// At its end a path sees the background, whatever ends it: in a world where all is as bright as the background nothing changes.
+/// At its end a path sees the background, whatever ends it: in a world where all is as bright as
+/// the background nothing changes.
 TEST(PathWeight, AnEndSeesTheBackground) {
   Scene scene = glass_in_glass(.5f, .5f);
   scene.materials[0].diffuse = {0, 0, 0};
@@ -96,17 +98,21 @@ TEST(PathWeight, AnEndSeesTheBackground) {
   for (const float channel : image.rgb) EXPECT_NEAR(channel, 1, 1e-5);
 }
 
-/// Shares of a sample never sum to more than 1, so that of rays with a share of W or more at most 1 / W are under way at a time. Here the glass
-/// loses at least a tenth of them at each surface to the outside, or to their weight.
+/// Shares of a sample never sum to more than 1, so that of rays with a share of W or more at most 1
+/// / W are under way at a time. Here the glass loses at least a tenth of them at each surface to
+/// the outside, or to their weight.
 TEST(PathWeight, AnyDepthEnds) {
   constexpr int kSide = 4;
-  for (const auto& [mirror, transmission] : {std::pair{.5f, .5f}, std::pair{.1f, .9f}, std::pair{.9f, .9f}, std::pair{1.f, 1.f}}) {
+  for (const auto& [mirror, transmission] :
+       {std::pair{.5f, .5f}, std::pair{.1f, .9f}, std::pair{.9f, .9f}, std::pair{1.f, 1.f}}) {
     const Scene scene = glass_in_glass(mirror, transmission);
     RenderOptions o;
     o.depth = kMostDepth;
     RenderStats stats;
     render(World(scene, {}), camera_at({0, 0, 5}, {0, 0, 0}, kSide), o, stats);
-    EXPECT_LT(stats.rays.reflection + stats.rays.refraction, std::uint64_t{kSide * kSide} * 10 * 16384) << mirror << ' ' << transmission;
+    EXPECT_LT(stats.rays.reflection + stats.rays.refraction,
+              std::uint64_t{kSide * kSide} * 10 * 16384)
+        << mirror << ' ' << transmission;
     EXPECT_GT(stats.rays.reflection + stats.rays.refraction, 100u);
   }
 }
@@ -120,7 +126,8 @@ TEST(PathWeight, FansEnd) {
   RenderStats stats;
   const Image image = render(World(scene, {}), camera_at({0, 1, 0}, {0, 0, .25f}, 1), o, stats);
   EXPECT_LT(stats.rays.reflection, 3'000'000u);
-  // The sum of .7^k, without what 30 halvings leave; as many of 17 rays each as are worth it change no mean.
+  // The sum of .7^k, without what 30 halvings leave; as many of 17 rays each as are worth it change
+  // no mean.
   EXPECT_NEAR(image.rgb[0], 1 / .3, .001);
 }
 
