@@ -41,7 +41,9 @@ SceneFile spd_scene(const Published& p) {
 RenderStats count_rays(const SceneFile& file) {
   RenderStats stats;
   const World world(file.scene, {});
-  render(world, file.camera, {}, stats);
+  RenderOptions options;
+  options.min_weight = 0;  // SPD follows every path
+  render(world, file.camera, options, stats);
   return stats;
 }
 
