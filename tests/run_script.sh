@@ -23,9 +23,9 @@ echo "cmake \$*" >>$2/asked
 case \$* in
   *GRELHA_ISAS=*) echo "GRELHA_ISAS:STRING=\${*##*GRELHA_ISAS=}" >$2/project/build/release/CMakeCache.txt; exit ;;
 esac
-echo "[1/4 9.5 2] one"
+echo "[1/4 9.5 3] one"
 [ ! -e $2/broken ] || { echo "FAILED: two.o"; echo "two.cpp:1:1: error: wrong"; echo "ninja: stopped"; exit 1; }
-echo "[4/4 12.5 0] two"
+echo "[4/4 12.5 1] two"
 CMAKE
 printf '#!/bin/sh\necho tested\n' >stand-ins/ctest
 chmod +x stand-ins/cmake stand-ins/ctest
@@ -55,7 +55,7 @@ asked GRELHA_ISAS=all
 touch broken project/kernel/new.cpp
 try "${steps}FAILED: two.o|two.cpp:1:1: error: wrong|ninja: stopped|run: this failed: building grelha; all that was said is in $2/project/build/release/run.log|" \
   info x.nff
-grep -q '^\[1/4 9.5 2\] one$' project/build/release/run.log || { echo "the log is incomplete"; exit 1; }
+grep -q '^\[1/4 9.5 3\] one$' project/build/release/run.log || { echo "the log is incomplete"; exit 1; }
 rm broken
 # On a terminal the build counts in one line.
 if command -v script >/dev/null; then
