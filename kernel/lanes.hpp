@@ -467,10 +467,66 @@ inline void store_narrow(float* p, const DoubleLanes& a) { _mm256_storeu_ps(p, _
 #endif
 inline float not_below(double a) { return 0 - not_above(0 - a); }
 
-/// |a| without touching the sign bit of anything else.
+/// Doubles beside some floats: kWideParts<Real> registers of them hold what one of Real does.
 template <class Real>
-inline Real magnitude(const Real& a) {
-  return greater(a, Real(0) - a);
+struct WideOf {
+  using Type = DoubleLanes;
+};
+template <>
+struct WideOf<float> {
+  using Type = double;
+};
+template <>
+struct WideOf<double> {
+  using Type = double;
+};
+template <class Real>
+using Wide = typename WideOf<Real>::Type;
+template <class Real>
+inline constexpr int kWideParts = kWidth<Real> / kWidth<Wide<Real>>;
+
+/// Part i of the lanes, in double.
+template <int i, class Real>
+inline Wide<Real> widen(const Real& a) {
+  if constexpr (sizeof(Scalar<Real>) == sizeof(double)) return a;
+  else if constexpr (kWidth<Real> == 1) return static_cast<double>(a);
+#if GRELHA_ISA_NUMBER == 2
+  else return DoubleLanes(_mm_cvtps_pd(i == 0 ? a.data : _mm_movehl_ps(a.data, a.data)));
+#elif GRELHA_ISA_NUMBER == 3
+  else return DoubleLanes(_mm256_cvtps_pd(_mm256_extractf128_ps(a.data, i)));
+#elif GRELHA_ISA_NUMBER == 4
+  else if constexpr (kWideParts<Real> == 1) return DoubleLanes(_mm512_cvtps_pd(a.data));
+  else return DoubleLanes(_mm512_cvtps_pd(_mm512_extractf32x8_ps(a.data, i)));
+#endif
 }
+
+/// All parts together, each rounded once.
+template <class Real>
+inline Real narrow(const Wide<Real> (&part)[kWideParts<Real>]) {
+  if constexpr (sizeof(Scalar<Real>) == sizeof(double)) return part[0];
+  else if constexpr (kWidth<Real> == 1) return static_cast<float>(part[0]);
+#if GRELHA_ISA_NUMBER == 2
+  else return Real(_mm_movelh_ps(_mm_cvtpd_ps(part[0].data), _mm_cvtpd_ps(part[1].data)));
+#elif GRELHA_ISA_NUMBER == 3
+  else return Real(_mm256_set_m128(_mm256_cvtpd_ps(part[1].data), _mm256_cvtpd_ps(part[0].data)));
+#elif GRELHA_ISA_NUMBER == 4
+  else if constexpr (kWideParts<Real> == 1) return Real(_mm512_cvtpd_ps(part[0].data));
+  else return Real(_mm512_insertf32x8(_mm512_castps256_ps512(_mm512_cvtpd_ps(part[0].data)), _mm512_cvtpd_ps(part[1].data), 1));
+#endif
+}
+
+/// |a|.
+inline float magnitude(float a) { return __builtin_fabsf(a); }
+inline double magnitude(double a) { return __builtin_fabs(a); }
+#if GRELHA_ISA_NUMBER > 1
+template <class A>
+inline Simd<A> magnitude(const Simd<A>& a) {
+  return xsimd::abs(a);
+}
+template <class A>
+inline SimdDouble<A> magnitude(const SimdDouble<A>& a) {
+  return xsimd::abs(a);
+}
+#endif
 
 }  // namespace grelha::GRELHA_ISA

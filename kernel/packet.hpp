@@ -233,14 +233,14 @@ inline void test_triangle(Packet& p, const float (&a)[3], const float (&b)[3], c
     if (const int k = p.group_axis[g]; k >= 0) {
       const int kx = k == 2 ? 0 : k + 1, ky = k == 0 ? 2 : k - 1;
       const Vec3<Exact> org{take<Exact>(tested_org(p, kx) + i), take<Exact>(tested_org(p, ky) + i), take<Exact>(tested_org(p, k) + i)};
-      hit = hit_triangle<Exact>(org, shear, t_min, {Exact(a[kx]), Exact(a[ky]), Exact(a[k])},
-                                {Exact(b[kx]), Exact(b[ky]), Exact(b[k])}, {Exact(c[kx]), Exact(c[ky]), Exact(c[k])}, t);
+      const Vec3<Exact> dir{take<Exact>(p.dir[kx] + i), take<Exact>(p.dir[ky] + i), take<Exact>(p.dir[k] + i)};
+      const auto corner = [&](const float (&v)[3]) { return Vec3<Exact>{Exact(v[kx]), Exact(v[ky]), Exact(v[k])}; };
+      hit = hit_triangle<Exact>(org, dir, shear, t_min, {corner(a), corner(b), corner(c)}, t);
     } else {
       const Exact axis = take<Exact>(p.axis + i);
-      hit = hit_triangle<Exact>(permuted(axis, origin(p, i)), shear, t_min,
-                                permuted<Exact>(axis, {Exact(a[0]), Exact(a[1]), Exact(a[2])}),
-                                permuted<Exact>(axis, {Exact(b[0]), Exact(b[1]), Exact(b[2])}),
-                                permuted<Exact>(axis, {Exact(c[0]), Exact(c[1]), Exact(c[2])}), t);
+      const auto corner = [&](const float (&v)[3]) { return permuted<Exact>(axis, {Exact(v[0]), Exact(v[1]), Exact(v[2])}); };
+      hit = hit_triangle<Exact>(permuted(axis, origin(p, i)), permuted(axis, direction(p, i)), shear, t_min,
+                                {corner(a), corner(b), corner(c)}, t);
     }
     note<kAny>(p, i, hit, t, id);
   });

@@ -45,10 +45,11 @@ inline bool reference_cell(Single& r, const CellLists& lists, std::size_t cell, 
         if (box && box->seen(block.id[i])) continue;
         ++n.triangle;
         Number t = 0;
-        const bool hit = hit_triangle<Number>({from[kx], from[ky], from[k]}, shear, tested_t_min(r),
-                                             {block.a[kx][i], block.a[ky][i], block.a[k][i]},
-                                             {block.b[kx][i], block.b[ky][i], block.b[k][i]},
-                                             {block.c[kx][i], block.c[ky][i], block.c[k][i]}, t);
+        const bool hit = hit_triangle<Number>({from[kx], from[ky], from[k]}, {r.dir[kx], r.dir[ky], r.dir[k]}, shear, tested_t_min(r),
+                                              {{block.a[kx][i], block.a[ky][i], block.a[k][i]},
+                                               {block.b[kx][i], block.b[ky][i], block.b[k][i]},
+                                               {block.c[kx][i], block.c[ky][i], block.c[k][i]}},
+                                              t);
         if (take<kAny>(r, hit, t, block.id[i])) return true;
       }
     }

@@ -111,6 +111,7 @@ inline bool test_block(Single& r, const TriangleBlock& block, Counters& n) {
   const float(&from)[3] = tested_org(r);
   const int k = r.axis, kx = k == 2 ? 0 : k + 1, ky = k == 0 ? 2 : k - 1;
   const Vec3<ExactBlock> org{ExactBlock(from[kx]), ExactBlock(from[ky]), ExactBlock(from[k])};
+  const Vec3<ExactBlock> dir{ExactBlock(r.dir[kx]), ExactBlock(r.dir[ky]), ExactBlock(r.dir[k])};
   const Shear<ExactBlock> shear{ExactBlock(r.shear[0]), ExactBlock(r.shear[1]), ExactBlock(r.shear[2])};
   const auto corner = [&](const float (&v)[3][kBlock], int i) {
     return Vec3<ExactBlock>{take<ExactBlock>(v[kx] + i), take<ExactBlock>(v[ky] + i), take<ExactBlock>(v[k] + i)};
@@ -118,8 +119,8 @@ inline bool test_block(Single& r, const TriangleBlock& block, Counters& n) {
   n.triangle += kBlock;
   for (int i = 0; i < kBlock; i += kWidth<ExactBlock>) {
     ExactBlock t(0);
-    const Mask<ExactBlock> hit = hit_triangle<ExactBlock>(org, shear, ExactBlock(tested_t_min(r)), corner(block.a, i), corner(block.b, i),
-                                                corner(block.c, i), t);
+    const Mask<ExactBlock> hit = hit_triangle<ExactBlock>(org, dir, shear, ExactBlock(tested_t_min(r)),
+                                                          {corner(block.a, i), corner(block.b, i), corner(block.c, i)}, t);
     if (note<kAny>(r, hit, t, block.id + i)) return true;
   }
   return false;

@@ -13,6 +13,9 @@ namespace grelha::GRELHA_ISA {
 
 inline constexpr float kEps = 5.9604645e-8f;  ///< half an ulp of 1
 
+/// What double takes from a point of a triangle, of its largest coordinate: some 30 roundings of 2^-53.
+inline constexpr float kWideEps = 0x1p-48f;
+
 template <class Real>
 struct Surface {
   Vec3<Real> point, normal, shading;  ///< outward geometric normal, unit; shading normal, unit, same side
@@ -55,13 +58,35 @@ inline Surface<Real> cone_surface(const GeometryView& g, const Words<Real>& i, c
   return {point, n, n, Real(32 * kEps) * (height + (radius + slope * height)) + Real(4 * kEps) * largest(point), words_at(g.cone_material, i)};
 }
 
-/// Unit normal of a triangle's edges. The square of their product overflows from 4e9 on and is 0 below 1e-10, so what is far from 1 is brought
-/// nearer, by powers of two, which change no bit.
+/// What of a triangle's surface is computed in double, and rounded once.
 template <class Real>
-inline Vec3<Real> across_both(const Vec3<Real>& e1, const Vec3<Real>& e2) {
-  const Vec3<Real> n = cross(e1, e2);
-  const Real size = largest(n);
-  return normalize(select(size < Real(0x1p-40f), Real(0x1p80f), select(size > Real(0x1p40f), Real(0x1p-80f), Real(1))) * n);
+struct TrianglePlace {
+  Vec3<Real> point, normal, weights;
+};
+
+/// Corners as they are, not permuted; `axis` is that of shear_axis(). Rays that do not cross are taken to the first corner.
+template <class Real>
+inline TrianglePlace<Real> triangle_place(const Real& axis, const Vec3<Real>& org, const Vec3<Real>& dir, const Corners<Real>& c) {
+  const auto turned = [&](const Vec3<Real>& p) { return permuted<Real>(axis, p); };
+  const Crossing<Real> r = crossing<Real>(turned(org), turned(dir), {turned(c.a), turned(c.b), turned(c.c)});
+  const Real o(0), one(1);
+  const Vec3<Real> w = select(r.inside, r.weights, Vec3<Real>{one, o, o}), e1 = c.b - c.a, e2 = c.c - c.a;
+  return {c.a + (w.y * e1 + w.z * e2), normalize(cross(e1, e2)), w};
+}
+
+template <class Real>
+struct PlaceParts {
+  Wide<Real> part[9][kWideParts<Real>];
+  Vec3<Real> vector(int i) const { return {narrow<Real>(part[i]), narrow<Real>(part[i + 1]), narrow<Real>(part[i + 2])}; }
+};
+
+template <class Real, int i = 0>
+inline void place_parts(const Real& axis, const Vec3<Real>& org, const Vec3<Real>& dir, const Corners<Real>& c, PlaceParts<Real>& to) {
+  const TrianglePlace<Wide<Real>> p = triangle_place<Wide<Real>>(widen<i>(axis), widen<i>(org), widen<i>(dir), widen<i>(c));
+  int k = 0;
+  for (const Vec3<Wide<Real>>* v : {&p.point, &p.normal, &p.weights})
+    for (const Wide<Real>* x : {&v->x, &v->y, &v->z}) to.part[k++][i] = *x;
+  if constexpr (i + 1 < kWideParts<Real>) place_parts<Real, i + 1>(axis, org, dir, c, to);
 }
 
 template <class Real>
@@ -69,19 +94,13 @@ inline Surface<Real> triangle_surface(const GeometryView& g, const Words<Real>& 
   const Words<Real> v[3] = {words_at(g.ta, i), words_at(g.tb, i), words_at(g.tc, i)};
   const Vec3<Real> a = three_at(g.tx, g.ty, g.tz, v[0]), b = three_at(g.tx, g.ty, g.tz, v[1]), c = three_at(g.tx, g.ty, g.tz, v[2]);
   const Real o(0), one(1), mx = magnitude(dir.x), my = magnitude(dir.y), mz = magnitude(dir.z);
-  const Mask<Real> x_first = both(mx >= my, mx >= mz), y_first = my >= mz;  // the axis prepare() gave the ray
-  const auto permute = [&](const Vec3<Real>& p) {
-    return Vec3<Real>{select(x_first, p.y, select(y_first, p.z, p.x)), select(x_first, p.z, select(y_first, p.x, p.y)),
-                      select(x_first, p.x, select(y_first, p.y, p.z))};
-  };
-  const Vec3<Real> way = permute(dir);
-  const Shear<Real> shear{way.x / way.z, way.y / way.z, one / way.z};
-  Vec3<Real> w{one, o, o};
-  Real t(0);
-  const Mask<Real> met = hit_triangle<Real>(permute(org), shear, Real(-kInfinity), permute(a), permute(b), permute(c), t, &w);
-  w = select(met, w, Vec3<Real>{one, o, o});
-  const Vec3<Real> e1 = b - a, e2 = c - a, point = a + (w.y * e1 + w.z * e2), n = across_both(e1, e2);
-  Surface<Real> s{point, n, n, Real(16 * kEps) * (largest(e1) + largest(e2)) + Real(4 * kEps) * largest(point), words_at(g.triangle_material, i)};
+  // the axis prepare() gave the ray
+  const Real axis = select(both(mx >= my, mx >= mz), o, select(my >= mz, one, Real(2)));
+  PlaceParts<Real> place;
+  place_parts<Real>(axis, org, dir, {a, b, c}, place);
+  const Vec3<Real> point = place.vector(0), n = place.vector(3), w = place.vector(6);
+  const Real corners = greater(greater(largest(a), largest(b)), largest(c));
+  Surface<Real> s{point, n, n, Real(4 * kEps) * largest(point) + Real(kWideEps) * corners, words_at(g.triangle_material, i)};
   if (!smooth) return s;
   Mask<Real> sound = one > o;
   const auto vertex_normal = [&](const Words<Real>& vertex) {

@@ -18,12 +18,9 @@ inline int shear_axis(float dx, float dy, float dz) {
   return ay >= az ? 1 : 2;
 }
 
-/// a b - c d with the right sign, and its size to within 2^-50 even where the products nearly agree.
-inline double difference_of_products(float a, float b, float c, float d) {  // products of floats are exact in double
-  return static_cast<double>(a) * b - static_cast<double>(c) * d;
-}
+/// a b - c d with the right sign, and its size to within 2^-50 even where the products nearly agree: a product and what rounding
+/// took from it, Dekker, "A Floating-Point Technique for Extending the Available Precision", 1971.
 inline double difference_of_products(double a, double b, double c, double d) {
-  // A product and what rounding took from it: Dekker, "A Floating-Point Technique for Extending the Available Precision", 1971.
   const auto rest = [](double x, double y, double xy) {
     const double p = 134217729. * x, q = 134217729. * y;
     const double x1 = p - (p - x), x2 = x - x1, y1 = q - (q - y), y2 = y - y1;
@@ -33,80 +30,131 @@ inline double difference_of_products(double a, double b, double c, double d) {
   return (ab - cd) + (rest(a, b, ab) - rest(c, d, cd));
 }
 
-/// The number itself, or where it is too small for a float the smallest float of its sign.
-template <class To>
-inline To keep_sign(double e) {
-  const To r = static_cast<To>(e);
-  if (r == 0 && e != 0) return e < 0 ? To(-1e-45f) : To(1e-45f);
+/// Corners of a triangle, in its ray's permuted axes.
+template <class Real>
+struct Corners {
+  Vec3<Real> a, b, c;
+};
+
+/// Where a ray crosses a triangle, computed in double.
+template <class Real>
+struct Crossing {
+  Mask<Real> inside;   ///< the ray crosses, edges and corners included
+  Real t;
+  Vec3<Real> weights;  ///< of the corners: not negative, 1 together
+};
+
+/// Edge functions of corners that lie as (ax, ay), (bx, by), (cx, cy) around their ray, where one of them came out as zero.
+template <class Real>
+[[gnu::noinline, gnu::cold]] void exact_edges(const Mask<Real>& chosen, const Real (&corner)[6], Vec3<Real>& edge) {
+  constexpr int n = kWidth<Real>;
+  double p[6][n];
+  double e[3][n];
+  for (int i = 0; i < 6; ++i) store(p[i], corner[i]);
+  store(e[0], edge.x);
+  store(e[1], edge.y);
+  store(e[2], edge.z);
+  for (unsigned lanes = bits(chosen); lanes != 0; lanes &= lanes - 1) {
+    const int i = __builtin_ctz(lanes);
+    e[0][i] = difference_of_products(p[4][i], p[3][i], p[5][i], p[2][i]);
+    e[1][i] = difference_of_products(p[0][i], p[5][i], p[1][i], p[4][i]);
+    e[2][i] = difference_of_products(p[2][i], p[1][i], p[3][i], p[0][i]);
+  }
+  load(e[0], edge.x);
+  load(e[1], edge.y);
+  load(e[2], edge.z);
+}
+
+/// Real: double or DoubleLanes. Corners are sheared by a function of ray and corner alone, and the sign of each edge function of
+/// what comes out is exact: triangles that share an edge or a corner agree about it, so no ray passes between them.
+template <class Real>
+[[gnu::always_inline]] inline Crossing<Real> crossing(const Vec3<Real>& org, const Vec3<Real>& dir, const Corners<Real>& corner) {
+  const Real o(0);
+  const Vec3<Real> oa = corner.a - org, ob = corner.b - org, oc = corner.c - org;
+  const Real ax = oa.x * dir.z - dir.x * oa.z, ay = oa.y * dir.z - dir.y * oa.z;
+  const Real bx = ob.x * dir.z - dir.x * ob.z, by = ob.y * dir.z - dir.y * ob.z;
+  const Real cx = oc.x * dir.z - dir.x * oc.z, cy = oc.y * dir.z - dir.y * oc.z;
+  Vec3<Real> edge{cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax};
+  const Mask<Real> zero = either(either(edge.x == o, edge.y == o), edge.z == o);
+  if (any(zero)) exact_edges<Real>(zero, {ax, ay, bx, by, cx, cy}, edge);
+  const Real least = lesser(lesser(edge.x, edge.y), edge.z), most = greater(greater(edge.x, edge.y), edge.z);
+  const Real sum = (edge.x + edge.y) + edge.z;
+  Crossing<Real> r;
+  r.inside = both(either(least >= o, most <= o), sum != o);
+  r.weights = (Real(1) / sum) * edge;
+  r.t = ((r.weights.x * oa.z + r.weights.y * ob.z) + r.weights.z * oc.z) / dir.z;
   return r;
 }
 
-/// Edge functions again with twice the digits: for those that came out as zero the sign is right then, for those of slivers the
-/// size.
-template <class Real>
-[[gnu::noinline, gnu::cold]] void exact_edges(const Mask<Real>& chosen, const Real (&v)[6], Real& u_out, Real& v_out,
-                                              Real& w_out) {
-  constexpr int n = kWidth<Real>;
-  Scalar<Real> c[6][n], u[n], vv[n], w[n];
-  for (int i = 0; i < 6; ++i) store(c[i], v[i]);
-  store(u, u_out), store(vv, v_out), store(w, w_out);
-  const unsigned lanes = bits(chosen);
-  for (int i = 0; i < n; ++i) {
-    if (!(lanes >> i & 1)) continue;
-    const Scalar<Real> ax = c[0][i], ay = c[1][i], bx = c[2][i], by = c[3][i], cx = c[4][i], cy = c[5][i];
-    u[i] = keep_sign<Scalar<Real>>(difference_of_products(cx, by, cy, bx));
-    vv[i] = keep_sign<Scalar<Real>>(difference_of_products(ax, cy, ay, cx));
-    w[i] = keep_sign<Scalar<Real>>(difference_of_products(bx, ay, by, ax));
-  }
-  load(u, u_out), load(vv, v_out), load(w, w_out);
+/// Part i of the lanes of corners, in double.
+template <int i, class Real>
+inline Corners<Wide<Real>> widen(const Corners<Real>& c) {
+  return {widen<i>(c.a), widen<i>(c.b), widen<i>(c.c)};
 }
+
+/// crossing() of float lanes, part after part: t where a ray crosses, NaN where not.
+template <class Real, int i = 0>
+[[gnu::always_inline]] inline void wide_depths(const Vec3<Real>& org, const Vec3<Real>& dir, const Corners<Real>& corner,
+                                               Wide<Real> (&t)[kWideParts<Real>]) {
+  const Crossing<Wide<Real>> r = crossing<Wide<Real>>(widen<i>(org), widen<i>(dir), widen<i>(corner));
+  t[i] = select(r.inside, r.t, Wide<Real>(__builtin_nan("")));
+  if constexpr (i + 1 < kWideParts<Real>) wide_depths<Real, i + 1>(org, dir, corner, t);
+}
+template <class Real>
+[[gnu::noinline]] Real depth_in_double(const Vec3<Real>& org, const Vec3<Real>& dir, const Corners<Real>& corner) {
+  Wide<Real> t[kWideParts<Real>];
+  wide_depths<Real>(org, dir, corner, t);
+  return narrow<Real>(t);
+}
+
+/// An edge function of floats is within this times S (S + Z) of the true one, S the largest sheared coordinate of a corner and Z the
+/// largest depth: a sheared corner is off by u (4 (S + Z) + S), the function by 4 S of that and 4 u S^2 more; 32 u in all.
+inline constexpr float kEdgeError = 0x1p-19f;
+/// Floats do for t where S (S + Z) times the corners' range of t, over the sum of the edge functions, is at most this times t: the
+/// tangent of the angle between ray and normal, for a triangle well shaped and far away.
+inline constexpr float kSteepest = 4;
+inline constexpr float kDepthError = 0x1p-17f;
 
 /// Point where each ray meets one triangle, from either side; watertight along shared edges and at shared vertices.
 ///
-/// Shapes    a, b, c: corners in the ray's permuted axes (kx, ky, kz), lane by lane or broadcast; org likewise.
+/// Shapes    corners in the ray's permuted axes (kx, ky, kz), lane by lane or broadcast; org and dir likewise.
 /// Returns   lanes whose ray crosses the triangle, edges and corners included, with t above t_min.
-/// Accuracy  Inside or outside is decided by the exact sign of each edge function of the sheared corners: rounding is
-///           monotonic, so a difference of two rounded products has the right sign or is zero, and zeros are taken again
-///           in double. Neighbours round a shared edge alike, hence no leaks (tests/watertight_test.cpp). The hit point
-///           is within 46 eps of the farthest corner's distance of the triangle (tests/triangle_test.cpp).
-/// Source    Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013.
+/// Accuracy  Floats decide what they can; all else is taken again in double: rays within rounding of an edge, and t of triangles that
+///           are large beside it or seen at a flat angle. So inside or outside is what crossing() says, for every ray
+///           (tests/watertight_test.cpp), and t within (tests/triangle_test.cpp)
+/// Source    Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013; the filter after Shewchuk, "Adaptive
+///           Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997.
 template <class Real>
-[[gnu::always_inline]] inline Mask<Real> hit_triangle(const Vec3<Real>& org, const Shear<Real>& shear, const Real& t_min, const Vec3<Real>& a,
-                               const Vec3<Real>& b, const Vec3<Real>& c, Real& t, Vec3<Real>* weights = nullptr) {
-  const Vec3<Real> oa = a - org, ob = b - org, oc = c - org;
-  const Real ax = oa.x - shear.x * oa.z, ay = oa.y - shear.y * oa.z;
-  const Real bx = ob.x - shear.x * ob.z, by = ob.y - shear.y * ob.z;
-  const Real cx = oc.x - shear.x * oc.z, cy = oc.y - shear.y * oc.z;
-  Real u = cx * by - cy * bx;
-  Real v = ax * cy - ay * cx;
-  Real w = bx * ay - by * ax;
-  const Real o(0);
-  const Mask<Real> zero = either(either(u == o, v == o), w == o);
-  if (any(zero)) exact_edges<Real>(zero, {ax, ay, bx, by, cx, cy}, u, v, w);
-  const Mask<Real> below = either(either(u < o, v < o), w < o);
-  const Mask<Real> above = either(either(u > o, v > o), w > o);
-  Real det = (u + v) + w;
-  const Mask<Real> crosses = but_not(det != o, both(below, above));
-  if (none(crosses)) return crosses;
-  const Real ta = shear.z * oa.z, tb = shear.z * ob.z, tc = shear.z * oc.z;
-  // Seen edge on, or thin, a triangle has edge functions far smaller than the products they are differences of, and the mean
-  // of the depths below would be off by that ratio times what lies between these. Where this exceeds 4 times the greatest: double.
-  const Real size = greater(greater(greater(magnitude(ax), magnitude(ay)), greater(magnitude(bx), magnitude(by))),
-                            greater(magnitude(cx), magnitude(cy)));
-  const Real most = greater(greater(ta, tb), tc), least = lesser(lesser(ta, tb), tc);
-  const Real far = greater(magnitude(most), magnitude(least));
-  Mask<Real> thin = both(crosses, (size * size) * (most - least) > (Real(4) * far) * magnitude(det));
-  if (weights) {  // across the ray as well
-    const Real reach = greater(greater(magnitude(oa.z), magnitude(ob.z)), magnitude(oc.z));
-    thin = either(thin, both(crosses, (size * size) * size > (Real(4) * reach) * magnitude(det)));
+[[gnu::always_inline]] inline Mask<Real> hit_triangle(const Vec3<Real>& org, const Vec3<Real>& dir, const Shear<Real>& shear,
+                                                      const Real& t_min, const Corners<Real>& corner, Real& t) {
+  if constexpr (sizeof(Scalar<Real>) == sizeof(double)) {
+    const Crossing<Real> r = crossing<Real>(org, dir, corner);
+    t = r.t;
+    return both(r.inside, t > t_min);
+  } else {
+    const Vec3<Real> oa = corner.a - org, ob = corner.b - org, oc = corner.c - org;
+    const Real ax = oa.x - shear.x * oa.z, ay = oa.y - shear.y * oa.z;
+    const Real bx = ob.x - shear.x * ob.z, by = ob.y - shear.y * ob.z;
+    const Real cx = oc.x - shear.x * oc.z, cy = oc.y - shear.y * oc.z;
+    const Real u = cx * by - cy * bx, v = ax * cy - ay * cx, w = bx * ay - by * ax;
+    const Real size = greater(greater(greater(magnitude(ax), magnitude(ay)), greater(magnitude(bx), magnitude(by))),
+                              greater(magnitude(cx), magnitude(cy)));
+    const Real depth = greater(greater(magnitude(oa.z), magnitude(ob.z)), magnitude(oc.z));
+    const Real area = size * (size + depth), error = Real(kEdgeError) * area;
+    const Real least = lesser(lesser(u, v), w), most = greater(greater(u, v), w);
+    const Mask<Real> maybe = either(least + error >= Real(0), most <= error);
+    if (none(maybe)) return maybe;
+    const Real inverse = Real(1) / ((u + v) + w);
+    const Real ta = shear.z * oa.z, tb = shear.z * ob.z, tc = shear.z * oc.z;
+    t = ((u * inverse) * ta + (v * inverse) * tb) + (w * inverse) * tc;
+    const Real range = greater(greater(ta, tb), tc) - lesser(lesser(ta, tb), tc);
+    const Real spread = (area * magnitude(inverse)) * range;
+    const Mask<Real> ahead = but_not(maybe, t + Real(kDepthError) * spread < t_min);  // not surely behind
+    const Mask<Real> sure = both(either(least > error, most + error < Real(0)), spread <= Real(kSteepest) * magnitude(t));
+    const Mask<Real> unsure = but_not(ahead, sure);
+    if (any(unsure)) t = select(unsure, depth_in_double<Real>(org, dir, corner), t);
+    return both(ahead, t > t_min);  // a NaN anywhere fails here
   }
-  if (any(thin)) {
-    exact_edges<Real>(thin, {ax, ay, bx, by, cx, cy}, u, v, w);
-    det = (u + v) + w;
-  }
-  t = ((u * ta + v * tb) + w * tc) / det;
-  if (weights) *weights = {u / det, v / det, w / det};
-  return both(crosses, t > t_min);  // a NaN anywhere fails here
 }
 
 }  // namespace grelha::GRELHA_ISA

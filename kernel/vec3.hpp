@@ -48,6 +48,11 @@ template <class Real>
 inline Vec3<Real> select(const Mask<Real>& m, const Vec3<Real>& a, const Vec3<Real>& b) {
   return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)};
 }
+/// Part i of the lanes of each component, in double.
+template <int i, class Real>
+inline Vec3<Wide<Real>> widen(const Vec3<Real>& a) {
+  return {widen<i>(a.x), widen<i>(a.y), widen<i>(a.z)};
+}
 /// Largest magnitude of the components.
 template <class Real>
 inline Real largest(const Vec3<Real>& a) {

@@ -48,7 +48,7 @@ void loop(const perf::Pairs& pairs, perf::PairHits& hits) {
         Real t(0);
         Mask<Real> hit;
         if constexpr (kWatertight)
-          hit = hit_triangle<Real>(org, shear, Real(0), corner(pairs.a), corner(pairs.b), corner(pairs.c), t);
+          hit = hit_triangle<Real>(org, dir, shear, Real(0), {corner(pairs.a), corner(pairs.b), corner(pairs.c)}, t);
         else
           hit = hit_moeller_trumbore<Real>(org, dir, corner(pairs.a), corner(pairs.b), corner(pairs.c), t);
         hit = both(hit, t < best);
