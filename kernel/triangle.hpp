@@ -107,13 +107,18 @@ template <class Real>
   return narrow<Real>(t);
 }
 
-/// An edge function of floats is within this times S (S + Z) of the true one, S the largest sheared coordinate of a corner and Z the
-/// largest depth: a sheared corner is off by u (4 (S + Z) + S), the function by 4 S of that and 4 u S^2 more; 32 u in all.
+// What floats leave open, in u = 2^-24; docs/numerics.md derives each, tests/triangle_test.cpp pins them. S: the largest sheared
+// coordinate of a corner, Z: the largest depth of one. "Spread" is S (S + Z) over the sum of the edge functions, times the range
+// of the corners' t.
+
+/// Times S (S + Z): bound of an edge function's error, 32 u. It is 24 u: a sheared corner is off by u (4 (S + Z) + S).
 inline constexpr float kEdgeError = 0x1p-19f;
-/// Floats do for t where S (S + Z) times the corners' range of t, over the sum of the edge functions, is at most this times t: the
-/// tangent of the angle between ray and normal, for a triangle well shaped and far away.
-inline constexpr float kSteepest = 4;
+/// Times the spread: with kDepthRounding times t, bound of the error of t, 128 u. It is 72 u by the edges and 36 u by the mean.
 inline constexpr float kDepthError = 0x1p-17f;
+inline constexpr float kDepthRounding = 0x1p-20f;
+/// The largest spread over t for which floats do for t. It is about the tangent of the angle between ray and normal where a triangle
+/// is well shaped and far away; on what is left t is within 8 u of itself, and the point within 46 u of the farthest corner's distance.
+inline constexpr float kMostSpread = 2;
 
 /// Point where each ray meets one triangle, from either side; watertight along shared edges and at shared vertices.
 ///
@@ -121,7 +126,7 @@ inline constexpr float kDepthError = 0x1p-17f;
 /// Returns   lanes whose ray crosses the triangle, edges and corners included, with t above t_min.
 /// Accuracy  Floats decide what they can; all else is taken again in double: rays within rounding of an edge, and t of triangles that
 ///           are large beside it or seen at a flat angle. So inside or outside is what crossing() says, for every ray
-///           (tests/watertight_test.cpp), and t within (tests/triangle_test.cpp)
+///           (tests/watertight_test.cpp), and t is within 8 eps of itself, whatever the triangle's size (tests/triangle_test.cpp).
 /// Source    Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013; the filter after Shewchuk, "Adaptive
 ///           Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997.
 template <class Real>
@@ -149,8 +154,9 @@ template <class Real>
     t = ((u * inverse) * ta + (v * inverse) * tb) + (w * inverse) * tc;
     const Real range = greater(greater(ta, tb), tc) - lesser(lesser(ta, tb), tc);
     const Real spread = (area * magnitude(inverse)) * range;
-    const Mask<Real> ahead = but_not(maybe, t + Real(kDepthError) * spread < t_min);  // not surely behind
-    const Mask<Real> sure = both(either(least > error, most + error < Real(0)), spread <= Real(kSteepest) * magnitude(t));
+    const Real slack = Real(kDepthError) * spread + Real(kDepthRounding) * magnitude(t);
+    const Mask<Real> ahead = but_not(maybe, t + slack < t_min);  // mostly the triangle a ray starts on is surely behind
+    const Mask<Real> sure = both(either(least > error, most + error < Real(0)), spread <= Real(kMostSpread) * magnitude(t));
     const Mask<Real> unsure = but_not(ahead, sure);
     if (any(unsure)) t = select(unsure, depth_in_double<Real>(org, dir, corner), t);
     return both(ahead, t > t_min);  // a NaN anywhere fails here
