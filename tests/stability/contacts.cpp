@@ -1,42 +1,16 @@
 // Rays that leave surfaces: none meets what it left, none skips what is close, shadow rays tell a light before a wall from one
-// behind it. Both tracers get the same start points, those the renderer uses (kernel/surface.hpp): its rule is what is judged,
-// and each tracer's test of it.
-#define GRELHA_ISA scalar
-#include "kernel/surface.hpp"
-
+// behind it. The renderer's rule for start points (spots.hpp) is what is judged, and each tracer's test of it.
 #include <algorithm>
 #include <cmath>
 
 #include "tests/stability/rows.hpp"
+#include "tests/stability/spots.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace grelha::stability {
 namespace {
 
 using namespace test;
-
-Float3 of(const scalar::Vec3<float>& v) { return {v.x, v.y, v.z}; }
-double dot(const Float3& a, const Float3& b) { return double(a.x) * b.x + double(a.y) * b.y + double(a.z) * b.z; }
-
-/// A place on a surface as the renderer knows it, and where it lets a ray start that leaves it.
-struct Spot {
-  Float3 point, normal;
-  float away;
-  Float3 start(const Float3& d) const {
-    return of(scalar::leave({point.x, point.y, point.z}, {normal.x, normal.y, normal.z}, away, {d.x, d.y, d.z}));
-  }
-};
-
-/// Where the ray meets primitive `id` at t, which a triangle takes from the ray again.
-Spot spot(const World& world, std::uint32_t id, const Float3& org, const Float3& dir, float t = 0) {
-  const scalar::Surface<float> s = scalar::surface_of<float>(world.impl().view, id, {org.x, org.y, org.z}, {dir.x, dir.y, dir.z}, t, false);
-  return {of(s.point), of(s.normal), s.away};
-}
-
-/// Nearly along the surface: the worst to leave it by.
-Float3 flattened(Random& random, const Float3& d, const Float3& normal) { return at(d, -dot(d, normal) * (1 - random.log_in(1e-6, 1e-1)), normal); }
-/// So nearly along that rounding decides which side it points to: either answer is right.
-bool undecided(const Float3& d, const Float3& normal) { return std::abs(dot(d, normal)) < 8 * 6e-8; }
 
 /// Walls with a lid over each, `gap` away: triangle 2i the wall, 2i + 1 the lid, three times as large.
 struct Walls {

@@ -82,6 +82,7 @@ std::vector<Row> mesh_rows();     ///< meshes.cpp: nothing falls between two tri
 std::vector<Row> sphere_rows();   ///< spheres.cpp
 std::vector<Row> walk_rows();     ///< walks.cpp: acceleration loses nothing
 std::vector<Row> contact_rows();  ///< contacts.cpp: rays that leave surfaces
+std::vector<Row> floor_rows();    ///< floors.cpp: triangles far larger than what stands on them
 std::vector<Row> all_rows();
 
 /// Every way of a tracer through one trial.
