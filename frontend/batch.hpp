@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "frontend/options.hpp"
+#include "frontend/commands.hpp"
 
 namespace grelha {
 

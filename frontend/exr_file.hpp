@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "frontend/image_file.hpp"
+#include "frontend/image_style.hpp"
+#include "kernel/image.hpp"
 
 namespace grelha {
 

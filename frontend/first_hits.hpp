@@ -1,6 +1,6 @@
 #pragma once
 
-#include "frontend/options.hpp"
+#include "frontend/commands.hpp"
 
 namespace grelha {
 

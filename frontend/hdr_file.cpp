@@ -1,11 +1,10 @@
-// Radiance's format: three mantissas of eight bits that share an exponent. Ward, "Real Pixels",
-// Graphics Gems II (1991).
+#include "frontend/hdr_file.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
-
-#include "frontend/image_file.hpp"
+#include <vector>
 
 namespace grelha {
 namespace {

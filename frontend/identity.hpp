@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "frontend/options.hpp"
+#include "frontend/commands.hpp"
 #include "frontend/scene_file.hpp"
 
 namespace grelha {

@@ -2,6 +2,7 @@
 
 #include "frontend/atomic_file.hpp"
 #include "frontend/exr_file.hpp"
+#include "frontend/hdr_file.hpp"
 #include "frontend/parse_error.hpp"
 #include "frontend/png_chunks.hpp"
 

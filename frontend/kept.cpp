@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "frontend/atomic_file.hpp"
+#include "frontend/image_file.hpp"
 #include "frontend/partial.hpp"
 #include "frontend/place.hpp"
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-#include "frontend/options.hpp"
+#include "frontend/commands.hpp"
 
 namespace grelha {
 

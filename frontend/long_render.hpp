@@ -5,7 +5,7 @@
 #include <string>
 
 #include "frontend/checkpoint.hpp"
-#include "frontend/options.hpp"
+#include "frontend/commands.hpp"
 #include "frontend/ranks.hpp"
 
 namespace grelha {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "frontend/options.hpp"
+#include "frontend/commands.hpp"
 
 namespace grelha {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 // Options that contradict each other, or say something about nothing. Each check throws a UsageError that names them.
 
-#include "frontend/options.hpp"
+#include "frontend/commands.hpp"
 
 namespace grelha {
 

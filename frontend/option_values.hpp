@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "frontend/nearest.hpp"
-#include "frontend/options.hpp"
+#include "frontend/commands.hpp"
 
 namespace grelha::option_values {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "frontend/image_file.hpp"
+#include "frontend/image_style.hpp"
 
 namespace grelha {
 

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "frontend/options.hpp"
+#include "frontend/commands.hpp"
 #include "frontend/report.hpp"
 #include "frontend/scene_file.hpp"
 #include "kernel/render.hpp"

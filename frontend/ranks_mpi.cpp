@@ -14,7 +14,7 @@
 #include <thread>
 
 #include "frontend/digest.hpp"
-#include "frontend/options.hpp"
+#include "frontend/commands.hpp"
 #include "frontend/ranks.hpp"
 
 namespace grelha {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "frontend/options.hpp"
+#include "frontend/commands.hpp"
 #include "frontend/scene_file.hpp"
 #include "kernel/render.hpp"
 

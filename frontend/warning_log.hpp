@@ -5,7 +5,7 @@
 #include <iostream>
 #include <string>
 
-#include "frontend/options.hpp"
+#include "frontend/commands.hpp"
 
 namespace grelha {
 

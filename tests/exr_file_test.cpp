@@ -1,6 +1,7 @@
 // OpenEXR. A part of image_file_test.
 #include "frontend/exr_file.hpp"
 
+#include "frontend/image_file.hpp"
 #include "frontend/parse_error.hpp"
 #include "tests/support/temporary_folder.hpp"
 

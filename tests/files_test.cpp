@@ -1,5 +1,6 @@
 // What the program may write over, and what it may not, however it is called.
 #include "frontend/first_hits.hpp"
+#include "frontend/image_file.hpp"
 #include "frontend/memory_limit.hpp"
 #include "frontend/place.hpp"
 #include "kernel/query.hpp"

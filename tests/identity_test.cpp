@@ -4,7 +4,7 @@
 
 #include "frontend/identity.hpp"
 #include "frontend/nff_reader.hpp"
-#include "frontend/options.hpp"
+#include "frontend/commands.hpp"
 #include "scenes/generators.hpp"
 
 #include <gtest/gtest.h>

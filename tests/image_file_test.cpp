@@ -1,6 +1,7 @@
 #include "frontend/image_file.hpp"
 
 #include "frontend/atomic_file.hpp"
+#include "frontend/hdr_file.hpp"
 #include "frontend/parse_error.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -1,6 +1,7 @@
 #include "frontend/options.hpp"
 
 #include "frontend/batch.hpp"
+#include "frontend/commands.hpp"
 #include "frontend/help.hpp"
 #include "frontend/nearest.hpp"
 #include "tests/support/parsing.hpp"

@@ -5,7 +5,7 @@
 
 #include "frontend/digest.hpp"
 #include "frontend/merge.hpp"
-#include "frontend/options.hpp"
+#include "frontend/commands.hpp"
 #include "frontend/parse_error.hpp"
 #include "frontend/partial.hpp"
 #include "kernel/point_tracer.hpp"
