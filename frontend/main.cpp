@@ -93,12 +93,19 @@ void tell(const std::string& text, bool results_on_stdout) {
   else print(text);
 }
 
+/// How a build for one processor gets the other copies of the kernel.
+#ifdef GRELHA_NATIVE
+constexpr const char* kMoreIsas = "; `./run render --isa ...` or cmake -D GRELHA_ISAS=all adds it";
+#else
+constexpr const char* kMoreIsas = "";
+#endif
+
 /// Asks before the scene is read: a large one takes seconds to read.
 void want_isa(std::string_view name) {
   if (name == "best") return;
   for (const Isa& isa : isas()) {
     if (isa.name != name) continue;
-    if (!isa.compiled) throw UsageError("this build has no " + std::string(name));
+    if (!isa.compiled) throw UsageError("this build has no " + std::string(name) + kMoreIsas);
     if (!isa.runs_here) throw UsageError("this processor has no " + std::string(name));
     return;
   }
