@@ -35,6 +35,8 @@ inline constexpr int kClasses = 2;
     }
     d = normalize(d);
     store(b.ox + i, org.x), store(b.oy + i, org.y), store(b.oz + i, org.z);
+    if (work.in_double)
+      for (float* const low : {b.ox_low, b.oy_low, b.oz_low}) store(low + i, Lanes(0));
     store(b.dx + i, d.x), store(b.dy + i, d.y), store(b.dz + i, d.z);
     store(b.wr + i, one), store(b.wg + i, one), store(b.wb + i, one);
     store_words(b.depth + i, zero + 1u), store_words(b.path + i, zero);
@@ -42,7 +44,7 @@ inline constexpr int kClasses = 2;
 }
 
 /// Takes the youngest rays off the stack into the batch, class by class, in their order; ends[c] is where class c ends.
-inline void pop(RayStack& stack, Batch& b, int most, bool sampled, bool shares, int (&ends)[kClasses]) {
+inline void pop(RayStack& stack, Batch& b, int most, bool sampled, bool shares, bool in_double, int (&ends)[kClasses]) {
   const int n = stack.size < most ? stack.size : most, top = stack.size;
   stack.size -= n;
   int to = 0;
@@ -56,6 +58,7 @@ inline void pop(RayStack& stack, Batch& b, int most, bool sampled, bool shares, 
       const auto move = [&](float* into, const float* of) { here.store(into + to, load<Lanes>(of + from)); };
       const auto move_words = [&](std::uint32_t* into, const std::uint32_t* of) { here.store(into + to, load_words<Lanes>(of + from)); };
       move(b.ox, stack.ox), move(b.oy, stack.oy), move(b.oz, stack.oz);
+      if (in_double) move(b.ox_low, stack.ox_low), move(b.oy_low, stack.oy_low), move(b.oz_low, stack.oz_low);
       move(b.dx, stack.dx), move(b.dy, stack.dy), move(b.dz, stack.dz);
       move(b.wr, stack.wr), move(b.wg, stack.wg), move(b.wb, stack.wb);
       if (shares) move(b.share, stack.share);
@@ -75,7 +78,7 @@ inline void follow(const Shader& s, RayStack& stack, int count) {
   int ends[kClasses];
   while (stack.size > 0) {
     enter(s.work, Phase::children);
-    pop(stack, s.b, s.work.take, s.work.plan.on, keeps_shares(s), ends);
+    pop(stack, s.b, s.work.take, s.work.plan.on, keeps_shares(s), s.work.in_double != nullptr, ends);
     shade_batch(s, stack, ends, kClasses, Phase::bounce);
   }
   enter(s.work, Phase::camera);

@@ -449,6 +449,11 @@ inline Real take(const float* p) {
 #endif
 }
 
+template <class Real>
+inline Real take(const double* p) {
+  return load<Real>(p);
+}
+
 /// The greatest float not above, and the least not below, a number; NaN for NaN.
 inline float not_above(double a) {
   const float r = static_cast<float>(a);

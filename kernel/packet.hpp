@@ -30,9 +30,10 @@ struct Packet {
 #ifdef GRELHA_DOUBLE
   // What is tested: rays as they came, with t from their own origins. What is above is for the grids then, org, t_min and best those
   // of rays brought near; t_min is not above the true one, and best not below.
-  alignas(64) float from[3][kPacket];
+  alignas(64) double from[3][kPacket];
   alignas(64) float after[kPacket];
   alignas(64) double nearest[kPacket];
+  const float* low[3] = {};  ///< what is to be added to the origins as they came, or null
 #endif
   bool moved = false;
   int group_axis[kPacket / kWidth<Lanes>];  ///< the axis all rays of a group share, or -1
@@ -42,7 +43,7 @@ struct Packet {
 
 /// What tests take of ray i.
 #ifdef GRELHA_DOUBLE
-inline const float* tested_org(const Packet& p, int axis) { return p.from[axis]; }
+inline const double* tested_org(const Packet& p, int axis) { return p.from[axis]; }
 inline const float* tested_t_min(const Packet& p) { return p.after; }
 inline const double* tested_best(const Packet& p) { return p.nearest; }
 inline void set_best(Packet& p, int i, double t) {
@@ -118,7 +119,11 @@ inline void prepare(Packet& p, bool any_triangles) {
   }
 #ifdef GRELHA_DOUBLE
   p.moved = false;
-  __builtin_memcpy(p.from, p.org, sizeof p.from), __builtin_memcpy(p.after, p.t_min, sizeof p.after);
+  __builtin_memcpy(p.after, p.t_min, sizeof p.after);
+  for (int a = 0; a < 3; ++a) {
+    for (int i = 0; i < p.groups * w; ++i) p.from[a][i] = p.org[a][i];
+    for (int i = 0; i < p.size && p.low[a]; ++i) p.from[a][i] += p.low[a][i];
+  }
   for (int i = 0; i < p.groups * w; ++i) p.nearest[i] = p.best[i];
 #endif
 }

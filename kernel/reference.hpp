@@ -34,7 +34,7 @@ inline bool take(Single& r, bool hit, Number t, std::uint32_t id) {
 
 template <bool kAny>
 inline bool reference_cell(Single& r, const CellLists& lists, std::size_t cell, RayMailbox* box, Counters& n) {
-  const float(&from)[3] = tested_org(r);
+  const auto& from = tested_org(r);
   const Vec3<Number> org{from[0], from[1], from[2]}, dir{r.dir[0], r.dir[1], r.dir[2]};
   if (lists.triangle_first) {
     const int k = r.axis, kx = k == 2 ? 0 : k + 1, ky = k == 0 ? 2 : k - 1;

@@ -91,6 +91,13 @@ inline unsigned lanes_of(int first, int count) {
   return left >= kWidth<Lanes> ? ~0u >> (32 - kWidth<Lanes>) : (1u << left) - 1u;
 }
 
+/// Surfaces of rays i, i + 1, ..., which were traced in double.
+[[gnu::noinline]] inline Surface<Lanes> surface_in_double(const Shader& s, int i, const Words<Lanes>& id, const Vec3<Lanes>& org,
+                                                          const Vec3<Lanes>& dir, const Lanes& t) {
+  const ExactStart<Lanes> start{load3(s.b.ox_low, s.b.oy_low, s.b.oz_low, i), s.b.whole + i};
+  return surface_of<Lanes>(s.scene, id, org, dir, t, s.shading.smooth, start);
+}
+
 /// Fills the hit arrays from rays [0, count); misses send the background. Returns the number of hits.
 inline int find_surfaces(const Shader& s, int count) {
   Batch& b = s.b;
@@ -104,11 +111,15 @@ inline int find_surfaces(const Shader& s, int count) {
     const Chosen hit(in & ~missed);
     if (hit.count() == 0) continue;
     const Vec3<Lanes> d = load3(b.dx, b.dy, b.dz, i);
-    const Surface<Lanes> f = surface_of<Lanes>(s.scene, id, load3(b.ox, b.oy, b.oz, i), d, load<Lanes>(b.t + i), s.shading.smooth);
+    const Vec3<Lanes> org = load3(b.ox, b.oy, b.oz, i);
+    const Lanes t = load<Lanes>(b.t + i);
+    const Surface<Lanes> f =
+        s.work.in_double ? surface_in_double(s, i, id, org, d, t) : surface_of<Lanes>(s.scene, id, org, d, t, s.shading.smooth);
     const Mask<Lanes> inside = dot(d, f.normal) > Lanes(0);
     const Lanes side = select(inside, Lanes(-1), Lanes(1));
     const int h = hits;
     hit.store(b.px + h, b.py + h, b.pz + h, f.point);
+    if (s.work.in_double) hit.store(b.px_low + h, b.py_low + h, b.pz_low + h, f.low);
     hit.store(b.gx + h, b.gy + h, b.gz + h, side * f.normal);
     hit.store(b.nx + h, b.ny + h, b.nz + h, side * f.shading);
     hit.store(b.vx + h, b.vy + h, b.vz + h, normalize(zero - d));
@@ -197,7 +208,8 @@ inline void light_up(const Shader& s, int n) {
   if (n == 0) return;
   for (int i = 0; i < n; ++i) b.lt_min[i] = 0, b.lt[i] = 1;
   s.rays.shadow += static_cast<unsigned>(n);
-  const RayArrays rays{b.lox, b.loy, b.loz, b.ldx, b.ldy, b.ldz, b.lt_min, b.lt, b.lid};
+  RayArrays rays{b.lox, b.loy, b.loz, b.ldx, b.ldy, b.ldz, b.lt_min, b.lt, b.lid};
+  if (s.work.in_double) rays.low[0] = b.lox_low, rays.low[1] = b.loy_low, rays.low[2] = b.loz_low;
   enter(s.work, Phase::shadow, rays, n);
   trace<true>(s, rays, n, Phase::shadow);
   enter(s.work, Phase::light);
@@ -214,7 +226,13 @@ inline int send_to_light(const Shader& s, const HitLanes<kOne>& at, const Vec3<L
   Batch& b = s.b;
   const Lanes o(0);
   const Vec3<Lanes> g = at(b.gx, b.gy, b.gz), normal = at(b.nx, b.ny, b.nz);
-  const Vec3<Lanes> org = at(b.px, b.py, b.pz) + at(b.away) * g;  // the lit side is the viewer's side
+  Vec3<Lanes> org = at(b.px, b.py, b.pz) + at(b.away) * g;  // the lit side is the viewer's side
+  Vec3<Lanes> low{o, o, o};
+  if (s.work.in_double) {
+    const TwoFloats<Lanes> p = moved_exactly<Lanes>({at(b.px, b.py, b.pz), at(b.px_low, b.py_low, b.pz_low)}, g, at(b.away));
+    org = p.high;
+    low = p.low;
+  }
   const Vec3<Lanes> dir = to - org, l = normalize(dir);
   const Lanes nl = dot(normal, l);
   const Chosen lit(bits(both(nl > o, dot(g, l) > o)) & lanes);
@@ -228,6 +246,7 @@ inline int send_to_light(const Shader& s, const HitLanes<kOne>& at, const Vec3<L
   }
   c = Vec3<Lanes>{Lanes(color[0] * share), Lanes(color[1] * share), Lanes(color[2] * share)} * (at(b.hr, b.hg, b.hb) * c);
   lit.store(b.lox + n, b.loy + n, b.loz + n, org);
+  if (s.work.in_double) lit.store(b.lox_low + n, b.loy_low + n, b.loz_low + n, low);
   lit.store(b.ldx + n, b.ldy + n, b.ldz + n, dir);
   lit.store(b.lr + n, b.lg + n, b.lb + n, c);
   lit.store(b.light_pixel + n, at(b.hit_pixel));
@@ -270,8 +289,16 @@ inline void push(const Shader& s, RayStack& stack, int i, const Chosen& chosen, 
                  std::uint32_t branch) {
   Batch& b = s.b;
   const int to = stack.size;
-  const Vec3<Lanes> org = leave(load3(b.px, b.py, b.pz, i), load3(b.gx, b.gy, b.gz, i), load<Lanes>(b.away + i), dir);
-  chosen.store(stack.ox + to, stack.oy + to, stack.oz + to, org);
+  const Vec3<Lanes> point = load3(b.px, b.py, b.pz, i), g = load3(b.gx, b.gy, b.gz, i);
+  const Lanes away = load<Lanes>(b.away + i);
+  if (s.work.in_double) {
+    const Lanes by = select(dot(dir, g) < Lanes(0), Lanes(0) - away, away);
+    const TwoFloats<Lanes> p = moved_exactly<Lanes>({point, load3(b.px_low, b.py_low, b.pz_low, i)}, g, by);
+    chosen.store(stack.ox + to, stack.oy + to, stack.oz + to, p.high);
+    chosen.store(stack.ox_low + to, stack.oy_low + to, stack.oz_low + to, p.low);
+  } else {
+    chosen.store(stack.ox + to, stack.oy + to, stack.oz + to, leave(point, g, away, dir));
+  }
   chosen.store(stack.dx + to, stack.dy + to, stack.dz + to, dir);
   chosen.store(stack.wr + to, stack.wg + to, stack.wb + to, carried.weight);
   if (keeps_shares(s)) chosen.store(stack.share + to, carried.share);
@@ -395,7 +422,13 @@ inline void shade_batch(const Shader& s, RayStack& stack, const int* ends, int r
   const int count = ends[runs - 1];
   for (int i = 0; i < count; ++i) b.t_min[i] = 0, b.t[i] = kInfinity;
   for (int k = 0, at = 0; k < runs; at = ends[k++]) {
-    const RayArrays rays{b.ox + at, b.oy + at, b.oz + at, b.dx + at, b.dy + at, b.dz + at, b.t_min + at, b.t + at, b.id + at};
+    RayArrays rays{b.ox + at, b.oy + at, b.oz + at, b.dx + at, b.dy + at, b.dz + at, b.t_min + at, b.t + at, b.id + at};
+    if (s.work.in_double) {
+      rays.low[0] = b.ox_low + at;
+      rays.low[1] = b.oy_low + at;
+      rays.low[2] = b.oz_low + at;
+      rays.whole = b.whole + at;
+    }
     enter(s.work, phase, rays, ends[k] - at);
     trace<false>(s, rays, ends[k] - at, phase);
   }

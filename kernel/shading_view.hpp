@@ -80,6 +80,7 @@ inline constexpr std::uint32_t kRefracted = 1u << 31;
 /// Rays waiting for their turn, last in first out. Arrays of `capacity` floats each.
 struct RayStack {
   float *ox, *oy, *oz, *dx, *dy, *dz, *wr, *wg, *wb;
+  float *ox_low, *oy_low, *oz_low;  ///< only when what traces is in double: origins are sums of two floats
   float* share;                                  ///< only where keeps_shares()
   std::uint32_t *pixel, *depth, *sample, *path;  ///< the last two: only when the plan is on
   int size, capacity;
@@ -92,6 +93,11 @@ struct Batch {
   alignas(64) float wr[kBatchRow], wg[kBatchRow], wb[kBatchRow], share[kBatchRow];
   std::uint32_t id[kBatchRow], pixel[kBatchRow], depth[kBatchRow];
   std::uint32_t sample[kBatchRow], path[kBatchRow];  ///< of its pixel; which bounces led here (0: none)
+  // of rays traced in double: what their origins have besides, and t
+  alignas(64) float ox_low[kBatchRow], oy_low[kBatchRow], oz_low[kBatchRow];
+  alignas(64) float px_low[kBatchRow], py_low[kBatchRow], pz_low[kBatchRow];
+  alignas(64) float lox_low[kBatchRow], loy_low[kBatchRow], loz_low[kBatchRow];
+  alignas(64) double whole[kBatchRow];
   // what they met, misses left out
   alignas(64) float px[kBatchRow], py[kBatchRow], pz[kBatchRow];     ///< point on the surface
   alignas(64) float gx[kBatchRow], gy[kBatchRow], gz[kBatchRow];     ///< geometric normal, unit, towards the viewer

@@ -15,14 +15,15 @@ struct Single {
   float inv[3];  ///< inverse of the direction; this and what follows with triangles only
   int near[3];   ///< the side of a box that the ray meets first, along each axis; the other is 3 places on or back
 #ifdef GRELHA_DOUBLE
-  float from[3], after;   ///< as in Packet
+  double from[3];         ///< these as in Packet
+  float after;
   double nearest, shift;  ///< shift: 0 for rays not moved
 #endif
 };
 
 /// What tests take of a ray.
 #ifdef GRELHA_DOUBLE
-inline const float (&tested_org(const Single& r))[3] { return r.from; }
+inline const double (&tested_org(const Single& r))[3] { return r.from; }
 inline float tested_t_min(const Single& r) { return r.after; }
 inline double tested_best(const Single& r) { return r.nearest; }
 inline void set_best(Single& r, double t) { r.nearest = t, r.best = not_below(t - r.shift); }
@@ -104,11 +105,14 @@ inline unsigned blocks_between(std::uint32_t at, std::uint32_t first, std::uint3
   return end - at < kBlock ? from & ~(kAll << (end - at)) & kAll : from & kAll;
 }
 
-inline Vec3<ExactBlock> spread(const float (&v)[3]) { return {ExactBlock(v[0]), ExactBlock(v[1]), ExactBlock(v[2])}; }
+template <class Number>
+inline Vec3<ExactBlock> spread(const Number (&v)[3]) {
+  return {ExactBlock(v[0]), ExactBlock(v[1]), ExactBlock(v[2])};
+}
 
 template <bool kAny>
 inline bool test_block(Single& r, const TriangleBlock& block, Counters& n) {
-  const float(&from)[3] = tested_org(r);
+  const auto& from = tested_org(r);
   const int k = r.axis, kx = k == 2 ? 0 : k + 1, ky = k == 0 ? 2 : k - 1;
   const Vec3<ExactBlock> org{ExactBlock(from[kx]), ExactBlock(from[ky]), ExactBlock(from[k])};
   const Vec3<ExactBlock> dir{ExactBlock(r.dir[kx]), ExactBlock(r.dir[ky]), ExactBlock(r.dir[k])};

@@ -210,19 +210,22 @@ inline void trace(const SceneView& scene, const RayArrays& rays, int count, cons
     __builtin_memcpy(p.org[2], rays.oz + first, bytes), __builtin_memcpy(p.dir[0], rays.dx + first, bytes);
     __builtin_memcpy(p.dir[1], rays.dy + first, bytes), __builtin_memcpy(p.dir[2], rays.dz + first, bytes);
     __builtin_memcpy(p.t_min, rays.t_min + first, bytes), __builtin_memcpy(p.best, rays.t + first, bytes);
+#ifdef GRELHA_DOUBLE
+    for (int a = 0; a < 3; ++a) p.low[a] = rays.low[a] ? rays.low[a] + first : nullptr;
+#endif
     trace_packet<kAny>(scene, p, options, n);
 #ifdef GRELHA_DOUBLE
-    for (int i = 0; i < p.size; ++i) rays.t[first + i] = static_cast<float>(p.moved ? p.nearest[i] - p.shift[i] : p.nearest[i]);
+    for (int i = 0; i < p.size; ++i) rays.t[first + i] = static_cast<float>(p.nearest[i]);
 #else
     __builtin_memcpy(rays.t + first, p.best, bytes);
 #endif
     __builtin_memcpy(rays.id + first, p.id, bytes);
     if (rays.whole)
       for (int i = 0; i < p.size; ++i) rays.whole[first + i] = whole_t(p, i);
-    if (!p.moved) continue;
+    if (!p.moved || kDouble) continue;
     __builtin_memcpy(rays.ox + first, p.org[0], bytes), __builtin_memcpy(rays.oy + first, p.org[1], bytes);
     __builtin_memcpy(rays.oz + first, p.org[2], bytes), __builtin_memcpy(rays.t_min + first, p.t_min, bytes);
-    if (!kDouble && rays.shift) __builtin_memcpy(rays.shift + first, p.shift, bytes);
+    if (rays.shift) __builtin_memcpy(rays.shift + first, p.shift, bytes);
   }
 }
 

@@ -53,6 +53,11 @@ template <int i, class Real>
 inline Vec3<Wide<Real>> widen(const Vec3<Real>& a) {
   return {widen<i>(a.x), widen<i>(a.y), widen<i>(a.z)};
 }
+/// Part i of doubles as sums of two floats, the second what rounding took from the first: 48 bits.
+template <int i, class Real>
+inline Vec3<Wide<Real>> widen(const Vec3<Real>& a, const Vec3<Real>& low) {
+  return widen<i>(a) + widen<i>(low);
+}
 /// Largest magnitude of the components.
 template <class Real>
 inline Real largest(const Vec3<Real>& a) {

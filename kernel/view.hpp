@@ -89,6 +89,7 @@ struct RayArrays {
   std::uint32_t* id;        ///< out; kNoPrimitive: nothing
   float* shift = nullptr;   ///< out, or null; of copies in single
   double* whole = nullptr;  ///< out, or null: t of the rays as they came, as precise as it was computed
+  const float* low[3] = {};  ///< null, or what is to be added to origins, of copies in double; these change no origin
 };
 
 struct TraceOptions {

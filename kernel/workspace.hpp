@@ -64,7 +64,7 @@ class Workspace {
     for (std::size_t i = 0; i < kStackFloats; ++i) f[i] = floats_.data() + i * static_cast<std::size_t>(capacity_);
     std::uint32_t* w[kStackWords];
     for (std::size_t i = 0; i < kStackWords; ++i) w[i] = words_.data() + i * static_cast<std::size_t>(capacity_);
-    const RayStack stack{f[0], f[1], f[2], f[3], f[4], f[5], f[6], f[7], f[8], f[9], w[0], w[1], w[2], w[3], 0, capacity_};
+    const RayStack stack{f[0], f[1], f[2], f[3], f[4], f[5], f[6], f[7], f[8], f[9], f[10], f[11], f[12], w[0], w[1], w[2], w[3], 0, capacity_};
     const float most = std::min(1048576.f, kMostLight / static_cast<float>(plan_.samples));
     if (options.phases) clock_.go_on(Phase::camera);
     return {batch_.get(), stack, sums_.data(), options.depth, options.packet, static_cast<float>(options.min_weight), take_, options.mailbox, first_pixel, most, plan_,
@@ -79,7 +79,7 @@ class Workspace {
   std::vector<std::uint32_t>& pixels() { return pixels_; }
 
  private:
-  static constexpr std::size_t kStackFloats = 10, kStackWords = 4;  ///< of a ray that waits, see RayStack
+  static constexpr std::size_t kStackFloats = 13, kStackWords = 4;  ///< of a ray that waits, see RayStack
   static int take_of(int depth, int gloss_rays) { return std::clamp(65536 / (depth * (gloss_rays + 1)), 16, kBatch); }
   static int capacity_of(int depth, int gloss_rays) {
     return (gloss_rays + 2) * (kBatch + take_of(depth, gloss_rays) * depth) + kCacheLine;  // the line: see kBatchRow

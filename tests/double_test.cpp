@@ -2,6 +2,7 @@
 // promises, and pictures made of them.
 #include <bit>
 #include <deque>
+#include <functional>
 
 #include "tests/support/closed.hpp"
 #include "tests/support/oracle.hpp"
@@ -188,6 +189,48 @@ TEST_P(Double, MakesOnePicture) {
     RenderOptions o;
     o.isa = variant().name, o.packet = packet;
     EXPECT_EQ(differing(picture(world, camera, o), wanted), 0u) << packet;
+  }
+}
+
+/// A clear sheet, ball or plane a float's last place before a shining one: the refracted ray starts between them. Single starts it four
+/// of its places on, behind what shines. (Single cannot tell which is nearer either: the clear one has the lower id.)
+TEST_P(Double, StartsBetweenWhatIsALastPlaceApart) {
+  const float inner = std::nextafter(1.f, 0.f);
+  const auto sheets = [&](Scene& s) {
+    add_triangle(s, {-50, 1, -50}, {50, 1, -50}, {0, 1, 50}, 0);
+    add_triangle(s, {-50, inner, -50}, {50, inner, -50}, {0, inner, 50}, 1);
+  };
+  const auto balls = [&](Scene& s) {
+    s.geometry.spheres.add({0, 0, 0}, 1, 0);
+    s.geometry.spheres.add({0, 0, 0}, inner, 1);
+  };
+  const auto planes = [&](Scene& s) {
+    s.geometry.planes.add({0, 1, 0}, {0, 1, 0}, 0);
+    s.geometry.planes.add({0, inner, 0}, {0, 1, 0}, 1);
+  };
+  for (const auto& add : {std::function<void(Scene&)>(sheets), std::function<void(Scene&)>(balls), std::function<void(Scene&)>(planes)}) {
+    Scene scene = empty_scene();
+    scene.materials[0].transmission = 1;
+    scene.materials[0].ior = 1;
+    scene.materials.emplace_back().emission = {1, 1, 1};
+    add(scene);
+    const World world(scene, {});
+    Camera camera;
+    camera.eye = {.1f, 4, 0};
+    camera.at = {0, 0, 0};
+    camera.up = {0, 0, 1};
+    camera.angle_deg = 10;
+    camera.width = camera.height = 32;
+    RenderOptions options;
+    options.isa = variant().name;
+    options.depth = 2;
+    const auto shining = [](const Image& image) {
+      std::size_t n = 0;
+      for (const float c : image.rgb) n += c > .99f;
+      return n;
+    };
+    EXPECT_LT(shining(picture(world, camera, options, Precision::kSingle)), 3u * 32 * 32 * 3 / 4);
+    EXPECT_EQ(shining(picture(world, camera, options)), 3u * 32 * 32);
   }
 }
 

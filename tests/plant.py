@@ -49,8 +49,12 @@ FAULTS = [
     Fault("a mailbox that is kept for the next packet", "kernel/march.hpp", "if (use_mailbox) mailbox.clear();", "", "walk", "Isa/Walk.*"),
     Fault("a sphere by the textbook", "kernel/sphere.hpp", "const Real inside = rr - dot(gap, gap);",
           "const Real inside = middle * middle / inv_dd - (dot(to_center, to_center) - rr);", "stability", ROW + "specks_in_a_large_scene"),
-    Fault("epsilon 1e-4 instead of bounds", "kernel/surface.hpp", "Surface<Real> s{point, n, n, Real(16 * kEps) * (largest(e1) + largest(e2)) + Real(4 * kEps) * largest(point),",
+    Fault("epsilon 1e-4 instead of bounds", "kernel/surface.hpp", "Surface<Real> s{point, n, n, Real(4 * kEps) * largest(point) + Real(kWideEps) * corners,",
           "Surface<Real> s{point, n, n, Real(1e-4f),", "stability", ROW + "lost_contacts:" + ROW + "self_hits_of_triangles"),
+    Fault("no filter of edges", "kernel/triangle.hpp", "kEdgeError = 0x1p-19f", "kEdgeError = 0", "watertight", "*"),
+    Fault("floats for any depth", "kernel/triangle.hpp", "kMostSpread = 2;", "kMostSpread = 1e30f;", "triangle",
+          "TriangleOracle.FloorsOfAnySizeAreMetWhereTheyAre"),
+    Fault("behind without slack", "kernel/triangle.hpp", "kDepthError = 0x1p-17f", "kDepthError = 0", "triangle", "*"),
     Fault("ties by arrival", "kernel/packet.hpp", "if ((ties >> k & 1) && (held == kNoPrimitive || held <= id)) continue;",
           "if (ties >> k & 1) continue;", "walk", "Isa/Ties.*"),
 ]
