@@ -353,8 +353,8 @@ std::vector<Row> floor_rows() {
   const char* const close = "t within 16u of long double";
   const char* const exact = "brute force in long double from the exact point";
   return {
-      {"floor of half side 1e1", "two triangles, level and tilted; eye 1 to 2 above, all angles",
-       close, floors<1>},
+      {"floor of half side 1e1",
+       "two triangles, level and tilted; eye 1 to 2 above, all angles; t to 16u", close, floors<1>},
       {"floor of half side 1e3", "the same", close, floors<3>},
       {"floor of half side 1e4", "the same", close, floors<4>},
       {"floor of half side 1e5", "the same", close, floors<5>},
