@@ -46,10 +46,13 @@ std::int64_t write_to(exr_const_context_t, void* user, const void* from, std::ui
   return std::int64_t(size);
 }
 
+/// The library's words quote names from the file, whatever bytes they are.
 void complain(exr_const_context_t context, exr_result_t, const char* message) {
   if (!context) return;
   std::string& error = memory_of(context).error;
-  if (error.empty()) error = message;
+  if (!error.empty()) return;
+  error = message;
+  std::replace_if(error.begin(), error.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
 }
 
 exr_context_initializer_t initializer(ExrMemory& memory) {
