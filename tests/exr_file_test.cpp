@@ -3,10 +3,13 @@
 
 #include "frontend/image_file.hpp"
 #include "frontend/parse_error.hpp"
+#include "kernel/rays.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
 
+#include <bit>
+#include <cstdint>
 #include <cstring>
 #include <functional>
 #include <limits>
@@ -39,6 +42,68 @@ TEST(Exr, ComesBackBitForBit) {
             std::string::npos);
   EXPECT_EQ(folder.read("a.exr"), encode_exr(image, {}, {{"Software", "grelha"}}))
       << "the same bytes each time";
+}
+
+/// A block that would not shrink is stored as it is: row by row, the channels by name, each value
+/// little endian.
+TEST(Exr, HoldsLayersAsChannelsByName) {
+  Image image(2, 1);
+  image.rgb = {1.37f, 2.91f, 3.53f, 4.19f, 5.71f, 6.83f};
+  const Layers layers{{7.13f, 8.39f},
+                      {.313f, .517f, .719f, -.911f, -.127f, -.229f},
+                      {0x89abcdef, kNoPrimitive - 0x13579b}};
+  const std::string bytes = encode_exr(image, layers);
+  std::string wanted;
+  const auto append = [&wanted](auto value) {
+    const auto bits = std::bit_cast<std::uint32_t>(value);
+    for (int shift = 0; shift < 32; shift += 8) wanted += char(bits >> shift & 0xff);
+  };
+  for (const std::size_t colour : {2, 1, 0}) {  // B, G, R
+    append(image.rgb[colour]);
+    append(image.rgb[3 + colour]);
+  }
+  for (const float depth : layers.depth) append(depth);
+  for (const std::uint32_t id : layers.id) append(id);
+  for (const std::size_t axis : {0, 1, 2}) {
+    append(layers.normal[axis]);
+    append(layers.normal[3 + axis]);
+  }
+  EXPECT_TRUE(bytes.ends_with(wanted));
+  const std::string names[] = {"B", "G", "R", "Z", "id", "normal.X", "normal.Y", "normal.Z"};
+  std::size_t at = 0;
+  for (const std::string& name : names) {
+    const char type = name == "id" ? 0 : 2;  // whole numbers, floats
+    at = bytes.find(name + '\0' + type + std::string(3, '\0'), at);
+    ASSERT_NE(at, bytes.npos) << name;
+  }
+}
+
+/// small.exr, written again by OpenImageIO.
+TEST(Exr, FilesOfAnotherProgramHoldTheSamePicture) {
+  const std::string folder = GRELHA_SOURCE_DIR "/tests/fuzz/corpus/picture/";
+  const Image small = read_image(folder + "small.exr");
+  for (const char* name : {"none", "rle", "zips", "piz", "tiled"})
+    EXPECT_EQ(read_image(folder + name + ".exr").rgb, small.rgb) << name;
+  const Image grey = read_image(folder + "grey-half.exr");
+  ASSERT_EQ(grey.rgb.size(), small.rgb.size());
+  for (std::size_t i = 0; i < grey.rgb.size(); ++i) {
+    const float red = small.rgb[i - i % 3];
+    EXPECT_NEAR(grey.rgb[i], red, red * 0x1p-11f) << "half a step of eleven bits";
+  }
+}
+
+/// windows.exr shows 9 x 9 pixels from (-1, -1): small.exr and black around it.
+TEST(Exr, WhatLiesOutsideTheDataIsBlack) {
+  const std::string folder = GRELHA_SOURCE_DIR "/tests/fuzz/corpus/picture/";
+  const Image small = read_image(folder + "small.exr"), shown = read_image(folder + "windows.exr");
+  ASSERT_EQ(shown.width, 9);
+  ASSERT_EQ(shown.height, 9);
+  for (int y = 0; y < shown.height; ++y)
+    for (int x = 0; x < shown.width; ++x) {
+      const bool inside = x >= 1 && x <= small.width && y >= 1 && y <= small.height;
+      for (int c = 0; c < 3; ++c)
+        EXPECT_EQ(shown.row(y)[3 * x + c], inside ? small.row(y - 1)[3 * (x - 1) + c] : 0);
+    }
 }
 
 TEST(Exr, WrongFilesAreRefusedAndTakeNoMemory) {
