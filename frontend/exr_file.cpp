@@ -131,10 +131,22 @@ void write_head(exr_context_t file, const Image& image, const std::vector<ExrCha
   want_done(exr_write_header(file));
 }
 
+/// Readers take a block of its full size for one that is not packed; OpenEXR 3.1 writes packed
+/// bytes too when they are just as many. Its own routine stands in encoding_user_data.
+exr_result_t compress(exr_encode_pipeline_t* pipeline) {
+  using Routine = decltype(pipeline->compress_fn);
+  const auto own = *static_cast<const Routine*>(pipeline->encoding_user_data);
+  const exr_result_t result = own(pipeline);
+  if (result == EXR_ERR_SUCCESS && pipeline->compressed_bytes == pipeline->packed_bytes)
+    std::memcpy(pipeline->compressed_buffer, pipeline->packed_buffer, pipeline->packed_bytes);
+  return result;
+}
+
 void write_blocks(exr_context_t file, const Image& image, const std::vector<ExrChannel>& channels) {
   int rows = 0;
   want_done(exr_get_scanlines_per_chunk(file, 0, &rows));
   exr_encode_pipeline_t pipeline = EXR_ENCODE_PIPELINE_INITIALIZER;
+  auto own = pipeline.compress_fn;
   for (int y = 0; y < image.height; y += rows) {
     exr_chunk_info_t block;
     want_done(exr_write_scanline_chunk_info(file, 0, y, &block));
@@ -150,7 +162,12 @@ void write_blocks(exr_context_t file, const Image& image, const std::vector<ExrC
       to.user_data_type = c.whole ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT;
       to.encode_from_ptr = static_cast<const std::uint8_t*>(c.values) + line * std::size_t(y);
     }
-    if (y == 0) want_done(exr_encoding_choose_default_routines(file, 0, &pipeline));
+    if (y == 0) {
+      want_done(exr_encoding_choose_default_routines(file, 0, &pipeline));
+      own = pipeline.compress_fn;
+      pipeline.encoding_user_data = &own;
+      pipeline.compress_fn = compress;
+    }
     want_done(exr_encoding_run(file, 0, &pipeline));
   }
   exr_encoding_destroy(file, &pipeline);
