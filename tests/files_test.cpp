@@ -126,7 +126,8 @@ TEST_F(Files, ASceneComesThroughAPipe) {
 
 TEST_F(Files, ASignalEndsTheWaitForAPipe) {
   ASSERT_EQ(mkfifo(folder_.file("pipe.nff").c_str(), 0600), 0);
-  const std::string stop = "timeout --preserve-status -k 5 -s HUP .5 ";
+  // In the foreground, lest it signals the group as well: the second signal would end the program at once.
+  const std::string stop = "timeout --foreground --preserve-status -k 5 -s HUP .5 ";
   for (const std::string writer : {"", "(sleep 2 >pipe.nff &) && "}) {
     const Outcome outcome = run("render pipe.nff", writer + stop);
     EXPECT_EQ(outcome.status, 129);

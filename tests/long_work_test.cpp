@@ -115,7 +115,7 @@ TEST_F(LongWork, SignalsStopItAndTheSameCommandGoesOn) {
     int stopped = 0;
     Outcome outcome;
     // A little more time each turn, so that a slow machine comes to an end as well.
-    const std::string stop = "timeout --preserve-status -s " + name + ' ';
+    const std::string stop = "timeout --foreground --preserve-status -s " + name + ' ';
     for (double seconds = .03; (outcome = run(job, stop + std::to_string(seconds))).status != 0; seconds *= 1.3) {
       // Ended at once, before it had begun or when it was about to end; or before there was anything to save.
       const bool early = outcome.err.find(" before ball.nff") != outcome.err.npos || outcome.err.find(" while ") != outcome.err.npos;
@@ -143,7 +143,7 @@ TEST_F(LongWork, StoppingLeavesSomethingToGoOnFrom) {
     SCOPED_TRACE(any);
     ASSERT_EQ(run(std::string(any) + "-o whole.pfm").status, 0);
     int stopped = 0;
-    for (double seconds = .1; run(std::string(any) + "-o x.pfm", "timeout --preserve-status -s INT " + std::to_string(seconds)).status != 0;
+    for (double seconds = .1; run(std::string(any) + "-o x.pfm", "timeout --foreground --preserve-status -s INT " + std::to_string(seconds)).status != 0;
          seconds *= 1.3) {
       EXPECT_FALSE(std::filesystem::exists(folder_.file("x.pfm")));
       if (!std::filesystem::exists(folder_.file("x.pfm.partial"))) continue;  // nothing was done yet
@@ -162,7 +162,7 @@ TEST_F(LongWork, WhatOtherPicturesLeftStays) {
   const std::string job = "render ball.nff --size 120x80 --samples 600 -j 1 --seed ";
   const auto stop = [&](const std::string& seed) {
     for (double seconds = .1; seconds < 20; seconds *= 1.3) {
-      const Outcome outcome = run(job + seed, "timeout --preserve-status -s INT " + std::to_string(seconds));
+      const Outcome outcome = run(job + seed, "timeout --foreground --preserve-status -s INT " + std::to_string(seconds));
       if (outcome.status == 0) return std::string("finished");
       const std::size_t at = outcome.err.find("saved in ");
       if (at != outcome.err.npos) return outcome.err.substr(at, outcome.err.find(':', at) - at);
@@ -200,7 +200,7 @@ TEST_F(LongWork, TimeCountsOverRuns) {
   // Each run gets .5 s. The fourth at the latest finds the time used up, on a machine that saves at once; a slow one gets more turns.
   int turns = 0;
   Outcome outcome;
-  while ((outcome = run(job, "timeout --preserve-status -s INT .5 ")).status == 130) ASSERT_LT(++turns, 20);
+  while ((outcome = run(job, "timeout --foreground --preserve-status -s INT .5 ")).status == 130) ASSERT_LT(++turns, 20);
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_GE(turns, 1);
   const std::size_t at = outcome.out.find(" samples, ");
@@ -240,7 +240,7 @@ TEST_F(LongWork, SignalsStopReadingAndBuilding) {
   ASSERT_EQ(run("scene terrain --size 40 -o t.nff").status, 0);  // 820,000 triangles: some .1 s each
   bool seen[2] = {};
   Outcome outcome;
-  for (double seconds = .01; (outcome = run("render t.nff --quiet --size 8x8", "timeout --preserve-status -s INT " + std::to_string(seconds))).status != 0;
+  for (double seconds = .01; (outcome = run("render t.nff --quiet --size 8x8", "timeout --foreground --preserve-status -s INT " + std::to_string(seconds))).status != 0;
        seconds *= 1.4) {
     ASSERT_EQ(outcome.status, 130) << outcome.err;
     const std::string stopped = test::kStopping + std::string("grelha: stopped by SIGINT");
@@ -254,7 +254,7 @@ TEST_F(LongWork, SignalsStopReadingAndBuilding) {
   EXPECT_TRUE(seen[0] && seen[1]);
   for (const char* left : {"t.partial.png", "t.png.partial"}) std::filesystem::remove(folder_.file(left));
   EXPECT_EQ(folder_.list(), "ball.nff t.nff t.ply t.png");
-  const Outcome info = run("info t.nff t.nff", "timeout --preserve-status -s TERM .03");
+  const Outcome info = run("info t.nff t.nff", "timeout --foreground --preserve-status -s TERM .03");
   EXPECT_EQ(info.status, 143);
   EXPECT_LE(std::count(info.err.begin(), info.err.end(), '\n'), 2) << "the second is not begun: " << info.err;
 }

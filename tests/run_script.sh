@@ -58,7 +58,7 @@ try "${steps}FAILED: two.o|two.cpp:1:1: error: wrong|ninja: stopped|run: this fa
 grep -q '^\[1/4 9.5 3\] one$' project/build/release/run.log || { echo "the log is incomplete"; exit 1; }
 rm broken
 # On a terminal the build counts in one line.
-if command -v script >/dev/null; then
+if command -v script >/dev/null && script -qec true /dev/null >/dev/null 2>&1; then
   said=$(PATH=$2/stand-ins "$(command -v script)" -qec "project/run info x.nff" /dev/null | tr '\r\033' '\n^')
   case $said in *"run: building grelha [1/4], 9 s left^[K"*"run: building grelha [4/4], 0 s left^[K"*) ;; *) echo "on a terminal it said: $said"; exit 1 ;; esac
 fi

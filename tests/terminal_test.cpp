@@ -56,6 +56,7 @@ constexpr char kControlC = 3;
 constexpr const char* kSeconds = "render ball.nff -o x.pfm --threads 1 --size 200x200 --samples ";
 
 TEST(Terminal, TheBarIsNoWiderThanTheWindowAlsoWhenItIsResized) {
+  if (!test::there_are_terminals()) GTEST_SKIP() << "this system gives no pseudo-terminals";
   const TemporaryFolder folder;
   folder.write("ball.nff", test::kBall);
   std::size_t narrow = 0, narrower = 0;
@@ -82,6 +83,7 @@ using Clock = std::chrono::steady_clock;
 
 /// One piece of work here is 8 rows of 64 samples of a picture 4000 wide: seconds.
 TEST(Terminal, ControlCIsAnsweredAtOnceWhateverIsInWork) {
+  if (!test::there_are_terminals()) GTEST_SKIP() << "this system gives no pseudo-terminals";
   const TemporaryFolder folder;
   folder.write("ball.nff", test::kBall);
   test::Terminal terminal(folder, "render ball.nff -j 1 --samples 64 --size 8000x4000", 80);
@@ -100,6 +102,7 @@ TEST(Terminal, ControlCIsAnsweredAtOnceWhateverIsInWork) {
 
 /// The stop itself waits for the piece in work; what there is stays, beside the picture's name.
 TEST(Terminal, ControlCLeavesThePictureSoFar) {
+  if (!test::there_are_terminals()) GTEST_SKIP() << "this system gives no pseudo-terminals";
   const TemporaryFolder folder;
   folder.write("ball.nff", test::kBall);
   test::Terminal terminal(folder, "render ball.nff -j 1 --samples 3000 --size 300x200", 80);
@@ -115,6 +118,7 @@ TEST(Terminal, ControlCLeavesThePictureSoFar) {
 }
 
 TEST(Terminal, IsNoPlaceForAPicture) {
+  if (!test::there_are_terminals()) GTEST_SKIP() << "this system gives no pseudo-terminals";
   const TemporaryFolder folder;
   folder.write("ball.nff", test::kBall);
   test::Terminal terminal(folder, "render ball.nff -o -", 80);
@@ -124,6 +128,7 @@ TEST(Terminal, IsNoPlaceForAPicture) {
 }
 
 TEST(Terminal, ADumbOneGetsNoBar) {
+  if (!test::there_are_terminals()) GTEST_SKIP() << "this system gives no pseudo-terminals";
   const TemporaryFolder folder;
   folder.write("ball.nff", test::kBall);
   test::Terminal terminal(folder, std::string(kSeconds) + "800", 80, "dumb");

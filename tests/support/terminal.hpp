@@ -15,6 +15,17 @@
 
 namespace grelha::test {
 
+/// Whether the system gives pseudo-terminals: a bare root without /dev/pts does not.
+inline bool there_are_terminals() {
+  int master = -1;
+  const pid_t child = forkpty(&master, nullptr, nullptr, nullptr);
+  if (child == 0) _exit(0);
+  if (child < 0) return false;
+  waitpid(child, nullptr, 0);
+  close(master);
+  return true;
+}
+
 class Terminal {
  public:
   Terminal(const TemporaryFolder& folder, const std::string& arguments, int columns,
