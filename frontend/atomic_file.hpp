@@ -8,13 +8,15 @@ namespace grelha {
 /// The name that stands for stdout, as in other tools.
 inline constexpr const char* kStdout = "-";
 
-/// A file that appears whole or not at all: written beside its place under another name, then renamed onto it, with the mode of the file
-/// it replaces. A symbolic link stays, also one to nothing yet. What is not a regular file (/dev/stdout, a pipe) is written directly, for
-/// renaming would replace it. Every failure is a FileError that names `path`.
+/// A file that appears whole or not at all: written beside its place under another name, then
+/// renamed onto it, with the mode of the file it replaces. A symbolic link stays, also one to
+/// nothing yet. What is not a regular file (/dev/stdout, a pipe) is written directly, for renaming
+/// would replace it. Every failure is a FileError that names `path`.
 ///
-/// A durable one is on the disk when commit() returns, so that a machine that stops a moment later finds the old file or the new one.
-/// It is written again and again, by programs that are killed: the name beside it, `path` and .new, is always the same, and what such
-/// a program leaves the next one writes over. One program at a time then, and nothing but a regular file.
+/// A durable one is on the disk when commit() returns, so that a machine that stops a moment later
+/// finds the old file or the new one. It is written again and again, by programs that are killed:
+/// the name beside it, `path` and .new, is always the same, and what such a program leaves the next
+/// one writes over. One program at a time then, and nothing but a regular file.
 class AtomicFile {
  public:
   /// `path`: kStdout is none, then stdout is written.
@@ -41,7 +43,8 @@ std::string name_of_file(const std::string& path);
 
 void write_file(const std::string& path, const std::string& bytes);
 
-/// Throws now what writing would throw later, as far as that can be known: better before a long render than after.
+/// Throws now what writing would throw later, as far as that can be known: better before a long
+/// render than after.
 void check_writable(const std::string& path, bool durable = false);
 
 }  // namespace grelha

@@ -20,10 +20,17 @@ struct Checkpoint {
   Work work;
 };
 
-/// Equal checkpoints make equal files. `durable`: on the disk, come what may, when this returns; see AtomicFile.
-void write_checkpoint(const std::string& path, const Identity& identity, const Work& work, bool durable);
+/// Equal checkpoints make equal files. `durable`: on the disk, come what may, when this returns;
+/// see AtomicFile.
+void write_checkpoint(const std::string& path,
+                      const Identity& identity,
+                      const Work& work,
+                      bool durable);
 /// The same of work that is a part.
-void write_part(const std::string& path, const Identity& identity, const Accumulator& part, bool durable);
+void write_part(const std::string& path,
+                const Identity& identity,
+                const Accumulator& part,
+                bool durable);
 
 /// Throws FileError for a file that is damaged or none of ours.
 Checkpoint read_checkpoint(const std::string& path);

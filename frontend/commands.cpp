@@ -14,12 +14,14 @@ bool is_folder(const std::string& path) {
 
 std::string default_image(const std::string& scene, std::optional<ImageFormat> format) {
   std::filesystem::path name = std::filesystem::path(scene).filename();
-  if (name.extension() == ".gz") name = name.stem();
+  if (name.extension() == ".gz")
+    name = name.stem();
   return name.stem().string() + '.' + std::string(ending_of(format.value_or(ImageFormat::png)));
 }
 
 std::optional<ImageFormat> format_of(const std::string& image, std::optional<ImageFormat> asked) {
-  if (asked) return asked;
+  if (asked)
+    return asked;
   return image == kStdout ? ImageFormat::png : image_format(image);
 }
 

@@ -35,8 +35,10 @@ struct LongWork {
   std::optional<Range> rows, samples;  ///< the part to render; absent: all
   std::string checkpoint;              ///< file to save to, and to go on from, or empty
   std::optional<double> save_every;    ///< seconds; absent: kSaveEvery
-  double show_every = 0;               ///< seconds between pictures of what there is so far; 0: none
-  bool kept_till_the_last = false;     ///< the checkpoint: until the pictures of all scenes are written
+  /// seconds between pictures of what there is so far; 0: none
+  double show_every = 0;
+  /// the checkpoint: until the pictures of all scenes are written
+  bool kept_till_the_last = false;
   bool is_part() const { return rows || samples; }
 };
 
@@ -47,8 +49,10 @@ struct LayerChoice {
 };
 
 struct RenderCommand {
-  std::vector<std::string> scenes;  ///< files and folders as they were named; commands_for() makes one command of each
-  std::string scene, image;   ///< image: named after the scene when -o is absent, a folder or a pattern; or a .grelha
+  /// files and folders as they were named; commands_for() makes one command of each
+  std::vector<std::string> scenes;
+  /// image: named after the scene when -o is absent, a folder or a pattern; or a .grelha
+  std::string scene, image;
   std::optional<ImageFormat> format;  ///< of the picture; absent: by its name, PNG to stdout
   LayerChoice layers;
   std::vector<std::string> folders;  ///< of files named by a pattern: made where they are missing
@@ -58,7 +62,7 @@ struct RenderCommand {
   BuildOptions build;
   RenderOptions render;
   Effects effects;
-  std::string stats;  ///< file for the counts, or empty
+  std::string stats;                   ///< file for the counts, or empty
   std::string samples_map, error_map;  ///< pictures of what was spent and what it bought, or empty
   bool quiet = false, srgb = false;
 };
@@ -74,7 +78,7 @@ struct CompareCommand {
   std::string a, b;
   std::optional<double> max_rmse;
   bool display = false;  ///< compare what a screen shows, channels from 0 to 1
-  std::string diff;  ///< file for the difference picture, or empty
+  std::string diff;      ///< file for the difference picture, or empty
 };
 
 struct MergeCommand {
@@ -96,9 +100,11 @@ struct TextCommand {
   std::string text;
 };
 
-using Command = std::variant<RenderCommand, InfoCommand, CompareCommand, MergeCommand, SceneCommand, TextCommand>;
+using Command = std::
+    variant<RenderCommand, InfoCommand, CompareCommand, MergeCommand, SceneCommand, TextCommand>;
 
-/// Whether a path names a folder, there already or, by a / at its end, meant to be. What cannot be looked at is none.
+/// Whether a path names a folder, there already or, by a / at its end, meant to be. What cannot be
+/// looked at is none.
 bool is_folder(const std::string& path);
 
 /// `dir/x.nff.gz` gives `x.png`: the picture lies in the current folder.

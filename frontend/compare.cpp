@@ -11,7 +11,8 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double distance(float a, float b) {
-  if (a == b || (std::isnan(a) && std::isnan(b))) return 0;
+  if (a == b || (std::isnan(a) && std::isnan(b)))
+    return 0;
   const double d = std::abs(double(a) - double(b));
   return std::isnan(d) ? kInfinity : d;
 }
@@ -30,8 +31,13 @@ Comparison compare(const Image& a, const Image& b) {
         sum += d * d;
         pixel = std::max(pixel, d);
       }
-      if (pixel > 0) ++result.differing;
-      if (pixel > result.largest) result.largest = pixel, result.largest_x = x, result.largest_y = y;
+      if (pixel > 0)
+        ++result.differing;
+      if (pixel > result.largest) {
+        result.largest = pixel;
+        result.largest_x = x;
+        result.largest_y = y;
+      }
     }
   }
   result.rmse = std::sqrt(sum / double(3 * result.pixels));
@@ -40,13 +46,15 @@ Comparison compare(const Image& a, const Image& b) {
 }
 
 Image displayed(Image image) {
-  for (float& c : image.rgb) c = std::isnan(c) ? c : std::clamp(c, 0.f, 1.f);
+  for (float& c : image.rgb)
+    c = std::isnan(c) ? c : std::clamp(c, 0.f, 1.f);
   return image;
 }
 
 Image difference(const Image& a, const Image& b, double scale) {
   Image image(a.width, a.height);
-  for (std::size_t i = 0; i < image.rgb.size(); ++i) image.rgb[i] = float(distance(a.rgb[i], b.rgb[i]) * scale);
+  for (std::size_t i = 0; i < image.rgb.size(); ++i)
+    image.rgb[i] = float(distance(a.rgb[i], b.rgb[i]) * scale);
   return image;
 }
 

@@ -19,18 +19,22 @@ Float3 as_floats(const Place3& v) { return {float(v[0]), float(v[1]), float(v[2]
 std::vector<Place3> corners_of(const Triangles& t) {
   std::vector<bool> named(t.vertex_count());
   for (const auto* of : {&t.a, &t.b, &t.c})
-    for (const std::uint32_t v : *of) named[v] = true;
+    for (const std::uint32_t v : *of)
+      named[v] = true;
   std::vector<Place3> found;
   for (std::size_t v = 0; v < t.vertex_count(); ++v)
-    if (named[v]) found.push_back({t.x[v], t.y[v], t.z[v]});
-  if (found.empty()) found = {{-1, -1, -1}, {1, 1, 1}};
+    if (named[v])
+      found.push_back({t.x[v], t.y[v], t.z[v]});
+  if (found.empty())
+    found = {{-1, -1, -1}, {1, 1, 1}};
   return found;
 }
 
 double farthest_out(const std::vector<Place3>& points) {
   double most = 0;
   for (const Place3& p : points)
-    for (const double c : p) most = std::max(most, std::abs(c));
+    for (const double c : p)
+      most = std::max(most, std::abs(c));
   return most;
 }
 
@@ -40,16 +44,21 @@ double support(const std::vector<Place3>& points, std::size_t axis) {
   constexpr double kLowest = .02;  // of the height
   Place3 low = points[0], high = points[0];
   for (const Place3& p : points)
-    for (std::size_t i = 0; i < 3; ++i)
-      low[i] = std::min(low[i], p[i]), high[i] = std::max(high[i], p[i]);
+    for (std::size_t i = 0; i < 3; ++i) {
+      low[i] = std::min(low[i], p[i]);
+      high[i] = std::max(high[i], p[i]);
+    }
   Place3 from = high, to = low;
   for (const Place3& p : points)
     if (p[axis] <= low[axis] + kLowest * (high[axis] - low[axis]))
-      for (std::size_t i = 0; i < 3; ++i)
-        from[i] = std::min(from[i], p[i]), to[i] = std::max(to[i], p[i]);
+      for (std::size_t i = 0; i < 3; ++i) {
+        from[i] = std::min(from[i], p[i]);
+        to[i] = std::max(to[i], p[i]);
+      }
   double share = 1;
   for (std::size_t i = 0; i < 3; ++i)
-    if (i != axis && high[i] > low[i]) share *= (to[i] - from[i]) / (high[i] - low[i]);
+    if (i != axis && high[i] > low[i])
+      share *= (to[i] - from[i]) / (high[i] - low[i]);
   return share;
 }
 
@@ -70,7 +79,8 @@ struct Axes {
   Place3 high{0, 1, 0};  ///< where the sky is
   /// With z up instead of y, seen from the y that scans turn their faces to.
   void turn() {
-    for (Place3* v : {&back, &right, &up, &high}) *v = {-(*v)[0], (*v)[2], (*v)[1]};
+    for (Place3* v : {&back, &right, &up, &high})
+      *v = {-(*v)[0], (*v)[2], (*v)[1]};
   }
 };
 constexpr double kAngleDeg = 30, kTangentOfHalf = 0.2679491924311227;
@@ -81,7 +91,8 @@ constexpr double kFilled = .9;  ///< of the picture's height or width
 struct Reach {
   double plus = -1e300, minus = -1e300;
   void add(double x, double back, double slope) {
-    plus = std::max(plus, x + slope * back), minus = std::max(minus, slope * back - x);
+    plus = std::max(plus, x + slope * back);
+    minus = std::max(minus, slope * back - x);
   }
   double middle() const { return (plus - minus) / 2; }
   double distance(double slope) const { return (plus + minus) / (2 * slope); }
@@ -101,14 +112,17 @@ Material default_mesh_material() {
 void add_default_view(SceneFile& file) {
   const std::vector<Place3> points = corners_of(file.scene.geometry.triangles);
   Axes axes;
-  if (stands_on_z(points)) axes.turn();
+  if (stands_on_z(points))
+    axes.turn();
   constexpr double slope = kFilled * kTangentOfHalf;
   Reach across, upward;
   double front = -1e300, behind = 1e300;
   for (const Place3& p : points) {
     const double back = along(p, axes.back);
-    across.add(along(p, axes.right), back, slope), upward.add(along(p, axes.up), back, slope);
-    front = std::max(front, back), behind = std::min(behind, back);
+    across.add(along(p, axes.right), back, slope);
+    upward.add(along(p, axes.up), back, slope);
+    front = std::max(front, back);
+    behind = std::min(behind, back);
   }
   const double eye_back =
       std::max(across.distance(slope), upward.distance(slope));  // along axes.back
@@ -117,12 +131,14 @@ void add_default_view(SceneFile& file) {
   const double middle = front + (behind - front) / 2,
                distance = std::max({eye_back - middle, kFloatSteps * farthest_out(points), kLeast});
   const Place3 at =
-      moved(moved(moved({0, 0, 0}, across.middle(), axes.right), upward.middle(), axes.up), middle,
+      moved(moved(moved({0, 0, 0}, across.middle(), axes.right), upward.middle(), axes.up),
+            middle,
             axes.back);
   const auto place = [&](double to_back, double to_right, double up) {
     return as_floats(
         moved(moved(moved(at, distance * to_back, axes.back), distance * to_right, axes.right),
-              distance * up, axes.high));
+              distance * up,
+              axes.high));
   };
   file.camera = {place(1, 0, 0), as_floats(at), as_floats(axes.high), kAngleDeg, 512, 512};
   // Key light above the left shoulder, fill from the eye, which reaches all it sees, and one from

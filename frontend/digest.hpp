@@ -12,7 +12,8 @@
 
 namespace grelha {
 
-/// XXH3 of numbers in little-endian order: the same on all machines, and in all versions of xxHash from 0.8 on.
+/// XXH3 of numbers in little-endian order: the same on all machines, and in all versions of xxHash
+/// from 0.8 on.
 class Digest {
  public:
   Digest() { XXH3_128bits_reset(&state_); }
@@ -27,7 +28,8 @@ class Digest {
     } else {
       for (const T& v : values) {
         auto b = std::bit_cast<std::array<unsigned char, sizeof(T)>>(v);
-        for (std::size_t i = 0; i < sizeof(T) / 2; ++i) std::swap(b[i], b[sizeof(T) - 1 - i]);
+        for (std::size_t i = 0; i < sizeof(T) / 2; ++i)
+          std::swap(b[i], b[sizeof(T) - 1 - i]);
         bytes(b.data(), b.size());
       }
     }
@@ -39,7 +41,8 @@ class Digest {
     const XXH128_hash_t h = XXH3_128bits_digest(&state_);
     std::string text;
     for (const std::uint64_t half : {std::uint64_t(h.high64), std::uint64_t(h.low64)})
-      for (int shift = 60; shift >= 0; shift -= 4) text += kDigits[half >> shift & 15];
+      for (int shift = 60; shift >= 0; shift -= 4)
+        text += kDigits[half >> shift & 15];
     return text;
   }
 

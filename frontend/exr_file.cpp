@@ -29,30 +29,43 @@ ExrMemory& memory_of(exr_const_context_t context) {
   return *static_cast<ExrMemory*>(memory);
 }
 
-std::int64_t read_from(exr_const_context_t, void* user, void* to, std::uint64_t size,
-                       std::uint64_t offset, exr_stream_error_func_ptr_t) {
+std::int64_t read_from(exr_const_context_t,
+                       void* user,
+                       void* to,
+                       std::uint64_t size,
+                       std::uint64_t offset,
+                       exr_stream_error_func_ptr_t) {
   const std::string& bytes = static_cast<ExrMemory*>(user)->bytes;
-  if (offset >= bytes.size()) return 0;
+  if (offset >= bytes.size())
+    return 0;
   const std::size_t n = std::min<std::size_t>(size, bytes.size() - offset);
   std::memcpy(to, bytes.data() + offset, n);
   return std::int64_t(n);
 }
 
-std::int64_t write_to(exr_const_context_t, void* user, const void* from, std::uint64_t size,
-                      std::uint64_t offset, exr_stream_error_func_ptr_t) {
+std::int64_t write_to(exr_const_context_t,
+                      void* user,
+                      const void* from,
+                      std::uint64_t size,
+                      std::uint64_t offset,
+                      exr_stream_error_func_ptr_t) {
   std::string& bytes = static_cast<ExrMemory*>(user)->bytes;
-  if (offset + size > bytes.size()) bytes.resize(offset + size);
+  if (offset + size > bytes.size())
+    bytes.resize(offset + size);
   std::memcpy(bytes.data() + offset, from, size);
   return std::int64_t(size);
 }
 
 /// The library's words quote names from the file, whatever bytes they are.
 void complain(exr_const_context_t context, exr_result_t, const char* message) {
-  if (!context) return;
+  if (!context)
+    return;
   std::string& error = memory_of(context).error;
-  if (!error.empty()) return;
+  if (!error.empty())
+    return;
   error = message;
-  std::replace_if(error.begin(), error.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  std::replace_if(
+      error.begin(), error.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
 }
 
 exr_context_initializer_t initializer(ExrMemory& memory) {
@@ -75,7 +88,8 @@ class ExrContext {
  public:
   ExrContext() = default;
   ~ExrContext() {
-    if (context) exr_finish(&context);
+    if (context)
+      exr_finish(&context);
   }
   ExrContext(const ExrContext&) = delete;
   ExrContext& operator=(const ExrContext&) = delete;
@@ -96,8 +110,10 @@ std::vector<ExrChannel> channels_of(const Image& image, const Layers& layers) {
   const float* const rgb = image.rgb.data();
   std::vector<ExrChannel> all{
       {"B", rgb + 2, kThree, false}, {"G", rgb + 1, kThree, false}, {"R", rgb, kThree, false}};
-  if (!layers.depth.empty()) all.push_back({"Z", layers.depth.data(), kOne, false});
-  if (!layers.id.empty()) all.push_back({"id", layers.id.data(), kOne, true});
+  if (!layers.depth.empty())
+    all.push_back({"Z", layers.depth.data(), kOne, false});
+  if (!layers.id.empty())
+    all.push_back({"id", layers.id.data(), kOne, true});
   const float* const normal = layers.normal.data();
   if (normal) {
     all.push_back({"normal.X", normal, kThree, false});
@@ -109,23 +125,32 @@ std::vector<ExrChannel> channels_of(const Image& image, const Layers& layers) {
 
 /// Of memory alone: what fails here is lack of it.
 void want_done(exr_result_t result) {
-  if (result != EXR_ERR_SUCCESS) throw std::bad_alloc();
+  if (result != EXR_ERR_SUCCESS)
+    throw std::bad_alloc();
 }
 
 std::string attribute_name(std::string key) {
-  for (char& c : key) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
+  for (char& c : key)
+    c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
   return key;
 }
 
-void write_head(exr_context_t file, const Image& image, const std::vector<ExrChannel>& channels,
+void write_head(exr_context_t file,
+                const Image& image,
+                const std::vector<ExrChannel>& channels,
                 const Notes& notes) {
   int part = 0;
   want_done(exr_add_part(file, "", EXR_STORAGE_SCANLINE, &part));
-  want_done(exr_initialize_required_attr_simple(file, part, image.width, image.height,
-                                                EXR_COMPRESSION_ZIP));
+  want_done(exr_initialize_required_attr_simple(
+      file, part, image.width, image.height, EXR_COMPRESSION_ZIP));
   for (const ExrChannel& c : channels)
-    want_done(exr_add_channel(file, part, c.name, c.whole ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT,
-                              EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1));
+    want_done(exr_add_channel(file,
+                              part,
+                              c.name,
+                              c.whole ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT,
+                              EXR_PERCEPTUALLY_LOGARITHMIC,
+                              1,
+                              1));
   for (const auto& [key, text] : notes)
     want_done(exr_attr_set_string(file, part, attribute_name(key).c_str(), text.c_str()));
   want_done(exr_write_header(file));
@@ -209,20 +234,23 @@ class ExrReader {
     throw FileError(path_, "cannot read the picture: " + why);
   }
   void want(exr_result_t result) const {
-    if (result == EXR_ERR_OUT_OF_MEMORY) throw std::bad_alloc();
+    if (result == EXR_ERR_OUT_OF_MEMORY)
+      throw std::bad_alloc();
     if (result != EXR_ERR_SUCCESS)
       refuse(memory_.error.empty() ? exr_get_default_error_message(result) : memory_.error);
   }
   std::int64_t side(int from, int to) const {
     const std::int64_t size = std::int64_t(to) - from + 1;
-    if (size < 1 || size > kMostExrSide) refuse("width and height must be 1 to 65536");
+    if (size < 1 || size > kMostExrSide)
+      refuse("width and height must be 1 to 65536");
     return size;
   }
 
   bool has(const exr_attr_chlist_t& list, const char* name) const {
     for (int i = 0; i < list.num_channels; ++i) {
       const exr_attr_chlist_entry_t& c = list.entries[i];
-      if (std::strcmp(c.name.str, name) == 0) return c.x_sampling == 1 && c.y_sampling == 1;
+      if (std::strcmp(c.name.str, name) == 0)
+        return c.x_sampling == 1 && c.y_sampling == 1;
     }
     return false;
   }
@@ -234,7 +262,8 @@ class ExrReader {
       const exr_attr_chlist_t* list = nullptr;
       want(exr_get_channels(file_.context, part_, &list));
       grey_ = has(*list, "Y");
-      if (grey_ || (has(*list, "R") && has(*list, "G") && has(*list, "B"))) return;
+      if (grey_ || (has(*list, "R") && has(*list, "G") && has(*list, "B")))
+        return;
     }
     refuse("no part of it has the channels R, G and B");
   }
@@ -242,7 +271,8 @@ class ExrReader {
   /// Which of the three colours a channel is, or -1.
   int colour_of(const char* name) const {
     const std::string_view word(name);
-    if (grey_) return word == "Y" ? 0 : -1;
+    if (grey_)
+      return word == "Y" ? 0 : -1;
     return word == "R" ? 0 : word == "G" ? 1 : word == "B" ? 2 : -1;
   }
 
@@ -255,7 +285,8 @@ class ExrReader {
     for (int i = 0; result == EXR_ERR_SUCCESS && i < pipeline.channel_count; ++i) {
       exr_coding_channel_info_t& c = pipeline.channels[i];
       const int colour = colour_of(c.channel_name);
-      if (colour < 0) continue;
+      if (colour < 0)
+        continue;
       planes[std::size_t(colour)].resize(pixels);
       c.decode_to_ptr = reinterpret_cast<std::uint8_t*>(planes[std::size_t(colour)].data());
       c.user_data_type = EXR_PIXEL_FLOAT;
@@ -264,14 +295,15 @@ class ExrReader {
     }
     if (result == EXR_ERR_SUCCESS)
       result = exr_decoding_choose_default_routines(file_.context, part_, &pipeline);
-    if (result == EXR_ERR_SUCCESS) result = exr_decoding_run(file_.context, part_, &pipeline);
+    if (result == EXR_ERR_SUCCESS)
+      result = exr_decoding_run(file_.context, part_, &pipeline);
     exr_decoding_destroy(file_.context, &pipeline);
     want(result);
     place(planes, block.width, block.height, x - shown_.min.x, y - shown_.min.y);
   }
 
-  void place(const std::array<std::vector<float>, 3>& planes, int width, int height, int left,
-             int top) {
+  void place(
+      const std::array<std::vector<float>, 3>& planes, int width, int height, int left, int top) {
     for (int y = std::max(0, -top); y < height && top + y < image_.height; ++y)
       for (int x = std::max(0, -left); x < width && left + x < image_.width; ++x)
         for (std::size_t c = 0; c < 3; ++c)

@@ -11,7 +11,8 @@ namespace {
 /// The rays of one row of pixels, as the kernel's camera_rays() sends them.
 struct RowOfRays {
   explicit RowOfRays(const FrameView& f) : frame(f), width(std::size_t(f.width)) {
-    for (std::vector<float>* list : {&ox, &oy, &oz, &dx, &dy, &dz, &t_min, &t}) list->resize(width);
+    for (std::vector<float>* list : {&ox, &oy, &oz, &dx, &dy, &dz, &t_min, &t})
+      list->resize(width);
     id.resize(width);
   }
 
@@ -23,8 +24,12 @@ struct RowOfRays {
       for (int k = 0; k < 3; ++k)
         d[k] = (frame.forward[k] + sx * frame.right[k]) + sy * frame.up[k];
       const float length = std::sqrt((d[0] * d[0] + d[1] * d[1]) + d[2] * d[2]);
-      ox[x] = frame.eye[0], oy[x] = frame.eye[1], oz[x] = frame.eye[2];
-      dx[x] = d[0] / length, dy[x] = d[1] / length, dz[x] = d[2] / length;
+      ox[x] = frame.eye[0];
+      oy[x] = frame.eye[1];
+      oz[x] = frame.eye[2];
+      dx[x] = d[0] / length;
+      dy[x] = d[1] / length;
+      dz[x] = d[2] / length;
       t[x] = std::numeric_limits<float>::infinity();
       id[x] = kNoPrimitive;
     }
@@ -34,9 +39,15 @@ struct RowOfRays {
 
   RaySpan span() {
     RaySpan rays;
-    rays.ox = ox.data(), rays.oy = oy.data(), rays.oz = oz.data();
-    rays.dx = dx.data(), rays.dy = dy.data(), rays.dz = dz.data();
-    rays.t_min = t_min.data(), rays.t = t.data(), rays.id = id.data();
+    rays.ox = ox.data();
+    rays.oy = oy.data();
+    rays.oz = oz.data();
+    rays.dx = dx.data();
+    rays.dy = dy.data();
+    rays.dz = dz.data();
+    rays.t_min = t_min.data();
+    rays.t = t.data();
+    rays.id = id.data();
     rays.count = int(width);
     return rays;
   }
@@ -60,14 +71,19 @@ Layers first_hits(const World& world, const Camera& camera, const LayerChoice& w
   RowOfRays row(frame);
   const std::size_t pixels = row.width * std::size_t(camera.height);
   Layers layers;
-  if (wanted.depth) layers.depth.reserve(pixels);
-  if (wanted.normal) layers.normal.reserve(3 * pixels);
-  if (wanted.id) layers.id.reserve(pixels);
+  if (wanted.depth)
+    layers.depth.reserve(pixels);
+  if (wanted.normal)
+    layers.normal.reserve(3 * pixels);
+  if (wanted.id)
+    layers.id.reserve(pixels);
   for (int y = 0; y < camera.height; ++y) {
     row.aim(y);
     closest(world, row.span());
-    if (wanted.depth) layers.depth.insert(layers.depth.end(), row.t.begin(), row.t.end());
-    if (wanted.id) layers.id.insert(layers.id.end(), row.id.begin(), row.id.end());
+    if (wanted.depth)
+      layers.depth.insert(layers.depth.end(), row.t.begin(), row.t.end());
+    if (wanted.id)
+      layers.id.insert(layers.id.end(), row.id.begin(), row.id.end());
     for (std::size_t x = 0; wanted.normal && x < row.width; ++x) {
       const Ray ray = row.ray(x);
       const Hit hit{row.t[x], row.id[x]};

@@ -22,13 +22,15 @@ float light(float value) { return value > 0 ? std::min(value, kLightest) : 0; } 
 Rgbe shared_exponent(const float* rgb) {
   const float r = light(rgb[0]), g = light(rgb[1]), b = light(rgb[2]);
   const float most = std::max({r, g, b});
-  if (most < kDarkest) return {};
+  if (most < kDarkest)
+    return {};
   int exponent = 0;
   std::frexp(most, &exponent);
   const auto mantissa = [&](float value) {
     return std::lround(std::ldexp(value, kMantissa - exponent));
   };
-  if (mantissa(most) == 1 << kMantissa) ++exponent;
+  if (mantissa(most) == 1 << kMantissa)
+    ++exponent;
   const auto byte = [&](float value) { return std::uint8_t(mantissa(value)); };
   return {byte(r), byte(g), byte(b), std::uint8_t(exponent + kExponentBias)};
 }
@@ -38,7 +40,8 @@ void pack(const std::vector<std::uint8_t>& row, std::string& bytes) {
   const std::size_t size = row.size();
   const auto run_at = [&](std::size_t i) {
     std::size_t n = 1;
-    while (i + n < size && n < kLongestRun && row[i + n] == row[i]) ++n;
+    while (i + n < size && n < kLongestRun && row[i + n] == row[i])
+      ++n;
     return n;
   };
   std::size_t at = 0;
@@ -51,7 +54,8 @@ void pack(const std::vector<std::uint8_t>& row, std::string& bytes) {
       continue;
     }
     std::size_t end = at;
-    while (end < size && end - at < kLongestDump && run_at(end) < kWorthARun) ++end;
+    while (end < size && end - at < kLongestDump && run_at(end) < kWorthARun)
+      ++end;
     bytes += char(end - at);
     bytes.append(row.begin() + std::ptrdiff_t(at), row.begin() + std::ptrdiff_t(end));
     at = end;
@@ -63,22 +67,28 @@ void append_row(const float* rgb, int width, std::string& bytes) {
   std::array<std::vector<std::uint8_t>, 4> components;
   for (int x = 0; x < width; ++x) {
     const Rgbe pixel = shared_exponent(rgb + 3 * x);
-    if (!packed) bytes.append(pixel.begin(), pixel.end());
-    for (std::size_t i = 0; packed && i < pixel.size(); ++i) components[i].push_back(pixel[i]);
+    if (!packed)
+      bytes.append(pixel.begin(), pixel.end());
+    for (std::size_t i = 0; packed && i < pixel.size(); ++i)
+      components[i].push_back(pixel[i]);
   }
-  if (!packed) return;
+  if (!packed)
+    return;
   bytes += {2, 2, char(width >> 8), char(width & 0xff)};
-  for (const auto& component : components) pack(component, bytes);
+  for (const auto& component : components)
+    pack(component, bytes);
 }
 
 }  // namespace
 
 std::string encode_hdr(const Image& image, const Notes& notes) {
   std::string bytes = "#?RADIANCE\n";
-  for (const auto& [key, text] : notes) bytes += "# " + key + ": " + text + '\n';
+  for (const auto& [key, text] : notes)
+    bytes += "# " + key + ": " + text + '\n';
   bytes += "FORMAT=32-bit_rle_rgbe\n\n-Y " + std::to_string(image.height) + " +X " +
            std::to_string(image.width) + '\n';
-  for (int y = 0; y < image.height; ++y) append_row(image.row(y), image.width, bytes);
+  for (int y = 0; y < image.height; ++y)
+    append_row(image.row(y), image.width, bytes);
   return bytes;
 }
 

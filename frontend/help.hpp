@@ -1,5 +1,6 @@
 #pragma once
-// What the command line takes, as data: options.cpp says it once; --help, the man page and the completions are made of it.
+// What the command line takes, as data: options.cpp says it once; --help, the man page and the
+// completions are made of it.
 
 #include <string>
 #include <vector>
@@ -8,7 +9,8 @@ namespace grelha {
 
 struct OptionHelp {
   std::vector<std::string> names;  ///< "-o", "--output"
-  std::string placeholder;         ///< of its value: FILE, or words with | between them; empty: a switch
+  /// of its value: FILE, or words with | between them; empty: a switch
+  std::string placeholder;
   std::string text;
 };
 

@@ -33,8 +33,8 @@ void write_image(const std::string& path, const Image& image, const ImageStyle& 
 /// "light", "sRGB values", "values of gamma 0.45455"
 std::string encoding_text(const Encoding& encoding);
 
-/// Reads what write_image writes and other files of these kinds. A PNG's bytes come as byte / 255, unbent; `encoding`,
-/// where given, says how they were bent.
+/// Reads what write_image writes and other files of these kinds. A PNG's bytes come as byte / 255,
+/// unbent; `encoding`, where given, says how they were bent.
 Image read_image(const std::string& path, Encoding* encoding = nullptr);
 
 /// Of numbers so encoded, the light they stand for.

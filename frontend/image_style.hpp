@@ -11,18 +11,23 @@ namespace grelha {
 
 enum class ImageFormat { png, hdr, pfm, exr };
 
-/// How a PNG shows a colour: as it was authored, or as light of that strength through the sRGB curve.
+/// How a PNG shows a colour: as it was authored, or as light of that strength through the sRGB
+/// curve.
 enum class Tone { authored, srgb };
 
 /// What a file says of its picture: key and text, both printable ASCII without line ends.
 using Note = std::pair<std::string, std::string>;
 using Notes = std::vector<Note>;
 
-/// What camera rays through the centres of pixels meet first, beside the picture in an OpenEXR file. Empty: not there.
+/// What camera rays through the centres of pixels meet first, beside the picture in an OpenEXR
+/// file. Empty: not there.
 struct Layers {
-  std::vector<float> depth{};       ///< [pixels] from the eye, scene units; infinite where nothing is met
-  std::vector<float> normal{};      ///< [pixels * 3] unit, as shaded, towards the eye; 0 where nothing is met
-  std::vector<std::uint32_t> id{};  ///< [pixels] of the primitive, see primitive_of(); kNoPrimitive where nothing is met
+  /// [pixels] from the eye, scene units; infinite where nothing is met
+  std::vector<float> depth{};
+  /// [pixels * 3] unit, as shaded, towards the eye; 0 where nothing is met
+  std::vector<float> normal{};
+  /// [pixels] of the primitive, see primitive_of(); kNoPrimitive where nothing is met
+  std::vector<std::uint32_t> id{};
 };
 
 /// How a picture is written.

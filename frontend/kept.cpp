@@ -16,7 +16,8 @@ constexpr int kPlacesToKeep = 10;
 
 /// The picture's name, or the one it would have in this folder.
 std::string picture_name(const RenderCommand& command) {
-  if (command.image != kStdout && !is_special_file(command.image)) return command.image;
+  if (command.image != kStdout && !is_special_file(command.image))
+    return command.image;
   return default_image(command.scene, format_of(command.image, command.format));
 }
 
@@ -25,7 +26,8 @@ std::string picture_name(const RenderCommand& command) {
 std::string partial_picture(const RenderCommand& command) {
   const fs::path name = picture_name(command);
   const auto format = format_of(name.string(), command.format);
-  if (!format) return "";
+  if (!format)
+    return "";
   return (name.parent_path() /
           (name.stem().string() + ".partial." + std::string(ending_of(*format))))
       .string();
@@ -37,7 +39,8 @@ std::string kept_name(const RenderCommand& command,
   for (int i = 0; i < kPlacesToKeep; ++i) {
     const std::string numbered = i == 0 ? name : name + std::to_string(i);
     std::error_code ignored;
-    if (!fs::exists(fs::symlink_status(numbered, ignored)) || fits(numbered)) return numbered;
+    if (!fs::exists(fs::symlink_status(numbered, ignored)) || fits(numbered))
+      return numbered;
   }
   return "";
 }

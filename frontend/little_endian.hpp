@@ -1,5 +1,6 @@
 #pragma once
-// Numbers in little-endian order, written and read by the same words: f(Sink) and f(Source) of one template are two sides of a format.
+// Numbers in little-endian order, written and read by the same words: f(Sink) and f(Source) of one
+// template are two sides of a format.
 
 #include <array>
 #include <bit>
@@ -17,9 +18,11 @@ namespace grelha {
 template <class T>
 T swapped_if_big(T v) {
   static_assert(std::is_arithmetic_v<T>);
-  if constexpr (std::endian::native == std::endian::little || sizeof(T) == 1) return v;
+  if constexpr (std::endian::native == std::endian::little || sizeof(T) == 1)
+    return v;
   auto bytes = std::bit_cast<std::array<unsigned char, sizeof(T)>>(v);
-  for (std::size_t i = 0; i < sizeof(T) / 2; ++i) std::swap(bytes[i], bytes[sizeof(T) - 1 - i]);
+  for (std::size_t i = 0; i < sizeof(T) / 2; ++i)
+    std::swap(bytes[i], bytes[sizeof(T) - 1 - i]);
   return std::bit_cast<T>(bytes);
 }
 
@@ -35,8 +38,11 @@ class Sink {
   }
   template <class T>
   void list(const std::vector<T>& values, std::size_t) {
-    if constexpr (std::endian::native == std::endian::little || sizeof(T) == 1) put(values.data(), values.size() * sizeof(T));
-    else for (const T& v : values) one(v);
+    if constexpr (std::endian::native == std::endian::little || sizeof(T) == 1)
+      put(values.data(), values.size() * sizeof(T));
+    else
+      for (const T& v : values)
+        one(v);
   }
   /// How many there are; whoever calls this writes them.
   template <class T>
@@ -59,8 +65,10 @@ class Sink {
   void put(const void* data, std::size_t size) {
     constexpr std::size_t kLarge = 65536;
     buffer_.append(static_cast<const char*>(data), size < kLarge ? size : 0);
-    if (size >= kLarge || buffer_.size() >= kLarge) flush();
-    if (size >= kLarge) pass(data, size);
+    if (size >= kLarge || buffer_.size() >= kLarge)
+      flush();
+    if (size >= kLarge)
+      pass(data, size);
   }
   void flush() {
     pass(buffer_.data(), buffer_.size());
@@ -92,9 +100,11 @@ class Source {
   void list(std::vector<T>& values, std::size_t count) {
     room(count, sizeof(T));
     values.resize(count);
-    if (count > 0) std::memcpy(values.data(), left_.data(), count * sizeof(T));
+    if (count > 0)
+      std::memcpy(values.data(), left_.data(), count * sizeof(T));
     left_.remove_prefix(count * sizeof(T));
-    for (T& v : values) v = swapped_if_big(v);
+    for (T& v : values)
+      v = swapped_if_big(v);
   }
   /// Makes `values` as long as was written; each has `bytes` at least.
   template <class T>
@@ -106,7 +116,8 @@ class Source {
   }
   /// There must be nothing left.
   void finish() const {
-    if (!left_.empty()) throw NotOurs();
+    if (!left_.empty())
+      throw NotOurs();
   }
 
  private:
@@ -118,7 +129,8 @@ class Source {
     left_.remove_prefix(sizeof value);
   }
   void room(std::uint64_t count, std::size_t bytes) const {
-    if (count > left_.size() / bytes) throw NotOurs();
+    if (count > left_.size() / bytes)
+      throw NotOurs();
   }
 
   std::string_view left_;

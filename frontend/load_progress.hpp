@@ -9,7 +9,8 @@
 
 namespace grelha {
 
-/// A share that never falls, though a scene may come to name another large file when it seemed all but read.
+/// A share that never falls, though a scene may come to name another large file when it seemed all
+/// but read.
 class LoadProgress {
  public:
   /// `report` is told the share done, and returns false to stop; empty: nobody asks.
@@ -25,7 +26,8 @@ class LoadProgress {
   }
   /// Nothing is done. Throws Stopped.
   void waiting() const {
-    if (report_ && !report_(share_)) throw Stopped();
+    if (report_ && !report_(share_))
+      throw Stopped();
   }
   void finish() { done(left_); }
 
@@ -36,13 +38,15 @@ class LoadProgress {
 
 inline constexpr double kParsing = 5;  ///< times as long as reading the bytes that are parsed
 
-/// Tells of bytes as they are parsed, a million at a time: of a small file that names a large one, nothing.
+/// Tells of bytes as they are parsed, a million at a time: of a small file that names a large one,
+/// nothing.
 class ParseProgress {
  public:
   ParseProgress(LoadProgress* progress, const char* begin) : progress_(progress), told_(begin) {}
   void at(const char* here) {
     constexpr std::ptrdiff_t kStride = 1 << 20;
-    if (!progress_ || here - told_ < kStride) return;
+    if (!progress_ || here - told_ < kStride)
+      return;
     progress_->done(kParsing * static_cast<double>(here - told_));
     told_ = here;
   }

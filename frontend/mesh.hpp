@@ -16,8 +16,10 @@ struct Mesh {
   std::size_t face_count() const { return sizes.empty() ? corners.size() / 3 : sizes.size(); }
   /// Ends the face whose `size` corners were just appended.
   void close_face(std::uint32_t size) {
-    if (sizes.empty() && size != 3) sizes.assign((corners.size() - size) / 3, 3);
-    if (size != 3 || !sizes.empty()) sizes.push_back(size);
+    if (sizes.empty() && size != 3)
+      sizes.assign((corners.size() - size) / 3, 3);
+    if (size != 3 || !sizes.empty())
+      sizes.push_back(size);
   }
 };
 

@@ -6,11 +6,12 @@
 
 namespace grelha {
 
-/// Letters to add, drop, change or swap with their neighbour to make `b` of `a` (each place edited once).
+/// Letters to add, drop, change or swap with their neighbour to make `b` of `a` (each place edited
+/// once).
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
-/// The word that `found` was probably meant to be: the first of the nearest, at most a third of its letters away;
-/// empty when there is none.
+/// The word that `found` was probably meant to be: the first of the nearest, at most a third of its
+/// letters away; empty when there is none.
 std::string_view nearest(std::string_view found, std::span<const std::string_view> words);
 
 /// `; did you mean WORD?`, or nothing.

@@ -13,7 +13,8 @@ bool any(Float3 v) { return v.x != 0 || v.y != 0 || v.z != 0; }
 
 bool has_normals(const Triangles& triangles) {
   for (const auto* component : {&triangles.nx, &triangles.ny, &triangles.nz})
-    if (std::ranges::any_of(*component, [](float value) { return value != 0; })) return true;
+    if (std::ranges::any_of(*component, [](float value) { return value != 0; }))
+      return true;
   return false;
 }
 
@@ -39,7 +40,9 @@ class Box {
 /// How far a disc of that radius reaches along each axis; `x y z` is its normal, of any length.
 Float3 disc_reach(double radius, double x, double y, double z) {
   const double square = x * x + y * y + z * z;
-  const auto reach = [&](double c) { return float(std::abs(radius) * std::sqrt(std::max(0.0, 1 - c * c / square))); };
+  const auto reach = [&](double c) {
+    return float(std::abs(radius) * std::sqrt(std::max(0.0, 1 - c * c / square)));
+  };
   return {reach(x), reach(y), reach(z)};
 }
 
@@ -58,7 +61,8 @@ Needs needs_of(const SceneFile& file) {
   needs.environment = !file.environment.empty();
   const std::vector<char> used = used_materials(file.scene);
   for (std::size_t i = 0; i < used.size(); ++i) {
-    if (!used[i]) continue;
+    if (!used[i])
+      continue;
     const Material& material = file.scene.materials[i];
     const bool glass = material.transmission > 0;
     needs.reflection |= any(material.mirror) || glass;
@@ -86,7 +90,8 @@ SceneBounds bounds_of(const Geometry& geometry) {
   }
   const Triangles& t = geometry.triangles;  // a mesh may hold vertices that no triangle uses
   for (std::size_t i = 0; i < t.size(); ++i)
-    for (const std::uint32_t vertex : {t.a[i], t.b[i], t.c[i]}) box.grow({t.x[vertex], t.y[vertex], t.z[vertex]}, {});
+    for (const std::uint32_t vertex : {t.a[i], t.b[i], t.c[i]})
+      box.grow({t.x[vertex], t.y[vertex], t.z[vertex]}, {});
   return box.bounds();
 }
 

@@ -12,7 +12,8 @@ using Six = std::array<float, 6>;
 /// False where an error is to come, or a box that is left out.
 bool read_six(Words& words, Six& numbers) {
   for (float& number : numbers)
-    if (!to_number(words.next(), number)) return false;
+    if (!to_number(words.next(), number))
+      return false;
   return std::all_of(numbers.begin(), numbers.end(), [](float v) { return std::isfinite(v); });
 }
 
@@ -30,8 +31,10 @@ BoxOrder aabb_order(Words words) {
   bool all_corners = true;
   Six numbers;
   for (std::string_view word = "aabb"; !word.empty(); word = words.next()) {
-    if (word != "aabb" || !read_six(words, numbers)) continue;
-    if (!are_pairs(numbers)) return BoxOrder::kCorners;
+    if (word != "aabb" || !read_six(words, numbers))
+      continue;
+    if (!are_pairs(numbers))
+      return BoxOrder::kCorners;
     all_corners = all_corners && are_corners(numbers);
   }
   return all_corners ? BoxOrder::kCorners : BoxOrder::kPairs;

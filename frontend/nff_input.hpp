@@ -16,21 +16,22 @@ struct NumberWord {
   std::string_view word;
 };
 
-/// Words of an NFF file read as what an entity wants; anything else is a ParseError at the word found. `what` completes
-/// "wanted a number for ...".
+/// Words of an NFF file read as what an entity wants; anything else is a ParseError at the word
+/// found. `what` completes "wanted a number for ...".
 class NffInput {
  public:
   NffInput(Words& all_words, Warnings& all_warnings) : words(all_words), warnings(all_warnings) {}
 
-  float number(const char* what);   ///< infinite and NaN pass: the caller drops what cannot be drawn
+  /// infinite and NaN pass: the caller drops what cannot be drawn
+  float number(const char* what);
   float bounded(const char* what);  ///< for what cannot be dropped: camera, lights, materials
   Float3 point(const char* what);
   Float3 bounded_point(const char* what);
   /// A count of things that take at least `least_bytes` each, checked against the rest of the file.
   std::size_t count(const char* what, std::size_t least_bytes);
 
-  /// All numbers left on this line, then whole further lines as long as fewer than `enough` were found and numbers
-  /// follow. Every value is bounded.
+  /// All numbers left on this line, then whole further lines as long as fewer than `enough` were
+  /// found and numbers follow. Every value is bounded.
   std::vector<NumberWord> numbers(std::size_t enough, const char* what);
 
   Position position(std::string_view word) const { return words.position(word); }

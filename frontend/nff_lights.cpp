@@ -18,13 +18,16 @@ Float3 cross(const Float3& a, const Float3& b) {
 }
 Float3 unit(const Float3& a) {
   const double length = std::sqrt(double(a.x) * a.x + double(a.y) * a.y + double(a.z) * a.z);
-  return length > 0 ? Float3{float(a.x / length), float(a.y / length), float(a.z / length)} : Float3{0, 0, 1};
+  return length > 0 ? Float3{float(a.x / length), float(a.y / length), float(a.z / length)}
+                    : Float3{0, 0, 1};
 }
 
 /// A rectangle centered at a position, facing `at`.
-AreaLight facing(const Float3& center, const Float3& at, float width, float height, const Float3& color) {
+AreaLight facing(
+    const Float3& center, const Float3& at, float width, float height, const Float3& color) {
   const Float3 view = unit(at - center);
-  const Float3 side = unit(cross(view, std::abs(view.z) < 0.9f ? Float3{0, 0, 1} : Float3{0, 1, 0}));
+  const Float3 side =
+      unit(cross(view, std::abs(view.z) < 0.9f ? Float3{0, 0, 1} : Float3{0, 1, 0}));
   AreaLight light;
   light.edge1 = width * side;
   light.edge2 = height * cross(side, view);
@@ -50,7 +53,8 @@ void NffLights::read_point(NffInput& input) {
   float color[3];
   for (float& part : color) {
     const std::string_view word = input.words.peek_on_line();
-    if (word.empty()) throw ParseError(input.position(word), "a number for the light's color", "end of line");
+    if (word.empty())
+      throw ParseError(input.position(word), "a number for the light's color", "end of line");
     part = input.bounded("the light's color");
   }
   add_point(position, {color[0], color[1], color[2]});
@@ -59,7 +63,8 @@ void NffLights::read_point(NffInput& input) {
 void NffLights::add_area(NffInput& input, std::string_view keyword, AreaLight light) {
   const Float3 center = light.corner + 0.5f * (light.edge1 + light.edge2);
   if (!drawable(center))
-    throw ParseError(input.position(keyword), "wanted an area light within 1e18, found a larger one");
+    throw ParseError(input.position(keyword),
+                     "wanted an area light within 1e18, found a larger one");
   light.light = std::uint32_t(file_.scene.lights.size());
   file_.area_lights.push_back(light);
   add_point(center, light.color);
@@ -92,21 +97,27 @@ void NffLights::read_light(NffInput& input, std::string_view keyword) {
 void NffLights::read_area(NffInput& input, std::string_view keyword) {
   const std::vector<NumberWord> n = input.numbers(11, "the area light");
   if (n.size() < 11)
-    input.fail(input.words.peek(),
-               "a number for the area light (field " + std::to_string(n.size() + 1) + " of 11 or 12)");
+    input.fail(
+        input.words.peek(),
+        "a number for the area light (field " + std::to_string(n.size() + 1) + " of 11 or 12)");
   if (n.size() == 11) {
-    add_area(input, keyword, facing(triple(n, 0), triple(n, 3), n[6].value, n[7].value, triple(n, 8)));
+    add_area(
+        input, keyword, facing(triple(n, 0), triple(n, 3), n[6].value, n[7].value, triple(n, 8)));
     return;
   }
   AreaLight light;
-  light.corner = triple(n, 0), light.edge1 = triple(n, 3), light.edge2 = triple(n, 6), light.color = triple(n, 9);
+  light.corner = triple(n, 0);
+  light.edge1 = triple(n, 3);
+  light.edge2 = triple(n, 6);
+  light.color = triple(n, 9);
   add_area(input, keyword, light);
 }
 
 /// No intensity is prescribed for lights without color; SPD's own writers use 1/sqrt(N).
 void NffLights::finish() {
   const auto even = float(1 / std::sqrt(double(file_.scene.lights.size())));
-  for (const std::size_t i : colorless_) file_.scene.lights[i].color = {even, even, even};
+  for (const std::size_t i : colorless_)
+    file_.scene.lights[i].color = {even, even, even};
 }
 
 }  // namespace grelha

@@ -8,8 +8,8 @@
 
 namespace grelha {
 
-/// The lines of `v` and `camera`. They are taken in any order and wherever they stand; what must be there is checked at
-/// the end of the file.
+/// The lines of `v` and `camera`. They are taken in any order and wherever they stand; what must be
+/// there is checked at the end of the file.
 class NffView {
  public:
   /// All that it knows.
@@ -26,7 +26,8 @@ class NffView {
   void read_aperture(NffInput& input, LensHint& lens);
 
   Camera camera_;
-  std::string_view view_, from_, at_, up_, angle_, resolution_;  ///< the words themselves; empty: not there
+  /// the words themselves; empty: not there
+  std::string_view view_, from_, at_, up_, angle_, resolution_;
 };
 
 }  // namespace grelha

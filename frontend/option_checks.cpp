@@ -16,7 +16,8 @@ using option_values::refuse;
 /// Samples a pixel that --aa and --lens ask for; 0: they leave it open.
 long long samples_asked(const Effects& e) {
   const int lens = e.lens && e.lens->aperture > 0 ? e.lens->samples : 0;
-  if (e.jitter == 0) return lens;
+  if (e.jitter == 0)
+    return lens;
   return 1LL * e.jitter * e.jitter * (lens > 0 ? lens : 1);
 }
 
@@ -27,7 +28,8 @@ void check_samples(const Effects& e) {
                      " and --lens APERTURE,FOCUS,N: wanted at most " +
                      std::to_string(kMostSamples) + " samples a pixel, found " +
                      std::to_string(asked));
-  if (!e.samples || asked == 0 || asked == *e.samples) return;
+  if (!e.samples || asked == 0 || asked == *e.samples)
+    return;
   const std::string first = e.jitter == 0   ? "--lens APERTURE,FOCUS,N"
                             : e.jitter == 1 ? "--aa off"
                                             : "--aa jitter:" + std::to_string(e.jitter);
@@ -43,7 +45,8 @@ void check_refined(const RenderCommand& command) {
     throw UsageError("--error and --time: one of them, found both");
   if (!r.on() && !(command.samples_map.empty() && command.error_map.empty()))
     throw UsageError("--samples-map and --error-map want --error or --time");
-  if (!r.on()) return;
+  if (!r.on())
+    return;
   if (e.samples || e.jitter > 0 || e.adaptive.on)
     throw UsageError("--error and --time choose the samples: no --samples or --aa beside them");
   if (e.sampler && is_jittered(*e.sampler))
@@ -79,7 +82,8 @@ void check_output(const std::string& image, std::optional<ImageFormat> asked) {
 }
 
 void check_tone(bool srgb, const std::string& image, std::optional<ImageFormat> asked) {
-  if (!srgb) return;
+  if (!srgb)
+    return;
   if (is_partial_name(image))
     throw UsageError("--srgb: a .grelha holds no colours for a screen, say it to merge");
   if (format_of(image, asked) != ImageFormat::png)
@@ -109,7 +113,8 @@ void check_long_work(const RenderCommand& command) {
 bool promises_other_format(std::string_view path) {
   constexpr std::array<std::string_view, 3> kOther{".ply", ".gz", ".grelha"};
   for (const std::string_view ending : kOther)
-    if (path.ends_with(ending)) return true;
+    if (path.ends_with(ending))
+      return true;
   return image_format(path).has_value();
 }
 
@@ -140,8 +145,10 @@ void check_together(const SceneCommand& command) {
   if (command.list &&
       (!command.name.empty() || command.size || !command.output.empty() || command.spd))
     throw UsageError("--list: wanted alone, it writes no scene");
-  if (command.list) return;
-  if (command.name.empty()) throw UsageError("NAME is required (see grelha scene --list)");
+  if (command.list)
+    return;
+  if (command.name.empty())
+    throw UsageError("NAME is required (see grelha scene --list)");
   if (promises_other_format(command.output))
     refuse("-o", "a name for an NFF scene, such as " + command.name + ".nff", command.output);
 }

@@ -1,5 +1,6 @@
 #pragma once
-// Options that contradict each other, or say something about nothing. Each check throws a UsageError that names them.
+// Options that contradict each other, or say something about nothing. Each check throws a
+// UsageError that names them.
 
 #include "frontend/commands.hpp"
 

@@ -1,5 +1,6 @@
 #pragma once
-// What stands behind an option, as a value. Each refuses with a UsageError that says what was wanted and what was found.
+// What stands behind an option, as a value. Each refuses with a UsageError that says what was
+// wanted and what was found.
 
 #include <array>
 #include <cstddef>
@@ -16,7 +17,10 @@ namespace grelha::option_values {
 
 inline constexpr int kMaxSide = 65536;  ///< of a picture
 
-[[noreturn]] void refuse(const std::string& option, const std::string& wanted, const std::string& found, const std::string& meant = "");
+[[noreturn]] void refuse(const std::string& option,
+                         const std::string& wanted,
+                         const std::string& found,
+                         const std::string& meant = "");
 
 int whole(const std::string& option, const std::string& text, int low, int high);
 float density(const std::string& text);
@@ -48,16 +52,19 @@ std::uint64_t memory_size(const std::string& text);
 
 /// One of the words an option takes, and what each stands for.
 template <class T, std::size_t N>
-T choice(const std::string& option, const std::string& text,
+T choice(const std::string& option,
+         const std::string& text,
          const std::array<std::pair<std::string_view, T>, N>& words) {
   std::string wanted;
   std::vector<std::string_view> all;
   for (const auto& [word, value] : words) {
-    if (word == text) return value;
+    if (word == text)
+      return value;
     wanted += (wanted.empty() ? "" : ", ") + std::string(word);
     all.push_back(word);
   }
-  throw UsageError(option + ": wanted one of " + wanted + ", found \"" + text + '"' + did_you_mean(text, all));
+  throw UsageError(option + ": wanted one of " + wanted + ", found \"" + text + '"' +
+                   did_you_mean(text, all));
 }
 
 }  // namespace grelha::option_values

@@ -19,15 +19,18 @@ struct Use {
 
 [[noreturn]] void refuse(const Use& first, const Use& second) {
   if (first.command == second.command)
-    throw UsageError(second.option + " and " + first.option + ": wanted two files, found \"" + first.file + "\" twice");
-  throw UsageError(second.option + ": " + first.command->scene + " and " + second.command->scene + " would both be written to " + second.file +
+    throw UsageError(second.option + " and " + first.option + ": wanted two files, found \"" +
+                     first.file + "\" twice");
+  throw UsageError(second.option + ": " + first.command->scene + " and " + second.command->scene +
+                   " would both be written to " + second.file +
                    "; {} in a name stands for the scene's");
 }
 
 void make_folder(const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (error) throw FileError(folder, "cannot make this folder: " + error.message());
+  if (error)
+    throw FileError(folder, "cannot make this folder: " + error.message());
 }
 
 }  // namespace
@@ -35,15 +38,18 @@ void make_folder(const std::string& folder) {
 std::vector<Output> outputs_of(const RenderCommand& command) {
   std::vector<Output> found;
   each_output(command, [&](const char* option, const std::string& file) {
-    if (!file.empty()) found.emplace_back(option, file);
+    if (!file.empty())
+      found.emplace_back(option, file);
   });
   return found;
 }
 
 void prepare_outputs(const RenderCommand& command) {
   want_no_terminal(command.image);
-  for (const std::string& folder : command.folders) make_folder(folder);
-  for (const auto& [option, file] : outputs_of(command)) check_writable(file, option == "--checkpoint");
+  for (const std::string& folder : command.folders)
+    make_folder(folder);
+  for (const auto& [option, file] : outputs_of(command))
+    check_writable(file, option == "--checkpoint");
 }
 
 void want_no_terminal(const std::string& file) {
@@ -53,11 +59,14 @@ void want_no_terminal(const std::string& file) {
 
 void want_not_read(const std::vector<Output>& outputs, const std::vector<std::string>& read) {
   std::map<Place, std::string> places;
-  for (const std::string& file : read) places.try_emplace(place_of(file), file);
+  for (const std::string& file : read)
+    places.try_emplace(place_of(file), file);
   for (const auto& [option, file] : outputs) {
     const auto found = places.find(place_of(file));
-    if (found == places.end() || is_special_file(file)) continue;
-    throw UsageError(option + ": wanted another file than " + found->second + ", which is read, found \"" + file + '"');
+    if (found == places.end() || is_special_file(file))
+      continue;
+    throw UsageError(option + ": wanted another file than " + found->second +
+                     ", which is read, found \"" + file + '"');
   }
 }
 
@@ -65,10 +74,12 @@ void want_apart(const std::vector<RenderCommand>& commands) {
   std::map<Place, Use> written;
   for (const RenderCommand& command : commands)
     for (const auto& [option, file] : outputs_of(command)) {
-      if (is_special_file(file)) continue;
+      if (is_special_file(file))
+        continue;
       const Use use{option, file, &command};
       const auto [other, fresh] = written.try_emplace(place_of(file), use);
-      if (!fresh) refuse(other->second, use);
+      if (!fresh)
+        refuse(other->second, use);
     }
 }
 

@@ -25,7 +25,8 @@ using Output = std::pair<std::string, std::string>;
 /// Those that are named.
 std::vector<Output> outputs_of(const RenderCommand& command);
 
-/// Makes the folders that are missing, and throws now, as far as that can be known, what writing would throw after a long render.
+/// Makes the folders that are missing, and throws now, as far as that can be known, what writing
+/// would throw after a long render.
 void prepare_outputs(const RenderCommand& command);
 
 /// Throws UsageError when bytes that are no text would go to a terminal.

@@ -5,11 +5,14 @@
 #include <fstream>
 
 int main(int argc, char** argv) {
-  if (argc != 2) return std::fputs("usage: grelha_pages FOLDER\n", stderr), 2;
+  if (argc != 2)
+    return std::fputs("usage: grelha_pages FOLDER\n", stderr), 2;
   const auto commands = grelha::all_commands();
   const std::string folder = std::string(argv[1]) + '/';
   bool written = true;
-  const auto write = [&](const char* name, const std::string& text) { written &= bool(std::ofstream(folder + name) << text << std::flush); };
+  const auto write = [&](const char* name, const std::string& text) {
+    written &= bool(std::ofstream(folder + name) << text << std::flush);
+  };
   write("grelha.1", man_page(commands));
   write("grelha.bash", bash_completion(commands));
   write("_grelha", zsh_completion(commands));

@@ -18,7 +18,8 @@ bool is_partial_name(std::string_view path);
 /// `rows 0:8, samples 16:32`
 std::string part_text(const Part& part);
 
-/// Equal partials make equal files. `durable`: on the disk, come what may, when this returns; see AtomicFile.
+/// Equal partials make equal files. `durable`: on the disk, come what may, when this returns; see
+/// AtomicFile.
 void write_partial(const std::string& path, const Partial& partial, bool durable = false);
 
 /// Throws FileError for a file that is damaged, none of ours, or of a picture that has no parts.

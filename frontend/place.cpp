@@ -11,18 +11,23 @@ namespace fs = std::filesystem;
 
 constexpr int kMostLinks = 40;  // as many as Linux follows
 
-fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : "."; }
+fs::path folder_of(const fs::path& path) {
+  return path.has_parent_path() ? path.parent_path() : ".";
+}
 
 }  // namespace
 
 std::string behind_links(const std::string& path) {
   std::error_code error;
   fs::path at = fs::canonical(path, error);
-  if (!error) return at.string();
+  if (!error)
+    return at.string();
   at = path;
   for (int i = 0; i < kMostLinks && fs::is_symlink(fs::symlink_status(at, error)); ++i) {
     const fs::path to = fs::read_symlink(at, error);
-    if (error || fs::exists(at, error)) return path;  // there, but by no name: what /dev/stdout leads to may be a pipe
+    // there, but by no name: what /dev/stdout leads to may be a pipe
+    if (error || fs::exists(at, error))
+      return path;
     at = to.is_absolute() ? to : folder_of(at) / to;
   }
   return at.string();
@@ -30,9 +35,11 @@ std::string behind_links(const std::string& path) {
 
 Place place_of(const std::string& path) {
   struct stat info {};
-  if (stat(path.c_str(), &info) == 0) return {info.st_dev, info.st_ino, ""};
+  if (stat(path.c_str(), &info) == 0)
+    return {info.st_dev, info.st_ino, ""};
   const fs::path target = behind_links(path);
-  if (stat(folder_of(target).c_str(), &info) == 0) return {info.st_dev, info.st_ino, target.filename().string()};
+  if (stat(folder_of(target).c_str(), &info) == 0)
+    return {info.st_dev, info.st_ino, target.filename().string()};
   std::error_code ignored;
   return {0, 0, fs::absolute(target, ignored).lexically_normal().string()};
 }

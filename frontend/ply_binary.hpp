@@ -8,16 +8,23 @@
 
 namespace grelha {
 
-/// Rows of a binary file of either byte order. Nothing is read before it is known to lie in the file.
+/// Rows of a binary file of either byte order. Nothing is read before it is known to lie in the
+/// file.
 class PlyBinary {
  public:
-  PlyBinary(const std::string& path, std::string_view bytes, const PlyHeader& header, LoadProgress* progress);
+  PlyBinary(const std::string& path,
+            std::string_view bytes,
+            const PlyHeader& header,
+            LoadProgress* progress);
   void read(const PlyElement& element, const PlyPlan& plan, Mesh& mesh, PlyFaces& faces);
 
  private:
   void read_fixed(const PlyElement& element, const PlyPlan& plan, Mesh& mesh);
   void read_rows(const PlyElement& element, const PlyPlan& plan, Mesh& mesh, PlyFaces& faces);
-  void read_list(const PlyElement& element, const PlyProperty& list, std::uint64_t row, PlyFaces* faces);
+  void read_list(const PlyElement& element,
+                 const PlyProperty& list,
+                 std::uint64_t row,
+                 PlyFaces* faces);
   const char* take(std::size_t bytes, const PlyElement& element, std::uint64_t row);
   [[noreturn]] void fail(const char* at, const std::string& wanted, const std::string& found) const;
 

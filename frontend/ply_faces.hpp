@@ -10,7 +10,8 @@ namespace grelha {
 /// Takes the indices of a list of `face` or `tristrips`, one after the other.
 class PlyFaces {
  public:
-  PlyFaces(Mesh& mesh, std::uint64_t vertices, bool strips) : mesh_(mesh), vertices_(vertices), strips_(strips) {}
+  PlyFaces(Mesh& mesh, std::uint64_t vertices, bool strips)
+      : mesh_(mesh), vertices_(vertices), strips_(strips) {}
 
   bool accepts(std::int64_t index) const {
     return (index >= 0 && std::uint64_t(index) < vertices_) || (strips_ && index == -1);
@@ -23,14 +24,17 @@ class PlyFaces {
   }
   /// A whole triangle at once, when it is one and sound; false: take it item by item.
   bool add_triangle(std::int64_t a, std::int64_t b, std::int64_t c) {
-    if (strips_ || !accepts(a) || !accepts(b) || !accepts(c)) return false;
-    mesh_.corners.insert(mesh_.corners.end(), {std::uint32_t(a), std::uint32_t(b), std::uint32_t(c)});
+    if (strips_ || !accepts(a) || !accepts(b) || !accepts(c))
+      return false;
+    mesh_.corners.insert(mesh_.corners.end(),
+                         {std::uint32_t(a), std::uint32_t(b), std::uint32_t(c)});
     mesh_.close_face(3);
     return true;
   }
   void end(std::uint32_t size) {
     run_ = 0;
-    if (!strips_) mesh_.close_face(size);
+    if (!strips_)
+      mesh_.close_face(size);
   }
 
  private:

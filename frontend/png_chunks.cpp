@@ -13,13 +13,15 @@ constexpr std::size_t kHeaderEnd =
 
 std::string big_endian(std::uint32_t value) {
   std::string bytes;
-  for (int shift = 24; shift >= 0; shift -= 8) bytes += char(value >> shift & 0xff);
+  for (int shift = 24; shift >= 0; shift -= 8)
+    bytes += char(value >> shift & 0xff);
   return bytes;
 }
 
 std::uint32_t big_endian(std::string_view bytes) {
   std::uint32_t value = 0;
-  for (const char byte : bytes.substr(0, 4)) value = value << 8 | std::uint8_t(byte);
+  for (const char byte : bytes.substr(0, 4))
+    value = value << 8 | std::uint8_t(byte);
   return value;
 }
 
@@ -34,7 +36,8 @@ std::string chunk(const std::string& type, const std::string& data) {
 std::string with_chunks(const std::string& png, Tone tone, const Notes& notes) {
   const std::string perceptual(1, '\0');  // the rendering intent: what pictures are shown with
   std::string chunks = tone == Tone::srgb ? chunk("sRGB", perceptual) : "";
-  for (const auto& [key, text] : notes) chunks += chunk("tEXt", key + '\0' + text);
+  for (const auto& [key, text] : notes)
+    chunks += chunk("tEXt", key + '\0' + text);
   return png.substr(0, kHeaderEnd) + chunks + png.substr(kHeaderEnd);
 }
 
@@ -46,10 +49,12 @@ Encoding png_encoding(std::string_view png) {
     const std::size_t size = big_endian(png.substr(at));
     const std::string_view type = png.substr(at + kLength, kType),
                            data = png.substr(at + kLength + kType).substr(0, size);
-    if (type == "sRGB") return {Encoding::Kind::srgb, 1};
+    if (type == "sRGB")
+      return {Encoding::Kind::srgb, 1};
     if (type == "gAMA" && data.size() == 4 && big_endian(data) > 0)
       found = {Encoding::Kind::power, big_endian(data) / kGammaUnit};
-    if (type == "IDAT") break;
+    if (type == "IDAT")
+      break;
     at += kLength + kType + size + kCrc;
   }
   return found;

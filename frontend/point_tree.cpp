@@ -27,22 +27,28 @@ class PointTree::Triangle {
         sides_{Side(a, b), Side(b, c), Side(c, a)},
         lower_{std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y})},
         upper_{std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y})} {
-    const auto shortest = std::min_element(sides_.begin(), sides_.end(),
-                                           [](const Side& s, const Side& t) { return s.length() < t.length(); });
+    const auto shortest =
+        std::min_element(sides_.begin(), sides_.end(), [](const Side& s, const Side& t) {
+          return s.length() < t.length();
+        });
     std::swap(*shortest, sides_.back());
   }
   /// Whether the box may hold a point of it. Rounds as has() does for every point in the box.
   bool touches(const Node& n) const {
-    if (n.alive == 0 || n.x[0] > upper_.x || n.x[1] < lower_.x || n.y[0] > upper_.y || n.y[1] < lower_.y) return false;
+    if (n.alive == 0 || n.x[0] > upper_.x || n.x[1] < lower_.x || n.y[0] > upper_.y ||
+        n.y[1] < lower_.y)
+      return false;
     for (const Side& s : sides_)
-      if (s.turn(n.x[s.x], n.y[s.y]) < 0) return false;
+      if (s.turn(n.x[s.x], n.y[s.y]) < 0)
+        return false;
     return true;
   }
   /// Whether a point lies in it, other than at a corner; what is no number does not.
   bool has(const Place& place) const {
     const Point2 p{place.x, place.y};
     for (const Side& s : sides_)
-      if (!(s.turn(p.x, p.y) >= 0)) return false;
+      if (!(s.turn(p.x, p.y) >= 0))
+        return false;
     return p != corners_[0] && p != corners_[1] && p != corners_[2];
   }
 
@@ -57,7 +63,8 @@ void PointTree::build(std::span<const Point2> points, std::span<const std::uint3
   order_.assign(ids.begin(), ids.end());
   slot_.resize(points.size());
   std::size_t levels = 1;
-  for (std::size_t size = order_.size(); size > kLeaf; size = (size + 1) / 2) ++levels;
+  for (std::size_t size = order_.size(); size > kLeaf; size = (size + 1) / 2)
+    ++levels;
   nodes_.assign((std::size_t(1) << levels) - 1, Node{});
 
   std::vector<Range> todo{{0, 0, std::uint32_t(order_.size())}};
@@ -65,7 +72,8 @@ void PointTree::build(std::span<const Point2> points, std::span<const std::uint3
     const Range range = todo.back();
     todo.pop_back();
     settle(range);
-    if (range.last - range.first <= kLeaf) continue;
+    if (range.last - range.first <= kLeaf)
+      continue;
     todo.push_back(left(range));
     todo.push_back(right(range));
   }
@@ -78,7 +86,8 @@ void PointTree::build(std::span<const Point2> points, std::span<const std::uint3
 
 /// Fills one node and parts its ids in two halves along its longer side.
 void PointTree::settle(const Range& range) {
-  if (range.first == range.last) return;
+  if (range.first == range.last)
+    return;
   Node& node = nodes_[range.node];
   node.alive = range.last - range.first;
   const Point2& start = points_[order_[range.first]];
@@ -92,9 +101,12 @@ void PointTree::settle(const Range& range) {
   node.x[1] = float(largest.x);
   node.y[0] = float(least.y);
   node.y[1] = float(largest.y);
-  if (node.alive <= kLeaf) return;
+  if (node.alive <= kLeaf)
+    return;
   const bool wide = node.x[1] - node.x[0] > node.y[1] - node.y[0];
-  std::nth_element(order_.begin() + range.first, order_.begin() + left(range).last, order_.begin() + range.last,
+  std::nth_element(order_.begin() + range.first,
+                   order_.begin() + left(range).last,
+                   order_.begin() + range.last,
                    [&](std::uint32_t i, std::uint32_t j) {
                      return wide ? points_[i].x < points_[j].x : points_[i].y < points_[j].y;
                    });
@@ -102,12 +114,14 @@ void PointTree::settle(const Range& range) {
 
 void PointTree::remove(std::uint32_t id) {
   const std::uint32_t slot = slot_[id];
-  if (places_[slot].x != places_[slot].x) return;
+  if (places_[slot].x != places_[slot].x)
+    return;
   places_[slot].x = std::numeric_limits<float>::quiet_NaN();
   Range range{0, 0, std::uint32_t(order_.size())};
   for (;;) {
     --nodes_[range.node].alive;
-    if (range.last - range.first <= kLeaf) return;
+    if (range.last - range.first <= kLeaf)
+      return;
     range = slot < left(range).last ? left(range) : right(range);
   }
 }
@@ -117,18 +131,23 @@ bool PointTree::any_in(const Point2& a, const Point2& b, const Point2& c) const 
   std::array<Range, 36> todo;  // one a level waits, and 32-bit counts halve at most 32 times
   std::size_t depth = 0;
   Range range{0, 0, std::uint32_t(order_.size())};
-  if (!triangle.touches(nodes_[0])) return false;
+  if (!triangle.touches(nodes_[0]))
+    return false;
   for (;;) {
     if (range.last - range.first <= kLeaf) {
       for (std::uint32_t i = range.first; i != range.last; ++i)
-        if (triangle.has(places_[i])) return true;
-      if (depth == 0) return false;
+        if (triangle.has(places_[i]))
+          return true;
+      if (depth == 0)
+        return false;
       range = todo[--depth];
       continue;
     }
     const Range l = left(range), r = right(range);
-    const bool in_left = triangle.touches(nodes_[l.node]), in_right = triangle.touches(nodes_[r.node]);
-    if (in_left && in_right) todo[depth++] = l;
+    const bool in_left = triangle.touches(nodes_[l.node]),
+               in_right = triangle.touches(nodes_[r.node]);
+    if (in_left && in_right)
+      todo[depth++] = l;
     if (in_right)
       range = r;
     else if (in_left)

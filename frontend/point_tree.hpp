@@ -11,13 +11,15 @@ struct Point2 {
   bool operator==(const Point2&) const = default;
 };
 
-/// Twice the signed area of a, b, c; positive when they turn left. Exact in sign for float coordinates of like size.
+/// Twice the signed area of a, b, c; positive when they turn left. Exact in sign for float
+/// coordinates of like size.
 inline double turn(const Point2& a, const Point2& b, const Point2& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-/// A balanced k-d tree over points that are only ever taken away. Answers whether a triangle holds any of those left;
-/// looks at boxes the triangle crosses only, so that a long thin one stays cheap.
+/// A balanced k-d tree over points that are only ever taken away. Answers whether a triangle holds
+/// any of those left; looks at boxes the triangle crosses only, so that a long thin one stays
+/// cheap.
 class PointTree {
  public:
   /// `points[i]` for i in `ids`; `points` must stay in place. Their coordinates must be floats'.
@@ -25,7 +27,8 @@ class PointTree {
   void remove(std::uint32_t id);
   /// Whether most of what it was built with is gone: built anew it would answer faster.
   bool is_thin() const { return 2 * std::size_t(nodes_[0].alive) < order_.size(); }
-  /// Whether a point left lies in the closed triangle (which turns left), other than at one of its corners.
+  /// Whether a point left lies in the closed triangle (which turns left), other than at one of its
+  /// corners.
   bool any_in(const Point2& a, const Point2& b, const Point2& c) const;
 
  private:
@@ -41,15 +44,19 @@ class PointTree {
   struct Range {
     std::uint32_t node, first, last;
   };
-  Range left(const Range& r) const { return {2 * r.node + 1, r.first, r.first + (r.last - r.first) / 2}; }
-  Range right(const Range& r) const { return {2 * r.node + 2, r.first + (r.last - r.first) / 2, r.last}; }
+  Range left(const Range& r) const {
+    return {2 * r.node + 1, r.first, r.first + (r.last - r.first) / 2};
+  }
+  Range right(const Range& r) const {
+    return {2 * r.node + 2, r.first + (r.last - r.first) / 2, r.last};
+  }
   void settle(const Range& range);
 
   std::span<const Point2> points_;
-  std::vector<std::uint32_t> order_;   ///< ids, each node's in a run
-  std::vector<std::uint32_t> slot_;    ///< [points] where an id stands in order_
-  std::vector<Place> places_;          ///< [order_] where they are; no number once removed
-  std::vector<Node> nodes_;            ///< root 0, children 2k+1 and 2k+2
+  std::vector<std::uint32_t> order_;  ///< ids, each node's in a run
+  std::vector<std::uint32_t> slot_;   ///< [points] where an id stands in order_
+  std::vector<Place> places_;         ///< [order_] where they are; no number once removed
+  std::vector<Node> nodes_;           ///< root 0, children 2k+1 and 2k+2
 };
 
 }  // namespace grelha

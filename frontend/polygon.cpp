@@ -6,13 +6,15 @@
 namespace grelha {
 namespace {
 
-/// How often every corner left may be asked again before a corner is taken by force. One pass is enough for a simple
-/// outline but for rare rings of touching corners.
+/// How often every corner left may be asked again before a corner is taken by force. One pass is
+/// enough for a simple outline but for rare rings of touching corners.
 constexpr int kFullPasses = 8;
-/// Outlines of so many corners are cut evenly: neighbours of an ear wait for the next pass, so that triangles grow by
-/// doubling and stay short. Ears in turn, or a fan, would all reach across, and stand in thousands of a grid's cells.
+/// Outlines of so many corners are cut evenly: neighbours of an ear wait for the next pass, so that
+/// triangles grow by doubling and stay short. Ears in turn, or a fan, would all reach across, and
+/// stand in thousands of a grid's cells.
 constexpr std::uint32_t kMany = 1024;
-/// How far a forced clip looks for a corner that at least has area; bounds the work on hopeless outlines.
+/// How far a forced clip looks for a corner that at least has area; bounds the work on hopeless
+/// outlines.
 constexpr int kForcedLook = 64;
 
 double component(const Float3& p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
@@ -21,10 +23,12 @@ double component(const Float3& p, int axis) { return axis == 0 ? p.x : axis == 1
 
 bool PolygonCutter::cut(std::span<const Float3> corners, std::vector<Triangle>& triangles) {
   normal_ = {};
-  if (corners.size() < 3) return false;
+  if (corners.size() < 3)
+    return false;
   find_normal(corners);
   // What vanishes as floats has no direction to shade by.
-  if (float(normal_[0]) == 0 && float(normal_[1]) == 0 && float(normal_[2]) == 0) return false;
+  if (float(normal_[0]) == 0 && float(normal_[1]) == 0 && float(normal_[2]) == 0)
+    return false;
   if (corners.size() == 3) {
     triangles.push_back({0, 1, 2});
     return true;
@@ -32,7 +36,8 @@ bool PolygonCutter::cut(std::span<const Float3> corners, std::vector<Triangle>& 
   project(corners);
   even_ = corners.size() >= kMany;
   if (!even_ && convex()) {
-    for (std::uint32_t i = 2; i < corners.size(); ++i) triangles.push_back({0, i - 1, i});
+    for (std::uint32_t i = 2; i < corners.size(); ++i)
+      triangles.push_back({0, i - 1, i});
     return true;
   }
   link_corners();
@@ -41,12 +46,15 @@ bool PolygonCutter::cut(std::span<const Float3> corners, std::vector<Triangle>& 
   return true;
 }
 
-/// Sums over differences to the first corner: those of nearby floats are exact, so that corners on one line give zero.
+/// Sums over differences to the first corner: those of nearby floats are exact, so that corners on
+/// one line give zero.
 void PolygonCutter::find_normal(std::span<const Float3> corners) {
   const Float3 o = corners[0];
-  std::array<double, 3> p{double(corners[1].x) - o.x, double(corners[1].y) - o.y, double(corners[1].z) - o.z};
+  std::array<double, 3> p{
+      double(corners[1].x) - o.x, double(corners[1].y) - o.y, double(corners[1].z) - o.z};
   for (std::size_t i = 2; i < corners.size(); ++i) {
-    const std::array<double, 3> q{double(corners[i].x) - o.x, double(corners[i].y) - o.y, double(corners[i].z) - o.z};
+    const std::array<double, 3> q{
+        double(corners[i].x) - o.x, double(corners[i].y) - o.y, double(corners[i].z) - o.z};
     normal_[0] += p[1] * q[2] - p[2] * q[1];
     normal_[1] += p[2] * q[0] - p[0] * q[2];
     normal_[2] += p[0] * q[1] - p[1] * q[0];
@@ -56,31 +64,41 @@ void PolygonCutter::find_normal(std::span<const Float3> corners) {
 
 void PolygonCutter::project(std::span<const Float3> corners) {
   int axis = std::abs(normal_[1]) > std::abs(normal_[0]) ? 1 : 0;
-  if (std::abs(normal_[2]) > std::abs(normal_[std::size_t(axis)])) axis = 2;
+  if (std::abs(normal_[2]) > std::abs(normal_[std::size_t(axis)]))
+    axis = 2;
   int u = (axis + 1) % 3, v = (axis + 2) % 3;
-  if (normal_[std::size_t(axis)] < 0) std::swap(u, v);  // seen from behind: mirror, so that it turns left
+  // seen from behind: mirror, so that it turns left
+  if (normal_[std::size_t(axis)] < 0)
+    std::swap(u, v);
   points_.resize(corners.size());
-  for (std::size_t i = 0; i < corners.size(); ++i) points_[i] = {component(corners[i], u), component(corners[i], v)};
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    points_[i] = {component(corners[i], u), component(corners[i], v)};
 }
 
-/// Every corner turns left. An outline that does so while it goes round more than once crosses itself, and then a fan
-/// is as good as anything.
+/// Every corner turns left. An outline that does so while it goes round more than once crosses
+/// itself, and then a fan is as good as anything.
 bool PolygonCutter::convex() const {
   const std::size_t n = points_.size();
   for (std::size_t i = 0; i < n; ++i)
-    if (!(grelha::turn(points_[i], points_[(i + 1) % n], points_[(i + 2) % n]) > 0)) return false;
+    if (!(grelha::turn(points_[i], points_[(i + 1) % n], points_[(i + 2) % n]) > 0))
+      return false;
   return true;
 }
 
 /// A ring without corners that repeat the one before.
 void PolygonCutter::link_corners() {
   const auto n = std::uint32_t(points_.size());
-  previous_.resize(n), following_.resize(n);
-  gone_.assign(n, 0), queued_.assign(n, 0), waits_.assign(n, 0);
+  previous_.resize(n);
+  following_.resize(n);
+  gone_.assign(n, 0);
+  queued_.assign(n, 0);
+  waits_.assign(n, 0);
   candidates_.clear();
   for (std::uint32_t i = 0; i < n; ++i)
-    if (candidates_.empty() || points_[i] != points_[candidates_.back()]) candidates_.push_back(i);
-  while (candidates_.size() > 1 && points_[candidates_.back()] == points_[candidates_.front()]) candidates_.pop_back();
+    if (candidates_.empty() || points_[i] != points_[candidates_.back()])
+      candidates_.push_back(i);
+  while (candidates_.size() > 1 && points_[candidates_.back()] == points_[candidates_.front()])
+    candidates_.pop_back();
   left_ = std::uint32_t(candidates_.size());
   start_ = candidates_.front();
   for (std::uint32_t k = 0; k < left_; ++k) {
@@ -95,7 +113,8 @@ void PolygonCutter::plant_tree() {
   in_tree_.assign(points_.size(), 0);
   std::vector<std::uint32_t> bent;
   for (std::uint32_t i = 0, corner = start_; i < left_; ++i, corner = following_[corner]) {
-    if (turn(corner) > 0) continue;
+    if (turn(corner) > 0)
+      continue;
     bent.push_back(corner);
     in_tree_[corner] = 1;
   }
@@ -111,7 +130,8 @@ bool PolygonCutter::blocked(std::uint32_t corner) const {
 }
 
 void PolygonCutter::queue(std::uint32_t corner) {
-  if (queued_[corner]) return;
+  if (queued_[corner])
+    return;
   queued_[corner] = 1;
   next_candidates_.push_back(corner);
 }
@@ -119,8 +139,10 @@ void PolygonCutter::queue(std::uint32_t corner) {
 void PolygonCutter::take_queue() {
   candidates_.swap(next_candidates_);
   next_candidates_.clear();
-  for (const std::uint32_t corner : candidates_) waits_[corner] = 0;
-  if (even_ && tree_.is_thin()) plant_tree();
+  for (const std::uint32_t corner : candidates_)
+    waits_[corner] = 0;
+  if (even_ && tree_.is_thin())
+    plant_tree();
 }
 
 /// Takes a corner out of the ring. Its neighbours may have become convex and get another turn.
@@ -130,8 +152,10 @@ void PolygonCutter::remove(std::uint32_t corner) {
   previous_[after] = before;
   gone_[corner] = 1;
   --left_;
-  if (start_ == corner) start_ = after;
-  if (in_tree_[corner]) tree_.remove(corner);
+  if (start_ == corner)
+    start_ = after;
+  if (in_tree_[corner])
+    tree_.remove(corner);
   for (const std::uint32_t neighbour : {before, after}) {
     if (in_tree_[neighbour] && turn(neighbour) > 0) {
       tree_.remove(neighbour);
@@ -146,24 +170,33 @@ bool PolygonCutter::try_clip(std::uint32_t corner, std::vector<Triangle>& triang
   const std::uint32_t before = previous_[corner], after = following_[corner];
   const Point2 &a = points_[before], &b = points_[corner], &c = points_[after];
   const double area = turn(corner);
-  if (area < 0) return false;
+  if (area < 0)
+    return false;
   if (area ==
-      0) {  // a spike or a repeated corner goes without a trace; a flat corner stays, it bounds its neighbours' ears
-    const bool spike = b == a || b == c || (a.x - b.x) * (c.x - b.x) + (a.y - b.y) * (c.y - b.y) > 0;
-    if (!spike) return false;
+      // a spike or a repeated corner goes without a trace; a flat corner stays, it bounds its
+      // neighbours' ears
+      0) {
+    const bool spike =
+        b == a || b == c || (a.x - b.x) * (c.x - b.x) + (a.y - b.y) * (c.y - b.y) > 0;
+    if (!spike)
+      return false;
   } else {
-    if (blocked(corner)) return false;
+    if (blocked(corner))
+      return false;
     triangles.push_back({before, corner, after});
   }
   remove(corner);
   return true;
 }
 
-/// No ear is left, so the outline crosses or touches itself: clip some corner all the same, so that clipping ends.
+/// No ear is left, so the outline crosses or touches itself: clip some corner all the same, so that
+/// clipping ends.
 void PolygonCutter::force_clip(std::vector<Triangle>& triangles) {
   std::uint32_t corner = start_;
-  for (int i = 0; i < kForcedLook && !(turn(corner) > 0); ++i) corner = following_[corner];
-  if (turn(corner) > 0) triangles.push_back({previous_[corner], corner, following_[corner]});
+  for (int i = 0; i < kForcedLook && !(turn(corner) > 0); ++i)
+    corner = following_[corner];
+  if (turn(corner) > 0)
+    triangles.push_back({previous_[corner], corner, following_[corner]});
   start_ = following_[corner];
   remove(corner);
 }
@@ -175,7 +208,8 @@ void PolygonCutter::clip_ears(std::vector<Triangle>& triangles) {
   while (left_ > 3) {
     for (const std::uint32_t corner : candidates_) {
       queued_[corner] = 0;
-      if (gone_[corner] || left_ <= 3) continue;
+      if (gone_[corner] || left_ <= 3)
+        continue;
       if (waits_[corner]) {
         queue(corner);
         continue;
@@ -183,16 +217,19 @@ void PolygonCutter::clip_ears(std::vector<Triangle>& triangles) {
       clipped = try_clip(corner, triangles) || clipped;
     }
     take_queue();
-    if (!candidates_.empty() || left_ <= 3) continue;
+    if (!candidates_.empty() || left_ <= 3)
+      continue;
     if (clipped && full_passes++ < kFullPasses) {
-      for (std::uint32_t i = 0, corner = start_; i < left_; ++i, corner = following_[corner]) queue(corner);
+      for (std::uint32_t i = 0, corner = start_; i < left_; ++i, corner = following_[corner])
+        queue(corner);
       clipped = false;
     } else {
       force_clip(triangles);
     }
     take_queue();
   }
-  if (left_ == 3 && turn(start_) > 0) triangles.push_back({previous_[start_], start_, following_[start_]});
+  if (left_ == 3 && turn(start_) > 0)
+    triangles.push_back({previous_[start_], start_, following_[start_]});
 }
 
 }  // namespace grelha

@@ -10,18 +10,20 @@
 
 namespace grelha {
 
-/// Cuts planar polygons into triangles over their own corners by clipping ears (Meisters 1975; Eberly, "Triangulation
-/// by Ear Clipping"). Concave outlines of any size: only corners that are not strictly convex are tested for lying in
-/// an ear, found through a tree. Always ends; an outline that crosses itself gives some triangles of its corners.
-/// Each corner is asked a few times, and an ear meets about as many leaves of the tree as its length crosses, at most
-/// some sqrt n: a million corners take .3 to 5 s. Outlines of a thousand and more are cut evenly, into short triangles.
-/// One object serves many polygons and keeps its buffers.
+/// Cuts planar polygons into triangles over their own corners by clipping ears (Meisters 1975;
+/// Eberly, "Triangulation by Ear Clipping"). Concave outlines of any size: only corners that are
+/// not strictly convex are tested for lying in an ear, found through a tree. Always ends; an
+/// outline that crosses itself gives some triangles of its corners. Each corner is asked a few
+/// times, and an ear meets about as many leaves of the tree as its length crosses, at most some
+/// sqrt n: a million corners take .3 to 5 s. Outlines of a thousand and more are cut evenly, into
+/// short triangles. One object serves many polygons and keeps its buffers.
 class PolygonCutter {
  public:
   using Triangle = std::array<std::uint32_t, 3>;
 
-  /// Appends at most corners.size() - 2 triangles, none without area, counter-clockwise where the outline is.
-  /// False, and nothing appended, when the polygon has no area. Coordinates must be finite and at most 1e18.
+  /// Appends at most corners.size() - 2 triangles, none without area, counter-clockwise where the
+  /// outline is. False, and nothing appended, when the polygon has no area. Coordinates must be
+  /// finite and at most 1e18.
   bool cut(std::span<const Float3> corners, std::vector<Triangle>& triangles);
 
   /// Twice the area long, of the last polygon cut (Newell's sum: every corner counts).
@@ -43,7 +45,8 @@ class PolygonCutter {
   bool blocked(std::uint32_t corner) const;
 
   std::array<double, 3> normal_{};
-  std::vector<Point2> points_;                       ///< [corners] seen along the normal's largest axis; front side up
+  /// [corners] seen along the normal's largest axis; front side up
+  std::vector<Point2> points_;
   std::vector<std::uint32_t> previous_, following_;  ///< ring of the corners left
   std::vector<std::uint8_t> gone_, queued_, in_tree_;
   std::vector<std::uint8_t> waits_;  ///< for the next pass: a neighbour was clipped in this one

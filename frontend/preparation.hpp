@@ -1,5 +1,6 @@
 #pragma once
-// From a file to what rays need, with a bar to look at, an end when a signal asks for it, and no more memory than there may be.
+// From a file to what rays need, with a bar to look at, an end when a signal asks for it, and no
+// more memory than there may be.
 
 #include <cstdint>
 #include <stdexcept>
@@ -19,11 +20,18 @@ struct Interrupted : std::runtime_error {
 };
 
 /// read_scene() with `shown`, a bar on stderr. Throws Interrupted while StopSignals live.
-SceneFile load_scene(const std::string& path, const Warn& warn, const ReadOptions& options, bool shown);
+SceneFile load_scene(const std::string& path,
+                     const Warn& warn,
+                     const ReadOptions& options,
+                     bool shown);
 
-/// The grids of a scene that `later` more bytes are wanted for. Throws Interrupted, and FileError (in the scene's name) when by its
-/// estimate it would take more than there may be.
-World build_world(const std::string& path, const Scene& scene, const BuildOptions& options, std::uint64_t later, bool shown);
+/// The grids of a scene that `later` more bytes are wanted for. Throws Interrupted, and FileError
+/// (in the scene's name) when by its estimate it would take more than there may be.
+World build_world(const std::string& path,
+                  const Scene& scene,
+                  const BuildOptions& options,
+                  std::uint64_t later,
+                  bool shown);
 
 /// Bytes of the picture that a command makes, or of the part of it: --rows.
 struct PictureMemory {

@@ -13,7 +13,8 @@ bool Ranks::together(const std::function<void()>& work) {
   }
   const Managed well = managed(!failure);
   in_step_ = !well.all;
-  if (failure && (first() || well.first)) std::rethrow_exception(failure);
+  if (failure && (first() || well.first))
+    std::rethrow_exception(failure);
   return well.all;
 }
 

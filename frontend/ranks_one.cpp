@@ -8,7 +8,11 @@ Ranks::~Ranks() = default;
 Ranks::Managed Ranks::managed(bool here) const { return {here, here}; }
 void Ranks::agree_on(const std::string&, const std::string&) const {}
 
-bool Ranks::accumulate(const World& world, const Camera& camera, const RenderOptions& options, Accumulator& a, RenderStats& stats,
+bool Ranks::accumulate(const World& world,
+                       const Camera& camera,
+                       const RenderOptions& options,
+                       Accumulator& a,
+                       RenderStats& stats,
                        const std::function<bool()>&) {
   return grelha::accumulate(world, camera, options, a, stats);
 }

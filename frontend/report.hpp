@@ -37,7 +37,8 @@ struct SceneMemory {
   std::uint64_t peak = 0;              ///< at most, be it while reading, building or rendering
 };
 
-/// Which parts of a renderer a scene calls for, from what its primitives use: an unused material asks for nothing.
+/// Which parts of a renderer a scene calls for, from what its primitives use: an unused material
+/// asks for nothing.
 struct Needs {
   bool spheres = false, triangles = false, cones = false, planes = false;
   bool smooth_normals = false;
@@ -59,10 +60,15 @@ SceneBounds bounds_of(const Geometry& geometry);
 
 std::string stats_json(const RenderCommand& command, const RunReport& report);
 /// `grids`: absent when they were not built.
-std::string info_json(const SceneFile& file, const SceneMemory& memory, const std::optional<std::vector<GridStats>>& grids);
+std::string info_json(const SceneFile& file,
+                      const SceneMemory& memory,
+                      const std::optional<std::vector<GridStats>>& grids);
 /// JSON of several scenes as one object, by file.
 std::string info_json(const std::vector<std::pair<std::string, std::string>>& of_files);
-std::string info_text(const std::string& path, const SceneFile& file, const SceneMemory& memory, const std::optional<std::vector<GridStats>>& grids);
+std::string info_text(const std::string& path,
+                      const SceneFile& file,
+                      const SceneMemory& memory,
+                      const std::optional<std::vector<GridStats>>& grids);
 std::string summary_line(const RenderCommand& command, const RunReport& report);
 
 }  // namespace grelha

@@ -29,8 +29,10 @@ Float3 sound_normal(const Float3& n) {
   constexpr double kLeast = 1e-30, kMost = 1e30;
   const Double3 d{n.x, n.y, n.z};
   const double squared = dot(d, d);
-  if (squared >= kLeast && squared <= kMost) return n;
-  if (!std::isfinite(squared) || squared == 0) return {};
+  if (squared >= kLeast && squared <= kMost)
+    return n;
+  if (!std::isfinite(squared) || squared == 0)
+    return {};
   return unit(d);
 }
 
@@ -47,7 +49,8 @@ void SceneBuilder::sphere(Float3 center, float radius, std::uint32_t material) {
     file_.scene.geometry.spheres.add(center, radius, material);
 }
 
-void SceneBuilder::cone(Float3 base, float base_radius, Float3 apex, float apex_radius, std::uint32_t material) {
+void SceneBuilder::cone(
+    Float3 base, float base_radius, Float3 apex, float apex_radius, std::uint32_t material) {
   if (!drawable(base) || !drawable(apex) || !drawable(base_radius) || !drawable(apex_radius))
     ++file_.dropped.not_finite;
   else if (base == apex || (base_radius == 0 && apex_radius == 0))
@@ -79,7 +82,8 @@ void SceneBuilder::plane(Float3 normal, float distance, std::uint32_t material) 
     ++file_.dropped.zero_area;
     return;
   }
-  const Float3 point{float(n[0] * distance / squared), float(n[1] * distance / squared),
+  const Float3 point{float(n[0] * distance / squared),
+                     float(n[1] * distance / squared),
                      float(n[2] * distance / squared)};
   if (!drawable(point))
     ++file_.dropped.not_finite;
@@ -90,15 +94,31 @@ void SceneBuilder::plane(Float3 normal, float distance, std::uint32_t material) 
 std::uint32_t SceneBuilder::add_vertex(Float3 point, Float3 normal) {
   Triangles& t = file_.scene.geometry.triangles;
   const std::size_t index = t.x.size();
-  if (t.nx.empty() && !is_none(normal)) t.nx.resize(index), t.ny.resize(index), t.nz.resize(index);
-  t.x.push_back(point.x), t.y.push_back(point.y), t.z.push_back(point.z);
-  if (!t.nx.empty() || !is_none(normal)) t.nx.push_back(normal.x), t.ny.push_back(normal.y), t.nz.push_back(normal.z);
+  if (t.nx.empty() && !is_none(normal)) {
+    t.nx.resize(index);
+    t.ny.resize(index);
+    t.nz.resize(index);
+  }
+  t.x.push_back(point.x);
+  t.y.push_back(point.y);
+  t.z.push_back(point.z);
+  if (!t.nx.empty() || !is_none(normal)) {
+    t.nx.push_back(normal.x);
+    t.ny.push_back(normal.y);
+    t.nz.push_back(normal.z);
+  }
   return std::uint32_t(index);
 }
 
-void SceneBuilder::add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t material) {
+void SceneBuilder::add_triangle(std::uint32_t a,
+                                std::uint32_t b,
+                                std::uint32_t c,
+                                std::uint32_t material) {
   Triangles& t = file_.scene.geometry.triangles;
-  t.a.push_back(a), t.b.push_back(b), t.c.push_back(c), t.material.push_back(material);
+  t.a.push_back(a);
+  t.b.push_back(b);
+  t.c.push_back(c);
+  t.material.push_back(material);
 }
 
 bool SceneBuilder::has_area(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
@@ -107,20 +127,24 @@ bool SceneBuilder::has_area(std::uint32_t a, std::uint32_t b, std::uint32_t c) c
   return !vanishes(cross(difference(q, p), difference(r, p)));
 }
 
-/// Whether the normal of a piece leaves the polygon's by more than a milliradian: slivers of rounded corners do, and
-/// would shade as scratches.
+/// Whether the normal of a piece leaves the polygon's by more than a milliradian: slivers of
+/// rounded corners do, and would shade as scratches.
 bool SceneBuilder::bends(std::span<const Float3> corners) const {
   constexpr double kSine = 1e-3;
   const Double3& whole = cutter_.normal();
   const double whole_length = length(whole);
   return std::any_of(pieces_.begin(), pieces_.end(), [&](const PolygonCutter::Triangle& piece) {
     const Float3& o = corners[piece[0]];
-    const Double3 normal = cross(difference(corners[piece[1]], o), difference(corners[piece[2]], o));
-    return !(dot(normal, whole) > 0) || length(cross(normal, whole)) > kSine * length(normal) * whole_length;
+    const Double3 normal =
+        cross(difference(corners[piece[1]], o), difference(corners[piece[2]], o));
+    return !(dot(normal, whole) > 0) ||
+           length(cross(normal, whole)) > kSine * length(normal) * whole_length;
   });
 }
 
-void SceneBuilder::polygon(std::span<const Float3> corners, std::span<const Float3> normals, std::uint32_t material) {
+void SceneBuilder::polygon(std::span<const Float3> corners,
+                           std::span<const Float3> normals,
+                           std::uint32_t material) {
   if (!std::all_of(corners.begin(), corners.end(), [](const Float3& p) { return drawable(p); })) {
     ++file_.dropped.not_finite;
     return;
@@ -131,12 +155,14 @@ void SceneBuilder::polygon(std::span<const Float3> corners, std::span<const Floa
     return;
   }
   Float3 shared_normal;
-  if (normals.empty() && corners.size() > 3 && bends(corners)) shared_normal = unit(cutter_.normal());
+  if (normals.empty() && corners.size() > 3 && bends(corners))
+    shared_normal = unit(cutter_.normal());
   const auto first = std::uint32_t(file_.scene.geometry.triangles.vertex_count());
   for (std::size_t i = 0; i < corners.size(); ++i)
     add_vertex(corners[i], normals.empty() ? shared_normal : sound_normal(normals[i]));
   for (const auto& [a, b, c] : pieces_)
-    if (has_area(first + a, first + b, first + c)) add_triangle(first + a, first + b, first + c, material);
+    if (has_area(first + a, first + b, first + c))
+      add_triangle(first + a, first + b, first + c, material);
 }
 
 void SceneBuilder::box(Float3 corner, Float3 opposite, std::uint32_t material) {
@@ -144,8 +170,12 @@ void SceneBuilder::box(Float3 corner, Float3 opposite, std::uint32_t material) {
     ++file_.dropped.not_finite;
     return;
   }
-  const Float3 lo{std::min(corner.x, opposite.x), std::min(corner.y, opposite.y), std::min(corner.z, opposite.z)};
-  const Float3 hi{std::max(corner.x, opposite.x), std::max(corner.y, opposite.y), std::max(corner.z, opposite.z)};
+  const Float3 lo{std::min(corner.x, opposite.x),
+                  std::min(corner.y, opposite.y),
+                  std::min(corner.z, opposite.z)};
+  const Float3 hi{std::max(corner.x, opposite.x),
+                  std::max(corner.y, opposite.y),
+                  std::max(corner.z, opposite.z)};
   if (int(lo.x == hi.x) + int(lo.y == hi.y) + int(lo.z == hi.z) > 1) {
     ++file_.dropped.zero_area;
     return;
@@ -156,14 +186,15 @@ void SceneBuilder::box(Float3 corner, Float3 opposite, std::uint32_t material) {
   static constexpr std::array<std::array<std::uint32_t, 4>, 6> kFaces{
       {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
   for (const auto& [a, b, c, d] : kFaces) {
-    if (!has_area(first + a, first + b, first + c)) continue;
+    if (!has_area(first + a, first + b, first + c))
+      continue;
     add_triangle(first + a, first + b, first + c, material);
     add_triangle(first + a, first + c, first + d, material);
   }
 }
 
-/// Moves the vertices behind those already there. Vertices that cannot be drawn stay, at the origin, so that indices
-/// hold; their faces are left out by the caller.
+/// Moves the vertices behind those already there. Vertices that cannot be drawn stay, at the
+/// origin, so that indices hold; their faces are left out by the caller.
 void SceneBuilder::append_vertices(Mesh& mesh) {
   Triangles& t = file_.scene.geometry.triangles;
   const std::size_t before = t.x.size(), count = mesh.vertex_count();
@@ -176,22 +207,34 @@ void SceneBuilder::append_vertices(Mesh& mesh) {
   bool any_normal = false;
   for (std::size_t i = 0; i < mesh.nx.size(); ++i) {
     const Float3 n = sound_normal({mesh.nx[i], mesh.ny[i], mesh.nz[i]});
-    mesh.nx[i] = n.x, mesh.ny[i] = n.y, mesh.nz[i] = n.z;
+    mesh.nx[i] = n.x;
+    mesh.ny[i] = n.y;
+    mesh.nz[i] = n.z;
     any_normal = any_normal || !is_none(n);
   }
   if (any_normal) {
-    t.nx.resize(before), t.ny.resize(before), t.nz.resize(before);
-    append(t.nx, mesh.nx), append(t.ny, mesh.ny), append(t.nz, mesh.nz);
+    t.nx.resize(before);
+    t.ny.resize(before);
+    t.nz.resize(before);
+    append(t.nx, mesh.nx);
+    append(t.ny, mesh.ny);
+    append(t.nz, mesh.nz);
   } else if (!t.nx.empty()) {
-    t.nx.resize(before + count), t.ny.resize(before + count), t.nz.resize(before + count);
+    t.nx.resize(before + count);
+    t.ny.resize(before + count);
+    t.nz.resize(before + count);
   }
-  append(t.x, mesh.x), append(t.y, mesh.y), append(t.z, mesh.z);
+  append(t.x, mesh.x);
+  append(t.y, mesh.y);
+  append(t.z, mesh.z);
 }
 
-void SceneBuilder::mesh_face(std::span<const std::uint32_t> corners, std::uint32_t first_vertex,
+void SceneBuilder::mesh_face(std::span<const std::uint32_t> corners,
+                             std::uint32_t first_vertex,
                              std::uint32_t material) {
   if (corners.size() == 3) {
-    const std::uint32_t a = first_vertex + corners[0], b = first_vertex + corners[1], c = first_vertex + corners[2];
+    const std::uint32_t a = first_vertex + corners[0], b = first_vertex + corners[1],
+                        c = first_vertex + corners[2];
     if (has_area(a, b, c))
       add_triangle(a, b, c, material);
     else
@@ -210,60 +253,81 @@ void SceneBuilder::mesh_face(std::span<const std::uint32_t> corners, std::uint32
     return;
   }
   for (const auto& [i, j, k] : pieces_) {
-    const std::uint32_t a = first_vertex + corners[i], b = first_vertex + corners[j], c = first_vertex + corners[k];
-    if (has_area(a, b, c)) add_triangle(a, b, c, material);
+    const std::uint32_t a = first_vertex + corners[i], b = first_vertex + corners[j],
+                        c = first_vertex + corners[k];
+    if (has_area(a, b, c))
+      add_triangle(a, b, c, material);
   }
 }
 
 void SceneBuilder::mesh(Mesh mesh, std::uint32_t material) {
   Triangles& t = file_.scene.geometry.triangles;
-  const auto first_vertex = std::uint32_t(t.vertex_count()), first_triangle = std::uint32_t(t.size());
+  const auto first_vertex = std::uint32_t(t.vertex_count()),
+             first_triangle = std::uint32_t(t.size());
   std::vector<bool> bad;  // empty when every vertex can be drawn
   for (std::size_t i = 0; i < mesh.vertex_count(); ++i) {
-    if (drawable(Float3{mesh.x[i], mesh.y[i], mesh.z[i]})) continue;
+    if (drawable(Float3{mesh.x[i], mesh.y[i], mesh.z[i]}))
+      continue;
     bad.resize(mesh.vertex_count());
     bad[i] = true;
     mesh.x[i] = mesh.y[i] = mesh.z[i] = 0;
   }
   append_vertices(mesh);
   const std::size_t wanted = t.size() + mesh.face_count();
-  if (wanted > t.a.capacity()) {  // at least twice as much as before: a scene may name thousands of small meshes
+  // at least twice as much as before: a scene may name thousands of small meshes
+  if (wanted > t.a.capacity()) {
     const std::size_t room = std::max(wanted, 2 * t.a.capacity());
-    t.a.reserve(room), t.b.reserve(room), t.c.reserve(room), t.material.reserve(room);
+    t.a.reserve(room);
+    t.b.reserve(room);
+    t.c.reserve(room);
+    t.material.reserve(room);
   }
   if (mesh.sizes.empty() && bad.empty())
     mesh_triangles(mesh.corners, first_vertex, material);
   else
     mesh_faces(mesh, bad, first_vertex, material);
   const auto count = std::uint32_t(t.size()) - first_triangle;
-  if (count > 0) file_.scene.geometry.objects.push_back({first_triangle, count});
+  if (count > 0)
+    file_.scene.geometry.objects.push_back({first_triangle, count});
 }
 
 /// The common case, without a look at each face's size.
-void SceneBuilder::mesh_triangles(std::span<const std::uint32_t> corners, std::uint32_t first_vertex,
+void SceneBuilder::mesh_triangles(std::span<const std::uint32_t> corners,
+                                  std::uint32_t first_vertex,
                                   std::uint32_t material) {
   Triangles& t = file_.scene.geometry.triangles;
   std::size_t at = t.size();
   const std::size_t most = at + corners.size() / 3;
-  t.a.resize(most), t.b.resize(most), t.c.resize(most), t.material.resize(most, material);
+  t.a.resize(most);
+  t.b.resize(most);
+  t.c.resize(most);
+  t.material.resize(most, material);
   for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
     const std::uint32_t a = first_vertex + corners[i], b = first_vertex + corners[i + 1],
                         c = first_vertex + corners[i + 2];
-    t.a[at] = a, t.b[at] = b, t.c[at] = c;
+    t.a[at] = a;
+    t.b[at] = b;
+    t.c[at] = c;
     at += has_area(a, b, c) ? 1 : 0;  // the next one overwrites what has none
   }
   file_.dropped.zero_area += most - at;
-  t.a.resize(at), t.b.resize(at), t.c.resize(at), t.material.resize(at);
+  t.a.resize(at);
+  t.b.resize(at);
+  t.c.resize(at);
+  t.material.resize(at);
 }
 
-void SceneBuilder::mesh_faces(const Mesh& mesh, const std::vector<bool>& bad, std::uint32_t first_vertex,
+void SceneBuilder::mesh_faces(const Mesh& mesh,
+                              const std::vector<bool>& bad,
+                              std::uint32_t first_vertex,
                               std::uint32_t material) {
   std::size_t at = 0;
   for (std::size_t f = 0, faces = mesh.face_count(); f < faces; ++f) {
     const std::size_t size = mesh.sizes.empty() ? 3 : mesh.sizes[f];
     const std::span<const std::uint32_t> corners(mesh.corners.data() + at, size);
     at += size;
-    if (!bad.empty() && std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return bad[v]; }))
+    if (!bad.empty() &&
+        std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return bad[v]; }))
       ++file_.dropped.not_finite;
     else
       mesh_face(corners, first_vertex, material);

@@ -11,10 +11,11 @@
 
 namespace grelha {
 
-/// What the file holds, as it says it: a polygon is one `p` however many triangles it becomes; `mesh` and `ply`
-/// count faces.
+/// What the file holds, as it says it: a polygon is one `p` however many triangles it becomes;
+/// `mesh` and `ply` count faces.
 struct EntityCounts {
-  std::uint64_t s = 0, p = 0, pp = 0, c = 0, pl = 0, box = 0, mesh = 0, ply = 0, lights = 0, materials = 0;
+  std::uint64_t s = 0, p = 0, pp = 0, c = 0, pl = 0, box = 0, mesh = 0, ply = 0, lights = 0,
+                materials = 0;
   bool operator==(const EntityCounts&) const = default;
 };
 
@@ -30,10 +31,11 @@ struct LensHint {
   double focal = 1;     ///< focal distance as a multiple of the distance from eye to `at`
 };
 
-/// A parallelogram light as the file states it: corner, two edges. Its light in the scene stands at its centre.
+/// A parallelogram light as the file states it: corner, two edges. Its light in the scene stands at
+/// its centre.
 struct AreaLight {
   Float3 corner, edge1, edge2, color;
-  int samples = 0;              ///< as the file asks; 0: not said
+  int samples = 0;          ///< as the file asks; 0: not said
   std::uint32_t light = 0;  ///< index into Scene::lights
 };
 
@@ -56,9 +58,10 @@ struct SceneFile {
   std::string accelerator;    ///< `accel` hint as written, or empty
   int samples_per_pixel = 0;  ///< `spp` hint, 0: none
   BoxOrder box_order = BoxOrder::kNone;
-  std::string environment;    ///< `env` folder as written, or empty
-  std::uint64_t source_bytes = 0;  ///< of text, or whatever was parsed, that stood in memory at once
-  std::vector<std::string> meshes;  ///< files it named
+  std::string environment;  ///< `env` folder as written, or empty
+  /// of text, or whatever was parsed, that stood in memory at once
+  std::uint64_t source_bytes = 0;
+  std::vector<std::string> meshes;                     ///< files it named
   bool default_camera = false, default_light = false;  ///< made up, for a bare PLY
 };
 
@@ -67,12 +70,13 @@ using Warn = std::function<void(const std::string&)>;
 
 struct ReadOptions {
   bool allow_outside = false;  ///< a scene may name files outside its own folder
-  /// Told the share done, 0 to 1, never less than before; returns false to have reading throw Stopped.
+  /// Told the share done, 0 to 1, never less than before; returns false to have reading throw
+  /// Stopped.
   std::function<bool(double)> progress{};
 };
 
-/// Reads .nff, .p3f or .ply, each also with .gz behind it (told apart by the extension; gzip by its first bytes).
-/// Throws ParseError (wrong content) or FileError (cannot be read).
+/// Reads .nff, .p3f or .ply, each also with .gz behind it (told apart by the extension; gzip by its
+/// first bytes). Throws ParseError (wrong content) or FileError (cannot be read).
 SceneFile read_scene(const std::string& path, const Warn& warn, const ReadOptions& options = {});
 
 }  // namespace grelha

@@ -5,7 +5,8 @@
 
 namespace {
 
-constexpr int kLevel = 4;  // stb asks for 8: five times the time for 7 % fewer bytes (ready scene balls at 640x480)
+// stb asks for 8: five times the time for 7 % fewer bytes (ready scene balls at 640x480)
+constexpr int kLevel = 4;
 
 /// zlib's deflate in place of stb's own, which is slower and packs worse.
 unsigned char* deflate_by_zlib(unsigned char* data, int size, int* packed_size, int) {

@@ -20,13 +20,15 @@ static_assert(std::atomic<int>::is_always_lock_free, "a handler may take no lock
 bool on_terminal = false;
 void (*pipe_before)(int) = SIG_DFL;
 
-/// By the handler itself, not by a thread that looks now and then: what is in work may take long. Only what a handler may do.
+/// By the handler itself, not by a thread that looks now and then: what is in work may take long.
+/// Only what a handler may do.
 void note(int signal) {
   constexpr std::string_view kWipe = "\r\033[K";  // the bar
   constexpr std::string_view kAnswer = "grelha: stopping; once more ends it at once\n";
   noted = signal;
   const int error = errno;
-  if (on_terminal) (void)!::write(STDERR_FILENO, kWipe.data(), kWipe.size());
+  if (on_terminal)
+    (void)!::write(STDERR_FILENO, kWipe.data(), kWipe.size());
   (void)!::write(STDERR_FILENO, kAnswer.data(), kAnswer.size());
   errno = error;
 }
@@ -39,7 +41,9 @@ void act(void (*handler)(int), int flags) {
   for (const int signal : {SIGHUP, SIGINT, SIGTERM}) {
     struct sigaction old {};
     sigaction(signal, nullptr, &old);
-    if (old.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);  // whoever started the program may have it ignore one
+    // whoever started the program may have it ignore one
+    if (old.sa_handler != SIG_IGN)
+      sigaction(signal, &action, nullptr);
   }
 }
 
@@ -59,6 +63,8 @@ StopSignals::~StopSignals() {
 
 int StopSignals::seen() { return noted; }
 
-const char* signal_name(int signal) { return signal == SIGHUP ? "SIGHUP" : signal == SIGINT ? "SIGINT" : "SIGTERM"; }
+const char* signal_name(int signal) {
+  return signal == SIGHUP ? "SIGHUP" : signal == SIGINT ? "SIGINT" : "SIGTERM";
+}
 
 }  // namespace grelha

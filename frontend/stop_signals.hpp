@@ -2,8 +2,9 @@
 
 namespace grelha {
 
-/// While one lives, SIGHUP, SIGINT and SIGTERM are noted and answered on stderr at once instead of ending the program, each
-/// the first time. A pipe that nobody reads any more ends nothing either: whoever read it may have got the same Ctrl-C.
+/// While one lives, SIGHUP, SIGINT and SIGTERM are noted and answered on stderr at once instead of
+/// ending the program, each the first time. A pipe that nobody reads any more ends nothing either:
+/// whoever read it may have got the same Ctrl-C.
 class StopSignals {
  public:
   StopSignals();

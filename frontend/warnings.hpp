@@ -20,9 +20,12 @@ class Warnings {
   bool first(std::string_view kind) {
     return said_.size() < kMost && said_.insert(std::string(kind.substr(0, 64))).second;
   }
-  void say(const Position& at, std::string_view message) { say(at.text() + ": warning: " + std::string(message)); }
+  void say(const Position& at, std::string_view message) {
+    say(at.text() + ": warning: " + std::string(message));
+  }
   void say(const std::string& line) {
-    if (warn_) warn_(line);
+    if (warn_)
+      warn_(line);
   }
 
  private:

@@ -33,19 +33,22 @@ std::int64_t wrapped_sum(std::int64_t a, std::int64_t b) {
 
 void add_rows(Accumulator& to, const Range& rows, const std::int64_t* sums) {
   std::int64_t* const out = to.sums.data() + first_sum(to, rows.begin);
-  const std::size_t n = static_cast<std::size_t>(size(rows)) * static_cast<std::size_t>(to.width) * 3;
-  for (std::size_t i = 0; i < n; ++i) out[i] = wrapped_sum(out[i], sums[i]);
+  const std::size_t n =
+      static_cast<std::size_t>(size(rows)) * static_cast<std::size_t>(to.width) * 3;
+  for (std::size_t i = 0; i < n; ++i)
+    out[i] = wrapped_sum(out[i], sums[i]);
 }
 
 [[noreturn]] void refuse(const char* what, const Range& r, int most) {
-  throw std::invalid_argument(std::string(what) + ' ' + std::to_string(r.begin) + ':' + std::to_string(r.end) + " are not among 0:" +
-                              std::to_string(most));
+  throw std::invalid_argument(std::string(what) + ' ' + std::to_string(r.begin) + ':' +
+                              std::to_string(r.end) + " are not among 0:" + std::to_string(most));
 }
 
 bool within(const Range& r, int most) { return r.begin >= 0 && r.begin < r.end && r.end <= most; }
 
 void check(const Accumulator& a, const Camera& camera, const RenderOptions& options) {
-  if (options.subdivision.on || options.refine.on()) throw std::invalid_argument("sums are kept of pictures with a fixed number of samples alone");
+  if (options.subdivision.on || options.refine.on())
+    throw std::invalid_argument("sums are kept of pictures with a fixed number of samples alone");
   if (a.width != camera.width || a.height != camera.height || a.samples != options.sampling.samples)
     throw std::invalid_argument("these sums are of a picture of another size or number of samples");
 }
@@ -54,10 +57,13 @@ void check(const Accumulator& a, const Camera& camera, const RenderOptions& opti
 
 Accumulator make_accumulator(const Camera& camera, const RenderOptions& options, const Part& part) {
   const int samples = options.sampling.samples;
-  if (!within(part.rows, camera.height)) refuse("rows", part.rows, camera.height);
-  if (!within(part.samples, samples)) refuse("samples", part.samples, samples);
+  if (!within(part.rows, camera.height))
+    refuse("rows", part.rows, camera.height);
+  if (!within(part.samples, samples))
+    refuse("samples", part.samples, samples);
   Accumulator a{camera.width, camera.height, samples, part, {}, {}};
-  a.sums.resize(static_cast<std::size_t>(size(part.rows)) * static_cast<std::size_t>(camera.width) * 3);
+  a.sums.resize(static_cast<std::size_t>(size(part.rows)) * static_cast<std::size_t>(camera.width) *
+                3);
   a.done.resize(piece_count(part));
   return a;
 }
@@ -67,7 +73,8 @@ Accumulator make_accumulator(const Camera& camera, const RenderOptions& options)
 }
 
 std::size_t piece_count(const Part& part) {
-  return static_cast<std::size_t>(pieces(part.rows, kPieceRows)) * static_cast<std::size_t>(pieces(part.samples, kPieceSamples));
+  return static_cast<std::size_t>(pieces(part.rows, kPieceRows)) *
+         static_cast<std::size_t>(pieces(part.samples, kPieceSamples));
 }
 
 Part piece_of(const Part& part, std::size_t i) {
@@ -80,14 +87,20 @@ double share_done(const Accumulator& a) {
   return static_cast<double>(done) / static_cast<double>(a.done.size());
 }
 
-bool accumulate(const World& world, const Camera& camera, const RenderOptions& given, Accumulator& a, RenderStats& stats, const NextPiece& next) {
+bool accumulate(const World& world,
+                const Camera& camera,
+                const RenderOptions& given,
+                Accumulator& a,
+                RenderStats& stats,
+                const NextPiece& next) {
   const Told told(given);
   const RenderOptions& options = told.options();
   const Setup setup = set_up(world, camera, options);
   check(a, camera, options);
   std::vector<std::size_t> left;
   for (std::size_t i = 0; i < a.done.size(); ++i)
-    if (a.done[i] == 0) left.push_back(i);
+    if (a.done[i] == 0)
+      left.push_back(i);
   std::size_t done = a.done.size() - left.size();
   std::atomic<std::size_t> begun = 0;
   const auto next_band = [&](Band& band) {
@@ -97,20 +110,31 @@ bool accumulate(const World& world, const Camera& camera, const RenderOptions& g
       const std::size_t at = begun++;
       band.number = at < left.size() ? left[at] : a.done.size();
     }
-    if (band.number >= a.done.size()) return false;
+    if (band.number >= a.done.size())
+      return false;
     band.part = piece_of(a.part, band.number);
     return true;
   };
-  render_bands(world.impl(), setup, options, left.size(), next_band, [&](const Band& band, const std::int64_t* sums) {
-    bool go_on = true;
+  render_bands(
+      world.impl(),
+      setup,
+      options,
+      left.size(),
+      next_band,
+      [&](const Band& band, const std::int64_t* sums) {
+        bool go_on = true;
 #pragma omp critical(grelha_progress)
-    {
-      add_rows(a, band.part.rows, sums);
-      a.done[band.number] = 1, ++done;
-      if (options.progress) go_on = options.progress(static_cast<double>(done) / static_cast<double>(a.done.size()));
-    }
-    return go_on;
-  }, stats);
+        {
+          add_rows(a, band.part.rows, sums);
+          a.done[band.number] = 1;
+          ++done;
+          if (options.progress)
+            go_on =
+                options.progress(static_cast<double>(done) / static_cast<double>(a.done.size()));
+        }
+        return go_on;
+      },
+      stats);
   told.rethrow();
   return is_complete(a);
 }
@@ -119,9 +143,11 @@ void add(Accumulator& whole, const Accumulator& part) {
   if (whole.width != part.width || whole.height != part.height || whole.samples != part.samples)
     throw std::invalid_argument("these sums are of a picture of another size or number of samples");
   const Part &w = whole.part, &p = part.part;
-  if (p.rows.begin < w.rows.begin || p.rows.end > w.rows.end || p.samples.begin < w.samples.begin || p.samples.end > w.samples.end)
+  if (p.rows.begin < w.rows.begin || p.rows.end > w.rows.end || p.samples.begin < w.samples.begin ||
+      p.samples.end > w.samples.end)
     throw std::invalid_argument("a part lies outside what it is added to");
-  if (!is_complete(part)) throw std::invalid_argument("a part is not complete");
+  if (!is_complete(part))
+    throw std::invalid_argument("a part is not complete");
   add_rows(whole, p.rows, part.sums.data());
 }
 
@@ -131,9 +157,11 @@ Image picture_so_far(const Accumulator& a) {
   for (std::size_t b = 0; b < bands; ++b) {
     int samples = 0;
     for (std::size_t i = b; i < a.done.size(); i += bands)
-      if (a.done[i] != 0) samples += size(piece_of(a.part, i).samples);
+      if (a.done[i] != 0)
+        samples += size(piece_of(a.part, i).samples);
     const Range rows = piece_of(a.part, b).rows;
-    if (samples > 0) mean_light(a.sums.data() + first_sum(a, rows.begin), samples, image, rows);
+    if (samples > 0)
+      mean_light(a.sums.data() + first_sum(a, rows.begin), samples, image, rows);
   }
   return image;
 }
@@ -141,8 +169,10 @@ Image picture_so_far(const Accumulator& a) {
 void mean_light(const std::int64_t* sums, int samples, Image& image, const Range& rows) {
   const double share = 1 / (kLightUnit * samples);
   float* const out = image.row(rows.begin);
-  const std::size_t n = static_cast<std::size_t>(size(rows)) * static_cast<std::size_t>(image.width) * 3;
-  for (std::size_t i = 0; i < n; ++i) out[i] = static_cast<float>(static_cast<double>(sums[i]) * share);
+  const std::size_t n =
+      static_cast<std::size_t>(size(rows)) * static_cast<std::size_t>(image.width) * 3;
+  for (std::size_t i = 0; i < n; ++i)
+    out[i] = static_cast<float>(static_cast<double>(sums[i]) * share);
 }
 
 }  // namespace grelha

@@ -19,7 +19,8 @@ struct Shape {
   /// FNV-1a over words.
   std::uint64_t hash() const {
     std::uint64_t h = 0xCBF29CE484222325u;
-    for (const std::uint32_t b : bits) h = (h ^ b) * 0x100000001B3u;
+    for (const std::uint32_t b : bits)
+      h = (h ^ b) * 0x100000001B3u;
     return h ^ h >> 32;
   }
 };

@@ -1,6 +1,6 @@
 #pragma once
-// What a caller fills in: plain arrays, one per component, every kind apart. The kernel reads them; it never
-// parses, prints or owns a file. Units are scene units throughout.
+// What a caller fills in: plain arrays, one per component, every kind apart. The kernel reads them;
+// it never parses, prints or owns a file. Units are scene units throughout.
 
 #include <cstddef>
 #include <cstdint>
@@ -16,25 +16,36 @@ struct Float3 {
 
 /// Balls. A negative radius shows only the inside (NFF).
 struct Spheres {
-  std::vector<float> x, y, z, radius;   ///< [count]
-  std::vector<std::uint32_t> material;  ///< [count] index into Scene::materials
+  std::vector<float> x, y, z, radius;                 ///< [count]
+  std::vector<std::uint32_t> material;                ///< [count] index into Scene::materials
   std::size_t size() const { return radius.size(); }  ///< how many
   /// Appends one; `m`: its material.
   void add(Float3 center, float r, std::uint32_t m) {
-    x.push_back(center.x), y.push_back(center.y), z.push_back(center.z), radius.push_back(r), material.push_back(m);
+    x.push_back(center.x);
+    y.push_back(center.y);
+    z.push_back(center.z);
+    radius.push_back(r);
+    material.push_back(m);
   }
 };
 
-/// Sides of cone frusta without end caps; equal radii make cylinders. Both radii negative: only the inside shows.
+/// Sides of cone frusta without end caps; equal radii make cylinders. Both radii negative: only the
+/// inside shows.
 struct Cones {
   std::vector<float> base_x, base_y, base_z, base_radius;  ///< [count]
   std::vector<float> apex_x, apex_y, apex_z, apex_radius;  ///< [count]
   std::vector<std::uint32_t> material;                     ///< [count]
-  std::size_t size() const { return material.size(); }  ///< how many
+  std::size_t size() const { return material.size(); }     ///< how many
   /// Appends one; `m`: its material.
   void add(Float3 base, float rb, Float3 apex, float ra, std::uint32_t m) {
-    base_x.push_back(base.x), base_y.push_back(base.y), base_z.push_back(base.z), base_radius.push_back(rb);
-    apex_x.push_back(apex.x), apex_y.push_back(apex.y), apex_z.push_back(apex.z), apex_radius.push_back(ra);
+    base_x.push_back(base.x);
+    base_y.push_back(base.y);
+    base_z.push_back(base.z);
+    base_radius.push_back(rb);
+    apex_x.push_back(apex.x);
+    apex_y.push_back(apex.y);
+    apex_z.push_back(apex.z);
+    apex_radius.push_back(ra);
     material.push_back(m);
   }
 };
@@ -47,55 +58,71 @@ struct Planes {
   std::size_t size() const { return material.size(); }  ///< how many
   /// Appends one through `p` with normal `n`; `m`: its material.
   void add(Float3 p, Float3 n, std::uint32_t m) {
-    x.push_back(p.x), y.push_back(p.y), z.push_back(p.z), nx.push_back(n.x), ny.push_back(n.y), nz.push_back(n.z);
+    x.push_back(p.x);
+    y.push_back(p.y);
+    z.push_back(p.z);
+    nx.push_back(n.x);
+    ny.push_back(n.y);
+    nz.push_back(n.z);
     material.push_back(m);
   }
 };
 
-/// Triangles over shared vertices, of all meshes and loose polygons together. Triangles of neighbours that name
-/// vertices with equal coordinates are watertight along the edge they share, whether the indices are equal or not.
+/// Triangles over shared vertices, of all meshes and loose polygons together. Triangles of
+/// neighbours that name vertices with equal coordinates are watertight along the edge they share,
+/// whether the indices are equal or not.
 struct Triangles {
-  std::vector<float> x, y, z;           ///< [vertices]
-  std::vector<float> nx, ny, nz;        ///< [vertices] normals of any length, or empty when no vertex has one; (0,0,0): none
-  std::vector<std::uint32_t> a, b, c;   ///< [count] vertices of each triangle, counter-clockwise from the front
-  std::vector<std::uint32_t> material;  ///< [count]
+  std::vector<float> x, y, z;  ///< [vertices]
+  /// [vertices] normals of any length, or empty when no vertex has one; (0,0,0): none
+  std::vector<float> nx, ny, nz;
+  /// [count] vertices of each triangle, counter-clockwise from the front
+  std::vector<std::uint32_t> a, b, c;
+  std::vector<std::uint32_t> material;                   ///< [count]
   std::size_t size() const { return a.size(); }          ///< how many
   std::size_t vertex_count() const { return x.size(); }  ///< how many corners they share
 };
 
-/// A run of triangles that belong together (a PLY file, an inline mesh) and get a grid of their own.
+/// A run of triangles that belong together (a PLY file, an inline mesh) and get a grid of their
+/// own.
 struct Object {
   std::uint32_t first_triangle = 0, triangle_count = 0;
 };
 
-/// All that rays can meet. Ids run over planes, spheres, triangles, cones, each kind in the order it stands in.
+/// All that rays can meet. Ids run over planes, spheres, triangles, cones, each kind in the order
+/// it stands in.
 struct Geometry {
   Spheres spheres;
   Triangles triangles;
   Cones cones;
   Planes planes;
-  std::vector<Object> objects;  ///< disjoint, ascending; triangles in none of them are loose and share a grid with spheres and cones
+  /// disjoint, ascending; triangles in none of them are loose and share a grid with spheres and
+  /// cones
+  std::vector<Object> objects;
 };
 
 /// How a surface answers light; every weight is already multiplied out (Kd times colour and so on).
 struct Material {
-  Float3 diffuse{};          ///< weight of the Lambert term
-  Float3 specular{};         ///< weight of the Blinn-Phong highlight
-  Float3 mirror{};           ///< weight of the reflected ray; with `fresnel` the weight comes from Schlick's formula
-  float transmission = 0;    ///< weight of the refracted ray; 0: opaque
-  float shine = 0;           ///< exponent of the highlight
-  float ior = 1;             ///< index of refraction of the inside against 1 outside; read only when transmission > 0
-  bool fresnel = false;      ///< split between mirror and refraction by Schlick (1994) where transmission > 0
-  Float3 emission{};         ///< light given off
-  float roughness = 0;       ///< spread of the mirror lobe: radius of a disc across the unit mirror direction at its tip
+  Float3 diffuse{};   ///< weight of the Lambert term
+  Float3 specular{};  ///< weight of the Blinn-Phong highlight
+  /// weight of the reflected ray; with `fresnel` the weight comes from Schlick's formula
+  Float3 mirror{};
+  float transmission = 0;  ///< weight of the refracted ray; 0: opaque
+  float shine = 0;         ///< exponent of the highlight
+  /// index of refraction of the inside against 1 outside; read only when transmission > 0
+  float ior = 1;
+  /// split between mirror and refraction by Schlick (1994) where transmission > 0
+  bool fresnel = false;
+  Float3 emission{};  ///< light given off
+  /// spread of the mirror lobe: radius of a disc across the unit mirror direction at its tip
+  float roughness = 0;
   bool operator==(const Material&) const = default;  ///< field by field
 };
 
-/// A point light, or a parallelogram of such: each shadow ray goes to one point of it, and the light a surface gets is the
-/// mean over its points. Edges of zero: a point.
+/// A point light, or a parallelogram of such: each shadow ray goes to one point of it, and the
+/// light a surface gets is the mean over its points. Edges of zero: a point.
 struct Light {
   Float3 position{}, color{};  ///< position: the centre
-  Float3 edge1{}, edge2{};  ///< full edges
+  Float3 edge1{}, edge2{};     ///< full edges
   /// Whether it has edges.
   bool is_area() const { return edge1 != Float3{} || edge2 != Float3{}; }
 };

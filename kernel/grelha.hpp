@@ -1,9 +1,9 @@
 #pragma once
-/// \file
-/// All of the library: `#include <grelha/grelha.hpp>`, `find_package(grelha)`, link `grelha::kernel`.
+/// \file All of the library: `#include <grelha/grelha.hpp>`, `find_package(grelha)`, link
+/// `grelha::kernel`.
 ///
-/// Fill in a grelha::Scene, or a grelha::SceneSpans over arrays of your own; build a grelha::World from it; ask with
-/// grelha::closest() and grelha::occluded(), or grelha::render() a picture.
+/// Fill in a grelha::Scene, or a grelha::SceneSpans over arrays of your own; build a grelha::World
+/// from it; ask with grelha::closest() and grelha::occluded(), or grelha::render() a picture.
 
 #include "kernel/camera.hpp"
 #include "kernel/geometry.hpp"

@@ -1,19 +1,22 @@
 #pragma once
-// With double_lanes.hpp the one file that names xsimd and intrinsics. Every hot header is compiled once per instruction set, inside a
-// namespace of that set's name (GRELHA_ISA), so that no function of one copy can be linked into another.
+// With double_lanes.hpp the one file that names xsimd and intrinsics. Every hot header is compiled
+// once per instruction set, inside a namespace of that set's name (GRELHA_ISA), so that no function
+// of one copy can be linked into another.
 //
-//   Lanes   one float per SIMD lane, as wide as the machine's registers: one ray a lane
-//   Block   the same, at most 8 wide: one primitive of a block a lane
-//   float   the scalar twin; every function below exists for it too, with the same bits
-//   DoubleLanes, double   the same in double precision, half as many lanes, for what is computed precisely
-//   Exact, ExactBlock     what primitives are tested in: Lanes and Block, or both DoubleLanes in copies compiled with GRELHA_DOUBLE
-//   Words<Lanes>, Words<float>   unsigned 32-bit integers beside them: + - * ^ & | << >>, == and ?: are written as for one
+// Lanes   one float per SIMD lane, as wide as the machine's registers: one ray a lane Block   the
+// same, at most 8 wide: one primitive of a block a lane float   the scalar twin; every function
+// below exists for it too, with the same bits DoubleLanes, double   the same in double precision,
+// half as many lanes, for what is computed precisely Exact, ExactBlock     what primitives are
+// tested in: Lanes and Block, or both DoubleLanes in copies compiled with GRELHA_DOUBLE
+// Words<Lanes>, Words<float>   unsigned 32-bit integers beside them: + - * ^ & | << >>, == and ?:
+// are written as for one
 //
-// Only + - * / sqrt, comparisons and selects: these give the same bits at every width. No reciprocal, no rsqrt, no
-// fused multiply-add, no unary minus (it loses -0 on AVX-512).
+// Only + - * / sqrt, comparisons and selects: these give the same bits at every width. No
+// reciprocal, no rsqrt, no fused multiply-add, no unary minus (it loses -0 on AVX-512).
 
 #ifndef GRELHA_ISA
-#error "define GRELHA_ISA (scalar, sse2, avx2, avx512) before including kernel headers that hold hot loops"
+#error \
+    "define GRELHA_ISA (scalar, sse2, avx2, avx512) before headers that hold hot loops"
 #endif
 
 #include <cstdint>
@@ -37,7 +40,8 @@
 
 namespace grelha::GRELHA_ISA {
 
-// ---- float, the scalar twin -------------------------------------------------------------------------------------
+// ---- float, the scalar twin
+// -------------------------------------------------------------------------------------
 
 template <class Real>
 struct LaneTraits;
@@ -89,10 +93,12 @@ inline void load(const float* p, float& r) { r = *p; }
 inline void load(const double* p, double& r) { r = *p; }
 inline void store(float* p, float a) { *p = a; }
 inline void store(double* p, double a) { *p = a; }
-inline bool any_set(std::uint32_t a) { return a != 0; }                           ///< whether any lane is not 0
+/// whether any lane is not 0
+inline bool any_set(std::uint32_t a) { return a != 0; }
 inline float small_to_float(std::uint32_t a) { return static_cast<float>(a); }  ///< a < 2^24: exact
 
-// ---- SIMD -------------------------------------------------------------------------------------------------------
+// ---- SIMD
+// ------------------------------------------------------------------------------------------
 
 #if GRELHA_ISA_NUMBER == 1
 
@@ -206,13 +212,17 @@ inline void store(float* p, const Simd<A>& a) {
 inline Lanes lesser(const Lanes& a, const Lanes& b) { return Lanes(_mm_min_ps(a.data, b.data)); }
 inline Lanes greater(const Lanes& a, const Lanes& b) { return Lanes(_mm_max_ps(a.data, b.data)); }
 inline unsigned bits(const SimdMask<xsimd::sse2>& m) { return unsigned(_mm_movemask_ps(m.data)); }
-inline SimdMask<xsimd::sse2> but_not(const SimdMask<xsimd::sse2>& a, const SimdMask<xsimd::sse2>& b) {
+inline SimdMask<xsimd::sse2> but_not(const SimdMask<xsimd::sse2>& a,
+                                     const SimdMask<xsimd::sse2>& b) {
   return SimdMask<xsimd::sse2>(_mm_andnot_ps(b.data, a.data));
 }
 inline bool any_set(SimdWords<xsimd::sse2>::Type a) {
-  return _mm_movemask_epi8(_mm_cmpeq_epi32(reinterpret_cast<__m128i>(a), _mm_setzero_si128())) != 0xFFFF;
+  return _mm_movemask_epi8(_mm_cmpeq_epi32(reinterpret_cast<__m128i>(a), _mm_setzero_si128())) !=
+         0xFFFF;
 }
-inline Lanes small_to_float(SimdWords<xsimd::sse2>::Type a) { return Lanes(_mm_cvtepi32_ps(reinterpret_cast<__m128i>(a))); }
+inline Lanes small_to_float(SimdWords<xsimd::sse2>::Type a) {
+  return Lanes(_mm_cvtepi32_ps(reinterpret_cast<__m128i>(a)));
+}
 #else
 inline Simd<xsimd::avx2> lesser(const Simd<xsimd::avx2>& a, const Simd<xsimd::avx2>& b) {
   return Simd<xsimd::avx2>(_mm256_min_ps(a.data, b.data));
@@ -220,8 +230,11 @@ inline Simd<xsimd::avx2> lesser(const Simd<xsimd::avx2>& a, const Simd<xsimd::av
 inline Simd<xsimd::avx2> greater(const Simd<xsimd::avx2>& a, const Simd<xsimd::avx2>& b) {
   return Simd<xsimd::avx2>(_mm256_max_ps(a.data, b.data));
 }
-inline unsigned bits(const SimdMask<xsimd::avx2>& m) { return unsigned(_mm256_movemask_ps(m.data)); }
-inline SimdMask<xsimd::avx2> but_not(const SimdMask<xsimd::avx2>& a, const SimdMask<xsimd::avx2>& b) {
+inline unsigned bits(const SimdMask<xsimd::avx2>& m) {
+  return unsigned(_mm256_movemask_ps(m.data));
+}
+inline SimdMask<xsimd::avx2> but_not(const SimdMask<xsimd::avx2>& a,
+                                     const SimdMask<xsimd::avx2>& b) {
   return SimdMask<xsimd::avx2>(_mm256_andnot_ps(b.data, a.data));
 }
 #endif
@@ -230,20 +243,27 @@ inline bool any_set(SimdWords<xsimd::avx2>::Type a) {
   const __m256i w = reinterpret_cast<__m256i>(a);
   return _mm256_testz_si256(w, w) == 0;
 }
-inline Lanes small_to_float(SimdWords<xsimd::avx2>::Type a) { return Lanes(_mm256_cvtepi32_ps(reinterpret_cast<__m256i>(a))); }
+inline Lanes small_to_float(SimdWords<xsimd::avx2>::Type a) {
+  return Lanes(_mm256_cvtepi32_ps(reinterpret_cast<__m256i>(a)));
+}
 #endif
 #if GRELHA_ISA_NUMBER == 4
 inline Lanes lesser(const Lanes& a, const Lanes& b) { return Lanes(_mm512_min_ps(a.data, b.data)); }
-inline Lanes greater(const Lanes& a, const Lanes& b) { return Lanes(_mm512_max_ps(a.data, b.data)); }
+inline Lanes greater(const Lanes& a, const Lanes& b) {
+  return Lanes(_mm512_max_ps(a.data, b.data));
+}
 inline unsigned bits(const SimdMask<xsimd::avx512bw>& m) { return unsigned(m.data); }
-inline SimdMask<xsimd::avx512bw> but_not(const SimdMask<xsimd::avx512bw>& a, const SimdMask<xsimd::avx512bw>& b) {
+inline SimdMask<xsimd::avx512bw> but_not(const SimdMask<xsimd::avx512bw>& a,
+                                         const SimdMask<xsimd::avx512bw>& b) {
   return SimdMask<xsimd::avx512bw>(static_cast<__mmask16>(a.data & ~b.data));
 }
 inline bool any_set(SimdWords<xsimd::avx512bw>::Type a) {
   const __m512i w = reinterpret_cast<__m512i>(a);
   return _mm512_test_epi32_mask(w, w) != 0;
 }
-inline Lanes small_to_float(SimdWords<xsimd::avx512bw>::Type a) { return Lanes(_mm512_cvtepi32_ps(reinterpret_cast<__m512i>(a))); }
+inline Lanes small_to_float(SimdWords<xsimd::avx512bw>::Type a) {
+  return Lanes(_mm512_cvtepi32_ps(reinterpret_cast<__m512i>(a)));
+}
 #endif
 
 template <class A>
@@ -271,45 +291,60 @@ inline float lane_extreme(__m128 v, const Take4& take4, const Take1& take1) {
   return _mm_cvtss_f32(take1(v, _mm_shuffle_ps(v, v, 1)));
 }
 inline float lane_min(const Simd<xsimd::sse2>& a) {
-  return lane_extreme(a.data, [](__m128 x, __m128 y) { return _mm_min_ps(x, y); }, [](__m128 x, __m128 y) { return _mm_min_ss(x, y); });
+  return lane_extreme(
+      a.data,
+      [](__m128 x, __m128 y) { return _mm_min_ps(x, y); },
+      [](__m128 x, __m128 y) { return _mm_min_ss(x, y); });
 }
 inline float lane_max(const Simd<xsimd::sse2>& a) {
-  return lane_extreme(a.data, [](__m128 x, __m128 y) { return _mm_max_ps(x, y); }, [](__m128 x, __m128 y) { return _mm_max_ss(x, y); });
+  return lane_extreme(
+      a.data,
+      [](__m128 x, __m128 y) { return _mm_max_ps(x, y); },
+      [](__m128 x, __m128 y) { return _mm_max_ss(x, y); });
 }
 #if GRELHA_ISA_NUMBER > 2
 inline float lane_min(const Simd<xsimd::avx2>& a) {
-  return lane_min(Simd<xsimd::sse2>(_mm_min_ps(_mm256_castps256_ps128(a.data), _mm256_extractf128_ps(a.data, 1))));
+  return lane_min(Simd<xsimd::sse2>(
+      _mm_min_ps(_mm256_castps256_ps128(a.data), _mm256_extractf128_ps(a.data, 1))));
 }
 inline float lane_max(const Simd<xsimd::avx2>& a) {
-  return lane_max(Simd<xsimd::sse2>(_mm_max_ps(_mm256_castps256_ps128(a.data), _mm256_extractf128_ps(a.data, 1))));
+  return lane_max(Simd<xsimd::sse2>(
+      _mm_max_ps(_mm256_castps256_ps128(a.data), _mm256_extractf128_ps(a.data, 1))));
 }
 #endif
 #if GRELHA_ISA_NUMBER > 3
 inline float lane_min(const Lanes& a) {
-  return lane_min(lesser(Block(_mm512_castps512_ps256(a.data)), Block(_mm512_extractf32x8_ps(a.data, 1))));
+  return lane_min(
+      lesser(Block(_mm512_castps512_ps256(a.data)), Block(_mm512_extractf32x8_ps(a.data, 1))));
 }
 inline float lane_max(const Lanes& a) {
-  return lane_max(greater(Block(_mm512_castps512_ps256(a.data)), Block(_mm512_extractf32x8_ps(a.data, 1))));
+  return lane_max(
+      greater(Block(_mm512_castps512_ps256(a.data)), Block(_mm512_extractf32x8_ps(a.data, 1))));
 }
 #endif
 #endif
 
-/// Numbers without their fractions, of [0, 2^24); bytes at places `at` of an array that has three more behind its last.
+/// Numbers without their fractions, of [0, 2^24); bytes at places `at` of an array that has three
+/// more behind its last.
 #if GRELHA_ISA_NUMBER == 1
 inline float whole(float a) { return static_cast<float>(static_cast<std::int32_t>(a)); }
 inline std::uint32_t to_words(float a) { return static_cast<std::uint32_t>(a); }
 inline float bytes_at(const std::uint8_t* from, std::uint32_t at) { return from[at]; }
 #else
 inline Lanes whole(const Lanes& a) { return xsimd::to_float(xsimd::to_int(a)); }
-inline LaneTraits<Lanes>::Words to_words(const Lanes& a) { return reinterpret_cast<LaneTraits<Lanes>::Words>(xsimd::to_int(a).data); }
+inline LaneTraits<Lanes>::Words to_words(const Lanes& a) {
+  return reinterpret_cast<LaneTraits<Lanes>::Words>(xsimd::to_int(a).data);
+}
 inline Lanes bytes_at(const std::uint8_t* from, LaneTraits<Lanes>::Words at) {
 #if GRELHA_ISA_NUMBER == 2
   return Lanes(_mm_cvtepi32_ps(_mm_setr_epi32(from[at[0]], from[at[1]], from[at[2]], from[at[3]])));
 #elif GRELHA_ISA_NUMBER == 3
-  const __m256i four = _mm256_i32gather_epi32(reinterpret_cast<const int*>(from), reinterpret_cast<__m256i>(at), 1);
+  const __m256i four =
+      _mm256_i32gather_epi32(reinterpret_cast<const int*>(from), reinterpret_cast<__m256i>(at), 1);
   return Lanes(_mm256_cvtepi32_ps(_mm256_and_si256(four, _mm256_set1_epi32(255))));
 #else
-  const __m512i four = _mm512_i32gather_epi32(reinterpret_cast<__m512i>(at), reinterpret_cast<const int*>(from), 1);
+  const __m512i four =
+      _mm512_i32gather_epi32(reinterpret_cast<__m512i>(at), reinterpret_cast<const int*>(from), 1);
   return Lanes(_mm512_cvtepi32_ps(_mm512_and_si512(four, _mm512_set1_epi32(255))));
 #endif
 }
@@ -321,7 +356,9 @@ inline bool mask_of(std::uint32_t a) { return a != 0; }
 inline float floats_at(const float* from, std::uint32_t at) { return from[at]; }
 inline std::uint32_t words_at(const std::uint32_t* from, std::uint32_t at) { return from[at]; }
 #if GRELHA_ISA_NUMBER == 2
-inline SimdMask<xsimd::sse2> mask_of(LaneTraits<Lanes>::Words a) { return SimdMask<xsimd::sse2>(reinterpret_cast<__m128>(a)); }
+inline SimdMask<xsimd::sse2> mask_of(LaneTraits<Lanes>::Words a) {
+  return SimdMask<xsimd::sse2>(reinterpret_cast<__m128>(a));
+}
 inline Lanes floats_at(const float* from, LaneTraits<Lanes>::Words at) {
   return Lanes(_mm_setr_ps(from[at[0]], from[at[1]], from[at[2]], from[at[3]]));
 }
@@ -329,18 +366,26 @@ inline LaneTraits<Lanes>::Words words_at(const std::uint32_t* from, LaneTraits<L
   return LaneTraits<Lanes>::Words{from[at[0]], from[at[1]], from[at[2]], from[at[3]]};
 }
 #elif GRELHA_ISA_NUMBER == 3
-inline SimdMask<xsimd::avx2> mask_of(LaneTraits<Lanes>::Words a) { return SimdMask<xsimd::avx2>(reinterpret_cast<__m256>(a)); }
-inline Lanes floats_at(const float* from, LaneTraits<Lanes>::Words at) { return Lanes(_mm256_i32gather_ps(from, reinterpret_cast<__m256i>(at), 4)); }
+inline SimdMask<xsimd::avx2> mask_of(LaneTraits<Lanes>::Words a) {
+  return SimdMask<xsimd::avx2>(reinterpret_cast<__m256>(a));
+}
+inline Lanes floats_at(const float* from, LaneTraits<Lanes>::Words at) {
+  return Lanes(_mm256_i32gather_ps(from, reinterpret_cast<__m256i>(at), 4));
+}
 inline LaneTraits<Lanes>::Words words_at(const std::uint32_t* from, LaneTraits<Lanes>::Words at) {
-  return reinterpret_cast<LaneTraits<Lanes>::Words>(_mm256_i32gather_epi32(reinterpret_cast<const int*>(from), reinterpret_cast<__m256i>(at), 4));
+  return reinterpret_cast<LaneTraits<Lanes>::Words>(
+      _mm256_i32gather_epi32(reinterpret_cast<const int*>(from), reinterpret_cast<__m256i>(at), 4));
 }
 #elif GRELHA_ISA_NUMBER == 4
 inline SimdMask<xsimd::avx512bw> mask_of(LaneTraits<Lanes>::Words a) {
   return SimdMask<xsimd::avx512bw>(_mm512_movepi32_mask(reinterpret_cast<__m512i>(a)));
 }
-inline Lanes floats_at(const float* from, LaneTraits<Lanes>::Words at) { return Lanes(_mm512_i32gather_ps(reinterpret_cast<__m512i>(at), from, 4)); }
+inline Lanes floats_at(const float* from, LaneTraits<Lanes>::Words at) {
+  return Lanes(_mm512_i32gather_ps(reinterpret_cast<__m512i>(at), from, 4));
+}
 inline LaneTraits<Lanes>::Words words_at(const std::uint32_t* from, LaneTraits<Lanes>::Words at) {
-  return reinterpret_cast<LaneTraits<Lanes>::Words>(_mm512_i32gather_epi32(reinterpret_cast<__m512i>(at), reinterpret_cast<const int*>(from), 4));
+  return reinterpret_cast<LaneTraits<Lanes>::Words>(
+      _mm512_i32gather_epi32(reinterpret_cast<__m512i>(at), reinterpret_cast<const int*>(from), 4));
 }
 #endif
 
@@ -351,7 +396,10 @@ struct SetBits {
   constexpr SetBits() : row{} {
     for (unsigned m = 0; m < 256; ++m)
       for (std::uint64_t k = 0, at = 0; k < 8; ++k)
-        if (m >> k & 1) row[m] |= k << at, at += 8;
+        if (m >> k & 1) {
+          row[m] |= k << at;
+          at += 8;
+        }
   }
 };
 inline constexpr SetBits kSetBits;
@@ -366,7 +414,8 @@ class Chosen {
   template <class T, class Vector>
   void store(T* to, const Vector& a) const {
 #if GRELHA_ISA_NUMBER == 3
-    const __m256i order = _mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(kSetBits.row + lanes_)));
+    const __m256i order = _mm256_cvtepu8_epi32(
+        _mm_loadl_epi64(reinterpret_cast<const __m128i*>(kSetBits.row + lanes_)));
     __m256i v;
     __builtin_memcpy(&v, &a, sizeof v);
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm256_permutevar8x32_epi32(v, order));
@@ -377,13 +426,16 @@ class Chosen {
 #else
     T v[LaneTraits<Lanes>::kWidth];
     __builtin_memcpy(v, &a, sizeof v);
-    for (unsigned left = lanes_; left != 0; left &= left - 1) *to++ = v[__builtin_ctz(left)];
+    for (unsigned left = lanes_; left != 0; left &= left - 1)
+      *to++ = v[__builtin_ctz(left)];
 #endif
   }
   /// The same of three components.
   template <class Vector>
   void store(float* x, float* y, float* z, const Vector& a) const {
-    store(x, a.x), store(y, a.y), store(z, a.z);
+    store(x, a.x);
+    store(y, a.y);
+    store(z, a.z);
   }
 
  private:
@@ -437,15 +489,21 @@ using Number = Scalar<Exact>;
 /// Floats as they are, or widened.
 template <class Real>
 inline Real take(const float* p) {
-  if constexpr (sizeof(Scalar<Real>) == sizeof(float)) return load<Real>(p);
+  if constexpr (sizeof(Scalar<Real>) == sizeof(float))
+    return load<Real>(p);
 #if GRELHA_ISA_NUMBER == 2
-  else return Real(_mm_cvtps_pd(_mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(p)))));
+  else
+    return Real(
+        _mm_cvtps_pd(_mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(p)))));
 #elif GRELHA_ISA_NUMBER == 3
-  else return Real(_mm256_cvtps_pd(_mm_loadu_ps(p)));
+  else
+    return Real(_mm256_cvtps_pd(_mm_loadu_ps(p)));
 #elif GRELHA_ISA_NUMBER == 4
-  else return Real(_mm512_cvtps_pd(_mm256_loadu_ps(p)));
+  else
+    return Real(_mm512_cvtps_pd(_mm256_loadu_ps(p)));
 #else
-  else return *p;
+  else
+    return *p;
 #endif
 }
 
@@ -457,18 +515,25 @@ inline Real take(const double* p) {
 /// The greatest float not above, and the least not below, a number; NaN for NaN.
 inline float not_above(double a) {
   const float r = static_cast<float>(a);
-  if (!(r > a)) return r;
+  if (!(r > a))
+    return r;
   const std::int32_t b = float_bits(r);
   return r == 0 ? bits_float(INT32_MIN + 1) : bits_float(r > 0 ? b - 1 : b + 1);
 }
 #if GRELHA_ISA_NUMBER == 1
 inline void store_narrow(float* p, double a) { *p = static_cast<float>(a); }
 #elif GRELHA_ISA_NUMBER == 2
-inline void store_narrow(float* p, const DoubleLanes& a) { _mm_storel_epi64(reinterpret_cast<__m128i*>(p), _mm_castps_si128(_mm_cvtpd_ps(a.data))); }
+inline void store_narrow(float* p, const DoubleLanes& a) {
+  _mm_storel_epi64(reinterpret_cast<__m128i*>(p), _mm_castps_si128(_mm_cvtpd_ps(a.data)));
+}
 #elif GRELHA_ISA_NUMBER == 3
-inline void store_narrow(float* p, const DoubleLanes& a) { _mm_storeu_ps(p, _mm256_cvtpd_ps(a.data)); }
+inline void store_narrow(float* p, const DoubleLanes& a) {
+  _mm_storeu_ps(p, _mm256_cvtpd_ps(a.data));
+}
 #else
-inline void store_narrow(float* p, const DoubleLanes& a) { _mm256_storeu_ps(p, _mm512_cvtpd_ps(a.data)); }
+inline void store_narrow(float* p, const DoubleLanes& a) {
+  _mm256_storeu_ps(p, _mm512_cvtpd_ps(a.data));
+}
 #endif
 inline float not_below(double a) { return 0 - not_above(0 - a); }
 
@@ -493,30 +558,43 @@ inline constexpr int kWideParts = kWidth<Real> / kWidth<Wide<Real>>;
 /// Part i of the lanes, in double.
 template <int i, class Real>
 inline Wide<Real> widen(const Real& a) {
-  if constexpr (sizeof(Scalar<Real>) == sizeof(double)) return a;
-  else if constexpr (kWidth<Real> == 1) return static_cast<double>(a);
+  if constexpr (sizeof(Scalar<Real>) == sizeof(double))
+    return a;
+  else if constexpr (kWidth<Real> == 1)
+    return static_cast<double>(a);
 #if GRELHA_ISA_NUMBER == 2
-  else return DoubleLanes(_mm_cvtps_pd(i == 0 ? a.data : _mm_movehl_ps(a.data, a.data)));
+  else
+    return DoubleLanes(_mm_cvtps_pd(i == 0 ? a.data : _mm_movehl_ps(a.data, a.data)));
 #elif GRELHA_ISA_NUMBER == 3
-  else return DoubleLanes(_mm256_cvtps_pd(_mm256_extractf128_ps(a.data, i)));
+  else
+    return DoubleLanes(_mm256_cvtps_pd(_mm256_extractf128_ps(a.data, i)));
 #elif GRELHA_ISA_NUMBER == 4
-  else if constexpr (kWideParts<Real> == 1) return DoubleLanes(_mm512_cvtps_pd(a.data));
-  else return DoubleLanes(_mm512_cvtps_pd(_mm512_extractf32x8_ps(a.data, i)));
+  else if constexpr (kWideParts<Real> == 1)
+    return DoubleLanes(_mm512_cvtps_pd(a.data));
+  else
+    return DoubleLanes(_mm512_cvtps_pd(_mm512_extractf32x8_ps(a.data, i)));
 #endif
 }
 
 /// All parts together, each rounded once.
 template <class Real>
 inline Real narrow(const Wide<Real> (&part)[kWideParts<Real>]) {
-  if constexpr (sizeof(Scalar<Real>) == sizeof(double)) return part[0];
-  else if constexpr (kWidth<Real> == 1) return static_cast<float>(part[0]);
+  if constexpr (sizeof(Scalar<Real>) == sizeof(double))
+    return part[0];
+  else if constexpr (kWidth<Real> == 1)
+    return static_cast<float>(part[0]);
 #if GRELHA_ISA_NUMBER == 2
-  else return Real(_mm_movelh_ps(_mm_cvtpd_ps(part[0].data), _mm_cvtpd_ps(part[1].data)));
+  else
+    return Real(_mm_movelh_ps(_mm_cvtpd_ps(part[0].data), _mm_cvtpd_ps(part[1].data)));
 #elif GRELHA_ISA_NUMBER == 3
-  else return Real(_mm256_set_m128(_mm256_cvtpd_ps(part[1].data), _mm256_cvtpd_ps(part[0].data)));
+  else
+    return Real(_mm256_set_m128(_mm256_cvtpd_ps(part[1].data), _mm256_cvtpd_ps(part[0].data)));
 #elif GRELHA_ISA_NUMBER == 4
-  else if constexpr (kWideParts<Real> == 1) return Real(_mm512_cvtpd_ps(part[0].data));
-  else return Real(_mm512_insertf32x8(_mm512_castps256_ps512(_mm512_cvtpd_ps(part[0].data)), _mm512_cvtpd_ps(part[1].data), 1));
+  else if constexpr (kWideParts<Real> == 1)
+    return Real(_mm512_cvtpd_ps(part[0].data));
+  else
+    return Real(_mm512_insertf32x8(
+        _mm512_castps256_ps512(_mm512_cvtpd_ps(part[0].data)), _mm512_cvtpd_ps(part[1].data), 1));
 #endif
 }
 

@@ -24,8 +24,9 @@ struct ObservedRays {
   int count;
 };
 
-/// Told whenever its thread goes from one phase to another, some ten times a batch; `rays` on the way into primary, bounce and
-/// shadow, once for each run of rays. A function pointer, so that the hot loops need nothing from another file.
+/// Told whenever its thread goes from one phase to another, some ten times a batch; `rays` on the
+/// way into primary, bounce and shadow, once for each run of rays. A function pointer, so that the
+/// hot loops need nothing from another file.
 struct Observer {
   void (*enter)(Observer&, Phase, const ObservedRays* rays);
 };

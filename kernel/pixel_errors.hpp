@@ -6,21 +6,27 @@
 namespace grelha {
 
 /// Samples a pixel has.
-inline std::uint32_t sample_count(const Refinement& r, std::size_t pixel) { return r.log[pixel] == 0 ? 0 : 1u << r.log[pixel]; }
+inline std::uint32_t sample_count(const Refinement& r, std::size_t pixel) {
+  return r.log[pixel] == 0 ? 0 : 1u << r.log[pixel];
+}
 
 /// Mean of the samples so far, of channel i % 3 of pixel i / 3.
 inline float mean_so_far(const Refinement& r, std::size_t i) {
-  return static_cast<float>(static_cast<double>(r.sums[i]) / (kLightUnit * static_cast<double>(1u << r.log[i / 3])));
+  return static_cast<float>(static_cast<double>(r.sums[i]) /
+                            (kLightUnit * static_cast<double>(1u << r.log[i / 3])));
 }
 
-/// What the samples of a refined picture say of its error, pixel by pixel. Nothing of it is kept: it follows from the picture.
+/// What the samples of a refined picture say of its error, pixel by pixel. Nothing of it is kept:
+/// it follows from the picture.
 class PixelErrors {
  public:
-  /// `effects`: there is more to sample than the pixel. `first_log`: of the samples that a pixel begins with.
+  /// `effects`: there is more to sample than the pixel. `first_log`: of the samples that a pixel
+  /// begins with.
   PixelErrors(const Refinement& r, bool effects, int first_log, int threads);
 
-  /// Variance and interval of every pixel. Few differences tell little: pixels that may hold more than one surface, or an effect,
-  /// borrow from their neighbours of the same kind, so that chance stops no pixel and drives none on.
+  /// Variance and interval of every pixel. Few differences tell little: pixels that may hold more
+  /// than one surface, or an effect, borrow from their neighbours of the same kind, so that chance
+  /// stops no pixel and drives none on.
   void judge();
 
   struct Totals {
@@ -29,21 +35,29 @@ class PixelErrors {
   };
   Totals totals() const;
 
-  float variance(std::size_t p) const { return variance_[p]; }  ///< mean over channels, with what neighbours say of it
+  /// mean over channels, with what neighbours say of it
+  float variance(std::size_t p) const { return variance_[p]; }
   const std::vector<float>& widths() const { return widest_; }  ///< [pixels] of the 95 % interval
 
   /// Variance that a ray takes away, were the pixel's samples doubled.
-  float gain(std::size_t p) const { return r_.log[p] < kMostLog ? variance_[p] * (1 - r_.rho) / (samples(p) * r_.cost[p]) : 0; }
+  float gain(std::size_t p) const {
+    return r_.log[p] < kMostLog ? variance_[p] * (1 - r_.rho) / (samples(p) * r_.cost[p]) : 0;
+  }
 
   /// Whether no sample of a pixel differed.
   bool agrees(std::size_t p) const { return agrees(own_variance(p), p); }
 
  private:
-  std::size_t at(int x, int y) const { return static_cast<std::size_t>(y) * static_cast<std::size_t>(r_.width) + static_cast<std::size_t>(x); }
+  std::size_t at(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(r_.width) +
+           static_cast<std::size_t>(x);
+  }
   float samples(std::size_t p) const { return static_cast<float>(1u << r_.log[p]); }
   bool watched(std::size_t p) const { return effects_ || r_.inside[p] > 0 || r_.around[p] > 0; }
   /// One of n samples that differs by .1 shows as a variance of .005 / n^2.
-  bool agrees(float variance, std::size_t p) const { return variance <= .005f / (samples(p) * samples(p)); }
+  bool agrees(float variance, std::size_t p) const {
+    return variance <= .005f / (samples(p) * samples(p));
+  }
   float differences(std::size_t p) const;
   float own_variance(std::size_t p) const;
   float contrast(int x, int y) const;

@@ -12,7 +12,8 @@ namespace grelha {
 
 struct PlannedGrids {
   std::vector<std::uint32_t> ids;  ///< ascending
-  std::vector<Grid> grids;         ///< over them, laid out and empty: one, or one for near rays and one for far ones
+  /// over them, laid out and empty: one, or one for near rays and one for far ones
+  std::vector<Grid> grids;
 };
 
 struct Plan {
@@ -28,8 +29,9 @@ Plan plan_grids(const Primitives& p, const BuildOptions& options, BuildProgress&
 
 /// What carrying out a plan for a scene takes, the plan's own lists included.
 ///
-/// Method  sixteen thousand primitives of each grid, picked at random, say how many references there will be, and how many pairs of
-///         them share a cell, from which follows how many blocks of eight are not full. All else are counts.
+/// Method  sixteen thousand primitives of each grid, picked at random, say how many references
+///         there will be, and how many pairs of them share a cell, from which follows how many
+///         blocks of eight are not full. All else are counts.
 BuildMemory memory_of(const SceneSpans& scene, const Primitives& p, const Plan& plan);
 /// No plan for so many primitives comes near so many bytes: an estimate can be spared.
 bool surely_fits(const Primitives& p, std::uint64_t bytes);

@@ -12,7 +12,11 @@
 namespace grelha {
 namespace {
 
-Image render_whole(const World::Impl& world, const Camera& camera, const Setup& setup, const RenderOptions& options, RenderStats& stats) {
+Image render_whole(const World::Impl& world,
+                   const Camera& camera,
+                   const Setup& setup,
+                   const RenderOptions& options,
+                   RenderStats& stats) {
   const int samples = setup.plan.samples;
   const auto bands = static_cast<std::size_t>((camera.height + kBandRows - 1) / kBandRows);
   Image image(camera.width, camera.height);
@@ -24,16 +28,24 @@ Image render_whole(const World::Impl& world, const Camera& camera, const Setup& 
     return band.number < bands;
   };
   std::size_t done = 0;
-  render_bands(world, setup, options, bands, next, [&](const Band& band, const std::int64_t* sums) {
-    mean_light(sums, samples, image, band.part.rows);
-    bool go_on = true;
+  render_bands(
+      world,
+      setup,
+      options,
+      bands,
+      next,
+      [&](const Band& band, const std::int64_t* sums) {
+        mean_light(sums, samples, image, band.part.rows);
+        bool go_on = true;
 #pragma omp critical(grelha_progress)
-    {
-      ++done;
-      if (options.progress) go_on = options.progress(static_cast<double>(done) / static_cast<double>(bands));
-    }
-    return go_on;
-  }, stats);
+        {
+          ++done;
+          if (options.progress)
+            go_on = options.progress(static_cast<double>(done) / static_cast<double>(bands));
+        }
+        return go_on;
+      },
+      stats);
   return image;
 }
 
@@ -48,7 +60,11 @@ std::vector<Isa> isas() {
   return out;
 }
 
-Image render(const World& world, const Camera& camera, const RenderOptions& options, RenderStats& stats, SampleMaps* maps) {
+Image render(const World& world,
+             const Camera& camera,
+             const RenderOptions& options,
+             RenderStats& stats,
+             SampleMaps* maps) {
   if (options.subdivision.on) {
     Subdivided s = make_subdivided(camera.width, camera.height);
     render_subdivided(world, camera, options, s, stats);
@@ -60,7 +76,8 @@ Image render(const World& world, const Camera& camera, const RenderOptions& opti
     return picture_so_far(r);
   }
   const Told told(options);
-  Image image = render_whole(world.impl(), camera, set_up(world, camera, options), told.options(), stats);
+  Image image =
+      render_whole(world.impl(), camera, set_up(world, camera, options), told.options(), stats);
   told.rethrow();
   return image;
 }

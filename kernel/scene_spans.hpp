@@ -1,5 +1,6 @@
 #pragma once
-// A scene that lies in the caller's own arrays: the same as Scene, member for member, but owning nothing.
+// A scene that lies in the caller's own arrays: the same as Scene, member for member, but owning
+// nothing.
 
 #include <cstddef>
 #include <cstdint>
@@ -10,7 +11,7 @@
 
 namespace grelha {
 
-using Floats = std::span<const float>;            ///< one component of many
+using Floats = std::span<const float>;           ///< one component of many
 using Indices = std::span<const std::uint32_t>;  ///< vertices or materials of many
 
 /// See Spheres.
@@ -30,8 +31,15 @@ struct ConeSpans {
   ConeSpans() = default;
   /// Spans of what it holds.
   ConeSpans(const Cones& c)
-      : base_x(c.base_x), base_y(c.base_y), base_z(c.base_z), base_radius(c.base_radius),
-        apex_x(c.apex_x), apex_y(c.apex_y), apex_z(c.apex_z), apex_radius(c.apex_radius), material(c.material) {}
+      : base_x(c.base_x),
+        base_y(c.base_y),
+        base_z(c.base_z),
+        base_radius(c.base_radius),
+        apex_x(c.apex_x),
+        apex_y(c.apex_y),
+        apex_z(c.apex_z),
+        apex_radius(c.apex_radius),
+        material(c.material) {}
   std::size_t size() const { return material.size(); }  ///< how many
 };
 
@@ -41,7 +49,8 @@ struct PlaneSpans {
   Indices material;
   PlaneSpans() = default;
   /// Spans of what it holds.
-  PlaneSpans(const Planes& p) : x(p.x), y(p.y), z(p.z), nx(p.nx), ny(p.ny), nz(p.nz), material(p.material) {}
+  PlaneSpans(const Planes& p)
+      : x(p.x), y(p.y), z(p.z), nx(p.nx), ny(p.ny), nz(p.nz), material(p.material) {}
   std::size_t size() const { return material.size(); }  ///< how many
 };
 
@@ -53,7 +62,16 @@ struct TriangleSpans {
   TriangleSpans() = default;
   /// Spans of what it holds.
   TriangleSpans(const Triangles& t)
-      : x(t.x), y(t.y), z(t.z), nx(t.nx), ny(t.ny), nz(t.nz), a(t.a), b(t.b), c(t.c), material(t.material) {}
+      : x(t.x),
+        y(t.y),
+        z(t.z),
+        nx(t.nx),
+        ny(t.ny),
+        nz(t.nz),
+        a(t.a),
+        b(t.b),
+        c(t.c),
+        material(t.material) {}
   std::size_t size() const { return a.size(); }          ///< how many
   std::size_t vertex_count() const { return x.size(); }  ///< how many corners they share
 };
@@ -67,7 +85,12 @@ struct GeometrySpans {
   std::span<const Object> objects;
   GeometrySpans() = default;
   /// Spans of what it holds.
-  GeometrySpans(const Geometry& g) : spheres(g.spheres), triangles(g.triangles), cones(g.cones), planes(g.planes), objects(g.objects) {}
+  GeometrySpans(const Geometry& g)
+      : spheres(g.spheres),
+        triangles(g.triangles),
+        cones(g.cones),
+        planes(g.planes),
+        objects(g.objects) {}
 };
 
 /// See Scene; made from one, or filled in by a caller that keeps its arrays itself.
@@ -78,7 +101,8 @@ struct SceneSpans {
   Float3 background;
   SceneSpans() = default;  ///< empty
   /// Spans of what it holds.
-  SceneSpans(const Scene& s) : geometry(s.geometry), materials(s.materials), lights(s.lights), background(s.background) {}
+  SceneSpans(const Scene& s)
+      : geometry(s.geometry), materials(s.materials), lights(s.lights), background(s.background) {}
   SceneSpans(Scene&& gone) = delete;  ///< its arrays would be gone as well
 };
 
@@ -86,8 +110,10 @@ struct SceneSpans {
 inline std::vector<char> used_materials(const SceneSpans& scene) {
   std::vector<char> used(scene.materials.size());
   const GeometrySpans& g = scene.geometry;
-  for (const Indices& ids : {g.spheres.material, g.triangles.material, g.cones.material, g.planes.material})
-    for (const std::uint32_t i : ids) used[i] = 1;
+  for (const Indices& ids :
+       {g.spheres.material, g.triangles.material, g.cones.material, g.planes.material})
+    for (const std::uint32_t i : ids)
+      used[i] = 1;
   return used;
 }
 

@@ -13,7 +13,8 @@ struct Setup {
   SamplePlan plan;
 };
 
-/// Throws std::invalid_argument for an instruction set that is unknown or does not run here, or a bad camera or option.
+/// Throws std::invalid_argument for an instruction set that is unknown or does not run here, or a
+/// bad camera or option.
 Setup set_up(const World& world, const Camera& camera, const RenderOptions& options);
 
 /// Threads for `pieces` of work.

@@ -1,6 +1,6 @@
 #pragma once
-// One ray at a time against blocks of primitives (SIMD over primitives): the way a packet goes on when
-// its rays have nothing left in common. abreast.hpp takes such rays through grids.
+// One ray at a time against blocks of primitives (SIMD over primitives): the way a packet goes on
+// when its rays have nothing left in common. abreast.hpp takes such rays through grids.
 
 #include "kernel/packet.hpp"
 
@@ -13,9 +13,10 @@ struct Single {
   int axis;
   Number shear[3];
   float inv[3];  ///< inverse of the direction; this and what follows with triangles only
-  int near[3];   ///< the side of a box that the ray meets first, along each axis; the other is 3 places on or back
+  /// the side of a box that the ray meets first, along each axis; the other is 3 places on or back
+  int near[3];
 #ifdef GRELHA_DOUBLE
-  double from[3];         ///< these as in Packet
+  double from[3];  ///< these as in Packet
   float after;
   double nearest, shift;  ///< shift: 0 for rays not moved
 #endif
@@ -26,7 +27,10 @@ struct Single {
 inline const double (&tested_org(const Single& r))[3] { return r.from; }
 inline float tested_t_min(const Single& r) { return r.after; }
 inline double tested_best(const Single& r) { return r.nearest; }
-inline void set_best(Single& r, double t) { r.nearest = t, r.best = not_below(t - r.shift); }
+inline void set_best(Single& r, double t) {
+  r.nearest = t;
+  r.best = not_below(t - r.shift);
+}
 #else
 inline const float (&tested_org(const Single& r))[3] { return r.org; }
 inline float tested_t_min(const Single& r) { return r.t_min; }
@@ -36,11 +40,20 @@ inline void set_best(Single& r, float t) { r.best = t; }
 
 inline Single single_of(const Packet& p, int i, bool any_triangles) {
   Single r;
-  for (int a = 0; a < 3; ++a) r.org[a] = p.org[a][i], r.dir[a] = p.dir[a][i];
-  r.inv_dd = p.inv_dd[i], r.t_min = p.t_min[i], r.best = p.best[i], r.id = id_of(p.id[i]);
+  for (int a = 0; a < 3; ++a) {
+    r.org[a] = p.org[a][i];
+    r.dir[a] = p.dir[a][i];
+  }
+  r.inv_dd = p.inv_dd[i];
+  r.t_min = p.t_min[i];
+  r.best = p.best[i];
+  r.id = id_of(p.id[i]);
 #ifdef GRELHA_DOUBLE
-  for (int a = 0; a < 3; ++a) r.from[a] = p.from[a][i];
-  r.after = p.after[i], r.nearest = p.nearest[i], r.shift = p.moved ? p.shift[i] : 0;
+  for (int a = 0; a < 3; ++a)
+    r.from[a] = p.from[a][i];
+  r.after = p.after[i];
+  r.nearest = p.nearest[i];
+  r.shift = p.moved ? p.shift[i] : 0;
 #endif
   r.axis = 0;
   if (any_triangles) {
@@ -57,27 +70,38 @@ inline Single single_of(const Packet& p, int i, bool any_triangles) {
 
 /// What a ray has met goes back to its packet.
 inline void put_back(const Single& r, Packet& p, int i) {
-  p.best[i] = r.best, p.id[i] = bits_of(r.id);
+  p.best[i] = r.best;
+  p.id[i] = bits_of(r.id);
 #ifdef GRELHA_DOUBLE
   p.nearest[i] = r.nearest;
 #endif
 }
 
-/// Takes the hits of a block in order of place. Returns whether the search is over (kAny and something was hit).
+/// Takes the hits of a block in order of place. Returns whether the search is over (kAny and
+/// something was hit).
 template <bool kAny>
-inline bool note(Single& r, const Mask<ExactBlock>& hit, const ExactBlock& t, const std::uint32_t* ids) {
+inline bool note(Single& r,
+                 const Mask<ExactBlock>& hit,
+                 const ExactBlock& t,
+                 const std::uint32_t* ids) {
   unsigned lanes = bits(both(hit, t <= ExactBlock(tested_best(r))));
-  if (lanes == 0) return false;
+  if (lanes == 0)
+    return false;
   Number at[kWidth<ExactBlock>];
   store(at, t);
   for (; lanes != 0; lanes &= lanes - 1) {
     const int k = __builtin_ctz(lanes);
-    const bool closer = at[k] < tested_best(r), tie = at[k] == tested_best(r) && r.id != kNoPrimitive && ids[k] < r.id;
+    const bool closer = at[k] < tested_best(r),
+               tie = at[k] == tested_best(r) && r.id != kNoPrimitive && ids[k] < r.id;
     if (kAny && closer) {
-      set_best(r, -kInfinity), r.id = ids[k];
+      set_best(r, -kInfinity);
+      r.id = ids[k];
       return true;
     }
-    if (!kAny && (closer || tie)) set_best(r, at[k]), r.id = ids[k];
+    if (!kAny && (closer || tie)) {
+      set_best(r, at[k]);
+      r.id = ids[k];
+    }
   }
   return false;
 }
@@ -116,22 +140,30 @@ inline bool test_block(Single& r, const TriangleBlock& block, Counters& n) {
   const int k = r.axis, kx = k == 2 ? 0 : k + 1, ky = k == 0 ? 2 : k - 1;
   const Vec3<ExactBlock> org{ExactBlock(from[kx]), ExactBlock(from[ky]), ExactBlock(from[k])};
   const Vec3<ExactBlock> dir{ExactBlock(r.dir[kx]), ExactBlock(r.dir[ky]), ExactBlock(r.dir[k])};
-  const Shear<ExactBlock> shear{ExactBlock(r.shear[0]), ExactBlock(r.shear[1]), ExactBlock(r.shear[2])};
-  const auto corner = [&](const float (&v)[3][kBlock], int i) {
-    return Vec3<ExactBlock>{take<ExactBlock>(v[kx] + i), take<ExactBlock>(v[ky] + i), take<ExactBlock>(v[k] + i)};
+  const Shear<ExactBlock> shear{
+      ExactBlock(r.shear[0]), ExactBlock(r.shear[1]), ExactBlock(r.shear[2])};
+  const auto corner = [&](const float(&v)[3][kBlock], int i) {
+    return Vec3<ExactBlock>{
+        take<ExactBlock>(v[kx] + i), take<ExactBlock>(v[ky] + i), take<ExactBlock>(v[k] + i)};
   };
   n.triangle += kBlock;
   for (int i = 0; i < kBlock; i += kWidth<ExactBlock>) {
     ExactBlock t(0);
-    const Mask<ExactBlock> hit = hit_triangle<ExactBlock>(org, dir, shear, ExactBlock(tested_t_min(r)),
-                                                          {corner(block.a, i), corner(block.b, i), corner(block.c, i)}, t);
-    if (note<kAny>(r, hit, t, block.id + i)) return true;
+    const Mask<ExactBlock> hit =
+        hit_triangle<ExactBlock>(org,
+                                 dir,
+                                 shear,
+                                 ExactBlock(tested_t_min(r)),
+                                 {corner(block.a, i), corner(block.b, i), corner(block.c, i)},
+                                 t);
+    if (note<kAny>(r, hit, t, block.id + i))
+      return true;
   }
   return false;
 }
 
-/// The spheres and cones of one cell. Reading past its end meets those of the next, which costs nothing and is never wrong: a
-/// hit is a hit.
+/// The spheres and cones of one cell. Reading past its end meets those of the next, which costs
+/// nothing and is never wrong: a hit is a hit.
 template <bool kAny>
 inline bool test_round(Single& r, const CellLists& lists, std::size_t cell, Counters& n) {
   if (lists.sphere_first) {
@@ -140,10 +172,17 @@ inline bool test_round(Single& r, const CellLists& lists, std::size_t cell, Coun
     for (std::uint32_t i = lists.sphere_first[cell]; i < end; i += kWidth<ExactBlock>) {
       n.sphere += kWidth<ExactBlock>;
       ExactBlock t(0);
-      const Mask<ExactBlock> hit = hit_sphere<ExactBlock>(org, dir, ExactBlock(r.inv_dd), ExactBlock(tested_t_min(r)),
-                                                {take<ExactBlock>(lists.sx + i), take<ExactBlock>(lists.sy + i), take<ExactBlock>(lists.sz + i)},
-                                                take<ExactBlock>(lists.sr + i), t);
-      if (note<kAny>(r, hit, t, lists.sphere_id + i)) return true;
+      const Mask<ExactBlock> hit = hit_sphere<ExactBlock>(org,
+                                                          dir,
+                                                          ExactBlock(r.inv_dd),
+                                                          ExactBlock(tested_t_min(r)),
+                                                          {take<ExactBlock>(lists.sx + i),
+                                                           take<ExactBlock>(lists.sy + i),
+                                                           take<ExactBlock>(lists.sz + i)},
+                                                          take<ExactBlock>(lists.sr + i),
+                                                          t);
+      if (note<kAny>(r, hit, t, lists.sphere_id + i))
+        return true;
     }
   }
   if (lists.cone_first) {
@@ -152,10 +191,13 @@ inline bool test_round(Single& r, const CellLists& lists, std::size_t cell, Coun
     for (std::uint32_t i = lists.cone_first[cell]; i < end; i += kWidth<ExactBlock>) {
       n.cone += kWidth<ExactBlock>;
       const auto at = [&](int k) { return take<ExactBlock>(lists.cone[k] + i); };
-      const ConeSide<ExactBlock> side{{at(0), at(1), at(2)}, {at(3), at(4), at(5)}, at(6), at(7), at(8), at(9)};
+      const ConeSide<ExactBlock> side{
+          {at(0), at(1), at(2)}, {at(3), at(4), at(5)}, at(6), at(7), at(8), at(9)};
       ExactBlock t(0);
-      const Mask<ExactBlock> hit = hit_cone<ExactBlock>(org, dir, ExactBlock(r.inv_dd), ExactBlock(tested_t_min(r)), side, t);
-      if (note<kAny>(r, hit, t, lists.cone_id + i)) return true;
+      const Mask<ExactBlock> hit = hit_cone<ExactBlock>(
+          org, dir, ExactBlock(r.inv_dd), ExactBlock(tested_t_min(r)), side, t);
+      if (note<kAny>(r, hit, t, lists.cone_id + i))
+        return true;
     }
   }
   return false;
@@ -166,18 +208,21 @@ template <bool kAny>
 inline bool test_cell(Single& r, const CellLists& lists, std::size_t cell, Counters& n) {
   if (lists.triangle_first)
     for (std::uint32_t i = lists.triangle_first[cell]; i < lists.triangle_first[cell + 1]; ++i)
-      if (test_block<kAny>(r, lists.triangles[i], n)) return true;
+      if (test_block<kAny>(r, lists.triangles[i], n))
+        return true;
   return test_round<kAny>(r, lists, cell, n);
 }
 
-/// A ray in the units of one grid's cells, in double: plane distances come from the plane's index, never by adding up, and
-/// the cell of a point is the one the builder gives it (cell_of in grid.hpp).
+/// A ray in the units of one grid's cells, in double: plane distances come from the plane's index,
+/// never by adding up, and the cell of a point is the one the builder gives it (cell_of in
+/// grid.hpp).
 struct GridRay {
   double p[3], q[3], iq[3];
 };
 
 inline double tame(double d, double least) {
-  if (d < 0) return d > -least ? -least : d;
+  if (d < 0)
+    return d > -least ? -least : d;
   return d < least ? least : d;
 }
 
@@ -192,18 +237,22 @@ inline GridRay to_grid(const GridView& g, const float (&org)[3], const float (&d
   return r;
 }
 
-/// Part of [t0, t1] inside the box of all cells; empty when t0 > t1 (or anything is NaN: !(t0 <= t1)).
+/// Part of [t0, t1] inside the box of all cells; empty when t0 > t1 (or anything is NaN: !(t0 <=
+/// t1)).
 inline void clip_to_grid(const GridView& g, const GridRay& r, double& t0, double& t1) {
   for (int a = 0; a < 3; ++a) {
     const double near = (r.q[a] > 0 ? -r.p[a] : g.n[a] - r.p[a]) * r.iq[a];
     const double far = (r.q[a] > 0 ? g.n[a] - r.p[a] : -r.p[a]) * r.iq[a];
-    if (near > t0) t0 = near;
-    if (!(far >= t1)) t1 = far;
+    if (near > t0)
+      t0 = near;
+    if (!(far >= t1))
+      t1 = far;
   }
 }
 
 inline int clamp_cell(double x, int n) {
-  if (!(x > 0)) return 0;
+  if (!(x > 0))
+    return 0;
   const int i = static_cast<int>(x < n ? x : n);
   return i < n ? i : n - 1;
 }

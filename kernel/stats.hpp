@@ -1,6 +1,6 @@
 #pragma once
-// What a build and a render did, in numbers. Counting never changes a picture; some counts (visits, tests, packets)
-// depend on packet size and instruction set, those of rays do not.
+// What a build and a render did, in numbers. Counting never changes a picture; some counts (visits,
+// tests, packets) depend on packet size and instruction set, those of rays do not.
 
 #include <array>
 #include <cstdint>
@@ -17,7 +17,10 @@ struct RayCounts {
   std::uint64_t total() const { return primary + shadow + reflection + refraction; }
   /// Adds what another thread or call did.
   void operator+=(const RayCounts& o) {
-    primary += o.primary, shadow += o.shadow, reflection += o.reflection, refraction += o.refraction;
+    primary += o.primary;
+    shadow += o.shadow;
+    reflection += o.reflection;
+    refraction += o.refraction;
   }
 };
 
@@ -42,20 +45,27 @@ struct TraceCounts {
   /// Adds what another thread or call did.
   void operator+=(const TraceCounts& o) {
     visits += o.visits;
-    tests.sphere += o.tests.sphere, tests.triangle += o.tests.triangle, tests.cone += o.tests.cone, tests.plane += o.tests.plane;
-    packets.formed += o.packets.formed, packets.fell_back += o.packets.fell_back;
-    packets.lanes_issued += o.packets.lanes_issued, packets.lanes_busy += o.packets.lanes_busy;
+    tests.sphere += o.tests.sphere;
+    tests.triangle += o.tests.triangle;
+    tests.cone += o.tests.cone;
+    tests.plane += o.tests.plane;
+    packets.formed += o.packets.formed;
+    packets.fell_back += o.packets.fell_back;
+    packets.lanes_issued += o.packets.lanes_issued;
+    packets.lanes_busy += o.packets.lanes_busy;
   }
 };
 
-/// What is known of the error of a picture whose samples were spent by error; display units, 0 to 1.
+/// What is known of the error of a picture whose samples were spent by error; display units, 0 to
+/// 1.
 struct ErrorStats {
-  double rmse = 0;             ///< of all pixels and channels against the converged picture, estimated
-  double rmse_bound = 0;       ///< not exceeded at 95 % confidence
-  double widest = 0;           ///< widest 95 % interval of a pixel
-  std::uint64_t samples = 0;   ///< of all pixels; RefineOptions::samples repeats a run by time
+  /// of all pixels and channels against the converged picture, estimated
+  double rmse = 0;
+  double rmse_bound = 0;      ///< not exceeded at 95 % confidence
+  double widest = 0;          ///< widest 95 % interval of a pixel
+  std::uint64_t samples = 0;  ///< of all pixels; RefineOptions::samples repeats a run by time
   std::uint32_t least = 0, most = 0;  ///< of one pixel
-  int rounds = 0;              ///< of doubling
+  int rounds = 0;                     ///< of doubling
 };
 
 /// Seconds of all threads together, by Phase.
@@ -63,7 +73,8 @@ struct PhaseSeconds : std::array<double, kPhases> {
   PhaseSeconds() : array{} {}
   /// Adds what another thread or call did.
   void operator+=(const PhaseSeconds& o) {
-    for (std::size_t i = 0; i < size(); ++i) (*this)[i] += o[i];
+    for (std::size_t i = 0; i < size(); ++i)
+      (*this)[i] += o[i];
   }
 };
 
@@ -72,7 +83,7 @@ struct RenderStats {
   RayCounts rays;
   TraceCounts trace;
   PhaseSeconds phases;  ///< only with RenderOptions::phases
-  ErrorStats error;  ///< only with RefineOptions
+  ErrorStats error;     ///< only with RefineOptions
   int threads = 0;
   const char* isa = "";
 };

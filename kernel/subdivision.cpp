@@ -52,19 +52,34 @@ struct Sum {
 
 class Subdivider {
  public:
-  Subdivider(Subdivided& picture, const Subdivision& options, const SeePoints& see, int tile, const std::function<bool()>& rest)
-      : options_(options), see_(see), rest_(rest), side_(tile), p_(picture), image_(picture.image) {}
+  Subdivider(Subdivided& picture,
+             const Subdivision& options,
+             const SeePoints& see,
+             int tile,
+             const std::function<bool()>& rest)
+      : options_(options),
+        see_(see),
+        rest_(rest),
+        side_(tile),
+        p_(picture),
+        image_(picture.image) {}
 
   bool run() {
-    const auto tiles = [this](int side) { return static_cast<std::size_t>((side - 1) / side_ + 1); };
+    const auto tiles = [this](int side) {
+      return static_cast<std::size_t>((side - 1) / side_ + 1);
+    };
     const std::size_t rows = tiles(image_.height), columns = tiles(image_.width);
-    if (p_.tiles == 0) p_.above.resize(columns);
-    if (p_.above.size() != columns || p_.tiles > rows * columns) throw std::invalid_argument("this picture was made in tiles of another size");
+    if (p_.tiles == 0)
+      p_.above.resize(columns);
+    if (p_.above.size() != columns || p_.tiles > rows * columns)
+      throw std::invalid_argument("this picture was made in tiles of another size");
     for (part_ = 1 / static_cast<double>(rows * columns); p_.tiles < rows * columns; ++p_.tiles) {
       const std::size_t column = p_.tiles % columns;
-      if (column == 0) p_.left.clear();
+      if (column == 0)
+        p_.left.clear();
       done_ = static_cast<double>(p_.tiles) * part_;
-      if (!tile(static_cast<int>(column), static_cast<int>(p_.tiles / columns), p_.above[column])) return false;
+      if (!tile(static_cast<int>(column), static_cast<int>(p_.tiles / columns), p_.above[column]))
+        return false;
     }
     p_.share = 1;
     return true;
@@ -72,14 +87,18 @@ class Subdivider {
 
  private:
   bool tile(int column, int row, std::vector<BorderPoint>& above) {
-    x0_ = column * side_, y0_ = row * side_;
-    x1_ = std::min(x0_ + side_, image_.width), y1_ = std::min(y0_ + side_, image_.height);
+    x0_ = column * side_;
+    y0_ = row * side_;
+    x1_ = std::min(x0_ + side_, image_.width);
+    y1_ = std::min(y0_ + side_, image_.height);
     recall(above, p_.left);
     sums_.assign(static_cast<std::size_t>(x1_ - x0_) * static_cast<std::size_t>(y1_ - y0_), {});
     split_.clear();
-    if (!corners()) return false;
+    if (!corners())
+      return false;
     for (int level = 0; level < options_.depth && !split_.empty(); ++level)
-      if (!split_all(level)) return false;
+      if (!split_all(level))
+        return false;
     show(sums_);
     remember(right_border_, p_.left);
     remember(lower_border_, above);
@@ -87,49 +106,83 @@ class Subdivider {
     return true;
   }
 
-  /// Points that tiles above and to the left saw on the borders with this one come first: the number of one is its place.
+  /// Points that tiles above and to the left saw on the borders with this one come first: the
+  /// number of one is its place.
   void recall(const std::vector<BorderPoint>& above, const std::vector<BorderPoint>& left) {
-    known_.clear(), fresh_.clear(), right_border_.clear(), lower_border_.clear();
-    std::set_union(above.begin(), above.end(), left.begin(), left.end(), std::back_inserter(known_),
+    known_.clear();
+    fresh_.clear();
+    right_border_.clear();
+    lower_border_.clear();
+    std::set_union(above.begin(),
+                   above.end(),
+                   left.begin(),
+                   left.end(),
+                   std::back_inserter(known_),
                    [](const BorderPoint& a, const BorderPoint& b) { return a.key < b.key; });
     numbered_ = known_.size();
-    if (p_.colours.size() >= numbered_) return;  // those of a tile to go on with
+    if (p_.colours.size() >= numbered_)
+      return;  // those of a tile to go on with
     p_.colours.clear();
-    for (const BorderPoint& k : known_) p_.colours.push_back(k.colour);
+    for (const BorderPoint& k : known_)
+      p_.colours.push_back(k.colour);
   }
 
   /// The number of a point not asked for in this tile before.
   std::uint32_t number(LatticePoint p, std::uint64_t key) {
     std::uint32_t id = 0;
     bool known = false;
-    if (p.x == static_cast<std::uint32_t>(x0_) * kLatticeSteps || p.y == static_cast<std::uint32_t>(y0_) * kLatticeSteps) {
-      const auto at = std::lower_bound(known_.begin(), known_.end(), key, [](const BorderPoint& a, std::uint64_t k) { return a.key < k; });
+    if (p.x == static_cast<std::uint32_t>(x0_) * kLatticeSteps ||
+        p.y == static_cast<std::uint32_t>(y0_) * kLatticeSteps) {
+      const auto at = std::lower_bound(
+          known_.begin(), known_.end(), key, [](const BorderPoint& a, std::uint64_t k) {
+            return a.key < k;
+          });
       known = at != known_.end() && at->key == key;
-      if (known) id = static_cast<std::uint32_t>(at - known_.begin());
+      if (known)
+        id = static_cast<std::uint32_t>(at - known_.begin());
     }
-    if (!known) id = static_cast<std::uint32_t>(numbered_ + fresh_.size()), fresh_.push_back(p);
-    if (p.x == static_cast<std::uint32_t>(x1_) * kLatticeSteps) right_border_.push_back({key, id});
-    if (p.y == static_cast<std::uint32_t>(y1_) * kLatticeSteps) lower_border_.push_back({key, id});
+    if (!known) {
+      id = static_cast<std::uint32_t>(numbered_ + fresh_.size());
+      fresh_.push_back(p);
+    }
+    if (p.x == static_cast<std::uint32_t>(x1_) * kLatticeSteps)
+      right_border_.push_back({key, id});
+    if (p.y == static_cast<std::uint32_t>(y1_) * kLatticeSteps)
+      lower_border_.push_back({key, id});
     return id;
   }
 
-  /// Shares of a tile's work by level, halved from level to level: nobody knows beforehand how much is to come.
-  double share(int level) const { return done_ + part_ * (level > options_.depth ? 1 : 1 - std::ldexp(1, -level)); }
+  /// Shares of a tile's work by level, halved from level to level: nobody knows beforehand how much
+  /// is to come.
+  double share(int level) const {
+    return done_ + part_ * (level > options_.depth ? 1 : 1 - std::ldexp(1, -level));
+  }
 
-  /// Whether all fresh points have their colours then. Of a tile gone on with they may have them already, or the first of them.
+  /// Whether all fresh points have their colours then. Of a tile gone on with they may have them
+  /// already, or the first of them.
   bool see_fresh(int level) {
     const std::size_t end = numbered_ + fresh_.size();
     const auto share_at = [&](std::size_t seen) {
-      return share(level) + (share(level + 1) - share(level)) * static_cast<double>(seen - numbered_) / static_cast<double>(fresh_.size());
+      return share(level) + (share(level + 1) - share(level)) *
+                                static_cast<double>(seen - numbered_) /
+                                static_cast<double>(fresh_.size());
     };
     for (std::size_t begin; (begin = p_.colours.size()) < end;) {
       p_.colours.resize(end);
-      const std::size_t seen = begin + see_(std::span(fresh_).subspan(begin - numbered_), p_.colours.data() + begin, share_at(begin), share_at(end));
-      p_.colours.resize(seen), p_.share = std::min(1.0, share_at(seen));
-      if (seen == end) break;
-      if (level == 0) show_corners();
-      else show_squares(level - 1);
-      if (!rest_ || !rest_()) return false;
+      const std::size_t seen = begin + see_(std::span(fresh_).subspan(begin - numbered_),
+                                            p_.colours.data() + begin,
+                                            share_at(begin),
+                                            share_at(end));
+      p_.colours.resize(seen);
+      p_.share = std::min(1.0, share_at(seen));
+      if (seen == end)
+        break;
+      if (level == 0)
+        show_corners();
+      else
+        show_squares(level - 1);
+      if (!rest_ || !rest_())
+        return false;
     }
     numbered_ = end;
     fresh_.clear();
@@ -145,40 +198,52 @@ class Subdivider {
         for (int y = by; y < std::min(by + 8, down); ++y)
           for (int x = bx; x < std::min(bx + 8, across); ++x) {
             const LatticePoint p = corner_at(x, y);
-            ids_[static_cast<std::size_t>(y) * static_cast<std::size_t>(across) + static_cast<std::size_t>(x)] = number(p, morton(p));
+            ids_[static_cast<std::size_t>(y) * static_cast<std::size_t>(across) +
+                 static_cast<std::size_t>(x)] = number(p, morton(p));
           }
-    if (!see_fresh(0)) return false;
+    if (!see_fresh(0))
+      return false;
     std::uint32_t pixel = 0;
     for (int y = 0; y + 1 < down; ++y)
       for (int x = 0; x + 1 < across; ++x, ++pixel) {
-        const std::uint32_t* const upper = ids_.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(across) + x;
-        settle({corner_at(x, y), pixel, {upper[0], upper[1], upper[across], upper[across + 1]}}, 0, split_);
+        const std::uint32_t* const upper =
+            ids_.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(across) + x;
+        settle({corner_at(x, y), pixel, {upper[0], upper[1], upper[across], upper[across + 1]}},
+               0,
+               split_);
       }
     return true;
   }
 
   LatticePoint corner_at(int x, int y) const {
-    return {static_cast<std::uint32_t>(x0_ + x) * kLatticeSteps, static_cast<std::uint32_t>(y0_ + y) * kLatticeSteps};
+    return {static_cast<std::uint32_t>(x0_ + x) * kLatticeSteps,
+            static_cast<std::uint32_t>(y0_ + y) * kLatticeSteps};
   }
 
-  /// Splits the squares of `level` that wait for it. Their new points are corners of no square but those split now: a point is
-  /// born on the one level whose step it is an odd multiple of.
+  /// Splits the squares of `level` that wait for it. Their new points are corners of no square but
+  /// those split now: a point is born on the one level whose step it is an odd multiple of.
   bool split_all(int level) {
     const std::uint32_t half = kLatticeSteps >> (level + 1);
-    const LatticePoint offset[5] = {{half, 0}, {0, half}, {half, half}, {2 * half, half}, {half, 2 * half}};
+    const LatticePoint offset[5] = {
+        {half, 0}, {0, half}, {half, half}, {2 * half, half}, {half, 2 * half}};
     wanted_.resize(5 * split_.size()), ids_.resize(wanted_.size());
     const auto point = [&](std::size_t slot) {
       const LatticePoint at = split_[slot / 5].at, by = offset[slot % 5];
       return LatticePoint{at.x + by.x, at.y + by.y};
     };
-    for (std::size_t i = 0; i < wanted_.size(); ++i) wanted_[i] = {morton(point(i)), static_cast<std::uint32_t>(i)};
-    std::sort(wanted_.begin(), wanted_.end(), [](const Wanted& a, const Wanted& b) { return a.key < b.key; });
+    for (std::size_t i = 0; i < wanted_.size(); ++i)
+      wanted_[i] = {morton(point(i)), static_cast<std::uint32_t>(i)};
+    std::sort(wanted_.begin(), wanted_.end(), [](const Wanted& a, const Wanted& b) {
+      return a.key < b.key;
+    });
     std::uint32_t id = 0;
     for (std::size_t i = 0; i < wanted_.size(); ++i) {
-      if (i == 0 || wanted_[i].key != wanted_[i - 1].key) id = number(point(wanted_[i].slot), wanted_[i].key);
+      if (i == 0 || wanted_[i].key != wanted_[i - 1].key)
+        id = number(point(wanted_[i].slot), wanted_[i].key);
       ids_[wanted_[i].slot] = id;
     }
-    if (!see_fresh(level + 1)) return false;
+    if (!see_fresh(level + 1))
+      return false;
     next_.clear();
     for (std::size_t i = 0; i < split_.size(); ++i) {
       const auto& [at, pixel, c] = split_[i];
@@ -192,16 +257,25 @@ class Subdivider {
     return true;
   }
 
-  /// A square whose corners are known joins those to be split, or its pixel's sum. The order of a pixel's terms is that of its
-  /// own squares alone.
+  /// A square whose corners are known joins those to be split, or its pixel's sum. The order of a
+  /// pixel's terms is that of its own squares alone.
   void settle(const Square& s, int level, std::vector<Square>& to_split) {
-    const Float3 c[4] = {p_.colours[s.corner[0]], p_.colours[s.corner[1]], p_.colours[s.corner[2]], p_.colours[s.corner[3]]};
-    if (level < options_.depth && (differ(c, &Float3::x) || differ(c, &Float3::y) || differ(c, &Float3::z))) to_split.push_back(s);
-    else sums_[s.pixel].add(c, std::ldexp(.25, -2 * level));
+    const Float3 c[4] = {p_.colours[s.corner[0]],
+                         p_.colours[s.corner[1]],
+                         p_.colours[s.corner[2]],
+                         p_.colours[s.corner[3]]};
+    if (level < options_.depth &&
+        (differ(c, &Float3::x) || differ(c, &Float3::y) || differ(c, &Float3::z)))
+      to_split.push_back(s);
+    else
+      sums_[s.pixel].add(c, std::ldexp(.25, -2 * level));
   }
 
   bool differ(const Float3 (&c)[4], float Float3::*channel) const {
-    const auto [least, most] = std::minmax({clamped(c[0].*channel), clamped(c[1].*channel), clamped(c[2].*channel), clamped(c[3].*channel)});
+    const auto [least, most] = std::minmax({clamped(c[0].*channel),
+                                            clamped(c[1].*channel),
+                                            clamped(c[2].*channel),
+                                            clamped(c[3].*channel)});
     return most - least > options_.threshold;
   }
 
@@ -209,8 +283,11 @@ class Subdivider {
     const Sum* sum = sums.data();
     for (int y = y0_; y < y1_; ++y) {
       float* out = image_.row(y) + 3 * static_cast<std::size_t>(x0_);
-      for (int x = x0_; x < x1_; ++x, ++sum, out += 3)
-        out[0] = static_cast<float>(sum->r), out[1] = static_cast<float>(sum->g), out[2] = static_cast<float>(sum->b);
+      for (int x = x0_; x < x1_; ++x, ++sum, out += 3) {
+        out[0] = static_cast<float>(sum->r);
+        out[1] = static_cast<float>(sum->g);
+        out[2] = static_cast<float>(sum->b);
+      }
     }
   }
 
@@ -220,7 +297,8 @@ class Subdivider {
     std::vector<Sum> sums(sums_.size());
     for (std::size_t i = 0; i < sums.size(); ++i) {
       const std::uint32_t id = ids_[i + i / width];  // a row has one corner more than pixels
-      if (id >= p_.colours.size()) continue;
+      if (id >= p_.colours.size())
+        continue;
       const Float3 c = p_.colours[id];
       sums[i].add({c, c, c, c}, .25);
     }
@@ -230,14 +308,18 @@ class Subdivider {
   void show_squares(int level) {
     std::vector<Sum> sums = sums_;
     for (const auto& [at, pixel, n] : split_)
-      sums[pixel].add({p_.colours[n[0]], p_.colours[n[1]], p_.colours[n[2]], p_.colours[n[3]]}, std::ldexp(.25, -2 * level));
+      sums[pixel].add({p_.colours[n[0]], p_.colours[n[1]], p_.colours[n[2]], p_.colours[n[3]]},
+                      std::ldexp(.25, -2 * level));
     show(sums);
   }
 
   void remember(std::vector<Border>& border, std::vector<BorderPoint>& seen) {
-    std::sort(border.begin(), border.end(), [](const Border& a, const Border& b) { return a.key < b.key; });
+    std::sort(border.begin(), border.end(), [](const Border& a, const Border& b) {
+      return a.key < b.key;
+    });
     seen.clear();
-    for (const Border& b : border) seen.push_back({b.key, p_.colours[b.id]});
+    for (const Border& b : border)
+      seen.push_back({b.key, p_.colours[b.id]});
   }
 
   const Subdivision& options_;
@@ -262,15 +344,19 @@ class Subdivider {
 }  // namespace
 
 std::uint32_t lattice_hash(LatticePoint p) {
-  std::uint64_t x = static_cast<std::uint64_t>(p.y) << 32 | p.x;  // MurmurHash3's finalizer (A. Appleby)
-  x ^= x >> 33, x *= 0xFF51AFD7ED558CCDu;
-  x ^= x >> 33, x *= 0xC4CEB9FE1A85EC53u;
+  // MurmurHash3's finalizer (A. Appleby)
+  std::uint64_t x = static_cast<std::uint64_t>(p.y) << 32 | p.x;
+  x ^= x >> 33;
+  x *= 0xFF51AFD7ED558CCDu;
+  x ^= x >> 33;
+  x *= 0xC4CEB9FE1A85EC53u;
   return static_cast<std::uint32_t>(x >> 32);
 }
 
 Subdivided make_subdivided(int width, int height) {
   if (width < 1 || height < 1 || width > kMostSubdividedSide || height > kMostSubdividedSide)
-    throw std::invalid_argument("a subdivided picture has sides from 1 to " + std::to_string(kMostSubdividedSide));
+    throw std::invalid_argument("a subdivided picture has sides from 1 to " +
+                                std::to_string(kMostSubdividedSide));
   return {Image(width, height), 0, {}, {}, {}, 0};
 }
 
@@ -279,16 +365,25 @@ bool is_sound(const Subdivided& s) {
     const auto falls = [](const BorderPoint& a, const BorderPoint& b) { return a.key >= b.key; };
     return std::adjacent_find(border.begin(), border.end(), falls) == border.end();
   };
-  const int most = std::max(s.image.width, s.image.height), least = std::min(s.image.width, s.image.height);
-  if (least < 1 || most > kMostSubdividedSide || !(s.share >= 0) || s.share > 1) return false;
+  const int most = std::max(s.image.width, s.image.height),
+            least = std::min(s.image.width, s.image.height);
+  if (least < 1 || most > kMostSubdividedSide || !(s.share >= 0) || s.share > 1)
+    return false;
   return ascends(s.left) && std::all_of(s.above.begin(), s.above.end(), ascends);
 }
 
-bool subdivide(Subdivided& picture, const Subdivision& options, const SeePoints& see, int tile, const std::function<bool()>& rest) {
-  if (!(options.threshold >= 0) || options.threshold > 1) throw std::invalid_argument("the threshold of subdivision must be from 0 to 1");
+bool subdivide(Subdivided& picture,
+               const Subdivision& options,
+               const SeePoints& see,
+               int tile,
+               const std::function<bool()>& rest) {
+  if (!(options.threshold >= 0) || options.threshold > 1)
+    throw std::invalid_argument("the threshold of subdivision must be from 0 to 1");
   if (options.depth < 0 || options.depth > kMostSubdivisions)
-    throw std::invalid_argument("the depth of subdivision must be from 0 to " + std::to_string(kMostSubdivisions));
-  if (tile <= 0) tile = std::min(1024, 4096 >> options.depth);
+    throw std::invalid_argument("the depth of subdivision must be from 0 to " +
+                                std::to_string(kMostSubdivisions));
+  if (tile <= 0)
+    tile = std::min(1024, 4096 >> options.depth);
   return Subdivider(picture, options, see, tile, rest).run();
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// Adaptive supersampling by squares that share their corners: a square whose corners disagree is split into four, again and
-// again, as POV-Ray's method 2 does (Whitted 1980, section 4).
+// Adaptive supersampling by squares that share their corners: a square whose corners disagree is
+// split into four, again and again, as POV-Ray's method 2 does (Whitted 1980, section 4).
 
 #include <cstdint>
 
@@ -9,7 +9,8 @@
 namespace grelha {
 
 inline constexpr int kMostSubdivisions = 8;
-/// Steps of the lattice that all points lie on, a pixel; the same at every depth, so that a point keeps its name.
+/// Steps of the lattice that all points lie on, a pixel; the same at every depth, so that a point
+/// keeps its name.
 inline constexpr std::uint32_t kLatticeSteps = 1u << kMostSubdivisions;
 /// Widest and highest picture: its lattice is counted exactly by floats.
 inline constexpr int kMostSubdividedSide = (1 << 24) / static_cast<int>(kLatticeSteps);
@@ -26,8 +27,11 @@ std::uint32_t lattice_hash(LatticePoint point);
 /// Adaptive supersampling: `on` or not, and how fine.
 struct Subdivision {
   bool on = false;
-  float threshold = .1f;  ///< squares split where a channel of two corners differs by more; display values, clamped to [0, 1]
-  int depth = 3;          ///< times a pixel may be split, up to kMostSubdivisions; 0: its corners alone
+  /// squares split where a channel of two corners differs by more; display values, clamped to [0,
+  /// 1]
+  float threshold = .1f;
+  /// times a pixel may be split, up to kMostSubdivisions; 0: its corners alone
+  int depth = 3;
 };
 
 }  // namespace grelha

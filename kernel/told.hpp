@@ -7,14 +7,16 @@
 
 namespace grelha {
 
-/// Options whose progress never throws, for no exception may leave a parallel region: what the caller's threw stops the work, and is thrown
-/// again when that has ended.
+/// Options whose progress never throws, for no exception may leave a parallel region: what the
+/// caller's threw stops the work, and is thrown again when that has ended.
 class Told {
  public:
   explicit Told(const RenderOptions& given) : options_(given) {
-    if (!given.progress) return;
+    if (!given.progress)
+      return;
     options_.progress = [this, &given](double share) {
-      if (thrown_) return false;
+      if (thrown_)
+        return false;
       try {
         return given.progress(share);
       } catch (...) {
@@ -29,7 +31,8 @@ class Told {
   const RenderOptions& options() const { return options_; }
   bool threw() const { return thrown_ != nullptr; }
   void rethrow() const {
-    if (thrown_) std::rethrow_exception(thrown_);
+    if (thrown_)
+      std::rethrow_exception(thrown_);
   }
 
  private:

@@ -4,8 +4,9 @@
 
 namespace grelha::GRELHA_ISA {
 
-/// A ray's own frame for triangle tests: axis `k` is where |dir| is largest (x before y before z on equality), and the
-/// shear that lays dir along it. Function of the direction alone, so every triangle sees the same frame.
+/// A ray's own frame for triangle tests: axis `k` is where |dir| is largest (x before y before z on
+/// equality), and the shear that lays dir along it. Function of the direction alone, so every
+/// triangle sees the same frame.
 template <class Real>
 struct Shear {
   Real x, y, z;  ///< dir[kx] / dir[kz], dir[ky] / dir[kz], 1 / dir[kz]
@@ -14,12 +15,14 @@ struct Shear {
 /// Index of the axis the frame stands on; the other two follow cyclically.
 inline int shear_axis(float dx, float dy, float dz) {
   const float ax = magnitude(dx), ay = magnitude(dy), az = magnitude(dz);
-  if (ax >= ay && ax >= az) return 0;
+  if (ax >= ay && ax >= az)
+    return 0;
   return ay >= az ? 1 : 2;
 }
 
-/// a b - c d with the right sign, and its size to within 2^-50 even where the products nearly agree: a product and what rounding
-/// took from it, Dekker, "A Floating-Point Technique for Extending the Available Precision", 1971.
+/// a b - c d with the right sign, and its size to within 2^-50 even where the products nearly
+/// agree: a product and what rounding took from it, Dekker, "A Floating-Point Technique for
+/// Extending the Available Precision", 1971.
 inline double difference_of_products(double a, double b, double c, double d) {
   const auto rest = [](double x, double y, double xy) {
     const double p = 134217729. * x, q = 134217729. * y;
@@ -39,18 +42,22 @@ struct Corners {
 /// Where a ray crosses a triangle, computed in double.
 template <class Real>
 struct Crossing {
-  Mask<Real> inside;   ///< the ray crosses, edges and corners included
+  Mask<Real> inside;  ///< the ray crosses, edges and corners included
   Real t;
   Vec3<Real> weights;  ///< of the corners: not negative, 1 together
 };
 
-/// Edge functions of corners that lie as (ax, ay), (bx, by), (cx, cy) around their ray, where one of them came out as zero.
+/// Edge functions of corners that lie as (ax, ay), (bx, by), (cx, cy) around their ray, where one
+/// of them came out as zero.
 template <class Real>
-[[gnu::noinline, gnu::cold]] void exact_edges(const Mask<Real>& chosen, const Real (&corner)[6], Vec3<Real>& edge) {
+[[gnu::noinline, gnu::cold]] void exact_edges(const Mask<Real>& chosen,
+                                              const Real (&corner)[6],
+                                              Vec3<Real>& edge) {
   constexpr int n = kWidth<Real>;
   double p[6][n];
   double e[3][n];
-  for (int i = 0; i < 6; ++i) store(p[i], corner[i]);
+  for (int i = 0; i < 6; ++i)
+    store(p[i], corner[i]);
   store(e[0], edge.x);
   store(e[1], edge.y);
   store(e[2], edge.z);
@@ -65,10 +72,13 @@ template <class Real>
   load(e[2], edge.z);
 }
 
-/// Real: double or DoubleLanes. Corners are sheared by a function of ray and corner alone, and the sign of each edge function of
-/// what comes out is exact: triangles that share an edge or a corner agree about it, so no ray passes between them.
+/// Real: double or DoubleLanes. Corners are sheared by a function of ray and corner alone, and the
+/// sign of each edge function of what comes out is exact: triangles that share an edge or a corner
+/// agree about it, so no ray passes between them.
 template <class Real>
-[[gnu::always_inline]] inline Crossing<Real> crossing(const Vec3<Real>& org, const Vec3<Real>& dir, const Corners<Real>& corner) {
+[[gnu::always_inline]] inline Crossing<Real> crossing(const Vec3<Real>& org,
+                                                      const Vec3<Real>& dir,
+                                                      const Corners<Real>& corner) {
   const Real o(0);
   const Vec3<Real> oa = corner.a - org, ob = corner.b - org, oc = corner.c - org;
   const Real ax = oa.x * dir.z - dir.x * oa.z, ay = oa.y * dir.z - dir.y * oa.z;
@@ -76,8 +86,10 @@ template <class Real>
   const Real cx = oc.x * dir.z - dir.x * oc.z, cy = oc.y * dir.z - dir.y * oc.z;
   Vec3<Real> edge{cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax};
   const Mask<Real> zero = either(either(edge.x == o, edge.y == o), edge.z == o);
-  if (any(zero)) exact_edges<Real>(zero, {ax, ay, bx, by, cx, cy}, edge);
-  const Real least = lesser(lesser(edge.x, edge.y), edge.z), most = greater(greater(edge.x, edge.y), edge.z);
+  if (any(zero))
+    exact_edges<Real>(zero, {ax, ay, bx, by, cx, cy}, edge);
+  const Real least = lesser(lesser(edge.x, edge.y), edge.z),
+             most = greater(greater(edge.x, edge.y), edge.z);
   const Real sum = (edge.x + edge.y) + edge.z;
   Crossing<Real> r;
   r.inside = both(either(least >= o, most <= o), sum != o);
@@ -94,44 +106,62 @@ inline Corners<Wide<Real>> widen(const Corners<Real>& c) {
 
 /// crossing() of float lanes, part after part: t where a ray crosses, NaN where not.
 template <class Real, int i = 0>
-[[gnu::always_inline]] inline void wide_depths(const Vec3<Real>& org, const Vec3<Real>& dir, const Corners<Real>& corner,
+[[gnu::always_inline]] inline void wide_depths(const Vec3<Real>& org,
+                                               const Vec3<Real>& dir,
+                                               const Corners<Real>& corner,
                                                Wide<Real> (&t)[kWideParts<Real>]) {
-  const Crossing<Wide<Real>> r = crossing<Wide<Real>>(widen<i>(org), widen<i>(dir), widen<i>(corner));
+  const Crossing<Wide<Real>> r =
+      crossing<Wide<Real>>(widen<i>(org), widen<i>(dir), widen<i>(corner));
   t[i] = select(r.inside, r.t, Wide<Real>(__builtin_nan("")));
-  if constexpr (i + 1 < kWideParts<Real>) wide_depths<Real, i + 1>(org, dir, corner, t);
+  if constexpr (i + 1 < kWideParts<Real>)
+    wide_depths<Real, i + 1>(org, dir, corner, t);
 }
 template <class Real>
-[[gnu::noinline]] Real depth_in_double(const Vec3<Real>& org, const Vec3<Real>& dir, const Corners<Real>& corner) {
+[[gnu::noinline]] Real depth_in_double(const Vec3<Real>& org,
+                                       const Vec3<Real>& dir,
+                                       const Corners<Real>& corner) {
   Wide<Real> t[kWideParts<Real>];
   wide_depths<Real>(org, dir, corner, t);
   return narrow<Real>(t);
 }
 
-// What floats leave open, in u = 2^-24; docs/numerics.md derives each, tests/triangle_test.cpp pins them. S: the largest sheared
-// coordinate of a corner, Z: the largest depth of one. "Spread" is S (S + Z) over the sum of the edge functions, times the range
-// of the corners' t.
+// What floats leave open, in u = 2^-24; docs/numerics.md derives each, tests/triangle_test.cpp pins
+// them. S: the largest sheared coordinate of a corner, Z: the largest depth of one. "Spread" is S
+// (S + Z) over the sum of the edge functions, times the range of the corners' t.
 
-/// Times S (S + Z): bound of an edge function's error, 32 u. It is 24 u: a sheared corner is off by u (4 (S + Z) + S).
+/// Times S (S + Z): bound of an edge function's error, 32 u. It is 24 u: a sheared corner is off by
+/// u (4 (S + Z) + S).
 inline constexpr float kEdgeError = 0x1p-19f;
-/// Times the spread: with kDepthRounding times t, bound of the error of t, 128 u. It is 72 u by the edges and 36 u by the mean.
+/// Times the spread: with kDepthRounding times t, bound of the error of t, 128 u. It is 72 u by the
+/// edges and 36 u by the mean.
 inline constexpr float kDepthError = 0x1p-17f;
 inline constexpr float kDepthRounding = 0x1p-20f;
-/// The largest spread over t for which floats do for t. It is about the tangent of the angle between ray and normal where a triangle
-/// is well shaped and far away; on what is left t is within 8 u of itself, and the point within 46 u of the farthest corner's distance.
+/// The largest spread over t for which floats do for t. It is about the tangent of the angle
+/// between ray and normal where a triangle is well shaped and far away; on what is left t is within
+/// 8 u of itself, and the point within 46 u of the farthest corner's distance.
 inline constexpr float kMostSpread = 2;
 
-/// Point where each ray meets one triangle, from either side; watertight along shared edges and at shared vertices.
+/// Point where each ray meets one triangle, from either side; watertight along shared edges and at
+/// shared vertices.
 ///
-/// Shapes    corners in the ray's permuted axes (kx, ky, kz), lane by lane or broadcast; org and dir likewise.
+/// Shapes    corners in the ray's permuted axes (kx, ky, kz), lane by lane or broadcast; org and
+///           dir likewise.
 /// Returns   lanes whose ray crosses the triangle, edges and corners included, with t above t_min.
-/// Accuracy  Floats decide what they can; all else is taken again in double: rays within rounding of an edge, and t of triangles that
-///           are large beside it or seen at a flat angle. So inside or outside is what crossing() says, for every ray
-///           (tests/watertight_test.cpp), and t is within 8 eps of itself, whatever the triangle's size (tests/triangle_test.cpp).
-/// Source    Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013; the filter after Shewchuk, "Adaptive
-///           Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997.
+/// Accuracy  Floats decide what they can; all else is taken again in double: rays within rounding
+///           of an edge, and t of triangles that are large beside it or seen at a flat angle. So
+///           inside or outside is what crossing() says, for every ray (tests/watertight_test.cpp),
+///           and t is within 8 eps of itself, whatever the triangle's size
+///           (tests/triangle_test.cpp).
+/// Source    Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013; the
+///           filter after Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust
+///           Geometric Predicates", 1997.
 template <class Real>
-[[gnu::always_inline]] inline Mask<Real> hit_triangle(const Vec3<Real>& org, const Vec3<Real>& dir, const Shear<Real>& shear,
-                                                      const Real& t_min, const Corners<Real>& corner, Real& t) {
+[[gnu::always_inline]] inline Mask<Real> hit_triangle(const Vec3<Real>& org,
+                                                      const Vec3<Real>& dir,
+                                                      const Shear<Real>& shear,
+                                                      const Real& t_min,
+                                                      const Corners<Real>& corner,
+                                                      Real& t) {
   if constexpr (sizeof(Scalar<Real>) == sizeof(double)) {
     const Crossing<Real> r = crossing<Real>(org, dir, corner);
     t = r.t;
@@ -142,23 +172,28 @@ template <class Real>
     const Real bx = ob.x - shear.x * ob.z, by = ob.y - shear.y * ob.z;
     const Real cx = oc.x - shear.x * oc.z, cy = oc.y - shear.y * oc.z;
     const Real u = cx * by - cy * bx, v = ax * cy - ay * cx, w = bx * ay - by * ax;
-    const Real size = greater(greater(greater(magnitude(ax), magnitude(ay)), greater(magnitude(bx), magnitude(by))),
-                              greater(magnitude(cx), magnitude(cy)));
+    const Real size = greater(
+        greater(greater(magnitude(ax), magnitude(ay)), greater(magnitude(bx), magnitude(by))),
+        greater(magnitude(cx), magnitude(cy)));
     const Real depth = greater(greater(magnitude(oa.z), magnitude(ob.z)), magnitude(oc.z));
     const Real area = size * (size + depth), error = Real(kEdgeError) * area;
     const Real least = lesser(lesser(u, v), w), most = greater(greater(u, v), w);
     const Mask<Real> maybe = either(least + error >= Real(0), most <= error);
-    if (none(maybe)) return maybe;
+    if (none(maybe))
+      return maybe;
     const Real inverse = Real(1) / ((u + v) + w);
     const Real ta = shear.z * oa.z, tb = shear.z * ob.z, tc = shear.z * oc.z;
     t = ((u * inverse) * ta + (v * inverse) * tb) + (w * inverse) * tc;
     const Real range = greater(greater(ta, tb), tc) - lesser(lesser(ta, tb), tc);
     const Real spread = (area * magnitude(inverse)) * range;
     const Real slack = Real(kDepthError) * spread + Real(kDepthRounding) * magnitude(t);
-    const Mask<Real> ahead = but_not(maybe, t + slack < t_min);  // mostly the triangle a ray starts on is surely behind
-    const Mask<Real> sure = both(either(least > error, most + error < Real(0)), spread <= Real(kMostSpread) * magnitude(t));
+    // mostly the triangle a ray starts on is surely behind
+    const Mask<Real> ahead = but_not(maybe, t + slack < t_min);
+    const Mask<Real> sure = both(either(least > error, most + error < Real(0)),
+                                 spread <= Real(kMostSpread) * magnitude(t));
     const Mask<Real> unsure = but_not(ahead, sure);
-    if (any(unsure)) t = select(unsure, depth_in_double<Real>(org, dir, corner), t);
+    if (any(unsure))
+      t = select(unsure, depth_in_double<Real>(org, dir, corner), t);
     return both(ahead, t > t_min);  // a NaN anywhere fails here
   }
 }

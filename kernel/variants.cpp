@@ -5,8 +5,8 @@
 
 namespace grelha {
 
-// A macro for each copy that the build compiles. __builtin_cpu_supports also asks whether the system saves the wide registers
-// (XGETBV); xsimd 8.1's own query does not.
+// A macro for each copy that the build compiles. __builtin_cpu_supports also asks whether the
+// system saves the wide registers (XGETBV); xsimd 8.1's own query does not.
 extern const VariantLoops k_scalar_loops;
 extern const ExactLoops k_scalar_double_loops;
 namespace {
@@ -38,8 +38,9 @@ extern const ExactLoops k_avx512_double_loops;
 namespace {
 // CMakeLists.txt asks for the same where GRELHA_ISAS is native.
 bool has_avx512() {
-  return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&
-         __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx2") &&
+  return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+         __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") &&
+         __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx2") &&
          __builtin_cpu_supports("bmi2");
 }
 const Variant kAvx512{"avx512", 16, has_avx512, k_avx512_loops, k_avx512_double_loops};
@@ -66,14 +67,17 @@ std::span<const Variant* const> variants() { return kVariants; }
 const Variant* find_variant(std::string_view name) {
   const Variant* found = nullptr;
   for (const Variant* v : kVariants)
-    if (v->name == name || (name == "best" && v->runs_here())) found = v;
+    if (v->name == name || (name == "best" && v->runs_here()))
+      found = v;
   return found;
 }
 
 const Variant& choose_variant(std::string_view name) {
   const Variant* const v = find_variant(name);
-  if (!v) throw std::invalid_argument("this build has no instruction set \"" + std::string(name) + "\"");
-  if (!v->runs_here()) throw std::invalid_argument("this processor has no " + std::string(name));
+  if (!v)
+    throw std::invalid_argument("this build has no instruction set \"" + std::string(name) + "\"");
+  if (!v->runs_here())
+    throw std::invalid_argument("this processor has no " + std::string(name));
   return *v;
 }
 

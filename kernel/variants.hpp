@@ -14,14 +14,16 @@
 namespace grelha {
 
 enum class Method {
-  kPackets,    ///< `packet` rays march together
-  kSingle,     ///< one ray at a time, SIMD over primitives, leaping over empty cells
-  kReference,  ///< one ray, one primitive at a time, cell by cell (Amanatides & Woo 1987), with or without mailboxes
+  kPackets,  ///< `packet` rays march together
+  kSingle,   ///< one ray at a time, SIMD over primitives, leaping over empty cells
+  // one ray, one primitive at a time, cell by cell (Amanatides & Woo 1987), with or without
+  // mailboxes
+  kReference,
 };
 
 struct TraceSettings {
   Method method = Method::kPackets;
-  int packet = 256;     ///< 16, 64 or 256
+  int packet = 256;  ///< 16, 64 or 256
   bool mailbox = true;
 };
 
@@ -29,26 +31,62 @@ struct TraceSettings {
 struct VariantLoops {
   void (*closest)(const SceneView&, const RaySpan&, const TraceSettings&, TraceCounts&);
   void (*occluded)(const SceneView&, const RaySpan&, const TraceSettings&, TraceCounts&);
-  void (*render_band)(const SceneView&, const ShadingView&, const FrameView&, const Part&, const BandWork&, TraceCounts&, RayCounts&);
+  void (*render_band)(const SceneView&,
+                      const ShadingView&,
+                      const FrameView&,
+                      const Part&,
+                      const BandWork&,
+                      TraceCounts&,
+                      RayCounts&);
   /// Samples of chosen pixels, kParts sums a run; see render_runs.
-  void (*render_runs)(const SceneView&, const ShadingView&, const FrameView&, const PixelRun*, int runs, const BandWork&, TraceCounts&, RayCounts&);
-  /// Doubt of the pixels of the 8 x 8 tile at (x0, y0), [8 y + x] each: the weight, 0 to 1, of what could hide from samples there,
-  /// followed into `bounces` mirrors; both 0: nothing can. Of pixels with a bit in `asked`, all within the picture; the others keep
-  /// what they hold, or get theirs as well. See Doubt in doubt.hpp.
-  void (*doubt)(const SceneView&, const ShadingView&, const FrameView&, int x0, int y0, int bounces, std::uint64_t asked, float (&inside)[kTile * kTile],
-                float (&around)[kTile * kTile], TraceCounts&);
+  void (*render_runs)(const SceneView&,
+                      const ShadingView&,
+                      const FrameView&,
+                      const PixelRun*,
+                      int runs,
+                      const BandWork&,
+                      TraceCounts&,
+                      RayCounts&);
+  /// Doubt of the pixels of the 8 x 8 tile at (x0, y0), [8 y + x] each: the weight, 0 to 1, of what
+  /// could hide from samples there, followed into `bounces` mirrors; both 0: nothing can. Of pixels
+  /// with a bit in `asked`, all within the picture; the others keep what they hold, or get theirs
+  /// as well. See Doubt in doubt.hpp.
+  void (*doubt)(const SceneView&,
+                const ShadingView&,
+                const FrameView&,
+                int x0,
+                int y0,
+                int bounces,
+                std::uint64_t asked,
+                float (&inside)[kTile * kTile],
+                float (&around)[kTile * kTile],
+                TraceCounts&);
   /// power(x[i], y[i]) for tests.
   void (*power)(const float* x, const float* y, float* out, int count);
   /// sample_pairs of pixel[i], index[i], key[i], for tests.
-  void (*samples)(const SamplePlan&, const std::uint32_t* pixel, const std::uint32_t* index, int dimension, const std::uint32_t* key,
-                  const Strata&, float* u, float* v, int count);
+  void (*samples)(const SamplePlan&,
+                  const std::uint32_t* pixel,
+                  const std::uint32_t* index,
+                  int dimension,
+                  const std::uint32_t* key,
+                  const Strata&,
+                  float* u,
+                  float* v,
+                  int count);
   /// Camera rays of the work's batch, for tests and measurements.
   void (*camera_rays)(const FrameView&, const BandWork&, int count, bool in_pixels);
   /// All samples of points of the picture, whose names work.pixels holds.
-  void (*render_points)(const SceneView&, const ShadingView&, const FrameView&, const PointList&, const BandWork&, TraceCounts&, RayCounts&);
+  void (*render_points)(const SceneView&,
+                        const ShadingView&,
+                        const FrameView&,
+                        const PointList&,
+                        const BandWork&,
+                        TraceCounts&,
+                        RayCounts&);
 };
 
-/// What one instruction set's file in double provides: every test of a ray and a primitive in double lanes, one rounding to float at the end.
+/// What one instruction set's file in double provides: every test of a ray and a primitive in
+/// double lanes, one rounding to float at the end.
 struct ExactLoops {
   void (*closest)(const SceneView&, const RaySpan&, const TraceSettings&, TraceCounts&);
   void (*occluded)(const SceneView&, const RaySpan&, const TraceSettings&, TraceCounts&);

@@ -38,7 +38,8 @@ template <class Real>
 inline Real length(const Vec3<Real>& a) {
   return square_root(dot(a, a));
 }
-/// Unit vector; (0,0,0) and lengths that underflow give NaN or infinity, which every comparison then fails.
+/// Unit vector; (0,0,0) and lengths that underflow give NaN or infinity, which every comparison
+/// then fails.
 template <class Real>
 inline Vec3<Real> normalize(const Vec3<Real>& a) {
   const Real s = Real(1) / length(a);
@@ -64,7 +65,8 @@ inline Real largest(const Vec3<Real>& a) {
   return greater(greater(magnitude(a.x), magnitude(a.y)), magnitude(a.z));
 }
 
-/// Two unit vectors across a third, by + - * / alone: Duff et al., "Building an Orthonormal Basis, Revisited", 2017.
+/// Two unit vectors across a third, by + - * / alone: Duff et al., "Building an Orthonormal Basis,
+/// Revisited", 2017.
 template <class Real>
 inline void across(const Vec3<Real>& n, Vec3<Real>& u, Vec3<Real>& v) {
   const Real o(0), one(1), below(-1);

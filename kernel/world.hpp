@@ -13,14 +13,17 @@ namespace grelha {
 class BuildProgress;
 struct Plan;
 
-/// Materials one array per component, so that lanes gather what they need and no more; and what those that primitives have ask for.
+/// Materials one array per component, so that lanes gather what they need and no more; and what
+/// those that primitives have ask for.
 struct MaterialTable {
   explicit MaterialTable(const SceneSpans& scene);
   MaterialView view() const;
   std::array<std::vector<float>, kMaterialFields> fields;
-  bool reflects = false, refracts = false, fresnel = false, emits = false, highlights = false, gloss = false;
+  bool reflects = false, refracts = false, fresnel = false, emits = false, highlights = false,
+       gloss = false;
   bool gains = false;
-  float lit = 0, emitted = 0;  ///< of light of 1 a point sends an eye at most so much; and what the brightest sends by itself
+  /// of light of 1 a point sends an eye at most so much; and what the brightest sends by itself
+  float lit = 0, emitted = 0;
 };
 
 struct World::Impl {

@@ -1,11 +1,13 @@
-// What a ray costs by the density M of the grid, by kind and scene, and where the kernel's own choice stands.
+// What a ray costs by the density M of the grid, by kind and scene, and where the kernel's own
+// choice stands.
 //
-//   density [--scene GENERATOR SIZE | FILE]... [--size N] [--rounds N] [--csv]
+// density [--scene GENERATOR SIZE | FILE]... [--size N] [--rounds N] [--csv]
 //
-// All grids of a scene trace the same rays in one process, by turns: a ratio is the median over rounds of two CPU times of one
-// round. Answers must be the same bits at every density. Kinds of rays are those of `trace` (perf/ray_sets.hpp); the last row of
-// a scene is a whole plain picture, twice as wide. Columns: ns a ray (a picture) of the kernel's own choice, that over the best of all M,
-// and each M over that choice.
+// All grids of a scene trace the same rays in one process, by turns: a ratio is the median over
+// rounds of two CPU times of one round. Answers must be the same bits at every density. Kinds of
+// rays are those of `trace` (perf/ray_sets.hpp); the last row of a scene is a whole plain picture,
+// twice as wide. Columns: ns a ray (a picture) of the kernel's own choice, that over the best of
+// all M, and each M over that choice.
 
 #include <algorithm>
 #include <cstdio>
@@ -49,7 +51,8 @@ double median(std::vector<double> v) {
 
 SceneFile scene_named(const std::string& name) {
   const auto space = name.find(' ');
-  if (space != std::string::npos) return make_scene(name.substr(0, space), std::atoi(name.c_str() + space));
+  if (space != std::string::npos)
+    return make_scene(name.substr(0, space), std::atoi(name.c_str() + space));
   return read_scene(name, [](const std::string&) {});
 }
 
@@ -62,7 +65,8 @@ struct Cell {
 template <class Work>
 Cell measure(int rounds, const Work& work) {
   std::vector<double> ns[kWays];
-  for (std::size_t w = 0; w < kWays; ++w) work(w);
+  for (std::size_t w = 0; w < kWays; ++w)
+    work(w);
   for (int round = 0; round < rounds; ++round)
     for (std::size_t w = 0; w < kWays; ++w) {
       const double start = cpu_ns();
@@ -73,7 +77,8 @@ Cell measure(int rounds, const Work& work) {
   cell.chosen_ns = median(ns[0]);
   for (std::size_t w = 0; w < kWays; ++w) {
     std::vector<double> r;
-    for (std::size_t i = 0; i < ns[w].size(); ++i) r.push_back(ns[w][i] / ns[0][i]);
+    for (std::size_t i = 0; i < ns[w].size(); ++i)
+      r.push_back(ns[w][i] / ns[0][i]);
     cell.ratio[w] = median(r);
   }
   return cell;
@@ -82,13 +87,23 @@ Cell measure(int rounds, const Work& work) {
 using Worlds = std::vector<std::unique_ptr<World>>;
 
 void trace_all(const World& world, const RayBuffer& rays, bool any, Answers& a) {
-  a.t = rays.t_max, a.id.resize(rays.size());
+  a.t = rays.t_max;
+  a.id.resize(rays.size());
   TraceCounts unused;
   const VariantLoops& loops = find_variant("best")->loops;
   (any ? loops.occluded : loops.closest)(world.impl().view,
-                                         {rays.ox.data(), rays.oy.data(), rays.oz.data(), rays.dx.data(), rays.dy.data(), rays.dz.data(),
-                                          rays.t_min.data(), a.t.data(), a.id.data(), static_cast<int>(rays.size())},
-                                         {}, unused);
+                                         {rays.ox.data(),
+                                          rays.oy.data(),
+                                          rays.oz.data(),
+                                          rays.dx.data(),
+                                          rays.dy.data(),
+                                          rays.dz.data(),
+                                          rays.t_min.data(),
+                                          a.t.data(),
+                                          a.id.data(),
+                                          static_cast<int>(rays.size())},
+                                         {},
+                                         unused);
 }
 
 Cell measure_kind(const Options& options, const Worlds& worlds, const RayBuffer& rays, bool any) {
@@ -96,7 +111,8 @@ Cell measure_kind(const Options& options, const Worlds& worlds, const RayBuffer&
   trace_all(*worlds[0], rays, any, truth);
   for (const auto& world : worlds) {
     trace_all(*world, rays, any, a);
-    if (std::memcmp(a.t.data(), truth.t.data(), a.t.size() * sizeof(float)) != 0) throw std::runtime_error("wrong hits");
+    if (std::memcmp(a.t.data(), truth.t.data(), a.t.size() * sizeof(float)) != 0)
+      throw std::runtime_error("wrong hits");
   }
   Cell cell = measure(options.rounds, [&](std::size_t w) { trace_all(*worlds[w], rays, any, a); });
   cell.chosen_ns /= static_cast<double>(rays.size());
@@ -106,17 +122,24 @@ Cell measure_kind(const Options& options, const Worlds& worlds, const RayBuffer&
 /// A whole plain picture as the scene asks for it, by one thread.
 Cell measure_picture(const Options& options, const SceneFile& file, const Worlds& worlds) {
   Camera camera = file.camera;
-  camera.width = camera.height = 2 * options.size, camera.aperture = 0;
+  camera.width = camera.height = 2 * options.size;
+  camera.aperture = 0;
   RenderOptions render_options;
   render_options.threads = 1;
   RenderStats unused;
-  return measure(options.rounds, [&](std::size_t w) { render(*worlds[w], camera, render_options, unused); });
+  return measure(options.rounds,
+                 [&](std::size_t w) { render(*worlds[w], camera, render_options, unused); });
 }
 
 void print(const Options& options, const std::string& scene, const char* kind, const Cell& cell) {
   const double best = *std::min_element(std::begin(cell.ratio) + 1, std::end(cell.ratio));
-  std::printf(options.csv ? "%s,%s,%.1f,%.3f" : "%-22s %-12s %10.1f %4.2f; ", scene.c_str(), kind, cell.chosen_ns, 1 / best);
-  for (std::size_t w = 1; w < kWays; ++w) std::printf(options.csv ? ",%.3f" : " %4.2f", cell.ratio[w]);
+  std::printf(options.csv ? "%s,%s,%.1f,%.3f" : "%-22s %-12s %10.1f %4.2f; ",
+              scene.c_str(),
+              kind,
+              cell.chosen_ns,
+              1 / best);
+  for (std::size_t w = 1; w < kWays; ++w)
+    std::printf(options.csv ? ",%.3f" : " %4.2f", cell.ratio[w]);
   std::printf("\n");
   std::fflush(stdout);
 }
@@ -124,12 +147,17 @@ void print(const Options& options, const std::string& scene, const char* kind, c
 void run(const Options& options, const std::string& name) {
   const SceneFile file = scene_named(name);
   Worlds worlds;
-  for (const float m : kDensities) worlds.push_back(std::make_unique<World>(file.scene, BuildOptions{.density = m}));
+  for (const float m : kDensities)
+    worlds.push_back(std::make_unique<World>(file.scene, BuildOptions{.density = m}));
   const RayMaker maker(file, *worlds[0], options.size);
   const std::string shown = name.substr(name.rfind('/') + 1);
   for (std::size_t k = 0; k < kRayKinds.size(); ++k) {
     const RayBuffer rays = maker.make(static_cast<RayKind>(k));
-    if (rays.size() >= 64) print(options, shown, kRayKinds[k], measure_kind(options, worlds, rays, RayMaker::any_hit(static_cast<RayKind>(k))));
+    if (rays.size() >= 64)
+      print(options,
+            shown,
+            kRayKinds[k],
+            measure_kind(options, worlds, rays, RayMaker::any_hit(static_cast<RayKind>(k))));
   }
   print(options, shown, "picture", measure_picture(options, file, worlds));
 }
@@ -137,16 +165,33 @@ void run(const Options& options, const std::string& name) {
 bool parse(int argc, char** argv, Options& o) {
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
-    if (word == "--csv") o.csv = true;
-    else if (i + 1 == argc) return false;
-    else if (word == "--scene") o.scenes.push_back(argv[++i]);
-    else if (word == "--size") o.size = std::atoi(argv[++i]);
-    else if (word == "--rounds") o.rounds = std::atoi(argv[++i]);
-    else return false;
+    if (word == "--csv")
+      o.csv = true;
+    else if (i + 1 == argc)
+      return false;
+    else if (word == "--scene")
+      o.scenes.push_back(argv[++i]);
+    else if (word == "--size")
+      o.size = std::atoi(argv[++i]);
+    else if (word == "--rounds")
+      o.rounds = std::atoi(argv[++i]);
+    else
+      return false;
   }
   if (o.scenes.empty())
-    o.scenes = {"balls 4", "balls 5", "balls 6", "mount 6", "mount 8", "mount 9", "gears 4",
-                "rings 7", "tree 11", "tetra 6", "lattice 12", "stadium 6", "knot 8"};
+    o.scenes = {"balls 4",
+                "balls 5",
+                "balls 6",
+                "mount 6",
+                "mount 8",
+                "mount 9",
+                "gears 4",
+                "rings 7",
+                "tree 11",
+                "tetra 6",
+                "lattice 12",
+                "stadium 6",
+                "knot 8"};
   return o.size >= 32 && o.size <= 16384 && o.rounds >= 1;
 }
 
@@ -155,13 +200,18 @@ bool parse(int argc, char** argv, Options& o) {
 int main(int argc, char** argv) try {
   Options options;
   if (!parse(argc, argv, options)) {
-    std::fprintf(stderr, "usage: density [--scene 'GENERATOR SIZE' | FILE]... [--size N] [--rounds N] [--csv]\n");
+    std::fprintf(
+        stderr,
+        "usage: density [--scene 'GENERATOR SIZE' | FILE]... [--size N] [--rounds N] [--csv]\n");
     return 2;
   }
-  std::printf(options.csv ? "%s,%s,ns,over best" : "%-22s %-12s %10s %4s; ", "scene", "kind", "ns", "over");
-  for (std::size_t w = 1; w < kWays; ++w) std::printf(options.csv ? ",%g" : " %4g", static_cast<double>(kDensities[w]));
+  std::printf(
+      options.csv ? "%s,%s,ns,over best" : "%-22s %-12s %10s %4s; ", "scene", "kind", "ns", "over");
+  for (std::size_t w = 1; w < kWays; ++w)
+    std::printf(options.csv ? ",%g" : " %4g", static_cast<double>(kDensities[w]));
   std::printf("\n");
-  for (const std::string& scene : options.scenes) run(options, scene);
+  for (const std::string& scene : options.scenes)
+    run(options, scene);
   return 0;
 } catch (const std::exception& e) {
   std::fprintf(stderr, "density: %s\n", e.what());

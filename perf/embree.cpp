@@ -17,7 +17,8 @@
 namespace grelha::perf {
 namespace {
 
-/// Denormals count as zero while Embree works, as its manual recommends; Grelha's own arithmetic does not allow it.
+/// Denormals count as zero while Embree works, as its manual recommends; Grelha's own arithmetic
+/// does not allow it.
 class FlushDenormals {
 #if defined(__SSE__)
  public:
@@ -33,7 +34,10 @@ struct Range {
   double lo[3] = {1e300, 1e300, 1e300}, hi[3] = {-1e300, -1e300, -1e300};
   void add(double x, double y, double z, double r = 0) {
     const double p[3] = {x, y, z};
-    for (int a = 0; a < 3; ++a) lo[a] = std::min(lo[a], p[a] - r), hi[a] = std::max(hi[a], p[a] + r);
+    for (int a = 0; a < 3; ++a) {
+      lo[a] = std::min(lo[a], p[a] - r);
+      hi[a] = std::max(hi[a], p[a] + r);
+    }
   }
   double width() const { return std::max({hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]}); }
 };
@@ -44,54 +48,75 @@ template <>
 struct Wide<8> {
   using Ray = RTCRay8;
   using RayHit = RTCRayHit8;
-  static void closest(const int* valid, RTCScene s, RTCIntersectContext* c, RayHit* r) { rtcIntersect8(valid, s, c, r); }
-  static void occluded(const int* valid, RTCScene s, RTCIntersectContext* c, Ray* r) { rtcOccluded8(valid, s, c, r); }
+  static void closest(const int* valid, RTCScene s, RTCIntersectContext* c, RayHit* r) {
+    rtcIntersect8(valid, s, c, r);
+  }
+  static void occluded(const int* valid, RTCScene s, RTCIntersectContext* c, Ray* r) {
+    rtcOccluded8(valid, s, c, r);
+  }
 };
 template <>
 struct Wide<16> {
   using Ray = RTCRay16;
   using RayHit = RTCRayHit16;
-  static void closest(const int* valid, RTCScene s, RTCIntersectContext* c, RayHit* r) { rtcIntersect16(valid, s, c, r); }
-  static void occluded(const int* valid, RTCScene s, RTCIntersectContext* c, Ray* r) { rtcOccluded16(valid, s, c, r); }
+  static void closest(const int* valid, RTCScene s, RTCIntersectContext* c, RayHit* r) {
+    rtcIntersect16(valid, s, c, r);
+  }
+  static void occluded(const int* valid, RTCScene s, RTCIntersectContext* c, Ray* r) {
+    rtcOccluded16(valid, s, c, r);
+  }
 };
 
 class Built final : public EmbreeScene {
  public:
   Built(const Scene& scene, bool robust) : device_(rtcNewDevice("threads=1")) {
-    if (!device_) throw std::runtime_error("Embree makes no device");
+    if (!device_)
+      throw std::runtime_error("Embree makes no device");
     scene_ = rtcNewScene(device_);
     rtcSetSceneFlags(scene_, robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
     rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_MEDIUM);
     const Geometry& g = scene.geometry;
-    const auto planes = static_cast<std::uint32_t>(g.planes.size()), spheres = static_cast<std::uint32_t>(g.spheres.size());
+    const auto planes = static_cast<std::uint32_t>(g.planes.size()),
+               spheres = static_cast<std::uint32_t>(g.spheres.size());
     const auto triangles = static_cast<std::uint32_t>(g.triangles.size());
     add_planes(g);
     add_spheres(g.spheres, planes);
     add_triangles(g.triangles, planes + spheres);
     add_cones(g.cones, planes + spheres + triangles);
     rtcCommitScene(scene_);
-    if (rtcGetDeviceError(device_) != RTC_ERROR_NONE) throw std::runtime_error("Embree refuses the scene");
+    if (rtcGetDeviceError(device_) != RTC_ERROR_NONE)
+      throw std::runtime_error("Embree refuses the scene");
   }
-  ~Built() override { rtcReleaseScene(scene_), rtcReleaseDevice(device_); }
+  ~Built() override {
+    rtcReleaseScene(scene_);
+    rtcReleaseDevice(device_);
+  }
   Built(const Built&) = delete;
   Built& operator=(const Built&) = delete;
 
   void trace(const RayBuffer& rays, bool any, const EmbreeMode& mode) override {
-    t_.resize(rays.size()), primitive_.resize(rays.size()), geometry_.resize(rays.size());
+    t_.resize(rays.size());
+    primitive_.resize(rays.size());
+    geometry_.resize(rays.size());
     const FlushDenormals flush;
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    context.flags = mode.coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    context.flags =
+        mode.coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     any_ = any;
-    if (mode.width == 8) return wide<8>(rays, context);
-    if (mode.width == 16) return wide<16>(rays, context);
+    if (mode.width == 8)
+      return wide<8>(rays, context);
+    if (mode.width == 16)
+      return wide<16>(rays, context);
     single(rays, context);
   }
 
   Answers answers() const override {
     Answers a{t_, std::vector<std::uint32_t>(t_.size(), kNoPrimitive)};
     for (std::size_t i = 0; !any_ && i < t_.size(); ++i)
-      if (geometry_[i] != RTC_INVALID_GEOMETRY_ID) a.id[i] = first_[geometry_[i]] + (geometry_[i] == plane_geometry_ ? primitive_[i] / 2 : primitive_[i]);
+      if (geometry_[i] != RTC_INVALID_GEOMETRY_ID)
+        a.id[i] = first_[geometry_[i]] +
+                  (geometry_[i] == plane_geometry_ ? primitive_[i] / 2 : primitive_[i]);
     return a;
   }
 
@@ -103,44 +128,63 @@ class Built final : public EmbreeScene {
     rtcReleaseGeometry(g);
     first_.push_back(first);
   }
-  static void* room(RTCGeometry g, RTCBufferType type, RTCFormat format, std::size_t stride, std::size_t count) {
+  static void* room(
+      RTCGeometry g, RTCBufferType type, RTCFormat format, std::size_t stride, std::size_t count) {
     return rtcSetNewGeometryBuffer(g, type, 0, format, stride, count);
   }
 
   void add_planes(const Geometry& scene) {
     const Planes& p = scene.planes;
-    if (p.size() == 0) return;
+    if (p.size() == 0)
+      return;
     Range all;
     const Spheres& s = scene.spheres;
     const Triangles& t = scene.triangles;
     const Cones& c = scene.cones;
-    for (std::size_t i = 0; i < s.size(); ++i) all.add(s.x[i], s.y[i], s.z[i], std::abs(s.radius[i]));
-    for (std::size_t i = 0; i < t.vertex_count(); ++i) all.add(t.x[i], t.y[i], t.z[i]);
-    for (std::size_t i = 0; i < c.size(); ++i) all.add(c.base_x[i], c.base_y[i], c.base_z[i]), all.add(c.apex_x[i], c.apex_y[i], c.apex_z[i]);
+    for (std::size_t i = 0; i < s.size(); ++i)
+      all.add(s.x[i], s.y[i], s.z[i], std::abs(s.radius[i]));
+    for (std::size_t i = 0; i < t.vertex_count(); ++i)
+      all.add(t.x[i], t.y[i], t.z[i]);
+    for (std::size_t i = 0; i < c.size(); ++i) {
+      all.add(c.base_x[i], c.base_y[i], c.base_z[i]);
+      all.add(c.apex_x[i], c.apex_y[i], c.apex_z[i]);
+    }
     const double half = kPlaneReach * std::max(all.width(), 1e-3);
     RTCGeometry g = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* const v = static_cast<float*>(room(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, 12, 4 * p.size()));
-    auto* const index = static_cast<unsigned*>(room(g, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, 12, 2 * p.size()));
+    auto* const v =
+        static_cast<float*>(room(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, 12, 4 * p.size()));
+    auto* const index =
+        static_cast<unsigned*>(room(g, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, 12, 2 * p.size()));
     for (std::size_t i = 0; i < p.size(); ++i) {
-      double n[3] = {p.nx[i], p.ny[i], p.nz[i]}, at[3] = {p.x[i], p.y[i], p.z[i]}, middle[3], along = 0;
+      double n[3] = {p.nx[i], p.ny[i], p.nz[i]}, at[3] = {p.x[i], p.y[i], p.z[i]}, middle[3],
+             along = 0;
       const double length = std::hypot(n[0], n[1], n[2]);
-      for (int a = 0; a < 3; ++a) n[a] /= length, middle[a] = (all.lo[a] + all.hi[a]) / 2;
-      for (int a = 0; a < 3; ++a) along += n[a] * (middle[a] - at[a]);
-      for (int a = 0; a < 3; ++a) middle[a] -= along * n[a];  // of the scene, on the plane
+      for (int a = 0; a < 3; ++a) {
+        n[a] /= length;
+        middle[a] = (all.lo[a] + all.hi[a]) / 2;
+      }
+      for (int a = 0; a < 3; ++a)
+        along += n[a] * (middle[a] - at[a]);
+      for (int a = 0; a < 3; ++a)
+        middle[a] -= along * n[a];  // of the scene, on the plane
       int least = 0;
       for (int a = 1; a < 3; ++a)
-        if (std::abs(n[a]) < std::abs(n[least])) least = a;
+        if (std::abs(n[a]) < std::abs(n[least]))
+          least = a;
       double u[3] = {}, w[3];
       u[least] = 1;
       const double un = n[least];
-      for (int a = 0; a < 3; ++a) u[a] -= un * n[a];
+      for (int a = 0; a < 3; ++a)
+        u[a] -= un * n[a];
       const double ul = std::hypot(u[0], u[1], u[2]);
-      for (double& x : u) x /= ul;
-      for (int a = 0; a < 3; ++a) w[a] = n[(a + 1) % 3] * u[(a + 2) % 3] - n[(a + 2) % 3] * u[(a + 1) % 3];
+      for (double& x : u)
+        x /= ul;
+      for (int a = 0; a < 3; ++a)
+        w[a] = n[(a + 1) % 3] * u[(a + 2) % 3] - n[(a + 2) % 3] * u[(a + 1) % 3];
       for (int k = 0; k < 4; ++k)
         for (int a = 0; a < 3; ++a)
-          v[12 * i + static_cast<std::size_t>(3 * k + a)] =
-              static_cast<float>(middle[a] + half * ((k == 0 || k == 3 ? -1 : 1) * u[a] + (k < 2 ? -1 : 1) * w[a]));
+          v[12 * i + static_cast<std::size_t>(3 * k + a)] = static_cast<float>(
+              middle[a] + half * ((k == 0 || k == 3 ? -1 : 1) * u[a] + (k < 2 ? -1 : 1) * w[a]));
       const auto base = static_cast<unsigned>(4 * i);
       const unsigned corners[6] = {base, base + 1, base + 2, base, base + 2, base + 3};
       std::copy(corners, corners + 6, index + 6 * i);
@@ -150,31 +194,57 @@ class Built final : public EmbreeScene {
   }
 
   void add_spheres(const Spheres& s, std::uint32_t first) {
-    if (s.size() == 0) return;
+    if (s.size() == 0)
+      return;
     RTCGeometry g = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_SPHERE_POINT);
     auto* v = static_cast<float*>(room(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, 16, s.size()));
-    for (std::size_t i = 0; i < s.size(); ++i) *v++ = s.x[i], *v++ = s.y[i], *v++ = s.z[i], *v++ = std::abs(s.radius[i]);
+    for (std::size_t i = 0; i < s.size(); ++i) {
+      *v++ = s.x[i];
+      *v++ = s.y[i];
+      *v++ = s.z[i];
+      *v++ = std::abs(s.radius[i]);
+    }
     attach(g, first);
   }
 
   void add_triangles(const Triangles& t, std::uint32_t first) {
-    if (t.size() == 0) return;
+    if (t.size() == 0)
+      return;
     RTCGeometry g = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* v = static_cast<float*>(room(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, 12, t.vertex_count()));
-    for (std::size_t i = 0; i < t.vertex_count(); ++i) *v++ = t.x[i], *v++ = t.y[i], *v++ = t.z[i];
-    auto* index = static_cast<unsigned*>(room(g, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, 12, t.size()));
-    for (std::size_t i = 0; i < t.size(); ++i) *index++ = t.a[i], *index++ = t.b[i], *index++ = t.c[i];
+    auto* v = static_cast<float*>(
+        room(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, 12, t.vertex_count()));
+    for (std::size_t i = 0; i < t.vertex_count(); ++i) {
+      *v++ = t.x[i];
+      *v++ = t.y[i];
+      *v++ = t.z[i];
+    }
+    auto* index =
+        static_cast<unsigned*>(room(g, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, 12, t.size()));
+    for (std::size_t i = 0; i < t.size(); ++i) {
+      *index++ = t.a[i];
+      *index++ = t.b[i];
+      *index++ = t.c[i];
+    }
     attach(g, first);
   }
 
   void add_cones(const Cones& c, std::uint32_t first) {
-    if (c.size() == 0) return;
+    if (c.size() == 0)
+      return;
     RTCGeometry g = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_CONE_LINEAR_CURVE);
-    auto* v = static_cast<float*>(room(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, 16, 2 * c.size()));
-    auto* const index = static_cast<unsigned*>(room(g, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT, 4, c.size()));
+    auto* v =
+        static_cast<float*>(room(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, 16, 2 * c.size()));
+    auto* const index =
+        static_cast<unsigned*>(room(g, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT, 4, c.size()));
     for (std::size_t i = 0; i < c.size(); ++i) {
-      *v++ = c.base_x[i], *v++ = c.base_y[i], *v++ = c.base_z[i], *v++ = std::abs(c.base_radius[i]);
-      *v++ = c.apex_x[i], *v++ = c.apex_y[i], *v++ = c.apex_z[i], *v++ = std::abs(c.apex_radius[i]);
+      *v++ = c.base_x[i];
+      *v++ = c.base_y[i];
+      *v++ = c.base_z[i];
+      *v++ = std::abs(c.base_radius[i]);
+      *v++ = c.apex_x[i];
+      *v++ = c.apex_y[i];
+      *v++ = c.apex_z[i];
+      *v++ = std::abs(c.apex_radius[i]);
       index[i] = static_cast<unsigned>(2 * i);
     }
     attach(g, first);
@@ -184,16 +254,26 @@ class Built final : public EmbreeScene {
   void single(const RayBuffer& r, RTCIntersectContext& context) {
     RTCRayHit hit;
     RTCRay& ray = hit.ray;
-    ray.time = 0, ray.mask = ~0u, ray.id = 0, ray.flags = 0;
+    ray.time = 0;
+    ray.mask = ~0u;
+    ray.id = 0;
+    ray.flags = 0;
     for (std::size_t i = 0; i < r.size(); ++i) {
-      ray.org_x = r.ox[i], ray.org_y = r.oy[i], ray.org_z = r.oz[i], ray.tnear = r.t_min[i];
-      ray.dir_x = r.dx[i], ray.dir_y = r.dy[i], ray.dir_z = r.dz[i], ray.tfar = r.t_max[i];
+      ray.org_x = r.ox[i];
+      ray.org_y = r.oy[i];
+      ray.org_z = r.oz[i];
+      ray.tnear = r.t_min[i];
+      ray.dir_x = r.dx[i];
+      ray.dir_y = r.dy[i];
+      ray.dir_z = r.dz[i];
+      ray.tfar = r.t_max[i];
       if (any_) {
         rtcOccluded1(scene_, &context, &ray);
       } else {
         hit.hit.geomID = hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
         rtcIntersect1(scene_, &context, &hit);
-        primitive_[i] = hit.hit.primID, geometry_[i] = hit.hit.geomID;
+        primitive_[i] = hit.hit.primID;
+        geometry_[i] = hit.hit.geomID;
       }
       t_[i] = ray.tfar;
     }
@@ -208,22 +288,32 @@ class Built final : public EmbreeScene {
     std::memset(ray.time, 0, sizeof ray.time), std::memset(ray.mask, 0xFF, sizeof ray.mask);
     std::memset(ray.id, 0, sizeof ray.id), std::memset(ray.flags, 0, sizeof ray.flags);
     const auto group = [&](std::size_t i, std::size_t bytes) {
-      std::memcpy(ray.org_x, &r.ox[i], bytes), std::memcpy(ray.org_y, &r.oy[i], bytes), std::memcpy(ray.org_z, &r.oz[i], bytes);
-      std::memcpy(ray.dir_x, &r.dx[i], bytes), std::memcpy(ray.dir_y, &r.dy[i], bytes), std::memcpy(ray.dir_z, &r.dz[i], bytes);
-      std::memcpy(ray.tnear, &r.t_min[i], bytes), std::memcpy(ray.tfar, &r.t_max[i], bytes);
+      std::memcpy(ray.org_x, &r.ox[i], bytes);
+      std::memcpy(ray.org_y, &r.oy[i], bytes);
+      std::memcpy(ray.org_z, &r.oz[i], bytes);
+      std::memcpy(ray.dir_x, &r.dx[i], bytes);
+      std::memcpy(ray.dir_y, &r.dy[i], bytes);
+      std::memcpy(ray.dir_z, &r.dz[i], bytes);
+      std::memcpy(ray.tnear, &r.t_min[i], bytes);
+      std::memcpy(ray.tfar, &r.t_max[i], bytes);
       if (any_) {
         Wide<kWidth>::occluded(valid, scene_, &context, &ray);
       } else {
-        std::memset(hit.hit.geomID, 0xFF, sizeof hit.hit.geomID), std::memset(hit.hit.instID, 0xFF, sizeof hit.hit.instID);
+        std::memset(hit.hit.geomID, 0xFF, sizeof hit.hit.geomID),
+            std::memset(hit.hit.instID, 0xFF, sizeof hit.hit.instID);
         Wide<kWidth>::closest(valid, scene_, &context, &hit);
-        std::memcpy(&primitive_[i], hit.hit.primID, bytes), std::memcpy(&geometry_[i], hit.hit.geomID, bytes);
+        std::memcpy(&primitive_[i], hit.hit.primID, bytes);
+        std::memcpy(&geometry_[i], hit.hit.geomID, bytes);
       }
       std::memcpy(&t_[i], ray.tfar, bytes);
     };
     std::size_t i = 0;
-    for (; i + kWidth <= r.size(); i += kWidth) group(i, kWidth * sizeof(float));
-    if (i == r.size()) return;
-    for (std::size_t k = 0; k < kWidth; ++k) valid[k] = i + k < r.size() ? -1 : 0;
+    for (; i + kWidth <= r.size(); i += kWidth)
+      group(i, kWidth * sizeof(float));
+    if (i == r.size())
+      return;
+    for (std::size_t k = 0; k < kWidth; ++k)
+      valid[k] = i + k < r.size() ? -1 : 0;
     group(i, (r.size() - i) * sizeof(float));
   }
 
@@ -239,9 +329,15 @@ class Built final : public EmbreeScene {
 }  // namespace
 
 std::vector<EmbreeMode> embree_modes() {
-  return {{"single", 1, false}, {"8 coherent", 8, true}, {"8 incoherent", 8, false}, {"16 coherent", 16, true}, {"16 incoherent", 16, false}};
+  return {{"single", 1, false},
+          {"8 coherent", 8, true},
+          {"8 incoherent", 8, false},
+          {"16 coherent", 16, true},
+          {"16 incoherent", 16, false}};
 }
-std::unique_ptr<EmbreeScene> make_embree_scene(const Scene& scene, bool robust) { return std::make_unique<Built>(scene, robust); }
+std::unique_ptr<EmbreeScene> make_embree_scene(const Scene& scene, bool robust) {
+  return std::make_unique<Built>(scene, robust);
+}
 
 }  // namespace grelha::perf
 

@@ -8,7 +8,8 @@
 
 namespace grelha::perf {
 
-/// How Embree is asked: rays one by one or `width` side by side, with its hint that they are coherent or that they are not.
+/// How Embree is asked: rays one by one or `width` side by side, with its hint that they are
+/// coherent or that they are not.
 struct EmbreeMode {
   const char* name;
   int width;
@@ -17,12 +18,14 @@ struct EmbreeMode {
 
 inline constexpr double kPlaneReach = 100;
 
-/// A scene built by Embree, quality MEDIUM. Spheres are sphere points, cones cone curves (which have caps; Grelha's have none),
-/// planes squares of two triangles that end kPlaneReach widths of the scene away from its middle: larger ones would be met inexactly.
+/// A scene built by Embree, quality MEDIUM. Spheres are sphere points, cones cone curves (which
+/// have caps; Grelha's have none), planes squares of two triangles that end kPlaneReach widths of
+/// the scene away from its middle: larger ones would be met inexactly.
 class EmbreeScene {
  public:
   virtual ~EmbreeScene() = default;
-  /// Loads each ray, traces it, stores t and what Embree names the primitive by: closest hits, or with `any` whether there is one.
+  /// Loads each ray, traces it, stores t and what Embree names the primitive by: closest hits, or
+  /// with `any` whether there is one.
   virtual void trace(const RayBuffer& rays, bool any, const EmbreeMode& mode) = 0;
   /// The last trace's answers with Grelha's ids.
   virtual Answers answers() const = 0;

@@ -1,6 +1,8 @@
-// What the rays of a picture cost alone beside the whole picture, and one thread beside two; everything takes turns in one process.
+// What the rays of a picture cost alone beside the whole picture, and one thread beside two;
+// everything takes turns in one process.
 //
-//   frame SCENE [ROUNDS]      a 512 x 512 picture, one sample a pixel; JSON with the least of ROUNDS (9) times of each
+// frame SCENE [ROUNDS]      a 512 x 512 picture, one sample a pixel; JSON with the least of ROUNDS
+// (9) times of each
 //
 // frame.py runs this.
 
@@ -22,7 +24,8 @@ using namespace grelha::perf;
 int measure(const char* path, int rounds) {
   SceneFile file = read_scene(path, [](const std::string&) {});
   Camera camera = file.camera;
-  camera.width = camera.height = 512, camera.aperture = 0;
+  camera.width = camera.height = 512;
+  camera.aperture = 0;
   const World world(file.scene, BuildOptions{});
   const RenderOptions options;
   const FrameRays rays = rays_of_frame(world, camera, options);
@@ -38,14 +41,22 @@ int measure(const char* path, int rounds) {
   std::array<double, 3> least{1e300, 1e300, 1e300};
   for (int round = 0; round < rounds; ++round) {
     const auto [clock, cpu] = whole(1);
-    one = std::min(one, clock), one_cpu = std::min(one_cpu, cpu);
+    one = std::min(one, clock);
+    one_cpu = std::min(one_cpu, cpu);
     const auto t = trace_seconds(world, *find_variant("best"), {}, rays, 1);
-    for (std::size_t k = 0; k < 3; ++k) least[k] = std::min(least[k], t[k]);
+    for (std::size_t k = 0; k < 3; ++k)
+      least[k] = std::min(least[k], t[k]);
     alone = std::min(alone, t[0] + t[1] + t[2]);
     two = std::min(two, whole(2).first);
   }
-  std::printf("{\"render\": %g, \"render cpu\": %g, \"render two threads\": %g, \"trace\": %g", one, one_cpu, two, alone);
-  for (std::size_t k = 0; k < 3; ++k) std::printf(", \"%s\": {\"rays\": %zu, \"seconds\": %g}", kKinds[k], rays[k].rays.size(), least[k]);
+  std::printf("{\"render\": %g, \"render cpu\": %g, \"render two threads\": %g, \"trace\": %g",
+              one,
+              one_cpu,
+              two,
+              alone);
+  for (std::size_t k = 0; k < 3; ++k)
+    std::printf(
+        ", \"%s\": {\"rays\": %zu, \"seconds\": %g}", kKinds[k], rays[k].rays.size(), least[k]);
   std::printf("}\n");
   return 0;
 }
@@ -53,7 +64,8 @@ int measure(const char* path, int rounds) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 2) return std::fputs("usage: frame SCENE [ROUNDS]\n", stderr), 2;
+  if (argc < 2)
+    return std::fputs("usage: frame SCENE [ROUNDS]\n", stderr), 2;
   try {
     return measure(argv[1], argc > 2 ? std::atoi(argv[2]) : 9);
   } catch (const std::exception& e) {

@@ -17,26 +17,40 @@ class Recorder : public Observer {
 
  private:
   static void enter(Observer& self, Phase phase, const ObservedRays* rays) {
-    if (!rays || rays->count == 0) return;
-    RaySet& set = static_cast<Recorder&>(self).frame_[phase == Phase::primary ? 0 : phase == Phase::bounce ? 1 : 2];
+    if (!rays || rays->count == 0)
+      return;
+    RaySet& set = static_cast<Recorder&>(self).frame_[phase == Phase::primary  ? 0
+                                                      : phase == Phase::bounce ? 1
+                                                                               : 2];
     set.runs.push_back({set.rays.size(), rays->count});
     RayBuffer& r = set.rays;
-    const auto put = [n = rays->count](std::vector<float>& to, const float* from) { to.insert(to.end(), from, from + n); };
-    put(r.ox, rays->ox), put(r.oy, rays->oy), put(r.oz, rays->oz), put(r.dx, rays->dx), put(r.dy, rays->dy), put(r.dz, rays->dz);
-    put(r.t_min, rays->t_min), put(r.t_max, rays->t);
+    const auto put = [n = rays->count](std::vector<float>& to, const float* from) {
+      to.insert(to.end(), from, from + n);
+    };
+    put(r.ox, rays->ox);
+    put(r.oy, rays->oy);
+    put(r.oz, rays->oz);
+    put(r.dx, rays->dx);
+    put(r.dy, rays->dy);
+    put(r.dz, rays->dz);
+    put(r.t_min, rays->t_min);
+    put(r.t_max, rays->t);
   }
   FrameRays& frame_;
 };
 
 }  // namespace
 
-double now_seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double now_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 FrameRays rays_of_frame(const World& world, const Camera& camera, RenderOptions options) {
   FrameRays frame;
   Recorder recorder(frame);
-  options.threads = 1, options.observer = &recorder;
+  options.threads = 1;
+  options.observer = &recorder;
   RenderStats stats;
   render(world, camera, options, stats);
   return frame;
@@ -47,13 +61,18 @@ FrameRays thinned(const FrameRays& frame, std::size_t stride) {
   for (std::size_t kind = 0; kind < frame.size(); ++kind) {
     const RayBuffer& r = frame[kind].rays;
     RaySet& to = out[kind];
-    for (std::size_t i = stride / 2; i < r.size(); i += stride) to.rays.add({r.ox[i], r.oy[i], r.oz[i]}, {r.dx[i], r.dy[i], r.dz[i]}, r.t_max[i]);
-    for (std::size_t i = 0; i < to.rays.size(); i += kBatch) to.runs.push_back({i, static_cast<int>(std::min<std::size_t>(kBatch, to.rays.size() - i))});
+    for (std::size_t i = stride / 2; i < r.size(); i += stride)
+      to.rays.add({r.ox[i], r.oy[i], r.oz[i]}, {r.dx[i], r.dy[i], r.dz[i]}, r.t_max[i]);
+    for (std::size_t i = 0; i < to.rays.size(); i += kBatch)
+      to.runs.push_back({i, static_cast<int>(std::min<std::size_t>(kBatch, to.rays.size() - i))});
   }
   return out;
 }
 
-std::array<double, 3> trace_seconds(const World& world, const Variant& variant, const TraceSettings& settings, const FrameRays& frame,
+std::array<double, 3> trace_seconds(const World& world,
+                                    const Variant& variant,
+                                    const TraceSettings& settings,
+                                    const FrameRays& frame,
                                     int threads) {
   std::array<double, 3> seconds{};
   for (std::size_t kind = 0; kind < frame.size(); ++kind) {
@@ -71,7 +90,19 @@ std::array<double, 3> trace_seconds(const World& world, const Variant& variant, 
       for (std::size_t k = 0; k < runs.size(); ++k) {
         const std::size_t i = runs[k].first;
         std::copy_n(&r.t_max[i], runs[k].count, t);
-        loop(world.impl().view, {&r.ox[i], &r.oy[i], &r.oz[i], &r.dx[i], &r.dy[i], &r.dz[i], &r.t_min[i], t, id, runs[k].count}, settings, counts);
+        loop(world.impl().view,
+             {&r.ox[i],
+              &r.oy[i],
+              &r.oz[i],
+              &r.dx[i],
+              &r.dy[i],
+              &r.dz[i],
+              &r.t_min[i],
+              t,
+              id,
+              runs[k].count},
+             settings,
+             counts);
       }
     }
     seconds[kind] = now() - start;

@@ -30,10 +30,14 @@ FrameRays rays_of_frame(const World& world, const Camera& camera, RenderOptions 
 FrameRays thinned(const FrameRays& frame, std::size_t stride);
 
 /// Seconds that tracing takes, by kind: of the processor for one thread, by the clock for more.
-std::array<double, 3> trace_seconds(const World& world, const Variant& variant, const TraceSettings& settings, const FrameRays& frame,
+std::array<double, 3> trace_seconds(const World& world,
+                                    const Variant& variant,
+                                    const TraceSettings& settings,
+                                    const FrameRays& frame,
                                     int threads);
 
-/// Since some moment: by the clock, and of this process on all processors, which other programs stretch less.
+/// Since some moment: by the clock, and of this process on all processors, which other programs
+/// stretch less.
 double now_seconds();
 double cpu_seconds();
 

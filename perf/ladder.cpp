@@ -1,9 +1,11 @@
-// The rungs from brute force to packets, camera rays, one thread, all in one process: how much each is worth.
+// The rungs from brute force to packets, camera rays, one thread, all in one process: how much each
+// is worth.
 //
-//   ladder [--benchmark_filter=...] [other Google Benchmark options]
+// ladder [--benchmark_filter=...] [other Google Benchmark options]
 //
-// Every rung runs at several densities M of the grid; the table at the end takes each at its own best. Brute force traces an
-// evenly spread sample of the rays and is reported per ray like the others.
+// Every rung runs at several densities M of the grid; the table at the end takes each at its own
+// best. Brute force traces an evenly spread sample of the rays and is reported per ray like the
+// others.
 
 #include <algorithm>
 #include <cstdio>
@@ -25,17 +27,27 @@ struct Place {
   std::string name;
   SceneFile file;
   RayBuffer rays;
-  Answers truth;  ///< of the reference walk
+  Answers truth;                                   ///< of the reference walk
   std::map<float, std::unique_ptr<World>> worlds;  ///< by density; 0: no grid
 
-  Place(std::string scene, int size) : name(scene + " " + std::to_string(size)), file(make_scene(scene, size)) {
+  Place(std::string scene, int size)
+      : name(scene + " " + std::to_string(size)), file(make_scene(scene, size)) {
     rays = camera_rays(file.camera);
     TraceCounts unused;
-    trace(world(2), *find_variant("scalar"), {.method = Method::kReference}, rays, 0, rays.size(), truth, unused);
+    trace(world(2),
+          *find_variant("scalar"),
+          {.method = Method::kReference},
+          rays,
+          0,
+          rays.size(),
+          truth,
+          unused);
   }
   const World& world(float density) {
     auto& w = worlds[density];
-    if (!w) w = std::make_unique<World>(file.scene, BuildOptions{.grid = density > 0, .density = density});
+    if (!w)
+      w = std::make_unique<World>(file.scene,
+                                  BuildOptions{.grid = density > 0, .density = density});
     return *w;
   }
 };
@@ -55,7 +67,9 @@ const Rung kRungs[] = {
     {"single rays, SIMD over primitives", "best", {.method = Method::kSingle}},
     {"packets of 16, sse2", "sse2", {.method = Method::kPackets, .packet = 16}},
     {"packets of 16", "best", {.method = Method::kPackets, .packet = 16}},
-    {"packets of 64, no mailbox", "best", {.method = Method::kPackets, .packet = 64, .mailbox = false}},
+    {"packets of 64, no mailbox",
+     "best",
+     {.method = Method::kPackets, .packet = 64, .mailbox = false}},
     {"packets of 64, sse2", "sse2", {.method = Method::kPackets, .packet = 64}},
     {"packets of 64", "best", {.method = Method::kPackets, .packet = 64}},
     {"packets of 256, sse2", "sse2", {.method = Method::kPackets, .packet = 256}},
@@ -67,7 +81,8 @@ void run(benchmark::State& state, Place& place, const Rung& rung, float density)
   const Variant& variant = *find_variant(rung.isa);
   const World& world = place.world(density);
   // Brute force: a few rows of tiles, spread over the picture.
-  const std::size_t total = place.rays.size(), slice = rung.brute ? 256 : total, stride = rung.brute ? total / 8 : total;
+  const std::size_t total = place.rays.size(), slice = rung.brute ? 256 : total,
+                    stride = rung.brute ? total / 8 : total;
   Answers answers;
   TraceCounts counts;
   std::size_t traced = 0;
@@ -77,8 +92,11 @@ void run(benchmark::State& state, Place& place, const Rung& rung, float density)
       traced += slice;
       benchmark::DoNotOptimize(answers.t.data());
       state.PauseTiming();
-      if (!std::equal(answers.id.begin(), answers.id.end(), place.truth.id.begin() + std::ptrdiff_t(first)) ||
-          !std::equal(answers.t.begin(), answers.t.end(), place.truth.t.begin() + std::ptrdiff_t(first)))
+      if (!std::equal(answers.id.begin(),
+                      answers.id.end(),
+                      place.truth.id.begin() + std::ptrdiff_t(first)) ||
+          !std::equal(
+              answers.t.begin(), answers.t.end(), place.truth.t.begin() + std::ptrdiff_t(first)))
         state.SkipWithError("wrong hits");
       state.ResumeTiming();
     }
@@ -90,7 +108,8 @@ void run(benchmark::State& state, Place& place, const Rung& rung, float density)
   state.counters["tests/ray"] = static_cast<double>(t.sphere + t.triangle + t.cone + t.plane) / n;
   state.counters["cells/ray"] = static_cast<double>(counts.visits) / n;
   state.counters["lanes busy"] =
-      static_cast<double>(counts.packets.lanes_busy) / static_cast<double>(std::max<std::uint64_t>(counts.packets.lanes_issued, 1));
+      static_cast<double>(counts.packets.lanes_busy) /
+      static_cast<double>(std::max<std::uint64_t>(counts.packets.lanes_issued, 1));
 }
 
 /// The console's own report, then the table of each rung at its best density.
@@ -99,8 +118,10 @@ class Table : public benchmark::ConsoleReporter {
   void ReportRuns(const std::vector<Run>& runs) override {
     ConsoleReporter::ReportRuns(runs);
     for (const Run& r : runs) {
-      if (r.error_occurred) failed = true;
-      if (r.error_occurred || r.run_type != Run::RT_Iteration) continue;
+      if (r.error_occurred)
+        failed = true;
+      if (r.error_occurred || r.run_type != Run::RT_Iteration)
+        continue;
       const std::string name = r.run_name.function_name;  // scene/rung/M
       const std::size_t a = name.find('/'), b = name.rfind('/');
       Times& t = times_[name.substr(0, a)][name.substr(a + 1, b - a - 1)][name.substr(b + 1)];
@@ -120,13 +141,24 @@ class Table : public benchmark::ConsoleReporter {
       };
       const double base = rungs.count("grid, scalar") ? best("grid, scalar").first : 0;
       std::printf("\n%s, camera rays, each rung at its best density\n", scene.c_str());
-      std::printf("| %-40s | %10s | %5s | %20s |\n|---|--:|--:|--:|\n", "rung", "ns a ray", "M", "times grid, scalar");
+      std::printf("| %-40s | %10s | %5s | %20s |\n|---|--:|--:|--:|\n",
+                  "rung",
+                  "ns a ray",
+                  "M",
+                  "times grid, scalar");
       for (const Rung& r : kRungs)
         if (rungs.count(r.name)) {
           const auto [ns, density] = best(r.name);
           char times[32];
-          std::snprintf(times, sizeof times, base < ns / 10 ? "1/%.0f" : "%.2f", base < ns / 10 ? ns / base : base / ns);
-          std::printf("| %-40s | %10.1f | %5s | %20s |\n", r.name, ns, r.brute ? "" : density.c_str(), times);
+          std::snprintf(times,
+                        sizeof times,
+                        base < ns / 10 ? "1/%.0f" : "%.2f",
+                        base < ns / 10 ? ns / base : base / ns);
+          std::printf("| %-40s | %10.1f | %5s | %20s |\n",
+                      r.name,
+                      ns,
+                      r.brute ? "" : density.c_str(),
+                      times);
         }
     }
   }
@@ -141,19 +173,24 @@ class Table : public benchmark::ConsoleReporter {
 
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  if (benchmark::ReportUnrecognizedArguments(argc, argv))
+    return 2;
   std::vector<std::unique_ptr<Place>> places;
   places.push_back(std::make_unique<Place>("balls", 4));
   places.push_back(std::make_unique<Place>("mount", 7));
   for (const auto& place : places)
     for (const Rung& rung : kRungs) {
-      if (!find_variant(rung.isa) || !find_variant(rung.isa)->runs_here()) continue;
+      if (!find_variant(rung.isa) || !find_variant(rung.isa)->runs_here())
+        continue;
       for (const float density : kDensities) {
-        if (rung.brute && density != kDensities[0]) continue;
+        if (rung.brute && density != kDensities[0])
+          continue;
         char m[16];
         std::snprintf(m, sizeof m, "%g", rung.brute ? 0. : static_cast<double>(density));
         benchmark::RegisterBenchmark((place->name + "/" + rung.name + "/" + m).c_str(),
-                                     [p = place.get(), &rung, density](benchmark::State& s) { run(s, *p, rung, rung.brute ? 0 : density); })
+                                     [p = place.get(), &rung, density](benchmark::State& s) {
+                                       run(s, *p, rung, rung.brute ? 0 : density);
+                                     })
             ->Unit(benchmark::kMillisecond);
       }
     }

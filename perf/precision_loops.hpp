@@ -1,6 +1,6 @@
 #pragma once
-// Groups of rays against groups of triangles by two methods, in float and in double lanes, compiled for each instruction set and,
-// for comparison, with fused multiply-add.
+// Groups of rays against groups of triangles by two methods, in float and in double lanes, compiled
+// for each instruction set and, for comparison, with fused multiply-add.
 
 #include <cstdint>
 #include <string_view>
@@ -8,9 +8,11 @@
 
 namespace grelha::perf {
 
-inline constexpr int kGroup = 16;  ///< rays, and triangles, of a group; all of the rays meet all of the triangles
+/// rays, and triangles, of a group; all of the rays meet all of the triangles
+inline constexpr int kGroup = 16;
 
-/// [groups * kGroup] of each component. All rays of a group have their largest direction component along the same axis.
+/// [groups * kGroup] of each component. All rays of a group have their largest direction component
+/// along the same axis.
 struct Pairs {
   std::vector<float> org[3], dir[3], a[3], b[3], c[3];
   std::vector<std::uint8_t> axis;  ///< [groups]
@@ -27,12 +29,14 @@ struct PrecisionLoops {
   std::string_view isa;
   bool fused;
   bool (*runs_here)();
-  void (*loop[2][2])(const Pairs&, PairHits&);  ///< [in double][watertight, else Möller and Trumbore's]
+  /// [in double][watertight, else Möller and Trumbore's]
+  void (*loop[2][2])(const Pairs&, PairHits&);
 };
 
 extern const PrecisionLoops k_scalar_precision;
 #ifdef GRELHA_X86_VARIANTS
-extern const PrecisionLoops k_sse2_precision, k_avx2_precision, k_avx512_precision, k_avx2_fused_precision, k_avx512_fused_precision;
+extern const PrecisionLoops k_sse2_precision, k_avx2_precision, k_avx512_precision,
+    k_avx2_fused_precision, k_avx512_fused_precision;
 #endif
 
 }  // namespace grelha::perf

@@ -1,4 +1,5 @@
-// The kernel's own surfaces and samples, in their scalar form: only the making of rays is done with it, never the timing.
+// The kernel's own surfaces and samples, in their scalar form: only the making of rays is done with
+// it, never the timing.
 #define GRELHA_ISA scalar
 #include "perf/ray_sets.hpp"
 
@@ -24,12 +25,15 @@ constexpr int kSamples = 16, kSide = 4;
 constexpr int kStrip = 4;         ///< tiles side by side
 constexpr int kMostAcross = 512;  ///< pixels with rays, in a row of the picture
 constexpr float kRoughness = .1f;
-/// Rays start this many times as far from their surface as Grelha's own bound of its errors asks for, so that none of what is
-/// timed meets the surface it left.
+/// Rays start this many times as far from their surface as Grelha's own bound of its errors asks
+/// for, so that none of what is timed meets the surface it left.
 constexpr float kClearance = 8;
-constexpr float kPlaneClearance = 4e-5f;  ///< times the scene's width: what large triangles, Embree's stand-ins for planes, are off by
+/// times the scene's width: what large triangles, Embree's stand-ins for planes, are off by
+constexpr float kPlaneClearance = 4e-5f;
 
-void add(RayBuffer& rays, const V& org, const V& dir, float t_end) { rays.add({org.x, org.y, org.z}, {dir.x, dir.y, dir.z}, t_end); }
+void add(RayBuffer& rays, const V& org, const V& dir, float t_end) {
+  rays.add({org.x, org.y, org.z}, {dir.x, dir.y, dir.z}, t_end);
+}
 
 /// Uniform in [0, 1), the same numbers everywhere.
 struct Random {
@@ -46,17 +50,22 @@ struct RayMaker::Hit {
 
 RayMaker::RayMaker(const SceneFile& file, const World& world, int size) : world_(world) {
   SceneFile own;
-  own.camera = file.camera, own.lens = file.lens, own.scene.lights = file.scene.lights;
+  own.camera = file.camera;
+  own.lens = file.lens;
+  own.scene.lights = file.scene.lights;
   Effects effects;
   effects.samples = kSamples;
-  if (!(file.lens.present && file.lens.aperture > 0)) effects.lens = Effects::Lens{.aperture = 12};
+  if (!(file.lens.present && file.lens.aperture > 0))
+    effects.lens = Effects::Lens{.aperture = 12};
   if (!own.scene.lights.empty()) {
     const Float3 p = own.scene.lights[0].position, at = own.camera.at;
-    effects.shadows = Effects::Shadows{.size = .1f * std::hypot(p.x - at.x, p.y - at.y, p.z - at.z)};
+    effects.shadows =
+        Effects::Shadows{.size = .1f * std::hypot(p.x - at.x, p.y - at.y, p.z - at.z)};
   }
   RenderOptions unused;
   apply_effects(effects, own, unused);
-  if ((lit_ = !own.scene.lights.empty())) light_ = own.scene.lights[0];
+  if ((lit_ = !own.scene.lights.empty()))
+    light_ = own.scene.lights[0];
   Camera camera = own.camera;
   camera.width = camera.height = size;
   lens_ = make_frame(camera);
@@ -66,25 +75,36 @@ RayMaker::RayMaker(const SceneFile& file, const World& world, int size) : world_
 
 RayBuffer RayMaker::through_pixels(const FrameView& f, int samples, bool few) const {
   SamplePlan plan;
-  plan.on = samples > 1, plan.samples = samples, plan.lens = 2;
+  plan.on = samples > 1;
+  plan.samples = samples;
+  plan.lens = 2;
   const auto batch = std::make_unique<Batch>();
   RayBuffer rays;
   // Strips, of each block of strips one: what a render has in a packet of 256.
-  const int block = std::max(1, f.width / kMostAcross) * (few ? kSide : 1), strip = std::min(kStrip, f.width / kTile / block);
+  const int block = std::max(1, f.width / kMostAcross) * (few ? kSide : 1),
+            strip = std::min(kStrip, f.width / kTile / block);
   for (int by = 0; by < f.width / (kTile * block); ++by)
     for (int bx = 0; bx < f.width / (strip * kTile * block); ++bx) {
       const auto pick = scatter(static_cast<std::uint32_t>(bx), static_cast<std::uint32_t>(by));
-      const int x0 = (bx * block + static_cast<int>(pick % static_cast<unsigned>(block))) * strip * kTile;
-      const int y0 = (by * block + static_cast<int>(pick / 64 % static_cast<unsigned>(block))) * kTile;
+      const int x0 =
+          (bx * block + static_cast<int>(pick % static_cast<unsigned>(block))) * strip * kTile;
+      const int y0 =
+          (by * block + static_cast<int>(pick / 64 % static_cast<unsigned>(block))) * kTile;
       for (int k = 0; k < strip * kTile * kTile; ++k) {
-        const int in = k % (kTile * kTile), x = x0 + k / (kTile * kTile) * kTile + tile_x(in), y = y0 + tile_y(in);
+        const int in = k % (kTile * kTile), x = x0 + k / (kTile * kTile) * kTile + tile_x(in),
+                  y = y0 + tile_y(in);
         for (int i = 0; i < samples; ++i) {
-          batch->ox[i] = static_cast<float>(x), batch->oy[i] = static_cast<float>(y);
-          batch->pixel[i] = static_cast<std::uint32_t>(y * f.width + x), batch->sample[i] = static_cast<std::uint32_t>(i);
+          batch->ox[i] = static_cast<float>(x);
+          batch->oy[i] = static_cast<float>(y);
+          batch->pixel[i] = static_cast<std::uint32_t>(y * f.width + x);
+          batch->sample[i] = static_cast<std::uint32_t>(i);
         }
-        find_variant("best")->loops.camera_rays(f, {.batch = batch.get(), .plan = plan}, samples, true);
+        find_variant("best")->loops.camera_rays(
+            f, {.batch = batch.get(), .plan = plan}, samples, true);
         for (int i = 0; i < samples; ++i)
-          rays.add({batch->ox[i], batch->oy[i], batch->oz[i]}, {batch->dx[i], batch->dy[i], batch->dz[i]}, kInfinity);
+          rays.add({batch->ox[i], batch->oy[i], batch->oz[i]},
+                   {batch->dx[i], batch->dy[i], batch->dz[i]},
+                   kInfinity);
       }
     }
   return rays;
@@ -97,19 +117,25 @@ std::vector<RayMaker::Hit> RayMaker::first_hits(bool few) const {
   TraceCounts unused;
   trace(world_, *find_variant("best"), {}, rays, 0, rays.size(), found, unused);
   float extent = 0;
-  for (int a = 0; a < 3 && scene.finite; ++a) extent = std::max(extent, scene.box_hi[a] - scene.box_lo[a]);
+  for (int a = 0; a < 3 && scene.finite; ++a)
+    extent = std::max(extent, scene.box_hi[a] - scene.box_lo[a]);
   std::vector<Hit> hits;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (found.id[i] == kNoPrimitive) continue;
+    if (found.id[i] == kNoPrimitive)
+      continue;
     const V org{rays.ox[i], rays.oy[i], rays.oz[i]}, d{rays.dx[i], rays.dy[i], rays.dz[i]};
-    const Surface<float> s = surface_of<float>(scene, found.id[i], org, d, found.t[i], world_.impl().shading.smooth);
+    const Surface<float> s =
+        surface_of<float>(scene, found.id[i], org, d, found.t[i], world_.impl().shading.smooth);
     const float side = dot(d, s.normal) > 0 ? -1.f : 1.f;
     Hit h;
-    h.point = s.point, h.normal = side * s.normal;
+    h.point = s.point;
+    h.normal = side * s.normal;
     const V n = side * s.shading, reflected = d - (2 * dot(d, n)) * n;
-    h.mirror = normalize(reflected - (2 * lesser(dot(reflected, h.normal), 0.f)) * h.normal);  // kept above the surface, as shading does
+    // kept above the surface, as shading does
+    h.mirror = normalize(reflected - (2 * lesser(dot(reflected, h.normal), 0.f)) * h.normal);
     h.away = kClearance * s.away;
-    if (found.id[i] < scene.sphere_base) h.away += kPlaneClearance * (extent + largest(s.point));
+    if (found.id[i] < scene.sphere_base)
+      h.away += kPlaneClearance * (extent + largest(s.point));
     hits.push_back(h);
   }
   return hits;
@@ -121,8 +147,10 @@ bool RayMaker::facing(const Hit& h, const Float3& light) const {
 }
 
 RayBuffer RayMaker::make(RayKind kind) const {
-  if (kind == RayKind::kPrimary) return through_pixels(pinhole_, 1, false);
-  if (kind == RayKind::kLens) return through_pixels(lens_, kSamples, true);
+  if (kind == RayKind::kPrimary)
+    return through_pixels(pinhole_, 1, false);
+  if (kind == RayKind::kLens)
+    return through_pixels(lens_, kSamples, true);
   RayBuffer rays;
   Random random;
   const std::vector<Hit> hits = first_hits(kind == RayKind::kArea || kind == RayKind::kGlossy);
@@ -132,33 +160,43 @@ RayBuffer RayMaker::make(RayKind kind) const {
   };
   const auto to_light = [&](const Hit& h, const Float3& at) {
     const V org = h.point + h.away * h.normal, dir = V{at.x, at.y, at.z} - org;
-    add(rays, org, normalize(dir), length(dir));  // of unit length, as Embree's cone curves want them: with others a third of rays is wrong
+    // of unit length, as Embree's cone curves want them: with others a third of rays is wrong
+    add(rays, org, normalize(dir), length(dir));
   };
   for (const Hit& h : hits) {
     const V org = h.point + h.away * h.normal;
     switch (kind) {
       case RayKind::kShadow:
-        if (lit_ && facing(h, light_.position)) to_light(h, light_.position);
+        if (lit_ && facing(h, light_.position))
+          to_light(h, light_.position);
         break;
       case RayKind::kArea: {
         bool all = lit_;
         for (const float u : {-.5f, .5f})
-          for (const float v : {-.5f, .5f}) all = all && facing(h, on_light(u, v));
+          for (const float v : {-.5f, .5f})
+            all = all && facing(h, on_light(u, v));
         for (int i = 0; all && i < kSamples; ++i) {
-          const float u = (static_cast<float>(i % kSide) + random()) / kSide, v = (static_cast<float>(i / kSide) + random()) / kSide;
+          const float u = (static_cast<float>(i % kSide) + random()) / kSide,
+                      v = (static_cast<float>(i / kSide) + random()) / kSide;
           to_light(h, on_light(u - .5f, v - .5f));
         }
         break;
       }
-      case RayKind::kMirror: add(rays, org, h.mirror, kInfinity); break;
+      case RayKind::kMirror:
+        add(rays, org, h.mirror, kInfinity);
+        break;
       case RayKind::kGlossy: {
         V u, v;
         across(h.mirror, u, v);
         for (int i = 0; i < kSamples; ++i) {
-          const float x = (static_cast<float>(i % kSide) + random()) / kSide, y = (static_cast<float>(i / kSide) + random()) / kSide;
+          const float x = (static_cast<float>(i % kSide) + random()) / kSide,
+                      y = (static_cast<float>(i / kSide) + random()) / kSide;
           const Pair d = disc_point(Pair{x, y});
           const V to = h.mirror + (kRoughness * d.u) * u + (kRoughness * d.v) * v;
-          add(rays, org, normalize(to - (2 * lesser(dot(to, h.normal), 0.f)) * h.normal), kInfinity);
+          add(rays,
+              org,
+              normalize(to - (2 * lesser(dot(to, h.normal), 0.f)) * h.normal),
+              kInfinity);
         }
         break;
       }
@@ -172,12 +210,14 @@ RayBuffer RayMaker::make(RayKind kind) const {
       }
     }
   }
-  if (kind != RayKind::kIncoherent) return rays;
+  if (kind != RayKind::kIncoherent)
+    return rays;
   RayBuffer shuffled;
   const auto count = static_cast<std::uint32_t>(rays.size());
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t k = permuted(i, count, 0x9E3779B9u);
-    shuffled.add({rays.ox[k], rays.oy[k], rays.oz[k]}, {rays.dx[k], rays.dy[k], rays.dz[k]}, kInfinity);
+    shuffled.add(
+        {rays.ox[k], rays.oy[k], rays.oz[k]}, {rays.dx[k], rays.dy[k], rays.dz[k]}, kInfinity);
   }
   return shuffled;
 }

@@ -1,10 +1,11 @@
-// What breaks ray tracers, counted: the rows of tests/stability/ with many rays, Grelha beside Embree, as it comes and robust.
+// What breaks ray tracers, counted: the rows of tests/stability/ with many rays, Grelha beside
+// Embree, as it comes and robust.
 //
-//   stability [--rays N] [--pixels N] [--rows NAME] [--seed N]
+// stability [--rays N] [--pixels N] [--rows NAME] [--seed N]
 //
-// Prints JSON: by row and tracer how many answers were asked for and how many were lost, false or met what the ray had left;
-// pictures, which only Grelha makes; and what rays that are no numbers, or lie along axes, cost against ordinary ones. Exits 1
-// when an answer of Grelha's is wrong.
+// Prints JSON: by row and tracer how many answers were asked for and how many were lost, false or
+// met what the ray had left; pictures, which only Grelha makes; and what rays that are no numbers,
+// or lie along axes, cost against ordinary ones. Exits 1 when an answer of Grelha's is wrong.
 
 #include <algorithm>
 #include <chrono>
@@ -36,7 +37,9 @@ using Json = nlohmann::ordered_json;
 class EmbreeTracer final : public Tracer {
  public:
   explicit EmbreeTracer(bool robust) : robust_(robust) {}
-  void build(const Trial& trial) override { scene_ = perf::make_embree_scene(trial.scene, robust_); }
+  void build(const Trial& trial) override {
+    scene_ = perf::make_embree_scene(trial.scene, robust_);
+  }
   int ways() const override { return 2; }
   const char* way_name(int way) const override { return way == 0 ? "8 coherent" : "single"; }
   Answers closest(const Rays& rays, int way) override {
@@ -47,14 +50,17 @@ class EmbreeTracer final : public Tracer {
     const perf::Answers a = ask(rays, true, way);
     Answers out{a.t, std::vector<std::uint32_t>(a.t.size(), kNoPrimitive), {}, {}};
     for (std::size_t i = 0; i < a.t.size(); ++i)
-      if (a.t[i] == -test::kInf) out.id[i] = 0;
+      if (a.t[i] == -test::kInf)
+        out.id[i] = 0;
     return out;
   }
 
  private:
   perf::Answers ask(const Rays& rays, bool any, int way) {
-    const perf::EmbreeMode mode = way == 0 ? perf::EmbreeMode{"", 8, true} : perf::EmbreeMode{"", 1, false};
-    scene_->trace({rays.ox, rays.oy, rays.oz, rays.dx, rays.dy, rays.dz, rays.t_min, rays.t}, any, mode);
+    const perf::EmbreeMode mode =
+        way == 0 ? perf::EmbreeMode{"", 8, true} : perf::EmbreeMode{"", 1, false};
+    scene_->trace(
+        {rays.ox, rays.oy, rays.oz, rays.dx, rays.dy, rays.dz, rays.t_min, rays.t}, any, mode);
     return scene_->answers();
   }
   bool robust_;
@@ -76,7 +82,8 @@ struct Column {
 std::vector<Column> columns() {
   std::vector<Column> all;
   all.push_back({"grelha", std::make_unique<GrelhaTracer>(*find_variant("best"))});
-  if (perf::embree_modes().empty()) return all;
+  if (perf::embree_modes().empty())
+    return all;
   all.push_back({"embree", std::make_unique<EmbreeTracer>(false)});
   all.push_back({"embree robust", std::make_unique<EmbreeTracer>(true)});
   return all;
@@ -85,29 +92,40 @@ std::vector<Column> columns() {
 /// Judges in a process of its own, as an assertion of Debian's Embree may end it. False: it did.
 bool judge_apart(Tracer& tracer, const Trial& trial, Counts& counts) {
   int ends[2];
-  if (pipe(ends) != 0) throw std::runtime_error("no pipe");
+  if (pipe(ends) != 0)
+    throw std::runtime_error("no pipe");
   const pid_t child = fork();
-  if (child < 0) throw std::runtime_error("no process");
+  if (child < 0)
+    throw std::runtime_error("no process");
   if (child == 0) {
     close(ends[0]);
-    if (!std::freopen("/dev/null", "w", stderr)) _exit(1);
+    if (!std::freopen("/dev/null", "w", stderr))
+      _exit(1);
     const Counts c = judge(tracer, trial);
     const std::uint64_t numbers[4] = {c.answers, c.lost, c.false_, c.self};
     bool good = write(ends[1], numbers, sizeof numbers) == static_cast<ssize_t>(sizeof numbers);
-    good = good && write(ends[1], c.first.data(), c.first.size()) == static_cast<ssize_t>(c.first.size());
+    good = good &&
+           write(ends[1], c.first.data(), c.first.size()) == static_cast<ssize_t>(c.first.size());
     _exit(good ? 0 : 1);
   }
   close(ends[1]);
   std::uint64_t numbers[4] = {};
-  const bool answered = read(ends[0], numbers, sizeof numbers) == static_cast<ssize_t>(sizeof numbers);
+  const bool answered =
+      read(ends[0], numbers, sizeof numbers) == static_cast<ssize_t>(sizeof numbers);
   char text[1000] = {};
-  if (answered && read(ends[0], text, sizeof text - 1) < 0) text[0] = 0;
+  if (answered && read(ends[0], text, sizeof text - 1) < 0)
+    text[0] = 0;
   close(ends[0]);
   int status = 0;
   waitpid(child, &status, 0);
-  if (!answered || status != 0) return false;
+  if (!answered || status != 0)
+    return false;
   Counts c;
-  c.answers = numbers[0], c.lost = numbers[1], c.false_ = numbers[2], c.self = numbers[3], c.first = text;
+  c.answers = numbers[0];
+  c.lost = numbers[1];
+  c.false_ = numbers[2];
+  c.self = numbers[3];
+  c.first = text;
   counts += c;
   return true;
 }
@@ -119,12 +137,17 @@ Json run_row(const Row& row, std::vector<Column>& all, const Options& o, bool& f
   Random random(o.seed);
   row.make(random, o.rays, [&](const Trial& trial) {
     counts[0] += judge(*all[0].tracer, trial);
-    for (std::size_t i = 1; i < all.size(); ++i) aborts[i] += !judge_apart(*all[i].tracer, trial, counts[i]);
+    for (std::size_t i = 1; i < all.size(); ++i)
+      aborts[i] += !judge_apart(*all[i].tracer, trial, counts[i]);
   });
   Json out{{"name", row.name}, {"condition", row.condition}, {"truth", row.truth}};
   for (std::size_t i = 0; i < all.size(); ++i)
-    out["tracers"][all[i].name] = {{"answers", counts[i].answers}, {"lost", counts[i].lost}, {"false", counts[i].false_}, {"self", counts[i].self},
-                                   {"aborts", aborts[i]}, {"first", counts[i].first}};
+    out["tracers"][all[i].name] = {{"answers", counts[i].answers},
+                                   {"lost", counts[i].lost},
+                                   {"false", counts[i].false_},
+                                   {"self", counts[i].self},
+                                   {"aborts", aborts[i]},
+                                   {"first", counts[i].first}};
   failed |= counts[0].wrong() > 0;
   return out;
 }
@@ -134,20 +157,27 @@ Rays odd_rays(const std::string& kind, std::size_t count) {
   Random random(3);
   Rays rays;
   for (std::size_t i = 0; i < count; ++i) {
-    Float3 org = test::at({0, 0, 0}, 4, random.direction()), dir = test::minus(random.point(1), org);
-    if (kind == "NaN") test::component(random.chance(.5) ? org : dir, random.below(3)) = test::kNaN;
-    if (kind == "infinity") test::component(random.chance(.5) ? org : dir, random.below(3)) = random.chance(.5) ? test::kInf : -test::kInf;
-    if (kind == "zero direction") dir = {};
+    Float3 org = test::at({0, 0, 0}, 4, random.direction()),
+           dir = test::minus(random.point(1), org);
+    if (kind == "NaN")
+      test::component(random.chance(.5) ? org : dir, random.below(3)) = test::kNaN;
+    if (kind == "infinity")
+      test::component(random.chance(.5) ? org : dir, random.below(3)) =
+          random.chance(.5) ? test::kInf : -test::kInf;
+    if (kind == "zero direction")
+      dir = {};
     if (kind == "along an axis") {
       const std::uint32_t a = random.below(3);
       const Float3 aim = random.point(1);
       org = aim, dir = {};
       test::component(org, a) = -4, test::component(dir, a) = 1;
     }
-    if (kind == "denormal directions") test::component(dir, random.below(3)) = 1e-40f;
+    if (kind == "denormal directions")
+      test::component(dir, random.below(3)) = 1e-40f;
     if (kind == "from 1e6 away") {
       const Float3 aim = random.point(1);
-      org = test::at(aim, 1e6, random.direction()), dir = test::minus(aim, org);
+      org = test::at(aim, 1e6, random.direction());
+      dir = test::minus(aim, org);
     }
     rays.add(org, dir);
   }
@@ -160,7 +190,9 @@ double ns_of(Tracer& tracer, const Rays& rays, int way) {
   for (int k = 0; k < 5; ++k) {
     const auto start = std::chrono::steady_clock::now();
     tracer.closest(rays, way);
-    least = std::min(least, std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - start).count());
+    least = std::min(
+        least,
+        std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - start).count());
   }
   return least / static_cast<double>(rays.size());
 }
@@ -169,20 +201,30 @@ Json costs(std::vector<Column>& all, const Options& o) {
   Trial trial;
   trial.scene.materials.resize(1);
   Random random(5);
-  for (int i = 0; i < 5000; ++i) trial.scene.geometry.spheres.add(random.point(1), static_cast<float>(random.log_in(.005, .05)), 0);
-  for (Column& c : all) c.tracer->build(trial);
+  for (int i = 0; i < 5000; ++i)
+    trial.scene.geometry.spheres.add(
+        random.point(1), static_cast<float>(random.log_in(.005, .05)), 0);
+  for (Column& c : all)
+    c.tracer->build(trial);
   const std::size_t count = std::clamp<std::size_t>(o.rays, 1000, 200000);
   const Rays ordinary = odd_rays("", count);
   Json out = Json::array();
-  for (const char* const kind : {"NaN", "infinity", "zero direction", "along an axis", "denormal directions", "from 1e6 away"}) {
+  for (const char* const kind : {"NaN",
+                                 "infinity",
+                                 "zero direction",
+                                 "along an axis",
+                                 "denormal directions",
+                                 "from 1e6 away"}) {
     const Rays rays = odd_rays(kind, count);
     Json row{{"name", kind}};
-    const bool number = std::strcmp(kind, "NaN") != 0 && std::strcmp(kind, "infinity") != 0 && std::strcmp(kind, "zero direction") != 0;
+    const bool number = std::strcmp(kind, "NaN") != 0 && std::strcmp(kind, "infinity") != 0 &&
+                        std::strcmp(kind, "zero direction") != 0;
     for (std::size_t i = 0; i < all.size(); ++i)
       if (i == 0 || number)
         for (int way = 0; way < 2; ++way) {
           Tracer& tracer = *all[i].tracer;
-          row["ratio"][all[i].name].push_back(ns_of(tracer, rays, way) / ns_of(tracer, ordinary, way));
+          row["ratio"][all[i].name].push_back(ns_of(tracer, rays, way) /
+                                              ns_of(tracer, ordinary, way));
         }
     out.push_back(row);
   }
@@ -193,12 +235,18 @@ Json costs(std::vector<Column>& all, const Options& o) {
 bool parse(int argc, char** argv, Options& o) {
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
-    if (++i == argc) return false;
-    if (word == "--rays") o.rays = static_cast<std::size_t>(std::atoll(argv[i]));
-    else if (word == "--pixels") o.pixels = std::atoi(argv[i]);
-    else if (word == "--rows") o.rows = argv[i];
-    else if (word == "--seed") o.seed = static_cast<std::uint64_t>(std::atoll(argv[i]));
-    else return false;
+    if (++i == argc)
+      return false;
+    if (word == "--rays")
+      o.rays = static_cast<std::size_t>(std::atoll(argv[i]));
+    else if (word == "--pixels")
+      o.pixels = std::atoi(argv[i]);
+    else if (word == "--rows")
+      o.rows = argv[i];
+    else if (word == "--seed")
+      o.seed = static_cast<std::uint64_t>(std::atoll(argv[i]));
+    else
+      return false;
   }
   return o.rays >= 100 && o.pixels >= 8;
 }
@@ -208,27 +256,37 @@ bool parse(int argc, char** argv, Options& o) {
 int main(int argc, char** argv) {
   Options o;
   if (!parse(argc, argv, o)) {
-    std::fprintf(stderr, "usage: stability [--rays N] [--pixels N] [--rows PART OF A NAME] [--seed N]\n");
+    std::fprintf(stderr,
+                 "usage: stability [--rays N] [--pixels N] [--rows PART OF A NAME] [--seed N]\n");
     return 2;
   }
   bool failed = false;
   std::vector<Column> all = columns();
   Json out{{"rays", o.rays}, {"pixels", o.pixels}, {"seed", o.seed}};
-  const auto chosen = [&](const char* name) { return std::string(name).find(o.rows) != std::string::npos; };
+  const auto chosen = [&](const char* name) {
+    return std::string(name).find(o.rows) != std::string::npos;
+  };
   for (const Row& row : all_rows()) {
-    if (!chosen(row.name)) continue;
+    if (!chosen(row.name))
+      continue;
     std::fprintf(stderr, "%s\n", row.name);
     out["rows"].push_back(run_row(row, all, o, failed));
   }
   for (const PictureRow& row : picture_rows()) {
-    if (!chosen(row.name)) continue;
+    if (!chosen(row.name))
+      continue;
     std::fprintf(stderr, "%s\n", row.name);
     const PictureCounts c = row.run(o.pixels);
-    out["pictures"].push_back({{"name", row.name}, {"condition", row.condition}, {"truth", row.truth}, {"pixels", c.pixels}, {"wrong", c.wrong},
+    out["pictures"].push_back({{"name", row.name},
+                               {"condition", row.condition},
+                               {"truth", row.truth},
+                               {"pixels", c.pixels},
+                               {"wrong", c.wrong},
                                {"first", c.first}});
     failed |= c.wrong > 0;
   }
-  if (o.rows.empty()) out["costs"] = costs(all, o);
+  if (o.rows.empty())
+    out["costs"] = costs(all, o);
   std::printf("%s\n", out.dump(1).c_str());
   return failed ? 1 : 0;
 }

@@ -1,11 +1,14 @@
-// What a ray costs, by kind and scene, beside Embree 3 on the same rays: one thread, one process, taking turns.
+// What a ray costs, by kind and scene, beside Embree 3 on the same rays: one thread, one process,
+// taking turns.
 //
-//   trace [--scene NAME]... [--kind NAME]... [--size N] [--rounds N] [--scenes DIR] [Google Benchmark options]
+// trace [--scene NAME]... [--kind NAME]... [--size N] [--rounds N] [--scenes DIR] [Google Benchmark
+// options]
 //
-// One benchmark a scene and kind, `balls 4/mirror`; its iterations are rounds, in each of which every way of tracing takes the
-// whole set of rays once. Ratios are made within a round and their median is told. No way is timed whose answers are wrong:
-// Grelha's must be the same bits as each other's and, on a sample of rays, as the reference walk's; Embree's may differ in
-// kDisagree of them. A scene is a row of the table, `GENERATOR SIZE`, or a file.
+// One benchmark a scene and kind, `balls 4/mirror`; its iterations are rounds, in each of which
+// every way of tracing takes the whole set of rays once. Ratios are made within a round and their
+// median is told. No way is timed whose answers are wrong: Grelha's must be the same bits as each
+// other's and, on a sample of rays, as the reference walk's; Embree's may differ in kDisagree of
+// them. A scene is a row of the table, `GENERATOR SIZE`, or a file.
 
 #include <algorithm>
 #include <cmath>
@@ -30,13 +33,14 @@ namespace {
 using namespace grelha;
 using namespace grelha::perf;
 
-constexpr double kDisagree = .005;  ///< share of rays that may meet something else in Embree: grazed edges
-constexpr double kClose = 1e-5;     ///< relative difference of t of one and the same place
+/// share of rays that may meet something else in Embree: grazed edges
+constexpr double kDisagree = .005;
+constexpr double kClose = 1e-5;  ///< relative difference of t of one and the same place
 /// The same on cones: Embree's are curves, whose t is off by up to 4 % where rays graze them.
 constexpr double kCloseOnCones = 1e-3;
 
 struct Row {
-  std::string name, file;      ///< file, below the folder of real scenes; if it is not there:
+  std::string name, file;  ///< file, below the folder of real scenes; if it is not there:
   std::string generator;
   int size;
   std::vector<double> target;  ///< ratios to stay below, by kind; empty: none is set
@@ -74,21 +78,33 @@ struct Place {
   RayMaker maker;
   std::unique_ptr<EmbreeScene> robust, fast;
   Place(std::string n, SceneFile f, int size)
-      : name(std::move(n)), file(std::move(f)), world(file.scene, {}), maker(file, world, size),
-        robust(make_embree_scene(file.scene, true)), fast(make_embree_scene(file.scene, false)) {}
+      : name(std::move(n)),
+        file(std::move(f)),
+        world(file.scene, {}),
+        maker(file, world, size),
+        robust(make_embree_scene(file.scene, true)),
+        fast(make_embree_scene(file.scene, false)) {}
 };
 
 Place& place(const Row& row, const Options& options) {
   static std::unique_ptr<Place> last;
-  if (last && last->name == row.name) return *last;
+  if (last && last->name == row.name)
+    return *last;
   last.reset();
   std::string path = row.file;
-  if (!path.empty() && !std::filesystem::exists(path)) path = options.scenes + "/" + row.file;
+  if (!path.empty() && !std::filesystem::exists(path))
+    path = options.scenes + "/" + row.file;
   const bool real = !row.file.empty() && std::filesystem::exists(path);
-  if (!real && row.generator.empty()) throw std::invalid_argument("no scene " + row.name);
+  if (!real && row.generator.empty())
+    throw std::invalid_argument("no scene " + row.name);
   if (!real && !row.file.empty())
-    std::printf("%s: %s is not there; %s %d in its place\n", row.name.c_str(), row.file.c_str(), row.generator.c_str(), row.size);
-  SceneFile file = real ? read_scene(path, [](const std::string&) {}) : make_scene(row.generator, row.size);
+    std::printf("%s: %s is not there; %s %d in its place\n",
+                row.name.c_str(),
+                row.file.c_str(),
+                row.generator.c_str(),
+                row.size);
+  SceneFile file =
+      real ? read_scene(path, [](const std::string&) {}) : make_scene(row.generator, row.size);
   last = std::make_unique<Place>(row.name, std::move(file), options.size);
   return *last;
 }
@@ -111,18 +127,35 @@ const GrelhaMode kModes[] = {{"packets 256", {.method = Method::kPackets, .packe
                              {"packets 64", {.method = Method::kPackets, .packet = 64}},
                              {"packets 16", {.method = Method::kPackets, .packet = 16}},
                              {"single", {.method = Method::kSingle}}};
-/// What a render takes: of one ray a pixel or point, only those from the camera in packets of 256; see options_for() in shade.hpp.
+/// What a render takes: of one ray a pixel or point, only those from the camera in packets of 256;
+/// see options_for() in shade.hpp.
 std::size_t renders(RayKind kind) {
-  return kind == RayKind::kShadow || kind == RayKind::kMirror || kind == RayKind::kIncoherent ? 1 : 0;
+  return kind == RayKind::kShadow || kind == RayKind::kMirror || kind == RayKind::kIncoherent ? 1
+                                                                                              : 0;
 }
 
-void trace_all(const Place& p, const RayBuffer& r, bool any, const TraceSettings& settings, Answers& a, TraceCounts& counts) {
-  a.t = r.t_max, a.id.resize(r.size());
+void trace_all(const Place& p,
+               const RayBuffer& r,
+               bool any,
+               const TraceSettings& settings,
+               Answers& a,
+               TraceCounts& counts) {
+  a.t = r.t_max;
+  a.id.resize(r.size());
   const VariantLoops& loops = find_variant("best")->loops;
   (any ? loops.occluded : loops.closest)(p.world.impl().view,
-                                         {r.ox.data(), r.oy.data(), r.oz.data(), r.dx.data(), r.dy.data(), r.dz.data(), r.t_min.data(),
-                                          a.t.data(), a.id.data(), static_cast<int>(r.size())},
-                                         settings, counts);
+                                         {r.ox.data(),
+                                          r.oy.data(),
+                                          r.oz.data(),
+                                          r.dx.data(),
+                                          r.dy.data(),
+                                          r.dz.data(),
+                                          r.t_min.data(),
+                                          a.t.data(),
+                                          a.id.data(),
+                                          static_cast<int>(r.size())},
+                                         settings,
+                                         counts);
 }
 
 double cpu_ns() {
@@ -136,7 +169,8 @@ double share_of(std::uint64_t part, std::uint64_t all) {
 }
 
 double median(std::vector<double> v) {
-  if (v.empty()) return 0;
+  if (v.empty())
+    return 0;
   std::sort(v.begin(), v.end());
   return (v[(v.size() - 1) / 2] + v[v.size() / 2]) / 2;
 }
@@ -153,25 +187,34 @@ struct Cell {
     return share_of(t.sphere + t.triangle + t.cone + t.plane, rays);
   }
   double cells() const { return share_of(counts.visits, rays); }
-  double lanes_busy() const { return share_of(counts.packets.lanes_busy, counts.packets.lanes_issued); }
-  double fell_back() const { return share_of(counts.packets.fell_back, counts.packets.fell_back + counts.packets.formed); }
+  double lanes_busy() const {
+    return share_of(counts.packets.lanes_busy, counts.packets.lanes_issued);
+  }
+  double fell_back() const {
+    return share_of(counts.packets.fell_back, counts.packets.fell_back + counts.packets.formed);
+  }
   bool has_embree() const { return ways[best[kRobust]].side == kRobust; }
   /// Median over rounds of the times of one way over those of another.
   double ratio(std::size_t a, std::size_t b) const {
     std::vector<double> r;
-    for (std::size_t i = 0; i < std::min(ways[a].ns.size(), ways[b].ns.size()); ++i) r.push_back(ways[a].ns[i] / ways[b].ns[i]);
+    for (std::size_t i = 0; i < std::min(ways[a].ns.size(), ways[b].ns.size()); ++i)
+      r.push_back(ways[a].ns[i] / ways[b].ns[i]);
     return median(r);
   }
 };
 
 /// Whether Grelha met a plane where Embree's stand-in for it has ended.
 bool past_the_planes(const SceneView& scene, const RayBuffer& r, std::size_t i, const Answers& a) {
-  if (a.id[i] >= scene.sphere_base) return false;
+  if (a.id[i] >= scene.sphere_base)
+    return false;
   double width = 0, away = 0;
-  const float *const org[] = {r.ox.data(), r.oy.data(), r.oz.data()}, *const dir[] = {r.dx.data(), r.dy.data(), r.dz.data()};
+  const float *const org[] = {r.ox.data(), r.oy.data(), r.oz.data()}, *const dir[] = {r.dx.data(),
+                                                                                      r.dy.data(),
+                                                                                      r.dz.data()};
   for (int k = 0; k < 3; ++k) {
     width = std::max(width, double(scene.box_hi[k]) - scene.box_lo[k]);
-    const double d = org[k][i] + double(a.t[i]) * dir[k][i] - .5 * (double(scene.box_hi[k]) + scene.box_lo[k]);
+    const double d =
+        org[k][i] + double(a.t[i]) * dir[k][i] - .5 * (double(scene.box_hi[k]) + scene.box_lo[k]);
     away += d * d;
   }
   return std::sqrt(away) > .99 * kPlaneReach * width;
@@ -190,18 +233,22 @@ std::string check(const Place& p, const RayBuffer& rays, bool any, Cell& cell) {
   for (const GrelhaMode& mode : kModes) {
     trace_all(p, rays, any, mode.settings, again, unused);
     for (std::size_t i = 0; i < rays.size(); ++i)
-      if (!same(again, i, i)) return std::string("wrong hits: ") + mode.name + " against " + kModes[0].name;
+      if (!same(again, i, i))
+        return std::string("wrong hits: ") + mode.name + " against " + kModes[0].name;
   }
   RayBuffer some;
   const std::size_t step = std::max<std::size_t>(1, rays.size() / 16384);
   for (std::size_t i = 0; i < rays.size(); i += step)
-    some.add({rays.ox[i], rays.oy[i], rays.oz[i]}, {rays.dx[i], rays.dy[i], rays.dz[i]}, rays.t_max[i]);
+    some.add(
+        {rays.ox[i], rays.oy[i], rays.oz[i]}, {rays.dx[i], rays.dy[i], rays.dz[i]}, rays.t_max[i]);
   trace_all(p, some, any, {.method = Method::kReference}, again, unused);
   for (std::size_t i = 0; i < some.size(); ++i)
-    if (!same(again, i, i * step)) return "wrong hits: packets against the reference walk";
+    if (!same(again, i, i * step))
+      return "wrong hits: packets against the reference walk";
 
   std::size_t hits = 0;
-  for (std::size_t i = 0; i < rays.size(); ++i) hits += any ? blocked(truth.t[i]) : truth.id[i] != kNoPrimitive;
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    hits += any ? blocked(truth.t[i]) : truth.id[i] != kNoPrimitive;
   cell.hit_share = static_cast<double>(hits) / static_cast<double>(rays.size());
   for (EmbreeScene* const e : {p.robust.get(), p.fast.get()})
     for (const EmbreeMode& mode : e ? embree_modes() : std::vector<EmbreeMode>{}) {
@@ -209,7 +256,8 @@ std::string check(const Place& p, const RayBuffer& rays, bool any, Cell& cell) {
       const Answers a = e->answers();
       std::size_t other = 0;
       for (std::size_t i = 0; i < rays.size(); ++i) {
-        if (any) other += blocked(a.t[i]) != blocked(truth.t[i]);
+        if (any)
+          other += blocked(a.t[i]) != blocked(truth.t[i]);
         else if (a.id[i] == kNoPrimitive || truth.id[i] == kNoPrimitive)
           other += a.id[i] != truth.id[i] && !past_the_planes(p.world.impl().view, rays, i, truth);
         else {  // one of two that meet or overlap there is no error
@@ -219,11 +267,16 @@ std::string check(const Place& p, const RayBuffer& rays, bool any, Cell& cell) {
         }
       }
       const double share = static_cast<double>(other) / static_cast<double>(rays.size());
-      if (e == p.robust.get()) cell.disagree = std::max(cell.disagree, share);
+      if (e == p.robust.get())
+        cell.disagree = std::max(cell.disagree, share);
       if (share > kDisagree) {
         char text[160];
-        std::snprintf(text, sizeof text, "Embree %s, %s: %.2f %% of rays meet something else",
-                      e == p.robust.get() ? "robust" : "fast", mode.name, 100 * share);
+        std::snprintf(text,
+                      sizeof text,
+                      "Embree %s, %s: %.2f %% of rays meet something else",
+                      e == p.robust.get() ? "robust" : "fast",
+                      mode.name,
+                      100 * share);
         return text;
       }
     }
@@ -242,15 +295,21 @@ void run(benchmark::State& state, const Row& row, std::size_t kind, const Option
   Place& p = place(row, options);
   const bool any = RayMaker::any_hit(static_cast<RayKind>(kind));
   const RayBuffer rays = p.maker.make(static_cast<RayKind>(kind));
-  if (rays.size() == 0) return fail("no such rays");
+  if (rays.size() == 0)
+    return fail("no such rays");
   Cell cell;
   cell.rays = rays.size();
-  if (const std::string wrong = check(p, rays, any, cell); !wrong.empty()) return fail(wrong);
+  if (const std::string wrong = check(p, rays, any, cell); !wrong.empty())
+    return fail(wrong);
 
   Answers answers;
   TraceCounts unused;
   for (const GrelhaMode& m : kModes)
-    cell.ways.push_back({kGrelha, m.name, [&, settings = m.settings] { trace_all(p, rays, any, settings, answers, unused); }, {}});
+    cell.ways.push_back(
+        {kGrelha,
+         m.name,
+         [&, settings = m.settings] { trace_all(p, rays, any, settings, answers, unused); },
+         {}});
   cell.chosen = renders(static_cast<RayKind>(kind));
   for (const Side side : {kRobust, kFast})
     for (const EmbreeMode& m : embree_modes()) {
@@ -261,7 +320,10 @@ void run(benchmark::State& state, const Row& row, std::size_t kind, const Option
     for (std::size_t side = 0; side < kSides; ++side) {
       double least = 1e300;
       for (std::size_t i = 0; i < cell.ways.size(); ++i)
-        if (const Way& w = cell.ways[i]; w.side == side && !w.ns.empty() && median(w.ns) < least) least = median(w.ns), cell.best[side] = i;
+        if (const Way& w = cell.ways[i]; w.side == side && !w.ns.empty() && median(w.ns) < least) {
+          least = median(w.ns);
+          cell.best[side] = i;
+        }
     }
   };
   // After two rounds those a third slower than the best of their side are known to be, and dropped.
@@ -272,10 +334,12 @@ void run(benchmark::State& state, const Row& row, std::size_t kind, const Option
     if (round++ == 2) {
       find_best();
       for (std::size_t i = 0; i < in.size(); ++i)
-        in[i] = i == cell.chosen || median(cell.ways[i].ns) < 1.33 * median(cell.ways[cell.best[cell.ways[i].side]].ns);
+        in[i] = i == cell.chosen ||
+                median(cell.ways[i].ns) < 1.33 * median(cell.ways[cell.best[cell.ways[i].side]].ns);
     }
     for (std::size_t i = 0; i < cell.ways.size(); ++i) {
-      if (!in[i]) continue;
+      if (!in[i])
+        continue;
       const double from = cpu_ns();
       cell.ways[i].trace();
       cell.ways[i].ns.push_back((cpu_ns() - from) / static_cast<double>(rays.size()));
@@ -286,7 +350,8 @@ void run(benchmark::State& state, const Row& row, std::size_t kind, const Option
   trace_all(p, rays, any, kModes[cell.chosen].settings, answers, cell.counts);
 
   constexpr const char* kSideNames[] = {"grelha ", "embree robust ", "embree fast "};
-  for (const Way& w : cell.ways) state.counters[kSideNames[w.side] + w.name + " ns"] = median(w.ns);
+  for (const Way& w : cell.ways)
+    state.counters[kSideNames[w.side] + w.name + " ns"] = median(w.ns);
   state.counters["rays"] = static_cast<double>(rays.size());
   state.counters["hits"] = cell.hit_share;
   state.counters["disagree"] = cell.disagree;
@@ -296,17 +361,29 @@ void run(benchmark::State& state, const Row& row, std::size_t kind, const Option
   state.counters["lanes busy"] = cell.lanes_busy();
   state.counters["fell back"] = cell.fell_back();
   const Way &chosen = cell.ways[cell.chosen], &best = cell.ways[cell.best[kGrelha]];
-  std::printf("%-8s %-11s %6.1f ns %5.1f Mrays/s %s", row.name.c_str(), kRayKinds[kind], median(chosen.ns), 1e3 / median(chosen.ns),
+  std::printf("%-8s %-11s %6.1f ns %5.1f Mrays/s %s",
+              row.name.c_str(),
+              kRayKinds[kind],
+              median(chosen.ns),
+              1e3 / median(chosen.ns),
               chosen.name.c_str());
-  if (&best != &chosen) std::printf(" (%s: %.1f ns)", best.name.c_str(), median(best.ns));
+  if (&best != &chosen)
+    std::printf(" (%s: %.1f ns)", best.name.c_str(), median(best.ns));
   if (cell.has_embree()) {
     const Way &robust = cell.ways[cell.best[kRobust]], &fast = cell.ways[cell.best[kFast]];
     state.counters["ratio"] = cell.ratio(cell.chosen, cell.best[kRobust]);
     state.counters["ratio of the best"] = cell.ratio(cell.best[kGrelha], cell.best[kRobust]);
     state.counters["ratio to fast"] = cell.ratio(cell.chosen, cell.best[kFast]);
-    if (!row.target.empty()) state.counters["target"] = row.target[kind];
-    std::printf("; Embree robust %.1f ns %s, fast %.1f ns %s; ratio %.2f; %.2g %% meet something else", median(robust.ns), robust.name.c_str(),
-                median(fast.ns), fast.name.c_str(), cell.ratio(cell.chosen, cell.best[kRobust]), 100 * cell.disagree);
+    if (!row.target.empty())
+      state.counters["target"] = row.target[kind];
+    std::printf(
+        "; Embree robust %.1f ns %s, fast %.1f ns %s; ratio %.2f; %.2g %% meet something else",
+        median(robust.ns),
+        robust.name.c_str(),
+        median(fast.ns),
+        fast.name.c_str(),
+        cell.ratio(cell.chosen, cell.best[kRobust]),
+        100 * cell.disagree);
   }
   std::printf("\n");
   std::fflush(stdout);
@@ -324,11 +401,14 @@ using CellText = std::function<std::string(const Row&, std::size_t, const Cell&)
 
 void print_table(const Options& options, const std::string& title, const CellText& text) {
   std::printf("\n%s\n\n| %-8s |", title.c_str(), "");
-  for (const std::size_t k : options.kinds) std::printf(" %s |", kRayKinds[k]);
+  for (const std::size_t k : options.kinds)
+    std::printf(" %s |", kRayKinds[k]);
   std::printf("\n|---|");
-  for (std::size_t i = 0; i < options.kinds.size(); ++i) std::printf("--:|");
+  for (std::size_t i = 0; i < options.kinds.size(); ++i)
+    std::printf("--:|");
   for (const Row& row : options.rows) {
-    if (!results.count(row.name)) continue;
+    if (!results.count(row.name))
+      continue;
     std::printf("\n| %-8s |", row.name.c_str());
     for (const std::size_t k : options.kinds) {
       const auto& cells = results.at(row.name);
@@ -354,26 +434,39 @@ void print_tables(const Options& options) {
     };
   };
   if (!embree_modes().empty()) {
-    print_table(options, "Time of Grelha, packets as a render forms them / time of Embree's best mode, robust (> target, where missed)",
+    print_table(options,
+                "Time of Grelha, packets as a render forms them / time of Embree's best mode, "
+                "robust (> target, where missed)",
                 against(kRobust, true));
     print_table(options, "Grelha's best / Embree's best, robust", against(kRobust, false));
-    print_table(options, "As a render forms them / Embree's best, not robust", against(kFast, true));
+    print_table(
+        options, "As a render forms them / Embree's best, not robust", against(kFast, true));
   } else {
     std::printf("\nBuilt without Embree: no ratios.\n");
   }
-  print_table(options, "ns a ray, as a render forms packets",
-              [](const Row&, std::size_t, const Cell& c) { return format("%.1f", median(c.ways[c.chosen].ns)); });
-  print_table(options, "Lanes busy; tests a ray; cells a ray; packets that fell back", [](const Row&, std::size_t, const Cell& c) {
-    return format("%.0f %%; %.1f; %.1f; %.0f %%", 100 * c.lanes_busy(), c.tests(), c.cells(), 100 * c.fell_back());
-  });
+  print_table(
+      options, "ns a ray, as a render forms packets", [](const Row&, std::size_t, const Cell& c) {
+        return format("%.1f", median(c.ways[c.chosen].ns));
+      });
+  print_table(options,
+              "Lanes busy; tests a ray; cells a ray; packets that fell back",
+              [](const Row&, std::size_t, const Cell& c) {
+                return format("%.0f %%; %.1f; %.1f; %.0f %%",
+                              100 * c.lanes_busy(),
+                              c.tests(),
+                              c.cells(),
+                              100 * c.fell_back());
+              });
 }
 
 /// A row of the table, `GENERATOR SIZE`, or a file.
 Row row_named(const std::string& name) {
   for (const Row& row : kRows)
-    if (row.name == name) return row;
+    if (row.name == name)
+      return row;
   const auto space = name.find(' ');
-  if (space != std::string::npos) return {name, "", name.substr(0, space), std::atoi(name.c_str() + space), {}};
+  if (space != std::string::npos)
+    return {name, "", name.substr(0, space), std::atoi(name.c_str() + space), {}};
   return {name, name, "", 0, {}};
 }
 
@@ -381,13 +474,15 @@ Row row_named(const std::string& name) {
 bool parse(int argc, char** argv, Options& o) {
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
-    if (i + 1 == argc) return false;
+    if (i + 1 == argc)
+      return false;
     const std::string value = argv[++i];
     if (word == "--scene") {
       o.rows.push_back(row_named(value));
     } else if (word == "--kind") {
       const auto found = std::find(kRayKinds.begin(), kRayKinds.end(), value);
-      if (found == kRayKinds.end()) return false;
+      if (found == kRayKinds.end())
+        return false;
       o.kinds.push_back(static_cast<std::size_t>(found - kRayKinds.begin()));
     } else if (word == "--size") {
       o.size = std::atoi(value.c_str());
@@ -399,9 +494,11 @@ bool parse(int argc, char** argv, Options& o) {
       return false;
     }
   }
-  if (o.rows.empty()) o.rows = kRows;
+  if (o.rows.empty())
+    o.rows = kRows;
   if (o.kinds.empty())
-    for (std::size_t k = 0; k < kRayKinds.size(); ++k) o.kinds.push_back(k);
+    for (std::size_t k = 0; k < kRayKinds.size(); ++k)
+      o.kinds.push_back(k);
   return o.size >= 32 && o.size <= 16384 && o.rounds >= 1;
 }
 
@@ -411,16 +508,20 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   Options options;
   if (!parse(argc, argv, options)) {
-    std::fprintf(stderr,
-                 "usage: trace [--scene NAME]... [--kind NAME]... [--size N] [--rounds N] [--scenes DIR] [Google Benchmark options]\n"
-                 "  scenes: a row of the table, GENERATOR SIZE, or a file; size: 32 to 16384; kinds:");
-    for (const char* k : kRayKinds) std::fprintf(stderr, " '%s'", k);
+    std::fprintf(
+        stderr,
+        "usage: trace [--scene NAME]... [--kind NAME]... [--size N] [--rounds N] [--scenes DIR] "
+        "[Google Benchmark options]\n"
+        "  scenes: a row of the table, GENERATOR SIZE, or a file; size: 32 to 16384; kinds:");
+    for (const char* k : kRayKinds)
+      std::fprintf(stderr, " '%s'", k);
     std::fprintf(stderr, "\n");
     return 2;
   }
   for (const Row& row : options.rows)
     for (const std::size_t kind : options.kinds)
-      benchmark::RegisterBenchmark((row.name + "/" + kRayKinds[kind]).c_str(), [&, kind](benchmark::State& s) { run(s, row, kind, options); })
+      benchmark::RegisterBenchmark((row.name + "/" + kRayKinds[kind]).c_str(),
+                                   [&, kind](benchmark::State& s) { run(s, row, kind, options); })
           ->Iterations(options.rounds)
           ->UseManualTime()
           ->Unit(benchmark::kMillisecond);
@@ -431,6 +532,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "trace: %s\n", e.what());
     return 1;
   }
-  if (!results.empty()) print_tables(options);
+  if (!results.empty())
+    print_tables(options);
   return failed ? 1 : 0;
 }

@@ -32,7 +32,13 @@ SceneFile make_scene(const std::string& name, int size);
 RayBuffer camera_rays(const Camera& camera);
 
 /// Answers of rays [first, first + count) by one method of one instruction set.
-void trace(const World& world, const Variant& variant, const TraceSettings& settings, const RayBuffer& rays, std::size_t first,
-           std::size_t count, Answers& answers, TraceCounts& counts);
+void trace(const World& world,
+           const Variant& variant,
+           const TraceSettings& settings,
+           const RayBuffer& rays,
+           std::size_t first,
+           std::size_t count,
+           Answers& answers,
+           TraceCounts& counts);
 
 }  // namespace grelha::perf

@@ -9,7 +9,8 @@ namespace grelha::scenes {
 
 namespace {
 
-/// Where the nine children of a ball that points along +z touch it: six around the equator, three above.
+/// Where the nine children of a ball that points along +z touch it: six around the equator, three
+/// above.
 std::array<Vec, 9> child_directions() {
   const double s = std::sqrt(0.5);
   const std::array<Vec, 3> flat{Vec{s, s, 0}, Vec{s, 0, -s}, Vec{0, s, -s}};
@@ -24,9 +25,12 @@ std::array<Vec, 9> child_directions() {
 
 /// `v`, given in the frame whose +z is `axis`, seen from outside.
 Vec from_frame(Vec v, Vec axis) {
-  // SPD's thresholds: beyond them z x axis is rounding noise, and older builds did turn about that noise.
-  if (axis.z >= 0.9999) return v;
-  if (axis.z <= -0.9999) return turn(v, {0, 1, 0}, kPi);
+  // SPD's thresholds: beyond them z x axis is rounding noise, and older builds did turn about that
+  // noise.
+  if (axis.z >= 0.9999)
+    return v;
+  if (axis.z <= -0.9999)
+    return turn(v, {0, 1, 0}, kPi);
   return turn(v, normalise(cross({0, 0, 1}, axis)), std::acos(axis.z));
 }
 
@@ -36,7 +40,8 @@ class Flake {
 
   void write(Vec center, double radius, Vec axis, int depth) {
     nff_.sphere(center, radius);
-    if (depth == 0) return;
+    if (depth == 0)
+      return;
     for (const Vec& child : children_) {
       const Vec out = from_frame(child, axis);
       write(center + 4.0 / 3.0 * radius * out, radius / 3, out, depth - 1);

@@ -15,9 +15,10 @@ struct Mesh {
   std::vector<std::array<std::uint32_t, 3>> faces;
 };
 
-/// Adds the surface (u, v) -> point over the unit square as a net of nu by nv cells, two triangles each, smooth within
-/// itself and not to its neighbours. Seen from where u to v turns counter-clockwise. The formula must be defined a
-/// little beyond the square and nowhere shrink to a point.
+/// Adds the surface (u, v) -> point over the unit square as a net of nu by nv cells, two triangles
+/// each, smooth within itself and not to its neighbours. Seen from where u to v turns
+/// counter-clockwise. The formula must be defined a little beyond the square and nowhere shrink to
+/// a point.
 template <class Surface>
 void add_surface(Mesh& mesh, int nu, int nv, const Surface& surface) {
   constexpr double kStep = 1e-5;

@@ -32,14 +32,16 @@ class Mountain {
  private:
   /// Corner heights: a low left, b low right, c up right, d up left.
   void square(int x, int y, int width, double a, double b, double c, double d) {
-    if (width == 1) return triangles(x, y, a, b, c, d);
+    if (width == 1)
+      return triangles(x, y, a, b, c, d);
     const int half = width / 2;
     const double rise = half * (2.0 / cells_) * roughness_;
     const double low = (a + b) / 2 + rise * deviate(seed(x + half, y));
     const double right = (b + c) / 2 + rise * deviate(seed(x + width, y + half));
     const double up = (c + d) / 2 + rise * deviate(seed(x + half, y + width));
     const double left = (d + a) / 2 + rise * deviate(seed(x, y + half));
-    const double center = (a + b + c + d) / 4 + 1.4142136 * rise * deviate(seed(x + half, y + half));
+    const double center =
+        (a + b + c + d) / 4 + 1.4142136 * rise * deviate(seed(x + half, y + half));
     square(x, y, half, a, low, center, left);
     square(x + half, y, half, low, b, right, center);
     square(x + half, y + half, half, center, right, c, up);
@@ -53,10 +55,13 @@ class Mountain {
     nff_.polygon({up_right, up_left, low_left});
   }
 
-  Vec point(int x, int y, double height) const { return {-1 + 2.0 * x / cells_, -1 + 2.0 * y / cells_, height}; }
+  Vec point(int x, int y, double height) const {
+    return {-1 + 2.0 * x / cells_, -1 + 2.0 * y / cells_, height};
+  }
 
-  /// The same for a point whichever square asks, so that neighbours fit. SPD takes X twice, a slip that files keep.
-  /// Its third shift is negative from size 8 on, which C leaves undefined: we shift right there.
+  /// The same for a point whichever square asks, so that neighbours fit. SPD takes X twice, a slip
+  /// that files keep. Its third shift is negative from size 8 on, which C leaves undefined: we
+  /// shift right there.
   std::int64_t seed(std::int64_t x, std::int64_t y) const {
     const std::int64_t low = size_ <= 7 ? x << (7 - size_) : x >> (size_ - 7);
     return 21 + ((x << (23 - size_)) + (y << (15 - size_)) + low) % 65536;
@@ -78,11 +83,16 @@ void write_balls_of_glass(NffWriter& nff, bool spd) {
   const double radius = 0.17;
   const Vec top{0, 0, radius * std::sqrt(1.5)};
   const Vec lower = turn(top, normalise({1, 1, 0}), std::acos(-1.0 / 3.0));
-  nff.surface(
-      {.color = {1, 1, 1}, .kd = 0.1, .ks = 0.1, .shine = 101.148, .transmission = 0.9, .ior = spd ? 1.5 : 1.2});
+  nff.surface({.color = {1, 1, 1},
+               .kd = 0.1,
+               .ks = 0.1,
+               .shine = 101.148,
+               .transmission = 0.9,
+               .ior = spd ? 1.5 : 1.2});
   nff.sphere(middle + top, radius);
   for (int third = 0; third < 3; ++third)
-    nff.sphere(middle + turn(lower, {0, 0, 1}, degrees(120.0 * third)), spd ? radius : radius - 0.001 * (third + 1));
+    nff.sphere(middle + turn(lower, {0, 0, 1}, degrees(120.0 * third)),
+               spd ? radius : radius - 0.001 * (third + 1));
 }
 
 }  // namespace

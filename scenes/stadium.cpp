@@ -1,4 +1,5 @@
-// A teapot in a stadium: a fine mesh in a ground a thousand times its size, the case that one uniform grid cannot fit.
+// A teapot in a stadium: a fine mesh in a ground a thousand times its size, the case that one
+// uniform grid cannot fit.
 #include "scenes/generators.hpp"
 #include "scenes/knot_mesh.hpp"
 #include "scenes/nff_writer.hpp"

@@ -12,13 +12,15 @@ void write_star(std::ostream& out, const SceneOptions& options) {
   NffWriter nff(out);
   nff.comment("A Siemens star that shines: its edges are all there is to see.");
   nff.background({0, 0, 0});
-  nff.view({.from = {0, 0, kEyeDistance}, .at = {0, 0, 0}, .up = {0, 1, 0}, .angle_deg = 28.0725});  // 2 atan(1/4)
+  // 2 atan(1/4)
+  nff.view({.from = {0, 0, kEyeDistance}, .at = {0, 0, 0}, .up = {0, 1, 0}, .angle_deg = 28.0725});
   nff.glow({1, 1, 1});
   const auto rim = [&](int edge) {
     const double angle = kTurn + kPi * edge / options.size;
     return Vec{kSpokeLength * std::cos(angle), kSpokeLength * std::sin(angle), 0};
   };
-  for (int spoke = 0; spoke < options.size; ++spoke) nff.polygon({{0, 0, 0}, rim(2 * spoke), rim(2 * spoke + 1)});
+  for (int spoke = 0; spoke < options.size; ++spoke)
+    nff.polygon({{0, 0, 0}, rim(2 * spoke), rim(2 * spoke + 1)});
 }
 
 }  // namespace grelha::scenes

@@ -31,8 +31,10 @@ void write_branch(NffWriter& nff, const Frame& frame, double radius, int depth) 
   const Vec top = frame.foot + frame.z;
   nff.cone(frame.foot, radius, top, kTaper * radius);
   nff.sphere(top, kTaper * radius);
-  if (depth == 0) return;
-  for (const Fork& fork : kForks) write_branch(nff, grow(frame, fork), kTaper * radius, depth - 1);
+  if (depth == 0)
+    return;
+  for (const Fork& fork : kForks)
+    write_branch(nff, grow(frame, fork), kTaper * radius, depth - 1);
 }
 
 }  // namespace
@@ -41,8 +43,13 @@ void write_tree(std::ostream& out, const SceneOptions& options) {
   NffWriter nff(out);
   nff.background({0.078, 0.361, 0.753});
   nff.view({.from = {4.5, 0.4, 2}, .at = {0, 0, 1.5}, .hither = 1});
-  for (const Vec& light : {Vec{-5, 5, 50}, Vec{30, -30, 30}, Vec{-40, -30, 20}, Vec{10, 30, 40}, Vec{-30, 40, 10},
-                           Vec{50, 25, 20}, Vec{-10, -60, 30}})
+  for (const Vec& light : {Vec{-5, 5, 50},
+                           Vec{30, -30, 30},
+                           Vec{-40, -30, 20},
+                           Vec{10, 30, 40},
+                           Vec{-30, 40, 10},
+                           Vec{50, 25, 20},
+                           Vec{-10, -60, 30}})
     nff.light(light);
   nff.surface({.color = {0.2, 0.7, 0.2}, .kd = 1, .shine = 100000});
   nff.polygon({{50, 50, 0}, {-50, 50, 0}, {-50, -50, 0}, {50, -50, 0}});

@@ -4,7 +4,8 @@
 
 namespace grelha::scenes {
 
-/// Double vectors for constructions: a scene is computed once and printed with six digits, so speed is no matter here.
+/// Double vectors for constructions: a scene is computed once and printed with six digits, so speed
+/// is no matter here.
 struct Vec {
   double x = 0, y = 0, z = 0;
   bool operator==(const Vec&) const = default;
@@ -14,7 +15,9 @@ inline Vec operator+(Vec a, Vec b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 inline Vec operator-(Vec a, Vec b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 inline Vec operator*(double s, Vec v) { return {s * v.x, s * v.y, s * v.z}; }
 inline double dot(Vec a, Vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-inline Vec cross(Vec a, Vec b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+inline Vec cross(Vec a, Vec b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
 inline double length(Vec v) { return std::sqrt(dot(v, v)); }
 inline Vec normalise(Vec v) { return 1 / length(v) * v; }
 

@@ -13,24 +13,37 @@ namespace {
 /// Of each pixel twice the weight of what hides inside, or that of what its corners differ in.
 using Tile = std::array<float, kTile * kTile>;
 
-/// Looks along -z from z = 200 at 8 x 8 pixels, each one unit across at z = 0: pixel (x, y) there covers [x - 4, x - 3] x [3 - y, 4 - y].
+/// Looks along -z from z = 200 at 8 x 8 pixels, each one unit across at z = 0: pixel (x, y) there
+/// covers [x - 4, x - 3] x [3 - y, 4 - y].
 Camera over_units() {
   Camera c;
   c.eye = {0, 0, 200}, c.at = {0, 0, 0}, c.up = {0, 1, 0};
-  c.width = c.height = 8, c.angle_deg = 2 * 1.1457628381751033;  // atan(4 / 200)
+  c.width = c.height = 8;
+  c.angle_deg = 2 * 1.1457628381751033;  // atan(4 / 200)
   return c;
 }
 
 Tile doubt(const Scene& scene, const Variant& variant, bool grid = true, float density = 0) {
   BuildOptions build;
-  build.grid = grid, build.density = density;
+  build.grid = grid;
+  build.density = density;
   const World world(scene, build);
   const World::Impl& w = world.impl();
   float inside[kTile * kTile], around[kTile * kTile];
   TraceCounts counts;
-  variant.loops.doubt(w.view, w.shading, make_frame(over_units()), 0, 0, 2, ~std::uint64_t{0}, inside, around, counts);
+  variant.loops.doubt(w.view,
+                      w.shading,
+                      make_frame(over_units()),
+                      0,
+                      0,
+                      2,
+                      ~std::uint64_t{0},
+                      inside,
+                      around,
+                      counts);
   Tile out;
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] = std::max(2 * inside[i], around[i]);
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out[i] = std::max(2 * inside[i], around[i]);
   return out;
 }
 
@@ -39,7 +52,8 @@ float at(const Tile& tile, int x, int y) { return tile[static_cast<std::size_t>(
 class Beam : public testing::TestWithParam<const Variant*> {
  protected:
   void SetUp() override {
-    if (!GetParam()->runs_here()) GTEST_SKIP() << "this processor has no " << GetParam()->name;
+    if (!GetParam()->runs_here())
+      GTEST_SKIP() << "this processor has no " << GetParam()->name;
   }
   Tile look(const Scene& s) const { return doubt(s, *GetParam()); }
 };
@@ -52,8 +66,10 @@ Scene wall() {
 }
 
 TEST_P(Beam, DoubtsNothingWhereThereIsNothing) {
-  for (const float d : look(empty_scene())) EXPECT_EQ(d, 0);
-  for (const float d : look(wall())) EXPECT_EQ(d, 0);
+  for (const float d : look(empty_scene()))
+    EXPECT_EQ(d, 0);
+  for (const float d : look(wall()))
+    EXPECT_EQ(d, 0);
 }
 
 TEST_P(Beam, DoubtsOnlyThePixelWithTheSpeck) {
@@ -62,7 +78,8 @@ TEST_P(Beam, DoubtsOnlyThePixelWithTheSpeck) {
   s.lights.clear();
   const Tile tile = look(s);
   for (int y = 0; y < 8; ++y)
-    for (int x = 0; x < 8; ++x) EXPECT_EQ(at(tile, x, y), x == 2 && y == 1 ? 2 : 0) << x << ' ' << y;
+    for (int x = 0; x < 8; ++x)
+      EXPECT_EQ(at(tile, x, y), x == 2 && y == 1 ? 2 : 0) << x << ' ' << y;
 }
 
 TEST_P(Beam, DoubtsTheOutlineOfABallAndNotItsInside) {
@@ -77,16 +94,19 @@ TEST_P(Beam, DoubtsTheOutlineOfABallAndNotItsInside) {
 TEST_P(Beam, DoubtsNothingHiddenBehind) {
   Scene s = wall();
   s.geometry.spheres.add({-1.3f, 2.4f, -3}, .02f, 0);
-  for (const float d : look(s)) EXPECT_EQ(d, 0);
+  for (const float d : look(s))
+    EXPECT_EQ(d, 0);
 }
 
 TEST_P(Beam, DoubtsWhereTheShadowOfASpeckFalls) {
   Scene s = wall();
-  // Half way from the light to (-1.5, 2.5, 0), the middle of pixel (2, 1), and out of the camera's sight.
+  // Half way from the light to (-1.5, 2.5, 0), the middle of pixel (2, 1), and out of the camera's
+  // sight.
   s.geometry.spheres.add({14.25f, 1.25f, 20}, .02f, 0);
   const Tile tile = look(s);
   for (int y = 0; y < 8; ++y)
-    for (int x = 0; x < 8; ++x) EXPECT_EQ(at(tile, x, y), x == 2 && y == 1 ? 2 : 0) << x << ' ' << y;
+    for (int x = 0; x < 8; ++x)
+      EXPECT_EQ(at(tile, x, y), x == 2 && y == 1 ? 2 : 0) << x << ' ' << y;
 }
 
 TEST_P(Beam, DoubtsNothingInAShadowThatOneBallCasts) {
@@ -96,7 +116,8 @@ TEST_P(Beam, DoubtsNothingInAShadowThatOneBallCasts) {
   EXPECT_EQ(at(tile, 2, 1), 0);
   EXPECT_EQ(at(tile, 7, 7), 0);
   bool edge = false;
-  for (const float d : tile) edge |= d > 0;
+  for (const float d : tile)
+    edge |= d > 0;
   EXPECT_TRUE(edge);
 }
 
@@ -104,33 +125,41 @@ TEST_P(Beam, DoubtsWhatAMirrorShowsByItsWeight) {
   Scene s = wall();
   s.lights.clear();
   s.materials[0].diffuse = {0, 0, 0}, s.materials[0].mirror = {.5f, .5f, .5f};
-  // The ray to (-1.5, 2.5, 0), the middle of pixel (2, 1), comes back from there to 1.3 times that at height 60. The eye sees that
-  // point against (-2.8, 4.6, 0), outside the picture.
+  // The ray to (-1.5, 2.5, 0), the middle of pixel (2, 1), comes back from there to 1.3 times that
+  // at height 60. The eye sees that point against (-2.8, 4.6, 0), outside the picture.
   s.geometry.spheres.add({-1.95f, 3.25f, 60}, .02f, 0);
   const Tile tile = look(s);
   for (int y = 0; y < 8; ++y)
-    for (int x = 0; x < 8; ++x) EXPECT_EQ(at(tile, x, y), x == 2 && y == 1 ? 2 * .5f : 0) << x << ' ' << y;
+    for (int x = 0; x < 8; ++x)
+      EXPECT_EQ(at(tile, x, y), x == 2 && y == 1 ? 2 * .5f : 0) << x << ' ' << y;
 }
 
 TEST_P(Beam, TakesASmoothMeshForOneSurface) {
   Scene s = empty_scene();
   for (int y = -6; y < 6; ++y)  // a gently bent sheet, several triangles a pixel
     for (int x = -12; x < 12; ++x) {
-      const auto p = [](int i, int j) { return Float3{.5f * float(i), float(j), -.01f * float(i) * float(i)}; };
-      add_triangle(s, p(x, y), p(x + 1, y), p(x + 1, y + 1)), add_triangle(s, p(x, y), p(x + 1, y + 1), p(x, y + 1));
+      const auto p = [](int i, int j) {
+        return Float3{.5f * float(i), float(j), -.01f * float(i) * float(i)};
+      };
+      add_triangle(s, p(x, y), p(x + 1, y), p(x + 1, y + 1));
+      add_triangle(s, p(x, y), p(x + 1, y + 1), p(x, y + 1));
     }
-  for (const float d : look(s)) EXPECT_EQ(d, 0);
+  for (const float d : look(s))
+    EXPECT_EQ(d, 0);
 }
 
 TEST_P(Beam, DoubtsASlitBetweenTrianglesOfOneSurface) {
   Scene s = empty_scene();
   const auto strip = [&](float x0, float x1) {
-    add_triangle(s, {x0, -6, 0}, {x1, -6, 0}, {x1, 6, 0}), add_triangle(s, {x0, -6, 0}, {x1, 6, 0}, {x0, 6, 0});
+    add_triangle(s, {x0, -6, 0}, {x1, -6, 0}, {x1, 6, 0}),
+        add_triangle(s, {x0, -6, 0}, {x1, 6, 0}, {x0, 6, 0});
   };
-  strip(-6, 1.6f), strip(1.62f, 6);
+  strip(-6, 1.6f);
+  strip(1.62f, 6);
   const Tile tile = look(s);
   for (int y = 0; y < 8; ++y)
-    for (int x = 0; x < 8; ++x) EXPECT_EQ(at(tile, x, y), x == 5 ? 1 : 0) << x << ' ' << y;
+    for (int x = 0; x < 8; ++x)
+      EXPECT_EQ(at(tile, x, y), x == 5 ? 1 : 0) << x << ' ' << y;
 }
 
 TEST_P(Beam, IsTheSameForEveryGridAndCopy) {
@@ -140,9 +169,11 @@ TEST_P(Beam, IsTheSameForEveryGridAndCopy) {
   add_triangles(s, random, 60, 6, .1, 2);
   s.materials[0].mirror = {.6f, .6f, .6f};
   const Tile want = doubt(s, *variants().front(), false);
-  for (const float density : {.5f, 1.f, 4.f}) EXPECT_EQ(doubt(s, *GetParam(), true, density), want) << density;
+  for (const float density : {.5f, 1.f, 4.f})
+    EXPECT_EQ(doubt(s, *GetParam(), true, density), want) << density;
   int plain = 0;
-  for (const float d : want) plain += d == 0;
+  for (const float d : want)
+    plain += d == 0;
   EXPECT_GT(plain, 0);
   EXPECT_LT(plain, 64);
 }
@@ -165,7 +196,10 @@ TEST_P(Beam, IsTheSameWhereGridsServeNearRaysOrFarOnes) {
   EXPECT_FALSE(near[1]);
 }
 
-INSTANTIATE_TEST_SUITE_P(, Beam, testing::ValuesIn(variants().begin(), variants().end()), [](const auto& p) { return std::string(p.param->name); });
+INSTANTIATE_TEST_SUITE_P(,
+                         Beam,
+                         testing::ValuesIn(variants().begin(), variants().end()),
+                         [](const auto& p) { return std::string(p.param->name); });
 
 }  // namespace
 }  // namespace grelha::test

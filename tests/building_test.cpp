@@ -19,7 +19,8 @@
 
 #if defined(__has_feature)
 #if __has_feature(thread_sanitizer)
-#define GRELHA_NEW_IS_TAKEN  // clang's runtime for threads defines operator new in an archive: a second one does not link
+// clang's runtime for threads defines operator new in an archive: a second one does not link
+#define GRELHA_NEW_IS_TAKEN
 #endif
 #endif
 
@@ -35,9 +36,11 @@ constexpr bool kCounted = false;
 constexpr bool kCounted = true;
 
 void* count(void* p) {
-  if (!p) throw std::bad_alloc();
+  if (!p)
+    throw std::bad_alloc();
   const std::ptrdiff_t now = owned += static_cast<std::ptrdiff_t>(malloc_usable_size(p));
-  for (std::ptrdiff_t m = most; m < now && !most.compare_exchange_weak(m, now);) {}
+  for (std::ptrdiff_t m = most; m < now && !most.compare_exchange_weak(m, now);) {
+  }
   return p;
 }
 
@@ -68,13 +71,15 @@ struct Case {
 };
 void PrintTo(const Case& c, std::ostream* out) { *out << c.name << ' ' << c.size; }
 
-/// Small triangles anywhere in a cube: most blocks are not full. In clumps of so many that follow each other.
+/// Small triangles anywhere in a cube: most blocks are not full. In clumps of so many that follow
+/// each other.
 Scene soup(int count, int clump = 1) {
   Scene scene = empty_scene();
   Random random(3);
   Float3 p;
   for (int i = 0; i < count; ++i) {
-    if (i % clump == 0) p = random.point(1);
+    if (i % clump == 0)
+      p = random.point(1);
     add_triangle(scene, p, at(p, .02, random.direction()), at(p, .02, random.direction()));
   }
   return scene;
@@ -82,9 +87,12 @@ Scene soup(int count, int clump = 1) {
 
 Scene scene_of(const Case& c) {
   const std::string name = c.name;
-  if (name == "soup") return soup(c.size);
-  if (name == "clumps") return soup(c.size, 16);
-  if (name == "towns") return towns_in_a_desert(5, c.size);
+  if (name == "soup")
+    return soup(c.size);
+  if (name == "clumps")
+    return soup(c.size, 16);
+  if (name == "towns")
+    return towns_in_a_desert(5, c.size);
   std::ostringstream text;
   scenes::find_generator(name)->write(text, {c.size, false, ""});
   return read_nff(name + ".nff", text.str(), [](const std::string&) {}).scene;
@@ -92,11 +100,13 @@ Scene scene_of(const Case& c) {
 
 class Building : public testing::TestWithParam<Case> {};
 
-/// References are those of 16,000 picked primitives, whose mean is known within 5 % (three standard deviations, were one twice the mean), and the
-/// blocks of a cell are counted half a block wrong at worst: a tenth of them, with the five triangles a cell that a soup has; the fifth that
-/// is allowed is both and what malloc keeps beside each array.
+/// References are those of 16,000 picked primitives, whose mean is known within 5 % (three standard
+/// deviations, were one twice the mean), and the blocks of a cell are counted half a block wrong at
+/// worst: a tenth of them, with the five triangles a cell that a soup has; the fifth that is
+/// allowed is both and what malloc keeps beside each array.
 TEST_P(Building, TakesWhatItSaid) {
-  if (!kCounted) GTEST_SKIP() << "this sanitizer keeps operator new to itself";
+  if (!kCounted)
+    GTEST_SKIP() << "this sanitizer keeps operator new to itself";
   const Scene scene = scene_of(GetParam());
   const BuildOptions options{.threads = 2};
   const BuildMemory said = World::estimate(scene, options);
@@ -111,12 +121,23 @@ TEST_P(Building, TakesWhatItSaid) {
   EXPECT_LT(kept, 1.2);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, Building,
-                         testing::Values(Case{"balls", 5}, Case{"mount", 8}, Case{"tree", 13}, Case{"rings", 14}, Case{"gears", 5}, Case{"lattice", 20},
-                                         Case{"stadium", 15}, Case{"tetra", 8}, Case{"soup", 100000}, Case{"clumps", 300000}, Case{"towns", 30000}));
+INSTANTIATE_TEST_SUITE_P(Scenes,
+                         Building,
+                         testing::Values(Case{"balls", 5},
+                                         Case{"mount", 8},
+                                         Case{"tree", 13},
+                                         Case{"rings", 14},
+                                         Case{"gears", 5},
+                                         Case{"lattice", 20},
+                                         Case{"stadium", 15},
+                                         Case{"tetra", 8},
+                                         Case{"soup", 100000},
+                                         Case{"clumps", 300000},
+                                         Case{"towns", 30000}));
 
 TEST(BuildingWithoutGrid, TakesWhatItSaid) {
-  if (!kCounted) GTEST_SKIP() << "this sanitizer keeps operator new to itself";
+  if (!kCounted)
+    GTEST_SKIP() << "this sanitizer keeps operator new to itself";
   const Scene scene = random_mixture(5, 100000);
   const BuildOptions options{.grid = false};
   const BuildMemory said = World::estimate(scene, options);
@@ -140,12 +161,17 @@ TEST(Building, IsRefusedWhatItMayNotTake) {
     EXPECT_EQ(error.need.peak, need.peak);
     EXPECT_EQ(error.need.kept, need.kept);
   }
-  EXPECT_LT(most - before, static_cast<std::ptrdiff_t>(need.peak / 3)) << "nothing was built before it was refused";
+  EXPECT_LT(most - before, static_cast<std::ptrdiff_t>(need.peak / 3))
+      << "nothing was built before it was refused";
 }
 
 /// One group, many, near and far grids, crowds, no grid, nothing.
 std::vector<Scene> all_sorts() {
-  std::vector<Scene> all{soup(20000), random_mixture(5, 3000), towns_in_a_desert(5, 6000), scene_of({"stadium", 6}), empty_scene()};
+  std::vector<Scene> all{soup(20000),
+                         random_mixture(5, 3000),
+                         towns_in_a_desert(5, 6000),
+                         scene_of({"stadium", 6}),
+                         empty_scene()};
   return all;
 }
 
@@ -156,11 +182,12 @@ TEST(Building, TellsHowFarItIs) {
       int calls = 0;
       bool ascends = true, may_stop = false;
       const World world(scene, {.grid = grid, .threads = 3, .progress = [&](double share) {
-                          ascends &= share >= last && share <= 1;
-                          may_stop |= share > .3 && share < .9;
-                          last = share, ++calls;
-                          return true;
-                        }});
+                                  ascends &= share >= last && share <= 1;
+                                  may_stop |= share > .3 && share < .9;
+                                  last = share;
+                                  ++calls;
+                                  return true;
+                                }});
       EXPECT_TRUE(ascends);
       EXPECT_EQ(last, 1);
       EXPECT_GT(calls, 2);
@@ -175,7 +202,9 @@ TEST(Building, StopsWhenTold) {
     for (int stop = 1; stop <= all; stop += std::max(1, all / 20)) {
       const std::ptrdiff_t before = owned;
       std::atomic<int> calls = 0;
-      EXPECT_THROW(World(scene, {.threads = 3, .progress = [&](double) { return ++calls < stop; }}), Stopped) << stop << " of " << all;
+      EXPECT_THROW(World(scene, {.threads = 3, .progress = [&](double) { return ++calls < stop; }}),
+                   Stopped)
+          << stop << " of " << all;
       EXPECT_EQ(calls, stop) << "nobody is asked again";
       EXPECT_EQ(owned, before) << "everything is given back";
     }

@@ -1,4 +1,5 @@
-// hit_cone: every instruction set and method against the scalar one bit for bit; the scalar one against long double.
+// hit_cone: every instruction set and method against the scalar one bit for bit; the scalar one
+// against long double.
 #define GRELHA_ISA scalar
 #include "kernel/cone.hpp"
 
@@ -18,18 +19,23 @@ struct Shape {
   float r0, r1;
 };
 
-/// Cylinders, cones with a tip, frusta, needles and flat collars; one in five shows its inside alone.
+/// Cylinders, cones with a tip, frusta, needles and flat collars; one in five shows its inside
+/// alone.
 Shape random_shape(Random& random, double& size) {
   size = random.log_in(1e-12, 1e12);
   const double height = size * random.log_in(.05, 20);
   Shape s;
   s.base = random.chance(.3) ? Float3{} : random.point(size * random.log_in(1e-2, 1e2));
-  const Float3 axis = random.chance(.3) ? Float3{0, random.chance(.5) ? 1.f : -1.f, 0} : random.direction();
+  const Float3 axis =
+      random.chance(.3) ? Float3{0, random.chance(.5) ? 1.f : -1.f, 0} : random.direction();
   s.apex = at(s.base, height, axis);
   const double sign = random.chance(.2) ? -1 : 1;
   s.r0 = static_cast<float>(sign * size * random.in(.05, 1));
-  s.r1 = random.chance(.3) ? s.r0 : random.chance(.2) ? 0.f : static_cast<float>(sign * size * random.in(.05, 1));
-  if (random.chance(.2)) std::swap(s.r0, s.r1);
+  s.r1 = random.chance(.3)   ? s.r0
+         : random.chance(.2) ? 0.f
+                             : static_cast<float>(sign * size * random.in(.05, 1));
+  if (random.chance(.2))
+    std::swap(s.r0, s.r1);
   size = std::max(size, height);
   return s;
 }
@@ -42,7 +48,8 @@ TEST_P(Cone, ReturnsTheScalarBits) {
     const Shape c = random_shape(random, size);
     const Scene scene = one_cone(c.base, c.r0, c.apex, c.r1);
     const World world(scene, {.grid = false});
-    const Rays rays = with_odd_values(random, rays_about(random, c.base, size, kManyRays), seed % 2 ? .1 : 0);
+    const Rays rays =
+        with_odd_values(random, rays_about(random, c.base, size, kManyRays), seed % 2 ? .1 : 0);
     const Truth truth = truth_of(scene, rays);
     expect_truth(variant(), world, rays, truth, "seed " + std::to_string(seed));
     hits += hits_of(truth.closest);
@@ -61,9 +68,17 @@ Hit hit(const Float3& o, const Float3& d, const Shape& s, float t_min = 0) {
   const PreparedCones c = prepare_cones(cones);
   const float inv_dd = 1 / ((d.x * d.x + d.y * d.y) + d.z * d.z);
   float t = -1;
-  const bool h = scalar::hit_cone<float>(
-      {o.x, o.y, o.z}, {d.x, d.y, d.z}, inv_dd, t_min,
-      {{c[0][0], c[1][0], c[2][0]}, {c[3][0], c[4][0], c[5][0]}, c[6][0], c[7][0], c[8][0], c[9][0]}, t);
+  const bool h = scalar::hit_cone<float>({o.x, o.y, o.z},
+                                         {d.x, d.y, d.z},
+                                         inv_dd,
+                                         t_min,
+                                         {{c[0][0], c[1][0], c[2][0]},
+                                          {c[3][0], c[4][0], c[5][0]},
+                                          c[6][0],
+                                          c[7][0],
+                                          c[8][0],
+                                          c[9][0]},
+                                         t);
   return {h, t};
 }
 
@@ -73,12 +88,17 @@ struct Case {
   oracle::Real unit;  ///< eps (|org - base| + height + radius): what the header counts in
 };
 
-/// What a ray is aimed at. Near a tip the quadratic's roots meet, and its coefficients may be large beside what lies between them.
+/// What a ray is aimed at. Near a tip the quadratic's roots meet, and its coefficients may be large
+/// beside what lies between them.
 enum class Aim { kSide, kNarrowEnd, kAlongTheSide };
 
 /// A point of the wider end's rim, on the side where `out` points.
-Float3 rim_point(const oracle::V& narrow, const oracle::V& wide, oracle::Real radius, const Float3& out) {
-  const oracle::V axis = oracle::unit(wide - narrow), across = oracle::V(out) - dot(axis, oracle::V(out)) * axis;
+Float3 rim_point(const oracle::V& narrow,
+                 const oracle::V& wide,
+                 oracle::Real radius,
+                 const Float3& out) {
+  const oracle::V axis = oracle::unit(wide - narrow),
+                  across = oracle::V(out) - dot(axis, oracle::V(out)) * axis;
   const oracle::V p = wide + radius * oracle::unit(across);
   return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
 }
@@ -91,13 +111,16 @@ Case random_case(std::uint64_t seed, double farthest, Aim aim) {
   k.shape = random_shape(random, size);
   if (aim != Aim::kSide) {  // half with a tip, the others down to nearly one, at either end
     const double share = random.log_in(1e-7, 1);
-    if (k.shape.r0 == 0) k.shape.r0 = k.shape.r1;
+    if (k.shape.r0 == 0)
+      k.shape.r0 = k.shape.r1;
     k.shape.r1 = random.chance(.5) ? 0.f : static_cast<float>(k.shape.r0 * share);
-    if (random.chance(.5)) std::swap(k.shape.r0, k.shape.r1);
+    if (random.chance(.5))
+      std::swap(k.shape.r0, k.shape.r1);
   }
   const oracle::Frustum f{k.shape.base, k.shape.apex, k.shape.r0, k.shape.r1};
   const bool base_is_wide = std::abs(k.shape.r0) > std::abs(k.shape.r1);
-  const Float3 narrow = base_is_wide ? k.shape.apex : k.shape.base, wide = base_is_wide ? k.shape.base : k.shape.apex;
+  const Float3 narrow = base_is_wide ? k.shape.apex : k.shape.base,
+               wide = base_is_wide ? k.shape.base : k.shape.apex;
   const double distance = random.chance(.2) ? random.unit() : random.log_in(.5, farthest);
   const Float3 side = random.direction(), off = random.direction();
   k.org = at(k.shape.base, size * distance, side);
@@ -110,12 +133,15 @@ Case random_case(std::uint64_t seed, double farthest, Aim aim) {
     target = at(narrow, size * beside, off);
   }
   if (aim == Aim::kAlongTheSide) {
-    const Float3 rim = rim_point(narrow, wide, std::max(std::abs(k.shape.r0), std::abs(k.shape.r1)), random.direction());
-    const double sign = random.sign(), lengths = sign * random.log_in(.5, 1e2), beside = random.log_in(1e-9, .1);
+    const Float3 rim = rim_point(
+        narrow, wide, std::max(std::abs(k.shape.r0), std::abs(k.shape.r1)), random.direction());
+    const double sign = random.sign(), lengths = sign * random.log_in(.5, 1e2),
+                 beside = random.log_in(1e-9, .1);
     k.org = at(at(narrow, lengths, minus(rim, narrow)), size * beside, side);
   }
   k.dir = scaled(minus(target, k.org), random.log_in(1e-2, 1e2));
-  k.unit = oracle::kEps * (length(oracle::V(k.org) - f.base) + f.height() + std::max(std::abs(f.r0), std::abs(f.r1)));
+  k.unit = oracle::kEps * (length(oracle::V(k.org) - f.base) + f.height() +
+                           std::max(std::abs(f.r0), std::abs(f.r1)));
   return k;
 }
 
@@ -127,7 +153,8 @@ TEST_P(ConePoints, LieOnTheSurface) {
   for (std::uint64_t seed = 0; seed < 300000; ++seed) {
     const Case k = random_case(seed, 1e4, GetParam());
     const auto [found, t] = hit(k.org, k.dir, k.shape);
-    if (!found) continue;
+    if (!found)
+      continue;
     ++hits;
     const oracle::Frustum f{k.shape.base, k.shape.apex, k.shape.r0, k.shape.r1};
     const oracle::Real off = f.distance(oracle::Ray{k.org, k.dir}.point(t)) / k.unit;
@@ -135,27 +162,37 @@ TEST_P(ConePoints, LieOnTheSurface) {
       ADD_FAILURE() << "seed " << seed << ": " << static_cast<double>(off) << " units off";
     worst = std::max(worst, off);
   }
-  std::printf("cone: %d hits, %d over, worst %.2f eps (|o - base| + h + r)\n", hits, over, static_cast<double>(worst));
+  std::printf("cone: %d hits, %d over, worst %.2f eps (|o - base| + h + r)\n",
+              hits,
+              over,
+              static_cast<double>(worst));
   EXPECT_EQ(over, 0);
   EXPECT_GT(hits, 60000);
 }
 
-INSTANTIATE_TEST_SUITE_P(Aims, ConePoints, testing::Values(Aim::kSide, Aim::kNarrowEnd, Aim::kAlongTheSide), [](const auto& aim) {
-  return aim.param == Aim::kSide ? "Side" : aim.param == Aim::kNarrowEnd ? "NarrowEnd" : "AlongTheSide";
-});
+INSTANTIATE_TEST_SUITE_P(Aims,
+                         ConePoints,
+                         testing::Values(Aim::kSide, Aim::kNarrowEnd, Aim::kAlongTheSide),
+                         [](const auto& aim) {
+                           return aim.param == Aim::kSide        ? "Side"
+                                  : aim.param == Aim::kNarrowEnd ? "NarrowEnd"
+                                                                 : "AlongTheSide";
+                         });
 
-/// What a ray surely meets: it, and each of six moved by twice the bound, crosses the surface, and not within the bound of an end. A hole
-/// narrower than the bound may be passed or not.
+/// What a ray surely meets: it, and each of six moved by twice the bound, crosses the surface, and
+/// not within the bound of an end. A hole narrower than the bound may be passed or not.
 TEST(ConeOracle, LosesNoHitNearATip) {
   int wanted = 0, lost = 0;
   for (std::uint64_t seed = 0; seed < 300000; ++seed) {
     const Case k = random_case(seed, 1e3, seed % 2 ? Aim::kNarrowEnd : Aim::kAlongTheSide);
     const oracle::Frustum f{k.shape.base, k.shape.apex, k.shape.r0, k.shape.r1};
     const oracle::Real bound = 32 * k.unit, hole = std::min(std::abs(f.r0), std::abs(f.r1));
-    if (hole > 0 && hole < bound) continue;
+    if (hole > 0 && hole < bound)
+      continue;
     const auto sure = [&](const oracle::Ray& ray) {
       const auto crossing = f.first(ray, 0);
-      if (!crossing) return false;
+      if (!crossing)
+        return false;
       const oracle::Real z = f.height_at(ray.point(crossing->t));
       return z > bound && z < f.height() - bound;
     };
@@ -163,10 +200,13 @@ TEST(ConeOracle, LosesNoHitNearATip) {
     bool all = sure(ray);
     for (int i = 0; i < 6 && all; ++i) {
       oracle::Ray moved = ray;
-      (i / 2 == 0 ? moved.org.x : i / 2 == 1 ? moved.org.y : moved.org.z) += 2 * bound * (i % 2 ? 1 : -1);
+      (i / 2 == 0   ? moved.org.x
+       : i / 2 == 1 ? moved.org.y
+                    : moved.org.z) += 2 * bound * (i % 2 ? 1 : -1);
       all = sure(moved);
     }
-    if (!all) continue;
+    if (!all)
+      continue;
     ++wanted;
     lost += !hit(k.org, k.dir, k.shape).hit;
   }
@@ -175,7 +215,8 @@ TEST(ConeOracle, LosesNoHitNearATip) {
   EXPECT_GT(wanted, 40000);
 }
 
-/// Where the ray crosses steeply and far from the rims, the same crossing is found; where nothing is near, none.
+/// Where the ray crosses steeply and far from the rims, the same crossing is found; where nothing
+/// is near, none.
 TEST(ConeOracle, FindsTheFirstCrossing) {
   int judged = 0, wrong = 0;
   oracle::Real worst = 0;
@@ -185,13 +226,15 @@ TEST(ConeOracle, FindsTheFirstCrossing) {
     const oracle::Ray ray{k.org, k.dir};
     const oracle::Real tolerance = 32 * k.unit;
     const auto wanted = f.first(ray, 0);
-    if (!wanted || f.distance(ray.org) <= tolerance) continue;
+    if (!wanted || f.distance(ray.org) <= tolerance)
+      continue;
     const oracle::V p = ray.point(wanted->t);
     const oracle::Real z = f.height_at(p), rho = length(cross(f.axis(), p - f.base));
-    // Off by `tolerance` across the surface is tolerance / cosine along the ray; that must stay small against what
-    // bends.
+    // Off by `tolerance` across the surface is tolerance / cosine along the ray; that must stay
+    // small against what bends.
     const oracle::Real along = tolerance / wanted->cosine;
-    if (wanted->cosine < .05L || 20 * along > rho || z < along || z > f.height() - along) continue;
+    if (wanted->cosine < .05L || 20 * along > rho || z < along || z > f.height() - along)
+      continue;
     ++judged;
     const auto [found, t] = hit(k.org, k.dir, k.shape);
     if (found && t < wanted->t && f.distance(ray.point(t)) <= tolerance)
@@ -202,35 +245,46 @@ TEST(ConeOracle, FindsTheFirstCrossing) {
       ADD_FAILURE() << "seed " << seed << ": found " << found << " t " << t << " against "
                     << static_cast<double>(wanted->t);
   }
-  std::printf("cone: %d judged, worst along the ray %.2f units / cosine\n", judged, static_cast<double>(worst));
+  std::printf("cone: %d judged, worst along the ray %.2f units / cosine\n",
+              judged,
+              static_cast<double>(worst));
   EXPECT_EQ(wrong, 0);
   EXPECT_GT(judged, 40000);
 }
 
-/// Rays that start a quarter of what surfaces are left by (`away` in surface.hpp) above the side, and go outwards: nearly along it, or nearly
-/// along a line of the cone. Convex as it is, none meets it.
+/// Rays that start a quarter of what surfaces are left by (`away` in surface.hpp) above the side,
+/// and go outwards: nearly along it, or nearly along a line of the cone. Convex as it is, none
+/// meets it.
 TEST(ConeOracle, IsNotMetByWhatLeavesIt) {
   int left = 0, met = 0;
   for (std::uint64_t seed = 0; seed < 600000; ++seed) {
     Random random(seed);
     double size;
     const Shape shape = random_shape(random, size);
-    if (shape.r0 + shape.r1 <= 0) continue;  // no radius, or only the inside
+    if (shape.r0 + shape.r1 <= 0)
+      continue;  // no radius, or only the inside
     const oracle::Frustum f{shape.base, shape.apex, shape.r0, shape.r1};
     const oracle::Real slope = (f.r1 - f.r0) / f.height(), z = f.height() * random.unit();
-    const oracle::V out = oracle::V(random.direction()), across = oracle::unit(out - dot(out, f.axis()) * f.axis());
-    const oracle::V normal = oracle::unit(across - slope * f.axis()), line = oracle::unit(f.axis() + slope * across);
+    const oracle::V out = oracle::V(random.direction()),
+                    across = oracle::unit(out - dot(out, f.axis()) * f.axis());
+    const oracle::V normal = oracle::unit(across - slope * f.axis()),
+                    line = oracle::unit(f.axis() + slope * across);
     const oracle::V p = f.base + z * f.axis() + (f.r0 + slope * z) * across;
-    const oracle::Real bound = oracle::kEps * (8 * (f.height() + std::max(f.r0, f.r1)) + 4 * length(p));
-    const auto rounded = [](const oracle::V& v) { return Float3{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; };
+    const oracle::Real bound =
+        oracle::kEps * (8 * (f.height() + std::max(f.r0, f.r1)) + 4 * length(p));
+    const auto rounded = [](const oracle::V& v) {
+      return Float3{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+    };
     oracle::V way = random.direction();
     if (random.chance(.5)) {
       const double sign = random.sign(), apart = random.log_in(1e-6, 1);
       way = static_cast<oracle::Real>(sign) * line + static_cast<oracle::Real>(apart) * way;
     }
-    way = way - dot(way, normal) * normal + static_cast<oracle::Real>(random.log_in(1e-6, .1)) * normal;
+    way = way - dot(way, normal) * normal +
+          static_cast<oracle::Real>(random.log_in(1e-6, .1)) * normal;
     const Float3 dir = rounded(way);
-    if (dot(oracle::V(dir), normal) < 8 * oracle::kEps * length(way)) continue;
+    if (dot(oracle::V(dir), normal) < 8 * oracle::kEps * length(way))
+      continue;
     ++left;
     met += hit(rounded(p + bound * normal), dir, shape).hit;
   }
@@ -240,7 +294,8 @@ TEST(ConeOracle, IsNotMetByWhatLeavesIt) {
 }
 
 TEST(ConeCorners, EndsSidesAndAxes) {
-  const Shape pipe{{0, 0, 0}, {0, 2, 0}, 1, 1}, lining{{0, 0, 0}, {0, 2, 0}, -1, -1}, tip{{0, 0, 0}, {0, 2, 0}, 1, 0};
+  const Shape pipe{{0, 0, 0}, {0, 2, 0}, 1, 1}, lining{{0, 0, 0}, {0, 2, 0}, -1, -1},
+      tip{{0, 0, 0}, {0, 2, 0}, 1, 0};
   EXPECT_EQ(hit({3, 1, 0}, {-1, 0, 0}, pipe).t, 2);
   EXPECT_EQ(hit({3, 1, 0}, {-1, 0, 0}, lining).t, 4);
   EXPECT_EQ(hit({0, 1, 0}, {-.5f, 0, 0}, pipe).t, 2);
@@ -250,8 +305,10 @@ TEST(ConeCorners, EndsSidesAndAxes) {
   EXPECT_TRUE(hit({.5f, 4, 0}, {0, -1, 0}, tip).hit);
   EXPECT_EQ(hit({.5f, 4, 0}, {0, -1, 0}, tip).t, 3);
   EXPECT_FALSE(hit({-1.5f, 4, 0}, {0, -1, 0}, tip).hit);
-  EXPECT_EQ(hit({.25f, 5, 0}, {0, -1, 0}, tip).t, 3.5f);           // and not the mirrored cone above the tip
-  EXPECT_EQ(hit({1.5f, .5f, 0}, {-1, 0, 0}, tip, .75f).t, 2.25f);  // the interval is open: t .75 itself does not count
+  // and not the mirrored cone above the tip
+  EXPECT_EQ(hit({.25f, 5, 0}, {0, -1, 0}, tip).t, 3.5f);
+  // the interval is open: t .75 itself does not count
+  EXPECT_EQ(hit({1.5f, .5f, 0}, {-1, 0, 0}, tip, .75f).t, 2.25f);
 }
 
 }  // namespace

@@ -58,7 +58,8 @@ TEST(Copies, GoTheSameForEveryNumberOfThreads) {
     BuildOptions build;
     build.threads = threads;
     std::uint64_t sum = 0;
-    for (const GridStats& g : World(scene, build).grids()) sum += g.references;
+    for (const GridStats& g : World(scene, build).grids())
+      sum += g.references;
     references.push_back(sum);
   }
   EXPECT_EQ(references[0], references[1]);
@@ -68,14 +69,17 @@ TEST(Copies, GoTheSameForEveryNumberOfThreads) {
 TEST(Copies, AreEqualToTheBit) {
   Scene s;
   s.materials.resize(1);
-  for (const float x : {1.f, 0.f, 1.f, -0.f, 0.f}) s.geometry.spheres.add({x, 0, 0}, 2, 0);
+  for (const float x : {1.f, 0.f, 1.f, -0.f, 0.f})
+    s.geometry.spheres.add({x, 0, 0}, 2, 0);
   add_triangle(s, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
   add_triangle(s, {1, 0, 0}, {0, 1, 0}, {0, 0, 0});  // from another corner: t may round otherwise
   add_triangle(s, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});  // of vertices of its own
-  for (int k = 0; k < 2; ++k) s.geometry.cones.add({0, 0, 0}, 1, {0, 1, 0}, .5f, 0);
+  for (int k = 0; k < 2; ++k)
+    s.geometry.cones.add({0, 0, 0}, 1, {0, 1, 0}, .5f, 0);
   const Primitives p(s.geometry);
   std::vector<std::uint32_t> ids;
-  for (std::uint32_t id = 0; id < p.end; ++id) ids.push_back(id);
+  for (std::uint32_t id = 0; id < p.end; ++id)
+    ids.push_back(id);
   std::vector<std::uint32_t> copies = copies_among(p, ids);
   std::sort(copies.begin(), copies.end());
   EXPECT_EQ(copies, (std::vector<std::uint32_t>{2, 4, 7, 9}));
@@ -83,7 +87,8 @@ TEST(Copies, AreEqualToTheBit) {
 
 TEST(Copies, OfPlanesAtTheEndAreNotTested) {
   Planes planes;
-  for (const float y : {0.f, 1.f, 0.f, 2.f, 1.f, 0.f}) planes.add({0, y, 0}, {0, 1, 0}, 0);
+  for (const float y : {0.f, 1.f, 0.f, 2.f, 1.f, 0.f})
+    planes.add({0, y, 0}, {0, 1, 0}, 0);
   EXPECT_EQ(planes_without_copies(planes), 4u);
   EXPECT_EQ(planes_without_copies(Planes{}), 0u);
 }

@@ -25,15 +25,19 @@ TEST(Crowds, AreNotSeenWhereThereAreNone) {
   EXPECT_EQ(World(even, {}).grids().size(), 1u);
   // All in one place: no cells would help.
   Scene one_place = empty_scene();
-  for (int i = 0; i < 3000; ++i) one_place.geometry.spheres.add({1, 2, 3}, .5f, 0);
+  for (int i = 0; i < 3000; ++i)
+    one_place.geometry.spheres.add({1, 2, 3}, .5f, 0);
   EXPECT_EQ(World(one_place, {}).grids().size(), 1u);
 }
 
 TEST(References, AreBounded) {
   Scene heap_of_copies = empty_scene();
-  for (int i = 0; i < 50000; ++i) add_triangle(heap_of_copies, {0, 0, 0}, {1, .1f, .2f}, {.1f, 1, .9f});
+  for (int i = 0; i < 50000; ++i)
+    add_triangle(heap_of_copies, {0, 0, 0}, {1, .1f, .2f}, {.1f, 1, .9f});
   const World world(heap_of_copies, {});
-  for (const GridStats& g : world.grids()) EXPECT_LE(g.references, 64u * 50000u);  // 800 each without a bound
+  // 800 each without a bound
+  for (const GridStats& g : world.grids())
+    EXPECT_LE(g.references, 64u * 50000u);
 }
 
 }  // namespace

@@ -18,9 +18,17 @@ SceneFile file_of(const std::vector<Float3>& points,
                   const std::vector<std::array<std::uint32_t, 3>>& faces) {
   SceneFile file;
   Triangles& t = file.scene.geometry.triangles;
-  for (const Float3& p : points) t.x.push_back(p.x), t.y.push_back(p.y), t.z.push_back(p.z);
-  for (const auto& [a, b, c] : faces)
-    t.a.push_back(a), t.b.push_back(b), t.c.push_back(c), t.material.push_back(0);
+  for (const Float3& p : points) {
+    t.x.push_back(p.x);
+    t.y.push_back(p.y);
+    t.z.push_back(p.z);
+  }
+  for (const auto& [a, b, c] : faces) {
+    t.a.push_back(a);
+    t.b.push_back(b);
+    t.c.push_back(c);
+    t.material.push_back(0);
+  }
   file.scene.materials.push_back(default_mesh_material());
   add_default_view(file);
   return file;
@@ -38,7 +46,8 @@ SceneFile box(const Float3& size, float shift = 0, float scale = 1, bool inward 
            {0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}})
     faces.push_back({a, b, c}), faces.push_back({a, c, d});
   if (inward)
-    for (auto& f : faces) std::swap(f[1], f[2]);
+    for (auto& f : faces)
+      std::swap(f[1], f[2]);
   return file_of(points, faces);
 }
 
@@ -61,8 +70,11 @@ Seen seen(const SceneFile& file, int side) {
   for (int y = 0; y < side; ++y)
     for (int x = 0; x < side; ++x) {
       const float* const p = image.row(y) + 3 * x;
-      if (p[0] == b.x && p[1] == b.y && p[2] == b.z) continue;
-      s.left = std::min(s.left, x), s.right = std::max(s.right, x), s.top = std::min(s.top, y),
+      if (p[0] == b.x && p[1] == b.y && p[2] == b.z)
+        continue;
+      s.left = std::min(s.left, x);
+      s.right = std::max(s.right, x);
+      s.top = std::min(s.top, y);
       s.bottom = std::max(s.bottom, y);
       s.darkest = std::min({s.darkest, p[0], p[1], p[2]});
     }
@@ -73,8 +85,11 @@ Seen seen(const SceneFile& file, int side) {
 /// place, and none of the rest.
 TEST(DefaultView, FillsThePicture) {
   constexpr int kSide = 200;
-  for (const Float3& size : {Float3{1, 1, 1}, Float3{5, 1, .5f}, Float3{.2f, 4, .2f},
-                             Float3{1, 1, 30}, Float3{1, .01f, 1}})
+  for (const Float3& size : {Float3{1, 1, 1},
+                             Float3{5, 1, .5f},
+                             Float3{.2f, 4, .2f},
+                             Float3{1, 1, 30},
+                             Float3{1, .01f, 1}})
     for (const float scale : {1e-6f, 1.f, 1e9f})
       for (const float shift : {-.5f, 100.f}) {
         const Seen s = seen(box(size, shift, scale), kSide);
@@ -110,13 +125,18 @@ TEST(DefaultView, AMeshStandsOnItsFeet) {
     };
     for (const auto& [x, y] : {std::pair{0.f, 0.f}, {4.f, 0.f}, {0.f, 3.f}, {4.f, 3.f}}) {
       const auto first = static_cast<std::uint32_t>(points.size());
-      add(x, y, 0), add(x + .1f, y, 3), add(x, y + .1f, 3);
+      add(x, y, 0);
+      add(x + .1f, y, 3);
+      add(x, y + .1f, 3);
       faces.push_back({first, first + 1, first + 2});
     }
     const auto first = static_cast<std::uint32_t>(points.size());
-    add(2, 1.5f, 5), add(1, 1, 3), add(3, 1.2f, 3);
+    add(2, 1.5f, 5);
+    add(1, 1, 3);
+    add(3, 1.2f, 3);
     faces.push_back({first, first + 1, first + 2});
-    add(2, -1, 4), add(2, 5, 4.5f);  // a bird over it
+    add(2, -1, 4);
+    add(2, 5, 4.5f);  // a bird over it
     faces.push_back({first, first + 3, first + 4});
     return file_of(points, faces);
   };
@@ -135,7 +155,8 @@ TEST(DefaultView, AMeshTakesSixteenSamplesUnlessAskedOtherwise) {
     return options.sampling.samples;
   };
   Effects one, jitter;
-  one.samples = 1, jitter.jitter = 3;
+  one.samples = 1;
+  jitter.jitter = 3;
   EXPECT_EQ(samples({}), 16);
   EXPECT_EQ(samples(one), 1);
   EXPECT_EQ(samples(jitter), 9);

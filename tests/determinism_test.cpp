@@ -1,4 +1,5 @@
-// One picture: the same bits for every number of threads, instruction set, packet size, mailbox, density and grid.
+// One picture: the same bits for every number of threads, instruction set, packet size, mailbox,
+// density and grid.
 #include <cstring>
 #include <sstream>
 
@@ -23,27 +24,38 @@ Picture generated(const char* name, int size) {
   return {std::move(file.scene), file.camera};
 }
 
-/// Every kind and every effect at once: glass of both sorts, mirrors, highlights, smooth normals, emission, lights on
-/// all sides.
+/// Every kind and every effect at once: glass of both sorts, mirrors, highlights, smooth normals,
+/// emission, lights on all sides.
 Picture mixture() {
   Picture p;
   Scene& s = p.scene = random_mixture(12, 240);
   s.materials.resize(6);
-  s.materials[1].mirror = {.8f, .7f, .9f}, s.materials[1].specular = {.5f, .5f, .5f}, s.materials[1].shine = 40;
-  s.materials[2].transmission = .9f, s.materials[2].ior = 1.5f, s.materials[2].fresnel = true;
-  s.materials[3].transmission = .7f, s.materials[3].ior = 1.2f, s.materials[3].mirror = {.2f, .3f, .2f};
+  s.materials[1].mirror = {.8f, .7f, .9f}, s.materials[1].specular = {.5f, .5f, .5f},
+  s.materials[1].shine = 40;
+  s.materials[2].transmission = .9f;
+  s.materials[2].ior = 1.5f;
+  s.materials[2].fresnel = true;
+  s.materials[3].transmission = .7f, s.materials[3].ior = 1.2f,
+  s.materials[3].mirror = {.2f, .3f, .2f};
   s.materials[4].emission = {.3f, .2f, .1f}, s.materials[4].diffuse = {.2f, .5f, .9f};
-  s.materials[5].diffuse = {.4f, .4f, .2f}, s.materials[5].specular = {1, 1, 1}, s.materials[5].shine = 7.3f;
+  s.materials[5].diffuse = {.4f, .4f, .2f}, s.materials[5].specular = {1, 1, 1},
+  s.materials[5].shine = 7.3f;
   Random random(1);
-  for (auto* m : {&s.geometry.spheres.material, &s.geometry.triangles.material, &s.geometry.cones.material,
+  for (auto* m : {&s.geometry.spheres.material,
+                  &s.geometry.triangles.material,
+                  &s.geometry.cones.material,
                   &s.geometry.planes.material})
-    for (std::uint32_t& i : *m) i = random.below(6);
+    for (std::uint32_t& i : *m)
+      i = random.below(6);
   Triangles& t = s.geometry.triangles;
   for (std::size_t i = 0; i < t.vertex_count(); ++i) {
     const Float3 n = random.chance(.2) ? Float3{} : random.direction();
-    t.nx.push_back(n.x), t.ny.push_back(n.y), t.nz.push_back(n.z);
+    t.nx.push_back(n.x);
+    t.ny.push_back(n.y);
+    t.nz.push_back(n.z);
   }
-  s.lights = {{{3, 4, 5}, {.6f, .6f, .6f}}, {{-4, 2, 1}, {.3f, .1f, .2f}}, {{0, 0, 0}, {.2f, .4f, .1f}}};
+  s.lights = {
+      {{3, 4, 5}, {.6f, .6f, .6f}}, {{-4, 2, 1}, {.3f, .1f, .2f}}, {{0, 0, 0}, {.2f, .4f, .1f}}};
   s.background = {.08f, .36f, .57f};
   p.camera.eye = {.3f, .5f, 3.5f}, p.camera.at = {0, 0, 0};
   return p;
@@ -53,8 +65,13 @@ class Determinism : public testing::TestWithParam<const char*> {
  protected:
   static Picture make() {
     const std::string name = GetParam();
-    Picture p = name == "mixture" ? mixture() : generated(GetParam(), name == "balls" ? 2 : name == "mount" ? 4 : 2);
-    p.camera.width = 67, p.camera.height = 43;  // no multiple of tile, band, packet or register
+    Picture p = name == "mixture" ? mixture()
+                                  : generated(GetParam(),
+                                              name == "balls"   ? 2
+                                              : name == "mount" ? 4
+                                                                : 2);
+    p.camera.width = 67;
+    p.camera.height = 43;  // no multiple of tile, band, packet or register
     return p;
   }
 };
@@ -80,9 +97,16 @@ std::vector<Built> builds(const Scene& scene) {
 }
 
 /// The plainest: scalar, one thread, one ray, no grid.
-Image plainest(const std::vector<Built>& worlds, const Camera& camera, int depth, RenderStats& stats) {
+Image plainest(const std::vector<Built>& worlds,
+               const Camera& camera,
+               int depth,
+               RenderStats& stats) {
   RenderOptions o;
-  o.depth = depth, o.threads = 1, o.packet = 1, o.isa = "scalar", o.mailbox = false;
+  o.depth = depth;
+  o.threads = 1;
+  o.packet = 1;
+  o.isa = "scalar";
+  o.mailbox = false;
   return render(worlds.front().world, camera, o, stats);
 }
 
@@ -100,18 +124,23 @@ TEST_P(Determinism, OnePictureForEveryWayOfTracing) {
   const Image wanted = plainest(worlds, p.camera, 5, first);
   for (const Built& built : worlds)
     for (const Variant* v : variants()) {
-      if (!v->runs_here()) continue;
+      if (!v->runs_here())
+        continue;
       for (const int packet : {1, 16, 64, 256})
         for (const bool mailbox : {true, false})
           for (const int threads : {1, 2, 7}) {
             if (threads != 2 && (packet == 1 || !mailbox))
               continue;  // threads do not see the packet: the rest is covered
             RenderOptions o;
-            o.threads = threads, o.packet = packet, o.mailbox = mailbox, o.isa = v->name;
+            o.threads = threads;
+            o.packet = packet;
+            o.mailbox = mailbox;
+            o.isa = v->name;
             RenderStats stats;
             const Image image = render(built.world, p.camera, o, stats);
-            ASSERT_EQ(differing(image, wanted), 0u) << built.name << ", " << v->name << ", packet " << packet
-                                                    << ", mailbox " << mailbox << ", " << threads << " threads";
+            ASSERT_EQ(differing(image, wanted), 0u)
+                << built.name << ", " << v->name << ", packet " << packet << ", mailbox " << mailbox
+                << ", " << threads << " threads";
             expect_same_rays(stats.rays, first.rays);
           }
     }
@@ -121,21 +150,26 @@ TEST_P(Determinism, OnePictureForEveryWayOfTracing) {
 Picture scaled_by(const Picture& picture, double scale) {
   Picture p{placed(picture.scene, scale, {}), picture.camera};
   for (Light& light : p.scene.lights)
-    for (Float3* v : {&light.position, &light.edge1, &light.edge2}) *v = scaled(*v, scale);
-  p.camera.eye = scaled(p.camera.eye, scale), p.camera.at = scaled(p.camera.at, scale);
-  p.camera.aperture *= scale, p.camera.focus *= scale;
+    for (Float3* v : {&light.position, &light.edge1, &light.edge2})
+      *v = scaled(*v, scale);
+  p.camera.eye = scaled(p.camera.eye, scale);
+  p.camera.at = scaled(p.camera.at, scale);
+  p.camera.aperture *= scale;
+  p.camera.focus *= scale;
   return p;
 }
 
-/// That changes no bit of a number, and nothing but the exponents of what is computed with it, unless products of lengths leave what floats
-/// can hold: three are multiplied in a triangle's depth, so sizes from 1e-10 to 1e11 are sure to be drawn alike.
+/// That changes no bit of a number, and nothing but the exponents of what is computed with it,
+/// unless products of lengths leave what floats can hold: three are multiplied in a triangle's
+/// depth, so sizes from 1e-10 to 1e11 are sure to be drawn alike.
 TEST_P(Determinism, AtEverySize) {
   const Picture p = make();
   RenderStats stats;
   const Image wanted = render(World(p.scene, {}), p.camera, {}, stats);
   for (const int power : {-30, -12, 12, 30}) {
     const Picture q = scaled_by(p, std::ldexp(1., power));
-    EXPECT_EQ(differing(render(World(q.scene, {}), q.camera, {}, stats), wanted), 0u) << "times 2^" << power;
+    EXPECT_EQ(differing(render(World(q.scene, {}), q.camera, {}, stats), wanted), 0u)
+        << "times 2^" << power;
   }
 }
 
@@ -143,8 +177,8 @@ TEST_P(Determinism, AtEveryDepth) {
   const Picture p = make();
   const std::vector<Built> worlds = builds(p.scene);
   std::uint64_t last = 0;
-  // Glass sends two rays a hit: the longest path is as long as its doubling allows, and 40 where there are mirrors
-  // alone.
+  // Glass sends two rays a hit: the longest path is as long as its doubling allows, and 40 where
+  // there are mirrors alone.
   const std::string name = GetParam();
   for (const int depth : {1, 2, name == "balls" ? 40 : name == "mount" ? 16 : 8}) {
     RenderStats first;
@@ -152,24 +186,31 @@ TEST_P(Determinism, AtEveryDepth) {
     EXPECT_GE(first.rays.total(), last);
     last = first.rays.total();
     for (const Variant* v : variants()) {
-      if (!v->runs_here()) continue;
+      if (!v->runs_here())
+        continue;
       for (const int packet : {16, 64, 256}) {
         RenderOptions o;
-        o.depth = depth, o.threads = 2, o.packet = packet, o.isa = v->name;
+        o.depth = depth;
+        o.threads = 2;
+        o.packet = packet;
+        o.isa = v->name;
         RenderStats stats;
         const Image image = render(worlds[1].world, p.camera, o, stats);
-        ASSERT_EQ(differing(image, wanted), 0u) << v->name << ", packet " << packet << ", depth " << depth;
+        ASSERT_EQ(differing(image, wanted), 0u)
+            << v->name << ", packet " << packet << ", depth " << depth;
         expect_same_rays(stats.rays, first.rays);
       }
     }
   }
 }
 
-/// A crop of odd sizes is the same picture only if no pixel depends on its tile: seen by rendering thin and small ones.
+/// A crop of odd sizes is the same picture only if no pixel depends on its tile: seen by rendering
+/// thin and small ones.
 TEST_P(Determinism, AtOddSizes) {
   Picture p = make();
   for (const auto& [w, h] : {std::pair{1, 1}, {1, 43}, {67, 1}, {9, 17}, {8, 8}, {65, 7}}) {
-    p.camera.width = w, p.camera.height = h;
+    p.camera.width = w;
+    p.camera.height = h;
     const std::vector<Built> worlds = builds(p.scene);
     RenderStats first;
     const Image wanted = plainest(worlds, p.camera, 5, first);
@@ -196,7 +237,9 @@ TEST_P(Determinism, ShowsSomething) {
   EXPECT_GT(lit, 67u * 43 / 4);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, Determinism, testing::Values("balls", "mount", "mixture"),
+INSTANTIATE_TEST_SUITE_P(Scenes,
+                         Determinism,
+                         testing::Values("balls", "mount", "mixture"),
                          [](const auto& p) { return std::string(p.param); });
 
 }  // namespace

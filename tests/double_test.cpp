@@ -1,5 +1,5 @@
-// Rays and primitives tested in double (--precision double): the same answers and bits whatever finds them, as near the truth as double
-// promises, and pictures made of them.
+// Rays and primitives tested in double (--precision double): the same answers and bits whatever
+// finds them, as near the truth as double promises, and pictures made of them.
 #include <bit>
 #include <deque>
 #include <functional>
@@ -19,13 +19,16 @@ const Variant& in_double(const Variant& v) {
   struct Doubled {
     VariantLoops loops;
     Variant variant;
-    explicit Doubled(const Variant& of) : loops(of.loops), variant{of.name, of.lanes, of.runs_here, loops, of.in_double} {
-      loops.closest = of.in_double.closest, loops.occluded = of.in_double.occluded;
+    explicit Doubled(const Variant& of)
+        : loops(of.loops), variant{of.name, of.lanes, of.runs_here, loops, of.in_double} {
+      loops.closest = of.in_double.closest;
+      loops.occluded = of.in_double.occluded;
     }
   };
   static std::deque<Doubled> all;
   for (const Doubled& d : all)
-    if (d.variant.name == v.name) return d.variant;
+    if (d.variant.name == v.name)
+      return d.variant;
   return all.emplace_back(v).variant;
 }
 
@@ -39,7 +42,8 @@ Truth truth_in_double(const Scene& scene, const Rays& rays) {
   const World plain(scene, {.grid = false});
   const Variant& scalar = in_double(*find_variant("scalar"));
   const TraceSettings reference{Method::kReference, 1, false};
-  return {trace(scalar, plain, rays, reference, Query::kClosest), trace(scalar, plain, rays, reference, Query::kOccluded)};
+  return {trace(scalar, plain, rays, reference, Query::kClosest),
+          trace(scalar, plain, rays, reference, Query::kOccluded)};
 }
 
 TEST_P(Double, OneSetOfBits) {
@@ -49,10 +53,15 @@ TEST_P(Double, OneSetOfBits) {
     const Float3 offset = random.point(scale * random.log_in(.1, 1e3));
     const Scene scene = placed(random_mixture(seed, 150), scale, offset);
     const World world(scene, {.density = seed % 4 == 0 ? 4.f : 0.f});
-    Rays rays = with_odd_values(random, rays_about(random, offset, scale, kManyRays, seed % 3 == 0 ? 1e6 : 1e3), seed % 2 ? .1 : 0);
-    for (const double away : {3., 1e4}) {  // packets that stay together, of rays as they are and of rays brought near
+    Rays rays =
+        with_odd_values(random,
+                        rays_about(random, offset, scale, kManyRays, seed % 3 == 0 ? 1e6 : 1e3),
+                        seed % 2 ? .1 : 0);
+    // packets that stay together, of rays as they are and of rays brought near
+    for (const double away : {3., 1e4}) {
       const Float3 eye = at(offset, away * scale, random.direction());
-      for (int i = 0; i < 256; ++i) rays.add(eye, minus(at(offset, scale * .2, random.point(1)), eye));
+      for (int i = 0; i < 256; ++i)
+        rays.add(eye, minus(at(offset, scale * .2, random.point(1)), eye));
     }
     const Truth truth = truth_in_double(scene, rays);
     EXPECT_GT(hits_of(truth.closest), 300u);
@@ -80,12 +89,16 @@ TEST_P(Double, TiesGoToTheLowerId) {
       scene.geometry.spheres.add({x, 0, z}, .25f, 0);
       add_triangle(scene, {x, 0, z}, {x + 1, 0, z}, {x, 0, z + 1});
     }
-  add_triangle(scene, {-4, 0, -4}, {28, 0, -4}, {-4, 0, 28});  // below all of them, in no grid: met first
+  // below all of them, in no grid: met first
+  add_triangle(scene, {-4, 0, -4}, {28, 0, -4}, {-4, 0, 28});
   Rays rays;
   for (int tile = 0; tile < 40; ++tile)
     for (int i = 0; i < 64; ++i) {
-      const auto at = [](int whole, int eighths) { return static_cast<float>(whole) + .125f * static_cast<float>(eighths); };
-      rays.add({at(tile % 8, i % 8), 4, at(tile / 8, i / 8)}, {0, -1, 0});  // every number is exact, and equal t are equal bits
+      const auto at = [](int whole, int eighths) {
+        return static_cast<float>(whole) + .125f * static_cast<float>(eighths);
+      };
+      // every number is exact, and equal t are equal bits
+      rays.add({at(tile % 8, i % 8), 4, at(tile / 8, i / 8)}, {0, -1, 0});
     }
   const Truth truth = truth_in_double(scene, rays);
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -95,12 +108,15 @@ TEST_P(Double, TiesGoToTheLowerId) {
   expect_truth(tested(), World(scene, {.density = 2}), rays, truth, "ties");
 }
 
-// ---- how far off ------------------------------------------------------------------------------------------------
+// ---- how far off
+// ------------------------------------------------------------------------------------------
 
-/// The derivations of sphere.hpp, plane.hpp and triangle.hpp count roundings, whatever their size: in double the same multiples of
-/// 2^-53. Here t is judged, of rays that meet a surface at a cosine of at least .1: along the ray the point is off by ten times that at
-/// most. From D away 46 eps D is the largest, hence 460; twice that for a scene some of whose far sides lie twice as far as its middle.
-/// Rounded to float such a t is off by half a unit, and by what is left of a millionth of a unit.
+/// The derivations of sphere.hpp, plane.hpp and triangle.hpp count roundings, whatever their size:
+/// in double the same multiples of 2^-53. Here t is judged, of rays that meet a surface at a cosine
+/// of at least .1: along the ray the point is off by ten times that at most. From D away 46 eps D
+/// is the largest, hence 460; twice that for a scene some of whose far sides lie twice as far as
+/// its middle. Rounded to float such a t is off by half a unit, and by what is left of a millionth
+/// of a unit.
 TEST_P(Double, IsOffByRoundingAlone) {
   Random random(5);
   Scene scene = random_spheres(5, 60);
@@ -111,32 +127,44 @@ TEST_P(Double, IsOffByRoundingAlone) {
   const SceneView& view = world.impl().view;
   const GeometryView& g = view.geometry;
   const auto corner = [&](std::uint32_t i) { return Float3{g.tx[i], g.ty[i], g.tz[i]}; };
-  for (const TraceSettings& settings : {TraceSettings{Method::kPackets, 256, true}, TraceSettings{Method::kSingle, 1, true}}) {
+  for (const TraceSettings& settings :
+       {TraceSettings{Method::kPackets, 256, true}, TraceSettings{Method::kSingle, 1, true}}) {
     const Answers a = trace(tested(), world, rays, settings, Query::kClosest);
     int judged = 0, wrongly_rounded = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      if (a.id[i] == kNoPrimitive) continue;
+      if (a.id[i] == kNoPrimitive)
+        continue;
       const oracle::Ray ray{rays.org(i), rays.dir(i)};
       std::uint32_t k = a.id[i];
       std::optional<oracle::Crossing> truth;
       if (k < view.sphere_base)
-        truth = oracle::Sheet{Float3{g.px[k], g.py[k], g.pz[k]}, Float3{g.pnx[k], g.pny[k], g.pnz[k]}}.first(ray, rays.t_min[i]);
+        truth =
+            oracle::Sheet{Float3{g.px[k], g.py[k], g.pz[k]}, Float3{g.pnx[k], g.pny[k], g.pnz[k]}}
+                .first(ray, rays.t_min[i]);
       else if (k < view.triangle_base)
-        k -= view.sphere_base, truth = oracle::Ball{Float3{g.sx[k], g.sy[k], g.sz[k]}, g.sr[k]}.first(ray, rays.t_min[i]);
+        k -= view.sphere_base,
+            truth =
+                oracle::Ball{Float3{g.sx[k], g.sy[k], g.sz[k]}, g.sr[k]}.first(ray, rays.t_min[i]);
       else if (k < view.cone_base)
-        k -= view.triangle_base, truth = oracle::Facet{corner(g.ta[k]), corner(g.tb[k]), corner(g.tc[k])}.first(ray, rays.t_min[i]);
-      if (!truth || truth->cosine < .1L) continue;
+        k -= view.triangle_base,
+            truth = oracle::Facet{corner(g.ta[k]), corner(g.tb[k]), corner(g.tc[k])}.first(
+                ray, rays.t_min[i]);
+      if (!truth || truth->cosine < .1L)
+        continue;
       ++judged;
       const oracle::Real reach = (length(ray.org) + 4) / length(ray.dir);
-      ASSERT_LE(std::abs(a.whole[i] - truth->t), 920 * kEpsDouble * reach) << rays.describe(i) << " id " << a.id[i];
+      ASSERT_LE(std::abs(a.whole[i] - truth->t), 920 * kEpsDouble * reach)
+          << rays.describe(i) << " id " << a.id[i];
       wrongly_rounded += a.t[i] != static_cast<float>(truth->t);
     }
     EXPECT_GT(judged, 5000);
-    EXPECT_LE(wrongly_rounded, 2);  // a true t within 1e-13 of the middle of two floats, 1e-6 units: of 20,000 hardly one
+    // a true t within 1e-13 of the middle of two floats, 1e-6 units: of 20,000 hardly one
+    EXPECT_LE(wrongly_rounded, 2);
   }
 }
 
-// ---- leaks ------------------------------------------------------------------------------------------------------
+// ---- leaks
+// ------------------------------------------------------------------------------------------
 
 TEST_P(Double, ClosedMeshesAreTight) {
   for (const bool torus : {false, true})
@@ -154,24 +182,34 @@ TEST_P(Double, ClosedMeshesAreTight) {
         }
       const World world(scene, {});
       for (const Way& way : every_way()) {
-        if (way.settings.method == Method::kReference) continue;
-        EXPECT_EQ(hits_of(trace(tested(), world, rays, way.settings, Query::kClosest)), rays.size()) << way.name << ", scale " << scale;
-        EXPECT_EQ(hits_of(trace(tested(), world, rays, way.settings, Query::kOccluded)), rays.size()) << way.name << ", scale " << scale;
+        if (way.settings.method == Method::kReference)
+          continue;
+        EXPECT_EQ(hits_of(trace(tested(), world, rays, way.settings, Query::kClosest)), rays.size())
+            << way.name << ", scale " << scale;
+        EXPECT_EQ(hits_of(trace(tested(), world, rays, way.settings, Query::kOccluded)),
+                  rays.size())
+            << way.name << ", scale " << scale;
       }
     }
 }
 
-// ---- pictures ---------------------------------------------------------------------------------------------------
+// ---- pictures
+// ------------------------------------------------------------------------------------------
 
-Image picture(const World& world, const Camera& camera, RenderOptions o, Precision precision = Precision::kDouble) {
-  o.precision = precision, o.threads = 2;
+Image picture(const World& world,
+              const Camera& camera,
+              RenderOptions o,
+              Precision precision = Precision::kDouble) {
+  o.precision = precision;
+  o.threads = 2;
   RenderStats stats;
   return render(world, camera, o, stats);
 }
 
 std::size_t differing(const Image& a, const Image& b) {
   std::size_t n = 0;
-  for (std::size_t i = 0; i < a.rgb.size(); ++i) n += std::bit_cast<std::uint32_t>(a.rgb[i]) != std::bit_cast<std::uint32_t>(b.rgb[i]);
+  for (std::size_t i = 0; i < a.rgb.size(); ++i)
+    n += std::bit_cast<std::uint32_t>(a.rgb[i]) != std::bit_cast<std::uint32_t>(b.rgb[i]);
   return n;
 }
 
@@ -183,17 +221,21 @@ TEST_P(Double, MakesOnePicture) {
   camera.eye = {.3f, .5f, 3.5f}, camera.at = {0, 0, 0}, camera.width = 67, camera.height = 43;
   const World world(scene, {}), plain(scene, {.grid = false});
   RenderOptions plainest;
-  plainest.isa = "scalar", plainest.packet = 1, plainest.mailbox = false;
+  plainest.isa = "scalar";
+  plainest.packet = 1;
+  plainest.mailbox = false;
   const Image wanted = picture(plain, camera, plainest);
   for (const int packet : {1, 16, 64, 256}) {
     RenderOptions o;
-    o.isa = variant().name, o.packet = packet;
+    o.isa = variant().name;
+    o.packet = packet;
     EXPECT_EQ(differing(picture(world, camera, o), wanted), 0u) << packet;
   }
 }
 
-/// A clear sheet, ball or plane a float's last place before a shining one: the refracted ray starts between them. Single starts it four
-/// of its places on, behind what shines. (Single cannot tell which is nearer either: the clear one has the lower id.)
+/// A clear sheet, ball or plane a float's last place before a shining one: the refracted ray starts
+/// between them. Single starts it four of its places on, behind what shines. (Single cannot tell
+/// which is nearer either: the clear one has the lower id.)
 TEST_P(Double, StartsBetweenWhatIsALastPlaceApart) {
   const float inner = std::nextafter(1.f, 0.f);
   const auto sheets = [&](Scene& s) {
@@ -208,7 +250,9 @@ TEST_P(Double, StartsBetweenWhatIsALastPlaceApart) {
     s.geometry.planes.add({0, 1, 0}, {0, 1, 0}, 0);
     s.geometry.planes.add({0, inner, 0}, {0, 1, 0}, 1);
   };
-  for (const auto& add : {std::function<void(Scene&)>(sheets), std::function<void(Scene&)>(balls), std::function<void(Scene&)>(planes)}) {
+  for (const auto& add : {std::function<void(Scene&)>(sheets),
+                          std::function<void(Scene&)>(balls),
+                          std::function<void(Scene&)>(planes)}) {
     Scene scene = empty_scene();
     scene.materials[0].transmission = 1;
     scene.materials[0].ior = 1;
@@ -226,7 +270,8 @@ TEST_P(Double, StartsBetweenWhatIsALastPlaceApart) {
     options.depth = 2;
     const auto shining = [](const Image& image) {
       std::size_t n = 0;
-      for (const float c : image.rgb) n += c > .99f;
+      for (const float c : image.rgb)
+        n += c > .99f;
       return n;
     };
     EXPECT_LT(shining(picture(world, camera, options, Precision::kSingle)), 3u * 32 * 32 * 3 / 4);
@@ -234,8 +279,9 @@ TEST_P(Double, StartsBetweenWhatIsALastPlaceApart) {
   }
 }
 
-/// Two sheets a float's last place apart, seen from three units away: to single they are at one distance, and of equals the lower id
-/// shows, which is the dark one behind. Whichever way samples are spent.
+/// Two sheets a float's last place apart, seen from three units away: to single they are at one
+/// distance, and of equals the lower id shows, which is the dark one behind. Whichever way samples
+/// are spent.
 TEST_P(Double, TellsApartWhatSingleCannot) {
   Scene scene = empty_scene();
   scene.materials.emplace_back().emission = {1, 1, 1};
@@ -247,11 +293,13 @@ TEST_P(Double, TellsApartWhatSingleCannot) {
   camera.eye = {.1f, 4, 0}, camera.at = {0, 0, .3f}, camera.width = camera.height = 32;
   const auto dark = [](const Image& image) {
     std::size_t n = 0;
-    for (const float c : image.rgb) n += c < .99f;
+    for (const float c : image.rgb)
+      n += c < .99f;
     return n;
   };
   RenderOptions every, subdivided, refined;
-  subdivided.subdivision.on = true, refined.refine.samples = 32 * 32 * 4;
+  subdivided.subdivision.on = true;
+  refined.refine.samples = 32 * 32 * 4;
   for (RenderOptions* const o : {&every, &subdivided, &refined}) {
     o->isa = variant().name;
     EXPECT_GT(dark(picture(world, camera, *o, Precision::kSingle)), 100u);
@@ -259,7 +307,8 @@ TEST_P(Double, TellsApartWhatSingleCannot) {
   }
 }
 
-/// A sheet before a light by the last place of a float: shadow rays end at the light, at t = 1, and to single many end at the sheet.
+/// A sheet before a light by the last place of a float: shadow rays end at the light, at t = 1, and
+/// to single many end at the sheet.
 TEST_P(Double, SeesWhatStandsBeforeALight) {
   Scene scene = empty_scene();
   const float before = std::nextafter(2.f, 0.f);
@@ -269,7 +318,9 @@ TEST_P(Double, SeesWhatStandsBeforeALight) {
   const World world(scene, {});
   Camera camera;
   camera.eye = {.1f, 1, 0}, camera.at = {0, 0, .3f}, camera.width = camera.height = 32;
-  const auto lit = [](const Image& image) { return std::count_if(image.rgb.begin(), image.rgb.end(), [](float c) { return c > 0; }); };
+  const auto lit = [](const Image& image) {
+    return std::count_if(image.rgb.begin(), image.rgb.end(), [](float c) { return c > 0; });
+  };
   RenderOptions o;
   o.isa = variant().name;
   EXPECT_GT(lit(picture(world, camera, o, Precision::kSingle)), 100);

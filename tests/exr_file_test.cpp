@@ -29,7 +29,8 @@ std::string error_of(const std::function<void()>& action) {
 TEST(Exr, ComesBackBitForBit) {
   TemporaryFolder folder;
   Image image(70, 37);  // blocks of 16 rows, the last of 5
-  for (std::size_t i = 0; i < image.rgb.size(); ++i) image.rgb[i] = float(i * i % 1000) / 7 - 20;
+  for (std::size_t i = 0; i < image.rgb.size(); ++i)
+    image.rgb[i] = float(i * i % 1000) / 7 - 20;
   image.rgb[4] = std::numeric_limits<float>::quiet_NaN();
   image.rgb[5] = std::numeric_limits<float>::infinity();
   image.rgb[6] = -0.f;
@@ -56,14 +57,17 @@ TEST(Exr, HoldsLayersAsChannelsByName) {
   std::string wanted;
   const auto append = [&wanted](auto value) {
     const auto bits = std::bit_cast<std::uint32_t>(value);
-    for (int shift = 0; shift < 32; shift += 8) wanted += char(bits >> shift & 0xff);
+    for (int shift = 0; shift < 32; shift += 8)
+      wanted += char(bits >> shift & 0xff);
   };
   for (const std::size_t colour : {2, 1, 0}) {  // B, G, R
     append(image.rgb[colour]);
     append(image.rgb[3 + colour]);
   }
-  for (const float depth : layers.depth) append(depth);
-  for (const std::uint32_t id : layers.id) append(id);
+  for (const float depth : layers.depth)
+    append(depth);
+  for (const std::uint32_t id : layers.id)
+    append(id);
   for (const std::size_t axis : {0, 1, 2}) {
     append(layers.normal[axis]);
     append(layers.normal[3 + axis]);

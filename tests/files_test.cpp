@@ -24,7 +24,9 @@ using test::Outcome;
 class Files : public testing::Test {
  protected:
   Files() { folder_.write("ball.nff", kBall); }
-  Outcome run(const std::string& arguments, const std::string& before = "timeout 20 ") { return test::run(folder_, arguments, before); }
+  Outcome run(const std::string& arguments, const std::string& before = "timeout 20 ") {
+    return test::run(folder_, arguments, before);
+  }
   void expect_refused(const std::string& arguments, const std::string& why) {
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.status, 2) << arguments;
@@ -38,7 +40,9 @@ TEST_F(Files, PlacesAreEqualWhereverNamesAreNot) {
   std::filesystem::create_symlink("in", folder_.file("also-in"));
   std::filesystem::create_symlink("in/new", folder_.file("link"));
   std::filesystem::create_hard_link(folder_.file("ball.nff"), folder_.file("hard"));
-  const auto same = [&](const std::string& a, const std::string& b) { return place_of(folder_.file(a)) == place_of(folder_.file(b)); };
+  const auto same = [&](const std::string& a, const std::string& b) {
+    return place_of(folder_.file(a)) == place_of(folder_.file(b));
+  };
   EXPECT_TRUE(same("ball.nff", "in/../hard"));
   EXPECT_TRUE(same("in/new", "also-in/./new"));
   EXPECT_TRUE(same("in/new", "link"));
@@ -56,24 +60,32 @@ TEST_F(Files, NothingIsWrittenOverWhatIsRead) {
   folder_.write("two.nff", std::string(kBall) + "ply mesh.ply\n");
   const std::string before = folder_.list();
   for (const char* name : {"ball.nff", "./ball.nff", "hard"})
-    expect_refused(std::string("render ball.nff --stats ") + name,
-                   std::string("--stats: wanted another file than ball.nff, which is read, found \"") + name + '"');
-  expect_refused("render twin.nff -o link.png", "-o: wanted another file than twin.nff, which is read, found \"link.png\"");
+    expect_refused(
+        std::string("render ball.nff --stats ") + name,
+        std::string("--stats: wanted another file than ball.nff, which is read, found \"") + name +
+            '"');
+  expect_refused("render twin.nff -o link.png",
+                 "-o: wanted another file than twin.nff, which is read, found \"link.png\"");
   expect_refused("render ball.nff two.nff -o {}.png --checkpoint {}.kept --stats twin.nff",
                  "--stats: wanted another file than ball.nff, which is read, found \"twin.nff\"");
-  expect_refused("render two.nff -o x.png --stats ./mesh.ply", "--stats: wanted another file than mesh.ply, which is read, found \"./mesh.ply\"");
+  expect_refused("render two.nff -o x.png --stats ./mesh.ply",
+                 "--stats: wanted another file than mesh.ply, which is read, found \"./mesh.ply\"");
   EXPECT_EQ(folder_.list(), before);
   EXPECT_EQ(folder_.read("ball.nff"), kBall);
   ASSERT_EQ(run("render ball.nff -o a.png --quiet").status, 0);
   ASSERT_EQ(run("render ball.nff -o b.png --quiet --depth 1").status, 0);
-  expect_refused("compare a.png b.png --diff ./b.png", "--diff: wanted another file than b.png, which is read, found \"./b.png\"");
+  expect_refused("compare a.png b.png --diff ./b.png",
+                 "--diff: wanted another file than b.png, which is read, found \"./b.png\"");
 }
 
 TEST_F(Files, NothingIsWrittenTwice) {
   std::filesystem::create_symlink("x.png", folder_.file("link.png"));
-  expect_refused("render ball.nff -o x.png --stats ./x.png", "--stats and -o: wanted two files, found \"x.png\" twice");
-  expect_refused("render ball.nff -o x.png --error .1 --samples-map link.png", "--samples-map and -o: wanted two files, found \"x.png\" twice");
-  expect_refused("render ball.nff -o x.png --stats s --checkpoint ./s", "--checkpoint and --stats: wanted two files, found \"s\" twice");
+  expect_refused("render ball.nff -o x.png --stats ./x.png",
+                 "--stats and -o: wanted two files, found \"x.png\" twice");
+  expect_refused("render ball.nff -o x.png --error .1 --samples-map link.png",
+                 "--samples-map and -o: wanted two files, found \"x.png\" twice");
+  expect_refused("render ball.nff -o x.png --stats s --checkpoint ./s",
+                 "--checkpoint and --stats: wanted two files, found \"s\" twice");
   EXPECT_EQ(run("render ball.nff -o x.png --quiet --stats /dev/null --checkpoint kept").status, 0);
 }
 
@@ -89,7 +101,10 @@ TEST_F(Files, ACheckpointIsARegularFile) {
 
 TEST_F(Files, APictureGoesIntoAPipe) {
   ASSERT_EQ(mkfifo(folder_.file("pipe.png").c_str(), 0600), 0);
-  EXPECT_EQ(run("render ball.nff -o pipe.png --quiet", "(timeout 20 cat pipe.png >got.png &) && timeout 20 ").status, 0);
+  EXPECT_EQ(run("render ball.nff -o pipe.png --quiet",
+                "(timeout 20 cat pipe.png >got.png &) && timeout 20 ")
+                .status,
+            0);
   EXPECT_EQ(run("render ball.nff -o whole.png --quiet", "sleep .3 && ").status, 0);
   EXPECT_EQ(folder_.read("got.png"), folder_.read("whole.png"));
 }
@@ -101,37 +116,47 @@ TEST_F(Files, WhatCannotBeWrittenIsNotReplaced) {
   if (geteuid() == 0) {  // root may write to any file: someone else then
     std::filesystem::permissions(folder_.path(), std::filesystem::perms::all);
     other += "setpriv --reuid 65534 --clear-groups ";
-    if (run("--version", other).status != 0) GTEST_SKIP() << "no setpriv, or a program only root may run";
+    if (run("--version", other).status != 0)
+      GTEST_SKIP() << "no setpriv, or a program only root may run";
   }
-  EXPECT_EQ(run("render ball.nff -o x.png", other).err, "x.png: error: cannot write: Permission denied\n");
+  EXPECT_EQ(run("render ball.nff -o x.png", other).err,
+            "x.png: error: cannot write: Permission denied\n");
   EXPECT_EQ(folder_.read("x.png"), "old");
 }
 
 TEST_F(Files, FoldersForPicturesAreMade) {
   EXPECT_EQ(run("render ball.nff -o pictures/ --quiet").status, 0);
   EXPECT_EQ(run("render ball.nff -o deep/er/{}.pfm --stats counts/{}.json --quiet").status, 0);
-  for (const char* name : {"pictures/ball.png", "deep/er/ball.pfm", "counts/ball.json"}) EXPECT_NE(folder_.read(name), "") << name;
-  EXPECT_EQ(run("render ball.nff -o no/x.png").err, "no/x.png: error: cannot write: No such file or directory\n") << "a slip, more likely";
-  EXPECT_EQ(run("render ball.nff -o ball.nff/").err, "ball.nff: error: cannot make this folder: Not a directory\n");
+  for (const char* name : {"pictures/ball.png", "deep/er/ball.pfm", "counts/ball.json"})
+    EXPECT_NE(folder_.read(name), "") << name;
+  EXPECT_EQ(run("render ball.nff -o no/x.png").err,
+            "no/x.png: error: cannot write: No such file or directory\n")
+      << "a slip, more likely";
+  EXPECT_EQ(run("render ball.nff -o ball.nff/").err,
+            "ball.nff: error: cannot make this folder: Not a directory\n");
 }
 
 TEST_F(Files, ASceneComesThroughAPipe) {
   ASSERT_EQ(run("render ball.nff -o whole.pfm --quiet").status, 0);
-  EXPECT_EQ(run("render /dev/stdin -o a.pfm --quiet", "sh -c \"cat ball.nff | \\$0 \\$*\" ").err, "");
+  EXPECT_EQ(run("render /dev/stdin -o a.pfm --quiet", "sh -c \"cat ball.nff | \\$0 \\$*\" ").err,
+            "");
   EXPECT_EQ(run("render - --quiet", "sh -c \"gzip <ball.nff | \\$0 \\$*\" ").err, "");
   EXPECT_EQ(folder_.read("a.pfm"), folder_.read("whole.pfm"));
   EXPECT_EQ(folder_.list(), "a.pfm ball.nff stdin.png whole.pfm");
-  EXPECT_EQ(run("render - -o b.pfm").err, "/dev/stdin: error: cannot read: not a regular file\n") << "it is /dev/null";
+  EXPECT_EQ(run("render - -o b.pfm").err, "/dev/stdin: error: cannot read: not a regular file\n")
+      << "it is /dev/null";
 }
 
 TEST_F(Files, ASignalEndsTheWaitForAPipe) {
   ASSERT_EQ(mkfifo(folder_.file("pipe.nff").c_str(), 0600), 0);
-  // In the foreground, lest it signals the group as well: the second signal would end the program at once.
+  // In the foreground, lest it signals the group as well: the second signal would end the program
+  // at once.
   const std::string stop = "timeout --foreground --preserve-status -k 5 -s HUP .5 ";
   for (const std::string writer : {"", "(sleep 2 >pipe.nff &) && "}) {
     const Outcome outcome = run("render pipe.nff", writer + stop);
     EXPECT_EQ(outcome.status, 129);
-    EXPECT_EQ(outcome.err, std::string(test::kStopping) + "grelha: stopped by SIGHUP while reading pipe.nff\n");
+    EXPECT_EQ(outcome.err,
+              std::string(test::kStopping) + "grelha: stopped by SIGHUP while reading pipe.nff\n");
   }
 }
 
@@ -141,7 +166,8 @@ TEST_F(Files, NoOtherPipeIsWaitedFor) {
   folder_.write("in/scene.nff", std::string(kBall) + "ply mesh.ply\n");
   ASSERT_EQ(mkfifo(folder_.file("in/mesh.ply").c_str(), 0600), 0);
   ASSERT_EQ(mkfifo(folder_.file("in/pipe.nff").c_str(), 0600), 0);
-  EXPECT_EQ(run("info in").err, "in/mesh.ply: error: cannot read: not a regular file (named at in/scene.nff:12:5)\n");
+  EXPECT_EQ(run("info in").err,
+            "in/mesh.ply: error: cannot read: not a regular file (named at in/scene.nff:12:5)\n");
 }
 
 TEST_F(Files, AMeshThatIsNotThereIsNotOutside) {
@@ -153,7 +179,8 @@ TEST_F(Files, AMeshThatIsNotThereIsNotOutside) {
 }
 
 TEST_F(Files, TheFileThereIsNoMemoryForIsNamed) {
-  if (!memory_can_be_limited()) GTEST_SKIP() << "sanitizers own more memory than there is";
+  if (!memory_can_be_limited())
+    GTEST_SKIP() << "sanitizers own more memory than there is";
   folder_.write("large.nff", std::string(kBall) + std::string(std::size_t(100) << 20, ' '));
   folder_.write("large.ply", std::string(std::size_t(100) << 20, ' '));
   folder_.write("mesh.nff", std::string(kBall) + "ply large.ply\n");
@@ -164,15 +191,19 @@ TEST_F(Files, TheFileThereIsNoMemoryForIsNamed) {
 
 TEST_F(Files, AnEmptyNameIsNone) {
   for (const std::string option : {"--checkpoint", "--stats"})
-    expect_refused("render ball.nff " + option + " ''", option + ": wanted a file name, found \"\"");
+    expect_refused("render ball.nff " + option + " ''",
+                   option + ": wanted a file name, found \"\"");
   expect_refused("scene balls -o ''", "-o: wanted a file name, found \"\"");
 }
 
 TEST_F(Files, NamesTooLongAreOneLineOfOurs) {
   const std::string name(300, 'n');
-  EXPECT_EQ(run("render ball.nff -o " + name + ".png").err, name + ".png: error: cannot write: File name too long\n");
-  EXPECT_EQ(run("render " + name + ".nff -o x.png").err, name + ".nff: error: cannot open: File name too long\n");
-  EXPECT_EQ(run("render ball.nff --checkpoint " + name).err, name + ": error: cannot write: File name too long\n");
+  EXPECT_EQ(run("render ball.nff -o " + name + ".png").err,
+            name + ".png: error: cannot write: File name too long\n");
+  EXPECT_EQ(run("render " + name + ".nff -o x.png").err,
+            name + ".nff: error: cannot open: File name too long\n");
+  EXPECT_EQ(run("render ball.nff --checkpoint " + name).err,
+            name + ": error: cannot write: File name too long\n");
 }
 
 /// What goes through a pipe is what a file of that name would hold, and nothing else.
@@ -199,37 +230,48 @@ TEST_F(Files, ResultsGoToStdout) {
 }
 
 TEST_F(Files, StdoutHoldsOneResult) {
-  const auto refused = [&](const std::string& arguments, const std::string& why) { expect_refused(arguments, why); };
+  const auto refused = [&](const std::string& arguments, const std::string& why) {
+    expect_refused(arguments, why);
+  };
   refused("render ball.nff -o - --stats -", "--stats and -o: wanted two files, found \"-\" twice");
   folder_.write("two.nff", kBall);
-  refused("render ball.nff two.nff -o -",
-          "-o: ball.nff and two.nff would both be written to -; {} in a name stands for the scene's");
+  refused(
+      "render ball.nff two.nff -o -",
+      "-o: ball.nff and two.nff would both be written to -; {} in a name stands for the scene's");
   refused("scene boat -o -", "-o: wanted a file, for a mesh is written beside it, found \"-\"");
   const Outcome full = run("render ball.nff -o - --quiet", "sh -c '\"$0\" \"$@\" >/dev/full' ");
   EXPECT_EQ(full.status, 1);
-  EXPECT_EQ(full.err, "grelha: all of the picture is kept in ball.png.partial: the same command writes it\n"
-                      "stdout: error: cannot write\n");
-  EXPECT_TRUE(run("render ball.nff -o -").err.starts_with("grelha: goes on from ball.png.partial, 100.0 % done\n"));
+  EXPECT_EQ(full.err,
+            "grelha: all of the picture is kept in ball.png.partial: the same command writes it\n"
+            "stdout: error: cannot write\n");
+  EXPECT_TRUE(run("render ball.nff -o -")
+                  .err.starts_with("grelha: goes on from ball.png.partial, 100.0 % done\n"));
 }
 
-/// What is said of a picture makes the picture again, and is the same whatever changes no bit of it.
+/// What is said of a picture makes the picture again, and is the same whatever changes no bit of
+/// it.
 TEST_F(Files, PicturesSayWhatTheyAre) {
   const auto text = [&](const std::string& options) {
     EXPECT_EQ(run("render ball.nff --quiet -o x.png --size 9x7 " + options).status, 0);
     return folder_.read("x.png");
   };
   const std::string png = text("--samples 3 --seed 5");
-  for (const std::string& chunk : {std::string("Software\0grelha ", 16), std::string("Title\0ball", 10), std::string("Scene\0XXH3 ", 11),
-                                  std::string("Settings\0size=9x7 samples=3 sampler=sobol seed=5 depth=5", 56)})
+  for (const std::string& chunk :
+       {std::string("Software\0grelha ", 16),
+        std::string("Title\0ball", 10),
+        std::string("Scene\0XXH3 ", 11),
+        std::string("Settings\0size=9x7 samples=3 sampler=sobol seed=5 depth=5", 56)})
     EXPECT_NE(png.find("tEXt" + chunk), png.npos) << chunk;
   EXPECT_EQ(png.find("sRGB"), png.npos);
-  EXPECT_EQ(png, text("--samples 3 --seed 5 -j 1 --isa scalar --packet 1 --accel none --stats s.json"));
+  EXPECT_EQ(png,
+            text("--samples 3 --seed 5 -j 1 --isa scalar --packet 1 --accel none --stats s.json"));
   EXPECT_NE(text("--srgb").find("sRGB"), png.npos);
   folder_.write("copy.nff", kBall);
   EXPECT_EQ(run("render ./copy.nff --quiet -o y.png --size 9x7 --samples 3 --seed 5").status, 0);
   EXPECT_NE(folder_.read("y.png"), png) << "of another name";
   EXPECT_EQ(run("compare x.png y.png --max-rmse 0").status, 1);
-  const std::string timed = text("--time .01"), count = timed.substr(timed.find("time=samples:"), 40);
+  const std::string timed = text("--time .01"),
+                    count = timed.substr(timed.find("time=samples:"), 40);
   EXPECT_EQ(text("--time " + count.substr(5, count.find(' ') - 5)), timed) << count;
 }
 
@@ -252,7 +294,8 @@ TEST_F(Files, LayersAreOfWhatThePictureShows) {
     EXPECT_EQ(std::isinf(layers.depth[i]), background) << i;
     const float* const n = layers.normal.data() + 3 * i;
     EXPECT_NEAR(n[0] * n[0] + n[1] * n[1] + n[2] * n[2], background ? 0 : 1, 1e-5) << i;
-    if (background) continue;
+    if (background)
+      continue;
     ++met;
     EXPECT_GE(layers.depth[i], 4) << "the eye is 5 from the middle of a ball of radius 1";
     EXPECT_LE(layers.depth[i], std::sqrt(24.f) * 1.0001f);

@@ -1,4 +1,5 @@
-// Files made to waste time or memory: the program ends with each in 5 s of processor time and 512 MiB.
+// Files made to waste time or memory: the program ends with each in 5 s of processor time and 512
+// MiB.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -35,7 +36,8 @@ struct Measured {
   std::string err;
 };
 
-/// Runs the program in the folder; the processor time is bounded by the system, lest a hang hangs the test.
+/// Runs the program in the folder; the processor time is bounded by the system, lest a hang hangs
+/// the test.
 Measured measure(const TemporaryFolder& folder, std::vector<std::string> words) {
   words.insert(words.begin(), GRELHA_PROGRAM);
   const TemporaryFolder log;
@@ -43,18 +45,22 @@ Measured measure(const TemporaryFolder& folder, std::vector<std::string> words) 
   const pid_t child = fork();
   if (child == 0) {
     std::vector<char*> arguments;
-    for (std::string& word : words) arguments.push_back(word.data());
+    for (std::string& word : words)
+      arguments.push_back(word.data());
     arguments.push_back(nullptr);
     const rlimit seconds{rlim_t(4 * kMostSeconds), rlim_t(4 * kMostSeconds)};
-    const bool ready = chdir(folder.path().c_str()) == 0 && std::freopen("/dev/null", "w", stdout) &&
-                       std::freopen(err.c_str(), "w", stderr) && setrlimit(RLIMIT_CPU, &seconds) == 0;
-    if (ready) execv(arguments[0], arguments.data());
+    const bool ready =
+        chdir(folder.path().c_str()) == 0 && std::freopen("/dev/null", "w", stdout) &&
+        std::freopen(err.c_str(), "w", stderr) && setrlimit(RLIMIT_CPU, &seconds) == 0;
+    if (ready)
+      execv(arguments[0], arguments.data());
     _exit(127);
   }
   Measured run;
   rusage usage{};
   int status = 0;
-  if (wait4(child, &status, 0, &usage) != child) return run;
+  if (wait4(child, &status, 0, &usage) != child)
+    return run;
   run.exited = WIFEXITED(status);
   run.status = run.exited ? WEXITSTATUS(status) : WTERMSIG(status);
   const auto seconds = [](const timeval& t) { return double(t.tv_sec) + double(t.tv_usec) * 1e-6; };
@@ -76,7 +82,8 @@ class Hostile : public testing::Test {
     EXPECT_EQ(said.empty(), run.err.empty()) << what << '\n' << run.err;
     const auto lines = std::count(run.err.begin(), run.err.end(), '\n');
     EXPECT_LE(lines, 25) << what;
-    if (!memory_can_be_limited()) return;  // sanitizers take their own time and memory
+    if (!memory_can_be_limited())
+      return;  // sanitizers take their own time and memory
     EXPECT_LT(run.seconds, kMostSeconds) << what;
     EXPECT_LT(run.kilobytes, kMostKilobytes) << what;
   }
@@ -120,14 +127,17 @@ TEST_F(Hostile, MillionsOfUnknownWords) {
     unlike += "word" + std::to_string(i) + " 0\n";
     numbers += "1 2 3\n";
   }
-  folder_.write("alike.nff", alike), folder_.write("unlike.nff", unlike), folder_.write("numbers.nff", numbers);
+  folder_.write("alike.nff", alike);
+  folder_.write("unlike.nff", unlike);
+  folder_.write("numbers.nff", numbers);
   expect_both_bounded("alike.nff", 0, "unknown word \"sphere\" (did you mean \"s\"?)");
   expect_both_bounded("unlike.nff", 0, "unknown word \"word7\"");
   expect_both_bounded("numbers.nff", 0, "numbers that belong to no entity");
 }
 
 TEST_F(Hostile, HeadersOfManyElements) {
-  std::string elements = "ply\nformat ascii 1.0\n", properties = elements + "element e 0\n", stray = elements;
+  std::string elements = "ply\nformat ascii 1.0\n", properties = elements + "element e 0\n",
+              stray = elements;
   for (int i = 0; i < 300000; ++i) {
     elements += "element e" + std::to_string(i) + " 0\n";
     properties += "property int p" + std::to_string(i) + '\n';
@@ -177,11 +187,14 @@ TEST_F(Hostile, FilesThatInflateWithoutEnd) {
   for (const char letter : {'\0', 'a', '\n'}) {
     const std::string member = gzip(std::string(std::size_t(16) << 20, letter));
     std::string bomb;
-    for (int i = 0; i < 640; ++i) bomb += member;
-    folder_.write("bomb.nff.gz", bomb), folder_.write("bomb.ply.gz", bomb);
+    for (int i = 0; i < 640; ++i)
+      bomb += member;
+    folder_.write("bomb.nff.gz", bomb);
+    folder_.write("bomb.ply.gz", bomb);
     folder_.write("names.nff", std::string(test::kBall) + "ply bomb.ply.gz\n");
     expect_both_bounded("bomb.nff.gz", 2, "without a digit");
-    expect_both_bounded("bomb.ply.gz", 2, letter == 'a' ? "wanted \"ply\" on the first line" : "without a digit");
+    expect_both_bounded(
+        "bomb.ply.gz", 2, letter == 'a' ? "wanted \"ply\" on the first line" : "without a digit");
     expect_both_bounded("names.nff", 2, "bomb.ply.gz:");
   }
   folder_.write("hole.nff", "s 0 0 0 1\n");
@@ -193,15 +206,18 @@ TEST_F(Hostile, BoxesWhoseOrderIsAskedOfAll) {
   std::string text = test::kBall;
   for (int i = 0; i < 20000; ++i) {
     const std::string x = std::to_string(i % 100), y = std::to_string(i / 100 + 1);
-    text += "aabb " + x + ' ' + x + ".5 " + y + ' ' + y + ".5 300 300.5\n";  // both orders allow them
+    // both orders allow them
+    text += "aabb " + x + ' ' + x + ".5 " + y + ' ' + y + ".5 300 300.5\n";
   }
   folder_.write("boxes.nff", text + "aabb 0 4 -1 1 2 3\n");
   expect_both_bounded("boxes.nff", 0, "");
 }
 
 TEST_F(Hostile, CloudsOfPoints) {
-  std::string text = "ply\nformat binary_little_endian 1.0\nelement vertex 5000000\nproperty float x\nproperty float y\n"
-                     "property float z\nend_header\n";
+  std::string text =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 5000000\nproperty float x\nproperty "
+      "float y\n"
+      "property float z\nend_header\n";
   text.append(std::size_t(5000000) * 12, '\0');
   folder_.write("cloud.ply", text);
   expect_both_bounded("cloud.ply", 0, "5000000 points have no faces");

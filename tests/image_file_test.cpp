@@ -24,8 +24,24 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 Image odd_image() {
   Image image(3, 2);
-  const float values[] = {0,     1,    0.5f,      -1, 2, 0.25f, 1e-30f,   1e30f, 0.1f,
-                          -0.0f, kNan, kInfinity, 3,  4, 5,     1.0f / 3, 7,     8};
+  const float values[] = {0,
+                          1,
+                          0.5f,
+                          -1,
+                          2,
+                          0.25f,
+                          1e-30f,
+                          1e30f,
+                          0.1f,
+                          -0.0f,
+                          kNan,
+                          kInfinity,
+                          3,
+                          4,
+                          5,
+                          1.0f / 3,
+                          7,
+                          8};
   std::copy(std::begin(values), std::end(values), image.rgb.begin());
   return image;
 }
@@ -40,7 +56,8 @@ std::string error_of(const std::function<void()>& action) {
 }
 
 TEST(ToByte, RoundsToNearestAndClamps) {
-  for (int k = 0; k < 256; ++k) EXPECT_EQ(to_byte(float(k) / 255, Tone::authored), k);
+  for (int k = 0; k < 256; ++k)
+    EXPECT_EQ(to_byte(float(k) / 255, Tone::authored), k);
   EXPECT_EQ(to_byte(0.4999f / 255, Tone::authored), 0);
   EXPECT_EQ(to_byte(0.5001f / 255, Tone::authored), 1);
   EXPECT_EQ(to_byte(254.4999f / 255, Tone::authored), 254);
@@ -57,8 +74,9 @@ TEST(ToByte, RoundsToNearestAndClamps) {
 TEST(ToByte, FollowsTheSrgbCurve) {
   for (int i = 0; i <= 4000; ++i) {
     const float light = float(i) / 4000;
-    const long double encoded =
-        light <= 0.0031308L ? 12.92L * light : 1.055L * std::pow((long double)light, 1 / 2.4L) - 0.055L;
+    const long double encoded = light <= 0.0031308L
+                                    ? 12.92L * light
+                                    : 1.055L * std::pow((long double)light, 1 / 2.4L) - 0.055L;
     const long double exact = 255 * encoded;
     EXPECT_LE(std::abs(exact - to_byte(light, Tone::srgb)), 0.5L + 1e-4L) << light;
   }
@@ -76,7 +94,8 @@ TEST(Png, HoldsTheBytesOfKnownColours) {
   ASSERT_EQ(back.width, 2);
   ASSERT_EQ(back.height, 2);
   const int expected[] = {255, 0, 0, 0, 128, 0, 0, 0, 255, 64, 0, 0};
-  for (std::size_t i = 0; i < back.rgb.size(); ++i) EXPECT_EQ(back.rgb[i], float(expected[i]) / 255) << i;
+  for (std::size_t i = 0; i < back.rgb.size(); ++i)
+    EXPECT_EQ(back.rgb[i], float(expected[i]) / 255) << i;
 }
 
 TEST(Png, SrgbBendsTheBytes) {
@@ -106,18 +125,22 @@ TEST(Pfm, IsLittleEndianFromTheBottom) {
 
 TEST(Pfm, BigEndianAndGreyAreRead) {
   TemporaryFolder folder;
-  const auto path = folder.write("a.pfm", "Pf\n2 1\n1\n" + std::string("\x3f\x80\x00\x00\x40\x00\x00\x00", 8));
+  const auto path =
+      folder.write("a.pfm", "Pf\n2 1\n1\n" + std::string("\x3f\x80\x00\x00\x40\x00\x00\x00", 8));
   EXPECT_EQ(read_image(path).rgb, (std::vector<float>{1, 1, 1, 2, 2, 2}));
 }
 
 TEST(Pfm, WrongFilesSayWhatIsWrong) {
   TemporaryFolder folder;
   const std::pair<std::string, const char*> wrong[] = {
-      {"", "wanted PF or Pf at the start"},          {"PX\n1 1\n-1\n", "wanted PF or Pf at the start"},
-      {"PF\n1", "the header ends early"},            {"PF\n0 1\n-1\n", "width and height must be 1 to 65536"},
+      {"", "wanted PF or Pf at the start"},
+      {"PX\n1 1\n-1\n", "wanted PF or Pf at the start"},
+      {"PF\n1", "the header ends early"},
+      {"PF\n0 1\n-1\n", "width and height must be 1 to 65536"},
       {"PF\n1 x\n-1\n", "width and height must be 1 to 65536"},
       {"PF\n99999 1\n-1\n", "width and height must be 1 to 65536"},
-      {"PF\n1 1\n0\n", "the scale is no number but 0"}, {"PF\n1 1\n-1\nabc", "too few floats"},
+      {"PF\n1 1\n0\n", "the scale is no number but 0"},
+      {"PF\n1 1\n-1\nabc", "too few floats"},
       {"PF\n65536 65536\n-1\nabc", "too few floats"}};
   for (const auto& [bytes, message] : wrong) {
     const auto path = folder.write("a.pfm", bytes);
@@ -126,8 +149,9 @@ TEST(Pfm, WrongFilesSayWhatIsWrong) {
   }
 }
 
-/// Half a step of the mantissa is .5/128 of the pixel's largest channel at most; 1/255.5 where that rounds up to the next
-/// exponent. Errors of both signs cancel: the mean of 120,000 uniform ones within 1/255 is within 5 sigma of nought.
+/// Half a step of the mantissa is .5/128 of the pixel's largest channel at most; 1/255.5 where that
+/// rounds up to the next exponent. Errors of both signs cancel: the mean of 120,000 uniform ones
+/// within 1/255 is within 5 sigma of nought.
 TEST(Hdr, RoundsToNearest) {
   TemporaryFolder folder;
   Image image(400, 100);
@@ -150,7 +174,8 @@ TEST(Hdr, RoundsToNearest) {
   EXPECT_LT(std::abs(bias / double(image.rgb.size())), 5 / 255. / std::sqrt(3. * 120000));
 }
 
-/// Runs, dumps, rows too short or too long to be packed; mantissas that round up to the next exponent.
+/// Runs, dumps, rows too short or too long to be packed; mantissas that round up to the next
+/// exponent.
 TEST(Hdr, ComesBackFromRowsOfEveryKind) {
   TemporaryFolder folder;
   for (const int width : {1, 7, 8, 9, 127, 128, 129, 260, 1000, 32767, 32768}) {
@@ -175,7 +200,8 @@ TEST(Png, SaysWhatItIsInChunksBeforeThePixels) {
   TemporaryFolder folder;
   const Image image(4, 3);
   const Notes notes{{"Software", "grelha"}, {"Title", "balls"}};
-  const std::string plain = encode_png(image, Tone::authored), told = encode_png(image, Tone::srgb, notes);
+  const std::string plain = encode_png(image, Tone::authored),
+                    told = encode_png(image, Tone::srgb, notes);
   const std::string chunks("\0\0\0\1sRGB\0\xae\xce\x1c\xe9\0\0\0\xftEXtSoftware\0grelha", 36);
   EXPECT_EQ(told.substr(33, chunks.size()), chunks);
   EXPECT_EQ(told.substr(0, 33), plain.substr(0, 33));
@@ -195,15 +221,19 @@ TEST(Png, SaysWhatItIsInChunksBeforeThePixels) {
 TEST(Hdr, SaysWhatItIsInComments) {
   TemporaryFolder folder;
   const std::string bytes = encode_hdr(Image(4, 3), {{"Software", "grelha"}, {"Title", "balls"}});
-  EXPECT_TRUE(bytes.starts_with("#?RADIANCE\n# Software: grelha\n# Title: balls\nFORMAT=32-bit_rle_rgbe\n\n-Y 3 +X 4\n")) << bytes;
+  EXPECT_TRUE(bytes.starts_with(
+      "#?RADIANCE\n# Software: grelha\n# Title: balls\nFORMAT=32-bit_rle_rgbe\n\n-Y 3 +X 4\n"))
+      << bytes;
   EXPECT_EQ(read_image(folder.write("a.hdr", bytes)).width, 4);
 }
 
 TEST(AsLight, UndoesTheCurve) {
   Image image(1, 1);
   image.rgb = {188 / 255.f, 0, 1};
-  EXPECT_NEAR(as_light(image, {Encoding::Kind::srgb}).rgb[0], .5f, .003f);  // half a step of 1/255 where the curve has slope 1.3
-  EXPECT_NEAR(as_light(image, {Encoding::Kind::power, .5}).rgb[0], image.rgb[0] * image.rgb[0], 1e-6f);
+  // half a step of 1/255 where the curve has slope 1.3
+  EXPECT_NEAR(as_light(image, {Encoding::Kind::srgb}).rgb[0], .5f, .003f);
+  EXPECT_NEAR(
+      as_light(image, {Encoding::Kind::power, .5}).rgb[0], image.rgb[0] * image.rgb[0], 1e-6f);
   EXPECT_EQ(as_light(image, {}).rgb, image.rgb);
 }
 
@@ -211,7 +241,8 @@ TEST(Hdr, SurvivesWhatIsNoLight) {
   TemporaryFolder folder;
   write_image(folder.file("a.hdr"), odd_image());
   const std::vector<float> back = read_image(folder.file("a.hdr")).rgb;
-  for (const float value : back) EXPECT_TRUE(value >= 0 && value < kInfinity);
+  for (const float value : back)
+    EXPECT_TRUE(value >= 0 && value < kInfinity);
   EXPECT_EQ(back[3], 0) << "from -1";
   EXPECT_EQ(back[10], 0) << "from NaN";
   EXPECT_GT(back[11], 9e37f) << "from infinity";
@@ -228,20 +259,24 @@ TEST(ReadImage, RefusesWhatItIsNot) {
   Image image(8, 8);
   write_image(folder.file("b.png"), image);
   const auto cut = folder.write("cut.png", folder.read("b.png").substr(0, 50));
-  EXPECT_NE(error_of([&] { read_image(cut); }).find(": error: cannot read the picture: "), std::string::npos);
+  EXPECT_NE(error_of([&] { read_image(cut); }).find(": error: cannot read the picture: "),
+            std::string::npos);
   std::filesystem::create_directory(folder.file("d.png"));
   EXPECT_EQ(error_of([&] { read_image(folder.file("d.png")); }),
             folder.file("d.png") + ": error: cannot read: Is a directory");
   const auto other = folder.write("x.jpg", "");
-  EXPECT_EQ(error_of([&] { read_image(other); }), other + ": error: not a picture this program reads (.png, .hdr, .pfm, .exr)");
-  EXPECT_EQ(error_of([&] { read_image("/nothere"); }), "/nothere: error: cannot open: No such file or directory");
+  EXPECT_EQ(error_of([&] { read_image(other); }),
+            other + ": error: not a picture this program reads (.png, .hdr, .pfm, .exr)");
+  EXPECT_EQ(error_of([&] { read_image("/nothere"); }),
+            "/nothere: error: cannot open: No such file or directory");
 }
 
 TEST(ImageFormat, GoesByTheEnding) {
   EXPECT_EQ(image_format("a.png"), ImageFormat::png);
   EXPECT_EQ(image_format("a.b.HDR"), ImageFormat::hdr);
   EXPECT_EQ(image_format(".pfm"), ImageFormat::pfm);
-  for (const char* name : {"", "png", "a.jpg", "a.png.gz", "a.pn"}) EXPECT_FALSE(image_format(name)) << name;
+  for (const char* name : {"", "png", "a.jpg", "a.png.gz", "a.pn"})
+    EXPECT_FALSE(image_format(name)) << name;
 }
 
 TEST(ImageFits, KnowsTheWritersLimits) {
@@ -272,28 +307,34 @@ TEST(AtomicFile, AppearsOnCommitOnly) {
 TEST(AtomicFile, FailuresNameThePathAndLeaveNothing) {
   TemporaryFolder folder;
   const auto missing = folder.file("no/a.png");
-  EXPECT_EQ(error_of([&] { write_file(missing, "x"); }), missing + ": error: cannot write: No such file or directory");
+  EXPECT_EQ(error_of([&] { write_file(missing, "x"); }),
+            missing + ": error: cannot write: No such file or directory");
   std::filesystem::create_directory(folder.file("d"));
   EXPECT_EQ(error_of([&] { write_file(folder.file("d"), "x"); }),
             folder.file("d") + ": error: cannot write: Is a directory");
   const auto below_file = folder.write("f", "") + "/a";
-  EXPECT_EQ(error_of([&] { check_writable(below_file); }), below_file + ": error: cannot write: Not a directory");
+  EXPECT_EQ(error_of([&] { check_writable(below_file); }),
+            below_file + ": error: cannot write: Not a directory");
   check_writable(folder.file("fine"));
   EXPECT_EQ(folder.list(), "d f");
 }
 
 TEST(AtomicFile, ReadOnlyFolder) {
   TemporaryFolder folder;
-  std::filesystem::permissions(folder.path(), std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+  std::filesystem::permissions(
+      folder.path(), std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
   const std::string error = error_of([&] { write_file(folder.file("a"), "x"); });
   std::filesystem::permissions(folder.path(), std::filesystem::perms::owner_all);
-  if (error == "no error") GTEST_SKIP() << "this user may write everywhere";
+  if (error == "no error")
+    GTEST_SKIP() << "this user may write everywhere";
   EXPECT_EQ(error, folder.file("a") + ": error: cannot write: Permission denied");
 }
 
 TEST(AtomicFile, AFullDiskIsAnErrorAndDevicesStay) {
-  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
-  EXPECT_EQ(error_of([] { write_file("/dev/full", "x"); }), "/dev/full: error: cannot write: No space left on device");
+  if (!std::filesystem::exists("/dev/full"))
+    GTEST_SKIP() << "no /dev/full";
+  EXPECT_EQ(error_of([] { write_file("/dev/full", "x"); }),
+            "/dev/full: error: cannot write: No space left on device");
   EXPECT_EQ(error_of([] { write_file("/dev/full", std::string(100000, 'x')); }),
             "/dev/full: error: cannot write: No space left on device");
   write_file("/dev/null", "x");
@@ -363,7 +404,8 @@ TEST(AtomicFile, TwoWritersOfOneFileDoNotClash) {
   EXPECT_EQ(folder.list(), name);
 }
 
-/// Whoever may write in the folder could put them in its place; a link would have its target written over.
+/// Whoever may write in the folder could put them in its place; a link would have its target
+/// written over.
 TEST(AtomicFile, LeavesAloneWhatStandsBesideItAndIsNoFile) {
   TemporaryFolder folder;
   folder.write("mine", "mine");

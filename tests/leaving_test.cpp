@@ -1,4 +1,5 @@
-// Rays that leave a surface: none meets the surface it left, and none starts far enough away to skip what is near.
+// Rays that leave a surface: none meets the surface it left, and none starts far enough away to
+// skip what is near.
 #define GRELHA_ISA scalar
 #include "kernel/surface.hpp"
 #include "kernel/trace.hpp"
@@ -12,23 +13,31 @@ namespace {
 
 struct Result {
   std::uint64_t hits = 0, rays = 0, met_again = 0;
-  double gap = 0;  ///< largest distance between the surface and where a ray starts, in sizes of the primitive
+  /// largest distance between the surface and where a ray starts, in sizes of the primitive
+  double gap = 0;
   std::string first;
   void print(const char* what) const {
-    std::printf("%s: %llu hits, %llu rays leave, %llu meet the same primitive again, largest gap %.3g sizes\n", what,
-                static_cast<unsigned long long>(hits), static_cast<unsigned long long>(rays),
-                static_cast<unsigned long long>(met_again), gap);
+    std::printf(
+        "%s: %llu hits, %llu rays leave, %llu meet the same primitive again, largest gap %.3g "
+        "sizes\n",
+        what,
+        static_cast<unsigned long long>(hits),
+        static_cast<unsigned long long>(rays),
+        static_cast<unsigned long long>(met_again),
+        gap);
   }
 };
 
-/// `make` builds the scene of one primitive of the given size at a place; `convex`: no ray that goes out meets it
-/// again; otherwise none at all does, on either side.
+/// `make` builds the scene of one primitive of the given size at a place; `convex`: no ray that
+/// goes out meets it again; otherwise none at all does, on either side.
 template <class Make, class Near>
-Result leave_from(std::uint64_t seeds, double most_offset, bool convex, const Make& make, const Near& farthest) {
+Result leave_from(
+    std::uint64_t seeds, double most_offset, bool convex, const Make& make, const Near& farthest) {
   Result r;
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
     Random random(seed);
-    const double size = random.log_in(1e-12, 1e12), offset = most_offset > 0 ? random.log_in(1e-2, most_offset) : 0;
+    const double size = random.log_in(1e-12, 1e12),
+                 offset = most_offset > 0 ? random.log_in(1e-2, most_offset) : 0;
     const Float3 place = random.point(size * offset);
     const Scene scene = make(random, size, place);
     const World world(scene, {.grid = false});
@@ -36,7 +45,9 @@ Result leave_from(std::uint64_t seeds, double most_offset, bool convex, const Ma
     Rays rays;
     for (int i = 0; i < 16; ++i) {
       const Float3 org = at(place, size * random.log_in(1.5, farthest), random.direction());
-      rays.add(org, scaled(minus(at(place, size * random.unit(), random.direction()), org), random.log_in(1e-2, 1e2)));
+      rays.add(org,
+               scaled(minus(at(place, size * random.unit(), random.direction()), org),
+                      random.log_in(1e-2, 1e2)));
     }
     // Hits as the renderer finds them: what the trace returned, at the origin the trace used.
     Rays leaving;
@@ -45,56 +56,77 @@ Result leave_from(std::uint64_t seeds, double most_offset, bool convex, const Ma
       float org[3] = {rays.ox[i], rays.oy[i], rays.oz[i]};
       const float dir[3] = {rays.dx[i], rays.dy[i], rays.dz[i]};
       scalar::approach(view, org, dir);
-      rays.ox[i] = org[0], rays.oy[i] = org[1], rays.oz[i] = org[2];
+      rays.ox[i] = org[0];
+      rays.oy[i] = org[1];
+      rays.oz[i] = org[2];
     }
-    const Answers hits = trace(*find_variant("scalar"), world, rays, {Method::kSingle, 1, true}, Query::kClosest);
+    const Answers hits =
+        trace(*find_variant("scalar"), world, rays, {Method::kSingle, 1, true}, Query::kClosest);
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      if (hits.id[i] == kNoPrimitive) continue;
+      if (hits.id[i] == kNoPrimitive)
+        continue;
       ++r.hits;
-      const scalar::Vec3<float> org{rays.ox[i], rays.oy[i], rays.oz[i]}, dir{rays.dx[i], rays.dy[i], rays.dz[i]};
-      const scalar::Surface<float> s = scalar::surface_of<float>(view, hits.id[i], org, dir, hits.t[i], false);
+      const scalar::Vec3<float> org{rays.ox[i], rays.oy[i], rays.oz[i]},
+          dir{rays.dx[i], rays.dy[i], rays.dz[i]};
+      const scalar::Surface<float> s =
+          scalar::surface_of<float>(view, hits.id[i], org, dir, hits.t[i], false);
       for (int k = 0; k < 16; ++k) {
         Float3 d = random.direction();
         if (k % 4 == 0) {  // along the surface: the worst
           const float n = d.x * s.normal.x + d.y * s.normal.y + d.z * s.normal.z;
           d = at(d, -n * (1 - random.log_in(1e-6, 1e-1)), {s.normal.x, s.normal.y, s.normal.z});
         }
-        // So nearly along the surface that rounding decides which side it points to: either answer is right.
-        if (std::abs(oracle::dot(d, oracle::unit({s.normal.x, s.normal.y, s.normal.z}))) < 8 * oracle::kEps) continue;
+        // So nearly along the surface that rounding decides which side it points to: either answer
+        // is right.
+        if (std::abs(oracle::dot(d, oracle::unit({s.normal.x, s.normal.y, s.normal.z}))) <
+            8 * oracle::kEps)
+          continue;
         scalar::Vec3<float> to{d.x, d.y, d.z};
-        if (convex && scalar::dot(to, s.normal) < 0) to = scalar::Vec3<float>{0, 0, 0} - to, d = {to.x, to.y, to.z};
+        if (convex && scalar::dot(to, s.normal) < 0)
+          to = scalar::Vec3<float>{0, 0, 0} - to, d = {to.x, to.y, to.z};
         const scalar::Vec3<float> start = scalar::leave(s.point, s.normal, s.away, to);
         leaving.add({start.x, start.y, start.z}, d);
         from.push_back(hits.id[i]);
       }
-      r.gap = std::max(r.gap, 2 * double(s.away) / size);  // the rounding of the start itself included
+      // the rounding of the start itself included
+      r.gap = std::max(r.gap, 2 * double(s.away) / size);
     }
     r.rays += leaving.size();
-    const Answers again = trace(*find_variant("scalar"), world, leaving, {Method::kSingle, 1, true}, Query::kClosest);
+    const Answers again =
+        trace(*find_variant("scalar"), world, leaving, {Method::kSingle, 1, true}, Query::kClosest);
     for (std::size_t i = 0; i < leaving.size(); ++i) {
-      if (again.id[i] != from[i]) continue;
+      if (again.id[i] != from[i])
+        continue;
       if (r.met_again++ == 0)
         r.first = "seed " + std::to_string(seed) + ", size " + std::to_string(size) + ", offset " +
-                  std::to_string(offset) + " sizes, t " + show(again.t[i], again.id[i]) + ", " + leaving.describe(i);
+                  std::to_string(offset) + " sizes, t " + show(again.t[i], again.id[i]) + ", " +
+                  leaving.describe(i);
     }
   }
   return r;
 }
 
-Scene make_sphere(Random&, double size, const Float3& place) { return one_sphere(place, static_cast<float>(size)); }
+Scene make_sphere(Random&, double size, const Float3& place) {
+  return one_sphere(place, static_cast<float>(size));
+}
 Scene make_plane(Random& random, double, const Float3& place) {
   return one_plane(place, scaled(random.direction(), random.log_in(1e-3, 1e3)));
 }
 Scene make_triangle(Random& random, double size, const Float3& place) {
-  Float3 b = at(place, size, random.direction()), c = at(place, size * random.in(.1, 1), random.direction());
-  if (random.chance(.2)) b.y = c.y = place.y;
+  Float3 b = at(place, size, random.direction()),
+         c = at(place, size * random.in(.1, 1), random.direction());
+  if (random.chance(.2))
+    b.y = c.y = place.y;
   return one_triangle(place, b, c);
 }
 Scene make_cone(Random& random, double size, const Float3& place) {
-  const double r0 = size * random.in(.1, 1), r1 = random.chance(.3) ? r0 : random.chance(.2) ? 0 : size * random.in(0, 1);
+  const double r0 = size * random.in(.1, 1), r1 = random.chance(.3)   ? r0
+                                                  : random.chance(.2) ? 0
+                                                                      : size * random.in(0, 1);
   const double height = size * random.in(.3, 2);
   const Float3 other = at(place, height, random.direction());
-  if (random.chance(.5)) return one_cone(other, static_cast<float>(r1), place, static_cast<float>(r0));
+  if (random.chance(.5))
+    return one_cone(other, static_cast<float>(r1), place, static_cast<float>(r0));
   return one_cone(place, static_cast<float>(r0), other, static_cast<float>(r1));
 }
 
@@ -102,18 +134,22 @@ struct Row {
   double offset, farthest;
   double gap;  ///< wanted at most, in sizes
 };
-/// The bounds of surface.hpp in sizes: 16 (sphere) to 64 eps (cone: height up to 2 sizes, radius up to 1, 32 eps of
-/// both) and 4 eps of the largest coordinate, which is the offset; doubled as print() does. 2e-5 and 5e-7 offset cover
-/// each kind.
-constexpr Row kRows[] = {{0, 10, 2e-5},   {0, 1e5, 2e-5},   {10, 1e3, 3e-5},
-                         {1e3, 10, 6e-4}, {1e3, 1e5, 6e-4}, {1e6, 1e3, .6}};
+/// The bounds of surface.hpp in sizes: 16 (sphere) to 64 eps (cone: height up to 2 sizes, radius up
+/// to 1, 32 eps of both) and 4 eps of the largest coordinate, which is the offset; doubled as
+/// print() does. 2e-5 and 5e-7 offset cover each kind.
+constexpr Row kRows[] = {{0, 10, 2e-5},
+                         {0, 1e5, 2e-5},
+                         {10, 1e3, 3e-5},
+                         {1e3, 10, 6e-4},
+                         {1e3, 1e5, 6e-4},
+                         {1e6, 1e3, .6}};
 
 template <class Make>
 void check(const char* name, bool convex, const Make& make) {
   for (const Row& row : kRows) {
     const Result r = leave_from(4000, row.offset, convex, make, row.farthest);
-    r.print((std::string(name) + ", offset up to " + std::to_string(row.offset) + ", seen from up to " +
-             std::to_string(row.farthest))
+    r.print((std::string(name) + ", offset up to " + std::to_string(row.offset) +
+             ", seen from up to " + std::to_string(row.farthest))
                 .c_str());
     EXPECT_GT(r.hits, 4000u);
     EXPECT_EQ(r.met_again, 0u) << name << ": " << r.first;
@@ -126,13 +162,15 @@ TEST(Leaving, Planes) {
   // A plane's error is that of the point met, which grows with the distance of the origin.
   for (const Row& row : kRows) {
     const Result r = leave_from(4000, row.offset, false, make_plane, row.farthest);
-    r.print(("plane, offset up to " + std::to_string(row.offset) + ", seen from up to " + std::to_string(row.farthest))
+    r.print(("plane, offset up to " + std::to_string(row.offset) + ", seen from up to " +
+             std::to_string(row.farthest))
                 .c_str());
     EXPECT_GT(r.hits, 4000u);
     EXPECT_EQ(r.met_again, 0u) << r.first;
   }
 }
-/// A speck far from where rays leave a plane: they are moved near it before grids are walked, and must not find the plane on the way.
+/// A speck far from where rays leave a plane: they are moved near it before grids are walked, and
+/// must not find the plane on the way.
 TEST(Leaving, PlanesWithAllElseFarAway) {
   int left = 0;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
@@ -146,9 +184,11 @@ TEST(Leaving, PlanesWithAllElseFarAway) {
     for (int i = 0; i < 64; ++i) {
       const Float3 eye = random.point(2), to = random.direction();
       const scalar::Vec3<float> org{eye.x, eye.y, eye.z}, dir{to.x, to.y, to.z};
-      const scalar::Surface<float> s = scalar::surface_of<float>(view, 0, org, dir, static_cast<float>(random.in(.1, 1)), false);
+      const scalar::Surface<float> s =
+          scalar::surface_of<float>(view, 0, org, dir, static_cast<float>(random.in(.1, 1)), false);
       scalar::Vec3<float> away{to.x, to.y, to.z};
-      if (scalar::dot(away, s.normal) < 0) away = scalar::Vec3<float>{0, 0, 0} - away;
+      if (scalar::dot(away, s.normal) < 0)
+        away = scalar::Vec3<float>{0, 0, 0} - away;
       const scalar::Vec3<float> start = scalar::leave(s.point, s.normal, s.away, away);
       rays.add({start.x, start.y, start.z}, {away.x, away.y, away.z});
     }
@@ -164,8 +204,8 @@ TEST(Leaving, PlanesWithAllElseFarAway) {
   EXPECT_EQ(left, 200 * 64 * 6);
 }
 
-/// A ball of radius 20 half sunk into a plane, from up to 10^8 away, where t in single precision is off by up to 10. Rays go through
-/// the ball where it stands at least 1 above the plane.
+/// A ball of radius 20 half sunk into a plane, from up to 10^8 away, where t in single precision is
+/// off by up to 10. Rays go through the ball where it stands at least 1 above the plane.
 TEST(FarEyes, SeeWhatStandsOnAPlane) {
   Scene scene = one_plane({0, 0, 0}, {.05f, .1f, 1});
   scene.geometry.spheres.add({0, 0, 0}, 20, 0);
@@ -174,19 +214,32 @@ TEST(FarEyes, SeeWhatStandsOnAPlane) {
     Random random(1);
     Rays rays;
     while (rays.size() < 2000) {
-      const auto far = [&](double lo, double hi) { return 8 * std::floor(static_cast<float>(random.in(lo, hi)) / 8); };  // whole ulps: what follows is exact
+      // whole ulps: what follows is exact
+      const auto far = [&](double lo, double hi) {
+        return 8 * std::floor(static_cast<float>(random.in(lo, hi)) / 8);
+      };
       const Float3 eye{far(-1e8, 1e8), far(-1e8, 1e8), far(2e7, 1e8)};
-      const Float3 target{8.f * static_cast<float>(random.below(3)) - 8, 8.f * static_cast<float>(random.below(3)) - 8, 8.f * static_cast<float>(random.below(2))};
+      const Float3 target{8.f * static_cast<float>(random.below(3)) - 8,
+                          8.f * static_cast<float>(random.below(3)) - 8,
+                          8.f * static_cast<float>(random.below(2))};
       const Float3 dir = minus(target, eye);
-      const double n = std::sqrt(double(dir.x) * dir.x + double(dir.y) * dir.y + double(dir.z) * dir.z), u[3] = {dir.x / n, dir.y / n, dir.z / n};
+      const double n = std::sqrt(double(dir.x) * dir.x + double(dir.y) * dir.y +
+                                 double(dir.z) * dir.z),
+                   u[3] = {dir.x / n, dir.y / n, dir.z / n};
       const double b = target.x * u[0] + target.y * u[1] + target.z * u[2];
-      const double back = b + std::sqrt(b * b + 400 - (double(target.x) * target.x + double(target.y) * target.y + double(target.z) * target.z));
-      const double hit[3] = {target.x - back * u[0], target.y - back * u[1], target.z - back * u[2]};
-      if (.05 * hit[0] + .1 * hit[1] + hit[2] > 1) rays.add(eye, dir);
+      const double back = b + std::sqrt(b * b + 400 -
+                                        (double(target.x) * target.x + double(target.y) * target.y +
+                                         double(target.z) * target.z));
+      const double hit[3] = {
+          target.x - back * u[0], target.y - back * u[1], target.z - back * u[2]};
+      if (.05 * hit[0] + .1 * hit[1] + hit[2] > 1)
+        rays.add(eye, dir);
     }
     for (const Method method : {Method::kPackets, Method::kSingle, Method::kReference}) {
-      const Answers a = trace(*find_variant("best"), world, rays, {method, 64, true}, Query::kClosest);
-      for (std::size_t i = 0; i < rays.size(); ++i) EXPECT_EQ(a.id[i], 1u) << rays.describe(i);
+      const Answers a =
+          trace(*find_variant("best"), world, rays, {method, 64, true}, Query::kClosest);
+      for (std::size_t i = 0; i < rays.size(); ++i)
+        EXPECT_EQ(a.id[i], 1u) << rays.describe(i);
     }
   }
 }
@@ -194,13 +247,15 @@ TEST(FarEyes, SeeWhatStandsOnAPlane) {
 TEST(Leaving, Triangles) { check("triangle", false, make_triangle); }
 TEST(Leaving, Cones) { check("cone", true, make_cone); }
 
-/// Where a cone has no radius all directions across its axis are as good, and a normal must be one of them.
+/// Where a cone has no radius all directions across its axis are as good, and a normal must be one
+/// of them.
 TEST(ConeSurface, HasANormalOnItsTip) {
   for (const bool tip_first : {false, true}) {
     const Float3 tip{0, 2, 0}, foot{0, 0, 0};
     const Scene scene = tip_first ? one_cone(tip, 0, foot, 1) : one_cone(foot, 1, tip, 0);
     const World world(scene, {.grid = false});
-    const scalar::Surface<float> s = scalar::surface_of<float>(world.impl().view, 0, {0, 2, 5}, {0, 0, -1}, 5, false);
+    const scalar::Surface<float> s =
+        scalar::surface_of<float>(world.impl().view, 0, {0, 2, 5}, {0, 0, -1}, 5, false);
     EXPECT_NEAR(scalar::length(s.normal), 1, 4 * 0x1p-24);
     EXPECT_NEAR(s.normal.y, 1 / std::sqrt(5.), 4 * 0x1p-24);
     EXPECT_EQ(s.point.y, 2);
@@ -219,28 +274,38 @@ TEST(Leaving, InwardsMeetsTheFarSide) {
     const Float3 eye = at(center, size * random.log_in(1.5, 100), random.direction());
     Rays rays;
     rays.add(eye, minus(at(center, .9 * size, random.direction()), eye));
-    const Answers hit = trace(*find_variant("scalar"), world, rays, {Method::kSingle, 1, true}, Query::kClosest);
-    if (hit.id[0] == kNoPrimitive) continue;
+    const Answers hit =
+        trace(*find_variant("scalar"), world, rays, {Method::kSingle, 1, true}, Query::kClosest);
+    if (hit.id[0] == kNoPrimitive)
+      continue;
     const scalar::Vec3<float> org{eye.x, eye.y, eye.z}, dir{rays.dx[0], rays.dy[0], rays.dz[0]};
-    const scalar::Surface<float> s = scalar::surface_of<float>(world.impl().view, 0, org, dir, hit.t[0], false);
+    const scalar::Surface<float> s =
+        scalar::surface_of<float>(world.impl().view, 0, org, dir, hit.t[0], false);
     Float3 d = random.direction();
     float cosine = d.x * s.normal.x + d.y * s.normal.y + d.z * s.normal.z;
-    if (cosine > 0) d = scaled(d, -1), cosine = -cosine;
-    if (cosine > -.05f) continue;
+    if (cosine > 0) {
+      d = scaled(d, -1);
+      cosine = -cosine;
+    }
+    if (cosine > -.05f)
+      continue;
     const scalar::Vec3<float> start = scalar::leave(s.point, s.normal, s.away, {d.x, d.y, d.z});
     Rays inwards;
     inwards.add({start.x, start.y, start.z}, d);
-    const Answers far = trace(*find_variant("scalar"), world, inwards, {Method::kSingle, 1, true}, Query::kClosest);
+    const Answers far =
+        trace(*find_variant("scalar"), world, inwards, {Method::kSingle, 1, true}, Query::kClosest);
     ASSERT_EQ(far.id[0], 0u) << "seed " << seed;
-    // The chord is -2 r cosine. The start stands off by `away` and its rounding, which the chord feels by 1 / |cosine|.
-    EXPECT_NEAR(far.t[0], -2 * size * cosine, 4 * s.away / -cosine + 1e-5 * size) << "seed " << seed;
+    // The chord is -2 r cosine. The start stands off by `away` and its rounding, which the chord
+    // feels by 1 / |cosine|.
+    EXPECT_NEAR(far.t[0], -2 * size * cosine, 4 * s.away / -cosine + 1e-5 * size)
+        << "seed " << seed;
     ++judged;
   }
   EXPECT_GT(judged, 10000u);
 }
 
-/// Something a thousandth of the size above a surface is met, not skipped, wherever that is far above the spacing of
-/// floats.
+/// Something a thousandth of the size above a surface is met, not skipped, wherever that is far
+/// above the spacing of floats.
 TEST(Leaving, SeesWhatIsNear) {
   std::uint64_t rays = 0;
   for (std::uint64_t seed = 0; seed < 20000; ++seed) {
@@ -251,19 +316,26 @@ TEST(Leaving, SeesWhatIsNear) {
     Scene scene = empty_scene();
     for (const float up : {0.f, gap}) {
       const float y = place.y + up;
-      add_triangle(scene, {place.x - float(size), y, place.z - float(size)},
-                   {place.x + float(size), y, place.z - float(size)}, {place.x, y, place.z + float(size)});
+      add_triangle(scene,
+                   {place.x - float(size), y, place.z - float(size)},
+                   {place.x + float(size), y, place.z - float(size)},
+                   {place.x, y, place.z + float(size)});
     }
     const World world(scene, {.grid = false});
     const scalar::Vec3<float> org{place.x, place.y + gap / 2, place.z}, dir{0, -1, 0};
-    const scalar::Surface<float> s = scalar::surface_of<float>(world.impl().view, 0, org, dir, gap / 2, false);
+    const scalar::Surface<float> s =
+        scalar::surface_of<float>(world.impl().view, 0, org, dir, gap / 2, false);
     Float3 d = random.direction();
-    if (d.y < 0) d = scaled(d, -1);
-    if (d.y < .1f) continue;
+    if (d.y < 0)
+      d = scaled(d, -1);
+    if (d.y < .1f)
+      continue;
     const scalar::Vec3<float> start = scalar::leave(s.point, s.normal, s.away, {d.x, d.y, d.z});
     Rays up;
     up.add({start.x, start.y, start.z}, d);
-    EXPECT_EQ(trace(*find_variant("scalar"), world, up, {Method::kSingle, 1, true}, Query::kClosest).id[0], 1u)
+    EXPECT_EQ(trace(*find_variant("scalar"), world, up, {Method::kSingle, 1, true}, Query::kClosest)
+                  .id[0],
+              1u)
         << "seed " << seed;
     ++rays;
   }

@@ -1,4 +1,5 @@
-// How far reading is, for every kind of file: the share never falls, says something on the way, comes to 1, and stops when told.
+// How far reading is, for every kind of file: the share never falls, says something on the way,
+// comes to 1, and stops when told.
 #include "frontend/scene_file.hpp"
 #include "kernel/render.hpp"
 #include "scenes/generators.hpp"
@@ -31,23 +32,29 @@ class Loading : public testing::TestWithParam<const char*> {
   static constexpr int kRows = 150000;
   static std::string vertices(int count) {
     std::ostringstream out;
-    for (int i = 0; i < count; ++i) out << i << ' ' << i % 7 << ' ' << i % 5 << '\n';
+    for (int i = 0; i < count; ++i)
+      out << i << ' ' << i % 7 << ' ' << i % 5 << '\n';
     return out.str();
   }
   static std::string ascii() {
     std::string rows;
-    for (int i = 0; i < kRows; ++i) rows += "3 0 1 " + std::to_string(2 + i % 10) + '\n';
-    return "ply\nformat ascii 1.0\nelement vertex 12\nproperty float x\nproperty float y\nproperty float z\nelement face " + std::to_string(kRows) +
-           "\nproperty list uchar int vertex_indices\nend_header\n" + vertices(12) + rows;
+    for (int i = 0; i < kRows; ++i)
+      rows += "3 0 1 " + std::to_string(2 + i % 10) + '\n';
+    return "ply\nformat ascii 1.0\nelement vertex 12\nproperty float x\nproperty float y\nproperty "
+           "float z\nelement face " +
+           std::to_string(kRows) + "\nproperty list uchar int vertex_indices\nend_header\n" +
+           vertices(12) + rows;
   }
   static std::string inline_mesh() {
-    return "v\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 40\nhither 1\nresolution 24 16\nf 1 0 0 1 0 1 0 1\nmesh " + std::to_string(kRows) + " 1\n" +
-           vertices(kRows) + "1 2 3\n";
+    return "v\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 40\nhither 1\nresolution 24 16\nf 1 0 0 1 0 1 "
+           "0 1\nmesh " +
+           std::to_string(kRows) + " 1\n" + vertices(kRows) + "1 2 3\n";
   }
   SceneFile read(const std::function<bool(double)>& progress) {
     ReadOptions options;
     options.progress = progress;
-    return read_scene(folder_.file(GetParam()), [](const std::string&) {}, options);
+    return read_scene(
+        folder_.file(GetParam()), [](const std::string&) {}, options);
   }
   TemporaryFolder folder_;
 };
@@ -76,7 +83,14 @@ TEST_P(Loading, StopsWhenTold) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Files, Loading, testing::Values("binary.ply", "ascii.ply", "names.nff", "text.nff", "inline.nff", "packed.nff.gz"));
+INSTANTIATE_TEST_SUITE_P(Files,
+                         Loading,
+                         testing::Values("binary.ply",
+                                         "ascii.ply",
+                                         "names.nff",
+                                         "text.nff",
+                                         "inline.nff",
+                                         "packed.nff.gz"));
 
 }  // namespace
 }  // namespace grelha

@@ -23,8 +23,8 @@ const std::string kFill = "f 1 .5 0 .8 .2 10 0 1\n";
 const Triangles& triangles(const Reading& r) { return r.file.scene.geometry.triangles; }
 
 TEST(NffView, FieldsInAnyOrder) {
-  const Reading r =
-      read_text("b .1 .2 .3 v resolution 640 480.0 angle 30.5 hither 0 up 0 0 1\nat 1 2 3 from -4 +5 6e0");
+  const Reading r = read_text(
+      "b .1 .2 .3 v resolution 640 480.0 angle 30.5 hither 0 up 0 0 1\nat 1 2 3 from -4 +5 6e0");
   EXPECT_EQ(r.warnings, Lines{});
   const Camera& c = r.file.camera;
   EXPECT_EQ(c.eye, (Float3{-4, 5, 6}));
@@ -39,7 +39,8 @@ TEST(NffView, FieldsInAnyOrder) {
 
 TEST(NffView, CameraAndEyeOf2023) {
   const Reading r = read_text(
-      "accel bvh\nspp 4\nbclr 1 0 0\ncamera\neye 0 0 5\nat 0 0 0\nup 0 1 0\nangle 45\nhither 1\nresolution 3 2\n"
+      "accel bvh\nspp 4\nbclr 1 0 0\ncamera\neye 0 0 5\nat 0 0 0\nup 0 1 0\nangle 45\nhither "
+      "1\nresolution 3 2\n"
       "aperture 0\nfocal 1.5\n");
   EXPECT_EQ(r.warnings, Lines{});
   EXPECT_EQ(r.file.camera.eye, (Float3{0, 0, 5}));
@@ -52,7 +53,8 @@ TEST(NffView, CameraAndEyeOf2023) {
 
 TEST(NffView, LensInsideTheViewIsKept) {
   const Reading r = read_text(
-      "v\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nfocal 4\nview 1\napperture .5\nangle 45\nhither 1\nresolution 8 6\n");
+      "v\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nfocal 4\nview 1\napperture .5\nangle 45\nhither "
+      "1\nresolution 8 6\n");
   EXPECT_EQ(r.file.lens.aperture, .5);
   EXPECT_EQ(r.file.lens.focal, 4);
   EXPECT_EQ(r.warnings, Lines{});
@@ -62,20 +64,23 @@ TEST(NffView, EnvironmentIsNamedAndLeftOut) {
   const Reading r = read_with_view("env sky box # night\nenv other");
   EXPECT_EQ(r.file.environment, "other");
   EXPECT_EQ(r.warnings,
-            Lines{"scene.nff:8:1: warning: environment maps are not rendered; the background color is seen instead"});
+            Lines{"scene.nff:8:1: warning: environment maps are not rendered; the background color "
+                  "is seen instead"});
 }
 
 TEST(NffView, MissingResolutionAndSecondView) {
   Reading r = read_text("v from 0 0 5 at 0 0 0 up 0 1 0 angle 45");
   EXPECT_EQ(r.file.camera.width, 512);
-  EXPECT_EQ(r.warnings, Lines{"scene.nff:1:1: warning: the view has no resolution; 512 512 is taken"});
+  EXPECT_EQ(r.warnings,
+            Lines{"scene.nff:1:1: warning: the view has no resolution; 512 512 is taken"});
   r = read_with_view("v from 0 0 7 at 0 0 0 up 0 1 0 angle 60 resolution 4 4");
   EXPECT_EQ(r.file.camera.angle_deg, 60);
   EXPECT_EQ(r.warnings, Lines{"scene.nff:8:1: warning: a second view; the last one counts"});
 }
 
 TEST(NffLights, ColorlessOnesShare) {
-  const Reading r = read_with_view(kFill + "s 0 0 0 1\nl 1 2 3\nl 4 5 6 # late\nl 7 8 9 .1 .2 .3\nl 1 1 1");
+  const Reading r =
+      read_with_view(kFill + "s 0 0 0 1\nl 1 2 3\nl 4 5 6 # late\nl 7 8 9 .1 .2 .3\nl 1 1 1");
   const auto& lights = r.file.scene.lights;
   ASSERT_EQ(lights.size(), 4u);
   EXPECT_EQ(r.file.counts.lights, 4u);
@@ -159,7 +164,9 @@ TEST(NffMaterial, BrokenOverLines) {
 TEST(NffMaterial, OtherNumbersOfFieldsAreGuessed) {
   Reading r = read_with_view("f .25 .5 1\ns 0 0 0 1");
   EXPECT_EQ(r.file.scene.materials[0].diffuse, (Float3{.25f, .5f, 1}));
-  EXPECT_EQ(r.warnings, Lines{"scene.nff:8:1: warning: a material with 3 fields, where 8, 11, 12 or 14 are known"});
+  EXPECT_EQ(
+      r.warnings,
+      Lines{"scene.nff:8:1: warning: a material with 3 fields, where 8, 11, 12 or 14 are known"});
   r = read_with_view("f 1 .5 0 .5 .25 10 0 1 .1\nf 1 .5 0 .5 .25 10 0 1 .1\ns 0 0 0 1");
   EXPECT_EQ(r.file.scene.materials[0].shine, 10);
   EXPECT_EQ(r.warnings.size(), 1u);
@@ -173,11 +180,14 @@ TEST(NffMaterial, MissingOneIsWhiteAndNotCounted) {
   EXPECT_EQ(r.file.counts.materials, 1u);
   ASSERT_EQ(r.file.scene.materials.size(), 2u);
   EXPECT_EQ(r.file.scene.geometry.spheres.material, (std::vector<std::uint32_t>{0, 1}));
-  EXPECT_EQ(r.warnings, Lines{"scene.nff:8:1: warning: an object before the first \"f\"; it is drawn dull white"});
+  EXPECT_EQ(
+      r.warnings,
+      Lines{"scene.nff:8:1: warning: an object before the first \"f\"; it is drawn dull white"});
 }
 
 TEST(NffShapes, SpheresAndConesInAnyLayout) {
-  const Reading r = read_with_view(kFill + "s 1 2 3\n\t4\nc 0 0 0 1 0 0 2 .5\nc\n0 0 0 -2\n0 0 3 -2 # in\ns 0 0 0 -1");
+  const Reading r = read_with_view(
+      kFill + "s 1 2 3\n\t4\nc 0 0 0 1 0 0 2 .5\nc\n0 0 0 -2\n0 0 3 -2 # in\ns 0 0 0 -1");
   const Spheres& s = r.file.scene.geometry.spheres;
   const Cones& c = r.file.scene.geometry.cones;
   EXPECT_EQ(r.warnings, Lines{});
@@ -191,10 +201,12 @@ TEST(NffShapes, SpheresAndConesInAnyLayout) {
 }
 
 TEST(NffShapes, AnyLineEnds) {
-  const std::string unix_text = kView + kFill + "s 0 0 0 1\np 3\n0 0 0\n1 0 0\n0 1 0\nl 1 1 1\nl 2 2 2 1 1 1";
+  const std::string unix_text =
+      kView + kFill + "s 0 0 0 1\np 3\n0 0 0\n1 0 0\n0 1 0\nl 1 1 1\nl 2 2 2 1 1 1";
   for (const std::string end : {"\n", "\r\n", "\r", "\n\r\n", " \t\r\r\n"}) {
     std::string text;
-    for (const char c : unix_text) c == '\n' ? text += end : text += c;
+    for (const char c : unix_text)
+      c == '\n' ? text += end : text += c;
     const Reading r = read_text(text);
     EXPECT_EQ(r.warnings, Lines{});
     EXPECT_EQ(r.file.counts.s, 1u);
@@ -214,8 +226,8 @@ TEST(NffShapes, PolygonsShareTheirOwnCorners) {
 }
 
 TEST(NffShapes, PatchesBringNormals) {
-  const Reading r =
-      read_with_view(kFill + "p 3 0 0 0 1 0 0 0 1 0\npp 4\n0 0 0 0 0 1\n2 0 0 1 0 1\n2 2 0 0 0 1\n0 2 0 nan 0 1");
+  const Reading r = read_with_view(
+      kFill + "p 3 0 0 0 1 0 0 0 1 0\npp 4\n0 0 0 0 0 1\n2 0 0 1 0 1\n2 2 0 0 0 1\n0 2 0 nan 0 1");
   const Triangles& t = triangles(r);
   EXPECT_EQ(r.file.counts.pp, 1u);
   EXPECT_EQ(t.size(), 3u);
@@ -223,11 +235,14 @@ TEST(NffShapes, PatchesBringNormals) {
   EXPECT_EQ(t.nx, (std::vector<float>{0, 0, 0, 0, 1, 0, 0}));
 }
 
-/// A corner 1e-5 off the plane on a short side gives a sliver whose own normal is far off; the polygon's is used.
+/// A corner 1e-5 off the plane on a short side gives a sliver whose own normal is far off; the
+/// polygon's is used.
 TEST(NffShapes, SliversTakeThePolygonsNormal) {
   const Reading r = read_with_view(kFill + "p 5 1 1 0  .5 1.00001 .00001  0 1 0  0 0 0  1 0 0");
   ASSERT_EQ(triangles(r).nz.size(), 5u);
-  for (const float z : triangles(r).nz) EXPECT_NEAR(z, 1, 1e-4);  // the bump of 1e-5 tilts the whole by about as much
+  // the bump of 1e-5 tilts the whole by about as much
+  for (const float z : triangles(r).nz)
+    EXPECT_NEAR(z, 1, 1e-4);
 }
 
 TEST(NffShapes, PlanesByPointsAndByDistance) {
@@ -241,20 +256,25 @@ TEST(NffShapes, PlanesByPointsAndByDistance) {
   EXPECT_EQ(p.y[1], -3);  // 2 y + 6 = 0
 }
 
-/// Six times the volume inside, by the divergence theorem; positive when all triangles face outwards.
+/// Six times the volume inside, by the divergence theorem; positive when all triangles face
+/// outwards.
 double signed_volume(const Triangles& t) {
   double sum = 0;
   for (std::size_t i = 0; i < t.size(); ++i) {
     const std::size_t a = t.a[i], b = t.b[i], c = t.c[i];
-    sum += t.x[a] * (t.y[b] * t.z[c] - t.z[b] * t.y[c]) + t.y[a] * (t.z[b] * t.x[c] - t.x[b] * t.z[c]) +
+    sum += t.x[a] * (t.y[b] * t.z[c] - t.z[b] * t.y[c]) +
+           t.y[a] * (t.z[b] * t.x[c] - t.x[b] * t.z[c]) +
            t.z[a] * (t.x[b] * t.y[c] - t.y[b] * t.x[c]);
   }
   return sum / 6;
 }
 
 TEST(NffShapes, BoxesFromCornersInEitherOrder) {
-  for (const char* text :
-       {"box 0 0 0 1 2 3", "box 1 2 3 0 0 0", "box 1 0 3 0 2 0", "aabb 0 0 0 1 2 3", "aabb 1 2 3 0 0 0"}) {
+  for (const char* text : {"box 0 0 0 1 2 3",
+                           "box 1 2 3 0 0 0",
+                           "box 1 0 3 0 2 0",
+                           "aabb 0 0 0 1 2 3",
+                           "aabb 1 2 3 0 0 0"}) {
     const Reading r = read_with_view(kFill + text);
     EXPECT_EQ(triangles(r).size(), 12u);
     EXPECT_EQ(signed_volume(triangles(r)), 6) << text;  // small whole numbers: exact
@@ -279,7 +299,7 @@ std::vector<double> box_volumes(const std::string& boxes) {
 
 TEST(NffShapes, AabbHasOneOrderAFile) {
   using Volumes = std::vector<double>;
-  const std::string pairs = "aabb 0 4 -1 1 2 3\n";   // as corners unordered on y
+  const std::string pairs = "aabb 0 4 -1 1 2 3\n";    // as corners unordered on y
   const std::string corners = "aabb 5 4 -1 1 2 3\n";  // x 5..4 is no pair
   const std::string both = "aabb 0 1 2 3 4 5\n";      // pairs: 1 x 1 x 1; corners: 3 x 3 x 3
   EXPECT_EQ(box_volumes(pairs), Volumes{8});
@@ -288,9 +308,11 @@ TEST(NffShapes, AabbHasOneOrderAFile) {
   EXPECT_EQ(box_volumes(both + pairs), (Volumes{1, 8})) << "the box in front of the one that tells";
   EXPECT_EQ(box_volumes(pairs + both), (Volumes{8, 1}));
   EXPECT_EQ(box_volumes(both + corners + both), (Volumes{27, 32, 27}));
-  EXPECT_EQ(box_volumes(pairs + corners + both), (Volumes{8, 32, 27})) << "any numbers can be corners";
+  EXPECT_EQ(box_volumes(pairs + corners + both), (Volumes{8, 32, 27}))
+      << "any numbers can be corners";
   EXPECT_EQ(box_volumes(both + "# aabb 0 4 -1 1 2 3\n"), Volumes{27}) << "a comment is no box";
-  EXPECT_EQ(box_volumes(pairs + "aabb nan 4 3 1 2 3\n" + both), (Volumes{8, 1})) << "what is left out has no say";
+  EXPECT_EQ(box_volumes(pairs + "aabb nan 4 3 1 2 3\n" + both), (Volumes{8, 1}))
+      << "what is left out has no say";
 }
 
 TEST(NffShapes, TheOrderOfAabbIsSaid) {
@@ -307,9 +329,9 @@ TEST(NffShapes, BoxWithoutThicknessIsTwoFaces) {
 }
 
 TEST(NffShapes, MeshesAreObjects) {
-  const Reading r =
-      read_with_view(kFill + "p 3 0 0 0 1 0 0 0 1 0\nmesh 4 2\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n1 2 3\n-4 -2 -1\n" +
-                     "p 3 0 0 0 1 0 0 0 1 0\nmesh 3 1 0 0 0 1 0 0 1 1 0 1 2 3");
+  const Reading r = read_with_view(
+      kFill + "p 3 0 0 0 1 0 0 0 1 0\nmesh 4 2\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n1 2 3\n-4 -2 -1\n" +
+      "p 3 0 0 0 1 0 0 0 1 0\nmesh 3 1 0 0 0 1 0 0 1 1 0 1 2 3");
   const Geometry& g = r.file.scene.geometry;
   EXPECT_EQ(r.file.counts.mesh, 3u);
   ASSERT_EQ(g.objects.size(), 2u);
@@ -323,10 +345,13 @@ TEST(NffShapes, MeshesAreObjects) {
 TEST(NffShapes, PlyFilesStandBesideTheScene) {
   const TemporaryFolder folder;
   folder.add("a mesh.ply",
-             "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
-             "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
-  const std::string scene =
-      folder.add("scene.nff", kView + kFill + "ply a mesh.ply # twice\n" + kFill + "ply a mesh.ply\r\ns 0 0 0 1");
+             "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float "
+             "y\nproperty float z\n"
+             "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 "
+             "1 0\n3 0 1 2\n");
+  const std::string scene = folder.add(
+      "scene.nff",
+      kView + kFill + "ply a mesh.ply # twice\n" + kFill + "ply a mesh.ply\r\ns 0 0 0 1");
   const SceneFile file = read_scene(scene, nullptr);
   EXPECT_EQ(file.counts.ply, 2u);
   EXPECT_EQ(file.counts.s, 1u);
@@ -337,64 +362,92 @@ TEST(NffShapes, PlyFilesStandBesideTheScene) {
 TEST(NffDropped, CountedByReason) {
   const Reading r = read_with_view(
       kFill +
-      "s 0 0 0 0\ns nan 0 0 1\ns 0 0 0 inf\ns 1e39 0 0 1\ns 0 0 2e18 1\nc 0 0 0 1 0 0 0 1\nc 0 0 0 0 0 0 1 0\n"
+      "s 0 0 0 0\ns nan 0 0 1\ns 0 0 0 inf\ns 1e39 0 0 1\ns 0 0 2e18 1\nc 0 0 0 1 0 0 0 1\nc 0 0 0 "
+      "0 0 0 1 0\n"
       "p 3 0 0 0 1 1 1 2 2 2\np 3 0 0 0 nan 0 0 1 1 1\npl 0 0 0 1 1 1 2 2 2\nnpl 0 0 0 1\n"
-      "mesh 4 3 0 0 0 1 0 0 0 1 0 nan 0 0 1 2 3 1 2 4 1 1 2\npp 3 0 0 0 0 0 1 0 0 0 0 0 1 1 1 1 0 0 1");
+      "mesh 4 3 0 0 0 1 0 0 0 1 0 nan 0 0 1 2 3 1 2 4 1 1 2\npp 3 0 0 0 0 0 1 0 0 0 0 0 1 1 1 1 0 "
+      "0 1");
   EXPECT_EQ(r.file.dropped.not_finite, 6u);
   EXPECT_EQ(r.file.dropped.zero_area, 8u);
   EXPECT_EQ(r.file.counts.s, 5u);
   EXPECT_EQ(r.file.counts.mesh, 3u);
   EXPECT_EQ(triangles(r).size(), 1u);
-  for (const float x : triangles(r).x) EXPECT_TRUE(std::isfinite(x));
+  for (const float x : triangles(r).x)
+    EXPECT_TRUE(std::isfinite(x));
 }
 
 TEST(NffDropped, OneWarningForTheFile) {
   const TemporaryFolder folder;
-  const std::string scene = folder.add("scene.nff", kView + kFill + "s 0 0 0 0\ns nan 0 0 1\ns 0 0 0 0\n");
+  const std::string scene =
+      folder.add("scene.nff", kView + kFill + "s 0 0 0 0\ns nan 0 0 1\ns 0 0 0 0\n");
   Lines warnings;
   read_scene(scene, [&](const std::string& line) { warnings.push_back(line); });
-  EXPECT_EQ(warnings,
-            Lines{scene + ": warning: 3 primitives are left out: 1 not finite (or beyond 1e18), 2 without area"});
+  EXPECT_EQ(
+      warnings,
+      Lines{scene +
+            ": warning: 3 primitives are left out: 1 not finite (or beyond 1e18), 2 without area"});
 }
 
 TEST(NffNoise, IsWarnedOfOnceAKindAndSkipped) {
-  const Reading r =
-      read_with_view("# a comment\n/ another\nFloor of wood\n" + kFill +
-                     "s 0 0 0 1 7 7\ns 0 0 0 1 8\n12 12 12\n1 2 3\nxp 3\n0 0 0\na 1 2 3\na 4 5 6\ns 0 0 0 2#end");
+  const Reading r = read_with_view(
+      "# a comment\n/ another\nFloor of wood\n" + kFill +
+      "s 0 0 0 1 7 7\ns 0 0 0 1 8\n12 12 12\n1 2 3\nxp 3\n0 0 0\na 1 2 3\na 4 5 6\ns 0 0 0 2#end");
   EXPECT_EQ(r.file.counts.s, 3u);
-  EXPECT_EQ(r.warnings,
-            (Lines{"scene.nff:9:1: warning: unknown word \"/\"; its line is skipped",
-                   "scene.nff:10:1: warning: unknown word \"Floor\"; its line is skipped",
-                   "scene.nff:12:11: warning: more numbers than \"s\" takes; the rest of the line is skipped",
-                   "scene.nff:14:1: warning: numbers that belong to no entity; their line is skipped",
-                   "scene.nff:16:1: warning: unknown word \"xp\"; its line is skipped",
-                   "scene.nff:18:1: warning: unknown word \"a\"; its line is skipped"}));
+  EXPECT_EQ(
+      r.warnings,
+      (Lines{"scene.nff:9:1: warning: unknown word \"/\"; its line is skipped",
+             "scene.nff:10:1: warning: unknown word \"Floor\"; its line is skipped",
+             "scene.nff:12:11: warning: more numbers than \"s\" takes; the rest of the line is "
+             "skipped",
+             "scene.nff:14:1: warning: numbers that belong to no entity; their line is skipped",
+             "scene.nff:16:1: warning: unknown word \"xp\"; its line is skipped",
+             "scene.nff:18:1: warning: unknown word \"a\"; its line is skipped"}));
 }
 
 TEST(NffNoise, IsComparedWithTheWordsThereAre) {
   const Reading r = read_with_view("resoluton 3 3\nmehs 1\nsphere 0 0 0 1\n");
-  EXPECT_EQ(r.warnings, (Lines{"scene.nff:8:1: warning: unknown word \"resoluton\" (did you mean \"resolution\"?); its line is skipped",
-                               "scene.nff:9:1: warning: unknown word \"mehs\" (did you mean \"mesh\"?); its line is skipped",
-                               "scene.nff:10:1: warning: unknown word \"sphere\" (did you mean \"s\"?); its line is skipped"}));
+  EXPECT_EQ(r.warnings,
+            (Lines{"scene.nff:8:1: warning: unknown word \"resoluton\" (did you mean "
+                   "\"resolution\"?); its line is skipped",
+                   "scene.nff:9:1: warning: unknown word \"mehs\" (did you mean \"mesh\"?); its "
+                   "line is skipped",
+                   "scene.nff:10:1: warning: unknown word \"sphere\" (did you mean \"s\"?); its "
+                   "line is skipped"}));
 }
 
 TEST(NffNoise, FullNamesAreAnsweredWithTheKeyword) {
   const std::pair<const char*, const char*> table[] = {
-      {"spheres", "s"}, {"Polygon", "p"}, {"TRIANGLE", "p"}, {"plane", "pl"}, {"cylinder", "c"},    {"material", "f"},
-      {"LIGHT", "light"}, {"S", "s"},     {"Box", "box"},    {"lookat", "at"}, {"backgruond", "b"}, {"shpere", "s"}, {"xyzzy", ""}, {"cones", "c"},
+      {"spheres", "s"},
+      {"Polygon", "p"},
+      {"TRIANGLE", "p"},
+      {"plane", "pl"},
+      {"cylinder", "c"},
+      {"material", "f"},
+      {"LIGHT", "light"},
+      {"S", "s"},
+      {"Box", "box"},
+      {"lookat", "at"},
+      {"backgruond", "b"},
+      {"shpere", "s"},
+      {"xyzzy", ""},
+      {"cones", "c"},
   };
   for (const auto& [word, keyword] : table) {
     const Lines warnings = read_with_view(std::string(word) + " 0 0 0 1\n").warnings;
     const std::string meant = *keyword ? " (did you mean \"" + std::string(keyword) + "\"?)" : "";
-    EXPECT_EQ(warnings, Lines{"scene.nff:8:1: warning: unknown word \"" + std::string(word) + '"' + meant + "; its line is skipped"});
+    EXPECT_EQ(warnings,
+              Lines{"scene.nff:8:1: warning: unknown word \"" + std::string(word) + '"' + meant +
+                    "; its line is skipped"});
   }
 }
 
-/// A search for what was meant takes microseconds: only what is said is worth one. Was 7 s a million.
+/// A search for what was meant takes microseconds: only what is said is worth one. Was 7 s a
+/// million.
 TEST(NffNoise, AMillionUnknownWordsEndSoon) {
   for (const bool alike : {true, false}) {
     std::string text = kView;
-    for (int i = 0; i < 1000000; ++i) text += alike ? "sphere 0\n" : "sphere" + std::to_string(i) + " 0\n";
+    for (int i = 0; i < 1000000; ++i)
+      text += alike ? "sphere 0\n" : "sphere" + std::to_string(i) + " 0\n";
     const std::clock_t start = std::clock();  // of the processor: others may be busy with it
     EXPECT_EQ(read_text(text).warnings.size(), alike ? 1u : 20u);
     constexpr double kPatience = 2;  // .2 s were measured
@@ -406,7 +459,8 @@ TEST(NffNoise, NulBytesAreToldOf) {
   using std::string_literals::operator""s;
   const Reading r = read_with_view(kFill + "s 0 0 0\0 1\ns 0 0\0 0 1\n"s);
   EXPECT_EQ(r.file.counts.s, 2u);
-  EXPECT_EQ(r.warnings, Lines{"scene.nff:9:8: warning: the text holds NUL bytes, which count as blanks"});
+  EXPECT_EQ(r.warnings,
+            Lines{"scene.nff:9:8: warning: the text holds NUL bytes, which count as blanks"});
 }
 
 TEST(NffHints, SamplesAreBoundedAndSaid) {
@@ -415,13 +469,16 @@ TEST(NffHints, SamplesAreBoundedAndSaid) {
   for (const std::string count : {"65537", "1000000000", "4000000000", "1e30"}) {
     const Reading r = read_with_view("spp " + count);
     EXPECT_EQ(r.file.samples_per_pixel, 65536) << count;
-    EXPECT_EQ(r.warnings, Lines{"scene.nff:8:5: warning: \"" + count + "\" samples per pixel are more than 65536, which are taken"});
+    EXPECT_EQ(r.warnings,
+              Lines{"scene.nff:8:5: warning: \"" + count +
+                    "\" samples per pixel are more than 65536, which are taken"});
   }
 }
 
 TEST(NffNoise, FilesOfItStayReadable) {
   std::string text = kView;
-  for (int i = 0; i < 100000; ++i) text += "word" + std::to_string(i) + '\n';
+  for (int i = 0; i < 100000; ++i)
+    text += "word" + std::to_string(i) + '\n';
   EXPECT_EQ(read_text(text).warnings.size(), 20u);
 }
 

@@ -73,15 +73,21 @@ TEST(Errors, ContradictionsAreRefusedByName) {
       {"scene balls -o x.png",
        "-o: wanted a name for an NFF scene, such as balls.nff, found \"x.png\""},
   };
-  for (const auto& [line, message] : table) EXPECT_EQ(error_of(line), message) << line;
-  for (const char* line :
-       {"render a --format exr --layers id,depth", "render a --aa jitter:4 --samples 16",
-        "render a --aa off --samples 1", "render a --aa jitter:2 --samples 0:3 -o a.grelha",
-        "render a --lens 8,7,32 --samples 32", "render a --lens 0,0,8 --samples 4",
-        "render a --srgb -o pictures/", "render a --aa jitter:4 --sampler unshuffled",
-        "render a --error .1 --shadows random:1 --lens 8",
-        "render a --checkpoint k --checkpoint-every 5", "merge a.grelha --srgb -o a.png",
-        "scene balls -o x", "info a --accel none"})
+  for (const auto& [line, message] : table)
+    EXPECT_EQ(error_of(line), message) << line;
+  for (const char* line : {"render a --format exr --layers id,depth",
+                           "render a --aa jitter:4 --samples 16",
+                           "render a --aa off --samples 1",
+                           "render a --aa jitter:2 --samples 0:3 -o a.grelha",
+                           "render a --lens 8,7,32 --samples 32",
+                           "render a --lens 0,0,8 --samples 4",
+                           "render a --srgb -o pictures/",
+                           "render a --aa jitter:4 --sampler unshuffled",
+                           "render a --error .1 --shadows random:1 --lens 8",
+                           "render a --checkpoint k --checkpoint-every 5",
+                           "merge a.grelha --srgb -o a.png",
+                           "scene balls -o x",
+                           "info a --accel none"})
     EXPECT_EQ(error_of(line), "no error") << line;
 }
 

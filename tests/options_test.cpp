@@ -43,8 +43,10 @@ TEST(Render, Defaults) {
 }
 
 TEST(Render, Effects) {
-  const Effects e = std::get<RenderCommand>(parse("render x.nff --samples 288 --sampler jitter --seed 7 --aa jitter:3 "
-                                                  "--shadows area:.5,4 --lens 20,1.5,32 --glossy .2,6")).effects;
+  const Effects e = std::get<RenderCommand>(
+                        parse("render x.nff --samples 288 --sampler jitter --seed 7 --aa jitter:3 "
+                              "--shadows area:.5,4 --lens 20,1.5,32 --glossy .2,6"))
+                        .effects;
   EXPECT_EQ(e.samples, 288);
   EXPECT_EQ(e.sampler, Sampler::kJitter);
   EXPECT_EQ(e.seed, 7u);
@@ -57,27 +59,34 @@ TEST(Render, Effects) {
   EXPECT_EQ(e.glossy->roughness, .2f);
   EXPECT_EQ(e.glossy->rays, 6);
   EXPECT_FALSE(e.adaptive.on);
-  const Subdivision s = std::get<RenderCommand>(parse("render x.nff --aa adaptive:.25,4")).effects.adaptive;
+  const Subdivision s =
+      std::get<RenderCommand>(parse("render x.nff --aa adaptive:.25,4")).effects.adaptive;
   EXPECT_TRUE(s.on);
   EXPECT_EQ(s.threshold, .25f);
   EXPECT_EQ(s.depth, 4);
   EXPECT_TRUE(std::get<RenderCommand>(parse("render x.nff --shadows hard")).effects.shadows->hard);
-  EXPECT_EQ(std::get<RenderCommand>(parse("render x.nff --shadows random:.25")).effects.shadows->positions, 1);
+  EXPECT_EQ(std::get<RenderCommand>(parse("render x.nff --shadows random:.25"))
+                .effects.shadows->positions,
+            1);
 }
 
 TEST(Render, ErrorAndTime) {
-  const auto by_error = std::get<RenderCommand>(parse("render x.nff --error .02 --samples-map s.pfm --error-map e.png --seed 3"));
+  const auto by_error = std::get<RenderCommand>(
+      parse("render x.nff --error .02 --samples-map s.pfm --error-map e.png --seed 3"));
   EXPECT_EQ(by_error.render.refine.error, .02);
   EXPECT_EQ(by_error.samples_map, "s.pfm");
   EXPECT_EQ(by_error.error_map, "e.png");
   EXPECT_EQ(std::get<RenderCommand>(parse("render x.nff --time 1.5")).render.refine.seconds, 1.5);
-  EXPECT_EQ(std::get<RenderCommand>(parse("render x.nff --time samples:12345678901")).render.refine.samples, 12345678901u);
+  EXPECT_EQ(std::get<RenderCommand>(parse("render x.nff --time samples:12345678901"))
+                .render.refine.samples,
+            12345678901u);
   EXPECT_FALSE(std::get<RenderCommand>(parse("render x.nff")).render.refine.on());
 }
 
 TEST(Render, EveryOption) {
   const auto command = std::get<RenderCommand>(
-      parse("render x.nff -o y.png --size 640x480 --threads 7 --depth 3 --min-weight .25 --density 2.5 --mailbox off "
+      parse("render x.nff -o y.png --size 640x480 --threads 7 --depth 3 --min-weight .25 --density "
+            "2.5 --mailbox off "
             "--isa avx2 --precision double --packet 16 --stats s.json --quiet --srgb"));
   EXPECT_EQ(command.image, "y.png");
   EXPECT_EQ(command.width, 640);
@@ -103,7 +112,8 @@ TEST(Render, OptionsMayStandBeforeTheSceneAndCarryTheirValue) {
 }
 
 TEST(Render, ShortOptionsTakeTheirValueAsInOtherTools) {
-  for (const char* line : {"render x.nff -o=y.png -j=3", "render x.nff -oy.png -j3", "render -j 3 -o y.png x.nff"}) {
+  for (const char* line :
+       {"render x.nff -o=y.png -j=3", "render x.nff -oy.png -j3", "render -j 3 -o y.png x.nff"}) {
     const auto command = std::get<RenderCommand>(parse(line));
     EXPECT_EQ(command.image, "y.png") << line;
     EXPECT_EQ(command.render.threads, 3) << line;
@@ -111,7 +121,8 @@ TEST(Render, ShortOptionsTakeTheirValueAsInOtherTools) {
   }
   EXPECT_EQ(std::get<SceneCommand>(parse("scene balls -o=b.nff")).output, "b.nff");
   EXPECT_EQ(error_of("render x.nff -o="), "-o: wanted a file name, found \"\"");
-  EXPECT_EQ(std::get<TextCommand>(parse("-V")).text, std::get<TextCommand>(parse("--version")).text);
+  EXPECT_EQ(std::get<TextCommand>(parse("-V")).text,
+            std::get<TextCommand>(parse("--version")).text);
 }
 
 TEST(Render, FormatNamesWhatTheNameDoesNot) {
@@ -139,12 +150,14 @@ TEST(DefaultImage, TakesTheStemInTheCurrentFolder) {
 TEST(Render, ManyScenesHaveManyPictures) {
   const auto images = [](const std::string& line) {
     std::string all;
-    for (const RenderCommand& c : commands_for(std::get<RenderCommand>(parse(line)))) all += c.scene + '>' + c.image + ' ' + c.stats + ';';
+    for (const RenderCommand& c : commands_for(std::get<RenderCommand>(parse(line))))
+      all += c.scene + '>' + c.image + ' ' + c.stats + ';';
     return all;
   };
   EXPECT_EQ(images("render a/x.nff b/y.p3f.gz"), "a/x.nff>x.png ;b/y.p3f.gz>y.png ;");
   EXPECT_EQ(images("render x.nff y.nff -o out/"), "x.nff>out/x.png ;y.nff>out/y.png ;");
-  EXPECT_EQ(images("render x.nff y.nff -o out/{}.hdr --stats {}.json"), "x.nff>out/x.hdr x.json;y.nff>out/y.hdr y.json;");
+  EXPECT_EQ(images("render x.nff y.nff -o out/{}.hdr --stats {}.json"),
+            "x.nff>out/x.hdr x.json;y.nff>out/y.hdr y.json;");
   EXPECT_EQ(images("render x.nff -o one.hdr --stats s.json"), "x.nff>one.hdr s.json;");
   EXPECT_THROW(images("render x.nff y.nff -o one.png"), UsageError);
   EXPECT_THROW(images("render a/x.nff b/x.nff"), UsageError);
@@ -152,17 +165,22 @@ TEST(Render, ManyScenesHaveManyPictures) {
 }
 
 TEST(Render, MemoryIsCountedInBytes) {
-  const auto size = [](const std::string& text) { return std::get<RenderCommand>(parse("render x --max-memory " + text)).input.max_memory; };
+  const auto size = [](const std::string& text) {
+    return std::get<RenderCommand>(parse("render x --max-memory " + text)).input.max_memory;
+  };
   EXPECT_EQ(size("67108864"), 67108864u);
   EXPECT_EQ(size("64M"), 67108864u);
   EXPECT_EQ(size("1.5G"), 1610612736u);
-  EXPECT_EQ(std::get<InfoCommand>(parse("info x --max-memory 1T --allow-outside")).input.max_memory, std::uint64_t(1) << 40);
-  for (const char* wrong : {"63M", "x", "G", "-1G", "nan", "1e30"}) EXPECT_THROW(size(wrong), UsageError) << wrong;
+  EXPECT_EQ(std::get<InfoCommand>(parse("info x --max-memory 1T --allow-outside")).input.max_memory,
+            std::uint64_t(1) << 40);
+  for (const char* wrong : {"63M", "x", "G", "-1G", "nan", "1e30"})
+    EXPECT_THROW(size(wrong), UsageError) << wrong;
 }
 
 TEST(Others, AreParsed) {
   EXPECT_TRUE(std::get<InfoCommand>(parse("info x.nff --json")).json);
-  const auto compare = std::get<CompareCommand>(parse("compare a.png b.png --max-rmse 0 --diff d.png"));
+  const auto compare =
+      std::get<CompareCommand>(parse("compare a.png b.png --max-rmse 0 --diff d.png"));
   EXPECT_EQ(compare.max_rmse, 0.0);
   EXPECT_EQ(compare.diff, "d.png");
   EXPECT_FALSE(std::get<CompareCommand>(parse("compare a b")).max_rmse);
@@ -178,7 +196,8 @@ TEST(Others, AreParsed) {
 std::size_t widest(const std::string& text) {
   std::istringstream in(text);
   std::size_t most = 0;
-  for (std::string line; std::getline(in, line);) most = std::max(most, line.size());
+  for (std::string line; std::getline(in, line);)
+    most = std::max(most, line.size());
   return most;
 }
 
@@ -189,7 +208,8 @@ TEST(Help, IsAWordToo) {
 }
 
 TEST(Help, FitsAScreenAndSaysHow) {
-  for (const char* line : {"--help", "render --help", "info -h", "compare --help", "scene --help"}) {
+  for (const char* line :
+       {"--help", "render --help", "info -h", "compare --help", "scene --help"}) {
     const std::string text = std::get<TextCommand>(parse(line)).text;
     EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 24) << line;
     EXPECT_LE(widest(text), 80u) << line;
@@ -208,116 +228,165 @@ TEST(Help, FitsAScreenAndSaysHow) {
 TEST(Errors, SayWhatWasWantedAndFound) {
   const std::pair<const char*, const char*> table[] = {
       {"", "A subcommand is required (see --help)"},
-      {"--hlp", "The following argument was not expected: --hlp; did you mean --help? (see --help)"},
+      {"--hlp",
+       "The following argument was not expected: --hlp; did you mean --help? (see --help)"},
       {"--quiet render a", "The following argument was not expected: --quiet (see --help)"},
-      {"help rendr", "command: wanted one of render, info, compare, merge, scene, found \"rendr\"; did you mean render?"},
-      {"render a --size 2x2 --depth 3 --size 3x3", "--size: wanted once, found \"2x2\" and \"3x3\""},
+      {"help rendr",
+       "command: wanted one of render, info, compare, merge, scene, found \"rendr\"; did you mean "
+       "render?"},
+      {"render a --size 2x2 --depth 3 --size 3x3",
+       "--size: wanted once, found \"2x2\" and \"3x3\""},
       {"render a -o a.png --output=b.png", "--output: wanted once, found \"a.png\" and \"b.png\""},
-      {"render a --shadows hrd", "--shadows: wanted hard, random:SIZE or area:SIZE,N, found \"hrd\"; did you mean hard?"},
-      {"render a --aa adptive:1,2", "--aa: wanted off, jitter:N or adaptive:THRESHOLD,DEPTH, found \"adptive:1,2\"; did you mean adaptive:1,2?"},
-      {"render a --shadows random", "--shadows: wanted hard, random:SIZE or area:SIZE,N, found \"random\""},
-      {"rendr x.nff", "command: wanted one of render, info, compare, merge, scene, found \"rendr\"; did you mean render?"},
-      {"nothing x.nff", "command: wanted one of render, info, compare, merge, scene, found \"nothing\""},
+      {"render a --shadows hrd",
+       "--shadows: wanted hard, random:SIZE or area:SIZE,N, found \"hrd\"; did you mean hard?"},
+      {"render a --aa adptive:1,2",
+       "--aa: wanted off, jitter:N or adaptive:THRESHOLD,DEPTH, found \"adptive:1,2\"; did you "
+       "mean adaptive:1,2?"},
+      {"render a --shadows random",
+       "--shadows: wanted hard, random:SIZE or area:SIZE,N, found \"random\""},
+      {"rendr x.nff",
+       "command: wanted one of render, info, compare, merge, scene, found \"rendr\"; did you mean "
+       "render?"},
+      {"nothing x.nff",
+       "command: wanted one of render, info, compare, merge, scene, found \"nothing\""},
       {"render", "SCENE is required (see --help)"},
       {"compare a b c", "The following argument was not expected: c (see --help)"},
       {"render a --foo", "The following argument was not expected: --foo (see --help)"},
-      {"render a --sampels 3", "The following argument was not expected: --sampels; did you mean --samples? (see --help)"},
-      {"render a --dept=3", "The following argument was not expected: --dept=3; did you mean --depth? (see --help)"},
-      {"info a --jsno", "The following argument was not expected: --jsno; did you mean --json? (see --help)"},
-      {"render a --sampler sobl", "--sampler: wanted one of sobol, jitter, unshuffled, random, found \"sobl\"; did you mean sobol?"},
+      {"render a --sampels 3",
+       "The following argument was not expected: --sampels; did you mean --samples? (see --help)"},
+      {"render a --dept=3",
+       "The following argument was not expected: --dept=3; did you mean --depth? (see --help)"},
+      {"info a --jsno",
+       "The following argument was not expected: --jsno; did you mean --json? (see --help)"},
+      {"render a --sampler sobl",
+       "--sampler: wanted one of sobol, jitter, unshuffled, random, found \"sobl\"; did you mean "
+       "sobol?"},
       {"render a -o", "--output: 1 required FILE missing (see --help)"},
-      {"render a -o b.jpg", "-o: wanted a name ending in .png, .hdr, .pfm, .exr or .grelha, found \"b.jpg\""},
+      {"render a -o b.jpg",
+       "-o: wanted a name ending in .png, .hdr, .pfm, .exr or .grelha, found \"b.jpg\""},
       {"render a --size 640", "--size: wanted WIDTHxHEIGHT, each from 1 to 65536, found \"640\""},
       {"render a --size 0x1", "--size: wanted WIDTHxHEIGHT, each from 1 to 65536, found \"0x1\""},
-      {"render a --size 1x65537", "--size: wanted WIDTHxHEIGHT, each from 1 to 65536, found \"1x65537\""},
-      {"render a --size 1x1x1", "--size: wanted WIDTHxHEIGHT, each from 1 to 65536, found \"1x1x1\""},
+      {"render a --size 1x65537",
+       "--size: wanted WIDTHxHEIGHT, each from 1 to 65536, found \"1x65537\""},
+      {"render a --size 1x1x1",
+       "--size: wanted WIDTHxHEIGHT, each from 1 to 65536, found \"1x1x1\""},
       {"render a --size -1x1", "--size: wanted WIDTHxHEIGHT, each from 1 to 65536, found \"-1x1\""},
       {"render a --threads 0", "--threads: wanted a whole number from 1 to 1024, found \"0\""},
       {"render a --threads 1.5", "--threads: wanted a whole number from 1 to 1024, found \"1.5\""},
-      {"render a --threads 99999999999", "--threads: wanted a whole number from 1 to 1024, found \"99999999999\""},
+      {"render a --threads 99999999999",
+       "--threads: wanted a whole number from 1 to 1024, found \"99999999999\""},
       {"render a --min-weight nan", "--min-weight: wanted a number from 0 to 1, found \"nan\""},
       {"render a --min-weight 1.5", "--min-weight: wanted a number from 0 to 1, found \"1.5\""},
       {"render a --depth -1", "--depth: wanted a whole number from 1 to 4096, found \"-1\""},
       {"render a --density 0", "--density: wanted a number above 0 and up to 1000, found \"0\""},
-      {"render a --density nan", "--density: wanted a number above 0 and up to 1000, found \"nan\""},
-      {"render a --density 1e-60", "--density: wanted a number above 0 and up to 1000, found \"1e-60\""},
+      {"render a --density nan",
+       "--density: wanted a number above 0 and up to 1000, found \"nan\""},
+      {"render a --density 1e-60",
+       "--density: wanted a number above 0 and up to 1000, found \"1e-60\""},
       {"render a --accel bvh", "--accel: wanted one of grid, none, found \"bvh\""},
       {"render a --mailbox yes", "--mailbox: wanted one of on, off, found \"yes\""},
-      {"render a --isa neon", "--isa: wanted one of scalar, sse2, avx2, avx512, best, found \"neon\""},
+      {"render a --isa neon",
+       "--isa: wanted one of scalar, sse2, avx2, avx512, best, found \"neon\""},
       {"render a --precision half", "--precision: wanted one of single, double, found \"half\""},
       {"render a --packet 8", "--packet: wanted one of 1, 16, 64, 256, found \"8\""},
       {"render a --samples 0", "--samples: wanted a whole number from 1 to 65536, found \"0\""},
-      {"render a --sampler halton", "--sampler: wanted one of sobol, jitter, unshuffled, random, found \"halton\""},
+      {"render a --sampler halton",
+       "--sampler: wanted one of sobol, jitter, unshuffled, random, found \"halton\""},
       {"render a --error 0", "--error: wanted a number from 0.000001 to 1, found \"0\""},
       {"render a --error nan", "--error: wanted a number from 0.000001 to 1, found \"nan\""},
-      {"render a --time -1", "--time: wanted seconds above 0 and up to 1e9, or samples:N, found \"-1\""},
-      {"render a --time samples:0", "--time: wanted samples:N with N from 1 to 2^64 - 1, found \"samples:0\""},
+      {"render a --time -1",
+       "--time: wanted seconds above 0 and up to 1e9, or samples:N, found \"-1\""},
+      {"render a --time samples:0",
+       "--time: wanted samples:N with N from 1 to 2^64 - 1, found \"samples:0\""},
       {"render a --error .1 --time 1", "--error and --time: one of them, found both"},
-      {"render a --error .1 --samples 4", "--error and --time choose the samples: no --samples or --aa beside them"},
-      {"render a --time 1 --aa jitter:2", "--error and --time choose the samples: no --samples or --aa beside them"},
-      {"render a --error .1 --sampler jitter", "--sampler: wanted sobol or random with --error or --time"},
+      {"render a --error .1 --samples 4",
+       "--error and --time choose the samples: no --samples or --aa beside them"},
+      {"render a --time 1 --aa jitter:2",
+       "--error and --time choose the samples: no --samples or --aa beside them"},
+      {"render a --error .1 --sampler jitter",
+       "--sampler: wanted sobol or random with --error or --time"},
       {"render a --samples-map s.png", "--samples-map and --error-map want --error or --time"},
-      {"render a --error .1 --error-map s.txt", "--error-map: wanted a name ending in .png, .hdr, .pfm or .exr, found \"s.txt\""},
+      {"render a --error .1 --error-map s.txt",
+       "--error-map: wanted a name ending in .png, .hdr, .pfm or .exr, found \"s.txt\""},
       {"render a --aa 3", "--aa: wanted off, jitter:N or adaptive:THRESHOLD,DEPTH, found \"3\""},
       {"render a --aa adaptive:.1", "--aa: wanted adaptive:THRESHOLD,DEPTH, found \".1\""},
       {"render a --aa adaptive:1.5,3", "--aa: wanted a threshold from 0 to 1, found \"1.5\""},
       {"render a --aa adaptive:nan,3", "--aa: wanted a threshold from 0 to 1, found \"nan\""},
-      {"render a --aa adaptive:.1,3 --error .01", "--error and --time choose the samples: no --samples or --aa beside them"},
+      {"render a --aa adaptive:.1,3 --error .01",
+       "--error and --time choose the samples: no --samples or --aa beside them"},
       {"render a --aa adaptive:.1,9", "--aa: wanted a whole number from 0 to 8, found \"9\""},
       {"render a --aa jitter:0", "--aa: wanted a whole number from 1 to 256, found \"0\""},
-      {"render a --shadows soft", "--shadows: wanted hard, random:SIZE or area:SIZE,N, found \"soft\""},
+      {"render a --shadows soft",
+       "--shadows: wanted hard, random:SIZE or area:SIZE,N, found \"soft\""},
       {"render a --shadows area:1", "--shadows: wanted area:SIZE,N, found \"1\""},
       {"render a --shadows random:-1", "--shadows: wanted a size from 0 to 1e18, found \"-1\""},
       {"render a --lens 1,2,3,4", "--lens: wanted APERTURE,FOCUS,N, found \"1,2,3,4\""},
       {"render a --lens nan", "--lens: wanted an aperture from 0 to 1e18, found \"nan\""},
       {"render a --glossy .1,0", "--glossy: wanted a whole number from 1 to 256, found \"0\""},
       {"compare a", "B is required (see --help)"},
-      {"compare a b --max-rmse -1", "--max-rmse: wanted a number that is not negative, found \"-1\""},
-      {"compare a b --max-rmse nan", "--max-rmse: wanted a number that is not negative, found \"nan\""},
-      {"compare a b --diff d.txt", "--diff: wanted a name ending in .png, .hdr, .pfm or .exr, found \"d.txt\""},
+      {"compare a b --max-rmse -1",
+       "--max-rmse: wanted a number that is not negative, found \"-1\""},
+      {"compare a b --max-rmse nan",
+       "--max-rmse: wanted a number that is not negative, found \"nan\""},
+      {"compare a b --diff d.txt",
+       "--diff: wanted a name ending in .png, .hdr, .pfm or .exr, found \"d.txt\""},
       {"scene", "NAME is required (see grelha scene --list)"},
       {"scene balls --size x", "--size: wanted a whole number from 0 to 1000, found \"x\""},
   };
-  for (const auto& [line, message] : table) EXPECT_EQ(error_of(line), message) << line;
+  for (const auto& [line, message] : table)
+    EXPECT_EQ(error_of(line), message) << line;
 }
 
 /// What is too much is told how much there may be.
 TEST(Errors, SayTheUpperBoundToo) {
   const std::pair<const char*, const char*> table[] = {
       {"render a --lens 1e30,1,1", "--lens: wanted an aperture from 0 to 1e18, found \"1e30\""},
-      {"render a --lens 1,1e30,1", "--lens: wanted a focal distance from 0 to 1e18, found \"1e30\""},
-      {"render a --lens 1,1,65537", "--lens: wanted a whole number from 1 to 65536, found \"65537\""},
+      {"render a --lens 1,1e30,1",
+       "--lens: wanted a focal distance from 0 to 1e18, found \"1e30\""},
+      {"render a --lens 1,1,65537",
+       "--lens: wanted a whole number from 1 to 65536, found \"65537\""},
       {"render a --glossy 1e30", "--glossy: wanted a roughness from 0 to 1e18, found \"1e30\""},
       {"render a --shadows area:1e30,2", "--shadows: wanted a size from 0 to 1e18, found \"1e30\""},
       {"render a --shadows random:1e30", "--shadows: wanted a size from 0 to 1e18, found \"1e30\""},
-      {"render a --time 1e10", "--time: wanted seconds above 0 and up to 1e9, or samples:N, found \"1e10\""},
+      {"render a --time 1e10",
+       "--time: wanted seconds above 0 and up to 1e9, or samples:N, found \"1e10\""},
       {"render a --time samples:99999999999999999999",
-       "--time: wanted samples:N with N from 1 to 2^64 - 1, found \"samples:99999999999999999999\""},
-      {"render a --preview 1e10", "--preview: wanted seconds above 0 and up to 1e9, found \"1e10\""},
+       "--time: wanted samples:N with N from 1 to 2^64 - 1, found "
+       "\"samples:99999999999999999999\""},
+      {"render a --preview 1e10",
+       "--preview: wanted seconds above 0 and up to 1e9, found \"1e10\""},
       {"render a --checkpoint k --checkpoint-every 1e10",
        "--checkpoint-every: wanted seconds above 0 and up to 1e9, found \"1e10\""},
       {"render a --max-memory 1e30",
        "--max-memory: wanted a size from 64M to 1e18 bytes, such as 512M or 6G, found \"1e30\""},
       {"render a --aa jitter:256 --lens 1,1,2",
-       "--aa jitter:256 and --lens APERTURE,FOCUS,N: wanted at most 65536 samples a pixel, found 131072"},
+       "--aa jitter:256 and --lens APERTURE,FOCUS,N: wanted at most 65536 samples a pixel, found "
+       "131072"},
   };
-  for (const auto& [line, message] : table) EXPECT_EQ(error_of(line), message) << line;
+  for (const auto& [line, message] : table)
+    EXPECT_EQ(error_of(line), message) << line;
   EXPECT_EQ(error_of("render a --aa jitter:256 --lens 1,1,1"), "no error");
 }
 
-/// Of names that the system refuses to look at: the message is ours, or they are left to whoever opens them.
+/// Of names that the system refuses to look at: the message is ours, or they are left to whoever
+/// opens them.
 TEST(Errors, NamesThatCannotBeLookedAt) {
   const TemporaryFolder folder;
   const std::string loop = folder.file("loop"), inside = loop + "/x", far(5000, 'x');
   std::filesystem::create_symlink("loop", loop);
-  EXPECT_EQ(error_of("render a -o " + inside), "-o: wanted a name ending in .png, .hdr, .pfm, .exr or .grelha, found \"" + inside + '"');
-  EXPECT_EQ(error_of("render a -o " + far), "-o: wanted a name ending in .png, .hdr, .pfm, .exr or .grelha, found \"" + far + '"');
+  EXPECT_EQ(
+      error_of("render a -o " + inside),
+      "-o: wanted a name ending in .png, .hdr, .pfm, .exr or .grelha, found \"" + inside + '"');
+  EXPECT_EQ(error_of("render a -o " + far),
+            "-o: wanted a name ending in .png, .hdr, .pfm, .exr or .grelha, found \"" + far + '"');
   EXPECT_EQ(error_of("render a -o " + inside + ".png --checkpoint " + inside), "no error");
   try {
-    commands_for(std::get<RenderCommand>(parse("render a -o " + inside + ".png --checkpoint " + loop + "/./x.png")));
+    commands_for(std::get<RenderCommand>(
+        parse("render a -o " + inside + ".png --checkpoint " + loop + "/./x.png")));
     ADD_FAILURE() << "one file twice is not found";
   } catch (const UsageError& error) {
-    EXPECT_EQ(std::string(error.what()), "--checkpoint and -o: wanted two files, found \"" + inside + ".png\" twice");
+    EXPECT_EQ(std::string(error.what()),
+              "--checkpoint and -o: wanted two files, found \"" + inside + ".png\" twice");
   }
   EXPECT_EQ(error_of("render a -o " + far + ".png --checkpoint " + far), "no error");
 }
@@ -341,13 +410,15 @@ TEST(Nearest, CountsEdits) {
 std::set<std::string> options_in(const std::string& text) {
   std::set<std::string> found;
   const std::regex option(R"((^|[\s,])(--?[a-z][a-z-]*))");
-  for (std::sregex_iterator it(text.begin(), text.end(), option), end; it != end; ++it) found.insert((*it)[2]);
+  for (std::sregex_iterator it(text.begin(), text.end(), option), end; it != end; ++it)
+    found.insert((*it)[2]);
   return found;
 }
 
 TEST(Pages, HoldEveryOptionThatHelpShows) {
   const auto commands = all_commands();
-  const std::string man = man_page(commands), bash = bash_completion(commands), zsh = zsh_completion(commands), fish = fish_completion(commands);
+  const std::string man = man_page(commands), bash = bash_completion(commands),
+                    zsh = zsh_completion(commands), fish = fish_completion(commands);
   ASSERT_GE(commands.size(), 4u);
   std::size_t options = 0;
   for (const CommandHelp& c : commands) {
@@ -355,7 +426,8 @@ TEST(Pages, HoldEveryOptionThatHelpShows) {
       ++options;
       EXPECT_NE((" " + bash).find(" " + option), std::string::npos) << c.name << ' ' << option;
       EXPECT_NE(zsh.find("'" + option + '['), std::string::npos) << c.name << ' ' << option;
-      const std::string in_fish = option.starts_with("--") ? "-l " + option.substr(2) : "-s " + option.substr(1);
+      const std::string in_fish =
+          option.starts_with("--") ? "-l " + option.substr(2) : "-s " + option.substr(1);
       EXPECT_NE(fish.find(in_fish + ' '), std::string::npos) << c.name << ' ' << option;
       const std::string in_man = std::regex_replace(option, std::regex("-"), "\\-");
       EXPECT_NE(man.find("\\fB" + in_man + "\\fR"), std::string::npos) << c.name << ' ' << option;

@@ -33,7 +33,8 @@ Scene glass_in_glass(float mirror, float transmission) {
   Scene s;
   s.materials = {mirror_of(mirror)};
   s.materials[0].diffuse = {.2f, .2f, .2f};
-  s.materials[0].transmission = transmission, s.materials[0].ior = 1.5f;
+  s.materials[0].transmission = transmission;
+  s.materials[0].ior = 1.5f;
   s.geometry.spheres.add({0, 0, 0}, 1, 0);
   s.geometry.spheres.add({0, 0, 0}, .6f, 0);
   s.background = {.1f, .2f, .3f};
@@ -49,7 +50,8 @@ Scene faint_mixture(std::uint64_t seed) {
   for (int k = 0; k < 6; ++k) {
     const auto mirror = static_cast<float>(random.log_in(.004, .9));
     Material m = mirror_of(mirror);
-    m.transmission = k % 2 == 0 ? static_cast<float>(random.in(0, 1 - mirror)) : 0.f, m.ior = 1.4f;
+    m.transmission = k % 2 == 0 ? static_cast<float>(random.in(0, 1 - mirror)) : 0.f;
+    m.ior = 1.4f;
     m.diffuse = {.5f, .7f, .3f}, m.specular = {.2f, .2f, .2f}, m.shine = 10;
     s.materials.push_back(m);
   }
@@ -62,8 +64,12 @@ Scene faint_mixture(std::uint64_t seed) {
 
 Camera camera_at(const Float3& eye, const Float3& at, int side) {
   Camera c;
-  c.eye = eye, c.at = at, c.width = c.height = side, c.angle_deg = 30;
-  if (at.x == eye.x && at.z == eye.z) c.up = {0, 0, 1};
+  c.eye = eye;
+  c.at = at;
+  c.width = c.height = side;
+  c.angle_deg = 30;
+  if (at.x == eye.x && at.z == eye.z)
+    c.up = {0, 0, 1};
   return c;
 }
 
@@ -72,7 +78,8 @@ TEST(PathWeight, APathEndsWhenItsWeightTimesTheBrightestLightIsTooLittle) {
   const auto bounces = [&](float emission, double min_weight) {
     const Scene scene = face_to_face(.5f, emission);
     RenderOptions o;
-    o.depth = 100, o.min_weight = min_weight;
+    o.depth = 100;
+    o.min_weight = min_weight;
     RenderStats stats;
     render(World(scene, {}), camera, o, stats);
     return stats.rays.reflection;
@@ -92,10 +99,12 @@ TEST(PathWeight, AnEndSeesTheBackground) {
   scene.materials[0].diffuse = {0, 0, 0};
   scene.background = {1, 1, 1};
   RenderOptions o;
-  o.depth = 200, o.min_weight = .01;
+  o.depth = 200;
+  o.min_weight = .01;
   RenderStats stats;
   const Image image = render(World(scene, {}), camera_at({0, 0, 5}, {0, 0, 0}, 24), o, stats);
-  for (const float channel : image.rgb) EXPECT_NEAR(channel, 1, 1e-5);
+  for (const float channel : image.rgb)
+    EXPECT_NEAR(channel, 1, 1e-5);
 }
 
 /// Shares of a sample never sum to more than 1, so that of rays with a share of W or more at most 1
@@ -122,7 +131,8 @@ TEST(PathWeight, FansEnd) {
   Scene scene = face_to_face(.7f, 1);
   scene.materials[0].roughness = .2f;
   RenderOptions o;
-  o.depth = kMostDepth, o.sampling.gloss_rays = 16;
+  o.depth = kMostDepth;
+  o.sampling.gloss_rays = 16;
   RenderStats stats;
   const Image image = render(World(scene, {}), camera_at({0, 1, 0}, {0, 0, .25f}, 1), o, stats);
   EXPECT_LT(stats.rays.reflection, 3'000'000u);
@@ -156,19 +166,30 @@ TEST(PathWeight, NoChannelMovesByAThousandthAtTheUsualDepth) {
 
 TEST(PathWeight, EndsAreTheSameForAllLanesPacketsAndThreads) {
   Scene rough = faint_mixture(3);
-  for (Material& m : rough.materials) m.roughness = .1f;
+  for (Material& m : rough.materials)
+    m.roughness = .1f;
   for (const Scene& scene : {glass_in_glass(.9f, .8f), faint_mixture(2), rough}) {
     const World world(scene, {});
     const Camera camera = camera_at({0, 0, 6}, {0, 0, 0}, 40);
     RenderOptions o;
-    o.depth = 12, o.min_weight = .001, o.sampling.gloss_rays = 3, o.sampling.samples = 2;
-    o.threads = 1, o.packet = 1, o.isa = "scalar", o.mailbox = false;
+    o.depth = 12;
+    o.min_weight = .001;
+    o.sampling.gloss_rays = 3;
+    o.sampling.samples = 2;
+    o.threads = 1;
+    o.packet = 1;
+    o.isa = "scalar";
+    o.mailbox = false;
     RenderStats stats;
     const Image expected = render(world, camera, o, stats);
     for (const Isa& isa : isas())
       for (const int packet : {1, 16, 64, 256}) {
-        if (!isa.runs_here) continue;
-        o.threads = 2, o.packet = packet, o.isa = isa.name, o.mailbox = true;
+        if (!isa.runs_here)
+          continue;
+        o.threads = 2;
+        o.packet = packet;
+        o.isa = isa.name;
+        o.mailbox = true;
         EXPECT_EQ(render(world, camera, o, stats).rgb, expected.rgb) << isa.name << ' ' << packet;
       }
   }

@@ -9,6 +9,7 @@ Takes some ten minutes; the list with its last outcome is in docs/numerics.md.
 """
 import argparse
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -99,6 +100,11 @@ def outcome(source, fault, log):
         return False
 
 
+def place_of(fault):
+    """The fault's text, however lines are broken: between words and signs any white space may stand."""
+    return re.compile(r"\s*".join(re.escape(word) for word in re.findall(r"\w+|[^\w\s]", fault.old)))
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", default="", help="faults whose name holds this")
@@ -107,7 +113,7 @@ def main():
     asked = parser.parse_args()
     faults = [f for f in FAULTS if asked.only in f.name]
     for f in faults:
-        if (n := (ROOT / f.file).read_text().count(f.old)) != 1:
+        if (n := len(place_of(f).findall((ROOT / f.file).read_text()))) != 1:
             sys.exit(f"plant: '{f.name}': the text is found {n} times in {f.file}, not once")
         if asked.list:
             print(f"{f.name}: {f.file}; {f.test}_test {f.cases}")
@@ -122,7 +128,7 @@ def main():
             sound = file.read_text()
             if not outcome(source, f, log):
                 sys.exit(f"plant: {log}: {f.test}_test {f.cases} is red without '{f.name}'")
-            file.write_text(sound.replace(f.old, f.new))
+            file.write_text(place_of(f).sub(lambda _: f.new, sound))
             passed = outcome(source, f, log)
             file.write_text(sound)
             print(f"{'GREEN' if passed else 'red'}: {f.name}: {f.test}_test {f.cases}", flush=True)

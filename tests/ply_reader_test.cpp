@@ -20,7 +20,8 @@ using test::TemporaryFolder;
 /// Writes rows in one of the three encodings, value by value.
 class PlyWriter {
  public:
-  explicit PlyWriter(const std::string& format) : format_(format), data_("ply\nformat " + format + " 1.0\n") {}
+  explicit PlyWriter(const std::string& format)
+      : format_(format), data_("ply\nformat " + format + " 1.0\n") {}
   PlyWriter& line(const std::string& text) {
     data_ += text + '\n';
     return *this;
@@ -49,11 +50,13 @@ class PlyWriter {
     return *this;
   }
   PlyWriter& values(const std::string& type, const std::vector<double>& all) {
-    for (const double v : all) value(type, v);
+    for (const double v : all)
+      value(type, v);
     return *this;
   }
   PlyWriter& end_row() {
-    if (format_ == "ascii") data_ += '\n';
+    if (format_ == "ascii")
+      data_ += '\n';
     return *this;
   }
   const std::string& bytes() const { return data_; }
@@ -63,15 +66,26 @@ class PlyWriter {
   void put(T v) {  // the machines this runs on are little endian
     char bytes[sizeof v];
     std::memcpy(bytes, &v, sizeof v);
-    if (format_ == "binary_big_endian") std::reverse(bytes, bytes + sizeof v);
+    if (format_ == "binary_big_endian")
+      std::reverse(bytes, bytes + sizeof v);
     data_.append(bytes, sizeof v);
   }
   std::string format_, data_;
 };
 
 const std::string kFormats[] = {"ascii", "binary_little_endian", "binary_big_endian"};
-const std::string kIntegers[] = {"char",   "int8",   "uchar", "uint8", "short", "int16",
-                                 "ushort", "uint16", "int",   "int32", "uint",  "uint32"};
+const std::string kIntegers[] = {"char",
+                                 "int8",
+                                 "uchar",
+                                 "uint8",
+                                 "short",
+                                 "int16",
+                                 "ushort",
+                                 "uint16",
+                                 "int",
+                                 "int32",
+                                 "uint",
+                                 "uint32"};
 
 class EveryType : public testing::TestWithParam<std::tuple<std::string, std::string>> {};
 
@@ -80,29 +94,58 @@ TEST_P(EveryType, AsCoordinateAndAsSomethingToStepOver) {
   PlyWriter w(format);
   w.line("element vertex 3").line("property " + type + " skipped").line("property " + type + " z");
   w.line("property " + type + " x").line("property double also").line("property " + type + " y");
-  w.line("element face 1").line("property " + type + " flag").line("property list uchar int vertex_indices");
+  w.line("element face 1")
+      .line("property " + type + " flag")
+      .line("property list uchar int vertex_indices");
   w.line("property list int " + type + " more").line("end_header");
   for (const double v : {1.0, 5.0, 9.0})
-    w.value(type, 77).value(type, v).value(type, v + 1).value("double", .5).value(type, v + 2).end_row();
-  w.value(type, 1).value("uchar", 3).values("int", {2, 0, 1}).value("int", 2).values(type, {7, 8}).end_row();
+    w.value(type, 77)
+        .value(type, v)
+        .value(type, v + 1)
+        .value("double", .5)
+        .value(type, v + 2)
+        .end_row();
+  w.value(type, 1)
+      .value("uchar", 3)
+      .values("int", {2, 0, 1})
+      .value("int", 2)
+      .values(type, {7, 8})
+      .end_row();
   const Mesh mesh = read_ply_mesh("m.ply", w.bytes());
   EXPECT_EQ(mesh.z, (std::vector<float>{1, 5, 9}));
   EXPECT_EQ(mesh.x, (std::vector<float>{2, 6, 10}));
   EXPECT_EQ(mesh.y, (std::vector<float>{3, 7, 11}));
   EXPECT_EQ(mesh.corners, (std::vector<std::uint32_t>{2, 0, 1}));
 }
-INSTANTIATE_TEST_SUITE_P(Ply, EveryType,
+INSTANTIATE_TEST_SUITE_P(Ply,
+                         EveryType,
                          testing::Combine(testing::ValuesIn(kFormats),
-                                          testing::Values("char", "int8", "uchar", "uint8", "short", "int16", "ushort",
-                                                          "uint16", "int", "int32", "uint", "uint32", "float",
-                                                          "float32", "double", "float64")));
+                                          testing::Values("char",
+                                                          "int8",
+                                                          "uchar",
+                                                          "uint8",
+                                                          "short",
+                                                          "int16",
+                                                          "ushort",
+                                                          "uint16",
+                                                          "int",
+                                                          "int32",
+                                                          "uint",
+                                                          "uint32",
+                                                          "float",
+                                                          "float32",
+                                                          "double",
+                                                          "float64")));
 
-class EveryIndexType : public testing::TestWithParam<std::tuple<std::string, std::string, std::string>> {};
+class EveryIndexType
+    : public testing::TestWithParam<std::tuple<std::string, std::string, std::string>> {};
 
 TEST_P(EveryIndexType, InFacesOfAnySize) {
   const auto& [format, count, item] = GetParam();
   PlyWriter w(format);
-  w.line("comment faces first").line("element face 4").line("property list " + count + ' ' + item + " vertex_index");
+  w.line("comment faces first")
+      .line("element face 4")
+      .line("property list " + count + ' ' + item + " vertex_index");
   w.line("element vertex 5")
       .line("property float x")
       .line("property float y")
@@ -112,15 +155,18 @@ TEST_P(EveryIndexType, InFacesOfAnySize) {
   w.value(count, 5).values(item, {0, 1, 2, 3, 4}).end_row();
   w.value(count, 2).values(item, {0, 1}).end_row();
   w.value(count, 0).end_row();
-  for (int i = 0; i < 5; ++i) w.values("float", {double(i), double(i * i), 0}).end_row();
+  for (int i = 0; i < 5; ++i)
+    w.values("float", {double(i), double(i * i), 0}).end_row();
   const Mesh mesh = read_ply_mesh("m.ply", w.bytes());
   EXPECT_EQ(mesh.face_count(), 4u);
   EXPECT_EQ(mesh.sizes, (std::vector<std::uint32_t>{3, 5, 2, 0}));
   EXPECT_EQ(mesh.corners, (std::vector<std::uint32_t>{0, 1, 2, 0, 1, 2, 3, 4, 0, 1}));
   EXPECT_EQ(mesh.y[4], 16);
 }
-INSTANTIATE_TEST_SUITE_P(Ply, EveryIndexType,
-                         testing::Combine(testing::ValuesIn(kFormats), testing::ValuesIn(kIntegers),
+INSTANTIATE_TEST_SUITE_P(Ply,
+                         EveryIndexType,
+                         testing::Combine(testing::ValuesIn(kFormats),
+                                          testing::ValuesIn(kIntegers),
                                           testing::ValuesIn(kIntegers)));
 
 class EveryFormat : public testing::TestWithParam<std::string> {};
@@ -135,8 +181,12 @@ PlyWriter& vertex_header(PlyWriter& w, int count) {
 
 TEST_P(EveryFormat, StripsTurnEverySecondTriangle) {
   PlyWriter w(GetParam());
-  vertex_header(w, 6).line("element tristrips 1").line("property list int int vertex_indices").line("end_header");
-  for (int i = 0; i < 6; ++i) w.values("float", {double(i), double(i % 2), 0}).end_row();
+  vertex_header(w, 6)
+      .line("element tristrips 1")
+      .line("property list int int vertex_indices")
+      .line("end_header");
+  for (int i = 0; i < 6; ++i)
+    w.values("float", {double(i), double(i % 2), 0}).end_row();
   const std::vector<double> strip{0, 1, 2, 3, -1, 2, 3, 3, 4, 5, -1, 1};
   w.value("int", double(strip.size())).values("int", strip).end_row();
   const Mesh mesh = read_ply_mesh("m.ply", w.bytes());
@@ -152,15 +202,22 @@ TEST_P(EveryFormat, OtherElementsAndNormals) {
       .line("property float view_px")
       .line("property list uchar short k");
   w.line("element nothing 1000000").line("");
-  w.line("  element\tvertex   3 ").line("property float nx").line("property float ny").line("property float nz");
-  w.line("comment between").line("property double x").line("property double y").line("property double z");
+  w.line("  element\tvertex   3 ")
+      .line("property float nx")
+      .line("property float ny")
+      .line("property float nz");
+  w.line("comment between")
+      .line("property double x")
+      .line("property double y")
+      .line("property double z");
   w.line("element material 2")
       .line("property uchar r")
       .line("element face 1")
       .line("property list uchar uint vertex_indices")
       .line("end_header");
   w.value("float", 1).value("uchar", 2).values("short", {4, 5}).end_row();
-  for (int i = 0; i < 3; ++i) w.values("float", {0, 0, i + 1.0}).values("double", {i + .5, i * i + .25, 0}).end_row();
+  for (int i = 0; i < 3; ++i)
+    w.values("float", {0, 0, i + 1.0}).values("double", {i + .5, i * i + .25, 0}).end_row();
   w.value("uchar", 1).end_row().value("uchar", 2).end_row();
   w.value("uchar", 3).values("uint", {0, 1, 2}).end_row();
   const Mesh mesh = read_ply_mesh("m.ply", w.bytes() + "trailing bytes 1 2 3");
@@ -171,7 +228,10 @@ TEST_P(EveryFormat, OtherElementsAndNormals) {
 
 TEST_P(EveryFormat, NoVerticesNoFaces) {
   PlyWriter w(GetParam());
-  vertex_header(w, 0).line("element face 0").line("property list uchar int vertex_indices").line("end_header");
+  vertex_header(w, 0)
+      .line("element face 0")
+      .line("property list uchar int vertex_indices")
+      .line("end_header");
   EXPECT_EQ(read_ply_mesh("m.ply", w.bytes()).face_count(), 0u);
   PlyWriter cloud(GetParam());
   vertex_header(cloud, 1).line("end_header").values("float", {1, 2, 3});
@@ -187,10 +247,12 @@ class EveryLineEnd : public testing::TestWithParam<std::tuple<std::string, int>>
 TEST_P(EveryLineEnd, LeavesTheFirstDataByte) {
   const auto& [end, first] = GetParam();
   std::string text =
-      "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty uchar x\nproperty uchar y\nproperty uchar "
+      "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty uchar x\nproperty uchar "
+      "y\nproperty uchar "
       "z\nend_header\n";
   std::string file;
-  for (const char c : text) c == '\n' ? file += end : file += c;
+  for (const char c : text)
+    c == '\n' ? file += end : file += c;
   file += char(first);
   file += "\x0A\x0D";
   const Mesh mesh = read_ply_mesh("m.ply", file);
@@ -198,11 +260,14 @@ TEST_P(EveryLineEnd, LeavesTheFirstDataByte) {
   EXPECT_EQ(mesh.y, std::vector<float>{10});
   EXPECT_EQ(mesh.z, std::vector<float>{13});
 }
-INSTANTIATE_TEST_SUITE_P(Ply, EveryLineEnd,
-                         testing::Combine(testing::Values("\n", "\r\n", "\r"), testing::Values(10, 13, 65)));
+INSTANTIATE_TEST_SUITE_P(Ply,
+                         EveryLineEnd,
+                         testing::Combine(testing::Values("\n", "\r\n", "\r"),
+                                          testing::Values(10, 13, 65)));
 
 const std::string kAsciiTriangle =
-    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
+    "z\n"
     "element face 2\nproperty list uchar int vertex_indices\nend_header\n";
 
 using Lines = std::vector<std::string>;
@@ -210,20 +275,26 @@ using Lines = std::vector<std::string>;
 /// What is said of a file on the way to its mesh.
 Lines warnings_of(const std::string& bytes) {
   Lines lines;
-  EXPECT_EQ(read_ply_mesh("m.ply", bytes, [&](const std::string& line) { lines.push_back(line); }).face_count(), 2u);
+  EXPECT_EQ(read_ply_mesh("m.ply", bytes, [&](const std::string& line) { lines.push_back(line); })
+                .face_count(),
+            2u);
   return lines;
 }
 
 /// A comment that an exporter broke, and words of its own: each kind once, and the mesh is read.
 TEST(PlyHeader, StrayLinesAreSkipped) {
-  const std::string rows = "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 2 1 0\n", header = kAsciiTriangle.substr(4);
+  const std::string rows = "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 2 1 0\n",
+                    header = kAsciiTriangle.substr(4);
   EXPECT_EQ(warnings_of(kAsciiTriangle + rows), Lines{});
-  EXPECT_EQ(warnings_of("ply\nmade by hand\n" + header + rows),
-            Lines{"m.ply:2:1: warning: no line of a PLY header begins with \"made\"; it is skipped"});
+  EXPECT_EQ(
+      warnings_of("ply\nmade by hand\n" + header + rows),
+      Lines{"m.ply:2:1: warning: no line of a PLY header begins with \"made\"; it is skipped"});
   const std::string stray = "  going on, \xC3\xA0 la carte\nvertices 3\nvertices 3\n";
-  EXPECT_EQ(warnings_of("ply\n" + header.substr(0, 17) + stray + header.substr(17) + rows),
-            (Lines{"m.ply:3:3: warning: no line of a PLY header begins with \"going\"; it is skipped",
-                   "m.ply:4:1: warning: no line of a PLY header begins with \"vertices\"; it is skipped"}));
+  EXPECT_EQ(
+      warnings_of("ply\n" + header.substr(0, 17) + stray + header.substr(17) + rows),
+      (Lines{
+          "m.ply:3:3: warning: no line of a PLY header begins with \"going\"; it is skipped",
+          "m.ply:4:1: warning: no line of a PLY header begins with \"vertices\"; it is skipped"}));
 }
 
 TEST(PlyHeader, NulBytesAreToldOf) {
@@ -231,7 +302,10 @@ TEST(PlyHeader, NulBytesAreToldOf) {
   EXPECT_EQ(warnings_of(kAsciiTriangle + "0 0 0\n1\0 0 0\n0 1\0 0\n3 0 1 2\n3 2 1 0\n"s),
             Lines{"m.ply:11:2: warning: the text holds NUL bytes, which count as blanks"});
   PlyWriter w("binary_little_endian");
-  vertex_header(w, 1).line("element face 2").line("property list uchar int vertex_indices").line("end_header");
+  vertex_header(w, 1)
+      .line("element face 2")
+      .line("property list uchar int vertex_indices")
+      .line("end_header");
   w.values("float", {0, 0, 0}).value("uchar", 0).value("uchar", 0);
   EXPECT_EQ(warnings_of(w.bytes()), Lines{}) << "binary data are no text";
 }
@@ -239,7 +313,8 @@ TEST(PlyHeader, NulBytesAreToldOf) {
 /// 200,000 elements: each was compared with all before it, which took minutes.
 TEST(PlyHeader, ManyElementsEndSoon) {
   std::string text = "ply\nformat ascii 1.0\n";
-  for (int i = 0; i < 200000; ++i) text += "element e" + std::to_string(i) + " 0\n";
+  for (int i = 0; i < 200000; ++i)
+    text += "element e" + std::to_string(i) + " 0\n";
   const std::clock_t start = std::clock();  // of the processor: others may be busy with it
   EXPECT_EQ(read_ply_mesh("m.ply", text + "end_header\n").face_count(), 0u);
   constexpr double kPatience = 5;  // .1 s were measured
@@ -249,9 +324,11 @@ TEST(PlyHeader, ManyElementsEndSoon) {
 /// Whoever waits for a header, or for one long list, can stop it.
 TEST(PlyReader, AsksWhetherToGoOn) {
   std::string header = "ply\nformat ascii 1.0\n";
-  while (header.size() < (3u << 20)) header += "comment again and again\n";
+  while (header.size() < (3u << 20))
+    header += "comment again and again\n";
   std::string list = kAsciiTriangle + "0 0 0\n1 0 0\n0 1 0\n2000000";
-  for (int i = 0; i < 2000000; ++i) list += " 0";
+  for (int i = 0; i < 2000000; ++i)
+    list += " 0";
   for (const std::string& text : {header + "end_header\n", list + "\n0\n"}) {
     int asked = 0;
     const std::function<bool(double)> report = [&](double) { return ++asked < 2; };
@@ -264,9 +341,10 @@ TEST(PlyReader, AsksWhetherToGoOn) {
 
 TEST(PlyAscii, RowsMayBreakAndJoin) {
   const std::vector<std::uint32_t> expected{0, 1, 2, 2, 1, 0};
-  for (const char* rows :
-       {"0 0 0\n1 0\n0\n0\n1 0\n3 0 1\n2\n3 2 1 0", "0 0 0 1 0 0 0 1 0 3 0 1 2 3 2 1 0\n",
-        "0 0 0 1 0 0\r\n0 1 0\r\n\r\n3 0 1 2 3 2 1 0", "000 0 0\r1 0 0\r0 1 0\r3 0 1 2\r3 2 1 0\rtail"}) {
+  for (const char* rows : {"0 0 0\n1 0\n0\n0\n1 0\n3 0 1\n2\n3 2 1 0",
+                           "0 0 0 1 0 0 0 1 0 3 0 1 2 3 2 1 0\n",
+                           "0 0 0 1 0 0\r\n0 1 0\r\n\r\n3 0 1 2 3 2 1 0",
+                           "000 0 0\r1 0 0\r0 1 0\r3 0 1 2\r3 2 1 0\rtail"}) {
     const Mesh mesh = read_ply_mesh("m.ply", kAsciiTriangle + rows);
     EXPECT_EQ(mesh.corners, expected) << rows;
     EXPECT_EQ(mesh.x, (std::vector<float>{0, 1, 0})) << rows;
@@ -274,8 +352,8 @@ TEST(PlyAscii, RowsMayBreakAndJoin) {
 }
 
 TEST(PlyAscii, RowsTooLongAreCut) {
-  const Mesh mesh =
-      read_ply_mesh("m.ply", kAsciiTriangle + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2 6 .5 .5 .5 .5\n3 2 1 0 6 1 1 1 1\n");
+  const Mesh mesh = read_ply_mesh(
+      "m.ply", kAsciiTriangle + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2 6 .5 .5 .5 .5\n3 2 1 0 6 1 1 1 1\n");
   EXPECT_EQ(mesh.corners, (std::vector<std::uint32_t>{0, 1, 2, 2, 1, 0}));
 }
 
@@ -283,26 +361,30 @@ TEST(PlyAlone, PolygonsAreCutAndBadFacesCounted) {
   const TemporaryFolder folder;
   const std::string path =
       folder.add("m.ply",
-                 "ply\nformat ascii 1.0\nelement vertex 9\nproperty float x\nproperty float y\nproperty float z\n"
+                 "ply\nformat ascii 1.0\nelement vertex 9\nproperty float x\nproperty float "
+                 "y\nproperty float z\n"
                  "element face 6\nproperty list uchar int vertex_indices\nend_header\n"
                  "0 0 0\n4 0 0\n1 1 0\n0 4 0\n0 0 0\n+inf 0 0\n8 0 0\n0 0 1e19\n-3 0 0\n"
                  "4 0 1 2 3\n3 0 0 1\n3 0 4 1\n3 0 1 5\n2 0 1\n3 0 1 7\n");
   std::vector<std::string> warnings;
-  const SceneFile file = read_scene(path, [&](const std::string& line) { warnings.push_back(line); });
+  const SceneFile file =
+      read_scene(path, [&](const std::string& line) { warnings.push_back(line); });
   EXPECT_EQ(file.counts.ply, 6u);
   EXPECT_EQ(file.counts.materials, 0u);
   EXPECT_EQ(file.scene.geometry.triangles.size(), 2u);
   EXPECT_EQ(file.dropped.zero_area, 3u);
   EXPECT_EQ(file.dropped.not_finite, 2u);
-  EXPECT_EQ(warnings,
-            std::vector<std::string>{
-                path + ": warning: 5 primitives are left out: 2 not finite (or beyond 1e18), 3 without area"});
+  EXPECT_EQ(
+      warnings,
+      std::vector<std::string>{
+          path +
+          ": warning: 5 primitives are left out: 2 not finite (or beyond 1e18), 3 without area"});
 }
 
 TEST(PlyAlone, TrianglesWithoutAreaAreLeftOut) {
   const TemporaryFolder folder;
-  const SceneFile file =
-      read_scene(folder.add("m.ply", kAsciiTriangle + "0 0 0\n1 0 0\n0 1 0\n3 0 1 1\n3 2 1 0\n"), nullptr);
+  const SceneFile file = read_scene(
+      folder.add("m.ply", kAsciiTriangle + "0 0 0\n1 0 0\n0 1 0\n3 0 1 1\n3 2 1 0\n"), nullptr);
   EXPECT_EQ(file.dropped.zero_area, 1u);
   EXPECT_EQ(file.scene.geometry.triangles.a, std::vector<std::uint32_t>{2});
   EXPECT_EQ(file.scene.geometry.triangles.material.size(), 1u);
@@ -311,7 +393,8 @@ TEST(PlyAlone, TrianglesWithoutAreaAreLeftOut) {
 
 TEST(PlyAlone, EmptyMeshHasAView) {
   const TemporaryFolder folder;
-  const SceneFile file = read_scene(folder.add("m.ply", "ply\nformat ascii 1.0\nend_header\n"), nullptr);
+  const SceneFile file =
+      read_scene(folder.add("m.ply", "ply\nformat ascii 1.0\nend_header\n"), nullptr);
   EXPECT_TRUE(file.default_camera);
   EXPECT_TRUE(std::isfinite(file.camera.eye.x));
   EXPECT_TRUE(file.scene.geometry.objects.empty());
@@ -320,7 +403,9 @@ TEST(PlyAlone, EmptyMeshHasAView) {
 TEST(PlyAlone, IsToldByItsExtensionOrItsFirstWord) {
   const TemporaryFolder folder;
   for (const char* name : {"m.PLY", "m.mesh", "m"})
-    EXPECT_TRUE(read_scene(folder.add(name, "ply\nformat ascii 1.0\nend_header\n"), nullptr).default_camera) << name;
+    EXPECT_TRUE(
+        read_scene(folder.add(name, "ply\nformat ascii 1.0\nend_header\n"), nullptr).default_camera)
+        << name;
 }
 
 }  // namespace

@@ -22,17 +22,19 @@ std::vector<Triangle> cut(const Outline& corners) {
 
 /// Signed, in the plane z = const, seen from +z.
 double area(const Float3& a, const Float3& b, const Float3& c) {
-  return 0.5 * ((double(b.x) - a.x) * (double(c.y) - a.y) - (double(b.y) - a.y) * (double(c.x) - a.x));
+  return 0.5 *
+         ((double(b.x) - a.x) * (double(c.y) - a.y) - (double(b.y) - a.y) * (double(c.x) - a.x));
 }
 double area(const Outline& p) {
   double sum = 0;
-  for (std::size_t i = 2; i < p.size(); ++i) sum += area(p[0], p[i - 1], p[i]);
+  for (std::size_t i = 2; i < p.size(); ++i)
+    sum += area(p[0], p[i - 1], p[i]);
   return sum;
 }
 
-/// Triangles that all turn with the outline and whose areas add up to its area cover it once each: any overlap would
-/// have to be paid by a gap, and every triangle is shown to turn the right way. Each sum of n terms in double errs by
-/// at most n eps times the sum of their sizes.
+/// Triangles that all turn with the outline and whose areas add up to its area cover it once each:
+/// any overlap would have to be paid by a gap, and every triangle is shown to turn the right way.
+/// Each sum of n terms in double errs by at most n eps times the sum of their sizes.
 void expect_cover(const Outline& outline, const std::vector<Triangle>& triangles) {
   const double whole = area(outline);
   double sum = 0;
@@ -43,7 +45,8 @@ void expect_cover(const Outline& outline, const std::vector<Triangle>& triangles
     sum += piece;
   }
   double sizes = 0;
-  for (std::size_t i = 2; i < outline.size(); ++i) sizes += std::abs(area(outline[0], outline[i - 1], outline[i]));
+  for (std::size_t i = 2; i < outline.size(); ++i)
+    sizes += std::abs(area(outline[0], outline[i - 1], outline[i]));
   EXPECT_NEAR(sum, whole, double(outline.size()) * 2.3e-16 * 4 * sizes);
   EXPECT_LE(triangles.size(), outline.size() - 2);
 }
@@ -69,7 +72,8 @@ Outline star(int corners, double inner) {
   return p;
 }
 
-/// Teeth upwards from a spine: half of the corners are reflex, and the spine left at the end is one flat row of them.
+/// Teeth upwards from a spine: half of the corners are reflex, and the spine left at the end is one
+/// flat row of them.
 Outline comb(int teeth) {
   Outline p{{0, 0, 0}, {float(2 * teeth), 0, 0}};
   for (int i = teeth; i-- > 0;) {
@@ -92,24 +96,27 @@ TEST(Polygon, ConcaveQuadIsSplitAtItsReflexCorner) {
 }
 
 TEST(Polygon, ConcaveOnes) {
-  expect_cover_any_way({{0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {2, 3, 0}, {2, 1, 0}, {1, 1, 0}, {1, 3, 0}, {0, 3, 0}});
+  expect_cover_any_way(
+      {{0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {2, 3, 0}, {2, 1, 0}, {1, 1, 0}, {1, 3, 0}, {0, 3, 0}});
   expect_cover_any_way(star(144, 0.8));
   expect_cover_any_way(star(12, 0.05));
   expect_cover_any_way(comb(50));
 }
 
-/// A flat corner that no triangle has would lie on the side of one, and rays could slip through beside it where the
-/// neighbour has that corner.
+/// A flat corner that no triangle has would lie on the side of one, and rays could slip through
+/// beside it where the neighbour has that corner.
 TEST(Polygon, CornersInARowAreAllUsed) {
-  for (Outline outline : {Outline{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 2, 0}, {1, 2, 0}, {0, 2, 0}, {0, 1, 0}},
-                          Outline{{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {2, 2, 0}, {1, 1, 0}, {0, 2, 0}},
-                          Outline{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {0, 3, 0}}}) {
+  for (Outline outline :
+       {Outline{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 2, 0}, {1, 2, 0}, {0, 2, 0}, {0, 1, 0}},
+        Outline{{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {2, 2, 0}, {1, 1, 0}, {0, 2, 0}},
+        Outline{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {0, 3, 0}}}) {
     for (std::size_t shift = 0; shift < outline.size(); ++shift) {
       const std::vector<Triangle> triangles = cut(outline);
       expect_cover(outline, triangles);
       std::vector<bool> used(outline.size());
       for (const Triangle& triangle : triangles)
-        for (const std::uint32_t corner : triangle) used[corner] = true;
+        for (const std::uint32_t corner : triangle)
+          used[corner] = true;
       EXPECT_EQ(std::count(used.begin(), used.end(), false), 0) << "shift " << shift;
       std::rotate(outline.begin(), outline.begin() + 1, outline.end());
     }
@@ -122,11 +129,20 @@ TEST(Polygon, RepeatedCorners) {
 
 /// A square with a square hole, joined by a seam that is walked both ways.
 TEST(Polygon, KeyholeKeepsItsHole) {
-  expect_cover_any_way(
-      {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {0, 0, 0}, {1, 1, 0}, {1, 3, 0}, {3, 3, 0}, {3, 1, 0}, {1, 1, 0}});
+  expect_cover_any_way({{0, 0, 0},
+                        {4, 0, 0},
+                        {4, 4, 0},
+                        {0, 4, 0},
+                        {0, 0, 0},
+                        {1, 1, 0},
+                        {1, 3, 0},
+                        {3, 3, 0},
+                        {3, 1, 0},
+                        {1, 1, 0}});
 }
 
-/// Corners at rising angles around a point, at any distance: simple, and reflex about as often as not.
+/// Corners at rising angles around a point, at any distance: simple, and reflex about as often as
+/// not.
 TEST(Polygon, RandomOutlines) {
   std::mt19937 random(7);
   std::uniform_real_distribution<float> radius(0.1f, 10.0f);
@@ -146,7 +162,8 @@ TEST(Polygon, AnyPlaneGivesTheSameCut) {
   const Outline flat = star(40, 0.5);
   const auto expected = cut(flat);
   Outline yz, zx;
-  for (const Float3& p : flat) yz.push_back({5, p.x, p.y}), zx.push_back({p.y, 5, p.x});
+  for (const Float3& p : flat)
+    yz.push_back({5, p.x, p.y}), zx.push_back({p.y, 5, p.x});
   EXPECT_EQ(cut(yz), expected);
   EXPECT_EQ(cut(zx), expected);
 }
@@ -154,7 +171,8 @@ TEST(Polygon, AnyPlaneGivesTheSameCut) {
 TEST(Polygon, NormalIsTwiceTheArea) {
   PolygonCutter cutter;
   std::vector<Triangle> triangles;
-  ASSERT_TRUE(cutter.cut(std::vector<Float3>{{0, 0, 1}, {2, 0, 1}, {2, 3, 1}, {0, 3, 1}}, triangles));
+  ASSERT_TRUE(
+      cutter.cut(std::vector<Float3>{{0, 0, 1}, {2, 0, 1}, {2, 3, 1}, {0, 3, 1}}, triangles));
   EXPECT_EQ(cutter.normal(), (std::array<double, 3>{0, 0, 12}));
 }
 
@@ -162,7 +180,9 @@ TEST(Polygon, WithoutAreaThereIsNothing) {
   PolygonCutter cutter;
   std::vector<Triangle> triangles;
   EXPECT_FALSE(cutter.cut(
-      std::vector<Float3>{{0.1f, 0.1f, 0.1f}, {0.2f, 0.2f, 0.2f}, {0.7f, 0.7f, 0.7f}, {0.3f, 0.3f, 0.3f}}, triangles));
+      std::vector<Float3>{
+          {0.1f, 0.1f, 0.1f}, {0.2f, 0.2f, 0.2f}, {0.7f, 0.7f, 0.7f}, {0.3f, 0.3f, 0.3f}},
+      triangles));
   EXPECT_FALSE(cutter.cut(std::vector<Float3>{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}, triangles));
   EXPECT_FALSE(cutter.cut(std::vector<Float3>{{1, 1, 1}, {1, 2, 1}}, triangles));
   EXPECT_TRUE(triangles.empty());
@@ -185,8 +205,9 @@ double perimeter(const Outline& outline, const std::vector<Triangle>& triangles)
   return sum;
 }
 
-/// A fan reaches across with each of its triangles, and would put them all in every cell of a grid. Cut evenly, each
-/// pass of ears draws diagonals once round the circle, and each is a side of two triangles.
+/// A fan reaches across with each of its triangles, and would put them all in every cell of a grid.
+/// Cut evenly, each pass of ears draws diagonals once round the circle, and each is a side of two
+/// triangles.
 TEST(Polygon, LargeOutlinesAreCutIntoShortTriangles) {
   constexpr int kCorners = 30000;
   for (const Outline& outline : {star(kCorners, 1), star(kCorners, .999)}) {
@@ -216,7 +237,8 @@ TEST(Polygon, SpiralsEndSoon) {
   constexpr int kTurns = 100, kSteps = 50000;
   for (int side = 0; side < 2; ++side)
     for (int k = 0; k < kSteps; ++k) {
-      const double t = side == 0 ? k : kSteps - 1 - k, angle = 2 * std::numbers::pi * kTurns * t / kSteps;
+      const double t = side == 0 ? k : kSteps - 1 - k,
+                   angle = 2 * std::numbers::pi * kTurns * t / kSteps;
       const double r = 1 + angle / (2 * std::numbers::pi) - (side == 0 ? 0 : 0.5);
       outline.push_back({float(r * std::cos(angle)), float(r * std::sin(angle)), 0});
     }
@@ -225,7 +247,8 @@ TEST(Polygon, SpiralsEndSoon) {
   expect_cover(outline, triangles);
 }
 
-/// Spikes of any length that meet near the middle: every ear is a sliver among the corners of all others.
+/// Spikes of any length that meet near the middle: every ear is a sliver among the corners of all
+/// others.
 TEST(Polygon, StarsOfAMillionCornersEndSoon) {
   constexpr int kCorners = 1000000;
   std::mt19937 random(5);
@@ -233,7 +256,8 @@ TEST(Polygon, StarsOfAMillionCornersEndSoon) {
   for (const bool regular : {true, false}) {
     Outline outline;
     for (int i = 0; i < kCorners; ++i) {
-      const double angle = 2 * std::numbers::pi * i / kCorners, r = regular ? 1 + i % 2 : length(random);
+      const double angle = 2 * std::numbers::pi * i / kCorners,
+                   r = regular ? 1 + i % 2 : length(random);
       outline.push_back({float(r * std::cos(angle)), float(r * std::sin(angle)), 0});
     }
     std::vector<Triangle> triangles;
@@ -249,7 +273,8 @@ TEST(Polygon, NoiseEndsSoon) {
   for (const int n : {4, 5, 6, 7, 8, 50, 1000, 50000}) {
     for (int round = 0; round < (n < 100 ? 2000 : 1); ++round) {
       Outline outline;
-      for (int i = 0; i < n; ++i) outline.push_back({float(coordinate(random)), float(coordinate(random)), 0});
+      for (int i = 0; i < n; ++i)
+        outline.push_back({float(coordinate(random)), float(coordinate(random)), 0});
       std::vector<Triangle> triangles;
       EXPECT_LT(seconds_for(outline, triangles), kPatience);
       EXPECT_LE(triangles.size(), outline.size() - 2);

@@ -19,31 +19,49 @@ Arguments sweep(int count) {
     const double x = random.chance(.4)   ? 1 - random.log_in(1e-7, .5)
                      : random.chance(.7) ? random.unit()
                                          : random.log_in(1e-30, 2);
-    a.x.push_back(static_cast<float>(x)), a.y.push_back(static_cast<float>(random.log_in(1e-3, 1e4)));
+    a.x.push_back(static_cast<float>(x));
+    a.y.push_back(static_cast<float>(random.log_in(1e-3, 1e4)));
   }
-  for (const float x :
-       {0.f, -0.f, 1.f, .5f, 2.f, 1.4142135f, .70710678f, .70710671f, 1e-45f, 1e-38f, .99999994f, 1.0000001f})
-    for (const float y : {0.f, 1.f, 2.f, .5f, 1000.f, 1e-45f, 1e30f, kInf}) a.x.push_back(x), a.y.push_back(y);
+  for (const float x : {0.f,
+                        -0.f,
+                        1.f,
+                        .5f,
+                        2.f,
+                        1.4142135f,
+                        .70710678f,
+                        .70710671f,
+                        1e-45f,
+                        1e-38f,
+                        .99999994f,
+                        1.0000001f})
+    for (const float y : {0.f, 1.f, 2.f, .5f, 1000.f, 1e-45f, 1e30f, kInf})
+      a.x.push_back(x), a.y.push_back(y);
   return a;
 }
 
-/// log2 and exp2 promise 3e-7 each. An error of 3e-7 |log2 x| in log2 x, times y and ln 2, with one rounding (6e-8) of
-/// the product, comes out of exp2 as a relative error of ln 2 (3e-7 + 6e-8) |y log2 x|, beside exp2's own.
+/// log2 and exp2 promise 3e-7 each. An error of 3e-7 |log2 x| in log2 x, times y and ln 2, with one
+/// rounding (6e-8) of the product, comes out of exp2 as a relative error of ln 2 (3e-7 + 6e-8) |y
+/// log2 x|, beside exp2's own.
 TEST(Power, StaysNearTheTrueOne) {
   const Arguments a = sweep(400000);
   double worst = 0;
   for (std::size_t i = 0; i < a.x.size(); ++i) {
     const float got = scalar::power(a.x[i], a.y[i]);
-    if (!(a.x[i] > 1.2e-38f) || !(a.y[i] < 1e6f)) continue;
-    const long double wanted = std::pow(static_cast<long double>(a.x[i]), static_cast<long double>(a.y[i]));
-    if (wanted > 0x1p126L) continue;  // beyond what a cosine can come to
+    if (!(a.x[i] > 1.2e-38f) || !(a.y[i] < 1e6f))
+      continue;
+    const long double wanted =
+        std::pow(static_cast<long double>(a.x[i]), static_cast<long double>(a.y[i]));
+    if (wanted > 0x1p126L)
+      continue;  // beyond what a cosine can come to
     if (wanted < 0x1p-125L) {
       EXPECT_LT(got, 0x1p-124f);
       continue;
     }
     const long double exponent = std::abs(a.y[i] * std::log2(static_cast<long double>(a.x[i])));
-    const double off = static_cast<double>(std::abs(got - wanted) / wanted / (3e-7L + .6931472L * 3.6e-7L * exponent));
-    ASSERT_LE(off, 1) << a.x[i] << " ^ " << a.y[i] << " = " << static_cast<double>(wanted) << ", got " << got;
+    const double off = static_cast<double>(std::abs(got - wanted) / wanted /
+                                           (3e-7L + .6931472L * 3.6e-7L * exponent));
+    ASSERT_LE(off, 1) << a.x[i] << " ^ " << a.y[i] << " = " << static_cast<double>(wanted)
+                      << ", got " << got;
     worst = std::max(worst, off);
   }
   std::printf("power: worst %.3f of the bound\n", worst);
@@ -54,8 +72,10 @@ TEST(Power, LogarithmAndExponentialKeepTheirBounds) {
   double worst_log = 0, worst_exp = 0;
   for (int i = 0; i < 1000000; ++i) {
     const float x =
-        static_cast<float>(random.chance(.5) ? 1 + random.sign() * random.log_in(1e-7, .5) : random.log_in(1.2e-38, 2));
-    if (x == 1) continue;
+        static_cast<float>(random.chance(.5) ? 1 + random.sign() * random.log_in(1e-7, .5)
+                                             : random.log_in(1.2e-38, 2));
+    if (x == 1)
+      continue;
     const long double l = std::log2(static_cast<long double>(x));
     worst_log = std::max(worst_log, static_cast<double>(std::abs((scalar::log2_of(x) - l) / l)));
     const float y = static_cast<float>(random.in(-126, 127));
@@ -86,7 +106,8 @@ TEST_P(PowerBits, AreThoseOfTheScalarCopy) {
     variant().loops.power(a.x.data(), a.y.data(), out.data(), count);
     for (int i = 0; i < count; ++i) {
       const auto k = static_cast<std::size_t>(i);
-      ASSERT_EQ(std::bit_cast<std::uint32_t>(out[k]), std::bit_cast<std::uint32_t>(scalar::power(a.x[k], a.y[k])))
+      ASSERT_EQ(std::bit_cast<std::uint32_t>(out[k]),
+                std::bit_cast<std::uint32_t>(scalar::power(a.x[k], a.y[k])))
           << a.x[k] << " ^ " << a.y[k];
     }
     if (static_cast<std::size_t>(count) < out.size()) {

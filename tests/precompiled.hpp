@@ -1,4 +1,5 @@
-// What most tests include, read once for all of them where sources are compiled together (tests/CMakeLists.txt).
+// What most tests include, read once for all of them where sources are compiled together
+// (tests/CMakeLists.txt).
 #include <gtest/gtest.h>
 
 #include <algorithm>

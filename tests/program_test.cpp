@@ -76,7 +76,8 @@ TEST_F(Program, StatsTellTheRun) {
   EXPECT_EQ(json["threads"], 1);
   EXPECT_EQ(json["size"], Json::parse("[24,16]"));
   double phases = 0;
-  for (const Json& seconds : json["phases"]) phases += double(seconds);
+  for (const Json& seconds : json["phases"])
+    phases += double(seconds);
   EXPECT_GT(json["phases"]["primary"], 0);
   EXPECT_GT(json["phases"]["shadow"], 0);
   EXPECT_EQ(json["phases"]["bounce"], 0);
@@ -84,20 +85,26 @@ TEST_F(Program, StatsTellTheRun) {
 }
 
 TEST_F(Program, SpendsSamplesByErrorAndSaysSo) {
-  const Outcome outcome = run("render ball.nff -o a.pfm --error .02 --stats s.json --samples-map n.pfm --error-map e.pfm");
+  const Outcome outcome = run(
+      "render ball.nff -o a.pfm --error .02 --stats s.json --samples-map n.pfm --error-map e.pfm");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("; RMSE about "), std::string::npos) << outcome.out;
   const Json error = Json::parse(folder_.read("s.json"))["error"];
   EXPECT_EQ(error["asked"], .02);
   EXPECT_LE(error["rmse_bound"], .02);
   EXPECT_LE(error["widest"], 8 * .02);
-  const Image samples = read_image(folder_.file("n.pfm")), errors = read_image(folder_.file("e.pfm"));
+  const Image samples = read_image(folder_.file("n.pfm")),
+              errors = read_image(folder_.file("e.pfm"));
   double all = 0, squares = 0;
-  for (std::size_t i = 0; i < samples.rgb.size(); i += 3) all += samples.rgb[i], squares += double(errors.rgb[i]) * errors.rgb[i];
+  for (std::size_t i = 0; i < samples.rgb.size(); i += 3) {
+    all += samples.rgb[i];
+    squares += double(errors.rgb[i]) * errors.rgb[i];
+  }
   EXPECT_EQ(all, error["samples"]);
   EXPECT_NEAR(std::sqrt(squares / (24 * 16)), double(error["rmse"]), 1e-6);
 
-  const std::string again = "render ball.nff -o b.pfm --quiet --time samples:" + std::to_string(std::uint64_t(error["samples"]));
+  const std::string again = "render ball.nff -o b.pfm --quiet --time samples:" +
+                            std::to_string(std::uint64_t(error["samples"]));
   EXPECT_EQ(run(again).status, 0);
   EXPECT_EQ(run("render ball.nff -o c.pfm --quiet --time .2").status, 0);
 }
@@ -156,11 +163,14 @@ TEST_F(Program, WrongSceneIsStatusTwo) {
 
 TEST_F(Program, TakesFoldersAndSeveralScenes) {
   std::filesystem::create_directory(folder_.path() / "all");
-  folder_.write("all/a.nff", kBall), folder_.write("all/b.NFF", kBall), folder_.write("all/c.ply", "not rendered: a part of a scene");
+  folder_.write("all/a.nff", kBall);
+  folder_.write("all/b.NFF", kBall);
+  folder_.write("all/c.ply", "not rendered: a part of a scene");
   const Outcome outcome = run("render all ball.nff -o all/ --size 8x4");
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 3);
-  for (const char* name : {"all/a.png", "all/b.png", "all/ball.png"}) EXPECT_EQ(folder_.read(name).substr(1, 3), "PNG") << name;
+  for (const char* name : {"all/a.png", "all/b.png", "all/ball.png"})
+    EXPECT_EQ(folder_.read(name).substr(1, 3), "PNG") << name;
   EXPECT_EQ(Json::parse(run("info all --json").out)["all/a.nff"]["scene"]["s"], 1);
   const std::string text = run("info all").out;
   EXPECT_NE(text.find("all/a.nff: 24x16\n"), std::string::npos);
@@ -172,18 +182,23 @@ TEST_F(Program, TakesFoldersAndSeveralScenes) {
 /// A picture of nothing has one warning and is made; with --strict it is not.
 TEST_F(Program, StrictTakesWarningsForErrors) {
   const std::string start = std::string(kBall).substr(0, std::string(kBall).find("s 0"));
-  folder_.write("cloud.ply", "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
-                             "end_header\n0 0 0\n1 1 1\n");
+  folder_.write("cloud.ply",
+                "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float "
+                "y\nproperty float z\n"
+                "end_header\n0 0 0\n1 1 1\n");
   folder_.write("word.nff", start + "sphere 0 0 0 1\n");
   for (const char* name : {"cloud.ply", "word.nff"}) {
-    for (const std::string& command : {std::string("render -o x.png --quiet "), std::string("info ")}) {
+    for (const std::string& command :
+         {std::string("render -o x.png --quiet "), std::string("info ")}) {
       std::filesystem::remove(folder_.file("x.png"));
       const Outcome let = run(command + name), strict = run(command + "--strict " + name);
       EXPECT_EQ(let.status, 0) << let.err;
       EXPECT_NE(let.err.find(": warning: "), std::string::npos) << let.err;
       EXPECT_EQ(strict.status, 2);
       EXPECT_TRUE(strict.err.starts_with(let.err)) << strict.err;
-      EXPECT_TRUE(strict.err.substr(let.err.size()).starts_with("grelha: error: --strict: wanted no warning, found ")) << strict.err;
+      EXPECT_TRUE(strict.err.substr(let.err.size())
+                      .starts_with("grelha: error: --strict: wanted no warning, found "))
+          << strict.err;
     }
   }
   EXPECT_EQ(run("render -o x.png --quiet --strict cloud.ply").status, 2);
@@ -214,12 +229,17 @@ TEST_F(Program, ReadsOutsideOfAFolderOnlyWhenAllowed) {
   }
 }
 
-/// Files that claim what they do not hold, and pictures no machine has room for, end in one line and take no memory for it.
+/// Files that claim what they do not hold, and pictures no machine has room for, end in one line
+/// and take no memory for it.
 TEST_F(Program, HostileFilesAreBounded) {
-  folder_.write("claims.ply", "ply\nformat ascii 1.0\nelement vertex 4000000000\nproperty float x\nproperty float y\nproperty float z\n"
-                              "end_header\n0 0 0\n");
-  folder_.write("faces.ply", "ply\nformat binary_little_endian 1.0\nelement face 4000000000\nproperty list uchar int vertex_indices\n"
-                             "end_header\n....");
+  folder_.write("claims.ply",
+                "ply\nformat ascii 1.0\nelement vertex 4000000000\nproperty float x\nproperty "
+                "float y\nproperty float z\n"
+                "end_header\n0 0 0\n");
+  folder_.write("faces.ply",
+                "ply\nformat binary_little_endian 1.0\nelement face 4000000000\nproperty list "
+                "uchar int vertex_indices\n"
+                "end_header\n....");
   folder_.write("mesh.nff", std::string(kBall) + "mesh 4000000000 4000000000\n0 0 0\n");
   folder_.write("corners.nff", std::string(kBall) + "p 4000000000\n0 0 0\n");
   for (const char* name : {"claims.ply", "faces.ply", "mesh.nff", "corners.nff"}) {
@@ -228,17 +248,21 @@ TEST_F(Program, HostileFilesAreBounded) {
     EXPECT_NE(outcome.err.find("4000000000"), std::string::npos) << outcome.err;
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
   }
-  if (!memory_can_be_limited()) GTEST_SKIP() << "sanitizers own more memory than there is";
+  if (!memory_can_be_limited())
+    GTEST_SKIP() << "sanitizers own more memory than there is";
   const Outcome large = run("render ball.nff --size 6000x6000 -o x.pfm --max-memory 300M");
   EXPECT_EQ(large.status, 1);
   EXPECT_TRUE(large.err.starts_with("ball.nff: error: wanted about 1.7")) << large.err;
-  EXPECT_TRUE(large.err.ends_with(" GB of memory to render it, found 0.315 GB (--max-memory)\n")) << large.err;
+  EXPECT_TRUE(large.err.ends_with(" GB of memory to render it, found 0.315 GB (--max-memory)\n"))
+      << large.err;
   EXPECT_EQ(folder_.list(), "ball.nff claims.ply corners.nff faces.ply mesh.nff");
 }
 
-/// Of 900 million pixels a row takes megabytes, all of them 21.6 GB: what bounds these is named, be it the machine, which need not say no.
+/// Of 900 million pixels a row takes megabytes, all of them 21.6 GB: what bounds these is named, be
+/// it the machine, which need not say no.
 TEST_F(Program, ARowOfAHugePictureTakesLittle) {
-  if (!memory_can_be_limited()) GTEST_SKIP() << "sanitizers own more memory than there is";
+  if (!memory_can_be_limited())
+    GTEST_SKIP() << "sanitizers own more memory than there is";
   const std::string huge = "render ball.nff --quiet --threads 2 --size 30000x30000 -o x.grelha ";
   const Outcome row = run(huge + "--rows 0:1 --max-memory 100M");
   EXPECT_EQ(row.status, 0) << row.err;
@@ -249,50 +273,74 @@ TEST_F(Program, ARowOfAHugePictureTakesLittle) {
   const Outcome by_system = test::run(folder_, huge, "ulimit -d 204800 &&");
   EXPECT_TRUE(by_system.err.ends_with(", found 0.21 GB (ulimit -d)\n")) << by_system.err;
   constexpr std::uint64_t kLargest = std::uint64_t{65536} * 65536 * 24;
-  if (machine_memory() > kLargest) GTEST_SKIP() << "this machine has room for the largest picture";
+  if (machine_memory() > kLargest)
+    GTEST_SKIP() << "this machine has room for the largest picture";
   const Outcome by_machine = run("render ball.nff --quiet --size 65536x65536 -o x.pfm");
   EXPECT_EQ(by_machine.status, 1);
-  EXPECT_NE(by_machine.err.find(", all that this machine has"), std::string::npos) << by_machine.err;
+  EXPECT_NE(by_machine.err.find(", all that this machine has"), std::string::npos)
+      << by_machine.err;
 }
 
-/// What is refused for want of memory names an amount, and that is enough, and not twice what is used: pictures of all kinds.
+/// What is refused for want of memory names an amount, and that is enough, and not twice what is
+/// used: pictures of all kinds.
 TEST_F(Program, WhatMemoryIsWantedIsEnough) {
-  if (!memory_can_be_limited()) GTEST_SKIP() << "sanitizers own more memory than there is";
+  if (!memory_can_be_limited())
+    GTEST_SKIP() << "sanitizers own more memory than there is";
   constexpr double kTold = 1.01;  // three digits
-  for (const std::string kind : {"-o x.pfm", "-o x.png", "-o x.hdr", "-o x.grelha", "-o x.grelha --rows 100:1690", "-o x.pfm --checkpoint c",
-                                 "-o x.pfm --error 1 --samples-map s.pfm --error-map e.pfm --checkpoint c",
-                                 "-o x.pfm --aa adaptive:.1,2", "-o x.pfm --aa adaptive:.1,2 --checkpoint c"}) {
-    const std::string command = "render ball.nff --quiet --threads 2 --size 1700x1700 --stats s.json " + kind + " --max-memory ";
+  for (const std::string kind :
+       {"-o x.pfm",
+        "-o x.png",
+        "-o x.hdr",
+        "-o x.grelha",
+        "-o x.grelha --rows 100:1690",
+        "-o x.pfm --checkpoint c",
+        "-o x.pfm --error 1 --samples-map s.pfm --error-map e.pfm --checkpoint c",
+        "-o x.pfm --aa adaptive:.1,2",
+        "-o x.pfm --aa adaptive:.1,2 --checkpoint c"}) {
+    const std::string command =
+        "render ball.nff --quiet --threads 2 --size 1700x1700 --stats s.json " + kind +
+        " --max-memory ";
     const Outcome refused = run(command + "64M");
     double wanted = 0;
-    ASSERT_EQ(std::sscanf(refused.err.c_str(), "ball.nff: error: wanted about %lf GB", &wanted), 1) << kind << ": " << refused.err;
+    ASSERT_EQ(std::sscanf(refused.err.c_str(), "ball.nff: error: wanted about %lf GB", &wanted), 1)
+        << kind << ": " << refused.err;
     const Outcome enough = run(command + std::to_string(std::uint64_t(kTold * wanted * 1e9)));
     EXPECT_EQ(enough.status, 0) << kind << ": " << enough.err;
-    EXPECT_GT(double(Json::parse(folder_.read("s.json"))["bytes"]["peak"]), wanted * 1e9 / 2) << kind;
+    EXPECT_GT(double(Json::parse(folder_.read("s.json"))["bytes"]["peak"]), wanted * 1e9 / 2)
+        << kind;
   }
 }
 
-/// 205,000 triangles: 40 MB, of which the 12 taken for the program itself are the least sure; a third of these, and a fifth of what a build
-/// takes, come to a quarter.
+/// 205,000 triangles: 40 MB, of which the 12 taken for the program itself are the least sure; a
+/// third of these, and a fifth of what a build takes, come to a quarter.
 TEST_F(Program, SaysWhatMemoryItWillTake) {
-  if (!memory_can_be_limited()) GTEST_SKIP() << "sanitizers own more memory than there is";
+  if (!memory_can_be_limited())
+    GTEST_SKIP() << "sanitizers own more memory than there is";
   ASSERT_EQ(run("scene terrain -o t.nff").status, 0);
   const Outcome info = run("info t.nff --json");
   ASSERT_EQ(info.status, 0) << info.err;
   ASSERT_EQ(run("render t.nff --threads 2 --stats s.json").status, 0);
-  const Json said = Json::parse(info.out)["memory"], took = Json::parse(folder_.read("s.json"))["bytes"];
+  const Json said = Json::parse(info.out)["memory"],
+             took = Json::parse(folder_.read("s.json"))["bytes"];
   EXPECT_NEAR(double(took["peak"]) / double(said["peak"]), 1, .25);
   EXPECT_NEAR(double(took["grids"]) / double(said["grids"]), 1, .2);
-  EXPECT_EQ(took["geometry"], Json(std::uint64_t(said["scene"]) - std::uint64_t(Json::parse(info.out)["scene"]["materials"]) * sizeof(Material)));
+  EXPECT_EQ(took["geometry"],
+            Json(std::uint64_t(said["scene"]) -
+                 std::uint64_t(Json::parse(info.out)["scene"]["materials"]) * sizeof(Material)));
   std::filesystem::remove(folder_.file("t.png"));
 
   // Too little of it: told before anything is built, and by info without building at all.
   const auto enough = std::uint64_t(1.5 * double(said["peak"]));
-  EXPECT_EQ(run("render t.nff --quiet --threads 2 -o x.png --max-memory " + std::to_string(std::max<std::uint64_t>(enough, 1 << 27))).status, 0);
+  EXPECT_EQ(run("render t.nff --quiet --threads 2 -o x.png --max-memory " +
+                std::to_string(std::max<std::uint64_t>(enough, 1 << 27)))
+                .status,
+            0);
   ASSERT_EQ(run("scene terrain --size 60 -o t.nff").status, 0);
   const Outcome refused = run("render t.nff --max-memory 150M");
   EXPECT_EQ(refused.status, 1);
-  EXPECT_TRUE(refused.err.starts_with("t.nff: error: wanted about 0.") && refused.err.ends_with(" found 0.157 GB (--max-memory)\n")) << refused.err;
+  EXPECT_TRUE(refused.err.starts_with("t.nff: error: wanted about 0.") &&
+              refused.err.ends_with(" found 0.157 GB (--max-memory)\n"))
+      << refused.err;
   EXPECT_EQ(std::count(refused.err.begin(), refused.err.end(), '\n'), 1);
   const Outcome unbuilt = run("info t.nff --max-memory 150M");
   EXPECT_EQ(unbuilt.status, 0) << unbuilt.err;
@@ -301,16 +349,25 @@ TEST_F(Program, SaysWhatMemoryItWillTake) {
 }
 
 TEST_F(Program, SuggestsTheSceneThatWasMeant) {
-  EXPECT_EQ(run("scene bals").err, "grelha: error: no scene \"bals\"; did you mean balls? (see grelha scene --list)\n");
+  EXPECT_EQ(run("scene bals").err,
+            "grelha: error: no scene \"bals\"; did you mean balls? (see grelha scene --list)\n");
   EXPECT_EQ(run("scene gears --spd").err,
-            "grelha: error: --spd: wanted a scene that SPD has in another form (balls, mount), found \"gears\"\n");
-  EXPECT_EQ(run("scene teapot").err, "grelha: error: no scene \"teapot\" (see grelha scene --list)\n");
+            "grelha: error: --spd: wanted a scene that SPD has in another form (balls, mount), "
+            "found \"gears\"\n");
+  EXPECT_EQ(run("scene teapot").err,
+            "grelha: error: no scene \"teapot\" (see grelha scene --list)\n");
 }
 
 TEST_F(Program, WrongUsageIsStatusTwoAndOneLine) {
-  for (const char* arguments :
-       {"", "rendr", "render", "render ball.nff -o x.jpg", "render ball.nff --size 0x0", "render ball.nff --isa neon",
-        "scene nothing", "scene balls --size 8", "scene mount --size 0"}) {
+  for (const char* arguments : {"",
+                                "rendr",
+                                "render",
+                                "render ball.nff -o x.jpg",
+                                "render ball.nff --size 0x0",
+                                "render ball.nff --isa neon",
+                                "scene nothing",
+                                "scene balls --size 8",
+                                "scene mount --size 0"}) {
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.status, 2) << arguments;
     EXPECT_EQ(outcome.err.substr(0, 15), "grelha: error: ") << arguments;
@@ -333,7 +390,9 @@ TEST_F(Program, UnwritablePicturesAreFoundOutFirst) {
 TEST_F(Program, TooLargeForPngIsSaidBeforeTheRender) {
   const Outcome outcome = run("render ball.nff --size 65536x65536");
   EXPECT_EQ(outcome.status, 2);
-  EXPECT_EQ(outcome.err, "grelha: error: a picture of 65536x65536 is too large for .png and .hdr, write a .pfm or .exr\n");
+  EXPECT_EQ(outcome.err,
+            "grelha: error: a picture of 65536x65536 is too large for .png and .hdr, write a .pfm "
+            "or .exr\n");
 }
 
 TEST_F(Program, SceneGoesToStdoutOrAFile) {
@@ -361,13 +420,16 @@ TEST_F(Program, BoatComesWithItsMesh) {
   EXPECT_EQ(run("scene boat -o x.ply").status, 2);
 }
 
-/// Every generator's text is a scene to our own readers, at its least size too and without a warning.
+/// Every generator's text is a scene to our own readers, at its least size too and without a
+/// warning.
 TEST_F(Program, EverySceneIsRead) {
   const Outcome list = run("scene --list");
   EXPECT_EQ(list.status, 0);
   std::istringstream lines(list.out);
   int scenes = 0;
-  for (std::string name, word, size, rest; lines >> name >> word >> size && std::getline(lines, rest); ++scenes) {
+  for (std::string name, word, size, rest;
+       lines >> name >> word >> size && std::getline(lines, rest);
+       ++scenes) {
     ASSERT_EQ(run("scene " + name + " --size " + size + " -o " + name + ".nff").status, 0) << name;
     const Outcome info = run("info " + name + ".nff --json");
     EXPECT_EQ(info.status, 0) << info.err;
@@ -377,8 +439,10 @@ TEST_F(Program, EverySceneIsRead) {
 }
 
 TEST_F(Program, AFullOutputIsStatusOne) {
-  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
-  const std::string line = "'" GRELHA_PROGRAM "' scene balls --size 3 >/dev/full 2>'" + folder_.file("err") + "'";
+  if (!std::filesystem::exists("/dev/full"))
+    GTEST_SKIP() << "no /dev/full";
+  const std::string line =
+      "'" GRELHA_PROGRAM "' scene balls --size 3 >/dev/full 2>'" + folder_.file("err") + "'";
   EXPECT_EQ(WEXITSTATUS(std::system(line.c_str())), 1);
   EXPECT_EQ(folder_.read("err"), "stdout: error: cannot write\n");
 }
@@ -399,7 +463,8 @@ TEST_F(Program, ReadyScenesAreSound) {
     EXPECT_EQ(outcome.out + outcome.err, "") << path;
     std::ifstream in(path);
     const std::string text{std::istreambuf_iterator<char>(in), {}};
-    EXPECT_TRUE(text.starts_with("# ") || text.find("\ncomment ") < 100) << path << " does not say what it is for";
+    EXPECT_TRUE(text.starts_with("# ") || text.find("\ncomment ") < 100)
+        << path << " does not say what it is for";
     ++scenes;
   }
   EXPECT_GE(scenes, 5);

@@ -1,4 +1,5 @@
-// The library as a program that embeds it sees it: its own arrays in, answers out, from any thread and of several scenes at once.
+// The library as a program that embeds it sees it: its own arrays in, answers out, from any thread
+// and of several scenes at once.
 #include "kernel/accumulator.hpp"
 #include "kernel/grelha.hpp"
 
@@ -24,8 +25,16 @@ Rays some_rays(unsigned seed) {
 
 Answers ask(const World& world, const Rays& rays, Query query, const QueryOptions& options = {}) {
   Answers a{rays.t, std::vector<std::uint32_t>(rays.size(), 12345u), {}, {}};
-  const RaySpan span{rays.ox.data(), rays.oy.data(),    rays.oz.data(), rays.dx.data(), rays.dy.data(),
-                     rays.dz.data(), rays.t_min.data(), a.t.data(),     a.id.data(),    int(rays.size())};
+  const RaySpan span{rays.ox.data(),
+                     rays.oy.data(),
+                     rays.oz.data(),
+                     rays.dx.data(),
+                     rays.dy.data(),
+                     rays.dz.data(),
+                     rays.t_min.data(),
+                     a.t.data(),
+                     a.id.data(),
+                     int(rays.size())};
   if (query == Query::kClosest)
     closest(world, span, options, &a.counts);
   else
@@ -35,8 +44,8 @@ Answers ask(const World& world, const Rays& rays, Query query, const QueryOption
 
 bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
   return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](float x, float y) {
-    return std::bit_cast<std::uint32_t>(x) == std::bit_cast<std::uint32_t>(y);
-  });
+           return std::bit_cast<std::uint32_t>(x) == std::bit_cast<std::uint32_t>(y);
+         });
 }
 
 TEST(Query, OneRayAPacketAndAStreamSeeWhatBruteForceSees) {
@@ -54,7 +63,8 @@ TEST(Query, OneRayAPacketAndAStreamSeeWhatBruteForceSees) {
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const Hit hit = closest(world, Ray{rays.org(i), rays.dir(i), rays.t_min[i], rays.t[i]});
     ASSERT_EQ(hit.id, truth.closest.id[i]) << rays.describe(i);
-    ASSERT_EQ(std::bit_cast<std::uint32_t>(hit.t), std::bit_cast<std::uint32_t>(truth.closest.t[i])) << rays.describe(i);
+    ASSERT_EQ(std::bit_cast<std::uint32_t>(hit.t), std::bit_cast<std::uint32_t>(truth.closest.t[i]))
+        << rays.describe(i);
     hits += bool(hit);
   }
   EXPECT_GT(hits, rays.size() / 10);
@@ -64,11 +74,13 @@ TEST(Query, SomethingIsInTheWayWhereSomethingIsMet) {
   const Scene scene = random_mixture(6, 400);
   const World world(scene, {});
   const Rays rays = some_rays(2);
-  const Answers met = ask(world, rays, Query::kClosest), blocked = ask(world, rays, Query::kOccluded);
+  const Answers met = ask(world, rays, Query::kClosest),
+                blocked = ask(world, rays, Query::kOccluded);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     ASSERT_EQ(blocked.id[i] != kNoPrimitive, met.id[i] != kNoPrimitive) << rays.describe(i);
     ASSERT_EQ(blocked.t[i] == -kInf, met.id[i] != kNoPrimitive) << rays.describe(i);
-    ASSERT_EQ(occluded(world, Ray{rays.org(i), rays.dir(i), rays.t_min[i], rays.t[i]}), met.id[i] != kNoPrimitive);
+    ASSERT_EQ(occluded(world, Ray{rays.org(i), rays.dir(i), rays.t_min[i], rays.t[i]}),
+              met.id[i] != kNoPrimitive);
   }
 }
 
@@ -77,8 +89,11 @@ TEST(Query, TheCallersArraysAreUsedWhereTheyLie) {
   const std::array<std::uint32_t, 3> material{};
   const Material dull;
   SceneSpans scene;
-  scene.geometry.spheres.x = x, scene.geometry.spheres.y = y, scene.geometry.spheres.z = z;
-  scene.geometry.spheres.radius = radius, scene.geometry.spheres.material = material;
+  scene.geometry.spheres.x = x;
+  scene.geometry.spheres.y = y;
+  scene.geometry.spheres.z = z;
+  scene.geometry.spheres.radius = radius;
+  scene.geometry.spheres.material = material;
   scene.materials = {&dull, 1};
   const World world(scene, {});
   EXPECT_EQ(world.impl().view.geometry.sx, x.data());
@@ -109,7 +124,8 @@ TEST(Query, IdsAreOfTheCallersKindsInTheCallersOrder) {
   EXPECT_EQ(seen({15, 20, 0}, {0, -1, 0}), std::pair(PrimitiveKind::kCone, 0u));
 }
 
-/// leaving_test asks the same of every size and place; here it is the caller's way to it that counts, from near and from afar.
+/// leaving_test asks the same of every size and place; here it is the caller's way to it that
+/// counts, from near and from afar.
 TEST(Query, RaysThatLeaveASurfaceDoNotMeetItAgain) {
   Scene scene = random_mixture(9, 300);
   scene.geometry.planes.add({0, 0, -3}, {0, 1, 8}, 0);
@@ -120,20 +136,25 @@ TEST(Query, RaysThatLeaveASurfaceDoNotMeetItAgain) {
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const Ray ray{rays.org(i), rays.dir(i)};
     const Hit hit = closest(world, ray);
-    if (!hit) continue;
+    if (!hit)
+      continue;
     ++hits, ++kinds[int(primitive_of(world, hit.id).kind)];
     const SurfacePoint s = surface(world, ray, hit);
     for (int k = 0; k < 8; ++k) {
       Float3 d = random.direction();
       const double side = oracle::dot(d, s.normal);
-      if (std::abs(side) < 1e-6) continue;  // rounding decides which side it points to
-      if (side < 0) d = scaled(d, -1);
+      if (std::abs(side) < 1e-6)
+        continue;  // rounding decides which side it points to
+      if (side < 0)
+        d = scaled(d, -1);
       const Hit again = closest(world, Ray{s.leave(d), d});
-      ASSERT_FALSE(again && again.id == hit.id) << rays.describe(i) << ", id " << hit.id << ", t " << again.t;
+      ASSERT_FALSE(again && again.id == hit.id)
+          << rays.describe(i) << ", id " << hit.id << ", t " << again.t;
     }
   }
   EXPECT_GT(hits, 500);
-  for (const int kind : kinds) EXPECT_GT(kind, 10);
+  for (const int kind : kinds)
+    EXPECT_GT(kind, 10);
 }
 
 TEST(Query, SurfacesAreWhatTheCallerBuilt) {
@@ -141,7 +162,9 @@ TEST(Query, SurfacesAreWhatTheCallerBuilt) {
   s.materials.push_back({});
   s.geometry.spheres.add({1, 0, 0}, 2, 1);
   add_triangle(s, {9, -1, 0}, {11, -1, 0}, {10, 1, 0});
-  s.geometry.triangles.nx.assign(3, 3), s.geometry.triangles.ny.assign(3, 0), s.geometry.triangles.nz.assign(3, 4);
+  s.geometry.triangles.nx.assign(3, 3);
+  s.geometry.triangles.ny.assign(3, 0);
+  s.geometry.triangles.nz.assign(3, 4);
   const World world(s, {});
   const auto seen = [&](Float3 from, Float3 to) {
     const Ray ray{from, to};
@@ -155,12 +178,14 @@ TEST(Query, SurfacesAreWhatTheCallerBuilt) {
   EXPECT_GT(ball.leave({0, 1, 1}).z, 2.f);
   EXPECT_LT(ball.leave({0, 1, -1}).z, 2.f);
   EXPECT_EQ(triangle.normal, (Float3{0, 0, 1}));
-  EXPECT_NEAR(triangle.shading.x, .6, 4 * oracle::kEps);  // a product, a sum, a root, a quotient: four roundings of .6
+  // a product, a sum, a root, a quotient: four roundings of .6
+  EXPECT_NEAR(triangle.shading.x, .6, 4 * oracle::kEps);
   EXPECT_NEAR(triangle.shading.z, .8, 4 * oracle::kEps);
   EXPECT_EQ(triangle.material, 0u);
 }
 
-/// Two scenes in one process, each asked and rendered by several threads at once, while a render of one of them is cancelled.
+/// Two scenes in one process, each asked and rendered by several threads at once, while a render of
+/// one of them is cancelled.
 TEST(Query, ThreadsAndScenesDoNotMeet) {
   const Scene scenes[2] = {random_mixture(7, 300), random_triangles(8, 300)};
   const World worlds[2] = {World(scenes[0], {}), World(scenes[1], {})};
@@ -173,7 +198,8 @@ TEST(Query, ThreadsAndScenesDoNotMeet) {
     RenderStats stats;
     return render(worlds[w], camera, options, stats).rgb;
   };
-  const Answers alone[2] = {ask(worlds[0], rays, Query::kClosest), ask(worlds[1], rays, Query::kClosest)};
+  const Answers alone[2] = {ask(worlds[0], rays, Query::kClosest),
+                            ask(worlds[1], rays, Query::kClosest)};
   const std::vector<float> drawn[2] = {picture(0), picture(1)};
   std::atomic<int> wrong = 0;
   std::vector<std::thread> threads;
@@ -181,14 +207,16 @@ TEST(Query, ThreadsAndScenesDoNotMeet) {
     threads.emplace_back([&, w = i % 2] {
       for (int round = 0; round < 4; ++round) {
         const Answers a = ask(worlds[w], rays, Query::kClosest);
-        wrong += !same_bits(a.t, alone[w].t) || a.id != alone[w].id || !same_bits(picture(w), drawn[w]);
+        wrong +=
+            !same_bits(a.t, alone[w].t) || a.id != alone[w].id || !same_bits(picture(w), drawn[w]);
       }
     });
   RenderStats stats;
   RenderOptions cancelled = options;
   cancelled.progress = [](double) { return false; };
   render(worlds[0], camera, cancelled, stats);
-  for (std::thread& t : threads) t.join();
+  for (std::thread& t : threads)
+    t.join();
   EXPECT_EQ(wrong, 0);
   EXPECT_LT(stats.rays.primary, 48u * 48u);
 }
@@ -224,7 +252,10 @@ TEST(Query, RefusesWhatItCannotDo) {
   EXPECT_THROW(ask(world, rays, Query::kClosest, {.packet = 8}), std::invalid_argument);
   EXPECT_THROW(ask(world, rays, Query::kOccluded, {.isa = "neon"}), std::invalid_argument);
   EXPECT_THROW(closest(world, RaySpan{.count = -1}), std::invalid_argument);
-  for (const BuildOptions& odd : {BuildOptions{.density = -1}, BuildOptions{.density = kInf}, BuildOptions{.density = kNaN}, BuildOptions{.threads = -1}})
+  for (const BuildOptions& odd : {BuildOptions{.density = -1},
+                                  BuildOptions{.density = kInf},
+                                  BuildOptions{.density = kNaN},
+                                  BuildOptions{.threads = -1}})
     EXPECT_THROW(World(scene, odd), std::invalid_argument);
   Camera wide;
   wide.width = 65537;

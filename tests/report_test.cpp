@@ -13,7 +13,8 @@ using Json = nlohmann::json;
 
 std::set<std::string> keys(const Json& json) {
   std::set<std::string> names;
-  for (const auto& item : json.items()) names.insert(item.key());
+  for (const auto& item : json.items())
+    names.insert(item.key());
   return names;
 }
 
@@ -27,9 +28,10 @@ Material material_with(Change change) {
 /// One ball of that material, beside a material that has everything and is on nothing.
 SceneFile one_ball(const Material& material) {
   SceneFile file;
-  file.scene.materials = {material, material_with([](Material& m) {
-                            m.transmission = m.roughness = 1, m.fresnel = true, m.emission = m.mirror = {1, 1, 1};
-                          })};
+  file.scene.materials = {
+      material, material_with([](Material& m) {
+        m.transmission = m.roughness = 1, m.fresnel = true, m.emission = m.mirror = {1, 1, 1};
+      })};
   file.scene.geometry.spheres.add({1, 2, 3}, 0.5f, 0);
   return file;
 }
@@ -37,19 +39,32 @@ SceneFile one_ball(const Material& material) {
 TEST(Needs, AskNothingForAMaterialNobodyUses) {
   Needs expected;
   expected.spheres = true;
-  EXPECT_EQ(needs_of(one_ball(material_with([](Material& m) { m.diffuse = {1, 1, 1}, m.ior = 2; }))), expected);
+  EXPECT_EQ(needs_of(one_ball(material_with([](Material& m) {
+              m.diffuse = {1, 1, 1}, m.ior = 2;
+            }))),
+            expected);
 }
 
 TEST(Needs, FollowTheMaterialsInUse) {
-  EXPECT_TRUE(needs_of(one_ball(material_with([](Material& m) { m.mirror = {0, 0, 0.1f}; }))).reflection);
-  EXPECT_FALSE(needs_of(one_ball(material_with([](Material& m) { m.mirror = {0, 0, 0.1f}; }))).refraction);
+  EXPECT_TRUE(needs_of(one_ball(material_with([](Material& m) {
+                m.mirror = {0, 0, 0.1f};
+              }))).reflection);
+  EXPECT_FALSE(needs_of(one_ball(material_with([](Material& m) {
+                 m.mirror = {0, 0, 0.1f};
+               }))).refraction);
   const Needs glass = needs_of(one_ball(material_with([](Material& m) { m.transmission = 0.5f; })));
   EXPECT_TRUE(glass.refraction);
   EXPECT_TRUE(glass.reflection) << "total reflection";
   EXPECT_FALSE(glass.fresnel);
-  EXPECT_TRUE(needs_of(one_ball(material_with([](Material& m) { m.transmission = 0.5f, m.fresnel = true; }))).fresnel);
-  EXPECT_FALSE(needs_of(one_ball(material_with([](Material& m) { m.fresnel = true; }))).fresnel) << "opaque";
-  EXPECT_TRUE(needs_of(one_ball(material_with([](Material& m) { m.emission = {0, 1, 0}; }))).emission);
+  EXPECT_TRUE(needs_of(one_ball(material_with([](Material& m) {
+                m.transmission = 0.5f;
+                m.fresnel = true;
+              }))).fresnel);
+  EXPECT_FALSE(needs_of(one_ball(material_with([](Material& m) { m.fresnel = true; }))).fresnel)
+      << "opaque";
+  EXPECT_TRUE(needs_of(one_ball(material_with([](Material& m) {
+                m.emission = {0, 1, 0};
+              }))).emission);
   EXPECT_TRUE(needs_of(one_ball(material_with([](Material& m) { m.roughness = 0.1f; }))).roughness);
 }
 
@@ -100,17 +115,28 @@ TEST(Bounds, TiltedDiscsReachAsFarAsTheyDo) {
 
 RunReport some_run() {
   RunReport report;
-  report.counts = {
-      .s = 1, .p = 2, .pp = 3, .c = 4, .pl = 5, .box = 6, .mesh = 7, .ply = 8, .lights = 9, .materials = 10};
-  report.spheres = 1, report.triangles = 30;
-  report.width = 4, report.height = 3;
+  report.counts = {.s = 1,
+                   .p = 2,
+                   .pp = 3,
+                   .c = 4,
+                   .pl = 5,
+                   .box = 6,
+                   .mesh = 7,
+                   .ply = 8,
+                   .lights = 9,
+                   .materials = 10};
+  report.spheres = 1;
+  report.triangles = 30;
+  report.width = 4;
+  report.height = 3;
   report.grids = {{{2, 3, 4}, 5, 6, 7}};
   report.render.rays = {12, 13, 14, 15};
   report.render.trace = {16, {17, 18, 19, 20}, {21, 22, 80, 60}};
   report.render.threads = 2;
   report.render.isa = "avx2";
   report.seconds = {1, 2, 3, 4};
-  report.geometry_bytes = 100, report.grid_bytes = 200;
+  report.geometry_bytes = 100;
+  report.grid_bytes = 200;
   return report;
 }
 
@@ -119,13 +145,17 @@ TEST(Stats, HoldWhatWasCounted) {
   command.scene = "x.nff";
   const Json json = Json::parse(stats_json(command, some_run()));
   EXPECT_EQ(json["scene"],
-            Json::parse(R"({"s":1,"p":2,"pp":3,"c":4,"pl":5,"box":6,"mesh":7,"ply":8,"lights":9,"materials":10})"));
-  EXPECT_EQ(json["grids"], Json::parse(R"([{"cells":[2,3,4],"occupied":5,"references":6,"bytes":7}])"));
-  EXPECT_EQ(json["rays"], Json::parse(R"({"primary":12,"shadow":13,"reflection":14,"refraction":15})"));
+            Json::parse(R"({"s":1,"p":2,"pp":3,"c":4,"pl":5,"box":6,"mesh":7,"ply":8,)"
+                        R"("lights":9,"materials":10})"));
+  EXPECT_EQ(json["grids"],
+            Json::parse(R"([{"cells":[2,3,4],"occupied":5,"references":6,"bytes":7}])"));
+  EXPECT_EQ(json["rays"],
+            Json::parse(R"({"primary":12,"shadow":13,"reflection":14,"refraction":15})"));
   EXPECT_EQ(json["visits"], 16);
   EXPECT_EQ(json["tests"], Json::parse(R"({"sphere":17,"triangle":18,"cone":19,"plane":20})"));
   EXPECT_EQ(json["packets"], Json::parse(R"({"formed":21,"fell_back":22,"lanes_busy":0.75})"));
-  EXPECT_EQ(json["seconds"], Json::parse(R"({"load":1.0,"build":2.0,"render":3.0,"write":4.0,"render_cpu":0.0})"));
+  EXPECT_EQ(json["seconds"],
+            Json::parse(R"({"load":1.0,"build":2.0,"render":3.0,"write":4.0,"render_cpu":0.0})"));
   EXPECT_EQ(json["bytes"]["geometry"], 100);
   EXPECT_EQ(json["bytes"]["grids"], 200);
   EXPECT_GT(json["bytes"]["peak"], 100000);
@@ -139,7 +169,8 @@ TEST(Stats, HoldWhatWasCounted) {
 TEST(Stats, RecordSubdivision) {
   RenderCommand command;
   command.render.subdivision = {true, .1f, 3};
-  EXPECT_EQ(Json::parse(stats_json(command, {}))["options"]["adaptive"], Json::parse(R"({"threshold":0.1,"depth":3})"));
+  EXPECT_EQ(Json::parse(stats_json(command, {}))["options"]["adaptive"],
+            Json::parse(R"({"threshold":0.1,"depth":3})"));
 }
 
 TEST(Stats, NoLaneIssuedIsNoneBusy) {
@@ -153,7 +184,16 @@ TEST(Info, JsonSaysWhatTheSceneHolds) {
   file.camera.width = 640;
   const Json json = Json::parse(info_json(file, {1, 2, 3}, std::vector<GridStats>{}));
   EXPECT_EQ(keys(json),
-            (std::set<std::string>{"scene", "kernel", "aabb", "dropped", "resolution", "bounds", "memory", "grids", "needs", "made_up"}));
+            (std::set<std::string>{"scene",
+                                   "kernel",
+                                   "aabb",
+                                   "dropped",
+                                   "resolution",
+                                   "bounds",
+                                   "memory",
+                                   "grids",
+                                   "needs",
+                                   "made_up"}));
   EXPECT_EQ(json["scene"]["s"], 1);
   EXPECT_EQ(json["kernel"]["spheres"], 1);
   EXPECT_EQ(json["dropped"], Json::parse(R"({"not_finite":3,"zero_area":4})"));
@@ -168,11 +208,14 @@ TEST(Info, JsonSaysWhatTheSceneHolds) {
 
 /// A file's name is bytes, JSON is Unicode.
 TEST(Info, NamesOfAnyBytes) {
-  const Json json = Json::parse(info_json({{"\xFF.nff", info_json(SceneFile{}, {}, {})}, {"b.nff", info_json(SceneFile{}, {}, {})}}));
+  const Json json = Json::parse(info_json(
+      {{"\xFF.nff", info_json(SceneFile{}, {}, {})}, {"b.nff", info_json(SceneFile{}, {}, {})}}));
   EXPECT_TRUE(json.contains("\xEF\xBF\xBD.nff") && json.contains("b.nff"));
 }
 
-TEST(Info, NothingHasNoBounds) { EXPECT_TRUE(Json::parse(info_json({}, {}, {}))["bounds"].is_null()); }
+TEST(Info, NothingHasNoBounds) {
+  EXPECT_TRUE(Json::parse(info_json({}, {}, {}))["bounds"].is_null());
+}
 
 TEST(Info, SaysHowBoxesAreRead) {
   SceneFile file = one_ball(material_with([](Material&) {}));
@@ -180,7 +223,8 @@ TEST(Info, SaysHowBoxesAreRead) {
   EXPECT_EQ(info_text("x.nff", file, {}, {}).find("aabb"), std::string::npos);
   file.box_order = BoxOrder::kPairs;
   EXPECT_EQ(Json::parse(info_json(file, {}, {}))["aabb"], "pairs");
-  EXPECT_NE(info_text("x.nff", file, {}, {}).find("\naabb          read as pairs\n"), std::string::npos);
+  EXPECT_NE(info_text("x.nff", file, {}, {}).find("\naabb          read as pairs\n"),
+            std::string::npos);
   file.box_order = BoxOrder::kCorners;
   EXPECT_EQ(Json::parse(info_json(file, {}, {}))["aabb"], "corners");
 }
@@ -196,7 +240,8 @@ TEST(Info, TextListsTheSame) {
             "lights        2\n"
             "materials     1\n"
             "bounds        (0.5, 1.5, 2.5) to (1.5, 2.5, 3.5)\n"
-            "memory        about 1.2 MB to render: scene 0.1, grids 0.2, the rest to read, build and draw\n"
+            "memory        about 1.2 MB to render: scene 0.1, grids 0.2, the rest to read, build "
+            "and draw\n"
             "grid          2 x 3 x 4 cells, 5 occupied, 6 references, 0.0 MB\n"
             "needs         spheres, reflection\n");
 }
@@ -204,13 +249,14 @@ TEST(Info, TextListsTheSame) {
 TEST(Summary, IsOneLine) {
   RenderCommand command;
   command.image = "x.png";
-  EXPECT_EQ(
-      summary_line(command, some_run()),
-      "x.png: 1 sphere, 30 triangles; grid 2x3x4; 0.000 Mrays in load 1.00, build 2.00, render 3.00, write 4.00 s; "
-      "0.00 Mrays/s (avx2, 2 threads)\n");
+  EXPECT_EQ(summary_line(command, some_run()),
+            "x.png: 1 sphere, 30 triangles; grid 2x3x4; 0.000 Mrays in load 1.00, build 2.00, "
+            "render 3.00, write 4.00 s; "
+            "0.00 Mrays/s (avx2, 2 threads)\n");
 }
 
-/// mpirun binds each of two ranks to one processor unless told otherwise: whoever reads this sees it.
+/// mpirun binds each of two ranks to one processor unless told otherwise: whoever reads this sees
+/// it.
 TEST(Summary, SaysHowManyRanksAndThreadsEach) {
   RunReport shared = some_run();
   shared.ranks = 4;

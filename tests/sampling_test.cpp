@@ -21,7 +21,10 @@ namespace {
 
 SamplePlan plan_of(SamplePlan::Kind kind, std::uint32_t seed, int samples) {
   SamplePlan p;
-  p.on = true, p.kind = kind, p.seed = seed, p.samples = samples;
+  p.on = true;
+  p.kind = kind;
+  p.seed = seed;
+  p.samples = samples;
   const auto side = static_cast<std::uint32_t>(std::lround(std::sqrt(samples)));
   p.pixel_strata = p.light_strata = {side, side};
   return p;
@@ -31,7 +34,8 @@ TEST(Sobol, EveryDimensionFillsEveryInterval) {
   for (int d = 0; d < kSobolDimensions; ++d)
     for (const std::uint32_t seed : {1u, 77u}) {
       std::set<int> seen;
-      for (std::uint32_t i = 0; i < 256; ++i) seen.insert(static_cast<int>(sobol_sample(seed, i, d) * 256));
+      for (std::uint32_t i = 0; i < 256; ++i)
+        seen.insert(static_cast<int>(sobol_sample(seed, i, d) * 256));
       EXPECT_EQ(seen.size(), 256u) << "dimension " << d;
     }
 }
@@ -41,23 +45,29 @@ TEST(Sobol, FirstTwoDimensionsAreANet) {
     for (int k = 0; k <= 8; ++k) {  // 2^k columns by 2^(8-k) rows: one point in each
       std::set<int> seen;
       for (std::uint32_t i = 0; i < 256; ++i)
-        seen.insert(static_cast<int>(sobol_sample(seed, i, 0) * (1 << k)) * 256 + static_cast<int>(sobol_sample(seed, i, 1) * (1 << (8 - k))));
+        seen.insert(static_cast<int>(sobol_sample(seed, i, 0) * (1 << k)) * 256 +
+                    static_cast<int>(sobol_sample(seed, i, 1) * (1 << (8 - k))));
       EXPECT_EQ(seen.size(), 256u) << "seed " << seed << ", 2^" << k << " columns";
     }
 }
 
 TEST(Samples, AreFunctionsOfTheirIndex) {
   const SamplePlan p = plan_of(SamplePlan::kSobol, 9, 16), q = plan_of(SamplePlan::kSobol, 10, 16);
-  const Pair a = sample_pair(p, 5, 3, 2, 0, p.light_strata), b = sample_pair(p, 5, 3, 2, 0, p.light_strata);
+  const Pair a = sample_pair(p, 5, 3, 2, 0, p.light_strata),
+             b = sample_pair(p, 5, 3, 2, 0, p.light_strata);
   EXPECT_TRUE(a.u == b.u && a.v == b.v);
-  const Pair seed = sample_pair(q, 5, 3, 2, 0, p.light_strata), pixel = sample_pair(p, 6, 3, 2, 0, p.light_strata),
+  const Pair seed = sample_pair(q, 5, 3, 2, 0, p.light_strata),
+             pixel = sample_pair(p, 6, 3, 2, 0, p.light_strata),
              key = sample_pair(p, 5, 3, 2, 8, p.light_strata);
-  for (const Pair& other : {seed, pixel, key}) EXPECT_NE(a.u, other.u);
+  for (const Pair& other : {seed, pixel, key})
+    EXPECT_NE(a.u, other.u);
 }
 
-/// Root mean square error of an integrand over the first four dimensions with `n` samples, over many pixels.
+/// Root mean square error of an integrand over the first four dimensions with `n` samples, over
+/// many pixels.
 using Integrand = std::function<double(const Pair&, const Pair&)>;
-double rmse(SamplePlan::Kind kind, int n, double truth, const Integrand& f, double* mean = nullptr) {
+double rmse(
+    SamplePlan::Kind kind, int n, double truth, const Integrand& f, double* mean = nullptr) {
   constexpr int kPixels = 1000;
   const SamplePlan p = plan_of(kind, 3, n);
   double sum = 0, errors = 0;
@@ -68,9 +78,11 @@ double rmse(SamplePlan::Kind kind, int n, double truth, const Integrand& f, doub
       inside += f(a, sample_pair(p, pixel, i, 2, 0, p.light_strata));
     }
     const double e = inside / n - truth;
-    sum += e, errors += e * e;
+    sum += e;
+    errors += e * e;
   }
-  if (mean) *mean = sum / kPixels;
+  if (mean)
+    *mean = sum / kPixels;
   return std::sqrt(errors / kPixels);
 }
 
@@ -81,9 +93,10 @@ double slope(SamplePlan::Kind kind, double truth, const Integrand& f) {
   return std::log(rmse(kind, 16, truth, f) / rmse(kind, 1024, truth, f)) / std::log(64.);
 }
 
-// Published and re-measured slopes: random .5; jitter and Sobol .7 to .8 on edges; with an edge in four dimensions shuffled
-// jitter falls back to .5 and one joint Sobol sequence keeps .7. An RMSE over 1000 pixels is known to 2.2 %, a slope over a
-// factor of 64 to .01; the bounds leave five of these.
+// Published and re-measured slopes: random .5; jitter and Sobol .7 to .8 on edges; with an edge in
+// four dimensions shuffled jitter falls back to .5 and one joint Sobol sequence keeps .7. An RMSE
+// over 1000 pixels is known to 2.2 %, a slope over a factor of 64 to .01; the bounds leave five of
+// these.
 TEST(Convergence, OnAnEdge) {
   EXPECT_NEAR(slope(SamplePlan::kRandom, .5, disc), .50, .05);
   EXPECT_NEAR(slope(SamplePlan::kJitter, .5, disc), .71, .05);
@@ -92,7 +105,9 @@ TEST(Convergence, OnAnEdge) {
 
 /// exp(-x^2 - y^2) over the unit square: (sqrt(pi) / 2 erf(1))^2.
 TEST(Convergence, OnASmoothSlope) {
-  const auto gauss = [](const Pair& a, const Pair&) { return std::exp(-double(a.u) * a.u - double(a.v) * a.v); };
+  const auto gauss = [](const Pair& a, const Pair&) {
+    return std::exp(-double(a.u) * a.u - double(a.v) * a.v);
+  };
   const double truth = std::pow(std::sqrt(std::numbers::pi) / 2 * std::erf(1.), 2);
   EXPECT_NEAR(slope(SamplePlan::kRandom, truth, gauss), .50, .05);
   EXPECT_NEAR(slope(SamplePlan::kJitter, truth, gauss), 1.00, .05);
@@ -102,10 +117,12 @@ TEST(Convergence, OnASmoothSlope) {
 TEST(Convergence, OnAnEdgeInFourDimensions) {
   EXPECT_NEAR(slope(SamplePlan::kJitter, .34, soft), .5, .05);
   EXPECT_NEAR(slope(SamplePlan::kSobol, .34, soft), .71, .05);
-  EXPECT_LT(rmse(SamplePlan::kSobol, 256, .34, soft), .6 * rmse(SamplePlan::kJitter, 256, .34, soft));
+  EXPECT_LT(rmse(SamplePlan::kSobol, 256, .34, soft),
+            .6 * rmse(SamplePlan::kJitter, 256, .34, soft));
 }
 
-/// Error of `soft` over two pairs of dimensions of one pixel, over 1000 seeds: its mean in standard errors of that mean.
+/// Error of `soft` over two pairs of dimensions of one pixel, over 1000 seeds: its mean in standard
+/// errors of that mean.
 double bias(SamplePlan::Kind kind, int first, int second) {
   constexpr std::uint32_t kSeeds = 1000, kSamples = 16;
   double sum = 0, errors = 0;
@@ -118,7 +135,8 @@ double bias(SamplePlan::Kind kind, int first, int second) {
       inside += soft(a, b);
     }
     const double e = inside / 16. - .34;
-    sum += e, errors += e * e;
+    sum += e;
+    errors += e * e;
   }
   return std::abs(sum) / std::sqrt(errors);
 }
@@ -127,22 +145,27 @@ double bias(SamplePlan::Kind kind, int first, int second) {
 TEST(Pairing, HasNoBiasUnlessItIsNotShuffled) {
   for (const auto kind : {SamplePlan::kSobol, SamplePlan::kJitter, SamplePlan::kRandom})
     for (const int first : {0, 2, 4})
-      for (int second = first + 2; second < 8; second += 2) EXPECT_LT(bias(kind, first, second), 4) << kind << ' ' << first << ' ' << second;
+      for (int second = first + 2; second < 8; second += 2)
+        EXPECT_LT(bias(kind, first, second), 4) << kind << ' ' << first << ' ' << second;
   EXPECT_GT(bias(SamplePlan::kUnshuffled, 0, 2), 4) << "the same order for both must show";
 }
 
 TEST(Pairing, KeepsKeysApart) {
-  // The second light and every bounce have sequences of their own: pairing two of them must not be biased either.
+  // The second light and every bounce have sequences of their own: pairing two of them must not be
+  // biased either.
   const SamplePlan p = plan_of(SamplePlan::kSobol, 3, 64);
   double sum = 0, errors = 0;
   for (std::uint32_t pixel = 0; pixel < 1000; ++pixel) {
     int inside = 0;
-    for (std::uint32_t i = 0; i < 64; ++i) inside += soft(sample_pair(p, pixel, i, 2, 11, {}), sample_pair(p, pixel, i, 2, 12, {}));
+    for (std::uint32_t i = 0; i < 64; ++i)
+      inside += soft(sample_pair(p, pixel, i, 2, 11, {}), sample_pair(p, pixel, i, 2, 12, {}));
     const double e = inside / 64. - .34;
-    sum += e, errors += e * e;
+    sum += e;
+    errors += e * e;
   }
   EXPECT_LT(std::abs(sum / 1000), 4 * std::sqrt(errors / 1000 / 1000));
-  EXPECT_LT(std::sqrt(errors / 1000), .0444) << "no worse than padded Owen sets: .040, plus five times 2.2 %";
+  EXPECT_LT(std::sqrt(errors / 1000), .0444)
+      << "no worse than padded Owen sets: .040, plus five times 2.2 %";
 }
 
 TEST(Disc, IsRoundAndEven) {
@@ -150,12 +173,14 @@ TEST(Disc, IsRoundAndEven) {
   int inner = 0;
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) {
-      const Pair p = disc_point<float>({(static_cast<float>(i) + .5f) / n, (static_cast<float>(j) + .5f) / n});
+      const Pair p =
+          disc_point<float>({(static_cast<float>(i) + .5f) / n, (static_cast<float>(j) + .5f) / n});
       const double r2 = static_cast<double>(p.u) * p.u + static_cast<double>(p.v) * p.v;
       ASSERT_LE(r2, 1 + 1e-6);
       inner += r2 < .5;
     }
-  // Squares keep their share of the area: half of them within radius sqrt(1/2), but for the ring of squares on the border.
+  // Squares keep their share of the area: half of them within radius sqrt(1/2), but for the ring of
+  // squares on the border.
   EXPECT_NEAR(inner, n * n / 2, 4 * n);
   const Pair edge = disc_point<float>({1 - 0x1p-24f, .75f});
   EXPECT_NEAR(edge.u, std::cos(std::numbers::pi / 8), 1e-6);
@@ -171,27 +196,40 @@ namespace plain {
 std::uint32_t sobol_bits(std::uint32_t index, int dimension) {
   std::uint32_t x = 0;
   for (int i = 0; i < 32; ++i)
-    if (index >> i & 1) x ^= reversed(kSobol.column[dimension][i]);
+    if (index >> i & 1)
+      x ^= reversed(kSobol.column[dimension][i]);
   return x;
 }
-std::uint32_t owen_scrambled(std::uint32_t x, std::uint32_t seed) { return reversed(owen_hash(reversed(x), seed)); }
+std::uint32_t owen_scrambled(std::uint32_t x, std::uint32_t seed) {
+  return reversed(owen_hash(reversed(x), seed));
+}
 float unit(std::uint32_t x) { return static_cast<float>(x >> 8) / 16777216; }
 float sobol(std::uint32_t seed, std::uint32_t index, int dimension) {
-  return unit(owen_scrambled(sobol_bits(index, dimension), scatter(seed, static_cast<std::uint32_t>(dimension))));
+  return unit(owen_scrambled(sobol_bits(index, dimension),
+                             scatter(seed, static_cast<std::uint32_t>(dimension))));
 }
 
-Pair sample(const SamplePlan& plan, std::uint32_t pixel, std::uint32_t index, int dimension, std::uint32_t key, const Strata& strata) {
-  const std::uint32_t base = scatter(plan.seed, pixel), own = scatter(base, scatter(key, static_cast<std::uint32_t>(dimension)));
+Pair sample(const SamplePlan& plan,
+            std::uint32_t pixel,
+            std::uint32_t index,
+            int dimension,
+            std::uint32_t key,
+            const Strata& strata) {
+  const std::uint32_t base = scatter(plan.seed, pixel),
+                      own = scatter(base, scatter(key, static_cast<std::uint32_t>(dimension)));
   const float x = unit(scatter(own, 2 * index)), y = unit(scatter(own, 2 * index + 1));
-  if (plan.kind == SamplePlan::kRandom) return {x, y};
+  if (plan.kind == SamplePlan::kRandom)
+    return {x, y};
   if (plan.kind == SamplePlan::kSobol) {
-    if (key == 0) return {sobol(base, index, dimension), sobol(base, index, dimension + 1)};
+    if (key == 0)
+      return {sobol(base, index, dimension), sobol(base, index, dimension + 1)};
     const std::uint32_t at = owen_scrambled(index, scatter(own, 0x68E31DA4u));
     return {sobol(own, at, 0), sobol(own, at, 1)};
   }
   const std::uint32_t cells = strata.columns * strata.rows;
   std::uint32_t cell = index % cells;
-  if (plan.kind == SamplePlan::kJitter && (dimension != 0 || key != 0)) cell = permuted(cell, cells, scatter(own, 0x51ED270Bu));
+  if (plan.kind == SamplePlan::kJitter && (dimension != 0 || key != 0))
+    cell = permuted(cell, cells, scatter(own, 0x51ED270Bu));
   return {(static_cast<float>(cell % strata.columns) + x) / static_cast<float>(strata.columns),
           (static_cast<float>(cell / strata.columns) + y) / static_cast<float>(strata.rows)};
 }
@@ -201,12 +239,14 @@ struct Ray {
 };
 Ray ray(const FrameView& f, const SamplePlan& plan, int x, int y, std::uint32_t index) {
   const std::uint32_t pixel = static_cast<std::uint32_t>(y * f.width + x);
-  const Pair in = plan.samples > 1 ? sample(plan, pixel, index, 0, 0, plan.pixel_strata) : Pair{.5f, .5f};
+  const Pair in =
+      plan.samples > 1 ? sample(plan, pixel, index, 0, 0, plan.pixel_strata) : Pair{.5f, .5f};
   const float sx = (static_cast<float>(x) + in.u) - .5f * static_cast<float>(f.width);
   const float sy = .5f * static_cast<float>(f.height) - (static_cast<float>(y) + in.v);
   const auto vector = [](const float(&v)[3]) { return Vec3<float>{v[0], v[1], v[2]}; };
   const Vec3<float> d = (vector(f.forward) + sx * vector(f.right)) + sy * vector(f.up);
-  if (!f.lens) return {vector(f.eye), normalize(d)};
+  if (!f.lens)
+    return {vector(f.eye), normalize(d)};
   const Pair p = disc_point(sample(plan, pixel, index, plan.lens, 0, plan.pixel_strata));
   const Vec3<float> on = p.u * vector(f.lens_right) + p.v * vector(f.lens_up);
   return {vector(f.eye) + on, normalize(f.focus * d - on)};
@@ -214,7 +254,8 @@ Ray ray(const FrameView& f, const SamplePlan& plan, int x, int y, std::uint32_t 
 
 }  // namespace plain
 
-constexpr SamplePlan::Kind kKinds[] = {SamplePlan::kSobol, SamplePlan::kJitter, SamplePlan::kUnshuffled, SamplePlan::kRandom};
+constexpr SamplePlan::Kind kKinds[] = {
+    SamplePlan::kSobol, SamplePlan::kJitter, SamplePlan::kUnshuffled, SamplePlan::kRandom};
 std::uint32_t bits_of(float x) { return std::bit_cast<std::uint32_t>(x); }
 
 using test::EveryVariant;
@@ -225,7 +266,10 @@ GRELHA_FOR_EVERY_ISA(SampleBits);
 TEST_P(SampleBits, AreThePlainOnesInEveryLane) {
   constexpr int n = 203;
   test::Random random(11);
-  const auto word = [&] { return static_cast<std::uint32_t>(random.below(65536)) << 16 | static_cast<std::uint32_t>(random.below(65536)); };
+  const auto word = [&] {
+    return static_cast<std::uint32_t>(random.below(65536)) << 16 |
+           static_cast<std::uint32_t>(random.below(65536));
+  };
   for (const auto kind : kKinds)
     for (int d = 0; d < kSobolDimensions; d += 2)
       for (int keys = 0; keys < 3; ++keys)  // all the joint sequence, none, some
@@ -233,7 +277,8 @@ TEST_P(SampleBits, AreThePlainOnesInEveryLane) {
           const SamplePlan plan = plan_of(kind, word(), 16);
           std::uint32_t pixel[n], index[n], key[n];
           for (int i = 0; i < n; ++i) {
-            pixel[i] = word(), index[i] = i < 100 ? static_cast<std::uint32_t>(i) : word() >> random.below(32);
+            pixel[i] = word();
+            index[i] = i < 100 ? static_cast<std::uint32_t>(i) : word() >> random.below(32);
             key[i] = keys == 0 || (keys == 2 && random.chance(.5)) ? 0 : word() | 1;
           }
           float x[n], y[n];
@@ -241,36 +286,58 @@ TEST_P(SampleBits, AreThePlainOnesInEveryLane) {
           for (int i = 0; i < n; ++i) {
             const Pair wanted = plain::sample(plan, pixel[i], index[i], d, key[i], strata);
             ASSERT_TRUE(bits_of(x[i]) == bits_of(wanted.u) && bits_of(y[i]) == bits_of(wanted.v))
-                << "sampler " << kind << ", dimension " << d << ", key " << key[i] << ", index " << index[i];
+                << "sampler " << kind << ", dimension " << d << ", key " << key[i] << ", index "
+                << index[i];
           }
         }
 }
 
 TEST_P(SampleBits, OfRaysAreThePlainOnes) {
-  FrameView f{{.1f, .2f, 3}, {.3f, -.1f, -2}, {.01f, .002f, .001f}, {-.002f, .01f, .0005f}, {.1f, .02f, .01f}, {-.02f, .1f, .005f}};
-  f.focus = 1.7f, f.width = 67, f.height = 43;
+  FrameView f{{.1f, .2f, 3},
+              {.3f, -.1f, -2},
+              {.01f, .002f, .001f},
+              {-.002f, .01f, .0005f},
+              {.1f, .02f, .01f},
+              {-.02f, .1f, .005f}};
+  f.focus = 1.7f;
+  f.width = 67;
+  f.height = 43;
   const auto batch = std::make_unique<Batch>();
   for (const auto kind : kKinds)
     for (const bool lens : {false, true})
       for (const int samples : {1, 7, 64})
         for (const int count : {1, 2, 3, 4, 5, 7, 8, 9, 15, 16, 17, 31, 33, 61, kBatch}) {
           SamplePlan plan = plan_of(kind, 5, samples);
-          f.lens = lens, plan.lens = lens ? 2 : -1;
+          f.lens = lens;
+          plan.lens = lens ? 2 : -1;
           const auto x = [](int i) { return 13 + i / 7; };
           const auto y = [](int i) { return 41 - i / 15; };
           for (int i = 0; i < count; ++i) {
-            batch->ox[i] = static_cast<float>(x(i)), batch->oy[i] = static_cast<float>(y(i));
-            batch->pixel[i] = static_cast<std::uint32_t>(y(i) * f.width + x(i)) - 7, batch->sample[i] = static_cast<std::uint32_t>(i % 7);
-            batch->wr[i] = batch->wg[i] = batch->wb[i] = -7, batch->depth[i] = batch->path[i] = 7;
+            batch->ox[i] = static_cast<float>(x(i));
+            batch->oy[i] = static_cast<float>(y(i));
+            batch->pixel[i] = static_cast<std::uint32_t>(y(i) * f.width + x(i)) - 7;
+            batch->sample[i] = static_cast<std::uint32_t>(i % 7);
+            batch->wr[i] = batch->wg[i] = batch->wb[i] = -7;
+            batch->depth[i] = batch->path[i] = 7;
           }
-          variant().loops.camera_rays(f, {.batch = batch.get(), .first_pixel = 7, .plan = plan}, count, true);
+          variant().loops.camera_rays(
+              f, {.batch = batch.get(), .first_pixel = 7, .plan = plan}, count, true);
           for (int i = 0; i < count; ++i) {
-            const float got[] = {batch->ox[i], batch->oy[i], batch->oz[i], batch->dx[i], batch->dy[i],
-                                 batch->dz[i], batch->wr[i], batch->wg[i], batch->wb[i]};
+            const float got[] = {batch->ox[i],
+                                 batch->oy[i],
+                                 batch->oz[i],
+                                 batch->dx[i],
+                                 batch->dy[i],
+                                 batch->dz[i],
+                                 batch->wr[i],
+                                 batch->wg[i],
+                                 batch->wb[i]};
             const auto index = static_cast<std::uint32_t>(i % 7);
             const auto [o, d] = plain::ray(f, plan, x(i), y(i), index);
             const float wanted[] = {o.x, o.y, o.z, d.x, d.y, d.z, 1, 1, 1};
-            for (int k = 0; k < 9; ++k) ASSERT_EQ(bits_of(got[k]), bits_of(wanted[k])) << "sampler " << kind << ", sample " << index;
+            for (int k = 0; k < 9; ++k)
+              ASSERT_EQ(bits_of(got[k]), bits_of(wanted[k]))
+                  << "sampler " << kind << ", sample " << index;
             ASSERT_TRUE(batch->sample[i] == index && batch->depth[i] == 1 && batch->path[i] == 0);
           }
         }

@@ -1,4 +1,5 @@
-// The generators: their numbers against files other programs wrote, and the counts generators.hpp promises.
+// The generators: their numbers against files other programs wrote, and the counts generators.hpp
+// promises.
 #include "scenes/generators.hpp"
 #include "scenes/nff_writer.hpp"
 
@@ -25,14 +26,16 @@ std::string generate(const std::string& name, int size, bool spd = false) {
 std::vector<std::string> words(const std::string& text) {
   std::istringstream in(text);
   std::vector<std::string> result;
-  for (std::string word; in >> word;) result.push_back(word);
+  for (std::string word; in >> word;)
+    result.push_back(word);
   return result;
 }
 
 std::optional<double> number(const std::string& word) {
   double value;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size()) return {};
+  if (error != std::errc() || end != word.data() + word.size())
+    return {};
   return value;
 }
 
@@ -41,7 +44,8 @@ std::map<std::string, int> count_entities(const std::string& text) {
   std::istringstream in(text);
   for (std::string line; std::getline(in, line);) {
     const std::string word = line.substr(0, line.find(' '));
-    if (!number(word)) ++counts[word == "p" || word == "pp" ? line : word];
+    if (!number(word))
+      ++counts[word == "p" || word == "pp" ? line : word];
   }
   return counts;
 }
@@ -60,13 +64,15 @@ class AgainstFile : public testing::TestWithParam<KnownFile> {};
 TEST_P(AgainstFile, AgreesInEveryNumber) {
   const KnownFile& known = GetParam();
   std::ifstream file(std::string(GRELHA_SHARED_SCENES "/") + known.file);
-  if (!file) GTEST_SKIP() << "no " << GRELHA_SHARED_SCENES << '/' << known.file;
+  if (!file)
+    GTEST_SKIP() << "no " << GRELHA_SHARED_SCENES << '/' << known.file;
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   const auto expected = words(text), actual = words(generate(known.name, known.size, known.spd));
   ASSERT_EQ(actual.size(), expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) {
     const auto wanted = number(expected[i]), found = number(actual[i]);
-    ASSERT_EQ(wanted.has_value(), found.has_value()) << "word " << i << ": " << actual[i] << ", not " << expected[i];
+    ASSERT_EQ(wanted.has_value(), found.has_value())
+        << "word " << i << ": " << actual[i] << ", not " << expected[i];
     if (wanted)
       ASSERT_NEAR(*found, *wanted, 1e-5) << "word " << i;
     else
@@ -74,12 +80,15 @@ TEST_P(AgainstFile, AgreesInEveryNumber) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Course, AgainstFile,
+INSTANTIATE_TEST_SUITE_P(Course,
+                         AgainstFile,
                          testing::Values(KnownFile{"balls", 4, false, "course-nff/balls_high.nff"},
                                          KnownFile{"mount", 1, false, "course-nff/mount_low.nff"},
                                          KnownFile{"mount", 5, false, "course-nff/mount_high.nff"},
-                                         KnownFile{"mount", 7, false, "course-nff/mount_very_high.nff"}));
-INSTANTIATE_TEST_SUITE_P(Spd, AgainstFile,
+                                         KnownFile{
+                                             "mount", 7, false, "course-nff/mount_very_high.nff"}));
+INSTANTIATE_TEST_SUITE_P(Spd,
+                         AgainstFile,
                          testing::Values(KnownFile{"mount", 6, true, "spd-generated/mount_6.nff"},
                                          KnownFile{"tetra", 5, false, "spd/tetra-5.nff"},
                                          KnownFile{"tetra", 6, false, "spd-generated/tetra_6.nff"},
@@ -87,16 +96,19 @@ INSTANTIATE_TEST_SUITE_P(Spd, AgainstFile,
                                          KnownFile{"tree", 3, false, "spd-generated/tree_3.nff"},
                                          KnownFile{"tree", 11, false, "spd-generated/tree_11.nff"},
                                          KnownFile{"lattice", 4, false, "spd/lattice4.nff"},
-                                         KnownFile{"lattice", 6, false, "spd-generated/lattice_6.nff"}));
+                                         KnownFile{
+                                             "lattice", 6, false, "spd-generated/lattice_6.nff"}));
 
 TEST(AgainstFile, GearsAgreeButForTheirColours) {
   std::ifstream file(GRELHA_SHARED_SCENES "/spd/gears.nff");
-  if (!file) GTEST_SKIP() << "no " << GRELHA_SHARED_SCENES << "/spd/gears.nff";
+  if (!file)
+    GTEST_SKIP() << "no " << GRELHA_SHARED_SCENES << "/spd/gears.nff";
   std::istringstream ours(generate("gears", 4));
   std::string wanted, found;
   while (std::getline(file, wanted)) {
     ASSERT_TRUE(std::getline(ours, found));
-    if (wanted[0] == 'f') continue;
+    if (wanted[0] == 'f')
+      continue;
     ASSERT_EQ(words(found), words(wanted));
   }
   EXPECT_FALSE(std::getline(ours, found));
@@ -109,7 +121,8 @@ TEST(Counts, AreThoseOfTheTable) {
   EXPECT_EQ(count_entities(generate("balls", 5))["s"], 66430);
   EXPECT_EQ(count_entities(generate("balls", 2))["pl"], 1);
   EXPECT_EQ(count_entities(generate("balls", 2, true))["p 4"], 1);
-  for (int n = 1; n <= 8; ++n) EXPECT_EQ(count_entities(generate("mount", n))["p 3"], 2 << 2 * n) << n;
+  for (int n = 1; n <= 8; ++n)
+    EXPECT_EQ(count_entities(generate("mount", n))["p 3"], 2 << 2 * n) << n;
   EXPECT_EQ(count_entities(generate("mount", 8))["s"], 4);
   EXPECT_EQ(count_entities(generate("distant", 3))["s"], 3);
   EXPECT_EQ(count_entities(generate("boat", 10))["pl"], 3);
@@ -132,7 +145,8 @@ TEST(Counts, AreThoseOfTheTable) {
 TEST(Balls, FirstBallsAndFloor) {
   const std::string text = generate("balls", 1);
   EXPECT_NE(text.find("pl 12 12 -0.5 -12 12 -0.5 -12 -12 -0.5\n"), std::string::npos);
-  EXPECT_NE(text.find("s 0 0 0 0.5\ns 0.272166 0.272166 0.544331 0.166667\ns 0.643951 0.172546 "), std::string::npos);
+  EXPECT_NE(text.find("s 0 0 0 0.5\ns 0.272166 0.272166 0.544331 0.166667\ns 0.643951 0.172546 "),
+            std::string::npos);
 }
 
 /// What SPD's programs print, for machines without their files.
@@ -143,15 +157,18 @@ TEST(Spd, FirstNumbers) {
       {generate("tree", 3), "c 0 0 1 0.1005 -0.226621 0.190158 1.63442 0.067335\n"},
       {generate("lattice", 4), "c 0 0.0309375 0 0.015625 0 0.219062 0 0.015625\n"},
       {generate("rings", 7), "c 0.930995 2.61313 0 0.07412 0.287693 1.7277 0 0.07412\n"},
-      {generate("gears", 1), "p 144\n0.994453 -0.0329894 1\n0.994453 0.0329894 1\n0.898767 0.0471024 1\n"}};
-  for (const auto& [text, line] : known) EXPECT_NE(text.find('\n' + std::string(line)), std::string::npos) << line;
+      {generate("gears", 1),
+       "p 144\n0.994453 -0.0329894 1\n0.994453 0.0329894 1\n0.898767 0.0471024 1\n"}};
+  for (const auto& [text, line] : known)
+    EXPECT_NE(text.find('\n' + std::string(line)), std::string::npos) << line;
 }
 
-/// A ball that points straight down but for rounding: without SPD's threshold its children are turned about a noise
-/// axis, and older builds print -0.685606 here.
+/// A ball that points straight down but for rounding: without SPD's threshold its children are
+/// turned about a noise axis, and older builds print -0.685606 here.
 TEST(Balls, DownwardFlakeIsTurnedAboutY) {
-  EXPECT_NE(generate("balls", 3).find("\ns -0.643951 -0.172546 -0.222222 0.0555556\n"
-                                      "s -0.674191 -0.142305 -0.282703 0.0185185\n"),
+  EXPECT_NE(generate("balls", 3)
+                .find("\ns -0.643951 -0.172546 -0.222222 0.0555556\n"
+                      "s -0.674191 -0.142305 -0.282703 0.0185185\n"),
             std::string::npos);
 }
 
@@ -160,7 +177,8 @@ TEST(Balls, ChildrenTouchTheirParent) {
   int touching = 0;
   for (std::string word; in >> word;) {
     double x, y, z, r;
-    if (word != "s" || !(in >> x >> y >> z >> r) || r > 0.4) continue;
+    if (word != "s" || !(in >> x >> y >> z >> r) || r > 0.4)
+      continue;
     EXPECT_NEAR(std::sqrt(x * x + y * y + z * z), 0.5 + r, 2e-6);
     ++touching;
   }
@@ -179,15 +197,19 @@ TEST(Mount, HasNoGaps) {
   std::istringstream in(generate("mount", 8));
   std::map<std::pair<std::string, std::string>, int> edges;
   for (std::string line; std::getline(in, line);) {
-    if (line != "p 3") continue;
+    if (line != "p 3")
+      continue;
     std::string v[3];
-    for (auto& vertex : v) std::getline(in, vertex);
-    for (int i = 0; i < 3; ++i) ++edges[std::minmax(v[i], v[(i + 1) % 3])];
+    for (auto& vertex : v)
+      std::getline(in, vertex);
+    for (int i = 0; i < 3; ++i)
+      ++edges[std::minmax(v[i], v[(i + 1) % 3])];
   }
   int border = 0;
   for (const auto& [edge, count] : edges) {
     ASSERT_LE(count, 2);
-    if (count == 1) ++border;
+    if (count == 1)
+      ++border;
   }
   EXPECT_EQ(border, 4 * 256);
 }
@@ -196,9 +218,11 @@ TEST(Gears, SecondCornersAreConvex) {
   std::istringstream in(generate("gears", 1));
   std::vector<double> up;
   for (std::string line; std::getline(in, line);) {
-    if (line != "p 144") continue;
+    if (line != "p 144")
+      continue;
     Vec v[3];
-    for (Vec& p : v) in >> p.x >> p.y >> p.z;
+    for (Vec& p : v)
+      in >> p.x >> p.y >> p.z;
     up.push_back(cross(v[1] - v[0], v[2] - v[1]).z);
   }
   ASSERT_EQ(up.size(), 2u);
@@ -213,7 +237,8 @@ TEST(Boat, MeshIsWholeAndNamedByTheScene) {
   std::string line;
   std::string elements;
   while (std::getline(in, line) && line != "end_header")
-    if (line.starts_with("element ")) elements += line + '\n';
+    if (line.starts_with("element "))
+      elements += line + '\n';
   EXPECT_EQ(elements, "element vertex 2624\nelement face 4700\n");
   for (int i = 0; i < 2624; ++i) {
     Vec p, n;
@@ -235,11 +260,13 @@ TEST(Knot, MeshHasTheTablesFaces) {
   for (const int n : {1, 8}) {
     std::ostringstream out;
     find_generator("knot")->write_mesh(out, n);
-    EXPECT_NE(out.str().find("\nelement face " + std::to_string(288 * n * n) + '\n'), std::string::npos);
+    EXPECT_NE(out.str().find("\nelement face " + std::to_string(288 * n * n) + '\n'),
+              std::string::npos);
   }
 }
 
-/// Header, rows of twelve bytes and rows of thirteen; the last face's indices and nothing behind them.
+/// Header, rows of twelve bytes and rows of thirteen; the last face's indices and nothing behind
+/// them.
 TEST(Terrain, MeshIsWholeAndTheSameOnEveryMachine) {
   std::ostringstream out;
   find_generator("terrain")->write_mesh(out, 2);
@@ -248,9 +275,11 @@ TEST(Terrain, MeshIsWholeAndTheSameOnEveryMachine) {
   EXPECT_NE(bytes.find("\nelement vertex 1089\n"), std::string::npos);
   EXPECT_NE(bytes.find("\nelement face 2048\n"), std::string::npos);
   ASSERT_EQ(bytes.size(), data + 1089 * 12 + 2048 * 13);
-  EXPECT_EQ(bytes.substr(bytes.size() - 13), std::string("\3\x40\4\0\0\x3f\4\0\0\x1e\4\0\0", 13)) << "1088, 1087, 1054";
+  EXPECT_EQ(bytes.substr(bytes.size() - 13), std::string("\3\x40\4\0\0\x3f\4\0\0\x1e\4\0\0", 13))
+      << "1088, 1087, 1054";
   EXPECT_EQ(bytes.substr(data, 8), std::string("\0\0\x80\xbf\0\0\x80\xbf", 8)) << "-1, -1";
-  EXPECT_EQ(bytes.substr(data + 544 * 12, 12), std::string("\0\0\0\0\0\0\0\0\xDC\x6E\x1B\x3D", 12)) << "the middle";
+  EXPECT_EQ(bytes.substr(data + 544 * 12, 12), std::string("\0\0\0\0\0\0\0\0\xDC\x6E\x1B\x3D", 12))
+      << "the middle";
 }
 
 /// From the corners in order, the geometric normal agrees with the ones written: front is front.
@@ -259,12 +288,19 @@ TEST(Stadium, NormalsAgreeWithTheWinding) {
   int patches = 0;
   Vec top{0, 0, 0}, top_normal;
   for (std::string line; std::getline(in, line);) {
-    if (line != "pp 3") continue;
+    if (line != "pp 3")
+      continue;
     Vec v[3], n[3];
-    for (int i = 0; i < 3; ++i) in >> v[i].x >> v[i].y >> v[i].z >> n[i].x >> n[i].y >> n[i].z;
-    for (const Vec& normal : n) ASSERT_GT(dot(cross(v[1] - v[0], v[2] - v[1]), normal), 0) << patches;
-    for (const Vec& corner : v) ASSERT_GT(corner.z, 0);
-    if (v[0].z > top.z) top = v[0], top_normal = n[0];
+    for (int i = 0; i < 3; ++i)
+      in >> v[i].x >> v[i].y >> v[i].z >> n[i].x >> n[i].y >> n[i].z;
+    for (const Vec& normal : n)
+      ASSERT_GT(dot(cross(v[1] - v[0], v[2] - v[1]), normal), 0) << patches;
+    for (const Vec& corner : v)
+      ASSERT_GT(corner.z, 0);
+    if (v[0].z > top.z) {
+      top = v[0];
+      top_normal = n[0];
+    }
     ++patches;
   }
   EXPECT_GT(top_normal.z, 0.9) << "front is outside";
@@ -277,7 +313,8 @@ TEST(Discs, LieInPixelsOfTheirOwn) {
     std::istringstream in(generate("discs", n));
     std::set<std::pair<int, int>> pixels;
     for (std::string line; std::getline(in, line);) {
-      if (!line.starts_with("s ")) continue;
+      if (!line.starts_with("s "))
+        continue;
       std::istringstream numbers(line.substr(2));
       double at[2], z, r;
       int pixel[2];
@@ -298,16 +335,21 @@ TEST(Discs, LieInPixelsOfTheirOwn) {
 /// The same bits on every machine, so these words too.
 TEST(Discs, FirstPlaces) {
   const std::string text = generate("discs", 64);
-  EXPECT_NE(text.find("\nf 0 0 0 0 0 0 0 0 1 0 1 1 1 1\ns -255.85 -255.85 0 0.1\ns -247.2 -250.32 0 0.1\n"), std::string::npos);
+  EXPECT_NE(
+      text.find(
+          "\nf 0 0 0 0 0 0 0 0 1 0 1 1 1 1\ns -255.85 -255.85 0 0.1\ns -247.2 -250.32 0 0.1\n"),
+      std::string::npos);
 }
 
 TEST(Star, HalfOfTheDiscShines) {
   std::istringstream in(generate("star", 36));
   double area = 0;
   for (std::string line; std::getline(in, line);) {
-    if (line != "p 3") continue;
+    if (line != "p 3")
+      continue;
     Vec v[3];
-    for (Vec& p : v) in >> p.x >> p.y >> p.z;
+    for (Vec& p : v)
+      in >> p.x >> p.y >> p.z;
     ASSERT_EQ(v[0], Vec{});
     area += cross(v[1], v[2]).z / 2;
   }
@@ -317,12 +359,20 @@ TEST(Star, HalfOfTheDiscShines) {
 TEST(NffWriter, PrintsAsPrintfDoes) {
   std::ostringstream out;
   NffWriter nff(out);
-  for (const double value : {0.0, -0.5, 1.0 / 3, 1e-16, 123456789.0, 0.00012345678, -0.0, 100000.0, 1234567.0})
+  for (const double value :
+       {0.0, -0.5, 1.0 / 3, 1e-16, 123456789.0, 0.00012345678, -0.0, 100000.0, 1234567.0})
     nff.sphere({value, 0, 0}, 1);
   nff.finish();
   std::string expected;
-  for (const char* text :
-       {"0", "-0.5", "0.333333", "1e-16", "1.23457e+08", "0.000123457", "-0", "100000", "1.23457e+06"})
+  for (const char* text : {"0",
+                           "-0.5",
+                           "0.333333",
+                           "1e-16",
+                           "1.23457e+08",
+                           "0.000123457",
+                           "-0",
+                           "100000",
+                           "1.23457e+06"})
     expected += std::string("s ") + text + " 0 0 1\n";
   EXPECT_EQ(out.str(), expected);
 }

@@ -21,14 +21,22 @@ struct Pixel {
 Pixel look(const Scene& scene, const Float3& eye, const Float3& at, int depth = 5) {
   const World world(scene, {});
   Camera c;
-  c.eye = eye, c.at = at, c.width = c.height = 1, c.angle_deg = 10;
+  c.eye = eye;
+  c.at = at;
+  c.width = c.height = 1;
+  c.angle_deg = 10;
   const Float3 d = minus(at, eye);
-  if (d.x == 0 && d.z == 0) c.up = {0, 0, 1};
+  if (d.x == 0 && d.z == 0)
+    c.up = {0, 0, 1};
   RenderOptions o;
-  o.depth = depth, o.threads = 1, o.min_weight = 0;  // closed forms have all terms
+  o.depth = depth;
+  o.threads = 1;
+  o.min_weight = 0;  // closed forms have all terms
   Pixel p;
   const Image image = render(world, c, o, p.stats);
-  p.r = image.rgb[0], p.g = image.rgb[1], p.b = image.rgb[2];
+  p.r = image.rgb[0];
+  p.g = image.rgb[1];
+  p.b = image.rgb[2];
   return p;
 }
 
@@ -52,18 +60,21 @@ Scene floor_scene(const Material& m) {
   return s;
 }
 
-/// What a handful of float operations may add up to: the direction (12 eps, camera_test) and the hit point move the
-/// cosine by that much each, the light's direction, its normalising and the products take about 20 roundings more.
+/// What a handful of float operations may add up to: the direction (12 eps, camera_test) and the
+/// hit point move the cosine by that much each, the light's direction, its normalising and the
+/// products take about 20 roundings more.
 constexpr double kFew = 64 * 6e-8;
 
 TEST(Shade, LambertOnAFloor) {
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     Random random(seed);
     Scene s = floor_scene(plain({.5f, .25f, .125f}));
-    const Float3 light{static_cast<float>(random.in(-3, 3)), static_cast<float>(random.log_in(.3, 10)),
+    const Float3 light{static_cast<float>(random.in(-3, 3)),
+                       static_cast<float>(random.log_in(.3, 10)),
                        static_cast<float>(random.in(-3, 3))};
     s.lights = {{light, {.5f, 1, 2}}};
-    const Float3 spot{static_cast<float>(random.in(-1, 1)), 0, static_cast<float>(random.in(-1, 1))};
+    const Float3 spot{
+        static_cast<float>(random.in(-1, 1)), 0, static_cast<float>(random.in(-1, 1))};
     const Pixel p = look(s, {0, 5, 1}, spot);
     const Real cosine = oracle::unit(V(light) - V(spot)).y;
     EXPECT_NEAR(p.r, double(.25L * cosine), 10 * kFew)
@@ -82,11 +93,14 @@ TEST(Shade, BlinnHighlight) {
     m.specular = {.5f, 1, .25f}, m.shine = static_cast<float>(random.log_in(1, 200));
     Scene s = floor_scene(m);
     const Float3 eye{static_cast<float>(random.in(-2, 2)), 3, static_cast<float>(random.in(-2, 2))};
-    const Float3 light{static_cast<float>(random.in(-3, 3)), 4, static_cast<float>(random.in(-3, 3))};
+    const Float3 light{
+        static_cast<float>(random.in(-3, 3)), 4, static_cast<float>(random.in(-3, 3))};
     s.lights = {{light, {1, 1, 1}}};
     const Pixel p = look(s, eye, {0, 0, 0});
-    const Real nh = oracle::unit(oracle::unit(V(light)) + oracle::unit(V(eye))).y, wanted = std::pow(nh, Real(m.shine));
-    // The cosine's error is multiplied by the exponent; power() itself adds what power_test allows, which is less.
+    const Real nh = oracle::unit(oracle::unit(V(light)) + oracle::unit(V(eye))).y,
+               wanted = std::pow(nh, Real(m.shine));
+    // The cosine's error is multiplied by the exponent; power() itself adds what power_test allows,
+    // which is less.
     const double tolerance = kFew * (1 + m.shine);
     EXPECT_NEAR(p.r, double(.5L * wanted), tolerance) << seed;
     EXPECT_NEAR(p.g, double(wanted), tolerance) << seed;
@@ -97,7 +111,8 @@ TEST(Shade, BlinnHighlight) {
 TEST(Shade, LightsAdd) {
   Scene s = floor_scene(plain({1, 1, 1}));
   s.materials[0].emission = {0, 0, .5f};
-  for (int i = 0; i < 7; ++i) s.lights.push_back({{0, 2, 0}, {.125f, 0, 0}});
+  for (int i = 0; i < 7; ++i)
+    s.lights.push_back({{0, 2, 0}, {.125f, 0, 0}});
   s.lights.push_back({{0, 2, 0}, {0, .25f, 0}});
   const Pixel p = look(s, {0, 3, 2}, {0, 0, 0});
   EXPECT_NEAR(p.r, .875, kFew);
@@ -111,8 +126,8 @@ TEST(Shade, ShadowsAreHardAndWhole) {
   s.lights = {{{0, 4, 0}, {1, 1, 1}}};
   s.materials.push_back(plain({}));
   s.geometry.spheres.add({0, 2, 0}, .5f, 1);
-  // The cone of shadow from height 4 about the ball's rim: sin = 1/4, so its radius on the floor is 4 tan(asin(1/4))
-  // = 1.0328.
+  // The cone of shadow from height 4 about the ball's rim: sin = 1/4, so its radius on the floor is
+  // 4 tan(asin(1/4)) = 1.0328.
   EXPECT_EQ(look(s, {1.5f, 1, 3}, {1.02f, 0, 0}).r, 0);
   EXPECT_GT(look(s, {1.5f, 1, 3}, {1.04f, 0, 0}).r, .9f);
   s.materials[1].transmission = 1;  // any hit blocks, glass too
@@ -147,7 +162,8 @@ TEST(Shade, BackgroundWhereNothingIs) {
   EXPECT_EQ(p.b, .3f);
 }
 
-// ---- reflection -------------------------------------------------------------------------------------------------
+// ---- reflection
+// ------------------------------------------------------------------------------------------
 
 TEST(Shade, MirrorShowsWhatItFaces) {
   Material m;
@@ -179,8 +195,8 @@ TEST(Shade, DepthCountsTheEyeRayAsOne) {
   s.background = {0, 1, 0};
   for (int depth = 1; depth <= 40; ++depth) {
     const Pixel p = look(s, {0, 1, 0}, {0, 0, .25f}, depth);
-    // Each of `depth` hits sends 1, halved at each bounce; the last one's reflection sees the background. Powers of
-    // two: exact.
+    // Each of `depth` hits sends 1, halved at each bounce; the last one's reflection sees the
+    // background. Powers of two: exact.
     EXPECT_FLOAT_EQ(p.r, static_cast<float>(2 - std::ldexp(1., 1 - depth))) << depth;
     EXPECT_NEAR(p.g, std::ldexp(1., -depth), 1e-9) << depth;  // sums count in 2^-32
     EXPECT_EQ(p.stats.rays.reflection, static_cast<std::uint64_t>(depth - 1));
@@ -201,12 +217,15 @@ TEST(Shade, NoWeightSendsNoRay) {
   EXPECT_GT(stats.rays.shadow, 100u);
 }
 
-// ---- refraction -------------------------------------------------------------------------------------------------
+// ---- refraction
+// ------------------------------------------------------------------------------------------
 
 /// Water below y = 0, a red sky above that is the background, green ground at y = -1.
 Scene water(float ior, bool fresnel, float transmission = 1) {
   Material m;
-  m.transmission = transmission, m.ior = ior, m.fresnel = fresnel;
+  m.transmission = transmission;
+  m.ior = ior;
+  m.fresnel = fresnel;
   Scene s = floor_scene(m);
   s.background = {1, 0, 0};
   s.materials.push_back(glowing({0, 1, 0}));
@@ -225,8 +244,9 @@ TEST(Shade, SchlickSplitsTheLight) {
       const Float3 eye{0, 1, static_cast<float>(std::tan(i * 4 * 3.14159265 / 180))};
       const Pixel p = look(water(ior, true), eye, {0, 0, 0});
       const Real kr = schlick(ior, 1 / length(V(eye)));
-      EXPECT_NEAR(p.r, double(kr), 10 * kFew) << ior << ' ' << i;  // (1 - cosine)^5 takes the cosine's error five times
-      EXPECT_NEAR(p.r + p.g, 1, 4e-7) << ior << ' ' << i;          // nothing lost, nothing won
+      // (1 - cosine)^5 takes the cosine's error five times
+      EXPECT_NEAR(p.r, double(kr), 10 * kFew) << ior << ' ' << i;
+      EXPECT_NEAR(p.r + p.g, 1, 4e-7) << ior << ' ' << i;  // nothing lost, nothing won
       EXPECT_EQ(p.stats.rays.reflection, 1u);
       EXPECT_EQ(p.stats.rays.refraction, 1u);
     }
@@ -236,12 +256,14 @@ TEST(Shade, SchlickSplitsTheLight) {
 TEST(Shade, SchlickFromWithin) {
   const float ior = 1.5f;
   for (int i = 0; i < 20; ++i) {
-    const Real angle = i * 2 * 3.14159265358979L / 180;  // up to 38 degrees, below the critical 41.8
+    // up to 38 degrees, below the critical 41.8
+    const Real angle = i * 2 * 3.14159265358979L / 180;
     const Float3 eye{0, -.5f, static_cast<float>(.5L * std::tan(angle))};
     const Pixel p = look(water(ior, true), eye, {0, 0, 0});
-    const Real sine = ior * length(V{eye.x, 0, eye.z}) / length(V(eye)), kr = schlick(ior, std::sqrt(1 - sine * sine));
-    // cos = sqrt(1 - sin^2) steepens towards the critical angle: d cos / d sin = tan of the angle outside, below 3
-    // here.
+    const Real sine = ior * length(V{eye.x, 0, eye.z}) / length(V(eye)),
+               kr = schlick(ior, std::sqrt(1 - sine * sine));
+    // cos = sqrt(1 - sin^2) steepens towards the critical angle: d cos / d sin = tan of the angle
+    // outside, below 3 here.
     EXPECT_NEAR(p.g, double(kr), 50 * kFew) << i;
     EXPECT_NEAR(p.r, double(1 - kr), 50 * kFew) << i;
   }
@@ -267,10 +289,12 @@ TEST(Shade, WithoutFresnelWeightsStandAsWritten) {
   EXPECT_EQ(p.g, .25f);
 }
 
-/// A pane shifts a slanting ray sideways by what Snell's law says: told from the light on the floor where it comes out.
+/// A pane shifts a slanting ray sideways by what Snell's law says: told from the light on the floor
+/// where it comes out.
 TEST(Shade, PaneShiftsByWhatSnellSays) {
   Material glass;
-  glass.transmission = 1, glass.ior = 1.5f;
+  glass.transmission = 1;
+  glass.ior = 1.5f;
   Scene s;
   s.materials = {glass, plain({1, 1, 1})};
   const Float3 light{1.5f, -2.5f, 0};
@@ -282,13 +306,15 @@ TEST(Shade, PaneShiftsByWhatSnellSays) {
     const Float3 eye{static_cast<float>(-std::tan(outside)), 1, 0};
     const Real sine = length(V{eye.x, 0, 0}) / length(V(eye)), inner = sine / 1.5L;
     const Real x =
-        inner / std::sqrt(1 - inner * inner) + 2 * std::abs(Real(eye.x));  // through the pane, then 2 down to the floor
+        // through the pane, then 2 down to the floor
+        inner / std::sqrt(1 - inner * inner) + 2 * std::abs(Real(eye.x));
     const Real cosine = oracle::unit(V(light) - V{x, -3, 0}).y;
     const Pixel p = look(s, eye, {0, 0, 0});
-    // The floor's point is off by a few eps of the path times 1 / cos^2 of its slant, up to 80 there; the light hangs
-    // .5 above.
+    // The floor's point is off by a few eps of the path times 1 / cos^2 of its slant, up to 80
+    // there; the light hangs .5 above.
     const Real slant = 1 - sine * sine;
-    EXPECT_NEAR(p.r, double(cosine), double(16 * 6e-8L * (1 + x) / slant / .5L)) << i << ", at x " << double(x);
+    EXPECT_NEAR(p.r, double(cosine), double(16 * 6e-8L * (1 + x) / slant / .5L))
+        << i << ", at x " << double(x);
     EXPECT_EQ(p.stats.rays.refraction, 2u) << i;
   }
 }
@@ -296,7 +322,8 @@ TEST(Shade, PaneShiftsByWhatSnellSays) {
 /// The same at a ball of index 1: nothing is bent and nothing lost.
 TEST(Shade, GlassOfIndexOneIsNotThere) {
   Material air;
-  air.transmission = 1, air.ior = 1;
+  air.transmission = 1;
+  air.ior = 1;
   Scene s;
   s.materials = {air, plain({1, 1, 1})};
   s.geometry.spheres.add({0, 2, 0}, 1, 0);
@@ -310,7 +337,8 @@ TEST(Shade, GlassOfIndexOneIsNotThere) {
   }
 }
 
-// ---- normals ----------------------------------------------------------------------------------------------------
+// ---- normals
+// ------------------------------------------------------------------------------------------
 
 TEST(Shade, SmoothNormalsAreMixed) {
   Scene s;
@@ -321,53 +349,79 @@ TEST(Shade, SmoothNormalsAreMixed) {
   s.lights = {{{0, 4, 0}, {1, 1, 1}}};
   const Pixel p = look(s, {0, 3, 1}, {0, 0, 0});
   // At the origin the corners weigh 1/2, 1/4, 1/4.
-  const V n = oracle::unit(.5L * V{0, 1, 0} + .25L * oracle::unit(V{1, 1, 0}) + .25L * oracle::unit(V{0, 1, 1}));
+  const V n = oracle::unit(.5L * V{0, 1, 0} + .25L * oracle::unit(V{1, 1, 0}) +
+                           .25L * oracle::unit(V{0, 1, 1}));
   EXPECT_NEAR(p.r, double(n.y), kFew);
-  s.geometry.triangles.nx[1] = s.geometry.triangles.ny[1] = s.geometry.triangles.nz[1] = 0;  // one corner without: flat
+  // one corner without: flat
+  s.geometry.triangles.nx[1] = s.geometry.triangles.ny[1] = s.geometry.triangles.nz[1] = 0;
   EXPECT_NEAR(look(s, {0, 3, 1}, {0, 0, 0}).r, 1, kFew);
 }
 
 TEST(Shade, EveryKindHasItsNormal) {
   // Head on: the normal faces the eye, the light hangs at the eye, so the cosine is 1.
-  const auto head_on = [](const std::function<void(Scene&)>& add, const Float3& eye, const Float3& at) {
-    Scene s;
-    s.materials = {plain({1, 1, 1})};
-    add(s);
-    s.lights = {{eye, {1, 1, 1}}};
-    return look(s, eye, at).r;
-  };
-  EXPECT_NEAR(head_on([](Scene& s) { s.geometry.spheres.add({1, 2, 3}, 1, 0); }, {1, 2, 9}, {1, 2, 3}), 1, kFew);
+  const auto head_on =
+      [](const std::function<void(Scene&)>& add, const Float3& eye, const Float3& at) {
+        Scene s;
+        s.materials = {plain({1, 1, 1})};
+        add(s);
+        s.lights = {{eye, {1, 1, 1}}};
+        return look(s, eye, at).r;
+      };
+  EXPECT_NEAR(head_on(
+                  [](Scene& s) {
+                    s.geometry.spheres.add({1, 2, 3}, 1, 0);
+                  },
+                  {1, 2, 9},
+                  {1, 2, 3}),
+              1,
+              kFew);
   EXPECT_NEAR(head_on(
                   [](Scene& s) {
                     s.geometry.spheres.add({1, 2, 3}, 4, 0);
                   },
-                  {1, 2, 4}, {1, 2, 9}),
-              1, kFew);  // from within
+                  {1, 2, 4},
+                  {1, 2, 9}),
+              1,
+              kFew);  // from within
   EXPECT_NEAR(head_on(
                   [](Scene& s) {
                     s.geometry.cones.add({0, 0, 0}, 1, {0, 4, 0}, 1, 0);
                   },
-                  {5, 2, 0}, {0, 2, 0}),
-              1, kFew);
+                  {5, 2, 0},
+                  {0, 2, 0}),
+              1,
+              kFew);
   EXPECT_NEAR(head_on(
                   [](Scene& s) {
                     s.geometry.cones.add({0, 0, 0}, 2, {0, 2, 0}, 0, 0);
                   },
-                  {3, 3, 0}, {1, 1, 0}),
-              1, kFew);
-  EXPECT_NEAR(head_on([](Scene& s) { s.geometry.planes.add({0, 1, 0}, {3, 3, 0}, 0); }, {4, 5, 0}, {0, 1, 0}), 1, kFew);
+                  {3, 3, 0},
+                  {1, 1, 0}),
+              1,
+              kFew);
+  EXPECT_NEAR(head_on(
+                  [](Scene& s) {
+                    s.geometry.planes.add({0, 1, 0}, {3, 3, 0}, 0);
+                  },
+                  {4, 5, 0},
+                  {0, 1, 0}),
+              1,
+              kFew);
   EXPECT_NEAR(head_on(
                   [](Scene& s) {
                     add_triangle(s, {-1, -1, 0}, {1, -1, 0}, {0, 1, 0});
                   },
-                  {0, 0, -4}, {0, 0, 0}),
-              1, kFew);
+                  {0, 0, -4},
+                  {0, 0, 0}),
+              1,
+              kFew);
 }
 
 TEST(Shade, IsSelectedByTheMaterialsThatPrimitivesHave) {
   Scene s;
   Material all = plain({1, 1, 1});
-  all.mirror = all.specular = all.emission = {1, 1, 1}, all.transmission = all.roughness = .5f, all.fresnel = true;
+  all.mirror = all.specular = all.emission = {1, 1, 1}, all.transmission = all.roughness = .5f,
+  all.fresnel = true;
   s.materials = {plain({1, 1, 1}), all};
   const auto selected = [&s] {
     const World world(s, {});
@@ -376,8 +430,15 @@ TEST(Shade, IsSelectedByTheMaterialsThatPrimitivesHave) {
   };
   s.geometry.spheres.add({0, 0, 0}, 1, 0);
   EXPECT_EQ(selected(), std::vector<bool>(6, false));
-  const std::function<void()> add[] = {[&] { s.geometry.spheres.add({3, 0, 0}, 1, 1); }, [&] { s.geometry.planes.add({0, -3, 0}, {0, 1, 0}, 1); },
-                                       [&] { s.geometry.cones.add({0, 3, 0}, 1, {0, 4, 0}, 0, 1); }};
+  const std::function<void()> add[] = {[&] {
+                                         s.geometry.spheres.add({3, 0, 0}, 1, 1);
+                                       },
+                                       [&] {
+                                         s.geometry.planes.add({0, -3, 0}, {0, 1, 0}, 1);
+                                       },
+                                       [&] {
+                                         s.geometry.cones.add({0, 3, 0}, 1, {0, 4, 0}, 0, 1);
+                                       }};
   for (const auto& a : add) {
     const Scene before = s;
     a();

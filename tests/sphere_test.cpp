@@ -1,4 +1,5 @@
-// hit_sphere: every instruction set and method against the scalar one bit for bit; the scalar one against long double.
+// hit_sphere: every instruction set and method against the scalar one bit for bit; the scalar one
+// against long double.
 #define GRELHA_ISA scalar
 #include "kernel/sphere.hpp"
 
@@ -20,7 +21,8 @@ TEST_P(Sphere, ReturnsTheScalarBits) {
     const Float3 center = random.chance(.3) ? Float3{} : random.point(size * random.log_in(1, 1e4));
     const Scene scene = one_sphere(center, static_cast<float>(random.chance(.2) ? -size : size));
     const World world(scene, {.grid = false});
-    const Rays rays = with_odd_values(random, rays_about(random, center, size, kManyRays), seed % 2 ? .1 : 0);
+    const Rays rays =
+        with_odd_values(random, rays_about(random, center, size, kManyRays), seed % 2 ? .1 : 0);
     const Truth truth = truth_of(scene, rays);
     expect_truth(variant(), world, rays, truth, "seed " + std::to_string(seed));
     hits += hits_of(truth.closest);
@@ -36,11 +38,13 @@ struct Hit {
 Hit hit(const Float3& o, const Float3& d, const Float3& c, float radius, float t_min = 0) {
   const float inv_dd = 1 / ((d.x * d.x + d.y * d.y) + d.z * d.z);
   float t = -1;
-  const bool h = scalar::hit_sphere<float>({o.x, o.y, o.z}, {d.x, d.y, d.z}, inv_dd, t_min, {c.x, c.y, c.z}, radius, t);
+  const bool h = scalar::hit_sphere<float>(
+      {o.x, o.y, o.z}, {d.x, d.y, d.z}, inv_dd, t_min, {c.x, c.y, c.z}, radius, t);
   return {h, t};
 }
 
-/// The header's bound: 8 eps max(radius, distance of the origin from the centre), measured from the surface.
+/// The header's bound: 8 eps max(radius, distance of the origin from the centre), measured from the
+/// surface.
 TEST(SphereOracle, PointsLieOnTheSurface) {
   oracle::Real worst = 0;
   int hits = 0;
@@ -49,23 +53,28 @@ TEST(SphereOracle, PointsLieOnTheSurface) {
     const double r = random.log_in(1e-12, 1e12);
     const Float3 c = random.chance(.3) ? Float3{} : random.point(r * random.log_in(1e-2, 1e2));
     const Float3 o = at(c, r * random.log_in(1e-3, 1e5), random.direction());
-    const Float3 d = scaled(minus(at(c, r * random.in(0, 1.001), random.direction()), o), random.log_in(1e-2, 1e2));
+    const Float3 d = scaled(minus(at(c, r * random.in(0, 1.001), random.direction()), o),
+                            random.log_in(1e-2, 1e2));
     const auto [found, t] = hit(o, d, c, static_cast<float>(r));
-    if (!found) continue;
+    if (!found)
+      continue;
     ++hits;
     const oracle::Ball ball{c, static_cast<float>(r)};
-    const oracle::Real unit = oracle::kEps * std::max<oracle::Real>(ball.radius, length(oracle::V(o) - ball.center));
+    const oracle::Real unit =
+        oracle::kEps * std::max<oracle::Real>(ball.radius, length(oracle::V(o) - ball.center));
     const oracle::Real off = ball.distance(oracle::Ray{o, d}.point(t)) / unit;
     ASSERT_LE(off, 8) << "seed " << seed << ": " << static_cast<double>(off) << " of the unit";
     worst = std::max(worst, off);
   }
   RecordProperty("worst_in_eps", std::to_string(static_cast<double>(worst)));
-  std::printf("sphere: %d hits, worst %.2f eps max(r, |o - c|)\n", hits, static_cast<double>(worst));
+  std::printf(
+      "sphere: %d hits, worst %.2f eps max(r, |o - c|)\n", hits, static_cast<double>(worst));
   EXPECT_GT(hits, 100000);
 }
 
-/// Misses and hits agree with the exact ones, and the first crossing is found, wherever 8 eps cannot tip the balance: a
-/// ray whose line keeps further than that from the silhouette, that starts further than that from the surface.
+/// Misses and hits agree with the exact ones, and the first crossing is found, wherever 8 eps
+/// cannot tip the balance: a ray whose line keeps further than that from the silhouette, that
+/// starts further than that from the surface.
 TEST(SphereOracle, FindsTheFirstCrossing) {
   int judged = 0;
   for (std::uint64_t seed = 0; seed < 300000; ++seed) {
@@ -73,19 +82,25 @@ TEST(SphereOracle, FindsTheFirstCrossing) {
     const double size = random.log_in(1e-12, 1e12);
     const float r = static_cast<float>(random.chance(.3) ? -size : size);
     const Float3 c = random.point(size * random.log_in(1e-2, 1e3));
-    const Float3 o = at(c, size * (random.chance(.3) ? random.unit() : random.log_in(1, 1e4)), random.direction());
-    const Float3 d = scaled(minus(at(c, size * random.in(0, 1.5), random.direction()), o), random.log_in(1e-2, 1e2));
+    const Float3 o = at(
+        c, size * (random.chance(.3) ? random.unit() : random.log_in(1, 1e4)), random.direction());
+    const Float3 d = scaled(minus(at(c, size * random.in(0, 1.5), random.direction()), o),
+                            random.log_in(1e-2, 1e2));
     const oracle::Ball ball{c, r};
     const oracle::Ray ray{o, d};
-    const oracle::Real tolerance = 8 * oracle::kEps * std::max<oracle::Real>(size, length(oracle::V(o) - ball.center));
+    const oracle::Real tolerance =
+        8 * oracle::kEps * std::max<oracle::Real>(size, length(oracle::V(o) - ball.center));
     const oracle::Real foot = dot(ball.center - ray.org, ray.dir) / dot(ray.dir, ray.dir);
-    if (ball.distance(ray.org) <= tolerance || ball.distance(ray.point(foot)) <= tolerance) continue;
+    if (ball.distance(ray.org) <= tolerance || ball.distance(ray.point(foot)) <= tolerance)
+      continue;
     ++judged;
     const auto wanted = ball.first(ray, 0);
     const auto [found, t] = hit(o, d, c, r);
     ASSERT_EQ(found, wanted.has_value()) << "seed " << seed;
-    if (!found) continue;
-    // Across a sphere the point moves 1/cosine as far along the ray as off the surface; twice for its curvature.
+    if (!found)
+      continue;
+    // Across a sphere the point moves 1/cosine as far along the ray as off the surface; twice for
+    // its curvature.
     const oracle::Real along = std::abs(t - wanted->t) * length(ray.dir);
     ASSERT_LE(along * wanted->cosine, 2 * tolerance)
         << "seed " << seed << ": t " << t << " against " << static_cast<double>(wanted->t);
@@ -98,9 +113,11 @@ TEST(SphereCorners, StartOnTheSurfaceAndInside) {
   EXPECT_EQ(hit({0, 0, 0}, {0, 0, 1}, {0, 0, 0}, 2).t, 2.f);
   EXPECT_EQ(hit({0, 0, 5}, {0, 0, -1}, {0, 0, 0}, 2).t, 3.f);
   EXPECT_EQ(hit({0, 0, 5}, {0, 0, -4}, {0, 0, 0}, 2).t, .75f);  // t counts lengths of dir
-  EXPECT_EQ(hit({0, 0, 5}, {0, 0, -1}, {0, 0, 0}, -2).t, 7.f);  // inside only: the near half lets the ray in
+  // inside only: the near half lets the ray in
+  EXPECT_EQ(hit({0, 0, 5}, {0, 0, -1}, {0, 0, 0}, -2).t, 7.f);
   EXPECT_FALSE(hit({0, 0, 5}, {0, 0, 1}, {0, 0, 0}, 2).hit);
-  EXPECT_EQ(hit({0, 0, 5}, {0, 0, -1}, {0, 0, 0}, 2, 3).t, 7.f);  // the interval is open: t 3 itself does not count
+  // the interval is open: t 3 itself does not count
+  EXPECT_EQ(hit({0, 0, 5}, {0, 0, -1}, {0, 0, 0}, 2, 3).t, 7.f);
   EXPECT_FALSE(hit({0, 0, 5}, {0, 0, -1}, {0, 0, 0}, 2, 7).hit);
   EXPECT_TRUE(hit({2, 0, 5}, {0, 0, -1}, {0, 0, 0}, 2).hit);  // touching
   EXPECT_FALSE(hit({2.0001f, 0, 5}, {0, 0, -1}, {0, 0, 0}, 2).hit);

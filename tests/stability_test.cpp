@@ -18,30 +18,36 @@ TEST_P(Stability, NothingIsLostFalseOrMetAgain) {
     GrelhaTracer grelha(*find_variant(isa));
     const Counts c = run(GetParam(), grelha, 2000, 7);
     EXPECT_GT(c.answers, 50u);
-    EXPECT_EQ(c.wrong(), 0u) << c.lost << " lost, " << c.false_ << " false, " << c.self << " self-hits of " << c.answers << ", " << isa << ", "
-                             << c.first;
+    EXPECT_EQ(c.wrong(), 0u) << c.lost << " lost, " << c.false_ << " false, " << c.self
+                             << " self-hits of " << c.answers << ", " << isa << ", " << c.first;
   }
 }
 
 template <class Info>
 std::string name_of(const Info& info) {
   std::string name;
-  for (const char* c = info.param.name; *c; ++c) name += std::isalnum(static_cast<unsigned char>(*c)) ? *c : '_';
+  for (const char* c = info.param.name; *c; ++c)
+    name += std::isalnum(static_cast<unsigned char>(*c)) ? *c : '_';
   return name;
 }
 
-INSTANTIATE_TEST_SUITE_P(Rows, Stability, testing::ValuesIn(all_rows()), [](const auto& p) { return name_of(p); });
+INSTANTIATE_TEST_SUITE_P(Rows, Stability, testing::ValuesIn(all_rows()), [](const auto& p) {
+  return name_of(p);
+});
 
-/// A line crosses at most nx + ny + nz - 2 cells, and a triangle .001 wide in cells of .5 hardly more.
+/// A line crosses at most nx + ny + nz - 2 cells, and a triangle .001 wide in cells of .5 hardly
+/// more.
 TEST(References, LongThinDiagonalsAreInAsManyCellsAsALine) {
   for (const Row& row : walk_rows()) {
-    if (std::string_view(row.name) != "long thin diagonals") continue;
+    if (std::string_view(row.name) != "long thin diagonals")
+      continue;
     Random random(1);
     row.make(random, 1, [](const Trial& trial) {
       const World world(trial.scene, {});
       ASSERT_EQ(world.grids().size(), 1u);
       const GridStats g = world.grids()[0];
-      EXPECT_LE(g.references, trial.scene.geometry.triangles.size() * (g.cells[0] + g.cells[1] + g.cells[2]));
+      EXPECT_LE(g.references,
+                trial.scene.geometry.triangles.size() * (g.cells[0] + g.cells[1] + g.cells[2]));
     });
     return;
   }
@@ -56,7 +62,10 @@ TEST_P(StabilityOfPictures, NoPixelIsWrong) {
   EXPECT_EQ(c.wrong, 0u) << "of " << c.pixels << ": " << c.first;
 }
 
-INSTANTIATE_TEST_SUITE_P(Rows, StabilityOfPictures, testing::ValuesIn(picture_rows()), [](const auto& p) { return name_of(p); });
+INSTANTIATE_TEST_SUITE_P(Rows,
+                         StabilityOfPictures,
+                         testing::ValuesIn(picture_rows()),
+                         [](const auto& p) { return name_of(p); });
 
 }  // namespace
 }  // namespace grelha::stability

@@ -1,4 +1,5 @@
-// Adaptive supersampling: against the recursion it stands for, against truths of geometry, and the same bits everywhere.
+// Adaptive supersampling: against the recursion it stands for, against truths of geometry, and the
+// same bits everywhere.
 #include <cstring>
 #include <map>
 #include <set>
@@ -16,9 +17,12 @@ using Colour = std::function<Float3(double x, double y)>;  ///< of a point in pi
 /// The definition, plainly: one square at a time, each point looked up again wherever it is wanted.
 class Recursion {
  public:
-  Recursion(const Colour& colour, float threshold, int depth) : colour_(colour), threshold_(threshold), depth_(depth) {}
+  Recursion(const Colour& colour, float threshold, int depth)
+      : colour_(colour), threshold_(threshold), depth_(depth) {}
 
-  std::array<double, 3> pixel(std::uint32_t x, std::uint32_t y) { return mean(256 * x, 256 * y, 256, depth_); }
+  std::array<double, 3> pixel(std::uint32_t x, std::uint32_t y) {
+    return mean(256 * x, 256 * y, 256, depth_);
+  }
   const std::set<Place>& points() const { return points_; }
 
  private:
@@ -29,19 +33,26 @@ class Recursion {
   }
 
   std::array<double, 3> mean(std::uint32_t x, std::uint32_t y, std::uint32_t side, int depth) {
-    std::array<std::array<double, 3>, 4> c{at(x, y), at(x + side, y), at(x, y + side), at(x + side, y + side)};
+    std::array<std::array<double, 3>, 4> c{
+        at(x, y), at(x + side, y), at(x, y + side), at(x + side, y + side)};
     double most = 0;
     for (int a = 0; a < 4; ++a)
       for (int b = 0; b < 4; ++b)
         for (std::size_t k = 0; k < 3; ++k)
-          most = std::max(most, std::clamp(c[std::size_t(a)][k], 0., 1.) - std::clamp(c[std::size_t(b)][k], 0., 1.));
+          most = std::max(
+              most,
+              std::clamp(c[std::size_t(a)][k], 0., 1.) - std::clamp(c[std::size_t(b)][k], 0., 1.));
     if (depth > 0 && most > threshold_) {
       const std::uint32_t h = side / 2;
-      c = {mean(x, y, h, depth - 1), mean(x + h, y, h, depth - 1), mean(x, y + h, h, depth - 1), mean(x + h, y + h, h, depth - 1)};
+      c = {mean(x, y, h, depth - 1),
+           mean(x + h, y, h, depth - 1),
+           mean(x, y + h, h, depth - 1),
+           mean(x + h, y + h, h, depth - 1)};
     }
     std::array<double, 3> sum{};
     for (const auto& part : c)
-      for (std::size_t k = 0; k < 3; ++k) sum[k] += part[k] / 4;
+      for (std::size_t k = 0; k < 3; ++k)
+        sum[k] += part[k] / 4;
     return sum;
   }
 
@@ -51,13 +62,15 @@ class Recursion {
   std::set<Place> points_;
 };
 
-Image subdivided(int width, int height, const Subdivision& options, const SeePoints& see, int tile = 0) {
+Image subdivided(
+    int width, int height, const Subdivision& options, const SeePoints& see, int tile = 0) {
   Subdivided picture = make_subdivided(width, height);
   subdivide(picture, options, see, tile);
   return std::move(picture.image);
 }
 
-/// Discs on top of each other, in eighths from -1/4 to 2: every mean of such colours is exact in double.
+/// Discs on top of each other, in eighths from -1/4 to 2: every mean of such colours is exact in
+/// double.
 Colour random_discs(std::uint64_t seed, double width, double height) {
   struct Disc {
     double x, y, radius;
@@ -67,11 +80,15 @@ Colour random_discs(std::uint64_t seed, double width, double height) {
   std::vector<Disc> discs;
   const auto eighths = [&] { return static_cast<float>(random.below(19)) / 8 - .25f; };
   for (int i = 0; i < 12; ++i)
-    discs.push_back({random.in(0, width), random.in(0, height), random.log_in(.1, 6), {eighths(), eighths(), eighths()}});
+    discs.push_back({random.in(0, width),
+                     random.in(0, height),
+                     random.log_in(.1, 6),
+                     {eighths(), eighths(), eighths()}});
   return [discs](double x, double y) {
     Float3 colour{.5f, .125f, 0};
     for (const Disc& d : discs)
-      if ((x - d.x) * (x - d.x) + (y - d.y) * (y - d.y) < d.radius * d.radius) colour = d.colour;
+      if ((x - d.x) * (x - d.x) + (y - d.y) * (y - d.y) < d.radius * d.radius)
+        colour = d.colour;
     return colour;
   };
 }
@@ -86,8 +103,12 @@ TEST(Subdivide, IsTheRecursionAndSeesNoPointTwice) {
           const Colour colour = random_discs(++seed, w, h);
           std::set<Place> seen;
           std::size_t twice = 0;
-          const auto see = [&](std::span<const LatticePoint> points, Float3* colours, double, double) {
-            for (const LatticePoint& p : points) twice += !seen.insert({p.x, p.y}).second, *colours++ = colour(p.x / 256., p.y / 256.);
+          const auto see = [&](std::span<const LatticePoint> points,
+                               Float3* colours,
+                               double,
+                               double) {
+            for (const LatticePoint& p : points)
+              twice += !seen.insert({p.x, p.y}).second, *colours++ = colour(p.x / 256., p.y / 256.);
             return points.size();
           };
           const Image image = subdivided(w, h, {true, threshold, depth}, see, tile);
@@ -97,7 +118,8 @@ TEST(Subdivide, IsTheRecursionAndSeesNoPointTwice) {
               const auto wanted = recursion.pixel(std::uint32_t(x), std::uint32_t(y));
               for (std::size_t k = 0; k < 3; ++k)
                 ASSERT_EQ(image.row(y)[3 * std::size_t(x) + k], static_cast<float>(wanted[k]))
-                    << w << " x " << h << ", threshold " << threshold << ", depth " << depth << ", tile " << tile << ", pixel " << x << ' ' << y;
+                    << w << " x " << h << ", threshold " << threshold << ", depth " << depth
+                    << ", tile " << tile << ", pixel " << x << ' ' << y;
             }
           ASSERT_EQ(twice, 0u) << "depth " << depth << ", tile " << tile;
           ASSERT_EQ(seen, recursion.points()) << "depth " << depth << ", tile " << tile;
@@ -105,9 +127,13 @@ TEST(Subdivide, IsTheRecursionAndSeesNoPointTwice) {
 }
 
 TEST(Subdivide, RefusesWhatMakesNoSense) {
-  const auto see = [](std::span<const LatticePoint>, Float3*, double, double) { return std::size_t{0}; };
-  for (const float threshold : {-.1f, 1.01f, kNaN}) EXPECT_THROW(subdivided(4, 4, {true, threshold, 2}, see), std::invalid_argument);
-  for (const int depth : {-1, 9}) EXPECT_THROW(subdivided(4, 4, {true, .1f, depth}, see), std::invalid_argument);
+  const auto see = [](std::span<const LatticePoint>, Float3*, double, double) {
+    return std::size_t{0};
+  };
+  for (const float threshold : {-.1f, 1.01f, kNaN})
+    EXPECT_THROW(subdivided(4, 4, {true, threshold, 2}, see), std::invalid_argument);
+  for (const int depth : {-1, 9})
+    EXPECT_THROW(subdivided(4, 4, {true, .1f, depth}, see), std::invalid_argument);
   for (const int side : {0, 65537}) {
     EXPECT_THROW(subdivided(side, 4, {true, .1f, 2}, see), std::invalid_argument);
     EXPECT_THROW(subdivided(4, side, {true, .1f, 2}, see), std::invalid_argument);
@@ -119,35 +145,46 @@ TEST(Subdivide, StopsWhenToldAndTellsHowFarItIs) {
   const Colour colour = random_discs(3, 8, 8);
   std::size_t calls = 0, stop_at = 0;
   double last = 0;
-  const auto see = [&](std::span<const LatticePoint> points, Float3* colours, double from, double to) {
-    EXPECT_GE(from, last - 1e-12);
-    EXPECT_LE(from, to);
-    last = to;
-    if (++calls == stop_at) return std::size_t{0};
-    for (const LatticePoint& p : points) *colours++ = colour(p.x / 256., p.y / 256.);
-    return points.size();
-  };
+  const auto see =
+      [&](std::span<const LatticePoint> points, Float3* colours, double from, double to) {
+        EXPECT_GE(from, last - 1e-12);
+        EXPECT_LE(from, to);
+        last = to;
+        if (++calls == stop_at)
+          return std::size_t{0};
+        for (const LatticePoint& p : points)
+          *colours++ = colour(p.x / 256., p.y / 256.);
+        return points.size();
+      };
   const Image whole = subdivided(8, 8, {true, .1f, 2}, see, 4);
   EXPECT_EQ(calls, 12u) << "four tiles, three levels";
   EXPECT_NEAR(last, 1, 1e-12);
-  calls = 0, stop_at = 8, last = 0;
+  calls = 0;
+  stop_at = 8;
+  last = 0;
   const Image part = subdivided(8, 8, {true, .1f, 2}, see, 4);
   EXPECT_EQ(calls, 8u);
   for (int y = 0; y < 8; ++y)
     for (int x = 0; x < 8; ++x) {
-      if (y >= 4 && x < 4) continue;
-      EXPECT_EQ(part.row(y)[3 * x], y < 4 ? whole.row(y)[3 * x] : 0) << x << ' ' << y << ": two tiles are finished, one is not begun";
+      if (y >= 4 && x < 4)
+        continue;
+      EXPECT_EQ(part.row(y)[3 * x], y < 4 ? whole.row(y)[3 * x] : 0)
+          << x << ' ' << y << ": two tiles are finished, one is not begun";
     }
   // Of the third tile the corners are there, and no more.
-  const Image corners = subdivided(8, 8, {true, .1f, 0}, [&](auto points, Float3* colours, double, double) {
-    for (const LatticePoint& p : points) *colours++ = colour(p.x / 256., p.y / 256.);
-    return points.size();
-  });
+  const Image corners =
+      subdivided(8, 8, {true, .1f, 0}, [&](auto points, Float3* colours, double, double) {
+        for (const LatticePoint& p : points)
+          *colours++ = colour(p.x / 256., p.y / 256.);
+        return points.size();
+      });
   for (int y = 4; y < 8; ++y)
-    for (int x = 0; x < 4; ++x) EXPECT_EQ(part.row(y)[3 * x], corners.row(y)[3 * x]) << x << ' ' << y;
+    for (int x = 0; x < 4; ++x)
+      EXPECT_EQ(part.row(y)[3 * x], corners.row(y)[3 * x]) << x << ' ' << y;
 }
 
-/// Points are seen a few at a time, in a picture that is copied between them: none is seen twice, and the picture is that made in one go.
+/// Points are seen a few at a time, in a picture that is copied between them: none is seen twice,
+/// and the picture is that made in one go.
 TEST(Subdivide, StoppedAnywhereGoesOnToTheSameBits) {
   Random random(4);
   for (const int tile : {0, 3, 8})
@@ -158,7 +195,8 @@ TEST(Subdivide, StoppedAnywhereGoesOnToTheSameBits) {
       std::size_t twice = 0, most = ~std::size_t{0};
       const auto see = [&](std::span<const LatticePoint> points, Float3* colours, double, double) {
         const std::size_t n = std::min(points.size(), most);
-        for (const LatticePoint& p : points.first(n)) twice += !seen.insert({p.x, p.y}).second, *colours++ = colour(p.x / 256., p.y / 256.);
+        for (const LatticePoint& p : points.first(n))
+          twice += !seen.insert({p.x, p.y}).second, *colours++ = colour(p.x / 256., p.y / 256.);
         return n;
       };
       const Image whole = subdivided(19, 12, {true, .1f, depth}, see, tile);
@@ -181,30 +219,38 @@ TEST(Subdivide, StoppedAnywhereGoesOnToTheSameBits) {
     }
 }
 
-/// Until all corners are seen a pixel shows its first, then squares that wait to be split show theirs: all of it lies between what was seen.
+/// Until all corners are seen a pixel shows its first, then squares that wait to be split show
+/// theirs: all of it lies between what was seen.
 TEST(Subdivide, ShowsOfATileWhatThereIs) {
   Subdivided picture = make_subdivided(16, 8);
   const auto see_some = [](std::span<const LatticePoint> points, Float3* colours, double, double) {
-    const std::size_t n = std::min<std::size_t>(points.size(), 64);  // corners come in blocks of 8 x 8
-    for (std::size_t i = 0; i < n; ++i) colours[i] = {static_cast<float>(points[i].x / 256), 0, 0};
+    // corners come in blocks of 8 x 8
+    const std::size_t n = std::min<std::size_t>(points.size(), 64);
+    for (std::size_t i = 0; i < n; ++i)
+      colours[i] = {static_cast<float>(points[i].x / 256), 0, 0};
     return n;
   };
   EXPECT_FALSE(subdivide(picture, {true, .1f, 0}, see_some));
-  for (int x = 0; x < 16; ++x) EXPECT_EQ(picture.image.row(3)[3 * x], x < 8 ? x : 0) << x;
+  for (int x = 0; x < 16; ++x)
+    EXPECT_EQ(picture.image.row(3)[3 * x], x < 8 ? x : 0) << x;
 }
 
 TEST(LatticeHash, TellsPointsApart) {
-  // Among n names of 32 bits chosen at random n^2 / 2^33 pairs are alike on average: 128 for 2^20, give or take 11.
+  // Among n names of 32 bits chosen at random n^2 / 2^33 pairs are alike on average: 128 for 2^20,
+  // give or take 11.
   std::vector<std::uint32_t> names;
   for (std::uint32_t y = 0; y < 1024; ++y)
-    for (std::uint32_t x = 0; x < 1024; ++x) names.push_back(lattice_hash({4096 + 8 * x, 256 * 300 + 16 * y}));
+    for (std::uint32_t x = 0; x < 1024; ++x)
+      names.push_back(lattice_hash({4096 + 8 * x, 256 * 300 + 16 * y}));
   std::sort(names.begin(), names.end());
   std::size_t pairs = 0;
-  for (std::size_t i = 1; i < names.size(); ++i) pairs += names[i] == names[i - 1];
+  for (std::size_t i = 1; i < names.size(); ++i)
+    pairs += names[i] == names[i - 1];
   EXPECT_NEAR(static_cast<double>(pairs), 128, 6 * 11.3);
 }
 
-// ---- with rays --------------------------------------------------------------------------------------------------
+// ---- with rays
+// ------------------------------------------------------------------------------------------
 
 RenderOptions adaptive(float threshold, int depth) {
   RenderOptions o;
@@ -226,7 +272,8 @@ Rendered rendered(const Scene& scene, const Camera& camera, const RenderOptions&
 }
 
 bool same_bits(const Image& a, const Image& b) {
-  return a.rgb.size() == b.rgb.size() && std::memcmp(a.rgb.data(), b.rgb.data(), a.rgb.size() * sizeof(float)) == 0;
+  return a.rgb.size() == b.rgb.size() &&
+         std::memcmp(a.rgb.data(), b.rgb.data(), a.rgb.size() * sizeof(float)) == 0;
 }
 
 Scene glowing_scene() {
@@ -248,13 +295,16 @@ struct HalfPlane {
 
   /// Its share of a pixel: the square, clipped.
   double covers(double x0, double y0) const {
-    const std::array<std::array<double, 2>, 4> square{{{x0, y0}, {x0 + 1, y0}, {x0 + 1, y0 + 1}, {x0, y0 + 1}}};
+    const std::array<std::array<double, 2>, 4> square{
+        {{x0, y0}, {x0 + 1, y0}, {x0 + 1, y0 + 1}, {x0, y0 + 1}}};
     std::vector<std::array<double, 2>> kept;
     for (std::size_t i = 0; i < 4; ++i) {
       const auto &p = square[i], &q = square[(i + 1) % 4];
       const double a = c - nx * p[0] - ny * p[1], b = c - nx * q[0] - ny * q[1];
-      if (a > 0) kept.push_back(p);
-      if ((a > 0) != (b > 0)) kept.push_back({p[0] + (q[0] - p[0]) * a / (a - b), p[1] + (q[1] - p[1]) * a / (a - b)});
+      if (a > 0)
+        kept.push_back(p);
+      if ((a > 0) != (b > 0))
+        kept.push_back({p[0] + (q[0] - p[0]) * a / (a - b), p[1] + (q[1] - p[1]) * a / (a - b)});
     }
     double area = 0;
     for (std::size_t i = 0; i < kept.size(); ++i) {
@@ -282,20 +332,24 @@ struct HalfPlane {
 constexpr int kSide = 12;
 
 TEST(Adaptive, CoverageOfAHalfPlaneNearsTheTruth) {
-  // With 2^D squares a side a line crosses at most 2 2^D - 1 of them; the others are right, for a half-plane that holds all four
-  // corners, or none, holds the whole square, or nothing of it. In a crossed one the mean of corners is off by at most 1/2 (1/4
-  // for 1/4 and 3/4, as the smaller side is at most half the square; less than 1/2 for 2/4). Positions round by a few parts in
-  // 1e7 of the picture's height: less than 1e-5 pixels.
+  // With 2^D squares a side a line crosses at most 2 2^D - 1 of them; the others are right, for a
+  // half-plane that holds all four corners, or none, holds the whole square, or nothing of it. In a
+  // crossed one the mean of corners is off by at most 1/2 (1/4 for 1/4 and 3/4, as the smaller side
+  // is at most half the square; less than 1/2 for 2/4). Positions round by a few parts in 1e7 of
+  // the picture's height: less than 1e-5 pixels.
   Random random(5);
   for (int i = 0; i < 40; ++i) {
     const HalfPlane half = HalfPlane::random(random, kSide);
     const Scene scene = half.scene(kSide);
     for (const int depth : {0, 1, 2, 3, 4, 6, 8}) {
-      const Image image = rendered(scene, straight_down(kSide, kSide, .1 * kSide), adaptive(.5f, depth)).image;
-      const double squares = std::ldexp(1, depth), bound = (2 * squares - 1) / (2 * squares * squares);
+      const Image image =
+          rendered(scene, straight_down(kSide, kSide, .1 * kSide), adaptive(.5f, depth)).image;
+      const double squares = std::ldexp(1, depth),
+                   bound = (2 * squares - 1) / (2 * squares * squares);
       for (int y = 0; y < kSide; ++y)
         for (int x = 0; x < kSide; ++x)
-          ASSERT_NEAR(image.row(y)[3 * x], half.covers(x, y), bound + 1e-5) << "line " << i << ", depth " << depth << ", pixel " << x << ' ' << y;
+          ASSERT_NEAR(image.row(y)[3 * x], half.covers(x, y), bound + 1e-5)
+              << "line " << i << ", depth " << depth << ", pixel " << x << ' ' << y;
     }
   }
 }
@@ -304,14 +358,18 @@ TEST(Adaptive, RaysAreAsManyAsThePointsOfTheRecursion) {
   Random random(6);
   for (int i = 0; i < 20; ++i) {
     const HalfPlane half = HalfPlane::random(random, kSide);
-    const Colour colour = [&](double x, double y) { return half.holds(x, y) ? Float3{1, 1, 1} : Float3{0, 0, 0}; };
+    const Colour colour = [&](double x, double y) {
+      return half.holds(x, y) ? Float3{1, 1, 1} : Float3{0, 0, 0};
+    };
     const Scene scene = half.scene(kSide);
     for (const int depth : {0, 1, 3, 4}) {
-      const Rendered r = rendered(scene, straight_down(kSide, kSide, .1 * kSide), adaptive(.5f, depth));
+      const Rendered r =
+          rendered(scene, straight_down(kSide, kSide, .1 * kSide), adaptive(.5f, depth));
       Recursion recursion(colour, .5f, depth);
       for (int y = 0; y < kSide; ++y)
         for (int x = 0; x < kSide; ++x)
-          ASSERT_EQ(r.image.row(y)[3 * x], recursion.pixel(std::uint32_t(x), std::uint32_t(y))[0]) << "line " << i << ", depth " << depth;
+          ASSERT_EQ(r.image.row(y)[3 * x], recursion.pixel(std::uint32_t(x), std::uint32_t(y))[0])
+              << "line " << i << ", depth " << depth;
       ASSERT_EQ(r.rays.primary, recursion.points().size()) << "line " << i << ", depth " << depth;
     }
   }
@@ -325,21 +383,26 @@ TEST(Adaptive, AFlatPictureTakesItsCornersAlone) {
     const Rendered r = rendered(s, straight_down(w, h, 1), adaptive(0, 8));
     EXPECT_EQ(r.rays.primary, std::uint64_t(w + 1) * std::uint64_t(h + 1));
     EXPECT_EQ(r.rays.total(), r.rays.primary);
-    for (const float x : r.image.rgb) ASSERT_EQ(x, 1);
+    for (const float x : r.image.rgb)
+      ASSERT_EQ(x, 1);
   }
 }
 
 TEST(Adaptive, MissesMostSmallDiscsAtAnyDepth) {
-  // Seen only if it holds a corner: a disc of radius .1 does with chance pi .01, whatever happens between corners. The scheme's
-  // known weakness; were it not there, the promise of shared corners alone would not hold.
+  // Seen only if it holds a corner: a disc of radius .1 does with chance pi .01, whatever happens
+  // between corners. The scheme's known weakness; were it not there, the promise of shared corners
+  // alone would not hold.
   constexpr int cells = 64, pitch = 4, side = cells * pitch;
   constexpr double pixel = .3 / side;  // small angles: discs look round to 1 part in 100
   Random random(7);
   Scene s = glowing_scene();
   for (int i = 0; i < cells * cells; ++i) {
-    const double x = (i % cells) * pitch + 2 + random.unit(), y = (i / cells) * pitch + 2 + random.unit();
-    s.geometry.spheres.add({static_cast<float>(pixel * (x - side / 2)), static_cast<float>(pixel * (side / 2 - y)), 0},
-                           static_cast<float>(.1 * pixel), 0);
+    const double x = (i % cells) * pitch + 2 + random.unit(),
+                 y = (i / cells) * pitch + 2 + random.unit();
+    s.geometry.spheres.add(
+        {static_cast<float>(pixel * (x - side / 2)), static_cast<float>(pixel * (side / 2 - y)), 0},
+        static_cast<float>(.1 * pixel),
+        0);
   }
   constexpr double n = cells * cells, chance = 1 - std::numbers::pi * .01;
   for (const int depth : {0, 2, 5, 8}) {
@@ -348,16 +411,19 @@ TEST(Adaptive, MissesMostSmallDiscsAtAnyDepth) {
     for (int i = 0; i < cells * cells; ++i) {
       bool seen = false;
       for (int y = 0; y < 3; ++y)
-        for (int x = 0; x < 3; ++x) seen |= image.row(i / cells * pitch + 1 + y)[3 * (i % cells * pitch + 1 + x)] > 0;
+        for (int x = 0; x < 3; ++x)
+          seen |= image.row(i / cells * pitch + 1 + y)[3 * (i % cells * pitch + 1 + x)] > 0;
       missed += !seen;
     }
-    EXPECT_NEAR(missed / n, chance, 4 * std::sqrt(chance * (1 - chance) / n)) << "depth " << depth << ": four standard errors";
+    EXPECT_NEAR(missed / n, chance, 4 * std::sqrt(chance * (1 - chance) / n))
+        << "depth " << depth << ": four standard errors";
   }
 }
 
 Camera upon_everything() {
   Camera c;
-  c.eye = {.3f, .5f, 3.5f}, c.at = {0, 0, 0}, c.width = 21, c.height = 13, c.aperture = .1, c.focus = 3;
+  c.eye = {.3f, .5f, 3.5f}, c.at = {0, 0, 0}, c.width = 21, c.height = 13, c.aperture = .1,
+  c.focus = 3;
   return c;
 }
 
@@ -365,21 +431,33 @@ TEST(Adaptive, GivesTheSameBitsEverywhere) {
   const Scene s = everything();
   for (const int samples : {1, 3}) {
     RenderOptions o = adaptive(.1f, 2);
-    o.sampling.samples = samples, o.sampling.light_rays = 2, o.sampling.gloss_rays = samples == 1 ? 0 : 2;
-    o.depth = 4, o.threads = 1, o.isa = "scalar", o.packet = 1;
+    o.sampling.samples = samples;
+    o.sampling.light_rays = 2;
+    o.sampling.gloss_rays = samples == 1 ? 0 : 2;
+    o.depth = 4;
+    o.threads = 1;
+    o.isa = "scalar";
+    o.packet = 1;
     Camera c = upon_everything();
-    c.width = 61, c.height = 45;  // 2852 corners: lists are cut into pieces of 320 by one thread, 128 by two, 64 by seven
+    c.width = 61;
+    // 2852 corners: lists are cut into pieces of 320 by one thread, 128 by two, 64 by seven
+    c.height = 45;
     const Rendered wanted = rendered(s, c, o);
     EXPECT_GT(wanted.rays.primary, std::uint64_t(62 * 46 * samples));
     EXPECT_EQ(wanted.rays.primary % std::uint64_t(samples), 0u);
     for (const Isa& isa : isas()) {
-      if (!isa.runs_here) continue;
+      if (!isa.runs_here)
+        continue;
       for (const int packet : {1, 16, 64, 256})
         for (const int threads : {1, 2, 7}) {
-          if (threads != 2 && packet != 64) continue;  // threads do not see the packet
-          o.isa = isa.name, o.packet = packet, o.threads = threads;
+          if (threads != 2 && packet != 64)
+            continue;  // threads do not see the packet
+          o.isa = isa.name;
+          o.packet = packet;
+          o.threads = threads;
           const Rendered r = rendered(s, c, o);
-          ASSERT_TRUE(same_bits(r.image, wanted.image)) << isa.name << ", packet " << packet << ", " << threads << " threads";
+          ASSERT_TRUE(same_bits(r.image, wanted.image))
+              << isa.name << ", packet " << packet << ", " << threads << " threads";
           EXPECT_EQ(r.rays.primary, wanted.rays.primary);
           EXPECT_EQ(r.rays.total(), wanted.rays.total());
         }
@@ -404,26 +482,31 @@ TEST(Adaptive, SamplesOfAPointAreAveraged) {
   add_triangle(s, {0, -50, 1}, {0, 50, 1}, {-50, 0, 1});
   s.lights = {{{0, 0, 2}, {1, 1, 1}, {1, 0, 0}, {0, 1, 0}}};
   Camera c;  // one point of a penumbra
-  c.eye = {.1f, -.5f, .5f}, c.at = {.1f, 0, 0}, c.up = {0, 0, 1}, c.width = c.height = 1, c.angle_deg = .01;
+  c.eye = {.1f, -.5f, .5f}, c.at = {.1f, 0, 0}, c.up = {0, 0, 1}, c.width = c.height = 1,
+  c.angle_deg = .01;
   RenderOptions o;
   o.sampling.samples = 4096;
   const double truth = rendered(s, c, o).image.rgb[0];
   o.subdivision = {true, .1f, 0};
   const Rendered r = rendered(s, c, o);
   EXPECT_EQ(r.rays.primary, 4u * 4096);
-  // An edge is known to .0022 RMSE from 1024 samples, and both have four times as many: five of these cover either.
+  // An edge is known to .0022 RMSE from 1024 samples, and both have four times as many: five of
+  // these cover either.
   EXPECT_NEAR(r.image.rgb[0], truth, .011);
   o.sampling.samples = 1;
   const double one = rendered(s, c, o).image.rgb[0];
-  EXPECT_GT(std::abs(one - truth), .05) << "a corner that saw one point of the light says all or nothing";
+  EXPECT_GT(std::abs(one - truth), .05)
+      << "a corner that saw one point of the light says all or nothing";
 }
 
 TEST(Adaptive, LensesAreSharpInFocusAndBlurElsewhere) {
   Random random(9);
   const Scene s = HalfPlane::random(random, kSide).scene(kSide);
   Camera c = straight_down(kSide, kSide, .1 * kSide), pinhole = c;
-  c.aperture = .3, c.focus = 1;
-  // The same points of the plane in focus, but for rounding: no point of this lattice lies so near the edge.
+  c.aperture = .3;
+  c.focus = 1;
+  // The same points of the plane in focus, but for rounding: no point of this lattice lies so near
+  // the edge.
   RenderOptions o = adaptive(.5f, 3);
   EXPECT_TRUE(same_bits(rendered(s, c, o).image, rendered(s, pinhole, o).image));
 
@@ -431,11 +514,15 @@ TEST(Adaptive, LensesAreSharpInFocusAndBlurElsewhere) {
   Scene t = glowing_scene();
   add_triangle(t, {.03f, -50, .5f}, {.03f, 50, .5f}, {50, 0, .5f});
   Camera one = c;
-  one.width = one.height = 1, one.angle_deg = .01;
-  // Of the lens' disc of radius .15 at z = 1 the part beyond x = .06 looks past x = .03 at half way to z = 0.
-  const double h = .06 / .15, covered = (std::acos(h) - h * std::sqrt(1 - h * h)) / std::numbers::pi;
+  one.width = one.height = 1;
+  one.angle_deg = .01;
+  // Of the lens' disc of radius .15 at z = 1 the part beyond x = .06 looks past x = .03 at half way
+  // to z = 0.
+  const double h = .06 / .15,
+               covered = (std::acos(h) - h * std::sqrt(1 - h * h)) / std::numbers::pi;
   o.sampling.samples = 1024;
-  EXPECT_NEAR(rendered(t, one, o).image.rgb[0], covered, .011) << "five times .0022, what an edge is known to from 1024 samples";
+  EXPECT_NEAR(rendered(t, one, o).image.rgb[0], covered, .011)
+      << "five times .0022, what an edge is known to from 1024 samples";
 }
 
 TEST(Adaptive, TakesOneRayAPointWhereThereIsNothingToSample) {
@@ -452,7 +539,8 @@ TEST(Adaptive, TakesOneRayAPointWhereThereIsNothingToSample) {
 TEST(Adaptive, StopsAndSaysHowFarItIs) {
   const Scene s = everything();
   Camera c = upon_everything();
-  c.width = 200, c.height = 150;
+  c.width = 200;
+  c.height = 150;
   RenderOptions o = adaptive(.1f, 2);
   o.threads = 2;
   double last = 0;
@@ -467,7 +555,8 @@ TEST(Adaptive, StopsAndSaysHowFarItIs) {
   const Rendered part = rendered(s, c, o);
   EXPECT_LT(part.rays.primary, whole.rays.primary / 4);
   std::size_t shown = 0;
-  for (std::size_t i = 0; i < part.image.rgb.size(); i += 3) shown += part.image.rgb[i] + part.image.rgb[i + 1] + part.image.rgb[i + 2] > 0;
+  for (std::size_t i = 0; i < part.image.rgb.size(); i += 3)
+    shown += part.image.rgb[i] + part.image.rgb[i + 1] + part.image.rgb[i + 2] > 0;
   EXPECT_GT(shown, 0u);
   EXPECT_LE(shown, part.rays.primary) << "a pixel shows its first corner";
 }
@@ -475,7 +564,9 @@ TEST(Adaptive, StopsAndSaysHowFarItIs) {
 TEST(Adaptive, StoppedAnywhereGoesOnToTheSameBits) {
   const Scene s = everything();
   Camera c = upon_everything();
-  c.width = 200, c.height = 150, c.aperture = .05;
+  c.width = 200;
+  c.height = 150;
+  c.aperture = .05;
   RenderOptions o = adaptive(.1f, 2);
   o.sampling.samples = 3;
   const Rendered whole = rendered(s, c, o);
@@ -486,15 +577,18 @@ TEST(Adaptive, StoppedAnywhereGoesOnToTheSameBits) {
   Subdivided kept = make_subdivided(c.width, c.height);
   RayCounts rays;
   for (bool done = false; !done; ++stops) {
-    left = 1 + static_cast<int>(random.below(9)), o.threads = 1 + static_cast<int>(random.below(3));
+    left = 1 + static_cast<int>(random.below(9));
+    o.threads = 1 + static_cast<int>(random.below(3));
     Subdivided copy = kept;
     RenderStats stats;
     done = render_subdivided(world, c, o, copy, stats, [&] {  // goes on in place now and then
       EXPECT_TRUE(is_sound(copy));
-      left = 1 + static_cast<int>(random.below(9)), ++stops;
+      left = 1 + static_cast<int>(random.below(9));
+      ++stops;
       return random.chance(.5);
     });
-    kept = std::move(copy), rays += stats.rays;
+    kept = std::move(copy);
+    rays += stats.rays;
   }
   EXPECT_GE(stops, 4);
   EXPECT_TRUE(same_bits(kept.image, whole.image));

@@ -56,7 +56,8 @@ constexpr char kControlC = 3;
 constexpr const char* kSeconds = "render ball.nff -o x.pfm --threads 1 --size 200x200 --samples ";
 
 TEST(Terminal, TheBarIsNoWiderThanTheWindowAlsoWhenItIsResized) {
-  if (!test::there_are_terminals()) GTEST_SKIP() << "this system gives no pseudo-terminals";
+  if (!test::there_are_terminals())
+    GTEST_SKIP() << "this system gives no pseudo-terminals";
   const TemporaryFolder folder;
   folder.write("ball.nff", test::kBall);
   std::size_t narrow = 0, narrower = 0;
@@ -67,11 +68,13 @@ TEST(Terminal, TheBarIsNoWiderThanTheWindowAlsoWhenItIsResized) {
     terminal.resize(30);
     const std::string after = terminal.read_all();
     EXPECT_EQ(terminal.status(), 0);
-    for (const std::string& line : drawn(before)) narrow = std::max(narrow, line.size());
+    for (const std::string& line : drawn(before))
+      narrow = std::max(narrow, line.size());
     // What was under way while the window changed may be of the old width: the first line after.
     const std::vector<std::string> lines = drawn(after);
     for (std::size_t i = 2; i < lines.size(); ++i)
-      if (lines[i].starts_with("render ")) narrower = std::max(narrower, lines[i].size());
+      if (lines[i].starts_with("render "))
+        narrower = std::max(narrower, lines[i].size());
   }
   EXPECT_GT(narrow, 30u);
   EXPECT_LT(narrow, 50u);
@@ -83,7 +86,8 @@ using Clock = std::chrono::steady_clock;
 
 /// One piece of work here is 8 rows of 64 samples of a picture 4000 wide: seconds.
 TEST(Terminal, ControlCIsAnsweredAtOnceWhateverIsInWork) {
-  if (!test::there_are_terminals()) GTEST_SKIP() << "this system gives no pseudo-terminals";
+  if (!test::there_are_terminals())
+    GTEST_SKIP() << "this system gives no pseudo-terminals";
   const TemporaryFolder folder;
   folder.write("ball.nff", test::kBall);
   test::Terminal terminal(folder, "render ball.nff -j 1 --samples 64 --size 8000x4000", 80);
@@ -102,7 +106,8 @@ TEST(Terminal, ControlCIsAnsweredAtOnceWhateverIsInWork) {
 
 /// The stop itself waits for the piece in work; what there is stays, beside the picture's name.
 TEST(Terminal, ControlCLeavesThePictureSoFar) {
-  if (!test::there_are_terminals()) GTEST_SKIP() << "this system gives no pseudo-terminals";
+  if (!test::there_are_terminals())
+    GTEST_SKIP() << "this system gives no pseudo-terminals";
   const TemporaryFolder folder;
   folder.write("ball.nff", test::kBall);
   test::Terminal terminal(folder, "render ball.nff -j 1 --samples 3000 --size 300x200", 80);
@@ -118,7 +123,8 @@ TEST(Terminal, ControlCLeavesThePictureSoFar) {
 }
 
 TEST(Terminal, IsNoPlaceForAPicture) {
-  if (!test::there_are_terminals()) GTEST_SKIP() << "this system gives no pseudo-terminals";
+  if (!test::there_are_terminals())
+    GTEST_SKIP() << "this system gives no pseudo-terminals";
   const TemporaryFolder folder;
   folder.write("ball.nff", test::kBall);
   test::Terminal terminal(folder, "render ball.nff -o -", 80);
@@ -128,7 +134,8 @@ TEST(Terminal, IsNoPlaceForAPicture) {
 }
 
 TEST(Terminal, ADumbOneGetsNoBar) {
-  if (!test::there_are_terminals()) GTEST_SKIP() << "this system gives no pseudo-terminals";
+  if (!test::there_are_terminals())
+    GTEST_SKIP() << "this system gives no pseudo-terminals";
   const TemporaryFolder folder;
   folder.write("ball.nff", test::kBall);
   test::Terminal terminal(folder, std::string(kSeconds) + "800", 80, "dumb");

@@ -50,7 +50,19 @@ TEST(Number, TooLargeIsInfiniteTooSmallIsZero) {
 
 TEST(Number, RefusesTheRest) {
   float value;
-  for (const char* word : {"", "x", "1.5.2", "0.0780.3610.753", "1e", "--1", "+-1", "+", "-", ".", "0x10", "1,5", "1f"})
+  for (const char* word : {"",
+                           "x",
+                           "1.5.2",
+                           "0.0780.3610.753",
+                           "1e",
+                           "--1",
+                           "+-1",
+                           "+",
+                           "-",
+                           ".",
+                           "0x10",
+                           "1,5",
+                           "1f"})
     EXPECT_FALSE(to_number(word, value)) << word;
 }
 
@@ -64,18 +76,21 @@ TEST(Integer, ReadsWholeNumbersOnly) {
   EXPECT_TRUE(to_integer("1e300", value) && value == kLargest);
   EXPECT_TRUE(to_integer("99999999999999999999", value) && value == kLargest);
   EXPECT_TRUE(to_integer("-1e300", value) && value == -kLargest);
-  for (const char* word : {"", "3.5", "inf", "1e400", "nan", "3x"}) EXPECT_FALSE(to_integer(word, value)) << word;
+  for (const char* word : {"", "3.5", "inf", "1e400", "nan", "3x"})
+    EXPECT_FALSE(to_integer(word, value)) << word;
 }
 
 TEST(Integer, LooksLikeANumber) {
   for (const char* word : {"1", "-.5", "+3", ".5x", "1.5.2", "nan", "-inf"})
     EXPECT_TRUE(looks_like_number(word)) << word;
-  for (const char* word : {"", "s", "-", "+x", ".", "/1", "infinite"}) EXPECT_FALSE(looks_like_number(word)) << word;
+  for (const char* word : {"", "s", "-", "+x", ".", "/1", "infinite"})
+    EXPECT_FALSE(looks_like_number(word)) << word;
 }
 
 TEST(Words, SplitAtBlanksAndComments) {
   Words words("f", "  a\tb#c d\r\n# e\rf\n\n\fg", 0, '#');
-  for (const char* expected : {"a", "b", "f", "g", "", ""}) EXPECT_EQ(words.next(), expected);
+  for (const char* expected : {"a", "b", "f", "g", "", ""})
+    EXPECT_EQ(words.next(), expected);
 }
 
 TEST(Words, KnowWhereTheLineEnds) {
@@ -149,7 +164,9 @@ TEST(Gzip, RefusesBrokenAndBoundlessData) {
             "f.gz:byte 20: error: wanted more gzip data, found end of file");
   std::string broken = whole;
   broken[12] = char(~broken[12]);
-  EXPECT_NE(message_of([&] { inflate_gzip("f.gz", broken, 100); }).find(": error: wanted sound gzip data, found "),
+  EXPECT_NE(message_of([&] {
+              inflate_gzip("f.gz", broken, 100);
+            }).find(": error: wanted sound gzip data, found "),
             std::string::npos);
   const std::string bomb = gzip(std::string(1 << 20, '\0'));
   EXPECT_NE(message_of([&] {
@@ -171,10 +188,13 @@ TEST(Gzip, IsJudgedAsItComes) {
   EXPECT_LT(largest, 2 * kPiece);
   std::string late = "s 0 0 0 1\n";
   late.resize(3 * kPiece, ' ');
-  EXPECT_NE(message_of([&] { inflate_gzip("f.gz", gzip(late), std::size_t(1) << 30, nullptr, judge); }).find("without a digit"),
+  EXPECT_NE(message_of([&] {
+              inflate_gzip("f.gz", gzip(late), std::size_t(1) << 30, nullptr, judge);
+            }).find("without a digit"),
             std::string::npos);
   late.back() = '1';
-  for (std::size_t i = 0; i < late.size(); i += kPiece / 2) late[i] = '1';
+  for (std::size_t i = 0; i < late.size(); i += kPiece / 2)
+    late[i] = '1';
   EXPECT_EQ(inflate_gzip("f.gz", gzip(late), std::size_t(1) << 30, nullptr, judge), late);
 }
 
@@ -183,15 +203,21 @@ TEST(LoadFile, JudgesScenesAsTheyCome) {
   const TemporaryFolder folder;
   const std::string zeros(2 * kPiece, '\0');
   for (const char* name : {"zeros.nff", "zeros.ply"}) {
-    const std::string path = folder.add(name, zeros), packed = folder.add(std::string(name) + ".gz", gzip(zeros));
+    const std::string path = folder.add(name, zeros),
+                      packed = folder.add(std::string(name) + ".gz", gzip(zeros));
     for (const std::string& file : {path, packed})
-      EXPECT_TRUE(message_of([&] { read_scene(file, nullptr); })
-                      .starts_with(file + ":byte 0: error: wanted a scene's numbers, found 16777216 bytes")) << file;
+      EXPECT_TRUE(
+          message_of([&] {
+            read_scene(file, nullptr);
+          }).starts_with(file + ":byte 0: error: wanted a scene's numbers, found 16777216 bytes"))
+          << file;
   }
   const std::string other = folder.add("other.ply.gz", gzip(" plx " + zeros));
-  EXPECT_EQ(message_of([&] { read_scene(other, nullptr); }), other + ":1:2: error: wanted \"ply\" on the first line, found \"plx\"");
+  EXPECT_EQ(message_of([&] { read_scene(other, nullptr); }),
+            other + ":1:2: error: wanted \"ply\" on the first line, found \"plx\"");
   const std::string scene = folder.add("scene.nff", test::kView + "ply other.ply.gz\n");
-  EXPECT_EQ(message_of([&] { read_scene(scene, nullptr); }), other + ":1:2: error: wanted \"ply\" on the first line, found \"plx\"");
+  EXPECT_EQ(message_of([&] { read_scene(scene, nullptr); }),
+            other + ":1:2: error: wanted \"ply\" on the first line, found \"plx\"");
 }
 
 TEST(LoadFile, TellsGzipByItsFirstBytes) {
@@ -203,7 +229,8 @@ TEST(LoadFile, TellsGzipByItsFirstBytes) {
 TEST(LoadFile, SaysWhyItCannot) {
   const TemporaryFolder folder;
   const std::string missing = (folder.path() / "none").string();
-  EXPECT_EQ(message_of([&] { load_file(missing); }), missing + ": error: cannot open: No such file or directory");
+  EXPECT_EQ(message_of([&] { load_file(missing); }),
+            missing + ": error: cannot open: No such file or directory");
   const std::string self = folder.path().string();
   EXPECT_EQ(message_of([&] { load_file(self); }), self + ": error: cannot read: Is a directory");
   EXPECT_THROW(load_file("/dev/null"), FileError);

@@ -1,5 +1,5 @@
-// hit_triangle: every instruction set and method against the scalar one bit for bit; the scalar one against long
-// double.
+// hit_triangle: every instruction set and method against the scalar one bit for bit; the scalar one
+// against long double.
 #define GRELHA_ISA scalar
 #include "kernel/triangle.hpp"
 
@@ -41,7 +41,8 @@ TEST_P(Triangle, ReturnsTheScalarBits) {
     const Scene scene = one_triangle(s.a, s.b, s.c);
     const World world(scene, {.grid = false});
     Rays rays = rays_about(random, s.a, size, kManyRays / 2);
-    while (rays.size() < kManyRays) {  // and at its corners, edges and middle, which the sweep seldom meets
+    // and at its corners, edges and middle, which the sweep seldom meets
+    while (rays.size() < kManyRays) {
       const double u = random.below(5) * .25, v = (1 - u) * random.below(5) * .25;
       const Float3 aim = at(at(s.a, u, minus(s.b, s.a)), v, minus(s.c, s.a)),
                    org = random.point(size * random.log_in(1, 1e3));
@@ -74,26 +75,31 @@ Hit hit(const Float3& o, const Float3& d, const Shape& s, float t_min = 0) {
   const scalar::Vec3<float> dir = permuted(d, k);
   const scalar::Shear<float> shear{dir.x / dir.z, dir.y / dir.z, 1 / dir.z};
   float t = -1;
-  const bool h = scalar::hit_triangle<float>(permuted(o, k), dir, shear, t_min, corners_of(s, k), t);
+  const bool h =
+      scalar::hit_triangle<float>(permuted(o, k), dir, shear, t_min, corners_of(s, k), t);
   return {h, t};
 }
 
 /// The same in double throughout: what hit() must decide like, and what is shaded.
 scalar::Crossing<double> crossing(const Float3& o, const Float3& d, const Shape& s) {
   const int k = scalar::shear_axis(d.x, d.y, d.z);
-  return scalar::crossing<double>(scalar::widen<0>(permuted(o, k)), scalar::widen<0>(permuted(d, k)),
+  return scalar::crossing<double>(scalar::widen<0>(permuted(o, k)),
+                                  scalar::widen<0>(permuted(d, k)),
                                   scalar::widen<0>(corners_of(s, k)));
 }
 
-/// Farthest corner from the origin: a sheared corner is off by a few eps of that, and so is all that follows.
+/// Farthest corner from the origin: a sheared corner is off by a few eps of that, and so is all
+/// that follows.
 oracle::Real reach_of(const Float3& o, const Shape& s) {
-  return std::max({length(oracle::V(s.a) - oracle::V(o)), length(oracle::V(s.b) - oracle::V(o)),
+  return std::max({length(oracle::V(s.a) - oracle::V(o)),
+                   length(oracle::V(s.b) - oracle::V(o)),
                    length(oracle::V(s.c) - oracle::V(o))});
 }
 
-/// Decisions are those of doubles. A sheared coordinate takes the roundings of two differences, two products and one more
-/// difference, each of at most 2 max|corner - org|: 8 of 2^-53 of these on each of two axes, so the ray passes the sheared outline
-/// within 8 sqrt(2) < 12 of these of where it passes the true one.
+/// Decisions are those of doubles. A sheared coordinate takes the roundings of two differences, two
+/// products and one more difference, each of at most 2 max|corner - org|: 8 of 2^-53 of these on
+/// each of two axes, so the ray passes the sheared outline within 8 sqrt(2) < 12 of these of where
+/// it passes the true one.
 constexpr oracle::Real kOutline = 12 * 0x1p-53L;
 
 TEST(TriangleOracle, DecidesLikeTheExactOutline) {
@@ -109,9 +115,12 @@ TEST(TriangleOracle, DecidesLikeTheExactOutline) {
     const oracle::Facet facet{s.a, s.b, s.c};
     const oracle::Ray ray{o, d};
     const oracle::Real clear = facet.clearance(ray), tolerance = kOutline * reach_of(o, s);
-    if (std::abs(clear) <= tolerance || facet.distance(ray.org) <= 32 * tolerance) continue;
-    const oracle::Real t_plane = dot(facet.a - ray.org, facet.normal()) / dot(ray.dir, facet.normal());
-    ++judged, inside += clear > 0;
+    if (std::abs(clear) <= tolerance || facet.distance(ray.org) <= 32 * tolerance)
+      continue;
+    const oracle::Real t_plane =
+        dot(facet.a - ray.org, facet.normal()) / dot(ray.dir, facet.normal());
+    ++judged;
+    inside += clear > 0;
     ASSERT_EQ(hit(o, d, s).hit, clear > 0 && t_plane > 0)
         << "seed " << seed << ", " << static_cast<double>(clear / tolerance) << " clear";
   }
@@ -119,8 +128,9 @@ TEST(TriangleOracle, DecidesLikeTheExactOutline) {
   EXPECT_GT(inside, 20000);
 }
 
-/// How far the point found lies from the triangle, slivers included: kernel/triangle.hpp and docs/numerics.md say 46 eps reach. The
-/// weights are of doubles: the point they make lies on the ray but for some 64 roundings of the reach, which slivers lengthen.
+/// How far the point found lies from the triangle, slivers included: kernel/triangle.hpp and
+/// docs/numerics.md say 46 eps reach. The weights are of doubles: the point they make lies on the
+/// ray but for some 64 roundings of the reach, which slivers lengthen.
 TEST(TriangleOracle, PointsLieOnTheTriangle) {
   oracle::Real worst = 0;
   oracle::Real worst_weights = 0;
@@ -137,7 +147,8 @@ TEST(TriangleOracle, PointsLieOnTheTriangle) {
     const Float3 o = at(s.a, size * random.log_in(1e-1, 1e4), random.direction());
     const Float3 d = scaled(minus(aim, o), random.log_in(1e-2, 1e2));
     const Hit h = hit(o, d, s);
-    if (!h.hit) continue;
+    if (!h.hit)
+      continue;
     ++hits;
     const oracle::Facet facet{s.a, s.b, s.c};
     const oracle::Ray ray{o, d};
@@ -149,17 +160,24 @@ TEST(TriangleOracle, PointsLieOnTheTriangle) {
     const oracle::Real unit = oracle::kEps * reach_of(o, s);
     const oracle::Real off = facet.distance(ray.point(h.t));
     const scalar::Vec3<double> w = crossing(o, d, s).weights;
-    const oracle::V gap = (facet.a - ray.org) + w.y * (facet.b - facet.a) + w.z * (facet.c - facet.a);
+    const oracle::V gap =
+        (facet.a - ray.org) + w.y * (facet.b - facet.a) + w.z * (facet.c - facet.a);
     const oracle::Real beside = length(gap - dot(gap, direction) * direction);
-    const oracle::Real weights_unit = 0x1p-53L * reach_of(o, s) * std::max(slenderness, oracle::Real(1));
+    const oracle::Real weights_unit =
+        0x1p-53L * reach_of(o, s) * std::max(slenderness, oracle::Real(1));
     if (!(off <= 46 * unit && beside <= 64 * weights_unit) && ++over <= 3)
-      ADD_FAILURE() << "seed " << seed << ": " << double(off / unit) << " and " << double(beside / weights_unit)
-                    << " units off";
+      ADD_FAILURE() << "seed " << seed << ": " << double(off / unit) << " and "
+                    << double(beside / weights_unit) << " units off";
     worst = std::max(worst, off / unit);
     worst_weights = std::max(worst_weights, beside / weights_unit);
   }
-  std::printf("triangle: %d hits, %d on slivers, off the triangle %.2f eps reach, off the ray %.2f 2^-53 reach and slenderness\n", hits,
-              slivers, double(worst), double(worst_weights));
+  std::printf(
+      "triangle: %d hits, %d on slivers, off the triangle %.2f eps reach, off the ray %.2f 2^-53 "
+      "reach and slenderness\n",
+      hits,
+      slivers,
+      double(worst),
+      double(worst_weights));
   EXPECT_EQ(over, 0);
   EXPECT_GT(hits, 100000);
   EXPECT_GT(slivers, 1000);
@@ -184,8 +202,9 @@ Floor random_floor(Random& random, double half, const Float3& middle, bool flat)
   return {{{a, corner(1, -1), c}, {a, c, corner(-1, 1)}}, oracle::V(n)};
 }
 
-/// t of floors from 1 to a million units wide, flat and tilted, at the origin and away from it, seen from .03 to 2 units above at all
-/// angles down to 1e-3: within 8 eps of where the ray meets the plane of the very corners. Floats alone were off by up to 2 %.
+/// t of floors from 1 to a million units wide, flat and tilted, at the origin and away from it,
+/// seen from .03 to 2 units above at all angles down to 1e-3: within 8 eps of where the ray meets
+/// the plane of the very corners. Floats alone were off by up to 2 %.
 TEST(TriangleOracle, FloorsOfAnySizeAreMetWhereTheyAre) {
   constexpr oracle::Real kMost = 8;
   for (const bool flat : {true, false}) {
@@ -202,7 +221,8 @@ TEST(TriangleOracle, FloorsOfAnySizeAreMetWhereTheyAre) {
         const double height = random.chance(.5) ? random.in(1, 2) : random.log_in(.03, 1);
         const Float3 aside = random.direction();
         const Float3 along = at(aside, -double(dot(oracle::V(aside), floor.normal)), n);
-        const Float3 o = at(at(middle, height, n), random.chance(.5) ? 0 : .3 * half * random.unit(), along);
+        const Float3 o =
+            at(at(middle, height, n), random.chance(.5) ? 0 : .3 * half * random.unit(), along);
         Float3 d = random.direction();
         const double down = double(dot(oracle::V(d), floor.normal));
         d = at(d, -down - (down < 0 ? -1 : 1) * std::abs(down) * random.log_in(1e-3, 1), n);
@@ -255,15 +275,17 @@ TEST(TriangleCorners, EdgesCornersAndSides) {
   EXPECT_FALSE(hit({0, 0, 5}, {0, 0, -1}, {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}).hit);
 }
 
-/// An edge function that is zero in float but not in truth: of two neighbours exactly one is met, the one that holds
-/// the ray. (1 + 2^-22) 1 and (1 + 2^-23)^2 round alike and differ by 2^-46.
+/// An edge function that is zero in float but not in truth: of two neighbours exactly one is met,
+/// the one that holds the ray. (1 + 2^-22) 1 and (1 + 2^-23)^2 round alike and differ by 2^-46.
 TEST(TriangleCorners, ZeroEdgesAreTakenAgain) {
   for (const float k : {1.f, 1e-10f, 1e10f}) {
     const auto point = [&](float x, float y) { return Float3{x * k, y * k, 0}; };
-    const Float3 b = point(1 + 0x1p-23f, 1), c = point(-1 - 0x1p-22f, -1 - 0x1p-23f), left = point(-1, 1),
-                 right = point(1, -1);
+    const Float3 b = point(1 + 0x1p-23f, 1), c = point(-1 - 0x1p-22f, -1 - 0x1p-23f),
+                 left = point(-1, 1), right = point(1, -1);
     if (k != 1) {  // scaled corners round anew; what must stay is that the pair has no hole
-      EXPECT_GE(hit({0, 0, 5 * k}, {0, 0, -1}, {left, b, c}).hit + hit({0, 0, 5 * k}, {0, 0, -1}, {right, b, c}).hit, 1)
+      EXPECT_GE(hit({0, 0, 5 * k}, {0, 0, -1}, {left, b, c}).hit +
+                    hit({0, 0, 5 * k}, {0, 0, -1}, {right, b, c}).hit,
+                1)
           << k;
       continue;
     }
@@ -275,7 +297,8 @@ TEST(TriangleCorners, ZeroEdgesAreTakenAgain) {
   }
 }
 
-/// Embree #387: a sliver met at half a degree was reported at twenty times the distance of its farthest corner.
+/// Embree #387: a sliver met at half a degree was reported at twenty times the distance of its
+/// farthest corner.
 TEST(TriangleCorners, DepthStaysWithinThatOfTheCorners) {
   for (std::uint64_t seed = 0; seed < 100000; ++seed) {
     Random random(seed);
@@ -283,12 +306,16 @@ TEST(TriangleCorners, DepthStaysWithinThatOfTheCorners) {
     const Shape s{a, at(a, 11.2, random.direction()), at(a, 1.4, random.direction())};
     const Float3 aim = at(at(a, .3, minus(s.b, a)), .3, minus(s.c, a));
     // Nearly in the plane: along an edge, tilted by half a degree or a thousandth of it.
-    const Float3 d = at(minus(s.b, a), 11.2 * random.log_in(1e-5, 1e-2), random.direction()), o = at(aim, -50, d);
+    const Float3 d = at(minus(s.b, a), 11.2 * random.log_in(1e-5, 1e-2), random.direction()),
+                 o = at(aim, -50, d);
     const Hit h = hit(o, d, s, -kInf);
-    if (!h.hit) continue;
+    if (!h.hit)
+      continue;
     const int k = scalar::shear_axis(d.x, d.y, d.z);
     const auto depth = [&](const Float3& p) {
-      const oracle::Real q[3] = {oracle::Real(p.x) - o.x, oracle::Real(p.y) - o.y, oracle::Real(p.z) - o.z},
+      const oracle::Real q[3] = {oracle::Real(p.x) - o.x,
+                                 oracle::Real(p.y) - o.y,
+                                 oracle::Real(p.z) - o.z},
                          r[3] = {d.x, d.y, d.z};
       return q[k] / r[k];
     };

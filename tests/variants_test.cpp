@@ -1,5 +1,5 @@
-// The compiled copies: which there are, that the one asked for is the one that ran, and that all of them and every
-// method agree on scenes of every kind.
+// The compiled copies: which there are, that the one asked for is the one that ran, and that all of
+// them and every method agree on scenes of every kind.
 #include "tests/support/rays.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -11,8 +11,10 @@ TEST(Variants, ScalarIsFirstAndWidthsGrow) {
   ASSERT_FALSE(all.empty());
   EXPECT_EQ(all.front()->name, "scalar");
   EXPECT_TRUE(all.front()->runs_here());
-  for (std::size_t i = 1; i < all.size(); ++i) EXPECT_GT(all[i]->lanes, all[i - 1]->lanes);
-  for (const Variant* v : all) EXPECT_EQ(find_variant(v->name), v);
+  for (std::size_t i = 1; i < all.size(); ++i)
+    EXPECT_GT(all[i]->lanes, all[i - 1]->lanes);
+  for (const Variant* v : all)
+    EXPECT_EQ(find_variant(v->name), v);
   EXPECT_EQ(find_variant("mmx"), nullptr);
   EXPECT_EQ(find_variant(""), nullptr);
 }
@@ -20,7 +22,8 @@ TEST(Variants, ScalarIsFirstAndWidthsGrow) {
 TEST(Variants, BestIsTheWidestThatRuns) {
   const Variant* widest = nullptr;
   for (const Variant* v : variants())
-    if (v->runs_here()) widest = v;
+    if (v->runs_here())
+      widest = v;
   EXPECT_EQ(find_variant("best"), widest);
 }
 
@@ -36,7 +39,8 @@ TEST(Variants, IsasListsAllKnown) {
 class Copies : public EveryVariant {};
 GRELHA_FOR_EVERY_ISA(Copies);
 
-/// Lanes are issued in whole registers of this copy: one ray alone costs as many lanes as the copy claims to have.
+/// Lanes are issued in whole registers of this copy: one ray alone costs as many lanes as the copy
+/// claims to have.
 TEST_P(Copies, RunAtTheirOwnWidth) {
   const Scene scene = one_sphere({}, 1);
   const World world(scene, {.grid = false});
@@ -62,14 +66,16 @@ TEST_P(Copies, ReturnTheScalarBits) {
     const Float3 offset = random.point(scale * random.log_in(.1, 1e3));
     const Scene scene = placed(random_mixture(seed, 150), scale, offset);
     const World world(scene, {});
-    const Rays rays = with_odd_values(random, rays_about(random, offset, scale, kManyRays), seed % 2 ? .1 : 0);
+    const Rays rays =
+        with_odd_values(random, rays_about(random, offset, scale, kManyRays), seed % 2 ? .1 : 0);
     const Truth truth = truth_of(scene, rays);
     EXPECT_GT(hits_of(truth.closest), 300u);
     expect_truth(variant(), world, rays, truth, "seed " + std::to_string(seed));
   }
 }
 
-/// Counts of rays of 0 to 70: every tail of every packet and register, and nothing written behind the last.
+/// Counts of rays of 0 to 70: every tail of every packet and register, and nothing written behind
+/// the last.
 TEST_P(Copies, TakeAnyNumberOfRays) {
   const Scene scene = random_mixture(2, 60);
   const World world(scene, {});
@@ -82,9 +88,18 @@ TEST_P(Copies, TakeAnyNumberOfRays) {
       std::vector<std::uint32_t> id(70, 77);
       TraceCounts counts;
       variant().loops.closest(world.impl().view,
-                              {all.ox.data(), all.oy.data(), all.oz.data(), all.dx.data(), all.dy.data(), all.dz.data(),
-                               all.t_min.data(), t.data(), id.data(), n},
-                              way.settings, counts);
+                              {all.ox.data(),
+                               all.oy.data(),
+                               all.oz.data(),
+                               all.dx.data(),
+                               all.dy.data(),
+                               all.dz.data(),
+                               all.t_min.data(),
+                               t.data(),
+                               id.data(),
+                               n},
+                              way.settings,
+                              counts);
       for (std::size_t i = 0; i < 70; ++i) {
         ASSERT_EQ(id[i], i < static_cast<std::size_t>(n) ? truth.closest.id[i] : 77u)
             << way.name << ", " << n << " rays, ray " << i;
@@ -102,7 +117,12 @@ TEST_P(Copies, LeaveTOfUnsoundRaysAlone) {
   for (const float bad : {kNaN, kInf, -kInf})
     for (int field = 0; field < 6; ++field) {
       rays.add({.1f, .2f, 5}, {0, 0, -1}, 0, field % 2 ? kInf : 100);
-      (*std::array{&rays.ox, &rays.oy, &rays.oz, &rays.dx, &rays.dy, &rays.dz}[static_cast<std::size_t>(field)])
+      (*std::array{&rays.ox,
+                   &rays.oy,
+                   &rays.oz,
+                   &rays.dx,
+                   &rays.dy,
+                   &rays.dz}[static_cast<std::size_t>(field)])
           .back() = bad;
     }
   rays.add({.1f, .2f, 5}, {0, -0.f, 0});
@@ -122,8 +142,16 @@ TEST_P(Copies, KeepToTheInterval) {
   const World world(scene, {.grid = false});
   Rays rays;
   const auto add = [&](float from, float to) { rays.add({0, 0, 5}, {0, 0, -1}, from, to); };
-  add(0, kInf), add(0, 4), add(4, 6), add(4, kInf), add(3, 4.0000005f), add(6, kInf), add(5, 5), add(9, 2),
-      add(kNaN, kInf), add(0, kNaN);
+  add(0, kInf);
+  add(0, 4);
+  add(4, 6);
+  add(4, kInf);
+  add(3, 4.0000005f);
+  add(6, kInf);
+  add(5, 5);
+  add(9, 2);
+  add(kNaN, kInf);
+  add(0, kNaN);
   rays.add({0, 0, -5}, {0, 0, -1}, -kInf, 0);
   rays.add({0, 0, -5}, {0, 0, -1}, 0, kInf);
   const float wanted[] = {4, 0, 0, 6, 4, 0, 0, 0, 0, 0, -6, 0};  // 0: nothing

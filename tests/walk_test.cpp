@@ -1,5 +1,5 @@
-// Every way through a grid against brute force: the same primitive and the same bits of t, whatever the scene and the
-// ray.
+// Every way through a grid against brute force: the same primitive and the same bits of t, whatever
+// the scene and the ray.
 #include "tests/support/cell_rays.hpp"
 #include "tests/support/rays.hpp"
 #include "tests/support/scenes.hpp"
@@ -25,16 +25,21 @@ Scene at_scale(double scale, const Float3& offset) {
   return placed(Make(), scale, offset);
 }
 
-/// Three grids one behind another: what is left of a packet's rays after one goes on through the next.
+/// Three grids one behind another: what is left of a packet's rays after one goes on through the
+/// next.
 Scene objects_in_a_row() {
   Scene s = random_spheres(8, 60);
   for (int i = 0; i < 2; ++i) {
-    const Scene ball = placed(ball_mesh(24, 12, .3, 5), .9, {i - .5f, 0, .25f * static_cast<float>(i)});
+    const Scene ball =
+        placed(ball_mesh(24, 12, .3, 5), .9, {i - .5f, 0, .25f * static_cast<float>(i)});
     const auto first = static_cast<std::uint32_t>(s.geometry.triangles.size());
     for (std::size_t t = 0; t < ball.geometry.triangles.size(); ++t)
-      add_triangle(s, vertex(ball, ball.geometry.triangles.a[t]), vertex(ball, ball.geometry.triangles.b[t]),
+      add_triangle(s,
+                   vertex(ball, ball.geometry.triangles.a[t]),
+                   vertex(ball, ball.geometry.triangles.b[t]),
                    vertex(ball, ball.geometry.triangles.c[t]));
-    s.geometry.objects.push_back({first, static_cast<std::uint32_t>(ball.geometry.triangles.size())});
+    s.geometry.objects.push_back(
+        {first, static_cast<std::uint32_t>(ball.geometry.triangles.size())});
   }
   return s;
 }
@@ -61,7 +66,8 @@ const std::vector<Case>& cases() {
       {"one_sphere_many_times",
        [] {
          Scene s = empty_scene();
-         for (int i = 0; i < 50; ++i) s.geometry.spheres.add({1, 2, 3}, .5f, 0);
+         for (int i = 0; i < 50; ++i)
+           s.geometry.spheres.add({1, 2, 3}, .5f, 0);
          return s;
        },
        1,
@@ -69,7 +75,8 @@ const std::vector<Case>& cases() {
       {"points",
        [] {
          Scene s = empty_scene();
-         for (int i = 0; i < 40; ++i) s.geometry.spheres.add({}, 1e-12f, 0);
+         for (int i = 0; i < 40; ++i)
+           s.geometry.spheres.add({}, 1e-12f, 0);
          return s;
        },
        1e-12},
@@ -117,17 +124,19 @@ const std::vector<Case>& cases() {
   return all;
 }
 
-/// Neighbours that point nearly the same way, so that packets stay together: an eye ray's case. Some bundles cross an
-/// axis.
+/// Neighbours that point nearly the same way, so that packets stay together: an eye ray's case.
+/// Some bundles cross an axis.
 Rays coherent_rays(Random& random, const Float3& center, double size, int bundles) {
   Rays rays;
   for (int b = 0; b < bundles; ++b) {
     const Float3 eye = at(center, size * random.log_in(.3, 20), random.direction());
     const Float3 aim = at(center, size * random.unit(), random.direction());
     Float3 main = minus(aim, eye);
-    if (b % 4 == 0) main = {0, 0, static_cast<float>(b % 8 == 0 ? size : -size)};
+    if (b % 4 == 0)
+      main = {0, 0, static_cast<float>(b % 8 == 0 ? size : -size)};
     const double spread = random.log_in(1e-3, 1) * size;
-    for (int i = 0; i < 64; ++i) rays.add(eye, at(main, spread, random.point(1)));
+    for (int i = 0; i < 64; ++i)
+      rays.add(eye, at(main, spread, random.point(1)));
   }
   return rays;
 }
@@ -135,7 +144,8 @@ Rays coherent_rays(Random& random, const Float3& center, double size, int bundle
 class Walk : public testing::TestWithParam<std::tuple<const Variant*, Case>> {
  protected:
   void SetUp() override {
-    if (!variant().runs_here()) GTEST_SKIP() << "this processor has no " << variant().name;
+    if (!variant().runs_here())
+      GTEST_SKIP() << "this processor has no " << variant().name;
   }
   static const Variant& variant() { return *std::get<0>(GetParam()); }
 };
@@ -158,16 +168,23 @@ TEST_P(Walk, FindsWhatBruteForceFinds) {
     std::ostringstream what;
     what << c.name << ", density " << density;
     expect_truth(variant(), world, all, truth, what.str());
-    if (HasFailure()) return;
+    if (HasFailure())
+      return;
   }
   EXPECT_GT(grids, 0u) << "no grid was built: nothing was walked";
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Isa, Walk, testing::Combine(testing::ValuesIn(variants().begin(), variants().end()), testing::ValuesIn(cases())),
-    [](const auto& p) { return std::string(std::get<0>(p.param)->name) + "_" + std::get<1>(p.param).name; });
+INSTANTIATE_TEST_SUITE_P(Isa,
+                         Walk,
+                         testing::Combine(testing::ValuesIn(variants().begin(), variants().end()),
+                                          testing::ValuesIn(cases())),
+                         [](const auto& p) {
+                           return std::string(std::get<0>(p.param)->name) + "_" +
+                                  std::get<1>(p.param).name;
+                         });
 
-/// From so far away that what is met lies beside its primitive by more than the cells of near rays allow for.
+/// From so far away that what is met lies beside its primitive by more than the cells of near rays
+/// allow for.
 TEST(FarRays, FindWhatBruteForceFinds) {
   const Scene scene = crowd_on_a_wide_plain(7, 400);
   const World world(scene, {.density = 4});
@@ -180,7 +197,8 @@ TEST(FarRays, FindWhatBruteForceFinds) {
   }
   const Truth truth = truth_of(scene, rays);
   std::size_t met = 0;
-  for (const std::uint32_t id : truth.closest.id) met += id < 400u + 50u;
+  for (const std::uint32_t id : truth.closest.id)
+    met += id < 400u + 50u;
   EXPECT_GT(met, 2000u);
   expect_truth(*find_variant("best"), world, rays, truth, "far rays");
 }
@@ -191,19 +209,28 @@ TEST(GridOrder, IsFrontToBack) {
   for (const bool near_first : {true, false}) {
     Scene s = empty_scene();
     for (int i = 0; i < 3; ++i) {
-      const Scene ball = placed(ball_mesh(24, 12), 1, {0, 0, near_first ? -3.f * static_cast<float>(i) : 3.f * static_cast<float>(i - 2)});
+      const Scene ball = placed(
+          ball_mesh(24, 12),
+          1,
+          {0, 0, near_first ? -3.f * static_cast<float>(i) : 3.f * static_cast<float>(i - 2)});
       const auto first = static_cast<std::uint32_t>(s.geometry.triangles.size());
       for (std::size_t t = 0; t < ball.geometry.triangles.size(); ++t)
-        add_triangle(s, vertex(ball, ball.geometry.triangles.a[t]), vertex(ball, ball.geometry.triangles.b[t]),
+        add_triangle(s,
+                     vertex(ball, ball.geometry.triangles.a[t]),
+                     vertex(ball, ball.geometry.triangles.b[t]),
                      vertex(ball, ball.geometry.triangles.c[t]));
-      s.geometry.objects.push_back({first, static_cast<std::uint32_t>(ball.geometry.triangles.size())});
+      s.geometry.objects.push_back(
+          {first, static_cast<std::uint32_t>(ball.geometry.triangles.size())});
     }
     const World world(s, {});
     ASSERT_EQ(world.impl().grids.size(), 3u);
     Rays rays;
-    for (int i = 0; i < 64; ++i) rays.add({0, 0, 9}, {.004f * static_cast<float>(i % 8 - 4), .004f * static_cast<float>(i / 8 - 4), -1});
+    for (int i = 0; i < 64; ++i)
+      rays.add({0, 0, 9},
+               {.004f * static_cast<float>(i % 8 - 4), .004f * static_cast<float>(i / 8 - 4), -1});
     for (const Method method : {Method::kPackets, Method::kSingle}) {
-      const Answers a = trace(*find_variant("best"), world, rays, {method, 64, true}, Query::kClosest);
+      const Answers a =
+          trace(*find_variant("best"), world, rays, {method, 64, true}, Query::kClosest);
       EXPECT_EQ(hits_of(a), 64u);
       tests[near_first] += a.counts.tests.triangle;
     }
@@ -211,13 +238,14 @@ TEST(GridOrder, IsFrontToBack) {
   EXPECT_EQ(tests[0], tests[1]);
 }
 
-// ---- ties -------------------------------------------------------------------------------------------------------
+// ---- ties
+// ------------------------------------------------------------------------------------------
 
 class Ties : public EveryVariant {};
 GRELHA_FOR_EVERY_ISA(Ties);
 
-/// Of copies at the same place the lower id is met, with every method, in any order of cells; and of different kinds at
-/// equal t too: planes, spheres, triangles, cones.
+/// Of copies at the same place the lower id is met, with every method, in any order of cells; and
+/// of different kinds at equal t too: planes, spheres, triangles, cones.
 TEST_P(Ties, TheLowerIdWins) {
   Scene scene = empty_scene();
   for (int copy = 0; copy < 3; ++copy)
@@ -228,25 +256,35 @@ TEST_P(Ties, TheLowerIdWins) {
         add_triangle(scene, {a, 0, b}, {a + 1, 0, b + 1}, {a, 0, b + 1});
         scene.geometry.spheres.add({a + .5f, 0, b + .5f}, .25f, 0);
       }
-  add_triangle(scene, {-3, 0, -3}, {9, 0, -3}, {3, 0, 9});  // over all of them, later and in no grid
+  // over all of them, later and in no grid
+  add_triangle(scene, {-3, 0, -3}, {9, 0, -3}, {3, 0, 9});
   Random random(5);
   Rays rays;
   for (int i = 0; i < 2048; ++i) {
-    const Float3 aim{static_cast<float>(random.below(24)) * .25f, 0, static_cast<float>(random.below(24)) * .25f};
-    rays.add(random.chance(.5)
-                 ? Float3{aim.x, 4, aim.z}
-                 : at(aim, 4, {random.below(3) - 1.f, random.chance(.5) ? 1.f : -1.f, random.below(3) - 1.f}),
-             {0, 0, 0});
+    const Float3 aim{static_cast<float>(random.below(24)) * .25f,
+                     0,
+                     static_cast<float>(random.below(24)) * .25f};
+    rays.add(
+        random.chance(.5)
+            ? Float3{aim.x, 4, aim.z}
+            : at(aim,
+                 4,
+                 {random.below(3) - 1.f, random.chance(.5) ? 1.f : -1.f, random.below(3) - 1.f}),
+        {0, 0, 0});
     const Float3 d = minus(aim, rays.org(rays.size() - 1));
-    rays.dx.back() = d.x, rays.dy.back() = d.y, rays.dz.back() = d.z;
+    rays.dx.back() = d.x;
+    rays.dy.back() = d.y;
+    rays.dz.back() = d.z;
   }
   for (const float density : {.5f, 1.f, 3.f}) {
     const World world(scene, {.density = density});
     ASSERT_FALSE(world.impl().grids.empty());
     const Truth truth = truth_of(scene, rays);
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      if (truth.closest.id[i] == kNoPrimitive) continue;
-      EXPECT_LT(truth.closest.id[i], 3 * 36u + 72) << rays.describe(i);  // never a second or third copy of a triangle
+      if (truth.closest.id[i] == kNoPrimitive)
+        continue;
+      // never a second or third copy of a triangle
+      EXPECT_LT(truth.closest.id[i], 3 * 36u + 72) << rays.describe(i);
       if (truth.closest.id[i] < 108u) {
         EXPECT_LT(truth.closest.id[i], 36u) << rays.describe(i);
       }
@@ -257,7 +295,8 @@ TEST_P(Ties, TheLowerIdWins) {
 
 TEST_P(Ties, KindsComeInTheOrderOfTheirIds) {
   Scene scene = empty_scene();
-  scene.geometry.cones.add({-1, 0, 1}, 1, {1, 0, 1}, 1, 0);  // its side touches y = 1 along x, z = 1
+  // its side touches y = 1 along x, z = 1
+  scene.geometry.cones.add({-1, 0, 1}, 1, {1, 0, 1}, 1, 0);
   scene.geometry.spheres.add({0, 0, 1}, 1, 0);
   add_triangle(scene, {-5, 1, -5}, {5, 1, -5}, {0, 1, 9});
   Rays rays;

@@ -1,6 +1,6 @@
-// Closed meshes have no holes: rays aimed at vertices, at the middle of edges and anywhere along them never slip
-// through. pbrt-v4's test of this name is switched off, and a robust Plücker test leaks at 4 vertices in a thousand;
-// random rays alone find none of it, hence the aim.
+// Closed meshes have no holes: rays aimed at vertices, at the middle of edges and anywhere along
+// them never slip through. pbrt-v4's test of this name is switched off, and a robust Plücker test
+// leaks at 4 vertices in a thousand; random rays alone find none of it, hence the aim.
 #include "tests/support/closed.hpp"
 #include "tests/support/rays.hpp"
 #include "tests/support/scenes.hpp"
@@ -23,22 +23,28 @@ const Case kCases[] = {{"ball", [] { return ball_mesh(50, 25); }},
 class Watertight : public testing::TestWithParam<std::tuple<const Variant*, Case>> {
  protected:
   void SetUp() override {
-    if (!variant().runs_here()) GTEST_SKIP() << "this processor has no " << variant().name;
+    if (!variant().runs_here())
+      GTEST_SKIP() << "this processor has no " << variant().name;
   }
   static const Variant& variant() { return *std::get<0>(GetParam()); }
   static const Case& mesh() { return std::get<1>(GetParam()); }
 };
 
-/// No ray from inside gets out, whichever way it is traced, and none from outside gets through where it meets the body
-/// steeply: it meets something no later than at its aim.
-void expect_no_leak(const Variant& variant, const Scene& unit_scene, bool torus, double scale, const Float3& offset,
+/// No ray from inside gets out, whichever way it is traced, and none from outside gets through
+/// where it meets the body steeply: it meets something no later than at its aim.
+void expect_no_leak(const Variant& variant,
+                    const Scene& unit_scene,
+                    bool torus,
+                    double scale,
+                    const Float3& offset,
                     const std::string& what) {
   const Scene scene = placed(unit_scene, scale, offset);
   Random random(17);
   const auto place = [&](const Float3& p) { return at(offset, scale, p); };
   const Aims all = aims_at(unit_scene, random);
   std::vector<Float3> aims = all.vertices;
-  for (const auto* more : {&all.middles, &all.along}) aims.insert(aims.end(), more->begin(), more->end());
+  for (const auto* more : {&all.middles, &all.along})
+    aims.insert(aims.end(), more->begin(), more->end());
   Rays from_inside, from_outside;
   for (const Float3& aim : aims) {
     const Float3 org = place(inside(random, aim, torus)), to = place(aim);
@@ -54,21 +60,33 @@ void expect_no_leak(const Variant& variant, const Scene& unit_scene, bool torus,
                     out = trace(variant, w, from_outside, settings, query);
       std::size_t first = 0, lost = 0;
       for (std::size_t i = aims.size(); i-- > 0;)
-        if (in.id[i] == kNoPrimitive) ++lost, first = i;
+        if (in.id[i] == kNoPrimitive) {
+          ++lost;
+          first = i;
+        }
       if (lost > 0 && leaks == 0)
-        ADD_FAILURE() << what << ", " << way << ": " << lost << " leaks from inside, " << from_inside.describe(first);
-      leaks += lost, lost = 0;
+        ADD_FAILURE() << what << ", " << way << ": " << lost << " leaks from inside, "
+                      << from_inside.describe(first);
+      leaks += lost;
+      lost = 0;
       for (std::size_t i = aims.size(); i-- > 0;)
-        // Bumps and facets turn the true normal from the ball's, by less than the 60 degrees of the body beneath leave
-        // room for: the ray comes through the far side of the first wall before t = 1.2 unless it slipped through.
-        if (out.id[i] == kNoPrimitive || (query == Query::kClosest && out.t[i] > 1.2f)) ++lost, first = i;
+        // Bumps and facets turn the true normal from the ball's, by less than the 60 degrees of the
+        // body beneath leave room for: the ray comes through the far side of the first wall before
+        // t = 1.2 unless it slipped through.
+        if (out.id[i] == kNoPrimitive || (query == Query::kClosest && out.t[i] > 1.2f)) {
+          ++lost;
+          first = i;
+        }
       if (lost > 0 && passed == 0)
-        ADD_FAILURE() << what << ", " << way << ": " << lost << " leaks from outside, " << from_outside.describe(first);
+        ADD_FAILURE() << what << ", " << way << ": " << lost << " leaks from outside, "
+                      << from_outside.describe(first);
       passed += lost;
     }
   };
-  for (const Way& way : every_way()) count(world, way.settings, way.name);
-  if (what == "scale 1") {  // without a grid nothing but the triangle test can leak, and one place shows it
+  for (const Way& way : every_way())
+    count(world, way.settings, way.name);
+  // without a grid nothing but the triangle test can leak, and one place shows it
+  if (what == "scale 1") {
     const World plain(scene, {.grid = false});
     count(plain, {Method::kPackets, 256, true}, "brute force");
     count(plain, {Method::kSingle, 1, true}, "brute force, single");
@@ -83,19 +101,28 @@ TEST_P(Watertight, AtEverySizeAndPlace) {
     std::ostringstream what;
     what << "scale " << scale;
     expect_no_leak(variant(), scene, mesh().torus, scale, {}, what.str());
-    if (HasFailure()) return;
+    if (HasFailure())
+      return;
   }
   for (const float far : {1e3f, 1e4f, 148376.f, 1e6f}) {
-    expect_no_leak(variant(), scene, mesh().torus, 2, {far, far / 100, -1.5f * far}, "at " + std::to_string(far));
-    if (HasFailure()) return;
+    expect_no_leak(variant(),
+                   scene,
+                   mesh().torus,
+                   2,
+                   {far, far / 100, -1.5f * far},
+                   "at " + std::to_string(far));
+    if (HasFailure())
+      return;
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Isa, Watertight,
+INSTANTIATE_TEST_SUITE_P(Isa,
+                         Watertight,
                          testing::Combine(testing::ValuesIn(variants().begin(), variants().end()),
                                           testing::ValuesIn(kCases)),
                          [](const auto& p) {
-                           return std::string(std::get<0>(p.param)->name) + "_" + std::get<1>(p.param).name;
+                           return std::string(std::get<0>(p.param)->name) + "_" +
+                                  std::get<1>(p.param).name;
                          });
 
 /// Neighbours that name their own copies of the corners are as tight as those that share them.

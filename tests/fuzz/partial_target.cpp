@@ -1,6 +1,7 @@
-// Fuzzes .grelha files: the input is one, or several in a row, each from "grelha partial" to the next. As they are and with their checksums put
-// right, which no mutation would: what reads is written, read and written again to the same bytes, and gone on with if it is of a small
-// picture; all of them are merged.
+// Fuzzes .grelha files: the input is one, or several in a row, each from "grelha partial" to the
+// next. As they are and with their checksums put right, which no mutation would: what reads is
+// written, read and written again to the same bytes, and gone on with if it is of a small picture;
+// all of them are merged.
 #include <vector>
 
 #include "frontend/digest.hpp"
@@ -23,7 +24,8 @@ std::vector<std::string> pieces_of(std::string_view bytes) {
   while (!bytes.empty()) {
     const std::size_t end = bytes.find(kMagic, 1);
     pieces.emplace_back(bytes.substr(0, end));
-    if (end == std::string_view::npos) break;
+    if (end == std::string_view::npos)
+      break;
     bytes.remove_prefix(end);
   }
   return pieces;
@@ -31,11 +33,13 @@ std::vector<std::string> pieces_of(std::string_view bytes) {
 
 /// The last eight bytes as a writer would have them.
 std::string put_right(std::string bytes) {
-  if (bytes.size() < kChecksum) return bytes;
+  if (bytes.size() < kChecksum)
+    return bytes;
   Digest digest;
   digest.bytes(bytes.data(), bytes.size() - kChecksum);
   std::uint64_t sum = digest.low64();
-  for (std::size_t i = bytes.size() - kChecksum; i < bytes.size(); ++i, sum >>= 8) bytes[i] = char(sum & 255);
+  for (std::size_t i = bytes.size() - kChecksum; i < bytes.size(); ++i, sum >>= 8)
+    bytes[i] = char(sum & 255);
   return bytes;
 }
 
@@ -56,7 +60,11 @@ struct GoOn {
   RenderOptions options;
   RenderStats stats;
 
-  GoOn(int width, int height) { camera.width = width, camera.height = height, options.threads = 1; }
+  GoOn(int width, int height) {
+    camera.width = width;
+    camera.height = height;
+    options.threads = 1;
+  }
   bool is_small(int samples) const {
     constexpr std::int64_t kMost = 4096;
     return std::int64_t(camera.width) * camera.height <= kMost / samples;
@@ -66,20 +74,23 @@ struct GoOn {
 void go_on(Accumulator& a) {
   GoOn work(a.width, a.height);
   work.options.sampling.samples = a.samples;
-  if (work.is_small(a.samples)) accumulate(small_world(), work.camera, work.options, a, work.stats);
+  if (work.is_small(a.samples))
+    accumulate(small_world(), work.camera, work.options, a, work.stats);
 }
 
 void go_on(Refinement& r) {
   GoOn work(r.width, r.height);
   work.options.refine.samples = std::uint64_t(r.width) * std::uint64_t(r.height) * 16;
   SampleMaps maps;
-  if (work.is_small(16)) refine(small_world(), work.camera, work.options, r, work.stats, &maps);
+  if (work.is_small(16))
+    refine(small_world(), work.camera, work.options, r, work.stats, &maps);
 }
 
 void go_on(Subdivided& s) {
   GoOn work(s.image.width, s.image.height);
   work.options.subdivision = {true, .1f, 2};
-  if (work.is_small(16)) render_subdivided(small_world(), work.camera, work.options, s, work.stats, {});
+  if (work.is_small(16))
+    render_subdivided(small_world(), work.camera, work.options, s, work.stats, {});
 }
 
 std::string bytes_of(const std::string& file) {
@@ -97,14 +108,16 @@ void try_one(const std::string& file, const std::string& bytes) {
     fuzz::promise(bytes_of(file) == once, "what is written is what was read");
     std::visit([](auto& work) { go_on(work); }, read.work);
   } catch (const FileError&) {
-  } catch (const std::invalid_argument&) {  // a file that is sound by itself, of another picture than the one that goes on
+    // a file that is sound by itself, of another picture than the one that goes on
+  } catch (const std::invalid_argument&) {
   }
 }
 
 void try_merge(const std::vector<std::string>& files) {
   try {
     const Accumulator a = merge_parts(files).sums;
-    if (a.part == Part{{0, a.height}, {0, a.samples}}) picture_so_far(a);
+    if (a.part == Part{{0, a.height}, {0, a.samples}})
+      picture_so_far(a);
   } catch (const UsageError&) {
   } catch (const FileError&) {
   }
@@ -117,11 +130,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   constexpr std::size_t kMostParts = 4;
   std::vector<std::string> files;
   for (const std::string& piece : pieces_of(fuzz::text_of(data, size))) {
-    if (files.size() == kMostParts) break;
+    if (files.size() == kMostParts)
+      break;
     const std::string again = folder.path() / "again.grelha", right = put_right(piece);
-    try_one(again, piece), try_one(again, right);
+    try_one(again, piece);
+    try_one(again, right);
     files.push_back(folder.write(std::to_string(files.size()) + ".grelha", right));
   }
-  if (!files.empty()) try_merge(files);
+  if (!files.empty())
+    try_merge(files);
   return 0;
 }

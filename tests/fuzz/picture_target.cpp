@@ -25,7 +25,8 @@ void try_one(const std::string& file) {
     fuzz::promise(image.width > 0 && image.height > 0, "a picture has a size");
     fuzz::promise(image.rgb.size() == std::size_t(image.width) * std::size_t(image.height) * 3,
                   "as many values as its size says");
-    if (image.rgb.size() > kMostValues) return;
+    if (image.rgb.size() > kMostValues)
+      return;
     fuzz::promise(same_bits(read_exr("again.exr", encode_exr(image)), image),
                   "what is written is what was read");
   } catch (const FileError& error) {

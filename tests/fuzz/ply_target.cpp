@@ -8,7 +8,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const fuzz::Folder folder;
   const std::string_view bytes = fuzz::text_of(data, size);
   const std::string mesh = folder.write("mesh.ply", bytes);
-  const auto one_line = [](const std::string& line) { fuzz::promise(line.find('\n') == std::string::npos, "a message is one line"); };
+  const auto one_line = [](const std::string& line) {
+    fuzz::promise(line.find('\n') == std::string::npos, "a message is one line");
+  };
   SceneFile file;
   try {
     file = read_scene(mesh, one_line);

@@ -1,5 +1,6 @@
-// Runs a fuzz target on files, with any compiler: replay_NAME FILE-OR-FOLDER... A fault ends the process, and the last name it printed is
-// the file. Each has ten seconds (sanitizers make it slow) and a gibibyte.
+// Runs a fuzz target on files, with any compiler: replay_NAME FILE-OR-FOLDER... A fault ends the
+// process, and the last name it printed is the file. Each has ten seconds (sanitizers make it slow)
+// and a gibibyte.
 #include <unistd.h>
 
 #include <algorithm>
@@ -16,11 +17,15 @@ namespace fs = std::filesystem;
 std::vector<fs::path> files_of(int argc, char** argv) {
   std::vector<fs::path> files;
   for (int i = 1; i < argc; ++i) {
-    if (!fs::is_directory(argv[i])) files.emplace_back(argv[i]);
-    else for (const auto& entry : fs::recursive_directory_iterator(argv[i])) files.push_back(entry.path());
+    if (!fs::is_directory(argv[i]))
+      files.emplace_back(argv[i]);
+    else
+      for (const auto& entry : fs::recursive_directory_iterator(argv[i]))
+        files.push_back(entry.path());
   }
   std::erase_if(files, [](const fs::path& p) { return !fs::is_regular_file(p); });
-  for (fs::path& file : files) file = fs::absolute(file);  // a target may change the folder
+  for (fs::path& file : files)
+    file = fs::absolute(file);  // a target may change the folder
   std::sort(files.begin(), files.end());
   return files;
 }

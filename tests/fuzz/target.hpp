@@ -1,7 +1,8 @@
 #pragma once
-// What the fuzz targets share. A target is LLVMFuzzerTestOneInput() in a file of its own: libFuzzer calls it with bytes it makes up,
-// tests/fuzz/replay.cpp with those of tests/fuzz/corpus. Errors that a file or a command line may cause end it in peace; anything else
-// that is thrown, any signal, any report of a sanitizer and any promise found broken is a fault.
+// What the fuzz targets share. A target is LLVMFuzzerTestOneInput() in a file of its own: libFuzzer
+// calls it with bytes it makes up, tests/fuzz/replay.cpp with those of tests/fuzz/corpus. Errors
+// that a file or a command line may cause end it in peace; anything else that is thrown, any
+// signal, any report of a sanitizer and any promise found broken is a fault.
 
 #include <cstddef>
 #include <cstdint>
@@ -16,19 +17,24 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
 namespace grelha::fuzz {
 
-inline std::string_view text_of(const std::uint8_t* data, std::size_t size) { return {reinterpret_cast<const char*>(data), size}; }
+inline std::string_view text_of(const std::uint8_t* data, std::size_t size) {
+  return {reinterpret_cast<const char*>(data), size};
+}
 
 inline void promise(bool kept, const std::string& what) {
-  if (kept) return;
+  if (kept)
+    return;
   std::fprintf(stderr, "broken promise: %s\n", what.c_str());
   std::abort();
 }
 
-/// Choices that are not in the file itself, from its bytes, so that the same file always takes the same ones (FNV-1a).
+/// Choices that are not in the file itself, from its bytes, so that the same file always takes the
+/// same ones (FNV-1a).
 class Choices {
  public:
   explicit Choices(std::string_view bytes) {
-    for (const char c : bytes) state_ = (state_ ^ static_cast<unsigned char>(c)) * 0x100000001B3u;
+    for (const char c : bytes)
+      state_ = (state_ ^ static_cast<unsigned char>(c)) * 0x100000001B3u;
   }
   /// From 0 to n - 1.
   std::size_t below(std::size_t n) {
@@ -51,7 +57,9 @@ class Folder {
     const std::filesystem::path shared = "/dev/shm";
     std::error_code none;
     const bool in_memory = std::filesystem::is_directory(shared, none);
-    std::string name = ((in_memory ? shared : std::filesystem::temp_directory_path()) / "grelha-fuzz-XXXXXX").string();
+    std::string name =
+        ((in_memory ? shared : std::filesystem::temp_directory_path()) / "grelha-fuzz-XXXXXX")
+            .string();
     promise(mkdtemp(name.data()) != nullptr, "a folder to work in");
     path_ = name;
   }

@@ -38,9 +38,9 @@ class Facets {
     add_triangle(scene, a, b, c);
     facets_.push_back({a, b, c});
     const V middle = (Real(1) / 3) * (facets_.back().a + facets_.back().b + facets_.back().c);
-    const Real reach =
-        std::max({length(facets_.back().a - middle), length(facets_.back().b - middle),
-                  length(facets_.back().c - middle)});
+    const Real reach = std::max({length(facets_.back().a - middle),
+                                 length(facets_.back().b - middle),
+                                 length(facets_.back().c - middle)});
     balls_.push_back({double(middle.x), double(middle.y), double(middle.z), double(reach)});
   }
   const Facet& operator[](std::size_t i) const { return facets_[i]; }
@@ -56,19 +56,24 @@ class Facets {
     each_near(ray, [&](std::uint32_t i) {
       const Facet& f = facets_[i];
       const Real along = dot(ray.dir, f.normal());
-      if (i == left || along == 0) return;
+      if (i == left || along == 0)
+        return;
       const Real farthest =
           std::max({length(f.a - ray.org), length(f.b - ray.org), length(f.c - ray.org)});
       const Real inside = f.clearance(ray);
       const Real open = coarse + kNearEdge * farthest;
-      if (inside < -open) return;
+      if (inside < -open)
+        return;
       const Real t = dot(f.a - ray.org, f.normal()) / along;
       Real off = kClose * std::abs(t) + 2 * coarse * length(f.normal()) / std::abs(along);
-      if (inside <= open) off = std::max(off, 4 * open * length(f.normal()) / std::abs(along));
+      if (inside <= open)
+        off = std::max(off, 4 * open * length(f.normal()) / std::abs(along));
       off = std::min(off, farthest / scale);
-      if (t + off <= 0 || t - off >= end) return;
+      if (t + off <= 0 || t - off >= end)
+        return;
       earliest = std::min(earliest, t - off);
-      if (inside > open && t - off > 0 && t + off < end) latest = std::min(latest, t + off);
+      if (inside > open && t - off > 0 && t + off < end)
+        latest = std::min(latest, t + off);
     });
     w.hit = latest < end;
     w.miss = earliest >= end;
@@ -86,7 +91,8 @@ class Facets {
       const Facet& f = facets_[i];
       const auto c = f.first(ray, 0);
       if (!c || c->t >= least) {
-        if (c) second = std::min(second, c->t);
+        if (c)
+          second = std::min(second, c->t);
         return;
       }
       second = least;
@@ -108,11 +114,12 @@ class Facets {
     const double dd = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
     for (std::size_t i = 0; i < balls_.size(); ++i) {
       const auto& b = balls_[i];
-      const double p[3] = {b[0] - double(ray.org.x), b[1] - double(ray.org.y),
-                           b[2] - double(ray.org.z)};
+      const double p[3] = {
+          b[0] - double(ray.org.x), b[1] - double(ray.org.y), b[2] - double(ray.org.z)};
       const double pd = p[0] * d[0] + p[1] * d[1] + p[2] * d[2];
       const double pp = p[0] * p[0] + p[1] * p[1] + p[2] * p[2];
-      if (pp - pd * pd / dd <= 1.1 * b[3] * b[3] + 1e-4 * pp) use(static_cast<std::uint32_t>(i));
+      if (pp - pd * pd / dd <= 1.1 * b[3] * b[3] + 1e-4 * pp)
+        use(static_cast<std::uint32_t>(i));
     }
   }
 
@@ -170,7 +177,9 @@ class Ground {
 
 /// Level and tilted grounds of each half side, a thousand rays or less each.
 template <class Use>
-void on_grounds(Random& random, std::size_t rays, const std::vector<double>& halves,
+void on_grounds(Random& random,
+                std::size_t rays,
+                const std::vector<double>& halves,
                 const Use& use) {
   const std::size_t least = 2 * halves.size();
   const std::size_t grounds = std::max(least, rays / 1000);
@@ -217,13 +226,16 @@ Left left_from(const Facets& facets, const World& world, const Place& aim, const
 /// the exact place.
 void leave_for(Trial& trial, const Facets& facets, const Left& from, const Float3& to, bool light) {
   const Float3 d = minus(to, from.spot.point);
-  if (undecided(d, from.spot.normal)) return;
+  if (undecided(d, from.spot.normal))
+    return;
   const Float3 start = from.spot.start(d);
   const Float3 dir = light ? minus(to, start) : d;
   const V exact = light ? V(to) - from.place.point : V(d);
   const Real end = light ? 1 : 1e300L;
   const Real coarse = coarse_at(from.place.point);
-  trial.add(start, dir, facets.wanted({from.place.point, exact}, coarse, end, from.place.id),
+  trial.add(start,
+            dir,
+            facets.wanted({from.place.point, exact}, coarse, end, from.place.id),
             light ? 1 : kInf);
 }
 
@@ -253,8 +265,8 @@ void lids(Random& random, std::size_t rays, const Sink& sink) {
       const double height =
           kLight ? random.chance(.5) ? random.in(.3, .7) : random.log_in(1.5, 100) : 1;
       const V above = from.place.point + Real(height * gap) * foot.normal;
-      leave_for(trial, g.facets, from, rounded(above + g.slide(random, random.in(0, 10) * gap)),
-                kLight);
+      leave_for(
+          trial, g.facets, from, rounded(above + g.slide(random, random.in(0, 10) * gap)), kLight);
     }
     sink(trial);
   });
@@ -266,7 +278,8 @@ void add_spike(Facets& facets, const Ground& g, const Place& foot, double radius
   const auto corner = [&](int i) {
     return rounded(foot.point + g.offset(radius * std::cos(2.1 * i), radius * std::sin(2.1 * i)));
   };
-  for (int i = 0; i < 3; ++i) facets.add(corner(i), corner((i + 1) % 3), tip);
+  for (int i = 0; i < 3; ++i)
+    facets.add(corner(i), corner((i + 1) % 3), tip);
 }
 
 /// Rays and shadow rays past a twig, from the floor it stands on and from the twig itself.
@@ -291,7 +304,8 @@ void twigs(Random& random, std::size_t rays, const Sink& sink) {
       about.point = aim;
       const Float3 eye = g.eye(random, about, 10);
       Place met = foot;
-      if (!g.facets.first({eye, minus(rounded(aim), eye)}, met)) continue;
+      if (!g.facets.first({eye, minus(rounded(aim), eye)}, met))
+        continue;
       const Left from = left_from(g.facets, world, {aim, met.normal, met.id}, eye);
       const V by = near_twig(random.in(0, 1.3), 3 * radius * random.unit());
       const V to =
@@ -316,7 +330,8 @@ void add_bowl(Facets& facets, const Ground& g, const V& middle, const V& up) {
   for (int ring = 0; ring < kRings; ++ring)
     for (int i = 0; i < kAround; ++i) {
       facets.add(corner(ring, i), corner(ring + 1, i), corner(ring + 1, i + 1));
-      if (ring > 0) facets.add(corner(ring, i), corner(ring + 1, i + 1), corner(ring, i + 1));
+      if (ring > 0)
+        facets.add(corner(ring, i), corner(ring + 1, i + 1), corner(ring, i + 1));
     }
 }
 
@@ -338,7 +353,8 @@ void bowls(Random& random, std::size_t rays, const Sink& sink) {
       const Float3 eye = rounded(eye_at);
       const Float3 dir = minus(rounded(aim), eye);
       Place met = foot;
-      if (!g.facets.first({eye, dir}, met)) continue;
+      if (!g.facets.first({eye, dir}, met))
+        continue;
       const Left from = left_from(g.facets, world, {aim, met.normal, met.id}, eye);
       const V mirrored = V(dir) - 2 * dot(V(dir), met.normal) * met.normal;
       leave_for(trial, g.facets, from, rounded(from.place.point + mirrored), false);
@@ -354,20 +370,30 @@ std::vector<Row> floor_rows() {
   const char* const exact = "brute force in long double from the exact point";
   return {
       {"floor of half side 1e1",
-       "two triangles, level and tilted; eye 1 to 2 above, all angles; t to 16u", close, floors<1>},
+       "two triangles, level and tilted; eye 1 to 2 above, all angles; t to 16u",
+       close,
+       floors<1>},
       {"floor of half side 1e3", "the same", close, floors<3>},
       {"floor of half side 1e4", "the same", close, floors<4>},
       {"floor of half side 1e5", "the same", close, floors<5>},
       {"floor of half side 1e6", "the same", close, floors<6>},
-      {"lids over floors", "rays to a lid .001 to .02 above floors of half side 1e2 to 1e6", exact,
+      {"lids over floors",
+       "rays to a lid .001 to .02 above floors of half side 1e2 to 1e6",
+       exact,
        lids<false>},
-      {"lights at lids over floors", "shadow rays to lights before and behind such lids", exact,
+      {"lights at lids over floors",
+       "shadow rays to lights before and behind such lids",
+       exact,
        lids<true>},
-      {"twigs on floors", "rays to and past a spike .003 to .05 wide on such floors", exact,
+      {"twigs on floors",
+       "rays to and past a spike .003 to .05 wide on such floors",
+       exact,
        twigs<false>},
       {"lights behind twigs on floors", "shadow rays to and past such spikes", exact, twigs<true>},
       {"mirror rays in a bowl on a ground",
-       "a bowl of 3000 triangles, 2 wide, .001 to .02 above a ground 4000 wide", exact, bowls},
+       "a bowl of 3000 triangles, 2 wide, .001 to .02 above a ground 4000 wide",
+       exact,
+       bowls},
   };
 }
 

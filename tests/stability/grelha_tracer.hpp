@@ -10,14 +10,23 @@ namespace grelha::stability {
 class GrelhaTracer final : public Tracer {
  public:
   explicit GrelhaTracer(const Variant& variant) : variant_(variant) {}
-  void build(const Trial& trial) override { world_.emplace(trial.scene, BuildOptions{.density = trial.density}); }
+  void build(const Trial& trial) override {
+    world_.emplace(trial.scene, BuildOptions{.density = trial.density});
+  }
   int ways() const override { return 2; }
   const char* way_name(int way) const override { return way == 0 ? "packets" : "single"; }
-  Answers closest(const Rays& rays, int way) override { return trace(variant_, *world_, rays, settings(way), test::Query::kClosest); }
-  Answers occluded(const Rays& rays, int way) override { return trace(variant_, *world_, rays, settings(way), test::Query::kOccluded); }
+  Answers closest(const Rays& rays, int way) override {
+    return trace(variant_, *world_, rays, settings(way), test::Query::kClosest);
+  }
+  Answers occluded(const Rays& rays, int way) override {
+    return trace(variant_, *world_, rays, settings(way), test::Query::kOccluded);
+  }
 
  private:
-  static TraceSettings settings(int way) { return way == 0 ? TraceSettings{Method::kPackets, 256, true} : TraceSettings{Method::kSingle, 1, true}; }
+  static TraceSettings settings(int way) {
+    return way == 0 ? TraceSettings{Method::kPackets, 256, true}
+                    : TraceSettings{Method::kSingle, 1, true};
+  }
   const Variant& variant_;
   std::optional<World> world_;
 };

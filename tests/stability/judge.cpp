@@ -26,7 +26,9 @@ Ball ball(const Scene& s, std::size_t i) {
   return {V{b.x[i], b.y[i], b.z[i]}, b.radius[i]};
 }
 
-Real farthest(const Facet& f, const V& p) { return std::max({length(f.a - p), length(f.b - p), length(f.c - p)}); }
+Real farthest(const Facet& f, const V& p) {
+  return std::max({length(f.a - p), length(f.b - p), length(f.c - p)});
+}
 Real farthest(const Ball& b, const V& p) { return length(b.center - p) + std::abs(b.radius); }
 
 /// Gathers what may be met and what must be.
@@ -35,15 +37,23 @@ class Found {
   Found(Real end) : end_(end) {}
   void operator()(Real from, Real to, bool certain) {
     const Real slack = 4 * kU * std::max(std::abs(from), std::abs(to));
-    from -= slack, to += slack;
-    if (to <= 0 || from >= end_) return;
-    possible_ = true, earliest_ = std::min(earliest_, std::max(from, Real(0)));
-    if (certain && from > 0 && to < end_) certain_ = true, latest_ = std::min(latest_, to);
+    from -= slack;
+    to += slack;
+    if (to <= 0 || from >= end_)
+      return;
+    possible_ = true;
+    earliest_ = std::min(earliest_, std::max(from, Real(0)));
+    if (certain && from > 0 && to < end_) {
+      certain_ = true;
+      latest_ = std::min(latest_, to);
+    }
   }
   Wanted wanted() const {
     Wanted w;
-    w.hit = certain_, w.miss = !possible_;
-    w.earliest = static_cast<double>(earliest_), w.latest = certain_ ? static_cast<double>(latest_) : double{test::kInf};
+    w.hit = certain_;
+    w.miss = !possible_;
+    w.earliest = static_cast<double>(earliest_),
+    w.latest = certain_ ? static_cast<double>(latest_) : double{test::kInf};
     return w;
   }
 
@@ -53,12 +63,15 @@ class Found {
 };
 
 void meet(const Ball& b, const Ray& ray, Real margin, Found& found) {
-  const Real dd = dot(ray.dir, ray.dir), scale = std::sqrt(dd), foot = dot(b.center - ray.org, ray.dir) / dd;
+  const Real dd = dot(ray.dir, ray.dir), scale = std::sqrt(dd),
+             foot = dot(b.center - ray.org, ray.dir) / dd;
   const Real miss = length(cross(ray.dir, b.center - ray.org)) / scale, r = std::abs(b.radius);
   const Real out = r + margin, in = r - margin;
-  if (miss >= out) return;
+  if (miss >= out)
+    return;
   const Real outer = std::sqrt((out - miss) * (out + miss)) / scale;
-  if (miss >= in) return found(foot - outer, foot + outer, false);
+  if (miss >= in)
+    return found(foot - outer, foot + outer, false);
   const Real inner = std::sqrt((in - miss) * (in + miss)) / scale;
   found(foot - outer, foot - inner, true);
   found(foot + inner, foot + outer, true);
@@ -69,9 +82,11 @@ void meet(const Facet& f, const Ray& ray, Real margin, Found& found) {
   const V middle = (Real(1) / 3) * (f.a + f.b + f.c);
   const Real radius = farthest(f, middle) + margin, foot = dot(middle - ray.org, ray.dir) / dd;
   const Real miss = length(cross(ray.dir, middle - ray.org)) / scale;
-  if (miss > radius) return;
+  if (miss > radius)
+    return;
   const V n = f.normal();
-  const Real nn = length(n), along = dot(ray.dir, n), half = std::sqrt((radius - miss) * (radius + miss)) / scale;
+  const Real nn = length(n), along = dot(ray.dir, n),
+             half = std::sqrt((radius - miss) * (radius + miss)) / scale;
   if (std::abs(f.clearance(ray)) <= margin) {  // near an edge
     if (nn > 0 && std::abs(along) * radius > nn * scale * 4 * margin) {
       const Real t = dot(f.a - ray.org, n) / along, off = 2 * margin * nn / std::abs(along);
@@ -79,7 +94,8 @@ void meet(const Facet& f, const Ray& ray, Real margin, Found& found) {
     }
     return found(foot - half, foot + half, false);
   }
-  if (f.clearance(ray) < 0) return;
+  if (f.clearance(ray) < 0)
+    return;
   const Real t = dot(f.a - ray.org, n) / along, off = margin * nn / std::abs(along);
   found(std::max(t - off, foot - half), std::min(t + off, foot + half), true);
 }
@@ -88,10 +104,15 @@ void meet(const Facet& f, const Ray& ray, Real margin, Found& found) {
 Real beyond(const Trial& trial, const Size& size, std::size_t i, float t, std::uint32_t id) {
   const Ray ray{trial.rays.org(i), trial.rays.dir(i)};
   const V p = ray.point(t);
-  const std::size_t planes = trial.scene.geometry.planes.size(), spheres = trial.scene.geometry.spheres.size();
-  if (id < planes || id - planes >= spheres + trial.scene.geometry.triangles.size()) return 0;  // planes are plane_test's
+  const std::size_t planes = trial.scene.geometry.planes.size(),
+                    spheres = trial.scene.geometry.spheres.size();
+  // planes are plane_test's
+  if (id < planes || id - planes >= spheres + trial.scene.geometry.triangles.size())
+    return 0;
   id -= static_cast<std::uint32_t>(planes);
-  const auto off = [&](const auto& shape) { return shape.distance(p) - allowed(farthest(shape, ray.org), size.diagonal, size.largest); };
+  const auto off = [&](const auto& shape) {
+    return shape.distance(p) - allowed(farthest(shape, ray.org), size.diagonal, size.largest);
+  };
   return id < spheres ? off(ball(trial.scene, id)) : off(facet(trial.scene, id - spheres));
 }
 
@@ -101,25 +122,33 @@ Verdict verdict_closest(const Trial& trial, const Size& size, std::size_t i, con
   const Wanted& w = trial.wanted[i];
   const float t = a.t[i];
   const std::uint32_t id = a.id[i];
-  if (id == kNoPrimitive) return w.hit ? Verdict::kLost : Verdict::kRight;
-  if (id == w.left) return Verdict::kSelf;
-  if (w.miss || !w.traces) return Verdict::kFalse;
-  if (!(t <= w.latest)) return Verdict::kLost;
-  if (!(t >= w.earliest) || beyond(trial, size, i, t, id) > 0) return Verdict::kFalse;
+  if (id == kNoPrimitive)
+    return w.hit ? Verdict::kLost : Verdict::kRight;
+  if (id == w.left)
+    return Verdict::kSelf;
+  if (w.miss || !w.traces)
+    return Verdict::kFalse;
+  if (!(t <= w.latest))
+    return Verdict::kLost;
+  if (!(t >= w.earliest) || beyond(trial, size, i, t, id) > 0)
+    return Verdict::kFalse;
   return Verdict::kRight;
 }
 
 Verdict verdict_occluded(const Trial& trial, std::size_t i, const Answers& a) {
   const Wanted& w = trial.wanted[i];
   const bool met = a.id[i] != kNoPrimitive;
-  if (!met) return w.hit ? Verdict::kLost : Verdict::kRight;
-  return w.miss || !w.traces ? w.left != kNoPrimitive ? Verdict::kSelf : Verdict::kFalse : Verdict::kRight;
+  if (!met)
+    return w.hit ? Verdict::kLost : Verdict::kRight;
+  return w.miss || !w.traces ? w.left != kNoPrimitive ? Verdict::kSelf : Verdict::kFalse
+                             : Verdict::kRight;
 }
 
 }  // namespace
 
 Real allowed(Real distance, Real diagonal, Real largest) {
-  return 64 * kU * std::min(distance, 4 * diagonal) + 2 * kU * distance + (distance > diagonal ? 8 * kU * largest : 0);
+  return 64 * kU * std::min(distance, 4 * diagonal) + 2 * kU * distance +
+         (distance > diagonal ? 8 * kU * largest : 0);
 }
 
 Size size_of(const Scene& scene) {
@@ -128,19 +157,28 @@ Size size_of(const Scene& scene) {
   double lo[3] = {1e300, 1e300, 1e300}, hi[3] = {-1e300, -1e300, -1e300};
   const auto add = [&](double x, double y, double z, double r) {
     const double p[3] = {x, y, z};
-    if (!std::isfinite(x + y + z)) return;
-    for (int a = 0; a < 3; ++a) lo[a] = std::min(lo[a], p[a] - r), hi[a] = std::max(hi[a], p[a] + r);
+    if (!std::isfinite(x + y + z))
+      return;
+    for (int a = 0; a < 3; ++a) {
+      lo[a] = std::min(lo[a], p[a] - r);
+      hi[a] = std::max(hi[a], p[a] + r);
+    }
   };
-  for (std::size_t i = 0; i < s.size(); ++i) add(s.x[i], s.y[i], s.z[i], std::abs(s.radius[i]));
-  for (std::size_t i = 0; i < t.vertex_count(); ++i) add(t.x[i], t.y[i], t.z[i], 0);
+  for (std::size_t i = 0; i < s.size(); ++i)
+    add(s.x[i], s.y[i], s.z[i], std::abs(s.radius[i]));
+  for (std::size_t i = 0; i < t.vertex_count(); ++i)
+    add(t.x[i], t.y[i], t.z[i], 0);
   Size out;
-  if (lo[0] > hi[0]) return out;
-  for (int a = 0; a < 3; ++a) out.largest = std::max({out.largest, std::abs(lo[a]), std::abs(hi[a])});
+  if (lo[0] > hi[0])
+    return out;
+  for (int a = 0; a < 3; ++a)
+    out.largest = std::max({out.largest, std::abs(lo[a]), std::abs(hi[a])});
   out.diagonal = std::hypot(hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]);
   return out;
 }
 
-Wanted brute_force(const Scene& scene, const Size& size, const Float3& org, const Float3& dir, float end) {
+Wanted brute_force(
+    const Scene& scene, const Size& size, const Float3& org, const Float3& dir, float end) {
   const Ray ray{org, dir};
   Found found(end);
   for (std::size_t i = 0; i < scene.geometry.spheres.size(); ++i) {
@@ -164,15 +202,26 @@ Counts judge(Tracer& tracer, const Trial& trial) {
       counts.answers += trial.rays.size();
       for (std::size_t i = 0; i < trial.rays.size(); ++i) {
         const Verdict v = any ? verdict_occluded(trial, i, a) : verdict_closest(trial, size, i, a);
-        if (v == Verdict::kRight) continue;
+        if (v == Verdict::kRight)
+          continue;
         ++(v == Verdict::kLost ? counts.lost : v == Verdict::kFalse ? counts.false_ : counts.self);
-        if (!counts.first.empty()) continue;
+        if (!counts.first.empty())
+          continue;
         std::ostringstream s;
         const Wanted& w = trial.wanted[i];
         s << tracer.way_name(way) << (any ? ", occluded: " : ", closest: ")
-          << (v == Verdict::kLost ? "lost, " : v == Verdict::kFalse ? "false, " : "self-hit, ") << trial.rays.describe(i) << std::defaultfloat << "; t " << a.t[i] << " id " << static_cast<std::int32_t>(a.id[i]) << ", wanted "
-          << (w.hit ? "hit" : w.miss ? "miss" : "either") << " in [" << w.earliest << ", " << w.latest << "]";
-        if (!any && a.id[i] != kNoPrimitive) s << ", beside it by " << static_cast<double>(beyond(trial, size, i, a.t[i], a.id[i])) << " too much";
+          << (v == Verdict::kLost    ? "lost, "
+              : v == Verdict::kFalse ? "false, "
+                                     : "self-hit, ")
+          << trial.rays.describe(i) << std::defaultfloat << "; t " << a.t[i] << " id "
+          << static_cast<std::int32_t>(a.id[i]) << ", wanted "
+          << (w.hit    ? "hit"
+              : w.miss ? "miss"
+                       : "either")
+          << " in [" << w.earliest << ", " << w.latest << "]";
+        if (!any && a.id[i] != kNoPrimitive)
+          s << ", beside it by " << static_cast<double>(beyond(trial, size, i, a.t[i], a.id[i]))
+            << " too much";
         counts.first = s.str();
       }
     }

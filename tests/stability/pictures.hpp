@@ -1,5 +1,6 @@
 #pragma once
-// Effects where renderers break: whole pictures with a known answer. Nothing here has a counterpart in a library that traces rays.
+// Effects where renderers break: whole pictures with a known answer. Nothing here has a counterpart
+// in a library that traces rays.
 
 #include <cstdint>
 #include <string>

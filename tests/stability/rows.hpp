@@ -1,10 +1,12 @@
 #pragma once
-// Where ray tracers break, as rows of a table: a name, the condition, what is true of each ray, and how one tracer did.
+// Where ray tracers break, as rows of a table: a name, the condition, what is true of each ray, and
+// how one tracer did.
 //
-// A row makes scenes and rays and says, from exact or long double arithmetic on the very floats a tracer gets, what each ray
-// must meet (`Wanted`). What no float answer can tell apart is left open: no row asks for more than the rounding that
-// docs/numerics.md states allows. The same rows judge Grelha in tests/stability_test.cpp, on a few rays, and Grelha
-// beside Embree in perf/stability.cpp, on millions.
+// A row makes scenes and rays and says, from exact or long double arithmetic on the very floats a
+// tracer gets, what each ray must meet (`Wanted`). What no float answer can tell apart is left
+// open: no row asks for more than the rounding that docs/numerics.md states allows. The same rows
+// judge Grelha in tests/stability_test.cpp, on a few rays, and Grelha beside Embree in
+// perf/stability.cpp, on millions.
 
 #include <cstdint>
 #include <functional>
@@ -47,14 +49,19 @@ struct Trial {
 
 struct Counts {
   std::uint64_t answers = 0;
-  std::uint64_t lost = 0;   ///< went through, or met what lies behind
-  std::uint64_t false_ = 0; ///< met what is not there, too near, or beside the primitive it names by more than `allowed`
-  std::uint64_t self = 0;   ///< met what it left
-  std::string first;        ///< the first wrong answer, to be pasted into a test
+  std::uint64_t lost = 0;  ///< went through, or met what lies behind
+  /// met what is not there, too near, or beside the primitive it names by more than `allowed`
+  std::uint64_t false_ = 0;
+  std::uint64_t self = 0;  ///< met what it left
+  std::string first;       ///< the first wrong answer, to be pasted into a test
   std::uint64_t wrong() const { return lost + false_ + self; }
   void operator+=(const Counts& o) {
-    answers += o.answers, lost += o.lost, false_ += o.false_, self += o.self;
-    if (first.empty()) first = o.first;
+    answers += o.answers;
+    lost += o.lost;
+    false_ += o.false_;
+    self += o.self;
+    if (first.empty())
+      first = o.first;
   }
 };
 
@@ -90,10 +97,13 @@ Counts judge(Tracer& tracer, const Trial& trial);
 /// Every way of a tracer through a row.
 Counts run(const Row& row, Tracer& tracer, std::size_t rays, std::uint64_t seed);
 
-/// How far beside its primitive docs/numerics.md allows a hit to lie, for a ray that starts `distance` from the primitive in a
-/// scene of that diagonal whose coordinates reach `largest`: 46u of the distance, after a far ray was brought near; that move (a
-/// rounding of coordinates on three axes); and t, which is one float.
-test::oracle::Real allowed(test::oracle::Real distance, test::oracle::Real diagonal, test::oracle::Real largest);
+/// How far beside its primitive docs/numerics.md allows a hit to lie, for a ray that starts
+/// `distance` from the primitive in a scene of that diagonal whose coordinates reach `largest`: 46u
+/// of the distance, after a far ray was brought near; that move (a rounding of coordinates on three
+/// axes); and t, which is one float.
+test::oracle::Real allowed(test::oracle::Real distance,
+                           test::oracle::Real diagonal,
+                           test::oracle::Real largest);
 
 /// Extent of a scene's spheres and triangles.
 struct Size {
@@ -101,7 +111,12 @@ struct Size {
 };
 Size size_of(const Scene& scene);
 
-/// From every sphere and triangle of the scene in long double: what the ray must meet. `end`: open end of the search.
-Wanted brute_force(const Scene& scene, const Size& size, const Float3& org, const Float3& dir, float end = test::kInf);
+/// From every sphere and triangle of the scene in long double: what the ray must meet. `end`: open
+/// end of the search.
+Wanted brute_force(const Scene& scene,
+                   const Size& size,
+                   const Float3& org,
+                   const Float3& dir,
+                   float end = test::kInf);
 
 }  // namespace grelha::stability

@@ -10,61 +10,79 @@ namespace {
 
 using namespace test;
 
-/// A unit sphere at the origin, its eye up to so many radii away; rays within .99 of the radius or beyond 1.01. Twenty more stand
-/// beside it, so that there is a grid to walk.
+/// A unit sphere at the origin, its eye up to so many radii away; rays within .99 of the radius or
+/// beyond 1.01. Twenty more stand beside it, so that there is a grid to walk.
 template <int kExponent>
 void far_sphere(Random& random, std::size_t rays, const Sink& sink) {
   Trial trial;
   trial.scene = one_sphere({0, 0, 0}, 1);
-  for (int i = 0; i < 20; ++i) trial.scene.geometry.spheres.add(at({0, 0, 0}, 4, random.direction()), .5f, 0);
+  for (int i = 0; i < 20; ++i)
+    trial.scene.geometry.spheres.add(at({0, 0, 0}, 4, random.direction()), .5f, 0);
   const Size size = size_of(trial.scene);
   for (std::size_t i = 0; i < rays; ++i) {
-    const Float3 eye = at({0, 0, 0}, std::pow(10., kExponent) * random.in(.3, 1), random.direction());
+    const Float3 eye =
+        at({0, 0, 0}, std::pow(10., kExponent) * random.in(.3, 1), random.direction());
     const oracle::V out = oracle::unit(oracle::cross(eye, random.direction()));
     const double miss = random.chance(.5) ? .99 * random.unit() : random.in(1.01, 1.1);
-    const Float3 aim{static_cast<float>(out.x * miss), static_cast<float>(out.y * miss), static_cast<float>(out.z * miss)}, dir = minus(aim, eye);
+    const Float3 aim{static_cast<float>(out.x * miss),
+                     static_cast<float>(out.y * miss),
+                     static_cast<float>(out.z * miss)},
+        dir = minus(aim, eye);
     trial.add(eye, dir, brute_force(trial.scene, size, eye, dir));
   }
   sink(trial);
 }
 
-/// Specks in a scene ten thousand times their size, with the eye among them: near enough that no ray is moved nearer first.
+/// Specks in a scene ten thousand times their size, with the eye among them: near enough that no
+/// ray is moved nearer first.
 void specks(Random& random, std::size_t rays, const Sink& sink) {
   Trial trial;
   trial.scene = empty_scene();
   add_spheres(trial.scene, random, 100, 50, .003, .03);
   Spheres& s = trial.scene.geometry.spheres;
-  for (float& r : s.radius) r = std::abs(r);
+  for (float& r : s.radius)
+    r = std::abs(r);
   const Size size = size_of(trial.scene);
   for (std::size_t i = 0; i < rays; ++i) {
     const std::uint32_t k = random.below(100);
     const Float3 eye = random.point(50), center{s.x[k], s.y[k], s.z[k]};
     const oracle::V out = oracle::unit(oracle::cross(minus(center, eye), random.direction()));
     const double miss = s.radius[k] * random.in(0, 1.5);
-    const Float3 aim = at(center, miss, {static_cast<float>(out.x), static_cast<float>(out.y), static_cast<float>(out.z)}), dir = minus(aim, eye);
+    const Float3 aim = at(center,
+                          miss,
+                          {static_cast<float>(out.x),
+                           static_cast<float>(out.y),
+                           static_cast<float>(out.z)}),
+                 dir = minus(aim, eye);
     trial.add(eye, dir, brute_force(trial.scene, size, eye, dir));
   }
   sink(trial);
 }
 
-/// Spheres of radius 1 scattered about a point so far from the origin, looked at from among them and from 10 away.
+/// Spheres of radius 1 scattered about a point so far from the origin, looked at from among them
+/// and from 10 away.
 template <int kExponent>
 void moved_spheres(Random& random, std::size_t rays, const Sink& sink) {
   Trial trial;
   const Float3 center = scaled({1, -.013f, 1.5f}, std::pow(10., kExponent));
   trial.scene = placed(random_spheres(3, 60), 6, center);
-  for (float& r : trial.scene.geometry.spheres.radius) r = std::abs(r);  // only Grelha knows spheres seen from inside alone
+  // only Grelha knows spheres seen from inside alone
+  for (float& r : trial.scene.geometry.spheres.radius)
+    r = std::abs(r);
   const Size size = size_of(trial.scene);
   for (std::size_t i = 0; i < rays; ++i) {
-    const Float3 eye = at(center, random.chance(.3) ? 6 * random.unit() : random.log_in(6, 60), random.direction());
+    const Float3 eye = at(
+        center, random.chance(.3) ? 6 * random.unit() : random.log_in(6, 60), random.direction());
     const Float3 dir = minus(at(center, 7 * random.unit(), random.direction()), eye);
-    if (dir == Float3{}) continue;
+    if (dir == Float3{})
+      continue;
     trial.add(eye, dir, brute_force(trial.scene, size, eye, dir));
   }
   sink(trial);
 }
 
-/// A sphere as a floor below an eye 1/2 to 2 above it; what is met must lie within a thousandth of the way.
+/// A sphere as a floor below an eye 1/2 to 2 above it; what is met must lie within a thousandth of
+/// the way.
 template <int kExponent>
 void floor_sphere(Random& random, std::size_t rays, const Sink& sink) {
   Trial trial;
@@ -74,11 +92,16 @@ void floor_sphere(Random& random, std::size_t rays, const Sink& sink) {
   for (std::size_t i = 0; i < rays; ++i) {
     Float3 dir = random.direction();
     dir.y = -std::abs(dir.y);
-    if (dir.y > -.1f) continue;
-    const Float3 eye{static_cast<float>(random.in(-1, 1)), static_cast<float>(random.in(.5, 2)), static_cast<float>(random.in(-1, 1))};
+    if (dir.y > -.1f)
+      continue;
+    const Float3 eye{static_cast<float>(random.in(-1, 1)),
+                     static_cast<float>(random.in(.5, 2)),
+                     static_cast<float>(random.in(-1, 1))};
     const double t = static_cast<double>(ball.first({eye, dir}, 0)->t);
     Wanted w;
-    w.hit = true, w.earliest = .999 * t, w.latest = 1.001 * t;
+    w.hit = true;
+    w.earliest = .999 * t;
+    w.latest = 1.001 * t;
     trial.add(eye, dir, w);
   }
   sink(trial);

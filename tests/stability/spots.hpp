@@ -29,8 +29,8 @@ struct Spot {
 };
 
 /// Where the ray meets primitive `id` at t, which a triangle takes from the ray again.
-inline Spot spot(const World& world, std::uint32_t id, const Float3& org, const Float3& dir,
-                 float t = 0) {
+inline Spot spot(
+    const World& world, std::uint32_t id, const Float3& org, const Float3& dir, float t = 0) {
   const scalar::Vec3<float> o{org.x, org.y, org.z};
   const scalar::Vec3<float> d{dir.x, dir.y, dir.z};
   const auto s = scalar::surface_of<float>(world.impl().view, id, o, d, t, false);

@@ -1,5 +1,6 @@
-// What acceleration loses: rays on cells, odd directions, odd numbers, odd scenes. Truth is brute force in long double over the
-// same floats, so a row fails for what a grid or a tree skips as well as for what a test gets wrong.
+// What acceleration loses: rays on cells, odd directions, odd numbers, odd scenes. Truth is brute
+// force in long double over the same floats, so a row fails for what a grid or a tree skips as well
+// as for what a test gets wrong.
 #include <algorithm>
 #include <cmath>
 
@@ -12,12 +13,14 @@ namespace {
 
 using namespace test;
 
-/// Spheres and triangles of many sizes: both tracers know them alike (cones have caps in Embree, planes end).
+/// Spheres and triangles of many sizes: both tracers know them alike (cones have caps in Embree,
+/// planes end).
 Scene crowd(std::uint64_t seed, int n) {
   Random random(seed);
   Scene s = empty_scene();
   add_spheres(s, random, n / 2, 1, .01, .2);
-  for (float& r : s.geometry.spheres.radius) r = std::abs(r);
+  for (float& r : s.geometry.spheres.radius)
+    r = std::abs(r);
   add_triangles(s, random, n / 2, 1, .01, .4);
   return s;
 }
@@ -25,12 +28,14 @@ Scene crowd(std::uint64_t seed, int n) {
 void judge_all(Trial& trial, const Rays& rays) {
   const Size size = size_of(trial.scene);
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (rays.dir(i) == Float3{}) continue;
+    if (rays.dir(i) == Float3{})
+      continue;
     trial.add(rays.org(i), rays.dir(i), brute_force(trial.scene, size, rays.org(i), rays.dir(i)));
   }
 }
 
-/// In planes between cells, along their edges, through their corners, down their diagonals: the cells of Grelha's own grid.
+/// In planes between cells, along their edges, through their corners, down their diagonals: the
+/// cells of Grelha's own grid.
 void on_cells(Random& random, std::size_t rays, const Sink& sink) {
   for (const bool lattice : {false, true}) {
     Trial trial;
@@ -41,7 +46,8 @@ void on_cells(Random& random, std::size_t rays, const Sink& sink) {
   }
 }
 
-/// Along axes, with zeros of both signs or a denormal beside; of any length up to so many powers of ten from 1.
+/// Along axes, with zeros of both signs or a denormal beside; of any length up to so many powers of
+/// ten from 1.
 template <int kExponent>
 void odd_directions(Random& random, std::size_t rays, const Sink& sink) {
   Trial trial;
@@ -53,23 +59,30 @@ void odd_directions(Random& random, std::size_t rays, const Sink& sink) {
     const std::uint32_t a = random.below(3);
     const double kind = random.unit();
     for (std::uint32_t b = 0; b < 3; ++b)
-      if (kind < .4 ? b != a : kind < .7 && b == a) component(dir, b) = random.chance(.5) ? random.zero() : static_cast<float>(random.sign() * 1e-40);
+      if (kind < .4 ? b != a : kind < .7 && b == a)
+        component(dir, b) =
+            random.chance(.5) ? random.zero() : static_cast<float>(random.sign() * 1e-40);
     const Float3 org = at(aim, -random.log_in(.1, 10), dir);
-    const Float3 d = scaled(dir, random.log_in(std::pow(10., -kExponent), std::pow(10., kExponent)));
+    const Float3 d =
+        scaled(dir, random.log_in(std::pow(10., -kExponent), std::pow(10., kExponent)));
     const double length = std::hypot(double(d.x), double(d.y), double(d.z));
-    if (length > 2e-18 && length < 5e17) list.add(org, d);  // beyond these no directions are promised to be traced
+    // beyond these no directions are promised to be traced
+    if (length > 2e-18 && length < 5e17)
+      list.add(org, d);
   }
   judge_all(trial, list);
   sink(trial);
 }
 
-/// A third of the rays have a NaN or an infinity somewhere; their neighbours in a packet must not feel it.
+/// A third of the rays have a NaN or an infinity somewhere; their neighbours in a packet must not
+/// feel it.
 void unsound_rays(Random& random, std::size_t rays, const Sink& sink) {
   Trial trial;
   trial.scene = crowd(random.next(), 100);
   const Size size = size_of(trial.scene);
   for (std::size_t i = 0; i < rays; ++i) {
-    Float3 org = at({0, 0, 0}, random.log_in(.1, 10), random.direction()), dir = minus(random.point(1), org);
+    Float3 org = at({0, 0, 0}, random.log_in(.1, 10), random.direction()),
+           dir = minus(random.point(1), org);
     if (!random.chance(1. / 3)) {
       trial.add(org, dir, brute_force(trial.scene, size, org, dir));
       continue;
@@ -77,7 +90,8 @@ void unsound_rays(Random& random, std::size_t rays, const Sink& sink) {
     const float odd[] = {kNaN, kInf, -kInf, 3e38f};
     component(random.chance(.5) ? org : dir, random.below(3)) = odd[random.below(4)];
     Wanted w;
-    w.miss = true, w.traces = false;
+    w.miss = true;
+    w.traces = false;
     trial.add(org, dir, w);
   }
   sink(trial);
@@ -95,12 +109,16 @@ void scene_of(Random& random, std::size_t rays, const Sink& sink) {
 
 Scene flat(Random& random) {
   Scene s = flat_sheet(random.next(), 100);
-  for (float& y : s.geometry.triangles.y) y = 0;
+  for (float& y : s.geometry.triangles.y)
+    y = 0;
   return s;
 }
-Scene single(Random& random) { return one_triangle(random.point(1), random.point(1), random.point(1)); }
+Scene single(Random& random) {
+  return one_triangle(random.point(1), random.point(1), random.point(1));
+}
 Scene nothing(Random&) { return empty_scene(); }
-Scene crowded_cell(Random& random) {  // a teapot in a stadium: a body of 1e-4 of the ground and stands about it
+// a teapot in a stadium: a body of 1e-4 of the ground and stands about it
+Scene crowded_cell(Random& random) {
   Scene s = empty_scene();
   add_triangles(s, random, 80, 1, .02, .1);
   for (int i = 0; i < 40; ++i) {
@@ -113,24 +131,35 @@ Scene diagonals(Random& random) {
   Scene s = empty_scene();
   for (int i = 0; i < 100; ++i) {
     const Float3 a = random.point(.05), b = random.point(.05);
-    add_triangle(s, {a.x - 1, a.y - 1, a.z - 1}, {b.x + 1, b.y + 1, b.z + 1}, at({b.x + 1, b.y + 1, b.z + 1}, 1e-3, random.direction()));
+    add_triangle(s,
+                 {a.x - 1, a.y - 1, a.z - 1},
+                 {b.x + 1, b.y + 1, b.z + 1},
+                 at({b.x + 1, b.y + 1, b.z + 1}, 1e-3, random.direction()));
   }
   return s;
 }
 
-/// So many copies of one triangle and one sphere: what is met must be there, and the search must end.
+/// So many copies of one triangle and one sphere: what is met must be there, and the search must
+/// end.
 void copies(Random& random, std::size_t rays, const Sink& sink) {
   const std::size_t count = std::clamp<std::size_t>(rays / 2, 500, 500000);
   Trial trial;
   trial.scene = empty_scene();
   const Float3 a = random.point(1), b = random.point(1), c = random.point(1);
-  for (std::size_t i = 0; i < count; ++i) add_triangle(trial.scene, a, b, c), trial.scene.geometry.spheres.add({2, 2, 2}, .5f, 0);
+  for (std::size_t i = 0; i < count; ++i)
+    add_triangle(trial.scene, a, b, c), trial.scene.geometry.spheres.add({2, 2, 2}, .5f, 0);
   Scene one = one_triangle(a, b, c);
   one.geometry.spheres.add({2, 2, 2}, .5f, 0);
   const Size size = size_of(one);
-  const Rays list = rays_about(random, {1, 1, 1}, 1.5, static_cast<int>(std::clamp<std::size_t>(200000000 / count / 4, 16, 1000)), 1e3);
+  const Rays list =
+      rays_about(random,
+                 {1, 1, 1},
+                 1.5,
+                 static_cast<int>(std::clamp<std::size_t>(200000000 / count / 4, 16, 1000)),
+                 1e3);
   for (std::size_t i = 0; i < list.size(); ++i)
-    if (list.dir(i) != Float3{}) trial.add(list.org(i), list.dir(i), brute_force(one, size, list.org(i), list.dir(i)));
+    if (list.dir(i) != Float3{})
+      trial.add(list.org(i), list.dir(i), brute_force(one, size, list.org(i), list.dir(i)));
   sink(trial);
 }
 
@@ -140,10 +169,12 @@ void bounds_of_resolution(Random& random, std::size_t rays, const Sink& sink) {
     Trial trial;
     trial.density = density;
     trial.scene = empty_scene();
-    for (int i = 0; i < 100; ++i) add_triangle(trial.scene, {float(i), 0, 0}, {i + .9f, 1e-2f, 0}, {float(i), 0, 1e-2f});
+    for (int i = 0; i < 100; ++i)
+      add_triangle(trial.scene, {float(i), 0, 0}, {i + .9f, 1e-2f, 0}, {float(i), 0, 1e-2f});
     Rays list;
     for (std::size_t i = 0; i < rays / 2; ++i) {
-      const Float3 aim{static_cast<float>(random.in(0, 100)), 5e-3f, 2e-3f}, org = at(aim, random.log_in(.01, 100), random.direction());
+      const Float3 aim{static_cast<float>(random.in(0, 100)), 5e-3f, 2e-3f},
+          org = at(aim, random.log_in(.01, 100), random.direction());
       list.add(org, minus(aim, org));
     }
     judge_all(trial, list);
@@ -160,15 +191,19 @@ void unsound_vertices(Random& random, std::size_t rays, const Sink& sink) {
   for (std::uint32_t i = 3; i-- > 0;) {
     const std::uint32_t k = 10 * i + random.below(10);
     trial.scene.geometry.triangles.x[3 * k + i] = odd[i];
-    for (auto* v : {&sound.geometry.triangles.a, &sound.geometry.triangles.b, &sound.geometry.triangles.c}) v->erase(v->begin() + k);
+    for (auto* v :
+         {&sound.geometry.triangles.a, &sound.geometry.triangles.b, &sound.geometry.triangles.c})
+      v->erase(v->begin() + k);
   }
   trial.scene.geometry.spheres.x[7] = kNaN;
   Spheres& balls = sound.geometry.spheres;
-  for (auto* v : {&balls.x, &balls.y, &balls.z, &balls.radius}) v->erase(v->begin() + 7);
+  for (auto* v : {&balls.x, &balls.y, &balls.z, &balls.radius})
+    v->erase(v->begin() + 7);
   const Size size = size_of(trial.scene);
   const Rays list = rays_about(random, {}, 1, static_cast<int>(rays), 10);
   for (std::size_t i = 0; i < list.size(); ++i)
-    if (list.dir(i) != Float3{}) trial.add(list.org(i), list.dir(i), brute_force(sound, size, list.org(i), list.dir(i)));
+    if (list.dir(i) != Float3{})
+      trial.add(list.org(i), list.dir(i), brute_force(sound, size, list.org(i), list.dir(i)));
   sink(trial);
 }
 
@@ -177,17 +212,35 @@ void unsound_vertices(Random& random, std::size_t rays, const Sink& sink) {
 std::vector<Row> walk_rows() {
   const char* const truth = "brute force in long double";
   return {
-      {"rays on cells", "in planes between cells, along edges, through corners, down diagonals", truth, on_cells},
-      {"odd directions", "along axes, -0, denormals, lengths 1e-3 to 1e3", truth, odd_directions<3>},
+      {"rays on cells",
+       "in planes between cells, along edges, through corners, down diagonals",
+       truth,
+       on_cells},
+      {"odd directions",
+       "along axes, -0, denormals, lengths 1e-3 to 1e3",
+       truth,
+       odd_directions<3>},
       {"directions of any length", "the same, 1e-17 to 1e17", truth, odd_directions<17>},
-      {"rays of NaN and infinity", "a third of the rays", "they meet nothing, their neighbours what they should", unsound_rays},
+      {"rays of NaN and infinity",
+       "a third of the rays",
+       "they meet nothing, their neighbours what they should",
+       unsound_rays},
       {"flat scene", "no extent along y", truth, scene_of<flat>},
       {"one triangle", "", truth, scene_of<single>},
       {"no primitive", "", "nothing is met", scene_of<nothing>},
-      {"copies of one primitive", "up to half a million of a triangle and a sphere each", truth, copies},
-      {"all in one cell", "80 triangles of .1 in a ring of 40, 18,000 across", truth, scene_of<crowded_cell>},
+      {"copies of one primitive",
+       "up to half a million of a triangle and a sphere each",
+       truth,
+       copies},
+      {"all in one cell",
+       "80 triangles of .1 in a ring of 40, 18,000 across",
+       truth,
+       scene_of<crowded_cell>},
       {"long thin diagonals", "100 triangles 3.5 long and .001 wide", truth, scene_of<diagonals>},
-      {"corners of NaN and infinity", "three triangles and a sphere among 100", "they are not there, all others are", unsound_vertices},
+      {"corners of NaN and infinity",
+       "three triangles and a sphere among 100",
+       "they are not there, all others are",
+       unsound_vertices},
       {"resolution at its bounds", "one cell an axis; 1024 along one", truth, bounds_of_resolution},
   };
 }

@@ -5,12 +5,13 @@
 
 namespace grelha::test {
 
-/// Rays that lie in planes between cells, run along edges between them, pass through their corners, or along their
-/// diagonals.
+/// Rays that lie in planes between cells, run along edges between them, pass through their corners,
+/// or along their diagonals.
 inline Rays rays_on_cells(Random& random, const World& world, int count) {
   Rays rays;
   const auto& grids = world.impl().grids;
-  if (grids.empty()) return rays;
+  if (grids.empty())
+    return rays;
   for (int i = 0; i < count; ++i) {
     const Grid& g = grids[random.below(static_cast<std::uint32_t>(grids.size()))];
     const auto corner = [&] {
@@ -25,7 +26,8 @@ inline Rays rays_on_cells(Random& random, const World& world, int count) {
       case 0: {  // in a plane
         const std::uint32_t a = random.below(3);
         for (std::uint32_t b = 0; b < 3; ++b)
-          component(dir, b) = b == a ? random.zero() : static_cast<float>(random.in(-1, 1) * g.cell[b]);
+          component(dir, b) =
+              b == a ? random.zero() : static_cast<float>(random.in(-1, 1) * g.cell[b]);
         org = at(from, -random.in(0, 20), dir);
         component(org, a) = a == 0 ? from.x : a == 1 ? from.y : from.z;
         break;
@@ -33,19 +35,24 @@ inline Rays rays_on_cells(Random& random, const World& world, int count) {
       case 1: {  // along an edge
         const std::uint32_t a = random.below(3);
         const float length = static_cast<float>(random.sign() * g.cell[a]);
-        for (std::uint32_t b = 0; b < 3; ++b) component(dir, b) = b == a ? length : random.zero();
+        for (std::uint32_t b = 0; b < 3; ++b)
+          component(dir, b) = b == a ? length : random.zero();
         org = at(from, -random.in(0, 20), dir);
         break;
       }
       case 2:  // down the diagonals of cells
-        for (std::uint32_t b = 0; b < 3; ++b) component(dir, b) = static_cast<float>(random.sign() * g.cell[b]);
+        for (std::uint32_t b = 0; b < 3; ++b)
+          component(dir, b) = static_cast<float>(random.sign() * g.cell[b]);
         org = at(from, -double(random.below(20)), dir);
         break;
       default:
         break;  // from corner to corner
     }
-    if (dir == Float3{}) continue;
-    rays.add(org, random.chance(.3) ? scaled(dir, random.log_in(1e-3, 1e3)) : dir, random.chance(.5) ? 0 : -kInf);
+    if (dir == Float3{})
+      continue;
+    rays.add(org,
+             random.chance(.3) ? scaled(dir, random.log_in(1e-3, 1e3)) : dir,
+             random.chance(.5) ? 0 : -kInf);
   }
   return rays;
 }

@@ -12,9 +12,11 @@ namespace grelha::test {
 inline Command parse(const std::string& line) {
   std::vector<std::string> words{"grelha"};
   std::istringstream in(line);
-  for (std::string word; in >> word;) words.push_back(word);
+  for (std::string word; in >> word;)
+    words.push_back(word);
   std::vector<const char*> argv;
-  for (const auto& word : words) argv.push_back(word.c_str());
+  for (const auto& word : words)
+    argv.push_back(word.c_str());
   return parse_command(int(argv.size()), argv.data());
 }
 

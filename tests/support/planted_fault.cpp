@@ -1,5 +1,5 @@
-// What a sanitizer must see, and, without an argument, what the thread sanitizer must not complain of: OpenMP used as the kernel does.
-// It is only built with sanitizers (tests/sanitizers.cmake).
+// What a sanitizer must see, and, without an argument, what the thread sanitizer must not complain
+// of: OpenMP used as the kernel does. It is only built with sanitizers (tests/sanitizers.cmake).
 #include <cstdio>
 #include <limits>
 #include <numeric>
@@ -17,9 +17,11 @@ long in_order() {
 #pragma omp parallel num_threads(4)
   {
 #pragma omp for schedule(static)
-    for (int i = 0; i < kCount; ++i) values[static_cast<std::size_t>(i)] = i;
+    for (int i = 0; i < kCount; ++i)
+      values[static_cast<std::size_t>(i)] = i;
 #pragma omp for schedule(dynamic, 64) reduction(+ : sum)
-    for (int i = 0; i < kCount; ++i) sum += values[static_cast<std::size_t>(kCount - 1 - i)];
+    for (int i = 0; i < kCount; ++i)
+      sum += values[static_cast<std::size_t>(kCount - 1 - i)];
 #pragma omp critical
     turns += 1;
   }
@@ -30,12 +32,14 @@ long in_order() {
 long race() {
   long sum = 0;
 #pragma omp parallel for schedule(static) num_threads(4)
-  for (int i = 0; i < kCount; ++i) sum += i;
+  for (int i = 0; i < kCount; ++i)
+    sum += i;
   return sum;
 }
 
 long past_the_end() {
-  const volatile std::size_t size = 100;  // volatile, here and below: the compiler shall not see what comes
+  // volatile, here and below: the compiler shall not see what comes
+  const volatile std::size_t size = 100;
   const std::vector<char> bytes(size);
   return bytes.data()[size];
 }

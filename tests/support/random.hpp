@@ -1,6 +1,6 @@
 #pragma once
-// Seeded values for sweeps. Own arithmetic throughout: the standard distributions differ between libraries, and a seed
-// in a failure message must mean the same numbers everywhere.
+// Seeded values for sweeps. Own arithmetic throughout: the standard distributions differ between
+// libraries, and a seed in a failure message must mean the same numbers everywhere.
 
 #include <cmath>
 #include <cstdint>
@@ -28,7 +28,8 @@ class Random {
   double in(double lo, double hi) { return lo + (hi - lo) * unit(); }
   std::uint32_t below(std::uint32_t n) { return static_cast<std::uint32_t>(next() % n); }
   bool chance(double p) { return unit() < p; }
-  /// As many values between 1e-3 and 1e-2 as between 10 and 100: errors show at sizes nobody thinks of.
+  /// As many values between 1e-3 and 1e-2 as between 10 and 100: errors show at sizes nobody thinks
+  /// of.
   double log_in(double lo, double hi) { return std::exp(in(std::log(lo), std::log(hi))); }
   double sign() { return chance(.5) ? 1 : -1; }
 
@@ -36,7 +37,8 @@ class Random {
   Float3 direction() {
     for (;;) {
       const double x = in(-1, 1), y = in(-1, 1), z = in(-1, 1), s = x * x + y * y + z * z;
-      if (s > 1 || s < 1e-4) continue;
+      if (s > 1 || s < 1e-4)
+        continue;
       const double k = 1 / std::sqrt(s);
       return {static_cast<float>(x * k), static_cast<float>(y * k), static_cast<float>(z * k)};
     }
@@ -47,8 +49,19 @@ class Random {
   }
   /// A value that breaks careless comparisons.
   float odd() {
-    static constexpr float values[] = {0.f,    -0.f,    kNaN,     kInf,  -kInf,  1e-45f, -1e-45f,
-                                       1e-40f, -3e-39f, 1.2e-38f, 3e38f, -3e38f, 1e-20f};
+    static constexpr float values[] = {0.f,
+                                       -0.f,
+                                       kNaN,
+                                       kInf,
+                                       -kInf,
+                                       1e-45f,
+                                       -1e-45f,
+                                       1e-40f,
+                                       -3e-39f,
+                                       1.2e-38f,
+                                       3e38f,
+                                       -3e38f,
+                                       1e-20f};
     return values[below(sizeof values / sizeof *values)];
   }
   float zero() { return chance(.5) ? 0.f : -0.f; }
@@ -58,7 +71,9 @@ class Random {
 };
 
 inline Float3 at(const Float3& a, double s, const Float3& d) {
-  return {static_cast<float>(a.x + s * d.x), static_cast<float>(a.y + s * d.y), static_cast<float>(a.z + s * d.z)};
+  return {static_cast<float>(a.x + s * d.x),
+          static_cast<float>(a.y + s * d.y),
+          static_cast<float>(a.z + s * d.z)};
 }
 inline Float3 minus(const Float3& a, const Float3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 inline Float3 scaled(const Float3& a, double s) {

@@ -16,11 +16,18 @@ struct Rays {
   std::vector<float> ox, oy, oz, dx, dy, dz, t_min, t;
 
   void add(const Float3& o, const Float3& d, float from = 0, float to = kInf) {
-    ox.push_back(o.x), oy.push_back(o.y), oz.push_back(o.z), dx.push_back(d.x), dy.push_back(d.y), dz.push_back(d.z);
-    t_min.push_back(from), t.push_back(to);
+    ox.push_back(o.x);
+    oy.push_back(o.y);
+    oz.push_back(o.z);
+    dx.push_back(d.x);
+    dy.push_back(d.y);
+    dz.push_back(d.z);
+    t_min.push_back(from);
+    t.push_back(to);
   }
   void add(const Rays& other) {
-    for (std::size_t i = 0; i < other.size(); ++i) add(other.org(i), other.dir(i), other.t_min[i], other.t[i]);
+    for (std::size_t i = 0; i < other.size(); ++i)
+      add(other.org(i), other.dir(i), other.t_min[i], other.t[i]);
   }
   std::size_t size() const { return t.size(); }
   Float3 org(std::size_t i) const { return {ox[i], oy[i], oz[i]}; }
@@ -28,8 +35,9 @@ struct Rays {
   /// In hexadecimal, to be pasted into a smaller test.
   std::string describe(std::size_t i) const {
     std::ostringstream s;
-    s << "ray " << i << std::hexfloat << ": org {" << ox[i] << ", " << oy[i] << ", " << oz[i] << "} dir {" << dx[i]
-      << ", " << dy[i] << ", " << dz[i] << "} t (" << t_min[i] << ", " << t[i] << ")";
+    s << "ray " << i << std::hexfloat << ": org {" << ox[i] << ", " << oy[i] << ", " << oz[i]
+      << "} dir {" << dx[i] << ", " << dy[i] << ", " << dz[i] << "} t (" << t_min[i] << ", " << t[i]
+      << ")";
     return s.str();
   }
 };
@@ -43,25 +51,38 @@ struct Answers {
 
 enum class Query { kClosest, kOccluded };
 
-inline Answers trace(const Variant& variant, const World& world, const Rays& rays, const TraceSettings& settings,
+inline Answers trace(const Variant& variant,
+                     const World& world,
+                     const Rays& rays,
+                     const TraceSettings& settings,
                      Query query) {
   Answers a;
   a.t = rays.t;
   a.whole.assign(rays.t.begin(), rays.t.end());
   a.id.assign(rays.size(), 12345u);  // what no trace may leave behind
-  const RaySpan span{rays.ox.data(), rays.oy.data(),    rays.oz.data(), rays.dx.data(), rays.dy.data(),
-                     rays.dz.data(), rays.t_min.data(), a.t.data(),     a.id.data(),    static_cast<int>(rays.size()),
+  const RaySpan span{rays.ox.data(),
+                     rays.oy.data(),
+                     rays.oz.data(),
+                     rays.dx.data(),
+                     rays.dy.data(),
+                     rays.dz.data(),
+                     rays.t_min.data(),
+                     a.t.data(),
+                     a.id.data(),
+                     static_cast<int>(rays.size()),
                      a.whole.data()};
-  (query == Query::kClosest ? variant.loops.closest : variant.loops.occluded)(world.impl().view, span, settings,
-                                                                              a.counts);
+  (query == Query::kClosest ? variant.loops.closest : variant.loops.occluded)(
+      world.impl().view, span, settings, a.counts);
   return a;
 }
 
-// ---- bundles ----------------------------------------------------------------------------------------------------
+// ---- bundles
+// ------------------------------------------------------------------------------------------
 
-/// Rays about a ball of the given size: most aimed at it from any distance, some from inside, some past it, some along
-/// the axes, with ends and lengths of all kinds.
-inline Rays rays_about(Random& random, const Float3& center, double size, int count, double farthest = 1e3) {
+/// Rays about a ball of the given size: most aimed at it from any distance, some from inside, some
+/// past it, some along the axes, with ends and lengths of all kinds.
+inline Rays rays_about(
+    Random& random, const Float3& center, double size, int count, double farthest = 1e3) {
   Rays rays;
   for (int i = 0; i < count; ++i) {
     const double away = size * (random.chance(.2) ? random.unit() : random.log_in(.5, farthest));
@@ -71,13 +92,16 @@ inline Rays rays_about(Random& random, const Float3& center, double size, int co
     if (random.chance(.2)) {  // along an axis, with zeros of both signs beside it
       const std::uint32_t a = random.below(3);
       const float length = static_cast<float>(random.sign());
-      for (std::uint32_t b = 0; b < 3; ++b) component(dir, b) = b == a ? length : random.zero();
+      for (std::uint32_t b = 0; b < 3; ++b)
+        component(dir, b) = b == a ? length : random.zero();
     } else if (random.chance(.15)) {
       component(dir, random.below(3)) = random.chance(.5) ? random.zero() : 1e-41f;
     }
-    if (random.chance(.5)) dir = scaled(dir, random.log_in(1e-3, 1e3));
+    if (random.chance(.5))
+      dir = scaled(dir, random.log_in(1e-3, 1e3));
     const float from = random.chance(.8) ? 0.f : static_cast<float>(random.in(-1, 1));
-    rays.add(org, dir, from, random.chance(.7) ? kInf : static_cast<float>(random.log_in(1e-2, 1e2)));
+    rays.add(
+        org, dir, from, random.chance(.7) ? kInf : static_cast<float>(random.log_in(1e-2, 1e2)));
   }
   return rays;
 }
@@ -85,9 +109,10 @@ inline Rays rays_about(Random& random, const Float3& center, double size, int co
 /// The same with one component of some rays replaced by a value no caller should send.
 inline Rays with_odd_values(Random& random, Rays rays, double share) {
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (!random.chance(share)) continue;
-    std::vector<float>* const fields[] = {&rays.ox, &rays.oy, &rays.oz,    &rays.dx,
-                                          &rays.dy, &rays.dz, &rays.t_min, &rays.t};
+    if (!random.chance(share))
+      continue;
+    std::vector<float>* const fields[] = {
+        &rays.ox, &rays.oy, &rays.oz, &rays.dx, &rays.dy, &rays.dz, &rays.t_min, &rays.t};
     (*fields[random.below(8)])[i] = random.odd();
   }
   return rays;

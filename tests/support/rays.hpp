@@ -1,5 +1,6 @@
 #pragma once
-// Every way the kernel has of tracing a bundle of rays, and the comparison of two answers bit for bit.
+// Every way the kernel has of tracing a bundle of rays, and the comparison of two answers bit for
+// bit.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +20,8 @@ inline void PrintTo(const Variant* v, std::ostream* out) { *out << v->name; }
 
 namespace grelha::test {
 
-/// Long enough for many packets of each size; 1021 is prime, so every width and packet size has a tail.
+/// Long enough for many packets of each size; 1021 is prime, so every width and packet size has a
+/// tail.
 inline constexpr int kManyRays = 1021;
 
 struct Way {
@@ -28,15 +30,16 @@ struct Way {
 };
 
 inline const std::vector<Way>& every_way() {
-  static const std::vector<Way> ways{{"packets of 256", {Method::kPackets, 256, true}},
-                                     {"packets of 256 without mailboxes", {Method::kPackets, 256, false}},
-                                     {"packets of 64", {Method::kPackets, 64, true}},
-                                     {"packets of 64 without mailboxes", {Method::kPackets, 64, false}},
-                                     {"packets of 16", {Method::kPackets, 16, true}},
-                                     {"packets of 16 without mailboxes", {Method::kPackets, 16, false}},
-                                     {"single", {Method::kSingle, 1, true}},
-                                     {"reference", {Method::kReference, 1, true}},
-                                     {"reference without mailboxes", {Method::kReference, 1, false}}};
+  static const std::vector<Way> ways{
+      {"packets of 256", {Method::kPackets, 256, true}},
+      {"packets of 256 without mailboxes", {Method::kPackets, 256, false}},
+      {"packets of 64", {Method::kPackets, 64, true}},
+      {"packets of 64 without mailboxes", {Method::kPackets, 64, false}},
+      {"packets of 16", {Method::kPackets, 16, true}},
+      {"packets of 16 without mailboxes", {Method::kPackets, 16, false}},
+      {"single", {Method::kSingle, 1, true}},
+      {"reference", {Method::kReference, 1, true}},
+      {"reference without mailboxes", {Method::kReference, 1, false}}};
   return ways;
 }
 
@@ -60,51 +63,69 @@ inline std::string show(float t, std::uint32_t id) {
   return s.str();
 }
 
-/// Numbers whose squares are finite, and a direction: anything else meets nothing, whatever it points at.
+/// Numbers whose squares are finite, and a direction: anything else meets nothing, whatever it
+/// points at.
 inline bool sound(const Rays& rays, std::size_t i) {
   const Float3 o = rays.org(i), d = rays.dir(i);
-  if (std::max({std::abs(o.x), std::abs(o.y), std::abs(o.z)}) > 1e18f) return false;
+  if (std::max({std::abs(o.x), std::abs(o.y), std::abs(o.z)}) > 1e18f)
+    return false;
   const float dd = (d.x * d.x + d.y * d.y) + d.z * d.z;
   return std::isfinite(o.x + o.y + o.z) && std::isfinite(dd) && std::isfinite(1 / dd);
 }
 
-/// Same primitive and same bits of t for closest hits; same yes or no, told the same way, for occlusion. What t is left
-/// in a ray that cannot be traced at all is variants_test's to say.
-inline testing::AssertionResult same(const Answers& wanted, const Answers& got, const Rays& rays, Query query) {
+/// Same primitive and same bits of t for closest hits; same yes or no, told the same way, for
+/// occlusion. What t is left in a ray that cannot be traced at all is variants_test's to say.
+inline testing::AssertionResult same(const Answers& wanted,
+                                     const Answers& got,
+                                     const Rays& rays,
+                                     Query query) {
   std::size_t wrong = 0, first = 0;
   for (std::size_t i = rays.size(); i-- > 0;) {
-    const bool ids = query == Query::kClosest ? wanted.id[i] == got.id[i]
-                                              : (wanted.id[i] == kNoPrimitive) == (got.id[i] == kNoPrimitive);
-    if (ids && wanted.id[i] == kNoPrimitive && !sound(rays, i)) continue;
-    if (ids && std::bit_cast<std::uint32_t>(wanted.t[i]) == std::bit_cast<std::uint32_t>(got.t[i]) &&
+    const bool ids = query == Query::kClosest
+                         ? wanted.id[i] == got.id[i]
+                         : (wanted.id[i] == kNoPrimitive) == (got.id[i] == kNoPrimitive);
+    if (ids && wanted.id[i] == kNoPrimitive && !sound(rays, i))
+      continue;
+    if (ids &&
+        std::bit_cast<std::uint32_t>(wanted.t[i]) == std::bit_cast<std::uint32_t>(got.t[i]) &&
         std::bit_cast<std::uint64_t>(wanted.whole[i]) == std::bit_cast<std::uint64_t>(got.whole[i]))
       continue;
-    ++wrong, first = i;
+    ++wrong;
+    first = i;
   }
-  if (wrong == 0) return testing::AssertionSuccess();
-  return testing::AssertionFailure() << wrong << " of " << rays.size() << " differ; " << rays.describe(first)
-                                     << "\n  wanted " << show(wanted.t[first], wanted.id[first]) << "\n  got    "
-                                     << show(got.t[first], got.id[first]);
+  if (wrong == 0)
+    return testing::AssertionSuccess();
+  return testing::AssertionFailure()
+         << wrong << " of " << rays.size() << " differ; " << rays.describe(first) << "\n  wanted "
+         << show(wanted.t[first], wanted.id[first]) << "\n  got    "
+         << show(got.t[first], got.id[first]);
 }
 
 /// Every way of one variant through one world against the truth; stops at the first that differs.
-inline void expect_truth(const Variant& variant, const World& world, const Rays& rays, const Truth& truth,
+inline void expect_truth(const Variant& variant,
+                         const World& world,
+                         const Rays& rays,
+                         const Truth& truth,
                          const std::string& what) {
   for (const Way& way : every_way())
     for (const Query query : {Query::kClosest, Query::kOccluded}) {
       const bool closest = query == Query::kClosest;
-      const auto result =
-          same(closest ? truth.closest : truth.occluded, trace(variant, world, rays, way.settings, query), rays, query);
-      if (result) continue;
-      ADD_FAILURE() << what << (closest ? ", closest, " : ", occluded, ") << way.name << ", " << variant.name << ": "
-                    << result.message();
+      const auto result = same(closest ? truth.closest : truth.occluded,
+                               trace(variant, world, rays, way.settings, query),
+                               rays,
+                               query);
+      if (result)
+        continue;
+      ADD_FAILURE() << what << (closest ? ", closest, " : ", occluded, ") << way.name << ", "
+                    << variant.name << ": " << result.message();
       return;
     }
 }
 
 inline std::size_t hits_of(const Answers& a) {
   std::size_t n = 0;
-  for (const std::uint32_t id : a.id) n += id != kNoPrimitive;
+  for (const std::uint32_t id : a.id)
+    n += id != kNoPrimitive;
   return n;
 }
 
@@ -112,7 +133,8 @@ inline std::size_t hits_of(const Answers& a) {
 class EveryVariant : public testing::TestWithParam<const Variant*> {
  protected:
   void SetUp() override {
-    if (!GetParam()->runs_here()) GTEST_SKIP() << "this processor has no " << GetParam()->name;
+    if (!GetParam()->runs_here())
+      GTEST_SKIP() << "this processor has no " << GetParam()->name;
   }
   const Variant& variant() const { return *GetParam(); }
 };
@@ -123,6 +145,7 @@ inline std::string isa_name(const testing::TestParamInfo<const Variant*>& info) 
 
 /// Put once into each file with tests of a fixture `name` that derives from EveryVariant.
 #define GRELHA_FOR_EVERY_ISA(name) \
-  INSTANTIATE_TEST_SUITE_P(Isa, name, testing::ValuesIn(variants().begin(), variants().end()), isa_name)
+  INSTANTIATE_TEST_SUITE_P(        \
+      Isa, name, testing::ValuesIn(variants().begin(), variants().end()), isa_name)
 
 }  // namespace grelha::test

@@ -13,7 +13,8 @@
 
 namespace grelha::test {
 
-inline const std::string kView = "v\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 45\nhither 1\nresolution 8 6\n";
+inline const std::string kView =
+    "v\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 45\nhither 1\nresolution 8 6\n";
 
 struct Reading {
   SceneFile file;
@@ -23,11 +24,14 @@ struct Reading {
 /// `text` as scene.nff.
 inline Reading read_text(std::string_view text) {
   Reading result;
-  result.file = read_nff("scene.nff", text, [&](const std::string& line) { result.warnings.push_back(line); });
+  result.file = read_nff(
+      "scene.nff", text, [&](const std::string& line) { result.warnings.push_back(line); });
   return result;
 }
 /// The same behind a view of seven lines: the text's first line is line 8.
-inline Reading read_with_view(std::string_view text) { return read_text(kView + std::string(text)); }
+inline Reading read_with_view(std::string_view text) {
+  return read_text(kView + std::string(text));
+}
 
 /// The message of what `read` throws, or "" when it does not.
 template <class Read>
@@ -45,7 +49,8 @@ class TemporaryFolder {
  public:
   TemporaryFolder() {
     std::string name = (std::filesystem::temp_directory_path() / "grelha-test-XXXXXX").string();
-    if (mkdtemp(name.data())) path_ = name;
+    if (mkdtemp(name.data()))
+      path_ = name;
   }
   ~TemporaryFolder() {
     std::error_code ignored;

@@ -23,11 +23,14 @@ struct Outcome {
   std::string out, err;
 };
 
-/// Runs the program inside `folder`. Its output goes to files elsewhere, so that the folder holds what it wrote itself. `before`: of the
-/// shell's line, as `ulimit -f 8;`.
-inline Outcome run(const TemporaryFolder& folder, const std::string& arguments, const std::string& before = "") {
+/// Runs the program inside `folder`. Its output goes to files elsewhere, so that the folder holds
+/// what it wrote itself. `before`: of the shell's line, as `ulimit -f 8;`.
+inline Outcome run(const TemporaryFolder& folder,
+                   const std::string& arguments,
+                   const std::string& before = "") {
   TemporaryFolder log;
-  const std::string line = "cd '" + folder.path().string() + "' && " + before + " '" GRELHA_PROGRAM "' " + arguments + " >'" + log.file("out") +
+  const std::string line = "cd '" + folder.path().string() + "' && " + before +
+                           " '" GRELHA_PROGRAM "' " + arguments + " >'" + log.file("out") +
                            "' 2>'" + log.file("err") + "' </dev/null";
   const int status = std::system(line.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, log.read("out"), log.read("err")};

@@ -13,14 +13,24 @@
 
 namespace grelha::test {
 
-inline void add_triangle(Scene& s, const Float3& a, const Float3& b, const Float3& c, std::uint32_t material = 0) {
+inline void add_triangle(
+    Scene& s, const Float3& a, const Float3& b, const Float3& c, std::uint32_t material = 0) {
   Triangles& t = s.geometry.triangles;
   for (const Float3& p : {a, b, c}) {
-    t.x.push_back(p.x), t.y.push_back(p.y), t.z.push_back(p.z);
-    if (!t.nx.empty()) t.nx.push_back(0), t.ny.push_back(0), t.nz.push_back(0);
+    t.x.push_back(p.x);
+    t.y.push_back(p.y);
+    t.z.push_back(p.z);
+    if (!t.nx.empty()) {
+      t.nx.push_back(0);
+      t.ny.push_back(0);
+      t.nz.push_back(0);
+    }
   }
   const auto n = static_cast<std::uint32_t>(t.x.size());
-  t.a.push_back(n - 3), t.b.push_back(n - 2), t.c.push_back(n - 1), t.material.push_back(material);
+  t.a.push_back(n - 3);
+  t.b.push_back(n - 2);
+  t.c.push_back(n - 1);
+  t.material.push_back(material);
 }
 
 inline Scene empty_scene() {
@@ -50,7 +60,8 @@ inline Scene one_triangle(const Float3& a, const Float3& b, const Float3& c) {
   return s;
 }
 
-// ---- crowds -----------------------------------------------------------------------------------------------------
+// ---- crowds
+// ------------------------------------------------------------------------------------------
 
 inline void add_spheres(Scene& s, Random& random, int n, double half, double least, double most) {
   for (int i = 0; i < n; ++i) {
@@ -70,8 +81,11 @@ inline void add_cones(Scene& s, Random& random, int n, double half, double least
     const double size = random.log_in(least, most), sign = random.chance(.1) ? -1 : 1;
     const Float3 base = random.point(half);
     const double r0 = size * random.unit(), r1 = random.chance(.3) ? r0 : size * random.unit();
-    s.geometry.cones.add(base, static_cast<float>(sign * r0), at(base, size, random.direction()),
-                         static_cast<float>(sign * r1), 0);
+    s.geometry.cones.add(base,
+                         static_cast<float>(sign * r0),
+                         at(base, size, random.direction()),
+                         static_cast<float>(sign * r1),
+                         0);
   }
 }
 
@@ -116,12 +130,14 @@ inline Scene flat_sheet(std::uint64_t seed, int n) {
   }
   return s;
 }
-/// A square patch of triangles along the axes, corners on whole numbers: rays meet edges and vertices exactly.
+/// A square patch of triangles along the axes, corners on whole numbers: rays meet edges and
+/// vertices exactly.
 inline Scene lattice_patch(int n) {
   Scene s = empty_scene();
   for (int z = 0; z < n; ++z)
     for (int x = 0; x < n; ++x) {
-      const float a = static_cast<float>(x), b = static_cast<float>(z), y = static_cast<float>((x * 7 + z * 5) % 3);
+      const float a = static_cast<float>(x), b = static_cast<float>(z),
+                  y = static_cast<float>((x * 7 + z * 5) % 3);
       add_triangle(s, {a, y, b}, {a + 1, y, b}, {a + 1, y, b + 1});
       add_triangle(s, {a, y, b}, {a + 1, y, b + 1}, {a, y, b + 1});
     }
@@ -164,15 +180,21 @@ inline Scene crowd_on_a_plain(std::uint64_t seed, int n, float half) {
   return s;
 }
 
-/// So wide that the crowd has a grid for rays that start near and one for those that start far away.
-inline Scene crowd_on_a_wide_plain(std::uint64_t seed, int n) { return crowd_on_a_plain(seed, n, 1e6f); }
+/// So wide that the crowd has a grid for rays that start near and one for those that start far
+/// away.
+inline Scene crowd_on_a_wide_plain(std::uint64_t seed, int n) {
+  return crowd_on_a_plain(seed, n, 1e6f);
+}
 
-/// Two towns, and a hamlet in one of them, in a desert of few spheres: what one level of cells has nothing for.
+/// Two towns, and a hamlet in one of them, in a desert of few spheres: what one level of cells has
+/// nothing for.
 inline Scene towns_in_a_desert(std::uint64_t seed, int n) {
   Random random(seed);
   Scene s = empty_scene();
   const auto spread = [&](int count, const Float3& middle, float size) {
-    for (int i = 0; i < count; ++i) s.geometry.spheres.add(at(middle, size * random.in(0, 1), random.direction()), .02f * size, 0);
+    for (int i = 0; i < count; ++i)
+      s.geometry.spheres.add(
+          at(middle, size * random.in(0, 1), random.direction()), .02f * size, 0);
   };
   spread(n / 10, {0, 0, 0}, 1000);
   spread(n, {200, 0, 0}, 3);
@@ -186,7 +208,8 @@ inline Scene stadium(std::uint64_t seed, int n) {
   Scene s = crowd_on_a_plain(seed, n, 1000);
   for (int i = 0; i < 60; ++i) {  // stands: more than are kept outside of grids
     const double w = i * std::numbers::pi / 30;
-    const Float3 foot{static_cast<float>(900 * std::cos(w)), -1, static_cast<float>(900 * std::sin(w))};
+    const Float3 foot{
+        static_cast<float>(900 * std::cos(w)), -1, static_cast<float>(900 * std::sin(w))};
     add_triangle(s, foot, at(foot, 300, {0, 1, 0}), at(foot, 250, random.direction()));
   }
   return s;
@@ -195,30 +218,43 @@ inline Scene stadium(std::uint64_t seed, int n) {
 /// The same scene, each coordinate times `scale` plus `offset`.
 inline Scene placed(Scene s, double scale, const Float3& offset) {
   const auto move = [&](std::vector<float>& v, float by) {
-    for (float& x : v) x = static_cast<float>(x * scale + by);
+    for (float& x : v)
+      x = static_cast<float>(x * scale + by);
   };
   const auto size = [&](std::vector<float>& v) {
-    for (float& x : v) x = static_cast<float>(x * scale);
+    for (float& x : v)
+      x = static_cast<float>(x * scale);
   };
   Geometry& g = s.geometry;
-  for (auto* v : {&g.spheres.x, &g.cones.base_x, &g.cones.apex_x, &g.planes.x, &g.triangles.x}) move(*v, offset.x);
-  for (auto* v : {&g.spheres.y, &g.cones.base_y, &g.cones.apex_y, &g.planes.y, &g.triangles.y}) move(*v, offset.y);
-  for (auto* v : {&g.spheres.z, &g.cones.base_z, &g.cones.apex_z, &g.planes.z, &g.triangles.z}) move(*v, offset.z);
-  for (auto* v : {&g.spheres.radius, &g.cones.base_radius, &g.cones.apex_radius}) size(*v);
+  for (auto* v : {&g.spheres.x, &g.cones.base_x, &g.cones.apex_x, &g.planes.x, &g.triangles.x})
+    move(*v, offset.x);
+  for (auto* v : {&g.spheres.y, &g.cones.base_y, &g.cones.apex_y, &g.planes.y, &g.triangles.y})
+    move(*v, offset.y);
+  for (auto* v : {&g.spheres.z, &g.cones.base_z, &g.cones.apex_z, &g.planes.z, &g.triangles.z})
+    move(*v, offset.z);
+  for (auto* v : {&g.spheres.radius, &g.cones.base_radius, &g.cones.apex_radius})
+    size(*v);
   return s;
 }
 
-/// The mixture with everything to sample but a lens: rough mirrors, glass, area lights among point lights.
+/// The mixture with everything to sample but a lens: rough mirrors, glass, area lights among point
+/// lights.
 inline Scene everything() {
   Scene s = random_mixture(5, 120);
   s.materials.resize(3);
-  s.materials[1].mirror = {.7f, .8f, .9f}, s.materials[1].roughness = .15f, s.materials[1].specular = {.4f, .4f, .4f};
+  s.materials[1].mirror = {.7f, .8f, .9f}, s.materials[1].roughness = .15f,
+  s.materials[1].specular = {.4f, .4f, .4f};
   s.materials[1].shine = 20;
-  s.materials[2].transmission = .8f, s.materials[2].ior = 1.4f, s.materials[2].mirror = {.1f, .1f, .1f};
+  s.materials[2].transmission = .8f, s.materials[2].ior = 1.4f,
+  s.materials[2].mirror = {.1f, .1f, .1f};
   Random random(4);
-  for (auto* m : {&s.geometry.spheres.material, &s.geometry.triangles.material, &s.geometry.cones.material})
-    for (std::uint32_t& i : *m) i = random.below(3);
-  s.lights = {{{3, 4, 5}, {.7f, .7f, .6f}, {1, 0, 0}, {0, 1, 0}}, {{-4, 2, 3}, {.3f, .3f, .4f}}, {{0, 5, 1}, {.2f, .2f, .2f}, {0, 0, 1}, {1, 0, 0}}};
+  for (auto* m :
+       {&s.geometry.spheres.material, &s.geometry.triangles.material, &s.geometry.cones.material})
+    for (std::uint32_t& i : *m)
+      i = random.below(3);
+  s.lights = {{{3, 4, 5}, {.7f, .7f, .6f}, {1, 0, 0}, {0, 1, 0}},
+              {{-4, 2, 3}, {.3f, .3f, .4f}},
+              {{0, 5, 1}, {.2f, .2f, .2f}, {0, 0, 1}, {1, 0, 0}}};
   s.background = {.1f, .2f, .3f};
   return s;
 }
@@ -227,52 +263,74 @@ inline Scene everything() {
 inline Camera straight_down(int width, int height, double across) {
   Camera c;
   c.eye = {0, 0, 1}, c.at = {0, 0, 0}, c.up = {0, 1, 0};
-  c.width = width, c.height = height, c.angle_deg = 360 / std::numbers::pi * std::atan(across / 2);
+  c.width = width;
+  c.height = height;
+  c.angle_deg = 360 / std::numbers::pi * std::atan(across / 2);
   return c;
 }
 
-// ---- closed meshes ----------------------------------------------------------------------------------------------
+// ---- closed meshes
+// ------------------------------------------------------------------------------------------
 
 /// A mesh round in u and, unless it is closed by poles, in v; point(u, v) for u, v in [0, 1].
-inline Scene closed_mesh(int nu, int nv, bool poles, const std::function<Float3(double, double)>& point) {
+inline Scene closed_mesh(int nu,
+                         int nv,
+                         bool poles,
+                         const std::function<Float3(double, double)>& point) {
   Scene s = empty_scene();
   Triangles& t = s.geometry.triangles;
-  const auto put = [&](const Float3& p) { t.x.push_back(p.x), t.y.push_back(p.y), t.z.push_back(p.z); };
+  const auto put = [&](const Float3& p) {
+    t.x.push_back(p.x);
+    t.y.push_back(p.y);
+    t.z.push_back(p.z);
+  };
   const auto tri = [&](int a, int b, int c) {
-    t.a.push_back(static_cast<std::uint32_t>(a)), t.b.push_back(static_cast<std::uint32_t>(b));
-    t.c.push_back(static_cast<std::uint32_t>(c)), t.material.push_back(0);
+    t.a.push_back(static_cast<std::uint32_t>(a));
+    t.b.push_back(static_cast<std::uint32_t>(b));
+    t.c.push_back(static_cast<std::uint32_t>(c));
+    t.material.push_back(0);
   };
   const int rings = poles ? nv - 1 : nv;
   for (int j = 0; j < rings; ++j)
-    for (int i = 0; i < nu; ++i) put(point(double(i) / nu, double(poles ? j + 1 : j) / nv));
+    for (int i = 0; i < nu; ++i)
+      put(point(double(i) / nu, double(poles ? j + 1 : j) / nv));
   for (int j = 0; j + (poles ? 1 : 0) < rings; ++j)
     for (int i = 0; i < nu; ++i) {
       const int a = j * nu + i, b = j * nu + (i + 1) % nu, c = (j + 1) % rings * nu + i,
                 d = (j + 1) % rings * nu + (i + 1) % nu;
-      tri(a, b, d), tri(a, d, c);
+      tri(a, b, d);
+      tri(a, d, c);
     }
   if (poles) {
-    put(point(0, 0)), put(point(0, 1));
+    put(point(0, 0));
+    put(point(0, 1));
     const int south = rings * nu, north = south + 1;
-    for (int i = 0; i < nu; ++i)
-      tri(south, (i + 1) % nu, i), tri(north, (rings - 1) * nu + i, (rings - 1) * nu + (i + 1) % nu);
+    for (int i = 0; i < nu; ++i) {
+      tri(south, (i + 1) % nu, i);
+      tri(north, (rings - 1) * nu + i, (rings - 1) * nu + (i + 1) % nu);
+    }
   }
   return s;
 }
 
-/// A ball of radius about 1; `bumps` moves vertices in and out, to each its own amount (pbrt-v4's test mesh).
+/// A ball of radius about 1; `bumps` moves vertices in and out, to each its own amount (pbrt-v4's
+/// test mesh).
 inline Scene ball_mesh(int nu, int nv, double bumps = 0, std::uint64_t seed = 1) {
   Random random(seed);
   return closed_mesh(nu, nv, true, [&](double u, double v) {
-    const double a = 2 * std::numbers::pi * u, b = std::numbers::pi * v, r = 1 + bumps * random.in(-1, 1);
-    return Float3{static_cast<float>(r * std::cos(a) * std::sin(b)), static_cast<float>(r * std::cos(b)),
+    const double a = 2 * std::numbers::pi * u, b = std::numbers::pi * v,
+                 r = 1 + bumps * random.in(-1, 1);
+    return Float3{static_cast<float>(r * std::cos(a) * std::sin(b)),
+                  static_cast<float>(r * std::cos(b)),
                   static_cast<float>(r * std::sin(a) * std::sin(b))};
   });
 }
 inline Scene torus_mesh(int nu, int nv, double tube) {
   return closed_mesh(nu, nv, false, [&](double u, double v) {
-    const double a = 2 * std::numbers::pi * u, b = 2 * std::numbers::pi * v, r = 1 + tube * std::cos(b);
-    return Float3{static_cast<float>(r * std::cos(a)), static_cast<float>(tube * std::sin(b)),
+    const double a = 2 * std::numbers::pi * u, b = 2 * std::numbers::pi * v,
+                 r = 1 + tube * std::cos(b);
+    return Float3{static_cast<float>(r * std::cos(a)),
+                  static_cast<float>(tube * std::sin(b)),
                   static_cast<float>(r * std::sin(a))};
   });
 }

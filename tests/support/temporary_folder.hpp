@@ -15,7 +15,8 @@ class TemporaryFolder {
  public:
   TemporaryFolder() {
     std::string name = (std::filesystem::temp_directory_path() / "grelha-test-XXXXXX").string();
-    if (!mkdtemp(name.data())) throw std::runtime_error("cannot make " + name);
+    if (!mkdtemp(name.data()))
+      throw std::runtime_error("cannot make " + name);
     path_ = name;
   }
   ~TemporaryFolder() {
@@ -41,7 +42,8 @@ class TemporaryFolder {
     for (const auto& entry : std::filesystem::directory_iterator(path_))
       all.push_back(entry.path().filename().string());
     std::sort(all.begin(), all.end());
-    for (const auto& name : all) names += (names.empty() ? "" : " ") + name;
+    for (const auto& name : all)
+      names += (names.empty() ? "" : " ") + name;
     return names;
   }
   const std::filesystem::path& path() const { return path_; }

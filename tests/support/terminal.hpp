@@ -19,8 +19,10 @@ namespace grelha::test {
 inline bool there_are_terminals() {
   int master = -1;
   const pid_t child = forkpty(&master, nullptr, nullptr, nullptr);
-  if (child == 0) _exit(0);
-  if (child < 0) return false;
+  if (child == 0)
+    _exit(0);
+  if (child < 0)
+    return false;
   waitpid(child, nullptr, 0);
   close(master);
   return true;
@@ -28,21 +30,26 @@ inline bool there_are_terminals() {
 
 class Terminal {
  public:
-  Terminal(const TemporaryFolder& folder, const std::string& arguments, int columns,
+  Terminal(const TemporaryFolder& folder,
+           const std::string& arguments,
+           int columns,
            const char* kind = "xterm") {
     const struct winsize size = size_of(columns);
     const std::string line =
         "cd '" + folder.path().string() + "' && exec '" GRELHA_PROGRAM "' " + arguments;
     child_ = forkpty(&master_, nullptr, nullptr, &size);
-    if (child_ < 0) throw std::runtime_error("no terminal");
-    if (child_ > 0) return;
+    if (child_ < 0)
+      throw std::runtime_error("no terminal");
+    if (child_ > 0)
+      return;
     setenv("TERM", kind, 1);
     execl("/bin/sh", "sh", "-c", line.c_str(), static_cast<char*>(nullptr));
     _exit(127);
   }
   ~Terminal() {
     close(master_);
-    if (status_ < 0) status();
+    if (status_ < 0)
+      status();
   }
   Terminal(const Terminal&) = delete;
   Terminal& operator=(const Terminal&) = delete;
@@ -88,10 +95,12 @@ class Terminal {
     struct pollfd ready {
       master_, POLLIN, 0
     };
-    if (poll(&ready, 1, kPatience) <= 0) return false;
+    if (poll(&ready, 1, kPatience) <= 0)
+      return false;
     char buffer[4096];
     const ssize_t n = read(master_, buffer, sizeof buffer);
-    if (n > 0) all.append(buffer, static_cast<std::size_t>(n));
+    if (n > 0)
+      all.append(buffer, static_cast<std::size_t>(n));
     return n > 0;  // when the program has ended, the terminal has no other side
   }
 
