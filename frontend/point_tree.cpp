@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 namespace grelha {
@@ -11,7 +12,12 @@ class PointTree::Triangle {
   /// A side of a triangle, and which corner of any box lies farthest to its left.
   struct Side {
     Side(const Point2& from, const Point2& to)
-        : start(from), dx(to.x - from.x), dy(to.y - from.y), x(dy > 0 ? 0 : 1), y(dx > 0 ? 1 : 0) {}
+        : start(from),
+          dx(to.x - from.x),
+          dy(to.y - from.y),
+          x(dy > 0 ? 0 : 1),
+          y(dx > 0 ? 1 : 0),
+          per_length(1 / std::sqrt(length())) {}
     double length() const { return dx * dx + dy * dy; }
     /// As turn() says it of the side and p, bit for bit.
     double turn(double px, double py) const { return dx * (py - start.y) - dy * (px - start.x); }
@@ -19,6 +25,7 @@ class PointTree::Triangle {
     Point2 start;
     double dx, dy;
     std::size_t x, y;  ///< 0: the box's least, 1: its largest
+    double per_length;
   };
 
  public:
@@ -33,15 +40,20 @@ class PointTree::Triangle {
         });
     std::swap(*shortest, sides_.back());
   }
-  /// Whether the box may hold a point of it. Rounds as has() does for every point in the box.
-  bool touches(const Node& n) const {
+  /// How far the box reaches into it, by the side it crosses least: below 0 no point is in both.
+  /// Rounds as has() does for every point in the box.
+  double reach(const Node& n) const {
     if (n.alive == 0 || n.x[0] > upper_.x || n.x[1] < lower_.x || n.y[0] > upper_.y ||
         n.y[1] < lower_.y)
-      return false;
-    for (const Side& s : sides_)
-      if (s.turn(n.x[s.x], n.y[s.y]) < 0)
-        return false;
-    return true;
+      return -1;
+    double least = std::numeric_limits<double>::infinity();
+    for (const Side& s : sides_) {
+      const double reach = s.turn(n.x[s.x], n.y[s.y]);
+      if (reach < 0)
+        return -1;
+      least = std::min(least, reach * s.per_length);
+    }
+    return least;
   }
   /// Whether a point lies in it, other than at a corner; what is no number does not.
   bool has(const Place& place) const {
@@ -126,12 +138,17 @@ void PointTree::remove(std::uint32_t id) {
   }
 }
 
-bool PointTree::any_in(const Point2& a, const Point2& b, const Point2& c) const {
+bool PointTree::any_in(const Point2& a,
+                       const Point2& b,
+                       const Point2& c,
+                       std::uint32_t most_nodes) const {
+  if (most_nodes == 0)
+    return false;
   const Triangle triangle(a, b, c);
   std::array<Range, 36> todo;  // one a level waits, and 32-bit counts halve at most 32 times
   std::size_t depth = 0;
   Range range{0, 0, std::uint32_t(order_.size())};
-  if (!triangle.touches(nodes_[0]))
+  if (triangle.reach(nodes_[0]) < 0)
     return false;
   for (;;) {
     if (range.last - range.first <= kLeaf) {
@@ -143,15 +160,15 @@ bool PointTree::any_in(const Point2& a, const Point2& b, const Point2& c) const 
       range = todo[--depth];
       continue;
     }
+    if (--most_nodes == 0)
+      return false;
     const Range l = left(range), r = right(range);
-    const bool in_left = triangle.touches(nodes_[l.node]),
-               in_right = triangle.touches(nodes_[r.node]);
-    if (in_left && in_right)
-      todo[depth++] = l;
-    if (in_right)
-      range = r;
-    else if (in_left)
-      range = l;
+    const double in_left = triangle.reach(nodes_[l.node]);
+    const double in_right = triangle.reach(nodes_[r.node]);
+    if (in_left >= 0 && in_right >= 0)
+      todo[depth++] = in_left > in_right ? r : l;
+    if (in_left >= 0 || in_right >= 0)
+      range = in_left > in_right ? l : r;
     else if (depth == 0)
       return false;
     else

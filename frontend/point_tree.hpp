@@ -18,18 +18,22 @@ inline double turn(const Point2& a, const Point2& b, const Point2& c) {
 }
 
 /// A balanced k-d tree over points that are only ever taken away. Answers whether a triangle holds
-/// any of those left; looks at boxes the triangle crosses only, so that a long thin one stays
-/// cheap.
+/// any of those left; looks at boxes the triangle crosses only, deepest inside it first.
 class PointTree {
  public:
+  static constexpr std::uint32_t kAllNodes = 0xffffffff;
+
   /// `points[i]` for i in `ids`; `points` must stay in place. Their coordinates must be floats'.
   void build(std::span<const Point2> points, std::span<const std::uint32_t> ids);
   void remove(std::uint32_t id);
   /// Whether most of what it was built with is gone: built anew it would answer faster.
   bool is_thin() const { return 2 * std::size_t(nodes_[0].alive) < order_.size(); }
   /// Whether a point left lies in the closed triangle (which turns left), other than at one of its
-  /// corners.
-  bool any_in(const Point2& a, const Point2& b, const Point2& c) const;
+  /// corners. Gives up, and says no, when it has looked below so many nodes.
+  bool any_in(const Point2& a,
+              const Point2& b,
+              const Point2& c,
+              std::uint32_t most_nodes = kAllNodes) const;
 
  private:
   static constexpr std::uint32_t kLeaf = 8;

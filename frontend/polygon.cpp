@@ -13,6 +13,9 @@ constexpr int kFullPasses = 8;
 /// triangles grow by doubling and stay short. Ears in turn, or a fan, would all reach across, and
 /// stand in thousands of a grid's cells.
 constexpr std::uint32_t kMany = 1024;
+/// At how many nodes of the tree an ear's test looks, in turn, before it looks at all: in a star of
+/// a million uneven spikes an ear's triangle, long and thin, meets hundreds, and holds no corner.
+constexpr std::uint32_t kHopefulLooks[] = {0, 64};
 /// How far a forced clip looks for a corner that at least has area; bounds the work on hopeless
 /// outlines.
 constexpr int kForcedLook = 64;
@@ -40,6 +43,11 @@ bool PolygonCutter::cut(std::span<const Float3> corners, std::vector<Triangle>& 
       triangles.push_back({0, i - 1, i});
     return true;
   }
+  if (even_)
+    for (const std::uint32_t looks : kHopefulLooks)
+      if (clip_hopefully(looks, triangles))
+        return true;
+  looks_ = PointTree::kAllNodes;
   link_corners();
   plant_tree();
   clip_ears(triangles);
@@ -111,6 +119,8 @@ void PolygonCutter::link_corners() {
 
 void PolygonCutter::plant_tree() {
   in_tree_.assign(points_.size(), 0);
+  if (looks_ == 0)
+    return;
   std::vector<std::uint32_t> bent;
   for (std::uint32_t i = 0, corner = start_; i < left_; ++i, corner = following_[corner]) {
     if (turn(corner) > 0)
@@ -126,7 +136,8 @@ double PolygonCutter::turn(std::uint32_t corner) const {
 }
 
 bool PolygonCutter::blocked(std::uint32_t corner) const {
-  return tree_.any_in(points_[previous_[corner]], points_[corner], points_[following_[corner]]);
+  return tree_.any_in(
+      points_[previous_[corner]], points_[corner], points_[following_[corner]], looks_);
 }
 
 void PolygonCutter::queue(std::uint32_t corner) {
@@ -141,7 +152,7 @@ void PolygonCutter::take_queue() {
   next_candidates_.clear();
   for (const std::uint32_t corner : candidates_)
     waits_[corner] = 0;
-  if (even_ && tree_.is_thin())
+  if (even_ && looks_ != 0 && tree_.is_thin())
     plant_tree();
 }
 
@@ -189,6 +200,25 @@ bool PolygonCutter::try_clip(std::uint32_t corner, std::vector<Triangle>& triang
   return true;
 }
 
+/// Clips corners that turn left and looks for others in their triangles only so far; takes all back
+/// and is false when that was not enough. Clipping keeps the sum of winding numbers: triangles that
+/// all turn left cover each point as often as the outline goes round it, so a simple outline's
+/// inside once. A corner missed inside a triangle leaves a place that is covered twice; the rest
+/// would have to make up for it, and cannot end in a triangle that turns left.
+bool PolygonCutter::clip_hopefully(std::uint32_t looks, std::vector<Triangle>& triangles) {
+  const std::size_t before = triangles.size();
+  looks_ = looks;
+  link_corners();
+  plant_tree();
+  clip_candidates(triangles);
+  const bool whole = left_ == 3 && turn(start_) > 0;
+  if (whole)
+    triangles.push_back({previous_[start_], start_, following_[start_]});
+  else
+    triangles.resize(before);
+  return whole;
+}
+
 /// No ear is left, so the outline crosses or touches itself: clip some corner all the same, so that
 /// clipping ends.
 void PolygonCutter::force_clip(std::vector<Triangle>& triangles) {
@@ -201,11 +231,11 @@ void PolygonCutter::force_clip(std::vector<Triangle>& triangles) {
   remove(corner);
 }
 
-void PolygonCutter::clip_ears(std::vector<Triangle>& triangles) {
-  int full_passes = 1;
+/// Asks corners until none is left to ask. True when one was clipped.
+bool PolygonCutter::clip_candidates(std::vector<Triangle>& triangles) {
   bool clipped = false;
   next_candidates_.clear();
-  while (left_ > 3) {
+  while (left_ > 3 && !candidates_.empty()) {
     for (const std::uint32_t corner : candidates_) {
       queued_[corner] = 0;
       if (gone_[corner] || left_ <= 3)
@@ -217,12 +247,19 @@ void PolygonCutter::clip_ears(std::vector<Triangle>& triangles) {
       clipped = try_clip(corner, triangles) || clipped;
     }
     take_queue();
-    if (!candidates_.empty() || left_ <= 3)
-      continue;
+  }
+  return clipped;
+}
+
+void PolygonCutter::clip_ears(std::vector<Triangle>& triangles) {
+  int full_passes = 1;
+  while (left_ > 3) {
+    const bool clipped = clip_candidates(triangles);
+    if (left_ <= 3)
+      break;
     if (clipped && full_passes++ < kFullPasses) {
       for (std::uint32_t i = 0, corner = start_; i < left_; ++i, corner = following_[corner])
         queue(corner);
-      clipped = false;
     } else {
       force_clip(triangles);
     }

@@ -22,6 +22,7 @@ constexpr double kMostCells = 1024;     ///< along an axis
 constexpr double kMostReferences = 64;  ///< a primitive; the scenes measured have 1.3 to 10
 /// references, unless there are more primitives than these serve; 200 MB
 constexpr double kMostInAll = 1 << 22;
+constexpr double kSmallShare = 8;  ///< any grid of a scene may hold an eighth of them
 /// references a primitive, of any number; scenes of a million have 1.3 to 2.6
 constexpr double kAlways = 4;
 constexpr std::size_t kProbe = 128;  ///< primitives that say how many there are
@@ -579,9 +580,11 @@ Grid lay_out_grid(const Primitives& p,
   const double per_length = cells_per_length(extent, ids.size(), density);
   std::size_t cells = divide(g, extent, per_length);
   // A heap of large primitives, or of slivers, would stand in thousands of cells each, and memory
-  // end.
-  const double most =
-      std::clamp(kMostInAll / static_cast<double>(ids.size()), kAlways, kMostReferences);
+  // end. Grids of a scene share what there is by their primitives; small ones, which need little,
+  // get more.
+  const double served =
+      std::min(static_cast<double>(p.end), kSmallShare * static_cast<double>(ids.size()));
+  const double most = std::clamp(kMostInAll / served, kAlways, kMostReferences);
   for (double coarser = per_length / 2; cells > kMostReferences && references(p, ids, g) > most;
        coarser /= 2)
     cells = divide(g, extent, coarser);

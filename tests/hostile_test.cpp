@@ -116,8 +116,30 @@ TEST_F(Hostile, StarsOfManyCorners) {
   std::uniform_real_distribution<double> length(1, 2);
   folder_.write("spikes.nff", star(500000, [&](int) { return length(random); }));
   expect_both_bounded("spikes.nff", 0, "");
+  // Spikes over six decades: ears are long and thin among all corners, and grids of them are full.
+  std::uniform_real_distribution<double> decades(-6, 0);
+  folder_.write("uneven.nff", star(1000000, [&](int) { return std::pow(10, decades(random)); }));
+  expect_both_bounded("uneven.nff", 0, "");
   folder_.write("round.nff", star(1000000, [](int) { return 1.; }));
   expect_both_bounded("round.nff", 0, "");
+}
+
+/// A comb across both axes, its teeth over three decades: the row of their feet lies on the side of
+/// an ear as long as the comb.
+TEST_F(Hostile, CombOfAMillionCorners) {
+  constexpr int kCorners = 1000000;
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> decades(-3, 0);
+  std::string text = std::string(test::kBall) + "p " + std::to_string(kCorners) + '\n';
+  text += "-.001 .001 0\n.999 1.001 0\n";
+  for (int i = kCorners - 2; i-- > 0;) {
+    const double at = double(i) / kCorners, tooth = i % 2 == 0 ? std::pow(10, decades(random)) : 0;
+    char line[64];
+    std::snprintf(line, sizeof line, "%.9g %.9g 0\n", at + tooth, at - tooth);
+    text += line;
+  }
+  folder_.write("comb.nff", text);
+  expect_both_bounded("comb.nff", 0, "");
 }
 
 TEST_F(Hostile, MillionsOfUnknownWords) {
