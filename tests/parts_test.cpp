@@ -332,22 +332,43 @@ TEST(Partial, BytesAreAsTheyEverWere) {
 
 // --- checkpoints of pictures that have no parts
 
-/// Stopped in the middle, with something in every array.
-Work half_done(const Job& job, const RenderOptions& options, std::uint64_t seed) {
+/// What refinement or subdivision makes until it is done, or until step `last`; counts the steps.
+struct Steps {
+  Work work;
+  int count = 0;
+  bool done = false;
+};
+
+Steps steps_until(int last, const Job& job, const RenderOptions& options) {
   const World world(job.file.scene, {});
-  Random random(seed);
-  int left = 3 + static_cast<int>(random.below(30));
+  Steps s;
   RenderOptions o = options;
-  o.threads = 1, o.progress = [&](double) { return --left > 0; };
+  o.threads = 1;
+  o.progress = [&](double) { return ++s.count < last; };
   RenderStats stats;
   if (o.refine.on()) {
     Refinement r = make_refinement(job.file.camera);
-    EXPECT_FALSE(refine(world, job.file.camera, o, r, stats));
-    return r;
+    s.done = refine(world, job.file.camera, o, r, stats);
+    s.work = std::move(r);
+  } else {
+    Subdivided d = make_subdivided(job.file.camera.width, job.file.camera.height);
+    s.done = render_subdivided(world, job.file.camera, o, d, stats);
+    s.work = std::move(d);
   }
-  Subdivided s = make_subdivided(job.file.camera.width, job.file.camera.height);
-  EXPECT_FALSE(render_subdivided(world, job.file.camera, o, s, stats));
   return s;
+}
+
+/// Stopped in the middle, with something in every array; early, for what follows looks at each byte.
+Work half_done(const Job& job, const RenderOptions& options, std::uint64_t seed) {
+  constexpr int first = 3;
+  constexpr int last = 33;
+  const int all = steps_until(last, job, options).count;
+  EXPECT_GT(all, first);
+  const int choices = all - first;
+  const int stop = first + static_cast<int>(Random(seed).below(static_cast<unsigned>(choices)));
+  Steps half = steps_until(stop, job, options);
+  EXPECT_FALSE(half.done) << "step " << stop << " of " << all;
+  return std::move(half.work);
 }
 
 /// In a file, as bytes.
