@@ -1,12 +1,10 @@
 #pragma once
-// Where a ray met its primitive: the point, its normals, and how far a new ray must start away from
-// it.
+// Where a ray met its primitive: the point, its normals, and how far a new ray must start away from it.
 //
-// A ray that leaves a surface must not meet it again, nor skip what lies close. The point is taken
-// from the primitive, not from org + t dir, which is off by eps times the distance travelled; what
-// error is left (`away`) is bounded from the primitive's size and place: pbrt's idea (Pharr, Jakob,
-// Humphreys, PBR 4th ed., 6.8), one scalar bound for all axes. Derivations: docs/numerics.md; kept
-// by tests/leaving_test.cpp.
+// A ray that leaves a surface must not meet it again, nor skip what lies close. The point is taken from the primitive, not
+// from org + t dir, which is off by eps times the distance travelled; what error is left (`away`) is bounded from the
+// primitive's size and place: pbrt's idea (Pharr, Jakob, Humphreys, PBR 4th ed., 6.8), one scalar bound for all axes.
+// Derivations: docs/numerics.md; kept by tests/leaving_test.cpp.
 
 #include <type_traits>
 
@@ -17,29 +15,26 @@ namespace grelha::GRELHA_ISA {
 
 inline constexpr float kEps = 5.9604645e-8f;  ///< half an ulp of 1
 
-/// What double takes from a point of a triangle, of its largest coordinate: some 30 roundings of
-/// 2^-53.
+/// What double takes from a point of a triangle, of its largest coordinate: some 30 roundings of 2^-53.
 inline constexpr float kWideEps = 0x1p-48f;
 
 template <class Real>
 struct Surface {
-  /// outward geometric normal, unit; shading normal, unit, same side
-  Vec3<Real> point, normal, shading;
+  Vec3<Real> point, normal,
+      shading;  ///< outward geometric normal, unit; shading normal, unit, same side
   Real away;
   Words<Real> material;
   Vec3<Real> low;  ///< of a ray traced in double: what the point has besides
 };
 
-/// A point of a primitive, the outward unit normal there and how far a ray must start from it, in
-/// the precision of Real.
+/// A point of a primitive, the outward unit normal there and how far a ray must start from it, in the precision of Real.
 template <class Real>
 struct SurfacePlace {
   Vec3<Real> point, normal;
   Real away;
 };
 
-/// One rounding of what new rays start from: of floats, or of sums of two floats, 2^-48 of the
-/// first, and of doubles.
+/// One rounding of what new rays start from: of floats, or of sums of two floats, 2^-48 of the first, and of doubles.
 template <class Real>
 inline constexpr Scalar<Real> kRounding = sizeof(Scalar<Real>) == sizeof(float)
                                               ? Scalar<Real>(kEps)
@@ -62,6 +57,73 @@ inline SurfacePlace<Real> plane_place(const Vec3<Real>& through,
           Real(8 * kRounding<Real>) * (largest(at) + largest(through))};
 }
 
+/// Vectors and numbers in double, part after part of the lanes.
+template <class Real>
+struct PlaceParts {
+  Wide<Real> part[10][kWideParts<Real>];
+  Vec3<Real> vector(int i) const {
+    return {narrow<Real>(part[i]), narrow<Real>(part[i + 1]), narrow<Real>(part[i + 2])};
+  }
+};
+
+/// Point and normal where a ray meets a sphere, in double: those of the crossing next to t.
+template <class Real>
+inline void sphere_crossing(const Vec3<Real>& org,
+                            const Vec3<Real>& dir,
+                            const Real& t,
+                            const Vec3<Real>& center,
+                            const Real& radius,
+                            Vec3<Real>& point,
+                            Vec3<Real>& normal) {
+  const Vec3<Real> to_center = center - org;
+  const Real inv_dd = Real(1) / dot(dir, dir);
+  const Real middle = dot(to_center, dir) * inv_dd;
+  const Vec3<Real> gap = middle * dir - to_center;
+  const Real inside = greater(radius * radius - dot(gap, gap), Real(0));
+  const Real half = square_root(inside * inv_dd);
+  normal = normalize(gap + select(t < middle, Real(0) - half, half) * dir);
+  point = center + radius * normal;
+}
+
+template <class Real, int i = 0>
+inline void sphere_places(const Vec3<Real>& org,
+                          const Vec3<Real>& dir,
+                          const Real& t,
+                          const Vec3<Real>& center,
+                          const Real& radius,
+                          PlaceParts<Real>& to) {
+  Vec3<Wide<Real>> point;
+  Vec3<Wide<Real>> normal;
+  sphere_crossing<Wide<Real>>(
+      widen<i>(org), widen<i>(dir), widen<i>(t), widen<i>(center), widen<i>(radius), point, normal);
+  int k = 0;
+  for (const Vec3<Wide<Real>>* v : {&point, &normal})
+    for (const Wide<Real>* x : {&v->x, &v->y, &v->z})
+      to.part[k++][i] = *x;
+  if constexpr (i + 1 < kWideParts<Real>)
+    sphere_places<Real, i + 1>(org, dir, t, center, radius, to);
+}
+
+/// Times the radius: a start that far off lets no ray meet the bulge whose cosine with the rounded
+/// normal has the wrong sign, 64 u^2. It takes 13 u^2.
+inline constexpr float kBulge = 0x1p-42f;
+
+/// Of a ray traced in single, rounded once.
+template <class Real>
+inline SurfacePlace<Real> rounded_sphere_place(const Vec3<Real>& org,
+                                               const Vec3<Real>& dir,
+                                               const Real& t,
+                                               const Vec3<Real>& c,
+                                               const Real& r) {
+  PlaceParts<Real> parts;
+  sphere_places<Real>(org, dir, t, c, r, parts);
+  const Vec3<Real> point = parts.vector(0);
+  const Real p = largest(point);
+  // The middle term spares most rays that leave the test in double; they would be as right without.
+  const Real away = Real(4 * kEps) * p + Real(16 * kEps) * lesser(r, p) + Real(kBulge) * r;
+  return {point, parts.vector(3), away};
+}
+
 template <class Real>
 inline SurfacePlace<Real> sphere_place(const Vec3<Real>& c, const Real& r, const Vec3<Real>& at) {
   const Vec3<Real> n = normalize(at - c), point = c + r * n;
@@ -81,8 +143,8 @@ inline SurfacePlace<Real> cone_place(const Vec3<Real>& base,
   const Vec3<Real> radial = from_base - h * axis;
   Vec3<Real> u, v;
   across(axis, u, v);
-  // on a tip all directions are as good
-  const Vec3<Real> out = select(dot(radial, radial) > Real(0), normalize(radial), u);
+  const Vec3<Real> out = select(
+      dot(radial, radial) > Real(0), normalize(radial), u);  // on a tip all directions are as good
   const Vec3<Real> point = base + h * axis + (radius + slope * h) * out,
                    n = normalize(out - slope * axis);
   return {point,
@@ -96,14 +158,6 @@ template <class Real>
 struct ExactStart {
   Vec3<Real> low;
   const double* t = nullptr;  ///< of each lane; null: the ray was traced in single
-};
-
-template <class Real>
-struct PlaceParts {
-  Wide<Real> part[10][kWideParts<Real>];
-  Vec3<Real> vector(int i) const {
-    return {narrow<Real>(part[i]), narrow<Real>(part[i + 1]), narrow<Real>(part[i + 2])};
-  }
 };
 
 /// `place` of part after part of the lanes, at the points where rays in double are at t.
@@ -137,8 +191,7 @@ inline void rest_of_points(const Vec3<Real>& point, PlaceParts<Real>& parts) {
     rest_of_points<Real, i + 1>(point, parts);
 }
 
-/// A surface of `place`, which computes it in the precision the ray was traced in: of floats `at`,
-/// or in double.
+/// A surface of `place`, which computes it in the precision the ray was traced in: of floats `at`, or in double.
 template <class Real, class PlaceOf, class ExactPlaceOf>
 inline Surface<Real> surface_at(const ExactStart<Real>& start,
                                 const Vec3<Real>& org,
@@ -182,14 +235,14 @@ inline Surface<Real> sphere_surface(const GeometryView& g,
                                     const ExactStart<Real>& start,
                                     const Vec3<Real>& org,
                                     const Vec3<Real>& dir,
-                                    const Vec3<Real>& at) {
+                                    const Real& t) {
   const Vec3<Real> c = three_at(g.sx, g.sy, g.sz, i);
   const Real r = magnitude(floats_at(g.sr, i));
   return surface_at<Real>(
       start,
       org,
       dir,
-      [&] { return sphere_place<Real>(c, r, at); },
+      [&] { return rounded_sphere_place<Real>(org, dir, t, c, r); },
       [&](auto k, const auto& here) { return sphere_place(widen<k>(c), widen<k>(r), here); },
       words_at(g.sphere_material, i));
 }
@@ -227,8 +280,7 @@ struct TrianglePlace {
   Vec3<Real> point, normal, weights;
 };
 
-/// Corners as they are, not permuted; `axis` is that of shear_axis(). Rays that do not cross are
-/// taken to the first corner.
+/// Corners as they are, not permuted; `axis` is that of shear_axis(). Rays that do not cross are taken to the first corner.
 template <class Real>
 inline TrianglePlace<Real> triangle_place(const Real& axis,
                                           const Vec3<Real>& org,
@@ -307,8 +359,8 @@ inline Surface<Real> triangle_surface(const GeometryView& g,
   return s;
 }
 
-/// Surfaces of primitives `id`, where rays met them; of lanes that met nothing, anything. What the
-/// lanes met decides which kinds are looked at; mostly it is one.
+/// Surfaces of primitives `id`, where rays met them; of lanes that met nothing, anything. What the lanes met decides which kinds
+/// are looked at; mostly it is one.
 template <class Real>
 inline Surface<Real> surface_of(const SceneView& scene,
                                 const Words<Real>& id,
@@ -338,7 +390,7 @@ inline Surface<Real> surface_of(const SceneView& scene,
     return plane_surface<Real>(g, i, start, org, dir, at);
   });
   of_kind(scene.sphere_base, scene.triangle_base, [&](const Words<Real>& i) {
-    return sphere_surface<Real>(g, i, start, org, dir, at);
+    return sphere_surface<Real>(g, i, start, org, dir, t);
   });
   of_kind(scene.triangle_base, scene.cone_base, [&](const Words<Real>& i) {
     return triangle_surface<Real>(g, i, start, org, dir, smooth);
@@ -349,8 +401,7 @@ inline Surface<Real> surface_of(const SceneView& scene,
   return s;
 }
 
-/// Where a ray that leaves `point` on the side its direction points to must start. `normal` is
-/// unit.
+/// Where a ray that leaves `point` on the side its direction points to must start. `normal` is unit.
 template <class Real>
 inline Vec3<Real> leave(const Vec3<Real>& point,
                         const Vec3<Real>& normal,

@@ -1,5 +1,4 @@
-// Rays that leave a surface: none meets the surface it left, and none starts far enough away to
-// skip what is near.
+// Rays that leave a surface: none meets the surface it left, and none starts far enough away to skip what is near.
 #define GRELHA_ISA scalar
 #include "kernel/surface.hpp"
 #include "kernel/trace.hpp"
@@ -13,8 +12,8 @@ namespace {
 
 struct Result {
   std::uint64_t hits = 0, rays = 0, met_again = 0;
-  /// largest distance between the surface and where a ray starts, in sizes of the primitive
-  double gap = 0;
+  double gap =
+      0;  ///< largest distance between the surface and where a ray starts, in sizes of the primitive
   std::string first;
   void print(const char* what) const {
     std::printf(
@@ -28,8 +27,8 @@ struct Result {
   }
 };
 
-/// `make` builds the scene of one primitive of the given size at a place; `convex`: no ray that
-/// goes out meets it again; otherwise none at all does, on either side.
+/// `make` builds the scene of one primitive of the given size at a place; `convex`: no ray that goes out meets it
+/// again; otherwise none at all does, on either side.
 template <class Make, class Near>
 Result leave_from(
     std::uint64_t seeds, double most_offset, bool convex, const Make& make, const Near& farthest) {
@@ -56,9 +55,7 @@ Result leave_from(
       float org[3] = {rays.ox[i], rays.oy[i], rays.oz[i]};
       const float dir[3] = {rays.dx[i], rays.dy[i], rays.dz[i]};
       scalar::approach(view, org, dir);
-      rays.ox[i] = org[0];
-      rays.oy[i] = org[1];
-      rays.oz[i] = org[2];
+      rays.ox[i] = org[0], rays.oy[i] = org[1], rays.oz[i] = org[2];
     }
     const Answers hits =
         trace(*find_variant("scalar"), world, rays, {Method::kSingle, 1, true}, Query::kClosest);
@@ -76,8 +73,7 @@ Result leave_from(
           const float n = d.x * s.normal.x + d.y * s.normal.y + d.z * s.normal.z;
           d = at(d, -n * (1 - random.log_in(1e-6, 1e-1)), {s.normal.x, s.normal.y, s.normal.z});
         }
-        // So nearly along the surface that rounding decides which side it points to: either answer
-        // is right.
+        // So nearly along the surface that rounding decides which side it points to: either answer is right.
         if (std::abs(oracle::dot(d, oracle::unit({s.normal.x, s.normal.y, s.normal.z}))) <
             8 * oracle::kEps)
           continue;
@@ -88,8 +84,8 @@ Result leave_from(
         leaving.add({start.x, start.y, start.z}, d);
         from.push_back(hits.id[i]);
       }
-      // the rounding of the start itself included
-      r.gap = std::max(r.gap, 2 * double(s.away) / size);
+      r.gap =
+          std::max(r.gap, 2 * double(s.away) / size);  // the rounding of the start itself included
     }
     r.rays += leaving.size();
     const Answers again =
@@ -134,9 +130,9 @@ struct Row {
   double offset, farthest;
   double gap;  ///< wanted at most, in sizes
 };
-/// The bounds of surface.hpp in sizes: 16 (sphere) to 64 eps (cone: height up to 2 sizes, radius up
-/// to 1, 32 eps of both) and 4 eps of the largest coordinate, which is the offset; doubled as
-/// print() does. 2e-5 and 5e-7 offset cover each kind.
+/// The bounds of surface.hpp in sizes: 16 (sphere) to 64 eps (cone: height up to 2 sizes, radius up to 1, 32 eps of
+/// both) and 4 eps of the largest coordinate, which is the offset; doubled as print() does. 2e-5 and 5e-7 offset cover
+/// each kind.
 constexpr Row kRows[] = {{0, 10, 2e-5},
                          {0, 1e5, 2e-5},
                          {10, 1e3, 3e-5},
@@ -158,6 +154,99 @@ void check(const char* name, bool convex, const Make& make) {
 }
 
 TEST(Leaving, Spheres) { check("sphere", true, make_sphere); }
+/// Mirror rays about the exact normal, of spheres far from the origin or far larger than what is seen of them. The ray that is met
+/// again is the exact one of these very floats as well, so a wrong start or a wrong normal shows, not a wrong test alone.
+struct Mirrored {
+  std::uint64_t rays = 0, met_again = 0, wrong = 0;
+  double normal = 0;  ///< largest distance of a normal from the exact one, in eps
+  double away = 0;    ///< largest, less 2^-42 of the radius, in eps of the point
+};
+
+template <class Make, class Eye>
+Mirrored mirror_off(std::uint64_t seeds, const Make& make, const Eye& eye) {
+  Mirrored m;
+  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+    Random random(seed);
+    const Float3 center = make(random);
+    const auto [radius, seen_from, dir] = eye(random, center);
+    const Scene scene = one_sphere(center, radius);
+    const World world(scene, {.grid = false});
+    float moved[3] = {seen_from.x, seen_from.y, seen_from.z};
+    const float along[3] = {dir.x, dir.y, dir.z};
+    scalar::approach(world.impl().view, moved, along);
+    const Float3 org{moved[0], moved[1], moved[2]};
+    const oracle::Ball ball{center, radius};
+    const auto exact = ball.first({org, dir}, 0);
+    Rays ray;
+    ray.add(org, dir);
+    const TraceSettings single{Method::kSingle, 1, true};
+    const Answers hit = trace(*find_variant("scalar"), world, ray, single, Query::kClosest);
+    if (hit.id[0] == kNoPrimitive || !exact ||
+        oracle::length(oracle::V(org) - ball.center) < ball.radius)
+      continue;
+    const scalar::Surface<float> s = scalar::surface_of<float>(
+        world.impl().view, 0, {org.x, org.y, org.z}, {dir.x, dir.y, dir.z}, hit.t[0], false);
+    const oracle::Ray in{org, dir};
+    const oracle::V n = oracle::unit(in.point(exact->t) - ball.center);
+    const oracle::V off = n - oracle::V(Float3{s.normal.x, s.normal.y, s.normal.z});
+    m.normal = std::max(m.normal, static_cast<double>(oracle::length(off) / oracle::kEps));
+    m.away = std::max(
+        m.away,
+        (double(s.away) - 0x1p-42 * radius) / (double(scalar::largest(s.point)) * scalar::kEps));
+    const oracle::V out = in.dir - 2 * oracle::dot(n, in.dir) * n;
+    const Float3 d{static_cast<float>(out.x), static_cast<float>(out.y), static_cast<float>(out.z)};
+    const scalar::Vec3<float> start = scalar::leave(s.point, s.normal, s.away, {d.x, d.y, d.z});
+    const Float3 from{start.x, start.y, start.z};
+    Rays leaving;
+    leaving.add(from, d);
+    const Answers again = trace(*find_variant("scalar"), world, leaving, single, Query::kClosest);
+    ++m.rays;
+    m.met_again += again.id[0] != kNoPrimitive;
+    m.wrong += (again.id[0] != kNoPrimitive) != ball.first({from, d}, 0).has_value();
+  }
+  return m;
+}
+
+struct Seen {
+  float radius;
+  Float3 org, dir;
+};
+
+TEST(Leaving, MirrorRaysOfSpheresFarFromTheOrigin) {
+  const auto make = [](Random& random) { return scaled(random.direction(), 1e6); };
+  const auto eye = [](Random& random, const Float3& center) {
+    const double radius = random.log_in(.06, 1.2);
+    const Float3 org = at(center, random.log_in(2, 60), random.direction());
+    return Seen{static_cast<float>(radius),
+                org,
+                minus(at(center, radius * random.unit(), random.direction()), org)};
+  };
+  const Mirrored m = mirror_off(20000, make, eye);
+  EXPECT_GT(m.rays, 10000u);
+  EXPECT_EQ(m.met_again, 0u);
+  EXPECT_EQ(m.wrong, 0u);
+  EXPECT_LT(m.normal, 1);  // half an ulp a component: sqrt(3) / 2 eps
+}
+
+TEST(Leaving, MirrorRaysOfFloorSpheres) {
+  for (const double radius : {1e3, 1e4, 1e5, 1e6}) {
+    const auto make = [&](Random&) { return Float3{0, static_cast<float>(-radius), 0}; };
+    const auto eye = [&](Random& random, const Float3&) {
+      Float3 dir = random.direction();
+      dir.y = -std::abs(dir.y);
+      const Float3 org{
+          static_cast<float>(random.in(-1, 1)), static_cast<float>(random.in(.5, 2)), 0};
+      return Seen{static_cast<float>(radius), org, dir};
+    };
+    const Mirrored m = mirror_off(20000, make, eye);
+    EXPECT_GT(m.rays, 18000u);
+    EXPECT_EQ(m.met_again, 0u) << radius;
+    EXPECT_EQ(m.wrong, 0u) << radius;
+    EXPECT_LT(m.normal, 1) << radius;
+    EXPECT_LT(m.away, 20.01) << radius;  // 4 and 16, whatever the radius
+  }
+}
+
 TEST(Leaving, Planes) {
   // A plane's error is that of the point met, which grows with the distance of the origin.
   for (const Row& row : kRows) {
@@ -169,8 +258,7 @@ TEST(Leaving, Planes) {
     EXPECT_EQ(r.met_again, 0u) << r.first;
   }
 }
-/// A speck far from where rays leave a plane: they are moved near it before grids are walked, and
-/// must not find the plane on the way.
+/// A speck far from where rays leave a plane: they are moved near it before grids are walked, and must not find the plane on the way.
 TEST(Leaving, PlanesWithAllElseFarAway) {
   int left = 0;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
@@ -204,8 +292,8 @@ TEST(Leaving, PlanesWithAllElseFarAway) {
   EXPECT_EQ(left, 200 * 64 * 6);
 }
 
-/// A ball of radius 20 half sunk into a plane, from up to 10^8 away, where t in single precision is
-/// off by up to 10. Rays go through the ball where it stands at least 1 above the plane.
+/// A ball of radius 20 half sunk into a plane, from up to 10^8 away, where t in single precision is off by up to 10. Rays go through
+/// the ball where it stands at least 1 above the plane.
 TEST(FarEyes, SeeWhatStandsOnAPlane) {
   Scene scene = one_plane({0, 0, 0}, {.05f, .1f, 1});
   scene.geometry.spheres.add({0, 0, 0}, 20, 0);
@@ -214,10 +302,9 @@ TEST(FarEyes, SeeWhatStandsOnAPlane) {
     Random random(1);
     Rays rays;
     while (rays.size() < 2000) {
-      // whole ulps: what follows is exact
       const auto far = [&](double lo, double hi) {
         return 8 * std::floor(static_cast<float>(random.in(lo, hi)) / 8);
-      };
+      };  // whole ulps: what follows is exact
       const Float3 eye{far(-1e8, 1e8), far(-1e8, 1e8), far(2e7, 1e8)};
       const Float3 target{8.f * static_cast<float>(random.below(3)) - 8,
                           8.f * static_cast<float>(random.below(3)) - 8,
@@ -247,8 +334,7 @@ TEST(FarEyes, SeeWhatStandsOnAPlane) {
 TEST(Leaving, Triangles) { check("triangle", false, make_triangle); }
 TEST(Leaving, Cones) { check("cone", true, make_cone); }
 
-/// Where a cone has no radius all directions across its axis are as good, and a normal must be one
-/// of them.
+/// Where a cone has no radius all directions across its axis are as good, and a normal must be one of them.
 TEST(ConeSurface, HasANormalOnItsTip) {
   for (const bool tip_first : {false, true}) {
     const Float3 tip{0, 2, 0}, foot{0, 0, 0};
@@ -283,10 +369,8 @@ TEST(Leaving, InwardsMeetsTheFarSide) {
         scalar::surface_of<float>(world.impl().view, 0, org, dir, hit.t[0], false);
     Float3 d = random.direction();
     float cosine = d.x * s.normal.x + d.y * s.normal.y + d.z * s.normal.z;
-    if (cosine > 0) {
-      d = scaled(d, -1);
-      cosine = -cosine;
-    }
+    if (cosine > 0)
+      d = scaled(d, -1), cosine = -cosine;
     if (cosine > -.05f)
       continue;
     const scalar::Vec3<float> start = scalar::leave(s.point, s.normal, s.away, {d.x, d.y, d.z});
@@ -295,8 +379,7 @@ TEST(Leaving, InwardsMeetsTheFarSide) {
     const Answers far =
         trace(*find_variant("scalar"), world, inwards, {Method::kSingle, 1, true}, Query::kClosest);
     ASSERT_EQ(far.id[0], 0u) << "seed " << seed;
-    // The chord is -2 r cosine. The start stands off by `away` and its rounding, which the chord
-    // feels by 1 / |cosine|.
+    // The chord is -2 r cosine. The start stands off by `away` and its rounding, which the chord feels by 1 / |cosine|.
     EXPECT_NEAR(far.t[0], -2 * size * cosine, 4 * s.away / -cosine + 1e-5 * size)
         << "seed " << seed;
     ++judged;
@@ -304,8 +387,8 @@ TEST(Leaving, InwardsMeetsTheFarSide) {
   EXPECT_GT(judged, 10000u);
 }
 
-/// Something a thousandth of the size above a surface is met, not skipped, wherever that is far
-/// above the spacing of floats.
+/// Something a thousandth of the size above a surface is met, not skipped, wherever that is far above the spacing of
+/// floats.
 TEST(Leaving, SeesWhatIsNear) {
   std::uint64_t rays = 0;
   for (std::uint64_t seed = 0; seed < 20000; ++seed) {
