@@ -1,5 +1,7 @@
 #pragma once
-/// \file All of the library: `#include <grelha/grelha.hpp>`, `find_package(grelha)`, link
+/// \file
+///
+/// All of the library: `#include <grelha/grelha.hpp>`, `find_package(grelha)`, link
 /// `grelha::kernel`.
 ///
 /// Fill in a grelha::Scene, or a grelha::SceneSpans over arrays of your own; build a grelha::World
