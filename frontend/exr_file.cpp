@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <cstring>
 #include <new>
 
@@ -68,8 +69,21 @@ void complain(exr_const_context_t context, exr_result_t, const char* message) {
       error.begin(), error.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
 }
 
+/// Whether memory was lacking: the library says so of damaged blocks as well (OpenEXR 3.1, B44),
+/// and gives this function no context.
+thread_local bool memory_lacked = false;
+
+void* take_memory(std::size_t size) {
+  void* const memory = std::malloc(size);
+  memory_lacked = memory_lacked || !memory;
+  return memory;
+}
+
 exr_context_initializer_t initializer(ExrMemory& memory) {
+  memory_lacked = false;
   exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
+  init.alloc_fn = take_memory;
+  init.free_fn = std::free;
   init.error_handler_fn = complain;
   init.user_data = &memory;
   init.read_fn = read_from;
@@ -234,8 +248,10 @@ class ExrReader {
     throw FileError(path_, "cannot read the picture: " + why);
   }
   void want(exr_result_t result) const {
-    if (result == EXR_ERR_OUT_OF_MEMORY)
+    if (result == EXR_ERR_OUT_OF_MEMORY && memory_lacked)
       throw std::bad_alloc();
+    if (result == EXR_ERR_OUT_OF_MEMORY)
+      refuse("a block of its pixels is damaged");
     if (result != EXR_ERR_SUCCESS)
       refuse(memory_.error.empty() ? exr_get_default_error_message(result) : memory_.error);
   }

@@ -129,6 +129,20 @@ TEST(Exr, WrongFilesAreRefusedAndTakeNoMemory) {
       path + ": error: cannot read the picture: it claims more pixels than its bytes can hold");
 }
 
+/// B44 blocks whose bytes are no such blocks: OpenEXR's library calls that a lack of memory.
+TEST(Exr, DamagedBlocksAreCalledDamaged) {
+  TemporaryFolder folder;
+  constexpr char kB44 = 6;
+  std::string bytes = encode_exr(Image(20, 20));
+  const std::string_view key("compression\0compression\0\1\0\0\0", 28);
+  const std::size_t at = bytes.find(key);
+  ASSERT_NE(at, bytes.npos);
+  bytes[at + key.size()] = kB44;
+  const auto path = folder.write("a.exr", bytes);
+  EXPECT_EQ(error_of([&] { read_image(path); }),
+            path + ": error: cannot read the picture: a block of its pixels is damaged");
+}
+
 /// Every byte of the head changed, and many of the rest: read or refused, never a crash.
 TEST(Exr, DamagedFilesAreReadOrRefused) {
   TemporaryFolder folder;
