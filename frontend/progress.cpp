@@ -27,12 +27,15 @@ std::string duration_text(double seconds) {
   return std::to_string(s / 3600) + " h " + std::to_string(s % 3600 / 60) + " min";
 }
 
-/// Asked anew for every line: the window may have been resized. The last column stays free, for
-/// some terminals go on to the next line when it is written.
+/// The `^C` that a terminal shows behind the bar fits on its line, and the last column stays free,
+/// for some terminals go on to the next line when it is written.
+constexpr int kFreeColumns = 3;
+
+/// Asked anew for every line: the window may have been resized.
 int columns_of_stderr() {
   struct winsize size {};
   const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
-  return (known ? size.ws_col : kUsualColumns) - 1;
+  return (known ? size.ws_col : kUsualColumns) - kFreeColumns;
 }
 
 }  // namespace
