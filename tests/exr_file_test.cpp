@@ -2,8 +2,8 @@
 #include "frontend/exr_file.hpp"
 
 #include "frontend/image_file.hpp"
-#include "frontend/parse_error.hpp"
 #include "kernel/rays.hpp"
+#include "tests/support/file_error.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -17,14 +17,7 @@
 namespace grelha {
 namespace {
 
-std::string error_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const FileError& error) {
-    return error.what();
-  }
-  return "no error";
-}
+using test::error_of;
 
 TEST(Exr, ComesBackBitForBit) {
   TemporaryFolder folder;

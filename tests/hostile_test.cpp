@@ -4,7 +4,6 @@
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +15,7 @@
 #include <random>
 
 #include "frontend/memory_limit.hpp"
+#include "tests/support/gzip.hpp"
 #include "tests/support/running.hpp"
 
 namespace grelha {
@@ -190,24 +190,10 @@ TEST_F(Hostile, NulBytes) {
   expect_both_bounded("nul.nff", 0, "NUL bytes");
 }
 
-std::string gzip(const std::string& text) {
-  z_stream stream{};
-  deflateInit2(&stream, 9, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY);
-  std::string out(deflateBound(&stream, text.size()), '\0');
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
-  stream.avail_in = uInt(text.size());
-  stream.next_out = reinterpret_cast<Bytef*>(out.data());
-  stream.avail_out = uInt(out.size());
-  deflate(&stream, Z_FINISH);
-  out.resize(stream.total_out);
-  deflateEnd(&stream);
-  return out;
-}
-
 /// 10 GiB of zeros in 10 MB of gzip, of one letter, and as a file with a hole.
 TEST_F(Hostile, FilesThatInflateWithoutEnd) {
   for (const char letter : {'\0', 'a', '\n'}) {
-    const std::string member = gzip(std::string(std::size_t(16) << 20, letter));
+    const std::string member = test::gzip(std::string(std::size_t(16) << 20, letter));
     std::string bomb;
     for (int i = 0; i < 640; ++i)
       bomb += member;

@@ -2,7 +2,7 @@
 
 #include "frontend/atomic_file.hpp"
 #include "frontend/hdr_file.hpp"
-#include "frontend/parse_error.hpp"
+#include "tests/support/file_error.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -46,14 +46,7 @@ Image odd_image() {
   return image;
 }
 
-std::string error_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const FileError& error) {
-    return error.what();
-  }
-  return "no error";
-}
+using test::error_of;
 
 TEST(ToByte, RoundsToNearestAndClamps) {
   for (int k = 0; k < 256; ++k)

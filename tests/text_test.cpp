@@ -3,11 +3,11 @@
 #include "frontend/text.hpp"
 
 #include <gtest/gtest.h>
-#include <zlib.h>
 
 #include <cmath>
 #include <limits>
 
+#include "tests/support/gzip.hpp"
 #include "tests/support/reading.hpp"
 
 namespace grelha {
@@ -133,33 +133,19 @@ TEST(Words, QuotedStayOnOneLine) {
   EXPECT_EQ(grelha::quoted(""), "end of file");
 }
 
-std::string gzip(std::string_view text) {
-  z_stream stream{};
-  deflateInit2(&stream, 9, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY);
-  std::string out(deflateBound(&stream, text.size()), '\0');
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
-  stream.avail_in = uInt(text.size());
-  stream.next_out = reinterpret_cast<Bytef*>(out.data());
-  stream.avail_out = uInt(out.size());
-  deflate(&stream, Z_FINISH);
-  out.resize(stream.total_out);
-  deflateEnd(&stream);
-  return out;
-}
-
 TEST(Gzip, InflatesMembersOneAfterTheOther) {
   const std::string long_text(1000000, 'a');
-  EXPECT_EQ(inflate_gzip("f.gz", gzip(long_text), 1 << 20), long_text);
-  EXPECT_EQ(inflate_gzip("f.gz", gzip("abc") + gzip("def"), 100), "abcdef");
-  EXPECT_EQ(inflate_gzip("f.gz", gzip("abc") + "tail", 100), "abc");
-  EXPECT_EQ(inflate_gzip("f.gz", gzip(""), 100), "");
+  EXPECT_EQ(inflate_gzip("f.gz", test::gzip(long_text), 1 << 20), long_text);
+  EXPECT_EQ(inflate_gzip("f.gz", test::gzip("abc") + test::gzip("def"), 100), "abcdef");
+  EXPECT_EQ(inflate_gzip("f.gz", test::gzip("abc") + "tail", 100), "abc");
+  EXPECT_EQ(inflate_gzip("f.gz", test::gzip(""), 100), "");
   constexpr std::size_t kMiB = std::size_t(1) << 20;
   EXPECT_LE(inflate_limit(8 * kMiB), 768 * kMiB) << "a bomb of 8 MiB holds 8 GiB";
   EXPECT_GE(inflate_limit(0), std::min(256 * kMiB, std::size_t(machine_memory() / 2)));
 }
 
 TEST(Gzip, RefusesBrokenAndBoundlessData) {
-  const std::string whole = gzip("some words and some more words");
+  const std::string whole = test::gzip("some words and some more words");
   EXPECT_EQ(message_of([&] { inflate_gzip("f.gz", whole.substr(0, 20), 100); }),
             "f.gz:byte 20: error: wanted more gzip data, found end of file");
   std::string broken = whole;
@@ -168,7 +154,7 @@ TEST(Gzip, RefusesBrokenAndBoundlessData) {
               inflate_gzip("f.gz", broken, 100);
             }).find(": error: wanted sound gzip data, found "),
             std::string::npos);
-  const std::string bomb = gzip(std::string(1 << 20, '\0'));
+  const std::string bomb = test::gzip(std::string(1 << 20, '\0'));
   EXPECT_NE(message_of([&] {
               inflate_gzip("f.gz", bomb, 5000);
             }).find("error: wanted data that inflate to at most 5000 bytes, found more"),
@@ -177,7 +163,7 @@ TEST(Gzip, RefusesBrokenAndBoundlessData) {
 
 /// 256 MiB of zeros in 260 KB: the first piece tells, and no more is inflated.
 TEST(Gzip, IsJudgedAsItComes) {
-  const std::string bomb = gzip(std::string(std::size_t(256) << 20, '\0'));
+  const std::string bomb = test::gzip(std::string(std::size_t(256) << 20, '\0'));
   std::size_t largest = 0;
   const Judge judge = [&](std::string_view text, std::size_t fresh) {
     largest = std::max(largest, text.size());
@@ -189,13 +175,13 @@ TEST(Gzip, IsJudgedAsItComes) {
   std::string late = "s 0 0 0 1\n";
   late.resize(3 * kPiece, ' ');
   EXPECT_NE(message_of([&] {
-              inflate_gzip("f.gz", gzip(late), std::size_t(1) << 30, nullptr, judge);
+              inflate_gzip("f.gz", test::gzip(late), std::size_t(1) << 30, nullptr, judge);
             }).find("without a digit"),
             std::string::npos);
   late.back() = '1';
   for (std::size_t i = 0; i < late.size(); i += kPiece / 2)
     late[i] = '1';
-  EXPECT_EQ(inflate_gzip("f.gz", gzip(late), std::size_t(1) << 30, nullptr, judge), late);
+  EXPECT_EQ(inflate_gzip("f.gz", test::gzip(late), std::size_t(1) << 30, nullptr, judge), late);
 }
 
 /// The same of files and whatever they inflate to, by the way of a scene.
@@ -204,7 +190,7 @@ TEST(LoadFile, JudgesScenesAsTheyCome) {
   const std::string zeros(2 * kPiece, '\0');
   for (const char* name : {"zeros.nff", "zeros.ply"}) {
     const std::string path = folder.add(name, zeros),
-                      packed = folder.add(std::string(name) + ".gz", gzip(zeros));
+                      packed = folder.add(std::string(name) + ".gz", test::gzip(zeros));
     for (const std::string& file : {path, packed})
       EXPECT_TRUE(
           message_of([&] {
@@ -212,7 +198,7 @@ TEST(LoadFile, JudgesScenesAsTheyCome) {
           }).starts_with(file + ":byte 0: error: wanted a scene's numbers, found 16777216 bytes"))
           << file;
   }
-  const std::string other = folder.add("other.ply.gz", gzip(" plx " + zeros));
+  const std::string other = folder.add("other.ply.gz", test::gzip(" plx " + zeros));
   EXPECT_EQ(message_of([&] { read_scene(other, nullptr); }),
             other + ":1:2: error: wanted \"ply\" on the first line, found \"plx\"");
   const std::string scene = folder.add("scene.nff", test::kView + "ply other.ply.gz\n");
@@ -222,7 +208,7 @@ TEST(LoadFile, JudgesScenesAsTheyCome) {
 
 TEST(LoadFile, TellsGzipByItsFirstBytes) {
   const TemporaryFolder folder;
-  EXPECT_EQ(load_file(folder.add("a.nff", gzip("packed"))), "packed");
+  EXPECT_EQ(load_file(folder.add("a.nff", test::gzip("packed"))), "packed");
   EXPECT_EQ(load_file(folder.add("b.gz", "plain")), "plain");
 }
 

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "frontend/parse_error.hpp"
+
+#include <functional>
+#include <string>
+
+namespace grelha::test {
+
+/// What is said of a file while the action runs.
+inline std::string error_of(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const FileError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+}  // namespace grelha::test
