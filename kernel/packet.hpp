@@ -196,7 +196,7 @@ inline void note(Packet& p, int i, const Mask<Exact>& hit, const Exact& t, std::
 
 /// Runs `test(i)` for the first lane i of every live group.
 template <class Test>
-inline void each_live_group(const Packet& p, const Test& test) {
+[[gnu::always_inline]] inline void each_live_group(const Packet& p, const Test& test) {
   for (std::uint64_t left = p.live; left != 0; left &= left - 1) {
     const int g = __builtin_ctzll(left);
     test(g * kWidth<Lanes>, g);
@@ -206,11 +206,12 @@ inline void each_live_group(const Packet& p, const Test& test) {
 /// Runs `test(i, g)` for the first lane i of every part, as wide as tests are, of every live group
 /// g.
 template <class Test>
-inline void each_tested(const Packet& p, const Test& test) {
-  each_live_group(p, [&](int first, int g) {
-    for (int i = first; i < first + kWidth<Lanes>; i += kWidth<Exact>)
-      test(i, g);
-  });
+[[gnu::always_inline]] inline void each_tested(const Packet& p, const Test& test) {
+  each_live_group(
+      p, [&](int first, int g) __attribute__((always_inline)) {
+        for (int i = first; i < first + kWidth<Lanes>; i += kWidth<Exact>)
+          test(i, g);
+      });
 }
 
 inline void count_lanes(const Packet& p, Counters& n, std::uint64_t& tests) {
@@ -274,40 +275,63 @@ inline void test_plane(Packet& p,
   });
 }
 
+/// A triangle that the rays of a packet are tested against.
+struct TestedTriangle {
+  const Packet* p;
+  const float *a, *b, *c;
+};
+
+/// It and the rays from i on, of a group whose rays share an axis.
+struct AlignedRays {
+  const TestedTriangle* with;
+  int i, axis;
+  RayAndTriangle<Exact> operator()() const {
+    const int k = axis, kx = kNextAxis[k], ky = kPreviousAxis[k];
+    const Packet& p = *with->p;
+    const auto corner = [&](const float* v) {
+      return Vec3<Exact>{Exact(v[kx]), Exact(v[ky]), Exact(v[k])};
+    };
+    return {{take<Exact>(tested_org(p, kx) + i),
+             take<Exact>(tested_org(p, ky) + i),
+             take<Exact>(tested_org(p, k) + i)},
+            {take<Exact>(p.dir[kx] + i), take<Exact>(p.dir[ky] + i), take<Exact>(p.dir[k] + i)},
+            {corner(with->a), corner(with->b), corner(with->c)}};
+  }
+};
+
+/// The same of a group whose rays do not.
+struct MixedRays {
+  const TestedTriangle* with;
+  int i;
+  RayAndTriangle<Exact> operator()() const {
+    const Packet& p = *with->p;
+    const Exact axis = take<Exact>(p.axis + i);
+    const auto corner = [&](const float* v) {
+      return permuted<Exact>(axis, {Exact(v[0]), Exact(v[1]), Exact(v[2])});
+    };
+    return {permuted(axis, origin(p, i)),
+            permuted(axis, direction(p, i)),
+            {corner(with->a), corner(with->b), corner(with->c)}};
+  }
+};
+
 template <bool kAny>
-inline void test_triangle(
+[[gnu::noinline]] void test_triangle(
     Packet& p, const float (&a)[3], const float (&b)[3], const float (&c)[3], std::uint32_t id) {
-  each_tested(p, [&](int i, int g) {
-    const Shear<Exact> shear{
-        load<Exact>(p.shear[0] + i), load<Exact>(p.shear[1] + i), load<Exact>(p.shear[2] + i)};
-    const Exact t_min = take<Exact>(tested_t_min(p) + i);
-    Exact t(0);
-    Mask<Exact> hit;
-    if (const int k = p.group_axis[g]; k >= 0) {
-      const int kx = k == 2 ? 0 : k + 1, ky = k == 0 ? 2 : k - 1;
-      const Vec3<Exact> org{take<Exact>(tested_org(p, kx) + i),
-                            take<Exact>(tested_org(p, ky) + i),
-                            take<Exact>(tested_org(p, k) + i)};
-      const Vec3<Exact> dir{
-          take<Exact>(p.dir[kx] + i), take<Exact>(p.dir[ky] + i), take<Exact>(p.dir[k] + i)};
-      const auto corner = [&](const float(&v)[3]) {
-        return Vec3<Exact>{Exact(v[kx]), Exact(v[ky]), Exact(v[k])};
-      };
-      hit = hit_triangle<Exact>(org, dir, shear, t_min, {corner(a), corner(b), corner(c)}, t);
-    } else {
-      const Exact axis = take<Exact>(p.axis + i);
-      const auto corner = [&](const float(&v)[3]) {
-        return permuted<Exact>(axis, {Exact(v[0]), Exact(v[1]), Exact(v[2])});
-      };
-      hit = hit_triangle<Exact>(permuted(axis, origin(p, i)),
-                                permuted(axis, direction(p, i)),
-                                shear,
-                                t_min,
-                                {corner(a), corner(b), corner(c)},
-                                t);
-    }
-    note<kAny>(p, i, hit, t, id);
-  });
+  const TestedTriangle with{&p, a, b, c};
+  each_tested(
+      p, [&](int i, int g) __attribute__((always_inline)) {
+        const Shear<Exact> shear{
+            load<Exact>(p.shear[0] + i), load<Exact>(p.shear[1] + i), load<Exact>(p.shear[2] + i)};
+        const Exact t_min = take<Exact>(tested_t_min(p) + i),
+                    t_max = load<Exact>(tested_best(p) + i);
+        Exact t(0);
+        const int axis = p.group_axis[g];
+        const Mask<Exact> hit =
+            axis >= 0 ? hit_triangle<kAny>(AlignedRays{&with, i, axis}, shear, t_min, t_max, t)
+                      : hit_triangle<kAny>(MixedRays{&with, i}, shear, t_min, t_max, t);
+        note<kAny>(p, i, hit, t, id);
+      });
 }
 
 }  // namespace grelha::GRELHA_ISA

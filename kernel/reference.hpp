@@ -46,7 +46,7 @@ inline bool reference_cell(
   const auto& from = tested_org(r);
   const Vec3<Number> org{from[0], from[1], from[2]}, dir{r.dir[0], r.dir[1], r.dir[2]};
   if (lists.triangle_first) {
-    const int k = r.axis, kx = k == 2 ? 0 : k + 1, ky = k == 0 ? 2 : k - 1;
+    const int k = r.axis, kx = kNextAxis[k], ky = kPreviousAxis[k];
     const Shear<Number> shear{r.shear[0], r.shear[1], r.shear[2]};
     for (std::uint32_t b = lists.triangle_first[cell]; b < lists.triangle_first[cell + 1]; ++b) {
       const TriangleBlock& block = lists.triangles[b];
@@ -55,14 +55,16 @@ inline bool reference_cell(
           continue;
         ++n.triangle;
         Number t = 0;
-        const bool hit = hit_triangle<Number>({from[kx], from[ky], from[k]},
-                                              {r.dir[kx], r.dir[ky], r.dir[k]},
-                                              shear,
-                                              tested_t_min(r),
-                                              {{block.a[kx][i], block.a[ky][i], block.a[k][i]},
-                                               {block.b[kx][i], block.b[ky][i], block.b[k][i]},
-                                               {block.c[kx][i], block.c[ky][i], block.c[k][i]}},
-                                              t);
+        const auto ray_and_triangle = [&] {
+          return RayAndTriangle<Number>{{from[kx], from[ky], from[k]},
+                                        {r.dir[kx], r.dir[ky], r.dir[k]},
+                                        {{block.a[kx][i], block.a[ky][i], block.a[k][i]},
+                                         {block.b[kx][i], block.b[ky][i], block.b[k][i]},
+                                         {block.c[kx][i], block.c[ky][i], block.c[k][i]}}};
+        };
+        const Number t_min = tested_t_min(r);
+        const Number t_max = kInfinity;  // exactly where, whatever is met already
+        const bool hit = hit_triangle<false>(ray_and_triangle, shear, t_min, t_max, t);
         if (take<kAny>(r, hit, t, block.id[i]))
           return true;
       }

@@ -134,28 +134,34 @@ inline Vec3<ExactBlock> spread(const Number (&v)[3]) {
   return {ExactBlock(v[0]), ExactBlock(v[1]), ExactBlock(v[2])};
 }
 
+/// A ray and triangles of a block from i on.
+struct RayAndBlock {
+  const Single* r;
+  const TriangleBlock* block;
+  int i;
+  RayAndTriangle<ExactBlock> operator()() const {
+    const int k = r->axis, kx = kNextAxis[k], ky = kPreviousAxis[k];
+    const auto& from = tested_org(*r);
+    const auto corner = [&](const float(&v)[3][kBlock]) {
+      return Vec3<ExactBlock>{
+          take<ExactBlock>(v[kx] + i), take<ExactBlock>(v[ky] + i), take<ExactBlock>(v[k] + i)};
+    };
+    return {{ExactBlock(from[kx]), ExactBlock(from[ky]), ExactBlock(from[k])},
+            {ExactBlock(r->dir[kx]), ExactBlock(r->dir[ky]), ExactBlock(r->dir[k])},
+            {corner(block->a), corner(block->b), corner(block->c)}};
+  }
+};
+
 template <bool kAny>
-inline bool test_block(Single& r, const TriangleBlock& block, Counters& n) {
-  const auto& from = tested_org(r);
-  const int k = r.axis, kx = k == 2 ? 0 : k + 1, ky = k == 0 ? 2 : k - 1;
-  const Vec3<ExactBlock> org{ExactBlock(from[kx]), ExactBlock(from[ky]), ExactBlock(from[k])};
-  const Vec3<ExactBlock> dir{ExactBlock(r.dir[kx]), ExactBlock(r.dir[ky]), ExactBlock(r.dir[k])};
+[[gnu::noinline]] bool test_block(Single& r, const TriangleBlock& block, Counters& n) {
   const Shear<ExactBlock> shear{
       ExactBlock(r.shear[0]), ExactBlock(r.shear[1]), ExactBlock(r.shear[2])};
-  const auto corner = [&](const float(&v)[3][kBlock], int i) {
-    return Vec3<ExactBlock>{
-        take<ExactBlock>(v[kx] + i), take<ExactBlock>(v[ky] + i), take<ExactBlock>(v[k] + i)};
-  };
+  const ExactBlock t_min(tested_t_min(r));
   n.triangle += kBlock;
   for (int i = 0; i < kBlock; i += kWidth<ExactBlock>) {
     ExactBlock t(0);
     const Mask<ExactBlock> hit =
-        hit_triangle<ExactBlock>(org,
-                                 dir,
-                                 shear,
-                                 ExactBlock(tested_t_min(r)),
-                                 {corner(block.a, i), corner(block.b, i), corner(block.c, i)},
-                                 t);
+        hit_triangle<kAny>(RayAndBlock{&r, &block, i}, shear, t_min, ExactBlock(tested_best(r)), t);
     if (note<kAny>(r, hit, t, block.id + i))
       return true;
   }

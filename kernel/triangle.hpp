@@ -20,6 +20,10 @@ inline int shear_axis(float dx, float dy, float dz) {
   return ay >= az ? 1 : 2;
 }
 
+/// The axes that follow each one, cyclically.
+inline constexpr int kNextAxis[3] = {1, 2, 0};
+inline constexpr int kPreviousAxis[3] = {2, 0, 1};
+
 /// a b - c d with the right sign, and its size to within 2^-50 even where the products nearly
 /// agree: a product and what rounding took from it, Dekker, "A Floating-Point Technique for
 /// Extending the Available Precision", 1971.
@@ -37,6 +41,13 @@ inline double difference_of_products(double a, double b, double c, double d) {
 template <class Real>
 struct Corners {
   Vec3<Real> a, b, c;
+};
+
+/// A ray and a triangle that it may cross, in the ray's permuted axes, lane by lane or broadcast.
+template <class Real>
+struct RayAndTriangle {
+  Vec3<Real> org, dir;
+  Corners<Real> corner;
 };
 
 /// Where a ray crosses a triangle, computed in double.
@@ -104,24 +115,25 @@ inline Corners<Wide<Real>> widen(const Corners<Real>& c) {
   return {widen<i>(c.a), widen<i>(c.b), widen<i>(c.c)};
 }
 
-/// crossing() of float lanes, part after part: t where a ray crosses, NaN where not.
-template <class Real, int i = 0>
-[[gnu::always_inline]] inline void wide_depths(const Vec3<Real>& org,
-                                               const Vec3<Real>& dir,
-                                               const Corners<Real>& corner,
-                                               Wide<Real> (&t)[kWideParts<Real>]) {
-  const Crossing<Wide<Real>> r =
-      crossing<Wide<Real>>(widen<i>(org), widen<i>(dir), widen<i>(corner));
-  t[i] = select(r.inside, r.t, Wide<Real>(__builtin_nan("")));
+/// t of chosen lanes by crossing(), NaN where the ray does not cross; part after part, of those
+/// with a chosen lane.
+template <int i, class Real>
+[[gnu::always_inline]] inline void part_in_double(const RayAndTriangle<Real>& from,
+                                                  unsigned chosen,
+                                                  Wide<Real> (&t)[kWideParts<Real>]) {
+  constexpr int n = kWidth<Wide<Real>>;
+  if (chosen >> (i * n) & ((1u << n) - 1)) {
+    const Crossing<Wide<Real>> r =
+        crossing<Wide<Real>>(widen<i>(from.org), widen<i>(from.dir), widen<i>(from.corner));
+    t[i] = select(r.inside, r.t, Wide<Real>(__builtin_nan("")));
+  }
   if constexpr (i + 1 < kWideParts<Real>)
-    wide_depths<Real, i + 1>(org, dir, corner, t);
+    part_in_double<i + 1, Real>(from, chosen, t);
 }
-template <class Real>
-[[gnu::noinline]] Real depth_in_double(const Vec3<Real>& org,
-                                       const Vec3<Real>& dir,
-                                       const Corners<Real>& corner) {
-  Wide<Real> t[kWideParts<Real>];
-  wide_depths<Real>(org, dir, corner, t);
+template <class Real, class Source>
+[[gnu::noinline]] Real depth_in_double(Source source, unsigned chosen) {
+  Wide<Real> t[kWideParts<Real>] = {};
+  part_in_double<0, Real>(source(), chosen, t);
   return narrow<Real>(t);
 }
 
@@ -132,8 +144,8 @@ template <class Real>
 /// Times S (S + Z): bound of an edge function's error, 32 u. It is 24 u: a sheared corner is off by
 /// u (4 (S + Z) + S).
 inline constexpr float kEdgeError = 0x1p-19f;
-/// Times the spread: with kDepthRounding times t, bound of the error of t, 128 u. It is 72 u by the
-/// edges and 36 u by the mean.
+/// Times the spread: with kDepthRounding times t, bound of how far t is from that of double rounded
+/// to a float, 128 u. It is 72 u by the edges and 36 u by the mean.
 inline constexpr float kDepthError = 0x1p-17f;
 inline constexpr float kDepthRounding = 0x1p-20f;
 /// The largest spread over t for which floats do for t. It is about the tangent of the angle
@@ -144,30 +156,31 @@ inline constexpr float kMostSpread = 2;
 /// Point where each ray meets one triangle, from either side; watertight along shared edges and at
 /// shared vertices.
 ///
-/// Shapes    corners in the ray's permuted axes (kx, ky, kz), lane by lane or broadcast; org and
-///           dir likewise.
+/// Takes     source() gives rays and triangles. It is asked again where double is needed: registers
+///           need not hold till then what few tests look at. It is copied; 16 bytes are best.
 /// Returns   lanes whose ray crosses the triangle, edges and corners included, with t above t_min.
+///           The caller drops those beyond t_max.
 /// Accuracy  Floats decide what they can; all else is taken again in double: rays within rounding
 ///           of an edge, and t of triangles that are large beside it or seen at a flat angle. So
 ///           inside or outside is what crossing() says, for every ray (tests/watertight_test.cpp),
 ///           and t is within 8 eps of itself, whatever the triangle's size
-///           (tests/triangle_test.cpp).
+///           (tests/triangle_test.cpp). A t that is surely below t_min or above t_max, or with kAny
+///           surely between, stays as floats found it: it is on the right side of both.
 /// Source    Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013; the
 ///           filter after Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust
 ///           Geometric Predicates", 1997.
-template <class Real>
-[[gnu::always_inline]] inline Mask<Real> hit_triangle(const Vec3<Real>& org,
-                                                      const Vec3<Real>& dir,
-                                                      const Shear<Real>& shear,
-                                                      const Real& t_min,
-                                                      const Corners<Real>& corner,
-                                                      Real& t) {
+template <bool kAny, class Real, class Source>
+[[gnu::always_inline]] inline Mask<Real> hit_triangle(
+    const Source& source, const Shear<Real>& shear, const Real& t_min, const Real& t_max, Real& t) {
+  const RayAndTriangle<Real> from = source();
   if constexpr (sizeof(Scalar<Real>) == sizeof(double)) {
-    const Crossing<Real> r = crossing<Real>(org, dir, corner);
+    const Crossing<Real> r = crossing<Real>(from.org, from.dir, from.corner);
     t = r.t;
     return both(r.inside, t > t_min);
   } else {
-    const Vec3<Real> oa = corner.a - org, ob = corner.b - org, oc = corner.c - org;
+    const Real o(0);
+    const Vec3<Real> oa = from.corner.a - from.org, ob = from.corner.b - from.org,
+                     oc = from.corner.c - from.org;
     const Real ax = oa.x - shear.x * oa.z, ay = oa.y - shear.y * oa.z;
     const Real bx = ob.x - shear.x * ob.z, by = ob.y - shear.y * ob.z;
     const Real cx = oc.x - shear.x * oc.z, cy = oc.y - shear.y * oc.z;
@@ -176,9 +189,11 @@ template <class Real>
         greater(greater(magnitude(ax), magnitude(ay)), greater(magnitude(bx), magnitude(by))),
         greater(magnitude(cx), magnitude(cy)));
     const Real depth = greater(greater(magnitude(oa.z), magnitude(ob.z)), magnitude(oc.z));
-    const Real area = size * (size + depth), error = Real(kEdgeError) * area;
-    const Real least = lesser(lesser(u, v), w), most = greater(greater(u, v), w);
-    const Mask<Real> maybe = either(least + error >= Real(0), most <= error);
+    const Real area = size * (size + depth);
+    const Real error = Real(kEdgeError) * area;
+    const Real least = lesser(lesser(u, v), w);
+    const Real most = greater(greater(u, v), w);
+    const Mask<Real> maybe = lesser(most, o - least) <= error;
     if (none(maybe))
       return maybe;
     const Real inverse = Real(1) / ((u + v) + w);
@@ -186,15 +201,21 @@ template <class Real>
     t = ((u * inverse) * ta + (v * inverse) * tb) + (w * inverse) * tc;
     const Real range = greater(greater(ta, tb), tc) - lesser(lesser(ta, tb), tc);
     const Real spread = (area * magnitude(inverse)) * range;
-    const Real slack = Real(kDepthError) * spread + Real(kDepthRounding) * magnitude(t);
-    // mostly the triangle a ray starts on is surely behind
-    const Mask<Real> ahead = but_not(maybe, t + slack < t_min);
-    const Mask<Real> sure = both(either(least > error, most + error < Real(0)),
-                                 spread <= Real(kMostSpread) * magnitude(t));
-    const Mask<Real> unsure = but_not(ahead, sure);
-    if (any(unsure))
-      t = select(unsure, depth_in_double<Real>(org, dir, corner), t);
-    return both(ahead, t > t_min);  // a NaN anywhere fails here
+    const Mask<Real> inside = greater(least, o - most) > error;
+    const Mask<Real> exact = spread <= Real(kMostSpread) * magnitude(t);
+    Mask<Real> unsure = but_not(maybe, both(inside, exact));
+    if (any(unsure)) {
+      const Real slack = Real(kDepthError) * spread + Real(kDepthRounding) * magnitude(t);
+      const Real first = t - slack;
+      const Real last = t + slack;
+      Mask<Real> settled = either(last<t_min, first> t_max);
+      if (kAny)
+        settled = either(settled, both(inside, both(first > t_min, last < t_max)));
+      unsure = but_not(unsure, settled);
+      if (any(unsure))
+        t = select(unsure, depth_in_double<Real, Source>(source, bits(unsure)), t);
+    }
+    return both(maybe, t > t_min);  // a NaN anywhere fails here
   }
 }
 

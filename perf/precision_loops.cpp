@@ -56,11 +56,14 @@ void loop(const perf::Pairs& pairs, perf::PairHits& hits) {
           return Vec3<Real>{
               Real(v[permuted[0]][from]), Real(v[permuted[1]][from]), Real(v[permuted[2]][from])};
         };
+        const auto ray_and_triangle = [&] {
+          return RayAndTriangle<Real>{
+              org, dir, {corner(pairs.a), corner(pairs.b), corner(pairs.c)}};
+        };
         Real t(0);
         Mask<Real> hit;
         if constexpr (kWatertight)
-          hit = hit_triangle<Real>(
-              org, dir, shear, Real(0), {corner(pairs.a), corner(pairs.b), corner(pairs.c)}, t);
+          hit = hit_triangle<false>(ray_and_triangle, shear, Real(0), best, t);
         else
           hit = hit_moeller_trumbore<Real>(
               org, dir, corner(pairs.a), corner(pairs.b), corner(pairs.c), t);

@@ -70,13 +70,14 @@ scalar::Corners<float> corners_of(const Shape& s, int k) {
   return {permuted(s.a, k), permuted(s.b, k), permuted(s.c, k)};
 }
 
-Hit hit(const Float3& o, const Float3& d, const Shape& s, float t_min = 0) {
+template <bool kAny = false>
+Hit hit(const Float3& o, const Float3& d, const Shape& s, float t_min = 0, float t_max = kInf) {
   const int k = scalar::shear_axis(d.x, d.y, d.z);
   const scalar::Vec3<float> dir = permuted(d, k);
   const scalar::Shear<float> shear{dir.x / dir.z, dir.y / dir.z, 1 / dir.z};
+  const scalar::RayAndTriangle<float> pair{permuted(o, k), dir, corners_of(s, k)};
   float t = -1;
-  const bool h =
-      scalar::hit_triangle<float>(permuted(o, k), dir, shear, t_min, corners_of(s, k), t);
+  const bool h = scalar::hit_triangle<kAny>([&] { return pair; }, shear, t_min, t_max, t);
   return {h, t};
 }
 
@@ -245,6 +246,45 @@ TEST(TriangleOracle, FloorsOfAnySizeAreMetWhereTheyAre) {
       EXPECT_GT(hits, 100);
     }
   }
+}
+
+/// Where a search ends moves no t and decides no other way than t itself, which is left to floats
+/// alone where it is surely beyond, or for kAny surely between: ends from an ulp to some hundred
+/// beside t, and to 1/2 of t, below and above, for floors of any size.
+TEST(TriangleOracle, EndsOfASearchDecideAsTDoes) {
+  int hits = 0;
+  int near = 0;
+  for (std::uint64_t seed = 0; seed < 200000; ++seed) {
+    Random random(seed);
+    const Floor floor = random_floor(random, random.log_in(1, 1e6), {}, random.chance(.2));
+    const Float3 o = at({}, random.log_in(.03, 2), random.direction());
+    const Float3 d = random.direction();
+    for (const Shape& s : floor.halves) {
+      const Hit whole = hit(o, d, s);
+      if (!whole.hit) {
+        EXPECT_FALSE(hit<true>(o, d, s).hit);
+        continue;
+      }
+      ++hits;
+      const float by = random.chance(.5) ? float(random.log_in(0x1p-24, 0x1p-15))
+                                         : float(random.log_in(0x1p-15, .5));
+      for (const float end : {whole.t, whole.t * (1 + by), whole.t * (1 - by)}) {
+        near += end != whole.t && by < 0x1p-20f;
+        const Hit before = hit(o, d, s, 0, end);
+        const Hit after = hit(o, d, s, end);
+        const Hit any_before = hit<true>(o, d, s, 0, end);
+        const Hit any_after = hit<true>(o, d, s, end);
+        EXPECT_EQ(before.hit && before.t <= end, whole.t <= end) << "seed " << seed;
+        EXPECT_EQ(any_before.hit && any_before.t < end, whole.t < end) << "seed " << seed;
+        EXPECT_EQ(after.hit, whole.t > end) << "seed " << seed;
+        EXPECT_EQ(any_after.hit, whole.t > end) << "seed " << seed;
+        EXPECT_TRUE(before.t == whole.t || whole.t > end) << "seed " << seed;
+        EXPECT_TRUE(after.t == whole.t || whole.t <= end) << "seed " << seed;
+      }
+    }
+  }
+  EXPECT_GT(hits, 20000);
+  EXPECT_GT(near, 5000);
 }
 
 /// The triangle and the ray of a report, t by hand.
