@@ -7,21 +7,9 @@ if(NOT GRELHA_ISAS STREQUAL "all")
 endif()
 install(TARGETS grelha RUNTIME COMPONENT grelha)
 
-# The headers a program may include, and no others: kernel/ keeps its insides, and xsimd, to itself. They name each other
-# "grelha/kernel/...", lest a folder kernel/ of the program's own be looked into.
-set(headers ${CMAKE_INSTALL_INCLUDEDIR}/grelha)
+# The headers a program may include, and no others: kernel/ keeps its insides, and xsimd, to itself.
+install(DIRECTORY include/grelha DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT grelha)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/grelha)
-get_target_property(names grelha_kernel GRELHA_HEADERS)
-list(TRANSFORM names PREPEND kernel/)
-install(CODE "
-  foreach(name grelha.hpp ${names})
-    string(REGEX REPLACE \"^grelha\" \"kernel/grelha\" from \${name})
-    file(READ \"${PROJECT_SOURCE_DIR}/\${from}\" text)
-    string(REPLACE \"#include \\\"kernel/\" \"#include \\\"grelha/kernel/\" text \"\${text}\")
-    set(to \"\${CMAKE_INSTALL_PREFIX}/${headers}/\${name}\")
-    file(WRITE \"\$ENV{DESTDIR}\${to}\" \"\${text}\")
-    list(APPEND CMAKE_INSTALL_MANIFEST_FILES \"\${to}\")
-  endforeach()" COMPONENT grelha)
 install(TARGETS grelha_kernel EXPORT grelhaTargets ARCHIVE COMPONENT grelha)
 install(EXPORT grelhaTargets NAMESPACE grelha:: DESTINATION ${package_folder} COMPONENT grelha)
 configure_package_config_file(cmake/grelhaConfig.cmake.in ${PROJECT_BINARY_DIR}/grelhaConfig.cmake INSTALL_DESTINATION ${package_folder})

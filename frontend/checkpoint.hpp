@@ -5,9 +5,9 @@
 #include <variant>
 
 #include "frontend/identity.hpp"
-#include "kernel/accumulator.hpp"
-#include "kernel/refinement.hpp"
-#include "kernel/subdivided.hpp"
+#include "grelha/accumulator.hpp"
+#include "kernel/picture/refinement.hpp"
+#include "kernel/picture/subdivided.hpp"
 
 namespace grelha {
 

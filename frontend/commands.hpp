@@ -11,8 +11,8 @@
 #include "frontend/effects.hpp"
 #include "frontend/image_style.hpp"
 #include "frontend/scene_file.hpp"
-#include "kernel/part.hpp"
-#include "kernel/render.hpp"
+#include "grelha/part.hpp"
+#include "grelha/render.hpp"
 
 namespace grelha {
 

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "kernel/image.hpp"
+#include "grelha/image.hpp"
 
 namespace grelha {
 

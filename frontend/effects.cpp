@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "kernel/scene_spans.hpp"
+#include "grelha/scene_spans.hpp"
 
 namespace grelha {
 namespace {

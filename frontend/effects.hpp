@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "frontend/scene_file.hpp"
-#include "kernel/render.hpp"
+#include "grelha/render.hpp"
 
 namespace grelha {
 

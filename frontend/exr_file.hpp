@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "frontend/image_style.hpp"
-#include "kernel/image.hpp"
+#include "grelha/image.hpp"
 
 namespace grelha {
 

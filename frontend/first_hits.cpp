@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "kernel/frame.hpp"
-#include "kernel/query.hpp"
+#include "kernel/scene/frame.hpp"
+#include "grelha/query.hpp"
 
 namespace grelha {
 namespace {

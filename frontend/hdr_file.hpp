@@ -5,7 +5,7 @@
 #include <string>
 
 #include "frontend/image_style.hpp"
-#include "kernel/image.hpp"
+#include "grelha/image.hpp"
 
 namespace grelha {
 

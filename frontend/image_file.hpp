@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "frontend/image_style.hpp"
-#include "kernel/image.hpp"
+#include "grelha/image.hpp"
 
 namespace grelha {
 

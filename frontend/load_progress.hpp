@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <functional>
 
-#include "kernel/render.hpp"
+#include "grelha/render.hpp"
 
 namespace grelha {
 

@@ -11,7 +11,8 @@
 #include "frontend/parse_error.hpp"
 #include "frontend/partial.hpp"
 #include "frontend/stop_signals.hpp"
-#include "kernel/point_tracer.hpp"
+#include "kernel/picture/point_tracer.hpp"
+#include "kernel/picture/refiner.hpp"
 
 namespace grelha {
 namespace {

@@ -21,7 +21,7 @@
 #include "frontend/scene_file.hpp"
 #include "frontend/stop_signals.hpp"
 #include "frontend/warning_log.hpp"
-#include "kernel/render.hpp"
+#include "grelha/render.hpp"
 #include "scenes/generators.hpp"
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "frontend/report.hpp"
-#include "kernel/scene_spans.hpp"
+#include "grelha/scene_spans.hpp"
 
 namespace grelha {
 

@@ -6,7 +6,7 @@
 
 #include "frontend/text.hpp"
 #include "frontend/warnings.hpp"
-#include "kernel/geometry.hpp"
+#include "grelha/geometry.hpp"
 
 namespace grelha {
 

@@ -3,7 +3,7 @@
 #include <string_view>
 
 #include "frontend/nff_input.hpp"
-#include "kernel/geometry.hpp"
+#include "grelha/geometry.hpp"
 
 namespace grelha {
 

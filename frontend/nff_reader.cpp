@@ -16,7 +16,7 @@
 #include "frontend/plausible.hpp"
 #include "frontend/ply_reader.hpp"
 #include "frontend/scene_builder.hpp"
-#include "kernel/render.hpp"
+#include "grelha/render.hpp"
 
 namespace grelha {
 namespace {

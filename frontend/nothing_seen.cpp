@@ -7,7 +7,7 @@
 #include <span>
 
 #include "frontend/report.hpp"
-#include "kernel/scene_spans.hpp"
+#include "grelha/scene_spans.hpp"
 
 namespace grelha {
 namespace {

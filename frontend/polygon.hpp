@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "frontend/point_tree.hpp"
-#include "kernel/geometry.hpp"
+#include "grelha/geometry.hpp"
 
 namespace grelha {
 

@@ -9,7 +9,7 @@
 #include "frontend/commands.hpp"
 #include "frontend/report.hpp"
 #include "frontend/scene_file.hpp"
-#include "kernel/render.hpp"
+#include "grelha/render.hpp"
 
 namespace grelha {
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-#include "kernel/accumulator.hpp"
+#include "grelha/accumulator.hpp"
 
 namespace grelha {
 

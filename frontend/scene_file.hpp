@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "kernel/camera.hpp"
-#include "kernel/geometry.hpp"
+#include "grelha/camera.hpp"
+#include "grelha/geometry.hpp"
 
 namespace grelha {
 

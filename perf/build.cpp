@@ -25,7 +25,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "kernel/world.hpp"
+#include "kernel/grid/world_impl.hpp"
 #include "perf/workloads.hpp"
 
 #ifdef GRELHA_EMBREE

@@ -20,7 +20,7 @@
 
 #include <time.h>
 
-#include "kernel/world.hpp"
+#include "kernel/grid/world_impl.hpp"
 #include "perf/ray_sets.hpp"
 
 namespace {

@@ -12,7 +12,7 @@
 #include <xmmintrin.h>
 #endif
 
-#include "kernel/view.hpp"
+#include "kernel/grid/view.hpp"
 
 namespace grelha::perf {
 namespace {

@@ -26,7 +26,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "kernel/world.hpp"
+#include "kernel/grid/world_impl.hpp"
 #include "perf/embree.hpp"
 #include "perf/precision_loops.hpp"
 #include "perf/workloads.hpp"

@@ -9,10 +9,10 @@
 #include <random>
 
 #include "frontend/effects.hpp"
-#include "kernel/frame.hpp"
-#include "kernel/sampling.hpp"
-#include "kernel/surface.hpp"
-#include "kernel/world.hpp"
+#include "kernel/scene/frame.hpp"
+#include "kernel/render/sampling.hpp"
+#include "kernel/trace/surface.hpp"
+#include "kernel/grid/world_impl.hpp"
 
 namespace grelha::perf {
 

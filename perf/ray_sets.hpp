@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "kernel/shading_view.hpp"
+#include "kernel/scene/shading_view.hpp"
 #include "perf/workloads.hpp"
 
 namespace grelha::perf {

@@ -5,8 +5,8 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "kernel/frame.hpp"
-#include "kernel/world.hpp"
+#include "kernel/scene/frame.hpp"
+#include "kernel/grid/world_impl.hpp"
 #include "scenes/generators.hpp"
 
 #include <unistd.h>

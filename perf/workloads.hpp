@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "frontend/scene_file.hpp"
-#include "kernel/render.hpp"
-#include "kernel/variants.hpp"
+#include "grelha/render.hpp"
+#include "kernel/query/variants.hpp"
 
 namespace grelha::perf {
 

@@ -1,9 +1,9 @@
 // What a pixel's beam knows: whether something may hide from its samples, before any is taken.
 #include <array>
 
-#include "kernel/frame.hpp"
-#include "kernel/variants.hpp"
-#include "kernel/world.hpp"
+#include "kernel/scene/frame.hpp"
+#include "kernel/query/variants.hpp"
+#include "kernel/grid/world_impl.hpp"
 #include "tests/support/rays.hpp"
 #include "tests/support/scenes.hpp"
 

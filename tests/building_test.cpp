@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "frontend/nff_reader.hpp"
-#include "kernel/render.hpp"
+#include "grelha/render.hpp"
 #include "scenes/generators.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"

@@ -1,11 +1,11 @@
 // The camera's frame and the rays through pixel centres, against long double.
 #define GRELHA_ISA scalar
-#include "kernel/band.hpp"
+#include "kernel/render/band.hpp"
 
 #include <memory>
 #include <numbers>
 
-#include "kernel/frame.hpp"
+#include "kernel/scene/frame.hpp"
 #include "tests/support/oracle.hpp"
 #include "tests/support/rays.hpp"
 #include "tests/support/scenes.hpp"

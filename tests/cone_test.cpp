@@ -1,9 +1,9 @@
 // hit_cone: every instruction set and method against the scalar one bit for bit; the scalar one
 // against long double.
 #define GRELHA_ISA scalar
-#include "kernel/cone.hpp"
+#include "kernel/shapes/cone.hpp"
 
-#include "kernel/primitives.hpp"
+#include "kernel/shapes/primitives.hpp"
 #include "tests/support/oracle.hpp"
 #include "tests/support/rays.hpp"
 #include "tests/support/scenes.hpp"

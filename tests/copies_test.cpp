@@ -1,9 +1,10 @@
 // Exact copies of primitives are not tested, and nothing shows that they are not.
-#include "kernel/copies.hpp"
+#include "grelha/render.hpp"
+#include "kernel/shapes/copies.hpp"
 
 #include <algorithm>
 
-#include "kernel/world.hpp"
+#include "kernel/grid/world_impl.hpp"
 #include "tests/support/scenes.hpp"
 
 #include <gtest/gtest.h>

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "kernel/world.hpp"
+#include "kernel/grid/world_impl.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace grelha::test {

@@ -7,7 +7,7 @@
 
 #include "frontend/effects.hpp"
 #include "frontend/scene_builder.hpp"
-#include "kernel/render.hpp"
+#include "grelha/render.hpp"
 
 #include <gtest/gtest.h>
 

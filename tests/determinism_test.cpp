@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include "frontend/nff_reader.hpp"
-#include "kernel/render.hpp"
+#include "grelha/render.hpp"
 #include "scenes/generators.hpp"
 #include "tests/support/rays.hpp"
 #include "tests/support/scenes.hpp"

@@ -2,7 +2,7 @@
 #include "frontend/exr_file.hpp"
 
 #include "frontend/image_file.hpp"
-#include "kernel/rays.hpp"
+#include "grelha/rays.hpp"
 #include "tests/support/file_error.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -3,7 +3,7 @@
 #include "frontend/image_file.hpp"
 #include "frontend/memory_limit.hpp"
 #include "frontend/place.hpp"
-#include "kernel/query.hpp"
+#include "grelha/query.hpp"
 #include "tests/support/running.hpp"
 
 #include <gtest/gtest.h>

@@ -1,13 +1,13 @@
 // Blocks of triangles and their boxes, sizes of grids, and which grids a scene gets. A part of
 // grid_test.
-#include "kernel/grid.hpp"
+#include "kernel/grid/grid.hpp"
 
 #include <algorithm>
 #include <cstring>
 #include <numeric>
 #include <set>
 
-#include "kernel/block_order.hpp"
+#include "kernel/grid/block_order.hpp"
 #include "tests/support/grid_cases.hpp"
 
 namespace grelha::test {

@@ -1,14 +1,15 @@
 // What a built grid promises: sound rows, every primitive in each cell its surface touches, exact
 // distances.
-#include "kernel/copies.hpp"
-#include "kernel/grid.hpp"
+#include "kernel/shapes/copies.hpp"
+#include "kernel/grid/grid.hpp"
 
 #include <algorithm>
 #include <cstring>
 #include <numeric>
 #include <set>
 
-#include "kernel/block_order.hpp"
+#include "kernel/grid/block_order.hpp"
+#include "kernel/grid/distance_field.hpp"
 #include "tests/support/grid_cases.hpp"
 
 namespace grelha::test {

@@ -37,8 +37,7 @@ foreach(header ${headers})
     -I ${include} -include ${include}/${header} /dev/null)
 endforeach()
 
-# A program with a folder kernel/ of its own, and a plug-in: all of the library becomes part of a shared one.
-file(WRITE ${SCRATCH}/own/kernel/geometry.hpp "#error \"the program's own\"\n")
+# A plug-in: all of the library becomes part of a shared one.
 file(WRITE ${SCRATCH}/plugin.cpp "#include <grelha/grelha.hpp>\n"
   "grelha::Hit plugin(const grelha::World& w) { return closest(w, {{0, 0, 0}, {0, 0, 1}}); }\n")
 file(GLOB_RECURSE library ${prefix}/*/libgrelha.a)
@@ -46,7 +45,7 @@ set(all_defined -Wl,-z,defs)
 if(FLAGS MATCHES "-fsanitize")  # clang's sanitizers are in the program that loads the plug-in
   set(all_defined)
 endif()
-run("making a plug-in" ${COMPILER} ${flags} -std=c++20 -fPIC -shared ${all_defined} -I ${SCRATCH}/own -I ${include} ${SCRATCH}/plugin.cpp
+run("making a plug-in" ${COMPILER} ${flags} -std=c++20 -fPIC -shared ${all_defined} -I ${include} ${SCRATCH}/plugin.cpp
   -Wl,--whole-archive ${library} -Wl,--no-whole-archive -fopenmp -o ${SCRATCH}/plugin.so)
 
 run("configuring the example" ${CMAKE_COMMAND} -S ${ROOT}/examples -B ${SCRATCH}/build -G ${GENERATOR} -D CMAKE_BUILD_TYPE=${CONFIG}

@@ -1,7 +1,7 @@
 // Rays that leave a surface: none meets the surface it left, and none starts far enough away to skip what is near.
 #define GRELHA_ISA scalar
-#include "kernel/surface.hpp"
-#include "kernel/trace.hpp"
+#include "kernel/trace/surface.hpp"
+#include "kernel/trace/trace.hpp"
 
 #include "tests/support/oracle.hpp"
 #include "tests/support/rays.hpp"

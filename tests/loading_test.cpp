@@ -1,7 +1,7 @@
 // How far reading is, for every kind of file: the share never falls, says something on the way,
 // comes to 1, and stops when told.
 #include "frontend/scene_file.hpp"
-#include "kernel/render.hpp"
+#include "grelha/render.hpp"
 #include "scenes/generators.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -4,14 +4,15 @@
 #include <limits>
 #include <sstream>
 
+#include "kernel/picture/refiner.hpp"
 #include "frontend/checkpoint.hpp"
 #include "frontend/digest.hpp"
 #include "frontend/merge.hpp"
 #include "frontend/nff_reader.hpp"
 #include "frontend/parse_error.hpp"
 #include "frontend/partial.hpp"
-#include "kernel/accumulator.hpp"
-#include "kernel/point_tracer.hpp"
+#include "grelha/accumulator.hpp"
+#include "kernel/picture/point_tracer.hpp"
 #include "scenes/generators.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/temporary_folder.hpp"

@@ -3,8 +3,9 @@
 #include <cmath>
 #include <utility>
 
-#include "kernel/variants.hpp"
-#include "kernel/world.hpp"
+#include "grelha/render.hpp"
+#include "kernel/query/variants.hpp"
+#include "kernel/grid/world_impl.hpp"
 #include "tests/support/scenes.hpp"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // hit_plane: every instruction set and method against the scalar one bit for bit; the scalar one
 // against long double.
 #define GRELHA_ISA scalar
-#include "kernel/plane.hpp"
+#include "kernel/shapes/plane.hpp"
 
 #include "tests/support/oracle.hpp"
 #include "tests/support/rays.hpp"

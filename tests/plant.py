@@ -32,10 +32,10 @@ class Fault:
 
 ROW = "Rows/Stability.NothingIsLostFalseOrMetAgain/"
 FAULTS = [
-    Fault("no growth of boxes", "kernel/plan.cpp", "return reach * 256 / 16777216;", "return reach * 0;",
+    Fault("no growth of boxes", "kernel/grid/plan.cpp", "return reach * 256 / 16777216;", "return reach * 0;",
           "grid", "Pads.*"),
-    Fault("< for <= in the walk", "kernel/march.hpp", "slice <= last && active > 0;", "slice < last && active > 0;", "walk", "Isa/Walk.*"),
-    Fault("adding up instead of computing again", "kernel/abreast.hpp", "t[a] = (plane - load<Lanes>(now[Course::kPlace + a])) * inverse;",
+    Fault("< for <= in the walk", "kernel/trace/march.hpp", "slice <= last && active > 0;", "slice < last && active > 0;", "walk", "Isa/Walk.*"),
+    Fault("adding up instead of computing again", "kernel/trace/abreast.hpp", "t[a] = (plane - load<Lanes>(now[Course::kPlace + a])) * inverse;",
           """t[a] = [&] {
         const float from = load<Lanes>(now[Course::kPlace + a]), to = plane, step = inverse;
         float k = to > from ? __builtin_ceilf(from) : __builtin_floorf(from), sum = (k - from) * step;
@@ -44,29 +44,29 @@ FAULTS = [
         return sum;
       }();""", "stability", ROW + "resolution_at_its_bounds"),
     Fault("contraction", "CMakeLists.txt", "-ffp-contract=off)", "-ffp-contract=fast)", "variants", "*ReturnTheScalarBits*", simd=True),
-    Fault("unshuffled light samples", "kernel/sampling.hpp", "if (plan.kind == SamplePlan::kUnshuffled) return",
+    Fault("unshuffled light samples", "kernel/render/sampling.hpp", "if (plan.kind == SamplePlan::kUnshuffled) return",
           "if (plan.kind != SamplePlan::kSobol) return", "stability", "Rows/StabilityOfPictures.NoPixelIsWrong/correlated_samples"),
-    Fault("skipping a slice too far", "kernel/march.hpp", ": nearest - 1;", ": nearest;", "walk", "Isa/Walk.*"),
-    Fault("a mailbox that is kept for the next packet", "kernel/march.hpp", "if (use_mailbox) mailbox.clear();", "", "walk", "Isa/Walk.*"),
-    Fault("a sphere by the textbook", "kernel/sphere.hpp", "const Real inside = rr - dot(gap, gap);",
+    Fault("skipping a slice too far", "kernel/trace/march.hpp", ": nearest - 1;", ": nearest;", "walk", "Isa/Walk.*"),
+    Fault("a mailbox that is kept for the next packet", "kernel/trace/march.hpp", "if (use_mailbox) mailbox.clear();", "", "walk", "Isa/Walk.*"),
+    Fault("a sphere by the textbook", "kernel/shapes/sphere.hpp", "const Real inside = rr - dot(gap, gap);",
           "const Real inside = middle * middle / inv_dd - (dot(to_center, to_center) - rr);", "stability", ROW + "specks_in_a_large_scene"),
-    Fault("a sphere's power without slack", "kernel/sphere.hpp", "kPowerError = 0x1p-21f;",
+    Fault("a sphere's power without slack", "kernel/shapes/sphere.hpp", "kPowerError = 0x1p-21f;",
           "kPowerError = 0;", "sphere", "SphereOracle.MeasuresShortWays"),
-    Fault("a sphere's chord without slack", "kernel/sphere.hpp", "kChordError = 0x1p-20f;",
+    Fault("a sphere's chord without slack", "kernel/shapes/sphere.hpp", "kChordError = 0x1p-20f;",
           "kChordError = 0;", "sphere", "SphereOracle.MeasuresShortWays"),
-    Fault("floats for short ways to a sphere", "kernel/sphere.hpp", "kFarPower = 0x1p-4f;",
+    Fault("floats for short ways to a sphere", "kernel/shapes/sphere.hpp", "kFarPower = 0x1p-4f;",
           "kFarPower = 0;", "sphere", "SphereOracle.MeasuresShortWays"),
-    Fault("a sphere's place by t", "kernel/surface.hpp",
+    Fault("a sphere's place by t", "kernel/trace/surface.hpp",
           "return rounded_sphere_place<Real>(org, dir, t, c, r);",
           "return sphere_place<Real>(c, r, org + t * dir);", "leaving", "Leaving.MirrorRaysOf*"),
-    Fault("epsilon 1e-4 instead of bounds", "kernel/surface.hpp", "Surface<Real> s{point, n, n, Real(4 * kEps) * largest(point) + Real(kWideEps) * corners,",
+    Fault("epsilon 1e-4 instead of bounds", "kernel/trace/surface.hpp", "Surface<Real> s{point, n, n, Real(4 * kEps) * largest(point) + Real(kWideEps) * corners,",
           "Surface<Real> s{point, n, n, Real(1e-4f),", "stability", ROW + "lost_contacts:" + ROW + "self_hits_of_triangles"),
-    Fault("no filter of edges", "kernel/triangle.hpp", "kEdgeError = 0x1p-19f", "kEdgeError = 0", "watertight", "*"),
-    Fault("floats for any depth", "kernel/triangle.hpp", "kMostSpread = 2;", "kMostSpread = 1e30f;", "triangle",
+    Fault("no filter of edges", "kernel/shapes/triangle.hpp", "kEdgeError = 0x1p-19f", "kEdgeError = 0", "watertight", "*"),
+    Fault("floats for any depth", "kernel/shapes/triangle.hpp", "kMostSpread = 2;", "kMostSpread = 1e30f;", "triangle",
           "TriangleOracle.FloorsOfAnySizeAreMetWhereTheyAre"),
-    Fault("behind without slack", "kernel/triangle.hpp", "kDepthError = 0x1p-17f", "kDepthError = 0", "triangle",
+    Fault("behind without slack", "kernel/shapes/triangle.hpp", "kDepthError = 0x1p-17f", "kDepthError = 0", "triangle",
           "TriangleOracle.FloorsOfAnySizeAreMetWhereTheyAre"),
-    Fault("ties by arrival", "kernel/packet.hpp", "if ((ties >> k & 1) && (held == kNoPrimitive || held <= id)) continue;",
+    Fault("ties by arrival", "kernel/trace/packet.hpp", "if ((ties >> k & 1) && (held == kNoPrimitive || held <= id)) continue;",
           "if (ties >> k & 1) continue;", "walk", "Isa/Ties.*"),
 ]
 

@@ -1,6 +1,6 @@
 // power(): near the true one, and the same bits in every copy.
 #define GRELHA_ISA scalar
-#include "kernel/power.hpp"
+#include "kernel/simd/power.hpp"
 
 #include "tests/support/rays.hpp"
 

@@ -1,7 +1,7 @@
 // The built program as a user meets it: exit statuses, files, one line per error.
 #include "frontend/image_file.hpp"
 #include "frontend/memory_limit.hpp"
-#include "kernel/geometry.hpp"
+#include "grelha/geometry.hpp"
 #include "tests/support/running.hpp"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // The library as a program that embeds it sees it: its own arrays in, answers out, from any thread
 // and of several scenes at once.
-#include "kernel/accumulator.hpp"
-#include "kernel/grelha.hpp"
+#include "grelha/accumulator.hpp"
+#include "grelha/grelha.hpp"
 
 #include <array>
 #include <atomic>

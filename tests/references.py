@@ -20,7 +20,7 @@ import re
 import sys
 import tempfile
 
-FOLDERS = ("kernel", "frontend", "scenes", "tests", "perf", "examples", "cmake", "docs")
+FOLDERS = ("include", "kernel", "frontend", "scenes", "tests", "perf", "examples", "cmake", "docs")
 SOURCES = ("hpp", "cpp", "py", "sh", "cmake")
 COMMENT = {".hpp": "//", ".cpp": "//", ".py": "#", ".sh": "#", ".cmake": "#"}
 # Of the system's kernel, of its C library, and of words

@@ -5,7 +5,8 @@
 
 #include "frontend/effects.hpp"
 #include "frontend/nff_reader.hpp"
-#include "kernel/refinement.hpp"
+#include "kernel/picture/refinement.hpp"
+#include "kernel/picture/refiner.hpp"
 #include "scenes/generators.hpp"
 #include "tests/support/rays.hpp"
 #include "tests/support/scenes.hpp"

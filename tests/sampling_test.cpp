@@ -1,6 +1,6 @@
 // Where samples lie: nets, slopes of convergence, pairings without bias.
 #define GRELHA_ISA scalar
-#include "kernel/band.hpp"
+#include "kernel/render/band.hpp"
 
 #include <bit>
 #include <cmath>
@@ -13,7 +13,7 @@
 
 #include <gtest/gtest.h>
 
-#include "kernel/variants.hpp"
+#include "kernel/query/variants.hpp"
 #include "tests/support/rays.hpp"
 
 namespace grelha::scalar {

@@ -1,7 +1,7 @@
 // Shading against closed forms in long double: one ray, one pixel, one effect at a time.
 #include <functional>
 
-#include "kernel/world.hpp"
+#include "kernel/grid/world_impl.hpp"
 #include "tests/support/oracle.hpp"
 #include "tests/support/rays.hpp"
 #include "tests/support/scenes.hpp"

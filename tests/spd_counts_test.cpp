@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "frontend/scene_file.hpp"
-#include "kernel/render.hpp"
+#include "grelha/render.hpp"
 #include "scenes/generators.hpp"
 
 namespace {

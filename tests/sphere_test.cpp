@@ -1,6 +1,6 @@
 // hit_sphere: every instruction set and method against the scalar one bit for bit; the scalar one against long double.
 #define GRELHA_ISA scalar
-#include "kernel/sphere.hpp"
+#include "kernel/shapes/sphere.hpp"
 
 #include "tests/support/oracle.hpp"
 #include "tests/support/rays.hpp"

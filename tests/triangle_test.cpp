@@ -1,7 +1,7 @@
 // hit_triangle: every instruction set and method against the scalar one bit for bit; the scalar one
 // against long double.
 #define GRELHA_ISA scalar
-#include "kernel/triangle.hpp"
+#include "kernel/shapes/triangle.hpp"
 
 #include "tests/support/oracle.hpp"
 #include "tests/support/rays.hpp"
@@ -129,7 +129,7 @@ TEST(TriangleOracle, DecidesLikeTheExactOutline) {
   EXPECT_GT(inside, 20000);
 }
 
-/// How far the point found lies from the triangle, slivers included: kernel/triangle.hpp and
+/// How far the point found lies from the triangle, slivers included: kernel/shapes/triangle.hpp and
 /// docs/numerics.md say 46 eps reach. The weights are of doubles: the point they make lies on the
 /// ray but for some 64 roundings of the reach, which slivers lengthen.
 TEST(TriangleOracle, PointsLieOnTheTriangle) {

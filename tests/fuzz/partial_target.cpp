@@ -4,12 +4,13 @@
 // all of them are merged.
 #include <vector>
 
+#include "kernel/picture/refiner.hpp"
 #include "frontend/digest.hpp"
 #include "frontend/merge.hpp"
 #include "frontend/commands.hpp"
 #include "frontend/parse_error.hpp"
 #include "frontend/partial.hpp"
-#include "kernel/point_tracer.hpp"
+#include "kernel/picture/point_tracer.hpp"
 #include "tests/fuzz/target.hpp"
 
 namespace {

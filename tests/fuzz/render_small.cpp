@@ -5,7 +5,7 @@
 #include "frontend/effects.hpp"
 #include "frontend/identity.hpp"
 #include "frontend/report.hpp"
-#include "kernel/render.hpp"
+#include "grelha/render.hpp"
 
 namespace grelha::fuzz {
 namespace {

@@ -7,7 +7,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "kernel/render.hpp"
+#include "grelha/render.hpp"
 #include "tests/support/oracle.hpp"
 #include "tests/support/scenes.hpp"
 

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "kernel/geometry.hpp"
+#include "grelha/geometry.hpp"
 #include "tests/support/oracle.hpp"
 #include "tests/support/ray_list.hpp"
 

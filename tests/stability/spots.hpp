@@ -1,11 +1,11 @@
 #pragma once
 // Where rays leave surfaces: both tracers get the same start points, those the renderer uses
-// (kernel/surface.hpp).
+// (kernel/trace/surface.hpp).
 #ifndef GRELHA_ISA
 #define GRELHA_ISA scalar
 #endif
-#include "kernel/surface.hpp"
-#include "kernel/world.hpp"
+#include "kernel/trace/surface.hpp"
+#include "kernel/grid/world_impl.hpp"
 
 #include <cmath>
 

@@ -1,7 +1,7 @@
 #pragma once
 // Scenes that tests of grids are tried on, and points that lie in what a grid holds.
 
-#include "kernel/grid.hpp"
+#include "kernel/grid/grid.hpp"
 #include "tests/support/rays.hpp"
 #include "tests/support/scenes.hpp"
 

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <optional>
 
-#include "kernel/geometry.hpp"
+#include "grelha/geometry.hpp"
 
 namespace grelha::test::oracle {
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "kernel/geometry.hpp"
+#include "grelha/geometry.hpp"
 
 namespace grelha::test {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "kernel/variants.hpp"
-#include "kernel/world.hpp"
+#include "kernel/query/variants.hpp"
+#include "kernel/grid/world_impl.hpp"
 #include "tests/support/random.hpp"
 
 namespace grelha::test {

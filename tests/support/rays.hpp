@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "kernel/render.hpp"
+#include "grelha/render.hpp"
 #include "tests/support/ray_list.hpp"
 
 namespace grelha {

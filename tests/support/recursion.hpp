@@ -1,6 +1,6 @@
 #pragma once
 
-#include "kernel/point_tracer.hpp"
+#include "kernel/picture/point_tracer.hpp"
 
 #include <array>
 #include <functional>

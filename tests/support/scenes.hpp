@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "kernel/camera.hpp"
-#include "kernel/geometry.hpp"
+#include "grelha/camera.hpp"
+#include "grelha/geometry.hpp"
 #include "tests/support/random.hpp"
 
 namespace grelha::test {

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "grelha/geometry.hpp"
+
+namespace grelha {
+
+inline constexpr int kMostSide = 65536;  ///< of a picture, in pixels
+
+/// A camera looking from `eye` to `at`. Pixel (0,0) is the upper left one; with one sample a pixel
+/// rays go through centres.
+struct Camera {
+  /// up: neither zero nor parallel to the view (see camera_is_sound)
+  Float3 eye{0, 0, 1}, at, up{0, 1, 0};
+  /// full vertical field of view, between the outer edges of the outermost rows
+  double angle_deg = 45;
+  int width = 512, height = 512;  ///< pixels, each from 1 to kMostSide; pixels are square
+  double aperture = 0;            ///< diameter of a thin lens, scene units; 0: pinhole
+  /// distance, along the view, of the plane that is sharp; scene units, > 0
+  double focus = 1;
+};
+
+/// Whether the frame can be built: finite numbers, eye != at, up not along the view, 0 < angle <
+/// 180.
+bool camera_is_sound(const Camera& camera);
+
+/// Width and height of a pixel where the view is 1 away from the eye, scene units. The same bits on
+/// every machine.
+double pixel_size(const Camera& camera);
+
+}  // namespace grelha

@@ -1,0 +1,19 @@
+#pragma once
+/// \file
+///
+/// All of the library: `#include <grelha/grelha.hpp>`, `find_package(grelha)`, link
+/// `grelha::kernel`.
+///
+/// Fill in a grelha::Scene, or a grelha::SceneSpans over arrays of your own; build a grelha::World
+/// from it; ask with grelha::closest() and grelha::occluded(), or grelha::render() a picture.
+
+#include "grelha/camera.hpp"
+#include "grelha/geometry.hpp"
+#include "grelha/image.hpp"
+#include "grelha/query.hpp"
+#include "grelha/render.hpp"
+#include "grelha/scene_spans.hpp"
+#include "grelha/stats.hpp"
+
+/// A ray tracer on uniform grids.
+namespace grelha {}

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <cstddef>
+#include <vector>
+
+namespace grelha {
+
+/// Linear RGB, three floats a pixel, row 0 on top.
+struct Image {
+  int width = 0, height = 0;
+  std::vector<float> rgb;  ///< [height * width * 3]
+
+  Image() = default;
+  /// A black one.
+  Image(int w, int h) : width(w), height(h), rgb(std::size_t(w) * std::size_t(h) * 3) {}
+  /// Where row y begins.
+  float* row(int y) { return rgb.data() + std::size_t(y) * std::size_t(width) * 3; }
+  /// The same, to read.
+  const float* row(int y) const { return rgb.data() + std::size_t(y) * std::size_t(width) * 3; }
+};
+
+/// By pixel, row 0 on top.
+struct SampleMaps {
+  std::vector<std::uint32_t> samples;  ///< [height * width] spent
+  /// [height * width] estimated standard error, root mean square of the channels
+  std::vector<float> error;
+  /// [height * width] of the 95 % interval, what may hide from the samples counted in
+  std::vector<float> width;
+};
+
+}  // namespace grelha

@@ -1,0 +1,17 @@
+#pragma once
+// The instruction sets that the kernel's hot loops are compiled for.
+
+#include <string_view>
+#include <vector>
+
+namespace grelha {
+
+/// One compiled copy of the kernel's hot loops.
+struct Isa {
+  std::string_view name;  ///< "scalar", "sse2", "avx2", "avx512"
+  bool compiled, runs_here;
+};
+/// All copies this version knows, scalar first.
+std::vector<Isa> isas();
+
+}  // namespace grelha

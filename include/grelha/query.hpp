@@ -1,0 +1,91 @@
+#pragma once
+// What rays of the caller's meet. Every function may be called by any number of threads at once, on
+// one World or on many: a World does not change, and all a call writes are the arrays it was given.
+
+#include <cstdint>
+#include <limits>
+#include <string_view>
+
+#include "grelha/geometry.hpp"
+#include "grelha/rays.hpp"
+#include "grelha/stats.hpp"
+#include "grelha/world.hpp"
+
+namespace grelha {
+
+/// One ray.
+struct Ray {
+  Float3 org;  ///< where it starts
+  Float3 dir;  ///< any length from 1e-18 to 1e18; t counts multiples of it
+  /// what lies strictly between these is searched
+  float t_min = 0, t_max = std::numeric_limits<float>::infinity();
+};
+
+/// What a ray met first.
+struct Hit {
+  float t;                          ///< the point is org + t dir; without a hit, the ray's t_max
+  std::uint32_t id = kNoPrimitive;  ///< see primitive_of()
+  /// Whether anything was met.
+  explicit operator bool() const { return id != kNoPrimitive; }
+};
+
+/// How a stream of rays is traced. None of it changes an answer.
+struct QueryOptions {
+  /// most neighbours that march together: 1, 16, 64, or for neighbours very near each other 256
+  int packet = 64;
+  std::string_view isa = "best";  ///< see isas()
+};
+
+/// The nearest hit of each ray: of a packet, or of a stream of any length, taken 64 neighbours at a
+/// time, so neighbours that go a similar way are the fastest. Runs on the calling thread. Of two
+/// hits at equal t the lower id wins. `counts`, where given, grows by what was done. Throws
+/// std::invalid_argument for a packet size or an instruction set that is not there.
+void closest(const World& world,
+             const RaySpan& rays,
+             const QueryOptions& options = {},
+             TraceCounts* counts = nullptr);
+/// The same of one ray.
+Hit closest(const World& world, const Ray& ray);
+
+/// Whether anything at all is in the way of each ray: t becomes -infinity and id that of something
+/// in the way; which one is not promised. Faster than closest().
+void occluded(const World& world,
+              const RaySpan& rays,
+              const QueryOptions& options = {},
+              TraceCounts* counts = nullptr);
+/// The same of one ray.
+bool occluded(const World& world, const Ray& ray);
+
+/// Where a ray met a surface, and where new rays leave it.
+struct SurfacePoint {
+  Float3 point;  ///< taken from the primitive, nearer to it than org + t dir
+  /// unit; the primitive's own: outwards, of triangles to the side they are counter-clockwise from
+  Float3 normal;
+  /// unit, on the same side: mixed from vertex normals where a triangle has them, else `normal`
+  Float3 shading;
+  float away;              ///< so far along the normal a ray is certainly off the surface
+  std::uint32_t material;  ///< the primitive's, index into the scene's
+  /// Where a ray that leaves in direction `dir` starts, with t_min = 0: it does not meet a surface
+  /// it points away from again, nor skip anything farther from it than 2 away. Derivation:
+  /// docs/numerics.md, after Pharr, Jakob and Humphreys, PBR 4th ed., 6.8. A ray to a light starts
+  /// here, goes to the light itself and searches up to t = 1.
+  Float3 leave(Float3 dir) const;
+};
+
+/// The surface that `ray` met: what a `hit` of closest() names, at its t.
+SurfacePoint surface(const World& world, const Ray& ray, const Hit& hit);
+
+/// What kinds there are, in the order of ids.
+enum class PrimitiveKind { kPlane, kSphere, kTriangle, kCone };
+
+/// A primitive as the caller knows it.
+struct Primitive {
+  PrimitiveKind kind;
+  std::uint32_t index;  ///< into the caller's arrays of this kind
+};
+
+/// The primitive of an id that a hit named. Ids run over planes, spheres, triangles, cones, each
+/// kind in the caller's order.
+Primitive primitive_of(const World& world, std::uint32_t id);
+
+}  // namespace grelha

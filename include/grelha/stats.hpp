@@ -1,0 +1,99 @@
+#pragma once
+// What a build and a render did, in numbers. Counting never changes a picture; some counts (visits,
+// tests, packets) depend on packet size and instruction set, those of rays do not.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "grelha/phase.hpp"
+
+namespace grelha {
+
+/// Rays by what they are for.
+struct RayCounts {
+  std::uint64_t primary = 0, shadow = 0, reflection = 0, refraction = 0;
+  /// All of them.
+  std::uint64_t total() const { return primary + shadow + reflection + refraction; }
+  /// Adds what another thread or call did.
+  void operator+=(const RayCounts& o) {
+    primary += o.primary;
+    shadow += o.shadow;
+    reflection += o.reflection;
+    refraction += o.refraction;
+  }
+};
+
+/// Tests by kind of primitive.
+struct TestCounts {
+  std::uint64_t sphere = 0, triangle = 0, cone = 0, plane = 0;  ///< one ray against one primitive
+};
+
+/// What became of packets.
+struct PacketCounts {
+  std::uint64_t formed = 0;        ///< packets that marched together to the end
+  std::uint64_t fell_back = 0;     ///< packets that spread and went on as single rays
+  std::uint64_t lanes_issued = 0;  ///< SIMD lanes of the tests of many rays against one primitive
+  std::uint64_t lanes_busy = 0;    ///< those of them that carried a ray still searching
+};
+
+/// What tracing did.
+struct TraceCounts {
+  std::uint64_t visits = 0;  ///< grid cells looked into, by a packet or by a ray
+  TestCounts tests;
+  PacketCounts packets;
+  /// Adds what another thread or call did.
+  void operator+=(const TraceCounts& o) {
+    visits += o.visits;
+    tests.sphere += o.tests.sphere;
+    tests.triangle += o.tests.triangle;
+    tests.cone += o.tests.cone;
+    tests.plane += o.tests.plane;
+    packets.formed += o.packets.formed;
+    packets.fell_back += o.packets.fell_back;
+    packets.lanes_issued += o.packets.lanes_issued;
+    packets.lanes_busy += o.packets.lanes_busy;
+  }
+};
+
+/// What is known of the error of a picture whose samples were spent by error; display units, 0 to
+/// 1.
+struct ErrorStats {
+  /// of all pixels and channels against the converged picture, estimated
+  double rmse = 0;
+  double rmse_bound = 0;      ///< not exceeded at 95 % confidence
+  double widest = 0;          ///< widest 95 % interval of a pixel
+  std::uint64_t samples = 0;  ///< of all pixels; RefineOptions::samples repeats a run by time
+  std::uint32_t least = 0, most = 0;  ///< of one pixel
+  int rounds = 0;                     ///< of doubling
+};
+
+/// Seconds of all threads together, by Phase.
+struct PhaseSeconds : std::array<double, kPhases> {
+  PhaseSeconds() : array{} {}
+  /// Adds what another thread or call did.
+  void operator+=(const PhaseSeconds& o) {
+    for (std::size_t i = 0; i < size(); ++i)
+      (*this)[i] += o[i];
+  }
+};
+
+/// What a render did.
+struct RenderStats {
+  RayCounts rays;
+  TraceCounts trace;
+  PhaseSeconds phases;  ///< only with RenderOptions::phases
+  ErrorStats error;     ///< only with RefineOptions
+  int threads = 0;
+  const char* isa = "";
+};
+
+/// One grid of a World.
+struct GridStats {
+  std::array<std::uint32_t, 3> cells{};  ///< per axis
+  std::uint64_t occupied = 0;            ///< cells that hold at least one reference
+  std::uint64_t references = 0;          ///< primitives over cells
+  std::uint64_t bytes = 0;
+};
+
+}  // namespace grelha

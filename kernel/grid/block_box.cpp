@@ -1,0 +1,62 @@
+#include "kernel/grid/block_box.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace grelha {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// A little below, or above: what rounding to float (u of it) and the steps here (3 u) can come to,
+/// and no more than 4 u beyond.
+float not_above(double x) {
+  const float f = static_cast<float>(x);
+  return f - (std::abs(f) * 2.4e-7f + 1e-45f);
+}
+float not_below(double x) {
+  const float f = static_cast<float>(x);
+  return f + (std::abs(f) * 2.4e-7f + 1e-45f);
+}
+
+}  // namespace
+
+// A hit h, off by no more than `pad` from its triangle, is found in the cell whose part of the ray
+// h lies on: h is in that cell and in the triangle's box grown by pad, so in the box below, and pad
+// / 4 = 64 u diagonals inside it. A slab test in float is off by 3 u of the way to each plane,
+// which is at most 2.8 diagonals (approach()), and compares two of them: 17 u diagonals.
+void bound_blocks(const Grid& g,
+                  double pad,
+                  std::size_t cell,
+                  std::uint32_t first,
+                  std::uint32_t end,
+                  CellStore& s) {
+  const std::size_t nx = g.cells[0], ny = g.cells[1],
+                    at[3] = {cell % nx, cell / nx % ny, cell / nx / ny};
+  double cell_lo[3], cell_hi[3];
+  for (int a = 0; a < 3; ++a) {
+    cell_lo[a] = g.lo[a] + static_cast<double>(at[a]) * g.cell[a];
+    cell_hi[a] = g.lo[a] + static_cast<double>(at[a] + 1) * g.cell[a];
+  }
+  for (std::uint32_t b = first; b < end; ++b) {
+    const TriangleBlock& block = s.triangles[b];
+    BlockBoxes& boxes = s.boxes[b / kBlock];
+    for (int a = 0; a < 3; ++a) {
+      float lo = kInfinity, hi = -kInfinity, least[kBlock], most[kBlock];
+      for (int i = 0; i < kBlock; ++i)
+        least[i] = std::min(std::min(block.a[a][i], block.b[a][i]), block.c[a][i]);
+      for (int i = 0; i < kBlock; ++i)
+        most[i] = std::max(std::max(block.a[a][i], block.b[a][i]), block.c[a][i]);
+      for (int i = 0; i < kBlock; ++i) {
+        // unused places are NaN and change neither
+        lo = least[i] < lo ? least[i] : lo;
+        hi = most[i] > hi ? most[i] : hi;
+      }
+      boxes.side[a][b % kBlock] = not_above(std::max(lo - pad, cell_lo[a]) - pad / 4);
+      boxes.side[3 + a][b % kBlock] = not_below(std::min(hi + pad, cell_hi[a]) + pad / 4);
+    }
+  }
+}
+
+}  // namespace grelha

@@ -1,0 +1,39 @@
+#pragma once
+// Which triangles of a cell share a block.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "kernel/grid/grid.hpp"
+
+namespace grelha {
+
+/// Puts the triangles of a cell in an order in which each eight are neighbours, so that the boxes
+/// of blocks are small.
+///
+/// Method  strips across the longest side of what the middles of their boxes, cut off at the cell,
+///         span; blocks along the strips, both of whole blocks.
+/// Source  Leutenegger, Lopez, Edgington, "STR: A Simple and Efficient Algorithm for R-Tree
+///         Packing", ICDE 1997.
+class BlockOrder {
+ public:
+  /// The place of each triangle of a cell, a function of the cell and of them alone. The span lives
+  /// until the next call.
+  std::span<const std::uint32_t> places(const Primitives& p,
+                                        std::span<const std::uint32_t> ids,
+                                        const Grid& grid,
+                                        std::size_t cell);
+
+ private:
+  void find_parts(const Primitives& p,
+                  std::span<const std::uint32_t> ids,
+                  const Grid& grid,
+                  std::size_t cell);
+  /// which part of the cell, along each axis, the middle of a triangle's box is in
+  std::vector<std::int16_t> part_[3];
+  std::vector<std::int16_t> strip_;
+  std::vector<std::uint32_t> places_, order_, ranks_;
+};
+
+}  // namespace grelha

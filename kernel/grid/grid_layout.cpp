@@ -1,0 +1,162 @@
+#include "kernel/grid/grid_layout.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "kernel/grid/cell_finder.hpp"
+
+namespace grelha {
+namespace {
+
+constexpr double kMostCells = 1024;     ///< along an axis
+constexpr double kMostReferences = 64;  ///< a primitive; the scenes measured have 1.3 to 10
+/// references, unless there are more primitives than these serve; 200 MB
+constexpr double kMostInAll = 1 << 22;
+constexpr double kSmallShare = 8;  ///< any grid of a scene may hold an eighth of them
+/// references a primitive, of any number; scenes of a million have 1.3 to 2.6
+constexpr double kAlways = 4;
+constexpr std::size_t kProbe = 128;  ///< primitives that say how many there are
+
+/// A cube root from + - * / alone, so that resolutions agree between machines; Newton's steps until
+/// they stop falling.
+double cube_root(double x) {
+  double r = x > 1 ? x : 1;
+  for (;;) {
+    const double next = r - (r - x / (r * r)) / 3;
+    if (!(next < r))
+      return r;
+    r = next;
+  }
+}
+
+}  // namespace
+
+Extent extent_of(const Primitives& p, std::span<const std::uint32_t> ids, int threads) {
+  Extent all;
+  const auto count = static_cast<std::ptrdiff_t>(ids.size());
+#pragma omp parallel num_threads(useful_threads(threads, ids.size()))
+  {
+    Box mine;
+    double longest = 0;  // squared: one root in the end
+#pragma omp for schedule(static) nowait
+    for (std::ptrdiff_t i = 0; i < count; ++i) {
+      const std::uint32_t id = ids[static_cast<std::size_t>(i)];
+      const Box b = kind_of(p, id) == Kind::kTriangle ? box_of(corners_of(p, id)) : p.box(id);
+      double sum = 0;
+      for (int a = 0; a < 3; ++a) {
+        sum += (b.hi[a] - b.lo[a]) * (b.hi[a] - b.lo[a]);
+        mine.lo[a] = std::min(mine.lo[a], b.lo[a]);
+        mine.hi[a] = std::max(mine.hi[a], b.hi[a]);
+      }
+      longest = std::max(longest, sum);
+    }
+#pragma omp critical  // least and most do not depend on the order
+    {
+      if (!mine.empty())
+        all.box.add(mine);
+      all.longest = std::max(all.longest, std::sqrt(longest));
+    }
+  }
+  return all;
+}
+
+std::vector<std::uint32_t> longer_than(const Primitives& p,
+                                       std::span<const std::uint32_t> ids,
+                                       double diagonal,
+                                       std::size_t most,
+                                       int threads) {
+  std::vector<std::uint32_t> found(most + 1);
+  std::atomic<std::size_t> next = 0;
+  const auto count = static_cast<std::ptrdiff_t>(ids.size());
+#pragma omp parallel for schedule(static) num_threads(useful_threads(threads, ids.size()))
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    const std::uint32_t id = ids[static_cast<std::size_t>(i)];
+    if (!(p.box(id).diagonal() > diagonal))
+      continue;
+    if (const std::size_t at = next++; at < found.size())
+      found[at] = id;
+  }
+  found.resize(std::min(next.load(), found.size()));
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+namespace {
+
+/// Cells that a density asks for per length; extents that are nothing beside the largest become a
+/// thousandth of it.
+double cells_per_length(double (&extent)[3], std::size_t count, double density) {
+  double largest = std::max({extent[0], extent[1], extent[2]});
+  if (!(largest > 0))
+    largest = 1e-30;  // every primitive at one point of the origin: any cell does
+  for (double& e : extent)
+    e = std::max(e, largest / 1000);
+  return density / cube_root(extent[0] * extent[1] * extent[2] / static_cast<double>(count));
+}
+
+/// Cells of a grid whose corner and pad are known; returns how many.
+std::size_t divide(Grid& g, const double (&extent)[3], double per_length) {
+  std::size_t cells = 1;
+  for (std::size_t a = 0; a < 3; ++a) {
+    // Cells no smaller than 2 pad: one outlier a million scenes away makes a pad that would put
+    // everything in every cell.
+    const double n = std::min(extent[a] * per_length + 1, extent[a] / (2 * g.pad));
+    g.cells[a] = static_cast<std::uint32_t>(std::clamp(n, 1., kMostCells));
+    g.cell[a] = extent[a] / g.cells[a];
+    cells *= g.cells[a];
+  }
+  return cells;
+}
+
+/// In how many cells the mean primitive stands, by some of them, evenly picked.
+double references(const Primitives& p, std::span<const std::uint32_t> ids, const Grid& g) {
+  const CellFinder finder(p, g, g.pad);
+  const std::size_t stride = std::max<std::size_t>(1, ids.size() / kProbe);
+  std::uint64_t sum = 0, probed = 0;
+  for (std::size_t i = 0; i < ids.size(); i += stride, ++probed)
+    finder(ids[i], [&](std::size_t) { ++sum; });
+  return static_cast<double>(sum) / static_cast<double>(probed);
+}
+
+}  // namespace
+
+double cell_edge(const Box& box, std::size_t count, double density) {
+  double extent[3] = {box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2]};
+  const double per_length = cells_per_length(extent, count, density);
+  return std::max(1 / per_length, std::max({extent[0], extent[1], extent[2]}) / kMostCells);
+}
+
+Grid lay_out_grid(const Primitives& p,
+                  std::span<const std::uint32_t> ids,
+                  const Box& box,
+                  double density,
+                  double pad) {
+  Box b = box;
+  b.grow(2 * pad);  // once for the cells' contents, once for the entry of rays
+  Grid g;
+  g.pad = pad;
+  double extent[3];
+  for (int a = 0; a < 3; ++a) {
+    // Down to a float, so that walks in float subtract the corner without an error of its own.
+    float lo = static_cast<float>(b.lo[a]);
+    if (lo > b.lo[a])
+      lo = std::nextafter(lo, -std::numeric_limits<float>::infinity());
+    g.lo[a] = lo;
+    extent[a] = b.hi[a] - g.lo[a];
+  }
+  const double per_length = cells_per_length(extent, ids.size(), density);
+  std::size_t cells = divide(g, extent, per_length);
+  // A heap of large primitives, or of slivers, would stand in thousands of cells each, and memory
+  // end. Grids of a scene share what there is by their primitives; small ones, which need little,
+  // get more.
+  const double served =
+      std::min(static_cast<double>(p.end), kSmallShare * static_cast<double>(ids.size()));
+  const double most = std::clamp(kMostInAll / served, kAlways, kMostReferences);
+  for (double coarser = per_length / 2; cells > kMostReferences && references(p, ids, g) > most;
+       coarser /= 2)
+    cells = divide(g, extent, coarser);
+  return g;
+}
+
+}  // namespace grelha

@@ -1,0 +1,59 @@
+#pragma once
+// Chooses the cells of grids.
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "kernel/grid/grid.hpp"
+#include "kernel/shapes/primitives.hpp"
+
+namespace grelha {
+
+/// Threads that have enough to do: starting one costs as much as some hundred primitives.
+inline int useful_threads(int threads, std::size_t work) {
+  return static_cast<int>(
+      std::clamp<std::size_t>(work / 512, 1, static_cast<std::size_t>(threads)));
+}
+
+/// Chooses the cells of a grid over some primitives (ids ascending, at least one), M = density;
+/// fill_grid() then writes its lists, and tells of its progress, which is that share of the whole.
+///
+/// Resolution  cells per axis = M extent / cbrt(volume / count) + 1 (Cleary & Wyvill 1988;
+///             Amanatides & Woo's report form), extents below 1/1000 of the largest counted as
+///             that, at most 1024 an axis, no cell smaller than 2 pad; and coarser, by halves,
+///             where the mean of some primitives would stand in more than 64 cells, or, of many,
+///             all in more than 2^22 (or 4 each).
+/// Guarantee   every primitive stands in each cell that its box grown by `pad` touches, unless the
+///             cell lies beyond `pad` of its surface; in each cell spheres and cones ascend by id,
+///             triangles stand as BlockOrder says. Same lists on every machine, by any number of
+///             threads.
+/// Source      Lagae & Dutré, "Compact, Fast and Robust Grids for Ray Tracing", 2008: count, sum,
+///             scatter. Kalojanov & Slusallek, "A Parallel Algorithm for Construction of Uniform
+///             Grids", 2009: pairs of cell and primitive, sorted by cell.
+Grid lay_out_grid(const Primitives& primitives,
+                  std::span<const std::uint32_t> ids,
+                  const Box& box,
+                  double density,
+                  double pad);
+
+/// The edge of the cells that a density asks for; what lay_out_grid() makes of it also depends on
+/// the pad.
+double cell_edge(const Box& box, std::size_t count, double density);
+
+/// Box of some finite primitives, and the longest diagonal of any.
+struct Extent {
+  Box box;
+  double longest = 0;
+};
+Extent extent_of(const Primitives& primitives, std::span<const std::uint32_t> ids, int threads);
+/// Those of `ids` whose box has a longer diagonal, ascending; most + 1 of them, whichever, when
+/// there are more than `most`.
+std::vector<std::uint32_t> longer_than(const Primitives& primitives,
+                                       std::span<const std::uint32_t> ids,
+                                       double diagonal,
+                                       std::size_t most,
+                                       int threads);
+
+}  // namespace grelha

@@ -1,0 +1,126 @@
+#include "kernel/grid/memory_estimate.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "kernel/grid/cell_finder.hpp"
+#include "kernel/scene/shading_view.hpp"
+
+namespace grelha {
+namespace {
+
+constexpr std::size_t kProbes = 16384;
+/// bytes while lists are written: a cell and an id; an id
+constexpr double kPair = 8, kId = 4;
+constexpr double kBytes[3] = {20, 0, 44};  ///< of a sphere and a cone in a list
+constexpr double kListed = sizeof(TriangleBlock),
+                 kBoxed = kListed + sizeof(BlockBoxes) / double{kBlock};
+constexpr double kCone = 40, kMaterial = sizeof(float) * kMaterialFields;  ///< prepared
+
+/// What lists hold: references by Kind, and blocks of triangles.
+struct Lists {
+  std::array<double, 3> references{};
+  double blocks = 0;
+  double all() const { return references[0] + references[1] + references[2]; }
+  double bytes(double block) const {
+    double sum = blocks * block;
+    for (std::size_t k = 0; k < 3; ++k)
+      sum += references[k] * kBytes[k];
+    return sum;
+  }
+};
+
+/// At random, since neighbours in a file are neighbours in space; ascending, none twice.
+std::vector<std::uint32_t> pick(const std::vector<std::uint32_t>& ids) {
+  if (ids.size() <= kProbes)
+    return ids;
+  std::vector<std::uint32_t> picked;
+  std::uint64_t state = 1;
+  for (std::size_t i = 0; i < kProbes; ++i) {
+    state = state * 6364136223846793005u + 1442695040888963407u;  // Knuth's MMIX
+    picked.push_back(ids[(state >> 32) * ids.size() >> 32]);
+  }
+  std::sort(picked.begin(), picked.end());
+  picked.erase(std::unique(picked.begin(), picked.end()), picked.end());
+  return picked;
+}
+
+Lists expected(const Primitives& p, const std::vector<std::uint32_t>& ids, const Grid& g) {
+  const std::vector<std::uint32_t> picked = pick(ids);
+  const CellFinder finder(p, g, g.pad);
+  Lists lists;
+  std::vector<std::size_t> cells;  // of triangles
+  for (const std::uint32_t id : picked)
+    finder(id, [&](std::size_t cell) {
+      const Kind kind = kind_of(p, id);
+      ++lists.references[static_cast<std::size_t>(kind)];
+      if (kind == Kind::kTriangle)
+        cells.push_back(cell);
+    });
+  const double share = static_cast<double>(picked.size()) / static_cast<double>(ids.size());
+  for (double& n : lists.references)
+    n /= share;
+  if (cells.empty())
+    return lists;
+  std::sort(cells.begin(), cells.end());
+  double pairs = 0;
+  for (auto from = cells.begin(), to = from; from != cells.end(); from = to) {
+    to = std::upper_bound(from, cells.end(), *from);
+    pairs += static_cast<double>(to - from) * static_cast<double>(to - from - 1);
+  }
+  // With whom the mean reference shares its cell, itself counted: the sum of squares over the sum.
+  // Cells of a surface hold from nothing to twice the mean, so that there are half as many again as
+  // if all held as much; the last block of each is half empty, or an eighth full.
+  const double held = 1 + pairs / (share * static_cast<double>(cells.size())),
+               references = lists.references[1];
+  lists.blocks = references / kBlock + references * 1.5 / (held + .5) * (1 + 1 / held) * 7 / 16;
+  return lists;
+}
+
+double ids_bytes(const std::vector<std::uint32_t>& ids) {
+  return kId * static_cast<double>(ids.size());
+}
+
+/// The list of what has no grid, as one cell.
+Lists of_outside(const Primitives& p, const Plan& plan) {
+  Lists lists;
+  for (const std::uint32_t id : plan.apart)
+    ++lists.references[static_cast<std::size_t>(kind_of(p, id))];
+  lists.blocks = lists.references[1] / kBlock + 1;
+  return lists;
+}
+
+}  // namespace
+
+BuildMemory memory_of(const SceneSpans& scene, const Primitives& p, const Plan& plan) {
+  double kept = kCone * static_cast<double>(p.end - p.cone_base) +
+                kMaterial * static_cast<double>(scene.materials.size()),
+         waiting = ids_bytes(plan.apart), peak = 0;
+  for (const PlannedGrids& part : plan.parts)
+    waiting += ids_bytes(part.ids);
+  for (const PlannedGrids& part : plan.parts) {
+    for (const Grid& g : part.grids) {
+      const Lists lists = expected(p, part.ids, g);
+      const auto cells = static_cast<double>(cell_count(g.cells));
+      double own = cells + lists.bytes(kBoxed);  // a distance each
+      for (const double n : lists.references)
+        own += n > 0 ? kId * cells : 0;
+      // the pairs, then the distances once more
+      peak = std::max(peak, kept + own + waiting + std::max(kPair * lists.all(), cells));
+      kept += own;
+    }
+    waiting -= ids_bytes(part.ids);
+  }
+  const Lists outside = of_outside(p, plan);
+  peak = std::max(peak, kept + outside.bytes(kListed) + waiting + (kPair + kId) * outside.all());
+  return {static_cast<std::uint64_t>(peak),
+          static_cast<std::uint64_t>(kept + outside.bytes(kListed))};
+}
+
+bool surely_fits(const Primitives& p, std::uint64_t bytes) {
+  constexpr double kReferencesOfOne = 64;  // as in grid.cpp
+  return kReferencesOfOne * (kPair + kBoxed) * static_cast<double>(p.end - p.sphere_base) <
+         static_cast<double>(bytes);
+}
+
+}  // namespace grelha

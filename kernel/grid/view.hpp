@@ -1,0 +1,123 @@
+#pragma once
+// A built scene as plain pointers: all that the hot loops see. No containers here, whose members
+// would be shared between the copies of the kernel.
+
+#include <cstdint>
+
+#include "grelha/rays.hpp"
+
+namespace grelha {
+
+inline constexpr int kBlock = 8;  ///< primitives side by side in memory
+
+/// Eight triangles side by side; unused places hold NaN corners, which no ray can meet.
+struct alignas(64) TriangleBlock {
+  float a[3][kBlock], b[3][kBlock], c[3][kBlock];
+  std::uint32_t id[kBlock];
+};
+
+/// Of eight blocks, each: what of its triangles lies in its cell, boxed and grown. A ray that meets
+/// one of them there passes through. Block b has place b % kBlock of boxes b / kBlock.
+struct alignas(64) BlockBoxes {
+  float side[6][kBlock];  ///< least x, y, z, greatest x, y, z
+};
+
+/// Cells of one grid, one after the other, each kind apart: cell i owns places first[i] up to
+/// first[i + 1] - 1 of the kind's arrays (blocks for triangles). A kind the grid lacks has first ==
+/// nullptr. Arrays of spheres and cones are padded with kBlock NaN entries, so a whole block can be
+/// read from any place.
+struct CellLists {
+  const std::uint32_t* triangle_first = nullptr;
+  const TriangleBlock* triangles = nullptr;
+  const BlockBoxes* boxes = nullptr;  ///< of all blocks, or none
+
+  const std::uint32_t* sphere_first = nullptr;
+  const float *sx = nullptr, *sy = nullptr, *sz = nullptr, *sr = nullptr;
+  const std::uint32_t* sphere_id = nullptr;
+
+  const std::uint32_t* cone_first = nullptr;
+  const float* cone[10] = {};  ///< base xyz, axis xyz, height, radius, slope, side
+  const std::uint32_t* cone_id = nullptr;
+};
+
+inline constexpr int kMostGroups = 17;              ///< of primitives
+inline constexpr int kMostGrids = 2 * kMostGroups;  ///< each has one or two
+
+/// The rays a grid is for, by where they start: anywhere, in the box `near_lo` to `near_hi`, or
+/// outside of it. Primitives stand in one grid for all, or in one for the rays that start near and
+/// one for those that start far away, whose tests are off by more.
+enum class Serves : std::uint8_t { kAll, kNear, kFar };
+
+struct GridView {
+  CellLists lists;
+  Serves serves = Serves::kAll;
+  float near_lo[3] = {}, near_hi[3] = {};
+  /// [cells] Chebyshev distance to the nearest cell that holds something; 0: this one does
+  const std::uint8_t* distance = nullptr;
+  int n[3] = {};  ///< cells per axis; x runs fastest
+  double lo[3] = {}, cell[3] = {}, inv_cell[3] = {};
+  float lo_f[3] = {}, hi_f[3] = {}, cell_f[3] = {}, inv_cell_f[3] = {};
+};
+
+/// The primitives themselves, by index, for what is done once a hit rather than once a test.
+struct GeometryView {
+  const float *tx = nullptr, *ty = nullptr, *tz = nullptr;     ///< triangle vertices
+  const float *tnx = nullptr, *tny = nullptr, *tnz = nullptr;  ///< their normals, or null
+  const std::uint32_t *ta = nullptr, *tb = nullptr, *tc = nullptr;
+  const float *sx = nullptr, *sy = nullptr, *sz = nullptr, *sr = nullptr;
+  const float* cone[10] = {};
+  const float *px = nullptr, *py = nullptr, *pz = nullptr, *pnx = nullptr, *pny = nullptr,
+              *pnz = nullptr;
+  const std::uint32_t *plane_material = nullptr, *sphere_material = nullptr,
+                      *triangle_material = nullptr, *cone_material = nullptr;
+  std::uint32_t plane_count = 0, sphere_count = 0, triangle_count = 0, cone_count = 0;
+};
+
+/// Ids run over planes, spheres, triangles, cones in this order; of two hits at equal t the lower
+/// id wins.
+struct SceneView {
+  GeometryView geometry;
+  /// one "cell" of primitives that no grid holds: few, or as large as the scene
+  CellLists outside;
+  const GridView* grids = nullptr;
+  int grid_count = 0;
+  std::uint32_t sphere_base = 0, triangle_base = 0, cone_base = 0, primitive_end = 0;
+  float box_lo[3] = {}, box_hi[3] = {};  ///< of all finite primitives, grown
+  /// rays that start further than this from the box are moved nearer first; see approach()
+  float reach = 0;
+  bool finite = false;  ///< there is something besides planes
+};
+
+/// Rays as the caller holds them. t: in, the end of the search; out, the nearest hit (closest) or
+/// -infinity (occluded). Origins, t_min and t come back as those of rays moved near, see
+/// bring_near(); `shift`, zero on entry, says how far. All may be changed.
+struct RayArrays {
+  float *ox, *oy, *oz;
+  const float *dx, *dy, *dz;
+  float *t_min, *t;
+  std::uint32_t* id;       ///< out; kNoPrimitive: nothing
+  float* shift = nullptr;  ///< out, or null; of copies in single
+  /// out, or null: t of the rays as they came, as precise as it was computed
+  double* whole = nullptr;
+  /// null, or what is to be added to origins, of copies in double; these change no origin
+  const float* low[3] = {};
+};
+
+struct TraceOptions {
+  int packet;    ///< 1, 16, 64 or 256
+  bool mailbox;  ///< for packets
+};
+
+/// What a trace counts, by the kind of its tests.
+struct Counters {
+  std::uint64_t visits = 0, sphere = 0, triangle = 0, cone = 0, plane = 0;
+  std::uint64_t formed = 0, fell_back = 0, issued = 0, busy = 0;
+};
+
+/// trace() of a copy of the kernel.
+struct TraceLoops {
+  void (*closest)(const SceneView&, const RayArrays&, int count, const TraceOptions&, Counters&);
+  void (*occluded)(const SceneView&, const RayArrays&, int count, const TraceOptions&, Counters&);
+};
+
+}  // namespace grelha

@@ -1,0 +1,34 @@
+#pragma once
+// What World holds: the built grids and the views of them that the hot loops see.
+
+#include <array>
+#include <vector>
+
+#include "kernel/grid/grid.hpp"
+#include "grelha/world.hpp"
+#include "kernel/scene/materials.hpp"
+#include "kernel/scene/shading_view.hpp"
+
+namespace grelha {
+
+class BuildProgress;
+struct Plan;
+
+struct World::Impl {
+  SceneSpans scene;
+  Primitives primitives;
+  std::vector<Grid> grids;
+  CellStore outside;
+  std::vector<GridView> grid_views;
+  MaterialTable materials;
+  std::vector<float> lights;  ///< [kLightFloats * count], see ShadingView
+  SceneView view;
+  ShadingView shading;
+
+  Impl(const SceneSpans& scene, const BuildOptions& options);
+
+ private:
+  void fill(Plan& plan, int threads, BuildProgress& progress);
+};
+
+}  // namespace grelha

@@ -1,0 +1,178 @@
+#include "grelha/accumulator.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <stdexcept>
+#include <string>
+
+#include "kernel/render/bands.hpp"
+#include "kernel/picture/told.hpp"
+
+namespace grelha {
+namespace {
+
+static_assert(kPieceRows == kBandRows);
+
+int size(const Range& r) { return r.end - r.begin; }
+int pieces(const Range& r, int piece) { return (size(r) + piece - 1) / piece; }
+
+/// Piece k of a range.
+Range cut(const Range& r, int piece, std::size_t k) {
+  const int begin = r.begin + static_cast<int>(k) * piece;
+  return {begin, std::min(begin + piece, r.end)};
+}
+
+std::size_t first_sum(const Accumulator& a, int row) {
+  return static_cast<std::size_t>(row - a.part.rows.begin) * static_cast<std::size_t>(a.width) * 3;
+}
+
+/// Sums that a file made up may be of any size: adding these wraps around.
+std::int64_t wrapped_sum(std::int64_t a, std::int64_t b) {
+  return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) + static_cast<std::uint64_t>(b));
+}
+
+void add_rows(Accumulator& to, const Range& rows, const std::int64_t* sums) {
+  std::int64_t* const out = to.sums.data() + first_sum(to, rows.begin);
+  const std::size_t n =
+      static_cast<std::size_t>(size(rows)) * static_cast<std::size_t>(to.width) * 3;
+  for (std::size_t i = 0; i < n; ++i)
+    out[i] = wrapped_sum(out[i], sums[i]);
+}
+
+[[noreturn]] void refuse(const char* what, const Range& r, int most) {
+  throw std::invalid_argument(std::string(what) + ' ' + std::to_string(r.begin) + ':' +
+                              std::to_string(r.end) + " are not among 0:" + std::to_string(most));
+}
+
+bool within(const Range& r, int most) { return r.begin >= 0 && r.begin < r.end && r.end <= most; }
+
+void check(const Accumulator& a, const Camera& camera, const RenderOptions& options) {
+  if (options.subdivision.on || options.refine.on())
+    throw std::invalid_argument("sums are kept of pictures with a fixed number of samples alone");
+  if (a.width != camera.width || a.height != camera.height || a.samples != options.sampling.samples)
+    throw std::invalid_argument("these sums are of a picture of another size or number of samples");
+}
+
+}  // namespace
+
+Accumulator make_accumulator(const Camera& camera, const RenderOptions& options, const Part& part) {
+  const int samples = options.sampling.samples;
+  if (!within(part.rows, camera.height))
+    refuse("rows", part.rows, camera.height);
+  if (!within(part.samples, samples))
+    refuse("samples", part.samples, samples);
+  Accumulator a{camera.width, camera.height, samples, part, {}, {}};
+  a.sums.resize(static_cast<std::size_t>(size(part.rows)) * static_cast<std::size_t>(camera.width) *
+                3);
+  a.done.resize(piece_count(part));
+  return a;
+}
+
+Accumulator make_accumulator(const Camera& camera, const RenderOptions& options) {
+  return make_accumulator(camera, options, {{0, camera.height}, {0, options.sampling.samples}});
+}
+
+std::size_t piece_count(const Part& part) {
+  return static_cast<std::size_t>(pieces(part.rows, kPieceRows)) *
+         static_cast<std::size_t>(pieces(part.samples, kPieceSamples));
+}
+
+Part piece_of(const Part& part, std::size_t i) {
+  const std::size_t bands = static_cast<std::size_t>(pieces(part.rows, kPieceRows));
+  return {cut(part.rows, kPieceRows, i % bands), cut(part.samples, kPieceSamples, i / bands)};
+}
+
+double share_done(const Accumulator& a) {
+  const auto done = std::count(a.done.begin(), a.done.end(), std::uint8_t{1});
+  return static_cast<double>(done) / static_cast<double>(a.done.size());
+}
+
+bool accumulate(const World& world,
+                const Camera& camera,
+                const RenderOptions& given,
+                Accumulator& a,
+                RenderStats& stats,
+                const NextPiece& next) {
+  const Told told(given);
+  const RenderOptions& options = told.options();
+  const Setup setup = set_up(world, camera, options);
+  check(a, camera, options);
+  std::vector<std::size_t> left;
+  for (std::size_t i = 0; i < a.done.size(); ++i)
+    if (a.done[i] == 0)
+      left.push_back(i);
+  std::size_t done = a.done.size() - left.size();
+  std::atomic<std::size_t> begun = 0;
+  const auto next_band = [&](Band& band) {
+    if (next) {
+      band.number = next();
+    } else {
+      const std::size_t at = begun++;
+      band.number = at < left.size() ? left[at] : a.done.size();
+    }
+    if (band.number >= a.done.size())
+      return false;
+    band.part = piece_of(a.part, band.number);
+    return true;
+  };
+  render_bands(
+      world.impl(),
+      setup,
+      options,
+      left.size(),
+      next_band,
+      [&](const Band& band, const std::int64_t* sums) {
+        bool go_on = true;
+#pragma omp critical(grelha_progress)
+        {
+          add_rows(a, band.part.rows, sums);
+          a.done[band.number] = 1;
+          ++done;
+          if (options.progress)
+            go_on =
+                options.progress(static_cast<double>(done) / static_cast<double>(a.done.size()));
+        }
+        return go_on;
+      },
+      stats);
+  told.rethrow();
+  return is_complete(a);
+}
+
+void add(Accumulator& whole, const Accumulator& part) {
+  if (whole.width != part.width || whole.height != part.height || whole.samples != part.samples)
+    throw std::invalid_argument("these sums are of a picture of another size or number of samples");
+  const Part &w = whole.part, &p = part.part;
+  if (p.rows.begin < w.rows.begin || p.rows.end > w.rows.end || p.samples.begin < w.samples.begin ||
+      p.samples.end > w.samples.end)
+    throw std::invalid_argument("a part lies outside what it is added to");
+  if (!is_complete(part))
+    throw std::invalid_argument("a part is not complete");
+  add_rows(whole, p.rows, part.sums.data());
+}
+
+Image picture_so_far(const Accumulator& a) {
+  Image image(a.width, a.height);
+  const std::size_t bands = static_cast<std::size_t>(pieces(a.part.rows, kPieceRows));
+  for (std::size_t b = 0; b < bands; ++b) {
+    int samples = 0;
+    for (std::size_t i = b; i < a.done.size(); i += bands)
+      if (a.done[i] != 0)
+        samples += size(piece_of(a.part, i).samples);
+    const Range rows = piece_of(a.part, b).rows;
+    if (samples > 0)
+      mean_light(a.sums.data() + first_sum(a, rows.begin), samples, image, rows);
+  }
+  return image;
+}
+
+void mean_light(const std::int64_t* sums, int samples, Image& image, const Range& rows) {
+  const double share = 1 / (kLightUnit * samples);
+  float* const out = image.row(rows.begin);
+  const std::size_t n =
+      static_cast<std::size_t>(size(rows)) * static_cast<std::size_t>(image.width) * 3;
+  for (std::size_t i = 0; i < n; ++i)
+    out[i] = static_cast<float>(static_cast<double>(sums[i]) * share);
+}
+
+}  // namespace grelha

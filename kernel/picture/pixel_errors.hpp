@@ -1,0 +1,60 @@
+#pragma once
+
+#include "kernel/picture/refinement.hpp"
+
+namespace grelha {
+
+/// What the samples of a refined picture say of its error, pixel by pixel. Nothing of it is kept:
+/// it follows from the picture.
+class PixelErrors {
+ public:
+  /// `effects`: there is more to sample than the pixel. `first_log`: of the samples that a pixel
+  /// begins with.
+  PixelErrors(const Refinement& r, bool effects, int first_log, int threads);
+
+  /// Variance and interval of every pixel. Few differences tell little: pixels that may hold more
+  /// than one surface, or an effect, borrow from their neighbours of the same kind, so that chance
+  /// stops no pixel and drives none on.
+  void judge();
+
+  struct Totals {
+    double sum, bound;    ///< of the variances; of the RMSE
+    double rmse, widest;  ///< as ErrorStats has them
+  };
+  Totals totals() const;
+
+  /// mean over channels, with what neighbours say of it
+  float variance(std::size_t p) const { return variance_[p]; }
+  const std::vector<float>& widths() const { return widest_; }  ///< [pixels] of the 95 % interval
+
+  /// Variance that a ray takes away, were the pixel's samples doubled.
+  float gain(std::size_t p) const {
+    return r_.log[p] < kMostLog ? variance_[p] * (1 - r_.rho) / (samples(p) * r_.cost[p]) : 0;
+  }
+
+  /// Whether no sample of a pixel differed.
+  bool agrees(std::size_t p) const { return agrees(own_variance(p), p); }
+
+ private:
+  std::size_t at(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(r_.width) +
+           static_cast<std::size_t>(x);
+  }
+  float samples(std::size_t p) const { return static_cast<float>(1u << r_.log[p]); }
+  bool watched(std::size_t p) const { return effects_ || r_.inside[p] > 0 || r_.around[p] > 0; }
+  /// One of n samples that differs by .1 shows as a variance of .005 / n^2.
+  bool agrees(float variance, std::size_t p) const {
+    return variance <= .005f / (samples(p) * samples(p));
+  }
+  float differences(std::size_t p) const;
+  float own_variance(std::size_t p) const;
+  float contrast(int x, int y) const;
+  float with_neighbours(int x, int y, const float* scale) const;
+
+  const Refinement& r_;
+  const bool effects_;
+  const int first_log_, threads_;
+  std::vector<float> own_, variance_, widest_;  ///< [pixels] own_: from a pixel's own differences
+};
+
+}  // namespace grelha

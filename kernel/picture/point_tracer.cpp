@@ -1,0 +1,157 @@
+#include "kernel/picture/point_tracer.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+#include <omp.h>
+
+#include "kernel/render/setup.hpp"
+#include "kernel/picture/told.hpp"
+#include "kernel/render/workspace.hpp"
+#include "kernel/grid/world_impl.hpp"
+
+namespace grelha {
+namespace {
+
+constexpr int kMostPoints = 2048;  ///< a thread takes at a time
+
+/// What one thread needs.
+struct PointSpace {
+  PointSpace(int depth, const SamplePlan& plan, const TraceLoops* in_double)
+      : space(kMostPoints, depth, plan, in_double) {}
+  Workspace space;
+  float x[kMostPoints], y[kMostPoints];
+  TraceCounts trace;
+  RayCounts rays;
+};
+
+/// Sees lists of points in parallel.
+class PointTracer {
+ public:
+  PointTracer(const World::Impl& world,
+              const FrameView& frame,
+              const SamplePlan& plan,
+              const Variant& variant,
+              const RenderOptions& options,
+              int threads)
+      : world_(world), frame_(frame), plan_(plan), variant_(variant), options_(options) {
+    for (int i = 0; i < threads; ++i)
+      spaces_.push_back(
+          std::make_unique<PointSpace>(options.depth, plan, loops_of(variant, options.precision)));
+  }
+
+  std::size_t operator()(std::span<const LatticePoint> points,
+                         Float3* colours,
+                         double from,
+                         double to) {
+    const std::size_t count = points.size(), threads = spaces_.size();
+    // Whole packets, large enough to be worth taking, small enough that no thread waits long for
+    // the last.
+    const std::size_t chunk =
+        std::clamp<std::size_t>(count / (8 * threads) / 64 * 64, 64, kMostPoints);
+    const std::size_t chunks = (count + chunk - 1) / chunk;
+    const int team = static_cast<int>(std::min(threads, std::max<std::size_t>(chunks, 1)));
+    std::atomic<std::size_t> begun = 0;
+    std::size_t done = 0;
+#pragma omp parallel num_threads(team)
+    while (!stopped_) {
+      // what has a number is done, so that what is done is the first so many
+      const std::size_t c = begun++;
+      if (c >= chunks)
+        break;
+      const std::size_t first = c * chunk, last = std::min(first + chunk, count);
+      see(*spaces_[static_cast<std::size_t>(omp_get_thread_num())],
+          points.data() + first,
+          static_cast<int>(last - first),
+          colours + first);
+#pragma omp critical(grelha_progress)
+      {
+        ++done;
+        const double share =
+            from + (to - from) * static_cast<double>(done) / static_cast<double>(chunks);
+        if (options_.progress && !stopped_ && !options_.progress(share))
+          stopped_ = true;
+      }
+    }
+    return std::min(begun * chunk, count);
+  }
+
+  void go_on() { stopped_ = false; }
+
+  void count(RenderStats& stats) const {
+    for (const auto& s : spaces_) {
+      stats.trace += s->trace;
+      stats.rays += s->rays;
+      stats.phases += s->space.phases();
+    }
+  }
+
+ private:
+  void see(PointSpace& s, const LatticePoint* points, int count, Float3* colours) const {
+    std::uint32_t* const names = s.space.pixels().data();
+    for (int i = 0; i < count; ++i) {  // exact: no coordinate is above 2^24
+      s.x[i] = static_cast<float>(points[i].x) / kLatticeSteps;
+      s.y[i] = static_cast<float>(points[i].y) / kLatticeSteps;
+      names[i] = lattice_hash(points[i]);
+    }
+    variant_.loops.render_points(world_.view,
+                                 world_.shading,
+                                 frame_,
+                                 {s.x, s.y, count},
+                                 s.space.work(options_, 0, true),
+                                 s.trace,
+                                 s.rays);
+    const double share = 1 / (kLightUnit * plan_.samples);
+    const std::int64_t* sum = s.space.sums().data();
+    for (int i = 0; i < count; ++i, sum += 3)
+      colours[i] = {static_cast<float>(static_cast<double>(sum[0]) * share),
+                    static_cast<float>(static_cast<double>(sum[1]) * share),
+                    static_cast<float>(static_cast<double>(sum[2]) * share)};
+    s.space.done(options_);
+  }
+
+  const World::Impl& world_;
+  const FrameView& frame_;
+  const SamplePlan& plan_;
+  const Variant& variant_;
+  const RenderOptions& options_;
+  std::vector<std::unique_ptr<PointSpace>> spaces_;
+  std::atomic<bool> stopped_ = false;  ///< sees nothing more
+};
+
+}  // namespace
+
+bool render_subdivided(const World& world,
+                       const Camera& camera,
+                       const RenderOptions& given,
+                       Subdivided& picture,
+                       RenderStats& stats,
+                       const std::function<bool()>& rest) {
+  const Told told(given);
+  const RenderOptions& options = told.options();
+  const Setup setup = set_up(world, camera, options);
+  if (!options.subdivision.on)
+    throw std::invalid_argument("this picture is one by subdivision");
+  if (picture.image.width != camera.width || picture.image.height != camera.height)
+    throw std::invalid_argument("this picture has another size than the camera's");
+  stats = {};
+  stats.threads = options.threads > 0 ? options.threads : omp_get_num_procs();
+  stats.isa = setup.variant.name.data();
+  PointTracer tracer(world.impl(), setup.frame, setup.plan, setup.variant, options, stats.threads);
+  const bool finished = subdivide(picture, options.subdivision, std::ref(tracer), 0, [&] {
+    const bool go_on = !told.threw() && rest && rest();
+    if (go_on)
+      tracer.go_on();
+    return go_on;
+  });
+  tracer.count(stats);
+  told.rethrow();
+  return finished;
+}
+
+}  // namespace grelha

@@ -1,0 +1,92 @@
+#include "kernel/picture/refinement.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace grelha {
+namespace {
+
+bool all_from_0_on(const std::vector<float>& values) {
+  return std::all_of(
+      values.begin(), values.end(), [](float v) { return v >= 0 && std::isfinite(v); });
+}
+template <class T>
+bool lies(T value, T least, T most) {
+  return value >= least && value <= most;  // NaN does not
+}
+
+/// Pixels that can take more samples, each once: threads work on all of them at the same time.
+bool is_round(const Refinement& r) {
+  std::vector<bool> there(r.log.size());
+  for (const std::uint32_t p : r.wanted) {
+    if (p >= there.size() || there[p] || r.log[p] >= kMostLog)
+      return false;
+    there[p] = true;
+  }
+  return true;
+}
+
+bool is_new(const Refinement& r) {
+  return r.rounds == 0 &&
+         std::all_of(r.log.begin(), r.log.end(), [](std::uint8_t l) { return l == 0; });
+}
+
+}  // namespace
+
+Refinement make_refinement(const Camera& camera) {
+  Refinement r;
+  r.width = camera.width;
+  r.height = camera.height;
+  const std::size_t pixels = static_cast<std::size_t>(r.width) * static_cast<std::size_t>(r.height);
+  r.sums.resize(pixels * 3);
+  for (auto& level : r.squares)
+    level.resize(pixels * 3);
+  r.cost.resize(pixels, 1);
+  r.inside.resize(pixels, 0);
+  r.around.resize(pixels, 1);
+  r.log.resize(pixels, 0);
+  return r;
+}
+
+bool is_sound(const Refinement& r) {
+  constexpr double kMost = 1e30;  // far from where sums and products of doubles end
+  if (r.width < 1 || r.height < 1)
+    return false;
+  const std::size_t pixels = static_cast<std::size_t>(r.width) * static_cast<std::size_t>(r.height);
+  for (const auto& level : r.squares)
+    if (level.size() != pixels * 3 || !all_from_0_on(level))
+      return false;
+  for (const auto* values : {&r.cost, &r.inside, &r.around})
+    if (values->size() != pixels || !all_from_0_on(*values))
+      return false;
+  if (r.sums.size() != pixels * 3 || r.log.size() != pixels)
+    return false;
+  const auto sound_sum = [](std::int64_t s) {
+    return lies<std::int64_t>(s, -(std::int64_t{1} << 61), std::int64_t{1} << 61);
+  };
+  // two samples do not fall into kParts
+  const auto sound_log = [](std::uint8_t l) { return l != 1 && l <= kMostLog; };
+  if (!std::all_of(r.sums.begin(), r.sums.end(), sound_sum) ||
+      !std::all_of(r.log.begin(), r.log.end(), sound_log))
+    return false;
+  if (!std::all_of(r.cost.begin(), r.cost.end(), [](float c) { return c >= 1; }))
+    return false;
+  for (const double v : {r.fall, r.level, r.round_fall, r.round_level, r.seconds})
+    if (!lies(v, 0.0, kMost))
+      return false;
+  if (!lies(r.rho, .1f, .6f) || !lies(r.bar, 0.f, .25f) || !lies(r.share, 0.0, 1.0) ||
+      !lies(r.rounds, 0, 1 << 20))
+    return false;
+  if (r.wanted.empty())
+    return r.finished || is_new(r);
+  return !r.finished && is_round(r);
+}
+
+Image picture_so_far(const Refinement& r) {
+  Image image(r.width, r.height);
+  for (std::size_t i = 0; i < image.rgb.size(); ++i)
+    image.rgb[i] = mean_so_far(r, i);
+  return image;
+}
+
+}  // namespace grelha

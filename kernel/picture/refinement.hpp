@@ -1,0 +1,72 @@
+#pragma once
+// A picture whose samples are spent by error, see RefineOptions: rendered bit by bit, interrupted,
+// kept, gone on with, to the bits of one that was rendered in one go. docs/sampling.md has the
+// derivations.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "grelha/camera.hpp"
+#include "grelha/image.hpp"
+#include "grelha/render_options.hpp"
+#include "kernel/scene/light_unit.hpp"
+
+namespace grelha {
+
+inline constexpr int kMostLog = 16;
+static_assert(1 << kMostLog == kMostSamples);
+
+/// All that is known of a picture between two pieces of its work.
+///
+/// Every pixel starts with a few samples; each round then doubles those of the pixels whose
+/// variance would fall most for each new ray. A pixel's samples are one Owen-scrambled sequence:
+/// E[(A - B)^2] / 4 of the means A, B of its halves is V(n/2) - V(n), without a model; that V falls
+/// by `rho` a doubling, measured over the picture, gives V(n).
+struct Refinement {
+  int width = 0, height = 0;
+  std::vector<std::int64_t> sums;  ///< [pixels][3] linear RGB, units of 2^-32
+  /// [pixels][3] squared differences of halves, quarters, eighths, summed by level
+  std::array<std::vector<float>, 3> squares;
+  /// [pixels] rays a sample takes, of the part of the picture last sampled with the pixel
+  std::vector<float> cost;
+  /// [pixels] weights of what may hide from the samples, see Doubt
+  std::vector<float> inside, around;
+  std::vector<std::uint8_t> log;  ///< [pixels] of the number of samples; 0: none yet
+  /// pixels that the round in work has not come to, in its order; between rounds none
+  std::vector<std::uint32_t> wanted;
+  /// of the last rounds: sums of squared differences of halves of everything, and of the new half
+  double fall = 0, level = 0;
+  double round_fall = 0, round_level = 0;  ///< the same of the round in work
+  float rho = .4f;
+  float bar = .25f;   ///< gain a pixel of the round in work had to promise
+  int rounds = 0;     ///< done
+  bool last = false;  ///< no round follows the one in work
+  bool finished = false;
+  std::uint64_t rays = 0;  ///< sent so far
+  double seconds = 0;      ///< spent so far
+  double share = 0;        ///< of the way to what was asked for, as far as is known
+};
+
+/// Samples a pixel has.
+inline std::uint32_t sample_count(const Refinement& r, std::size_t pixel) {
+  return r.log[pixel] == 0 ? 0 : 1u << r.log[pixel];
+}
+
+/// Mean of the samples so far, of channel i % 3 of pixel i / 3.
+inline float mean_so_far(const Refinement& r, std::size_t i) {
+  return static_cast<float>(static_cast<double>(r.sums[i]) /
+                            (kLightUnit * static_cast<double>(1u << r.log[i / 3])));
+}
+
+/// Of a picture nothing is known of.
+Refinement make_refinement(const Camera& camera);
+
+/// Whether no array has another size than the others and no number is one that rendering cannot
+/// leave behind: what a file says must pass this before it is gone on with.
+bool is_sound(const Refinement& r);
+
+/// What has no sample yet is black.
+Image picture_so_far(const Refinement& r);
+
+}  // namespace grelha

@@ -1,0 +1,84 @@
+#include "kernel/query/variants.hpp"
+
+#include <stdexcept>
+#include <string>
+
+namespace grelha {
+
+// A macro for each copy that the build compiles. __builtin_cpu_supports also asks whether the
+// system saves the wide registers (XGETBV); xsimd 8.1's own query does not.
+extern const VariantLoops k_scalar_loops;
+extern const ExactLoops k_scalar_double_loops;
+namespace {
+bool always() { return true; }
+const Variant kScalar{"scalar", 1, always, k_scalar_loops, k_scalar_double_loops};
+}  // namespace
+
+#ifdef GRELHA_SSE2
+extern const VariantLoops k_sse2_loops;
+extern const ExactLoops k_sse2_double_loops;
+namespace {
+bool has_sse2() { return __builtin_cpu_supports("sse2"); }
+const Variant kSse2{"sse2", 4, has_sse2, k_sse2_loops, k_sse2_double_loops};
+}  // namespace
+#endif
+
+#ifdef GRELHA_AVX2
+extern const VariantLoops k_avx2_loops;
+extern const ExactLoops k_avx2_double_loops;
+namespace {
+bool has_avx2() { return __builtin_cpu_supports("avx2"); }
+const Variant kAvx2{"avx2", 8, has_avx2, k_avx2_loops, k_avx2_double_loops};
+}  // namespace
+#endif
+
+#ifdef GRELHA_AVX512
+extern const VariantLoops k_avx512_loops;
+extern const ExactLoops k_avx512_double_loops;
+namespace {
+// CMakeLists.txt asks for the same where GRELHA_ISAS is native.
+bool has_avx512() {
+  return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+         __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") &&
+         __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx2") &&
+         __builtin_cpu_supports("bmi2");
+}
+const Variant kAvx512{"avx512", 16, has_avx512, k_avx512_loops, k_avx512_double_loops};
+}  // namespace
+#endif
+
+namespace {
+constexpr const Variant* kVariants[] = {
+    &kScalar,
+#ifdef GRELHA_SSE2
+    &kSse2,
+#endif
+#ifdef GRELHA_AVX2
+    &kAvx2,
+#endif
+#ifdef GRELHA_AVX512
+    &kAvx512,
+#endif
+};
+}  // namespace
+
+std::span<const Variant* const> variants() { return kVariants; }
+
+const Variant* find_variant(std::string_view name) {
+  const Variant* found = nullptr;
+  for (const Variant* v : kVariants)
+    if (v->name == name || (name == "best" && v->runs_here()))
+      found = v;
+  return found;
+}
+
+const Variant& choose_variant(std::string_view name) {
+  const Variant* const v = find_variant(name);
+  if (!v)
+    throw std::invalid_argument("this build has no instruction set \"" + std::string(name) + "\"");
+  if (!v->runs_here())
+    throw std::invalid_argument("this processor has no " + std::string(name));
+  return *v;
+}
+
+}  // namespace grelha

@@ -1,0 +1,111 @@
+#pragma once
+// The compiled copies of the hot loops, one per instruction set, behind plain function pointers.
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "grelha/part.hpp"
+#include "grelha/rays.hpp"
+#include "kernel/scene/shading_view.hpp"
+#include "grelha/stats.hpp"
+#include "kernel/grid/view.hpp"
+
+namespace grelha {
+
+enum class Method {
+  kPackets,  ///< `packet` rays march together
+  kSingle,   ///< one ray at a time, SIMD over primitives, leaping over empty cells
+  // one ray, one primitive at a time, cell by cell (Amanatides & Woo 1987), with or without
+  // mailboxes
+  kReference,
+};
+
+struct TraceSettings {
+  Method method = Method::kPackets;
+  int packet = 256;  ///< 16, 64 or 256
+  bool mailbox = true;
+};
+
+/// What one instruction set's file provides.
+struct VariantLoops {
+  void (*closest)(const SceneView&, const RaySpan&, const TraceSettings&, TraceCounts&);
+  void (*occluded)(const SceneView&, const RaySpan&, const TraceSettings&, TraceCounts&);
+  void (*render_band)(const SceneView&,
+                      const ShadingView&,
+                      const FrameView&,
+                      const Part&,
+                      const BandWork&,
+                      TraceCounts&,
+                      RayCounts&);
+  /// Samples of chosen pixels, kParts sums a run; see render_runs.
+  void (*render_runs)(const SceneView&,
+                      const ShadingView&,
+                      const FrameView&,
+                      const PixelRun*,
+                      int runs,
+                      const BandWork&,
+                      TraceCounts&,
+                      RayCounts&);
+  /// Doubt of the pixels of the 8 x 8 tile at (x0, y0), [8 y + x] each: the weight, 0 to 1, of what
+  /// could hide from samples there, followed into `bounces` mirrors; both 0: nothing can. Of pixels
+  /// with a bit in `asked`, all within the picture; the others keep what they hold, or get theirs
+  /// as well. See Doubt in doubt.hpp.
+  void (*doubt)(const SceneView&,
+                const ShadingView&,
+                const FrameView&,
+                int x0,
+                int y0,
+                int bounces,
+                std::uint64_t asked,
+                float (&inside)[kTile * kTile],
+                float (&around)[kTile * kTile],
+                TraceCounts&);
+  /// power(x[i], y[i]) for tests.
+  void (*power)(const float* x, const float* y, float* out, int count);
+  /// sample_pairs of pixel[i], index[i], key[i], for tests.
+  void (*samples)(const SamplePlan&,
+                  const std::uint32_t* pixel,
+                  const std::uint32_t* index,
+                  int dimension,
+                  const std::uint32_t* key,
+                  const Strata&,
+                  float* u,
+                  float* v,
+                  int count);
+  /// Camera rays of the work's batch, for tests and measurements.
+  void (*camera_rays)(const FrameView&, const BandWork&, int count, bool in_pixels);
+  /// All samples of points of the picture, whose names work.pixels holds.
+  void (*render_points)(const SceneView&,
+                        const ShadingView&,
+                        const FrameView&,
+                        const PointList&,
+                        const BandWork&,
+                        TraceCounts&,
+                        RayCounts&);
+};
+
+/// What one instruction set's file in double provides: every test of a ray and a primitive in
+/// double lanes, one rounding to float at the end.
+struct ExactLoops {
+  void (*closest)(const SceneView&, const RaySpan&, const TraceSettings&, TraceCounts&);
+  void (*occluded)(const SceneView&, const RaySpan&, const TraceSettings&, TraceCounts&);
+  TraceLoops trace;  ///< for shading in single
+};
+
+struct Variant {
+  std::string_view name;
+  int lanes;
+  bool (*runs_here)();
+  const VariantLoops& loops;
+  const ExactLoops& in_double;
+};
+
+/// Compiled copies, scalar first, then by growing width.
+std::span<const Variant* const> variants();
+/// The named copy; "best" is the widest that runs here. nullptr: not compiled or unknown.
+const Variant* find_variant(std::string_view name);
+/// The same; throws std::invalid_argument when it is not compiled, unknown or does not run here.
+const Variant& choose_variant(std::string_view name);
+
+}  // namespace grelha

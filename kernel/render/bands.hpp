@@ -1,0 +1,35 @@
+#pragma once
+
+#include <functional>
+
+#include "grelha/part.hpp"
+#include "kernel/render/setup.hpp"
+#include "kernel/grid/world_impl.hpp"
+
+namespace grelha {
+
+/// A part of a picture, at most kBandRows rows, and the number its renderer knows it by.
+struct Band {
+  std::size_t number;
+  Part part;
+};
+
+/// Sets the next band to render; false when there is none left. Called by all threads, two at a
+/// time as well.
+using NextBand = std::function<bool(Band&)>;
+
+/// Handed the sums of a band, [rows][width][3] in units of 1 / kLightUnit, by the thread that
+/// rendered it, while others do the same; returns false to stop.
+using TakeBand = std::function<bool(const Band&, const std::int64_t* sums)>;
+
+/// Renders bands in parallel, by no more threads than there are bands, `most`. What the functions
+/// throw ends the program.
+void render_bands(const World::Impl& world,
+                  const Setup& setup,
+                  const RenderOptions& options,
+                  std::size_t most,
+                  const NextBand& next,
+                  const TakeBand& take,
+                  RenderStats& stats);
+
+}  // namespace grelha

@@ -1,0 +1,311 @@
+#pragma once
+// A beam of four rays: the pyramid they span, which primitives reach into it, and where. A beam
+// walks the grids as a packet does; what it finds is then asked for a point inside, so that the
+// answer is a function of beam and scene, not of the grid.
+
+#include "kernel/trace/surface.hpp"
+#include "kernel/trace/trace.hpp"
+
+namespace grelha::GRELHA_ISA {
+
+inline constexpr int kCorners = 4, kMostMet = 48;
+/// Corner rays of a beam lie within this cosine of its axis: wider ones would walk half the scene.
+inline constexpr float kNarrow = .998f;
+
+struct Beam {
+  Vec3<float> org[kCorners], dir[kCorners];  ///< around the beam, in order; unit directions
+};
+
+/// A beam as a pyramid over a parallelogram: its rays seem to come from the apex, and a point apex
+/// + w (axis + x right + y up) lies inside when |x| and |y| are at most 1.
+struct BeamFrame {
+  Vec3<float> apex, axis, right, up;
+  Vec3<float> to_x, to_y;  ///< x = dot(p, to_x) / dot(p, unit), p from the apex; y likewise
+  Vec3<float> unit;        ///< the axis without what right and up add to it: w = dot(p, unit)
+  float depth;             ///< w from which the whole beam is on its way: of its farthest origin
+};
+
+struct Sight {
+  std::uint32_t id[kCorners];
+  float t[kCorners];
+};
+
+inline Vec3<float> middle(const Vec3<float> (&p)[kCorners]) {
+  return .25f * ((p[0] + p[1]) + (p[2] + p[3]));
+}
+
+/// False when the rays spread too far to be a beam.
+inline bool frame_of(const Beam& b, BeamFrame& f) {
+  const Vec3<float> org = middle(b.org);
+  f.unit = normalize(middle(b.dir));
+  if (!(f.unit.x == f.unit.x))
+    return false;
+  float offset = 0, growth = 0;
+  for (int i = 0; i < kCorners; ++i) {
+    const float along = dot(b.dir[i], f.unit);
+    if (!(along > kNarrow))
+      return false;
+    const Vec3<float> o = b.org[i] - org, d = (1 / along) * b.dir[i] - f.unit;
+    offset += length(o);
+    growth += dot(o, d) > 0 || dot(o, o) == 0 ? length(d) : 0 - length(d);
+  }
+  // Rays that run together or keep apart have no apex behind them: one far away stands for it.
+  f.depth = offset == 0               ? 0.f
+            : growth > 1e-4f * offset ? lesser(offset / growth, 1e4f * offset)
+                                      : 1e4f * offset;
+  f.apex = org - f.depth * f.unit;
+  Vec3<float> c[kCorners];  // where the corner rays pierce w = 1
+  for (int i = 0; i < kCorners; ++i) {
+    // any place on a ray from the apex will do
+    const Vec3<float> at = b.org[i] + (f.depth > 0 ? 0.f : 1.f) * b.dir[i] - f.apex;
+    c[i] = (1 / dot(at, f.unit)) * at;
+  }
+  f.axis = middle(c);
+  f.right = .25f * ((c[1] - c[0]) + (c[2] - c[3]));
+  f.up = .25f * ((c[3] - c[0]) + (c[2] - c[1]));
+  // along the axis: x = det(p, up, axis) / det(right, up, axis), over w
+  const Vec3<float> n = cross(f.right, f.up);
+  const float det = dot(n, f.axis);
+  if (!(det * det > 0))
+    return false;
+  f.to_x = (1 / det) * cross(f.up, f.axis);
+  f.to_y = (1 / det) * cross(f.axis, f.right);
+  if (f.depth == 0)
+    return true;
+  float first = kInfinity, last = 0;
+  for (int i = 0; i < kCorners; ++i) {
+    const float w = dot(b.org[i] - f.apex, f.unit);
+    first = lesser(w, first);
+    last = greater(w, last);
+  }
+  // a slanting mirror: its corners are the ends, but for the rounding
+  f.depth = last + .1f * (last - first);
+  return true;
+}
+
+/// Place in the beam, see BeamFrame.
+struct Place {
+  float x, y, w;
+};
+inline Place place(const BeamFrame& f, const Vec3<float>& p) {
+  const Vec3<float> d = p - f.apex;
+  const float w = dot(d, f.unit);
+  return {dot(d, f.to_x) / w, dot(d, f.to_y) / w, w};
+}
+/// How far out: at most 1 inside.
+inline float outness(float x, float y) { return greater(magnitude(x), magnitude(y)); }
+
+/// Point of least outness of the stretch between two points: least at an end, on a diagonal or
+/// where it crosses an axis.
+inline Place innermost(const Place& a, const Place& b) {
+  const float dx = b.x - a.x, dy = b.y - a.y;
+  const float at[6] = {
+      0, 1, (a.y - a.x) / (dx - dy), (0 - (a.x + a.y)) / (dx + dy), (0 - a.x) / dx, (0 - a.y) / dy};
+  Place best{a.x, a.y, outness(a.x, a.y)};
+  for (const float t : at) {
+    if (!(t >= 0) || !(t <= 1))
+      continue;
+    const float x = a.x + t * dx, y = a.y + t * dy, out = outness(x, y);
+    if (out < best.w)
+      best = {x, y, out};
+  }
+  return best;  // w: the outness
+}
+
+/// Point of a ball nearest to the axis.
+inline Vec3<float> ball_point(const BeamFrame& f, const Vec3<float>& c, float r) {
+  const Vec3<float> d = c - f.apex, off = d - (dot(d, f.axis) / dot(f.axis, f.axis)) * f.axis;
+  const float far = length(off);
+  return far <= r ? c - off : c - ((.9f * r) / far) * off;
+}
+
+/// Innermost point of a triangle; false when a corner lies behind the apex.
+inline bool triangle_point(const BeamFrame& f, const Vec3<float> (&c)[3], Vec3<float>& out) {
+  Place q[3];
+  for (int i = 0; i < 3; ++i) {
+    q[i] = place(f, c[i]);
+    if (!(q[i].w > 0))
+      return false;
+  }
+  int left = 0, right = 0;
+  Place best{0, 0, kInfinity};
+  for (int i = 0; i < 3; ++i) {
+    const Place &a = q[i], &b = q[(i + 1) % 3];
+    const float side = a.x * (b.y - a.y) - a.y * (b.x - a.x);
+    left += side >= 0;
+    right += side <= 0;
+    const Place in = innermost(a, b);
+    if (in.w < best.w)
+      best = in;
+  }
+  if (left == 3 || right == 3)
+    best = {0, 0, 0};
+  const float mx = (1.f / 3) * ((q[0].x + q[1].x) + q[2].x),
+              my = (1.f / 3) * ((q[0].y + q[1].y) + q[2].y);
+  const float x = best.x + .01f * (mx - best.x), y = best.y + .01f * (my - best.y);  // off the edge
+  const Vec3<float> n = cross(c[1] - c[0], c[2] - c[0]), dir = f.axis + x * f.right + y * f.up;
+  const float t = dot(c[0] - f.apex, n) / dot(dir, n);
+  if (!(t > 0) || !(t < kInfinity))
+    return false;
+  out = f.apex + t * dir;
+  return true;
+}
+
+struct Corners3 {
+  Vec3<float> at[3];
+};
+inline Corners3 triangle_corners(const GeometryView& g, std::uint32_t i) {
+  const std::uint32_t v[3] = {g.ta[i], g.tb[i], g.tc[i]};
+  Corners3 c;
+  for (int k = 0; k < 3; ++k)
+    c.at[k] = {g.tx[v[k]], g.ty[v[k]], g.tz[v[k]]};
+  return c;
+}
+
+/// A point of a primitive's surface inside the beam, nearer than w = `far`; false when it has none
+/// that this finds. The point lies in a cell that lists the primitive and that the beam walks
+/// through, whatever the grid.
+inline bool meets(
+    const SceneView& scene, const BeamFrame& f, std::uint32_t id, float far, Vec3<float>& p) {
+  const GeometryView& g = scene.geometry;
+  // a plane ends nowhere inside a beam: its corners see it
+  if (id < scene.sphere_base)
+    return false;
+  if (id >= scene.triangle_base && id < scene.cone_base) {
+    if (!triangle_point(f, triangle_corners(g, id - scene.triangle_base).at, p))
+      return false;
+    const Place at = place(f, p);
+    return at.w > f.depth && at.w < far && outness(at.x, at.y) <= 1;
+  }
+  Vec3<float> center, base{}, axis{};
+  float radius = 0;
+  if (id < scene.triangle_base) {
+    const std::uint32_t i = id - scene.sphere_base;
+    center = {g.sx[i], g.sy[i], g.sz[i]}, radius = magnitude(g.sr[i]);
+  } else {  // the ball around the cone's axis where that passes nearest to the beam's
+    const std::uint32_t i = id - scene.cone_base;
+    base = {g.cone[0][i], g.cone[1][i], g.cone[2][i]},
+    axis = {g.cone[3][i], g.cone[4][i], g.cone[5][i]};
+    const float height = g.cone[6][i];
+    const Vec3<float> d = base - f.apex;
+    const float ab = dot(axis, f.unit), k = 1 - ab * ab;
+    float h = k > 1e-6f ? (ab * dot(d, f.unit) - dot(d, axis)) / k : .5f * height;
+    h = h < 0 ? 0 : h > height ? height : h;
+    center = base + h * axis;
+    radius = g.cone[7][i] + g.cone[8][i] * h;
+  }
+  const Place toward = place(f, ball_point(f, center, radius));
+  if (!(toward.w > 0) || !(outness(toward.x, toward.y) <= 1))
+    return false;
+  const Vec3<float> dir = f.axis + toward.x * f.right + toward.y * f.up,
+                    org = f.apex + f.depth * dir;
+  const float inv_dd = 1 / dot(dir, dir);
+  float t = 0;
+  bool hit;
+  if (id < scene.triangle_base) {
+    hit = hit_sphere<float>(org, dir, inv_dd, 0, center, g.sr[id - scene.sphere_base], t);
+  } else {
+    const std::uint32_t i = id - scene.cone_base;
+    hit = hit_cone<float>(org,
+                          dir,
+                          inv_dd,
+                          0,
+                          {base, axis, g.cone[6][i], g.cone[7][i], g.cone[8][i], g.cone[9][i]},
+                          t);
+  }
+  p = org + t * dir;
+  return hit && f.depth + t < far;
+}
+
+/// The primitives, other than those of `known`, that meet() a beam; each once.
+struct Met {
+  std::uint32_t id[kMostMet];
+  Vec3<float> point[kMostMet];
+  int size = 0;
+  bool full = false;  ///< there were more
+};
+
+/// Calls see(id) for every primitive whose bounds the beam meets in this grid, some more than once.
+template <class See>
+inline bool walk_beam(const GridView& g, const Packet& p, int axis, const See& see, Counters& n) {
+  Frustum f;
+  switch (bound(g, p, f, axis)) {
+    case Spread::kNothing:
+      return true;
+    case Spread::kApart:
+      return false;
+    case Spread::kTogether:
+      break;
+  }
+  Mailbox mailbox;
+  mailbox.clear();
+  const auto once = [&](std::uint32_t id) {
+    if (!mailbox.seen(id))
+      see(id);
+  };
+  const std::size_t stride[3] = {
+      1,
+      static_cast<std::size_t>(g.n[0]),
+      static_cast<std::size_t>(g.n[0]) * static_cast<std::size_t>(g.n[1])};
+  const int nk = g.n[f.k];
+  int slice = clamp_cell(static_cast<double>(f.from - f.margin), nk);
+  const int last = clamp_cell(static_cast<double>(f.to + f.margin), nk);
+  for (; slice <= last; ++slice) {
+    int least[2], most[2];
+    if (!rectangle(g, f, slice, least, most))
+      continue;
+    const int sk = f.flip ? nk - 1 - slice : slice;
+    int nearest = 255;
+    for (int v = least[1]; v <= most[1]; ++v)
+      for (int u = least[0]; u <= most[0]; ++u) {
+        const std::size_t cell = static_cast<std::size_t>(sk) * stride[f.k] +
+                                 static_cast<std::size_t>(u) * stride[f.u] +
+                                 static_cast<std::size_t>(v) * stride[f.v];
+        ++n.visits;
+        const int distance = g.distance[cell];
+        nearest = distance < nearest ? distance : nearest;
+        if (distance != 0)
+          continue;
+        if (g.lists.triangle_first)
+          for (std::uint32_t b = g.lists.triangle_first[cell]; b < g.lists.triangle_first[cell + 1];
+               ++b)
+            for (int i = 0; i < kBlock; i += kWidth<Block>)
+              for (unsigned left = triangles_inside(f, g.lists.triangles[b], i); left != 0;
+                   left &= left - 1)
+                once(g.lists.triangles[b].id[i + __builtin_ctz(left)]);
+        if (g.lists.sphere_first)
+          for (std::uint32_t i = g.lists.sphere_first[cell], end = g.lists.sphere_first[cell + 1];
+               i < end;
+               i += kWidth<Block>)
+            for (unsigned left = spheres_inside(f, g.lists, i, end); left != 0; left &= left - 1)
+              once(g.lists.sphere_id[i + static_cast<unsigned>(__builtin_ctz(left))]);
+        if (g.lists.cone_first)
+          for (std::uint32_t i = g.lists.cone_first[cell], end = g.lists.cone_first[cell + 1];
+               i < end;
+               i += kWidth<Block>)
+            for (unsigned left = cones_inside(f, g.lists, i, end); left != 0; left &= left - 1)
+              once(g.lists.cone_id[i + static_cast<unsigned>(__builtin_ctz(left))]);
+      }
+    if (nearest > 1)
+      slice += f.steepest > 1 ? static_cast<int>(static_cast<float>(nearest - 1) / f.steepest)
+                              : nearest - 1;
+  }
+  return true;
+}
+
+/// Every primitive of the list without a grid.
+template <class See>
+inline void see_outside(const CellLists& lists, const See& see) {
+  if (lists.triangle_first)
+    for (std::uint32_t b = 0; b < lists.triangle_first[1]; ++b)
+      for (int i = 0; i < kBlock && lists.triangles[b].a[0][i] == lists.triangles[b].a[0][i]; ++i)
+        see(lists.triangles[b].id[i]);
+  if (lists.sphere_first)
+    for (std::uint32_t i = 0; i < lists.sphere_first[1]; ++i)
+      see(lists.sphere_id[i]);
+  if (lists.cone_first)
+    for (std::uint32_t i = 0; i < lists.cone_first[1]; ++i)
+      see(lists.cone_id[i]);
+}
+
+}  // namespace grelha::GRELHA_ISA

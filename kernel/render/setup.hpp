@@ -1,0 +1,24 @@
+#pragma once
+
+#include "kernel/scene/frame.hpp"
+#include "grelha/render_options.hpp"
+#include "grelha/world.hpp"
+#include "kernel/query/variants.hpp"
+
+namespace grelha {
+
+/// What every way of rendering starts from.
+struct Setup {
+  const Variant& variant;
+  FrameView frame;
+  SamplePlan plan;
+};
+
+/// Throws std::invalid_argument for an instruction set that is unknown or does not run here, or a
+/// bad camera or option.
+Setup set_up(const World& world, const Camera& camera, const RenderOptions& options);
+
+/// Threads for `pieces` of work.
+int thread_count(const RenderOptions& options, std::size_t pieces);
+
+}  // namespace grelha

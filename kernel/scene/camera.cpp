@@ -1,0 +1,91 @@
+#include "grelha/camera.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernel/scene/frame.hpp"
+
+namespace grelha {
+namespace {
+
+struct Double3 {
+  double x, y, z;
+};
+
+Double3 minus(const Float3& a, const Float3& b) {
+  return {double(a.x) - b.x, double(a.y) - b.y, double(a.z) - b.z};
+}
+double dot(const Double3& a, const Double3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+Double3 cross(const Double3& a, const Double3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+Double3 scaled(const Double3& a, double s) { return {a.x * s, a.y * s, a.z * s}; }
+Double3 unit(const Double3& a) { return scaled(a, 1 / std::sqrt(dot(a, a))); }
+
+bool finite(const Float3& a) {
+  return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
+}
+
+/// Tangent of x in (0, pi/2) from the series of sine and cosine, summed from the smallest term.
+double tangent(double x) {
+  const double xx = x * x;
+  double s = 1, c = 1;
+  for (int k = 12; k >= 1; --k) {
+    s = 1 - s * xx / ((2 * k) * (2 * k + 1));
+    c = 1 - c * xx / ((2 * k) * (2 * k - 1));
+  }
+  return s * x / c;
+}
+
+void put(float (&to)[3], const Double3& v) {
+  to[0] = static_cast<float>(v.x);
+  to[1] = static_cast<float>(v.y);
+  to[2] = static_cast<float>(v.z);
+}
+
+}  // namespace
+
+bool camera_is_sound(const Camera& c) {
+  if (!finite(c.eye) || !finite(c.at) || !finite(c.up) || c.width < 1 || c.height < 1 ||
+      c.width > kMostSide || c.height > kMostSide)
+    return false;
+  if (!(c.angle_deg > 0) || !(c.angle_deg < 180))
+    return false;
+  if (!(c.aperture >= 0) || !std::isfinite(c.aperture) || !(c.focus > 0) || !std::isfinite(c.focus))
+    return false;
+  const Double3 view = minus(c.at, c.eye), up{c.up.x, c.up.y, c.up.z};
+  const double vv = dot(view, view), uu = dot(up, up);
+  if (!(vv > 0) || !(uu > 0))
+    return false;
+  const Double3 side = cross(scaled(view, 1 / std::sqrt(vv)), scaled(up, 1 / std::sqrt(uu)));
+  return dot(side, side) > 1e-18;
+}
+
+double pixel_size(const Camera& c) {
+  return 2 * tangent(c.angle_deg * 3.14159265358979323846 / 360) / c.height;
+}
+
+FrameView make_frame(const Camera& c) {
+  const Double3 forward = unit(minus(c.at, c.eye));
+  const Double3 right = unit(cross(forward, unit({c.up.x, c.up.y, c.up.z})));
+  const Double3 up = cross(right, forward);
+  const double pixel = pixel_size(c);
+  FrameView f;
+  f.eye[0] = c.eye.x;
+  f.eye[1] = c.eye.y;
+  f.eye[2] = c.eye.z;
+  put(f.forward, forward);
+  put(f.right, scaled(right, pixel));
+  put(f.up, scaled(up, pixel));
+  f.width = c.width;
+  f.height = c.height;
+  f.lens = c.aperture > 0;
+  // Directions are as long as the focus is far, and rays take lengths whose squares are floats. A
+  // lens whose focus lies that far has none of its rays bent against the others by a rounding.
+  f.focus = static_cast<float>(std::clamp(c.focus, 1e-15, 1e15));
+  put(f.lens_right, scaled(right, c.aperture / 2));
+  put(f.lens_up, scaled(up, c.aperture / 2));
+  return f;
+}
+
+}  // namespace grelha

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "grelha/camera.hpp"
+
+namespace grelha {
+
+/// A camera's frame: direction of a point (x, y) of the image, in pixels = forward + (x - w/2)
+/// right + (h/2 - y) up. Through the point (a, b) of the unit disc of its lens a ray starts at eye
+/// + a lens_right + b lens_up and goes to the point of that direction at depth `focus`.
+struct FrameView {
+  float eye[3] = {}, forward[3] = {}, right[3] = {}, up[3] = {}, lens_right[3] = {},
+        lens_up[3] = {};
+  float focus = 1;
+  int width = 0, height = 0;
+  bool lens = false;
+};
+
+/// The frame of a sound camera. Its tangent comes from a series of our own: libm's last bit depends
+/// on the machine.
+FrameView make_frame(const Camera& camera);
+
+}  // namespace grelha

@@ -1,0 +1,13 @@
+#pragma once
+// How sums of light are counted.
+
+namespace grelha {
+
+/// Sums of light are integers in units of 2^-32, so that they come out the same in whatever order
+/// terms arrive.
+inline constexpr double kLightUnit = 4294967296.0;
+/// Terms are clamped to this divided by the samples a pixel, at most 2^20: then 64 of the largest a
+/// sample still fit.
+inline constexpr float kMostLight = 33554432.f;
+
+}  // namespace grelha

@@ -1,0 +1,25 @@
+#pragma once
+// The materials of a scene as shading sees them.
+
+#include <array>
+#include <vector>
+
+#include "grelha/scene_spans.hpp"
+#include "kernel/scene/shading_view.hpp"
+
+namespace grelha {
+
+/// Materials one array per component, so that lanes gather what they need and no more; and what
+/// those that primitives have ask for.
+struct MaterialTable {
+  explicit MaterialTable(const SceneSpans& scene);
+  MaterialView view() const;
+  std::array<std::vector<float>, kMaterialFields> fields;
+  bool reflects = false, refracts = false, fresnel = false, emits = false, highlights = false,
+       gloss = false;
+  bool gains = false;
+  /// of light of 1 a point sends an eye at most so much; and what the brightest sends by itself
+  float lit = 0, emitted = 0;
+};
+
+}  // namespace grelha

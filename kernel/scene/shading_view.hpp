@@ -1,0 +1,171 @@
+#pragma once
+// What shading sees, as plain pointers; and the memory one thread works in.
+
+#include <cstdint>
+
+#include "kernel/scene/frame.hpp"
+#include "kernel/scene/light_unit.hpp"
+#include "grelha/phase.hpp"
+
+namespace grelha {
+
+enum MaterialField {
+  kDiffuseR,
+  kDiffuseG,
+  kDiffuseB,
+  kSpecularR,
+  kSpecularG,
+  kSpecularB,
+  kMirrorR,
+  kMirrorG,
+  kMirrorB,
+  kEmissionR,
+  kEmissionG,
+  kEmissionB,
+  kTransmission,
+  kShine,
+  kIor,
+  kFresnel,
+  kRoughness,
+  kMaterialFields
+};
+
+struct MaterialView {
+  const float* field[kMaterialFields] = {};  ///< [materials] each; kFresnel holds 0 or 1
+};
+
+/// The scene's light and colour, and which of its effects exist at all: what no material asks for
+/// is never computed.
+struct ShadingView {
+  MaterialView materials;
+  const float* lights = nullptr;  ///< [kLightFloats * light_count] centre, colour, edge, edge
+  int light_count = 0;
+  float background[3] = {};
+  bool smooth = false, reflects = false, refracts = false, fresnel = false, emits = false,
+       highlights = false;
+  bool area = false, gloss = false;
+  bool gains = false;  ///< some material sends on more than it gets: see split()
+  /// a point, what its mirror and glass show left out, or the background: sends an eye at most so
+  /// much
+  float brightest = 0;
+};
+
+inline constexpr int kLightFloats = 12;
+
+/// A near-square grid of at least `count` cells, for jittered samples.
+struct Strata {
+  std::uint32_t columns = 1, rows = 1;
+};
+
+/// Which samples a picture takes. Only effects that are there get dimensions: pixel 2, then lens,
+/// light, gloss 2 each.
+struct SamplePlan {
+  enum Kind : int { kSobol, kJitter, kUnshuffled, kRandom };
+  bool on = false;  ///< false: one ray through each pixel's centre and nothing to sample
+  int samples = 1;  ///< a pixel
+  Kind kind = kSobol;
+  std::uint32_t seed = 0;
+  int lens = -1, light = -1, gloss = -1;  ///< first of the effect's two dimensions
+  int light_rays = 1;                     ///< shadow rays a hit sends to an area light
+  /// rays around the mirror direction, added to that direction itself; 0: one ray in its place
+  int gloss_rays = 0;
+  Strata pixel_strata, light_strata, gloss_strata;
+};
+
+inline constexpr int kBatch = 512;     ///< rays shaded together
+inline constexpr int kCacheLine = 16;  ///< floats
+/// Length of an array of a batch. A cache keeps few lines whose addresses are equal modulo 4 KiB,
+/// and each hit writes to some thirty arrays side by side: a line more than the power of two lets
+/// all of them stay.
+inline constexpr int kBatchRow = kBatch + kCacheLine;
+/// image rows a thread takes at a time: one row of 8 x 8 packets
+inline constexpr int kBandRows = 8;
+inline constexpr int kTile = 8;
+/// Pixel k of a tile, along Morton's curve: any 4, 16 or 64 in a row from a multiple of that are a
+/// square.
+constexpr int tile_x(int k) { return (k & 1) | (k >> 1 & 2) | (k >> 2 & 4); }
+constexpr int tile_y(int k) { return tile_x(k >> 1); }
+
+/// Set in the depth of a waiting ray that was refracted.
+inline constexpr std::uint32_t kRefracted = 1u << 31;
+
+/// Rays waiting for their turn, last in first out. Arrays of `capacity` floats each.
+struct RayStack {
+  float *ox, *oy, *oz, *dx, *dy, *dz, *wr, *wg, *wb;
+  /// only when what traces is in double: origins are sums of two floats
+  float *ox_low, *oy_low, *oz_low;
+  float* share;                                  ///< only where keeps_shares()
+  std::uint32_t *pixel, *depth, *sample, *path;  ///< the last two: only when the plan is on
+  int size, capacity;
+};
+
+/// One thread's arrays for one batch; the caller allocates one a thread.
+struct Batch {
+  // the rays
+  alignas(64) float ox[kBatchRow], oy[kBatchRow], oz[kBatchRow], dx[kBatchRow], dy[kBatchRow],
+      dz[kBatchRow], t_min[kBatchRow], t[kBatchRow];
+  alignas(64) float wr[kBatchRow], wg[kBatchRow], wb[kBatchRow], share[kBatchRow];
+  std::uint32_t id[kBatchRow], pixel[kBatchRow], depth[kBatchRow];
+  /// of its pixel; which bounces led here (0: none)
+  std::uint32_t sample[kBatchRow], path[kBatchRow];
+  // of rays traced in double: what their origins have besides, and t
+  alignas(64) float ox_low[kBatchRow], oy_low[kBatchRow], oz_low[kBatchRow];
+  alignas(64) float px_low[kBatchRow], py_low[kBatchRow], pz_low[kBatchRow];
+  alignas(64) float lox_low[kBatchRow], loy_low[kBatchRow], loz_low[kBatchRow];
+  alignas(64) double whole[kBatchRow];
+  // what they met, misses left out
+  alignas(64) float px[kBatchRow], py[kBatchRow], pz[kBatchRow];  ///< point on the surface
+  /// geometric normal, unit, towards the viewer
+  alignas(64) float gx[kBatchRow], gy[kBatchRow], gz[kBatchRow];
+  /// shading normal, unit, towards the viewer
+  alignas(64) float nx[kBatchRow], ny[kBatchRow], nz[kBatchRow];
+  alignas(64) float vx[kBatchRow], vy[kBatchRow], vz[kBatchRow];  ///< unit vector to the viewer
+  /// how far along g a ray must start so as not to meet its own surface
+  alignas(64) float away[kBatchRow];
+  alignas(64) float inside[kBatchRow];  ///< 1: met from within
+  /// weight of what this point sends
+  alignas(64) float hr[kBatchRow], hg[kBatchRow], hb[kBatchRow];
+  alignas(64) float hit_share[kBatchRow];  ///< see split()
+  std::uint32_t hit_pixel[kBatchRow], hit_depth[kBatchRow], material[kBatchRow],
+      hit_sample[kBatchRow], hit_path[kBatchRow];
+  // shadow rays and the light each lets through
+  alignas(64) float lox[kBatchRow], loy[kBatchRow], loz[kBatchRow], ldx[kBatchRow], ldy[kBatchRow],
+      ldz[kBatchRow], lt_min[kBatchRow], lt[kBatchRow];
+  alignas(64) float lr[kBatchRow], lg[kBatchRow], lb[kBatchRow];
+  std::uint32_t lid[kBatchRow], light_pixel[kBatchRow];
+};
+
+/// Consecutive samples of one pixel, in kParts parts of equal size with a sum each.
+struct PixelRun {
+  std::uint32_t pixel, first, count;  ///< count: a multiple of kParts
+};
+inline constexpr int kParts = 4;
+
+struct TraceLoops;  // view.hpp
+
+struct BandWork {
+  Batch* batch = nullptr;
+  RayStack stack = {};
+  /// [rows of the band][width][3], units of 1 / kLightUnit, zero on entry
+  std::int64_t* sums = nullptr;
+  int depth = 1, packet = 64;
+  float min_weight = 0;  ///< see RenderOptions
+  int take = kBatch;     ///< rays taken off the stack at a time, at most kBatch
+  bool mailbox = true;
+  std::uint32_t first_pixel = 0;  ///< of the band, counted through the picture
+  float most_light = 0;           ///< bound of a term
+  SamplePlan plan = {};
+  /// [sums] the pixel each sum belongs to; null: sum i to first_pixel + i
+  const std::uint32_t* pixels = nullptr;
+  Observer* observer = nullptr;           ///< null: nobody asks
+  const TraceLoops* in_double = nullptr;  ///< what traces; null: the loops of this copy, in single
+};
+
+/// Points of the picture in pixels from its upper left corner, neighbours next to each other; point
+/// i has sum i.
+struct PointList {
+  const float *x, *y;  ///< [count]
+  int count;
+};
+
+}  // namespace grelha

@@ -1,0 +1,85 @@
+#pragma once
+
+#include "kernel/simd/vec3.hpp"
+
+namespace grelha::GRELHA_ISA {
+
+/// The side of a cone frustum, prepared: centre of the narrower end (a cone's tip), unit axis
+/// towards the other, height, radius at the narrower end, growth of the radius per unit of height,
+/// and +1 (both sides show) or -1 (only the inside).
+template <class Real>
+struct ConeSide {
+  Vec3<Real> base, axis;
+  Real height, radius, slope, side;
+};
+
+/// First point of each ray on the side of a cone frustum or cylinder, from outside or (through the
+/// open ends) inside.
+///
+/// Returns   lanes whose t is above t_min; t means nothing in the others.
+/// Accuracy  hit point within 32 eps (|org - base| + height + wider radius) of the surface; a ray
+///           that leaves it from that far above it does not meet it (tests/cone_test.cpp). The
+///           quadratic is solved about the ray's point nearest to the narrower end, where what it
+///           is made of is as small as what surrounds the hit. Its discriminant b b - a c is, by
+///           Lagrange's identity, also w w - m m: where the roots meet, at a tip, b b is the
+///           larger, along the side w w. Less is lost of the smaller. What lies across the axis
+///           (pn, n, e, w) is a cross product with it, as long and turned by a quarter: m is p . e
+///           then.
+/// Source    Haines, NFF document 3.9 (SPD), "c"; stable roots as in Press et al., Numerical
+///           Recipes, 5.6.
+template <class Real>
+[[gnu::always_inline]] inline Mask<Real> hit_cone(const Vec3<Real>& org,
+                                                  const Vec3<Real>& dir,
+                                                  const Real& inv_dd,
+                                                  const Real& t_min,
+                                                  const ConeSide<Real>& cone,
+                                                  Real& t) {
+  const Real o(0);
+  const Vec3<Real> to_base = cone.base - org;
+  // what of `dir` runs across the axis, turned by a quarter
+  const Vec3<Real> n = cross(dir, cone.axis);
+  // by dir . dir, or products of four lengths overflow beyond 1e9
+  const Vec3<Real> e = inv_dd * n;
+  const Real aside = dot(to_base, e), de = dot(n, e);
+  const Real wide = cone.radius + cone.slope * cone.height;
+  const Real within = (wide * wide) * inv_dd * de - aside * aside;
+  // most lines pass the axis further away than the wider radius
+  const Mask<Real> near_by = within >= o;
+  if (none(near_by))
+    return near_by;
+  const Real near = dot(to_base, dir) * inv_dd;
+  const Vec3<Real> p = near * dir - to_base;  // narrower end to the line's nearest point
+  const Real pz = dot(p, cone.axis), dz = dot(dir, cone.axis);
+  const Vec3<Real> pn = cross(p, cone.axis);
+  Real r = cone.radius, a = de, b = dot(pn, e);
+  Vec3<Real> w = r * e;
+  // of a cylinder the lines below change no bit
+  if (const Mask<Real> tapers = cone.slope > o; !none(tapers)) {
+    const Real rd = cone.slope * dz, erd = inv_dd * rd;
+    r = r + cone.slope * pz;
+    a = a - rd * erd;
+    b = b - r * erd;
+    w = erd * pn - r * e;
+  }
+  const Real c = inv_dd * (dot(pn, pn) - r * r), bb = b * b, ww = dot(w, w), moment = dot(p, e);
+  const Real disc = select(bb < ww, bb - a * c, ww - moment * moment);
+  // so that no lane's answer depends on its neighbours, whatever overflows
+  const Mask<Real> crosses = both(near_by, disc >= o);
+  if (none(crosses))
+    return crosses;
+  const Real root = square_root(disc);
+  const Real q = select(b < o, root - b, o - (b + root));
+  const Real t1 = q / a, t2 = c / q;
+  const auto valid = [&](const Real& s) {
+    const Real h = pz + s * dz;
+    const Mask<Real> leaving = (a * s + b) >= o;  // on a tip neither; let no ray out there
+    return both(both(both(h >= o, h <= cone.height), (near + s) > t_min),
+                either(cone.side > o, leaving));
+  };
+  const Mask<Real> ok1 = valid(t1), ok2 = valid(t2);
+  const Mask<Real> first = both(ok1, either(but_not(ok1, ok2), t1 < t2));
+  t = near + select(first, t1, t2);
+  return both(crosses, either(ok1, ok2));
+}
+
+}  // namespace grelha::GRELHA_ISA

@@ -1,0 +1,113 @@
+#pragma once
+
+#include "kernel/simd/vec3.hpp"
+
+namespace grelha::GRELHA_ISA {
+
+// What floats leave open, in u = 2^-24; docs/numerics.md derives it.
+
+/// Times r^2: bound of the error of power = |center - org|^2 - r^2 where the origin is near the
+/// surface, 8 u. It is 6 u.
+inline constexpr float kPowerError = 0x1p-21f;
+/// Times r^2: bound of the error of (half the chord)^2 there, 16 u. It is 11 u.
+inline constexpr float kChordError = 0x1p-20f;
+/// Floats do for t where |power| is not below this part of r^2: what rounds is 96 u of it there.
+inline constexpr float kFarPower = 0x1p-4f;
+
+template <class Real>
+[[gnu::always_inline]] inline Mask<Real> hit_sphere(const Vec3<Real>& org,
+                                                    const Vec3<Real>& dir,
+                                                    const Real& inv_dd,
+                                                    const Real& t_min,
+                                                    const Vec3<Real>& center,
+                                                    const Real& radius,
+                                                    Real& t);
+
+/// What a test is given. A copy: of the hot loop's own variables the address would be taken, and
+/// they would leave their registers.
+template <class Real>
+struct SphereRay {
+  Vec3<Real> org, dir;
+  Real t_min;
+  Vec3<Real> center;
+  Real radius;
+};
+
+/// hit_sphere() of float lanes in double, part after part: t where a ray hits, NaN where not.
+template <class Real, int i = 0>
+[[gnu::always_inline]] inline void wide_sphere(const SphereRay<Real>& r,
+                                               Wide<Real> (&t)[kWideParts<Real>]) {
+  using Wider = Wide<Real>;
+  const Vec3<Wider> dir = widen<i>(r.dir);
+  const Wider inv_dd = Wider(1) / dot(dir, dir);
+  Wider found(0);
+  const Mask<Wider> hit = hit_sphere<Wider>(widen<i>(r.org),
+                                            dir,
+                                            inv_dd,
+                                            widen<i>(r.t_min),
+                                            widen<i>(r.center),
+                                            widen<i>(r.radius),
+                                            found);
+  t[i] = select(hit, found, Wider(__builtin_nan("")));
+  if constexpr (i + 1 < kWideParts<Real>)
+    wide_sphere<Real, i + 1>(r, t);
+}
+
+template <class Real>
+[[gnu::noinline]] Real sphere_in_double(const SphereRay<Real>& ray) {
+  Wide<Real> t[kWideParts<Real>];
+  wide_sphere<Real>(ray, t);
+  return narrow<Real>(t);
+}
+
+/// First point of each ray on one sphere, from outside or inside.
+///
+/// Shapes    rays and spheres pair up lane by lane; either side may be a broadcast.
+/// Units     center, radius: scene units; t: multiples of dir. inv_dd is 1 / dot(dir, dir), computed once a ray.
+/// Requires  |radius| > 0; a negative radius shows only the inside. A lane with a NaN reports a miss.
+/// Returns   lanes whose t is above t_min; t is written in all lanes and means nothing in the others.
+/// Accuracy  hit point within 8 eps max(|radius|, |org - center|) of the surface
+///           (tests/sphere_test.cpp). Rays that start near the surface, where |center - org|^2 and
+///           radius^2 nearly agree, are tested in double.
+/// Source    Haines, Günther, Akenine-Möller, "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems
+///           (2019), ch. 7, in units of t so that one division is left.
+template <class Real>
+[[gnu::always_inline]] inline Mask<Real> hit_sphere(const Vec3<Real>& org,
+                                                    const Vec3<Real>& dir,
+                                                    const Real& inv_dd,
+                                                    const Real& t_min,
+                                                    const Vec3<Real>& center,
+                                                    const Real& radius,
+                                                    Real& t) {
+  constexpr bool kFloat = sizeof(Scalar<Real>) == sizeof(float);
+  const Vec3<Real> to_center = center - org;
+  const Real middle = dot(to_center, dir) * inv_dd;
+  const Vec3<Real> gap = middle * dir - to_center;  // center to the line's nearest point
+  const Real rr = radius * radius;
+  const Real inside = rr - dot(gap, gap);  // b*b - a*c would cancel from afar
+  const Mask<Real> crosses = inside >= (kFloat ? Real(-kChordError) * rr : Real(0));
+  if (none(crosses))
+    return crosses;
+  const Real half = square_root(inside * inv_dd);
+  const Real q =
+      select(middle < Real(0), middle - half, middle + half);  // like signs add: nothing cancels
+  const Real power = dot(to_center, to_center) - rr;
+  const Real other = (power * inv_dd) / q;
+  const Real enter = lesser(other, q), leave = greater(other, q);
+  t = select(both(enter > t_min, radius > Real(0)), enter, leave);
+  if constexpr (kFloat) {
+    const Mask<Real> near = both(crosses, magnitude(power) < Real(kFarPower) * rr);
+    if (any(near)) {
+      // A ray that is surely outside and heads away stays outside, such as one that leaves.
+      const Mask<Real> ahead = either(middle > Real(0), power <= Real(kPowerError) * rr);
+      const Mask<Real> unsure = both(near, ahead);
+      if (any(unsure)) [[unlikely]] {
+        const SphereRay<Real> ray{org, dir, t_min, center, radius};
+        t = select(unsure, sphere_in_double<Real>(ray), t);
+      }
+    }
+  }
+  return both(crosses, t > t_min);  // NaN fails: half is NaN where inside is negative
+}
+
+}  // namespace grelha::GRELHA_ISA

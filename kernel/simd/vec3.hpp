@@ -1,0 +1,78 @@
+#pragma once
+
+#include "kernel/simd/lanes.hpp"
+
+namespace grelha::GRELHA_ISA {
+
+/// Three components over Real (float, or one vector per SIMD lane).
+template <class Real>
+struct Vec3 {
+  Real x, y, z;
+};
+
+template <class Real>
+inline Vec3<Real> operator+(const Vec3<Real>& a, const Vec3<Real>& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <class Real>
+inline Vec3<Real> operator-(const Vec3<Real>& a, const Vec3<Real>& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+template <class Real>
+inline Vec3<Real> operator*(const Vec3<Real>& a, const Vec3<Real>& b) {
+  return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
+template <class Real>
+inline Vec3<Real> operator*(const Real& s, const Vec3<Real>& a) {
+  return {s * a.x, s * a.y, s * a.z};
+}
+template <class Real>
+inline Real dot(const Vec3<Real>& a, const Vec3<Real>& b) {
+  return (a.x * b.x + a.y * b.y) + a.z * b.z;
+}
+template <class Real>
+inline Vec3<Real> cross(const Vec3<Real>& a, const Vec3<Real>& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+template <class Real>
+inline Real length(const Vec3<Real>& a) {
+  return square_root(dot(a, a));
+}
+/// Unit vector; (0,0,0) and lengths that underflow give NaN or infinity, which every comparison
+/// then fails.
+template <class Real>
+inline Vec3<Real> normalize(const Vec3<Real>& a) {
+  const Real s = Real(1) / length(a);
+  return s * a;
+}
+template <class Real>
+inline Vec3<Real> select(const Mask<Real>& m, const Vec3<Real>& a, const Vec3<Real>& b) {
+  return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)};
+}
+/// Part i of the lanes of each component, in double.
+template <int i, class Real>
+inline Vec3<Wide<Real>> widen(const Vec3<Real>& a) {
+  return {widen<i>(a.x), widen<i>(a.y), widen<i>(a.z)};
+}
+/// Part i of doubles as sums of two floats, the second what rounding took from the first: 48 bits.
+template <int i, class Real>
+inline Vec3<Wide<Real>> widen(const Vec3<Real>& a, const Vec3<Real>& low) {
+  return widen<i>(a) + widen<i>(low);
+}
+/// Largest magnitude of the components.
+template <class Real>
+inline Real largest(const Vec3<Real>& a) {
+  return greater(greater(magnitude(a.x), magnitude(a.y)), magnitude(a.z));
+}
+
+/// Two unit vectors across a third, by + - * / alone: Duff et al., "Building an Orthonormal Basis,
+/// Revisited", 2017.
+template <class Real>
+inline void across(const Vec3<Real>& n, Vec3<Real>& u, Vec3<Real>& v) {
+  const Real o(0), one(1), below(-1);
+  const Real sign = select(n.z < o, below, one), a = below / (sign + n.z), b = n.x * n.y * a;
+  u = {one + sign * n.x * n.x * a, sign * b, o - sign * n.x};
+  v = {b, sign + n.y * n.y * a, o - n.y};
+}
+
+}  // namespace grelha::GRELHA_ISA

@@ -1,0 +1,266 @@
+#pragma once
+// One ray at a time against blocks of primitives (SIMD over primitives): the way a packet goes on
+// when its rays have nothing left in common. abreast.hpp takes such rays through grids.
+
+#include "kernel/trace/packet.hpp"
+
+namespace grelha::GRELHA_ISA {
+
+struct Single {
+  float org[3], dir[3], t_min, best;
+  Number inv_dd;
+  std::uint32_t id;
+  int axis;
+  Number shear[3];
+  float inv[3];  ///< inverse of the direction; this and what follows with triangles only
+  /// the side of a box that the ray meets first, along each axis; the other is 3 places on or back
+  int near[3];
+#ifdef GRELHA_DOUBLE
+  double from[3];  ///< these as in Packet
+  float after;
+  double nearest, shift;  ///< shift: 0 for rays not moved
+#endif
+};
+
+/// What tests take of a ray.
+#ifdef GRELHA_DOUBLE
+inline const double (&tested_org(const Single& r))[3] { return r.from; }
+inline float tested_t_min(const Single& r) { return r.after; }
+inline double tested_best(const Single& r) { return r.nearest; }
+inline void set_best(Single& r, double t) {
+  r.nearest = t;
+  r.best = not_below(t - r.shift);
+}
+#else
+inline const float (&tested_org(const Single& r))[3] { return r.org; }
+inline float tested_t_min(const Single& r) { return r.t_min; }
+inline float tested_best(const Single& r) { return r.best; }
+inline void set_best(Single& r, float t) { r.best = t; }
+#endif
+
+inline Single single_of(const Packet& p, int i, bool any_triangles) {
+  Single r;
+  for (int a = 0; a < 3; ++a) {
+    r.org[a] = p.org[a][i];
+    r.dir[a] = p.dir[a][i];
+  }
+  r.inv_dd = p.inv_dd[i];
+  r.t_min = p.t_min[i];
+  r.best = p.best[i];
+  r.id = id_of(p.id[i]);
+#ifdef GRELHA_DOUBLE
+  for (int a = 0; a < 3; ++a)
+    r.from[a] = p.from[a][i];
+  r.after = p.after[i];
+  r.nearest = p.nearest[i];
+  r.shift = p.moved ? p.shift[i] : 0;
+#endif
+  r.axis = 0;
+  if (any_triangles) {
+    r.axis = static_cast<int>(p.axis[i]);
+    const float least = least_headway(r.dir[0], r.dir[1], r.dir[2]);
+    for (int a = 0; a < 3; ++a) {
+      r.shear[a] = p.shear[a][i];
+      r.inv[a] = 1 / (magnitude(r.dir[a]) < least ? least : r.dir[a]);
+      r.near[a] = r.inv[a] < 0 ? 3 + a : a;
+    }
+  }
+  return r;
+}
+
+/// What a ray has met goes back to its packet.
+inline void put_back(const Single& r, Packet& p, int i) {
+  p.best[i] = r.best;
+  p.id[i] = bits_of(r.id);
+#ifdef GRELHA_DOUBLE
+  p.nearest[i] = r.nearest;
+#endif
+}
+
+/// Takes the hits of a block in order of place. Returns whether the search is over (kAny and
+/// something was hit).
+template <bool kAny>
+inline bool note(Single& r,
+                 const Mask<ExactBlock>& hit,
+                 const ExactBlock& t,
+                 const std::uint32_t* ids) {
+  unsigned lanes = bits(both(hit, t <= ExactBlock(tested_best(r))));
+  if (lanes == 0)
+    return false;
+  Number at[kWidth<ExactBlock>];
+  store(at, t);
+  for (; lanes != 0; lanes &= lanes - 1) {
+    const int k = __builtin_ctz(lanes);
+    const bool closer = at[k] < tested_best(r),
+               tie = at[k] == tested_best(r) && r.id != kNoPrimitive && ids[k] < r.id;
+    if (kAny && closer) {
+      set_best(r, -kInfinity);
+      r.id = ids[k];
+      return true;
+    }
+    if (!kAny && (closer || tie)) {
+      set_best(r, at[k]);
+      r.id = ids[k];
+    }
+  }
+  return false;
+}
+
+/// Bits of the boxes that a ray passes through before its search ends, and where it enters them.
+inline unsigned passed_boxes(const Single& r, const BlockBoxes& boxes, float (&enters)[kBlock]) {
+  unsigned passed = 0;
+  for (int i = 0; i < kBlock; i += kWidth<Block>) {
+    Block enter(r.t_min), leave(r.best);
+    for (int a = 0; a < 3; ++a) {
+      const Block org(r.org[a]), inv(r.inv[a]);
+      enter = greater((load<Block>(boxes.side[r.near[a]] + i) - org) * inv, enter);
+      leave = lesser((load<Block>(boxes.side[2 * a + 3 - r.near[a]] + i) - org) * inv, leave);
+    }
+    passed |= bits(enter <= leave) << i;
+    store(enters + i, enter);
+  }
+  return passed;
+}
+
+/// Bits of those eight blocks from `at` on (a multiple of eight) that lie in [first, end).
+inline unsigned blocks_between(std::uint32_t at, std::uint32_t first, std::uint32_t end) {
+  constexpr unsigned kAll = (1u << kBlock) - 1;
+  const unsigned from = first > at ? kAll << (first - at) : kAll;
+  return end - at < kBlock ? from & ~(kAll << (end - at)) & kAll : from & kAll;
+}
+
+template <class Number>
+inline Vec3<ExactBlock> spread(const Number (&v)[3]) {
+  return {ExactBlock(v[0]), ExactBlock(v[1]), ExactBlock(v[2])};
+}
+
+/// A ray and triangles of a block from i on.
+struct RayAndBlock {
+  const Single* r;
+  const TriangleBlock* block;
+  int i;
+  RayAndTriangle<ExactBlock> operator()() const {
+    const int k = r->axis, kx = kNextAxis[k], ky = kPreviousAxis[k];
+    const auto& from = tested_org(*r);
+    const auto corner = [&](const float(&v)[3][kBlock]) {
+      return Vec3<ExactBlock>{
+          take<ExactBlock>(v[kx] + i), take<ExactBlock>(v[ky] + i), take<ExactBlock>(v[k] + i)};
+    };
+    return {{ExactBlock(from[kx]), ExactBlock(from[ky]), ExactBlock(from[k])},
+            {ExactBlock(r->dir[kx]), ExactBlock(r->dir[ky]), ExactBlock(r->dir[k])},
+            {corner(block->a), corner(block->b), corner(block->c)}};
+  }
+};
+
+template <bool kAny>
+[[gnu::noinline]] bool test_block(Single& r, const TriangleBlock& block, Counters& n) {
+  const Shear<ExactBlock> shear{
+      ExactBlock(r.shear[0]), ExactBlock(r.shear[1]), ExactBlock(r.shear[2])};
+  const ExactBlock t_min(tested_t_min(r));
+  n.triangle += kBlock;
+  for (int i = 0; i < kBlock; i += kWidth<ExactBlock>) {
+    ExactBlock t(0);
+    const Mask<ExactBlock> hit =
+        hit_triangle<kAny>(RayAndBlock{&r, &block, i}, shear, t_min, ExactBlock(tested_best(r)), t);
+    if (note<kAny>(r, hit, t, block.id + i))
+      return true;
+  }
+  return false;
+}
+
+/// The spheres and cones of one cell. Reading past its end meets those of the next, which costs
+/// nothing and is never wrong: a hit is a hit.
+template <bool kAny>
+inline bool test_round(Single& r, const CellLists& lists, std::size_t cell, Counters& n) {
+  if (lists.sphere_first) {
+    const Vec3<ExactBlock> org = spread(tested_org(r)), dir = spread(r.dir);
+    const std::uint32_t end = lists.sphere_first[cell + 1];
+    for (std::uint32_t i = lists.sphere_first[cell]; i < end; i += kWidth<ExactBlock>) {
+      n.sphere += kWidth<ExactBlock>;
+      ExactBlock t(0);
+      const Mask<ExactBlock> hit = hit_sphere<ExactBlock>(org,
+                                                          dir,
+                                                          ExactBlock(r.inv_dd),
+                                                          ExactBlock(tested_t_min(r)),
+                                                          {take<ExactBlock>(lists.sx + i),
+                                                           take<ExactBlock>(lists.sy + i),
+                                                           take<ExactBlock>(lists.sz + i)},
+                                                          take<ExactBlock>(lists.sr + i),
+                                                          t);
+      if (note<kAny>(r, hit, t, lists.sphere_id + i))
+        return true;
+    }
+  }
+  if (lists.cone_first) {
+    const Vec3<ExactBlock> org = spread(tested_org(r)), dir = spread(r.dir);
+    const std::uint32_t end = lists.cone_first[cell + 1];
+    for (std::uint32_t i = lists.cone_first[cell]; i < end; i += kWidth<ExactBlock>) {
+      n.cone += kWidth<ExactBlock>;
+      const auto at = [&](int k) { return take<ExactBlock>(lists.cone[k] + i); };
+      const ConeSide<ExactBlock> side{
+          {at(0), at(1), at(2)}, {at(3), at(4), at(5)}, at(6), at(7), at(8), at(9)};
+      ExactBlock t(0);
+      const Mask<ExactBlock> hit = hit_cone<ExactBlock>(
+          org, dir, ExactBlock(r.inv_dd), ExactBlock(tested_t_min(r)), side, t);
+      if (note<kAny>(r, hit, t, lists.cone_id + i))
+        return true;
+    }
+  }
+  return false;
+}
+
+/// All primitives of one cell.
+template <bool kAny>
+inline bool test_cell(Single& r, const CellLists& lists, std::size_t cell, Counters& n) {
+  if (lists.triangle_first)
+    for (std::uint32_t i = lists.triangle_first[cell]; i < lists.triangle_first[cell + 1]; ++i)
+      if (test_block<kAny>(r, lists.triangles[i], n))
+        return true;
+  return test_round<kAny>(r, lists, cell, n);
+}
+
+/// A ray in the units of one grid's cells, in double: plane distances come from the plane's index,
+/// never by adding up, and the cell of a point is the one the builder gives it (cell_of in
+/// grid.hpp).
+struct GridRay {
+  double p[3], q[3], iq[3];
+};
+
+inline double tame(double d, double least) {
+  if (d < 0)
+    return d > -least ? -least : d;
+  return d < least ? least : d;
+}
+
+inline GridRay to_grid(const GridView& g, const float (&org)[3], const float (&dir)[3]) {
+  GridRay r;
+  const double least = least_headway(dir[0], dir[1], dir[2]);
+  for (int a = 0; a < 3; ++a) {
+    r.p[a] = (static_cast<double>(org[a]) - g.lo[a]) * g.inv_cell[a];
+    r.q[a] = tame(static_cast<double>(dir[a]), least) * g.inv_cell[a];
+    r.iq[a] = 1 / r.q[a];
+  }
+  return r;
+}
+
+/// Part of [t0, t1] inside the box of all cells; empty when t0 > t1 (or anything is NaN: !(t0 <=
+/// t1)).
+inline void clip_to_grid(const GridView& g, const GridRay& r, double& t0, double& t1) {
+  for (int a = 0; a < 3; ++a) {
+    const double near = (r.q[a] > 0 ? -r.p[a] : g.n[a] - r.p[a]) * r.iq[a];
+    const double far = (r.q[a] > 0 ? g.n[a] - r.p[a] : -r.p[a]) * r.iq[a];
+    if (near > t0)
+      t0 = near;
+    if (!(far >= t1))
+      t1 = far;
+  }
+}
+
+inline int clamp_cell(double x, int n) {
+  if (!(x > 0))
+    return 0;
+  const int i = static_cast<int>(x < n ? x : n);
+  return i < n ? i : n - 1;
+}
+
+}  // namespace grelha::GRELHA_ISA

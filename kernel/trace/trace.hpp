@@ -1,0 +1,293 @@
+#pragma once
+// Rays in arrays against a whole scene: planes and outside primitives first, then each grid with
+// what t is left.
+
+#include "kernel/trace/march.hpp"
+
+namespace grelha::GRELHA_ISA {
+
+/// Moves the origin of a ray that starts far from everything finite to where it comes near, in
+/// double: from afar float tests would be off by eps times the distance, more than the grids allow
+/// for. Returns the t it moved by. A function of ray and scene alone, so every way of tracing sees
+/// the same ray.
+inline double approach(const SceneView& scene, float (&org)[3], const float (&dir)[3]) {
+  bool far = false;
+  for (int a = 0; a < 3; ++a)
+    far |= org[a] < scene.box_lo[a] - scene.reach || org[a] > scene.box_hi[a] + scene.reach;
+  if (!far || !scene.finite)
+    return 0;
+  double dd = 0, along = 0;
+  for (int a = 0; a < 3; ++a) {
+    const double d = dir[a],
+                 c = .5 * (static_cast<double>(scene.box_lo[a]) + scene.box_hi[a]) - org[a];
+    dd += d * d;
+    along += c * d;
+  }
+  const double shift = along / dd - scene.reach / __builtin_sqrt(dd);
+  if (!(shift > 0) || !(shift < 1e300))
+    return 0;
+  for (int a = 0; a < 3; ++a)
+    org[a] = static_cast<float>(org[a] + shift * dir[a]);
+  return shift;
+}
+
+/// Where a ray meets a plane, in double.
+inline double plane_t(const GeometryView& g,
+                      std::uint32_t i,
+                      const float (&org)[3],
+                      const float (&dir)[3]) {
+  const double n[3] = {g.pnx[i], g.pny[i], g.pnz[i]}, p[3] = {g.px[i], g.py[i], g.pz[i]};
+  double away = 0, along = 0;
+  for (int a = 0; a < 3; ++a) {
+    away += n[a] * (p[a] - org[a]);
+    along += n[a] * dir[a];
+  }
+  return away / along;
+}
+
+/// The same for the rays of a packet that have met planes and nothing else yet. Planes come first,
+/// since a ray that leaves a plane and is then moved along would meet it again, by as little as the
+/// rounding of the way; and how far a moved ray is from its plane is taken again in double, lest it
+/// hides what stands before it.
+inline void bring_near(const SceneView& scene, Packet& p) {
+  p.moved = false;
+  if (!scene.finite)
+    return;
+  for (int i = 0; i < p.size; i += kWidth<Lanes>) {
+    Mask<Lanes> far = Lanes(0) != Lanes(0);
+    for (int a = 0; a < 3; ++a) {
+      const Lanes o = load<Lanes>(p.org[a] + i);
+      far = either(
+          far,
+          either(o<Lanes(scene.box_lo[a] - scene.reach), o> Lanes(scene.box_hi[a] + scene.reach)));
+    }
+    if (none(far))
+      continue;
+    if (!p.moved)
+      for (Number& shift : p.shift)
+        shift = 0;
+    p.moved = true;
+    for (int k = i; k < i + kWidth<Lanes> && k < p.size; ++k) {
+      float org[3] = {p.org[0][k], p.org[1][k], p.org[2][k]};
+      const float dir[3] = {p.dir[0][k], p.dir[1][k], p.dir[2][k]};
+      const double shift = approach(scene, org, dir);
+      if (!(shift > 0))
+        continue;
+#ifdef GRELHA_DOUBLE
+      p.shift[k] = shift, p.t_min[k] = not_above(p.after[k] - shift),
+      p.best[k] = not_below(p.nearest[k] - shift);
+#else
+      const float from[3] = {p.org[0][k], p.org[1][k], p.org[2][k]};
+      const std::uint32_t plane = id_of(p.id[k]);
+      const bool met = plane != kNoPrimitive && p.best[k] > -kInfinity;
+      const double best = met ? plane_t(scene.geometry, plane, from, dir) : p.best[k];
+      p.t_min[k] = static_cast<float>(p.t_min[k] - shift);
+      p.best[k] = static_cast<float>(best - shift);
+      p.shift[k] = static_cast<float>(shift);
+#endif
+      for (int a = 0; a < 3; ++a)
+        p.org[a][k] = org[a];
+    }
+  }
+}
+
+template <bool kAny>
+inline void test_planes(const SceneView& scene, Packet& p, Counters& n) {
+  const GeometryView& g = scene.geometry;
+  for (std::uint32_t i = 0; i < g.plane_count; ++i) {
+    count_lanes(p, n, n.plane);
+    test_plane<kAny>(p, {g.px[i], g.py[i], g.pz[i]}, {g.pnx[i], g.pny[i], g.pnz[i]}, i);
+  }
+}
+
+/// The few primitives that lie in no grid, each against all rays.
+template <bool kAny>
+inline void test_outside(const CellLists& lists, Packet& p, Counters& n) {
+  if (lists.triangle_first)
+    for (std::uint32_t b = 0; b < lists.triangle_first[1]; ++b) {
+      const TriangleBlock& block = lists.triangles[b];
+      for (int i = 0; i < kBlock && block.a[0][i] == block.a[0][i]; ++i) {
+        const float c0[3] = {block.a[0][i], block.a[1][i], block.a[2][i]};
+        const float c1[3] = {block.b[0][i], block.b[1][i], block.b[2][i]};
+        const float c2[3] = {block.c[0][i], block.c[1][i], block.c[2][i]};
+        count_lanes(p, n, n.triangle);
+        test_triangle<kAny>(p, c0, c1, c2, block.id[i]);
+      }
+    }
+  if (lists.sphere_first)
+    for (std::uint32_t i = 0; i < lists.sphere_first[1]; ++i) {
+      count_lanes(p, n, n.sphere);
+      test_sphere<kAny>(p, lists.sx[i], lists.sy[i], lists.sz[i], lists.sr[i], lists.sphere_id[i]);
+    }
+  if (lists.cone_first)
+    for (std::uint32_t i = 0; i < lists.cone_first[1]; ++i) {
+      count_lanes(p, n, n.cone);
+      test_cone<kAny>(p, lists.cone, i, lists.cone_id[i]);
+    }
+}
+
+inline bool serves(const GridView& g, const float (&org)[3]) {
+  if (g.serves == Serves::kAll)
+    return true;
+  bool near = true;
+  for (int a = 0; a < 3; ++a)
+    near &= org[a] >= g.near_lo[a] && org[a] <= g.near_hi[a];
+  return near == (g.serves == Serves::kNear);
+}
+
+/// Sets where each ray is to be searched from in a grid: nowhere when the grid is not for it.
+/// False: it is for none.
+inline bool start_in(const GridView& g, Packet& p) {
+  __builtin_memcpy(p.start, p.t_min, sizeof p.start);
+  if (g.serves == Serves::kAll)
+    return true;
+  bool some = false;
+  each_live_group(p, [&](int i, int) {
+    Mask<Lanes> away = Lanes(0) != Lanes(0);
+    for (int a = 0; a < 3; ++a) {
+      const Lanes o = load<Lanes>(p.org[a] + i);
+      away = either(away, either(o<Lanes(g.near_lo[a]), o> Lanes(g.near_hi[a])));
+    }
+    const bool near = g.serves == Serves::kNear;
+    const Lanes start = load<Lanes>(p.start + i), never(kInfinity);
+    const Lanes from = select(away, near ? never : start, near ? start : never);
+    some |= any(from < never);
+    store(p.start + i, from);
+  });
+  return some;
+}
+
+/// Where the first ray of a packet comes to a grid; infinity: never.
+inline float entry(const GridView& g, const Packet& p) {
+  float t0 = p.t_min[0], t1 = kInfinity;
+  for (int a = 0; a < 3; ++a) {
+    const float d = p.dir[a][0], inv = 1 / (magnitude(d) < 1e-18f ? 1e-18f : d);
+    const float x = (g.lo_f[a] - p.org[a][0]) * inv, y = (g.hi_f[a] - p.org[a][0]) * inv;
+    t0 = greater(lesser(x, y), t0);
+    t1 = lesser(greater(x, y), t1);
+  }
+  return t0 <= t1 ? t0 : kInfinity;
+}
+
+/// The grids, for closest hits front to back as the first ray meets them: what is met early cuts
+/// the others short. Answers do not depend on it, since ties go to the lower id.
+template <bool kAny, class Visit>
+inline void each_grid(const SceneView& scene, const Packet& p, const Visit& visit) {
+  const int count = scene.grid_count;
+  if (kAny || count < 2) {
+    for (int g = 0; g < count; ++g)
+      visit(scene.grids[g]);
+    return;
+  }
+  int order[kMostGrids];
+  float at[kMostGrids];
+  for (int g = 0; g < count; ++g) {
+    const float t = entry(scene.grids[g], p);
+    int i = g;
+    for (; i > 0 && at[i - 1] > t; --i) {
+      at[i] = at[i - 1];
+      order[i] = order[i - 1];
+    }
+    at[i] = t;
+    order[i] = g;
+  }
+  for (int i = 0; i < count; ++i)
+    visit(scene.grids[order[i]]);
+}
+
+template <bool kAny>
+inline void trace_alone(const SceneView& scene, Packet& p, bool any_triangles, Counters& n) {
+  for (int i = 0; i < p.size; ++i) {
+    if (!(p.best[i] > p.t_min[i]))
+      continue;
+    Single r = single_of(p, i, any_triangles);
+    test_cell<kAny>(r, scene.outside, 0, n);
+    put_back(r, p, i);
+  }
+  each_grid<kAny>(scene, p, [&](const GridView& g) {
+    if (start_in(g, p))
+      walk_apart<kAny>(g, p, any_triangles, n);
+  });
+}
+
+template <bool kAny>
+inline void trace_packet(const SceneView& scene,
+                         Packet& p,
+                         const TraceOptions& options,
+                         Counters& n) {
+  const bool any_triangles = scene.geometry.triangle_count > 0;
+  prepare(p, any_triangles);
+  test_planes<kAny>(scene, p, n);
+  bring_near(scene, p);
+  if (options.packet == 1)
+    return trace_alone<kAny>(scene, p, any_triangles, n);
+  test_outside<kAny>(scene.outside, p, n);
+  each_grid<kAny>(scene, p, [&](const GridView& g) {
+    if (start_in(g, p))
+      march<kAny>(g, p, options.mailbox, any_triangles, n);
+  });
+}
+
+/// t of a ray brought near as that of the ray as it came; -infinity stays what it is, however far
+/// that was.
+inline double unmoved(float t, float shift) {
+  return t > -kInfinity ? static_cast<double>(t) + shift : t;
+}
+
+/// Where a ray of a packet met what it met, as seen from where it started.
+inline double whole_t(const Packet& p, int i) {
+#ifdef GRELHA_DOUBLE
+  return p.nearest[i];
+#else
+  return unmoved(p.best[i], p.moved ? p.shift[i] : 0);
+#endif
+}
+
+/// Closest hits (kAny false) or occlusion (kAny true) of rays [0, count), `options.packet`
+/// neighbours at a time.
+template <bool kAny>
+inline void trace(const SceneView& scene,
+                  const RayArrays& rays,
+                  int count,
+                  const TraceOptions& options,
+                  Counters& n) {
+  Packet p;
+  const int most = options.packet == 1 || options.packet > kPacket ? kPacket : options.packet;
+  for (int first = 0; first < count; first += most) {
+    p.size = count - first < most ? count - first : most;
+    const std::size_t bytes = static_cast<std::size_t>(p.size) * sizeof(float);
+    __builtin_memcpy(p.org[0], rays.ox + first, bytes);
+    __builtin_memcpy(p.org[1], rays.oy + first, bytes);
+    __builtin_memcpy(p.org[2], rays.oz + first, bytes);
+    __builtin_memcpy(p.dir[0], rays.dx + first, bytes);
+    __builtin_memcpy(p.dir[1], rays.dy + first, bytes);
+    __builtin_memcpy(p.dir[2], rays.dz + first, bytes);
+    __builtin_memcpy(p.t_min, rays.t_min + first, bytes);
+    __builtin_memcpy(p.best, rays.t + first, bytes);
+#ifdef GRELHA_DOUBLE
+    for (int a = 0; a < 3; ++a)
+      p.low[a] = rays.low[a] ? rays.low[a] + first : nullptr;
+#endif
+    trace_packet<kAny>(scene, p, options, n);
+#ifdef GRELHA_DOUBLE
+    for (int i = 0; i < p.size; ++i)
+      rays.t[first + i] = static_cast<float>(p.nearest[i]);
+#else
+    __builtin_memcpy(rays.t + first, p.best, bytes);
+#endif
+    __builtin_memcpy(rays.id + first, p.id, bytes);
+    if (rays.whole)
+      for (int i = 0; i < p.size; ++i)
+        rays.whole[first + i] = whole_t(p, i);
+    if (!p.moved || kDouble)
+      continue;
+    __builtin_memcpy(rays.ox + first, p.org[0], bytes);
+    __builtin_memcpy(rays.oy + first, p.org[1], bytes);
+    __builtin_memcpy(rays.oz + first, p.org[2], bytes);
+    __builtin_memcpy(rays.t_min + first, p.t_min, bytes);
+    if (rays.shift)
+      __builtin_memcpy(rays.shift + first, p.shift, bytes);
+  }
+}
+
+}  // namespace grelha::GRELHA_ISA

@@ -1,7 +1,0 @@
-#define GRELHA_ISA avx2
-#include "kernel/variant.hpp"
-
-namespace grelha {
-extern const VariantLoops k_avx2_loops;
-const VariantLoops k_avx2_loops = GRELHA_LOOPS;
-}  // namespace grelha

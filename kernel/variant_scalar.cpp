@@ -1,7 +1,0 @@
-#define GRELHA_ISA scalar
-#include "kernel/variant.hpp"
-
-namespace grelha {
-extern const VariantLoops k_scalar_loops;
-const VariantLoops k_scalar_loops = GRELHA_LOOPS;
-}  // namespace grelha
