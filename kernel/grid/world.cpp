@@ -26,8 +26,6 @@ bool uneven(std::size_t count, std::initializer_list<std::size_t> sizes) {
       sizes.begin(), sizes.end(), [count](std::size_t size) { return size != count; });
 }
 
-float largest_channel(const Float3& v) { return std::max({v.x, v.y, v.z}); }
-
 void check_lengths(const GeometrySpans& g) {
   const SphereSpans& s = g.spheres;
   const TriangleSpans& t = g.triangles;

@@ -3,11 +3,6 @@
 #include <algorithm>
 
 namespace grelha {
-namespace {
-
-float largest_channel(const Float3& v) { return std::max({v.x, v.y, v.z}); }
-
-}  // namespace
 
 MaterialTable::MaterialTable(const SceneSpans& scene) {
   const std::span<const Material> materials = scene.materials;

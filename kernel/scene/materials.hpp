@@ -1,6 +1,7 @@
 #pragma once
 // The materials of a scene as shading sees them.
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -8,6 +9,8 @@
 #include "kernel/scene/shading_view.hpp"
 
 namespace grelha {
+
+inline float largest_channel(const Float3& v) { return std::max({v.x, v.y, v.z}); }
 
 /// Materials one array per component, so that lanes gather what they need and no more; and what
 /// those that primitives have ask for.
