@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 """Draws docs/images/architecture.svg from the #include lines: what stands on what. Needs graphviz.
 
-A box is a room of the kernel, elsewhere a header with its .cpp, or a family (ply_*.hpp); arrows that follow from others are left out.
---check: say whether the picture is still of these sources. Where components include each other, nothing is drawn.
+A box is a room of the kernel or of the frontend; arrows that follow from others are left out.
+--check: say whether the picture is still of these sources. Where components include each other,
+nothing is drawn.
 """
 import collections
 import graphlib
@@ -14,8 +15,10 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 LAYERS = {"frontend": "#e8f1fa", "kernel": "#fbf1dd", "include": "#f6eef8", "scenes": "#e9f5e6"}
-FAMILIES = ("nff", "ply")  # one box each
 EVERYWHERE = {"include/grelha"}  # below all else; arrows to it would only hide the others
+STYLE = """rankdir=TB; ranksep=.3; nodesep=.15; fontname="Helvetica"; fontsize=16;
+node [shape=box style="filled,rounded" fillcolor=white fontname="Helvetica" fontsize=16 height=.32
+margin="0.1,0.04"]; edge [color="#00000080" arrowsize=.6];"""
 
 
 def unit(path):
@@ -23,11 +26,7 @@ def unit(path):
         return "include/grelha"
     if len(path.parts) > 2:
         return "/".join(path.parts[:2])
-    stem = path.stem
-    for family in FAMILIES:
-        if stem == family or stem.startswith(family + "_"):
-            return f"{path.parent}/{family}_*"
-    return f"{path.parent}/{stem}"
+    return f"{path.parent}/{path.stem}"
 
 
 def arrows():
@@ -66,13 +65,15 @@ def graph():
             targets -= {t for t in targets if t.startswith("scenes/")}
             targets.add("scenes/*")
     found["scenes/*"] = set()
-    lines = ["strict digraph {", 'rankdir=LR; ranksep=.35; nodesep=.12; fontname="Helvetica"; node [shape=box style="filled,rounded" '
-             'fillcolor=white fontname="Helvetica" fontsize=11 height=.25 margin="0.08,0.03"]; edge [color="#00000060" arrowsize=.5];']
+    lines = ["strict digraph {", STYLE]
     for layer, colour in LAYERS.items():
-        lines.append(f'subgraph cluster_{layer} {{ label="{layer}/"; style=filled; color="{colour}";')
-        lines += [f'"{u}" [label="{u.split("/")[1]}"];' for u in sorted(found) if u.startswith(layer + "/")]
+        lines.append(f'subgraph cluster_{layer} {{ label="{layer}/"; style=filled; '
+                     f'color="{colour}";')
+        lines += [f'"{u}" [label="{u.split("/")[1]}"];'
+                  for u in sorted(found) if u.startswith(layer + "/")]
         lines.append("}")
-    lines += [f'"{u}" -> "{t}";' for u in sorted(found) if u not in EVERYWHERE for t in sorted(found[u])]
+    lines += [f'"{u}" -> "{t}";'
+              for u in sorted(found) if u not in EVERYWHERE for t in sorted(found[u])]
     return "\n".join(lines + ["}"])
 
 
@@ -82,15 +83,18 @@ def main():
     if not shutil.which("tred"):
         print("skipped: no graphviz")
         sys.exit(77)
-    reduced = subprocess.run(["tred"], input=graph(), capture_output=True, text=True, check=True).stdout
+    reduced = subprocess.run(["tred"], input=graph(), capture_output=True, text=True,
+                             check=True).stdout
     target = ROOT / "docs/images/architecture.svg"
     if "--check" in sys.argv:
         boxes = set(re.findall(r"<title>([^&<]*/[^&<]*)</title>", target.read_text()))
         wanted = {t for t in re.findall(r'^\s*"([^"]*/[^"]*)"\s*\[', reduced, re.M)}
         if boxes != wanted:
-            sys.exit(f"docs/images/architecture.svg is of other sources (run docs/architecture.py): {sorted(boxes ^ wanted)}")
+            sys.exit("docs/images/architecture.svg is of other sources "
+                     f"(run docs/architecture.py): {sorted(boxes ^ wanted)}")
         return
-    svg = subprocess.run(["dot", "-Tsvg"], input=reduced, capture_output=True, text=True, check=True).stdout
+    svg = subprocess.run(["dot", "-Tsvg"], input=reduced, capture_output=True, text=True,
+                         check=True).stdout
     target.write_text(re.sub(r"<!-- Generated.*?-->\n", "", svg, flags=re.S))
 
 

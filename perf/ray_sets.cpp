@@ -8,7 +8,7 @@
 #include <memory>
 #include <random>
 
-#include "frontend/effects.hpp"
+#include "frontend/input/effects.hpp"
 #include "kernel/scene/frame.hpp"
 #include "kernel/render/sampling.hpp"
 #include "kernel/trace/surface.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "frontend/scene_file.hpp"
+#include "frontend/scene/scene_file.hpp"
 #include "grelha/render.hpp"
 #include "kernel/query/variants.hpp"
 

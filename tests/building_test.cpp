@@ -11,7 +11,7 @@
 #include <sstream>
 #include <vector>
 
-#include "frontend/nff_reader.hpp"
+#include "frontend/nff/nff_reader.hpp"
 #include "grelha/render.hpp"
 #include "scenes/generators.hpp"
 #include "tests/support/random.hpp"

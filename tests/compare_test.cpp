@@ -1,4 +1,4 @@
-#include "frontend/compare.hpp"
+#include "frontend/images/compare.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // What a mesh alone looks like: its view, lights and samples.
-#include "frontend/default_view.hpp"
+#include "frontend/input/default_view.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "frontend/effects.hpp"
-#include "frontend/scene_builder.hpp"
+#include "frontend/input/effects.hpp"
+#include "frontend/scene/scene_builder.hpp"
 #include "grelha/render.hpp"
 
 #include <gtest/gtest.h>

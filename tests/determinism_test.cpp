@@ -3,7 +3,7 @@
 #include <cstring>
 #include <sstream>
 
-#include "frontend/nff_reader.hpp"
+#include "frontend/nff/nff_reader.hpp"
 #include "grelha/render.hpp"
 #include "scenes/generators.hpp"
 #include "tests/support/rays.hpp"

@@ -3,7 +3,7 @@
 #include <cstring>
 #include <numbers>
 
-#include "frontend/effects.hpp"
+#include "frontend/input/effects.hpp"
 #include "tests/support/rays.hpp"
 #include "tests/support/scenes.hpp"
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "frontend/ply_reader.hpp"
-#include "frontend/text.hpp"
+#include "frontend/files/text.hpp"
+#include "frontend/ply/ply_reader.hpp"
 #include "tests/support/reading.hpp"
 
 namespace grelha {

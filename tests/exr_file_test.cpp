@@ -1,7 +1,7 @@
 // OpenEXR. A part of image_file_test.
-#include "frontend/exr_file.hpp"
+#include "frontend/images/exr_file.hpp"
 
-#include "frontend/image_file.hpp"
+#include "frontend/images/image_file.hpp"
 #include "grelha/rays.hpp"
 #include "tests/support/file_error.hpp"
 #include "tests/support/temporary_folder.hpp"

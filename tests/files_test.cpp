@@ -1,8 +1,8 @@
 // What the program may write over, and what it may not, however it is called.
-#include "frontend/first_hits.hpp"
-#include "frontend/image_file.hpp"
-#include "frontend/memory_limit.hpp"
-#include "frontend/place.hpp"
+#include "frontend/commands/first_hits.hpp"
+#include "frontend/files/memory_limit.hpp"
+#include "frontend/files/place.hpp"
+#include "frontend/images/image_file.hpp"
 #include "grelha/query.hpp"
 #include "tests/support/running.hpp"
 

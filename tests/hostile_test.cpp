@@ -14,7 +14,7 @@
 #include <numbers>
 #include <random>
 
-#include "frontend/memory_limit.hpp"
+#include "frontend/files/memory_limit.hpp"
 #include "tests/support/gzip.hpp"
 #include "tests/support/running.hpp"
 

@@ -3,9 +3,9 @@
 #include <sstream>
 #include <string>
 
-#include "frontend/identity.hpp"
-#include "frontend/nff_reader.hpp"
-#include "frontend/commands.hpp"
+#include "frontend/commands/commands.hpp"
+#include "frontend/jobs/identity.hpp"
+#include "frontend/nff/nff_reader.hpp"
 #include "scenes/generators.hpp"
 
 #include <gtest/gtest.h>

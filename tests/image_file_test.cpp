@@ -1,7 +1,7 @@
-#include "frontend/image_file.hpp"
+#include "frontend/images/image_file.hpp"
 
-#include "frontend/atomic_file.hpp"
-#include "frontend/hdr_file.hpp"
+#include "frontend/files/atomic_file.hpp"
+#include "frontend/images/hdr_file.hpp"
 #include "tests/support/file_error.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -1,6 +1,6 @@
 // Parts, checkpoints and signals as a user of the program meets them.
-#include "frontend/partial.hpp"
-#include "frontend/stop_signals.hpp"
+#include "frontend/jobs/partial.hpp"
+#include "frontend/jobs/stop_signals.hpp"
 #include "tests/support/running.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "frontend/nff_reader.hpp"
+#include "frontend/nff/nff_reader.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Pictures of nothing: what is said of them, and that nothing is said of any other.
-#include "frontend/nothing_seen.hpp"
+#include "frontend/commands/nothing_seen.hpp"
 
 #include <gtest/gtest.h>
 

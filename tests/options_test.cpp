@@ -1,9 +1,9 @@
-#include "frontend/options.hpp"
+#include "frontend/cli/options.hpp"
 
-#include "frontend/batch.hpp"
-#include "frontend/commands.hpp"
-#include "frontend/help.hpp"
-#include "frontend/nearest.hpp"
+#include "frontend/cli/help.hpp"
+#include "frontend/commands/batch.hpp"
+#include "frontend/commands/commands.hpp"
+#include "frontend/files/nearest.hpp"
 #include "tests/support/parsing.hpp"
 #include "tests/support/temporary_folder.hpp"
 

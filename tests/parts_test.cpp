@@ -5,12 +5,12 @@
 #include <sstream>
 
 #include "kernel/picture/refiner.hpp"
-#include "frontend/checkpoint.hpp"
-#include "frontend/digest.hpp"
-#include "frontend/merge.hpp"
-#include "frontend/nff_reader.hpp"
-#include "frontend/parse_error.hpp"
-#include "frontend/partial.hpp"
+#include "frontend/files/digest.hpp"
+#include "frontend/files/parse_error.hpp"
+#include "frontend/jobs/checkpoint.hpp"
+#include "frontend/jobs/merge.hpp"
+#include "frontend/jobs/partial.hpp"
+#include "frontend/nff/nff_reader.hpp"
 #include "grelha/accumulator.hpp"
 #include "kernel/picture/point_tracer.hpp"
 #include "scenes/generators.hpp"

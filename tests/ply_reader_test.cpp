@@ -1,4 +1,4 @@
-#include "frontend/ply_reader.hpp"
+#include "frontend/ply/ply_reader.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <limits>
 #include <tuple>
 
-#include "frontend/load_progress.hpp"
+#include "frontend/files/load_progress.hpp"
 #include "tests/support/reading.hpp"
 
 namespace grelha {

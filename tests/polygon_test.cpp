@@ -1,4 +1,4 @@
-#include "frontend/polygon.hpp"
+#include "frontend/scene/polygon.hpp"
 
 #include <gtest/gtest.h>
 

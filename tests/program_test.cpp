@@ -1,6 +1,6 @@
 // The built program as a user meets it: exit statuses, files, one line per error.
-#include "frontend/image_file.hpp"
-#include "frontend/memory_limit.hpp"
+#include "frontend/files/memory_limit.hpp"
+#include "frontend/images/image_file.hpp"
 #include "grelha/geometry.hpp"
 #include "tests/support/running.hpp"
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "frontend/scene_file.hpp"
+#include "frontend/scene/scene_file.hpp"
 
 namespace grelha {
 namespace {

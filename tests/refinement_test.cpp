@@ -3,8 +3,8 @@
 #include <cmath>
 #include <sstream>
 
-#include "frontend/effects.hpp"
-#include "frontend/nff_reader.hpp"
+#include "frontend/input/effects.hpp"
+#include "frontend/nff/nff_reader.hpp"
 #include "kernel/picture/refinement.hpp"
 #include "kernel/picture/refiner.hpp"
 #include "scenes/generators.hpp"

@@ -1,4 +1,4 @@
-#include "frontend/report.hpp"
+#include "frontend/commands/report.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

@@ -1,5 +1,5 @@
 // The program in a terminal: how wide its bar is.
-#include "frontend/progress.hpp"
+#include "frontend/commands/progress.hpp"
 #include "tests/support/running.hpp"
 #include "tests/support/terminal.hpp"
 

@@ -1,6 +1,6 @@
-#include "frontend/memory_limit.hpp"
-#include "frontend/plausible.hpp"
-#include "frontend/text.hpp"
+#include "frontend/files/memory_limit.hpp"
+#include "frontend/files/plausible.hpp"
+#include "frontend/files/text.hpp"
 
 #include <gtest/gtest.h>
 

@@ -51,7 +51,7 @@ def material(name, f):
 
 
 def area_axes(light, at, size):
-    """Edges of the square a point light becomes with --shadows, as frontend/effects.cpp chooses them (Duff et al. 2017)."""
+    """Edges of the square a point light becomes with --shadows, as frontend/input/effects.cpp chooses them (Duff et al. 2017)."""
     x, y, z = (at - light).unit()
     sign = -1 if z < 0 else 1
     a = -1 / (sign + z)

@@ -2,7 +2,7 @@
 // that lead nowhere.
 #include <sstream>
 
-#include "frontend/parse_error.hpp"
+#include "frontend/files/parse_error.hpp"
 #include "tests/fuzz/render_small.hpp"
 #include "tests/fuzz/target.hpp"
 #include "tests/fuzz/watched_files.hpp"

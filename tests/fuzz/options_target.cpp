@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "frontend/batch.hpp"
-#include "frontend/options.hpp"
-#include "frontend/parse_error.hpp"
+#include "frontend/cli/options.hpp"
+#include "frontend/commands/batch.hpp"
+#include "frontend/files/parse_error.hpp"
 #include "tests/fuzz/target.hpp"
 
 namespace {

@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "kernel/picture/refiner.hpp"
-#include "frontend/digest.hpp"
-#include "frontend/merge.hpp"
-#include "frontend/commands.hpp"
-#include "frontend/parse_error.hpp"
-#include "frontend/partial.hpp"
+#include "frontend/commands/commands.hpp"
+#include "frontend/files/digest.hpp"
+#include "frontend/files/parse_error.hpp"
+#include "frontend/jobs/merge.hpp"
+#include "frontend/jobs/partial.hpp"
 #include "kernel/picture/point_tracer.hpp"
 #include "tests/fuzz/target.hpp"
 

@@ -3,10 +3,10 @@
 // bit; the message of what is not is one line.
 #include <cstring>
 
-#include "frontend/exr_file.hpp"
-#include "frontend/image_file.hpp"
-#include "frontend/parse_error.hpp"
-#include "frontend/png_chunks.hpp"
+#include "frontend/files/parse_error.hpp"
+#include "frontend/images/exr_file.hpp"
+#include "frontend/images/image_file.hpp"
+#include "frontend/images/png_chunks.hpp"
 #include "tests/fuzz/target.hpp"
 
 namespace {

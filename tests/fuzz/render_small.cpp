@@ -2,9 +2,9 @@
 
 #include <cstring>
 
-#include "frontend/effects.hpp"
-#include "frontend/identity.hpp"
-#include "frontend/report.hpp"
+#include "frontend/commands/report.hpp"
+#include "frontend/input/effects.hpp"
+#include "frontend/jobs/identity.hpp"
 #include "grelha/render.hpp"
 
 namespace grelha::fuzz {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "frontend/scene_file.hpp"
+#include "frontend/scene/scene_file.hpp"
 #include "tests/fuzz/target.hpp"
 
 namespace grelha::fuzz {

@@ -7,7 +7,7 @@
 #include <iterator>
 #include <vector>
 
-#include "frontend/memory_limit.hpp"
+#include "frontend/files/memory_limit.hpp"
 #include "tests/fuzz/target.hpp"
 
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "frontend/parse_error.hpp"
+#include "frontend/files/parse_error.hpp"
 
 #include <functional>
 #include <string>

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "frontend/options.hpp"
+#include "frontend/cli/options.hpp"
 
 namespace grelha::test {
 

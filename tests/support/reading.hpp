@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include "frontend/nff_reader.hpp"
-#include "frontend/parse_error.hpp"
-#include "frontend/scene_file.hpp"
+#include "frontend/files/parse_error.hpp"
+#include "frontend/nff/nff_reader.hpp"
+#include "frontend/scene/scene_file.hpp"
 
 namespace grelha::test {
 

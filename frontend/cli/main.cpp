@@ -1,0 +1,504 @@
+// The program. Errors become exit statuses here and nowhere else: 1 when a file cannot be read or
+// written, 2 for bad usage or a scene that cannot be one, 128 and its number when a signal stopped
+// a render that can go on. It is the one file of the frontend that knows the generators.
+#include "frontend/cli/options.hpp"
+#include "frontend/commands/batch.hpp"
+#include "frontend/commands/first_hits.hpp"
+#include "frontend/commands/nothing_seen.hpp"
+#include "frontend/commands/outputs.hpp"
+#include "frontend/commands/progress.hpp"
+#include "frontend/commands/report.hpp"
+#include "frontend/commands/warning_log.hpp"
+#include "frontend/files/atomic_file.hpp"
+#include "frontend/files/memory_limit.hpp"
+#include "frontend/files/nearest.hpp"
+#include "frontend/files/parse_error.hpp"
+#include "frontend/images/compare.hpp"
+#include "frontend/images/image_file.hpp"
+#include "frontend/jobs/long_render.hpp"
+#include "frontend/jobs/merge.hpp"
+#include "frontend/jobs/preparation.hpp"
+#include "frontend/jobs/ranks.hpp"
+#include "frontend/jobs/stop_signals.hpp"
+#include "frontend/scene/scene_file.hpp"
+#include "grelha/render.hpp"
+#include "scenes/generators.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <ctime>
+#include <filesystem>
+#include <iostream>
+#include <new>
+#include <thread>
+#include <type_traits>
+
+namespace grelha {
+
+namespace {
+
+constexpr int kOk = 0, kFileFailed = 1, kBadInput = 2, kAboveBound = 1, kSignalled = 128;
+
+/// Of `work`, or of the error it ends with, which is told in one line.
+template <class Work>
+int status_of(const Ranks& ranks, const Work& work) {
+  const auto fail = [&ranks](int status, const std::string& line) {
+    // what failed everywhere the first says, and ends all
+    if (!ranks.first())
+      std::this_thread::sleep_for(std::chrono::seconds(3));
+    std::cerr << line << '\n';
+    return status;
+  };
+  try {
+    return work();
+  } catch (const Interrupted& stop) {
+    return fail(kSignalled + stop.signal, stop.what());
+  } catch (const ParseError& error) {
+    return fail(kBadInput, error.what());
+  } catch (const FileError& error) {
+    return fail(kFileFailed, error.what());
+  } catch (const UsageError& error) {
+    return fail(kBadInput, std::string("grelha: error: ") + error.what());
+  } catch (const std::invalid_argument& error) {
+    return fail(kBadInput, std::string("grelha: error: ") + error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(kFileFailed, "grelha: error: " + out_of_memory());
+  } catch (const std::length_error&) {  // a vector beyond its largest size
+    return fail(kFileFailed, "grelha: error: " + out_of_memory());
+  } catch (const std::exception& error) {
+    return fail(kFileFailed, std::string("grelha: error: ") + error.what());
+  }
+}
+
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point start_ = Clock::now();
+};
+
+void warn(const std::string& line) { std::cerr << line << '\n'; }
+
+void print(const std::string& text) {
+  std::cout << text << std::flush;
+  if (!std::cout)
+    throw FileError("stdout", "cannot write");
+}
+
+/// What is said goes to stderr where stdout has the results.
+void tell(const std::string& text, bool results_on_stdout) {
+  if (results_on_stdout)
+    std::cerr << text;
+  else
+    print(text);
+}
+
+/// How a build for one processor gets the other copies of the kernel.
+#ifdef GRELHA_NATIVE
+constexpr const char* kMoreIsas = "; `./run render --isa ...` or cmake -D GRELHA_ISAS=all adds it";
+#else
+constexpr const char* kMoreIsas = "";
+#endif
+
+/// Asks before the scene is read: a large one takes seconds to read.
+void want_isa(std::string_view name) {
+  if (name == "best")
+    return;
+  for (const Isa& isa : isas()) {
+    if (isa.name != name)
+      continue;
+    if (!isa.compiled)
+      throw UsageError("this build has no " + std::string(name) + kMoreIsas);
+    if (!isa.runs_here)
+      throw UsageError("this processor has no " + std::string(name));
+    return;
+  }
+  throw UsageError("this build has no " + std::string(name));
+}
+
+void want_room(std::optional<ImageFormat> format, int width, int height) {
+  if (format && !image_fits(*format, width, height))
+    throw UsageError("a picture of " + std::to_string(width) + 'x' + std::to_string(height) +
+                     " is too large for .png and .hdr, write a .pfm or .exr");
+}
+
+Camera camera_of(const SceneFile& file, const RenderCommand& command) {
+  Camera camera = file.camera;
+  if (command.width > 0) {
+    camera.width = command.width;
+    camera.height = command.height;
+  }
+  return camera;
+}
+
+/// The signal that stopped it, or 0.
+int render_long(LongRender& work,
+                const World& world,
+                const Camera& camera,
+                const RenderCommand& command,
+                RenderStats& stats,
+                SampleMaps& maps) {
+  ProgressBar bar(!command.quiet && stderr_is_terminal(), work.share_done());
+  return work.run(
+      world, camera, [&bar](double share) { bar.update(share); }, stats, maps);
+}
+
+/// Numbers by pixel as a picture: .pfm and .hdr hold them as they are; in a .png `shade` of the
+/// largest is white.
+template <class T, class Shade>
+void write_map(const std::string& path,
+               const char* what,
+               const std::vector<T>& values,
+               const Camera& camera,
+               const Shade& shade) {
+  if (path.empty())
+    return;
+  const bool png = image_format(path) == ImageFormat::png;
+  const double largest = shade(double(*std::max_element(values.begin(), values.end())));
+  Image image(camera.width, camera.height);
+  for (std::size_t i = 0; i < image.rgb.size(); ++i) {
+    const double v = double(values[i / 3]);
+    image.rgb[i] = float(png ? (largest > 0 ? shade(v) / largest : 0) : v);
+  }
+  write_image(path, image, {.notes = {kSoftware, {"Comment", what}}});
+}
+
+/// What of a command is for a rank that neither writes nor speaks.
+RenderCommand silent(RenderCommand command) {
+  command.work.checkpoint.clear();
+  command.stats.clear();
+  command.work.show_every = 0;
+  command.quiet = true;
+  return command;
+}
+
+int render_scene(const RenderCommand& given, Ranks& ranks) {
+  const RenderCommand command = ranks.first() ? given : silent(given);
+  RunReport report;
+  const Stopwatch load;
+  const bool bars = !command.quiet && stderr_is_terminal();
+  SceneFile file;
+  WarningLog log;
+  const auto read = [&] {
+    want_isa(command.render.isa);
+    if (ranks.first())
+      prepare_outputs(command);
+    file = load_scene(command.scene, log.telling(), command.input.read, bars);
+    want_not_read(outputs_of(command), file.meshes);
+  };
+  if (!ranks.together(read))
+    return kFileFailed;
+  want_shareable(command, ranks);
+  const std::string scene = scene_digest(file);
+  RenderCommand prepared = command;
+  prepared.render.phases = !command.stats.empty();
+  apply_effects(command.effects, file, prepared.render);
+  report.seconds.load = load.seconds();
+  const Camera camera = camera_of(file, command);
+  want_room(format_of(command.image, command.format), camera.width, camera.height);
+  warn_of_nothing(command.scene, file, camera, log.telling());
+  log.want_none(command.input);
+  const PictureMemory memory = picture_memory(prepared, camera);
+  want_memory(command.scene, memory.sums + memory.rest);
+  LongRender work(prepared, camera, scene, ranks, log.telling());
+
+  const Stopwatch build;
+  const World world = build_world(command.scene, file.scene, command.build, memory.rest, bars);
+  report.seconds.build = build.seconds();
+
+  const Stopwatch render;
+  const std::clock_t cpu = std::clock();
+  SampleMaps maps;
+  if (const int signal = render_long(work, world, camera, prepared, report.render, maps)) {
+    warn(work.stop_text(signal));
+    return kSignalled + signal;
+  }
+  if (!ranks.first())
+    return kOk;
+  report.seconds.render = render.seconds();
+  report.seconds.render_cpu = double(std::clock() - cpu) / CLOCKS_PER_SEC;
+
+  const Stopwatch write;
+  work.finish(command.layers.any() ? first_hits(world, camera, command.layers) : Layers{});
+  write_map(command.samples_map, "samples of each pixel", maps.samples, camera, [](double n) {
+    return std::log2(n);
+  });
+  write_map(command.error_map,
+            "estimated standard error of each pixel",
+            maps.error,
+            camera,
+            [](double e) { return e; });
+  report.seconds.write = write.seconds();
+
+  const Geometry& geometry = file.scene.geometry;
+  report.counts = file.counts;
+  report.spheres = geometry.spheres.size();
+  report.triangles = geometry.triangles.size();
+  report.cones = geometry.cones.size();
+  report.planes = geometry.planes.size();
+  report.width = camera.width;
+  report.height = camera.height;
+  report.ranks = ranks.count();
+  report.grids = world.grids();
+  report.geometry_bytes = world.geometry_bytes();
+  report.grid_bytes = world.grid_bytes();
+  if (!command.stats.empty())
+    write_file(command.stats, stats_json(prepared, report));
+  const std::string summary = summary_line(command, report);
+  if (!command.quiet)
+    tell(summary, writes_to_stdout(command));
+  log.want_none(command.input);  // saves may have failed on the way
+  return kOk;
+}
+
+/// By a signal that came when the picture before was finished, and only had to be written.
+int stopped_between(int signal, const std::string& next) {
+  warn("grelha: stopped by " + std::string(signal_name(signal)) + " before " + next);
+  return kSignalled + signal;
+}
+
+void remove_checkpoint(const RenderCommand& command) {
+  std::error_code ignored;
+  if (command.work.kept_till_the_last && !command.work.checkpoint.empty())
+    std::filesystem::remove(command.work.checkpoint, ignored);
+}
+
+/// Of several scenes each is tried, whatever becomes of the others, until a signal stops one, or
+/// one of several ranks fails alone.
+int run(const RenderCommand& command, Ranks& ranks) {
+  limit_memory(command.input.max_memory);
+  int worst = kOk;
+  const std::vector<RenderCommand> all = commands_for(command);
+  std::optional<StopSignals> signals;
+  if (ranks.first())
+    signals.emplace();
+  for (const RenderCommand& one : all) {
+    if (const int signal = StopSignals::seen())
+      return stopped_between(signal, one.scene);
+    worst = std::max(worst, status_of(ranks, [&] { return render_scene(one, ranks); }));
+    if (worst >= kSignalled || (ranks.count() > 1 && !ranks.in_step()))
+      break;
+  }
+  if (worst == kOk && ranks.first())
+    for (const RenderCommand& one : all)
+      remove_checkpoint(one);
+  return worst;
+}
+
+std::string info_of(const std::string& scene, const InfoCommand& command) {
+  const bool bars = stderr_is_terminal();
+  WarningLog log;
+  const SceneFile file = load_scene(scene, log.telling(), command.input.read, bars);
+  warn_of_nothing(scene, file, file.camera, log.telling());
+  log.want_none(command.input);
+  const SceneMemory memory = memory_of(file, command.build);
+  std::optional<std::vector<GridStats>> grids;
+  if (memory.peak - memory.scene < own_memory().left())
+    grids = build_world(scene, file.scene, command.build, 0, bars).grids();
+  return command.json ? info_json(file, memory, grids) : info_text(scene, file, memory, grids);
+}
+
+int run(const InfoCommand& command, const Ranks& ranks) {
+  limit_memory(command.input.max_memory);
+  const std::vector<std::string> scenes = scene_files(command.scenes);
+  std::vector<std::pair<std::string, std::string>> found;
+  int worst = kOk;
+  std::optional<StopSignals> signals(std::in_place);
+  for (const std::string& scene : scenes) {
+    if (worst >= kSignalled)
+      return worst;
+    worst = std::max(worst, status_of(ranks, [&] {
+                       return found.emplace_back(scene, info_of(scene, command)), kOk;
+                     }));
+  }
+  signals.reset();
+  std::string text;
+  for (const auto& [scene, of_scene] : found)
+    text += (text.empty() ? "" : "\n") + of_scene;
+  print(command.json && scenes.size() > 1 ? info_json(found) : text);
+  return worst;
+}
+
+std::string size_text(const Image& image) {
+  return std::to_string(image.width) + 'x' + std::to_string(image.height);
+}
+
+void write_difference(const CompareCommand& command,
+                      const Image& a,
+                      const Image& b,
+                      double largest) {
+  const bool stretch =
+      image_format(command.diff) == ImageFormat::png && largest > 0 && largest <= 1e30;
+  write_image(command.diff,
+              difference(a, b, stretch ? 1 / largest : 1),
+              {.notes = {kSoftware, {"Comment", "difference of two pictures"}}});
+}
+
+int run(const CompareCommand& command) {
+  if (!command.diff.empty())
+    want_not_read({{"--diff", command.diff}}, {command.a, command.b});
+  Encoding of_a, of_b;
+  Image a = read_image(command.a, &of_a), b = read_image(command.b, &of_b);
+  if (a.width != b.width || a.height != b.height)
+    throw UsageError("the pictures have unequal sizes, " + size_text(a) + " and " + size_text(b));
+  if (of_a != of_b) {
+    warn(command.a + " holds " + encoding_text(of_a) + ", " + command.b + ' ' +
+         encoding_text(of_b) + ": compared as light");
+    a = as_light(std::move(a), of_a);
+    b = as_light(std::move(b), of_b);
+  }
+  if (command.display) {
+    a = displayed(std::move(a));
+    b = displayed(std::move(b));
+  }
+  const Comparison c = compare(a, b);
+  if (!command.diff.empty())
+    write_difference(command, a, b, c.largest);
+  char text[256];
+  std::snprintf(
+      text,
+      sizeof text,
+      "RMSE %.6g, PSNR %.4g dB, largest difference %.6g at (%d, %d), %llu of %llu pixels differ\n",
+      c.rmse,
+      c.psnr_db,
+      c.largest,
+      c.largest_x,
+      c.largest_y,
+      static_cast<unsigned long long>(c.differing),
+      static_cast<unsigned long long>(c.pixels));
+  print(text);
+  return command.max_rmse && !(c.rmse <= *command.max_rmse) ? kAboveBound : kOk;
+}
+
+int run(const MergeCommand& command) {
+  want_no_terminal(command.output);
+  check_writable(command.output);
+  const Partial joined = merge_parts(command.parts);
+  const Accumulator& a = joined.sums;
+  if (is_partial_name(command.output)) {
+    write_partial(command.output, joined);
+  } else {
+    const Part whole{{0, a.height}, {0, a.samples}};
+    if (a.part != whole)
+      throw UsageError("the parts are " + part_text(a.part) + ", the picture is " +
+                       part_text(whole) + ": join them to a .grelha");
+    const auto format = format_of(command.output, command.format);
+    want_room(format, a.width, a.height);
+    write_image(command.output,
+                picture_so_far(a),
+                {format, command.srgb ? Tone::srgb : Tone::authored, notes_of(joined.identity)});
+  }
+  const std::size_t n = command.parts.size();
+  const std::string summary = name_of_file(command.output) + ": " + part_text(a.part) + " from " +
+                              std::to_string(n) + (n == 1 ? " part\n" : " parts\n");
+  if (!command.quiet)
+    tell(summary, command.output == kStdout);
+  return kOk;
+}
+
+int list_scenes() {
+  std::string text;
+  for (const scenes::Generator& g : scenes::generators()) {
+    char line[256];
+    std::snprintf(line,
+                  sizeof line,
+                  "%-8s sizes %d to %d, default %d: %s\n",
+                  std::string(g.name).c_str(),
+                  g.min_size,
+                  g.max_size,
+                  g.default_size,
+                  std::string(g.summary).c_str());
+    text += line;
+  }
+  print(text);
+  return kOk;
+}
+
+/// The mesh goes first: a scene must not stand there without what it refers to.
+void write_with_mesh(const scenes::Generator& generator,
+                     scenes::SceneOptions options,
+                     const std::string& path) {
+  const auto mesh_path = std::filesystem::path(path).replace_extension(".ply");
+  options.mesh_file = mesh_path.filename().string();
+  AtomicFile mesh(mesh_path.string()), scene(path);
+  generator.write_mesh(mesh.stream(), options.size);
+  generator.write(scene.stream(), options);
+  mesh.commit();
+  scene.commit();
+}
+
+int run(const SceneCommand& command) {
+  if (command.list)
+    return list_scenes();
+  const scenes::Generator* generator = scenes::find_generator(command.name);
+  if (!generator) {
+    std::vector<std::string_view> names;
+    for (const scenes::Generator& g : scenes::generators())
+      names.push_back(g.name);
+    throw UsageError("no scene \"" + command.name + '"' + did_you_mean(command.name, names) +
+                     " (see grelha scene --list)");
+  }
+  if (command.spd && !generator->has_spd_form)
+    throw UsageError("--spd: wanted a scene that SPD has in another form (balls, mount), found \"" +
+                     command.name + '"');
+  scenes::SceneOptions options{command.size.value_or(generator->default_size), command.spd, {}};
+  if (options.size < generator->min_size || options.size > generator->max_size)
+    throw UsageError(
+        "--size: " + command.name + " has sizes " + std::to_string(generator->min_size) + " to " +
+        std::to_string(generator->max_size) + ", found \"" + std::to_string(options.size) + '"');
+  if (generator->write_mesh && command.output == kStdout)
+    throw UsageError("-o: wanted a file, for a mesh is written beside it, found \"-\"");
+  if (generator->write_mesh) {
+    write_with_mesh(
+        *generator, options, command.output.empty() ? command.name + ".nff" : command.output);
+  } else {
+    AtomicFile file(command.output.empty() ? kStdout : command.output);
+    generator->write(file.stream(), options);
+    file.commit();
+  }
+  return kOk;
+}
+
+int run(const TextCommand& command) {
+  print(command.text);
+  return kOk;
+}
+
+int run_program(int argc, char** argv, Ranks& ranks) {
+  return status_of(ranks, [&] {
+    const Command command = parse_command(argc, argv);
+    if (const auto* render = std::get_if<RenderCommand>(&command))
+      return run(*render, ranks);
+    if (!ranks.first())
+      return kOk;
+    return std::visit(
+        [&ranks](const auto& c) {
+          if constexpr (std::is_same_v<decltype(c), const RenderCommand&>)
+            return kOk;
+          else if constexpr (std::is_same_v<decltype(c), const InfoCommand&>)
+            return run(c, ranks);
+          else
+            return run(c);
+        },
+        command);
+  });
+}
+
+}  // namespace
+
+}  // namespace grelha
+
+int main(int argc, char** argv) {
+  std::ios::sync_with_stdio(false);
+  std::signal(SIGXFSZ, SIG_IGN);  // then writing fails, and can be told
+  grelha::Ranks ranks(argc, argv);
+  const int status = grelha::run_program(argc, argv, ranks);
+  if (status >= grelha::kSignalled || (status != 0 && !ranks.in_step()))
+    ranks.abandon();
+  return status;
+}

@@ -1,0 +1,15 @@
+#pragma once
+// Options that contradict each other, or say something about nothing. Each check throws a
+// UsageError that names them.
+
+#include "frontend/commands/commands.hpp"
+
+namespace grelha {
+
+/// `command.image`: as commands_for() will name the first picture.
+void check_together(const RenderCommand& command);
+void check_together(const InfoCommand& command);
+void check_together(const MergeCommand& command);
+void check_together(const SceneCommand& command);
+
+}  // namespace grelha

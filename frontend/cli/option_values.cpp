@@ -1,0 +1,277 @@
+#include "frontend/cli/option_values.hpp"
+
+#include "frontend/files/atomic_file.hpp"
+#include "frontend/images/image_file.hpp"
+#include "frontend/scene/scene_builder.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <initializer_list>
+#include <optional>
+#include <span>
+
+namespace grelha::option_values {
+namespace {
+
+constexpr double kMaxDensity = 1000;
+constexpr double kMaxSeconds = 1e9;  ///< 30 years; a clock counts so far without rounding
+constexpr double kMaxBytes = 1e18;
+
+/// Of KIND:MORE the kind that was probably meant.
+std::string meant_kind(const std::string& text, std::initializer_list<std::string_view> kinds) {
+  const std::size_t end = std::min(text.find(':'), text.size());
+  const std::string_view kind =
+      nearest(std::string_view(text).substr(0, end), std::span(kinds.begin(), kinds.size()));
+  return kind.empty() || text.starts_with(kind)
+             ? ""
+             : "; did you mean " + std::string(kind) + text.substr(end) + '?';
+}
+
+/// The whole of `text` as a number; the locale has no say.
+template <class T>
+std::optional<T> number(std::string_view text) {
+  T value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size())
+    return {};
+  return value;
+}
+
+/// "a,b,c" as its parts; refuses another number of them.
+std::vector<std::string> parts(const std::string& option,
+                               const std::string& text,
+                               std::size_t least,
+                               std::size_t most,
+                               const char* wanted) {
+  std::vector<std::string> found(1);
+  for (const char c : text) {
+    if (c == ',')
+      found.emplace_back();
+    else
+      found.back() += c;
+  }
+  if (found.size() < least || found.size() > most)
+    refuse(option, wanted, text);
+  return found;
+}
+
+/// Of something in a scene, where no length is larger.
+double not_negative(const std::string& option, const std::string& text, const char* what) {
+  const auto value = number<double>(text);
+  if (!value || !(*value >= 0) || *value > kLargest)
+    refuse(option, std::string(what) + " from 0 to 1e18", text);
+  return *value;
+}
+
+Subdivision subdivision(const std::string& text) {
+  const auto p = parts("--aa", text, 2, 2, "adaptive:THRESHOLD,DEPTH");
+  const auto threshold = number<float>(p[0]);
+  if (!threshold || !(*threshold >= 0) || *threshold > 1)
+    refuse("--aa", "a threshold from 0 to 1", p[0]);
+  return {true, *threshold, whole("--aa", p[1], 0, kMostSubdivisions)};
+}
+
+}  // namespace
+
+void refuse(const std::string& option,
+            const std::string& wanted,
+            const std::string& found,
+            const std::string& meant) {
+  throw UsageError(option + ": wanted " + wanted + ", found \"" + found + '"' + meant);
+}
+
+int whole(const std::string& option, const std::string& text, int low, int high) {
+  const auto value = number<int>(text);
+  if (!value || *value < low || *value > high)
+    refuse(
+        option, "a whole number from " + std::to_string(low) + " to " + std::to_string(high), text);
+  return *value;
+}
+
+double min_weight(const std::string& text) {
+  const auto value = number<double>(text);
+  if (!value || !(*value >= 0) || *value > 1)
+    refuse("--min-weight", "a number from 0 to 1", text);
+  return *value;
+}
+
+float density(const std::string& text) {
+  const auto value = number<double>(text);
+  if (!value || !(float(*value) > 0) || *value > kMaxDensity)
+    refuse("--density", "a number above 0 and up to 1000", text);
+  return float(*value);
+}
+
+void parse_aa(const std::string& text, Effects& effects) {
+  constexpr std::string_view kJitter = "jitter:", kAdaptive = "adaptive:";
+  if (text == "off")
+    effects.jitter = 1;
+  else if (text.starts_with(kJitter))
+    effects.jitter = whole("--aa", text.substr(kJitter.size()), 1, 256);
+  else if (text.starts_with(kAdaptive))
+    effects.adaptive = subdivision(text.substr(kAdaptive.size()));
+  else
+    refuse("--aa",
+           "off, jitter:N or adaptive:THRESHOLD,DEPTH",
+           text,
+           meant_kind(text, {"off", "jitter", "adaptive"}));
+}
+
+void parse_shadows(const std::string& text, Effects& effects) {
+  constexpr std::string_view kRandom = "random:", kArea = "area:";
+  Effects::Shadows s;
+  if (text == "hard") {
+    s.hard = true;
+  } else if (text.starts_with(kRandom)) {
+    s.size = float(not_negative("--shadows", text.substr(kRandom.size()), "a size"));
+  } else if (text.starts_with(kArea)) {
+    const auto p = parts("--shadows", text.substr(kArea.size()), 2, 2, "area:SIZE,N");
+    s.size = float(not_negative("--shadows", p[0], "a size"));
+    s.positions = whole("--shadows", p[1], 1, 64);
+  } else {
+    refuse("--shadows",
+           "hard, random:SIZE or area:SIZE,N",
+           text,
+           meant_kind(text, {"hard", "random", "area"}));
+  }
+  effects.shadows = s;
+}
+
+void parse_lens(const std::string& text, Effects& effects) {
+  const auto p = parts("--lens", text, 1, 3, "APERTURE,FOCUS,N");
+  Effects::Lens lens;
+  lens.aperture = not_negative("--lens", p[0], "an aperture");
+  if (p.size() > 1)
+    lens.focus = not_negative("--lens", p[1], "a focal distance");
+  if (p.size() > 2)
+    lens.samples = whole("--lens", p[2], 1, kMostSamples);
+  effects.lens = lens;
+}
+
+void parse_glossy(const std::string& text, Effects& effects) {
+  const auto p = parts("--glossy", text, 1, 2, "ROUGHNESS,N");
+  Effects::Glossy g;
+  g.roughness = float(not_negative("--glossy", p[0], "a roughness"));
+  if (p.size() > 1)
+    g.rays = whole("--glossy", p[1], 1, 256);
+  effects.glossy = g;
+}
+
+void parse_error_bound(const std::string& text, RefineOptions& refine) {
+  const auto value = number<double>(text);
+  if (!value || !(*value >= 1e-6) || *value > 1)
+    refuse("--error", "a number from 0.000001 to 1", text);
+  refine.error = *value;
+}
+
+void parse_time(const std::string& text, RefineOptions& refine) {
+  constexpr std::string_view kSamples = "samples:";
+  if (text.starts_with(kSamples)) {
+    const auto count = number<std::uint64_t>(std::string_view(text).substr(kSamples.size()));
+    if (!count || *count == 0)
+      refuse("--time", "samples:N with N from 1 to 2^64 - 1", text);
+    refine.samples = *count;
+    return;
+  }
+  const auto value = number<double>(text);
+  if (!value || !(*value > 0) || *value > kMaxSeconds)
+    refuse("--time", "seconds above 0 and up to 1e9, or samples:N", text);
+  refine.seconds = *value;
+}
+
+double rmse_bound(const std::string& text) {
+  const auto value = number<double>(text);
+  if (!value || !(*value >= 0))
+    refuse("--max-rmse", "a number that is not negative", text);
+  return *value;
+}
+
+void parse_size(const std::string& text, int& width, int& height) {
+  const auto cross = text.find('x');
+  const auto w = number<int>(std::string_view(text).substr(0, cross));
+  const auto h = cross == std::string::npos ? std::nullopt
+                                            : number<int>(std::string_view(text).substr(cross + 1));
+  if (!w || !h || *w < 1 || *h < 1 || *w > kMaxSide || *h > kMaxSide)
+    refuse("--size", "WIDTHxHEIGHT, each from 1 to 65536", text);
+  width = *w;
+  height = *h;
+}
+
+Range range(const std::string& option, const std::string& text, int most) {
+  const auto colon = text.find(':');
+  const auto begin = number<int>(std::string_view(text).substr(0, colon));
+  const auto end = colon == std::string::npos
+                       ? std::nullopt
+                       : number<int>(std::string_view(text).substr(colon + 1));
+  if (!begin || !end || *begin < 0 || *begin >= *end || *end > most)
+    refuse(option,
+           "A:B, whole numbers, 0 or more, A below B, B at most " + std::to_string(most),
+           text);
+  return {*begin, *end};
+}
+
+void parse_samples(const std::string& text, RenderCommand& command) {
+  if (text.find(':') == std::string::npos) {
+    command.effects.samples = whole("--samples", text, 1, kMostSamples);
+    return;
+  }
+  const auto slash = text.find('/');
+  if (slash != std::string::npos)
+    command.effects.samples = whole("--samples", text.substr(slash + 1), 1, kMostSamples);
+  command.work.samples =
+      range("--samples", text.substr(0, slash), command.effects.samples.value_or(kMostSamples));
+}
+
+double interval(const std::string& option, const std::string& text) {
+  const auto value = number<double>(text);
+  if (!value || !(*value > 0) || *value > kMaxSeconds)
+    refuse(option, "seconds above 0 and up to 1e9", text);
+  return *value;
+}
+
+void want_image_name(const std::string& option, const std::string& path) {
+  if (!image_format(path))
+    refuse(option, "a name ending in .png, .hdr, .pfm or .exr", path);
+}
+
+std::string file_name(const std::string& option, const std::string& text) {
+  if (text.empty())
+    refuse(option, "a file name", text);
+  return text;
+}
+
+std::string regular_file_name(const std::string& option, const std::string& text) {
+  if (text == kStdout)
+    refuse(option, "a file that can be read again", text);
+  return file_name(option, text);
+}
+
+LayerChoice layers(const std::string& text) {
+  constexpr const char* kWanted = "some of depth,normal,id, each once";
+  LayerChoice chosen;
+  for (const std::string& word : parts("--layers", text, 1, 3, kWanted)) {
+    bool* const one = word == "depth"    ? &chosen.depth
+                      : word == "normal" ? &chosen.normal
+                      : word == "id"     ? &chosen.id
+                                         : nullptr;
+    if (!one || *one)
+      refuse("--layers", kWanted, text);
+    *one = true;
+  }
+  return chosen;
+}
+
+std::uint64_t memory_size(const std::string& text) {
+  constexpr std::string_view kUnits = "KMGT";
+  const auto unit = text.empty() ? std::string_view::npos : kUnits.find(text.back());
+  const auto value = number<double>(
+      std::string_view(text).substr(0, text.size() - (unit != std::string_view::npos)));
+  const double bytes =
+      value ? std::ldexp(*value, unit == std::string_view::npos ? 0 : 10 * (int(unit) + 1)) : 0;
+  if (!(bytes >= 1 << 26) || bytes > kMaxBytes)
+    refuse("--max-memory", "a size from 64M to 1e18 bytes, such as 512M or 6G", text);
+  return std::uint64_t(bytes);
+}
+
+}  // namespace grelha::option_values

@@ -1,0 +1,70 @@
+#pragma once
+// What stands behind an option, as a value. Each refuses with a UsageError that says what was
+// wanted and what was found.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "frontend/commands/commands.hpp"
+#include "frontend/files/nearest.hpp"
+
+namespace grelha::option_values {
+
+inline constexpr int kMaxSide = 65536;  ///< of a picture
+
+[[noreturn]] void refuse(const std::string& option,
+                         const std::string& wanted,
+                         const std::string& found,
+                         const std::string& meant = "");
+
+int whole(const std::string& option, const std::string& text, int low, int high);
+float density(const std::string& text);
+double min_weight(const std::string& text);
+void parse_aa(const std::string& text, Effects& effects);
+void parse_shadows(const std::string& text, Effects& effects);
+void parse_lens(const std::string& text, Effects& effects);
+void parse_glossy(const std::string& text, Effects& effects);
+void parse_error_bound(const std::string& text, RefineOptions& refine);
+void parse_time(const std::string& text, RefineOptions& refine);
+double rmse_bound(const std::string& text);
+void parse_size(const std::string& text, int& width, int& height);
+/// "A:B": A from 0, B above A and at most `most`.
+Range range(const std::string& option, const std::string& text, int most);
+/// "N", "I:J" or "I:J/N"
+void parse_samples(const std::string& text, RenderCommand& command);
+/// Seconds.
+double interval(const std::string& option, const std::string& text);
+
+void want_image_name(const std::string& option, const std::string& path);
+std::string file_name(const std::string& option, const std::string& text);
+std::string regular_file_name(const std::string& option, const std::string& text);
+
+/// "depth,normal,id", or some of them.
+LayerChoice layers(const std::string& text);
+
+/// A number of bytes, or of powers of 1024 with K, M, G or T behind it.
+std::uint64_t memory_size(const std::string& text);
+
+/// One of the words an option takes, and what each stands for.
+template <class T, std::size_t N>
+T choice(const std::string& option,
+         const std::string& text,
+         const std::array<std::pair<std::string_view, T>, N>& words) {
+  std::string wanted;
+  std::vector<std::string_view> all;
+  for (const auto& [word, value] : words) {
+    if (word == text)
+      return value;
+    wanted += (wanted.empty() ? "" : ", ") + std::string(word);
+    all.push_back(word);
+  }
+  throw UsageError(option + ": wanted one of " + wanted + ", found \"" + text + '"' +
+                   did_you_mean(text, all));
+}
+
+}  // namespace grelha::option_values

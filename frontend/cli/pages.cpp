@@ -1,0 +1,207 @@
+// The man page and the shells' completions, of what help.hpp says.
+#include "frontend/cli/help.hpp"
+
+#include <algorithm>
+#include <sstream>
+
+namespace grelha {
+namespace {
+
+std::string replaced(std::string text, std::string_view what, std::string_view by) {
+  for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += by.size())
+    text.replace(at, what.size(), by);
+  return text;
+}
+
+/// Text as roff takes it: hyphens that can be copied, nothing that starts a request.
+std::string roff(const std::string& text) {
+  std::string out = replaced(replaced(text, "\\", "\\e"), "-", "\\-");
+  if (out.starts_with('.') || out.starts_with('\''))
+    out = "\\&" + out;
+  return out;
+}
+
+std::vector<std::string> choices(const OptionHelp& o) {
+  std::vector<std::string> words;
+  if (o.placeholder.find('|') == std::string::npos)
+    return words;
+  std::istringstream in(o.placeholder);
+  // of area:N area:
+  for (std::string w; std::getline(in, w, '|');)
+    words.push_back(w.substr(0, std::min(w.find(':'), w.size() - 1) + 1));
+  return words;
+}
+
+std::string join(const std::vector<std::string>& words) {
+  std::string all;
+  for (const std::string& w : words)
+    all += (all.empty() ? "" : " ") + w;
+  return all;
+}
+
+bool takes_file(const OptionHelp& o) { return o.placeholder.find("FILE") != std::string::npos; }
+
+std::string names_of(const std::vector<CommandHelp>& commands) {
+  std::vector<std::string> names;
+  for (const CommandHelp& c : commands)
+    names.push_back(c.name);
+  return join(names);
+}
+
+constexpr const char* kMade = "made by the build from the options themselves";
+
+}  // namespace
+
+std::string man_page(const std::vector<CommandHelp>& commands) {
+  std::string text =
+      ".\\\" " + std::string(kMade) +
+      "\n.TH GRELHA 1 \"" GRELHA_DATE "\" \"grelha " GRELHA_VERSION
+      "\" \"User Commands\"\n"
+      ".SH NAME\ngrelha \\- data\\-oriented SIMD ray tracer on a uniform grid\n.SH SYNOPSIS\n";
+  for (const CommandHelp& c : commands)
+    text += ".B grelha " + c.name + "\n.RI \"" + roff(c.usage) + " [\" OPTIONS ]\n.br\n";
+  text +=
+      ".B grelha\n.RB [ \\-\\-help | \\-\\-help\\-all | \\-V | \\-\\-version ]\n"
+      ".SH DESCRIPTION\nRenders scenes in NFF and the dialects built on it, and PLY meshes, each "
+      "also gzipped, to PNG, Radiance HDR, PFM or OpenEXR.\n"
+      "Neither the number of threads nor the processor changes a bit of a picture.\n";
+  for (const CommandHelp& c : commands) {
+    std::string upper = c.name;
+    std::transform(upper.begin(), upper.end(), upper.begin(), [](char k) {
+      return k >= 'a' && k <= 'z' ? char(k - 32) : k;
+    });
+    text += ".SH GRELHA " + upper + "\n" + roff(c.text) + ".\n";
+    for (const OptionHelp& o : c.options) {
+      text += ".TP\n";
+      std::string names;
+      for (const std::string& n : o.names)
+        names += (names.empty() ? "\\fB" : ", \\fB") + roff(n) + "\\fR";
+      text += names + (o.placeholder.empty() ? "" : " \\fI" + roff(o.placeholder) + "\\fR") + "\n" +
+              roff(o.text) + "\n";
+    }
+    if (c.footer.empty())
+      continue;
+    text += ".PP\n.nf\n";
+    std::istringstream lines(c.footer);
+    // whoever reads this has the scenes where FILES says
+    for (std::string line; std::getline(lines, line);)
+      text += roff(replaced(replaced(line, "scenes/data/", ""), "scenes/data", "scenes")) + '\n';
+    text += ".fi\n";
+  }
+  text +=
+      ".SH FILES\n.TP\n.I PREFIX/share/grelha/scenes\nscenes to begin with; PREFIX is /usr for the "
+      "Debian package\n"
+      ".TP\n.I PREFIX/share/doc/grelha\nREADME.md, CHANGELOG.md, farm.sh (one picture by a Slurm "
+      "array), examples of the library\n"
+      ".TP\n.I *.grelha\npart of a picture, or what a checkpoint keeps\n"
+      ".TP\n.IR NAME .partial.png \", \" NAME .png.partial\nwhat a stopped render leaves: the "
+      "picture so far, and what the same command goes on from\n"
+      ".TP\n.IR FILE .new\nthe checkpoint FILE while it is written\n"
+      ".TP\n.RI . FILE .grelha\\-tmp\nany other FILE while it is written\n";
+  return text +
+         ".SH EXIT STATUS\n0; 1 when reading or writing a file fails; 2 for bad usage or a scene "
+         "that cannot be one;\n"
+         "129, 130 and 143 when stopped by SIGHUP, SIGINT and SIGTERM.\n"
+         ".SH SEE ALSO\n.BR gzip (1),\n.BR mpirun (1),\n.BR sbatch (1)\n";
+}
+
+std::string bash_completion(const std::vector<CommandHelp>& commands) {
+  std::string values, options;
+  for (const CommandHelp& c : commands) {
+    std::vector<std::string> all{"--help", "--help-all"};
+    for (const OptionHelp& o : c.options) {
+      all.insert(all.end(), o.names.begin(), o.names.end());
+      for (const std::string& n : o.names)
+        if (!choices(o).empty())
+          values += "    " + c.name + ',' + n + ") words=\"" + join(choices(o)) + "\" ;;\n";
+    }
+    options += "    " + c.name + ") words=\"" + join(all) + "\" ;;\n";
+  }
+  return "# bash completion of grelha, " + std::string(kMade) +
+         "\n_grelha() {\n"
+         "  local cur=${COMP_WORDS[COMP_CWORD]} prev=${COMP_WORDS[COMP_CWORD-1]} words=\n"
+         "  COMPREPLY=()\n"
+         "  if [ \"$COMP_CWORD\" -eq 1 ]; then\n"
+         "    COMPREPLY=($(compgen -W \"" +
+         names_of(commands) +
+         " --help --help-all --version -V\" -- \"$cur\"))\n"
+         "    return\n"
+         "  fi\n"
+         "  case ${COMP_WORDS[1]},$prev in\n" +
+         values +
+         "    scene,scene) [[ $cur == -* ]] || words=$(grelha scene --list 2>/dev/null | cut -d ' "
+         "' -f 1) ;;\n"
+         "  esac\n"
+         "  [ -n \"$words\" ] || [[ $cur != -* ]] || case ${COMP_WORDS[1]} in\n" +
+         options +
+         "  esac\n"
+         "  [ -z \"$words\" ] || COMPREPLY=($(compgen -W \"$words\" -- \"$cur\"))\n"
+         "  [[ ${COMPREPLY[0]-} != *: ]] || compopt -o nospace 2>/dev/null || true\n"
+         "}\n"
+         "complete -o bashdefault -o default -F _grelha grelha\n";
+}
+
+std::string zsh_completion(const std::vector<CommandHelp>& commands) {
+  // Within '[...]' of a specification brackets and colons are escaped, and quotes leave the string.
+  const auto quoted = [](const std::string& text) {
+    return replaced(
+        replaced(replaced(replaced(text, "[", "\\["), "]", "\\]"), ":", "\\:"), "'", "'\\''");
+  };
+  std::string text = "#compdef grelha\n# zsh completion of grelha, " + std::string(kMade) +
+                     "\nif (( CURRENT == 2 )); then\n  local -a commands=(\n";
+  for (const CommandHelp& c : commands)
+    text += "    '" + c.name + ':' + replaced(c.text, "'", "'\\''") + "'\n";
+  text +=
+      "  )\n  _describe command commands\n  _arguments '--help' '--help-all' '(-V "
+      "--version)'{-V,--version}'[say which version this is]'\n  return\nfi\n"
+      "local command=$words[2]\nshift words; (( CURRENT-- ))\ncase $command in\n";
+  for (const CommandHelp& c : commands) {
+    text += "  " + c.name + ")\n    _arguments '--help' '--help-all' \\\n";
+    for (const OptionHelp& o : c.options)
+      for (const std::string& n : o.names) {
+        text += "      '" + n + '[' + quoted(o.text) + ']';
+        if (!o.placeholder.empty()) {
+          const std::string words = replaced(join(choices(o)), ":", "\\:");
+          text += ':' + quoted(o.placeholder) + ':' +
+                  (takes_file(o)   ? "_files"
+                   : words.empty() ? " "
+                                   : '(' + words + ')');
+        }
+        text += "' \\\n";
+      }
+    text += c.name == "scene"
+                ? "      '*:scene:($(grelha scene --list 2>/dev/null | cut -d \" \" -f 1))' ;;\n"
+                : "      '*:file:_files' ;;\n";
+  }
+  return text + "esac\n";
+}
+
+std::string fish_completion(const std::vector<CommandHelp>& commands) {
+  const auto quoted = [](const std::string& text) {
+    return replaced(replaced(text, "\\", "\\\\"), "'", "\\'").insert(0, 1, '\'') + '\'';
+  };
+  std::string text = "# fish completion of grelha, " + std::string(kMade) + '\n';
+  const std::string none = "complete -c grelha -n '__fish_use_subcommand' ";
+  text += none + "-l help -d 'commands and examples'\n" + none + "-l help-all -d 'everything'\n" +
+          none + "-s V -l version -d 'which version this is'\n";
+  for (const CommandHelp& c : commands)
+    text += none + "-f -a " + c.name + " -d " + quoted(c.text) + '\n';
+  for (const CommandHelp& c : commands) {
+    const std::string here = "complete -c grelha -n '__fish_seen_subcommand_from " + c.name + "' ";
+    for (const OptionHelp& o : c.options) {
+      text += here;
+      for (const std::string& n : o.names)
+        text += n.starts_with("--") ? "-l " + n.substr(2) + ' ' : "-s " + n.substr(1) + ' ';
+      if (!o.placeholder.empty())
+        text += takes_file(o) ? "-r " : "-x ";
+      if (!choices(o).empty())
+        text += "-a '" + join(choices(o)) + "' ";
+      text += "-d " + quoted(o.text) + '\n';
+    }
+  }
+  return text +
+         "complete -c grelha -n '__fish_seen_subcommand_from scene' -f -a '(grelha scene --list "
+         "2>/dev/null | cut -d \" \" -f 1)'\n";
+}
+
+}  // namespace grelha

@@ -1,0 +1,107 @@
+#include "frontend/commands/batch.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "frontend/commands/outputs.hpp"
+#include "frontend/files/parse_error.hpp"
+
+namespace grelha {
+namespace {
+
+namespace fs = std::filesystem;
+using Names = std::vector<std::string>;
+
+bool ends_with_any(std::string name, std::initializer_list<std::string_view> extensions) {
+  std::transform(name.begin(), name.end(), name.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? char(c + 32) : c;
+  });
+  if (name.ends_with(".gz"))
+    name.resize(name.size() - 3);
+  return std::any_of(
+      extensions.begin(), extensions.end(), [&](std::string_view e) { return name.ends_with(e); });
+}
+
+/// Meshes beside scenes are mostly parts of them.
+Names files_of(const std::string& folder) {
+  Names scenes, meshes;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    const std::string name = it->path().string();
+    if (it->is_fifo(error))
+      continue;  // to read one is to wait for a writer: by its own name only
+    if (ends_with_any(name, {".nff", ".p3f"}))
+      scenes.push_back(name);
+    if (ends_with_any(name, {".ply"}))
+      meshes.push_back(name);
+  }
+  if (error)
+    throw FileError(folder, "cannot read: " + error.message());
+  Names& files = scenes.empty() ? meshes : scenes;
+  if (files.empty())
+    throw FileError(folder, "no .nff, .p3f or .ply file in this folder");
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+constexpr std::string_view kPlace = "{}";
+
+/// `pattern` with the scene's name in place of {}.
+std::string filled_in(std::string pattern, const std::string& scene) {
+  const std::string name = fs::path(default_image(scene)).stem().string();
+  for (std::size_t at = 0; (at = pattern.find(kPlace, at)) != std::string::npos; at += name.size())
+    pattern.replace(at, kPlace.size(), name);
+  return pattern;
+}
+
+std::string image_for(const std::string& scene,
+                      const std::string& output,
+                      std::optional<ImageFormat> format) {
+  if (output.empty())
+    return default_image(scene, format);
+  if (is_folder(output))
+    return (fs::path(output) / default_image(scene, format)).string();
+  return filled_in(output, scene);
+}
+
+}  // namespace
+
+Names scene_files(const Names& arguments) {
+  Names files;
+  for (const std::string& argument : arguments) {
+    if (!is_folder(argument))
+      files.push_back(argument == "-" ? "/dev/stdin" : argument);
+    else
+      for (std::string& file : files_of(argument))
+        files.push_back(std::move(file));
+  }
+  return files;
+}
+
+std::vector<RenderCommand> commands_for(const RenderCommand& command) {
+  const Names scenes = scene_files(command.scenes);
+  std::vector<RenderCommand> all;
+  for (const std::string& scene : scenes) {
+    RenderCommand one = command;
+    one.scenes = {scene}, one.scene = scene,
+    one.image = image_for(scene, command.image, command.format);
+    one.work.kept_till_the_last = scenes.size() > 1;
+    const auto want_folder = [&one](const std::string& pattern, const std::string& file) {
+      const fs::path folder = fs::path(file).parent_path();
+      if (!folder.empty() && (pattern.ends_with('/') || pattern.find(kPlace) != std::string::npos))
+        one.folders.push_back(folder.string());
+    };
+    want_folder(command.image, one.image);
+    each_output(one, [&](const char*, std::string& file) {
+      const std::string pattern = std::exchange(file, filled_in(file, scene));
+      want_folder(pattern, file);
+    });
+    want_not_read(outputs_of(one), scenes);
+    all.push_back(std::move(one));
+  }
+  want_apart(all);
+  return all;
+}
+
+}  // namespace grelha

@@ -1,0 +1,32 @@
+#include "frontend/commands/commands.hpp"
+
+#include "frontend/files/atomic_file.hpp"
+#include "frontend/images/image_file.hpp"
+
+#include <filesystem>
+
+namespace grelha {
+
+bool is_folder(const std::string& path) {
+  std::error_code ignored;
+  return path != kStdout && (path.ends_with('/') || std::filesystem::is_directory(path, ignored));
+}
+
+std::string default_image(const std::string& scene, std::optional<ImageFormat> format) {
+  std::filesystem::path name = std::filesystem::path(scene).filename();
+  if (name.extension() == ".gz")
+    name = name.stem();
+  return name.stem().string() + '.' + std::string(ending_of(format.value_or(ImageFormat::png)));
+}
+
+std::optional<ImageFormat> format_of(const std::string& image, std::optional<ImageFormat> asked) {
+  if (asked)
+    return asked;
+  return image == kStdout ? ImageFormat::png : image_format(image);
+}
+
+bool writes_to_stdout(const RenderCommand& command) {
+  return command.image == kStdout || command.stats == kStdout;
+}
+
+}  // namespace grelha

@@ -1,0 +1,119 @@
+#pragma once
+// The commands of the program, as their options say them.
+
+#include <cstdint>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "frontend/images/image_style.hpp"
+#include "frontend/input/effects.hpp"
+#include "frontend/scene/scene_file.hpp"
+#include "grelha/part.hpp"
+#include "grelha/render.hpp"
+
+namespace grelha {
+
+/// The command line cannot be understood; what() is one line without the program's name.
+struct UsageError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Of reading a scene that may be anyone's.
+struct InputOptions {
+  ReadOptions read;
+  bool strict = false;           ///< no warning is let pass
+  std::uint64_t max_memory = 0;  ///< bytes; 0: as much as the machine has
+};
+
+inline constexpr double kSaveEvery = 60;  ///< seconds between saves of a checkpoint
+
+/// Work that may be cut to pieces, interrupted and gone on with.
+struct LongWork {
+  std::optional<Range> rows, samples;  ///< the part to render; absent: all
+  std::string checkpoint;              ///< file to save to, and to go on from, or empty
+  std::optional<double> save_every;    ///< seconds; absent: kSaveEvery
+  /// seconds between pictures of what there is so far; 0: none
+  double show_every = 0;
+  /// the checkpoint: until the pictures of all scenes are written
+  bool kept_till_the_last = false;
+  bool is_part() const { return rows || samples; }
+};
+
+/// What an OpenEXR picture holds beside its colours.
+struct LayerChoice {
+  bool depth = false, normal = false, id = false;
+  bool any() const { return depth || normal || id; }
+};
+
+struct RenderCommand {
+  /// files and folders as they were named; commands_for() makes one command of each
+  std::vector<std::string> scenes;
+  /// image: named after the scene when -o is absent, a folder or a pattern; or a .grelha
+  std::string scene, image;
+  std::optional<ImageFormat> format;  ///< of the picture; absent: by its name, PNG to stdout
+  LayerChoice layers;
+  std::vector<std::string> folders;  ///< of files named by a pattern: made where they are missing
+  InputOptions input;
+  LongWork work;
+  int width = 0, height = 0;  ///< 0: as the scene says
+  BuildOptions build;
+  RenderOptions render;
+  Effects effects;
+  std::string stats;                   ///< file for the counts, or empty
+  std::string samples_map, error_map;  ///< pictures of what was spent and what it bought, or empty
+  bool quiet = false, srgb = false;
+};
+
+struct InfoCommand {
+  std::vector<std::string> scenes;
+  InputOptions input;
+  BuildOptions build;
+  bool json = false;
+};
+
+struct CompareCommand {
+  std::string a, b;
+  std::optional<double> max_rmse;
+  bool display = false;  ///< compare what a screen shows, channels from 0 to 1
+  std::string diff;      ///< file for the difference picture, or empty
+};
+
+struct MergeCommand {
+  std::vector<std::string> parts;
+  std::string output;  ///< a picture or a .grelha
+  std::optional<ImageFormat> format;
+  bool srgb = false, quiet = false;
+};
+
+struct SceneCommand {
+  std::string name;
+  std::optional<int> size;
+  std::string output;  ///< empty: stdout
+  bool list = false, spd = false;
+};
+
+/// What --help or --version print.
+struct TextCommand {
+  std::string text;
+};
+
+using Command = std::
+    variant<RenderCommand, InfoCommand, CompareCommand, MergeCommand, SceneCommand, TextCommand>;
+
+/// Whether a path names a folder, there already or, by a / at its end, meant to be. What cannot be
+/// looked at is none.
+bool is_folder(const std::string& path);
+
+/// `dir/x.nff.gz` gives `x.png`: the picture lies in the current folder.
+std::string default_image(const std::string& scene, std::optional<ImageFormat> format = {});
+
+/// Of the picture called `image`; a .grelha has none.
+std::optional<ImageFormat> format_of(const std::string& image, std::optional<ImageFormat> asked);
+
+/// Whether results go to stdout, so that what is said must not.
+bool writes_to_stdout(const RenderCommand& command);
+
+}  // namespace grelha

@@ -1,0 +1,98 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "frontend/commands/report.hpp"
+#include "grelha/scene_spans.hpp"
+
+namespace grelha {
+
+namespace {
+
+bool any(Float3 v) { return v.x != 0 || v.y != 0 || v.z != 0; }
+
+bool has_normals(const Triangles& triangles) {
+  for (const auto* component : {&triangles.nx, &triangles.ny, &triangles.nz})
+    if (std::ranges::any_of(*component, [](float value) { return value != 0; }))
+      return true;
+  return false;
+}
+
+class Box {
+ public:
+  void grow(Float3 center, Float3 reach) {
+    grow_axis(center.x, reach.x, bounds_.low.x, bounds_.high.x);
+    grow_axis(center.y, reach.y, bounds_.low.y, bounds_.high.y);
+    grow_axis(center.z, reach.z, bounds_.low.z, bounds_.high.z);
+    bounds_.empty = false;
+  }
+  const SceneBounds& bounds() const { return bounds_; }
+
+ private:
+  void grow_axis(float center, float reach, float& low, float& high) const {
+    low = bounds_.empty ? center - reach : std::min(low, center - reach);
+    high = bounds_.empty ? center + reach : std::max(high, center + reach);
+  }
+
+  SceneBounds bounds_;
+};
+
+/// How far a disc of that radius reaches along each axis; `x y z` is its normal, of any length.
+Float3 disc_reach(double radius, double x, double y, double z) {
+  const double square = x * x + y * y + z * z;
+  const auto reach = [&](double c) {
+    return float(std::abs(radius) * std::sqrt(std::max(0.0, 1 - c * c / square)));
+  };
+  return {reach(x), reach(y), reach(z)};
+}
+
+}  // namespace
+
+Needs needs_of(const SceneFile& file) {
+  const Geometry& geometry = file.scene.geometry;
+  Needs needs;
+  needs.spheres = geometry.spheres.size() > 0;
+  needs.triangles = geometry.triangles.size() > 0;
+  needs.cones = geometry.cones.size() > 0;
+  needs.planes = geometry.planes.size() > 0;
+  needs.smooth_normals = has_normals(geometry.triangles);
+  needs.lens = file.lens.present && file.lens.aperture > 0;
+  needs.area_lights = !file.area_lights.empty();
+  needs.environment = !file.environment.empty();
+  const std::vector<char> used = used_materials(file.scene);
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    if (!used[i])
+      continue;
+    const Material& material = file.scene.materials[i];
+    const bool glass = material.transmission > 0;
+    needs.reflection |= any(material.mirror) || glass;
+    needs.refraction |= glass;
+    needs.fresnel |= material.fresnel && glass;
+    needs.emission |= any(material.emission);
+    needs.roughness |= material.roughness > 0;
+  }
+  return needs;
+}
+
+SceneBounds bounds_of(const Geometry& geometry) {
+  Box box;
+  const Spheres& s = geometry.spheres;
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    const float r = std::abs(s.radius[i]);
+    box.grow({s.x[i], s.y[i], s.z[i]}, {r, r, r});
+  }
+  const Cones& c = geometry.cones;
+  for (std::size_t i = 0; i < c.size(); ++i) {
+    const double x = double(c.apex_x[i]) - c.base_x[i], y = double(c.apex_y[i]) - c.base_y[i];
+    const double z = double(c.apex_z[i]) - c.base_z[i];
+    box.grow({c.base_x[i], c.base_y[i], c.base_z[i]}, disc_reach(c.base_radius[i], x, y, z));
+    box.grow({c.apex_x[i], c.apex_y[i], c.apex_z[i]}, disc_reach(c.apex_radius[i], x, y, z));
+  }
+  const Triangles& t = geometry.triangles;  // a mesh may hold vertices that no triangle uses
+  for (std::size_t i = 0; i < t.size(); ++i)
+    for (const std::uint32_t vertex : {t.a[i], t.b[i], t.c[i]})
+      box.grow({t.x[vertex], t.y[vertex], t.z[vertex]}, {});
+  return box.bounds();
+}
+
+}  // namespace grelha

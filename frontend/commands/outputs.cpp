@@ -1,0 +1,86 @@
+#include "frontend/commands/outputs.hpp"
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <map>
+
+#include "frontend/files/atomic_file.hpp"
+#include "frontend/files/parse_error.hpp"
+#include "frontend/files/place.hpp"
+
+namespace grelha {
+namespace {
+
+struct Use {
+  std::string option, file;
+  const RenderCommand* command;
+};
+
+[[noreturn]] void refuse(const Use& first, const Use& second) {
+  if (first.command == second.command)
+    throw UsageError(second.option + " and " + first.option + ": wanted two files, found \"" +
+                     first.file + "\" twice");
+  throw UsageError(second.option + ": " + first.command->scene + " and " + second.command->scene +
+                   " would both be written to " + second.file +
+                   "; {} in a name stands for the scene's");
+}
+
+void make_folder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error)
+    throw FileError(folder, "cannot make this folder: " + error.message());
+}
+
+}  // namespace
+
+std::vector<Output> outputs_of(const RenderCommand& command) {
+  std::vector<Output> found;
+  each_output(command, [&](const char* option, const std::string& file) {
+    if (!file.empty())
+      found.emplace_back(option, file);
+  });
+  return found;
+}
+
+void prepare_outputs(const RenderCommand& command) {
+  want_no_terminal(command.image);
+  for (const std::string& folder : command.folders)
+    make_folder(folder);
+  for (const auto& [option, file] : outputs_of(command))
+    check_writable(file, option == "--checkpoint");
+}
+
+void want_no_terminal(const std::string& file) {
+  if (file == kStdout && isatty(STDOUT_FILENO) == 1)
+    throw UsageError("-o -: stdout is a terminal: wanted a pipe or a file behind it");
+}
+
+void want_not_read(const std::vector<Output>& outputs, const std::vector<std::string>& read) {
+  std::map<Place, std::string> places;
+  for (const std::string& file : read)
+    places.try_emplace(place_of(file), file);
+  for (const auto& [option, file] : outputs) {
+    const auto found = places.find(place_of(file));
+    if (found == places.end() || is_special_file(file))
+      continue;
+    throw UsageError(option + ": wanted another file than " + found->second +
+                     ", which is read, found \"" + file + '"');
+  }
+}
+
+void want_apart(const std::vector<RenderCommand>& commands) {
+  std::map<Place, Use> written;
+  for (const RenderCommand& command : commands)
+    for (const auto& [option, file] : outputs_of(command)) {
+      if (is_special_file(file))
+        continue;
+      const Use use{option, file, &command};
+      const auto [other, fresh] = written.try_emplace(place_of(file), use);
+      if (!fresh)
+        refuse(other->second, use);
+    }
+}
+
+}  // namespace grelha

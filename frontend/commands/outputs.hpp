@@ -1,0 +1,41 @@
+#pragma once
+// The files a command writes, and which files they must not be.
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "frontend/commands/commands.hpp"
+
+namespace grelha {
+
+/// Calls `use(option, file)` for every file a render may write, named or not.
+template <class Command, class Use>
+void each_output(Command& command, const Use& use) {
+  use("-o", command.image);
+  use("--stats", command.stats);
+  use("--samples-map", command.samples_map);
+  use("--error-map", command.error_map);
+  use("--checkpoint", command.work.checkpoint);
+}
+
+/// An option and the file it names.
+using Output = std::pair<std::string, std::string>;
+
+/// Those that are named.
+std::vector<Output> outputs_of(const RenderCommand& command);
+
+/// Makes the folders that are missing, and throws now, as far as that can be known, what writing
+/// would throw after a long render.
+void prepare_outputs(const RenderCommand& command);
+
+/// Throws UsageError when bytes that are no text would go to a terminal.
+void want_no_terminal(const std::string& file);
+
+/// Throws UsageError when one of the outputs is a file that is read, by whatever name.
+void want_not_read(const std::vector<Output>& outputs, const std::vector<std::string>& read);
+
+/// Throws UsageError when two outputs are one file, be it of one command or of two.
+void want_apart(const std::vector<RenderCommand>& commands);
+
+}  // namespace grelha

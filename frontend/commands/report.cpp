@@ -1,0 +1,351 @@
+#include "frontend/commands/report.hpp"
+
+#include "frontend/files/atomic_file.hpp"
+#include "frontend/files/memory_limit.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <sys/resource.h>
+
+#include <charconv>
+#include <cstdarg>
+#include <cstdio>
+
+namespace grelha {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// A float as the shortest decimal that names it: 0.1, not 0.10000000149011612.
+Json tidy(float value) {
+  char text[32];
+  double result = 0;
+  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
+  std::from_chars(text, end, result);
+  return result;
+}
+
+Json to_json(Float3 v) { return {tidy(v.x), tidy(v.y), tidy(v.z)}; }
+
+Json to_json(const EntityCounts& c) {
+  return {{"s", c.s},
+          {"p", c.p},
+          {"pp", c.pp},
+          {"c", c.c},
+          {"pl", c.pl},
+          {"box", c.box},
+          {"mesh", c.mesh},
+          {"ply", c.ply},
+          {"lights", c.lights},
+          {"materials", c.materials}};
+}
+
+Json to_json(const std::vector<GridStats>& grids) {
+  Json list = Json::array();
+  for (const GridStats& grid : grids)
+    list.push_back({{"cells", grid.cells},
+                    {"occupied", grid.occupied},
+                    {"references", grid.references},
+                    {"bytes", grid.bytes}});
+  return list;
+}
+
+Json to_json(const SceneBounds& bounds) {
+  if (bounds.empty)
+    return nullptr;
+  return {{"min", to_json(bounds.low)}, {"max", to_json(bounds.high)}};
+}
+
+Json to_json(const Subdivision& s) {
+  if (!s.on)
+    return nullptr;
+  return {{"threshold", tidy(s.threshold)}, {"depth", s.depth}};
+}
+
+/// Name and answer, in one order for both forms of the report.
+std::vector<std::pair<const char*, bool>> listed(const Needs& n) {
+  return {{"spheres", n.spheres},
+          {"triangles", n.triangles},
+          {"cones", n.cones},
+          {"planes", n.planes},
+          {"smooth_normals", n.smooth_normals},
+          {"reflection", n.reflection},
+          {"refraction", n.refraction},
+          {"fresnel", n.fresnel},
+          {"emission", n.emission},
+          {"roughness", n.roughness},
+          {"area_lights", n.area_lights},
+          {"lens", n.lens},
+          {"environment", n.environment}};
+}
+
+std::uint64_t peak_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+#ifdef __APPLE__
+  return std::uint64_t(usage.ru_maxrss);
+#else
+  return std::uint64_t(usage.ru_maxrss) * 1024;
+#endif
+}
+
+double share(std::uint64_t part, std::uint64_t whole) {
+  return whole ? double(part) / double(whole) : 0;
+}
+
+__attribute__((format(printf, 1, 2))) std::string print(const char* format, ...) {
+  char text[512];
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(text, sizeof text, format, arguments);
+  va_end(arguments);
+  return text;
+}
+
+void list_count(std::string& text, std::uint64_t count, const char* name) {
+  if (count == 0)
+    return;
+  if (!text.empty())
+    text += ", ";
+  text += std::to_string(count) + ' ' + name + (count == 1 ? "" : "s");
+}
+
+std::string grids_text(const std::vector<GridStats>& grids) {
+  if (grids.empty())
+    return "no grid";
+  const auto& cells = grids.front().cells;
+  const std::string first = print("%ux%ux%u", cells[0], cells[1], cells[2]);
+  if (grids.size() == 1)
+    return "grid " + first;
+  return std::to_string(grids.size()) + " grids (" + first + ", ...)";
+}
+
+std::string point_text(Float3 v) {
+  return print("(%g, %g, %g)", double(v.x), double(v.y), double(v.z));
+}
+
+void list_entities(std::string& text, const EntityCounts& c) {
+  const std::pair<const char*, std::uint64_t> entities[] = {{"s", c.s},
+                                                            {"p", c.p},
+                                                            {"pp", c.pp},
+                                                            {"c", c.c},
+                                                            {"pl", c.pl},
+                                                            {"box", c.box},
+                                                            {"mesh faces", c.mesh},
+                                                            {"ply faces", c.ply}};
+  std::string line;
+  for (const auto& [name, count] : entities)
+    if (count > 0)
+      line += (line.empty() ? "" : ", ") + std::to_string(count) + ' ' + name;
+  text += "in the file   " + (line.empty() ? "no primitives" : line) + '\n';
+}
+
+const char* box_order_name(BoxOrder order) {
+  return order == BoxOrder::kPairs ? "pairs" : "corners";
+}
+
+std::string primitives_text(std::size_t spheres,
+                            std::size_t triangles,
+                            std::size_t cones,
+                            std::size_t planes) {
+  std::string text;
+  list_count(text, spheres, "sphere");
+  list_count(text, triangles, "triangle");
+  list_count(text, cones, "cone");
+  list_count(text, planes, "plane");
+  return text.empty() ? "no primitives" : text;
+}
+
+}  // namespace
+
+const char* sampler_name(Sampler sampler) {
+  switch (sampler) {
+    case Sampler::kSobol:
+      return "sobol";
+    case Sampler::kJitter:
+      return "jitter";
+    case Sampler::kUnshuffled:
+      return "unshuffled";
+    case Sampler::kRandom:
+      return "random";
+  }
+  return "";
+}
+
+std::string stats_json(const RenderCommand& command, const RunReport& report) {
+  const RenderStats& render = report.render;
+  const auto& [rays, trace] = std::tie(render.rays, render.trace);
+  Json json;
+  json["version"] = GRELHA_VERSION;
+  json["file"] = command.scene;
+  json["isa"] = render.isa;
+  json["threads"] = render.threads;
+  json["ranks"] = report.ranks;
+  json["size"] = {report.width, report.height};
+  json["options"] = {
+      {"depth", command.render.depth},
+      {"min_weight", command.render.min_weight},
+      {"density", tidy(command.build.density)},
+      {"accel", command.build.grid ? "grid" : "none"},
+      {"mailbox", command.render.mailbox},
+      {"isa", command.render.isa},
+      {"precision", command.render.precision == Precision::kDouble ? "double" : "single"},
+      {"packet", command.render.packet},
+      {"samples", command.render.sampling.samples},
+      {"sampler", sampler_name(command.render.sampling.sampler)},
+      {"seed", command.render.sampling.seed},
+      {"adaptive", to_json(command.render.subdivision)},
+      {"light_rays", command.render.sampling.light_rays},
+      {"gloss_rays", command.render.sampling.gloss_rays},
+      {"threads", command.render.threads}};
+  json["scene"] = to_json(report.counts);
+  json["grids"] = to_json(report.grids);
+  json["rays"] = {{"primary", rays.primary},
+                  {"shadow", rays.shadow},
+                  {"reflection", rays.reflection},
+                  {"refraction", rays.refraction}};
+  if (command.render.refine.on()) {
+    const RefineOptions& asked = command.render.refine;
+    const ErrorStats& e = render.error;
+    json["error"] = {{"asked", asked.error},
+                     {"seconds", asked.seconds},
+                     {"rmse", e.rmse},
+                     {"rmse_bound", e.rmse_bound},
+                     {"widest", e.widest},
+                     {"rounds", e.rounds},
+                     {"samples", e.samples},
+                     {"least", e.least},
+                     {"most", e.most}};
+  }
+  json["visits"] = trace.visits;
+  json["tests"] = {{"sphere", trace.tests.sphere},
+                   {"triangle", trace.tests.triangle},
+                   {"cone", trace.tests.cone},
+                   {"plane", trace.tests.plane}};
+  json["packets"] = {{"formed", trace.packets.formed},
+                     {"fell_back", trace.packets.fell_back},
+                     {"lanes_busy", share(trace.packets.lanes_busy, trace.packets.lanes_issued)}};
+  json["seconds"] = {{"load", report.seconds.load},
+                     {"build", report.seconds.build},
+                     {"render", report.seconds.render},
+                     {"write", report.seconds.write},
+                     {"render_cpu", report.seconds.render_cpu}};
+  static constexpr const char* kPhaseNames[kPhases] = {
+      "camera", "primary", "bounce", "surface", "light", "shadow", "children", "sums"};
+  // of all threads together
+  for (std::size_t i = 0; i < kPhases; ++i)
+    json["phases"][kPhaseNames[i]] = render.phases[i];
+  json["bytes"] = {
+      {"geometry", report.geometry_bytes}, {"grids", report.grid_bytes}, {"peak", peak_bytes()}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+std::string info_json(const SceneFile& file,
+                      const SceneMemory& memory,
+                      const std::optional<std::vector<GridStats>>& grids) {
+  const Geometry& geometry = file.scene.geometry;
+  Json json;
+  json["scene"] = to_json(file.counts);
+  json["kernel"] = {{"spheres", geometry.spheres.size()},
+                    {"triangles", geometry.triangles.size()},
+                    {"vertices", geometry.triangles.vertex_count()},
+                    {"cones", geometry.cones.size()},
+                    {"planes", geometry.planes.size()},
+                    {"objects", geometry.objects.size()}};
+  json["dropped"] = {{"not_finite", file.dropped.not_finite},
+                     {"zero_area", file.dropped.zero_area}};
+  json["aabb"] = nullptr;
+  if (file.box_order != BoxOrder::kNone)
+    json["aabb"] = box_order_name(file.box_order);
+  json["resolution"] = {file.camera.width, file.camera.height};
+  json["bounds"] = to_json(bounds_of(geometry));
+  json["memory"] = {{"scene", memory.scene}, {"grids", memory.grids}, {"peak", memory.peak}};
+  json["grids"] = grids ? to_json(*grids) : nullptr;
+  for (const auto& [name, needed] : listed(needs_of(file)))
+    json["needs"][name] = needed;
+  json["made_up"] = {{"camera", file.default_camera}, {"light", file.default_light}};
+  return json.dump(2) + '\n';
+}
+
+std::string info_json(const std::vector<std::pair<std::string, std::string>>& of_files) {
+  Json all;
+  for (const auto& [file, text] : of_files)
+    all[file] = Json::parse(text);
+  // a file may have a name that is no Unicode
+  return all.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+std::string info_text(const std::string& path,
+                      const SceneFile& file,
+                      const SceneMemory& memory,
+                      const std::optional<std::vector<GridStats>>& grids) {
+  const Geometry& g = file.scene.geometry;
+  std::string text = path + ": " + std::to_string(file.camera.width) + 'x' +
+                     std::to_string(file.camera.height) + '\n';
+  list_entities(text, file.counts);
+  text += "primitives    " +
+          primitives_text(g.spheres.size(), g.triangles.size(), g.cones.size(), g.planes.size()) +
+          '\n';
+  if (const auto dropped = file.dropped.not_finite + file.dropped.zero_area; dropped > 0)
+    text += "dropped       " + std::to_string(dropped) + " that cannot be drawn\n";
+  text += "lights        " + std::to_string(file.counts.lights) +
+          (file.default_light ? " (and a made-up ones)\n" : "\n");
+  if (file.box_order != BoxOrder::kNone)
+    text += std::string("aabb          read as ") + box_order_name(file.box_order) + '\n';
+  text += "materials     " + std::to_string(file.counts.materials) + '\n';
+  if (const SceneBounds bounds = bounds_of(g); !bounds.empty)
+    text += "bounds        " + point_text(bounds.low) + " to " + point_text(bounds.high) + '\n';
+  text += print(
+      "memory        about %.1f MB to render: scene %.1f, grids %.1f, the rest to read, build and "
+      "draw\n",
+      double(memory.peak) / 1e6,
+      double(memory.scene) / 1e6,
+      double(memory.grids) / 1e6);
+  if (!grids)
+    text += "grid          not built: it would take more than " + memory_there_is() + '\n';
+  for (const GridStats& grid : grids.value_or(std::vector<GridStats>{}))
+    text += print("grid          %u x %u x %u cells, %llu occupied, %llu references, %.1f MB\n",
+                  grid.cells[0],
+                  grid.cells[1],
+                  grid.cells[2],
+                  static_cast<unsigned long long>(grid.occupied),
+                  static_cast<unsigned long long>(grid.references),
+                  double(grid.bytes) / 1e6);
+  std::string needs;
+  for (const auto& [name, needed] : listed(needs_of(file)))
+    if (needed)
+      needs += (needs.empty() ? "" : ", ") + std::string(name);
+  return text + "needs         " + (needs.empty() ? "nothing but the background" : needs) + '\n';
+}
+
+std::string summary_line(const RenderCommand& command, const RunReport& report) {
+  const Seconds& s = report.seconds;
+  const double rays = double(report.render.rays.total());
+  const std::string times =
+      print("load %.2f, build %.2f, render %.2f, write %.2f s", s.load, s.build, s.render, s.write);
+  const double speed = s.render > 0 ? rays / s.render / 1e6 : 0;
+  const ErrorStats& e = report.render.error;
+  const std::string error =
+      e.samples == 0
+          ? ""
+          : print("; RMSE about %.2g, at most %.2g (95 %%); %llu samples, %.1f a pixel, %u to %u",
+                  e.rmse,
+                  e.rmse_bound,
+                  static_cast<unsigned long long>(e.samples),
+                  double(e.samples) / report.width / report.height,
+                  e.least,
+                  e.most);
+  return name_of_file(command.image) + ": " +
+         primitives_text(report.spheres, report.triangles, report.cones, report.planes) + "; " +
+         grids_text(report.grids) + "; " + print("%.3f Mrays in ", rays / 1e6) + times +
+         print("; %.2f Mrays/s (%s, ", speed, report.render.isa) +
+         (report.ranks > 1 ? print("%d ranks, ", report.ranks) : "") +
+         print("%d thread%s%s)",
+               report.render.threads,
+               report.render.threads == 1 ? "" : "s",
+               report.ranks > 1 ? " each" : "") +
+         error + '\n';
+}
+
+}  // namespace grelha

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "frontend/commands/commands.hpp"
+#include "frontend/scene/scene_file.hpp"
+#include "grelha/render.hpp"
+
+namespace grelha {
+
+/// As --sampler calls it.
+const char* sampler_name(Sampler sampler);
+
+struct Seconds {
+  double load = 0, build = 0, render = 0, write = 0;
+  double render_cpu = 0;  ///< of all threads together: what a busy machine cannot stretch
+};
+
+/// What one run of `grelha render` did.
+struct RunReport {
+  EntityCounts counts;
+  std::size_t spheres = 0, triangles = 0, cones = 0, planes = 0;  ///< as the kernel holds them
+  int width = 0, height = 0;
+  int ranks = 1;  ///< processes that shared the work, `render.threads` of the first
+  std::vector<GridStats> grids;
+  RenderStats render;
+  Seconds seconds;
+  std::size_t geometry_bytes = 0, grid_bytes = 0;
+};
+
+/// Bytes that rendering a scene will take, by an estimate.
+struct SceneMemory {
+  std::uint64_t scene = 0, grids = 0;  ///< while it is rendered
+  std::uint64_t peak = 0;              ///< at most, be it while reading, building or rendering
+};
+
+/// Which parts of a renderer a scene calls for, from what its primitives use: an unused material
+/// asks for nothing.
+struct Needs {
+  bool spheres = false, triangles = false, cones = false, planes = false;
+  bool smooth_normals = false;
+  bool reflection = false;  ///< a mirror weight, or glass, which reflects totally at grazing angles
+  bool refraction = false, fresnel = false, emission = false, roughness = false;
+  bool area_lights = false, lens = false, environment = false;
+  bool operator==(const Needs&) const = default;
+};
+
+Needs needs_of(const SceneFile& file);
+
+/// The least box around everything but planes; `empty` when there is nothing.
+struct SceneBounds {
+  bool empty = true;
+  Float3 low, high;
+};
+
+SceneBounds bounds_of(const Geometry& geometry);
+
+std::string stats_json(const RenderCommand& command, const RunReport& report);
+/// `grids`: absent when they were not built.
+std::string info_json(const SceneFile& file,
+                      const SceneMemory& memory,
+                      const std::optional<std::vector<GridStats>>& grids);
+/// JSON of several scenes as one object, by file.
+std::string info_json(const std::vector<std::pair<std::string, std::string>>& of_files);
+std::string info_text(const std::string& path,
+                      const SceneFile& file,
+                      const SceneMemory& memory,
+                      const std::optional<std::vector<GridStats>>& grids);
+std::string summary_line(const RenderCommand& command, const RunReport& report);
+
+}  // namespace grelha

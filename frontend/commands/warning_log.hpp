@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <iostream>
+#include <string>
+
+#include "frontend/commands/commands.hpp"
+
+namespace grelha {
+
+/// Writes warnings to stderr, and counts them for --strict.
+class WarningLog {
+ public:
+  /// Must not outlive this.
+  std::function<void(const std::string&)> telling() {
+    return [this](const std::string& line) {
+      ++count_;
+      std::cerr << line << '\n';
+    };
+  }
+  /// Throws UsageError where a warning is one too many.
+  void want_none(const InputOptions& input) const {
+    if (input.strict && count_ > 0)
+      throw UsageError("--strict: wanted no warning, found " + std::to_string(count_));
+  }
+
+ private:
+  std::size_t count_ = 0;
+};
+
+}  // namespace grelha

@@ -1,0 +1,176 @@
+#include "frontend/files/atomic_file.hpp"
+
+#include "frontend/files/parse_error.hpp"
+#include "frontend/files/place.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <iostream>
+
+namespace grelha {
+
+namespace {
+
+constexpr int kNamesToTry = 100;
+// of a name, in the name beside it: file systems end names at 255 bytes
+constexpr std::size_t kLongestKept = 200;
+
+[[noreturn]] void fail(const std::string& path, const std::string& what, int error) {
+  throw FileError(path, what + ": " + std::strerror(error));
+}
+
+/// Whether something stands at `path` that renaming must not replace. A file that cannot be written
+/// could be renamed over all the same.
+bool is_special(const std::string& path) {
+  struct stat info {};
+  if (stat(path.c_str(), &info) != 0) {
+    if (errno == ENOENT)
+      return false;
+    fail(path, "cannot write", errno);
+  }
+  if (S_ISDIR(info.st_mode))
+    fail(path, "cannot write", EISDIR);
+  if (access(path.c_str(), W_OK) != 0)
+    fail(path, "cannot write", errno);
+  return !S_ISREG(info.st_mode);
+}
+
+/// Has what was written to a file, or the names in a folder, reach the disk.
+void sync(const std::string& path, const std::string& file) {
+  const int handle = open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (handle < 0)
+    fail(path, "cannot write", errno);
+  const int error = fsync(handle) == 0 ? 0 : errno;
+  close(handle);
+  // EINVAL: nothing that could be synchronised
+  if (error != 0 && error != EINVAL)
+    fail(path, "cannot write", error);
+}
+
+/// Whether an open file is a file, and the one that stands under this name: whoever had it before
+/// may have renamed it away.
+bool stands_there(int file, const std::string& name) {
+  struct stat opened {
+  }, there{};
+  return fstat(file, &opened) == 0 && S_ISREG(opened.st_mode) && stat(name.c_str(), &there) == 0 &&
+         opened.st_dev == there.st_dev && opened.st_ino == there.st_ino;
+}
+
+bool is_there(const std::string& name) {
+  struct stat info {};
+  return lstat(name.c_str(), &info) == 0;
+}
+
+/// What replaces a file has its mode.
+void take_mode(int file, const std::string& from) {
+  struct stat info {};
+  if (stat(from.c_str(), &info) == 0)
+    fchmod(file, info.st_mode & 07777);
+}
+
+}  // namespace
+
+/// In the same folder, so that renaming cannot cross file systems. The name is made of the
+/// target's: what a killed program left there is written over. Who writes holds a lock, which dies
+/// with him; another who writes the same takes the next name.
+void AtomicFile::create_beside() {
+  const auto target = std::filesystem::path(target_);
+  const std::string name = target.filename().string().substr(0, kLongestKept);
+  for (int attempt = 0; attempt < kNamesToTry; ++attempt) {
+    const std::string beside =
+        (target.parent_path() /
+         ('.' + name + ".grelha-tmp" + (attempt > 0 ? std::to_string(attempt) : "")))
+            .string();
+    lock_ = open(beside.c_str(), O_CREAT | O_WRONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
+    const int error = errno;
+    if (lock_ < 0 && is_there(beside))
+      continue;  // someone else's, or no file
+    if (lock_ < 0)
+      fail(path_, "cannot write", error);
+    // no locks here: then one program at a time
+    const bool locked = flock(lock_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+    if (locked && stands_there(lock_, beside)) {
+      beside_ = beside;
+      return take_mode(lock_, target_);
+    }
+    close(lock_);
+    lock_ = -1;
+  }
+  fail(path_, "cannot write", EEXIST);
+}
+
+AtomicFile::AtomicFile(const std::string& path, bool durable)
+    : path_(path), target_(path == kStdout ? path : behind_links(path)), durable_(durable) {
+  if (is_stdout())
+    return;
+  const bool special = is_special(target_);
+  if (durable && special)
+    throw FileError(path, "cannot write: not a regular file");
+  if (durable)
+    beside_ = target_ + ".new";
+  else if (!special)
+    create_beside();
+  errno = 0;
+  stream_.open(beside_.empty() ? target_ : beside_, std::ios::binary);
+  if (!stream_)
+    fail(path_, "cannot write", errno);
+}
+
+AtomicFile::~AtomicFile() {
+  if (!beside_.empty())
+    unlink(beside_.c_str());
+  if (lock_ >= 0)
+    close(lock_);
+}
+
+std::ostream& AtomicFile::stream() { return is_stdout() ? std::cout : stream_; }
+
+void AtomicFile::commit() {
+  if (is_stdout()) {
+    std::cout << std::flush;
+    if (!std::cout)
+      throw FileError(name_of_file(path_), "cannot write");
+    return;
+  }
+  if (stream_)
+    errno = 0;  // else it tells why an earlier write failed
+  stream_.flush();
+  const int error = errno ? errno : EIO;
+  stream_.close();
+  if (!stream_)
+    fail(path_, "cannot write", error);
+  if (beside_.empty())
+    return;
+  if (durable_)
+    sync(path_, beside_);
+  if (std::rename(beside_.c_str(), target_.c_str()) != 0)
+    fail(path_, "cannot write", errno);
+  beside_.clear();
+  const std::string folder = std::filesystem::path(target_).parent_path().string();
+  if (durable_)
+    sync(path_, folder.empty() ? "." : folder);
+}
+
+std::string name_of_file(const std::string& path) { return path == kStdout ? "stdout" : path; }
+
+void write_file(const std::string& path, const std::string& bytes) {
+  AtomicFile file(path);
+  file.stream().write(bytes.data(), std::streamsize(bytes.size()));
+  file.commit();
+}
+
+void check_writable(const std::string& path, bool durable) {
+  if (path == kStdout)
+    return;
+  // to open a pipe is to wait for a reader, to close it his end
+  if (durable || !is_special(path))
+    AtomicFile probe(path, durable);
+}
+
+}  // namespace grelha

@@ -1,0 +1,235 @@
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <span>
+
+#include "frontend/files/load_progress.hpp"
+#include "frontend/files/plausible.hpp"
+#include "frontend/files/text.hpp"
+
+namespace grelha {
+namespace {
+
+constexpr double kInflating = 10;  ///< times as long as reading
+
+struct CloseFile {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+
+using File = std::unique_ptr<std::FILE, CloseFile>;
+
+bool is_gzip(std::string_view data) {
+  return data.size() >= 2 && static_cast<unsigned char>(data[0]) == 0x1f &&
+         static_cast<unsigned char>(data[1]) == 0x8b;
+}
+
+/// Bytes as they come, a piece at a time: memory is taken for no more, whatever was promised.
+class Growing {
+ public:
+  Growing(const Judge& judge, std::size_t promised) : judge_(judge) { bytes_.reserve(promised); }
+
+  /// Room for up to `most` bytes more; at least one, unless `most` is none.
+  std::span<char> room(std::size_t most) {
+    if (have_ == bytes_.size())
+      bytes_.resize(have_ + std::min(most, std::clamp(have_, kLeast, kPiece)));
+    return {bytes_.data() + have_, std::min(most, bytes_.size() - have_)};
+  }
+  /// So many bytes of the room were filled.
+  void filled(std::size_t count) {
+    have_ += count;
+    if (have_ - judged_ >= kPiece)
+      judge();
+  }
+  std::size_t size() const { return have_; }
+  std::string finish() {
+    if (have_ > judged_)
+      judge();
+    bytes_.resize(have_);
+    return std::move(bytes_);
+  }
+
+ private:
+  static constexpr std::size_t kLeast = std::size_t(1) << 16;
+
+  void judge() {
+    const std::string_view all(bytes_.data(), have_);
+    if (judge_ && !is_gzip(all))
+      judge_(all, judged_);
+    judged_ = have_;
+  }
+
+  const Judge& judge_;
+  std::string bytes_;
+  std::size_t have_ = 0, judged_ = 0;
+};
+
+/// What a pipe holds is known when it ends, which may be never: whoever waits looks up now and
+/// then.
+std::string read_pipe(const std::string& path, LoadProgress* progress, const Judge& judge) {
+  constexpr int kLookUp = 100;  // ms
+  const int handle = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  if (handle < 0)
+    throw FileError(path, std::string("cannot open: ") + std::strerror(errno));
+  const File file(fdopen(handle, "rb"));
+  Growing bytes(judge, 0);
+  for (;;) {
+    if (pollfd asked{handle, POLLIN, 0}; poll(&asked, 1, kLookUp) <= 0) {
+      if (progress)
+        progress->waiting();
+      continue;
+    }
+    const std::span<char> room = bytes.room(kPiece);
+    const ssize_t got = read(handle, room.data(), room.size());
+    if (got < 0 && errno != EAGAIN && errno != EINTR)
+      throw FileError(path, std::string("cannot read: ") + std::strerror(errno));
+    if (got == 0)
+      break;
+    bytes.filled(std::size_t(std::max<ssize_t>(got, 0)));
+  }
+  if (progress)
+    progress->expect(kParsing * double(bytes.size()));
+  return bytes.finish();
+}
+
+std::string read_bytes(const std::string& path,
+                       LoadProgress* progress,
+                       bool pipe_too,
+                       const Judge& judge) {
+  struct stat about {};
+  if (stat(path.c_str(), &about) != 0)
+    throw FileError(path, std::string("cannot open: ") + std::strerror(errno));
+  if (S_ISDIR(about.st_mode))
+    throw FileError(path, std::string("cannot read: ") + std::strerror(EISDIR));
+  if (pipe_too && S_ISFIFO(about.st_mode))
+    return read_pipe(path, progress, judge);
+  if (!S_ISREG(about.st_mode))
+    throw FileError(path, "cannot read: not a regular file");
+  const File file(std::fopen(path.c_str(), "rb"));
+  if (!file)
+    throw FileError(path, std::string("cannot open: ") + std::strerror(errno));
+  const auto promised = std::size_t(about.st_size);
+  if (progress)
+    progress->expect((1 + kParsing) * double(promised));
+  Growing bytes(judge, promised);
+  for (std::size_t got = 1; got > 0 && bytes.size() < promised;) {
+    const std::span<char> room = bytes.room(promised - bytes.size());
+    got = std::fread(room.data(), 1, room.size(), file.get());
+    bytes.filled(got);
+    if (progress)
+      progress->done(double(got));
+  }
+  if (std::ferror(file.get()))
+    throw FileError(path, std::string("cannot read: ") + std::strerror(errno));
+  return bytes.finish();
+}
+
+/// Owns zlib's state; feeds it 16 MiB at a time: its counters have 32 bits, and progress is told of
+/// each.
+class Inflater {
+ public:
+  Inflater(const std::string& path, std::string_view data, LoadProgress* progress)
+      : path_(path), data_(data), progress_(progress) {
+    if (inflateInit2(&stream_, 15 + 16) != Z_OK)
+      throw std::bad_alloc();
+  }
+  Inflater(const Inflater&) = delete;
+  ~Inflater() { inflateEnd(&stream_); }
+
+  std::string run(std::size_t limit, const Judge& judge) {
+    Growing out(judge, std::min(limit, 4 * data_.size()));
+    while (!step(out, limit)) {
+    }
+    return out.finish();
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& message) const {
+    throw ParseError(Position{path_, 0, 0, taken_}, message);
+  }
+
+  /// One call of inflate; true when the last member has ended.
+  bool step(Growing& out, std::size_t limit) {
+    const std::size_t give = std::min(kPiece, data_.size() - taken_);
+    const std::span<char> room = out.room(limit - out.size());
+    stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(data_.data() + taken_));
+    stream_.avail_in = uInt(give);
+    char beyond = 0;  // with no room left the end may still come
+    stream_.next_out = reinterpret_cast<Bytef*>(room.empty() ? &beyond : room.data());
+    stream_.avail_out = room.empty() ? 1 : uInt(room.size());
+    const int result = inflate(&stream_, Z_NO_FLUSH);
+    taken_ += give - stream_.avail_in;
+    if (room.empty() && stream_.avail_out == 0)
+      fail("wanted data that inflate to at most " + std::to_string(limit) + " bytes, found more");
+    if (!room.empty())
+      out.filled(room.size() - stream_.avail_out);
+    if (progress_)
+      progress_->done(kInflating * double(give - stream_.avail_in));
+    if (result == Z_STREAM_END) {
+      // bytes behind the last member are ignored, as gzip does
+      if (!is_gzip(data_.substr(taken_)))
+        return true;
+      inflateReset(&stream_);
+      return false;
+    }
+    if (result == Z_MEM_ERROR)
+      throw std::bad_alloc();
+    if (result != Z_OK && result != Z_BUF_ERROR)
+      fail(std::string("wanted sound gzip data, found ") +
+           (stream_.msg ? stream_.msg : "broken ones"));
+    if (taken_ == data_.size() && stream_.avail_out != 0)
+      fail("wanted more gzip data, found end of file");
+    return false;
+  }
+
+  const std::string& path_;
+  std::string_view data_;
+  LoadProgress* progress_;
+  std::size_t taken_ = 0;
+  z_stream stream_{};
+};
+
+}  // namespace
+
+std::string inflate_gzip(const std::string& path,
+                         std::string_view data,
+                         std::size_t limit,
+                         LoadProgress* progress,
+                         const Judge& judge) {
+  return Inflater(path, data, progress).run(limit, judge);
+}
+
+// Half of the machine's memory, at most 8 GiB: a scene beyond that could not be built anyway.
+std::size_t inflate_limit(std::size_t bytes) {
+  constexpr std::size_t kMost = std::size_t(8) << 30, kAlways = std::size_t(1) << 28, kTimes = 64;
+  const std::size_t most =
+      std::min(kMost, bytes < kMost / kTimes ? kAlways + kTimes * bytes : kMost);
+  const long pages = sysconf(_SC_PHYS_PAGES), page_size = sysconf(_SC_PAGE_SIZE);
+  if (pages <= 0 || page_size <= 0)
+    return most;
+  return std::min(most, std::size_t(pages) / 2 * std::size_t(page_size));
+}
+
+std::string load_file(const std::string& path,
+                      LoadProgress* progress,
+                      bool pipe_too,
+                      const Judge& judge) {
+  std::string bytes = read_bytes(path, progress, pipe_too, judge);
+  if (!is_gzip(bytes))
+    return bytes;
+  if (progress)
+    progress->expect(kInflating * double(bytes.size()));
+  std::string inflated = inflate_gzip(path, bytes, inflate_limit(bytes.size()), progress, judge);
+  if (progress)
+    progress->expect(kParsing * (double(inflated.size()) - double(bytes.size())));
+  return inflated;
+}
+
+}  // namespace grelha

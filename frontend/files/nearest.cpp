@@ -1,0 +1,48 @@
+#include "frontend/files/nearest.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+namespace grelha {
+
+// Optimal string alignment: Wagner & Fischer's table by rows, with the row before the last one kept
+// for swaps.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
+  std::iota(row.begin(), row.end(), 0);
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    before.swap(last);
+    last.swap(row);
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (a[i - 1] != b[j - 1])});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        row[j] = std::min(row[j], before[j - 2] + 1);
+    }
+  }
+  return row[b.size()];
+}
+
+std::string_view nearest(std::string_view found, std::span<const std::string_view> words) {
+  constexpr std::size_t kLongest = 64;  // nobody mistypes more; noise is not worth the time
+  std::string_view best;
+  if (found.size() > kLongest)
+    return best;
+  std::size_t least = found.size() / 3 + 1;
+  for (const std::string_view word : words) {
+    const std::size_t d = edit_distance(found, word);
+    if (d < least && d < word.size()) {
+      least = d;
+      best = word;
+    }
+  }
+  return best;
+}
+
+std::string did_you_mean(std::string_view found, std::span<const std::string_view> words) {
+  const std::string_view word = nearest(found, words);
+  return word.empty() ? "" : "; did you mean " + std::string(word) + '?';
+}
+
+}  // namespace grelha

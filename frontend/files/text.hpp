@@ -1,0 +1,98 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "frontend/files/parse_error.hpp"
+
+namespace grelha {
+
+class LoadProgress;
+
+/// Asked of all bytes so far, of which those from `fresh` on are new; throws ParseError to end it.
+using Judge = std::function<void(std::string_view bytes, std::size_t fresh)>;
+
+/// The whole file; gzip data (told by their first two bytes) come back inflated. Only `pipe_too`
+/// lets it be a pipe, for which one waits. Throws FileError when it cannot be read, ParseError when
+/// the gzip data are broken or inflate beyond reason. `progress` is told of what is read, and of
+/// what parsing it will be. `judge` is asked of the bytes, inflated, as they come.
+std::string load_file(const std::string& path,
+                      LoadProgress* progress = nullptr,
+                      bool pipe_too = false,
+                      const Judge& judge = {});
+
+/// How much so many bytes of gzip data may inflate to: text of scenes shrinks to a third or a
+/// tenth, a bomb to a thousandth.
+std::size_t inflate_limit(std::size_t bytes);
+
+/// Inflates gzip data of one or more members; `path` is for messages. Refuses to grow past `limit`
+/// bytes.
+std::string inflate_gzip(const std::string& path,
+                         std::string_view data,
+                         std::size_t limit,
+                         LoadProgress* progress = nullptr,
+                         const Judge& judge = {});
+
+/// A whole word as a number: decimal, with or without sign and exponent, inf or nan. Too large
+/// becomes infinite, too small zero. False when the word is anything else ("1.5.2", "0x10", "").
+bool to_number(std::string_view word, float& value);
+bool to_number(std::string_view word, double& value);
+/// A whole word as an integer; numbers such as "3.0" or "+3" count. What is too large becomes the
+/// largest, so that whoever wants less says how much.
+bool to_integer(std::string_view word, std::int64_t& value);
+
+/// Whether a word is meant as a number, well formed or not: a digit follows its sign and point, or
+/// it reads as one.
+bool looks_like_number(std::string_view word);
+
+/// Shortened, nothing unprintable.
+std::string printable(std::string_view word);
+
+/// A word as it stands in a message: quoted, shortened, nothing unprintable; "end of file" for the
+/// empty word.
+std::string quoted(std::string_view word);
+
+/// Text in memory as words between blanks. Every byte up to ' ' is a blank; LF, CRLF and lone CR
+/// end lines. Words are views into the text, so that their place can be asked later and costs
+/// nothing until then.
+class Words {
+ public:
+  /// `text` must outlive this. Reading starts at byte `begin`. `comment` starts a comment to the
+  /// end of its line, wherever it stands; '\0': there are none.
+  Words(std::string file, std::string_view text, std::size_t begin, char comment);
+
+  std::string_view next();        ///< next word on any line; empty at the end of the file
+  std::string_view peek() const;  ///< the same, left in place
+  /// empty when the line ends first; then data() is where it ends
+  std::string_view peek_on_line() const;
+  bool fresh_line() const {
+    return fresh_line_;
+    /// whether the last next() stepped over a line end, or was the first
+  }
+  void skip_line();                 ///< to the end of this line; the next word is fresh
+  std::string_view rest_of_line();  ///< up to the comment or line end, trimmed; consumes it
+
+  std::size_t bytes_left() const { return std::size_t(end_ - at_); }
+  std::size_t size() const { return std::size_t(end_ - begin_); }
+  const char* cursor() const { return at_; }
+  const std::string& file() const { return file_; }
+
+  /// Where a word of this text starts. Cheap when asked in ascending order.
+  Position position(std::string_view word) const;
+
+ private:
+  const char* skip_blanks(const char* p, bool stay_on_line, bool& line_ended) const;
+  const char* word_end(const char* p) const;
+
+  std::string file_;
+  const char *begin_, *end_, *at_;
+  char comment_;
+  bool fresh_line_ = true;
+  mutable const char* known_;  ///< start of the line last counted to
+  mutable std::uint64_t known_line_ = 1;
+};
+
+}  // namespace grelha

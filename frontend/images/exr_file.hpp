@@ -1,0 +1,22 @@
+#pragma once
+// OpenEXR, by the library of that name (its core in C: headers that cost nothing to compile).
+// https://openexr.com
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "frontend/images/image_style.hpp"
+#include "grelha/image.hpp"
+
+namespace grelha {
+
+/// Scanlines of floats, packed in blocks without loss. Notes become attributes of type string,
+/// their keys in small letters.
+std::string encode_exr(const Image& image, const Layers& layers = {}, const Notes& notes = {});
+
+/// The channels R, G and B, or Y alone, of the first part that has them, whatever its types, tiles
+/// and compression. What lies outside the data window is black. Throws FileError.
+Image read_exr(const std::string& path, const std::string& bytes);
+
+}  // namespace grelha

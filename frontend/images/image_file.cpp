@@ -1,0 +1,314 @@
+#include "frontend/images/image_file.hpp"
+
+#include "frontend/files/atomic_file.hpp"
+#include "frontend/files/parse_error.hpp"
+#include "frontend/images/exr_file.hpp"
+#include "frontend/images/hdr_file.hpp"
+#include "frontend/images/png_chunks.hpp"
+
+#include <stb/stb_image.h>
+#include <stb/stb_image_write.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <vector>
+
+namespace grelha {
+
+namespace {
+
+constexpr std::int64_t kStbBytes = 2'000'000'000;  // stb counts bytes in an int
+constexpr int kMaxSide = 65536;
+
+/// IEC 61966-2-1.
+double light_of_srgb(double encoded) {
+  return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+}
+
+/// Byte k begins at thresholds[k - 1]. A table, not a curve per pixel: two machines whose powf
+/// differ in the last bit would otherwise write different files.
+const std::array<float, 255>& srgb_thresholds() {
+  static const auto table = [] {
+    std::array<float, 255> thresholds;
+    for (std::size_t k = 1; k <= thresholds.size(); ++k) {
+      thresholds[k - 1] = float(light_of_srgb((double(k) - 0.5) / 255));
+    }
+    return thresholds;
+  }();
+  return table;
+}
+
+void append(void* bytes, void* data, int size) {
+  static_cast<std::string*>(bytes)->append(static_cast<const char*>(data), std::size_t(size));
+}
+
+std::string read_bytes(const std::string& path) {
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream bytes;
+  // << takes an empty file for a failure
+  if (file.peek() != std::ifstream::traits_type::eof())
+    bytes << file.rdbuf();
+  if (!file.is_open() || file.bad() || !bytes)
+    throw FileError(path,
+                    std::string(file.is_open() ? "cannot read: " : "cannot open: ") +
+                        std::strerror(errno ? errno : EIO));
+  return std::move(bytes).str();
+}
+
+float swap_bytes(float value) {
+  return std::bit_cast<float>(__builtin_bswap32(std::bit_cast<std::uint32_t>(value)));
+}
+
+/// The words of a PFM header: kind, width, height, scale; one white space after each.
+class PfmHeader {
+ public:
+  PfmHeader(const std::string& path, const std::string& bytes) : path_(path), bytes_(bytes) {
+    const std::string kind = word();
+    if (kind != "PF" && kind != "Pf")
+      refuse("wanted PF or Pf at the start");
+    channels = kind == "PF" ? 3 : 1;
+    width = side();
+    height = side();
+    const std::string text = word();
+    double scale = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), scale);
+    if (error != std::errc() || end != text.data() + text.size() || scale == 0)
+      refuse("the scale is no number but 0");
+    big_endian = scale > 0;
+  }
+
+  [[noreturn]] void refuse(const char* what) const {
+    throw FileError(path_, std::string("not a PFM picture: ") + what);
+  }
+
+  int channels, width, height;
+  bool big_endian;
+  std::size_t data = 0;  ///< where the floats begin
+
+ private:
+  std::string word() {
+    const std::size_t end = bytes_.find_first_of(" \t\r\n", data);
+    if (end == std::string::npos)
+      refuse("the header ends early");
+    std::string text = bytes_.substr(data, end - data);
+    data = end + 1;
+    return text;
+  }
+
+  int side() {
+    const std::string text = word();
+    int value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || value < 1 || value > kMaxSide)
+      refuse("width and height must be 1 to 65536");
+    return value;
+  }
+
+  const std::string& path_;
+  const std::string& bytes_;
+};
+
+Image read_pfm(const std::string& path, const std::string& bytes) {
+  const PfmHeader header(path, bytes);
+  const std::size_t row = std::size_t(header.width) * std::size_t(header.channels);
+  if ((bytes.size() - header.data) / sizeof(float) / row < std::size_t(header.height))
+    header.refuse("too few floats");
+  Image image(header.width, header.height);
+  const bool swap = header.big_endian != (std::endian::native == std::endian::big);
+  for (int y = 0; y < image.height; ++y) {
+    const char* from =
+        bytes.data() + header.data + std::size_t(image.height - 1 - y) * row * sizeof(float);
+    for (int i = 0; i < 3 * image.width; ++i) {
+      float value;
+      std::memcpy(&value,
+                  from + std::size_t(header.channels == 3 ? i : i / 3) * sizeof value,
+                  sizeof value);
+      image.row(y)[i] = swap ? swap_bytes(value) : value;
+    }
+  }
+  return image;
+}
+
+template <class T>
+using StbPixels = std::unique_ptr<T, void (*)(void*)>;
+
+template <class T>
+Image from_stb(const std::string& path, StbPixels<T> pixels, int width, int height, float white) {
+  if (!pixels)
+    throw FileError(path, std::string("cannot read the picture: ") + stbi_failure_reason());
+  Image image(width, height);
+  for (std::size_t i = 0; i < image.rgb.size(); ++i)
+    image.rgb[i] = float(pixels.get()[i]) / white;
+  return image;
+}
+
+/// .png and .hdr
+Image read_by_stb(const std::string& path, const std::string& bytes, ImageFormat format) {
+  if (bytes.size() > std::size_t(kStbBytes))
+    throw FileError(path, "the picture is too large");
+  const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
+  const int size = int(bytes.size());
+  int w = 0, h = 0, channels = 0;
+  if (format == ImageFormat::hdr) {
+    if (!stbi_is_hdr_from_memory(data, size))
+      throw FileError(path, "not a Radiance picture");
+    StbPixels<float> pixels(stbi_loadf_from_memory(data, size, &w, &h, &channels, 3),
+                            stbi_image_free);
+    return from_stb(path, std::move(pixels), w, h, 1);
+  }
+  if (bytes.compare(0, 4, "\x89PNG") != 0)
+    throw FileError(path, "not a PNG picture");
+  if (stbi_is_16_bit_from_memory(data, size)) {
+    StbPixels<stbi_us> pixels(stbi_load_16_from_memory(data, size, &w, &h, &channels, 3),
+                              stbi_image_free);
+    return from_stb(path, std::move(pixels), w, h, 65535);
+  }
+  StbPixels<stbi_uc> pixels(stbi_load_from_memory(data, size, &w, &h, &channels, 3),
+                            stbi_image_free);
+  return from_stb(path, std::move(pixels), w, h, 255);
+}
+
+}  // namespace
+
+std::optional<ImageFormat> image_format(std::string_view path) {
+  if (path.size() < 4)
+    return {};
+  std::string ending(path.substr(path.size() - 4));
+  for (char& c : ending)
+    if (c >= 'A' && c <= 'Z')
+      c = char(c - 'A' + 'a');
+  if (ending == ".png")
+    return ImageFormat::png;
+  if (ending == ".hdr")
+    return ImageFormat::hdr;
+  if (ending == ".pfm")
+    return ImageFormat::pfm;
+  if (ending == ".exr")
+    return ImageFormat::exr;
+  return {};
+}
+
+std::string_view ending_of(ImageFormat format) {
+  switch (format) {
+    case ImageFormat::png:
+      return "png";
+    case ImageFormat::hdr:
+      return "hdr";
+    case ImageFormat::pfm:
+      return "pfm";
+    case ImageFormat::exr:
+      return "exr";
+  }
+  return "";
+}
+
+std::uint8_t to_byte(float value, Tone tone) {
+  if (!(value > 0))
+    return 0;
+  if (value >= 1)
+    return 255;
+  if (tone == Tone::authored)
+    return std::uint8_t(value * 255 + 0.5f);
+  const auto& thresholds = srgb_thresholds();
+  return std::uint8_t(std::upper_bound(thresholds.begin(), thresholds.end(), value) -
+                      thresholds.begin());
+}
+
+bool image_fits(ImageFormat format, int width, int height) {
+  if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide)
+    return false;
+  const bool by_stb = format == ImageFormat::png || format == ImageFormat::hdr;
+  return !by_stb || (3 * std::int64_t(width) + 1) * height <= kStbBytes;
+}
+
+std::string encode_png(const Image& image, Tone tone, const Notes& notes) {
+  std::vector<std::uint8_t> pixels(image.rgb.size());
+  std::transform(image.rgb.begin(), image.rgb.end(), pixels.begin(), [tone](float v) {
+    return to_byte(v, tone);
+  });
+  std::string bytes;
+  if (!stbi_write_png_to_func(
+          append, &bytes, image.width, image.height, 3, pixels.data(), 3 * image.width))
+    throw std::bad_alloc();
+  return with_chunks(bytes, tone, notes);
+}
+
+std::string encode_pfm(const Image& image) {
+  std::string bytes =
+      "PF\n" + std::to_string(image.width) + ' ' + std::to_string(image.height) + "\n-1.0\n";
+  bytes.reserve(bytes.size() + image.rgb.size() * sizeof(float));
+  for (int y = image.height - 1; y >= 0; --y) {
+    if constexpr (std::endian::native == std::endian::little) {
+      bytes.append(reinterpret_cast<const char*>(image.row(y)),
+                   std::size_t(image.width) * 3 * sizeof(float));
+    } else {
+      for (int i = 0; i < 3 * image.width; ++i) {
+        const float swapped = swap_bytes(image.row(y)[i]);
+        bytes.append(reinterpret_cast<const char*>(&swapped), sizeof swapped);
+      }
+    }
+  }
+  return bytes;
+}
+
+void write_image(const std::string& path, const Image& image, const ImageStyle& style) {
+  const auto format = style.format ? style.format : image_format(path);
+  if (!format || !image_fits(*format, image.width, image.height))
+    throw FileError(path, "cannot hold this picture");
+  switch (*format) {
+    case ImageFormat::png:
+      return write_file(path, encode_png(image, style.tone, style.notes));
+    case ImageFormat::hdr:
+      return write_file(path, encode_hdr(image, style.notes));
+    case ImageFormat::pfm:
+      return write_file(path, encode_pfm(image));
+    case ImageFormat::exr:
+      return write_file(path, encode_exr(image, style.layers, style.notes));
+  }
+}
+
+std::string encoding_text(const Encoding& encoding) {
+  if (encoding.kind == Encoding::Kind::light)
+    return "light";
+  if (encoding.kind == Encoding::Kind::srgb)
+    return "sRGB values";
+  char text[64];
+  std::snprintf(text, sizeof text, "values of gamma %g", encoding.exponent);
+  return text;
+}
+
+Image read_image(const std::string& path, Encoding* encoding) {
+  const std::string bytes = read_bytes(path);
+  const auto format = image_format(path);
+  if (!format)
+    throw FileError(path, "not a picture this program reads (.png, .hdr, .pfm, .exr)");
+  if (*format == ImageFormat::pfm)
+    return read_pfm(path, bytes);
+  if (*format == ImageFormat::exr)
+    return read_exr(path, bytes);
+  Image image = read_by_stb(path, bytes, *format);
+  if (encoding && *format == ImageFormat::png)
+    *encoding = png_encoding(bytes);
+  return image;
+}
+
+Image as_light(Image image, const Encoding& encoding) {
+  if (encoding.kind == Encoding::Kind::light)
+    return image;
+  const bool power = encoding.kind == Encoding::Kind::power;
+  for (float& v : image.rgb)
+    v = float(power ? std::pow(double(v), 1 / encoding.exponent) : light_of_srgb(v));
+  return image;
+}
+
+}  // namespace grelha

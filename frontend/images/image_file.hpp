@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "frontend/images/image_style.hpp"
+#include "grelha/image.hpp"
+
+namespace grelha {
+
+/// By the name's ending, upper or lower case; empty when it is none of .png, .hdr, .pfm, .exr.
+std::optional<ImageFormat> image_format(std::string_view path);
+
+/// The ending of such files: "png".
+std::string_view ending_of(ImageFormat format);
+
+/// 0..1 to 0..255, to nearest; what lies outside is clamped and NaN is black.
+std::uint8_t to_byte(float value, Tone tone);
+
+/// Whether the format's writer can hold a picture of that size.
+bool image_fits(ImageFormat format, int width, int height);
+
+/// The file's bytes: hdr_file.hpp and exr_file.hpp have the others. .pfm (little endian, bottom row
+/// first) holds linear floats, exactly, and has no place for notes.
+std::string encode_png(const Image& image, Tone tone, const Notes& notes = {});
+std::string encode_pfm(const Image& image);
+
+/// Writes the file whole or not at all, or to stdout. Throws FileError.
+void write_image(const std::string& path, const Image& image, const ImageStyle& style = {});
+
+/// "light", "sRGB values", "values of gamma 0.45455"
+std::string encoding_text(const Encoding& encoding);
+
+/// Reads what write_image writes and other files of these kinds. A PNG's bytes come as byte / 255,
+/// unbent; `encoding`, where given, says how they were bent.
+Image read_image(const std::string& path, Encoding* encoding = nullptr);
+
+/// Of numbers so encoded, the light they stand for.
+Image as_light(Image image, const Encoding& encoding);
+
+}  // namespace grelha

@@ -1,0 +1,153 @@
+#include "frontend/input/default_view.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace grelha {
+namespace {
+
+using Place3 = std::array<double, 3>;
+
+double along(const Place3& a, const Place3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+Place3 moved(const Place3& a, double share, const Place3& b) {
+  return {a[0] + share * b[0], a[1] + share * b[1], a[2] + share * b[2]};
+}
+Float3 as_floats(const Place3& v) { return {float(v[0]), float(v[1]), float(v[2])}; }
+
+/// Vertices that triangles name; others may lie anywhere.
+std::vector<Place3> corners_of(const Triangles& t) {
+  std::vector<bool> named(t.vertex_count());
+  for (const auto* of : {&t.a, &t.b, &t.c})
+    for (const std::uint32_t v : *of)
+      named[v] = true;
+  std::vector<Place3> found;
+  for (std::size_t v = 0; v < t.vertex_count(); ++v)
+    if (named[v])
+      found.push_back({t.x[v], t.y[v], t.z[v]});
+  if (found.empty())
+    found = {{-1, -1, -1}, {1, 1, 1}};
+  return found;
+}
+
+double farthest_out(const std::vector<Place3>& points) {
+  double most = 0;
+  for (const Place3& p : points)
+    for (const double c : p)
+      most = std::max(most, std::abs(c));
+  return most;
+}
+
+/// How much of the box's cross-section the lowest points along an axis span: a mesh stands on what
+/// is wide.
+double support(const std::vector<Place3>& points, std::size_t axis) {
+  constexpr double kLowest = .02;  // of the height
+  Place3 low = points[0], high = points[0];
+  for (const Place3& p : points)
+    for (std::size_t i = 0; i < 3; ++i) {
+      low[i] = std::min(low[i], p[i]);
+      high[i] = std::max(high[i], p[i]);
+    }
+  Place3 from = high, to = low;
+  for (const Place3& p : points)
+    if (p[axis] <= low[axis] + kLowest * (high[axis] - low[axis]))
+      for (std::size_t i = 0; i < 3; ++i) {
+        from[i] = std::min(from[i], p[i]);
+        to[i] = std::max(to[i], p[i]);
+      }
+  double share = 1;
+  for (std::size_t i = 0; i < 3; ++i)
+    if (i != axis && high[i] > low[i])
+      share *= (to[i] - from[i]) / (high[i] - low[i]);
+  return share;
+}
+
+/// Scans have y up, most other things z: where the mesh stands on its z side far more surely, that.
+bool stands_on_z(const std::vector<Place3>& points) {
+  constexpr double kSurely = 4, kLeast = .1;
+  const double z = support(points, 2);
+  return z > kLeast && z > kSurely * support(points, 1);
+}
+
+/// The eye looks from 30 degrees to the right and 20 above. Sines and cosines are written down, for
+/// the library's last bit depends on the machine.
+constexpr double kSin30 = 0.5, kCos30 = 0.8660254037844386, kSin20 = 0.3420201433256687,
+                 kCos20 = 0.9396926207859084;
+struct Axes {
+  Place3 back{kSin30 * kCos20, kSin20, kCos30*kCos20}, right{kCos30, 0, -kSin30},
+      up{-kSin30 * kSin20, kCos20, -kCos30*kSin20};
+  Place3 high{0, 1, 0};  ///< where the sky is
+  /// With z up instead of y, seen from the y that scans turn their faces to.
+  void turn() {
+    for (Place3* v : {&back, &right, &up, &high})
+      *v = {-(*v)[0], (*v)[2], (*v)[1]};
+  }
+};
+constexpr double kAngleDeg = 30, kTangentOfHalf = 0.2679491924311227;
+constexpr double kFilled = .9;  ///< of the picture's height or width
+
+/// How far points reach to both sides of a pyramid's axis, along which the eye looks, when its
+/// sides have a slope: |x| <= slope (d - back).
+struct Reach {
+  double plus = -1e300, minus = -1e300;
+  void add(double x, double back, double slope) {
+    plus = std::max(plus, x + slope * back);
+    minus = std::max(minus, slope * back - x);
+  }
+  double middle() const { return (plus - minus) / 2; }
+  double distance(double slope) const { return (plus + minus) / (2 * slope); }
+};
+
+}  // namespace
+
+Material default_mesh_material() {
+  Material m;
+  m.diffuse = {0.80f, 0.78f, 0.75f};
+  m.specular = {0.10f, 0.10f, 0.10f};
+  m.emission = {0.10f, 0.10f, 0.11f};
+  m.shine = 20;
+  return m;
+}
+
+void add_default_view(SceneFile& file) {
+  const std::vector<Place3> points = corners_of(file.scene.geometry.triangles);
+  Axes axes;
+  if (stands_on_z(points))
+    axes.turn();
+  constexpr double slope = kFilled * kTangentOfHalf;
+  Reach across, upward;
+  double front = -1e300, behind = 1e300;
+  for (const Place3& p : points) {
+    const double back = along(p, axes.back);
+    across.add(along(p, axes.right), back, slope);
+    upward.add(along(p, axes.up), back, slope);
+    front = std::max(front, back);
+    behind = std::min(behind, back);
+  }
+  const double eye_back =
+      std::max(across.distance(slope), upward.distance(slope));  // along axes.back
+  // A tiny mesh far out must not put the eye on what it looks at in floats.
+  constexpr double kFloatSteps = 1e-5, kLeast = 1e-12;
+  const double middle = front + (behind - front) / 2,
+               distance = std::max({eye_back - middle, kFloatSteps * farthest_out(points), kLeast});
+  const Place3 at =
+      moved(moved(moved({0, 0, 0}, across.middle(), axes.right), upward.middle(), axes.up),
+            middle,
+            axes.back);
+  const auto place = [&](double to_back, double to_right, double up) {
+    return as_floats(
+        moved(moved(moved(at, distance * to_back, axes.back), distance * to_right, axes.right),
+              distance * up,
+              axes.high));
+  };
+  file.camera = {place(1, 0, 0), as_floats(at), as_floats(axes.high), kAngleDeg, 512, 512};
+  // Key light above the left shoulder, fill from the eye, which reaches all it sees, and one from
+  // behind on the edges.
+  file.scene.lights = {{place(1, -0.55, 0.65), {0.82f, 0.78f, 0.70f}, {}, {}},
+                       {place(1, 0, 0), {0.30f, 0.32f, 0.37f}, {}, {}},
+                       {place(-0.6, 0.8, 0.6), {0.34f, 0.38f, 0.44f}, {}, {}}};
+  file.scene.background = {0.62f, 0.68f, 0.76f};
+  file.default_camera = file.default_light = true;
+}
+
+}  // namespace grelha

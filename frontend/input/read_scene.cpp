@@ -1,0 +1,89 @@
+#include <algorithm>
+#include <new>
+#include <stdexcept>
+#include <utility>
+
+#include "frontend/files/load_progress.hpp"
+#include "frontend/files/memory_limit.hpp"
+#include "frontend/files/plausible.hpp"
+#include "frontend/files/text.hpp"
+#include "frontend/input/default_view.hpp"
+#include "frontend/nff/nff_reader.hpp"
+#include "frontend/ply/ply_reader.hpp"
+#include "frontend/scene/scene_builder.hpp"
+#include "frontend/scene/warnings.hpp"
+
+namespace grelha {
+namespace {
+
+/// Extension in small letters, without a ".gz" behind it.
+std::string extension(const std::string& path) {
+  std::string name = path.substr(path.find_last_of('/') + 1);
+  std::transform(name.begin(), name.end(), name.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? char(c + 32) : c;
+  });
+  if (name.ends_with(".gz"))
+    name.resize(name.size() - 3);
+  const std::size_t point = name.find_last_of('.');
+  return point == std::string::npos ? "" : name.substr(point);
+}
+
+/// By the extension; a file with another one is PLY when it says so.
+bool is_ply(const std::string& path, std::string_view bytes) {
+  const std::string kind = extension(path);
+  if (kind == ".ply")
+    return true;
+  if (kind == ".nff" || kind == ".p3f")
+    return false;
+  return bytes.starts_with("ply\n") || bytes.starts_with("ply\r");
+}
+
+SceneFile read_mesh_alone(const std::string& path,
+                          std::string bytes,
+                          const Warn& warn,
+                          LoadProgress& progress) {
+  SceneFile file;
+  file.source_bytes = bytes.size();
+  Mesh mesh = read_ply_mesh(path, bytes, warn, &progress);
+  std::string().swap(bytes);  // as large as what is made of it
+  file.counts.ply = mesh.face_count();
+  if (file.counts.ply == 0)
+    file.points = mesh.vertex_count();
+  file.scene.materials.push_back(default_mesh_material());
+  SceneBuilder(file).mesh(std::move(mesh), 0);
+  add_default_view(file);
+  return file;
+}
+
+void warn_of_dropped(const std::string& path, const Dropped& dropped, const Warn& warn) {
+  const std::uint64_t all = dropped.not_finite + dropped.zero_area;
+  if (all == 0 || !warn)
+    return;
+  warn(path + ": warning: " + std::to_string(all) +
+       (all == 1 ? " primitive is" : " primitives are") +
+       " left out: " + std::to_string(dropped.not_finite) + " not finite (or beyond 1e18), " +
+       std::to_string(dropped.zero_area) + " without area");
+}
+
+}  // namespace
+
+SceneFile read_scene(const std::string& path, const Warn& warn, const ReadOptions& options) try {
+  LoadProgress progress(options.progress);
+  std::string bytes =
+      load_file(path, &progress, true, [&](std::string_view text, std::size_t fresh) {
+        judge_beginning(path, is_ply(path, text), text, fresh);
+      });
+  if (bytes.empty())
+    throw ParseError(Position{path, 1, 1, 0}, "wanted a scene, found an empty file");
+  SceneFile file = is_ply(path, bytes) ? read_mesh_alone(path, std::move(bytes), warn, progress)
+                                       : read_nff(path, bytes, warn, options, &progress);
+  progress.finish();
+  warn_of_dropped(path, file.dropped, warn);
+  return file;
+} catch (const std::bad_alloc&) {
+  throw OutOfMemory(path);
+} catch (const std::length_error&) {  // a vector beyond its largest size
+  throw OutOfMemory(path);
+}
+
+}  // namespace grelha

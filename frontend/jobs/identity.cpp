@@ -1,0 +1,176 @@
+#include "frontend/jobs/identity.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <iterator>
+#include <sstream>
+
+#include "frontend/commands/report.hpp"
+#include "frontend/files/digest.hpp"
+#include "frontend/files/text.hpp"
+
+namespace grelha {
+namespace {
+
+/// Lengths go in as well: else what ends one array could begin the next.
+template <class T>
+void take(Digest& digest, const std::vector<T>& values) {
+  const std::uint64_t size = values.size();
+  digest.numbers(std::span(&size, 1));
+  digest.numbers(std::span<const T>(values));
+}
+
+void take(Digest& digest, const Float3& v) {
+  const float values[] = {v.x, v.y, v.z};
+  digest.numbers(std::span<const float>(values));
+}
+
+template <class... T>
+void take_all(Digest& digest, const T&... values) {
+  (take(digest, values), ...);
+}
+
+void take(Digest& digest, const Material& m) {
+  take_all(digest, m.diffuse, m.specular, m.mirror, m.emission);
+  const float values[] = {m.transmission, m.shine, m.ior, m.fresnel ? 1.f : 0.f, m.roughness};
+  digest.numbers(std::span<const float>(values));
+}
+
+void take(Digest& digest, const Geometry& g) {
+  // objects are how the kernel lays triangles out: no pixel depends on it
+  const auto& [s, t, c, p, objects] = g;
+  take_all(digest, s.x, s.y, s.z, s.radius, s.material);
+  take_all(digest, t.x, t.y, t.z, t.nx, t.ny, t.nz, t.a, t.b, t.c, t.material);
+  take_all(digest,
+           c.base_x,
+           c.base_y,
+           c.base_z,
+           c.base_radius,
+           c.apex_x,
+           c.apex_y,
+           c.apex_z,
+           c.apex_radius,
+           c.material);
+  take_all(digest, p.x, p.y, p.z, p.nx, p.ny, p.nz, p.material);
+}
+
+template <class Number>
+std::string text(Number value) {
+  char buffer[32];
+  // the shortest that reads back as the same number
+  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr};
+}
+
+/// How many samples a pixel gets, or what decides it.
+std::string samples_text(const RenderOptions& o) {
+  const RefineOptions& r = o.refine;
+  if (r.error > 0)
+    return "error=" + text(r.error);
+  if (r.seconds > 0)
+    return "time=" + text(r.seconds);
+  if (r.samples > 0)
+    return "time=samples:" + std::to_string(r.samples);
+  const std::string count = "samples=" + std::to_string(o.sampling.samples);
+  return o.subdivision.on ? count + " adaptive=" + text(o.subdivision.threshold) + ',' +
+                                std::to_string(o.subdivision.depth)
+                          : count;
+}
+
+}  // namespace
+
+std::string scene_digest(const SceneFile& file) {
+  Digest digest;
+  take(digest, file.scene.geometry);
+  for (const Material& m : file.scene.materials)
+    take(digest, m);
+  for (const Light& l : file.scene.lights)
+    take_all(digest, l.position, l.color, l.edge1, l.edge2);
+  take_all(digest, file.scene.background, file.camera.eye, file.camera.at, file.camera.up);
+  digest.numbers(std::span(&file.camera.angle_deg, 1));
+  return digest.hex();
+}
+
+std::string settings_text(const RenderCommand& prepared, const Camera& camera) {
+  const RenderOptions& o = prepared.render;
+  const SampleOptions& s = o.sampling;
+  const Effects& e = prepared.effects;
+  std::string words = "version=" GRELHA_VERSION " size=" + std::to_string(camera.width) + 'x' +
+                      std::to_string(camera.height) + ' ' + samples_text(o) +
+                      " sampler=" + sampler_name(s.sampler) + " seed=" + std::to_string(s.seed) +
+                      " depth=" + std::to_string(o.depth) + " min-weight=" + text(o.min_weight);
+  if (o.precision == Precision::kDouble)
+    words += " precision=double";
+  if (e.shadows)
+    words += std::string(" shadows=") + (e.shadows->hard ? "hard" : text(e.shadows->size));
+  if (s.light_rays > 1)
+    words += " light-rays=" + std::to_string(s.light_rays);
+  if (camera.aperture > 0)
+    words += " aperture=" + text(camera.aperture) + " focus=" + text(camera.focus);
+  if (e.glossy)
+    words +=
+        " roughness=" + text(e.glossy->roughness) + " gloss-rays=" + std::to_string(s.gloss_rays);
+  return words;
+}
+
+std::string scene_name(const std::string& path) {
+  const std::string picture = default_image(path);
+  return printable(picture.substr(0, picture.rfind('.')));
+}
+
+const Note kSoftware{"Software", "grelha " GRELHA_VERSION};
+
+Notes notes_of(const Identity& identity) {
+  const std::string& s = identity.settings;
+  const std::size_t first = s.find(' ');  // behind the version
+  Notes notes{kSoftware};
+  if (!identity.name.empty())
+    notes.emplace_back("Title", identity.name);
+  notes.emplace_back("Scene", "XXH3 " + identity.scene);
+  notes.emplace_back("Settings", first == s.npos ? s : s.substr(first + 1));
+  return notes;
+}
+
+namespace {
+
+using WordList = std::vector<std::string>;
+
+bool has(const WordList& words, const std::string& word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+std::string key_of(const std::string& word) { return word.substr(0, word.find('=') + 1); }
+
+/// What one says and the other does not, and what it does not say at all. The words may be
+/// anyone's.
+std::string own_words(const WordList& here, const WordList& there) {
+  constexpr int kMost = 8;
+  WordList keys;
+  std::transform(here.begin(), here.end(), std::back_inserter(keys), key_of);
+  std::string own;
+  int found = 0;
+  const auto say = [&](const std::string& word) {
+    if (++found <= kMost)
+      own += (own.empty() ? "" : " ") + word;
+  };
+  for (const std::string& w : here)
+    if (!has(there, w))
+      say(printable(w));
+  for (const std::string& w : there)
+    if (!has(keys, key_of(w)))
+      say("no " + printable(key_of(w)));
+  return found > kMost ? own + " ..." : own;
+}
+
+}  // namespace
+
+std::string difference(const std::string& settings,
+                       const std::string& other,
+                       const std::string& name) {
+  const auto words = [](const std::string& all) {
+    std::istringstream in(all);
+    return WordList(std::istream_iterator<std::string>(in), {});
+  };
+  const WordList here = words(settings), there = words(other);
+  return own_words(here, there) + ", " + name + " has " + own_words(there, here);
+}
+
+}  // namespace grelha

@@ -1,0 +1,138 @@
+#include "frontend/jobs/preparation.hpp"
+
+#include "frontend/commands/progress.hpp"
+#include "frontend/files/memory_limit.hpp"
+#include "frontend/files/parse_error.hpp"
+#include "frontend/jobs/partial.hpp"
+#include "frontend/jobs/stop_signals.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace grelha {
+
+namespace {
+
+constexpr std::uint64_t kPixel = 12;  ///< bytes of a picture's pixel: three floats
+/// and of its file's, before that is written: .pfm and .hdr; a .png takes half of it
+constexpr std::uint64_t kFilePixel = 12;
+constexpr std::uint64_t kSum = 24;      ///< three sums of light
+constexpr std::uint64_t kRefined = 90;  ///< docs/architecture.md
+/// most pixels that are subdivided at a time, and bytes of one, measured
+constexpr std::uint64_t kSubdivided = 1 << 20, kSubdividedPixel = 56;
+constexpr std::uint64_t kMaps = 12;             ///< samples, errors and widths
+constexpr std::uint64_t kProgram = 12'000'000;  ///< bytes of the program itself: libraries, stacks
+
+std::uint64_t geometry_bytes(const Scene& scene) {
+  const Geometry& g = scene.geometry;
+  const Triangles& t = g.triangles;
+  return 20 * g.spheres.size() + 16 * t.size() + (12 + (t.nx.empty() ? 0 : 12)) * t.vertex_count() +
+         36 * g.cones.size() + 28 * g.planes.size() + sizeof(Material) * scene.materials.size();
+}
+
+/// `work(progress)` with a bar; a signal stops it.
+template <class Work>
+auto watched(const char* name, bool shown, const Work& work) {
+  ProgressBar bar(shown, 0, name);
+  return work([&](double share) {
+    bar.update(share);
+    return StopSignals::seen() == 0;
+  });
+}
+
+/// The same; what came after the last question counts as well.
+template <class Work>
+auto interruptible(const char* name, const std::string& during, bool shown, const Work& work) {
+  try {
+    auto made = watched(name, shown, work);
+    if (StopSignals::seen() == 0)
+      return made;
+  } catch (const Stopped&) {
+  }
+  throw Interrupted(StopSignals::seen(), during);
+}
+
+[[noreturn]] void refuse(const std::string& path, std::uint64_t need) {
+  throw FileError(path,
+                  "wanted about " + gigabytes(own_memory().owned + need) +
+                      " of memory to render it, found " + memory_there_is());
+}
+
+}  // namespace
+
+Interrupted::Interrupted(int number, const std::string& during)
+    : std::runtime_error("grelha: stopped by " + std::string(signal_name(number)) + " while " +
+                         during),
+      signal(number) {}
+
+SceneFile load_scene(const std::string& path,
+                     const Warn& warn,
+                     const ReadOptions& options,
+                     bool shown) {
+  return interruptible(
+      "load", "reading " + path, shown, [&](const std::function<bool(double)>& progress) {
+        ReadOptions watched_options = options;
+        watched_options.progress = progress;
+        return read_scene(path, warn, watched_options);
+      });
+}
+
+void want_memory(const std::string& path, std::uint64_t bytes) {
+  if (bytes >= own_memory().left())
+    refuse(path, bytes);
+}
+
+World build_world(const std::string& path,
+                  const Scene& scene,
+                  const BuildOptions& options,
+                  std::uint64_t later,
+                  bool shown) {
+  want_memory(path, later);
+  try {
+    return interruptible("build",
+                         "building the grids of " + path,
+                         shown,
+                         [&](const std::function<bool(double)>& progress) {
+                           BuildOptions watched_options = options;
+                           watched_options.progress = progress;
+                           watched_options.most_bytes = own_memory().left() - later;
+                           return World(scene, watched_options);
+                         });
+  } catch (const TooLarge& error) {
+    refuse(path, error.need.peak + later);
+  }
+}
+
+PictureMemory picture_memory(const RenderCommand& command, const Camera& camera) {
+  const bool part = is_partial_name(command.image), refined = command.render.refine.on(),
+             subdivided = command.effects.adaptive.on;
+  const auto width = std::uint64_t(camera.width), pixels = width * std::uint64_t(camera.height);
+  const Range rows = command.work.rows.value_or(Range{0, camera.height});
+  // what the picture lacks is refused later
+  const auto height = std::uint64_t(std::clamp(rows.end - rows.begin, 1, camera.height));
+  const std::uint64_t kept = refined      ? kRefined * pixels
+                             : subdivided ? kPixel * pixels
+                                          : kSum * width * height;
+  PictureMemory memory;
+  memory.sums = kept;
+  memory.rest = kProgram + thread_bytes(camera, command.render) +
+                (refined      ? kMaps * pixels
+                 : subdivided ? kSubdividedPixel * std::min(pixels, kSubdivided)
+                              : 0);
+  if (!part)
+    memory.rest += (kPixel + kFilePixel) * pixels;
+  return memory;
+}
+
+SceneMemory memory_of(const SceneFile& file, const BuildOptions& options) {
+  const BuildMemory build = World::estimate(file.scene, options);
+  const PictureMemory picture = picture_memory({}, file.camera);
+  SceneMemory memory;
+  memory.scene = geometry_bytes(file.scene);
+  memory.grids = build.kept;
+  memory.peak = memory.scene + std::max(kProgram + std::max(file.source_bytes, build.peak),
+                                        build.kept + picture.sums + picture.rest);
+  return memory;
+}
+
+}  // namespace grelha

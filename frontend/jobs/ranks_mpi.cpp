@@ -1,0 +1,277 @@
+// The build with MPI. One rank a node, with threads inside: any of them may call MPI, one at a time
+// (MPI_THREAD_SERIALIZED).
+//
+// The number of the next piece stands in the first rank's memory, and every rank takes it from
+// there by a one-sided fetch-and-add; nobody has to answer. Sums of a piece go to the first rank as
+// one message when the piece is done, and are received between its own pieces.
+#include <mpi.h>
+
+#include <algorithm>
+#include <chrono>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stdexcept>
+#include <thread>
+
+#include "frontend/commands/commands.hpp"
+#include "frontend/files/digest.hpp"
+#include "frontend/jobs/ranks.hpp"
+
+namespace grelha {
+namespace {
+
+constexpr int kFirst = 0, kPieceTag = 1, kEndTag = 2;
+/// messages: beyond that a rank waits for the first to take some
+constexpr std::size_t kMostOnTheWay = 64;
+
+std::size_t sums_of_rows(const Accumulator& a, const Range& rows) {
+  return static_cast<std::size_t>(rows.end - rows.begin) * static_cast<std::size_t>(a.width) * 3;
+}
+std::int64_t* sums_at(Accumulator& a, int row) {
+  return a.sums.data() + sums_of_rows(a, {a.part.rows.begin, row});
+}
+
+/// The counter of pieces handed out.
+class Counter {
+ public:
+  explicit Counter(bool here) {
+    MPI_Win_allocate(here ? sizeof(std::int64_t) : 0,
+                     sizeof(std::int64_t),
+                     MPI_INFO_NULL,
+                     MPI_COMM_WORLD,
+                     &value_,
+                     &window_);
+    if (here)
+      *value_ = 0;
+    MPI_Barrier(MPI_COMM_WORLD);
+    MPI_Win_lock_all(0, window_);
+  }
+  ~Counter() {
+    MPI_Win_unlock_all(window_);
+    MPI_Win_free(&window_);
+  }
+  Counter(const Counter&) = delete;
+  Counter& operator=(const Counter&) = delete;
+
+  std::size_t take() {
+    const std::int64_t one = 1;
+    std::int64_t before = 0;
+    MPI_Fetch_and_op(&one, &before, MPI_INT64_T, kFirst, 0, MPI_SUM, window_);
+    MPI_Win_flush(kFirst, window_);
+    return static_cast<std::size_t>(before);
+  }
+
+ private:
+  MPI_Win window_;
+  std::int64_t* value_ = nullptr;
+};
+
+/// Over a network that cannot read and write memory by itself a rank answers what is asked of its
+/// memory only while it is inside MPI, and the first rank's threads may be a second in a piece:
+/// meanwhile this looks in, and others wait for a number no longer than a millisecond.
+class Doorkeeper {
+ public:
+  Doorkeeper(std::mutex& mpi, const std::function<bool()>& stop_seen)
+      : thread_([&](const std::stop_token& stop) {
+          while (!stop.stop_requested()) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            const std::lock_guard lock(mpi);
+            if (stop_seen())
+              return;  // others may be gone then, and MPI would have this one go with them
+            int there = 0;
+            MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &there, MPI_STATUS_IGNORE);
+          }
+        }) {}
+
+ private:
+  std::jthread thread_;
+};
+
+/// Pieces on their way to the first rank.
+class Outbox {
+ public:
+  void send(Accumulator& a, std::size_t piece) {
+    while (on_the_way_.size() >= kMostOnTheWay)
+      settle(true);
+    const Range rows = piece_of(a.part, piece).rows;
+    std::int64_t* const sums = sums_at(a, rows.begin);
+    const std::size_t n = sums_of_rows(a, rows);
+    Letter& letter = on_the_way_.emplace_back();
+    letter.words.reserve(n + 1);
+    letter.words.push_back(static_cast<std::int64_t>(piece));
+    letter.words.insert(letter.words.end(), sums, sums + n);
+    std::fill(sums, sums + n, 0);  // the next piece of these rows goes by itself
+    MPI_Isend(letter.words.data(),
+              static_cast<int>(n + 1),
+              MPI_INT64_T,
+              kFirst,
+              kPieceTag,
+              MPI_COMM_WORLD,
+              &letter.request);
+    settle(false);
+  }
+  void finish(const RayCounts& rays) {
+    while (!on_the_way_.empty())
+      settle(true);
+    const std::uint64_t counts[] = {rays.primary, rays.shadow, rays.reflection, rays.refraction};
+    MPI_Send(counts, 4, MPI_UINT64_T, kFirst, kEndTag, MPI_COMM_WORLD);
+  }
+
+ private:
+  struct Letter {
+    std::vector<std::int64_t> words;
+    MPI_Request request = MPI_REQUEST_NULL;
+  };
+  void settle(bool wait) {
+    if (wait)
+      MPI_Wait(&on_the_way_.front().request, MPI_STATUS_IGNORE);
+    on_the_way_.remove_if([](Letter& letter) {
+      int done = 0;
+      MPI_Test(&letter.request, &done, MPI_STATUS_IGNORE);
+      return done != 0;
+    });
+  }
+  std::list<Letter> on_the_way_;
+};
+
+/// Takes in what has come; returns how many ranks said that it was their last, and what rays they
+/// sent.
+int receive(Accumulator& a, RayCounts& rays) {
+  int ended = 0;
+  for (;;) {
+    int there = 0, words = 0;
+    MPI_Status status;
+    MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &there, &status);
+    if (!there)
+      return ended;
+    MPI_Get_count(&status, MPI_INT64_T, &words);
+    std::vector<std::int64_t> letter(static_cast<std::size_t>(words));
+    MPI_Recv(letter.data(),
+             words,
+             MPI_INT64_T,
+             status.MPI_SOURCE,
+             status.MPI_TAG,
+             MPI_COMM_WORLD,
+             MPI_STATUS_IGNORE);
+    if (status.MPI_TAG == kEndTag) {
+      const auto count = [&](std::size_t i) { return static_cast<std::uint64_t>(letter.at(i)); };
+      rays += {count(0), count(1), count(2), count(3)};
+      ++ended;
+      continue;
+    }
+    const auto piece = static_cast<std::size_t>(letter[0]);
+    std::int64_t* const sums = sums_at(a, piece_of(a.part, piece).rows.begin);
+    for (std::size_t i = 1; i < letter.size(); ++i)
+      sums[i - 1] += letter[i];
+    a.done[piece] = 1;
+  }
+}
+
+}  // namespace
+
+Ranks::Ranks(int& argc, char**& argv) {
+  int provided = 0;
+  MPI_Init_thread(&argc, &argv, MPI_THREAD_SERIALIZED, &provided);
+  if (provided < MPI_THREAD_SERIALIZED)
+    throw std::runtime_error("this MPI cannot be called from threads");
+  MPI_Comm_size(MPI_COMM_WORLD, &count_);
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
+}
+
+Ranks::~Ranks() {
+  if (!abandoned_)
+    MPI_Finalize();
+}
+
+Ranks::Managed Ranks::managed(bool here) const {
+  int mine = here, all = 0, by_first = here;
+  MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
+  MPI_Bcast(&by_first, 1, MPI_INT, kFirst, MPI_COMM_WORLD);
+  return {all != 0, by_first != 0};
+}
+
+void Ranks::agree_on(const std::string& what, const std::string& otherwise) const {
+  Digest digest;
+  digest.bytes(what.data(), what.size());
+  const std::uint64_t mine = digest.low64();
+  std::uint64_t wanted = mine;
+  MPI_Bcast(&wanted, 1, MPI_UINT64_T, kFirst, MPI_COMM_WORLD);
+  if (mine != wanted)
+    throw UsageError("rank " + std::to_string(rank_) + ' ' + otherwise);
+}
+
+bool Ranks::accumulate(const World& world,
+                       const Camera& camera,
+                       const RenderOptions& options,
+                       Accumulator& a,
+                       RenderStats& stats,
+                       const std::function<bool()>& stop_seen) {
+  if (count_ == 1)
+    return grelha::accumulate(world, camera, options, a, stats);
+  MPI_Bcast(a.done.data(), static_cast<int>(a.done.size()), MPI_BYTE, kFirst, MPI_COMM_WORLD);
+  std::vector<std::size_t> left;
+  for (std::size_t i = 0; i < a.done.size(); ++i)
+    if (a.done[i] == 0)
+      left.push_back(i);
+
+  auto counter = std::make_unique<Counter>(first());
+  Outbox outbox;
+  std::mutex mutex;                  // of all that follows, and of MPI
+  std::vector<std::size_t> in_work;  // of this rank
+  int ended = 0;
+  RayCounts elsewhere;
+  const auto next = [&]() -> std::size_t {
+    const std::lock_guard lock(mutex);
+    if (stop_seen())
+      return a.done.size();
+    const std::size_t at = counter->take();
+    if (at >= left.size())
+      return a.done.size();
+    in_work.push_back(left[at]);
+    return left[at];
+  };
+  RenderOptions shared = options;
+  shared.progress = [&](double) {
+    {
+      const std::lock_guard lock(mutex);
+      if (first()) {
+        if (!stop_seen())
+          ended += receive(a, elsewhere);  // see Doorkeeper
+      } else {
+        const auto finished = std::find_if(
+            in_work.begin(), in_work.end(), [&](std::size_t i) { return a.done[i] != 0; });
+        outbox.send(a, *finished);
+        in_work.erase(finished);
+      }
+    }
+    return !options.progress || options.progress(share_done(a));
+  };
+  {
+    std::optional<Doorkeeper> doorkeeper;
+    if (first())
+      doorkeeper.emplace(mutex, stop_seen);
+    grelha::accumulate(world, camera, shared, a, stats, next);
+  }
+  if (!first()) {
+    outbox.finish(stats.rays);
+    in_step_ = true;
+    return true;
+  }
+  while (ended < count_ - 1 && !stop_seen()) {
+    ended += receive(a, elsewhere);
+    if (options.progress)
+      options.progress(share_done(a));
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  stats.rays += elsewhere;
+  if (ended < count_ - 1) {  // to free the counter takes all ranks
+    counter.release();
+    abandon();
+  }
+  in_step_ = true;
+  return is_complete(a);
+}
+
+}  // namespace grelha

@@ -1,0 +1,70 @@
+#include "frontend/jobs/stop_signals.hpp"
+
+#include <signal.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <initializer_list>
+#include <string_view>
+
+namespace grelha {
+
+namespace {
+
+/// Any thread may get a signal, and all of them ask: sig_atomic_t would be for one thread alone.
+std::atomic<int> noted = 0;
+static_assert(std::atomic<int>::is_always_lock_free, "a handler may take no lock");
+
+bool on_terminal = false;
+void (*pipe_before)(int) = SIG_DFL;
+
+/// By the handler itself, not by a thread that looks now and then: what is in work may take long.
+/// Only what a handler may do.
+void note(int signal) {
+  constexpr std::string_view kWipe = "\r\033[K";  // the bar
+  constexpr std::string_view kAnswer = "grelha: stopping; once more ends it at once\n";
+  noted = signal;
+  const int error = errno;
+  if (on_terminal)
+    (void)!::write(STDERR_FILENO, kWipe.data(), kWipe.size());
+  (void)!::write(STDERR_FILENO, kAnswer.data(), kAnswer.size());
+  errno = error;
+}
+
+void act(void (*handler)(int), int flags) {
+  struct sigaction action {};
+  action.sa_handler = handler;
+  action.sa_flags = flags;
+  sigemptyset(&action.sa_mask);
+  for (const int signal : {SIGHUP, SIGINT, SIGTERM}) {
+    struct sigaction old {};
+    sigaction(signal, nullptr, &old);
+    // whoever started the program may have it ignore one
+    if (old.sa_handler != SIG_IGN)
+      sigaction(signal, &action, nullptr);
+  }
+}
+
+}  // namespace
+
+StopSignals::StopSignals() {
+  noted = 0;
+  on_terminal = isatty(STDERR_FILENO) == 1;
+  act(note, SA_RESETHAND | SA_RESTART);
+  pipe_before = ::signal(SIGPIPE, SIG_IGN);
+}
+
+StopSignals::~StopSignals() {
+  act(SIG_DFL, 0);
+  ::signal(SIGPIPE, pipe_before);
+}
+
+int StopSignals::seen() { return noted; }
+
+const char* signal_name(int signal) {
+  return signal == SIGHUP ? "SIGHUP" : signal == SIGINT ? "SIGINT" : "SIGTERM";
+}
+
+}  // namespace grelha

@@ -1,0 +1,43 @@
+#include "frontend/nff/nff_boxes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace grelha {
+namespace {
+
+using Six = std::array<float, 6>;
+
+/// False where an error is to come, or a box that is left out.
+bool read_six(Words& words, Six& numbers) {
+  for (float& number : numbers)
+    if (!to_number(words.next(), number))
+      return false;
+  return std::all_of(numbers.begin(), numbers.end(), [](float v) { return std::isfinite(v); });
+}
+
+bool are_pairs(const Six& n) { return n[0] <= n[1] && n[2] <= n[3] && n[4] <= n[5]; }
+
+bool are_corners(const Six& n) {
+  const bool ascend = n[0] <= n[3] && n[1] <= n[4] && n[2] <= n[5];
+  const bool descend = n[0] >= n[3] && n[1] >= n[4] && n[2] >= n[5];
+  return ascend || descend;
+}
+
+}  // namespace
+
+BoxOrder aabb_order(Words words) {
+  bool all_corners = true;
+  Six numbers;
+  for (std::string_view word = "aabb"; !word.empty(); word = words.next()) {
+    if (word != "aabb" || !read_six(words, numbers))
+      continue;
+    if (!are_pairs(numbers))
+      return BoxOrder::kCorners;
+    all_corners = all_corners && are_corners(numbers);
+  }
+  return all_corners ? BoxOrder::kCorners : BoxOrder::kPairs;
+}
+
+}  // namespace grelha

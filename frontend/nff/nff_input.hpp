@@ -1,0 +1,48 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "frontend/files/text.hpp"
+#include "frontend/scene/warnings.hpp"
+#include "grelha/geometry.hpp"
+
+namespace grelha {
+
+/// A number and the word it was read from.
+struct NumberWord {
+  float value = 0;
+  std::string_view word;
+};
+
+/// Words of an NFF file read as what an entity wants; anything else is a ParseError at the word
+/// found. `what` completes "wanted a number for ...".
+class NffInput {
+ public:
+  NffInput(Words& all_words, Warnings& all_warnings) : words(all_words), warnings(all_warnings) {}
+
+  /// infinite and NaN pass: the caller drops what cannot be drawn
+  float number(const char* what);
+  float bounded(const char* what);  ///< for what cannot be dropped: camera, lights, materials
+  Float3 point(const char* what);
+  Float3 bounded_point(const char* what);
+  /// A count of things that take at least `least_bytes` each, checked against the rest of the file.
+  std::size_t count(const char* what, std::size_t least_bytes);
+
+  /// All numbers left on this line, then whole further lines as long as fewer than `enough` were
+  /// found and numbers follow. Every value is bounded.
+  std::vector<NumberWord> numbers(std::size_t enough, const char* what);
+
+  Position position(std::string_view word) const { return words.position(word); }
+  [[noreturn]] void fail(std::string_view word, const std::string& wanted) const;
+  void warn_once(std::string_view kind, std::string_view word, const std::string& message);
+
+  Words& words;
+  Warnings& warnings;
+
+ private:
+  void check_bounds(std::string_view word, float value, const char* what) const;
+};
+
+}  // namespace grelha

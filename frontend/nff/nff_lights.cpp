@@ -1,0 +1,123 @@
+#include "frontend/nff/nff_lights.hpp"
+
+#include "frontend/scene/scene_builder.hpp"
+
+#include <cmath>
+
+namespace grelha {
+namespace {
+
+Float3 triple(const std::vector<NumberWord>& n, std::size_t first) {
+  return {n[first].value, n[first + 1].value, n[first + 2].value};
+}
+Float3 operator-(const Float3& a, const Float3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+Float3 operator+(const Float3& a, const Float3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+Float3 operator*(float s, const Float3& a) { return {s * a.x, s * a.y, s * a.z}; }
+Float3 cross(const Float3& a, const Float3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+Float3 unit(const Float3& a) {
+  const double length = std::sqrt(double(a.x) * a.x + double(a.y) * a.y + double(a.z) * a.z);
+  return length > 0 ? Float3{float(a.x / length), float(a.y / length), float(a.z / length)}
+                    : Float3{0, 0, 1};
+}
+
+/// A rectangle centered at a position, facing `at`.
+AreaLight facing(
+    const Float3& center, const Float3& at, float width, float height, const Float3& color) {
+  const Float3 view = unit(at - center);
+  const Float3 side =
+      unit(cross(view, std::abs(view.z) < 0.9f ? Float3{0, 0, 1} : Float3{0, 1, 0}));
+  AreaLight light;
+  light.edge1 = width * side;
+  light.edge2 = height * cross(side, view);
+  light.corner = center - 0.5f * (light.edge1 + light.edge2);
+  light.color = color;
+  return light;
+}
+
+}  // namespace
+
+void NffLights::add_point(Float3 position, Float3 color) {
+  file_.scene.lights.push_back({position, color, {}, {}});
+  ++file_.counts.lights;
+}
+
+void NffLights::read_point(NffInput& input) {
+  const Float3 position = input.bounded_point("the light's position");
+  if (!looks_like_number(input.words.peek_on_line())) {
+    colorless_.push_back(file_.scene.lights.size());
+    add_point(position, {});
+    return;
+  }
+  float color[3];
+  for (float& part : color) {
+    const std::string_view word = input.words.peek_on_line();
+    if (word.empty())
+      throw ParseError(input.position(word), "a number for the light's color", "end of line");
+    part = input.bounded("the light's color");
+  }
+  add_point(position, {color[0], color[1], color[2]});
+}
+
+void NffLights::add_area(NffInput& input, std::string_view keyword, AreaLight light) {
+  const Float3 center = light.corner + 0.5f * (light.edge1 + light.edge2);
+  if (!drawable(center))
+    throw ParseError(input.position(keyword),
+                     "wanted an area light within 1e18, found a larger one");
+  light.light = std::uint32_t(file_.scene.lights.size());
+  file_.area_lights.push_back(light);
+  add_point(center, light.color);
+  file_.scene.lights.back().edge1 = light.edge1;
+  file_.scene.lights.back().edge2 = light.edge2;
+}
+
+void NffLights::read_light(NffInput& input, std::string_view keyword) {
+  const std::string_view kind = input.words.next();
+  if (kind == "punctual") {
+    const Float3 position = input.bounded_point("the light's position");
+    add_point(position, input.bounded_point("the light's color"));
+  } else if (kind == "quad") {
+    AreaLight light;
+    light.corner = input.bounded_point("the light's corner");
+    light.color = input.bounded_point("the light's color");
+    light.edge1 = input.bounded_point("the light's second corner") - light.corner;
+    light.edge2 = input.bounded_point("the light's third corner") - light.corner;
+    const std::string_view samples = input.words.next();
+    std::int64_t count = 0;
+    if (!to_integer(samples, count) || count < 0 || count > 1000000)
+      input.fail(samples, "a whole number, at most 1000000, for the light's samples");
+    light.samples = int(count);
+    add_area(input, keyword, light);
+  } else {
+    input.fail(kind, "\"punctual\" or \"quad\" after \"light\"");
+  }
+}
+
+void NffLights::read_area(NffInput& input, std::string_view keyword) {
+  const std::vector<NumberWord> n = input.numbers(11, "the area light");
+  if (n.size() < 11)
+    input.fail(
+        input.words.peek(),
+        "a number for the area light (field " + std::to_string(n.size() + 1) + " of 11 or 12)");
+  if (n.size() == 11) {
+    add_area(
+        input, keyword, facing(triple(n, 0), triple(n, 3), n[6].value, n[7].value, triple(n, 8)));
+    return;
+  }
+  AreaLight light;
+  light.corner = triple(n, 0);
+  light.edge1 = triple(n, 3);
+  light.edge2 = triple(n, 6);
+  light.color = triple(n, 9);
+  add_area(input, keyword, light);
+}
+
+/// No intensity is prescribed for lights without color; SPD's own writers use 1/sqrt(N).
+void NffLights::finish() {
+  const auto even = float(1 / std::sqrt(double(file_.scene.lights.size())));
+  for (const std::size_t i : colorless_)
+    file_.scene.lights[i].color = {even, even, even};
+}
+
+}  // namespace grelha

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string_view>
+
+#include "frontend/nff/nff_input.hpp"
+#include "grelha/geometry.hpp"
+
+namespace grelha {
+
+/// After `f`: 8 fields (one color) or 11 (diffuse and specular color), then roughness (12) or two
+/// more and an emission (14). Other numbers of fields and names behind them are warned of, and what
+/// can be made of them is.
+Material read_nff_fill(NffInput& input, std::string_view keyword);
+
+/// After `mat`: 11, 12 or 14 fields.
+Material read_nff_mat(NffInput& input, std::string_view keyword);
+
+/// For objects before the first `f`.
+Material default_material();
+
+}  // namespace grelha

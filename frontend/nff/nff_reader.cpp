@@ -1,0 +1,401 @@
+#include "frontend/nff/nff_reader.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+#include <vector>
+
+#include "frontend/files/load_progress.hpp"
+#include "frontend/files/memory_limit.hpp"
+#include "frontend/files/plausible.hpp"
+#include "frontend/nff/nff_boxes.hpp"
+#include "frontend/nff/nff_input.hpp"
+#include "frontend/nff/nff_lights.hpp"
+#include "frontend/nff/nff_material.hpp"
+#include "frontend/nff/nff_view.hpp"
+#include "frontend/nff/nff_words.hpp"
+#include "frontend/ply/ply_reader.hpp"
+#include "frontend/scene/scene_builder.hpp"
+#include "grelha/render.hpp"
+
+namespace grelha {
+namespace {
+
+class NffReader {
+ public:
+  NffReader(const std::string& path,
+            std::string_view text,
+            const Warn& warn,
+            const ReadOptions& options,
+            LoadProgress* progress)
+      : options_(options),
+        load_(progress),
+        progress_(progress, text.data()),
+        folder_(std::filesystem::path(path).parent_path()),
+        words_(path, text, text.starts_with("\xEF\xBB\xBF") ? 3 : 0, '#'),
+        warn_(warn),
+        warnings_(warn),
+        input_(words_, warnings_),
+        build_(file_),
+        lights_(file_) {
+    file_.source_bytes = text.size();
+  }
+
+  SceneFile read(std::string_view text);
+
+ private:
+  using Entity = void (NffReader::*)(std::string_view keyword);
+  struct Named {
+    std::string_view name;
+    Entity read;
+  };
+  static const Named kEntities[];
+
+  void warn_of_nul(std::string_view text);
+  bool read_entity(std::string_view word);
+  void skip_other(std::string_view word, std::string_view last_entity);
+  static std::string meant(std::string_view word);
+  void refuse_sense8(std::string_view word);
+  std::uint32_t material(std::string_view keyword);
+  bool is_outside(const std::string& path) const;
+  void polygon(std::string_view keyword, bool patch);
+  std::vector<std::uint32_t> mesh_corners(std::size_t faces, std::size_t vertices);
+
+  void read_s(std::string_view keyword);
+  void read_p(std::string_view keyword) { polygon(keyword, false); }
+  void read_pp(std::string_view keyword) { polygon(keyword, true); }
+  void read_c(std::string_view keyword);
+  void read_f(std::string_view keyword);
+  void read_mat(std::string_view keyword);
+  void read_l(std::string_view) { lights_.read_point(input_); }
+  void read_b(std::string_view) {
+    file_.scene.background = input_.bounded_point("the background's color");
+  }
+  void read_pl(std::string_view keyword);
+  void read_npl(std::string_view keyword);
+  void read_box(std::string_view keyword);
+  void read_aabb(std::string_view keyword);
+  void read_mesh(std::string_view keyword);
+  void read_ply(std::string_view keyword);
+  void read_light(std::string_view keyword) { lights_.read_light(input_, keyword); }
+  void read_al(std::string_view keyword) { lights_.read_area(input_, keyword); }
+  void read_env(std::string_view keyword);
+  void read_accel(std::string_view keyword);
+  void read_spp(std::string_view keyword);
+
+  ReadOptions options_;
+  LoadProgress* load_;
+  ParseProgress progress_;
+  std::filesystem::path folder_;
+  SceneFile file_;
+  Words words_;
+  const Warn& warn_;
+  Warnings warnings_;
+  NffInput input_;
+  SceneBuilder build_;
+  NffView view_;
+  NffLights lights_;
+  std::vector<Float3> corners_, normals_;
+};
+
+// The frequent ones first: the search is linear.
+const NffReader::Named NffReader::kEntities[] = {
+    {"s", &NffReader::read_s},         {"p", &NffReader::read_p},
+    {"pp", &NffReader::read_pp},       {"c", &NffReader::read_c},
+    {"f", &NffReader::read_f},         {"mat", &NffReader::read_mat},
+    {"l", &NffReader::read_l},         {"b", &NffReader::read_b},
+    {"bclr", &NffReader::read_b},      {"pl", &NffReader::read_pl},
+    {"npl", &NffReader::read_npl},     {"box", &NffReader::read_box},
+    {"aabb", &NffReader::read_aabb},   {"mesh", &NffReader::read_mesh},
+    {"ply", &NffReader::read_ply},     {"light", &NffReader::read_light},
+    {"al", &NffReader::read_al},       {"env", &NffReader::read_env},
+    {"accel", &NffReader::read_accel}, {"spp", &NffReader::read_spp},
+};
+
+/// They stand between words as blanks do, which is seldom what was meant.
+void NffReader::warn_of_nul(std::string_view text) {
+  const std::size_t nul = text.find('\0');
+  if (nul != text.npos)
+    warnings_.say(words_.position(text.substr(nul)), kNulIsBlank);
+}
+
+SceneFile NffReader::read(std::string_view text) {
+  refuse_sense8(words_.peek());
+  warn_of_nul(text);
+  std::string_view last_entity;
+  for (;;) {
+    const std::string_view word = words_.next();
+    if (word.empty()) {
+      file_.camera = view_.finish(input_, word);
+      lights_.finish();
+      return std::move(file_);
+    }
+    progress_.at(words_.cursor());
+    if (read_entity(word))
+      last_entity = word;
+    else
+      skip_other(word, last_entity);
+  }
+}
+
+bool NffReader::read_entity(std::string_view word) {
+  for (const Named& entity : kEntities) {
+    if (entity.name != word)
+      continue;
+    (this->*entity.read)(word);
+    return true;
+  }
+  return view_.read(word, input_, file_.lens);
+}
+
+/// ` (did you mean "angle"?)`, or nothing.
+std::string NffReader::meant(std::string_view word) {
+  std::vector<std::string_view> known(NffView::words().begin(), NffView::words().end());
+  for (const Named& entity : kEntities)
+    known.push_back(entity.name);
+  const std::string near = meant_keyword(word, known);
+  return near.empty() ? "" : " (did you mean " + grelha::quoted(near) + "?)";
+}
+
+/// What no entity asked for: warned of once a kind, and the rest of its line with it. A file may
+/// hold millions: only the first of a kind is worth a search for the word that was meant.
+void NffReader::skip_other(std::string_view word, std::string_view last_entity) {
+  if (!looks_like_number(word)) {
+    if (warnings_.first("word " + std::string(word)))
+      warnings_.say(input_.position(word),
+                    "unknown word " + quoted(word) + meant(word) + "; its line is skipped");
+  } else if (words_.fresh_line() || last_entity.empty()) {
+    input_.warn_once("stray", word, "numbers that belong to no entity; their line is skipped");
+  } else if (warnings_.first("surplus " + std::string(last_entity))) {
+    warnings_.say(
+        input_.position(word),
+        "more numbers than " + quoted(last_entity) + " takes; the rest of the line is skipped");
+  }
+  words_.skip_line();
+}
+
+/// Another format by the same three letters (WorldToolKit): `nff` and `version` on its first lines.
+void NffReader::refuse_sense8(std::string_view word) {
+  if (word != "nff" && word != "NFF")
+    return;
+  Words ahead = words_;
+  ahead.next();
+  if (ahead.next() == "version")
+    throw ParseError(input_.position(word),
+                     "wanted Haines' Neutral File Format, found Sense8's (WorldToolKit) NFF");
+}
+
+std::uint32_t NffReader::material(std::string_view keyword) {
+  std::vector<Material>& all = file_.scene.materials;
+  if (all.empty()) {
+    input_.warn_once(
+        "no material", keyword, "an object before the first \"f\"; it is drawn dull white");
+    all.push_back(default_material());
+  }
+  return std::uint32_t(all.size() - 1);
+}
+
+void NffReader::read_s(std::string_view keyword) {
+  const Float3 center = input_.point("the sphere's center");
+  build_.sphere(center, input_.number("the sphere's radius"), material(keyword));
+  ++file_.counts.s;
+}
+
+void NffReader::polygon(std::string_view keyword, bool patch) {
+  const std::string_view word = words_.peek();
+  const std::size_t size = input_.count("the polygon's corners", patch ? 12 : 6);
+  if (size < 3)
+    input_.fail(word, "at least 3 corners of a polygon");
+  corners_.clear();
+  normals_.clear();
+  for (std::size_t i = 0; i < size; ++i) {
+    corners_.push_back(input_.point("the polygon's corner"));
+    if (patch)
+      normals_.push_back(input_.point("the corner's normal"));
+  }
+  build_.polygon(corners_, normals_, material(keyword));
+  ++(patch ? file_.counts.pp : file_.counts.p);
+}
+
+void NffReader::read_c(std::string_view keyword) {
+  const Float3 base = input_.point("the cone's base");
+  const float base_radius = input_.number("the cone's base radius");
+  const Float3 apex = input_.point("the cone's apex");
+  build_.cone(base, base_radius, apex, input_.number("the cone's apex radius"), material(keyword));
+  ++file_.counts.c;
+}
+
+void NffReader::read_f(std::string_view keyword) {
+  file_.scene.materials.push_back(read_nff_fill(input_, keyword));
+  ++file_.counts.materials;
+}
+
+void NffReader::read_mat(std::string_view keyword) {
+  file_.scene.materials.push_back(read_nff_mat(input_, keyword));
+  ++file_.counts.materials;
+}
+
+void NffReader::read_pl(std::string_view keyword) {
+  const Float3 a = input_.point("the plane's first point"),
+               b = input_.point("the plane's second point");
+  build_.plane(a, b, input_.point("the plane's third point"), material(keyword));
+  ++file_.counts.pl;
+}
+
+/// normal . x + constant = 0, as the one reader has it that is known to take `npl`.
+void NffReader::read_npl(std::string_view keyword) {
+  const Float3 normal = input_.point("the plane's normal");
+  const float constant = input_.number("the plane's constant");
+  build_.plane(normal, 0 - constant, material(keyword));  // 0 - 0 is no -0
+  ++file_.counts.pl;
+}
+
+void NffReader::read_box(std::string_view keyword) {
+  const Float3 corner = input_.point("the box's first corner");
+  build_.box(corner, input_.point("the box's second corner"), material(keyword));
+  ++file_.counts.box;
+}
+
+void NffReader::read_aabb(std::string_view keyword) {
+  if (file_.box_order == BoxOrder::kNone)
+    file_.box_order = aabb_order(words_);
+  const Float3 p = input_.point("the box's bounds");
+  const Float3 q = input_.point("the box's bounds");
+  if (file_.box_order == BoxOrder::kPairs)
+    build_.box({p.x, p.z, q.y}, {p.y, q.x, q.z}, material(keyword));
+  else
+    build_.box(p, q, material(keyword));
+  ++file_.counts.box;
+}
+
+/// Counted from 1, or from -1 for the last vertex backwards.
+std::vector<std::uint32_t> NffReader::mesh_corners(std::size_t faces, std::size_t vertices) {
+  std::vector<std::uint32_t> corners;
+  corners.reserve(3 * faces);
+  const auto last = std::int64_t(vertices);
+  for (std::size_t i = 0; i < 3 * faces; ++i) {
+    progress_.at(words_.cursor());
+    const std::string_view word = words_.next();
+    std::int64_t index = 0;
+    if (!to_integer(word, index) || index == 0 || index > last || index < -last)
+      input_.fail(word,
+                  "a vertex of the mesh, from 1 to " + std::to_string(last) + " or -" +
+                      std::to_string(last) + " to -1");
+    corners.push_back(std::uint32_t(index > 0 ? index - 1 : last + index));
+  }
+  return corners;
+}
+
+void NffReader::read_mesh(std::string_view keyword) {
+  Mesh mesh;
+  const std::size_t vertices = input_.count("the mesh's vertices", 6),
+                    faces = input_.count("the mesh's faces", 6);
+  mesh.x.reserve(vertices);
+  mesh.y.reserve(vertices);
+  mesh.z.reserve(vertices);
+  for (std::size_t i = 0; i < vertices; ++i) {
+    progress_.at(words_.cursor());
+    const Float3 p = input_.point("the mesh's vertex");
+    mesh.x.push_back(p.x);
+    mesh.y.push_back(p.y);
+    mesh.z.push_back(p.z);
+  }
+  mesh.corners = mesh_corners(faces, vertices);
+  build_.mesh(std::move(mesh), material(keyword));
+  file_.counts.mesh += faces;
+}
+
+/// Whether a file lies elsewhere than in the scene's folder or below, all links followed; asked
+/// before it is opened, so that a scene cannot even find out what there is.
+bool NffReader::is_outside(const std::string& path) const {
+  std::error_code error;
+  const std::filesystem::path home =
+      std::filesystem::canonical(folder_.empty() ? "." : folder_, error);
+  if (error)
+    return true;
+  // Of what is not there weakly_canonical() would leave a relative path.
+  const std::filesystem::path file =
+      std::filesystem::weakly_canonical(std::filesystem::absolute(path), error);
+  if (error)
+    return true;
+  return std::mismatch(home.begin(), home.end(), file.begin(), file.end()).first != home.end();
+}
+
+void NffReader::read_ply(std::string_view keyword) {
+  const std::string_view name = words_.rest_of_line();
+  if (name.empty())
+    throw ParseError(input_.position(name), "a file name after \"ply\"", "end of line");
+  // the system would read no further, checks would
+  if (name.find('\0') != name.npos)
+    input_.fail(name, "a file name after \"ply\"");
+  const std::string path = (folder_ / std::string(name)).string();
+  if (!options_.allow_outside && is_outside(path))
+    throw ParseError(
+        input_.position(name),
+        "wanted a file in the scene's folder or below it (or --allow-outside), found " +
+            quoted(name));
+  Mesh mesh;
+  try {
+    std::string bytes =
+        load_file(path, load_, false, [&](std::string_view text, std::size_t fresh) {
+          judge_beginning(path, true, text, fresh);
+        });
+    mesh = read_ply_mesh(path, bytes, warn_, load_);
+    file_.source_bytes = std::max<std::uint64_t>(file_.source_bytes, words_.size() + bytes.size());
+  } catch (const std::bad_alloc&) {
+    throw OutOfMemory(path);
+  } catch (const FileError& error) {
+    const std::string reason =
+        std::string(error.what()).substr(path.size() + std::string_view(": error: ").size());
+    throw FileError(path, reason + " (named at " + input_.position(name).text() + ')');
+  }
+  const std::size_t faces = mesh.face_count();
+  if (faces == 0)
+    file_.points += mesh.vertex_count();
+  const Triangles& triangles = file_.scene.geometry.triangles;
+  constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max();
+  if (mesh.vertex_count() > kMost - triangles.vertex_count() ||
+      mesh.corners.size() > kMost - triangles.size())
+    throw ParseError(input_.position(name),
+                     "wanted fewer than 2^32 vertices and triangles in all, found more");
+  build_.mesh(std::move(mesh), material(keyword));
+  file_.counts.ply += faces;
+  file_.meshes.push_back(path);
+}
+
+void NffReader::read_env(std::string_view keyword) {
+  file_.environment = std::string(words_.rest_of_line());
+  input_.warn_once(
+      "env", keyword, "environment maps are not rendered; the background color is seen instead");
+}
+
+void NffReader::read_accel(std::string_view) {
+  file_.accelerator = std::string(words_.rest_of_line());
+}
+
+/// A hint; what is too much is cut, and said.
+void NffReader::read_spp(std::string_view) {
+  const std::string_view word = words_.next();
+  const std::string most = std::to_string(kMostSamples);
+  std::int64_t samples = 0;
+  if (!to_integer(word, samples) || samples < 0)
+    input_.fail(word, "a whole number of samples per pixel, from 0 to " + most);
+  if (samples > kMostSamples)
+    input_.warn_once(
+        "spp",
+        word,
+        quoted(word) + " samples per pixel are more than " + most + ", which are taken");
+  file_.samples_per_pixel = int(std::min<std::int64_t>(samples, kMostSamples));
+}
+
+}  // namespace
+
+SceneFile read_nff(const std::string& path,
+                   std::string_view text,
+                   const Warn& warn,
+                   const ReadOptions& options,
+                   LoadProgress* progress) {
+  return NffReader(path, text, warn, options, progress).read(text);
+}
+
+}  // namespace grelha

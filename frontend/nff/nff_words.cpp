@@ -1,0 +1,57 @@
+#include "frontend/nff/nff_words.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+#include <vector>
+
+#include "frontend/files/nearest.hpp"
+
+namespace grelha {
+namespace {
+
+// What people write who know the thing and not its keyword, which is too short to be found by
+// letters.
+constexpr std::pair<std::string_view, std::string_view> kFullNames[] = {
+    {"sphere", "s"},        {"ball", "s"},        {"polygon", "p"},       {"triangle", "p"},
+    {"tri", "p"},           {"quad", "p"},        {"patch", "pp"},        {"cone", "c"},
+    {"cylinder", "c"},      {"plane", "pl"},      {"cube", "box"},        {"fill", "f"},
+    {"material", "f"},      {"color", "f"},       {"colour", "f"},        {"background", "b"},
+    {"viewpoint", "v"},     {"lookfrom", "from"}, {"position", "from"},   {"lookat", "at"},
+    {"target", "at"},       {"fov", "angle"},     {"size", "resolution"}, {"samples", "spp"},
+    {"environment", "env"}, {"include", "ply"},
+};
+constexpr std::size_t kLongestMeant = 64;  ///< no keyword is meant by more
+
+std::string in_small_letters(std::string_view word) {
+  std::string small(word);
+  for (char& c : small)
+    if (c >= 'A' && c <= 'Z')
+      c = char(c + ('a' - 'A'));
+  return small;
+}
+
+/// The keyword of a full name; empty when it is none.
+std::string_view short_for(std::string_view word) {
+  const auto found = std::find_if(std::begin(kFullNames),
+                                  std::end(kFullNames),
+                                  [&](const auto& name) { return name.first == word; });
+  return found == std::end(kFullNames) ? std::string_view() : found->second;
+}
+
+}  // namespace
+
+std::string meant_keyword(std::string_view word, std::span<const std::string_view> known) {
+  if (word.size() > kLongestMeant)
+    return "";
+  const std::string small = in_small_letters(word);
+  if (std::find(known.begin(), known.end(), small) != known.end())
+    return small;
+  std::vector<std::string_view> all(known.begin(), known.end());
+  for (const auto& name : kFullNames)
+    all.push_back(name.first);
+  const std::string_view near = nearest(small, all), keyword = short_for(near);
+  return std::string(keyword.empty() ? near : keyword);
+}
+
+}  // namespace grelha

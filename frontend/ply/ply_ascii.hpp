@@ -1,0 +1,42 @@
+#pragma once
+
+#include <string_view>
+
+#include "frontend/files/load_progress.hpp"
+#include "frontend/files/text.hpp"
+#include "frontend/ply/ply_faces.hpp"
+
+namespace grelha {
+
+/// Rows of an ASCII file as words. Rows may be broken over lines or share one; where a line holds
+/// more words than its row has properties, the rest is dropped if there are lines enough left for
+/// the rows to come.
+class PlyAscii {
+ public:
+  PlyAscii(const std::string& path,
+           std::string_view bytes,
+           const PlyHeader& header,
+           LoadProgress* progress)
+      : words_(path, bytes, header.data_begin, '\0'),
+        header_(header),
+        progress_(progress, bytes.data()) {}
+  void read(const PlyElement& element, const PlyPlan& plan, Mesh& mesh, PlyFaces& faces);
+
+ private:
+  enum class Extra { kUnknown, kDropped, kNextRow };
+
+  std::string_view word(const PlyElement& element, std::uint64_t row);
+  void read_list(const PlyElement& element,
+                 const PlyProperty& list,
+                 std::uint64_t row,
+                 PlyFaces* faces);
+  void end_row(const PlyElement& element, std::uint64_t row);
+  Extra judge(const PlyElement& element, std::uint64_t row) const;
+
+  Words words_;
+  const PlyHeader& header_;
+  ParseProgress progress_;
+  Extra extra_ = Extra::kUnknown;
+};
+
+}  // namespace grelha

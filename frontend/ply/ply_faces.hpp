@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstdint>
+
+#include "frontend/ply/ply_header.hpp"
+#include "frontend/scene/mesh.hpp"
+
+namespace grelha {
+
+/// Takes the indices of a list of `face` or `tristrips`, one after the other.
+class PlyFaces {
+ public:
+  PlyFaces(Mesh& mesh, std::uint64_t vertices, bool strips)
+      : mesh_(mesh), vertices_(vertices), strips_(strips) {}
+
+  bool accepts(std::int64_t index) const {
+    return (index >= 0 && std::uint64_t(index) < vertices_) || (strips_ && index == -1);
+  }
+  void add(std::int64_t index) {
+    if (strips_)
+      add_to_strip(index);
+    else
+      mesh_.corners.push_back(std::uint32_t(index));
+  }
+  /// A whole triangle at once, when it is one and sound; false: take it item by item.
+  bool add_triangle(std::int64_t a, std::int64_t b, std::int64_t c) {
+    if (strips_ || !accepts(a) || !accepts(b) || !accepts(c))
+      return false;
+    mesh_.corners.insert(mesh_.corners.end(),
+                         {std::uint32_t(a), std::uint32_t(b), std::uint32_t(c)});
+    mesh_.close_face(3);
+    return true;
+  }
+  void end(std::uint32_t size) {
+    run_ = 0;
+    if (!strips_)
+      mesh_.close_face(size);
+  }
+
+ private:
+  /// -1 starts anew. The winding alternates, so every second triangle is turned.
+  void add_to_strip(std::int64_t index) {
+    if (index == -1) {
+      run_ = 0;
+      return;
+    }
+    const auto c = std::uint32_t(index);
+    if (++run_ >= 3 && a_ != b_ && b_ != c && c != a_) {
+      const bool turned = run_ % 2 == 0;
+      mesh_.corners.insert(mesh_.corners.end(), {turned ? b_ : a_, turned ? a_ : b_, c});
+      mesh_.close_face(3);
+    }
+    a_ = b_;
+    b_ = c;
+  }
+
+  Mesh& mesh_;
+  std::uint64_t vertices_;
+  bool strips_;
+  std::uint64_t run_ = 0;  ///< vertices of this strip so far
+  std::uint32_t a_ = 0, b_ = 0;
+};
+
+/// What is wanted of one element: -1, or the index of a property.
+struct PlyPlan {
+  int columns[6] = {-1, -1, -1, -1, -1, -1};  ///< x y z nx ny nz of `vertex`
+  int list = -1;                              ///< the indices of `face` or `tristrips`
+};
+
+/// The six arrays of a mesh in the order of PlyPlan::columns.
+inline std::vector<float>& column(Mesh& mesh, int i) {
+  std::vector<float>* const kAll[] = {&mesh.x, &mesh.y, &mesh.z, &mesh.nx, &mesh.ny, &mesh.nz};
+  return *kAll[i];
+}
+
+}  // namespace grelha

@@ -1,0 +1,107 @@
+#include "frontend/ply/ply_reader.hpp"
+
+#include <algorithm>
+
+#include "frontend/ply/ply_ascii.hpp"
+#include "frontend/ply/ply_binary.hpp"
+
+namespace grelha {
+namespace {
+
+int find_property(const PlyElement& element, std::string_view name) {
+  for (std::size_t i = 0; i < element.properties.size(); ++i)
+    if (element.properties[i].name == name)
+      return int(i);
+  return -1;
+}
+
+PlyPlan plan_vertex(const PlyElement& element) {
+  static constexpr std::string_view kNames[] = {"x", "y", "z", "nx", "ny", "nz"};
+  PlyPlan plan;
+  for (int i = 0; i < 6; ++i) {
+    const int found = find_property(element, kNames[i]);
+    const bool scalar = found >= 0 && !element.properties[std::size_t(found)].is_list;
+    if (scalar)
+      plan.columns[i] = found;
+    else if (i < 3 && element.count > 0)
+      throw ParseError(
+          element.position,
+          "wanted a property \"" + std::string(kNames[i]) + "\" of \"vertex\", found none");
+  }
+  const bool normals = plan.columns[3] >= 0 && plan.columns[4] >= 0 && plan.columns[5] >= 0;
+  if (!normals)
+    std::fill(plan.columns + 3, plan.columns + 6, -1);
+  return plan;
+}
+
+PlyPlan plan_faces(const PlyElement& element) {
+  PlyPlan plan;
+  plan.list = find_property(element, "vertex_indices");
+  if (plan.list < 0)
+    plan.list = find_property(element, "vertex_index");
+  const bool sound = plan.list >= 0 && element.properties[std::size_t(plan.list)].is_list &&
+                     element.properties[std::size_t(plan.list)].type < PlyType::kFloat32;
+  if (sound)
+    return plan;
+  if (element.count > 0)
+    throw ParseError(
+        element.position,
+        "wanted a list of integers \"vertex_indices\" in \"" + element.name + "\", found none");
+  return PlyPlan{};
+}
+
+/// Corners of as many triangles as there are rows, if the file can hold them: most meshes are of
+/// triangles.
+std::size_t likely_corners(const PlyHeader& header,
+                           const PlyElement& element,
+                           int list,
+                           std::size_t bytes) {
+  if (list < 0)
+    return 0;
+  const bool ascii = header.format == PlyFormat::kAscii;
+  const std::size_t item = ascii ? 2 : size_of(element.properties[std::size_t(list)].type);
+  return std::min(std::size_t(3 * element.count), bytes / item);
+}
+
+template <class Rows>
+Mesh read_rows(const PlyHeader& header, std::size_t bytes, Rows& rows) {
+  Mesh mesh;
+  std::uint64_t vertices = 0;
+  for (const PlyElement& element : header.elements)
+    if (element.name == "vertex")
+      vertices = element.count;
+  PlyFaces polygons(mesh, vertices, false), strips(mesh, vertices, true);
+  for (const PlyElement& element : header.elements) {
+    const bool is_strips = element.name == "tristrips";
+    PlyPlan plan;
+    if (element.name == "vertex")
+      plan = plan_vertex(element);
+    if (element.name == "face" || is_strips)
+      plan = plan_faces(element);
+    for (int i = 0; i < 6; ++i)
+      if (plan.columns[i] >= 0)
+        column(mesh, i).reserve(std::size_t(element.count));
+    if (element.name == "face")
+      mesh.corners.reserve(likely_corners(header, element, plan.list, bytes));
+    rows.read(element, plan, mesh, is_strips ? strips : polygons);
+  }
+  return mesh;
+}
+
+}  // namespace
+
+Mesh read_ply_mesh(const std::string& path,
+                   std::string_view bytes,
+                   const Warn& warn,
+                   LoadProgress* progress) {
+  Warnings warnings(warn);
+  const PlyHeader header = read_ply_header(path, bytes, warnings, progress);
+  if (header.format == PlyFormat::kAscii) {
+    PlyAscii rows(path, bytes, header, progress);
+    return read_rows(header, bytes.size(), rows);
+  }
+  PlyBinary rows(path, bytes, header, progress);
+  return read_rows(header, bytes.size(), rows);
+}
+
+}  // namespace grelha

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "frontend/scene/mesh.hpp"
+#include "frontend/scene/polygon.hpp"
+#include "frontend/scene/scene_file.hpp"
+
+namespace grelha {
+
+/// Largest coordinate or radius that is drawn: squares of differences still fit a float.
+inline constexpr float kLargest = 1e18f;
+
+/// False for NaN as well.
+inline bool drawable(float v) { return v >= -kLargest && v <= kLargest; }
+inline bool drawable(const Float3& v) { return drawable(v.x) && drawable(v.y) && drawable(v.z); }
+
+/// Puts what the readers found into the kernel's arrays; what cannot be drawn is counted in
+/// SceneFile::dropped instead.
+class SceneBuilder {
+ public:
+  explicit SceneBuilder(SceneFile& file) : file_(file) {}
+
+  void sphere(Float3 center, float radius, std::uint32_t material);
+  void cone(Float3 base, float base_radius, Float3 apex, float apex_radius, std::uint32_t material);
+  /// Through three points, front where they run counter-clockwise.
+  void plane(Float3 a, Float3 b, Float3 c, std::uint32_t material);
+  /// The points q with normal . q = distance.
+  void plane(Float3 normal, float distance, std::uint32_t material);
+  /// `normals`: one per corner, or empty.
+  void polygon(std::span<const Float3> corners,
+               std::span<const Float3> normals,
+               std::uint32_t material);
+  /// Any two opposite corners. A box without thickness along one axis is drawn as its two large
+  /// faces.
+  void box(Float3 corner, Float3 opposite, std::uint32_t material);
+  /// Becomes an object of its own.
+  void mesh(Mesh mesh, std::uint32_t material);
+
+ private:
+  std::uint32_t add_vertex(Float3 point, Float3 normal);
+  void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t material);
+  /// Whether anything is left of the triangle's area in floats.
+  bool has_area(std::uint32_t a, std::uint32_t b, std::uint32_t c) const;
+  bool bends(std::span<const Float3> corners) const;
+  void mesh_triangles(std::span<const std::uint32_t> corners,
+                      std::uint32_t first_vertex,
+                      std::uint32_t material);
+  void mesh_faces(const Mesh& mesh,
+                  const std::vector<bool>& bad,
+                  std::uint32_t first_vertex,
+                  std::uint32_t material);
+  void mesh_face(std::span<const std::uint32_t> corners,
+                 std::uint32_t first_vertex,
+                 std::uint32_t material);
+  void append_vertices(Mesh& mesh);
+
+  SceneFile& file_;
+  PolygonCutter cutter_;
+  std::vector<PolygonCutter::Triangle> pieces_;
+  std::vector<Float3> face_;
+};
+
+}  // namespace grelha

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstddef>
+#include <set>
+#include <string>
+#include <string_view>
+
+#include "frontend/files/parse_error.hpp"
+#include "frontend/scene/scene_file.hpp"
+
+namespace grelha {
+
+inline constexpr std::string_view kNulIsBlank = "the text holds NUL bytes, which count as blanks";
+
+/// Says each thing once; after kMost of them, nothing more, so that a file of noise stays readable.
+class Warnings {
+ public:
+  explicit Warnings(const Warn& warn) : warn_(warn) {}
+  /// Whether `kind` is new: only then is the (costlier) message worth making.
+  bool first(std::string_view kind) {
+    return said_.size() < kMost && said_.insert(std::string(kind.substr(0, 64))).second;
+  }
+  void say(const Position& at, std::string_view message) {
+    say(at.text() + ": warning: " + std::string(message));
+  }
+  void say(const std::string& line) {
+    if (warn_)
+      warn_(line);
+  }
+
+ private:
+  static constexpr std::size_t kMost = 20;
+  const Warn& warn_;
+  std::set<std::string> said_;
+};
+
+}  // namespace grelha
