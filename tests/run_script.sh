@@ -6,7 +6,7 @@ rm -rf "$2"
 mkdir -p "$2/project/build/release" "$2/tools"
 cd "$2"
 cp "$1" project/run
-for folder in kernel frontend scenes cmake examples tests perf; do mkdir project/$folder; done
+for folder in include kernel frontend scenes cmake examples tests perf; do mkdir project/$folder; done
 touch project/CMakeLists.txt project/CMakePresets.json project/build/release/.built-grelha
 printf '#!/bin/sh\necho "here: $*"\n' >project/build/release/grelha
 chmod +x project/build/release/grelha
@@ -49,7 +49,7 @@ asked GRELHA_ISAS=all
 touch project/kernel/new.cpp
 try 'run: configuring (release)|run: building everything|tested|' test
 try 'here: info x.nff|' info x.nff
-touch project/kernel/new.cpp
+touch project/include/new.hpp
 try "${steps}here: info x.nff|" info x.nff
 asked GRELHA_ISAS=all
 touch broken project/kernel/new.cpp
