@@ -1,10 +1,10 @@
 # Long work: parts, checkpoints, signals, ranks.
-grelha_test(parts image grelha::frontend grelha::scenes)
-grelha_test(identity unit grelha::frontend grelha::scenes)
-grelha_test(long_work image grelha::frontend)
+grelha_test(frontend/jobs/parts image grelha::frontend grelha::scenes)
+grelha_test(frontend/jobs/identity unit grelha::frontend grelha::scenes)
+grelha_test(frontend/jobs/long_work image grelha::frontend)
 target_compile_definitions(long_work_test PRIVATE GRELHA_PROGRAM="$<TARGET_FILE:grelha>")
 add_dependencies(long_work_test grelha)
-grelha_test(terminal image grelha::frontend)
+grelha_test(frontend/commands/terminal image grelha::frontend)
 target_compile_definitions(terminal_test PRIVATE GRELHA_PROGRAM="$<TARGET_FILE:grelha>")
 add_dependencies(terminal_test grelha)
 add_test(NAME kill_resume COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/with_python.sh ${CMAKE_CURRENT_SOURCE_DIR}/kill_resume.py $<TARGET_FILE:grelha>

@@ -18,7 +18,7 @@ struct ConeSide {
 ///
 /// Returns   lanes whose t is above t_min; t means nothing in the others.
 /// Accuracy  hit point within 32 eps (|org - base| + height + wider radius) of the surface; a ray
-///           that leaves it from that far above it does not meet it (tests/cone_test.cpp). The
+///           that leaves it from that far above it does not meet it (cone_test.cpp). The
 ///           quadratic is solved about the ray's point nearest to the narrower end, where what it
 ///           is made of is as small as what surrounds the hit. Its discriminant b b - a c is, by
 ///           Lagrange's identity, also w w - m m: where the roots meet, at a tip, b b is the

@@ -6,7 +6,7 @@ namespace grelha::GRELHA_ISA {
 
 /// Point where each ray meets an infinite plane, from either side; parallel rays miss. Accuracy: t
 /// within 6 eps (|point - org| |normal| / |dot(dir, normal)| + |t| (1 + 1 / sin)) of the exact one,
-/// sin that of the angle between ray and plane (tests/plane_test.cpp).
+/// sin that of the angle between ray and plane (plane_test.cpp).
 template <class Real>
 [[gnu::always_inline]] inline Mask<Real> hit_plane(const Vec3<Real>& org,
                                                    const Vec3<Real>& dir,

@@ -67,7 +67,7 @@ template <class Real>
 /// Requires  |radius| > 0; a negative radius shows only the inside. A lane with a NaN reports a miss.
 /// Returns   lanes whose t is above t_min; t is written in all lanes and means nothing in the others.
 /// Accuracy  hit point within 8 eps max(|radius|, |org - center|) of the surface
-///           (tests/sphere_test.cpp). Rays that start near the surface, where |center - org|^2 and
+///           (sphere_test.cpp). Rays that start near the surface, where |center - org|^2 and
 ///           radius^2 nearly agree, are tested in double.
 /// Source    Haines, Günther, Akenine-Möller, "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems
 ///           (2019), ch. 7, in units of t so that one division is left.

@@ -137,7 +137,7 @@ template <class Real, class Source>
   return narrow<Real>(t);
 }
 
-// What floats leave open, in u = 2^-24; docs/numerics.md derives each, tests/triangle_test.cpp pins
+// What floats leave open, in u = 2^-24; docs/numerics.md derives each, triangle_test.cpp pins
 // them. S: the largest sheared coordinate of a corner, Z: the largest depth of one. "Spread" is S
 // (S + Z) over the sum of the edge functions, times the range of the corners' t.
 
@@ -162,9 +162,9 @@ inline constexpr float kMostSpread = 2;
 ///           The caller drops those beyond t_max.
 /// Accuracy  Floats decide what they can; all else is taken again in double: rays within rounding
 ///           of an edge, and t of triangles that are large beside it or seen at a flat angle. So
-///           inside or outside is what crossing() says, for every ray (tests/watertight_test.cpp),
+///           inside or outside is what crossing() says, for every ray (watertight_test.cpp),
 ///           and t is within 8 eps of itself, whatever the triangle's size
-///           (tests/triangle_test.cpp). A t that is surely below t_min or above t_max, or with kAny
+///           (triangle_test.cpp). A t that is surely below t_min or above t_max, or with kAny
 ///           surely between, stays as floats found it: it is on the right side of both.
 /// Source    Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013; the
 ///           filter after Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust

@@ -4,7 +4,7 @@
 
 namespace grelha::GRELHA_ISA {
 
-/// log2 of positive normal numbers; relative error below 3e-7 (tests/power_test.cpp), near 1 too,
+/// log2 of positive normal numbers; relative error below 3e-7 (power_test.cpp), near 1 too,
 /// where it matters for high exponents. libm's has other bits on other machines.
 template <class Real>
 inline Real log2_of(const Real& x) {

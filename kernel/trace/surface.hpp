@@ -4,7 +4,7 @@
 // A ray that leaves a surface must not meet it again, nor skip what lies close. The point is taken from the primitive, not
 // from org + t dir, which is off by eps times the distance travelled; what error is left (`away`) is bounded from the
 // primitive's size and place: pbrt's idea (Pharr, Jakob, Humphreys, PBR 4th ed., 6.8), one scalar bound for all axes.
-// Derivations: docs/numerics.md; kept by tests/leaving_test.cpp.
+// Derivations: docs/numerics.md; kept by leaving_test.cpp.
 
 #include <type_traits>
 

@@ -5,7 +5,7 @@
 // A row makes scenes and rays and says, from exact or long double arithmetic on the very floats a
 // tracer gets, what each ray must meet (`Wanted`). What no float answer can tell apart is left
 // open: no row asks for more than the rounding that docs/numerics.md states allows. The same rows
-// judge Grelha in tests/stability_test.cpp, on a few rays, and Grelha beside Embree in
+// judge Grelha in stability_test.cpp, on a few rays, and Grelha beside Embree in
 // perf/stability.cpp, on millions.
 
 #include <cstdint>
