@@ -1,0 +1,24 @@
+#pragma once
+// Which instruction set this copy of the hot loops is compiled for: GRELHA_ISA names its namespace,
+// GRELHA_ISA_NUMBER tells the sets apart.
+
+#ifndef GRELHA_ISA
+#error "define GRELHA_ISA (scalar, sse2, avx2, avx512) before headers that hold hot loops"
+#endif
+
+#define GRELHA_ISA_scalar 1
+#define GRELHA_ISA_sse2 2
+#define GRELHA_ISA_avx2 3
+#define GRELHA_ISA_avx512 4
+#define GRELHA_ISA_scalar_double 1
+#define GRELHA_ISA_sse2_double 2
+#define GRELHA_ISA_avx2_double 3
+#define GRELHA_ISA_avx512_double 4
+#define GRELHA_JOIN_(a, b) a##b
+#define GRELHA_JOIN(a, b) GRELHA_JOIN_(a, b)
+#define GRELHA_ISA_NUMBER GRELHA_JOIN(GRELHA_ISA_, GRELHA_ISA)
+
+#if GRELHA_ISA_NUMBER > 1
+#include <immintrin.h>
+#include <xsimd/xsimd.hpp>
+#endif

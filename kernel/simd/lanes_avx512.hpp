@@ -1,0 +1,99 @@
+#pragma once
+// The functions of lanes.hpp for the sixteen floats and eight doubles of AVX-512's registers.
+
+#include "kernel/simd/lanes_avx2.hpp"
+
+namespace grelha::GRELHA_ISA {
+
+using Lanes = Simd<xsimd::avx512bw>;
+using Block = Avx2;
+using DoubleLanes = SimdDouble<xsimd::avx512bw>;
+using Avx512Mask = SimdMask<xsimd::avx512bw>;
+using Avx512DoubleMask = SimdDoubleMask<xsimd::avx512bw>;
+template <>
+struct SimdWords<xsimd::avx512bw> {
+  using Type = std::uint32_t __attribute__((vector_size(64)));
+};
+using Avx512Words = SimdWords<xsimd::avx512bw>::Type;
+
+inline Lanes lesser(const Lanes& a, const Lanes& b) { return Lanes(_mm512_min_ps(a.data, b.data)); }
+inline Lanes greater(const Lanes& a, const Lanes& b) {
+  return Lanes(_mm512_max_ps(a.data, b.data));
+}
+inline unsigned bits(const Avx512Mask& m) { return unsigned(m.data); }
+inline Avx512Mask but_not(const Avx512Mask& a, const Avx512Mask& b) {
+  return Avx512Mask(static_cast<__mmask16>(a.data & ~b.data));
+}
+inline float lane_min(const Lanes& a) {
+  return lane_min(
+      lesser(Block(_mm512_castps512_ps256(a.data)), Block(_mm512_extractf32x8_ps(a.data, 1))));
+}
+inline float lane_max(const Lanes& a) {
+  return lane_max(
+      greater(Block(_mm512_castps512_ps256(a.data)), Block(_mm512_extractf32x8_ps(a.data, 1))));
+}
+
+inline DoubleLanes lesser(const DoubleLanes& a, const DoubleLanes& b) {
+  return DoubleLanes(_mm512_min_pd(a.data, b.data));
+}
+inline DoubleLanes greater(const DoubleLanes& a, const DoubleLanes& b) {
+  return DoubleLanes(_mm512_max_pd(a.data, b.data));
+}
+inline unsigned bits(const Avx512DoubleMask& m) { return unsigned(m.data); }
+inline Avx512DoubleMask but_not(const Avx512DoubleMask& a, const Avx512DoubleMask& b) {
+  return Avx512DoubleMask(static_cast<__mmask8>(a.data & ~b.data));
+}
+
+inline bool any_set(Avx512Words a) {
+  const __m512i w = reinterpret_cast<__m512i>(a);
+  return _mm512_test_epi32_mask(w, w) != 0;
+}
+inline Lanes small_to_float(Avx512Words a) {
+  return Lanes(_mm512_cvtepi32_ps(reinterpret_cast<__m512i>(a)));
+}
+inline Avx512Mask mask_of(Avx512Words a) {
+  return Avx512Mask(_mm512_movepi32_mask(reinterpret_cast<__m512i>(a)));
+}
+inline Lanes floats_at(const float* from, Avx512Words at) {
+  return Lanes(_mm512_i32gather_ps(reinterpret_cast<__m512i>(at), from, 4));
+}
+inline Avx512Words words_at(const std::uint32_t* from, Avx512Words at) {
+  return reinterpret_cast<Avx512Words>(
+      _mm512_i32gather_epi32(reinterpret_cast<__m512i>(at), reinterpret_cast<const int*>(from), 4));
+}
+inline Lanes bytes_at(const std::uint8_t* from, Avx512Words at) {
+  const __m512i four =
+      _mm512_i32gather_epi32(reinterpret_cast<__m512i>(at), reinterpret_cast<const int*>(from), 1);
+  return Lanes(_mm512_cvtepi32_ps(_mm512_and_si512(four, _mm512_set1_epi32(255))));
+}
+
+inline void load_widened(const float* p, DoubleLanes& r) {
+  r = DoubleLanes(_mm512_cvtps_pd(_mm256_loadu_ps(p)));
+}
+inline void store_narrow(float* p, const DoubleLanes& a) {
+  _mm256_storeu_ps(p, _mm512_cvtpd_ps(a.data));
+}
+template <int i>
+inline DoubleLanes widen_part(const Lanes& a) {
+  return DoubleLanes(_mm512_cvtps_pd(_mm512_extractf32x8_ps(a.data, i)));
+}
+template <int i>
+inline DoubleLanes widen_part(const Block& a) {
+  return DoubleLanes(_mm512_cvtps_pd(a.data));
+}
+inline Lanes narrow_parts(const DoubleLanes (&part)[2]) {
+  return Lanes(_mm512_insertf32x8(
+      _mm512_castps256_ps512(_mm512_cvtpd_ps(part[0].data)), _mm512_cvtpd_ps(part[1].data), 1));
+}
+inline Block narrow_parts(const DoubleLanes (&part)[1]) {
+  return Block(_mm512_cvtpd_ps(part[0].data));
+}
+
+template <class T, class Vector>
+requires(sizeof(Vector) == 64) inline void store_chosen(T* to, const Vector& a, unsigned lanes) {
+  __m512i v;
+  __builtin_memcpy(&v, &a, sizeof v);
+  _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(static_cast<__mmask16>(lanes), v));
+}
+
+}  // namespace grelha::GRELHA_ISA
