@@ -17,6 +17,7 @@
 #include <benchmark/benchmark.h>
 
 #include "perf/workloads.hpp"
+#include "tests/reference/reference.hpp"
 
 namespace {
 
@@ -34,14 +35,7 @@ struct Place {
       : name(scene + " " + std::to_string(size)), file(make_scene(scene, size)) {
     rays = camera_rays(file.camera);
     TraceCounts unused;
-    trace(world(2),
-          *find_variant("scalar"),
-          {.method = Method::kReference},
-          rays,
-          0,
-          rays.size(),
-          truth,
-          unused);
+    trace(world(2), reference_walk(), {}, rays, 0, rays.size(), truth, unused);
   }
   const World& world(float density) {
     auto& w = worlds[density];
@@ -60,9 +54,9 @@ struct Rung {
 };
 
 const Rung kRungs[] = {
-    {"brute force, scalar", "scalar", {.method = Method::kReference, .mailbox = false}, true},
-    {"grid, scalar", "scalar", {.method = Method::kReference, .mailbox = false}},
-    {"grid, scalar, mailboxes", "scalar", {.method = Method::kReference, .mailbox = true}},
+    {"brute force, scalar", "reference", {.mailbox = false}, true},
+    {"grid, scalar", "reference", {.mailbox = false}},
+    {"grid, scalar, mailboxes", "reference", {.mailbox = true}},
     {"grid, scalar, leaping over empty cells", "scalar", {.method = Method::kSingle}},
     {"single rays, SIMD over primitives", "best", {.method = Method::kSingle}},
     {"packets of 16, sse2", "sse2", {.method = Method::kPackets, .packet = 16}},
@@ -75,10 +69,13 @@ const Rung kRungs[] = {
     {"packets of 256, sse2", "sse2", {.method = Method::kPackets, .packet = 256}},
     {"packets of 256", "best", {.method = Method::kPackets, .packet = 256}},
 };
+const Variant* variant_of(const Rung& rung) {
+  return std::string_view(rung.isa) == "reference" ? &reference_walk() : find_variant(rung.isa);
+}
 constexpr float kDensities[] = {.5f, .7f, 1, 1.4f, 2, 2.8f, 4, 5.6f};
 
 void run(benchmark::State& state, Place& place, const Rung& rung, float density) {
-  const Variant& variant = *find_variant(rung.isa);
+  const Variant& variant = *variant_of(rung);
   const World& world = place.world(density);
   // Brute force: a few rows of tiles, spread over the picture.
   const std::size_t total = place.rays.size(), slice = rung.brute ? 256 : total,
@@ -180,7 +177,7 @@ int main(int argc, char** argv) {
   places.push_back(std::make_unique<Place>("mount", 7));
   for (const auto& place : places)
     for (const Rung& rung : kRungs) {
-      if (!find_variant(rung.isa) || !find_variant(rung.isa)->runs_here())
+      if (!variant_of(rung) || !variant_of(rung)->runs_here())
         continue;
       for (const float density : kDensities) {
         if (rung.brute && density != kDensities[0])

@@ -10,6 +10,7 @@
 
 #include "frontend/input/effects.hpp"
 #include "kernel/scene/frame.hpp"
+#include "kernel/render/band.hpp"
 #include "kernel/render/sampling.hpp"
 #include "kernel/trace/surface.hpp"
 #include "kernel/grid/world_impl.hpp"
@@ -99,8 +100,7 @@ RayBuffer RayMaker::through_pixels(const FrameView& f, int samples, bool few) co
           batch->pixel[i] = static_cast<std::uint32_t>(y * f.width + x);
           batch->sample[i] = static_cast<std::uint32_t>(i);
         }
-        find_variant("best")->loops.camera_rays(
-            f, {.batch = batch.get(), .plan = plan}, samples, true);
+        scalar::camera_rays(f, {.batch = batch.get(), .plan = plan}, samples, true);
         for (int i = 0; i < samples; ++i)
           rays.add({batch->ox[i], batch->oy[i], batch->oz[i]},
                    {batch->dx[i], batch->dy[i], batch->dz[i]},

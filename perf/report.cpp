@@ -18,6 +18,7 @@
 #include <omp.h>
 
 #include "perf/frame_rays.hpp"
+#include "tests/reference/reference.hpp"
 
 namespace {
 
@@ -56,13 +57,11 @@ int measure(const char* path, int samples, int rounds) {
     if (!fresh)
       at->second = std::min(at->second, seconds);
   };
-  const auto trace_all =
-      [&](const World& w, const char* isa, const TraceSettings& s, const FrameRays& r, int n) {
-        const auto t = trace_seconds(w, *find_variant(isa), s, r, n);
-        return t[0] + t[1] + t[2];
-      };
-  const TraceSettings plain{.method = Method::kReference, .mailbox = false},
-      mailbox{.method = Method::kReference, .mailbox = true};
+  const auto trace_all = [&](const World& w, const TraceSettings& s, const FrameRays& r, int n) {
+    const auto t = trace_seconds(w, reference_walk(), s, r, n);
+    return t[0] + t[1] + t[2];
+  };
+  const TraceSettings plain{.mailbox = false}, mailbox{.mailbox = true};
   for (int round = 0; round < rounds; ++round) {
     for (const int n : {1, threads}) {
       RenderOptions o = options;
@@ -81,11 +80,11 @@ int measure(const char* path, int samples, int rounds) {
       keep("rest" + with,
            whole * (1 - (of(Phase::primary) + of(Phase::bounce) + of(Phase::shadow)) / all));
     }
-    keep("grid", trace_all(coarse, "scalar", plain, rays, 1));
-    keep("mailboxes", trace_all(coarse, "scalar", mailbox, rays, 1));
-    keep("grid threads", trace_all(coarse, "scalar", plain, rays, threads));
+    keep("grid", trace_all(coarse, plain, rays, 1));
+    keep("mailboxes", trace_all(coarse, mailbox, rays, 1));
+    keep("grid threads", trace_all(coarse, plain, rays, threads));
     if (round == 0 || stride == 1)
-      keep("no grid", trace_all(bare, "scalar", plain, stride > 1 ? few : rays, 1));
+      keep("no grid", trace_all(bare, plain, stride > 1 ? few : rays, 1));
   }
   std::size_t traced = 0;
   for (const RaySet& set : stride > 1 ? few : rays)

@@ -27,6 +27,7 @@
 #include "kernel/grid/world_impl.hpp"
 #include "perf/embree.hpp"
 #include "perf/ray_sets.hpp"
+#include "tests/reference/reference.hpp"
 #include "tests/support/oracle.hpp"
 
 namespace {
@@ -155,7 +156,8 @@ std::size_t renders(RayKind kind) {
                                                                                               : 0;
 }
 
-void trace_all(const Place& p,
+void trace_all(const Variant& variant,
+               const Place& p,
                const RayBuffer& r,
                bool any,
                const TraceSettings& settings,
@@ -163,7 +165,7 @@ void trace_all(const Place& p,
                TraceCounts& counts) {
   a.t = r.t_max;
   a.id.resize(r.size());
-  const VariantLoops& loops = find_variant("best")->loops;
+  const VariantLoops& loops = variant.loops;
   (any ? loops.occluded : loops.closest)(p.world.impl().view,
                                          {r.ox.data(),
                                           r.oy.data(),
@@ -247,12 +249,12 @@ bool blocked(float t) { return t == -__builtin_inff(); }
 std::string check(const Place& p, const RayBuffer& rays, bool any, Cell& cell) {
   TraceCounts unused;
   Answers truth, again;
-  trace_all(p, rays, any, kModes[0].settings, truth, unused);
+  trace_all(*find_variant("best"), p, rays, any, kModes[0].settings, truth, unused);
   const auto same = [&](const Answers& a, std::size_t i, std::size_t k) {
     return std::memcmp(&a.t[i], &truth.t[k], 4) == 0 && (any || a.id[i] == truth.id[k]);
   };
   for (const GrelhaMode& mode : kModes) {
-    trace_all(p, rays, any, mode.settings, again, unused);
+    trace_all(*find_variant("best"), p, rays, any, mode.settings, again, unused);
     for (std::size_t i = 0; i < rays.size(); ++i)
       if (!same(again, i, i))
         return std::string("wrong hits: ") + mode.name + " against " + kModes[0].name;
@@ -262,7 +264,7 @@ std::string check(const Place& p, const RayBuffer& rays, bool any, Cell& cell) {
   for (std::size_t i = 0; i < rays.size(); i += step)
     some.add(
         {rays.ox[i], rays.oy[i], rays.oz[i]}, {rays.dx[i], rays.dy[i], rays.dz[i]}, rays.t_max[i]);
-  trace_all(p, some, any, {.method = Method::kReference}, again, unused);
+  trace_all(reference_walk(), p, some, any, {}, again, unused);
   for (std::size_t i = 0; i < some.size(); ++i)
     if (!same(again, i, i * step))
       return "wrong hits: packets against the reference walk";
@@ -326,11 +328,13 @@ void run(benchmark::State& state, const Row& row, std::size_t kind, const Option
   Answers answers;
   TraceCounts unused;
   for (const GrelhaMode& m : kModes)
-    cell.ways.push_back(
-        {kGrelha,
-         m.name,
-         [&, settings = m.settings] { trace_all(p, rays, any, settings, answers, unused); },
-         {}});
+    cell.ways.push_back({kGrelha,
+                         m.name,
+                         [&, settings = m.settings] {
+                           trace_all(
+                               *find_variant("best"), p, rays, any, settings, answers, unused);
+                         },
+                         {}});
   cell.chosen = renders(static_cast<RayKind>(kind));
   for (const Side side : {kRobust, kFast})
     for (const EmbreeMode& m : embree_modes()) {
@@ -368,7 +372,8 @@ void run(benchmark::State& state, const Row& row, std::size_t kind, const Option
     state.SetIterationTime(1e-9 * (cpu_ns() - start));
   }
   find_best();
-  trace_all(p, rays, any, kModes[cell.chosen].settings, answers, cell.counts);
+  trace_all(
+      *find_variant("best"), p, rays, any, kModes[cell.chosen].settings, answers, cell.counts);
 
   constexpr const char* kSideNames[] = {"grelha ", "embree robust ", "embree fast "};
   for (const Way& w : cell.ways)

@@ -3,7 +3,7 @@ grelha_test(scenes/spd_counts image grelha::frontend grelha::scenes)
 add_test(NAME readme COMMAND ${CMAKE_COMMAND} -D ROOT=${PROJECT_SOURCE_DIR} -D PROGRAM=$<TARGET_FILE:grelha>
   -D SCRATCH=${CMAKE_CURRENT_BINARY_DIR}/readme -P ${CMAKE_CURRENT_SOURCE_DIR}/readme.cmake)
 set_tests_properties(readme PROPERTIES LABELS image)
-grelha_test(kernel/render/sampling property grelha::kernel)
+grelha_test(kernel/render/sampling property grelha::kernel grelha_lane_functions)
 grelha_test(frontend/input/effects image grelha::frontend)
 grelha_test(kernel/picture/refinement image grelha::frontend grelha::scenes)
 

@@ -1,7 +1,7 @@
 #pragma once
 // Rays as callers of a Variant hold them, by whichever method is asked for.
 
-#include "kernel/trace/reference.hpp"
+#include "kernel/trace/trace.hpp"
 #include "kernel/query/variants.hpp"
 
 namespace grelha::GRELHA_ISA {
@@ -48,14 +48,11 @@ inline void trace_span(const SceneView& scene,
                            rays.id + first,
                            shift,
                            kDouble || rays.whole ? whole : nullptr};
-    if (settings.method == Method::kReference)
-      trace_reference<kAny>(scene, arrays, count, settings.mailbox, n);
-    else
-      trace<kAny>(scene,
-                  arrays,
-                  count,
-                  {settings.method == Method::kSingle ? 1 : settings.packet, settings.mailbox},
-                  n);
+    trace<kAny>(scene,
+                arrays,
+                count,
+                {settings.method == Method::kSingle ? 1 : settings.packet, settings.mailbox},
+                n);
     for (int i = 0; i < count; ++i) {  // without a branch: SIMD
       const float met = kAny ? t[i] : kDouble ? static_cast<float>(whole[i]) : t[i] + shift[i];
       rays.t[first + i] = rays.id[first + i] != kNoPrimitive ? met : rays.t[first + i];

@@ -16,9 +16,6 @@ namespace grelha {
 enum class Method {
   kPackets,  ///< `packet` rays march together
   kSingle,   ///< one ray at a time, SIMD over primitives, leaping over empty cells
-  // one ray, one primitive at a time, cell by cell (Amanatides & Woo 1987), with or without
-  // mailboxes
-  kReference,
 };
 
 struct TraceSettings {
@@ -61,20 +58,6 @@ struct VariantLoops {
                 float (&inside)[kTile * kTile],
                 float (&around)[kTile * kTile],
                 TraceCounts&);
-  /// power(x[i], y[i]) for tests.
-  void (*power)(const float* x, const float* y, float* out, int count);
-  /// sample_pairs of pixel[i], index[i], key[i], for tests.
-  void (*samples)(const SamplePlan&,
-                  const std::uint32_t* pixel,
-                  const std::uint32_t* index,
-                  int dimension,
-                  const std::uint32_t* key,
-                  const Strata&,
-                  float* u,
-                  float* v,
-                  int count);
-  /// Camera rays of the work's batch, for tests and measurements.
-  void (*camera_rays)(const FrameView&, const BandWork&, int count, bool in_pixels);
   /// All samples of points of the picture, whose names work.pixels holds.
   void (*render_points)(const SceneView&,
                         const ShadingView&,

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "grelha/render.hpp"
+#include "tests/reference/reference.hpp"
 #include "tests/support/ray_list.hpp"
 
 namespace grelha {
@@ -37,9 +38,16 @@ inline const std::vector<Way>& every_way() {
       {"packets of 64 without mailboxes", {Method::kPackets, 64, false}},
       {"packets of 16", {Method::kPackets, 16, true}},
       {"packets of 16 without mailboxes", {Method::kPackets, 16, false}},
-      {"single", {Method::kSingle, 1, true}},
-      {"reference", {Method::kReference, 1, true}},
-      {"reference without mailboxes", {Method::kReference, 1, false}}};
+      {"single", {Method::kSingle, 1, true}}};
+  return ways;
+}
+
+/// Those of the plain walk.
+inline const std::vector<Way>& every_reference_way() {
+  static const std::vector<Way> ways{
+      {"reference", {.mailbox = true}},
+      {"reference without mailboxes", {.mailbox = false}},
+  };
   return ways;
 }
 
@@ -48,12 +56,12 @@ struct Truth {
   Answers closest, occluded;
 };
 
-inline Truth truth_of(const Scene& scene, const Rays& rays) {
+inline Truth truth_of(const Scene& scene,
+                      const Rays& rays,
+                      const Variant& reference = reference_walk()) {
   const World plain(scene, {.grid = false});
-  const Variant& scalar = *find_variant("scalar");
-  const TraceSettings reference{Method::kReference, 1, false};
-  return {trace(scalar, plain, rays, reference, Query::kClosest),
-          trace(scalar, plain, rays, reference, Query::kOccluded)};
+  return {trace(reference, plain, rays, {.mailbox = false}, Query::kClosest),
+          trace(reference, plain, rays, {.mailbox = false}, Query::kOccluded)};
 }
 
 inline std::string show(float t, std::uint32_t id) {
@@ -101,25 +109,44 @@ inline testing::AssertionResult same(const Answers& wanted,
          << show(got.t[first], got.id[first]);
 }
 
-/// Every way of one variant through one world against the truth; stops at the first that differs.
+/// One way of one variant through one world against the truth.
+inline bool finds_truth(const Variant& variant,
+                        const Way& way,
+                        const World& world,
+                        const Rays& rays,
+                        const Truth& truth,
+                        const std::string& what) {
+  for (const Query query : {Query::kClosest, Query::kOccluded}) {
+    const bool closest = query == Query::kClosest;
+    const auto result = same(closest ? truth.closest : truth.occluded,
+                             trace(variant, world, rays, way.settings, query),
+                             rays,
+                             query);
+    if (result)
+      continue;
+    ADD_FAILURE() << what << (closest ? ", closest, " : ", occluded, ") << way.name << ", "
+                  << variant.name << ": " << result.message();
+    return false;
+  }
+  return true;
+}
+
+/// Every way of one variant, and beside the scalar one the reference's own; stops at the first that
+/// differs.
 inline void expect_truth(const Variant& variant,
                          const World& world,
                          const Rays& rays,
                          const Truth& truth,
-                         const std::string& what) {
+                         const std::string& what,
+                         const Variant& reference = reference_walk()) {
   for (const Way& way : every_way())
-    for (const Query query : {Query::kClosest, Query::kOccluded}) {
-      const bool closest = query == Query::kClosest;
-      const auto result = same(closest ? truth.closest : truth.occluded,
-                               trace(variant, world, rays, way.settings, query),
-                               rays,
-                               query);
-      if (result)
-        continue;
-      ADD_FAILURE() << what << (closest ? ", closest, " : ", occluded, ") << way.name << ", "
-                    << variant.name << ": " << result.message();
+    if (!finds_truth(variant, way, world, rays, truth, what))
       return;
-    }
+  if (variant.lanes > 1)
+    return;
+  for (const Way& way : every_reference_way())
+    if (!finds_truth(reference, way, world, rays, truth, what))
+      return;
 }
 
 inline std::size_t hits_of(const Answers& a) {

@@ -39,11 +39,15 @@ class Double : public EveryVariant {
 GRELHA_FOR_EVERY_ISA(Double);
 
 Truth truth_in_double(const Scene& scene, const Rays& rays) {
-  const World plain(scene, {.grid = false});
-  const Variant& scalar = in_double(*find_variant("scalar"));
-  const TraceSettings reference{Method::kReference, 1, false};
-  return {trace(scalar, plain, rays, reference, Query::kClosest),
-          trace(scalar, plain, rays, reference, Query::kOccluded)};
+  return truth_of(scene, rays, in_double(reference_walk()));
+}
+
+void expect_truth_in_double(const Variant& tested,
+                            const World& world,
+                            const Rays& rays,
+                            const Truth& truth,
+                            const std::string& what) {
+  expect_truth(tested, world, rays, truth, what, in_double(reference_walk()));
 }
 
 TEST_P(Double, OneSetOfBits) {
@@ -65,7 +69,7 @@ TEST_P(Double, OneSetOfBits) {
     }
     const Truth truth = truth_in_double(scene, rays);
     EXPECT_GT(hits_of(truth.closest), 300u);
-    expect_truth(tested(), world, rays, truth, "seed " + std::to_string(seed));
+    expect_truth_in_double(tested(), world, rays, truth, "seed " + std::to_string(seed));
   }
 }
 
@@ -78,7 +82,7 @@ TEST_P(Double, FromFarAway) {
     const Float3 eye = at({}, random.log_in(1e4, 2e6), random.direction()), aim = random.point(1);
     rays.add({eye.x, std::abs(eye.y), eye.z}, minus(aim, {eye.x, std::abs(eye.y), eye.z}));
   }
-  expect_truth(tested(), world, rays, truth_in_double(scene, rays), "far rays");
+  expect_truth_in_double(tested(), world, rays, truth_in_double(scene, rays), "far rays");
 }
 
 TEST_P(Double, TiesGoToTheLowerId) {
@@ -105,7 +109,7 @@ TEST_P(Double, TiesGoToTheLowerId) {
     const std::uint32_t id = truth.closest.id[i];
     EXPECT_TRUE(id < 40 || (id >= 120 && id < 160) || id == 240) << id;
   }
-  expect_truth(tested(), World(scene, {.density = 2}), rays, truth, "ties");
+  expect_truth_in_double(tested(), World(scene, {.density = 2}), rays, truth, "ties");
 }
 
 // ---- how far off
@@ -182,8 +186,6 @@ TEST_P(Double, ClosedMeshesAreTight) {
         }
       const World world(scene, {});
       for (const Way& way : every_way()) {
-        if (way.settings.method == Method::kReference)
-          continue;
         EXPECT_EQ(hits_of(trace(tested(), world, rays, way.settings, Query::kClosest)), rays.size())
             << way.name << ", scale " << scale;
         EXPECT_EQ(hits_of(trace(tested(), world, rays, way.settings, Query::kOccluded)),

@@ -14,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "kernel/query/variants.hpp"
+#include "tests/lanes/lane_functions.hpp"
 #include "tests/support/rays.hpp"
 
 namespace grelha::scalar {
@@ -282,7 +283,7 @@ TEST_P(SampleBits, AreThePlainOnesInEveryLane) {
             key[i] = keys == 0 || (keys == 2 && random.chance(.5)) ? 0 : word() | 1;
           }
           float x[n], y[n];
-          variant().loops.samples(plan, pixel, index, d, key, strata, x, y, n);
+          test::lane_functions(variant()).samples(plan, pixel, index, d, key, strata, x, y, n);
           for (int i = 0; i < n; ++i) {
             const Pair wanted = plain::sample(plan, pixel[i], index[i], d, key[i], strata);
             ASSERT_TRUE(bits_of(x[i]) == bits_of(wanted.u) && bits_of(y[i]) == bits_of(wanted.v))
@@ -320,7 +321,7 @@ TEST_P(SampleBits, OfRaysAreThePlainOnes) {
             batch->wr[i] = batch->wg[i] = batch->wb[i] = -7;
             batch->depth[i] = batch->path[i] = 7;
           }
-          variant().loops.camera_rays(
+          test::lane_functions(variant()).camera_rays(
               f, {.batch = batch.get(), .first_pixel = 7, .plan = plan}, count, true);
           for (int i = 0; i < count; ++i) {
             const float got[] = {batch->ox[i],

@@ -2,6 +2,7 @@
 #define GRELHA_ISA scalar
 #include "kernel/simd/power.hpp"
 
+#include "tests/lanes/lane_functions.hpp"
 #include "tests/support/rays.hpp"
 
 namespace grelha::test {
@@ -103,7 +104,7 @@ TEST_P(PowerBits, AreThoseOfTheScalarCopy) {
   const Arguments a = sweep(20000);
   for (const int count : {1, 3, 7, 16, 1021, static_cast<int>(a.x.size())}) {
     std::vector<float> out(a.x.size(), -7.f);
-    variant().loops.power(a.x.data(), a.y.data(), out.data(), count);
+    lane_functions(variant()).power(a.x.data(), a.y.data(), out.data(), count);
     for (int i = 0; i < count; ++i) {
       const auto k = static_cast<std::size_t>(i);
       ASSERT_EQ(std::bit_cast<std::uint32_t>(out[k]),

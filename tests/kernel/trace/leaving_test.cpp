@@ -10,6 +10,17 @@
 namespace grelha::test {
 namespace {
 
+struct Tracer {
+  const Variant& variant;
+  TraceSettings settings;
+};
+
+/// Packets of a size, single rays and the reference.
+std::vector<Tracer> tracers(int packet) {
+  const Variant& best = *find_variant("best");
+  return {{best, {.packet = packet}}, {best, {.method = Method::kSingle}}, {reference_walk(), {}}};
+}
+
 struct Result {
   std::uint64_t hits = 0, rays = 0, met_again = 0;
   double gap =
@@ -280,9 +291,9 @@ TEST(Leaving, PlanesWithAllElseFarAway) {
       const scalar::Vec3<float> start = scalar::leave(s.point, s.normal, s.away, away);
       rays.add({start.x, start.y, start.z}, {away.x, away.y, away.z});
     }
-    for (const Method method : {Method::kPackets, Method::kSingle, Method::kReference})
+    for (const Tracer& tracer : tracers(16))
       for (const Query query : {Query::kClosest, Query::kOccluded}) {
-        const Answers a = trace(*find_variant("best"), world, rays, {method, 16, true}, query);
+        const Answers a = trace(tracer.variant, world, rays, tracer.settings, query);
         for (std::size_t i = 0; i < rays.size(); ++i) {
           ++left;
           EXPECT_NE(a.id[i], 0u) << rays.describe(i);
@@ -322,9 +333,8 @@ TEST(FarEyes, SeeWhatStandsOnAPlane) {
       if (.05 * hit[0] + .1 * hit[1] + hit[2] > 1)
         rays.add(eye, dir);
     }
-    for (const Method method : {Method::kPackets, Method::kSingle, Method::kReference}) {
-      const Answers a =
-          trace(*find_variant("best"), world, rays, {method, 64, true}, Query::kClosest);
+    for (const Tracer& tracer : tracers(64)) {
+      const Answers a = trace(tracer.variant, world, rays, tracer.settings, Query::kClosest);
       for (std::size_t i = 0; i < rays.size(); ++i)
         EXPECT_EQ(a.id[i], 1u) << rays.describe(i);
     }

@@ -1,0 +1,286 @@
+#pragma once
+// The report's way, kept as the reference all others are measured against: one ray, one primitive
+// at a time, cell by cell. Amanatides & Woo, "A Fast Voxel Traversal Algorithm for Ray Tracing",
+// 1987, with two mends: plane distances come from the plane's index instead of adding up, and
+// mailboxes stand with the ray instead of the primitive.
+//
+// It shares with the kernel the tests of primitives and the rules of what a ray is (how far origins
+// are brought near, which grid serves whom), and nothing of how rays are walked.
+
+#include "grelha/rays.hpp"
+#include "kernel/trace/trace.hpp"
+
+namespace grelha::GRELHA_ISA {
+
+/// The primitives a ray has met (hashed; may forget, never wrong).
+struct RayMailbox {
+  static constexpr unsigned kSize = 64;
+  std::uint32_t held[kSize];
+  void clear() {
+    for (std::uint32_t& id : held)
+      id = kNoPrimitive;
+  }
+  bool seen(std::uint32_t id) {
+    std::uint32_t& slot = held[id % kSize];
+    if (slot == id)
+      return true;
+    slot = id;
+    return false;
+  }
+};
+
+/// A ray on its way. Primitives are tested in Real, from where the ray came in double, from where
+/// it was brought near in float; grids are always walked in float, from there.
+template <class Real>
+struct WalkedRay {
+  static constexpr bool kInDouble = sizeof(Real) == sizeof(double);
+  float near_org[3];
+  float dir[3];
+  float near_t_min;
+  float near_best;  ///< never below the true one
+  Real org[3];
+  Real t_min;
+  Real best;
+  Real shift = 0;  ///< t by which the ray was brought near
+  Real inv_dd;
+  int axis;
+  Shear<Real> shear;
+  std::uint32_t id = kNoPrimitive;
+
+  void set_best(Real t) {
+    best = t;
+    near_best = kInDouble ? not_below(t - shift) : static_cast<float>(t);
+  }
+};
+
+/// Takes a hit that is the best so far. Returns whether the search is over.
+template <bool kAny, class Real>
+bool take(WalkedRay<Real>& r, bool hit, Real t, std::uint32_t id) {
+  if (!hit)
+    return false;
+  if (kAny) {
+    if (!(t < r.best))
+      return false;
+    r.set_best(-kInfinity);
+    r.id = id;
+    return true;
+  }
+  if (t < r.best || (t == r.best && r.id != kNoPrimitive && id < r.id)) {
+    r.set_best(t);
+    r.id = id;
+  }
+  return false;
+}
+
+template <bool kAny, class Real>
+bool test_triangles(
+    WalkedRay<Real>& r, const CellLists& lists, std::size_t cell, RayMailbox* box, Counters& n) {
+  const int k = r.axis;
+  const int kx = kNextAxis[k];
+  const int ky = kPreviousAxis[k];
+  for (std::uint32_t b = lists.triangle_first[cell]; b < lists.triangle_first[cell + 1]; ++b) {
+    const TriangleBlock& block = lists.triangles[b];
+    for (int i = 0; i < kBlock && block.id[i] != kNoPrimitive; ++i) {
+      if (box && box->seen(block.id[i]))
+        continue;
+      ++n.triangle;
+      const auto ray_and_triangle = [&] {
+        return RayAndTriangle<Real>{{r.org[kx], r.org[ky], r.org[k]},
+                                    {r.dir[kx], r.dir[ky], r.dir[k]},
+                                    {{block.a[kx][i], block.a[ky][i], block.a[k][i]},
+                                     {block.b[kx][i], block.b[ky][i], block.b[k][i]},
+                                     {block.c[kx][i], block.c[ky][i], block.c[k][i]}}};
+      };
+      const Real t_max = kInfinity;  // exactly where, whatever is met already
+      Real t = 0;
+      const bool hit = hit_triangle<false>(ray_and_triangle, r.shear, r.t_min, t_max, t);
+      if (take<kAny>(r, hit, t, block.id[i]))
+        return true;
+    }
+  }
+  return false;
+}
+
+template <bool kAny, class Real>
+bool test_spheres(
+    WalkedRay<Real>& r, const CellLists& lists, std::size_t cell, RayMailbox* box, Counters& n) {
+  for (std::uint32_t i = lists.sphere_first[cell]; i < lists.sphere_first[cell + 1]; ++i) {
+    if (box && box->seen(lists.sphere_id[i]))
+      continue;
+    ++n.sphere;
+    Real t = 0;
+    const bool hit = hit_sphere<Real>({r.org[0], r.org[1], r.org[2]},
+                                      {r.dir[0], r.dir[1], r.dir[2]},
+                                      r.inv_dd,
+                                      r.t_min,
+                                      {lists.sx[i], lists.sy[i], lists.sz[i]},
+                                      lists.sr[i],
+                                      t);
+    if (take<kAny>(r, hit, t, lists.sphere_id[i]))
+      return true;
+  }
+  return false;
+}
+
+template <bool kAny, class Real>
+bool test_cones(
+    WalkedRay<Real>& r, const CellLists& lists, std::size_t cell, RayMailbox* box, Counters& n) {
+  for (std::uint32_t i = lists.cone_first[cell]; i < lists.cone_first[cell + 1]; ++i) {
+    if (box && box->seen(lists.cone_id[i]))
+      continue;
+    ++n.cone;
+    const auto& c = lists.cone;
+    Real t = 0;
+    const bool hit = hit_cone<Real>({r.org[0], r.org[1], r.org[2]},
+                                    {r.dir[0], r.dir[1], r.dir[2]},
+                                    r.inv_dd,
+                                    r.t_min,
+                                    {{c[0][i], c[1][i], c[2][i]},
+                                     {c[3][i], c[4][i], c[5][i]},
+                                     c[6][i],
+                                     c[7][i],
+                                     c[8][i],
+                                     c[9][i]},
+                                    t);
+    if (take<kAny>(r, hit, t, lists.cone_id[i]))
+      return true;
+  }
+  return false;
+}
+
+template <bool kAny, class Real>
+bool test_lists(
+    WalkedRay<Real>& r, const CellLists& lists, std::size_t cell, RayMailbox* box, Counters& n) {
+  return (lists.triangle_first && test_triangles<kAny>(r, lists, cell, box, n)) ||
+         (lists.sphere_first && test_spheres<kAny>(r, lists, cell, box, n)) ||
+         (lists.cone_first && test_cones<kAny>(r, lists, cell, box, n));
+}
+
+template <bool kAny, class Real>
+bool test_planes(WalkedRay<Real>& r, const GeometryView& g, Counters& n) {
+  for (std::uint32_t p = 0; p < g.plane_count; ++p) {
+    ++n.plane;
+    Real t = 0;
+    const bool hit = hit_plane<Real>({r.org[0], r.org[1], r.org[2]},
+                                     {r.dir[0], r.dir[1], r.dir[2]},
+                                     r.t_min,
+                                     {g.px[p], g.py[p], g.pz[p]},
+                                     {g.pnx[p], g.pny[p], g.pnz[p]},
+                                     t);
+    if (take<kAny>(r, hit, t, p))
+      return true;
+  }
+  return false;
+}
+
+template <bool kAny, class Real>
+bool walk_grid(WalkedRay<Real>& r, const GridView& g, RayMailbox* box, Counters& n) {
+  const GridRay ray = to_grid(g, r.near_org, r.dir);
+  double t0 = r.near_t_min;
+  double t1 = r.near_best;
+  clip_to_grid(g, ray, t0, t1);
+  if (!(t0 <= t1))
+    return false;
+  int at[3];
+  int step[3];
+  double next[3];
+  const auto plane = [&](int a) { return (at[a] + (step[a] > 0 ? 1 : 0) - ray.p[a]) * ray.iq[a]; };
+  for (int a = 0; a < 3; ++a) {
+    at[a] = clamp_cell(ray.p[a] + t0 * ray.q[a], g.n[a]);
+    step[a] = ray.q[a] > 0 ? 1 : -1;
+    next[a] = plane(a);
+  }
+  const int most = g.n[0] + g.n[1] + g.n[2] + 3;
+  for (int s = 0; s < most; ++s) {
+    ++n.visits;
+    const std::size_t cell = at[0] + static_cast<std::size_t>(g.n[0]) *
+                                         (at[1] + static_cast<std::size_t>(g.n[1]) * at[2]);
+    if (test_lists<kAny>(r, g.lists, cell, box, n))
+      return true;
+    const int a = next[0] < next[1] ? (next[0] < next[2] ? 0 : 2) : (next[1] < next[2] ? 1 : 2);
+    if (r.near_best <= next[a] || !(next[a] <= t1))
+      return false;
+    at[a] += step[a];
+    if (at[a] < 0 || at[a] >= g.n[a])
+      return false;
+    next[a] = plane(a);
+  }
+  return false;
+}
+
+/// False when the ray can meet nothing.
+template <class Real>
+bool load_ray(const RaySpan& rays, int i, WalkedRay<Real>& r) {
+  const float org[3] = {rays.ox[i], rays.oy[i], rays.oz[i]};
+  const float d[3] = {rays.dx[i], rays.dy[i], rays.dz[i]};
+  for (int a = 0; a < 3; ++a) {
+    r.org[a] = r.near_org[a] = org[a];
+    r.dir[a] = d[a];
+  }
+  r.t_min = r.near_t_min = rays.t_min[i];
+  r.best = r.near_best = rays.t[i];
+  const float dd = (d[0] * d[0] + d[1] * d[1]) + d[2] * d[2];
+  const Vec3<Real> dir{d[0], d[1], d[2]};
+  r.inv_dd = 1 / dot(dir, dir);
+  const int k = r.axis = shear_axis(d[0], d[1], d[2]);
+  const Real along = d[k];
+  r.shear = {d[kNextAxis[k]] / along, d[kPreviousAxis[k]] / along, 1 / along};
+  return ((((org[0] + org[1]) + (org[2] + dd)) + 1 / dd) * 0 == 0) && r.best > r.t_min;
+}
+
+/// Moves a ray that starts far from everything to where it comes near, see approach().
+template <class Real>
+void bring_near(const SceneView& scene, WalkedRay<Real>& r) {
+  const float from[3] = {r.near_org[0], r.near_org[1], r.near_org[2]};
+  const double shift = approach(scene, r.near_org, r.dir);
+  if (!(shift > 0))
+    return;
+  r.shift = static_cast<Real>(shift);
+  if (WalkedRay<Real>::kInDouble) {
+    r.near_t_min = not_above(r.t_min - shift);
+    r.near_best = not_below(r.best - shift);
+    return;
+  }
+  const bool met = r.id != kNoPrimitive;
+  const double best = met ? plane_t(scene.geometry, r.id, from, r.dir) : r.best;
+  r.t_min = r.near_t_min = static_cast<float>(r.t_min - shift);
+  r.best = r.near_best = static_cast<float>(best - shift);
+  for (int a = 0; a < 3; ++a)
+    r.org[a] = r.near_org[a];
+}
+
+template <bool kAny, class Real>
+void trace_ray(const SceneView& scene, WalkedRay<Real>& r, RayMailbox* box, Counters& n) {
+  if (test_planes<kAny>(r, scene.geometry, n))
+    return;
+  bring_near(scene, r);
+  if (test_lists<kAny>(r, scene.outside, 0, nullptr, n))
+    return;
+  for (int g = 0; g < scene.grid_count; ++g)
+    if (serves(scene.grids[g], r.near_org) && walk_grid<kAny>(r, scene.grids[g], box, n))
+      return;
+}
+
+/// What the loops of a Variant do, see VariantLoops.
+template <bool kAny, class Real>
+void trace_reference(const SceneView& scene, const RaySpan& rays, bool mailbox, Counters& n) {
+  RayMailbox box;
+  for (int i = 0; i < rays.count; ++i) {
+    WalkedRay<Real> r;
+    rays.id[i] = kNoPrimitive;
+    if (!load_ray(rays, i, r))
+      continue;
+    box.clear();
+    trace_ray<kAny>(scene, r, mailbox ? &box : nullptr, n);
+    if (r.id == kNoPrimitive)
+      continue;
+    constexpr bool kInDouble = WalkedRay<Real>::kInDouble;
+    const float shift = static_cast<float>(r.shift);
+    rays.id[i] = r.id;
+    rays.t[i] = static_cast<float>(kAny || kInDouble ? r.best : r.best + shift);
+    if (rays.whole)
+      rays.whole[i] = kInDouble ? r.best : unmoved(static_cast<float>(r.best), shift);
+  }
+}
+
+}  // namespace grelha::GRELHA_ISA
