@@ -1,0 +1,137 @@
+#pragma once
+// What a thread's shading knows, and the hits of a batch as lanes.
+
+#include "kernel/render/light_sums.hpp"
+#include "kernel/render/sampling.hpp"
+#include "kernel/trace/trace.hpp"
+
+namespace grelha::GRELHA_ISA {
+
+/// Says what comes next, to whoever asks; nothing else depends on it.
+inline void enter(const BandWork& work, Phase phase) {
+  if (work.observer)
+    work.observer->enter(*work.observer, phase, nullptr);
+}
+inline void enter(const BandWork& work, Phase phase, const RayArrays& r, int count) {
+  if (!work.observer)
+    return;
+  const ObservedRays rays{r.ox, r.oy, r.oz, r.dx, r.dy, r.dz, r.t_min, r.t, count};
+  work.observer->enter(*work.observer, phase, &rays);
+}
+
+struct RayTally {
+  std::uint64_t primary = 0, shadow = 0, reflection = 0, refraction = 0;
+};
+
+/// Everything a thread's shading needs to know.
+struct Shader {
+  const SceneView& scene;
+  const ShadingView& shading;
+  const BandWork& work;
+  Counters& counters;
+  RayTally& rays;
+  Batch& b;
+};
+
+/// Whether shares are more than weights tell: see split().
+inline bool keeps_shares(const Shader& s) { return s.shading.gains || s.work.plan.gloss_rays > 0; }
+
+inline Vec3<Lanes> load3(const float* x, const float* y, const float* z, int i) {
+  return {load<Lanes>(x + i), load<Lanes>(y + i), load<Lanes>(z + i)};
+}
+
+inline Vec3<Lanes> splat(const float* v) { return {Lanes(v[0]), Lanes(v[1]), Lanes(v[2])}; }
+
+/// Lanes of an array of `count` from `first` on.
+inline unsigned lanes_of(int first, int count) {
+  const int left = count - first;
+  return left >= kWidth<Lanes> ? ~0u >> (32 - kWidth<Lanes>) : (1u << left) - 1u;
+}
+
+/// Which hits the lanes are: i, i + 1, ..., or hit i in each of them. Behind the last hit arrays
+/// hold what is old, but valid.
+template <bool kOne>
+struct HitLanes {
+  int i;
+  Lanes operator()(const float* of) const {
+    if constexpr (kOne)
+      return Lanes(of[i]);
+    else
+      return load<Lanes>(of + i);
+  }
+  Words<Lanes> operator()(const std::uint32_t* of) const {
+    if constexpr (kOne)
+      return Words<Lanes>{} + of[i];
+    else
+      return load_words<Lanes>(of + i);
+  }
+  Vec3<Lanes> operator()(const float* x, const float* y, const float* z) const {
+    return {(*this)(x), (*this)(y), (*this)(z)};
+  }
+};
+
+/// Lanes of which a component is not 0.
+inline Mask<Lanes> any_component(const Vec3<Lanes>& a) {
+  return either(either(a.x != Lanes(0), a.y != Lanes(0)), a.z != Lanes(0));
+}
+
+/// What the hits' materials hold.
+template <bool kOne>
+inline Lanes gather(const Shader& s, MaterialField field, const HitLanes<kOne>& at) {
+  if constexpr (kOne)
+    return Lanes(s.shading.materials.field[field][s.b.material[at.i]]);
+  else
+    return floats_at(s.shading.materials.field[field], at(s.b.material));
+}
+
+template <bool kOne>
+inline Vec3<Lanes> gather3(const Shader& s, MaterialField r, const HitLanes<kOne>& at) {
+  return {gather(s, r, at),
+          gather(s, static_cast<MaterialField>(r + 1), at),
+          gather(s, static_cast<MaterialField>(r + 2), at)};
+}
+
+/// Tells apart the uses of a pair of dimensions along one path; 0 for the first light, or lobe,
+/// that a camera ray meets.
+template <class Word>
+inline Word sample_keys(Word path, std::uint32_t use) {
+  const Word key = scatter(path, use) | 1u;
+  return use != 0 ? key : path == 0u ? Word{} : key;
+}
+
+/// Numbers for an effect at hits, which takes `count` samples for each of the pixel's: those of
+/// numbers `number`.
+template <bool kOne>
+[[gnu::noinline]] inline PairOf<Lanes> hit_samples(const Shader& s,
+                                                   const HitLanes<kOne>& at,
+                                                   int dimension,
+                                                   std::uint32_t use,
+                                                   const Words<Lanes>& number,
+                                                   int count,
+                                                   const Strata& strata) {
+  const Words<Lanes> index = at(s.b.hit_sample) * static_cast<std::uint32_t>(count) + number;
+  return sample_pairs<Lanes>(s.work.plan,
+                             pixels_of(s.work, at(s.b.hit_pixel)),
+                             index,
+                             dimension,
+                             sample_keys(at(s.b.hit_path), use),
+                             strata);
+}
+
+/// Rays of several samples of a pixel go together by the hundred; of one sample, those from the
+/// camera alone (docs/performance.md).
+inline TraceOptions options_for(const Shader& s, Phase phase) {
+  const bool near = s.work.plan.on || phase == Phase::primary;
+  return {near || s.work.packet < kMiddle ? s.work.packet : kMiddle, s.work.mailbox};
+}
+
+template <bool kAny>
+inline void trace(const Shader& s, const RayArrays& rays, int count, Phase phase) {
+  const TraceOptions options = options_for(s, phase);
+  if (const TraceLoops* const loops = s.work.in_double)
+    (kAny ? loops->occluded : loops->closest)(s.scene, rays, count, options, s.counters);
+  else
+    trace<kAny>(s.scene, rays, count, options, s.counters);
+}
+
+}  // namespace grelha::GRELHA_ISA
