@@ -150,7 +150,7 @@ const GrelhaMode kModes[] = {{"packets 256", {.method = Method::kPackets, .packe
                              {"packets 16", {.method = Method::kPackets, .packet = 16}},
                              {"single", {.method = Method::kSingle}}};
 /// What a render takes: of one ray a pixel or point, only those from the camera in packets of 256;
-/// see options_for() in shade.hpp.
+/// see options_for() in shader.hpp.
 std::size_t renders(RayKind kind) {
   return kind == RayKind::kShadow || kind == RayKind::kMirror || kind == RayKind::kIncoherent ? 1
                                                                                               : 0;

@@ -95,16 +95,142 @@ inline void split(const Shader& s,
 /// Least weights that a fan of rays in a lobe must have together; else one goes in its place.
 inline constexpr float kFanWeights = 8;
 
+/// What materials send on of the light they get, a share a channel, and where to.
+struct Bounce {
+  Vec3<Lanes> up;       ///< along the mirror direction
+  Vec3<Lanes> down;     ///< along `through`
+  Vec3<Lanes> through;  ///< the refracted direction
+};
+
+/// Schlick's share of the mirror.
+inline Lanes schlick(const Lanes& ior, const Lanes& cosine) {
+  const Lanes one(1);
+  const Lanes r = (ior - one) / (ior + one), r0 = r * r;
+  const Lanes c = one - cosine, cc = c * c;
+  return r0 + (one - r0) * ((cc * cc) * c);
+}
+
+/// The bounce at hits of which some transmit `t` > 0; at the others all of `mirror` goes up. `nv`:
+/// cosine between the normal n and the unit vector v to the viewer.
+inline Bounce refract(const Shader& s,
+                      const HitLanes<false>& at,
+                      const Vec3<Lanes>& mirror,
+                      const Lanes& t,
+                      const Vec3<Lanes>& n,
+                      const Vec3<Lanes>& v,
+                      const Lanes& nv) {
+  const Lanes o(0), one(1);
+  const Lanes ior = gather(s, kIor, at);
+  const Mask<Lanes> clear = t > o, inside = at(s.b.inside) > o;
+  const Lanes eta = select(inside, ior, one / ior);
+  // Snell: cos^2 on the other side
+  const Lanes c1 = greater(nv, o), left = one - (eta * eta) * (one - c1 * c1);
+  const Mask<Lanes> passes = left >= o;
+  const Lanes c2 = square_root(greater(left, o));
+  Lanes tw = t;
+  Vec3<Lanes> rw = mirror;
+  if (s.shading.fresnel) {
+    const Mask<Lanes> asked = gather(s, kFresnel, at) > o;
+    const Lanes kr = schlick(ior, select(eta > one, c2, c1));  // the angle on the thinner side
+    tw = select(asked, one - kr, tw);
+    rw = select(asked, Vec3<Lanes>{kr, kr, kr}, rw);
+  }
+  const Mask<Lanes> refracted = both(clear, passes), total = but_not(clear, passes);
+  tw = select(refracted, tw, o);
+  // On total reflection the mirror ray takes over what would have passed.
+  const Mask<Lanes> additive = gather(s, kFresnel, at) == o;
+  const Lanes all = select(additive, t, o), whole = select(additive, o, one);
+  Vec3<Lanes> up = select(clear, rw, mirror);
+  up = select(total,
+              select(additive,
+                     Vec3<Lanes>{up.x + all, up.y + all, up.z + all},
+                     Vec3<Lanes>{whole, whole, whole}),
+              up);
+  return {up, {tw, tw, tw}, (eta * c1 - c2) * n - eta * v};
+}
+
+/// The rays that leave mirrors.
+struct Lobe {
+  Vec3<Lanes> first;  ///< direction of each mirror's first
+  Mask<Lanes> many;   ///< rough, and worth a fan: see kFanWeights
+  Chosen on_many;     ///< those of them that send rays
+  Lanes roughness;
+};
+
+/// Of hits i, i + 1, ... those with a bit in `mirrors` send rays on along `reflected`, of `weight`
+/// each.
+inline Lobe lobe_of(const Shader& s,
+                    int i,
+                    unsigned mirrors,
+                    const Vec3<Lanes>& reflected,
+                    const Vec3<Lanes>& weight,
+                    const Lanes& least) {
+  const HitLanes<false> at{i};
+  const Lanes o(0);
+  Mask<Lanes> rough = o != o;
+  if (s.shading.gloss)
+    rough = gather(s, kRoughness, at) > o;
+  const Mask<Lanes> many = s.work.plan.gloss_rays == 0
+                               ? o != o
+                               : but_not(rough, largest(weight) < Lanes(kFanWeights) * least);
+  const Chosen on_rough(bits(rough) & mirrors), on_many(bits(many) & mirrors);
+  const Lanes roughness = on_rough.count() != 0 ? gather(s, kRoughness, at) : o;
+  Vec3<Lanes> first = reflected;
+  if (on_rough.count() != on_many.count())
+    first =
+        select(but_not(rough, many), lobe_directions(s, i, reflected, roughness, 0, 1), reflected);
+  return {first, many, on_many, roughness};
+}
+
+/// Puts the rays of the hits i, i + 1, ... on the stack. `least`: the share below which a path
+/// ends, and sees the background.
+inline void send_bounce(const Shader& s,
+                        RayStack& stack,
+                        int i,
+                        int hits,
+                        const Bounce& bounce,
+                        const Vec3<Lanes>& reflected,
+                        const Lanes& least) {
+  Batch& b = s.b;
+  Carried reflection, refraction;
+  split(s, i, bounce.up, bounce.down, reflection, refraction);
+  const unsigned in = lanes_of(i, hits);
+  const unsigned mirrors = bits(any_component(reflection.weight)) & in;
+  const unsigned clears = bits(any_component(refraction.weight)) & in;
+  if ((mirrors | clears) == 0)
+    return;
+  const Vec3<Lanes> background = splat(s.shading.background);
+  const Words<Lanes> last = Words<Lanes>{} + static_cast<std::uint32_t>(s.work.depth);
+  const unsigned end = bits(mask_of(Words<Lanes>(load_words<Lanes>(b.hit_depth + i) >= last)));
+  const unsigned mirrors_end = end | bits(reflection.share < least),
+                 clears_end = end | bits(refraction.share < least);
+  add_light(s.work, b.hit_pixel + i, reflection.weight * background, mirrors & mirrors_end);
+  add_light(s.work, b.hit_pixel + i, refraction.weight * background, clears & clears_end);
+  const Chosen on_mirrors(mirrors & ~mirrors_end), on_clears(clears & ~clears_end);
+  const Lobe lobe = lobe_of(s, i, mirrors & ~mirrors_end, reflected, reflection.weight, least);
+  const int around = s.work.plan.gloss_rays;
+  const float part = 1.f / static_cast<float>(around + 1);
+  const Lanes own = select(lobe.many, Lanes(part), Lanes(1));
+  push(s, stack, i, on_mirrors, lobe.first, {own * reflection.weight, reflection.share}, 0, 0);
+  push(s, stack, i, on_clears, bounce.through, refraction, kRefracted, 0);
+  // the rays around the mirror direction
+  for (int j = 0; j < around && lobe.on_many.count() != 0; ++j)
+    push(s,
+         stack,
+         i,
+         lobe.on_many,
+         lobe_directions(s, i, reflected, lobe.roughness, j, around),
+         {Lanes(part) * reflection.weight, reflection.share},
+         0,
+         static_cast<std::uint32_t>(j + 1));
+}
+
 /// Sends the reflected and refracted rays of all hits. At the end of the longest path they see the
 /// background, and where what they could bring is less than would show; docs/sampling.md derives
 /// how much less.
 inline void send_on(const Shader& s, RayStack& stack, int hits) {
   Batch& b = s.b;
-  const Vec3<Lanes> background = splat(s.shading.background);
-  const Words<Lanes> last = Words<Lanes>{} + static_cast<std::uint32_t>(s.work.depth);
-  const Lanes o(0), one(1), least(s.work.min_weight / s.shading.brightest);
-  const int around = s.work.plan.gloss_rays;
-  const float part = 1.f / static_cast<float>(around + 1);
+  const Lanes o(0), least(s.work.min_weight / s.shading.brightest);
   for (int i = 0; i < hits; i += kWidth<Lanes>) {
     const HitLanes<false> at{i};
     const Vec3<Lanes> mirror = gather3(s, kMirrorR, at);
@@ -113,91 +239,14 @@ inline void send_on(const Shader& s, RayStack& stack, int hits) {
       continue;
     const Vec3<Lanes> n = load3(b.nx, b.ny, b.nz, i), g = load3(b.gx, b.gy, b.gz, i),
                       v = load3(b.vx, b.vy, b.vz, i);
-    Vec3<Lanes> up = mirror;
-    Vec3<Lanes> down{o, o, o}, through{o, o, o};
     const Lanes nv = dot(n, v);
-    if (s.shading.refracts) {
-      const Lanes ior = gather(s, kIor, at);
-      const Mask<Lanes> clear = t > o, inside = load<Lanes>(b.inside + i) > o;
-      const Lanes eta = select(inside, ior, one / ior);
-      // Snell: cos^2 on the other side
-      const Lanes c1 = greater(nv, o), left = one - (eta * eta) * (one - c1 * c1);
-      const Mask<Lanes> passes = left >= o;
-      const Lanes c2 = square_root(greater(left, o));
-      through = (eta * c1 - c2) * n - eta * v;
-      Lanes tw = t;
-      Vec3<Lanes> rw = mirror;
-      if (s.shading.fresnel) {
-        const Mask<Lanes> schlick = gather(s, kFresnel, at) > o;
-        const Lanes r = (ior - one) / (ior + one), r0 = r * r;
-        // the angle on the thinner side
-        const Lanes c = one - select(eta > one, c2, c1), cc = c * c;
-        const Lanes kr = r0 + (one - r0) * ((cc * cc) * c);
-        tw = select(schlick, one - kr, tw);
-        rw = select(schlick, Vec3<Lanes>{kr, kr, kr}, rw);
-      }
-      const Mask<Lanes> refracted = both(clear, passes), total = but_not(clear, passes);
-      tw = select(refracted, tw, o);
-      down = {tw, tw, tw};
-      // On total reflection the mirror ray takes over what would have passed.
-      const Mask<Lanes> additive = gather(s, kFresnel, at) == o;
-      const Lanes all = select(additive, t, o), whole = select(additive, o, one);
-      up = select(clear, rw, up);
-      up = select(total,
-                  select(additive,
-                         Vec3<Lanes>{up.x + all, up.y + all, up.z + all},
-                         Vec3<Lanes>{whole, whole, whole}),
-                  up);
-    }
-    Carried reflection, refraction;
-    split(s, i, up, down, reflection, refraction);
+    const Bounce bounce = s.shading.refracts ? refract(s, at, mirror, t, n, v, nv)
+                                             : Bounce{mirror, {o, o, o}, {o, o, o}};
     Vec3<Lanes> reflected = (nv + nv) * n - v;
     // A smooth normal can send a reflection under the true surface; bend it back above.
     const Lanes under = lesser(dot(reflected, g), o);
     reflected = reflected - (under + under) * g;
-    const unsigned in = lanes_of(i, hits);
-    const unsigned mirrors = bits(any_component(reflection.weight)) & in;
-    const unsigned clears = bits(any_component(refraction.weight)) & in;
-    if ((mirrors | clears) == 0)
-      continue;
-    const unsigned end = bits(mask_of(Words<Lanes>(load_words<Lanes>(b.hit_depth + i) >= last)));
-    const unsigned mirrors_end = end | bits(reflection.share < least),
-                   clears_end = end | bits(refraction.share < least);
-    add_light(s.work, b.hit_pixel + i, reflection.weight * background, mirrors & mirrors_end);
-    add_light(s.work, b.hit_pixel + i, refraction.weight * background, clears & clears_end);
-    const Chosen on_mirrors(mirrors & ~mirrors_end), on_clears(clears & ~clears_end);
-    Mask<Lanes> rough = o != o;
-    if (s.shading.gloss)
-      rough = gather(s, kRoughness, at) > o;
-    const Mask<Lanes> many =
-        around == 0 ? o != o
-                    : but_not(rough, largest(reflection.weight) < Lanes(kFanWeights) * least);
-    const Chosen on_rough(bits(rough) & mirrors & ~mirrors_end),
-        on_many(bits(many) & mirrors & ~mirrors_end);
-    const Lanes roughness = on_rough.count() != 0 ? gather(s, kRoughness, at) : o;
-    Vec3<Lanes> first = reflected;
-    if (on_rough.count() != on_many.count())
-      first = select(
-          but_not(rough, many), lobe_directions(s, i, reflected, roughness, 0, 1), reflected);
-    push(s,
-         stack,
-         i,
-         on_mirrors,
-         first,
-         {select(many, Lanes(part), one) * reflection.weight, reflection.share},
-         0,
-         0);
-    push(s, stack, i, on_clears, through, refraction, kRefracted, 0);
-    // the rays around the mirror direction
-    for (int j = 0; j < around && on_many.count() != 0; ++j)
-      push(s,
-           stack,
-           i,
-           on_many,
-           lobe_directions(s, i, reflected, roughness, j, around),
-           {Lanes(part) * reflection.weight, reflection.share},
-           0,
-           static_cast<std::uint32_t>(j + 1));
+    send_bounce(s, stack, i, hits, bounce, reflected, least);
   }
 }
 
