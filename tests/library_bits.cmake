@@ -42,5 +42,5 @@ file(WRITE ${SCRATCH}/frontend/images/image_file.cpp "float h(float x) { return 
 find_library_calls(${SCRATCH})
 set(expected "kernel/a.cpp: std::tan;frontend/images/image_file.cpp: std::powf")
 if(NOT wrong STREQUAL expected)
-  message(FATAL_ERROR "planted calls:\n  wanted ${expected}\n  found  ${wrong}")
+  message(FATAL_ERROR "planted calls:\n  expected ${expected}\n  found    ${wrong}")
 endif()

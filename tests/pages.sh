@@ -11,7 +11,7 @@ completed() {  # completed() WORD...: what bash offers for the last of them
   _grelha
   echo "${COMPREPLY[*]}"
 }
-expect() { [ "$1" = "$2" ] || fail "wanted \"$2\", found \"$1\""; }
+expect() { [ "$1" = "$2" ] || fail "expected \"$2\", found \"$1\""; }
 expect "$(completed grelha re)" "render"
 expect "$(completed grelha render --samples)" "--samples --samples-map"
 expect "$(completed grelha render a.nff --accel '')" "grid none"

@@ -29,14 +29,14 @@ echo "[4/4 12.5 1] two"
 CMAKE
 printf '#!/bin/sh\necho tested\n' >stand-ins/ctest
 chmod +x stand-ins/cmake stand-ins/ctest
-try() {  # try() WANTED COMMAND...: what it says on a pipe, lines joined by |
-  wanted=$1
+try() {  # try() EXPECTED COMMAND...: what it says on a pipe, lines joined by |
+  expected=$1
   shift
   said=$(PATH=$scratch/stand-ins project/run "$@" 2>&1 | tr '\n' '|') || true
-  [ "$said" = "$wanted" ] || { printf 'run %s\nwanted %s\nfound  %s\n' "$*" "$wanted" "$said"; exit 1; }
+  [ "$said" = "$expected" ] || { printf 'run %s\nexpected %s\nfound    %s\n' "$*" "$expected" "$said"; exit 1; }
 }
 asked() {  # asked() TEXT: the last build was configured with it
-  grep GRELHA_ISAS asked | tail -n 1 | grep -q -- "$1" || { printf 'wanted %s\n' "$1"; cat asked; exit 1; }
+  grep GRELHA_ISAS asked | tail -n 1 | grep -q -- "$1" || { printf 'expected %s\n' "$1"; cat asked; exit 1; }
 }
 scratch=$2
 steps='run: configuring (release)|run: building grelha|'

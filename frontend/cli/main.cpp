@@ -444,15 +444,16 @@ int run(const SceneCommand& command) {
                      " (see grelha scene --list)");
   }
   if (command.spd && !generator->has_spd_form)
-    throw UsageError("--spd: wanted a scene that SPD has in another form (balls, mount), found \"" +
-                     command.name + '"');
+    throw UsageError(
+        "--spd: expected a scene that SPD has in another form (balls, mount), found \"" +
+        command.name + '"');
   scenes::SceneOptions options{command.size.value_or(generator->default_size), command.spd, {}};
   if (options.size < generator->min_size || options.size > generator->max_size)
     throw UsageError(
         "--size: " + command.name + " has sizes " + std::to_string(generator->min_size) + " to " +
         std::to_string(generator->max_size) + ", found \"" + std::to_string(options.size) + '"');
   if (generator->write_mesh && command.output == kStdout)
-    throw UsageError("-o: wanted a file, for a mesh is written beside it, found \"-\"");
+    throw UsageError("-o: expected a file, for a mesh is written beside it, found \"-\"");
   if (generator->write_mesh) {
     write_with_mesh(
         *generator, options, command.output.empty() ? command.name + ".nff" : command.output);

@@ -25,7 +25,7 @@ void check_samples(const Effects& e) {
   const long long asked = samples_asked(e);
   if (asked > kMostSamples)  // either alone is within bounds
     throw UsageError("--aa jitter:" + std::to_string(e.jitter) +
-                     " and --lens APERTURE,FOCUS,N: wanted at most " +
+                     " and --lens APERTURE,FOCUS,N: expected at most " +
                      std::to_string(kMostSamples) + " samples a pixel, found " +
                      std::to_string(asked));
   if (!e.samples || asked == 0 || asked == *e.samples)
@@ -33,7 +33,7 @@ void check_samples(const Effects& e) {
   const std::string first = e.jitter == 0   ? "--lens APERTURE,FOCUS,N"
                             : e.jitter == 1 ? "--aa off"
                                             : "--aa jitter:" + std::to_string(e.jitter);
-  throw UsageError(first + " and --samples: wanted one number of samples, found " +
+  throw UsageError(first + " and --samples: expected one number of samples, found " +
                    std::to_string(asked) + " and " + std::to_string(*e.samples));
 }
 
@@ -50,7 +50,7 @@ void check_refined(const RenderCommand& command) {
   if (e.samples || e.jitter > 0 || e.adaptive.on)
     throw UsageError("--error and --time choose the samples: no --samples or --aa beside them");
   if (e.sampler && is_jittered(*e.sampler))
-    throw UsageError("--sampler: wanted sobol or random with --error or --time");
+    throw UsageError("--sampler: expected sobol or random with --error or --time");
   if (e.lens && e.lens->samples > 0)
     throw UsageError("--error and --time choose the samples: no N in --lens beside them");
   if (e.shadows && e.shadows->positions > 1)
@@ -62,7 +62,7 @@ void check_refined(const RenderCommand& command) {
 void check_sampler(const Effects& e) {
   if (e.jitter > 1 && e.sampler && !is_jittered(*e.sampler))
     throw UsageError(
-        "--aa jitter:N and --sampler: wanted jitter or unshuffled for jittered subpixels");
+        "--aa jitter:N and --sampler: expected jitter or unshuffled for jittered subpixels");
 }
 
 void check_grid(const BuildOptions& build) {
@@ -76,7 +76,7 @@ void check_output(const std::string& image, std::optional<ImageFormat> asked) {
   const bool part = is_partial_name(image);
   if (asked && (part || (named && named != asked)))
     throw UsageError("--format " + std::string(ending_of(*asked)) +
-                     " and -o: wanted one format, found \"" + image + '"');
+                     " and -o: expected one format, found \"" + image + '"');
   if (!format_of(image, asked) && !part)
     refuse("-o", "a name ending in .png, .hdr, .pfm, .exr or .grelha", image);
 }
@@ -87,8 +87,9 @@ void check_tone(bool srgb, const std::string& image, std::optional<ImageFormat> 
   if (is_partial_name(image))
     throw UsageError("--srgb: a .grelha holds no colours for a screen, say it to merge");
   if (format_of(image, asked) != ImageFormat::png)
-    throw UsageError("--srgb and -o: wanted a .png, other pictures hold light as it is; found \"" +
-                     image + '"');
+    throw UsageError(
+        "--srgb and -o: expected a .png, other pictures hold light as it is; found \"" + image +
+        '"');
 }
 
 void check_long_work(const RenderCommand& command) {
@@ -144,7 +145,7 @@ void check_together(const MergeCommand& command) {
 void check_together(const SceneCommand& command) {
   if (command.list &&
       (!command.name.empty() || command.size || !command.output.empty() || command.spd))
-    throw UsageError("--list: wanted alone, it writes no scene");
+    throw UsageError("--list: expected alone, it writes no scene");
   if (command.list)
     return;
   if (command.name.empty())

@@ -43,7 +43,7 @@ std::vector<std::string> parts(const std::string& option,
                                const std::string& text,
                                std::size_t least,
                                std::size_t most,
-                               const char* wanted) {
+                               const char* expected) {
   std::vector<std::string> found(1);
   for (const char c : text) {
     if (c == ',')
@@ -52,7 +52,7 @@ std::vector<std::string> parts(const std::string& option,
       found.back() += c;
   }
   if (found.size() < least || found.size() > most)
-    refuse(option, wanted, text);
+    refuse(option, expected, text);
   return found;
 }
 
@@ -75,10 +75,10 @@ Subdivision subdivision(const std::string& text) {
 }  // namespace
 
 void refuse(const std::string& option,
-            const std::string& wanted,
+            const std::string& expected,
             const std::string& found,
             const std::string& meant) {
-  throw UsageError(option + ": wanted " + wanted + ", found \"" + found + '"' + meant);
+  throw UsageError(option + ": expected " + expected + ", found \"" + found + '"' + meant);
 }
 
 int whole(const std::string& option, const std::string& text, int low, int high) {
@@ -248,15 +248,15 @@ std::string regular_file_name(const std::string& option, const std::string& text
 }
 
 LayerChoice layers(const std::string& text) {
-  constexpr const char* kWanted = "some of depth,normal,id, each once";
+  constexpr const char* kExpected = "some of depth,normal,id, each once";
   LayerChoice chosen;
-  for (const std::string& word : parts("--layers", text, 1, 3, kWanted)) {
+  for (const std::string& word : parts("--layers", text, 1, 3, kExpected)) {
     bool* const one = word == "depth"    ? &chosen.depth
                       : word == "normal" ? &chosen.normal
                       : word == "id"     ? &chosen.id
                                          : nullptr;
     if (!one || *one)
-      refuse("--layers", kWanted, text);
+      refuse("--layers", kExpected, text);
     *one = true;
   }
   return chosen;

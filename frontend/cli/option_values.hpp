@@ -1,6 +1,6 @@
 #pragma once
 // What stands behind an option, as a value. Each refuses with a UsageError that says what was
-// wanted and what was found.
+// expected and what was found.
 
 #include <array>
 #include <cstddef>
@@ -18,7 +18,7 @@ namespace grelha::option_values {
 inline constexpr int kMaxSide = 65536;  ///< of a picture
 
 [[noreturn]] void refuse(const std::string& option,
-                         const std::string& wanted,
+                         const std::string& expected,
                          const std::string& found,
                          const std::string& meant = "");
 
@@ -55,15 +55,15 @@ template <class T, std::size_t N>
 T choice(const std::string& option,
          const std::string& text,
          const std::array<std::pair<std::string_view, T>, N>& words) {
-  std::string wanted;
+  std::string expected;
   std::vector<std::string_view> all;
   for (const auto& [word, value] : words) {
     if (word == text)
       return value;
-    wanted += (wanted.empty() ? "" : ", ") + std::string(word);
+    expected += (expected.empty() ? "" : ", ") + std::string(word);
     all.push_back(word);
   }
-  throw UsageError(option + ": wanted one of " + wanted + ", found \"" + text + '"' +
+  throw UsageError(option + ": expected one of " + expected + ", found \"" + text + '"' +
                    did_you_mean(text, all));
 }
 

@@ -381,7 +381,7 @@ void want_known_command(const CLI::App& app, const std::string& word) {
     commands += (commands.empty() ? "" : ", ") + sub->get_name();
     names.push_back(sub->get_name());
   }
-  throw UsageError("command: wanted one of " + commands + ", found \"" + word + '"' +
+  throw UsageError("command: expected one of " + commands + ", found \"" + word + '"' +
                    did_you_mean(word, names));
 }
 
@@ -405,7 +405,7 @@ std::string meant_option_left(const CLI::App& app) {
 void refuse_twice(const CLI::App& app) {
   for (const CLI::Option* o : asked(app).get_options())
     if (!o->get_positional() && o->get_expected_max() == 1 && o->count() > 1)
-      throw UsageError(o->get_name() + ": wanted once, found \"" + o->results()[0] + "\" and \"" +
+      throw UsageError(o->get_name() + ": expected once, found \"" + o->results()[0] + "\" and \"" +
                        o->results()[1] + '"');
 }
 

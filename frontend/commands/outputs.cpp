@@ -19,7 +19,7 @@ struct Use {
 
 [[noreturn]] void refuse(const Use& first, const Use& second) {
   if (first.command == second.command)
-    throw UsageError(second.option + " and " + first.option + ": wanted two files, found \"" +
+    throw UsageError(second.option + " and " + first.option + ": expected two files, found \"" +
                      first.file + "\" twice");
   throw UsageError(second.option + ": " + first.command->scene + " and " + second.command->scene +
                    " would both be written to " + second.file +
@@ -54,7 +54,7 @@ void prepare_outputs(const RenderCommand& command) {
 
 void want_no_terminal(const std::string& file) {
   if (file == kStdout && isatty(STDOUT_FILENO) == 1)
-    throw UsageError("-o -: stdout is a terminal: wanted a pipe or a file behind it");
+    throw UsageError("-o -: stdout is a terminal: expected a pipe or a file behind it");
 }
 
 void want_not_read(const std::vector<Output>& outputs, const std::vector<std::string>& read) {
@@ -65,7 +65,7 @@ void want_not_read(const std::vector<Output>& outputs, const std::vector<std::st
     const auto found = places.find(place_of(file));
     if (found == places.end() || is_special_file(file))
       continue;
-    throw UsageError(option + ": wanted another file than " + found->second +
+    throw UsageError(option + ": expected another file than " + found->second +
                      ", which is read, found \"" + file + '"');
   }
 }

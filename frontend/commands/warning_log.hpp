@@ -22,7 +22,7 @@ class WarningLog {
   /// Throws UsageError where a warning is one too many.
   void want_none(const InputOptions& input) const {
     if (input.strict && count_ > 0)
-      throw UsageError("--strict: wanted no warning, found " + std::to_string(count_));
+      throw UsageError("--strict: expected no warning, found " + std::to_string(count_));
   }
 
  private:

@@ -167,7 +167,7 @@ class Inflater {
     const int result = inflate(&stream_, Z_NO_FLUSH);
     taken_ += give - stream_.avail_in;
     if (room.empty() && stream_.avail_out == 0)
-      fail("wanted data that inflate to at most " + std::to_string(limit) + " bytes, found more");
+      fail("expected data that inflate to at most " + std::to_string(limit) + " bytes, found more");
     if (!room.empty())
       out.filled(room.size() - stream_.avail_out);
     if (progress_)
@@ -182,10 +182,10 @@ class Inflater {
     if (result == Z_MEM_ERROR)
       throw std::bad_alloc();
     if (result != Z_OK && result != Z_BUF_ERROR)
-      fail(std::string("wanted sound gzip data, found ") +
+      fail(std::string("expected sound gzip data, found ") +
            (stream_.msg ? stream_.msg : "broken ones"));
     if (taken_ == data_.size() && stream_.avail_out != 0)
-      fail("wanted more gzip data, found end of file");
+      fail("expected more gzip data, found end of file");
     return false;
   }
 

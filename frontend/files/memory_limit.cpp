@@ -89,6 +89,6 @@ std::string memory_there_is() {
   return gigabytes(least) + ", all that this machine has (--max-memory sets another bound)";
 }
 
-std::string out_of_memory() { return "out of memory: wanted more than " + memory_there_is(); }
+std::string out_of_memory() { return "out of memory: needed more than " + memory_there_is(); }
 
 }  // namespace grelha

@@ -19,11 +19,11 @@ struct Position {
   }
 };
 
-/// The input cannot be a scene. what() is one line: `scenes/x.nff:12:27: error: wanted ..., found
+/// The input cannot be a scene. what() is one line: `scenes/x.nff:12:27: error: expected ..., found
 /// "-1"`.
 struct ParseError : std::runtime_error {
-  ParseError(const Position& at, std::string_view wanted, std::string_view found)
-      : std::runtime_error(at.text() + ": error: wanted " + std::string(wanted) + ", found " +
+  ParseError(const Position& at, std::string_view expected, std::string_view found)
+      : std::runtime_error(at.text() + ": error: expected " + std::string(expected) + ", found " +
                            std::string(found)) {}
   ParseError(const Position& at, std::string_view message)
       : std::runtime_error(at.text() + ": error: " + std::string(message)) {}

@@ -20,7 +20,7 @@ void judge_beginning(const std::string& path, bool ply, std::string_view text, s
   if (start.starts_with("version https://git-lfs"))
     throw ParseError(
         Position{path, 1, 1, 0},
-        "wanted a scene, found a Git LFS pointer: the file it stands for was not downloaded");
+        "expected a scene, found a Git LFS pointer: the file it stands for was not downloaded");
   if (ply && fresh == 0) {
     Words words(path, start, 0, '\0');
     const std::string_view magic = words.next();

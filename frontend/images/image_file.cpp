@@ -75,7 +75,7 @@ class PfmHeader {
   PfmHeader(const std::string& path, const std::string& bytes) : path_(path), bytes_(bytes) {
     const std::string kind = word();
     if (kind != "PF" && kind != "Pf")
-      refuse("wanted PF or Pf at the start");
+      refuse("expected PF or Pf at the start");
     channels = kind == "PF" ? 3 : 1;
     width = side();
     height = side();

@@ -74,7 +74,7 @@ SceneFile read_scene(const std::string& path, const Warn& warn, const ReadOption
         judge_beginning(path, is_ply(path, text), text, fresh);
       });
   if (bytes.empty())
-    throw ParseError(Position{path, 1, 1, 0}, "wanted a scene, found an empty file");
+    throw ParseError(Position{path, 1, 1, 0}, "expected a scene, found an empty file");
   SceneFile file = is_ply(path, bytes) ? read_mesh_alone(path, std::move(bytes), warn, progress)
                                        : read_nff(path, bytes, warn, options, &progress);
   progress.finish();

@@ -54,7 +54,7 @@ auto interruptible(const char* name, const std::string& during, bool shown, cons
 
 [[noreturn]] void refuse(const std::string& path, std::uint64_t need) {
   throw FileError(path,
-                  "wanted about " + gigabytes(own_memory().owned + need) +
+                  "expected about " + gigabytes(own_memory().owned + need) +
                       " of memory to render it, found " + memory_there_is());
 }
 

@@ -4,8 +4,8 @@
 
 namespace grelha {
 
-void NffInput::fail(std::string_view word, const std::string& wanted) const {
-  throw ParseError(position(word), wanted, quoted(word));
+void NffInput::fail(std::string_view word, const std::string& expected) const {
+  throw ParseError(position(word), expected, quoted(word));
 }
 
 void NffInput::warn_once(std::string_view kind, std::string_view word, const std::string& message) {

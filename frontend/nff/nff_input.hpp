@@ -17,7 +17,7 @@ struct NumberWord {
 };
 
 /// Words of an NFF file read as what an entity wants; anything else is a ParseError at the word
-/// found. `what` completes "wanted a number for ...".
+/// found. `what` completes "expected a number for ...".
 class NffInput {
  public:
   NffInput(Words& all_words, Warnings& all_warnings) : words(all_words), warnings(all_warnings) {}
@@ -35,7 +35,7 @@ class NffInput {
   std::vector<NumberWord> numbers(std::size_t enough, const char* what);
 
   Position position(std::string_view word) const { return words.position(word); }
-  [[noreturn]] void fail(std::string_view word, const std::string& wanted) const;
+  [[noreturn]] void fail(std::string_view word, const std::string& expected) const;
   void warn_once(std::string_view kind, std::string_view word, const std::string& message);
 
   Words& words;

@@ -64,7 +64,7 @@ void NffLights::add_area(NffInput& input, std::string_view keyword, AreaLight li
   const Float3 center = light.corner + 0.5f * (light.edge1 + light.edge2);
   if (!drawable(center))
     throw ParseError(input.position(keyword),
-                     "wanted an area light within 1e18, found a larger one");
+                     "expected an area light within 1e18, found a larger one");
   light.light = std::uint32_t(file_.scene.lights.size());
   file_.area_lights.push_back(light);
   add_point(center, light.color);

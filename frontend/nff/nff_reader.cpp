@@ -182,7 +182,7 @@ void NffReader::refuse_sense8(std::string_view word) {
   ahead.next();
   if (ahead.next() == "version")
     throw ParseError(input_.position(word),
-                     "wanted Haines' Neutral File Format, found Sense8's (WorldToolKit) NFF");
+                     "expected Haines' Neutral File Format, found Sense8's (WorldToolKit) NFF");
 }
 
 std::uint32_t NffReader::material(std::string_view keyword) {
@@ -332,7 +332,7 @@ void NffReader::read_ply(std::string_view keyword) {
   if (!options_.allow_outside && is_outside(path))
     throw ParseError(
         input_.position(name),
-        "wanted a file in the scene's folder or below it (or --allow-outside), found " +
+        "expected a file in the scene's folder or below it (or --allow-outside), found " +
             quoted(name));
   Mesh mesh;
   try {
@@ -357,7 +357,7 @@ void NffReader::read_ply(std::string_view keyword) {
   if (mesh.vertex_count() > kMost - triangles.vertex_count() ||
       mesh.corners.size() > kMost - triangles.size())
     throw ParseError(input_.position(name),
-                     "wanted fewer than 2^32 vertices and triangles in all, found more");
+                     "expected fewer than 2^32 vertices and triangles in all, found more");
   build_.mesh(std::move(mesh), material(keyword));
   file_.counts.ply += faces;
   file_.meshes.push_back(path);

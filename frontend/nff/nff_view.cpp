@@ -105,7 +105,7 @@ Camera NffView::finish(NffInput& input, std::string_view end) const {
   const auto need = [&](std::string_view word, const char* name) {
     if (word.empty())
       throw ParseError(input.position(start),
-                       std::string("wanted \"") + name + "\" in the view, found none");
+                       std::string("expected \"") + name + "\" in the view, found none");
   };
   need(from_, "from");
   need(at_, "at");
@@ -120,14 +120,14 @@ Camera NffView::finish(NffInput& input, std::string_view end) const {
   const Direction up{camera_.up.x, camera_.up.y, camera_.up.z};
   if (view.length() == 0)
     throw ParseError(input.position(at_),
-                     "wanted a point to look at apart from the eye, found the same point");
+                     "expected a point to look at apart from the eye, found the same point");
   if (up.length() == 0)
-    throw ParseError(input.position(up_), "wanted an up direction, found 0 0 0");
+    throw ParseError(input.position(up_), "expected an up direction, found 0 0 0");
   // Floats of a nearly parallel pair leave no digits for the picture's horizon below about 1e-6.
   constexpr double kLeastSine = 1e-6;
   if (!(cross(view, up).length() > kLeastSine * view.length() * up.length()))
     throw ParseError(input.position(up_),
-                     "wanted an up direction that is not along the view, found one that is");
+                     "expected an up direction that is not along the view, found one that is");
   return camera_;
 }
 

@@ -73,8 +73,8 @@ PlyBinary::PlyBinary(const std::string& path,
       swap_((header.format == PlyFormat::kBigEndian) != (std::endian::native == std::endian::big)) {
 }
 
-void PlyBinary::fail(const char* at, const std::string& wanted, const std::string& found) const {
-  throw ParseError(Position{path_, 0, 0, std::uint64_t(at - begin_)}, wanted, found);
+void PlyBinary::fail(const char* at, const std::string& expected, const std::string& found) const {
+  throw ParseError(Position{path_, 0, 0, std::uint64_t(at - begin_)}, expected, found);
 }
 
 /// Steps over `bytes` bytes, which must be there, and returns where they begin.

@@ -26,7 +26,9 @@ class PlyBinary {
                  std::uint64_t row,
                  PlyFaces* faces);
   const char* take(std::size_t bytes, const PlyElement& element, std::uint64_t row);
-  [[noreturn]] void fail(const char* at, const std::string& wanted, const std::string& found) const;
+  [[noreturn]] void fail(const char* at,
+                         const std::string& expected,
+                         const std::string& found) const;
 
   const std::string& path_;
   const char *begin_, *end_, *at_;

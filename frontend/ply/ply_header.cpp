@@ -47,10 +47,10 @@ class HeaderReader {
   PlyHeader read();
 
  private:
-  [[noreturn]] void fail(std::string_view word, const std::string& wanted) const {
+  [[noreturn]] void fail(std::string_view word, const std::string& expected) const {
     const bool at_end = word.data() == bytes_.data() + bytes_.size();
     throw ParseError(
-        whole_.position(word), wanted, word.empty() && !at_end ? "end of line" : quoted(word));
+        whole_.position(word), expected, word.empty() && !at_end ? "end of line" : quoted(word));
   }
   void find_line_end();
   void skip_stray(std::string_view keyword);
@@ -190,7 +190,7 @@ void HeaderReader::check_counts() const {
     const std::uint64_t most = left / element.row_bytes;
     if (element.count > most || element.count > 0xFFFFFFFEu)
       throw ParseError(whole_.position(count_words_[i]),
-                       "wanted at most " +
+                       "expected at most " +
                            std::to_string(std::min<std::uint64_t>(most, 0xFFFFFFFEu)) +
                            " rows of \"" + element.name + "\" (the file ends before), found " +
                            quoted(count_words_[i]));

@@ -26,7 +26,7 @@ PlyPlan plan_vertex(const PlyElement& element) {
     else if (i < 3 && element.count > 0)
       throw ParseError(
           element.position,
-          "wanted a property \"" + std::string(kNames[i]) + "\" of \"vertex\", found none");
+          "expected a property \"" + std::string(kNames[i]) + "\" of \"vertex\", found none");
   }
   const bool normals = plan.columns[3] >= 0 && plan.columns[4] >= 0 && plan.columns[5] >= 0;
   if (!normals)
@@ -46,7 +46,7 @@ PlyPlan plan_faces(const PlyElement& element) {
   if (element.count > 0)
     throw ParseError(
         element.position,
-        "wanted a list of integers \"vertex_indices\" in \"" + element.name + "\", found none");
+        "expected a list of integers \"vertex_indices\" in \"" + element.name + "\", found none");
   return PlyPlan{};
 }
 

@@ -214,7 +214,7 @@ Counts judge(Tracer& tracer, const Trial& trial) {
               : v == Verdict::kFalse ? "false, "
                                      : "self-hit, ")
           << trial.rays.describe(i) << std::defaultfloat << "; t " << a.t[i] << " id "
-          << static_cast<std::int32_t>(a.id[i]) << ", wanted "
+          << static_cast<std::int32_t>(a.id[i]) << ", expected "
           << (w.hit    ? "hit"
               : w.miss ? "miss"
                        : "either")

@@ -104,8 +104,8 @@ inline testing::AssertionResult same(const Answers& wanted,
   if (wrong == 0)
     return testing::AssertionSuccess();
   return testing::AssertionFailure()
-         << wrong << " of " << rays.size() << " differ; " << rays.describe(first) << "\n  wanted "
-         << show(wanted.t[first], wanted.id[first]) << "\n  got    "
+         << wrong << " of " << rays.size() << " differ; " << rays.describe(first) << "\n  expected "
+         << show(wanted.t[first], wanted.id[first]) << "\n  got      "
          << show(got.t[first], got.id[first]);
 }
 

@@ -62,30 +62,31 @@ TEST_F(Files, NothingIsWrittenOverWhatIsRead) {
   for (const char* name : {"ball.nff", "./ball.nff", "hard"})
     expect_refused(
         std::string("render ball.nff --stats ") + name,
-        std::string("--stats: wanted another file than ball.nff, which is read, found \"") + name +
-            '"');
+        std::string("--stats: expected another file than ball.nff, which is read, found \"") +
+            name + '"');
   expect_refused("render twin.nff -o link.png",
-                 "-o: wanted another file than twin.nff, which is read, found \"link.png\"");
+                 "-o: expected another file than twin.nff, which is read, found \"link.png\"");
   expect_refused("render ball.nff two.nff -o {}.png --checkpoint {}.kept --stats twin.nff",
-                 "--stats: wanted another file than ball.nff, which is read, found \"twin.nff\"");
-  expect_refused("render two.nff -o x.png --stats ./mesh.ply",
-                 "--stats: wanted another file than mesh.ply, which is read, found \"./mesh.ply\"");
+                 "--stats: expected another file than ball.nff, which is read, found \"twin.nff\"");
+  expect_refused(
+      "render two.nff -o x.png --stats ./mesh.ply",
+      "--stats: expected another file than mesh.ply, which is read, found \"./mesh.ply\"");
   EXPECT_EQ(folder_.list(), before);
   EXPECT_EQ(folder_.read("ball.nff"), kBall);
   ASSERT_EQ(run("render ball.nff -o a.png --quiet").status, 0);
   ASSERT_EQ(run("render ball.nff -o b.png --quiet --depth 1").status, 0);
   expect_refused("compare a.png b.png --diff ./b.png",
-                 "--diff: wanted another file than b.png, which is read, found \"./b.png\"");
+                 "--diff: expected another file than b.png, which is read, found \"./b.png\"");
 }
 
 TEST_F(Files, NothingIsWrittenTwice) {
   std::filesystem::create_symlink("x.png", folder_.file("link.png"));
   expect_refused("render ball.nff -o x.png --stats ./x.png",
-                 "--stats and -o: wanted two files, found \"x.png\" twice");
+                 "--stats and -o: expected two files, found \"x.png\" twice");
   expect_refused("render ball.nff -o x.png --error .1 --samples-map link.png",
-                 "--samples-map and -o: wanted two files, found \"x.png\" twice");
+                 "--samples-map and -o: expected two files, found \"x.png\" twice");
   expect_refused("render ball.nff -o x.png --stats s --checkpoint ./s",
-                 "--checkpoint and --stats: wanted two files, found \"s\" twice");
+                 "--checkpoint and --stats: expected two files, found \"s\" twice");
   EXPECT_EQ(run("render ball.nff -o x.png --quiet --stats /dev/null --checkpoint kept").status, 0);
 }
 
@@ -184,7 +185,7 @@ TEST_F(Files, TheFileThereIsNoMemoryForIsNamed) {
   folder_.write("large.nff", std::string(kBall) + std::string(std::size_t(100) << 20, ' '));
   folder_.write("large.ply", std::string(std::size_t(100) << 20, ' '));
   folder_.write("mesh.nff", std::string(kBall) + "ply large.ply\n");
-  const std::string why = ": error: out of memory: wanted more than 0.0671 GB (--max-memory)\n";
+  const std::string why = ": error: out of memory: needed more than 0.0671 GB (--max-memory)\n";
   EXPECT_EQ(run("info ball.nff large.nff --max-memory 64M").err, "large.nff" + why);
   EXPECT_EQ(run("info mesh.nff --max-memory 64M").err, "large.ply" + why);
 }
@@ -192,8 +193,8 @@ TEST_F(Files, TheFileThereIsNoMemoryForIsNamed) {
 TEST_F(Files, AnEmptyNameIsNone) {
   for (const std::string option : {"--checkpoint", "--stats"})
     expect_refused("render ball.nff " + option + " ''",
-                   option + ": wanted a file name, found \"\"");
-  expect_refused("scene balls -o ''", "-o: wanted a file name, found \"\"");
+                   option + ": expected a file name, found \"\"");
+  expect_refused("scene balls -o ''", "-o: expected a file name, found \"\"");
 }
 
 TEST_F(Files, NamesTooLongAreOneLineOfOurs) {
@@ -233,12 +234,13 @@ TEST_F(Files, StdoutHoldsOneResult) {
   const auto refused = [&](const std::string& arguments, const std::string& why) {
     expect_refused(arguments, why);
   };
-  refused("render ball.nff -o - --stats -", "--stats and -o: wanted two files, found \"-\" twice");
+  refused("render ball.nff -o - --stats -",
+          "--stats and -o: expected two files, found \"-\" twice");
   folder_.write("two.nff", kBall);
   refused(
       "render ball.nff two.nff -o -",
       "-o: ball.nff and two.nff would both be written to -; {} in a name stands for the scene's");
-  refused("scene boat -o -", "-o: wanted a file, for a mesh is written beside it, found \"-\"");
+  refused("scene boat -o -", "-o: expected a file, for a mesh is written beside it, found \"-\"");
   const Outcome full = run("render ball.nff -o - --quiet", "sh -c '\"$0\" \"$@\" >/dev/full' ");
   EXPECT_EQ(full.status, 1);
   EXPECT_EQ(full.err,

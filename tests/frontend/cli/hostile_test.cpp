@@ -202,7 +202,7 @@ TEST_F(Hostile, FilesThatInflateWithoutEnd) {
     folder_.write("names.nff", std::string(test::kBall) + "ply bomb.ply.gz\n");
     expect_both_bounded("bomb.nff.gz", 2, "without a digit");
     expect_both_bounded(
-        "bomb.ply.gz", 2, letter == 'a' ? "wanted \"ply\" on the first line" : "without a digit");
+        "bomb.ply.gz", 2, letter == 'a' ? "expected \"ply\" on the first line" : "without a digit");
     expect_both_bounded("names.nff", 2, "bomb.ply.gz:");
   }
   folder_.write("hole.nff", "s 0 0 0 1\n");

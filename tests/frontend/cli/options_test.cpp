@@ -120,7 +120,7 @@ TEST(Render, ShortOptionsTakeTheirValueAsInOtherTools) {
     EXPECT_EQ(command.build.threads, 3) << line;
   }
   EXPECT_EQ(std::get<SceneCommand>(parse("scene balls -o=b.nff")).output, "b.nff");
-  EXPECT_EQ(error_of("render x.nff -o="), "-o: wanted a file name, found \"\"");
+  EXPECT_EQ(error_of("render x.nff -o="), "-o: expected a file name, found \"\"");
   EXPECT_EQ(std::get<TextCommand>(parse("-V")).text,
             std::get<TextCommand>(parse("--version")).text);
 }
@@ -225,30 +225,33 @@ TEST(Help, FitsAScreenAndSaysHow) {
   EXPECT_EQ(std::get<TextCommand>(parse("--version")).text.find("grelha "), 0u);
 }
 
-TEST(Errors, SayWhatWasWantedAndFound) {
+TEST(Errors, SayWhatWasExpectedAndFound) {
   const std::pair<const char*, const char*> table[] = {
       {"", "A subcommand is required (see --help)"},
       {"--hlp",
        "The following argument was not expected: --hlp; did you mean --help? (see --help)"},
       {"--quiet render a", "The following argument was not expected: --quiet (see --help)"},
       {"help rendr",
-       "command: wanted one of render, info, compare, merge, scene, found \"rendr\"; did you mean "
+       "command: expected one of render, info, compare, merge, scene, found \"rendr\"; did you "
+       "mean "
        "render?"},
       {"render a --size 2x2 --depth 3 --size 3x3",
-       "--size: wanted once, found \"2x2\" and \"3x3\""},
-      {"render a -o a.png --output=b.png", "--output: wanted once, found \"a.png\" and \"b.png\""},
+       "--size: expected once, found \"2x2\" and \"3x3\""},
+      {"render a -o a.png --output=b.png",
+       "--output: expected once, found \"a.png\" and \"b.png\""},
       {"render a --shadows hrd",
-       "--shadows: wanted hard, random:SIZE or area:SIZE,N, found \"hrd\"; did you mean hard?"},
+       "--shadows: expected hard, random:SIZE or area:SIZE,N, found \"hrd\"; did you mean hard?"},
       {"render a --aa adptive:1,2",
-       "--aa: wanted off, jitter:N or adaptive:THRESHOLD,DEPTH, found \"adptive:1,2\"; did you "
+       "--aa: expected off, jitter:N or adaptive:THRESHOLD,DEPTH, found \"adptive:1,2\"; did you "
        "mean adaptive:1,2?"},
       {"render a --shadows random",
-       "--shadows: wanted hard, random:SIZE or area:SIZE,N, found \"random\""},
+       "--shadows: expected hard, random:SIZE or area:SIZE,N, found \"random\""},
       {"rendr x.nff",
-       "command: wanted one of render, info, compare, merge, scene, found \"rendr\"; did you mean "
+       "command: expected one of render, info, compare, merge, scene, found \"rendr\"; did you "
+       "mean "
        "render?"},
       {"nothing x.nff",
-       "command: wanted one of render, info, compare, merge, scene, found \"nothing\""},
+       "command: expected one of render, info, compare, merge, scene, found \"nothing\""},
       {"render", "SCENE is required (see --help)"},
       {"compare a b c", "The following argument was not expected: c (see --help)"},
       {"render a --foo", "The following argument was not expected: --foo (see --help)"},
@@ -259,79 +262,81 @@ TEST(Errors, SayWhatWasWantedAndFound) {
       {"info a --jsno",
        "The following argument was not expected: --jsno; did you mean --json? (see --help)"},
       {"render a --sampler sobl",
-       "--sampler: wanted one of sobol, jitter, unshuffled, random, found \"sobl\"; did you mean "
+       "--sampler: expected one of sobol, jitter, unshuffled, random, found \"sobl\"; did you mean "
        "sobol?"},
       {"render a -o", "--output: 1 required FILE missing (see --help)"},
       {"render a -o b.jpg",
-       "-o: wanted a name ending in .png, .hdr, .pfm, .exr or .grelha, found \"b.jpg\""},
-      {"render a --size 640", "--size: wanted WIDTHxHEIGHT, each from 1 to 65536, found \"640\""},
-      {"render a --size 0x1", "--size: wanted WIDTHxHEIGHT, each from 1 to 65536, found \"0x1\""},
+       "-o: expected a name ending in .png, .hdr, .pfm, .exr or .grelha, found \"b.jpg\""},
+      {"render a --size 640", "--size: expected WIDTHxHEIGHT, each from 1 to 65536, found \"640\""},
+      {"render a --size 0x1", "--size: expected WIDTHxHEIGHT, each from 1 to 65536, found \"0x1\""},
       {"render a --size 1x65537",
-       "--size: wanted WIDTHxHEIGHT, each from 1 to 65536, found \"1x65537\""},
+       "--size: expected WIDTHxHEIGHT, each from 1 to 65536, found \"1x65537\""},
       {"render a --size 1x1x1",
-       "--size: wanted WIDTHxHEIGHT, each from 1 to 65536, found \"1x1x1\""},
-      {"render a --size -1x1", "--size: wanted WIDTHxHEIGHT, each from 1 to 65536, found \"-1x1\""},
-      {"render a --threads 0", "--threads: wanted a whole number from 1 to 1024, found \"0\""},
-      {"render a --threads 1.5", "--threads: wanted a whole number from 1 to 1024, found \"1.5\""},
+       "--size: expected WIDTHxHEIGHT, each from 1 to 65536, found \"1x1x1\""},
+      {"render a --size -1x1",
+       "--size: expected WIDTHxHEIGHT, each from 1 to 65536, found \"-1x1\""},
+      {"render a --threads 0", "--threads: expected a whole number from 1 to 1024, found \"0\""},
+      {"render a --threads 1.5",
+       "--threads: expected a whole number from 1 to 1024, found \"1.5\""},
       {"render a --threads 99999999999",
-       "--threads: wanted a whole number from 1 to 1024, found \"99999999999\""},
-      {"render a --min-weight nan", "--min-weight: wanted a number from 0 to 1, found \"nan\""},
-      {"render a --min-weight 1.5", "--min-weight: wanted a number from 0 to 1, found \"1.5\""},
-      {"render a --depth -1", "--depth: wanted a whole number from 1 to 4096, found \"-1\""},
-      {"render a --density 0", "--density: wanted a number above 0 and up to 1000, found \"0\""},
+       "--threads: expected a whole number from 1 to 1024, found \"99999999999\""},
+      {"render a --min-weight nan", "--min-weight: expected a number from 0 to 1, found \"nan\""},
+      {"render a --min-weight 1.5", "--min-weight: expected a number from 0 to 1, found \"1.5\""},
+      {"render a --depth -1", "--depth: expected a whole number from 1 to 4096, found \"-1\""},
+      {"render a --density 0", "--density: expected a number above 0 and up to 1000, found \"0\""},
       {"render a --density nan",
-       "--density: wanted a number above 0 and up to 1000, found \"nan\""},
+       "--density: expected a number above 0 and up to 1000, found \"nan\""},
       {"render a --density 1e-60",
-       "--density: wanted a number above 0 and up to 1000, found \"1e-60\""},
-      {"render a --accel bvh", "--accel: wanted one of grid, none, found \"bvh\""},
-      {"render a --mailbox yes", "--mailbox: wanted one of on, off, found \"yes\""},
+       "--density: expected a number above 0 and up to 1000, found \"1e-60\""},
+      {"render a --accel bvh", "--accel: expected one of grid, none, found \"bvh\""},
+      {"render a --mailbox yes", "--mailbox: expected one of on, off, found \"yes\""},
       {"render a --isa neon",
-       "--isa: wanted one of scalar, sse2, avx2, avx512, best, found \"neon\""},
-      {"render a --precision half", "--precision: wanted one of single, double, found \"half\""},
-      {"render a --packet 8", "--packet: wanted one of 1, 16, 64, 256, found \"8\""},
-      {"render a --samples 0", "--samples: wanted a whole number from 1 to 65536, found \"0\""},
+       "--isa: expected one of scalar, sse2, avx2, avx512, best, found \"neon\""},
+      {"render a --precision half", "--precision: expected one of single, double, found \"half\""},
+      {"render a --packet 8", "--packet: expected one of 1, 16, 64, 256, found \"8\""},
+      {"render a --samples 0", "--samples: expected a whole number from 1 to 65536, found \"0\""},
       {"render a --sampler halton",
-       "--sampler: wanted one of sobol, jitter, unshuffled, random, found \"halton\""},
-      {"render a --error 0", "--error: wanted a number from 0.000001 to 1, found \"0\""},
-      {"render a --error nan", "--error: wanted a number from 0.000001 to 1, found \"nan\""},
+       "--sampler: expected one of sobol, jitter, unshuffled, random, found \"halton\""},
+      {"render a --error 0", "--error: expected a number from 0.000001 to 1, found \"0\""},
+      {"render a --error nan", "--error: expected a number from 0.000001 to 1, found \"nan\""},
       {"render a --time -1",
-       "--time: wanted seconds above 0 and up to 1e9, or samples:N, found \"-1\""},
+       "--time: expected seconds above 0 and up to 1e9, or samples:N, found \"-1\""},
       {"render a --time samples:0",
-       "--time: wanted samples:N with N from 1 to 2^64 - 1, found \"samples:0\""},
+       "--time: expected samples:N with N from 1 to 2^64 - 1, found \"samples:0\""},
       {"render a --error .1 --time 1", "--error and --time: one of them, found both"},
       {"render a --error .1 --samples 4",
        "--error and --time choose the samples: no --samples or --aa beside them"},
       {"render a --time 1 --aa jitter:2",
        "--error and --time choose the samples: no --samples or --aa beside them"},
       {"render a --error .1 --sampler jitter",
-       "--sampler: wanted sobol or random with --error or --time"},
+       "--sampler: expected sobol or random with --error or --time"},
       {"render a --samples-map s.png", "--samples-map and --error-map want --error or --time"},
       {"render a --error .1 --error-map s.txt",
-       "--error-map: wanted a name ending in .png, .hdr, .pfm or .exr, found \"s.txt\""},
-      {"render a --aa 3", "--aa: wanted off, jitter:N or adaptive:THRESHOLD,DEPTH, found \"3\""},
-      {"render a --aa adaptive:.1", "--aa: wanted adaptive:THRESHOLD,DEPTH, found \".1\""},
-      {"render a --aa adaptive:1.5,3", "--aa: wanted a threshold from 0 to 1, found \"1.5\""},
-      {"render a --aa adaptive:nan,3", "--aa: wanted a threshold from 0 to 1, found \"nan\""},
+       "--error-map: expected a name ending in .png, .hdr, .pfm or .exr, found \"s.txt\""},
+      {"render a --aa 3", "--aa: expected off, jitter:N or adaptive:THRESHOLD,DEPTH, found \"3\""},
+      {"render a --aa adaptive:.1", "--aa: expected adaptive:THRESHOLD,DEPTH, found \".1\""},
+      {"render a --aa adaptive:1.5,3", "--aa: expected a threshold from 0 to 1, found \"1.5\""},
+      {"render a --aa adaptive:nan,3", "--aa: expected a threshold from 0 to 1, found \"nan\""},
       {"render a --aa adaptive:.1,3 --error .01",
        "--error and --time choose the samples: no --samples or --aa beside them"},
-      {"render a --aa adaptive:.1,9", "--aa: wanted a whole number from 0 to 8, found \"9\""},
-      {"render a --aa jitter:0", "--aa: wanted a whole number from 1 to 256, found \"0\""},
+      {"render a --aa adaptive:.1,9", "--aa: expected a whole number from 0 to 8, found \"9\""},
+      {"render a --aa jitter:0", "--aa: expected a whole number from 1 to 256, found \"0\""},
       {"render a --shadows soft",
-       "--shadows: wanted hard, random:SIZE or area:SIZE,N, found \"soft\""},
-      {"render a --shadows area:1", "--shadows: wanted area:SIZE,N, found \"1\""},
-      {"render a --shadows random:-1", "--shadows: wanted a size from 0 to 1e18, found \"-1\""},
-      {"render a --lens 1,2,3,4", "--lens: wanted APERTURE,FOCUS,N, found \"1,2,3,4\""},
-      {"render a --lens nan", "--lens: wanted an aperture from 0 to 1e18, found \"nan\""},
-      {"render a --glossy .1,0", "--glossy: wanted a whole number from 1 to 256, found \"0\""},
+       "--shadows: expected hard, random:SIZE or area:SIZE,N, found \"soft\""},
+      {"render a --shadows area:1", "--shadows: expected area:SIZE,N, found \"1\""},
+      {"render a --shadows random:-1", "--shadows: expected a size from 0 to 1e18, found \"-1\""},
+      {"render a --lens 1,2,3,4", "--lens: expected APERTURE,FOCUS,N, found \"1,2,3,4\""},
+      {"render a --lens nan", "--lens: expected an aperture from 0 to 1e18, found \"nan\""},
+      {"render a --glossy .1,0", "--glossy: expected a whole number from 1 to 256, found \"0\""},
       {"compare a", "B is required (see --help)"},
       {"compare a b --max-rmse -1",
-       "--max-rmse: wanted a number that is not negative, found \"-1\""},
+       "--max-rmse: expected a number that is not negative, found \"-1\""},
       {"compare a b --max-rmse nan",
-       "--max-rmse: wanted a number that is not negative, found \"nan\""},
+       "--max-rmse: expected a number that is not negative, found \"nan\""},
       {"compare a b --diff d.txt",
-       "--diff: wanted a name ending in .png, .hdr, .pfm or .exr, found \"d.txt\""},
+       "--diff: expected a name ending in .png, .hdr, .pfm or .exr, found \"d.txt\""},
       {"scene", "NAME is required (see grelha scene --list)"},
-      {"scene balls --size x", "--size: wanted a whole number from 0 to 1000, found \"x\""},
+      {"scene balls --size x", "--size: expected a whole number from 0 to 1000, found \"x\""},
   };
   for (const auto& [line, message] : table)
     EXPECT_EQ(error_of(line), message) << line;
@@ -340,27 +345,29 @@ TEST(Errors, SayWhatWasWantedAndFound) {
 /// What is too much is told how much there may be.
 TEST(Errors, SayTheUpperBoundToo) {
   const std::pair<const char*, const char*> table[] = {
-      {"render a --lens 1e30,1,1", "--lens: wanted an aperture from 0 to 1e18, found \"1e30\""},
+      {"render a --lens 1e30,1,1", "--lens: expected an aperture from 0 to 1e18, found \"1e30\""},
       {"render a --lens 1,1e30,1",
-       "--lens: wanted a focal distance from 0 to 1e18, found \"1e30\""},
+       "--lens: expected a focal distance from 0 to 1e18, found \"1e30\""},
       {"render a --lens 1,1,65537",
-       "--lens: wanted a whole number from 1 to 65536, found \"65537\""},
-      {"render a --glossy 1e30", "--glossy: wanted a roughness from 0 to 1e18, found \"1e30\""},
-      {"render a --shadows area:1e30,2", "--shadows: wanted a size from 0 to 1e18, found \"1e30\""},
-      {"render a --shadows random:1e30", "--shadows: wanted a size from 0 to 1e18, found \"1e30\""},
+       "--lens: expected a whole number from 1 to 65536, found \"65537\""},
+      {"render a --glossy 1e30", "--glossy: expected a roughness from 0 to 1e18, found \"1e30\""},
+      {"render a --shadows area:1e30,2",
+       "--shadows: expected a size from 0 to 1e18, found \"1e30\""},
+      {"render a --shadows random:1e30",
+       "--shadows: expected a size from 0 to 1e18, found \"1e30\""},
       {"render a --time 1e10",
-       "--time: wanted seconds above 0 and up to 1e9, or samples:N, found \"1e10\""},
+       "--time: expected seconds above 0 and up to 1e9, or samples:N, found \"1e10\""},
       {"render a --time samples:99999999999999999999",
-       "--time: wanted samples:N with N from 1 to 2^64 - 1, found "
+       "--time: expected samples:N with N from 1 to 2^64 - 1, found "
        "\"samples:99999999999999999999\""},
       {"render a --preview 1e10",
-       "--preview: wanted seconds above 0 and up to 1e9, found \"1e10\""},
+       "--preview: expected seconds above 0 and up to 1e9, found \"1e10\""},
       {"render a --checkpoint k --checkpoint-every 1e10",
-       "--checkpoint-every: wanted seconds above 0 and up to 1e9, found \"1e10\""},
+       "--checkpoint-every: expected seconds above 0 and up to 1e9, found \"1e10\""},
       {"render a --max-memory 1e30",
-       "--max-memory: wanted a size from 64M to 1e18 bytes, such as 512M or 6G, found \"1e30\""},
+       "--max-memory: expected a size from 64M to 1e18 bytes, such as 512M or 6G, found \"1e30\""},
       {"render a --aa jitter:256 --lens 1,1,2",
-       "--aa jitter:256 and --lens APERTURE,FOCUS,N: wanted at most 65536 samples a pixel, found "
+       "--aa jitter:256 and --lens APERTURE,FOCUS,N: expected at most 65536 samples a pixel, found "
        "131072"},
   };
   for (const auto& [line, message] : table)
@@ -376,9 +383,10 @@ TEST(Errors, NamesThatCannotBeLookedAt) {
   std::filesystem::create_symlink("loop", loop);
   EXPECT_EQ(
       error_of("render a -o " + inside),
-      "-o: wanted a name ending in .png, .hdr, .pfm, .exr or .grelha, found \"" + inside + '"');
-  EXPECT_EQ(error_of("render a -o " + far),
-            "-o: wanted a name ending in .png, .hdr, .pfm, .exr or .grelha, found \"" + far + '"');
+      "-o: expected a name ending in .png, .hdr, .pfm, .exr or .grelha, found \"" + inside + '"');
+  EXPECT_EQ(
+      error_of("render a -o " + far),
+      "-o: expected a name ending in .png, .hdr, .pfm, .exr or .grelha, found \"" + far + '"');
   EXPECT_EQ(error_of("render a -o " + inside + ".png --checkpoint " + inside), "no error");
   try {
     commands_for(std::get<RenderCommand>(
@@ -386,7 +394,7 @@ TEST(Errors, NamesThatCannotBeLookedAt) {
     ADD_FAILURE() << "one file twice is not found";
   } catch (const UsageError& error) {
     EXPECT_EQ(std::string(error.what()),
-              "--checkpoint and -o: wanted two files, found \"" + inside + ".png\" twice");
+              "--checkpoint and -o: expected two files, found \"" + inside + ".png\" twice");
   }
   EXPECT_EQ(error_of("render a -o " + far + ".png --checkpoint " + far), "no error");
 }

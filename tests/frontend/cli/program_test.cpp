@@ -197,7 +197,7 @@ TEST_F(Program, StrictTakesWarningsForErrors) {
       EXPECT_EQ(strict.status, 2);
       EXPECT_TRUE(strict.err.starts_with(let.err)) << strict.err;
       EXPECT_TRUE(strict.err.substr(let.err.size())
-                      .starts_with("grelha: error: --strict: wanted no warning, found "))
+                      .starts_with("grelha: error: --strict: expected no warning, found "))
           << strict.err;
     }
   }
@@ -252,7 +252,7 @@ TEST_F(Program, HostileFilesAreBounded) {
     GTEST_SKIP() << "sanitizers own more memory than there is";
   const Outcome large = run("render ball.nff --size 6000x6000 -o x.pfm --max-memory 300M");
   EXPECT_EQ(large.status, 1);
-  EXPECT_TRUE(large.err.starts_with("ball.nff: error: wanted about 1.7")) << large.err;
+  EXPECT_TRUE(large.err.starts_with("ball.nff: error: expected about 1.7")) << large.err;
   EXPECT_TRUE(large.err.ends_with(" GB of memory to render it, found 0.315 GB (--max-memory)\n"))
       << large.err;
   EXPECT_EQ(folder_.list(), "ball.nff claims.ply corners.nff faces.ply mesh.nff");
@@ -268,7 +268,7 @@ TEST_F(Program, ARowOfAHugePictureTakesLittle) {
   EXPECT_EQ(row.status, 0) << row.err;
   const Outcome all = run(huge + "--max-memory 100M");
   EXPECT_EQ(all.status, 1);
-  EXPECT_TRUE(all.err.starts_with("ball.nff: error: wanted about 21.6 GB of memory")) << all.err;
+  EXPECT_TRUE(all.err.starts_with("ball.nff: error: expected about 21.6 GB of memory")) << all.err;
   EXPECT_TRUE(all.err.ends_with(", found 0.105 GB (--max-memory)\n")) << all.err;
   const Outcome by_system = test::run(folder_, huge, "ulimit -d 204800 &&");
   EXPECT_TRUE(by_system.err.ends_with(", found 0.21 GB (ulimit -d)\n")) << by_system.err;
@@ -302,7 +302,8 @@ TEST_F(Program, WhatMemoryIsWantedIsEnough) {
         " --max-memory ";
     const Outcome refused = run(command + "64M");
     double wanted = 0;
-    ASSERT_EQ(std::sscanf(refused.err.c_str(), "ball.nff: error: wanted about %lf GB", &wanted), 1)
+    ASSERT_EQ(std::sscanf(refused.err.c_str(), "ball.nff: error: expected about %lf GB", &wanted),
+              1)
         << kind << ": " << refused.err;
     const Outcome enough = run(command + std::to_string(std::uint64_t(kTold * wanted * 1e9)));
     EXPECT_EQ(enough.status, 0) << kind << ": " << enough.err;
@@ -338,7 +339,7 @@ TEST_F(Program, SaysWhatMemoryItWillTake) {
   ASSERT_EQ(run("scene terrain --size 60 -o t.nff").status, 0);
   const Outcome refused = run("render t.nff --max-memory 150M");
   EXPECT_EQ(refused.status, 1);
-  EXPECT_TRUE(refused.err.starts_with("t.nff: error: wanted about 0.") &&
+  EXPECT_TRUE(refused.err.starts_with("t.nff: error: expected about 0.") &&
               refused.err.ends_with(" found 0.157 GB (--max-memory)\n"))
       << refused.err;
   EXPECT_EQ(std::count(refused.err.begin(), refused.err.end(), '\n'), 1);
@@ -352,7 +353,7 @@ TEST_F(Program, SuggestsTheSceneThatWasMeant) {
   EXPECT_EQ(run("scene bals").err,
             "grelha: error: no scene \"bals\"; did you mean balls? (see grelha scene --list)\n");
   EXPECT_EQ(run("scene gears --spd").err,
-            "grelha: error: --spd: wanted a scene that SPD has in another form (balls, mount), "
+            "grelha: error: --spd: expected a scene that SPD has in another form (balls, mount), "
             "found \"gears\"\n");
   EXPECT_EQ(run("scene teapot").err,
             "grelha: error: no scene \"teapot\" (see grelha scene --list)\n");

@@ -129,7 +129,7 @@ TEST(Terminal, IsNoPlaceForAPicture) {
   folder.write("ball.nff", test::kBall);
   test::Terminal terminal(folder, "render ball.nff -o -", 80);
   EXPECT_EQ(terminal.read_all(),
-            "grelha: error: -o -: stdout is a terminal: wanted a pipe or a file behind it\r\n");
+            "grelha: error: -o -: stdout is a terminal: expected a pipe or a file behind it\r\n");
   EXPECT_EQ(terminal.status(), 2);
 }
 

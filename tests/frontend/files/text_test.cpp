@@ -147,17 +147,17 @@ TEST(Gzip, InflatesMembersOneAfterTheOther) {
 TEST(Gzip, RefusesBrokenAndBoundlessData) {
   const std::string whole = test::gzip("some words and some more words");
   EXPECT_EQ(message_of([&] { inflate_gzip("f.gz", whole.substr(0, 20), 100); }),
-            "f.gz:byte 20: error: wanted more gzip data, found end of file");
+            "f.gz:byte 20: error: expected more gzip data, found end of file");
   std::string broken = whole;
   broken[12] = char(~broken[12]);
   EXPECT_NE(message_of([&] {
               inflate_gzip("f.gz", broken, 100);
-            }).find(": error: wanted sound gzip data, found "),
+            }).find(": error: expected sound gzip data, found "),
             std::string::npos);
   const std::string bomb = test::gzip(std::string(1 << 20, '\0'));
   EXPECT_NE(message_of([&] {
               inflate_gzip("f.gz", bomb, 5000);
-            }).find("error: wanted data that inflate to at most 5000 bytes, found more"),
+            }).find("error: expected data that inflate to at most 5000 bytes, found more"),
             std::string::npos);
 }
 
@@ -170,7 +170,7 @@ TEST(Gzip, IsJudgedAsItComes) {
     judge_beginning("f.gz", false, text, fresh);
   };
   EXPECT_EQ(message_of([&] { inflate_gzip("f.gz", bomb, std::size_t(1) << 30, nullptr, judge); }),
-            "f.gz:byte 0: error: wanted a scene's numbers, found 16777216 bytes without a digit");
+            "f.gz:byte 0: error: expected a scene's numbers, found 16777216 bytes without a digit");
   EXPECT_LT(largest, 2 * kPiece);
   std::string late = "s 0 0 0 1\n";
   late.resize(3 * kPiece, ' ');
@@ -195,15 +195,15 @@ TEST(LoadFile, JudgesScenesAsTheyCome) {
       EXPECT_TRUE(
           message_of([&] {
             read_scene(file, nullptr);
-          }).starts_with(file + ":byte 0: error: wanted a scene's numbers, found 16777216 bytes"))
+          }).starts_with(file + ":byte 0: error: expected a scene's numbers, found 16777216 bytes"))
           << file;
   }
   const std::string other = folder.add("other.ply.gz", test::gzip(" plx " + zeros));
   EXPECT_EQ(message_of([&] { read_scene(other, nullptr); }),
-            other + ":1:2: error: wanted \"ply\" on the first line, found \"plx\"");
+            other + ":1:2: error: expected \"ply\" on the first line, found \"plx\"");
   const std::string scene = folder.add("scene.nff", test::kView + "ply other.ply.gz\n");
   EXPECT_EQ(message_of([&] { read_scene(scene, nullptr); }),
-            other + ":1:2: error: wanted \"ply\" on the first line, found \"plx\"");
+            other + ":1:2: error: expected \"ply\" on the first line, found \"plx\"");
 }
 
 TEST(LoadFile, TellsGzipByItsFirstBytes) {

@@ -126,8 +126,8 @@ TEST(Pfm, BigEndianAndGreyAreRead) {
 TEST(Pfm, WrongFilesSayWhatIsWrong) {
   TemporaryFolder folder;
   const std::pair<std::string, const char*> wrong[] = {
-      {"", "wanted PF or Pf at the start"},
-      {"PX\n1 1\n-1\n", "wanted PF or Pf at the start"},
+      {"", "expected PF or Pf at the start"},
+      {"PX\n1 1\n-1\n", "expected PF or Pf at the start"},
       {"PF\n1", "the header ends early"},
       {"PF\n0 1\n-1\n", "width and height must be 1 to 65536"},
       {"PF\n1 x\n-1\n", "width and height must be 1 to 65536"},

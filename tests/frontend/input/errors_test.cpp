@@ -35,55 +35,62 @@ TEST(Errors, Entities) {
   expect_messages(
       "scene.nff",
       {
-          {v + "s 1 2 3 x", ":8:9: error: wanted a number for the sphere's radius, found \"x\""},
-          {v + "s 1 2", ":8:6: error: wanted a number for the sphere's center, found end of file"},
+          {v + "s 1 2 3 x", ":8:9: error: expected a number for the sphere's radius, found \"x\""},
+          {v + "s 1 2",
+           ":8:6: error: expected a number for the sphere's center, found end of file"},
           {v + "s 1 2 3 \n",
-           ":9:1: error: wanted a number for the sphere's radius, found end of file"},
+           ":9:1: error: expected a number for the sphere's radius, found end of file"},
           {v + "# s\n  s 1 2 # 3\ns",
-           ":10:1: error: wanted a number for the sphere's center, found \"s\""},
+           ":10:1: error: expected a number for the sphere's center, found \"s\""},
           {v + "b 0.0780.3610.753",
-           ":8:3: error: wanted a number for the background's color, found \"0.0780.3610.753\""},
+           ":8:3: error: expected a number for the background's color, found \"0.0780.3610.753\""},
           {v + "b 1 nan 0",
-           ":8:5: error: wanted a finite number, at most 1e18, for the background's color, found "
+           ":8:5: error: expected a finite number, at most 1e18, for the background's color, found "
            "\"nan\""},
           {v + "c 0 0 0 1 0 0 1 ?",
-           ":8:17: error: wanted a number for the cone's apex radius, found \"?\""},
-          {v + "c 0 0 0 z", ":8:9: error: wanted a number for the cone's base radius, found \"z\""},
+           ":8:17: error: expected a number for the cone's apex radius, found \"?\""},
+          {v + "c 0 0 0 z",
+           ":8:9: error: expected a number for the cone's base radius, found \"z\""},
           {v + "p 2\n0 0 0\n1 1 1",
-           ":8:3: error: wanted at least 3 corners of a polygon, found \"2\""},
-          {v + "p x", ":8:3: error: wanted a whole number for the polygon's corners, found \"x\""},
+           ":8:3: error: expected at least 3 corners of a polygon, found \"2\""},
+          {v + "p x",
+           ":8:3: error: expected a whole number for the polygon's corners, found \"x\""},
           {v + "p -3 0 0 0",
-           ":8:3: error: wanted a whole number for the polygon's corners, found \"-3\""},
+           ":8:3: error: expected a whole number for the polygon's corners, found \"-3\""},
           {v + "p 3.5 0 0 0",
-           ":8:3: error: wanted a whole number for the polygon's corners, found \"3.5\""},
+           ":8:3: error: expected a whole number for the polygon's corners, found \"3.5\""},
           {v + "p 1000000000 0 0 0",
-           ":8:3: error: wanted at most 1 for the polygon's corners (the file ends before), found "
+           ":8:3: error: expected at most 1 for the polygon's corners (the file ends before), "
+           "found "
            "\"1000000000\""},
           {v + "p 99999999999999999999 0 0 0",
-           ":8:3: error: wanted at most 1 for the polygon's corners (the file ends before), found "
+           ":8:3: error: expected at most 1 for the polygon's corners (the file ends before), "
+           "found "
            "\"99999999999999999999\""},
           {v + "p 3 0 0 0 1 1 1 2.0000 s",
-           ":8:24: error: wanted a number for the polygon's corner, found \"s\""},
+           ":8:24: error: expected a number for the polygon's corner, found \"s\""},
           {v + "pp 3 0 0 0 0 0 1 1 0 0 0 0 1 0 1 0 0 0 q",
-           ":8:40: error: wanted a number for the corner's normal, found \"q\""},
+           ":8:40: error: expected a number for the corner's normal, found \"q\""},
           {v + "pl 0 0 0 1 0 0 s",
-           ":8:16: error: wanted a number for the plane's third point, found \"s\""},
+           ":8:16: error: expected a number for the plane's third point, found \"s\""},
           {v + "npl 0 0 1 s",
-           ":8:11: error: wanted a number for the plane's constant, found \"s\""},
+           ":8:11: error: expected a number for the plane's constant, found \"s\""},
           {v + "box 0 0 0 1 0",
-           ":8:14: error: wanted a number for the box's second corner, found end of file"},
+           ":8:14: error: expected a number for the box's second corner, found end of file"},
           {v + "mesh 3 1\n0 0 0 1 0 0 0 1 0\n1 2 4",
-           ":10:5: error: wanted a vertex of the mesh, from 1 to 3 or -3 to -1, found \"4\""},
+           ":10:5: error: expected a vertex of the mesh, from 1 to 3 or -3 to -1, found \"4\""},
           {v + "mesh 3 1\n0 0 0 1 0 0 0 1 0\n1 2 0",
-           ":10:5: error: wanted a vertex of the mesh, from 1 to 3 or -3 to -1, found \"0\""},
+           ":10:5: error: expected a vertex of the mesh, from 1 to 3 or -3 to -1, found \"0\""},
           {v + "mesh 3 999999999999\n0 0 0 1 0 0 0 1 0\n",
-           ":8:8: error: wanted at most 3 for the mesh's faces (the file ends before), found "
+           ":8:8: error: expected at most 3 for the mesh's faces (the file ends before), found "
            "\"999999999999\""},
           {v + "spp x",
-           ":8:5: error: wanted a whole number of samples per pixel, from 0 to 65536, found \"x\""},
+           ":8:5: error: expected a whole number of samples per pixel, from 0 to 65536, found "
+           "\"x\""},
           {v + std::string("ply a\0b.ply\n", 12),
-           ":8:5: error: wanted a file name after \"ply\", found \"a?b.ply\""},
-          {v + "ply # none\n", ":8:5: error: wanted a file name after \"ply\", found end of line"},
+           ":8:5: error: expected a file name after \"ply\", found \"a?b.ply\""},
+          {v + "ply # none\n",
+           ":8:5: error: expected a file name after \"ply\", found end of line"},
       });
 }
 
@@ -93,31 +100,32 @@ TEST(Errors, MaterialsAndLights) {
       "scene.nff",
       {
           {v + "f 1 1\ns 0 0 0 1",
-           ":9:1: error: wanted a number for the material (field 3 of 3), found \"s\""},
+           ":9:1: error: expected a number for the material (field 3 of 3), found \"s\""},
           {v + "f 1 1 1 1 0 1 .5 0",
-           ":8:18: error: wanted an index of refraction above 0 for a material that transmits "
+           ":8:18: error: expected an index of refraction above 0 for a material that transmits "
            "light, found \"0\""},
           {v + "f 1 1 1 1 1 1 1 1 0 .5 -1",
-           ":8:24: error: wanted an index of refraction above 0 for a material that transmits "
+           ":8:24: error: expected an index of refraction above 0 for a material that transmits "
            "light, found \"-1\""},
           {v + "f 1 1 1 1 inf 1 0 1",
-           ":8:11: error: wanted a finite number, at most 1e18, for the material, found \"inf\""},
+           ":8:11: error: expected a finite number, at most 1e18, for the material, found \"inf\""},
           {v + "f 1 1 1 1 0.1.2 1 0 1",
-           ":8:11: error: wanted a number for the material, found \"0.1.2\""},
+           ":8:11: error: expected a number for the material, found \"0.1.2\""},
           {v + "mat 1 1 1 1 0 1 0 1",
-           ":8:20: error: wanted a number for the material (field 9 of 11), found end of file"},
-          {v + "l 0 0", ":8:6: error: wanted a number for the light's position, found end of file"},
+           ":8:20: error: expected a number for the material (field 9 of 11), found end of file"},
+          {v + "l 0 0",
+           ":8:6: error: expected a number for the light's position, found end of file"},
           {v + "l 0 0 0 1 1\n1",
-           ":8:12: error: wanted a number for the light's color, found end of line"},
+           ":8:12: error: expected a number for the light's color, found end of line"},
           {v + "l 0 0 0 1 1 x\n",
-           ":8:13: error: wanted a number for the light's color, found \"x\""},
+           ":8:13: error: expected a number for the light's color, found \"x\""},
           {v + "light 0 0 0 1 1 1",
-           ":8:7: error: wanted \"punctual\" or \"quad\" after \"light\", found \"0\""},
+           ":8:7: error: expected \"punctual\" or \"quad\" after \"light\", found \"0\""},
           {v + "light quad 0 0 0 1 1 1 1 0 0 0 1 0 x",
-           ":8:36: error: wanted a whole number, at most 1000000, for the light's samples, found "
+           ":8:36: error: expected a whole number, at most 1000000, for the light's samples, found "
            "\"x\""},
           {v + "al 0 0 0 1 1 1",
-           ":8:15: error: wanted a number for the area light (field 7 of 11 or 12), found end of "
+           ":8:15: error: expected a number for the area light (field 7 of 11 or 12), found end of "
            "file"},
       });
 }
@@ -132,60 +140,61 @@ TEST(Errors, Views) {
   expect_messages(
       "scene.p3f",
       {
-          {"s 0 0 0 1\n", ":2:1: error: wanted a view (\"v\" or \"camera\"), found end of file"},
-          {" \n", ":2:1: error: wanted a view (\"v\" or \"camera\"), found end of file"},
+          {"s 0 0 0 1\n", ":2:1: error: expected a view (\"v\" or \"camera\"), found end of file"},
+          {" \n", ":2:1: error: expected a view (\"v\" or \"camera\"), found end of file"},
           {"v\nfrom 0 0 1\nat 0 0 0\nup 0 1 0\n",
-           ":1:1: error: wanted \"angle\" in the view, found none"},
+           ":1:1: error: expected \"angle\" in the view, found none"},
           {"\n  camera\neye 0 0 1\nangle 45\nup 0 1 0\n",
-           ":2:3: error: wanted \"at\" in the view, found none"},
+           ":2:3: error: expected \"at\" in the view, found none"},
           {view("0 0 5", "0 0 5", "0 1 0", "45", "8 8"),
-           ":3:1: error: wanted a point to look at apart from the eye, found the same point"},
+           ":3:1: error: expected a point to look at apart from the eye, found the same point"},
           {view("0 0 5", "0 0 0", "0 0 0", "45", "8 8"),
-           ":4:1: error: wanted an up direction, found 0 0 0"},
+           ":4:1: error: expected an up direction, found 0 0 0"},
           {view("0 0 5", "0 0 0", "0 0 -2", "45", "8 8"),
-           ":4:1: error: wanted an up direction that is not along the view, found one that is"},
+           ":4:1: error: expected an up direction that is not along the view, found one that is"},
           {view("0 0 5", "0 0 0", "0 1 0", "0", "8 8"),
-           ":5:7: error: wanted an angle between 0 and 180 degrees, found \"0\""},
+           ":5:7: error: expected an angle between 0 and 180 degrees, found \"0\""},
           {view("0 0 5", "0 0 0", "0 1 0", "180", "8 8"),
-           ":5:7: error: wanted an angle between 0 and 180 degrees, found \"180\""},
+           ":5:7: error: expected an angle between 0 and 180 degrees, found \"180\""},
           {view("0 0 5", "0 0 0", "0 1 0", "nan", "8 8"),
-           ":5:7: error: wanted an angle between 0 and 180 degrees, found \"nan\""},
+           ":5:7: error: expected an angle between 0 and 180 degrees, found \"nan\""},
           {view("0 0 5", "0 0 0", "0 1 0", "wide", "8 8"),
-           ":5:7: error: wanted a number for the view's angle, found \"wide\""},
+           ":5:7: error: expected a number for the view's angle, found \"wide\""},
           {view("0 0 5", "0 0 0", "0 1 0", "45", "0 8"),
-           ":7:12: error: wanted a resolution from 1 to 65536 pixels a side, found \"0\""},
+           ":7:12: error: expected a resolution from 1 to 65536 pixels a side, found \"0\""},
           {view("0 0 5", "0 0 0", "0 1 0", "45", "8 65537"),
-           ":7:14: error: wanted a resolution from 1 to 65536 pixels a side, found \"65537\""},
+           ":7:14: error: expected a resolution from 1 to 65536 pixels a side, found \"65537\""},
           {view("0 0 5", "0 0 0", "0 1 0", "45", "8.5 8"),
-           ":7:12: error: wanted a resolution from 1 to 65536 pixels a side, found \"8.5\""},
+           ":7:12: error: expected a resolution from 1 to 65536 pixels a side, found \"8.5\""},
           {view("0 inf 5", "0 0 0", "0 1 0", "45", "8 8"),
-           ":2:8: error: wanted a finite number, at most 1e18, for the view's eye, found \"inf\""},
-          {"v\nfrom 0 0", ":2:9: error: wanted a number for the view's eye, found end of file"},
+           ":2:8: error: expected a finite number, at most 1e18, for the view's eye, found "
+           "\"inf\""},
+          {"v\nfrom 0 0", ":2:9: error: expected a number for the view's eye, found end of file"},
       });
 }
 
 TEST(Errors, LinesAreCountedByAnyEnd) {
   expect_messages("scene.nff",
                   {{"b 0 0 0\r\n\rs\r\n\r\n 1 2 x",
-                    ":5:6: error: wanted a number for the sphere's center, found \"x\""}});
+                    ":5:6: error: expected a number for the sphere's center, found \"x\""}});
 }
 
 TEST(Errors, WhatIsNoScene) {
   expect_messages(
       "scene.nff",
       {
-          {"", ":1:1: error: wanted a scene, found an empty file"},
+          {"", ":1:1: error: expected a scene, found an empty file"},
           {"version https://git-lfs.github.com/spec/v1\noid sha256:00\nsize 3\n",
-           ":1:1: error: wanted a scene, found a Git LFS pointer: the file it stands for was not "
+           ":1:1: error: expected a scene, found a Git LFS pointer: the file it stands for was not "
            "downloaded"},
           {"nff\nversion 2.1\n",
-           ":1:1: error: wanted Haines' Neutral File Format, found Sense8's (WorldToolKit) NFF"},
+           ":1:1: error: expected Haines' Neutral File Format, found Sense8's (WorldToolKit) NFF"},
       });
   expect_messages("mesh.ply",
                   {
-                      {"", ":1:1: error: wanted a scene, found an empty file"},
+                      {"", ":1:1: error: expected a scene, found an empty file"},
                       {"version https://git-lfs.github.com/spec/v1\n",
-                       ":1:1: error: wanted a scene, found a Git LFS pointer: the file it stands "
+                       ":1:1: error: expected a scene, found a Git LFS pointer: the file it stands "
                        "for was not downloaded"},
                   });
 }
@@ -230,7 +239,7 @@ TEST(Errors, AScenesMeshesLieInItsFolder) {
                                   std::string("sub/../../home2/mesh.ply")}) {
     EXPECT_EQ(reading(name, {}),
               (home / "scene.nff").string() +
-                  ":8:5: error: wanted a file in the scene's folder or below it (or "
+                  ":8:5: error: expected a file in the scene's folder or below it (or "
                   "--allow-outside), found " +
                   grelha::quoted(name));
     EXPECT_EQ(reading(name, {.allow_outside = true}), "") << name;
@@ -255,7 +264,7 @@ TEST(Errors, ErrorsOfAMeshNameTheMesh) {
   const std::string mesh = folder.add("mesh.ply", "plx\n"),
                     scene = folder.add("scene.nff", kView + "ply mesh.ply\n");
   EXPECT_EQ(message_of([&] { read_scene(scene, nullptr); }),
-            mesh + ":1:1: error: wanted \"ply\" on the first line, found \"plx\"");
+            mesh + ":1:1: error: expected \"ply\" on the first line, found \"plx\"");
 }
 
 TEST(Errors, PlyHeaders) {
@@ -263,48 +272,49 @@ TEST(Errors, PlyHeaders) {
   expect_messages(
       "mesh.ply",
       {
-          {"0.1 0.2 0.3\n", ":1:1: error: wanted \"ply\" on the first line, found \"0.1\""},
-          {"ply", ":1:4: error: wanted \"end_header\", found end of file"},
+          {"0.1 0.2 0.3\n", ":1:1: error: expected \"ply\" on the first line, found \"0.1\""},
+          {"ply", ":1:4: error: expected \"end_header\", found end of file"},
           {"ply\nend_header\n",
-           ":2:1: error: wanted \"format\" before the end of the header, found \"end_header\""},
+           ":2:1: error: expected \"format\" before the end of the header, found \"end_header\""},
           {"ply\nelement vertex 1\n",
-           ":2:1: error: wanted \"format\" before elements, found \"element\""},
+           ":2:1: error: expected \"format\" before elements, found \"element\""},
           {"ply\nformat text 1.0\n",
-           ":2:8: error: wanted ascii, binary_little_endian or binary_big_endian, found \"text\""},
-          {"ply\nformat ascii 2.0\n", ":2:14: error: wanted format version 1.0, found \"2.0\""},
-          {"ply\nformat ascii\n", ":2:13: error: wanted format version 1.0, found end of line"},
+           ":2:8: error: expected ascii, binary_little_endian or binary_big_endian, found "
+           "\"text\""},
+          {"ply\nformat ascii 2.0\n", ":2:14: error: expected format version 1.0, found \"2.0\""},
+          {"ply\nformat ascii\n", ":2:13: error: expected format version 1.0, found end of line"},
           {start + "element vertex 1\nproperty float x\nformat binary_little_endian 1.0\n",
-           ":5:1: error: wanted \"format\" once, found \"format\""},
-          {start + "elephant\n", ":4:1: error: wanted \"end_header\", found end of file"},
+           ":5:1: error: expected \"format\" once, found \"format\""},
+          {start + "elephant\n", ":4:1: error: expected \"end_header\", found end of file"},
           {start + "elephant\3\n",
-           ":3:1: error: wanted a word of the header (format, comment, obj_info, element, "
+           ":3:1: error: expected a word of the header (format, comment, obj_info, element, "
            "property, end_header), found "
            "\"elephant\""},
           {start + "element vertex\n",
-           ":3:15: error: wanted a whole number of rows, found end of line"},
+           ":3:15: error: expected a whole number of rows, found end of line"},
           {start + "element vertex -1\n",
-           ":3:16: error: wanted a whole number of rows, found \"-1\""},
-          {start + "element\n", ":3:8: error: wanted the element's name, found end of line"},
+           ":3:16: error: expected a whole number of rows, found \"-1\""},
+          {start + "element\n", ":3:8: error: expected the element's name, found end of line"},
           {start + "element a 1\nelement a 1\n",
-           ":4:9: error: wanted each element once, found \"a\""},
+           ":4:9: error: expected each element once, found \"a\""},
           {start + "property float x\n",
-           ":3:9: error: wanted an element before its properties, found end of line"},
+           ":3:9: error: expected an element before its properties, found end of line"},
           {start + "element vertex 1\nproperty real x\n",
-           ":4:10: error: wanted a type such as uchar, int or float for the property, found "
+           ":4:10: error: expected a type such as uchar, int or float for the property, found "
            "\"real\""},
           {start + "element vertex 1\nproperty float\n",
-           ":4:15: error: wanted the property's name, found end of line"},
+           ":4:15: error: expected the property's name, found end of line"},
           {start + "element face 1\nproperty list float int vertex_indices\n",
-           ":4:15: error: wanted an integer type for the list's count, found \"float\""},
+           ":4:15: error: expected an integer type for the list's count, found \"float\""},
           {start + "element vertex 99999999999\nproperty float x\nend_header\n1 2\n",
-           ":3:16: error: wanted at most 2 rows of \"vertex\" (the file ends before), found "
+           ":3:16: error: expected at most 2 rows of \"vertex\" (the file ends before), found "
            "\"99999999999\""},
           {start + "element vertex 1\nproperty float x\nproperty float y\nend_header\n1 2\n",
-           ":3:9: error: wanted a property \"z\" of \"vertex\", found none"},
+           ":3:9: error: expected a property \"z\" of \"vertex\", found none"},
           {start + "element face 1\nproperty float x\nend_header\n1 2\n",
-           ":3:9: error: wanted a list of integers \"vertex_indices\" in \"face\", found none"},
+           ":3:9: error: expected a list of integers \"vertex_indices\" in \"face\", found none"},
           {start + "element face 1\nproperty list int float vertex_indices\nend_header\n1 2\n",
-           ":3:9: error: wanted a list of integers \"vertex_indices\" in \"face\", found none"},
+           ":3:9: error: expected a list of integers \"vertex_indices\" in \"face\", found none"},
       });
 }
 
@@ -318,25 +328,25 @@ TEST(Errors, PlyAsciiRows) {
       "mesh.ply",
       {
           {h + "1 2 3\n4 5 six\n3 0 0 1",
-           ":11:5: error: wanted a number for \"z\" of \"vertex\", found \"six\""},
+           ":11:5: error: expected a number for \"z\" of \"vertex\", found \"six\""},
           {h + "1 2 3\n4 5 6\n3 0 1 2",
-           ":12:7: error: wanted the index of a vertex, 0 or more and below their number, found "
+           ":12:7: error: expected the index of a vertex, 0 or more and below their number, found "
            "\"2\""},
           {h + "1 2 3\n4 5 6\n3 0 1 -1",
-           ":12:7: error: wanted the index of a vertex, 0 or more and below their number, found "
+           ":12:7: error: expected the index of a vertex, 0 or more and below their number, found "
            "\"-1\""},
           {h + "1 2 3\n4 5 6\n3 0 1 0.5",
-           ":12:7: error: wanted the index of a vertex, 0 or more and below their number, found "
+           ":12:7: error: expected the index of a vertex, 0 or more and below their number, found "
            "\"0.5\""},
           {h + "1 2 3\n4 5 6\n-3 0 1 0",
-           ":12:1: error: wanted a whole number of items for \"vertex_indices\", found \"-3\""},
+           ":12:1: error: expected a whole number of items for \"vertex_indices\", found \"-3\""},
           {h + "1 2 3\n4 5 6\n999 0 1 0",
-           ":12:1: error: wanted at most 3 items for \"vertex_indices\" (the file ends before), "
+           ":12:1: error: expected at most 3 items for \"vertex_indices\" (the file ends before), "
            "found \"999\""},
           {h + "1 2 3\n4 5 6\n3 0 1 ",
-           ":12:7: error: wanted row 1 of 1 of \"face\", found end of file"},
+           ":12:7: error: expected row 1 of 1 of \"face\", found end of file"},
           {h + "1.000 2.000 3.000",
-           ":10:18: error: wanted row 2 of 2 of \"vertex\", found end of file"},
+           ":10:18: error: expected row 2 of 2 of \"vertex\", found end of file"},
       });
 }
 
@@ -349,15 +359,15 @@ TEST(Errors, PlyBinaryRows) {
       "mesh.ply",
       {
           {h + vertices + "\3\0\0\0\0\1\0\0\0\2\0\0\0"s,
-           byte(33) +
-               ": error: wanted the index of a vertex, 0 or more and below their number, found 2"},
+           byte(33) + ": error: expected the index of a vertex, 0 or more and below their number, "
+                      "found 2"},
           {h + vertices + "\3\0\0\0\0\xff\xff\xff\xff\1\0\0\0"s,
-           byte(29) +
-               ": error: wanted the index of a vertex, 0 or more and below their number, found -1"},
+           byte(29) + ": error: expected the index of a vertex, 0 or more and below their number, "
+                      "found -1"},
           {h + vertices + "\3\0\0\0\0\1\0\0\0\1\0\0"s,
-           byte(36) + ": error: wanted row 1 of 1 of \"face\", found end of file"},
+           byte(36) + ": error: expected row 1 of 1 of \"face\", found end of file"},
           {h + vertices,
-           ":7:14: error: wanted at most 0 rows of \"face\" (the file ends before), found \"1\""},
+           ":7:14: error: expected at most 0 rows of \"face\" (the file ends before), found \"1\""},
       });
   const std::string lists =
       "ply\nformat binary_big_endian 1.0\nelement a 1\nproperty list char int k\nelement vertex "
@@ -367,10 +377,10 @@ TEST(Errors, PlyBinaryRows) {
                   {
                       {lists + "\xff" + std::string(12, '\0'),
                        ":byte " + std::to_string(lists.size()) +
-                           ": error: wanted 0 or more items for \"k\", found -1"},
+                           ": error: expected 0 or more items for \"k\", found -1"},
                       {lists + "\1\0\0\0\0"s + std::string(11, '\0'),
                        ":byte " + std::to_string(lists.size() + 16) +
-                           ": error: wanted row 1 of 1 of \"vertex\", found end of file"},
+                           ": error: expected row 1 of 1 of \"vertex\", found end of file"},
                   });
 }
 

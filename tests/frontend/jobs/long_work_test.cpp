@@ -106,15 +106,16 @@ TEST_F(LongWork, RefusesOptionsThatContradict) {
     expect_line(run("render ball.nff " + options), 2, "grelha: error: " + why);
   };
   refused("--rows 0:8",
-          "-o: wanted a name ending in .grelha for a part of a picture, found \"ball.png\"");
+          "-o: expected a name ending in .grelha for a part of a picture, found \"ball.png\"");
   refused(
       "--rows 8:8 -o a.grelha",
-      "--rows: wanted A:B, whole numbers, 0 or more, A below B, B at most 65536, found \"8:8\"");
-  refused("--samples 0:8/7 -o a.grelha",
-          "--samples: wanted A:B, whole numbers, 0 or more, A below B, B at most 7, found \"0:8\"");
+      "--rows: expected A:B, whole numbers, 0 or more, A below B, B at most 65536, found \"8:8\"");
   refused(
-      "--samples :8 -o a.grelha",
-      "--samples: wanted A:B, whole numbers, 0 or more, A below B, B at most 65536, found \":8\"");
+      "--samples 0:8/7 -o a.grelha",
+      "--samples: expected A:B, whole numbers, 0 or more, A below B, B at most 7, found \"0:8\"");
+  refused("--samples :8 -o a.grelha",
+          "--samples: expected A:B, whole numbers, 0 or more, A below B, B at most 65536, found "
+          "\":8\"");
   refused("--rows 0:8 --error .1 -o a.grelha",
           "parts are of pictures with as many samples in every pixel: no --error, --time or --aa "
           "adaptive");
@@ -125,9 +126,9 @@ TEST_F(LongWork, RefusesOptionsThatContradict) {
           "parts are of pictures with as many samples in every pixel: no --error, --time or --aa "
           "adaptive");
   refused("--preview 1 -o a.grelha", "--preview wants a picture to write, not a .grelha");
-  refused("--preview 0", "--preview: wanted seconds above 0 and up to 1e9, found \"0\"");
+  refused("--preview 0", "--preview: expected seconds above 0 and up to 1e9, found \"0\"");
   refused("-o a.grelha --checkpoint ./a.grelha",
-          "--checkpoint and -o: wanted two files, found \"a.grelha\" twice");
+          "--checkpoint and -o: expected two files, found \"a.grelha\" twice");
 }
 
 /// Some 0.3 s of work for one thread each: as many samples in every pixel, by error, so many
