@@ -15,11 +15,12 @@ import statistics
 import subprocess
 import sys
 import time
+from datetime import date
 
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "lib"))
-from bench import Bench, arguments, cores, cpu_name, plt, read_csv, seconds, table, times
+from bench import Bench, arguments, cores, cpu_name, plt, read_csv, table, times
 from nff_to_pov import convert
 
 SIDE, DEPTH = 512, 5
@@ -155,63 +156,59 @@ def make_profile(bench, scenes):
 
 
 def tell_profile(phases, alone):
-    names = list(phases)
-    def row(title, values):
-        return [title, *values]
-    share = lambda p, key: f"{p[key] * 1e3:.1f}"
-    rows = [row(title, [share(phases[n], key) for n in names]) for title, key in
-            (("load: read and parse the scene", "load"), ("build the grids", "build"), ("make camera rays", "camera"), ("trace them", "primary"),
-             ("trace bounces", "bounce"), ("trace shadow rays", "shadow"), ("surfaces of hits", "surface"), ("local light, make shadow rays", "light"),
-             ("make bounces, stack", "children"), ("sums to pixels", "sums"), ("memory, threads, what no phase tells", "other"), ("write the PNG", "write"))]
-    rows.append(row("**render, by the clock**", [f"{phases[n]['clock'] * 1e3:.1f}" for n in names]))
-    rows.append(row("**the whole program**", [f"{phases[n]['whole'] * 1e3:.1f}" for n in names]))
-    rows.append(row("load and write / render", [f"{(phases[n]['load'] + phases[n]['write']) / phases[n]['clock']:.2f}" for n in names]))
-    rows.append(row("render / its rays alone", [f"{alone[n]['render cpu'] / alone[n]['trace']:.2f}" for n in names]))
-    rows.append(row("one thread / two", [f"{alone[n]['render'] / alone[n]['render two threads']:.2f}" for n in names]))
+    rows = [["render, ms", *(f"{p['clock'] * 1e3:.1f}" for p in phases.values())],
+            ["the whole program, ms", *(f"{p['whole'] * 1e3:.1f}" for p in phases.values())],
+            ["load and write / render", *(f"{(p['load'] + p['write']) / p['clock']:.2f}"
+                                          for p in phases.values())],
+            ["render / its rays alone", *(f"{alone[n]['render cpu'] / alone[n]['trace']:.2f}"
+                                          for n in phases)],
+            ["one thread / two", *(f"{alone[n]['render'] / alone[n]['render two threads']:.2f}"
+                                   for n in phases)]]
     return f"""## Whole pictures
-
-Plain pictures of {SIDE} x {SIDE}, paths of at most {DEPTH} rays, one thread, on a virtual {cpu_name()}; milliseconds of the fastest of several runs,
-phases as `--stats` tells them; the chart has the median and the slowest as well. The last two rows
-are from one process: a whole render beside the same rays, recorded from it and traced alone (CPU
-time), and beside two threads (by the clock).
-
-{table(["", *names], rows)}
 
 ![where the time of a picture goes](images/frame.svg)
 
-What is not tracing costs about as much for every ray, so it weighs most where rays are cheapest: Distant, three balls and a plane.
+Plain pictures of {SIDE} x {SIDE}, paths of at most {DEPTH} rays, one thread of a virtual
+{cpu_name()}, {date.today():%B %Y}. Bars are the fastest of several runs,
+by the phases of `--stats` ([numbers](frame-profile.csv)); lines reach to the slowest.
+`Its rays alone` are the same rays, recorded from the render and traced again in one process.
+
+{table(["", *phases], rows)}
 """
 
 
 def tell_povray(bench, results):
-    rows, csv_rows = [], []
+    rows, csv_rows = {}, []
     all_threads = cores()
     for name, title, got in results:
-        o1, p1, o2, p2 = got["ours", 1], got["pov", 1], got["ours", all_threads], got["pov", all_threads]
+        o1, p1 = got["ours", 1], got["pov", 1]
+        rows.setdefault(title, [title]).append(times(p1["cpu"] / o1["cpu"]))
         # POV-Ray counts what it adds to the first ray, and nothing where it adds by other means
-        theirs, ours = (32 if title.startswith("lens") else 1 + p1["samples"]), o1["samples"]
-        rows.append([f"{name}, {title}", seconds(p1["cpu"]), seconds(o1["cpu"]), f"**{times(p1['cpu'] / o1['cpu'])}**", seconds(p2["clock"]),
-                     seconds(o2["clock"]), f"{times(p2['clock'] / o2['clock'])}", f"{theirs:.1f}, {ours:.1f}", times(p1["cpu"] / theirs * ours / o1["cpu"]), f"{got['rmse']:.3f}"])
-        for who, threads in got.keys() & {("ours", 1), ("pov", 1), ("ours", all_threads), ("pov", all_threads)}:
+        theirs = 32 if title.startswith("lens") else 1 + p1["samples"]
+        for who, threads in got.keys() & {(w, n) for w in ("ours", "pov") for n in (1, all_threads)}:
             r = got[who, threads]
             csv_rows.append([name, title, "Grelha" if who == "ours" else "POV-Ray", threads, r["clock"], r["cpu"], f"{r['whole']:.4g}", r["rays"],
-                             f"{ours if who == 'ours' else theirs:.3g}", f"{got['rmse']:.4f}", got["rounds"]])
+                             f"{o1['samples'] if who == 'ours' else theirs:.3g}", f"{got['rmse']:.4f}", got["rounds"]])
     bench.write_csv("frame-povray", ["scene", "case", "program", "threads", "render_seconds", "render_cpu_seconds", "whole_seconds", "rays",
                                      "samples_per_pixel", "rmse", "rounds"], sorted(csv_rows, key=lambda r: ([n for n, *_ in SCENES].index(r[0]), r[1:4])))
+    return povray_section(list(dict.fromkeys(name for name, *_ in results)), rows.values())
+
+
+def povray_section(names, rows):
     return f"""### Beside POV-Ray
 
-POV-Ray 3.7 from Debian's package, in turns with ours on the same geometry, lights, mirrors, depth ({DEPTH}) and size; rendering alone, CPU seconds of
-one thread (`+WT1`; what a busy machine cannot stretch) and seconds by the clock of {all_threads}. POV-Ray has its BSP tree (`+BM2`), as
-fast as its default or faster. Pictures are compared as
-8-bit linear PNGs: the RMSE is what sampling at other points, and glass that lets POV-Ray's shadow rays through, leave.
+POV-Ray's CPU seconds of rendering over Grelha's, one thread of the same machine, {date.today():%B %Y}.
+Both programs take turns on the same geometry, lights, mirrors, depth ({DEPTH}) and size. Seconds, those
+of {cores()} threads, samples a pixel and the RMSE between the pictures are in [numbers](frame-povray.csv).
 
-- plain: one ray a pixel. Anti-aliased: POV-Ray's `+A0.3 +R3` by method 1 (9 samples where neighbours differ) and 2 (recursive); ours
-  `--aa adaptive:0.2,2` and `0.3,3`, settings that spend about as many samples; `times, a sample` makes up for the rest.
-- area light: 16 shadow rays a point and light for both (POV-Ray without `adaptive`). Lens: 32 rays a pixel for both (`variance 0`).
+{table(["", *names], rows)}
 
-{table(["", "POV-Ray, CPU s", "ours, CPU s", "times", f"POV-Ray, {all_threads} threads, s", "ours, s", "times", "samples a pixel: theirs, ours", "times, a sample", "RMSE"], rows)}
+- POV-Ray 3.7 is Debian's, with its BSP tree (`+BM2`), as fast as its default or faster.
+- Anti-aliased: `+A0.3 +R3` by method 1 (9 samples where neighbours differ) and 2 (recursive). Grelha
+  takes `--aa adaptive:0.2,2` and `0.3,3`, settings that spend about as many samples.
+- Area light: 16 shadow rays a point and light (no `adaptive`). Lens: 32 rays a pixel (`variance 0`).
 
-`./run perf frame --keep` makes both tables, the chart, [frame-profile.csv](frame-profile.csv) and [frame-povray.csv](frame-povray.csv).
+`./run perf frame --keep` makes these tables, the chart and the numbers.
 """
 
 

@@ -7,10 +7,10 @@ DIR holds the course's scene files; where one is missing its generated twin stan
 """
 import pathlib
 import sys
+from datetime import date
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "lib"))
-from bench import (COLOURS, ROOT, Bench, arguments, cores, cpu_name, plt, read_csv, seconds, table,
-                   times)
+from bench import COLOURS, ROOT, Bench, arguments, cores, cpu_name, plt, read_csv, table, times
 from chart import set_axis
 
 # name, file of the course, generator and size, samples a pixel; then the report's own seconds without grid, with grid, with grid and threads
@@ -49,45 +49,54 @@ def main():
     if asked.draw:
         draw(bench, from_csv(read_csv("report")))
         return
-    results, rows, csv_rows = [], [], []
+    results, csv_rows = [], []
     for name, course, generator, samples, theirs in SCENES:
         path, source = find(bench, asked.scenes, name, course, generator, samples)
         got = bench.tool(path, samples, bench.rounds)
         ours = []
-        for _, key, threads, _ in STEPS:
+        for title, key, threads, column in STEPS:
             rest = 0 if key.startswith("packets") else got["rest threads" if threads else "rest"]
             ours.append(got[key] + rest)
+            csv_rows.append([name, source, title, got["stride"] if key == "no grid" else 1,
+                             f"{ours[-1]:.4g}", theirs[column] if column is not None else ""])
         results.append((name, ours, theirs))
-        rows.append([f"**{name}**, {got['rays'] / 1e6:.1f} Mrays", "", "", "", ""])
-        for (title, key, _, column), time in zip(STEPS, ours):
-            mark = " \\*" if key == "no grid" and got["stride"] > 1 else ""
-            report = theirs[column] if column is not None else None
-            gain = times(theirs[1] / report) if report and column else "1/" + times(report / theirs[1]) if report else "–"
-            own = times(ours[1] / time) if time <= ours[1] * 1.05 else "1/" + times(time / ours[1])
-            rows.append([title, seconds(time) + mark, own, seconds(report), gain])
-            csv_rows.append([name, source, title, got["stride"] if key == "no grid" else 1, f"{time:.4g}", report if report is not None else ""])
         print(f"{name}: done ({source})", flush=True)
     bench.write_csv("report", ["scene", "source", "step", "every_nth_ray", "seconds", "report_seconds"], csv_rows)
     draw(bench, results)
-    bench.section(f"""## The report's table
+    bench.section(tell(results))
 
-Four scenes of the student report of 2019 at 512 x 512, paths of at most 6 rays, on a virtual {cpu_name()} with {cores()} threads; beside
-them the report's own seconds on its i7-8750H (six cores, twelve threads), which gives no figures for mailboxes. The rows down to `grid, threads` trace the report's way: one
-ray, one primitive, one cell at a time, the scalar reference on a grid of the report's density M = 2. A picture's rays are recorded and
-traced again each way; shading and queues, measured in a whole render, are added and the same in all rows of as many threads.
-`packets` are whole renders as the program does them. Gains are against the row `grid` of the same column.
 
-{table(["", "our s", "gain", "report's s", "gain"], rows)}
+def gain(time, grid):
+    return times(grid / time) if time <= grid * 1.05 else "1/" + times(time / grid)
 
-\\* extrapolated from every so many-th ray (`every_nth_ray` in [report.csv](report.csv)).
+
+def tell(results):
+    rows = []
+    for step, (title, _, _, column) in enumerate(STEPS):
+        row = [title]
+        for _, ours, theirs in results:
+            row += [gain(ours[step], ours[1]),
+                    "–" if column is None else gain(theirs[column], theirs[1])]
+        rows.append(row)
+    header = [words for name, *_ in results for words in (name, "the report")]
+    return f"""## The report's table
+
+Four scenes of the student report of 2019 at 512 x 512, paths of at most 6 rays. Ours are measured on
+a virtual {cpu_name()} with {cores()} threads, {date.today():%B %Y}; the report's are its
+own, of an i7-8750H with twelve threads. The machines differ, so the table has gains over the row
+`grid` of the same column. [report.csv](report.csv) and the chart have seconds.
+
+{table(["", *header], rows)}
+
+The rows down to `grid, threads` trace the report's way: one ray, one primitive, one cell at a time,
+on a grid of M = 2. A picture's recorded rays are traced again each way, and the time of shading in
+a whole render is added. `packets` are whole renders. `no grid` is extrapolated from every so
+many-th ray (`every_nth_ray`). Distant has three balls and a plane, so the kernel builds no grid.
 
 ![seconds of each step, ours and the report's](images/report.svg)
 
-Their machine and ours differ, so compare gains rather than seconds. Distant has three balls and a plane: a grid has nothing to win there,
-and the kernel builds none.
-
-`./run perf report --keep` makes table, chart and [report.csv](report.csv).
-""")
+`./run perf report --keep` makes table, chart and numbers.
+"""
 
 
 def from_csv(rows):

@@ -9,9 +9,10 @@ The largest scenes are files of up to a gigabyte and take up to 4 GB of memory; 
 import math
 import pathlib
 import sys
+from datetime import date
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "lib"))
-from bench import Bench, COLOURS, arguments, cores, cpu_name, plt, read_csv, seconds, table, times
+from bench import Bench, COLOURS, arguments, cores, cpu_name, plt, read_csv, table
 from chart import set_axis
 
 SIDE = 512
@@ -197,31 +198,30 @@ def main():
                     [[what, name, s, *[f"{p[k]:.5g}" if isinstance(p.get(k), float) else p.get(k, "") for k in keys]] for what, name, s, p in rows])
     draw(bench, growth, threads, sizes, depths)
 
+    bench.section(tell(growth, threads))
+
+
+def tell(growth, threads):
     last_balls, last_mount = max(growth["balls"]), max(growth["mount"])
-    fit = [[name, f"{low} to {high}", *[f"{exponent(growth[name], k, low, high):.2f}" for k in (*KINDS, "all", "build", "load")]]
-           for name, low, high in (("balls", 3, last_balls), ("mount", 3, last_mount), ("mount", 7, last_mount))]
-    size_rows = [[f"{name} {s}", f"{p['primitives']:,}", *[f"{p[k]:.0f}" if k in p else "–" for k in (*KINDS, "all")], seconds(p["load"]),
-                  seconds(p["build"]), f"{p['build'] / p['primitives'] * 1e9:.0f}", f"{p['bytes']:.0f}"]
-                 for name, points in growth.items() for s, p in points.items()]
-    both = ", ".join(f"{name} {times(threads[name][1]['render'] / threads[name][max(counts)]['render'])}" if max(counts) >= 20 else
-                     f"{name} {threads[name][1]['render'] / threads[name][max(counts)]['render']:.2f}" for name in threads)
-    bench.section(f"""## How time grows
-
-Pictures of {SIDE} x {SIDE}, paths of at most 5 rays, one thread, on a virtual {cpu_name()}; nanoseconds of tracing a ray by kind, without
-shading; the least of several runs. Bytes are geometry and grids together.
-
-{table(["", "primitives", "camera", "bounce", "shadow", "all rays, ns", "load, s", "build, s", "build, ns a primitive", "bytes a primitive"], size_rows)}
-
-Fitted exponents e of time = c N^e:
-
-{table(["", "sizes", "camera", "bounce", "shadow", "all rays", "build", "load"], fit)}
+    fits = (("balls", 3, last_balls), ("mount", 3, last_mount), ("mount", 7, last_mount))
+    rows = [[f"{name} {low} to {high}",
+             *(f"{exponent(growth[name], k, low, high):.2f}" for k in (*KINDS, "all", "build", "load"))]
+            for name, low, high in fits]
+    most = max(threads["balls 4"])
+    both = ", ".join(f"{name} {p[1]['render'] / p[most]['render']:.2f}" for name, p in threads.items())
+    return f"""## How time grows
 
 ![time against primitives, threads, pixels and depth](images/scale.svg)
 
-{max(counts)} threads over one, whole render: {both} times.
+Pictures of {SIDE} x {SIDE}, paths of at most 5 rays, one thread of a virtual {cpu_name()},
+{date.today():%B %Y}, the least of several runs ([numbers](scale.csv)). Times are those of tracing,
+without shading; bytes are geometry and grids together. Fitted exponents e of time = c N^e:
 
-`./run perf scale --keep` makes table, chart and [scale.csv](scale.csv).
-""")
+{table(["", "camera", "bounce", "shadow", "all rays", "build", "load"], rows)}
+
+{most} threads over one, whole render: {both} times.
+`./run perf scale --keep` makes all of this.
+"""
 
 
 if __name__ == "__main__":

@@ -5,7 +5,7 @@
                      --size N, --rounds N, --scenes DIR, ...]
 
 The benchmark prints the tables. A whole run (--rounds may be given) writes docs/trace.csv,
-docs/images/trace.svg and the tables of docs/performance.md; any other the first two beside the
+docs/images/trace.svg and the table of docs/performance.md; any other the first two beside the
 program. The benchmark's own JSON stays there in either case. --draw: the chart alone, from
 docs/trace.csv.
 """
@@ -16,11 +16,12 @@ import pathlib
 import re
 import subprocess
 import sys
+from datetime import date
 
 from matplotlib.lines import Line2D
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "lib"))
-from bench import DRAW_HELP, ROOT, plt, read_csv
+from bench import DRAW_HELP, ROOT, cpu_name, plt, read_csv, table
 from chart import legend_below
 
 FIRST = ["rays", "hits", "disagree", "ns/ray", "tests/ray", "cells/ray", "lanes busy", "fell back", "ratio", "ratio of the best", "ratio to fast",
@@ -59,26 +60,19 @@ def write_csv(cells, path):
             table.writerow([scene, kind, *("" if k not in c else int(c[k]) if k == "rays" else f"{c[k]:.4g}" for k in FIRST + ways)])
 
 
-def tables(cells):
-    """Markdown: the ratios, a missed target beside its ratio; and what a ray costs."""
+def ratios(cells):
+    """Markdown: a ratio a cell, in bold where it misses its target."""
     kinds = list(dict.fromkeys(k for _, k in cells))
 
     def ratio(c):
         missed = c["ratio"] > c.get("target", c["ratio"])
-        best = f", best {c['ratio of the best']:.2f}" if round(c["ratio of the best"], 2) < round(c["ratio"], 2) else ""
-        return f"{c['ratio']:.2f}{best}" + (f" (> {c['target']:g})" if missed else "")
+        return f"**{c['ratio']:.2f}**" if missed else f"{c['ratio']:.2f}"
 
-    def cost(c):
-        return (f"{c['ns/ray']:.0f}; {1e3 / c['ns/ray']:.1f}; {100 * c['lanes busy']:.0f} %; {c['tests/ray']:.1f}; {c['cells/ray']:.1f}; "
-                f"{100 * c['fell back']:.0f} %")
-
-    def table(text):
-        rows = [["", *kinds], ["---"] + ["--:"] * len(kinds)]
-        rows += [[scene, *(text(cells[scene, k]) if (scene, k) in cells else "" for k in kinds)] for scene in dict.fromkeys(s for s, _ in cells)]
-        return "".join("|" + "|".join(f" {c} " if c[:2] != "--" else c for c in row) + "|\n" for row in rows)
-
-    return (table(ratio) + "\nPackets as a render forms them: ns a ray; millions of rays a second; lanes busy; tests a ray; cells a ray; "
-            "packets that fell back to single rays:\n\n" + table(cost))
+    scenes = dict.fromkeys(scene for scene, _ in cells)
+    rows = [[scene, *(ratio(cells[scene, k]) if (scene, k) in cells else "" for k in kinds)]
+            for scene in scenes]
+    return (f"One thread of a virtual {cpu_name()}, {date.today():%B %Y}:\n\n" +
+            table(["", *kinds], rows) + "\n")
 
 
 def cells_from_csv():
@@ -155,17 +149,19 @@ def main():
     if not cells:
         sys.exit(done.returncode or 1)
     whole = not rest or rest[0] == "--rounds" and len(rest) == 2
-    table = (ROOT / "docs" if whole else folder) / "trace.csv"
-    write_csv(cells, table)
-    told = [str(table)]
+    numbers = (ROOT / "docs" if whole else folder) / "trace.csv"
+    write_csv(cells, numbers)
+    told = [str(numbers)]
     if all("ratio" in c for c in cells.values()):
         picture = (ROOT / "docs/images" if whole else folder) / "trace.svg"
         draw(cells, picture)
         told.append(str(picture))
         if whole:
             page = ROOT / "docs/performance.md"
-            page.write_text(re.sub(r"(<!-- trace -->\n).*(<!-- end of trace -->)", lambda m: m[1] + "\n" + tables(cells) + "\n" + m[2],
-                                   page.read_text(), flags=re.S))
+            page.write_text(re.sub(r"(<!-- trace -->\n).*(<!-- end of trace -->)",
+                                   lambda m: m[1] + "\n" + ratios(cells) + "\n" + m[2],
+                                   page.read_text(),
+                                   flags=re.S))
             told.append(str(page))
     print("\n" + ", ".join(told))
     sys.exit(done.returncode)
