@@ -73,7 +73,7 @@ def measured(name, module, shop, plan, kept):
 
 def wrapped(text):
     """Its paragraphs in lines; tables as they are."""
-    fill = textwrap.TextWrapper(width=140, break_long_words=False, break_on_hyphens=False).fill
+    fill = textwrap.TextWrapper(width=100, break_long_words=False, break_on_hyphens=False).fill
     return "\n\n".join(block if block.startswith("|") else fill(block) for block in text.split("\n\n"))
 
 

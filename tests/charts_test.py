@@ -166,7 +166,7 @@ class Kept(unittest.TestCase):
         self.assertIn(f"{min(ratios):.1f} to {max(ratios):.1f} times as fast without it",
                       words("docs/accuracy.md"))
         low, high = (f"{1 / ratio:.2f}".lstrip("0") for ratio in (max(ratios), min(ratios)))
-        self.assertIn(f"{low} to {high} of the time of `--error 0.01`", words("README.md"))
+        self.assertIn(f"{low} to {high} of the time of `--error 0.01`", words("docs/sampling.md"))
 
 
 class Saved:

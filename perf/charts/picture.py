@@ -237,22 +237,22 @@ def tell(result, table):
     for e in result["effects"]:
         of = {name: [p for p in e["points"] if p["series"] == name] for name in names}
         goal = of[METHODS[0][0]][-1]
-        goals.append(f"{e['effect']} {goal['rmse']:.2g}")
+        goals.append(f"{goal['rmse']:.2g}")
         slopes.append([f"{finest_slope(of[n]):.2f}" if len(of[n]) >= 3 else "" for n in names])
         gains.append([("1" if n == METHODS[0][0] else speed_up(of[n], goal)) if of[n] else "" for n in names])
     header = ["", *[e["effect"] for e in result["effects"]]]
     turned = lambda cells: [[n, *column] for n, column in zip(names, zip(*cells))]
     beside = [beside_samples(e) for e in result["effects"]]
     errors = [[f"--error {label}", *[b.get(label, "") for b in beside]] for label in beside[0]]
-    return f"""Slope of the logarithm of the RMSE over that of time, at each method's three finest settings (-.5: four times the time for half the
-error; 0: more time buys nothing):
+    return f"""Slope of the logarithm of the RMSE over that of time, at each method's three finest settings. At
+-.5 half the error takes four times the time; at 0 more time buys nothing:
 
 {table(header, turned(slopes))}
 
-Times as fast as random samples to the error of the finest of them (RMSE: {", ".join(goals)}); –: never got there; >: its coarsest
-setting already had:
+Times as fast as random samples to the error of the finest of them. –: never got there; >: its
+coarsest setting already had:
 
-{table(header, turned(gains))}
+{table(header, [["RMSE of that setting", *goals], *turned(gains)])}
 
 Time of `--error E` over that of sobol samples to the same RMSE, whatever their number
 (interpolated); –: 256 do not get there:
