@@ -90,7 +90,7 @@ def main():
     if "rows" in data:
         command = f"./run perf stability --rays {data['rays']} --pixels {data['pixels']} --seed {data['seed']}"
         parts.append(f"""Answers that are wrong, each ray asked for its closest hit and for occlusion, in packets and alone; {bench.cpu_name()}, `{command}`.
-A bare number counts hits that were lost, *false* those that are not there or lie farther beside their primitive than the bound above,
+A bare number counts hits that were lost, *false* those that are false by the bound above,
 *self* those of a surface just left. Embree 3 is Debian's; *aborts*: an assertion of its own ends the program.
 
 {rays_table(data['rows'])}""")
