@@ -75,50 +75,54 @@ class Workspace {
     if (options.phases)
       clock_.start(Phase::sums);
     std::fill(sums_.begin(), sums_.end(), 0);
-    float* f[kStackFloats];
-    for (std::size_t i = 0; i < kStackFloats; ++i)
-      f[i] = floats_.data() + i * static_cast<std::size_t>(capacity_);
-    std::uint32_t* w[kStackWords];
-    for (std::size_t i = 0; i < kStackWords; ++i)
-      w[i] = words_.data() + i * static_cast<std::size_t>(capacity_);
-    const RayStack stack{f[0],
-                         f[1],
-                         f[2],
-                         f[3],
-                         f[4],
-                         f[5],
-                         f[6],
-                         f[7],
-                         f[8],
-                         f[9],
-                         f[10],
-                         f[11],
-                         f[12],
-                         w[0],
-                         w[1],
-                         w[2],
-                         w[3],
-                         0,
-                         capacity_};
-    const float most = std::min(1048576.f, kMostLight / static_cast<float>(plan_.samples));
+    const auto floats = [this](std::size_t k) {
+      return floats_.data() + k * static_cast<std::size_t>(capacity_);
+    };
+    const auto words = [this](std::size_t k) {
+      return words_.data() + k * static_cast<std::size_t>(capacity_);
+    };
+    const RayStack stack{
+        .ox = floats(0),
+        .oy = floats(1),
+        .oz = floats(2),
+        .dx = floats(3),
+        .dy = floats(4),
+        .dz = floats(5),
+        .wr = floats(6),
+        .wg = floats(7),
+        .wb = floats(8),
+        .ox_low = floats(9),
+        .oy_low = floats(10),
+        .oz_low = floats(11),
+        .share = floats(12),
+        .pixel = words(0),
+        .depth = words(1),
+        .sample = words(2),
+        .path = words(3),
+        .size = 0,
+        .capacity = capacity_,
+    };
+    const float most = std::min(kMostTerm, kMostLight / static_cast<float>(plan_.samples));
     if (options.phases)
       clock_.go_on(Phase::camera);
-    return {batch_.get(),
-            stack,
-            sums_.data(),
-            options.depth,
-            options.packet,
-            static_cast<float>(options.min_weight),
-            take_,
-            options.mailbox,
-            first_pixel,
-            most,
-            plan_,
-            named ? pixels_.data() : nullptr,
-            options.observer ? options.observer
-            : options.phases ? &clock_
-                             : nullptr,
-            in_double_};
+    return {
+        .batch = batch_.get(),
+        .stack = stack,
+        .sums = sums_.data(),
+        .depth = options.depth,
+        .packet = options.packet,
+        .min_weight = static_cast<float>(options.min_weight),
+        .take = take_,
+        .mailbox = options.mailbox,
+        .first_pixel = first_pixel,
+        .most_light = most,
+        .plan = plan_,
+        .pixels = named ? pixels_.data() : nullptr,
+        .observer = options.observer ? options.observer
+                    : options.phases ? &clock_
+                                     : nullptr,
+        .in_double = in_double_,
+    };
   }
   /// Call when the sums of a work() are used up.
   void done(const RenderOptions& options) {
