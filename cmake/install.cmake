@@ -1,9 +1,12 @@
-# What `cmake --install` puts where: the program, the library with the headers it is used by, and what a shell wants.
+# What `cmake --install` puts where: the program, the library with the headers it is used by, and
+# what a shell wants.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 if(NOT GRELHA_ISAS STREQUAL "all")
-  install(CODE "message(FATAL_ERROR \"this build is for one processor: configure it with -D GRELHA_ISAS=all\")" COMPONENT grelha)
+  install(CODE
+    "message(FATAL_ERROR \"this build is for one processor: configure it with -D GRELHA_ISAS=all\")"
+    COMPONENT grelha)
 endif()
 install(TARGETS grelha RUNTIME COMPONENT grelha)
 
@@ -12,18 +15,24 @@ install(DIRECTORY include/grelha DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONE
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/grelha)
 install(TARGETS grelha_kernel EXPORT grelhaTargets ARCHIVE COMPONENT grelha)
 install(EXPORT grelhaTargets NAMESPACE grelha:: DESTINATION ${package_folder} COMPONENT grelha)
-configure_package_config_file(cmake/grelhaConfig.cmake.in ${PROJECT_BINARY_DIR}/grelhaConfig.cmake INSTALL_DESTINATION ${package_folder})
-write_basic_package_version_file(${PROJECT_BINARY_DIR}/grelhaConfigVersion.cmake COMPATIBILITY SameMinorVersion)
-install(FILES ${PROJECT_BINARY_DIR}/grelhaConfig.cmake ${PROJECT_BINARY_DIR}/grelhaConfigVersion.cmake
+configure_package_config_file(cmake/grelhaConfig.cmake.in ${PROJECT_BINARY_DIR}/grelhaConfig.cmake
+  INSTALL_DESTINATION ${package_folder})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/grelhaConfigVersion.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/grelhaConfig.cmake
+  ${PROJECT_BINARY_DIR}/grelhaConfigVersion.cmake
   DESTINATION ${package_folder} COMPONENT grelha)
 
 install(DIRECTORY scenes/data/ DESTINATION ${CMAKE_INSTALL_DATADIR}/grelha/scenes COMPONENT grelha)
 install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT grelha)
 
 install(FILES ${GRELHA_PAGES}/grelha.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT grelha)
-install(FILES ${GRELHA_PAGES}/grelha.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME grelha COMPONENT grelha)
-install(FILES ${GRELHA_PAGES}/_grelha DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions COMPONENT grelha)
-install(FILES ${GRELHA_PAGES}/grelha.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT grelha)
+install(FILES ${GRELHA_PAGES}/grelha.bash
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME grelha COMPONENT grelha)
+install(FILES ${GRELHA_PAGES}/_grelha DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions
+  COMPONENT grelha)
+install(FILES ${GRELHA_PAGES}/grelha.fish
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT grelha)
 
 install(PROGRAMS docs/farm.sh DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT grelha)
 install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT grelha)

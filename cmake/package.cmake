@@ -1,4 +1,5 @@
-# `cpack` in the build folder makes grelha_VERSION_ARCHITECTURE.deb of what `cmake --install` installs.
+# `cpack` in the build folder makes grelha_VERSION_ARCHITECTURE.deb of what `cmake --install`
+# installs.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME grelha)
 set(CPACK_PACKAGE_VENDOR "The Grelha authors")
@@ -8,7 +9,8 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)  # dpkg-shlibdeps reads what the program is linked with
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "g++ (>= 4:12), cmake (>= 3.23)")  # for libgrelha.a and the example
+# for libgrelha.a and the example
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "g++ (>= 4:12), cmake (>= 3.23)")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
 "Renders scenes in NFF, its dialects and PLY: reflection, refraction, soft

@@ -17,7 +17,9 @@ int main() {
   scene.geometry.spheres.z = z;
   scene.geometry.spheres.radius = radius;
   scene.geometry.spheres.material = material;
-  scene.materials = materials, scene.lights = lights, scene.background = {.2f, .3f, .5f};
+  scene.materials = materials;
+  scene.lights = lights;
+  scene.background = {.2f, .3f, .5f};
   const grelha::World world(scene, {});
 
   // One ray: what does it meet first? Another, from the surface it met: is anything in its way?

@@ -76,10 +76,10 @@ void loop(const perf::Pairs& pairs, perf::PairHits& hits) {
       Scalar<Real> t[kWidth<Real>], id[kWidth<Real>];
       store(t, best);
       store(id, which);
-      for (int i = 0; i < kWidth<Real>; ++i)
-        hits.t[static_cast<std::size_t>(at + i)] = static_cast<double>(t[i]),
-                                             hits.triangle[static_cast<std::size_t>(at + i)] =
-                                                 static_cast<int>(id[i]);
+      for (int i = 0; i < kWidth<Real>; ++i) {
+        hits.t[static_cast<std::size_t>(at + i)] = static_cast<double>(t[i]);
+        hits.triangle[static_cast<std::size_t>(at + i)] = static_cast<int>(id[i]);
+      }
     }
   }
 }

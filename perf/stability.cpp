@@ -169,8 +169,10 @@ Rays odd_rays(const std::string& kind, std::size_t count) {
     if (kind == "along an axis") {
       const std::uint32_t a = random.below(3);
       const Float3 aim = random.point(1);
-      org = aim, dir = {};
-      test::component(org, a) = -4, test::component(dir, a) = 1;
+      org = aim;
+      dir = {};
+      test::component(org, a) = -4;
+      test::component(dir, a) = 1;
     }
     if (kind == "denormal directions")
       test::component(dir, random.below(3)) = 1e-40f;

@@ -1,7 +1,8 @@
-# One picture by every instruction set that runs here, at two packet widths: its bytes must be those of hashes.txt, on every
-# machine and from every compiler.
+# One picture by every instruction set that runs here, at two packet widths: its bytes must be those
+# of hashes.txt, on every machine and from every compiler.
 #   cmake -D PROGRAM=grelha -D NAME=balls -D ROOT=... -D SCRATCH=... [-D WRITE=ON] -P hashes.cmake
-# With WRITE it prints the line that hashes.txt should hold: for changes that are meant to change pictures.
+# With WRITE it prints the line that hashes.txt should hold: for changes that are meant to change
+# pictures.
 cmake_minimum_required(VERSION 3.20)
 
 # name | scene: a file of scenes/data, or a generator and its size | options
@@ -46,7 +47,8 @@ else()
     set(size --size ${words})
   endif()
   set(file "${SCRATCH}/${NAME}.nff")
-  execute_process(COMMAND "${PROGRAM}" scene ${generator} ${size} -o "${file}" RESULT_VARIABLE status OUTPUT_QUIET ERROR_QUIET)
+  execute_process(COMMAND "${PROGRAM}" scene ${generator} ${size} -o "${file}"
+    RESULT_VARIABLE status OUTPUT_QUIET ERROR_QUIET)
   if(NOT status EQUAL 0)
     message(FATAL_ERROR "cannot write the scene ${scene}")
   endif()
@@ -58,7 +60,8 @@ set(instruction_sets)
 foreach(isa scalar sse2 avx2 avx512)
   foreach(packet 1 64 256)
     set(image "${SCRATCH}/${NAME}-${isa}-${packet}.pfm")
-    execute_process(COMMAND "${PROGRAM}" render "${file}" --quiet --size 96x72 --packet ${packet} --isa ${isa} ${options} -o "${image}"
+    execute_process(COMMAND "${PROGRAM}" render "${file}" --quiet --size 96x72 --packet ${packet}
+      --isa ${isa} ${options} -o "${image}"
       RESULT_VARIABLE status ERROR_VARIABLE words)
     if(NOT status EQUAL 0)
       if(words MATCHES "processor|compiled|instruction" AND NOT isa STREQUAL "scalar")
@@ -72,7 +75,8 @@ foreach(isa scalar sse2 avx2 avx512)
     if(NOT picture_hash)
       set(picture_hash ${hash})
     elseif(NOT hash STREQUAL picture_hash)
-      message(FATAL_ERROR "${NAME}: ${isa} with packets of ${packet} makes ${hash}, others before it ${picture_hash}")
+      message(FATAL_ERROR
+        "${NAME}: ${isa} with packets of ${packet} makes ${hash}, others before it ${picture_hash}")
     endif()
   endforeach()
 endforeach()

@@ -1,5 +1,7 @@
-# Installs into SCRATCH and uses what is there as a stranger would: includes each header alone, builds examples/ and runs it.
-# cmake -D BUILD=folder -D ROOT=project -D CONFIG=Release -D SCRATCH=folder -D COMPILER=c++ -D FLAGS=... -D GENERATOR=Ninja -P installed.cmake
+# Installs into SCRATCH and uses what is there as a stranger would: includes each header alone,
+# builds examples/ and runs it.
+# cmake -D BUILD=folder -D ROOT=project -D CONFIG=Release -D SCRATCH=folder -D COMPILER=c++ -D
+# FLAGS=... -D GENERATOR=Ninja -P installed.cmake
 cmake_minimum_required(VERSION 3.23)
 function(run what)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE out ERROR_VARIABLE out)
@@ -33,7 +35,8 @@ foreach(header ${headers})
     endif()
   endforeach()
   separate_arguments(flags UNIX_COMMAND "${FLAGS}")
-  run("compiling ${header} alone" ${COMPILER} ${flags} -std=c++20 -Wall -Wextra -Wpedantic -Wshadow -Werror -fsyntax-only -x c++
+  run("compiling ${header} alone" ${COMPILER} ${flags} -std=c++20 -Wall -Wextra -Wpedantic -Wshadow
+    -Werror -fsyntax-only -x c++
     -I ${include} -include ${include}/${header} /dev/null)
 endforeach()
 
@@ -45,15 +48,21 @@ set(all_defined -Wl,-z,defs)
 if(FLAGS MATCHES "-fsanitize")  # clang's sanitizers are in the program that loads the plug-in
   set(all_defined)
 endif()
-run("making a plug-in" ${COMPILER} ${flags} -std=c++20 -fPIC -shared ${all_defined} -I ${include} ${SCRATCH}/plugin.cpp
+run("making a plug-in" ${COMPILER} ${flags} -std=c++20 -fPIC -shared ${all_defined} -I ${include}
+  ${SCRATCH}/plugin.cpp
   -Wl,--whole-archive ${library} -Wl,--no-whole-archive -fopenmp -o ${SCRATCH}/plugin.so)
 
-run("configuring the example" ${CMAKE_COMMAND} -S ${ROOT}/examples -B ${SCRATCH}/build -G ${GENERATOR} -D CMAKE_BUILD_TYPE=${CONFIG}
-  -D CMAKE_CXX_COMPILER=${COMPILER} "-DCMAKE_CXX_FLAGS=${FLAGS} -Wall -Wextra -Werror" -D CMAKE_PREFIX_PATH=${prefix})
+run("configuring the example" ${CMAKE_COMMAND} -S ${ROOT}/examples -B ${SCRATCH}/build
+  -G ${GENERATOR} -D CMAKE_BUILD_TYPE=${CONFIG}
+  -D CMAKE_CXX_COMPILER=${COMPILER} "-DCMAKE_CXX_FLAGS=${FLAGS} -Wall -Wextra -Werror"
+  -D CMAKE_PREFIX_PATH=${prefix})
 run("building the example" ${CMAKE_COMMAND} --build ${SCRATCH}/build)
 run("the example" ${SCRATCH}/build/embed)
-# The front of the middle ball, radius .8 around z = 1, seen from z = 5; balls from x = -1.6 to 1.6 under rays .004 apart.
-if(NOT output MATCHES "^sphere 1 at t = 3.2, lit\n800 of 1000 rays meet something\n160x120, [0-9]+ rays by [a-z0-9]+\n$")
+# The front of the middle ball, radius .8 around z = 1, seen from z = 5; balls from x = -1.6 to 1.6
+# under rays .004 apart.
+string(CONCAT expected "^sphere 1 at t = 3.2, lit\n800 of 1000 rays meet something\n"
+  "160x120, [0-9]+ rays by [a-z0-9]+\n$")
+if(NOT output MATCHES "${expected}")
   message(FATAL_ERROR "the example said\n${output}")
 endif()
 run("the program" ${prefix}/bin/grelha info ${prefix}/share/grelha/scenes/balls.nff)

@@ -1,13 +1,17 @@
-# Every copy of the hot loops keeps to itself: a function two copies define under one name would be linked once, and the
-# linker could pick the one this processor cannot run. Lists what each variant_<isa>.cpp.o defines for others to see, and
-# fails on any function that is neither inside grelha::<isa>:: nor an xsimd template that carries the set's name.
-# cmake -D NM=nm -D OBJECTS="a.o;b.o" -D FLAGS=of-the-compiler [-D SELF_TEST=object] -P isa_symbols.cmake
-# It goes red when a hot header calls a non-inlined std:: function, or defines one outside its namespace; the self test
-# shows it on an object that does both.
+# Every copy of the hot loops keeps to itself: a function two copies define under one name would be
+# linked once, and the linker could pick the one this processor cannot run. Lists what each
+# variant_<isa>.cpp.o defines for others to see, and fails on any function that is neither inside
+# grelha::<isa>:: nor an xsimd template that carries the set's name.
+# cmake -D NM=nm -D OBJECTS="a.o;b.o" -D FLAGS=of-the-compiler [-D SELF_TEST=object] -P
+# isa_symbols.cmake
+# It goes red when a hot header calls a non-inlined std:: function, or defines one outside its
+# namespace; the self test shows it on an object that does both.
 
-# Sets `strangers` to what `object`, compiled for `isa`, shares with other copies, and `count` to all it defines.
+# Sets `strangers` to what `object`, compiled for `isa`, shares with other copies, and `count` to
+# all it defines.
 function(find_strangers object isa)
-  execute_process(COMMAND ${NM} --defined-only --extern-only -C ${object} OUTPUT_VARIABLE out RESULT_VARIABLE failed)
+  execute_process(COMMAND ${NM} --defined-only --extern-only -C ${object} OUTPUT_VARIABLE out
+    RESULT_VARIABLE failed)
   if(failed)
     message(FATAL_ERROR "cannot list ${object}")
   endif()
@@ -17,14 +21,16 @@ function(find_strangers object isa)
   string(REPLACE "_double" "" set_name ${isa})  # the same functions of xsimd, compiled alike
   set(n 0)
   foreach(line IN LISTS lines)
-    # Kinds: T, W, V, u and i are functions or data that the linker may merge or that others can name.
+    # Kinds: T, W, V, u and i are functions or data that the linker may merge or that others can
+    # name.
     if(NOT line MATCHES "^[0-9a-fA-F]* *([TtWwVuiDBR]) (.*)$")
       continue()
     endif()
     set(kind ${CMAKE_MATCH_1})
     set(name "${CMAKE_MATCH_2}")
     math(EXPR n "${n} + 1")
-    if(name STREQUAL "grelha::k_${isa}_loops" OR name MATCHES "grelha::${isa}::" OR name MATCHES "xsimd::.*${set_name}"
+    if(name STREQUAL "grelha::k_${isa}_loops" OR name MATCHES "grelha::${isa}::" OR name
+      MATCHES "xsimd::.*${set_name}"
        OR name MATCHES "^(DW\\.ref\\.|__asan|__ubsan|__odr_asan)")
       continue()
     endif()
@@ -69,7 +75,8 @@ if(seen EQUAL 0)
   message(FATAL_ERROR "no variant_*.cpp among the objects: ${OBJECTS}")
 endif()
 if(wrong AND FLAGS MATCHES "-fsanitize=")
-  message("SKIPPED: with what a sanitizer adds, the compiler no longer inlines all that a release does:${wrong}")
+  message("SKIPPED: with what a sanitizer adds, the compiler no longer inlines all that a release "
+    "does:${wrong}")
 elseif(wrong)
   message(FATAL_ERROR "functions other copies may define too:${wrong}")
 endif()

@@ -1,4 +1,5 @@
-# The kernel: every intersection, the grid, every way of walking it, shading, and equal bits of all copies.
+# The kernel: every intersection, the grid, every way of walking it, shading, and equal bits of all
+# copies.
 grelha_test(kernel/shapes/sphere property grelha::kernel)
 grelha_test(kernel/shapes/plane property grelha::kernel)
 grelha_test(kernel/shapes/cone property grelha::kernel)
@@ -24,24 +25,33 @@ target_sources(subdivision_test PRIVATE kernel/picture/adaptive_test.cpp)
 grelha_test(kernel/picture/determinism image grelha::frontend grelha::scenes)
 
 # What ./run builds first: the copies for one processor, which nobody may install.
-add_test(NAME first_build COMMAND ${CMAKE_COMMAND} -D ROOT=${PROJECT_SOURCE_DIR} -D SCRATCH=${CMAKE_CURRENT_BINARY_DIR}/first_build
-  -D COMPILER=${CMAKE_CXX_COMPILER} -D GENERATOR=${CMAKE_GENERATOR} -P ${CMAKE_CURRENT_LIST_DIR}/first_build.cmake)
+add_test(NAME first_build COMMAND ${CMAKE_COMMAND} -D ROOT=${PROJECT_SOURCE_DIR}
+  -D SCRATCH=${CMAKE_CURRENT_BINARY_DIR}/first_build
+  -D COMPILER=${CMAKE_CXX_COMPILER} -D GENERATOR=${CMAKE_GENERATOR}
+  -P ${CMAKE_CURRENT_LIST_DIR}/first_build.cmake)
 set_tests_properties(first_build PROPERTIES LABELS build)
 
-# What breaks ray tracers, row by row; perf/stability.cpp asks the same rows with millions of rays, and Embree beside.
+# What breaks ray tracers, row by row; perf/stability.cpp asks the same rows with millions of rays,
+# and Embree beside.
 add_subdirectory(stability)
 grelha_test(stability/stability property grelha::stability)
 
-# No function of one instruction set's copy can be linked into another. The self test plants three that could.
+# No function of one instruction set's copy can be linked into another. The self test plants three
+# that could.
 add_library(leaky_variant OBJECT ${CMAKE_CURRENT_LIST_DIR}/support/leaky_variant.cpp)
-add_test(NAME isa_symbols COMMAND ${CMAKE_COMMAND} -D NM=${CMAKE_NM} "-DOBJECTS=$<TARGET_OBJECTS:grelha_kernel>" "-DFLAGS=${CMAKE_CXX_FLAGS}"
+add_test(NAME isa_symbols COMMAND ${CMAKE_COMMAND} -D NM=${CMAKE_NM}
+  "-DOBJECTS=$<TARGET_OBJECTS:grelha_kernel>" "-DFLAGS=${CMAKE_CXX_FLAGS}"
   -P ${CMAKE_CURRENT_LIST_DIR}/isa_symbols.cmake)
-add_test(NAME isa_symbols_self_test COMMAND ${CMAKE_COMMAND} -D NM=${CMAKE_NM} -D SELF_TEST=$<TARGET_OBJECTS:leaky_variant>
+add_test(NAME isa_symbols_self_test COMMAND ${CMAKE_COMMAND} -D NM=${CMAKE_NM}
+  -D SELF_TEST=$<TARGET_OBJECTS:leaky_variant>
   -P ${CMAKE_CURRENT_LIST_DIR}/isa_symbols.cmake)
-set_tests_properties(isa_symbols isa_symbols_self_test PROPERTIES LABELS build SKIP_REGULAR_EXPRESSION "SKIPPED")
+set_tests_properties(isa_symbols isa_symbols_self_test PROPERTIES LABELS build
+  SKIP_REGULAR_EXPRESSION "SKIPPED")
 
-# What tests compile of the kernel for themselves is not in what is installed. Both lists are read alike, so that the names are known
-# to be found where they are.
-add_test(NAME shipped_symbols COMMAND ${CMAKE_COMMAND} -D NM=${CMAKE_NM} "-DSHIPPED=$<TARGET_FILE:grelha_kernel>;$<TARGET_FILE:grelha>"
-  "-DTESTS=$<TARGET_FILE:grelha_reference>;$<TARGET_FILE:grelha_lane_functions>" -P ${CMAKE_CURRENT_LIST_DIR}/shipped_symbols.cmake)
+# What tests compile of the kernel for themselves is not in what is installed. Both lists are read
+# alike, so that the names are known to be found where they are.
+add_test(NAME shipped_symbols COMMAND ${CMAKE_COMMAND} -D NM=${CMAKE_NM}
+  "-DSHIPPED=$<TARGET_FILE:grelha_kernel>;$<TARGET_FILE:grelha>"
+  "-DTESTS=$<TARGET_FILE:grelha_reference>;$<TARGET_FILE:grelha_lane_functions>"
+  -P ${CMAKE_CURRENT_LIST_DIR}/shipped_symbols.cmake)
 set_tests_properties(shipped_symbols PROPERTIES LABELS build)

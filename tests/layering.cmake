@@ -1,9 +1,11 @@
 # Reads every #include "..." of ours and fails on one that points up:
-#   scenes -> scenes;  include -> include;  kernel -> kernel, include;  frontend -> frontend, kernel, include;
+#   scenes -> scenes;  include -> include;  kernel -> kernel, include;
+#   frontend -> frontend, kernel, include;
 #   tests, perf -> anything; and inside the kernel and the frontend each room those before it.
 # Nor may components, a header and its source each, include each other round in a circle.
-# Nor may any of these ask the environment: what a program does follows from its command line, and a benchmark's numbers from its sources.
-# One exception, by file name: frontend/cli/main.cpp may include scenes/generators.hpp, for `grelha scene` offers them.
+# Nor may any of these ask the environment: what a program does follows from its command line, and a
+# benchmark's numbers from its sources. One exception, by file name: frontend/cli/main.cpp may
+# include scenes/generators.hpp, for `grelha scene` offers them.
 # cmake -D ROOT=folder [-D SELF_TEST=1 -D SCRATCH=folder] -P layering.cmake
 cmake_minimum_required(VERSION 3.23)
 set(allowed_scenes "^scenes/")
@@ -14,7 +16,8 @@ set(allowed_frontend "^(frontend|kernel|grelha)/")
 set(rooms_kernel simd scene shapes grid trace query render picture isa)
 set(rooms_frontend files images scene ply nff input commands jobs cli)
 
-# Sets `result` to whether a file of a room includes one of a room above it, or one outside all rooms.
+# Sets `result` to whether a file of a room includes one of a room above it, or one outside all
+# rooms.
 function(points_up file included result)
   set(${result} FALSE PARENT_SCOPE)
   foreach(layer kernel frontend)
@@ -43,10 +46,12 @@ function(find_homeless root)
   set(homeless "${complaints}" PARENT_SCOPE)
 endfunction()
 
-# Sets `circle` to the components that include each other, of a folder whose files name each other by the prefix.
-# What nothing is left to include is taken away again and again; what stays is a circle or leads to one.
+# Sets `circle` to the components that include each other, of a folder whose files name each other
+# by the prefix. What nothing is left to include is taken away again and again; what stays is a
+# circle or leads to one.
 function(find_circles root)
-  file(GLOB_RECURSE files RELATIVE ${root} ${root}/include/*.hpp ${root}/kernel/*.hpp ${root}/kernel/*.cpp
+  file(GLOB_RECURSE files RELATIVE ${root} ${root}/include/*.hpp ${root}/kernel/*.hpp
+    ${root}/kernel/*.cpp
     ${root}/frontend/*.hpp ${root}/frontend/*.cpp ${root}/scenes/*.hpp ${root}/scenes/*.cpp)
   set(left "")
   foreach(file ${files})
@@ -83,13 +88,15 @@ endfunction()
 
 # Sets `wrong` to a list of complaints.
 function(find_wrong_arrows root)
+  set(folders "scenes|kernel|grelha|frontend|tests|perf")
   set(complaints "")
   foreach(layer scenes include kernel frontend)
-    file(GLOB_RECURSE files RELATIVE ${root} ${root}/${layer}/*.hpp ${root}/${layer}/*.cpp ${root}/${layer}/*.h
+    file(GLOB_RECURSE files RELATIVE ${root} ${root}/${layer}/*.hpp ${root}/${layer}/*.cpp
+      ${root}/${layer}/*.h
       ${root}/${layer}/*.inc)
     foreach(file ${files})
       file(STRINGS ${root}/${file} lines
-        REGEX "^[ \t]*#[ \t]*include[ \t]*[\"<](scenes|kernel|grelha|frontend|tests|perf|\\.)[^\"<>]*[\">]")
+        REGEX "^[ \t]*#[ \t]*include[ \t]*[\"<](${folders}|\\.)[^\"<>]*[\">]")
       foreach(line ${lines})
         string(REGEX REPLACE "^[^\"<]*[\"<]([^\">]*)[\">].*$" "\\1" included "${line}")
         if(included MATCHES "${allowed_${layer}}")
@@ -115,7 +122,8 @@ function(find_hidden_settings root)
     file(GLOB_RECURSE files RELATIVE ${root} ${root}/${layer}/*.hpp ${root}/${layer}/*.cpp)
     foreach(file ${files})
       file(STRINGS ${root}/${file} lines REGEX "getenv|environ\\[")
-      list(FILTER lines EXCLUDE REGEX "getenv\\(\"TERM\"\\)")  # says what a terminal can do: no setting
+      # says what a terminal can do: no setting
+      list(FILTER lines EXCLUDE REGEX "getenv\\(\"TERM\"\\)")
       if(lines)
         list(APPEND complaints ${file})
       endif()
@@ -154,35 +162,47 @@ file(WRITE ${SCRATCH}/scenes/b.cpp "#include \"scenes/x.hpp\"\n#include <vector>
 file(WRITE ${SCRATCH}/kernel/a.hpp "  #  include \"frontend/x.hpp\"\n")
 file(WRITE ${SCRATCH}/kernel/b.cpp "#include <tests/x.hpp>\n")
 file(WRITE ${SCRATCH}/kernel/c.cpp "#include \"../frontend/x.hpp\"\n")
-file(WRITE ${SCRATCH}/kernel/simd/a.hpp "#include \"kernel/simd/b.hpp\"\n#include \"grelha/world.hpp\"\n")
-file(WRITE ${SCRATCH}/kernel/grid/a.hpp "#include \"kernel/shapes/a.hpp\"\n#include \"kernel/trace/a.hpp\"\n")
-file(WRITE ${SCRATCH}/kernel/isa/a.cpp "#include \"kernel/attic/a.hpp\"\n#include \"kernel/picture/a.hpp\"\n")
+file(WRITE ${SCRATCH}/kernel/simd/a.hpp
+  "#include \"kernel/simd/b.hpp\"\n#include \"grelha/world.hpp\"\n")
+file(WRITE ${SCRATCH}/kernel/grid/a.hpp
+  "#include \"kernel/shapes/a.hpp\"\n#include \"kernel/trace/a.hpp\"\n")
+file(WRITE ${SCRATCH}/kernel/isa/a.cpp
+  "#include \"kernel/attic/a.hpp\"\n#include \"kernel/picture/a.hpp\"\n")
 file(WRITE ${SCRATCH}/include/grelha/a.hpp "#include \"kernel/simd/a.hpp\"\n")
-file(WRITE ${SCRATCH}/frontend/nff/a.cpp "#include \"frontend/ply/a.hpp\"\n#include \"kernel/isa/a.hpp\"\n")
-file(WRITE ${SCRATCH}/frontend/scene/a.hpp "#include \"frontend/jobs/a.hpp\"\n#include \"frontend/a.hpp\"\n")
-file(WRITE ${SCRATCH}/frontend/a.cpp "#include \"scenes/generators.hpp\"\n#include \"kernel/x.hpp\"\n")
-file(WRITE ${SCRATCH}/frontend/cli/main.cpp "#include \"scenes/generators.hpp\"\n#include \"scenes/vec.hpp\"\n")
+file(WRITE ${SCRATCH}/frontend/nff/a.cpp
+  "#include \"frontend/ply/a.hpp\"\n#include \"kernel/isa/a.hpp\"\n")
+file(WRITE ${SCRATCH}/frontend/scene/a.hpp
+  "#include \"frontend/jobs/a.hpp\"\n#include \"frontend/a.hpp\"\n")
+file(WRITE ${SCRATCH}/frontend/a.cpp
+  "#include \"scenes/generators.hpp\"\n#include \"kernel/x.hpp\"\n")
+file(WRITE ${SCRATCH}/frontend/cli/main.cpp
+  "#include \"scenes/generators.hpp\"\n#include \"scenes/vec.hpp\"\n")
 find_wrong_arrows(${SCRATCH})
 set(expected "scenes/a.cpp includes kernel/x.hpp;include/grelha/a.hpp includes kernel/simd/a.hpp")
 string(APPEND expected ";kernel/a.hpp includes frontend/x.hpp")
 string(APPEND expected ";kernel/b.cpp includes tests/x.hpp;kernel/c.cpp includes ../frontend/x.hpp")
-string(APPEND expected ";kernel/grid/a.hpp includes kernel/trace/a.hpp;kernel/isa/a.cpp includes kernel/attic/a.hpp")
+string(APPEND expected
+  ";kernel/grid/a.hpp includes kernel/trace/a.hpp;kernel/isa/a.cpp includes kernel/attic/a.hpp")
 string(APPEND expected ";frontend/a.cpp includes scenes/generators.hpp")
 string(APPEND expected ";frontend/cli/main.cpp includes scenes/vec.hpp")
-string(APPEND expected ";frontend/scene/a.hpp includes frontend/jobs/a.hpp;frontend/scene/a.hpp includes frontend/a.hpp")
+string(APPEND expected
+  ";frontend/scene/a.hpp includes frontend/jobs/a.hpp;frontend/scene/a.hpp includes frontend/a.hpp")
 if(NOT wrong STREQUAL expected)
   message(FATAL_ERROR "planted arrows:\n  expected ${expected}\n  found    ${wrong}")
 endif()
 
 find_homeless(${SCRATCH})
 if(NOT homeless STREQUAL "kernel/a.hpp;kernel/b.cpp;kernel/c.cpp;frontend/a.cpp")
-  message(FATAL_ERROR "planted outside all rooms: wanted a.hpp, b.cpp and c.cpp of kernel and a.cpp of frontend, found ${homeless}")
+  message(FATAL_ERROR
+    "planted outside all rooms: wanted a.hpp, b.cpp, c.cpp of kernel, a.cpp of frontend, found "
+    "${homeless}")
 endif()
 
 file(REMOVE_RECURSE ${SCRATCH}/kernel ${SCRATCH}/frontend ${SCRATCH}/scenes ${SCRATCH}/include)
 file(WRITE ${SCRATCH}/kernel/grid/a.hpp "#include \"kernel/grid/b.hpp\"\n")
 file(WRITE ${SCRATCH}/kernel/grid/b.hpp "#include <vector>\n")
-file(WRITE ${SCRATCH}/kernel/grid/b.cpp "#include \"kernel/grid/b.hpp\"\n#include \"kernel/grid/c.hpp\"\n")
+file(WRITE ${SCRATCH}/kernel/grid/b.cpp
+  "#include \"kernel/grid/b.hpp\"\n#include \"kernel/grid/c.hpp\"\n")
 file(WRITE ${SCRATCH}/kernel/grid/c.hpp "#include \"kernel/grid/b.hpp\"\n")
 file(WRITE ${SCRATCH}/kernel/grid/d.hpp "#include \"kernel/simd/lanes.hpp\"\n")
 find_circles(${SCRATCH})

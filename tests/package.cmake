@@ -1,8 +1,13 @@
-# The installed package: what is put where, that the headers stand alone, and the example built and run against it.
-add_test(NAME package COMMAND ${CMAKE_COMMAND} -D BUILD=${PROJECT_BINARY_DIR} -D ROOT=${PROJECT_SOURCE_DIR} -D CONFIG=$<CONFIG>
-  -D SCRATCH=${CMAKE_CURRENT_BINARY_DIR}/package -D COMPILER=${CMAKE_CXX_COMPILER} "-DFLAGS=${CMAKE_CXX_FLAGS}" -D GENERATOR=${CMAKE_GENERATOR}
+# The installed package: what is put where, that the headers stand alone, and the example built and
+# run against it.
+add_test(NAME package COMMAND ${CMAKE_COMMAND} -D BUILD=${PROJECT_BINARY_DIR}
+  -D ROOT=${PROJECT_SOURCE_DIR} -D CONFIG=$<CONFIG>
+  -D SCRATCH=${CMAKE_CURRENT_BINARY_DIR}/package -D COMPILER=${CMAKE_CXX_COMPILER}
+  "-DFLAGS=${CMAKE_CXX_FLAGS}" -D GENERATOR=${CMAKE_GENERATOR}
   -P ${CMAKE_CURRENT_SOURCE_DIR}/installed.cmake)
 set_tests_properties(package PROPERTIES LABELS build)
-# The .deb: what is in it and what it asks for. Without Debian's tools the test is skipped, and says so.
-add_test(NAME deb COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/deb.sh ${PROJECT_BINARY_DIR} ${CMAKE_CURRENT_BINARY_DIR}/deb $<CONFIG> "${CMAKE_CXX_FLAGS}")
+# The .deb: what is in it and what it asks for. Without Debian's tools the test is skipped, and says
+# so.
+add_test(NAME deb COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/deb.sh ${PROJECT_BINARY_DIR}
+  ${CMAKE_CURRENT_BINARY_DIR}/deb $<CONFIG> "${CMAKE_CXX_FLAGS}")
 set_tests_properties(deb PROPERTIES LABELS build SKIP_RETURN_CODE 77)

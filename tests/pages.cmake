@@ -1,10 +1,13 @@
 # The man page and the completions as a shell and man(1) take them.
-add_test(NAME pages COMMAND bash ${CMAKE_CURRENT_LIST_DIR}/pages.sh ${GRELHA_PAGES} $<TARGET_FILE:grelha>)
+add_test(NAME pages COMMAND bash ${CMAKE_CURRENT_LIST_DIR}/pages.sh ${GRELHA_PAGES}
+  $<TARGET_FILE:grelha>)
 set_tests_properties(pages PROPERTIES LABELS build)
 
-# The site builds without a warning, and its picture of what includes what is of these sources; without the tools both skip, and say so.
+# The site builds without a warning, and its picture of what includes what is of these sources;
+# without the tools both skip, and say so.
 add_test(NAME docs COMMAND sh ${PROJECT_SOURCE_DIR}/docs/build.sh ${CMAKE_CURRENT_BINARY_DIR}/docs)
-add_test(NAME architecture COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/with_python.sh ${PROJECT_SOURCE_DIR}/docs/architecture.py --check)
+add_test(NAME architecture COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/with_python.sh
+  ${PROJECT_SOURCE_DIR}/docs/architecture.py --check)
 # Files and symbols that docs and comments name are there. The self test plants some that are not.
 set(references sh ${CMAKE_CURRENT_LIST_DIR}/with_python.sh ${CMAKE_CURRENT_LIST_DIR}/references.py)
 add_test(NAME references COMMAND ${references} ${PROJECT_SOURCE_DIR})
@@ -12,6 +15,16 @@ add_test(NAME references_self_test COMMAND ${references} --self-test)
 set_tests_properties(docs architecture references references_self_test PROPERTIES
   LABELS build SKIP_RETURN_CODE 77)
 
+# Every source has the form that CONTRIBUTING.md asks for. The self test plants offences.
+set(form sh ${CMAKE_CURRENT_LIST_DIR}/with_python.sh ${CMAKE_CURRENT_LIST_DIR}/form.py)
+foreach(rules text functions format)
+  add_test(NAME form_${rules} COMMAND ${form} ${rules} ${PROJECT_SOURCE_DIR})
+endforeach()
+add_test(NAME form_self_test COMMAND ${form} --self-test ${CMAKE_CURRENT_BINARY_DIR}/form)
+set_tests_properties(form_text form_functions form_format form_self_test PROPERTIES
+  LABELS build SKIP_RETURN_CODE 77)
+
 # ./run through a link, and where nothing may be installed.
-add_test(NAME run_script COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/run_script.sh ${PROJECT_SOURCE_DIR}/run ${CMAKE_CURRENT_BINARY_DIR}/run_script)
+add_test(NAME run_script COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/run_script.sh
+  ${PROJECT_SOURCE_DIR}/run ${CMAKE_CURRENT_BINARY_DIR}/run_script)
 set_tests_properties(run_script PROPERTIES LABELS build)

@@ -1,6 +1,7 @@
 grelha_test(scenes/spd_counts image grelha::frontend grelha::scenes)
 
-add_test(NAME readme COMMAND ${CMAKE_COMMAND} -D ROOT=${PROJECT_SOURCE_DIR} -D PROGRAM=$<TARGET_FILE:grelha>
+add_test(NAME readme COMMAND ${CMAKE_COMMAND} -D ROOT=${PROJECT_SOURCE_DIR}
+  -D PROGRAM=$<TARGET_FILE:grelha>
   -D SCRATCH=${CMAKE_CURRENT_BINARY_DIR}/readme -P ${CMAKE_CURRENT_SOURCE_DIR}/readme.cmake)
 set_tests_properties(readme PROPERTIES LABELS image)
 grelha_test(kernel/render/sampling property grelha::kernel grelha_lane_functions)
@@ -9,14 +10,16 @@ grelha_test(kernel/picture/refinement image grelha::frontend grelha::scenes)
 
 # By Debian's Python, where there is one: it has the modules of its packages.
 add_test(NAME other_programs COMMAND ${CMAKE_COMMAND} -E env PATH=/usr/bin:$ENV{PATH}
-  sh ${CMAKE_CURRENT_SOURCE_DIR}/with_python.sh ${CMAKE_CURRENT_SOURCE_DIR}/other_programs.py $<TARGET_FILE:grelha>
+  sh ${CMAKE_CURRENT_SOURCE_DIR}/with_python.sh ${CMAKE_CURRENT_SOURCE_DIR}/other_programs.py
+  $<TARGET_FILE:grelha>
   ${PROJECT_SOURCE_DIR}/scenes/data/balls.nff)
 set_tests_properties(other_programs PROPERTIES LABELS image SKIP_RETURN_CODE 77)
 
 file(STRINGS ${CMAKE_CURRENT_SOURCE_DIR}/hashes.txt lines REGEX "^[a-z]")
 foreach(line IN LISTS lines)
   string(REGEX MATCH "^[a-z]+" name "${line}")
-  add_test(NAME hash_${name} COMMAND ${CMAKE_COMMAND} -D PROGRAM=$<TARGET_FILE:grelha> -D NAME=${name} -D ROOT=${PROJECT_SOURCE_DIR}
+  add_test(NAME hash_${name} COMMAND ${CMAKE_COMMAND} -D PROGRAM=$<TARGET_FILE:grelha>
+    -D NAME=${name} -D ROOT=${PROJECT_SOURCE_DIR}
     -D SCRATCH=${CMAKE_CURRENT_BINARY_DIR}/hashes -P ${CMAKE_CURRENT_SOURCE_DIR}/hashes.cmake)
   set_tests_properties(hash_${name} PROPERTIES LABELS image SKIP_REGULAR_EXPRESSION "SKIPPED")
 endforeach()

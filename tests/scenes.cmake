@@ -16,11 +16,13 @@ foreach(test program_test files_test hostile_test)
   add_dependencies(${test} grelha)
 endforeach()
 
-# Includes point one way, and no picture asks the mathematical library. The second test of each plants what is wrong and wants it found.
+# Includes point one way, and no picture asks the mathematical library. The second test of each
+# plants what is wrong and wants it found.
 foreach(rule layering library_bits)
   foreach(case ${rule} ${rule}_self_test)
     add_test(NAME ${case} COMMAND ${CMAKE_COMMAND} -D ROOT=${PROJECT_SOURCE_DIR}
-      -D SELF_TEST=$<STREQUAL:${case},${rule}_self_test> -D SCRATCH=${CMAKE_CURRENT_BINARY_DIR}/${rule}
+      -D SELF_TEST=$<STREQUAL:${case},${rule}_self_test>
+      -D SCRATCH=${CMAKE_CURRENT_BINARY_DIR}/${rule}
       -P ${CMAKE_CURRENT_SOURCE_DIR}/${rule}.cmake)
     set_tests_properties(${case} PROPERTIES LABELS build)
   endforeach()

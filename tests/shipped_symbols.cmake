@@ -7,7 +7,8 @@ set(names "grelha::(test|reference|[a-z0-9]+_lanes)::|::(trace_reference|referen
 
 # Sets `found` to the symbols of `file` that are none of the library's business.
 function(find_test_symbols file)
-  execute_process(COMMAND ${NM} --defined-only -C ${file} OUTPUT_VARIABLE out ERROR_QUIET RESULT_VARIABLE failed)
+  execute_process(COMMAND ${NM} --defined-only -C ${file} OUTPUT_VARIABLE out ERROR_QUIET
+    RESULT_VARIABLE failed)
   if(failed OR out STREQUAL "")
     message(FATAL_ERROR "cannot list ${file}")
   endif()

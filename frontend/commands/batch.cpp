@@ -84,7 +84,8 @@ std::vector<RenderCommand> commands_for(const RenderCommand& command) {
   std::vector<RenderCommand> all;
   for (const std::string& scene : scenes) {
     RenderCommand one = command;
-    one.scenes = {scene}, one.scene = scene,
+    one.scenes = {scene};
+    one.scene = scene;
     one.image = image_for(scene, command.image, command.format);
     one.work.kept_till_the_last = scenes.size() > 1;
     const auto want_folder = [&one](const std::string& pattern, const std::string& file) {

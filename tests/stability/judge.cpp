@@ -52,7 +52,7 @@ class Found {
     Wanted w;
     w.hit = certain_;
     w.miss = !possible_;
-    w.earliest = static_cast<double>(earliest_),
+    w.earliest = static_cast<double>(earliest_);
     w.latest = certain_ ? static_cast<double>(latest_) : double{test::kInf};
     return w;
   }

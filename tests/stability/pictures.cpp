@@ -70,8 +70,10 @@ PictureCounts mirror_shaft(int size) {
                             : ball_mesh(5, 3);
       s = placed(s, scale, {});
       s.materials.resize(2);
-      s.materials[0] = {}, s.materials[0].mirror = {1, 1, 1};
-      s.materials[1] = {}, s.materials[1].emission = {1, 1, 1};
+      s.materials[0] = {};
+      s.materials[0].mirror = {1, 1, 1};
+      s.materials[1] = {};
+      s.materials[1].emission = {1, 1, 1};
       s.geometry.spheres.add({}, static_cast<float>(4 * scale), 1);
       RenderOptions o;
       o.depth = 50;
@@ -91,7 +93,9 @@ PictureCounts total_reflection(int size) {
   for (const double scale : {1., 1e-6, 1e6})
     for (const bool fresnel : {false, true}) {
       Scene s = one_sphere({}, static_cast<float>(scale));
-      s.materials[0] = {}, s.materials[0].transmission = 1, s.materials[0].ior = 1.5f,
+      s.materials[0] = {};
+      s.materials[0].transmission = 1;
+      s.materials[0].ior = 1.5f;
       s.materials[0].fresnel = fresnel;
       s.background = {};
       s.materials.emplace_back().emission = {1, 1, 1};
@@ -165,12 +169,17 @@ PictureCounts glass_ball(int size) {
   for (const float ior : {1.5f, 1.05f, .8f}) {
     Scene s;
     s.materials.resize(2);
-    s.materials[0].transmission = 1, s.materials[0].ior = ior, s.materials[1].emission = {1, 1, 1};
+    s.materials[0].transmission = 1;
+    s.materials[0].ior = ior;
+    s.materials[1].emission = {1, 1, 1};
     s.geometry.spheres.add({}, 1, 0);
     add_triangle(s, {0, -1000, -3}, {2000, 0, -3}, {0, 1000, -3}, 1);
     Camera cam;
     // the ball fills it
-    cam.eye = {0, 0, 3}, cam.at = {}, cam.up = {0, 1, 0}, cam.width = cam.height = size,
+    cam.eye = {0, 0, 3};
+    cam.at = {};
+    cam.up = {0, 1, 0};
+    cam.width = cam.height = size;
     cam.angle_deg = 39;
     const Image image = picture(s, cam, {});
     const Real half = std::tan(Real(39) / 2 * 3.14159265358979323846L / 180);
@@ -297,9 +306,11 @@ PictureCounts light_of_no_size(int size) {
   Scene s = stage(), area = s;
   const Camera cam = camera(size, {.3f, .5f, 3.5f}, {}, 45);
   const Image wanted = picture(s, cam, samples(4));
-  area.lights[0].edge1 = {1e-30f, 0, 0}, area.lights[0].edge2 = {0, 1e-30f, 0};
+  area.lights[0].edge1 = {1e-30f, 0, 0};
+  area.lights[0].edge2 = {0, 1e-30f, 0};
   count_close(c, picture(area, cam, samples(4)), wanted, "1e-30", 1e-5f);
-  area.lights[0].edge1 = {}, area.lights[0].edge2 = {1e-38f, 0, 0};
+  area.lights[0].edge1 = {};
+  area.lights[0].edge2 = {1e-38f, 0, 0};
   count_close(c, picture(area, cam, samples(4)), wanted, "a line of 1e-38", 1e-5f);
   area.lights[0].edge2 = {};
   count_same(c, picture(area, cam, samples(4)), wanted, "none");
@@ -373,7 +384,10 @@ PictureCounts correlated(int size) {
   add_triangle(s, {0, -50, 1}, {0, 50, 1}, {-50, 0, 1});
   s.lights = {{{0, 0, 2}, {1, 1, 1}, {1, 0, 0}, {0, 1, 0}}};
   Camera cam;
-  cam.eye = {.2f, -.5f, .5f}, cam.at = {.2f, 0, 0}, cam.up = {0, 0, 1}, cam.width = cam.height = 1,
+  cam.eye = {.2f, -.5f, .5f};
+  cam.at = {.2f, 0, 0};
+  cam.up = {0, 0, 1};
+  cam.width = cam.height = 1;
   cam.angle_deg = 60;
   // One pixel a picture, all of the penumbra in it.
   const auto means = [&](Sampler sampler, int n, int runs, double& spread) {

@@ -49,8 +49,10 @@ inline std::vector<Point> surface_points(
     if (id < p.triangle_base) {
       const std::uint32_t k = id - p.sphere_base;
       Float3 d = random.direction();
-      if (i < 6)
-        d = {}, component(d, i % 3u) = i < 3 ? 1.f : -1.f;
+      if (i < 6) {
+        d = {};
+        component(d, i % 3u) = i < 3 ? 1.f : -1.f;
+      }
       const Point unit = mixed({}, 1, d);
       out.push_back(mixed({g.spheres.x[k], g.spheres.y[k], g.spheres.z[k]},
                           std::abs(double{g.spheres.radius[k]}) / std::sqrt(dot(unit, unit)),

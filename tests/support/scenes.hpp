@@ -242,10 +242,12 @@ inline Scene placed(Scene s, double scale, const Float3& offset) {
 inline Scene everything() {
   Scene s = random_mixture(5, 120);
   s.materials.resize(3);
-  s.materials[1].mirror = {.7f, .8f, .9f}, s.materials[1].roughness = .15f,
+  s.materials[1].mirror = {.7f, .8f, .9f};
+  s.materials[1].roughness = .15f;
   s.materials[1].specular = {.4f, .4f, .4f};
   s.materials[1].shine = 20;
-  s.materials[2].transmission = .8f, s.materials[2].ior = 1.4f,
+  s.materials[2].transmission = .8f;
+  s.materials[2].ior = 1.4f;
   s.materials[2].mirror = {.1f, .1f, .1f};
   Random random(4);
   for (auto* m :
@@ -262,7 +264,9 @@ inline Scene everything() {
 /// Looks along -z at the plane z = 0 from 1 above it; the picture is 2 tan(angle/2) high there.
 inline Camera straight_down(int width, int height, double across) {
   Camera c;
-  c.eye = {0, 0, 1}, c.at = {0, 0, 0}, c.up = {0, 1, 0};
+  c.eye = {0, 0, 1};
+  c.at = {0, 0, 0};
+  c.up = {0, 1, 0};
   c.width = width;
   c.height = height;
   c.angle_deg = 360 / std::numbers::pi * std::atan(across / 2);

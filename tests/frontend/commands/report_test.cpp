@@ -28,10 +28,11 @@ Material material_with(Change change) {
 /// One ball of that material, beside a material that has everything and is on nothing.
 SceneFile one_ball(const Material& material) {
   SceneFile file;
-  file.scene.materials = {
-      material, material_with([](Material& m) {
-        m.transmission = m.roughness = 1, m.fresnel = true, m.emission = m.mirror = {1, 1, 1};
-      })};
+  file.scene.materials = {material, material_with([](Material& m) {
+                            m.transmission = m.roughness = 1;
+                            m.fresnel = true;
+                            m.emission = m.mirror = {1, 1, 1};
+                          })};
   file.scene.geometry.spheres.add({1, 2, 3}, 0.5f, 0);
   return file;
 }
@@ -40,7 +41,8 @@ TEST(Needs, AskNothingForAMaterialNobodyUses) {
   Needs expected;
   expected.spheres = true;
   EXPECT_EQ(needs_of(one_ball(material_with([](Material& m) {
-              m.diffuse = {1, 1, 1}, m.ior = 2;
+              m.diffuse = {1, 1, 1};
+              m.ior = 2;
             }))),
             expected);
 }
@@ -73,7 +75,10 @@ TEST(Needs, FollowGeometryAndCamera) {
   Triangles& t = file.scene.geometry.triangles;
   t.x = t.y = t.z = {0, 1, 2};
   t.nx = t.ny = t.nz = {0, 0, 0};
-  t.a = {0}, t.b = {1}, t.c = {2}, t.material = {0};
+  t.a = {0};
+  t.b = {1};
+  t.c = {2};
+  t.material = {0};
   file.scene.materials = {{}};
   file.lens = {true, 0, 1};
   EXPECT_FALSE(needs_of(file).smooth_normals) << "normals of length zero are none";
@@ -100,7 +105,10 @@ TEST(Bounds, HoldEveryKindButPlanes) {
   EXPECT_EQ(bounds.high, (Float3{2, 2.5f, 4}));
   Triangles& t = geometry.triangles;  // the last vertex belongs to no triangle
   t.x = t.y = t.z = {0, 5, 0, 100};
-  t.a = {0}, t.b = {1}, t.c = {2}, t.material = {0};
+  t.a = {0};
+  t.b = {1};
+  t.c = {2};
+  t.material = {0};
   EXPECT_EQ(bounds_of(geometry).high, (Float3{5, 5, 5}));
 }
 

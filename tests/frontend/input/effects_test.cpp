@@ -78,7 +78,10 @@ TEST(AreaLight, CastsThePenumbraOfASquare) {
   // The eye looks from below the occluder's edge, so that it does not stand in the way.
   for (const float x : {-.6f, -.3f, 0.f, .2f, .45f, .8f}) {
     Camera c;
-    c.eye = {x, -.5f, .5f}, c.at = {x, 0, 0}, c.up = {0, 0, 1}, c.width = c.height = 1,
+    c.eye = {x, -.5f, .5f};
+    c.at = {x, 0, 0};
+    c.up = {0, 0, 1};
+    c.width = c.height = 1;
     c.angle_deg = .01;
     const double wanted = penumbra(x, 1, 0);
     EXPECT_NEAR(picture(s, c, samples(1024)).rgb[0], wanted, kEdge1024) << "x " << x;
@@ -142,7 +145,9 @@ TEST(Gloss, SeesItsShareOfAHalfWhiteWorld) {
   // disc.
   Scene s;
   s.materials.resize(2);
-  s.materials[0].mirror = {1, 1, 1}, s.materials[0].roughness = .2f, s.materials[1] = glowing();
+  s.materials[0].mirror = {1, 1, 1};
+  s.materials[0].roughness = .2f;
+  s.materials[1] = glowing();
   s.geometry.planes.add({0, 0, 0}, {0, 0, 1}, 0);
   for (const double offset : {-1.2, 0., .7, 1.5}) {
     Scene t = s;
@@ -162,7 +167,11 @@ TEST(Gloss, SeesItsShareOfAHalfWhiteWorld) {
 TEST(Effects, GiveTheSameBitsEverywhere) {
   const Scene s = everything();
   Camera c;
-  c.eye = {.3f, .5f, 3.5f}, c.at = {0, 0, 0}, c.width = 37, c.height = 21, c.aperture = .1,
+  c.eye = {.3f, .5f, 3.5f};
+  c.at = {0, 0, 0};
+  c.width = 37;
+  c.height = 21;
+  c.aperture = .1;
   c.focus = 3;
   for (const Sampler sampler : {Sampler::kSobol, Sampler::kJitter, Sampler::kRandom})
     for (const int gloss : {0, 2}) {
@@ -194,7 +203,9 @@ TEST(Effects, GiveTheSameBitsEverywhere) {
 TEST(Effects, SeedsGiveIndependentPictures) {
   const Scene s = everything();
   Camera c;
-  c.eye = {.3f, .5f, 3.5f}, c.at = {0, 0, 0}, c.width = c.height = 48;
+  c.eye = {.3f, .5f, 3.5f};
+  c.at = {0, 0, 0};
+  c.width = c.height = 48;
   RenderOptions o = samples(4), reference = samples(1024);
   reference.sampling.seed = 99;
   const Image truth = picture(s, c, reference), a = picture(s, c, o);
@@ -214,7 +225,8 @@ TEST(Effects, SeedsGiveIndependentPictures) {
 TEST(Effects, OfMaterialsThatNothingHasAreNotSampled) {
   SceneFile f;
   f.scene.materials.resize(2);
-  f.scene.materials[1].mirror = {1, 1, 1}, f.scene.materials[1].roughness = .1f;
+  f.scene.materials[1].mirror = {1, 1, 1};
+  f.scene.materials[1].roughness = .1f;
   f.scene.geometry.spheres.add({0, 0, 0}, 1, 0);
   RenderOptions o;
   apply_effects({}, f, o);
@@ -234,7 +246,9 @@ TEST(Effects, AreTakenFromTheCommandLine) {
   Effects e;
   apply_effects(e, f, o);
   EXPECT_EQ(o.sampling.samples, 16) << "an area light in the scene wants sampling";
-  e.jitter = 3, e.lens = Effects::Lens{20, 1.5, 4}, e.glossy = Effects::Glossy{.3f, 2},
+  e.jitter = 3;
+  e.lens = Effects::Lens{20, 1.5, 4};
+  e.glossy = Effects::Glossy{.3f, 2};
   e.shadows = Effects::Shadows{false, .5f, 12};
   apply_effects(e, f, o);
   EXPECT_EQ(o.sampling.samples, 36);
@@ -251,7 +265,8 @@ TEST(Effects, AreTakenFromTheCommandLine) {
   EXPECT_EQ(f.camera.focus, 1.5);
   // 20 pixels of a plane 2 away, 45 degrees and 512 rows high.
   EXPECT_NEAR(f.camera.aperture, 20 * 2 * 2 * std::tan(std::numbers::pi / 8) / 512, 1e-12);
-  e.jitter = 0, e.adaptive = {true, .1f, 3};
+  e.jitter = 0;
+  e.adaptive = {true, .1f, 3};
   apply_effects(e, f, o);
   EXPECT_TRUE(o.subdivision.on);
   EXPECT_EQ(o.sampling.samples, 4) << "lens points through each point";

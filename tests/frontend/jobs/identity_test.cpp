@@ -92,7 +92,8 @@ TEST(Identity, NamesAllThatPixelsDependOn) {
             }),
             "aperture=0.1 focus=2, a has no aperture= no focus=");
   EXPECT_EQ(words([](RenderCommand& c, Camera&) {
-              c.effects.glossy = {.5f, 2}, c.render.sampling.gloss_rays = 2;
+              c.effects.glossy = {.5f, 2};
+              c.render.sampling.gloss_rays = 2;
             }),
             "roughness=0.5 gloss-rays=2, a has no roughness= no gloss-rays=");
   RenderCommand other;

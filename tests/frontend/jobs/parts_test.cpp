@@ -52,8 +52,10 @@ Job make(const Case& c) {
         camera.focus = 3;
         break;
       case 'a':
-        for (Light& l : job.file.scene.lights)
-          l.edge1 = {1, 0, 0}, l.edge2 = {0, 1, .5f};
+        for (Light& l : job.file.scene.lights) {
+          l.edge1 = {1, 0, 0};
+          l.edge2 = {0, 1, .5f};
+        }
         break;
       case 'n':
         job.options.sampling.gloss_rays = 3;
@@ -163,7 +165,8 @@ TEST(PictureSoFar, IsTheMeanOfWhatIsThereAndBlackElsewhere) {
   ASSERT_EQ(a.done.size(), 12u) << "four bands of rows, three of samples";
   RenderOptions options = job.options;
   int left = 6;
-  options.threads = 1, options.progress = [&](double) { return --left > 0; };
+  options.threads = 1;
+  options.progress = [&](double) { return --left > 0; };
   RenderStats stats;
   EXPECT_FALSE(accumulate(world, job.file.camera, options, a, stats));
   EXPECT_EQ(share_done(a), .5);
@@ -266,7 +269,8 @@ TEST_F(Merge, TakesTheMemoryOfWhatIsThere) {
   Partial p = part_of({0, 5}, {0, 8});
   const int rows[][2] = {{40000, 40001}, {40001, 40003}};
   for (const auto& [begin, end] : rows) {
-    p.sums.width = p.sums.height = 65536, p.sums.part.rows = {begin, end};
+    p.sums.width = p.sums.height = 65536;
+    p.sums.part.rows = {begin, end};
     p.sums.sums.assign(std::size_t(end - begin) * 65536 * 3, begin);
     p.sums.done.assign(piece_count(p.sums.part), 1);
     put(std::to_string(begin), p);

@@ -145,14 +145,14 @@ TEST_P(Double, IsOffByRoundingAlone) {
         truth =
             oracle::Sheet{Float3{g.px[k], g.py[k], g.pz[k]}, Float3{g.pnx[k], g.pny[k], g.pnz[k]}}
                 .first(ray, rays.t_min[i]);
-      else if (k < view.triangle_base)
-        k -= view.sphere_base,
-            truth =
-                oracle::Ball{Float3{g.sx[k], g.sy[k], g.sz[k]}, g.sr[k]}.first(ray, rays.t_min[i]);
-      else if (k < view.cone_base)
-        k -= view.triangle_base,
-            truth = oracle::Facet{corner(g.ta[k]), corner(g.tb[k]), corner(g.tc[k])}.first(
-                ray, rays.t_min[i]);
+      else if (k < view.triangle_base) {
+        k -= view.sphere_base;
+        truth = oracle::Ball{Float3{g.sx[k], g.sy[k], g.sz[k]}, g.sr[k]}.first(ray, rays.t_min[i]);
+      } else if (k < view.cone_base) {
+        k -= view.triangle_base;
+        truth = oracle::Facet{corner(g.ta[k]), corner(g.tb[k]), corner(g.tc[k])}.first(
+            ray, rays.t_min[i]);
+      }
       if (!truth || truth->cosine < .1L)
         continue;
       ++judged;
@@ -220,7 +220,10 @@ TEST_P(Double, MakesOnePicture) {
   scene.materials[0].mirror = {.5f, .4f, .3f};
   scene.lights = {{{3, 4, 5}, {.6f, .6f, .6f}}, {{-4, 2, 1}, {.3f, .1f, .2f}}};
   Camera camera;
-  camera.eye = {.3f, .5f, 3.5f}, camera.at = {0, 0, 0}, camera.width = 67, camera.height = 43;
+  camera.eye = {.3f, .5f, 3.5f};
+  camera.at = {0, 0, 0};
+  camera.width = 67;
+  camera.height = 43;
   const World world(scene, {}), plain(scene, {.grid = false});
   RenderOptions plainest;
   plainest.isa = "scalar";
@@ -292,7 +295,9 @@ TEST_P(Double, TellsApartWhatSingleCannot) {
   add_triangle(scene, {-50, 1, -50}, {50, 1, -50}, {0, 1, 50}, 1);
   const World world(scene, {});
   Camera camera;
-  camera.eye = {.1f, 4, 0}, camera.at = {0, 0, .3f}, camera.width = camera.height = 32;
+  camera.eye = {.1f, 4, 0};
+  camera.at = {0, 0, .3f};
+  camera.width = camera.height = 32;
   const auto dark = [](const Image& image) {
     std::size_t n = 0;
     for (const float c : image.rgb)
@@ -319,7 +324,9 @@ TEST_P(Double, SeesWhatStandsBeforeALight) {
   scene.lights = {{{.1f, 2, 0}, {1, 1, 1}}};
   const World world(scene, {});
   Camera camera;
-  camera.eye = {.1f, 1, 0}, camera.at = {0, 0, .3f}, camera.width = camera.height = 32;
+  camera.eye = {.1f, 1, 0};
+  camera.at = {0, 0, .3f};
+  camera.width = camera.height = 32;
   const auto lit = [](const Image& image) {
     return std::count_if(image.rgb.begin(), image.rgb.end(), [](float c) { return c > 0; });
   };

@@ -182,7 +182,11 @@ TEST(Adaptive, MissesMostSmallDiscsAtAnyDepth) {
 
 Camera upon_everything() {
   Camera c;
-  c.eye = {.3f, .5f, 3.5f}, c.at = {0, 0, 0}, c.width = 21, c.height = 13, c.aperture = .1,
+  c.eye = {.3f, .5f, 3.5f};
+  c.at = {0, 0, 0};
+  c.width = 21;
+  c.height = 13;
+  c.aperture = .1;
   c.focus = 3;
   return c;
 }
@@ -242,7 +246,10 @@ TEST(Adaptive, SamplesOfAPointAreAveraged) {
   add_triangle(s, {0, -50, 1}, {0, 50, 1}, {-50, 0, 1});
   s.lights = {{{0, 0, 2}, {1, 1, 1}, {1, 0, 0}, {0, 1, 0}}};
   Camera c;  // one point of a penumbra
-  c.eye = {.1f, -.5f, .5f}, c.at = {.1f, 0, 0}, c.up = {0, 0, 1}, c.width = c.height = 1,
+  c.eye = {.1f, -.5f, .5f};
+  c.at = {.1f, 0, 0};
+  c.up = {0, 0, 1};
+  c.width = c.height = 1;
   c.angle_deg = .01;
   RenderOptions o;
   o.sampling.samples = 4096;

@@ -30,15 +30,19 @@ Picture mixture() {
   Picture p;
   Scene& s = p.scene = random_mixture(12, 240);
   s.materials.resize(6);
-  s.materials[1].mirror = {.8f, .7f, .9f}, s.materials[1].specular = {.5f, .5f, .5f},
+  s.materials[1].mirror = {.8f, .7f, .9f};
+  s.materials[1].specular = {.5f, .5f, .5f};
   s.materials[1].shine = 40;
   s.materials[2].transmission = .9f;
   s.materials[2].ior = 1.5f;
   s.materials[2].fresnel = true;
-  s.materials[3].transmission = .7f, s.materials[3].ior = 1.2f,
+  s.materials[3].transmission = .7f;
+  s.materials[3].ior = 1.2f;
   s.materials[3].mirror = {.2f, .3f, .2f};
-  s.materials[4].emission = {.3f, .2f, .1f}, s.materials[4].diffuse = {.2f, .5f, .9f};
-  s.materials[5].diffuse = {.4f, .4f, .2f}, s.materials[5].specular = {1, 1, 1},
+  s.materials[4].emission = {.3f, .2f, .1f};
+  s.materials[4].diffuse = {.2f, .5f, .9f};
+  s.materials[5].diffuse = {.4f, .4f, .2f};
+  s.materials[5].specular = {1, 1, 1};
   s.materials[5].shine = 7.3f;
   Random random(1);
   for (auto* m : {&s.geometry.spheres.material,
@@ -57,7 +61,8 @@ Picture mixture() {
   s.lights = {
       {{3, 4, 5}, {.6f, .6f, .6f}}, {{-4, 2, 1}, {.3f, .1f, .2f}}, {{0, 0, 0}, {.2f, .4f, .1f}}};
   s.background = {.08f, .36f, .57f};
-  p.camera.eye = {.3f, .5f, 3.5f}, p.camera.at = {0, 0, 0};
+  p.camera.eye = {.3f, .5f, 3.5f};
+  p.camera.at = {0, 0, 0};
   return p;
 }
 

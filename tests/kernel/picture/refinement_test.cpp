@@ -38,7 +38,8 @@ std::vector<Case> cases(int side) {
   };
   Effects soft, all;
   soft.shadows = Effects::Shadows{false, 2, 1};
-  all.shadows = Effects::Shadows{false, 1, 1}, all.lens = Effects::Lens{12, 0, 0},
+  all.shadows = Effects::Shadows{false, 1, 1};
+  all.lens = Effects::Lens{12, 0, 0};
   all.glossy = Effects::Glossy{.08f, 0};
   add("edges", "balls", 2, {});
   add("soft shadows", "mount", 4, soft);
@@ -163,9 +164,11 @@ TEST(Refinement, IsNotFooledBySamplesThatAgree) {
 TEST(Refinement, SpendsNothingOnAFlatPicture) {
   Case c{"flat", {}, {}};
   c.file.scene = one_sphere({0, 0, 0}, 50);
-  c.file.scene.materials[0].diffuse = {0, 0, 0},
+  c.file.scene.materials[0].diffuse = {0, 0, 0};
   c.file.scene.materials[0].emission = {.25f, .5f, .75f};
-  c.file.camera.eye = {0, 0, 60}, c.file.camera.at = {0, 0, 0}, c.file.camera.width = 40,
+  c.file.camera.eye = {0, 0, 60};
+  c.file.camera.at = {0, 0, 0};
+  c.file.camera.width = 40;
   c.file.camera.height = 24;
   const Outcome got = refined(c, to_error(1e-4));
   EXPECT_EQ(got.stats.error.most, 4u);

@@ -191,7 +191,8 @@ TEST(Query, ThreadsAndScenesDoNotMeet) {
   const World worlds[2] = {World(scenes[0], {}), World(scenes[1], {})};
   const Rays rays = some_rays(3);
   Camera camera;
-  camera.eye = {0, 0, 4}, camera.width = camera.height = 48;
+  camera.eye = {0, 0, 4};
+  camera.width = camera.height = 48;
   RenderOptions options;
   options.threads = 2;
   const auto picture = [&](int w) {
@@ -227,9 +228,11 @@ TEST(Query, WhatProgressThrowsIsThrown) {
   const World world(scene, {});
   struct Trouble {};
   Camera camera;
-  camera.eye = {0, 0, 4}, camera.width = camera.height = 64;
+  camera.eye = {0, 0, 4};
+  camera.width = camera.height = 64;
   RenderOptions whole, refined, subdivided;
-  refined.refine.error = .001, subdivided.subdivision = {true, .01f, 4};
+  refined.refine.error = .001;
+  subdivided.subdivision = {true, .01f, 4};
   for (RenderOptions* options : {&whole, &refined, &subdivided}) {
     options->threads = 2;
     int calls = 0;

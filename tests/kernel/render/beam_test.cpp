@@ -17,7 +17,9 @@ using Tile = std::array<float, kTile * kTile>;
 /// covers [x - 4, x - 3] x [3 - y, 4 - y].
 Camera over_units() {
   Camera c;
-  c.eye = {0, 0, 200}, c.at = {0, 0, 0}, c.up = {0, 1, 0};
+  c.eye = {0, 0, 200};
+  c.at = {0, 0, 0};
+  c.up = {0, 1, 0};
   c.width = c.height = 8;
   c.angle_deg = 2 * 1.1457628381751033;  // atan(4 / 200)
   return c;
@@ -124,7 +126,8 @@ TEST_P(Beam, DoubtsNothingInAShadowThatOneBallCasts) {
 TEST_P(Beam, DoubtsWhatAMirrorShowsByItsWeight) {
   Scene s = wall();
   s.lights.clear();
-  s.materials[0].diffuse = {0, 0, 0}, s.materials[0].mirror = {.5f, .5f, .5f};
+  s.materials[0].diffuse = {0, 0, 0};
+  s.materials[0].mirror = {.5f, .5f, .5f};
   // The ray to (-1.5, 2.5, 0), the middle of pixel (2, 1), comes back from there to 1.3 times that
   // at height 60. The eye sees that point against (-2.8, 4.6, 0), outside the picture.
   s.geometry.spheres.add({-1.95f, 3.25f, 60}, .02f, 0);

@@ -53,7 +53,9 @@ Scene faint_mixture(std::uint64_t seed) {
     Material m = mirror_of(mirror);
     m.transmission = k % 2 == 0 ? static_cast<float>(random.in(0, 1 - mirror)) : 0.f;
     m.ior = 1.4f;
-    m.diffuse = {.5f, .7f, .3f}, m.specular = {.2f, .2f, .2f}, m.shine = 10;
+    m.diffuse = {.5f, .7f, .3f};
+    m.specular = {.2f, .2f, .2f};
+    m.shine = 10;
     s.materials.push_back(m);
   }
   for (std::size_t i = 0; i < s.geometry.spheres.size(); ++i)

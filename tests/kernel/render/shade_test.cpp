@@ -208,7 +208,9 @@ TEST(Shade, NoWeightSendsNoRay) {
   s.lights = {{{0, 5, 5}, {1, 1, 1}}};
   const World world(s, {});
   Camera c;
-  c.eye = {0, 0, 4}, c.width = 40, c.height = 30;
+  c.eye = {0, 0, 4};
+  c.width = 40;
+  c.height = 30;
   RenderStats stats;
   render(world, c, {}, stats);
   EXPECT_EQ(stats.rays.primary, 1200u);
@@ -344,7 +346,8 @@ TEST(Shade, SmoothNormalsAreMixed) {
   Scene s;
   s.materials = {plain({1, 1, 1})};
   add_triangle(s, {-1, 0, -1}, {-1, 0, 3}, {3, 0, -1});
-  s.geometry.triangles.nx = {0, 1, 0}, s.geometry.triangles.ny = {2, 1, 3},
+  s.geometry.triangles.nx = {0, 1, 0};
+  s.geometry.triangles.ny = {2, 1, 3};
   s.geometry.triangles.nz = {0, 0, 3};  // any length
   s.lights = {{{0, 4, 0}, {1, 1, 1}}};
   const Pixel p = look(s, {0, 3, 1}, {0, 0, 0});
@@ -420,7 +423,8 @@ TEST(Shade, EveryKindHasItsNormal) {
 TEST(Shade, IsSelectedByTheMaterialsThatPrimitivesHave) {
   Scene s;
   Material all = plain({1, 1, 1});
-  all.mirror = all.specular = all.emission = {1, 1, 1}, all.transmission = all.roughness = .5f,
+  all.mirror = all.specular = all.emission = {1, 1, 1};
+  all.transmission = all.roughness = .5f;
   all.fresnel = true;
   s.materials = {plain({1, 1, 1}), all};
   const auto selected = [&s] {

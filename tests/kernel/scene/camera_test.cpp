@@ -109,7 +109,10 @@ TEST(Camera, PictureStandsUpright) {
   add_triangle(scene, {0, 0, 0}, {3, 2, 0}, {0, 2, 0});
   const World world(scene, {});
   Camera c;
-  c.eye = {0, 0, 2}, c.at = {0, 0, 0}, c.up = {0, 5, 0}, c.angle_deg = 90;
+  c.eye = {0, 0, 2};
+  c.at = {0, 0, 0};
+  c.up = {0, 5, 0};
+  c.angle_deg = 90;
   for (const auto& [w, h] : {std::pair{30, 20}, {15, 10}, {31, 21}, {3, 2}}) {
     c.width = w;
     c.height = h;
@@ -163,12 +166,23 @@ TEST(RenderOptions, RefusesWhatItCannotDo) {
   RenderOptions o;
   o.depth = 0;
   refused(o);
-  o.depth = 100000, refused(o), o = {};
-  o.packet = 8, refused(o), o = {};
-  for (const double weight : {-1e-9, 1.001, std::nan("")})
-    o.min_weight = weight, refused(o), o = {};
-  o.threads = -1, refused(o), o = {};
-  o.isa = "mmx", refused(o), o = {};
+  o.depth = 100000;
+  refused(o);
+  o = {};
+  o.packet = 8;
+  refused(o);
+  o = {};
+  for (const double weight : {-1e-9, 1.001, std::nan("")}) {
+    o.min_weight = weight;
+    refused(o);
+    o = {};
+  }
+  o.threads = -1;
+  refused(o);
+  o = {};
+  o.isa = "mmx";
+  refused(o);
+  o = {};
   for (const Isa& isa : isas())
     if (isa.compiled && !isa.runs_here) {
       o.isa = isa.name;
@@ -180,7 +194,9 @@ TEST(RenderOptions, ProgressCanStop) {
   const Scene scene = random_mixture(1, 30);
   const World world(scene, {});
   Camera c;
-  c.eye = {0, 0, 4}, c.width = 16, c.height = 160;
+  c.eye = {0, 0, 4};
+  c.width = 16;
+  c.height = 160;
   RenderOptions o;
   o.threads = 1;
   std::vector<double> shares;

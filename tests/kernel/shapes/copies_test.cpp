@@ -34,7 +34,8 @@ Scene with_copies(std::uint32_t copies) {
 
 Image picture(const Scene& scene, const BuildOptions& build, RenderStats& stats) {
   Camera c;
-  c.eye = {0, 1, 6}, c.width = c.height = 48;
+  c.eye = {0, 1, 6};
+  c.width = c.height = 48;
   return render(World(scene, build), c, {}, stats);
 }
 

@@ -66,7 +66,9 @@ Result leave_from(
       float org[3] = {rays.ox[i], rays.oy[i], rays.oz[i]};
       const float dir[3] = {rays.dx[i], rays.dy[i], rays.dz[i]};
       scalar::approach(view, org, dir);
-      rays.ox[i] = org[0], rays.oy[i] = org[1], rays.oz[i] = org[2];
+      rays.ox[i] = org[0];
+      rays.oy[i] = org[1];
+      rays.oz[i] = org[2];
     }
     const Answers hits =
         trace(*find_variant("scalar"), world, rays, {Method::kSingle, 1, true}, Query::kClosest);
@@ -89,8 +91,10 @@ Result leave_from(
             8 * oracle::kEps)
           continue;
         scalar::Vec3<float> to{d.x, d.y, d.z};
-        if (convex && scalar::dot(to, s.normal) < 0)
-          to = scalar::Vec3<float>{0, 0, 0} - to, d = {to.x, to.y, to.z};
+        if (convex && scalar::dot(to, s.normal) < 0) {
+          to = scalar::Vec3<float>{0, 0, 0} - to;
+          d = {to.x, to.y, to.z};
+        }
         const scalar::Vec3<float> start = scalar::leave(s.point, s.normal, s.away, to);
         leaving.add({start.x, start.y, start.z}, d);
         from.push_back(hits.id[i]);
@@ -379,8 +383,10 @@ TEST(Leaving, InwardsMeetsTheFarSide) {
         scalar::surface_of<float>(world.impl().view, 0, org, dir, hit.t[0], false);
     Float3 d = random.direction();
     float cosine = d.x * s.normal.x + d.y * s.normal.y + d.z * s.normal.z;
-    if (cosine > 0)
-      d = scaled(d, -1), cosine = -cosine;
+    if (cosine > 0) {
+      d = scaled(d, -1);
+      cosine = -cosine;
+    }
     if (cosine > -.05f)
       continue;
     const scalar::Vec3<float> start = scalar::leave(s.point, s.normal, s.away, {d.x, d.y, d.z});

@@ -1,0 +1,277 @@
+#!/usr/bin/env python3
+"""Every source has the form that CONTRIBUTING.md asks for.
+
+    form.py text ROOT        lines of at most 100 columns, one assignment a statement, files of at
+                             most 400 lines
+    form.py functions ROOT   functions of at most 60 lines and 15 branches; needs universal-ctags
+    form.py format ROOT      what clang-format 14 makes of .clang-format
+    form.py --self-test FOLDER   plants an offence against each rule there, and wants it found
+
+Exits 77 where the tool is missing, and says how to get it.
+"""
+import concurrent.futures
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+FOLDERS = ("include", "kernel", "frontend", "scenes", "tests", "perf", "examples", "cmake", "docs")
+CPP = (".hpp", ".cpp")
+SOURCES = (*CPP, ".py", ".sh", ".cmake", ".in")
+NAMES = ("CMakeLists.txt", "run")
+WIDTH, FILE_LINES, FUNCTION_LINES, BRANCHES = 100, 400, 60, 15
+CLANG_FORMAT = "14"  # each version has its own taste
+
+# What main does not meet yet. An exception that is no longer needed is an offence.
+EXCEPTIONS = {
+    "file": (
+        "frontend/cli/main.cpp", "frontend/cli/options.cpp", "frontend/nff/nff_reader.cpp",
+        "kernel/grid/grid_fill.cpp", "kernel/picture/refiner.cpp", "kernel/render/doubt.hpp",
+        "kernel/trace/march.hpp", "kernel/trace/surface.hpp", "perf/build.cpp",
+        "perf/precision.cpp", "perf/trace.cpp", "tests/frontend/cli/options_test.cpp",
+        "tests/frontend/cli/program_test.cpp", "tests/frontend/images/image_file_test.cpp",
+        "tests/frontend/jobs/long_work_test.cpp", "tests/frontend/jobs/parts_test.cpp",
+        "tests/frontend/nff/nff_reader_test.cpp", "tests/frontend/ply/ply_reader_test.cpp",
+        "tests/kernel/render/shade_test.cpp", "tests/kernel/trace/leaving_test.cpp",
+        "tests/stability/pictures.cpp",
+    ),
+    "width": (
+        "docs/build.sh", "docs/farm.sh", "docs/pictures.sh", "docs/report.sh",
+        "kernel/shapes/sphere.hpp", "kernel/simd/lanes.hpp", "kernel/trace/surface.hpp",
+        "perf/build.py", "perf/charts.py", "perf/charts/features.py", "perf/charts/grid.py",
+        "perf/charts/page.py", "perf/charts/picture.py", "perf/charts/rays.py",
+        "perf/error_check.py", "perf/error_time.py", "perf/frame.py", "perf/lib/bench.py",
+        "perf/lib/chart.py", "perf/lib/image_error.py", "perf/lib/nff_to_pov.py", "perf/ranks.py",
+        "perf/report.py", "perf/scale.py", "perf/stability.py", "perf/trace.cpp", "perf/trace.py",
+        "run", "tests/bare_debian.sh", "tests/charts_page.py", "tests/charts_test.py",
+        "tests/deb.sh", "tests/frontend/jobs/parts_test.cpp",
+        "tests/fuzz/campaign.sh", "tests/kernel/picture/adaptive_test.cpp",
+        "tests/kernel/shapes/sphere_test.cpp", "tests/kernel/trace/leaving_test.cpp",
+        "tests/kill_resume.py", "tests/mutate.py", "tests/other_programs.py", "tests/pages.sh",
+        "tests/plant.py", "tests/ranks.py", "tests/run_script.sh",
+        "tests/sentences.py", "tests/shipped_symbols.cmake",
+        "tests/with_python.sh",
+    ),
+    "comma": (
+        "kernel/picture/refiner.cpp", "kernel/render/bands.cpp", "kernel/render/beam.hpp",
+        "kernel/render/doubt.hpp", "kernel/trace/march.hpp",
+    ),
+    "lines": (
+        "frontend/cli/main.cpp", "frontend/cli/options.cpp", "frontend/commands/report.cpp",
+        "frontend/jobs/ranks_mpi.cpp", "kernel/grid/grid_fill.cpp", "kernel/grid/world.cpp",
+        "kernel/render/beam.hpp", "kernel/render/doubt.hpp", "kernel/trace/abreast.hpp",
+        "kernel/trace/march.hpp", "perf/build.cpp", "perf/ray_sets.cpp", "perf/report.cpp",
+        "perf/trace.cpp", "tests/frontend/cli/option_checks_test.cpp",
+        "tests/frontend/cli/options_test.cpp", "tests/frontend/input/errors_test.cpp",
+        "tests/kernel/trace/leaving_test.cpp", "tests/kernel/trace/walk_test.cpp", "tests/kernel/trace/watertight_test.cpp",
+    ),
+    "branches": (
+        "frontend/input/effects.cpp", "kernel/grid/grid_fill.cpp",
+        "kernel/picture/refinement.cpp", "kernel/render/beam.hpp", "kernel/render/doubt.hpp",
+        "kernel/render/setup.cpp", "kernel/trace/abreast.hpp", "kernel/trace/march.hpp",
+        "kernel/trace/packet.hpp", "perf/embree.cpp", "perf/ray_sets.cpp", "perf/trace.cpp",
+        "tests/stability/judge.cpp", "tests/support/cell_rays.hpp",
+    ),
+}
+
+LINK = re.compile(r"https?://")
+STRING = re.compile(r'"(?:\\.|[^"\\\n])*"')
+COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.S)
+# What a pair of brackets holds, once pairs in it are blank
+BRACES, BRACKETS = re.compile(r"\{[^{};]*\}"), re.compile(r"\([^(){};]*\)|\[[^\[\]{};]*\]")
+PLACE = r"\*?\w[\w:]*(?:(?:->|\.)\w+|\(\s*\)|\[\s*\])*"
+ASSIGNED = rf"{PLACE}\s*(?:[-+*/|&^]|<<|>>)?=(?!=)"
+TWO_ASSIGNMENTS = re.compile(
+    rf"(?<=[;{{}})])\s*(?:else\s+)?{ASSIGNED}(?:[^;{{}}()]|\(\s*\))*?,\s*{ASSIGNED}"
+    r"(?=(?:[^;{}()]|\(\s*\))*[;{])")
+BRANCH = re.compile(r"\b(?:if|for|while|case)\b|&&|\|\||\?")
+
+
+def sources(root, suffixes=SOURCES):
+    """Paths below the root, without those that fuzzers found."""
+    files = [p for p in root.iterdir() if p.is_file()]
+    for folder in FOLDERS:
+        files += [p for p in (root / folder).rglob("*") if p.is_file()]
+    wanted = [p.relative_to(root) for p in files
+              if p.suffix in suffixes or (suffixes == SOURCES and p.name in NAMES)]
+    return sorted(p for p in wanted if "corpus" not in p.parts)
+
+
+def code_of(text):
+    """The text without comments and what strings hold; its lines stay where they are."""
+    text = STRING.sub('""', text)
+    return COMMENT.sub(lambda match: "\n" * match[0].count("\n"), text)
+
+
+def blank(match):
+    """The pair alone; lines stay where they are."""
+    inner = "\n" * match[0].count("\n")
+    return "(" + inner + ")" if match[0][0] == "{" else match[0][0] + inner + match[0][-1]
+
+
+def double_assignments(text):
+    """Lines where a statement begins that assigns twice."""
+    before, text = "", code_of(text)
+    while before != text:
+        before, text = text, BRACKETS.sub(blank, BRACES.sub(blank, text))
+    for match in TWO_ASSIGNMENTS.finditer(text):
+        yield 1 + text.count("\n", 0, match.end()) - match[0].lstrip().count("\n")
+
+
+def text_offences(root):
+    for file in sources(root):
+        text = (root / file).read_text(errors="replace")
+        lines = text.splitlines()
+        if len(lines) > FILE_LINES:
+            yield "file", file, f"{file}: {len(lines)} lines, at most {FILE_LINES}"
+        for number, line in enumerate(lines, 1):
+            if len(line) > WIDTH and not LINK.search(line):
+                yield "width", file, f"{file}:{number}: {len(line)} columns, at most {WIDTH}"
+        for number in double_assignments(text) if file.suffix in CPP else ():
+            yield "comma", file, f"{file}:{number}: two assignments in one statement"
+
+
+def function_offences(root):
+    files = sources(root, CPP)
+    command = ["ctags", "--languages=C++", "--langmap=C++:+.hpp", "--kinds-C++=f", "--fields=+ne",
+               "--output-format=json", "-f", "-", "-L", "-"]
+    tags = subprocess.run(command, cwd=root, input="\n".join(map(str, files)), check=True,
+                          capture_output=True, text=True).stdout
+    code = {str(f): code_of((root / f).read_text(errors="replace")).splitlines() for f in files}
+    for tag in map(json.loads, tags.splitlines()):
+        if "end" not in tag:
+            continue
+        file, begin, end = tag["path"], tag["line"], tag["end"]
+        where = f"{file}:{begin}: {tag['name']}"
+        if (length := end - begin + 1) > FUNCTION_LINES:
+            yield "lines", file, f"{where} has {length} lines, at most {FUNCTION_LINES}"
+        branches = len(BRANCH.findall("\n".join(code[file][begin - 1:end])))
+        if branches > BRANCHES:
+            yield "branches", file, f"{where} has {branches} branches, at most {BRANCHES}"
+
+
+def clang_format():
+    """The program of the version that formatted these sources, or None."""
+    for name in (f"clang-format-{CLANG_FORMAT}", "clang-format"):
+        if shutil.which(name):
+            said = subprocess.run([name, "--version"], capture_output=True, text=True).stdout
+            if f"version {CLANG_FORMAT}." in said:
+                return name
+    return None
+
+
+def format_offences(root):
+    program = clang_format()
+
+    files = sources(root, CPP)
+
+    def judge(begin):
+        return subprocess.run([program, "--dry-run", "-Werror", *files[begin:begin + 16]], cwd=root,
+                              capture_output=True, text=True).stderr
+
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        said = "\n".join(pool.map(judge, range(0, len(files), 16)))
+    found = re.findall(r"^(.+?):(\d+:\d+): error:", said, re.M)
+    for file, place in dict(reversed(found)).items():  # the first of each
+        yield "format", file, f"{file}:{place}: not as .clang-format says: `./run format` mends it"
+
+
+RULES = {
+    "text": (text_offences, ("file", "width", "comma")),
+    "functions": (function_offences, ("lines", "branches")),
+    "format": (format_offences, ("format",)),
+}
+
+
+def complaints(kind, root, exceptions):
+    find, rules = RULES[kind]
+    needed = set()
+    for rule, file, complaint in find(root):
+        if str(file) in exceptions.get(rule, ()):
+            needed.add((rule, str(file)))
+        else:
+            yield complaint
+    for rule in rules:
+        for file in exceptions.get(rule, ()):
+            if (rule, file) not in needed:
+                yield f"{file} is no exception to '{rule}' any more: strike it from tests/form.py"
+
+
+def missing(kind):
+    if kind == "format" and not clang_format():
+        return f"clang-format {CLANG_FORMAT} (`./run format` installs and runs it)"
+    if kind == "functions" and not shutil.which("ctags"):
+        return "universal-ctags (apt-get install universal-ctags)"
+    return None
+
+
+LONG_FUNCTION = "void longer() {\n" + "  f();\n" * FUNCTION_LINES + "}\n"
+BRANCHED = "bool branched(int x) {\n  return " + " || ".join(["x"] * (BRANCHES + 2)) + ";\n}\n"
+# File, its text, and how the complaint about it begins in each kind; all else is sound.
+PLANTED = [
+    ("kernel/wide.hpp", "// " + "x" * WIDTH + "\n", {"text": "kernel/wide.hpp:1: 103 columns"}),
+    ("run", "echo " + "x" * WIDTH + "\n", {"text": "run:1: 105 columns"}),
+    ("docs/link.py", "# https://" + "x" * WIDTH + "\n", {}),
+    ("docs/page.md", "x" * (WIDTH + 1) + "\n", {}),
+    ("tests/long.py", "\n" * (FILE_LINES + 1), {"text": "tests/long.py: 401 lines"}),
+    ("tests/full.py", "\n" * FILE_LINES, {}),
+    ("kernel/comma.cpp", """int a = 0, b = 1;  // one declaration; a = 1, b = 2;
+enum E { kA = 1, kB = 2 };
+void f(C c, int* x) {
+  for (a = 0, b = 1; a < b; a += 1, b += 1) c = {.a = 1, .b = 2};
+  c.a(1) = {1, 2}, x[a + 1] += 2;
+}
+""", {"text": "kernel/comma.cpp:5: two assignments"}),
+    ("kernel/long.cpp", LONG_FUNCTION + LONG_FUNCTION.replace("  f();\n", "", 2),
+     {"functions": "kernel/long.cpp:1: longer has 62 lines"}),
+    ("kernel/branched.cpp", BRANCHED + BRANCHED.replace("x || ", "", 1),
+     {"functions": "kernel/branched.cpp:1: branched has 16 branches"}),
+    ("kernel/format.cpp", "int  a;\n", {"format": "kernel/format.cpp:1:4"}),
+]
+
+
+def self_test(root):
+    shutil.rmtree(root, ignore_errors=True)
+    for name, text, _ in PLANTED:
+        (root / name).parent.mkdir(parents=True, exist_ok=True)
+        (root / name).write_text(text)
+    (root / ".clang-format").write_text("BasedOnStyle: Google\nColumnLimit: 100\n")
+    wrong = []
+    for kind in RULES:
+        if missing(kind):
+            print(f"not tried: {kind}, for want of {missing(kind)}")
+            continue
+        found = list(complaints(kind, root, {}))
+        wanted = [begins[kind] for *_, begins in PLANTED if kind in begins]
+        wrong += [f"planted, not found: {w}" for w in wanted
+                  if not any(f.startswith(w) for f in found)]
+        wrong += [f"found, not planted: {f}" for f in found
+                  if not any(f.startswith(w) for w in wanted)]
+    listed = {"width": ["run", "kernel/wide.hpp", "docs/link.py"], "comma": ["kernel/comma.cpp"],
+              "file": ["tests/long.py"]}
+    idle = list(complaints("text", root, listed))
+    if len(idle) != 1 or not idle[0].startswith("docs/link.py is no exception to 'width'"):
+        wrong.append(f"an exception nobody needs: {idle}")
+    for line in wrong:
+        print(line)
+    return bool(wrong)
+
+
+def main():
+    kind, root = sys.argv[1], pathlib.Path(sys.argv[2])
+    if kind == "--self-test":
+        return self_test(root)
+    if tool := missing(kind):
+        print(f"skipped: there is no {tool}")
+        return 77
+    found = list(complaints(kind, root, EXCEPTIONS))
+    for line in found:
+        print(line)
+    return bool(found)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
