@@ -66,7 +66,8 @@ EXCEPTIONS = {
         "kernel/trace/march.hpp", "perf/build.cpp", "perf/ray_sets.cpp", "perf/report.cpp",
         "perf/trace.cpp", "tests/frontend/cli/option_checks_test.cpp",
         "tests/frontend/cli/options_test.cpp", "tests/frontend/input/errors_test.cpp",
-        "tests/kernel/trace/leaving_test.cpp", "tests/kernel/trace/walk_test.cpp", "tests/kernel/trace/watertight_test.cpp",
+        "tests/kernel/trace/leaving_test.cpp", "tests/kernel/trace/walk_test.cpp",
+        "tests/kernel/trace/watertight_test.cpp",
     ),
     "branches": (
         "frontend/input/effects.cpp", "kernel/grid/grid_fill.cpp",

@@ -24,7 +24,7 @@ namespace grelha {
 /// first samples, then all rows of the next.
 struct Accumulator {
   int width = 0, height = 0, samples = 0;  ///< of the whole picture; samples: a pixel
-  Part part;                               ///< what of it this is
+  Part part;                               ///< the rows and samples of it that this holds
   /// [rows of the part][width][3] linear RGB, units of 2^-32
   std::vector<std::int64_t> sums;
   std::vector<std::uint8_t> done;  ///< [piece_count()] 1: in the sums
@@ -44,7 +44,7 @@ Accumulator make_accumulator(const Camera& camera, const RenderOptions& options)
 std::size_t piece_count(const Part& part);
 /// Share of the part that is in the sums, 0 to 1.
 double share_done(const Accumulator& a);
-/// Whether all of the part is in the sums.
+/// True where all of the part is in the sums.
 inline bool is_complete(const Accumulator& a) { return share_done(a) == 1; }
 
 /// The part that piece i is.
@@ -54,9 +54,9 @@ Part piece_of(const Part& part, std::size_t i);
 /// threads, two at a time as well.
 using NextPiece = std::function<std::size_t()>;
 
-/// Renders the pieces that are not done; whether all are now. options.progress is called, by one
-/// thread at a time, between additions: it may read the accumulator, and keep a copy from which
-/// another call goes on, here or on another machine. `next` says which pieces are for this call,
+/// Renders the pieces that are not done. Returns whether all are done now. One thread at a time
+/// calls options.progress, between additions. It may read the accumulator, and keep a copy that
+/// another call goes on from, here or on another machine. `next` names the pieces for this call
 /// where several share the work; without it all are. Throws like render().
 bool accumulate(const World& world,
                 const Camera& camera,
@@ -69,8 +69,8 @@ bool accumulate(const World& world,
 /// two need not be the same, and whoever adds parts knows when all are there.
 void add(Accumulator& whole, const Accumulator& part);
 
-/// The mean of the samples taken so far; what has none is black. Of a complete whole picture: the
-/// picture, bit for bit.
+/// The mean of the samples taken so far; pixels without samples are black. A complete whole picture
+/// gives the bits of render().
 Image picture_so_far(const Accumulator& a);
 
 /// Rows `rows` of the image from their sums of so many samples.

@@ -19,12 +19,12 @@ struct Camera {
   double focus = 1;
 };
 
-/// Whether the frame can be built: finite numbers, eye != at, up not along the view, 0 < angle <
-/// 180.
+/// True where the frame can be built: finite numbers, eye != at, up not along the view,
+/// 0 < angle < 180.
 bool camera_is_sound(const Camera& camera);
 
-/// Width and height of a pixel where the view is 1 away from the eye, scene units. The same bits on
-/// every machine.
+/// Width and height of a pixel at a distance of 1 from the eye, scene units. They are the same bits
+/// on every machine.
 double pixel_size(const Camera& camera);
 
 }  // namespace grelha

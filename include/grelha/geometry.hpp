@@ -1,6 +1,6 @@
 #pragma once
-// What a caller fills in: plain arrays, one per component, every kind apart. The kernel reads them;
-// it never parses, prints or owns a file. Units are scene units throughout.
+// Plain arrays that a caller fills in, one per component, every kind apart. The kernel reads them.
+// It never parses, prints or owns a file. Units are scene units throughout.
 
 #include <cstddef>
 #include <cstdint>
@@ -68,9 +68,9 @@ struct Planes {
   }
 };
 
-/// Triangles over shared vertices, of all meshes and loose polygons together. Triangles of
-/// neighbours that name vertices with equal coordinates are watertight along the edge they share,
-/// whether the indices are equal or not.
+/// Triangles over shared vertices, of all meshes and loose polygons together. Neighbours that name
+/// vertices with equal coordinates are watertight along the edge they share. Their indices need not
+/// be equal.
 struct Triangles {
   std::vector<float> x, y, z;  ///< [vertices]
   /// [vertices] normals of any length, or empty when no vertex has one; (0,0,0): none
@@ -88,8 +88,8 @@ struct Object {
   std::uint32_t first_triangle = 0, triangle_count = 0;
 };
 
-/// All that rays can meet. Ids run over planes, spheres, triangles, cones, each kind in the order
-/// it stands in.
+/// Everything that rays can meet. Ids run over planes, spheres, triangles, cones, each kind in its
+/// own order.
 struct Geometry {
   Spheres spheres;
   Triangles triangles;
@@ -118,16 +118,16 @@ struct Material {
   bool operator==(const Material&) const = default;  ///< field by field
 };
 
-/// A point light, or a parallelogram of such: each shadow ray goes to one point of it, and the
-/// light a surface gets is the mean over its points. Edges of zero: a point.
+/// A point light, or a parallelogram of point lights. Each shadow ray goes to one point of it. A
+/// surface gets the mean light over its points. Edges of zero make it a point.
 struct Light {
   Float3 position{}, color{};  ///< position: the centre
   Float3 edge1{}, edge2{};     ///< full edges
-  /// Whether it has edges.
+  /// True where it has edges.
   bool is_area() const { return edge1 != Float3{} || edge2 != Float3{}; }
 };
 
-/// What a World is built from.
+/// A scene, from which a World is built.
 struct Scene {
   Geometry geometry;
   std::vector<Material> materials;

@@ -12,7 +12,7 @@ struct Image {
   std::vector<float> rgb;  ///< [height * width * 3]
 
   Image() = default;
-  /// A black one.
+  /// A black image.
   Image(int w, int h) : width(w), height(h), rgb(std::size_t(w) * std::size_t(h) * 3) {}
   /// Where row y begins.
   float* row(int y) { return rgb.data() + std::size_t(y) * std::size_t(width) * 3; }
@@ -20,7 +20,7 @@ struct Image {
   const float* row(int y) const { return rgb.data() + std::size_t(y) * std::size_t(width) * 3; }
 };
 
-/// By pixel, row 0 on top.
+/// Samples and errors by pixel, row 0 on top.
 struct SampleMaps {
   std::vector<std::uint32_t> samples;  ///< [height * width] spent
   /// [height * width] estimated standard error, root mean square of the channels

@@ -1,11 +1,11 @@
 #pragma once
-// What a thread is at while it renders, and who may ask.
+// Phases of a thread that renders, and the observer that is told of them.
 
 #include <cstdint>
 
 namespace grelha {
 
-/// In the order a batch goes through them.
+/// The phases, in the order a batch goes through them.
 enum class Phase : int {
   camera,    ///< making camera rays
   primary,   ///< tracing them
@@ -24,9 +24,9 @@ struct ObservedRays {
   int count;
 };
 
-/// Told whenever its thread goes from one phase to another, some ten times a batch; `rays` on the
-/// way into primary, bounce and shadow, once for each run of rays. A function pointer, so that the
-/// hot loops need nothing from another file.
+/// An observer is told whenever its thread goes from one phase to another, some ten times a batch.
+/// It gets `rays` on the way into primary, bounce and shadow, once for each run of rays. A function
+/// pointer, so the hot loops need nothing from another file.
 struct Observer {
   void (*enter)(Observer&, Phase, const ObservedRays* rays);
 };

@@ -1,6 +1,6 @@
 #pragma once
-// What rays of the caller's meet. Every function may be called by any number of threads at once, on
-// one World or on many: a World does not change, and all a call writes are the arrays it was given.
+// Queries: what the caller's rays meet. Any number of threads may call any function at once, on one
+// World or on many. A World does not change, and a call writes only the arrays it was given.
 
 #include <cstdint>
 #include <limits>
@@ -36,8 +36,8 @@ struct QueryOptions {
   std::string_view isa = "best";  ///< see isas()
 };
 
-/// The nearest hit of each ray: of a packet, or of a stream of any length, taken 64 neighbours at a
-/// time, so neighbours that go a similar way are the fastest. Runs on the calling thread. Of two
+/// The nearest hit of each ray of a packet, or of a stream of any length. 64 neighbours are taken
+/// at a time, fastest where they go a similar way. Runs on the calling thread. Of two
 /// hits at equal t the lower id wins. `counts`, where given, grows by what was done. Throws
 /// std::invalid_argument for a packet size or an instruction set that is not there.
 void closest(const World& world,
@@ -65,8 +65,8 @@ struct SurfacePoint {
   Float3 shading;
   float away;              ///< so far along the normal a ray is certainly off the surface
   std::uint32_t material;  ///< the primitive's, index into the scene's
-  /// Where a ray that leaves in direction `dir` starts, with t_min = 0: it does not meet a surface
-  /// it points away from again, nor skip anything farther from it than 2 away. Derivation:
+  /// The start of a ray that leaves in direction `dir`, with t_min = 0. It does not meet a surface
+  /// it points away from again. It skips nothing farther from that than 2 away. See
   /// docs/numerics.md, after Pharr, Jakob and Humphreys, PBR 4th ed., 6.8. A ray to a light starts
   /// here, goes to the light itself and searches up to t = 1.
   Float3 leave(Float3 dir) const;

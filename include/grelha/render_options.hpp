@@ -22,7 +22,7 @@ enum class Sampler {
   kRandom,  ///< independent
 };
 
-/// Whether samples lie in a grid, whose cells must be counted before the first is taken.
+/// True where samples lie in a grid, whose cells must be counted before the first is taken.
 constexpr bool is_jittered(Sampler s) { return s == Sampler::kJitter || s == Sampler::kUnshuffled; }
 
 /// Where the samples of a picture lie: pure functions of (seed, pixel, sample, dimension).
@@ -36,8 +36,8 @@ struct SampleOptions {
   int gloss_rays = 0;
 };
 
-/// Samples spent where they help most, instead of SampleOptions::samples a pixel. Wants the sampler
-/// kSobol or kRandom.
+/// Samples spent where they help most, instead of SampleOptions::samples a pixel. The sampler must
+/// be kSobol or kRandom.
 struct RefineOptions {
   /// > 0: until the RMSE is at most this at 95 % confidence and no pixel's 95 % interval is wider
   /// than 8 times this; display units, 0 to 1
@@ -47,11 +47,11 @@ struct RefineOptions {
   double seconds = 0;
   /// > 0: so many in the whole picture, and at least the first few of every pixel
   std::uint64_t samples = 0;
-  /// Whether any of them is asked for.
+  /// True where any of them is asked for.
   bool on() const { return error > 0 || seconds > 0 || samples > 0; }
 };
 
-/// Of the tests of rays and primitives.
+/// The floats that rays are tested against primitives in.
 enum class Precision { kSingle, kDouble };
 
 /// How a picture is rendered.
@@ -59,14 +59,14 @@ struct RenderOptions {
   int threads = 0;  ///< 0: one per processor
   /// longest path, at most kMostDepth, the eye ray counted as 1; at its end the background is seen
   int depth = 5;
-  /// Paths end whose weight, times the brightest light they can meet, is less: 0 to 1, 0 keeps all.
-  /// Of the default no channel moves by more than 1/1024 at depth 5 (docs/sampling.md).
+  /// Ends paths whose weight, times the brightest light they can meet, is less; 0 to 1, 0: none.
+  /// The default moves no channel by more than 1/1024 at depth 5 (docs/sampling.md).
   double min_weight = 1. / 16384;
   /// most rays that march together: 1, 16, 64 or 256; see march_from()
   int packet = 256;
   bool mailbox = true;  ///< skip primitives a ray or packet has already met in another cell
   std::string_view isa = "best";
-  /// of the tests of rays and primitives; what is seen there is shaded in single
+  /// of the tests of rays and primitives; hits are shaded in single
   Precision precision = Precision::kSingle;
   SampleOptions sampling;
   RefineOptions refine;
@@ -75,9 +75,9 @@ struct RenderOptions {
   /// on: pixels are averages of points of a lattice, `samples` rays through each; one with no
   /// effect to sample
   Subdivision subdivision;
-  /// Called now and then from one thread at a time with the share done, 0 to 1; returns false to
-  /// stop: threads that end what they have in work may call it once more. What it throws stops as
-  /// well, and is thrown by whoever renders.
+  /// Called now and then from one thread at a time with the share done, 0 to 1. Returns false to
+  /// stop; threads that finish what they have in work may call it once more. What it throws stops
+  /// the render as well, which throws it on.
   std::function<bool(double)> progress;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// A scene that lies in the caller's own arrays: the same as Scene, member for member, but owning
+// A scene in the caller's own arrays. It has the members of Scene and owns
 // nothing.
 
 #include <cstddef>
@@ -106,7 +106,7 @@ struct SceneSpans {
   SceneSpans(Scene&& gone) = delete;  ///< its arrays would be gone as well
 };
 
-/// [materials] 1 where some primitive has it, 0 elsewhere; what primitives name must be there.
+/// [materials] 1 where some primitive has it, 0 elsewhere. Primitives name materials that exist.
 inline std::vector<char> used_materials(const SceneSpans& scene) {
   std::vector<char> used(scene.materials.size());
   const GeometrySpans& g = scene.geometry;

@@ -13,7 +13,7 @@ namespace grelha {
 /// Rays by what they are for.
 struct RayCounts {
   std::uint64_t primary = 0, shadow = 0, reflection = 0, refraction = 0;
-  /// All of them.
+  /// Their sum.
   std::uint64_t total() const { return primary + shadow + reflection + refraction; }
   /// Adds what another thread or call did.
   void operator+=(const RayCounts& o) {
@@ -29,7 +29,7 @@ struct TestCounts {
   std::uint64_t sphere = 0, triangle = 0, cone = 0, plane = 0;  ///< one ray against one primitive
 };
 
-/// What became of packets.
+/// Counts of packets and of their lanes.
 struct PacketCounts {
   std::uint64_t formed = 0;        ///< packets that marched together to the end
   std::uint64_t fell_back = 0;     ///< packets that spread and went on as single rays
@@ -37,7 +37,7 @@ struct PacketCounts {
   std::uint64_t lanes_busy = 0;    ///< those of them that carried a ray still searching
 };
 
-/// What tracing did.
+/// Counts of a trace.
 struct TraceCounts {
   std::uint64_t visits = 0;  ///< grid cells looked into, by a packet or by a ray
   TestCounts tests;
@@ -56,8 +56,8 @@ struct TraceCounts {
   }
 };
 
-/// What is known of the error of a picture whose samples were spent by error; display units, 0 to
-/// 1.
+/// Estimates of the error of a picture whose samples were spent by error; display units,
+/// 0 to 1.
 struct ErrorStats {
   /// of all pixels and channels against the converged picture, estimated
   double rmse = 0;
@@ -78,7 +78,7 @@ struct PhaseSeconds : std::array<double, kPhases> {
   }
 };
 
-/// What a render did.
+/// Counts and times of a render.
 struct RenderStats {
   RayCounts rays;
   TraceCounts trace;
