@@ -100,13 +100,20 @@ bool same(const T& a, const T& b) {
 }
 
 bool same(const CellStore& a, const CellStore& b) {
-  bool all = same(a.triangle_first, b.triangle_first) && same(a.sphere_first, b.sphere_first) &&
-             same(a.cone_first, b.cone_first) && same(a.triangles, b.triangles) &&
-             same(a.boxes, b.boxes) && same(a.sphere_id, b.sphere_id) && same(a.cone_id, b.cone_id);
-  for (std::size_t k = 0; k < a.spheres.size(); ++k)
-    all = all && same(a.spheres[k], b.spheres[k]);
-  for (std::size_t k = 0; k < a.cones.size(); ++k)
-    all = all && same(a.cones[k], b.cones[k]);
+  bool all = true;
+  const auto compare = [&](const auto& one, const auto& other) { all = all && same(one, other); };
+  for_each_finite_shape([&]<class Shape>() {
+    const auto& one = a.of<Shape>();
+    const auto& other = b.of<Shape>();
+    compare(one.first, other.first);
+    if constexpr (ListStore<Shape>::kInBlocks) {
+      compare(one.blocks, other.blocks);
+      compare(one.boxes, other.boxes);
+    } else {
+      compare(one.id, other.id);
+      Shape::for_each_field(compare, one.fields, other.fields);
+    }
+  });
   return all;
 }
 

@@ -100,6 +100,15 @@ struct Geometry {
   std::vector<Object> objects;
 };
 
+/// What kinds there are, in the order of ids.
+enum class PrimitiveKind { kPlane, kSphere, kTriangle, kCone };
+
+/// A primitive as the caller knows it.
+struct Primitive {
+  PrimitiveKind kind;
+  std::uint32_t index;  ///< into the caller's arrays of this kind
+};
+
 /// How a surface answers light; every weight is already multiplied out (Kd times colour and so on).
 struct Material {
   Float3 diffuse{};   ///< weight of the Lambert term

@@ -75,15 +75,6 @@ struct SurfacePoint {
 /// The surface that `ray` met: what a `hit` of closest() names, at its t.
 SurfacePoint surface(const World& world, const Ray& ray, const Hit& hit);
 
-/// What kinds there are, in the order of ids.
-enum class PrimitiveKind { kPlane, kSphere, kTriangle, kCone };
-
-/// A primitive as the caller knows it.
-struct Primitive {
-  PrimitiveKind kind;
-  std::uint32_t index;  ///< into the caller's arrays of this kind
-};
-
 /// The primitive of an id that a hit named. Ids run over planes, spheres, triangles, cones, each
 /// kind in the caller's order.
 Primitive primitive_of(const World& world, std::uint32_t id);

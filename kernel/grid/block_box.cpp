@@ -31,7 +31,7 @@ void bound_blocks(const Grid& g,
                   std::size_t cell,
                   std::uint32_t first,
                   std::uint32_t end,
-                  CellStore& s) {
+                  ListStore<Triangle>& s) {
   const std::size_t nx = g.cells[0], ny = g.cells[1],
                     at[3] = {cell % nx, cell / nx % ny, cell / nx / ny};
   double cell_lo[3], cell_hi[3];
@@ -40,7 +40,7 @@ void bound_blocks(const Grid& g,
     cell_hi[a] = g.lo[a] + static_cast<double>(at[a] + 1) * g.cell[a];
   }
   for (std::uint32_t b = first; b < end; ++b) {
-    const TriangleBlock& block = s.triangles[b];
+    const TriangleBlock& block = s.blocks[b];
     BlockBoxes& boxes = s.boxes[b / kBlock];
     for (int a = 0; a < 3; ++a) {
       float lo = kInfinity, hi = -kInfinity, least[kBlock], most[kBlock];

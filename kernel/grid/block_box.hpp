@@ -16,6 +16,6 @@ void bound_blocks(const Grid& grid,
                   std::size_t cell,
                   std::uint32_t first,
                   std::uint32_t end,
-                  CellStore& store);
+                  ListStore<Triangle>& store);
 
 }  // namespace grelha

@@ -46,6 +46,7 @@ void BlockOrder::find_parts(const Primitives& p,
   const std::size_t nx = grid.cells[0], ny = grid.cells[1],
                     at[3] = {cell % nx, cell / nx % ny, cell / nx / ny};
   const TriangleSpans& t = p.geometry.triangles;
+  const std::uint32_t first_id = p.ids.begin(PrimitiveKind::kTriangle);
   const Floats* const of[3] = {&t.x, &t.y, &t.z};
   float half[3], lo[3], hi[3];
   for (std::size_t a = 0; a < 3; ++a) {
@@ -55,7 +56,7 @@ void BlockOrder::find_parts(const Primitives& p,
     part_[a].resize(ids.size());
   }
   for (std::size_t i = 0; i < ids.size(); ++i) {
-    const std::uint32_t j = ids[i] - p.triangle_base, v[3] = {t.a[j], t.b[j], t.c[j]};
+    const std::uint32_t j = ids[i] - first_id, v[3] = {t.a[j], t.b[j], t.c[j]};
     for (std::size_t a = 0; a < 3; ++a) {
       const float x[3] = {(*of[a])[v[0]], (*of[a])[v[1]], (*of[a])[v[2]]};
       const float least = std::max(lo[a], std::min(std::min(x[0], x[1]), x[2])),

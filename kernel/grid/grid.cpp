@@ -1,42 +1,8 @@
 #include "kernel/grid/grid.hpp"
 
-#include <limits>
+#include <cmath>
 
 namespace grelha {
-
-CellLists CellStore::lists() const {
-  CellLists l;
-  if (!triangle_first.empty()) {
-    l.triangle_first = triangle_first.data();
-    l.triangles = triangles.data();
-    l.boxes = boxes.empty() ? nullptr : boxes.data();
-  }
-  if (!sphere_first.empty()) {
-    l.sphere_first = sphere_first.data();
-    l.sx = spheres[0].data();
-    l.sy = spheres[1].data();
-    l.sz = spheres[2].data();
-    l.sr = spheres[3].data();
-    l.sphere_id = sphere_id.data();
-  }
-  if (!cone_first.empty()) {
-    l.cone_first = cone_first.data();
-    l.cone_id = cone_id.data();
-    for (std::size_t k = 0; k < 10; ++k)
-      l.cone[k] = cones[k].data();
-  }
-  return l;
-}
-
-std::size_t CellStore::bytes() const {
-  std::size_t sum = bytes_of(triangle_first) + bytes_of(sphere_first) + bytes_of(cone_first) +
-                    bytes_of(triangles) + bytes_of(boxes) + bytes_of(sphere_id) + bytes_of(cone_id);
-  for (const auto& v : spheres)
-    sum += bytes_of(v);
-  for (const auto& v : cones)
-    sum += bytes_of(v);
-  return sum;
-}
 
 GridView Grid::view() const {
   GridView v;

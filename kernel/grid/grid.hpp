@@ -7,31 +7,16 @@
 #include <span>
 #include <vector>
 
-#include "kernel/shapes/primitives.hpp"
-#include "kernel/scene/raw_vector.hpp"
 #include "grelha/stats.hpp"
+#include "kernel/grid/cell_store.hpp"
 #include "kernel/grid/view.hpp"
+#include "kernel/shapes/primitives.hpp"
 
 namespace grelha {
 
 inline std::size_t cell_count(const std::array<std::uint32_t, 3>& cells) {
   return std::size_t{cells[0]} * cells[1] * cells[2];
 }
-
-/// Runs of primitives, cell after cell, that own the memory a CellLists points to.
-struct CellStore {
-  RawVector<std::uint32_t> triangle_first, sphere_first, cone_first;
-  RawVector<TriangleBlock> triangles;
-  RawVector<BlockBoxes> boxes;
-  std::array<RawVector<float>, 4> spheres;
-  RawVector<std::uint32_t> sphere_id;
-  std::array<RawVector<float>, 10> cones;
-  RawVector<std::uint32_t> cone_id;
-  std::uint64_t references = 0;
-
-  CellLists lists() const;
-  std::size_t bytes() const;
-};
 
 struct Grid {
   std::array<std::uint32_t, 3> cells{1, 1, 1};  ///< per axis, each >= 1; x runs fastest

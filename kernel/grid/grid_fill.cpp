@@ -1,10 +1,9 @@
 #include "kernel/grid/grid_fill.hpp"
 
 #include <algorithm>
-#include <atomic>
-#include <cmath>
+#include <array>
 #include <exception>
-#include <limits>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -17,367 +16,317 @@
 #include "kernel/grid/grid_layout.hpp"
 #include "kernel/shapes/copies.hpp"
 
+// A store is filled in three passes, each shared among threads that write to places of their own:
+// - emit: a chunk of primitives becomes pairs (cell, id), sorted by bucket, a run of neighbouring
+//   cells;
+// - count: each bucket counts its cells; the sums over buckets are the places where its lists begin;
+// - write: each bucket writes its lists, taking chunks in turn, so that ids ascend, but for
+//   triangles, which stand as their blocks want it.
+
 namespace grelha {
 namespace {
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr std::size_t kChunk = 2048;
+constexpr std::size_t kMostBuckets = 256;
+constexpr unsigned kLeastShift = 8;  ///< a bucket has at least 2^8 cells
+constexpr double kEmitShare = .2;    ///< of the time; counting takes next to none
+/// entries of one kind in a cell, from which on it is looked through for copies
+constexpr std::uint32_t kCrowded = 1024;
+constexpr std::uint64_t kMostEntries = 0xFFFFFF00u;
 
-void put_triangle(TriangleBlock& block, std::size_t at, const Primitives& p, std::uint32_t id) {
-  const TriangleSpans& t = p.geometry.triangles;
-  const std::uint32_t i = id - p.triangle_base, v[3] = {t.a[i], t.b[i], t.c[i]};
-  float(*const corner[3])[kBlock] = {block.a, block.b, block.c};
-  for (int k = 0; k < 3; ++k) {
-    corner[k][0][at] = t.x[v[k]];
-    corner[k][1][at] = t.y[v[k]];
-    corner[k][2][at] = t.z[v[k]];
+using PerKind = std::array<std::uint64_t, kKinds>;
+
+struct Pair {
+  std::uint32_t cell, id;
+};
+
+struct PairChunk {
+  RawVector<Pair> pairs;             ///< by bucket; within one as they came
+  std::vector<std::uint32_t> first;  ///< [buckets + 1]
+};
+
+/// Runs of 2^shift cells each, the last perhaps shorter.
+struct Buckets {
+  std::size_t cells, count;
+  unsigned shift = kLeastShift;
+
+  explicit Buckets(std::size_t all) : cells(all) {
+    while (((cells - 1) >> shift) >= kMostBuckets)
+      ++shift;
+    count = ((cells - 1) >> shift) + 1;
   }
-  block.id[at] = id;
+  std::size_t begin(std::size_t bucket) const { return bucket << shift; }
+  std::size_t end(std::size_t bucket) const { return std::min((bucket + 1) << shift, cells); }
+};
+
+/// What all passes see.
+struct Filling {
+  const Primitives& primitives;
+  std::span<const std::uint32_t> ids;
+  const Grid& grid;           ///< its cells; no more
+  std::optional<double> pad;  ///< with it, blocks get boxes, and neighbours share them
+  int threads;
+  BuildProgress& progress;
+  Buckets buckets{cell_count(grid.cells)};
+  std::vector<PairChunk> chunks = std::vector<PairChunk>((ids.size() + kChunk - 1) / kChunk);
+  std::vector<std::uint8_t> crowded = {};  ///< [buckets] 1: of a bucket with a crowded cell
+  CellStore store = {};
+};
+
+/// Calls visit.operator()<Shape>(list, kind's number) for each kind that the store holds any of.
+template <class Visit>
+void for_each_list(CellStore& store, const Visit& visit) {
+  for_each_finite_shape([&]<class Shape>() {
+    if (auto& list = store.of<Shape>(); !list.first.empty())
+      visit.template operator()<Shape>(list, static_cast<std::size_t>(Shape::kKind));
+  });
 }
 
-/// Places from `used` on hold nothing.
-void pad_block(TriangleBlock& block, std::size_t used) {
-  for (std::size_t i = used; i < kBlock; ++i) {
-    for (int a = 0; a < 3; ++a)
-      block.a[a][i] = block.b[a][i] = block.c[a][i] = kNaN;
-    block.id[i] = kNoPrimitive;
-  }
-}
-
-/// Fills a store in three passes, each shared among threads that write to places of their own:
-/// - a chunk of primitives becomes pairs (cell, id), sorted by bucket, a run of neighbouring
-///   cells;
-/// - each bucket counts its cells; the sums over buckets are the places where its lists begin;
-/// - each bucket writes its lists, taking chunks in turn, so that ids ascend, but for triangles,
-///   which stand as their blocks want it.
-class Filling {
- public:
-  /// With `pad`, blocks get boxes, and neighbours share them.
-  Filling(const Primitives& p,
-          std::span<const std::uint32_t> ids,
-          const Grid& grid,
-          std::optional<double> pad,
-          int threads,
-          BuildProgress& progress,
-          double share)
-      : p_(p),
-        ids_(ids),
-        grid_(grid),
-        pad_(pad),
-        cells_(cell_count(grid.cells)),
-        threads_(threads),
-        progress_(progress),
-        share_(share) {
-    while (((cells_ - 1) >> shift_) >= kMostBuckets)
-      ++shift_;
-    buckets_ = ((cells_ - 1) >> shift_) + 1;
-    chunks_.resize((ids.size() + kChunk - 1) / kChunk);
-  }
-
-  /// `cells_of(id, visit)` names the cells. `empty`, where given, becomes 0 for cells that hold
-  /// something and 255 for others.
-  template <class CellsOf>
-  CellStore run(const CellsOf& cells_of, std::uint8_t* empty, std::uint64_t& occupied) {
-    for (int kind = 0; kind < 3; ++kind) {
-      const auto first = std::lower_bound(ids_.begin(),
-                                          ids_.end(),
-                                          kind == 0   ? 0
-                                          : kind == 1 ? p_.triangle_base
-                                                      : p_.cone_base);
-      has_[kind] = first != ids_.end() && static_cast<int>(kind_of(p_, *first)) == kind;
-      if (has_[kind])
-        firsts(kind).resize(cells_ + 1);
-    }
-    const auto chunks = static_cast<std::ptrdiff_t>(chunks_.size()),
-               buckets = static_cast<std::ptrdiff_t>(buckets_);
-    std::vector<std::array<std::uint64_t, 3>> sums(buckets_);
-    std::uint64_t taken = 0;
-    // An exception cannot leave a thread: the first is kept and thrown again behind the loops.
-    std::exception_ptr trouble;
-    const auto guarded = [&](const auto& work) {
+/// Calls work(i, state) for i below count, each thread with a state of its own. An exception cannot
+/// leave a thread: the last is kept and thrown again behind the loop.
+template <class State, class Work>
+void share_out(const Filling& f, std::size_t count, const Work& work) {
+  std::exception_ptr trouble;
+  const auto end = static_cast<std::ptrdiff_t>(count);
+#pragma omp parallel num_threads(f.threads)
+  {
+    State state;
+#pragma omp for schedule(dynamic)
+    for (std::ptrdiff_t i = 0; i < end; ++i) {
       try {
-        if (progress_.stopped())
-          return;
-        work();
-        progress_.step();
+        if (f.progress.stopped())
+          continue;
+        work(static_cast<std::size_t>(i), state);
+        f.progress.step();
       } catch (...) {
 #pragma omp critical
         trouble = std::current_exception();
       }
-    };
-    progress_.expect(kEmitShare * share_, chunks_.size());
-#pragma omp parallel num_threads(threads_)
-    {
-      std::vector<Pair> pairs;
-#pragma omp for schedule(dynamic)
-      for (std::ptrdiff_t i = 0; i < chunks; ++i)
-        guarded([&] { emit(static_cast<std::size_t>(i), cells_of, pairs); });
     }
-    if (trouble)
-      std::rethrow_exception(trouble);
-    progress_.throw_if_stopped();
-    const auto count_all = [&] {
-#pragma omp parallel for schedule(dynamic) num_threads(threads_)
-      for (std::ptrdiff_t i = 0; i < buckets; ++i)
-        sums[static_cast<std::size_t>(i)] = count(static_cast<std::size_t>(i));
-    };
-    for (const Chunk& c : chunks_)
-      store_.references += c.pairs.size();
-    crowded_.assign(buckets_, 0);
-    count_all();
-    if (std::any_of(crowded_.begin(), crowded_.end(), [](std::uint8_t c) { return c != 0; }) &&
-        drop_copies())
-      count_all();
-    std::array<std::uint64_t, 3> total{};
-    for (auto& sum : sums)
-      for (std::size_t k = 0; k < 3; ++k)
-        total[k] += std::exchange(sum[k], total[k]);
-    for (const std::uint64_t n : total)
-      if (n > 0xFFFFFF00u)
-        throw std::length_error("the grid's lists are too long: choose a smaller density");
-    make_room(total);
-    progress_.expect((1 - kEmitShare) * share_, buckets_);
-#pragma omp parallel num_threads(threads_)
-    {
-      Room room;
-#pragma omp for schedule(dynamic) reduction(+ : taken)
-      for (std::ptrdiff_t i = 0; i < buckets; ++i)
-        guarded([&] {
-          taken +=
-              write(static_cast<std::size_t>(i), sums[static_cast<std::size_t>(i)], room, empty);
-        });
-    }
-    if (trouble)
-      std::rethrow_exception(trouble);
-    progress_.throw_if_stopped();
-    occupied = taken;
-    return std::move(store_);
   }
+  if (trouble)
+    std::rethrow_exception(trouble);
+  f.progress.throw_if_stopped();
+}
 
- private:
-  static constexpr std::size_t kChunk = 2048, kMostBuckets = 256;
-  static constexpr double kEmitShare = .2;  ///< of the time; counting takes next to none
-  /// entries of one kind in a cell, from which on it is looked through for copies
-  static constexpr std::uint32_t kCrowded = 1024;
-  struct Pair {
-    std::uint32_t cell, id;
-  };
-  struct Chunk {
-    RawVector<Pair> pairs;             ///< by bucket; within one as they came
-    std::vector<std::uint32_t> first;  ///< [buckets + 1]
-  };
+/// Makes room for where lists of those kinds begin that there are any of.
+void find_kinds(Filling& f) {
+  for_each_finite_shape([&]<class Shape>() {
+    const PrimitiveIds& ids = f.primitives.ids;
+    const auto first = std::lower_bound(f.ids.begin(), f.ids.end(), ids.begin(Shape::kKind));
+    if (first != f.ids.end() && ids.has(Shape::kKind, *first))
+      f.store.of<Shape>().first.resize(f.buckets.cells + 1);
+  });
+}
 
-  RawVector<std::uint32_t>& firsts(int kind) {
-    return kind == 0 ? store_.sphere_first : kind == 1 ? store_.triangle_first : store_.cone_first;
-  }
-  std::size_t begin_of(std::size_t bucket) const { return bucket << shift_; }
-  std::size_t end_of(std::size_t bucket) const { return std::min((bucket + 1) << shift_, cells_); }
-
-  template <class CellsOf>
-  void emit(std::size_t index, const CellsOf& cells_of, std::vector<Pair>& pairs) {
-    Chunk& chunk = chunks_[index];
-    pairs.clear();
-    chunk.first.assign(buckets_ + 1, 0);
-    for (std::size_t i = index * kChunk; i < std::min((index + 1) * kChunk, ids_.size()); ++i)
-      cells_of(ids_[i], [&](std::size_t c) {
-        pairs.push_back({static_cast<std::uint32_t>(c), ids_[i]});
-        ++chunk.first[c >> shift_];
-      });
-    std::uint32_t sum = 0;
-    for (std::uint32_t& f : chunk.first)
-      sum += std::exchange(f, sum);
-    chunk.pairs.resize(pairs.size());
-    for (const Pair& pair : pairs)
-      chunk.pairs[chunk.first[pair.cell >> shift_]++] = pair;
-    for (std::size_t b = buckets_; b > 0; --b)
-      chunk.first[b] = chunk.first[b - 1];
-    chunk.first[0] = 0;
-  }
-
-  template <class Visit>
-  void each_pair(std::size_t bucket, const Visit& visit) const {
-    for (const Chunk& chunk : chunks_)
-      for (std::uint32_t i = chunk.first[bucket]; i < chunk.first[bucket + 1]; ++i)
-        if (chunk.pairs[i].id != kNoPrimitive)
-          visit(chunk.pairs[i]);
-  }
-
-  /// Takes from all cells what is a copy of something in the crowded ones; whether there was any. A
-  /// copy has the cells of its original.
-  bool drop_copies() {
-    std::vector<bool> in_crowds(p_.end), copies(p_.end);
-    for (const Chunk& chunk : chunks_)
-      for (const Pair& pair : chunk.pairs)
-        if (crowded_[pair.cell >> shift_] != 0)
-          in_crowds[pair.id] = true;
-    std::vector<std::uint32_t> ids;
-    std::copy_if(ids_.begin(), ids_.end(), std::back_inserter(ids), [&](std::uint32_t id) {
-      return in_crowds[id];
+/// The first pass, of one chunk. `cells_of(id, visit)` names the cells.
+template <class CellsOf>
+void emit(Filling& f, std::size_t index, const CellsOf& cells_of, std::vector<Pair>& pairs) {
+  PairChunk& chunk = f.chunks[index];
+  const unsigned shift = f.buckets.shift;
+  pairs.clear();
+  chunk.first.assign(f.buckets.count + 1, 0);
+  const std::size_t end = std::min((index + 1) * kChunk, f.ids.size());
+  for (std::size_t i = index * kChunk; i < end; ++i)
+    cells_of(f.ids[i], [&](std::size_t c) {
+      pairs.push_back({static_cast<std::uint32_t>(c), f.ids[i]});
+      ++chunk.first[c >> shift];
     });
-    const std::vector<std::uint32_t> found = copies_among(p_, ids);
-    for (const std::uint32_t id : found)
-      copies[id] = true;
-    for (Chunk& chunk : chunks_)
-      for (Pair& pair : chunk.pairs)
-        if (!found.empty() && copies[pair.id]) {
-          pair.id = kNoPrimitive;
-          --store_.references;
-        }
-    return !found.empty();
-  }
+  std::uint32_t sum = 0;
+  for (std::uint32_t& first : chunk.first)
+    sum += std::exchange(first, sum);
+  chunk.pairs.resize(pairs.size());
+  for (const Pair& pair : pairs)
+    chunk.pairs[chunk.first[pair.cell >> shift]++] = pair;
+  for (std::size_t b = f.buckets.count; b > 0; --b)
+    chunk.first[b] = chunk.first[b - 1];
+  chunk.first[0] = 0;
+}
 
-  /// Entries of each cell (blocks, of triangles), and their sums over the bucket.
-  std::array<std::uint64_t, 3> count(std::size_t bucket) {
-    std::array<std::uint64_t, 3> sums{};
-    std::uint32_t* n[3] = {};
-    for (int k = 0; k < 3; ++k)
-      if (has_[k]) {
-        n[k] = firsts(k).data();
-        std::fill(n[k] + begin_of(bucket), n[k] + end_of(bucket), 0u);
-      }
-    each_pair(bucket,
-              [&](const Pair& pair) { ++n[static_cast<int>(kind_of(p_, pair.id))][pair.cell]; });
-    for (int k = 0; k < 3; ++k)
-      for (std::size_t c = begin_of(bucket); n[k] && c < end_of(bucket); ++c)
-        crowded_[bucket] |= n[k][c] > kCrowded;
-    for (std::size_t k = 0; k < 3; ++k)
-      for (std::size_t c = begin_of(bucket); n[k] && c < end_of(bucket); ++c) {
-        if (k == 1)
-          n[k][c] = (n[k][c] + kBlock - 1) / kBlock;
-        sums[k] += n[k][c];
-      }
-    return sums;
-  }
+template <class Visit>
+void for_each_pair(const Filling& f, std::size_t bucket, const Visit& visit) {
+  for (const PairChunk& chunk : f.chunks)
+    for (std::uint32_t i = chunk.first[bucket]; i < chunk.first[bucket + 1]; ++i)
+      if (chunk.pairs[i].id != kNoPrimitive)
+        visit(chunk.pairs[i]);
+}
 
-  void make_room(const std::array<std::uint64_t, 3>& total) {
-    const auto padded = [&](auto& arrays, auto& ids, std::uint64_t n) {
-      for (auto& v : arrays) {
-        v.resize(n + kBlock);
-        std::fill(v.begin() + static_cast<std::ptrdiff_t>(n), v.end(), kNaN);
-      }
-      ids.resize(n + kBlock);
-      std::fill(ids.begin() + static_cast<std::ptrdiff_t>(n), ids.end(), kNoPrimitive);
-    };
-    if (has_[0])
-      padded(store_.spheres, store_.sphere_id, total[0]);
-    if (has_[1])
-      store_.triangles.resize(total[1]);
-    if (has_[1] && pad_) {
-      store_.boxes.resize((total[1] + kBlock - 1) / kBlock);
-      // places without a block
-      for (auto& side : store_.boxes.back().side)
-        std::fill(std::begin(side), std::end(side), kNaN);
+/// The second pass, of one bucket: entries of each of its cells, and their sums.
+PerKind count(Filling& f, std::size_t bucket) {
+  const std::size_t begin = f.buckets.begin(bucket);
+  const std::size_t end = f.buckets.end(bucket);
+  std::uint32_t* first[kKinds] = {};
+  for_each_list(f.store, [&]<class Shape>(ListStore<Shape>& list, std::size_t kind) {
+    first[kind] = list.first.data();
+    std::fill(first[kind] + begin, first[kind] + end, 0u);
+  });
+  for_each_pair(f, bucket, [&](const Pair& pair) {
+    ++first[static_cast<std::size_t>(f.primitives.kind_of(pair.id))][pair.cell];
+  });
+  PerKind sums{};
+  for_each_list(f.store, [&]<class Shape>(ListStore<Shape>& list, std::size_t kind) {
+    std::uint32_t* const n = list.first.data();
+    for (std::size_t c = begin; c < end; ++c) {
+      f.crowded[bucket] |= n[c] > kCrowded;
+      n[c] = ListStore<Shape>::entries_of(n[c]);
+      sums[kind] += n[c];
     }
-    if (has_[2])
-      padded(store_.cones, store_.cone_id, total[2]);
-    for (int k = 0; k < 3; ++k)
-      if (has_[k])
-        firsts(k)[cells_] = static_cast<std::uint32_t>(total[static_cast<std::size_t>(k)]);
-  }
+  });
+  return sums;
+}
 
-  struct Room {
-    std::vector<std::uint32_t> at;  ///< entries written so far, by kind and cell
-    /// ids of the bucket, cell after cell, each from a multiple of kBlock on
-    RawVector<std::uint32_t> triangles;
-    BlockOrder order;
+/// Takes from all cells what is a copy of something in the crowded ones; whether there was any. A
+/// copy has the cells of its original.
+bool drop_copies(Filling& f) {
+  std::vector<bool> in_crowds(f.primitives.ids.end());
+  for (const PairChunk& chunk : f.chunks)
+    for (const Pair& pair : chunk.pairs)
+      if (f.crowded[pair.cell >> f.buckets.shift] != 0)
+        in_crowds[pair.id] = true;
+  std::vector<std::uint32_t> ids;
+  std::copy_if(f.ids.begin(), f.ids.end(), std::back_inserter(ids), [&](std::uint32_t id) {
+    return in_crowds[id];
+  });
+  const std::vector<std::uint32_t> found = copies_among(f.primitives, ids);
+  if (found.empty())
+    return false;
+  std::vector<bool> copies(f.primitives.ids.end());
+  for (const std::uint32_t id : found)
+    copies[id] = true;
+  for (PairChunk& chunk : f.chunks)
+    for (Pair& pair : chunk.pairs)
+      if (copies[pair.id]) {
+        pair.id = kNoPrimitive;
+        --f.store.references;
+      }
+  return true;
+}
+
+/// All buckets; returns where the lists of each begin, and makes room for them.
+std::vector<PerKind> count_all(Filling& f) {
+  std::vector<PerKind> starts(f.buckets.count);
+  const auto each = [&] {
+    const auto buckets = static_cast<std::ptrdiff_t>(f.buckets.count);
+#pragma omp parallel for schedule(dynamic) num_threads(f.threads)
+    for (std::ptrdiff_t i = 0; i < buckets; ++i)
+      starts[static_cast<std::size_t>(i)] = count(f, static_cast<std::size_t>(i));
   };
+  for (const PairChunk& c : f.chunks)
+    f.store.references += c.pairs.size();
+  f.crowded.assign(f.buckets.count, 0);
+  each();
+  if (std::any_of(f.crowded.begin(), f.crowded.end(), [](std::uint8_t c) { return c != 0; }) &&
+      drop_copies(f))
+    each();
+  PerKind total{};
+  for (PerKind& start : starts)
+    for (std::size_t k = 0; k < kKinds; ++k)
+      total[k] += std::exchange(start[k], total[k]);
+  for (const std::uint64_t n : total)
+    if (n > kMostEntries)
+      throw std::length_error("the grid's lists are too long: choose a smaller density");
+  for_each_list(f.store, [&]<class Shape>(ListStore<Shape>& list, std::size_t kind) {
+    list.first[f.buckets.cells] = static_cast<std::uint32_t>(total[kind]);
+    list.resize(total[kind]);
+    if constexpr (ListStore<Shape>::kInBlocks)
+      if (f.pad)
+        list.resize_boxes();
+  });
+  return starts;
+}
 
-  /// The bucket's lists; returns how many of its cells hold something.
-  std::uint64_t write(std::size_t bucket,
-                      const std::array<std::uint64_t, 3>& start,
-                      Room& room,
-                      std::uint8_t* empty) {
-    const std::size_t begin = begin_of(bucket), end = end_of(bucket), size = end - begin;
-    std::vector<std::uint32_t>& at = room.at;
-    at.assign(3 * size, 0);
-    std::uint64_t held = 0;
-    std::uint32_t* first[3] = {};
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (!has_[k])
-        continue;
-      first[k] = firsts(static_cast<int>(k)).data();
-      auto sum = static_cast<std::uint32_t>(start[k]);
-      for (std::size_t c = begin; c < end; ++c)
-        sum += std::exchange(first[k][c], sum);
-      if (k == 1)
-        room.triangles.resize((sum - start[1]) * kBlock);
-    }
-    each_pair(bucket, [&](const Pair& pair) {
-      const Kind kind = kind_of(p_, pair.id);
-      const auto k = static_cast<std::size_t>(kind);
-      const std::size_t place = at[k * size + pair.cell - begin]++, from = first[k][pair.cell];
-      if (kind == Kind::kTriangle)
-        room.triangles[(from - start[1]) * kBlock + place] = pair.id;
-      else if (kind == Kind::kSphere)
-        put_sphere(from + place, pair.id);
-      else
-        put_cone(from + place, pair.id);
-    });
-    for (std::size_t i = 0; i < size; ++i) {
-      if (at[size + i] != 0)
-        put_triangles(first[1][begin + i],
-                      {&room.triangles[(first[1][begin + i] - start[1]) * kBlock], at[size + i]},
-                      begin + i,
-                      room.order);
-      const bool any = (at[i] | at[size + i] | at[2 * size + i]) != 0;
-      held += any;
-      if (empty)
-        empty[begin + i] = any ? 0 : 255;
-    }
-    return held;
-  }
+/// A cell's triangles, neighbours in one block; of a list, as they come.
+void put_triangles(Filling& f,
+                   std::span<const std::uint32_t> ids,
+                   std::size_t cell,
+                   BlockOrder& order) {
+  auto& list = f.store.of<Triangle>();
+  const auto& triangles = f.primitives.of<Triangle>();
+  const std::uint32_t first_id = f.primitives.ids.begin(PrimitiveKind::kTriangle);
+  const std::uint32_t first = list.first[cell];
+  std::span<const std::uint32_t> places;
+  if (f.pad)
+    places = order.places(f.primitives, ids, f.grid, cell);
+  for (std::size_t i = 0; i < ids.size(); ++i)
+    list.put(first, f.pad ? places[i] : i, triangles[ids[i] - first_id], ids[i]);
+  if (ids.size() % kBlock != 0)
+    list.end_block(first, ids.size());
+  const auto count = static_cast<std::uint32_t>(ids.size());
+  if (f.pad)
+    bound_blocks(f.grid, *f.pad, cell, first, first + list.entries_of(count), list);
+}
 
-  /// A cell's triangles, neighbours in one block; of a list, as they come.
-  void put_triangles(std::uint32_t first,
-                     std::span<const std::uint32_t> ids,
-                     std::size_t cell,
-                     BlockOrder& order) {
-    std::span<const std::uint32_t> places;
-    if (pad_)
-      places = order.places(p_, ids, grid_, cell);
-    for (std::size_t i = 0; i < ids.size(); ++i) {
-      const std::size_t place = pad_ ? places[i] : i;
-      put_triangle(store_.triangles[first + place / kBlock], place % kBlock, p_, ids[i]);
-    }
-    if (ids.size() % kBlock != 0)
-      pad_block(store_.triangles[first + ids.size() / kBlock], ids.size() % kBlock);
-    if (pad_)
-      bound_blocks(grid_,
-                   *pad_,
-                   cell,
-                   first,
-                   static_cast<std::uint32_t>(first + (ids.size() + kBlock - 1) / kBlock),
-                   store_);
-  }
-
-  void put_sphere(std::size_t to, std::uint32_t id) {
-    const SphereSpans& from = p_.geometry.spheres;
-    const std::size_t i = id - p_.sphere_base;
-    store_.spheres[0][to] = from.x[i];
-    store_.spheres[1][to] = from.y[i];
-    store_.spheres[2][to] = from.z[i];
-    store_.spheres[3][to] = from.radius[i];
-    store_.sphere_id[to] = id;
-  }
-  void put_cone(std::size_t to, std::uint32_t id) {
-    for (std::size_t k = 0; k < 10; ++k)
-      store_.cones[k][to] = p_.cones[k][id - p_.cone_base];
-    store_.cone_id[to] = id;
-  }
-
-  const Primitives& p_;
-  std::span<const std::uint32_t> ids_;
-  const Grid& grid_;  ///< its cells; no more
-  std::optional<double> pad_;
-  std::size_t cells_, buckets_ = 0;
-  unsigned shift_ = 8;
-  int threads_;
-  BuildProgress& progress_;
-  double share_;  ///< of the whole build
-  bool has_[3] = {};
-  std::vector<Chunk> chunks_;
-  std::vector<std::uint8_t> crowded_;  ///< [buckets] 1: of a bucket with a crowded cell
-  CellStore store_;
+/// What a thread needs to write buckets.
+struct Scratch {
+  std::vector<std::uint32_t> written;  ///< primitives so far, by kind and cell
+  /// ids of the bucket, cell after cell, each from a multiple of kBlock on
+  RawVector<std::uint32_t> triangles;
+  BlockOrder order;
 };
+
+/// Turns the counts of a bucket's cells into where their lists begin.
+void place_lists(Filling& f, std::size_t bucket, const PerKind& start, Scratch& scratch) {
+  for_each_list(f.store, [&]<class Shape>(ListStore<Shape>& list, std::size_t kind) {
+    auto sum = static_cast<std::uint32_t>(start[kind]);
+    for (std::size_t c = f.buckets.begin(bucket); c < f.buckets.end(bucket); ++c)
+      sum += std::exchange(list.first[c], sum);
+    if constexpr (ListStore<Shape>::kInBlocks)
+      scratch.triangles.resize((sum - start[kind]) * kBlock);
+  });
+}
+
+/// The third pass, of one bucket: its lists; returns how many of its cells hold something. `empty`,
+/// where given, becomes 0 for cells that do and 255 for others.
+std::uint64_t write(
+    Filling& f, std::size_t bucket, const PerKind& start, std::uint8_t* empty, Scratch& scratch) {
+  constexpr auto kTriangles = static_cast<std::size_t>(PrimitiveKind::kTriangle);
+  const std::size_t begin = f.buckets.begin(bucket);
+  const std::size_t size = f.buckets.end(bucket) - begin;
+  const auto ids_at = [&](std::size_t cell) {
+    return &scratch.triangles[(f.store.of<Triangle>().first[cell] - start[kTriangles]) * kBlock];
+  };
+  scratch.written.assign(kKinds * size, 0);
+  place_lists(f, bucket, start, scratch);
+  for_each_pair(f, bucket, [&](const Pair& pair) {
+    f.primitives.visit(pair.id, [&]<class Shape>(std::uint32_t i) {
+      const std::size_t row = static_cast<std::size_t>(Shape::kKind) * size;
+      const std::uint32_t place = scratch.written[row + pair.cell - begin]++;
+      auto& list = f.store.of<Shape>();
+      if constexpr (ListStore<Shape>::kInBlocks)
+        ids_at(pair.cell)[place] = pair.id;
+      else
+        list.put(list.first[pair.cell] + place, f.primitives.of<Shape>()[i], pair.id);
+    });
+  });
+  std::uint64_t held = 0;
+  for (std::size_t i = 0; i < size; ++i) {
+    if (const std::uint32_t n = scratch.written[kTriangles * size + i]; n != 0)
+      put_triangles(f, {ids_at(begin + i), n}, begin + i, scratch.order);
+    bool any = false;
+    for (std::size_t k = 0; k < kKinds; ++k)
+      any |= scratch.written[k * size + i] != 0;
+    held += any;
+    if (empty)
+      empty[begin + i] = any ? 0 : 255;
+  }
+  return held;
+}
+
+/// All passes, whose time is `share` of the whole build; returns how many cells hold something.
+template <class CellsOf>
+std::uint64_t fill(Filling& f, const CellsOf& cells_of, std::uint8_t* empty, double share) {
+  find_kinds(f);
+  f.progress.expect(kEmitShare * share, f.chunks.size());
+  share_out<std::vector<Pair>>(
+      f, f.chunks.size(), [&](std::size_t i, auto& pairs) { emit(f, i, cells_of, pairs); });
+  const std::vector<PerKind> starts = count_all(f);
+  f.progress.expect((1 - kEmitShare) * share, f.buckets.count);
+  std::vector<std::uint64_t> held(f.buckets.count);
+  share_out<Scratch>(f, f.buckets.count, [&](std::size_t i, Scratch& scratch) {
+    held[i] = write(f, i, starts[i], empty, scratch);
+  });
+  return std::accumulate(held.begin(), held.end(), std::uint64_t{0});
+}
 
 }  // namespace
 
@@ -389,20 +338,21 @@ void fill_grid(const Primitives& p,
                double share) {
   const std::size_t cells = cell_count(g.cells);
   g.distance.resize(cells + 3);  // so that four bytes can be read from any place
-  const CellFinder finder(p, g, g.pad);
-  g.store = Filling(p, ids, g, g.pad, useful_threads(threads, ids.size()), progress, share)
-                .run([&](std::uint32_t id, const auto& visit) { finder(id, visit); },
-                     g.distance.data(),
-                     g.occupied);
+  const CellFinder finder(p, g);
+  Filling filling{p, ids, g, g.pad, useful_threads(threads, ids.size()), progress};
+  const auto cells_of = [&](std::uint32_t id, const auto& visit) { finder(id, visit); };
+  g.occupied = fill(filling, cells_of, g.distance.data(), share);
+  g.store = std::move(filling.store);
   chebyshev_distance(g.distance, g.cells, useful_threads(threads, cells));
 }
 
 CellStore build_list(const Primitives& p, std::span<const std::uint32_t> ids) {
-  std::uint64_t occupied = 0;
   const Grid one;
   BuildProgress nobody;
-  return Filling(p, ids, one, {}, 1, nobody, 0)
-      .run([](std::uint32_t, const auto& visit) { visit(std::size_t{0}); }, nullptr, occupied);
+  Filling filling{p, ids, one, {}, 1, nobody};
+  fill(
+      filling, [](std::uint32_t, const auto& visit) { visit(std::size_t{0}); }, nullptr, 0);
+  return std::move(filling.store);
 }
 
 }  // namespace grelha

@@ -42,7 +42,7 @@ Extent extent_of(const Primitives& p, std::span<const std::uint32_t> ids, int th
 #pragma omp for schedule(static) nowait
     for (std::ptrdiff_t i = 0; i < count; ++i) {
       const std::uint32_t id = ids[static_cast<std::size_t>(i)];
-      const Box b = kind_of(p, id) == Kind::kTriangle ? box_of(corners_of(p, id)) : p.box(id);
+      const Box b = p.box(id);
       double sum = 0;
       for (int a = 0; a < 3; ++a) {
         sum += (b.hi[a] - b.lo[a]) * (b.hi[a] - b.lo[a]);
@@ -111,7 +111,7 @@ std::size_t divide(Grid& g, const double (&extent)[3], double per_length) {
 
 /// In how many cells the mean primitive stands, by some of them, evenly picked.
 double references(const Primitives& p, std::span<const std::uint32_t> ids, const Grid& g) {
-  const CellFinder finder(p, g, g.pad);
+  const CellFinder finder(p, g);
   const std::size_t stride = std::max<std::size_t>(1, ids.size() / kProbe);
   std::uint64_t sum = 0, probed = 0;
   for (std::size_t i = 0; i < ids.size(); i += stride, ++probed)
@@ -151,7 +151,7 @@ Grid lay_out_grid(const Primitives& p,
   // end. Grids of a scene share what there is by their primitives; small ones, which need little,
   // get more.
   const double served =
-      std::min(static_cast<double>(p.end), kSmallShare * static_cast<double>(ids.size()));
+      std::min(static_cast<double>(p.ids.end()), kSmallShare * static_cast<double>(ids.size()));
   const double most = std::clamp(kMostInAll / served, kAlways, kMostReferences);
   for (double coarser = per_length / 2; cells > kMostReferences && references(p, ids, g) > most;
        coarser /= 2)

@@ -12,20 +12,29 @@ namespace {
 constexpr std::size_t kProbes = 16384;
 /// bytes while lists are written: a cell and an id; an id
 constexpr double kPair = 8, kId = 4;
-constexpr double kBytes[3] = {20, 0, 44};  ///< of a sphere and a cone in a list
-constexpr double kListed = sizeof(TriangleBlock),
-                 kBoxed = kListed + sizeof(BlockBoxes) / double{kBlock};
-constexpr double kCone = 40, kMaterial = sizeof(float) * kMaterialFields;  ///< prepared
+/// a block of triangles in a list, and in a grid
+constexpr double kListed = ListStore<Triangle>::kEntry;
+constexpr double kBoxed = kListed + sizeof(BlockBoxes) / double{kBlock};
+constexpr double kMaterial = sizeof(float) * kMaterialFields;  ///< prepared
+constexpr auto kTriangles = static_cast<std::size_t>(PrimitiveKind::kTriangle);
 
-/// What lists hold: references by Kind, and blocks of triangles.
+/// What lists hold: references by kind, and blocks of triangles.
 struct Lists {
-  std::array<double, 3> references{};
+  std::array<double, kKinds> references{};
   double blocks = 0;
-  double all() const { return references[0] + references[1] + references[2]; }
+  double all() const {
+    double sum = 0;
+    for (const double n : references)
+      sum += n;
+    return sum;
+  }
   double bytes(double block) const {
     double sum = blocks * block;
-    for (std::size_t k = 0; k < 3; ++k)
-      sum += references[k] * kBytes[k];
+    for_each_finite_shape([&]<class Shape>() {
+      using Store = ListStore<Shape>;
+      if (!Store::kInBlocks)
+        sum += references[static_cast<std::size_t>(Shape::kKind)] * double{Store::kEntry};
+    });
     return sum;
   }
 };
@@ -47,14 +56,14 @@ std::vector<std::uint32_t> pick(const std::vector<std::uint32_t>& ids) {
 
 Lists expected(const Primitives& p, const std::vector<std::uint32_t>& ids, const Grid& g) {
   const std::vector<std::uint32_t> picked = pick(ids);
-  const CellFinder finder(p, g, g.pad);
+  const CellFinder finder(p, g);
   Lists lists;
   std::vector<std::size_t> cells;  // of triangles
   for (const std::uint32_t id : picked)
     finder(id, [&](std::size_t cell) {
-      const Kind kind = kind_of(p, id);
+      const PrimitiveKind kind = p.kind_of(id);
       ++lists.references[static_cast<std::size_t>(kind)];
-      if (kind == Kind::kTriangle)
+      if (kind == PrimitiveKind::kTriangle)
         cells.push_back(cell);
     });
   const double share = static_cast<double>(picked.size()) / static_cast<double>(ids.size());
@@ -72,7 +81,7 @@ Lists expected(const Primitives& p, const std::vector<std::uint32_t>& ids, const
   // Cells of a surface hold from nothing to twice the mean, so that there are half as many again as
   // if all held as much; the last block of each is half empty, or an eighth full.
   const double held = 1 + pairs / (share * static_cast<double>(cells.size())),
-               references = lists.references[1];
+               references = lists.references[kTriangles];
   lists.blocks = references / kBlock + references * 1.5 / (held + .5) * (1 + 1 / held) * 7 / 16;
   return lists;
 }
@@ -81,21 +90,29 @@ double ids_bytes(const std::vector<std::uint32_t>& ids) {
   return kId * static_cast<double>(ids.size());
 }
 
+double prepared_bytes(const Primitives& p) {
+  double sum = 0;
+  for_each_shape([&]<class Shape>() {
+    sum += double{Shape::Source::kPreparedBytes} * static_cast<double>(p.of<Shape>().size());
+  });
+  return sum;
+}
+
 /// The list of what has no grid, as one cell.
 Lists of_outside(const Primitives& p, const Plan& plan) {
   Lists lists;
   for (const std::uint32_t id : plan.apart)
-    ++lists.references[static_cast<std::size_t>(kind_of(p, id))];
-  lists.blocks = lists.references[1] / kBlock + 1;
+    ++lists.references[static_cast<std::size_t>(p.kind_of(id))];
+  lists.blocks = lists.references[kTriangles] / kBlock + 1;
   return lists;
 }
 
 }  // namespace
 
 BuildMemory memory_of(const SceneSpans& scene, const Primitives& p, const Plan& plan) {
-  double kept = kCone * static_cast<double>(p.end - p.cone_base) +
-                kMaterial * static_cast<double>(scene.materials.size()),
-         waiting = ids_bytes(plan.apart), peak = 0;
+  double kept = kMaterial * static_cast<double>(scene.materials.size()) + prepared_bytes(p);
+  double waiting = ids_bytes(plan.apart);
+  double peak = 0;
   for (const PlannedGrids& part : plan.parts)
     waiting += ids_bytes(part.ids);
   for (const PlannedGrids& part : plan.parts) {
@@ -119,7 +136,7 @@ BuildMemory memory_of(const SceneSpans& scene, const Primitives& p, const Plan& 
 
 bool surely_fits(const Primitives& p, std::uint64_t bytes) {
   constexpr double kReferencesOfOne = 64;  // as in grid.cpp
-  return kReferencesOfOne * (kPair + kBoxed) * static_cast<double>(p.end - p.sphere_base) <
+  return kReferencesOfOne * (kPair + kBoxed) * static_cast<double>(p.finite_count()) <
          static_cast<double>(bytes);
 }
 

@@ -42,73 +42,59 @@ bool are_numbers(Floats v) {
 
 /// Whether every primitive has a place. The arrays are asked as they lie, many at a time.
 bool all_are_sound(const GeometrySpans& g) {
-  for (const auto* v : {&g.triangles.x,
-                        &g.triangles.y,
-                        &g.triangles.z,
-                        &g.spheres.x,
-                        &g.spheres.y,
-                        &g.spheres.z,
-                        &g.spheres.radius,
-                        &g.cones.base_x,
-                        &g.cones.base_y,
-                        &g.cones.base_z,
-                        &g.cones.base_radius,
-                        &g.cones.apex_x,
-                        &g.cones.apex_y,
-                        &g.cones.apex_z,
-                        &g.cones.apex_radius})
-    if (!are_numbers(*v))
-      return false;
-  return true;
+  bool sound = true;
+  for_each_finite_shape([&]<class Shape>() {
+    Shape::for_each_array(Shape::spans_of(g), [&](Floats v) { sound = sound && are_numbers(v); });
+  });
+  return sound;
 }
 
 bool is_sound(const Primitives& p, std::uint32_t id) {
-  const GeometrySpans& g = p.geometry;
-  if (id < p.triangle_base) {
-    const std::uint32_t i = id - p.sphere_base;
-    return is_number(g.spheres.x[i]) && is_number(g.spheres.y[i]) && is_number(g.spheres.z[i]) &&
-           is_number(g.spheres.radius[i]);
+  return p.visit(id, [&]<class Shape>(std::uint32_t i) {
+    const auto one = p.of<Shape>()[i];
+    bool sound = true;
+    Shape::for_each_field([&](float x) { sound &= is_number(x); }, one);
+    return sound;
+  });
+}
+
+void append(Ids& to, std::uint32_t first, std::uint32_t end) {
+  for (std::uint32_t id = first; id < end; ++id)
+    to.push_back(id);
+}
+
+/// Triangles that are loose, or of small objects, join the first group; larger objects get one
+/// each.
+void group_triangles(const Primitives& p, std::vector<Ids>& groups) {
+  const std::uint32_t first_id = p.ids.begin(PrimitiveKind::kTriangle);
+  std::uint32_t next = first_id;
+  for (const Object& o : p.geometry.objects) {
+    const std::uint32_t first = first_id + o.first_triangle;
+    append(groups.front(), next, first);
+    next = first + o.triangle_count;
+    if (o.triangle_count < kSmallObject || groups.size() >= kMostGroups) {
+      append(groups.front(), first, next);
+    } else {
+      groups.emplace_back().reserve(o.triangle_count);
+      append(groups.back(), first, next);
+    }
   }
-  if (id >= p.cone_base)
-    return std::all_of(p.cones.begin(), p.cones.end(), [&](const std::vector<float>& v) {
-      return is_number(v[id - p.cone_base]);
-    });
-  const std::uint32_t i = id - p.triangle_base;
-  const auto at = [&](std::uint32_t v) {
-    return is_number(g.triangles.x[v]) && is_number(g.triangles.y[v]) &&
-           is_number(g.triangles.z[v]);
-  };
-  return at(g.triangles.a[i]) && at(g.triangles.b[i]) && at(g.triangles.c[i]);
+  append(groups.front(), next, p.ids.end(PrimitiveKind::kTriangle));
 }
 
 /// One group of ids a grid: first what is loose (with small objects), then each larger object.
 std::vector<Ids> group(const Primitives& p) {
   std::vector<Ids> groups(1);
-  Ids& loose = groups.front();
   std::size_t in_objects = 0;
   for (const Object& o : p.geometry.objects)
     in_objects += o.triangle_count;
-  loose.reserve(p.end - p.sphere_base - in_objects);
-  for (std::uint32_t id = p.sphere_base; id < p.triangle_base; ++id)
-    loose.push_back(id);
-  std::uint32_t next = 0;
-  const auto take = [&](Ids& to, std::uint32_t first, std::uint32_t end) {
-    for (std::uint32_t i = first; i < end; ++i)
-      to.push_back(p.triangle_base + i);
-  };
-  for (const Object& o : p.geometry.objects) {
-    take(groups.front(), next, o.first_triangle);
-    next = o.first_triangle + o.triangle_count;
-    if (o.triangle_count < kSmallObject || groups.size() >= kMostGroups) {
-      take(groups.front(), o.first_triangle, next);
-    } else {
-      groups.emplace_back().reserve(o.triangle_count);
-      take(groups.back(), o.first_triangle, next);
-    }
-  }
-  take(groups.front(), next, static_cast<std::uint32_t>(p.geometry.triangles.size()));
-  for (std::uint32_t id = p.cone_base; id < p.end; ++id)
-    groups.front().push_back(id);
+  groups.front().reserve(p.finite_count() - in_objects);
+  for_each_finite_shape([&]<class Shape>() {
+    if constexpr (Shape::kKind == PrimitiveKind::kTriangle)
+      group_triangles(p, groups);
+    else
+      append(groups.front(), p.ids.begin(Shape::kKind), p.ids.end(Shape::kKind));
+  });
   // What has no place is met by no ray, and would put every cell in doubt.
   if (!all_are_sound(p.geometry))
     for (Ids& ids : groups)
@@ -138,7 +124,7 @@ Extent set_huge_apart(const Primitives& p, Ids& ids, Extent all, Ids& outside, i
 /// cell for its share.
 bool set_few_apart(const Primitives& p, Ids& ids, Ids& outside) {
   const auto is_triangle = [&](std::uint32_t id) {
-    return id >= p.triangle_base && id < p.cone_base;
+    return p.ids.has(PrimitiveKind::kTriangle, id);
   };
   const auto others =
       ids.size() - static_cast<std::size_t>(std::count_if(ids.begin(), ids.end(), is_triangle));

@@ -20,34 +20,6 @@ bool beyond(Indices indices, std::size_t end) {
   return !indices.empty() && most >= end;
 }
 
-/// Whether arrays of one kind have one length.
-bool uneven(std::size_t count, std::initializer_list<std::size_t> sizes) {
-  return std::any_of(
-      sizes.begin(), sizes.end(), [count](std::size_t size) { return size != count; });
-}
-
-void check_lengths(const GeometrySpans& g) {
-  const SphereSpans& s = g.spheres;
-  const TriangleSpans& t = g.triangles;
-  const ConeSpans& c = g.cones;
-  const PlaneSpans& p = g.planes;
-  if (uneven(s.size(), {s.x.size(), s.y.size(), s.z.size(), s.material.size()}) ||
-      uneven(t.size(), {t.b.size(), t.c.size(), t.material.size()}) ||
-      uneven(t.vertex_count(), {t.y.size(), t.z.size()}) ||
-      uneven(t.nx.empty() ? 0 : t.vertex_count(), {t.nx.size(), t.ny.size(), t.nz.size()}) ||
-      uneven(c.size(),
-             {c.base_x.size(),
-              c.base_y.size(),
-              c.base_z.size(),
-              c.base_radius.size(),
-              c.apex_x.size(),
-              c.apex_y.size(),
-              c.apex_z.size(),
-              c.apex_radius.size()}) ||
-      uneven(p.size(), {p.x.size(), p.y.size(), p.z.size(), p.nx.size(), p.ny.size(), p.nz.size()}))
-    throw std::invalid_argument("arrays of one kind of primitive have unequal lengths");
-}
-
 void check(const BuildOptions& o) {
   if (!(o.density >= 0) || o.density == std::numeric_limits<float>::infinity())
     throw std::invalid_argument("density must be a positive number, or 0");
@@ -57,16 +29,19 @@ void check(const BuildOptions& o) {
 
 void check(const SceneSpans& scene) {
   const GeometrySpans& g = scene.geometry;
-  check_lengths(g);
-  const std::size_t total =
-      g.spheres.size() + g.triangles.size() + g.cones.size() + g.planes.size();
+  std::size_t total = 0;
+  for_each_shape([&]<class Shape>() {
+    const auto& spans = Shape::spans_of(g);
+    if (!Shape::is_even(spans))
+      throw std::invalid_argument("arrays of one kind of primitive have unequal lengths");
+    total += spans.size();
+  });
   if (total >= kNoPrimitive)
     throw std::invalid_argument("more primitives than ids: at most 4294967294");
-  const auto materials = scene.materials.size();
-  for (const auto* m :
-       {&g.spheres.material, &g.triangles.material, &g.cones.material, &g.planes.material})
-    if (beyond(*m, materials))
+  for_each_shape([&]<class Shape>() {
+    if (beyond(Shape::spans_of(g).material, scene.materials.size()))
       throw std::invalid_argument("a primitive names a material that is not there");
+  });
   const auto vertices = g.triangles.vertex_count();
   for (const auto* v : {&g.triangles.a, &g.triangles.b, &g.triangles.c})
     if (beyond(*v, vertices))
@@ -115,8 +90,9 @@ World::Impl::Impl(const SceneSpans& s, const BuildOptions& options)
   v.sy = g.spheres.y.data();
   v.sz = g.spheres.z.data();
   v.sr = g.spheres.radius.data();
-  for (std::size_t k = 0; k < 10; ++k)
-    v.cone[k] = primitives.cones[k].data();
+  int component = 0;
+  Cone::for_each_field([&](const std::vector<float>& of) { v.cone[component++] = of.data(); },
+                       primitives.of<Cone>().prepared);
   v.px = g.planes.x.data();
   v.py = g.planes.y.data();
   v.pz = g.planes.z.data();
@@ -128,16 +104,16 @@ World::Impl::Impl(const SceneSpans& s, const BuildOptions& options)
   v.triangle_material = t.material.data();
   v.cone_material = g.cones.material.data();
   v.plane_count = planes_without_copies(g.planes);
-  v.sphere_count = primitives.triangle_base - primitives.sphere_base;
-  v.triangle_count = primitives.cone_base - primitives.triangle_base;
-  v.cone_count = primitives.end - primitives.cone_base;
+  v.sphere_count = primitives.ids.count(PrimitiveKind::kSphere);
+  v.triangle_count = primitives.ids.count(PrimitiveKind::kTriangle);
+  v.cone_count = primitives.ids.count(PrimitiveKind::kCone);
   view.outside = outside.lists();
   view.grids = grid_views.data();
   view.grid_count = static_cast<int>(grid_views.size());
-  view.sphere_base = primitives.sphere_base;
-  view.triangle_base = primitives.triangle_base;
-  view.cone_base = primitives.cone_base;
-  view.primitive_end = primitives.end;
+  view.sphere_base = primitives.ids.begin(PrimitiveKind::kSphere);
+  view.triangle_base = primitives.ids.begin(PrimitiveKind::kTriangle);
+  view.cone_base = primitives.ids.begin(PrimitiveKind::kCone);
+  view.primitive_end = primitives.ids.end();
   view.finite = !plan.all.empty();
   if (view.finite) {
     for (int a = 0; a < 3; ++a) {
@@ -215,12 +191,9 @@ std::vector<GridStats> World::grids() const {
 }
 
 std::size_t World::geometry_bytes() const {
-  const GeometrySpans& g = impl_->scene.geometry;
-  const TriangleSpans& t = g.triangles;
-  std::size_t sum =
-      bytes_of(t.a) * 3 + bytes_of(t.material) + bytes_of(t.x) * 3 + bytes_of(t.nx) * 3;
-  sum += bytes_of(g.spheres.radius) * 5 + bytes_of(g.cones.material) * 9 +
-         bytes_of(g.planes.material) * 7;
+  std::size_t sum = 0;
+  for_each_shape(
+      [&]<class Shape>() { sum += Shape::bytes(Shape::spans_of(impl_->scene.geometry)); });
   return sum;
 }
 
@@ -228,8 +201,9 @@ std::size_t World::grid_bytes() const {
   std::size_t sum = impl_->outside.bytes();
   for (const Grid& g : impl_->grids)
     sum += g.stats().bytes;
-  for (const auto& v : impl_->primitives.cones)
-    sum += bytes_of(v);
+  for_each_shape([&]<class Shape>() {
+    sum += Shape::Source::kPreparedBytes * impl_->primitives.of<Shape>().size();
+  });
   return sum;
 }
 

@@ -77,15 +77,9 @@ Float3 SurfacePoint::leave(Float3 dir) const {
 }
 
 Primitive primitive_of(const World& world, std::uint32_t id) {
-  const SceneView& v = world.impl().view;
-  assert(id < v.primitive_end);
-  if (id < v.sphere_base)
-    return {PrimitiveKind::kPlane, id};
-  if (id < v.triangle_base)
-    return {PrimitiveKind::kSphere, id - v.sphere_base};
-  if (id < v.cone_base)
-    return {PrimitiveKind::kTriangle, id - v.triangle_base};
-  return {PrimitiveKind::kCone, id - v.cone_base};
+  const PrimitiveIds& ids = world.impl().primitives.ids;
+  assert(id < ids.end());
+  return ids.primitive(id);
 }
 
 }  // namespace grelha

@@ -1,6 +1,86 @@
 #pragma once
+// All that is known of cones.
 
+#include <cstddef>
+#include <vector>
+
+#include "grelha/scene_spans.hpp"
+#include "kernel/shapes/box.hpp"
 #include "kernel/simd/vec3.hpp"
+
+namespace grelha {
+
+/// A kind of primitive, as the building of grids sees it; shapes.hpp says what each must have.
+struct Cone {
+  static constexpr PrimitiveKind kKind = PrimitiveKind::kCone;
+  static constexpr bool kFinite = true;
+
+  /// What tests see of the side of a cone frustum, or of many, an array each: centre of the narrower
+  /// end (a cone's tip), unit axis towards the other, height, radius at the narrower end, growth of
+  /// the radius per unit of height, and +1 (both sides show) or -1 (only the inside).
+  template <class T>
+  struct Fields {
+    T base[3], axis[3], height, radius, slope, side;
+  };
+  template <class Visit, class... F>
+  static constexpr void for_each_field(const Visit& visit, F&... of) {
+    for (int a = 0; a < 3; ++a)
+      visit(of.base[a]...);
+    for (int a = 0; a < 3; ++a)
+      visit(of.axis[a]...);
+    visit(of.height...);
+    visit(of.radius...);
+    visit(of.slope...);
+    visit(of.side...);
+  }
+
+  /// The caller's arrays of numbers.
+  template <class Visit>
+  static void for_each_array(const ConeSpans& spans, const Visit& visit) {
+    for (const Floats* v : {&spans.base_x,
+                            &spans.base_y,
+                            &spans.base_z,
+                            &spans.base_radius,
+                            &spans.apex_x,
+                            &spans.apex_y,
+                            &spans.apex_z,
+                            &spans.apex_radius})
+      visit(*v);
+  }
+  static const ConeSpans& spans_of(const GeometrySpans& g) { return g.cones; }
+  /// Whether they have one length.
+  static bool is_even(const ConeSpans& spans) {
+    bool even = true;
+    for_each_array(spans, [&](Floats v) { even &= v.size() == spans.size(); });
+    return even;
+  }
+  static std::size_t bytes(const ConeSpans& spans) { return spans.size() * 9 * sizeof(float); }
+
+  /// The caller's cones, with what tests see of them.
+  struct Source {
+    static constexpr std::size_t kPreparedBytes = sizeof(Fields<float>);  ///< a cone
+    ConeSpans spans;
+    Fields<std::vector<float>> prepared;
+    explicit Source(const GeometrySpans& g);
+    std::size_t size() const { return spans.size(); }
+    Fields<float> operator[](std::size_t i) const {
+      Fields<float> c;
+      for_each_field([i](float& to, const std::vector<float>& from) { to = from[i]; }, c, prepared);
+      return c;
+    }
+  };
+
+  /// Of the discs at both ends.
+  static Box box(const Source& source, std::size_t i);
+
+  /// Cells of its box are not looked at again.
+  struct Touch {
+    Touch(const Fields<float>&, const CellFrame&, const CellRange&) {}
+    bool operator()(const int (&)[3]) const { return true; }
+  };
+};
+
+}  // namespace grelha
 
 namespace grelha::GRELHA_ISA {
 

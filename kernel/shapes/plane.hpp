@@ -1,6 +1,59 @@
 #pragma once
+// All that is known of planes.
 
+#include <cstddef>
+
+#include "grelha/scene_spans.hpp"
 #include "kernel/simd/vec3.hpp"
+
+namespace grelha {
+
+/// A kind of primitive. It stands in no grid: every ray is tested against every plane.
+struct Plane {
+  static constexpr PrimitiveKind kKind = PrimitiveKind::kPlane;
+  static constexpr bool kFinite = false;
+
+  /// What tests see of a plane, or of many, an array each.
+  template <class T>
+  struct Fields {
+    T point[3], normal[3];
+  };
+  template <class Visit, class... F>
+  static constexpr void for_each_field(const Visit& visit, F&... of) {
+    for (int a = 0; a < 3; ++a)
+      visit(of.point[a]...);
+    for (int a = 0; a < 3; ++a)
+      visit(of.normal[a]...);
+  }
+
+  /// The caller's arrays of numbers.
+  template <class Visit>
+  static void for_each_array(const PlaneSpans& spans, const Visit& visit) {
+    for (const Floats* v : {&spans.x, &spans.y, &spans.z, &spans.nx, &spans.ny, &spans.nz})
+      visit(*v);
+  }
+  static const PlaneSpans& spans_of(const GeometrySpans& g) { return g.planes; }
+  /// Whether they have one length.
+  static bool is_even(const PlaneSpans& spans) {
+    bool even = true;
+    for_each_array(spans, [&](Floats v) { even &= v.size() == spans.size(); });
+    return even;
+  }
+  static std::size_t bytes(const PlaneSpans& spans) { return spans.size() * 7 * sizeof(float); }
+
+  /// The caller's planes.
+  struct Source {
+    static constexpr std::size_t kPreparedBytes = 0;  ///< a plane
+    PlaneSpans spans;
+    explicit Source(const GeometrySpans& g) : spans(g.planes) {}
+    std::size_t size() const { return spans.size(); }
+    Fields<float> operator[](std::size_t i) const {
+      return {{spans.x[i], spans.y[i], spans.z[i]}, {spans.nx[i], spans.ny[i], spans.nz[i]}};
+    }
+  };
+};
+
+}  // namespace grelha
 
 namespace grelha::GRELHA_ISA {
 

@@ -1,6 +1,104 @@
 #pragma once
+// All that is known of spheres.
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "grelha/scene_spans.hpp"
+#include "kernel/shapes/box.hpp"
 #include "kernel/simd/vec3.hpp"
+
+namespace grelha {
+
+/// A kind of primitive, as the building of grids sees it; shapes.hpp says what each must have.
+struct Sphere {
+  static constexpr PrimitiveKind kKind = PrimitiveKind::kSphere;
+  static constexpr bool kFinite = true;
+
+  /// What tests see of a sphere, or of many, an array each.
+  template <class T>
+  struct Fields {
+    T center[3], radius;
+  };
+  template <class Visit, class... F>
+  static constexpr void for_each_field(const Visit& visit, F&... of) {
+    for (int a = 0; a < 3; ++a)
+      visit(of.center[a]...);
+    visit(of.radius...);
+  }
+
+  /// The caller's arrays of numbers.
+  template <class Visit>
+  static void for_each_array(const SphereSpans& spans, const Visit& visit) {
+    for (const Floats* v : {&spans.x, &spans.y, &spans.z, &spans.radius})
+      visit(*v);
+  }
+  static const SphereSpans& spans_of(const GeometrySpans& g) { return g.spheres; }
+  /// Whether they have one length.
+  static bool is_even(const SphereSpans& spans) {
+    bool even = spans.material.size() == spans.size();
+    for_each_array(spans, [&](Floats v) { even &= v.size() == spans.size(); });
+    return even;
+  }
+  static std::size_t bytes(const SphereSpans& spans) { return spans.size() * 5 * sizeof(float); }
+
+  /// The caller's spheres.
+  struct Source {
+    static constexpr std::size_t kPreparedBytes = 0;  ///< a sphere
+    SphereSpans spans;
+    explicit Source(const GeometrySpans& g) : spans(g.spheres) {}
+    std::size_t size() const { return spans.size(); }
+    Fields<float> operator[](std::size_t i) const {
+      return {{spans.x[i], spans.y[i], spans.z[i]}, spans.radius[i]};
+    }
+  };
+
+  static Box box(const Source& source, std::size_t i) {
+    const Fields<float> s = source[i];
+    const double radius = s.radius < 0 ? -s.radius : s.radius;
+    Box b;
+    for (int a = 0; a < 3; ++a) {
+      const double center = s.center[a];
+      b.lo[a] = center - radius;
+      b.hi[a] = center + radius;
+    }
+    return b;
+  }
+
+  /// A cell grown by pad against a ball's surface: nearest point inside, farthest outside.
+  class Touch {
+   public:
+    Touch(const Fields<float>& s, const CellFrame& g, const CellRange&) {
+      const double radius = std::abs(static_cast<double>(s.radius));
+      for (int a = 0; a < 3; ++a) {
+        cell_[a] = g.cell[a];
+        center_[a] = s.center[a] - g.lo[a];
+      }
+      const double r = radius + g.pad;
+      const double inner = radius - g.pad;
+      reach_ = r * r * (1 + 1e-12);
+      inner_ = inner > 0 ? inner * inner * (1 - 1e-12) : -1;
+    }
+    bool operator()(const int (&at)[3]) const {
+      double near = 0, far = 0;
+      for (int a = 0; a < 3; ++a) {
+        const double lo = at[a] * cell_[a] - center_[a];
+        const double hi = (at[a] + 1) * cell_[a] - center_[a];
+        const double least = lo > 0 ? lo : hi < 0 ? -hi : 0;
+        const double most = std::max(std::abs(lo), std::abs(hi));
+        near += least * least;
+        far += most * most;
+      }
+      return near <= reach_ && far >= inner_;
+    }
+
+   private:
+    double cell_[3], center_[3], reach_, inner_;
+  };
+};
+
+}  // namespace grelha
 
 namespace grelha::GRELHA_ISA {
 

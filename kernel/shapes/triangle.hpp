@@ -1,6 +1,83 @@
 #pragma once
+// All that is known of triangles.
 
+#include <algorithm>
+#include <cstddef>
+
+#include "grelha/scene_spans.hpp"
+#include "kernel/shapes/box.hpp"
+#include "kernel/shapes/triangle_touch.hpp"
 #include "kernel/simd/vec3.hpp"
+
+namespace grelha {
+
+/// A kind of primitive, as the building of grids sees it; shapes.hpp says what each must have.
+struct Triangle {
+  static constexpr PrimitiveKind kKind = PrimitiveKind::kTriangle;
+  static constexpr bool kFinite = true;
+
+  /// What tests see of a triangle.
+  template <class T>
+  struct Fields {
+    T corner[3][3];  ///< x, y, z of each
+  };
+  template <class Visit, class... F>
+  static constexpr void for_each_field(const Visit& visit, F&... of) {
+    for (int k = 0; k < 3; ++k)
+      for (int a = 0; a < 3; ++a)
+        visit(of.corner[k][a]...);
+  }
+
+  /// The caller's arrays of coordinates.
+  template <class Visit>
+  static void for_each_array(const TriangleSpans& spans, const Visit& visit) {
+    for (const Floats* v : {&spans.x, &spans.y, &spans.z})
+      visit(*v);
+  }
+  static const TriangleSpans& spans_of(const GeometrySpans& g) { return g.triangles; }
+  /// Whether arrays of triangles have one length, and those of vertices.
+  static bool is_even(const TriangleSpans& spans);
+  static std::size_t bytes(const TriangleSpans& spans) {
+    return spans.size() * 4 * sizeof(std::uint32_t) +
+           (spans.vertex_count() + spans.nx.size()) * 3 * sizeof(float);
+  }
+
+  /// The caller's triangles.
+  struct Source {
+    static constexpr std::size_t kPreparedBytes = 0;  ///< a triangle
+    TriangleSpans spans;
+    explicit Source(const GeometrySpans& g) : spans(g.triangles) {}
+    std::size_t size() const { return spans.size(); }
+    Fields<float> operator[](std::size_t i) const {
+      Fields<float> t;
+      const std::uint32_t vertex[3] = {spans.a[i], spans.b[i], spans.c[i]};
+      for (int k = 0; k < 3; ++k) {
+        t.corner[k][0] = spans.x[vertex[k]];
+        t.corner[k][1] = spans.y[vertex[k]];
+        t.corner[k][2] = spans.z[vertex[k]];
+      }
+      return t;
+    }
+  };
+
+  static Box box(const Source& source, std::size_t i) {
+    const Fields<float> t = source[i];
+    Box b;
+    for (int a = 0; a < 3; ++a) {
+      b.lo[a] = std::min(std::min(t.corner[0][a], t.corner[1][a]), t.corner[2][a]);
+      b.hi[a] = std::max(std::max(t.corner[0][a], t.corner[1][a]), t.corner[2][a]);
+    }
+    return b;
+  }
+
+  class Touch : public TriangleTouch {
+   public:
+    Touch(const Fields<float>& t, const CellFrame& g, const CellRange& range)
+        : TriangleTouch(t.corner, g, range) {}
+  };
+};
+
+}  // namespace grelha
 
 namespace grelha::GRELHA_ISA {
 

@@ -2,8 +2,9 @@
 // Which instruction set this copy of the hot loops is compiled for: GRELHA_ISA names its namespace,
 // GRELHA_ISA_NUMBER tells the sets apart.
 
+// What is compiled once, such as the building of grids, sees the scalar copy.
 #ifndef GRELHA_ISA
-#error "define GRELHA_ISA (scalar, sse2, avx2, avx512) before headers that hold hot loops"
+#define GRELHA_ISA scalar
 #endif
 
 #define GRELHA_ISA_scalar 1

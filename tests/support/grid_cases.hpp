@@ -13,19 +13,19 @@ namespace grelha::test {
 /// want it, ascending.
 inline std::vector<std::uint32_t> ids_of(const CellStore& s, std::size_t cell) {
   std::vector<std::uint32_t> out;
-  if (!s.sphere_first.empty())
-    for (std::uint32_t i = s.sphere_first[cell]; i < s.sphere_first[cell + 1]; ++i)
-      out.push_back(s.sphere_id[i]);
-  const auto spheres = static_cast<std::ptrdiff_t>(out.size());
-  if (!s.triangle_first.empty())
-    for (std::uint32_t b = s.triangle_first[cell]; b < s.triangle_first[cell + 1]; ++b)
-      for (const std::uint32_t id : s.triangles[b].id)
-        if (id != kNoPrimitive)
-          out.push_back(id);
-  std::sort(out.begin() + spheres, out.end());
-  if (!s.cone_first.empty())
-    for (std::uint32_t i = s.cone_first[cell]; i < s.cone_first[cell + 1]; ++i)
-      out.push_back(s.cone_id[i]);
+  for_each_finite_shape([&]<class Shape>() {
+    const auto& list = s.of<Shape>();
+    const auto others = static_cast<std::ptrdiff_t>(out.size());
+    for (std::size_t i = 0; !list.first.empty() && i < list.first[cell + 1] - list.first[cell]; ++i)
+      if constexpr (ListStore<Shape>::kInBlocks) {
+        for (const std::uint32_t id : list.blocks[list.first[cell] + i].id)
+          if (id != kNoPrimitive)
+            out.push_back(id);
+        std::sort(out.begin() + others, out.end());
+      } else {
+        out.push_back(list.id[list.first[cell] + i]);
+      }
+  });
   return out;
 }
 
@@ -46,8 +46,8 @@ inline std::vector<Point> surface_points(
   std::vector<Point> out;
   const Geometry& g = s.geometry;
   for (int i = 0; i < count; ++i) {
-    if (id < p.triangle_base) {
-      const std::uint32_t k = id - p.sphere_base;
+    const auto [kind, k] = p.ids.primitive(id);
+    if (kind == PrimitiveKind::kSphere) {
       Float3 d = random.direction();
       if (i < 6) {
         d = {};
@@ -57,8 +57,7 @@ inline std::vector<Point> surface_points(
       out.push_back(mixed({g.spheres.x[k], g.spheres.y[k], g.spheres.z[k]},
                           std::abs(double{g.spheres.radius[k]}) / std::sqrt(dot(unit, unit)),
                           d));
-    } else if (id < p.cone_base) {
-      const std::uint32_t k = id - p.triangle_base;
+    } else if (kind == PrimitiveKind::kTriangle) {
       const Float3 a = vertex(s, g.triangles.a[k]), b = vertex(s, g.triangles.b[k]),
                    c = vertex(s, g.triangles.c[k]);
       const double u = i < 8 ? i % 2 : random.unit(),
@@ -72,7 +71,6 @@ inline std::vector<Point> surface_points(
       }
       out.push_back(q);
     } else {
-      const std::uint32_t k = id - p.cone_base;
       const Cones& c = g.cones;
       const double base[3] = {c.base_x[k], c.base_y[k], c.base_z[k]};
       const Point axis{{c.apex_x[k] - base[0], c.apex_y[k] - base[1], c.apex_z[k] - base[2]}};

@@ -14,9 +14,11 @@ TEST(Crowds, GetCellsOfTheirOwnSize) {
   const Scene scene = towns_in_a_desert(5, 6000);
   const World world(scene, {});
   std::size_t most = 0;
-  for (const Grid& g : world.impl().grids)
-    for (std::size_t c = 0; g.serves != Serves::kFar && c + 1 < g.store.sphere_first.size(); ++c)
-      most = std::max<std::size_t>(most, g.store.sphere_first[c + 1] - g.store.sphere_first[c]);
+  for (const Grid& g : world.impl().grids) {
+    const auto& first = g.store.of<Sphere>().first;
+    for (std::size_t c = 0; g.serves != Serves::kFar && c + 1 < first.size(); ++c)
+      most = std::max<std::size_t>(most, first[c + 1] - first[c]);
+  }
   EXPECT_LT(most, 4096u) << "of 24600 spheres";  // what is called bad; without crowds it is 18001
 }
 

@@ -46,7 +46,7 @@ TEST(BlockOrder, GivesEachTriangleAPlaceOfItsOwn) {
               v->begin(), v->end(), n % 2 == 0 ? .5f : std::numeric_limits<float>::quiet_NaN());
       const Primitives p(scene.geometry);
       std::vector<std::uint32_t> ids(t.size()), places;
-      std::iota(ids.begin(), ids.end(), p.triangle_base);
+      std::iota(ids.begin(), ids.end(), p.ids.begin(PrimitiveKind::kTriangle));
       Grid one;
       for (double& c : one.cell)
         c = 1;
@@ -65,7 +65,7 @@ TEST(BlockOrder, PutsNeighboursInOneBlock) {
     const Scene scene = shuffled_sheet(n);
     const Primitives p(scene.geometry);
     std::vector<std::uint32_t> ids(scene.geometry.triangles.size());
-    std::iota(ids.begin(), ids.end(), p.triangle_base);
+    std::iota(ids.begin(), ids.end(), p.ids.begin(PrimitiveKind::kTriangle));
     Grid one;
     for (double& c : one.cell)
       c = 1;
@@ -115,15 +115,15 @@ TEST(BlockBoxes, HoldWhatLiesInTheirCell) {
     const World::Impl& w = world.impl();
     Random random(13);
     for (const Grid& g : w.grids) {
-      const CellStore& s = g.store;
-      if (s.triangle_first.empty())
+      const ListStore<Triangle>& s = g.store.of<Triangle>();
+      if (s.first.empty())
         continue;
       const double pad = g.pad;
-      for (std::size_t cell = 0; cell + 1 < s.triangle_first.size(); ++cell) {
+      for (std::size_t cell = 0; cell + 1 < s.first.size(); ++cell) {
         const std::size_t at[3] = {
             cell % g.cells[0], cell / g.cells[0] % g.cells[1], cell / g.cells[0] / g.cells[1]};
-        for (std::uint32_t b = s.triangle_first[cell]; b < s.triangle_first[cell + 1]; ++b)
-          for (const std::uint32_t id : s.triangles[b].id) {
+        for (std::uint32_t b = s.first[cell]; b < s.first[cell + 1]; ++b)
+          for (const std::uint32_t id : s.blocks[b].id) {
             if (id == kNoPrimitive)
               continue;
             for (const Point& q : surface_points(c.scene, w.primitives, id, random, 4)) {
@@ -239,7 +239,7 @@ TEST(GridChoice, HugePrimitivesStandOutside) {
   ASSERT_EQ(world.impl().grids.size(), 1u);
   const auto outside = ids_of(world.impl().outside, 0);
   // two triangles behind the crowd
-  const std::uint32_t ground = world.impl().primitives.triangle_base + 300;
+  const std::uint32_t ground = world.impl().primitives.ids.begin(PrimitiveKind::kTriangle) + 300;
   EXPECT_TRUE(std::binary_search(outside.begin(), outside.end(), ground));
   EXPECT_TRUE(std::binary_search(outside.begin(), outside.end(), ground + 1));
 }

@@ -67,30 +67,27 @@ TEST(Distance, StopsAt255) {
 // ------------------------------------------------------------------------------------------
 
 void expect_sound_rows(const CellStore& s, std::size_t cells) {
-  for (const auto* first : {&s.sphere_first, &s.triangle_first, &s.cone_first}) {
-    if (first->empty())
-      continue;
-    ASSERT_EQ(first->size(), cells + 1);
-    EXPECT_EQ(first->front(), 0u);
-    EXPECT_TRUE(std::is_sorted(first->begin(), first->end()));
-  }
-  if (!s.triangle_first.empty()) {
-    EXPECT_EQ(s.triangle_first.back(), s.triangles.size());
-  }
-  if (!s.sphere_first.empty()) {
-    // a whole block can be read from any place
-    EXPECT_EQ(s.sphere_first.back() + kBlock, s.sphere_id.size());
-    for (const auto& v : s.spheres)
-      EXPECT_EQ(v.size(), s.sphere_id.size());
-    for (std::size_t i = s.sphere_first.back(); i < s.sphere_id.size(); ++i)
-      EXPECT_TRUE(std::isnan(s.spheres[3][i]));
-  }
-  if (!s.cone_first.empty()) {
-    EXPECT_EQ(s.cone_first.back() + kBlock, s.cone_id.size());
-    for (const auto& v : s.cones)
-      EXPECT_EQ(v.size(), s.cone_id.size());
-  }
-  for (const TriangleBlock& b : s.triangles)
+  for_each_finite_shape([&]<class Shape>() {
+    const auto& list = s.of<Shape>();
+    if (list.first.empty())
+      return;
+    ASSERT_EQ(list.first.size(), cells + 1);
+    EXPECT_EQ(list.first.front(), 0u);
+    EXPECT_TRUE(std::is_sorted(list.first.begin(), list.first.end()));
+    if constexpr (ListStore<Shape>::kInBlocks) {
+      EXPECT_EQ(list.first.back(), list.blocks.size());
+    } else {
+      // a whole block can be read from any place
+      EXPECT_EQ(list.first.back() + kBlock, list.id.size());
+      const auto expect_padded = [&](const RawVector<float>& v) {
+        ASSERT_EQ(v.size(), list.id.size());
+        for (std::size_t i = list.first.back(); i < v.size(); ++i)
+          EXPECT_TRUE(std::isnan(v[i]));
+      };
+      Shape::for_each_field(expect_padded, list.fields);
+    }
+  });
+  for (const TriangleBlock& b : s.of<Triangle>().blocks)
     for (int i = 0; i < kBlock; ++i) {
       EXPECT_EQ(b.id[i] == kNoPrimitive, std::isnan(b.a[0][i]));
       if (i > 0 && b.id[i - 1] == kNoPrimitive) {
@@ -116,18 +113,19 @@ void expect_same_bytes(const T& a, const T& b) {
 }
 
 void expect_same_store(const CellStore& a, const CellStore& b) {
-  for (const auto list : {&CellStore::triangle_first,
-                          &CellStore::sphere_first,
-                          &CellStore::cone_first,
-                          &CellStore::sphere_id,
-                          &CellStore::cone_id})
-    expect_same_bytes(a.*list, b.*list);
-  expect_same_bytes(a.triangles, b.triangles);
-  expect_same_bytes(a.boxes, b.boxes);
-  for (std::size_t k = 0; k < a.spheres.size(); ++k)
-    expect_same_bytes(a.spheres[k], b.spheres[k]);
-  for (std::size_t k = 0; k < a.cones.size(); ++k)
-    expect_same_bytes(a.cones[k], b.cones[k]);
+  for_each_finite_shape([&]<class Shape>() {
+    const auto& one = a.of<Shape>();
+    const auto& other = b.of<Shape>();
+    expect_same_bytes(one.first, other.first);
+    if constexpr (ListStore<Shape>::kInBlocks) {
+      expect_same_bytes(one.blocks, other.blocks);
+      expect_same_bytes(one.boxes, other.boxes);
+    } else {
+      expect_same_bytes(one.id, other.id);
+      const auto expect_same = [](const auto& x, const auto& y) { expect_same_bytes(x, y); };
+      Shape::for_each_field(expect_same, one.fields, other.fields);
+    }
+  });
   EXPECT_EQ(a.references, b.references);
 }
 
@@ -160,7 +158,7 @@ TEST(GridRows, HoldWhatTheyPromise) {
       const World world(c.scene, {.density = density});
       const World::Impl& w = world.impl();
       // what rays that start near, and far away, may meet
-      std::vector<int> near(w.primitives.end), far(w.primitives.end);
+      std::vector<int> near(w.primitives.ids.end()), far(w.primitives.ids.end());
       expect_sound_rows(w.outside, 1);
       for (const std::uint32_t id : ids_of(w.outside, 0)) {
         ++near[id];
@@ -185,8 +183,8 @@ TEST(GridRows, HoldWhatTheyPromise) {
         ASSERT_GE(g.distance.size(), cells + 3) << "four bytes are read at once";
         EXPECT_TRUE(std::equal(distance.begin(), distance.end(), g.distance.begin()));
       }
-      std::vector<std::uint32_t> all(w.primitives.end - w.primitives.sphere_base);
-      std::iota(all.begin(), all.end(), w.primitives.sphere_base);
+      std::vector<std::uint32_t> all(w.primitives.finite_count());
+      std::iota(all.begin(), all.end(), w.primitives.first_finite());
       const auto copies = copies_among(w.primitives, all);
       // far towns have some: floats lie far apart there
       const std::set<std::uint32_t> may_lack(copies.begin(), copies.end());

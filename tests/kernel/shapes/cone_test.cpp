@@ -63,21 +63,21 @@ struct Hit {
 };
 
 Hit hit(const Float3& o, const Float3& d, const Shape& s, float t_min = 0) {
-  Cones cones;
-  cones.add(s.base, s.r0, s.apex, s.r1, 0);
-  const PreparedCones c = prepare_cones(cones);
+  Geometry g;
+  g.cones.add(s.base, s.r0, s.apex, s.r1, 0);
+  const grelha::Cone::Fields<float> c = grelha::Cone::Source(g)[0];
   const float inv_dd = 1 / ((d.x * d.x + d.y * d.y) + d.z * d.z);
   float t = -1;
   const bool h = scalar::hit_cone<float>({o.x, o.y, o.z},
                                          {d.x, d.y, d.z},
                                          inv_dd,
                                          t_min,
-                                         {{c[0][0], c[1][0], c[2][0]},
-                                          {c[3][0], c[4][0], c[5][0]},
-                                          c[6][0],
-                                          c[7][0],
-                                          c[8][0],
-                                          c[9][0]},
+                                         {{c.base[0], c.base[1], c.base[2]},
+                                          {c.axis[0], c.axis[1], c.axis[2]},
+                                          c.height,
+                                          c.radius,
+                                          c.slope,
+                                          c.side},
                                          t);
   return {h, t};
 }

@@ -80,7 +80,7 @@ TEST(Copies, AreEqualToTheBit) {
     s.geometry.cones.add({0, 0, 0}, 1, {0, 1, 0}, .5f, 0);
   const Primitives p(s.geometry);
   std::vector<std::uint32_t> ids;
-  for (std::uint32_t id = 0; id < p.end; ++id)
+  for (std::uint32_t id = 0; id < p.ids.end(); ++id)
     ids.push_back(id);
   std::vector<std::uint32_t> copies = copies_among(p, ids);
   std::sort(copies.begin(), copies.end());

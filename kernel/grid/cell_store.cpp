@@ -1,0 +1,70 @@
+#include "kernel/grid/cell_store.hpp"
+
+namespace grelha {
+namespace {
+
+constexpr float kNoNumber = std::numeric_limits<float>::quiet_NaN();
+
+}  // namespace
+
+void ListStore<Triangle>::resize_boxes() {
+  boxes.resize((blocks.size() + kBlock - 1) / kBlock);
+  // places without a block
+  for (auto& side : boxes.back().side)
+    std::fill(std::begin(side), std::end(side), kNoNumber);
+}
+
+void ListStore<Triangle>::put(std::size_t entry,
+                              std::size_t place,
+                              const Triangle::Fields<float>& triangle,
+                              std::uint32_t of) {
+  TriangleBlock& block = blocks[entry + place / kBlock];
+  const std::size_t at = place % kBlock;
+  for (int a = 0; a < 3; ++a) {
+    block.a[a][at] = triangle.corner[0][a];
+    block.b[a][at] = triangle.corner[1][a];
+    block.c[a][at] = triangle.corner[2][a];
+  }
+  block.id[at] = of;
+}
+
+void ListStore<Triangle>::end_block(std::size_t entry, std::size_t place) {
+  TriangleBlock& block = blocks[entry + place / kBlock];
+  for (std::size_t i = place % kBlock; i < kBlock; ++i) {
+    for (int a = 0; a < 3; ++a)
+      block.a[a][i] = block.b[a][i] = block.c[a][i] = kNoNumber;
+    block.id[i] = kNoPrimitive;
+  }
+}
+
+CellLists CellStore::lists() const {
+  CellLists l;
+  if (const auto& triangles = of<Triangle>(); !triangles.first.empty()) {
+    l.triangle_first = triangles.first.data();
+    l.triangles = triangles.blocks.data();
+    l.boxes = triangles.boxes.empty() ? nullptr : triangles.boxes.data();
+  }
+  if (const auto& spheres = of<Sphere>(); !spheres.first.empty()) {
+    l.sphere_first = spheres.first.data();
+    l.sx = spheres.fields.center[0].data();
+    l.sy = spheres.fields.center[1].data();
+    l.sz = spheres.fields.center[2].data();
+    l.sr = spheres.fields.radius.data();
+    l.sphere_id = spheres.id.data();
+  }
+  if (const auto& cones = of<Cone>(); !cones.first.empty()) {
+    l.cone_first = cones.first.data();
+    l.cone_id = cones.id.data();
+    int k = 0;
+    Cone::for_each_field([&](const RawVector<float>& v) { l.cone[k++] = v.data(); }, cones.fields);
+  }
+  return l;
+}
+
+std::size_t CellStore::bytes() const {
+  std::size_t sum = 0;
+  for_each_finite_shape([&]<class Shape>() { sum += of<Shape>().bytes(); });
+  return sum;
+}
+
+}  // namespace grelha

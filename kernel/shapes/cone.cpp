@@ -1,0 +1,68 @@
+#include "kernel/shapes/cone.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace grelha {
+namespace {
+
+struct ConeEnd {
+  double at[3], radius;
+};
+
+Cone::Fields<float> prepared_cone(const ConeSpans& c, std::size_t i) {
+  ConeEnd narrow{{c.base_x[i], c.base_y[i], c.base_z[i]},
+                 std::abs(static_cast<double>(c.base_radius[i]))};
+  ConeEnd wide{{c.apex_x[i], c.apex_y[i], c.apex_z[i]},
+               std::abs(static_cast<double>(c.apex_radius[i]))};
+  if (wide.radius < narrow.radius)
+    std::swap(narrow, wide);
+  double height = 0;
+  for (int a = 0; a < 3; ++a)
+    height += (wide.at[a] - narrow.at[a]) * (wide.at[a] - narrow.at[a]);
+  height = std::sqrt(height);
+  Cone::Fields<float> out;
+  for (int a = 0; a < 3; ++a) {
+    out.base[a] = static_cast<float>(narrow.at[a]);
+    out.axis[a] = static_cast<float>((wide.at[a] - narrow.at[a]) / height);
+  }
+  out.height = static_cast<float>(height);
+  out.radius = static_cast<float>(narrow.radius);
+  out.slope = static_cast<float>((wide.radius - narrow.radius) / height);
+  out.side = c.base_radius[i] + c.apex_radius[i] < 0 ? -1.f : 1.f;
+  return out;
+}
+
+}  // namespace
+
+Cone::Source::Source(const GeometrySpans& g) : spans(g.cones) {
+  for_each_field([n = spans.size()](std::vector<float>& v) { v.resize(n); }, prepared);
+  for (std::size_t i = 0; i < spans.size(); ++i) {
+    const Fields<float> cone = prepared_cone(spans, i);
+    for_each_field(
+        [i](std::vector<float>& to, const float& from) { to[i] = from; }, prepared, cone);
+  }
+}
+
+// A disc of radius r across a unit axis d reaches r sqrt(1 - d_a^2).
+Box Cone::box(const Source& source, std::size_t i) {
+  const ConeSpans& c = source.spans;
+  const double ends[2][4] = {{c.base_x[i], c.base_y[i], c.base_z[i], c.base_radius[i]},
+                             {c.apex_x[i], c.apex_y[i], c.apex_z[i], c.apex_radius[i]}};
+  const double height = source.prepared.height[i];
+  Box b;
+  for (const auto& e : ends) {
+    double reach[3];
+    for (int a = 0; a < 3; ++a) {
+      const double d = source.prepared.axis[a][i];
+      reach[a] = std::abs(e[3]) * std::sqrt(std::max(0., 1 - d * d) + 1e-6);
+    }
+    b.add(e[0] - reach[0], e[1] - reach[1], e[2] - reach[2]);
+    b.add(e[0] + reach[0], e[1] + reach[1], e[2] + reach[2]);
+  }
+  b.grow(height * 1e-6);
+  return b;
+}
+
+}  // namespace grelha
