@@ -29,7 +29,7 @@ CLANG_FORMAT = "14"  # each version has its own taste
 EXCEPTIONS = {
     "file": (
         "frontend/cli/main.cpp", "frontend/cli/options.cpp", "frontend/nff/nff_reader.cpp",
-        "kernel/grid/grid_fill.cpp", "kernel/picture/refiner.cpp", "kernel/render/doubt.hpp",
+        "kernel/picture/refiner.cpp", "kernel/render/doubt.hpp",
         "kernel/trace/march.hpp", "kernel/trace/surface.hpp", "perf/build.cpp",
         "perf/precision.cpp", "perf/trace.cpp", "tests/frontend/cli/options_test.cpp",
         "tests/frontend/cli/program_test.cpp", "tests/frontend/images/image_file_test.cpp",
@@ -61,7 +61,7 @@ EXCEPTIONS = {
     ),
     "lines": (
         "frontend/cli/main.cpp", "frontend/cli/options.cpp", "frontend/commands/report.cpp",
-        "frontend/jobs/ranks_mpi.cpp", "kernel/grid/grid_fill.cpp", "kernel/grid/world.cpp",
+        "frontend/jobs/ranks_mpi.cpp", "kernel/grid/world.cpp",
         "kernel/render/beam.hpp", "kernel/render/doubt.hpp", "kernel/trace/abreast.hpp",
         "kernel/trace/march.hpp", "perf/build.cpp", "perf/ray_sets.cpp", "perf/report.cpp",
         "perf/trace.cpp", "tests/frontend/cli/option_checks_test.cpp",
@@ -70,7 +70,7 @@ EXCEPTIONS = {
         "tests/kernel/trace/watertight_test.cpp",
     ),
     "branches": (
-        "frontend/input/effects.cpp", "kernel/grid/grid_fill.cpp",
+        "frontend/input/effects.cpp",
         "kernel/picture/refinement.cpp", "kernel/render/beam.hpp", "kernel/render/doubt.hpp",
         "kernel/render/setup.cpp", "kernel/trace/abreast.hpp", "kernel/trace/march.hpp",
         "kernel/trace/packet.hpp", "perf/embree.cpp", "perf/ray_sets.cpp", "perf/trace.cpp",

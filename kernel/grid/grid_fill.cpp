@@ -19,7 +19,7 @@
 // A store is filled in three passes, each shared among threads that write to places of their own:
 // - emit: a chunk of primitives becomes pairs (cell, id), sorted by bucket, a run of neighbouring
 //   cells;
-// - count: each bucket counts its cells; the sums over buckets are the places where its lists begin;
+// - count: each bucket counts its cells; the sums over buckets say where its lists begin;
 // - write: each bucket writes its lists, taking chunks in turn, so that ids ascend, but for
 //   triangles, which stand as their blocks want it.
 

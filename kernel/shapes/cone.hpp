@@ -15,12 +15,14 @@ struct Cone {
   static constexpr PrimitiveKind kKind = PrimitiveKind::kCone;
   static constexpr bool kFinite = true;
 
-  /// What tests see of the side of a cone frustum, or of many, an array each: centre of the narrower
-  /// end (a cone's tip), unit axis towards the other, height, radius at the narrower end, growth of
-  /// the radius per unit of height, and +1 (both sides show) or -1 (only the inside).
+  /// What tests see of the side of a cone frustum, or of many, an array each.
   template <class T>
   struct Fields {
-    T base[3], axis[3], height, radius, slope, side;
+    T base[3];         ///< centre of the narrower end, a cone's tip
+    T axis[3];         ///< unit, towards the other end
+    T height, radius;  ///< radius: at the narrower end
+    T slope;           ///< growth of the radius per unit of height
+    T side;            ///< +1: both sides show; -1: only the inside
   };
   template <class Visit, class... F>
   static constexpr void for_each_field(const Visit& visit, F&... of) {
