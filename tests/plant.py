@@ -34,7 +34,7 @@ ROW = "Rows/Stability.NothingIsLostFalseOrMetAgain/"
 FAULTS = [
     Fault("no growth of boxes", "kernel/grid/plan.cpp", "return reach * 256 / 16777216;", "return reach * 0;",
           "grid", "Pads.*"),
-    Fault("< for <= in the walk", "kernel/trace/march.hpp", "slice <= last && active > 0;", "slice < last && active > 0;", "walk", "Isa/Walk.*"),
+    Fault("< for <= in the walk", "kernel/trace/packet_traversal.hpp", "slice <= last;", "slice < last;", "walk", "Isa/Walk.*"),
     Fault("adding up instead of computing again", "kernel/trace/abreast.hpp", "t[a] = (plane - load<Lanes>(now[Course::kPlace + a])) * inverse;",
           """t[a] = [&] {
         const float from = load<Lanes>(now[Course::kPlace + a]), to = plane, step = inverse;
@@ -46,8 +46,8 @@ FAULTS = [
     Fault("contraction", "CMakeLists.txt", "-ffp-contract=off)", "-ffp-contract=fast)", "variants", "*ReturnTheScalarBits*", simd=True),
     Fault("unshuffled light samples", "kernel/render/sampling.hpp", "if (plan.kind == SamplePlan::kUnshuffled) return",
           "if (plan.kind != SamplePlan::kSobol) return", "stability", "Rows/StabilityOfPictures.NoPixelIsWrong/correlated_samples"),
-    Fault("skipping a slice too far", "kernel/trace/march.hpp", ": nearest - 1;", ": nearest;", "walk", "Isa/Walk.*"),
-    Fault("a mailbox that is kept for the next packet", "kernel/trace/march.hpp", "if (use_mailbox) mailbox.clear();", "", "walk", "Isa/Walk.*"),
+    Fault("skipping a slice too far", "kernel/trace/packet_traversal.hpp", ": nearest - 1;", ": nearest;", "walk", "Isa/Walk.*"),
+    Fault("a mailbox that is kept for the next packet", "kernel/trace/packet_traversal.hpp", "if (mailbox) held_.clear();", "", "walk", "Isa/Walk.*"),
     Fault("a sphere by the textbook", "kernel/shapes/sphere.hpp", "const Real inside = rr - dot(gap, gap);",
           "const Real inside = middle * middle / inv_dd - (dot(to_center, to_center) - rr);", "stability", ROW + "specks_in_a_large_scene"),
     Fault("a sphere's power without slack", "kernel/shapes/sphere.hpp", "kPowerError = 0x1p-21f;",

@@ -62,7 +62,7 @@ struct RenderOptions {
   /// Ends paths whose weight, times the brightest light they can meet, is less; 0 to 1, 0: none.
   /// The default moves no channel by more than 1/1024 at depth 5 (docs/sampling.md).
   double min_weight = 1. / 16384;
-  /// most rays that march together: 1, 16, 64 or 256; see march_from()
+  /// most rays that march together: 1, 16, 64 or 256; see traverse_together()
   int packet = 256;
   bool mailbox = true;  ///< skip primitives a ray or packet has already met in another cell
   std::string_view isa = "best";

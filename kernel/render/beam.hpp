@@ -225,71 +225,51 @@ struct Met {
   bool full = false;  ///< there were more
 };
 
+/// A beam in a grid: tells see(id) of the primitives that reach into its frustum, some more than
+/// once.
+template <class See>
+class BeamVisit {
+ public:
+  BeamVisit(const GridView& g, const Frustum& f, const See& see)
+      : lists_(g.lists), f_(f), see_(see) {
+    held_.clear();
+  }
+  bool enter(int, const CellRect&) const { return true; }
+  bool leave(int) const { return true; }
+
+  void look(std::size_t cell) {
+    if (lists_.triangle_first)
+      for (std::uint32_t b = lists_.triangle_first[cell]; b < lists_.triangle_first[cell + 1]; ++b)
+        each_triangle_inside(
+            f_, lists_.triangles[b], [&](int i) { once(lists_.triangles[b].id[i]); });
+    if (lists_.sphere_first)
+      each_sphere_inside(f_, lists_, cell, [&](std::uint32_t i) { once(lists_.sphere_id[i]); });
+    if (lists_.cone_first)
+      each_cone_inside(f_, lists_, cell, [&](std::uint32_t i) { once(lists_.cone_id[i]); });
+  }
+
+ private:
+  void once(std::uint32_t id) {
+    if (!held_.seen(id))
+      see_(id);
+  }
+
+  const CellLists& lists_;
+  const Frustum& f_;
+  const See& see_;
+  Mailbox held_;
+};
+
 /// Calls see(id) for every primitive whose bounds the beam meets in this grid, some more than once.
+/// False when no frustum holds the beam's edges.
 template <class See>
 inline bool walk_beam(const GridView& g, const Packet& p, int axis, const See& see, Counters& n) {
   Frustum f;
-  switch (bound(g, p, f, axis)) {
-    case Spread::kNothing:
-      return true;
-    case Spread::kApart:
-      return false;
-    case Spread::kTogether:
-      break;
-  }
-  Mailbox mailbox;
-  mailbox.clear();
-  const auto once = [&](std::uint32_t id) {
-    if (!mailbox.seen(id))
-      see(id);
-  };
-  const std::size_t stride[3] = {
-      1,
-      static_cast<std::size_t>(g.n[0]),
-      static_cast<std::size_t>(g.n[0]) * static_cast<std::size_t>(g.n[1])};
-  const int nk = g.n[f.k];
-  int slice = clamp_cell(static_cast<double>(f.from - f.margin), nk);
-  const int last = clamp_cell(static_cast<double>(f.to + f.margin), nk);
-  for (; slice <= last; ++slice) {
-    int least[2], most[2];
-    if (!rectangle(g, f, slice, least, most))
-      continue;
-    const int sk = f.flip ? nk - 1 - slice : slice;
-    int nearest = 255;
-    for (int v = least[1]; v <= most[1]; ++v)
-      for (int u = least[0]; u <= most[0]; ++u) {
-        const std::size_t cell = static_cast<std::size_t>(sk) * stride[f.k] +
-                                 static_cast<std::size_t>(u) * stride[f.u] +
-                                 static_cast<std::size_t>(v) * stride[f.v];
-        ++n.visits;
-        const int distance = g.distance[cell];
-        nearest = distance < nearest ? distance : nearest;
-        if (distance != 0)
-          continue;
-        if (g.lists.triangle_first)
-          for (std::uint32_t b = g.lists.triangle_first[cell]; b < g.lists.triangle_first[cell + 1];
-               ++b)
-            for (int i = 0; i < kBlock; i += kWidth<Block>)
-              for (unsigned left = triangles_inside(f, g.lists.triangles[b], i); left != 0;
-                   left &= left - 1)
-                once(g.lists.triangles[b].id[i + __builtin_ctz(left)]);
-        if (g.lists.sphere_first)
-          for (std::uint32_t i = g.lists.sphere_first[cell], end = g.lists.sphere_first[cell + 1];
-               i < end;
-               i += kWidth<Block>)
-            for (unsigned left = spheres_inside(f, g.lists, i, end); left != 0; left &= left - 1)
-              once(g.lists.sphere_id[i + static_cast<unsigned>(__builtin_ctz(left))]);
-        if (g.lists.cone_first)
-          for (std::uint32_t i = g.lists.cone_first[cell], end = g.lists.cone_first[cell + 1];
-               i < end;
-               i += kWidth<Block>)
-            for (unsigned left = cones_inside(f, g.lists, i, end); left != 0; left &= left - 1)
-              once(g.lists.cone_id[i + static_cast<unsigned>(__builtin_ctz(left))]);
-      }
-    if (nearest > 1)
-      slice += f.steepest > 1 ? static_cast<int>(static_cast<float>(nearest - 1) / f.steepest)
-                              : nearest - 1;
-  }
+  const Coherence edges = bound_rays(g, p, f, axis);
+  if (edges != Coherence::kTogether)
+    return edges == Coherence::kMisses;
+  BeamVisit<See> visit(g, f, see);
+  walk_frustum(g, f, n, visit);
   return true;
 }
 

@@ -2,7 +2,7 @@
 // Rays in arrays against a whole scene: planes and outside primitives first, then each grid with
 // what t is left.
 
-#include "kernel/trace/march.hpp"
+#include "kernel/trace/packet_traversal.hpp"
 
 namespace grelha::GRELHA_ISA {
 
@@ -224,7 +224,7 @@ inline void trace_packet(const SceneView& scene,
   test_outside<kAny>(scene.outside, p, n);
   each_grid<kAny>(scene, p, [&](const GridView& g) {
     if (start_in(g, p))
-      march<kAny>(g, p, options.mailbox, any_triangles, n);
+      traverse_packet<kAny>(g, p, options.mailbox, any_triangles, n);
   });
 }
 

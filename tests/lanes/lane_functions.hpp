@@ -7,6 +7,28 @@
 
 namespace grelha::test {
 
+/// How far rays pass what a frustum promises of them, at most 0 where it keeps its word.
+struct FrustumCheck {
+  bool together = false;
+  int rays = 0;              ///< of the packet, that meet the grid
+  float steepest = 0;        ///< slope
+  double sides = -1;         ///< of a slice's cells, in cells
+  double planes = -1;        ///< of the planes that cull, in cells, as the culls compute them
+  double group_planes = -1;  ///< of those of the ray's own group
+  double near = -1;          ///< of the plane before which nothing is met, in slices
+  double group_near = -1;    ///< of that of the ray's own group
+  double reach = -1;         ///< by which a plane's gradient is longer than is said, of itself
+};
+
+/// Rays of one packet; arrays as in RaySpan.
+struct PacketRays {
+  const float* org[3];
+  const float* dir[3];
+  const float* t_min;
+  const float* t_max;
+  int count;
+};
+
 struct LaneFunctions {
   /// power(x[i], y[i]).
   void (*power)(const float* x, const float* y, float* out, int count);
@@ -22,6 +44,9 @@ struct LaneFunctions {
                   int count);
   /// Camera rays of the work's batch.
   void (*camera_rays)(const FrameView&, const BandWork&, int count, bool in_pixels);
+  /// Bounds rays in a grid, along an axis or -1, and follows each in long double.
+  FrustumCheck (*check_frustum)(const GridView&, const PacketRays&, int axis);
+  int most_rays;  ///< of a packet
 };
 
 /// Those of a variant's instruction set.

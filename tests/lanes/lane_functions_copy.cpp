@@ -1,6 +1,6 @@
 // Compiled once per instruction set, see CMakeLists.txt: GRELHA_ISA is its name and "_lanes".
 #include "kernel/render/band.hpp"
-#include "tests/lanes/lane_functions.hpp"
+#include "tests/lanes/frustum_check.hpp"
 
 namespace grelha::GRELHA_ISA {
 
@@ -56,6 +56,6 @@ inline void samples(const SamplePlan& plan,
 }
 
 extern const test::LaneFunctions k_functions;
-const test::LaneFunctions k_functions{powers, samples, camera_rays};
+const test::LaneFunctions k_functions{powers, samples, camera_rays, check_frustum, kPacket};
 
 }  // namespace grelha::GRELHA_ISA

@@ -1,0 +1,312 @@
+#pragma once
+// A packet through a grid: all rays together, slice by slice along their major axis, between four
+// bounding planes (frustum.hpp). Beams go through the same walk.
+
+#include "kernel/trace/culling.hpp"
+#include "kernel/trace/mailbox.hpp"
+
+namespace grelha::GRELHA_ISA {
+
+/// Rows and columns of cells of a slice.
+struct CellRect {
+  int least[2], most[2];
+  long cells() const {
+    return static_cast<long>(most[0] - least[0] + 1) * (most[1] - least[1] + 1);
+  }
+};
+
+/// Part of a slice between a frustum's first slice and its last, counted from the first.
+struct SliceSpan {
+  float begin, end;
+};
+inline SliceSpan span_of(const Frustum& f, int slice) {
+  const float s = static_cast<float>(slice);
+  const float next = s + 1;
+  return {(s > f.from ? s : f.from) - f.from, (next < f.to ? next : f.to) - f.from};
+}
+
+struct Interval {
+  float lo, hi;
+};
+/// Where the rays lie along U (j = 0) or V (j = 1) within a slice, in cells.
+inline Interval side_in(const Frustum& f, int j, const SliceSpan& s) {
+  return {lesser(f.lo[j] + s.begin * f.lo_slope[j], f.lo[j] + s.end * f.lo_slope[j]) - f.margin,
+          greater(f.hi[j] + s.begin * f.hi_slope[j], f.hi[j] + s.end * f.hi_slope[j]) + f.margin};
+}
+
+/// The cells that a frustum can touch between slices s and s + 1; false when it is outside the grid
+/// there.
+inline bool rectangle(const GridView& g, const Frustum& f, int slice, CellRect& r) {
+  const SliceSpan span = span_of(f, slice);
+  for (int j = 0; j < 2; ++j) {
+    const auto [lo, hi] = side_in(f, j, span);
+    const int n = g.n[j == 0 ? f.u : f.v];
+    if (!(hi >= 0) || !(lo <= static_cast<float>(n)))
+      return false;
+    r.least[j] = clamp_cell(static_cast<double>(lo), n);
+    r.most[j] = clamp_cell(static_cast<double>(hi), n);
+  }
+  return true;
+}
+
+/// Calls visit.look(cell) for the cells with something in them that lie in a rectangle of a slice.
+/// Returns the least distance that a cell of it has to one with something in it.
+template <class Visit>
+[[gnu::always_inline]] inline int look_into_cells(
+    const GridView& g, const Frustum& f, int slice, const CellRect& r, Counters& n, Visit& visit) {
+  const std::size_t stride[3] = {
+      1,
+      static_cast<std::size_t>(g.n[0]),
+      static_cast<std::size_t>(g.n[0]) * static_cast<std::size_t>(g.n[1])};
+  const int k = f.flip ? g.n[f.k] - 1 - slice : slice;
+  int nearest = 255;
+  for (int v = r.least[1]; v <= r.most[1]; ++v)
+    for (int u = r.least[0]; u <= r.most[0]; ++u) {
+      const std::size_t cell = static_cast<std::size_t>(k) * stride[f.k] +
+                               static_cast<std::size_t>(u) * stride[f.u] +
+                               static_cast<std::size_t>(v) * stride[f.v];
+      ++n.visits;
+      const int distance = g.distance[cell];
+      nearest = distance < nearest ? distance : nearest;
+      if (distance == 0)
+        visit.look(cell);
+    }
+  return nearest;
+}
+
+/// Slices that hold nothing after one that has nothing within nearest - 1 cells: the frustum shifts
+/// sideways by at most `steepest` a slice.
+inline int empty_slices(const Frustum& f, int nearest) {
+  return f.steepest > 1 ? static_cast<int>(static_cast<float>(nearest - 1) / f.steepest)
+                        : nearest - 1;
+}
+
+/// Goes through the slices that a frustum crosses in a grid, front to back. visit.enter(slice,
+/// rectangle) comes before what visit.look(cell) sees of one, visit.leave(slice) after a slice with
+/// something in it; the walk ends where one of the two returns false.
+template <class Visit>
+[[gnu::always_inline]] inline void walk_frustum(const GridView& g,
+                                                const Frustum& f,
+                                                Counters& n,
+                                                Visit& visit) {
+  const int slices = g.n[f.k];
+  int slice = clamp_cell(static_cast<double>(f.from - f.margin), slices);
+  const int last = clamp_cell(static_cast<double>(f.to + f.margin), slices);
+  for (; slice <= last; ++slice) {
+    CellRect r;
+    if (!rectangle(g, f, slice, r))
+      continue;
+    if (!visit.enter(slice, r))
+      return;
+    const int nearest = look_into_cells(g, f, slice, r, n, visit);
+    if (nearest == 0) {
+      if (!visit.leave(slice))
+        return;
+    } else if (nearest > 1) {
+      slice += empty_slices(f, nearest);
+    }
+  }
+}
+
+/// Leaves live those groups with a ray whose answer may still change beyond t(s), s a plane along
+/// K. Returns how many such rays there are.
+inline int update_live(const Frustum& f, Packet& p, float s) {
+  std::uint64_t live = 0;
+  int rays = 0;
+  each_live_group(p, [&](int i, int g) {
+    const Lanes t = (Lanes(s) - load<Lanes>(f.position + i)) * load<Lanes>(f.per_slice + i);
+    const unsigned on = bits(lesser(load<Lanes>(p.best + i), load<Lanes>(f.leave + i)) > t);
+    if (on != 0)
+      live |= std::uint64_t{1} << g;
+    rays += __builtin_popcount(on);
+  });
+  p.live = live;
+  return rays;
+}
+
+/// Beyond this many cells a slice, looking into each costs more than every ray walking alone
+/// (measured).
+inline int most_cells(int width) { return width > kMiddle ? 32 : width > kSmall ? 16 : 8; }
+
+/// The rays of a packet that go through a grid together.
+template <bool kAny>
+class PacketVisit {
+ public:
+  PacketVisit(const GridView& g, const Frustum& f, Packet& p, int width, bool mailbox, Counters& n)
+      : g_(g), f_(f), p_(p), n_(n), width_(width), limit_(most_cells(width)), mailbox_(mailbox) {
+    if (mailbox)
+      held_.clear();
+  }
+
+  bool start() { return (active_ = update_live(f_, p_, f_.from - f_.margin)) > 0; }
+
+  bool enter(int slice, const CellRect& r) {
+    const long cells = r.cells();
+    if (cells > 1 && cells * width_ > static_cast<long>(limit_) * active_)
+      split_at_ = slice;
+    return split_at_ < 0;
+  }
+
+  [[gnu::always_inline]] void look(std::size_t cell) {
+    if (g_.lists.triangle_first)
+      test_triangles(cell);
+    if (g_.lists.sphere_first)
+      test_spheres(cell);
+    if (g_.lists.cone_first)
+      test_cones(cell);
+  }
+
+  bool leave(int slice) {
+    active_ = update_live(f_, p_, static_cast<float>(slice + 1) - f_.margin);
+    return active_ > 0;
+  }
+
+  /// The slice before which the rays no longer had enough in common, or -1.
+  int split_at() const { return split_at_; }
+
+ private:
+  bool seen(std::uint32_t id) { return mailbox_ && held_.seen(id); }
+
+  void test_triangles(std::size_t cell) {
+    const CellLists& lists = g_.lists;
+    const std::uint32_t first = lists.triangle_first[cell];
+    const std::uint32_t end = lists.triangle_first[cell + 1];
+    for (std::uint32_t at = first / kBlock * kBlock; at < end; at += kBlock)
+      for (unsigned left =
+               boxes_inside(f_, lists.boxes[at / kBlock]) & blocks_between(at, first, end);
+           left != 0;
+           left &= left - 1)
+        test_block(lists.triangles[at + static_cast<unsigned>(__builtin_ctz(left))]);
+  }
+
+  void test_block(const TriangleBlock& block) {
+    each_triangle_inside(f_, block, [&](int at) {
+      const std::uint32_t id = block.id[at];
+      if (seen(id))
+        return;
+      const float a[3] = {block.a[0][at], block.a[1][at], block.a[2][at]};
+      const float b[3] = {block.b[0][at], block.b[1][at], block.b[2][at]};
+      const float c[3] = {block.c[0][at], block.c[1][at], block.c[2][at]};
+      const std::uint64_t live = p_.live;
+      if (f_.by_group)
+        p_.live &= groups_near_triangle(f_, a, b, c);
+      if (p_.live != 0) {
+        count_lanes(p_, n_, n_.triangle);
+        test_triangle<kAny>(p_, a, b, c, id);
+      }
+      p_.live = live;
+    });
+  }
+
+  void test_spheres(std::size_t cell) {
+    const CellLists& lists = g_.lists;
+    each_sphere_inside(f_, lists, cell, [&](std::uint32_t s) {
+      const std::uint32_t id = lists.sphere_id[s];
+      if (seen(id))
+        return;
+      const float center[3] = {lists.sx[s], lists.sy[s], lists.sz[s]};
+      const std::uint64_t live = p_.live;
+      if (f_.by_group)
+        p_.live &= groups_near_sphere(f_, center, magnitude(lists.sr[s]));
+      if (p_.live != 0) {
+        count_lanes(p_, n_, n_.sphere);
+        test_sphere<kAny>(p_, center[0], center[1], center[2], lists.sr[s], id);
+      }
+      p_.live = live;
+    });
+  }
+
+  void test_cones(std::size_t cell) {
+    const CellLists& lists = g_.lists;
+    each_cone_inside(f_, lists, cell, [&](std::uint32_t c) {
+      const std::uint32_t id = lists.cone_id[c];
+      if (seen(id))
+        return;
+      count_lanes(p_, n_, n_.cone);
+      test_cone<kAny>(p_, lists.cone, c, id);
+    });
+  }
+
+  const GridView& g_;
+  const Frustum& f_;
+  Packet& p_;
+  Counters& n_;
+  int width_;
+  int limit_;
+  int active_ = 0;
+  int split_at_ = -1;
+  bool mailbox_;
+  Mailbox held_;
+};
+
+/// Lets the rays that meet the grid go on from a slice: what lies before it is done.
+inline void start_from_slice(const Frustum& f, Packet& p, int slice) {
+  const Lanes s(static_cast<float>(slice) - f.margin);
+  each_live_group(p, [&](int i, int) {
+    const Lanes t = (s - load<Lanes>(f.position + i)) * load<Lanes>(f.per_slice + i);
+    const Mask<Lanes> meets = load<Lanes>(f.leave + i) > Lanes(-kInfinity);
+    store(p.start + i, select(meets, greater(t, load<Lanes>(p.start + i)), Lanes(kInfinity)));
+  });
+}
+
+template <bool kAny>
+inline std::uint64_t traverse_together(
+    const GridView& g, Packet& p, int width, bool use_mailbox, Counters& n);
+
+/// Rays that do not go together in one packet may in four; what does not in these goes ray by ray.
+template <bool kAny>
+inline std::uint64_t split_packet(
+    const GridView& g, Packet& p, int width, bool use_mailbox, Counters& n) {
+  const std::uint64_t live = p.live;
+  ++n.fell_back;
+  if (width <= kSmall)
+    return live;
+  const int rays = width > kMiddle ? kMiddle : kSmall;
+  const int each = rays / kWidth<Lanes>;
+  std::uint64_t apart = 0;
+  for (int first = 0; first < p.groups; first += each)
+    if ((p.live = live & ((std::uint64_t{1} << each) - 1) << first) != 0)
+      apart |= traverse_together<kAny>(g, p, rays, use_mailbox, n);
+  p.live = live;
+  return apart;
+}
+
+/// The live rays of a packet, `width` at most, through one grid, each from p.start on, as far as
+/// they go together. Returns the groups whose rays are to go on by themselves, from p.start on. On
+/// return `live` is what it was.
+template <bool kAny>
+inline std::uint64_t traverse_together(
+    const GridView& g, Packet& p, int width, bool use_mailbox, Counters& n) {
+  const std::uint64_t live = p.live;
+  Frustum f;
+  switch (bound_rays(g, p, f)) {
+    case Coherence::kMisses:
+      return 0;
+    case Coherence::kIncoherent:
+      return split_packet<kAny>(g, p, width, use_mailbox, n);
+    case Coherence::kTogether:
+      break;
+  }
+  PacketVisit<kAny> visit(g, f, p, width, use_mailbox, n);
+  if (visit.start())
+    walk_frustum(g, f, n, visit);
+  p.live = live;
+  if (visit.split_at() >= 0) {
+    start_from_slice(f, p, visit.split_at());
+    return split_packet<kAny>(g, p, width, use_mailbox, n);
+  }
+  ++n.formed;
+  return 0;
+}
+
+/// All rays of a packet through one grid, from p.start on.
+template <bool kAny>
+inline void traverse_packet(
+    const GridView& g, Packet& p, bool use_mailbox, bool any_triangles, Counters& n) {
+  const std::uint64_t live = p.live;
+  if ((p.live = traverse_together<kAny>(g, p, p.size, use_mailbox, n)) != 0)
+    walk_apart<kAny>(g, p, any_triangles, n);
+  p.live = live;
+}
+
+}  // namespace grelha::GRELHA_ISA
