@@ -1,8 +1,9 @@
 // What the rays of a picture cost alone beside the whole picture, and one thread beside two;
 // everything takes turns in one process.
 //
-// frame SCENE [ROUNDS]      a 512 x 512 picture, one sample a pixel; JSON with the least of ROUNDS
-// (9) times of each
+// frame SCENE [ROUNDS]
+//
+// A 512 x 512 picture, one sample a pixel; JSON with the least of ROUNDS (9) times of each.
 //
 // frame.py runs this.
 

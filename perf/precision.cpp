@@ -4,13 +4,16 @@
 //
 // precision [--scenes] [--groups N] [Google Benchmark options; --benchmark_format=json]
 //
-// Each test is one benchmark, isa/precision/method; its counters say how it erred, judged in 113
+// Each test is one benchmark, isa/precision/method. Its counters say how it erred, judged in 113
 // bits, where the six products of three differences of floats are exact for the sizes used here:
+//
 // max_ulp, p999_ulp  |t - true t| in units in the last place of the true t as a float, of rays
-// through random triangles wrong              of these, rays whose nearest triangle is another than
-// the true one leaks              of rays from within a closed hull aimed at its corners and edges,
-// those that meet nothing ns                 a test of a ray and a triangle, of triangles at most
-// four times as long as wide
+//                    through random triangles
+// wrong              of these, rays whose nearest triangle is another than the true one
+// leaks              of rays from within a closed hull aimed at its corners and edges, those that
+//                    meet nothing
+// ns                 a test of a ray and a triangle, of triangles at most four times as long as
+//                    wide
 //
 // With --scenes whole traces instead, isa/precision/scene: camera rays of generated scenes through
 // their grids. Errors are those of t before it is rounded, judged in long double against every

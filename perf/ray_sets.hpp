@@ -17,12 +17,15 @@ inline constexpr std::array<const char*, 7> kRayKinds = {
 /// 512 x 512 one strip of four tiles of each block of strips is taken, so that sets are about as
 /// large; of all, one in 16 for the kinds of 16 rays a point or pixel.
 ///
-/// primary      through the centre of every pixel AA + lens    16 samples of a pixel side by side,
-/// through the scene's own lens or one of 12 pixels hard shadow  from each first hit that faces the
-/// first light to that light area 16      16 from each such hit to a square in its place, a tenth
-/// as wide as it is far from the point looked at mirror       from each first hit, whatever it is
-/// made of glossy 16    16 around each such direction, in a lobe of roughness .1 incoherent   from
-/// each first hit in a direction spread as diffuse light is, then all shuffled
+/// primary      through the centre of every pixel
+/// AA + lens    16 samples of a pixel side by side, through the scene's own lens or one of 12
+///              pixels
+/// hard shadow  from each first hit that faces the first light to that light
+/// area 16      16 from each such hit to a square in its place, a tenth as wide as it is far from
+///              the point looked at
+/// mirror       from each first hit, whatever it is made of
+/// glossy 16    16 around each such direction, in a lobe of roughness .1
+/// incoherent   from each first hit in a direction spread as diffuse light is, then all shuffled
 class RayMaker {
  public:
   RayMaker(const SceneFile& file, const World& world, int size);  ///< size: at least 32

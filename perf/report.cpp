@@ -1,6 +1,8 @@
 // The ways of the 2019 report, one after the other, on all rays of a picture: JSON for report.py.
 //
-// report SCENE SAMPLES [ROUNDS]     512 x 512, paths of at most 6 rays as in the report's program
+// report SCENE SAMPLES [ROUNDS]
+//
+// Pictures have 512 x 512 pixels and paths of at most 6 rays, as in the report's program.
 //
 // Without grid, with a grid of the report's M = 2 cell by cell, with mailboxes, with threads: the
 // plain scalar walk of one ray and one primitive at a time. Then packets on the grid the kernel

@@ -1,6 +1,6 @@
-// The program. Errors become exit statuses here and nowhere else: 1 when a file cannot be read or
-// written, 2 for bad usage or a scene that cannot be one, 128 and its number when a signal stopped
-// a render that can go on. It is the one file of the frontend that knows the generators.
+// The program. Errors become exit statuses here and nowhere else. 1: a file cannot be read or
+// written. 2: bad usage, or a scene that cannot be one. 128 and its number: a signal stopped a
+// render that can go on. This is the one file of the frontend that knows the generators.
 #include "frontend/cli/options.hpp"
 #include "frontend/commands/batch.hpp"
 #include "frontend/commands/first_hits.hpp"

@@ -27,8 +27,8 @@ std::string duration_text(double seconds) {
   return std::to_string(s / 3600) + " h " + std::to_string(s % 3600 / 60) + " min";
 }
 
-/// The `^C` that a terminal shows behind the bar fits on its line, and the last column stays free,
-/// for some terminals go on to the next line when it is written.
+/// Columns for the `^C` that a terminal shows behind the bar, and the last one. It stays free, for
+/// some terminals go on to the next line when it is written.
 constexpr int kFreeColumns = 3;
 
 /// Asked anew for every line: the window may have been resized.

@@ -20,9 +20,9 @@ OwnMemory own_memory();
 /// False under sanitizers, which own more than any machine has.
 bool memory_can_be_limited();
 
-/// Lets this process own no more than so many bytes, by --max-memory, or, of 0, no more than the
-/// machine has: what would, a hostile file or a large picture, throws std::bad_alloc instead of
-/// bringing the machine down. Does nothing where memory_can_be_limited() is false.
+/// Lets this process own no more than so many bytes, by --max-memory; 0: no more than the machine
+/// has. A hostile file or a large picture then throws std::bad_alloc instead of bringing the
+/// machine down. Does nothing where memory_can_be_limited() is false.
 void limit_memory(std::uint64_t bytes);
 
 /// As 1.5 GB.

@@ -7,8 +7,8 @@
 namespace grelha {
 
 /// How far two pictures of one size lie apart, over all channels of all pixels. Equal infinities
-/// and a NaN in both are no difference; a NaN or an infinity in one of them only is an infinite
-/// one, so it can never pass for small.
+/// and a NaN in both are no difference. A NaN or an infinity in one picture only is an infinite
+/// difference, so it can never pass for small.
 struct Comparison {
   double rmse = 0;
   double psnr_db = 0;  ///< against white 1; infinite for equal pictures

@@ -4,10 +4,10 @@
 
 namespace grelha {
 
-/// For a mesh alone, whose file knows neither camera nor light: frames the triangles from a
-/// three-quarter view, with y up, or z where it surely stands on that side; a key light above the
-/// left shoulder, a fill from the eye, so that no face it sees is black, one from behind, and a
-/// soft background.
+/// Gives a mesh alone, whose file knows neither camera nor light, both. The camera frames the
+/// triangles from a three-quarter view, with y up, or z where the mesh surely stands on that side.
+/// A key light stands above the left shoulder, a fill at the eye, so that no face it sees is black,
+/// and one light behind. The background is soft.
 void add_default_view(SceneFile& file);
 
 /// Light grey with a mild highlight.

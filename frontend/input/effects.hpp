@@ -38,9 +38,9 @@ struct Effects {
 };
 
 /// Puts effects into scene, camera and options. Without --samples or --aa a scene with something to
-/// sample (a lens, an area light, a rough mirror) takes its own `spp`, or 16 rays a pixel; any
-/// other takes one. A point of a subdivided picture takes one ray, or with --samples, or a lens of
-/// N points, so many.
+/// sample takes its own `spp`, or 16 rays a pixel; any other takes one. A lens, an area light and a
+/// rough mirror are such. A point of a subdivided picture takes one ray, or as many as --samples or
+/// a lens of N points say.
 void apply_effects(const Effects& effects, SceneFile& file, RenderOptions& options);
 
 }  // namespace grelha

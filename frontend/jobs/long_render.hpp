@@ -42,9 +42,9 @@ class LongRender {
   /// Of what stopping left, one line.
   std::string stop_text(int signal) const;
 
-  /// By the first rank alone: writes picture or partial; then the checkpoint has done its work and
-  /// is removed, or, where there are more scenes to come, holds everything: so it does should the
-  /// writing fail.
+  /// Writes picture or partial, by the first rank alone. Then the checkpoint has done its work and
+  /// is removed. It stays and holds everything where more scenes are to come, and where the writing
+  /// fails.
   void finish(Layers layers = {});
 
  private:

@@ -61,8 +61,8 @@ std::optional<Part> first_gap(const std::vector<Part>& parts, const Part& whole)
 
 std::string percent(double share) { return std::to_string(int(share * 100)) + " %"; }
 
-/// Reads every file twice: nothing is allocated before it is known that the parts fill it, so that
-/// a small file which claims to be of a huge picture takes no more than a small file's memory.
+/// Reads every file twice. Nothing is allocated before it is known that the parts fill it. So a
+/// small file which claims to be of a huge picture takes no more than a small file's memory.
 class Joiner {
  public:
   explicit Joiner(const std::vector<std::string>& files) : files_(files) {}

@@ -68,9 +68,9 @@ class Counter {
   std::int64_t* value_ = nullptr;
 };
 
-/// Over a network that cannot read and write memory by itself a rank answers what is asked of its
-/// memory only while it is inside MPI, and the first rank's threads may be a second in a piece:
-/// meanwhile this looks in, and others wait for a number no longer than a millisecond.
+/// Looks into MPI every millisecond. Over a network that cannot read and write memory by itself a
+/// rank answers requests to its memory only while it is inside MPI. The first rank's threads may be
+/// a second in a piece; thanks to this others wait for a number no longer than a millisecond.
 class Doorkeeper {
  public:
   Doorkeeper(std::mutex& mpi, const std::function<bool()>& stop_seen)

@@ -305,8 +305,8 @@ void NffReader::read_mesh(std::string_view keyword) {
   file_.counts.mesh += faces;
 }
 
-/// Whether a file lies elsewhere than in the scene's folder or below, all links followed; asked
-/// before it is opened, so that a scene cannot even find out what there is.
+/// True where a file lies outside the scene's folder, all links followed. The reader asks before it
+/// opens the file, so a scene cannot even find out what there is.
 bool NffReader::is_outside(const std::string& path) const {
   std::error_code error;
   const std::filesystem::path home =

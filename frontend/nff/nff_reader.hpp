@@ -9,9 +9,9 @@ namespace grelha {
 
 class LoadProgress;
 
-/// Reads NFF and the dialects built on it (docs: the entities of README's table) as a stream of
-/// words; the line end matters only behind `l`, `f`, `mat`, `al` and to comments. Files named by
-/// `ply` are looked for beside `path`.
+/// Reads NFF and the dialects built on it (the entities of docs/nff.md) as a stream of words. The
+/// line end matters only behind `l`, `f`, `mat`, `al` and to comments. Files named by `ply` are
+/// looked for beside `path`.
 SceneFile read_nff(const std::string& path,
                    std::string_view text,
                    const Warn& warn,

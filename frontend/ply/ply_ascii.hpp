@@ -8,9 +8,9 @@
 
 namespace grelha {
 
-/// Rows of an ASCII file as words. Rows may be broken over lines or share one; where a line holds
-/// more words than its row has properties, the rest is dropped if there are lines enough left for
-/// the rows to come.
+/// Rows of an ASCII file as words. Rows may be broken over lines or share one. A line may hold more
+/// words than its row has properties. The rest is dropped if there are lines enough left for the
+/// rows to come.
 class PlyAscii {
  public:
   PlyAscii(const std::string& path,

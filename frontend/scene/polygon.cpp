@@ -13,8 +13,8 @@ constexpr int kFullPasses = 8;
 /// triangles grow by doubling and stay short. Ears in turn, or a fan, would all reach across, and
 /// stand in thousands of a grid's cells.
 constexpr std::uint32_t kMany = 1024;
-/// At how many nodes of the tree an ear's test looks, in turn, before it looks at all: in a star of
-/// a million uneven spikes an ear's triangle, long and thin, meets hundreds, and holds no corner.
+/// Nodes of the tree that an ear's test looks at, in turn, before it looks at all. In a star of a
+/// million uneven spikes an ear's triangle, long and thin, meets hundreds, and holds no corner.
 constexpr std::uint32_t kHopefulLooks[] = {0, 64};
 /// How far a forced clip looks for a corner that at least has area; bounds the work on hopeless
 /// outlines.
@@ -203,7 +203,7 @@ bool PolygonCutter::try_clip(std::uint32_t corner, std::vector<Triangle>& triang
 /// Clips corners that turn left and looks for others in their triangles only so far; takes all back
 /// and is false when that was not enough. Clipping keeps the sum of winding numbers: triangles that
 /// all turn left cover each point as often as the outline goes round it, so a simple outline's
-/// inside once. A corner missed inside a triangle leaves a place that is covered twice; the rest
+/// inside once. A corner missed inside a triangle leaves a place that is covered twice. The rest
 /// would have to make up for it, and cannot end in a triangle that turns left.
 bool PolygonCutter::clip_hopefully(std::uint32_t looks, std::vector<Triangle>& triangles) {
   const std::size_t before = triangles.size();

@@ -181,9 +181,9 @@ inline PairOf<Real> jittered(Words<Real> seed,
 }
 
 /// Two numbers in [0, 1): sample `index` of a pixel in dimensions `dimension` and the next. `key`
-/// tells apart the uses of a pair along a path (bounces, lights): 0 is the joint sequence; any
-/// other is a sequence of its own, in an order of its own, since the same points in the same order
-/// again would pair samples the same way in every pixel.
+/// tells apart the uses of a pair along a path (bounces, lights). 0 is the joint sequence; any
+/// other is a sequence of its own, in an order of its own. The same points in the same order again
+/// would pair samples the same way in every pixel.
 template <class Real>
 inline PairOf<Real> sample_pairs(const SamplePlan& plan,
                                  Words<Real> pixel,
@@ -222,8 +222,8 @@ inline Pair sample_pair(const SamplePlan& plan,
   return sample_pairs<float>(plan, pixel, index, dimension, key, strata);
 }
 
-/// A point of the unit disc for a point of the unit square, areas in proportion: Shirley & Chiu
-/// 1997, with sine and cosine as polynomials (error below 4e-7 on [-pi/4, pi/4]), since libm's last
+/// A point of the unit disc for a point of the unit square, areas in proportion (Shirley & Chiu
+/// 1997). Sine and cosine are polynomials (error below 4e-7 on [-pi/4, pi/4]), since libm's last
 /// bit depends on the machine.
 template <class Real>
 inline PairOf<Real> disc_point(const PairOf<Real>& square) {

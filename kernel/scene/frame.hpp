@@ -5,8 +5,8 @@
 namespace grelha {
 
 /// A camera's frame: direction of a point (x, y) of the image, in pixels = forward + (x - w/2)
-/// right + (h/2 - y) up. Through the point (a, b) of the unit disc of its lens a ray starts at eye
-/// + a lens_right + b lens_up and goes to the point of that direction at depth `focus`.
+/// right + (h/2 - y) up. A ray through the point (a, b) of the unit disc of its lens starts at
+/// eye + a lens_right + b lens_up. It goes to the point of that direction at depth `focus`.
 struct FrameView {
   float eye[3] = {}, forward[3] = {}, right[3] = {}, up[3] = {}, lens_right[3] = {},
         lens_up[3] = {};

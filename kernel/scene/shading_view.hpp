@@ -74,9 +74,9 @@ struct SamplePlan {
 
 inline constexpr int kBatch = 512;     ///< rays shaded together
 inline constexpr int kCacheLine = 16;  ///< floats
-/// Length of an array of a batch. A cache keeps few lines whose addresses are equal modulo 4 KiB,
-/// and each hit writes to some thirty arrays side by side: a line more than the power of two lets
-/// all of them stay.
+/// Length of an array of a batch: a cache line more than a power of two. A cache keeps few lines
+/// whose addresses are equal modulo 4 KiB, and each hit writes to some thirty arrays side by side.
+/// With the odd line all of them stay.
 inline constexpr int kBatchRow = kBatch + kCacheLine;
 /// image rows a thread takes at a time: one row of 8 x 8 packets
 inline constexpr int kBandRows = 8;
