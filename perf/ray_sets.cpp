@@ -12,7 +12,7 @@
 #include "kernel/scene/frame.hpp"
 #include "kernel/render/band.hpp"
 #include "kernel/render/sampling.hpp"
-#include "kernel/trace/surface.hpp"
+#include "kernel/shapes/surface.hpp"
 #include "kernel/grid/world_impl.hpp"
 
 namespace grelha::perf {
@@ -124,8 +124,8 @@ std::vector<RayMaker::Hit> RayMaker::first_hits(bool few) const {
     if (found.id[i] == kNoPrimitive)
       continue;
     const V org{rays.ox[i], rays.oy[i], rays.oz[i]}, d{rays.dx[i], rays.dy[i], rays.dz[i]};
-    const Surface<float> s =
-        surface_of<float>(scene, found.id[i], org, d, found.t[i], world_.impl().shading.smooth);
+    const Surface<float> s = surface_of<float>(
+        scene.geometry, found.id[i], org, d, found.t[i], world_.impl().shading.smooth);
     const float side = dot(d, s.normal) > 0 ? -1.f : 1.f;
     Hit h;
     h.point = s.point;

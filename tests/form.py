@@ -30,7 +30,7 @@ EXCEPTIONS = {
     "file": (
         "frontend/cli/main.cpp", "frontend/cli/options.cpp", "frontend/nff/nff_reader.cpp",
         "kernel/picture/refiner.cpp", "kernel/render/doubt.hpp",
- "kernel/trace/surface.hpp", "perf/build.cpp",
+ "perf/build.cpp",
         "perf/precision.cpp", "perf/trace.cpp", "tests/frontend/cli/options_test.cpp",
         "tests/frontend/cli/program_test.cpp", "tests/frontend/images/image_file_test.cpp",
         "tests/frontend/jobs/long_work_test.cpp", "tests/frontend/jobs/parts_test.cpp",
@@ -40,7 +40,7 @@ EXCEPTIONS = {
     ),
     "width": (
         "docs/build.sh", "docs/farm.sh", "docs/pictures.sh", "docs/report.sh",
-        "kernel/shapes/sphere.hpp", "kernel/simd/lanes.hpp", "kernel/trace/surface.hpp",
+        "kernel/shapes/sphere.hpp", "kernel/simd/lanes.hpp",
         "perf/build.py", "perf/charts.py", "perf/charts/features.py", "perf/charts/grid.py",
         "perf/charts/page.py", "perf/charts/picture.py", "perf/charts/rays.py",
         "perf/error_check.py", "perf/error_time.py", "perf/frame.py", "perf/lib/bench.py",

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "grelha/rays.hpp"
+#include "kernel/shapes/geometry_view.hpp"
 
 namespace grelha {
 
@@ -57,20 +58,6 @@ struct GridView {
   int n[3] = {};  ///< cells per axis; x runs fastest
   double lo[3] = {}, cell[3] = {}, inv_cell[3] = {};
   float lo_f[3] = {}, hi_f[3] = {}, cell_f[3] = {}, inv_cell_f[3] = {};
-};
-
-/// The primitives themselves, by index, for what is done once a hit rather than once a test.
-struct GeometryView {
-  const float *tx = nullptr, *ty = nullptr, *tz = nullptr;     ///< triangle vertices
-  const float *tnx = nullptr, *tny = nullptr, *tnz = nullptr;  ///< their normals, or null
-  const std::uint32_t *ta = nullptr, *tb = nullptr, *tc = nullptr;
-  const float *sx = nullptr, *sy = nullptr, *sz = nullptr, *sr = nullptr;
-  const float* cone[10] = {};
-  const float *px = nullptr, *py = nullptr, *pz = nullptr, *pnx = nullptr, *pny = nullptr,
-              *pnz = nullptr;
-  const std::uint32_t *plane_material = nullptr, *sphere_material = nullptr,
-                      *triangle_material = nullptr, *cone_material = nullptr;
-  std::uint32_t plane_count = 0, sphere_count = 0, triangle_count = 0, cone_count = 0;
 };
 
 /// Ids run over planes, spheres, triangles, cones in this order; of two hits at equal t the lower

@@ -103,6 +103,7 @@ World::Impl::Impl(const SceneSpans& s, const BuildOptions& options)
   v.sphere_material = g.spheres.material.data();
   v.triangle_material = t.material.data();
   v.cone_material = g.cones.material.data();
+  v.ids = primitives.ids;
   v.plane_count = planes_without_copies(g.planes);
   v.sphere_count = primitives.ids.count(PrimitiveKind::kSphere);
   v.triangle_count = primitives.ids.count(PrimitiveKind::kTriangle);

@@ -4,7 +4,7 @@
 #include <cassert>
 #include <stdexcept>
 
-#include "kernel/trace/surface.hpp"
+#include "kernel/shapes/surface.hpp"
 #include "kernel/query/variants.hpp"
 #include "kernel/grid/world_impl.hpp"
 
@@ -68,7 +68,7 @@ SurfacePoint surface(const World& world, const Ray& ray, const Hit& hit) {
   assert(hit);
   const World::Impl& w = world.impl();
   const scalar::Surface<float> s = scalar::surface_of<float>(
-      w.view, hit.id, vec(ray.org), vec(ray.dir), hit.t, w.shading.smooth);
+      w.view.geometry, hit.id, vec(ray.org), vec(ray.dir), hit.t, w.shading.smooth);
   return {float3(s.point), float3(s.normal), float3(s.shading), s.away, s.material};
 }
 

@@ -3,7 +3,7 @@
 // walks the grids as a packet does; what it finds is then asked for a point inside, so that the
 // answer is a function of beam and scene, not of the grid.
 
-#include "kernel/trace/surface.hpp"
+#include "kernel/shapes/surface.hpp"
 #include "kernel/trace/trace.hpp"
 
 namespace grelha::GRELHA_ISA {

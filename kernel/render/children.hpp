@@ -2,7 +2,7 @@
 // The reflected and refracted rays that hits send on.
 
 #include "kernel/render/shader.hpp"
-#include "kernel/trace/surface.hpp"
+#include "kernel/shapes/surface.hpp"
 
 namespace grelha::GRELHA_ISA {
 

@@ -3,7 +3,7 @@
 
 #include "kernel/render/shader.hpp"
 #include "kernel/simd/power.hpp"
-#include "kernel/trace/surface.hpp"
+#include "kernel/shapes/surface.hpp"
 
 namespace grelha::GRELHA_ISA {
 

@@ -65,7 +65,7 @@ class Watcher {
     Surface<float> s[kCorners];
     for (int i = 0; i < kCorners; ++i) {
       s[i] = surface_of<float>(
-          scene_, sight.id[i], beam.org[i], beam.dir[i], sight.t[i], shading_.smooth);
+          scene_.geometry, sight.id[i], beam.org[i], beam.dir[i], sight.t[i], shading_.smooth);
       if (dot(beam.dir[i], s[i].normal) > 0)
         s[i].normal = Vec3<float>{0, 0, 0} - s[i].normal,
         s[i].shading = Vec3<float>{0, 0, 0} - s[i].shading;

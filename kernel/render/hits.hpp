@@ -2,7 +2,7 @@
 // The surfaces that the rays of a batch met.
 
 #include "kernel/render/shader.hpp"
-#include "kernel/trace/surface.hpp"
+#include "kernel/shapes/surface.hpp"
 
 namespace grelha::GRELHA_ISA {
 
@@ -14,7 +14,7 @@ namespace grelha::GRELHA_ISA {
                                                           const Vec3<Lanes>& dir,
                                                           const Lanes& t) {
   const ExactStart<Lanes> start{load3(s.b.ox_low, s.b.oy_low, s.b.oz_low, i), s.b.whole + i};
-  return surface_of<Lanes>(s.scene, id, org, dir, t, s.shading.smooth, start);
+  return surface_of<Lanes>(s.scene.geometry, id, org, dir, t, s.shading.smooth, start);
 }
 
 /// Fills the hit arrays from rays [0, count); misses send the background. Returns the number of
@@ -35,9 +35,9 @@ inline int find_surfaces(const Shader& s, int count) {
     const Vec3<Lanes> d = load3(b.dx, b.dy, b.dz, i);
     const Vec3<Lanes> org = load3(b.ox, b.oy, b.oz, i);
     const Lanes t = load<Lanes>(b.t + i);
-    const Surface<Lanes> f = s.work.in_double
-                                 ? surface_in_double(s, i, id, org, d, t)
-                                 : surface_of<Lanes>(s.scene, id, org, d, t, s.shading.smooth);
+    const Surface<Lanes> f =
+        s.work.in_double ? surface_in_double(s, i, id, org, d, t)
+                         : surface_of<Lanes>(s.scene.geometry, id, org, d, t, s.shading.smooth);
     const Mask<Lanes> inside = dot(d, f.normal) > Lanes(0);
     const Lanes side = select(inside, Lanes(-1), Lanes(1));
     const int h = hits;

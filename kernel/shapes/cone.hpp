@@ -6,6 +6,7 @@
 
 #include "grelha/scene_spans.hpp"
 #include "kernel/shapes/box.hpp"
+#include "kernel/shapes/surface_place.hpp"
 #include "kernel/simd/vec3.hpp"
 
 namespace grelha {
@@ -162,6 +163,53 @@ template <class Real>
   const Mask<Real> first = both(ok1, either(but_not(ok1, ok2), t1 < t2));
   t = near + select(first, t1, t2);
   return both(crosses, either(ok1, ok2));
+}
+
+template <class Real>
+inline SurfacePlace<Real> cone_place(const Vec3<Real>& base,
+                                     const Vec3<Real>& axis,
+                                     const Real& height,
+                                     const Real& radius,
+                                     const Real& slope,
+                                     const Vec3<Real>& at) {
+  const Vec3<Real> from_base = at - base;
+  const Real along = dot(from_base, axis);
+  const Real h = select(along < Real(0), Real(0), select(along > height, height, along));
+  const Vec3<Real> radial = from_base - h * axis;
+  Vec3<Real> u, v;
+  across(axis, u, v);
+  const Vec3<Real> out = select(
+      dot(radial, radial) > Real(0), normalize(radial), u);  // on a tip all directions are as good
+  const Vec3<Real> point = base + h * axis + (radius + slope * h) * out,
+                   n = normalize(out - slope * axis);
+  return {point,
+          n,
+          Real(32 * kRounding<Real>) * (height + (radius + slope * height)) +
+              Real(4 * kRounding<Real>) * largest(point)};
+}
+
+/// Where rays met cones, of indices i.
+template <class Real>
+inline Surface<Real> surface_on(Cone,
+                                const GeometryView& g,
+                                const Words<Real>& i,
+                                const Meeting<Real>& met) {
+  const Vec3<Real> base = three_at(g.cone[0], g.cone[1], g.cone[2], i),
+                   axis = three_at(g.cone[3], g.cone[4], g.cone[5], i);
+  const Real height = floats_at(g.cone[6], i), radius = floats_at(g.cone[7], i),
+             slope = floats_at(g.cone[8], i);
+  return surface_at<Real>(
+      met,
+      [&] { return cone_place<Real>(base, axis, height, radius, slope, met.at); },
+      [&](auto k, const auto& here) {
+        return cone_place(widen<k>(base),
+                          widen<k>(axis),
+                          widen<k>(height),
+                          widen<k>(radius),
+                          widen<k>(slope),
+                          here);
+      },
+      words_at(g.cone_material, i));
 }
 
 }  // namespace grelha::GRELHA_ISA

@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "grelha/scene_spans.hpp"
+#include "kernel/shapes/surface_place.hpp"
 #include "kernel/simd/vec3.hpp"
 
 namespace grelha {
@@ -70,6 +71,31 @@ template <class Real>
   const Real along = dot(dir, normal);
   t = dot(point - org, normal) / along;
   return both(along != Real(0), t > t_min);
+}
+
+/// Through `through`, across `across`, of any length.
+template <class Real>
+inline SurfacePlace<Real> plane_place(const Vec3<Real>& through,
+                                      const Vec3<Real>& across,
+                                      const Vec3<Real>& at) {
+  const Vec3<Real> n = normalize(across);
+  return {at - dot(at - through, n) * n,
+          n,
+          Real(8 * kRounding<Real>) * (largest(at) + largest(through))};
+}
+
+/// Where rays met planes, of indices i.
+template <class Real>
+inline Surface<Real> surface_on(Plane,
+                                const GeometryView& g,
+                                const Words<Real>& i,
+                                const Meeting<Real>& met) {
+  const Vec3<Real> p = three_at(g.px, g.py, g.pz, i), n = three_at(g.pnx, g.pny, g.pnz, i);
+  return surface_at<Real>(
+      met,
+      [&] { return plane_place<Real>(p, n, met.at); },
+      [&](auto k, const auto& here) { return plane_place(widen<k>(p), widen<k>(n), here); },
+      words_at(g.plane_material, i));
 }
 
 }  // namespace grelha::GRELHA_ISA

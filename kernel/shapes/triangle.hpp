@@ -7,6 +7,7 @@
 #include "grelha/scene_spans.hpp"
 #include "kernel/shapes/box.hpp"
 #include "kernel/shapes/triangle_touch.hpp"
+#include "kernel/shapes/surface_place.hpp"
 #include "kernel/simd/vec3.hpp"
 
 namespace grelha {
@@ -100,6 +101,15 @@ inline int shear_axis(float dx, float dy, float dz) {
 /// The axes that follow each one, cyclically.
 inline constexpr int kNextAxis[3] = {1, 2, 0};
 inline constexpr int kPreviousAxis[3] = {2, 0, 1};
+
+/// A vector in the axes of rays that stand on different ones, lane by lane.
+template <class Real>
+inline Vec3<Real> permuted(const Real& axis, const Vec3<Real>& v) {
+  const Mask<Real> x = axis == Real(0), y = axis == Real(1);
+  return {select(x, v.y, select(y, v.z, v.x)),
+          select(x, v.z, select(y, v.x, v.y)),
+          select(x, v.x, select(y, v.y, v.z))};
+}
 
 /// a b - c d with the right sign, and its size to within 2^-50 even where the products nearly
 /// agree: a product and what rounding took from it, Dekker, "A Floating-Point Technique for
@@ -294,6 +304,92 @@ template <bool kAny, class Real, class Source>
     }
     return both(maybe, t > t_min);  // a NaN anywhere fails here
   }
+}
+
+/// What of a triangle's surface is computed in double, and rounded once.
+template <class Real>
+struct TrianglePlace {
+  Vec3<Real> point, normal, weights;
+};
+
+/// Corners as they are, not permuted; `axis` is that of shear_axis(). Rays that do not cross are
+/// taken to the first corner.
+template <class Real>
+inline TrianglePlace<Real> triangle_place(const Real& axis,
+                                          const Vec3<Real>& org,
+                                          const Vec3<Real>& dir,
+                                          const Corners<Real>& c) {
+  const auto turned = [&](const Vec3<Real>& p) { return permuted<Real>(axis, p); };
+  const Crossing<Real> r =
+      crossing<Real>(turned(org), turned(dir), {turned(c.a), turned(c.b), turned(c.c)});
+  const Real o(0), one(1);
+  const Vec3<Real> w = select(r.inside, r.weights, Vec3<Real>{one, o, o}), e1 = c.b - c.a,
+                   e2 = c.c - c.a;
+  return {c.a + (w.y * e1 + w.z * e2), normalize(cross(e1, e2)), w};
+}
+
+template <class Real, int i = 0>
+inline void triangle_places(const Real& axis,
+                            const Vec3<Real>& org,
+                            const Vec3<Real>& low,
+                            const Vec3<Real>& dir,
+                            const Corners<Real>& c,
+                            PlaceParts<Real>& to) {
+  const TrianglePlace<Wide<Real>> p =
+      triangle_place<Wide<Real>>(widen<i>(axis), widen<i>(org, low), widen<i>(dir), widen<i>(c));
+  int k = 0;
+  for (const Vec3<Wide<Real>>* v : {&p.point, &p.normal, &p.weights})
+    for (const Wide<Real>* x : {&v->x, &v->y, &v->z})
+      to.part[k++][i] = *x;
+  if constexpr (i + 1 < kWideParts<Real>)
+    triangle_places<Real, i + 1>(axis, org, low, dir, c, to);
+}
+
+/// Where rays met triangles, of indices i.
+template <class Real>
+inline Surface<Real> surface_on(Triangle,
+                                const GeometryView& g,
+                                const Words<Real>& i,
+                                const Meeting<Real>& met) {
+  const Words<Real> v[3] = {words_at(g.ta, i), words_at(g.tb, i), words_at(g.tc, i)};
+  const Vec3<Real> a = three_at(g.tx, g.ty, g.tz, v[0]), b = three_at(g.tx, g.ty, g.tz, v[1]),
+                   c = three_at(g.tx, g.ty, g.tz, v[2]);
+  const Real o(0), one(1);
+  const Real mx = magnitude(met.dir.x), my = magnitude(met.dir.y), mz = magnitude(met.dir.z);
+  // the axis prepare() gave the ray
+  const Real axis = select(both(mx >= my, mx >= mz), o, select(my >= mz, one, Real(2)));
+  PlaceParts<Real> place;
+  triangle_places<Real>(axis, met.org, met.start.low, met.dir, {a, b, c}, place);
+  const Vec3<Real> point = place.vector(0), n = place.vector(3), w = place.vector(6);
+  const Real corners = greater(greater(largest(a), largest(b)), largest(c));
+  Surface<Real> s{point,
+                  n,
+                  n,
+                  Real(4 * kEps) * largest(point) + Real(kWideEps) * corners,
+                  words_at(g.triangle_material, i),
+                  {o, o, o}};
+  if (met.start.t) {
+    rest_of_points<Real>(point, place);
+    s.low = place.vector(0);
+    s.away =
+        Real(4 * static_cast<float>(kRounding<double>)) * largest(point) + Real(kWideEps) * corners;
+  }
+  if (!met.smooth)
+    return s;
+  Mask<Real> sound = one > o;
+  const auto vertex_normal = [&](const Words<Real>& vertex) {
+    const Vec3<Real> m = three_at(g.tnx, g.tny, g.tnz, vertex);
+    const Real mm = dot(m, m);
+    sound = both(sound, mm > o);
+    return (one / square_root(mm)) * m;
+  };
+  const Vec3<Real> na = vertex_normal(v[0]), nb = vertex_normal(v[1]), nc = vertex_normal(v[2]);
+  const Vec3<Real> mix = w.x * na + (w.y * nb + w.z * nc);
+  const Real mm = dot(mix, mix);
+  const Vec3<Real> m = (one / square_root(mm)) * mix;
+  const Vec3<Real> same_side = select(dot(m, n) < o, Vec3<Real>{o, o, o} - m, m);
+  s.shading = select(both(sound, mm > Real(1e-12f)), same_side, n);
+  return s;
 }
 
 }  // namespace grelha::GRELHA_ISA

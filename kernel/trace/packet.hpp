@@ -84,15 +84,6 @@ inline Vec3<Exact> direction(const Packet& p, int i) {
   return {take<Exact>(p.dir[0] + i), take<Exact>(p.dir[1] + i), take<Exact>(p.dir[2] + i)};
 }
 
-/// A vector in the axes of rays that stand on different ones, lane by lane.
-template <class Real>
-inline Vec3<Real> permuted(const Real& axis, const Vec3<Real>& v) {
-  const Mask<Real> x = axis == Real(0), y = axis == Real(1);
-  return {select(x, v.y, select(y, v.z, v.x)),
-          select(x, v.z, select(y, v.x, v.y)),
-          select(x, v.x, select(y, v.y, v.z))};
-}
-
 /// Completes a packet whose org, dir, t_min, best and size are set.
 inline void prepare(Packet& p, bool any_triangles) {
   constexpr int w = kWidth<Lanes>;

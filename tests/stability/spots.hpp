@@ -1,10 +1,10 @@
 #pragma once
 // Where rays leave surfaces: both tracers get the same start points, those the renderer uses
-// (kernel/trace/surface.hpp).
+// (kernel/shapes/surface.hpp).
 #ifndef GRELHA_ISA
 #define GRELHA_ISA scalar
 #endif
-#include "kernel/trace/surface.hpp"
+#include "kernel/shapes/surface.hpp"
 #include "kernel/grid/world_impl.hpp"
 
 #include <cmath>
@@ -33,7 +33,7 @@ inline Spot spot(
     const World& world, std::uint32_t id, const Float3& org, const Float3& dir, float t = 0) {
   const scalar::Vec3<float> o{org.x, org.y, org.z};
   const scalar::Vec3<float> d{dir.x, dir.y, dir.z};
-  const auto s = scalar::surface_of<float>(world.impl().view, id, o, d, t, false);
+  const auto s = scalar::surface_of<float>(world.impl().view.geometry, id, o, d, t, false);
   return {of(s.point), of(s.normal), s.away};
 }
 

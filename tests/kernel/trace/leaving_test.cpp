@@ -1,6 +1,6 @@
 // Rays that leave a surface: none meets the surface it left, and none starts far enough away to skip what is near.
 #define GRELHA_ISA scalar
-#include "kernel/trace/surface.hpp"
+#include "kernel/shapes/surface.hpp"
 #include "kernel/trace/trace.hpp"
 
 #include "tests/support/oracle.hpp"
@@ -79,7 +79,7 @@ Result leave_from(
       const scalar::Vec3<float> org{rays.ox[i], rays.oy[i], rays.oz[i]},
           dir{rays.dx[i], rays.dy[i], rays.dz[i]};
       const scalar::Surface<float> s =
-          scalar::surface_of<float>(view, hits.id[i], org, dir, hits.t[i], false);
+          scalar::surface_of<float>(view.geometry, hits.id[i], org, dir, hits.t[i], false);
       for (int k = 0; k < 16; ++k) {
         Float3 d = random.direction();
         if (k % 4 == 0) {  // along the surface: the worst
@@ -199,8 +199,12 @@ Mirrored mirror_off(std::uint64_t seeds, const Make& make, const Eye& eye) {
     if (hit.id[0] == kNoPrimitive || !exact ||
         oracle::length(oracle::V(org) - ball.center) < ball.radius)
       continue;
-    const scalar::Surface<float> s = scalar::surface_of<float>(
-        world.impl().view, 0, {org.x, org.y, org.z}, {dir.x, dir.y, dir.z}, hit.t[0], false);
+    const scalar::Surface<float> s = scalar::surface_of<float>(world.impl().view.geometry,
+                                                               0,
+                                                               {org.x, org.y, org.z},
+                                                               {dir.x, dir.y, dir.z},
+                                                               hit.t[0],
+                                                               false);
     const oracle::Ray in{org, dir};
     const oracle::V n = oracle::unit(in.point(exact->t) - ball.center);
     const oracle::V off = n - oracle::V(Float3{s.normal.x, s.normal.y, s.normal.z});
@@ -287,8 +291,8 @@ TEST(Leaving, PlanesWithAllElseFarAway) {
     for (int i = 0; i < 64; ++i) {
       const Float3 eye = random.point(2), to = random.direction();
       const scalar::Vec3<float> org{eye.x, eye.y, eye.z}, dir{to.x, to.y, to.z};
-      const scalar::Surface<float> s =
-          scalar::surface_of<float>(view, 0, org, dir, static_cast<float>(random.in(.1, 1)), false);
+      const scalar::Surface<float> s = scalar::surface_of<float>(
+          view.geometry, 0, org, dir, static_cast<float>(random.in(.1, 1)), false);
       scalar::Vec3<float> away{to.x, to.y, to.z};
       if (scalar::dot(away, s.normal) < 0)
         away = scalar::Vec3<float>{0, 0, 0} - away;
@@ -355,7 +359,7 @@ TEST(ConeSurface, HasANormalOnItsTip) {
     const Scene scene = tip_first ? one_cone(tip, 0, foot, 1) : one_cone(foot, 1, tip, 0);
     const World world(scene, {.grid = false});
     const scalar::Surface<float> s =
-        scalar::surface_of<float>(world.impl().view, 0, {0, 2, 5}, {0, 0, -1}, 5, false);
+        scalar::surface_of<float>(world.impl().view.geometry, 0, {0, 2, 5}, {0, 0, -1}, 5, false);
     EXPECT_NEAR(scalar::length(s.normal), 1, 4 * 0x1p-24);
     EXPECT_NEAR(s.normal.y, 1 / std::sqrt(5.), 4 * 0x1p-24);
     EXPECT_EQ(s.point.y, 2);
@@ -380,7 +384,7 @@ TEST(Leaving, InwardsMeetsTheFarSide) {
       continue;
     const scalar::Vec3<float> org{eye.x, eye.y, eye.z}, dir{rays.dx[0], rays.dy[0], rays.dz[0]};
     const scalar::Surface<float> s =
-        scalar::surface_of<float>(world.impl().view, 0, org, dir, hit.t[0], false);
+        scalar::surface_of<float>(world.impl().view.geometry, 0, org, dir, hit.t[0], false);
     Float3 d = random.direction();
     float cosine = d.x * s.normal.x + d.y * s.normal.y + d.z * s.normal.z;
     if (cosine > 0) {
@@ -423,7 +427,7 @@ TEST(Leaving, SeesWhatIsNear) {
     const World world(scene, {.grid = false});
     const scalar::Vec3<float> org{place.x, place.y + gap / 2, place.z}, dir{0, -1, 0};
     const scalar::Surface<float> s =
-        scalar::surface_of<float>(world.impl().view, 0, org, dir, gap / 2, false);
+        scalar::surface_of<float>(world.impl().view.geometry, 0, org, dir, gap / 2, false);
     Float3 d = random.direction();
     if (d.y < 0)
       d = scaled(d, -1);
