@@ -22,10 +22,10 @@ float not_below(double x) {
 
 }  // namespace
 
-// A hit h, off by no more than `pad` from its triangle, is found in the cell whose part of the ray
-// h lies on: h is in that cell and in the triangle's box grown by pad, so in the box below, and pad
-// / 4 = 64 u diagonals inside it. A slab test in float is off by 3 u of the way to each plane,
-// which is at most 2.8 diagonals (approach()), and compares two of them: 17 u diagonals.
+// A hit h is off by no more than `pad` from its triangle, and found in a cell that it lies in. It
+// is in the triangle's box grown by pad as well. So it is in the box below, and pad / 4 = 64 u
+// diagonals inside it. A slab test in float is off by 3 u of the way to each plane, which is at
+// most 2.8 diagonals (approach()). It compares two of them: 17 u diagonals.
 void bound_blocks(const Grid& g,
                   double pad,
                   std::size_t cell,

@@ -17,16 +17,16 @@ inline int useful_threads(int threads, std::size_t work) {
       std::clamp<std::size_t>(work / 512, 1, static_cast<std::size_t>(threads)));
 }
 
-/// Chooses the cells of a grid over some primitives (ids ascending, at least one), M = density;
-/// fill_grid() then writes its lists, and tells of its progress, which is that share of the whole.
+/// Chooses the cells of a grid over some primitives (ids ascending, at least one), M = density.
+/// fill_grid() then writes its lists, and reports its share of the whole.
 ///
 /// Resolution  cells per axis = M extent / cbrt(volume / count) + 1 (Cleary & Wyvill 1988;
-///             Amanatides & Woo's report form), extents below 1/1000 of the largest counted as
-///             that, at most 1024 an axis, no cell smaller than 2 pad; and coarser, by halves,
-///             where the mean of some primitives would stand in more than 64 cells, or, of many,
-///             all in more than 2^22 (or 4 each).
+///             Amanatides & Woo's report form). Extents below 1/1000 of the largest count as that.
+///             At most 1024 cells an axis, none smaller than 2 pad. Cells are coarser, by halves,
+///             where the mean of some primitives would stand in more than 64 of them, or all of
+///             many primitives in more than 2^22 (or 4 each).
 /// Guarantee   every primitive stands in each cell that its box grown by `pad` touches, unless the
-///             cell lies beyond `pad` of its surface; in each cell spheres and cones ascend by id,
+///             cell lies beyond `pad` of its surface. In each cell spheres and cones ascend by id,
 ///             triangles stand as BlockOrder says. Same lists on every machine, by any number of
 ///             threads.
 /// Source      Lagae & Dutré, "Compact, Fast and Robust Grids for Ray Tracing", 2008: count, sum,

@@ -77,9 +77,9 @@ Lists expected(const Primitives& p, const std::vector<std::uint32_t>& ids, const
     to = std::upper_bound(from, cells.end(), *from);
     pairs += static_cast<double>(to - from) * static_cast<double>(to - from - 1);
   }
-  // With whom the mean reference shares its cell, itself counted: the sum of squares over the sum.
-  // Cells of a surface hold from nothing to twice the mean, so that there are half as many again as
-  // if all held as much; the last block of each is half empty, or an eighth full.
+  // References that the mean one shares its cell with, itself counted: the sum of squares over the
+  // sum. Cells of a surface hold from nothing to twice the mean, so there are half as many again as
+  // if all held as much. The last block of each is half empty, or an eighth full.
   const double held = 1 + pairs / (share * static_cast<double>(cells.size())),
                references = lists.references[kTriangles];
   lists.blocks = references / kBlock + references * 1.5 / (held + .5) * (1 + 1 / held) * 7 / 16;

@@ -138,15 +138,15 @@ bool set_few_apart(const Primitives& p, Ids& ids, Ids& outside) {
   return true;
 }
 
-/// What primitives are grown by for rays that start within `reach` of their box on each axis,
-/// `reach` no less than its diagonal. Such rays are at most 1 + sqrt 3 reaches from any of them; a
-/// float test is off by at most 62 eps of that distance, and a walk by 32 eps of the reach (derived
-/// in docs/numerics.md).
+/// The room around primitives for rays that start within `reach` of their box on each axis, `reach`
+/// no less than its diagonal. Such rays are at most 1 + sqrt 3 reaches from any of them. A float
+/// test is off by at most 62 eps of that distance, and a walk by 32 eps of the reach (derived in
+/// docs/numerics.md).
 double pad_of(double reach) { return reach * 256 / 16777216; }
 
-/// The grid of some primitives in a scene of that diagonal. Where the pad that rays from all over
-/// the scene ask for is large beside the cells, there are two: one with such a pad, and one for the
-/// rays that start near, which are most.
+/// The grid of some primitives in a scene of that diagonal. Rays from all over the scene may ask
+/// for a pad that is large beside the cells. Then there are two grids: one with such a pad, and one
+/// for the rays that start near, which are most.
 void add_grids(const Primitives& p,
                const Ids& ids,
                const Box& box,

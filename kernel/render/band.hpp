@@ -197,10 +197,10 @@ inline constexpr TilePlaces kTilePlaces;
 
 /// Renders a part of at most kBandRows rows into work.sums.
 ///
-/// Depths never fall towards the top of the stack, and rays of depth d + 1 are only added when
-/// fewer than `take` of them are there, by at most c take, c = 2 or with rough mirrors gloss_rays +
-/// 2 rays a hit: the stack holds at most c kBatch + c take (depth - 2) rays however the light
-/// bounces.
+/// Depths never fall towards the top of the stack. Rays of depth d + 1 are only added when fewer
+/// than `take` of them are there, and by at most c take. A hit sends c rays: 2, or gloss_rays + 2
+/// with rough mirrors. So the stack holds at most c kBatch + c take (depth - 2) rays however the
+/// light bounces.
 inline void render_band(const SceneView& scene,
                         const ShadingView& shading,
                         const FrameView& frame,
