@@ -29,7 +29,7 @@ CLANG_FORMAT = "14"  # each version has its own taste
 EXCEPTIONS = {
     "file": (
         "frontend/cli/main.cpp", "frontend/cli/options.cpp", "frontend/nff/nff_reader.cpp",
-        "kernel/picture/refiner.cpp", "kernel/render/doubt.hpp",
+        "kernel/render/doubt.hpp",
  "perf/build.cpp",
         "perf/precision.cpp", "perf/trace.cpp", "tests/frontend/cli/options_test.cpp",
         "tests/frontend/cli/program_test.cpp", "tests/frontend/images/image_file_test.cpp",
@@ -56,12 +56,12 @@ EXCEPTIONS = {
         "tests/with_python.sh",
     ),
     "comma": (
-        "kernel/picture/refiner.cpp", "kernel/render/bands.cpp", "kernel/render/beam.hpp",
+        "kernel/render/bands.cpp", "kernel/render/beam.hpp",
         "kernel/render/doubt.hpp",
     ),
     "lines": (
         "frontend/cli/main.cpp", "frontend/cli/options.cpp", "frontend/commands/report.cpp",
-        "frontend/jobs/ranks_mpi.cpp", "kernel/grid/world.cpp",
+        "kernel/grid/world.cpp",
         "kernel/render/doubt.hpp", "kernel/trace/abreast.hpp",
  "perf/build.cpp", "perf/ray_sets.cpp", "perf/report.cpp",
         "perf/trace.cpp", "tests/frontend/cli/option_checks_test.cpp",

@@ -2,31 +2,25 @@
 
 #include <string>
 #include <string_view>
-#include <variant>
 
 #include "frontend/jobs/identity.hpp"
-#include "grelha/accumulator.hpp"
-#include "kernel/picture/refinement.hpp"
-#include "kernel/picture/subdivided.hpp"
+#include "kernel/picture/picture.hpp"
 
 namespace grelha {
 
-/// All that is known of a picture between two pieces of its work, by the way it is rendered.
-using Work = std::variant<Accumulator, Refinement, Subdivided>;
-
-/// Work as a file keeps it. docs/parts.md has the format.
+/// A picture as a file keeps it. docs/parts.md has the format.
 struct Checkpoint {
   Identity identity;
-  Work work;
+  Picture picture;
 };
 
 /// Equal checkpoints make equal files. `durable`: on the disk, come what may, when this returns;
 /// see AtomicFile.
 void write_checkpoint(const std::string& path,
                       const Identity& identity,
-                      const Work& work,
+                      const Picture& picture,
                       bool durable);
-/// The same of work that is a part.
+/// The same of a part.
 void write_part(const std::string& path,
                 const Identity& identity,
                 const Accumulator& part,

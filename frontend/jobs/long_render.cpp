@@ -11,8 +11,6 @@
 #include "frontend/jobs/kept.hpp"
 #include "frontend/jobs/partial.hpp"
 #include "frontend/jobs/stop_signals.hpp"
-#include "kernel/picture/point_tracer.hpp"
-#include "kernel/picture/refiner.hpp"
 
 namespace grelha {
 namespace {
@@ -39,59 +37,38 @@ bool exists(const std::string& path) {
   return stat(path.c_str(), &about) == 0 || errno != ENOENT;
 }
 
-Work new_work(const RenderCommand& command, const Camera& camera) {
-  const RenderOptions& o = command.render;
-  if (o.refine.on())
-    return make_refinement(camera);
-  if (o.subdivision.on)
-    return make_subdivided(camera.width, camera.height);
-  return make_accumulator(camera, o, part_of(command, camera));
-}
-
 /// Why a checkpoint is not of the very picture that is asked for; empty when it is.
-std::string misfit(const Checkpoint& found, const Identity& wanted, const Work& begun) {
+std::string misfit(const Checkpoint& found, const Identity& wanted, const Picture& begun) {
   if (found.identity.scene != wanted.scene)
     return "is of another scene";
   if (found.identity.settings != wanted.settings)
     return "has " + difference(found.identity.settings, wanted.settings, "this render");
   // whatever its settings claim
-  if (found.work.index() != begun.index())
+  if (found.picture.kind() != begun.kind())
     return "is of another kind";
-  const auto* const sums = std::get_if<Accumulator>(&found.work);
-  if (sums && sums->part != std::get<Accumulator>(begun).part)
-    return "is of another part, " + part_text(sums->part);
+  if (found.picture.part() != begun.part())
+    return "is of another part, " + part_text(found.picture.part());
   return "";
 }
 
-Work saved_work(const std::string& path, const Identity& wanted, const Work& begun) {
+Picture saved_picture(const std::string& path, const Identity& wanted, const Picture& begun) {
   Checkpoint found = read_checkpoint(path);
   const std::string why = misfit(found, wanted, begun);
   if (!why.empty())
     throw UsageError("--checkpoint: " + path + ' ' + why +
                      ": name another file, or remove this one to begin again");
-  return std::move(found.work);
+  return std::move(found.picture);
 }
 
 /// Settings by --time as those by --time samples:N that repeat them.
-std::string repeatable(const std::string& settings, const Refinement& r) {
+std::string repeatable(const std::string& settings, std::uint64_t samples) {
   constexpr std::string_view kTime = " time=", kSamples = "samples:";
   const std::size_t at = settings.find(kTime);
   if (at == settings.npos || settings.compare(at + kTime.size(), kSamples.size(), kSamples) == 0)
     return settings;
-  std::uint64_t samples = 0;
-  for (const std::uint8_t log : r.log)
-    samples += log > 0 ? std::uint64_t(1) << log : 0;
   const std::size_t value = at + kTime.size();
   return settings.substr(0, value) + std::string(kSamples) + std::to_string(samples) +
          settings.substr(settings.find(' ', value));
-}
-
-Image picture_of(const Work& work) {
-  if (const auto* const s = std::get_if<Subdivided>(&work))
-    return s->image;
-  if (const auto* const r = std::get_if<Refinement>(&work))
-    return picture_so_far(*r);
-  return picture_so_far(std::get<Accumulator>(work));
 }
 
 }  // namespace
@@ -108,11 +85,10 @@ LongRender::LongRender(
     : command_(prepared),
       ranks_(ranks),
       warn_(std::move(warn)),
-      identity_{std::move(scene), settings_text(prepared, camera), scene_name(prepared.scene)} {
-  work_ = new_work(prepared, camera);
-  const auto* const sums = std::get_if<Accumulator>(&work_);
+      identity_{std::move(scene), settings_text(prepared, camera), scene_name(prepared.scene)},
+      picture_(camera, prepared.render, part_of(prepared, camera)) {
   ranks_.agree_on(identity_.scene, "has read another scene than the first");
-  ranks_.agree_on(identity_.settings + (sums ? part_text(sums->part) : ""),
+  ranks_.agree_on(identity_.settings + part_text(picture_.part()),
                   "was given other options than the first");
   if (!ranks.first())
     return;
@@ -123,16 +99,16 @@ LongRender::LongRender(
   kept_ = prepared.work.checkpoint;
   went_on_ = exists(kept_);
   if (went_on_)
-    work_ = saved_work(kept_, identity_, work_);
+    picture_ = saved_picture(kept_, identity_, picture_);
 }
 
 void LongRender::go_on_from_kept() {
   kept_ = kept_name(command_, [this](const std::string& path) {
     try {
       Checkpoint found = read_checkpoint(path);
-      went_on_ = misfit(found, identity_, work_).empty();
+      went_on_ = misfit(found, identity_, picture_).empty();
       if (went_on_)
-        work_ = std::move(found.work);
+        picture_ = std::move(found.picture);
     } catch (const std::exception&) {  // nobody said that this file should be one
     }
     return went_on_;
@@ -142,14 +118,6 @@ void LongRender::go_on_from_kept() {
   char text[32];
   std::snprintf(text, sizeof text, ", %.1f %% done", 100 * share_done());
   warn_("grelha: goes on from " + kept_ + text);
-}
-
-double LongRender::share_done() const {
-  if (const auto* const s = std::get_if<Subdivided>(&work_))
-    return s->share;
-  if (const auto* const r = std::get_if<Refinement>(&work_))
-    return r->share;
-  return grelha::share_done(std::get<Accumulator>(work_));
 }
 
 bool LongRender::is_due(const Habit& habit) {
@@ -193,7 +161,7 @@ void LongRender::keep() {
     saved_ = tried([this] { save(); });
   const std::string picture = partial_picture(command_);
   if (!picture.empty())
-    shown_ = tried([&] { write_image(picture, picture_of(work_), style()); });
+    shown_ = tried([&] { write_image(picture, picture_.image(), style()); });
 }
 
 std::string LongRender::stop_text(int signal) const {
@@ -219,23 +187,20 @@ int LongRender::run(const World& world,
   Habit saving{asked_to_save() ? command_.work.save_every.value_or(kSaveEvery) : 0,
                [this] { save(); }};
   Habit showing{command_.work.show_every, [this] { write(); }};
-  const auto rest = [&] { return pursue(saving), pursue(showing), stops() == 0; };
-  auto* const sums = std::get_if<Accumulator>(&work_);
-  auto* const refinement = std::get_if<Refinement>(&work_);
+  const auto should_continue = [&] {
+    pursue(saving);
+    pursue(showing);
+    return stops() == 0;
+  };
   RenderOptions options = command_.render;
   options.progress = [&](double share) {
     progress(share);
-    // they may be looked at between additions; of other work threads must keep off meanwhile
-    if (sums)
-      return rest();
     return stops() == 0 && !is_due(saving) && !is_due(showing);
   };
   const bool done =
-      sums
-          ? ranks_.accumulate(world, camera, options, *sums, stats, [this] { return stops() != 0; })
-      : refinement
-          ? refine(world, camera, options, *refinement, stats, &maps, rest)
-          : render_subdivided(world, camera, options, std::get<Subdivided>(work_), stats, rest);
+      ranks_.advance(world, camera, options, picture_, stats, maps, should_continue, [this] {
+        return stops() != 0;
+      });
   if (done || !ranks_.first())
     return 0;
   keep();
@@ -271,32 +236,29 @@ void LongRender::keep_all() const {
   }
 }
 
-void LongRender::save() const { write_checkpoint(kept_, identity_, work_, true); }
+void LongRender::save() const { write_checkpoint(kept_, identity_, picture_, true); }
 
 /// By --time the samples that were taken are what makes the picture again; and one that is not done
 /// says so.
 ImageStyle LongRender::style() const {
   Identity identity = identity_;
-  const auto* const refined = std::get_if<Refinement>(&work_);
-  if (refined)
-    identity.settings = repeatable(identity.settings, *refined);
+  identity.settings = repeatable(identity.settings, picture_.samples_taken());
   ImageStyle style{format_of(command_.image, command_.format),
                    command_.srgb ? Tone::srgb : Tone::authored,
                    notes_of(identity),
                    layers_};
-  const bool finished = refined ? refined->finished : share_done() == 1;
   char text[32];
   std::snprintf(text, sizeof text, "%.1f %% of the work", 100 * share_done());
-  if (!finished)
+  if (!picture_.is_finished())
     style.notes.emplace_back("Comment", text);
   return style;
 }
 
 void LongRender::write() const {
   if (is_partial_name(command_.image))
-    write_checkpoint(command_.image, identity_, work_, false);
+    write_checkpoint(command_.image, identity_, picture_, false);
   else
-    write_image(command_.image, picture_of(work_), style());
+    write_image(command_.image, picture_.image(), style());
 }
 
 }  // namespace grelha

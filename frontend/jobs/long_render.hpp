@@ -27,7 +27,7 @@ class LongRender {
              Ranks& ranks,
              Warn warn);
 
-  double share_done() const;
+  double share_done() const { return picture_.share_done(); }
 
   /// `progress` is told the share done. SIGHUP, SIGINT and SIGTERM stop it after what is in work,
   /// while StopSignals live: keeps what there is and returns the signal, otherwise 0. Saves that
@@ -71,7 +71,7 @@ class LongRender {
   Ranks& ranks_;
   const Warn warn_;
   Identity identity_;
-  Work work_;
+  Picture picture_;
   /// what is gone on from: the checkpoint, or a file beside the picture; empty: nothing is kept
   std::string kept_;
   bool went_on_ = false;                ///< from what was there

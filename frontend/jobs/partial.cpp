@@ -6,7 +6,7 @@ namespace grelha {
 namespace {
 
 Partial part_of(const std::string& path, Checkpoint&& c) {
-  auto* const sums = std::get_if<Accumulator>(&c.work);
+  Accumulator* const sums = c.picture.sums();
   if (!sums)
     throw FileError(
         path,

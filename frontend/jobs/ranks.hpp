@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-#include "grelha/accumulator.hpp"
+#include "kernel/picture/picture.hpp"
 
 namespace grelha {
 
@@ -29,7 +29,7 @@ class Ranks {
   /// them: then all go on to something else together.
   bool together(const std::function<void()>& work);
 
-  /// False from work that all managed to the end of accumulate(): to fail there leaves the others
+  /// False from work that all managed to the end of advance(): to fail there leaves the others
   /// waiting.
   bool in_step() const { return in_step_; }
 
@@ -37,15 +37,18 @@ class Ranks {
   /// and MPI ends them.
   void abandon() { abandoned_ = true; }
 
-  /// accumulate() by all ranks together: pieces are handed out one by one to whoever asks. The
-  /// first rank's accumulator counts, and gets all of them; the others' are for them to work in, of
-  /// the same part. `stop_seen` tells the first rank to wait for nobody any more.
-  bool accumulate(const World& world,
-                  const Camera& camera,
-                  const RenderOptions& options,
-                  Accumulator& a,
-                  RenderStats& stats,
-                  const std::function<bool()>& stop_seen);
+  /// Picture::advance() by all ranks together: pieces are handed out one by one to whoever asks.
+  /// Only pictures that have parts can be shared. The first rank's picture counts, and gets all
+  /// pieces; the others' are for them to work in, of the same part. `stop_seen` tells the first
+  /// rank to wait for nobody any more.
+  bool advance(const World& world,
+               const Camera& camera,
+               const RenderOptions& options,
+               Picture& picture,
+               RenderStats& stats,
+               SampleMaps& maps,
+               const ShouldContinue& should_continue,
+               const std::function<bool()>& stop_seen);
 
  private:
   int count_ = 1, rank_ = 0;

@@ -11,7 +11,6 @@
 #include <list>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <stdexcept>
 #include <thread>
 
@@ -169,6 +168,87 @@ int receive(Accumulator& a, RayCounts& rays) {
   }
 }
 
+/// The pieces of a picture that all ranks render together.
+class SharedPieces {
+ public:
+  SharedPieces(Accumulator& a, bool first, int others, const std::function<bool()>& stop_seen)
+      : a_(a), first_(first), others_(others), stop_seen_(stop_seen) {
+    MPI_Bcast(a.done.data(), static_cast<int>(a.done.size()), MPI_BYTE, kFirst, MPI_COMM_WORLD);
+    for (std::size_t i = 0; i < a.done.size(); ++i)
+      if (a.done[i] == 0)
+        left_.push_back(i);
+    counter_ = std::make_unique<Counter>(first);
+  }
+
+  /// See NextPiece.
+  std::size_t next() {
+    const std::lock_guard lock(mutex_);
+    if (stop_seen_())
+      return a_.done.size();
+    const std::size_t at = counter_->take();
+    if (at >= left_.size())
+      return a_.done.size();
+    in_work_.push_back(left_[at]);
+    return left_[at];
+  }
+
+  /// Sends the piece that this rank has finished, or takes in what others have sent.
+  void exchange() {
+    const std::lock_guard lock(mutex_);
+    if (first_) {
+      if (!stop_seen_())
+        ended_ += receive(a_, elsewhere_);  // see Doorkeeper
+      return;
+    }
+    const auto finished = std::find_if(
+        in_work_.begin(), in_work_.end(), [&](std::size_t i) { return a_.done[i] != 0; });
+    outbox_.send(a_, *finished);
+    in_work_.erase(finished);
+  }
+
+  /// For the time in which the first rank renders.
+  std::unique_ptr<Doorkeeper> keep_door() {
+    return first_ ? std::make_unique<Doorkeeper>(mutex_, stop_seen_) : nullptr;
+  }
+
+  /// What all but the first rank do in the end; true.
+  bool say_goodbye(const RayCounts& rays) {
+    outbox_.finish(rays);
+    return true;
+  }
+
+  /// What the first rank does in the end: takes in what is still to come, and adds the rays of
+  /// others to its own. Returns whether all ranks came to their end.
+  bool wait_for_others(const std::function<bool(double)>& progress,
+                       const ShouldContinue& should_continue,
+                       RayCounts& rays) {
+    while (ended_ < others_ && !stop_seen_()) {
+      ended_ += receive(a_, elsewhere_);
+      if (progress && !progress(share_done(a_)) && should_continue)
+        should_continue();
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    rays += elsewhere_;
+    if (ended_ == others_)
+      return true;
+    counter_.release();  // to free the counter takes all ranks
+    return false;
+  }
+
+ private:
+  Accumulator& a_;
+  const bool first_;
+  const int others_;
+  const std::function<bool()>& stop_seen_;
+  std::vector<std::size_t> left_;
+  std::unique_ptr<Counter> counter_;
+  Outbox outbox_;
+  std::mutex mutex_;                  ///< of all that follows, and of MPI
+  std::vector<std::size_t> in_work_;  ///< of this rank
+  int ended_ = 0;
+  RayCounts elsewhere_;
+};
+
 }  // namespace
 
 Ranks::Ranks(int& argc, char**& argv) {
@@ -202,76 +282,36 @@ void Ranks::agree_on(const std::string& what, const std::string& otherwise) cons
     throw UsageError("rank " + std::to_string(rank_) + ' ' + otherwise);
 }
 
-bool Ranks::accumulate(const World& world,
-                       const Camera& camera,
-                       const RenderOptions& options,
-                       Accumulator& a,
-                       RenderStats& stats,
-                       const std::function<bool()>& stop_seen) {
+bool Ranks::advance(const World& world,
+                    const Camera& camera,
+                    const RenderOptions& options,
+                    Picture& picture,
+                    RenderStats& stats,
+                    SampleMaps& maps,
+                    const ShouldContinue& should_continue,
+                    const std::function<bool()>& stop_seen) {
   if (count_ == 1)
-    return grelha::accumulate(world, camera, options, a, stats);
-  MPI_Bcast(a.done.data(), static_cast<int>(a.done.size()), MPI_BYTE, kFirst, MPI_COMM_WORLD);
-  std::vector<std::size_t> left;
-  for (std::size_t i = 0; i < a.done.size(); ++i)
-    if (a.done[i] == 0)
-      left.push_back(i);
-
-  auto counter = std::make_unique<Counter>(first());
-  Outbox outbox;
-  std::mutex mutex;                  // of all that follows, and of MPI
-  std::vector<std::size_t> in_work;  // of this rank
-  int ended = 0;
-  RayCounts elsewhere;
-  const auto next = [&]() -> std::size_t {
-    const std::lock_guard lock(mutex);
-    if (stop_seen())
-      return a.done.size();
-    const std::size_t at = counter->take();
-    if (at >= left.size())
-      return a.done.size();
-    in_work.push_back(left[at]);
-    return left[at];
-  };
+    return picture.advance(world, camera, options, stats, &maps, should_continue);
+  Accumulator* const sums = picture.sums();
+  if (!sums)
+    throw std::logic_error("a picture without parts cannot be shared");
+  SharedPieces pieces(*sums, first(), count_ - 1, stop_seen);
   RenderOptions shared = options;
   shared.progress = [&](double) {
-    {
-      const std::lock_guard lock(mutex);
-      if (first()) {
-        if (!stop_seen())
-          ended += receive(a, elsewhere);  // see Doorkeeper
-      } else {
-        const auto finished = std::find_if(
-            in_work.begin(), in_work.end(), [&](std::size_t i) { return a.done[i] != 0; });
-        outbox.send(a, *finished);
-        in_work.erase(finished);
-      }
-    }
-    return !options.progress || options.progress(share_done(a));
+    pieces.exchange();
+    return !options.progress || options.progress(share_done(*sums));
   };
   {
-    std::optional<Doorkeeper> doorkeeper;
-    if (first())
-      doorkeeper.emplace(mutex, stop_seen);
-    grelha::accumulate(world, camera, shared, a, stats, next);
+    const auto doorkeeper = pieces.keep_door();
+    const auto next = [&] { return pieces.next(); };
+    accumulate(world, camera, shared, *sums, stats, next, should_continue);
   }
-  if (!first()) {
-    outbox.finish(stats.rays);
-    in_step_ = true;
-    return true;
-  }
-  while (ended < count_ - 1 && !stop_seen()) {
-    ended += receive(a, elsewhere);
-    if (options.progress)
-      options.progress(share_done(a));
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  stats.rays += elsewhere;
-  if (ended < count_ - 1) {  // to free the counter takes all ranks
-    counter.release();
+  const bool all = first() ? pieces.wait_for_others(options.progress, should_continue, stats.rays)
+                           : pieces.say_goodbye(stats.rays);
+  if (!all)
     abandon();
-  }
   in_step_ = true;
-  return is_complete(a);
+  return !first() || is_complete(*sums);
 }
 
 }  // namespace grelha

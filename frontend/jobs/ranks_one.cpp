@@ -8,13 +8,15 @@ Ranks::~Ranks() = default;
 Ranks::Managed Ranks::managed(bool here) const { return {here, here}; }
 void Ranks::agree_on(const std::string&, const std::string&) const {}
 
-bool Ranks::accumulate(const World& world,
-                       const Camera& camera,
-                       const RenderOptions& options,
-                       Accumulator& a,
-                       RenderStats& stats,
-                       const std::function<bool()>&) {
-  return grelha::accumulate(world, camera, options, a, stats);
+bool Ranks::advance(const World& world,
+                    const Camera& camera,
+                    const RenderOptions& options,
+                    Picture& picture,
+                    RenderStats& stats,
+                    SampleMaps& maps,
+                    const ShouldContinue& should_continue,
+                    const std::function<bool()>&) {
+  return picture.advance(world, camera, options, stats, &maps, should_continue);
 }
 
 }  // namespace grelha

@@ -40,6 +40,10 @@ Accumulator make_accumulator(const Camera& camera, const RenderOptions& options,
 /// The same for a whole picture.
 Accumulator make_accumulator(const Camera& camera, const RenderOptions& options);
 
+/// Whether every mark of a piece is one that accumulate() can leave behind: what a file says must
+/// pass this before it is gone on with.
+bool is_sound(const Accumulator& a);
+
 /// Pieces a part is cut into.
 std::size_t piece_count(const Part& part);
 /// Share of the part that is in the sums, 0 to 1.
@@ -56,14 +60,17 @@ using NextPiece = std::function<std::size_t()>;
 
 /// Renders the pieces that are not done. Returns whether all are done now. One thread at a time
 /// calls options.progress, between additions. It may read the accumulator, and keep a copy that
-/// another call goes on from, here or on another machine. `next` names the pieces for this call
+/// another call goes on from, here or on another machine. Where progress says to stop,
+/// `should_continue` may read the accumulator as well, and returns whether to go on all the same.
+/// `next` names the pieces for this call
 /// where several share the work; without it all are. Throws like render().
 bool accumulate(const World& world,
                 const Camera& camera,
                 const RenderOptions& options,
                 Accumulator& a,
                 RenderStats& stats,
-                const NextPiece& next = {});
+                const NextPiece& next = {},
+                const std::function<bool()>& should_continue = {});
 
 /// Adds a complete part to sums of a larger one that lack it. Marks nothing done: the pieces of the
 /// two need not be the same, and whoever adds parts knows when all are there.

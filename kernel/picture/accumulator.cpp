@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "kernel/picture/guarded_progress.hpp"
 #include "kernel/render/bands.hpp"
-#include "kernel/picture/told.hpp"
 
 namespace grelha {
 namespace {
@@ -72,6 +72,10 @@ Accumulator make_accumulator(const Camera& camera, const RenderOptions& options)
   return make_accumulator(camera, options, {{0, camera.height}, {0, options.sampling.samples}});
 }
 
+bool is_sound(const Accumulator& a) {
+  return std::all_of(a.done.begin(), a.done.end(), [](std::uint8_t d) { return d <= 1; });
+}
+
 std::size_t piece_count(const Part& part) {
   return static_cast<std::size_t>(pieces(part.rows, kPieceRows)) *
          static_cast<std::size_t>(pieces(part.samples, kPieceSamples));
@@ -89,12 +93,11 @@ double share_done(const Accumulator& a) {
 
 bool accumulate(const World& world,
                 const Camera& camera,
-                const RenderOptions& given,
+                const RenderOptions& options,
                 Accumulator& a,
                 RenderStats& stats,
-                const NextPiece& next) {
-  const Told told(given);
-  const RenderOptions& options = told.options();
+                const NextPiece& next,
+                const std::function<bool()>& should_continue) {
   const Setup setup = set_up(world, camera, options);
   check(a, camera, options);
   std::vector<std::size_t> left;
@@ -103,6 +106,7 @@ bool accumulate(const World& world,
       left.push_back(i);
   std::size_t done = a.done.size() - left.size();
   std::atomic<std::size_t> begun = 0;
+  GuardedProgress progress(options.progress, should_continue);
   const auto next_band = [&](Band& band) {
     if (next) {
       band.number = next();
@@ -122,20 +126,19 @@ bool accumulate(const World& world,
       left.size(),
       next_band,
       [&](const Band& band, const std::int64_t* sums) {
-        bool go_on = true;
 #pragma omp critical(grelha_progress)
         {
           add_rows(a, band.part.rows, sums);
           a.done[band.number] = 1;
           ++done;
-          if (options.progress)
-            go_on =
-                options.progress(static_cast<double>(done) / static_cast<double>(a.done.size()));
+          progress.tell(static_cast<double>(done) / static_cast<double>(a.done.size()));
+          if (progress.stopped())
+            progress.resume();  // no thread changes the sums meanwhile
         }
-        return go_on;
+        return !progress.stopped();
       },
       stats);
-  told.rethrow();
+  progress.rethrow();
   return is_complete(a);
 }
 

@@ -12,7 +12,7 @@ constexpr float kYoung = 3, kOld = 7;
 /// One rate for the whole picture, and pixels that stop when their differences are small, leave
 /// estimates up to 15 % too low (measured: docs/sampling.md); the bound allows for 12 %, its spread
 /// for the rest.
-constexpr double kTrust = 1.12 * 1.12;
+constexpr double kVarianceInflation = 1.12 * 1.12;
 /// 97.5 % point: with what neighbours tell, Student's t is no wider
 constexpr float kNormal = 1.96f;
 
@@ -37,10 +37,11 @@ float PixelErrors::own_variance(std::size_t p) const {
   float sum = 0;
   for (std::size_t c = 0; c < 3; ++c) {
     const std::size_t i = p * 3 + c;
-    const float fall =
-        (r_.squares[0][i] + r_.rho * (r_.squares[1][i] + r_.rho * r_.squares[2][i])) /
+    const float drop =
+        (r_.squares[0][i] +
+         r_.variance_ratio * (r_.squares[1][i] + r_.variance_ratio * r_.squares[2][i])) /
         (4 * differences(p));
-    const float v = fall * r_.rho / (1 - r_.rho);
+    const float v = drop * r_.variance_ratio / (1 - r_.variance_ratio);
     if (!(mean_so_far(r_, i) - 3 * std::sqrt(v) > 1))
       sum += v;  // else white on any screen
   }
@@ -76,11 +77,11 @@ float PixelErrors::with_neighbours(int x, int y, const float* scale) const {
 }
 
 void PixelErrors::judge() {
-  float scale[2 * kMostLog + 1];  // rho^(i - kMostLog)
+  float scale[2 * kMostLog + 1];  // variance_ratio^(i - kMostLog)
   scale[kMostLog] = 1;
   for (int i = 0; i < kMostLog; ++i) {
-    scale[kMostLog + i + 1] = scale[kMostLog + i] * r_.rho;
-    scale[kMostLog - i - 1] = scale[kMostLog - i] / r_.rho;
+    scale[kMostLog + i + 1] = scale[kMostLog + i] * r_.variance_ratio;
+    scale[kMostLog - i - 1] = scale[kMostLog - i] / r_.variance_ratio;
   }
 #pragma omp parallel num_threads(threads_)
   {
@@ -122,7 +123,7 @@ PixelErrors::Totals PixelErrors::totals() const {
   const double n = static_cast<double>(variance_.size());
   // A pixel's estimate has the spread of chi squared with about 7 degrees of freedom: variance 2
   // v^2 / 7.
-  const double bound = kTrust * (sum + 1.645 * std::sqrt(spread * 2 / 7));
+  const double bound = kVarianceInflation * (sum + 1.645 * std::sqrt(spread * 2 / 7));
   return {sum, std::sqrt(bound / n), std::sqrt(sum / n), widest};
 }
 

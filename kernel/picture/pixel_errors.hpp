@@ -28,8 +28,9 @@ class PixelErrors {
   const std::vector<float>& widths() const { return widest_; }  ///< [pixels] of the 95 % interval
 
   /// Variance that a ray takes away, were the pixel's samples doubled.
-  float gain(std::size_t p) const {
-    return r_.log[p] < kMostLog ? variance_[p] * (1 - r_.rho) / (samples(p) * r_.cost[p]) : 0;
+  float gain_per_ray(std::size_t p) const {
+    return r_.log[p] < kMostLog ? variance_[p] * (1 - r_.variance_ratio) / (samples(p) * r_.cost[p])
+                                : 0;
   }
 
   /// Whether no sample of a pixel differed.

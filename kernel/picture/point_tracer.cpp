@@ -10,10 +10,10 @@
 
 #include <omp.h>
 
-#include "kernel/render/setup.hpp"
-#include "kernel/picture/told.hpp"
-#include "kernel/render/workspace.hpp"
 #include "kernel/grid/world_impl.hpp"
+#include "kernel/picture/subdivider.hpp"
+#include "kernel/render/setup.hpp"
+#include "kernel/render/workspace.hpp"
 
 namespace grelha {
 namespace {
@@ -30,19 +30,18 @@ struct PointSpace {
   RayCounts rays;
 };
 
-/// Sees lists of points in parallel.
+/// Traces lists of points in parallel.
 class PointTracer {
  public:
   PointTracer(const World::Impl& world,
-              const FrameView& frame,
-              const SamplePlan& plan,
-              const Variant& variant,
+              const Setup& setup,
               const RenderOptions& options,
+              GuardedProgress& progress,
               int threads)
-      : world_(world), frame_(frame), plan_(plan), variant_(variant), options_(options) {
+      : world_(world), setup_(setup), options_(options), progress_(progress) {
     for (int i = 0; i < threads; ++i)
-      spaces_.push_back(
-          std::make_unique<PointSpace>(options.depth, plan, loops_of(variant, options.precision)));
+      spaces_.push_back(std::make_unique<PointSpace>(
+          options.depth, setup.plan, loops_of(setup.variant, options.precision)));
   }
 
   std::size_t operator()(std::span<const LatticePoint> points,
@@ -59,29 +58,27 @@ class PointTracer {
     std::atomic<std::size_t> begun = 0;
     std::size_t done = 0;
 #pragma omp parallel num_threads(team)
-    while (!stopped_) {
+    while (!progress_.stopped()) {
       // what has a number is done, so that what is done is the first so many
       const std::size_t c = begun++;
       if (c >= chunks)
         break;
       const std::size_t first = c * chunk, last = std::min(first + chunk, count);
-      see(*spaces_[static_cast<std::size_t>(omp_get_thread_num())],
-          points.data() + first,
-          static_cast<int>(last - first),
-          colours + first);
+      trace(*spaces_[static_cast<std::size_t>(omp_get_thread_num())],
+            points.data() + first,
+            static_cast<int>(last - first),
+            colours + first);
 #pragma omp critical(grelha_progress)
       {
         ++done;
         const double share =
             from + (to - from) * static_cast<double>(done) / static_cast<double>(chunks);
-        if (options_.progress && !stopped_ && !options_.progress(share))
-          stopped_ = true;
+        if (!progress_.stopped())
+          progress_.tell(share);
       }
     }
     return std::min(begun * chunk, count);
   }
-
-  void go_on() { stopped_ = false; }
 
   void count(RenderStats& stats) const {
     for (const auto& s : spaces_) {
@@ -92,21 +89,21 @@ class PointTracer {
   }
 
  private:
-  void see(PointSpace& s, const LatticePoint* points, int count, Float3* colours) const {
+  void trace(PointSpace& s, const LatticePoint* points, int count, Float3* colours) const {
     std::uint32_t* const names = s.space.pixels().data();
     for (int i = 0; i < count; ++i) {  // exact: no coordinate is above 2^24
       s.x[i] = static_cast<float>(points[i].x) / kLatticeSteps;
       s.y[i] = static_cast<float>(points[i].y) / kLatticeSteps;
       names[i] = lattice_hash(points[i]);
     }
-    variant_.loops.render_points(world_.view,
-                                 world_.shading,
-                                 frame_,
-                                 {s.x, s.y, count},
-                                 s.space.work(options_, 0, true),
-                                 s.trace,
-                                 s.rays);
-    const double share = 1 / (kLightUnit * plan_.samples);
+    setup_.variant.loops.render_points(world_.view,
+                                       world_.shading,
+                                       setup_.frame,
+                                       {s.x, s.y, count},
+                                       s.space.work(options_, 0, true),
+                                       s.trace,
+                                       s.rays);
+    const double share = 1 / (kLightUnit * setup_.plan.samples);
     const std::int64_t* sum = s.space.sums().data();
     for (int i = 0; i < count; ++i, sum += 3)
       colours[i] = {static_cast<float>(static_cast<double>(sum[0]) * share),
@@ -116,24 +113,20 @@ class PointTracer {
   }
 
   const World::Impl& world_;
-  const FrameView& frame_;
-  const SamplePlan& plan_;
-  const Variant& variant_;
+  const Setup& setup_;
   const RenderOptions& options_;
+  GuardedProgress& progress_;
   std::vector<std::unique_ptr<PointSpace>> spaces_;
-  std::atomic<bool> stopped_ = false;  ///< sees nothing more
 };
 
 }  // namespace
 
 bool render_subdivided(const World& world,
                        const Camera& camera,
-                       const RenderOptions& given,
-                       Subdivided& picture,
+                       const RenderOptions& options,
+                       SubdivisionState& picture,
                        RenderStats& stats,
-                       const std::function<bool()>& rest) {
-  const Told told(given);
-  const RenderOptions& options = told.options();
+                       const ShouldContinue& should_continue) {
   const Setup setup = set_up(world, camera, options);
   if (!options.subdivision.on)
     throw std::invalid_argument("this picture is one by subdivision");
@@ -142,15 +135,12 @@ bool render_subdivided(const World& world,
   stats = {};
   stats.threads = options.threads > 0 ? options.threads : omp_get_num_procs();
   stats.isa = setup.variant.name.data();
-  PointTracer tracer(world.impl(), setup.frame, setup.plan, setup.variant, options, stats.threads);
-  const bool finished = subdivide(picture, options.subdivision, std::ref(tracer), 0, [&] {
-    const bool go_on = !told.threw() && rest && rest();
-    if (go_on)
-      tracer.go_on();
-    return go_on;
-  });
+  GuardedProgress progress(options.progress, should_continue);
+  PointTracer tracer(world.impl(), setup, options, progress, stats.threads);
+  const bool finished = subdivide(
+      picture, options.subdivision, std::ref(tracer), 0, [&] { return progress.resume(); });
   tracer.count(stats);
-  told.rethrow();
+  progress.rethrow();
   return finished;
 }
 

@@ -71,11 +71,11 @@ bool is_sound(const Refinement& r) {
     return false;
   if (!std::all_of(r.cost.begin(), r.cost.end(), [](float c) { return c >= 1; }))
     return false;
-  for (const double v : {r.fall, r.level, r.round_fall, r.round_level, r.seconds})
+  for (const double v : {r.variance_drop, r.variance_level, r.round_drop, r.round_level, r.seconds})
     if (!lies(v, 0.0, kMost))
       return false;
-  if (!lies(r.rho, .1f, .6f) || !lies(r.bar, 0.f, .25f) || !lies(r.share, 0.0, 1.0) ||
-      !lies(r.rounds, 0, 1 << 20))
+  if (!lies(r.variance_ratio, .1f, .6f) || !lies(r.gain_threshold, 0.f, .25f) ||
+      !lies(r.share, 0.0, 1.0) || !lies(r.rounds, 0, 1 << 20))
     return false;
   if (r.wanted.empty())
     return r.finished || is_new(r);

@@ -36,12 +36,12 @@ struct Refinement {
   /// pixels that the round in work has not come to, in its order; between rounds none
   std::vector<std::uint32_t> wanted;
   /// of the last rounds: sums of squared differences of halves of everything, and of the new half
-  double fall = 0, level = 0;
-  double round_fall = 0, round_level = 0;  ///< the same of the round in work
-  float rho = .4f;
-  float bar = .25f;   ///< gain a pixel of the round in work had to promise
-  int rounds = 0;     ///< done
-  bool last = false;  ///< no round follows the one in work
+  double variance_drop = 0, variance_level = 0;
+  double round_drop = 0, round_level = 0;  ///< the same of the round in work
+  float variance_ratio = .4f;              ///< V(n) / V(n/2)
+  float gain_threshold = .25f;  ///< gain a ray that a pixel of the round in work had to promise
+  int rounds = 0;               ///< done
+  bool last = false;            ///< no round follows the one in work
   bool finished = false;
   std::uint64_t rays = 0;  ///< sent so far
   double seconds = 0;      ///< spent so far

@@ -12,37 +12,6 @@
 namespace grelha {
 namespace {
 
-void check(const Camera& camera, const RenderOptions& o) {
-  if (!camera_is_sound(camera))
-    throw std::invalid_argument("the camera cannot see: check eye, at, up, angle and size");
-  if (o.depth < 1 || o.depth > kMostDepth)
-    throw std::invalid_argument("depth must be from 1 to " + std::to_string(kMostDepth));
-  if (!(o.min_weight >= 0 && o.min_weight <= 1))
-    throw std::invalid_argument("the least weight of a path must be from 0 to 1");
-  if (o.packet != 1 && o.packet != 16 && o.packet != 64 && o.packet != 256)
-    throw std::invalid_argument("a packet holds 1, 16, 64 or 256 rays");
-  const SampleOptions& s = o.sampling;
-  if (s.samples < 1 || s.samples > kMostSamples)
-    throw std::invalid_argument("samples must be from 1 to " + std::to_string(kMostSamples));
-  if (s.light_rays < 1 || s.light_rays > 4096)
-    throw std::invalid_argument("shadow rays to an area light must be from 1 to 4096");
-  if (s.gloss_rays < 0 || s.gloss_rays > 256)
-    throw std::invalid_argument("rays around the mirror direction must be from 0 to 256");
-  const RefineOptions& r = o.refine;
-  if (!(r.error >= 0) || !(r.seconds >= 0))
-    throw std::invalid_argument("an error and a time must not be negative");
-  if (r.on() && is_jittered(s.sampler))
-    throw std::invalid_argument(
-        "jittered samples must be counted before they are taken: to meet an error, use sobol or "
-        "random");
-  if (r.on() && s.light_rays > 1)
-    throw std::invalid_argument("to meet an error every sample sends one ray to a light");
-  if (r.on() && o.subdivision.on)
-    throw std::invalid_argument("samples are spent by error or by subdivision, not by both");
-  if (o.threads < 0)
-    throw std::invalid_argument("threads must not be negative");
-}
-
 /// Near-square strata for `count` samples, never fewer.
 Strata strata_for(int count) {
   std::uint32_t columns = 1;
@@ -87,8 +56,39 @@ SamplePlan plan_samples(const SampleOptions& o, const Camera& camera, const Shad
 
 }  // namespace
 
+void check_options(const Camera& camera, const RenderOptions& o) {
+  if (!camera_is_sound(camera))
+    throw std::invalid_argument("the camera cannot see: check eye, at, up, angle and size");
+  if (o.depth < 1 || o.depth > kMostDepth)
+    throw std::invalid_argument("depth must be from 1 to " + std::to_string(kMostDepth));
+  if (!(o.min_weight >= 0 && o.min_weight <= 1))
+    throw std::invalid_argument("the least weight of a path must be from 0 to 1");
+  if (o.packet != 1 && o.packet != 16 && o.packet != 64 && o.packet != 256)
+    throw std::invalid_argument("a packet holds 1, 16, 64 or 256 rays");
+  const SampleOptions& s = o.sampling;
+  if (s.samples < 1 || s.samples > kMostSamples)
+    throw std::invalid_argument("samples must be from 1 to " + std::to_string(kMostSamples));
+  if (s.light_rays < 1 || s.light_rays > 4096)
+    throw std::invalid_argument("shadow rays to an area light must be from 1 to 4096");
+  if (s.gloss_rays < 0 || s.gloss_rays > 256)
+    throw std::invalid_argument("rays around the mirror direction must be from 0 to 256");
+  const RefineOptions& r = o.refine;
+  if (!(r.error >= 0) || !(r.seconds >= 0))
+    throw std::invalid_argument("an error and a time must not be negative");
+  if (r.on() && is_jittered(s.sampler))
+    throw std::invalid_argument(
+        "jittered samples must be counted before they are taken: to meet an error, use sobol or "
+        "random");
+  if (r.on() && s.light_rays > 1)
+    throw std::invalid_argument("to meet an error every sample sends one ray to a light");
+  if (r.on() && o.subdivision.on)
+    throw std::invalid_argument("samples are spent by error or by subdivision, not by both");
+  if (o.threads < 0)
+    throw std::invalid_argument("threads must not be negative");
+}
+
 Setup set_up(const World& world, const Camera& camera, const RenderOptions& options) {
-  check(camera, options);
+  check_options(camera, options);
   const World::Impl& w = world.impl();
   SampleOptions sampling = options.sampling;
   const bool to_sample = camera.aperture > 0 || w.shading.area || w.shading.gloss;

@@ -14,6 +14,9 @@ struct Setup {
   SamplePlan plan;
 };
 
+/// Throws std::invalid_argument for a bad camera or option.
+void check_options(const Camera& camera, const RenderOptions& options);
+
 /// Throws std::invalid_argument for an instruction set that is unknown or does not run here, or a
 /// bad camera or option.
 Setup set_up(const World& world, const Camera& camera, const RenderOptions& options);

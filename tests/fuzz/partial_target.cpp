@@ -4,13 +4,12 @@
 // all of them are merged.
 #include <vector>
 
-#include "kernel/picture/refiner.hpp"
 #include "frontend/commands/commands.hpp"
 #include "frontend/files/digest.hpp"
 #include "frontend/files/parse_error.hpp"
 #include "frontend/jobs/merge.hpp"
 #include "frontend/jobs/partial.hpp"
-#include "kernel/picture/point_tracer.hpp"
+#include "kernel/picture/picture.hpp"
 #include "tests/fuzz/target.hpp"
 
 namespace {
@@ -56,42 +55,35 @@ const World& small_world() {
   return world;
 }
 
-struct GoOn {
-  Camera camera;
+constexpr std::uint64_t kMostWork = 4096;       ///< samples of a picture that is gone on with
+constexpr std::uint64_t kSamplesOfOthers = 16;  ///< a pixel, where their number is not fixed
+
+/// Options for a picture of this kind.
+RenderOptions options_for(const Picture& picture, std::uint64_t pixels) {
   RenderOptions options;
+  options.threads = 1;
+  if (const Accumulator* const sums = picture.sums())
+    options.sampling.samples = sums->samples;
+  else if (picture.kind() == kKindOf<Refinement>)
+    options.refine.samples = pixels * kSamplesOfOthers;
+  else
+    options.subdivision = {true, .1f, 2};
+  return options;
+}
+
+/// Goes on with a picture that is small.
+void go_on(Picture& picture) {
+  Camera camera;
+  camera.width = picture.width();
+  camera.height = picture.height();
+  const std::uint64_t pixels = std::uint64_t(camera.width) * std::uint64_t(camera.height);
+  const RenderOptions options = options_for(picture, pixels);
+  const auto samples = picture.sums() ? std::uint64_t(options.sampling.samples) : kSamplesOfOthers;
+  if (pixels > kMostWork / samples)
+    return;
   RenderStats stats;
-
-  GoOn(int width, int height) {
-    camera.width = width;
-    camera.height = height;
-    options.threads = 1;
-  }
-  bool is_small(int samples) const {
-    constexpr std::int64_t kMost = 4096;
-    return std::int64_t(camera.width) * camera.height <= kMost / samples;
-  }
-};
-
-void go_on(Accumulator& a) {
-  GoOn work(a.width, a.height);
-  work.options.sampling.samples = a.samples;
-  if (work.is_small(a.samples))
-    accumulate(small_world(), work.camera, work.options, a, work.stats);
-}
-
-void go_on(Refinement& r) {
-  GoOn work(r.width, r.height);
-  work.options.refine.samples = std::uint64_t(r.width) * std::uint64_t(r.height) * 16;
   SampleMaps maps;
-  if (work.is_small(16))
-    refine(small_world(), work.camera, work.options, r, work.stats, &maps);
-}
-
-void go_on(Subdivided& s) {
-  GoOn work(s.image.width, s.image.height);
-  work.options.subdivision = {true, .1f, 2};
-  if (work.is_small(16))
-    render_subdivided(small_world(), work.camera, work.options, s, work.stats, {});
+  picture.advance(small_world(), camera, options, stats, &maps);
 }
 
 std::string bytes_of(const std::string& file) {
@@ -102,12 +94,12 @@ std::string bytes_of(const std::string& file) {
 void try_one(const std::string& file, const std::string& bytes) {
   try {
     Checkpoint read = parse_checkpoint("x.grelha", bytes);
-    write_checkpoint(file, read.identity, read.work, false);
+    write_checkpoint(file, read.identity, read.picture, false);
     const std::string once = bytes_of(file);
     const Checkpoint again = read_checkpoint(file);
-    write_checkpoint(file, again.identity, again.work, false);
+    write_checkpoint(file, again.identity, again.picture, false);
     fuzz::promise(bytes_of(file) == once, "what is written is what was read");
-    std::visit([](auto& work) { go_on(work); }, read.work);
+    go_on(read.picture);
   } catch (const FileError&) {
     // a file that is sound by itself, of another picture than the one that goes on
   } catch (const std::invalid_argument&) {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "kernel/picture/point_tracer.hpp"
+#include "grelha/subdivision.hpp"
 
 #include <array>
 #include <functional>

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <optional>
 #include <sstream>
 
-#include "kernel/picture/refiner.hpp"
 #include "frontend/files/digest.hpp"
 #include "frontend/files/parse_error.hpp"
 #include "frontend/jobs/checkpoint.hpp"
@@ -12,7 +12,8 @@
 #include "frontend/jobs/partial.hpp"
 #include "frontend/nff/nff_reader.hpp"
 #include "grelha/accumulator.hpp"
-#include "kernel/picture/point_tracer.hpp"
+#include "kernel/picture/adaptive_sampler.hpp"
+#include "kernel/picture/picture.hpp"
 #include "scenes/generators.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -339,7 +340,7 @@ TEST(Partial, BytesAreAsTheyEverWere) {
 
 /// What refinement or subdivision makes until it is done, or until step `last`; counts the steps.
 struct Steps {
-  Work work;
+  std::optional<Picture> picture;
   int count = 0;
   bool done = false;
 };
@@ -351,20 +352,13 @@ Steps steps_until(int last, const Job& job, const RenderOptions& options) {
   o.threads = 1;
   o.progress = [&](double) { return ++s.count < last; };
   RenderStats stats;
-  if (o.refine.on()) {
-    Refinement r = make_refinement(job.file.camera);
-    s.done = refine(world, job.file.camera, o, r, stats);
-    s.work = std::move(r);
-  } else {
-    Subdivided d = make_subdivided(job.file.camera.width, job.file.camera.height);
-    s.done = render_subdivided(world, job.file.camera, o, d, stats);
-    s.work = std::move(d);
-  }
+  s.picture.emplace(job.file.camera, o);
+  s.done = s.picture->advance(world, job.file.camera, o, stats);
   return s;
 }
 
 /// Stopped in the middle, with something in every array; early, for what follows looks at each byte.
-Work half_done(const Job& job, const RenderOptions& options, std::uint64_t seed) {
+Picture half_done(const Job& job, const RenderOptions& options, std::uint64_t seed) {
   constexpr int first = 3;
   constexpr int last = 33;
   const int all = steps_until(last, job, options).count;
@@ -373,13 +367,13 @@ Work half_done(const Job& job, const RenderOptions& options, std::uint64_t seed)
   const int stop = first + static_cast<int>(Random(seed).below(static_cast<unsigned>(choices)));
   Steps half = steps_until(stop, job, options);
   EXPECT_FALSE(half.done) << "step " << stop << " of " << all;
-  return std::move(half.work);
+  return std::move(*half.picture);
 }
 
 /// In a file, as bytes.
-std::string kept(const Work& work) {
+std::string kept(const Picture& picture) {
   const TemporaryFolder folder;
-  write_checkpoint(folder.file("x"), {"scene", "settings"}, work, true);
+  write_checkpoint(folder.file("x"), {"scene", "settings"}, picture, true);
   EXPECT_EQ(folder.list(), "x");
   return folder.read("x");
 }
@@ -412,25 +406,21 @@ TEST_P(Checkpoints, GoOnFromAFileToTheSameBits) {
   o.subdivision.depth /= 2;
   const Image whole = render(world, job_.file.camera, o, stats);
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
-    const Work half = half_done(job_, o, seed);
-    Work work = parse_checkpoint("x", kept(half)).work;
-    if (auto* const r = std::get_if<Refinement>(&work)) {
-      ASSERT_TRUE(refine(world, job_.file.camera, o, *r, stats));
-      EXPECT_TRUE(same_bits(picture_so_far(*r), whole));
-    } else {
-      Subdivided& s = std::get<Subdivided>(work);
-      EXPECT_EQ(s.colours, std::get<Subdivided>(half).colours) << "or they would be seen again";
-      ASSERT_TRUE(render_subdivided(world, job_.file.camera, o, s, stats));
-      EXPECT_TRUE(same_bits(s.image, whole));
-    }
-    EXPECT_EQ(kept(parse_checkpoint("x", kept(work)).work), kept(work))
+    Picture half = half_done(job_, o, seed);
+    Picture picture = parse_checkpoint("x", kept(half)).picture;
+    RenderStats of_half;
+    ASSERT_TRUE(half.advance(world, job_.file.camera, o, of_half));
+    ASSERT_TRUE(picture.advance(world, job_.file.camera, o, stats));
+    EXPECT_EQ(stats.rays.total(), of_half.rays.total()) << "or what was seen is seen again";
+    EXPECT_TRUE(same_bits(picture.image(), whole));
+    EXPECT_EQ(kept(parse_checkpoint("x", kept(picture)).picture), kept(picture))
         << "of what is finished as well";
   }
 }
 
 TEST_P(Checkpoints, AreRefusedWithAnyByteFlippedOrLost) {
   const std::string good = kept(half_done(job_, job_.options, 1));
-  EXPECT_EQ(kept(parse_checkpoint("x", good).work), good);
+  EXPECT_EQ(kept(parse_checkpoint("x", good).picture), good);
   for (std::size_t i = 0; i < good.size(); i += 1 + i / 16) {
     std::string bad = good;
     bad[i] = static_cast<char>(bad[i] ^ (1 << i % 8));
@@ -458,15 +448,12 @@ TEST_P(Checkpoints, OfHostileBytesBreakNothing) {
       bad[random.below(static_cast<std::uint32_t>(most))] =
           static_cast<char>(random.chance(.5) ? 255 : random.below(256));
     try {
-      Work work = parse_checkpoint("x", signed_anew(bad)).work;
+      Picture picture = parse_checkpoint("x", signed_anew(bad)).picture;
       RenderOptions o = job_.options;
       int left = 20;
       o.progress = [&](double) { return --left > 0; };
       RenderStats stats;
-      if (auto* const r = std::get_if<Refinement>(&work))
-        refine(world, job_.file.camera, o, *r, stats);
-      else if (auto* const s = std::get_if<Subdivided>(&work))
-        render_subdivided(world, job_.file.camera, o, *s, stats);
+      picture.advance(world, job_.file.camera, o, stats);
       ++taken;
     } catch (const FileError&) {
       ++refused;
@@ -485,7 +472,12 @@ INSTANTIATE_TEST_SUITE_P(Kinds, Checkpoints, testing::Bool(), [](const auto& kin
 TEST(Checkpoint, OfImpossibleNumbersIsRefused) {
   Job job = make({"balls", 1, "l"});
   job.options.refine.error = 1e-3;
-  const Refinement good = std::get<Refinement>(half_done(job, job.options, 20));
+  const World world(job.file.scene, {});
+  Refinement good = make_refinement(job.file.camera);
+  int left = 20;
+  job.options.progress = [&](double) { return --left > 0; };
+  RenderStats stats;
+  ASSERT_FALSE(refine(world, job.file.camera, job.options, good, stats));
   const auto refused = [&](auto change) {
     Refinement bad = good;
     change(bad);
@@ -501,9 +493,11 @@ TEST(Checkpoint, OfImpossibleNumbersIsRefused) {
   EXPECT_TRUE(refused([&](Refinement& r) { r.cost[5] = nan; })) << "pixels are sorted by it";
   EXPECT_TRUE(refused([](Refinement& r) { r.cost[5] = 0; }));
   EXPECT_TRUE(refused([&](Refinement& r) { r.squares[1][7] = nan; }));
-  EXPECT_TRUE(refused([&](Refinement& r) { r.bar = nan; })) << "it would never be low enough";
-  EXPECT_TRUE(refused([](Refinement& r) { r.bar = std::numeric_limits<float>::infinity(); }));
-  EXPECT_TRUE(refused([](Refinement& r) { r.rho = 1; }));
+  EXPECT_TRUE(refused([&](Refinement& r) { r.gain_threshold = nan; }))
+      << "it would never be low enough";
+  EXPECT_TRUE(
+      refused([](Refinement& r) { r.gain_threshold = std::numeric_limits<float>::infinity(); }));
+  EXPECT_TRUE(refused([](Refinement& r) { r.variance_ratio = 1; }));
   EXPECT_TRUE(refused([](Refinement& r) { r.log[3] = 17; }));
   EXPECT_TRUE(refused([](Refinement& r) { r.log[3] = 1; }));
   EXPECT_TRUE(refused([](Refinement& r) { r.log[r.wanted[0]] = 16; })) << "it can take no more";

@@ -341,12 +341,12 @@ TEST(Adaptive, StoppedAnywhereGoesOnToTheSameBits) {
   Random random(5);
   int left = 0, stops = 0;
   o.progress = [&](double) { return --left > 0; };
-  Subdivided kept = make_subdivided(c.width, c.height);
+  SubdivisionState kept = make_subdivision(c.width, c.height);
   RayCounts rays;
   for (bool done = false; !done; ++stops) {
     left = 1 + static_cast<int>(random.below(9));
     o.threads = 1 + static_cast<int>(random.below(3));
-    Subdivided copy = kept;
+    SubdivisionState copy = kept;
     RenderStats stats;
     done = render_subdivided(world, c, o, copy, stats, [&] {  // goes on in place now and then
       EXPECT_TRUE(is_sound(copy));

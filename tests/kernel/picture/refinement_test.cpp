@@ -5,8 +5,8 @@
 
 #include "frontend/input/effects.hpp"
 #include "frontend/nff/nff_reader.hpp"
+#include "kernel/picture/adaptive_sampler.hpp"
 #include "kernel/picture/refinement.hpp"
-#include "kernel/picture/refiner.hpp"
 #include "scenes/generators.hpp"
 #include "tests/support/rays.hpp"
 #include "tests/support/scenes.hpp"

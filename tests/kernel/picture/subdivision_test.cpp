@@ -3,7 +3,7 @@
 #include <map>
 #include <set>
 
-#include "kernel/picture/point_tracer.hpp"
+#include "kernel/picture/subdivider.hpp"
 #include "tests/support/rays.hpp"
 #include "tests/support/recursion.hpp"
 #include "tests/support/scenes.hpp"
@@ -12,8 +12,8 @@ namespace grelha::test {
 namespace {
 
 Image subdivided(
-    int width, int height, const Subdivision& options, const SeePoints& see, int tile = 0) {
-  Subdivided picture = make_subdivided(width, height);
+    int width, int height, const Subdivision& options, const TracePoints& see, int tile = 0) {
+  SubdivisionState picture = make_subdivision(width, height);
   subdivide(picture, options, see, tile);
   return std::move(picture.image);
 }
@@ -150,9 +150,9 @@ TEST(Subdivide, StoppedAnywhereGoesOnToTheSameBits) {
       };
       const Image whole = subdivided(19, 12, {true, .1f, depth}, see, tile);
       const std::set<Place> all = std::exchange(seen, {});
-      Subdivided kept = make_subdivided(19, 12);
+      SubdivisionState kept = make_subdivision(19, 12);
       for (bool done = false; !done;) {
-        Subdivided copy = kept;
+        SubdivisionState copy = kept;
         most = random.below(100);
         done = subdivide(copy, {true, .1f, depth}, see, tile);
         ASSERT_TRUE(is_sound(copy));
@@ -171,7 +171,7 @@ TEST(Subdivide, StoppedAnywhereGoesOnToTheSameBits) {
 /// Until all corners are seen a pixel shows its first, then squares that wait to be split show
 /// theirs: all of it lies between what was seen.
 TEST(Subdivide, ShowsOfATileWhatThereIs) {
-  Subdivided picture = make_subdivided(16, 8);
+  SubdivisionState picture = make_subdivision(16, 8);
   const auto see_some = [](std::span<const LatticePoint> points, Float3* colours, double, double) {
     // corners come in blocks of 8 x 8
     const std::size_t n = std::min<std::size_t>(points.size(), 64);

@@ -1,0 +1,224 @@
+#include "kernel/picture/adaptive_sampler.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+
+#include <omp.h>
+
+#include "kernel/grid/world_impl.hpp"
+#include "kernel/picture/pixel_errors.hpp"
+#include "kernel/picture/pixel_features.hpp"
+#include "kernel/picture/pixel_order.hpp"
+#include "kernel/picture/sampling_round.hpp"
+#include "kernel/render/setup.hpp"
+#include "kernel/render/workspace.hpp"
+
+namespace grelha {
+namespace {
+
+/// Logarithms of the samples that a pixel begins with, with effects to sample and without.
+constexpr int kFirstLogOfEffects = 3, kFirstLog = 2;
+
+bool has_effects(const SamplePlan& plan) {
+  return plan.lens >= 0 || plan.light >= 0 || plan.gloss >= 0;
+}
+
+/// Goes on with a Refinement: round by round.
+class AdaptiveSampler {
+ public:
+  AdaptiveSampler(const World::Impl& world,
+                  const Setup& setup,
+                  const RenderOptions& options,
+                  GuardedProgress& progress,
+                  Refinement& r,
+                  RenderStats& stats)
+      : world_(world),
+        setup_(setup),
+        options_(options),
+        progress_(progress),
+        r_(r),
+        stats_(stats),
+        seconds_before_(r.seconds),
+        first_log_(has_effects(setup.plan) ? kFirstLogOfEffects : kFirstLog),
+        order_(pixel_order(r.width, r.height)),
+        errors_(r, has_effects(setup.plan), first_log_, thread_count(options, r.log.size())) {
+    stats_ = {};
+    stats_.threads = thread_count(options, r.log.size());
+    stats_.isa = setup.variant.name.data();
+    for (int i = 0; i < stats_.threads; ++i)
+      spaces_.push_back(std::make_unique<Workspace>(std::size_t{kRunsOfChunk} * kParts,
+                                                    options.depth,
+                                                    setup.plan,
+                                                    loops_of(setup.variant, options.precision)));
+    for (std::size_t p = 0; p < order_.size(); ++p)
+      samples_ += sample_count(r, p);
+  }
+
+  void run() {
+    if (r_.wanted.empty() && !r_.finished)
+      r_.wanted = order_;
+    bool judged = false;
+    while (!r_.finished && (!progress_.stopped() || resume())) {
+      judged = take_round();
+      if (!judged)
+        continue;
+      if (r_.rounds++ == 0)
+        find_hidden_features(world_, setup_, errors_, stats_.threads, r_, stats_.trace);
+      errors_.judge();
+      r_.finished =
+          !choose_round(r_, errors_, options_.refine, order_, {samples_, seconds()}, first_log_);
+    }
+    if (!judged)
+      errors_.judge();
+    if (r_.finished)
+      r_.share = 1;
+    r_.seconds = seconds();
+    for (const auto& space : spaces_)
+      stats_.phases += space->phases();
+  }
+
+  /// Describes the picture as it is.
+  void report(SampleMaps* maps) const {
+    const PixelErrors::Totals totals = errors_.totals();
+    ErrorStats& e = stats_.error;
+    e.rmse = totals.rmse;
+    e.rmse_bound = totals.bound;
+    e.widest = totals.widest;
+    e.rounds = r_.rounds;
+    e.samples = samples_;
+    e.least = kMostSamples;
+    for (std::size_t p = 0; p < order_.size(); ++p) {
+      e.least = std::min(e.least, sample_count(r_, p));
+      e.most = std::max(e.most, sample_count(r_, p));
+    }
+    if (!maps)
+      return;
+    maps->samples.resize(order_.size());
+    maps->error.resize(order_.size());
+    maps->width = errors_.widths();
+    for (std::size_t p = 0; p < order_.size(); ++p) {
+      maps->samples[p] = sample_count(r_, p);
+      maps->error[p] = std::sqrt(errors_.variance(p));
+    }
+  }
+
+ private:
+  bool resume() {
+    r_.seconds = seconds();
+    return progress_.resume();
+  }
+
+  double seconds() const {
+    return seconds_before_ + std::chrono::duration<double>(Clock::now() - start_).count();
+  }
+
+  /// Doubles the samples of the wanted pixels, or takes the first ones. Returns whether it came to
+  /// the end.
+  bool take_round() {
+    std::vector<Chunk> chunks = cut_round(r_, first_log_);
+    std::atomic<std::size_t> begun = 0;
+#pragma omp parallel num_threads(stats_.threads)
+    {
+      Workspace& space = *spaces_[static_cast<std::size_t>(omp_get_thread_num())];
+      TraceCounts trace;
+      RayCounts rays;
+      while (!progress_.stopped()) {
+        // what has a number is done, so that what is done is the first so many
+        const std::size_t c = begun++;
+        if (c >= chunks.size())
+          break;
+        take_chunk(chunks[c], space, trace, rays);
+        tell_progress();
+      }
+#pragma omp critical(grelha_stats)
+      {
+        stats_.trace += trace;
+        stats_.rays += rays;
+        r_.rays += rays.total();
+        samples_ += rays.primary;
+      }
+    }
+    return end_round(r_, chunks, std::min(begun.load(), chunks.size()));
+  }
+
+  void tell_progress() {
+#pragma omp critical(grelha_progress)
+    {
+      if (options_.refine.seconds > 0)
+        r_.share = std::min(1.0, seconds() / options_.refine.seconds);
+      if (!progress_.stopped())
+        progress_.tell(r_.share);
+    }
+  }
+
+  void take_chunk(Chunk& chunk, Workspace& space, TraceCounts& trace, RayCounts& rays) {
+    PixelRun runs[kRunsOfChunk];
+    const std::size_t count = chunk.end - chunk.begin;
+    for (std::size_t r = 0; r < count; ++r) {
+      const std::uint32_t p = r_.wanted[chunk.begin + r];
+      runs[r] = {p, sample_count(r_, p), next_count(r_, p, first_log_)};
+      std::fill_n(space.pixels().begin() + static_cast<std::ptrdiff_t>(r * kParts), kParts, p);
+    }
+    const RayCounts before = rays;
+    setup_.variant.loops.render_runs(world_.view,
+                                     world_.shading,
+                                     setup_.frame,
+                                     runs,
+                                     static_cast<int>(count),
+                                     space.work(options_, 0, true),
+                                     trace,
+                                     rays);
+    for (std::size_t r = 0; r < count; ++r)
+      add_run(r_, runs[r], space.sums().data() + r * kParts * 3, first_log_, chunk);
+    space.done(options_);
+    const float cost = static_cast<float>(rays.total() - before.total()) /
+                       static_cast<float>(rays.primary - before.primary);
+    for (std::size_t r = 0; r < count; ++r)
+      r_.cost[runs[r].pixel] = cost;
+  }
+
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point start_ = Clock::now();
+  const World::Impl& world_;
+  const Setup& setup_;
+  const RenderOptions& options_;
+  GuardedProgress& progress_;
+  Refinement& r_;
+  RenderStats& stats_;
+  const double seconds_before_;
+  const int first_log_;
+  const std::vector<std::uint32_t> order_;
+  std::uint64_t samples_ = 0;  ///< taken, of all pixels
+  PixelErrors errors_;
+  std::vector<std::unique_ptr<Workspace>> spaces_;
+};
+
+}  // namespace
+
+bool refine(const World& world,
+            const Camera& camera,
+            const RenderOptions& options,
+            Refinement& r,
+            RenderStats& stats,
+            SampleMaps* maps,
+            const ShouldContinue& should_continue) {
+  Setup setup = set_up(world, camera, options);
+  if (!options.refine.on())
+    throw std::invalid_argument("this picture is one whose samples are spent by error");
+  if (r.width != camera.width || r.height != camera.height)
+    throw std::invalid_argument("this picture has another size than the camera's");
+  setup.plan.on = true;
+  setup.plan.samples = kMostSamples;
+  GuardedProgress progress(options.progress, should_continue);
+  AdaptiveSampler sampler(world.impl(), setup, options, progress, r, stats);
+  sampler.run();
+  progress.rethrow();
+  sampler.report(maps);
+  return r.finished;
+}
+
+}  // namespace grelha

@@ -1,0 +1,104 @@
+#pragma once
+// A picture in the making, whatever decides where its samples go: it is rendered bit by bit,
+// stopped, kept and gone on with, to the bits of one that was rendered in one go.
+
+#include <cstdint>
+#include <string_view>
+#include <variant>
+
+#include "grelha/accumulator.hpp"
+#include "grelha/camera.hpp"
+#include "grelha/image.hpp"
+#include "grelha/render_options.hpp"
+#include "grelha/stats.hpp"
+#include "grelha/world.hpp"
+#include "kernel/picture/guarded_progress.hpp"
+#include "kernel/picture/picture_fields.hpp"
+#include "kernel/picture/refinement.hpp"
+#include "kernel/picture/subdivision_state.hpp"
+
+namespace grelha {
+
+/// All that is known of a picture between two pieces of its work: plain data, to be copied and
+/// kept. The options that it began with say what it is, and every call needs the same ones.
+class Picture {
+ public:
+  /// A picture without samples. Throws std::invalid_argument for a bad camera or option.
+  Picture(const Camera& camera, const RenderOptions& options);
+  /// The same of a part. A picture whose samples depend on each other has no parts but the whole.
+  Picture(const Camera& camera, const RenderOptions& options, const Part& part);
+
+  Picture(Accumulator state) : state_(std::move(state)) {}       ///< one with a fixed number
+  Picture(Refinement state) : state_(std::move(state)) {}        ///< one by error
+  Picture(SubdivisionState state) : state_(std::move(state)) {}  ///< one by subdivision
+
+  /// Renders until the picture is finished; returns whether it is. Where options.progress says to
+  /// stop, threads end what they have in work. Then `should_continue` is asked whether to go on all
+  /// the same; it may read the picture, which options.progress must not. From the picture, or from
+  /// a copy, another call goes on, here or on another machine. `stats` are of this call, but
+  /// stats.error and `maps` of the picture so far: set when samples are spent by error. Throws like
+  /// render().
+  bool advance(const World& world,
+               const Camera& camera,
+               const RenderOptions& options,
+               RenderStats& stats,
+               SampleMaps* maps = nullptr,
+               const ShouldContinue& should_continue = {});
+
+  int width() const;   ///< pixels, of the whole picture
+  int height() const;  ///< the same
+
+  /// Share done, 0 to 1, as far as it is known.
+  double share_done() const;
+  bool is_finished() const;
+  /// The picture so far; what has no sample yet is black.
+  Image image() const;
+  /// Samples taken, of all pixels; 0 where they are not counted: by subdivision.
+  std::uint64_t samples_taken() const;
+
+  /// The way its samples are spent, in one word.
+  std::string_view kind() const;
+  /// Which part of the whole it is. That of a picture without parts has one sample a pixel.
+  Part part() const;
+  /// The sums of a picture that can be cut into parts, or null.
+  const Accumulator* sums() const { return std::get_if<Accumulator>(&state_); }
+  /// The same, to work on.
+  Accumulator* sums() { return std::get_if<Accumulator>(&state_); }
+
+  /// Whether rendering can have left it behind: what a file says must pass this before it is gone
+  /// on with.
+  bool is_sound() const;
+
+  /// Gives an archive the numbers that say what the picture is, then its arrays; see
+  /// picture_fields.hpp.
+  template <class Archive>
+  void save_numbers(Archive&& archive) const {
+    std::visit([&](const auto& state) { visit_numbers(archive, state); }, state_);
+  }
+  template <class Archive>
+  void save_arrays(Archive&& archive) const {
+    std::visit([&](const auto& state) { visit_arrays(archive, state); }, state_);
+  }
+
+  /// Takes from an archive what save_numbers() gave it. Nothing is allocated yet.
+  template <class Archive>
+  static Picture load_numbers(Archive&& archive) {
+    Picture picture = archive.next_is(kKindOf<Refinement>)         ? Picture(Refinement{})
+                      : archive.next_is(kKindOf<SubdivisionState>) ? Picture(SubdivisionState{})
+                                                                   : Picture(Accumulator{});
+    std::visit([&](auto& state) { visit_numbers(archive, state); }, picture.state_);
+    return picture;
+  }
+  /// Whether the numbers alone are sound: ask before load_arrays(), which allocates by them.
+  bool has_sound_numbers() const;
+  /// Takes from an archive what save_arrays() gave it.
+  template <class Archive>
+  void load_arrays(Archive&& archive) {
+    std::visit([&](auto& state) { visit_arrays(archive, state); }, state_);
+  }
+
+ private:
+  std::variant<Accumulator, Refinement, SubdivisionState> state_;
+};
+
+}  // namespace grelha

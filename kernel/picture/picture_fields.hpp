@@ -1,0 +1,105 @@
+#pragma once
+// The fields of a picture in the order in which they are kept. The kernel knows no file format: an
+// archive writes or reads the fields, and says how each looks.
+//
+// An archive of numbers has
+//   numbers(name, n...)  some whole numbers or flags under a common name
+//   next_is(name)        to read: whether these come next
+// and one of arrays
+//   values(v...)         numbers of fixed width
+//   list(vector, count)  a vector whose length follows from the numbers
+//   size(vector, bytes)  the length of a vector, whose elements follow and have `bytes` each
+
+#include <cstddef>
+#include <string_view>
+#include <type_traits>
+
+#include "grelha/accumulator.hpp"
+#include "kernel/picture/refinement.hpp"
+#include "kernel/picture/subdivision_state.hpp"
+
+namespace grelha {
+
+/// The word for a way of rendering: the first name under which its numbers are kept.
+template <class State>
+inline constexpr std::string_view kKindOf = "";
+template <>
+inline constexpr std::string_view kKindOf<Accumulator> = "picture";
+template <>
+inline constexpr std::string_view kKindOf<Refinement> = "refined";
+template <>
+inline constexpr std::string_view kKindOf<SubdivisionState> = "subdivided";
+
+inline std::size_t pixels_of(int width, int height) {
+  return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+}
+
+/// `State`, here and below: const to save it.
+template <class Archive, class State>
+requires std::is_same_v<std::remove_const_t<State>, Accumulator>
+void visit_numbers(Archive& archive, State& a) {
+  archive.numbers(kKindOf<Accumulator>, a.width, a.height, a.samples);
+  archive.numbers("rows", a.part.rows.begin, a.part.rows.end);
+  archive.numbers("samples", a.part.samples.begin, a.part.samples.end);
+}
+
+template <class Archive, class State>
+requires std::is_same_v<std::remove_const_t<State>, Accumulator>
+void visit_arrays(Archive& archive, State& a) {
+  archive.list(a.done, piece_count(a.part));
+  archive.list(a.sums, pixels_of(a.width, a.part.rows.end - a.part.rows.begin) * 3);
+}
+
+template <class Archive, class State>
+requires std::is_same_v<std::remove_const_t<State>, Refinement>
+void visit_numbers(Archive& archive, State& r) {
+  archive.numbers(kKindOf<Refinement>, r.width, r.height, r.rounds, r.last, r.finished);
+}
+
+template <class Archive, class State>
+requires std::is_same_v<std::remove_const_t<State>, Refinement>
+void visit_arrays(Archive& archive, State& r) {
+  const std::size_t pixels = pixels_of(r.width, r.height);
+  archive.values(r.variance_drop, r.variance_level, r.round_drop, r.round_level);
+  archive.values(r.seconds, r.share, r.rays, r.variance_ratio, r.gain_threshold);
+  archive.list(r.log, pixels);
+  archive.list(r.sums, pixels * 3);
+  for (auto& level : r.squares)
+    archive.list(level, pixels * 3);
+  archive.list(r.cost, pixels);
+  archive.list(r.inside, pixels);
+  archive.list(r.around, pixels);
+  archive.size(r.wanted, sizeof r.wanted[0]);
+  archive.list(r.wanted, r.wanted.size());
+}
+
+template <class Archive, class State>
+requires std::is_same_v<std::remove_const_t<State>, SubdivisionState>
+void visit_numbers(Archive& archive, State& s) {
+  archive.numbers(kKindOf<SubdivisionState>, s.image.width, s.image.height, s.tiles);
+}
+
+template <class Archive, class Border>
+void visit_border(Archive& archive, Border& border) {
+  constexpr std::size_t kBorderPoint = 20;  // bytes of a key and a colour
+  archive.size(border, kBorderPoint);
+  for (auto& [key, colour] : border)
+    archive.values(key, colour.x, colour.y, colour.z);
+}
+
+template <class Archive, class State>
+requires std::is_same_v<std::remove_const_t<State>, SubdivisionState>
+void visit_arrays(Archive& archive, State& s) {
+  constexpr std::size_t kLength = 8, kColour = 12;  // bytes
+  archive.values(s.share);
+  archive.list(s.image.rgb, pixels_of(s.image.width, s.image.height) * 3);
+  archive.size(s.above, kLength);
+  for (auto& border : s.above)
+    visit_border(archive, border);
+  visit_border(archive, s.left);
+  archive.size(s.colours, kColour);
+  for (auto& colour : s.colours)
+    archive.values(colour.x, colour.y, colour.z);
+}
+
+}  // namespace grelha

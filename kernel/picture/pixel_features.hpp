@@ -1,0 +1,21 @@
+#pragma once
+// Looks for what the samples of a refined picture may have missed.
+
+#include "grelha/stats.hpp"
+#include "kernel/grid/world_impl.hpp"
+#include "kernel/picture/pixel_errors.hpp"
+#include "kernel/picture/refinement.hpp"
+#include "kernel/render/setup.hpp"
+
+namespace grelha {
+
+/// Asks of every pixel whose samples agree whether anything can hide there; sets `inside` and
+/// `around` of the picture.
+void find_hidden_features(const World::Impl& world,
+                          const Setup& setup,
+                          const PixelErrors& errors,
+                          int threads,
+                          Refinement& r,
+                          TraceCounts& counts);
+
+}  // namespace grelha
