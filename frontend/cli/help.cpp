@@ -61,11 +61,8 @@ std::string row(const OptionHelp& o) {
 }  // namespace
 
 bool CommandHelp::shows(const OptionHelp& option) const {
-  if (options.size() <= kFew)
-    return true;
-  return std::any_of(option.names.begin(), option.names.end(), [](const std::string& n) {
-    return std::find(kCommon.begin(), kCommon.end(), n) != kCommon.end();
-  });
+  const auto is_common = [](const std::string& n) { return std::ranges::count(kCommon, n) > 0; };
+  return options.size() <= kFew || std::ranges::any_of(option.names, is_common);
 }
 
 std::string help_text(const CommandHelp& command, bool all) {

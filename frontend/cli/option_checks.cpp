@@ -1,5 +1,6 @@
 #include "frontend/cli/option_checks.hpp"
 
+#include <algorithm>
 #include <array>
 #include <string_view>
 
@@ -16,9 +17,7 @@ using option_values::refuse;
 /// Samples a pixel that --aa and --lens ask for; 0: they leave it open.
 long long samples_asked(const Effects& e) {
   const int lens = e.lens && e.lens->aperture > 0 ? e.lens->samples : 0;
-  if (e.jitter == 0)
-    return lens;
-  return 1LL * e.jitter * e.jitter * (lens > 0 ? lens : 1);
+  return e.jitter == 0 ? lens : 1LL * e.jitter * e.jitter * (lens > 0 ? lens : 1);
 }
 
 void check_samples(const Effects& e) {
@@ -113,10 +112,8 @@ void check_long_work(const RenderCommand& command) {
 /// Endings that promise another format than NFF.
 bool promises_other_format(std::string_view path) {
   constexpr std::array<std::string_view, 3> kOther{".ply", ".gz", ".grelha"};
-  for (const std::string_view ending : kOther)
-    if (path.ends_with(ending))
-      return true;
-  return image_format(path).has_value();
+  const auto ends = [path](std::string_view ending) { return path.ends_with(ending); };
+  return std::ranges::any_of(kOther, ends) || image_format(path).has_value();
 }
 
 }  // namespace

@@ -17,6 +17,7 @@ namespace {
 constexpr double kMaxDensity = 1000;
 constexpr double kMaxSeconds = 1e9;  ///< 30 years; a clock counts so far without rounding
 constexpr double kMaxBytes = 1e18;
+constexpr double kLeastError = 1e-6;
 
 /// Of KIND:MORE the kind that was probably meant.
 std::string meant_kind(const std::string& text, std::initializer_list<std::string_view> kinds) {
@@ -56,20 +57,43 @@ std::vector<std::string> parts(const std::string& option,
   return found;
 }
 
-/// Of something in a scene, where no length is larger.
-double not_negative(const std::string& option, const std::string& text, const char* what) {
-  const auto value = number<double>(text);
-  if (!value || !(*value >= 0) || *value > kLargest)
-    refuse(option, std::string(what) + " from 0 to 1e18", text);
+/// The number that is said, of those that fit; refuses any other.
+template <class T>
+T fitting(const std::string& option,
+          const std::string& text,
+          const std::string& expected,
+          bool (*fits)(T)) {
+  const auto value = number<T>(text);
+  if (!value || !fits(*value))
+    refuse(option, expected, text);
   return *value;
 }
 
+/// Of something in a scene, where no length is larger.
+double not_negative(const std::string& option, const std::string& text, const char* what) {
+  const std::string expected = std::string(what) + " from 0 to 1e18";
+  return fitting<double>(option, text, expected, [](double v) { return v >= 0 && v <= kLargest; });
+}
+
+template <class T>
+bool is_share(T value) {
+  return value >= 0 && value <= 1;
+}
+
+bool is_time(double value) { return value > 0 && value <= kMaxSeconds; }
+
 Subdivision subdivision(const std::string& text) {
   const auto p = parts("--aa", text, 2, 2, "adaptive:THRESHOLD,DEPTH");
-  const auto threshold = number<float>(p[0]);
-  if (!threshold || !(*threshold >= 0) || *threshold > 1)
-    refuse("--aa", "a threshold from 0 to 1", p[0]);
-  return {true, *threshold, whole("--aa", p[1], 0, kMostSubdivisions)};
+  const float threshold = fitting<float>("--aa", p[0], "a threshold from 0 to 1", is_share);
+  return {true, threshold, whole("--aa", p[1], 0, kMostSubdivisions)};
+}
+
+/// N of samples:N.
+std::uint64_t sample_count(const std::string& text, std::size_t begin) {
+  const auto count = number<std::uint64_t>(std::string_view(text).substr(begin));
+  if (!count || *count == 0)
+    refuse("--time", "samples:N with N from 1 to 2^64 - 1", text);
+  return *count;
 }
 
 }  // namespace
@@ -90,17 +114,12 @@ int whole(const std::string& option, const std::string& text, int low, int high)
 }
 
 double min_weight(const std::string& text) {
-  const auto value = number<double>(text);
-  if (!value || !(*value >= 0) || *value > 1)
-    refuse("--min-weight", "a number from 0 to 1", text);
-  return *value;
+  return fitting<double>("--min-weight", text, "a number from 0 to 1", is_share);
 }
 
 float density(const std::string& text) {
-  const auto value = number<double>(text);
-  if (!value || !(float(*value) > 0) || *value > kMaxDensity)
-    refuse("--density", "a number above 0 and up to 1000", text);
-  return float(*value);
+  const auto fits = [](double v) { return float(v) > 0 && v <= kMaxDensity; };
+  return float(fitting<double>("--density", text, "a number above 0 and up to 1000", fits));
 }
 
 void parse_aa(const std::string& text, Effects& effects) {
@@ -159,32 +178,23 @@ void parse_glossy(const std::string& text, Effects& effects) {
 }
 
 void parse_error_bound(const std::string& text, RefineOptions& refine) {
-  const auto value = number<double>(text);
-  if (!value || !(*value >= 1e-6) || *value > 1)
-    refuse("--error", "a number from 0.000001 to 1", text);
-  refine.error = *value;
+  const auto fits = [](double v) { return v >= kLeastError && v <= 1; };
+  refine.error = fitting<double>("--error", text, "a number from 0.000001 to 1", fits);
 }
 
 void parse_time(const std::string& text, RefineOptions& refine) {
   constexpr std::string_view kSamples = "samples:";
   if (text.starts_with(kSamples)) {
-    const auto count = number<std::uint64_t>(std::string_view(text).substr(kSamples.size()));
-    if (!count || *count == 0)
-      refuse("--time", "samples:N with N from 1 to 2^64 - 1", text);
-    refine.samples = *count;
+    refine.samples = sample_count(text, kSamples.size());
     return;
   }
-  const auto value = number<double>(text);
-  if (!value || !(*value > 0) || *value > kMaxSeconds)
-    refuse("--time", "seconds above 0 and up to 1e9, or samples:N", text);
-  refine.seconds = *value;
+  refine.seconds =
+      fitting<double>("--time", text, "seconds above 0 and up to 1e9, or samples:N", is_time);
 }
 
 double rmse_bound(const std::string& text) {
-  const auto value = number<double>(text);
-  if (!value || !(*value >= 0))
-    refuse("--max-rmse", "a number that is not negative", text);
-  return *value;
+  const auto fits = [](double v) { return v >= 0; };
+  return fitting<double>("--max-rmse", text, "a number that is not negative", fits);
 }
 
 void parse_size(const std::string& text, int& width, int& height) {
@@ -224,10 +234,7 @@ void parse_samples(const std::string& text, RenderCommand& command) {
 }
 
 double interval(const std::string& option, const std::string& text) {
-  const auto value = number<double>(text);
-  if (!value || !(*value > 0) || *value > kMaxSeconds)
-    refuse(option, "seconds above 0 and up to 1e9", text);
-  return *value;
+  return fitting<double>(option, text, "seconds above 0 and up to 1e9", is_time);
 }
 
 void want_image_name(const std::string& option, const std::string& path) {

@@ -2,6 +2,7 @@
 #include "frontend/cli/help.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <sstream>
 
 namespace grelha {
@@ -15,10 +16,9 @@ std::string replaced(std::string text, std::string_view what, std::string_view b
 
 /// Text as roff takes it: hyphens that can be copied, nothing that starts a request.
 std::string roff(const std::string& text) {
-  std::string out = replaced(replaced(text, "\\", "\\e"), "-", "\\-");
-  if (out.starts_with('.') || out.starts_with('\''))
-    out = "\\&" + out;
-  return out;
+  const std::string out = replaced(replaced(text, "\\", "\\e"), "-", "\\-");
+  const bool reads_as_command = out.starts_with('.') || out.starts_with('\'');
+  return (reads_as_command ? "\\&" : "") + out;
 }
 
 std::vector<std::string> choices(const OptionHelp& o) {
@@ -43,8 +43,7 @@ bool takes_file(const OptionHelp& o) { return o.placeholder.find("FILE") != std:
 
 std::string names_of(const std::vector<CommandHelp>& commands) {
   std::vector<std::string> names;
-  for (const CommandHelp& c : commands)
-    names.push_back(c.name);
+  std::ranges::transform(commands, std::back_inserter(names), &CommandHelp::name);
   return join(names);
 }
 

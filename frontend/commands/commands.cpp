@@ -13,9 +13,8 @@ bool is_folder(const std::string& path) {
 }
 
 std::string default_image(const std::string& scene, std::optional<ImageFormat> format) {
-  std::filesystem::path name = std::filesystem::path(scene).filename();
-  if (name.extension() == ".gz")
-    name = name.stem();
+  const std::filesystem::path file = std::filesystem::path(scene).filename();
+  const std::filesystem::path name = file.extension() == ".gz" ? file.stem() : file;
   return name.stem().string() + '.' + std::string(ending_of(format.value_or(ImageFormat::png)));
 }
 

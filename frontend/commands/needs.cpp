@@ -12,10 +12,10 @@ namespace {
 bool any(Float3 v) { return v.x != 0 || v.y != 0 || v.z != 0; }
 
 bool has_normals(const Triangles& triangles) {
-  for (const auto* component : {&triangles.nx, &triangles.ny, &triangles.nz})
-    if (std::ranges::any_of(*component, [](float value) { return value != 0; }))
-      return true;
-  return false;
+  const auto told = [](const std::vector<float>& component) {
+    return std::ranges::any_of(component, [](float value) { return value != 0; });
+  };
+  return told(triangles.nx) || told(triangles.ny) || told(triangles.nz);
 }
 
 class Box {
@@ -46,6 +46,33 @@ Float3 disc_reach(double radius, double x, double y, double z) {
   return {reach(x), reach(y), reach(z)};
 }
 
+void grow(Box& box, const Spheres& s, std::size_t i) {
+  const float r = std::abs(s.radius[i]);
+  box.grow({s.x[i], s.y[i], s.z[i]}, {r, r, r});
+}
+
+void grow(Box& box, const Cones& c, std::size_t i) {
+  const double x = double(c.apex_x[i]) - c.base_x[i], y = double(c.apex_y[i]) - c.base_y[i];
+  const double z = double(c.apex_z[i]) - c.base_z[i];
+  box.grow({c.base_x[i], c.base_y[i], c.base_z[i]}, disc_reach(c.base_radius[i], x, y, z));
+  box.grow({c.apex_x[i], c.apex_y[i], c.apex_z[i]}, disc_reach(c.apex_radius[i], x, y, z));
+}
+
+/// By a triangle: its mesh may hold vertices that none uses.
+void grow(Box& box, const Triangles& t, std::size_t i) {
+  for (const std::uint32_t vertex : {t.a[i], t.b[i], t.c[i]})
+    box.grow({t.x[vertex], t.y[vertex], t.z[vertex]}, {});
+}
+
+void add_needs(Needs& needs, const Material& material) {
+  const bool glass = material.transmission > 0;
+  needs.reflection |= any(material.mirror) || glass;
+  needs.refraction |= glass;
+  needs.fresnel |= material.fresnel && glass;
+  needs.emission |= any(material.emission);
+  needs.roughness |= material.roughness > 0;
+}
+
 }  // namespace
 
 Needs needs_of(const SceneFile& file) {
@@ -61,37 +88,20 @@ Needs needs_of(const SceneFile& file) {
   needs.environment = !file.environment.empty();
   const std::vector<char> used = used_materials(file.scene);
   for (std::size_t i = 0; i < used.size(); ++i) {
-    if (!used[i])
-      continue;
-    const Material& material = file.scene.materials[i];
-    const bool glass = material.transmission > 0;
-    needs.reflection |= any(material.mirror) || glass;
-    needs.refraction |= glass;
-    needs.fresnel |= material.fresnel && glass;
-    needs.emission |= any(material.emission);
-    needs.roughness |= material.roughness > 0;
+    if (used[i])
+      add_needs(needs, file.scene.materials[i]);
   }
   return needs;
 }
 
 SceneBounds bounds_of(const Geometry& geometry) {
   Box box;
-  const Spheres& s = geometry.spheres;
-  for (std::size_t i = 0; i < s.size(); ++i) {
-    const float r = std::abs(s.radius[i]);
-    box.grow({s.x[i], s.y[i], s.z[i]}, {r, r, r});
-  }
-  const Cones& c = geometry.cones;
-  for (std::size_t i = 0; i < c.size(); ++i) {
-    const double x = double(c.apex_x[i]) - c.base_x[i], y = double(c.apex_y[i]) - c.base_y[i];
-    const double z = double(c.apex_z[i]) - c.base_z[i];
-    box.grow({c.base_x[i], c.base_y[i], c.base_z[i]}, disc_reach(c.base_radius[i], x, y, z));
-    box.grow({c.apex_x[i], c.apex_y[i], c.apex_z[i]}, disc_reach(c.apex_radius[i], x, y, z));
-  }
-  const Triangles& t = geometry.triangles;  // a mesh may hold vertices that no triangle uses
-  for (std::size_t i = 0; i < t.size(); ++i)
-    for (const std::uint32_t vertex : {t.a[i], t.b[i], t.c[i]})
-      box.grow({t.x[vertex], t.y[vertex], t.z[vertex]}, {});
+  for (std::size_t i = 0; i < geometry.spheres.size(); ++i)
+    grow(box, geometry.spheres, i);
+  for (std::size_t i = 0; i < geometry.cones.size(); ++i)
+    grow(box, geometry.cones, i);
+  for (std::size_t i = 0; i < geometry.triangles.size(); ++i)
+    grow(box, geometry.triangles, i);
   return box.bounds();
 }
 

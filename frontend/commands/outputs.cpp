@@ -28,8 +28,7 @@ struct Use {
 
 void make_folder(const std::string& folder) {
   std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error)
+  if (!std::filesystem::create_directories(folder, error) && error)
     throw FileError(folder, "cannot make this folder: " + error.message());
 }
 

@@ -104,11 +104,9 @@ __attribute__((format(printf, 1, 2))) std::string print(const char* format, ...)
 }
 
 void list_count(std::string& text, std::uint64_t count, const char* name) {
-  if (count == 0)
-    return;
-  if (!text.empty())
-    text += ", ";
-  text += std::to_string(count) + ' ' + name + (count == 1 ? "" : "s");
+  const std::string before = text.empty() ? "" : ", ";
+  if (count > 0)
+    text += before + std::to_string(count) + ' ' + name + (count == 1 ? "" : "s");
 }
 
 std::string grids_text(const std::vector<GridStats>& grids) {
@@ -157,6 +155,123 @@ std::string primitives_text(std::size_t spheres,
   return text.empty() ? "no primitives" : text;
 }
 
+Json options_json(const RenderCommand& command) {
+  const SampleOptions& sampling = command.render.sampling;
+  return {{"depth", command.render.depth},
+          {"min_weight", command.render.min_weight},
+          {"density", tidy(command.build.density)},
+          {"accel", command.build.grid ? "grid" : "none"},
+          {"mailbox", command.render.mailbox},
+          {"isa", command.render.isa},
+          {"precision", command.render.precision == Precision::kDouble ? "double" : "single"},
+          {"packet", command.render.packet},
+          {"samples", sampling.samples},
+          {"sampler", sampler_name(sampling.sampler)},
+          {"seed", sampling.seed},
+          {"adaptive", to_json(command.render.subdivision)},
+          {"light_rays", sampling.light_rays},
+          {"gloss_rays", sampling.gloss_rays},
+          {"threads", command.render.threads}};
+}
+
+Json to_json(const RayCounts& rays) {
+  return {{"primary", rays.primary},
+          {"shadow", rays.shadow},
+          {"reflection", rays.reflection},
+          {"refraction", rays.refraction}};
+}
+
+Json error_json(const RefineOptions& asked, const ErrorStats& e) {
+  return {{"asked", asked.error},
+          {"seconds", asked.seconds},
+          {"rmse", e.rmse},
+          {"rmse_bound", e.rmse_bound},
+          {"widest", e.widest},
+          {"rounds", e.rounds},
+          {"samples", e.samples},
+          {"least", e.least},
+          {"most", e.most}};
+}
+
+Json tests_json(const TraceCounts& trace) {
+  return {{"sphere", trace.tests.sphere},
+          {"triangle", trace.tests.triangle},
+          {"cone", trace.tests.cone},
+          {"plane", trace.tests.plane}};
+}
+
+Json packets_json(const TraceCounts& trace) {
+  return {{"formed", trace.packets.formed},
+          {"fell_back", trace.packets.fell_back},
+          {"lanes_busy", share(trace.packets.lanes_busy, trace.packets.lanes_issued)}};
+}
+
+Json to_json(const Seconds& seconds) {
+  return {{"load", seconds.load},
+          {"build", seconds.build},
+          {"render", seconds.render},
+          {"write", seconds.write},
+          {"render_cpu", seconds.render_cpu}};
+}
+
+/// Of all threads together.
+Json phases_json(const RenderStats& render) {
+  static constexpr const char* kPhaseNames[kPhases] = {
+      "camera", "primary", "bounce", "surface", "light", "shadow", "children", "sums"};
+  Json json;
+  for (std::size_t i = 0; i < kPhases; ++i)
+    json[kPhaseNames[i]] = render.phases[i];
+  return json;
+}
+
+std::string dropped_text(const Dropped& dropped) {
+  const std::uint64_t all = dropped.not_finite + dropped.zero_area;
+  return all == 0 ? "" : "dropped       " + std::to_string(all) + " that cannot be drawn\n";
+}
+
+std::string bounds_text(const SceneBounds& bounds) {
+  return bounds.empty
+             ? ""
+             : "bounds        " + point_text(bounds.low) + " to " + point_text(bounds.high) + '\n';
+}
+
+std::string memory_text(const SceneMemory& memory) {
+  return print(
+      "memory        about %.1f MB to render: scene %.1f, grids %.1f, the rest to read, build and "
+      "draw\n",
+      double(memory.peak) / 1e6,
+      double(memory.scene) / 1e6,
+      double(memory.grids) / 1e6);
+}
+
+std::string grid_text(const GridStats& grid) {
+  return print("grid          %u x %u x %u cells, %llu occupied, %llu references, %.1f MB\n",
+               grid.cells[0],
+               grid.cells[1],
+               grid.cells[2],
+               static_cast<unsigned long long>(grid.occupied),
+               static_cast<unsigned long long>(grid.references),
+               double(grid.bytes) / 1e6);
+}
+
+std::string needs_text(const SceneFile& file) {
+  std::string needs;
+  for (const auto& [name, needed] : listed(needs_of(file)))
+    if (needed)
+      needs += (needs.empty() ? "" : ", ") + std::string(name);
+  return "needs         " + (needs.empty() ? "nothing but the background" : needs) + '\n';
+}
+
+std::string error_text(const ErrorStats& e, const RunReport& report) {
+  return print("; RMSE about %.2g, at most %.2g (95 %%); %llu samples, %.1f a pixel, %u to %u",
+               e.rmse,
+               e.rmse_bound,
+               static_cast<unsigned long long>(e.samples),
+               double(e.samples) / report.width / report.height,
+               e.least,
+               e.most);
+}
+
 }  // namespace
 
 const char* sampler_name(Sampler sampler) {
@@ -175,7 +290,6 @@ const char* sampler_name(Sampler sampler) {
 
 std::string stats_json(const RenderCommand& command, const RunReport& report) {
   const RenderStats& render = report.render;
-  const auto& [rays, trace] = std::tie(render.rays, render.trace);
   Json json;
   json["version"] = GRELHA_VERSION;
   json["file"] = command.scene;
@@ -183,59 +297,17 @@ std::string stats_json(const RenderCommand& command, const RunReport& report) {
   json["threads"] = render.threads;
   json["ranks"] = report.ranks;
   json["size"] = {report.width, report.height};
-  json["options"] = {
-      {"depth", command.render.depth},
-      {"min_weight", command.render.min_weight},
-      {"density", tidy(command.build.density)},
-      {"accel", command.build.grid ? "grid" : "none"},
-      {"mailbox", command.render.mailbox},
-      {"isa", command.render.isa},
-      {"precision", command.render.precision == Precision::kDouble ? "double" : "single"},
-      {"packet", command.render.packet},
-      {"samples", command.render.sampling.samples},
-      {"sampler", sampler_name(command.render.sampling.sampler)},
-      {"seed", command.render.sampling.seed},
-      {"adaptive", to_json(command.render.subdivision)},
-      {"light_rays", command.render.sampling.light_rays},
-      {"gloss_rays", command.render.sampling.gloss_rays},
-      {"threads", command.render.threads}};
+  json["options"] = options_json(command);
   json["scene"] = to_json(report.counts);
   json["grids"] = to_json(report.grids);
-  json["rays"] = {{"primary", rays.primary},
-                  {"shadow", rays.shadow},
-                  {"reflection", rays.reflection},
-                  {"refraction", rays.refraction}};
-  if (command.render.refine.on()) {
-    const RefineOptions& asked = command.render.refine;
-    const ErrorStats& e = render.error;
-    json["error"] = {{"asked", asked.error},
-                     {"seconds", asked.seconds},
-                     {"rmse", e.rmse},
-                     {"rmse_bound", e.rmse_bound},
-                     {"widest", e.widest},
-                     {"rounds", e.rounds},
-                     {"samples", e.samples},
-                     {"least", e.least},
-                     {"most", e.most}};
-  }
-  json["visits"] = trace.visits;
-  json["tests"] = {{"sphere", trace.tests.sphere},
-                   {"triangle", trace.tests.triangle},
-                   {"cone", trace.tests.cone},
-                   {"plane", trace.tests.plane}};
-  json["packets"] = {{"formed", trace.packets.formed},
-                     {"fell_back", trace.packets.fell_back},
-                     {"lanes_busy", share(trace.packets.lanes_busy, trace.packets.lanes_issued)}};
-  json["seconds"] = {{"load", report.seconds.load},
-                     {"build", report.seconds.build},
-                     {"render", report.seconds.render},
-                     {"write", report.seconds.write},
-                     {"render_cpu", report.seconds.render_cpu}};
-  static constexpr const char* kPhaseNames[kPhases] = {
-      "camera", "primary", "bounce", "surface", "light", "shadow", "children", "sums"};
-  // of all threads together
-  for (std::size_t i = 0; i < kPhases; ++i)
-    json["phases"][kPhaseNames[i]] = render.phases[i];
+  json["rays"] = to_json(render.rays);
+  if (command.render.refine.on())
+    json["error"] = error_json(command.render.refine, render.error);
+  json["visits"] = render.trace.visits;
+  json["tests"] = tests_json(render.trace);
+  json["packets"] = packets_json(render.trace);
+  json["seconds"] = to_json(report.seconds);
+  json["phases"] = phases_json(render);
   json["bytes"] = {
       {"geometry", report.geometry_bytes}, {"grids", report.grid_bytes}, {"peak", peak_bytes()}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
@@ -287,36 +359,18 @@ std::string info_text(const std::string& path,
   text += "primitives    " +
           primitives_text(g.spheres.size(), g.triangles.size(), g.cones.size(), g.planes.size()) +
           '\n';
-  if (const auto dropped = file.dropped.not_finite + file.dropped.zero_area; dropped > 0)
-    text += "dropped       " + std::to_string(dropped) + " that cannot be drawn\n";
+  text += dropped_text(file.dropped);
   text += "lights        " + std::to_string(file.counts.lights) +
           (file.default_light ? " (and a made-up ones)\n" : "\n");
   if (file.box_order != BoxOrder::kNone)
     text += std::string("aabb          read as ") + box_order_name(file.box_order) + '\n';
   text += "materials     " + std::to_string(file.counts.materials) + '\n';
-  if (const SceneBounds bounds = bounds_of(g); !bounds.empty)
-    text += "bounds        " + point_text(bounds.low) + " to " + point_text(bounds.high) + '\n';
-  text += print(
-      "memory        about %.1f MB to render: scene %.1f, grids %.1f, the rest to read, build and "
-      "draw\n",
-      double(memory.peak) / 1e6,
-      double(memory.scene) / 1e6,
-      double(memory.grids) / 1e6);
+  text += bounds_text(bounds_of(g)) + memory_text(memory);
   if (!grids)
     text += "grid          not built: it would take more than " + memory_there_is() + '\n';
   for (const GridStats& grid : grids.value_or(std::vector<GridStats>{}))
-    text += print("grid          %u x %u x %u cells, %llu occupied, %llu references, %.1f MB\n",
-                  grid.cells[0],
-                  grid.cells[1],
-                  grid.cells[2],
-                  static_cast<unsigned long long>(grid.occupied),
-                  static_cast<unsigned long long>(grid.references),
-                  double(grid.bytes) / 1e6);
-  std::string needs;
-  for (const auto& [name, needed] : listed(needs_of(file)))
-    if (needed)
-      needs += (needs.empty() ? "" : ", ") + std::string(name);
-  return text + "needs         " + (needs.empty() ? "nothing but the background" : needs) + '\n';
+    text += grid_text(grid);
+  return text + needs_text(file);
 }
 
 std::string summary_line(const RenderCommand& command, const RunReport& report) {
@@ -326,16 +380,7 @@ std::string summary_line(const RenderCommand& command, const RunReport& report) 
       print("load %.2f, build %.2f, render %.2f, write %.2f s", s.load, s.build, s.render, s.write);
   const double speed = s.render > 0 ? rays / s.render / 1e6 : 0;
   const ErrorStats& e = report.render.error;
-  const std::string error =
-      e.samples == 0
-          ? ""
-          : print("; RMSE about %.2g, at most %.2g (95 %%); %llu samples, %.1f a pixel, %u to %u",
-                  e.rmse,
-                  e.rmse_bound,
-                  static_cast<unsigned long long>(e.samples),
-                  double(e.samples) / report.width / report.height,
-                  e.least,
-                  e.most);
+  const std::string error = e.samples == 0 ? "" : error_text(e, report);
   return name_of_file(command.image) + ": " +
          primitives_text(report.spheres, report.triangles, report.cones, report.planes) + "; " +
          grids_text(report.grids) + "; " + print("%.3f Mrays in ", rays / 1e6) + times +

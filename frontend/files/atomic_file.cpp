@@ -166,10 +166,8 @@ void write_file(const std::string& path, const std::string& bytes) {
 }
 
 void check_writable(const std::string& path, bool durable) {
-  if (path == kStdout)
-    return;
   // to open a pipe is to wait for a reader, to close it his end
-  if (durable || !is_special(path))
+  if (path != kStdout && (durable || !is_special(path)))
     AtomicFile probe(path, durable);
 }
 

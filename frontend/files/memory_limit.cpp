@@ -17,13 +17,13 @@
 
 namespace grelha {
 
-bool memory_can_be_limited() {
 #ifdef GRELHA_SANITIZED
-  return false;
+constexpr bool kSanitized = true;
 #else
-  return true;
+constexpr bool kSanitized = false;
 #endif
-}
+
+bool memory_can_be_limited() { return !kSanitized; }
 
 std::uint64_t machine_memory() {
   const long pages = sysconf(_SC_PHYS_PAGES), page_size = sysconf(_SC_PAGE_SIZE);

@@ -91,12 +91,13 @@ bool looks_like_number(std::string_view word) {
   return to_number(word, ignored);
 }
 
+constexpr std::size_t kLongestShown = 40;
+
 std::string printable(std::string_view word) {
-  constexpr std::size_t kLongest = 40;
-  std::string shown;
-  for (const char c : word.substr(0, kLongest))
-    shown += (c >= ' ' && c <= '~') ? c : '?';
-  return word.size() > kLongest ? shown + "..." : shown;
+  std::string shown(word.substr(0, kLongestShown));
+  std::ranges::replace_if(
+      shown, [](char c) { return c < ' ' || c > '~'; }, '?');
+  return word.size() > kLongestShown ? shown + "..." : shown;
 }
 
 std::string quoted(std::string_view word) {

@@ -11,10 +11,9 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double distance(float a, float b) {
-  if (a == b || (std::isnan(a) && std::isnan(b)))
-    return 0;
+  const bool same = a == b || (std::isnan(a) && std::isnan(b));
   const double d = std::abs(double(a) - double(b));
-  return std::isnan(d) ? kInfinity : d;
+  return same ? 0 : std::isnan(d) ? kInfinity : d;
 }
 
 }  // namespace
@@ -53,8 +52,8 @@ Image displayed(Image image) {
 
 Image difference(const Image& a, const Image& b, double scale) {
   Image image(a.width, a.height);
-  for (std::size_t i = 0; i < image.rgb.size(); ++i)
-    image.rgb[i] = float(distance(a.rgb[i], b.rgb[i]) * scale);
+  const auto scaled = [scale](float x, float y) { return float(distance(x, y) * scale); };
+  std::ranges::transform(a.rgb, b.rgb, image.rgb.begin(), scaled);
   return image;
 }
 

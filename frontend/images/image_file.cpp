@@ -225,10 +225,9 @@ std::uint8_t to_byte(float value, Tone tone) {
 }
 
 bool image_fits(ImageFormat format, int width, int height) {
-  if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide)
-    return false;
+  const bool in_range = width >= 1 && height >= 1 && width <= kMaxSide && height <= kMaxSide;
   const bool by_stb = format == ImageFormat::png || format == ImageFormat::hdr;
-  return !by_stb || (3 * std::int64_t(width) + 1) * height <= kStbBytes;
+  return in_range && (!by_stb || (3 * std::int64_t(width) + 1) * height <= kStbBytes);
 }
 
 std::string encode_png(const Image& image, Tone tone, const Notes& notes) {

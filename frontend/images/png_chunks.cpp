@@ -12,10 +12,7 @@ constexpr std::size_t kHeaderEnd =
     kSignature + kLength + kType + 13 + kCrc;  ///< of IHDR, which comes first
 
 std::string big_endian(std::uint32_t value) {
-  std::string bytes;
-  for (int shift = 24; shift >= 0; shift -= 8)
-    bytes += char(value >> shift & 0xff);
-  return bytes;
+  return {char(value >> 24), char(value >> 16 & 0xff), char(value >> 8 & 0xff), char(value & 0xff)};
 }
 
 std::uint32_t big_endian(std::string_view bytes) {

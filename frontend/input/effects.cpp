@@ -82,6 +82,19 @@ bool has_something_to_sample(const SceneFile& file, const Effects& effects) {
 
 int ceiling_share(long long all, int parts) { return static_cast<int>((all + parts - 1) / parts); }
 
+/// Of a pixel; `otherwise` where neither effects nor the scene say.
+int samples_of(const Effects& e, const SceneFile& file, int lens_samples, int otherwise) {
+  if (e.samples)
+    return *e.samples;
+  if (e.jitter > 0)
+    return e.jitter * e.jitter * lens_samples;
+  if (lens_samples > 1 || e.adaptive.on)
+    return lens_samples;
+  if (has_something_to_sample(file, e))
+    return file.samples_per_pixel > 0 ? file.samples_per_pixel : kSamplesOfEffects;
+  return file.default_camera ? kSamplesOfMeshes : otherwise;
+}
+
 }  // namespace
 
 void apply_effects(const Effects& e, SceneFile& file, RenderOptions& options) {
@@ -93,17 +106,7 @@ void apply_effects(const Effects& e, SceneFile& file, RenderOptions& options) {
 
   SampleOptions& s = options.sampling;
   const int lens_samples = e.lens && e.lens->aperture > 0 ? std::max(e.lens->samples, 1) : 1;
-  if (e.samples)
-    s.samples = *e.samples;
-  else if (e.jitter > 0)
-    s.samples = e.jitter * e.jitter * lens_samples;
-  else if (lens_samples > 1 || e.adaptive.on)
-    s.samples = lens_samples;
-  else if (has_something_to_sample(file, e))
-    s.samples = file.samples_per_pixel > 0 ? file.samples_per_pixel : kSamplesOfEffects;
-  else if (file.default_camera)
-    s.samples = kSamplesOfMeshes;
-  s.samples = std::clamp(s.samples, 1, kMostSamples);
+  s.samples = std::clamp(samples_of(e, file, lens_samples, s.samples), 1, kMostSamples);
   s.sampler = e.sampler.value_or(e.jitter > 0 ? Sampler::kJitter : Sampler::kSobol);
   s.seed = e.seed;
   options.subdivision = e.adaptive;

@@ -14,13 +14,14 @@ Partial part_of(const std::string& path, Checkpoint&& c) {
   return {std::move(c.identity), std::move(*sums)};
 }
 
+std::string range_text(const Range& range) {
+  return std::to_string(range.begin) + ':' + std::to_string(range.end);
+}
+
 }  // namespace
 
 std::string part_text(const Part& part) {
-  const auto range = [](const Range& r) {
-    return std::to_string(r.begin) + ':' + std::to_string(r.end);
-  };
-  return "rows " + range(part.rows) + ", samples " + range(part.samples);
+  return "rows " + range_text(part.rows) + ", samples " + range_text(part.samples);
 }
 
 bool is_partial_name(std::string_view path) { return path.ends_with(".grelha"); }

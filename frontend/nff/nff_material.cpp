@@ -66,10 +66,9 @@ void skip_texture(NffInput& input) {
 }
 
 void warn_fields(NffInput& input, std::string_view keyword, std::size_t found) {
-  input.warn_once(
-      "fields" + std::to_string(found),
-      keyword,
-      "a material with " + std::to_string(found) + " fields, where 8, 11, 12 or 14 are known");
+  const std::string count = std::to_string(found);
+  const std::string said = count + " fields, where 8, 11, 12 or 14 are known";
+  input.warn_once("fields" + count, keyword, "a material with " + said);
 }
 
 }  // namespace

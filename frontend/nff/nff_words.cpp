@@ -23,19 +23,18 @@ constexpr std::pair<std::string_view, std::string_view> kFullNames[] = {
 };
 constexpr std::size_t kLongestMeant = 64;  ///< no keyword is meant by more
 
+char small_letter(char c) { return c >= 'A' && c <= 'Z' ? char(c + ('a' - 'A')) : c; }
+
 std::string in_small_letters(std::string_view word) {
   std::string small(word);
-  for (char& c : small)
-    if (c >= 'A' && c <= 'Z')
-      c = char(c + ('a' - 'A'));
+  std::ranges::transform(small, small.begin(), small_letter);
   return small;
 }
 
 /// The keyword of a full name; empty when it is none.
 std::string_view short_for(std::string_view word) {
-  const auto found = std::find_if(std::begin(kFullNames),
-                                  std::end(kFullNames),
-                                  [&](const auto& name) { return name.first == word; });
+  const auto is_word = [word](const auto& name) { return name.first == word; };
+  const auto found = std::ranges::find_if(kFullNames, is_word);
   return found == std::end(kFullNames) ? std::string_view() : found->second;
 }
 

@@ -80,9 +80,8 @@ class HeaderReader {
 /// LF.
 void HeaderReader::find_line_end() {
   const std::size_t end = bytes_.find_first_of("\r\n");
-  if (end == std::string_view::npos || bytes_[end] == '\n')
-    return;
-  if (end + 1 == bytes_.size() || bytes_[end + 1] != '\n')
+  const std::string_view found = bytes_.substr(std::min(end, bytes_.size()), 2);
+  if (found.starts_with('\r') && found != "\r\n")
     line_end_ = '\r';
 }
 

@@ -9,10 +9,9 @@ namespace grelha {
 namespace {
 
 int find_property(const PlyElement& element, std::string_view name) {
-  for (std::size_t i = 0; i < element.properties.size(); ++i)
-    if (element.properties[i].name == name)
-      return int(i);
-  return -1;
+  const auto& all = element.properties;
+  const auto found = std::ranges::find(all, name, &PlyProperty::name);
+  return found == all.end() ? -1 : int(found - all.begin());
 }
 
 PlyPlan plan_vertex(const PlyElement& element) {

@@ -58,10 +58,9 @@ class PointTree::Triangle {
   /// Whether a point lies in it, other than at a corner; what is no number does not.
   bool has(const Place& place) const {
     const Point2 p{place.x, place.y};
-    for (const Side& s : sides_)
-      if (!(s.turn(p.x, p.y) >= 0))
-        return false;
-    return p != corners_[0] && p != corners_[1] && p != corners_[2];
+    const auto inside = [p](const Side& s) { return s.turn(p.x, p.y) >= 0; };
+    return std::ranges::all_of(sides_, inside) && p != corners_[0] && p != corners_[1] &&
+           p != corners_[2];
   }
 
  private:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace grelha {
 namespace {
@@ -141,10 +142,8 @@ bool PolygonCutter::blocked(std::uint32_t corner) const {
 }
 
 void PolygonCutter::queue(std::uint32_t corner) {
-  if (queued_[corner])
-    return;
-  queued_[corner] = 1;
-  next_candidates_.push_back(corner);
+  if (!std::exchange(queued_[corner], 1))
+    next_candidates_.push_back(corner);
 }
 
 void PolygonCutter::take_queue() {
