@@ -2,10 +2,12 @@
 find_package(nlohmann_json REQUIRED)
 grelha_test(scenes/scenes unit grelha::scenes)
 grelha_test(frontend/images/image_file unit grelha::frontend)
-target_sources(image_file_test PRIVATE frontend/images/exr_file_test.cpp)
+target_sources(image_file_test PRIVATE frontend/images/exr_file_test.cpp
+  frontend/files/atomic_file_test.cpp)
 grelha_test(frontend/images/compare unit grelha::frontend)
 grelha_test(frontend/cli/options unit grelha::frontend)
-target_sources(options_test PRIVATE frontend/cli/option_checks_test.cpp)
+target_sources(options_test PRIVATE frontend/cli/option_checks_test.cpp
+  frontend/cli/help_test.cpp)
 grelha_test(frontend/commands/report unit grelha::frontend nlohmann_json::nlohmann_json)
 grelha_test(frontend/cli/program image grelha::frontend grelha::scenes nlohmann_json::nlohmann_json)
 grelha_test(frontend/cli/files image grelha::frontend)

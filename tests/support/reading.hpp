@@ -13,6 +13,12 @@
 
 namespace grelha::test {
 
+/// The header of a PLY file of three vertices and two faces.
+inline const std::string kAsciiTriangle =
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
+    "z\n"
+    "element face 2\nproperty list uchar int vertex_indices\nend_header\n";
+
 inline const std::string kView =
     "v\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 45\nhither 1\nresolution 8 6\n";
 

@@ -15,8 +15,6 @@
 namespace grelha {
 namespace {
 
-using test::TemporaryFolder;
-
 /// Writes rows in one of the three encodings, value by value.
 class PlyWriter {
  public:
@@ -265,11 +263,7 @@ INSTANTIATE_TEST_SUITE_P(Ply,
                          testing::Combine(testing::Values("\n", "\r\n", "\r"),
                                           testing::Values(10, 13, 65)));
 
-const std::string kAsciiTriangle =
-    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
-    "z\n"
-    "element face 2\nproperty list uchar int vertex_indices\nend_header\n";
-
+using test::kAsciiTriangle;
 using Lines = std::vector<std::string>;
 
 /// What is said of a file on the way to its mesh.
@@ -355,57 +349,6 @@ TEST(PlyAscii, RowsTooLongAreCut) {
   const Mesh mesh = read_ply_mesh(
       "m.ply", kAsciiTriangle + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2 6 .5 .5 .5 .5\n3 2 1 0 6 1 1 1 1\n");
   EXPECT_EQ(mesh.corners, (std::vector<std::uint32_t>{0, 1, 2, 2, 1, 0}));
-}
-
-TEST(PlyAlone, PolygonsAreCutAndBadFacesCounted) {
-  const TemporaryFolder folder;
-  const std::string path =
-      folder.add("m.ply",
-                 "ply\nformat ascii 1.0\nelement vertex 9\nproperty float x\nproperty float "
-                 "y\nproperty float z\n"
-                 "element face 6\nproperty list uchar int vertex_indices\nend_header\n"
-                 "0 0 0\n4 0 0\n1 1 0\n0 4 0\n0 0 0\n+inf 0 0\n8 0 0\n0 0 1e19\n-3 0 0\n"
-                 "4 0 1 2 3\n3 0 0 1\n3 0 4 1\n3 0 1 5\n2 0 1\n3 0 1 7\n");
-  std::vector<std::string> warnings;
-  const SceneFile file =
-      read_scene(path, [&](const std::string& line) { warnings.push_back(line); });
-  EXPECT_EQ(file.counts.ply, 6u);
-  EXPECT_EQ(file.counts.materials, 0u);
-  EXPECT_EQ(file.scene.geometry.triangles.size(), 2u);
-  EXPECT_EQ(file.dropped.zero_area, 3u);
-  EXPECT_EQ(file.dropped.not_finite, 2u);
-  EXPECT_EQ(
-      warnings,
-      std::vector<std::string>{
-          path +
-          ": warning: 5 primitives are left out: 2 not finite (or beyond 1e18), 3 without area"});
-}
-
-TEST(PlyAlone, TrianglesWithoutAreaAreLeftOut) {
-  const TemporaryFolder folder;
-  const SceneFile file = read_scene(
-      folder.add("m.ply", kAsciiTriangle + "0 0 0\n1 0 0\n0 1 0\n3 0 1 1\n3 2 1 0\n"), nullptr);
-  EXPECT_EQ(file.dropped.zero_area, 1u);
-  EXPECT_EQ(file.scene.geometry.triangles.a, std::vector<std::uint32_t>{2});
-  EXPECT_EQ(file.scene.geometry.triangles.material.size(), 1u);
-  EXPECT_EQ(file.counts.ply, 2u);
-}
-
-TEST(PlyAlone, EmptyMeshHasAView) {
-  const TemporaryFolder folder;
-  const SceneFile file =
-      read_scene(folder.add("m.ply", "ply\nformat ascii 1.0\nend_header\n"), nullptr);
-  EXPECT_TRUE(file.default_camera);
-  EXPECT_TRUE(std::isfinite(file.camera.eye.x));
-  EXPECT_TRUE(file.scene.geometry.objects.empty());
-}
-
-TEST(PlyAlone, IsToldByItsExtensionOrItsFirstWord) {
-  const TemporaryFolder folder;
-  for (const char* name : {"m.PLY", "m.mesh", "m"})
-    EXPECT_TRUE(
-        read_scene(folder.add(name, "ply\nformat ascii 1.0\nend_header\n"), nullptr).default_camera)
-        << name;
 }
 
 }  // namespace

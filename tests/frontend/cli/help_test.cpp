@@ -1,0 +1,97 @@
+#include "frontend/cli/help.hpp"
+
+#include "frontend/files/nearest.hpp"
+#include "tests/support/parsing.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <regex>
+#include <set>
+#include <sstream>
+
+namespace grelha {
+namespace {
+
+using test::parse;
+
+std::size_t widest(const std::string& text) {
+  std::istringstream in(text);
+  std::size_t most = 0;
+  for (std::string line; std::getline(in, line);)
+    most = std::max(most, line.size());
+  return most;
+}
+
+TEST(Help, IsAWordToo) {
+  const auto text = [](const std::string& line) { return std::get<TextCommand>(parse(line)).text; };
+  EXPECT_EQ(text("help"), text("--help"));
+  EXPECT_EQ(text("help render"), text("render --help"));
+}
+
+TEST(Help, FitsAScreenAndSaysHow) {
+  for (const char* line :
+       {"--help", "render --help", "info -h", "compare --help", "scene --help"}) {
+    const std::string text = std::get<TextCommand>(parse(line)).text;
+    EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 24) << line;
+    EXPECT_LE(widest(text), 80u) << line;
+    EXPECT_NE(text.find("Usage: grelha"), std::string::npos) << line;
+    EXPECT_NE(text.find("Example"), std::string::npos) << line;
+  }
+  EXPECT_EQ(std::get<TextCommand>(parse("render --help")).text.find("--packet"), std::string::npos);
+  for (const char* line : {"render --help-all", "--help-all"}) {
+    const std::string text = std::get<TextCommand>(parse(line)).text;
+    EXPECT_NE(text.find("--packet"), std::string::npos) << line;
+    EXPECT_LE(widest(text), 80u) << line;
+  }
+  EXPECT_EQ(std::get<TextCommand>(parse("--version")).text.find("grelha "), 0u);
+}
+
+TEST(Nearest, CountsEdits) {
+  EXPECT_EQ(edit_distance("", ""), 0u);
+  EXPECT_EQ(edit_distance("abc", ""), 3u);
+  EXPECT_EQ(edit_distance("", "ab"), 2u);
+  EXPECT_EQ(edit_distance("kitten", "sitting"), 3u);
+  EXPECT_EQ(edit_distance("ab", "ba"), 1u) << "a swap";
+  EXPECT_EQ(edit_distance("abcd", "badc"), 2u);
+  constexpr std::string_view words[] = {"s", "resolution", "angle"};
+  EXPECT_EQ(nearest("angel", words), "angle");
+  EXPECT_EQ(nearest("resoluton", words), "resolution");
+  EXPECT_EQ(nearest("x", words), "") << "one letter of one is another word";
+  EXPECT_EQ(nearest("teapot", words), "");
+  EXPECT_EQ(nearest(std::string(1000000, 'a'), words), "");
+}
+
+/// Words of an option list that look like options: what --help-all shows.
+std::set<std::string> options_in(const std::string& text) {
+  std::set<std::string> found;
+  const std::regex option(R"((^|[\s,])(--?[a-z][a-z-]*))");
+  for (std::sregex_iterator it(text.begin(), text.end(), option), end; it != end; ++it)
+    found.insert((*it)[2]);
+  return found;
+}
+
+TEST(Pages, HoldEveryOptionThatHelpShows) {
+  const auto commands = all_commands();
+  const std::string man = man_page(commands), bash = bash_completion(commands),
+                    zsh = zsh_completion(commands), fish = fish_completion(commands);
+  ASSERT_GE(commands.size(), 4u);
+  std::size_t options = 0;
+  for (const CommandHelp& c : commands) {
+    for (const std::string& option : options_in(help_text(c, true))) {
+      ++options;
+      EXPECT_NE((" " + bash).find(" " + option), std::string::npos) << c.name << ' ' << option;
+      EXPECT_NE(zsh.find("'" + option + '['), std::string::npos) << c.name << ' ' << option;
+      const std::string in_fish =
+          option.starts_with("--") ? "-l " + option.substr(2) : "-s " + option.substr(1);
+      EXPECT_NE(fish.find(in_fish + ' '), std::string::npos) << c.name << ' ' << option;
+      const std::string in_man = std::regex_replace(option, std::regex("-"), "\\-");
+      EXPECT_NE(man.find("\\fB" + in_man + "\\fR"), std::string::npos) << c.name << ' ' << option;
+    }
+    EXPECT_NE(man.find("grelha " + c.name), std::string::npos);
+  }
+  EXPECT_GE(options, 30u);
+}
+
+}  // namespace
+}  // namespace grelha
