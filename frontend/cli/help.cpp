@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kColumns = 80, kIndent = 22;
 
-/// What is asked for most; a command with few options shows them all.
+/// The options asked for most; a command with few options shows them all.
 constexpr std::size_t kFew = 10;
 constexpr std::array<std::string_view, 10> kCommon{"--output",
                                                    "--size",

@@ -19,7 +19,7 @@ struct CommandHelp {
   std::string usage;  ///< what stands behind the command: "SCENE..."
   std::vector<OptionHelp> options;
   std::string footer;  ///< examples, exit status; lines
-  /// Whether --help shows the option, or only --help-all, the man page and the completions.
+  /// Returns whether --help shows the option, or only --help-all, the man page and the completions.
   bool shows(const OptionHelp& option) const;
 };
 
@@ -28,7 +28,7 @@ std::vector<CommandHelp> all_commands();
 
 /// At most 80 columns wide; `all`: with the options that --help leaves out.
 std::string help_text(const CommandHelp& command, bool all);
-/// Of the program itself; `all`: with everything of every command.
+/// Help of the program itself; `all`: with everything of every command.
 std::string program_help(const std::vector<CommandHelp>& commands, bool all);
 
 std::string man_page(const std::vector<CommandHelp>& commands);

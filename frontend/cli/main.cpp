@@ -42,7 +42,7 @@ namespace {
 
 constexpr int kOk = 0, kFileFailed = 1, kBadInput = 2, kAboveBound = 1, kSignalled = 128;
 
-/// Of `work`, or of the error it ends with, which is told in one line.
+/// The exit status of `work`, or of the error it ends with, which is told in one line.
 template <class Work>
 int status_of(const Ranks& ranks, const Work& work) {
   const auto fail = [&ranks](int status, const std::string& line) {
@@ -90,7 +90,7 @@ void print(const std::string& text) {
     throw FileError("stdout", "cannot write");
 }
 
-/// What is said goes to stderr where stdout has the results.
+/// Tells text on stdout, or on stderr where stdout has the results.
 void tell(const std::string& text, bool results_on_stdout) {
   if (results_on_stdout)
     std::cerr << text;
@@ -168,7 +168,7 @@ void write_map(const std::string& path,
   write_image(path, image, {.notes = {kSoftware, {"Comment", what}}});
 }
 
-/// What of a command is for a rank that neither writes nor speaks.
+/// The command for a rank that neither writes nor speaks.
 RenderCommand silent(RenderCommand command) {
   command.work.checkpoint.clear();
   command.stats.clear();
@@ -256,7 +256,7 @@ int render_scene(const RenderCommand& given, Ranks& ranks) {
   return kOk;
 }
 
-/// By a signal that came when the picture before was finished, and only had to be written.
+/// The exit status after a signal that came while a finished picture was written.
 int stopped_between(int signal, const std::string& next) {
   warn("grelha: stopped by " + std::string(signal_name(signal)) + " before " + next);
   return kSignalled + signal;
@@ -268,8 +268,8 @@ void remove_checkpoint(const RenderCommand& command) {
     std::filesystem::remove(command.work.checkpoint, ignored);
 }
 
-/// Of several scenes each is tried, whatever becomes of the others, until a signal stops one, or
-/// one of several ranks fails alone.
+/// Renders every scene, whatever becomes of the others, until a signal stops one, or one of several
+/// ranks fails alone.
 int run(const RenderCommand& command, Ranks& ranks) {
   limit_memory(command.input.max_memory);
   int worst = kOk;

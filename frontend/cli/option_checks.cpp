@@ -69,7 +69,7 @@ void check_grid(const BuildOptions& build) {
     throw UsageError("--density and --accel none: without a grid there are no cells");
 }
 
-/// By its name or by --format, which must not contradict each other.
+/// Refuses a picture whose name and --format contradict each other.
 void check_output(const std::string& image, std::optional<ImageFormat> asked) {
   const auto named = image_format(image);
   const bool part = is_partial_name(image);

@@ -19,7 +19,7 @@ constexpr double kMaxSeconds = 1e9;  ///< 30 years; a clock counts so far withou
 constexpr double kMaxBytes = 1e18;
 constexpr double kLeastError = 1e-6;
 
-/// Of KIND:MORE the kind that was probably meant.
+/// The kind of KIND:MORE that was probably meant.
 std::string meant_kind(const std::string& text, std::initializer_list<std::string_view> kinds) {
   const std::size_t end = std::min(text.find(':'), text.size());
   const std::string_view kind =

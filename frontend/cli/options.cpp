@@ -401,7 +401,7 @@ std::string meant_option_left(const CLI::App& app) {
   return option == left.end() ? "" : meant_option(asked(app), *option);
 }
 
-/// Of the first option that was given more than once: CLI11 would count.
+/// Refuses the first option that was given more than once: CLI11 would count.
 void refuse_twice(const CLI::App& app) {
   for (const CLI::Option* o : asked(app).get_options())
     if (!o->get_positional() && o->get_expected_max() == 1 && o->count() > 1)

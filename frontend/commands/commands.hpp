@@ -21,7 +21,7 @@ struct UsageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Of reading a scene that may be anyone's.
+/// Options of reading a scene that may be anyone's.
 struct InputOptions {
   ReadOptions read;
   bool strict = false;           ///< no warning is let pass
@@ -95,7 +95,7 @@ struct SceneCommand {
   bool list = false, spd = false;
 };
 
-/// What --help or --version print.
+/// The text that --help or --version print.
 struct TextCommand {
   std::string text;
 };
@@ -103,17 +103,17 @@ struct TextCommand {
 using Command = std::
     variant<RenderCommand, InfoCommand, CompareCommand, MergeCommand, SceneCommand, TextCommand>;
 
-/// Whether a path names a folder, there already or, by a / at its end, meant to be. What cannot be
-/// looked at is none.
+/// Returns whether a path names a folder, there already or, by a / at its end, meant to be. What
+/// cannot be looked at is none.
 bool is_folder(const std::string& path);
 
 /// `dir/x.nff.gz` gives `x.png`: the picture lies in the current folder.
 std::string default_image(const std::string& scene, std::optional<ImageFormat> format = {});
 
-/// Of the picture called `image`; a .grelha has none.
+/// The format of the picture called `image`; a .grelha has none.
 std::optional<ImageFormat> format_of(const std::string& image, std::optional<ImageFormat> asked);
 
-/// Whether results go to stdout, so that what is said must not.
+/// Returns whether results go to stdout, so that what is said must not.
 bool writes_to_stdout(const RenderCommand& command);
 
 }  // namespace grelha

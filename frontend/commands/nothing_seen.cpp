@@ -66,7 +66,7 @@ class View {
         sides |= 1u << i;
     return sides;
   }
-  /// Whether some ray of the view may meet an endless plane.
+  /// Returns whether some ray of the view may meet an endless plane.
   bool meets(const Float3& point, const Float3& normal) const {
     const Direction n{normal.x, normal.y, normal.z};
     const double side = inner(between(eye_, point), n);

@@ -32,7 +32,7 @@ class ProgressBar {
   Clock::time_point last_ = start_;
 };
 
-/// Whether stderr is a terminal that can redraw a line.
+/// Returns whether stderr is a terminal that can redraw a line.
 bool stderr_is_terminal();
 
 }  // namespace grelha

@@ -11,7 +11,7 @@
 
 namespace grelha {
 
-/// As --sampler calls it.
+/// The name that --sampler has for it.
 const char* sampler_name(Sampler sampler);
 
 struct Seconds {

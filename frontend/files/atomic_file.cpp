@@ -25,8 +25,8 @@ constexpr std::size_t kLongestKept = 200;
   throw FileError(path, what + ": " + std::strerror(error));
 }
 
-/// Whether something stands at `path` that renaming must not replace. A file that cannot be written
-/// could be renamed over all the same.
+/// Returns whether something stands at `path` that renaming must not replace. A file that cannot be
+/// written could be renamed over all the same.
 bool is_special(const std::string& path) {
   struct stat info {};
   if (stat(path.c_str(), &info) != 0) {
@@ -53,8 +53,8 @@ void sync(const std::string& path, const std::string& file) {
     fail(path, "cannot write", error);
 }
 
-/// Whether an open file is a file, and the one that stands under this name: whoever had it before
-/// may have renamed it away.
+/// Returns whether an open file is a file, and the one that stands under this name: whoever had it
+/// before may have renamed it away.
 bool stands_there(int file, const std::string& name) {
   struct stat opened {
   }, there{};
@@ -67,7 +67,7 @@ bool is_there(const std::string& name) {
   return lstat(name.c_str(), &info) == 0;
 }
 
-/// What replaces a file has its mode.
+/// Gives a file the mode of the one that it replaces.
 void take_mode(int file, const std::string& from) {
   struct stat info {};
   if (stat(from.c_str(), &info) == 0)
@@ -76,9 +76,9 @@ void take_mode(int file, const std::string& from) {
 
 }  // namespace
 
-/// In the same folder, so that renaming cannot cross file systems. The name is made of the
-/// target's: what a killed program left there is written over. Who writes holds a lock, which dies
-/// with him; another who writes the same takes the next name.
+/// Creates a file in the same folder, so that renaming cannot cross file systems. Its name is made
+/// of the target's: what a killed program left there is written over. The writing process holds a
+/// lock, which dies with it; another that writes the same takes the next name.
 void AtomicFile::create_beside() {
   const auto target = std::filesystem::path(target_);
   const std::string name = target.filename().string().substr(0, kLongestKept);

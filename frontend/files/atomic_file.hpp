@@ -38,7 +38,7 @@ class AtomicFile {
   std::ofstream stream_;
 };
 
-/// As messages call it: the name, or stdout.
+/// The name of a file in messages: its own, or stdout.
 std::string name_of_file(const std::string& path);
 
 void write_file(const std::string& path, const std::string& bytes);

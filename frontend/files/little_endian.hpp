@@ -84,7 +84,7 @@ class Sink {
   std::string buffer_;
 };
 
-/// What is no file of ours.
+/// Thrown where a file is not one of ours.
 struct NotOurs {};
 
 /// Throws NotOurs where the bytes end early, before anything is allocated for what is not there.

@@ -71,7 +71,7 @@ class Growing {
   std::size_t have_ = 0, judged_ = 0;
 };
 
-/// What a pipe holds is known when it ends, which may be never: whoever waits looks up now and
+/// Reads a pipe to its end, which may never come: whoever waits looks up now and
 /// then.
 std::string read_pipe(const std::string& path, LoadProgress* progress, const Judge& judge) {
   constexpr int kLookUp = 100;  // ms

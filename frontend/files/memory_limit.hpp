@@ -25,7 +25,7 @@ bool memory_can_be_limited();
 /// machine down. Does nothing where memory_can_be_limited() is false.
 void limit_memory(std::uint64_t bytes);
 
-/// As 1.5 GB.
+/// A number of bytes in words, as 1.5 GB.
 std::string gigabytes(std::uint64_t bytes);
 
 /// How much memory this process may own, and who says so: `0.315 GB (--max-memory)`.

@@ -21,8 +21,8 @@ Place place_of(const std::string& path);
 /// The name behind symbolic links, also those to a file that is not there yet.
 std::string behind_links(const std::string& path);
 
-/// Whether something is there that is written to directly and cannot be lost, such as /dev/null or
-/// a pipe.
+/// Returns whether something is there that is written to directly and cannot be lost, such as
+/// /dev/null or a pipe.
 bool is_special_file(const std::string& path);
 
 }  // namespace grelha

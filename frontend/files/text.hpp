@@ -44,8 +44,8 @@ bool to_number(std::string_view word, double& value);
 /// largest, so that whoever wants less says how much.
 bool to_integer(std::string_view word, std::int64_t& value);
 
-/// Whether a word is meant as a number, well formed or not: a digit follows its sign and point, or
-/// it reads as one.
+/// Returns whether a word is meant as a number, well formed or not: a digit follows its sign and
+/// point, or it reads as one.
 bool looks_like_number(std::string_view word);
 
 /// Shortened, nothing unprintable.

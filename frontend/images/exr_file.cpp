@@ -69,8 +69,8 @@ void complain(exr_const_context_t context, exr_result_t, const char* message) {
       error.begin(), error.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
 }
 
-/// Whether memory was lacking: the library says so of damaged blocks as well (OpenEXR 3.1, B44),
-/// and gives this function no context.
+/// Returns whether memory was lacking: the library says so of damaged blocks as well (OpenEXR 3.1,
+/// B44), and gives this function no context.
 thread_local bool memory_lacked = false;
 
 void* take_memory(std::size_t size) {
@@ -118,7 +118,7 @@ struct ExrChannel {
   bool whole;  ///< 32-bit whole numbers, else floats
 };
 
-/// By name, as the file holds them.
+/// The channels by name, in the order of the file.
 std::vector<ExrChannel> channels_of(const Image& image, const Layers& layers) {
   constexpr int kThree = 3 * sizeof(float), kOne = sizeof(float);
   const float* const rgb = image.rgb.data();
@@ -137,7 +137,7 @@ std::vector<ExrChannel> channels_of(const Image& image, const Layers& layers) {
   return all;
 }
 
-/// Of memory alone: what fails here is lack of it.
+/// Throws where a step failed: here only memory can be lacking.
 void want_done(exr_result_t result) {
   if (result != EXR_ERR_SUCCESS)
     throw std::bad_alloc();

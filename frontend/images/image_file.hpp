@@ -10,7 +10,7 @@
 
 namespace grelha {
 
-/// By the name's ending, upper or lower case; empty when it is none of .png, .hdr, .pfm, .exr.
+/// The format by the name's ending, .png, .hdr, .pfm or .exr in any case; empty for others.
 std::optional<ImageFormat> image_format(std::string_view path);
 
 /// The ending of such files: "png".
@@ -19,7 +19,7 @@ std::string_view ending_of(ImageFormat format);
 /// 0..1 to 0..255, to nearest; what lies outside is clamped and NaN is black.
 std::uint8_t to_byte(float value, Tone tone);
 
-/// Whether the format's writer can hold a picture of that size.
+/// Returns whether the format's writer can hold a picture of that size.
 bool image_fits(ImageFormat format, int width, int height);
 
 /// The file's bytes: hdr_file.hpp and exr_file.hpp have the others. .pfm (little endian, bottom row
@@ -37,7 +37,7 @@ std::string encoding_text(const Encoding& encoding);
 /// unbent; `encoding`, where given, says how they were bent.
 Image read_image(const std::string& path, Encoding* encoding = nullptr);
 
-/// Of numbers so encoded, the light they stand for.
+/// The light that numbers so encoded stand for.
 Image as_light(Image image, const Encoding& encoding);
 
 }  // namespace grelha

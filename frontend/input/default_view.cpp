@@ -77,7 +77,7 @@ struct Axes {
   Place3 back{kSin30 * kCos20, kSin20, kCos30*kCos20}, right{kCos30, 0, -kSin30},
       up{-kSin30 * kSin20, kCos20, -kCos30*kSin20};
   Place3 high{0, 1, 0};  ///< where the sky is
-  /// With z up instead of y, seen from the y that scans turn their faces to.
+  /// Puts z up instead of y, seen from the y that scans turn their faces to.
   void turn() {
     for (Place3* v : {&back, &right, &up, &high})
       *v = {-(*v)[0], (*v)[2], (*v)[1]};

@@ -28,7 +28,7 @@ std::string extension(const std::string& path) {
   return point == std::string::npos ? "" : name.substr(point);
 }
 
-/// By the extension; a file with another one is PLY when it says so.
+/// True by the extension; a file with another one is PLY when it says so.
 bool is_ply(const std::string& path, std::string_view bytes) {
   const std::string kind = extension(path);
   if (kind == ".ply")

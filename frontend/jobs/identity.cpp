@@ -139,7 +139,7 @@ bool has(const WordList& words, const std::string& word) {
 }
 std::string key_of(const std::string& word) { return word.substr(0, word.find('=') + 1); }
 
-/// What one says and the other does not, and what it does not say at all. The words may be
+/// The words that one has and the other has not, and those it lacks. The words may be
 /// anyone's.
 std::string own_words(const WordList& here, const WordList& there) {
   constexpr int kMost = 8;

@@ -238,8 +238,8 @@ void LongRender::keep_all() const {
 
 void LongRender::save() const { write_checkpoint(kept_, identity_, picture_, true); }
 
-/// By --time the samples that were taken are what makes the picture again; and one that is not done
-/// says so.
+/// What the picture's file says of it. With --time the samples taken make the picture again. A
+/// picture that is not done says so.
 ImageStyle LongRender::style() const {
   Identity identity = identity_;
   identity.settings = repeatable(identity.settings, picture_.samples_taken());

@@ -39,7 +39,7 @@ class LongRender {
           RenderStats& stats,
           SampleMaps& maps);
 
-  /// Of what stopping left, one line.
+  /// One line about what stopping left.
   std::string stop_text(int signal) const;
 
   /// Writes picture or partial, by the first rank alone. Then the checkpoint has done its work and

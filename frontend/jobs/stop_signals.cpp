@@ -20,8 +20,8 @@ static_assert(std::atomic<int>::is_always_lock_free, "a handler may take no lock
 bool on_terminal = false;
 void (*pipe_before)(int) = SIG_DFL;
 
-/// By the handler itself, not by a thread that looks now and then: what is in work may take long.
-/// Only what a handler may do.
+/// Says in the handler itself that a signal came, for what is in work may take long. It does only
+/// what a handler may do.
 void note(int signal) {
   constexpr std::string_view kWipe = "\r\033[K";  // the bar
   constexpr std::string_view kAnswer = "grelha: stopping; once more ends it at once\n";

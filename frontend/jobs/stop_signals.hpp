@@ -15,7 +15,7 @@ class StopSignals {
   static int seen();  ///< one of them, or 0
 };
 
-/// Of one of them.
+/// The name of one of these signals.
 const char* signal_name(int signal);
 
 }  // namespace grelha

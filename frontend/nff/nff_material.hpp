@@ -15,7 +15,7 @@ Material read_nff_fill(NffInput& input, std::string_view keyword);
 /// After `mat`: 11, 12 or 14 fields.
 Material read_nff_mat(NffInput& input, std::string_view keyword);
 
-/// For objects before the first `f`.
+/// The material of objects before the first `f`.
 Material default_material();
 
 }  // namespace grelha

@@ -313,7 +313,7 @@ bool NffReader::is_outside(const std::string& path) const {
       std::filesystem::canonical(folder_.empty() ? "." : folder_, error);
   if (error)
     return true;
-  // Of what is not there weakly_canonical() would leave a relative path.
+  // weakly_canonical() would leave a relative path where nothing is there.
   const std::filesystem::path file =
       std::filesystem::weakly_canonical(std::filesystem::absolute(path), error);
   if (error)

@@ -61,7 +61,7 @@ class PlyFaces {
   std::uint32_t a_ = 0, b_ = 0;
 };
 
-/// What is wanted of one element: -1, or the index of a property.
+/// The properties used of one element: -1, or the index of a property.
 struct PlyPlan {
   int columns[6] = {-1, -1, -1, -1, -1, -1};  ///< x y z nx ny nz of `vertex`
   int list = -1;                              ///< the indices of `face` or `tristrips`

@@ -55,7 +55,7 @@ class PointTree::Triangle {
     }
     return least;
   }
-  /// Whether a point lies in it, other than at a corner; what is no number does not.
+  /// Returns whether a point lies in it, other than at a corner; what is no number does not.
   bool has(const Place& place) const {
     const Point2 p{place.x, place.y};
     const auto inside = [p](const Side& s) { return s.turn(p.x, p.y) >= 0; };

@@ -26,10 +26,10 @@ class PointTree {
   /// `points[i]` for i in `ids`; `points` must stay in place. Their coordinates must be floats'.
   void build(std::span<const Point2> points, std::span<const std::uint32_t> ids);
   void remove(std::uint32_t id);
-  /// Whether most of what it was built with is gone: built anew it would answer faster.
+  /// Returns whether most of what it was built with is gone: built anew it would answer faster.
   bool is_thin() const { return 2 * std::size_t(nodes_[0].alive) < order_.size(); }
-  /// Whether a point left lies in the closed triangle (which turns left), other than at one of its
-  /// corners. Gives up, and says no, when it has looked below so many nodes.
+  /// Returns whether a point left lies in the closed triangle (which turns left), other than at one
+  /// of its corners. Gives up, and says no, when it has looked below so many nodes.
   bool any_in(const Point2& a,
               const Point2& b,
               const Point2& c,

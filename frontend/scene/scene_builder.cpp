@@ -127,8 +127,8 @@ bool SceneBuilder::has_area(std::uint32_t a, std::uint32_t b, std::uint32_t c) c
   return !vanishes(cross(difference(q, p), difference(r, p)));
 }
 
-/// Whether the normal of a piece leaves the polygon's by more than a milliradian: slivers of
-/// rounded corners do, and would shade as scratches.
+/// Returns whether the normal of a piece leaves the polygon's by more than a milliradian: slivers
+/// of rounded corners do, and would shade as scratches.
 bool SceneBuilder::bends(std::span<const Float3> corners) const {
   constexpr double kSine = 1e-3;
   const Double3& whole = cutter_.normal();

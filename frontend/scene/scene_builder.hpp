@@ -43,7 +43,7 @@ class SceneBuilder {
  private:
   std::uint32_t add_vertex(Float3 point, Float3 normal);
   void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t material);
-  /// Whether anything is left of the triangle's area in floats.
+  /// Returns whether anything is left of the triangle's area in floats.
   bool has_area(std::uint32_t a, std::uint32_t b, std::uint32_t c) const;
   bool bends(std::span<const Float3> corners) const;
   void mesh_triangles(std::span<const std::uint32_t> corners,

@@ -16,7 +16,7 @@ inline constexpr std::string_view kNulIsBlank = "the text holds NUL bytes, which
 class Warnings {
  public:
   explicit Warnings(const Warn& warn) : warn_(warn) {}
-  /// Whether `kind` is new: only then is the (costlier) message worth making.
+  /// Returns whether `kind` is new: only then is the (costlier) message worth making.
   bool first(std::string_view kind) {
     return said_.size() < kMost && said_.insert(std::string(kind.substr(0, 64))).second;
   }
