@@ -21,8 +21,8 @@ if(commands MATCHES "_test\\.cpp|/perf/")
   message(FATAL_ERROR "tests or benchmarks are built that want every copy")
 endif()
 # The program then says how to get a copy it lacks.
-if(NOT commands MATCHES "-DGRELHA_NATIVE [^\n]*main\\.cpp")
-  message(FATAL_ERROR "main.cpp is not told that this build is for one processor")
+if(NOT commands MATCHES "-DGRELHA_NATIVE [^\n]*render_scene\\.cpp")
+  message(FATAL_ERROR "render_scene.cpp is not told that this build is for one processor")
 endif()
 execute_process(COMMAND ${CMAKE_COMMAND} --install ${SCRATCH} --prefix ${SCRATCH}/prefix
   RESULT_VARIABLE status OUTPUT_VARIABLE said ERROR_VARIABLE said)

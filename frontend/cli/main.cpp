@@ -1,9 +1,10 @@
 // The program. Errors become exit statuses here and nowhere else. 1: a file cannot be read or
 // written. 2: bad usage, or a scene that cannot be one. 128 and its number: a signal stopped a
 // render that can go on. This is the one file of the frontend that knows the generators.
+#include "frontend/cli/console.hpp"
 #include "frontend/cli/options.hpp"
+#include "frontend/cli/render_scene.hpp"
 #include "frontend/commands/batch.hpp"
-#include "frontend/commands/first_hits.hpp"
 #include "frontend/commands/nothing_seen.hpp"
 #include "frontend/commands/outputs.hpp"
 #include "frontend/commands/progress.hpp"
@@ -15,7 +16,6 @@
 #include "frontend/files/parse_error.hpp"
 #include "frontend/images/compare.hpp"
 #include "frontend/images/image_file.hpp"
-#include "frontend/jobs/long_render.hpp"
 #include "frontend/jobs/merge.hpp"
 #include "frontend/jobs/preparation.hpp"
 #include "frontend/jobs/ranks.hpp"
@@ -26,10 +26,8 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <csignal>
 #include <cstdio>
-#include <ctime>
 #include <filesystem>
 #include <iostream>
 #include <new>
@@ -40,7 +38,7 @@ namespace grelha {
 
 namespace {
 
-constexpr int kOk = 0, kFileFailed = 1, kBadInput = 2, kAboveBound = 1, kSignalled = 128;
+constexpr int kAboveBound = 1;  ///< of compare: the pictures differ by more
 
 /// The exit status of `work`, or of the error it ends with, which is told in one line.
 template <class Work>
@@ -71,189 +69,6 @@ int status_of(const Ranks& ranks, const Work& work) {
   } catch (const std::exception& error) {
     return fail(kFileFailed, std::string("grelha: error: ") + error.what());
   }
-}
-
-class Stopwatch {
- public:
-  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  const Clock::time_point start_ = Clock::now();
-};
-
-void warn(const std::string& line) { std::cerr << line << '\n'; }
-
-void print(const std::string& text) {
-  std::cout << text << std::flush;
-  if (!std::cout)
-    throw FileError("stdout", "cannot write");
-}
-
-/// Tells text on stdout, or on stderr where stdout has the results.
-void tell(const std::string& text, bool results_on_stdout) {
-  if (results_on_stdout)
-    std::cerr << text;
-  else
-    print(text);
-}
-
-/// How a build for one processor gets the other copies of the kernel.
-#ifdef GRELHA_NATIVE
-constexpr const char* kMoreIsas = "; `./run render --isa ...` or cmake -D GRELHA_ISAS=all adds it";
-#else
-constexpr const char* kMoreIsas = "";
-#endif
-
-/// Asks before the scene is read: a large one takes seconds to read.
-void want_isa(std::string_view name) {
-  if (name == "best")
-    return;
-  for (const Isa& isa : isas()) {
-    if (isa.name != name)
-      continue;
-    if (!isa.compiled)
-      throw UsageError("this build has no " + std::string(name) + kMoreIsas);
-    if (!isa.runs_here)
-      throw UsageError("this processor has no " + std::string(name));
-    return;
-  }
-  throw UsageError("this build has no " + std::string(name));
-}
-
-void want_room(std::optional<ImageFormat> format, int width, int height) {
-  if (format && !image_fits(*format, width, height))
-    throw UsageError("a picture of " + std::to_string(width) + 'x' + std::to_string(height) +
-                     " is too large for .png and .hdr, write a .pfm or .exr");
-}
-
-Camera camera_of(const SceneFile& file, const RenderCommand& command) {
-  Camera camera = file.camera;
-  if (command.width > 0) {
-    camera.width = command.width;
-    camera.height = command.height;
-  }
-  return camera;
-}
-
-/// The signal that stopped it, or 0.
-int render_long(LongRender& work,
-                const World& world,
-                const Camera& camera,
-                const RenderCommand& command,
-                RenderStats& stats,
-                SampleMaps& maps) {
-  ProgressBar bar(!command.quiet && stderr_is_terminal(), work.share_done());
-  return work.run(
-      world, camera, [&bar](double share) { bar.update(share); }, stats, maps);
-}
-
-/// Numbers by pixel as a picture: .pfm and .hdr hold them as they are; in a .png `shade` of the
-/// largest is white.
-template <class T, class Shade>
-void write_map(const std::string& path,
-               const char* what,
-               const std::vector<T>& values,
-               const Camera& camera,
-               const Shade& shade) {
-  if (path.empty())
-    return;
-  const bool png = image_format(path) == ImageFormat::png;
-  const double largest = shade(double(*std::max_element(values.begin(), values.end())));
-  Image image(camera.width, camera.height);
-  for (std::size_t i = 0; i < image.rgb.size(); ++i) {
-    const double v = double(values[i / 3]);
-    image.rgb[i] = float(png ? (largest > 0 ? shade(v) / largest : 0) : v);
-  }
-  write_image(path, image, {.notes = {kSoftware, {"Comment", what}}});
-}
-
-/// The command for a rank that neither writes nor speaks.
-RenderCommand silent(RenderCommand command) {
-  command.work.checkpoint.clear();
-  command.stats.clear();
-  command.work.show_every = 0;
-  command.quiet = true;
-  return command;
-}
-
-int render_scene(const RenderCommand& given, Ranks& ranks) {
-  const RenderCommand command = ranks.first() ? given : silent(given);
-  RunReport report;
-  const Stopwatch load;
-  const bool bars = !command.quiet && stderr_is_terminal();
-  SceneFile file;
-  WarningLog log;
-  const auto read = [&] {
-    want_isa(command.render.isa);
-    if (ranks.first())
-      prepare_outputs(command);
-    file = load_scene(command.scene, log.telling(), command.input.read, bars);
-    want_not_read(outputs_of(command), file.meshes);
-  };
-  if (!ranks.together(read))
-    return kFileFailed;
-  want_shareable(command, ranks);
-  const std::string scene = scene_digest(file);
-  RenderCommand prepared = command;
-  prepared.render.phases = !command.stats.empty();
-  apply_effects(command.effects, file, prepared.render);
-  report.seconds.load = load.seconds();
-  const Camera camera = camera_of(file, command);
-  want_room(format_of(command.image, command.format), camera.width, camera.height);
-  warn_of_nothing(command.scene, file, camera, log.telling());
-  log.want_none(command.input);
-  const PictureMemory memory = picture_memory(prepared, camera);
-  want_memory(command.scene, memory.sums + memory.rest);
-  LongRender work(prepared, camera, scene, ranks, log.telling());
-
-  const Stopwatch build;
-  const World world = build_world(command.scene, file.scene, command.build, memory.rest, bars);
-  report.seconds.build = build.seconds();
-
-  const Stopwatch render;
-  const std::clock_t cpu = std::clock();
-  SampleMaps maps;
-  if (const int signal = render_long(work, world, camera, prepared, report.render, maps)) {
-    warn(work.stop_text(signal));
-    return kSignalled + signal;
-  }
-  if (!ranks.first())
-    return kOk;
-  report.seconds.render = render.seconds();
-  report.seconds.render_cpu = double(std::clock() - cpu) / CLOCKS_PER_SEC;
-
-  const Stopwatch write;
-  work.finish(command.layers.any() ? first_hits(world, camera, command.layers) : Layers{});
-  write_map(command.samples_map, "samples of each pixel", maps.samples, camera, [](double n) {
-    return std::log2(n);
-  });
-  write_map(command.error_map,
-            "estimated standard error of each pixel",
-            maps.error,
-            camera,
-            [](double e) { return e; });
-  report.seconds.write = write.seconds();
-
-  const Geometry& geometry = file.scene.geometry;
-  report.counts = file.counts;
-  report.spheres = geometry.spheres.size();
-  report.triangles = geometry.triangles.size();
-  report.cones = geometry.cones.size();
-  report.planes = geometry.planes.size();
-  report.width = camera.width;
-  report.height = camera.height;
-  report.ranks = ranks.count();
-  report.grids = world.grids();
-  report.geometry_bytes = world.geometry_bytes();
-  report.grid_bytes = world.grid_bytes();
-  if (!command.stats.empty())
-    write_file(command.stats, stats_json(prepared, report));
-  const std::string summary = summary_line(command, report);
-  if (!command.quiet)
-    tell(summary, writes_to_stdout(command));
-  log.want_none(command.input);  // saves may have failed on the way
-  return kOk;
 }
 
 /// The exit status after a signal that came while a finished picture was written.

@@ -1,0 +1,20 @@
+#pragma once
+// What the program says, and the status that it ends with.
+
+#include <string>
+
+namespace grelha {
+
+/// Exit statuses. Beyond kSignalled: the number of the signal that stopped the program.
+inline constexpr int kOk = 0, kFileFailed = 1, kBadInput = 2, kSignalled = 128;
+
+/// Writes a line to stderr.
+void warn(const std::string& line);
+
+/// Writes results to stdout. Throws FileError when they cannot be written.
+void print(const std::string& text);
+
+/// Writes text to stdout, or to stderr where stdout has the results.
+void tell(const std::string& text, bool results_on_stdout);
+
+}  // namespace grelha

@@ -1,0 +1,232 @@
+#include "frontend/cli/render_scene.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <string>
+#include <vector>
+
+#include "frontend/cli/console.hpp"
+#include "frontend/commands/first_hits.hpp"
+#include "frontend/commands/nothing_seen.hpp"
+#include "frontend/commands/outputs.hpp"
+#include "frontend/commands/progress.hpp"
+#include "frontend/commands/report.hpp"
+#include "frontend/commands/warning_log.hpp"
+#include "frontend/files/atomic_file.hpp"
+#include "frontend/jobs/identity.hpp"
+#include "frontend/jobs/long_render.hpp"
+#include "frontend/jobs/preparation.hpp"
+#include "frontend/scene/scene_file.hpp"
+#include "grelha/isa.hpp"
+
+namespace grelha {
+namespace {
+
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point start_ = Clock::now();
+};
+
+/// How a build for one processor gets the other copies of the kernel.
+#ifdef GRELHA_NATIVE
+constexpr const char* kMoreIsas = "; `./run render --isa ...` or cmake -D GRELHA_ISAS=all adds it";
+#else
+constexpr const char* kMoreIsas = "";
+#endif
+
+/// Asks before the scene is read: a large one takes seconds to read.
+void want_isa(std::string_view name) {
+  if (name == "best")
+    return;
+  for (const Isa& isa : isas()) {
+    if (isa.name != name)
+      continue;
+    if (!isa.compiled)
+      throw UsageError("this build has no " + std::string(name) + kMoreIsas);
+    if (!isa.runs_here)
+      throw UsageError("this processor has no " + std::string(name));
+    return;
+  }
+  throw UsageError("this build has no " + std::string(name));
+}
+
+Camera camera_of(const SceneFile& file, const RenderCommand& command) {
+  Camera camera = file.camera;
+  if (command.width > 0) {
+    camera.width = command.width;
+    camera.height = command.height;
+  }
+  return camera;
+}
+
+/// Numbers by pixel as a picture: .pfm and .hdr hold them as they are; in a .png `shade` of the
+/// largest is white.
+template <class T, class Shade>
+void write_map(const std::string& path,
+               const char* what,
+               const std::vector<T>& values,
+               const Camera& camera,
+               const Shade& shade) {
+  if (path.empty())
+    return;
+  const bool png = image_format(path) == ImageFormat::png;
+  const double largest = shade(double(*std::max_element(values.begin(), values.end())));
+  Image image(camera.width, camera.height);
+  for (std::size_t i = 0; i < image.rgb.size(); ++i) {
+    const double v = double(values[i / 3]);
+    image.rgb[i] = float(png ? (largest > 0 ? shade(v) / largest : 0) : v);
+  }
+  write_image(path, image, {.notes = {kSoftware, {"Comment", what}}});
+}
+
+/// The command for a rank that neither writes nor speaks.
+RenderCommand silent(RenderCommand command) {
+  command.work.checkpoint.clear();
+  command.stats.clear();
+  command.work.show_every = 0;
+  command.quiet = true;
+  return command;
+}
+
+/// A scene on its way from file to picture, step by step.
+class SceneRender {
+ public:
+  SceneRender(const RenderCommand& given, Ranks& ranks)
+      : ranks_(ranks),
+        command_(ranks.first() ? given : silent(given)),
+        bars_(!command_.quiet && stderr_is_terminal()) {}
+
+  int run() {
+    const Stopwatch load;
+    if (!ranks_.together([this] { read(); }))
+      return kFileFailed;
+    prepare();
+    report_.seconds.load = load.seconds();
+    const PictureMemory memory = check();
+    LongRender work(prepared_, camera_, scene_, ranks_, log_.telling());
+    const World world = build(memory);
+    SampleMaps maps;
+    if (const int signal = render(work, world, maps)) {
+      warn(work.stop_text(signal));
+      return kSignalled + signal;
+    }
+    if (!ranks_.first())
+      return kOk;
+    write(work, world, maps);
+    report(world);
+    log_.want_none(command_.input);  // saves may have failed on the way
+    return kOk;
+  }
+
+ private:
+  void read() {
+    want_isa(command_.render.isa);
+    if (ranks_.first())
+      prepare_outputs(command_);
+    file_ = load_scene(command_.scene, log_.telling(), command_.input.read, bars_);
+    want_not_read(outputs_of(command_), file_.meshes);
+  }
+
+  /// Makes of the command and the scene what is to be rendered.
+  void prepare() {
+    want_shareable(command_, ranks_);
+    scene_ = scene_digest(file_);
+    prepared_ = command_;
+    prepared_.render.phases = !command_.stats.empty();
+    apply_effects(command_.effects, file_, prepared_.render);
+  }
+
+  /// Throws what can be known before the work. Returns what the picture will take.
+  PictureMemory check() {
+    camera_ = camera_of(file_, command_);
+    want_room(format_of(command_.image, command_.format), camera_.width, camera_.height);
+    warn_of_nothing(command_.scene, file_, camera_, log_.telling());
+    log_.want_none(command_.input);
+    const PictureMemory memory = picture_memory(prepared_, camera_);
+    want_memory(command_.scene, memory.sums + memory.rest);
+    return memory;
+  }
+
+  World build(const PictureMemory& memory) {
+    const Stopwatch build;
+    World world = build_world(command_.scene, file_.scene, command_.build, memory.rest, bars_);
+    report_.seconds.build = build.seconds();
+    return world;
+  }
+
+  /// Returns the signal that stopped it, or 0.
+  int render(LongRender& work, const World& world, SampleMaps& maps) {
+    const Stopwatch render;
+    const std::clock_t cpu = std::clock();
+    ProgressBar bar(bars_, work.share_done());
+    const int signal = work.run(
+        world, camera_, [&bar](double share) { bar.update(share); }, report_.render, maps);
+    report_.seconds.render = render.seconds();
+    report_.seconds.render_cpu = double(std::clock() - cpu) / CLOCKS_PER_SEC;
+    return signal;
+  }
+
+  void write(LongRender& work, const World& world, const SampleMaps& maps) {
+    const Stopwatch write;
+    work.finish(command_.layers.any() ? first_hits(world, camera_, command_.layers) : Layers{});
+    write_map(command_.samples_map, "samples of each pixel", maps.samples, camera_, [](double n) {
+      return std::log2(n);
+    });
+    write_map(command_.error_map,
+              "estimated standard error of each pixel",
+              maps.error,
+              camera_,
+              [](double e) { return e; });
+    report_.seconds.write = write.seconds();
+  }
+
+  void report(const World& world) {
+    const Geometry& geometry = file_.scene.geometry;
+    report_.counts = file_.counts;
+    report_.spheres = geometry.spheres.size();
+    report_.triangles = geometry.triangles.size();
+    report_.cones = geometry.cones.size();
+    report_.planes = geometry.planes.size();
+    report_.width = camera_.width;
+    report_.height = camera_.height;
+    report_.ranks = ranks_.count();
+    report_.grids = world.grids();
+    report_.geometry_bytes = world.geometry_bytes();
+    report_.grid_bytes = world.grid_bytes();
+    if (!command_.stats.empty())
+      write_file(command_.stats, stats_json(prepared_, report_));
+    const std::string summary = summary_line(command_, report_);
+    if (!command_.quiet)
+      tell(summary, writes_to_stdout(command_));
+  }
+
+  Ranks& ranks_;
+  const RenderCommand command_;
+  const bool bars_;
+  WarningLog log_;
+  SceneFile file_;
+  std::string scene_;       ///< digest of it
+  RenderCommand prepared_;  ///< with the effects of the scene
+  Camera camera_;
+  RunReport report_;
+};
+
+}  // namespace
+
+int render_scene(const RenderCommand& command, Ranks& ranks) {
+  return SceneRender(command, ranks).run();
+}
+
+void want_room(std::optional<ImageFormat> format, int width, int height) {
+  if (format && !image_fits(*format, width, height))
+    throw UsageError("a picture of " + std::to_string(width) + 'x' + std::to_string(height) +
+                     " is too large for .png and .hdr, write a .pfm or .exr");
+}
+
+}  // namespace grelha
