@@ -62,7 +62,7 @@ EXCEPTIONS = {
         "tests/kernel/trace/walk_test.cpp", "tests/kernel/trace/watertight_test.cpp",
     ),
     "branches": (
-        "kernel/picture/refinement.cpp", "kernel/render/doubt.hpp", "kernel/render/setup.cpp",
+        "kernel/render/doubt.hpp", "kernel/render/setup.cpp",
         "kernel/trace/abreast.hpp", "kernel/trace/packet.hpp", "perf/embree.cpp",
         "perf/ray_sets.cpp", "perf/trace.cpp", "tests/stability/judge.cpp",
         "tests/support/cell_rays.hpp",

@@ -31,6 +31,35 @@ bool is_new(const Refinement& r) {
          std::all_of(r.log.begin(), r.log.end(), [](std::uint8_t l) { return l == 0; });
 }
 
+bool has_sound_numbers(const Refinement& r) {
+  constexpr double kMost = 1e30;  // far from where sums and products of doubles end
+  for (const double v : {r.variance_drop, r.variance_level, r.round_drop, r.round_level, r.seconds})
+    if (!lies(v, 0.0, kMost))
+      return false;
+  return lies(r.variance_ratio, .1f, .6f) && lies(r.gain_threshold, 0.f, .25f) &&
+         lies(r.share, 0.0, 1.0) && lies(r.rounds, 0, 1 << 20);
+}
+
+bool has_sound_arrays(const Refinement& r) {
+  const std::size_t pixels = static_cast<std::size_t>(r.width) * static_cast<std::size_t>(r.height);
+  for (const auto& level : r.squares)
+    if (level.size() != pixels * 3 || !all_from_0_on(level))
+      return false;
+  for (const auto* values : {&r.cost, &r.inside, &r.around})
+    if (values->size() != pixels || !all_from_0_on(*values))
+      return false;
+  if (r.sums.size() != pixels * 3 || r.log.size() != pixels)
+    return false;
+  const auto sound_sum = [](std::int64_t s) {
+    return lies<std::int64_t>(s, -(std::int64_t{1} << 61), std::int64_t{1} << 61);
+  };
+  // two samples do not fall into kParts
+  const auto sound_log = [](std::uint8_t l) { return l != 1 && l <= kMostLog; };
+  return std::all_of(r.sums.begin(), r.sums.end(), sound_sum) &&
+         std::all_of(r.log.begin(), r.log.end(), sound_log) &&
+         std::all_of(r.cost.begin(), r.cost.end(), [](float c) { return c >= 1; });
+}
+
 }  // namespace
 
 Refinement make_refinement(const Camera& camera) {
@@ -49,33 +78,7 @@ Refinement make_refinement(const Camera& camera) {
 }
 
 bool is_sound(const Refinement& r) {
-  constexpr double kMost = 1e30;  // far from where sums and products of doubles end
-  if (r.width < 1 || r.height < 1)
-    return false;
-  const std::size_t pixels = static_cast<std::size_t>(r.width) * static_cast<std::size_t>(r.height);
-  for (const auto& level : r.squares)
-    if (level.size() != pixels * 3 || !all_from_0_on(level))
-      return false;
-  for (const auto* values : {&r.cost, &r.inside, &r.around})
-    if (values->size() != pixels || !all_from_0_on(*values))
-      return false;
-  if (r.sums.size() != pixels * 3 || r.log.size() != pixels)
-    return false;
-  const auto sound_sum = [](std::int64_t s) {
-    return lies<std::int64_t>(s, -(std::int64_t{1} << 61), std::int64_t{1} << 61);
-  };
-  // two samples do not fall into kParts
-  const auto sound_log = [](std::uint8_t l) { return l != 1 && l <= kMostLog; };
-  if (!std::all_of(r.sums.begin(), r.sums.end(), sound_sum) ||
-      !std::all_of(r.log.begin(), r.log.end(), sound_log))
-    return false;
-  if (!std::all_of(r.cost.begin(), r.cost.end(), [](float c) { return c >= 1; }))
-    return false;
-  for (const double v : {r.variance_drop, r.variance_level, r.round_drop, r.round_level, r.seconds})
-    if (!lies(v, 0.0, kMost))
-      return false;
-  if (!lies(r.variance_ratio, .1f, .6f) || !lies(r.gain_threshold, 0.f, .25f) ||
-      !lies(r.share, 0.0, 1.0) || !lies(r.rounds, 0, 1 << 20))
+  if (r.width < 1 || r.height < 1 || !has_sound_arrays(r) || !has_sound_numbers(r))
     return false;
   if (r.wanted.empty())
     return r.finished || is_new(r);
