@@ -314,10 +314,10 @@ struct SceneWork {
            k);
     for (std::uint32_t k = 0; k < g.sphere_count; ++k)
       note(oracle::Ball{grelha::Float3{g.sx[k], g.sy[k], g.sz[k]}, g.sr[k]}.first(ray, 0),
-           v.sphere_base + k);
+           v.geometry.ids.begin(grelha::PrimitiveKind::kSphere) + k);
     for (std::uint32_t k = 0; k < g.triangle_count; ++k)
       note(oracle::Facet{corner(g.ta[k]), corner(g.tb[k]), corner(g.tc[k])}.first(ray, 0),
-           v.triangle_base + k);
+           v.geometry.ids.begin(grelha::PrimitiveKind::kTriangle) + k);
     truth.t.push_back(static_cast<double>(nearest));
     truth.triangle.push_back(which);
   }

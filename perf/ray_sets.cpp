@@ -134,7 +134,7 @@ std::vector<RayMaker::Hit> RayMaker::first_hits(bool few) const {
     // kept above the surface, as shading does
     h.mirror = normalize(reflected - (2 * lesser(dot(reflected, h.normal), 0.f)) * h.normal);
     h.away = kClearance * s.away;
-    if (found.id[i] < scene.sphere_base)
+    if (scene.geometry.ids.has(PrimitiveKind::kPlane, found.id[i]))
       h.away += kPlaneClearance * (extent + largest(s.point));
     hits.push_back(h);
   }

@@ -126,7 +126,7 @@ struct Way {
 
 /// Whether that is a cone, and the point at t lies on its side.
 bool on_its_cone(const Place& p, const RayBuffer& rays, std::size_t i, std::uint32_t id, float t) {
-  const std::uint32_t first = p.world.impl().view.cone_base;
+  const std::uint32_t first = p.world.impl().view.geometry.ids.begin(PrimitiveKind::kCone);
   const Cones& c = p.file.scene.geometry.cones;
   if (id < first || id - first >= c.size())
     return false;
@@ -228,7 +228,7 @@ struct Cell {
 
 /// Whether Grelha met a plane where Embree's stand-in for it has ended.
 bool past_the_planes(const SceneView& scene, const RayBuffer& r, std::size_t i, const Answers& a) {
-  if (a.id[i] >= scene.sphere_base)
+  if (!scene.geometry.ids.has(PrimitiveKind::kPlane, a.id[i]))
     return false;
   double width = 0, away = 0;
   const float *const org[] = {r.ox.data(), r.oy.data(), r.oz.data()}, *const dir[] = {r.dx.data(),

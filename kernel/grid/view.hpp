@@ -60,15 +60,13 @@ struct GridView {
   float lo_f[3] = {}, hi_f[3] = {}, cell_f[3] = {}, inv_cell_f[3] = {};
 };
 
-/// Ids run over planes, spheres, triangles, cones in this order; of two hits at equal t the lower
-/// id wins.
+/// What rays can meet, and the grids it stands in.
 struct SceneView {
   GeometryView geometry;
   /// one "cell" of primitives that no grid holds: few, or as large as the scene
   CellLists outside;
   const GridView* grids = nullptr;
   int grid_count = 0;
-  std::uint32_t sphere_base = 0, triangle_base = 0, cone_base = 0, primitive_end = 0;
   float box_lo[3] = {}, box_hi[3] = {};  ///< of all finite primitives, grown
   /// rays that start further than this from the box are moved nearer first; see approach()
   float reach = 0;

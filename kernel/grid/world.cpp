@@ -111,10 +111,6 @@ World::Impl::Impl(const SceneSpans& s, const BuildOptions& options)
   view.outside = outside.lists();
   view.grids = grid_views.data();
   view.grid_count = static_cast<int>(grid_views.size());
-  view.sphere_base = primitives.ids.begin(PrimitiveKind::kSphere);
-  view.triangle_base = primitives.ids.begin(PrimitiveKind::kTriangle);
-  view.cone_base = primitives.ids.begin(PrimitiveKind::kCone);
-  view.primitive_end = primitives.ids.end();
   view.finite = !plan.all.empty();
   if (view.finite) {
     for (int a = 0; a < 3; ++a) {

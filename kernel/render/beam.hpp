@@ -168,22 +168,21 @@ inline Corners3 triangle_corners(const GeometryView& g, std::uint32_t i) {
 inline bool meets(
     const SceneView& scene, const BeamFrame& f, std::uint32_t id, float far, Vec3<float>& p) {
   const GeometryView& g = scene.geometry;
+  const auto [kind, i] = g.ids.primitive(id);
   // a plane ends nowhere inside a beam: its corners see it
-  if (id < scene.sphere_base)
+  if (kind == PrimitiveKind::kPlane)
     return false;
-  if (id >= scene.triangle_base && id < scene.cone_base) {
-    if (!triangle_point(f, triangle_corners(g, id - scene.triangle_base).at, p))
+  if (kind == PrimitiveKind::kTriangle) {
+    if (!triangle_point(f, triangle_corners(g, i).at, p))
       return false;
     const Place at = place(f, p);
     return at.w > f.depth && at.w < far && outness(at.x, at.y) <= 1;
   }
   Vec3<float> center, base{}, axis{};
   float radius = 0;
-  if (id < scene.triangle_base) {
-    const std::uint32_t i = id - scene.sphere_base;
+  if (kind == PrimitiveKind::kSphere) {
     center = {g.sx[i], g.sy[i], g.sz[i]}, radius = magnitude(g.sr[i]);
   } else {  // the ball around the cone's axis where that passes nearest to the beam's
-    const std::uint32_t i = id - scene.cone_base;
     base = {g.cone[0][i], g.cone[1][i], g.cone[2][i]},
     axis = {g.cone[3][i], g.cone[4][i], g.cone[5][i]};
     const float height = g.cone[6][i];
@@ -202,10 +201,9 @@ inline bool meets(
   const float inv_dd = 1 / dot(dir, dir);
   float t = 0;
   bool hit;
-  if (id < scene.triangle_base) {
-    hit = hit_sphere<float>(org, dir, inv_dd, 0, center, g.sr[id - scene.sphere_base], t);
+  if (kind == PrimitiveKind::kSphere) {
+    hit = hit_sphere<float>(org, dir, inv_dd, 0, center, g.sr[i], t);
   } else {
-    const std::uint32_t i = id - scene.cone_base;
     hit = hit_cone<float>(org,
                           dir,
                           inv_dd,

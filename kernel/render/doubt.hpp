@@ -45,8 +45,9 @@ class Watcher {
     bool differ = false;
     for (int i = 0; i < kCorners; ++i) {
       const bool hit = sight.id[i] != kNoPrimitive;
-      differ |= whole ? sight.id[i] != sight.id[0] || (hit && sight.id[i] >= scene_.cone_base)
-                      : !alike(sight.id[0], sight.id[i]);
+      differ |= whole
+                    ? sight.id[i] != sight.id[0] || (hit && is_a(PrimitiveKind::kCone, sight.id[i]))
+                    : !alike(sight.id[0], sight.id[i]);
       far = greater(hit ? place(f, beam.org[i] + sight.t[i] * beam.dir[i]).w * 1.0001f : kInfinity,
                     far);
     }
@@ -193,8 +194,13 @@ class Watcher {
     return g.serves == Serves::kNear ? all : some;
   }
 
-  bool is_triangle(std::uint32_t id) const {
-    return id >= scene_.triangle_base && id < scene_.cone_base;
+  bool is_a(PrimitiveKind kind, std::uint32_t id) const {
+    return scene_.geometry.ids.has(kind, id);
+  }
+  bool is_triangle(std::uint32_t id) const { return is_a(PrimitiveKind::kTriangle, id); }
+  /// Which triangle an id is.
+  std::uint32_t triangle(std::uint32_t id) const {
+    return id - scene_.geometry.ids.begin(PrimitiveKind::kTriangle);
   }
 
   Vec3<float> flat_normal(std::uint32_t i) const {
@@ -209,7 +215,7 @@ class Watcher {
       return true;
     if (!is_triangle(a) || !is_triangle(b))
       return false;
-    const std::uint32_t i = a - scene_.triangle_base, j = b - scene_.triangle_base;
+    const std::uint32_t i = triangle(a), j = triangle(b);
     if (scene_.geometry.triangle_material[i] != scene_.geometry.triangle_material[j])
       return false;
     const Vec3<float> n = flat_normal(i), m = flat_normal(j);
@@ -224,8 +230,8 @@ class Watcher {
   bool touch(std::uint32_t a, std::uint32_t b) const {
     if (!is_triangle(a) || !is_triangle(b))
       return a == b;
-    const Corners3 p = triangle_corners(scene_.geometry, a - scene_.triangle_base),
-                   q = triangle_corners(scene_.geometry, b - scene_.triangle_base);
+    const Corners3 p = triangle_corners(scene_.geometry, triangle(a)),
+                   q = triangle_corners(scene_.geometry, triangle(b));
     bool found = false;
     for (int k = 0; k < 3; ++k)
       for (int l = 0; l < 3; ++l)
@@ -235,8 +241,8 @@ class Watcher {
   /// Triangles of one material: pieces of one mesh, most likely.
   bool kin(std::uint32_t a, std::uint32_t b) const {
     return is_triangle(a) && is_triangle(b) &&
-           scene_.geometry.triangle_material[a - scene_.triangle_base] ==
-               scene_.geometry.triangle_material[b - scene_.triangle_base];
+           scene_.geometry.triangle_material[triangle(a)] ==
+               scene_.geometry.triangle_material[triangle(b)];
   }
   template <class Test>
   static bool any_of(const std::uint32_t (&id)[kCorners], const Test& test) {
@@ -304,7 +310,7 @@ class Watcher {
       return true;
     Corners3 c[kMostMet + kCorners];
     for (int i = 0; i < size; ++i)
-      c[i] = triangle_corners(scene_.geometry, sheet[i] - scene_.triangle_base);
+      c[i] = triangle_corners(scene_.geometry, triangle(sheet[i]));
     const auto same = [](const Vec3<float>& a, const Vec3<float>& b) {
       return a.x == b.x && a.y == b.y && a.z == b.z;
     };
@@ -364,7 +370,8 @@ class Watcher {
       return around(part);
     if (lit == 0) {
       const bool one = sight.id[0] == sight.id[1] && sight.id[0] == sight.id[2] &&
-                       sight.id[0] == sight.id[3] && sight.id[0] < scene_.cone_base;
+                       sight.id[0] == sight.id[3] &&
+                       sight.id[0] < scene_.geometry.ids.begin(PrimitiveKind::kCone);
       if (one)
         return {};
       Met shade;

@@ -139,17 +139,15 @@ TEST_P(Double, IsOffByRoundingAlone) {
       if (a.id[i] == kNoPrimitive)
         continue;
       const oracle::Ray ray{rays.org(i), rays.dir(i)};
-      std::uint32_t k = a.id[i];
+      const auto [kind, k] = view.geometry.ids.primitive(a.id[i]);
       std::optional<oracle::Crossing> truth;
-      if (k < view.sphere_base)
+      if (kind == PrimitiveKind::kPlane)
         truth =
             oracle::Sheet{Float3{g.px[k], g.py[k], g.pz[k]}, Float3{g.pnx[k], g.pny[k], g.pnz[k]}}
                 .first(ray, rays.t_min[i]);
-      else if (k < view.triangle_base) {
-        k -= view.sphere_base;
+      else if (kind == PrimitiveKind::kSphere) {
         truth = oracle::Ball{Float3{g.sx[k], g.sy[k], g.sz[k]}, g.sr[k]}.first(ray, rays.t_min[i]);
-      } else if (k < view.cone_base) {
-        k -= view.triangle_base;
+      } else if (kind == PrimitiveKind::kTriangle) {
         truth = oracle::Facet{corner(g.ta[k]), corner(g.tb[k]), corner(g.tc[k])}.first(
             ray, rays.t_min[i]);
       }
