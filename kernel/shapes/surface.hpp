@@ -27,7 +27,8 @@ inline Surface<Real> surface_of(const GeometryView& g,
   const Meeting<Real> met{
       .org = org, .dir = dir, .t = t, .at = at, .smooth = smooth, .start = start};
   Surface<Real> s{};
-  for_each_shape([&]<class Shape>() {
+  // Inlined, or the linker could take another file's, compiled with other flags.
+  for_each_shape([&]<class Shape>() __attribute__((always_inline)) {
     const std::uint32_t first = g.ids.begin(Shape::kKind);
     const std::uint32_t count = g.ids.count(Shape::kKind);
     const auto here = id - first < count;

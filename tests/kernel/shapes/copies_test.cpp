@@ -95,5 +95,38 @@ TEST(Copies, OfPlanesAtTheEndAreNotTested) {
   EXPECT_EQ(planes_without_copies(Planes{}), 0u);
 }
 
+TEST(PrimitiveIds, SayWhichPrimitiveTheyAre) {
+  Scene s;
+  for (const float y : {0.f, 1.f})
+    s.geometry.planes.add({0, y, 0}, {0, 1, 0}, 0);
+  // no spheres
+  for (const float x : {0.f, 1.f, 2.f})
+    add_triangle(s, {x, 0, 0}, {x + 1, 0, 0}, {x, 1, 0});
+  s.geometry.cones.add({0, 0, 0}, 1, {0, 1, 0}, .5f, 0);
+  const Primitives p(s.geometry);
+  const Primitive wanted[] = {{PrimitiveKind::kPlane, 0},
+                              {PrimitiveKind::kPlane, 1},
+                              {PrimitiveKind::kTriangle, 0},
+                              {PrimitiveKind::kTriangle, 1},
+                              {PrimitiveKind::kTriangle, 2},
+                              {PrimitiveKind::kCone, 0}};
+  ASSERT_EQ(p.ids.end(), std::size(wanted));
+  for (std::uint32_t id = 0; id < p.ids.end(); ++id) {
+    const Primitive found = p.ids.primitive(id);
+    EXPECT_EQ(found.kind, wanted[id].kind) << id;
+    EXPECT_EQ(found.index, wanted[id].index) << id;
+    for_each_shape([&]<class Shape>() {
+      EXPECT_EQ(p.ids.has(Shape::kKind, id), Shape::kKind == wanted[id].kind) << id;
+    });
+    if (id < p.first_finite())
+      continue;
+    p.visit(id, [&]<class Shape>(std::uint32_t index) {
+      EXPECT_EQ(Shape::kKind, wanted[id].kind) << id;
+      EXPECT_EQ(index, wanted[id].index) << id;
+    });
+  }
+  EXPECT_FALSE(p.ids.has(PrimitiveKind::kCone, kNoPrimitive));
+}
+
 }  // namespace
 }  // namespace grelha::test
