@@ -4,19 +4,6 @@
 #include <cmath>
 
 namespace grelha {
-namespace {
-
-/// Differences a pixel holds after its first round, and later.
-constexpr float kYoung = 3, kOld = 7;
-
-/// One rate for the whole picture, and pixels that stop when their differences are small, leave
-/// estimates up to 15 % too low (measured: docs/sampling.md); the bound allows for 12 %, its spread
-/// for the rest.
-constexpr double kVarianceInflation = 1.12 * 1.12;
-/// 97.5 % point: with what neighbours tell, Student's t is no wider
-constexpr float kNormal = 1.96f;
-
-}  // namespace
 
 PixelErrors::PixelErrors(const Refinement& r, bool effects, int first_log, int threads)
     : r_(r),
@@ -103,8 +90,8 @@ void PixelErrors::judge() {
           // than about 1 / n.
           const float doubt = std::max(r_.inside[p], r_.around[p] * contrast(x, y) / 3),
                       miss = doubt / samples(p);
-          v = std::max(v, .15f * miss * miss);
-          wide = std::max(wide, 6 * doubt / samples(p));
+          v = std::max(v, kHiddenVariance * miss * miss);
+          wide = std::max(wide, kHiddenWidth * doubt / samples(p));
         }
         variance_[p] = v;
         widest_[p] = wide;
@@ -123,7 +110,7 @@ PixelErrors::Totals PixelErrors::totals() const {
   const double n = static_cast<double>(variance_.size());
   // A pixel's estimate has the spread of chi squared with about 7 degrees of freedom: variance 2
   // v^2 / 7.
-  const double bound = kVarianceInflation * (sum + 1.645 * std::sqrt(spread * 2 / 7));
+  const double bound = kVarianceInflation * (sum + kNormalOneSided * std::sqrt(spread * 2 / 7));
   return {sum, std::sqrt(bound / n), std::sqrt(sum / n), widest};
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "kernel/picture/refinement.hpp"
+#include "kernel/picture/tolerances.hpp"
 
 namespace grelha {
 
@@ -43,9 +44,8 @@ class PixelErrors {
   }
   float samples(std::size_t p) const { return static_cast<float>(1u << r_.log[p]); }
   bool watched(std::size_t p) const { return effects_ || r_.inside[p] > 0 || r_.around[p] > 0; }
-  /// One of n samples that differs by .1 shows as a variance of .005 / n^2.
   bool agrees(float variance, std::size_t p) const {
-    return variance <= .005f / (samples(p) * samples(p));
+    return variance <= kAgreement / (samples(p) * samples(p));
   }
   float differences(std::size_t p) const;
   float own_variance(std::size_t p) const;

@@ -4,13 +4,12 @@
 // answer is a function of beam and scene, not of the grid.
 
 #include "kernel/shapes/surface.hpp"
+#include "kernel/render/tolerances.hpp"
 #include "kernel/trace/trace.hpp"
 
 namespace grelha::GRELHA_ISA {
 
 inline constexpr int kCorners = 4, kMostMet = 48;
-/// Corner rays of a beam lie within this cosine of its axis: wider ones would walk half the scene.
-inline constexpr float kNarrow = .998f;
 
 struct Beam {
   Vec3<float> org[kCorners], dir[kCorners];  ///< around the beam, in order; unit directions
@@ -50,9 +49,9 @@ inline bool frame_of(const Beam& b, BeamFrame& f) {
     growth += dot(o, d) > 0 || dot(o, o) == 0 ? length(d) : 0 - length(d);
   }
   // Rays that run together or keep apart have no apex behind them: one far away stands for it.
-  f.depth = offset == 0               ? 0.f
-            : growth > 1e-4f * offset ? lesser(offset / growth, 1e4f * offset)
-                                      : 1e4f * offset;
+  f.depth = offset == 0                      ? 0.f
+            : growth > kLeastGrowth * offset ? lesser(offset / growth, kFarthestApex * offset)
+                                             : kFarthestApex * offset;
   f.apex = org - f.depth * f.unit;
   Vec3<float> c[kCorners];  // where the corner rays pierce w = 1
   for (int i = 0; i < kCorners; ++i) {
@@ -79,7 +78,7 @@ inline bool frame_of(const Beam& b, BeamFrame& f) {
     last = greater(w, last);
   }
   // a slanting mirror: its corners are the ends, but for the rounding
-  f.depth = last + .1f * (last - first);
+  f.depth = last + kDepthMargin * (last - first);
   return true;
 }
 
@@ -116,7 +115,7 @@ inline Place innermost(const Place& a, const Place& b) {
 inline Vec3<float> ball_point(const BeamFrame& f, const Vec3<float>& c, float r) {
   const Vec3<float> d = c - f.apex, off = d - (dot(d, f.axis) / dot(f.axis, f.axis)) * f.axis;
   const float far = length(off);
-  return far <= r ? c - off : c - ((.9f * r) / far) * off;
+  return far <= r ? c - off : c - ((kRimShare * r) / far) * off;
 }
 
 /// Innermost point of a triangle; false when a corner lies behind the apex.
@@ -142,7 +141,8 @@ inline bool triangle_point(const BeamFrame& f, const Vec3<float> (&c)[3], Vec3<f
     best = {0, 0, 0};
   const float mx = (1.f / 3) * ((q[0].x + q[1].x) + q[2].x),
               my = (1.f / 3) * ((q[0].y + q[1].y) + q[2].y);
-  const float x = best.x + .01f * (mx - best.x), y = best.y + .01f * (my - best.y);  // off the edge
+  const float x = best.x + kOffEdge * (mx - best.x),
+              y = best.y + kOffEdge * (my - best.y);  // off the edge
   const Vec3<float> n = cross(c[1] - c[0], c[2] - c[0]), dir = f.axis + x * f.right + y * f.up;
   const float t = dot(c[0] - f.apex, n) / dot(dir, n);
   if (!(t > 0) || !(t < kInfinity))
@@ -188,7 +188,7 @@ inline bool meets(
     const float height = g.cone[6][i];
     const Vec3<float> d = base - f.apex;
     const float ab = dot(axis, f.unit), k = 1 - ab * ab;
-    float h = k > 1e-6f ? (ab * dot(d, f.unit) - dot(d, axis)) / k : .5f * height;
+    float h = k > kParallelAxes ? (ab * dot(d, f.unit) - dot(d, axis)) / k : .5f * height;
     h = h < 0 ? 0 : h > height ? height : h;
     center = base + h * axis;
     radius = g.cone[7][i] + g.cone[8][i] * h;

@@ -48,8 +48,8 @@ class Watcher {
       differ |= whole
                     ? sight.id[i] != sight.id[0] || (hit && is_a(PrimitiveKind::kCone, sight.id[i]))
                     : !alike(sight.id[0], sight.id[i]);
-      far = greater(hit ? place(f, beam.org[i] + sight.t[i] * beam.dir[i]).w * 1.0001f : kInfinity,
-                    far);
+      far = greater(
+          hit ? place(f, beam.org[i] + sight.t[i] * beam.dir[i]).w * kBehindHit : kInfinity, far);
     }
     if (whole && differ)
       return around(weight);
@@ -70,7 +70,7 @@ class Watcher {
       if (dot(beam.dir[i], s[i].normal) > 0)
         s[i].normal = Vec3<float>{0, 0, 0} - s[i].normal,
         s[i].shading = Vec3<float>{0, 0, 0} - s[i].shading;
-      if (dot(s[i].normal, s[0].normal) < .8f)
+      if (dot(s[i].normal, s[0].normal) < kOneSurface)
         return around(weight);
     }
     const auto field = [&](MaterialField k) { return shading_.materials.field[k][s[0].material]; };
@@ -91,7 +91,7 @@ class Watcher {
         most = most + uneven_light(light, s, sight.id, whole, part);
     }
     const float mirror = lesser(largest(color(kMirrorR)), 1.f) * weight;
-    if (!(mirror > most.inside) || mirror < 1.f / 64 || field(kRoughness) > 0 || bounces == 0)
+    if (!(mirror > most.inside) || mirror < kLeastMirror || field(kRoughness) > 0 || bounces == 0)
       return most;
     Beam mirrored;
     for (int i = 0; i < kCorners; ++i) {
@@ -169,7 +169,7 @@ class Watcher {
       p.dir[1][i] = dir.y;
       p.dir[2][i] = dir.z;
       p.t_min[i] = p.start[i] = 0;
-      p.best[i] = 1.001f * (far - f.depth);
+      p.best[i] = kBehindBeam * (far - f.depth);
     }
     prepare(p, false);
     bring_near(scene_, p);
@@ -220,7 +220,7 @@ class Watcher {
       return false;
     const Vec3<float> n = flat_normal(i), m = flat_normal(j);
     const float d = dot(n, m);
-    return d * d > .64f * (dot(n, n) * dot(m, m));
+    return d * d > kOneSurfaceSquared * (dot(n, n) * dot(m, m));
   }
 
   bool one_surface(const std::uint32_t (&id)[kCorners]) const {
@@ -321,7 +321,7 @@ class Watcher {
       for (int k = 0; k < 3; ++k) {
         const Vec3<float>&a = c[i].at[k], &b = c[i].at[(k + 1) % 3];
         // its other triangle may lie just outside
-        if (innermost(place(f, a), place(f, b)).w > .95f)
+        if (innermost(place(f, a), place(f, b)).w > kEdgeInside)
           continue;
         bool shared = false;
         for (int j = 0; j < size && !shared; ++j)
@@ -364,7 +364,7 @@ class Watcher {
     trace_corners(beam, sight);
     int lit = 0;
     for (int i = 0; i < kCorners; ++i)
-      lit += !(sight.t[i] < away[i] * .9999f) ||
+      lit += !(sight.t[i] < away[i] * kBeforeSurface) ||
              any_of(on, [&](std::uint32_t own) { return touch(own, sight.id[i]); });
     if (lit != 0 && lit != kCorners)
       return around(part);
@@ -382,7 +382,7 @@ class Watcher {
     }
     // Lit at its corners: whatever stands between throws its shadow inside.
     Met met;
-    if (!collect(f, least * .9999f, on, whole, met))
+    if (!collect(f, least * kBeforeSurface, on, whole, met))
       return around(part);
     Doubt found;
     for (int i = 0; i < met.size; ++i) {
@@ -401,12 +401,11 @@ class Watcher {
 };
 
 /// Beam through the square of `size` pixels at (x0, y0), grown a little about its centre: what only
-/// touches its edge counts as well. By a quarter when a whole square is to be left out; by a
-/// sixteenth for a pixel, lest it doubts what its neighbours see.
+/// touches its edge counts as well.
 inline Beam pixel_beam(const FrameView& f, int x0, int y0, int size) {
   const float half = .5f * static_cast<float>(size), mx = static_cast<float>(x0) + half,
               my = static_cast<float>(y0) + half;
-  const float rx = size > 1 ? 1.25f * half : 1.0625f * half, ry = rx;
+  const float rx = size > 1 ? kSquareGrowth * half : kPixelGrowth * half, ry = rx;
   const float sign[kCorners][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
   Beam b;
   for (int i = 0; i < kCorners; ++i) {

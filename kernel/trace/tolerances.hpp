@@ -14,11 +14,13 @@ inline constexpr float kLeastProgress = .15f;
 /// rounding.
 inline constexpr float kThinStay = 1e-3f;
 
-/// Cells by which a frustum's bounds are widened, beside what rounding asks for.
+/// Cells by which a frustum's bounds are widened beside what their own rounding asks for: a ball
+/// may lie 24 u of the way beside a ray that its test in float meets. Covers ways of up to 45 cells
+/// whatever the slopes; what is farther has kFrustumRounding, which grows with the way.
 inline constexpr float kFrustumMargin = 1e-3f;
 
 /// Times farthest place times steepest slope: what rounding takes of a frustum's bounds, 16.8 u.
-/// They are off by 10 u.
+/// What they are off by beyond that the pad of what a grid holds covers.
 inline constexpr float kFrustumRounding = 1e-6f;
 
 /// Times the farthest place: what a hit's t is off by, 46 u of its way, which is at most 2 sqrt 3

@@ -14,6 +14,7 @@ struct FrustumCheck {
   float steepest = 0;        ///< slope
   double sides = -1;         ///< of a slice's cells, in cells
   double planes = -1;        ///< of the planes that cull, in cells, as the culls compute them
+  double balls = -1;         ///< of the same by balls beside a ray that its test may meet
   double group_planes = -1;  ///< of those of the ray's own group
   double near = -1;          ///< of the plane before which nothing is met, in slices
   double group_near = -1;    ///< of that of the ray's own group

@@ -24,8 +24,18 @@ bool always() { return true; }
 }  // namespace
 
 const Variant& reference_walk() {
-  static const VariantLoops loops{.closest = loop<false, float>, .occluded = loop<true, float>};
-  static const ExactLoops in_double{.closest = loop<false, double>, .occluded = loop<true, double>};
+  static const VariantLoops loops = [] {
+    VariantLoops l{};
+    l.closest = loop<false, float>;
+    l.occluded = loop<true, float>;
+    return l;
+  }();
+  static const ExactLoops in_double = [] {
+    ExactLoops l{};
+    l.closest = loop<false, double>;
+    l.occluded = loop<true, double>;
+    return l;
+  }();
   static const Variant variant{"reference", 1, always, loops, in_double};
   return variant;
 }

@@ -6,6 +6,7 @@
 #include "frontend/input/effects.hpp"
 #include "frontend/nff/nff_reader.hpp"
 #include "kernel/picture/adaptive_sampler.hpp"
+#include "kernel/picture/pixel_errors.hpp"
 #include "kernel/picture/refinement.hpp"
 #include "scenes/generators.hpp"
 #include "tests/support/rays.hpp"
@@ -144,6 +145,27 @@ TEST(Refinement, FindsDiscsOfATenthOfAPixel) {
     seen += got.image.rgb[p] > 0 || got.image.rgb[p + 1] > 0 || got.image.rgb[p + 2] > 0;
   EXPECT_GE(seen, 4096 * 99 / 100);
   EXPECT_LE(seen, 4096);
+}
+
+/// Sixteen samples that agree, where something may hide: it covers a share x of the pixel that has
+/// Beta(1, 17), E[x^2] = 2 / (17 18), and what it differs by has .075 of the doubt squared in the
+/// mean. Where nothing hides the variance is 0. The interval is that of the rule of three.
+TEST(Refinement, ReckonsWithWhatNoSampleMet) {
+  Camera camera;
+  camera.width = 2;
+  camera.height = 1;
+  Refinement r = make_refinement(camera);
+  r.log.assign(2, 4);
+  r.cost.assign(2, 1);
+  for (const float doubt : {.5f, 1.f}) {
+    r.inside = {doubt, 0};
+    PixelErrors errors(r, false, 4, 1);
+    errors.judge();
+    EXPECT_NEAR(errors.variance(0), .075 * 2 / (17 * 18) * doubt * doubt, .25 * errors.variance(0));
+    EXPECT_EQ(errors.variance(1), 0);
+    EXPECT_NEAR(errors.widths()[0], 2 * doubt * 3 / 16, 1e-6);
+    EXPECT_EQ(errors.widths()[1], 0);
+  }
 }
 
 /// A pixel between thin spokes whose first samples all meet spokes: half of it is background. An

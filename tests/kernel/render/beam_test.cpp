@@ -165,6 +165,101 @@ TEST_P(Beam, DoubtsASlitBetweenTrianglesOfOneSurface) {
       EXPECT_EQ(at(tile, x, y), x == 5 ? 1 : 0) << x << ' ' << y;
 }
 
+/// A sheet over the whole picture with a square hole around the middle of pixel (2, 1); four
+/// triangles over the hole rise to a tip.
+Scene sheet_with_a_tip(float half, float height) {
+  Scene s = empty_scene();
+  const Float3 outer[4] = {{-20, -20, 0}, {20, -20, 0}, {20, 20, 0}, {-20, 20, 0}};
+  const Float3 tip{-1.5f, 2.5f, height};
+  Float3 inner[4];
+  for (int i = 0; i < 4; ++i)
+    inner[i] = {tip.x + (i == 1 || i == 2 ? half : -half), tip.y + (i >= 2 ? half : -half), 0};
+  for (int i = 0; i < 4; ++i) {
+    const int next = (i + 1) % 4;
+    add_triangle(s, outer[i], outer[next], inner[next]);
+    add_triangle(s, outer[i], inner[next], inner[i]);
+    add_triangle(s, inner[i], inner[next], tip);
+  }
+  return s;
+}
+
+/// What turns by more than 37 degrees within a pixel is no one surface, though it be of one mesh:
+/// the tip is .2 wide, so .3 is 56 degrees and .1 is 27.
+TEST_P(Beam, DoubtsASteepTipAndNotAGentleOne) {
+  const Tile steep = look(sheet_with_a_tip(.2f, .3f));
+  const Tile gentle = look(sheet_with_a_tip(.2f, .1f));
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 8; ++x) {
+      EXPECT_EQ(at(steep, x, y), x == 2 && y == 1 ? 1 : 0) << x << ' ' << y;
+      EXPECT_EQ(at(gentle, x, y), 0) << x << ' ' << y;
+    }
+}
+
+/// A ball that all corners of its pixel meet, and that bends away between them.
+TEST_P(Beam, DoubtsASurfaceThatTurnsWithinAPixel) {
+  Scene s = wall();
+  s.lights.clear();
+  s.geometry.spheres.add({-1.5f, 2.5f, 0}, .8f, 0);  // its corners are .75 from the middle
+  EXPECT_EQ(at(look(s), 2, 1), 1);
+}
+
+/// An edge without a neighbour, at .7 of the way from the middle of a pixel to its side.
+TEST_P(Beam, DoubtsASlitNearThePixelsEdge) {
+  Scene s = empty_scene();
+  const auto strip = [&](float x0, float x1) {
+    add_triangle(s, {x0, -6, 0}, {x1, -6, 0}, {x1, 6, 0});
+    add_triangle(s, {x0, -6, 0}, {x1, 6, 0}, {x0, 6, 0});
+  };
+  strip(-6, 1.5f + .37f);
+  strip(1.5f + .375f, 6);
+  const Tile tile = look(s);
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 8; ++x)
+      EXPECT_EQ(at(tile, x, y), x == 5 ? 1 : 0) << x << ' ' << y;
+}
+
+/// A speck .015 beside pixel (2, 1), within a sixteenth of half of it.
+TEST_P(Beam, DoubtsPixelsThatASpeckOnlyTouches) {
+  Scene s = wall();
+  s.geometry.spheres.add({-1 + .015f, 2.5f, 0}, .005f, 0);
+  s.lights.clear();
+  const Tile tile = look(s);
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 8; ++x)
+      EXPECT_EQ(at(tile, x, y), (x == 2 || x == 3) && y == 1 ? 2 : 0) << x << ' ' << y;
+}
+
+/// The same beside the whole tile: squares are not left out before their pixels are asked.
+TEST_P(Beam, AsksThePixelsBesideWhatLiesOutsideTheirSquare) {
+  Scene s = wall();
+  s.geometry.spheres.add({-4 - .015f, 2.5f, 0}, .005f, 0);
+  s.lights.clear();
+  const Tile tile = look(s);
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 8; ++x)
+      EXPECT_EQ(at(tile, x, y), x == 0 && y == 1 ? 2 : 0) << x << ' ' << y;
+}
+
+/// A speck on the last twentieth of the way from the light to the middle of pixel (2, 1), which the
+/// eye sees against another pixel.
+TEST_P(Beam, DoubtsWhereTheShadowOfWhatIsNearTheSurfaceFalls) {
+  Scene s = wall();
+  const auto on_way = [](float a, float b) { return a + .95f * (b - a); };
+  s.geometry.spheres.add({on_way(30, -1.5f), on_way(0, 2.5f), on_way(40, 0)}, .02f, 0);
+  EXPECT_EQ(at(look(s), 2, 1), 2);
+}
+
+TEST_P(Beam, LeavesOutMirrorsThatWeighNothing) {
+  for (const float weight : {.02f, .01f}) {  // of 1 / 64 and less
+    Scene s = wall();
+    s.lights.clear();
+    s.materials[0].diffuse = {0, 0, 0};
+    s.materials[0].mirror = {weight, weight, weight};
+    s.geometry.spheres.add({-1.95f, 3.25f, 60}, .02f, 0);
+    EXPECT_EQ(at(look(s), 2, 1), weight > .015f ? 2 * weight : 0);
+  }
+}
+
 TEST_P(Beam, IsTheSameForEveryGridAndCopy) {
   Scene s = wall();
   Random random(7);

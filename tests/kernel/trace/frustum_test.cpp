@@ -92,6 +92,7 @@ struct Promise {
 };
 constexpr Promise kPromises[] = {{"sides", &FrustumCheck::sides},
                                  {"planes", &FrustumCheck::planes},
+                                 {"planes, by balls", &FrustumCheck::balls},
                                  {"planes of a group", &FrustumCheck::group_planes},
                                  {"the near plane", &FrustumCheck::near},
                                  {"a group's near plane", &FrustumCheck::group_near},

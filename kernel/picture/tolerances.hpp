@@ -1,0 +1,31 @@
+#pragma once
+// What `--error` takes for granted of a pixel's samples; docs/sampling.md tells
+// what was measured, docs/numerics.md names the test that pins each.
+
+namespace grelha {
+
+/// Differences a pixel holds after its first round, and later.
+inline constexpr float kYoung = 3;
+inline constexpr float kOld = 7;
+
+/// One rate for the whole picture, and pixels that stop when their differences
+/// are small, leave estimates up to 15 % too low (measured); the bound allows
+/// for 12 %, its spread for the rest.
+inline constexpr double kVarianceInflation = 1.12 * 1.12;
+/// 97.5 % point: with what neighbours tell, Student's t is no wider.
+inline constexpr float kNormal = 1.96f;
+/// 95 % point, of one side.
+inline constexpr double kNormalOneSided = 1.645;
+
+/// What none of n samples met covers a share of the pixel that has Beta(1, n +
+/// 1), whose second moment is 2 / n^2; it differs from what they met by the
+/// doubt at most, in the square by .075 of it in the mean (by about a quarter).
+inline constexpr float kHiddenVariance = .15f;
+/// Times doubt / n: width of the 95 % interval of what none of n samples met, 3
+/// / n on either side (the rule of three).
+inline constexpr float kHiddenWidth = 6;
+
+/// One of n samples that differs by .1 shows as a variance of this / n^2.
+inline constexpr float kAgreement = .005f;
+
+}  // namespace grelha
