@@ -23,13 +23,6 @@ constexpr std::array<std::string_view, 10> kCommon{"--output",
                                                    "--depth",
                                                    "--threads"};
 
-std::string join(const std::vector<std::string>& words, const char* between) {
-  std::string all;
-  for (const std::string& w : words)
-    all += (all.empty() ? "" : between) + w;
-  return all;
-}
-
 /// `left` in its column and `text` behind it, wrapped.
 std::string row(std::string left, const std::string& text) {
   std::string out;
@@ -59,6 +52,13 @@ std::string row(const OptionHelp& o) {
 }
 
 }  // namespace
+
+std::string join(const std::vector<std::string>& words, const char* between) {
+  std::string all;
+  for (const std::string& w : words)
+    all += (all.empty() ? "" : between) + w;
+  return all;
+}
 
 bool CommandHelp::shows(const OptionHelp& option) const {
   const auto is_common = [](const std::string& n) { return std::ranges::count(kCommon, n) > 0; };

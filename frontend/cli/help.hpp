@@ -26,6 +26,8 @@ struct CommandHelp {
 /// Every command, as parse_command() knows it.
 std::vector<CommandHelp> all_commands();
 
+std::string join(const std::vector<std::string>& words, const char* between = " ");
+
 /// At most 80 columns wide; `all`: with the options that --help leaves out.
 std::string help_text(const CommandHelp& command, bool all);
 /// Help of the program itself; `all`: with everything of every command.

@@ -32,13 +32,6 @@ std::vector<std::string> choices(const OptionHelp& o) {
   return words;
 }
 
-std::string join(const std::vector<std::string>& words) {
-  std::string all;
-  for (const std::string& w : words)
-    all += (all.empty() ? "" : " ") + w;
-  return all;
-}
-
 bool takes_file(const OptionHelp& o) { return o.placeholder.find("FILE") != std::string::npos; }
 
 std::string names_of(const std::vector<CommandHelp>& commands) {

@@ -11,12 +11,11 @@ namespace {
 
 bool any(Float3 v) { return v.x != 0 || v.y != 0 || v.z != 0; }
 
-bool has_normals(const Triangles& triangles) {
-  const auto told = [](const std::vector<float>& component) {
-    return std::ranges::any_of(component, [](float value) { return value != 0; });
-  };
-  return told(triangles.nx) || told(triangles.ny) || told(triangles.nz);
+bool any(const std::vector<float>& values) {
+  return std::ranges::any_of(values, [](float value) { return value != 0; });
 }
+
+bool has_normals(const Triangles& t) { return any(t.nx) || any(t.ny) || any(t.nz); }
 
 class Box {
  public:

@@ -224,6 +224,12 @@ Json phases_json(const RenderStats& render) {
   return json;
 }
 
+std::string size_text(const Camera& camera) {
+  return std::to_string(camera.width) + 'x' + std::to_string(camera.height);
+}
+
+std::string ranks_text(int ranks) { return ranks > 1 ? print("%d ranks, ", ranks) : ""; }
+
 std::string dropped_text(const Dropped& dropped) {
   const std::uint64_t all = dropped.not_finite + dropped.zero_area;
   return all == 0 ? "" : "dropped       " + std::to_string(all) + " that cannot be drawn\n";
@@ -353,8 +359,7 @@ std::string info_text(const std::string& path,
                       const SceneMemory& memory,
                       const std::optional<std::vector<GridStats>>& grids) {
   const Geometry& g = file.scene.geometry;
-  std::string text = path + ": " + std::to_string(file.camera.width) + 'x' +
-                     std::to_string(file.camera.height) + '\n';
+  std::string text = path + ": " + size_text(file.camera) + '\n';
   list_entities(text, file.counts);
   text += "primitives    " +
           primitives_text(g.spheres.size(), g.triangles.size(), g.cones.size(), g.planes.size()) +
@@ -384,8 +389,7 @@ std::string summary_line(const RenderCommand& command, const RunReport& report) 
   return name_of_file(command.image) + ": " +
          primitives_text(report.spheres, report.triangles, report.cones, report.planes) + "; " +
          grids_text(report.grids) + "; " + print("%.3f Mrays in ", rays / 1e6) + times +
-         print("; %.2f Mrays/s (%s, ", speed, report.render.isa) +
-         (report.ranks > 1 ? print("%d ranks, ", report.ranks) : "") +
+         print("; %.2f Mrays/s (%s, ", speed, report.render.isa) + ranks_text(report.ranks) +
          print("%d thread%s%s)",
                report.render.threads,
                report.render.threads == 1 ? "" : "s",

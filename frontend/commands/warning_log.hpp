@@ -14,10 +14,7 @@ class WarningLog {
  public:
   /// Must not outlive this.
   std::function<void(const std::string&)> telling() {
-    return [this](const std::string& line) {
-      ++count_;
-      std::cerr << line << '\n';
-    };
+    return [this](const std::string& line) { tell(line); };
   }
   /// Throws UsageError where a warning is one too many.
   void want_none(const InputOptions& input) const {
@@ -26,6 +23,11 @@ class WarningLog {
   }
 
  private:
+  void tell(const std::string& line) {
+    ++count_;
+    std::cerr << line << '\n';
+  }
+
   std::size_t count_ = 0;
 };
 

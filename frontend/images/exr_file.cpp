@@ -286,10 +286,9 @@ class ExrReader {
 
   /// Which of the three colours a channel is, or -1.
   int colour_of(const char* name) const {
-    const std::string_view word(name);
-    if (grey_)
-      return word == "Y" ? 0 : -1;
-    return word == "R" ? 0 : word == "G" ? 1 : word == "B" ? 2 : -1;
+    const std::string_view word(name), known(grey_ ? "Y" : "RGB");
+    const std::size_t at = word.size() == 1 ? known.find(word) : known.npos;
+    return at == known.npos ? -1 : int(at);
   }
 
   /// A block may reach beyond what is shown: it is unpacked apart.

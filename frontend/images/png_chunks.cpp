@@ -3,6 +3,7 @@
 #include <zlib.h>
 
 #include <cstdint>
+#include <numeric>
 
 namespace grelha {
 namespace {
@@ -16,10 +17,9 @@ std::string big_endian(std::uint32_t value) {
 }
 
 std::uint32_t big_endian(std::string_view bytes) {
-  std::uint32_t value = 0;
-  for (const char byte : bytes.substr(0, 4))
-    value = value << 8 | std::uint8_t(byte);
-  return value;
+  const std::string_view four = bytes.substr(0, 4);
+  const auto append = [](std::uint32_t value, char b) { return value << 8 | std::uint8_t(b); };
+  return std::accumulate(four.begin(), four.end(), std::uint32_t{0}, append);
 }
 
 std::string chunk(const std::string& type, const std::string& data) {

@@ -11,10 +11,9 @@ using Six = std::array<float, 6>;
 
 /// False where an error is to come, or a box that is left out.
 bool read_six(Words& words, Six& numbers) {
-  for (float& number : numbers)
-    if (!to_number(words.next(), number))
-      return false;
-  return std::all_of(numbers.begin(), numbers.end(), [](float v) { return std::isfinite(v); });
+  const auto reads = [&](float& number) { return to_number(words.next(), number); };
+  const auto is_finite = [](float number) { return std::isfinite(number); };
+  return std::ranges::all_of(numbers, reads) && std::ranges::all_of(numbers, is_finite);
 }
 
 bool are_pairs(const Six& n) { return n[0] <= n[1] && n[2] <= n[3] && n[4] <= n[5]; }
