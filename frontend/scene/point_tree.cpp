@@ -59,8 +59,7 @@ class PointTree::Triangle {
   bool has(const Place& place) const {
     const Point2 p{place.x, place.y};
     const auto inside = [p](const Side& s) { return s.turn(p.x, p.y) >= 0; };
-    return std::ranges::all_of(sides_, inside) && p != corners_[0] && p != corners_[1] &&
-           p != corners_[2];
+    return std::ranges::all_of(sides_, inside) && std::ranges::count(corners_, p) == 0;
   }
 
  private:
