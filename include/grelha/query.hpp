@@ -3,7 +3,6 @@
 // World or on many. A World does not change, and a call writes only the arrays it was given.
 
 #include <cstdint>
-#include <limits>
 #include <string_view>
 
 #include "grelha/geometry.hpp"
@@ -12,22 +11,6 @@
 #include "grelha/world.hpp"
 
 namespace grelha {
-
-/// One ray.
-struct Ray {
-  Float3 org;  ///< where it starts
-  Float3 dir;  ///< any length from 1e-18 to 1e18; t counts multiples of it
-  /// what lies strictly between these is searched
-  float t_min = 0, t_max = std::numeric_limits<float>::infinity();
-};
-
-/// What a ray met first.
-struct Hit {
-  float t;                          ///< the point is org + t dir; without a hit, the ray's t_max
-  std::uint32_t id = kNoPrimitive;  ///< see primitive_of()
-  /// Whether anything was met.
-  explicit operator bool() const { return id != kNoPrimitive; }
-};
 
 /// How a stream of rays is traced. None of it changes an answer.
 struct QueryOptions {
@@ -39,7 +22,8 @@ struct QueryOptions {
 /// The nearest hit of each ray of a packet, or of a stream of any length. 64 neighbours are taken
 /// at a time, fastest where they go a similar way. Runs on the calling thread. Of two
 /// hits at equal t the lower id wins. `counts`, where given, grows by what was done. Throws
-/// std::invalid_argument for a packet size or an instruction set that is not there.
+/// std::invalid_argument for a packet size or an instruction set that is not there, and for rays
+/// without origins, directions or t.
 void closest(const World& world,
              const RaySpan& rays,
              const QueryOptions& options = {},
@@ -72,11 +56,12 @@ struct SurfacePoint {
   Float3 leave(Float3 dir) const;
 };
 
-/// The surface that `ray` met: what a `hit` of closest() names, at its t.
+/// The surface that `ray` met: what a `hit` of closest() names, at its t. Throws
+/// std::invalid_argument for an id that no primitive has, as kNoPrimitive.
 SurfacePoint surface(const World& world, const Ray& ray, const Hit& hit);
 
-/// The primitive of an id that a hit named. Ids run over planes, spheres, triangles, cones, each
-/// kind in the caller's order.
+/// The primitive of an id that a hit named; throws as surface() does. Ids run over planes, spheres,
+/// triangles, cones, each kind in the caller's order.
 Primitive primitive_of(const World& world, std::uint32_t id);
 
 }  // namespace grelha

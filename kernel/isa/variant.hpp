@@ -5,6 +5,7 @@
 #include "kernel/render/band.hpp"
 #include "kernel/render/doubt.hpp"
 #include "kernel/query/span.hpp"
+#include "kernel/trace/one_ray.hpp"
 
 namespace grelha::GRELHA_ISA {
 
@@ -77,8 +78,10 @@ inline void points(const SceneView& scene,
 
 }  // namespace grelha::GRELHA_ISA
 
-#define GRELHA_LOOPS                                                                     \
-  {                                                                                      \
-    GRELHA_ISA::closest, GRELHA_ISA::occluded, GRELHA_ISA::band, GRELHA_ISA::pixel_runs, \
-        GRELHA_ISA::doubt, GRELHA_ISA::points                                            \
+#define GRELHA_LOOPS                                                                  \
+  {                                                                                   \
+    .closest = GRELHA_ISA::closest, .occluded = GRELHA_ISA::occluded,                 \
+    .closest_one = GRELHA_ISA::closest_one, .occluded_one = GRELHA_ISA::occluded_one, \
+    .render_band = GRELHA_ISA::band, .render_runs = GRELHA_ISA::pixel_runs,           \
+    .doubt = GRELHA_ISA::doubt, .render_points = GRELHA_ISA::points,                  \
   }

@@ -1,7 +1,6 @@
 #define GRELHA_ISA scalar
 #include "grelha/query.hpp"
 
-#include <cassert>
 #include <stdexcept>
 
 #include "kernel/shapes/surface.hpp"
@@ -17,6 +16,27 @@ TraceSettings settings_of(int packet) {
   return {packet == 1 ? Method::kSingle : Method::kPackets, packet, true};
 }
 
+/// Arrays that have no natural default.
+void expect_arrays(const RaySpan& rays) {
+  if (rays.count < 0)
+    throw std::invalid_argument("a stream of rays has no negative length");
+  if (rays.count == 0)
+    return;
+  for (const float* const array : {rays.ox, rays.oy, rays.oz})
+    if (!array)
+      throw std::invalid_argument("a stream of rays needs ox, oy and oz, where they start");
+  for (const float* const array : {rays.dx, rays.dy, rays.dz})
+    if (!array)
+      throw std::invalid_argument("a stream of rays needs dx, dy and dz, where they go");
+  if (!rays.t)
+    throw std::invalid_argument("a stream of rays needs t, where they end and what they meet");
+}
+
+void expect_primitive(const PrimitiveIds& ids, std::uint32_t id) {
+  if (id >= ids.end())
+    throw std::invalid_argument("no primitive of this scene has this id");
+}
+
 using Loop = void (*)(const SceneView&, const RaySpan&, const TraceSettings&, TraceCounts&);
 
 void trace(const World& world,
@@ -24,19 +44,10 @@ void trace(const World& world,
            const QueryOptions& options,
            TraceCounts* counts,
            Loop VariantLoops::*loop) {
-  if (rays.count < 0)
-    throw std::invalid_argument("a stream of rays has no negative length");
+  expect_arrays(rays);
   TraceCounts unread;
   (choose_variant(options.isa).loops.*loop)(
       world.impl().view, rays, settings_of(options.packet), counts ? *counts : unread);
-}
-
-Hit trace(const World& world, const Ray& r, Loop VariantLoops::*loop) {
-  Hit hit{r.t_max};
-  const RaySpan one{
-      &r.org.x, &r.org.y, &r.org.z, &r.dir.x, &r.dir.y, &r.dir.z, &r.t_min, &hit.t, &hit.id, 1};
-  trace(world, one, {.packet = 1}, nullptr, loop);
-  return hit;
 }
 
 scalar::Vec3<float> vec(const Float3& p) { return {p.x, p.y, p.z}; }
@@ -51,7 +62,7 @@ void closest(const World& world,
   trace(world, rays, options, counts, &VariantLoops::closest);
 }
 Hit closest(const World& world, const Ray& ray) {
-  return trace(world, ray, &VariantLoops::closest);
+  return best_variant().loops.closest_one(world.impl().view, ray);
 }
 
 void occluded(const World& world,
@@ -61,12 +72,12 @@ void occluded(const World& world,
   trace(world, rays, options, counts, &VariantLoops::occluded);
 }
 bool occluded(const World& world, const Ray& ray) {
-  return bool(trace(world, ray, &VariantLoops::occluded));
+  return best_variant().loops.occluded_one(world.impl().view, ray);
 }
 
 SurfacePoint surface(const World& world, const Ray& ray, const Hit& hit) {
-  assert(hit);
   const World::Impl& w = world.impl();
+  expect_primitive(w.primitives.ids, hit.id);
   const scalar::Surface<float> s = scalar::surface_of<float>(
       w.view.geometry, hit.id, vec(ray.org), vec(ray.dir), hit.t, w.shading.smooth);
   return {float3(s.point), float3(s.normal), float3(s.shading), s.away, s.material};
@@ -78,7 +89,7 @@ Float3 SurfacePoint::leave(Float3 dir) const {
 
 Primitive primitive_of(const World& world, std::uint32_t id) {
   const PrimitiveIds& ids = world.impl().primitives.ids;
-  assert(id < ids.end());
+  expect_primitive(ids, id);
   return ids.primitive(id);
 }
 

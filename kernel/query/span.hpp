@@ -27,6 +27,7 @@ inline void trace_span(const SceneView& scene,
   constexpr int kChunk = 256;
   alignas(64) float org[3][kChunk], t_min[kChunk], t[kChunk], shift[kChunk];
   alignas(64) double whole[kChunk];
+  std::uint32_t unasked[kChunk];
   Counters n;
   for (int first = 0; first < rays.count; first += kChunk) {
     const int count = rays.count - first < kChunk ? rays.count - first : kChunk;
@@ -34,9 +35,13 @@ inline void trace_span(const SceneView& scene,
     __builtin_memcpy(org[0], rays.ox + first, bytes);
     __builtin_memcpy(org[1], rays.oy + first, bytes);
     __builtin_memcpy(org[2], rays.oz + first, bytes);
-    __builtin_memcpy(t_min, rays.t_min + first, bytes);
+    if (rays.t_min)
+      __builtin_memcpy(t_min, rays.t_min + first, bytes);
+    else
+      __builtin_memset(t_min, 0, bytes);
     __builtin_memcpy(t, rays.t + first, bytes);
     __builtin_memset(shift, 0, bytes);
+    std::uint32_t* const id = rays.id ? rays.id + first : unasked;
     const RayArrays arrays{org[0],
                            org[1],
                            org[2],
@@ -45,7 +50,7 @@ inline void trace_span(const SceneView& scene,
                            rays.dz + first,
                            t_min,
                            t,
-                           rays.id + first,
+                           id,
                            shift,
                            kDouble || rays.whole ? whole : nullptr};
     trace<kAny>(scene,
@@ -55,10 +60,10 @@ inline void trace_span(const SceneView& scene,
                 n);
     for (int i = 0; i < count; ++i) {  // without a branch: SIMD
       const float met = kAny ? t[i] : kDouble ? static_cast<float>(whole[i]) : t[i] + shift[i];
-      rays.t[first + i] = rays.id[first + i] != kNoPrimitive ? met : rays.t[first + i];
+      rays.t[first + i] = id[i] != kNoPrimitive ? met : rays.t[first + i];
     }
     for (int i = 0; i < count && rays.whole; ++i)
-      if (rays.id[first + i] != kNoPrimitive)
+      if (id[i] != kNoPrimitive)
         rays.whole[first + i] = whole[i];
   }
   add(n, counts);

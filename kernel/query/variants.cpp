@@ -64,12 +64,24 @@ constexpr const Variant* kVariants[] = {
 
 std::span<const Variant* const> variants() { return kVariants; }
 
+const Variant& best_variant() {
+  static const Variant* const best = [] {
+    const Variant* widest = &kScalar;
+    for (const Variant* v : kVariants)
+      if (v->runs_here())
+        widest = v;
+    return widest;
+  }();
+  return *best;
+}
+
 const Variant* find_variant(std::string_view name) {
-  const Variant* found = nullptr;
+  if (name == "best")
+    return &best_variant();
   for (const Variant* v : kVariants)
-    if (v->name == name || (name == "best" && v->runs_here()))
-      found = v;
-  return found;
+    if (v->name == name)
+      return v;
+  return nullptr;
 }
 
 const Variant& choose_variant(std::string_view name) {

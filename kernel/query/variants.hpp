@@ -28,6 +28,9 @@ struct TraceSettings {
 struct VariantLoops {
   void (*closest)(const SceneView&, const RaySpan&, const TraceSettings&, TraceCounts&);
   void (*occluded)(const SceneView&, const RaySpan&, const TraceSettings&, TraceCounts&);
+  /// One ray by itself.
+  Hit (*closest_one)(const SceneView&, const Ray&);
+  bool (*occluded_one)(const SceneView&, const Ray&);
   void (*render_band)(const SceneView&,
                       const ShadingView&,
                       const FrameView&,
@@ -86,6 +89,8 @@ struct Variant {
 
 /// Compiled copies, scalar first, then by growing width.
 std::span<const Variant* const> variants();
+/// The widest that runs here.
+const Variant& best_variant();
 /// The named copy; "best" is the widest that runs here. nullptr: not compiled or unknown.
 const Variant* find_variant(std::string_view name);
 /// The same; throws std::invalid_argument when it is not compiled, unknown or does not run here.

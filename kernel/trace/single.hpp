@@ -38,6 +38,59 @@ inline float tested_best(const Single& r) { return r.best; }
 inline void set_best(Single& r, float t) { r.best = t; }
 #endif
 
+/// What tests of triangles need of a direction besides the shear.
+inline void set_inverse(Single& r) {
+  const float least = least_headway(r.dir[0], r.dir[1], r.dir[2]);
+  for (int a = 0; a < 3; ++a) {
+    r.inv[a] = 1 / (magnitude(r.dir[a]) < least ? least : r.dir[a]);
+    r.near[a] = r.inv[a] < 0 ? 3 + a : a;
+  }
+}
+
+/// A ray by itself, as prepare(Packet&) makes many. False: it meets nothing, and r is not whole.
+inline bool prepare(Single& r,
+                    const Vec3<float>& org,
+                    const Vec3<float>& d,
+                    float t_min,
+                    float t_max,
+                    bool any_triangles) {
+  if (!(t_max > t_min))
+    return false;
+  const float dd = dot(d, d);
+  // NaN and infinity times zero are NaN
+  const float sum = ((org.x + org.y) + (org.z + dd)) + 1 / dd;
+  if (!(sum * 0 == 0))
+    return false;
+  r.org[0] = org.x;
+  r.org[1] = org.y;
+  r.org[2] = org.z;
+  r.dir[0] = d.x;
+  r.dir[1] = d.y;
+  r.dir[2] = d.z;
+  r.t_min = t_min;
+  r.best = t_max;
+  r.id = kNoPrimitive;
+  const Vec3<Number> e{d.x, d.y, d.z};
+  r.inv_dd = 1 / dot(e, e);
+  r.axis = 0;
+  if (any_triangles) {
+    r.axis = shear_axis(d.x, d.y, d.z);
+    const Vec3<Number> q = permuted<Number>(static_cast<Number>(r.axis), e);
+    r.shear[0] = q.x / q.z;
+    r.shear[1] = q.y / q.z;
+    r.shear[2] = 1 / q.z;
+    set_inverse(r);
+  }
+#ifdef GRELHA_DOUBLE
+  for (int a = 0; a < 3; ++a)
+    r.from[a] = r.org[a];
+  r.after = r.t_min;
+  r.nearest = r.best;
+  r.shift = 0;
+#endif
+  return true;
+}
+
 inline Single single_of(const Packet& p, int i, bool any_triangles) {
   Single r;
   for (int a = 0; a < 3; ++a) {
@@ -58,12 +111,9 @@ inline Single single_of(const Packet& p, int i, bool any_triangles) {
   r.axis = 0;
   if (any_triangles) {
     r.axis = static_cast<int>(p.axis[i]);
-    const float least = least_headway(r.dir[0], r.dir[1], r.dir[2]);
-    for (int a = 0; a < 3; ++a) {
+    for (int a = 0; a < 3; ++a)
       r.shear[a] = p.shear[a][i];
-      r.inv[a] = 1 / (magnitude(r.dir[a]) < least ? least : r.dir[a]);
-      r.near[a] = r.inv[a] < 0 ? 3 + a : a;
-    }
+    set_inverse(r);
   }
   return r;
 }
@@ -102,6 +152,26 @@ inline bool note(Single& r,
       set_best(r, at[k]);
       r.id = ids[k];
     }
+  }
+  return false;
+}
+
+/// Takes one hit; as note().
+template <bool kAny>
+inline bool record_hit(Single& r, bool hit, Number t, std::uint32_t id) {
+  if (!hit)
+    return false;
+  const Number best = tested_best(r);
+  if (kAny) {
+    if (!(t < best))
+      return false;
+    set_best(r, -kInfinity);
+    r.id = id;
+    return true;
+  }
+  if (t < best || (t == best && r.id != kNoPrimitive && id < r.id)) {
+    set_best(r, t);
+    r.id = id;
   }
   return false;
 }

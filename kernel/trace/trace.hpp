@@ -157,22 +157,26 @@ inline bool start_in(const GridView& g, Packet& p) {
   return some;
 }
 
-/// Where the first ray of a packet comes to a grid; infinity: never.
-inline float entry(const GridView& g, const Packet& p) {
-  float t0 = p.t_min[0], t1 = kInfinity;
+/// Where a ray comes to a grid; infinity: never.
+inline float entry(const GridView& g, const float (&org)[3], const float (&dir)[3], float t_min) {
+  float t0 = t_min, t1 = kInfinity;
   for (int a = 0; a < 3; ++a) {
-    const float d = p.dir[a][0], inv = 1 / (magnitude(d) < 1e-18f ? 1e-18f : d);
-    const float x = (g.lo_f[a] - p.org[a][0]) * inv, y = (g.hi_f[a] - p.org[a][0]) * inv;
+    const float d = dir[a], inv = 1 / (magnitude(d) < 1e-18f ? 1e-18f : d);
+    const float x = (g.lo_f[a] - org[a]) * inv, y = (g.hi_f[a] - org[a]) * inv;
     t0 = greater(lesser(x, y), t0);
     t1 = lesser(greater(x, y), t1);
   }
   return t0 <= t1 ? t0 : kInfinity;
 }
 
-/// The grids, for closest hits front to back as the first ray meets them: what is met early cuts
-/// the others short. Answers do not depend on it, since ties go to the lower id.
+/// The grids, for closest hits front to back as a ray meets them: what is met early cuts the others
+/// short. Answers do not depend on it, since ties go to the lower id.
 template <bool kAny, class Visit>
-inline void each_grid(const SceneView& scene, const Packet& p, const Visit& visit) {
+inline void each_grid(const SceneView& scene,
+                      const float (&org)[3],
+                      const float (&dir)[3],
+                      float t_min,
+                      const Visit& visit) {
   const int count = scene.grid_count;
   if (kAny || count < 2) {
     for (int g = 0; g < count; ++g)
@@ -182,7 +186,7 @@ inline void each_grid(const SceneView& scene, const Packet& p, const Visit& visi
   int order[kMostGrids];
   float at[kMostGrids];
   for (int g = 0; g < count; ++g) {
-    const float t = entry(scene.grids[g], p);
+    const float t = entry(scene.grids[g], org, dir, t_min);
     int i = g;
     for (; i > 0 && at[i - 1] > t; --i) {
       at[i] = at[i - 1];
@@ -193,6 +197,13 @@ inline void each_grid(const SceneView& scene, const Packet& p, const Visit& visi
   }
   for (int i = 0; i < count; ++i)
     visit(scene.grids[order[i]]);
+}
+/// The same for a packet, as its first ray meets them.
+template <bool kAny, class Visit>
+inline void each_grid(const SceneView& scene, const Packet& p, const Visit& visit) {
+  const float org[3] = {p.org[0][0], p.org[1][0], p.org[2][0]};
+  const float dir[3] = {p.dir[0][0], p.dir[1][0], p.dir[2][0]};
+  each_grid<kAny>(scene, org, dir, p.t_min[0], visit);
 }
 
 template <bool kAny>

@@ -70,6 +70,46 @@ TEST(Query, OneRayAPacketAndAStreamSeeWhatBruteForceSees) {
   EXPECT_GT(hits, rays.size() / 10);
 }
 
+/// What one ray alone is told, against a stream of all of them: scenes of every kind, many grids,
+/// rays from near and from so far that the kernel moves them, values no caller should send.
+void expect_calls_like_streams(const Scene& scene, const Rays& rays, const char* name) {
+  for (const bool grid : {true, false}) {
+    const World world(scene, {.grid = grid});
+    const Answers met = ask(world, rays, Query::kClosest, {.packet = 1});
+    const Answers blocked = ask(world, rays, Query::kOccluded, {.packet = 1});
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const Ray ray{rays.org(i), rays.dir(i), rays.t_min[i], rays.t[i]};
+      const Hit hit = closest(world, ray);
+      ASSERT_EQ(hit.id, met.id[i]) << name << ", " << rays.describe(i);
+      ASSERT_EQ(std::bit_cast<std::uint32_t>(hit.t), std::bit_cast<std::uint32_t>(met.t[i]))
+          << name << ", " << rays.describe(i) << ", " << hit.t << " not " << met.t[i];
+      ASSERT_EQ(occluded(world, ray), blocked.id[i] != kNoPrimitive)
+          << name << ", " << rays.describe(i);
+    }
+  }
+}
+
+TEST(Query, OneRayAloneIsToldWhatAStreamIs) {
+  Random random(12);
+  Rays rays = with_odd_values(random, some_rays(11), .02);
+  rays.add({.5f, .25f, 2}, {0, 0, -1}, 1, 1);
+  rays.add({.5f, .25f, 2}, {0, 0, -1}, 2, 1);
+  expect_calls_like_streams(empty_scene(), rays, "nothing");
+  expect_calls_like_streams(random_spheres(12, 2000), rays, "spheres");
+  expect_calls_like_streams(random_triangles(13, 2000), rays, "triangles");
+  expect_calls_like_streams(random_mixture(14, 700), rays, "mixture");
+  Scene planes = random_mixture(15, 200);
+  planes.geometry.planes.add({0, 0, -3}, {0, 1, 8}, 0);
+  planes.geometry.planes.add({0, -2, 0}, {0, 1, 0}, 0);
+  expect_calls_like_streams(planes, rays, "planes");
+  expect_calls_like_streams(stadium(16, 300), rays, "primitives in no grid");
+  Scene apart = ball_mesh(32, 16);
+  apart.geometry.objects.push_back({0, std::uint32_t(apart.geometry.triangles.size())});
+  add_triangles(apart, random, 100, 30, .1, 1);
+  ASSERT_GT(World(apart, {}).grids().size(), 1u);
+  expect_calls_like_streams(apart, rays, "two grids");
+}
+
 TEST(Query, SomethingIsInTheWayWhereSomethingIsMet) {
   const Scene scene = random_mixture(6, 400);
   const World world(scene, {});
@@ -246,6 +286,60 @@ TEST(Query, WhatProgressThrowsIsThrown) {
   whole.progress = [](double) -> bool { throw Trouble(); };
   EXPECT_THROW(accumulate(world, camera, whole, sums, stats), Trouble);
   EXPECT_GT(share_done(sums), 0);
+}
+
+TEST(Query, ArraysLeftOutMeanTheirNaturalDefault) {
+  const Scene scene = random_mixture(21, 300);
+  const World world(scene, {});
+  Rays rays = some_rays(22);
+  rays.t_min.assign(rays.size(), 0);
+  for (const Query query : {Query::kClosest, Query::kOccluded}) {
+    const Answers told = ask(world, rays, query);
+    std::vector<float> t = rays.t;
+    const RaySpan bare{.ox = rays.ox.data(),
+                       .oy = rays.oy.data(),
+                       .oz = rays.oz.data(),
+                       .dx = rays.dx.data(),
+                       .dy = rays.dy.data(),
+                       .dz = rays.dz.data(),
+                       .t = t.data(),
+                       .count = int(rays.size())};
+    query == Query::kClosest ? closest(world, bare) : occluded(world, bare);
+    EXPECT_TRUE(same_bits(t, told.t));
+    EXPECT_FALSE(same_bits(t, rays.t));
+  }
+  EXPECT_NO_THROW(closest(world, RaySpan{}));
+}
+
+TEST(Query, RefusesArraysThatHaveNoDefault) {
+  const Scene scene = random_spheres(1, 30);
+  const World world(scene, {});
+  float number = 1;
+  std::uint32_t id = 7;
+  const RaySpan whole{.ox = &number,
+                      .oy = &number,
+                      .oz = &number,
+                      .dx = &number,
+                      .dy = &number,
+                      .dz = &number,
+                      .t = &number,
+                      .id = &id,
+                      .count = 1};
+  EXPECT_NO_THROW(occluded(world, whole));
+  for (const float* RaySpan::*const array :
+       {&RaySpan::ox, &RaySpan::oy, &RaySpan::oz, &RaySpan::dx, &RaySpan::dy, &RaySpan::dz}) {
+    RaySpan rays = whole;
+    rays.*array = nullptr;
+    EXPECT_THROW(closest(world, rays), std::invalid_argument);
+    EXPECT_THROW(occluded(world, rays), std::invalid_argument);
+  }
+  RaySpan rays = whole;
+  rays.t = nullptr;
+  EXPECT_THROW(closest(world, rays), std::invalid_argument);
+  const Ray ray{{9, 9, 9}, {1, 1, 1}};
+  EXPECT_THROW(surface(world, ray, closest(world, ray)), std::invalid_argument);
+  EXPECT_THROW(primitive_of(world, kNoPrimitive), std::invalid_argument);
+  EXPECT_THROW(primitive_of(world, 30), std::invalid_argument);
 }
 
 TEST(Query, RefusesWhatItCannotDo) {

@@ -1,0 +1,195 @@
+#pragma once
+// One ray by itself through a whole scene, without a packet.
+
+#include "kernel/trace/trace.hpp"
+
+namespace grelha::GRELHA_ISA {
+
+/// Returns whether the search is over.
+template <bool kAny>
+inline bool test_planes(const SceneView& scene, Single& r, Counters& n) {
+  const GeometryView& g = scene.geometry;
+  const auto& from = tested_org(r);
+  for (std::uint32_t i = 0; i < g.plane_count; ++i) {
+    ++n.plane;
+    Number t = 0;
+    const bool hit = hit_plane<Number>({from[0], from[1], from[2]},
+                                       {r.dir[0], r.dir[1], r.dir[2]},
+                                       tested_t_min(r),
+                                       {g.px[i], g.py[i], g.pz[i]},
+                                       {g.pnx[i], g.pny[i], g.pnz[i]},
+                                       t);
+    if (record_hit<kAny>(r, hit, t, i))
+      return true;
+  }
+  return false;
+}
+
+/// As bring_near(Packet&). Returns how far the ray was brought, in t.
+inline Number bring_near(const SceneView& scene, Single& r) {
+  [[maybe_unused]] const float from[3] = {r.org[0], r.org[1], r.org[2]};
+  const double shift = approach(scene, r.org, r.dir);
+  if (!(shift > 0))
+    return 0;
+#ifdef GRELHA_DOUBLE
+  r.shift = shift;
+  r.t_min = not_above(r.after - shift);
+  r.best = not_below(r.nearest - shift);
+#else
+  const bool met = r.id != kNoPrimitive;
+  const double best = met ? plane_t(scene.geometry, r.id, from, r.dir) : r.best;
+  r.t_min = static_cast<float>(r.t_min - shift);
+  r.best = static_cast<float>(best - shift);
+#endif
+  return static_cast<Number>(shift);
+}
+
+/// All primitives of one cell of a grid. Returns whether the search is over.
+template <bool kAny>
+inline bool test_grid_cell(Single& r, const CellLists& lists, std::uint32_t cell, Counters& n) {
+  if (lists.triangle_first) {
+    const std::uint32_t first = lists.triangle_first[cell], end = lists.triangle_first[cell + 1];
+    float enters[kBlock];
+    for (std::uint32_t at = first / kBlock * kBlock; at < end; at += kBlock)
+      for (unsigned passed =
+               passed_boxes(r, lists.boxes[at / kBlock], enters) & blocks_between(at, first, end);
+           passed != 0;
+           passed &= passed - 1) {
+        const unsigned k = static_cast<unsigned>(__builtin_ctz(passed));
+        // what was met since may be nearer
+        if (enters[k] <= r.best && test_block<kAny>(r, lists.triangles[at + k], n))
+          return true;
+      }
+  }
+  return test_round<kAny>(r, lists, cell, n);
+}
+
+/// The cells of a grid that one ray comes through, those of walk_apart(). Where it goes to the next
+/// cell, one coordinate changes and one plane: a prediction of which one is all that the next cell
+/// waits for.
+struct CellWalk {
+  const GridView& g;
+  Course<float> c;
+  int stride[3];
+  int at[3];
+  int up[3];      ///< 1 along axes on which it goes up, else 0
+  float exit[3];  ///< t of the plane that it meets next on each axis
+  int cell;
+
+  explicit CellWalk(const GridView& grid) : g(grid) {}
+  /// False: the ray does not come to the grid.
+  bool start(const Single& r) {
+    float first[3];
+    if (!enter<float>(g, r.org, r.dir, r.t_min, r.best, c, first))
+      return false;
+    stride[0] = 1;
+    stride[1] = g.n[0];
+    stride[2] = g.n[0] * g.n[1];
+    cell = 0;
+    for (int a = 0; a < 3; ++a) {
+      up[a] = c.inverse[a] > 0;
+      set(a, static_cast<int>(first[a]));
+      cell += at[a] * stride[a];
+    }
+    return true;
+  }
+
+  /// Goes on to the next cell. False: there is none before t = best.
+  bool step(float best) {
+    const int axis = first_axis();
+    const int next = up[axis] ? at[axis] + 1 : at[axis] - 1;
+    if (!goes_on(axis, next, best))
+      return false;
+    cell += up[axis] ? stride[axis] : -stride[axis];
+    set(axis, next);
+    return true;
+  }
+
+  /// The same over cells that are empty, as are those within `by` of this one on each side.
+  bool leap(int by, float best) {
+    for (int a = 0; a < 3; ++a)
+      exit[a] = plane(a, at[a] + (up[a] ? by : -by));
+    const int axis = first_axis();
+    const int next = up[axis] ? at[axis] + by + 1 : at[axis] - by - 1;
+    if (!goes_on(axis, next, best))
+      return false;
+    const float t = exit[axis];
+    for (int a = 0; a < 3; ++a) {
+      const int side = static_cast<int>(clamp_cells(c.place[a] + t * c.speed[a], g.n[a]));
+      const int least = at[a] - by, most = at[a] + by;
+      set(a, a == axis ? next : side < least ? least : side > most ? most : side);
+    }
+    cell = at[0] + stride[1] * at[1] + stride[2] * at[2];
+    return true;
+  }
+
+ private:
+  /// Of the planes that are met next.
+  int first_axis() const {
+    if (exit[1] < exit[0])
+      return exit[2] < exit[1] ? 2 : 1;
+    return exit[2] < exit[0] ? 2 : 0;
+  }
+  bool goes_on(int axis, int next, float best) const {
+    return best > exit[axis] && exit[axis] <= c.end &&
+           static_cast<unsigned>(next) < static_cast<unsigned>(g.n[axis]);
+  }
+  /// t at the far side of a cell.
+  float plane(int a, int i) const {
+    return (static_cast<float>(i + up[a]) - c.place[a]) * c.inverse[a];
+  }
+  void set(int a, int i) {
+    at[a] = i;
+    exit[a] = plane(a, i);
+  }
+};
+
+/// As walk_apart().
+template <bool kAny>
+inline void walk_one(const GridView& g, Single& r, Counters& n) {
+  CellWalk walk(g);
+  if (!walk.start(r))
+    return;
+  // no more planes than there are, whatever rounding does
+  for (int left = g.n[0] + g.n[1] + g.n[2] + 3; left > 0; --left) {
+    ++n.visits;
+    const int distance = g.distance[walk.cell];
+    if (distance == 0 && test_grid_cell<kAny>(r, g.lists, static_cast<unsigned>(walk.cell), n))
+      return;
+    if (!(distance > 1 ? walk.leap(distance - 1, r.best) : walk.step(r.best)))
+      return;
+  }
+}
+
+/// What a ray meets first, or with kAny whether it meets anything: t is not to be looked at then.
+template <bool kAny>
+inline Hit trace_one(const SceneView& scene, const Ray& ray) {
+  Single r;
+  if (!prepare(r,
+               {ray.org.x, ray.org.y, ray.org.z},
+               {ray.dir.x, ray.dir.y, ray.dir.z},
+               ray.t_min,
+               ray.t_max,
+               scene.geometry.triangle_count > 0))
+    return {ray.t_max, kNoPrimitive};
+  Counters n;
+  if (test_planes<kAny>(scene, r, n))
+    return {r.best, r.id};
+  const float shift = static_cast<float>(bring_near(scene, r));
+  if (test_cell<kAny>(r, scene.outside, 0, n))
+    return {r.best, r.id};
+  each_grid<kAny>(scene, r.org, r.dir, r.t_min, [&](const GridView& g) {
+    if (serves(g, r.org))
+      walk_one<kAny>(g, r, n);
+  });
+  return {r.id == kNoPrimitive ? ray.t_max : r.best + shift, r.id};
+}
+
+inline Hit closest_one(const SceneView& scene, const Ray& ray) {
+  return trace_one<false>(scene, ray);
+}
+inline bool occluded_one(const SceneView& scene, const Ray& ray) {
+  return trace_one<true>(scene, ray).id != kNoPrimitive;
+}
+
+}  // namespace grelha::GRELHA_ISA

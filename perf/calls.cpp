@@ -1,0 +1,227 @@
+// What a call for one ray costs, beside streams of the same rays and Embree's rtcIntersect1 and
+// rtcOccluded1: one thread, one process, taking turns.
+//
+// calls [--size N] [--rounds N]
+//
+// The rays are a camera's, one a pixel of N x N, in the order of the picture and in none. No way is
+// timed whose answers differ from those of the stream: in a bit for Grelha, in kDisagree of the
+// rays for Embree. Empty: the same rays with nothing between t_min and t_max.
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <functional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <time.h>
+
+#include "grelha/query.hpp"
+#include "perf/embree.hpp"
+#include "perf/workloads.hpp"
+
+namespace {
+
+using namespace grelha;
+using namespace grelha::perf;
+
+constexpr double kDisagree = .005;
+
+struct Options {
+  int size = 256, rounds = 15;
+};
+
+struct Way {
+  std::string name;
+  std::function<void()> trace;
+  std::vector<double> ns{};  ///< a ray, by round
+};
+
+Scene spheres(int count) {
+  std::mt19937 random(17);
+  const auto unit = [&] { return float(random() >> 8) * 0x1p-24f; };
+  Scene scene;
+  scene.materials.push_back({});
+  for (int i = 0; i < count; ++i) {
+    const float x = unit(), y = unit(), z = unit();
+    scene.geometry.spheres.add({x, y, z}, .01f + .03f * unit(), 0);
+  }
+  return scene;
+}
+
+RayBuffer shuffled(const RayBuffer& from) {
+  std::vector<std::size_t> order(from.size());
+  for (std::size_t i = 0; i < order.size(); ++i)
+    order[i] = i;
+  std::mt19937 random(1);
+  for (std::size_t i = order.size(); i > 1; --i)
+    std::swap(order[i - 1], order[random() % i]);
+  RayBuffer to;
+  for (const std::size_t i : order)
+    to.add(
+        {from.ox[i], from.oy[i], from.oz[i]}, {from.dx[i], from.dy[i], from.dz[i]}, from.t_max[i]);
+  return to;
+}
+
+RayBuffer emptied(RayBuffer rays) {
+  rays.t_min.assign(rays.size(), 1);
+  rays.t_max.assign(rays.size(), 1);
+  return rays;
+}
+
+Ray ray_of(const RayBuffer& r, std::size_t i) {
+  return {{r.ox[i], r.oy[i], r.oz[i]}, {r.dx[i], r.dy[i], r.dz[i]}, r.t_min[i], r.t_max[i]};
+}
+
+void call(const World& world, const RayBuffer& r, bool any, Answers& a) {
+  a.t.resize(r.size());
+  a.id.resize(r.size());
+  for (std::size_t i = 0; i < r.size(); ++i) {
+    if (any) {
+      a.t[i] = occluded(world, ray_of(r, i)) ? -__builtin_inff() : r.t_max[i];
+      continue;
+    }
+    const Hit hit = closest(world, ray_of(r, i));
+    a.t[i] = hit.t;
+    a.id[i] = hit.id;
+  }
+}
+
+void stream(const World& world, const RayBuffer& r, bool any, int packet, Answers& a) {
+  a.t = r.t_max;
+  a.id.resize(r.size());
+  const RaySpan rays{.ox = r.ox.data(),
+                     .oy = r.oy.data(),
+                     .oz = r.oz.data(),
+                     .dx = r.dx.data(),
+                     .dy = r.dy.data(),
+                     .dz = r.dz.data(),
+                     .t_min = r.t_min.data(),
+                     .t = a.t.data(),
+                     .id = a.id.data(),
+                     .count = int(r.size())};
+  if (any)
+    occluded(world, rays, {.packet = packet});
+  else
+    closest(world, rays, {.packet = packet});
+}
+
+double cpu_ns() {
+  timespec now;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e9 * static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec);
+}
+
+double median(std::vector<double> v) {
+  std::sort(v.begin(), v.end());
+  return (v[(v.size() - 1) / 2] + v[v.size() / 2]) / 2;
+}
+
+/// Rays whose answers differ.
+std::size_t different(const Answers& a, const Answers& b, bool any) {
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < a.t.size(); ++i)
+    n += std::memcmp(&a.t[i], &b.t[i], sizeof a.t[i]) != 0 || (!any && a.id[i] != b.id[i]);
+  return n;
+}
+
+/// Rays that meet something in one and nothing in the other.
+std::size_t other_hits(const Answers& a, const Answers& b, const RayBuffer& r) {
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < a.t.size(); ++i)
+    n += (a.t[i] == r.t_max[i]) != (b.t[i] == r.t_max[i]);
+  return n;
+}
+
+/// False: some answer is wrong.
+bool row(const std::string& name,
+         const World& world,
+         EmbreeScene* embree,
+         const RayBuffer& rays,
+         bool any,
+         const Options& options) {
+  const RayBuffer empty = emptied(rays);
+  Answers truth, found;
+  stream(world, rays, any, 64, truth);
+  call(world, rays, any, found);
+  if (different(truth, found, any) != 0) {
+    std::printf("%s: calls and streams differ\n", name.c_str());
+    return false;
+  }
+  std::vector<Way> ways{{"call", [&] { call(world, rays, any, found); }},
+                        {"empty", [&] { call(world, empty, any, found); }},
+                        {"stream of 1", [&] { stream(world, rays, any, 1, found); }},
+                        {"stream of 64", [&] { stream(world, rays, any, 64, found); }}};
+  if (embree) {
+    const EmbreeMode single = embree_modes()[0];
+    embree->trace(rays, any, single);
+    if (double(other_hits(truth, embree->answers(), rays)) > kDisagree * double(rays.size())) {
+      std::printf("%s: Embree meets something else\n", name.c_str());
+      return false;
+    }
+    ways.push_back({"Embree's call", [&, single] { embree->trace(rays, any, single); }});
+    ways.push_back({"its empty", [&, single] { embree->trace(empty, any, single); }});
+  }
+  for (int round = 0; round < options.rounds; ++round)
+    for (Way& way : ways) {
+      const double from = cpu_ns();
+      way.trace();
+      way.ns.push_back((cpu_ns() - from) / static_cast<double>(rays.size()));
+    }
+  std::printf("| %-28s |", name.c_str());
+  for (const Way& way : ways)
+    std::printf(" %.0f |", median(way.ns));
+  std::printf("\n");
+  return true;
+}
+
+bool table(const std::string& name, const Scene& scene, const Camera& camera, const Options& o) {
+  const World world(scene, {});
+  const auto embree = make_embree_scene(scene, true);
+  const RayBuffer rays = camera_rays(camera), mixed = shuffled(rays);
+  bool right = true;
+  for (const bool any : {false, true})
+    for (const bool ordered : {true, false})
+      right &= row(name + (any ? ", any" : ", closest") + (ordered ? "" : ", shuffled"),
+                   world,
+                   embree.get(),
+                   ordered ? rays : mixed,
+                   any,
+                   o);
+  return right;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  for (int i = 1; i < argc; i += 2) {
+    const std::string word = argv[i];
+    const int value = i + 1 < argc ? std::atoi(argv[i + 1]) : 0;
+    if ((word != "--size" && word != "--rounds") || value < 1 || value > 4096) {
+      std::fprintf(stderr, "usage: calls [--size N] [--rounds N]\n");
+      return 2;
+    }
+    (word == "--size" ? options.size : options.rounds) = value;
+  }
+  const bool beside = !embree_modes().empty();
+  std::printf(
+      "ns a ray, median of %d rounds\n\n| | call | empty | stream of 1 | stream of 64 |%s\n"
+      "|---|--:|--:|--:|--:|%s\n",
+      options.rounds,
+      beside ? " rtcIntersect1 | empty |" : "",
+      beside ? "--:|--:|" : "");
+  Camera camera;
+  camera.eye = {.5f, .5f, 3};
+  camera.at = {.5f, .5f, .5f};
+  camera.angle_deg = 30;
+  camera.width = camera.height = options.size;
+  bool right = table("2000 spheres", spheres(2000), camera, options);
+  const SceneFile mount = make_scene("mount", 6);
+  Camera over = mount.camera;
+  over.width = over.height = options.size;
+  right &= table("mount 6", mount.scene, over, options);
+  return right ? 0 : 1;
+}
