@@ -56,8 +56,10 @@ int measure(const char* path, int rounds) {
               two,
               alone);
   for (std::size_t k = 0; k < 3; ++k)
-    std::printf(
-        ", \"%s\": {\"rays\": %zu, \"seconds\": %g}", kKinds[k], rays[k].rays.size(), least[k]);
+    std::printf(", \"%s\": {\"rays\": %zu, \"seconds\": %g}",
+                kFrameKinds[k],
+                rays[k].rays.size(),
+                least[k]);
   std::printf("}\n");
   return 0;
 }

@@ -21,7 +21,7 @@ struct RaySet {
 
 /// Primary, bounce and shadow rays.
 using FrameRays = std::array<RaySet, 3>;
-inline constexpr std::array<const char*, 3> kKinds{"primary", "bounce", "shadow"};
+inline constexpr std::array<const char*, 3> kFrameKinds{"primary", "bounce", "shadow"};
 
 /// The rays of render(world, camera, options); every way of tracing makes the same ones.
 FrameRays rays_of_frame(const World& world, const Camera& camera, RenderOptions options);

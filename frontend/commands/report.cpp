@@ -366,7 +366,7 @@ std::string info_text(const std::string& path,
           '\n';
   text += dropped_text(file.dropped);
   text += "lights        " + std::to_string(file.counts.lights) +
-          (file.default_light ? " (and a made-up ones)\n" : "\n");
+          (file.default_light ? " (and made-up ones)\n" : "\n");
   if (file.box_order != BoxOrder::kNone)
     text += std::string("aabb          read as ") + box_order_name(file.box_order) + '\n';
   text += "materials     " + std::to_string(file.counts.materials) + '\n';
