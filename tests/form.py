@@ -36,9 +36,8 @@ EXCEPTIONS = {
         "tests/stability/pictures.cpp",
     ),
     "width": (
-        "docs/build.sh", "docs/farm.sh", "docs/pictures.sh", "docs/report.sh",
-        "kernel/shapes/sphere.hpp", "kernel/simd/lanes.hpp", "perf/build.py", "perf/charts.py",
-        "perf/charts/features.py", "perf/charts/grid.py", "perf/charts/page.py",
+        "docs/build.sh", "docs/farm.sh", "docs/pictures.sh", "docs/report.sh", "perf/build.py",
+        "perf/charts.py", "perf/charts/features.py", "perf/charts/grid.py", "perf/charts/page.py",
         "perf/charts/picture.py", "perf/charts/rays.py", "perf/error_check.py",
         "perf/error_time.py", "perf/frame.py", "perf/lib/bench.py", "perf/lib/chart.py",
         "perf/lib/image_error.py", "perf/lib/nff_to_pov.py", "perf/ranks.py", "perf/report.py",

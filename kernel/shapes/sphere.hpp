@@ -162,14 +162,18 @@ template <class Real>
 /// First point of each ray on one sphere, from outside or inside.
 ///
 /// Shapes    rays and spheres pair up lane by lane; either side may be a broadcast.
-/// Units     center, radius: scene units; t: multiples of dir. inv_dd is 1 / dot(dir, dir), computed once a ray.
-/// Requires  |radius| > 0; a negative radius shows only the inside. A lane with a NaN reports a miss.
-/// Returns   lanes whose t is above t_min; t is written in all lanes and means nothing in the others.
+/// Units     center, radius: scene units; t: multiples of dir. inv_dd is 1 / dot(dir, dir),
+///           computed once a ray.
+/// Requires  |radius| > 0; a negative radius shows only the inside. A lane with a NaN reports a
+///           miss.
+/// Returns   lanes whose t is above t_min; t is written in all lanes and means nothing in the
+///           others.
 /// Accuracy  hit point within 8 eps max(|radius|, |org - center|) of the surface
 ///           (sphere_test.cpp). Rays that start near the surface, where |center - org|^2 and
 ///           radius^2 nearly agree, are tested in double.
-/// Source    Haines, Günther, Akenine-Möller, "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems
-///           (2019), ch. 7, in units of t so that one division is left.
+/// Source    Haines, Günther, Akenine-Möller, "Precision Improvements for Ray/Sphere
+///           Intersection", Ray Tracing Gems (2019), ch. 7, in units of t so that one division is
+///           left.
 template <class Real>
 [[gnu::always_inline]] inline Mask<Real> hit_sphere(const Vec3<Real>& org,
                                                     const Vec3<Real>& dir,

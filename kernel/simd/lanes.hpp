@@ -9,8 +9,8 @@
 // DoubleLanes, double  the same in double precision, half as many lanes
 // Exact, ExactBlock    what primitives are tested in: Lanes and Block, or both DoubleLanes in
 //                      copies compiled with GRELHA_DOUBLE
-// Words<Lanes>         unsigned 32-bit integers beside them; Words<float> is one. + - * ^ & | << >>,
-//                      == and ?: are written as for one
+// Words<Lanes>         unsigned 32-bit integers beside them; Words<float> is one. + - * ^ & | <<
+//                      >>, == and ?: are written as for one
 //
 // Only + - * / sqrt, comparisons and selects: these give the same bits at every width. No
 // reciprocal, no rsqrt, no fused multiply-add, no unary minus (it loses -0 on AVX-512).
