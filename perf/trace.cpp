@@ -39,9 +39,9 @@ using namespace grelha::perf;
 constexpr double kDisagree = .005;
 constexpr double kClose = 1e-5;  ///< relative difference of t of one and the same place
 /// On cones t alone tells little: a ray that starts beside one has a t as small as what its start
-/// was rounded by, and one that grazes it may be anywhere along the touch. There a point also is the
-/// same place where it lies on the side within what kernel/shapes/cone.hpp promises, in
-/// eps (|org - base| + height + wider radius).
+/// was rounded by, and one that grazes it may be anywhere along the touch. There a point also is
+/// the same place where it lies on the side within what kernel/shapes/cone.hpp promises, in eps
+/// (|org - base| + height + wider radius).
 constexpr double kConeUnits = 32;
 
 struct Row {

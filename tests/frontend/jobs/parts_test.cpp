@@ -357,7 +357,8 @@ Steps steps_until(int last, const Job& job, const RenderOptions& options) {
   return s;
 }
 
-/// Stopped in the middle, with something in every array; early, for what follows looks at each byte.
+/// Stopped in the middle, with something in every array; early, for what follows looks at each
+/// byte.
 Picture half_done(const Job& job, const RenderOptions& options, std::uint64_t seed) {
   constexpr int first = 3;
   constexpr int last = 33;

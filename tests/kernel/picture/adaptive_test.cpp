@@ -1,5 +1,5 @@
-// Adaptive supersampling with rays: against truths of geometry, and the same bits everywhere. A part
-// of subdivision_test.
+// Adaptive supersampling with rays: against truths of geometry, and the same bits everywhere. A
+// part of subdivision_test.
 #include <cstring>
 #include <map>
 #include <set>

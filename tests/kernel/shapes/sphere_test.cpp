@@ -1,4 +1,5 @@
-// hit_sphere: every instruction set and method against the scalar one bit for bit; the scalar one against long double.
+// hit_sphere: every instruction set and method against the scalar one bit for bit; the scalar one
+// against long double.
 #define GRELHA_ISA scalar
 #include "kernel/shapes/sphere.hpp"
 
@@ -42,7 +43,8 @@ Hit hit(const Float3& o, const Float3& d, const Float3& c, float radius, float t
   return {h, t};
 }
 
-/// The header's bound: 8 eps max(radius, distance of the origin from the centre), measured from the surface.
+/// The header's bound: 8 eps max(radius, distance of the origin from the centre), measured from the
+/// surface.
 TEST(SphereOracle, PointsLieOnTheSurface) {
   oracle::Real worst = 0;
   int hits = 0;
@@ -70,8 +72,9 @@ TEST(SphereOracle, PointsLieOnTheSurface) {
   EXPECT_GT(hits, 100000);
 }
 
-/// Misses and hits agree with the exact ones, and the first crossing is found, wherever 8 eps cannot tip the balance: a
-/// ray whose line keeps further than that from the silhouette, that starts further than that from the surface.
+/// Misses and hits agree with the exact ones, and the first crossing is found, wherever 8 eps
+/// cannot tip the balance: a ray whose line keeps further than that from the silhouette, that
+/// starts further than that from the surface.
 TEST(SphereOracle, FindsTheFirstCrossing) {
   int judged = 0;
   for (std::uint64_t seed = 0; seed < 300000; ++seed) {
@@ -96,7 +99,8 @@ TEST(SphereOracle, FindsTheFirstCrossing) {
     ASSERT_EQ(found, wanted.has_value()) << "seed " << seed;
     if (!found)
       continue;
-    // Across a sphere the point moves 1/cosine as far along the ray as off the surface; twice for its curvature.
+    // Across a sphere the point moves 1/cosine as far along the ray as off the surface; twice for
+    // its curvature.
     const oracle::Real along = std::abs(t - wanted->t) * length(ray.dir);
     ASSERT_LE(along * wanted->cosine, 2 * tolerance)
         << "seed " << seed << ": t " << t << " against " << static_cast<double>(wanted->t);
@@ -104,8 +108,9 @@ TEST(SphereOracle, FindsTheFirstCrossing) {
   EXPECT_GT(judged, 280000);
 }
 
-/// From a billionth to a thirtieth of the radius above or below the surface |org - center|^2 and radius^2 nearly agree, and floats
-/// leave little of their difference. Taken in double, the way is right to its rounding, and inside or outside is decided exactly.
+/// From a billionth to a thirtieth of the radius above or below the surface |org - center|^2 and
+/// radius^2 nearly agree, and floats leave little of their difference. Taken in double, the way is
+/// right to its rounding, and inside or outside is decided exactly.
 TEST(SphereOracle, MeasuresShortWays) {
   int hits = 0;
   int misses = 0;
@@ -144,7 +149,8 @@ TEST(SphereOracle, MeasuresShortWays) {
       continue;
     }
     ++hits;
-    // One rounding where double decides, and what is left of 2^-53 r^2 there; 8 eps of the sphere for a way across.
+    // One rounding where double decides, and what is left of 2^-53 r^2 there; 8 eps of the sphere
+    // for a way across.
     const bool across = wanted->t > .05L * r;
     const oracle::Real tolerance =
         across ? 8 * oracle::kEps * r / wanted->cosine : 1.01L * oracle::kEps * wanted->t;

@@ -1,4 +1,5 @@
-// Rays that leave a surface: none meets the surface it left, and none starts far enough away to skip what is near.
+// Rays that leave a surface: none meets the surface it left, and none starts far enough away to
+// skip what is near.
 #define GRELHA_ISA scalar
 #include "kernel/shapes/surface.hpp"
 #include "kernel/trace/trace.hpp"
@@ -23,8 +24,8 @@ std::vector<Tracer> tracers(int packet) {
 
 struct Result {
   std::uint64_t hits = 0, rays = 0, met_again = 0;
-  double gap =
-      0;  ///< largest distance between the surface and where a ray starts, in sizes of the primitive
+  /// largest distance between the surface and where a ray starts, in sizes of the primitive
+  double gap = 0;
   std::string first;
   void print(const char* what) const {
     std::printf(
@@ -38,8 +39,8 @@ struct Result {
   }
 };
 
-/// `make` builds the scene of one primitive of the given size at a place; `convex`: no ray that goes out meets it
-/// again; otherwise none at all does, on either side.
+/// `make` builds the scene of one primitive of the given size at a place; `convex`: no ray that
+/// goes out meets it again; otherwise none at all does, on either side.
 template <class Make, class Near>
 Result leave_from(
     std::uint64_t seeds, double most_offset, bool convex, const Make& make, const Near& farthest) {
@@ -86,7 +87,8 @@ Result leave_from(
           const float n = d.x * s.normal.x + d.y * s.normal.y + d.z * s.normal.z;
           d = at(d, -n * (1 - random.log_in(1e-6, 1e-1)), {s.normal.x, s.normal.y, s.normal.z});
         }
-        // So nearly along the surface that rounding decides which side it points to: either answer is right.
+        // So nearly along the surface that rounding decides which side it points to: either answer
+        // is right.
         if (std::abs(oracle::dot(d, oracle::unit({s.normal.x, s.normal.y, s.normal.z}))) <
             8 * oracle::kEps)
           continue;
@@ -145,9 +147,9 @@ struct Row {
   double offset, farthest;
   double gap;  ///< wanted at most, in sizes
 };
-/// The bounds of surface.hpp in sizes: 16 (sphere) to 64 eps (cone: height up to 2 sizes, radius up to 1, 32 eps of
-/// both) and 4 eps of the largest coordinate, which is the offset; doubled as print() does. 2e-5 and 5e-7 offset cover
-/// each kind.
+/// The bounds of surface.hpp in sizes: 16 (sphere) to 64 eps (cone: height up to 2 sizes, radius up
+/// to 1, 32 eps of both) and 4 eps of the largest coordinate, which is the offset; doubled as
+/// print() does. 2e-5 and 5e-7 offset cover each kind.
 constexpr Row kRows[] = {{0, 10, 2e-5},
                          {0, 1e5, 2e-5},
                          {10, 1e3, 3e-5},
@@ -169,8 +171,9 @@ void check(const char* name, bool convex, const Make& make) {
 }
 
 TEST(Leaving, Spheres) { check("sphere", true, make_sphere); }
-/// Mirror rays about the exact normal, of spheres far from the origin or far larger than what is seen of them. The ray that is met
-/// again is the exact one of these very floats as well, so a wrong start or a wrong normal shows, not a wrong test alone.
+/// Mirror rays about the exact normal, of spheres far from the origin or far larger than what is
+/// seen of them. The ray that is met again is the exact one of these very floats as well, so a
+/// wrong start or a wrong normal shows, not a wrong test alone.
 struct Mirrored {
   std::uint64_t rays = 0, met_again = 0, wrong = 0;
   double normal = 0;  ///< largest distance of a normal from the exact one, in eps
@@ -277,7 +280,8 @@ TEST(Leaving, Planes) {
     EXPECT_EQ(r.met_again, 0u) << r.first;
   }
 }
-/// A speck far from where rays leave a plane: they are moved near it before grids are walked, and must not find the plane on the way.
+/// A speck far from where rays leave a plane: they are moved near it before grids are walked, and
+/// must not find the plane on the way.
 TEST(Leaving, PlanesWithAllElseFarAway) {
   int left = 0;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
@@ -311,8 +315,8 @@ TEST(Leaving, PlanesWithAllElseFarAway) {
   EXPECT_EQ(left, 200 * 64 * 6);
 }
 
-/// A ball of radius 20 half sunk into a plane, from up to 10^8 away, where t in single precision is off by up to 10. Rays go through
-/// the ball where it stands at least 1 above the plane.
+/// A ball of radius 20 half sunk into a plane, from up to 10^8 away, where t in single precision is
+/// off by up to 10. Rays go through the ball where it stands at least 1 above the plane.
 TEST(FarEyes, SeeWhatStandsOnAPlane) {
   Scene scene = one_plane({0, 0, 0}, {.05f, .1f, 1});
   scene.geometry.spheres.add({0, 0, 0}, 20, 0);
@@ -352,7 +356,8 @@ TEST(FarEyes, SeeWhatStandsOnAPlane) {
 TEST(Leaving, Triangles) { check("triangle", false, make_triangle); }
 TEST(Leaving, Cones) { check("cone", true, make_cone); }
 
-/// Where a cone has no radius all directions across its axis are as good, and a normal must be one of them.
+/// Where a cone has no radius all directions across its axis are as good, and a normal must be one
+/// of them.
 TEST(ConeSurface, HasANormalOnItsTip) {
   for (const bool tip_first : {false, true}) {
     const Float3 tip{0, 2, 0}, foot{0, 0, 0};
@@ -399,7 +404,8 @@ TEST(Leaving, InwardsMeetsTheFarSide) {
     const Answers far =
         trace(*find_variant("scalar"), world, inwards, {Method::kSingle, 1, true}, Query::kClosest);
     ASSERT_EQ(far.id[0], 0u) << "seed " << seed;
-    // The chord is -2 r cosine. The start stands off by `away` and its rounding, which the chord feels by 1 / |cosine|.
+    // The chord is -2 r cosine. The start stands off by `away` and its rounding, which the chord
+    // feels by 1 / |cosine|.
     EXPECT_NEAR(far.t[0], -2 * size * cosine, 4 * s.away / -cosine + 1e-5 * size)
         << "seed " << seed;
     ++judged;
@@ -407,8 +413,8 @@ TEST(Leaving, InwardsMeetsTheFarSide) {
   EXPECT_GT(judged, 10000u);
 }
 
-/// Something a thousandth of the size above a surface is met, not skipped, wherever that is far above the spacing of
-/// floats.
+/// Something a thousandth of the size above a surface is met, not skipped, wherever that is far
+/// above the spacing of floats.
 TEST(Leaving, SeesWhatIsNear) {
   std::uint64_t rays = 0;
   for (std::uint64_t seed = 0; seed < 20000; ++seed) {
