@@ -6,7 +6,7 @@ add_test(NAME readme COMMAND ${CMAKE_COMMAND} -D ROOT=${PROJECT_SOURCE_DIR}
 set_tests_properties(readme PROPERTIES LABELS image)
 grelha_test(kernel/render/sampling property grelha::kernel grelha_lane_functions)
 grelha_test(frontend/input/effects image grelha::frontend)
-grelha_test(kernel/picture/refinement image grelha::frontend grelha::scenes)
+grelha_test(kernel/adaptive/refinement image grelha::frontend grelha::scenes)
 
 # By Debian's Python, where there is one: it has the modules of its packages.
 add_test(NAME other_programs COMMAND ${CMAKE_COMMAND} -E env PATH=/usr/bin:$ENV{PATH}

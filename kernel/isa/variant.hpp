@@ -3,7 +3,7 @@
 // per instruction set.
 
 #include "kernel/render/band.hpp"
-#include "kernel/render/doubt.hpp"
+#include "kernel/features/doubt.hpp"
 #include "kernel/query/span.hpp"
 #include "kernel/trace/one_ray.hpp"
 

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "kernel/picture/guarded_progress.hpp"
+#include "kernel/render/guarded_progress.hpp"
 #include "kernel/render/bands.hpp"
 
 namespace grelha {

@@ -1,7 +1,7 @@
 #include "kernel/picture/picture.hpp"
 
-#include "kernel/picture/adaptive_sampler.hpp"
-#include "kernel/picture/point_tracer.hpp"
+#include "kernel/adaptive/adaptive_sampler.hpp"
+#include "kernel/subdivision/point_tracer.hpp"
 #include "kernel/render/setup.hpp"
 
 namespace grelha {

@@ -12,10 +12,10 @@
 #include "grelha/render_options.hpp"
 #include "grelha/stats.hpp"
 #include "grelha/world.hpp"
-#include "kernel/picture/guarded_progress.hpp"
+#include "kernel/render/guarded_progress.hpp"
 #include "kernel/picture/picture_fields.hpp"
-#include "kernel/picture/refinement.hpp"
-#include "kernel/picture/subdivision_state.hpp"
+#include "kernel/adaptive/refinement.hpp"
+#include "kernel/subdivision/subdivision_state.hpp"
 
 namespace grelha {
 

@@ -15,8 +15,8 @@
 #include <type_traits>
 
 #include "grelha/accumulator.hpp"
-#include "kernel/picture/refinement.hpp"
-#include "kernel/picture/subdivision_state.hpp"
+#include "kernel/adaptive/refinement.hpp"
+#include "kernel/subdivision/subdivision_state.hpp"
 
 namespace grelha {
 

@@ -12,7 +12,7 @@
 #include "frontend/jobs/partial.hpp"
 #include "frontend/nff/nff_reader.hpp"
 #include "grelha/accumulator.hpp"
-#include "kernel/picture/adaptive_sampler.hpp"
+#include "kernel/adaptive/adaptive_sampler.hpp"
 #include "kernel/picture/picture.hpp"
 #include "scenes/generators.hpp"
 #include "tests/support/random.hpp"

@@ -6,7 +6,7 @@
 // Genetti, Gordon, Williams, "Adaptive Supersampling in Object Space Using Pyramidal Rays", 1998,
 // move the decision from colours to objects; here the objects only say where to go on sampling.
 
-#include "kernel/render/beam.hpp"
+#include "kernel/features/beam.hpp"
 
 namespace grelha::GRELHA_ISA {
 

@@ -1,4 +1,4 @@
-#include "kernel/picture/subdivision_state.hpp"
+#include "kernel/subdivision/subdivision_state.hpp"
 
 #include <algorithm>
 #include <stdexcept>

@@ -1,4 +1,4 @@
-#include "kernel/picture/refinement.hpp"
+#include "kernel/adaptive/refinement.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <map>
 #include <set>
 
-#include "kernel/picture/point_tracer.hpp"
+#include "kernel/subdivision/point_tracer.hpp"
 #include "tests/support/rays.hpp"
 #include "tests/support/recursion.hpp"
 #include "tests/support/scenes.hpp"

@@ -3,7 +3,7 @@
 #include <map>
 #include <set>
 
-#include "kernel/picture/subdivider.hpp"
+#include "kernel/subdivision/subdivider.hpp"
 #include "tests/support/rays.hpp"
 #include "tests/support/recursion.hpp"
 #include "tests/support/scenes.hpp"

@@ -1,4 +1,4 @@
-#include "kernel/picture/sampling_round.hpp"
+#include "kernel/adaptive/sampling_round.hpp"
 
 #include <algorithm>
 #include <cmath>

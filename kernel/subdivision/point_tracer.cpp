@@ -1,4 +1,4 @@
-#include "kernel/picture/point_tracer.hpp"
+#include "kernel/subdivision/point_tracer.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -11,7 +11,7 @@
 #include <omp.h>
 
 #include "kernel/grid/world_impl.hpp"
-#include "kernel/picture/subdivider.hpp"
+#include "kernel/subdivision/subdivider.hpp"
 #include "kernel/render/setup.hpp"
 #include "kernel/render/workspace.hpp"
 

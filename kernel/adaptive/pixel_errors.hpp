@@ -1,7 +1,7 @@
 #pragma once
 
-#include "kernel/picture/refinement.hpp"
-#include "kernel/picture/tolerances.hpp"
+#include "kernel/adaptive/refinement.hpp"
+#include "kernel/adaptive/tolerances.hpp"
 
 namespace grelha {
 

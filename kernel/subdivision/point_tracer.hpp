@@ -4,8 +4,8 @@
 #include "grelha/render_options.hpp"
 #include "grelha/stats.hpp"
 #include "grelha/world.hpp"
-#include "kernel/picture/guarded_progress.hpp"
-#include "kernel/picture/subdivision_state.hpp"
+#include "kernel/render/guarded_progress.hpp"
+#include "kernel/subdivision/subdivision_state.hpp"
 
 namespace grelha {
 

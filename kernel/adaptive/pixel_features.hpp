@@ -3,8 +3,8 @@
 
 #include "grelha/stats.hpp"
 #include "kernel/grid/world_impl.hpp"
-#include "kernel/picture/pixel_errors.hpp"
-#include "kernel/picture/refinement.hpp"
+#include "kernel/adaptive/pixel_errors.hpp"
+#include "kernel/adaptive/refinement.hpp"
 #include "kernel/render/setup.hpp"
 
 namespace grelha {

@@ -1,4 +1,4 @@
-#include "kernel/picture/adaptive_sampler.hpp"
+#include "kernel/adaptive/adaptive_sampler.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -10,10 +10,10 @@
 #include <omp.h>
 
 #include "kernel/grid/world_impl.hpp"
-#include "kernel/picture/pixel_errors.hpp"
-#include "kernel/picture/pixel_features.hpp"
-#include "kernel/picture/pixel_order.hpp"
-#include "kernel/picture/sampling_round.hpp"
+#include "kernel/adaptive/pixel_errors.hpp"
+#include "kernel/adaptive/pixel_features.hpp"
+#include "kernel/adaptive/pixel_order.hpp"
+#include "kernel/adaptive/sampling_round.hpp"
 #include "kernel/render/setup.hpp"
 #include "kernel/render/workspace.hpp"
 

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "kernel/picture/pixel_errors.hpp"
-#include "kernel/picture/refinement.hpp"
+#include "kernel/adaptive/pixel_errors.hpp"
+#include "kernel/adaptive/refinement.hpp"
 #include "kernel/scene/shading_view.hpp"
 
 namespace grelha {

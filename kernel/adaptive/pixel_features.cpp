@@ -1,4 +1,4 @@
-#include "kernel/picture/pixel_features.hpp"
+#include "kernel/adaptive/pixel_features.hpp"
 
 #include "kernel/query/variants.hpp"
 

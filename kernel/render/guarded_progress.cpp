@@ -1,4 +1,4 @@
-#include "kernel/picture/guarded_progress.hpp"
+#include "kernel/render/guarded_progress.hpp"
 
 namespace grelha {
 

@@ -1,4 +1,4 @@
-#include "kernel/picture/tile_points.hpp"
+#include "kernel/subdivision/tile_points.hpp"
 
 #include <algorithm>
 #include <iterator>

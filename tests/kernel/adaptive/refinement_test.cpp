@@ -5,9 +5,9 @@
 
 #include "frontend/input/effects.hpp"
 #include "frontend/nff/nff_reader.hpp"
-#include "kernel/picture/adaptive_sampler.hpp"
-#include "kernel/picture/pixel_errors.hpp"
-#include "kernel/picture/refinement.hpp"
+#include "kernel/adaptive/adaptive_sampler.hpp"
+#include "kernel/adaptive/pixel_errors.hpp"
+#include "kernel/adaptive/refinement.hpp"
 #include "scenes/generators.hpp"
 #include "tests/support/rays.hpp"
 #include "tests/support/scenes.hpp"

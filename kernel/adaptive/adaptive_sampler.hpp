@@ -6,8 +6,8 @@
 #include "grelha/render_options.hpp"
 #include "grelha/stats.hpp"
 #include "grelha/world.hpp"
-#include "kernel/picture/guarded_progress.hpp"
-#include "kernel/picture/refinement.hpp"
+#include "kernel/render/guarded_progress.hpp"
+#include "kernel/adaptive/refinement.hpp"
 
 namespace grelha {
 

@@ -7,7 +7,7 @@
 
 #include "grelha/geometry.hpp"
 #include "grelha/image.hpp"
-#include "kernel/picture/tile_points.hpp"
+#include "kernel/subdivision/tile_points.hpp"
 
 namespace grelha {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "grelha/subdivision.hpp"
-#include "kernel/picture/subdivision_state.hpp"
+#include "kernel/subdivision/subdivision_state.hpp"
 
 namespace grelha {
 

@@ -1,4 +1,4 @@
-#include "kernel/picture/tile_sums.hpp"
+#include "kernel/subdivision/tile_sums.hpp"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "kernel/picture/subdivider.hpp"
+#include "kernel/subdivision/subdivider.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "kernel/picture/tile_points.hpp"
-#include "kernel/picture/tile_sums.hpp"
+#include "kernel/subdivision/tile_points.hpp"
+#include "kernel/subdivision/tile_sums.hpp"
 
 namespace grelha {
 namespace {

@@ -7,8 +7,8 @@
 #include <span>
 
 #include "grelha/subdivision.hpp"
-#include "kernel/picture/guarded_progress.hpp"
-#include "kernel/picture/subdivision_state.hpp"
+#include "kernel/render/guarded_progress.hpp"
+#include "kernel/subdivision/subdivision_state.hpp"
 
 namespace grelha {
 

@@ -4,7 +4,7 @@
 // answer is a function of beam and scene, not of the grid.
 
 #include "kernel/shapes/surface.hpp"
-#include "kernel/render/tolerances.hpp"
+#include "kernel/features/tolerances.hpp"
 #include "kernel/trace/trace.hpp"
 
 namespace grelha::GRELHA_ISA {

@@ -1,4 +1,4 @@
-#include "kernel/picture/pixel_errors.hpp"
+#include "kernel/adaptive/pixel_errors.hpp"
 
 #include <algorithm>
 #include <cmath>
