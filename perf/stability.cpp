@@ -42,11 +42,11 @@ class EmbreeTracer final : public Tracer {
   }
   int ways() const override { return 2; }
   const char* way_name(int way) const override { return way == 0 ? "8 coherent" : "single"; }
-  Answers closest(const Rays& rays, int way) override {
+  Answers closest(const RayList& rays, int way) override {
     const perf::Answers a = ask(rays, false, way);
     return {a.t, a.id, {}, {}};
   }
-  Answers occluded(const Rays& rays, int way) override {
+  Answers occluded(const RayList& rays, int way) override {
     const perf::Answers a = ask(rays, true, way);
     Answers out{a.t, std::vector<std::uint32_t>(a.t.size(), kNoPrimitive), {}, {}};
     for (std::size_t i = 0; i < a.t.size(); ++i)
@@ -56,7 +56,7 @@ class EmbreeTracer final : public Tracer {
   }
 
  private:
-  perf::Answers ask(const Rays& rays, bool any, int way) {
+  perf::Answers ask(const RayList& rays, bool any, int way) {
     const perf::EmbreeMode mode =
         way == 0 ? perf::EmbreeMode{"", 8, true} : perf::EmbreeMode{"", 1, false};
     scene_->trace(
@@ -153,9 +153,9 @@ Json run_row(const Row& row, std::vector<Column>& all, const Options& o, bool& f
 }
 
 /// Ordinary rays at a crowd, and the same with something odd about each.
-Rays odd_rays(const std::string& kind, std::size_t count) {
+RayList odd_rays(const std::string& kind, std::size_t count) {
   Random random(3);
-  Rays rays;
+  RayList rays;
   for (std::size_t i = 0; i < count; ++i) {
     Float3 org = test::at({0, 0, 0}, 4, random.direction()),
            dir = test::minus(random.point(1), org);
@@ -187,7 +187,7 @@ Rays odd_rays(const std::string& kind, std::size_t count) {
 }
 
 /// ns a ray, least of five.
-double ns_of(Tracer& tracer, const Rays& rays, int way) {
+double ns_of(Tracer& tracer, const RayList& rays, int way) {
   double least = 1e300;
   for (int k = 0; k < 5; ++k) {
     const auto start = std::chrono::steady_clock::now();
@@ -209,7 +209,7 @@ Json costs(std::vector<Column>& all, const Options& o) {
   for (Column& c : all)
     c.tracer->build(trial);
   const std::size_t count = std::clamp<std::size_t>(o.rays, 1000, 200000);
-  const Rays ordinary = odd_rays("", count);
+  const RayList ordinary = odd_rays("", count);
   Json out = Json::array();
   for (const char* const kind : {"NaN",
                                  "infinity",
@@ -217,7 +217,7 @@ Json costs(std::vector<Column>& all, const Options& o) {
                                  "along an axis",
                                  "denormal directions",
                                  "from 1e6 away"}) {
-    const Rays rays = odd_rays(kind, count);
+    const RayList rays = odd_rays(kind, count);
     Json row{{"name", kind}};
     const bool number = std::strcmp(kind, "NaN") != 0 && std::strcmp(kind, "infinity") != 0 &&
                         std::strcmp(kind, "zero direction") != 0;

@@ -15,10 +15,10 @@ class GrelhaTracer final : public Tracer {
   }
   int ways() const override { return 2; }
   const char* way_name(int way) const override { return way == 0 ? "packets" : "single"; }
-  Answers closest(const Rays& rays, int way) override {
+  Answers closest(const RayList& rays, int way) override {
     return trace(variant_, *world_, rays, settings(way), test::Query::kClosest);
   }
-  Answers occluded(const Rays& rays, int way) override {
+  Answers occluded(const RayList& rays, int way) override {
     return trace(variant_, *world_, rays, settings(way), test::Query::kOccluded);
   }
 

@@ -22,7 +22,7 @@ namespace grelha::stability {
 
 using test::Answers;
 using test::Random;
-using test::Rays;
+using test::RayList;
 
 /// What a ray meets first, as far as the ray's own floats say: t from `earliest` to `latest`.
 struct Wanted {
@@ -36,7 +36,7 @@ struct Wanted {
 /// One scene with its rays.
 struct Trial {
   Scene scene;
-  Rays rays;
+  RayList rays;
   std::vector<Wanted> wanted;
   float density = 0;      ///< of Grelha's grid
   bool occlusion = true;  ///< whether the yes-or-no question is asked too
@@ -72,8 +72,8 @@ class Tracer {
   virtual void build(const Trial& trial) = 0;
   virtual int ways() const = 0;  ///< of tracing; each is asked
   virtual const char* way_name(int way) const = 0;
-  virtual Answers closest(const Rays& rays, int way) = 0;
-  virtual Answers occluded(const Rays& rays, int way) = 0;  ///< id: kNoPrimitive or anything
+  virtual Answers closest(const RayList& rays, int way) = 0;
+  virtual Answers occluded(const RayList& rays, int way) = 0;  ///< id: kNoPrimitive or anything
 };
 
 using Sink = std::function<void(const Trial&)>;

@@ -25,7 +25,7 @@ Scene crowd(std::uint64_t seed, int n) {
   return s;
 }
 
-void judge_all(Trial& trial, const Rays& rays) {
+void judge_all(Trial& trial, const RayList& rays) {
   const Size size = size_of(trial.scene);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (rays.dir(i) == Float3{})
@@ -52,7 +52,7 @@ template <int kExponent>
 void odd_directions(Random& random, std::size_t rays, const Sink& sink) {
   Trial trial;
   trial.scene = crowd(random.next(), 100);
-  Rays list;
+  RayList list;
   for (std::size_t i = 0; i < rays; ++i) {
     const Float3 aim = random.point(1);
     Float3 dir = random.direction();
@@ -151,7 +151,7 @@ void copies(Random& random, std::size_t rays, const Sink& sink) {
   Scene one = one_triangle(a, b, c);
   one.geometry.spheres.add({2, 2, 2}, .5f, 0);
   const Size size = size_of(one);
-  const Rays list =
+  const RayList list =
       rays_about(random,
                  {1, 1, 1},
                  1.5,
@@ -171,7 +171,7 @@ void bounds_of_resolution(Random& random, std::size_t rays, const Sink& sink) {
     trial.scene = empty_scene();
     for (int i = 0; i < 100; ++i)
       add_triangle(trial.scene, {float(i), 0, 0}, {i + .9f, 1e-2f, 0}, {float(i), 0, 1e-2f});
-    Rays list;
+    RayList list;
     for (std::size_t i = 0; i < rays / 2; ++i) {
       const Float3 aim{static_cast<float>(random.in(0, 100)), 5e-3f, 2e-3f},
           org = at(aim, random.log_in(.01, 100), random.direction());
@@ -200,7 +200,7 @@ void unsound_vertices(Random& random, std::size_t rays, const Sink& sink) {
   for (auto* v : {&balls.x, &balls.y, &balls.z, &balls.radius})
     v->erase(v->begin() + 7);
   const Size size = size_of(trial.scene);
-  const Rays list = rays_about(random, {}, 1, static_cast<int>(rays), 10);
+  const RayList list = rays_about(random, {}, 1, static_cast<int>(rays), 10);
   for (std::size_t i = 0; i < list.size(); ++i)
     if (list.dir(i) != Float3{})
       trial.add(list.org(i), list.dir(i), brute_force(sound, size, list.org(i), list.dir(i)));

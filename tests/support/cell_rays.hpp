@@ -7,8 +7,8 @@ namespace grelha::test {
 
 /// Rays that lie in planes between cells, run along edges between them, pass through their corners,
 /// or along their diagonals.
-inline Rays rays_on_cells(Random& random, const World& world, int count) {
-  Rays rays;
+inline RayList rays_on_cells(Random& random, const World& world, int count) {
+  RayList rays;
   const auto& grids = world.impl().grids;
   if (grids.empty())
     return rays;

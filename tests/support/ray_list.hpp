@@ -12,7 +12,7 @@
 
 namespace grelha::test {
 
-struct Rays {
+struct RayList {
   std::vector<float> ox, oy, oz, dx, dy, dz, t_min, t;
 
   void add(const Float3& o, const Float3& d, float from = 0, float to = kInf) {
@@ -25,7 +25,7 @@ struct Rays {
     t_min.push_back(from);
     t.push_back(to);
   }
-  void add(const Rays& other) {
+  void add(const RayList& other) {
     for (std::size_t i = 0; i < other.size(); ++i)
       add(other.org(i), other.dir(i), other.t_min[i], other.t[i]);
   }
@@ -53,7 +53,7 @@ enum class Query { kClosest, kOccluded };
 
 inline Answers trace(const Variant& variant,
                      const World& world,
-                     const Rays& rays,
+                     const RayList& rays,
                      const TraceSettings& settings,
                      Query query) {
   Answers a;
@@ -81,9 +81,9 @@ inline Answers trace(const Variant& variant,
 
 /// Rays about a ball of the given size: most aimed at it from any distance, some from inside, some
 /// past it, some along the axes, with ends and lengths of all kinds.
-inline Rays rays_about(
+inline RayList rays_about(
     Random& random, const Float3& center, double size, int count, double farthest = 1e3) {
-  Rays rays;
+  RayList rays;
   for (int i = 0; i < count; ++i) {
     const double away = size * (random.chance(.2) ? random.unit() : random.log_in(.5, farthest));
     const Float3 org = at(center, away, random.direction());
@@ -107,7 +107,7 @@ inline Rays rays_about(
 }
 
 /// The same with one component of some rays replaced by a value no caller should send.
-inline Rays with_odd_values(Random& random, Rays rays, double share) {
+inline RayList with_odd_values(Random& random, RayList rays, double share) {
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (!random.chance(share))
       continue;

@@ -57,7 +57,7 @@ struct Truth {
 };
 
 inline Truth truth_of(const Scene& scene,
-                      const Rays& rays,
+                      const RayList& rays,
                       const Variant& reference = reference_walk()) {
   const World plain(scene, {.grid = false});
   return {trace(reference, plain, rays, {.mailbox = false}, Query::kClosest),
@@ -73,7 +73,7 @@ inline std::string show(float t, std::uint32_t id) {
 
 /// Numbers whose squares are finite, and a direction: anything else meets nothing, whatever it
 /// points at.
-inline bool sound(const Rays& rays, std::size_t i) {
+inline bool sound(const RayList& rays, std::size_t i) {
   const Float3 o = rays.org(i), d = rays.dir(i);
   if (std::max({std::abs(o.x), std::abs(o.y), std::abs(o.z)}) > 1e18f)
     return false;
@@ -85,7 +85,7 @@ inline bool sound(const Rays& rays, std::size_t i) {
 /// occlusion. What t is left in a ray that cannot be traced at all is variants_test's to say.
 inline testing::AssertionResult same(const Answers& wanted,
                                      const Answers& got,
-                                     const Rays& rays,
+                                     const RayList& rays,
                                      Query query) {
   std::size_t wrong = 0, first = 0;
   for (std::size_t i = rays.size(); i-- > 0;) {
@@ -113,7 +113,7 @@ inline testing::AssertionResult same(const Answers& wanted,
 inline bool finds_truth(const Variant& variant,
                         const Way& way,
                         const World& world,
-                        const Rays& rays,
+                        const RayList& rays,
                         const Truth& truth,
                         const std::string& what) {
   for (const Query query : {Query::kClosest, Query::kOccluded}) {
@@ -135,7 +135,7 @@ inline bool finds_truth(const Variant& variant,
 /// differs.
 inline void expect_truth(const Variant& variant,
                          const World& world,
-                         const Rays& rays,
+                         const RayList& rays,
                          const Truth& truth,
                          const std::string& what,
                          const Variant& reference = reference_walk()) {

@@ -253,7 +253,7 @@ TEST(GridChoice, LargeObjectsGetTheirOwnGrid) {
   EXPECT_EQ(World(scene, {}).grids().size(), 2u);
   EXPECT_EQ(World(scene, {.grid = false}).grids().size(), 0u);
   const World world(scene, {});
-  Rays rays = rays_about(random, {}, 20, kManyRays);
+  RayList rays = rays_about(random, {}, 20, kManyRays);
   expect_truth(*find_variant("best"), world, rays, truth_of(scene, rays), "two grids");
 }
 
@@ -275,7 +275,7 @@ TEST(WorldCheck, AnEmptySceneIsOne) {
   const Scene scene = empty_scene();
   const World world(scene, {});
   Random random(1);
-  const Rays rays = rays_about(random, {}, 1, 100);
+  const RayList rays = rays_about(random, {}, 1, 100);
   for (const Way& way : every_way())
     EXPECT_EQ(hits_of(trace(*find_variant("best"), world, rays, way.settings, Query::kClosest)), 0u)
         << way.name;

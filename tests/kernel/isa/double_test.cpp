@@ -38,13 +38,13 @@ class Double : public EveryVariant {
 };
 GRELHA_FOR_EVERY_ISA(Double);
 
-Truth truth_in_double(const Scene& scene, const Rays& rays) {
+Truth truth_in_double(const Scene& scene, const RayList& rays) {
   return truth_of(scene, rays, in_double(reference_walk()));
 }
 
 void expect_truth_in_double(const Variant& tested,
                             const World& world,
-                            const Rays& rays,
+                            const RayList& rays,
                             const Truth& truth,
                             const std::string& what) {
   expect_truth(tested, world, rays, truth, what, in_double(reference_walk()));
@@ -57,7 +57,7 @@ TEST_P(Double, OneSetOfBits) {
     const Float3 offset = random.point(scale * random.log_in(.1, 1e3));
     const Scene scene = placed(random_mixture(seed, 150), scale, offset);
     const World world(scene, {.density = seed % 4 == 0 ? 4.f : 0.f});
-    Rays rays =
+    RayList rays =
         with_odd_values(random,
                         rays_about(random, offset, scale, kManyRays, seed % 3 == 0 ? 1e6 : 1e3),
                         seed % 2 ? .1 : 0);
@@ -77,7 +77,7 @@ TEST_P(Double, FromFarAway) {
   const Scene scene = crowd_on_a_wide_plain(7, 400);
   const World world(scene, {.density = 4});
   Random random(3);
-  Rays rays;
+  RayList rays;
   for (int i = 0; i < 4000; ++i) {
     const Float3 eye = at({}, random.log_in(1e4, 2e6), random.direction()), aim = random.point(1);
     rays.add({eye.x, std::abs(eye.y), eye.z}, minus(aim, {eye.x, std::abs(eye.y), eye.z}));
@@ -95,7 +95,7 @@ TEST_P(Double, TiesGoToTheLowerId) {
     }
   // below all of them, in no grid: met first
   add_triangle(scene, {-4, 0, -4}, {28, 0, -4}, {-4, 0, 28});
-  Rays rays;
+  RayList rays;
   for (int tile = 0; tile < 40; ++tile)
     for (int i = 0; i < 64; ++i) {
       const auto at = [](int whole, int eighths) {
@@ -127,7 +127,7 @@ TEST_P(Double, IsOffByRoundingAlone) {
   add_triangles(scene, random, 60, 1, .01, 1);
   scene.geometry.planes.add({0, -1.5f, 0}, {.1f, 1, .2f}, 0);
   const World world(scene, {.density = 2});
-  const Rays rays = rays_about(random, {}, 1, 20000, 100);
+  const RayList rays = rays_about(random, {}, 1, 20000, 100);
   const SceneView& view = world.impl().view;
   const GeometryView& g = view.geometry;
   const auto corner = [&](std::uint32_t i) { return Float3{g.tx[i], g.ty[i], g.tz[i]}; };
@@ -175,7 +175,7 @@ TEST_P(Double, ClosedMeshesAreTight) {
       const Float3 offset = scale == 1 ? Float3{1e3f, 10, -1.5e3f} : Float3{};
       const Scene scene = placed(unit, scale, offset);
       Random random(17);
-      Rays rays;
+      RayList rays;
       const Aims aims = aims_at(unit, random);
       for (const auto* some : {&aims.vertices, &aims.middles, &aims.along})
         for (const Float3& aim : *some) {

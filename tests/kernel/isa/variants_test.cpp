@@ -44,7 +44,7 @@ GRELHA_FOR_EVERY_ISA(Copies);
 TEST_P(Copies, RunAtTheirOwnWidth) {
   const Scene scene = one_sphere({}, 1);
   const World world(scene, {.grid = false});
-  Rays rays;
+  RayList rays;
   rays.add({0, 0, 5}, {0, 0, -1});
   const Answers a = trace(variant(), world, rays, {Method::kPackets, 16, true}, Query::kClosest);
   EXPECT_EQ(a.counts.packets.lanes_issued, static_cast<std::uint64_t>(variant().lanes));
@@ -66,7 +66,7 @@ TEST_P(Copies, ReturnTheScalarBits) {
     const Float3 offset = random.point(scale * random.log_in(.1, 1e3));
     const Scene scene = placed(random_mixture(seed, 150), scale, offset);
     const World world(scene, {});
-    const Rays rays =
+    const RayList rays =
         with_odd_values(random, rays_about(random, offset, scale, kManyRays), seed % 2 ? .1 : 0);
     const Truth truth = truth_of(scene, rays);
     EXPECT_GT(hits_of(truth.closest), 300u);
@@ -80,7 +80,7 @@ TEST_P(Copies, TakeAnyNumberOfRays) {
   const Scene scene = random_mixture(2, 60);
   const World world(scene, {});
   Random random(2);
-  const Rays all = rays_about(random, {}, 1, 70);
+  const RayList all = rays_about(random, {}, 1, 70);
   const Truth truth = truth_of(scene, all);
   for (int n = 0; n <= 70; ++n)
     for (const Way& way : every_way()) {
@@ -113,7 +113,7 @@ TEST_P(Copies, TakeAnyNumberOfRays) {
 TEST_P(Copies, LeaveTOfUnsoundRaysAlone) {
   const Scene scene = random_mixture(2, 60);
   const World world(scene, {});
-  Rays rays;
+  RayList rays;
   for (const float bad : {kNaN, kInf, -kInf})
     for (int field = 0; field < 6; ++field) {
       rays.add({.1f, .2f, 5}, {0, 0, -1}, 0, field % 2 ? kInf : 100);
@@ -140,7 +140,7 @@ TEST_P(Copies, LeaveTOfUnsoundRaysAlone) {
 TEST_P(Copies, KeepToTheInterval) {
   const Scene scene = one_sphere({}, 1);
   const World world(scene, {.grid = false});
-  Rays rays;
+  RayList rays;
   const auto add = [&](float from, float to) { rays.add({0, 0, 5}, {0, 0, -1}, from, to); };
   add(0, kInf);
   add(0, 4);

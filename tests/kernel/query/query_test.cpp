@@ -15,15 +15,18 @@ namespace grelha::test {
 namespace {
 
 /// Rays about a scene of unit size, some from so far away that the kernel moves them near.
-Rays some_rays(unsigned seed) {
+RayList some_rays(unsigned seed) {
   Random random(seed);
-  Rays rays = rays_about(random, {}, 1, kManyRays);
+  RayList rays = rays_about(random, {}, 1, kManyRays);
   rays.add(rays_about(random, {}, 1e5, 200));
   rays.add({1e6f, 2e6f, -3e6f}, {-1, -2, 3});
   return rays;
 }
 
-Answers ask(const World& world, const Rays& rays, Query query, const QueryOptions& options = {}) {
+Answers ask(const World& world,
+            const RayList& rays,
+            Query query,
+            const QueryOptions& options = {}) {
   Answers a{rays.t, std::vector<std::uint32_t>(rays.size(), 12345u), {}, {}};
   const RaySpan span{rays.ox.data(),
                      rays.oy.data(),
@@ -51,7 +54,7 @@ bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
 TEST(Query, OneRayAPacketAndAStreamSeeWhatBruteForceSees) {
   const Scene scene = random_mixture(5, 400);
   const World world(scene, {});
-  const Rays rays = some_rays(1);
+  const RayList rays = some_rays(1);
   const Truth truth = truth_of(scene, rays);
   for (const int packet : {1, 16, 64}) {
     const Answers a = ask(world, rays, Query::kClosest, {.packet = packet});
@@ -72,7 +75,7 @@ TEST(Query, OneRayAPacketAndAStreamSeeWhatBruteForceSees) {
 
 /// What one ray alone is told, against a stream of all of them: scenes of every kind, many grids,
 /// rays from near and from so far that the kernel moves them, values no caller should send.
-void expect_calls_like_streams(const Scene& scene, const Rays& rays, const char* name) {
+void expect_calls_like_streams(const Scene& scene, const RayList& rays, const char* name) {
   for (const bool grid : {true, false}) {
     const World world(scene, {.grid = grid});
     const Answers met = ask(world, rays, Query::kClosest, {.packet = 1});
@@ -91,7 +94,7 @@ void expect_calls_like_streams(const Scene& scene, const Rays& rays, const char*
 
 TEST(Query, OneRayAloneIsToldWhatAStreamIs) {
   Random random(12);
-  Rays rays = with_odd_values(random, some_rays(11), .02);
+  RayList rays = with_odd_values(random, some_rays(11), .02);
   rays.add({.5f, .25f, 2}, {0, 0, -1}, 1, 1);
   rays.add({.5f, .25f, 2}, {0, 0, -1}, 2, 1);
   expect_calls_like_streams(empty_scene(), rays, "nothing");
@@ -113,7 +116,7 @@ TEST(Query, OneRayAloneIsToldWhatAStreamIs) {
 TEST(Query, SomethingIsInTheWayWhereSomethingIsMet) {
   const Scene scene = random_mixture(6, 400);
   const World world(scene, {});
-  const Rays rays = some_rays(2);
+  const RayList rays = some_rays(2);
   const Answers met = ask(world, rays, Query::kClosest),
                 blocked = ask(world, rays, Query::kOccluded);
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -170,7 +173,7 @@ TEST(Query, RaysThatLeaveASurfaceDoNotMeetItAgain) {
   Scene scene = random_mixture(9, 300);
   scene.geometry.planes.add({0, 0, -3}, {0, 1, 8}, 0);
   const World world(scene, {.grid = false});
-  const Rays rays = some_rays(5);
+  const RayList rays = some_rays(5);
   Random random(6);
   int hits = 0, kinds[4] = {};
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -229,7 +232,7 @@ TEST(Query, SurfacesAreWhatTheCallerBuilt) {
 TEST(Query, ThreadsAndScenesDoNotMeet) {
   const Scene scenes[2] = {random_mixture(7, 300), random_triangles(8, 300)};
   const World worlds[2] = {World(scenes[0], {}), World(scenes[1], {})};
-  const Rays rays = some_rays(3);
+  const RayList rays = some_rays(3);
   Camera camera;
   camera.eye = {0, 0, 4};
   camera.width = camera.height = 48;
@@ -291,7 +294,7 @@ TEST(Query, WhatProgressThrowsIsThrown) {
 TEST(Query, ArraysLeftOutMeanTheirNaturalDefault) {
   const Scene scene = random_mixture(21, 300);
   const World world(scene, {});
-  Rays rays = some_rays(22);
+  RayList rays = some_rays(22);
   rays.t_min.assign(rays.size(), 0);
   for (const Query query : {Query::kClosest, Query::kOccluded}) {
     const Answers told = ask(world, rays, query);
@@ -345,7 +348,7 @@ TEST(Query, RefusesArraysThatHaveNoDefault) {
 TEST(Query, RefusesWhatItCannotDo) {
   Scene scene = random_spheres(1, 30);
   const World world(scene, {});
-  const Rays rays = some_rays(4);
+  const RayList rays = some_rays(4);
   EXPECT_THROW(ask(world, rays, Query::kClosest, {.packet = 8}), std::invalid_argument);
   EXPECT_THROW(ask(world, rays, Query::kOccluded, {.isa = "neon"}), std::invalid_argument);
   EXPECT_THROW(closest(world, RaySpan{.count = -1}), std::invalid_argument);

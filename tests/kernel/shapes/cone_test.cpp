@@ -48,7 +48,7 @@ TEST_P(Cone, ReturnsTheScalarBits) {
     const Shape c = random_shape(random, size);
     const Scene scene = one_cone(c.base, c.r0, c.apex, c.r1);
     const World world(scene, {.grid = false});
-    const Rays rays =
+    const RayList rays =
         with_odd_values(random, rays_about(random, c.base, size, kManyRays), seed % 2 ? .1 : 0);
     const Truth truth = truth_of(scene, rays);
     expect_truth(variant(), world, rays, truth, "seed " + std::to_string(seed));

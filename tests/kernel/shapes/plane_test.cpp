@@ -24,7 +24,7 @@ TEST_P(Plane, ReturnsTheScalarBits) {
       normal = {0, random.chance(.5) ? 1.f : -2.f, random.zero()};
     const Scene scene = one_plane(point, normal);
     const World world(scene, {});
-    const Rays rays =
+    const RayList rays =
         with_odd_values(random, rays_about(random, point, size, kManyRays), seed % 2 ? .1 : 0);
     const Truth truth = truth_of(scene, rays);
     expect_truth(variant(), world, rays, truth, "seed " + std::to_string(seed));

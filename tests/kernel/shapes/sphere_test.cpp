@@ -21,7 +21,7 @@ TEST_P(Sphere, ReturnsTheScalarBits) {
     const Float3 center = random.chance(.3) ? Float3{} : random.point(size * random.log_in(1, 1e4));
     const Scene scene = one_sphere(center, static_cast<float>(random.chance(.2) ? -size : size));
     const World world(scene, {.grid = false});
-    const Rays rays =
+    const RayList rays =
         with_odd_values(random, rays_about(random, center, size, kManyRays), seed % 2 ? .1 : 0);
     const Truth truth = truth_of(scene, rays);
     expect_truth(variant(), world, rays, truth, "seed " + std::to_string(seed));

@@ -40,7 +40,7 @@ TEST_P(Triangle, ReturnsTheScalarBits) {
     const Shape s = random_shape(random, size);
     const Scene scene = one_triangle(s.a, s.b, s.c);
     const World world(scene, {.grid = false});
-    Rays rays = rays_about(random, s.a, size, kManyRays / 2);
+    RayList rays = rays_about(random, s.a, size, kManyRays / 2);
     // and at its corners, edges and middle, which the sweep seldom meets
     while (rays.size() < kManyRays) {
       const double u = random.below(5) * .25, v = (1 - u) * random.below(5) * .25;

@@ -45,7 +45,7 @@ class Bundle {
       rays.add(org, dir, random.chance(.3) ? static_cast<float>(random.log_in(1e-3, 1.2)) : 0.f);
     }
   }
-  Rays rays;
+  RayList rays;
 
  private:
   Float3 in_grid(double share) {
@@ -108,7 +108,7 @@ TEST_P(Frusta, HoldTheirRays) {
     Random random(seed);
     const Grid g = random_grid(random);
     const int count = random.chance(.5) ? lanes.most_rays : 1 + static_cast<int>(random.below(64));
-    const Rays r = Bundle(random, g, count).rays;
+    const RayList r = Bundle(random, g, count).rays;
     const int axis = random.chance(.2) ? static_cast<int>(random.below(3)) : -1;
     const PacketRays rays{{r.ox.data(), r.oy.data(), r.oz.data()},
                           {r.dx.data(), r.dy.data(), r.dz.data()},

@@ -53,7 +53,7 @@ Result leave_from(
     const Scene scene = make(random, size, place);
     const World world(scene, {.grid = false});
     const SceneView& view = world.impl().view;
-    Rays rays;
+    RayList rays;
     for (int i = 0; i < 16; ++i) {
       const Float3 org = at(place, size * random.log_in(1.5, farthest), random.direction());
       rays.add(org,
@@ -61,7 +61,7 @@ Result leave_from(
                       random.log_in(1e-2, 1e2)));
     }
     // Hits as the renderer finds them: what the trace returned, at the origin the trace used.
-    Rays leaving;
+    RayList leaving;
     std::vector<std::uint32_t> from;
     for (std::size_t i = 0; i < rays.size(); ++i) {
       float org[3] = {rays.ox[i], rays.oy[i], rays.oz[i]};
@@ -195,7 +195,7 @@ Mirrored mirror_off(std::uint64_t seeds, const Make& make, const Eye& eye) {
     const Float3 org{moved[0], moved[1], moved[2]};
     const oracle::Ball ball{center, radius};
     const auto exact = ball.first({org, dir}, 0);
-    Rays ray;
+    RayList ray;
     ray.add(org, dir);
     const TraceSettings single{Method::kSingle, 1, true};
     const Answers hit = trace(*find_variant("scalar"), world, ray, single, Query::kClosest);
@@ -219,7 +219,7 @@ Mirrored mirror_off(std::uint64_t seeds, const Make& make, const Eye& eye) {
     const Float3 d{static_cast<float>(out.x), static_cast<float>(out.y), static_cast<float>(out.z)};
     const scalar::Vec3<float> start = scalar::leave(s.point, s.normal, s.away, {d.x, d.y, d.z});
     const Float3 from{start.x, start.y, start.z};
-    Rays leaving;
+    RayList leaving;
     leaving.add(from, d);
     const Answers again = trace(*find_variant("scalar"), world, leaving, single, Query::kClosest);
     ++m.rays;
@@ -291,7 +291,7 @@ TEST(Leaving, PlanesWithAllElseFarAway) {
     scene.geometry.spheres.add(far, static_cast<float>(random.log_in(1e-4, 1e-1)), 0);
     const World world(scene, {});
     const SceneView& view = world.impl().view;
-    Rays rays;
+    RayList rays;
     for (int i = 0; i < 64; ++i) {
       const Float3 eye = random.point(2), to = random.direction();
       const scalar::Vec3<float> org{eye.x, eye.y, eye.z}, dir{to.x, to.y, to.z};
@@ -323,7 +323,7 @@ TEST(FarEyes, SeeWhatStandsOnAPlane) {
   for (const bool grid : {true, false}) {
     const World world(scene, {.grid = grid});
     Random random(1);
-    Rays rays;
+    RayList rays;
     while (rays.size() < 2000) {
       const auto far = [&](double lo, double hi) {
         return 8 * std::floor(static_cast<float>(random.in(lo, hi)) / 8);
@@ -381,7 +381,7 @@ TEST(Leaving, InwardsMeetsTheFarSide) {
     const Scene scene = one_sphere(center, static_cast<float>(size));
     const World world(scene, {.grid = false});
     const Float3 eye = at(center, size * random.log_in(1.5, 100), random.direction());
-    Rays rays;
+    RayList rays;
     rays.add(eye, minus(at(center, .9 * size, random.direction()), eye));
     const Answers hit =
         trace(*find_variant("scalar"), world, rays, {Method::kSingle, 1, true}, Query::kClosest);
@@ -399,7 +399,7 @@ TEST(Leaving, InwardsMeetsTheFarSide) {
     if (cosine > -.05f)
       continue;
     const scalar::Vec3<float> start = scalar::leave(s.point, s.normal, s.away, {d.x, d.y, d.z});
-    Rays inwards;
+    RayList inwards;
     inwards.add({start.x, start.y, start.z}, d);
     const Answers far =
         trace(*find_variant("scalar"), world, inwards, {Method::kSingle, 1, true}, Query::kClosest);
@@ -440,7 +440,7 @@ TEST(Leaving, SeesWhatIsNear) {
     if (d.y < .1f)
       continue;
     const scalar::Vec3<float> start = scalar::leave(s.point, s.normal, s.away, {d.x, d.y, d.z});
-    Rays up;
+    RayList up;
     up.add({start.x, start.y, start.z}, d);
     EXPECT_EQ(trace(*find_variant("scalar"), world, up, {Method::kSingle, 1, true}, Query::kClosest)
                   .id[0],

@@ -126,8 +126,8 @@ const std::vector<Case>& cases() {
 
 /// Neighbours that point nearly the same way, so that packets stay together: an eye ray's case.
 /// Some bundles cross an axis.
-Rays coherent_rays(Random& random, const Float3& center, double size, int bundles) {
-  Rays rays;
+RayList coherent_rays(Random& random, const Float3& center, double size, int bundles) {
+  RayList rays;
   for (int b = 0; b < bundles; ++b) {
     const Float3 eye = at(center, size * random.log_in(.3, 20), random.direction());
     const Float3 aim = at(center, size * random.unit(), random.direction());
@@ -154,14 +154,14 @@ TEST_P(Walk, FindsWhatBruteForceFinds) {
   const Case& c = std::get<1>(GetParam());
   const Scene scene = c.make();
   Random random(99);
-  Rays rays = rays_about(random, c.center, c.size, kManyRays, 1e6);
+  RayList rays = rays_about(random, c.center, c.size, kManyRays, 1e6);
   rays.add(with_odd_values(random, rays_about(random, c.center, c.size, 300), .3));
   rays.add(coherent_rays(random, c.center, c.size, 24));
   std::size_t grids = 0;
   for (const float density : {.5f, 1.f, 2.f, 4.f}) {
     const World world(scene, {.density = density});
     grids += world.impl().grids.size();
-    Rays all = rays;
+    RayList all = rays;
     all.add(rays_on_cells(random, world, 500));
     const Truth truth = truth_of(scene, all);
     EXPECT_GT(hits_of(truth.closest), 30u);
@@ -190,7 +190,7 @@ TEST(FarRays, FindWhatBruteForceFinds) {
   const World world(scene, {.density = 4});
   ASSERT_EQ(world.impl().grids.size(), 2u);
   Random random(3);
-  Rays rays;
+  RayList rays;
   for (int i = 0; i < 20000; ++i) {
     const Float3 eye = at({}, random.log_in(1e4, 2e6), random.direction()), aim = random.point(1);
     rays.add({eye.x, std::abs(eye.y), eye.z}, minus(aim, {eye.x, std::abs(eye.y), eye.z}));
@@ -224,7 +224,7 @@ TEST(GridOrder, IsFrontToBack) {
     }
     const World world(s, {});
     ASSERT_EQ(world.impl().grids.size(), 3u);
-    Rays rays;
+    RayList rays;
     for (int i = 0; i < 64; ++i)
       rays.add({0, 0, 9},
                {.004f * static_cast<float>(i % 8 - 4), .004f * static_cast<float>(i / 8 - 4), -1});
@@ -259,7 +259,7 @@ TEST_P(Ties, TheLowerIdWins) {
   // over all of them, later and in no grid
   add_triangle(scene, {-3, 0, -3}, {9, 0, -3}, {3, 0, 9});
   Random random(5);
-  Rays rays;
+  RayList rays;
   for (int i = 0; i < 2048; ++i) {
     const Float3 aim{static_cast<float>(random.below(24)) * .25f,
                      0,
@@ -299,7 +299,7 @@ TEST_P(Ties, KindsComeInTheOrderOfTheirIds) {
   scene.geometry.cones.add({-1, 0, 1}, 1, {1, 0, 1}, 1, 0);
   scene.geometry.spheres.add({0, 0, 1}, 1, 0);
   add_triangle(scene, {-5, 1, -5}, {5, 1, -5}, {0, 1, 9});
-  Rays rays;
+  RayList rays;
   rays.add({0, 3, 1}, {0, -1, 0});
   for (int planes = 1; planes >= 0; --planes) {
     if (planes)

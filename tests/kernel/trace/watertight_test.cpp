@@ -45,7 +45,7 @@ void expect_no_leak(const Variant& variant,
   std::vector<Float3> aims = all.vertices;
   for (const auto* more : {&all.middles, &all.along})
     aims.insert(aims.end(), more->begin(), more->end());
-  Rays from_inside, from_outside;
+  RayList from_inside, from_outside;
   for (const Float3& aim : aims) {
     const Float3 org = place(inside(random, aim, torus)), to = place(aim);
     from_inside.add(org, scaled(minus(to, org), random.log_in(.1, 10)));
