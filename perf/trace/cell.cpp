@@ -1,0 +1,54 @@
+#include "perf/trace/cell.hpp"
+
+#include <algorithm>
+
+namespace grelha::perf {
+namespace {
+
+double share_of(std::uint64_t part, std::uint64_t all) {
+  return static_cast<double>(part) / static_cast<double>(std::max<std::uint64_t>(all, 1));
+}
+
+}  // namespace
+
+double median(std::vector<double> v) {
+  if (v.empty())
+    return 0;
+  std::sort(v.begin(), v.end());
+  return (v[(v.size() - 1) / 2] + v[v.size() / 2]) / 2;
+}
+
+double Cell::tests() const {
+  const TestCounts& t = counts.tests;
+  return share_of(t.sphere + t.triangle + t.cone + t.plane, rays);
+}
+
+double Cell::cells() const { return share_of(counts.visits, rays); }
+
+double Cell::lanes_busy() const {
+  return share_of(counts.packets.lanes_busy, counts.packets.lanes_issued);
+}
+
+double Cell::fell_back() const {
+  return share_of(counts.packets.fell_back, counts.packets.fell_back + counts.packets.formed);
+}
+
+double Cell::ratio(std::size_t a, std::size_t b) const {
+  std::vector<double> r;
+  for (std::size_t i = 0; i < std::min(ways[a].ns.size(), ways[b].ns.size()); ++i)
+    r.push_back(ways[a].ns[i] / ways[b].ns[i]);
+  return median(r);
+}
+
+void Cell::find_best() {
+  for (std::size_t side = 0; side < kSides; ++side) {
+    double least = 1e300;
+    for (std::size_t i = 0; i < ways.size(); ++i)
+      if (const Way& w = ways[i]; w.side == side && !w.ns.empty() && median(w.ns) < least) {
+        least = median(w.ns);
+        best[side] = i;
+      }
+  }
+}
+
+}  // namespace grelha::perf

@@ -1,0 +1,44 @@
+#pragma once
+// What is told of one scene and kind of rays.
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "perf/workloads.hpp"
+
+namespace grelha::perf {
+
+enum Side { kGrelha, kRobust, kFast, kSides };
+
+/// One way of tracing a set of rays, and what it took in each round.
+struct Way {
+  Side side;
+  std::string name;
+  std::function<void()> trace;
+  std::vector<double> ns;  ///< a ray, by round
+};
+
+/// 0 of nothing.
+double median(std::vector<double> v);
+
+struct Cell {
+  std::size_t rays = 0;
+  double hit_share = 0, disagree = 0;
+  std::vector<Way> ways;
+  std::size_t best[kSides] = {}, chosen = 0;
+  TraceCounts counts;  ///< of the render's choice
+
+  double tests() const;  ///< a ray
+  double cells() const;  ///< a ray
+  double lanes_busy() const;
+  double fell_back() const;
+  bool has_embree() const { return ways[best[kRobust]].side == kRobust; }
+  /// Median over rounds of the times of one way over those of another.
+  double ratio(std::size_t a, std::size_t b) const;
+  /// Finds the best way of each side, by the rounds there were.
+  void find_best();
+};
+
+}  // namespace grelha::perf

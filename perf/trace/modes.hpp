@@ -1,0 +1,35 @@
+#pragma once
+// Grelha's ways of tracing a set of rays.
+
+#include "perf/ray_sets.hpp"
+#include "perf/workloads.hpp"
+
+namespace grelha::perf {
+
+struct GrelhaMode {
+  const char* name;
+  TraceSettings settings;
+};
+inline constexpr GrelhaMode kModes[] = {
+    {"packets 256", {.method = Method::kPackets, .packet = 256}},
+    {"packets 64", {.method = Method::kPackets, .packet = 64}},
+    {"packets 16", {.method = Method::kPackets, .packet = 16}},
+    {"single", {.method = Method::kSingle}}};
+
+/// What a render takes: of one ray a pixel or point, only those from the camera in packets of 256;
+/// see options_for() in shader.hpp.
+constexpr std::size_t renders(RayKind kind) {
+  return kind == RayKind::kShadow || kind == RayKind::kMirror || kind == RayKind::kIncoherent ? 1
+                                                                                              : 0;
+}
+
+/// Answers of all rays: closest hits, or with `any` whether there is one.
+void trace_all(const Variant& variant,
+               const World& world,
+               const RayBuffer& rays,
+               bool any,
+               const TraceSettings& settings,
+               Answers& answers,
+               TraceCounts& counts);
+
+}  // namespace grelha::perf

@@ -1,0 +1,73 @@
+#include "perf/trace/options.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "perf/ray_sets.hpp"
+
+namespace grelha::perf {
+namespace {
+
+const std::vector<double> kBalls{.2, .2, .5, .9, .5, .35, .9}, kMesh{.75, .7, .9, .9, 1.2, 1., 1.3},
+    kStadium{.8, .7, 1., 1.1, 1.3, 1.2, 1.3}, kDistant{.4, .4, .4, .4, .4, .4, .5};
+const std::vector<Row> kRows{
+    {"balls 4", "", "balls", 4, kBalls},
+    {"balls 5", "", "balls", 5, kBalls},
+    {"balls 6", "", "balls", 6, kBalls},
+    {"mount 6", "", "mount", 6, {}},
+    {"mount 8", "", "mount", 8, kMesh},
+    {"mount 9", "", "mount", 9, kMesh},
+    {"bunny", "ply/bunny.ply", "knot", 15, kMesh},
+    {"teapot", "spd/teapot.nff", "knot", 3, kMesh},
+    {"gears", "", "gears", 4, {}},
+    {"rings", "", "rings", 7, {}},
+    {"stadium", "", "stadium", 6, kStadium},
+    {"distant", "", "distant", 3, kDistant},
+};
+
+/// A row of the table, `GENERATOR SIZE`, or a file.
+Row row_named(const std::string& name) {
+  for (const Row& row : kRows)
+    if (row.name == name)
+      return row;
+  const auto space = name.find(' ');
+  if (space != std::string::npos)
+    return {name, "", name.substr(0, space), std::atoi(name.c_str() + space), {}};
+  return {name, name, "", 0, {}};
+}
+
+bool set_option(const std::string& word, const std::string& value, Options& o) {
+  if (word == "--scene") {
+    o.rows.push_back(row_named(value));
+  } else if (word == "--kind") {
+    const auto found = std::find(kRayKinds.begin(), kRayKinds.end(), value);
+    if (found == kRayKinds.end())
+      return false;
+    o.kinds.push_back(static_cast<std::size_t>(found - kRayKinds.begin()));
+  } else if (word == "--size") {
+    o.size = std::atoi(value.c_str());
+  } else if (word == "--rounds") {
+    o.rounds = std::atoi(value.c_str());
+  } else if (word == "--scenes") {
+    o.scenes = value;
+  } else {
+    return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+bool parse(int argc, char** argv, Options& o) {
+  for (int i = 1; i < argc; i += 2)
+    if (i + 1 == argc || !set_option(argv[i], argv[i + 1], o))
+      return false;
+  if (o.rows.empty())
+    o.rows = kRows;
+  if (o.kinds.empty())
+    for (std::size_t k = 0; k < kRayKinds.size(); ++k)
+      o.kinds.push_back(k);
+  return o.size >= 32 && o.size <= 16384 && o.rounds >= 1;
+}
+
+}  // namespace grelha::perf
