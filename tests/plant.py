@@ -35,15 +35,15 @@ FAULTS = [
     Fault("no growth of boxes", "kernel/grid/plan.cpp", "return reach * 256 / 16777216;", "return reach * 0;",
           "grid", "Pads.*"),
     Fault("< for <= in the walk", "kernel/trace/packet_traversal.hpp", "slice <= last;", "slice < last;", "walk", "Isa/Walk.*"),
-    Fault("adding up instead of computing again", "kernel/trace/abreast.hpp", "t[a] = (plane - load<Lanes>(now[Course::kPlace + a])) * inverse;",
+    Fault("adding up instead of computing again", "kernel/trace/abreast.hpp", "t[a] = (plane - c.place[a]) * c.inverse[a];",
           """t[a] = [&] {
-        const float from = load<Lanes>(now[Course::kPlace + a]), to = plane, step = inverse;
+        const float from = c.place[a], to = plane, step = c.inverse[a];
         float k = to > from ? __builtin_ceilf(from) : __builtin_floorf(from), sum = (k - from) * step;
         for (; k < to; ++k) sum += step;
         for (; k > to; --k) sum -= step;
         return sum;
       }();""", "stability", ROW + "resolution_at_its_bounds"),
-    Fault("contraction", "CMakeLists.txt", "-ffp-contract=off)", "-ffp-contract=fast)", "variants", "*ReturnTheScalarBits*", simd=True),
+    Fault("contraction", "CMakeLists.txt", "-Wshadow -ffp-contract=off", "-Wshadow -ffp-contract=fast", "variants", "*ReturnTheScalarBits*", simd=True),
     Fault("unshuffled light samples", "kernel/render/sampling.hpp", "if (plan.kind == SamplePlan::kUnshuffled) return",
           "if (plan.kind != SamplePlan::kSobol) return", "stability", "Rows/StabilityOfPictures.NoPixelIsWrong/correlated_samples"),
     Fault("skipping a slice too far", "kernel/trace/packet_traversal.hpp", ": nearest - 1;", ": nearest;", "walk", "Isa/Walk.*"),
