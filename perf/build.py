@@ -43,7 +43,8 @@ def write_csv(rows, path):
         table = csv.writer(f, lineterminator="\n")
         table.writerow(["scene", "primitives", *(c.replace(" ", "_") for c in columns)])
         for scene, r in rows.items():
-            table.writerow([scene, int(r["primitives"]), *(f"{r[c]:.4g}" if c in r else "" for c in columns)])
+            figures = (f"{r[c]:.4g}" if c in r else "" for c in columns)
+            table.writerow([scene, int(r["primitives"]), *figures])
 
 
 def rows_from_csv():
@@ -57,7 +58,9 @@ def rows_from_csv():
 
 
 def draw(rows, path):
-    threads = sorted({int(m[1]) for r in rows.values() for k in r if (m := re.match(r"grelha (\d+) least ms", k))})
+    threads = sorted({
+        int(m[1]) for r in rows.values() for k in r
+        if (m := re.match(r"grelha (\d+) least ms", k))})
     fig, panels = plt.subplots(1,
                                len(threads) + 1,
                                figsize=(4.2 * len(threads) + 5, 1.4 + .5 * len(rows)),
@@ -103,8 +106,10 @@ def draw(rows, path):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0], epilog="Other options go to the benchmark.")
-    parser.add_argument("--program", default=ROOT / "build/release/grelha", help="the benchmark stands beside it [build/release/grelha]")
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0],
+                                     epilog="Other options go to the benchmark.")
+    parser.add_argument("--program", default=ROOT / "build/release/grelha",
+                        help="the benchmark stands beside it [build/release/grelha]")
     parser.add_argument("--quick", action="store_true", help="two small scenes, two rounds")
     parser.add_argument("--draw", action="store_true", help=DRAW_HELP)
     asked, rest = parser.parse_known_args()
@@ -116,14 +121,16 @@ def main():
         rest = ["--scene", "balls 3", "--scene", "mount 5", "--rounds", "2", *rest]
     figures = folder / "build.json"
     figures.unlink(missing_ok=True)
-    done = subprocess.run([folder / "build", f"--benchmark_out={figures}", "--benchmark_out_format=json", *rest])
+    done = subprocess.run([
+        folder / "build", f"--benchmark_out={figures}", "--benchmark_out_format=json", *rest])
     if done.returncode or not figures.exists():
         sys.exit(done.returncode or 1)
     rows = rows_of(figures)
     if not rows:
         sys.exit(1)
     docs = ROOT / "docs" if not rest else None
-    table, picture = (docs or folder) / "build.csv", (docs / "images" if docs else folder) / "build.svg"
+    table = (docs or folder) / "build.csv"
+    picture = (docs / "images" if docs else folder) / "build.svg"
     write_csv(rows, table)
     draw(rows, picture)
     print(f"\n{table}, {picture}")

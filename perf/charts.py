@@ -43,9 +43,11 @@ class Plan:
     quick: bool = True
 
 
-FULL = Plan(rounds=5, seconds=12, size=128, side=256, scenes=99, settings=99, reference=16384, quick=False)
+FULL = Plan(rounds=5, seconds=12, size=128, side=256, scenes=99, settings=99, reference=16384,
+            quick=False)
 QUICK = Plan(rounds=2, seconds=.5, size=64, side=128, scenes=99, settings=4, reference=4096)
-SMOKE = Plan(rounds=1, seconds=0, size=16, side=16, scenes=1, settings=3, reference=64)  # of the tests: does it run at all
+# of the tests: does it run at all
+SMOKE = Plan(rounds=1, seconds=0, size=16, side=16, scenes=1, settings=3, reference=64)
 
 
 def write_csv(path, header, rows):
@@ -63,7 +65,10 @@ def spent():
 def measured(name, module, shop, plan, kept):
     start, cpu = time.monotonic(), spent()
     result = module.measure(shop, plan)
-    print(f"{name}: {time.monotonic() - start:.0f} s, of it {spent() - cpu:.0f} CPU seconds of what was measured", flush=True)
+    print(
+        f"{name}: {time.monotonic() - start:.0f} s, of it {spent() - cpu:.0f} CPU seconds of what "
+        "was measured",
+        flush=True)
     if result is None:
         kept.unlink(missing_ok=True)
     else:
@@ -74,7 +79,8 @@ def measured(name, module, shop, plan, kept):
 def wrapped(text):
     """Its paragraphs in lines; tables as they are."""
     fill = textwrap.TextWrapper(width=100, break_long_words=False, break_on_hyphens=False).fill
-    return "\n\n".join(block if block.startswith("|") else fill(block) for block in text.split("\n\n"))
+    return "\n\n".join(block if block.startswith("|") else fill(block)
+                       for block in text.split("\n\n"))
 
 
 def known(name, module, kept, out):
@@ -96,7 +102,8 @@ def known(name, module, kept, out):
 
 def draw_all(charts, out, folder):
     for chart in charts:
-        draw(chart, out / "images" / f"charts-{chart['name']}.svg", folder / f"charts-{chart['name']}.png")
+        draw(chart, out / "images" / f"charts-{chart['name']}.svg",
+             folder / f"charts-{chart['name']}.png")
 
 
 def make(name, shop, asked, plan, out):
@@ -125,12 +132,15 @@ def make(name, shop, asked, plan, out):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--program", default=ROOT / "build/release/grelha", help="[build/release/grelha]")
+    parser.add_argument("--program", default=ROOT / "build/release/grelha",
+                        help="[build/release/grelha]")
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"{', '.join(NAMES)} [all]")
-    parser.add_argument("--quick", action="store_true", help="three minutes instead of thirty; nothing kept in docs/")
+    parser.add_argument("--quick", action="store_true",
+                        help="three minutes instead of thirty; nothing kept in docs/")
     parser.add_argument("--draw", action="store_true", help=DRAW_HELP)
     parser.add_argument("--smoke", action="store_true", help=argparse.SUPPRESS)
-    parser.add_argument("--rounds", type=int, help="renders of each point, the least time counts [5; quick 2]")
+    parser.add_argument("--rounds", type=int,
+                        help="renders of each point, the least time counts [5; quick 2]")
     asked = parser.parse_args()
     if unknown := set(asked.names) - set(NAMES):
         parser.error(f"no such chart: {', '.join(sorted(unknown))}; there are {', '.join(NAMES)}")

@@ -3,9 +3,10 @@
 
     ./run perf frame [--rounds N] [--only profile|povray] [--keep] [--draw]
 
-Times are CPU seconds where one thread renders and seconds by the clock where all do; the least of several runs taking turns, fewer of
-long ones. POV-Ray draws the same scenes, converted by lib/nff_to_pov.py; how alike its pictures are is measured. frame.cpp measures
-what a picture's rays cost alone.
+Times are CPU seconds where one thread renders and seconds by the clock where all do; the least of
+several runs taking turns, fewer of long ones. POV-Ray draws the same scenes, converted by
+lib/nff_to_pov.py; how alike its pictures are is measured. frame.cpp measures what a picture's rays
+cost alone.
 """
 import os
 import pathlib
@@ -25,7 +26,8 @@ from nff_to_pov import convert
 
 SIDE, DEPTH = 512, 5
 LONG = 8  # seconds of rendering a thing is given; at least one run, at most as many as rounds
-SCENES = [("balls 4", ("balls", 4), 1, (12, 2.4)), ("mount 8", ("mount", 8), 20, (12, 2)), ("Distant", ("distant", 3), 1, (20, 2.4))]
+SCENES = [("balls 4", ("balls", 4), 1, (12, 2.4)), ("mount 8", ("mount", 8), 20, (12, 2)),
+          ("Distant", ("distant", 3), 1, (20, 2.4))]
 SPREAD = ("least", "median", "most")  # of all runs, from file to file
 PHASES = ("camera", "primary", "bounce", "surface", "light", "shadow", "children", "sums")
 PLAIN = ["--samples", "1", "--lens", "0"]
@@ -35,10 +37,13 @@ def cases(side, lens):
     """title, ours, POV-Ray's options, what its scene needs"""
     aperture, focus = lens
     return [("plain", PLAIN, [], {}),
-            ("anti-aliased, method 1", ["--lens", "0", "--aa", "adaptive:0.2,2"], ["+A0.3", "+R3", "+AM1"], {}),
-            ("anti-aliased, method 2", ["--lens", "0", "--aa", "adaptive:0.3,3"], ["+A0.3", "+R3", "+AM2"], {}),
+            ("anti-aliased, method 1", ["--lens", "0", "--aa", "adaptive:0.2,2"],
+             ["+A0.3", "+R3", "+AM1"], {}),
+            ("anti-aliased, method 2", ["--lens", "0", "--aa", "adaptive:0.3,3"],
+             ["+A0.3", "+R3", "+AM2"], {}),
             ("area light 4 x 4", [*PLAIN, "--shadows", f"area:{side},4"], [], {"area": (side, 4)}),
-            ("lens, 32 samples", ["--samples", "32", "--lens", f"{aperture},{focus},32"], [], {"lens": (aperture, focus, 32)})]
+            ("lens, 32 samples", ["--samples", "32", "--lens", f"{aperture},{focus},32"], [],
+             {"lens": (aperture, focus, 32)})]
 
 
 class Povray:
@@ -48,17 +53,24 @@ class Povray:
     def render(self, text, options, threads):
         (self.folder / "scene.pov").write_text(text)
         start = time.monotonic()
-        done = subprocess.run([self.program, "+Iscene.pov", "+Opov.png", f"+W{SIDE}", f"+H{SIDE}", f"+WT{threads}", "-D", "-V", "+FN8", "+BM2",
-                               "File_Gamma=1.0", *options], cwd=self.folder, env={**os.environ, "HOME": str(self.folder)}, stderr=subprocess.PIPE, text=True)
+        done = subprocess.run(
+            [self.program, "+Iscene.pov", "+Opov.png", f"+W{SIDE}", f"+H{SIDE}", f"+WT{threads}",
+             "-D", "-V", "+FN8", "+BM2", "File_Gamma=1.0", *options],
+            cwd=self.folder, env={**os.environ, "HOME": str(self.folder)}, stderr=subprocess.PIPE,
+            text=True)
         whole, told = time.monotonic() - start, done.stderr
-        trace = re.search(r"Trace Time:.*\(([\d.]+) seconds\)\s+using \d+ thread\(s\) with ([\d.]+) CPU-seconds", told)
+        trace = re.search(
+            r"Trace Time:.*\(([\d.]+) seconds\)\s+using \d+ thread\(s\) with ([\d.]+) CPU-seconds",
+            told)
         if done.returncode or not trace:
             sys.exit(told)
         parse = re.search(r"Parse Time:.*\(([\d.]+) seconds\)", told)
-        rays = int(re.search(r"Rays: +(\d+)", told)[1]) + int((re.search(r"Shadow Ray Tests: +(\d+)", told) or [0, 0])[1])
+        shadows = re.search(r"Shadow Ray Tests: +(\d+)", told) or [0, 0]
+        rays = int(re.search(r"Rays: +(\d+)", told)[1]) + int(shadows[1])
         samples = re.search(r"Smpls/Pxl: ([\d.]+)", told)
-        return {"clock": float(trace[1]), "cpu": float(trace[2]), "whole": whole, "parse": float(parse[1]), "rays": rays,
-                "samples": float(samples[1])}
+        return {
+            "clock": float(trace[1]), "cpu": float(trace[2]), "whole": whole,
+            "parse": float(parse[1]), "rays": rays, "samples": float(samples[1])}
 
 
 def least(old, new):
@@ -67,14 +79,18 @@ def least(old, new):
 
 def grelha(bench, scene, options, threads):
     start = time.monotonic()
-    stats = bench.render(scene, "--size", f"{SIDE}x{SIDE}", "--depth", DEPTH, "--threads", threads, *options, picture=bench.folder / "ours.png")
+    stats = bench.render(scene, "--size", f"{SIDE}x{SIDE}", "--depth", DEPTH, "--threads", threads,
+                         *options, picture=bench.folder / "ours.png")
     whole, s = time.monotonic() - start, stats["seconds"]
-    return {"clock": s["render"], "cpu": s["render_cpu"], "whole": whole, "load": s["load"], "build": s["build"], "write": s["write"],
-            "rays": sum(stats["rays"].values()), "samples": stats["rays"]["primary"] / SIDE ** 2, **stats["phases"]}
+    return {
+        "clock": s["render"], "cpu": s["render_cpu"], "whole": whole, "load": s["load"],
+        "build": s["build"], "write": s["write"], "rays": sum(stats["rays"].values()),
+        "samples": stats["rays"]["primary"] / SIDE**2, **stats["phases"]}
 
 
 def alike(bench):
-    ours, theirs = (plt.imread(bench.folder / f)[..., :3].astype(float) for f in ("ours.png", "pov.png"))
+    ours, theirs = (plt.imread(bench.folder / f)[..., :3].astype(float)
+                    for f in ("ours.png", "pov.png"))
     return float(np.sqrt(np.mean((ours - theirs) ** 2)))
 
 
@@ -84,7 +100,8 @@ def compare(bench, povray, name, title, scene, ours, options, extra):
     spent, rounds, got = 0, 0, {}
     while rounds < bench.rounds and (rounds == 0 or spent * (rounds + 1) / rounds < LONG):
         for threads in (1, cores()):
-            for who, run in (("ours", lambda: grelha(bench, scene, ours, threads)), ("pov", lambda: povray.render(text, options, threads))):
+            for who, run in (("ours", lambda: grelha(bench, scene, ours, threads)),
+                             ("pov", lambda: povray.render(text, options, threads))):
                 got[who, threads] = least(got.get((who, threads)), run())
                 spent += got[who, threads]["clock"]
         rounds += 1
@@ -129,7 +146,8 @@ def main():
         make_profile(bench, scenes)
     povray = Povray(bench.folder)
     if asked.only == "profile" or not povray.program:
-        print("no comparison: POV-Ray " + ("was not asked" if povray.program else "is not installed"))
+        print("no comparison: POV-Ray "
+              + ("was not asked" if povray.program else "is not installed"))
         return
     results = []
     for name, scene, side, lens in scenes:
@@ -137,7 +155,10 @@ def main():
             got = compare(bench, povray, name, title, scene, ours, options, extra)
             results.append((name, title, got))
             o, p = got["ours", 1], got["pov", 1]
-            print(f"{name}, {title}: ours {o['cpu']:.3f} s, POV-Ray {p['cpu']:.3f} s, RMSE {got['rmse']:.3f}, {got['rounds']} rounds", flush=True)
+            print(
+                f"{name}, {title}: ours {o['cpu']:.3f} s, POV-Ray {p['cpu']:.3f} s, RMSE "
+                f"{got['rmse']:.3f}, {got['rounds']} rounds",
+                flush=True)
     bench.section(tell_povray(bench, results), "povray")
 
 
@@ -149,9 +170,12 @@ def make_profile(bench, scenes):
         alone[name] = bench.tool(scene, 8 * bench.rounds)
     draw(bench, phases)
     columns = ("load", "build", *PHASES, "other", "write", "clock", *SPREAD, "whole", "rays")
-    bench.write_csv("frame-profile", ["scene", *columns, "trace_alone_cpu", "render_cpu", "render", "render_two_threads"],
-                    [[name, *[f"{p[c]:.5g}" if c != "rays" else p[c] for c in columns], alone[name]["trace"], alone[name]["render cpu"], alone[name]["render"],
-                      alone[name]["render two threads"]] for name, p in phases.items()])
+    bench.write_csv(
+        "frame-profile",
+        ["scene", *columns, "trace_alone_cpu", "render_cpu", "render", "render_two_threads"],
+        [[name, *[f"{p[c]:.5g}" if c != "rays" else p[c] for c in columns], alone[name]["trace"],
+          alone[name]["render cpu"], alone[name]["render"], alone[name]["render two threads"]]
+         for name, p in phases.items()])
     bench.section(tell_profile(phases, alone), "profile")
 
 
@@ -185,28 +209,37 @@ def tell_povray(bench, results):
         rows.setdefault(title, [title]).append(times(p1["cpu"] / o1["cpu"]))
         # POV-Ray counts what it adds to the first ray, and nothing where it adds by other means
         theirs = 32 if title.startswith("lens") else 1 + p1["samples"]
-        for who, threads in got.keys() & {(w, n) for w in ("ours", "pov") for n in (1, all_threads)}:
+        asked = {(w, n) for w in ("ours", "pov") for n in (1, all_threads)}
+        for who, threads in got.keys() & asked:
             r = got[who, threads]
-            csv_rows.append([name, title, "Grelha" if who == "ours" else "POV-Ray", threads, r["clock"], r["cpu"], f"{r['whole']:.4g}", r["rays"],
-                             f"{o1['samples'] if who == 'ours' else theirs:.3g}", f"{got['rmse']:.4f}", got["rounds"]])
-    bench.write_csv("frame-povray", ["scene", "case", "program", "threads", "render_seconds", "render_cpu_seconds", "whole_seconds", "rays",
-                                     "samples_per_pixel", "rmse", "rounds"], sorted(csv_rows, key=lambda r: ([n for n, *_ in SCENES].index(r[0]), r[1:4])))
+            csv_rows.append([
+                name, title, "Grelha" if who == "ours" else "POV-Ray", threads, r["clock"],
+                r["cpu"], f"{r['whole']:.4g}", r["rays"],
+                f"{o1['samples'] if who == 'ours' else theirs:.3g}", f"{got['rmse']:.4f}",
+                got["rounds"]])
+    bench.write_csv(
+        "frame-povray",
+        ["scene", "case", "program", "threads", "render_seconds", "render_cpu_seconds",
+         "whole_seconds", "rays", "samples_per_pixel", "rmse", "rounds"],
+        sorted(csv_rows, key=lambda r: ([n for n, *_ in SCENES].index(r[0]), r[1:4])))
     return povray_section(list(dict.fromkeys(name for name, *_ in results)), rows.values())
 
 
 def povray_section(names, rows):
     return f"""### Beside POV-Ray
 
-POV-Ray's CPU seconds of rendering over Grelha's, one thread of the same machine, {date.today():%B %Y}.
-Both programs take turns on the same geometry, lights, mirrors, depth ({DEPTH}) and size. Seconds, those
-of {cores()} threads, samples a pixel and the RMSE between the pictures are in [numbers](frame-povray.csv).
+POV-Ray's CPU seconds of rendering over Grelha's, one thread of the same machine,
+{date.today():%B %Y}. Both programs take turns on the same geometry, lights, mirrors, depth
+({DEPTH}) and size. Seconds, those of {cores()} threads, samples a pixel and the RMSE between the
+pictures are in [numbers](frame-povray.csv).
 
 {table(["", *names], rows)}
 
 - POV-Ray 3.7 is Debian's, with its BSP tree (`+BM2`), as fast as its default or faster.
-- Anti-aliased: `+A0.3 +R3` by method 1 (9 samples where neighbours differ) and 2 (recursive). Grelha
-  takes `--aa adaptive:0.2,2` and `0.3,3`, settings that spend about as many samples.
-- Area light: 16 shadow rays a point and light (no `adaptive`). Lens: 32 rays a pixel (`variance 0`).
+- Anti-aliased: `+A0.3 +R3` by method 1 (9 samples where neighbours differ) and 2 (recursive).
+  Grelha takes `--aa adaptive:0.2,2` and `0.3,3`, settings that spend about as many samples.
+- Area light: 16 shadow rays a point and light (no `adaptive`). Lens: 32 rays a pixel
+  (`variance 0`).
 
 `./run perf frame --keep` makes these tables, the chart and the numbers.
 """

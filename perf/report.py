@@ -3,7 +3,8 @@
 
     ./run perf report [--rounds N] [--scenes DIR] [--keep] [--draw]
 
-DIR holds the course's scene files; where one is missing its generated twin stands in. report.cpp says what is timed.
+DIR holds the course's scene files; where one is missing its generated twin stands in. report.cpp
+says what is timed.
 """
 import pathlib
 import sys
@@ -13,18 +14,24 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "lib"))
 from bench import COLOURS, ROOT, Bench, arguments, cores, cpu_name, plt, read_csv, table, times
 from chart import set_axis
 
-# name, file of the course, generator and size, samples a pixel; then the report's own seconds without grid, with grid, with grid and threads
+# name, file of the course, generator and size, samples a pixel; then the report's own seconds
+# without grid, with grid, with grid and threads
 SCENES = [
     ("balls high", "course-nff/balls_high.nff", ("balls", 4), 1, (12 * 60 + 14, 15, 1.5)),
-    ("mount very high", "course-nff/mount_very_high.nff", ("mount", 7), 1, (2 * 3600 + 21 * 60 + 3, 32, 5.5)),
+    ("mount very high", "course-nff/mount_very_high.nff", ("mount", 7), 1,
+     (2 * 3600 + 21 * 60 + 3, 32, 5.5)),
     ("BFBoat", "course-nff/p3d1819-rtx/BFboat.nff", ("boat", 10), 1, (14 * 60 + 45, 15, 1.7)),
-    ("Distant, lens 32", "course-nff/p3d1819-rtx/distant_balls.nff", ("distant", 3), 32, (29, 26, 5.3)),
+    ("Distant, lens 32", "course-nff/p3d1819-rtx/distant_balls.nff", ("distant", 3), 32,
+     (29, 26, 5.3)),
 ]
-# the report's lens for Distant stands in no file: sharp at the nearest ball, as a comment in it says
+# the report's lens for Distant stands in no file: sharp at the nearest ball, as a comment in it
+# says
 LENS = "aperture 20\nfocal 0.61\n"
-# title, key of report.cpp, whether all threads share the rest of the picture, column of the report's figures
-STEPS = [("no grid", "no grid", False, 0), ("grid", "grid", False, 1), ("grid, mailboxes", "mailboxes", False, None),
-         ("grid, threads", "grid threads", True, 2), ("packets", "packets", False, None), ("packets, threads", "packets threads", True, None)]
+# title, key of report.cpp, whether all threads share the rest of the picture, column of the
+# report's figures
+STEPS = [("no grid", "no grid", False, 0), ("grid", "grid", False, 1),
+         ("grid, mailboxes", "mailboxes", False, None), ("grid, threads", "grid threads", True, 2),
+         ("packets", "packets", False, None), ("packets, threads", "packets threads", True, None)]
 
 
 def find(bench, scenes, name, course, generator, samples):
@@ -43,7 +50,8 @@ def find(bench, scenes, name, course, generator, samples):
 
 def main():
     parser = arguments(__doc__, rounds=5)
-    parser.add_argument("--scenes", type=pathlib.Path, default=ROOT.parent / "shared/scenes", help="folder of the course's scenes")
+    parser.add_argument("--scenes", type=pathlib.Path, default=ROOT.parent / "shared/scenes",
+                        help="folder of the course's scenes")
     asked = parser.parse_args()
     bench = Bench("report", asked)
     if asked.draw:
@@ -61,7 +69,9 @@ def main():
                              f"{ours[-1]:.4g}", theirs[column] if column is not None else ""])
         results.append((name, ours, theirs))
         print(f"{name}: done ({source})", flush=True)
-    bench.write_csv("report", ["scene", "source", "step", "every_nth_ray", "seconds", "report_seconds"], csv_rows)
+    bench.write_csv("report",
+                    ["scene", "source", "step", "every_nth_ray", "seconds", "report_seconds"],
+                    csv_rows)
     draw(bench, results)
     bench.section(tell(results))
 
@@ -81,10 +91,10 @@ def tell(results):
     header = [words for name, *_ in results for words in (name, "the report")]
     return f"""## The report's table
 
-Four scenes of the student report of 2019 at 512 x 512, paths of at most 6 rays. Ours are measured on
-a virtual {cpu_name()} with {cores()} threads, {date.today():%B %Y}; the report's are its
-own, of an i7-8750H with twelve threads. The machines differ, so the table has gains over the row
-`grid` of the same column. [report.csv](report.csv) and the chart have seconds.
+Four scenes of the student report of 2019 at 512 x 512, paths of at most 6 rays. Ours are measured
+on a virtual {cpu_name()} with {cores()} threads, {date.today():%B %Y}; the report's are
+its own, of an i7-8750H with twelve threads. The machines differ, so the table has gains over the
+row `grid` of the same column. [report.csv](report.csv) and the chart have seconds.
 
 {table(["", *header], rows)}
 

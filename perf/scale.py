@@ -3,8 +3,9 @@
 
     ./run perf scale [--rounds N] [--quick] [--keep] [--draw]
 
-Whole runs of the program on scenes of its own generators; times a ray from the phases that --stats keeps, one thread.
-The largest scenes are files of up to a gigabyte and take up to 4 GB of memory; each is deleted once measured. --quick leaves them out.
+Whole runs of the program on scenes of its own generators; times a ray from the phases that --stats
+keeps, one thread. The largest scenes are files of up to a gigabyte and take up to 4 GB of memory;
+each is deleted once measured. --quick leaves them out.
 """
 import math
 import pathlib
@@ -30,27 +31,33 @@ def least(old, new):
 
 def ray_counts(stats):
     r = stats["rays"]
-    return {"primary": r["primary"], "bounce": r["reflection"] + r["refraction"], "shadow": r["shadow"]}
+    return {
+        "primary": r["primary"], "bounce": r["reflection"] + r["refraction"], "shadow": r["shadow"]}
 
 
 def point(stats):
     """Nanoseconds a ray by kind and of all, and what a build takes."""
     rays = ray_counts(stats)
     # a busy machine stretches the clock's time, not the processor's
-    idle = min(1, stats["seconds"]["render_cpu"] / stats["seconds"]["render"]) if stats["threads"] == 1 else 1
+    idle = 1
+    if stats["threads"] == 1:
+        idle = min(1, stats["seconds"]["render_cpu"] / stats["seconds"]["render"])
     spent = {k: stats["phases"][k] * idle for k in KINDS}
     out = {k: spent[k] / rays[k] * 1e9 for k in KINDS if rays[k]}
     out["all"] = sum(spent.values()) / sum(rays.values()) * 1e9
     scene = stats["scene"]
-    out |= {"primitives": scene["s"] + scene["p"], "rays": sum(rays.values()), "build": stats["seconds"]["build"], "load": stats["seconds"]["load"],
-            "render": stats["seconds"]["render"], "write": stats["seconds"]["write"],
-            "bytes": (stats["bytes"]["geometry"] + stats["bytes"]["grids"]) / (scene["s"] + scene["p"])}
+    out |= {
+        "primitives": scene["s"] + scene["p"], "rays": sum(rays.values()),
+        "build": stats["seconds"]["build"], "load": stats["seconds"]["load"],
+        "render": stats["seconds"]["render"], "write": stats["seconds"]["write"],
+        "bytes": (stats["bytes"]["geometry"] + stats["bytes"]["grids"]) / (scene["s"] + scene["p"])}
     return out
 
 
 def exponent(points, key, low, high):
     """Slope of the straight line through log time over log primitives, least squares."""
-    chosen = [(math.log(p["primitives"]), math.log(p[key])) for size, p in points.items() if low <= size <= high]
+    chosen = [(math.log(p["primitives"]), math.log(p[key])) for size, p in points.items()
+              if low <= size <= high]
     mx, my = (sum(c) / len(chosen) for c in zip(*chosen))
     return sum((x - mx) * (y - my) for x, y in chosen) / sum((x - mx) ** 2 for x, _ in chosen)
 
@@ -61,10 +68,14 @@ def by_primitives(bench, name, sizes):
         scene = bench.scene(name, size)
         rounds = bench.rounds if size < sizes[-1] - 1 else max(2, bench.rounds // 2)
         for _ in range(rounds):
-            points[size] = least(points.get(size), point(bench.render(scene, "--size", f"{SIDE}x{SIDE}", "--threads", 1)))
+            run = bench.render(scene, "--size", f"{SIDE}x{SIDE}", "--threads", 1)
+            points[size] = least(points.get(size), point(run))
         scene.unlink()
         p = points[size]
-        print(f"{name} {size}: {p['primitives']} primitives, {p['all']:.1f} ns a ray, build {p['build']:.4f} s", flush=True)
+        print(
+            f"{name} {size}: {p['primitives']} primitives, {p['all']:.1f} ns a ray, build "
+            f"{p['build']:.4f} s",
+            flush=True)
     return points
 
 
@@ -74,7 +85,8 @@ def by_option(bench, scenes, settings, options, more=1):
     for _ in range(more * bench.rounds):
         for name, path in scenes.items():
             for setting in settings:
-                points[name][setting] = least(points[name].get(setting), point(bench.render(path, *options(setting))))
+                run = bench.render(path, *options(setting))
+                points[name][setting] = least(points[name].get(setting), point(run))
     return points
 
 
@@ -97,7 +109,8 @@ CURVES = [(COLOURS[0], "o", "-"), (COLOURS[1], "s", "-"), (COLOURS[0], "^", ":")
 
 
 def curves(panel, points_by_scene, x, *quantities):
-    """A curve for each scene and quantity: its words, and how it comes of a setting and its point."""
+    """A curve for each scene and quantity: its words, and how it comes of a setting and its
+    point."""
     for quantity, (words, value) in enumerate(quantities):
         for (colour, marker, dash), (name, points) in zip(CURVES[2 * quantity:],
                                                           points_by_scene.items()):
@@ -175,7 +188,8 @@ def draw(bench, growth, threads, sizes, depths):
 
 def main():
     parser = arguments(__doc__, rounds=5)
-    parser.add_argument("--quick", action="store_true", help="no scene of a million primitives or more")
+    parser.add_argument("--quick", action="store_true",
+                        help="no scene of a million primitives or more")
     asked = parser.parse_args()
     bench = Bench("scale", asked)
     if asked.draw:
@@ -186,16 +200,27 @@ def main():
     scenes = {"balls 4": bench.scene("balls", 4), "mount 7": bench.scene("mount", 7)}
     square = f"{SIDE}x{SIDE}"
     counts = sorted({1, *(2 ** k for k in range(10) if 2 ** k <= cores()), cores()})
-    threads = by_option(bench, scenes, counts, lambda n: ("--size", square, "--threads", n), more=8)  # what other programs disturb most
-    sizes = by_option(bench, scenes, SIDES[:-1] if asked.quick else SIDES, lambda n: ("--size", f"{n}x{n}", "--threads", 1))
-    depths = by_option(bench, scenes, DEPTHS, lambda n: ("--size", square, "--threads", 1, "--depth", n))
+    # what other programs disturb most
+    threads = by_option(bench, scenes, counts, lambda n: ("--size", square, "--threads", n), more=8)
+    sizes = by_option(bench, scenes, SIDES[:-1] if asked.quick else SIDES,
+                      lambda n: ("--size", f"{n}x{n}", "--threads", 1))
+    depths = by_option(bench, scenes, DEPTHS,
+                       lambda n: ("--size", square, "--threads", 1, "--depth", n))
 
-    rows = [["primitives", name, s, p] for name, points in growth.items() for s, p in points.items()]
-    rows += [[what, name, s, p] for what, all_points in (("threads", threads), ("side", sizes), ("depth", depths))
+    rows = [["primitives", name, s, p] for name, points in growth.items()
+            for s, p in points.items()]
+    rows += [[what, name, s, p]
+             for what, all_points in (("threads", threads), ("side", sizes), ("depth", depths))
              for name, points in all_points.items() for s, p in points.items()]
-    keys = ["primitives", "rays", "primary", "bounce", "shadow", "all", "load", "build", "render", "write", "bytes"]
-    bench.write_csv("scale", ["against", "scene", "setting", *[f"{k}_ns" if k in (*KINDS, "all") else k for k in keys]],
-                    [[what, name, s, *[f"{p[k]:.5g}" if isinstance(p.get(k), float) else p.get(k, "") for k in keys]] for what, name, s, p in rows])
+    keys = [
+        "primitives", "rays", "primary", "bounce", "shadow", "all", "load", "build", "render",
+        "write", "bytes"]
+    bench.write_csv(
+        "scale",
+        ["against", "scene", "setting", *[f"{k}_ns" if k in (*KINDS, "all") else k for k in keys]],
+        [[what, name, s,
+          *[f"{p[k]:.5g}" if isinstance(p.get(k), float) else p.get(k, "") for k in keys]]
+         for what, name, s, p in rows])
     draw(bench, growth, threads, sizes, depths)
 
     bench.section(tell(growth, threads))
@@ -205,10 +230,12 @@ def tell(growth, threads):
     last_balls, last_mount = max(growth["balls"]), max(growth["mount"])
     fits = (("balls", 3, last_balls), ("mount", 3, last_mount), ("mount", 7, last_mount))
     rows = [[f"{name} {low} to {high}",
-             *(f"{exponent(growth[name], k, low, high):.2f}" for k in (*KINDS, "all", "build", "load"))]
+             *(f"{exponent(growth[name], k, low, high):.2f}"
+               for k in (*KINDS, "all", "build", "load"))]
             for name, low, high in fits]
     most = max(threads["balls 4"])
-    both = ", ".join(f"{name} {p[1]['render'] / p[most]['render']:.2f}" for name, p in threads.items())
+    both = ", ".join(f"{name} {p[1]['render'] / p[most]['render']:.2f}"
+                     for name, p in threads.items())
     return f"""## How time grows
 
 ![time against primitives, threads, pixels and depth](images/scale.svg)

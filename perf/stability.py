@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 """What breaks ray tracers, counted: Grelha beside Embree, as it comes and robust.
 
-    ./run perf stability [--rays 1000000] [--pixels 128] [--keep] [options of the benchmark: --rows PART OF A NAME, --seed N]
+    ./run perf stability [--rays 1000000] [--pixels 128] [--keep]
+                         [options of the benchmark: --rows PART OF A NAME, --seed N]
 
-Runs perf/stability.cpp, prints its tables and says which row is not as it must be: of Grelha's answers none may be wrong. With --keep
-docs/stability.csv and a section of docs/numerics.md are written; otherwise the CSV lies beside the program.
+Runs perf/stability.cpp, prints its tables and says which row is not as it must be: of Grelha's
+answers none may be wrong. With --keep docs/stability.csv and a section of docs/numerics.md are
+written; otherwise the CSV lies beside the program.
 """
 import argparse
 import csv
@@ -30,18 +32,24 @@ def cell(counts):
         return ""
     if counts["aborts"]:
         return "aborts"
-    return " + ".join(number(counts[k]) if k == "lost" else f"{number(counts[k])} {k}" for k in KINDS if counts[k]) or "0"
+    return " + ".join(
+        number(counts[k]) if k == "lost" else f"{number(counts[k])} {k}"
+        for k in KINDS if counts[k]) or "0"
 
 
 def rays_table(rows):
     names = [t for t in TRACERS if any(t in r["tracers"] for r in rows)]
-    return bench.table(["row", "condition", "answers", *names],
-                       [[r["name"], r["condition"], number(r["tracers"]["grelha"]["answers"]), *(cell(r["tracers"].get(t)) for t in names)] for r in rows])
+    return bench.table(
+        ["row", "condition", "answers", *names],
+        [[r["name"], r["condition"], number(r["tracers"]["grelha"]["answers"]),
+          *(cell(r["tracers"].get(t)) for t in names)] for r in rows])
 
 
 def pictures_table(rows):
-    return bench.table(["row", "condition", "truth", "pixels", "wrong"],
-                       [[r["name"], r["condition"], r["truth"], number(r["pixels"]), number(r["wrong"])] for r in rows])
+    return bench.table(
+        ["row", "condition", "truth", "pixels", "wrong"],
+        [[r["name"], r["condition"], r["truth"], number(r["pixels"]), number(r["wrong"])]
+         for r in rows])
 
 
 def costs_table(rows):
@@ -71,15 +79,22 @@ def write_csv(data, path):
         table.writerow(["row", "condition", "truth", "tracer", "answers", *KINDS, "aborts"])
         for r in data.get("rows", []):
             for tracer, c in r["tracers"].items():
-                table.writerow([r["name"], r["condition"], r["truth"], tracer, c["answers"], *(c[k] for k in KINDS), c["aborts"]])
+                table.writerow([
+                    r["name"], r["condition"], r["truth"], tracer, c["answers"],
+                    *(c[k] for k in KINDS), c["aborts"]])
         for r in data.get("pictures", []):
-            table.writerow([r["name"], r["condition"], r["truth"], "grelha", r["pixels"], "", r["wrong"], "", ""])
+            table.writerow([
+                r["name"], r["condition"], r["truth"], "grelha", r["pixels"], "", r["wrong"], "",
+                ""])
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0], epilog="Other options go to the benchmark.")
-    parser.add_argument("--program", default=bench.ROOT / "build/release/grelha", help="the benchmark stands beside it [build/release/grelha]")
-    parser.add_argument("--keep", action="store_true", help="write docs/stability.csv and the section of docs/numerics.md")
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0],
+                                     epilog="Other options go to the benchmark.")
+    parser.add_argument("--program", default=bench.ROOT / "build/release/grelha",
+                        help="the benchmark stands beside it [build/release/grelha]")
+    parser.add_argument("--keep", action="store_true",
+                        help="write docs/stability.csv and the section of docs/numerics.md")
     asked, rest = parser.parse_known_args()
     folder = pathlib.Path(asked.program).resolve().parent
     done = subprocess.run([folder / "stability", *rest], stdout=subprocess.PIPE, text=True)
@@ -88,17 +103,23 @@ def main():
     data = json.loads(done.stdout)
     parts = []
     if "rows" in data:
-        command = f"./run perf stability --rays {data['rays']} --pixels {data['pixels']} --seed {data['seed']}"
-        parts.append(f"""Answers that are wrong, each ray asked for its closest hit and for occlusion, in packets and alone; {bench.cpu_name()}, `{command}`.
+        command = (f"./run perf stability --rays {data['rays']} --pixels {data['pixels']} "
+                   f"--seed {data['seed']}")
+        parts.append(f"""\
+Answers that are wrong, each ray asked for its closest hit and for occlusion, in packets and alone;
+{bench.cpu_name()}, `{command}`.
 A bare number counts hits that were lost, *false* those that are false by the bound above,
-*self* those of a surface just left. Embree 3 is Debian's; *aborts*: an assertion of its own ends the program.
+*self* those of a surface just left. Embree 3 is Debian's; *aborts*: an assertion of its own ends
+the program.
 
 {rays_table(data['rows'])}""")
     if "pictures" in data:
         parts.append(f"Pictures, which Grelha alone makes:\n\n{pictures_table(data['pictures'])}")
     if "costs" in data:
-        parts.append("Time of odd rays against that of ordinary ones through 5,000 spheres, in packets and alone (Embree is not asked for what ends it):\n\n"
-                     + costs_table(data["costs"]))
+        parts.append(
+            "Time of odd rays against that of ordinary ones through 5,000 spheres, in packets and "
+            "alone (Embree is not asked for what ends it):\n\n"
+            + costs_table(data["costs"]))
     text = "\n\n".join(parts)
     print(text)
     write_csv(data, (bench.DOCS if asked.keep else folder) / "stability.csv")

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What a ray costs beside Embree, by kind and scene: runs perf/trace.cpp, keeps its figures and draws its ratios.
+"""What a ray costs beside Embree: runs perf/trace.cpp, keeps its figures and draws its ratios.
 
     ./run perf trace [--quick] [--draw] [options of the benchmark: --scene NAME, --kind NAME,
                      --size N, --rounds N, --scenes DIR, ...]
@@ -24,8 +24,9 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "lib"))
 from bench import DRAW_HELP, ROOT, cpu_name, plt, read_csv, table
 from chart import legend_below
 
-FIRST = ["rays", "hits", "disagree", "ns/ray", "tests/ray", "cells/ray", "lanes busy", "fell back", "ratio", "ratio of the best", "ratio to fast",
-         "target"]
+FIRST = [
+    "rays", "hits", "disagree", "ns/ray", "tests/ray", "cells/ray", "lanes busy", "fell back",
+    "ratio", "ratio of the best", "ratio to fast", "target"]
 # Label, then marker and colours (after Okabe and Ito)
 FASTER = ("as a render traces them: faster than Embree", {"marker": "o", "color": "#0072B2"})
 SLOWER = ("as a render traces them: slower than Embree", {"marker": "s", "color": "#D55E00"})
@@ -45,19 +46,24 @@ def cells_of(path):
     for b in json.loads(path.read_text())["benchmarks"]:
         if not b.get("error_occurred") and b["run_type"] == "iteration":
             *scene, kind = b["name"].split("/iterations:")[0].split("/")
-            known = ("repetition_index", "family_index", "per_family_instance_index", "repetitions", "threads", "iterations",
-                     "real_time", "cpu_time")
-            cells["/".join(scene), kind] = {k: v for k, v in b.items() if isinstance(v, (int, float)) and k not in known}
+            known = ("repetition_index", "family_index", "per_family_instance_index", "repetitions",
+                     "threads", "iterations", "real_time", "cpu_time")
+            cells["/".join(scene), kind] = {
+                k: v for k, v in b.items() if isinstance(v, (int, float)) and k not in known}
     return cells
 
 
 def write_csv(cells, path):
-    ways = sorted({k for c in cells.values() for k in c if k.endswith(" ns")}, key=lambda k: (not k.startswith("grelha"), k))
+    ways = sorted({k for c in cells.values() for k in c if k.endswith(" ns")},
+                  key=lambda k: (not k.startswith("grelha"), k))
     with open(path, "w", newline="") as f:
         table = csv.writer(f, lineterminator="\n")
-        table.writerow(["scene", "kind", *(k.replace(" ", "_").replace("/", "_a_") for k in FIRST + ways)])
+        table.writerow([
+            "scene", "kind", *(k.replace(" ", "_").replace("/", "_a_") for k in FIRST + ways)])
         for (scene, kind), c in cells.items():
-            table.writerow([scene, kind, *("" if k not in c else int(c[k]) if k == "rays" else f"{c[k]:.4g}" for k in FIRST + ways)])
+            table.writerow([
+                scene, kind, *("" if k not in c else int(c[k]) if k == "rays" else f"{c[k]:.4g}"
+                               for k in FIRST + ways)])
 
 
 def ratios(cells):
@@ -130,8 +136,10 @@ def draw(cells, path):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0], epilog="Other options go to the benchmark.")
-    parser.add_argument("--program", default=ROOT / "build/release/grelha", help="the benchmark stands beside it [build/release/grelha]")
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0],
+                                     epilog="Other options go to the benchmark.")
+    parser.add_argument("--program", default=ROOT / "build/release/grelha",
+                        help="the benchmark stands beside it [build/release/grelha]")
     parser.add_argument("--quick", action="store_true", help="small pictures, two rounds")
     parser.add_argument("--draw", action="store_true", help=DRAW_HELP)
     asked, rest = parser.parse_known_args()
@@ -142,7 +150,8 @@ def main():
     if asked.quick:
         rest = ["--size", "128", "--rounds", "2", *rest]
     figures = folder / "trace.json"
-    done = subprocess.run([folder / "trace", f"--benchmark_out={figures}", "--benchmark_out_format=json", *rest])
+    done = subprocess.run([
+        folder / "trace", f"--benchmark_out={figures}", "--benchmark_out_format=json", *rest])
     if done.returncode == 2 or not figures.exists():
         sys.exit(done.returncode)
     cells = cells_of(figures)

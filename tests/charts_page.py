@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Moves the mouse onto a point of each chart of report.html, in headless Chromium without a
-network, and looks at what the page then tells; then taps the same points on a window as wide as a phone's.
+network, and looks at what the page then tells; then taps the same points on a window as wide as a
+phone's.
 
     charts_page.py REPORT FOLDER [SCREENSHOT]
 
@@ -20,26 +21,31 @@ import sys
 import time
 
 SKIPPED = 77
-# Of chart i: where the last point of its first series lies in the window, what it should tell and what else lies there
+# Of chart i: where the last point of its first series lies in the window, what it should tell and
+# what else lies there
 AIM = """(() => {
   const chart = built[%d], set = chart.data.datasets[0], at = set.data.length - 1;
   const mark = chart.getDatasetMeta(0).data[at];
   window.scrollBy(0, chart.canvas.getBoundingClientRect().top + mark.y - innerHeight / 4);
   const box = chart.canvas.getBoundingClientRect();
   const there = chart.data.datasets.flatMap((d, k) => d.series ? d.data.filter((_, j) => {
-    const m = chart.getDatasetMeta(k).data[j]; return Math.hypot(m.x - mark.x, m.y - mark.y) < 16; }) : []);
-  return {x: box.left + mark.x, y: box.top + mark.y, title: chart.options.plugins.title.text, commands: there.map(p => p.command),
-          pictures: "picture" in set.data[at] ? 2 : 0};
+    const m = chart.getDatasetMeta(k).data[j];
+    return Math.hypot(m.x - mark.x, m.y - mark.y) < 16; }) : []);
+  return {x: box.left + mark.x, y: box.top + mark.y, title: chart.options.plugins.title.text,
+          commands: there.map(p => p.command), pictures: "picture" in set.data[at] ? 2 : 0};
 })()"""
 LOOK = """new Promise(async done => {
   await new Promise(wait => setTimeout(wait, 60));
   const widths = [];
   for (const id of ["crop", "error"]) {
     const image = document.getElementById(id);
-    if (!image.parentElement.hidden)
-      await Promise.race([image.decode().catch(() => 0), new Promise(late => setTimeout(late, 3000))]), widths.push(image.naturalWidth);
+    if (image.parentElement.hidden) continue;
+    await Promise.race([image.decode().catch(() => 0),
+                        new Promise(late => setTimeout(late, 3000))]);
+    widths.push(image.naturalWidth);
   }
-  done({command: document.getElementById("command").textContent, name: document.getElementById("name").textContent, widths});
+  done({command: document.getElementById("command").textContent,
+        name: document.getElementById("name").textContent, widths});
 })"""
 
 
@@ -73,11 +79,13 @@ class Chromium:
 
     def __init__(self, program, profile):
         (to_read, self.to), (self.back, from_write) = os.pipe(), os.pipe()
-        words = [program, "--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking", "--host-resolver-rules=MAP * ~NOTFOUND",
-                 f"--user-data-dir={profile}", "--window-size=1500,1000", "--remote-debugging-pipe"]
+        words = [
+            program, "--headless", "--no-sandbox", "--disable-gpu",
+            "--disable-background-networking", "--host-resolver-rules=MAP * ~NOTFOUND",
+            f"--user-data-dir={profile}", "--window-size=1500,1000", "--remote-debugging-pipe"]
         shell = ["/bin/bash", "-c", f'exec "$@" 3<&{to_read} 4>&{from_write}', "bash"]
-        self.process = subprocess.Popen([*shell, *words], pass_fds=(to_read, from_write), stdout=subprocess.DEVNULL,
-                                        stderr=subprocess.DEVNULL)
+        self.process = subprocess.Popen([*shell, *words], pass_fds=(to_read, from_write),
+                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         os.close(to_read), os.close(from_write)
         self.rest, self.count, self.session, self.asked = b"", 0, None, []
 
@@ -92,7 +100,9 @@ class Chromium:
 
     def __call__(self, method, **parameters):
         self.count += 1
-        request = {"id": self.count, "method": method, "params": parameters, **({"sessionId": self.session} if self.session else {})}
+        request = {
+            "id": self.count, "method": method, "params": parameters,
+            **({"sessionId": self.session} if self.session else {})}
         os.write(self.to, json.dumps(request).encode() + b"\0")
         while True:
             answer = self.message()
@@ -104,7 +114,8 @@ class Chromium:
                 return answer["result"]
 
     def value(self, expression):
-        told = self("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
+        told = self("Runtime.evaluate", expression=expression, returnByValue=True,
+                    awaitPromise=True)
         if "exceptionDetails" in told:
             sys.exit(f"the page failed: {told['exceptionDetails']}")
         return told["result"].get("value")
@@ -183,10 +194,14 @@ def main():
     browser.open(report.as_uri(), PHONE)
     wrong += lies(browser, PHONE)
     wrong += tells(browser, PHONE)[0]
-    outside = [address for address in browser.asked if not address.startswith(("data:", report.as_uri()))]
+    outside = [
+        address for address in browser.asked if not address.startswith(("data:", report.as_uri()))]
     browser("Browser.close")
     browser.process.wait(20)
-    print(f"{charts} charts of {expected}, {with_pictures} points with pictures, {len(wrong)} wrong, asked for from outside: {outside}")
+    print(
+        f"{charts} charts of {expected}, {with_pictures} points with pictures, {len(wrong)} wrong, "
+        f"asked for from outside: {outside}"
+    )
     for title, seen in wrong:
         print(f"{title}: {seen}")
     sys.exit(bool(wrong or outside or charts != expected or not charts))

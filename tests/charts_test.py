@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What `./run charts` computes, on cases with known answers; a small run of all of it; and its commands, typed in again.
+"""What `./run charts` computes, on known answers; a small run of it; its commands, typed again.
 
     charts_test.py PROGRAM
 
@@ -51,7 +51,8 @@ class Curves(unittest.TestCase):
         self.assertEqual(front, points((1, 9), (2, 4), (4, 1)))
 
     def test_a_power_law_has_its_exponent_as_slope(self):
-        self.assertAlmostEqual(chart.slope(points(*[(x, 3 * x ** -.75) for x in (1, 2, 5, 40)])), -.75)
+        self.assertAlmostEqual(chart.slope(points(*[(x, 3 * x**-.75) for x in (1, 2, 5, 40)])),
+                               -.75)
 
     def test_time_to_an_error_lies_on_the_line_between(self):
         curve = [{"rmse": t ** -.5, "seconds": t} for t in (1, 4, 64)]
@@ -60,8 +61,10 @@ class Curves(unittest.TestCase):
 
     def test_speed_up_tells_of_what_never_arrives_and_of_what_was_there(self):
         goal = {"rmse": .1, "seconds": 8}
-        self.assertEqual(picture.speed_up([{"rmse": .2, "seconds": 1}, {"rmse": .05, "seconds": 4}], goal), "4")
-        self.assertEqual(picture.speed_up([{"rmse": .3, "seconds": 1}, {"rmse": .2, "seconds": 9}], goal), "–")
+        self.assertEqual(
+            picture.speed_up([{"rmse": .2, "seconds": 1}, {"rmse": .05, "seconds": 4}], goal), "4")
+        self.assertEqual(
+            picture.speed_up([{"rmse": .3, "seconds": 1}, {"rmse": .2, "seconds": 9}], goal), "–")
         self.assertEqual(picture.speed_up([{"rmse": .05, "seconds": 2}], goal), "> 4")
 
     def test_rounds_end_with_the_time_they_are_given(self):
@@ -118,8 +121,12 @@ class Twins(unittest.TestCase):
                 told = shop.info(scene)
                 twin = scene.with_name("twin.nff")
                 wanted = features.EVERYTHING - out
-                twin.write_text(scene.read_text() + "\n".join(features.tail_of(wanted, told["needs"], told["bounds"])) + "\n")
-                asks = {f for f, name in features.NAMES.items() if shop.info(twin)["needs"][name]} | set(features.OPTIONS)
+                twin.write_text(scene.read_text()
+                                + "\n".join(features.tail_of(wanted, told["needs"], told["bounds"]))
+                                + "\n")
+                needs = shop.info(twin)["needs"]
+                asks = {f for f, name in features.NAMES.items() if needs[name]}
+                asks |= set(features.OPTIONS)
                 self.assertEqual(asks, wanted | {"triangles"} | set(features.OPTIONS), title)
 
 
@@ -270,21 +277,29 @@ class Benchmarks(unittest.TestCase):
 
 class Page(unittest.TestCase):
     def test_tables_become_tables(self):
-        self.assertEqual(page.markdown("![x](x.svg)\n\nA < B\n\n" + table(["", "x"], [["a", "**1**"]])),
-                         "<p>A &lt; B</p>\n<table><tr><th></th><th>x</th></tr><tr><td>a</td><td><b>1</b></td></tr></table>")
+        self.assertEqual(
+            page.markdown("![x](x.svg)\n\nA < B\n\n" + table(["", "x"], [["a", "**1**"]])),
+            "<p>A &lt; B</p>\n"
+            "<table><tr><th></th><th>x</th></tr><tr><td>a</td><td><b>1</b></td></tr></table>")
 
     def test_rays_are_drawn_from_what_the_benchmark_writes(self):
-        rows = [{"isa": isa, "precision": precision, "method": method, "fma": False, "scene": "balls", "rays": 1000, "max_ulp": ulp,
-                 "p999_ulp": ulp / 2, "wrong": wrong, "leaks": 0, "ns": ns} for isa, precision, method, ulp, wrong, ns in
-                [("scalar", "single", "watertight", 3, 0, 90), ("avx2", "single", "watertight", 3, 0, 20), ("embree", "single", "robust", 40, 2, 15),
-                 ("avx2", "double", "moeller", 0, 0, 35)]]
+        told = [("scalar", "single", "watertight", 3, 0, 90),
+                ("avx2", "single", "watertight", 3, 0, 20),
+                ("embree", "single", "robust", 40, 2, 15),
+                ("avx2", "double", "moeller", 0, 0, 35)]
+        rows = [{
+            "isa": isa, "precision": precision, "method": method, "fma": False, "scene": "balls",
+            "rays": 1000, "max_ulp": ulp, "p999_ulp": ulp / 2, "wrong": wrong, "leaks": 0, "ns": ns}
+                for isa, precision, method, ulp, wrong, ns in told]
         (drawn,) = rays.charts({"rows": rows})
-        self.assertEqual([s["name"] for s in drawn["panels"][0]["series"]], ["single watertight", "double moeller", "Embree single robust"])
+        self.assertEqual([s["name"] for s in drawn["panels"][0]["series"]],
+                         ["single watertight", "double moeller", "Embree single robust"])
         with tempfile.TemporaryDirectory() as folder:
             svg = pathlib.Path(folder) / "rays.svg"
             chart.draw(drawn, svg, pathlib.Path(folder) / "rays.png")
             self.assertEqual(svg.read_text().count("<title>"), 3 * len(rows))
-        self.assertIn("| balls | Embree | single robust | 40 | 20 | 2 of 1000 | 0 | 15 |", rays.tell({"rows": rows}, table))
+        self.assertIn("| balls | Embree | single robust | 40 | 20 | 2 of 1000 | 0 | 15 |",
+                      rays.tell({"rows": rows}, table))
 
 
 class Smoke(unittest.TestCase):
@@ -292,7 +307,8 @@ class Smoke(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
-        subprocess.run([sys.executable, ROOT / "perf/charts.py", "--program", PROGRAM, "--smoke"], check=True, stdout=subprocess.DEVNULL)
+        subprocess.run([sys.executable, ROOT / "perf/charts.py", "--program", PROGRAM, "--smoke"],
+                       check=True, stdout=subprocess.DEVNULL)
         cls.folder = PROGRAM.parent / "charts-smoke"
 
     def rows(self, name):
@@ -300,8 +316,8 @@ class Smoke(unittest.TestCase):
             return list(csv.DictReader(f))
 
     def type(self, command, folder):
-        subprocess.run(command.replace("./run", str(PROGRAM)), shell=True, check=True, cwd=folder, stdout=subprocess.DEVNULL,
-                       stderr=subprocess.DEVNULL)
+        subprocess.run(command.replace("./run", str(PROGRAM)), shell=True, check=True, cwd=folder,
+                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
     def picture(self, command):
         with tempfile.TemporaryDirectory() as folder:
@@ -313,14 +329,16 @@ class Smoke(unittest.TestCase):
             rows = self.rows(name)
             self.assertGreater(len(rows), 5)
             self.assertTrue(all("./run render" in row["command"] for row in rows), name)
-            titles = re.findall(r"<title>[^<]*\./run", (self.folder / f"images/charts-{name}.svg").read_text())
+            titles = re.findall(r"<title>[^<]*\./run",
+                                (self.folder / f"images/charts-{name}.svg").read_text())
             self.assertGreaterEqual(len(titles), len(rows) // 2, name)
 
     def test_commands_repeat_the_pictures_errors(self):
         rows = self.rows("picture")
         reference = next(row for row in rows if row["method"].startswith("reference"))
         halves = [self.picture(command) for command in reference["command"].split("; ")]
-        sobol = next(row for row in rows if row["method"].startswith("sobol") and row["setting"] == "16")
+        sobol = next(row for row in rows
+                     if row["method"].startswith("sobol") and row["setting"] == "16")
         error = image_error.rmse(self.picture(sobol["command"]), (halves[0] + halves[1]) / 2)
         self.assertEqual(f"{error:.4g}", sobol["rmse"])
 

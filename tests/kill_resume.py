@@ -1,10 +1,13 @@
 #!/usr/bin/env python3
-"""Kills renders and goes on with them: kill_resume.py PROGRAM SCENE [N [SEED]] [-- OPTIONS OF RENDER]
+"""Kills renders and goes on with them.
 
-N times (3) a render with a checkpoint is killed (SIGKILL) after a random time, again and again, each time with other threads, until one
-comes to its end; its picture must be that of an undisturbed one, byte for byte. Says how often it was killed, and how often it went on
-from a checkpoint. Without options: for every way there is to spend samples. Of a render by time (--time SECONDS) the picture is that of
-the samples it says it took.
+    kill_resume.py PROGRAM SCENE [N [SEED]] [-- OPTIONS OF RENDER]
+
+N times (3) a render with a checkpoint is killed (SIGKILL) after a random time, again and again,
+each time with other threads, until one comes to its end; its picture must be that of an undisturbed
+one, byte for byte. Says how often it was killed, and how often it went on from a checkpoint.
+Without options: for every way there is to spend samples. Of a render by time (--time SECONDS) the
+picture is that of the samples it says it took.
 """
 import json, os, random, signal, subprocess, sys, tempfile, time
 
@@ -34,11 +37,13 @@ def repeatable(options, stats):
     if "--time" not in options or options[options.index("--time") + 1].startswith("samples:"):
         return options
     at = options.index("--time") + 1
-    return options[:at] + [f"samples:{json.loads(read(stats))['error']['samples']}"] + options[at + 1:]
+    samples = json.loads(read(stats))["error"]["samples"]
+    return options[:at] + [f"samples:{samples}"] + options[at + 1:]
 
 
 def kill_and_resume(options, folder):
-    whole, picture, checkpoint, stats = (os.path.join(folder, n) for n in ("whole.pfm", "picture.pfm", "kept.grelha", "stats.json"))
+    names = ("whole.pfm", "picture.pfm", "kept.grelha", "stats.json")
+    whole, picture, checkpoint, stats = (os.path.join(folder, n) for n in names)
     command = [program, "render", os.path.abspath(scene), "--quiet"]
     begin = time.monotonic()
     subprocess.run(command + options + ["-o", whole], check=True)
@@ -47,8 +52,9 @@ def kill_and_resume(options, folder):
     for turn in range(rounds):
         for attempt in range(200):
             resumed += os.path.exists(checkpoint)
-            run = subprocess.Popen(command + options + ["-o", picture, "--checkpoint", checkpoint, "--checkpoint-every", str(alone / 30),
-                                                        "--threads", str(rng.randint(1, 3)), "--stats", stats])
+            run = subprocess.Popen(command + options + [
+                "-o", picture, "--checkpoint", checkpoint, "--checkpoint-every", str(alone / 30),
+                "--threads", str(rng.randint(1, 3)), "--stats", stats])
             try:
                 run.wait(rng.uniform(0, .5 * alone))
                 break
@@ -66,10 +72,15 @@ def kill_and_resume(options, folder):
         if os.path.exists(checkpoint):
             sys.exit(f"{where}: the checkpoint is still there")
         os.remove(picture), os.remove(stats)
-        left = [n for n in os.listdir(folder) if n != "whole.pfm" and not n.startswith(".grelha-") and n != "kept.grelha.new"]
+        left = [
+            n for n in os.listdir(folder)
+            if n != "whole.pfm" and not n.startswith(".grelha-") and n != "kept.grelha.new"]
         if left:
             sys.exit(f"{where}: left behind {left}")
-    print(f"{' '.join(options)}: {rounds} renders of {alone:.2f} s, killed {killed} times, went on {resumed} times: the same bytes", flush=True)
+    print(
+        f"{' '.join(options)}: {rounds} renders of {alone:.2f} s, killed {killed} times, went on "
+        f"{resumed} times: the same bytes",
+        flush=True)
     if resumed < rounds:
         sys.exit("too few went on from a checkpoint to have shown anything")
 

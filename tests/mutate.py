@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""Feeds damaged copies of scenes to the program: none may crash it, hang it or leave it without a word.
+"""Feeds damaged copies of scenes to the program: none may crash, hang or silence it.
 
   tests/mutate.py build/asan/grelha SCENE... [--copies 200] [--render] [--seed 1] [--keep FOLDER]
 
-Each scene is copied --copies times with bits flipped, its end cut off, words swapped, doubled, dropped or replaced
-by hostile ones, always the same way for one seed. `grelha info` (with --render also a 16x16 picture) of each copy must
-end within 10 s with status 0, 1 or 2, by no signal and without a sanitizer's report; a status other than 0 comes with
-exactly one line that holds ": error: ", status 0 with none. Exits 1 when any copy failed; --keep saves those.
+Each scene is copied --copies times with bits flipped, its end cut off, words swapped, doubled,
+dropped or replaced by hostile ones, always the same way for one seed. `grelha info` (with --render
+also a 16x16 picture) of each copy must end within 10 s with status 0, 1 or 2, by no signal and
+without a sanitizer's report; a status other than 0 comes with exactly one line that holds ": error:
+", status 0 with none. Exits 1 when any copy failed; --keep saves those.
 """
 import argparse
 import pathlib
@@ -18,10 +19,12 @@ import sys
 import tempfile
 
 TIMEOUT_S = 10
-HOSTILE = [b"nan", b"inf", b"-inf", b"1e39", b"-1", b"0", b"1e-45", b"4294967296", b"99999999999999999999",
-           b"1e18", b"-0", b"#", b"s", b"p", b"pp", b"mesh", b"ply", b"v", b"x", b"\xff\xfe", b"2147483647",
-           b"end_header", b"list"]
-TROUBLE = re.compile(rb"(Address|Leak|Thread)Sanitizer|UndefinedBehavior|runtime error:|terminate called")
+HOSTILE = [
+    b"nan", b"inf", b"-inf", b"1e39", b"-1", b"0", b"1e-45", b"4294967296", b"99999999999999999999",
+    b"1e18", b"-0", b"#", b"s", b"p", b"pp", b"mesh", b"ply", b"v", b"x", b"\xff\xfe",
+    b"2147483647", b"end_header", b"list"]
+TROUBLE = re.compile(
+    rb"(Address|Leak|Thread)Sanitizer|UndefinedBehavior|runtime error:|terminate called")
 
 
 def flip_bits(data, rng):
@@ -45,7 +48,8 @@ def cut_out(data, rng):
 def words(data, rng):
     """Spans of some words: all of a short text, those of a window of a long one."""
     start = 0 if rng.random() < 0.5 else rng.randrange(len(data))
-    return [(start + m.start(), start + m.end()) for m in re.finditer(rb"[^\s]+", data[start:start + 4000])]
+    return [(start + m.start(), start + m.end())
+            for m in re.finditer(rb"[^\s]+", data[start:start + 4000])]
 
 
 def swap_words(data, rng):
@@ -84,14 +88,16 @@ def complaint(run, error_text):
 
 def attempt(command):
     try:
-        run = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, timeout=TIMEOUT_S, check=False)
+        run = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+                             timeout=TIMEOUT_S, check=False)
     except subprocess.TimeoutExpired:
         return None, b""
     return run, run.stderr
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program")
     parser.add_argument("scenes", nargs="+", type=pathlib.Path)
     parser.add_argument("--copies", type=int, default=200)
@@ -121,7 +127,8 @@ def main():
                 commands = [[options.program, "info", str(copy)]]
                 if options.render:
                     picture = str(work / "picture.pfm")
-                    commands.append([options.program, "render", str(copy), "--size", "16x16", "--quiet", "-o", picture])
+                    commands.append([options.program, "render", str(copy), "--size", "16x16",
+                                     "--quiet", "-o", picture])
                 for command in commands:
                     run, error_text = attempt(command)
                     status = run.returncode if run else "timeout"
@@ -130,7 +137,8 @@ def main():
                     if not wrong:
                         continue
                     failures += 1
-                    print(f"{scene} copy {index}, {command[1]}: {wrong}\n{error_text[:1500].decode(errors='replace')}")
+                    print(f"{scene} copy {index}, {command[1]}: {wrong}\n"
+                          f"{error_text[:1500].decode(errors='replace')}")
                     if options.keep:
                         options.keep.mkdir(parents=True, exist_ok=True)
                         shutil.copy(copy, options.keep / f"{index}-{scene.name}")

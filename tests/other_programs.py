@@ -1,6 +1,8 @@
 """One picture as PNG, HDR, PFM and OpenEXR, read by other programs: are their values ours?
 
-  other_programs.py PROGRAM SCENE      each program that is not installed is named; exit status 77 when none is
+  other_programs.py PROGRAM SCENE
+
+Each program that is not installed is named; the exit status is 77 when none is.
 
 Debian: imagemagick, openimageio-tools, netpbm, openexr, python3-pil, python3-numpy, python3-opencv.
 """
@@ -28,7 +30,8 @@ def floats(path):
     width, height = map(int, size.split())
     channels = 3 if kind == b"PF" else 1
     order = "<f4" if float(scale) < 0 else ">f4"
-    return numpy.frombuffer(data, order, width * height * channels).reshape(height, width, channels)[::-1]
+    values = numpy.frombuffer(data, order, width * height * channels)
+    return values.reshape(height, width, channels)[::-1]
 
 
 def command(words):
@@ -37,7 +40,8 @@ def command(words):
 
 def by_oiiotool(path):
     """As an uncompressed TIFF of floats, which is little more than the rows."""
-    command(["oiiotool", path, "--ch", "R,G,B", "-d", "float", "--compression", "none", "-o", "out.tif"])
+    command([
+        "oiiotool", path, "--ch", "R,G,B", "-d", "float", "--compression", "none", "-o", "out.tif"])
     with open("out.tif", "rb") as file:
         data = file.read()
     at, = struct.unpack_from("<I", data, 4)
@@ -61,13 +65,14 @@ def by_convert(path):
 def by_netpbm(path):
     reader = {".png": "pngtopnm", ".pfm": "pfmtopam"}[os.path.splitext(path)[1]]
     with open("out.pam", "wb") as out:
-        subprocess.run([reader] + (["-maxval=65535"] if reader == "pfmtopam" else []) + [path], check=True, stdout=out,
-                       stderr=subprocess.DEVNULL)
+        subprocess.run([reader] + (["-maxval=65535"] if reader == "pfmtopam" else []) + [path],
+                       check=True, stdout=out, stderr=subprocess.DEVNULL)
     with open("out.pam", "rb") as file:
         data = file.read()
     most = 65535 if reader == "pfmtopam" else 255
     kind = ">u2" if most > 255 else "u1"
-    return numpy.frombuffer(data[len(data) - picture.size * (2 if most > 255 else 1):], kind).reshape(picture.shape) / most
+    values = numpy.frombuffer(data[len(data) - picture.size * (2 if most > 255 else 1):], kind)
+    return values.reshape(picture.shape) / most
 
 
 def by_pil(path):
@@ -89,7 +94,9 @@ def there(name):
             return True
         except ImportError:
             return False
-    return shutil.which({"oiiotool": "oiiotool", "ImageMagick": "/usr/bin/convert", "netpbm": "pfmtopam"}[name]) is not None
+    programs = {
+        "oiiotool": "oiiotool", "ImageMagick": "/usr/bin/convert", "netpbm": "pfmtopam"}
+    return shutil.which(programs[name]) is not None
 
 
 def judge(name, read, ending, bound):
@@ -108,13 +115,18 @@ with tempfile.TemporaryDirectory() as folder:
     scene, program = os.path.abspath(scene), os.path.abspath(program)
     os.chdir(folder)
     for ending in (".png", ".hdr", ".pfm", ".exr"):
-        command([program, "render", scene, "--quiet", "--size", "96x72", "--samples", "4", "-o", "picture" + ending])
-    command([program, "render", scene, "--quiet", "--size", "96x72", "--layers", "depth,normal,id", "-o", "layers.exr"])
+        command([
+            program, "render", scene, "--quiet", "--size", "96x72", "--samples", "4", "-o",
+            "picture" + ending])
+    command([
+        program, "render", scene, "--quiet", "--size", "96x72", "--layers", "depth,normal,id", "-o",
+        "layers.exr"])
     picture = floats("picture.pfm").astype(numpy.float64)
     cut = numpy.clip(picture, 0, 1)
     wanted = {".png": cut, ".hdr": picture, ".pfm": picture, ".exr": picture}
     byte, word, nothing = .5 / 255 + 1e-6, 1 / 65535, 0
-    mantissa = picture.max(axis=2, keepdims=True) / 255 + 1e-7  # half a step, and as much where the exponent rises
+    # half a step, and as much where the exponent rises
+    mantissa = picture.max(axis=2, keepdims=True) / 255 + 1e-7
     judge("oiiotool", by_oiiotool, ".png", byte)
     judge("oiiotool", by_oiiotool, ".hdr", mantissa)
     judge("oiiotool", by_oiiotool, ".pfm", nothing)
@@ -130,8 +142,10 @@ with tempfile.TemporaryDirectory() as folder:
     judge("netpbm", by_netpbm, ".png", byte)
     judge("netpbm", by_netpbm, ".pfm", word)
     if shutil.which("exrheader"):
-        head = subprocess.run(["exrheader", "layers.exr"], check=True, capture_output=True, text=True).stdout
-        for line in ("Z, 32-bit floating-point", "id, 32-bit unsigned integer", "normal.X, 32-bit", 'software (type string): "grelha'):
+        head = subprocess.run(["exrheader", "layers.exr"], check=True, capture_output=True,
+                              text=True).stdout
+        for line in ("Z, 32-bit floating-point", "id, 32-bit unsigned integer", "normal.X, 32-bit",
+                     'software (type string): "grelha'):
             if line not in head:
                 failures.append(f"exrheader does not say {line}")
     else:

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Plants known faults, one at a time, in a copy of the sources, and checks that the test named for each turns red.
+"""Plants known faults, one at a time, in a copy of the sources: the test named must turn red.
 
   tests/plant.py [--only PART OF A NAME] [--folder FOLDER] [--list]
 
-A fault is a piece of text and what replaces it; one that is not found exactly once ends the script, so that no fault is thought
-planted that is not. All are built without SIMD copies and with -O1, but the one that wants copies, and -O3, where products and sums are contracted. Exits 1 when a test stayed green.
-Takes some ten minutes; the list with its last outcome is in docs/numerics.md.
+A fault is a piece of text and what replaces it; one that is not found exactly once ends the script,
+so that no fault is thought planted that is not. All are built without SIMD copies and with -O1, but
+the one that wants copies, and -O3, where products and sums are contracted. Exits 1 when a test
+stayed green. Takes some ten minutes; the list with its last outcome is in docs/numerics.md.
 """
 import argparse
 import pathlib
@@ -32,24 +33,34 @@ class Fault:
 
 ROW = "Rows/Stability.NothingIsLostFalseOrMetAgain/"
 FAULTS = [
-    Fault("no growth of boxes", "kernel/grid/plan.cpp", "return reach * 256 / 16777216;", "return reach * 0;",
-          "grid", "Pads.*"),
-    Fault("< for <= in the walk", "kernel/trace/packet_traversal.hpp", "slice <= last;", "slice < last;", "walk", "Isa/Walk.*"),
-    Fault("adding up instead of computing again", "kernel/trace/abreast.hpp", "t[a] = (plane - c.place[a]) * c.inverse[a];",
+    Fault("no growth of boxes", "kernel/grid/plan.cpp", "return reach * 256 / 16777216;",
+          "return reach * 0;", "grid", "Pads.*"),
+    Fault("< for <= in the walk", "kernel/trace/packet_traversal.hpp", "slice <= last;",
+          "slice < last;", "walk", "Isa/Walk.*"),
+    Fault("adding up instead of computing again", "kernel/trace/abreast.hpp",
+          "t[a] = (plane - c.place[a]) * c.inverse[a];",
           """t[a] = [&] {
         const float from = c.place[a], to = plane, step = c.inverse[a];
-        float k = to > from ? __builtin_ceilf(from) : __builtin_floorf(from), sum = (k - from) * step;
+        float k = to > from ? __builtin_ceilf(from) : __builtin_floorf(from);
+        float sum = (k - from) * step;
         for (; k < to; ++k) sum += step;
         for (; k > to; --k) sum -= step;
         return sum;
-      }();""", "stability", ROW + "resolution_at_its_bounds"),
-    Fault("contraction", "CMakeLists.txt", "-Wshadow -ffp-contract=off", "-Wshadow -ffp-contract=fast", "variants", "*ReturnTheScalarBits*", simd=True),
-    Fault("unshuffled light samples", "kernel/render/sampling.hpp", "if (plan.kind == SamplePlan::kUnshuffled) return",
-          "if (plan.kind != SamplePlan::kSobol) return", "stability", "Rows/StabilityOfPictures.NoPixelIsWrong/correlated_samples"),
-    Fault("skipping a slice too far", "kernel/trace/packet_traversal.hpp", ": nearest - 1;", ": nearest;", "walk", "Isa/Walk.*"),
-    Fault("a mailbox that is kept for the next packet", "kernel/trace/packet_traversal.hpp", "if (mailbox) held_.clear();", "", "walk", "Isa/Walk.*"),
-    Fault("a sphere by the textbook", "kernel/shapes/sphere.hpp", "const Real inside = rr - dot(gap, gap);",
-          "const Real inside = middle * middle / inv_dd - (dot(to_center, to_center) - rr);", "stability", ROW + "specks_in_a_large_scene"),
+      }();""", "walk", "Isa/Walk.*"),
+    Fault("contraction", "CMakeLists.txt", "-Wshadow -ffp-contract=off",
+          "-Wshadow -ffp-contract=fast", "variants", "*ReturnTheScalarBits*", simd=True),
+    Fault("unshuffled light samples", "kernel/render/sampling.hpp",
+          "if (plan.kind == SamplePlan::kUnshuffled) return",
+          "if (plan.kind != SamplePlan::kSobol) return", "stability",
+          "Rows/StabilityOfPictures.NoPixelIsWrong/correlated_samples"),
+    Fault("skipping a slice too far", "kernel/trace/packet_traversal.hpp", ": nearest - 1;",
+          ": nearest;", "walk", "Isa/Walk.*"),
+    Fault("a mailbox that is kept for the next packet", "kernel/trace/packet_traversal.hpp",
+          "if (mailbox) held_.clear();", "", "walk", "Isa/Walk.*"),
+    Fault("a sphere by the textbook", "kernel/shapes/sphere.hpp",
+          "const Real inside = rr - dot(gap, gap);",
+          "const Real inside = middle * middle / inv_dd - (dot(to_center, to_center) - rr);",
+          "stability", ROW + "specks_in_a_large_scene"),
     Fault("a sphere's power without slack", "kernel/shapes/sphere.hpp", "kPowerError = 0x1p-21f;",
           "kPowerError = 0;", "sphere", "SphereOracle.MeasuresShortWays"),
     Fault("a sphere's chord without slack", "kernel/shapes/sphere.hpp", "kChordError = 0x1p-20f;",
@@ -58,15 +69,19 @@ FAULTS = [
           "kFarPower = 0;", "sphere", "SphereOracle.MeasuresShortWays"),
     Fault("a sphere's place by t", "kernel/shapes/sphere.hpp",
           "return rounded_sphere_place<Real>(met.org, met.dir, met.t, c, r);",
-          "return sphere_place<Real>(c, r, met.org + met.t * met.dir);", "leaving", "Leaving.MirrorRaysOf*"),
-    Fault("epsilon 1e-4 instead of bounds", "kernel/shapes/triangle.hpp", "Surface<Real> s{point, n, n, Real(4 * kEps) * largest(point) + Real(kWideEps) * corners,",
-          "Surface<Real> s{point, n, n, Real(1e-4f),", "stability", ROW + "lost_contacts:" + ROW + "self_hits_of_triangles"),
-    Fault("no filter of edges", "kernel/shapes/triangle.hpp", "kEdgeError = 0x1p-19f", "kEdgeError = 0", "watertight", "*"),
-    Fault("floats for any depth", "kernel/shapes/triangle.hpp", "kMostSpread = 2;", "kMostSpread = 1e30f;", "triangle",
-          "TriangleOracle.FloorsOfAnySizeAreMetWhereTheyAre"),
-    Fault("behind without slack", "kernel/shapes/triangle.hpp", "kDepthError = 0x1p-17f", "kDepthError = 0", "triangle",
-          "TriangleOracle.FloorsOfAnySizeAreMetWhereTheyAre"),
-    Fault("ties by arrival", "kernel/trace/packet.hpp", "if ((ties >> k & 1) && (held == kNoPrimitive || held <= id)) continue;",
+          "return sphere_place<Real>(c, r, met.org + met.t * met.dir);", "leaving",
+          "Leaving.MirrorRaysOf*"),
+    Fault("epsilon 1e-4 instead of bounds", "kernel/shapes/triangle.hpp",
+          "Real(4 * kEps) * largest(point) + Real(kWideEps) * corners,", "Real(1e-4f),",
+          "stability", ROW + "lost_contacts:" + ROW + "self_hits_of_triangles"),
+    Fault("no filter of edges", "kernel/shapes/triangle.hpp", "kEdgeError = 0x1p-19f",
+          "kEdgeError = 0", "watertight", "*"),
+    Fault("floats for any depth", "kernel/shapes/triangle.hpp", "kMostSpread = 2;",
+          "kMostSpread = 1e30f;", "triangle", "TriangleOracle.FloorsOfAnySizeAreMetWhereTheyAre"),
+    Fault("behind without slack", "kernel/shapes/triangle.hpp", "kDepthError = 0x1p-17f",
+          "kDepthError = 0", "triangle", "TriangleOracle.FloorsOfAnySizeAreMetWhereTheyAre"),
+    Fault("ties by arrival", "kernel/trace/packet.hpp",
+          "if ((ties >> k & 1) && (held == kNoPrimitive || held <= id)) continue;",
           "if (ties >> k & 1) continue;", "walk", "Isa/Ties.*"),
     Fault("rays without headway", "kernel/trace/tolerances.hpp", "kLeastProgress = .15f;",
           "kLeastProgress = 0;", "frustum", "Isa/Frusta.*"),
@@ -80,20 +95,20 @@ FAULTS = [
           "kNearSlack = 0;", "frustum", "Isa/Frusta.*"),
     Fault("gradients without slack", "kernel/trace/tolerances.hpp", "kReachSlack = 1.00001f;",
           "kReachSlack = 1;", "frustum", "Isa/Frusta.*"),
-    Fault("one surface at any angle", "kernel/features/tolerances.hpp", "kOneSurfaceSquared = .64f;",
-          "kOneSurfaceSquared = 0;", "beam", "*DoubtsASteepTip*"),
+    Fault("one surface at any angle", "kernel/features/tolerances.hpp",
+          "kOneSurfaceSquared = .64f;", "kOneSurfaceSquared = 0;", "beam", "*DoubtsASteepTip*"),
     Fault("normals at any angle", "kernel/features/tolerances.hpp", "kOneSurface = .8f;",
           "kOneSurface = -2;", "beam", "*DoubtsASurfaceThatTurns*"),
     Fault("edges of the inner third alone", "kernel/features/tolerances.hpp", "kEdgeInside = .95f;",
           "kEdgeInside = .3f;", "beam", "*DoubtsASlitNear*"),
-    Fault("shadows of the first nine tenths alone", "kernel/features/tolerances.hpp", "kBeforeSurface = .9999f;",
-          "kBeforeSurface = .9f;", "beam", "*ShadowOfWhatIsNear*"),
+    Fault("shadows of the first nine tenths alone", "kernel/features/tolerances.hpp",
+          "kBeforeSurface = .9999f;", "kBeforeSurface = .9f;", "beam", "*ShadowOfWhatIsNear*"),
     Fault("mirrors of no weight", "kernel/features/tolerances.hpp", "kLeastMirror = 1.f / 64;",
           "kLeastMirror = 0;", "beam", "*LeavesOutMirrors*"),
-    Fault("beams as wide as their pixels", "kernel/features/tolerances.hpp", "kPixelGrowth = 1.0625f;",
-          "kPixelGrowth = 1;", "beam", "*SpeckOnlyTouches*"),
-    Fault("beams as wide as their squares", "kernel/features/tolerances.hpp", "kSquareGrowth = 1.25f;",
-          "kSquareGrowth = 1;", "beam", "*AsksThePixels*"),
+    Fault("beams as wide as their pixels", "kernel/features/tolerances.hpp",
+          "kPixelGrowth = 1.0625f;", "kPixelGrowth = 1;", "beam", "*SpeckOnlyTouches*"),
+    Fault("beams as wide as their squares", "kernel/features/tolerances.hpp",
+          "kSquareGrowth = 1.25f;", "kSquareGrowth = 1;", "beam", "*AsksThePixels*"),
     Fault("no variance of what hides", "kernel/adaptive/tolerances.hpp", "kHiddenVariance = .15f;",
           "kHiddenVariance = 0;", "refinement", "*ReckonsWith*"),
     Fault("no width of what hides", "kernel/adaptive/tolerances.hpp", "kHiddenWidth = 6;",
@@ -110,18 +125,24 @@ def run(command, log, **more):
 
 def configure(source, build, simd, log):
     launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
-    how = ["-DGRELHA_SIMD=ON", "-DCMAKE_BUILD_TYPE=Release"] if simd else ["-DGRELHA_SIMD=OFF", "-DCMAKE_BUILD_TYPE=None", "-DCMAKE_CXX_FLAGS=-O1"]
-    if run(["cmake", "-S", source, "-B", build, "-G", "Ninja", "-DGRELHA_TESTS=ON", "-DGRELHA_PERF=OFF", *how, *launcher], log):
+    how = ["-DGRELHA_SIMD=OFF", "-DCMAKE_BUILD_TYPE=None", "-DCMAKE_CXX_FLAGS=-O1"]
+    if simd:
+        how = ["-DGRELHA_SIMD=ON", "-DCMAKE_BUILD_TYPE=Release"]
+    command = ["cmake", "-S", source, "-B", build, "-G", "Ninja", "-DGRELHA_TESTS=ON",
+               "-DGRELHA_PERF=OFF", *how, *launcher]
+    if run(command, log):
         sys.exit(f"plant: {log}: no build can be set up")
 
 
 def copy_sources(to):
-    """All but builds and history; a file that is there already keeps its time, so that it is not built again."""
+    """All but builds and history; a file that is there already keeps its time, so that it is not
+    built again."""
     def left_out(folder, names):
         return {"build", ".git"} & set(names) if pathlib.Path(folder) == ROOT else set()
 
     def copy(file, place):
-        if not pathlib.Path(place).exists() or pathlib.Path(file).read_bytes() != pathlib.Path(place).read_bytes():
+        file, place = pathlib.Path(file), pathlib.Path(place)
+        if not place.exists() or file.read_bytes() != place.read_bytes():
             shutil.copy(file, place)
 
     shutil.copytree(ROOT, to, dirs_exist_ok=True, ignore=left_out, copy_function=copy)
@@ -136,21 +157,29 @@ def outcome(source, fault, log):
         sys.exit(f"plant: {log}: does not compile with '{fault.name}'")
     # A walk that has lost its way may not end: that is as red.
     try:
-        return run([build / "tests" / f"{fault.test}_test", f"--gtest_filter={fault.cases}", "--gtest_brief=1"], log, timeout=300) == 0
+        command = [build / "tests" / f"{fault.test}_test", f"--gtest_filter={fault.cases}",
+                   "--gtest_brief=1"]
+        return run(command, log, timeout=300) == 0
     except subprocess.TimeoutExpired:
         return False
 
 
 def place_of(fault):
-    """The fault's text, however lines are broken: between words and signs any white space may stand."""
-    return re.compile(r"\s*".join(re.escape(word) for word in re.findall(r"\w+|[^\w\s]", fault.old)))
+    """The fault's text, however lines are broken: between words and signs any white space may
+    stand."""
+    return re.compile(r"\s*".join(
+        re.escape(word) for word in re.findall(r"\w+|[^\w\s]", fault.old)))
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", default="", help="faults whose name holds this")
-    parser.add_argument("--folder", type=pathlib.Path, help="where to copy to and build; a second run finds it built [a temporary one]")
-    parser.add_argument("--list", action="store_true", help="name the faults and their tests, and check that each can be planted")
+    parser.add_argument(
+        "--folder", type=pathlib.Path,
+        help="where to copy to and build; a second run finds it built [a temporary one]")
+    parser.add_argument("--list", action="store_true",
+                        help="name the faults and their tests, and check that each can be planted")
     asked = parser.parse_args()
     faults = [f for f in FAULTS if asked.only in f.name]
     for f in faults:

@@ -1,20 +1,24 @@
 #!/usr/bin/env python3
 """Renders by MPI: ranks.py PROGRAM SCENE [MPIRUN]
 
-1 to 4 ranks make the bytes of one process; a rank that dies ends the run, and what the checkpoint kept is gone on with by another
-number of ranks; so it is after SIGINT. Of several scenes all go on after one that cannot be read; ranks given unequal options say so.
+1 to 4 ranks make the bytes of one process; a rank that dies ends the run, and what the checkpoint
+kept is gone on with by another number of ranks; so it is after SIGINT. Of several scenes all go on
+after one that cannot be read; ranks given unequal options say so.
 """
 import os, signal, subprocess, sys, tempfile, time
 
 program, scene = map(os.path.abspath, sys.argv[1:3])
 mpirun = sys.argv[3] if len(sys.argv) > 3 else "mpirun"
 environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
-job = [program, "render", os.path.abspath(scene), "--quiet", "--threads", "2", "--size", "150x107", "--samples", "200", "--lens", "3"]
+job = [program, "render", os.path.abspath(scene), "--quiet", "--threads", "2", "--size", "150x107",
+       "--samples", "200", "--lens", "3"]
 
 
 def ranks(n, *more):
-    # mpirun sends SIGTERM and, by default a second later, SIGKILL: too soon for what is in work where processors are shared
-    return [mpirun, "--oversubscribe", "--mca", "odls_base_sigkill_timeout", "5", "-n", str(n)] + job + list(more)
+    # mpirun sends SIGTERM and, by default a second later, SIGKILL: too soon for what is in work
+    # where processors are shared
+    run_ranks = [mpirun, "--oversubscribe", "--mca", "odls_base_sigkill_timeout", "5", "-n", str(n)]
+    return run_ranks + job + list(more)
 
 
 def rank_of(pid):
@@ -53,20 +57,26 @@ with tempfile.TemporaryDirectory() as folder:
     subprocess.run(job[:3] + small + ["-o", whole], check=True)
     for name in ("a.nff", "c.nff"):
         os.symlink(os.path.abspath(scene), os.path.join(folder, name))
-    run = subprocess.run([mpirun, "--oversubscribe", "-n", "3", program, "render", "a.nff", "missing.nff", "c.nff", "-o", "{}.pfm"] + small,
-                         env=environment, cwd=folder, stderr=subprocess.PIPE, text=True)
+    run = subprocess.run([
+        mpirun, "--oversubscribe", "-n", "3", program, "render", "a.nff", "missing.nff", "c.nff",
+        "-o", "{}.pfm"] + small, env=environment, cwd=folder, stderr=subprocess.PIPE, text=True)
     want(run.returncode == 1, f"with a scene missing: status {run.returncode}")
-    want(run.stderr.count("error:") == 1 and "missing.nff: error: cannot open" in run.stderr, f"with a scene missing: {run.stderr}")
+    want(run.stderr.count("error:") == 1 and "missing.nff: error: cannot open" in run.stderr,
+         f"with a scene missing: {run.stderr}")
     for name in ("a.pfm", "c.pfm"):
-        want(open(whole, "rb").read() == open(os.path.join(folder, name), "rb").read(), f"{name}: another picture")
+        want(open(whole, "rb").read() == open(os.path.join(folder, name), "rb").read(),
+             f"{name}: another picture")
     one = ["-n", "1", program, "render", os.path.join(folder, "a.nff"), "-o", picture] + small
-    run = subprocess.run([mpirun, "--oversubscribe"] + one + ["--depth", "3", ":"] + one, env=environment, stderr=subprocess.PIPE, text=True)
-    want("grelha: error: rank 1 was given other options than the first\n" in run.stderr, f"unequal options: {run.stderr}")
+    run = subprocess.run([mpirun, "--oversubscribe"] + one + ["--depth", "3", ":"] + one,
+                         env=environment, stderr=subprocess.PIPE, text=True)
+    want("grelha: error: rank 1 was given other options than the first\n" in run.stderr,
+         f"unequal options: {run.stderr}")
     subprocess.run(job + ["-o", whole], check=True)
 
     for what, killed, message in (("a rank killed", 2, "rank 2"), ("SIGINT", None, "")):
-        run = subprocess.Popen(ranks(3, "-o", picture, "--checkpoint", kept, "--checkpoint-every", str(alone / 50)), env=environment,
-                               stderr=subprocess.PIPE, text=True)
+        run = subprocess.Popen(
+            ranks(3, "-o", picture, "--checkpoint", kept, "--checkpoint-every", str(alone / 50)),
+            env=environment, stderr=subprocess.PIPE, text=True)
         while not os.path.exists(kept) and run.poll() is None:
             time.sleep(alone / 100)
         if killed is None:
@@ -80,7 +90,8 @@ with tempfile.TemporaryDirectory() as folder:
         want(message in said, f"{what}: {said}")
         if not os.path.exists(picture):  # else it came to its end first
             want(os.path.exists(kept), f"{what}: nothing is kept")
-            subprocess.run(ranks(2, "-o", picture, "--checkpoint", kept), check=True, env=environment)
+            subprocess.run(ranks(2, "-o", picture, "--checkpoint", kept), check=True,
+                           env=environment)
         want_same(what)
         print(f"--- {what}:\n{said}")
 print("ranks 1 to 4: the same bytes, also after a rank died")

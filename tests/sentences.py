@@ -94,8 +94,9 @@ def long_sentences(file):
 
 def self_test():
     long = " ".join(["word"] * 31)
-    page = f"# Title\n\nShort one. {long}. {' '.join(['word'] * 30)}.\n\n- {long}\n- `{long}` is code\n" \
-           f"\n```\n{long}\n```\n\n| {long} | short |\n"
+    page = (f"# Title\n\nShort one. {long}. {' '.join(['word'] * 30)}.\n\n"
+            f"- {long}\n- `{long}` is code\n"
+            f"\n```\n{long}\n```\n\n| {long} | short |\n")
     source = f"/// {long[:40]}\n/// {long[40:]}.\nint a;  ///< {long}\nint b;\n// Short.\n"
     with tempfile.TemporaryDirectory() as folder:
         for name, text, wanted in (("a.md", page, [3, 5, 12]), ("a.hpp", source, [1, 3])):

@@ -1,4 +1,7 @@
-"""report.html: all charts on one page that needs no network. Chart.js (MIT licence, Debian's libjs-chart.js) is put into it when it is made."""
+"""report.html: all charts on one page that needs no network.
+
+Chart.js (MIT licence, Debian's libjs-chart.js) is put into it when it is made.
+"""
 import base64
 import dataclasses
 import html
@@ -10,8 +13,9 @@ from chart import FRONT, LOOKS, STAR
 
 LIBRARY = pathlib.Path("/usr/share/javascript/chart.js/chart.min.js")
 TEMPLATE = pathlib.Path(__file__).resolve().parent / "page.html"
-TITLES = {"rays": "Rays: error against time", "picture": "Pictures: error against time", "grid": "Grids: time and memory",
-          "features": "No more than needed"}
+TITLES = {
+    "rays": "Rays: error against time", "picture": "Pictures: error against time",
+    "grid": "Grids: time and memory", "features": "No more than needed"}
 
 
 def embedded(path):
@@ -42,9 +46,12 @@ def markdown(text):
         if not block.startswith("|"):
             out.append(f"<p>{cell(block)}</p>")
             continue
-        rows = [[cell(c) for c in line.strip("|").split("|")] for line in lines if not line.startswith("|---")]
-        out.append("<table>" + "".join("<tr>" + "".join(f"<{tag}>{c}</{tag}>" for c in row) + "</tr>"
-                                       for i, row in enumerate(rows) for tag in ["td" if i else "th"]) + "</table>")
+        rows = [[cell(c) for c in line.strip("|").split("|")] for line in lines
+                if not line.startswith("|---")]
+        told = ("<tr>" + "".join(f"<{tag}>{c}</{tag}>" for c in row) + "</tr>"
+                for i, row in enumerate(rows)
+                for tag in ["td" if i else "th"])
+        out.append("<table>" + "".join(told) + "</table>")
     return "\n".join(out)
 
 
@@ -53,19 +60,27 @@ def make_page(path, kinds):
     pictures, sections, charts = {}, [], []
     for name, kind in kinds.items():
         if kind is None:
-            sections.append(f'<section id="{name}"><h2>{TITLES[name]}</h2><p class="missing">Not measured: ./run charts {name}</p></section>')
+            sections.append(
+                f'<section id="{name}"><h2>{TITLES[name]}</h2>'
+                f'<p class="missing">Not measured: ./run charts {name}</p></section>')
             continue
         places = []
         for chart in with_pictures(kind["charts"], pictures):
-            places.append(f'<h3>{html.escape(chart["title"])}</h3><p>{html.escape(chart["note"])}</p>'
-                          f'<div class="panels" id="chart-{chart["name"]}"></div>')
+            places.append(
+                f'<h3>{html.escape(chart["title"])}</h3><p>{html.escape(chart["note"])}</p>'
+                f'<div class="panels" id="chart-{chart["name"]}"></div>')
             charts.append(chart)
-        sections.append(f'<section id="{name}"><h2>{TITLES[name]}</h2>{"".join(places)}'
-                        f'<details><summary>in numbers</summary>{markdown(kind["told"])}</details></section>')
+        sections.append(
+            f'<section id="{name}"><h2>{TITLES[name]}</h2>{"".join(places)}'
+            f'<details><summary>in numbers</summary>{markdown(kind["told"])}</details></section>')
     looks = [dataclasses.asdict(look) for look in LOOKS]
-    data = json.dumps({"charts": charts, "looks": looks, "front": FRONT, "star": STAR, "pictures": [embedded(p) for p in pictures]})
+    data = json.dumps({
+        "charts": charts, "looks": looks, "front": FRONT, "star": STAR,
+        "pictures": [embedded(p) for p in pictures]})
     data = data.replace("</", "<\\/")  # no script ends within
     page = TEMPLATE.read_text()
-    for mark, text in (("@LIBRARY@", LIBRARY.read_text()), ("@DATA@", data), ("@SECTIONS@", "\n".join(sections))):
+    parts = (("@LIBRARY@", LIBRARY.read_text()), ("@DATA@", data),
+             ("@SECTIONS@", "\n".join(sections)))
+    for mark, text in parts:
         page = page.replace(mark, text)
     path.write_text(page)

@@ -1,7 +1,9 @@
-"""Error of pictures against the time they take: per effect one panel, per method one curve, the Pareto front behind them.
+"""Error of pictures against the time they take.
 
-Error is the RMSE, and 1 - SSIM, of what a screen shows against a reference of other seeds made of two halves; time the CPU seconds of
-rendering on one thread, the least of several renders that take turns.
+An effect is a panel and a method a curve in it, the Pareto front behind them.
+Error is the RMSE, and 1 - SSIM, of what a screen shows against a reference of other seeds made of
+two halves; time the CPU seconds of rendering on one thread, the least of several renders that take
+turns.
 """
 import math
 
@@ -9,7 +11,8 @@ import numpy as np
 from PIL import Image
 
 from chart import pareto_front, slope
-from image_error import REFERENCE_SEEDS, Refused, read_pfm, reference_settings, rmse, ssim, time_to_reach
+from image_error import (REFERENCE_SEEDS, Refused, read_pfm, reference_settings, rmse, ssim,
+                         time_to_reach)
 from kept import size_in
 
 NAME, TITLE = "picture", "Error of a picture against its time"
@@ -28,7 +31,8 @@ EFFECTS = [
     ("awning", "area light of which pixels see a part: awning", ("awning", 64), []),
     ("lens", "lens: distant", ("distant", 8), ["--lens", "40"]),
     ("glossy", "rough mirrors: balls", BALLS, ["--glossy", ".1", "--depth", "3"]),
-    ("all", "lens, area lights, rough mirrors: balls", BALLS, ["--shadows", "random:.5", "--lens", "12", "--glossy", ".08", "--depth", "3"]),
+    ("all", "lens, area lights, rough mirrors: balls", BALLS,
+     ["--shadows", "random:.5", "--lens", "12", "--glossy", ".08", "--depth", "3"]),
 ]
 
 
@@ -75,7 +79,8 @@ def settings_of(effect, plan):
 
 
 class Crops:
-    """Where the first picture of an effect errs most: that part of each, and of its error, as small pictures."""
+    """Where the first picture of an effect errs most: that part of each, and of its error, as small
+    pictures."""
 
     def __init__(self, folder):
         self.folder, self.at = folder, None
@@ -84,7 +89,8 @@ class Crops:
     def place(self, error):
         side = min(CROP, *error.shape)
         sums = np.pad(error, ((1, 0), (1, 0))).cumsum(0).cumsum(1)
-        windows = sums[side:, side:] - sums[:-side, side:] - sums[side:, :-side] + sums[:-side, :-side]
+        windows = (sums[side:, side:] - sums[:-side, side:] - sums[side:, :-side]
+                   + sums[:-side, :-side])
         y, x = np.unravel_index(np.argmax(windows), windows.shape)
         return np.s_[y:y + side, x:x + side]
 
@@ -94,7 +100,8 @@ class Crops:
             self.at = self.place(error ** 2)
         shown = (np.clip(picture[self.at], 0, 1) * 255 + .5).astype(np.uint8)
         # black at .001 and below, white at 1: three decades
-        grey = (np.clip(1 + np.log10(np.maximum(error[self.at], 1e-9)) / 3, 0, 1) * 255 + .5).astype(np.uint8)
+        grey = (np.clip(1 + np.log10(np.maximum(error[self.at], 1e-9)) / 3, 0, 1) * 255
+                + .5).astype(np.uint8)
         paths = [self.folder / f"{name}-{kind}.webp" for kind in ("picture", "error")]
         for path, pixels in zip(paths, (shown, grey)):
             Image.fromarray(pixels).save(path, quality=85, method=6)
@@ -109,7 +116,9 @@ def measure_effect(shop, plan, effect, source, options):
     points, refused = {}, set()
     for turn in range(plan.rounds):
         for series, label, words in settings_of(effect, plan):
-            point = points.setdefault((series, label), {"series": series, "label": label, "spent": 0, "seconds": math.inf})
+            point = points.setdefault(
+                (series, label),
+                {"series": series, "label": label, "spent": 0, "seconds": math.inf})
             if series in refused or point["spent"] * (turn + 1) > LONG * max(turn, 1) and turn:
                 continue
             told = ["--threads", "1", "--seed", SEED, *joined(options, words)]
@@ -122,7 +131,8 @@ def measure_effect(shop, plan, effect, source, options):
                 continue
             seconds = stats["seconds"]["render_cpu"]
             point["spent"] += seconds
-            point["seconds"] = max(min(point["seconds"], seconds), 1e-5)  # of a clock that counts microseconds
+            # of a clock that counts microseconds
+            point["seconds"] = max(min(point["seconds"], seconds), 1e-5)
             if turn == 0:
                 image = read_pfm(picture)
                 point["rays"] = sum(stats["rays"].values())
@@ -130,8 +140,12 @@ def measure_effect(shop, plan, effect, source, options):
                 point["rmse"], point["ssim"] = rmse(image, reference), ssim(image, reference)
                 point["command"] = shop.command(source, told)
                 point["crops"] = crops.save(f"{effect}-{len(points)}", image, reference)
-    halves = [shop.command(source, reference_settings(options, plan.reference, seed)) for seed in REFERENCE_SEEDS]
-    return {"effect": effect, "floor": floor, "reference": plan.reference, "halves": halves, "points": list(points.values())}
+    halves = [
+        shop.command(source, reference_settings(options, plan.reference, seed))
+        for seed in REFERENCE_SEEDS]
+    return {
+        "effect": effect, "floor": floor, "reference": plan.reference, "halves": halves,
+        "points": list(points.values())}
 
 
 def measure(shop, plan):
@@ -143,11 +157,14 @@ def measure(shop, plan):
 
 
 def csv(result):
-    header = ["effect", "method", "setting", "samples_per_pixel", "rays", "cpu_seconds", "rmse", "ssim", "command"]
+    header = [
+        "effect", "method", "setting", "samples_per_pixel", "rays", "cpu_seconds", "rmse", "ssim",
+        "command"]
     rows = []
     for e in result["effects"]:
-        rows += [[e["effect"], p["series"], p["label"], f"{p['samples']:.4g}", p["rays"], f"{p['seconds']:.4g}", f"{p['rmse']:.4g}",
-                  f"{p['ssim']:.5f}", p["command"]] for p in e["points"]]
+        rows += [[e["effect"], p["series"], p["label"], f"{p['samples']:.4g}", p["rays"],
+                  f"{p['seconds']:.4g}", f"{p['rmse']:.4g}", f"{p['ssim']:.5f}", p["command"]]
+                 for p in e["points"]]
         rows.append([
             e["effect"], REFERENCE, e["reference"], e["reference"], "", "", f"{e['floor']:.2g}", "",
             "; ".join(e["halves"])
@@ -179,14 +196,20 @@ def from_csv(rows):
 def panel_of(effect, key, label):
     series = []
     for name, look, _, _ in METHODS:
-        points = [{"x": p["seconds"], "y": max(key(p), 1e-7), "label": p["label"], "command": p["command"],
-                   **dict(zip(("picture", "error"), p.get("crops", ()))),
-                   "facts": f"RMSE {p['rmse']:.2g}, SSIM {p['ssim']:.4f}, {p['seconds']:.3g} CPU s, {p['samples']:.3g} samples a pixel"}
-                  for p in effect["points"] if p["series"] == name]
+        points = [{
+            "x": p["seconds"], "y": max(key(p), 1e-7),
+            "label": p["label"], "command": p["command"],
+            **dict(zip(("picture", "error"), p.get("crops", ()))),
+            "facts": f"RMSE {p['rmse']:.2g}, SSIM {p['ssim']:.4f}, {p['seconds']:.3g} CPU s, "
+                     f"{p['samples']:.3g} samples a pixel"
+        } for p in effect["points"] if p["series"] == name]
         if points:
             series.append({"name": name, "look": look, "joined": True, "points": points})
-    panel = {"title": effect["title"], "x": {"label": "CPU seconds, one thread", "log": True}, "y": {"label": label, "log": True}, "series": series,
-             "front": [{"x": p["x"], "y": p["y"]} for p in pareto_front([p for s in series for p in s["points"]])]}
+    panel = {
+        "title": effect["title"], "x": {"label": "CPU seconds, one thread", "log": True},
+        "y": {"label": label, "log": True}, "series": series,
+        "front": [{"x": p["x"], "y": p["y"]}
+                  for p in pareto_front([p for s in series for p in s["points"]])]}
     return panel
 
 
@@ -198,11 +221,15 @@ def charts(result):
         panel_of(e, lambda p: max(1 - p["ssim"], LEAST_SSIM), "1 - SSIM (.00001: that or less)")
         for e in result["effects"]
     ]
-    note = ("Crops are of where one sample a pixel errs most; in error maps black is an error of .001 or less, white one of 1, three decades evenly "
-            "between.")
-    return [{"name": "picture", "title": f"{TITLE}, {result['size']}: down and left is better", "note": note, "panels": panels},
-            {"name": "picture-ssim", "title": f"Structural error against time, {result['size']}: down and left is better", "note": note,
-             "panels": alike}]
+    note = (
+        "Crops are of where one sample a pixel errs most; in error maps black is an error of .001 "
+        "or less, white one of 1, three decades evenly between.")
+    return [{
+        "name": "picture", "title": f"{TITLE}, {result['size']}: down and left is better",
+        "note": note, "panels": panels}, {
+            "name": "picture-ssim",
+            "title": f"Structural error against time, {result['size']}: down and left is better",
+            "note": note, "panels": alike}]
 
 
 def finest_slope(points):
@@ -221,8 +248,8 @@ def speed_up(points, goal):
 
 
 def beside_samples(effect):
-    """By E: time of --error E over that of plain samples, interpolated, to the same error; '–' where
-    256 samples do not get there."""
+    """By E: time of --error E over that of plain samples, interpolated, to the same error; '–'
+    where 256 samples do not get there."""
     of = {name: [p for p in effect["points"] if p["series"] == name] for name in (SOBOL, BY_ERROR)}
     reached = {p["label"]: time_to_reach(of[SOBOL], p["rmse"]) for p in of[BY_ERROR]}
     return {
@@ -232,19 +259,23 @@ def beside_samples(effect):
 
 
 def tell(result, table):
-    names = [name for name, *_ in METHODS if any(p["series"] == name for e in result["effects"] for p in e["points"])]
+    names = [
+        name for name, *_ in METHODS
+        if any(p["series"] == name for e in result["effects"] for p in e["points"])]
     slopes, gains, goals = [], [], []
     for e in result["effects"]:
         of = {name: [p for p in e["points"] if p["series"] == name] for name in names}
         goal = of[METHODS[0][0]][-1]
         goals.append(f"{goal['rmse']:.2g}")
         slopes.append([f"{finest_slope(of[n]):.2f}" if len(of[n]) >= 3 else "" for n in names])
-        gains.append([("1" if n == METHODS[0][0] else speed_up(of[n], goal)) if of[n] else "" for n in names])
+        gains.append([
+            ("1" if n == METHODS[0][0] else speed_up(of[n], goal)) if of[n] else "" for n in names])
     header = ["", *[e["effect"] for e in result["effects"]]]
     turned = lambda cells: [[n, *column] for n, column in zip(names, zip(*cells))]
     beside = [beside_samples(e) for e in result["effects"]]
     errors = [[f"--error {label}", *[b.get(label, "") for b in beside]] for label in beside[0]]
-    return f"""Slope of the logarithm of the RMSE over that of time, at each method's three finest settings. At
+    return f"""\
+Slope of the logarithm of the RMSE over that of time, at each method's three finest settings. At
 -.5 half the error takes four times the time; at 0 more time buys nothing:
 
 {table(header, turned(slopes))}

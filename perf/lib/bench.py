@@ -1,4 +1,5 @@
-"""What the benchmark scripts share: scenes, runs of the program, results as CSV, and sections of docs/performance.md made from them."""
+"""What the benchmark scripts share: scenes, runs of the program, results as CSV, and sections made
+from them in docs/performance.md."""
 import argparse
 import csv
 import json
@@ -15,8 +16,10 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 DOCS = ROOT / "docs"
 # After Okabe and Ito: told apart by the colour-blind too.
 COLOURS = ["#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#999999", "#F0E442"]
-plt.rcParams.update({"svg.hashsalt": "grelha", "svg.fonttype": "none", "font.family": "sans-serif",
-                     "font.sans-serif": ["Helvetica", "Arial", "DejaVu Sans"], "axes.spines.top": False, "axes.spines.right": False})
+plt.rcParams.update({
+    "svg.hashsalt": "grelha", "svg.fonttype": "none", "font.family": "sans-serif",
+    "font.sans-serif": ["Helvetica", "Arial", "DejaVu Sans"],
+    "axes.spines.top": False, "axes.spines.right": False})
 
 
 DRAW_HELP = "measure nothing: draw the chart in docs/images again from the CSV in docs/"
@@ -24,9 +27,12 @@ DRAW_HELP = "measure nothing: draw the chart in docs/images again from the CSV i
 
 def arguments(doc, rounds):
     parser = argparse.ArgumentParser(description=doc.partition("\n")[0])
-    parser.add_argument("--program", default=ROOT / "build/release/grelha", help="[build/release/grelha]")
-    parser.add_argument("--rounds", type=int, default=rounds, help="of all measurements in turn; the least time counts")
-    parser.add_argument("--keep", action="store_true", help="write CSV, chart and section into docs/, not into the build folder")
+    parser.add_argument("--program", default=ROOT / "build/release/grelha",
+                        help="[build/release/grelha]")
+    parser.add_argument("--rounds", type=int, default=rounds,
+                        help="of all measurements in turn; the least time counts")
+    parser.add_argument("--keep", action="store_true",
+                        help="write CSV, chart and section into docs/, not into the build folder")
     parser.add_argument("--draw", action="store_true", help=DRAW_HELP)
     return parser
 
@@ -55,18 +61,21 @@ class Bench:
     def scene(self, name, size):
         path = self.folder / f"{name}-{size}.nff"
         if not path.exists():
-            subprocess.run([self.program, "scene", name, "--size", str(size), "-o", path], check=True)
+            subprocess.run([self.program, "scene", name, "--size", str(size), "-o", path],
+                           check=True)
         return path
 
     def render(self, scene, *options, picture=None):
         stats = self.folder / "stats.json"
-        subprocess.run([self.program, "render", scene, "-o", picture or self.folder / "picture.png", "--quiet", "--stats", stats,
-                        *map(str, options)], check=True)
+        subprocess.run([
+            self.program, "render", scene, "-o", picture or self.folder / "picture.png", "--quiet",
+            "--stats", stats, *map(str, options)], check=True)
         return json.loads(stats.read_text())
 
     def tool(self, *words):
         """JSON of the benchmark program beside the script."""
-        done = subprocess.run([self.program.parent / self.name, *map(str, words)], check=True, stdout=subprocess.PIPE, text=True)
+        done = subprocess.run([self.program.parent / self.name, *map(str, words)], check=True,
+                              stdout=subprocess.PIPE, text=True)
         return json.loads(done.stdout)
 
     def write_csv(self, name, header, rows):
@@ -92,9 +101,12 @@ def put_section(page, maker, text, part=""):
     """Between its two marks, where the page has them, or at its end."""
     part = part and f", {part}"
     name = pathlib.Path(maker).stem
-    old, new = page.read_text(), f"<!-- made by {maker}{part} -->\n{text.strip()}\n<!-- end of {name}{part} -->"
-    marks = re.compile(f"<!-- made by {re.escape(maker)}{part} -->.*<!-- end of {name}{part} -->", re.S)
-    page.write_text(marks.sub(lambda _: new, old) if marks.search(old) else old.rstrip() + "\n\n" + new + "\n")
+    old = page.read_text()
+    new = f"<!-- made by {maker}{part} -->\n{text.strip()}\n<!-- end of {name}{part} -->"
+    marks = re.compile(f"<!-- made by {re.escape(maker)}{part} -->.*<!-- end of {name}{part} -->",
+                       re.S)
+    page.write_text(marks.sub(lambda _: new, old) if marks.search(old) else
+                    old.rstrip() + "\n\n" + new + "\n")
 
 
 def cpu_name():
@@ -115,7 +127,9 @@ def seconds(value):
         return "–"
     if value >= 100:
         return f"{value:.0f}"
-    return f"{value:.3g}" if value >= 1 else f"{value:.3f}".lstrip("0") if value >= .0995 else f"{value:.4f}".lstrip("0")
+    if value >= 1:
+        return f"{value:.3g}"
+    return f"{value:.3f}".lstrip("0") if value >= .0995 else f"{value:.4f}".lstrip("0")
 
 
 def times(value):

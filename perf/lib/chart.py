@@ -1,4 +1,4 @@
-"""A chart as plain data, drawn as SVG by Matplotlib and, from the same data, by the page that report.py makes.
+"""A chart as plain data, drawn as SVG by Matplotlib, and by the page that page.py makes.
 
 A chart is a dict: name, title, note, panels. A panel: title, x and y (dicts of label, and perhaps
 log, span, ticks, names: words for 0, 1, 2, ...), series, and perhaps front (points of the Pareto
@@ -52,7 +52,7 @@ STAR = "the kernel's choice"
 
 
 def pareto_front(points):
-    """Of points the ones that no other beats in both x and y, smaller being better, by ascending x."""
+    """Of points those that no other beats in both x and y, by ascending x; smaller is better."""
     front = []
     for p in sorted(points, key=lambda p: (p["x"], p["y"])):
         if not front or p["y"] < front[-1]["y"]:
@@ -77,7 +77,8 @@ def plain(value, _=None):
 
 
 def set_axis(axis, low, high, how):
-    """Few and legible ticks: powers of ten, with halves and fifths of them where the axis spans little."""
+    """Few and legible ticks: powers of ten, with halves and fifths of them where the axis spans
+    little."""
     if "names" in how:
         axis.set_ticks(range(len(how["names"])), how["names"])
         return
@@ -101,7 +102,9 @@ def draw_panel(axes, panel, ids, hints):
         xs, ys = ([p[which] for p in panel["front"]] for which in "xy")
         axes.plot(xs, ys, color=FRONT, linewidth=7, alpha=.6, drawstyle="steps-post", zorder=1)
     for line in panel.get("lines", []):
-        (axes.axhline if "y" in line else axes.axvline)(line.get("y", line.get("x")), color="#009E73", linewidth=1, linestyle=(0, (1, 3)))
+        draw_line = axes.axhline if "y" in line else axes.axvline
+        draw_line(line.get("y", line.get("x")), color="#009E73", linewidth=1,
+                  linestyle=(0, (1, 3)))
     for series in panel["series"]:
         look, points = LOOKS[series["look"]], series["points"]
         if series["joined"]:
@@ -153,12 +156,16 @@ def legend_of(chart):
                    markerfacecolor=look.fill,
                    markersize=6,
                    linestyle=look.dash if series["joined"] else ""))
-    if any(p.get("star") for panel in chart["panels"] for s in panel["series"] for p in s["points"]):
-        handles[STAR] = Line2D([], [], color="#999999", marker="*", linestyle="", markersize=12, markeredgecolor="black")
+    if any(p.get("star")
+           for panel in chart["panels"] for s in panel["series"] for p in s["points"]):
+        handles[STAR] = Line2D([], [], color="#999999", marker="*", linestyle="", markersize=12,
+                               markeredgecolor="black")
     if any(panel.get("front") for panel in chart["panels"]):
-        handles["Pareto front: nothing else is both faster and better"] = Line2D([], [], color=FRONT, linewidth=7, alpha=.6)
+        handles["Pareto front: nothing else is both faster and better"] = Line2D(
+            [], [], color=FRONT, linewidth=7, alpha=.6)
     for line in (line for panel in chart["panels"] for line in panel.get("lines", [])):
-        handles.setdefault(line["label"], Line2D([], [], color="#009E73", linewidth=1, linestyle=(0, (1, 3))))
+        handles.setdefault(line["label"],
+                           Line2D([], [], color="#009E73", linewidth=1, linestyle=(0, (1, 3))))
     return handles
 
 

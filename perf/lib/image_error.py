@@ -1,4 +1,5 @@
-"""How far a picture lies from its reference, and how references are made and kept: what error_time, error_check and charts share."""
+"""How far a picture lies from its reference, and how references are made and kept: what error_time,
+error_check and charts share."""
 import hashlib
 import json
 import math
@@ -40,13 +41,14 @@ def blurred(plane):
 
 
 def ssim(a, b):
-    """Structural similarity of Wang, Bovik, Sheikh and Simoncelli (2004) with their window and constants, of the luma (Rec. 601) of what a
-    screen shows; 1 for equal pictures."""
+    """Structural similarity of Wang, Bovik, Sheikh and Simoncelli (2004) with their window and
+    constants, of the luma (Rec. 601) of what a screen shows; 1 for equal pictures."""
     x, y = (np.clip(picture, 0, 1) @ [.299, .587, .114] for picture in (a, b))
     mx, my = blurred(x), blurred(y)
     vx, vy, both = blurred(x * x) - mx * mx, blurred(y * y) - my * my, blurred(x * y) - mx * my
     c1, c2 = .01 ** 2, .03 ** 2
-    return float(np.mean((2 * mx * my + c1) * (2 * both + c2) / ((mx * mx + my * my + c1) * (vx + vy + c2))))
+    return float(
+        np.mean((2 * mx * my + c1) * (2 * both + c2) / ((mx * mx + my * my + c1) * (vx + vy + c2))))
 
 
 class Workshop:
@@ -68,7 +70,9 @@ class Workshop:
         return path
 
     def info(self, scene):
-        return json.loads(subprocess.run([self.program, "info", "--json", scene], check=True, stdout=subprocess.PIPE, text=True).stdout)
+        return json.loads(
+            subprocess.run([self.program, "info", "--json", scene], check=True,
+                           stdout=subprocess.PIPE, text=True).stdout)
 
     def command(self, source, options, tail=()):
         """What a reader types to repeat a render; `tail`: lines added to the end of the scene."""
@@ -78,12 +82,14 @@ class Workshop:
             make = f"./run scene {source[0]} --size {source[1]} -o {name} && "
         if tail:
             make += "printf '%s\\n' " + " ".join(f"'{line}'" for line in tail) + f" >> {name} && "
-        return make + " ".join(["./run render", name, "-o p.pfm --stats p.json", *self.size, *map(str, options)])
+        return make + " ".join([
+            "./run render", name, "-o p.pfm --stats p.json", *self.size, *map(str, options)])
 
     def render(self, scene, options, picture):
         stats = self.folder / "stats.json"
-        done = subprocess.run([self.program, "render", scene, "-o", picture, "--quiet", "--stats", stats, *self.size, *map(str, options)],
-                              stderr=subprocess.PIPE, text=True)
+        done = subprocess.run([
+            self.program, "render", scene, "-o", picture, "--quiet", "--stats", stats, *self.size,
+            *map(str, options)], stderr=subprocess.PIPE, text=True)
         if done.returncode == 2:
             raise Refused(done.stderr.strip())
         if done.returncode:
@@ -105,8 +111,9 @@ class Workshop:
 
 
 def turns(plan, spent):
-    """Numbers the renders of a set that takes turns: `spent()` tells the CPU seconds so far. As many as the plan's rounds, and of short renders up to
-    four times as many while they come to less than the seconds a set is given."""
+    """Numbers the renders of a set that takes turns: `spent()` tells the CPU seconds so far. As
+    many as the plan's rounds, and of short renders up to four times as many while they come to less
+    than the seconds a set is given."""
     for turn in range(4 * plan.rounds):
         if turn >= plan.rounds and spent() * (turn + 1) / turn > plan.seconds:
             return
@@ -118,8 +125,8 @@ def reference_settings(options, samples, seed):
 
 
 def time_to_reach(curve, error):
-    """Of points with `rmse` and `seconds`: between the two on either side of `error`, on straight lines of the log-log chart; None beyond its
-    ends."""
+    """Of points with `rmse` and `seconds`: between the two on either side of `error`, on straight
+    lines of the log-log chart; None beyond its ends."""
     curve = sorted((math.log(p["rmse"]), math.log(p["seconds"])) for p in curve if p["rmse"] > 0)
     at = math.log(error)
     for (e0, t0), (e1, t1) in zip(curve, curve[1:]):

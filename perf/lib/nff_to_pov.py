@@ -1,8 +1,10 @@
-"""NFF of the project's generators (spheres, polygons of three corners, planes, point lights) as a scene for POV-Ray.
+"""NFF of the project's generators as a scene for POV-Ray.
 
-The same camera, lights, colours, mirrors and depth; POV-Ray knows the highlight (`specular` is Blinn's) and refraction too. Two rules differ:
-glass lets POV-Ray's shadow rays through, and its paths end in black where ours end in the background. Its textures share no code with
-ours, so pictures agree to a few hundredths, not in bits.
+They write spheres, polygons of three corners, planes and point lights.
+The same camera, lights, colours, mirrors and depth; POV-Ray knows the highlight (`specular` is
+Blinn's) and refraction too. Two rules differ: glass lets POV-Ray's shadow rays through, and its
+paths end in black where ours end in the background. Its textures share no code with ours, so
+pictures agree to a few hundredths, not in bits.
 """
 import math
 
@@ -43,7 +45,9 @@ def material(name, f):
     r, g, b, kd, ks, shine, t, ior = f
     # POV-Ray lets 1 - transmit of the diffuse light come back
     diffuse = kd / (1 - t) if t < 1 else 0
-    highlight = f" specular {ks} metallic roughness {1 / max(shine, .01):.6g}" if ks > 0 and shine > 0 else ""
+    highlight = ""
+    if ks > 0 and shine > 0:
+        highlight = f" specular {ks} metallic roughness {1 / max(shine, .01):.6g}"
     mirror = f" reflection {{ {ks} }}" if ks > 0 else ""
     interior = f" interior {{ ior {ior} }}" if t > 0 else ""
     return (f"#declare {name} = material {{ texture {{ pigment {{ color rgbt <{r},{g},{b},{t}> }} "
@@ -51,16 +55,19 @@ def material(name, f):
 
 
 def area_axes(light, at, size):
-    """Edges of the square a point light becomes with --shadows, as frontend/input/effects.cpp chooses them (Duff et al. 2017)."""
+    """Edges of the square a point light becomes with --shadows, as frontend/input/effects.cpp
+    chooses them (Duff et al. 2017)."""
     x, y, z = (at - light).unit()
     sign = -1 if z < 0 else 1
     a = -1 / (sign + z)
     b = x * y * a
-    return size * Vector(1 + sign * x * x * a, sign * b, -sign * x), size * Vector(b, sign + y * y * a, -y)
+    return (size * Vector(1 + sign * x * x * a, sign * b, -sign * x),
+            size * Vector(b, sign + y * y * a, -y))
 
 
 def convert(text, depth, area=None, lens=None):
-    """area: (side, N) squares of N x N points; lens: (aperture in pixels, focal distance, samples)."""
+    """area: (side, N) squares of N x N points; lens: (aperture in pixels, focal distance,
+    samples)."""
     words = iter(text.split("\n"))
     view, out, meshes, lights, materials = {}, [], {}, [], 0
     background = "<0,0,0>"
@@ -79,7 +86,8 @@ def convert(text, depth, area=None, lens=None):
         elif key == "resolution":
             view[key] = (int(w[1]), int(w[2]))
         elif key == "l":
-            lights.append((Vector(*numbers(w[1:4])), Vector(*numbers(w[4:7])) if len(w) > 4 else Vector(1, 1, 1)))
+            colour = Vector(*numbers(w[4:7])) if len(w) > 4 else Vector(1, 1, 1)
+            lights.append((Vector(*numbers(w[1:4])), colour))
         elif key == "f":
             materials += 1
             out.append(material(f"M{materials}", numbers(w[1:9])))
@@ -98,8 +106,11 @@ def convert(text, depth, area=None, lens=None):
         points, indices = {}, []
         for face in faces:
             indices.append([points.setdefault(tuple(p), len(points)) for p in face])
-        out.append(f"mesh2 {{ vertex_vectors {{ {len(points)},\n" + ",\n".join("<" + ",".join(p) + ">" for p in points) + "\n}\n"
-                   f"face_indices {{ {len(indices)},\n" + ",\n".join(f"<{a},{b},{c}>" for a, b, c in indices) + f"\n}}\nmaterial {{ M{number} }} }}\n")
+        vectors = ",\n".join("<" + ",".join(p) + ">" for p in points)
+        corners_of_faces = ",\n".join(f"<{a},{b},{c}>" for a, b, c in indices)
+        out.append(f"mesh2 {{ vertex_vectors {{ {len(points)},\n{vectors}\n}}\n"
+                   f"face_indices {{ {len(indices)},\n{corners_of_faces}\n}}\n"
+                   f"material {{ M{number} }} }}\n")
     for position, colour in lights:
         spread = ""
         if area:
@@ -116,7 +127,12 @@ def convert(text, depth, area=None, lens=None):
         aperture, focus, samples = lens
         diameter = aperture * 2 * (at - eye).length() * half / height
         # twice: found by comparing pictures, as its manual names no unit
-        blur = f" aperture {2 * diameter:.9g} focal_point {eye + focus * forward} blur_samples {samples} variance 0 confidence 0.9"
-    head = (f"#version 3.7;\nglobal_settings {{ assumed_gamma 1 max_trace_level {depth} adc_bailout 0 }}\nbackground {{ rgb {background} }}\n"
-            f"camera {{ location {eye} direction {forward} right {2 * half * width / height * right} up {2 * half * up}{blur} }}\n")
+        blur = (f" aperture {2 * diameter:.9g} focal_point {eye + focus * forward}"
+                f" blur_samples {samples} variance 0 confidence 0.9")
+    head = (
+        "#version 3.7;\n"
+        f"global_settings {{ assumed_gamma 1 max_trace_level {depth} adc_bailout 0 }}\n"
+        f"background {{ rgb {background} }}\n"
+        f"camera {{ location {eye} direction {forward} right {2 * half * width / height * right} "
+        f"up {2 * half * up}{blur} }}\n")
     return head + "".join(out)
