@@ -1,19 +1,24 @@
 #!/bin/sh
-# build.sh [FOLDER]: the site of README, docs/ and the library's headers, in FOLDER/html (build/docs/html). Fails on anything Doxygen
-# warns of: every type and function of the library is documented. Only members that share a line share its comment, which it does not see.
+# build.sh [FOLDER]: the site of README, docs/ and the library's headers, in FOLDER/html
+# (build/docs/html). Fails on anything Doxygen warns of: every type and function of the library is
+# documented. Only members that share a line share its comment, which it does not see.
 set -eu
 command -v doxygen >/dev/null || { echo "skipped: no doxygen"; exit 77; }
 cd "$(dirname "$0")/.."
 out=${1:-$PWD/build/docs}
 rm -rf "$out"
 mkdir -p "$out"
-{ cat docs/Doxyfile; echo "OUTPUT_DIRECTORY=\"$out\""; echo "WARN_LOGFILE=\"$out/warnings\""; } | doxygen -
+{
+  cat docs/Doxyfile
+  echo "OUTPUT_DIRECTORY=\"$out\""
+  echo "WARN_LOGFILE=\"$out/warnings\""
+} | doxygen -
 if grep -v 'Member .* (variable) of .* is not documented' "$out/warnings"; then
   echo "docs/build.sh: Doxygen complains" >&2
   exit 1
 fi
-# What pages link to and Doxygen does not make is put where their own links look for it: README's and CONTRIBUTING's from the top, the
-# others' from docs/, and all pages lie in html/.
+# What pages link to and Doxygen does not make is put where their own links look for it: README's
+# and CONTRIBUTING's from the top, the others' from docs/, and all pages lie in html/.
 cp -r docs "$out/html/docs"
 cp -r docs/images docs/*.csv docs/*.sh CMakePresets.json LICENSE "$out/html"
 cp -r examples "$out"
@@ -22,7 +27,9 @@ if grep -oiE 'href="file:[^"]*"' ./*.html; then  # words that Doxygen takes for 
   echo "docs/build.sh: a page links to no page" >&2
   exit 1
 fi
-for link in $(grep -ohE '(<img src|<a [^>]*href)="[^":#]+["#]' ./*.html | sed 's/.*"\([^"#]*\)["#]$/\1/' | sort -u); do
+links=$(grep -ohE '(<img src|<a [^>]*href)="[^":#]+["#]' ./*.html |
+  sed 's/.*"\([^"#]*\)["#]$/\1/' | sort -u)
+for link in $links; do
   [ -e "$link" ] || { echo "docs/build.sh: a page links to $link, which is not there" >&2; exit 1; }
 done
 echo "$out/html/index.html"

@@ -8,11 +8,13 @@ trap 'rm -rf "$work"' EXIT
 mkdir -p "$out"
 
 ./run render scenes/data/balls.nff -o "$out/balls.png"
-./run render scenes/data/balls.nff -o "$out/effects.png" --samples 64 --shadows area:1,8 --lens 12 --glossy .08
+./run render scenes/data/balls.nff -o "$out/effects.png" --samples 64 \
+  --shadows area:1,8 --lens 12 --glossy .08
 for scene in mount:7 gears:3 boat:10 tree:11; do
   name=${scene%:*}
   ./run scene "$name" --size "${scene#*:}" -o "$work/$name.nff"
   ./run render "$work/$name.nff" --size 384x384 -o "$out/$name.png"
 done
-./run render "$work/boat.nff" --size 384x384 --error 0.005 -o "$work/fine.png" --samples-map "$out/samples-map.png"
+./run render "$work/boat.nff" --size 384x384 --error 0.005 -o "$work/fine.png" \
+  --samples-map "$out/samples-map.png"
 dot -Tsvg docs/pipeline.dot -o "$out/pipeline.svg"  # Debian: graphviz

@@ -1,5 +1,6 @@
 #!/bin/sh
-# Makes the pictures of docs/effects.md, those the report of 2019 shows:  docs/report.sh [PICTURE...]
+# Makes the pictures of docs/effects.md, those the report of 2019 shows:
+#   docs/report.sh [PICTURE...]
 set -eu
 cd "$(dirname "$0")/.."
 out=docs/images/report

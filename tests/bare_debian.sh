@@ -1,6 +1,7 @@
 #!/bin/sh
-# bare_debian.sh DEB FOLDER [MIRROR]: installs the package in a fresh Debian 12 in FOLDER and uses it: the program, the man page, and the
-# example built against the library. As root, with debootstrap; not a test of ctest's, for it downloads some hundred megabytes.
+# bare_debian.sh DEB FOLDER [MIRROR]: installs the package in a fresh Debian 12 in FOLDER and uses
+# it: the program, the man page, and the example built against the library. As root, with
+# debootstrap; not a test of ctest's, for it downloads some hundred megabytes.
 set -eu
 deb=$1
 root=$2

@@ -1,7 +1,9 @@
 #!/bin/sh
 # deb.sh BUILD SCRATCH CONFIG: packs the build and looks inside.
 set -eu
-case ${4:-} in *-fsanitize=*) echo "skipped: a package of a sanitized build is for nobody"; exit 77 ;; esac
+case ${4:-} in
+  *-fsanitize=*) echo "skipped: a package of a sanitized build is for nobody"; exit 77 ;;
+esac
 for tool in dpkg-deb dpkg-shlibdeps; do
   command -v $tool >/dev/null || { echo "skipped: no $tool"; exit 77; }
 done
@@ -11,13 +13,19 @@ cd "$1"
 cpack -B "$2" -C "$3" >"$2/log" 2>&1 || { cat "$2/log"; exit 1; }
 deb=$(ls "$2"/grelha_*.deb)
 dpkg-deb -c "$deb" | awk '{print $6}' >"$2/files"
-for file in usr/bin/grelha usr/lib/libgrelha.a usr/lib/cmake/grelha/grelhaConfig.cmake usr/include/grelha/grelha.hpp usr/share/man/man1/grelha.1 \
-  usr/share/bash-completion/completions/grelha usr/share/zsh/vendor-completions/_grelha usr/share/fish/vendor_completions.d/grelha.fish \
-  usr/share/grelha/scenes/balls.nff usr/share/doc/grelha/copyright usr/share/doc/grelha/farm.sh usr/share/doc/grelha/README.md \
-  usr/share/doc/grelha/CHANGELOG.md usr/share/doc/grelha/examples/embed.cpp; do
+share=usr/share
+for file in usr/bin/grelha usr/lib/libgrelha.a usr/lib/cmake/grelha/grelhaConfig.cmake \
+  usr/include/grelha/grelha.hpp $share/man/man1/grelha.1 \
+  $share/bash-completion/completions/grelha $share/zsh/vendor-completions/_grelha \
+  $share/fish/vendor_completions.d/grelha.fish $share/grelha/scenes/balls.nff \
+  $share/doc/grelha/copyright $share/doc/grelha/farm.sh $share/doc/grelha/README.md \
+  $share/doc/grelha/CHANGELOG.md $share/doc/grelha/examples/embed.cpp; do
   grep -qx "./$file" "$2/files" || { echo "the package lacks $file"; exit 1; }
 done
 depends=$(dpkg-deb -f "$deb" Depends)
 for package in libc6 libstdc++6 libgomp1 zlib1g; do
-  case $depends in *"$package"*) ;; *) echo "$package is not among the dependencies: $depends"; exit 1 ;; esac
+  case $depends in
+    *"$package"*) ;;
+    *) echo "$package is not among the dependencies: $depends"; exit 1 ;;
+  esac
 done

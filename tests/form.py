@@ -34,11 +34,6 @@ EXCEPTIONS = {
         "tests/frontend/nff/nff_reader_test.cpp", "tests/kernel/render/shade_test.cpp",
         "tests/stability/pictures.cpp",
     ),
-    "width": (
-        "docs/build.sh", "docs/farm.sh", "docs/pictures.sh", "docs/report.sh", "run",
-        "tests/bare_debian.sh", "tests/deb.sh", "tests/fuzz/campaign.sh", "tests/pages.sh",
-        "tests/run_script.sh", "tests/with_python.sh",
-    ),
     "comma": (
         "kernel/features/beam.hpp", "kernel/features/doubt.hpp", "kernel/render/bands.cpp",
     ),

@@ -24,7 +24,9 @@ expect "$(completed grelha compare a.png)" ""  # then bash offers files
 
 page=$pages/grelha.1
 grep -q '^\.TH GRELHA 1 "[0-9]*-[0-9]*-[0-9]*" "grelha ' "$page" || fail "the man page has no date"
-for section in FILES "SEE ALSO"; do grep -qx ".SH $section" "$page" || fail "the man page has no $section"; done
+for section in FILES "SEE ALSO"; do
+  grep -qx ".SH $section" "$page" || fail "the man page has no $section"
+done
 if grep -q scenes/data "$page"; then fail "the man page names a folder of the sources"; fi
 
 bash -n "$pages/grelha.bash"

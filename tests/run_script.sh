@@ -1,12 +1,15 @@
 #!/bin/sh
-# run_script.sh RUN SCRATCH: ./run through a link, and by someone who may install nothing. The program it would build is a stand-in.
+# run_script.sh RUN SCRATCH: ./run through a link, and by someone who may install nothing. The
+# program it would build is a stand-in.
 set -eu
 unset GRELHA_PRESET  # of whoever runs the tests
 rm -rf "$2"
 mkdir -p "$2/project/build/release" "$2/tools"
 cd "$2"
 cp "$1" project/run
-for folder in include kernel frontend scenes cmake examples tests perf; do mkdir project/$folder; done
+for folder in include kernel frontend scenes cmake examples tests perf; do
+  mkdir project/$folder
+done
 touch project/CMakeLists.txt project/CMakePresets.json project/build/release/.built-grelha
 printf '#!/bin/sh\necho "here: $*"\n' >project/build/release/grelha
 chmod +x project/build/release/grelha
@@ -14,17 +17,32 @@ ln -s project/run linked
 said=$(./linked info x.nff 2>&1) || true
 [ "$said" = "here: info x.nff" ] || { echo "through a link it said: $said"; exit 1; }
 
-# From nothing, with stand-ins for the tools: one line a step; the program alone at first, everything when it is asked for, and from then on.
+link_tools() {  # link_tools() FOLDER TOOL...: those tools and no others
+  folder=$1
+  shift
+  for tool in "$@"; do ln -s "$(command -v "$tool")" "$folder/$tool"; done
+}
+
+# From nothing, with stand-ins for the tools: one line a step; the program alone at first,
+# everything when it is asked for, and from then on.
 mkdir stand-ins
-for tool in sh dirname readlink find grep mkdir touch cat date wc tail sed head mv rm; do ln -s "$(command -v $tool)" stand-ins/$tool; done
+link_tools stand-ins sh dirname readlink find grep mkdir touch cat date wc tail sed head mv rm
 cat >stand-ins/cmake <<CMAKE
 #!/bin/sh
 echo "cmake \$*" >>$2/asked
 case \$* in
-  *GRELHA_ISAS=*) echo "GRELHA_ISAS:STRING=\${*##*GRELHA_ISAS=}" >$2/project/build/release/CMakeCache.txt; exit ;;
+  *GRELHA_ISAS=*)
+    echo "GRELHA_ISAS:STRING=\${*##*GRELHA_ISAS=}" >$2/project/build/release/CMakeCache.txt
+    exit
+    ;;
 esac
 echo "[1/4 9.5 3] one"
-[ ! -e $2/broken ] || { echo "FAILED: two.o"; echo "two.cpp:1:1: error: wrong"; echo "ninja: stopped"; exit 1; }
+if [ -e $2/broken ]; then
+  echo "FAILED: two.o"
+  echo "two.cpp:1:1: error: wrong"
+  echo "ninja: stopped"
+  exit 1
+fi
 echo "[4/4 12.5 1] two"
 CMAKE
 printf '#!/bin/sh\necho tested\n' >stand-ins/ctest
@@ -33,10 +51,17 @@ try() {  # try() EXPECTED COMMAND...: what it says on a pipe, lines joined by |
   expected=$1
   shift
   said=$(PATH=$scratch/stand-ins project/run "$@" 2>&1 | tr '\n' '|') || true
-  [ "$said" = "$expected" ] || { printf 'run %s\nexpected %s\nfound    %s\n' "$*" "$expected" "$said"; exit 1; }
+  [ "$said" = "$expected" ] || {
+    printf 'run %s\nexpected %s\nfound    %s\n' "$*" "$expected" "$said"
+    exit 1
+  }
 }
 asked() {  # asked() TEXT: the last build was configured with it
-  grep GRELHA_ISAS asked | tail -n 1 | grep -q -- "$1" || { printf 'expected %s\n' "$1"; cat asked; exit 1; }
+  grep GRELHA_ISAS asked | tail -n 1 | grep -q -- "$1" || {
+    printf 'expected %s\n' "$1"
+    cat asked
+    exit 1
+  }
 }
 scratch=$2
 steps='run: configuring (release)|run: building grelha|'
@@ -53,20 +78,32 @@ touch project/include/new.hpp
 try "${steps}here: info x.nff|" info x.nff
 asked GRELHA_ISAS=all
 touch broken project/kernel/new.cpp
-try "${steps}FAILED: two.o|two.cpp:1:1: error: wrong|ninja: stopped|run: this failed: building grelha; all that was said is in $2/project/build/release/run.log|" \
-  info x.nff
-grep -q '^\[1/4 9.5 3\] one$' project/build/release/run.log || { echo "the log is incomplete"; exit 1; }
+log=$2/project/build/release/run.log
+failed="FAILED: two.o|two.cpp:1:1: error: wrong|ninja: stopped|"
+failed="${failed}run: this failed: building grelha; all that was said is in $log|"
+try "$steps$failed" info x.nff
+grep -q '^\[1/4 9.5 3\] one$' "$log" || { echo "the log is incomplete"; exit 1; }
 rm broken
 # On a terminal the build counts in one line.
 if command -v script >/dev/null && script -qec true /dev/null >/dev/null 2>&1; then
-  said=$(PATH=$2/stand-ins "$(command -v script)" -qec "project/run info x.nff" /dev/null | tr '\r\033' '\n^')
-  case $said in *"run: building grelha [1/4], 9 s left^[K"*"run: building grelha [4/4], 0 s left^[K"*) ;; *) echo "on a terminal it said: $said"; exit 1 ;; esac
+  said=$(PATH=$2/stand-ins "$(command -v script)" -qec "project/run info x.nff" /dev/null |
+    tr '\r\033' '\n^')
+  case $said in
+    *"run: building grelha [1/4], 9 s left^[K"*"run: building grelha [4/4], 0 s left^[K"*) ;;
+    *) echo "on a terminal it said: $said"; exit 1 ;;
+  esac
 fi
 
 rm project/build/release/.built-grelha
-for tool in sh dirname readlink find grep mkdir touch cat date; do ln -s "$(command -v $tool)" tools/$tool; done
+link_tools tools sh dirname readlink find grep mkdir touch cat date
 printf '#!/bin/sh\necho 1000\n' >tools/id
 printf '#!/bin/sh\nexit 1\n' >tools/dpkg-query
 chmod +x tools/id tools/dpkg-query
-said=$(PATH=$2/tools ./project/run info x.nff 2>&1) && { echo "without what it needs it ended well"; exit 1; }
-case $said in "run: there is no sudo; have someone install g++ cmake "*) ;; *) echo "without sudo it said: $said"; exit 1 ;; esac
+said=$(PATH=$2/tools ./project/run info x.nff 2>&1) && {
+  echo "without what it needs it ended well"
+  exit 1
+}
+case $said in
+  "run: there is no sudo; have someone install g++ cmake "*) ;;
+  *) echo "without sudo it said: $said"; exit 1 ;;
+esac
