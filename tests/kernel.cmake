@@ -19,6 +19,8 @@ grelha_test(kernel/scene/camera unit grelha::kernel)
 grelha_test(kernel/isa/variants property grelha::kernel)
 grelha_test(kernel/isa/double property grelha::kernel)
 grelha_test(kernel/features/beam unit grelha::kernel)
+target_sources(beam_test PRIVATE kernel/features/beam_bounds_test.cpp
+  kernel/features/beam_frame_test.cpp)
 grelha_test(kernel/query/query unit grelha::kernel)
 grelha_test(kernel/render/shade unit grelha::kernel)
 grelha_test(kernel/shapes/copies unit grelha::kernel)

@@ -7,6 +7,7 @@ set_tests_properties(readme PROPERTIES LABELS image)
 grelha_test(kernel/render/sampling property grelha::kernel grelha_lane_functions)
 grelha_test(frontend/input/effects image grelha::frontend)
 grelha_test(kernel/adaptive/refinement image grelha::frontend grelha::scenes)
+target_sources(refinement_test PRIVATE kernel/adaptive/pixel_errors_test.cpp)
 
 # By Debian's Python, where there is one: it has the modules of its packages.
 add_test(NAME other_programs COMMAND ${CMAKE_COMMAND} -E env PATH=/usr/bin:$ENV{PATH}

@@ -31,6 +31,12 @@ class Fault:
     simd: bool = False  # wants copies of more than one width
 
 
+def tolerance(name, room, constant, value, planted, test, cases):
+    """A constant of a room's tolerances set to what breaks its promise."""
+    return Fault(name, f"kernel/{room}/tolerances.hpp", f"{constant} = {value};",
+                 f"{constant} = {planted};", test, cases)
+
+
 ROW = "Rows/Stability.NothingIsLostFalseOrMetAgain/"
 FAULTS = [
     Fault("no growth of boxes", "kernel/grid/plan.cpp", "return reach * 256 / 16777216;",
@@ -115,6 +121,37 @@ FAULTS = [
           "kHiddenWidth = 0;", "refinement", "*ReckonsWith*"),
     Fault("no trust below 1", "kernel/adaptive/tolerances.hpp", "kVarianceInflation = 1.12 * 1.12;",
           "kVarianceInflation = 1;", "refinement", "*IsNotFooled*"),
+    tolerance("beams of any width", "features", "kNarrow", ".998f", "0",
+              "beam", "BeamFrame.IsThereForNarrow*"),
+    tolerance("no apex of parallel rays", "features", "kFarthestApex", "1e4f", "0",
+              "beam", "BeamFrame.HoldsParallel*"),
+    tolerance("beams that begin on their mirrors", "features", "kDepthMargin", ".1f", "0",
+              "beam", "BeamFrame.BeginsBehind*"),
+    tolerance("balls aimed at in the middle", "features", "kRimShare", ".9f", "0",
+              "beam", "*MeetsABall*"),
+    tolerance("balls aimed past", "features", "kRimShare", ".9f", "1.8f", "beam", "*MeetsABall*"),
+    tolerance("triangles aimed at on their edges", "features", "kOffEdge", ".01f", "0",
+              "beam", "*MeetsTriangles*"),
+    tolerance("no axes are parallel", "features", "kParallelAxes", "1e-6f", "0",
+              "beam", "*MeetsConesAlong*"),
+    tolerance("nothing as far as a hit", "features", "kBehindHit", "1.0001f", "1",
+              "beam", "*MissesNoTriangle*"),
+    tolerance("one difference too few of the young", "adaptive", "kYoung", "3", "2",
+              "refinement", "PixelErrors.EstimateThe*"),
+    tolerance("one difference too few of the old", "adaptive", "kOld", "7", "6",
+              "refinement", "PixelErrors.EstimateThe*"),
+    tolerance("intervals of no width", "adaptive", "kNormal", "1.96f", "0",
+              "refinement", "PixelErrors.MakeIntervals*"),
+    tolerance("intervals of twice the width", "adaptive", "kNormal", "1.96f", "3.92f",
+              "refinement", "PixelErrors.MakeIntervals*"),
+    tolerance("bounds without spread", "adaptive", "kNormalOneSided", "1.645", "0",
+              "refinement", "PixelErrors.BoundThe*"),
+    tolerance("bounds with twice the spread", "adaptive", "kNormalOneSided", "1.645", "3.29",
+              "refinement", "PixelErrors.BoundThe*"),
+    tolerance("no samples agree", "adaptive", "kAgreement", ".005f", "0",
+              "refinement", "PixelErrors.SeeASample*"),
+    tolerance("samples agree too easily", "adaptive", "kAgreement", ".005f", ".01f",
+              "refinement", "PixelErrors.SeeASample*"),
 ]
 
 

@@ -108,9 +108,9 @@ PixelErrors::Totals PixelErrors::totals() const {
     widest = std::max(widest, static_cast<double>(widest_[p]));
   }
   const double n = static_cast<double>(variance_.size());
-  // A pixel's estimate has the spread of chi squared with about 7 degrees of freedom: variance 2
-  // v^2 / 7.
-  const double bound = kVarianceInflation * (sum + kNormalOneSided * std::sqrt(spread * 2 / 7));
+  // A pixel's estimate has the spread of chi squared: variance 2 v^2 over the degrees of freedom.
+  const double of_sum = std::sqrt(spread * 2 / kOld);
+  const double bound = kVarianceInflation * (sum + kNormalOneSided * of_sum);
   return {sum, std::sqrt(bound / n), std::sqrt(sum / n), widest};
 }
 

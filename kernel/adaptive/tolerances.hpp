@@ -4,15 +4,15 @@
 
 namespace grelha {
 
-/// Differences a pixel holds after its first round, and later.
+/// Squared differences a pixel holds: after its first round 1 of halves and 2 of quarters, later 4
+/// of eighths as well. Chi squared has as many degrees of freedom.
 inline constexpr float kYoung = 3;
 inline constexpr float kOld = 7;
 
-/// One rate for the whole picture, and pixels that stop when their differences
-/// are small, leave estimates up to 15 % too low (measured); the bound allows
-/// for 12 %, its spread for the rest.
+/// One rate for the whole picture, and pixels that stop when their differences are small, leave
+/// estimates up to 15 % too low (measured); the bound allows for 12 %, its spread for the rest.
 inline constexpr double kVarianceInflation = 1.12 * 1.12;
-/// 97.5 % point: with what neighbours tell, Student's t is no wider.
+/// 97.5 % point of the normal: with what neighbours tell, Student's t is no wider.
 inline constexpr float kNormal = 1.96f;
 /// 95 % point, of one side.
 inline constexpr double kNormalOneSided = 1.645;
@@ -25,7 +25,8 @@ inline constexpr float kHiddenVariance = .15f;
 /// / n on either side (the rule of three).
 inline constexpr float kHiddenWidth = 6;
 
-/// One of n samples that differs by .1 shows as a variance of this / n^2.
+/// Times 1 / n^2, for n samples: what variance they agree to. One that differs by .1 shows as .0049
+/// of it where variances fall by .4 a doubling.
 inline constexpr float kAgreement = .005f;
 
 }  // namespace grelha

@@ -49,9 +49,9 @@ inline bool frame_of(const Beam& b, BeamFrame& f) {
     growth += dot(o, d) > 0 || dot(o, o) == 0 ? length(d) : 0 - length(d);
   }
   // Rays that run together or keep apart have no apex behind them: one far away stands for it.
-  f.depth = offset == 0                      ? 0.f
-            : growth > kLeastGrowth * offset ? lesser(offset / growth, kFarthestApex * offset)
-                                             : kFarthestApex * offset;
+  f.depth = offset == 0  ? 0.f
+            : growth > 0 ? lesser(offset / growth, kFarthestApex * offset)
+                         : kFarthestApex * offset;
   f.apex = org - f.depth * f.unit;
   Vec3<float> c[kCorners];  // where the corner rays pierce w = 1
   for (int i = 0; i < kCorners; ++i) {
@@ -77,7 +77,7 @@ inline bool frame_of(const Beam& b, BeamFrame& f) {
     first = lesser(w, first);
     last = greater(w, last);
   }
-  // a slanting mirror: its corners are the ends, but for the rounding
+  // a slanting mirror: its corners are nearly its ends
   f.depth = last + kDepthMargin * (last - first);
   return true;
 }

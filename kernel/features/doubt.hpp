@@ -169,7 +169,7 @@ class Watcher {
       p.dir[1][i] = dir.y;
       p.dir[2][i] = dir.z;
       p.t_min[i] = p.start[i] = 0;
-      p.best[i] = kBehindBeam * (far - f.depth);
+      p.best[i] = kBehindHit * far - f.depth;
     }
     prepare(p, false);
     bring_near(scene_, p);

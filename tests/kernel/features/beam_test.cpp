@@ -1,55 +1,9 @@
 // What a pixel's beam knows: whether something may hide from its samples, before any is taken.
-#include <array>
-
-#include "kernel/scene/frame.hpp"
-#include "kernel/query/variants.hpp"
-#include "kernel/grid/world_impl.hpp"
+#include "tests/support/beams.hpp"
 #include "tests/support/rays.hpp"
-#include "tests/support/scenes.hpp"
 
 namespace grelha::test {
 namespace {
-
-/// Of each pixel twice the weight of what hides inside, or that of what its corners differ in.
-using Tile = std::array<float, kTile * kTile>;
-
-/// Looks along -z from z = 200 at 8 x 8 pixels, each one unit across at z = 0: pixel (x, y) there
-/// covers [x - 4, x - 3] x [3 - y, 4 - y].
-Camera over_units() {
-  Camera c;
-  c.eye = {0, 0, 200};
-  c.at = {0, 0, 0};
-  c.up = {0, 1, 0};
-  c.width = c.height = 8;
-  c.angle_deg = 2 * 1.1457628381751033;  // atan(4 / 200)
-  return c;
-}
-
-Tile doubt(const Scene& scene, const Variant& variant, bool grid = true, float density = 0) {
-  BuildOptions build;
-  build.grid = grid;
-  build.density = density;
-  const World world(scene, build);
-  const World::Impl& w = world.impl();
-  float inside[kTile * kTile], around[kTile * kTile];
-  TraceCounts counts;
-  variant.loops.doubt(w.view,
-                      w.shading,
-                      make_frame(over_units()),
-                      0,
-                      0,
-                      2,
-                      ~std::uint64_t{0},
-                      inside,
-                      around,
-                      counts);
-  Tile out;
-  for (std::size_t i = 0; i < out.size(); ++i)
-    out[i] = std::max(2 * inside[i], around[i]);
-  return out;
-}
-
-float at(const Tile& tile, int x, int y) { return tile[static_cast<std::size_t>(8 * y + x)]; }
 
 class Beam : public testing::TestWithParam<const Variant*> {
  protected:
@@ -59,13 +13,6 @@ class Beam : public testing::TestWithParam<const Variant*> {
   }
   Tile look(const Scene& s) const { return doubt(s, *GetParam()); }
 };
-
-/// A wall at z = 0 that fills the picture, lit from the eye's side.
-Scene wall() {
-  Scene s = one_plane({0, 0, 0}, {0, 0, 1});
-  s.lights = {{{30, 0, 40}, {1, 1, 1}}};
-  return s;
-}
 
 TEST_P(Beam, DoubtsNothingWhereThereIsNothing) {
   for (const float d : look(empty_scene()))
@@ -266,9 +213,9 @@ TEST_P(Beam, IsTheSameForEveryGridAndCopy) {
   add_spheres(s, random, 60, 6, .01, .4);
   add_triangles(s, random, 60, 6, .1, 2);
   s.materials[0].mirror = {.6f, .6f, .6f};
-  const Tile want = doubt(s, *variants().front(), false);
+  const Tile want = doubt(s, *variants().front(), {.grid = false});
   for (const float density : {.5f, 1.f, 4.f})
-    EXPECT_EQ(doubt(s, *GetParam(), true, density), want) << density;
+    EXPECT_EQ(doubt(s, *GetParam(), {.density = density}), want) << density;
   int plain = 0;
   for (const float d : want)
     plain += d == 0;
@@ -281,14 +228,14 @@ TEST_P(Beam, IsTheSameWhereGridsServeNearRaysOrFarOnes) {
   Random random(7);
   add_spheres(s, random, 60, 6, .01, .4);
   add_triangle(s, {-1e6f, -1e6f, -9}, {1e6f, -1e6f, -9}, {0, 1e6f, -9});  // behind the wall
-  const Tile want = doubt(s, *variants().front(), false);
+  const Tile want = doubt(s, *variants().front(), {.grid = false});
   bool near[2] = {};
   for (const float density : {1.f, 40.f}) {
     const World world(s, {.density = density});
     const GridView& g = world.impl().grid_views.front();
     ASSERT_EQ(g.serves, Serves::kNear);
     near[density > 1] = over_units().eye.z <= g.near_hi[2];
-    EXPECT_EQ(doubt(s, *GetParam(), true, density), want) << density;
+    EXPECT_EQ(doubt(s, *GetParam(), {.density = density}), want) << density;
   }
   EXPECT_TRUE(near[0]);
   EXPECT_FALSE(near[1]);

@@ -1,0 +1,128 @@
+// What the squared differences of a pixel's samples say of its error.
+#include "kernel/adaptive/pixel_errors.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/random.hpp"
+
+namespace grelha::test {
+namespace {
+
+constexpr int kFirstLog = 3;
+constexpr std::size_t kLevels[] = {1, 2, 4};  ///< squared differences: of halves, quarters, eighths
+
+/// Pixels that had so many samples, that stand alone, and of which nothing is known yet.
+Refinement pixels(int width, std::uint8_t log) {
+  Camera camera;
+  camera.width = width;
+  camera.height = 1;
+  Refinement r = make_refinement(camera);
+  const std::size_t n = static_cast<std::size_t>(width);
+  r.log.assign(n, log);
+  r.cost.assign(n, 1);
+  return r;
+}
+
+PixelErrors judged(const Refinement& r) {
+  PixelErrors errors(r, false, kFirstLog, 1);
+  errors.judge();
+  return errors;
+}
+
+/// One normal number (Box, Muller).
+double normal(Random& random) {
+  constexpr double kTurn = 6.283185307179586;
+  const double radius = std::sqrt(-2 * std::log(1 - random.unit()));
+  return radius * std::cos(kTurn * random.unit());
+}
+
+/// Fills in the squared differences of a pixel whose mean has this variance, and whose samples are
+/// normal: at each level down the means are of half as many, and their variance is larger by
+/// 1 / ratio. All channels are alike. After the first round there are two levels.
+void draw(Refinement& r, std::size_t pixel, double variance, Random& random) {
+  const double ratio = static_cast<double>(r.variance_ratio);
+  const std::size_t levels = r.log[pixel] == kFirstLog ? 2 : 3;
+  double square = 4 * variance * (1 - ratio) / ratio;  // E[(A - B)^2] = 4 (V(n/2) - V(n))
+  for (std::size_t level = 0; level < levels; ++level, square /= ratio) {
+    double sum = 0;
+    for (std::size_t k = 0; k < kLevels[level]; ++k)
+      sum += square * std::pow(normal(random), 2);
+    for (std::size_t c = 0; c < 3; ++c)
+      r.squares[level][3 * pixel + c] = static_cast<float>(sum);
+  }
+}
+
+/// The mean estimate of many pixels is their variance, after the first round and later. Of 4000
+/// pixels with 3 or 7 differences it has a standard deviation of sqrt(2 / 3 / 4000) = .013.
+TEST(PixelErrors, EstimateTheVarianceRightInTheMean) {
+  constexpr int kPixels = 4000;
+  constexpr double kVariance = 1e-4;
+  for (const std::uint8_t log : {kFirstLog, kFirstLog + 2}) {
+    Random random(log);
+    Refinement r = pixels(kPixels, log);
+    for (std::size_t p = 0; p < kPixels; ++p)
+      draw(r, p, kVariance, random);
+    const PixelErrors errors = judged(r);
+    EXPECT_NEAR(errors.totals().sum / kPixels / kVariance, 1, .06) << int{log};
+  }
+}
+
+/// A pixel's interval is wide enough for 95 % of normal errors of its variance.
+TEST(PixelErrors, MakeIntervalsOfNineteenInTwenty) {
+  constexpr int kDraws = 10000;
+  constexpr double kVariance = 1e-4;
+  Random random(1);
+  Refinement r = pixels(1, kFirstLog + 2);
+  double square = 4 * kVariance * .6 / .4;
+  for (std::size_t level = 0; level < 3; ++level, square /= .4)
+    for (std::size_t c = 0; c < 3; ++c)
+      r.squares[level][c] = static_cast<float>(kLevels[level] * square);
+  const double half = static_cast<double>(judged(r).widths()[0]) / 2;
+  int inside = 0;
+  for (int i = 0; i < kDraws; ++i)
+    inside += std::abs(std::sqrt(kVariance) * normal(random)) <= half;
+  EXPECT_NEAR(inside, .95 * kDraws, 4 * std::sqrt(.95 * .05 * kDraws));
+}
+
+/// Of pictures of 400 pixels, whose estimates chance moves, 19 in 20 have no larger error than the
+/// bound says, before the bound allows for what stopping at chance does.
+TEST(PixelErrors, BoundTheErrorOfNineteenPicturesInTwenty) {
+  constexpr int kPictures = 1000;
+  constexpr int kPixels = 400;
+  constexpr double kVariance = 1e-4;
+  Random random(1);
+  int held = 0;
+  for (int i = 0; i < kPictures; ++i) {
+    Refinement r = pixels(kPixels, kFirstLog + 2);
+    for (std::size_t p = 0; p < kPixels; ++p)
+      draw(r, p, kVariance, random);
+    held += judged(r).totals().bound >= 1.12 * std::sqrt(kVariance);
+  }
+  EXPECT_GE(held, .92 * kPictures);
+  EXPECT_LE(held, .98 * kPictures);
+}
+
+/// Samples of which one differs from all others by this, the first of the sequence.
+bool agree_but_for_one(float difference) {
+  Refinement r = pixels(1, kFirstLog + 2);
+  const float n = static_cast<float>(sample_count(r, 0));
+  for (std::size_t level = 0; level < 3; ++level)
+    for (std::size_t c = 0; c < 3; ++c) {
+      const float of_means = difference * static_cast<float>(2u << level) / n;
+      r.squares[level][c] = of_means * of_means;
+    }
+  return judged(r).agrees(0);
+}
+
+/// One sample that differs by .1 is where samples begin to disagree.
+TEST(PixelErrors, SeeASampleThatDiffersByATenth) {
+  EXPECT_TRUE(agree_but_for_one(0));
+  EXPECT_TRUE(agree_but_for_one(.08f));
+  EXPECT_FALSE(agree_but_for_one(.12f));
+  EXPECT_FALSE(agree_but_for_one(1));
+}
+
+}  // namespace
+}  // namespace grelha::test

@@ -1,0 +1,108 @@
+// What a beam's tolerances are for: scenes in which each of them decides.
+#include "tests/support/beams.hpp"
+#include "tests/support/rays.hpp"
+
+namespace grelha::test {
+namespace {
+
+class BeamBounds : public EveryVariant {
+ protected:
+  Tile look(const Scene& s) const { return doubt(s, variant()); }
+};
+GRELHA_FOR_EVERY_ISA(BeamBounds);
+
+/// The pixel that scenes here are made for: its beam is 1.0625 wide around (-1.5, 2.5, 0).
+constexpr int kX = 2;
+constexpr int kY = 1;
+constexpr Float3 kMiddle{-1.5f, 2.5f, 0};
+constexpr float kHalfBeam = .5f * 1.0625f;
+
+Scene dark_wall() {
+  Scene s = wall();
+  s.lights.clear();
+  return s;
+}
+
+/// A ball whose middle lies outside the beam: a ray to it must be aimed near the rim, but not
+/// past it.
+TEST_P(BeamBounds, MeetsABallByItsRim) {
+  for (const float radius : {.1f, .3f, .45f}) {
+    Scene s = dark_wall();
+    s.geometry.spheres.add({kMiddle.x + kHalfBeam + .85f * radius, kMiddle.y, 0}, radius, 0);
+    EXPECT_EQ(at(look(s), kX, kY), 2) << radius;
+  }
+}
+
+/// Triangles of which only a tip reaches into the beam. A ray to the very tip may pass it by.
+TEST_P(BeamBounds, MeetsTrianglesByTheirTips) {
+  Random random(1);
+  for (int i = 0; i < 100; ++i) {
+    Scene s = dark_wall();
+    const auto in = [&](double lo, double hi) { return static_cast<float>(random.in(lo, hi)); };
+    const float edge = kMiddle.x + kHalfBeam;
+    const float z = in(.01, 1);
+    const float y = kMiddle.y;
+    add_triangle(s,
+                 {edge - in(.05, .3), y + in(-.2, .2), z},
+                 {edge + in(.1, .4), y + in(-.3, 0), z},
+                 {edge + in(.1, .4), y + in(.1, .3), z});
+    EXPECT_EQ(at(look(s), kX, kY), 2) << i;
+  }
+}
+
+/// Cones along the beam, beside it, whose narrow end does not reach into it: which place of their
+/// axis is nearest to the beam's is a matter of rounding.
+TEST_P(BeamBounds, MeetsConesAlongItselfByTheirMiddles) {
+  Random random(2);
+  for (int i = 0; i < 200; ++i) {
+    Camera camera = over_units();
+    const Float3 to_eye = random.direction();
+    camera.eye = at({0, 0, 0}, 200, to_eye);
+    camera.up = random.direction();
+    const FrameView f = make_frame(camera);
+    const auto in = [&](double lo, double hi) { return static_cast<float>(random.in(lo, hi)); };
+    // the middle of a pixel, and the way there
+    const int x = static_cast<int>(random.below(8));
+    const int y = static_cast<int>(random.below(8));
+    Float3 way, aside;
+    for (std::uint32_t a = 0; a < 3; ++a) {
+      component(way, a) =
+          f.forward[a] + (float(x) - 3.5f) * f.right[a] + (3.5f - float(y)) * f.up[a];
+      component(aside, a) = 200 * f.right[a];
+    }
+    const Float3 base = at(at(camera.eye, in(198, 199), way), kHalfBeam + in(.06, .1), aside);
+    const Float3 end = at(base, in(-2, -.5), way);
+    const bool tip_near = random.chance(.5);
+    Scene s = one_plane({0, 0, 0}, to_eye);
+    s.geometry.cones.add(base, tip_near ? .3f : 0.f, end, tip_near ? 0.f : .3f, 0);
+    EXPECT_EQ(at(doubt(s, variant(), {}, camera), x, y), 2) << i;
+  }
+}
+
+/// A wall across the beam, of triangles smaller than the pixel: all lie as far along the beam as
+/// what its corners meet, but for rounding. Those left out would leave holes in the wall.
+TEST_P(BeamBounds, MissesNoTriangleOfAWallAcrossIt) {
+  Random random(3);
+  const Float3 normal = minus(over_units().eye, kMiddle);
+  for (int i = 0; i < 50; ++i) {
+    const double turn = random.in(0, 3);
+    const double c = std::cos(turn);
+    const double d = std::sin(turn);
+    // two directions across the beam
+    const Float3 a{1, 0, -normal.x / normal.z};
+    const Float3 b{0, 1, -normal.y / normal.z};
+    const auto corner = [&](int x, int y) {
+      return at(at(kMiddle, .4 * (c * x - d * y), a), .4 * (d * x + c * y), b);
+    };
+    Scene s = empty_scene();
+    for (int y = -4; y < 4; ++y)
+      for (int x = -4; x < 4; ++x) {
+        add_triangle(s, corner(x, y), corner(x + 1, y), corner(x + 1, y + 1));
+        add_triangle(s, corner(x, y), corner(x + 1, y + 1), corner(x, y + 1));
+      }
+    EXPECT_EQ(at(look(s), kX, kY), 0) << i;
+  }
+}
+
+}  // namespace
+}  // namespace grelha::test

@@ -1,0 +1,116 @@
+// The pyramid that stands for a beam's four rays: how far from them it may be.
+
+// A copy of its own, which the linker cannot take for the kernel's.
+#define GRELHA_ISA beam_frame
+#define GRELHA_ISA_beam_frame 1
+
+#include <gtest/gtest.h>
+
+#include "kernel/features/beam.hpp"
+#include "tests/support/random.hpp"
+
+namespace grelha::test {
+namespace {
+
+using beam_frame::Beam;
+using beam_frame::BeamFrame;
+using beam_frame::frame_of;
+using beam_frame::kCorners;
+using beam_frame::place;
+using beam_frame::Place;
+using Vector = beam_frame::Vec3<float>;
+
+/// Signs of the corners along x and y.
+constexpr float kSigns[kCorners][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+
+/// From the square of half side `half` at z = 0, along -z, spread by `spread` a unit of way.
+Beam square_beam(float half, float spread) {
+  Beam b;
+  for (int i = 0; i < kCorners; ++i) {
+    const auto [x, y] = kSigns[i];
+    b.org[i] = {x * half, y * half, 0};
+    b.dir[i] = normalize(Vector{x * spread, y * spread, -1});
+  }
+  return b;
+}
+
+TEST(BeamFrame, IsThereForNarrowBeamsAlone) {
+  BeamFrame f;
+  EXPECT_TRUE(frame_of(square_beam(0, .04f), f));   // 3.2 degrees to a corner
+  EXPECT_FALSE(frame_of(square_beam(0, .05f), f));  // 4
+  EXPECT_FALSE(frame_of(square_beam(0, .5f), f));
+}
+
+/// Rays that never meet, on their way of up to a hundred widths: they stay at the corners of the
+/// pyramid to a hundredth of it, at their start by what floats hold of a far apex.
+TEST(BeamFrame, HoldsParallelRays) {
+  for (const float half : {1e-3f, 1.f, 1e3f}) {
+    const Beam b = square_beam(half, 0);
+    BeamFrame f;
+    ASSERT_TRUE(frame_of(b, f)) << half;
+    for (const float way : {0.f, 1.f, 10.f, 100.f})
+      for (int i = 0; i < kCorners; ++i) {
+        const Place p = place(f, b.org[i] + (way * half) * b.dir[i]);
+        EXPECT_NEAR(p.x, kSigns[i][0], .01) << half << ' ' << way;
+        EXPECT_NEAR(p.y, kSigns[i][1], .01) << half << ' ' << way;
+      }
+  }
+}
+
+/// Rays that spread, at any size of what they are in: they stay at the corners of the pyramid.
+TEST(BeamFrame, HoldsSpreadingRaysOfAnySize) {
+  for (const float half : {1e-6f, 1e-3f, 1.f, 1e3f, 1e6f}) {
+    const Beam b = square_beam(half, .01f);
+    BeamFrame f;
+    ASSERT_TRUE(frame_of(b, f)) << half;
+    for (const float way : {0.f, 10.f, 100.f, 1e3f})
+      for (int i = 0; i < kCorners; ++i) {
+        const Place p = place(f, b.org[i] + (way * half) * b.dir[i]);
+        EXPECT_NEAR(p.x, kSigns[i][0], .001) << half << ' ' << way;
+        EXPECT_NEAR(p.y, kSigns[i][1], .001) << half << ' ' << way;
+      }
+  }
+}
+
+/// The beam around the rays of one eye through a square, at z = -1, of half side `half`, which a
+/// mirror through (0, 0, -1) sent on.
+Beam mirrored_beam(float half, const Vector& normal) {
+  const Vector at{0, 0, -1};
+  Beam b;
+  for (int i = 0; i < kCorners; ++i) {
+    const auto [x, y] = kSigns[i];
+    const Vector d = normalize(Vector{x * half, y * half, -1});
+    b.org[i] = (dot(at, normal) / dot(d, normal)) * d;
+    b.dir[i] = normalize(d - (2 * dot(d, normal)) * normal);
+  }
+  return b;
+}
+
+/// No point of the mirror lies beyond where the pyramid begins. The corners would be its ends, were
+/// what the pyramid cuts out of it their trapezoid. It reaches beyond them by up to .08 of the way
+/// between first and last.
+TEST(BeamFrame, BeginsBehindItsMirror) {
+  Random random(1);
+  int beams = 0;
+  for (int i = 0; i < 5000; ++i) {
+    const Float3 n = random.direction();
+    if (n.z < .1f)  // more than 84 degrees aslant
+      continue;
+    const Vector normal{n.x, n.y, n.z};
+    BeamFrame f;
+    if (!frame_of(mirrored_beam(static_cast<float>(random.log_in(1e-5, .04)), normal), f))
+      continue;
+    ++beams;
+    for (int part = 0; part < 25; ++part) {
+      const float x = static_cast<float>(part % 5 - 2) / 2;
+      const float y = static_cast<float>(part / 5 - 2) / 2;
+      const Vector dir = f.axis + x * f.right + y * f.up;
+      const float w = dot(Vector{0, 0, -1} - f.apex, normal) / dot(dir, normal);
+      ASSERT_LE(w, f.depth) << i << ": " << x << ' ' << y;
+    }
+  }
+  EXPECT_GT(beams, 1000);
+}
+
+}  // namespace
+}  // namespace grelha::test
