@@ -41,13 +41,11 @@ EXCEPTIONS = {
         "frontend/cli/options.cpp", "kernel/features/doubt.hpp", "kernel/grid/world.cpp",
         "kernel/trace/abreast.hpp", "perf/build.cpp", "perf/ray_sets.cpp", "perf/report.cpp",
         "tests/frontend/cli/option_checks_test.cpp", "tests/frontend/cli/options_test.cpp",
-        "tests/frontend/input/errors_test.cpp", "tests/kernel/trace/walk_test.cpp",
-        "tests/kernel/trace/watertight_test.cpp",
+        "tests/frontend/input/errors_test.cpp",
     ),
     "branches": (
         "kernel/features/doubt.hpp", "kernel/render/setup.cpp", "kernel/trace/abreast.hpp",
         "kernel/trace/packet.hpp", "perf/embree.cpp", "perf/ray_sets.cpp",
-        "tests/stability/judge.cpp", "tests/support/cell_rays.hpp",
     ),
 }
 

@@ -144,6 +144,61 @@ Verdict verdict_occluded(const Trial& trial, std::size_t i, const Answers& a) {
                              : Verdict::kRight;
 }
 
+const char* name_of(Verdict v) {
+  switch (v) {
+    case Verdict::kLost:
+      return "lost, ";
+    case Verdict::kFalse:
+      return "false, ";
+    default:
+      return "self-hit, ";
+  }
+}
+
+/// A tracer's answers to a trial, by one of its ways.
+struct Verdicts {
+  const Trial& trial;
+  const Size& size;
+  const Answers& answers;
+  bool any;
+
+  Verdict of(std::size_t i) const {
+    return any ? verdict_occluded(trial, i, answers) : verdict_closest(trial, size, i, answers);
+  }
+  std::string describe(std::size_t i, Verdict v) const;
+  Counts count(const std::string& way) const;
+};
+
+std::string Verdicts::describe(std::size_t i, Verdict v) const {
+  const Wanted& w = trial.wanted[i];
+  const float t = answers.t[i];
+  const std::uint32_t id = answers.id[i];
+  std::ostringstream s;
+  s << (any ? ", occluded: " : ", closest: ") << name_of(v) << trial.rays.describe(i)
+    << std::defaultfloat << "; t " << t << " id " << static_cast<std::int32_t>(id) << ", expected "
+    << (w.hit    ? "hit"
+        : w.miss ? "miss"
+                 : "either")
+    << " in [" << w.earliest << ", " << w.latest << "]";
+  if (!any && id != kNoPrimitive)
+    s << ", beside it by " << static_cast<double>(beyond(trial, size, i, t, id)) << " too much";
+  return s.str();
+}
+
+Counts Verdicts::count(const std::string& way) const {
+  Counts counts;
+  counts.answers = trial.rays.size();
+  for (std::size_t i = 0; i < trial.rays.size(); ++i) {
+    const Verdict v = of(i);
+    if (v == Verdict::kRight)
+      continue;
+    ++(v == Verdict::kLost ? counts.lost : v == Verdict::kFalse ? counts.false_ : counts.self);
+    if (counts.first.empty())
+      counts.first = way + describe(i, v);
+  }
+  return counts;
+}
+
 }  // namespace
 
 Real allowed(Real distance, Real diagonal, Real largest) {
@@ -199,31 +254,8 @@ Counts judge(Tracer& tracer, const Trial& trial) {
   for (int way = 0; way < tracer.ways(); ++way)
     for (int any = 0; any < (trial.occlusion ? 2 : 1); ++any) {
       const Answers a = any ? tracer.occluded(trial.rays, way) : tracer.closest(trial.rays, way);
-      counts.answers += trial.rays.size();
-      for (std::size_t i = 0; i < trial.rays.size(); ++i) {
-        const Verdict v = any ? verdict_occluded(trial, i, a) : verdict_closest(trial, size, i, a);
-        if (v == Verdict::kRight)
-          continue;
-        ++(v == Verdict::kLost ? counts.lost : v == Verdict::kFalse ? counts.false_ : counts.self);
-        if (!counts.first.empty())
-          continue;
-        std::ostringstream s;
-        const Wanted& w = trial.wanted[i];
-        s << tracer.way_name(way) << (any ? ", occluded: " : ", closest: ")
-          << (v == Verdict::kLost    ? "lost, "
-              : v == Verdict::kFalse ? "false, "
-                                     : "self-hit, ")
-          << trial.rays.describe(i) << std::defaultfloat << "; t " << a.t[i] << " id "
-          << static_cast<std::int32_t>(a.id[i]) << ", expected "
-          << (w.hit    ? "hit"
-              : w.miss ? "miss"
-                       : "either")
-          << " in [" << w.earliest << ", " << w.latest << "]";
-        if (!any && a.id[i] != kNoPrimitive)
-          s << ", beside it by " << static_cast<double>(beyond(trial, size, i, a.t[i], a.id[i]))
-            << " too much";
-        counts.first = s.str();
-      }
+      const Verdicts all{trial, size, a, any != 0};
+      counts += all.count(tracer.way_name(way));
     }
   return counts;
 }

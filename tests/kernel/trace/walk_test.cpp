@@ -1,5 +1,7 @@
 // Every way through a grid against brute force: the same primitive and the same bits of t, whatever
 // the scene and the ray.
+#include <optional>
+
 #include "tests/support/cell_rays.hpp"
 #include "tests/support/rays.hpp"
 #include "tests/support/scenes.hpp"
@@ -7,11 +9,17 @@
 namespace grelha::test {
 namespace {
 
+struct Place {
+  double scale = 1;
+  Float3 offset{};
+};
+
 struct Case {
   std::string name;
   Scene (*make)();
   double size;  ///< half the extent rays are aimed over
   Float3 center{};
+  std::optional<Place> place{};  ///< where the scene is moved to; none: as it is made
 };
 
 void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
@@ -20,11 +28,6 @@ template <auto Make, int Count>
 Scene crowd() {
   return Make(7, Count);
 }
-template <auto Make>
-Scene at_scale(double scale, const Float3& offset) {
-  return placed(Make(), scale, offset);
-}
-
 /// Three grids one behind another: what is left of a packet's rays after one goes on through the
 /// next.
 Scene objects_in_a_row() {
@@ -44,85 +47,61 @@ Scene objects_in_a_row() {
   return s;
 }
 
-const std::vector<Case>& cases() {
-  static constexpr auto spheres = crowd<random_spheres, 300>;
-  static constexpr auto triangles = crowd<random_triangles, 300>;
-  static constexpr auto cones = crowd<random_cones, 200>;
-  static constexpr auto mixture = crowd<random_mixture, 300>;
-  static const std::vector<Case> all{
-      {"spheres", spheres, 1},
-      {"triangles", triangles, 1},
-      {"cones", cones, 1},
-      {"mixture", mixture, 1},
-      {"flat", crowd<flat_sheet, 200>, 1, {0, .25f, 0}},
-      {"lattice", [] { return lattice_patch(12); }, 6, {6, 1, 6}},
-      {"heap", crowd<heap, 20>, 1},
-      {"needles", crowd<needles, 150>, 1},
-      {"stadium", crowd<stadium, 400>, 1},
-      {"towns", crowd<towns_in_a_desert, 2000>, 3, {-300, 100, 50}},
-      {"stadium_seen_from_the_stands", crowd<stadium, 400>, 900},
-      {"wide_plain", crowd<crowd_on_a_wide_plain, 400>, 1},
-      {"wide_plain_seen_from_all_over", crowd<crowd_on_a_wide_plain, 400>, 300},
-      {"one_sphere_many_times",
-       [] {
-         Scene s = empty_scene();
-         for (int i = 0; i < 50; ++i)
-           s.geometry.spheres.add({1, 2, 3}, .5f, 0);
-         return s;
-       },
-       1,
-       {1, 2, 3}},
-      {"points",
-       [] {
-         Scene s = empty_scene();
-         for (int i = 0; i < 40; ++i)
-           s.geometry.spheres.add({}, 1e-12f, 0);
-         return s;
-       },
-       1e-12},
-      {"tiny", [] { return at_scale<mixture>(1e-6, {}); }, 1e-6},
-      {"huge", [] { return at_scale<mixture>(1e6, {}); }, 1e6},
-      {"far_1e3",
-       [] {
-         return at_scale<mixture>(1, {1000, -500, 2000});
-       },
-       1,
-       {1000, -500, 2000}},
-      {"far_1e4",
-       [] {
-         return at_scale<mixture>(1, {1e4f, 2e4f, -1e4f});
-       },
-       1,
-       {1e4f, 2e4f, -1e4f}},
-      {"few_ulps_a_cell",
-       [] {
-         return at_scale<mixture>(2, {148376, 1234, -223423});
-       },
-       2,
-       {148376, 1234, -223423}},
-      {"far_spheres",
-       [] {
-         return at_scale<spheres>(1, {1e5f, 1e5f, 1e5f});
-       },
-       1,
-       {1e5f, 1e5f, 1e5f}},
-      {"far_lattice",
-       [] {
-         return placed(lattice_patch(12), 1, {65536, 0, -131072});
-       },
-       6,
-       {65542, 1, -131066}},
-      {"objects_in_a_row", objects_in_a_row, 1.5},
-      {"closed_ball", [] { return ball_mesh(24, 12, .2); }, 1},
-      {"closed_ball_far",
-       [] {
-         return placed(ball_mesh(24, 12), 1, {3e4f, 0, 0});
-       },
-       1,
-       {3e4f, 0, 0}},
-  };
-  return all;
+Scene one_sphere_many_times() {
+  Scene s = empty_scene();
+  for (int i = 0; i < 50; ++i)
+    s.geometry.spheres.add({1, 2, 3}, .5f, 0);
+  return s;
 }
+
+Scene points() {
+  Scene s = empty_scene();
+  for (int i = 0; i < 40; ++i)
+    s.geometry.spheres.add({}, 1e-12f, 0);
+  return s;
+}
+
+Scene lattice() { return lattice_patch(12); }
+Scene closed_ball() { return ball_mesh(24, 12, .2); }
+Scene smooth_ball() { return ball_mesh(24, 12); }
+
+constexpr auto kSpheres = crowd<random_spheres, 300>;
+constexpr auto kTriangles = crowd<random_triangles, 300>;
+constexpr auto kCones = crowd<random_cones, 200>;
+constexpr auto kMixture = crowd<random_mixture, 300>;
+constexpr auto kStadium = crowd<stadium, 400>;
+constexpr auto kPlain = crowd<crowd_on_a_wide_plain, 400>;
+
+constexpr Float3 k1e3{1000, -500, 2000}, k1e4{1e4f, 2e4f, -1e4f}, k1e5{1e5f, 1e5f, 1e5f};
+constexpr Float3 kFewUlps{148376, 1234, -223423};
+
+const std::vector<Case> kCases{
+    {"spheres", kSpheres, 1},
+    {"triangles", kTriangles, 1},
+    {"cones", kCones, 1},
+    {"mixture", kMixture, 1},
+    {"flat", crowd<flat_sheet, 200>, 1, {0, .25f, 0}},
+    {"lattice", lattice, 6, {6, 1, 6}},
+    {"heap", crowd<heap, 20>, 1},
+    {"needles", crowd<needles, 150>, 1},
+    {"stadium", kStadium, 1},
+    {"towns", crowd<towns_in_a_desert, 2000>, 3, {-300, 100, 50}},
+    {"stadium_seen_from_the_stands", kStadium, 900},
+    {"wide_plain", kPlain, 1},
+    {"wide_plain_seen_from_all_over", kPlain, 300},
+    {"one_sphere_many_times", one_sphere_many_times, 1, {1, 2, 3}},
+    {"points", points, 1e-12},
+    {"tiny", kMixture, 1e-6, {}, Place{1e-6}},
+    {"huge", kMixture, 1e6, {}, Place{1e6}},
+    {"far_1e3", kMixture, 1, k1e3, Place{1, k1e3}},
+    {"far_1e4", kMixture, 1, k1e4, Place{1, k1e4}},
+    {"few_ulps_a_cell", kMixture, 2, kFewUlps, Place{2, kFewUlps}},
+    {"far_spheres", kSpheres, 1, k1e5, Place{1, k1e5}},
+    {"far_lattice", lattice, 6, {65542, 1, -131066}, Place{1, {65536, 0, -131072}}},
+    {"objects_in_a_row", objects_in_a_row, 1.5},
+    {"closed_ball", closed_ball, 1},
+    {"closed_ball_far", smooth_ball, 1, {3e4f, 0, 0}, Place{1, {3e4f, 0, 0}}},
+};
 
 /// Neighbours that point nearly the same way, so that packets stay together: an eye ray's case.
 /// Some bundles cross an axis.
@@ -152,7 +131,7 @@ class Walk : public testing::TestWithParam<std::tuple<const Variant*, Case>> {
 
 TEST_P(Walk, FindsWhatBruteForceFinds) {
   const Case& c = std::get<1>(GetParam());
-  const Scene scene = c.make();
+  const Scene scene = c.place ? placed(c.make(), c.place->scale, c.place->offset) : c.make();
   Random random(99);
   RayList rays = rays_about(random, c.center, c.size, kManyRays, 1e6);
   rays.add(with_odd_values(random, rays_about(random, c.center, c.size, 300), .3));
@@ -177,7 +156,7 @@ TEST_P(Walk, FindsWhatBruteForceFinds) {
 INSTANTIATE_TEST_SUITE_P(Isa,
                          Walk,
                          testing::Combine(testing::ValuesIn(variants().begin(), variants().end()),
-                                          testing::ValuesIn(cases())),
+                                          testing::ValuesIn(kCases)),
                          [](const auto& p) {
                            return std::string(std::get<0>(p.param)->name) + "_" +
                                   std::get<1>(p.param).name;
@@ -237,9 +216,6 @@ TEST(GridOrder, IsFrontToBack) {
   }
   EXPECT_EQ(tests[0], tests[1]);
 }
-
-// ---- ties
-// ------------------------------------------------------------------------------------------
 
 class Ties : public EveryVariant {};
 GRELHA_FOR_EVERY_ISA(Ties);
