@@ -348,7 +348,7 @@ void trace_scene(const SceneWork& work,
                              hits.id.data(),
                              static_cast<int>(r.size()),
                              hits.whole.empty() ? nullptr : hits.whole.data()};
-  (in_double ? variant.in_double.closest : variant.loops.closest)(
+  (in_double ? variant.loops.in_double.closest : variant.loops.closest)(
       work.world.impl().view, span, {}, counts);
 }
 

@@ -45,7 +45,7 @@ EXCEPTIONS = {
     ),
     "branches": (
         "kernel/features/doubt.hpp", "kernel/render/setup.cpp", "kernel/trace/abreast.hpp",
-        "kernel/trace/packet.hpp", "perf/embree.cpp", "perf/ray_sets.cpp",
+        "perf/embree.cpp", "perf/ray_sets.cpp",
     ),
 }
 

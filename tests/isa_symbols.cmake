@@ -18,7 +18,6 @@ function(find_strangers object isa)
   string(REPLACE ";" "," out "${out}")
   string(REPLACE "\n" ";" lines "${out}")
   set(found "")
-  string(REPLACE "_double" "" set_name ${isa})  # the same functions of xsimd, compiled alike
   set(n 0)
   foreach(line IN LISTS lines)
     # Kinds: T, W, V, u and i are functions or data that the linker may merge or that others can
@@ -29,8 +28,7 @@ function(find_strangers object isa)
     set(kind ${CMAKE_MATCH_1})
     set(name "${CMAKE_MATCH_2}")
     math(EXPR n "${n} + 1")
-    if(name STREQUAL "grelha::k_${isa}_loops" OR name MATCHES "grelha::${isa}::" OR name
-      MATCHES "xsimd::.*${set_name}"
+    if(name MATCHES "grelha::${isa}::" OR name MATCHES "xsimd::.*${isa}"
        OR name MATCHES "^(DW\\.ref\\.|__asan|__ubsan|__odr_asan)")
       continue()
     endif()

@@ -261,7 +261,8 @@ class BeamVisit {
 /// Calls see(id) for every primitive whose bounds the beam meets in this grid, some more than once.
 /// False when no frustum holds the beam's edges.
 template <class See>
-inline bool walk_beam(const GridView& g, const Packet& p, int axis, const See& see, Counters& n) {
+inline bool walk_beam(
+    const GridView& g, const WalkingRays& p, int axis, const See& see, Counters& n) {
   Frustum f;
   const Coherence edges = bound_rays(g, p, f, axis);
   if (edges != Coherence::kTogether)

@@ -105,7 +105,7 @@ class Watcher {
  private:
   /// Nearest hits of the corner rays.
   void trace_corners(const Beam& beam, Sight& sight) {
-    Packet p;
+    Packet<InFloat> p;
     fill(beam, p);
     trace_packet<false>(scene_, p, {16, true}, n_);
     for (int i = 0; i < kCorners; ++i) {
@@ -114,7 +114,7 @@ class Watcher {
     }
   }
 
-  static void fill(const Beam& beam, Packet& p) {
+  static void fill(const Beam& beam, WalkingRays& p) {
     p.size = kCorners;
     for (int i = 0; i < kCorners; ++i) {
       p.org[0][i] = beam.org[i].x;
@@ -156,7 +156,7 @@ class Watcher {
       return false;
     if (scene_.grid_count == 0)
       return true;
-    Packet p;
+    Packet<InFloat> p;
     p.size = kCorners;
     for (int i = 0; i < kCorners; ++i) {  // the edges of the pyramid, with w for t
       const Vec3<float> dir = f.axis + (i == 1 || i == 2 ? 1.f : -1.f) * f.right +
@@ -184,7 +184,7 @@ class Watcher {
 
   /// A beam goes where all of its edges go: the grid of rays that start far away holds for those
   /// that start near as well.
-  static bool for_beam(const GridView& g, const Packet& p) {
+  static bool for_beam(const GridView& g, const WalkingRays& p) {
     bool all = true, some = false;
     for (int i = 0; i < kCorners; ++i) {
       const bool served = serves(g, {p.org[0][i], p.org[1][i], p.org[2][i]});
@@ -259,7 +259,7 @@ class Watcher {
                float weight) {
     Doubt found;
     for (int first = 0; first < met.size; first += 16) {
-      Packet p;
+      Packet<InFloat> p;
       p.size = met.size - first < 16 ? met.size - first : 16;
       for (int i = 0; i < p.size; ++i) {
         const Vec3<float> to = normalize(met.point[first + i] - f.apex),

@@ -76,12 +76,18 @@ inline void points(const SceneView& scene,
   tally(n, rays, trace_counts, ray_counts);
 }
 
-}  // namespace grelha::GRELHA_ISA
+extern const VariantLoops kLoops;
+const VariantLoops kLoops{
+    .closest = closest<InFloat>,
+    .occluded = occluded<InFloat>,
+    .closest_one = closest_one,
+    .occluded_one = occluded_one,
+    .in_double = {.closest = closest<InDouble>,
+                  .occluded = occluded<InDouble>,
+                  .trace = {.closest = trace<false, InDouble>, .occluded = trace<true, InDouble>}},
+    .render_band = band,
+    .render_runs = pixel_runs,
+    .doubt = doubt,
+    .render_points = points};
 
-#define GRELHA_LOOPS                                                                  \
-  {                                                                                   \
-    .closest = GRELHA_ISA::closest, .occluded = GRELHA_ISA::occluded,                 \
-    .closest_one = GRELHA_ISA::closest_one, .occluded_one = GRELHA_ISA::occluded_one, \
-    .render_band = GRELHA_ISA::band, .render_runs = GRELHA_ISA::pixel_runs,           \
-    .doubt = GRELHA_ISA::doubt, .render_points = GRELHA_ISA::points,                  \
-  }
+}  // namespace grelha::GRELHA_ISA

@@ -19,7 +19,7 @@ inline void add(const Counters& n, TraceCounts& to) {
 }
 
 /// Rays are traced in arrays of our own; t is written back where something was met.
-template <bool kAny>
+template <bool kAny, class In>
 inline void trace_span(const SceneView& scene,
                        const RaySpan& rays,
                        const TraceSettings& settings,
@@ -52,14 +52,14 @@ inline void trace_span(const SceneView& scene,
                            t,
                            id,
                            shift,
-                           kDouble || rays.whole ? whole : nullptr};
-    trace<kAny>(scene,
-                arrays,
-                count,
-                {settings.method == Method::kSingle ? 1 : settings.packet, settings.mailbox},
-                n);
+                           In::kDouble || rays.whole ? whole : nullptr};
+    trace<kAny, In>(scene,
+                    arrays,
+                    count,
+                    {settings.method == Method::kSingle ? 1 : settings.packet, settings.mailbox},
+                    n);
     for (int i = 0; i < count; ++i) {  // without a branch: SIMD
-      const float met = kAny ? t[i] : kDouble ? static_cast<float>(whole[i]) : t[i] + shift[i];
+      const float met = kAny ? t[i] : In::kDouble ? static_cast<float>(whole[i]) : t[i] + shift[i];
       rays.t[first + i] = id[i] != kNoPrimitive ? met : rays.t[first + i];
     }
     for (int i = 0; i < count && rays.whole; ++i)
@@ -69,17 +69,19 @@ inline void trace_span(const SceneView& scene,
   add(n, counts);
 }
 
+template <class In>
 inline void closest(const SceneView& scene,
                     const RaySpan& rays,
                     const TraceSettings& s,
                     TraceCounts& counts) {
-  trace_span<false>(scene, rays, s, counts);
+  trace_span<false, In>(scene, rays, s, counts);
 }
+template <class In>
 inline void occluded(const SceneView& scene,
                      const RaySpan& rays,
                      const TraceSettings& s,
                      TraceCounts& counts) {
-  trace_span<true>(scene, rays, s, counts);
+  trace_span<true, In>(scene, rays, s, counts);
 }
 
 }  // namespace grelha::GRELHA_ISA

@@ -7,34 +7,38 @@ namespace grelha {
 
 // A macro for each copy that the build compiles. __builtin_cpu_supports also asks whether the
 // system saves the wide registers (XGETBV); xsimd 8.1's own query does not.
-extern const VariantLoops k_scalar_loops;
-extern const ExactLoops k_scalar_double_loops;
+namespace scalar {
+extern const VariantLoops kLoops;
+}
 namespace {
 bool always() { return true; }
-const Variant kScalar{"scalar", 1, always, k_scalar_loops, k_scalar_double_loops};
+const Variant kScalar{"scalar", 1, always, scalar::kLoops};
 }  // namespace
 
 #ifdef GRELHA_SSE2
-extern const VariantLoops k_sse2_loops;
-extern const ExactLoops k_sse2_double_loops;
+namespace sse2 {
+extern const VariantLoops kLoops;
+}
 namespace {
 bool has_sse2() { return __builtin_cpu_supports("sse2"); }
-const Variant kSse2{"sse2", 4, has_sse2, k_sse2_loops, k_sse2_double_loops};
+const Variant kSse2{"sse2", 4, has_sse2, sse2::kLoops};
 }  // namespace
 #endif
 
 #ifdef GRELHA_AVX2
-extern const VariantLoops k_avx2_loops;
-extern const ExactLoops k_avx2_double_loops;
+namespace avx2 {
+extern const VariantLoops kLoops;
+}
 namespace {
 bool has_avx2() { return __builtin_cpu_supports("avx2"); }
-const Variant kAvx2{"avx2", 8, has_avx2, k_avx2_loops, k_avx2_double_loops};
+const Variant kAvx2{"avx2", 8, has_avx2, avx2::kLoops};
 }  // namespace
 #endif
 
 #ifdef GRELHA_AVX512
-extern const VariantLoops k_avx512_loops;
-extern const ExactLoops k_avx512_double_loops;
+namespace avx512 {
+extern const VariantLoops kLoops;
+}
 namespace {
 // CMakeLists.txt asks for the same where GRELHA_ISAS is native.
 bool has_avx512() {
@@ -43,7 +47,7 @@ bool has_avx512() {
          __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx2") &&
          __builtin_cpu_supports("bmi2");
 }
-const Variant kAvx512{"avx512", 16, has_avx512, k_avx512_loops, k_avx512_double_loops};
+const Variant kAvx512{"avx512", 16, has_avx512, avx512::kLoops};
 }  // namespace
 #endif
 

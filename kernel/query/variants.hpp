@@ -24,13 +24,21 @@ struct TraceSettings {
   bool mailbox = true;
 };
 
-/// What one instruction set's file provides.
+/// Loops that test rays against primitives in double lanes, with one rounding to float at the end.
+struct DoubleLoops {
+  void (*closest)(const SceneView&, const RaySpan&, const TraceSettings&, TraceCounts&);
+  void (*occluded)(const SceneView&, const RaySpan&, const TraceSettings&, TraceCounts&);
+  TraceLoops trace;  ///< for shading, which is in float
+};
+
+/// What one instruction set's file provides: loops in float, but for those `in_double`.
 struct VariantLoops {
   void (*closest)(const SceneView&, const RaySpan&, const TraceSettings&, TraceCounts&);
   void (*occluded)(const SceneView&, const RaySpan&, const TraceSettings&, TraceCounts&);
   /// One ray by itself.
   Hit (*closest_one)(const SceneView&, const Ray&);
   bool (*occluded_one)(const SceneView&, const Ray&);
+  DoubleLoops in_double;
   void (*render_band)(const SceneView&,
                       const ShadingView&,
                       const FrameView&,
@@ -71,20 +79,11 @@ struct VariantLoops {
                         RayCounts&);
 };
 
-/// What one instruction set's file in double provides: every test of a ray and a primitive in
-/// double lanes, one rounding to float at the end.
-struct ExactLoops {
-  void (*closest)(const SceneView&, const RaySpan&, const TraceSettings&, TraceCounts&);
-  void (*occluded)(const SceneView&, const RaySpan&, const TraceSettings&, TraceCounts&);
-  TraceLoops trace;  ///< for shading in single
-};
-
 struct Variant {
   std::string_view name;
   int lanes;
   bool (*runs_here)();
   const VariantLoops& loops;
-  const ExactLoops& in_double;
 };
 
 /// Compiled copies, scalar first, then by growing width.

@@ -131,7 +131,7 @@ inline void trace(const Shader& s, const RayArrays& rays, int count, Phase phase
   if (const TraceLoops* const loops = s.work.in_double)
     (kAny ? loops->occluded : loops->closest)(s.scene, rays, count, options, s.counters);
   else
-    trace<kAny>(s.scene, rays, count, options, s.counters);
+    trace<kAny, InFloat>(s.scene, rays, count, options, s.counters);
 }
 
 }  // namespace grelha::GRELHA_ISA

@@ -43,7 +43,7 @@ class PhaseClock : public Observer {
 
 /// What traces for this copy's shading: null when that does.
 inline const TraceLoops* loops_of(const Variant& v, Precision p) {
-  return p == Precision::kDouble ? &v.in_double.trace : nullptr;
+  return p == Precision::kDouble ? &v.loops.in_double.trace : nullptr;
 }
 
 class Workspace {

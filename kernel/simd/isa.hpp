@@ -11,10 +11,6 @@
 #define GRELHA_ISA_sse2 2
 #define GRELHA_ISA_avx2 3
 #define GRELHA_ISA_avx512 4
-#define GRELHA_ISA_scalar_double 1
-#define GRELHA_ISA_sse2_double 2
-#define GRELHA_ISA_avx2_double 3
-#define GRELHA_ISA_avx512_double 4
 #define GRELHA_JOIN_(a, b) a##b
 #define GRELHA_JOIN(a, b) GRELHA_JOIN_(a, b)
 #define GRELHA_ISA_NUMBER GRELHA_JOIN(GRELHA_ISA_, GRELHA_ISA)

@@ -7,8 +7,7 @@
 // Block                the same, at most 8 wide: one primitive of a block a lane
 // float                the scalar twin; every function exists for it too, with the same bits
 // DoubleLanes, double  the same in double precision, half as many lanes
-// Exact, ExactBlock    what primitives are tested in: Lanes and Block, or both DoubleLanes in
-//                      copies compiled with GRELHA_DOUBLE
+// InFloat, InDouble    what rays and primitives are tested in; all else is float
 // Words<Lanes>         unsigned 32-bit integers beside them; Words<float> is one. + - * ^ & | <<
 //                      >>, == and ?: are written as for one
 //
@@ -112,16 +111,21 @@ inline Words<Real> counted_words(std::uint32_t first) {
   static constexpr std::uint32_t kCount[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
   return load_words<Real>(kCount) + first;
 }
-#ifdef GRELHA_DOUBLE
-inline constexpr bool kDouble = true;
-using Exact = DoubleLanes;
-using ExactBlock = DoubleLanes;
-#else
-inline constexpr bool kDouble = false;
-using Exact = Lanes;
-using ExactBlock = Block;
-#endif
-using Number = Scalar<Exact>;
+
+/// The precision that rays are tested against primitives in. Grids are walked in float whichever it
+/// is.
+struct InFloat {
+  using Number = float;
+  using Rays = Lanes;        ///< of a packet, side by side
+  using Primitives = Block;  ///< of a block, side by side
+  static constexpr bool kDouble = false;
+};
+struct InDouble {
+  using Number = double;
+  using Rays = DoubleLanes;
+  using Primitives = DoubleLanes;
+  static constexpr bool kDouble = true;
+};
 
 /// Floats as they are, or widened.
 template <class Real>

@@ -16,8 +16,8 @@ inline constexpr int kAbreast = kWidth<Lanes>;
 /// Each ray with a bit in `full` against its cell. Returns bits of those whose search is over. What
 /// a ray needs is asked for before what another needs is computed with: memory is farther away than
 /// the next seven rays.
-template <bool kAny>
-inline unsigned test_cells(Single* r,
+template <bool kAny, class In>
+inline unsigned test_cells(Single<In>* r,
                            const CellLists& lists,
                            const std::uint32_t (&cells)[kAbreast],
                            unsigned full,
@@ -206,7 +206,7 @@ struct Waiting {
   std::uint8_t ray[kPacket];
   int first = 0, end = 0;
 
-  Waiting(const GridView& g, const Packet& p) {
+  Waiting(const GridView& g, const WalkingRays& p) {
     each_live_group(p, [&](int i, int) {
       const Lanes org[3] = {
           load<Lanes>(p.org[0] + i), load<Lanes>(p.org[1] + i), load<Lanes>(p.org[2] + i)};
@@ -225,15 +225,16 @@ struct Waiting {
 
 /// The rays that walk side by side. What is not walking goes on computing, within the grid, and is
 /// not looked at.
+template <class In>
 struct Walkers {
   Courses<kAbreast> course = {};
   alignas(64) float best[kAbreast] = {};
-  Single ray[kAbreast];
+  Single<In> ray[kAbreast];
   int of[kAbreast] = {};  ///< place in the packet
   unsigned walking = 0;   ///< bits of those that do
 
   /// Waiting rays take the places of those that are done.
-  void refill(Waiting& w, const Packet& p, bool any_triangles) {
+  void refill(Waiting& w, const Packet<In>& p, bool any_triangles) {
     for (unsigned idle = ~walking & ((1u << kAbreast) - 1u); idle != 0 && w.first < w.end;
          idle &= idle - 1) {
       const int k = __builtin_ctz(idle), i = w.ray[w.first++];
@@ -244,7 +245,7 @@ struct Walkers {
       walking |= 1u << k;
     }
   }
-  void retire(unsigned done, Packet& p) {
+  void retire(unsigned done, Packet<In>& p) {
     walking &= ~done;
     for (; done != 0; done &= done - 1) {
       const int k = __builtin_ctz(done);
@@ -255,8 +256,10 @@ struct Walkers {
 
 /// Each walker looks into its cell and goes on to the next. Returns bits of those whose search is
 /// over.
-template <bool kAny>
-[[gnu::always_inline]] inline unsigned look_and_step(const GridView& g, Walkers& w, Counters& n) {
+template <bool kAny, class In>
+[[gnu::always_inline]] inline unsigned look_and_step(const GridView& g,
+                                                     Walkers<In>& w,
+                                                     Counters& n) {
   const std::uint32_t nx = static_cast<std::uint32_t>(g.n[0]),
                       ny = static_cast<std::uint32_t>(g.n[1]);
   Lanes at[3];
@@ -286,12 +289,12 @@ template <bool kAny>
 /// of the cell. Plane distances come from the plane's index, never by adding up; where float takes
 /// a ray to the wrong side of a corner it is off by less than what primitives were grown by
 /// (docs/numerics.md).
-template <bool kAny>
-inline void walk_apart(const GridView& g, Packet& p, bool any_triangles, Counters& n) {
+template <bool kAny, class In>
+inline void walk_apart(const GridView& g, Packet<In>& p, bool any_triangles, Counters& n) {
   Waiting waiting(g, p);
   if (waiting.end == 0)
     return;
-  Walkers w;
+  Walkers<In> w;
   // No walk crosses more planes than there are, whatever rounding does.
   const std::int64_t most = std::int64_t{waiting.end} * (g.n[0] + g.n[1] + g.n[2] + 3);
   for (std::int64_t step = 0; step < most; ++step) {

@@ -58,7 +58,9 @@ inline unsigned boxes_inside(const Frustum& f, const BlockBoxes& boxes) {
 }
 
 /// Lanes of triangles i, i + 1, ... of a block that reach into the frustum.
-inline unsigned triangles_inside(const Frustum& f, const TriangleBlock& block, int i) {
+[[gnu::noinline]] inline unsigned triangles_inside(const Frustum& f,
+                                                   const TriangleBlock& block,
+                                                   int i) {
   const Block au = load<Block>(block.a[f.u] + i);
   const Block av = load<Block>(block.a[f.v] + i);
   const Block ak = load<Block>(block.a[f.k] + i);

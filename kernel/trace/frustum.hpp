@@ -71,7 +71,7 @@ inline constexpr int kAnyAxis = -1;
 /// Bounds one packet in one grid.
 class FrustumBuilder {
  public:
-  FrustumBuilder(const GridView& g, const Packet& p, Frustum& f) : g_(g), p_(p), f_(f) {}
+  FrustumBuilder(const GridView& g, const WalkingRays& p, Frustum& f) : g_(g), p_(p), f_(f) {}
 
   Coherence around(int axis) {
     const bool all = axis != kAnyAxis;
@@ -349,7 +349,7 @@ class FrustumBuilder {
   }
 
   const GridView& g_;
-  const Packet& p_;
+  const WalkingRays& p_;
   Frustum& f_;
   alignas(64) float enter_[kPacket];  ///< t at which each ray comes to the grid
   GroupBounds groups_;
@@ -366,7 +366,10 @@ class FrustumBuilder {
 /// Entry and exit of every ray, then the frustum around those that meet the grid, along the axis on
 /// which the first of them crosses most cells; or, with `axis`, around all of them along that one,
 /// whether they meet the grid themselves or pass it by on both sides.
-inline Coherence bound_rays(const GridView& g, const Packet& p, Frustum& f, int axis = kAnyAxis) {
+inline Coherence bound_rays(const GridView& g,
+                            const WalkingRays& p,
+                            Frustum& f,
+                            int axis = kAnyAxis) {
   return FrustumBuilder(g, p, f).around(axis);
 }
 

@@ -6,8 +6,9 @@
 namespace grelha::GRELHA_ISA {
 
 /// Returns whether the search is over.
-template <bool kAny>
-inline bool test_planes(const SceneView& scene, Single& r, Counters& n) {
+template <bool kAny, class In>
+inline bool test_planes(const SceneView& scene, Single<In>& r, Counters& n) {
+  using Number = typename In::Number;
   const GeometryView& g = scene.geometry;
   const auto& from = tested_org(r);
   for (std::uint32_t i = 0; i < g.plane_count; ++i) {
@@ -25,28 +26,36 @@ inline bool test_planes(const SceneView& scene, Single& r, Counters& n) {
   return false;
 }
 
-/// As bring_near(Packet&). Returns how far the ray was brought, in t.
-inline Number bring_near(const SceneView& scene, Single& r) {
-  [[maybe_unused]] const float from[3] = {r.org[0], r.org[1], r.org[2]};
-  const double shift = approach(scene, r.org, r.dir);
-  if (!(shift > 0))
-    return 0;
-#ifdef GRELHA_DOUBLE
-  r.shift = shift;
-  r.t_min = not_above(r.after - shift);
-  r.best = not_below(r.nearest - shift);
-#else
+/// Moves a ray that starts at `from` on to where r.org is, `shift` away in t.
+inline void move_near(const SceneView& scene,
+                      Single<InFloat>& r,
+                      const float (&from)[3],
+                      double shift) {
   const bool met = r.id != kNoPrimitive;
   const double best = met ? plane_t(scene.geometry, r.id, from, r.dir) : r.best;
   r.t_min = static_cast<float>(r.t_min - shift);
   r.best = static_cast<float>(best - shift);
-#endif
-  return static_cast<Number>(shift);
+}
+inline void move_near(const SceneView&, Single<InDouble>& r, const float (&)[3], double shift) {
+  r.shift = shift;
+  r.t_min = not_above(r.after - shift);
+  r.best = not_below(r.nearest - shift);
+}
+
+/// As bring_near(Packet&). Returns how far the ray was brought, in t.
+template <class In>
+inline typename In::Number bring_near(const SceneView& scene, Single<In>& r) {
+  const float from[3] = {r.org[0], r.org[1], r.org[2]};
+  const double shift = approach(scene, r.org, r.dir);
+  if (!(shift > 0))
+    return 0;
+  move_near(scene, r, from, shift);
+  return static_cast<typename In::Number>(shift);
 }
 
 /// All primitives of one cell of a grid. Returns whether the search is over.
-template <bool kAny>
-inline bool test_grid_cell(Single& r, const CellLists& lists, std::uint32_t cell, Counters& n) {
+template <bool kAny, class In>
+inline bool test_grid_cell(Single<In>& r, const CellLists& lists, std::uint32_t cell, Counters& n) {
   if (lists.triangle_first) {
     const std::uint32_t first = lists.triangle_first[cell], end = lists.triangle_first[cell + 1];
     float enters[kBlock];
@@ -78,7 +87,7 @@ struct CellWalk {
 
   explicit CellWalk(const GridView& grid) : g(grid) {}
   /// False: the ray does not come to the grid.
-  bool start(const Single& r) {
+  [[gnu::always_inline]] bool start(const WalkingRay& r) {
     float first[3];
     if (!enter<float>(g, r.org, r.dir, r.t_min, r.best, c, first))
       return false;
@@ -145,8 +154,8 @@ struct CellWalk {
 };
 
 /// As walk_apart().
-template <bool kAny>
-inline void walk_one(const GridView& g, Single& r, Counters& n) {
+template <bool kAny, class In>
+inline void walk_one(const GridView& g, Single<In>& r, Counters& n) {
   CellWalk walk(g);
   if (!walk.start(r))
     return;
@@ -164,7 +173,7 @@ inline void walk_one(const GridView& g, Single& r, Counters& n) {
 /// What a ray meets first, or with kAny whether it meets anything: t is not to be looked at then.
 template <bool kAny>
 inline Hit trace_one(const SceneView& scene, const Ray& ray) {
-  Single r;
+  Single<InFloat> r;
   if (!prepare(r,
                {ray.org.x, ray.org.y, ray.org.z},
                {ray.dir.x, ray.dir.y, ray.dir.z},

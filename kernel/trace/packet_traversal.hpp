@@ -36,7 +36,10 @@ inline Interval side_in(const Frustum& f, int j, const SliceSpan& s) {
 
 /// The cells that a frustum can touch between slices s and s + 1; false when it is outside the grid
 /// there.
-inline bool rectangle(const GridView& g, const Frustum& f, int slice, CellRect& r) {
+[[gnu::always_inline]] inline bool rectangle(const GridView& g,
+                                             const Frustum& f,
+                                             int slice,
+                                             CellRect& r) {
   const SliceSpan span = span_of(f, slice);
   for (int j = 0; j < 2; ++j) {
     const auto [lo, hi] = side_in(f, j, span);
@@ -110,7 +113,7 @@ template <class Visit>
 
 /// Leaves live those groups with a ray whose answer may still change beyond t(s), s a plane along
 /// K. Returns how many such rays there are.
-inline int update_live(const Frustum& f, Packet& p, float s) {
+[[gnu::always_inline]] inline int update_live(const Frustum& f, WalkingRays& p, float s) {
   std::uint64_t live = 0;
   int rays = 0;
   each_live_group(p, [&](int i, int g) {
@@ -129,10 +132,11 @@ inline int update_live(const Frustum& f, Packet& p, float s) {
 inline int most_cells(int width) { return width > kMiddle ? 32 : width > kSmall ? 16 : 8; }
 
 /// The rays of a packet that go through a grid together.
-template <bool kAny>
+template <bool kAny, class In>
 class PacketVisit {
  public:
-  PacketVisit(const GridView& g, const Frustum& f, Packet& p, int width, bool mailbox, Counters& n)
+  PacketVisit(
+      const GridView& g, const Frustum& f, Packet<In>& p, int width, bool mailbox, Counters& n)
       : g_(g), f_(f), p_(p), n_(n), width_(width), limit_(most_cells(width)), mailbox_(mailbox) {
     if (mailbox)
       held_.clear();
@@ -167,7 +171,7 @@ class PacketVisit {
  private:
   bool seen(std::uint32_t id) { return mailbox_ && held_.seen(id); }
 
-  void test_triangles(std::size_t cell) {
+  [[gnu::noinline]] void test_triangles(std::size_t cell) {
     const CellLists& lists = g_.lists;
     const std::uint32_t first = lists.triangle_first[cell];
     const std::uint32_t end = lists.triangle_first[cell + 1];
@@ -229,7 +233,7 @@ class PacketVisit {
 
   const GridView& g_;
   const Frustum& f_;
-  Packet& p_;
+  Packet<In>& p_;
   Counters& n_;
   int width_;
   int limit_;
@@ -240,7 +244,7 @@ class PacketVisit {
 };
 
 /// Lets the rays that meet the grid go on from a slice: what lies before it is done.
-inline void start_from_slice(const Frustum& f, Packet& p, int slice) {
+inline void start_from_slice(const Frustum& f, WalkingRays& p, int slice) {
   const Lanes s(static_cast<float>(slice) - f.margin);
   each_live_group(p, [&](int i, int) {
     const Lanes t = (s - load<Lanes>(f.position + i)) * load<Lanes>(f.per_slice + i);
@@ -249,14 +253,14 @@ inline void start_from_slice(const Frustum& f, Packet& p, int slice) {
   });
 }
 
-template <bool kAny>
+template <bool kAny, class In>
 inline std::uint64_t traverse_together(
-    const GridView& g, Packet& p, int width, bool use_mailbox, Counters& n);
+    const GridView& g, Packet<In>& p, int width, bool use_mailbox, Counters& n);
 
 /// Rays that do not go together in one packet may in four; what does not in these goes ray by ray.
-template <bool kAny>
+template <bool kAny, class In>
 inline std::uint64_t split_packet(
-    const GridView& g, Packet& p, int width, bool use_mailbox, Counters& n) {
+    const GridView& g, Packet<In>& p, int width, bool use_mailbox, Counters& n) {
   const std::uint64_t live = p.live;
   ++n.fell_back;
   if (width <= kSmall)
@@ -274,9 +278,9 @@ inline std::uint64_t split_packet(
 /// The live rays of a packet, `width` at most, through one grid, each from p.start on, as far as
 /// they go together. Returns the groups whose rays are to go on by themselves, from p.start on. On
 /// return `live` is what it was.
-template <bool kAny>
+template <bool kAny, class In>
 inline std::uint64_t traverse_together(
-    const GridView& g, Packet& p, int width, bool use_mailbox, Counters& n) {
+    const GridView& g, Packet<In>& p, int width, bool use_mailbox, Counters& n) {
   const std::uint64_t live = p.live;
   Frustum f;
   switch (bound_rays(g, p, f)) {
@@ -287,7 +291,7 @@ inline std::uint64_t traverse_together(
     case Coherence::kTogether:
       break;
   }
-  PacketVisit<kAny> visit(g, f, p, width, use_mailbox, n);
+  PacketVisit<kAny, In> visit(g, f, p, width, use_mailbox, n);
   if (visit.start())
     walk_frustum(g, f, n, visit);
   p.live = live;
@@ -300,9 +304,9 @@ inline std::uint64_t traverse_together(
 }
 
 /// All rays of a packet through one grid, from p.start on.
-template <bool kAny>
+template <bool kAny, class In>
 inline void traverse_packet(
-    const GridView& g, Packet& p, bool use_mailbox, bool any_triangles, Counters& n) {
+    const GridView& g, Packet<In>& p, bool use_mailbox, bool any_triangles, Counters& n) {
   const std::uint64_t live = p.live;
   if ((p.live = traverse_together<kAny>(g, p, p.size, use_mailbox, n)) != 0)
     walk_apart<kAny>(g, p, any_triangles, n);

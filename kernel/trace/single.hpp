@@ -6,40 +6,50 @@
 
 namespace grelha::GRELHA_ISA {
 
-struct Single {
+/// A ray as it walks grids.
+struct WalkingRay {
   float org[3], dir[3], t_min, best;
-  Number inv_dd;
   std::uint32_t id;
-  int axis;
-  Number shear[3];
+  int axis;      ///< of the shear
   float inv[3];  ///< inverse of the direction; this and what follows with triangles only
   /// the side of a box that the ray meets first, along each axis; the other is 3 places on or back
   int near[3];
-#ifdef GRELHA_DOUBLE
-  double from[3];  ///< these as in Packet
+};
+
+/// As TestedRays.
+template <class In>
+struct TestedRay {};
+template <>
+struct TestedRay<InDouble> {
+  double from[3];
   float after;
-  double nearest, shift;  ///< shift: 0 for rays not moved
-#endif
+  double nearest;
+  double shift;  ///< 0 for rays not moved
+};
+
+/// A ray that is tested against primitives in float or in double.
+template <class In>
+struct Single : WalkingRay, TestedRay<In> {
+  typename In::Number inv_dd;
+  typename In::Number shear[3];
 };
 
 /// What tests take of a ray.
-#ifdef GRELHA_DOUBLE
-inline const double (&tested_org(const Single& r))[3] { return r.from; }
-inline float tested_t_min(const Single& r) { return r.after; }
-inline double tested_best(const Single& r) { return r.nearest; }
-inline void set_best(Single& r, double t) {
+inline const float (&tested_org(const Single<InFloat>& r))[3] { return r.org; }
+inline float tested_t_min(const Single<InFloat>& r) { return r.t_min; }
+inline float tested_best(const Single<InFloat>& r) { return r.best; }
+inline void set_best(Single<InFloat>& r, float t) { r.best = t; }
+
+inline const double (&tested_org(const Single<InDouble>& r))[3] { return r.from; }
+inline float tested_t_min(const Single<InDouble>& r) { return r.after; }
+inline double tested_best(const Single<InDouble>& r) { return r.nearest; }
+inline void set_best(Single<InDouble>& r, double t) {
   r.nearest = t;
   r.best = not_below(t - r.shift);
 }
-#else
-inline const float (&tested_org(const Single& r))[3] { return r.org; }
-inline float tested_t_min(const Single& r) { return r.t_min; }
-inline float tested_best(const Single& r) { return r.best; }
-inline void set_best(Single& r, float t) { r.best = t; }
-#endif
 
 /// What tests of triangles need of a direction besides the shear.
-inline void set_inverse(Single& r) {
+inline void set_inverse(WalkingRay& r) {
   const float least = least_headway(r.dir[0], r.dir[1], r.dir[2]);
   for (int a = 0; a < 3; ++a) {
     r.inv[a] = 1 / (magnitude(r.dir[a]) < least ? least : r.dir[a]);
@@ -47,13 +57,24 @@ inline void set_inverse(Single& r) {
   }
 }
 
+inline void set_tested(Single<InFloat>&) {}
+inline void set_tested(Single<InDouble>& r) {
+  for (int a = 0; a < 3; ++a)
+    r.from[a] = r.org[a];
+  r.after = r.t_min;
+  r.nearest = r.best;
+  r.shift = 0;
+}
+
 /// A ray by itself, as prepare(Packet&) makes many. False: it meets nothing, and r is not whole.
-inline bool prepare(Single& r,
+template <class In>
+inline bool prepare(Single<In>& r,
                     const Vec3<float>& org,
                     const Vec3<float>& d,
                     float t_min,
                     float t_max,
                     bool any_triangles) {
+  using Number = typename In::Number;
   if (!(t_max > t_min))
     return false;
   const float dd = dot(d, d);
@@ -81,18 +102,28 @@ inline bool prepare(Single& r,
     r.shear[2] = 1 / q.z;
     set_inverse(r);
   }
-#ifdef GRELHA_DOUBLE
-  for (int a = 0; a < 3; ++a)
-    r.from[a] = r.org[a];
-  r.after = r.t_min;
-  r.nearest = r.best;
-  r.shift = 0;
-#endif
+  set_tested(r);
   return true;
 }
 
-inline Single single_of(const Packet& p, int i, bool any_triangles) {
-  Single r;
+/// Takes from a packet what only tests in double look at.
+inline void take_tested(Single<InFloat>&, const Packet<InFloat>&, int) {}
+inline void take_tested(Single<InDouble>& r, const Packet<InDouble>& p, int i) {
+  for (int a = 0; a < 3; ++a)
+    r.from[a] = p.from[a][i];
+  r.after = p.after[i];
+  r.nearest = p.nearest[i];
+  r.shift = p.moved ? p.shift[i] : 0;
+}
+/// Gives it back.
+inline void put_tested(const Single<InFloat>&, Packet<InFloat>&, int) {}
+inline void put_tested(const Single<InDouble>& r, Packet<InDouble>& p, int i) {
+  p.nearest[i] = r.nearest;
+}
+
+template <class In>
+inline Single<In> single_of(const Packet<In>& p, int i, bool any_triangles) {
+  Single<In> r;
   for (int a = 0; a < 3; ++a) {
     r.org[a] = p.org[a][i];
     r.dir[a] = p.dir[a][i];
@@ -101,13 +132,7 @@ inline Single single_of(const Packet& p, int i, bool any_triangles) {
   r.t_min = p.t_min[i];
   r.best = p.best[i];
   r.id = id_of(p.id[i]);
-#ifdef GRELHA_DOUBLE
-  for (int a = 0; a < 3; ++a)
-    r.from[a] = p.from[a][i];
-  r.after = p.after[i];
-  r.nearest = p.nearest[i];
-  r.shift = p.moved ? p.shift[i] : 0;
-#endif
+  take_tested(r, p, i);
   r.axis = 0;
   if (any_triangles) {
     r.axis = static_cast<int>(p.axis[i]);
@@ -119,25 +144,26 @@ inline Single single_of(const Packet& p, int i, bool any_triangles) {
 }
 
 /// What a ray has met goes back to its packet.
-inline void put_back(const Single& r, Packet& p, int i) {
+template <class In>
+inline void put_back(const Single<In>& r, Packet<In>& p, int i) {
   p.best[i] = r.best;
   p.id[i] = bits_of(r.id);
-#ifdef GRELHA_DOUBLE
-  p.nearest[i] = r.nearest;
-#endif
+  put_tested(r, p, i);
 }
 
 /// Takes the hits of a block in order of place. Returns whether the search is over (kAny and
 /// something was hit).
-template <bool kAny>
-inline bool note(Single& r,
-                 const Mask<ExactBlock>& hit,
-                 const ExactBlock& t,
+template <bool kAny, class In>
+inline bool note(Single<In>& r,
+                 const Mask<typename In::Primitives>& hit,
+                 const typename In::Primitives& t,
                  const std::uint32_t* ids) {
-  unsigned lanes = bits(both(hit, t <= ExactBlock(tested_best(r))));
+  using Real = typename In::Primitives;
+  using Number = typename In::Number;
+  unsigned lanes = bits(both(hit, t <= Real(tested_best(r))));
   if (lanes == 0)
     return false;
-  Number at[kWidth<ExactBlock>];
+  Number at[kWidth<Real>];
   store(at, t);
   for (; lanes != 0; lanes &= lanes - 1) {
     const int k = __builtin_ctz(lanes);
@@ -157,11 +183,11 @@ inline bool note(Single& r,
 }
 
 /// Takes one hit; as note().
-template <bool kAny>
-inline bool record_hit(Single& r, bool hit, Number t, std::uint32_t id) {
+template <bool kAny, class In>
+inline bool record_hit(Single<In>& r, bool hit, typename In::Number t, std::uint32_t id) {
   if (!hit)
     return false;
-  const Number best = tested_best(r);
+  const typename In::Number best = tested_best(r);
   if (kAny) {
     if (!(t < best))
       return false;
@@ -177,7 +203,9 @@ inline bool record_hit(Single& r, bool hit, Number t, std::uint32_t id) {
 }
 
 /// Bits of the boxes that a ray passes through before its search ends, and where it enters them.
-inline unsigned passed_boxes(const Single& r, const BlockBoxes& boxes, float (&enters)[kBlock]) {
+inline unsigned passed_boxes(const WalkingRay& r,
+                             const BlockBoxes& boxes,
+                             float (&enters)[kBlock]) {
   unsigned passed = 0;
   for (int i = 0; i < kBlock; i += kWidth<Block>) {
     Block enter(r.t_min), leave(r.best);
@@ -199,39 +227,40 @@ inline unsigned blocks_between(std::uint32_t at, std::uint32_t first, std::uint3
   return end - at < kBlock ? from & ~(kAll << (end - at)) & kAll : from & kAll;
 }
 
-template <class Number>
-inline Vec3<ExactBlock> spread(const Number (&v)[3]) {
-  return {ExactBlock(v[0]), ExactBlock(v[1]), ExactBlock(v[2])};
+template <class Real, class Number>
+inline Vec3<Real> spread(const Number (&v)[3]) {
+  return {Real(v[0]), Real(v[1]), Real(v[2])};
 }
 
 /// A ray and triangles of a block from i on.
+template <class In>
 struct RayAndBlock {
-  const Single* r;
+  using Real = typename In::Primitives;
+  const Single<In>* r;
   const TriangleBlock* block;
   int i;
-  RayAndTriangle<ExactBlock> operator()() const {
+  RayAndTriangle<Real> operator()() const {
     const int k = r->axis, kx = kNextAxis[k], ky = kPreviousAxis[k];
     const auto& from = tested_org(*r);
     const auto corner = [&](const float(&v)[3][kBlock]) {
-      return Vec3<ExactBlock>{
-          take<ExactBlock>(v[kx] + i), take<ExactBlock>(v[ky] + i), take<ExactBlock>(v[k] + i)};
+      return Vec3<Real>{take<Real>(v[kx] + i), take<Real>(v[ky] + i), take<Real>(v[k] + i)};
     };
-    return {{ExactBlock(from[kx]), ExactBlock(from[ky]), ExactBlock(from[k])},
-            {ExactBlock(r->dir[kx]), ExactBlock(r->dir[ky]), ExactBlock(r->dir[k])},
+    return {{Real(from[kx]), Real(from[ky]), Real(from[k])},
+            {Real(r->dir[kx]), Real(r->dir[ky]), Real(r->dir[k])},
             {corner(block->a), corner(block->b), corner(block->c)}};
   }
 };
 
-template <bool kAny>
-[[gnu::noinline]] bool test_block(Single& r, const TriangleBlock& block, Counters& n) {
-  const Shear<ExactBlock> shear{
-      ExactBlock(r.shear[0]), ExactBlock(r.shear[1]), ExactBlock(r.shear[2])};
-  const ExactBlock t_min(tested_t_min(r));
+template <bool kAny, class In>
+[[gnu::noinline]] bool test_block(Single<In>& r, const TriangleBlock& block, Counters& n) {
+  using Real = typename In::Primitives;
+  const Shear<Real> shear{Real(r.shear[0]), Real(r.shear[1]), Real(r.shear[2])};
+  const Real t_min(tested_t_min(r));
   n.triangle += kBlock;
-  for (int i = 0; i < kBlock; i += kWidth<ExactBlock>) {
-    ExactBlock t(0);
-    const Mask<ExactBlock> hit =
-        hit_triangle<kAny>(RayAndBlock{&r, &block, i}, shear, t_min, ExactBlock(tested_best(r)), t);
+  for (int i = 0; i < kBlock; i += kWidth<Real>) {
+    Real t(0);
+    const Mask<Real> hit =
+        hit_triangle<kAny>(RayAndBlock<In>{&r, &block, i}, shear, t_min, Real(tested_best(r)), t);
     if (note<kAny>(r, hit, t, block.id + i))
       return true;
   }
@@ -240,38 +269,38 @@ template <bool kAny>
 
 /// The spheres and cones of one cell. Reading past its end meets those of the next, which costs
 /// nothing and is never wrong: a hit is a hit.
-template <bool kAny>
-inline bool test_round(Single& r, const CellLists& lists, std::size_t cell, Counters& n) {
+template <bool kAny, class In>
+inline bool test_round(Single<In>& r, const CellLists& lists, std::size_t cell, Counters& n) {
+  using Real = typename In::Primitives;
   if (lists.sphere_first) {
-    const Vec3<ExactBlock> org = spread(tested_org(r)), dir = spread(r.dir);
+    const Vec3<Real> org = spread<Real>(tested_org(r)), dir = spread<Real>(r.dir);
     const std::uint32_t end = lists.sphere_first[cell + 1];
-    for (std::uint32_t i = lists.sphere_first[cell]; i < end; i += kWidth<ExactBlock>) {
-      n.sphere += kWidth<ExactBlock>;
-      ExactBlock t(0);
-      const Mask<ExactBlock> hit = hit_sphere<ExactBlock>(org,
-                                                          dir,
-                                                          ExactBlock(r.inv_dd),
-                                                          ExactBlock(tested_t_min(r)),
-                                                          {take<ExactBlock>(lists.sx + i),
-                                                           take<ExactBlock>(lists.sy + i),
-                                                           take<ExactBlock>(lists.sz + i)},
-                                                          take<ExactBlock>(lists.sr + i),
-                                                          t);
+    for (std::uint32_t i = lists.sphere_first[cell]; i < end; i += kWidth<Real>) {
+      n.sphere += kWidth<Real>;
+      Real t(0);
+      const Mask<Real> hit = hit_sphere<Real>(
+          org,
+          dir,
+          Real(r.inv_dd),
+          Real(tested_t_min(r)),
+          {take<Real>(lists.sx + i), take<Real>(lists.sy + i), take<Real>(lists.sz + i)},
+          take<Real>(lists.sr + i),
+          t);
       if (note<kAny>(r, hit, t, lists.sphere_id + i))
         return true;
     }
   }
   if (lists.cone_first) {
-    const Vec3<ExactBlock> org = spread(tested_org(r)), dir = spread(r.dir);
+    const Vec3<Real> org = spread<Real>(tested_org(r)), dir = spread<Real>(r.dir);
     const std::uint32_t end = lists.cone_first[cell + 1];
-    for (std::uint32_t i = lists.cone_first[cell]; i < end; i += kWidth<ExactBlock>) {
-      n.cone += kWidth<ExactBlock>;
-      const auto at = [&](int k) { return take<ExactBlock>(lists.cone[k] + i); };
-      const ConeSide<ExactBlock> side{
+    for (std::uint32_t i = lists.cone_first[cell]; i < end; i += kWidth<Real>) {
+      n.cone += kWidth<Real>;
+      const auto at = [&](int k) { return take<Real>(lists.cone[k] + i); };
+      const ConeSide<Real> side{
           {at(0), at(1), at(2)}, {at(3), at(4), at(5)}, at(6), at(7), at(8), at(9)};
-      ExactBlock t(0);
-      const Mask<ExactBlock> hit = hit_cone<ExactBlock>(
-          org, dir, ExactBlock(r.inv_dd), ExactBlock(tested_t_min(r)), side, t);
+      Real t(0);
+      const Mask<Real> hit =
+          hit_cone<Real>(org, dir, Real(r.inv_dd), Real(tested_t_min(r)), side, t);
       if (note<kAny>(r, hit, t, lists.cone_id + i))
         return true;
     }
@@ -280,8 +309,8 @@ inline bool test_round(Single& r, const CellLists& lists, std::size_t cell, Coun
 }
 
 /// All primitives of one cell.
-template <bool kAny>
-inline bool test_cell(Single& r, const CellLists& lists, std::size_t cell, Counters& n) {
+template <bool kAny, class In>
+inline bool test_cell(Single<In>& r, const CellLists& lists, std::size_t cell, Counters& n) {
   if (lists.triangle_first)
     for (std::uint32_t i = lists.triangle_first[cell]; i < lists.triangle_first[cell + 1]; ++i)
       if (test_block<kAny>(r, lists.triangles[i], n))

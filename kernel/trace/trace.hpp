@@ -45,26 +45,49 @@ inline double plane_t(const GeometryView& g,
   return away / along;
 }
 
-/// The same for the rays of a packet that have met planes and nothing else yet. Planes come first,
-/// since a ray that leaves a plane and is then moved along would meet it again, by as little as the
-/// rounding of the way; and how far a moved ray is from its plane is taken again in double, lest it
-/// hides what stands before it.
-inline void bring_near(const SceneView& scene, Packet& p) {
+/// Moves ray i of a packet, which has met planes and nothing else yet, on by `shift`. How far it is
+/// from its plane is taken again in double, lest that hides what stands before it.
+inline void move_near(const SceneView& scene, Packet<InFloat>& p, int i, double shift) {
+  const float from[3] = {p.org[0][i], p.org[1][i], p.org[2][i]};
+  const float dir[3] = {p.dir[0][i], p.dir[1][i], p.dir[2][i]};
+  const std::uint32_t plane = id_of(p.id[i]);
+  const bool met = plane != kNoPrimitive && p.best[i] > -kInfinity;
+  const double best = met ? plane_t(scene.geometry, plane, from, dir) : p.best[i];
+  p.t_min[i] = static_cast<float>(p.t_min[i] - shift);
+  p.best[i] = static_cast<float>(best - shift);
+  p.shift[i] = static_cast<float>(shift);
+}
+inline void move_near(const SceneView&, Packet<InDouble>& p, int i, double shift) {
+  p.shift[i] = shift;
+  p.t_min[i] = not_above(p.after[i] - shift);
+  p.best[i] = not_below(p.nearest[i] - shift);
+}
+
+/// Rays of a group that start far from everything finite.
+inline Mask<Lanes> starts_far(const SceneView& scene, const WalkingRays& p, int i) {
+  Mask<Lanes> far = Lanes(0) != Lanes(0);
+  for (int a = 0; a < 3; ++a) {
+    const Lanes o = load<Lanes>(p.org[a] + i);
+    const Mask<Lanes> before = o < Lanes(scene.box_lo[a] - scene.reach);
+    const Mask<Lanes> behind = o > Lanes(scene.box_hi[a] + scene.reach);
+    far = either(far, either(before, behind));
+  }
+  return far;
+}
+
+/// approach() for the rays of a packet that have met planes and nothing else yet. Planes come
+/// first, since a ray that leaves a plane and is then moved along would meet it again, by as little
+/// as the rounding of the way.
+template <class In>
+inline void bring_near(const SceneView& scene, Packet<In>& p) {
   p.moved = false;
   if (!scene.finite)
     return;
   for (int i = 0; i < p.size; i += kWidth<Lanes>) {
-    Mask<Lanes> far = Lanes(0) != Lanes(0);
-    for (int a = 0; a < 3; ++a) {
-      const Lanes o = load<Lanes>(p.org[a] + i);
-      far = either(
-          far,
-          either(o<Lanes(scene.box_lo[a] - scene.reach), o> Lanes(scene.box_hi[a] + scene.reach)));
-    }
-    if (none(far))
+    if (none(starts_far(scene, p, i)))
       continue;
     if (!p.moved)
-      for (Number& shift : p.shift)
+      for (typename In::Number& shift : p.shift)
         shift = 0;
     p.moved = true;
     for (int k = i; k < i + kWidth<Lanes> && k < p.size; ++k) {
@@ -73,26 +96,15 @@ inline void bring_near(const SceneView& scene, Packet& p) {
       const double shift = approach(scene, org, dir);
       if (!(shift > 0))
         continue;
-#ifdef GRELHA_DOUBLE
-      p.shift[k] = shift, p.t_min[k] = not_above(p.after[k] - shift),
-      p.best[k] = not_below(p.nearest[k] - shift);
-#else
-      const float from[3] = {p.org[0][k], p.org[1][k], p.org[2][k]};
-      const std::uint32_t plane = id_of(p.id[k]);
-      const bool met = plane != kNoPrimitive && p.best[k] > -kInfinity;
-      const double best = met ? plane_t(scene.geometry, plane, from, dir) : p.best[k];
-      p.t_min[k] = static_cast<float>(p.t_min[k] - shift);
-      p.best[k] = static_cast<float>(best - shift);
-      p.shift[k] = static_cast<float>(shift);
-#endif
+      move_near(scene, p, k, shift);
       for (int a = 0; a < 3; ++a)
         p.org[a][k] = org[a];
     }
   }
 }
 
-template <bool kAny>
-inline void test_planes(const SceneView& scene, Packet& p, Counters& n) {
+template <bool kAny, class In>
+inline void test_planes(const SceneView& scene, Packet<In>& p, Counters& n) {
   const GeometryView& g = scene.geometry;
   for (std::uint32_t i = 0; i < g.plane_count; ++i) {
     count_lanes(p, n, n.plane);
@@ -101,8 +113,8 @@ inline void test_planes(const SceneView& scene, Packet& p, Counters& n) {
 }
 
 /// The few primitives that lie in no grid, each against all rays.
-template <bool kAny>
-inline void test_outside(const CellLists& lists, Packet& p, Counters& n) {
+template <bool kAny, class In>
+inline void test_outside(const CellLists& lists, Packet<In>& p, Counters& n) {
   if (lists.triangle_first)
     for (std::uint32_t b = 0; b < lists.triangle_first[1]; ++b) {
       const TriangleBlock& block = lists.triangles[b];
@@ -137,7 +149,7 @@ inline bool serves(const GridView& g, const float (&org)[3]) {
 
 /// Sets where each ray is to be searched from in a grid: nowhere when the grid is not for it.
 /// False: it is for none.
-inline bool start_in(const GridView& g, Packet& p) {
+inline bool start_in(const GridView& g, WalkingRays& p) {
   __builtin_memcpy(p.start, p.t_min, sizeof p.start);
   if (g.serves == Serves::kAll)
     return true;
@@ -200,18 +212,18 @@ inline void each_grid(const SceneView& scene,
 }
 /// The same for a packet, as its first ray meets them.
 template <bool kAny, class Visit>
-inline void each_grid(const SceneView& scene, const Packet& p, const Visit& visit) {
+inline void each_grid(const SceneView& scene, const WalkingRays& p, const Visit& visit) {
   const float org[3] = {p.org[0][0], p.org[1][0], p.org[2][0]};
   const float dir[3] = {p.dir[0][0], p.dir[1][0], p.dir[2][0]};
   each_grid<kAny>(scene, org, dir, p.t_min[0], visit);
 }
 
-template <bool kAny>
-inline void trace_alone(const SceneView& scene, Packet& p, bool any_triangles, Counters& n) {
+template <bool kAny, class In>
+inline void trace_alone(const SceneView& scene, Packet<In>& p, bool any_triangles, Counters& n) {
   for (int i = 0; i < p.size; ++i) {
     if (!(p.best[i] > p.t_min[i]))
       continue;
-    Single r = single_of(p, i, any_triangles);
+    Single<In> r = single_of(p, i, any_triangles);
     test_cell<kAny>(r, scene.outside, 0, n);
     put_back(r, p, i);
   }
@@ -221,9 +233,9 @@ inline void trace_alone(const SceneView& scene, Packet& p, bool any_triangles, C
   });
 }
 
-template <bool kAny>
+template <bool kAny, class In>
 inline void trace_packet(const SceneView& scene,
-                         Packet& p,
+                         Packet<In>& p,
                          const TraceOptions& options,
                          Counters& n) {
   const bool any_triangles = scene.geometry.triangle_count > 0;
@@ -246,23 +258,48 @@ inline double unmoved(float t, float shift) {
 }
 
 /// Where a ray of a packet met what it met, as seen from where it started.
-inline double whole_t(const Packet& p, int i) {
-#ifdef GRELHA_DOUBLE
-  return p.nearest[i];
-#else
+inline double whole_t(const Packet<InFloat>& p, int i) {
   return unmoved(p.best[i], p.moved ? p.shift[i] : 0);
-#endif
 }
+inline double whole_t(const Packet<InDouble>& p, int i) { return p.nearest[i]; }
+
+/// What is to be added to the origins from place `first` on.
+inline void set_low(Packet<InFloat>&, const RayArrays&, int) {}
+inline void set_low(Packet<InDouble>& p, const RayArrays& rays, int first) {
+  for (int a = 0; a < 3; ++a)
+    p.low[a] = rays.low[a] ? rays.low[a] + first : nullptr;
+}
+
+/// The t of a packet's rays.
+inline void store_t(const Packet<InFloat>& p, float* t) {
+  __builtin_memcpy(t, p.best, static_cast<std::size_t>(p.size) * sizeof(float));
+}
+inline void store_t(const Packet<InDouble>& p, float* t) {
+  for (int i = 0; i < p.size; ++i)
+    t[i] = static_cast<float>(p.nearest[i]);
+}
+
+/// Gives back the rays that were moved. In double none is: t is that from where it came.
+inline void store_moved(const Packet<InFloat>& p, const RayArrays& rays, int first) {
+  const std::size_t bytes = static_cast<std::size_t>(p.size) * sizeof(float);
+  __builtin_memcpy(rays.ox + first, p.org[0], bytes);
+  __builtin_memcpy(rays.oy + first, p.org[1], bytes);
+  __builtin_memcpy(rays.oz + first, p.org[2], bytes);
+  __builtin_memcpy(rays.t_min + first, p.t_min, bytes);
+  if (rays.shift)
+    __builtin_memcpy(rays.shift + first, p.shift, bytes);
+}
+inline void store_moved(const Packet<InDouble>&, const RayArrays&, int) {}
 
 /// Closest hits (kAny false) or occlusion (kAny true) of rays [0, count), `options.packet`
 /// neighbours at a time.
-template <bool kAny>
-inline void trace(const SceneView& scene,
-                  const RayArrays& rays,
-                  int count,
-                  const TraceOptions& options,
-                  Counters& n) {
-  Packet p;
+template <bool kAny, class In>
+[[gnu::noinline]] inline void trace(const SceneView& scene,
+                                    const RayArrays& rays,
+                                    int count,
+                                    const TraceOptions& options,
+                                    Counters& n) {
+  Packet<In> p;
   const int most = options.packet == 1 || options.packet > kPacket ? kPacket : options.packet;
   for (int first = 0; first < count; first += most) {
     p.size = count - first < most ? count - first : most;
@@ -275,29 +312,15 @@ inline void trace(const SceneView& scene,
     __builtin_memcpy(p.dir[2], rays.dz + first, bytes);
     __builtin_memcpy(p.t_min, rays.t_min + first, bytes);
     __builtin_memcpy(p.best, rays.t + first, bytes);
-#ifdef GRELHA_DOUBLE
-    for (int a = 0; a < 3; ++a)
-      p.low[a] = rays.low[a] ? rays.low[a] + first : nullptr;
-#endif
+    set_low(p, rays, first);
     trace_packet<kAny>(scene, p, options, n);
-#ifdef GRELHA_DOUBLE
-    for (int i = 0; i < p.size; ++i)
-      rays.t[first + i] = static_cast<float>(p.nearest[i]);
-#else
-    __builtin_memcpy(rays.t + first, p.best, bytes);
-#endif
+    store_t(p, rays.t + first);
     __builtin_memcpy(rays.id + first, p.id, bytes);
     if (rays.whole)
       for (int i = 0; i < p.size; ++i)
         rays.whole[first + i] = whole_t(p, i);
-    if (!p.moved || kDouble)
-      continue;
-    __builtin_memcpy(rays.ox + first, p.org[0], bytes);
-    __builtin_memcpy(rays.oy + first, p.org[1], bytes);
-    __builtin_memcpy(rays.oz + first, p.org[2], bytes);
-    __builtin_memcpy(rays.t_min + first, p.t_min, bytes);
-    if (rays.shift)
-      __builtin_memcpy(rays.shift + first, p.shift, bytes);
+    if (p.moved)
+      store_moved(p, rays, first);
   }
 }
 

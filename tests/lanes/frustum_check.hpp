@@ -158,7 +158,7 @@ class FrustumChecker {
   }
 
   const GridView& g_;
-  Packet p_;
+  Packet<InFloat> p_;
   Frustum f_;
   test::FrustumCheck out_;
 };

@@ -20,9 +20,9 @@ const Variant& in_double(const Variant& v) {
     VariantLoops loops;
     Variant variant;
     explicit Doubled(const Variant& of)
-        : loops(of.loops), variant{of.name, of.lanes, of.runs_here, loops, of.in_double} {
-      loops.closest = of.in_double.closest;
-      loops.occluded = of.in_double.occluded;
+        : loops(of.loops), variant{of.name, of.lanes, of.runs_here, loops} {
+      loops.closest = of.loops.in_double.closest;
+      loops.occluded = of.loops.in_double.occluded;
     }
   };
   static std::deque<Doubled> all;
