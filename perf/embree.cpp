@@ -42,6 +42,73 @@ struct Range {
   double width() const { return std::max({hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]}); }
 };
 
+/// Of all but the planes.
+Range range_of(const Geometry& scene) {
+  const Spheres& s = scene.spheres;
+  const Triangles& t = scene.triangles;
+  const Cones& c = scene.cones;
+  Range all;
+  for (std::size_t i = 0; i < s.size(); ++i)
+    all.add(s.x[i], s.y[i], s.z[i], std::abs(s.radius[i]));
+  for (std::size_t i = 0; i < t.vertex_count(); ++i)
+    all.add(t.x[i], t.y[i], t.z[i]);
+  for (std::size_t i = 0; i < c.size(); ++i) {
+    all.add(c.base_x[i], c.base_y[i], c.base_z[i]);
+    all.add(c.apex_x[i], c.apex_y[i], c.apex_z[i]);
+  }
+  return all;
+}
+
+/// Its middle, and the unit directions of its sides.
+struct Square {
+  double middle[3], u[3], w[3];
+};
+
+void normalize(double (&v)[3]) {
+  const double length = std::hypot(v[0], v[1], v[2]);
+  for (double& x : v)
+    x /= length;
+}
+
+/// A unit direction across the unit direction n: of the axis that is furthest from it, the part
+/// across.
+void across_unit(const double (&n)[3], double (&u)[3]) {
+  int least = 0;
+  for (int a = 1; a < 3; ++a)
+    if (std::abs(n[a]) < std::abs(n[least]))
+      least = a;
+  for (int a = 0; a < 3; ++a)
+    u[a] = (a == least ? 1 : 0) - n[least] * n[a];
+  normalize(u);
+}
+
+/// About the middle of the range, as it falls onto plane i.
+Square square_on_plane(const Planes& p, std::size_t i, const Range& all) {
+  double n[3] = {p.nx[i], p.ny[i], p.nz[i]};
+  const double at[3] = {p.x[i], p.y[i], p.z[i]};
+  normalize(n);
+  Square s;
+  double along = 0;
+  for (int a = 0; a < 3; ++a) {
+    s.middle[a] = (all.lo[a] + all.hi[a]) / 2;
+    along += n[a] * (s.middle[a] - at[a]);
+  }
+  across_unit(n, s.u);
+  for (int a = 0; a < 3; ++a) {
+    s.middle[a] -= along * n[a];
+    s.w[a] = n[(a + 1) % 3] * s.u[(a + 2) % 3] - n[(a + 2) % 3] * s.u[(a + 1) % 3];
+  }
+  return s;
+}
+
+/// Four corners of three floats; sides of twice `half`.
+void put_square(const Square& s, double half, float* v) {
+  constexpr int kAlongU[4] = {-1, 1, 1, -1}, kAlongW[4] = {-1, -1, 1, 1};
+  for (int k = 0; k < 4; ++k)
+    for (int a = 0; a < 3; ++a)
+      *v++ = static_cast<float>(s.middle[a] + half * (kAlongU[k] * s.u[a] + kAlongW[k] * s.w[a]));
+}
+
 template <int kWidth>
 struct Wide;
 template <>
@@ -76,8 +143,8 @@ class Built final : public EmbreeScene {
     rtcSetSceneFlags(scene_, robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
     rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_MEDIUM);
     const Geometry& g = scene.geometry;
-    const auto planes = static_cast<std::uint32_t>(g.planes.size()),
-               spheres = static_cast<std::uint32_t>(g.spheres.size());
+    const auto planes = static_cast<std::uint32_t>(g.planes.size());
+    const auto spheres = static_cast<std::uint32_t>(g.spheres.size());
     const auto triangles = static_cast<std::uint32_t>(g.triangles.size());
     add_planes(g);
     add_spheres(g.spheres, planes);
@@ -137,54 +204,14 @@ class Built final : public EmbreeScene {
     const Planes& p = scene.planes;
     if (p.size() == 0)
       return;
-    Range all;
-    const Spheres& s = scene.spheres;
-    const Triangles& t = scene.triangles;
-    const Cones& c = scene.cones;
-    for (std::size_t i = 0; i < s.size(); ++i)
-      all.add(s.x[i], s.y[i], s.z[i], std::abs(s.radius[i]));
-    for (std::size_t i = 0; i < t.vertex_count(); ++i)
-      all.add(t.x[i], t.y[i], t.z[i]);
-    for (std::size_t i = 0; i < c.size(); ++i) {
-      all.add(c.base_x[i], c.base_y[i], c.base_z[i]);
-      all.add(c.apex_x[i], c.apex_y[i], c.apex_z[i]);
-    }
-    const double half = kPlaneReach * std::max(all.width(), 1e-3);
+    const Range all = range_of(scene);
     RTCGeometry g = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* const v =
         static_cast<float*>(room(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, 12, 4 * p.size()));
     auto* const index =
         static_cast<unsigned*>(room(g, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, 12, 2 * p.size()));
     for (std::size_t i = 0; i < p.size(); ++i) {
-      double n[3] = {p.nx[i], p.ny[i], p.nz[i]}, at[3] = {p.x[i], p.y[i], p.z[i]}, middle[3],
-             along = 0;
-      const double length = std::hypot(n[0], n[1], n[2]);
-      for (int a = 0; a < 3; ++a) {
-        n[a] /= length;
-        middle[a] = (all.lo[a] + all.hi[a]) / 2;
-      }
-      for (int a = 0; a < 3; ++a)
-        along += n[a] * (middle[a] - at[a]);
-      for (int a = 0; a < 3; ++a)
-        middle[a] -= along * n[a];  // of the scene, on the plane
-      int least = 0;
-      for (int a = 1; a < 3; ++a)
-        if (std::abs(n[a]) < std::abs(n[least]))
-          least = a;
-      double u[3] = {}, w[3];
-      u[least] = 1;
-      const double un = n[least];
-      for (int a = 0; a < 3; ++a)
-        u[a] -= un * n[a];
-      const double ul = std::hypot(u[0], u[1], u[2]);
-      for (double& x : u)
-        x /= ul;
-      for (int a = 0; a < 3; ++a)
-        w[a] = n[(a + 1) % 3] * u[(a + 2) % 3] - n[(a + 2) % 3] * u[(a + 1) % 3];
-      for (int k = 0; k < 4; ++k)
-        for (int a = 0; a < 3; ++a)
-          v[12 * i + static_cast<std::size_t>(3 * k + a)] = static_cast<float>(
-              middle[a] + half * ((k == 0 || k == 3 ? -1 : 1) * u[a] + (k < 2 ? -1 : 1) * w[a]));
+      put_square(square_on_plane(p, i, all), kPlaneReach * std::max(all.width(), 1e-3), v + 12 * i);
       const auto base = static_cast<unsigned>(4 * i);
       const unsigned corners[6] = {base, base + 1, base + 2, base, base + 2, base + 3};
       std::copy(corners, corners + 6, index + 6 * i);
@@ -285,8 +312,10 @@ class Built final : public EmbreeScene {
     std::fill(valid, valid + kWidth, -1);
     typename Wide<kWidth>::RayHit hit;
     auto& ray = hit.ray;
-    std::memset(ray.time, 0, sizeof ray.time), std::memset(ray.mask, 0xFF, sizeof ray.mask);
-    std::memset(ray.id, 0, sizeof ray.id), std::memset(ray.flags, 0, sizeof ray.flags);
+    std::memset(ray.time, 0, sizeof ray.time);
+    std::memset(ray.mask, 0xFF, sizeof ray.mask);
+    std::memset(ray.id, 0, sizeof ray.id);
+    std::memset(ray.flags, 0, sizeof ray.flags);
     const auto group = [&](std::size_t i, std::size_t bytes) {
       std::memcpy(ray.org_x, &r.ox[i], bytes);
       std::memcpy(ray.org_y, &r.oy[i], bytes);
@@ -299,8 +328,8 @@ class Built final : public EmbreeScene {
       if (any_) {
         Wide<kWidth>::occluded(valid, scene_, &context, &ray);
       } else {
-        std::memset(hit.hit.geomID, 0xFF, sizeof hit.hit.geomID),
-            std::memset(hit.hit.instID, 0xFF, sizeof hit.hit.instID);
+        std::memset(hit.hit.geomID, 0xFF, sizeof hit.hit.geomID);
+        std::memset(hit.hit.instID, 0xFF, sizeof hit.hit.instID);
         Wide<kWidth>::closest(valid, scene_, &context, &hit);
         std::memcpy(&primitive_[i], hit.hit.primID, bytes);
         std::memcpy(&geometry_[i], hit.hit.geomID, bytes);

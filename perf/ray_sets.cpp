@@ -36,17 +36,34 @@ void add(RayBuffer& rays, const V& org, const V& dir, float t_end) {
   rays.add({org.x, org.y, org.z}, {dir.x, dir.y, dir.z}, t_end);
 }
 
+RayBuffer shuffled(const RayBuffer& rays) {
+  RayBuffer out;
+  const auto count = static_cast<std::uint32_t>(rays.size());
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t k = permuted(i, count, 0x9E3779B9u);
+    out.add({rays.ox[k], rays.oy[k], rays.oz[k]}, {rays.dx[k], rays.dy[k], rays.dz[k]}, kInfinity);
+  }
+  return out;
+}
+
 /// Uniform in [0, 1), the same numbers everywhere.
 struct Random {
   std::mt19937 bits{1};
   float operator()() { return unit_float(static_cast<std::uint32_t>(bits())); }
+  /// In field i of the square of kSide x kSide.
+  Pair jittered(int i) {
+    const float u = (static_cast<float>(i % kSide) + (*this)()) / kSide;
+    const float v = (static_cast<float>(i / kSide) + (*this)()) / kSide;
+    return {u, v};
+  }
 };
 
 }  // namespace
 
-struct RayMaker::Hit {
+struct FirstHit {
   V point, normal, mirror;  ///< normal: geometric, unit, towards the viewer; mirror: unit
   float away;
+  V start() const { return point + away * normal; }
 };
 
 RayMaker::RayMaker(const SceneFile& file, const World& world, int size) : world_(world) {
@@ -110,7 +127,7 @@ RayBuffer RayMaker::through_pixels(const FrameView& f, int samples, bool few) co
   return rays;
 }
 
-std::vector<RayMaker::Hit> RayMaker::first_hits(bool few) const {
+std::vector<FirstHit> RayMaker::first_hits(bool few) const {
   const RayBuffer rays = through_pixels(pinhole_, 1, few);
   const SceneView& scene = world_.impl().view;
   Answers found;
@@ -119,7 +136,7 @@ std::vector<RayMaker::Hit> RayMaker::first_hits(bool few) const {
   float extent = 0;
   for (int a = 0; a < 3 && scene.finite; ++a)
     extent = std::max(extent, scene.box_hi[a] - scene.box_lo[a]);
-  std::vector<Hit> hits;
+  std::vector<FirstHit> hits;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (found.id[i] == kNoPrimitive)
       continue;
@@ -127,7 +144,7 @@ std::vector<RayMaker::Hit> RayMaker::first_hits(bool few) const {
     const Surface<float> s = surface_of<float>(
         scene.geometry, found.id[i], org, d, found.t[i], world_.impl().shading.smooth);
     const float side = dot(d, s.normal) > 0 ? -1.f : 1.f;
-    Hit h;
+    FirstHit h;
     h.point = s.point;
     h.normal = side * s.normal;
     const V n = side * s.shading, reflected = d - (2 * dot(d, n)) * n;
@@ -141,85 +158,106 @@ std::vector<RayMaker::Hit> RayMaker::first_hits(bool few) const {
   return hits;
 }
 
+namespace {
+
+/// Rays from first hits, to a light or on.
+struct Bounces {
+  const Light& light;
+  bool lit;
+  Random random{};
+  RayBuffer rays{};
+
+  bool facing(const FirstHit& h, const Float3& at) const;
+  Float3 on_light(float u, float v) const;
+  void add_shadow(const FirstHit& h, const Float3& at);
+  void add_area(const FirstHit& h);
+  void add_glossy(const FirstHit& h);
+  void add_diffuse(const FirstHit& h);
+  void add_rays(RayKind kind, const FirstHit& h);
+};
+
 /// Whether a render would send a shadow ray there.
-bool RayMaker::facing(const Hit& h, const Float3& light) const {
-  return dot(h.normal, V{light.x, light.y, light.z} - (h.point + h.away * h.normal)) > 0;
+bool Bounces::facing(const FirstHit& h, const Float3& at) const {
+  return dot(h.normal, V{at.x, at.y, at.z} - h.start()) > 0;
 }
+
+/// A place on the first light, from its middle in its edges.
+Float3 Bounces::on_light(float u, float v) const {
+  const Float3 &p = light.position, &e = light.edge1, &f = light.edge2;
+  return {p.x + (u * e.x + v * f.x), p.y + (u * e.y + v * f.y), p.z + (u * e.z + v * f.z)};
+}
+
+void Bounces::add_shadow(const FirstHit& h, const Float3& at) {
+  const V org = h.start(), dir = V{at.x, at.y, at.z} - org;
+  // of unit length, as Embree's cone curves want them: with others a third of rays is wrong
+  add(rays, org, normalize(dir), length(dir));
+}
+
+/// To places all over the light, where all its corners are in front.
+void Bounces::add_area(const FirstHit& h) {
+  bool all = lit;
+  for (const float u : {-.5f, .5f})
+    for (const float v : {-.5f, .5f})
+      all = all && facing(h, on_light(u, v));
+  for (int i = 0; all && i < kSamples; ++i) {
+    const Pair at = random.jittered(i);
+    add_shadow(h, on_light(at.u - .5f, at.v - .5f));
+  }
+}
+
+/// About the mirrored direction, above the surface.
+void Bounces::add_glossy(const FirstHit& h) {
+  V u, v;
+  across(h.mirror, u, v);
+  for (int i = 0; i < kSamples; ++i) {
+    const Pair d = disc_point(random.jittered(i));
+    const V to = h.mirror + (kRoughness * d.u) * u + (kRoughness * d.v) * v;
+    const V above = to - (2 * lesser(dot(to, h.normal), 0.f)) * h.normal;
+    add(rays, h.start(), normalize(above), kInfinity);
+  }
+}
+
+/// Towards a point of the disc, lifted to the half ball: density as the cosine.
+void Bounces::add_diffuse(const FirstHit& h) {
+  V u, v;
+  across(h.normal, u, v);
+  const float x = random(), y = random();
+  const Pair d = disc_point(Pair{x, y});
+  const float up = square_root(greater(1 - (d.u * d.u + d.v * d.v), 1e-6f));
+  add(rays, h.start(), normalize(d.u * u + d.v * v + up * h.normal), kInfinity);
+}
+
+void Bounces::add_rays(RayKind kind, const FirstHit& h) {
+  switch (kind) {
+    case RayKind::kShadow:
+      if (lit && facing(h, light.position))
+        add_shadow(h, light.position);
+      break;
+    case RayKind::kArea:
+      add_area(h);
+      break;
+    case RayKind::kMirror:
+      add(rays, h.start(), h.mirror, kInfinity);
+      break;
+    case RayKind::kGlossy:
+      add_glossy(h);
+      break;
+    default:
+      add_diffuse(h);
+  }
+}
+
+}  // namespace
 
 RayBuffer RayMaker::make(RayKind kind) const {
   if (kind == RayKind::kPrimary)
     return through_pixels(pinhole_, 1, false);
   if (kind == RayKind::kLens)
     return through_pixels(lens_, kSamples, true);
-  RayBuffer rays;
-  Random random;
-  const std::vector<Hit> hits = first_hits(kind == RayKind::kArea || kind == RayKind::kGlossy);
-  const auto on_light = [&](float u, float v) {
-    const Float3 &p = light_.position, &e = light_.edge1, &f = light_.edge2;
-    return Float3{p.x + (u * e.x + v * f.x), p.y + (u * e.y + v * f.y), p.z + (u * e.z + v * f.z)};
-  };
-  const auto to_light = [&](const Hit& h, const Float3& at) {
-    const V org = h.point + h.away * h.normal, dir = V{at.x, at.y, at.z} - org;
-    // of unit length, as Embree's cone curves want them: with others a third of rays is wrong
-    add(rays, org, normalize(dir), length(dir));
-  };
-  for (const Hit& h : hits) {
-    const V org = h.point + h.away * h.normal;
-    switch (kind) {
-      case RayKind::kShadow:
-        if (lit_ && facing(h, light_.position))
-          to_light(h, light_.position);
-        break;
-      case RayKind::kArea: {
-        bool all = lit_;
-        for (const float u : {-.5f, .5f})
-          for (const float v : {-.5f, .5f})
-            all = all && facing(h, on_light(u, v));
-        for (int i = 0; all && i < kSamples; ++i) {
-          const float u = (static_cast<float>(i % kSide) + random()) / kSide,
-                      v = (static_cast<float>(i / kSide) + random()) / kSide;
-          to_light(h, on_light(u - .5f, v - .5f));
-        }
-        break;
-      }
-      case RayKind::kMirror:
-        add(rays, org, h.mirror, kInfinity);
-        break;
-      case RayKind::kGlossy: {
-        V u, v;
-        across(h.mirror, u, v);
-        for (int i = 0; i < kSamples; ++i) {
-          const float x = (static_cast<float>(i % kSide) + random()) / kSide,
-                      y = (static_cast<float>(i / kSide) + random()) / kSide;
-          const Pair d = disc_point(Pair{x, y});
-          const V to = h.mirror + (kRoughness * d.u) * u + (kRoughness * d.v) * v;
-          add(rays,
-              org,
-              normalize(to - (2 * lesser(dot(to, h.normal), 0.f)) * h.normal),
-              kInfinity);
-        }
-        break;
-      }
-      default: {  // a point of the disc, lifted to the half ball: density as the cosine
-        V u, v;
-        across(h.normal, u, v);
-        const float x = random(), y = random();
-        const Pair d = disc_point(Pair{x, y});
-        const float up = square_root(greater(1 - (d.u * d.u + d.v * d.v), 1e-6f));
-        add(rays, org, normalize(d.u * u + d.v * v + up * h.normal), kInfinity);
-      }
-    }
-  }
-  if (kind != RayKind::kIncoherent)
-    return rays;
-  RayBuffer shuffled;
-  const auto count = static_cast<std::uint32_t>(rays.size());
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint32_t k = permuted(i, count, 0x9E3779B9u);
-    shuffled.add(
-        {rays.ox[k], rays.oy[k], rays.oz[k]}, {rays.dx[k], rays.dy[k], rays.dz[k]}, kInfinity);
-  }
-  return shuffled;
+  Bounces bounces{light_, lit_};
+  for (const FirstHit& h : first_hits(kind == RayKind::kArea || kind == RayKind::kGlossy))
+    bounces.add_rays(kind, h);
+  return kind == RayKind::kIncoherent ? shuffled(bounces.rays) : bounces.rays;
 }
 
 }  // namespace grelha::perf

@@ -9,6 +9,8 @@
 
 namespace grelha::perf {
 
+struct FirstHit;
+
 enum class RayKind { kPrimary, kLens, kShadow, kArea, kMirror, kGlossy, kIncoherent };
 inline constexpr std::array<const char*, 7> kRayKinds = {
     "primary", "AA + lens", "hard shadow", "area 16", "mirror", "glossy 16", "incoherent"};
@@ -33,10 +35,8 @@ class RayMaker {
   static bool any_hit(RayKind kind) { return kind == RayKind::kShadow || kind == RayKind::kArea; }
 
  private:
-  struct Hit;
   RayBuffer through_pixels(const FrameView& frame, int samples, bool few) const;
-  std::vector<Hit> first_hits(bool few) const;
-  bool facing(const Hit& hit, const Float3& light) const;
+  std::vector<FirstHit> first_hits(bool few) const;
 
   const World& world_;
   FrameView pinhole_, lens_;
