@@ -1,0 +1,45 @@
+#include "perf/build/same_grids.hpp"
+
+#include <cstring>
+
+#include "kernel/grid/world_impl.hpp"
+
+namespace grelha::perf {
+namespace {
+
+template <class T>
+bool same(const T& a, const T& b) {
+  return a.size() == b.size() &&
+         (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0);
+}
+
+bool same(const CellStore& a, const CellStore& b) {
+  bool all = true;
+  const auto compare = [&](const auto& one, const auto& other) { all = all && same(one, other); };
+  for_each_finite_shape([&]<class Shape>() {
+    const auto& one = a.of<Shape>();
+    const auto& other = b.of<Shape>();
+    compare(one.first, other.first);
+    if constexpr (ListStore<Shape>::kInBlocks) {
+      compare(one.blocks, other.blocks);
+      compare(one.boxes, other.boxes);
+    } else {
+      compare(one.id, other.id);
+      Shape::for_each_field(compare, one.fields, other.fields);
+    }
+  });
+  return all;
+}
+
+}  // namespace
+
+bool same_grids(const World& a, const World& b) {
+  const World::Impl &x = a.impl(), &y = b.impl();
+  bool all = same(x.outside, y.outside) && x.grids.size() == y.grids.size();
+  for (std::size_t i = 0; all && i < x.grids.size(); ++i)
+    all = x.grids[i].cells == y.grids[i].cells && same(x.grids[i].store, y.grids[i].store) &&
+          same(x.grids[i].distance, y.grids[i].distance);
+  return all;
+}
+
+}  // namespace grelha::perf
