@@ -27,90 +27,128 @@ namespace {
 using namespace grelha;
 using namespace grelha::perf;
 
+constexpr int kSide = 512, kDepth = 6;
 constexpr double kMostTests = 2e9;  ///< ray against primitive, without grid
 
-int measure(const char* path, int samples, int rounds) {
-  SceneFile file = read_scene(path, [](const std::string&) {});
-  Camera camera = file.camera;
-  camera.width = camera.height = 512;
-  if (samples == 1)
-    camera.aperture = 0;
+/// A picture of a scene, and the least seconds of each way to trace it.
+struct Picture {
+  SceneFile file;
+  Camera camera;
   RenderOptions options;
-  options.depth = 6;
-  options.sampling.samples = samples;
-  options.phases = true;
-  const World bare(file.scene, {.grid = false}), coarse(file.scene, {.density = 2}),
-      world(file.scene, BuildOptions{});
-  const FrameRays rays = rays_of_frame(world, camera, options);
+  World bare{file.scene, {.grid = false}};
+  World coarse{file.scene, {.density = 2}};
+  World world{file.scene, {}};
+  FrameRays rays = rays_of_frame(world, camera, options);
+  std::map<std::string, double> least{};
+
+  void keep(const std::string& way, double seconds) {
+    const auto [at, fresh] = least.try_emplace(way, seconds);
+    if (!fresh)
+      at->second = std::min(at->second, seconds);
+  }
+  std::size_t primitives() const {
+    const Geometry& g = file.scene.geometry;
+    return g.spheres.size() + g.triangles.size() + g.cones.size() + g.planes.size();
+  }
+};
+
+std::size_t count_of(const FrameRays& rays) {
   std::size_t count = 0;
   for (const RaySet& set : rays)
     count += set.rays.size();
-  const Geometry& g = file.scene.geometry;
-  const std::size_t primitives =
-      g.spheres.size() + g.triangles.size() + g.cones.size() + g.planes.size();
-  const std::size_t stride = std::max<std::size_t>(
-      1, static_cast<std::size_t>(static_cast<double>(count * primitives) / kMostTests + .5));
-  const FrameRays few = stride > 1 ? thinned(rays, stride) : FrameRays{};
+  return count;
+}
 
-  const int threads = omp_get_num_procs();
-  std::map<std::string, double> least;
-  const auto keep = [&](const std::string& name, double seconds) {
-    const auto [at, fresh] = least.try_emplace(name, seconds);
-    if (!fresh)
-      at->second = std::min(at->second, seconds);
-  };
-  const auto trace_all = [&](const World& w, const TraceSettings& s, const FrameRays& r, int n) {
-    const auto t = trace_seconds(w, reference_walk(), s, r, n);
-    return t[0] + t[1] + t[2];
-  };
-  const TraceSettings plain{.mailbox = false}, mailbox{.mailbox = true};
-  for (int round = 0; round < rounds; ++round) {
-    for (const int n : {1, threads}) {
-      RenderOptions o = options;
-      o.threads = n;
-      RenderStats stats;
-      const auto now = n == 1 ? cpu_seconds : now_seconds;
-      const double start = now();
-      render(world, camera, o, stats);
-      const double whole = now() - start;
-      const std::string with = n == 1 ? "" : " threads";
-      keep("packets" + with, whole);
-      const auto of = [&](Phase p) { return stats.phases[static_cast<std::size_t>(p)]; };
-      double all = 0;
-      for (const double s : stats.phases)
-        all += s;
-      keep("rest" + with,
-           whole * (1 - (of(Phase::primary) + of(Phase::bounce) + of(Phase::shadow)) / all));
-    }
-    keep("grid", trace_all(coarse, plain, rays, 1));
-    keep("mailboxes", trace_all(coarse, mailbox, rays, 1));
-    keep("grid threads", trace_all(coarse, plain, rays, threads));
-    if (round == 0 || stride == 1)
-      keep("no grid", trace_all(bare, plain, stride > 1 ? few : rays, 1));
-  }
-  std::size_t traced = 0;
-  for (const RaySet& set : stride > 1 ? few : rays)
-    traced += set.rays.size();
-  least["no grid"] *= static_cast<double>(count) / static_cast<double>(traced);
+/// Whole renders, and what of them is not tracing.
+void render_packets(Picture& p, int threads) {
+  RenderOptions o = p.options;
+  o.threads = threads;
+  RenderStats stats;
+  const auto now = threads == 1 ? cpu_seconds : now_seconds;
+  const double start = now();
+  render(p.world, p.camera, o, stats);
+  const double whole = now() - start;
+  const std::string with = threads == 1 ? "" : " threads";
+  p.keep("packets" + with, whole);
+  const auto of = [&](Phase phase) { return stats.phases[static_cast<std::size_t>(phase)]; };
+  double all = 0;
+  for (const double s : stats.phases)
+    all += s;
+  const double tracing = of(Phase::primary) + of(Phase::bounce) + of(Phase::shadow);
+  p.keep("rest" + with, whole * (1 - tracing / all));
+}
+
+double trace_all(const World& w,
+                 const TraceSettings& settings,
+                 const FrameRays& rays,
+                 int threads) {
+  const auto t = trace_seconds(w, reference_walk(), settings, rays, threads);
+  return t[0] + t[1] + t[2];
+}
+
+void print(const Picture& p, std::size_t stride, int threads) {
   std::printf("{\"rays\": %zu, \"primitives\": %zu, \"stride\": %zu, \"threads\": %d",
-              count,
-              primitives,
+              count_of(p.rays),
+              p.primitives(),
               stride,
               threads);
-  for (const auto& [name, seconds] : least)
+  for (const auto& [name, seconds] : p.least)
     std::printf(", \"%s\": %g", name.c_str(), seconds);
   std::printf("}\n");
-  return 0;
+}
+
+/// Of so many rays one is traced without grid.
+std::size_t stride_without_grid(const Picture& p) {
+  const double tests = static_cast<double>(count_of(p.rays) * p.primitives());
+  return std::max<std::size_t>(1, static_cast<std::size_t>(tests / kMostTests + .5));
+}
+
+void measure(Picture& p, int rounds) {
+  const std::size_t stride = stride_without_grid(p);
+  const FrameRays few = stride > 1 ? thinned(p.rays, stride) : FrameRays{};
+  const FrameRays& some = stride > 1 ? few : p.rays;
+  const int threads = omp_get_num_procs();
+  const TraceSettings plain{.mailbox = false}, mailbox{.mailbox = true};
+  for (int round = 0; round < rounds; ++round) {
+    for (const int n : {1, threads})
+      render_packets(p, n);
+    p.keep("grid", trace_all(p.coarse, plain, p.rays, 1));
+    p.keep("mailboxes", trace_all(p.coarse, mailbox, p.rays, 1));
+    p.keep("grid threads", trace_all(p.coarse, plain, p.rays, threads));
+    if (round == 0 || stride == 1)
+      p.keep("no grid", trace_all(p.bare, plain, some, 1));
+  }
+  const double traced = static_cast<double>(count_of(some));
+  p.least["no grid"] *= static_cast<double>(count_of(p.rays)) / traced;
+  print(p, stride, threads);
+}
+
+void measure(const char* path, int samples, int rounds) {
+  const SceneFile file = read_scene(path, [](const std::string&) {});
+  Camera camera = file.camera;
+  camera.width = camera.height = kSide;
+  if (samples == 1)
+    camera.aperture = 0;
+  RenderOptions options;
+  options.depth = kDepth;
+  options.sampling.samples = samples;
+  options.phases = true;
+  Picture picture{file, camera, options};
+  measure(picture, rounds);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 3)
-    return std::fputs("usage: report SCENE SAMPLES [ROUNDS]\n", stderr), 2;
+  if (argc < 3) {
+    std::fputs("usage: report SCENE SAMPLES [ROUNDS]\n", stderr);
+    return 2;
+  }
   try {
-    return measure(argv[1], std::atoi(argv[2]), argc > 3 ? std::atoi(argv[3]) : 3);
+    measure(argv[1], std::atoi(argv[2]), argc > 3 ? std::atoi(argv[3]) : 3);
+    return 0;
   } catch (const std::exception& e) {
-    return std::fprintf(stderr, "%s\n", e.what()), 1;
+    std::fprintf(stderr, "%s\n", e.what());
+    return 1;
   }
 }
