@@ -29,7 +29,7 @@ CLANG_FORMAT = "14"  # each version has its own taste
 EXCEPTIONS = {
     "file": (
         "frontend/cli/options.cpp", "frontend/nff/nff_reader.cpp", "kernel/features/doubt.hpp",
-        "perf/build.cpp", "perf/precision.cpp", "tests/frontend/cli/program_test.cpp",
+        "perf/precision.cpp", "tests/frontend/cli/program_test.cpp",
         "tests/frontend/jobs/long_work_test.cpp", "tests/frontend/jobs/parts_test.cpp",
         "tests/frontend/nff/nff_reader_test.cpp", "tests/kernel/render/shade_test.cpp",
         "tests/stability/pictures.cpp",
@@ -39,13 +39,11 @@ EXCEPTIONS = {
     ),
     "lines": (
         "frontend/cli/options.cpp", "kernel/features/doubt.hpp", "kernel/grid/world.cpp",
-        "kernel/trace/abreast.hpp", "perf/build.cpp", "perf/ray_sets.cpp", "perf/report.cpp",
-        "tests/frontend/cli/option_checks_test.cpp", "tests/frontend/cli/options_test.cpp",
-        "tests/frontend/input/errors_test.cpp",
+        "kernel/trace/abreast.hpp", "tests/frontend/cli/option_checks_test.cpp",
+        "tests/frontend/cli/options_test.cpp", "tests/frontend/input/errors_test.cpp",
     ),
     "branches": (
         "kernel/features/doubt.hpp", "kernel/render/setup.cpp", "kernel/trace/abreast.hpp",
-        "perf/embree.cpp", "perf/ray_sets.cpp",
     ),
 }
 
