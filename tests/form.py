@@ -29,10 +29,9 @@ CLANG_FORMAT = "14"  # each version has its own taste
 EXCEPTIONS = {
     "file": (
         "frontend/cli/options.cpp", "frontend/nff/nff_reader.cpp", "kernel/features/doubt.hpp",
-        "perf/precision.cpp", "tests/frontend/cli/program_test.cpp",
-        "tests/frontend/jobs/long_work_test.cpp", "tests/frontend/jobs/parts_test.cpp",
-        "tests/frontend/nff/nff_reader_test.cpp", "tests/kernel/render/shade_test.cpp",
-        "tests/stability/pictures.cpp",
+        "tests/frontend/cli/program_test.cpp", "tests/frontend/jobs/long_work_test.cpp",
+        "tests/frontend/jobs/parts_test.cpp", "tests/frontend/nff/nff_reader_test.cpp",
+        "tests/kernel/render/shade_test.cpp", "tests/stability/pictures.cpp",
     ),
     "comma": (
         "kernel/features/beam.hpp", "kernel/features/doubt.hpp", "kernel/render/bands.cpp",
