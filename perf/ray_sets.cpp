@@ -112,15 +112,15 @@ RayBuffer RayMaker::through_pixels(const FrameView& f, int samples, bool few) co
         const int in = k % (kTile * kTile), x = x0 + k / (kTile * kTile) * kTile + tile_x(in),
                   y = y0 + tile_y(in);
         for (int i = 0; i < samples; ++i) {
-          batch->ox[i] = static_cast<float>(x);
-          batch->oy[i] = static_cast<float>(y);
-          batch->pixel[i] = static_cast<std::uint32_t>(y * f.width + x);
-          batch->sample[i] = static_cast<std::uint32_t>(i);
+          batch->rays.org.x[i] = static_cast<float>(x);
+          batch->rays.org.y[i] = static_cast<float>(y);
+          batch->rays.pixel[i] = static_cast<std::uint32_t>(y * f.width + x);
+          batch->rays.sample[i] = static_cast<std::uint32_t>(i);
         }
         scalar::camera_rays(f, {.batch = batch.get(), .plan = plan}, samples, true);
         for (int i = 0; i < samples; ++i)
-          rays.add({batch->ox[i], batch->oy[i], batch->oz[i]},
-                   {batch->dx[i], batch->dy[i], batch->dz[i]},
+          rays.add({batch->rays.org.x[i], batch->rays.org.y[i], batch->rays.org.z[i]},
+                   {batch->rays.dir.x[i], batch->rays.dir.y[i], batch->rays.dir.z[i]},
                    kInfinity);
       }
     }

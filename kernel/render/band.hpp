@@ -14,105 +14,135 @@ namespace grelha::GRELHA_ISA {
 /// (docs/performance.md).
 inline constexpr int kClasses = 2;
 
-/// Makes camera rays [0, count) of the batch. Each goes through a place of the picture, which ox
-/// and oy hold, its pixel or point is that of its sum, and `sample` its number there. `in_pixels`:
-/// the place is a pixel's upper left corner, and the ray goes through the pixel's centre or is one
-/// of its samples; otherwise it goes through the place. Writes whole registers.
+/// A camera, the same in each lane.
+struct LaneCamera {
+  explicit LaneCamera(const FrameView& f)
+      : eye(splat(f.eye)),
+        forward(splat(f.forward)),
+        right(splat(f.right)),
+        up(splat(f.up)),
+        half_width(.5f * static_cast<float>(f.width)),
+        half_height(.5f * static_cast<float>(f.height)) {}
+
+  /// From the eye to places of the picture, in pixels from its upper left corner.
+  Lanes3 toward(const Lanes& x, const Lanes& y) const {
+    const Lanes sx = x - half_width;
+    const Lanes sy = half_height - y;
+    return (forward + sx * right) + sy * up;
+  }
+
+  Lanes3 eye, forward, right, up;
+  Lanes half_width, half_height;
+};
+
+/// Where rays start, and their directions.
+struct LaneRays {
+  Lanes3 org, dir;
+};
+
+/// Rays that start from points of the lens and cross the given ones in focus.
+inline LaneRays through_lens(const FrameView& f,
+                             const LaneRays& pinhole,
+                             const PairOf<Lanes>& sample) {
+  const PairOf<Lanes> p = disc_point(sample);
+  const Lanes3 on_lens = p.u * splat(f.lens_right) + p.v * splat(f.lens_up);
+  return {pinhole.org + on_lens, Lanes(f.focus) * pinhole.dir - on_lens};
+}
+
+/// Stores camera rays i, i + 1, ..., not yet normalized.
+inline void store_camera_rays(BatchRays& b, int i, const LaneRays& rays, bool in_double) {
+  const Lanes one(1);
+  const LaneWords zero{};
+  store3(b.org, i, rays.org);
+  if (in_double)
+    store3(b.org_low, i, {Lanes(0), Lanes(0), Lanes(0)});
+  store3(b.dir, i, normalize(rays.dir));
+  store3(b.weight, i, {one, one, one});
+  store_words(b.depth + i, zero + 1u);
+  store_words(b.path + i, zero);
+}
+
+/// Makes camera rays [0, count) of the batch. Each goes through a place of the picture, which org.x
+/// and org.y hold, its pixel or point is that of its sum, and `sample` its number there.
+/// `in_pixels`: the place is a pixel's upper left corner, and the ray goes through the pixel's
+/// centre or is one of its samples; otherwise it goes through the place. Writes whole registers.
 [[gnu::noinline]] inline void camera_rays(const FrameView& f,
                                           const BandWork& work,
                                           int count,
                                           bool in_pixels) {
-  Batch& b = *work.batch;
+  BatchRays& b = work.batch->rays;
   const SamplePlan& plan = work.plan;
-  const Vec3<Lanes> eye = splat(f.eye), forward = splat(f.forward), right = splat(f.right),
-                    up = splat(f.up);
-  const Lanes half_width(.5f * static_cast<float>(f.width)),
-      half_height(.5f * static_cast<float>(f.height));
-  const Lanes middle(in_pixels ? .5f : 0.f), one(1);
-  const Words<Lanes> zero{};
-  for (int i = 0; i < count; i += kWidth<Lanes>) {
-    const Words<Lanes> pixel = pixels_of(work, load_words<Lanes>(b.pixel + i)),
-                       index = load_words<Lanes>(b.sample + i);
+  const LaneCamera camera(f);
+  const Lanes middle(in_pixels ? .5f : 0.f);
+  const LaneWords zero{};
+  for (int i = 0; i < count; i += kLanes) {
+    const LaneWords pixel = pixels_of(work, load_words<Lanes>(b.pixel + i));
+    const LaneWords index = load_words<Lanes>(b.sample + i);
+    const auto sample = [&](int dimension) {
+      return sample_pairs<Lanes>(plan, pixel, index, dimension, zero, plan.pixel_strata);
+    };
     PairOf<Lanes> in{middle, middle};
     if (in_pixels && plan.samples > 1)
-      in = sample_pairs<Lanes>(plan, pixel, index, 0, zero, plan.pixel_strata);
-    const Lanes sx = (load<Lanes>(b.ox + i) + in.u) - half_width,
-                sy = half_height - (load<Lanes>(b.oy + i) + in.v);
-    Vec3<Lanes> d = (forward + sx * right) + sy * up, org = eye;
-    if (f.lens) {
-      const PairOf<Lanes> p =
-          disc_point(sample_pairs<Lanes>(plan, pixel, index, plan.lens, zero, plan.pixel_strata));
-      const Vec3<Lanes> on = p.u * splat(f.lens_right) + p.v * splat(f.lens_up);
-      org = eye + on;
-      d = Lanes(f.focus) * d - on;
-    }
-    d = normalize(d);
-    store(b.ox + i, org.x);
-    store(b.oy + i, org.y);
-    store(b.oz + i, org.z);
-    if (work.in_double)
-      for (float* const low : {b.ox_low, b.oy_low, b.oz_low})
-        store(low + i, Lanes(0));
-    store(b.dx + i, d.x);
-    store(b.dy + i, d.y);
-    store(b.dz + i, d.z);
-    store(b.wr + i, one);
-    store(b.wg + i, one);
-    store(b.wb + i, one);
-    store_words(b.depth + i, zero + 1u);
-    store_words(b.path + i, zero);
+      in = sample(0);
+    const Lanes x = load<Lanes>(b.org.x + i) + in.u;
+    const Lanes y = load<Lanes>(b.org.y + i) + in.v;
+    LaneRays rays{camera.eye, camera.toward(x, y)};
+    if (f.lens)
+      rays = through_lens(f, rays, sample(plan.lens));
+    store_camera_rays(b, i, rays, work.in_double != nullptr);
+  }
+}
+
+/// Moves some of kLanes rays of a stack, from one of them on, to a place of the batch.
+class StackMove {
+ public:
+  StackMove(const Chosen& chosen, int from, int to) : chosen_(chosen), from_(from), to_(to) {}
+  void operator()(Rows3& to, const Columns3& of) const { chosen_.store(to, to_, load3(of, from_)); }
+  void operator()(float* to, const float* of) const {
+    chosen_.store(to + to_, load<Lanes>(of + from_));
+  }
+  void operator()(std::uint32_t* to, const std::uint32_t* of) const {
+    chosen_.store(to + to_, load_words<Lanes>(of + from_));
+  }
+
+ private:
+  const Chosen& chosen_;
+  int from_, to_;
+};
+
+inline void move_rays(const Shader& s, const RayStack& stack, const StackMove& move) {
+  BatchRays& b = s.b.rays;
+  move(b.org, stack.org);
+  if (s.work.in_double)
+    move(b.org_low, stack.org_low);
+  move(b.dir, stack.dir);
+  move(b.weight, stack.weight);
+  if (keeps_shares(s))
+    move(b.share, stack.share);
+  move(b.pixel, stack.pixel);
+  if (s.work.plan.on) {
+    move(b.sample, stack.sample);
+    move(b.path, stack.path);
   }
 }
 
 /// Takes the youngest rays off the stack into the batch, class by class, in their order; ends[c] is
 /// where class c ends.
-inline void pop(RayStack& stack,
-                Batch& b,
-                int most,
-                bool sampled,
-                bool shares,
-                bool in_double,
-                int (&ends)[kClasses]) {
-  const int n = stack.size < most ? stack.size : most, top = stack.size;
+inline void pop(const Shader& s, RayStack& stack, int (&ends)[kClasses]) {
+  const int top = stack.size;
+  const int n = std::min(top, s.work.take);
   stack.size -= n;
   int to = 0;
   for (int c = 0; c < kClasses; ++c) {
-    for (int i = 0; i < n; i += kWidth<Lanes>) {
+    for (int i = 0; i < n; i += kLanes) {
       const int from = stack.size + i;
-      const Words<Lanes> depth = load_words<Lanes>(stack.depth + from);
-      const unsigned refracted = bits(mask_of(Words<Lanes>(depth >= kRefracted))),
-                     lanes = lanes_of(from, top);
-      const Chosen here((c == 0 ? ~refracted : refracted) & lanes);
+      const LaneWords depth = load_words<Lanes>(stack.depth + from);
+      const unsigned refracted = lanes_where(depth >= kRefracted);
+      const Chosen here((c == 0 ? ~refracted : refracted) & lanes_of(from, top));
       if (here.count() == 0)
         continue;
-      const auto move = [&](float* into, const float* of) {
-        here.store(into + to, load<Lanes>(of + from));
-      };
-      const auto move_words = [&](std::uint32_t* into, const std::uint32_t* of) {
-        here.store(into + to, load_words<Lanes>(of + from));
-      };
-      move(b.ox, stack.ox);
-      move(b.oy, stack.oy);
-      move(b.oz, stack.oz);
-      if (in_double) {
-        move(b.ox_low, stack.ox_low);
-        move(b.oy_low, stack.oy_low);
-        move(b.oz_low, stack.oz_low);
-      }
-      move(b.dx, stack.dx);
-      move(b.dy, stack.dy);
-      move(b.dz, stack.dz);
-      move(b.wr, stack.wr);
-      move(b.wg, stack.wg);
-      move(b.wb, stack.wb);
-      if (shares)
-        move(b.share, stack.share);
-      move_words(b.pixel, stack.pixel);
-      here.store(b.depth + to, depth & ~kRefracted);
-      if (sampled) {
-        move_words(b.sample, stack.sample);
-        move_words(b.path, stack.path);
-      }
+      move_rays(s, stack, StackMove(here, from, to));
+      here.store(s.b.rays.depth + to, depth & ~kRefracted);
       to += here.count();
     }
     ends[c] = to;
@@ -124,18 +154,12 @@ inline void pop(RayStack& stack,
 inline void follow(const Shader& s, RayStack& stack, int count) {
   s.rays.primary += static_cast<unsigned>(count);
   if (keeps_shares(s))
-    std::fill(s.b.share, s.b.share + count, 1.f);
+    std::fill(s.b.rays.share, s.b.rays.share + count, 1.f);
   shade_batch(s, stack, &count, 1, Phase::primary);
   int ends[kClasses];
   while (stack.size > 0) {
     enter(s.work, Phase::children);
-    pop(stack,
-        s.b,
-        s.work.take,
-        s.work.plan.on,
-        keeps_shares(s),
-        s.work.in_double != nullptr,
-        ends);
+    pop(s, stack, ends);
     shade_batch(s, stack, ends, kClasses, Phase::bounce);
   }
   enter(s.work, Phase::camera);
@@ -150,11 +174,11 @@ class CameraBatch {
     stack_.size = 0;
   }
   void add(float x, float y, std::uint32_t sum, std::uint32_t first, std::uint32_t count) {
-    Batch& b = s_.b;
+    BatchRays& b = s_.b.rays;
     int at = size_;
     for (std::uint32_t i = 0; i < count; ++i) {
-      b.ox[at] = x;
-      b.oy[at] = y;
+      b.org.x[at] = x;
+      b.org.y[at] = y;
       b.pixel[at] = sum;
       b.sample[at] = first + i;
       if (++at < kBatch)
@@ -208,19 +232,20 @@ inline void render_band(const SceneView& scene,
                         const BandWork& work,
                         Counters& counters,
                         RayTally& rays) {
-  const int y0 = part.rows.begin, y1 = part.rows.end;
+  const int y0 = part.rows.begin;
+  const int y1 = part.rows.end;
   const Shader shader{scene, shading, work, counters, rays, *work.batch};
   CameraBatch batch(shader, frame, true);
+  const auto first = static_cast<std::uint32_t>(part.samples.begin);
+  const auto count = static_cast<std::uint32_t>(part.samples.end) - first;
   for (int x0 = 0; x0 < frame.width; x0 += kTile)
     for (int k = 0; k < kTile * kTile; ++k) {
-      const int x = x0 + kTilePlaces.x[k], y = y0 + kTilePlaces.y[k];
+      const int x = x0 + kTilePlaces.x[k];
+      const int y = y0 + kTilePlaces.y[k];
       if (x >= frame.width || y >= y1)
         continue;
-      batch.add(static_cast<float>(x),
-                static_cast<float>(y),
-                static_cast<std::uint32_t>((y - y0) * frame.width + x),
-                static_cast<std::uint32_t>(part.samples.begin),
-                static_cast<std::uint32_t>(part.samples.end - part.samples.begin));
+      const auto sum = static_cast<std::uint32_t>((y - y0) * frame.width + x);
+      batch.add(static_cast<float>(x), static_cast<float>(y), sum, first, count);
     }
   batch.finish();
 }
@@ -242,11 +267,10 @@ inline void render_runs(const SceneView& scene,
     for (std::uint32_t p = 0; p < kParts; ++p) {
       const PixelRun& run = runs[r];
       const std::uint32_t part = run.count / kParts;
-      batch.add(static_cast<float>(run.pixel % width),
-                static_cast<float>(run.pixel / width),
-                static_cast<std::uint32_t>(r) * kParts + p,
-                run.first + p * part,
-                part);
+      const auto x = static_cast<float>(run.pixel % width);
+      const auto y = static_cast<float>(run.pixel / width);
+      const std::uint32_t sum = static_cast<std::uint32_t>(r) * kParts + p;
+      batch.add(x, y, sum, run.first + p * part, part);
     }
   batch.finish();
 }

@@ -9,6 +9,23 @@
 
 namespace grelha {
 
+namespace {
+
+using Spaces = std::vector<std::unique_ptr<Workspace>>;
+
+/// A workspace a thread. Allocated before the threads start, where running out of memory can still
+/// be told: an exception must not leave a parallel region.
+Spaces band_spaces(const Setup& setup, const RenderOptions& options, int threads) {
+  const std::size_t sums = static_cast<std::size_t>(setup.frame.width) * kBandRows;
+  const TraceLoops* const loops = loops_of(setup.variant, options.precision);
+  Spaces spaces;
+  for (int i = 0; i < threads; ++i)
+    spaces.push_back(std::make_unique<Workspace>(sums, options.depth, setup.plan, loops));
+  return spaces;
+}
+
+}  // namespace
+
 void render_bands(const World::Impl& world,
                   const Setup& setup,
                   const RenderOptions& options,
@@ -16,16 +33,14 @@ void render_bands(const World::Impl& world,
                   const NextBand& next,
                   const TakeBand& take,
                   RenderStats& stats) {
-  const std::size_t width = static_cast<std::size_t>(setup.frame.width);
   stats = {};
   stats.threads = thread_count(options, most);
   stats.isa = setup.variant.name.data();
-  // Allocated here, where running out of memory can still be told: an exception must not leave a
-  // parallel region.
-  std::vector<std::unique_ptr<Workspace>> spaces;
-  for (int i = 0; i < stats.threads; ++i)
-    spaces.push_back(std::make_unique<Workspace>(
-        width * kBandRows, options.depth, setup.plan, loops_of(setup.variant, options.precision)));
+  const Spaces spaces = band_spaces(setup, options, stats.threads);
+  const auto first_pixel = [&](const Band& band) {
+    return static_cast<std::uint32_t>(band.part.rows.begin) *
+           static_cast<std::uint32_t>(setup.frame.width);
+  };
   std::atomic<bool> stopped = false;
 #pragma omp parallel num_threads(stats.threads)
   {
@@ -33,21 +48,19 @@ void render_bands(const World::Impl& world,
     TraceCounts trace;
     RayCounts rays;
     for (Band band; !stopped && next(band);) {
-      const auto first_pixel =
-          static_cast<std::uint32_t>(band.part.rows.begin) * static_cast<std::uint32_t>(width);
-      setup.variant.loops.render_band(world.view,
-                                      world.shading,
-                                      setup.frame,
-                                      band.part,
-                                      space.work(options, first_pixel),
-                                      trace,
-                                      rays);
+      const BandWork work = space.work(options, first_pixel(band));
+      setup.variant.loops.render_band(
+          world.view, world.shading, setup.frame, band.part, work, trace, rays);
       if (!take(band, space.sums().data()))
         stopped = true;
       space.done(options);
     }
 #pragma omp critical(grelha_stats)
-    stats.trace += trace, stats.rays += rays, stats.phases += space.phases();
+    {
+      stats.trace += trace;
+      stats.rays += rays;
+      stats.phases += space.phases();
+    }
   }
 }
 

@@ -8,62 +8,94 @@ namespace grelha::GRELHA_ISA {
 
 /// What a ray carries of its sample: a weight a channel, and its share, see split().
 struct Carried {
-  Vec3<Lanes> weight;
+  Lanes3 weight;
   Lanes share;
 };
+
+/// What the rays that leave hits are: the bits kRefracted sets in their depth, and which of a fan.
+struct Branch {
+  std::uint32_t kind = 0;  ///< kRefracted, or 0: reflected
+  std::uint32_t number = 0;
+};
+
+/// leave() of points in double.
+inline TwoFloats<Lanes> left_exactly(const TwoFloats<Lanes>& point,
+                                     const Lanes3& normal,
+                                     const Lanes& away,
+                                     const Lanes3& dir) {
+  const Lanes zero(0);
+  const Lanes by = select(dot(dir, normal) < zero, zero - away, away);
+  return moved_exactly<Lanes>(point, normal, by);
+}
+
+/// Puts where rays towards `dir` leave the chosen hits i, i + 1, ... on top of the stack.
+inline void push_origins(
+    const Shader& s, RayStack& stack, int i, const Chosen& chosen, const Lanes3& dir) {
+  const HitLanes<false> at{i};
+  const BatchHits& h = s.b.hits;
+  const Lanes3 point = at(h.point);
+  const Lanes3 normal = at(h.normal);
+  const Lanes away = at(h.away);
+  TwoFloats<Lanes> org;
+  if (s.work.in_double) {
+    org = left_exactly({point, at(h.point_low)}, normal, away, dir);
+    chosen.store(stack.org_low, stack.size, org.low);
+  } else {
+    org.high = leave(point, normal, away, dir);
+  }
+  chosen.store(stack.org, stack.size, org.high);
+}
+
+/// The samples of the chosen hits i, i + 1, ..., and which bounces lead to where their rays go.
+inline void push_paths(
+    const Shader& s, RayStack& stack, int i, const Chosen& chosen, const Branch& branch) {
+  const HitLanes<false> at{i};
+  const BatchHits& h = s.b.hits;
+  const std::uint32_t use = branch.number + (branch.kind != 0 ? 0x10001u : 1u);
+  chosen.store(stack.sample + stack.size, at(h.sample));
+  chosen.store(stack.path + stack.size, scatter(at(h.path), use));
+}
 
 /// Puts the rays of the chosen hits i, i + 1, ... on the stack.
 inline void push(const Shader& s,
                  RayStack& stack,
                  int i,
                  const Chosen& chosen,
-                 const Vec3<Lanes>& dir,
+                 const Lanes3& dir,
                  const Carried& carried,
-                 std::uint32_t kind,
-                 std::uint32_t branch) {
-  Batch& b = s.b;
+                 const Branch& branch) {
+  const HitLanes<false> at{i};
+  const BatchHits& h = s.b.hits;
   const int to = stack.size;
-  const Vec3<Lanes> point = load3(b.px, b.py, b.pz, i), g = load3(b.gx, b.gy, b.gz, i);
-  const Lanes away = load<Lanes>(b.away + i);
-  if (s.work.in_double) {
-    const Lanes by = select(dot(dir, g) < Lanes(0), Lanes(0) - away, away);
-    const TwoFloats<Lanes> p =
-        moved_exactly<Lanes>({point, load3(b.px_low, b.py_low, b.pz_low, i)}, g, by);
-    chosen.store(stack.ox + to, stack.oy + to, stack.oz + to, p.high);
-    chosen.store(stack.ox_low + to, stack.oy_low + to, stack.oz_low + to, p.low);
-  } else {
-    chosen.store(stack.ox + to, stack.oy + to, stack.oz + to, leave(point, g, away, dir));
-  }
-  chosen.store(stack.dx + to, stack.dy + to, stack.dz + to, dir);
-  chosen.store(stack.wr + to, stack.wg + to, stack.wb + to, carried.weight);
+  push_origins(s, stack, i, chosen, dir);
+  chosen.store(stack.dir, to, dir);
+  chosen.store(stack.weight, to, carried.weight);
   if (keeps_shares(s))
     chosen.store(stack.share + to, carried.share);
-  chosen.store(stack.pixel + to, load_words<Lanes>(b.hit_pixel + i));
-  chosen.store(stack.depth + to, (load_words<Lanes>(b.hit_depth + i) + 1u) | kind);
-  if (s.work.plan.on) {
-    chosen.store(stack.sample + to, load_words<Lanes>(b.hit_sample + i));
-    chosen.store(stack.path + to,
-                 scatter(load_words<Lanes>(b.hit_path + i), branch + (kind != 0 ? 0x10001u : 1u)));
-  }
+  chosen.store(stack.pixel + to, at(h.pixel));
+  chosen.store(stack.depth + to, (at(h.depth) + 1u) | branch.kind);
+  if (s.work.plan.on)
+    push_paths(s, stack, i, chosen, branch);
   stack.size += chosen.count();
-  (kind != 0 ? s.rays.refraction : s.rays.reflection) += static_cast<unsigned>(chosen.count());
+  std::uint64_t& rays = branch.kind != 0 ? s.rays.refraction : s.rays.reflection;
+  rays += static_cast<unsigned>(chosen.count());
 }
 
 /// Directions in the lobes of the rough mirrors at the hits i, i + 1, ...: the unit mirror
 /// directions moved within a disc across them, kept above the surface. Each takes `rays` of them;
 /// this is the `ray`-th.
-[[gnu::noinline]] inline Vec3<Lanes> lobe_directions(
-    const Shader& s, int i, const Vec3<Lanes>& mirror, const Lanes& roughness, int ray, int rays) {
+[[gnu::noinline]] inline Lanes3 lobe_directions(
+    const Shader& s, int i, const Lanes3& mirror, const Lanes& roughness, int ray, int rays) {
   const SamplePlan& plan = s.work.plan;
-  const Words<Lanes> number = Words<Lanes>{} + static_cast<std::uint32_t>(ray);
+  const LaneWords number = LaneWords{} + static_cast<std::uint32_t>(ray);
   const PairOf<Lanes> d = disc_point(
       hit_samples(s, HitLanes<false>{i}, plan.gloss, 0, number, rays, plan.gloss_strata));
-  Vec3<Lanes> u, v;
+  Lanes3 u, v;
   across(mirror, u, v);
-  const Vec3<Lanes> to = mirror + (roughness * d.u) * u + (roughness * d.v) * v,
-                    g = load3(s.b.gx, s.b.gy, s.b.gz, i);
-  const Lanes under = dot(to, g);
-  return normalize(select(under < Lanes(0), to - (under + under) * g, to));
+  const Lanes3 to = mirror + (roughness * d.u) * u + (roughness * d.v) * v;
+  const Lanes3 normal = load3(s.b.hits.normal, i);
+  const Lanes under = dot(to, normal);
+  return normalize(select(under < Lanes(0), to - (under + under) * normal, to));
 }
 
 /// What the reflected and the refracted ray of a hit carry; `up`, `down`: what the material sends
@@ -75,19 +107,20 @@ inline void push(const Shader& s,
 /// their place, since they end together.
 inline void split(const Shader& s,
                   int i,
-                  const Vec3<Lanes>& up,
-                  const Vec3<Lanes>& down,
+                  const Lanes3& up,
+                  const Lanes3& down,
                   Carried& reflected,
                   Carried& refracted) {
-  const Vec3<Lanes> w = load3(s.b.hr, s.b.hg, s.b.hb, i);
+  const Lanes3 w = load3(s.b.hits.weight, i);
   reflected.weight = w * up;
   refracted.weight = w * down;
   reflected.share = largest(reflected.weight);
   refracted.share = largest(refracted.weight);
   if (!keeps_shares(s))
     return;
-  const Lanes r = largest(up), t = largest(down),
-              share = load<Lanes>(s.b.hit_share + i) / greater(r + t, Lanes(1));
+  const Lanes r = largest(up);
+  const Lanes t = largest(down);
+  const Lanes share = load<Lanes>(s.b.hits.share + i) / greater(r + t, Lanes(1));
   reflected.share = share * r;
   refracted.share = share * t;
 }
@@ -97,63 +130,94 @@ inline constexpr float kFanWeights = 8;
 
 /// What materials send on of the light they get, a share a channel, and where to.
 struct Bounce {
-  Vec3<Lanes> up;       ///< along the mirror direction
-  Vec3<Lanes> down;     ///< along `through`
-  Vec3<Lanes> through;  ///< the refracted direction
+  Lanes3 up;       ///< along the mirror direction
+  Lanes3 down;     ///< along `through`
+  Lanes3 through;  ///< the refracted direction
 };
 
 /// Schlick's share of the mirror.
 inline Lanes schlick(const Lanes& ior, const Lanes& cosine) {
   const Lanes one(1);
-  const Lanes r = (ior - one) / (ior + one), r0 = r * r;
-  const Lanes c = one - cosine, cc = c * c;
+  const Lanes r = (ior - one) / (ior + one);
+  const Lanes r0 = r * r;
+  const Lanes c = one - cosine;
+  const Lanes cc = c * c;
   return r0 + (one - r0) * ((cc * cc) * c);
+}
+
+/// Snell's law at hits.
+struct Refraction {
+  Lanes eta;           ///< index of refraction of the viewer's side over that of the other
+  Lanes cosine;        ///< to the viewer
+  Lanes other_cosine;  ///< on the other side
+  LaneMask passes;     ///< else: total reflection
+};
+
+/// `nv`: cosine between normal and viewer.
+[[gnu::always_inline]] inline Refraction snell(const Lanes& ior,
+                                               const LaneMask& inside,
+                                               const Lanes& nv) {
+  const Lanes o(0), one(1);
+  const Lanes eta = select(inside, ior, one / ior);
+  const Lanes cosine = greater(nv, o);
+  const Lanes squared = one - (eta * eta) * (one - cosine * cosine);  // of the other
+  return {eta, cosine, square_root(greater(squared, o)), squared >= o};
+}
+
+/// What goes up on total reflection, where the mirror ray takes over what would have passed: t is
+/// added to `up`, or all goes up where the material obeys Fresnel.
+inline Lanes3 totally_reflected(const Lanes3& up, const Lanes& t, const LaneMask& additive) {
+  const Lanes o(0), one(1);
+  const Lanes all = select(additive, t, o);
+  const Lanes whole = select(additive, o, one);
+  return select(additive, Lanes3{up.x + all, up.y + all, up.z + all}, Lanes3{whole, whole, whole});
+}
+
+/// What is sent on of the light at hits, and where it may pass.
+struct Shares {
+  Lanes3 mirror;
+  Lanes through;
+};
+
+/// Fresnel's law in the place of the given shares, where a material asks for it.
+inline Shares fresnel_shares(const Refraction& f,
+                             const Lanes& ior,
+                             const LaneMask& asked,
+                             const Shares& given) {
+  const Lanes one(1);
+  // the angle on the thinner side
+  const Lanes kr = schlick(ior, select(f.eta > one, f.other_cosine, f.cosine));
+  return {select(asked, Lanes3{kr, kr, kr}, given.mirror), select(asked, one - kr, given.through)};
 }
 
 /// The bounce at hits of which some transmit `t` > 0; at the others all of `mirror` goes up. `nv`:
 /// cosine between the normal n and the unit vector v to the viewer.
 inline Bounce refract(const Shader& s,
                       const HitLanes<false>& at,
-                      const Vec3<Lanes>& mirror,
+                      const Lanes3& mirror,
                       const Lanes& t,
-                      const Vec3<Lanes>& n,
-                      const Vec3<Lanes>& v,
+                      const Lanes3& n,
+                      const Lanes3& v,
                       const Lanes& nv) {
-  const Lanes o(0), one(1);
+  const Lanes o(0);
   const Lanes ior = gather(s, kIor, at);
-  const Mask<Lanes> clear = t > o, inside = at(s.b.inside) > o;
-  const Lanes eta = select(inside, ior, one / ior);
-  // Snell: cos^2 on the other side
-  const Lanes c1 = greater(nv, o), left = one - (eta * eta) * (one - c1 * c1);
-  const Mask<Lanes> passes = left >= o;
-  const Lanes c2 = square_root(greater(left, o));
-  Lanes tw = t;
-  Vec3<Lanes> rw = mirror;
-  if (s.shading.fresnel) {
-    const Mask<Lanes> asked = gather(s, kFresnel, at) > o;
-    const Lanes kr = schlick(ior, select(eta > one, c2, c1));  // the angle on the thinner side
-    tw = select(asked, one - kr, tw);
-    rw = select(asked, Vec3<Lanes>{kr, kr, kr}, rw);
-  }
-  const Mask<Lanes> refracted = both(clear, passes), total = but_not(clear, passes);
-  tw = select(refracted, tw, o);
-  // On total reflection the mirror ray takes over what would have passed.
-  const Mask<Lanes> additive = gather(s, kFresnel, at) == o;
-  const Lanes all = select(additive, t, o), whole = select(additive, o, one);
-  Vec3<Lanes> up = select(clear, rw, mirror);
-  up = select(total,
-              select(additive,
-                     Vec3<Lanes>{up.x + all, up.y + all, up.z + all},
-                     Vec3<Lanes>{whole, whole, whole}),
-              up);
-  return {up, {tw, tw, tw}, (eta * c1 - c2) * n - eta * v};
+  const Lanes fresnel = gather(s, kFresnel, at);
+  const LaneMask clear = t > o;
+  const Refraction f = snell(ior, at(s.b.hits.inside) > o, nv);
+  Shares shares{mirror, t};
+  if (s.shading.fresnel)
+    shares = fresnel_shares(f, ior, fresnel > o, shares);
+  const Lanes through = select(both(clear, f.passes), shares.through, o);
+  Lanes3 up = select(clear, shares.mirror, mirror);
+  up = select(but_not(clear, f.passes), totally_reflected(up, t, fresnel == o), up);
+  return {up, {through, through, through}, (f.eta * f.cosine - f.other_cosine) * n - f.eta * v};
 }
 
 /// The rays that leave mirrors.
 struct Lobe {
-  Vec3<Lanes> first;  ///< direction of each mirror's first
-  Mask<Lanes> many;   ///< rough, and worth a fan: see kFanWeights
-  Chosen on_many;     ///< those of them that send rays
+  Lanes3 first;    ///< direction of each mirror's first
+  LaneMask many;   ///< rough, and worth a fan: see kFanWeights
+  Chosen on_many;  ///< those of them that send rays
   Lanes roughness;
 };
 
@@ -162,24 +226,69 @@ struct Lobe {
 inline Lobe lobe_of(const Shader& s,
                     int i,
                     unsigned mirrors,
-                    const Vec3<Lanes>& reflected,
-                    const Vec3<Lanes>& weight,
+                    const Lanes3& reflected,
+                    const Lanes3& weight,
                     const Lanes& least) {
   const HitLanes<false> at{i};
   const Lanes o(0);
-  Mask<Lanes> rough = o != o;
+  const LaneMask nowhere = o != o;
+  LaneMask rough = nowhere;
   if (s.shading.gloss)
     rough = gather(s, kRoughness, at) > o;
-  const Mask<Lanes> many = s.work.plan.gloss_rays == 0
-                               ? o != o
-                               : but_not(rough, largest(weight) < Lanes(kFanWeights) * least);
-  const Chosen on_rough(bits(rough) & mirrors), on_many(bits(many) & mirrors);
+  LaneMask many = nowhere;
+  if (s.work.plan.gloss_rays != 0)
+    many = but_not(rough, largest(weight) < Lanes(kFanWeights) * least);
+  const Chosen on_rough(bits(rough) & mirrors);
+  const Chosen on_many(bits(many) & mirrors);
   const Lanes roughness = on_rough.count() != 0 ? gather(s, kRoughness, at) : o;
-  Vec3<Lanes> first = reflected;
+  Lanes3 first = reflected;
   if (on_rough.count() != on_many.count())
     first =
         select(but_not(rough, many), lobe_directions(s, i, reflected, roughness, 0, 1), reflected);
   return {first, many, on_many, roughness};
+}
+
+/// Ends the paths of the hits i, i + 1, ... with a bit in `sending` that are too long, or whose
+/// share is below `least`: they see the background. Returns those that go on.
+inline unsigned end_paths(
+    const Shader& s, int i, const Carried& carried, unsigned sending, const Lanes& least) {
+  const BatchHits& h = s.b.hits;
+  const LaneWords last = LaneWords{} + static_cast<std::uint32_t>(s.work.depth);
+  const unsigned longest = lanes_where(load_words<Lanes>(h.depth + i) >= last);
+  const unsigned end = longest | bits(carried.share < least);
+  const Lanes3 background = carried.weight * splat(s.shading.background);
+  add_light(s.work, h.pixel + i, background, sending & end);
+  return sending & ~end;
+}
+
+/// Puts the rays around the mirror direction on the stack; each carries the same.
+inline void push_fan(const Shader& s,
+                     RayStack& stack,
+                     int i,
+                     const Lobe& lobe,
+                     const Lanes3& reflected,
+                     const Carried& carried) {
+  const int rays = s.work.plan.gloss_rays;
+  for (int j = 0; j < rays && lobe.on_many.count() != 0; ++j) {
+    const Lanes3 dir = lobe_directions(s, i, reflected, lobe.roughness, j, rays);
+    push(s, stack, i, lobe.on_many, dir, carried, {0, static_cast<std::uint32_t>(j + 1)});
+  }
+}
+
+/// Those of hits i, i + 1, ... that send rays on, a bit each, and what along.
+struct Sending {
+  unsigned mirrors, clears;
+  Carried up, down;
+};
+
+/// What hits i, i + 1, ... send on before any path ends.
+inline Sending sending_of(const Shader& s, int i, int hits, const Bounce& bounce) {
+  Sending rays;
+  split(s, i, bounce.up, bounce.down, rays.up, rays.down);
+  const unsigned in = lanes_of(i, hits);
+  rays.mirrors = bits(any_component(rays.up.weight)) & in;
+  rays.clears = bits(any_component(rays.down.weight)) & in;
+  return rays;
 }
 
 /// Puts the rays of the hits i, i + 1, ... on the stack. `least`: the share below which a path
@@ -189,63 +298,46 @@ inline void send_bounce(const Shader& s,
                         int i,
                         int hits,
                         const Bounce& bounce,
-                        const Vec3<Lanes>& reflected,
+                        const Lanes3& reflected,
                         const Lanes& least) {
-  Batch& b = s.b;
-  Carried reflection, refraction;
-  split(s, i, bounce.up, bounce.down, reflection, refraction);
-  const unsigned in = lanes_of(i, hits);
-  const unsigned mirrors = bits(any_component(reflection.weight)) & in;
-  const unsigned clears = bits(any_component(refraction.weight)) & in;
-  if ((mirrors | clears) == 0)
+  const Sending rays = sending_of(s, i, hits, bounce);
+  if ((rays.mirrors | rays.clears) == 0)
     return;
-  const Vec3<Lanes> background = splat(s.shading.background);
-  const Words<Lanes> last = Words<Lanes>{} + static_cast<std::uint32_t>(s.work.depth);
-  const unsigned end = bits(mask_of(Words<Lanes>(load_words<Lanes>(b.hit_depth + i) >= last)));
-  const unsigned mirrors_end = end | bits(reflection.share < least),
-                 clears_end = end | bits(refraction.share < least);
-  add_light(s.work, b.hit_pixel + i, reflection.weight * background, mirrors & mirrors_end);
-  add_light(s.work, b.hit_pixel + i, refraction.weight * background, clears & clears_end);
-  const Chosen on_mirrors(mirrors & ~mirrors_end), on_clears(clears & ~clears_end);
-  const Lobe lobe = lobe_of(s, i, mirrors & ~mirrors_end, reflected, reflection.weight, least);
-  const int around = s.work.plan.gloss_rays;
-  const float part = 1.f / static_cast<float>(around + 1);
-  const Lanes own = select(lobe.many, Lanes(part), Lanes(1));
-  push(s, stack, i, on_mirrors, lobe.first, {own * reflection.weight, reflection.share}, 0, 0);
-  push(s, stack, i, on_clears, bounce.through, refraction, kRefracted, 0);
-  // the rays around the mirror direction
-  for (int j = 0; j < around && lobe.on_many.count() != 0; ++j)
-    push(s,
-         stack,
-         i,
-         lobe.on_many,
-         lobe_directions(s, i, reflected, lobe.roughness, j, around),
-         {Lanes(part) * reflection.weight, reflection.share},
-         0,
-         static_cast<std::uint32_t>(j + 1));
+  const Carried& up = rays.up;
+  const unsigned mirrors = end_paths(s, i, up, rays.mirrors, least);
+  const unsigned clears = end_paths(s, i, rays.down, rays.clears, least);
+  const Lobe lobe = lobe_of(s, i, mirrors, reflected, up.weight, least);
+  const Lanes part(1.f / static_cast<float>(s.work.plan.gloss_rays + 1));
+  const Lanes own = select(lobe.many, part, Lanes(1));
+  push(s, stack, i, Chosen(mirrors), lobe.first, {own * up.weight, up.share}, {});
+  push(s, stack, i, Chosen(clears), bounce.through, rays.down, {kRefracted, 0});
+  push_fan(s, stack, i, lobe, reflected, {part * up.weight, up.share});
+}
+
+/// A smooth normal can send a reflection under the true surface; it is bent back above.
+inline Lanes3 above_surface(const Lanes3& reflected, const Lanes3& normal) {
+  const Lanes under = lesser(dot(reflected, normal), Lanes(0));
+  return reflected - (under + under) * normal;
 }
 
 /// Sends the reflected and refracted rays of all hits. At the end of the longest path they see the
 /// background, and where what they could bring is less than would show; docs/sampling.md derives
 /// how much less.
 inline void send_on(const Shader& s, RayStack& stack, int hits) {
-  Batch& b = s.b;
   const Lanes o(0), least(s.work.min_weight / s.shading.brightest);
-  for (int i = 0; i < hits; i += kWidth<Lanes>) {
+  for (int i = 0; i < hits; i += kLanes) {
     const HitLanes<false> at{i};
-    const Vec3<Lanes> mirror = gather3(s, kMirrorR, at);
+    const Lanes3 mirror = gather3(s, kMirrorR, at);
     const Lanes t = s.shading.refracts ? gather(s, kTransmission, at) : o;
     if (none(either(any_component(mirror), t > o)))
       continue;
-    const Vec3<Lanes> n = load3(b.nx, b.ny, b.nz, i), g = load3(b.gx, b.gy, b.gz, i),
-                      v = load3(b.vx, b.vy, b.vz, i);
+    const Lanes3 n = at(s.b.hits.shading);
+    const Lanes3 v = at(s.b.hits.viewer);
     const Lanes nv = dot(n, v);
-    const Bounce bounce = s.shading.refracts ? refract(s, at, mirror, t, n, v, nv)
-                                             : Bounce{mirror, {o, o, o}, {o, o, o}};
-    Vec3<Lanes> reflected = (nv + nv) * n - v;
-    // A smooth normal can send a reflection under the true surface; bend it back above.
-    const Lanes under = lesser(dot(reflected, g), o);
-    reflected = reflected - (under + under) * g;
+    Bounce bounce{mirror, {o, o, o}, {o, o, o}};
+    if (s.shading.refracts)
+      bounce = refract(s, at, mirror, t, n, v, nv);
+    const Lanes3 reflected = above_surface((nv + nv) * n - v, at(s.b.hits.normal));
     send_bounce(s, stack, i, hits, bounce, reflected, least);
   }
 }

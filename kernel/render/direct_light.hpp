@@ -9,10 +9,10 @@ namespace grelha::GRELHA_ISA {
 
 /// Points of an area light, of numbers `number` at their hits.
 template <bool kOne>
-inline Vec3<Lanes> light_points(const Shader& s,
-                                const HitLanes<kOne>& at,
-                                const Words<Lanes>& number,
-                                int light_index) {
+inline Lanes3 light_points(const Shader& s,
+                           const HitLanes<kOne>& at,
+                           const LaneWords& number,
+                           int light_index) {
   const SamplePlan& plan = s.work.plan;
   const float* const light = s.shading.lights + kLightFloats * light_index;
   const PairOf<Lanes> p = hit_samples(s,
@@ -22,84 +22,156 @@ inline Vec3<Lanes> light_points(const Shader& s,
                                       number,
                                       plan.light_rays,
                                       plan.light_strata);
-  const Lanes a = p.u - Lanes(.5f), c = p.v - Lanes(.5f);
+  const Lanes a = p.u - Lanes(.5f);
+  const Lanes c = p.v - Lanes(.5f);
   return splat(light) + (a * splat(light + 6) + c * splat(light + 9));
+}
+
+/// The shadow rays of the batch, for those who trace.
+inline RayArrays shadow_arrays(const Shader& s) {
+  BatchShadows& b = s.b.shadows;
+  RayArrays rays{b.org.x, b.org.y, b.org.z, b.dir.x, b.dir.y, b.dir.z, b.t_min, b.t, b.id};
+  if (s.work.in_double) {
+    rays.low[0] = b.org_low.x;
+    rays.low[1] = b.org_low.y;
+    rays.low[2] = b.org_low.z;
+  }
+  return rays;
+}
+
+/// Adds what the first n shadow rays carry that met nothing.
+inline void add_unblocked(const Shader& s, int n) {
+  const BatchShadows& b = s.b.shadows;
+  for (int i = 0; i < n; i += kLanes) {
+    const LaneWords id = load_words<Lanes>(b.id + i);
+    const unsigned free = lanes_where(id == kNoPrimitive) & lanes_of(i, n);
+    add_light(s.work, b.pixel + i, load3(b.light, i), free);
+  }
 }
 
 /// Traces the first n shadow rays of the batch and adds what those carry that nothing stands in the
 /// way of.
 inline void light_up(const Shader& s, int n) {
-  Batch& b = s.b;
+  BatchShadows& b = s.b.shadows;
   if (n == 0)
     return;
   for (int i = 0; i < n; ++i) {
-    b.lt_min[i] = 0;
-    b.lt[i] = 1;
+    b.t_min[i] = 0;
+    b.t[i] = 1;
   }
   s.rays.shadow += static_cast<unsigned>(n);
-  RayArrays rays{b.lox, b.loy, b.loz, b.ldx, b.ldy, b.ldz, b.lt_min, b.lt, b.lid};
-  if (s.work.in_double) {
-    rays.low[0] = b.lox_low;
-    rays.low[1] = b.loy_low;
-    rays.low[2] = b.loz_low;
-  }
+  const RayArrays rays = shadow_arrays(s);
   enter(s.work, Phase::shadow, rays, n);
   trace<true>(s, rays, n, Phase::shadow);
   enter(s.work, Phase::light);
-  for (int i = 0; i < n; i += kWidth<Lanes>) {
-    const unsigned free =
-        bits(mask_of(Words<Lanes>(load_words<Lanes>(b.lid + i) == kNoPrimitive))) & lanes_of(i, n);
-    add_light(s.work, b.light_pixel + i, load3(b.lr, b.lg, b.lb, i), free);
-  }
+  add_unblocked(s, n);
 }
 
-/// Puts a shadow ray to `to` behind the first n for each of the lanes whose hit faces it; returns
-/// how many there are then. `share`: of the light's colour that a ray carries.
+/// Where shadow rays start: on the lit side, which is the viewer's.
 template <bool kOne>
-inline int send_to_light(const Shader& s,
-                         const HitLanes<kOne>& at,
-                         const Vec3<Lanes>& to,
-                         const float* color,
-                         float share,
-                         unsigned lanes,
-                         int n) {
-  Batch& b = s.b;
+inline TwoFloats<Lanes> shadow_origins(const Shader& s,
+                                       const HitLanes<kOne>& at,
+                                       const Lanes3& normal) {
+  const BatchHits& h = s.b.hits;
   const Lanes o(0);
-  const Vec3<Lanes> g = at(b.gx, b.gy, b.gz), normal = at(b.nx, b.ny, b.nz);
-  Vec3<Lanes> org = at(b.px, b.py, b.pz) + at(b.away) * g;  // the lit side is the viewer's side
-  Vec3<Lanes> low{o, o, o};
-  if (s.work.in_double) {
-    const TwoFloats<Lanes> p = moved_exactly<Lanes>(
-        {at(b.px, b.py, b.pz), at(b.px_low, b.py_low, b.pz_low)}, g, at(b.away));
-    org = p.high;
-    low = p.low;
-  }
-  const Vec3<Lanes> dir = to - org, l = normalize(dir);
-  const Lanes nl = dot(normal, l);
-  const Chosen lit(bits(both(nl > o, dot(g, l) > o)) & lanes);
-  if (lit.count() == 0)
-    return n;
-  Vec3<Lanes> c = nl * gather3(s, kDiffuseR, at);
-  const Vec3<Lanes> specular =
-      s.shading.highlights ? gather3(s, kSpecularR, at) : Vec3<Lanes>{o, o, o};
-  if (any(any_component(specular))) {
-    const Vec3<Lanes> half = normalize(l + at(b.vx, b.vy, b.vz));
-    const Lanes nh = greater(dot(normal, half), o);
-    c = c + power(nh, gather(s, kShine, at)) * specular;
-  }
-  c = Vec3<Lanes>{Lanes(color[0] * share), Lanes(color[1] * share), Lanes(color[2] * share)} *
-      (at(b.hr, b.hg, b.hb) * c);
-  lit.store(b.lox + n, b.loy + n, b.loz + n, org);
   if (s.work.in_double)
-    lit.store(b.lox_low + n, b.loy_low + n, b.loz_low + n, low);
-  lit.store(b.ldx + n, b.ldy + n, b.ldz + n, dir);
-  lit.store(b.lr + n, b.lg + n, b.lb + n, c);
-  lit.store(b.light_pixel + n, at(b.hit_pixel));
-  n += lit.count();
-  if (n + kWidth<Lanes> <= kBatch)
+    return moved_exactly<Lanes>({at(h.point), at(h.point_low)}, normal, at(h.away));
+  return {at(h.point) + at(h.away) * normal, {o, o, o}};
+}
+
+/// What the material sends to the viewer of light from the unit direction l: Lambert's cosine
+/// `nl`, and Blinn's highlight.
+template <bool kOne>
+inline Lanes3 reflected_light(const Shader& s,
+                              const HitLanes<kOne>& at,
+                              const Lanes3& normal,
+                              const Lanes3& l,
+                              const Lanes& nl) {
+  const Lanes3 diffuse = nl * gather3(s, kDiffuseR, at);
+  if (!s.shading.highlights)
+    return diffuse;
+  const Lanes3 specular = gather3(s, kSpecularR, at);
+  if (!any(any_component(specular)))
+    return diffuse;
+  const Lanes3 half = normalize(l + at(s.b.hits.viewer));
+  const Lanes nh = greater(dot(normal, half), Lanes(0));
+  return diffuse + power(nh, gather(s, kShine, at)) * specular;
+}
+
+/// Puts the chosen shadow rays, from `org` and to where they end, behind the first n of the batch,
+/// and traces the batch where no room is left; returns how many there are then.
+template <bool kOne>
+inline int put_shadow_rays(const Shader& s,
+                           const HitLanes<kOne>& at,
+                           const Chosen& chosen,
+                           const TwoFloats<Lanes>& org,
+                           const Lanes3& dir,
+                           const Lanes3& light,
+                           int n) {
+  BatchShadows& b = s.b.shadows;
+  chosen.store(b.org, n, org.high);
+  if (s.work.in_double)
+    chosen.store(b.org_low, n, org.low);
+  chosen.store(b.dir, n, dir);
+  chosen.store(b.light, n, light);
+  chosen.store(b.pixel + n, at(s.b.hits.pixel));
+  n += chosen.count();
+  if (n + kLanes <= kBatch)
     return n;
   light_up(s, n);
   return 0;
+}
+
+/// Puts a shadow ray to `to` behind the first n for each of the lanes whose hit faces it; returns
+/// how many there are then. `color`: what a ray carries of the light's.
+template <bool kOne>
+inline int send_to_light(const Shader& s,
+                         const HitLanes<kOne>& at,
+                         const Lanes3& to,
+                         const Lanes3& color,
+                         unsigned lanes,
+                         int n) {
+  const BatchHits& h = s.b.hits;
+  const Lanes3 g = at(h.normal);
+  const Lanes3 normal = at(h.shading);
+  const TwoFloats<Lanes> org = shadow_origins(s, at, g);
+  const Lanes3 dir = to - org.high;
+  const Lanes3 l = normalize(dir);
+  const Lanes nl = dot(normal, l);
+  const Lanes o(0);
+  const Chosen lit(bits(both(nl > o, dot(g, l) > o)) & lanes);
+  if (lit.count() == 0)
+    return n;
+  const Lanes3 light = color * (at(h.weight) * reflected_light(s, at, normal, l, nl));
+  return put_shadow_rays(s, at, lit, org, dir, light, n);
+}
+
+/// One shadow ray for each of the hits that faces the light; returns how many are not traced yet.
+inline int send_one_each(
+    const Shader& s, int hits, int light_index, bool area, const Lanes3& color) {
+  const float* const light = s.shading.lights + kLightFloats * light_index;
+  int n = 0;
+  for (int i = 0; i < hits; i += kLanes) {
+    const HitLanes<false> at{i};
+    const Lanes3 to = area ? light_points(s, at, LaneWords{}, light_index) : splat(light);
+    n = send_to_light(s, at, to, color, lanes_of(i, hits), n);
+  }
+  return n;
+}
+
+/// `each` shadow rays for each of the hits that faces the light; returns how many are not traced
+/// yet.
+inline int send_many_each(
+    const Shader& s, int hits, int light_index, int each, const Lanes3& color) {
+  int n = 0;
+  for (int i = 0; i < hits; ++i)
+    for (int j = 0; j < each; j += kLanes) {
+      const HitLanes<true> at{i};
+      const LaneWords number = counted_words<Lanes>(static_cast<std::uint32_t>(j));
+      const Lanes3 to = light_points(s, at, number, light_index);
+      n = send_to_light(s, at, to, color, lanes_of(j, each), n);
+    }
+  return n;
 }
 
 /// Light of one source on all hits: a shadow ray for each that faces it, and what that ray carries
@@ -108,28 +180,11 @@ inline int send_to_light(const Shader& s,
 inline void light_hits(const Shader& s, int hits, int light_index, bool area) {
   const float* const light = s.shading.lights + kLightFloats * light_index;
   const int each = area ? s.work.plan.light_rays : 1;
-  const float share = 1.f / static_cast<float>(each);
-  int n = 0;
-  if (each == 1)
-    for (int i = 0; i < hits; i += kWidth<Lanes>) {
-      const HitLanes<false> at{i};
-      n = send_to_light(s,
-                        at,
-                        area ? light_points(s, at, Words<Lanes>{}, light_index) : splat(light),
-                        light + 3,
-                        share,
-                        lanes_of(i, hits),
-                        n);
-    }
-  else
-    for (int i = 0; i < hits; ++i)
-      for (int j = 0; j < each; j += kWidth<Lanes>) {
-        const HitLanes<true> at{i};
-        const Vec3<Lanes> to =
-            light_points(s, at, counted_words<Lanes>(static_cast<std::uint32_t>(j)), light_index);
-        n = send_to_light(s, at, to, light + 3, share, lanes_of(j, each), n);
-      }
-  light_up(s, n);
+  const Lanes share(1.f / static_cast<float>(each));
+  const Lanes3 color = share * splat(light + 3);
+  light_up(s,
+           each == 1 ? send_one_each(s, hits, light_index, area, color)
+                     : send_many_each(s, hits, light_index, each, color));
 }
 
 }  // namespace grelha::GRELHA_ISA

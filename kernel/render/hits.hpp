@@ -9,56 +9,76 @@ namespace grelha::GRELHA_ISA {
 /// Surfaces of rays i, i + 1, ..., which were traced in double.
 [[gnu::noinline]] inline Surface<Lanes> surface_in_double(const Shader& s,
                                                           int i,
-                                                          const Words<Lanes>& id,
-                                                          const Vec3<Lanes>& org,
-                                                          const Vec3<Lanes>& dir,
+                                                          const LaneWords& id,
+                                                          const Lanes3& org,
+                                                          const Lanes3& dir,
                                                           const Lanes& t) {
-  const ExactStart<Lanes> start{load3(s.b.ox_low, s.b.oy_low, s.b.oz_low, i), s.b.whole + i};
+  const ExactStart<Lanes> start{load3(s.b.rays.org_low, i), s.b.rays.t_double + i};
   return surface_of<Lanes>(s.scene.geometry, id, org, dir, t, s.shading.smooth, start);
+}
+
+/// Surfaces of rays i, i + 1, ..., which met `id`.
+inline Surface<Lanes> surface_at_rays(const Shader& s,
+                                      int i,
+                                      const LaneWords& id,
+                                      const Lanes3& dir) {
+  const Lanes3 org = load3(s.b.rays.org, i);
+  const Lanes t = load<Lanes>(s.b.rays.t + i);
+  return s.work.in_double ? surface_in_double(s, i, id, org, dir, t)
+                          : surface_of<Lanes>(s.scene.geometry, id, org, dir, t, s.shading.smooth);
+}
+
+/// Stores where the chosen of some rays met surfaces, from hit `to` on.
+inline void store_surfaces(
+    const Shader& s, const Chosen& hit, int to, const Lanes3& dir, const Surface<Lanes>& f) {
+  BatchHits& h = s.b.hits;
+  const Lanes zero(0), one(1);
+  const LaneMask inside = dot(dir, f.normal) > zero;
+  const Lanes side = select(inside, Lanes(-1), one);
+  hit.store(h.point, to, f.point);
+  if (s.work.in_double)
+    hit.store(h.point_low, to, f.low);
+  hit.store(h.normal, to, side * f.normal);
+  hit.store(h.shading, to, side * f.shading);
+  hit.store(h.viewer, to, normalize(Lanes3{zero, zero, zero} - dir));
+  hit.store(h.away + to, f.away);
+  hit.store(h.inside + to, select(inside, one, zero));
+  hit.store(h.material + to, f.material);
+}
+
+/// Stores what the chosen of rays i, i + 1, ... carry, from hit `to` on.
+inline void store_carried(const Shader& s, const Chosen& hit, int to, int i, const Lanes3& weight) {
+  const BatchRays& r = s.b.rays;
+  BatchHits& h = s.b.hits;
+  hit.store(h.weight, to, weight);
+  if (keeps_shares(s))
+    hit.store(h.share + to, load<Lanes>(r.share + i));
+  hit.store(h.pixel + to, load_words<Lanes>(r.pixel + i));
+  hit.store(h.depth + to, load_words<Lanes>(r.depth + i));
+  if (s.work.plan.on) {
+    hit.store(h.sample + to, load_words<Lanes>(r.sample + i));
+    hit.store(h.path + to, load_words<Lanes>(r.path + i));
+  }
 }
 
 /// Fills the hit arrays from rays [0, count); misses send the background. Returns the number of
 /// hits.
 inline int find_surfaces(const Shader& s, int count) {
-  Batch& b = s.b;
-  const Vec3<Lanes> background = splat(s.shading.background), zero = {Lanes(0), Lanes(0), Lanes(0)};
+  const BatchRays& r = s.b.rays;
+  const Lanes3 background = splat(s.shading.background);
   int hits = 0;
-  for (int i = 0; i < count; i += kWidth<Lanes>) {
-    const Words<Lanes> id = load_words<Lanes>(b.id + i);
-    const unsigned in = lanes_of(i, count),
-                   missed = bits(mask_of(Words<Lanes>(id == kNoPrimitive))) & in;
-    const Vec3<Lanes> weight = load3(b.wr, b.wg, b.wb, i);
-    add_light(s.work, b.pixel + i, weight * background, missed);
+  for (int i = 0; i < count; i += kLanes) {
+    const LaneWords id = load_words<Lanes>(r.id + i);
+    const unsigned in = lanes_of(i, count);
+    const unsigned missed = lanes_where(id == kNoPrimitive) & in;
+    const Lanes3 weight = load3(r.weight, i);
+    add_light(s.work, r.pixel + i, weight * background, missed);
     const Chosen hit(in & ~missed);
     if (hit.count() == 0)
       continue;
-    const Vec3<Lanes> d = load3(b.dx, b.dy, b.dz, i);
-    const Vec3<Lanes> org = load3(b.ox, b.oy, b.oz, i);
-    const Lanes t = load<Lanes>(b.t + i);
-    const Surface<Lanes> f =
-        s.work.in_double ? surface_in_double(s, i, id, org, d, t)
-                         : surface_of<Lanes>(s.scene.geometry, id, org, d, t, s.shading.smooth);
-    const Mask<Lanes> inside = dot(d, f.normal) > Lanes(0);
-    const Lanes side = select(inside, Lanes(-1), Lanes(1));
-    const int h = hits;
-    hit.store(b.px + h, b.py + h, b.pz + h, f.point);
-    if (s.work.in_double)
-      hit.store(b.px_low + h, b.py_low + h, b.pz_low + h, f.low);
-    hit.store(b.gx + h, b.gy + h, b.gz + h, side * f.normal);
-    hit.store(b.nx + h, b.ny + h, b.nz + h, side * f.shading);
-    hit.store(b.vx + h, b.vy + h, b.vz + h, normalize(zero - d));
-    hit.store(b.away + h, f.away);
-    hit.store(b.inside + h, select(inside, Lanes(1), Lanes(0)));
-    hit.store(b.hr + h, b.hg + h, b.hb + h, weight);
-    if (keeps_shares(s))
-      hit.store(b.hit_share + h, load<Lanes>(b.share + i));
-    hit.store(b.hit_pixel + h, load_words<Lanes>(b.pixel + i));
-    hit.store(b.hit_depth + h, load_words<Lanes>(b.depth + i));
-    hit.store(b.material + h, f.material);
-    if (s.work.plan.on) {
-      hit.store(b.hit_sample + h, load_words<Lanes>(b.sample + i));
-      hit.store(b.hit_path + h, load_words<Lanes>(b.path + i));
-    }
+    const Lanes3 dir = load3(r.dir, i);
+    store_surfaces(s, hit, hits, dir, surface_at_rays(s, i, id, dir));
+    store_carried(s, hit, hits, i, weight);
     hits += hit.count();
   }
   return hits;

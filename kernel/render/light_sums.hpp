@@ -6,55 +6,72 @@
 
 namespace grelha::GRELHA_ISA {
 
+/// Lanes whose light is converted together, and the compiler's own vectors of them.
+inline constexpr int kConverted = kLanes < 8 ? kLanes : 8;
+using Floats = float __attribute__((vector_size(4 * kConverted)));
+using Doubles = double __attribute__((vector_size(8 * kConverted)));
+using Integers = std::int64_t __attribute__((vector_size(8 * kConverted)));
+
 /// Light in units of the sums, ties away from zero; what is not a number counts nothing. The
 /// compiler's own vectors know which instruction sets can make such integers.
-inline void light_units(const Lanes& x, float most, std::int64_t (&units)[kWidth<Lanes>]) {
-  constexpr int n = kWidth<Lanes> < 8 ? kWidth<Lanes> : 8;
-  using Floats = float __attribute__((vector_size(4 * n)));
-  using Doubles = double __attribute__((vector_size(8 * n)));
-  using Integers = std::int64_t __attribute__((vector_size(8 * n)));
-  float c[kWidth<Lanes>];
-  store(c, greater(lesser(select(x == x, x, Lanes(0)), Lanes(most)), Lanes(0 - most)));
-  for (int k = 0; k < kWidth<Lanes>; k += n) {
+inline void light_units(const Lanes& x, float most, std::int64_t (&units)[kLanes]) {
+  const Lanes number = select(x == x, x, Lanes(0));
+  float light[kLanes];
+  store(light, greater(lesser(number, Lanes(most)), Lanes(0 - most)));
+  for (int k = 0; k < kLanes; k += kConverted) {
     Floats f;
-    __builtin_memcpy(&f, c + k, sizeof f);
-    const Doubles u = __builtin_convertvector(f, Doubles) * kLightUnit, half = Doubles{} + .5;
+    __builtin_memcpy(&f, light + k, sizeof f);
+    const Doubles u = __builtin_convertvector(f, Doubles) * kLightUnit;
+    const Doubles half = Doubles{} + .5;
     const Integers i = __builtin_convertvector(u + (u < 0 ? 0 - half : half), Integers);
     __builtin_memcpy(units + k, &i, sizeof i);
   }
+}
+
+/// Light of each lane, in units of the sums.
+struct LaneLight {
+  std::int64_t r[kLanes], g[kLanes], b[kLanes];
+};
+
+/// Adds the lanes from the first that is set on that have its pixel; returns the others.
+[[gnu::always_inline]] inline unsigned add_run(const BandWork& work,
+                                               const std::uint32_t* pixel,
+                                               const LaneLight& light,
+                                               unsigned lanes) {
+  const std::uint32_t here = pixel[__builtin_ctz(lanes)];
+  std::int64_t sum[3] = {};
+  do {
+    const int k = __builtin_ctz(lanes);
+    sum[0] += light.r[k];
+    sum[1] += light.g[k];
+    sum[2] += light.b[k];
+    lanes &= lanes - 1;
+  } while (lanes != 0 && pixel[__builtin_ctz(lanes)] == here);
+  std::int64_t* const to = work.sums + std::size_t{here} * 3;
+  to[0] += sum[0];
+  to[1] += sum[1];
+  to[2] += sum[2];
+  return lanes;
 }
 
 /// Adds the light of the chosen lanes to their pixels' sums. Where neighbours have one pixel its
 /// sum is touched once.
 inline void add_light(const BandWork& work,
                       const std::uint32_t* pixel,
-                      const Vec3<Lanes>& light,
+                      const Lanes3& light,
                       unsigned lanes) {
   if (lanes == 0)
     return;
-  std::int64_t r[kWidth<Lanes>], g[kWidth<Lanes>], b[kWidth<Lanes>];
-  light_units(light.x, work.most_light, r);
-  light_units(light.y, work.most_light, g);
-  light_units(light.z, work.most_light, b);
-  do {
-    const std::uint32_t here = pixel[__builtin_ctz(lanes)];
-    std::int64_t sum[3] = {};
-    do {
-      const int k = __builtin_ctz(lanes);
-      sum[0] += r[k];
-      sum[1] += g[k];
-      sum[2] += b[k];
-      lanes &= lanes - 1;
-    } while (lanes != 0 && pixel[__builtin_ctz(lanes)] == here);
-    std::int64_t* const s = work.sums + static_cast<std::size_t>(here) * 3;
-    s[0] += sum[0];
-    s[1] += sum[1];
-    s[2] += sum[2];
-  } while (lanes != 0);
+  LaneLight units;
+  light_units(light.x, work.most_light, units.r);
+  light_units(light.y, work.most_light, units.g);
+  light_units(light.z, work.most_light, units.b);
+  while (lanes != 0)
+    lanes = add_run(work, pixel, units, lanes);
 }
 
 /// The pixels whose samples the rays of these sums are.
-inline Words<Lanes> pixels_of(const BandWork& work, const Words<Lanes>& sums) {
+inline LaneWords pixels_of(const BandWork& work, const LaneWords& sums) {
   return work.pixels ? words_at(work.pixels, sums) : sums + work.first_pixel;
 }
 

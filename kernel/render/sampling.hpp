@@ -10,7 +10,7 @@
 
 namespace grelha::GRELHA_ISA {
 
-// Everything is written once over a word: one std::uint32_t, or Words<Lanes>, one sample a lane.
+// Everything is written once over a word: one std::uint32_t, or LaneWords, one sample a lane.
 
 /// Avalanche of 32 bits (C. Wellons' lowbias32).
 template <class Word>
@@ -57,33 +57,50 @@ inline Word owen_hash(Word x, Word seed) {
 
 inline constexpr int kSobolDimensions = 8;
 
-/// Direction numbers of Sobol's sequence for eight dimensions (Joe & Kuo 2008,
-/// new-joe-kuo-6.21201), written backwards.
+/// A primitive polynomial over two elements, and what its recurrence begins with (Joe & Kuo 2008,
+/// new-joe-kuo-6.21201).
+struct SobolPolynomial {
+  unsigned degree, coefficients;
+  std::uint32_t first[5];
+};
+inline constexpr SobolPolynomial kSobolPolynomials[kSobolDimensions] = {
+    {0, 0, {}},
+    {1, 0, {1}},
+    {2, 1, {1, 3}},
+    {3, 1, {1, 3, 1}},
+    {3, 2, {1, 1, 1}},
+    {4, 1, {1, 1, 3, 3}},
+    {4, 4, {1, 3, 5, 13}},
+    {5, 2, {1, 1, 5, 5, 17}},
+};
+
+/// Direction numbers of Sobol's sequence for eight dimensions, written backwards.
 struct SobolMatrices {
   std::uint32_t column[kSobolDimensions][32];
+
   constexpr SobolMatrices() : column{} {
-    constexpr unsigned degree[kSobolDimensions] = {0, 1, 2, 3, 3, 4, 4, 5};
-    constexpr unsigned polynomial[kSobolDimensions] = {0, 0, 1, 1, 2, 1, 4, 2};
-    constexpr std::uint32_t first[kSobolDimensions][5] = {
-        {}, {1}, {1, 3}, {1, 3, 1}, {1, 1, 1}, {1, 1, 3, 3}, {1, 3, 5, 13}, {1, 1, 5, 5, 17}};
-    for (int d = 0; d < kSobolDimensions; ++d)
-      for (unsigned i = 0; i < 32; ++i) {
-        const unsigned s = degree[d];
-        if (s == 0) {
-          column[d][i] = 1u << (31 - i);
-        } else if (i < s) {
-          column[d][i] = first[d][i] << (31 - i);
-        } else {
-          std::uint32_t v = column[d][i - s] ^ (column[d][i - s] >> s);
-          for (unsigned k = 1; k < s; ++k)
-            if (polynomial[d] >> (s - 1 - k) & 1u)
-              v ^= column[d][i - k];
-          column[d][i] = v;
-        }
-      }
-    for (auto& dimension : column)
-      for (std::uint32_t& c : dimension)
+    for (int d = 0; d < kSobolDimensions; ++d) {
+      for (unsigned i = 0; i < 32; ++i)
+        column[d][i] = direction(kSobolPolynomials[d], column[d], i);
+      for (std::uint32_t& c : column[d])
         c = reversed(c);
+    }
+  }
+
+  /// The i-th direction number, of those before it.
+  static constexpr std::uint32_t direction(const SobolPolynomial& p,
+                                           const std::uint32_t* before,
+                                           unsigned i) {
+    const unsigned s = p.degree;
+    if (s == 0)
+      return 1u << (31 - i);
+    if (i < s)
+      return p.first[i] << (31 - i);
+    std::uint32_t v = before[i - s] ^ (before[i - s] >> s);
+    for (unsigned k = 1; k < s; ++k)
+      if (p.coefficients >> (s - 1 - k) & 1u)
+        v ^= before[i - k];
+    return v;
   }
 };
 inline constexpr SobolMatrices kSobol;
@@ -118,6 +135,28 @@ inline float sobol_sample(std::uint32_t seed, std::uint32_t index, int dimension
   return unit_float(sobol_bits(seed, index, dimension));
 }
 
+/// A permutation of [0, w], w one less than a power of two.
+inline std::uint32_t permuted_round(std::uint32_t i, std::uint32_t w, std::uint32_t seed) {
+  i ^= seed;
+  i *= 0xE170893Du;
+  i ^= seed >> 16;
+  i ^= (i & w) >> 4;
+  i ^= seed >> 8;
+  i *= 0x0929EB3Fu;
+  i ^= seed >> 23;
+  i ^= (i & w) >> 1;
+  i *= 1 | seed >> 27;
+  i *= 0x6935FA69u;
+  i ^= (i & w) >> 11;
+  i *= 0x74DCB303u;
+  i ^= (i & w) >> 2;
+  i *= 0x9E501CC3u;
+  i ^= (i & w) >> 2;
+  i *= 0xC860A3DFu;
+  i &= w;
+  return i ^ i >> 5;
+}
+
 /// Place of i after a random permutation of [0, n): Kensler, "Correlated Multi-Jittered Sampling",
 /// 2013.
 inline std::uint32_t permuted(std::uint32_t i, std::uint32_t n, std::uint32_t seed) {
@@ -128,24 +167,7 @@ inline std::uint32_t permuted(std::uint32_t i, std::uint32_t n, std::uint32_t se
   w |= w >> 8;
   w |= w >> 16;
   do {
-    i ^= seed;
-    i *= 0xE170893Du;
-    i ^= seed >> 16;
-    i ^= (i & w) >> 4;
-    i ^= seed >> 8;
-    i *= 0x0929EB3Fu;
-    i ^= seed >> 23;
-    i ^= (i & w) >> 1;
-    i *= 1 | seed >> 27;
-    i *= 0x6935FA69u;
-    i ^= (i & w) >> 11;
-    i *= 0x74DCB303u;
-    i ^= (i & w) >> 2;
-    i *= 0x9E501CC3u;
-    i ^= (i & w) >> 2;
-    i *= 0xC860A3DFu;
-    i &= w;
-    i ^= i >> 5;
+    i = permuted_round(i, w, seed);
   } while (i >= n);
   return (i + seed) % n;
 }
@@ -156,28 +178,73 @@ struct PairOf {
 };
 using Pair = PairOf<float>;
 
-/// A point in each cell in turn; where `shuffled` is not 0 the cells come in an order of their own.
-/// Which cell it is is found lane by lane: by divisions, and a loop of no known length.
+/// Cells of a grid, one a lane.
+template <class Real>
+struct LaneCells {
+  float column[kWidth<Real>], row[kWidth<Real>];
+};
+
+/// The cells in turn; where `shuffled` is not 0, in an order of their own. Found lane by lane: by
+/// divisions, and a loop of no known length.
+template <class Real>
+inline LaneCells<Real> cells_in_turn(Words<Real> seed,
+                                     Words<Real> index,
+                                     const Strata& strata,
+                                     Words<Real> shuffled) {
+  const std::uint32_t cells = strata.columns * strata.rows;
+  std::uint32_t i[kWidth<Real>], own[kWidth<Real>], order[kWidth<Real>];
+  store_words(i, index);
+  store_words(own, scatter(seed, 0x51ED270Bu));
+  store_words(order, shuffled);
+  LaneCells<Real> found;
+  for (int k = 0; k < kWidth<Real>; ++k) {
+    std::uint32_t cell = i[k] % cells;
+    if (order[k] != 0)
+      cell = permuted(cell, cells, own[k]);
+    found.column[k] = static_cast<float>(cell % strata.columns);
+    found.row[k] = static_cast<float>(cell / strata.columns);
+  }
+  return found;
+}
+
+/// A random point of the unit square.
+template <class Word>
+inline auto random_pair(Word seed, Word index) {
+  using Real = decltype(unit_float(index));
+  return PairOf<Real>{unit_float(scatter(seed, index + index)),
+                      unit_float(scatter(seed, index + index + 1u))};
+}
+
+/// A point in each cell in turn, see cells_in_turn().
 template <class Real>
 inline PairOf<Real> jittered(Words<Real> seed,
                              Words<Real> index,
                              const Strata& strata,
                              Words<Real> shuffled) {
-  const std::uint32_t cells = strata.columns * strata.rows;
-  std::uint32_t i[kWidth<Real>], own[kWidth<Real>], order[kWidth<Real>];
-  float column[kWidth<Real>], row[kWidth<Real>];
-  store_words(i, index);
-  store_words(own, scatter(seed, 0x51ED270Bu));
-  store_words(order, shuffled);
-  for (int k = 0; k < kWidth<Real>; ++k) {
-    const std::uint32_t cell = order[k] != 0 ? permuted(i[k] % cells, cells, own[k]) : i[k] % cells;
-    column[k] = static_cast<float>(cell % strata.columns);
-    row[k] = static_cast<float>(cell / strata.columns);
+  const LaneCells<Real> cell = cells_in_turn<Real>(seed, index, strata, shuffled);
+  const PairOf<Real> in = random_pair(seed, index);
+  const Real columns(static_cast<float>(strata.columns));
+  const Real rows(static_cast<float>(strata.rows));
+  return {(load<Real>(cell.column) + in.u) / columns, (load<Real>(cell.row) + in.v) / rows};
+}
+
+/// Two dimensions of Sobol's sequence: of the joint one, which `base` names, where `key` is 0; else
+/// the first two of `own`, in an order of its own.
+template <class Word>
+inline auto sobol_pair(Word base, Word own, Word index, int dimension, Word key) {
+  using Real = decltype(unit_float(index));
+  const auto joint = key == 0u;
+  Word u{}, v{};
+  if (any_set(Word(joint))) {
+    u = sobol_bits(base, index, dimension);
+    v = sobol_bits(base, index, dimension + 1);
   }
-  const Real x = unit_float(scatter(seed, index + index)),
-             y = unit_float(scatter(seed, index + index + 1u));
-  return {(load<Real>(column) + x) / Real(static_cast<float>(strata.columns)),
-          (load<Real>(row) + y) / Real(static_cast<float>(strata.rows))};
+  if (any_set(key)) {
+    const Word at = reversed(owen_hash(reversed(index), scatter(own, 0x68E31DA4u)));
+    u = joint ? u : sobol_bits(own, at, 0);
+    v = joint ? v : sobol_bits(own, at, 1);
+  }
+  return PairOf<Real>{unit_float(u), unit_float(v)};
 }
 
 /// Two numbers in [0, 1): sample `index` of a pixel in dimensions `dimension` and the next. `key`
@@ -192,26 +259,16 @@ inline PairOf<Real> sample_pairs(const SamplePlan& plan,
                                  Words<Real> key,
                                  const Strata& strata) {
   using Word = Words<Real>;
-  const Word base = scatter(plan.seed, pixel),
-             own = scatter(base, scatter(key, static_cast<std::uint32_t>(dimension)));
+  const auto use = static_cast<std::uint32_t>(dimension);
+  const Word base = scatter(plan.seed, pixel);
+  const Word own = scatter(base, scatter(key, use));
   if (plan.kind == SamplePlan::kJitter)
-    return jittered<Real>(own, index, strata, key | static_cast<std::uint32_t>(dimension));
+    return jittered<Real>(own, index, strata, key | use);
   if (plan.kind == SamplePlan::kUnshuffled)
     return jittered<Real>(own, index, strata, Word{});
   if (plan.kind == SamplePlan::kRandom)
-    return {unit_float(scatter(own, index + index)), unit_float(scatter(own, index + index + 1u))};
-  const auto joint = key == 0u;
-  Word u{}, v{};
-  if (any_set(Word(joint))) {
-    u = sobol_bits(base, index, dimension);
-    v = sobol_bits(base, index, dimension + 1);
-  }
-  if (any_set(key)) {
-    const Word at = reversed(owen_hash(reversed(index), scatter(own, 0x68E31DA4u)));
-    u = joint ? u : sobol_bits(own, at, 0);
-    v = joint ? v : sobol_bits(own, at, 1);
-  }
-  return {unit_float(u), unit_float(v)};
+    return random_pair(own, index);
+  return sobol_pair(base, own, index, dimension, key);
 }
 inline Pair sample_pair(const SamplePlan& plan,
                         std::uint32_t pixel,
@@ -222,19 +279,35 @@ inline Pair sample_pair(const SamplePlan& plan,
   return sample_pairs<float>(plan, pixel, index, dimension, key, strata);
 }
 
+/// Sine of x in [-pi/4, pi/4], from x and its square.
+template <class Real>
+inline Real sine(const Real& x, const Real& xx) {
+  const Real one(1);
+  const Real third(1.f / 6), fifth(1.f / 120), seventh(1.f / 5040);
+  return x * (one - xx * (third - xx * (fifth - xx * seventh)));
+}
+
+/// Cosine of x in [-pi/4, pi/4], from its square.
+template <class Real>
+inline Real cosine(const Real& xx) {
+  const Real one(1);
+  const Real second(.5f), fourth(1.f / 24), sixth(1.f / 720), eighth(1.f / 40320);
+  return one - xx * (second - xx * (fourth - xx * (sixth - xx * eighth)));
+}
+
 /// A point of the unit disc for a point of the unit square, areas in proportion (Shirley & Chiu
 /// 1997). Sine and cosine are polynomials (error below 4e-7 on [-pi/4, pi/4]), since libm's last
 /// bit depends on the machine.
 template <class Real>
 inline PairOf<Real> disc_point(const PairOf<Real>& square) {
-  const Real o(0), one(1);
-  const Real a = Real(2) * square.u - one, b = Real(2) * square.v - one;
+  const Real o(0), one(1), two(2), quarter_pi(0.78539816f);
+  const Real a = two * square.u - one;
+  const Real b = two * square.v - one;
   const Mask<Real> wide = a * a > b * b;
-  const Real r = select(wide, a, b), x = Real(0.78539816f) * (select(wide, b, a) / r), xx = x * x;
-  const Real s = x * (one - xx * (Real(1.f / 6) - xx * (Real(1.f / 120) - xx * Real(1.f / 5040))));
-  const Real c =
-      one -
-      xx * (Real(.5f) - xx * (Real(1.f / 24) - xx * (Real(1.f / 720) - xx * Real(1.f / 40320))));
+  const Real r = select(wide, a, b);
+  const Real x = quarter_pi * (select(wide, b, a) / r);
+  const Real s = sine(x, x * x);
+  const Real c = cosine(x * x);
   const Mask<Real> centre = both(a == o, b == o);  // where x is 0 / 0
   return {select(centre, o, r * select(wide, c, s)), select(centre, o, r * select(wide, s, c))};
 }

@@ -12,6 +12,9 @@
 namespace grelha {
 namespace {
 
+constexpr int kMostLightRays = 4096;
+constexpr int kMostGlossRays = 256;
+
 /// Near-square strata for `count` samples, never fewer.
 Strata strata_for(int count) {
   std::uint32_t columns = 1;
@@ -21,6 +24,20 @@ Strata strata_for(int count) {
   return {columns, (n + columns - 1) / columns};
 }
 
+SamplePlan::Kind kind_of(Sampler sampler) {
+  switch (sampler) {
+    case Sampler::kJitter:
+      return SamplePlan::kJitter;
+    case Sampler::kUnshuffled:
+      return SamplePlan::kUnshuffled;
+    case Sampler::kRandom:
+      return SamplePlan::kRandom;
+    case Sampler::kSobol:
+      break;
+  }
+  return SamplePlan::kSobol;
+}
+
 /// Dimensions for the effects that are there, and no others.
 SamplePlan plan_samples(const SampleOptions& o, const Camera& camera, const ShadingView& shading) {
   SamplePlan p;
@@ -28,20 +45,7 @@ SamplePlan plan_samples(const SampleOptions& o, const Camera& camera, const Shad
   p.seed = o.seed;
   p.light_rays = o.light_rays;
   p.gloss_rays = shading.gloss ? o.gloss_rays : 0;
-  switch (o.sampler) {
-    case Sampler::kSobol:
-      p.kind = SamplePlan::kSobol;
-      break;
-    case Sampler::kJitter:
-      p.kind = SamplePlan::kJitter;
-      break;
-    case Sampler::kUnshuffled:
-      p.kind = SamplePlan::kUnshuffled;
-      break;
-    case Sampler::kRandom:
-      p.kind = SamplePlan::kRandom;
-      break;
-  }
+  p.kind = kind_of(o.sampler);
   int next = 2;
   const auto pair = [&next](bool present) { return present ? (next += 2) - 2 : -1; };
   p.lens = pair(camera.aperture > 0);
@@ -54,37 +58,51 @@ SamplePlan plan_samples(const SampleOptions& o, const Camera& camera, const Shad
   return p;
 }
 
+void require(bool holds, const char* complaint) {
+  if (!holds)
+    throw std::invalid_argument(complaint);
+}
+
+/// Requires 1 to `most` of something.
+void require_up_to(int most, int found, const std::string& what) {
+  if (found < 1 || found > most)
+    throw std::invalid_argument(what + " must be from 1 to " + std::to_string(most));
+}
+
+void check_rays(const RenderOptions& o) {
+  require_up_to(kMostDepth, o.depth, "depth");
+  require(o.min_weight >= 0 && o.min_weight <= 1, "the least weight of a path must be from 0 to 1");
+  require(o.packet == 1 || o.packet == 16 || o.packet == 64 || o.packet == 256,
+          "a packet holds 1, 16, 64 or 256 rays");
+}
+
+void check_samples(const SampleOptions& s) {
+  require_up_to(kMostSamples, s.samples, "samples");
+  require_up_to(kMostLightRays, s.light_rays, "shadow rays to an area light");
+  require(s.gloss_rays >= 0 && s.gloss_rays <= kMostGlossRays,
+          "rays around the mirror direction must be from 0 to 256");
+}
+
+void check_refinement(const RenderOptions& o) {
+  const RefineOptions& r = o.refine;
+  require(r.error >= 0 && r.seconds >= 0, "an error and a time must not be negative");
+  if (!r.on())
+    return;
+  require(!is_jittered(o.sampling.sampler),
+          "jittered samples must be counted before they are taken: to meet an error, use sobol or "
+          "random");
+  require(o.sampling.light_rays <= 1, "to meet an error every sample sends one ray to a light");
+  require(!o.subdivision.on, "samples are spent by error or by subdivision, not by both");
+}
+
 }  // namespace
 
-void check_options(const Camera& camera, const RenderOptions& o) {
-  if (!camera_is_sound(camera))
-    throw std::invalid_argument("the camera cannot see: check eye, at, up, angle and size");
-  if (o.depth < 1 || o.depth > kMostDepth)
-    throw std::invalid_argument("depth must be from 1 to " + std::to_string(kMostDepth));
-  if (!(o.min_weight >= 0 && o.min_weight <= 1))
-    throw std::invalid_argument("the least weight of a path must be from 0 to 1");
-  if (o.packet != 1 && o.packet != 16 && o.packet != 64 && o.packet != 256)
-    throw std::invalid_argument("a packet holds 1, 16, 64 or 256 rays");
-  const SampleOptions& s = o.sampling;
-  if (s.samples < 1 || s.samples > kMostSamples)
-    throw std::invalid_argument("samples must be from 1 to " + std::to_string(kMostSamples));
-  if (s.light_rays < 1 || s.light_rays > 4096)
-    throw std::invalid_argument("shadow rays to an area light must be from 1 to 4096");
-  if (s.gloss_rays < 0 || s.gloss_rays > 256)
-    throw std::invalid_argument("rays around the mirror direction must be from 0 to 256");
-  const RefineOptions& r = o.refine;
-  if (!(r.error >= 0) || !(r.seconds >= 0))
-    throw std::invalid_argument("an error and a time must not be negative");
-  if (r.on() && is_jittered(s.sampler))
-    throw std::invalid_argument(
-        "jittered samples must be counted before they are taken: to meet an error, use sobol or "
-        "random");
-  if (r.on() && s.light_rays > 1)
-    throw std::invalid_argument("to meet an error every sample sends one ray to a light");
-  if (r.on() && o.subdivision.on)
-    throw std::invalid_argument("samples are spent by error or by subdivision, not by both");
-  if (o.threads < 0)
-    throw std::invalid_argument("threads must not be negative");
+void check_options(const Camera& camera, const RenderOptions& options) {
+  require(camera_is_sound(camera), "the camera cannot see: check eye, at, up, angle and size");
+  check_rays(options);
+  check_samples(options.sampling);
+  check_refinement(options);
+  require(options.threads >= 0, "threads must not be negative");
 }
 
 Setup set_up(const World& world, const Camera& camera, const RenderOptions& options) {

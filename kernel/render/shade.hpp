@@ -12,52 +12,75 @@
 
 namespace grelha::GRELHA_ISA {
 
-/// Traces and shades the batch: runs of rays that go together, the k-th ending at ends[k]. `phase`:
-/// primary or bounce.
-inline void shade_batch(const Shader& s, RayStack& stack, const int* ends, int runs, Phase phase) {
-  Batch& b = s.b;
-  const int count = ends[runs - 1];
-  for (int i = 0; i < count; ++i) {
+/// Rays of the batch from `at` on, for those who trace.
+inline RayArrays ray_arrays(const Shader& s, int at) {
+  BatchRays& b = s.b.rays;
+  RayArrays rays{b.org.x + at,
+                 b.org.y + at,
+                 b.org.z + at,
+                 b.dir.x + at,
+                 b.dir.y + at,
+                 b.dir.z + at,
+                 b.t_min + at,
+                 b.t + at,
+                 b.id + at};
+  if (s.work.in_double) {
+    rays.low[0] = b.org_low.x + at;
+    rays.low[1] = b.org_low.y + at;
+    rays.low[2] = b.org_low.z + at;
+    rays.whole = b.t_double + at;
+  }
+  return rays;
+}
+
+/// Traces the batch: runs of rays that go together, the k-th ending at ends[k].
+inline void trace_batch(const Shader& s, const int* ends, int runs, Phase phase) {
+  BatchRays& b = s.b.rays;
+  for (int i = 0; i < ends[runs - 1]; ++i) {
     b.t_min[i] = 0;
     b.t[i] = kInfinity;
   }
-  for (int k = 0, at = 0; k < runs; at = ends[k++]) {
-    RayArrays rays{b.ox + at,
-                   b.oy + at,
-                   b.oz + at,
-                   b.dx + at,
-                   b.dy + at,
-                   b.dz + at,
-                   b.t_min + at,
-                   b.t + at,
-                   b.id + at};
-    if (s.work.in_double) {
-      rays.low[0] = b.ox_low + at;
-      rays.low[1] = b.oy_low + at;
-      rays.low[2] = b.oz_low + at;
-      rays.whole = b.whole + at;
-    }
-    enter(s.work, phase, rays, ends[k] - at);
-    trace<false>(s, rays, ends[k] - at, phase);
+  int at = 0;
+  for (int k = 0; k < runs; ++k) {
+    const RayArrays rays = ray_arrays(s, at);
+    const int count = ends[k] - at;
+    enter(s.work, phase, rays, count);
+    trace<false>(s, rays, count, phase);
+    at = ends[k];
   }
+}
+
+/// Adds what the surfaces at the hits send of themselves.
+inline void add_emission(const Shader& s, int hits) {
+  const BatchHits& h = s.b.hits;
+  for (int i = 0; i < hits; i += kLanes) {
+    const Lanes3 emission = gather3(s, kEmissionR, HitLanes<false>{i});
+    add_light(s.work, h.pixel + i, load3(h.weight, i) * emission, lanes_of(i, hits));
+  }
+}
+
+/// Whether a light has an area: an edge that is not 0.
+inline bool has_area(const Shader& s, int light_index) {
+  const float* const edges = s.shading.lights + kLightFloats * light_index + 6;
+  bool area = false;
+  for (int k = 0; s.shading.area && k < 6; ++k)
+    area |= edges[k] != 0;
+  return area;
+}
+
+/// Traces and shades the batch: runs of rays that go together, the k-th ending at ends[k]. `phase`:
+/// primary or bounce.
+inline void shade_batch(const Shader& s, RayStack& stack, const int* ends, int runs, Phase phase) {
+  trace_batch(s, ends, runs, phase);
   enter(s.work, Phase::surface);
-  const int hits = find_surfaces(s, count);
+  const int hits = find_surfaces(s, ends[runs - 1]);
   if (hits == 0)
     return;
   if (s.shading.emits)
-    for (int i = 0; i < hits; i += kWidth<Lanes>)
-      add_light(s.work,
-                b.hit_pixel + i,
-                load3(b.hr, b.hg, b.hb, i) * gather3(s, kEmissionR, HitLanes<false>{i}),
-                lanes_of(i, hits));
+    add_emission(s, hits);
   enter(s.work, Phase::light);
-  for (int l = 0; l < s.shading.light_count; ++l) {
-    const float* const edges = s.shading.lights + kLightFloats * l + 6;
-    bool area = false;
-    for (int k = 0; s.shading.area && k < 6; ++k)
-      area |= edges[k] != 0;
-    light_hits(s, hits, l, area);
-  }
+  for (int l = 0; l < s.shading.light_count; ++l)
+    light_hits(s, hits, l, has_area(s, l));
   enter(s.work, Phase::children);
   if (s.shading.reflects)
     send_on(s, stack, hits);

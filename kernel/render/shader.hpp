@@ -36,16 +36,24 @@ struct Shader {
 /// Whether shares are more than weights tell: see split().
 inline bool keeps_shares(const Shader& s) { return s.shading.gains || s.work.plan.gloss_rays > 0; }
 
-inline Vec3<Lanes> load3(const float* x, const float* y, const float* z, int i) {
-  return {load<Lanes>(x + i), load<Lanes>(y + i), load<Lanes>(z + i)};
+/// Elements i, i + 1, ... of arrays of a component each: Rows3 or Columns3.
+template <class Arrays>
+inline Lanes3 load3(const Arrays& of, int i) {
+  return {load<Lanes>(of.x + i), load<Lanes>(of.y + i), load<Lanes>(of.z + i)};
+}
+template <class Arrays>
+inline void store3(Arrays& to, int i, const Lanes3& a) {
+  store(to.x + i, a.x);
+  store(to.y + i, a.y);
+  store(to.z + i, a.z);
 }
 
-inline Vec3<Lanes> splat(const float* v) { return {Lanes(v[0]), Lanes(v[1]), Lanes(v[2])}; }
+inline Lanes3 splat(const float* v) { return {Lanes(v[0]), Lanes(v[1]), Lanes(v[2])}; }
 
 /// Lanes of an array of `count` from `first` on.
 inline unsigned lanes_of(int first, int count) {
   const int left = count - first;
-  return left >= kWidth<Lanes> ? ~0u >> (32 - kWidth<Lanes>) : (1u << left) - 1u;
+  return left >= kLanes ? ~0u >> (32 - kLanes) : (1u << left) - 1u;
 }
 
 /// Which hits the lanes are: i, i + 1, ..., or hit i in each of them. Behind the last hit arrays
@@ -59,19 +67,17 @@ struct HitLanes {
     else
       return load<Lanes>(of + i);
   }
-  Words<Lanes> operator()(const std::uint32_t* of) const {
+  LaneWords operator()(const std::uint32_t* of) const {
     if constexpr (kOne)
-      return Words<Lanes>{} + of[i];
+      return LaneWords{} + of[i];
     else
       return load_words<Lanes>(of + i);
   }
-  Vec3<Lanes> operator()(const float* x, const float* y, const float* z) const {
-    return {(*this)(x), (*this)(y), (*this)(z)};
-  }
+  Lanes3 operator()(const Rows3& of) const { return {(*this)(of.x), (*this)(of.y), (*this)(of.z)}; }
 };
 
 /// Lanes of which a component is not 0.
-inline Mask<Lanes> any_component(const Vec3<Lanes>& a) {
+inline LaneMask any_component(const Lanes3& a) {
   return either(either(a.x != Lanes(0), a.y != Lanes(0)), a.z != Lanes(0));
 }
 
@@ -79,13 +85,13 @@ inline Mask<Lanes> any_component(const Vec3<Lanes>& a) {
 template <bool kOne>
 inline Lanes gather(const Shader& s, MaterialField field, const HitLanes<kOne>& at) {
   if constexpr (kOne)
-    return Lanes(s.shading.materials.field[field][s.b.material[at.i]]);
+    return Lanes(s.shading.materials.field[field][s.b.hits.material[at.i]]);
   else
-    return floats_at(s.shading.materials.field[field], at(s.b.material));
+    return floats_at(s.shading.materials.field[field], at(s.b.hits.material));
 }
 
 template <bool kOne>
-inline Vec3<Lanes> gather3(const Shader& s, MaterialField r, const HitLanes<kOne>& at) {
+inline Lanes3 gather3(const Shader& s, MaterialField r, const HitLanes<kOne>& at) {
   return {gather(s, r, at),
           gather(s, static_cast<MaterialField>(r + 1), at),
           gather(s, static_cast<MaterialField>(r + 2), at)};
@@ -106,15 +112,15 @@ template <bool kOne>
                                                    const HitLanes<kOne>& at,
                                                    int dimension,
                                                    std::uint32_t use,
-                                                   const Words<Lanes>& number,
+                                                   const LaneWords& number,
                                                    int count,
                                                    const Strata& strata) {
-  const Words<Lanes> index = at(s.b.hit_sample) * static_cast<std::uint32_t>(count) + number;
+  const LaneWords index = at(s.b.hits.sample) * static_cast<std::uint32_t>(count) + number;
   return sample_pairs<Lanes>(s.work.plan,
-                             pixels_of(s.work, at(s.b.hit_pixel)),
+                             pixels_of(s.work, at(s.b.hits.pixel)),
                              index,
                              dimension,
-                             sample_keys(at(s.b.hit_path), use),
+                             sample_keys(at(s.b.hits.path), use),
                              strata);
 }
 

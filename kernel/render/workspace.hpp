@@ -75,39 +75,11 @@ class Workspace {
     if (options.phases)
       clock_.start(Phase::sums);
     std::fill(sums_.begin(), sums_.end(), 0);
-    const auto floats = [this](std::size_t k) {
-      return floats_.data() + k * static_cast<std::size_t>(capacity_);
-    };
-    const auto words = [this](std::size_t k) {
-      return words_.data() + k * static_cast<std::size_t>(capacity_);
-    };
-    const RayStack stack{
-        .ox = floats(0),
-        .oy = floats(1),
-        .oz = floats(2),
-        .dx = floats(3),
-        .dy = floats(4),
-        .dz = floats(5),
-        .wr = floats(6),
-        .wg = floats(7),
-        .wb = floats(8),
-        .ox_low = floats(9),
-        .oy_low = floats(10),
-        .oz_low = floats(11),
-        .share = floats(12),
-        .pixel = words(0),
-        .depth = words(1),
-        .sample = words(2),
-        .path = words(3),
-        .size = 0,
-        .capacity = capacity_,
-    };
-    const float most = std::min(kMostTerm, kMostLight / static_cast<float>(plan_.samples));
     if (options.phases)
       clock_.go_on(Phase::camera);
     return {
         .batch = batch_.get(),
-        .stack = stack,
+        .stack = stack(),
         .sums = sums_.data(),
         .depth = options.depth,
         .packet = options.packet,
@@ -115,12 +87,10 @@ class Workspace {
         .take = take_,
         .mailbox = options.mailbox,
         .first_pixel = first_pixel,
-        .most_light = most,
+        .most_light = std::min(kMostTerm, kMostLight / static_cast<float>(plan_.samples)),
         .plan = plan_,
         .pixels = named ? pixels_.data() : nullptr,
-        .observer = options.observer ? options.observer
-                    : options.phases ? &clock_
-                                     : nullptr,
+        .observer = observer(options),
         .in_double = in_double_,
     };
   }
@@ -142,6 +112,36 @@ class Workspace {
   static int capacity_of(int depth, int gloss_rays) {
     // the line: see kBatchRow
     return (gloss_rays + 2) * (kBatch + take_of(depth, gloss_rays) * depth) + kCacheLine;
+  }
+
+  float* floats(std::size_t k) { return floats_.data() + k * static_cast<std::size_t>(capacity_); }
+  Columns3 vectors(std::size_t k) { return {floats(k), floats(k + 1), floats(k + 2)}; }
+  std::uint32_t* words(std::size_t k) {
+    return words_.data() + k * static_cast<std::size_t>(capacity_);
+  }
+
+  /// An empty stack.
+  RayStack stack() {
+    return {
+        .org = vectors(0),
+        .dir = vectors(3),
+        .weight = vectors(6),
+        .org_low = vectors(9),
+        .share = floats(12),
+        .pixel = words(0),
+        .depth = words(1),
+        .sample = words(2),
+        .path = words(3),
+        .size = 0,
+        .capacity = capacity_,
+    };
+  }
+
+  /// Who asks what comes next: the caller, the clock or nobody.
+  Observer* observer(const RenderOptions& options) {
+    if (options.observer)
+      return options.observer;
+    return options.phases ? &clock_ : nullptr;
   }
 
   std::unique_ptr<Batch> batch_;

@@ -1,8 +1,9 @@
 #pragma once
-// What shading sees, as plain pointers; and the memory one thread works in.
+// What shading sees, as plain pointers.
 
 #include <cstdint>
 
+#include "kernel/scene/batch.hpp"
 #include "kernel/scene/frame.hpp"
 #include "kernel/scene/light_unit.hpp"
 #include "grelha/phase.hpp"
@@ -72,12 +73,6 @@ struct SamplePlan {
   Strata pixel_strata, light_strata, gloss_strata;
 };
 
-inline constexpr int kBatch = 512;     ///< rays shaded together
-inline constexpr int kCacheLine = 16;  ///< floats
-/// Length of an array of a batch: a cache line more than a power of two. A cache keeps few lines
-/// whose addresses are equal modulo 4 KiB, and each hit writes to some thirty arrays side by side.
-/// With the odd line all of them stay.
-inline constexpr int kBatchRow = kBatch + kCacheLine;
 /// image rows a thread takes at a time: one row of 8 x 8 packets
 inline constexpr int kBandRows = 8;
 inline constexpr int kTile = 8;
@@ -85,55 +80,6 @@ inline constexpr int kTile = 8;
 /// square.
 constexpr int tile_x(int k) { return (k & 1) | (k >> 1 & 2) | (k >> 2 & 4); }
 constexpr int tile_y(int k) { return tile_x(k >> 1); }
-
-/// Set in the depth of a waiting ray that was refracted.
-inline constexpr std::uint32_t kRefracted = 1u << 31;
-
-/// Rays waiting for their turn, last in first out. Arrays of `capacity` floats each.
-struct RayStack {
-  float *ox, *oy, *oz, *dx, *dy, *dz, *wr, *wg, *wb;
-  /// only when what traces is in double: origins are sums of two floats
-  float *ox_low, *oy_low, *oz_low;
-  float* share;                                  ///< only where keeps_shares()
-  std::uint32_t *pixel, *depth, *sample, *path;  ///< the last two: only when the plan is on
-  int size, capacity;
-};
-
-/// One thread's arrays for one batch; the caller allocates one a thread.
-struct Batch {
-  // the rays
-  alignas(64) float ox[kBatchRow], oy[kBatchRow], oz[kBatchRow], dx[kBatchRow], dy[kBatchRow],
-      dz[kBatchRow], t_min[kBatchRow], t[kBatchRow];
-  alignas(64) float wr[kBatchRow], wg[kBatchRow], wb[kBatchRow], share[kBatchRow];
-  std::uint32_t id[kBatchRow], pixel[kBatchRow], depth[kBatchRow];
-  /// of its pixel; which bounces led here (0: none)
-  std::uint32_t sample[kBatchRow], path[kBatchRow];
-  // of rays traced in double: what their origins have besides, and t
-  alignas(64) float ox_low[kBatchRow], oy_low[kBatchRow], oz_low[kBatchRow];
-  alignas(64) float px_low[kBatchRow], py_low[kBatchRow], pz_low[kBatchRow];
-  alignas(64) float lox_low[kBatchRow], loy_low[kBatchRow], loz_low[kBatchRow];
-  alignas(64) double whole[kBatchRow];
-  // what they met, misses left out
-  alignas(64) float px[kBatchRow], py[kBatchRow], pz[kBatchRow];  ///< point on the surface
-  /// geometric normal, unit, towards the viewer
-  alignas(64) float gx[kBatchRow], gy[kBatchRow], gz[kBatchRow];
-  /// shading normal, unit, towards the viewer
-  alignas(64) float nx[kBatchRow], ny[kBatchRow], nz[kBatchRow];
-  alignas(64) float vx[kBatchRow], vy[kBatchRow], vz[kBatchRow];  ///< unit vector to the viewer
-  /// how far along g a ray must start so as not to meet its own surface
-  alignas(64) float away[kBatchRow];
-  alignas(64) float inside[kBatchRow];  ///< 1: met from within
-  /// weight of what this point sends
-  alignas(64) float hr[kBatchRow], hg[kBatchRow], hb[kBatchRow];
-  alignas(64) float hit_share[kBatchRow];  ///< see split()
-  std::uint32_t hit_pixel[kBatchRow], hit_depth[kBatchRow], material[kBatchRow],
-      hit_sample[kBatchRow], hit_path[kBatchRow];
-  // shadow rays and the light each lets through
-  alignas(64) float lox[kBatchRow], loy[kBatchRow], loz[kBatchRow], ldx[kBatchRow], ldy[kBatchRow],
-      ldz[kBatchRow], lt_min[kBatchRow], lt[kBatchRow];
-  alignas(64) float lr[kBatchRow], lg[kBatchRow], lb[kBatchRow];
-  std::uint32_t lid[kBatchRow], light_pixel[kBatchRow];
-};
 
 /// Consecutive samples of one pixel, in kParts parts of equal size with a sum each.
 struct PixelRun {

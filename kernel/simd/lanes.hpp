@@ -66,12 +66,12 @@ class Chosen {
   void store(T* to, const Vector& a) const {
     store_chosen(to, a, lanes_);
   }
-  /// The same of three components.
-  template <class Vector>
-  void store(float* x, float* y, float* z, const Vector& a) const {
-    store(x, a.x);
-    store(y, a.y);
-    store(z, a.z);
+  /// The same of three components, from element `at` of their arrays on.
+  template <class Arrays, class Vector>
+  void store(Arrays& to, int at, const Vector& a) const {
+    store(to.x + at, a.x);
+    store(to.y + at, a.y);
+    store(to.z + at, a.z);
   }
 
  private:
@@ -88,6 +88,9 @@ template <class Real>
 using Words = typename LaneTraits<Real>::Words;
 template <class Real>
 inline constexpr int kWidth = LaneTraits<Real>::kWidth;
+using LaneMask = Mask<Lanes>;
+using LaneWords = Words<Lanes>;
+inline constexpr int kLanes = kWidth<Lanes>;
 
 template <class Real>
 inline Real load(const Scalar<Real>* p) {
@@ -100,6 +103,11 @@ inline Words<Real> load_words(const std::uint32_t* p) {
   Words<Real> r;
   __builtin_memcpy(&r, p, sizeof r);
   return r;
+}
+/// Bits of the lanes where words compare so.
+template <class Compared>
+inline unsigned lanes_where(const Compared& c) {
+  return bits(mask_of(LaneWords(c)));
 }
 template <class Word>
 inline void store_words(std::uint32_t* p, const Word& a) {

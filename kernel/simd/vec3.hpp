@@ -9,6 +9,8 @@ template <class Real>
 struct Vec3 {
   Real x, y, z;
 };
+using Vec3f = Vec3<float>;
+using Lanes3 = Vec3<Lanes>;  ///< one vector per lane
 
 template <class Real>
 inline Vec3<Real> operator+(const Vec3<Real>& a, const Vec3<Real>& b) {

@@ -314,32 +314,33 @@ TEST_P(SampleBits, OfRaysAreThePlainOnes) {
           const auto x = [](int i) { return 13 + i / 7; };
           const auto y = [](int i) { return 41 - i / 15; };
           for (int i = 0; i < count; ++i) {
-            batch->ox[i] = static_cast<float>(x(i));
-            batch->oy[i] = static_cast<float>(y(i));
-            batch->pixel[i] = static_cast<std::uint32_t>(y(i) * f.width + x(i)) - 7;
-            batch->sample[i] = static_cast<std::uint32_t>(i % 7);
-            batch->wr[i] = batch->wg[i] = batch->wb[i] = -7;
-            batch->depth[i] = batch->path[i] = 7;
+            batch->rays.org.x[i] = static_cast<float>(x(i));
+            batch->rays.org.y[i] = static_cast<float>(y(i));
+            batch->rays.pixel[i] = static_cast<std::uint32_t>(y(i) * f.width + x(i)) - 7;
+            batch->rays.sample[i] = static_cast<std::uint32_t>(i % 7);
+            batch->rays.weight.x[i] = batch->rays.weight.y[i] = batch->rays.weight.z[i] = -7;
+            batch->rays.depth[i] = batch->rays.path[i] = 7;
           }
           test::lane_functions(variant()).camera_rays(
               f, {.batch = batch.get(), .first_pixel = 7, .plan = plan}, count, true);
           for (int i = 0; i < count; ++i) {
-            const float got[] = {batch->ox[i],
-                                 batch->oy[i],
-                                 batch->oz[i],
-                                 batch->dx[i],
-                                 batch->dy[i],
-                                 batch->dz[i],
-                                 batch->wr[i],
-                                 batch->wg[i],
-                                 batch->wb[i]};
+            const float got[] = {batch->rays.org.x[i],
+                                 batch->rays.org.y[i],
+                                 batch->rays.org.z[i],
+                                 batch->rays.dir.x[i],
+                                 batch->rays.dir.y[i],
+                                 batch->rays.dir.z[i],
+                                 batch->rays.weight.x[i],
+                                 batch->rays.weight.y[i],
+                                 batch->rays.weight.z[i]};
             const auto index = static_cast<std::uint32_t>(i % 7);
             const auto [o, d] = plain::ray(f, plan, x(i), y(i), index);
             const float wanted[] = {o.x, o.y, o.z, d.x, d.y, d.z, 1, 1, 1};
             for (int k = 0; k < 9; ++k)
               ASSERT_EQ(bits_of(got[k]), bits_of(wanted[k]))
                   << "sampler " << kind << ", sample " << index;
-            ASSERT_TRUE(batch->sample[i] == index && batch->depth[i] == 1 && batch->path[i] == 0);
+            ASSERT_TRUE(batch->rays.sample[i] == index && batch->rays.depth[i] == 1 &&
+                        batch->rays.path[i] == 0);
           }
         }
 }

@@ -83,13 +83,13 @@ TEST(Camera, RaysGoThroughPixelCentres) {
     int n = 0;
     for (int y = y0; y < y1; ++y)
       for (int x = x0; x < x1; ++x) {
-        batch->ox[n] = static_cast<float>(x);
-        batch->oy[n++] = static_cast<float>(y);
+        batch->rays.org.x[n] = static_cast<float>(x);
+        batch->rays.org.y[n++] = static_cast<float>(y);
       }
     scalar::camera_rays(make_frame(c), {.batch = batch.get()}, n, true);
     for (int i = 0; i < n; ++i) {
       const int x = x0 + i % (x1 - x0), y = y0 + i / (x1 - x0);
-      const V got{batch->dx[i], batch->dy[i], batch->dz[i]};
+      const V got{batch->rays.dir.x[i], batch->rays.dir.y[i], batch->rays.dir.z[i]};
       ASSERT_LE(length(got - exact.through(c, x, y)), 12 * oracle::kEps)
           << "seed " << seed << ", pixel " << x << ' ' << y;
     }
