@@ -27,6 +27,18 @@ bool has_effects(const SamplePlan& plan) {
   return plan.lens >= 0 || plan.light >= 0 || plan.gloss >= 0;
 }
 
+using Spaces = std::vector<std::unique_ptr<Workspace>>;
+
+/// A workspace a thread, for a chunk of runs.
+Spaces run_spaces(const Setup& setup, const RenderOptions& options, int threads) {
+  const std::size_t sums = std::size_t{kRunsOfChunk} * kParts;
+  const TraceLoops* const loops = loops_of(setup.variant, options.precision);
+  Spaces spaces;
+  for (int i = 0; i < threads; ++i)
+    spaces.push_back(std::make_unique<Workspace>(sums, options.depth, setup.plan, loops));
+  return spaces;
+}
+
 /// Goes on with a Refinement: round by round.
 class AdaptiveSampler {
  public:
@@ -45,15 +57,11 @@ class AdaptiveSampler {
         seconds_before_(r.seconds),
         first_log_(has_effects(setup.plan) ? kFirstLogOfEffects : kFirstLog),
         order_(pixel_order(r.width, r.height)),
-        errors_(r, has_effects(setup.plan), first_log_, thread_count(options, r.log.size())) {
+        errors_(r, has_effects(setup.plan), first_log_, thread_count(options, r.log.size())),
+        spaces_(run_spaces(setup, options, thread_count(options, r.log.size()))) {
     stats_ = {};
     stats_.threads = thread_count(options, r.log.size());
     stats_.isa = setup.variant.name.data();
-    for (int i = 0; i < stats_.threads; ++i)
-      spaces_.push_back(std::make_unique<Workspace>(std::size_t{kRunsOfChunk} * kParts,
-                                                    options.depth,
-                                                    setup.plan,
-                                                    loops_of(setup.variant, options.precision)));
     for (std::size_t p = 0; p < order_.size(); ++p)
       samples_ += sample_count(r, p);
   }
@@ -95,18 +103,21 @@ class AdaptiveSampler {
       e.least = std::min(e.least, sample_count(r_, p));
       e.most = std::max(e.most, sample_count(r_, p));
     }
-    if (!maps)
-      return;
-    maps->samples.resize(order_.size());
-    maps->error.resize(order_.size());
-    maps->width = errors_.widths();
-    for (std::size_t p = 0; p < order_.size(); ++p) {
-      maps->samples[p] = sample_count(r_, p);
-      maps->error[p] = std::sqrt(errors_.variance(p));
-    }
+    if (maps)
+      fill(*maps);
   }
 
  private:
+  void fill(SampleMaps& maps) const {
+    maps.samples.resize(order_.size());
+    maps.error.resize(order_.size());
+    maps.width = errors_.widths();
+    for (std::size_t p = 0; p < order_.size(); ++p) {
+      maps.samples[p] = sample_count(r_, p);
+      maps.error[p] = std::sqrt(errors_.variance(p));
+    }
+  }
+
   bool resume() {
     r_.seconds = seconds();
     return progress_.resume();
@@ -155,29 +166,31 @@ class AdaptiveSampler {
     }
   }
 
-  void take_chunk(Chunk& chunk, Workspace& space, TraceCounts& trace, RayCounts& rays) {
-    PixelRun runs[kRunsOfChunk];
+  /// The next samples of each pixel of a chunk; `pixels` get their names, sum by sum.
+  int runs_of(const Chunk& chunk, PixelRun* runs, std::vector<std::uint32_t>& pixels) const {
     const std::size_t count = chunk.end - chunk.begin;
     for (std::size_t r = 0; r < count; ++r) {
       const std::uint32_t p = r_.wanted[chunk.begin + r];
       runs[r] = {p, sample_count(r_, p), next_count(r_, p, first_log_)};
-      std::fill_n(space.pixels().begin() + static_cast<std::ptrdiff_t>(r * kParts), kParts, p);
+      std::fill_n(pixels.begin() + static_cast<std::ptrdiff_t>(r * kParts), kParts, p);
     }
+    return static_cast<int>(count);
+  }
+
+  void take_chunk(Chunk& chunk, Workspace& space, TraceCounts& trace, RayCounts& rays) {
+    PixelRun runs[kRunsOfChunk];
+    const int count = runs_of(chunk, runs, space.pixels());
     const RayCounts before = rays;
-    setup_.variant.loops.render_runs(world_.view,
-                                     world_.shading,
-                                     setup_.frame,
-                                     runs,
-                                     static_cast<int>(count),
-                                     space.work(options_, 0, true),
-                                     trace,
-                                     rays);
-    for (std::size_t r = 0; r < count; ++r)
-      add_run(r_, runs[r], space.sums().data() + r * kParts * 3, first_log_, chunk);
+    const BandWork work = space.work(options_, 0, true);
+    setup_.variant.loops.render_runs(
+        world_.view, world_.shading, setup_.frame, runs, count, work, trace, rays);
+    const std::int64_t* const sums = space.sums().data();
+    for (int r = 0; r < count; ++r)
+      add_run(r_, runs[r], sums + r * kParts * 3, first_log_, chunk);
     space.done(options_);
     const float cost = static_cast<float>(rays.total() - before.total()) /
                        static_cast<float>(rays.primary - before.primary);
-    for (std::size_t r = 0; r < count; ++r)
+    for (int r = 0; r < count; ++r)
       r_.cost[runs[r].pixel] = cost;
   }
 
@@ -194,7 +207,7 @@ class AdaptiveSampler {
   const std::vector<std::uint32_t> order_;
   std::uint64_t samples_ = 0;  ///< taken, of all pixels
   PixelErrors errors_;
-  std::vector<std::unique_ptr<Workspace>> spaces_;
+  const Spaces spaces_;
 };
 
 }  // namespace

@@ -46,7 +46,7 @@ float PixelErrors::contrast(int x, int y) const {
   return most;
 }
 
-float PixelErrors::with_neighbours(int x, int y, const float* scale) const {
+float PixelErrors::with_neighbours(int x, int y, const RatioPowers& scale) const {
   const std::size_t p = at(x, y);
   float sum = 0, count = 0;
   for (int j = std::max(y - 1, 0); j <= std::min(y + 1, r_.height - 1); ++j)
@@ -54,19 +54,41 @@ float PixelErrors::with_neighbours(int x, int y, const float* scale) const {
       const std::size_t q = at(i, j);
       if (q == p || !watched(q))
         continue;
-      sum += own_[q] * scale[kMostLog + r_.log[p] - r_.log[q]];
+      const int power = kMostLog + r_.log[p] - r_.log[q];
+      sum += own_[q] * scale[static_cast<std::size_t>(power)];
       count += 1;
     }
   if (count == 0)
     return own_[p];
-  const float mine = differences(p), theirs = mine * count / 8;
+  const float mine = differences(p);
+  const float theirs = mine * count / 8;
   return (own_[p] * mine + sum / count * theirs) / (mine + theirs);
 }
 
+void PixelErrors::judge_pixel(int x, int y, const RatioPowers& scale) {
+  const std::size_t p = at(x, y);
+  float v = watched(p) ? with_neighbours(x, y, scale) : own_[p];
+  float wide = 2 * kNormal * std::sqrt(v);
+  // What none of n samples met covers at most 3 / n of the pixel, at 95 % confidence (the rule of
+  // three), on either side: that is how wide the interval must be. Its share has Beta(1, n + 1),
+  // whose second moment is 2 / n^2; it differs from what they met by the doubt at most, by about a
+  // quarter of it in the mean.
+  if ((r_.inside[p] > 0 || r_.around[p] > 0) && agrees(own_[p], p)) {
+    // An edge that comes in from a neighbour leaves no room among n samples of a net for more than
+    // about 1 / n.
+    const float doubt = std::max(r_.inside[p], r_.around[p] * contrast(x, y) / 3);
+    const float miss = doubt / samples(p);
+    v = std::max(v, kHiddenVariance * miss * miss);
+    wide = std::max(wide, kHiddenWidth * doubt / samples(p));
+  }
+  variance_[p] = v;
+  widest_[p] = wide;
+}
+
 void PixelErrors::judge() {
-  float scale[2 * kMostLog + 1];  // variance_ratio^(i - kMostLog)
+  RatioPowers scale;
   scale[kMostLog] = 1;
-  for (int i = 0; i < kMostLog; ++i) {
+  for (std::size_t i = 0; i < kMostLog; ++i) {
     scale[kMostLog + i + 1] = scale[kMostLog + i] * r_.variance_ratio;
     scale[kMostLog - i - 1] = scale[kMostLog - i] / r_.variance_ratio;
   }
@@ -77,25 +99,8 @@ void PixelErrors::judge() {
       own_[p] = own_variance(p);
 #pragma omp for schedule(static)
     for (int y = 0; y < r_.height; ++y)
-      for (int x = 0; x < r_.width; ++x) {
-        const std::size_t p = at(x, y);
-        float v = watched(p) ? with_neighbours(x, y, scale) : own_[p];
-        float wide = 2 * kNormal * std::sqrt(v);
-        // What none of n samples met covers at most 3 / n of the pixel, at 95 % confidence (the
-        // rule of three), on either side: that is how wide the interval must be. Its share has
-        // Beta(1, n + 1), whose second moment is 2 / n^2; it differs from what they met by the
-        // doubt at most, by about a quarter of it in the mean.
-        if ((r_.inside[p] > 0 || r_.around[p] > 0) && agrees(own_[p], p)) {
-          // An edge that comes in from a neighbour leaves no room among n samples of a net for more
-          // than about 1 / n.
-          const float doubt = std::max(r_.inside[p], r_.around[p] * contrast(x, y) / 3),
-                      miss = doubt / samples(p);
-          v = std::max(v, kHiddenVariance * miss * miss);
-          wide = std::max(wide, kHiddenWidth * doubt / samples(p));
-        }
-        variance_[p] = v;
-        widest_[p] = wide;
-      }
+      for (int x = 0; x < r_.width; ++x)
+        judge_pixel(x, y, scale);
   }
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "kernel/adaptive/refinement.hpp"
 #include "kernel/adaptive/tolerances.hpp"
 
@@ -8,6 +10,9 @@ namespace grelha {
 /// What the samples of a refined picture say of its error, pixel by pixel. Nothing of it is kept:
 /// it follows from the picture.
 class PixelErrors {
+  /// variance_ratio^(i - kMostLog)
+  using RatioPowers = std::array<float, 2 * kMostLog + 1>;
+
  public:
   /// `effects`: there is more to sample than the pixel. `first_log`: of the samples that a pixel
   /// begins with.
@@ -30,8 +35,9 @@ class PixelErrors {
 
   /// Variance that a ray takes away, were the pixel's samples doubled.
   float gain_per_ray(std::size_t p) const {
-    return r_.log[p] < kMostLog ? variance_[p] * (1 - r_.variance_ratio) / (samples(p) * r_.cost[p])
-                                : 0;
+    if (r_.log[p] >= kMostLog)
+      return 0;
+    return variance_[p] * (1 - r_.variance_ratio) / (samples(p) * r_.cost[p]);
   }
 
   /// Whether no sample of a pixel differed.
@@ -50,7 +56,8 @@ class PixelErrors {
   float differences(std::size_t p) const;
   float own_variance(std::size_t p) const;
   float contrast(int x, int y) const;
-  float with_neighbours(int x, int y, const float* scale) const;
+  float with_neighbours(int x, int y, const RatioPowers& scale) const;
+  void judge_pixel(int x, int y, const RatioPowers& scale);
 
   const Refinement& r_;
   const bool effects_;

@@ -12,6 +12,18 @@ std::size_t pixel_at(const Refinement& r, int x, int y) {
          static_cast<std::size_t>(x);
 }
 
+/// Pixels of the tile at (x0, y0) whose samples agree, a bit each.
+std::uint64_t agreeing_pixels(const Refinement& r, const PixelErrors& errors, int x0, int y0) {
+  std::uint64_t agree = 0;
+  for (int i = 0; i < kTile * kTile; ++i) {
+    const int x = x0 + i % kTile;
+    const int y = y0 + i / kTile;
+    if (x < r.width && y < r.height && errors.agrees(pixel_at(r, x, y)))
+      agree |= std::uint64_t{1} << i;
+  }
+  return agree;
+}
+
 /// The tile whose upper left pixel is (x0, y0).
 void search_tile(const World::Impl& world,
                  const Setup& setup,
@@ -20,12 +32,7 @@ void search_tile(const World::Impl& world,
                  int y0,
                  Refinement& r,
                  TraceCounts& counts) {
-  std::uint64_t agree = 0;
-  for (int i = 0; i < kTile * kTile; ++i) {
-    const int x = x0 + i % kTile, y = y0 + i / kTile;
-    if (x < r.width && y < r.height && errors.agrees(pixel_at(r, x, y)))
-      agree |= std::uint64_t{1} << i;
-  }
+  const std::uint64_t agree = agreeing_pixels(r, errors, x0, y0);
   if (agree == 0)
     return;
   float inside[kTile * kTile], around[kTile * kTile];

@@ -40,23 +40,40 @@ bool has_sound_numbers(const Refinement& r) {
          lies(r.share, 0.0, 1.0) && lies(r.rounds, 0, 1 << 20);
 }
 
-bool has_sound_arrays(const Refinement& r) {
-  const std::size_t pixels = static_cast<std::size_t>(r.width) * static_cast<std::size_t>(r.height);
+std::size_t pixel_count(const Refinement& r) {
+  return static_cast<std::size_t>(r.width) * static_cast<std::size_t>(r.height);
+}
+
+bool is_sound_sum(std::int64_t s) {
+  constexpr std::int64_t kMost = std::int64_t{1} << 61;
+  return lies(s, -kMost, kMost);
+}
+
+/// Two samples do not fall into kParts.
+bool is_sound_log(std::uint8_t l) { return l != 1 && l <= kMostLog; }
+
+bool has_sound_sizes(const Refinement& r) {
+  const std::size_t pixels = pixel_count(r);
   for (const auto& level : r.squares)
-    if (level.size() != pixels * 3 || !all_from_0_on(level))
+    if (level.size() != pixels * 3)
       return false;
   for (const auto* values : {&r.cost, &r.inside, &r.around})
-    if (values->size() != pixels || !all_from_0_on(*values))
+    if (values->size() != pixels)
       return false;
-  if (r.sums.size() != pixels * 3 || r.log.size() != pixels)
+  return r.sums.size() == pixels * 3 && r.log.size() == pixels;
+}
+
+bool has_sound_arrays(const Refinement& r) {
+  if (!has_sound_sizes(r))
     return false;
-  const auto sound_sum = [](std::int64_t s) {
-    return lies<std::int64_t>(s, -(std::int64_t{1} << 61), std::int64_t{1} << 61);
-  };
-  // two samples do not fall into kParts
-  const auto sound_log = [](std::uint8_t l) { return l != 1 && l <= kMostLog; };
-  return std::all_of(r.sums.begin(), r.sums.end(), sound_sum) &&
-         std::all_of(r.log.begin(), r.log.end(), sound_log) &&
+  for (const auto& level : r.squares)
+    if (!all_from_0_on(level))
+      return false;
+  for (const auto* values : {&r.cost, &r.inside, &r.around})
+    if (!all_from_0_on(*values))
+      return false;
+  return std::all_of(r.sums.begin(), r.sums.end(), is_sound_sum) &&
+         std::all_of(r.log.begin(), r.log.end(), is_sound_log) &&
          std::all_of(r.cost.begin(), r.cost.end(), [](float c) { return c >= 1; });
 }
 
@@ -66,7 +83,7 @@ Refinement make_refinement(const Camera& camera) {
   Refinement r;
   r.width = camera.width;
   r.height = camera.height;
-  const std::size_t pixels = static_cast<std::size_t>(r.width) * static_cast<std::size_t>(r.height);
+  const std::size_t pixels = pixel_count(r);
   r.sums.resize(pixels * 3);
   for (auto& level : r.squares)
     level.resize(pixels * 3);

@@ -25,31 +25,44 @@ void want(Refinement& r, const Pixels& order, const Test& test) {
       r.wanted.push_back(p);
 }
 
-/// Goes through the wanted pixels by falling gain while `take` says yes; the others are wanted no
-/// more. Returns whether there were any.
-template <class Take>
-bool keep_best(Pixels& wanted, const PixelErrors& errors, const Take& take) {
-  struct Rank {
-    float gain;
-    std::uint32_t place;
-  };
+/// A wanted pixel: what it promises, and its place among the wanted.
+struct Rank {
+  float gain;
+  std::uint32_t place;
+};
+
+/// The wanted pixels by falling gain.
+std::vector<Rank> ranked(const Pixels& wanted, const PixelErrors& errors) {
   std::vector<Rank> ranks(wanted.size());
   for (std::size_t i = 0; i < ranks.size(); ++i)
     ranks[i] = {errors.gain_per_ray(wanted[i]), static_cast<std::uint32_t>(i)};
   std::sort(ranks.begin(), ranks.end(), [](const Rank& a, const Rank& b) {
     return a.gain != b.gain ? a.gain > b.gain : a.place < b.place;
   });
+  return ranks;
+}
+
+/// Keeps those of the ranks, in the order they had.
+void keep(Pixels& wanted, std::vector<Rank>& ranks) {
+  std::sort(
+      ranks.begin(), ranks.end(), [](const Rank& a, const Rank& b) { return a.place < b.place; });
+  for (std::size_t i = 0; i < ranks.size(); ++i)
+    wanted[i] = wanted[ranks[i].place];
+  wanted.resize(ranks.size());
+}
+
+/// Goes through the wanted pixels by falling gain while `take` says yes; the others are wanted no
+/// more. Returns whether there were any.
+template <class Take>
+bool keep_best(Pixels& wanted, const PixelErrors& errors, const Take& take) {
+  std::vector<Rank> ranks = ranked(wanted, errors);
   std::size_t kept = 0;
   while (kept < ranks.size() && take(wanted[ranks[kept].place]))
     ++kept;
   if (kept == ranks.size())
     return false;
   ranks.resize(kept);
-  std::sort(
-      ranks.begin(), ranks.end(), [](const Rank& a, const Rank& b) { return a.place < b.place; });
-  for (std::size_t i = 0; i < kept; ++i)
-    wanted[i] = wanted[ranks[i].place];
-  wanted.resize(kept);
+  keep(wanted, ranks);
   return true;
 }
 
@@ -84,6 +97,28 @@ void keep_for_budget(Refinement& r,
   });
 }
 
+/// Says how far the picture is.
+void tell_share(Refinement& r,
+                const PixelErrors::Totals& totals,
+                const RefineOptions& asked,
+                const Spent& spent) {
+  const bool met = totals.bound <= asked.error;
+  // the bound may rise at first
+  if (asked.error > 0)
+    r.share = met ? 1 : std::max(r.share, asked.error / totals.bound);
+  if (asked.samples > 0)
+    r.share =
+        std::min(1.0, static_cast<double>(spent.samples) / static_cast<double>(asked.samples));
+}
+
+/// Wants the pixels that gain more than the threshold, which falls until there are some.
+void want_gaining(Refinement& r, const PixelErrors& errors, const Pixels& order) {
+  do {
+    r.gain_threshold *= kThresholdStep;
+    want(r, order, [&](std::size_t p) { return errors.gain_per_ray(p) > r.gain_threshold; });
+  } while (r.wanted.empty() && r.gain_threshold >= kLeastThreshold);
+}
+
 }  // namespace
 
 bool choose_round(Refinement& r,
@@ -96,22 +131,13 @@ bool choose_round(Refinement& r,
     return false;
   const PixelErrors::Totals totals = errors.totals();
   const bool met = asked.error > 0 && totals.bound <= asked.error;
-  // the bound may rise at first
-  if (asked.error > 0)
-    r.share = met ? 1 : std::max(r.share, asked.error / totals.bound);
-  if (asked.samples > 0)
-    r.share =
-        std::min(1.0, static_cast<double>(spent.samples) / static_cast<double>(asked.samples));
-  if (met) {
+  tell_share(r, totals, asked, spent);
+  if (met)
     want(r, order, [&](std::size_t p) {
       return errors.widths()[p] > kWidestInterval * asked.error;
     });
-  } else {
-    do {
-      r.gain_threshold *= kThresholdStep;
-      want(r, order, [&](std::size_t p) { return errors.gain_per_ray(p) > r.gain_threshold; });
-    } while (r.wanted.empty() && r.gain_threshold >= kLeastThreshold);
-  }
+  else
+    want_gaining(r, errors, order);
   if (asked.error > 0 && !met)
     keep_for_error(r, errors, totals, asked.error);
   else if (asked.seconds > 0 || asked.samples > 0)
@@ -139,39 +165,78 @@ std::vector<Chunk> cut_round(const Refinement& r, int first_log) {
   return chunks;
 }
 
+namespace {
+
+float squared(double x) { return static_cast<float>(x * x); }
+
+/// One channel of a pixel's new samples.
+struct NewSamples {
+  double mean;
+  float halves, quarters;  ///< squared differences of their parts
+};
+
+/// By sums of kParts parts, three numbers apart; `part`: what turns them into means.
+NewSamples compare_parts(const std::int64_t* sums, double part) {
+  double m[kParts];
+  for (std::size_t k = 0; k < kParts; ++k)
+    m[k] = static_cast<double>(sums[k * 3]) * part;
+  const double a = .5 * (m[0] + m[1]);
+  const double b = .5 * (m[2] + m[3]);
+  return {.5 * (a + b), squared(a - b), squared(m[0] - m[1]) + squared(m[2] - m[3])};
+}
+
+/// Begins the differences of channel i % 3 of pixel i / 3.
+void begin_differences(Refinement& r, std::size_t i, const NewSamples& s, Chunk& chunk) {
+  r.squares[0][i] = s.halves;
+  r.squares[1][i] = s.quarters;
+  chunk.variance_drop += s.halves;
+  chunk.variance_level += .5 * static_cast<double>(s.quarters);
+}
+
+/// Goes on with them: the new samples, as many as there were, are the second half. `mean`: of the
+/// first.
+void add_differences(Refinement& r, std::size_t i, double mean, const NewSamples& s, Chunk& chunk) {
+  r.squares[2][i] = r.squares[1][i] + s.quarters;
+  r.squares[1][i] = r.squares[0][i] + s.halves;
+  r.squares[0][i] = squared(mean - s.mean);
+  chunk.variance_drop += static_cast<double>(r.squares[0][i]);
+  chunk.variance_level += static_cast<double>(s.halves);
+}
+
+}  // namespace
+
 void add_run(
     Refinement& r, const PixelRun& run, const std::int64_t* sums, int first_log, Chunk& chunk) {
-  const std::size_t p = run.pixel;
   const bool first = run.first == 0;
-  const double part = kParts / (kLightUnit * run.count);
-  const auto squared = [](double x) { return static_cast<float>(x * x); };
+  const double unit = kLightUnit * run.count;
   for (std::size_t c = 0; c < 3; ++c) {
-    double m[kParts];
-    std::int64_t all = 0;
-    for (std::size_t k = 0; k < kParts; ++k) {
-      m[k] = static_cast<double>(sums[k * 3 + c]) * part;
-      all += sums[k * 3 + c];
-    }
-    const double a = .5 * (m[0] + m[1]), b = .5 * (m[2] + m[3]);
-    const float halves = squared(a - b), quarters = squared(m[0] - m[1]) + squared(m[2] - m[3]);
-    const std::size_t i = p * 3 + c;
-    if (first) {
-      r.squares[0][i] = halves;
-      r.squares[1][i] = quarters;
-      chunk.variance_drop += halves;
-      chunk.variance_level += .5 * static_cast<double>(quarters);
-    } else {
-      r.squares[2][i] = r.squares[1][i] + quarters;
-      r.squares[1][i] = r.squares[0][i] + halves;
-      r.squares[0][i] =
-          squared(static_cast<double>(r.sums[i]) / (kLightUnit * run.count) - .5 * (a + b));
-      chunk.variance_drop += static_cast<double>(r.squares[0][i]);
-      chunk.variance_level += static_cast<double>(halves);
-    }
-    r.sums[i] += all;
+    const std::size_t i = std::size_t{run.pixel} * 3 + c;
+    const NewSamples s = compare_parts(sums + c, kParts / unit);
+    if (first)
+      begin_differences(r, i, s, chunk);
+    else
+      add_differences(r, i, static_cast<double>(r.sums[i]) / unit, s, chunk);
+    for (std::size_t k = 0; k < kParts; ++k)
+      r.sums[i] += sums[k * 3 + c];
   }
-  r.log[p] = static_cast<std::uint8_t>(first ? first_log : r.log[p] + 1);
+  std::uint8_t& log = r.log[run.pixel];
+  log = static_cast<std::uint8_t>(first ? first_log : log + 1);
 }
+
+namespace {
+
+/// Takes what the round measured of the variances into what earlier ones did.
+void close_round(Refinement& r) {
+  r.variance_drop = kMemory * r.variance_drop + r.round_drop;
+  r.variance_level = kMemory * r.variance_level + r.round_level;
+  r.round_drop = 0;
+  r.round_level = 0;
+  if (r.variance_level > 0)
+    r.variance_ratio =
+        static_cast<float>(std::clamp(r.variance_drop / r.variance_level, kLeastRatio, kMostRatio));
+}
+
+}  // namespace
 
 bool end_round(Refinement& r, const std::vector<Chunk>& chunks, std::size_t done) {
   for (std::size_t c = 0; c < done; ++c) {
@@ -184,13 +249,7 @@ bool end_round(Refinement& r, const std::vector<Chunk>& chunks, std::size_t done
     return false;
   }
   r.wanted.clear();
-  r.variance_drop = kMemory * r.variance_drop + r.round_drop;
-  r.variance_level = kMemory * r.variance_level + r.round_level;
-  r.round_drop = 0;
-  r.round_level = 0;
-  if (r.variance_level > 0)
-    r.variance_ratio =
-        static_cast<float>(std::clamp(r.variance_drop / r.variance_level, kLeastRatio, kMostRatio));
+  close_round(r);
   return true;
 }
 

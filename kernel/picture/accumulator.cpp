@@ -22,6 +22,11 @@ Range cut(const Range& r, int piece, std::size_t k) {
   return {begin, std::min(begin + piece, r.end)};
 }
 
+/// Sums of rows of a picture.
+std::size_t sum_count(const Range& rows, int width) {
+  return static_cast<std::size_t>(size(rows)) * static_cast<std::size_t>(width) * 3;
+}
+
 std::size_t first_sum(const Accumulator& a, int row) {
   return static_cast<std::size_t>(row - a.part.rows.begin) * static_cast<std::size_t>(a.width) * 3;
 }
@@ -33,8 +38,7 @@ std::int64_t wrapped_sum(std::int64_t a, std::int64_t b) {
 
 void add_rows(Accumulator& to, const Range& rows, const std::int64_t* sums) {
   std::int64_t* const out = to.sums.data() + first_sum(to, rows.begin);
-  const std::size_t n =
-      static_cast<std::size_t>(size(rows)) * static_cast<std::size_t>(to.width) * 3;
+  const std::size_t n = sum_count(rows, to.width);
   for (std::size_t i = 0; i < n; ++i)
     out[i] = wrapped_sum(out[i], sums[i]);
 }
@@ -44,7 +48,8 @@ void add_rows(Accumulator& to, const Range& rows, const std::int64_t* sums) {
                               std::to_string(r.end) + " are not among 0:" + std::to_string(most));
 }
 
-bool within(const Range& r, int most) { return r.begin >= 0 && r.begin < r.end && r.end <= most; }
+bool within(const Range& r, const Range& all) { return r.begin >= all.begin && r.end <= all.end; }
+bool within(const Range& r, int most) { return r.begin < r.end && within(r, Range{0, most}); }
 
 void check(const Accumulator& a, const Camera& camera, const RenderOptions& options) {
   if (options.subdivision.on || options.refine.on())
@@ -62,8 +67,7 @@ Accumulator make_accumulator(const Camera& camera, const RenderOptions& options,
   if (!within(part.samples, samples))
     refuse("samples", part.samples, samples);
   Accumulator a{camera.width, camera.height, samples, part, {}, {}};
-  a.sums.resize(static_cast<std::size_t>(size(part.rows)) * static_cast<std::size_t>(camera.width) *
-                3);
+  a.sums.resize(sum_count(part.rows, camera.width));
   a.done.resize(piece_count(part));
   return a;
 }
@@ -91,6 +95,35 @@ double share_done(const Accumulator& a) {
   return static_cast<double>(done) / static_cast<double>(a.done.size());
 }
 
+namespace {
+
+/// Pieces that are not done, and who renders which.
+class Pieces {
+ public:
+  Pieces(const Accumulator& a, const NextPiece& next) : next_(next), count_(a.done.size()) {
+    for (std::size_t i = 0; i < count_; ++i)
+      if (a.done[i] == 0)
+        left_.push_back(i);
+  }
+  std::size_t left() const { return left_.size(); }
+
+  /// The next to render, or one past the last.
+  std::size_t take() {
+    if (next_)
+      return next_();
+    const std::size_t at = begun_++;
+    return at < left_.size() ? left_[at] : count_;
+  }
+
+ private:
+  const NextPiece& next_;
+  std::size_t count_;
+  std::vector<std::size_t> left_;
+  std::atomic<std::size_t> begun_ = 0;
+};
+
+}  // namespace
+
 bool accumulate(const World& world,
                 const Camera& camera,
                 const RenderOptions& options,
@@ -100,44 +133,29 @@ bool accumulate(const World& world,
                 const std::function<bool()>& should_continue) {
   const Setup setup = set_up(world, camera, options);
   check(a, camera, options);
-  std::vector<std::size_t> left;
-  for (std::size_t i = 0; i < a.done.size(); ++i)
-    if (a.done[i] == 0)
-      left.push_back(i);
-  std::size_t done = a.done.size() - left.size();
-  std::atomic<std::size_t> begun = 0;
+  Pieces to_render(a, next);
   GuardedProgress progress(options.progress, should_continue);
   const auto next_band = [&](Band& band) {
-    if (next) {
-      band.number = next();
-    } else {
-      const std::size_t at = begun++;
-      band.number = at < left.size() ? left[at] : a.done.size();
-    }
+    band.number = to_render.take();
     if (band.number >= a.done.size())
       return false;
     band.part = piece_of(a.part, band.number);
     return true;
   };
-  render_bands(
-      world.impl(),
-      setup,
-      options,
-      left.size(),
-      next_band,
-      [&](const Band& band, const std::int64_t* sums) {
+  std::size_t done = a.done.size() - to_render.left();
+  const auto take_band = [&](const Band& band, const std::int64_t* sums) {
 #pragma omp critical(grelha_progress)
-        {
-          add_rows(a, band.part.rows, sums);
-          a.done[band.number] = 1;
-          ++done;
-          progress.tell(static_cast<double>(done) / static_cast<double>(a.done.size()));
-          if (progress.stopped())
-            progress.resume();  // no thread changes the sums meanwhile
-        }
-        return !progress.stopped();
-      },
-      stats);
+    {
+      add_rows(a, band.part.rows, sums);
+      a.done[band.number] = 1;
+      ++done;
+      progress.tell(static_cast<double>(done) / static_cast<double>(a.done.size()));
+      if (progress.stopped())
+        progress.resume();  // no thread changes the sums meanwhile
+    }
+    return !progress.stopped();
+  };
+  render_bands(world.impl(), setup, options, to_render.left(), next_band, take_band, stats);
   progress.rethrow();
   return is_complete(a);
 }
@@ -145,13 +163,11 @@ bool accumulate(const World& world,
 void add(Accumulator& whole, const Accumulator& part) {
   if (whole.width != part.width || whole.height != part.height || whole.samples != part.samples)
     throw std::invalid_argument("these sums are of a picture of another size or number of samples");
-  const Part &w = whole.part, &p = part.part;
-  if (p.rows.begin < w.rows.begin || p.rows.end > w.rows.end || p.samples.begin < w.samples.begin ||
-      p.samples.end > w.samples.end)
+  if (!within(part.part.rows, whole.part.rows) || !within(part.part.samples, whole.part.samples))
     throw std::invalid_argument("a part lies outside what it is added to");
   if (!is_complete(part))
     throw std::invalid_argument("a part is not complete");
-  add_rows(whole, p.rows, part.sums.data());
+  add_rows(whole, part.part.rows, part.sums.data());
 }
 
 Image picture_so_far(const Accumulator& a) {
@@ -172,8 +188,7 @@ Image picture_so_far(const Accumulator& a) {
 void mean_light(const std::int64_t* sums, int samples, Image& image, const Range& rows) {
   const double share = 1 / (kLightUnit * samples);
   float* const out = image.row(rows.begin);
-  const std::size_t n =
-      static_cast<std::size_t>(size(rows)) * static_cast<std::size_t>(image.width) * 3;
+  const std::size_t n = sum_count(rows, image.width);
   for (std::size_t i = 0; i < n; ++i)
     out[i] = static_cast<float>(static_cast<double>(sums[i]) * share);
 }

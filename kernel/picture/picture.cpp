@@ -11,6 +11,8 @@ bool is_size(int width, int height) {
   return width >= 1 && height >= 1 && width <= kMostSide && height <= kMostSide;
 }
 
+std::uint64_t size_of(const Range& r) { return static_cast<std::uint64_t>(r.end - r.begin); }
+
 bool is_range(const Range& r, int most) { return r.begin >= 0 && r.begin < r.end && r.end <= most; }
 
 // Each question about a picture, asked of every kind: the same name, told apart by the state.
@@ -68,11 +70,9 @@ std::uint64_t samples_of(const Accumulator& a) {
   for (std::size_t i = 0; i < a.done.size(); ++i) {
     const Part piece = piece_of(a.part, i);
     if (a.done[i] != 0)
-      samples += static_cast<std::uint64_t>(piece.rows.end - piece.rows.begin) *
-                 static_cast<std::uint64_t>(piece.samples.end - piece.samples.begin) *
-                 static_cast<std::uint64_t>(a.width);
+      samples += size_of(piece.rows) * size_of(piece.samples);
   }
-  return samples;
+  return samples * static_cast<std::uint64_t>(a.width);
 }
 std::uint64_t samples_of(const Refinement& r) {
   std::uint64_t samples = 0;

@@ -41,16 +41,19 @@ struct LaneRays {
 };
 
 /// Rays that start from points of the lens and cross the given ones in focus.
-inline LaneRays through_lens(const FrameView& f,
-                             const LaneRays& pinhole,
-                             const PairOf<Lanes>& sample) {
+[[gnu::always_inline]] inline LaneRays through_lens(const FrameView& f,
+                                                    const LaneRays& pinhole,
+                                                    const PairOf<Lanes>& sample) {
   const PairOf<Lanes> p = disc_point(sample);
   const Lanes3 on_lens = p.u * splat(f.lens_right) + p.v * splat(f.lens_up);
   return {pinhole.org + on_lens, Lanes(f.focus) * pinhole.dir - on_lens};
 }
 
 /// Stores camera rays i, i + 1, ..., not yet normalized.
-inline void store_camera_rays(BatchRays& b, int i, const LaneRays& rays, bool in_double) {
+[[gnu::always_inline]] inline void store_camera_rays(BatchRays& b,
+                                                     int i,
+                                                     const LaneRays& rays,
+                                                     bool in_double) {
   const Lanes one(1);
   const LaneWords zero{};
   store3(b.org, i, rays.org);
@@ -97,11 +100,13 @@ inline void store_camera_rays(BatchRays& b, int i, const LaneRays& rays, bool in
 class StackMove {
  public:
   StackMove(const Chosen& chosen, int from, int to) : chosen_(chosen), from_(from), to_(to) {}
-  void operator()(Rows3& to, const Columns3& of) const { chosen_.store(to, to_, load3(of, from_)); }
-  void operator()(float* to, const float* of) const {
+  [[gnu::always_inline]] void operator()(Rows3& to, const Columns3& of) const {
+    chosen_.store(to, to_, load3(of, from_));
+  }
+  [[gnu::always_inline]] void operator()(float* to, const float* of) const {
     chosen_.store(to + to_, load<Lanes>(of + from_));
   }
-  void operator()(std::uint32_t* to, const std::uint32_t* of) const {
+  [[gnu::always_inline]] void operator()(std::uint32_t* to, const std::uint32_t* of) const {
     chosen_.store(to + to_, load_words<Lanes>(of + from_));
   }
 
@@ -110,7 +115,9 @@ class StackMove {
   int from_, to_;
 };
 
-inline void move_rays(const Shader& s, const RayStack& stack, const StackMove& move) {
+[[gnu::always_inline]] inline void move_rays(const Shader& s,
+                                             const RayStack& stack,
+                                             const StackMove& move) {
   BatchRays& b = s.b.rays;
   move(b.org, stack.org);
   if (s.work.in_double)

@@ -19,17 +19,17 @@ struct Branch {
 };
 
 /// leave() of points in double.
-inline TwoFloats<Lanes> left_exactly(const TwoFloats<Lanes>& point,
-                                     const Lanes3& normal,
-                                     const Lanes& away,
-                                     const Lanes3& dir) {
+[[gnu::always_inline]] inline TwoFloats<Lanes> left_exactly(const TwoFloats<Lanes>& point,
+                                                            const Lanes3& normal,
+                                                            const Lanes& away,
+                                                            const Lanes3& dir) {
   const Lanes zero(0);
   const Lanes by = select(dot(dir, normal) < zero, zero - away, away);
   return moved_exactly<Lanes>(point, normal, by);
 }
 
 /// Puts where rays towards `dir` leave the chosen hits i, i + 1, ... on top of the stack.
-inline void push_origins(
+[[gnu::always_inline]] inline void push_origins(
     const Shader& s, RayStack& stack, int i, const Chosen& chosen, const Lanes3& dir) {
   const HitLanes<false> at{i};
   const BatchHits& h = s.b.hits;
@@ -47,7 +47,7 @@ inline void push_origins(
 }
 
 /// The samples of the chosen hits i, i + 1, ..., and which bounces lead to where their rays go.
-inline void push_paths(
+[[gnu::always_inline]] inline void push_paths(
     const Shader& s, RayStack& stack, int i, const Chosen& chosen, const Branch& branch) {
   const HitLanes<false> at{i};
   const BatchHits& h = s.b.hits;
@@ -166,7 +166,9 @@ struct Refraction {
 
 /// What goes up on total reflection, where the mirror ray takes over what would have passed: t is
 /// added to `up`, or all goes up where the material obeys Fresnel.
-inline Lanes3 totally_reflected(const Lanes3& up, const Lanes& t, const LaneMask& additive) {
+[[gnu::always_inline]] inline Lanes3 totally_reflected(const Lanes3& up,
+                                                       const Lanes& t,
+                                                       const LaneMask& additive) {
   const Lanes o(0), one(1);
   const Lanes all = select(additive, t, o);
   const Lanes whole = select(additive, o, one);
@@ -180,10 +182,10 @@ struct Shares {
 };
 
 /// Fresnel's law in the place of the given shares, where a material asks for it.
-inline Shares fresnel_shares(const Refraction& f,
-                             const Lanes& ior,
-                             const LaneMask& asked,
-                             const Shares& given) {
+[[gnu::always_inline]] inline Shares fresnel_shares(const Refraction& f,
+                                                    const Lanes& ior,
+                                                    const LaneMask& asked,
+                                                    const Shares& given) {
   const Lanes one(1);
   // the angle on the thinner side
   const Lanes kr = schlick(ior, select(f.eta > one, f.other_cosine, f.cosine));
@@ -250,7 +252,7 @@ inline Lobe lobe_of(const Shader& s,
 
 /// Ends the paths of the hits i, i + 1, ... with a bit in `sending` that are too long, or whose
 /// share is below `least`: they see the background. Returns those that go on.
-inline unsigned end_paths(
+[[gnu::always_inline]] inline unsigned end_paths(
     const Shader& s, int i, const Carried& carried, unsigned sending, const Lanes& least) {
   const BatchHits& h = s.b.hits;
   const LaneWords last = LaneWords{} + static_cast<std::uint32_t>(s.work.depth);
@@ -262,12 +264,12 @@ inline unsigned end_paths(
 }
 
 /// Puts the rays around the mirror direction on the stack; each carries the same.
-inline void push_fan(const Shader& s,
-                     RayStack& stack,
-                     int i,
-                     const Lobe& lobe,
-                     const Lanes3& reflected,
-                     const Carried& carried) {
+[[gnu::always_inline]] inline void push_fan(const Shader& s,
+                                            RayStack& stack,
+                                            int i,
+                                            const Lobe& lobe,
+                                            const Lanes3& reflected,
+                                            const Carried& carried) {
   const int rays = s.work.plan.gloss_rays;
   for (int j = 0; j < rays && lobe.on_many.count() != 0; ++j) {
     const Lanes3 dir = lobe_directions(s, i, reflected, lobe.roughness, j, rays);
@@ -282,7 +284,10 @@ struct Sending {
 };
 
 /// What hits i, i + 1, ... send on before any path ends.
-inline Sending sending_of(const Shader& s, int i, int hits, const Bounce& bounce) {
+[[gnu::always_inline]] inline Sending sending_of(const Shader& s,
+                                                 int i,
+                                                 int hits,
+                                                 const Bounce& bounce) {
   Sending rays;
   split(s, i, bounce.up, bounce.down, rays.up, rays.down);
   const unsigned in = lanes_of(i, hits);
@@ -315,7 +320,7 @@ inline void send_bounce(const Shader& s,
 }
 
 /// A smooth normal can send a reflection under the true surface; it is bent back above.
-inline Lanes3 above_surface(const Lanes3& reflected, const Lanes3& normal) {
+[[gnu::always_inline]] inline Lanes3 above_surface(const Lanes3& reflected, const Lanes3& normal) {
   const Lanes under = lesser(dot(reflected, normal), Lanes(0));
   return reflected - (under + under) * normal;
 }

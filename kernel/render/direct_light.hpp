@@ -28,7 +28,7 @@ inline Lanes3 light_points(const Shader& s,
 }
 
 /// The shadow rays of the batch, for those who trace.
-inline RayArrays shadow_arrays(const Shader& s) {
+[[gnu::always_inline]] inline RayArrays shadow_arrays(const Shader& s) {
   BatchShadows& b = s.b.shadows;
   RayArrays rays{b.org.x, b.org.y, b.org.z, b.dir.x, b.dir.y, b.dir.z, b.t_min, b.t, b.id};
   if (s.work.in_double) {
@@ -40,7 +40,7 @@ inline RayArrays shadow_arrays(const Shader& s) {
 }
 
 /// Adds what the first n shadow rays carry that met nothing.
-inline void add_unblocked(const Shader& s, int n) {
+[[gnu::always_inline]] inline void add_unblocked(const Shader& s, int n) {
   const BatchShadows& b = s.b.shadows;
   for (int i = 0; i < n; i += kLanes) {
     const LaneWords id = load_words<Lanes>(b.id + i);
@@ -69,9 +69,9 @@ inline void light_up(const Shader& s, int n) {
 
 /// Where shadow rays start: on the lit side, which is the viewer's.
 template <bool kOne>
-inline TwoFloats<Lanes> shadow_origins(const Shader& s,
-                                       const HitLanes<kOne>& at,
-                                       const Lanes3& normal) {
+[[gnu::always_inline]] inline TwoFloats<Lanes> shadow_origins(const Shader& s,
+                                                              const HitLanes<kOne>& at,
+                                                              const Lanes3& normal) {
   const BatchHits& h = s.b.hits;
   const Lanes o(0);
   if (s.work.in_double)
@@ -82,11 +82,11 @@ inline TwoFloats<Lanes> shadow_origins(const Shader& s,
 /// What the material sends to the viewer of light from the unit direction l: Lambert's cosine
 /// `nl`, and Blinn's highlight.
 template <bool kOne>
-inline Lanes3 reflected_light(const Shader& s,
-                              const HitLanes<kOne>& at,
-                              const Lanes3& normal,
-                              const Lanes3& l,
-                              const Lanes& nl) {
+[[gnu::always_inline]] inline Lanes3 reflected_light(const Shader& s,
+                                                     const HitLanes<kOne>& at,
+                                                     const Lanes3& normal,
+                                                     const Lanes3& l,
+                                                     const Lanes& nl) {
   const Lanes3 diffuse = nl * gather3(s, kDiffuseR, at);
   if (!s.shading.highlights)
     return diffuse;
@@ -101,13 +101,13 @@ inline Lanes3 reflected_light(const Shader& s,
 /// Puts the chosen shadow rays, from `org` and to where they end, behind the first n of the batch,
 /// and traces the batch where no room is left; returns how many there are then.
 template <bool kOne>
-inline int put_shadow_rays(const Shader& s,
-                           const HitLanes<kOne>& at,
-                           const Chosen& chosen,
-                           const TwoFloats<Lanes>& org,
-                           const Lanes3& dir,
-                           const Lanes3& light,
-                           int n) {
+[[gnu::always_inline]] inline int put_shadow_rays(const Shader& s,
+                                                  const HitLanes<kOne>& at,
+                                                  const Chosen& chosen,
+                                                  const TwoFloats<Lanes>& org,
+                                                  const Lanes3& dir,
+                                                  const Lanes3& light,
+                                                  int n) {
   BatchShadows& b = s.b.shadows;
   chosen.store(b.org, n, org.high);
   if (s.work.in_double)
@@ -147,7 +147,7 @@ inline int send_to_light(const Shader& s,
 }
 
 /// One shadow ray for each of the hits that faces the light; returns how many are not traced yet.
-inline int send_one_each(
+[[gnu::always_inline]] inline int send_one_each(
     const Shader& s, int hits, int light_index, bool area, const Lanes3& color) {
   const float* const light = s.shading.lights + kLightFloats * light_index;
   int n = 0;
@@ -161,7 +161,7 @@ inline int send_one_each(
 
 /// `each` shadow rays for each of the hits that faces the light; returns how many are not traced
 /// yet.
-inline int send_many_each(
+[[gnu::always_inline]] inline int send_many_each(
     const Shader& s, int hits, int light_index, int each, const Lanes3& color) {
   int n = 0;
   for (int i = 0; i < hits; ++i)

@@ -18,10 +18,10 @@ namespace grelha::GRELHA_ISA {
 }
 
 /// Surfaces of rays i, i + 1, ..., which met `id`.
-inline Surface<Lanes> surface_at_rays(const Shader& s,
-                                      int i,
-                                      const LaneWords& id,
-                                      const Lanes3& dir) {
+[[gnu::always_inline]] inline Surface<Lanes> surface_at_rays(const Shader& s,
+                                                             int i,
+                                                             const LaneWords& id,
+                                                             const Lanes3& dir) {
   const Lanes3 org = load3(s.b.rays.org, i);
   const Lanes t = load<Lanes>(s.b.rays.t + i);
   return s.work.in_double ? surface_in_double(s, i, id, org, dir, t)
@@ -29,7 +29,7 @@ inline Surface<Lanes> surface_at_rays(const Shader& s,
 }
 
 /// Stores where the chosen of some rays met surfaces, from hit `to` on.
-inline void store_surfaces(
+[[gnu::always_inline]] inline void store_surfaces(
     const Shader& s, const Chosen& hit, int to, const Lanes3& dir, const Surface<Lanes>& f) {
   BatchHits& h = s.b.hits;
   const Lanes zero(0), one(1);
@@ -47,7 +47,8 @@ inline void store_surfaces(
 }
 
 /// Stores what the chosen of rays i, i + 1, ... carry, from hit `to` on.
-inline void store_carried(const Shader& s, const Chosen& hit, int to, int i, const Lanes3& weight) {
+[[gnu::always_inline]] inline void store_carried(
+    const Shader& s, const Chosen& hit, int to, int i, const Lanes3& weight) {
   const BatchRays& r = s.b.rays;
   BatchHits& h = s.b.hits;
   hit.store(h.weight, to, weight);

@@ -136,7 +136,9 @@ inline float sobol_sample(std::uint32_t seed, std::uint32_t index, int dimension
 }
 
 /// A permutation of [0, w], w one less than a power of two.
-inline std::uint32_t permuted_round(std::uint32_t i, std::uint32_t w, std::uint32_t seed) {
+[[gnu::always_inline]] inline std::uint32_t permuted_round(std::uint32_t i,
+                                                           std::uint32_t w,
+                                                           std::uint32_t seed) {
   i ^= seed;
   i *= 0xE170893Du;
   i ^= seed >> 16;
@@ -187,10 +189,10 @@ struct LaneCells {
 /// The cells in turn; where `shuffled` is not 0, in an order of their own. Found lane by lane: by
 /// divisions, and a loop of no known length.
 template <class Real>
-inline LaneCells<Real> cells_in_turn(Words<Real> seed,
-                                     Words<Real> index,
-                                     const Strata& strata,
-                                     Words<Real> shuffled) {
+[[gnu::always_inline]] inline LaneCells<Real> cells_in_turn(Words<Real> seed,
+                                                            Words<Real> index,
+                                                            const Strata& strata,
+                                                            Words<Real> shuffled) {
   const std::uint32_t cells = strata.columns * strata.rows;
   std::uint32_t i[kWidth<Real>], own[kWidth<Real>], order[kWidth<Real>];
   store_words(i, index);
@@ -209,7 +211,7 @@ inline LaneCells<Real> cells_in_turn(Words<Real> seed,
 
 /// A random point of the unit square.
 template <class Word>
-inline auto random_pair(Word seed, Word index) {
+[[gnu::always_inline]] inline auto random_pair(Word seed, Word index) {
   using Real = decltype(unit_float(index));
   return PairOf<Real>{unit_float(scatter(seed, index + index)),
                       unit_float(scatter(seed, index + index + 1u))};
@@ -231,7 +233,8 @@ inline PairOf<Real> jittered(Words<Real> seed,
 /// Two dimensions of Sobol's sequence: of the joint one, which `base` names, where `key` is 0; else
 /// the first two of `own`, in an order of its own.
 template <class Word>
-inline auto sobol_pair(Word base, Word own, Word index, int dimension, Word key) {
+[[gnu::always_inline]] inline auto sobol_pair(
+    Word base, Word own, Word index, int dimension, Word key) {
   using Real = decltype(unit_float(index));
   const auto joint = key == 0u;
   Word u{}, v{};
@@ -281,7 +284,7 @@ inline Pair sample_pair(const SamplePlan& plan,
 
 /// Sine of x in [-pi/4, pi/4], from x and its square.
 template <class Real>
-inline Real sine(const Real& x, const Real& xx) {
+[[gnu::always_inline]] inline Real sine(const Real& x, const Real& xx) {
   const Real one(1);
   const Real third(1.f / 6), fifth(1.f / 120), seventh(1.f / 5040);
   return x * (one - xx * (third - xx * (fifth - xx * seventh)));
@@ -289,7 +292,7 @@ inline Real sine(const Real& x, const Real& xx) {
 
 /// Cosine of x in [-pi/4, pi/4], from its square.
 template <class Real>
-inline Real cosine(const Real& xx) {
+[[gnu::always_inline]] inline Real cosine(const Real& xx) {
   const Real one(1);
   const Real second(.5f), fourth(1.f / 24), sixth(1.f / 720), eighth(1.f / 40320);
   return one - xx * (second - xx * (fourth - xx * (sixth - xx * eighth)));

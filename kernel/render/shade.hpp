@@ -13,7 +13,7 @@
 namespace grelha::GRELHA_ISA {
 
 /// Rays of the batch from `at` on, for those who trace.
-inline RayArrays ray_arrays(const Shader& s, int at) {
+[[gnu::always_inline]] inline RayArrays ray_arrays(const Shader& s, int at) {
   BatchRays& b = s.b.rays;
   RayArrays rays{b.org.x + at,
                  b.org.y + at,
@@ -34,7 +34,10 @@ inline RayArrays ray_arrays(const Shader& s, int at) {
 }
 
 /// Traces the batch: runs of rays that go together, the k-th ending at ends[k].
-inline void trace_batch(const Shader& s, const int* ends, int runs, Phase phase) {
+[[gnu::always_inline]] inline void trace_batch(const Shader& s,
+                                               const int* ends,
+                                               int runs,
+                                               Phase phase) {
   BatchRays& b = s.b.rays;
   for (int i = 0; i < ends[runs - 1]; ++i) {
     b.t_min[i] = 0;
@@ -51,7 +54,7 @@ inline void trace_batch(const Shader& s, const int* ends, int runs, Phase phase)
 }
 
 /// Adds what the surfaces at the hits send of themselves.
-inline void add_emission(const Shader& s, int hits) {
+[[gnu::always_inline]] inline void add_emission(const Shader& s, int hits) {
   const BatchHits& h = s.b.hits;
   for (int i = 0; i < hits; i += kLanes) {
     const Lanes3 emission = gather3(s, kEmissionR, HitLanes<false>{i});
@@ -60,7 +63,7 @@ inline void add_emission(const Shader& s, int hits) {
 }
 
 /// Whether a light has an area: an edge that is not 0.
-inline bool has_area(const Shader& s, int light_index) {
+[[gnu::always_inline]] inline bool has_area(const Shader& s, int light_index) {
   const float* const edges = s.shading.lights + kLightFloats * light_index + 6;
   bool area = false;
   for (int k = 0; s.shading.area && k < 6; ++k)

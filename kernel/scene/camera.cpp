@@ -26,6 +26,27 @@ bool finite(const Float3& a) {
   return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
 }
 
+bool is_picture_side(int pixels) { return pixels >= 1 && pixels <= kMostSide; }
+
+bool lens_is_sound(const Camera& c) {
+  return c.aperture >= 0 && std::isfinite(c.aperture) && c.focus > 0 && std::isfinite(c.focus);
+}
+
+/// Sine of the least angle between view and up, squared: below it rounding decides what is right.
+constexpr double kLeastSineSquared = 1e-18;
+
+/// Whether the camera looks somewhere, and knows what is up there.
+bool directions_are_sound(const Camera& c) {
+  const Double3 view = minus(c.at, c.eye);
+  const Double3 up{c.up.x, c.up.y, c.up.z};
+  const double vv = dot(view, view);
+  const double uu = dot(up, up);
+  if (!(vv > 0) || !(uu > 0))
+    return false;
+  const Double3 side = cross(scaled(view, 1 / std::sqrt(vv)), scaled(up, 1 / std::sqrt(uu)));
+  return dot(side, side) > kLeastSineSquared;
+}
+
 /// Tangent of x in (0, pi/2) from the series of sine and cosine, summed from the smallest term.
 double tangent(double x) {
   const double xx = x * x;
@@ -46,19 +67,9 @@ void put(float (&to)[3], const Double3& v) {
 }  // namespace
 
 bool camera_is_sound(const Camera& c) {
-  if (!finite(c.eye) || !finite(c.at) || !finite(c.up) || c.width < 1 || c.height < 1 ||
-      c.width > kMostSide || c.height > kMostSide)
-    return false;
-  if (!(c.angle_deg > 0) || !(c.angle_deg < 180))
-    return false;
-  if (!(c.aperture >= 0) || !std::isfinite(c.aperture) || !(c.focus > 0) || !std::isfinite(c.focus))
-    return false;
-  const Double3 view = minus(c.at, c.eye), up{c.up.x, c.up.y, c.up.z};
-  const double vv = dot(view, view), uu = dot(up, up);
-  if (!(vv > 0) || !(uu > 0))
-    return false;
-  const Double3 side = cross(scaled(view, 1 / std::sqrt(vv)), scaled(up, 1 / std::sqrt(uu)));
-  return dot(side, side) > 1e-18;
+  const bool has_angle = c.angle_deg > 0 && c.angle_deg < 180;
+  return finite(c.eye) && finite(c.at) && finite(c.up) && is_picture_side(c.width) &&
+         is_picture_side(c.height) && has_angle && lens_is_sound(c) && directions_are_sound(c);
 }
 
 double pixel_size(const Camera& c) {
@@ -71,9 +82,7 @@ FrameView make_frame(const Camera& c) {
   const Double3 up = cross(right, forward);
   const double pixel = pixel_size(c);
   FrameView f;
-  f.eye[0] = c.eye.x;
-  f.eye[1] = c.eye.y;
-  f.eye[2] = c.eye.z;
+  put(f.eye, {c.eye.x, c.eye.y, c.eye.z});
   put(f.forward, forward);
   put(f.right, scaled(right, pixel));
   put(f.up, scaled(up, pixel));

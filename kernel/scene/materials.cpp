@@ -3,6 +3,15 @@
 #include <algorithm>
 
 namespace grelha {
+namespace {
+
+/// What counts as more light than came: .9 + .1 as floats is no gain.
+constexpr float kGain = 1.0001f;
+
+bool is_clear(const Material& m) { return m.transmission > 0; }
+bool obeys_fresnel(const Material& m) { return is_clear(m) && m.fresnel; }
+
+}  // namespace
 
 MaterialTable::MaterialTable(const SceneSpans& scene) {
   const std::span<const Material> materials = scene.materials;
@@ -10,41 +19,45 @@ MaterialTable::MaterialTable(const SceneSpans& scene) {
   for (auto& f : fields)
     f.resize(materials.size());
   for (std::size_t i = 0; i < materials.size(); ++i) {
-    const Material& m = materials[i];
-    const bool clear = m.transmission > 0;
-    const float values[kMaterialFields] = {m.diffuse.x,
-                                           m.diffuse.y,
-                                           m.diffuse.z,
-                                           m.specular.x,
-                                           m.specular.y,
-                                           m.specular.z,
-                                           m.mirror.x,
-                                           m.mirror.y,
-                                           m.mirror.z,
-                                           m.emission.x,
-                                           m.emission.y,
-                                           m.emission.z,
-                                           m.transmission,
-                                           m.shine,
-                                           clear ? m.ior : 1.f,
-                                           clear && m.fresnel ? 1.f : 0.f,
-                                           m.roughness};
-    for (std::size_t k = 0; k < kMaterialFields; ++k)
-      fields[k][i] = values[k];
-    if (!used[i])
-      continue;
-    reflects |= clear || m.mirror != Float3{};
-    refracts |= clear;
-    fresnel |= clear && m.fresnel;
-    emits |= m.emission != Float3{};
-    highlights |= m.specular != Float3{};
-    constexpr float kRounding = 1.0001f;  // .9 + .1 as floats is no gain
-    gains |= !(clear && m.fresnel) &&
-             largest_channel(m.mirror) + (clear ? m.transmission : 0) > kRounding;
-    lit = std::max(lit, largest_channel(m.diffuse) + largest_channel(m.specular));
-    emitted = std::max(emitted, largest_channel(m.emission));
-    gloss |= m.roughness > 0 && (clear || m.mirror != Float3{});
+    set_fields(i, materials[i]);
+    if (used[i])
+      note_effects(materials[i]);
   }
+}
+
+void MaterialTable::set_fields(std::size_t i, const Material& m) {
+  const auto set = [&](MaterialField k, float value) {
+    fields[static_cast<std::size_t>(k)][i] = value;
+  };
+  const auto set_color = [&](MaterialField red, const Float3& color) {
+    set(red, color.x);
+    set(static_cast<MaterialField>(red + 1), color.y);
+    set(static_cast<MaterialField>(red + 2), color.z);
+  };
+  set_color(kDiffuseR, m.diffuse);
+  set_color(kSpecularR, m.specular);
+  set_color(kMirrorR, m.mirror);
+  set_color(kEmissionR, m.emission);
+  set(kTransmission, m.transmission);
+  set(kShine, m.shine);
+  set(kIor, is_clear(m) ? m.ior : 1.f);
+  set(kFresnel, obeys_fresnel(m) ? 1.f : 0.f);
+  set(kRoughness, m.roughness);
+}
+
+void MaterialTable::note_effects(const Material& m) {
+  const bool clear = is_clear(m);
+  const bool mirrors = clear || m.mirror != Float3{};
+  reflects |= mirrors;
+  refracts |= clear;
+  fresnel |= obeys_fresnel(m);
+  emits |= m.emission != Float3{};
+  highlights |= m.specular != Float3{};
+  const float sent_on = largest_channel(m.mirror) + (clear ? m.transmission : 0);
+  gains |= !obeys_fresnel(m) && sent_on > kGain;
+  lit = std::max(lit, largest_channel(m.diffuse) + largest_channel(m.specular));
+  emitted = std::max(emitted, largest_channel(m.emission));
+  gloss |= m.roughness > 0 && mirrors;
 }
 
 MaterialView MaterialTable::view() const {

@@ -23,6 +23,11 @@ struct MaterialTable {
   bool gains = false;
   /// of light of 1 a point sends an eye at most so much; and what the brightest sends by itself
   float lit = 0, emitted = 0;
+
+ private:
+  void set_fields(std::size_t i, const Material& m);
+  /// What a material that is used asks for.
+  void note_effects(const Material& m);
 };
 
 }  // namespace grelha

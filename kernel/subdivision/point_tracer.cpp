@@ -48,36 +48,24 @@ class PointTracer {
                          Float3* colours,
                          double from,
                          double to) {
-    const std::size_t count = points.size(), threads = spaces_.size();
-    // Whole packets, large enough to be worth taking, small enough that no thread waits long for
-    // the last.
-    const std::size_t chunk =
-        std::clamp<std::size_t>(count / (8 * threads) / 64 * 64, 64, kMostPoints);
-    const std::size_t chunks = (count + chunk - 1) / chunk;
-    const int team = static_cast<int>(std::min(threads, std::max<std::size_t>(chunks, 1)));
+    const std::size_t chunk = chunk_of(points.size());
+    const std::size_t chunks = (points.size() + chunk - 1) / chunk;
+    const std::size_t team = std::min(spaces_.size(), std::max<std::size_t>(chunks, 1));
     std::atomic<std::size_t> begun = 0;
     std::size_t done = 0;
-#pragma omp parallel num_threads(team)
+#pragma omp parallel num_threads(static_cast <int>(team))
     while (!progress_.stopped()) {
       // what has a number is done, so that what is done is the first so many
       const std::size_t c = begun++;
       if (c >= chunks)
         break;
-      const std::size_t first = c * chunk, last = std::min(first + chunk, count);
-      trace(*spaces_[static_cast<std::size_t>(omp_get_thread_num())],
-            points.data() + first,
-            static_cast<int>(last - first),
-            colours + first);
+      const std::size_t first = c * chunk;
+      const auto mine = points.subspan(first, std::min(chunk, points.size() - first));
+      trace(*spaces_[static_cast<std::size_t>(omp_get_thread_num())], mine, colours + first);
 #pragma omp critical(grelha_progress)
-      {
-        ++done;
-        const double share =
-            from + (to - from) * static_cast<double>(done) / static_cast<double>(chunks);
-        if (!progress_.stopped())
-          progress_.tell(share);
-      }
+      tell(from + (to - from) * static_cast<double>(++done) / static_cast<double>(chunks));
     }
-    return std::min(begun * chunk, count);
+    return std::min(begun * chunk, points.size());
   }
 
   void count(RenderStats& stats) const {
@@ -89,26 +77,35 @@ class PointTracer {
   }
 
  private:
-  void trace(PointSpace& s, const LatticePoint* points, int count, Float3* colours) const {
+  /// Points a thread takes at a time: whole packets, large enough to be worth taking, small enough
+  /// that no thread waits long for the last.
+  std::size_t chunk_of(std::size_t points) const {
+    return std::clamp<std::size_t>(points / (8 * spaces_.size()) / 64 * 64, 64, kMostPoints);
+  }
+
+  void tell(double share) {
+    if (!progress_.stopped())
+      progress_.tell(share);
+  }
+
+  void trace(PointSpace& s, std::span<const LatticePoint> points, Float3* colours) const {
     std::uint32_t* const names = s.space.pixels().data();
-    for (int i = 0; i < count; ++i) {  // exact: no coordinate is above 2^24
+    for (std::size_t i = 0; i < points.size(); ++i) {  // exact: no coordinate is above 2^24
       s.x[i] = static_cast<float>(points[i].x) / kLatticeSteps;
       s.y[i] = static_cast<float>(points[i].y) / kLatticeSteps;
       names[i] = lattice_hash(points[i]);
     }
-    setup_.variant.loops.render_points(world_.view,
-                                       world_.shading,
-                                       setup_.frame,
-                                       {s.x, s.y, count},
-                                       s.space.work(options_, 0, true),
-                                       s.trace,
-                                       s.rays);
+    const PointList list{s.x, s.y, static_cast<int>(points.size())};
+    const BandWork work = s.space.work(options_, 0, true);
+    setup_.variant.loops.render_points(
+        world_.view, world_.shading, setup_.frame, list, work, s.trace, s.rays);
     const double share = 1 / (kLightUnit * setup_.plan.samples);
+    const auto colour = [share](std::int64_t sum) {
+      return static_cast<float>(static_cast<double>(sum) * share);
+    };
     const std::int64_t* sum = s.space.sums().data();
-    for (int i = 0; i < count; ++i, sum += 3)
-      colours[i] = {static_cast<float>(static_cast<double>(sum[0]) * share),
-                    static_cast<float>(static_cast<double>(sum[1]) * share),
-                    static_cast<float>(static_cast<double>(sum[2]) * share)};
+    for (std::size_t i = 0; i < points.size(); ++i, sum += 3)
+      colours[i] = {colour(sum[0]), colour(sum[1]), colour(sum[2])};
     s.space.done(options_);
   }
 
@@ -119,6 +116,13 @@ class PointTracer {
   std::vector<std::unique_ptr<PointSpace>> spaces_;
 };
 
+void check(const SubdivisionState& picture, const Camera& camera, const RenderOptions& options) {
+  if (!options.subdivision.on)
+    throw std::invalid_argument("this picture is one by subdivision");
+  if (picture.image.width != camera.width || picture.image.height != camera.height)
+    throw std::invalid_argument("this picture has another size than the camera's");
+}
+
 }  // namespace
 
 bool render_subdivided(const World& world,
@@ -128,10 +132,7 @@ bool render_subdivided(const World& world,
                        RenderStats& stats,
                        const ShouldContinue& should_continue) {
   const Setup setup = set_up(world, camera, options);
-  if (!options.subdivision.on)
-    throw std::invalid_argument("this picture is one by subdivision");
-  if (picture.image.width != camera.width || picture.image.height != camera.height)
-    throw std::invalid_argument("this picture has another size than the camera's");
+  check(picture, camera, options);
   stats = {};
   stats.threads = options.threads > 0 ? options.threads : omp_get_num_procs();
   stats.isa = setup.variant.name.data();

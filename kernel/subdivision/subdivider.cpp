@@ -1,6 +1,7 @@
 #include "kernel/subdivision/subdivider.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -85,32 +86,44 @@ class TileSubdivider {
  private:
   /// Level 0, in blocks of points; then every pixel is a square.
   bool trace_corners() {
-    const int across = rect_.x1 - rect_.x0 + 1, down = rect_.y1 - rect_.y0 + 1;
-    number_corners(across, down);
+    number_corners();
     if (!trace_fresh(0))
       return false;
     std::uint32_t pixel = 0;
-    for (int y = 0; y + 1 < down; ++y)
-      for (int x = 0; x + 1 < across; ++x, ++pixel) {
-        const std::uint32_t* const upper =
-            ids_.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(across) + x;
-        resolve({corner_at(x, y), pixel, {upper[0], upper[1], upper[across], upper[across + 1]}},
-                0,
-                split_);
+    for (int y = 0; y + 1 < down(); ++y)
+      for (int x = 0; x + 1 < across(); ++x, ++pixel) {
+        const std::uint32_t* const upper = &id_at(x, y);
+        const std::uint32_t* const lower = &id_at(x, y + 1);
+        resolve({corner_at(x, y), pixel, {upper[0], upper[1], lower[0], lower[1]}}, 0, split_);
       }
     return true;
   }
 
-  void number_corners(int across, int down) {
-    ids_.resize(static_cast<std::size_t>(across) * static_cast<std::size_t>(down));
-    for (int by = 0; by < down; by += kBlock)
-      for (int bx = 0; bx < across; bx += kBlock)
-        for (int y = by; y < std::min(by + kBlock, down); ++y)
-          for (int x = bx; x < std::min(bx + kBlock, across); ++x) {
-            const LatticePoint p = corner_at(x, y);
-            ids_[static_cast<std::size_t>(y) * static_cast<std::size_t>(across) +
-                 static_cast<std::size_t>(x)] = points_.number(p, morton(p));
-          }
+  /// Corners of pixels a row, and a column.
+  int across() const { return rect_.x1 - rect_.x0 + 1; }
+  int down() const { return rect_.y1 - rect_.y0 + 1; }
+
+  std::uint32_t& id_at(int x, int y) {
+    return ids_[static_cast<std::size_t>(y) * static_cast<std::size_t>(across()) +
+                static_cast<std::size_t>(x)];
+  }
+
+  void number_corners() {
+    ids_.resize(static_cast<std::size_t>(across()) * static_cast<std::size_t>(down()));
+    for (int y = 0; y < down(); y += kBlock)
+      for (int x = 0; x < across(); x += kBlock)
+        number_block(x, y);
+  }
+
+  /// Numbers kBlock x kBlock corners, those of them that the tile has.
+  void number_block(int x0, int y0) {
+    const int x1 = std::min(x0 + kBlock, across());
+    const int y1 = std::min(y0 + kBlock, down());
+    for (int y = y0; y < y1; ++y)
+      for (int x = x0; x < x1; ++x) {
+        const LatticePoint p = corner_at(x, y);
+        id_at(x, y) = points_.number(p, morton(p));
+      }
   }
 
   LatticePoint corner_at(int x, int y) const {
@@ -125,63 +138,62 @@ class TileSubdivider {
     if (!trace_fresh(level + 1))
       return false;
     next_.clear();
-    for (std::size_t i = 0; i < split_.size(); ++i) {
-      const auto& [at, pixel, c] = split_[i];
-      const std::uint32_t* const n = ids_.data() + 5 * i;
-      resolve({at, pixel, {c[0], n[0], n[1], n[2]}}, level + 1, next_);
-      resolve({{at.x + half, at.y}, pixel, {n[0], c[1], n[2], n[3]}}, level + 1, next_);
-      resolve({{at.x, at.y + half}, pixel, {n[1], n[2], c[2], n[4]}}, level + 1, next_);
-      resolve({{at.x + half, at.y + half}, pixel, {n[2], n[3], n[4], c[3]}}, level + 1, next_);
-    }
+    for (std::size_t i = 0; i < split_.size(); ++i)
+      for (const Square& quarter : quarters(split_[i], half, ids_.data() + 5 * i))
+        resolve(quarter, level + 1, next_);
     split_.swap(next_);
     return true;
+  }
+
+  /// The quarters of a square with sides of twice `half`; n: its five new points.
+  static std::array<Square, 4> quarters(const Square& s,
+                                        std::uint32_t half,
+                                        const std::uint32_t* n) {
+    const auto& [at, pixel, c] = s;
+    const std::uint32_t x = at.x + half;
+    const std::uint32_t y = at.y + half;
+    return {{
+        {at, pixel, {c[0], n[0], n[1], n[2]}},
+        {{x, at.y}, pixel, {n[0], c[1], n[2], n[3]}},
+        {{at.x, y}, pixel, {n[1], n[2], c[2], n[4]}},
+        {{x, y}, pixel, {n[2], n[3], n[4], c[3]}},
+    }};
   }
 
   /// Numbers the points that squares to be split have in their middles and halfway between their
   /// corners. These are corners of no square but those split now: a point is born on the one level
   /// whose step it is an odd multiple of.
   void number_new_points(std::uint32_t half) {
-    const LatticePoint offset[5] = {
-        {half, 0}, {0, half}, {half, half}, {2 * half, half}, {half, 2 * half}};
-    const auto point = [&](std::size_t slot) {
-      const LatticePoint at = split_[slot / 5].at, by = offset[slot % 5];
-      return LatticePoint{at.x + by.x, at.y + by.y};
-    };
     wanted_.resize(5 * split_.size());
     ids_.resize(wanted_.size());
     for (std::size_t i = 0; i < wanted_.size(); ++i)
-      wanted_[i] = {morton(point(i)), static_cast<std::uint32_t>(i)};
+      wanted_[i] = {morton(new_point(i, half)), static_cast<std::uint32_t>(i)};
     std::sort(wanted_.begin(), wanted_.end(), [](const Wanted& a, const Wanted& b) {
       return a.key < b.key;
     });
     std::uint32_t id = 0;
     for (std::size_t i = 0; i < wanted_.size(); ++i) {
-      if (i == 0 || wanted_[i].key != wanted_[i - 1].key)
-        id = points_.number(point(wanted_[i].slot), wanted_[i].key);
-      ids_[wanted_[i].slot] = id;
+      const auto& [key, slot] = wanted_[i];
+      if (i == 0 || key != wanted_[i - 1].key)
+        id = points_.number(new_point(slot, half), key);
+      ids_[slot] = id;
     }
+  }
+
+  /// The point of a slot, see Wanted; `half`: of the sides of the squares.
+  LatticePoint new_point(std::size_t slot, std::uint32_t half) const {
+    constexpr LatticePoint kHalves[5] = {{1, 0}, {0, 1}, {1, 1}, {2, 1}, {1, 2}};
+    const LatticePoint at = split_[slot / 5].at;
+    const LatticePoint by = kHalves[slot % 5];
+    return {at.x + by.x * half, at.y + by.y * half};
   }
 
   /// Traces the points that have no colours yet. Returns whether all have them then. A tile that
   /// is gone on with may bring all colours along, or the first of them.
   bool trace_fresh(int level) {
-    std::vector<Float3>& colours = picture_.colours;
-    const std::size_t first = points_.first_fresh(), end = first + points_.fresh().size();
-    const auto share_at = [&](std::size_t traced) {
-      return share_.at(level) + (share_.at(level + 1) - share_.at(level)) *
-                                    static_cast<double>(traced - first) /
-                                    static_cast<double>(points_.fresh().size());
-    };
-    while (colours.size() < end) {
-      const std::size_t begin = colours.size();
-      colours.resize(end);
-      const std::size_t traced = begin + trace_(std::span(points_.fresh()).subspan(begin - first),
-                                                colours.data() + begin,
-                                                share_at(begin),
-                                                share_at(end));
-      colours.resize(traced);
-      picture_.share = std::min(1.0, share_at(traced));
-      if (traced == end)
+    const std::size_t end = points_.first_fresh() + points_.fresh().size();
+    while (picture_.colours.size() < end) {
+      if (trace_some(level) == end)
         break;
       if (level == 0)
         show_corners();
@@ -192,6 +204,29 @@ class TileSubdivider {
     }
     points_.accept_fresh();
     return true;
+  }
+
+  /// Traces points that have no colours yet, until progress says to stop. Returns how many points
+  /// of the tile have colours then.
+  std::size_t trace_some(int level) {
+    std::vector<Float3>& colours = picture_.colours;
+    const std::size_t begin = colours.size();
+    const std::size_t first = points_.first_fresh();
+    const std::span<const LatticePoint> fresh = points_.fresh();
+    const double before = share_.at(level);
+    const auto share_at = [&](std::size_t traced) {
+      return before + (share_.at(level + 1) - before) * static_cast<double>(traced - first) /
+                          static_cast<double>(fresh.size());
+    };
+    const std::size_t end = first + fresh.size();
+    colours.resize(end);
+    const std::size_t traced = begin + trace_(fresh.subspan(begin - first),
+                                              colours.data() + begin,
+                                              share_at(begin),
+                                              share_at(end));
+    colours.resize(traced);
+    picture_.share = std::min(1.0, share_at(traced));
+    return traced;
   }
 
   /// A square whose corners are known joins those to be split, or its pixel's sum. The order of a
@@ -242,32 +277,46 @@ class TileSubdivider {
   std::vector<Wanted> wanted_;
 };
 
+/// Tiles of a picture, by rows.
+struct Tiling {
+  Tiling(const Image& image, int a_side)
+      : side(a_side), rows(tiles_of(image.height)), columns(tiles_of(image.width)) {}
+
+  std::size_t tiles_of(int pixels) const {
+    return static_cast<std::size_t>((pixels - 1) / side + 1);
+  }
+  std::size_t size() const { return rows * columns; }
+  TileRect rect(std::size_t tile, const Image& image) const {
+    TileRect r;
+    r.x0 = static_cast<int>(tile % columns) * side;
+    r.y0 = static_cast<int>(tile / columns) * side;
+    r.x1 = std::min(r.x0 + side, image.width);
+    r.y1 = std::min(r.y0 + side, image.height);
+    return r;
+  }
+
+  int side;
+  std::size_t rows, columns;
+};
+
 /// Goes through the tiles that are not finished.
 bool subdivide_tiles(SubdivisionState& picture,
                      const Subdivision& options,
                      const TracePoints& trace,
                      int side,
                      const ShouldContinue& should_continue) {
-  const Image& image = picture.image;
-  const auto tiles_of = [side](int pixels) {
-    return static_cast<std::size_t>((pixels - 1) / side + 1);
-  };
-  const std::size_t rows = tiles_of(image.height), columns = tiles_of(image.width);
+  const Tiling tiles(picture.image, side);
   if (picture.tiles == 0)
-    picture.above.resize(columns);
-  if (picture.above.size() != columns || picture.tiles > rows * columns)
+    picture.above.resize(tiles.columns);
+  if (picture.above.size() != tiles.columns || picture.tiles > tiles.size())
     throw std::invalid_argument("this picture was made in tiles of another size");
-  const double part = 1 / static_cast<double>(rows * columns);
-  for (; picture.tiles < rows * columns; ++picture.tiles) {
-    const std::size_t column = picture.tiles % columns;
+  const double part = 1 / static_cast<double>(tiles.size());
+  for (; picture.tiles < tiles.size(); ++picture.tiles) {
+    const std::size_t column = picture.tiles % tiles.columns;
     if (column == 0)
       picture.left.clear();
-    TileRect rect;
-    rect.x0 = static_cast<int>(column) * side;
-    rect.y0 = static_cast<int>(picture.tiles / columns) * side;
-    rect.x1 = std::min(rect.x0 + side, image.width);
-    rect.y1 = std::min(rect.y0 + side, image.height);
     const TileShare share{static_cast<double>(picture.tiles) * part, part, options.depth};
+    const TileRect rect = tiles.rect(picture.tiles, picture.image);
     TileSubdivider tile(picture, options, trace, should_continue, rect, share);
     if (!tile.run(picture.above[column]))
       return false;

@@ -46,22 +46,20 @@ void TilePoints::load_border(const TileRect& rect,
     colours.push_back(k.colour);
 }
 
+const BorderPoint* TilePoints::known_at(LatticePoint p, std::uint64_t key) const {
+  if (!lies_on(p.x, rect_.x0) && !lies_on(p.y, rect_.y0))
+    return nullptr;
+  const auto before = [](const BorderPoint& a, std::uint64_t k) { return a.key < k; };
+  const auto at = std::lower_bound(known_.begin(), known_.end(), key, before);
+  return at != known_.end() && at->key == key ? &*at : nullptr;
+}
+
 std::uint32_t TilePoints::number(LatticePoint p, std::uint64_t key) {
-  std::uint32_t id = 0;
-  bool known = false;
-  if (lies_on(p.x, rect_.x0) || lies_on(p.y, rect_.y0)) {
-    const auto at = std::lower_bound(
-        known_.begin(), known_.end(), key, [](const BorderPoint& a, std::uint64_t k) {
-          return a.key < k;
-        });
-    known = at != known_.end() && at->key == key;
-    if (known)
-      id = static_cast<std::uint32_t>(at - known_.begin());
-  }
-  if (!known) {
-    id = static_cast<std::uint32_t>(numbered_ + fresh_.size());
+  const BorderPoint* const known = known_at(p, key);
+  const std::uint32_t id = static_cast<std::uint32_t>(
+      known ? static_cast<std::size_t>(known - known_.data()) : numbered_ + fresh_.size());
+  if (!known)
     fresh_.push_back(p);
-  }
   if (lies_on(p.x, rect_.x1))
     right_border_.push_back({key, id});
   if (lies_on(p.y, rect_.y1))

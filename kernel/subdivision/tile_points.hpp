@@ -49,6 +49,8 @@ class TilePoints {
     std::uint64_t key;
     std::uint32_t id;
   };
+  /// The point, if a finished tile saw it, or null.
+  const BorderPoint* known_at(LatticePoint p, std::uint64_t key) const;
   static void store(std::vector<Border>& border,
                     const std::vector<Float3>& colours,
                     std::vector<BorderPoint>& to);

@@ -6,8 +6,9 @@ namespace grelha {
 namespace {
 
 double sum_of(const Float3 (&c)[4], float Float3::*channel) {
-  return (static_cast<double>(c[0].*channel) + c[1].*channel) +
-         (static_cast<double>(c[2].*channel) + c[3].*channel);
+  const double upper = static_cast<double>(c[0].*channel) + c[1].*channel;
+  const double lower = static_cast<double>(c[2].*channel) + c[3].*channel;
+  return upper + lower;
 }
 
 }  // namespace
