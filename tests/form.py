@@ -34,7 +34,7 @@ EXCEPTIONS = {
         "tests/kernel/render/shade_test.cpp", "tests/stability/pictures.cpp",
     ),
     "comma": (
-        "kernel/features/beam.hpp", "kernel/features/doubt.hpp", "kernel/render/bands.cpp",
+        "kernel/features/beam.hpp", "kernel/features/doubt.hpp",
     ),
     "lines": (
         "frontend/cli/options.cpp", "kernel/features/doubt.hpp", "kernel/grid/world.cpp",
@@ -42,7 +42,7 @@ EXCEPTIONS = {
         "tests/frontend/cli/options_test.cpp", "tests/frontend/input/errors_test.cpp",
     ),
     "branches": (
-        "kernel/features/doubt.hpp", "kernel/render/setup.cpp", "kernel/trace/abreast.hpp",
+        "kernel/features/doubt.hpp", "kernel/trace/abreast.hpp",
     ),
 }
 

@@ -153,7 +153,7 @@ template <class Real>
   const Real root = square_root(disc);
   const Real q = select(b < o, root - b, o - (b + root));
   const Real t1 = q / a, t2 = c / q;
-  const auto valid = [&](const Real& s) {
+  const auto valid = [&](const Real& s) __attribute__((always_inline)) {
     const Real h = pz + s * dz;
     const Mask<Real> leaving = (a * s + b) >= o;  // on a tip neither; let no ray out there
     return both(both(both(h >= o, h <= cone.height), (near + s) > t_min),
