@@ -76,11 +76,10 @@ Ray ray_of(const RayBuffer& r, std::size_t i) {
 }
 
 void call(const World& world, const RayBuffer& r, bool any, Answers& a) {
-  a.t.resize(r.size());
-  a.id.resize(r.size());
+  a.resize(r.size(), any);
   for (std::size_t i = 0; i < r.size(); ++i) {
     if (any) {
-      a.t[i] = occluded(world, ray_of(r, i)) ? -__builtin_inff() : r.t_max[i];
+      a.blocked[i] = occluded(world, ray_of(r, i));
       continue;
     }
     const Hit hit = closest(world, ray_of(r, i));
@@ -90,22 +89,11 @@ void call(const World& world, const RayBuffer& r, bool any, Answers& a) {
 }
 
 void stream(const World& world, const RayBuffer& r, bool any, int packet, Answers& a) {
-  a.t = r.t_max;
-  a.id.resize(r.size());
-  const RaySpan rays{.ox = r.ox.data(),
-                     .oy = r.oy.data(),
-                     .oz = r.oz.data(),
-                     .dx = r.dx.data(),
-                     .dy = r.dy.data(),
-                     .dz = r.dz.data(),
-                     .t_min = r.t_min.data(),
-                     .t = a.t.data(),
-                     .id = a.id.data(),
-                     .count = int(r.size())};
+  a.resize(r.size(), any);
   if (any)
-    occluded(world, rays, {.packet = packet});
+    occluded(world, r.view(), a.blocked.data(), {.packet = packet});
   else
-    closest(world, rays, {.packet = packet});
+    closest(world, r.view(), {a.t.data(), a.id.data()}, {.packet = packet});
 }
 
 double cpu_ns() {
@@ -120,18 +108,18 @@ double median(std::vector<double> v) {
 }
 
 /// Rays whose answers differ.
-std::size_t different(const Answers& a, const Answers& b, bool any) {
+std::size_t different(const Answers& a, const Answers& b) {
   std::size_t n = 0;
-  for (std::size_t i = 0; i < a.t.size(); ++i)
-    n += std::memcmp(&a.t[i], &b.t[i], sizeof a.t[i]) != 0 || (!any && a.id[i] != b.id[i]);
+  for (std::size_t i = 0; i < a.size(); ++i)
+    n += !a.same(i, b, i);
   return n;
 }
 
 /// Rays that meet something in one and nothing in the other.
-std::size_t other_hits(const Answers& a, const Answers& b, const RayBuffer& r) {
+std::size_t other_hits(const Answers& a, const Answers& b) {
   std::size_t n = 0;
-  for (std::size_t i = 0; i < a.t.size(); ++i)
-    n += (a.t[i] == r.t_max[i]) != (b.t[i] == r.t_max[i]);
+  for (std::size_t i = 0; i < a.size(); ++i)
+    n += a.met(i) != b.met(i);
   return n;
 }
 
@@ -146,7 +134,7 @@ bool row(const std::string& name,
   Answers truth, found;
   stream(world, rays, any, 64, truth);
   call(world, rays, any, found);
-  if (different(truth, found, any) != 0) {
+  if (different(truth, found) != 0) {
     std::printf("%s: calls and streams differ\n", name.c_str());
     return false;
   }
@@ -157,7 +145,7 @@ bool row(const std::string& name,
   if (embree) {
     const EmbreeMode single = embree_modes()[0];
     embree->trace(rays, any, single);
-    if (double(other_hits(truth, embree->answers(), rays)) > kDisagree * double(rays.size())) {
+    if (double(other_hits(truth, embree->answers())) > kDisagree * double(rays.size())) {
       std::printf("%s: Embree meets something else\n", name.c_str());
       return false;
     }

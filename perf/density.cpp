@@ -87,23 +87,8 @@ Cell measure(int rounds, const Work& work) {
 using Worlds = std::vector<std::unique_ptr<World>>;
 
 void trace_all(const World& world, const RayBuffer& rays, bool any, Answers& a) {
-  a.t = rays.t_max;
-  a.id.resize(rays.size());
   TraceCounts unused;
-  const VariantLoops& loops = find_variant("best")->loops;
-  (any ? loops.occluded : loops.closest)(world.impl().view,
-                                         {rays.ox.data(),
-                                          rays.oy.data(),
-                                          rays.oz.data(),
-                                          rays.dx.data(),
-                                          rays.dy.data(),
-                                          rays.dz.data(),
-                                          rays.t_min.data(),
-                                          a.t.data(),
-                                          a.id.data(),
-                                          static_cast<int>(rays.size())},
-                                         {},
-                                         unused);
+  trace(world, *find_variant("best"), {}, rays.view(), any, a, unused);
 }
 
 Cell measure_kind(const Options& options, const Worlds& worlds, const RayBuffer& rays, bool any) {
@@ -111,7 +96,7 @@ Cell measure_kind(const Options& options, const Worlds& worlds, const RayBuffer&
   trace_all(*worlds[0], rays, any, truth);
   for (const auto& world : worlds) {
     trace_all(*world, rays, any, a);
-    if (std::memcmp(a.t.data(), truth.t.data(), a.t.size() * sizeof(float)) != 0)
+    if (a != truth)
       throw std::runtime_error("wrong hits");
   }
   Cell cell = measure(options.rounds, [&](std::size_t w) { trace_all(*worlds[w], rays, any, a); });

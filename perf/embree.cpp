@@ -179,8 +179,15 @@ class Built final : public EmbreeScene {
   }
 
   Answers answers() const override {
-    Answers a{t_, std::vector<std::uint32_t>(t_.size(), kNoPrimitive)};
-    for (std::size_t i = 0; !any_ && i < t_.size(); ++i)
+    Answers a;
+    if (any_) {
+      for (const float t : t_)
+        a.blocked.push_back(t == -__builtin_inff());
+      return a;
+    }
+    a.t = t_;
+    a.id.assign(t_.size(), kNoPrimitive);
+    for (std::size_t i = 0; i < t_.size(); ++i)
       if (geometry_[i] != RTC_INVALID_GEOMETRY_ID)
         a.id[i] = first_[geometry_[i]] +
                   (geometry_[i] == plane_geometry_ ? primitive_[i] / 2 : primitive_[i]);

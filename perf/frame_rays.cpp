@@ -16,7 +16,7 @@ class Recorder : public Observer {
   explicit Recorder(FrameRays& frame) : Observer{&Recorder::enter}, frame_(frame) {}
 
  private:
-  static void enter(Observer& self, Phase phase, const ObservedRays* rays) {
+  static void enter(Observer& self, Phase phase, const Rays* rays) {
     if (!rays || rays->count == 0)
       return;
     RaySet& set = static_cast<Recorder&>(self).frame_[phase == Phase::primary  ? 0
@@ -27,14 +27,14 @@ class Recorder : public Observer {
     const auto put = [n = rays->count](std::vector<float>& to, const float* from) {
       to.insert(to.end(), from, from + n);
     };
-    put(r.ox, rays->ox);
-    put(r.oy, rays->oy);
-    put(r.oz, rays->oz);
-    put(r.dx, rays->dx);
-    put(r.dy, rays->dy);
-    put(r.dz, rays->dz);
+    put(r.ox, rays->org[0]);
+    put(r.oy, rays->org[1]);
+    put(r.oz, rays->org[2]);
+    put(r.dx, rays->dir[0]);
+    put(r.dy, rays->dir[1]);
+    put(r.dz, rays->dir[2]);
     put(r.t_min, rays->t_min);
-    put(r.t_max, rays->t);
+    put(r.t_max, rays->t_max);
   }
   FrameRays& frame_;
 };
@@ -64,7 +64,7 @@ FrameRays thinned(const FrameRays& frame, std::size_t stride) {
     for (std::size_t i = stride / 2; i < r.size(); i += stride)
       to.rays.add({r.ox[i], r.oy[i], r.oz[i]}, {r.dx[i], r.dy[i], r.dz[i]}, r.t_max[i]);
     for (std::size_t i = 0; i < to.rays.size(); i += kBatch)
-      to.runs.push_back({i, static_cast<int>(std::min<std::size_t>(kBatch, to.rays.size() - i))});
+      to.runs.push_back({i, std::min<std::size_t>(kBatch, to.rays.size() - i)});
   }
   return out;
 }
@@ -78,32 +78,21 @@ std::array<double, 3> trace_seconds(const World& world,
   for (std::size_t kind = 0; kind < frame.size(); ++kind) {
     const RayBuffer& r = frame[kind].rays;
     const auto& runs = frame[kind].runs;
-    const auto loop = kind == 2 ? variant.loops.occluded : variant.loops.closest;
     const auto now = threads == 1 ? cpu_seconds : now_seconds;
     const double start = now();
 #pragma omp parallel num_threads(threads)
     {
-      float t[kBatch];
-      std::uint32_t id[kBatch];
+      Answers answers;
       TraceCounts counts;
 #pragma omp for schedule(dynamic, 8)
-      for (std::size_t k = 0; k < runs.size(); ++k) {
-        const std::size_t i = runs[k].first;
-        std::copy_n(&r.t_max[i], runs[k].count, t);
-        loop(world.impl().view,
-             {&r.ox[i],
-              &r.oy[i],
-              &r.oz[i],
-              &r.dx[i],
-              &r.dy[i],
-              &r.dz[i],
-              &r.t_min[i],
-              t,
-              id,
-              runs[k].count},
-             settings,
-             counts);
-      }
+      for (std::size_t k = 0; k < runs.size(); ++k)
+        trace(world,
+              variant,
+              settings,
+              r.view(runs[k].first, runs[k].count),
+              kind == 2,
+              answers,
+              counts);
     }
     seconds[kind] = now() - start;
   }

@@ -12,8 +12,7 @@ namespace grelha::perf {
 /// Rays of one kind, in the runs a render traced together.
 struct RaySet {
   struct Run {
-    std::size_t first;
-    int count;
+    std::size_t first, count;
   };
   RayBuffer rays;
   std::vector<Run> runs;

@@ -35,7 +35,7 @@ struct Place {
       : name(scene + " " + std::to_string(size)), file(make_scene(scene, size)) {
     rays = camera_rays(file.camera);
     TraceCounts unused;
-    trace(world(2), reference_walk(), {}, rays, 0, rays.size(), truth, unused);
+    trace(world(2), reference_walk(), {}, rays.view(), false, truth, unused);
   }
   const World& world(float density) {
     auto& w = worlds[density];
@@ -85,7 +85,8 @@ void run(benchmark::State& state, Place& place, const Rung& rung, float density)
   std::size_t traced = 0;
   for (auto _ : state) {
     for (std::size_t first = 0; first < total; first += stride) {
-      trace(world, variant, rung.settings, place.rays, first, slice, answers, counts);
+      const Rays rays = place.rays.view(first, slice);
+      trace(world, variant, rung.settings, rays, false, answers, counts);
       traced += slice;
       benchmark::DoNotOptimize(answers.t.data());
       state.PauseTiming();

@@ -132,7 +132,7 @@ std::vector<FirstHit> RayMaker::first_hits(bool few) const {
   const SceneView& scene = world_.impl().view;
   Answers found;
   TraceCounts unused;
-  trace(world_, *find_variant("best"), {}, rays, 0, rays.size(), found, unused);
+  trace(world_, *find_variant("best"), {}, rays.view(), false, found, unused);
   float extent = 0;
   for (int a = 0; a < 3 && scene.finite; ++a)
     extent = std::max(extent, scene.box_hi[a] - scene.box_lo[a]);

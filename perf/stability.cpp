@@ -47,11 +47,8 @@ class EmbreeTracer final : public Tracer {
     return {a.t, a.id, {}, {}};
   }
   Answers occluded(const RayList& rays, int way) override {
-    const perf::Answers a = ask(rays, true, way);
-    Answers out{a.t, std::vector<std::uint32_t>(a.t.size(), kNoPrimitive), {}, {}};
-    for (std::size_t i = 0; i < a.t.size(); ++i)
-      if (a.t[i] == -test::kInf)
-        out.id[i] = 0;
+    Answers out;
+    out.block(rays, ask(rays, true, way).blocked);
     return out;
   }
 

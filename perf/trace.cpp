@@ -52,8 +52,8 @@ struct Race {
 };
 
 void trace_grelha(Race& race, const TraceSettings& settings, TraceCounts& counts) {
-  trace_all(
-      *find_variant("best"), race.place.world, race.rays, race.any, settings, race.answers, counts);
+  const Rays rays = race.rays.view();
+  trace(race.place.world, best_variant(), settings, rays, race.any, race.answers, counts);
 }
 
 void enter_ways(Race& race) {

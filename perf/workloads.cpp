@@ -1,6 +1,7 @@
 #include "perf/workloads.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
@@ -71,30 +72,40 @@ RayBuffer camera_rays(const Camera& camera) {
   return rays;
 }
 
+Rays RayBuffer::view(std::size_t first, std::size_t count) const {
+  return {.org = {ox.data() + first, oy.data() + first, oz.data() + first},
+          .dir = {dx.data() + first, dy.data() + first, dz.data() + first},
+          .t_min = t_min.data() + first,
+          .t_max = t_max.data() + first,
+          .count = count};
+}
+
+void Answers::resize(std::size_t count, bool any) {
+  t.resize(any ? 0 : count);
+  id.resize(any ? 0 : count);
+  blocked.resize(any ? count : 0);
+}
+
+bool Answers::same(std::size_t i, const Answers& others, std::size_t k) const {
+  if (t.empty())
+    return blocked[i] == others.blocked[k];
+  return std::memcmp(&t[i], &others.t[k], sizeof t[i]) == 0 && id[i] == others.id[k];
+}
+
 void trace(const World& world,
            const Variant& variant,
            const TraceSettings& settings,
-           const RayBuffer& r,
-           std::size_t first,
-           std::size_t count,
+           const Rays& rays,
+           bool any,
            Answers& a,
            TraceCounts& counts) {
-  a.t.assign(r.t_max.begin() + std::ptrdiff_t(first),
-             r.t_max.begin() + std::ptrdiff_t(first + count));
-  a.id.resize(count);
-  variant.loops.closest(world.impl().view,
-                        {&r.ox[first],
-                         &r.oy[first],
-                         &r.oz[first],
-                         &r.dx[first],
-                         &r.dy[first],
-                         &r.dz[first],
-                         &r.t_min[first],
-                         a.t.data(),
-                         a.id.data(),
-                         static_cast<int>(count)},
-                        settings,
-                        counts);
+  const SceneView& scene = world.impl().view;
+  a.resize(rays.count, any);
+  if (any) {
+    variant.loops.occluded(scene, rays, a.blocked.data(), settings, counts);
+    return;
+  }
+  variant.loops.closest(scene, rays, {a.t.data(), a.id.data()}, settings, counts);
 }
 
 }  // namespace grelha::perf

@@ -1,6 +1,7 @@
 #pragma once
 // Scenes and rays to time, made once and shared by all methods.
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -17,11 +18,22 @@ struct RayBuffer {
   std::vector<float> ox, oy, oz, dx, dy, dz, t_min, t_max;
   std::size_t size() const { return ox.size(); }
   void add(const float (&org)[3], const float (&dir)[3], float t_end);
+  /// Rays [first, first + count).
+  Rays view(std::size_t first, std::size_t count) const;
+  Rays view() const { return view(0, size()); }
 };
 
 struct Answers {
-  std::vector<float> t;
-  std::vector<std::uint32_t> id;
+  std::vector<float> t;               ///< of closest hits
+  std::vector<std::uint32_t> id;      ///< the same
+  std::vector<std::uint8_t> blocked;  ///< of occlusion
+  /// Makes room for `count`, of occlusion with `any`.
+  void resize(std::size_t count, bool any);
+  std::size_t size() const { return std::max(t.size(), blocked.size()); }
+  /// Whether ray i meets something.
+  bool met(std::size_t i) const { return t.empty() ? blocked[i] != 0 : id[i] != kNoPrimitive; }
+  /// Whether answer i is the k-th of others, bit for bit.
+  bool same(std::size_t i, const Answers& others, std::size_t k) const;
   bool operator==(const Answers&) const = default;
 };
 
@@ -31,13 +43,12 @@ SceneFile make_scene(const std::string& name, int size);
 /// One ray through the centre of every pixel, in tiles of 8 x 8 pixels as a render traces them.
 RayBuffer camera_rays(const Camera& camera);
 
-/// Answers of rays [first, first + count) by one method of one instruction set.
+/// Answers to rays by one method of one instruction set; `any`: occlusion.
 void trace(const World& world,
            const Variant& variant,
            const TraceSettings& settings,
-           const RayBuffer& rays,
-           std::size_t first,
-           std::size_t count,
+           const Rays& rays,
+           bool any,
            Answers& answers,
            TraceCounts& counts);
 

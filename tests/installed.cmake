@@ -61,6 +61,7 @@ run("the example" ${SCRATCH}/build/embed)
 # The front of the middle ball, radius .8 around z = 1, seen from z = 5; balls from x = -1.6 to 1.6
 # under rays .004 apart.
 string(CONCAT expected "^sphere 1 at t = 3.2, lit\n800 of 1000 rays meet something\n"
+  "800 of them are blocked\n"
   "160x120, [0-9]+ rays by [a-z0-9]+\n$")
 if(NOT output MATCHES "${expected}")
   message(FATAL_ERROR "the example said\n${output}")

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "grelha/rays.hpp"
+
 namespace grelha {
 
 /// The phases, in the order a batch goes through them.
@@ -18,17 +20,11 @@ enum class Phase : int {
 };
 inline constexpr int kPhases = 8;
 
-/// Rays about to be traced, in arrays of `count`; t: where the search ends.
-struct ObservedRays {
-  const float *ox, *oy, *oz, *dx, *dy, *dz, *t_min, *t;
-  int count;
-};
-
 /// An observer is told whenever its thread goes from one phase to another, some ten times a batch.
 /// It gets `rays` on the way into primary, bounce and shadow, once for each run of rays. A function
 /// pointer, so the hot loops need nothing from another file.
 struct Observer {
-  void (*enter)(Observer&, Phase, const ObservedRays* rays);
+  void (*enter)(Observer&, Phase, const Rays* rays);
 };
 
 }  // namespace grelha

@@ -3,6 +3,7 @@
 // World or on many. A World does not change, and a call writes only the arrays it was given.
 
 #include <cstdint>
+#include <span>
 #include <string_view>
 
 #include "grelha/geometry.hpp"
@@ -21,20 +22,35 @@ struct QueryOptions {
 
 /// The nearest hit of each ray of a packet, or of a stream of any length. 64 neighbours are taken
 /// at a time, fastest where they go a similar way. Runs on the calling thread. Of two
-/// hits at equal t the lower id wins. `counts`, where given, grows by what was done. Throws
-/// std::invalid_argument for a packet size or an instruction set that is not there, and for rays
-/// without origins, directions or t.
+/// hits at equal t the lower id wins. Each ray is told the same bits alone and in any company.
+/// `counts`, where given, grows by what was done. Throws std::invalid_argument for a packet size or
+/// an instruction set that is not there, and for rays without origins or directions.
 void closest(const World& world,
-             const RaySpan& rays,
+             const Rays& rays,
+             const Hits& hits,
+             const QueryOptions& options = {},
+             TraceCounts* counts = nullptr);
+/// The same of an array of rays; throws as well where there are not as many hits.
+void closest(const World& world,
+             std::span<const Ray> rays,
+             std::span<Hit> hits,
              const QueryOptions& options = {},
              TraceCounts* counts = nullptr);
 /// The same of one ray.
 Hit closest(const World& world, const Ray& ray);
 
-/// Whether anything at all is in the way of each ray: t becomes -infinity and id that of something
-/// in the way; which one is not promised. Faster than closest().
+/// Whether anything at all is in the way of each ray, between its t_min and t_max: blocked[i]
+/// becomes 1 or 0, of rays.count of them. Faster than closest(); throws as that does, and where
+/// `blocked` is null.
 void occluded(const World& world,
-              const RaySpan& rays,
+              const Rays& rays,
+              std::uint8_t* blocked,
+              const QueryOptions& options = {},
+              TraceCounts* counts = nullptr);
+/// The same of an array of rays; throws as well where there are not as many answers.
+void occluded(const World& world,
+              std::span<const Ray> rays,
+              std::span<std::uint8_t> blocked,
               const QueryOptions& options = {},
               TraceCounts* counts = nullptr);
 /// The same of one ray.

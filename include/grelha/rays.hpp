@@ -1,8 +1,10 @@
 #pragma once
 // Rays, one or in the caller's arrays, and what they meet.
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 
 #include "grelha/geometry.hpp"
 
@@ -26,21 +28,46 @@ struct Hit {
   explicit operator bool() const { return id != kNoPrimitive; }
 };
 
-/// Rays in arrays of `count`. t: in, where the search ends; out, the nearest hit, or the old value
-/// when there is none (closest); -infinity when something is in the way (occluded). Directions of
-/// any length from 1e-18 to 1e18 (others meet nothing); t counts multiples of it. Rays with a NaN
-/// or an infinity meet nothing.
-struct RaySpan {
-  const float *ox = nullptr, *oy = nullptr, *oz = nullptr;  ///< where rays start
-  const float *dx = nullptr, *dy = nullptr, *dz = nullptr;  ///< and where to
-  /// what is met at or before this t does not count; null: 0 for all
-  const float* t_min = nullptr;
-  float* t = nullptr;  ///< in and out, see above
-  /// out, or null: the primitive, kNoPrimitive where nothing was met
+/// A view of rays in arrays that the caller owns. They are read and never written.
+///
+/// Shapes    component a of ray i: org[a][i * org_stride], dir[a][i * dir_stride]; t_min and t_max
+///           at i * t_stride. Strides count floats. 1: an array for each component; 3, with
+///           org = {p, p + 1, p + 2}: points x y z x y z; 0: all rays share what stands there.
+/// Units     org: scene units, within 1e18; dir: any length from 1e-18 to 1e18; t: multiples of it.
+/// Requires  `count` floats of each array, and no null in org and dir unless count is 0: closest()
+///           and occluded() throw std::invalid_argument.
+/// Ensures   a ray meets nothing where t_max <= t_min, where its direction is longer or shorter,
+///           and where a number is NaN or (of org and dir) infinite.
+struct Rays {
+  const float* org[3] = {};       ///< x, y and z of where rays start
+  const float* dir[3] = {};       ///< x, y and z of where they go
+  const float* t_min = nullptr;   ///< hits at or before it do not count; null: 0 for all
+  const float* t_max = nullptr;   ///< hits at or behind it do not count; null: infinity
+  std::size_t count = 0;          ///< how many rays
+  std::ptrdiff_t org_stride = 1;  ///< from one ray's org to the next ray's
+  std::ptrdiff_t dir_stride = 1;  ///< the same of dir
+  std::ptrdiff_t t_stride = 1;    ///< the same of t_min and t_max
+
+  /// A view of an array of rays.
+  static Rays of(std::span<const Ray> rays);
+  /// A view of points and directions x y z x y z, searched from t = 0 on. Throws
+  /// std::invalid_argument for unequal lengths.
+  static Rays of(std::span<const Float3> org, std::span<const Float3> dir);
+};
+
+/// A view of the caller's arrays for what rays meet first, as long as those of the rays. Any may be
+/// null: not asked for. No other array is written, and none behind ray `count - 1`.
+struct Hits {
+  /// [i * stride] out: t of the nearest hit; without a hit, the ray's t_max, or infinity where that
+  /// was left out. May be the array of t_max itself, if strides are equal.
+  float* t = nullptr;
+  /// [i * stride] out: the primitive, see primitive_of(); kNoPrimitive where nothing was met
   std::uint32_t* id = nullptr;
-  int count = 0;  ///< length of every array, at least 0
-  /// out, or null: t of what was met as precise as it was computed; others keep theirs
-  double* whole = nullptr;
+  double* t_double = nullptr;  ///< [i] out: t before it was rounded to float
+  std::ptrdiff_t stride = 1;   ///< of t and id, in units of four bytes
+
+  /// A view of an array of hits.
+  static Hits of(std::span<Hit> hits);
 };
 
 }  // namespace grelha

@@ -2,6 +2,7 @@
 #include "grelha/query.hpp"
 
 #include <stdexcept>
+#include <string>
 
 #include "kernel/shapes/surface.hpp"
 #include "kernel/query/variants.hpp"
@@ -17,37 +18,27 @@ TraceSettings settings_of(int packet) {
 }
 
 /// Arrays that have no natural default.
-void expect_arrays(const RaySpan& rays) {
-  if (rays.count < 0)
-    throw std::invalid_argument("a stream of rays has no negative length");
+void expect_arrays(const Rays& rays) {
+  if (rays.count > std::size_t{PTRDIFF_MAX})
+    throw std::invalid_argument("rays: expected a count that memory can hold, found " +
+                                std::to_string(static_cast<std::ptrdiff_t>(rays.count)));
   if (rays.count == 0)
     return;
-  for (const float* const array : {rays.ox, rays.oy, rays.oz})
-    if (!array)
-      throw std::invalid_argument("a stream of rays needs ox, oy and oz, where they start");
-  for (const float* const array : {rays.dx, rays.dy, rays.dz})
-    if (!array)
-      throw std::invalid_argument("a stream of rays needs dx, dy and dz, where they go");
-  if (!rays.t)
-    throw std::invalid_argument("a stream of rays needs t, where they end and what they meet");
+  for (int a = 0; a < 3; ++a)
+    if (!rays.org[a] || !rays.dir[a])
+      throw std::invalid_argument(std::string("rays: expected an array of ") + "xyz"[a] + " of " +
+                                  (rays.org[a] ? "directions" : "origins") + ", found null");
+}
+
+void expect_as_many(std::size_t rays, std::size_t answers) {
+  if (rays != answers)
+    throw std::invalid_argument("expected an answer for each of " + std::to_string(rays) +
+                                " rays, found room for " + std::to_string(answers));
 }
 
 void expect_primitive(const PrimitiveIds& ids, std::uint32_t id) {
   if (id >= ids.end())
     throw std::invalid_argument("no primitive of this scene has this id");
-}
-
-using Loop = void (*)(const SceneView&, const RaySpan&, const TraceSettings&, TraceCounts&);
-
-void trace(const World& world,
-           const RaySpan& rays,
-           const QueryOptions& options,
-           TraceCounts* counts,
-           Loop VariantLoops::*loop) {
-  expect_arrays(rays);
-  TraceCounts unread;
-  (choose_variant(options.isa).loops.*loop)(
-      world.impl().view, rays, settings_of(options.packet), counts ? *counts : unread);
 }
 
 scalar::Vec3<float> vec(const Float3& p) { return {p.x, p.y, p.z}; }
@@ -56,20 +47,48 @@ Float3 float3(const scalar::Vec3<float>& v) { return {v.x, v.y, v.z}; }
 }  // namespace
 
 void closest(const World& world,
-             const RaySpan& rays,
+             const Rays& rays,
+             const Hits& hits,
              const QueryOptions& options,
              TraceCounts* counts) {
-  trace(world, rays, options, counts, &VariantLoops::closest);
+  expect_arrays(rays);
+  TraceCounts unread;
+  choose_variant(options.isa)
+      .loops.closest(
+          world.impl().view, rays, hits, settings_of(options.packet), counts ? *counts : unread);
+}
+void closest(const World& world,
+             std::span<const Ray> rays,
+             std::span<Hit> hits,
+             const QueryOptions& options,
+             TraceCounts* counts) {
+  expect_as_many(rays.size(), hits.size());
+  closest(world, Rays::of(rays), Hits::of(hits), options, counts);
 }
 Hit closest(const World& world, const Ray& ray) {
   return best_variant().loops.closest_one(world.impl().view, ray);
 }
 
 void occluded(const World& world,
-              const RaySpan& rays,
+              const Rays& rays,
+              std::uint8_t* blocked,
               const QueryOptions& options,
               TraceCounts* counts) {
-  trace(world, rays, options, counts, &VariantLoops::occluded);
+  expect_arrays(rays);
+  if (!blocked && rays.count > 0)
+    throw std::invalid_argument("occluded: expected an array of answers, found null");
+  TraceCounts unread;
+  choose_variant(options.isa)
+      .loops.occluded(
+          world.impl().view, rays, blocked, settings_of(options.packet), counts ? *counts : unread);
+}
+void occluded(const World& world,
+              std::span<const Ray> rays,
+              std::span<std::uint8_t> blocked,
+              const QueryOptions& options,
+              TraceCounts* counts) {
+  expect_as_many(rays.size(), blocked.size());
+  occluded(world, Rays::of(rays), blocked.data(), options, counts);
 }
 bool occluded(const World& world, const Ray& ray) {
   return best_variant().loops.occluded_one(world.impl().view, ray);

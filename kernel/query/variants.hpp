@@ -24,17 +24,24 @@ struct TraceSettings {
   bool mailbox = true;
 };
 
+/// What any number of rays meet first.
+using ClosestLoop =
+    void (*)(const SceneView&, const Rays&, const Hits&, const TraceSettings&, TraceCounts&);
+/// Whether anything is in their way: [rays.count] out, 1 or 0.
+using OccludedLoop =
+    void (*)(const SceneView&, const Rays&, std::uint8_t*, const TraceSettings&, TraceCounts&);
+
 /// Loops that test rays against primitives in double lanes, with one rounding to float at the end.
 struct DoubleLoops {
-  void (*closest)(const SceneView&, const RaySpan&, const TraceSettings&, TraceCounts&);
-  void (*occluded)(const SceneView&, const RaySpan&, const TraceSettings&, TraceCounts&);
+  ClosestLoop closest;
+  OccludedLoop occluded;
   TraceLoops trace;  ///< for shading, which is in float
 };
 
 /// What one instruction set's file provides: loops in float, but for those `in_double`.
 struct VariantLoops {
-  void (*closest)(const SceneView&, const RaySpan&, const TraceSettings&, TraceCounts&);
-  void (*occluded)(const SceneView&, const RaySpan&, const TraceSettings&, TraceCounts&);
+  ClosestLoop closest;
+  OccludedLoop occluded;
   /// One ray by itself.
   Hit (*closest_one)(const SceneView&, const Ray&);
   bool (*occluded_one)(const SceneView&, const Ray&);

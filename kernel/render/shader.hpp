@@ -15,7 +15,11 @@ inline void enter(const BandWork& work, Phase phase) {
 inline void enter(const BandWork& work, Phase phase, const RayArrays& r, int count) {
   if (!work.observer)
     return;
-  const ObservedRays rays{r.ox, r.oy, r.oz, r.dx, r.dy, r.dz, r.t_min, r.t, count};
+  const Rays rays{.org = {r.ox, r.oy, r.oz},
+                  .dir = {r.dx, r.dy, r.dz},
+                  .t_min = r.t_min,
+                  .t_max = r.t,
+                  .count = static_cast<std::size_t>(count)};
   work.observer->enter(*work.observer, phase, &rays);
 }
 

@@ -18,7 +18,7 @@ namespace grelha {
 class PhaseClock : public Observer {
  public:
   PhaseClock()
-      : Observer{[](Observer& o, Phase next, const ObservedRays*) {
+      : Observer{[](Observer& o, Phase next, const Rays*) {
           static_cast<PhaseClock&>(o).go_on(next);
         }} {}
   void start(Phase first) {

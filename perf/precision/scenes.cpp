@@ -76,7 +76,7 @@ struct SceneWork {
 
 struct SceneHits {
   std::vector<float> t;
-  std::vector<double> whole;
+  std::vector<double> t_double;
   std::vector<std::uint32_t> id;
 };
 
@@ -85,22 +85,14 @@ void trace_scene(const SceneWork& work,
                  bool in_double,
                  const RayBuffer& r,
                  SceneHits& hits) {
-  hits.t = r.t_max;
+  hits.t.resize(r.size());
   hits.id.resize(r.size());
   TraceCounts counts;
-  const RaySpan span{r.ox.data(),
-                     r.oy.data(),
-                     r.oz.data(),
-                     r.dx.data(),
-                     r.dy.data(),
-                     r.dz.data(),
-                     r.t_min.data(),
-                     hits.t.data(),
-                     hits.id.data(),
-                     static_cast<int>(r.size()),
-                     hits.whole.empty() ? nullptr : hits.whole.data()};
+  const Hits out{.t = hits.t.data(),
+                 .id = hits.id.data(),
+                 .t_double = hits.t_double.empty() ? nullptr : hits.t_double.data()};
   (in_double ? variant.loops.in_double.closest : variant.loops.closest)(
-      work.world.impl().view, span, {}, counts);
+      work.world.impl().view, r.view(), out, {}, counts);
 }
 
 /// Sets all counters but the time's. `t` of ray i is what judge gets.
@@ -143,16 +135,16 @@ void run_scene(benchmark::State& state,
                const Variant& variant,
                bool in_double) {
   SceneHits hits;
-  hits.whole.resize(work.judged.size());
+  hits.t_double.resize(work.judged.size());
   trace_scene(work, variant, in_double, work.judged, hits);
   const SceneHits judged = hits;
-  hits.whole.clear();
+  hits.t_double.clear();
   for (auto _ : state) {
     trace_scene(work, variant, in_double, work.timed, hits);
     benchmark::DoNotOptimize(hits.t.data());
   }
   set_time(state, static_cast<double>(work.timed.size()));
-  judge_scene(state, work, judged.id, [&](std::size_t i) { return judged.whole[i]; });
+  judge_scene(state, work, judged.id, [&](std::size_t i) { return judged.t_double[i]; });
 }
 
 std::vector<SceneWork> scene_works(int groups) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 
 #include "kernel/grid/world_impl.hpp"
 #include "perf/trace/modes.hpp"
@@ -23,8 +22,6 @@ constexpr double kClose = 1e-5;  ///< relative difference of t of one and the sa
 constexpr double kConeUnits = 32;
 constexpr std::size_t kSampled = 16384;  ///< rays that the reference walk traces, or some more
 
-bool blocked(float t) { return t == -__builtin_inff(); }
-
 /// A set of rays, and what Grelha's packets answer.
 struct Judge {
   const Place& place;
@@ -32,9 +29,6 @@ struct Judge {
   bool any;
   Answers truth;
 
-  bool same(const Answers& a, std::size_t i, std::size_t k) const {
-    return std::memcmp(&a.t[i], &truth.t[k], 4) == 0 && (any || a.id[i] == truth.id[k]);
-  }
   bool on_its_cone(std::size_t i, std::uint32_t id, float t) const;
   bool past_the_planes(std::size_t i) const;
   bool something_else(const Answers& a, std::size_t i) const;
@@ -80,7 +74,7 @@ bool Judge::past_the_planes(std::size_t i) const {
 /// Whether Embree's ray i met what Grelha's did not.
 bool Judge::something_else(const Answers& a, std::size_t i) const {
   if (any)
-    return blocked(a.t[i]) != blocked(truth.t[i]);
+    return a.met(i) != truth.met(i);
   if (a.id[i] == kNoPrimitive || truth.id[i] == kNoPrimitive)
     return a.id[i] != truth.id[i] && !past_the_planes(i);
   // one of two that meet or overlap there is no error
@@ -92,15 +86,10 @@ std::string compare_modes(const Judge& judge) {
   for (const GrelhaMode& mode : kModes) {
     Answers again;
     TraceCounts unused;
-    trace_all(*find_variant("best"),
-              judge.place.world,
-              judge.rays,
-              judge.any,
-              mode.settings,
-              again,
-              unused);
+    const Rays rays = judge.rays.view();
+    trace(judge.place.world, best_variant(), mode.settings, rays, judge.any, again, unused);
     for (std::size_t i = 0; i < judge.rays.size(); ++i)
-      if (!judge.same(again, i, i))
+      if (!again.same(i, judge.truth, i))
         return std::string("wrong hits: ") + mode.name + " against " + kModes[0].name;
   }
   return "";
@@ -115,9 +104,9 @@ std::string compare_reference(const Judge& judge) {
         {rays.ox[i], rays.oy[i], rays.oz[i]}, {rays.dx[i], rays.dy[i], rays.dz[i]}, rays.t_max[i]);
   Answers again;
   TraceCounts unused;
-  trace_all(reference_walk(), judge.place.world, some, judge.any, {}, again, unused);
+  trace(judge.place.world, reference_walk(), {}, some.view(), judge.any, again, unused);
   for (std::size_t i = 0; i < some.size(); ++i)
-    if (!judge.same(again, i, i * step))
+    if (!again.same(i, judge.truth, i * step))
       return "wrong hits: packets against the reference walk";
   return "";
 }
@@ -125,7 +114,7 @@ std::string compare_reference(const Judge& judge) {
 double hit_share(const Judge& judge) {
   std::size_t hits = 0;
   for (std::size_t i = 0; i < judge.rays.size(); ++i)
-    hits += judge.any ? blocked(judge.truth.t[i]) : judge.truth.id[i] != kNoPrimitive;
+    hits += judge.truth.met(i);
   return judge.share(hits);
 }
 
@@ -165,7 +154,8 @@ std::string compare_embree(const Judge& judge, Cell& cell) {
 std::string check(const Place& place, const RayBuffer& rays, bool any, Cell& cell) {
   Judge judge{place, rays, any, {}};
   TraceCounts unused;
-  trace_all(*find_variant("best"), place.world, rays, any, kModes[0].settings, judge.truth, unused);
+  const TraceSettings& settings = kModes[0].settings;
+  trace(place.world, best_variant(), settings, rays.view(), any, judge.truth, unused);
   if (const std::string wrong = compare_modes(judge); !wrong.empty())
     return wrong;
   if (const std::string wrong = compare_reference(judge); !wrong.empty())

@@ -23,13 +23,4 @@ constexpr std::size_t renders(RayKind kind) {
                                                                                               : 0;
 }
 
-/// Answers of all rays: closest hits, or with `any` whether there is one.
-void trace_all(const Variant& variant,
-               const World& world,
-               const RayBuffer& rays,
-               bool any,
-               const TraceSettings& settings,
-               Answers& answers,
-               TraceCounts& counts);
-
 }  // namespace grelha::perf

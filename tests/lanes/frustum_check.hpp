@@ -9,9 +9,9 @@ namespace grelha::GRELHA_ISA {
 
 class FrustumChecker {
  public:
-  FrustumChecker(const GridView& g, const test::PacketRays& rays, int axis) : g_(g) {
-    p_.size = rays.count;
-    for (int i = 0; i < rays.count; ++i) {
+  FrustumChecker(const GridView& g, const Rays& rays, int axis) : g_(g) {
+    p_.size = static_cast<int>(rays.count);
+    for (int i = 0; i < p_.size; ++i) {
       for (int a = 0; a < 3; ++a) {
         p_.org[a][i] = rays.org[a][i];
         p_.dir[a][i] = rays.dir[a][i];
@@ -163,7 +163,7 @@ class FrustumChecker {
   test::FrustumCheck out_;
 };
 
-inline test::FrustumCheck check_frustum(const GridView& g, const test::PacketRays& rays, int axis) {
+inline test::FrustumCheck check_frustum(const GridView& g, const Rays& rays, int axis) {
   return FrustumChecker(g, rays, axis).check();
 }
 

@@ -21,15 +21,6 @@ struct FrustumCheck {
   double reach = -1;         ///< by which a plane's gradient is longer than is said, of itself
 };
 
-/// Rays of one packet; arrays as in RaySpan.
-struct PacketRays {
-  const float* org[3];
-  const float* dir[3];
-  const float* t_min;
-  const float* t_max;
-  int count;
-};
-
 struct LaneFunctions {
   /// power(x[i], y[i]).
   void (*power)(const float* x, const float* y, float* out, int count);
@@ -46,7 +37,8 @@ struct LaneFunctions {
   /// Camera rays of the work's batch.
   void (*camera_rays)(const FrameView&, const BandWork&, int count, bool in_pixels);
   /// Bounds rays in a grid, along an axis or -1, and follows each in long double.
-  FrustumCheck (*check_frustum)(const GridView&, const PacketRays&, int axis);
+  /// Of the rays of one packet.
+  FrustumCheck (*check_frustum)(const GridView&, const Rays&, int axis);
   int most_rays;  ///< of a packet
 };
 

@@ -9,13 +9,25 @@
 namespace grelha {
 namespace {
 
-template <bool kAny, class Real>
-void loop(const SceneView& scene,
-          const RaySpan& rays,
-          const TraceSettings& settings,
-          TraceCounts& counts) {
+template <class Real>
+void walk_closest(const SceneView& scene,
+                  const Rays& rays,
+                  const Hits& hits,
+                  const TraceSettings& settings,
+                  TraceCounts& counts) {
   Counters n;
-  reference::trace_reference<kAny, Real>(scene, rays, settings.mailbox, n);
+  reference::closest<Real>(scene, rays, settings.mailbox, n, hits);
+  reference::add(n, counts);
+}
+
+template <class Real>
+void walk_occluded(const SceneView& scene,
+                   const Rays& rays,
+                   std::uint8_t* blocked,
+                   const TraceSettings& settings,
+                   TraceCounts& counts) {
+  Counters n;
+  reference::occluded<Real>(scene, rays, settings.mailbox, n, blocked);
   reference::add(n, counts);
 }
 
@@ -26,10 +38,10 @@ bool always() { return true; }
 const Variant& reference_walk() {
   static const VariantLoops loops = [] {
     VariantLoops l{};
-    l.closest = loop<false, float>;
-    l.occluded = loop<true, float>;
-    l.in_double.closest = loop<false, double>;
-    l.in_double.occluded = loop<true, double>;
+    l.closest = walk_closest<float>;
+    l.occluded = walk_occluded<float>;
+    l.in_double.closest = walk_closest<double>;
+    l.in_double.occluded = walk_occluded<double>;
     return l;
   }();
   static const Variant variant{"reference", 1, always, loops};

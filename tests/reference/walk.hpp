@@ -210,15 +210,15 @@ bool walk_grid(WalkedRay<Real>& r, const GridView& g, RayMailbox* box, Counters&
 
 /// False when the ray can meet nothing.
 template <class Real>
-bool load_ray(const RaySpan& rays, int i, WalkedRay<Real>& r) {
-  const float org[3] = {rays.ox[i], rays.oy[i], rays.oz[i]};
-  const float d[3] = {rays.dx[i], rays.dy[i], rays.dz[i]};
+bool load_ray(const Ray& ray, WalkedRay<Real>& r) {
+  const float org[3] = {ray.org.x, ray.org.y, ray.org.z};
+  const float d[3] = {ray.dir.x, ray.dir.y, ray.dir.z};
   for (int a = 0; a < 3; ++a) {
     r.org[a] = r.near_org[a] = org[a];
     r.dir[a] = d[a];
   }
-  r.t_min = r.near_t_min = rays.t_min[i];
-  r.best = r.near_best = rays.t[i];
+  r.t_min = r.near_t_min = ray.t_min;
+  r.best = r.near_best = ray.t_max;
   const float dd = (d[0] * d[0] + d[1] * d[1]) + d[2] * d[2];
   const Vec3<Real> dir{d[0], d[1], d[2]};
   r.inv_dd = 1 / dot(dir, dir);
@@ -261,26 +261,61 @@ void trace_ray(const SceneView& scene, WalkedRay<Real>& r, RayMailbox* box, Coun
       return;
 }
 
-/// What the loops of a Variant do, see VariantLoops.
-template <bool kAny, class Real>
-void trace_reference(const SceneView& scene, const RaySpan& rays, bool mailbox, Counters& n) {
+/// Ray i of a view.
+inline Ray ray_of(const Rays& rays, std::size_t i) {
+  const auto k = static_cast<std::ptrdiff_t>(i);
+  const auto vector = [&](const float* const(&of)[3], std::ptrdiff_t stride) {
+    return Float3{of[0][k * stride], of[1][k * stride], of[2][k * stride]};
+  };
+  return {vector(rays.org, rays.org_stride),
+          vector(rays.dir, rays.dir_stride),
+          rays.t_min ? rays.t_min[k * rays.t_stride] : 0,
+          rays.t_max ? rays.t_max[k * rays.t_stride] : kInfinity};
+}
+
+/// Calls `take(i, ray, r)` for each ray of a view: as it came, and as it was walked.
+template <bool kAny, class Real, class Take>
+void trace_reference(
+    const SceneView& scene, const Rays& rays, bool mailbox, Counters& n, const Take& take) {
   RayMailbox box;
-  for (int i = 0; i < rays.count; ++i) {
+  for (std::size_t i = 0; i < rays.count; ++i) {
+    const Ray ray = ray_of(rays, i);
     WalkedRay<Real> r;
-    rays.id[i] = kNoPrimitive;
-    if (!load_ray(rays, i, r))
-      continue;
-    box.clear();
-    trace_ray<kAny>(scene, r, mailbox ? &box : nullptr, n);
-    if (r.id == kNoPrimitive)
-      continue;
-    constexpr bool kInDouble = WalkedRay<Real>::kInDouble;
-    const float shift = static_cast<float>(r.shift);
-    rays.id[i] = r.id;
-    rays.t[i] = static_cast<float>(kAny || kInDouble ? r.best : r.best + shift);
-    if (rays.whole)
-      rays.whole[i] = kInDouble ? r.best : unmoved(static_cast<float>(r.best), shift);
+    if (load_ray(ray, r)) {
+      box.clear();
+      trace_ray<kAny>(scene, r, mailbox ? &box : nullptr, n);
+    }
+    take(static_cast<std::ptrdiff_t>(i), ray, r);
   }
+}
+
+/// What the loops of a Variant do, see VariantLoops.
+template <class Real>
+void closest(
+    const SceneView& scene, const Rays& rays, bool mailbox, Counters& n, const Hits& hits) {
+  constexpr bool kInDouble = WalkedRay<Real>::kInDouble;
+  const auto store = [&](std::ptrdiff_t i, const Ray& ray, const WalkedRay<Real>& r) {
+    const bool met = r.id != kNoPrimitive;
+    const float shift = static_cast<float>(r.shift);
+    if (hits.t)
+      hits.t[i * hits.stride] =
+          met ? static_cast<float>(kInDouble ? r.best : r.best + shift) : ray.t_max;
+    if (hits.id)
+      hits.id[i * hits.stride] = r.id;
+    if (hits.t_double)
+      hits.t_double[i] = !met        ? ray.t_max
+                         : kInDouble ? r.best
+                                     : unmoved(static_cast<float>(r.best), shift);
+  };
+  trace_reference<false, Real>(scene, rays, mailbox, n, store);
+}
+template <class Real>
+void occluded(
+    const SceneView& scene, const Rays& rays, bool mailbox, Counters& n, std::uint8_t* blocked) {
+  trace_reference<true, Real>(
+      scene, rays, mailbox, n, [&](std::ptrdiff_t i, const Ray&, const WalkedRay<Real>& r) {
+        blocked[i] = r.id != kNoPrimitive;
+      });
 }
 
 }  // namespace grelha::GRELHA_ISA

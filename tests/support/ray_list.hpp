@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,13 @@ struct RayList {
   std::size_t size() const { return t.size(); }
   Float3 org(std::size_t i) const { return {ox[i], oy[i], oz[i]}; }
   Float3 dir(std::size_t i) const { return {dx[i], dy[i], dz[i]}; }
+  Rays view() const {
+    return {.org = {ox.data(), oy.data(), oz.data()},
+            .dir = {dx.data(), dy.data(), dz.data()},
+            .t_min = t_min.data(),
+            .t_max = t.data(),
+            .count = size()};
+  }
   /// In hexadecimal, to be pasted into a smaller test.
   std::string describe(std::size_t i) const {
     std::ostringstream s;
@@ -46,7 +54,18 @@ struct Answers {
   std::vector<float> t;
   std::vector<std::uint32_t> id;
   TraceCounts counts;
-  std::vector<double> whole;  ///< t before it was rounded
+  std::vector<double> t_double;  ///< t before it was rounded
+
+  /// Answers of occluded(): of rays with something in the way t is -infinity, and the id 0.
+  void block(const RayList& rays, const std::vector<std::uint8_t>& blocked) {
+    for (std::size_t i = 0; i < blocked.size(); ++i) {
+      if (blocked[i] > 1)
+        throw std::logic_error("expected 0 or 1 for ray " + std::to_string(i));
+      t.push_back(blocked[i] ? -kInf : rays.t[i]);
+      t_double.push_back(t.back());
+      id.push_back(blocked[i] ? 0 : kNoPrimitive);
+    }
+  }
 };
 
 enum class Query { kClosest, kOccluded };
@@ -57,22 +76,18 @@ inline Answers trace(const Variant& variant,
                      const TraceSettings& settings,
                      Query query) {
   Answers a;
-  a.t = rays.t;
-  a.whole.assign(rays.t.begin(), rays.t.end());
-  a.id.assign(rays.size(), 12345u);  // what no trace may leave behind
-  const RaySpan span{rays.ox.data(),
-                     rays.oy.data(),
-                     rays.oz.data(),
-                     rays.dx.data(),
-                     rays.dy.data(),
-                     rays.dz.data(),
-                     rays.t_min.data(),
-                     a.t.data(),
-                     a.id.data(),
-                     static_cast<int>(rays.size()),
-                     a.whole.data()};
-  (query == Query::kClosest ? variant.loops.closest : variant.loops.occluded)(
-      world.impl().view, span, settings, a.counts);
+  const SceneView& scene = world.impl().view;
+  if (query == Query::kOccluded) {
+    std::vector<std::uint8_t> blocked(rays.size(), 77);
+    variant.loops.occluded(scene, rays.view(), blocked.data(), settings, a.counts);
+    a.block(rays, blocked);
+    return a;
+  }
+  a.t.assign(rays.size(), 12345);  // what no trace may leave behind
+  a.t_double.assign(rays.size(), 12345);
+  a.id.assign(rays.size(), 12345u);
+  const Hits hits{.t = a.t.data(), .id = a.id.data(), .t_double = a.t_double.data()};
+  variant.loops.closest(scene, rays.view(), hits, settings, a.counts);
   return a;
 }
 

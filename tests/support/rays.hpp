@@ -96,7 +96,8 @@ inline testing::AssertionResult same(const Answers& wanted,
       continue;
     if (ids &&
         std::bit_cast<std::uint32_t>(wanted.t[i]) == std::bit_cast<std::uint32_t>(got.t[i]) &&
-        std::bit_cast<std::uint64_t>(wanted.whole[i]) == std::bit_cast<std::uint64_t>(got.whole[i]))
+        std::bit_cast<std::uint64_t>(wanted.t_double[i]) ==
+            std::bit_cast<std::uint64_t>(got.t_double[i]))
       continue;
     ++wrong;
     first = i;

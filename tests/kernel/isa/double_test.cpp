@@ -155,7 +155,7 @@ TEST_P(Double, IsOffByRoundingAlone) {
         continue;
       ++judged;
       const oracle::Real reach = (length(ray.org) + 4) / length(ray.dir);
-      ASSERT_LE(std::abs(a.whole[i] - truth->t), 920 * kEpsDouble * reach)
+      ASSERT_LE(std::abs(a.t_double[i] - truth->t), 920 * kEpsDouble * reach)
           << rays.describe(i) << " id " << a.id[i];
       wrongly_rounded += a.t[i] != static_cast<float>(truth->t);
     }

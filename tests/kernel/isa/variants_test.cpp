@@ -82,29 +82,23 @@ TEST_P(Copies, TakeAnyNumberOfRays) {
   Random random(2);
   const RayList all = rays_about(random, {}, 1, 70);
   const Truth truth = truth_of(scene, all);
-  for (int n = 0; n <= 70; ++n)
+  for (std::size_t n = 0; n <= 70; ++n)
     for (const Way& way : every_way()) {
-      std::vector<float> t = all.t;
+      std::vector<float> t(70, 77);
       std::vector<std::uint32_t> id(70, 77);
+      std::vector<std::uint8_t> blocked(70, 77);
       TraceCounts counts;
-      variant().loops.closest(world.impl().view,
-                              {all.ox.data(),
-                               all.oy.data(),
-                               all.oz.data(),
-                               all.dx.data(),
-                               all.dy.data(),
-                               all.dz.data(),
-                               all.t_min.data(),
-                               t.data(),
-                               id.data(),
-                               n},
-                              way.settings,
-                              counts);
+      Rays rays = all.view();
+      rays.count = n;
+      const SceneView& view = world.impl().view;
+      variant().loops.closest(view, rays, {t.data(), id.data()}, way.settings, counts);
+      variant().loops.occluded(view, rays, blocked.data(), way.settings, counts);
       for (std::size_t i = 0; i < 70; ++i) {
-        ASSERT_EQ(id[i], i < static_cast<std::size_t>(n) ? truth.closest.id[i] : 77u)
-            << way.name << ", " << n << " rays, ray " << i;
-        ASSERT_EQ(t[i], i < static_cast<std::size_t>(n) ? truth.closest.t[i] : all.t[i])
-            << way.name << ", " << n << " rays, ray " << i;
+        const std::string what = std::string(way.name) + ", " + std::to_string(n) + " rays, ray ";
+        const bool met = truth.closest.id[i] != kNoPrimitive;
+        ASSERT_EQ(id[i], i < n ? truth.closest.id[i] : 77u) << what << i;
+        ASSERT_EQ(t[i], i < n ? truth.closest.t[i] : 77) << what << i;
+        ASSERT_EQ(blocked[i], i < n ? met : 77) << what << i;
       }
     }
 }

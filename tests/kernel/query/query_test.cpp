@@ -27,21 +27,16 @@ Answers ask(const World& world,
             const RayList& rays,
             Query query,
             const QueryOptions& options = {}) {
-  Answers a{rays.t, std::vector<std::uint32_t>(rays.size(), 12345u), {}, {}};
-  const RaySpan span{rays.ox.data(),
-                     rays.oy.data(),
-                     rays.oz.data(),
-                     rays.dx.data(),
-                     rays.dy.data(),
-                     rays.dz.data(),
-                     rays.t_min.data(),
-                     a.t.data(),
-                     a.id.data(),
-                     int(rays.size())};
-  if (query == Query::kClosest)
-    closest(world, span, options, &a.counts);
-  else
-    occluded(world, span, options, &a.counts);
+  Answers a;
+  if (query == Query::kOccluded) {
+    std::vector<std::uint8_t> blocked(rays.size(), 77);
+    occluded(world, rays.view(), blocked.data(), options, &a.counts);
+    a.block(rays, blocked);
+    return a;
+  }
+  a.t.assign(rays.size(), 12345);
+  a.id.assign(rays.size(), 12345u);
+  closest(world, rays.view(), {a.t.data(), a.id.data()}, options, &a.counts);
   return a;
 }
 
@@ -121,7 +116,6 @@ TEST(Query, SomethingIsInTheWayWhereSomethingIsMet) {
                 blocked = ask(world, rays, Query::kOccluded);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     ASSERT_EQ(blocked.id[i] != kNoPrimitive, met.id[i] != kNoPrimitive) << rays.describe(i);
-    ASSERT_EQ(blocked.t[i] == -kInf, met.id[i] != kNoPrimitive) << rays.describe(i);
     ASSERT_EQ(occluded(world, Ray{rays.org(i), rays.dir(i), rays.t_min[i], rays.t[i]}),
               met.id[i] != kNoPrimitive);
   }
@@ -291,54 +285,9 @@ TEST(Query, WhatProgressThrowsIsThrown) {
   EXPECT_GT(share_done(sums), 0);
 }
 
-TEST(Query, ArraysLeftOutMeanTheirNaturalDefault) {
-  const Scene scene = random_mixture(21, 300);
-  const World world(scene, {});
-  RayList rays = some_rays(22);
-  rays.t_min.assign(rays.size(), 0);
-  for (const Query query : {Query::kClosest, Query::kOccluded}) {
-    const Answers told = ask(world, rays, query);
-    std::vector<float> t = rays.t;
-    const RaySpan bare{.ox = rays.ox.data(),
-                       .oy = rays.oy.data(),
-                       .oz = rays.oz.data(),
-                       .dx = rays.dx.data(),
-                       .dy = rays.dy.data(),
-                       .dz = rays.dz.data(),
-                       .t = t.data(),
-                       .count = int(rays.size())};
-    query == Query::kClosest ? closest(world, bare) : occluded(world, bare);
-    EXPECT_TRUE(same_bits(t, told.t));
-    EXPECT_FALSE(same_bits(t, rays.t));
-  }
-  EXPECT_NO_THROW(closest(world, RaySpan{}));
-}
-
-TEST(Query, RefusesArraysThatHaveNoDefault) {
+TEST(Query, RefusesIdsOfNothing) {
   const Scene scene = random_spheres(1, 30);
   const World world(scene, {});
-  float number = 1;
-  std::uint32_t id = 7;
-  const RaySpan whole{.ox = &number,
-                      .oy = &number,
-                      .oz = &number,
-                      .dx = &number,
-                      .dy = &number,
-                      .dz = &number,
-                      .t = &number,
-                      .id = &id,
-                      .count = 1};
-  EXPECT_NO_THROW(occluded(world, whole));
-  for (const float* RaySpan::*const array :
-       {&RaySpan::ox, &RaySpan::oy, &RaySpan::oz, &RaySpan::dx, &RaySpan::dy, &RaySpan::dz}) {
-    RaySpan rays = whole;
-    rays.*array = nullptr;
-    EXPECT_THROW(closest(world, rays), std::invalid_argument);
-    EXPECT_THROW(occluded(world, rays), std::invalid_argument);
-  }
-  RaySpan rays = whole;
-  rays.t = nullptr;
-  EXPECT_THROW(closest(world, rays), std::invalid_argument);
   const Ray ray{{9, 9, 9}, {1, 1, 1}};
   EXPECT_THROW(surface(world, ray, closest(world, ray)), std::invalid_argument);
   EXPECT_THROW(primitive_of(world, kNoPrimitive), std::invalid_argument);
@@ -351,7 +300,6 @@ TEST(Query, RefusesWhatItCannotDo) {
   const RayList rays = some_rays(4);
   EXPECT_THROW(ask(world, rays, Query::kClosest, {.packet = 8}), std::invalid_argument);
   EXPECT_THROW(ask(world, rays, Query::kOccluded, {.isa = "neon"}), std::invalid_argument);
-  EXPECT_THROW(closest(world, RaySpan{.count = -1}), std::invalid_argument);
   for (const BuildOptions& odd : {BuildOptions{.density = -1},
                                   BuildOptions{.density = kInf},
                                   BuildOptions{.density = kNaN},

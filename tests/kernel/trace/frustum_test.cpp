@@ -110,12 +110,7 @@ TEST_P(Frusta, HoldTheirRays) {
     const int count = random.chance(.5) ? lanes.most_rays : 1 + static_cast<int>(random.below(64));
     const RayList r = Bundle(random, g, count).rays;
     const int axis = random.chance(.2) ? static_cast<int>(random.below(3)) : -1;
-    const PacketRays rays{{r.ox.data(), r.oy.data(), r.oz.data()},
-                          {r.dx.data(), r.dy.data(), r.dz.data()},
-                          r.t_min.data(),
-                          r.t.data(),
-                          count};
-    const FrustumCheck c = lanes.check_frustum(g.view(), rays, axis);
+    const FrustumCheck c = lanes.check_frustum(g.view(), r.view(), axis);
     if (!c.together)
       continue;
     ++together;
