@@ -38,11 +38,11 @@ EXCEPTIONS = {
     ),
     "lines": (
         "frontend/cli/options.cpp", "kernel/features/doubt.hpp", "kernel/grid/world.cpp",
-        "kernel/trace/abreast.hpp", "tests/frontend/cli/option_checks_test.cpp",
+        "tests/frontend/cli/option_checks_test.cpp",
         "tests/frontend/cli/options_test.cpp", "tests/frontend/input/errors_test.cpp",
     ),
     "branches": (
-        "kernel/features/doubt.hpp", "kernel/trace/abreast.hpp",
+        "kernel/features/doubt.hpp",
     ),
 }
 

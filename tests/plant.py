@@ -43,10 +43,10 @@ FAULTS = [
           "return reach * 0;", "grid", "Pads.*"),
     Fault("< for <= in the walk", "kernel/trace/packet_traversal.hpp", "slice <= last;",
           "slice < last;", "walk", "Isa/Walk.*"),
-    Fault("adding up instead of computing again", "kernel/trace/abreast.hpp",
-          "t[a] = (plane - c.place[a]) * c.inverse[a];",
-          """t[a] = [&] {
-        const float from = c.place[a], to = plane, step = c.inverse[a];
+    Fault("adding up instead of computing again", "kernel/trace/course.hpp",
+          "return (plane - place[axis]) * inverse[axis];",
+          """return [&] {
+        const float from = place[axis], to = plane, step = inverse[axis];
         float k = to > from ? __builtin_ceilf(from) : __builtin_floorf(from);
         float sum = (k - from) * step;
         for (; k < to; ++k) sum += step;

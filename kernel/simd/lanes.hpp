@@ -56,6 +56,13 @@ inline bool none(const SimdDoubleMask<A>& m) {
 }
 #endif
 
+/// Calls visit(i) for each bit i, the lowest first.
+template <class Visit>
+[[gnu::always_inline]] inline void each_bit(unsigned bits, const Visit& visit) {
+  for (; bits != 0; bits &= bits - 1)
+    visit(__builtin_ctz(bits));
+}
+
 /// Lanes to be stored one behind another. A store may write as much as all lanes would take.
 class Chosen {
  public:

@@ -7,157 +7,122 @@
 // these. For one ray it ends in branches nobody can foretell; eight chains at once take little
 // longer than one, and branch only for cells that hold something.
 
-#include "kernel/trace/single.hpp"
+#include "kernel/trace/course.hpp"
 
 namespace grelha::GRELHA_ISA {
 
 inline constexpr int kAbreast = kWidth<Lanes>;
 
-/// Each ray with a bit in `full` against its cell. Returns bits of those whose search is over. What
-/// a ray needs is asked for before what another needs is computed with: memory is farther away than
-/// the next seven rays.
+/// Asks for the memory of an object, line by line.
+template <class T>
+[[gnu::always_inline]] inline void prefetch(const T* object) {
+  const char* const bytes = reinterpret_cast<const char*>(object);
+  for (std::size_t at = 0; at < sizeof(T); at += 64)
+    __builtin_prefetch(bytes + at);
+}
+
+/// Rays that came to cells with something in them, each against its own cell. What a ray needs is
+/// asked for before what another needs is computed with: memory is farther away than the next seven
+/// rays.
 template <bool kAny, class In>
-inline unsigned test_cells(Single<In>* r,
+class CellTests {
+ public:
+  CellTests(Single<In>* rays,
+            const CellLists& lists,
+            const std::uint32_t (&cells)[kAbreast],
+            Counters& n)
+      : rays_(rays), lists_(lists), cells_(cells), n_(n) {}
+
+  /// The rays with a bit in `full`. Returns bits of those whose search is over.
+  [[gnu::always_inline]] unsigned test(unsigned full) {
+    if (lists_.triangle_first)
+      test_triangles(full);
+    if (lists_.sphere_first)
+      fetch_spheres(full & ~over_);
+    if (lists_.sphere_first || lists_.cone_first)
+      each_bit(full & ~over_,
+               [&](int i) { end_if(test_round<kAny>(rays_[i], lists_, cells_[i], n_), i); });
+    return over_;
+  }
+
+ private:
+  static constexpr int kMost = 32;
+  /// A block that a ray is still to be tested against.
+  struct Due {
+    int ray;
+    std::uint32_t block;
+    float enter;  ///< t of its box; what was met since may be nearer
+  };
+
+  [[gnu::always_inline]] void end_if(bool over, int ray) {
+    if (over)
+      over_ |= 1u << ray;
+  }
+
+  [[gnu::always_inline]] void test_triangles(unsigned full) {
+    each_bit(full, [&](int i) {
+      first_[i] = lists_.triangle_first[cells_[i]];
+      end_[i] = lists_.triangle_first[cells_[i] + 1];
+      prefetch(lists_.boxes + first_[i] / kBlock);
+    });
+    each_bit(full, [&](int i) {
+      for (std::uint32_t at = first_[i] / kBlock * kBlock; at < end_[i]; at += kBlock)
+        take_blocks(i, at);
+    });
+    settle();
+  }
+
+  /// Takes the blocks from `at` on whose boxes ray i passes.
+  [[gnu::always_inline]] void take_blocks(int i, std::uint32_t at) {
+    const unsigned passed = passed_boxes(rays_[i], lists_.boxes[at / kBlock], enters_);
+    each_bit(passed & blocks_between(at, first_[i], end_[i]), [&](int k) {
+      const std::uint32_t block = at + static_cast<unsigned>(k);
+      prefetch(lists_.triangles + block);
+      due_[count_++] = {i, block, enters_[k]};
+      if (count_ == kMost)
+        settle();
+    });
+  }
+
+  /// Tests the blocks that are due.
+  [[gnu::always_inline]] void settle() {
+    for (int k = 0; k < count_; ++k) {
+      const int i = due_[k].ray;
+      if (!(over_ >> i & 1) && due_[k].enter <= rays_[i].best)
+        end_if(test_block<kAny>(rays_[i], lists_.triangles[due_[k].block], n_), i);
+    }
+    count_ = 0;
+  }
+
+  [[gnu::always_inline]] void fetch_spheres(unsigned rays) {
+    each_bit(rays, [&](int i) {
+      const std::uint32_t first = lists_.sphere_first[cells_[i]];
+      for (const float* const from : {lists_.sx, lists_.sy, lists_.sz, lists_.sr}) {
+        __builtin_prefetch(from + first);
+        __builtin_prefetch(from + first + 16);
+      }
+    });
+  }
+
+  Single<In>* rays_;
+  const CellLists& lists_;
+  const std::uint32_t (&cells_)[kAbreast];
+  Counters& n_;
+  unsigned over_ = 0;
+  int count_ = 0;
+  Due due_[kMost];
+  std::uint32_t first_[kAbreast];
+  std::uint32_t end_[kAbreast];
+  float enters_[kBlock];
+};
+
+template <bool kAny, class In>
+inline unsigned test_cells(Single<In>* rays,
                            const CellLists& lists,
                            const std::uint32_t (&cells)[kAbreast],
                            unsigned full,
                            Counters& n) {
-  unsigned over = 0;
-  if (lists.triangle_first) {
-    constexpr int kMost = 32;
-    struct Due {
-      int ray;
-      std::uint32_t block;
-      float enter;  ///< t of its box; what was met since may be nearer
-    } due[kMost];
-    int count = 0;
-    const auto settle = [&] {
-      for (int k = 0; k < count; ++k) {
-        const int i = due[k].ray;
-        if (!(over >> i & 1) && due[k].enter <= r[i].best &&
-            test_block<kAny>(r[i], lists.triangles[due[k].block], n))
-          over |= 1u << i;
-      }
-      count = 0;
-    };
-    std::uint32_t first[kAbreast], end[kAbreast];
-    for (unsigned left = full; left != 0; left &= left - 1) {
-      const int i = __builtin_ctz(left);
-      first[i] = lists.triangle_first[cells[i]];
-      end[i] = lists.triangle_first[cells[i] + 1];
-      const char* const boxes = reinterpret_cast<const char*>(lists.boxes + first[i] / kBlock);
-      for (std::size_t at = 0; at < sizeof(BlockBoxes); at += 64)
-        __builtin_prefetch(boxes + at);
-    }
-    float enters[kBlock];
-    for (unsigned left = full; left != 0; left &= left - 1) {
-      const int i = __builtin_ctz(left);
-      for (std::uint32_t at = first[i] / kBlock * kBlock; at < end[i]; at += kBlock)
-        for (unsigned passed = passed_boxes(r[i], lists.boxes[at / kBlock], enters) &
-                               blocks_between(at, first[i], end[i]);
-             passed != 0;
-             passed &= passed - 1) {
-          const std::uint32_t b = at + static_cast<unsigned>(__builtin_ctz(passed));
-          const char* const lines = reinterpret_cast<const char*>(lists.triangles + b);
-          for (std::size_t line = 0; line < sizeof(TriangleBlock); line += 64)
-            __builtin_prefetch(lines + line);
-          due[count++] = {i, b, enters[b - at]};
-          if (count == kMost)
-            settle();
-        }
-    }
-    settle();
-  }
-  if (lists.sphere_first)
-    for (unsigned left = full & ~over; left != 0; left &= left - 1) {
-      const std::uint32_t first = lists.sphere_first[cells[__builtin_ctz(left)]];
-      for (const float* const from : {lists.sx, lists.sy, lists.sz, lists.sr})
-        __builtin_prefetch(from + first), __builtin_prefetch(from + first + 16);
-    }
-  if (lists.sphere_first || lists.cone_first)
-    for (unsigned left = full & ~over; left != 0; left &= left - 1) {
-      const int i = __builtin_ctz(left);
-      if (test_round<kAny>(r[i], lists, cells[i], n))
-        over |= 1u << i;
-    }
-  return over;
-}
-
-/// clamp_cell, lane by lane: 0 for NaN.
-template <class Real>
-inline Real clamp_cells(const Real& x, int n) {
-  return whole(lesser(greater(x, Real(0)), Real(static_cast<float>(n - 1))));
-}
-
-/// Rays in the units of one grid's cells.
-template <class Real>
-struct Course {
-  Real place[3];    ///< at t = 0
-  Real speed[3];    ///< what they make in one t
-  Real inverse[3];  ///< of the speed
-  Real end;         ///< t where they leave the grid or their search
-};
-
-/// The cells that rays from t = begin to t = best start in. Returns those that come to the grid.
-template <class Real>
-[[gnu::always_inline]] inline Mask<Real> enter(const GridView& g,
-                                               const Real (&org)[3],
-                                               const Real (&dir)[3],
-                                               const Real& begin,
-                                               const Real& best,
-                                               Course<Real>& c,
-                                               Real (&cell)[3]) {
-  Real t0 = begin, t1 = best;
-  const Mask<Real> search = best > begin;
-  const Real least = least_headway(dir[0], dir[1], dir[2]);
-  for (int a = 0; a < 3; ++a) {
-    const Real size(static_cast<float>(g.n[a]));
-    c.place[a] = (org[a] - Real(g.lo_f[a])) * Real(g.inv_cell_f[a]);
-    const Real tiny = select(dir[a] < Real(0), Real(0) - least, least);
-    c.speed[a] = select(magnitude(dir[a]) < least, tiny, dir[a]) * Real(g.inv_cell_f[a]);
-    c.inverse[a] = Real(1) / c.speed[a];
-    const Real x = (Real(0) - c.place[a]) * c.inverse[a], y = (size - c.place[a]) * c.inverse[a];
-    t0 = greater(lesser(x, y), t0);
-    t1 = lesser(greater(x, y), t1);
-  }
-  for (int a = 0; a < 3; ++a)
-    cell[a] = clamp_cells(c.place[a] + t0 * c.speed[a], g.n[a]);
-  c.end = t1;
-  return both(search, t0 <= t1);
-}
-
-/// The next cells of rays whose cells are `distance` from the nearest that holds something. Returns
-/// those that come there before they have met anything.
-template <class Real>
-[[gnu::always_inline]] inline Mask<Real> step(const GridView& g,
-                                              const Course<Real>& c,
-                                              const Real& distance,
-                                              const Real& best,
-                                              Real (&cell)[3]) {
-  // cells this far on each side are empty too
-  const Real leap = greater(distance - Real(1), Real(0));
-  Real t[3], next[3];
-  for (int a = 0; a < 3; ++a) {
-    const Mask<Real> up = c.inverse[a] > Real(0);
-    next[a] = select(up, cell[a] + leap + Real(1), cell[a] - leap - Real(1));
-    const Real plane = select(up, next[a], next[a] + Real(1));
-    t[a] = (plane - c.place[a]) * c.inverse[a];
-  }
-  const Mask<Real> y = t[1] < t[0];
-  Real exit = select(y, t[1], t[0]);
-  const Mask<Real> z = t[2] < exit;
-  exit = select(z, t[2], exit);
-  const Mask<Real> axis[3] = {but_not(exit == exit, either(y, z)), but_not(y, z), z};
-  Mask<Real> going = both(best > exit, exit <= c.end);
-  for (int a = 0; a < 3; ++a) {
-    const Real side =
-        lesser(greater(clamp_cells(c.place[a] + exit * c.speed[a], g.n[a]), cell[a] - leap),
-               cell[a] + leap);
-    const Real to = select(axis[a], next[a], side);
-    going = both(going, both(to >= Real(0), to < Real(static_cast<float>(g.n[a]))));
-    cell[a] = to;
-  }
-  return going;
+  return CellTests<kAny, In>(rays, lists, cells, n).test(full);
 }
 
 /// Courses and cells of many rays.

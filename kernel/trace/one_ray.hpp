@@ -73,86 +73,6 @@ inline bool test_grid_cell(Single<In>& r, const CellLists& lists, std::uint32_t 
   return test_round<kAny>(r, lists, cell, n);
 }
 
-/// The cells of a grid that one ray comes through, those of walk_apart(). Where it goes to the next
-/// cell, one coordinate changes and one plane: a prediction of which one is all that the next cell
-/// waits for.
-struct CellWalk {
-  const GridView& g;
-  Course<float> c;
-  int stride[3];
-  int at[3];
-  int up[3];      ///< 1 along axes on which it goes up, else 0
-  float exit[3];  ///< t of the plane that it meets next on each axis
-  int cell;
-
-  explicit CellWalk(const GridView& grid) : g(grid) {}
-  /// False: the ray does not come to the grid.
-  [[gnu::always_inline]] bool start(const WalkingRay& r) {
-    float first[3];
-    if (!enter<float>(g, r.org, r.dir, r.t_min, r.best, c, first))
-      return false;
-    stride[0] = 1;
-    stride[1] = g.n[0];
-    stride[2] = g.n[0] * g.n[1];
-    cell = 0;
-    for (int a = 0; a < 3; ++a) {
-      up[a] = c.inverse[a] > 0;
-      set(a, static_cast<int>(first[a]));
-      cell += at[a] * stride[a];
-    }
-    return true;
-  }
-
-  /// Goes on to the next cell. False: there is none before t = best.
-  bool step(float best) {
-    const int axis = first_axis();
-    const int next = up[axis] ? at[axis] + 1 : at[axis] - 1;
-    if (!goes_on(axis, next, best))
-      return false;
-    cell += up[axis] ? stride[axis] : -stride[axis];
-    set(axis, next);
-    return true;
-  }
-
-  /// The same over cells that are empty, as are those within `by` of this one on each side.
-  bool leap(int by, float best) {
-    for (int a = 0; a < 3; ++a)
-      exit[a] = plane(a, at[a] + (up[a] ? by : -by));
-    const int axis = first_axis();
-    const int next = up[axis] ? at[axis] + by + 1 : at[axis] - by - 1;
-    if (!goes_on(axis, next, best))
-      return false;
-    const float t = exit[axis];
-    for (int a = 0; a < 3; ++a) {
-      const int side = static_cast<int>(clamp_cells(c.place[a] + t * c.speed[a], g.n[a]));
-      const int least = at[a] - by, most = at[a] + by;
-      set(a, a == axis ? next : side < least ? least : side > most ? most : side);
-    }
-    cell = at[0] + stride[1] * at[1] + stride[2] * at[2];
-    return true;
-  }
-
- private:
-  /// Of the planes that are met next.
-  int first_axis() const {
-    if (exit[1] < exit[0])
-      return exit[2] < exit[1] ? 2 : 1;
-    return exit[2] < exit[0] ? 2 : 0;
-  }
-  bool goes_on(int axis, int next, float best) const {
-    return best > exit[axis] && exit[axis] <= c.end &&
-           static_cast<unsigned>(next) < static_cast<unsigned>(g.n[axis]);
-  }
-  /// t at the far side of a cell.
-  float plane(int a, int i) const {
-    return (static_cast<float>(i + up[a]) - c.place[a]) * c.inverse[a];
-  }
-  void set(int a, int i) {
-    at[a] = i;
-    exit[a] = plane(a, i);
-  }
-};
-
 /// As walk_apart().
 template <bool kAny, class In>
 inline void walk_one(const GridView& g, Single<In>& r, Counters& n) {
@@ -162,8 +82,8 @@ inline void walk_one(const GridView& g, Single<In>& r, Counters& n) {
   // no more planes than there are, whatever rounding does
   for (int left = g.n[0] + g.n[1] + g.n[2] + 3; left > 0; --left) {
     ++n.visits;
-    const int distance = g.distance[walk.cell];
-    if (distance == 0 && test_grid_cell<kAny>(r, g.lists, static_cast<unsigned>(walk.cell), n))
+    const int distance = g.distance[walk.cell()];
+    if (distance == 0 && test_grid_cell<kAny>(r, g.lists, static_cast<unsigned>(walk.cell()), n))
       return;
     if (!(distance > 1 ? walk.leap(distance - 1, r.best) : walk.step(r.best)))
       return;
