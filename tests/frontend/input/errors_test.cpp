@@ -30,105 +30,91 @@ void expect_messages(const std::string& name, const std::vector<Case>& cases) {
   }
 }
 
-TEST(Errors, Entities) {
-  const std::string v = kView;  // seven lines
-  expect_messages(
-      "scene.nff",
-      {
-          {v + "s 1 2 3 x", ":8:9: error: expected a number for the sphere's radius, found \"x\""},
-          {v + "s 1 2",
-           ":8:6: error: expected a number for the sphere's center, found end of file"},
-          {v + "s 1 2 3 \n",
-           ":9:1: error: expected a number for the sphere's radius, found end of file"},
-          {v + "# s\n  s 1 2 # 3\ns",
-           ":10:1: error: expected a number for the sphere's center, found \"s\""},
-          {v + "b 0.0780.3610.753",
-           ":8:3: error: expected a number for the background's color, found \"0.0780.3610.753\""},
-          {v + "b 1 nan 0",
-           ":8:5: error: expected a finite number, at most 1e18, for the background's color, found "
-           "\"nan\""},
-          {v + "c 0 0 0 1 0 0 1 ?",
-           ":8:17: error: expected a number for the cone's apex radius, found \"?\""},
-          {v + "c 0 0 0 z",
-           ":8:9: error: expected a number for the cone's base radius, found \"z\""},
-          {v + "p 2\n0 0 0\n1 1 1",
-           ":8:3: error: expected at least 3 corners of a polygon, found \"2\""},
-          {v + "p x",
-           ":8:3: error: expected a whole number for the polygon's corners, found \"x\""},
-          {v + "p -3 0 0 0",
-           ":8:3: error: expected a whole number for the polygon's corners, found \"-3\""},
-          {v + "p 3.5 0 0 0",
-           ":8:3: error: expected a whole number for the polygon's corners, found \"3.5\""},
-          {v + "p 1000000000 0 0 0",
-           ":8:3: error: expected at most 1 for the polygon's corners (the file ends before), "
-           "found "
-           "\"1000000000\""},
-          {v + "p 99999999999999999999 0 0 0",
-           ":8:3: error: expected at most 1 for the polygon's corners (the file ends before), "
-           "found "
-           "\"99999999999999999999\""},
-          {v + "p 3 0 0 0 1 1 1 2.0000 s",
-           ":8:24: error: expected a number for the polygon's corner, found \"s\""},
-          {v + "pp 3 0 0 0 0 0 1 1 0 0 0 0 1 0 1 0 0 0 q",
-           ":8:40: error: expected a number for the corner's normal, found \"q\""},
-          {v + "pl 0 0 0 1 0 0 s",
-           ":8:16: error: expected a number for the plane's third point, found \"s\""},
-          {v + "npl 0 0 1 s",
-           ":8:11: error: expected a number for the plane's constant, found \"s\""},
-          {v + "box 0 0 0 1 0",
-           ":8:14: error: expected a number for the box's second corner, found end of file"},
-          {v + "mesh 3 1\n0 0 0 1 0 0 0 1 0\n1 2 4",
-           ":10:5: error: expected a vertex of the mesh, from 1 to 3 or -3 to -1, found \"4\""},
-          {v + "mesh 3 1\n0 0 0 1 0 0 0 1 0\n1 2 0",
-           ":10:5: error: expected a vertex of the mesh, from 1 to 3 or -3 to -1, found \"0\""},
-          {v + "mesh 3 999999999999\n0 0 0 1 0 0 0 1 0\n",
-           ":8:8: error: expected at most 3 for the mesh's faces (the file ends before), found "
-           "\"999999999999\""},
-          {v + "spp x",
-           ":8:5: error: expected a whole number of samples per pixel, from 0 to 65536, found "
-           "\"x\""},
-          {v + std::string("ply a\0b.ply\n", 12),
-           ":8:5: error: expected a file name after \"ply\", found \"a?b.ply\""},
-          {v + "ply # none\n",
-           ":8:5: error: expected a file name after \"ply\", found end of line"},
-      });
+/// Of scenes that begin with a view of seven lines.
+void expect_after_view(std::vector<Case> cases) {
+  for (Case& c : cases)
+    c.text = kView + c.text;
+  expect_messages("scene.nff", cases);
 }
 
-TEST(Errors, MaterialsAndLights) {
-  const std::string v = kView;
-  expect_messages(
-      "scene.nff",
-      {
-          {v + "f 1 1\ns 0 0 0 1",
-           ":9:1: error: expected a number for the material (field 3 of 3), found \"s\""},
-          {v + "f 1 1 1 1 0 1 .5 0",
-           ":8:18: error: expected an index of refraction above 0 for a material that transmits "
-           "light, found \"0\""},
-          {v + "f 1 1 1 1 1 1 1 1 0 .5 -1",
-           ":8:24: error: expected an index of refraction above 0 for a material that transmits "
-           "light, found \"-1\""},
-          {v + "f 1 1 1 1 inf 1 0 1",
-           ":8:11: error: expected a finite number, at most 1e18, for the material, found \"inf\""},
-          {v + "f 1 1 1 1 0.1.2 1 0 1",
-           ":8:11: error: expected a number for the material, found \"0.1.2\""},
-          {v + "mat 1 1 1 1 0 1 0 1",
-           ":8:20: error: expected a number for the material (field 9 of 11), found end of file"},
-          {v + "l 0 0",
-           ":8:6: error: expected a number for the light's position, found end of file"},
-          {v + "l 0 0 0 1 1\n1",
-           ":8:12: error: expected a number for the light's color, found end of line"},
-          {v + "l 0 0 0 1 1 x\n",
-           ":8:13: error: expected a number for the light's color, found \"x\""},
-          {v + "light 0 0 0 1 1 1",
-           ":8:7: error: expected \"punctual\" or \"quad\" after \"light\", found \"0\""},
-          {v + "light quad 0 0 0 1 1 1 1 0 0 0 1 0 x",
-           ":8:36: error: expected a whole number, at most 1000000, for the light's samples, found "
-           "\"x\""},
-          {v + "al 0 0 0 1 1 1",
-           ":8:15: error: expected a number for the area light (field 7 of 11 or 12), found end of "
-           "file"},
-      });
-}
+const std::vector<Case> kEntities{
+    {"s 1 2 3 x", ":8:9: error: expected a number for the sphere's radius, found \"x\""},
+    {"s 1 2", ":8:6: error: expected a number for the sphere's center, found end of file"},
+    {"s 1 2 3 \n", ":9:1: error: expected a number for the sphere's radius, found end of file"},
+    {"# s\n  s 1 2 # 3\ns", ":10:1: error: expected a number for the sphere's center, found \"s\""},
+    {"b 0.0780.3610.753",
+     ":8:3: error: expected a number for the background's color, found \"0.0780.3610.753\""},
+    {"b 1 nan 0",
+     ":8:5: error: expected a finite number, at most 1e18, for the background's color, found "
+     "\"nan\""},
+    {"c 0 0 0 1 0 0 1 ?",
+     ":8:17: error: expected a number for the cone's apex radius, found \"?\""},
+    {"c 0 0 0 z", ":8:9: error: expected a number for the cone's base radius, found \"z\""},
+    {"p 2\n0 0 0\n1 1 1", ":8:3: error: expected at least 3 corners of a polygon, found \"2\""},
+    {"p x", ":8:3: error: expected a whole number for the polygon's corners, found \"x\""},
+    {"p -3 0 0 0", ":8:3: error: expected a whole number for the polygon's corners, found \"-3\""},
+    {"p 3.5 0 0 0",
+     ":8:3: error: expected a whole number for the polygon's corners, found \"3.5\""},
+    {"p 1000000000 0 0 0",
+     ":8:3: error: expected at most 1 for the polygon's corners (the file ends before), "
+     "found \"1000000000\""},
+    {"p 99999999999999999999 0 0 0",
+     ":8:3: error: expected at most 1 for the polygon's corners (the file ends before), "
+     "found \"99999999999999999999\""},
+    {"p 3 0 0 0 1 1 1 2.0000 s",
+     ":8:24: error: expected a number for the polygon's corner, found \"s\""},
+    {"pp 3 0 0 0 0 0 1 1 0 0 0 0 1 0 1 0 0 0 q",
+     ":8:40: error: expected a number for the corner's normal, found \"q\""},
+    {"pl 0 0 0 1 0 0 s",
+     ":8:16: error: expected a number for the plane's third point, found \"s\""},
+    {"npl 0 0 1 s", ":8:11: error: expected a number for the plane's constant, found \"s\""},
+    {"box 0 0 0 1 0",
+     ":8:14: error: expected a number for the box's second corner, found end of file"},
+    {"mesh 3 1\n0 0 0 1 0 0 0 1 0\n1 2 4",
+     ":10:5: error: expected a vertex of the mesh, from 1 to 3 or -3 to -1, found \"4\""},
+    {"mesh 3 1\n0 0 0 1 0 0 0 1 0\n1 2 0",
+     ":10:5: error: expected a vertex of the mesh, from 1 to 3 or -3 to -1, found \"0\""},
+    {"mesh 3 999999999999\n0 0 0 1 0 0 0 1 0\n",
+     ":8:8: error: expected at most 3 for the mesh's faces (the file ends before), found "
+     "\"999999999999\""},
+    {"spp x",
+     ":8:5: error: expected a whole number of samples per pixel, from 0 to 65536, found "
+     "\"x\""},
+    {std::string("ply a\0b.ply\n", 12),
+     ":8:5: error: expected a file name after \"ply\", found \"a?b.ply\""},
+    {"ply # none\n", ":8:5: error: expected a file name after \"ply\", found end of line"},
+};
+
+TEST(Errors, Entities) { expect_after_view(kEntities); }
+
+const std::vector<Case> kMaterialsAndLights{
+    {"f 1 1\ns 0 0 0 1",
+     ":9:1: error: expected a number for the material (field 3 of 3), found \"s\""},
+    {"f 1 1 1 1 0 1 .5 0",
+     ":8:18: error: expected an index of refraction above 0 for a material that transmits "
+     "light, found \"0\""},
+    {"f 1 1 1 1 1 1 1 1 0 .5 -1",
+     ":8:24: error: expected an index of refraction above 0 for a material that transmits "
+     "light, found \"-1\""},
+    {"f 1 1 1 1 inf 1 0 1",
+     ":8:11: error: expected a finite number, at most 1e18, for the material, found \"inf\""},
+    {"f 1 1 1 1 0.1.2 1 0 1", ":8:11: error: expected a number for the material, found \"0.1.2\""},
+    {"mat 1 1 1 1 0 1 0 1",
+     ":8:20: error: expected a number for the material (field 9 of 11), found end of file"},
+    {"l 0 0", ":8:6: error: expected a number for the light's position, found end of file"},
+    {"l 0 0 0 1 1\n1", ":8:12: error: expected a number for the light's color, found end of line"},
+    {"l 0 0 0 1 1 x\n", ":8:13: error: expected a number for the light's color, found \"x\""},
+    {"light 0 0 0 1 1 1",
+     ":8:7: error: expected \"punctual\" or \"quad\" after \"light\", found \"0\""},
+    {"light quad 0 0 0 1 1 1 1 0 0 0 1 0 x",
+     ":8:36: error: expected a whole number, at most 1000000, for the light's samples, found "
+     "\"x\""},
+    {"al 0 0 0 1 1 1",
+     ":8:15: error: expected a number for the area light (field 7 of 11 or 12), found end of "
+     "file"},
+};
+
+TEST(Errors, MaterialsAndLights) { expect_after_view(kMaterialsAndLights); }
 
 std::string view(
     const char* from, const char* at, const char* up, const char* angle, const char* resolution) {
@@ -288,8 +274,7 @@ TEST(Errors, PlyHeaders) {
           {start + "elephant\n", ":4:1: error: expected \"end_header\", found end of file"},
           {start + "elephant\3\n",
            ":3:1: error: expected a word of the header (format, comment, obj_info, element, "
-           "property, end_header), found "
-           "\"elephant\""},
+           "property, end_header), found \"elephant\""},
           {start + "element vertex\n",
            ":3:15: error: expected a whole number of rows, found end of line"},
           {start + "element vertex -1\n",
