@@ -1,7 +1,11 @@
 # Long work: parts, checkpoints, signals, ranks.
 grelha_test(frontend/jobs/parts image grelha::frontend grelha::scenes)
+target_sources(parts_test PRIVATE frontend/jobs/checkpoint_test.cpp frontend/jobs/job.cpp
+  frontend/jobs/merge_test.cpp)
 grelha_test(frontend/jobs/identity unit grelha::frontend grelha::scenes)
 grelha_test(frontend/jobs/long_work image grelha::frontend)
+target_sources(long_work_test PRIVATE frontend/jobs/refused_work_test.cpp
+  frontend/jobs/stopping_test.cpp)
 target_compile_definitions(long_work_test PRIVATE GRELHA_PROGRAM="$<TARGET_FILE:grelha>")
 add_dependencies(long_work_test grelha)
 grelha_test(frontend/commands/terminal image grelha::frontend)

@@ -22,6 +22,8 @@ inline const std::string kAsciiTriangle =
 inline const std::string kView =
     "v\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 45\nhither 1\nresolution 8 6\n";
 
+inline const std::string kFill = "f 1 .5 0 .8 .2 10 0 1\n";
+
 struct Reading {
   SceneFile file;
   std::vector<std::string> warnings;

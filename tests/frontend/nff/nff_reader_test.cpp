@@ -3,13 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <ctime>
 
 #include "tests/support/reading.hpp"
 
 namespace grelha {
 namespace {
 
+using test::kFill;
 using test::kView;
 using test::read_text;
 using test::read_with_view;
@@ -17,8 +17,6 @@ using test::Reading;
 using test::TemporaryFolder;
 using testing::Test;
 using Lines = std::vector<std::string>;
-
-const std::string kFill = "f 1 .5 0 .8 .2 10 0 1\n";
 
 const Triangles& triangles(const Reading& r) { return r.file.scene.geometry.triangles; }
 
@@ -357,135 +355,6 @@ TEST(NffShapes, PlyFilesStandBesideTheScene) {
   EXPECT_EQ(file.counts.s, 1u);
   EXPECT_EQ(file.scene.geometry.objects.size(), 2u);
   EXPECT_EQ(file.scene.geometry.triangles.material, (std::vector<std::uint32_t>{0, 1}));
-}
-
-TEST(NffDropped, CountedByReason) {
-  const Reading r = read_with_view(
-      kFill +
-      "s 0 0 0 0\ns nan 0 0 1\ns 0 0 0 inf\ns 1e39 0 0 1\ns 0 0 2e18 1\nc 0 0 0 1 0 0 0 1\nc 0 0 0 "
-      "0 0 0 1 0\n"
-      "p 3 0 0 0 1 1 1 2 2 2\np 3 0 0 0 nan 0 0 1 1 1\npl 0 0 0 1 1 1 2 2 2\nnpl 0 0 0 1\n"
-      "mesh 4 3 0 0 0 1 0 0 0 1 0 nan 0 0 1 2 3 1 2 4 1 1 2\npp 3 0 0 0 0 0 1 0 0 0 0 0 1 1 1 1 0 "
-      "0 1");
-  EXPECT_EQ(r.file.dropped.not_finite, 6u);
-  EXPECT_EQ(r.file.dropped.zero_area, 8u);
-  EXPECT_EQ(r.file.counts.s, 5u);
-  EXPECT_EQ(r.file.counts.mesh, 3u);
-  EXPECT_EQ(triangles(r).size(), 1u);
-  for (const float x : triangles(r).x)
-    EXPECT_TRUE(std::isfinite(x));
-}
-
-TEST(NffDropped, OneWarningForTheFile) {
-  const TemporaryFolder folder;
-  const std::string scene =
-      folder.add("scene.nff", kView + kFill + "s 0 0 0 0\ns nan 0 0 1\ns 0 0 0 0\n");
-  Lines warnings;
-  read_scene(scene, [&](const std::string& line) { warnings.push_back(line); });
-  EXPECT_EQ(
-      warnings,
-      Lines{scene +
-            ": warning: 3 primitives are left out: 1 not finite (or beyond 1e18), 2 without area"});
-}
-
-TEST(NffNoise, IsWarnedOfOnceAKindAndSkipped) {
-  const Reading r = read_with_view(
-      "# a comment\n/ another\nFloor of wood\n" + kFill +
-      "s 0 0 0 1 7 7\ns 0 0 0 1 8\n12 12 12\n1 2 3\nxp 3\n0 0 0\na 1 2 3\na 4 5 6\ns 0 0 0 2#end");
-  EXPECT_EQ(r.file.counts.s, 3u);
-  EXPECT_EQ(
-      r.warnings,
-      (Lines{"scene.nff:9:1: warning: unknown word \"/\"; its line is skipped",
-             "scene.nff:10:1: warning: unknown word \"Floor\"; its line is skipped",
-             "scene.nff:12:11: warning: more numbers than \"s\" takes; the rest of the line is "
-             "skipped",
-             "scene.nff:14:1: warning: numbers that belong to no entity; their line is skipped",
-             "scene.nff:16:1: warning: unknown word \"xp\"; its line is skipped",
-             "scene.nff:18:1: warning: unknown word \"a\"; its line is skipped"}));
-}
-
-TEST(NffNoise, IsComparedWithTheWordsThereAre) {
-  const Reading r = read_with_view("resoluton 3 3\nmehs 1\nsphere 0 0 0 1\n");
-  EXPECT_EQ(r.warnings,
-            (Lines{"scene.nff:8:1: warning: unknown word \"resoluton\" (did you mean "
-                   "\"resolution\"?); its line is skipped",
-                   "scene.nff:9:1: warning: unknown word \"mehs\" (did you mean \"mesh\"?); its "
-                   "line is skipped",
-                   "scene.nff:10:1: warning: unknown word \"sphere\" (did you mean \"s\"?); its "
-                   "line is skipped"}));
-}
-
-TEST(NffNoise, FullNamesAreAnsweredWithTheKeyword) {
-  const std::pair<const char*, const char*> table[] = {
-      {"spheres", "s"},
-      {"Polygon", "p"},
-      {"TRIANGLE", "p"},
-      {"plane", "pl"},
-      {"cylinder", "c"},
-      {"material", "f"},
-      {"LIGHT", "light"},
-      {"S", "s"},
-      {"Box", "box"},
-      {"lookat", "at"},
-      {"backgruond", "b"},
-      {"shpere", "s"},
-      {"xyzzy", ""},
-      {"cones", "c"},
-  };
-  for (const auto& [word, keyword] : table) {
-    const Lines warnings = read_with_view(std::string(word) + " 0 0 0 1\n").warnings;
-    const std::string meant = *keyword ? " (did you mean \"" + std::string(keyword) + "\"?)" : "";
-    EXPECT_EQ(warnings,
-              Lines{"scene.nff:8:1: warning: unknown word \"" + std::string(word) + '"' + meant +
-                    "; its line is skipped"});
-  }
-}
-
-/// A search for what was meant takes microseconds: only what is said is worth one. Was 7 s a
-/// million.
-TEST(NffNoise, AMillionUnknownWordsEndSoon) {
-  for (const bool alike : {true, false}) {
-    std::string text = kView;
-    for (int i = 0; i < 1000000; ++i)
-      text += alike ? "sphere 0\n" : "sphere" + std::to_string(i) + " 0\n";
-    const std::clock_t start = std::clock();  // of the processor: others may be busy with it
-    EXPECT_EQ(read_text(text).warnings.size(), alike ? 1u : 20u);
-    constexpr double kPatience = 2;  // .2 s were measured
-    EXPECT_LT(double(std::clock() - start) / CLOCKS_PER_SEC, kPatience);
-  }
-}
-
-TEST(NffNoise, NulBytesAreToldOf) {
-  using std::string_literals::operator""s;
-  const Reading r = read_with_view(kFill + "s 0 0 0\0 1\ns 0 0\0 0 1\n"s);
-  EXPECT_EQ(r.file.counts.s, 2u);
-  EXPECT_EQ(r.warnings,
-            Lines{"scene.nff:9:8: warning: the text holds NUL bytes, which count as blanks"});
-}
-
-TEST(NffHints, SamplesAreBoundedAndSaid) {
-  EXPECT_EQ(read_with_view("spp 65536").file.samples_per_pixel, 65536);
-  EXPECT_EQ(read_with_view("spp 65536").warnings, Lines{});
-  for (const std::string count : {"65537", "1000000000", "4000000000", "1e30"}) {
-    const Reading r = read_with_view("spp " + count);
-    EXPECT_EQ(r.file.samples_per_pixel, 65536) << count;
-    EXPECT_EQ(r.warnings,
-              Lines{"scene.nff:8:5: warning: \"" + count +
-                    "\" samples per pixel are more than 65536, which are taken"});
-  }
-}
-
-TEST(NffNoise, FilesOfItStayReadable) {
-  std::string text = kView;
-  for (int i = 0; i < 100000; ++i)
-    text += "word" + std::to_string(i) + '\n';
-  EXPECT_EQ(read_text(text).warnings.size(), 20u);
-}
-
-TEST(NffNoise, ByteOrderMarkIsSkipped) {
-  const Reading r = read_text("\xEF\xBB\xBF" + kView + kFill + "s 0 0 0 1");
-  EXPECT_EQ(r.warnings, Lines{});
-  EXPECT_EQ(r.file.counts.s, 1u);
 }
 
 }  // namespace
