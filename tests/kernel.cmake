@@ -24,6 +24,7 @@ target_sources(beam_test PRIVATE kernel/features/beam_bounds_test.cpp
 grelha_test(kernel/query/query unit grelha::kernel)
 target_sources(query_test PRIVATE kernel/query/rays_test.cpp)
 grelha_test(kernel/render/shade unit grelha::kernel)
+target_sources(shade_test PRIVATE kernel/render/bounces_test.cpp)
 grelha_test(kernel/shapes/copies unit grelha::kernel)
 grelha_test(kernel/render/path_weight unit grelha::kernel)
 grelha_test(kernel/subdivision/subdivision image grelha::kernel)
