@@ -29,7 +29,6 @@ CLANG_FORMAT = "14"  # each version has its own taste
 EXCEPTIONS = {
     "file": (
         "frontend/cli/options.cpp", "frontend/nff/nff_reader.cpp", "kernel/features/doubt.hpp",
-        "tests/kernel/render/shade_test.cpp",
     ),
     "comma": (
         "kernel/features/beam.hpp", "kernel/features/doubt.hpp",
