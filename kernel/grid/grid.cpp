@@ -9,6 +9,7 @@ GridView Grid::view() const {
   v.lists = store.lists();
   v.serves = serves;
   v.distance = distance.data();
+  v.pad = static_cast<float>(pad);
   for (int a = 0; a < 3; ++a) {
     const auto i = static_cast<std::size_t>(a);
     v.n[a] = static_cast<int>(cells[i]);

@@ -57,6 +57,7 @@ struct GridView {
   const std::uint8_t* distance = nullptr;
   int n[3] = {};  ///< cells per axis; x runs fastest
   double lo[3] = {}, cell[3] = {}, inv_cell[3] = {};
+  float pad = 0;  ///< what primitives grew by before they were put into cells
   float lo_f[3] = {}, hi_f[3] = {}, cell_f[3] = {}, inv_cell_f[3] = {};
 };
 

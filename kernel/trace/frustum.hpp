@@ -205,6 +205,7 @@ class FrustumBuilder {
     f_.by_group = kWidth<Lanes> > 1 && __builtin_popcountll(p_.live) * kWidth<Lanes> > kSmall;
     if (f_.by_group)
       groups_.clear();
+    slope_ = 1;
     for (int j = 0; j < 2; ++j)
       bound_side(j, j == 0 ? f_.u : f_.v);
   }
@@ -216,6 +217,7 @@ class FrustumBuilder {
     Lanes hi0(-kInfinity);
     Lanes hi1(-kInfinity);
     Lanes wide(0);
+    Lanes steep(0);
     each_live_group(p_, [&](int i, int group) {
       const Mask<Lanes> meets = load<Lanes>(f_.leave + i) > Lanes(-kInfinity);
       const Lanes at = (load<Lanes>(p_.org[a] + i) - Lanes(g_.lo_f[a])) * Lanes(g_.inv_cell_f[a]);
@@ -233,6 +235,7 @@ class FrustumBuilder {
       hi0 = greater(most0, hi0);
       hi1 = greater(most1, hi1);
       wide = greater(select(meets, magnitude(at), Lanes(0)), wide);
+      steep = greater(select(meets, magnitude(slope), Lanes(0)), steep);
       if (f_.by_group) {
         groups_.lo0[j][group] = lane_min(least0);
         groups_.lo1[j][group] = lane_min(least1);
@@ -241,6 +244,7 @@ class FrustumBuilder {
       }
     });
     farthest_ = greater(farthest_, lane_max(wide));
+    slope_ = greater(slope_, lane_max(steep));
     set_side(j, lane_min(lo0), lane_min(lo1), lane_max(hi0), lane_max(hi1));
   }
 
@@ -256,7 +260,7 @@ class FrustumBuilder {
   }
 
   /// Everything above is a few roundings of numbers no larger than the farthest place times the
-  /// steepest slope.
+  /// steepest slope: of rays for the sides, of planes for what is culled by them.
   void set_margin() {
     f_.steepest = 1;
     // the grid's corner in cells: what cancels in the planes when the grid lies far from 0
@@ -268,9 +272,11 @@ class FrustumBuilder {
     for (int j = 0; j < 2; ++j)
       f_.steepest =
           greater(greater(magnitude(f_.lo_slope[j]), magnitude(f_.hi_slope[j])), f_.steepest);
-    f_.margin = kFrustumMargin + kFrustumRounding * (farthest_ * f_.steepest);
-    reaches_ = corner + farthest_;
-    cull_ = f_.margin + kFrustumRounding * (reaches_ * f_.steepest);
+    f_.margin = kSideRounding * (farthest_ * greater(slope_, f_.steepest));
+    plane_rounding_ = kPlaneRounding * (corner + farthest_);
+    const float pad = kPadOfBalls * g_.pad;
+    cull_ = f_.margin + pad * greater(g_.inv_cell_f[f_.u], g_.inv_cell_f[f_.v]);
+    cull_of_slope_ = plane_rounding_ + pad * g_.inv_cell_f[f_.k];
   }
 
   void set_planes() {
@@ -279,16 +285,17 @@ class FrustumBuilder {
     // s = along x + start
     along_ = f_.flip ? -ik : ik;
     start_ = f_.flip ? size_ + g_.lo_f[k] * ik : -(g_.lo_f[k] * ik);
+    const float cull = cull_ + cull_of_slope_ * f_.steepest;
     for (int j = 0; j < 2; ++j) {
       const int a = j == 0 ? f_.u : f_.v;
       const float iu = g_.inv_cell_f[a];
       const float zero = g_.lo_f[a] * iu;
       f_.a[2 * j] = iu;
       f_.b[2 * j] = -(f_.lo_slope[j] * along_);
-      f_.c[2 * j] = cull_ - zero - f_.lo[j] - f_.lo_slope[j] * (start_ - f_.from);
+      f_.c[2 * j] = cull - zero - f_.lo[j] - f_.lo_slope[j] * (start_ - f_.from);
       f_.a[2 * j + 1] = -iu;
       f_.b[2 * j + 1] = f_.hi_slope[j] * along_;
-      f_.c[2 * j + 1] = cull_ + zero + f_.hi[j] + f_.hi_slope[j] * (start_ - f_.from);
+      f_.c[2 * j + 1] = cull + zero + f_.hi[j] + f_.hi_slope[j] * (start_ - f_.from);
     }
   }
 
@@ -301,7 +308,7 @@ class FrustumBuilder {
   }
 
   void set_near() {
-    const float early = cull_ + kNearSlack * farthest_;
+    const float early = (f_.margin + plane_rounding_) + kNearSlack * farthest_;
     f_.to_slice = along_;
     f_.zero_slice = start_;
     f_.near = f_.from - early;
@@ -332,7 +339,7 @@ class FrustumBuilder {
     const Lanes lo_slope = select(some, (lo1 - lo0) * Lanes(per_), o);
     const Lanes hi_slope = select(some, (hi1 - hi0) * Lanes(per_), o);
     const Lanes steepest = greater(greater(magnitude(lo_slope), magnitude(hi_slope)), Lanes(1));
-    const Lanes cull = Lanes(f_.margin) + Lanes(kFrustumRounding * reaches_) * steepest;
+    const Lanes cull = Lanes(cull_) + Lanes(cull_of_slope_) * steepest;
     const float zero = g_.lo_f[j == 0 ? f_.u : f_.v] * f_.a[2 * j];
     const float back = start_ - f_.from;
     const Lanes lo_c = cull - Lanes(zero) - lo0 - lo_slope * Lanes(back);
@@ -353,13 +360,15 @@ class FrustumBuilder {
   Frustum& f_;
   alignas(64) float enter_[kPacket];  ///< t at which each ray comes to the grid
   GroupBounds groups_;
-  float size_;      ///< slices of the grid
-  bool thin_;       ///< the stay has no slopes
-  float per_;       ///< 1 / stay, or 0
-  float farthest_;  ///< from the grid's corner, of origins and of the grid, in cells
-  float reaches_;   ///< the same from 0
-  float cull_;      ///< rounding of planes, in cells
-  float along_;     ///< s = along x + start
+  float size_;            ///< slices of the grid
+  bool thin_;             ///< the stay has no slopes
+  float per_;             ///< 1 / stay, or 0
+  float farthest_;        ///< from the grid's corner, of origins and of the grid, in cells
+  float slope_;           ///< steepest of the rays, at least 1
+  float plane_rounding_;  ///< of planes, in cells, by their slopes
+  float cull_;            ///< what culling allows for beside a plane, in cells
+  float cull_of_slope_;   ///< the same, times the plane's slope
+  float along_;           ///< s = along x + start
   float start_;
 };
 

@@ -14,18 +14,20 @@ inline constexpr float kLeastProgress = .15f;
 /// rounding.
 inline constexpr float kThinStay = 1e-3f;
 
-/// Cells by which a frustum's bounds are widened beside what their own rounding asks for: a ball
-/// may lie 24 u of the way beside a ray that its test in float meets. Covers ways of up to 45 cells
-/// whatever the slopes; what is farther has kFrustumRounding, which grows with the way.
-inline constexpr float kFrustumMargin = 1e-3f;
+/// Times farthest place times steepest slope: what the sides of a frustum are off by, 38 u.
+inline constexpr float kSideRounding = 2.3e-6f;
 
-/// Times farthest place times steepest slope: what rounding takes of a frustum's bounds, 16.8 u.
-/// What they are off by beyond that the pad of what a grid holds covers.
-inline constexpr float kFrustumRounding = 1e-6f;
+/// Times the farthest place from 0 times steepest slope: what planes in world coordinates are off
+/// by beyond that, 14 u.
+inline constexpr float kPlaneRounding = 1e-6f;
 
-/// Times the farthest place: what a hit's t is off by, 46 u of its way, which is at most 2 sqrt 3
-/// times the farthest: 9.5e-6.
-inline constexpr float kNearSlack = 1.2e-5f;
+/// Times a grid's pad: how far beside a ray of the frustum a ball or a cone may lie that its test
+/// in float finds met. That is 127 u of the scene's diagonal; half a pad is 128.
+inline constexpr float kPadOfBalls = .5f;
+
+/// Times the farthest place: what a hit may lie before its ray's start, 46 u of the way along the
+/// major axis, which is at most twice the farthest: 92 u.
+inline constexpr float kNearSlack = 6e-6f;
 
 /// Times the length of a plane's gradient, which is off by 2.5 u.
 inline constexpr float kReachSlack = 1.00001f;

@@ -112,18 +112,14 @@ class FrustumChecker {
     }
   }
 
-  /// What a ball may lie beside a ray that its test in float meets, 24 u of the way; of ways of
-  /// more than 45 cells this is not asked.
+  /// What a ball may lie beside a ray that its test in float meets, 24 u of the way.
   Wide passed_by(int i, Wide t) const {
     Wide way = 0;
-    Wide cells = 0;
     for (int a = 0; a < 3; ++a) {
       const Wide d = t * p_.dir[a][i];
       way += d * d;
-      cells += d * d / (static_cast<Wide>(g_.cell[a]) * g_.cell[a]);
     }
-    constexpr Wide kPassedBy = 24 * 0x1p-24L;
-    return cells <= 45 * 45 ? kPassedBy * __builtin_sqrtl(way) : 0;
+    return 24 * 0x1p-24L * __builtin_sqrtl(way);
   }
 
   /// As near as a float comes to a place on a ray: what a primitive there could have for a corner.

@@ -19,6 +19,10 @@ Grid random_grid(Random& random) {
     g.cell[a] = edge * random.in(.7, 1.4);
     extent = std::max(extent, g.cell[a] * g.cells[a]);
   }
+  double squares = 0;
+  for (std::size_t a = 0; a < 3; ++a)
+    squares += g.cell[a] * g.cells[a] * g.cell[a] * g.cells[a];
+  g.pad = 256 * 0x1p-24 * std::sqrt(squares);
   const double away = random.chance(.5) ? 0 : extent * random.log_in(.1, 1e3);
   for (double& lo : g.lo)
     lo = static_cast<float>(random.in(-1, 1) * away);
