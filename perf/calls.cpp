@@ -16,10 +16,9 @@
 #include <string>
 #include <vector>
 
-#include <time.h>
-
 #include "grelha/query.hpp"
 #include "perf/embree.hpp"
+#include "perf/timing.hpp"
 #include "perf/workloads.hpp"
 
 namespace {
@@ -94,17 +93,6 @@ void stream(const World& world, const RayBuffer& r, bool any, int packet, Answer
     occluded(world, r.view(), a.blocked.data(), {.packet = packet});
   else
     closest(world, r.view(), {a.t.data(), a.id.data()}, {.packet = packet});
-}
-
-double cpu_ns() {
-  timespec now;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e9 * static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec);
-}
-
-double median(std::vector<double> v) {
-  std::sort(v.begin(), v.end());
-  return (v[(v.size() - 1) / 2] + v[v.size() / 2]) / 2;
 }
 
 /// Rays whose answers differ.

@@ -18,10 +18,9 @@
 #include <string>
 #include <vector>
 
-#include <time.h>
-
 #include "kernel/grid/world_impl.hpp"
 #include "perf/ray_sets.hpp"
+#include "perf/timing.hpp"
 
 namespace {
 
@@ -37,17 +36,6 @@ struct Options {
   int size = 256, rounds = 5;
   bool csv = false;
 };
-
-double cpu_ns() {
-  timespec now;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e9 * static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec);
-}
-
-double median(std::vector<double> v) {
-  std::sort(v.begin(), v.end());
-  return (v[(v.size() - 1) / 2] + v[v.size() / 2]) / 2;
-}
 
 SceneFile scene_named(const std::string& name) {
   const auto space = name.find(' ');

@@ -67,11 +67,14 @@ int measure(const char* path, int rounds) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 2)
-    return std::fputs("usage: frame SCENE [ROUNDS]\n", stderr), 2;
+  if (argc < 2) {
+    std::fputs("usage: frame SCENE [ROUNDS]\n", stderr);
+    return 2;
+  }
   try {
     return measure(argv[1], argc > 2 ? std::atoi(argv[2]) : 9);
   } catch (const std::exception& e) {
-    return std::fprintf(stderr, "%s\n", e.what()), 1;
+    std::fprintf(stderr, "%s\n", e.what());
+    return 1;
   }
 }

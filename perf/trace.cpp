@@ -16,8 +16,8 @@
 #include <vector>
 
 #include <benchmark/benchmark.h>
-#include <time.h>
 
+#include "perf/timing.hpp"
 #include "perf/trace/check.hpp"
 #include "perf/trace/modes.hpp"
 #include "perf/trace/options.hpp"
@@ -34,12 +34,6 @@ constexpr double kAlsoRan = 1.33;  ///< times the best of its side: a way so slo
 
 Results results;
 bool failed = false;
-
-double cpu_ns() {
-  timespec now;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e9 * static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec);
-}
 
 /// One scene and kind of rays; answers are overwritten by each way of Grelha's.
 struct Race {

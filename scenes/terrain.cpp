@@ -67,7 +67,9 @@ void write_terrain_mesh(std::ostream& out, int size) {
   for (std::uint32_t j = 0; j <= n; ++j, flush())
     for (std::uint32_t i = 0; i <= n; ++i) {
       const double x = double(i) / n, y = double(j) / n;
-      put(row, 2 * x - 1), put(row, 2 * y - 1), put(row, height(x, y));
+      put(row, 2 * x - 1);
+      put(row, 2 * y - 1);
+      put(row, height(x, y));
     }
   const auto face = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     row += char(3);

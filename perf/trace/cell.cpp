@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "perf/timing.hpp"
+
 namespace grelha::perf {
 namespace {
 
@@ -10,13 +12,6 @@ double share_of(std::uint64_t part, std::uint64_t all) {
 }
 
 }  // namespace
-
-double median(std::vector<double> v) {
-  if (v.empty())
-    return 0;
-  std::sort(v.begin(), v.end());
-  return (v[(v.size() - 1) / 2] + v[v.size() / 2]) / 2;
-}
 
 double Cell::tests() const {
   const TestCounts& t = counts.tests;

@@ -20,9 +20,6 @@ struct Way {
   std::vector<double> ns;  ///< a ray, by round
 };
 
-/// 0 of nothing.
-double median(std::vector<double> v);
-
 struct Cell {
   std::size_t rays = 0;
   double hit_share = 0, disagree = 0;

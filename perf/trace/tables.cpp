@@ -4,6 +4,7 @@
 
 #include "perf/embree.hpp"
 #include "perf/ray_sets.hpp"
+#include "perf/timing.hpp"
 
 namespace grelha::perf {
 namespace {

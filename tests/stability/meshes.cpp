@@ -117,8 +117,8 @@ void grazed(Random& random, std::size_t rays, const Sink& sink) {
       const double length = random.log_in(.1, 10), width = length * random.log_in(1e-5, .3);
       const Float3 b = at(a, length, d), c = at(at(a, length * random.unit(), d), width, e);
       add_triangle(trial.scene, a, b, c);
-      middle.push_back(scaled({a.x + b.x + c.x, a.y + b.y + c.y, a.z + b.z + c.z}, 1. / 3)),
-          along.push_back(d);
+      middle.push_back(scaled({a.x + b.x + c.x, a.y + b.y + c.y, a.z + b.z + c.z}, 1. / 3));
+      along.push_back(d);
       const oracle::V n = oracle::cross(d, e);
       const oracle::V u = oracle::unit(n);
       normal.push_back({static_cast<float>(u.x), static_cast<float>(u.y), static_cast<float>(u.z)});

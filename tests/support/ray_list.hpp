@@ -91,8 +91,7 @@ inline Answers trace(const Variant& variant,
   return a;
 }
 
-// ---- bundles
-// ------------------------------------------------------------------------------------------
+// ---- bundles ----
 
 /// Rays about a ball of the given size: most aimed at it from any distance, some from inside, some
 /// past it, some along the axes, with ends and lengths of all kinds.

@@ -60,8 +60,7 @@ inline Scene one_triangle(const Float3& a, const Float3& b, const Float3& c) {
   return s;
 }
 
-// ---- crowds
-// ------------------------------------------------------------------------------------------
+// ---- crowds ----
 
 inline void add_spheres(Scene& s, Random& random, int n, double half, double least, double most) {
   for (int i = 0; i < n; ++i) {
@@ -273,8 +272,7 @@ inline Camera straight_down(int width, int height, double across) {
   return c;
 }
 
-// ---- closed meshes
-// ------------------------------------------------------------------------------------------
+// ---- closed meshes ----
 
 /// A mesh round in u and, unless it is closed by poles, in v; point(u, v) for u, v in [0, 1].
 inline Scene closed_mesh(int nu,

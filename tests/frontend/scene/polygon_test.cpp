@@ -77,8 +77,8 @@ Outline star(int corners, double inner) {
 Outline comb(int teeth) {
   Outline p{{0, 0, 0}, {float(2 * teeth), 0, 0}};
   for (int i = teeth; i-- > 0;) {
-    p.push_back({float(2 * i + 2), 1, 0}), p.push_back({float(2 * i + 2), 9, 0});
-    p.push_back({float(2 * i + 1), 9, 0}), p.push_back({float(2 * i + 1), 1, 0});
+    const float left = float(2 * i + 1), right = float(2 * i + 2);
+    p.insert(p.end(), {{right, 1, 0}, {right, 9, 0}, {left, 9, 0}, {left, 1, 0}});
   }
   return p;
 }
@@ -162,8 +162,10 @@ TEST(Polygon, AnyPlaneGivesTheSameCut) {
   const Outline flat = star(40, 0.5);
   const auto expected = cut(flat);
   Outline yz, zx;
-  for (const Float3& p : flat)
-    yz.push_back({5, p.x, p.y}), zx.push_back({p.y, 5, p.x});
+  for (const Float3& p : flat) {
+    yz.push_back({5, p.x, p.y});
+    zx.push_back({p.y, 5, p.x});
+  }
   EXPECT_EQ(cut(yz), expected);
   EXPECT_EQ(cut(zx), expected);
 }

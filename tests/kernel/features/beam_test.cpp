@@ -101,8 +101,8 @@ TEST_P(Beam, TakesASmoothMeshForOneSurface) {
 TEST_P(Beam, DoubtsASlitBetweenTrianglesOfOneSurface) {
   Scene s = empty_scene();
   const auto strip = [&](float x0, float x1) {
-    add_triangle(s, {x0, -6, 0}, {x1, -6, 0}, {x1, 6, 0}),
-        add_triangle(s, {x0, -6, 0}, {x1, 6, 0}, {x0, 6, 0});
+    add_triangle(s, {x0, -6, 0}, {x1, -6, 0}, {x1, 6, 0});
+    add_triangle(s, {x0, -6, 0}, {x1, 6, 0}, {x0, 6, 0});
   };
   strip(-6, 1.6f);
   strip(1.62f, 6);

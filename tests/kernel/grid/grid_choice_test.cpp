@@ -13,8 +13,7 @@
 namespace grelha::test {
 namespace {
 
-// ---- blocks
-// ------------------------------------------------------------------------------------------
+// ---- blocks ----
 
 /// A sheet of n x n small triangles across the cell of a grid of one, in an order drawn by lot.
 Scene shuffled_sheet(int n) {
@@ -148,8 +147,7 @@ TEST(BlockBoxes, HoldWhatLiesInTheirCell) {
   EXPECT_GT(points, 5000u);
 }
 
-// ---- sizes and choices
-// ------------------------------------------------------------------------------------------
+// ---- sizes and choices ----
 
 TEST(GridSize, FollowsTheFormula) {
   Scene s = empty_scene();

@@ -15,8 +15,7 @@
 namespace grelha::test {
 namespace {
 
-// ---- distances
-// ------------------------------------------------------------------------------------------
+// ---- distances ----
 
 int naive_distance(const std::vector<std::uint8_t>& occupied,
                    const std::array<std::uint32_t, 3>& n,
@@ -63,8 +62,7 @@ TEST(Distance, StopsAt255) {
             std::vector<std::uint8_t>(8, 255));
 }
 
-// ---- rows
-// ------------------------------------------------------------------------------------------
+// ---- rows ----
 
 void expect_sound_rows(const CellStore& s, std::size_t cells) {
   for_each_finite_shape([&]<class Shape>() {

@@ -112,8 +112,7 @@ TEST_P(Double, TiesGoToTheLowerId) {
   expect_truth_in_double(tested(), World(scene, {.density = 2}), rays, truth, "ties");
 }
 
-// ---- how far off
-// ------------------------------------------------------------------------------------------
+// ---- how far off ----
 
 /// The derivations of sphere.hpp, plane.hpp and triangle.hpp count roundings, whatever their size:
 /// in double the same multiples of 2^-53. Here t is judged, of rays that meet a surface at a cosine
@@ -165,8 +164,7 @@ TEST_P(Double, IsOffByRoundingAlone) {
   }
 }
 
-// ---- leaks
-// ------------------------------------------------------------------------------------------
+// ---- leaks ----
 
 TEST_P(Double, ClosedMeshesAreTight) {
   for (const bool torus : {false, true})
@@ -193,8 +191,7 @@ TEST_P(Double, ClosedMeshesAreTight) {
     }
 }
 
-// ---- pictures
-// ------------------------------------------------------------------------------------------
+// ---- pictures ----
 
 Image picture(const World& world,
               const Camera& camera,

@@ -28,6 +28,15 @@ template <auto Make, int Count>
 Scene crowd() {
   return Make(7, Count);
 }
+/// The triangles of a mesh, as an object of its own.
+void add_object(Scene& s, const Scene& mesh) {
+  const Triangles& from = mesh.geometry.triangles;
+  const auto first = static_cast<std::uint32_t>(s.geometry.triangles.size());
+  for (std::size_t t = 0; t < from.size(); ++t)
+    add_triangle(s, vertex(mesh, from.a[t]), vertex(mesh, from.b[t]), vertex(mesh, from.c[t]));
+  s.geometry.objects.push_back({first, static_cast<std::uint32_t>(from.size())});
+}
+
 /// Three grids one behind another: what is left of a packet's rays after one goes on through the
 /// next.
 Scene objects_in_a_row() {
@@ -35,14 +44,7 @@ Scene objects_in_a_row() {
   for (int i = 0; i < 2; ++i) {
     const Scene ball =
         placed(ball_mesh(24, 12, .3, 5), .9, {i - .5f, 0, .25f * static_cast<float>(i)});
-    const auto first = static_cast<std::uint32_t>(s.geometry.triangles.size());
-    for (std::size_t t = 0; t < ball.geometry.triangles.size(); ++t)
-      add_triangle(s,
-                   vertex(ball, ball.geometry.triangles.a[t]),
-                   vertex(ball, ball.geometry.triangles.b[t]),
-                   vertex(ball, ball.geometry.triangles.c[t]));
-    s.geometry.objects.push_back(
-        {first, static_cast<std::uint32_t>(ball.geometry.triangles.size())});
+    add_object(s, ball);
   }
   return s;
 }
@@ -192,14 +194,7 @@ TEST(GridOrder, IsFrontToBack) {
           ball_mesh(24, 12),
           1,
           {0, 0, near_first ? -3.f * static_cast<float>(i) : 3.f * static_cast<float>(i - 2)});
-      const auto first = static_cast<std::uint32_t>(s.geometry.triangles.size());
-      for (std::size_t t = 0; t < ball.geometry.triangles.size(); ++t)
-        add_triangle(s,
-                     vertex(ball, ball.geometry.triangles.a[t]),
-                     vertex(ball, ball.geometry.triangles.b[t]),
-                     vertex(ball, ball.geometry.triangles.c[t]));
-      s.geometry.objects.push_back(
-          {first, static_cast<std::uint32_t>(ball.geometry.triangles.size())});
+      add_object(s, ball);
     }
     const World world(s, {});
     ASSERT_EQ(world.impl().grids.size(), 3u);
