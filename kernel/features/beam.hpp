@@ -154,65 +154,60 @@ inline bool triangle_point(const BeamFrame& f, const Vec3<float> (&c)[3], Vec3<f
 struct Corners3 {
   Vec3<float> at[3];
 };
-inline Corners3 triangle_corners(const GeometryView& g, std::uint32_t i) {
-  const std::uint32_t v[3] = {g.ta[i], g.tb[i], g.tc[i]};
+inline Corners3 triangle_corners(const Triangle::Arrays& triangles, std::uint32_t i) {
   Corners3 c;
   for (int k = 0; k < 3; ++k)
-    c.at[k] = {g.tx[v[k]], g.ty[v[k]], g.tz[v[k]]};
+    c.at[k] = three_at(triangles.vertex, triangles.corner[k][i]);
   return c;
+}
+
+/// A point of a triangle inside the beam, nearer than w = `far`; false when it has none.
+inline bool find_point(const Triangle::Arrays& triangles,
+                       const BeamFrame& f,
+                       std::uint32_t i,
+                       float far,
+                       Vec3<float>& p) {
+  if (!triangle_point(f, triangle_corners(triangles, i).at, p))
+    return false;
+  const Place at = place(f, p);
+  return at.w > f.depth && at.w < far && outness(at.x, at.y) <= 1;
+}
+
+/// The same of what has a ball_toward() the beam's axis.
+template <class Shape>
+inline bool find_point_toward_ball(const typename Shape::Arrays& all,
+                                   const BeamFrame& f,
+                                   std::uint32_t i,
+                                   float far,
+                                   Vec3<float>& p) {
+  const auto one = broadcast<Shape, float>(all.fields, i);
+  const Ball<float> ball = ball_toward(one, f.apex, f.unit);
+  const Place toward = place(f, ball_point(f, ball.center, ball.radius));
+  if (!(toward.w > 0) || !(outness(toward.x, toward.y) <= 1))
+    return false;
+  const Vec3<float> dir = f.axis + toward.x * f.right + toward.y * f.up;
+  const Vec3<float> org = f.apex + f.depth * dir;
+  float t = 0;
+  const bool hit = meet<float>({org, dir, 1 / dot(dir, dir), 0}, one, t);
+  p = org + t * dir;
+  return hit && f.depth + t < far;
 }
 
 /// A point of a primitive's surface inside the beam, nearer than w = `far`; false when it has none
 /// that this finds. The point lies in a cell that lists the primitive and that the beam walks
 /// through, whatever the grid.
-inline bool meets(
+[[gnu::noinline]] inline bool meets(
     const SceneView& scene, const BeamFrame& f, std::uint32_t id, float far, Vec3<float>& p) {
   const GeometryView& g = scene.geometry;
-  const auto [kind, i] = g.ids.primitive(id);
-  // a plane ends nowhere inside a beam: its corners see it
-  if (kind == PrimitiveKind::kPlane)
-    return false;
-  if (kind == PrimitiveKind::kTriangle) {
-    if (!triangle_point(f, triangle_corners(g, i).at, p))
-      return false;
-    const Place at = place(f, p);
-    return at.w > f.depth && at.w < far && outness(at.x, at.y) <= 1;
-  }
-  Vec3<float> center, base{}, axis{};
-  float radius = 0;
-  if (kind == PrimitiveKind::kSphere) {
-    center = {g.sx[i], g.sy[i], g.sz[i]}, radius = magnitude(g.sr[i]);
-  } else {  // the ball around the cone's axis where that passes nearest to the beam's
-    base = {g.cone[0][i], g.cone[1][i], g.cone[2][i]},
-    axis = {g.cone[3][i], g.cone[4][i], g.cone[5][i]};
-    const float height = g.cone[6][i];
-    const Vec3<float> d = base - f.apex;
-    const float ab = dot(axis, f.unit), k = 1 - ab * ab;
-    float h = k > kParallelAxes ? (ab * dot(d, f.unit) - dot(d, axis)) / k : .5f * height;
-    h = h < 0 ? 0 : h > height ? height : h;
-    center = base + h * axis;
-    radius = g.cone[7][i] + g.cone[8][i] * h;
-  }
-  const Place toward = place(f, ball_point(f, center, radius));
-  if (!(toward.w > 0) || !(outness(toward.x, toward.y) <= 1))
-    return false;
-  const Vec3<float> dir = f.axis + toward.x * f.right + toward.y * f.up,
-                    org = f.apex + f.depth * dir;
-  const float inv_dd = 1 / dot(dir, dir);
-  float t = 0;
-  bool hit;
-  if (kind == PrimitiveKind::kSphere) {
-    hit = hit_sphere<float>(org, dir, inv_dd, 0, center, g.sr[i], t);
-  } else {
-    hit = hit_cone<float>(org,
-                          dir,
-                          inv_dd,
-                          0,
-                          {base, axis, g.cone[6][i], g.cone[7][i], g.cone[8][i], g.cone[9][i]},
-                          t);
-  }
-  p = org + t * dir;
-  return hit && f.depth + t < far;
+  const auto find = [&]<class Shape>(std::uint32_t i) __attribute__((always_inline)) {
+    if constexpr (!Shape::kFinite)
+      return false;  // it ends nowhere inside a beam: the corners see it
+    else if constexpr (Shape::kInBlocks)
+      return find_point(g.of<Shape>(), f, i, far, p);
+    else
+      return find_point_toward_ball<Shape>(g.of<Shape>(), f, i, far, p);
+  };
+  return visit_shape(Shapes{}, g.ids, id, find);
 }
 
 /// The primitives, other than those of `known`, that meet() a beam; each once.
@@ -236,17 +231,23 @@ class BeamVisit {
   bool leave(int) const { return true; }
 
   void look(std::size_t cell) {
-    if (lists_.triangle_first)
-      for (std::uint32_t b = lists_.triangle_first[cell]; b < lists_.triangle_first[cell + 1]; ++b)
-        each_triangle_inside(
-            f_, lists_.triangles[b], [&](int i) { once(lists_.triangles[b].id[i]); });
-    if (lists_.sphere_first)
-      each_sphere_inside(f_, lists_, cell, [&](std::uint32_t i) { once(lists_.sphere_id[i]); });
-    if (lists_.cone_first)
-      each_cone_inside(f_, lists_, cell, [&](std::uint32_t i) { once(lists_.cone_id[i]); });
+    CellShapes::for_each([&]<class Shape>() __attribute__((always_inline)) {
+      const typename Shape::CellList& list = lists_.of<Shape>();
+      if (list.first)
+        look_into(list, cell);
+    });
   }
 
  private:
+  void look_into(const Triangle::CellList& list, std::size_t cell) {
+    for (std::uint32_t b = list.first[cell]; b < list.first[cell + 1]; ++b)
+      each_inside_block(f_, list.blocks[b], [&](int i) { once(list.blocks[b].id[i]); });
+  }
+  template <class Fields>
+  void look_into(const CellArrays<Fields>& list, std::size_t cell) {
+    each_inside(f_, list, cell, [&](std::uint32_t i) { once(list.id[i]); });
+  }
+
   void once(std::uint32_t id) {
     if (!held_.seen(id))
       see_(id);
@@ -272,19 +273,28 @@ inline bool walk_beam(
   return true;
 }
 
+template <class See>
+inline void see_all(const Triangle::CellList& list, const See& see) {
+  for (std::uint32_t b = 0; b < list.first[1]; ++b) {
+    const TriangleBlock& block = list.blocks[b];
+    for (int i = 0; i < kBlock && block.a[0][i] == block.a[0][i]; ++i)
+      see(block.id[i]);
+  }
+}
+template <class Fields, class See>
+inline void see_all(const CellArrays<Fields>& list, const See& see) {
+  for (std::uint32_t i = 0; i < list.first[1]; ++i)
+    see(list.id[i]);
+}
+
 /// Every primitive of the list without a grid.
 template <class See>
 inline void see_outside(const CellLists& lists, const See& see) {
-  if (lists.triangle_first)
-    for (std::uint32_t b = 0; b < lists.triangle_first[1]; ++b)
-      for (int i = 0; i < kBlock && lists.triangles[b].a[0][i] == lists.triangles[b].a[0][i]; ++i)
-        see(lists.triangles[b].id[i]);
-  if (lists.sphere_first)
-    for (std::uint32_t i = 0; i < lists.sphere_first[1]; ++i)
-      see(lists.sphere_id[i]);
-  if (lists.cone_first)
-    for (std::uint32_t i = 0; i < lists.cone_first[1]; ++i)
-      see(lists.cone_id[i]);
+  CellShapes::for_each([&]<class Shape>() __attribute__((always_inline)) {
+    const typename Shape::CellList& list = lists.of<Shape>();
+    if (list.first)
+      see_all(list, see);
+  });
 }
 
 }  // namespace grelha::GRELHA_ISA

@@ -204,7 +204,7 @@ class Watcher {
   }
 
   Vec3<float> flat_normal(std::uint32_t i) const {
-    const Corners3 c = triangle_corners(scene_.geometry, i);
+    const Corners3 c = triangle_corners(scene_.geometry.of<Triangle>(), i);
     return cross(c.at[1] - c.at[0], c.at[2] - c.at[0]);
   }
 
@@ -216,7 +216,7 @@ class Watcher {
     if (!is_triangle(a) || !is_triangle(b))
       return false;
     const std::uint32_t i = triangle(a), j = triangle(b);
-    if (scene_.geometry.triangle_material[i] != scene_.geometry.triangle_material[j])
+    if (scene_.geometry.of<Triangle>().material[i] != scene_.geometry.of<Triangle>().material[j])
       return false;
     const Vec3<float> n = flat_normal(i), m = flat_normal(j);
     const float d = dot(n, m);
@@ -230,8 +230,8 @@ class Watcher {
   bool touch(std::uint32_t a, std::uint32_t b) const {
     if (!is_triangle(a) || !is_triangle(b))
       return a == b;
-    const Corners3 p = triangle_corners(scene_.geometry, triangle(a)),
-                   q = triangle_corners(scene_.geometry, triangle(b));
+    const Corners3 p = triangle_corners(scene_.geometry.of<Triangle>(), triangle(a)),
+                   q = triangle_corners(scene_.geometry.of<Triangle>(), triangle(b));
     bool found = false;
     for (int k = 0; k < 3; ++k)
       for (int l = 0; l < 3; ++l)
@@ -241,8 +241,8 @@ class Watcher {
   /// Triangles of one material: pieces of one mesh, most likely.
   bool kin(std::uint32_t a, std::uint32_t b) const {
     return is_triangle(a) && is_triangle(b) &&
-           scene_.geometry.triangle_material[triangle(a)] ==
-               scene_.geometry.triangle_material[triangle(b)];
+           scene_.geometry.of<Triangle>().material[triangle(a)] ==
+               scene_.geometry.of<Triangle>().material[triangle(b)];
   }
   template <class Test>
   static bool any_of(const std::uint32_t (&id)[kCorners], const Test& test) {
@@ -310,7 +310,7 @@ class Watcher {
       return true;
     Corners3 c[kMostMet + kCorners];
     for (int i = 0; i < size; ++i)
-      c[i] = triangle_corners(scene_.geometry, triangle(sheet[i]));
+      c[i] = triangle_corners(scene_.geometry.of<Triangle>(), triangle(sheet[i]));
     const auto same = [](const Vec3<float>& a, const Vec3<float>& b) {
       return a.x == b.x && a.y == b.y && a.z == b.z;
     };

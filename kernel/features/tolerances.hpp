@@ -24,9 +24,6 @@ inline constexpr float kDepthMargin = .1f;
 /// (taste).
 inline constexpr float kRimShare = .9f;
 inline constexpr float kOffEdge = .01f;
-/// 1 - cos^2 below which a cone's axis runs along the beam's: the place nearest to it is rounding,
-/// 2 u of 1 - cos^2 = 1.2e-7. There the middle of the cone stands for it.
-inline constexpr float kParallelAxes = 1e-6f;
 
 /// Times what a beam's corners meet, from its apex: how far the beam is looked at, and its grids
 /// are walked. What lies as far as they meet counts as met. Rounding takes less than 10 u of the

@@ -37,27 +37,17 @@ void ListStore<Triangle>::end_block(std::size_t entry, std::size_t place) {
   }
 }
 
+Triangle::CellList ListStore<Triangle>::list() const {
+  if (first.empty())
+    return {};
+  return {first.data(), blocks.data(), boxes.empty() ? nullptr : boxes.data()};
+}
+
 CellLists CellStore::lists() const {
   CellLists l;
-  if (const auto& triangles = of<Triangle>(); !triangles.first.empty()) {
-    l.triangle_first = triangles.first.data();
-    l.triangles = triangles.blocks.data();
-    l.boxes = triangles.boxes.empty() ? nullptr : triangles.boxes.data();
-  }
-  if (const auto& spheres = of<Sphere>(); !spheres.first.empty()) {
-    l.sphere_first = spheres.first.data();
-    l.sx = spheres.fields.center[0].data();
-    l.sy = spheres.fields.center[1].data();
-    l.sz = spheres.fields.center[2].data();
-    l.sr = spheres.fields.radius.data();
-    l.sphere_id = spheres.id.data();
-  }
-  if (const auto& cones = of<Cone>(); !cones.first.empty()) {
-    l.cone_first = cones.first.data();
-    l.cone_id = cones.id.data();
-    int k = 0;
-    Cone::for_each_field([&](const RawVector<float>& v) { l.cone[k++] = v.data(); }, cones.fields);
-  }
+  for_each_finite_shape([&]<class Shape>() {
+    static_cast<typename Shape::CellList&>(l.of<Shape>()) = of<Shape>().list();
+  });
   return l;
 }
 

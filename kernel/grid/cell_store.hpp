@@ -16,7 +16,6 @@ namespace grelha {
 /// kBlock entries of NaN, so that a whole block can be read from any place.
 template <class Shape>
 struct ListStore {
-  static constexpr bool kInBlocks = false;
   /// Bytes of an entry.
   static constexpr std::size_t kEntry = sizeof(typename Shape::template Fields<float>) + 4;
 
@@ -38,6 +37,16 @@ struct ListStore {
     Shape::for_each_field(put_number, fields, one);
     id[entry] = of;
   }
+  typename Shape::CellList list() const {
+    typename Shape::CellList out;
+    if (first.empty())
+      return out;
+    const auto point_to = [](const float*& to, const RawVector<float>& from) { to = from.data(); };
+    Shape::for_each_field(point_to, out.fields, fields);
+    out.first = first.data();
+    out.id = id.data();
+    return out;
+  }
   std::size_t bytes() const { return bytes_of(first) + id.size() * kEntry; }
 
  private:
@@ -51,7 +60,6 @@ struct ListStore {
 /// Triangles: an entry is a block of them.
 template <>
 struct ListStore<Triangle> {
-  static constexpr bool kInBlocks = true;
   static constexpr std::size_t kEntry = sizeof(TriangleBlock);
 
   RawVector<std::uint32_t> first;
@@ -67,6 +75,7 @@ struct ListStore<Triangle> {
   void put(std::size_t entry, std::size_t place, const Triangle::Fields<float>&, std::uint32_t of);
   /// The last block holds nothing from a place on.
   void end_block(std::size_t entry, std::size_t place);
+  Triangle::CellList list() const;
   std::size_t bytes() const { return bytes_of(first) + bytes_of(blocks) + bytes_of(boxes); }
 };
 

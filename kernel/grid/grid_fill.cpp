@@ -78,7 +78,7 @@ template <class Visit>
 void for_each_list(CellStore& store, const Visit& visit) {
   for_each_finite_shape([&]<class Shape>() {
     if (auto& list = store.of<Shape>(); !list.first.empty())
-      visit.template operator()<Shape>(list, static_cast<std::size_t>(Shape::kKind));
+      visit.template operator()<Shape>(list, kNumber<Shape>);
   });
 }
 
@@ -228,7 +228,7 @@ std::vector<PerKind> count_all(Filling& f) {
   for_each_list(f.store, [&]<class Shape>(ListStore<Shape>& list, std::size_t kind) {
     list.first[f.buckets.cells] = static_cast<std::uint32_t>(total[kind]);
     list.resize(total[kind]);
-    if constexpr (ListStore<Shape>::kInBlocks)
+    if constexpr (Shape::kInBlocks)
       if (f.pad)
         list.resize_boxes();
   });
@@ -270,7 +270,7 @@ void place_lists(Filling& f, std::size_t bucket, const PerKind& start, Scratch& 
     auto sum = static_cast<std::uint32_t>(start[kind]);
     for (std::size_t c = f.buckets.begin(bucket); c < f.buckets.end(bucket); ++c)
       sum += std::exchange(list.first[c], sum);
-    if constexpr (ListStore<Shape>::kInBlocks)
+    if constexpr (Shape::kInBlocks)
       scratch.triangles.resize((sum - start[kind]) * kBlock);
   });
 }
@@ -279,7 +279,7 @@ void place_lists(Filling& f, std::size_t bucket, const PerKind& start, Scratch& 
 /// where given, becomes 0 for cells that do and 255 for others.
 std::uint64_t write(
     Filling& f, std::size_t bucket, const PerKind& start, std::uint8_t* empty, Scratch& scratch) {
-  constexpr auto kTriangles = static_cast<std::size_t>(PrimitiveKind::kTriangle);
+  constexpr auto kTriangles = kNumber<Triangle>;
   const std::size_t begin = f.buckets.begin(bucket);
   const std::size_t size = f.buckets.end(bucket) - begin;
   const auto ids_at = [&](std::size_t cell) {
@@ -289,10 +289,10 @@ std::uint64_t write(
   place_lists(f, bucket, start, scratch);
   for_each_pair(f, bucket, [&](const Pair& pair) {
     f.primitives.visit(pair.id, [&]<class Shape>(std::uint32_t i) {
-      const std::size_t row = static_cast<std::size_t>(Shape::kKind) * size;
+      const std::size_t row = kNumber<Shape> * size;
       const std::uint32_t place = scratch.written[row + pair.cell - begin]++;
       auto& list = f.store.of<Shape>();
-      if constexpr (ListStore<Shape>::kInBlocks)
+      if constexpr (Shape::kInBlocks)
         ids_at(pair.cell)[place] = pair.id;
       else
         list.put(list.first[pair.cell] + place, f.primitives.of<Shape>()[i], pair.id);

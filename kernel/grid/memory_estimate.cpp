@@ -16,7 +16,7 @@ constexpr double kPair = 8, kId = 4;
 constexpr double kListed = ListStore<Triangle>::kEntry;
 constexpr double kBoxed = kListed + sizeof(BlockBoxes) / double{kBlock};
 constexpr double kMaterial = sizeof(float) * kMaterialFields;  ///< prepared
-constexpr auto kTriangles = static_cast<std::size_t>(PrimitiveKind::kTriangle);
+constexpr auto kTriangles = kNumber<Triangle>;
 
 /// What lists hold: references by kind, and blocks of triangles.
 struct Lists {
@@ -32,8 +32,8 @@ struct Lists {
     double sum = blocks * block;
     for_each_finite_shape([&]<class Shape>() {
       using Store = ListStore<Shape>;
-      if (!Store::kInBlocks)
-        sum += references[static_cast<std::size_t>(Shape::kKind)] * double{Store::kEntry};
+      if (!Shape::kInBlocks)
+        sum += references[kNumber<Shape>] * double{Store::kEntry};
     });
     return sum;
   }

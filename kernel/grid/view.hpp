@@ -9,37 +9,11 @@
 
 namespace grelha {
 
-inline constexpr int kBlock = 8;  ///< primitives side by side in memory
+template <class Shape>
+struct CellListOf : Shape::CellList {};
 
-/// Eight triangles side by side; unused places hold NaN corners, which no ray can meet.
-struct alignas(64) TriangleBlock {
-  float a[3][kBlock], b[3][kBlock], c[3][kBlock];
-  std::uint32_t id[kBlock];
-};
-
-/// Of eight blocks, each: what of its triangles lies in its cell, boxed and grown. A ray that meets
-/// one of them there passes through. Block b has place b % kBlock of boxes b / kBlock.
-struct alignas(64) BlockBoxes {
-  float side[6][kBlock];  ///< least x, y, z, greatest x, y, z
-};
-
-/// Cells of one grid, one after the other, each kind apart: cell i owns places first[i] up to
-/// first[i + 1] - 1 of the kind's arrays (blocks for triangles). A kind the grid lacks has first ==
-/// nullptr. Arrays of spheres and cones are padded with kBlock NaN entries, so a whole block can be
-/// read from any place.
-struct CellLists {
-  const std::uint32_t* triangle_first = nullptr;
-  const TriangleBlock* triangles = nullptr;
-  const BlockBoxes* boxes = nullptr;  ///< of all blocks, or none
-
-  const std::uint32_t* sphere_first = nullptr;
-  const float *sx = nullptr, *sy = nullptr, *sz = nullptr, *sr = nullptr;
-  const std::uint32_t* sphere_id = nullptr;
-
-  const std::uint32_t* cone_first = nullptr;
-  const float* cone[10] = {};  ///< base xyz, axis xyz, height, radius, slope, side
-  const std::uint32_t* cone_id = nullptr;
-};
+/// Cells of one grid, one after the other, each kind apart.
+struct CellLists : PerShape<CellListOf, FiniteShapes> {};
 
 inline constexpr int kMostGroups = 17;              ///< of primitives
 inline constexpr int kMostGrids = 2 * kMostGroups;  ///< each has one or two
@@ -94,9 +68,10 @@ struct TraceOptions {
   bool mailbox;  ///< for packets
 };
 
-/// What a trace counts, by the kind of its tests.
+/// What a trace counts.
 struct Counters {
-  std::uint64_t visits = 0, sphere = 0, triangle = 0, cone = 0, plane = 0;
+  std::uint64_t visits = 0;
+  std::uint64_t tests[kKinds] = {};  ///< by kind
   std::uint64_t formed = 0, fell_back = 0, issued = 0, busy = 0;
 };
 

@@ -60,7 +60,6 @@ void check(const SceneSpans& scene) {
 
 World::Impl::Impl(const SceneSpans& s, const BuildOptions& options)
     : scene((check(s), s)), primitives(s.geometry), materials(s) {
-  const GeometrySpans& g = s.geometry;
   BuildProgress progress(options.progress);
   Plan plan = plan_grids(primitives, options, progress);
   if (options.most_bytes > 0 && !surely_fits(primitives, options.most_bytes))
@@ -70,74 +69,59 @@ World::Impl::Impl(const SceneSpans& s, const BuildOptions& options)
   outside = build_list(primitives, plan.apart);
   progress.finish();
   progress.throw_if_stopped();
+  view_primitives();
+  view_grids(plan.all);
+  set_lights();
+  set_materials();
+}
+
+void World::Impl::view_primitives() {
+  view.geometry.ids = primitives.ids;
+  for_each_shape([&]<class Shape>() {
+    typename Shape::Arrays& arrays = view.geometry.of<Shape>();
+    arrays = primitives.of<Shape>().arrays();
+  });
+  view.geometry.of<Plane>().count = planes_without_copies(scene.geometry.planes);
+  view.outside = outside.lists();
+}
+
+void World::Impl::view_grids(const Box& all) {
   for (const Grid& grid : grids)
     grid_views.push_back(grid.view());
-
-  GeometryView& v = view.geometry;
-  const TriangleSpans& t = g.triangles;
-  v.tx = t.x.data();
-  v.ty = t.y.data();
-  v.tz = t.z.data();
-  if (!t.nx.empty()) {
-    v.tnx = t.nx.data();
-    v.tny = t.ny.data();
-    v.tnz = t.nz.data();
-  }
-  v.ta = t.a.data();
-  v.tb = t.b.data();
-  v.tc = t.c.data();
-  v.sx = g.spheres.x.data();
-  v.sy = g.spheres.y.data();
-  v.sz = g.spheres.z.data();
-  v.sr = g.spheres.radius.data();
-  int component = 0;
-  Cone::for_each_field([&](const std::vector<float>& of) { v.cone[component++] = of.data(); },
-                       primitives.of<Cone>().prepared);
-  v.px = g.planes.x.data();
-  v.py = g.planes.y.data();
-  v.pz = g.planes.z.data();
-  v.pnx = g.planes.nx.data();
-  v.pny = g.planes.ny.data();
-  v.pnz = g.planes.nz.data();
-  v.plane_material = g.planes.material.data();
-  v.sphere_material = g.spheres.material.data();
-  v.triangle_material = t.material.data();
-  v.cone_material = g.cones.material.data();
-  v.ids = primitives.ids;
-  v.plane_count = planes_without_copies(g.planes);
-  v.sphere_count = primitives.ids.count(PrimitiveKind::kSphere);
-  v.triangle_count = primitives.ids.count(PrimitiveKind::kTriangle);
-  v.cone_count = primitives.ids.count(PrimitiveKind::kCone);
-  view.outside = outside.lists();
   view.grids = grid_views.data();
   view.grid_count = static_cast<int>(grid_views.size());
-  view.finite = !plan.all.empty();
-  if (view.finite) {
-    for (int a = 0; a < 3; ++a) {
-      view.box_lo[a] = static_cast<float>(plan.all.lo[a]);
-      view.box_hi[a] = static_cast<float>(plan.all.hi[a]);
-    }
-    view.reach = static_cast<float>(plan.all.diagonal());
+  view.finite = !all.empty();
+  if (!view.finite)
+    return;
+  for (int a = 0; a < 3; ++a) {
+    view.box_lo[a] = static_cast<float>(all.lo[a]);
+    view.box_hi[a] = static_cast<float>(all.hi[a]);
   }
+  view.reach = static_cast<float>(all.diagonal());
+}
 
-  for (const Light& l : s.lights) {
+void World::Impl::set_lights() {
+  float brightest = 0;
+  for (const Light& l : scene.lights) {
     for (const Float3& part : {l.position, l.color, l.edge1, l.edge2})
       lights.insert(lights.end(), {part.x, part.y, part.z});
     shading.area |= l.is_area();
+    brightest += largest_channel(l.color);
   }
-  float light = 0;
-  for (const Light& l : s.lights)
-    light += largest_channel(l.color);
+  const Float3& background = scene.background;
+  shading.background[0] = background.x;
+  shading.background[1] = background.y;
+  shading.background[2] = background.z;
   shading.brightest =
-      std::max(largest_channel(s.background), materials.emitted + materials.lit * light);
-  shading.gains = materials.gains;
-  shading.materials = materials.view();
+      std::max(largest_channel(background), materials.emitted + materials.lit * brightest);
   shading.lights = lights.data();
-  shading.light_count = static_cast<int>(s.lights.size());
-  shading.background[0] = s.background.x;
-  shading.background[1] = s.background.y;
-  shading.background[2] = s.background.z;
-  shading.smooth = !t.nx.empty();
+  shading.light_count = static_cast<int>(scene.lights.size());
+}
+
+void World::Impl::set_materials() {
+  shading.materials = materials.view();
+  shading.smooth = !scene.geometry.triangles.nx.empty();
+  shading.gains = materials.gains;
   shading.reflects = materials.reflects;
   shading.refracts = materials.refracts;
   shading.fresnel = materials.fresnel;

@@ -29,6 +29,10 @@ struct World::Impl {
 
  private:
   void fill(Plan& plan, int threads, BuildProgress& progress);
+  void view_primitives();
+  void view_grids(const Box& all);
+  void set_lights();
+  void set_materials();
 };
 
 }  // namespace grelha

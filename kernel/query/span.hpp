@@ -8,10 +8,10 @@ namespace grelha::GRELHA_ISA {
 
 inline void add(const Counters& n, TraceCounts& to) {
   to.visits += n.visits;
-  to.tests.sphere += n.sphere;
-  to.tests.triangle += n.triangle;
-  to.tests.cone += n.cone;
-  to.tests.plane += n.plane;
+  to.tests.sphere += n.tests[kNumber<Sphere>];
+  to.tests.triangle += n.tests[kNumber<Triangle>];
+  to.tests.cone += n.tests[kNumber<Cone>];
+  to.tests.plane += n.tests[kNumber<Plane>];
   to.packets.formed += n.formed;
   to.packets.fell_back += n.fell_back;
   to.packets.lanes_issued += n.issued;

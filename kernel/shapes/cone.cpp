@@ -45,6 +45,13 @@ Cone::Source::Source(const GeometrySpans& g) : spans(g.cones) {
   }
 }
 
+Cone::Fields<const float*> Cone::Source::fields() const {
+  Fields<const float*> out;
+  for_each_field(
+      [](const float*& to, const std::vector<float>& from) { to = from.data(); }, out, prepared);
+  return out;
+}
+
 // A disc of radius r across a unit axis d reaches r sqrt(1 - d_a^2).
 Box Cone::box(const Source& source, std::size_t i) {
   const ConeSpans& c = source.spans;

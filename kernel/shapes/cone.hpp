@@ -5,8 +5,10 @@
 #include <vector>
 
 #include "grelha/scene_spans.hpp"
+#include "kernel/shapes/arrays.hpp"
 #include "kernel/shapes/box.hpp"
 #include "kernel/shapes/surface_place.hpp"
+#include "kernel/shapes/ray_lanes.hpp"
 #include "kernel/simd/vec3.hpp"
 
 namespace grelha {
@@ -15,6 +17,7 @@ namespace grelha {
 struct Cone {
   static constexpr PrimitiveKind kKind = PrimitiveKind::kCone;
   static constexpr bool kFinite = true;
+  static constexpr bool kInBlocks = false;
 
   /// What tests see of the side of a cone frustum, or of many, an array each.
   template <class T>
@@ -27,15 +30,15 @@ struct Cone {
   };
   template <class Visit, class... F>
   static constexpr void for_each_field(const Visit& visit, F&... of) {
-    for (int a = 0; a < 3; ++a)
-      visit(of.base[a]...);
-    for (int a = 0; a < 3; ++a)
-      visit(of.axis[a]...);
+    for_each_axis(visit, of.base...);
+    for_each_axis(visit, of.axis...);
     visit(of.height...);
     visit(of.radius...);
     visit(of.slope...);
     visit(of.side...);
   }
+  using Arrays = IndexedArrays<Fields<const float*>>;
+  using CellList = CellArrays<Fields<const float*>>;
 
   /// The caller's arrays of numbers.
   template <class Visit>
@@ -66,11 +69,11 @@ struct Cone {
     Fields<std::vector<float>> prepared;
     explicit Source(const GeometrySpans& g);
     std::size_t size() const { return spans.size(); }
-    Fields<float> operator[](std::size_t i) const {
-      Fields<float> c;
-      for_each_field([i](float& to, const std::vector<float>& from) { to = from[i]; }, c, prepared);
-      return c;
+    Fields<const float*> fields() const;
+    Arrays arrays() const {
+      return {fields(), spans.material.data(), static_cast<std::uint32_t>(size())};
     }
+    Fields<float> operator[](std::size_t i) const { return one_of<Cone>(prepared, i); }
   };
 
   /// Of the discs at both ends.
@@ -86,15 +89,6 @@ struct Cone {
 }  // namespace grelha
 
 namespace grelha::GRELHA_ISA {
-
-/// The side of a cone frustum, prepared: centre of the narrower end (a cone's tip), unit axis
-/// towards the other, height, radius at the narrower end, growth of the radius per unit of height,
-/// and +1 (both sides show) or -1 (only the inside).
-template <class Real>
-struct ConeSide {
-  Vec3<Real> base, axis;
-  Real height, radius, slope, side;
-};
 
 /// First point of each ray on the side of a cone frustum or cylinder, from outside or (through the
 /// open ends) inside.
@@ -115,12 +109,13 @@ template <class Real>
                                                   const Vec3<Real>& dir,
                                                   const Real& inv_dd,
                                                   const Real& t_min,
-                                                  const ConeSide<Real>& cone,
+                                                  const Cone::Fields<Real>& cone,
                                                   Real& t) {
   const Real o(0);
-  const Vec3<Real> to_base = cone.base - org;
+  const Vec3<Real> axis = vec(cone.axis);
+  const Vec3<Real> to_base = vec(cone.base) - org;
   // what of `dir` runs across the axis, turned by a quarter
-  const Vec3<Real> n = cross(dir, cone.axis);
+  const Vec3<Real> n = cross(dir, axis);
   // by dir . dir, or products of four lengths overflow beyond 1e9
   const Vec3<Real> e = inv_dd * n;
   const Real aside = dot(to_base, e), de = dot(n, e);
@@ -132,8 +127,8 @@ template <class Real>
     return near_by;
   const Real near = dot(to_base, dir) * inv_dd;
   const Vec3<Real> p = near * dir - to_base;  // narrower end to the line's nearest point
-  const Real pz = dot(p, cone.axis), dz = dot(dir, cone.axis);
-  const Vec3<Real> pn = cross(p, cone.axis);
+  const Real pz = dot(p, axis), dz = dot(dir, axis);
+  const Vec3<Real> pn = cross(p, axis);
   Real r = cone.radius, a = de, b = dot(pn, e);
   Vec3<Real> w = r * e;
   // of a cylinder the lines below change no bit
@@ -166,50 +161,92 @@ template <class Real>
 }
 
 template <class Real>
-inline SurfacePlace<Real> cone_place(const Vec3<Real>& base,
-                                     const Vec3<Real>& axis,
-                                     const Real& height,
-                                     const Real& radius,
-                                     const Real& slope,
-                                     const Vec3<Real>& at) {
+[[gnu::always_inline]] inline Mask<Real> meet(const RayLanes<Real>& ray,
+                                              const Cone::Fields<Real>& cone,
+                                              Real& t) {
+  return hit_cone<Real>(ray.org, ray.dir, ray.inv_dd, ray.t_min, cone, t);
+}
+
+/// Lanes of cones i, i + 1, ... that may reach into a frustum: a cone lies in the hull of the balls
+/// around its two ends.
+template <class Frustum>
+inline unsigned reaching(const Frustum& f, const FieldArrays<Cone>& cones, std::uint32_t i) {
+  const auto at = [i](const float* field) { return load<Block>(field + i); };
+  const Block h = at(cones.height);
+  const Block r0 = at(cones.radius);
+  const Block r1 = r0 + at(cones.slope) * h;
+  const Block u0 = at(cones.base[f.u]);
+  const Block v0 = at(cones.base[f.v]);
+  const Block k0 = at(cones.base[f.k]);
+  const Block u1 = u0 + h * at(cones.axis[f.u]);
+  const Block v1 = v0 + h * at(cones.axis[f.v]);
+  const Block k1 = k0 + h * at(cones.axis[f.k]);
+  return f.lanes_inside([&](int j) {
+    const Block s(f.a[j]);
+    const Block q(f.b[j]);
+    const Block reach(f.reach[j]);
+    const Block base = (s * (j < 2 ? u0 : v0) + q * k0) + r0 * reach;
+    const Block apex = (s * (j < 2 ? u1 : v1) + q * k1) + r1 * reach;
+    return greater(base, apex) + Block(f.c[j]);
+  });
+}
+
+/// Groups of rays in a frustum that a cone may be met by: all, it is not held against each.
+template <class Frustum>
+inline std::uint64_t groups_near(const Frustum&, const Cone::Fields<float>&) {
+  return ~std::uint64_t{0};
+}
+
+/// 1 - cos^2 below which a cone's axis runs along a beam's: the place nearest to it is rounding, 2 u
+/// of 1 - cos^2 = 1.2e-7. There the middle of the cone stands for it.
+inline constexpr float kParallelAxes = 1e-6f;
+
+/// The ball around the cone's axis where that passes nearest to a line of unit direction.
+inline Ball<float> ball_toward(const Cone::Fields<float>& cone,
+                               const Vec3<float>& org,
+                               const Vec3<float>& dir) {
+  const Vec3<float> base = vec(cone.base);
+  const Vec3<float> axis = vec(cone.axis);
+  const Vec3<float> d = base - org;
+  const float ab = dot(axis, dir);
+  const float k = 1 - ab * ab;
+  float h = k > kParallelAxes ? (ab * dot(d, dir) - dot(d, axis)) / k : .5f * cone.height;
+  h = h < 0 ? 0 : h > cone.height ? cone.height : h;
+  return {base + h * axis, cone.radius + cone.slope * h};
+}
+
+template <class Real>
+inline SurfacePlace<Real> cone_place(const Cone::Fields<Real>& cone, const Vec3<Real>& at) {
+  const Vec3<Real> base = vec(cone.base);
+  const Vec3<Real> axis = vec(cone.axis);
   const Vec3<Real> from_base = at - base;
   const Real along = dot(from_base, axis);
-  const Real h = select(along < Real(0), Real(0), select(along > height, height, along));
+  const Real h = select(along < Real(0), Real(0), select(along > cone.height, cone.height, along));
   const Vec3<Real> radial = from_base - h * axis;
   Vec3<Real> u, v;
   across(axis, u, v);
   const Vec3<Real> out = select(
       dot(radial, radial) > Real(0), normalize(radial), u);  // on a tip all directions are as good
-  const Vec3<Real> point = base + h * axis + (radius + slope * h) * out,
-                   n = normalize(out - slope * axis);
+  const Vec3<Real> point = base + h * axis + (cone.radius + cone.slope * h) * out;
+  const Vec3<Real> n = normalize(out - cone.slope * axis);
+  const Real wide = cone.radius + cone.slope * cone.height;
   return {point,
           n,
-          Real(32 * kRounding<Real>) * (height + (radius + slope * height)) +
+          Real(32 * kRounding<Real>) * (cone.height + wide) +
               Real(4 * kRounding<Real>) * largest(point)};
 }
 
 /// Where rays met cones, of indices i.
 template <class Real>
-inline Surface<Real> surface_on(Cone,
-                                const GeometryView& g,
+inline Surface<Real> surface_on(const Cone::Arrays& cones,
                                 const Words<Real>& i,
                                 const Meeting<Real>& met) {
-  const Vec3<Real> base = three_at(g.cone[0], g.cone[1], g.cone[2], i),
-                   axis = three_at(g.cone[3], g.cone[4], g.cone[5], i);
-  const Real height = floats_at(g.cone[6], i), radius = floats_at(g.cone[7], i),
-             slope = floats_at(g.cone[8], i);
+  const auto cone = gathered<Cone, Real>(cones.fields, i);
   return surface_at<Real>(
       met,
-      [&] { return cone_place<Real>(base, axis, height, radius, slope, met.at); },
-      [&](auto k, const auto& here) {
-        return cone_place(widen<k>(base),
-                          widen<k>(axis),
-                          widen<k>(height),
-                          widen<k>(radius),
-                          widen<k>(slope),
-                          here);
-      },
-      words_at(g.cone_material, i));
+      [&] { return cone_place(cone, met.at); },
+      [&](auto k, const auto& here) { return cone_place(widened<Cone, k, Real>(cone), here); },
+      words_at(cones.material, i));
 }
 
 }  // namespace grelha::GRELHA_ISA

@@ -4,12 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "grelha/geometry.hpp"
+#include "kernel/shapes/shapes.hpp"
 
 namespace grelha {
-
-/// Kinds of primitives; PrimitiveKind numbers them.
-inline constexpr std::size_t kKinds = 4;
 
 /// The ids of each kind. Kinds follow each other in the order of PrimitiveKind, each in the
 /// caller's order; of two hits at equal t the lower id wins.
@@ -43,5 +40,18 @@ struct PrimitiveIds {
     return {kind, id - begin(kind)};
   }
 };
+
+/// Calls visit.operator()<Shape>(index) for the kind of an id, one of a set's, and its place among
+/// those of that kind.
+template <class First, class... Rest, class Visit>
+[[gnu::always_inline]] constexpr auto visit_shape(ShapeSet<First, Rest...>,
+                                                  const PrimitiveIds& ids,
+                                                  std::uint32_t id,
+                                                  const Visit& visit) {
+  if constexpr (sizeof...(Rest) > 0)
+    if (id >= ids.end(First::kKind))
+      return visit_shape(ShapeSet<Rest...>{}, ids, id, visit);
+  return visit.template operator()<First>(id - ids.begin(First::kKind));
+}
 
 }  // namespace grelha

@@ -4,7 +4,9 @@
 #include <cstddef>
 
 #include "grelha/scene_spans.hpp"
+#include "kernel/shapes/arrays.hpp"
 #include "kernel/shapes/surface_place.hpp"
+#include "kernel/shapes/ray_lanes.hpp"
 #include "kernel/simd/vec3.hpp"
 
 namespace grelha {
@@ -21,11 +23,10 @@ struct Plane {
   };
   template <class Visit, class... F>
   static constexpr void for_each_field(const Visit& visit, F&... of) {
-    for (int a = 0; a < 3; ++a)
-      visit(of.point[a]...);
-    for (int a = 0; a < 3; ++a)
-      visit(of.normal[a]...);
+    for_each_axis(visit, of.point...);
+    for_each_axis(visit, of.normal...);
   }
+  using Arrays = IndexedArrays<Fields<const float*>>;
 
   /// The caller's arrays of numbers.
   template <class Visit>
@@ -48,9 +49,14 @@ struct Plane {
     PlaneSpans spans;
     explicit Source(const GeometrySpans& g) : spans(g.planes) {}
     std::size_t size() const { return spans.size(); }
-    Fields<float> operator[](std::size_t i) const {
-      return {{spans.x[i], spans.y[i], spans.z[i]}, {spans.nx[i], spans.ny[i], spans.nz[i]}};
+    Fields<const float*> fields() const {
+      return {{spans.x.data(), spans.y.data(), spans.z.data()},
+              {spans.nx.data(), spans.ny.data(), spans.nz.data()}};
     }
+    Arrays arrays() const {
+      return {fields(), spans.material.data(), static_cast<std::uint32_t>(size())};
+    }
+    Fields<float> operator[](std::size_t i) const { return one_of<Plane>(fields(), i); }
   };
 };
 
@@ -73,6 +79,13 @@ template <class Real>
   return both(along != Real(0), t > t_min);
 }
 
+template <class Real>
+[[gnu::always_inline]] inline Mask<Real> meet(const RayLanes<Real>& ray,
+                                              const Plane::Fields<Real>& plane,
+                                              Real& t) {
+  return hit_plane<Real>(ray.org, ray.dir, ray.t_min, vec(plane.point), vec(plane.normal), t);
+}
+
 /// Through `through`, across `across`, of any length.
 template <class Real>
 inline SurfacePlace<Real> plane_place(const Vec3<Real>& through,
@@ -86,16 +99,17 @@ inline SurfacePlace<Real> plane_place(const Vec3<Real>& through,
 
 /// Where rays met planes, of indices i.
 template <class Real>
-inline Surface<Real> surface_on(Plane,
-                                const GeometryView& g,
+inline Surface<Real> surface_on(const Plane::Arrays& planes,
                                 const Words<Real>& i,
                                 const Meeting<Real>& met) {
-  const Vec3<Real> p = three_at(g.px, g.py, g.pz, i), n = three_at(g.pnx, g.pny, g.pnz, i);
+  const auto plane = gathered<Plane, Real>(planes.fields, i);
+  const Vec3<Real> p = vec(plane.point);
+  const Vec3<Real> n = vec(plane.normal);
   return surface_at<Real>(
       met,
       [&] { return plane_place<Real>(p, n, met.at); },
       [&](auto k, const auto& here) { return plane_place(widen<k>(p), widen<k>(n), here); },
-      words_at(g.plane_material, i));
+      words_at(planes.material, i));
 }
 
 }  // namespace grelha::GRELHA_ISA

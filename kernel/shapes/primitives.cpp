@@ -5,7 +5,7 @@ namespace grelha {
 Primitives::Primitives(const GeometrySpans& g) : geometry(g), sources_(g) {
   std::uint32_t next = 0;
   for_each_shape([&]<class Shape>() {
-    ids.first[static_cast<std::size_t>(Shape::kKind)] = next;
+    ids.first[kNumber<Shape>] = next;
     next += static_cast<std::uint32_t>(of<Shape>().size());
   });
   ids.first[kKinds] = next;

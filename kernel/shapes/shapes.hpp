@@ -5,18 +5,19 @@
 // read it from (Source), how far it reaches (box) and which cells it touches (Touch); beside it, in
 // the namespace of an instruction set, how rays meet it.
 
+#include <cstddef>
 #include <type_traits>
 
 #include "kernel/shapes/cone.hpp"
-#include "kernel/shapes/ids.hpp"
 #include "kernel/shapes/plane.hpp"
 #include "kernel/shapes/sphere.hpp"
-#include "kernel/shapes/triangle.hpp"
+#include "kernel/shapes/triangle_surface.hpp"
 
 namespace grelha {
 
 template <class... Shape>
 struct ShapeSet {
+  static constexpr std::size_t kCount = sizeof...(Shape);
   /// Calls visit.operator()<Shape>() for each.
   template <class Visit>
   [[gnu::always_inline]] static constexpr void for_each(const Visit& visit) {
@@ -28,15 +29,41 @@ constexpr ShapeSet<A..., B...> operator+(ShapeSet<A...>, ShapeSet<B...>) {
   return {};
 }
 
-template <class... Shape>
-constexpr auto finite_of(ShapeSet<Shape...>) {
-  return (ShapeSet<>{} + ... + std::conditional_t<Shape::kFinite, ShapeSet<Shape>, ShapeSet<>>{});
+/// What of a set stands in grids, or not.
+template <bool kFinite, class... Shape>
+constexpr auto those_finite(ShapeSet<Shape...>) {
+  return (ShapeSet<>{} + ... +
+          std::conditional_t<Shape::kFinite == kFinite, ShapeSet<Shape>, ShapeSet<>>{});
+}
+/// What of a set of finite ones stands there in blocks, or not.
+template <bool kInBlocks, class... Shape>
+constexpr auto those_in_blocks(ShapeSet<Shape...>) {
+  return (ShapeSet<>{} + ... +
+          std::conditional_t<Shape::kInBlocks == kInBlocks, ShapeSet<Shape>, ShapeSet<>>{});
 }
 
 /// All kinds, in the order of their ids. A further kind is a line here.
 using Shapes = ShapeSet<Plane, Sphere, Triangle, Cone>;
-/// Those that stand in grids.
-using FiniteShapes = decltype(finite_of(Shapes{}));
+/// How many; PrimitiveKind numbers them.
+inline constexpr std::size_t kKinds = Shapes::kCount;
+/// The number of a kind.
+template <class Shape>
+inline constexpr auto kNumber = static_cast<std::size_t>(Shape::kKind);
+
+template <class... Shape>
+constexpr bool are_numbered(ShapeSet<Shape...>) {
+  std::size_t next = 0;
+  return ((kNumber<Shape> == next++) && ...);
+}
+static_assert(are_numbered(Shapes{}), "the list has the order of PrimitiveKind");
+
+/// Those that stand in grids, and those that do not.
+using FiniteShapes = decltype(those_finite<true>(Shapes{}));
+using InfiniteShapes = decltype(those_finite<false>(Shapes{}));
+/// Those whose lists are arrays of their fields.
+using ArrayShapes = decltype(those_in_blocks<false>(FiniteShapes{}));
+/// Those of a cell in the order in which they are tested: what stands in blocks comes first.
+using CellShapes = decltype(those_in_blocks<true>(FiniteShapes{}) + ArrayShapes{});
 
 template <class Visit>
 [[gnu::always_inline]] constexpr void for_each_shape(const Visit& visit) {
@@ -45,19 +72,6 @@ template <class Visit>
 template <class Visit>
 [[gnu::always_inline]] constexpr void for_each_finite_shape(const Visit& visit) {
   FiniteShapes::for_each(visit);
-}
-
-/// Calls visit.operator()<Shape>(index) for the kind of an id, one of a set's, and its place among
-/// those of that kind.
-template <class First, class... Rest, class Visit>
-[[gnu::always_inline]] constexpr auto visit_shape(ShapeSet<First, Rest...>,
-                                                  const PrimitiveIds& ids,
-                                                  std::uint32_t id,
-                                                  const Visit& visit) {
-  if constexpr (sizeof...(Rest) > 0)
-    if (id >= ids.end(First::kKind))
-      return visit_shape(ShapeSet<Rest...>{}, ids, id, visit);
-  return visit.template operator()<First>(id - ids.begin(First::kKind));
 }
 
 /// One Member<Shape> for each kind of a set, found by of<Shape>().

@@ -6,8 +6,10 @@
 #include <cstddef>
 
 #include "grelha/scene_spans.hpp"
+#include "kernel/shapes/arrays.hpp"
 #include "kernel/shapes/box.hpp"
 #include "kernel/shapes/surface_place.hpp"
+#include "kernel/shapes/ray_lanes.hpp"
 #include "kernel/simd/vec3.hpp"
 
 namespace grelha {
@@ -16,6 +18,7 @@ namespace grelha {
 struct Sphere {
   static constexpr PrimitiveKind kKind = PrimitiveKind::kSphere;
   static constexpr bool kFinite = true;
+  static constexpr bool kInBlocks = false;
 
   /// What tests see of a sphere, or of many, an array each.
   template <class T>
@@ -24,10 +27,11 @@ struct Sphere {
   };
   template <class Visit, class... F>
   static constexpr void for_each_field(const Visit& visit, F&... of) {
-    for (int a = 0; a < 3; ++a)
-      visit(of.center[a]...);
+    for_each_axis(visit, of.center...);
     visit(of.radius...);
   }
+  using Arrays = IndexedArrays<Fields<const float*>>;
+  using CellList = CellArrays<Fields<const float*>>;
 
   /// The caller's arrays of numbers.
   template <class Visit>
@@ -50,9 +54,13 @@ struct Sphere {
     SphereSpans spans;
     explicit Source(const GeometrySpans& g) : spans(g.spheres) {}
     std::size_t size() const { return spans.size(); }
-    Fields<float> operator[](std::size_t i) const {
-      return {{spans.x[i], spans.y[i], spans.z[i]}, spans.radius[i]};
+    Fields<const float*> fields() const {
+      return {{spans.x.data(), spans.y.data(), spans.z.data()}, spans.radius.data()};
     }
+    Arrays arrays() const {
+      return {fields(), spans.material.data(), static_cast<std::uint32_t>(size())};
+    }
+    Fields<float> operator[](std::size_t i) const { return one_of<Sphere>(fields(), i); }
   };
 
   static Box box(const Source& source, std::size_t i) {
@@ -213,6 +221,46 @@ template <class Real>
   return both(crosses, t > t_min);  // NaN fails: half is NaN where inside is negative
 }
 
+template <class Real>
+[[gnu::always_inline]] inline Mask<Real> meet(const RayLanes<Real>& ray,
+                                              const Sphere::Fields<Real>& sphere,
+                                              Real& t) {
+  return hit_sphere<Real>(
+      ray.org, ray.dir, ray.inv_dd, ray.t_min, vec(sphere.center), sphere.radius, t);
+}
+
+/// Lanes of spheres i, i + 1, ... that reach into a frustum.
+template <class Frustum>
+inline unsigned reaching(const Frustum& f, const FieldArrays<Sphere>& spheres, std::uint32_t i) {
+  const Block u = load<Block>(spheres.center[f.u] + i);
+  const Block v = load<Block>(spheres.center[f.v] + i);
+  const Block k = load<Block>(spheres.center[f.k] + i);
+  const Block r = magnitude(load<Block>(spheres.radius + i));
+  return f.lanes_inside([&](int j) {
+    return ((Block(f.a[j]) * (j < 2 ? u : v) + Block(f.b[j]) * k) + Block(f.c[j])) +
+           r * Block(f.reach[j]);
+  });
+}
+
+/// Groups of rays in a frustum that a sphere may be met by.
+template <class Frustum>
+inline std::uint64_t groups_near(const Frustum& f, const Sphere::Fields<float>& sphere) {
+  const float radius = magnitude(sphere.radius);
+  return f.groups_inside([&](int j, int first) {
+    const Lanes across = Lanes(f.a[j] * sphere.center[f.side(j)]) +
+                         load<Lanes>(f.group_b[j] + first) * Lanes(sphere.center[f.k]);
+    return (across + load<Lanes>(f.group_c[j] + first)) +
+           Lanes(radius) * load<Lanes>(f.group_reach[j] + first);
+  });
+}
+
+/// Itself.
+inline Ball<float> ball_toward(const Sphere::Fields<float>& sphere,
+                               const Vec3<float>&,
+                               const Vec3<float>&) {
+  return {vec(sphere.center), magnitude(sphere.radius)};
+}
+
 /// Point and normal where a ray meets a sphere, in double: those of the crossing next to t.
 template <class Real>
 inline void sphere_crossing(const Vec3<Real>& org,
@@ -279,17 +327,17 @@ inline SurfacePlace<Real> sphere_place(const Vec3<Real>& c, const Real& r, const
 
 /// Where rays met spheres, of indices i.
 template <class Real>
-inline Surface<Real> surface_on(Sphere,
-                                const GeometryView& g,
+inline Surface<Real> surface_on(const Sphere::Arrays& spheres,
                                 const Words<Real>& i,
                                 const Meeting<Real>& met) {
-  const Vec3<Real> c = three_at(g.sx, g.sy, g.sz, i);
-  const Real r = magnitude(floats_at(g.sr, i));
+  const auto sphere = gathered<Sphere, Real>(spheres.fields, i);
+  const Vec3<Real> c = vec(sphere.center);
+  const Real r = magnitude(sphere.radius);
   return surface_at<Real>(
       met,
       [&] { return rounded_sphere_place<Real>(met.org, met.dir, met.t, c, r); },
       [&](auto k, const auto& here) { return sphere_place(widen<k>(c), widen<k>(r), here); },
-      words_at(g.sphere_material, i));
+      words_at(spheres.material, i));
 }
 
 }  // namespace grelha::GRELHA_ISA

@@ -8,7 +8,7 @@
 // Humphreys, PBR 4th ed., 6.8), one scalar bound for all axes. Derivations: docs/numerics.md; kept
 // by leaving_test.cpp.
 
-#include "kernel/shapes/shapes.hpp"
+#include "kernel/shapes/geometry_view.hpp"
 
 namespace grelha::GRELHA_ISA {
 
@@ -35,8 +35,8 @@ inline Surface<Real> surface_of(const GeometryView& g,
     const Mask<Real> chosen = mask_of(Words<Real>(here));
     if (none(chosen))
       return;
-    const Surface<Real> f =
-        surface_on(Shape{}, g, Words<Real>(here ? id - first : Words<Real>{}), met);
+    const typename Shape::Arrays& arrays = g.of<Shape>();
+    const Surface<Real> f = surface_on(arrays, Words<Real>(here ? id - first : Words<Real>{}), met);
     s = {select(chosen, f.point, s.point),
          select(chosen, f.normal, s.normal),
          select(chosen, f.shading, s.shading),

@@ -3,7 +3,7 @@
 
 #include <type_traits>
 
-#include "kernel/shapes/geometry_view.hpp"
+#include "kernel/shapes/field_lanes.hpp"
 #include "kernel/simd/vec3.hpp"
 
 namespace grelha::GRELHA_ISA {
@@ -38,10 +38,11 @@ inline constexpr Scalar<Real> kRounding = sizeof(Scalar<Real>) == sizeof(float)
                                               ? Scalar<Real>(kEps)
                                               : Scalar<Real>(0x1p-47);
 
-/// Three numbers of the primitives, or vertices, i.
+/// Three numbers of the vertices i.
 template <class Word>
-inline auto three_at(const float* x, const float* y, const float* z, const Word& i) {
-  return Vec3<decltype(floats_at(x, i))>{floats_at(x, i), floats_at(y, i), floats_at(z, i)};
+inline auto three_at(const float* const (&v)[3], const Word& i) {
+  return Vec3<decltype(floats_at(v[0], i))>{
+      floats_at(v[0], i), floats_at(v[1], i), floats_at(v[2], i)};
 }
 
 /// Vectors and numbers in double, part after part of the lanes.

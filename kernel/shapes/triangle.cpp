@@ -11,4 +11,19 @@ bool Triangle::is_even(const TriangleSpans& spans) {
          spans.ny.size() == normals && spans.nz.size() == normals;
 }
 
+Triangle::Arrays Triangle::Source::arrays() const {
+  Arrays out{
+      .vertex = {spans.x.data(), spans.y.data(), spans.z.data()},
+      .corner = {spans.a.data(), spans.b.data(), spans.c.data()},
+      .material = spans.material.data(),
+      .count = static_cast<std::uint32_t>(size()),
+  };
+  if (!spans.nx.empty()) {
+    out.normal[0] = spans.nx.data();
+    out.normal[1] = spans.ny.data();
+    out.normal[2] = spans.nz.data();
+  }
+  return out;
+}
+
 }  // namespace grelha

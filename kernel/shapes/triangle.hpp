@@ -1,13 +1,14 @@
 #pragma once
-// All that is known of triangles.
+// Triangles: what they are, and where rays meet them. Files beside this one hold what else is known
+// of them: blocks of eight, which cells they touch, their surfaces.
 
 #include <algorithm>
 #include <cstddef>
 
 #include "grelha/scene_spans.hpp"
 #include "kernel/shapes/box.hpp"
+#include "kernel/shapes/triangle_block.hpp"
 #include "kernel/shapes/triangle_touch.hpp"
-#include "kernel/shapes/surface_place.hpp"
 #include "kernel/simd/vec3.hpp"
 
 namespace grelha {
@@ -16,6 +17,7 @@ namespace grelha {
 struct Triangle {
   static constexpr PrimitiveKind kKind = PrimitiveKind::kTriangle;
   static constexpr bool kFinite = true;
+  static constexpr bool kInBlocks = true;  ///< a list's entry is a block
 
   /// What tests see of a triangle.
   template <class T>
@@ -28,6 +30,22 @@ struct Triangle {
       for (int a = 0; a < 3; ++a)
         visit(of.corner[k][a]...);
   }
+
+  /// By index, over shared vertices.
+  struct Arrays {
+    const float* vertex[3] = {};          ///< x, y, z of each
+    const float* normal[3] = {};          ///< the same, or null
+    const std::uint32_t* corner[3] = {};  ///< which vertices a triangle has
+    const std::uint32_t* material = nullptr;
+    std::uint32_t count = 0;
+  };
+  /// Cell after cell: cell i owns blocks first[i] up to first[i + 1] - 1. Where no cell holds any,
+  /// first == nullptr.
+  struct CellList {
+    const std::uint32_t* first = nullptr;
+    const TriangleBlock* blocks = nullptr;
+    const BlockBoxes* boxes = nullptr;  ///< of all blocks, or none
+  };
 
   /// The caller's arrays of coordinates.
   template <class Visit>
@@ -49,6 +67,7 @@ struct Triangle {
     TriangleSpans spans;
     explicit Source(const GeometrySpans& g) : spans(g.triangles) {}
     std::size_t size() const { return spans.size(); }
+    Arrays arrays() const;
     Fields<float> operator[](std::size_t i) const {
       Fields<float> t;
       const std::uint32_t vertex[3] = {spans.a[i], spans.b[i], spans.c[i]};
@@ -306,90 +325,54 @@ template <bool kAny, class Real, class Source>
   }
 }
 
-/// What of a triangle's surface is computed in double, and rounded once.
-template <class Real>
-struct TrianglePlace {
-  Vec3<Real> point, normal, weights;
-};
-
-/// Corners as they are, not permuted; `axis` is that of shear_axis(). Rays that do not cross are
-/// taken to the first corner.
-template <class Real>
-inline TrianglePlace<Real> triangle_place(const Real& axis,
-                                          const Vec3<Real>& org,
-                                          const Vec3<Real>& dir,
-                                          const Corners<Real>& c) {
-  const auto turned = [&](const Vec3<Real>& p) { return permuted<Real>(axis, p); };
-  const Crossing<Real> r =
-      crossing<Real>(turned(org), turned(dir), {turned(c.a), turned(c.b), turned(c.c)});
-  const Real o(0), one(1);
-  const Vec3<Real> w = select(r.inside, r.weights, Vec3<Real>{one, o, o}), e1 = c.b - c.a,
-                   e2 = c.c - c.a;
-  return {c.a + (w.y * e1 + w.z * e2), normalize(cross(e1, e2)), w};
+/// Triangle i of a block.
+inline Triangle::Fields<float> triangle_of(const TriangleBlock& block, int i) {
+  return {{{block.a[0][i], block.a[1][i], block.a[2][i]},
+           {block.b[0][i], block.b[1][i], block.b[2][i]},
+           {block.c[0][i], block.c[1][i], block.c[2][i]}}};
 }
 
-template <class Real, int i = 0>
-inline void triangle_places(const Real& axis,
-                            const Vec3<Real>& org,
-                            const Vec3<Real>& low,
-                            const Vec3<Real>& dir,
-                            const Corners<Real>& c,
-                            PlaceParts<Real>& to) {
-  const TrianglePlace<Wide<Real>> p =
-      triangle_place<Wide<Real>>(widen<i>(axis), widen<i>(org, low), widen<i>(dir), widen<i>(c));
-  int k = 0;
-  for (const Vec3<Wide<Real>>* v : {&p.point, &p.normal, &p.weights})
-    for (const Wide<Real>* x : {&v->x, &v->y, &v->z})
-      to.part[k++][i] = *x;
-  if constexpr (i + 1 < kWideParts<Real>)
-    triangle_places<Real, i + 1>(axis, org, low, dir, c, to);
+/// Lanes of triangles i, i + 1, ... of a block that reach into a frustum.
+template <class Frustum>
+[[gnu::noinline]] inline unsigned reaching(const Frustum& f, const TriangleBlock& block, int i) {
+  const Block au = load<Block>(block.a[f.u] + i);
+  const Block av = load<Block>(block.a[f.v] + i);
+  const Block ak = load<Block>(block.a[f.k] + i);
+  const Block bu = load<Block>(block.b[f.u] + i);
+  const Block bv = load<Block>(block.b[f.v] + i);
+  const Block bk = load<Block>(block.b[f.k] + i);
+  const Block cu = load<Block>(block.c[f.u] + i);
+  const Block cv = load<Block>(block.c[f.v] + i);
+  const Block ck = load<Block>(block.c[f.k] + i);
+  const unsigned left = f.lanes_inside([&](int j) {  // the corner farthest inside
+    const Block s(f.a[j]);
+    const Block r(f.b[j]);
+    const Block fa = s * (j < 2 ? au : av) + r * ak;
+    const Block fb = s * (j < 2 ? bu : bv) + r * bk;
+    const Block fc = s * (j < 2 ? cu : cv) + r * ck;
+    return greater(greater(fa, fb), fc) + Block(f.c[j]);
+  });
+  const Block s(f.to_slice);
+  const Mask<Block> ahead =
+      greater(greater(s * ak, s * bk), s * ck) + Block(f.zero_slice) >= Block(f.near);
+  return left & bits(both(ahead, au == au));  // padding is NaN
 }
 
-/// Where rays met triangles, of indices i.
-template <class Real>
-inline Surface<Real> surface_on(Triangle,
-                                const GeometryView& g,
-                                const Words<Real>& i,
-                                const Meeting<Real>& met) {
-  const Words<Real> v[3] = {words_at(g.ta, i), words_at(g.tb, i), words_at(g.tc, i)};
-  const Vec3<Real> a = three_at(g.tx, g.ty, g.tz, v[0]), b = three_at(g.tx, g.ty, g.tz, v[1]),
-                   c = three_at(g.tx, g.ty, g.tz, v[2]);
-  const Real o(0), one(1);
-  const Real mx = magnitude(met.dir.x), my = magnitude(met.dir.y), mz = magnitude(met.dir.z);
-  // the axis prepare() gave the ray
-  const Real axis = select(both(mx >= my, mx >= mz), o, select(my >= mz, one, Real(2)));
-  PlaceParts<Real> place;
-  triangle_places<Real>(axis, met.org, met.start.low, met.dir, {a, b, c}, place);
-  const Vec3<Real> point = place.vector(0), n = place.vector(3), w = place.vector(6);
-  const Real corners = greater(greater(largest(a), largest(b)), largest(c));
-  Surface<Real> s{point,
-                  n,
-                  n,
-                  Real(4 * kEps) * largest(point) + Real(kWideEps) * corners,
-                  words_at(g.triangle_material, i),
-                  {o, o, o}};
-  if (met.start.t) {
-    rest_of_points<Real>(point, place);
-    s.low = place.vector(0);
-    s.away =
-        Real(4 * static_cast<float>(kRounding<double>)) * largest(point) + Real(kWideEps) * corners;
-  }
-  if (!met.smooth)
-    return s;
-  Mask<Real> sound = one > o;
-  const auto vertex_normal = [&](const Words<Real>& vertex) {
-    const Vec3<Real> m = three_at(g.tnx, g.tny, g.tnz, vertex);
-    const Real mm = dot(m, m);
-    sound = both(sound, mm > o);
-    return (one / square_root(mm)) * m;
-  };
-  const Vec3<Real> na = vertex_normal(v[0]), nb = vertex_normal(v[1]), nc = vertex_normal(v[2]);
-  const Vec3<Real> mix = w.x * na + (w.y * nb + w.z * nc);
-  const Real mm = dot(mix, mix);
-  const Vec3<Real> m = (one / square_root(mm)) * mix;
-  const Vec3<Real> same_side = select(dot(m, n) < o, Vec3<Real>{o, o, o} - m, m);
-  s.shading = select(both(sound, mm > Real(1e-12f)), same_side, n);
-  return s;
+/// Groups of rays in a frustum that a triangle may be met by.
+template <class Frustum>
+inline std::uint64_t groups_near(const Frustum& f, const Triangle::Fields<float>& triangle) {
+  const auto& [a, b, c] = triangle.corner;
+  const float end =
+      greater(greater(f.to_slice * a[f.k], f.to_slice * b[f.k]), f.to_slice * c[f.k]) +
+      f.zero_slice;
+  return f.groups_ahead(end) & f.groups_inside([&](int j, int first) {
+    const int u = f.side(j);
+    const Lanes s = load<Lanes>(f.group_b[j] + first);
+    const Lanes fa = Lanes(f.a[j] * a[u]) + s * Lanes(a[f.k]);
+    const Lanes fb = Lanes(f.a[j] * b[u]) + s * Lanes(b[f.k]);
+    const Lanes fc = Lanes(f.a[j] * c[u]) + s * Lanes(c[f.k]);
+    return greater(greater(fa, fb), fc) + load<Lanes>(f.group_c[j] + first);
+  });
 }
 
 }  // namespace grelha::GRELHA_ISA

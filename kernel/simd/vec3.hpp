@@ -12,6 +12,12 @@ struct Vec3 {
 using Vec3f = Vec3<float>;
 using Lanes3 = Vec3<Lanes>;  ///< one vector per lane
 
+/// Of components in an array.
+template <class T>
+[[gnu::always_inline]] inline Vec3<T> vec(const T (&v)[3]) {
+  return {v[0], v[1], v[2]};
+}
+
 template <class Real>
 inline Vec3<Real> operator+(const Vec3<Real>& a, const Vec3<Real>& b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};

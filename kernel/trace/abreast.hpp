@@ -21,6 +21,9 @@ template <class T>
     __builtin_prefetch(bytes + at);
 }
 
+/// Bytes of the fields of kinds whose primitives are asked for early: of more, they come too late.
+inline constexpr std::size_t kAskedFor = 16;
+
 /// Rays that came to cells with something in them, each against its own cell. What a ray needs is
 /// asked for before what another needs is computed with: memory is farther away than the next seven
 /// rays.
@@ -35,13 +38,19 @@ class CellTests {
 
   /// The rays with a bit in `full`. Returns bits of those whose search is over.
   [[gnu::always_inline]] unsigned test(unsigned full) {
-    if (lists_.triangle_first)
+    if (triangles_.first)
       test_triangles(full);
-    if (lists_.sphere_first)
-      fetch_spheres(full & ~over_);
-    if (lists_.sphere_first || lists_.cone_first)
+    bool any_arrays = false;
+    ArrayShapes::for_each([&]<class Shape>() __attribute__((always_inline)) {
+      const typename Shape::CellList& list = lists_.of<Shape>();
+      any_arrays = any_arrays || list.first;
+      if constexpr (sizeof(typename Shape::template Fields<float>) <= kAskedFor)
+        if (list.first)
+          fetch<Shape>(list, full & ~over_);
+    });
+    if (any_arrays)
       each_bit(full & ~over_,
-               [&](int i) { end_if(test_round<kAny>(rays_[i], lists_, cells_[i], n_), i); });
+               [&](int i) { end_if(test_arrays<kAny>(rays_[i], lists_, cells_[i], n_), i); });
     return over_;
   }
 
@@ -61,9 +70,9 @@ class CellTests {
 
   [[gnu::always_inline]] void test_triangles(unsigned full) {
     each_bit(full, [&](int i) {
-      first_[i] = lists_.triangle_first[cells_[i]];
-      end_[i] = lists_.triangle_first[cells_[i] + 1];
-      prefetch(lists_.boxes + first_[i] / kBlock);
+      first_[i] = triangles_.first[cells_[i]];
+      end_[i] = triangles_.first[cells_[i] + 1];
+      prefetch(triangles_.boxes + first_[i] / kBlock);
     });
     each_bit(full, [&](int i) {
       for (std::uint32_t at = first_[i] / kBlock * kBlock; at < end_[i]; at += kBlock)
@@ -74,10 +83,10 @@ class CellTests {
 
   /// Takes the blocks from `at` on whose boxes ray i passes.
   [[gnu::always_inline]] void take_blocks(int i, std::uint32_t at) {
-    const unsigned passed = passed_boxes(rays_[i], lists_.boxes[at / kBlock], enters_);
+    const unsigned passed = passed_boxes(rays_[i], triangles_.boxes[at / kBlock], enters_);
     each_bit(passed & blocks_between(at, first_[i], end_[i]), [&](int k) {
       const std::uint32_t block = at + static_cast<unsigned>(k);
-      prefetch(lists_.triangles + block);
+      prefetch(triangles_.blocks + block);
       due_[count_++] = {i, block, enters_[k]};
       if (count_ == kMost)
         settle();
@@ -89,23 +98,27 @@ class CellTests {
     for (int k = 0; k < count_; ++k) {
       const int i = due_[k].ray;
       if (!(over_ >> i & 1) && due_[k].enter <= rays_[i].best)
-        end_if(test_block<kAny>(rays_[i], lists_.triangles[due_[k].block], n_), i);
+        end_if(test_block<kAny>(rays_[i], triangles_.blocks[due_[k].block], n_), i);
     }
     count_ = 0;
   }
 
-  [[gnu::always_inline]] void fetch_spheres(unsigned rays) {
+  /// Asks for what the first two blocks of primitives of cells are made of.
+  template <class Shape>
+  [[gnu::always_inline]] void fetch(const typename Shape::CellList& list, unsigned rays) {
     each_bit(rays, [&](int i) {
-      const std::uint32_t first = lists_.sphere_first[cells_[i]];
-      for (const float* const from : {lists_.sx, lists_.sy, lists_.sz, lists_.sr}) {
-        __builtin_prefetch(from + first);
-        __builtin_prefetch(from + first + 16);
-      }
+      const std::uint32_t first = list.first[cells_[i]];
+      const auto ask = [first](const float* const& field) {
+        __builtin_prefetch(field + first);
+        __builtin_prefetch(field + first + 16);
+      };
+      Shape::for_each_field(ask, list.fields);
     });
   }
 
   Single<In>* rays_;
   const CellLists& lists_;
+  const Triangle::CellList& triangles_ = lists_.of<Triangle>();
   const std::uint32_t (&cells_)[kAbreast];
   Counters& n_;
   unsigned over_ = 0;

@@ -51,6 +51,38 @@ struct Frustum {
 
   /// The axis of the grid across which planes 0, 1 (u) and 2, 3 (v) stand.
   int side(int plane) const { return plane < 2 ? u : v; }
+
+  /// Bits of the lanes of a block for which `value(plane)` is not negative for all four planes.
+  template <class Value>
+  unsigned lanes_inside(const Value& value) const {
+    const Block o(0);
+    const Mask<Block> out =
+        either(either(value(0) < o, value(1) < o), either(value(2) < o, value(3) < o));
+    return ~bits(out) & ((1u << kWidth<Block>)-1u);
+  }
+
+  /// Bits of the groups for which `value(plane, first group)` is not negative for all four planes.
+  template <class Value>
+  std::uint64_t groups_inside(const Value& value) const {
+    std::uint64_t in = 0;
+    const Lanes o(0);
+    for (int i = 0; i < kGroups; i += kWidth<Lanes>) {
+      const Mask<Lanes> out = either(either(value(0, i) < o, value(1, i) < o),
+                                     either(value(2, i) < o, value(3, i) < o));
+      in |= (~static_cast<std::uint64_t>(bits(out)) & ((std::uint64_t{1} << kWidth<Lanes>)-1)) << i;
+    }
+    return in;
+  }
+
+  /// Bits of the groups with a ray that has not passed slice s when it begins.
+  std::uint64_t groups_ahead(float s) const {
+    std::uint64_t in = 0;
+    for (int i = 0; i < kGroups; i += kWidth<Lanes>)
+      in |= (static_cast<std::uint64_t>(bits(load<Lanes>(group_near + i) <= Lanes(s))) &
+             ((std::uint64_t{1} << kWidth<Lanes>)-1))
+            << i;
+    return in;
+  }
 };
 
 /// Where the rays of each group lie on the slices `from` and `to`.

@@ -5,25 +5,26 @@
 
 namespace grelha::GRELHA_ISA {
 
-/// Returns whether the search is over.
+/// As test_infinite(Packet&). Returns whether the search is over.
 template <bool kAny, class In>
-inline bool test_planes(const SceneView& scene, Single<In>& r, Counters& n) {
+inline bool test_infinite(const SceneView& scene, Single<In>& r, Counters& n) {
   using Number = typename In::Number;
   const GeometryView& g = scene.geometry;
-  const auto& from = tested_org(r);
-  for (std::uint32_t i = 0; i < g.plane_count; ++i) {
-    ++n.plane;
-    Number t = 0;
-    const bool hit = hit_plane<Number>({from[0], from[1], from[2]},
-                                       {r.dir[0], r.dir[1], r.dir[2]},
-                                       tested_t_min(r),
-                                       {g.px[i], g.py[i], g.pz[i]},
-                                       {g.pnx[i], g.pny[i], g.pnz[i]},
-                                       t);
-    if (record_hit<kAny>(r, hit, t, i))
-      return true;
-  }
-  return false;
+  const RayLanes<Number> ray{.org = vec(tested_org(r)),
+                             .dir = spread<Number>(r.dir),
+                             .inv_dd = r.inv_dd,
+                             .t_min = tested_t_min(r)};
+  bool over = false;
+  InfiniteShapes::for_each([&]<class Shape>() __attribute__((always_inline)) {
+    const typename Shape::Arrays& all = g.of<Shape>();
+    for (std::uint32_t i = 0; !over && i < all.count; ++i) {
+      ++n.tests[kNumber<Shape>];
+      Number t = 0;
+      const bool hit = meet(ray, broadcast<Shape, Number>(all.fields, i), t);
+      over = record_hit<kAny>(r, hit, t, g.ids.begin(Shape::kKind) + i);
+    }
+  });
+  return over;
 }
 
 /// Moves a ray that starts at `from` on to where r.org is, `shift` away in t.
@@ -56,21 +57,22 @@ inline typename In::Number bring_near(const SceneView& scene, Single<In>& r) {
 /// All primitives of one cell of a grid. Returns whether the search is over.
 template <bool kAny, class In>
 inline bool test_grid_cell(Single<In>& r, const CellLists& lists, std::uint32_t cell, Counters& n) {
-  if (lists.triangle_first) {
-    const std::uint32_t first = lists.triangle_first[cell], end = lists.triangle_first[cell + 1];
+  if (lists.of<Triangle>().first) {
+    const std::uint32_t first = lists.of<Triangle>().first[cell],
+                        end = lists.of<Triangle>().first[cell + 1];
     float enters[kBlock];
     for (std::uint32_t at = first / kBlock * kBlock; at < end; at += kBlock)
-      for (unsigned passed =
-               passed_boxes(r, lists.boxes[at / kBlock], enters) & blocks_between(at, first, end);
+      for (unsigned passed = passed_boxes(r, lists.of<Triangle>().boxes[at / kBlock], enters) &
+                             blocks_between(at, first, end);
            passed != 0;
            passed &= passed - 1) {
         const unsigned k = static_cast<unsigned>(__builtin_ctz(passed));
         // what was met since may be nearer
-        if (enters[k] <= r.best && test_block<kAny>(r, lists.triangles[at + k], n))
+        if (enters[k] <= r.best && test_block<kAny>(r, lists.of<Triangle>().blocks[at + k], n))
           return true;
       }
   }
-  return test_round<kAny>(r, lists, cell, n);
+  return test_arrays<kAny>(r, lists, cell, n);
 }
 
 /// As walk_apart().
@@ -99,10 +101,10 @@ inline Hit trace_one(const SceneView& scene, const Ray& ray) {
                {ray.dir.x, ray.dir.y, ray.dir.z},
                ray.t_min,
                ray.t_max,
-               scene.geometry.triangle_count > 0))
+               scene.geometry.of<Triangle>().count > 0))
     return {ray.t_max, kNoPrimitive};
   Counters n;
-  if (test_planes<kAny>(scene, r, n))
+  if (test_infinite<kAny>(scene, r, n))
     return {r.best, r.id};
   const float shift = static_cast<float>(bring_near(scene, r));
   if (test_cell<kAny>(r, scene.outside, 0, n))

@@ -1,11 +1,7 @@
 #pragma once
 // Rays side by side, and the tests of all of them against one primitive (SIMD over rays).
 
-#include "kernel/shapes/cone.hpp"
-#include "kernel/shapes/plane.hpp"
-#include "kernel/shapes/sphere.hpp"
 #include "grelha/stats.hpp"
-#include "kernel/shapes/triangle.hpp"
 #include "kernel/grid/view.hpp"
 
 namespace grelha::GRELHA_ISA {
@@ -250,69 +246,32 @@ template <class In, class Test>
       });
 }
 
-inline void count_lanes(const WalkingRays& p, Counters& n, std::uint64_t& tests) {
+/// Counts tests of all live rays against a primitive.
+template <class Shape>
+inline void count_lanes(const WalkingRays& p, Counters& n) {
   each_live_group(p, [&](int i, int) {
     n.issued += kWidth<Lanes>;
     const unsigned on = bits(load<Lanes>(p.best + i) > load<Lanes>(p.t_min + i));
     n.busy += static_cast<unsigned>(__builtin_popcount(on));
-    tests += static_cast<unsigned>(__builtin_popcount(on));
+    n.tests[kNumber<Shape>] += static_cast<unsigned>(__builtin_popcount(on));
   });
 }
 
-template <bool kAny, class In>
-inline void test_sphere(Packet<In>& p, float x, float y, float z, float r, std::uint32_t id) {
+/// All live rays against primitive `index` of many.
+template <bool kAny, class Shape, class In>
+inline void test_one(Packet<In>& p,
+                     const FieldArrays<Shape>& of,
+                     std::uint32_t index,
+                     std::uint32_t id) {
   using Real = typename In::Rays;
-  const Vec3<Real> center{Real(x), Real(y), Real(z)};
-  const Real radius(r);
+  const auto one = broadcast<Shape, Real>(of, index);
   each_tested(p, [&](int i, int) {
+    const RayLanes<Real> ray{.org = origin(p, i),
+                             .dir = direction(p, i),
+                             .inv_dd = load<Real>(p.inv_dd + i),
+                             .t_min = take<Real>(tested_t_min(p) + i)};
     Real t(0);
-    const Mask<Real> hit = hit_sphere<Real>(origin(p, i),
-                                            direction(p, i),
-                                            load<Real>(p.inv_dd + i),
-                                            take<Real>(tested_t_min(p) + i),
-                                            center,
-                                            radius,
-                                            t);
-    note<kAny>(p, i, hit, t, id);
-  });
-}
-
-template <bool kAny, class In>
-inline void test_cone(Packet<In>& p,
-                      const float* const (&c)[10],
-                      std::uint32_t at,
-                      std::uint32_t id) {
-  using Real = typename In::Rays;
-  const ConeSide<Real> side{{Real(c[0][at]), Real(c[1][at]), Real(c[2][at])},
-                            {Real(c[3][at]), Real(c[4][at]), Real(c[5][at])},
-                            Real(c[6][at]),
-                            Real(c[7][at]),
-                            Real(c[8][at]),
-                            Real(c[9][at])};
-  each_tested(p, [&](int i, int) {
-    Real t(0);
-    const Mask<Real> hit = hit_cone<Real>(origin(p, i),
-                                          direction(p, i),
-                                          load<Real>(p.inv_dd + i),
-                                          take<Real>(tested_t_min(p) + i),
-                                          side,
-                                          t);
-    note<kAny>(p, i, hit, t, id);
-  });
-}
-
-template <bool kAny, class In>
-inline void test_plane(Packet<In>& p,
-                       const Vec3<float>& point,
-                       const Vec3<float>& normal,
-                       std::uint32_t id) {
-  using Real = typename In::Rays;
-  const Vec3<Real> q{Real(point.x), Real(point.y), Real(point.z)};
-  const Vec3<Real> m{Real(normal.x), Real(normal.y), Real(normal.z)};
-  each_tested(p, [&](int i, int) {
-    Real t(0);
-    const Mask<Real> hit =
-        hit_plane<Real>(origin(p, i), direction(p, i), take<Real>(tested_t_min(p) + i), q, m, t);
+    const Mask<Real> hit = meet(ray, one, t);
     note<kAny>(p, i, hit, t, id);
   });
 }
@@ -321,7 +280,7 @@ inline void test_plane(Packet<In>& p,
 template <class In>
 struct TestedTriangle {
   const Packet<In>* p;
-  const float *a, *b, *c;
+  const float (&corner)[3][3];
 };
 
 /// It and the rays from i on, of a group whose rays share an axis.
@@ -340,7 +299,7 @@ struct AlignedRays {
              take<Real>(tested_org(p, ky) + i),
              take<Real>(tested_org(p, k) + i)},
             {take<Real>(p.dir[kx] + i), take<Real>(p.dir[ky] + i), take<Real>(p.dir[k] + i)},
-            {corner(with->a), corner(with->b), corner(with->c)}};
+            {corner(with->corner[0]), corner(with->corner[1]), corner(with->corner[2])}};
   }
 };
 
@@ -358,18 +317,16 @@ struct MixedRays {
     };
     return {permuted(axis, origin(p, i)),
             permuted(axis, direction(p, i)),
-            {corner(with->a), corner(with->b), corner(with->c)}};
+            {corner(with->corner[0]), corner(with->corner[1]), corner(with->corner[2])}};
   }
 };
 
 template <bool kAny, class In>
 [[gnu::noinline]] void test_triangle(Packet<In>& p,
-                                     const float (&a)[3],
-                                     const float (&b)[3],
-                                     const float (&c)[3],
+                                     const Triangle::Fields<float>& triangle,
                                      std::uint32_t id) {
   using Real = typename In::Rays;
-  const TestedTriangle<In> with{&p, a, b, c};
+  const TestedTriangle<In> with{&p, triangle.corner};
   each_tested(
       p, [&](int i, int g) __attribute__((always_inline)) {
         const Shear<Real> shear{

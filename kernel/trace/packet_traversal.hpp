@@ -152,12 +152,15 @@ class PacketVisit {
   }
 
   [[gnu::always_inline]] void look(std::size_t cell) {
-    if (g_.lists.triangle_first)
-      test_triangles(cell);
-    if (g_.lists.sphere_first)
-      test_spheres(cell);
-    if (g_.lists.cone_first)
-      test_cones(cell);
+    CellShapes::for_each([&]<class Shape>() __attribute__((always_inline)) {
+      const typename Shape::CellList& list = g_.lists.of<Shape>();
+      if (!list.first)
+        return;
+      if constexpr (Shape::kInBlocks)
+        test_blocks(list, cell);
+      else
+        test_list<Shape>(list, cell);
+    });
   }
 
   bool leave(int slice) {
@@ -171,64 +174,50 @@ class PacketVisit {
  private:
   bool seen(std::uint32_t id) { return mailbox_ && held_.seen(id); }
 
-  [[gnu::noinline]] void test_triangles(std::size_t cell) {
-    const CellLists& lists = g_.lists;
-    const std::uint32_t first = lists.triangle_first[cell];
-    const std::uint32_t end = lists.triangle_first[cell + 1];
-    for (std::uint32_t at = first / kBlock * kBlock; at < end; at += kBlock)
-      for (unsigned left =
-               boxes_inside(f_, lists.boxes[at / kBlock]) & blocks_between(at, first, end);
-           left != 0;
-           left &= left - 1)
-        test_block(lists.triangles[at + static_cast<unsigned>(__builtin_ctz(left))]);
+  [[gnu::noinline]] void test_blocks(const Triangle::CellList& list, std::size_t cell) {
+    const std::uint32_t first = list.first[cell];
+    const std::uint32_t end = list.first[cell + 1];
+    for (std::uint32_t at = first / kBlock * kBlock; at < end; at += kBlock) {
+      unsigned left = boxes_inside(f_, list.boxes[at / kBlock]) & blocks_between(at, first, end);
+      for (; left != 0; left &= left - 1)
+        test_block(list.blocks[at + static_cast<unsigned>(__builtin_ctz(left))]);
+    }
   }
 
   void test_block(const TriangleBlock& block) {
-    each_triangle_inside(f_, block, [&](int at) {
+    each_inside_block(f_, block, [&](int at) {
       const std::uint32_t id = block.id[at];
       if (seen(id))
         return;
-      const float a[3] = {block.a[0][at], block.a[1][at], block.a[2][at]};
-      const float b[3] = {block.b[0][at], block.b[1][at], block.b[2][at]};
-      const float c[3] = {block.c[0][at], block.c[1][at], block.c[2][at]};
-      const std::uint64_t live = p_.live;
-      if (f_.by_group)
-        p_.live &= groups_near_triangle(f_, a, b, c);
-      if (p_.live != 0) {
-        count_lanes(p_, n_, n_.triangle);
-        test_triangle<kAny>(p_, a, b, c, id);
-      }
-      p_.live = live;
+      const Triangle::Fields<float> triangle = triangle_of(block, at);
+      const auto test = [&] { test_triangle<kAny>(p_, triangle, id); };
+      test_near_groups<Triangle>(triangle, test);
     });
   }
 
-  void test_spheres(std::size_t cell) {
-    const CellLists& lists = g_.lists;
-    each_sphere_inside(f_, lists, cell, [&](std::uint32_t s) {
-      const std::uint32_t id = lists.sphere_id[s];
+  template <class Shape>
+  void test_list(const typename Shape::CellList& list, std::size_t cell) {
+    each_inside(f_, list, cell, [&](std::uint32_t i) {
+      const std::uint32_t id = list.id[i];
       if (seen(id))
         return;
-      const float center[3] = {lists.sx[s], lists.sy[s], lists.sz[s]};
-      const std::uint64_t live = p_.live;
-      if (f_.by_group)
-        p_.live &= groups_near_sphere(f_, center, magnitude(lists.sr[s]));
-      if (p_.live != 0) {
-        count_lanes(p_, n_, n_.sphere);
-        test_sphere<kAny>(p_, center[0], center[1], center[2], lists.sr[s], id);
-      }
-      p_.live = live;
+      const auto test = [&] { test_one<kAny, Shape>(p_, list.fields, i, id); };
+      test_near_groups<Shape>(broadcast<Shape, float>(list.fields, i), test);
     });
   }
 
-  void test_cones(std::size_t cell) {
-    const CellLists& lists = g_.lists;
-    each_cone_inside(f_, lists, cell, [&](std::uint32_t c) {
-      const std::uint32_t id = lists.cone_id[c];
-      if (seen(id))
-        return;
-      count_lanes(p_, n_, n_.cone);
-      test_cone<kAny>(p_, lists.cone, c, id);
-    });
+  /// Runs a test against one primitive for the groups of rays that may meet it.
+  template <class Shape, class Test>
+  [[gnu::always_inline]] void test_near_groups(const typename Shape::template Fields<float>& one,
+                                               const Test& test) {
+    const std::uint64_t live = p_.live;
+    if (f_.by_group)
+      p_.live &= groups_near(f_, one);
+    if (p_.live != 0) {
+      count_lanes<Shape>(p_, n_);
+      test();
+    }
+    p_.live = live;
   }
 
   const GridView& g_;

@@ -256,7 +256,7 @@ template <bool kAny, class In>
   using Real = typename In::Primitives;
   const Shear<Real> shear{Real(r.shear[0]), Real(r.shear[1]), Real(r.shear[2])};
   const Real t_min(tested_t_min(r));
-  n.triangle += kBlock;
+  n.tests[kNumber<Triangle>] += kBlock;
   for (int i = 0; i < kBlock; i += kWidth<Real>) {
     Real t(0);
     const Mask<Real> hit =
@@ -267,55 +267,49 @@ template <bool kAny, class In>
   return false;
 }
 
-/// The spheres and cones of one cell. Reading past its end meets those of the next, which costs
+/// Primitives of one kind in one cell. Reading past its end meets those of the next, which costs
 /// nothing and is never wrong: a hit is a hit.
-template <bool kAny, class In>
-inline bool test_round(Single<In>& r, const CellLists& lists, std::size_t cell, Counters& n) {
+template <bool kAny, class Shape, class In>
+[[gnu::always_inline]] inline bool test_list(Single<In>& r,
+                                             const typename Shape::CellList& list,
+                                             std::size_t cell,
+                                             Counters& n) {
   using Real = typename In::Primitives;
-  if (lists.sphere_first) {
-    const Vec3<Real> org = spread<Real>(tested_org(r)), dir = spread<Real>(r.dir);
-    const std::uint32_t end = lists.sphere_first[cell + 1];
-    for (std::uint32_t i = lists.sphere_first[cell]; i < end; i += kWidth<Real>) {
-      n.sphere += kWidth<Real>;
-      Real t(0);
-      const Mask<Real> hit = hit_sphere<Real>(
-          org,
-          dir,
-          Real(r.inv_dd),
-          Real(tested_t_min(r)),
-          {take<Real>(lists.sx + i), take<Real>(lists.sy + i), take<Real>(lists.sz + i)},
-          take<Real>(lists.sr + i),
-          t);
-      if (note<kAny>(r, hit, t, lists.sphere_id + i))
-        return true;
-    }
-  }
-  if (lists.cone_first) {
-    const Vec3<Real> org = spread<Real>(tested_org(r)), dir = spread<Real>(r.dir);
-    const std::uint32_t end = lists.cone_first[cell + 1];
-    for (std::uint32_t i = lists.cone_first[cell]; i < end; i += kWidth<Real>) {
-      n.cone += kWidth<Real>;
-      const auto at = [&](int k) { return take<Real>(lists.cone[k] + i); };
-      const ConeSide<Real> side{
-          {at(0), at(1), at(2)}, {at(3), at(4), at(5)}, at(6), at(7), at(8), at(9)};
-      Real t(0);
-      const Mask<Real> hit =
-          hit_cone<Real>(org, dir, Real(r.inv_dd), Real(tested_t_min(r)), side, t);
-      if (note<kAny>(r, hit, t, lists.cone_id + i))
-        return true;
-    }
+  const RayLanes<Real> ray{.org = spread<Real>(tested_org(r)),
+                           .dir = spread<Real>(r.dir),
+                           .inv_dd = Real(r.inv_dd),
+                           .t_min = Real(tested_t_min(r))};
+  const std::uint32_t end = list.first[cell + 1];
+  for (std::uint32_t i = list.first[cell]; i < end; i += kWidth<Real>) {
+    n.tests[kNumber<Shape>] += kWidth<Real>;
+    Real t(0);
+    const Mask<Real> hit = meet(ray, side_by_side<Shape, Real>(list.fields, i), t);
+    if (note<kAny>(r, hit, t, list.id + i))
+      return true;
   }
   return false;
+}
+
+/// What stands in arrays in one cell.
+template <bool kAny, class In>
+inline bool test_arrays(Single<In>& r, const CellLists& lists, std::size_t cell, Counters& n) {
+  bool over = false;
+  ArrayShapes::for_each([&]<class Shape>() __attribute__((always_inline)) {
+    const typename Shape::CellList& list = lists.of<Shape>();
+    over = over || (list.first && test_list<kAny, Shape>(r, list, cell, n));
+  });
+  return over;
 }
 
 /// All primitives of one cell.
 template <bool kAny, class In>
 inline bool test_cell(Single<In>& r, const CellLists& lists, std::size_t cell, Counters& n) {
-  if (lists.triangle_first)
-    for (std::uint32_t i = lists.triangle_first[cell]; i < lists.triangle_first[cell + 1]; ++i)
-      if (test_block<kAny>(r, lists.triangles[i], n))
+  const Triangle::CellList& triangles = lists.of<Triangle>();
+  if (triangles.first)
+    for (std::uint32_t i = triangles.first[cell]; i < triangles.first[cell + 1]; ++i)
+      if (test_block<kAny>(r, triangles.blocks[i], n))
         return true;
-  return test_round<kAny>(r, lists, cell, n);
+  return test_arrays<kAny>(r, lists, cell, n);
 }
 
 /// A ray in the units of one grid's cells, in double: plane distances come from the plane's index,

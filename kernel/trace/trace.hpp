@@ -36,7 +36,12 @@ inline double plane_t(const GeometryView& g,
                       std::uint32_t i,
                       const float (&org)[3],
                       const float (&dir)[3]) {
-  const double n[3] = {g.pnx[i], g.pny[i], g.pnz[i]}, p[3] = {g.px[i], g.py[i], g.pz[i]};
+  const double n[3] = {g.of<Plane>().fields.normal[0][i],
+                       g.of<Plane>().fields.normal[1][i],
+                       g.of<Plane>().fields.normal[2][i]},
+               p[3] = {g.of<Plane>().fields.point[0][i],
+                       g.of<Plane>().fields.point[1][i],
+                       g.of<Plane>().fields.point[2][i]};
   double away = 0, along = 0;
   for (int a = 0; a < 3; ++a) {
     away += n[a] * (p[a] - org[a]);
@@ -103,39 +108,43 @@ inline void bring_near(const SceneView& scene, Packet<In>& p) {
   }
 }
 
+/// What stands in no grid since it has no end.
 template <bool kAny, class In>
-inline void test_planes(const SceneView& scene, Packet<In>& p, Counters& n) {
+inline void test_infinite(const SceneView& scene, Packet<In>& p, Counters& n) {
   const GeometryView& g = scene.geometry;
-  for (std::uint32_t i = 0; i < g.plane_count; ++i) {
-    count_lanes(p, n, n.plane);
-    test_plane<kAny>(p, {g.px[i], g.py[i], g.pz[i]}, {g.pnx[i], g.pny[i], g.pnz[i]}, i);
+  InfiniteShapes::for_each([&]<class Shape>() __attribute__((always_inline)) {
+    const typename Shape::Arrays& all = g.of<Shape>();
+    for (std::uint32_t i = 0; i < all.count; ++i) {
+      count_lanes<Shape>(p, n);
+      test_one<kAny, Shape>(p, all.fields, i, g.ids.begin(Shape::kKind) + i);
+    }
+  });
+}
+
+/// The triangles that lie in no grid.
+template <bool kAny, class In>
+inline void test_outside(const Triangle::CellList& list, Packet<In>& p, Counters& n) {
+  for (std::uint32_t b = 0; b < list.first[1]; ++b) {
+    const TriangleBlock& block = list.blocks[b];
+    for (int i = 0; i < kBlock && block.a[0][i] == block.a[0][i]; ++i) {
+      count_lanes<Triangle>(p, n);
+      test_triangle<kAny>(p, triangle_of(block, i), block.id[i]);
+    }
   }
 }
 
 /// The few primitives that lie in no grid, each against all rays.
 template <bool kAny, class In>
 inline void test_outside(const CellLists& lists, Packet<In>& p, Counters& n) {
-  if (lists.triangle_first)
-    for (std::uint32_t b = 0; b < lists.triangle_first[1]; ++b) {
-      const TriangleBlock& block = lists.triangles[b];
-      for (int i = 0; i < kBlock && block.a[0][i] == block.a[0][i]; ++i) {
-        const float c0[3] = {block.a[0][i], block.a[1][i], block.a[2][i]};
-        const float c1[3] = {block.b[0][i], block.b[1][i], block.b[2][i]};
-        const float c2[3] = {block.c[0][i], block.c[1][i], block.c[2][i]};
-        count_lanes(p, n, n.triangle);
-        test_triangle<kAny>(p, c0, c1, c2, block.id[i]);
-      }
+  if (lists.of<Triangle>().first)
+    test_outside<kAny>(lists.of<Triangle>(), p, n);
+  ArrayShapes::for_each([&]<class Shape>() __attribute__((always_inline)) {
+    const typename Shape::CellList& list = lists.of<Shape>();
+    for (std::uint32_t i = 0; list.first && i < list.first[1]; ++i) {
+      count_lanes<Shape>(p, n);
+      test_one<kAny, Shape>(p, list.fields, i, list.id[i]);
     }
-  if (lists.sphere_first)
-    for (std::uint32_t i = 0; i < lists.sphere_first[1]; ++i) {
-      count_lanes(p, n, n.sphere);
-      test_sphere<kAny>(p, lists.sx[i], lists.sy[i], lists.sz[i], lists.sr[i], lists.sphere_id[i]);
-    }
-  if (lists.cone_first)
-    for (std::uint32_t i = 0; i < lists.cone_first[1]; ++i) {
-      count_lanes(p, n, n.cone);
-      test_cone<kAny>(p, lists.cone, i, lists.cone_id[i]);
-    }
+  });
 }
 
 inline bool serves(const GridView& g, const float (&org)[3]) {
@@ -238,9 +247,9 @@ inline void trace_packet(const SceneView& scene,
                          Packet<In>& p,
                          const TraceOptions& options,
                          Counters& n) {
-  const bool any_triangles = scene.geometry.triangle_count > 0;
+  const bool any_triangles = scene.geometry.of<Triangle>().count > 0;
   prepare(p, any_triangles);
-  test_planes<kAny>(scene, p, n);
+  test_infinite<kAny>(scene, p, n);
   bring_near(scene, p);
   if (options.packet == 1)
     return trace_alone<kAny>(scene, p, any_triangles, n);

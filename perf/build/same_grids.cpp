@@ -20,7 +20,7 @@ bool same(const CellStore& a, const CellStore& b) {
     const auto& one = a.of<Shape>();
     const auto& other = b.of<Shape>();
     compare(one.first, other.first);
-    if constexpr (ListStore<Shape>::kInBlocks) {
+    if constexpr (Shape::kInBlocks) {
       compare(one.blocks, other.blocks);
       compare(one.boxes, other.boxes);
     } else {

@@ -56,18 +56,25 @@ struct SceneWork {
         which = static_cast<int>(id);
       }
     };
-    const auto corner = [&](std::uint32_t k) {
-      return oracle::V(Float3{g.tx[k], g.ty[k], g.tz[k]});
+    const auto three = [](const float* const(&of)[3], std::uint32_t k) {
+      return Float3{of[0][k], of[1][k], of[2][k]};
     };
-    for (std::uint32_t k = 0; k < g.plane_count; ++k)
-      note(oracle::Sheet{Float3{g.px[k], g.py[k], g.pz[k]}, Float3{g.pnx[k], g.pny[k], g.pnz[k]}}
-               .first(ray, 0),
+    const auto& planes = g.of<Plane>();
+    const auto& spheres = g.of<Sphere>();
+    const auto& triangles = g.of<Triangle>();
+    const auto corner = [&](std::uint32_t k) { return oracle::V(three(triangles.vertex, k)); };
+    for (std::uint32_t k = 0; k < planes.count; ++k)
+      note(oracle::Sheet{three(planes.fields.point, k), three(planes.fields.normal, k)}.first(ray,
+                                                                                              0),
            k);
-    for (std::uint32_t k = 0; k < g.sphere_count; ++k)
-      note(oracle::Ball{Float3{g.sx[k], g.sy[k], g.sz[k]}, g.sr[k]}.first(ray, 0),
+    for (std::uint32_t k = 0; k < spheres.count; ++k)
+      note(oracle::Ball{three(spheres.fields.center, k), spheres.fields.radius[k]}.first(ray, 0),
            v.geometry.ids.begin(PrimitiveKind::kSphere) + k);
-    for (std::uint32_t k = 0; k < g.triangle_count; ++k)
-      note(oracle::Facet{corner(g.ta[k]), corner(g.tb[k]), corner(g.tc[k])}.first(ray, 0),
+    for (std::uint32_t k = 0; k < triangles.count; ++k)
+      note(oracle::Facet{corner(triangles.corner[0][k]),
+                         corner(triangles.corner[1][k]),
+                         corner(triangles.corner[2][k])}
+               .first(ray, 0),
            v.geometry.ids.begin(PrimitiveKind::kTriangle) + k);
     truth.t.push_back(static_cast<double>(nearest));
     truth.triangle.push_back(which);

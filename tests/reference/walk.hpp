@@ -78,12 +78,13 @@ bool test_triangles(
   const int k = r.axis;
   const int kx = kNextAxis[k];
   const int ky = kPreviousAxis[k];
-  for (std::uint32_t b = lists.triangle_first[cell]; b < lists.triangle_first[cell + 1]; ++b) {
-    const TriangleBlock& block = lists.triangles[b];
+  for (std::uint32_t b = lists.of<Triangle>().first[cell]; b < lists.of<Triangle>().first[cell + 1];
+       ++b) {
+    const TriangleBlock& block = lists.of<Triangle>().blocks[b];
     for (int i = 0; i < kBlock && block.id[i] != kNoPrimitive; ++i) {
       if (box && box->seen(block.id[i]))
         continue;
-      ++n.triangle;
+      ++n.tests[kNumber<Triangle>];
       const auto ray_and_triangle = [&] {
         return RayAndTriangle<Real>{{r.org[kx], r.org[ky], r.org[k]},
                                     {r.dir[kx], r.dir[ky], r.dir[k]},
@@ -104,19 +105,22 @@ bool test_triangles(
 template <bool kAny, class Real>
 bool test_spheres(
     WalkedRay<Real>& r, const CellLists& lists, std::size_t cell, RayMailbox* box, Counters& n) {
-  for (std::uint32_t i = lists.sphere_first[cell]; i < lists.sphere_first[cell + 1]; ++i) {
-    if (box && box->seen(lists.sphere_id[i]))
+  for (std::uint32_t i = lists.of<Sphere>().first[cell]; i < lists.of<Sphere>().first[cell + 1];
+       ++i) {
+    if (box && box->seen(lists.of<Sphere>().id[i]))
       continue;
-    ++n.sphere;
+    ++n.tests[kNumber<Sphere>];
     Real t = 0;
     const bool hit = hit_sphere<Real>({r.org[0], r.org[1], r.org[2]},
                                       {r.dir[0], r.dir[1], r.dir[2]},
                                       r.inv_dd,
                                       r.t_min,
-                                      {lists.sx[i], lists.sy[i], lists.sz[i]},
-                                      lists.sr[i],
+                                      {lists.of<Sphere>().fields.center[0][i],
+                                       lists.of<Sphere>().fields.center[1][i],
+                                       lists.of<Sphere>().fields.center[2][i]},
+                                      lists.of<Sphere>().fields.radius[i],
                                       t);
-    if (take<kAny>(r, hit, t, lists.sphere_id[i]))
+    if (take<kAny>(r, hit, t, lists.of<Sphere>().id[i]))
       return true;
   }
   return false;
@@ -125,24 +129,18 @@ bool test_spheres(
 template <bool kAny, class Real>
 bool test_cones(
     WalkedRay<Real>& r, const CellLists& lists, std::size_t cell, RayMailbox* box, Counters& n) {
-  for (std::uint32_t i = lists.cone_first[cell]; i < lists.cone_first[cell + 1]; ++i) {
-    if (box && box->seen(lists.cone_id[i]))
+  for (std::uint32_t i = lists.of<Cone>().first[cell]; i < lists.of<Cone>().first[cell + 1]; ++i) {
+    if (box && box->seen(lists.of<Cone>().id[i]))
       continue;
-    ++n.cone;
-    const auto& c = lists.cone;
+    ++n.tests[kNumber<Cone>];
     Real t = 0;
     const bool hit = hit_cone<Real>({r.org[0], r.org[1], r.org[2]},
                                     {r.dir[0], r.dir[1], r.dir[2]},
                                     r.inv_dd,
                                     r.t_min,
-                                    {{c[0][i], c[1][i], c[2][i]},
-                                     {c[3][i], c[4][i], c[5][i]},
-                                     c[6][i],
-                                     c[7][i],
-                                     c[8][i],
-                                     c[9][i]},
+                                    broadcast<Cone, Real>(lists.of<Cone>().fields, i),
                                     t);
-    if (take<kAny>(r, hit, t, lists.cone_id[i]))
+    if (take<kAny>(r, hit, t, lists.of<Cone>().id[i]))
       return true;
   }
   return false;
@@ -151,21 +149,25 @@ bool test_cones(
 template <bool kAny, class Real>
 bool test_lists(
     WalkedRay<Real>& r, const CellLists& lists, std::size_t cell, RayMailbox* box, Counters& n) {
-  return (lists.triangle_first && test_triangles<kAny>(r, lists, cell, box, n)) ||
-         (lists.sphere_first && test_spheres<kAny>(r, lists, cell, box, n)) ||
-         (lists.cone_first && test_cones<kAny>(r, lists, cell, box, n));
+  return (lists.of<Triangle>().first && test_triangles<kAny>(r, lists, cell, box, n)) ||
+         (lists.of<Sphere>().first && test_spheres<kAny>(r, lists, cell, box, n)) ||
+         (lists.of<Cone>().first && test_cones<kAny>(r, lists, cell, box, n));
 }
 
 template <bool kAny, class Real>
 bool test_planes(WalkedRay<Real>& r, const GeometryView& g, Counters& n) {
-  for (std::uint32_t p = 0; p < g.plane_count; ++p) {
-    ++n.plane;
+  for (std::uint32_t p = 0; p < g.of<Plane>().count; ++p) {
+    ++n.tests[kNumber<Plane>];
     Real t = 0;
     const bool hit = hit_plane<Real>({r.org[0], r.org[1], r.org[2]},
                                      {r.dir[0], r.dir[1], r.dir[2]},
                                      r.t_min,
-                                     {g.px[p], g.py[p], g.pz[p]},
-                                     {g.pnx[p], g.pny[p], g.pnz[p]},
+                                     {g.of<Plane>().fields.point[0][p],
+                                      g.of<Plane>().fields.point[1][p],
+                                      g.of<Plane>().fields.point[2][p]},
+                                     {g.of<Plane>().fields.normal[0][p],
+                                      g.of<Plane>().fields.normal[1][p],
+                                      g.of<Plane>().fields.normal[2][p]},
                                      t);
     if (take<kAny>(r, hit, t, p))
       return true;

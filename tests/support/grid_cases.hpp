@@ -17,7 +17,7 @@ inline std::vector<std::uint32_t> ids_of(const CellStore& s, std::size_t cell) {
     const auto& list = s.of<Shape>();
     const auto others = static_cast<std::ptrdiff_t>(out.size());
     for (std::size_t i = 0; !list.first.empty() && i < list.first[cell + 1] - list.first[cell]; ++i)
-      if constexpr (ListStore<Shape>::kInBlocks) {
+      if constexpr (Shape::kInBlocks) {
         for (const std::uint32_t id : list.blocks[list.first[cell] + i].id)
           if (id != kNoPrimitive)
             out.push_back(id);

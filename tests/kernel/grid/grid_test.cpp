@@ -72,7 +72,7 @@ void expect_sound_rows(const CellStore& s, std::size_t cells) {
     ASSERT_EQ(list.first.size(), cells + 1);
     EXPECT_EQ(list.first.front(), 0u);
     EXPECT_TRUE(std::is_sorted(list.first.begin(), list.first.end()));
-    if constexpr (ListStore<Shape>::kInBlocks) {
+    if constexpr (Shape::kInBlocks) {
       EXPECT_EQ(list.first.back(), list.blocks.size());
     } else {
       // a whole block can be read from any place
@@ -115,7 +115,7 @@ void expect_same_store(const CellStore& a, const CellStore& b) {
     const auto& one = a.of<Shape>();
     const auto& other = b.of<Shape>();
     expect_same_bytes(one.first, other.first);
-    if constexpr (ListStore<Shape>::kInBlocks) {
+    if constexpr (Shape::kInBlocks) {
       expect_same_bytes(one.blocks, other.blocks);
       expect_same_bytes(one.boxes, other.boxes);
     } else {

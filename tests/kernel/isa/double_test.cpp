@@ -129,7 +129,13 @@ TEST_P(Double, IsOffByRoundingAlone) {
   const RayList rays = rays_about(random, {}, 1, 20000, 100);
   const SceneView& view = world.impl().view;
   const GeometryView& g = view.geometry;
-  const auto corner = [&](std::uint32_t i) { return Float3{g.tx[i], g.ty[i], g.tz[i]}; };
+  const auto three = [](const float* const(&of)[3], std::uint32_t i) {
+    return Float3{of[0][i], of[1][i], of[2][i]};
+  };
+  const auto& planes = g.of<Plane>().fields;
+  const auto& spheres = g.of<Sphere>().fields;
+  const auto& triangles = g.of<Triangle>();
+  const auto corner = [&](std::uint32_t i) { return three(triangles.vertex, i); };
   for (const TraceSettings& settings :
        {TraceSettings{Method::kPackets, 256, true}, TraceSettings{Method::kSingle, 1, true}}) {
     const Answers a = trace(tested(), world, rays, settings, Query::kClosest);
@@ -141,14 +147,15 @@ TEST_P(Double, IsOffByRoundingAlone) {
       const auto [kind, k] = view.geometry.ids.primitive(a.id[i]);
       std::optional<oracle::Crossing> truth;
       if (kind == PrimitiveKind::kPlane)
-        truth =
-            oracle::Sheet{Float3{g.px[k], g.py[k], g.pz[k]}, Float3{g.pnx[k], g.pny[k], g.pnz[k]}}
-                .first(ray, rays.t_min[i]);
+        truth = oracle::Sheet{three(planes.point, k), three(planes.normal, k)}.first(ray,
+                                                                                     rays.t_min[i]);
       else if (kind == PrimitiveKind::kSphere) {
-        truth = oracle::Ball{Float3{g.sx[k], g.sy[k], g.sz[k]}, g.sr[k]}.first(ray, rays.t_min[i]);
+        truth = oracle::Ball{three(spheres.center, k), spheres.radius[k]}.first(ray, rays.t_min[i]);
       } else if (kind == PrimitiveKind::kTriangle) {
-        truth = oracle::Facet{corner(g.ta[k]), corner(g.tb[k]), corner(g.tc[k])}.first(
-            ray, rays.t_min[i]);
+        truth = oracle::Facet{corner(triangles.corner[0][k]),
+                              corner(triangles.corner[1][k]),
+                              corner(triangles.corner[2][k])}
+                    .first(ray, rays.t_min[i]);
       }
       if (!truth || truth->cosine < .1L)
         continue;

@@ -133,8 +133,8 @@ TEST(Query, TheCallersArraysAreUsedWhereTheyLie) {
   scene.geometry.spheres.material = material;
   scene.materials = {&dull, 1};
   const World world(scene, {});
-  EXPECT_EQ(world.impl().view.geometry.sx, x.data());
-  EXPECT_EQ(world.impl().view.geometry.sphere_material, material.data());
+  EXPECT_EQ(world.impl().view.geometry.of<Sphere>().fields.center[0], x.data());
+  EXPECT_EQ(world.impl().view.geometry.of<Sphere>().material, material.data());
   const Hit hit = closest(world, Ray{{6, 0, 10}, {0, 0, -2}});
   EXPECT_EQ(hit.t, 4.5f);
   EXPECT_EQ(hit.id, 2u);

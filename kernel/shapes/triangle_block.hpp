@@ -1,0 +1,22 @@
+#pragma once
+// Triangles side by side, as lists of cells hold them.
+
+#include <cstdint>
+
+#include "kernel/shapes/arrays.hpp"
+
+namespace grelha {
+
+/// Eight triangles side by side; unused places hold NaN corners, which no ray can meet.
+struct alignas(64) TriangleBlock {
+  float a[3][kBlock], b[3][kBlock], c[3][kBlock];
+  std::uint32_t id[kBlock];
+};
+
+/// Of eight blocks, each: what of its triangles lies in its cell, boxed and grown. A ray that meets
+/// one of them there passes through. Block b has place b % kBlock of boxes b / kBlock.
+struct alignas(64) BlockBoxes {
+  float side[6][kBlock];  ///< least x, y, z, greatest x, y, z
+};
+
+}  // namespace grelha

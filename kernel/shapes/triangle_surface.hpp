@@ -1,0 +1,122 @@
+#pragma once
+// Where rays met triangles: points, normals and the mix of the vertices' normals.
+
+#include "kernel/shapes/surface_place.hpp"
+#include "kernel/shapes/triangle.hpp"
+
+namespace grelha::GRELHA_ISA {
+
+/// What of a triangle's surface is computed in double, and rounded once.
+template <class Real>
+struct TrianglePlace {
+  Vec3<Real> point, normal, weights;
+};
+
+/// Corners as they are, not permuted; `axis` is that of shear_axis(). Rays that do not cross are
+/// taken to the first corner.
+template <class Real>
+inline TrianglePlace<Real> triangle_place(const Real& axis,
+                                          const Vec3<Real>& org,
+                                          const Vec3<Real>& dir,
+                                          const Corners<Real>& c) {
+  const auto turned = [&](const Vec3<Real>& p) { return permuted<Real>(axis, p); };
+  const Crossing<Real> r =
+      crossing<Real>(turned(org), turned(dir), {turned(c.a), turned(c.b), turned(c.c)});
+  const Real o(0), one(1);
+  const Vec3<Real> w = select(r.inside, r.weights, Vec3<Real>{one, o, o}), e1 = c.b - c.a,
+                   e2 = c.c - c.a;
+  return {c.a + (w.y * e1 + w.z * e2), normalize(cross(e1, e2)), w};
+}
+
+template <class Real, int i = 0>
+inline void triangle_places(const Real& axis,
+                            const Vec3<Real>& org,
+                            const Vec3<Real>& low,
+                            const Vec3<Real>& dir,
+                            const Corners<Real>& c,
+                            PlaceParts<Real>& to) {
+  const TrianglePlace<Wide<Real>> p =
+      triangle_place<Wide<Real>>(widen<i>(axis), widen<i>(org, low), widen<i>(dir), widen<i>(c));
+  int k = 0;
+  for (const Vec3<Wide<Real>>* v : {&p.point, &p.normal, &p.weights})
+    for (const Wide<Real>* x : {&v->x, &v->y, &v->z})
+      to.part[k++][i] = *x;
+  if constexpr (i + 1 < kWideParts<Real>)
+    triangle_places<Real, i + 1>(axis, org, low, dir, c, to);
+}
+
+/// Square of the length of mixed unit normals below which they cancel: rounding decides where such
+/// a mix points to.
+inline constexpr float kLeastMix = 1e-12f;
+
+/// The axes that prepare() gave the rays.
+template <class Real>
+inline Real shear_axes(const Vec3<Real>& dir) {
+  const Real x = magnitude(dir.x);
+  const Real y = magnitude(dir.y);
+  const Real z = magnitude(dir.z);
+  return select(both(x >= y, x >= z), Real(0), select(y >= z, Real(1), Real(2)));
+}
+
+/// The normals of three vertices, mixed by weights, on the side of `flat`; where a vertex has none,
+/// or they cancel, `flat`.
+template <class Real>
+inline Vec3<Real> mixed_normal(const Triangle::Arrays& triangles,
+                               const Words<Real> (&vertex)[3],
+                               const Vec3<Real>& weights,
+                               const Vec3<Real>& flat) {
+  const Real o(0), one(1);
+  Mask<Real> sound = one > o;
+  const auto normal = [&](const Words<Real>& i) {
+    const Vec3<Real> m = three_at(triangles.normal, i);
+    const Real mm = dot(m, m);
+    sound = both(sound, mm > o);
+    return (one / square_root(mm)) * m;
+  };
+  const Vec3<Real> a = normal(vertex[0]);
+  const Vec3<Real> b = normal(vertex[1]);
+  const Vec3<Real> c = normal(vertex[2]);
+  const Vec3<Real> mix = weights.x * a + (weights.y * b + weights.z * c);
+  const Real mm = dot(mix, mix);
+  const Vec3<Real> m = (one / square_root(mm)) * mix;
+  const Vec3<Real> same_side = select(dot(m, flat) < o, Vec3<Real>{o, o, o} - m, m);
+  return select(both(sound, mm > Real(kLeastMix)), same_side, flat);
+}
+
+/// Where rays met triangles, of indices i.
+template <class Real>
+inline Surface<Real> surface_on(const Triangle::Arrays& triangles,
+                                const Words<Real>& i,
+                                const Meeting<Real>& met) {
+  const Words<Real> v[3] = {words_at(triangles.corner[0], i),
+                            words_at(triangles.corner[1], i),
+                            words_at(triangles.corner[2], i)};
+  const Corners<Real> c = {three_at(triangles.vertex, v[0]),
+                           three_at(triangles.vertex, v[1]),
+                           three_at(triangles.vertex, v[2])};
+  PlaceParts<Real> place;
+  triangle_places<Real>(shear_axes(met.dir), met.org, met.start.low, met.dir, c, place);
+  const Vec3<Real> point = place.vector(0);
+  const Vec3<Real> n = place.vector(3);
+  const Vec3<Real> weights = place.vector(6);
+  const Real corners = greater(greater(largest(c.a), largest(c.b)), largest(c.c));
+  Surface<Real> s{
+      .point = point,
+      .normal = n,
+      .shading = n,
+      .away = Real(4 * kEps) * largest(point) + Real(kWideEps) * corners,
+      .material = words_at(triangles.material, i),
+      .low = {Real(0), Real(0), Real(0)},
+  };
+  if (met.start.t) {
+    rest_of_points<Real>(point, place);
+    s.low = place.vector(0);
+    s.away =
+        Real(4 * static_cast<float>(kRounding<double>)) * largest(point) + Real(kWideEps) * corners;
+  }
+  if (met.smooth)
+    s.shading = mixed_normal<Real>(triangles, v, weights, n);
+  return s;
+}
+
+}  // namespace grelha::GRELHA_ISA
