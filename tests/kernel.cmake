@@ -46,6 +46,14 @@ grelha_test(stability/stability property grelha::stability)
 # No function of one instruction set's copy can be linked into another. The self test plants three
 # that could.
 add_library(leaky_variant OBJECT ${CMAKE_CURRENT_LIST_DIR}/support/leaky_variant.cpp)
+# A fifth kind of primitive, added to a copy of the kernel and tested there.
+add_test(NAME fifth_kind COMMAND ${CMAKE_COMMAND} -D ROOT=${PROJECT_SOURCE_DIR}
+  -D SCRATCH=${CMAKE_CURRENT_BINARY_DIR}/fifth_kind -D COMPILER=${CMAKE_CXX_COMPILER}
+  -D LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER} "-DFLAGS=${CMAKE_CXX_FLAGS}"
+  -D GENERATOR=${CMAKE_GENERATOR} -D SIMD=${GRELHA_SIMD}
+  -P ${CMAKE_CURRENT_LIST_DIR}/fifth_kind.cmake)
+set_tests_properties(fifth_kind PROPERTIES LABELS build TIMEOUT 900)
+
 add_test(NAME isa_symbols COMMAND ${CMAKE_COMMAND} -D NM=${CMAKE_NM}
   "-DOBJECTS=$<TARGET_OBJECTS:grelha_kernel>" "-DFLAGS=${CMAKE_CXX_FLAGS}"
   -P ${CMAKE_CURRENT_LIST_DIR}/isa_symbols.cmake)

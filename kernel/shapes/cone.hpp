@@ -197,8 +197,8 @@ inline std::uint64_t groups_near(const Frustum&, const Cone::Fields<float>&) {
   return ~std::uint64_t{0};
 }
 
-/// 1 - cos^2 below which a cone's axis runs along a beam's: the place nearest to it is rounding, 2 u
-/// of 1 - cos^2 = 1.2e-7. There the middle of the cone stands for it.
+/// 1 - cos^2 below which a cone's axis runs along a beam's: the place nearest to it is rounding,
+/// 2 u of 1 - cos^2 = 1.2e-7. There the middle of the cone stands for it.
 inline constexpr float kParallelAxes = 1e-6f;
 
 /// The ball around the cone's axis where that passes nearest to a line of unit direction.

@@ -3,6 +3,7 @@
 // bounding planes (frustum.hpp). Beams go through the same walk.
 
 #include "kernel/trace/culling.hpp"
+#include "kernel/trace/frustum_builder.hpp"
 #include "kernel/trace/mailbox.hpp"
 
 namespace grelha::GRELHA_ISA {

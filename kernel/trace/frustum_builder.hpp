@@ -1,0 +1,338 @@
+#pragma once
+// A frustum around the rays of a packet, or the edges of a beam.
+
+#include "kernel/trace/frustum.hpp"
+#include "kernel/trace/tolerances.hpp"
+
+namespace grelha::GRELHA_ISA {
+
+/// Where the rays of each group lie on the slices `from` and `to`.
+struct GroupBounds {
+  alignas(64) float lo0[2][kGroupRow], lo1[2][kGroupRow], hi0[2][kGroupRow], hi1[2][kGroupRow];
+  void clear() {
+    for (int j = 0; j < 2; ++j)
+      for (int i = 0; i < kGroupRow; ++i) {
+        lo0[j][i] = lo1[j][i] = kInfinity;
+        hi0[j][i] = hi1[j][i] = -kInfinity;
+      }
+  }
+};
+
+/// The axis along which the first ray crosses most cells.
+inline constexpr int kAnyAxis = -1;
+
+/// Bounds one packet in one grid.
+class FrustumBuilder {
+ public:
+  FrustumBuilder(const GridView& g, const WalkingRays& p, Frustum& f) : g_(g), p_(p), f_(f) {}
+
+  Coherence around(int axis) {
+    const bool all = axis != kAnyAxis;
+    const int first = all ? clip_rays(axis, axis + 1) : clip_rays(0, 3);
+    if (first < 0)
+      return Coherence::kMisses;
+    if (all)
+      take_all_rays();
+    set_axes(first, all ? axis : steepest_axis(first));
+    if (!bound_slices())
+      return Coherence::kIncoherent;
+    bound_sides();
+    set_margin();
+    set_planes();
+    set_reach();
+    set_near();
+    if (f_.by_group)
+      set_group_planes();
+    return Coherence::kTogether;
+  }
+
+ private:
+  /// Entry and exit of every ray between the planes of axes [begin, end). Returns the first ray
+  /// that meets the grid, or -1.
+  [[gnu::always_inline]] int clip_rays(int begin, int end) {
+    int first = -1;
+    each_live_group(p_, [&](int i, int) {
+      Lanes t0 = load<Lanes>(p_.start + i);
+      Lanes t1 = load<Lanes>(p_.best + i);
+      const Lanes least = least_headway(p_, i);
+      for (int a = begin; a < end; ++a) {
+        const Lanes d = load<Lanes>(p_.dir[a] + i);
+        const Lanes o = load<Lanes>(p_.org[a] + i);
+        const Lanes inv = Lanes(1) / select(magnitude(d) < least, least, d);
+        const Lanes x = (Lanes(g_.lo_f[a]) - o) * inv;
+        const Lanes y = (Lanes(g_.hi_f[a]) - o) * inv;
+        t0 = greater(lesser(x, y), t0);
+        t1 = lesser(greater(x, y), t1);
+      }
+      const Mask<Lanes> meets = t0 <= t1;
+      store(enter_ + i, t0);
+      store(f_.leave + i, select(meets, t1, Lanes(-kInfinity)));
+      if (const unsigned lanes = bits(meets); lanes != 0 && first < 0)
+        first = i + __builtin_ctz(lanes);
+    });
+    return first;
+  }
+
+  /// Takes rays that pass the grid by as well.
+  void take_all_rays() {
+    each_live_group(p_, [&](int i, int) {
+      const Mask<Lanes> ray = load<Lanes>(p_.best + i) > load<Lanes>(p_.t_min + i);
+      const Lanes leave = greater(load<Lanes>(f_.leave + i), load<Lanes>(enter_ + i));
+      store(f_.leave + i, select(ray, leave, Lanes(-kInfinity)));
+    });
+  }
+
+  /// The axis along which a ray crosses most cells.
+  int steepest_axis(int ray) const {
+    int axis = 0;
+    float most = -1;
+    for (int a = 0; a < 3; ++a)
+      if (const float m = magnitude(p_.dir[a][ray] * g_.inv_cell_f[a]); m > most) {
+        most = m;
+        axis = a;
+      }
+    return axis;
+  }
+
+  void set_axes(int first, int axis) {
+    f_.k = axis;
+    f_.u = axis == 2 ? 0 : axis + 1;
+    f_.v = axis == 0 ? 2 : axis - 1;
+    f_.flip = p_.dir[axis][first] < 0;
+    size_ = static_cast<float>(g_.n[axis]);
+  }
+
+  /// The slices between the first entry and the last exit. False when a ray makes no headway.
+  [[gnu::always_inline]] bool bound_slices() {
+    const int k = f_.k;
+    const float sign = f_.flip ? -1.f : 1.f;
+    Lanes s0(kInfinity);
+    Lanes s1(-kInfinity);
+    Lanes far(0);
+    bool apart = false;
+    for (int i = 0; i < kGroupRow; ++i)
+      f_.group_near[i] = kInfinity;
+    each_live_group(p_, [&](int i, int group) {
+      const Lanes leave = load<Lanes>(f_.leave + i);
+      const Mask<Lanes> meets = leave > Lanes(-kInfinity);
+      const Lanes dk = load<Lanes>(p_.dir[k] + i) * Lanes(sign);
+      apart |= any(but_not(meets, makes_headway(i, dk)));
+      Lanes at = (load<Lanes>(p_.org[k] + i) - Lanes(g_.lo_f[k])) * Lanes(g_.inv_cell_f[k]);
+      if (f_.flip)
+        at = Lanes(size_) - at;
+      const Lanes q = dk * Lanes(g_.inv_cell_f[k]);
+      store(f_.position + i, at);
+      store(f_.per_slice + i, Lanes(1) / q);
+      const Lanes in = select(meets, at + load<Lanes>(enter_ + i) * q, Lanes(kInfinity));
+      f_.group_near[group] = lane_min(in);
+      s0 = lesser(in, s0);
+      s1 = greater(select(meets, at + leave * q, Lanes(-kInfinity)), s1);
+      far = greater(select(meets, magnitude(at), Lanes(0)), far);
+    });
+    if (apart)
+      return false;
+    set_stay(lane_min(s0), lane_max(s1));
+    farthest_ = lane_max(far);
+    return true;
+  }
+
+  [[gnu::always_inline]] Mask<Lanes> makes_headway(int i, const Lanes& dk) const {
+    const Lanes du = magnitude(load<Lanes>(p_.dir[f_.u] + i));
+    const Lanes dv = magnitude(load<Lanes>(p_.dir[f_.v] + i));
+    return dk >= Lanes(kLeastProgress) * ((du + dv) + dk);
+  }
+
+  void set_stay(float first, float last) {
+    f_.from = greater(first, 0.f);
+    f_.to = lesser(last, size_);
+    if (!(f_.from <= f_.to))
+      f_.to = f_.from;
+    const float stay = f_.to - f_.from;
+    thin_ = stay < kThinStay;
+    per_ = thin_ ? 0.f : 1.f / stay;
+  }
+
+  [[gnu::always_inline]] void bound_sides() {
+    // Rays apart by more than a group are culled by groups: worth it where there are many, and
+    // where a group is more than a ray.
+    f_.by_group = kWidth<Lanes> > 1 && __builtin_popcountll(p_.live) * kWidth<Lanes> > kSmall;
+    if (f_.by_group)
+      groups_.clear();
+    slope_ = 1;
+    for (int j = 0; j < 2; ++j)
+      bound_side(j, j == 0 ? f_.u : f_.v);
+  }
+
+  /// Where the rays lie along one of the other axes, on the first slice and on the last.
+  [[gnu::always_inline]] void bound_side(int j, int a) {
+    Lanes lo0(kInfinity);
+    Lanes lo1(kInfinity);
+    Lanes hi0(-kInfinity);
+    Lanes hi1(-kInfinity);
+    Lanes wide(0);
+    Lanes steep(0);
+    each_live_group(p_, [&](int i, int group) {
+      const Mask<Lanes> meets = load<Lanes>(f_.leave + i) > Lanes(-kInfinity);
+      const Lanes at = (load<Lanes>(p_.org[a] + i) - Lanes(g_.lo_f[a])) * Lanes(g_.inv_cell_f[a]);
+      const Lanes slope =
+          (load<Lanes>(p_.dir[a] + i) * Lanes(g_.inv_cell_f[a])) * load<Lanes>(f_.per_slice + i);
+      const Lanes k_at = load<Lanes>(f_.position + i);
+      const Lanes x0 = at + (Lanes(f_.from) - k_at) * slope;
+      const Lanes x1 = at + (Lanes(f_.to) - k_at) * slope;
+      const Lanes least0 = select(meets, x0, Lanes(kInfinity));
+      const Lanes least1 = select(meets, x1, Lanes(kInfinity));
+      const Lanes most0 = select(meets, x0, Lanes(-kInfinity));
+      const Lanes most1 = select(meets, x1, Lanes(-kInfinity));
+      lo0 = lesser(least0, lo0);
+      lo1 = lesser(least1, lo1);
+      hi0 = greater(most0, hi0);
+      hi1 = greater(most1, hi1);
+      wide = greater(select(meets, magnitude(at), Lanes(0)), wide);
+      steep = greater(select(meets, magnitude(slope), Lanes(0)), steep);
+      if (f_.by_group) {
+        groups_.lo0[j][group] = lane_min(least0);
+        groups_.lo1[j][group] = lane_min(least1);
+        groups_.hi0[j][group] = lane_max(most0);
+        groups_.hi1[j][group] = lane_max(most1);
+      }
+    });
+    farthest_ = greater(farthest_, lane_max(wide));
+    slope_ = greater(slope_, lane_max(steep));
+    set_side(j, lane_min(lo0), lane_min(lo1), lane_max(hi0), lane_max(hi1));
+  }
+
+  [[gnu::always_inline]] void set_side(int j, float lo0, float lo1, float hi0, float hi1) {
+    if (thin_) {
+      lo0 = lo1 = lesser(lo0, lo1);
+      hi0 = hi1 = greater(hi0, hi1);
+    }
+    f_.lo[j] = lo0;
+    f_.lo_slope[j] = (lo1 - lo0) * per_;
+    f_.hi[j] = hi0;
+    f_.hi_slope[j] = (hi1 - hi0) * per_;
+  }
+
+  /// Everything above is a few roundings of numbers no larger than the farthest place times the
+  /// steepest slope: of rays for the sides, of planes for what is culled by them.
+  void set_margin() {
+    f_.steepest = 1;
+    // the grid's corner in cells: what cancels in the planes when the grid lies far from 0
+    float corner = 0;
+    for (int a = 0; a < 3; ++a) {
+      farthest_ = greater(static_cast<float>(g_.n[a]), farthest_);
+      corner = greater(magnitude(g_.lo_f[a] * g_.inv_cell_f[a]), corner);
+    }
+    for (int j = 0; j < 2; ++j)
+      f_.steepest =
+          greater(greater(magnitude(f_.lo_slope[j]), magnitude(f_.hi_slope[j])), f_.steepest);
+    f_.margin = kSideRounding * (farthest_ * greater(slope_, f_.steepest));
+    plane_rounding_ = kPlaneRounding * (corner + farthest_);
+    const float pad = kPadOfBalls * g_.pad;
+    cull_ = f_.margin + pad * greater(g_.inv_cell_f[f_.u], g_.inv_cell_f[f_.v]);
+    cull_of_slope_ = plane_rounding_ + pad * g_.inv_cell_f[f_.k];
+  }
+
+  void set_planes() {
+    const int k = f_.k;
+    const float ik = g_.inv_cell_f[k];
+    // s = along x + start
+    along_ = f_.flip ? -ik : ik;
+    start_ = f_.flip ? size_ + g_.lo_f[k] * ik : -(g_.lo_f[k] * ik);
+    const float cull = cull_ + cull_of_slope_ * f_.steepest;
+    for (int j = 0; j < 2; ++j) {
+      const int a = j == 0 ? f_.u : f_.v;
+      const float iu = g_.inv_cell_f[a];
+      const float zero = g_.lo_f[a] * iu;
+      f_.a[2 * j] = iu;
+      f_.b[2 * j] = -(f_.lo_slope[j] * along_);
+      f_.c[2 * j] = cull - zero - f_.lo[j] - f_.lo_slope[j] * (start_ - f_.from);
+      f_.a[2 * j + 1] = -iu;
+      f_.b[2 * j + 1] = f_.hi_slope[j] * along_;
+      f_.c[2 * j + 1] = cull + zero + f_.hi[j] + f_.hi_slope[j] * (start_ - f_.from);
+    }
+  }
+
+  void set_reach() {
+    for (int j = 0; j < 4; ++j) {
+      f_.reach[j] = square_root(f_.a[j] * f_.a[j] + f_.b[j] * f_.b[j]) * kReachSlack;
+      f_.across[j] = (j < 2 ? f_.u : f_.v) + (f_.a[j] > 0 ? 3 : 0);
+      f_.along[j] = f_.k + (f_.b[j] > 0 ? 3 : 0);
+    }
+  }
+
+  void set_near() {
+    const float early = (f_.margin + plane_rounding_) + kNearSlack * farthest_;
+    f_.to_slice = along_;
+    f_.zero_slice = start_;
+    f_.near = f_.from - early;
+    f_.last = f_.k + (f_.flip ? 0 : 3);
+    for (int i = 0; i < kGroupRow; i += kWidth<Lanes>)
+      store(f_.group_near + i, load<Lanes>(f_.group_near + i) - Lanes(early));
+  }
+
+  /// The planes of each group.
+  [[gnu::always_inline]] void set_group_planes() {
+    for (int i = 0; i < kGroups; i += kWidth<Lanes>)
+      for (int j = 0; j < 2; ++j)
+        set_planes_of_groups(i, j);
+  }
+
+  [[gnu::always_inline]] void set_planes_of_groups(int i, int j) {
+    const Lanes nowhere(-kInfinity);
+    const Lanes o(0);
+    Lanes lo0 = load<Lanes>(groups_.lo0[j] + i);
+    Lanes lo1 = load<Lanes>(groups_.lo1[j] + i);
+    Lanes hi0 = load<Lanes>(groups_.hi0[j] + i);
+    Lanes hi1 = load<Lanes>(groups_.hi1[j] + i);
+    const Mask<Lanes> some = lo0 <= hi0;
+    if (per_ == 0) {
+      lo0 = lo1 = lesser(lo0, lo1);
+      hi0 = hi1 = greater(hi0, hi1);
+    }
+    const Lanes lo_slope = select(some, (lo1 - lo0) * Lanes(per_), o);
+    const Lanes hi_slope = select(some, (hi1 - hi0) * Lanes(per_), o);
+    const Lanes steepest = greater(greater(magnitude(lo_slope), magnitude(hi_slope)), Lanes(1));
+    const Lanes cull = Lanes(cull_) + Lanes(cull_of_slope_) * steepest;
+    const float zero = g_.lo_f[j == 0 ? f_.u : f_.v] * f_.a[2 * j];
+    const float back = start_ - f_.from;
+    const Lanes lo_c = cull - Lanes(zero) - lo0 - lo_slope * Lanes(back);
+    const Lanes hi_c = cull + Lanes(zero) + hi0 + hi_slope * Lanes(back);
+    store_group_plane(2 * j, i, o - lo_slope * Lanes(along_), select(some, lo_c, nowhere));
+    store_group_plane(2 * j + 1, i, hi_slope * Lanes(along_), select(some, hi_c, nowhere));
+  }
+
+  [[gnu::always_inline]] void store_group_plane(int plane, int i, const Lanes& b, const Lanes& c) {
+    const Lanes a(f_.a[plane & ~1]);
+    store(f_.group_b[plane] + i, b);
+    store(f_.group_c[plane] + i, c);
+    store(f_.group_reach[plane] + i, square_root(a * a + b * b) * Lanes(kReachSlack));
+  }
+
+  const GridView& g_;
+  const WalkingRays& p_;
+  Frustum& f_;
+  alignas(64) float enter_[kPacket];  ///< t at which each ray comes to the grid
+  GroupBounds groups_;
+  float size_;            ///< slices of the grid
+  bool thin_;             ///< the stay has no slopes
+  float per_;             ///< 1 / stay, or 0
+  float farthest_;        ///< from the grid's corner, of origins and of the grid, in cells
+  float slope_;           ///< steepest of the rays, at least 1
+  float plane_rounding_;  ///< of planes, in cells, by their slopes
+  float cull_;            ///< what culling allows for beside a plane, in cells
+  float cull_of_slope_;   ///< the same, times the plane's slope
+  float along_;           ///< s = along x + start
+  float start_;
+};
+
+/// Entry and exit of every ray, then the frustum around those that meet the grid, along the axis on
+/// which the first of them crosses most cells; or, with `axis`, around all of them along that one,
+/// whether they meet the grid themselves or pass it by on both sides.
+inline Coherence bound_rays(const GridView& g,
+                            const WalkingRays& p,
+                            Frustum& f,
+                            int axis = kAnyAxis) {
+  return FrustumBuilder(g, p, f).around(axis);
+}
+
+}  // namespace grelha::GRELHA_ISA

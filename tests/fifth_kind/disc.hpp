@@ -1,0 +1,183 @@
+#pragma once
+// All that is known of discs.
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "grelha/scene_spans.hpp"
+#include "kernel/shapes/plane.hpp"
+#include "kernel/shapes/sphere.hpp"
+
+namespace grelha {
+
+/// A kind of primitive: what of a plane lies around a point.
+struct Disc {
+  static constexpr PrimitiveKind kKind = PrimitiveKind::kDisc;
+  static constexpr bool kFinite = true;
+  static constexpr bool kInBlocks = false;
+
+  /// What tests see of a disc, or of many, an array each.
+  template <class T>
+  struct Fields {
+    T center[3], normal[3];  ///< normal: unit
+    T radius;
+  };
+  template <class Visit, class... F>
+  static constexpr void for_each_field(const Visit& visit, F&... of) {
+    for_each_axis(visit, of.center...);
+    for_each_axis(visit, of.normal...);
+    visit(of.radius...);
+  }
+  using Arrays = IndexedArrays<Fields<const float*>>;
+  using CellList = CellArrays<Fields<const float*>>;
+
+  /// The caller's arrays of numbers.
+  template <class Visit>
+  static void for_each_array(const DiscSpans& s, const Visit& visit) {
+    for (const Floats* v : {&s.x, &s.y, &s.z, &s.nx, &s.ny, &s.nz, &s.radius})
+      visit(*v);
+  }
+  static const DiscSpans& spans_of(const GeometrySpans& g) { return g.discs; }
+  /// Whether they have one length.
+  static bool is_even(const DiscSpans& spans) {
+    bool even = true;
+    for_each_array(spans, [&](Floats v) { even &= v.size() == spans.size(); });
+    return even;
+  }
+  static std::size_t bytes(const DiscSpans& spans) { return spans.size() * 8 * sizeof(float); }
+
+  /// The caller's discs, with normals of unit length.
+  struct Source {
+    static constexpr std::size_t kPreparedBytes = 3 * sizeof(float);  ///< a disc
+    DiscSpans spans;
+    std::vector<float> normal[3];
+    explicit Source(const GeometrySpans& g) : spans(g.discs) {
+      for (std::size_t i = 0; i < spans.size(); ++i) {
+        const double n[3] = {spans.nx[i], spans.ny[i], spans.nz[i]};
+        const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+        for (int a = 0; a < 3; ++a)
+          normal[a].push_back(static_cast<float>(n[a] / length));
+      }
+    }
+    std::size_t size() const { return spans.size(); }
+    Fields<const float*> fields() const {
+      return {{spans.x.data(), spans.y.data(), spans.z.data()},
+              {normal[0].data(), normal[1].data(), normal[2].data()},
+              spans.radius.data()};
+    }
+    Arrays arrays() const {
+      return {fields(), spans.material.data(), static_cast<std::uint32_t>(size())};
+    }
+    Fields<float> operator[](std::size_t i) const { return one_of<Disc>(fields(), i); }
+  };
+
+  /// Across a unit axis d it reaches r sqrt(1 - d_a^2); 1e-6: what rounding took from d.
+  static Box box(const Source& source, std::size_t i) {
+    const Fields<float> disc = source[i];
+    Box b;
+    for (int a = 0; a < 3; ++a) {
+      const double d = disc.normal[a];
+      const double reach = disc.radius * std::sqrt(std::max(0., 1 - d * d) + 1e-6);
+      b.lo[a] = disc.center[a] - reach;
+      b.hi[a] = disc.center[a] + reach;
+    }
+    return b;
+  }
+
+  /// A cell grown by pad against the disc's plane.
+  class Touch {
+   public:
+    Touch(const Fields<float>& disc, const CellFrame& g, const CellRange&) {
+      reach_ = 0;
+      for (int a = 0; a < 3; ++a) {
+        normal_[a] = disc.normal[a];
+        first_[a] = g.lo[a] + g.cell[a] / 2 - disc.center[a];
+        cell_[a] = g.cell[a];
+        reach_ += std::abs(normal_[a]) * (g.cell[a] / 2 + g.pad);
+      }
+    }
+    bool operator()(const int (&at)[3]) const {
+      double away = 0;
+      for (int a = 0; a < 3; ++a)
+        away += normal_[a] * (first_[a] + at[a] * cell_[a]);
+      return std::abs(away) <= reach_ * (1 + 1e-12);
+    }
+
+   private:
+    double normal_[3], first_[3], cell_[3], reach_;
+  };
+};
+
+}  // namespace grelha
+
+namespace grelha::GRELHA_ISA {
+
+/// Point where each ray meets a disc, from either side; rays along it miss.
+///
+/// Accuracy  in eps w, w = |center - org| / |cosine of the angle between ray and normal|: t |dir|
+///           is within 16 of the exact one, and the rim is where it is by 32 (disc_test.cpp). Way
+///           and place are taken from the ray's point nearest to the center: what is large cancels
+///           once.
+template <class Real>
+[[gnu::always_inline]] inline Mask<Real> meet(const RayLanes<Real>& ray,
+                                              const Disc::Fields<Real>& disc,
+                                              Real& t) {
+  const Vec3<Real> normal = vec(disc.normal);
+  const Vec3<Real> to_center = vec(disc.center) - ray.org;
+  const Real middle = dot(to_center, ray.dir) * ray.inv_dd;
+  const Vec3<Real> gap = middle * ray.dir - to_center;
+  const Real along = dot(ray.dir, normal);
+  const Real rest = (Real(0) - dot(gap, normal)) / along;
+  const Vec3<Real> off = gap + rest * ray.dir;
+  t = middle + rest;
+  const Mask<Real> within = dot(off, off) <= disc.radius * disc.radius;  // NaN fails
+  return both(both(along != Real(0), within), t > ray.t_min);
+}
+
+/// Lanes of discs i, i + 1, ... whose balls reach into a frustum.
+template <class Frustum>
+inline unsigned reaching(const Frustum& f, const FieldArrays<Disc>& discs, std::uint32_t i) {
+  const auto& [x, y, z] = discs.center;
+  return reaching(f, FieldArrays<Sphere>{{x, y, z}, discs.radius}, i);
+}
+
+/// Groups of rays in a frustum that a disc's ball may be met by.
+template <class Frustum>
+inline std::uint64_t groups_near(const Frustum& f, const Disc::Fields<float>& disc) {
+  const auto& [x, y, z] = disc.center;
+  return groups_near(f, Sphere::Fields<float>{{x, y, z}, disc.radius});
+}
+
+/// Its point nearest to where a line crosses its plane; off the rim, where rounding decides.
+inline Ball<float> ball_toward(const Disc::Fields<float>& disc,
+                               const Vec3<float>& org,
+                               const Vec3<float>& dir) {
+  constexpr float kOffRim = .9f;
+  const Vec3<float> center = vec(disc.center);
+  const Vec3<float> normal = vec(disc.normal);
+  const float t = dot(center - org, normal) / dot(dir, normal);
+  const Vec3<float> off = org + t * dir - center;
+  const float far = length(off);
+  if (far <= kOffRim * disc.radius)
+    return {center + off, 0};
+  return {far < __builtin_inff() ? center + (kOffRim * disc.radius / far) * off : center, 0};
+}
+
+/// Where rays met discs, of indices i: as on their planes.
+template <class Real>
+inline Surface<Real> surface_on(const Disc::Arrays& discs,
+                                const Words<Real>& i,
+                                const Meeting<Real>& met) {
+  const auto disc = gathered<Disc, Real>(discs.fields, i);
+  const Vec3<Real> c = vec(disc.center);
+  const Vec3<Real> n = vec(disc.normal);
+  return surface_at<Real>(
+      met,
+      [&] { return plane_place<Real>(c, n, met.at); },
+      [&](auto k, const auto& here) { return plane_place(widen<k>(c), widen<k>(n), here); },
+      words_at(discs.material, i));
+}
+
+}  // namespace grelha::GRELHA_ISA
