@@ -13,42 +13,21 @@ namespace grelha {
 class TriangleTouch {
  public:
   TriangleTouch(const float (&corner)[3][3], const CellFrame& g, const CellRange& range) {
-    double v[3][3], e[3][3], half[3];
     for (int a = 0; a < 3; ++a) {
       cell_[a] = g.cell[a];
-      half[a] = g.cell[a] / 2 + g.pad;
+      half_[a] = g.cell[a] / 2 + g.pad;
       for (int k = 0; k < 3; ++k)
-        v[k][a] = corner[k][a] - g.lo[a];
+        corner_[k][a] = corner[k][a] - g.lo[a];
       for (int k = 0; k < 3; ++k)
-        e[k][a] = v[(k + 1) % 3][a] - v[k][a];
+        side_[k][a] = corner_[(k + 1) % 3][a] - corner_[k][a];
     }
-    double offset = 0, reach = 0, rounding[3];
+    set_plane();
     for (int a = 0; a < 3; ++a) {
-      const int b = (a + 1) % 3, d = (a + 2) % 3;
-      const double p = e[0][d] * e[2][b], q = e[0][b] * e[2][d];
-      n_[a] = p - q;
-      rounding[a] = (std::abs(p) + std::abs(q)) * 1e-14;
-      offset += n_[a] * v[0][a];
-      reach += std::abs(n_[a]) * half[a];
-    }
-    offset_ = offset;
-    reach_ = reach + std::abs(offset) * 1e-12;
-    for (int a = 0; a < 3; ++a) {
-      const int b = (a + 1) % 3, d = (a + 2) % 3;
-      if (range.lo[b] == range.hi[b] || range.lo[d] == range.hi[d])
-        continue;  // one row of cells: its box says it all
-      const double sign = n_[a] < 0 ? -1 : 1;
-      // inward across the edge; rounding can turn it only where the triangle is seen edge-on
-      for (int k = 0; k < 3; ++k) {
-        const double mb = -sign * e[k][d], md = sign * e[k][b];
-        const double at = mb * v[k][b] + md * v[k][d];
-        edges_[count_++] = {b,
-                            d,
-                            mb,
-                            md,
-                            at - (std::abs(mb) * half[b] + std::abs(md) * half[d]) - rounding[a] -
-                                std::abs(at) * 1e-12};
-      }
+      const int b = (a + 1) % 3;
+      const int d = (a + 2) % 3;
+      // of one row of cells the box says it all
+      if (range.lo[b] != range.hi[b] && range.lo[d] != range.hi[d])
+        add_edges(a, b, d);
     }
   }
   bool operator()(const int (&at)[3]) const {
@@ -62,11 +41,49 @@ class TriangleTouch {
   }
 
  private:
+  /// Times the terms of a difference, and times a sum: more than doubles round off.
+  static constexpr double kDifferenceError = 1e-14;
+  static constexpr double kSumError = 1e-12;
+
   struct Edge {
     int b, d;  ///< axes it is seen in
     double mb, md, least;
   };
-  double cell_[3], n_[3], offset_, reach_;
+
+  void set_plane() {
+    double offset = 0;
+    double reach = 0;
+    for (int a = 0; a < 3; ++a) {
+      const int b = (a + 1) % 3;
+      const int d = (a + 2) % 3;
+      const double p = side_[0][d] * side_[2][b];
+      const double q = side_[0][b] * side_[2][d];
+      n_[a] = p - q;
+      rounding_[a] = (std::abs(p) + std::abs(q)) * kDifferenceError;
+      offset += n_[a] * corner_[0][a];
+      reach += std::abs(n_[a]) * half_[a];
+    }
+    offset_ = offset;
+    reach_ = reach + std::abs(offset) * kSumError;
+  }
+
+  /// The edges seen along axis a, inward across each; rounding can turn them only where the
+  /// triangle is seen edge-on.
+  void add_edges(int a, int b, int d) {
+    const double sign = n_[a] < 0 ? -1 : 1;
+    for (int k = 0; k < 3; ++k) {
+      const double mb = -sign * side_[k][d];
+      const double md = sign * side_[k][b];
+      const double at = mb * corner_[k][b] + md * corner_[k][d];
+      const double reach = std::abs(mb) * half_[b] + std::abs(md) * half_[d];
+      const double least = at - reach - rounding_[a] - std::abs(at) * kSumError;
+      edges_[count_++] = {b, d, mb, md, least};
+    }
+  }
+
+  double cell_[3], half_[3];
+  double corner_[3][3], side_[3][3];
+  double n_[3], rounding_[3], offset_, reach_;
   int count_ = 0;
   Edge edges_[9];
 };
