@@ -24,17 +24,21 @@ class Recorder : public Observer {
                                                                                : 2];
     set.runs.push_back({set.rays.size(), rays->count});
     RayBuffer& r = set.rays;
-    const auto put = [n = rays->count](std::vector<float>& to, const float* from) {
-      to.insert(to.end(), from, from + n);
+    const auto put = [n = rays->count](
+                         std::vector<float>& to, const float* from, std::ptrdiff_t stride) {
+      for (std::size_t i = 0; i < n; ++i)
+        to.push_back(from[static_cast<std::ptrdiff_t>(i) * stride]);
     };
-    put(r.ox, rays->org[0]);
-    put(r.oy, rays->org[1]);
-    put(r.oz, rays->org[2]);
-    put(r.dx, rays->dir[0]);
-    put(r.dy, rays->dir[1]);
-    put(r.dz, rays->dir[2]);
-    put(r.t_min, rays->t_min);
-    put(r.t_max, rays->t_max);
+    const float nothing = 0;
+    const float infinity = __builtin_inff();
+    put(r.ox, rays->org[0], rays->org_stride);
+    put(r.oy, rays->org[1], rays->org_stride);
+    put(r.oz, rays->org[2], rays->org_stride);
+    put(r.dx, rays->dir[0], rays->dir_stride);
+    put(r.dy, rays->dir[1], rays->dir_stride);
+    put(r.dz, rays->dir[2], rays->dir_stride);
+    put(r.t_min, rays->t_min ? rays->t_min : &nothing, rays->t_min ? rays->t_stride : 0);
+    put(r.t_max, rays->t_max ? rays->t_max : &infinity, rays->t_max ? rays->t_stride : 0);
   }
   FrameRays& frame_;
 };

@@ -110,7 +110,7 @@ class Watcher {
     trace_packet<false>(scene_, p, {16, true}, n_);
     for (int i = 0; i < kCorners; ++i) {
       sight.id[i] = id_of(p.id[i]);
-      sight.t[i] = p.moved ? p.best[i] + p.shift[i] : p.best[i];
+      sight.t[i] = t_of(p, i);
     }
   }
 

@@ -48,21 +48,6 @@ struct SceneView {
   bool finite = false;  ///< there is something besides planes
 };
 
-/// Rays as the caller holds them. t: in, the end of the search; out, the nearest hit (closest) or
-/// -infinity (occluded). Origins, t_min and t come back as those of rays moved near, see
-/// bring_near(); `shift`, zero on entry, says how far. All may be changed.
-struct RayArrays {
-  float *ox, *oy, *oz;
-  const float *dx, *dy, *dz;
-  float *t_min, *t;
-  std::uint32_t* id;       ///< out; kNoPrimitive: nothing
-  float* shift = nullptr;  ///< out, or null; of copies in single
-  /// out, or null: t of the rays as they came, as precise as it was computed
-  double* whole = nullptr;
-  /// null, or what is to be added to origins, of copies in double; these change no origin
-  const float* low[3] = {};
-};
-
 struct TraceOptions {
   int packet;    ///< 1, 16, 64 or 256
   bool mailbox;  ///< for packets
@@ -75,10 +60,22 @@ struct Counters {
   std::uint64_t formed = 0, fell_back = 0, issued = 0, busy = 0;
 };
 
-/// trace() of a copy of the kernel.
+/// What is to be added to origins of rays that are tested in double, which are sums of two floats
+/// then: an array for each component, or null.
+struct LowParts {
+  const float* of[3] = {};
+};
+
+/// trace_closest() and trace_blockers_in_double() of a copy of the kernel.
 struct TraceLoops {
-  void (*closest)(const SceneView&, const RayArrays&, int count, const TraceOptions&, Counters&);
-  void (*occluded)(const SceneView&, const RayArrays&, int count, const TraceOptions&, Counters&);
+  void (*closest)(
+      const SceneView&, const Rays&, const LowParts&, const Hits&, const TraceOptions&, Counters&);
+  void (*blockers)(const SceneView&,
+                   const Rays&,
+                   const LowParts&,
+                   std::uint32_t* id,
+                   const TraceOptions&,
+                   Counters&);
 };
 
 }  // namespace grelha

@@ -4,7 +4,7 @@
 
 #include "kernel/render/band.hpp"
 #include "kernel/features/doubt.hpp"
-#include "kernel/query/span.hpp"
+#include "kernel/query/loops.hpp"
 #include "kernel/trace/one_ray.hpp"
 
 namespace grelha::GRELHA_ISA {
@@ -77,17 +77,17 @@ inline void points(const SceneView& scene,
 }
 
 extern const VariantLoops kLoops;
-const VariantLoops kLoops{
-    .closest = closest<InFloat>,
-    .occluded = occluded<InFloat>,
-    .closest_one = closest_one,
-    .occluded_one = occluded_one,
-    .in_double = {.closest = closest<InDouble>,
-                  .occluded = occluded<InDouble>,
-                  .trace = {.closest = trace<false, InDouble>, .occluded = trace<true, InDouble>}},
-    .render_band = band,
-    .render_runs = pixel_runs,
-    .doubt = doubt,
-    .render_points = points};
+const VariantLoops kLoops{.closest = closest<InFloat>,
+                          .occluded = occluded<InFloat>,
+                          .closest_one = closest_one,
+                          .occluded_one = occluded_one,
+                          .in_double = {.closest = closest<InDouble>,
+                                        .occluded = occluded<InDouble>,
+                                        .trace = {.closest = trace_closest<InDouble>,
+                                                  .blockers = trace_blockers_in_double}},
+                          .render_band = band,
+                          .render_runs = pixel_runs,
+                          .doubt = doubt,
+                          .render_points = points};
 
 }  // namespace grelha::GRELHA_ISA

@@ -27,18 +27,6 @@ inline Lanes3 light_points(const Shader& s,
   return splat(light) + (a * splat(light + 6) + c * splat(light + 9));
 }
 
-/// The shadow rays of the batch, for those who trace.
-[[gnu::always_inline]] inline RayArrays shadow_arrays(const Shader& s) {
-  BatchShadows& b = s.b.shadows;
-  RayArrays rays{b.org.x, b.org.y, b.org.z, b.dir.x, b.dir.y, b.dir.z, b.t_min, b.t, b.id};
-  if (s.work.in_double) {
-    rays.low[0] = b.org_low.x;
-    rays.low[1] = b.org_low.y;
-    rays.low[2] = b.org_low.z;
-  }
-  return rays;
-}
-
 /// Adds what the first n shadow rays carry that met nothing.
 [[gnu::always_inline]] inline void add_unblocked(const Shader& s, int n) {
   const BatchShadows& b = s.b.shadows;
@@ -52,17 +40,10 @@ inline Lanes3 light_points(const Shader& s,
 /// Traces the first n shadow rays of the batch and adds what those carry that nothing stands in the
 /// way of.
 inline void light_up(const Shader& s, int n) {
-  BatchShadows& b = s.b.shadows;
   if (n == 0)
     return;
-  for (int i = 0; i < n; ++i) {
-    b.t_min[i] = 0;
-    b.t[i] = 1;
-  }
   s.rays.shadow += static_cast<unsigned>(n);
-  const RayArrays rays = shadow_arrays(s);
-  enter(s.work, Phase::shadow, rays, n);
-  trace<true>(s, rays, n, Phase::shadow);
+  trace_shadows(s, n);
   enter(s.work, Phase::light);
   add_unblocked(s, n);
 }

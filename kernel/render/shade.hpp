@@ -12,43 +12,14 @@
 
 namespace grelha::GRELHA_ISA {
 
-/// Rays of the batch from `at` on, for those who trace.
-[[gnu::always_inline]] inline RayArrays ray_arrays(const Shader& s, int at) {
-  BatchRays& b = s.b.rays;
-  RayArrays rays{b.org.x + at,
-                 b.org.y + at,
-                 b.org.z + at,
-                 b.dir.x + at,
-                 b.dir.y + at,
-                 b.dir.z + at,
-                 b.t_min + at,
-                 b.t + at,
-                 b.id + at};
-  if (s.work.in_double) {
-    rays.low[0] = b.org_low.x + at;
-    rays.low[1] = b.org_low.y + at;
-    rays.low[2] = b.org_low.z + at;
-    rays.whole = b.t_double + at;
-  }
-  return rays;
-}
-
 /// Traces the batch: runs of rays that go together, the k-th ending at ends[k].
 [[gnu::always_inline]] inline void trace_batch(const Shader& s,
                                                const int* ends,
                                                int runs,
                                                Phase phase) {
-  BatchRays& b = s.b.rays;
-  for (int i = 0; i < ends[runs - 1]; ++i) {
-    b.t_min[i] = 0;
-    b.t[i] = kInfinity;
-  }
   int at = 0;
   for (int k = 0; k < runs; ++k) {
-    const RayArrays rays = ray_arrays(s, at);
-    const int count = ends[k] - at;
-    enter(s.work, phase, rays, count);
-    trace<false>(s, rays, count, phase);
+    trace_run(s, at, ends[k], phase);
     at = ends[k];
   }
 }

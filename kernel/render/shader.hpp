@@ -3,7 +3,7 @@
 
 #include "kernel/render/light_sums.hpp"
 #include "kernel/render/sampling.hpp"
-#include "kernel/trace/trace.hpp"
+#include "kernel/trace/stream.hpp"
 
 namespace grelha::GRELHA_ISA {
 
@@ -12,15 +12,9 @@ inline void enter(const BandWork& work, Phase phase) {
   if (work.observer)
     work.observer->enter(*work.observer, phase, nullptr);
 }
-inline void enter(const BandWork& work, Phase phase, const RayArrays& r, int count) {
-  if (!work.observer)
-    return;
-  const Rays rays{.org = {r.ox, r.oy, r.oz},
-                  .dir = {r.dx, r.dy, r.dz},
-                  .t_min = r.t_min,
-                  .t_max = r.t,
-                  .count = static_cast<std::size_t>(count)};
-  work.observer->enter(*work.observer, phase, &rays);
+inline void enter(const BandWork& work, Phase phase, const Rays& rays) {
+  if (work.observer)
+    work.observer->enter(*work.observer, phase, &rays);
 }
 
 struct RayTally {
@@ -135,13 +129,57 @@ inline TraceOptions options_for(const Shader& s, Phase phase) {
   return {near || s.work.packet < kMiddle ? s.work.packet : kMiddle, s.work.mailbox};
 }
 
-template <bool kAny>
-inline void trace(const Shader& s, const RayArrays& rays, int count, Phase phase) {
+/// Traces rays [first, end) of the batch: their id and t. In single, rays that start far from
+/// everything are brought near for good: the surface is found from there, where t counts from.
+inline void trace_run(const Shader& s, int first, int end, Phase phase) {
+  BatchRays& b = s.b.rays;
+  const Rays rays{.org = {b.org.x + first, b.org.y + first, b.org.z + first},
+                  .dir = {b.dir.x + first, b.dir.y + first, b.dir.z + first},
+                  .count = static_cast<std::size_t>(end - first)};
+  enter(s.work, phase, rays);
   const TraceOptions options = options_for(s, phase);
-  if (const TraceLoops* const loops = s.work.in_double)
-    (kAny ? loops->occluded : loops->closest)(s.scene, rays, count, options, s.counters);
-  else
-    trace<kAny, InFloat>(s.scene, rays, count, options, s.counters);
+  const Hits hits{.t = b.t + first, .id = b.id + first, .t_double = b.t_double + first};
+  if (const TraceLoops* const loops = s.work.in_double) {
+    const LowParts low{b.org_low.x + first, b.org_low.y + first, b.org_low.z + first};
+    loops->closest(s.scene, rays, low, hits, options, s.counters);
+    return;
+  }
+  const auto store = [&](const Packet<InFloat>& p, std::size_t at) {
+    store_words(p.id, p.size, at, 1, hits.id);
+    store_words(p.best, p.size, at, 1, hits.t);
+    if (!p.moved)
+      return;
+    store_words(p.org[0], p.size, at, 1, b.org.x + first);
+    store_words(p.org[1], p.size, at, 1, b.org.y + first);
+    store_words(p.org[2], p.size, at, 1, b.org.z + first);
+  };
+  const auto load = [&](Packet<InFloat>& p, std::size_t at) {
+    load_own_rays(rays, kInfinity, at, p);
+  };
+  trace<false, InFloat>(s.scene, rays.count, options, s.counters, load, store);
+}
+
+/// Traces the first n shadow rays of the batch, each up to its light: what is in their way.
+inline void trace_shadows(const Shader& s, int n) {
+  constexpr float kLight = 1;  // t
+  BatchShadows& b = s.b.shadows;
+  const Rays rays{.org = {b.org.x, b.org.y, b.org.z},
+                  .dir = {b.dir.x, b.dir.y, b.dir.z},
+                  .t_max = &kLight,
+                  .count = static_cast<std::size_t>(n),
+                  .t_stride = 0};
+  enter(s.work, Phase::shadow, rays);
+  const TraceOptions options = options_for(s, Phase::shadow);
+  const LowParts low{b.org_low.x, b.org_low.y, b.org_low.z};
+  if (const TraceLoops* const loops = s.work.in_double) {
+    loops->blockers(s.scene, rays, low, b.id, options, s.counters);
+    return;
+  }
+  const auto load = [&](Packet<InFloat>& p, std::size_t at) { load_own_rays(rays, kLight, at, p); };
+  const auto store = [&](const Packet<InFloat>& p, std::size_t at) {
+    store_words(p.id, p.size, at, 1, b.id);
+  };
+  trace<true, InFloat>(s.scene, rays.count, options, s.counters, load, store);
 }
 
 }  // namespace grelha::GRELHA_ISA

@@ -38,7 +38,7 @@ struct RayStack {
 /// The rays.
 struct BatchRays {
   Rows3 org, dir;
-  alignas(64) float t_min[kBatchRow], t[kBatchRow];
+  alignas(64) float t[kBatchRow];  ///< of what they met
   Rows3 weight;
   alignas(64) float share[kBatchRow];
   std::uint32_t id[kBatchRow], pixel[kBatchRow], depth[kBatchRow];
@@ -69,9 +69,9 @@ struct BatchHits {
 struct BatchShadows {
   Rows3 org, dir;
   Rows3 org_low;  ///< of rays traced in double
-  alignas(64) float t_min[kBatchRow], t[kBatchRow];
   Rows3 light;
-  std::uint32_t id[kBatchRow], pixel[kBatchRow];
+  std::uint32_t id[kBatchRow];  ///< of something in the way
+  std::uint32_t pixel[kBatchRow];
 };
 
 /// One thread's arrays for one batch; the caller allocates one a thread.

@@ -75,7 +75,7 @@ class Chosen {
   }
   /// The same of three components, from element `at` of their arrays on.
   template <class Arrays, class Vector>
-  void store(Arrays& to, int at, const Vector& a) const {
+  [[gnu::always_inline]] void store(Arrays& to, int at, const Vector& a) const {
     store(to.x + at, a.x);
     store(to.y + at, a.y);
     store(to.z + at, a.z);

@@ -1,6 +1,6 @@
 #pragma once
-// Rays in arrays against a whole scene: planes and outside primitives first, then each grid with
-// what t is left.
+// The rays of a packet against a whole scene: planes and outside primitives first, then each grid
+// with what t is left.
 
 #include "kernel/trace/packet_traversal.hpp"
 
@@ -243,10 +243,10 @@ inline void trace_alone(const SceneView& scene, Packet<In>& p, bool any_triangle
 }
 
 template <bool kAny, class In>
-inline void trace_packet(const SceneView& scene,
-                         Packet<In>& p,
-                         const TraceOptions& options,
-                         Counters& n) {
+[[gnu::noinline]] void trace_packet(const SceneView& scene,
+                                    Packet<In>& p,
+                                    const TraceOptions& options,
+                                    Counters& n) {
   const bool any_triangles = scene.geometry.of<Triangle>().count > 0;
   prepare(p, any_triangles);
   test_infinite<kAny>(scene, p, n);
@@ -260,77 +260,15 @@ inline void trace_packet(const SceneView& scene,
   });
 }
 
-/// t of a ray brought near as that of the ray as it came; -infinity stays what it is, however far
-/// that was.
-inline double unmoved(float t, float shift) {
-  return t > -kInfinity ? static_cast<double>(t) + shift : t;
+/// Where a ray of a packet met what it met, as t of the ray as it came.
+inline float t_of(const Packet<InFloat>& p, int i) {
+  return p.best[i] + (p.moved ? p.shift[i] : 0.f);
 }
-
-/// Where a ray of a packet met what it met, as seen from where it started.
-inline double whole_t(const Packet<InFloat>& p, int i) {
-  return unmoved(p.best[i], p.moved ? p.shift[i] : 0);
+inline float t_of(const Packet<InDouble>& p, int i) { return static_cast<float>(p.nearest[i]); }
+/// The same before it is rounded.
+inline double t_double(const Packet<InFloat>& p, int i) {
+  return static_cast<double>(p.best[i]) + (p.moved ? p.shift[i] : 0.f);
 }
-inline double whole_t(const Packet<InDouble>& p, int i) { return p.nearest[i]; }
-
-/// What is to be added to the origins from place `first` on.
-inline void set_low(Packet<InFloat>&, const RayArrays&, int) {}
-inline void set_low(Packet<InDouble>& p, const RayArrays& rays, int first) {
-  for (int a = 0; a < 3; ++a)
-    p.low[a] = rays.low[a] ? rays.low[a] + first : nullptr;
-}
-
-/// The t of a packet's rays.
-inline void store_t(const Packet<InFloat>& p, float* t) {
-  __builtin_memcpy(t, p.best, static_cast<std::size_t>(p.size) * sizeof(float));
-}
-inline void store_t(const Packet<InDouble>& p, float* t) {
-  for (int i = 0; i < p.size; ++i)
-    t[i] = static_cast<float>(p.nearest[i]);
-}
-
-/// Gives back the rays that were moved. In double none is: t is that from where it came.
-inline void store_moved(const Packet<InFloat>& p, const RayArrays& rays, int first) {
-  const std::size_t bytes = static_cast<std::size_t>(p.size) * sizeof(float);
-  __builtin_memcpy(rays.ox + first, p.org[0], bytes);
-  __builtin_memcpy(rays.oy + first, p.org[1], bytes);
-  __builtin_memcpy(rays.oz + first, p.org[2], bytes);
-  __builtin_memcpy(rays.t_min + first, p.t_min, bytes);
-  if (rays.shift)
-    __builtin_memcpy(rays.shift + first, p.shift, bytes);
-}
-inline void store_moved(const Packet<InDouble>&, const RayArrays&, int) {}
-
-/// Closest hits (kAny false) or occlusion (kAny true) of rays [0, count), `options.packet`
-/// neighbours at a time.
-template <bool kAny, class In>
-[[gnu::noinline]] inline void trace(const SceneView& scene,
-                                    const RayArrays& rays,
-                                    int count,
-                                    const TraceOptions& options,
-                                    Counters& n) {
-  Packet<In> p;
-  const int most = options.packet == 1 || options.packet > kPacket ? kPacket : options.packet;
-  for (int first = 0; first < count; first += most) {
-    p.size = count - first < most ? count - first : most;
-    const std::size_t bytes = static_cast<std::size_t>(p.size) * sizeof(float);
-    __builtin_memcpy(p.org[0], rays.ox + first, bytes);
-    __builtin_memcpy(p.org[1], rays.oy + first, bytes);
-    __builtin_memcpy(p.org[2], rays.oz + first, bytes);
-    __builtin_memcpy(p.dir[0], rays.dx + first, bytes);
-    __builtin_memcpy(p.dir[1], rays.dy + first, bytes);
-    __builtin_memcpy(p.dir[2], rays.dz + first, bytes);
-    __builtin_memcpy(p.t_min, rays.t_min + first, bytes);
-    __builtin_memcpy(p.best, rays.t + first, bytes);
-    set_low(p, rays, first);
-    trace_packet<kAny>(scene, p, options, n);
-    store_t(p, rays.t + first);
-    __builtin_memcpy(rays.id + first, p.id, bytes);
-    if (rays.whole)
-      for (int i = 0; i < p.size; ++i)
-        rays.whole[first + i] = whole_t(p, i);
-    if (p.moved)
-      store_moved(p, rays, first);
-  }
-}
+inline double t_double(const Packet<InDouble>& p, int i) { return p.nearest[i]; }
 
 }  // namespace grelha::GRELHA_ISA

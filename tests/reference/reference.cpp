@@ -3,7 +3,7 @@
 #define GRELHA_ISA_reference GRELHA_ISA_scalar
 #include "tests/reference/reference.hpp"
 
-#include "kernel/query/span.hpp"
+#include "kernel/query/loops.hpp"
 #include "tests/reference/walk.hpp"
 
 namespace grelha {

@@ -307,7 +307,7 @@ void closest(
     if (hits.t_double)
       hits.t_double[i] = !met        ? ray.t_max
                          : kInDouble ? r.best
-                                     : unmoved(static_cast<float>(r.best), shift);
+                                     : static_cast<double>(r.best) + shift;
   };
   trace_reference<false, Real>(scene, rays, mailbox, n, store);
 }

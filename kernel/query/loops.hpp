@@ -1,0 +1,54 @@
+#pragma once
+// The loops of a Variant that take a caller's rays.
+
+#include "kernel/query/variants.hpp"
+#include "kernel/trace/stream.hpp"
+
+namespace grelha::GRELHA_ISA {
+
+inline void add(const Counters& n, TraceCounts& to) {
+  to.visits += n.visits;
+  to.tests.sphere += n.tests[kNumber<Sphere>];
+  to.tests.triangle += n.tests[kNumber<Triangle>];
+  to.tests.cone += n.tests[kNumber<Cone>];
+  to.tests.plane += n.tests[kNumber<Plane>];
+  to.packets.formed += n.formed;
+  to.packets.fell_back += n.fell_back;
+  to.packets.lanes_issued += n.issued;
+  to.packets.lanes_busy += n.busy;
+}
+
+inline TraceOptions options_of(const TraceSettings& s) {
+  return {s.method == Method::kSingle ? 1 : s.packet, s.mailbox};
+}
+
+template <class In>
+inline void closest(const SceneView& scene,
+                    const Rays& rays,
+                    const Hits& hits,
+                    const TraceSettings& settings,
+                    TraceCounts& counts) {
+  Counters n;
+  trace_closest<In>(scene, rays, {}, hits, options_of(settings), n);
+  add(n, counts);
+}
+
+template <class In>
+inline void occluded(const SceneView& scene,
+                     const Rays& rays,
+                     std::uint8_t* blocked,
+                     const TraceSettings& settings,
+                     TraceCounts& counts) {
+  Counters n;
+  const auto store = [&](const Packet<In>& p, std::size_t first) {
+    std::uint8_t bytes[kPacket];  // which nothing else may point to: SIMD
+    for (int i = 0; i < p.size; ++i)
+      bytes[i] = met(p, i);
+    __builtin_memcpy(blocked + first, bytes, static_cast<std::size_t>(p.size));
+  };
+  const auto load = [&](Packet<In>& p, std::size_t first) { load_rays(rays, {}, first, p); };
+  trace<true, In>(scene, rays.count, options_of(settings), n, load, store);
+  add(n, counts);
+}
+
+}  // namespace grelha::GRELHA_ISA

@@ -1,0 +1,150 @@
+#pragma once
+// Any number of rays through a whole scene, a packet at a time. Rays are loaded from the caller's
+// arrays, and what they meet is stored as of rays that start where the caller's do: that some were
+// brought near on the way is nobody's affair.
+
+#include "kernel/trace/trace.hpp"
+
+namespace grelha::GRELHA_ISA {
+
+/// Places [first, first + count) of an array of a view; of null, `instead`.
+inline void load_floats(const float* from,
+                        std::ptrdiff_t stride,
+                        std::size_t first,
+                        int count,
+                        float instead,
+                        float* to) {
+  if (from && stride == 1) {
+    __builtin_memcpy(to, from + first, static_cast<std::size_t>(count) * sizeof(float));
+    return;
+  }
+  if (!from || stride == 0) {
+    const float all = from ? *from : instead;
+    for (int i = 0; i < count; ++i)
+      to[i] = all;
+    return;
+  }
+  from += static_cast<std::ptrdiff_t>(first) * stride;
+  for (int i = 0; i < count; ++i)
+    to[i] = from[i * stride];
+}
+inline void load_t_max(const Rays& rays, std::size_t first, int count, float* to) {
+  load_floats(rays.t_max, rays.t_stride, first, count, kInfinity, to);
+}
+
+inline void set_low(Packet<InFloat>&, const LowParts&, std::size_t) {}
+inline void set_low(Packet<InDouble>& p, const LowParts& low, std::size_t first) {
+  for (int a = 0; a < 3; ++a)
+    p.low[a] = low.of[a] ? low.of[a] + first : nullptr;
+}
+
+/// Rays from `first` on, as many as the packet's size says.
+template <class In>
+inline void load_rays(const Rays& rays, const LowParts& low, std::size_t first, Packet<In>& p) {
+  for (int a = 0; a < 3; ++a) {
+    load_floats(rays.org[a], rays.org_stride, first, p.size, 0, p.org[a]);
+    load_floats(rays.dir[a], rays.dir_stride, first, p.size, 0, p.dir[a]);
+  }
+  load_floats(rays.t_min, rays.t_stride, first, p.size, 0, p.t_min);
+  load_t_max(rays, first, p.size, p.best);
+  set_low(p, low, first);
+}
+
+/// The same of rays of our own: strides of org and dir are 1, all start at t = 0 and end at t_max.
+inline void load_own_rays(const Rays& rays, float t_max, std::size_t first, Packet<InFloat>& p) {
+  const std::size_t bytes = static_cast<std::size_t>(p.size) * sizeof(float);
+  for (int a = 0; a < 3; ++a) {
+    __builtin_memcpy(p.org[a], rays.org[a] + first, bytes);
+    __builtin_memcpy(p.dir[a], rays.dir[a] + first, bytes);
+  }
+  for (int i = 0; i < p.size; i += kWidth<Lanes>) {
+    store(p.t_min + i, Lanes(0));
+    store(p.best + i, Lanes(t_max));
+  }
+}
+
+/// Closest hits (kAny false) or occlusion (kAny true) of `count` rays, `options.packet` neighbours
+/// at a time. `load(p, first)` fills a packet of p.size rays from `first` on, and `store(p, first)`
+/// takes its answers.
+template <bool kAny, class In, class Load, class Store>
+inline void trace(const SceneView& scene,
+                  std::size_t count,
+                  const TraceOptions& options,
+                  Counters& n,
+                  const Load& load,
+                  const Store& store) {
+  Packet<In> p;
+  const int most = options.packet == 1 || options.packet > kPacket ? kPacket : options.packet;
+  const auto step = static_cast<std::size_t>(most);
+  for (std::size_t first = 0; first < count; first += step) {
+    p.size = count - first < step ? static_cast<int>(count - first) : most;
+    load(p, first);
+    trace_packet<kAny>(scene, p, options, n);
+    store(p, first);
+  }
+}
+
+/// Words of four bytes to every stride-th place from `first` on.
+template <class T>
+inline void store_words(
+    const float* from, int count, std::size_t first, std::ptrdiff_t stride, T* to) {
+  static_assert(sizeof(T) == sizeof(float));
+  to += static_cast<std::ptrdiff_t>(first) * stride;
+  if (stride == 1)
+    __builtin_memcpy(to, from, static_cast<std::size_t>(count) * sizeof(float));
+  else
+    for (int i = 0; i < count; ++i)
+      __builtin_memcpy(to + i * stride, from + i, sizeof(float));
+}
+
+inline bool met(const WalkingRays& p, int i) { return id_of(p.id[i]) != kNoPrimitive; }
+
+template <class In>
+inline void store_hits(const Packet<In>& p, const Rays& rays, std::size_t first, const Hits& hits) {
+  if (hits.id)
+    store_words(p.id, p.size, first, hits.stride, hits.id);
+  if (!hits.t && !hits.t_double)
+    return;
+  alignas(64) float t[kPacket];
+  load_t_max(rays, first, p.size, t);
+  for (int i = 0; i < p.size && hits.t_double; ++i)
+    hits.t_double[first + static_cast<std::size_t>(i)] = met(p, i) ? t_double(p, i) : t[i];
+  if (!hits.t)
+    return;
+  for (int i = 0; i < p.size; ++i)
+    t[i] = met(p, i) ? t_of(p, i) : t[i];
+  store_words(t, p.size, first, hits.stride, hits.t);
+}
+
+/// What the rays of a view meet first.
+template <class In>
+inline void trace_closest(const SceneView& scene,
+                          const Rays& rays,
+                          const LowParts& low,
+                          const Hits& hits,
+                          const TraceOptions& options,
+                          Counters& n) {
+  const auto load = [&](Packet<In>& p, std::size_t first) { load_rays(rays, low, first, p); };
+  const auto store = [&](const Packet<In>& p, std::size_t first) {
+    store_hits(p, rays, first, hits);
+  };
+  trace<false, In>(scene, rays.count, options, n, load, store);
+}
+
+/// Something that is in the way of each: [rays.count] out, or kNoPrimitive. What it is depends on
+/// the packet.
+inline void trace_blockers_in_double(const SceneView& scene,
+                                     const Rays& rays,
+                                     const LowParts& low,
+                                     std::uint32_t* id,
+                                     const TraceOptions& options,
+                                     Counters& n) {
+  using P = Packet<InDouble>;
+  const auto load = [&](P& p, std::size_t first) { load_rays(rays, low, first, p); };
+  const auto store = [&](const P& p, std::size_t first) {
+    store_words(p.id, p.size, first, 1, id);
+  };
+  trace<true, InDouble>(scene, rays.count, options, n, load, store);
+}
+
+}  // namespace grelha::GRELHA_ISA
