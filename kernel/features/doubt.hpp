@@ -6,7 +6,8 @@
 // Genetti, Gordon, Williams, "Adaptive Supersampling in Object Space Using Pyramidal Rays", 1998,
 // move the decision from colours to objects; here the objects only say where to go on sampling.
 
-#include "kernel/features/beam.hpp"
+#include "kernel/features/beam_search.hpp"
+#include "kernel/features/closed_sheet.hpp"
 
 namespace grelha::GRELHA_ISA {
 
@@ -21,6 +22,9 @@ inline Doubt around(float weight) { return {0, weight}; }
 inline Doubt operator+(const Doubt& a, const Doubt& b) {
   return {greater(a.inside, b.inside), greater(a.around, b.around)};
 }
+
+/// The surfaces that a beam's corners met.
+using CornerSurfaces = Surface<float>[kCorners];
 
 class Watcher {
  public:
@@ -40,213 +44,48 @@ class Watcher {
     if (!frame_of(beam, f))
       return around(weight);
     Sight sight;
-    trace_corners(beam, sight);
-    float far = 0;
-    bool differ = false;
-    for (int i = 0; i < kCorners; ++i) {
-      const bool hit = sight.id[i] != kNoPrimitive;
-      differ |= whole
-                    ? sight.id[i] != sight.id[0] || (hit && is_a(PrimitiveKind::kCone, sight.id[i]))
-                    : !alike(sight.id[0], sight.id[i]);
-      far = greater(
-          hit ? place(f, beam.org[i] + sight.t[i] * beam.dir[i]).w * kBehindHit : kInfinity, far);
-    }
+    trace_corners(scene_, beam, sight, n_);
+    const bool differ = corners_differ(sight.id, whole);
     if (whole && differ)
       return around(weight);
     Met met;
-    if (!collect(f, far, sight.id, whole, met))
+    if (!collect(scene_, f, farthest_hit(f, beam, sight), sight.id, whole, met, n_))
       return around(weight);
     if (const Doubt found = hidden(f, met, sight.id, mirror_id, weight); !found.none())
       return found;
-    if (differ || !closed(f, met, sight.id))
+    if (differ || !closed(scene_.geometry, f, met, sight.id))
       return around(weight);
     if (sight.id[0] == kNoPrimitive)
       return {};
-
-    Surface<float> s[kCorners];
-    for (int i = 0; i < kCorners; ++i) {
-      s[i] = surface_of<float>(
-          scene_.geometry, sight.id[i], beam.org[i], beam.dir[i], sight.t[i], shading_.smooth);
-      if (dot(beam.dir[i], s[i].normal) > 0)
-        s[i].normal = Vec3<float>{0, 0, 0} - s[i].normal,
-        s[i].shading = Vec3<float>{0, 0, 0} - s[i].shading;
-      if (dot(s[i].normal, s[0].normal) < kOneSurface)
-        return around(weight);
-    }
-    const auto field = [&](MaterialField k) { return shading_.materials.field[k][s[0].material]; };
-    if (field(kTransmission) > 0)
+    CornerSurfaces s;
+    if (!find_surfaces(beam, sight, s))
       return around(weight);
-    const auto color = [&](MaterialField k) {
-      return Vec3<float>{field(k),
-                         field(static_cast<MaterialField>(k + 1)),
-                         field(static_cast<MaterialField>(k + 2))};
-    };
-    const Vec3<float> answer = color(kDiffuseR) + color(kSpecularR);
-    Doubt most;
-    for (int l = 0; l < shading_.light_count; ++l) {
-      const float* const light = shading_.lights + kLightFloats * l;
-      const float part =
-          lesser(largest(answer * Vec3<float>{light[3], light[4], light[5]}), 1.f) * weight;
-      if (part > most.inside)
-        most = most + uneven_light(light, s, sight.id, whole, part);
-    }
-    const float mirror = lesser(largest(color(kMirrorR)), 1.f) * weight;
-    if (!(mirror > most.inside) || mirror < kLeastMirror || field(kRoughness) > 0 || bounces == 0)
-      return most;
-    Beam mirrored;
-    for (int i = 0; i < kCorners; ++i) {
-      const float across = dot(beam.dir[i], s[i].shading);
-      mirrored.dir[i] = normalize(beam.dir[i] - (across + across) * s[i].shading);
-      mirrored.org[i] = s[i].point + s[i].away * s[i].normal;
-    }
-    return most + doubt(mirrored, whole, bounces - 1, mirror, sight.id[0]);
+    if (field(s[0], kTransmission) > 0)
+      return around(weight);
+    const Doubt found = uneven_lights(s, sight.id, whole, weight);
+    return found + in_mirror(beam, s, sight.id[0], whole, bounces, weight, found.inside);
   }
 
  private:
-  /// Nearest hits of the corner rays.
-  void trace_corners(const Beam& beam, Sight& sight) {
-    Packet<InFloat> p;
-    fill(beam, p);
+  /// Whether corners met different surfaces, or, if `whole`, other than one convex primitive.
+  bool corners_differ(const std::uint32_t (&id)[kCorners], bool whole) const {
+    const GeometryView& g = scene_.geometry;
+    return whole ? any_of(id,
+                          [&](std::uint32_t i) {
+                            return i != id[0] || g.ids.has(PrimitiveKind::kCone, i);
+                          })
+                 : !one_surface(g, id);
+  }
+
+  /// Sends rays to points first, first + 1, ... that were met, at most a packet of 16.
+  void trace_points(const BeamFrame& f, const Met& met, int first, Packet<InFloat>& p) {
+    p.size = met.size - first < 16 ? met.size - first : 16;
+    for (int i = 0; i < p.size; ++i) {
+      const Vec3<float> to = normalize(met.point[first + i] - f.apex);
+      const Vec3<float> start = f.apex + (f.depth / dot(to, f.unit)) * to;
+      set_ray(p, i, start, to, kInfinity);
+    }
     trace_packet<false>(scene_, p, {16, true}, n_);
-    for (int i = 0; i < kCorners; ++i) {
-      sight.id[i] = id_of(p.id[i]);
-      sight.t[i] = t_of(p, i);
-    }
-  }
-
-  static void fill(const Beam& beam, WalkingRays& p) {
-    p.size = kCorners;
-    for (int i = 0; i < kCorners; ++i) {
-      p.org[0][i] = beam.org[i].x;
-      p.org[1][i] = beam.org[i].y;
-      p.org[2][i] = beam.org[i].z;
-      p.dir[0][i] = beam.dir[i].x;
-      p.dir[1][i] = beam.dir[i].y;
-      p.dir[2][i] = beam.dir[i].z;
-      p.t_min[i] = p.start[i] = 0;
-      p.best[i] = kInfinity;
-    }
-  }
-
-  /// Primitives that meet the beam before w = `far`, other than `known`; false when no answer can
-  /// be had, or when `single` and there is one.
-  bool collect(const BeamFrame& f,
-               float far,
-               const std::uint32_t (&known)[kCorners],
-               bool single,
-               Met& met) {
-    const auto see = [&](std::uint32_t id) {
-      if (met.full || id == known[0] || id == known[1] || id == known[2] || id == known[3])
-        return;
-      Vec3<float> point;
-      if (!meets(scene_, f, id, far, point))
-        return;
-      for (int i = 0; i < met.size; ++i)
-        if (met.id[i] == id)
-          return;
-      if (met.size == kMostMet || single) {
-        met.full = true;
-        return;
-      }
-      met.id[met.size] = id;
-      met.point[met.size++] = point;
-    };
-    see_outside(scene_.outside, see);
-    if (met.full)
-      return false;
-    if (scene_.grid_count == 0)
-      return true;
-    Packet<InFloat> p;
-    p.size = kCorners;
-    for (int i = 0; i < kCorners; ++i) {  // the edges of the pyramid, with w for t
-      const Vec3<float> dir = f.axis + (i == 1 || i == 2 ? 1.f : -1.f) * f.right +
-                              (i >= 2 ? 1.f : -1.f) * f.up,
-                        org = f.apex + f.depth * dir;
-      p.org[0][i] = org.x;
-      p.org[1][i] = org.y;
-      p.org[2][i] = org.z;
-      p.dir[0][i] = dir.x;
-      p.dir[1][i] = dir.y;
-      p.dir[2][i] = dir.z;
-      p.t_min[i] = p.start[i] = 0;
-      p.best[i] = kBehindHit * far - f.depth;
-    }
-    prepare(p, false);
-    bring_near(scene_, p);
-    const float m[3] = {magnitude(f.unit.x), magnitude(f.unit.y), magnitude(f.unit.z)};
-    const int axis = m[0] >= m[1] && m[0] >= m[2] ? 0 : m[1] >= m[2] ? 1 : 2;
-    for (int g = 0; g < scene_.grid_count; ++g)
-      if (for_beam(scene_.grids[g], p) &&
-          (!walk_beam(scene_.grids[g], p, axis, see, n_) || met.full))
-        return false;
-    return true;
-  }
-
-  /// A beam goes where all of its edges go: the grid of rays that start far away holds for those
-  /// that start near as well.
-  static bool for_beam(const GridView& g, const WalkingRays& p) {
-    bool all = true, some = false;
-    for (int i = 0; i < kCorners; ++i) {
-      const bool served = serves(g, {p.org[0][i], p.org[1][i], p.org[2][i]});
-      all &= served;
-      some |= served;
-    }
-    return g.serves == Serves::kNear ? all : some;
-  }
-
-  bool is_a(PrimitiveKind kind, std::uint32_t id) const {
-    return scene_.geometry.ids.has(kind, id);
-  }
-  bool is_triangle(std::uint32_t id) const { return is_a(PrimitiveKind::kTriangle, id); }
-  /// Which triangle an id is.
-  std::uint32_t triangle(std::uint32_t id) const {
-    return id - scene_.geometry.ids.begin(PrimitiveKind::kTriangle);
-  }
-
-  Vec3<float> flat_normal(std::uint32_t i) const {
-    const Corners3 c = triangle_corners(scene_.geometry.of<Triangle>(), i);
-    return cross(c.at[1] - c.at[0], c.at[2] - c.at[0]);
-  }
-
-  /// Whether two primitives pass for one surface: triangles of one material that face nearly one
-  /// way. Where one hides the other and both are lit alike, nobody can tell.
-  bool alike(std::uint32_t a, std::uint32_t b) const {
-    if (a == b)
-      return true;
-    if (!is_triangle(a) || !is_triangle(b))
-      return false;
-    const std::uint32_t i = triangle(a), j = triangle(b);
-    if (scene_.geometry.of<Triangle>().material[i] != scene_.geometry.of<Triangle>().material[j])
-      return false;
-    const Vec3<float> n = flat_normal(i), m = flat_normal(j);
-    const float d = dot(n, m);
-    return d * d > kOneSurfaceSquared * (dot(n, n) * dot(m, m));
-  }
-
-  bool one_surface(const std::uint32_t (&id)[kCorners]) const {
-    return alike(id[0], id[1]) && alike(id[0], id[2]) && alike(id[0], id[3]);
-  }
-
-  bool touch(std::uint32_t a, std::uint32_t b) const {
-    if (!is_triangle(a) || !is_triangle(b))
-      return a == b;
-    const Corners3 p = triangle_corners(scene_.geometry.of<Triangle>(), triangle(a)),
-                   q = triangle_corners(scene_.geometry.of<Triangle>(), triangle(b));
-    bool found = false;
-    for (int k = 0; k < 3; ++k)
-      for (int l = 0; l < 3; ++l)
-        found |= p.at[k].x == q.at[l].x && p.at[k].y == q.at[l].y && p.at[k].z == q.at[l].z;
-    return found;
-  }
-  /// Triangles of one material: pieces of one mesh, most likely.
-  bool kin(std::uint32_t a, std::uint32_t b) const {
-    return is_triangle(a) && is_triangle(b) &&
-           scene_.geometry.of<Triangle>().material[triangle(a)] ==
-               scene_.geometry.of<Triangle>().material[triangle(b)];
-  }
-  template <class Test>
-  static bool any_of(const std::uint32_t (&id)[kCorners], const Test& test) {
-    return test(id[0]) || test(id[1]) || test(id[2]) || test(id[3]);
   }
 
   /// Sends a ray to each point met. Where all of them end on what passes for a surface that the
@@ -257,30 +96,17 @@ class Watcher {
                const std::uint32_t (&front)[kCorners],
                std::uint32_t mirror_id,
                float weight) {
+    const GeometryView& g = scene_.geometry;
     Doubt found;
     for (int first = 0; first < met.size; first += 16) {
       Packet<InFloat> p;
-      p.size = met.size - first < 16 ? met.size - first : 16;
-      for (int i = 0; i < p.size; ++i) {
-        const Vec3<float> to = normalize(met.point[first + i] - f.apex),
-                          start = f.apex + (f.depth / dot(to, f.unit)) * to;
-        p.org[0][i] = start.x;
-        p.org[1][i] = start.y;
-        p.org[2][i] = start.z;
-        p.dir[0][i] = to.x;
-        p.dir[1][i] = to.y;
-        p.dir[2][i] = to.z;
-        p.t_min[i] = p.start[i] = 0;
-        p.best[i] = kInfinity;
-      }
-      trace_packet<false>(scene_, p, {16, true}, n_);
+      trace_points(f, met, first, p);
       for (int i = 0; i < p.size; ++i) {
         const std::uint32_t id = id_of(p.id[i]);
-        if (any_of(front, [&](std::uint32_t seen) { return alike(seen, id); }))
+        if (any_of(front, [&](std::uint32_t seen) { return alike(g, seen, id); }))
           continue;
-        // a bulging mirror in its own way
-        const bool own = mirror_id != kNoPrimitive && (id == mirror_id || kin(id, mirror_id));
-        if (!own && !any_of(front, [&](std::uint32_t seen) { return kin(seen, id); }))
+        if (!is_own_mirror(id, mirror_id) &&
+            !any_of(front, [&](std::uint32_t seen) { return kin(g, seen, id); }))
           return {weight, weight};
         found = around(weight);
       }
@@ -288,107 +114,160 @@ class Watcher {
     return found;
   }
 
-  /// Whether the triangles that pass for one surface leave no gap in the beam: each edge inside it
-  /// belongs to two of them.
-  bool closed(const BeamFrame& f, const Met& met, const std::uint32_t (&front)[kCorners]) const {
-    if (!is_triangle(front[0]))
-      return true;
-    std::uint32_t sheet[kMostMet + kCorners];
-    int size = 0;
-    const auto add = [&](std::uint32_t id) {
-      for (int i = 0; i < size; ++i)
-        if (sheet[i] == id)
-          return;
-      sheet[size++] = id;
-    };
-    for (const std::uint32_t id : front)
-      add(id);
-    for (int i = 0; i < met.size; ++i)
-      if (alike(front[0], met.id[i]))
-        add(met.id[i]);
-    if (size == 1)
-      return true;
-    Corners3 c[kMostMet + kCorners];
-    for (int i = 0; i < size; ++i)
-      c[i] = triangle_corners(scene_.geometry.of<Triangle>(), triangle(sheet[i]));
-    const auto same = [](const Vec3<float>& a, const Vec3<float>& b) {
-      return a.x == b.x && a.y == b.y && a.z == b.z;
-    };
-    const auto has = [&](const Corners3& t, const Vec3<float>& p) {
-      return same(t.at[0], p) || same(t.at[1], p) || same(t.at[2], p);
-    };
-    for (int i = 0; i < size; ++i)
-      for (int k = 0; k < 3; ++k) {
-        const Vec3<float>&a = c[i].at[k], &b = c[i].at[(k + 1) % 3];
-        // its other triangle may lie just outside
-        if (innermost(place(f, a), place(f, b)).w > kEdgeInside)
-          continue;
-        bool shared = false;
-        for (int j = 0; j < size && !shared; ++j)
-          shared = j != i && has(c[j], a) && has(c[j], b);
-        if (!shared)
-          return false;
+  /// Whether a bulging mirror stands in its own way.
+  bool is_own_mirror(std::uint32_t id, std::uint32_t mirror_id) const {
+    return mirror_id != kNoPrimitive && (id == mirror_id || kin(scene_.geometry, id, mirror_id));
+  }
+
+  /// The surfaces at the corners, their normals towards the beam; false when these turn too far.
+  bool find_surfaces(const Beam& beam, const Sight& sight, CornerSurfaces& s) const {
+    const Vec3<float> zero{0, 0, 0};
+    for (int i = 0; i < kCorners; ++i) {
+      s[i] = surface_of<float>(
+          scene_.geometry, sight.id[i], beam.org[i], beam.dir[i], sight.t[i], shading_.smooth);
+      if (dot(beam.dir[i], s[i].normal) > 0) {
+        s[i].normal = zero - s[i].normal;
+        s[i].shading = zero - s[i].shading;
       }
+      if (dot(s[i].normal, s[0].normal) < kOneSurface)
+        return false;
+    }
     return true;
+  }
+
+  float field(const Surface<float>& s, MaterialField k) const {
+    return shading_.materials.field[k][s.material];
+  }
+  Vec3<float> color(const Surface<float>& s, MaterialField red) const {
+    return {field(s, red),
+            field(s, static_cast<MaterialField>(red + 1)),
+            field(s, static_cast<MaterialField>(red + 2))};
+  }
+
+  /// Doubt whether the lights are even between the corners.
+  Doubt uneven_lights(const CornerSurfaces& s,
+                      const std::uint32_t (&on)[kCorners],
+                      bool whole,
+                      float weight) {
+    const Vec3<float> answer = color(s[0], kDiffuseR) + color(s[0], kSpecularR);
+    Doubt most;
+    for (int l = 0; l < shading_.light_count; ++l) {
+      const float* const light = shading_.lights + kLightFloats * l;
+      const Vec3<float> sent = answer * Vec3<float>{light[3], light[4], light[5]};
+      const float part = lesser(largest(sent), 1.f) * weight;
+      if (part > most.inside)
+        most = most + uneven_light({light[0], light[1], light[2]}, s, on, whole, part);
+    }
+    return most;
+  }
+
+  /// What hides in the mirror that the corners met. Mirrors that weigh little are not followed, nor
+  /// those in which no more could hide than `found`.
+  Doubt in_mirror(const Beam& beam,
+                  const CornerSurfaces& s,
+                  std::uint32_t id,
+                  bool whole,
+                  int bounces,
+                  float weight,
+                  float found) {
+    const float mirror = lesser(largest(color(s[0], kMirrorR)), 1.f) * weight;
+    if (!(mirror > found) || mirror < kLeastMirror || field(s[0], kRoughness) > 0 || bounces == 0)
+      return {};
+    Beam mirrored;
+    for (int i = 0; i < kCorners; ++i) {
+      const float across = dot(beam.dir[i], s[i].shading);
+      mirrored.dir[i] = normalize(beam.dir[i] - (across + across) * s[i].shading);
+      mirrored.org[i] = s[i].point + s[i].away * s[i].normal;
+    }
+    return doubt(mirrored, whole, bounces - 1, mirror, id);
+  }
+
+  /// The beam from a light to a patch.
+  struct LightBeam {
+    Beam beam;
+    float length[kCorners];
+    int facing = 0;  ///< corners of the patch that face the light
+  };
+  static LightBeam light_beam(const Vec3<float>& light, const CornerSurfaces& s) {
+    LightBeam b;
+    for (int i = 0; i < kCorners; ++i) {
+      const Vec3<float> to = s[i].point + s[i].away * s[i].normal - light;
+      b.length[i] = length(to);
+      b.beam.org[i] = light;
+      b.beam.dir[i] = (1 / b.length[i]) * to;
+      b.facing += dot(to, s[i].normal) < 0;
+    }
+    return b;
+  }
+
+  /// Corners of a patch that the light reaches.
+  int lit_corners(const LightBeam& b,
+                  const Sight& sight,
+                  const std::uint32_t (&on)[kCorners]) const {
+    int lit = 0;
+    for (int i = 0; i < kCorners; ++i)
+      lit += !(sight.t[i] < b.length[i] * kBeforeSurface) || touches_any(on, sight.id[i]);
+    return lit;
+  }
+  bool touches_any(const std::uint32_t (&on)[kCorners], std::uint32_t id) const {
+    return any_of(on, [&](std::uint32_t own) { return touch(scene_.geometry, own, id); });
   }
 
   /// Doubt whether the light, of weight `part`, reaches all of the patch between four points, or
   /// none of it.
-  Doubt uneven_light(const float* light,
-                     const Surface<float> (&s)[kCorners],
+  Doubt uneven_light(const Vec3<float>& light,
+                     const CornerSurfaces& s,
                      const std::uint32_t (&on)[kCorners],
                      bool whole,
                      float part) {
-    const Vec3<float> at{light[0], light[1], light[2]};
-    Beam beam;
-    float away[kCorners], far = 0;
-    int facing = 0;
-    for (int i = 0; i < kCorners; ++i) {
-      const Vec3<float> to = s[i].point + s[i].away * s[i].normal - at;
-      away[i] = length(to);
-      beam.org[i] = at;
-      beam.dir[i] = (1 / away[i]) * to;
-      facing += dot(to, s[i].normal) < 0;
-    }
-    if (facing == 0)
+    const LightBeam b = light_beam(light, s);
+    if (b.facing == 0)
       return {};
     BeamFrame f;
-    if (!frame_of(beam, f))
+    if (!frame_of(b.beam, f))
       return around(part);
     Sight sight;
+    trace_corners(scene_, b.beam, sight, n_);
+    const int lit = lit_corners(b, sight, on);
+    if (lit == 0)
+      return blocked(f, b, sight.id, whole) ? Doubt{} : around(part);
+    return lit == kCorners ? shadows(f, b, on, whole, part) : around(part);
+  }
+
+  /// Whether all of a beam whose corners are dark is: one solid, or one closed sheet stands in it.
+  bool blocked(const BeamFrame& f,
+               const LightBeam& b,
+               const std::uint32_t (&id)[kCorners],
+               bool whole) {
+    const GeometryView& g = scene_.geometry;
+    const bool one = id[0] == id[1] && id[0] == id[2] && id[0] == id[3];
+    if (one && id[0] < g.ids.begin(PrimitiveKind::kCone))
+      return true;
+    float far = 0;
+    for (const float length : b.length)
+      far = greater(length, far);
+    Met shade;
+    return !whole && one_surface(g, id) && collect(scene_, f, far, id, false, shade, n_) &&
+           closed(g, f, shade, id);
+  }
+
+  /// Doubt of a patch that is lit at its corners: whatever stands between throws its shadow inside.
+  Doubt shadows(const BeamFrame& f,
+                const LightBeam& b,
+                const std::uint32_t (&on)[kCorners],
+                bool whole,
+                float part) {
     float least = kInfinity;
-    for (int i = 0; i < kCorners; ++i) {
-      least = lesser(away[i], least);
-      far = greater(away[i], far);
-    }
-    trace_corners(beam, sight);
-    int lit = 0;
-    for (int i = 0; i < kCorners; ++i)
-      lit += !(sight.t[i] < away[i] * kBeforeSurface) ||
-             any_of(on, [&](std::uint32_t own) { return touch(own, sight.id[i]); });
-    if (lit != 0 && lit != kCorners)
-      return around(part);
-    if (lit == 0) {
-      const bool one = sight.id[0] == sight.id[1] && sight.id[0] == sight.id[2] &&
-                       sight.id[0] == sight.id[3] &&
-                       sight.id[0] < scene_.geometry.ids.begin(PrimitiveKind::kCone);
-      if (one)
-        return {};
-      Met shade;
-      return !whole && one_surface(sight.id) && collect(f, far, sight.id, false, shade) &&
-                     closed(f, shade, sight.id)
-                 ? Doubt{}
-                 : around(part);
-    }
-    // Lit at its corners: whatever stands between throws its shadow inside.
+    for (const float length : b.length)
+      least = lesser(length, least);
     Met met;
-    if (!collect(f, least * kBeforeSurface, on, whole, met))
+    if (!collect(scene_, f, least * kBeforeSurface, on, whole, met, n_))
       return around(part);
     Doubt found;
     for (int i = 0; i < met.size; ++i) {
-      if (any_of(on, [&](std::uint32_t own) { return touch(own, met.id[i]); }))
+      if (touches_any(on, met.id[i]))
         continue;
-      if (!any_of(on, [&](std::uint32_t own) { return kin(own, met.id[i]); }))
+      if (!any_of(on, [&](std::uint32_t own) { return kin(scene_.geometry, own, met.id[i]); }))
         return {part, part};
       found = around(part);
     }
@@ -399,54 +278,5 @@ class Watcher {
   const ShadingView& shading_;
   Counters& n_;
 };
-
-/// Beam through the square of `size` pixels at (x0, y0), grown a little about its centre: what only
-/// touches its edge counts as well.
-inline Beam pixel_beam(const FrameView& f, int x0, int y0, int size) {
-  const float half = .5f * static_cast<float>(size), mx = static_cast<float>(x0) + half,
-              my = static_cast<float>(y0) + half;
-  const float rx = size > 1 ? kSquareGrowth * half : kPixelGrowth * half, ry = rx;
-  const float sign[kCorners][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
-  Beam b;
-  for (int i = 0; i < kCorners; ++i) {
-    const float sx = (mx + sign[i][0] * rx) - .5f * static_cast<float>(f.width);
-    const float sy = .5f * static_cast<float>(f.height) - (my + sign[i][1] * ry);
-    b.org[i] = {f.eye[0], f.eye[1], f.eye[2]};
-    b.dir[i] = normalize(Vec3<float>{(f.forward[0] + sx * f.right[0]) + sy * f.up[0],
-                                     (f.forward[1] + sx * f.right[1]) + sy * f.up[1],
-                                     (f.forward[2] + sx * f.right[2]) + sy * f.up[2]});
-  }
-  return b;
-}
-
-/// Doubt of the pixels of an 8 x 8 tile, [8 y + x], those with a bit in `asked`. Squares that are
-/// plain as a whole save their parts.
-inline void tile_doubt(Watcher& watcher,
-                       const FrameView& f,
-                       int x0,
-                       int y0,
-                       int size,
-                       int bounces,
-                       std::uint64_t asked,
-                       float (&inside)[kTile * kTile],
-                       float (&around)[kTile * kTile]) {
-  const int first = y0 % kTile * kTile + x0 % kTile;
-  const std::uint64_t row = ~std::uint64_t{0} >> (64 - size);
-  std::uint64_t here = 0;
-  for (int y = 0; y < size; ++y)
-    here |= row << (first + y * kTile);
-  if ((asked & here) == 0)
-    return;
-  const Doubt doubt = watcher.doubt(pixel_beam(f, x0, y0, size), size > 1, bounces, 1);
-  if (size == 1 || doubt.none()) {
-    for (int y = 0; y < size; ++y)
-      for (int x = 0; x < size; ++x)
-        inside[first + y * kTile + x] = doubt.inside, around[first + y * kTile + x] = doubt.around;
-    return;
-  }
-  const int h = size / 2;
-  for (int i = 0; i < 4; ++i)
-    tile_doubt(watcher, f, x0 + i % 2 * h, y0 + i / 2 * h, h, bounces, asked, inside, around);
-}
 
 }  // namespace grelha::GRELHA_ISA

@@ -3,7 +3,7 @@
 // per instruction set.
 
 #include "kernel/render/band.hpp"
-#include "kernel/features/doubt.hpp"
+#include "kernel/features/tile_doubt.hpp"
 #include "kernel/query/loops.hpp"
 #include "kernel/trace/one_ray.hpp"
 
@@ -59,7 +59,7 @@ inline void doubt(const SceneView& scene,
                   TraceCounts& trace_counts) {
   Counters n;
   Watcher watcher(scene, shading, n);
-  tile_doubt(watcher, frame, x0, y0, kTile, bounces, asked, inside, around);
+  tile_doubt(watcher, frame, x0, y0, kTile, bounces, asked, {inside, around});
   add(n, trace_counts);
 }
 

@@ -1,0 +1,195 @@
+#pragma once
+// A beam of four rays: the pyramid they span, and places in it.
+
+#include "kernel/features/tolerances.hpp"
+#include "kernel/simd/vec3.hpp"
+#include "kernel/trace/packet.hpp"
+
+namespace grelha::GRELHA_ISA {
+
+inline constexpr int kCorners = 4;
+
+struct Beam {
+  Vec3<float> org[kCorners], dir[kCorners];  ///< around the beam, in order; unit directions
+};
+
+/// A beam as a pyramid over a parallelogram: its rays seem to come from the apex, and a point apex
+/// + w (axis + x right + y up) lies inside when |x| and |y| are at most 1.
+struct BeamFrame {
+  Vec3<float> apex, axis, right, up;
+  Vec3<float> to_x, to_y;  ///< x = dot(p, to_x) / dot(p, unit), p from the apex; y likewise
+  Vec3<float> unit;        ///< the axis without what right and up add to it: w = dot(p, unit)
+  float depth;             ///< w from which the whole beam is on its way: of its farthest origin
+};
+
+inline Vec3<float> middle(const Vec3<float> (&p)[kCorners]) {
+  return .25f * ((p[0] + p[1]) + (p[2] + p[3]));
+}
+
+/// How far the origins of a beam's rays are apart, and how much farther they are a unit along it.
+struct BeamSpread {
+  float offset = 0, growth = 0;
+};
+
+/// Adds a ray; `o`: its origin, `d`: its direction for a unit along the axis, from those of the
+/// middle.
+inline void spread_by(BeamSpread& s, const Vec3<float>& o, const Vec3<float>& d) {
+  s.offset += length(o);
+  s.growth += dot(o, d) > 0 || dot(o, o) == 0 ? length(d) : 0 - length(d);
+}
+
+/// How far behind the origins the apex lies. Rays that run together or keep apart have none there:
+/// one far away stands for it.
+inline float apex_distance(const BeamSpread& s) {
+  if (s.offset == 0)
+    return 0;
+  const float farthest = kFarthestApex * s.offset;
+  return s.growth > 0 ? lesser(s.offset / s.growth, farthest) : farthest;
+}
+
+/// Sets where the corner rays pierce w = 1.
+inline void span_parallelogram(const Beam& b, BeamFrame& f) {
+  Vec3<float> c[kCorners];
+  const float along = f.depth > 0 ? 0.f : 1.f;
+  for (int i = 0; i < kCorners; ++i) {
+    // any place on a ray from the apex will do
+    const Vec3<float> at = b.org[i] + along * b.dir[i] - f.apex;
+    c[i] = (1 / dot(at, f.unit)) * at;
+  }
+  f.axis = middle(c);
+  f.right = .25f * ((c[1] - c[0]) + (c[2] - c[3]));
+  f.up = .25f * ((c[3] - c[0]) + (c[2] - c[1]));
+}
+
+/// Sets what finds x and y; false of a pyramid without width. Along the axis x = det(p, up, axis) /
+/// det(right, up, axis), over w.
+inline bool set_coordinates(BeamFrame& f) {
+  const Vec3<float> n = cross(f.right, f.up);
+  const float det = dot(n, f.axis);
+  if (!(det * det > 0))
+    return false;
+  f.to_x = (1 / det) * cross(f.up, f.axis);
+  f.to_y = (1 / det) * cross(f.axis, f.right);
+  return true;
+}
+
+/// The w from which the whole beam is on its way. Its corners are nearly the ends of a slanting
+/// mirror.
+inline float depth_of(const Beam& b, const BeamFrame& f) {
+  float first = kInfinity;
+  float last = 0;
+  for (int i = 0; i < kCorners; ++i) {
+    const float w = dot(b.org[i] - f.apex, f.unit);
+    first = lesser(w, first);
+    last = greater(w, last);
+  }
+  return last + kDepthMargin * (last - first);
+}
+
+/// False when the rays spread too far to be a beam.
+inline bool frame_of(const Beam& b, BeamFrame& f) {
+  const Vec3<float> org = middle(b.org);
+  f.unit = normalize(middle(b.dir));
+  if (!(f.unit.x == f.unit.x))
+    return false;
+  BeamSpread spread;
+  for (int i = 0; i < kCorners; ++i) {
+    const float along = dot(b.dir[i], f.unit);
+    if (!(along > kNarrow))
+      return false;
+    spread_by(spread, b.org[i] - org, (1 / along) * b.dir[i] - f.unit);
+  }
+  f.depth = apex_distance(spread);
+  f.apex = org - f.depth * f.unit;
+  span_parallelogram(b, f);
+  if (!set_coordinates(f))
+    return false;
+  if (f.depth != 0)
+    f.depth = depth_of(b, f);
+  return true;
+}
+
+/// Place in the beam, see BeamFrame.
+struct Place {
+  float x, y, w;
+};
+inline Place place(const BeamFrame& f, const Vec3<float>& p) {
+  const Vec3<float> d = p - f.apex;
+  const float w = dot(d, f.unit);
+  return {dot(d, f.to_x) / w, dot(d, f.to_y) / w, w};
+}
+/// How far out: at most 1 inside.
+inline float outness(float x, float y) { return greater(magnitude(x), magnitude(y)); }
+
+/// Point of least outness of the stretch between two points: least at an end, on a diagonal or
+/// where it crosses an axis.
+inline Place innermost(const Place& a, const Place& b) {
+  const float dx = b.x - a.x;
+  const float dy = b.y - a.y;
+  const float at[6] = {
+      0, 1, (a.y - a.x) / (dx - dy), (0 - (a.x + a.y)) / (dx + dy), (0 - a.x) / dx, (0 - a.y) / dy};
+  Place best{a.x, a.y, outness(a.x, a.y)};
+  for (const float t : at) {
+    if (!(t >= 0) || !(t <= 1))
+      continue;
+    const float x = a.x + t * dx;
+    const float y = a.y + t * dy;
+    const float out = outness(x, y);
+    if (out < best.w)
+      best = {x, y, out};
+  }
+  return best;  // w: the outness
+}
+
+/// Point of a ball nearest to the axis.
+inline Vec3<float> ball_point(const BeamFrame& f, const Vec3<float>& c, float r) {
+  const Vec3<float> d = c - f.apex;
+  const Vec3<float> off = d - (dot(d, f.axis) / dot(f.axis, f.axis)) * f.axis;
+  const float far = length(off);
+  return far <= r ? c - off : c - ((kRimShare * r) / far) * off;
+}
+
+/// Innermost of the edges between three places, w: its outness; the axis itself where it lies
+/// within.
+inline Place innermost_of_three(const Place (&q)[3]) {
+  int left = 0;
+  int right = 0;
+  Place best{0, 0, kInfinity};
+  for (int i = 0; i < 3; ++i) {
+    const Place& a = q[i];
+    const Place& b = q[(i + 1) % 3];
+    const float side = a.x * (b.y - a.y) - a.y * (b.x - a.x);
+    left += side >= 0;
+    right += side <= 0;
+    const Place in = innermost(a, b);
+    if (in.w < best.w)
+      best = in;
+  }
+  if (left == 3 || right == 3)
+    return {0, 0, 0};
+  return best;
+}
+
+/// Innermost point of a triangle, a little off its edge; false when a corner lies behind the apex.
+inline bool triangle_point(const BeamFrame& f, const Vec3<float> (&c)[3], Vec3<float>& out) {
+  Place q[3];
+  for (int i = 0; i < 3; ++i) {
+    q[i] = place(f, c[i]);
+    if (!(q[i].w > 0))
+      return false;
+  }
+  const Place best = innermost_of_three(q);
+  const float mx = (1.f / 3) * ((q[0].x + q[1].x) + q[2].x);
+  const float my = (1.f / 3) * ((q[0].y + q[1].y) + q[2].y);
+  const float x = best.x + kOffEdge * (mx - best.x);
+  const float y = best.y + kOffEdge * (my - best.y);
+  const Vec3<float> n = cross(c[1] - c[0], c[2] - c[0]);
+  const Vec3<float> dir = f.axis + x * f.right + y * f.up;
+  const float t = dot(c[0] - f.apex, n) / dot(dir, n);
+  if (!(t > 0) || !(t < kInfinity))
+    return false;
+  out = f.apex + t * dir;
+  return true;
+}
+
+}  // namespace grelha::GRELHA_ISA

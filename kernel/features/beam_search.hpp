@@ -1,0 +1,110 @@
+#pragma once
+// The primitives that meet a beam beside what its corner rays met.
+
+#include "kernel/features/beam.hpp"
+#include "kernel/features/corner_hits.hpp"
+
+namespace grelha::GRELHA_ISA {
+
+/// Takes the primitives that meet the beam before w = `far`, other than `known`.
+class MetInBeam {
+ public:
+  /// `single`: the first ends the search.
+  MetInBeam(const SceneView& scene,
+            const BeamFrame& f,
+            float far,
+            const std::uint32_t (&known)[kCorners],
+            bool single,
+            Met& met)
+      : scene_(scene), f_(f), far_(far), known_(known), single_(single), met_(met) {}
+
+  void operator()(std::uint32_t id) const {
+    if (met_.full || any_of(known_, [id](std::uint32_t known) { return id == known; }))
+      return;
+    Vec3<float> point;
+    if (!meets(scene_, f_, id, far_, point) || has(id))
+      return;
+    if (met_.size == kMostMet || single_) {
+      met_.full = true;
+      return;
+    }
+    met_.id[met_.size] = id;
+    met_.point[met_.size++] = point;
+  }
+
+ private:
+  bool has(std::uint32_t id) const {
+    for (int i = 0; i < met_.size; ++i)
+      if (met_.id[i] == id)
+        return true;
+    return false;
+  }
+
+  const SceneView& scene_;
+  const BeamFrame& f_;
+  const float far_;
+  const std::uint32_t (&known_)[kCorners];
+  const bool single_;
+  Met& met_;
+};
+
+/// A beam goes where all of its edges go: the grid of rays that start far away holds for those that
+/// start near as well.
+inline bool for_beam(const GridView& g, const WalkingRays& p) {
+  bool all = true, some = false;
+  for (int i = 0; i < kCorners; ++i) {
+    const bool served = serves(g, {p.org[0][i], p.org[1][i], p.org[2][i]});
+    all &= served;
+    some |= served;
+  }
+  return g.serves == Serves::kNear ? all : some;
+}
+
+/// The edges of the pyramid as a packet, with w for t, up to w = `far`.
+inline void set_edges(const SceneView& scene, const BeamFrame& f, float far, Packet<InFloat>& p) {
+  p.size = kCorners;
+  for (int i = 0; i < kCorners; ++i) {
+    const float x = i == 1 || i == 2 ? 1.f : -1.f;
+    const float y = i >= 2 ? 1.f : -1.f;
+    const Vec3<float> dir = f.axis + x * f.right + y * f.up;
+    set_ray(p, i, f.apex + f.depth * dir, dir, kBehindHit * far - f.depth);
+  }
+  prepare(p, false);
+  bring_near(scene, p);
+}
+
+/// The axis along which a direction goes farthest.
+inline int main_axis(const Vec3<float>& dir) {
+  const float x = magnitude(dir.x);
+  const float y = magnitude(dir.y);
+  const float z = magnitude(dir.z);
+  if (x >= y && x >= z)
+    return 0;
+  return y >= z ? 1 : 2;
+}
+
+/// Primitives that meet the beam before w = `far`, other than `known`; false when no answer can be
+/// had, or when `single` and there is one.
+inline bool collect(const SceneView& scene,
+                    const BeamFrame& f,
+                    float far,
+                    const std::uint32_t (&known)[kCorners],
+                    bool single,
+                    Met& met,
+                    Counters& n) {
+  const MetInBeam see(scene, f, far, known, single, met);
+  see_outside(scene.outside, see);
+  if (met.full)
+    return false;
+  if (scene.grid_count == 0)
+    return true;
+  Packet<InFloat> p;
+  set_edges(scene, f, far, p);
+  const int axis = main_axis(f.unit);
+  for (int g = 0; g < scene.grid_count; ++g)
+    if (for_beam(scene.grids[g], p) && (!walk_beam(scene.grids[g], p, axis, see, n) || met.full))
+      return false;
+  return true;
+}
+
+}  // namespace grelha::GRELHA_ISA

@@ -1,0 +1,81 @@
+#pragma once
+// Doubt of the pixels of a tile.
+
+#include "kernel/features/doubt.hpp"
+
+namespace grelha::GRELHA_ISA {
+
+/// From the eye through the place (x, y) of the picture.
+inline Vec3<float> direction_through(const FrameView& f, float x, float y) {
+  const float sx = x - .5f * static_cast<float>(f.width);
+  const float sy = .5f * static_cast<float>(f.height) - y;
+  const auto along = [&](int axis) {
+    return (f.forward[axis] + sx * f.right[axis]) + sy * f.up[axis];
+  };
+  return normalize(Vec3<float>{along(0), along(1), along(2)});
+}
+
+/// Beam through the square of `size` pixels at (x0, y0), grown a little about its centre: what only
+/// touches its edge counts as well.
+inline Beam pixel_beam(const FrameView& f, int x0, int y0, int size) {
+  const float half = .5f * static_cast<float>(size);
+  const float x = static_cast<float>(x0) + half;
+  const float y = static_cast<float>(y0) + half;
+  const float reach = (size > 1 ? kSquareGrowth : kPixelGrowth) * half;
+  constexpr float kSign[kCorners][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+  Beam b;
+  for (int i = 0; i < kCorners; ++i) {
+    b.org[i] = {f.eye[0], f.eye[1], f.eye[2]};
+    b.dir[i] = direction_through(f, x + kSign[i][0] * reach, y + kSign[i][1] * reach);
+  }
+  return b;
+}
+
+/// Doubt of pixels, [8 y + x] of their tile.
+struct TileDoubt {
+  float (&inside)[kTile * kTile];
+  float (&around)[kTile * kTile];
+
+  /// Sets those of a square.
+  void set(int first, int size, const Doubt& doubt) const {
+    for (int y = 0; y < size; ++y)
+      for (int x = 0; x < size; ++x) {
+        inside[first + y * kTile + x] = doubt.inside;
+        around[first + y * kTile + x] = doubt.around;
+      }
+  }
+};
+
+/// Bits of the pixels of a square.
+inline std::uint64_t square_bits(int first, int size) {
+  const std::uint64_t row = ~std::uint64_t{0} >> (64 - size);
+  std::uint64_t bits = 0;
+  for (int y = 0; y < size; ++y)
+    bits |= row << (first + y * kTile);
+  return bits;
+}
+
+/// Doubt of the pixels of an 8 x 8 tile, those with a bit in `asked`. Squares that are plain as a
+/// whole save their parts.
+inline void tile_doubt(Watcher& watcher,
+                       const FrameView& f,
+                       int x0,
+                       int y0,
+                       int size,
+                       int bounces,
+                       std::uint64_t asked,
+                       const TileDoubt& found) {
+  const int first = y0 % kTile * kTile + x0 % kTile;
+  if ((asked & square_bits(first, size)) == 0)
+    return;
+  const Doubt doubt = watcher.doubt(pixel_beam(f, x0, y0, size), size > 1, bounces, 1);
+  if (size == 1 || doubt.none()) {
+    found.set(first, size, doubt);
+    return;
+  }
+  const int h = size / 2;
+  for (int i = 0; i < 4; ++i)
+    tile_doubt(watcher, f, x0 + i % 2 * h, y0 + i / 2 * h, h, bounces, asked, found);
+}
+
+}  // namespace grelha::GRELHA_ISA
