@@ -20,6 +20,25 @@ float not_below(double x) {
   return f + (std::abs(f) * 2.4e-7f + 1e-45f);
 }
 
+/// How far a block reaches along an axis; of an empty one, nowhere.
+struct Reach {
+  float lo = kInfinity, hi = -kInfinity;
+};
+Reach reach_of(const TriangleBlock& block, int a) {
+  float least[kBlock], most[kBlock];
+  for (int i = 0; i < kBlock; ++i)
+    least[i] = std::min(std::min(block.a[a][i], block.b[a][i]), block.c[a][i]);
+  for (int i = 0; i < kBlock; ++i)
+    most[i] = std::max(std::max(block.a[a][i], block.b[a][i]), block.c[a][i]);
+  Reach r;
+  for (int i = 0; i < kBlock; ++i) {
+    // unused places are NaN and change neither
+    r.lo = least[i] < r.lo ? least[i] : r.lo;
+    r.hi = most[i] > r.hi ? most[i] : r.hi;
+  }
+  return r;
+}
+
 }  // namespace
 
 // A hit h is off by no more than `pad` from its triangle, and found in a cell that it lies in. It
@@ -32,29 +51,13 @@ void bound_blocks(const Grid& g,
                   std::uint32_t first,
                   std::uint32_t end,
                   ListStore<Triangle>& s) {
-  const std::size_t nx = g.cells[0], ny = g.cells[1],
-                    at[3] = {cell % nx, cell / nx % ny, cell / nx / ny};
-  double cell_lo[3], cell_hi[3];
-  for (int a = 0; a < 3; ++a) {
-    cell_lo[a] = g.lo[a] + static_cast<double>(at[a]) * g.cell[a];
-    cell_hi[a] = g.lo[a] + static_cast<double>(at[a] + 1) * g.cell[a];
-  }
+  const CellBox box = cell_box(g, cell);
   for (std::uint32_t b = first; b < end; ++b) {
-    const TriangleBlock& block = s.blocks[b];
     BlockBoxes& boxes = s.boxes[b / kBlock];
     for (int a = 0; a < 3; ++a) {
-      float lo = kInfinity, hi = -kInfinity, least[kBlock], most[kBlock];
-      for (int i = 0; i < kBlock; ++i)
-        least[i] = std::min(std::min(block.a[a][i], block.b[a][i]), block.c[a][i]);
-      for (int i = 0; i < kBlock; ++i)
-        most[i] = std::max(std::max(block.a[a][i], block.b[a][i]), block.c[a][i]);
-      for (int i = 0; i < kBlock; ++i) {
-        // unused places are NaN and change neither
-        lo = least[i] < lo ? least[i] : lo;
-        hi = most[i] > hi ? most[i] : hi;
-      }
-      boxes.side[a][b % kBlock] = not_above(std::max(lo - pad, cell_lo[a]) - pad / 4);
-      boxes.side[3 + a][b % kBlock] = not_below(std::min(hi + pad, cell_hi[a]) + pad / 4);
+      const Reach r = reach_of(s.blocks[b], a);
+      boxes.side[a][b % kBlock] = not_above(std::max(r.lo - pad, box.lo[a]) - pad / 4);
+      boxes.side[3 + a][b % kBlock] = not_below(std::min(r.hi + pad, box.hi[a]) + pad / 4);
     }
   }
 }

@@ -1,6 +1,7 @@
 #pragma once
 // Which triangles of a cell share a block.
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -26,10 +27,18 @@ class BlockOrder {
                                         std::size_t cell);
 
  private:
+  /// The longest first.
+  struct LongSides {
+    std::array<int, 2> length;  ///< in parts
+    std::array<std::size_t, 2> axis;
+  };
   void find_parts(const Primitives& p,
                   std::span<const std::uint32_t> ids,
                   const Grid& grid,
                   std::size_t cell);
+  LongSides long_sides() const;
+  void order_strips(std::size_t size, std::size_t axis);
+
   /// which part of the cell, along each axis, the middle of a triangle's box is in
   std::vector<std::int16_t> part_[3];
   std::vector<std::int16_t> strip_;

@@ -44,9 +44,10 @@ class Cells {
   double inverse_;
 };
 
+/// Cells that many of the primitives looked at stand in, if the mean one stands among many.
 std::vector<Cell> crowded(const Cells& cells, const std::vector<std::uint32_t>& ids) {
-  const std::size_t stride = std::max<std::size_t>(1, ids.size() / kLookedAt),
-                    least = std::max(kSeen, kCrowd / stride);
+  const std::size_t stride = std::max<std::size_t>(1, ids.size() / kLookedAt);
+  const std::size_t least = std::max(kSeen, kCrowd / stride);
   std::vector<Cell> seen, out;
   for (std::size_t i = 0; i < ids.size(); i += stride)
     seen.push_back(cells.of(ids[i]));
@@ -65,58 +66,77 @@ std::vector<Cell> crowded(const Cells& cells, const std::vector<std::uint32_t>& 
   return out;
 }
 
-/// The crowd each crowded cell belongs to, numbered from 0; returns how many there are.
-std::size_t join(const std::vector<Cell>& cells, std::vector<std::size_t>& crowd) {
+/// Crowded cells, and the crowd that each belongs to.
+struct Crowds {
+  std::vector<Cell> cells;
+  std::vector<std::size_t> crowd;  ///< [cells] numbered from 0
   std::size_t count = 0;
-  crowd.assign(cells.size(), cells.size());
-  std::vector<std::size_t> next;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    if (crowd[i] != cells.size())
-      continue;
-    crowd[i] = count;
-    next.push_back(i);
+
+  explicit Crowds(std::vector<Cell> of) : cells(std::move(of)), crowd(cells.size(), cells.size()) {
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      if (!has_crowd(i))
+        join(i, count++);
+  }
+
+  /// The cell that a primitive's is at most `reach` from, or cells.size().
+  std::size_t near(const Cell& c, int reach) const {
+    const auto is_near = [&](const Cell& f) { return f.is_within(reach, c); };
+    const auto at = std::find_if(cells.begin(), cells.end(), is_near);
+    return static_cast<std::size_t>(at - cells.begin());
+  }
+
+ private:
+  bool has_crowd(std::size_t i) const { return crowd[i] != cells.size(); }
+
+  /// Makes a cell, its neighbours and theirs one crowd.
+  void join(std::size_t first, std::size_t number) {
+    std::vector<std::size_t> next = {first};
+    crowd[first] = number;
     while (!next.empty()) {
       const std::size_t from = next.back();
       next.pop_back();
       for (std::size_t k = 0; k < cells.size(); ++k)
-        if (crowd[k] == cells.size() && cells[k].is_within(1, cells[from])) {
-          crowd[k] = count;
+        if (!has_crowd(k) && cells[k].is_within(1, cells[from])) {
+          crowd[k] = number;
           next.push_back(k);
         }
     }
-    ++count;
   }
-  return count;
+};
+
+using Ids = std::vector<std::uint32_t>;
+
+/// Primitives by crowd, and those of none.
+struct Sorted {
+  std::vector<Ids> crowds;
+  Ids rest;
+};
+Sorted sort_out(const Ids& ids, const Cells& cells, const Crowds& all, int reach) {
+  Sorted found;
+  found.crowds.resize(all.count);
+  for (const std::uint32_t id : ids) {
+    const std::size_t cell = all.near(cells.of(id), reach);
+    Ids& to = cell == all.cells.size() ? found.rest : found.crowds[all.crowd[cell]];
+    to.push_back(id);
+  }
+  return found;
 }
 
 }  // namespace
 
-std::vector<std::vector<std::uint32_t>> take_crowds(const Primitives& p,
-                                                    std::vector<std::uint32_t>& ids,
-                                                    const Box& box,
-                                                    double density,
-                                                    std::size_t most) {
-  std::vector<std::vector<std::uint32_t>> out;
+std::vector<Ids> take_crowds(
+    const Primitives& p, Ids& ids, const Box& box, double density, std::size_t most) {
+  std::vector<Ids> out;
   if (ids.size() <= kCrowd || most == 0)
     return out;
   const Cells cells(p, box, cell_edge(box, ids.size(), density));
-  const std::vector<Cell> full = crowded(cells, ids);
-  std::vector<std::size_t> crowd;
-  const std::size_t crowds = join(full, crowd);
+  const Crowds all(crowded(cells, ids));
   // With the outskirts, which are crowded as well, or where these reach too far without.
   for (const int reach : {1, 0}) {
-    if (full.empty() || !out.empty())
+    if (all.count == 0 || !out.empty())
       break;
-    std::vector<std::vector<std::uint32_t>> found(crowds);
-    std::vector<std::uint32_t> rest;
-    for (const std::uint32_t id : ids) {
-      const Cell c = cells.of(id);
-      const auto near = std::find_if(
-          full.begin(), full.end(), [&](const Cell& f) { return f.is_within(reach, c); });
-      (near == full.end() ? rest : found[crowd[static_cast<std::size_t>(near - full.begin())]])
-          .push_back(id);
-    }
-    for (auto& one : found) {
+    auto [crowds, rest] = sort_out(ids, cells, all, reach);
+    for (Ids& one : crowds) {
       if (out.size() < most && extent_of(p, one, 1).box.diagonal() < kSmaller * box.diagonal())
         out.push_back(std::move(one));
       else

@@ -7,6 +7,23 @@
 namespace grelha {
 namespace {
 
+/// Makes a row of `nx` distances no greater than those of the lower of two rows `k` away allow;
+/// returns the greatest.
+int bring_nearer(std::uint8_t* to,
+                 const std::uint8_t* a,
+                 const std::uint8_t* b,
+                 std::ptrdiff_t nx,
+                 std::ptrdiff_t k) {
+  const auto least = static_cast<std::uint8_t>(k);
+  std::uint8_t most = 0;
+  for (std::ptrdiff_t x = 0; x < nx; ++x) {
+    const std::uint8_t near = std::max(least, std::min(a[x], b[x]));
+    to[x] = std::min(to[x], near);
+    most = std::max(most, to[x]);
+  }
+  return most;
+}
+
 /// to[i] = min over k of max(k, from[i - k steps], from[i + k steps]) along one axis, for a row of
 /// `nx` lines at once; `at` of `n`.
 void nearest_along(const std::uint8_t* from,
@@ -21,17 +38,21 @@ void nearest_along(const std::uint8_t* from,
     const std::uint8_t* const above = at + k < n ? from + k * step : nullptr;
     if (!below && !above)
       return;
-    const std::uint8_t *const a = below ? below : above, *const b = above ? above : below;
-    const auto least = static_cast<std::uint8_t>(k);
-    std::uint8_t most = 0;
-    for (std::ptrdiff_t x = 0; x < nx; ++x) {
-      const std::uint8_t near = std::max(least, std::min(a[x], b[x]));
-      to[x] = std::min(to[x], near);
-      most = std::max(most, to[x]);
-    }
-    if (most <= k + 1)
-      return;  // what is farther away can better nothing
+    // what is farther away than the farthest can better nothing
+    if (bring_nearer(to, below ? below : above, above ? above : below, nx, k) <= k + 1)
+      return;
   }
+}
+
+/// A row along x, by two sweeps.
+void sweep(std::uint8_t* row, std::ptrdiff_t nx) {
+  const auto step = [](std::uint8_t& to, std::uint8_t from) {
+    to = static_cast<std::uint8_t>(std::min<int>(to, from + 1));
+  };
+  for (std::ptrdiff_t x = 1; x < nx; ++x)
+    step(row[x], row[x - 1]);
+  for (std::ptrdiff_t x = nx - 1; x-- > 0;)
+    step(row[x], row[x + 1]);
 }
 
 }  // namespace
@@ -39,22 +60,19 @@ void nearest_along(const std::uint8_t* from,
 void chebyshev_distance(std::vector<std::uint8_t>& d,
                         const std::array<std::uint32_t, 3>& cells,
                         int threads) {
-  const std::ptrdiff_t nx = cells[0], ny = cells[1], nz = cells[2];
+  const std::ptrdiff_t nx = cells[0];
+  const std::ptrdiff_t ny = cells[1];
+  const std::ptrdiff_t nz = cells[2];
   std::vector<std::uint8_t> other(d.size());
 #pragma omp parallel num_threads(threads)
   {
 #pragma omp for schedule(static)
-    for (std::ptrdiff_t z = 0; z < nz; ++z) {  // along x by two sweeps, then along y
-      std::uint8_t* const slice = d.data() + z * nx * ny;
-      for (std::ptrdiff_t y = 0; y < ny; ++y) {
-        std::uint8_t* const row = slice + y * nx;
-        for (std::ptrdiff_t x = 1; x < nx; ++x)
-          row[x] = static_cast<std::uint8_t>(std::min<int>(row[x], row[x - 1] + 1));
-        for (std::ptrdiff_t x = nx - 1; x-- > 0;)
-          row[x] = static_cast<std::uint8_t>(std::min<int>(row[x], row[x + 1] + 1));
-      }
+    for (std::ptrdiff_t z = 0; z < nz; ++z) {
+      const std::ptrdiff_t slice = z * nx * ny;
       for (std::ptrdiff_t y = 0; y < ny; ++y)
-        nearest_along(slice + y * nx, other.data() + (z * ny + y) * nx, nx, nx, y, ny);
+        sweep(d.data() + slice + y * nx, nx);
+      for (std::ptrdiff_t y = 0; y < ny; ++y)
+        nearest_along(d.data() + slice + y * nx, other.data() + slice + y * nx, nx, nx, y, ny);
     }
 #pragma omp for schedule(static)
     for (std::ptrdiff_t y = 0; y < ny * nz; ++y)

@@ -4,27 +4,42 @@
 
 namespace grelha {
 
+CellBox cell_box(const Grid& g, std::size_t cell) {
+  const std::size_t nx = g.cells[0];
+  const std::size_t ny = g.cells[1];
+  const std::size_t at[3] = {cell % nx, cell / nx % ny, cell / nx / ny};
+  CellBox box;
+  for (int a = 0; a < 3; ++a) {
+    box.lo[a] = g.lo[a] + static_cast<double>(at[a]) * g.cell[a];
+    box.hi[a] = g.lo[a] + static_cast<double>(at[a] + 1) * g.cell[a];
+  }
+  return box;
+}
+
 GridView Grid::view() const {
   GridView v;
   v.lists = store.lists();
   v.serves = serves;
   v.distance = distance.data();
   v.pad = static_cast<float>(pad);
-  for (int a = 0; a < 3; ++a) {
-    const auto i = static_cast<std::size_t>(a);
-    v.n[a] = static_cast<int>(cells[i]);
-    v.near_lo[a] = near_lo[a];
-    v.near_hi[a] = near_hi[a];
-    v.lo[a] = lo[a];
-    v.cell[a] = cell[a];
-    v.inv_cell[a] = 1 / cell[a];
-    v.lo_f[a] = static_cast<float>(lo[a]);
-    v.hi_f[a] = static_cast<float>(lo[a] + cell[a] * cells[i]);
-    v.hi_f[a] += std::abs(v.hi_f[a]) * 1.2e-7f;
-    v.cell_f[a] = static_cast<float>(cell[a]);
-    v.inv_cell_f[a] = static_cast<float>(1 / cell[a]);
-  }
+  for (int a = 0; a < 3; ++a)
+    set_axis(v, a);
   return v;
+}
+
+void Grid::set_axis(GridView& v, int a) const {
+  const std::uint32_t n = cells[static_cast<std::size_t>(a)];
+  v.n[a] = static_cast<int>(n);
+  v.near_lo[a] = near_lo[a];
+  v.near_hi[a] = near_hi[a];
+  v.lo[a] = lo[a];
+  v.cell[a] = cell[a];
+  v.inv_cell[a] = 1 / cell[a];
+  v.lo_f[a] = static_cast<float>(lo[a]);
+  v.hi_f[a] = static_cast<float>(lo[a] + cell[a] * n);
+  v.hi_f[a] += std::abs(v.hi_f[a]) * 1.2e-7f;
+  v.cell_f[a] = static_cast<float>(cell[a]);
+  v.inv_cell_f[a] = static_cast<float>(1 / cell[a]);
 }
 
 GridStats Grid::stats() const {

@@ -32,7 +32,16 @@ struct Grid {
 
   GridView view() const;
   GridStats stats() const;
+
+ private:
+  void set_axis(GridView& v, int a) const;
 };
+
+/// A cell, in scene units.
+struct CellBox {
+  double lo[3], hi[3];
+};
+CellBox cell_box(const Grid& g, std::size_t cell);
 
 /// Index along one axis of the cell that holds x: the one rule, for building and for walking.
 inline int cell_of(double x, double lo, double inv_cell, int n) {
