@@ -48,7 +48,8 @@ float PixelErrors::contrast(int x, int y) const {
 
 float PixelErrors::with_neighbours(int x, int y, const RatioPowers& scale) const {
   const std::size_t p = at(x, y);
-  float sum = 0, count = 0;
+  float sum = 0;
+  float count = 0;
   for (int j = std::max(y - 1, 0); j <= std::min(y + 1, r_.height - 1); ++j)
     for (int i = std::max(x - 1, 0); i <= std::min(x + 1, r_.width - 1); ++i) {
       const std::size_t q = at(i, j);
@@ -105,7 +106,9 @@ void PixelErrors::judge() {
 }
 
 PixelErrors::Totals PixelErrors::totals() const {
-  double sum = 0, spread = 0, widest = 0;
+  double sum = 0;
+  double spread = 0;
+  double widest = 0;
   for (std::size_t p = 0; p < variance_.size(); ++p) {
     const double v = static_cast<double>(variance_[p]);
     sum += v;

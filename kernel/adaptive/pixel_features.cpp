@@ -64,7 +64,8 @@ void find_hidden_features(const World::Impl& world,
                           int threads,
                           Refinement& r,
                           TraceCounts& counts) {
-  const int columns = (r.width + kTile - 1) / kTile, rows = (r.height + kTile - 1) / kTile;
+  const int columns = (r.width + kTile - 1) / kTile;
+  const int rows = (r.height + kTile - 1) / kTile;
 #pragma omp parallel num_threads(threads)
   {
     TraceCounts mine;

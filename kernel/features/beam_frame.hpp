@@ -10,30 +10,29 @@ namespace grelha::GRELHA_ISA {
 inline constexpr int kCorners = 4;
 
 struct Beam {
-  Vec3<float> org[kCorners], dir[kCorners];  ///< around the beam, in order; unit directions
+  Vec3f org[kCorners], dir[kCorners];  ///< around the beam, in order; unit directions
 };
 
 /// A beam as a pyramid over a parallelogram: its rays seem to come from the apex, and a point apex
 /// + w (axis + x right + y up) lies inside when |x| and |y| are at most 1.
 struct BeamFrame {
-  Vec3<float> apex, axis, right, up;
-  Vec3<float> to_x, to_y;  ///< x = dot(p, to_x) / dot(p, unit), p from the apex; y likewise
-  Vec3<float> unit;        ///< the axis without what right and up add to it: w = dot(p, unit)
-  float depth;             ///< w from which the whole beam is on its way: of its farthest origin
+  Vec3f apex, axis, right, up;
+  Vec3f to_x, to_y;  ///< x = dot(p, to_x) / dot(p, unit), p from the apex; y likewise
+  Vec3f unit;        ///< the axis without what right and up add to it: w = dot(p, unit)
+  float depth;       ///< w from which the whole beam is on its way: of its farthest origin
 };
 
-inline Vec3<float> middle(const Vec3<float> (&p)[kCorners]) {
-  return .25f * ((p[0] + p[1]) + (p[2] + p[3]));
-}
+inline Vec3f middle(const Vec3f (&p)[kCorners]) { return .25f * ((p[0] + p[1]) + (p[2] + p[3])); }
 
 /// How far the origins of a beam's rays are apart, and how much farther they are a unit along it.
 struct BeamSpread {
-  float offset = 0, growth = 0;
+  float offset = 0;
+  float growth = 0;
 };
 
 /// Adds a ray; `o`: its origin, `d`: its direction for a unit along the axis, from those of the
 /// middle.
-inline void spread_by(BeamSpread& s, const Vec3<float>& o, const Vec3<float>& d) {
+inline void spread_by(BeamSpread& s, const Vec3f& o, const Vec3f& d) {
   s.offset += length(o);
   s.growth += dot(o, d) > 0 || dot(o, o) == 0 ? length(d) : 0 - length(d);
 }
@@ -49,11 +48,11 @@ inline float apex_distance(const BeamSpread& s) {
 
 /// Sets where the corner rays pierce w = 1.
 inline void span_parallelogram(const Beam& b, BeamFrame& f) {
-  Vec3<float> c[kCorners];
+  Vec3f c[kCorners];
   const float along = f.depth > 0 ? 0.f : 1.f;
   for (int i = 0; i < kCorners; ++i) {
     // any place on a ray from the apex will do
-    const Vec3<float> at = b.org[i] + along * b.dir[i] - f.apex;
+    const Vec3f at = b.org[i] + along * b.dir[i] - f.apex;
     c[i] = (1 / dot(at, f.unit)) * at;
   }
   f.axis = middle(c);
@@ -64,7 +63,7 @@ inline void span_parallelogram(const Beam& b, BeamFrame& f) {
 /// Sets what finds x and y; false of a pyramid without width. Along the axis x = det(p, up, axis) /
 /// det(right, up, axis), over w.
 inline bool set_coordinates(BeamFrame& f) {
-  const Vec3<float> n = cross(f.right, f.up);
+  const Vec3f n = cross(f.right, f.up);
   const float det = dot(n, f.axis);
   if (!(det * det > 0))
     return false;
@@ -88,7 +87,7 @@ inline float depth_of(const Beam& b, const BeamFrame& f) {
 
 /// False when the rays spread too far to be a beam.
 inline bool frame_of(const Beam& b, BeamFrame& f) {
-  const Vec3<float> org = middle(b.org);
+  const Vec3f org = middle(b.org);
   f.unit = normalize(middle(b.dir));
   if (!(f.unit.x == f.unit.x))
     return false;
@@ -113,8 +112,8 @@ inline bool frame_of(const Beam& b, BeamFrame& f) {
 struct Place {
   float x, y, w;
 };
-inline Place place(const BeamFrame& f, const Vec3<float>& p) {
-  const Vec3<float> d = p - f.apex;
+inline Place place(const BeamFrame& f, const Vec3f& p) {
+  const Vec3f d = p - f.apex;
   const float w = dot(d, f.unit);
   return {dot(d, f.to_x) / w, dot(d, f.to_y) / w, w};
 }
@@ -142,9 +141,9 @@ inline Place innermost(const Place& a, const Place& b) {
 }
 
 /// Point of a ball nearest to the axis.
-inline Vec3<float> ball_point(const BeamFrame& f, const Vec3<float>& c, float r) {
-  const Vec3<float> d = c - f.apex;
-  const Vec3<float> off = d - (dot(d, f.axis) / dot(f.axis, f.axis)) * f.axis;
+inline Vec3f ball_point(const BeamFrame& f, const Vec3f& c, float r) {
+  const Vec3f d = c - f.apex;
+  const Vec3f off = d - (dot(d, f.axis) / dot(f.axis, f.axis)) * f.axis;
   const float far = length(off);
   return far <= r ? c - off : c - ((kRimShare * r) / far) * off;
 }
@@ -170,8 +169,18 @@ inline Place innermost_of_three(const Place (&q)[3]) {
   return best;
 }
 
+/// Where a direction from the apex pierces the plane of three corners; false when it does not.
+inline bool pierce(const BeamFrame& f, const Vec3f& dir, const Vec3f (&c)[3], Vec3f& out) {
+  const Vec3f n = cross(c[1] - c[0], c[2] - c[0]);
+  const float t = dot(c[0] - f.apex, n) / dot(dir, n);
+  if (!(t > 0) || !(t < kInfinity))
+    return false;
+  out = f.apex + t * dir;
+  return true;
+}
+
 /// Innermost point of a triangle, a little off its edge; false when a corner lies behind the apex.
-inline bool triangle_point(const BeamFrame& f, const Vec3<float> (&c)[3], Vec3<float>& out) {
+inline bool triangle_point(const BeamFrame& f, const Vec3f (&c)[3], Vec3f& out) {
   Place q[3];
   for (int i = 0; i < 3; ++i) {
     q[i] = place(f, c[i]);
@@ -183,13 +192,7 @@ inline bool triangle_point(const BeamFrame& f, const Vec3<float> (&c)[3], Vec3<f
   const float my = (1.f / 3) * ((q[0].y + q[1].y) + q[2].y);
   const float x = best.x + kOffEdge * (mx - best.x);
   const float y = best.y + kOffEdge * (my - best.y);
-  const Vec3<float> n = cross(c[1] - c[0], c[2] - c[0]);
-  const Vec3<float> dir = f.axis + x * f.right + y * f.up;
-  const float t = dot(c[0] - f.apex, n) / dot(dir, n);
-  if (!(t > 0) || !(t < kInfinity))
-    return false;
-  out = f.apex + t * dir;
-  return true;
+  return pierce(f, f.axis + x * f.right + y * f.up, c, out);
 }
 
 }  // namespace grelha::GRELHA_ISA

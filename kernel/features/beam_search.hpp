@@ -21,7 +21,7 @@ class MetInBeam {
   void operator()(std::uint32_t id) const {
     if (met_.full || any_of(known_, [id](std::uint32_t known) { return id == known; }))
       return;
-    Vec3<float> point;
+    Vec3f point;
     if (!meets(scene_, f_, id, far_, point) || has(id))
       return;
     if (met_.size == kMostMet || single_) {
@@ -51,7 +51,8 @@ class MetInBeam {
 /// A beam goes where all of its edges go: the grid of rays that start far away holds for those that
 /// start near as well.
 inline bool for_beam(const GridView& g, const WalkingRays& p) {
-  bool all = true, some = false;
+  bool all = true;
+  bool some = false;
   for (int i = 0; i < kCorners; ++i) {
     const bool served = serves(g, {p.org[0][i], p.org[1][i], p.org[2][i]});
     all &= served;
@@ -66,7 +67,7 @@ inline void set_edges(const SceneView& scene, const BeamFrame& f, float far, Pac
   for (int i = 0; i < kCorners; ++i) {
     const float x = i == 1 || i == 2 ? 1.f : -1.f;
     const float y = i >= 2 ? 1.f : -1.f;
-    const Vec3<float> dir = f.axis + x * f.right + y * f.up;
+    const Vec3f dir = f.axis + x * f.right + y * f.up;
     set_ray(p, i, f.apex + f.depth * dir, dir, kBehindHit * far - f.depth);
   }
   prepare(p, false);
@@ -74,7 +75,7 @@ inline void set_edges(const SceneView& scene, const BeamFrame& f, float far, Pac
 }
 
 /// The axis along which a direction goes farthest.
-inline int main_axis(const Vec3<float>& dir) {
+inline int main_axis(const Vec3f& dir) {
   const float x = magnitude(dir.x);
   const float y = magnitude(dir.y);
   const float z = magnitude(dir.z);

@@ -22,8 +22,8 @@ class Sheet {
   bool closed(const BeamFrame& f) const {
     for (int i = 0; i < size_ && size_ > 1; ++i)
       for (int k = 0; k < 3; ++k) {
-        const Vec3<float>& a = corners_[i].at[k];
-        const Vec3<float>& b = corners_[i].at[(k + 1) % 3];
+        const Vec3f& a = corners_[i].at[k];
+        const Vec3f& b = corners_[i].at[(k + 1) % 3];
         // its other triangle may lie just outside
         if (innermost(place(f, a), place(f, b)).w > kEdgeInside)
           continue;
@@ -35,7 +35,7 @@ class Sheet {
 
  private:
   /// Whether another triangle than i has the edge as well.
-  bool shared(int i, const Vec3<float>& a, const Vec3<float>& b) const {
+  bool shared(int i, const Vec3f& a, const Vec3f& b) const {
     for (int j = 0; j < size_; ++j)
       if (j != i && has(corners_[j], a) && has(corners_[j], b))
         return true;

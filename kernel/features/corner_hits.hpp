@@ -17,8 +17,7 @@ inline bool any_of(const std::uint32_t (&id)[kCorners], const Test& test) {
 }
 
 /// Sets ray i of a packet; it searches t from 0 to `end`.
-inline void set_ray(
-    WalkingRays& p, int i, const Vec3<float>& org, const Vec3<float>& dir, float end) {
+inline void set_ray(WalkingRays& p, int i, const Vec3f& org, const Vec3f& dir, float end) {
   p.org[0][i] = org.x;
   p.org[1][i] = org.y;
   p.org[2][i] = org.z;

@@ -15,7 +15,8 @@ namespace grelha::GRELHA_ISA {
 /// `around`, where the corners differ, or the beam cannot tell: what hides then shows in the pixels
 /// around as well, whose colours bound it.
 struct Doubt {
-  float inside = 0, around = 0;
+  float inside = 0;
+  float around = 0;
   bool none() const { return inside == 0 && around == 0; }
 };
 inline Doubt around(float weight) { return {0, weight}; }
@@ -81,8 +82,8 @@ class Watcher {
   void trace_points(const BeamFrame& f, const Met& met, int first, Packet<InFloat>& p) {
     p.size = met.size - first < 16 ? met.size - first : 16;
     for (int i = 0; i < p.size; ++i) {
-      const Vec3<float> to = normalize(met.point[first + i] - f.apex);
-      const Vec3<float> start = f.apex + (f.depth / dot(to, f.unit)) * to;
+      const Vec3f to = normalize(met.point[first + i] - f.apex);
+      const Vec3f start = f.apex + (f.depth / dot(to, f.unit)) * to;
       set_ray(p, i, start, to, kInfinity);
     }
     trace_packet<false>(scene_, p, {16, true}, n_);
@@ -121,7 +122,7 @@ class Watcher {
 
   /// The surfaces at the corners, their normals towards the beam; false when these turn too far.
   bool find_surfaces(const Beam& beam, const Sight& sight, CornerSurfaces& s) const {
-    const Vec3<float> zero{0, 0, 0};
+    const Vec3f zero{0, 0, 0};
     for (int i = 0; i < kCorners; ++i) {
       s[i] = surface_of<float>(
           scene_.geometry, sight.id[i], beam.org[i], beam.dir[i], sight.t[i], shading_.smooth);
@@ -138,7 +139,7 @@ class Watcher {
   float field(const Surface<float>& s, MaterialField k) const {
     return shading_.materials.field[k][s.material];
   }
-  Vec3<float> color(const Surface<float>& s, MaterialField red) const {
+  Vec3f color(const Surface<float>& s, MaterialField red) const {
     return {field(s, red),
             field(s, static_cast<MaterialField>(red + 1)),
             field(s, static_cast<MaterialField>(red + 2))};
@@ -149,11 +150,11 @@ class Watcher {
                       const std::uint32_t (&on)[kCorners],
                       bool whole,
                       float weight) {
-    const Vec3<float> answer = color(s[0], kDiffuseR) + color(s[0], kSpecularR);
+    const Vec3f answer = color(s[0], kDiffuseR) + color(s[0], kSpecularR);
     Doubt most;
     for (int l = 0; l < shading_.light_count; ++l) {
       const float* const light = shading_.lights + kLightFloats * l;
-      const Vec3<float> sent = answer * Vec3<float>{light[3], light[4], light[5]};
+      const Vec3f sent = answer * Vec3f{light[3], light[4], light[5]};
       const float part = lesser(largest(sent), 1.f) * weight;
       if (part > most.inside)
         most = most + uneven_light({light[0], light[1], light[2]}, s, on, whole, part);
@@ -188,10 +189,10 @@ class Watcher {
     float length[kCorners];
     int facing = 0;  ///< corners of the patch that face the light
   };
-  static LightBeam light_beam(const Vec3<float>& light, const CornerSurfaces& s) {
+  static LightBeam light_beam(const Vec3f& light, const CornerSurfaces& s) {
     LightBeam b;
     for (int i = 0; i < kCorners; ++i) {
-      const Vec3<float> to = s[i].point + s[i].away * s[i].normal - light;
+      const Vec3f to = s[i].point + s[i].away * s[i].normal - light;
       b.length[i] = length(to);
       b.beam.org[i] = light;
       b.beam.dir[i] = (1 / b.length[i]) * to;
@@ -215,7 +216,7 @@ class Watcher {
 
   /// Doubt whether the light, of weight `part`, reaches all of the patch between four points, or
   /// none of it.
-  Doubt uneven_light(const Vec3<float>& light,
+  Doubt uneven_light(const Vec3f& light,
                      const CornerSurfaces& s,
                      const std::uint32_t (&on)[kCorners],
                      bool whole,

@@ -20,10 +20,8 @@ inline std::uint32_t material_of(const GeometryView& g, std::uint32_t id) {
   return g.of<Triangle>().material[triangle_of(g, id)];
 }
 
-inline bool same(const Vec3<float>& a, const Vec3<float>& b) {
-  return a.x == b.x && a.y == b.y && a.z == b.z;
-}
-inline bool has(const Corners3& t, const Vec3<float>& p) {
+inline bool same(const Vec3f& a, const Vec3f& b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+inline bool has(const Corners3& t, const Vec3f& p) {
   return same(t.at[0], p) || same(t.at[1], p) || same(t.at[2], p);
 }
 
@@ -43,8 +41,8 @@ inline bool alike(const GeometryView& g, std::uint32_t a, std::uint32_t b) {
     const Corners3 c = corners_of(g, id);
     return cross(c.at[1] - c.at[0], c.at[2] - c.at[0]);
   };
-  const Vec3<float> n = flat_normal(a);
-  const Vec3<float> m = flat_normal(b);
+  const Vec3f n = flat_normal(a);
+  const Vec3f m = flat_normal(b);
   const float d = dot(n, m);
   return d * d > kOneSurfaceSquared * (dot(n, n) * dot(m, m));
 }

@@ -6,13 +6,13 @@
 namespace grelha::GRELHA_ISA {
 
 /// From the eye through the place (x, y) of the picture.
-inline Vec3<float> direction_through(const FrameView& f, float x, float y) {
+inline Vec3f direction_through(const FrameView& f, float x, float y) {
   const float sx = x - .5f * static_cast<float>(f.width);
   const float sy = .5f * static_cast<float>(f.height) - y;
   const auto along = [&](int axis) {
     return (f.forward[axis] + sx * f.right[axis]) + sy * f.up[axis];
   };
-  return normalize(Vec3<float>{along(0), along(1), along(2)});
+  return normalize(Vec3f{along(0), along(1), along(2)});
 }
 
 /// Beam through the square of `size` pixels at (x0, y0), grown a little about its centre: what only

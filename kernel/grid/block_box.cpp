@@ -22,7 +22,8 @@ float not_below(double x) {
 
 /// How far a block reaches along an axis; of an empty one, nowhere.
 struct Reach {
-  float lo = kInfinity, hi = -kInfinity;
+  float lo = kInfinity;
+  float hi = -kInfinity;
 };
 Reach reach_of(const TriangleBlock& block, int a) {
   float least[kBlock], most[kBlock];

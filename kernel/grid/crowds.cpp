@@ -44,14 +44,23 @@ class Cells {
   double inverse_;
 };
 
+/// The cells of every `stride`-th primitive, ascending.
+std::vector<Cell> looked_at(const Cells& cells,
+                            const std::vector<std::uint32_t>& ids,
+                            std::size_t stride) {
+  std::vector<Cell> seen;
+  for (std::size_t i = 0; i < ids.size(); i += stride)
+    seen.push_back(cells.of(ids[i]));
+  std::sort(seen.begin(), seen.end());
+  return seen;
+}
+
 /// Cells that many of the primitives looked at stand in, if the mean one stands among many.
 std::vector<Cell> crowded(const Cells& cells, const std::vector<std::uint32_t>& ids) {
   const std::size_t stride = std::max<std::size_t>(1, ids.size() / kLookedAt);
   const std::size_t least = std::max(kSeen, kCrowd / stride);
-  std::vector<Cell> seen, out;
-  for (std::size_t i = 0; i < ids.size(); i += stride)
-    seen.push_back(cells.of(ids[i]));
-  std::sort(seen.begin(), seen.end());
+  const std::vector<Cell> seen = looked_at(cells, ids, stride);
+  std::vector<Cell> out;
   std::size_t squares = 0;
   for (auto from = seen.begin(); from != seen.end();) {
     const auto to = std::upper_bound(from, seen.end(), *from);
@@ -122,6 +131,19 @@ Sorted sort_out(const Ids& ids, const Cells& cells, const Crowds& all, int reach
   return found;
 }
 
+/// Takes out up to `most` crowds that span less than a length. Others join the rest.
+std::vector<Ids> take_small(const Primitives& p, Sorted& found, double length, std::size_t most) {
+  std::vector<Ids> out;
+  for (Ids& one : found.crowds) {
+    if (out.size() < most && extent_of(p, one, 1).box.diagonal() < length)
+      out.push_back(std::move(one));
+    else
+      found.rest.insert(found.rest.end(), one.begin(), one.end());
+  }
+  std::sort(found.rest.begin(), found.rest.end());
+  return out;
+}
+
 }  // namespace
 
 std::vector<Ids> take_crowds(
@@ -135,17 +157,10 @@ std::vector<Ids> take_crowds(
   for (const int reach : {1, 0}) {
     if (all.count == 0 || !out.empty())
       break;
-    auto [crowds, rest] = sort_out(ids, cells, all, reach);
-    for (Ids& one : crowds) {
-      if (out.size() < most && extent_of(p, one, 1).box.diagonal() < kSmaller * box.diagonal())
-        out.push_back(std::move(one));
-      else
-        rest.insert(rest.end(), one.begin(), one.end());
-    }
-    if (out.empty())
-      continue;
-    std::sort(rest.begin(), rest.end());
-    ids = std::move(rest);
+    Sorted found = sort_out(ids, cells, all, reach);
+    out = take_small(p, found, kSmaller * box.diagonal(), most);
+    if (!out.empty())
+      ids = std::move(found.rest);
   }
   return out;
 }

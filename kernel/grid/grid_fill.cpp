@@ -119,6 +119,20 @@ void find_kinds(Filling& f) {
   });
 }
 
+/// Puts the pairs of a chunk in the order of their buckets. `first` holds how many each has, and
+/// then where they begin.
+void sort_pairs(const std::vector<Pair>& pairs, unsigned shift, PairChunk& chunk) {
+  std::vector<std::uint32_t>& first = chunk.first;
+  std::uint32_t sum = 0;
+  for (std::uint32_t& f : first)
+    sum += std::exchange(f, sum);
+  chunk.pairs.resize(pairs.size());
+  for (const Pair& pair : pairs)
+    chunk.pairs[first[pair.cell >> shift]++] = pair;
+  std::copy_backward(first.begin(), first.end() - 1, first.end());
+  first[0] = 0;
+}
+
 /// The first pass, of one chunk. `cells_of(id, visit)` names the cells.
 template <class CellsOf>
 void emit(Filling& f, std::size_t index, const CellsOf& cells_of, std::vector<Pair>& pairs) {
@@ -132,15 +146,7 @@ void emit(Filling& f, std::size_t index, const CellsOf& cells_of, std::vector<Pa
       pairs.push_back({static_cast<std::uint32_t>(c), f.ids[i]});
       ++chunk.first[c >> shift];
     });
-  std::uint32_t sum = 0;
-  for (std::uint32_t& first : chunk.first)
-    sum += std::exchange(first, sum);
-  chunk.pairs.resize(pairs.size());
-  for (const Pair& pair : pairs)
-    chunk.pairs[chunk.first[pair.cell >> shift]++] = pair;
-  for (std::size_t b = f.buckets.count; b > 0; --b)
-    chunk.first[b] = chunk.first[b - 1];
-  chunk.first[0] = 0;
+  sort_pairs(pairs, shift, chunk);
 }
 
 template <class Visit>
@@ -149,6 +155,20 @@ void for_each_pair(const Filling& f, std::size_t bucket, const Visit& visit) {
     for (std::uint32_t i = chunk.first[bucket]; i < chunk.first[bucket + 1]; ++i)
       if (chunk.pairs[i].id != kNoPrimitive)
         visit(chunk.pairs[i]);
+}
+
+/// Turns primitives of each of a bucket's cells into entries; returns their sums.
+PerKind count_entries(Filling& f, std::size_t bucket) {
+  PerKind sums{};
+  for_each_list(f.store, [&]<class Shape>(ListStore<Shape>& list, std::size_t kind) {
+    for (std::size_t c = f.buckets.begin(bucket); c < f.buckets.end(bucket); ++c) {
+      std::uint32_t& n = list.first[c];
+      f.crowded[bucket] |= n > kCrowded;
+      n = ListStore<Shape>::entries_of(n);
+      sums[kind] += n;
+    }
+  });
+  return sums;
 }
 
 /// The second pass, of one bucket: entries of each of its cells, and their sums.
@@ -163,31 +183,27 @@ PerKind count(Filling& f, std::size_t bucket) {
   for_each_pair(f, bucket, [&](const Pair& pair) {
     ++first[static_cast<std::size_t>(f.primitives.kind_of(pair.id))][pair.cell];
   });
-  PerKind sums{};
-  for_each_list(f.store, [&]<class Shape>(ListStore<Shape>& list, std::size_t kind) {
-    std::uint32_t* const n = list.first.data();
-    for (std::size_t c = begin; c < end; ++c) {
-      f.crowded[bucket] |= n[c] > kCrowded;
-      n[c] = ListStore<Shape>::entries_of(n[c]);
-      sums[kind] += n[c];
-    }
+  return count_entries(f, bucket);
+}
+
+/// Primitives of buckets with a crowded cell.
+std::vector<std::uint32_t> in_crowded_buckets(const Filling& f) {
+  std::vector<bool> found(f.primitives.ids.end());
+  for (const PairChunk& chunk : f.chunks)
+    for (const Pair& pair : chunk.pairs)
+      if (f.crowded[pair.cell >> f.buckets.shift] != 0)
+        found[pair.id] = true;
+  std::vector<std::uint32_t> ids;
+  std::copy_if(f.ids.begin(), f.ids.end(), std::back_inserter(ids), [&](std::uint32_t id) {
+    return found[id];
   });
-  return sums;
+  return ids;
 }
 
 /// Takes from all cells what is a copy of something in the crowded ones; whether there was any. A
 /// copy has the cells of its original.
 bool drop_copies(Filling& f) {
-  std::vector<bool> in_crowds(f.primitives.ids.end());
-  for (const PairChunk& chunk : f.chunks)
-    for (const Pair& pair : chunk.pairs)
-      if (f.crowded[pair.cell >> f.buckets.shift] != 0)
-        in_crowds[pair.id] = true;
-  std::vector<std::uint32_t> ids;
-  std::copy_if(f.ids.begin(), f.ids.end(), std::back_inserter(ids), [&](std::uint32_t id) {
-    return in_crowds[id];
-  });
-  const std::vector<std::uint32_t> found = copies_among(f.primitives, ids);
+  const std::vector<std::uint32_t> found = copies_among(f.primitives, in_crowded_buckets(f));
   if (found.empty())
     return false;
   std::vector<bool> copies(f.primitives.ids.end());
@@ -202,29 +218,37 @@ bool drop_copies(Filling& f) {
   return true;
 }
 
-/// All buckets; returns where the lists of each begin, and makes room for them.
-std::vector<PerKind> count_all(Filling& f) {
-  std::vector<PerKind> starts(f.buckets.count);
-  const auto each = [&] {
-    const auto buckets = static_cast<std::ptrdiff_t>(f.buckets.count);
+/// Counts all buckets, each by a thread.
+void count_buckets(Filling& f, std::vector<PerKind>& counts) {
+  const auto buckets = static_cast<std::ptrdiff_t>(f.buckets.count);
 #pragma omp parallel for schedule(dynamic) num_threads(f.threads)
-    for (std::ptrdiff_t i = 0; i < buckets; ++i)
-      starts[static_cast<std::size_t>(i)] = count(f, static_cast<std::size_t>(i));
-  };
-  for (const PairChunk& c : f.chunks)
-    f.store.references += c.pairs.size();
-  f.crowded.assign(f.buckets.count, 0);
-  each();
-  if (std::any_of(f.crowded.begin(), f.crowded.end(), [](std::uint8_t c) { return c != 0; }) &&
-      drop_copies(f))
-    each();
+  for (std::ptrdiff_t i = 0; i < buckets; ++i)
+    counts[static_cast<std::size_t>(i)] = count(f, static_cast<std::size_t>(i));
+}
+
+/// Turns counts into where the lists of each begin; returns their sums.
+PerKind add_up(std::vector<PerKind>& counts) {
   PerKind total{};
-  for (PerKind& start : starts)
+  for (PerKind& start : counts)
     for (std::size_t k = 0; k < kKinds; ++k)
       total[k] += std::exchange(start[k], total[k]);
   for (const std::uint64_t n : total)
     if (n > kMostEntries)
       throw std::length_error("the grid's lists are too long: choose a smaller density");
+  return total;
+}
+
+/// All buckets; returns where the lists of each begin, and makes room for them.
+std::vector<PerKind> count_all(Filling& f) {
+  std::vector<PerKind> starts(f.buckets.count);
+  for (const PairChunk& c : f.chunks)
+    f.store.references += c.pairs.size();
+  f.crowded.assign(f.buckets.count, 0);
+  count_buckets(f, starts);
+  const bool crowded = std::find(f.crowded.begin(), f.crowded.end(), 1) != f.crowded.end();
+  if (crowded && drop_copies(f))
+    count_buckets(f, starts);
+  const PerKind total = add_up(starts);
   for_each_list(f.store, [&]<class Shape>(ListStore<Shape>& list, std::size_t kind) {
     list.first[f.buckets.cells] = static_cast<std::uint32_t>(total[kind]);
     list.resize(total[kind]);
@@ -275,41 +299,80 @@ void place_lists(Filling& f, std::size_t bucket, const PerKind& start, Scratch& 
   });
 }
 
+/// A bucket in the third pass.
+class BucketLists {
+ public:
+  BucketLists(Filling& f, std::size_t bucket, const PerKind& start, Scratch& scratch)
+      : f_(f),
+        bucket_(bucket),
+        begin_(f.buckets.begin(bucket)),
+        size_(f.buckets.end(bucket) - begin_),
+        first_block_(start[kTriangles]),
+        scratch_(scratch) {
+    scratch.written.assign(kKinds * size_, 0);
+    place_lists(f, bucket, start, scratch);
+  }
+
+  /// Writes the lists, but those of triangles: these stand in the scratch.
+  void put_primitives() {
+    for_each_pair(f_, bucket_, [&](const Pair& pair) {
+      f_.primitives.visit(pair.id, [&]<class Shape>(std::uint32_t i) {
+        auto& list = f_.store.of<Shape>();
+        const std::size_t kind = kNumber<Shape>;
+        const std::uint32_t place = written(kind, pair.cell - begin_)++;
+        if constexpr (Shape::kInBlocks)
+          triangles_of(pair.cell)[place] = pair.id;
+        else
+          list.put(list.first[pair.cell] + place, f_.primitives.of<Shape>()[i], pair.id);
+      });
+    });
+  }
+
+  /// Writes those of triangles.
+  void put_blocks() {
+    for (std::size_t i = 0; i < size_; ++i)
+      if (const std::uint32_t n = written(kTriangles, i); n != 0)
+        put_triangles(f_, {triangles_of(begin_ + i), n}, begin_ + i, scratch_.order);
+  }
+
+  /// How many cells hold something; sets `empty`, where given, to 0 for these and 255 for others.
+  std::uint64_t count_held(std::uint8_t* empty) {
+    std::uint64_t held = 0;
+    for (std::size_t i = 0; i < size_; ++i) {
+      bool any = false;
+      for (std::size_t k = 0; k < kKinds; ++k)
+        any |= written(k, i) != 0;
+      held += any;
+      if (empty)
+        empty[begin_ + i] = any ? 0 : 255;
+    }
+    return held;
+  }
+
+ private:
+  static constexpr auto kTriangles = kNumber<Triangle>;
+
+  std::uint32_t& written(std::size_t kind, std::size_t i) {
+    return scratch_.written[kind * size_ + i];
+  }
+  std::uint32_t* triangles_of(std::size_t cell) {
+    return &scratch_.triangles[(f_.store.of<Triangle>().first[cell] - first_block_) * kBlock];
+  }
+
+  Filling& f_;
+  const std::size_t bucket_, begin_, size_;
+  const std::uint64_t first_block_;
+  Scratch& scratch_;
+};
+
 /// The third pass, of one bucket: its lists; returns how many of its cells hold something. `empty`,
 /// where given, becomes 0 for cells that do and 255 for others.
 std::uint64_t write(
     Filling& f, std::size_t bucket, const PerKind& start, std::uint8_t* empty, Scratch& scratch) {
-  constexpr auto kTriangles = kNumber<Triangle>;
-  const std::size_t begin = f.buckets.begin(bucket);
-  const std::size_t size = f.buckets.end(bucket) - begin;
-  const auto ids_at = [&](std::size_t cell) {
-    return &scratch.triangles[(f.store.of<Triangle>().first[cell] - start[kTriangles]) * kBlock];
-  };
-  scratch.written.assign(kKinds * size, 0);
-  place_lists(f, bucket, start, scratch);
-  for_each_pair(f, bucket, [&](const Pair& pair) {
-    f.primitives.visit(pair.id, [&]<class Shape>(std::uint32_t i) {
-      const std::size_t row = kNumber<Shape> * size;
-      const std::uint32_t place = scratch.written[row + pair.cell - begin]++;
-      auto& list = f.store.of<Shape>();
-      if constexpr (Shape::kInBlocks)
-        ids_at(pair.cell)[place] = pair.id;
-      else
-        list.put(list.first[pair.cell] + place, f.primitives.of<Shape>()[i], pair.id);
-    });
-  });
-  std::uint64_t held = 0;
-  for (std::size_t i = 0; i < size; ++i) {
-    if (const std::uint32_t n = scratch.written[kTriangles * size + i]; n != 0)
-      put_triangles(f, {ids_at(begin + i), n}, begin + i, scratch.order);
-    bool any = false;
-    for (std::size_t k = 0; k < kKinds; ++k)
-      any |= scratch.written[k * size + i] != 0;
-    held += any;
-    if (empty)
-      empty[begin + i] = any ? 0 : 255;
-  }
-  return held;
+  BucketLists lists(f, bucket, start, scratch);
+  lists.put_primitives();
+  lists.put_blocks();
+  return lists.count_held(empty);
 }
 
 /// All passes, whose time is `share` of the whole build; returns how many cells hold something.

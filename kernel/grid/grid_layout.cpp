@@ -30,6 +30,17 @@ double cube_root(double x) {
   }
 }
 
+/// Grows a box by another; returns the square of that one's diagonal.
+double add_box(Box& to, const Box& b) {
+  double sum = 0;
+  for (int a = 0; a < 3; ++a) {
+    sum += (b.hi[a] - b.lo[a]) * (b.hi[a] - b.lo[a]);
+    to.lo[a] = std::min(to.lo[a], b.lo[a]);
+    to.hi[a] = std::max(to.hi[a], b.hi[a]);
+  }
+  return sum;
+}
+
 }  // namespace
 
 Extent extent_of(const Primitives& p, std::span<const std::uint32_t> ids, int threads) {
@@ -40,17 +51,8 @@ Extent extent_of(const Primitives& p, std::span<const std::uint32_t> ids, int th
     Box mine;
     double longest = 0;  // squared: one root in the end
 #pragma omp for schedule(static) nowait
-    for (std::ptrdiff_t i = 0; i < count; ++i) {
-      const std::uint32_t id = ids[static_cast<std::size_t>(i)];
-      const Box b = p.box(id);
-      double sum = 0;
-      for (int a = 0; a < 3; ++a) {
-        sum += (b.hi[a] - b.lo[a]) * (b.hi[a] - b.lo[a]);
-        mine.lo[a] = std::min(mine.lo[a], b.lo[a]);
-        mine.hi[a] = std::max(mine.hi[a], b.hi[a]);
-      }
-      longest = std::max(longest, sum);
-    }
+    for (std::ptrdiff_t i = 0; i < count; ++i)
+      longest = std::max(longest, add_box(mine, p.box(ids[static_cast<std::size_t>(i)])));
 #pragma omp critical  // least and most do not depend on the order
     {
       if (!mine.empty())
@@ -113,10 +115,26 @@ std::size_t divide(Grid& g, const double (&extent)[3], double per_length) {
 double references(const Primitives& p, std::span<const std::uint32_t> ids, const Grid& g) {
   const CellFinder finder(p, g);
   const std::size_t stride = std::max<std::size_t>(1, ids.size() / kProbe);
-  std::uint64_t sum = 0, probed = 0;
+  std::uint64_t sum = 0;
+  std::uint64_t probed = 0;
   for (std::size_t i = 0; i < ids.size(); i += stride, ++probed)
     finder(ids[i], [&](std::size_t) { ++sum; });
   return static_cast<double>(sum) / static_cast<double>(probed);
+}
+
+/// So that walks in float subtract a grid's corner without an error of its own.
+float float_not_above(double x) {
+  const float f = static_cast<float>(x);
+  return f > x ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;
+}
+
+/// References that the mean one of `count` primitives may have. A heap of large ones, or of
+/// slivers, would stand in thousands of cells each, and memory end. Grids of a scene share what
+/// there is by their primitives; small ones, which need little, get more.
+double most_references(const Primitives& p, std::size_t count) {
+  const double served =
+      std::min(static_cast<double>(p.ids.end()), kSmallShare * static_cast<double>(count));
+  return std::clamp(kMostInAll / served, kAlways, kMostReferences);
 }
 
 }  // namespace
@@ -138,21 +156,12 @@ Grid lay_out_grid(const Primitives& p,
   g.pad = pad;
   double extent[3];
   for (int a = 0; a < 3; ++a) {
-    // Down to a float, so that walks in float subtract the corner without an error of its own.
-    float lo = static_cast<float>(b.lo[a]);
-    if (lo > b.lo[a])
-      lo = std::nextafter(lo, -std::numeric_limits<float>::infinity());
-    g.lo[a] = lo;
+    g.lo[a] = float_not_above(b.lo[a]);
     extent[a] = b.hi[a] - g.lo[a];
   }
   const double per_length = cells_per_length(extent, ids.size(), density);
   std::size_t cells = divide(g, extent, per_length);
-  // A heap of large primitives, or of slivers, would stand in thousands of cells each, and memory
-  // end. Grids of a scene share what there is by their primitives; small ones, which need little,
-  // get more.
-  const double served =
-      std::min(static_cast<double>(p.ids.end()), kSmallShare * static_cast<double>(ids.size()));
-  const double most = std::clamp(kMostInAll / served, kAlways, kMostReferences);
+  const double most = most_references(p, ids.size());
   for (double coarser = per_length / 2; cells > kMostReferences && references(p, ids, g) > most;
        coarser /= 2)
     cells = divide(g, extent, coarser);

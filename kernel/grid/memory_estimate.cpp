@@ -54,6 +54,21 @@ std::vector<std::uint32_t> pick(const std::vector<std::uint32_t>& ids) {
   return picked;
 }
 
+/// Blocks that hold references of triangles, where picked ones, `share` of all, stand in `cells`.
+double blocks_of(double references, std::vector<std::size_t> cells, double share) {
+  std::sort(cells.begin(), cells.end());
+  double pairs = 0;
+  for (auto from = cells.begin(), to = from; from != cells.end(); from = to) {
+    to = std::upper_bound(from, cells.end(), *from);
+    pairs += static_cast<double>(to - from) * static_cast<double>(to - from - 1);
+  }
+  // References that the mean one shares its cell with, itself counted: the sum of squares over the
+  // sum. Cells of a surface hold from nothing to twice the mean, so there are half as many again as
+  // if all held as much. The last block of each is half empty, or an eighth full.
+  const double held = 1 + pairs / (share * static_cast<double>(cells.size()));
+  return references / kBlock + references * 1.5 / (held + .5) * (1 + 1 / held) * 7 / 16;
+}
+
 Lists expected(const Primitives& p, const std::vector<std::uint32_t>& ids, const Grid& g) {
   const std::vector<std::uint32_t> picked = pick(ids);
   const CellFinder finder(p, g);
@@ -69,20 +84,8 @@ Lists expected(const Primitives& p, const std::vector<std::uint32_t>& ids, const
   const double share = static_cast<double>(picked.size()) / static_cast<double>(ids.size());
   for (double& n : lists.references)
     n /= share;
-  if (cells.empty())
-    return lists;
-  std::sort(cells.begin(), cells.end());
-  double pairs = 0;
-  for (auto from = cells.begin(), to = from; from != cells.end(); from = to) {
-    to = std::upper_bound(from, cells.end(), *from);
-    pairs += static_cast<double>(to - from) * static_cast<double>(to - from - 1);
-  }
-  // References that the mean one shares its cell with, itself counted: the sum of squares over the
-  // sum. Cells of a surface hold from nothing to twice the mean, so there are half as many again as
-  // if all held as much. The last block of each is half empty, or an eighth full.
-  const double held = 1 + pairs / (share * static_cast<double>(cells.size())),
-               references = lists.references[kTriangles];
-  lists.blocks = references / kBlock + references * 1.5 / (held + .5) * (1 + 1 / held) * 7 / 16;
+  if (!cells.empty())
+    lists.blocks = blocks_of(lists.references[kTriangles], std::move(cells), share);
   return lists;
 }
 
@@ -107,31 +110,43 @@ Lists of_outside(const Primitives& p, const Plan& plan) {
   return lists;
 }
 
+/// Bytes as a build goes on.
+struct Memory {
+  double kept = 0;     ///< by what is built
+  double waiting = 0;  ///< ids of what is to be built
+  double peak = 0;
+
+  /// For a while: what is being built, and what that takes besides.
+  void raise(double own, double besides) { peak = std::max(peak, kept + own + waiting + besides); }
+
+  /// A grid of so many cells.
+  void add(const Lists& lists, double cells) {
+    double own = cells + lists.bytes(kBoxed);  // a distance each
+    for (const double n : lists.references)
+      own += n > 0 ? kId * cells : 0;
+    // the pairs, then the distances once more
+    raise(own, std::max(kPair * lists.all(), cells));
+    kept += own;
+  }
+};
+
 }  // namespace
 
 BuildMemory memory_of(const SceneSpans& scene, const Primitives& p, const Plan& plan) {
-  double kept = kMaterial * static_cast<double>(scene.materials.size()) + prepared_bytes(p);
-  double waiting = ids_bytes(plan.apart);
-  double peak = 0;
+  Memory m;
+  m.kept = kMaterial * static_cast<double>(scene.materials.size()) + prepared_bytes(p);
+  m.waiting = ids_bytes(plan.apart);
   for (const PlannedGrids& part : plan.parts)
-    waiting += ids_bytes(part.ids);
+    m.waiting += ids_bytes(part.ids);
   for (const PlannedGrids& part : plan.parts) {
-    for (const Grid& g : part.grids) {
-      const Lists lists = expected(p, part.ids, g);
-      const auto cells = static_cast<double>(cell_count(g.cells));
-      double own = cells + lists.bytes(kBoxed);  // a distance each
-      for (const double n : lists.references)
-        own += n > 0 ? kId * cells : 0;
-      // the pairs, then the distances once more
-      peak = std::max(peak, kept + own + waiting + std::max(kPair * lists.all(), cells));
-      kept += own;
-    }
-    waiting -= ids_bytes(part.ids);
+    for (const Grid& g : part.grids)
+      m.add(expected(p, part.ids, g), static_cast<double>(cell_count(g.cells)));
+    m.waiting -= ids_bytes(part.ids);
   }
   const Lists outside = of_outside(p, plan);
-  peak = std::max(peak, kept + outside.bytes(kListed) + waiting + (kPair + kId) * outside.all());
-  return {static_cast<std::uint64_t>(peak),
-          static_cast<std::uint64_t>(kept + outside.bytes(kListed))};
+  const double listed = outside.bytes(kListed);
+  m.raise(listed, (kPair + kId) * outside.all());
+  return {static_cast<std::uint64_t>(m.peak), static_cast<std::uint64_t>(m.kept + listed)};
 }
 
 bool surely_fits(const Primitives& p, std::uint64_t bytes) {

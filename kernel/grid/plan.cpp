@@ -82,13 +82,17 @@ void group_triangles(const Primitives& p, std::vector<Ids>& groups) {
   append(groups.front(), next, p.ids.end(PrimitiveKind::kTriangle));
 }
 
+std::size_t triangles_in_objects(const Primitives& p) {
+  std::size_t sum = 0;
+  for (const Object& o : p.geometry.objects)
+    sum += o.triangle_count;
+  return sum;
+}
+
 /// One group of ids a grid: first what is loose (with small objects), then each larger object.
 std::vector<Ids> group(const Primitives& p) {
   std::vector<Ids> groups(1);
-  std::size_t in_objects = 0;
-  for (const Object& o : p.geometry.objects)
-    in_objects += o.triangle_count;
-  groups.front().reserve(p.finite_count() - in_objects);
+  groups.front().reserve(p.finite_count() - triangles_in_objects(p));
   for_each_finite_shape([&]<class Shape>() {
     if constexpr (Shape::kKind == PrimitiveKind::kTriangle)
       group_triangles(p, groups);
@@ -123,18 +127,13 @@ Extent set_huge_apart(const Primitives& p, Ids& ids, Extent all, Ids& outside, i
 /// A handful of round things among many triangles: a loop over them costs less than asking every
 /// cell for its share.
 bool set_few_apart(const Primitives& p, Ids& ids, Ids& outside) {
-  const auto is_triangle = [&](std::uint32_t id) {
-    return p.ids.has(PrimitiveKind::kTriangle, id);
-  };
-  const auto others =
-      ids.size() - static_cast<std::size_t>(std::count_if(ids.begin(), ids.end(), is_triangle));
+  const auto is_round = [&](std::uint32_t id) { return !p.ids.has(PrimitiveKind::kTriangle, id); };
+  const auto others = static_cast<std::size_t>(std::count_if(ids.begin(), ids.end(), is_round));
   if (others == 0 || others == ids.size() || others > kFewest ||
       outside.size() + others > kMostOutside)
     return false;
-  std::copy_if(ids.begin(), ids.end(), std::back_inserter(outside), [&](std::uint32_t id) {
-    return !is_triangle(id);
-  });
-  std::erase_if(ids, [&](std::uint32_t id) { return !is_triangle(id); });
+  std::copy_if(ids.begin(), ids.end(), std::back_inserter(outside), is_round);
+  std::erase_if(ids, is_round);
   return true;
 }
 
@@ -143,6 +142,15 @@ bool set_few_apart(const Primitives& p, Ids& ids, Ids& outside) {
 /// test is off by at most 62 eps of that distance, and a walk by 32 eps of the reach (derived in
 /// docs/numerics.md).
 double pad_of(double reach) { return reach * 256 / 16777216; }
+
+/// Rays within `reach` of a box start near its grid; rounded inwards.
+void set_near(Grid& g, const Box& box, double reach) {
+  constexpr float kInfinitelyFar = std::numeric_limits<float>::infinity();
+  for (int a = 0; a < 3; ++a) {
+    g.near_lo[a] = std::nextafter(static_cast<float>(box.lo[a] - reach), kInfinitelyFar);
+    g.near_hi[a] = std::nextafter(static_cast<float>(box.hi[a] + reach), -kInfinitelyFar);
+  }
+}
 
 /// The grid of some primitives in a scene of that diagonal. Rays from all over the scene may ask
 /// for a pad that is large beside the cells. Then there are two grids: one with such a pad, and one
@@ -153,22 +161,18 @@ void add_grids(const Primitives& p,
                double density,
                double diagonal,
                std::vector<Grid>& grids) {
-  const double edge = cell_edge(box, ids.size(), density),
-               reach = std::max(box.diagonal(), edge / pad_of(kMostPads));
+  const double edge = cell_edge(box, ids.size(), density);
+  const double reach = std::max(box.diagonal(), edge / pad_of(kMostPads));
   if (!(diagonal > kVast * reach)) {
     grids.push_back(lay_out_grid(p, ids, box, density, pad_of(diagonal)));
     return;
   }
-  constexpr float infinity = std::numeric_limits<float>::infinity();
   for (const Serves serves : {Serves::kNear, Serves::kFar}) {
     const double pad = pad_of(serves == Serves::kNear ? reach : diagonal);
-    Grid& g = grids.emplace_back(
-        lay_out_grid(p, ids, box, density * std::min(1., edge / (kFewestPads * pad)), pad));
+    const double coarser = density * std::min(1., edge / (kFewestPads * pad));
+    Grid& g = grids.emplace_back(lay_out_grid(p, ids, box, coarser, pad));
     g.serves = serves;
-    for (int a = 0; a < 3; ++a) {  // rounded inwards
-      g.near_lo[a] = std::nextafter(static_cast<float>(box.lo[a] - reach), infinity);
-      g.near_hi[a] = std::nextafter(static_cast<float>(box.hi[a] + reach), -infinity);
-    }
+    set_near(g, box, reach);
   }
 }
 
@@ -178,50 +182,90 @@ int threads_of(const BuildOptions& options) {
   return options.threads > 0 ? options.threads : omp_get_num_procs();
 }
 
+namespace {
+
+/// Primitives that may get grids, group by group.
+class Planner {
+ public:
+  Planner(const Primitives& p, const BuildOptions& options, std::vector<Ids> groups)
+      : p_(p),
+        threads_(threads_of(options)),
+        density_(options.density > 0 ? options.density : kDensity),
+        groups_(std::move(groups)) {
+    for (const Ids& ids : groups_) {
+      extents_.push_back(extent_of(p, ids, threads_));
+      plan_.all.add(extents_.back().box);
+    }
+  }
+
+  /// Plans grids for what is worth one. Crowds that are found join the groups.
+  void plan_groups() {
+    for (std::size_t i = 0; i < groups_.size(); ++i) {
+      Ids ids = std::move(groups_[i]);
+      const Extent extent = set_apart(ids, extents_[i]);
+      if (ids.size() <= kFewest && plan_.apart.size() + ids.size() <= kMostOutside)
+        append(plan_.apart, ids);
+      else if (!ids.empty())
+        plan_group(std::move(ids), extent.box);
+    }
+    groups_.clear();
+  }
+
+  /// The plan; what no grid was planned for is apart.
+  Plan finish() {
+    for (const Ids& ids : groups_)
+      append(plan_.apart, ids);
+    std::sort(plan_.apart.begin(), plan_.apart.end());
+    return std::move(plan_);
+  }
+
+ private:
+  static void append(Ids& to, const Ids& ids) { to.insert(to.end(), ids.begin(), ids.end()); }
+
+  /// Takes out what one grid does not suit; returns the extent of what is left.
+  Extent set_apart(Ids& ids, Extent before) {
+    Extent extent = set_huge_apart(p_, ids, before, plan_.apart, threads_);
+    if (set_few_apart(p_, ids, plan_.apart))
+      extent = extent_of(p_, ids, threads_);
+    auto crowds = take_crowds(p_, ids, extent.box, density_, kMostGroups - groups_.size());
+    if (crowds.empty())
+      return extent;
+    for (Ids& crowd : crowds) {
+      extents_.push_back(extent_of(p_, crowd, threads_));
+      groups_.push_back(std::move(crowd));
+    }
+    return extent_of(p_, ids, threads_);
+  }
+
+  void plan_group(Ids ids, const Box& box) {
+    std::vector<Grid> grids;
+    add_grids(p_, ids, box, density_, plan_.all.diagonal(), grids);
+    plan_.parts.push_back({std::move(ids), std::move(grids)});
+  }
+
+  const Primitives& p_;
+  const int threads_;
+  const double density_;
+  std::vector<Ids> groups_;
+  std::vector<Extent> extents_;  ///< of the groups
+  Plan plan_;
+};
+
+}  // namespace
+
 Plan plan_grids(const Primitives& p, const BuildOptions& options, BuildProgress& progress) {
-  const int threads = threads_of(options);
-  Plan plan;
+  const auto step = [&progress] {
+    progress.step();
+    progress.throw_if_stopped();
+  };
   progress.expect(kPlanShare, 3);
   std::vector<Ids> groups = group(p);
-  progress.step();
-  progress.throw_if_stopped();
-  std::vector<Extent> extents;
-  for (const Ids& ids : groups) {
-    extents.push_back(extent_of(p, ids, threads));
-    plan.all.add(extents.back().box);
-  }
-  progress.step();
-  progress.throw_if_stopped();
-  const double diagonal = plan.all.diagonal(),
-               density = options.density > 0 ? options.density : kDensity;
-
-  Ids& apart = plan.apart;
-  for (std::size_t i = 0; options.grid && i < groups.size(); ++i) {
-    Ids ids = std::move(groups[i]);
-    Extent extent = set_huge_apart(p, ids, extents[i], apart, threads);
-    if (set_few_apart(p, ids, apart))
-      extent = extent_of(p, ids, threads);
-    if (auto crowds = take_crowds(p, ids, extent.box, density, kMostGroups - groups.size());
-        !crowds.empty()) {
-      extent = extent_of(p, ids, threads);
-      for (Ids& crowd : crowds) {
-        extents.push_back(extent_of(p, crowd, threads));
-        groups.push_back(std::move(crowd));
-      }
-    }
-    if (ids.size() <= kFewest && apart.size() + ids.size() <= kMostOutside) {
-      apart.insert(apart.end(), ids.begin(), ids.end());
-    } else if (!ids.empty()) {
-      std::vector<Grid> grids;
-      add_grids(p, ids, extent.box, density, diagonal, grids);
-      plan.parts.push_back({std::move(ids), std::move(grids)});
-    }
-  }
-  if (!options.grid)
-    for (const Ids& ids : groups)
-      apart.insert(apart.end(), ids.begin(), ids.end());
-  std::sort(apart.begin(), apart.end());
-  return plan;
+  step();
+  Planner planner(p, options, std::move(groups));
+  step();
+  if (options.grid)
+    planner.plan_groups();
+  return planner.finish();
 }
 
 }  // namespace grelha

@@ -24,6 +24,12 @@ Spaces band_spaces(const Setup& setup, const RenderOptions& options, int threads
   return spaces;
 }
 
+void add_counts(const RenderStats& mine, RenderStats& all) {
+  all.trace += mine.trace;
+  all.rays += mine.rays;
+  all.phases += mine.phases;
+}
+
 }  // namespace
 
 void render_bands(const World::Impl& world,
@@ -45,22 +51,18 @@ void render_bands(const World::Impl& world,
 #pragma omp parallel num_threads(stats.threads)
   {
     Workspace& space = *spaces[static_cast<std::size_t>(omp_get_thread_num())];
-    TraceCounts trace;
-    RayCounts rays;
+    RenderStats mine;
     for (Band band; !stopped && next(band);) {
       const BandWork work = space.work(options, first_pixel(band));
       setup.variant.loops.render_band(
-          world.view, world.shading, setup.frame, band.part, work, trace, rays);
+          world.view, world.shading, setup.frame, band.part, work, mine.trace, mine.rays);
       if (!take(band, space.sums().data()))
         stopped = true;
       space.done(options);
     }
+    mine.phases = space.phases();
 #pragma omp critical(grelha_stats)
-    {
-      stats.trace += trace;
-      stats.rays += rays;
-      stats.phases += space.phases();
-    }
+    add_counts(mine, stats);
   }
 }
 

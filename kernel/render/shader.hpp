@@ -18,7 +18,10 @@ inline void enter(const BandWork& work, Phase phase, const Rays& rays) {
 }
 
 struct RayTally {
-  std::uint64_t primary = 0, shadow = 0, reflection = 0, refraction = 0;
+  std::uint64_t primary = 0;
+  std::uint64_t shadow = 0;
+  std::uint64_t reflection = 0;
+  std::uint64_t refraction = 0;
 };
 
 /// Everything a thread's shading needs to know.

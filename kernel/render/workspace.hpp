@@ -105,7 +105,8 @@ class Workspace {
 
  private:
   /// of a ray that waits, see RayStack
-  static constexpr std::size_t kStackFloats = 13, kStackWords = 4;
+  static constexpr std::size_t kStackFloats = 13;
+  static constexpr std::size_t kStackWords = 4;
   static int take_of(int depth, int gloss_rays) {
     return std::clamp(65536 / (depth * (gloss_rays + 1)), 16, kBatch);
   }

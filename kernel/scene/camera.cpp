@@ -50,7 +50,8 @@ bool directions_are_sound(const Camera& c) {
 /// Tangent of x in (0, pi/2) from the series of sine and cosine, summed from the smallest term.
 double tangent(double x) {
   const double xx = x * x;
-  double s = 1, c = 1;
+  double s = 1;
+  double c = 1;
   for (int k = 12; k >= 1; --k) {
     s = 1 - s * xx / ((2 * k) * (2 * k + 1));
     c = 1 - c * xx / ((2 * k) * (2 * k - 1));

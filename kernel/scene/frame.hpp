@@ -8,10 +8,15 @@ namespace grelha {
 /// right + (h/2 - y) up. A ray through the point (a, b) of the unit disc of its lens starts at
 /// eye + a lens_right + b lens_up. It goes to the point of that direction at depth `focus`.
 struct FrameView {
-  float eye[3] = {}, forward[3] = {}, right[3] = {}, up[3] = {}, lens_right[3] = {},
-        lens_up[3] = {};
+  float eye[3] = {};
+  float forward[3] = {};
+  float right[3] = {};
+  float up[3] = {};
+  float lens_right[3] = {};
+  float lens_up[3] = {};
   float focus = 1;
-  int width = 0, height = 0;
+  int width = 0;
+  int height = 0;
   bool lens = false;
 };
 

@@ -18,11 +18,16 @@ struct MaterialTable {
   explicit MaterialTable(const SceneSpans& scene);
   MaterialView view() const;
   std::array<std::vector<float>, kMaterialFields> fields;
-  bool reflects = false, refracts = false, fresnel = false, emits = false, highlights = false,
-       gloss = false;
+  bool reflects = false;
+  bool refracts = false;
+  bool fresnel = false;
+  bool emits = false;
+  bool highlights = false;
+  bool gloss = false;
   bool gains = false;
   /// of light of 1 a point sends an eye at most so much; and what the brightest sends by itself
-  float lit = 0, emitted = 0;
+  float lit = 0;
+  float emitted = 0;
 
  private:
   void set_fields(std::size_t i, const Material& m);

@@ -24,12 +24,13 @@ struct RawAllocator {
   RawAllocator(const RawAllocator<U>&) {}
 
   T* allocate(std::size_t n) {
-    constexpr std::size_t kLine = 64, kPage = std::size_t{1} << 21;
+    constexpr std::size_t kLine = 64;
+    constexpr std::size_t kPage = std::size_t{1} << 21;
     if (n > (static_cast<std::size_t>(-1) >> 2) / sizeof(T))
       throw std::bad_alloc();
     const bool large = n * sizeof(T) >= 2 * kPage;
-    const std::size_t align = large ? kPage : kLine,
-                      bytes = (n * sizeof(T) + kLine - 1) / kLine * kLine;
+    const std::size_t align = large ? kPage : kLine;
+    const std::size_t bytes = (n * sizeof(T) + kLine - 1) / kLine * kLine;
     void* const p = ::operator new (bytes, std::align_val_t{align});
 #ifdef __linux__
     if (large)

@@ -42,9 +42,14 @@ struct ShadingView {
   const float* lights = nullptr;  ///< [kLightFloats * light_count] centre, colour, edge, edge
   int light_count = 0;
   float background[3] = {};
-  bool smooth = false, reflects = false, refracts = false, fresnel = false, emits = false,
-       highlights = false;
-  bool area = false, gloss = false;
+  bool smooth = false;
+  bool reflects = false;
+  bool refracts = false;
+  bool fresnel = false;
+  bool emits = false;
+  bool highlights = false;
+  bool area = false;
+  bool gloss = false;
   bool gains = false;  ///< some material sends on more than it gets: see split()
   /// a point, what its mirror and glass show left out, or the background: sends an eye at most so
   /// much
@@ -55,7 +60,8 @@ inline constexpr int kLightFloats = 12;
 
 /// A near-square grid of at least `count` cells, for jittered samples.
 struct Strata {
-  std::uint32_t columns = 1, rows = 1;
+  std::uint32_t columns = 1;
+  std::uint32_t rows = 1;
 };
 
 /// Which samples a picture takes. Only effects that are there get dimensions: pixel 2, then lens,
@@ -94,7 +100,8 @@ struct BandWork {
   RayStack stack = {};
   /// [rows of the band][width][3], units of 1 / kLightUnit, zero on entry
   std::int64_t* sums = nullptr;
-  int depth = 1, packet = 64;
+  int depth = 1;
+  int packet = 64;
   float min_weight = 0;  ///< see RenderOptions
   int take = kBatch;     ///< rays taken off the stack at a time, at most kBatch
   bool mailbox = true;

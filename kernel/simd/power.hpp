@@ -13,7 +13,8 @@ inline Real log2_of(const Real& x) {
   // Move the mantissa into [sqrt(1/2), sqrt(2)): exponents count from there.
   const I biased = (raw - I(0x3F3504F3)) >> 23;
   const Real m = bits_float(I(raw - (biased << 23)));
-  const Real f = (m - Real(1)) / (m + Real(1)), s = f * f;
+  const Real f = (m - Real(1)) / (m + Real(1));
+  const Real s = f * f;
   const Real series =
       Real(1) + s * (Real(1.f / 3) + s * (Real(1.f / 5) + s * (Real(1.f / 7) + s * Real(1.f / 9))));
   return to_float(biased) + (Real(2.88539008f) * f) * series;  // 2 / ln 2

@@ -78,7 +78,9 @@ inline Real largest(const Vec3<Real>& a) {
 template <class Real>
 inline void across(const Vec3<Real>& n, Vec3<Real>& u, Vec3<Real>& v) {
   const Real o(0), one(1), below(-1);
-  const Real sign = select(n.z < o, below, one), a = below / (sign + n.z), b = n.x * n.y * a;
+  const Real sign = select(n.z < o, below, one);
+  const Real a = below / (sign + n.z);
+  const Real b = n.x * n.y * a;
   u = {one + sign * n.x * n.x * a, sign * b, o - sign * n.x};
   v = {b, sign + n.y * n.y * a, o - n.y};
 }

@@ -24,6 +24,16 @@ constexpr int kMostPoints = 2048;  ///< a thread takes at a time
 struct PointSpace {
   PointSpace(int depth, const SamplePlan& plan, const TraceLoops* in_double)
       : space(kMostPoints, depth, plan, in_double) {}
+
+  void place(std::span<const LatticePoint> points) {
+    std::uint32_t* const names = space.pixels().data();
+    for (std::size_t i = 0; i < points.size(); ++i) {  // exact: no coordinate is above 2^24
+      x[i] = static_cast<float>(points[i].x) / kLatticeSteps;
+      y[i] = static_cast<float>(points[i].y) / kLatticeSteps;
+      names[i] = lattice_hash(points[i]);
+    }
+  }
+
   Workspace space;
   float x[kMostPoints], y[kMostPoints];
   TraceCounts trace;
@@ -89,12 +99,7 @@ class PointTracer {
   }
 
   void trace(PointSpace& s, std::span<const LatticePoint> points, Float3* colours) const {
-    std::uint32_t* const names = s.space.pixels().data();
-    for (std::size_t i = 0; i < points.size(); ++i) {  // exact: no coordinate is above 2^24
-      s.x[i] = static_cast<float>(points[i].x) / kLatticeSteps;
-      s.y[i] = static_cast<float>(points[i].y) / kLatticeSteps;
-      names[i] = lattice_hash(points[i]);
-    }
+    s.place(points);
     const PointList list{s.x, s.y, static_cast<int>(points.size())};
     const BandWork work = s.space.work(options_, 0, true);
     setup_.variant.loops.render_points(

@@ -15,7 +15,10 @@ std::uint64_t morton(LatticePoint p);
 
 /// Pixels x0 <= x < x1, y0 <= y < y1.
 struct TileRect {
-  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+  int x0 = 0;
+  int y0 = 0;
+  int x1 = 0;
+  int y1 = 0;
 };
 
 /// Numbers points in the order in which a tile asks for them. Points that finished tiles saw on

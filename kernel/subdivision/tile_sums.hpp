@@ -28,7 +28,9 @@ class TileSums {
 
  private:
   struct Sum {
-    double r = 0, g = 0, b = 0;
+    double r = 0;
+    double g = 0;
+    double b = 0;
   };
   TileRect rect_;
   std::vector<Sum> sums_;
