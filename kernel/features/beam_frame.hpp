@@ -32,14 +32,14 @@ struct BeamSpread {
 
 /// Adds a ray; `o`: its origin, `d`: its direction for a unit along the axis, from those of the
 /// middle.
-inline void spread_by(BeamSpread& s, const Vec3f& o, const Vec3f& d) {
+[[gnu::always_inline]] inline void spread_by(BeamSpread& s, const Vec3f& o, const Vec3f& d) {
   s.offset += length(o);
   s.growth += dot(o, d) > 0 || dot(o, o) == 0 ? length(d) : 0 - length(d);
 }
 
 /// How far behind the origins the apex lies. Rays that run together or keep apart have none there:
 /// one far away stands for it.
-inline float apex_distance(const BeamSpread& s) {
+[[gnu::always_inline]] inline float apex_distance(const BeamSpread& s) {
   if (s.offset == 0)
     return 0;
   const float farthest = kFarthestApex * s.offset;
@@ -47,7 +47,7 @@ inline float apex_distance(const BeamSpread& s) {
 }
 
 /// Sets where the corner rays pierce w = 1.
-inline void span_parallelogram(const Beam& b, BeamFrame& f) {
+[[gnu::always_inline]] inline void span_parallelogram(const Beam& b, BeamFrame& f) {
   Vec3f c[kCorners];
   const float along = f.depth > 0 ? 0.f : 1.f;
   for (int i = 0; i < kCorners; ++i) {
@@ -62,7 +62,7 @@ inline void span_parallelogram(const Beam& b, BeamFrame& f) {
 
 /// Sets what finds x and y; false of a pyramid without width. Along the axis x = det(p, up, axis) /
 /// det(right, up, axis), over w.
-inline bool set_coordinates(BeamFrame& f) {
+[[gnu::always_inline]] inline bool set_coordinates(BeamFrame& f) {
   const Vec3f n = cross(f.right, f.up);
   const float det = dot(n, f.axis);
   if (!(det * det > 0))
@@ -74,7 +74,7 @@ inline bool set_coordinates(BeamFrame& f) {
 
 /// The w from which the whole beam is on its way. Its corners are nearly the ends of a slanting
 /// mirror.
-inline float depth_of(const Beam& b, const BeamFrame& f) {
+[[gnu::always_inline]] inline float depth_of(const Beam& b, const BeamFrame& f) {
   float first = kInfinity;
   float last = 0;
   for (int i = 0; i < kCorners; ++i) {
@@ -112,7 +112,7 @@ inline bool frame_of(const Beam& b, BeamFrame& f) {
 struct Place {
   float x, y, w;
 };
-inline Place place(const BeamFrame& f, const Vec3f& p) {
+[[gnu::always_inline]] inline Place place(const BeamFrame& f, const Vec3f& p) {
   const Vec3f d = p - f.apex;
   const float w = dot(d, f.unit);
   return {dot(d, f.to_x) / w, dot(d, f.to_y) / w, w};
@@ -150,7 +150,7 @@ inline Vec3f ball_point(const BeamFrame& f, const Vec3f& c, float r) {
 
 /// Innermost of the edges between three places, w: its outness; the axis itself where it lies
 /// within.
-inline Place innermost_of_three(const Place (&q)[3]) {
+[[gnu::always_inline]] inline Place innermost_of_three(const Place (&q)[3]) {
   int left = 0;
   int right = 0;
   Place best{0, 0, kInfinity};
@@ -170,7 +170,10 @@ inline Place innermost_of_three(const Place (&q)[3]) {
 }
 
 /// Where a direction from the apex pierces the plane of three corners; false when it does not.
-inline bool pierce(const BeamFrame& f, const Vec3f& dir, const Vec3f (&c)[3], Vec3f& out) {
+[[gnu::always_inline]] inline bool pierce(const BeamFrame& f,
+                                          const Vec3f& dir,
+                                          const Vec3f (&c)[3],
+                                          Vec3f& out) {
   const Vec3f n = cross(c[1] - c[0], c[2] - c[0]);
   const float t = dot(c[0] - f.apex, n) / dot(dir, n);
   if (!(t > 0) || !(t < kInfinity))

@@ -62,7 +62,10 @@ inline bool for_beam(const GridView& g, const WalkingRays& p) {
 }
 
 /// The edges of the pyramid as a packet, with w for t, up to w = `far`.
-inline void set_edges(const SceneView& scene, const BeamFrame& f, float far, Packet<InFloat>& p) {
+[[gnu::always_inline]] inline void set_edges(const SceneView& scene,
+                                             const BeamFrame& f,
+                                             float far,
+                                             Packet<InFloat>& p) {
   p.size = kCorners;
   for (int i = 0; i < kCorners; ++i) {
     const float x = i == 1 || i == 2 ? 1.f : -1.f;
@@ -75,7 +78,7 @@ inline void set_edges(const SceneView& scene, const BeamFrame& f, float far, Pac
 }
 
 /// The axis along which a direction goes farthest.
-inline int main_axis(const Vec3f& dir) {
+[[gnu::always_inline]] inline int main_axis(const Vec3f& dir) {
   const float x = magnitude(dir.x);
   const float y = magnitude(dir.y);
   const float z = magnitude(dir.z);

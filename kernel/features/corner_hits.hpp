@@ -17,7 +17,8 @@ inline bool any_of(const std::uint32_t (&id)[kCorners], const Test& test) {
 }
 
 /// Sets ray i of a packet; it searches t from 0 to `end`.
-inline void set_ray(WalkingRays& p, int i, const Vec3f& org, const Vec3f& dir, float end) {
+[[gnu::always_inline]] inline void set_ray(
+    WalkingRays& p, int i, const Vec3f& org, const Vec3f& dir, float end) {
   p.org[0][i] = org.x;
   p.org[1][i] = org.y;
   p.org[2][i] = org.z;
@@ -43,7 +44,9 @@ inline void trace_corners(const SceneView& scene, const Beam& beam, Sight& sight
 }
 
 /// The w before which all corner rays end, with room for rounding.
-inline float farthest_hit(const BeamFrame& f, const Beam& beam, const Sight& sight) {
+[[gnu::always_inline]] inline float farthest_hit(const BeamFrame& f,
+                                                 const Beam& beam,
+                                                 const Sight& sight) {
   float far = 0;
   for (int i = 0; i < kCorners; ++i) {
     float w = kInfinity;

@@ -70,7 +70,7 @@ class Chosen {
   int count() const { return __builtin_popcount(lanes_); }
   /// T: float or std::uint32_t, from Lanes or their Words.
   template <class T, class Vector>
-  void store(T* to, const Vector& a) const {
+  [[gnu::always_inline]] void store(T* to, const Vector& a) const {
     store_chosen(to, a, lanes_);
   }
   /// The same of three components, from element `at` of their arrays on.
