@@ -10,6 +10,7 @@
 
 #include "kernel/grid/block_box.hpp"
 #include "kernel/grid/block_order.hpp"
+#include "kernel/grid/bucket_pairs.hpp"
 #include "kernel/grid/build_progress.hpp"
 #include "kernel/grid/cell_finder.hpp"
 #include "kernel/grid/distance_field.hpp"
@@ -27,37 +28,12 @@ namespace grelha {
 namespace {
 
 constexpr std::size_t kChunk = 2048;
-constexpr std::size_t kMostBuckets = 256;
-constexpr unsigned kLeastShift = 8;  ///< a bucket has at least 2^8 cells
-constexpr double kEmitShare = .2;    ///< of the time; counting takes next to none
+constexpr double kEmitShare = .2;  ///< of the time; counting takes next to none
 /// entries of one kind in a cell, from which on it is looked through for copies
 constexpr std::uint32_t kCrowded = 1024;
 constexpr std::uint64_t kMostEntries = 0xFFFFFF00u;
 
 using PerKind = std::array<std::uint64_t, kKinds>;
-
-struct Pair {
-  std::uint32_t cell, id;
-};
-
-struct PairChunk {
-  RawVector<Pair> pairs;             ///< by bucket; within one as they came
-  std::vector<std::uint32_t> first;  ///< [buckets + 1]
-};
-
-/// Runs of 2^shift cells each, the last perhaps shorter.
-struct Buckets {
-  std::size_t cells, count;
-  unsigned shift = kLeastShift;
-
-  explicit Buckets(std::size_t all) : cells(all) {
-    while (((cells - 1) >> shift) >= kMostBuckets)
-      ++shift;
-    count = ((cells - 1) >> shift) + 1;
-  }
-  std::size_t begin(std::size_t bucket) const { return bucket << shift; }
-  std::size_t end(std::size_t bucket) const { return std::min((bucket + 1) << shift, cells); }
-};
 
 /// What all passes see.
 struct Filling {
@@ -117,20 +93,6 @@ void find_kinds(Filling& f) {
     if (first != f.ids.end() && ids.has(Shape::kKind, *first))
       f.store.of<Shape>().first.resize(f.buckets.cells + 1);
   });
-}
-
-/// Puts the pairs of a chunk in the order of their buckets. `first` holds how many each has, and
-/// then where they begin.
-void sort_pairs(const std::vector<Pair>& pairs, unsigned shift, PairChunk& chunk) {
-  std::vector<std::uint32_t>& first = chunk.first;
-  std::uint32_t sum = 0;
-  for (std::uint32_t& f : first)
-    sum += std::exchange(f, sum);
-  chunk.pairs.resize(pairs.size());
-  for (const Pair& pair : pairs)
-    chunk.pairs[first[pair.cell >> shift]++] = pair;
-  std::copy_backward(first.begin(), first.end() - 1, first.end());
-  first[0] = 0;
 }
 
 /// The first pass, of one chunk. `cells_of(id, visit)` names the cells.
