@@ -20,6 +20,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include "frontend/input/read_scene.hpp"
 #include "perf/build/clock.hpp"
 #include "perf/build/embree_build.hpp"
 #include "perf/build/same_grids.hpp"

@@ -18,6 +18,7 @@
 #include <string>
 #include <vector>
 
+#include "frontend/input/read_scene.hpp"
 #include "kernel/grid/world_impl.hpp"
 #include "perf/ray_sets.hpp"
 #include "perf/timing.hpp"

@@ -15,6 +15,7 @@
 
 #include <omp.h>
 
+#include "frontend/input/read_scene.hpp"
 #include "perf/frame_rays.hpp"
 
 namespace {

@@ -19,6 +19,7 @@
 
 #include <omp.h>
 
+#include "frontend/input/read_scene.hpp"
 #include "perf/frame_rays.hpp"
 #include "tests/reference/reference.hpp"
 

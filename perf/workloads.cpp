@@ -6,6 +6,7 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "frontend/input/read_scene.hpp"
 #include "kernel/scene/frame.hpp"
 #include "kernel/grid/world_impl.hpp"
 #include "scenes/generators.hpp"

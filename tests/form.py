@@ -27,18 +27,6 @@ CLANG_FORMAT = "14"  # each version has its own taste
 
 # What main does not meet yet. An exception that is no longer needed is an offence.
 EXCEPTIONS = {
-    "file": (
-        "frontend/cli/options.cpp", "frontend/nff/nff_reader.cpp", "kernel/features/doubt.hpp",
-    ),
-    "comma": (
-        "kernel/features/doubt.hpp",
-    ),
-    "lines": (
-        "frontend/cli/options.cpp", "kernel/features/doubt.hpp",
-    ),
-    "branches": (
-        "kernel/features/doubt.hpp",
-    ),
 }
 
 LINK = re.compile(r"https?://")

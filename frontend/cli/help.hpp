@@ -23,19 +23,11 @@ struct CommandHelp {
   bool shows(const OptionHelp& option) const;
 };
 
-/// Every command, as parse_command() knows it.
-std::vector<CommandHelp> all_commands();
-
 std::string join(const std::vector<std::string>& words, const char* between = " ");
 
 /// At most 80 columns wide; `all`: with the options that --help leaves out.
 std::string help_text(const CommandHelp& command, bool all);
 /// Help of the program itself; `all`: with everything of every command.
 std::string program_help(const std::vector<CommandHelp>& commands, bool all);
-
-std::string man_page(const std::vector<CommandHelp>& commands);
-std::string bash_completion(const std::vector<CommandHelp>& commands);
-std::string zsh_completion(const std::vector<CommandHelp>& commands);
-std::string fish_completion(const std::vector<CommandHelp>& commands);
 
 }  // namespace grelha

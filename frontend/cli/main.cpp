@@ -2,7 +2,7 @@
 // written. 2: bad usage, or a scene that cannot be one. 128 and its number: a signal stopped a
 // render that can go on. This is the one file of the frontend that knows the generators.
 #include "frontend/cli/console.hpp"
-#include "frontend/cli/options.hpp"
+#include "frontend/cli/command_line.hpp"
 #include "frontend/cli/render_scene.hpp"
 #include "frontend/commands/batch.hpp"
 #include "frontend/commands/nothing_seen.hpp"

@@ -1,10 +1,24 @@
 #pragma once
+// Every option, said once.
 
 #include "frontend/commands/commands.hpp"
 
+namespace CLI {
+class App;
+}
+
 namespace grelha {
 
-/// Throws UsageError.
-Command parse_command(int argc, const char* const* argv);
+/// What the commands' options fill in.
+struct Commands {
+  RenderCommand render;
+  InfoCommand info;
+  CompareCommand compare;
+  MergeCommand merge;
+  SceneCommand scene;
+};
+
+/// Adds the commands, each with its options.
+void add_commands(CLI::App& app, Commands& commands);
 
 }  // namespace grelha

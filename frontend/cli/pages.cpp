@@ -1,5 +1,5 @@
 // The man page and the shells' completions, of what help.hpp says.
-#include "frontend/cli/help.hpp"
+#include "frontend/cli/pages.hpp"
 
 #include <algorithm>
 #include <iterator>

@@ -1,8 +1,9 @@
+#include "frontend/commands/needs.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "frontend/commands/report.hpp"
 #include "grelha/scene_spans.hpp"
 
 namespace grelha {

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <span>
 
+#include "frontend/commands/needs.hpp"
 #include "frontend/commands/report.hpp"
 #include "grelha/scene_spans.hpp"
 

@@ -1,5 +1,6 @@
 #include "frontend/commands/report.hpp"
 
+#include "frontend/commands/needs.hpp"
 #include "frontend/files/atomic_file.hpp"
 #include "frontend/files/memory_limit.hpp"
 
@@ -12,7 +13,6 @@
 #include <cstdio>
 
 namespace grelha {
-
 namespace {
 
 using Json = nlohmann::ordered_json;

@@ -37,27 +37,6 @@ struct SceneMemory {
   std::uint64_t peak = 0;              ///< at most, be it while reading, building or rendering
 };
 
-/// Which parts of a renderer a scene calls for, from what its primitives use: an unused material
-/// asks for nothing.
-struct Needs {
-  bool spheres = false, triangles = false, cones = false, planes = false;
-  bool smooth_normals = false;
-  bool reflection = false;  ///< a mirror weight, or glass, which reflects totally at grazing angles
-  bool refraction = false, fresnel = false, emission = false, roughness = false;
-  bool area_lights = false, lens = false, environment = false;
-  bool operator==(const Needs&) const = default;
-};
-
-Needs needs_of(const SceneFile& file);
-
-/// The least box around everything but planes; `empty` when there is nothing.
-struct SceneBounds {
-  bool empty = true;
-  Float3 low, high;
-};
-
-SceneBounds bounds_of(const Geometry& geometry);
-
 std::string stats_json(const RenderCommand& command, const RunReport& report);
 /// `grids`: absent when they were not built.
 std::string info_json(const SceneFile& file,

@@ -1,3 +1,5 @@
+#include "frontend/files/load_file.hpp"
+
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/stat.h>
@@ -12,8 +14,8 @@
 #include <span>
 
 #include "frontend/files/load_progress.hpp"
+#include "frontend/files/parse_error.hpp"
 #include "frontend/files/plausible.hpp"
-#include "frontend/files/text.hpp"
 
 namespace grelha {
 namespace {

@@ -1,3 +1,5 @@
+#include "frontend/input/read_scene.hpp"
+
 #include <algorithm>
 #include <new>
 #include <stdexcept>
@@ -6,6 +8,7 @@
 #include "frontend/files/load_progress.hpp"
 #include "frontend/files/memory_limit.hpp"
 #include "frontend/files/plausible.hpp"
+#include "frontend/files/load_file.hpp"
 #include "frontend/files/text.hpp"
 #include "frontend/input/default_view.hpp"
 #include "frontend/nff/nff_reader.hpp"

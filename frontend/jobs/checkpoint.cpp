@@ -5,6 +5,7 @@
 #include "frontend/files/atomic_file.hpp"
 #include "frontend/files/little_endian.hpp"
 #include "frontend/files/parse_error.hpp"
+#include "frontend/files/load_file.hpp"
 #include "frontend/files/text.hpp"
 
 namespace grelha {

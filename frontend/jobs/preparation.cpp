@@ -3,6 +3,7 @@
 #include "frontend/commands/progress.hpp"
 #include "frontend/files/memory_limit.hpp"
 #include "frontend/files/parse_error.hpp"
+#include "frontend/input/read_scene.hpp"
 #include "frontend/jobs/partial.hpp"
 #include "frontend/jobs/stop_signals.hpp"
 

@@ -1,20 +1,17 @@
 #include "frontend/nff/nff_reader.hpp"
 
 #include <algorithm>
-#include <filesystem>
-#include <limits>
 #include <vector>
 
 #include "frontend/files/load_progress.hpp"
-#include "frontend/files/memory_limit.hpp"
 #include "frontend/files/plausible.hpp"
 #include "frontend/nff/nff_boxes.hpp"
 #include "frontend/nff/nff_input.hpp"
 #include "frontend/nff/nff_lights.hpp"
 #include "frontend/nff/nff_material.hpp"
+#include "frontend/nff/nff_mesh_files.hpp"
 #include "frontend/nff/nff_view.hpp"
 #include "frontend/nff/nff_words.hpp"
-#include "frontend/ply/ply_reader.hpp"
 #include "frontend/scene/scene_builder.hpp"
 #include "grelha/render.hpp"
 
@@ -28,13 +25,10 @@ class NffReader {
             const Warn& warn,
             const ReadOptions& options,
             LoadProgress* progress)
-      : options_(options),
-        load_(progress),
-        progress_(progress, text.data()),
-        folder_(std::filesystem::path(path).parent_path()),
+      : progress_(progress, text.data()),
         words_(path, text, text.starts_with("\xEF\xBB\xBF") ? 3 : 0, '#'),
-        warn_(warn),
         warnings_(warn),
+        meshes_(path, warn, options, progress),
         input_(words_, warnings_),
         build_(file_),
         lights_(file_) {
@@ -57,7 +51,6 @@ class NffReader {
   static std::string meant(std::string_view word);
   void refuse_sense8(std::string_view word);
   std::uint32_t material(std::string_view keyword);
-  bool is_outside(const std::string& path) const;
   void polygon(std::string_view keyword, bool patch);
   std::vector<std::uint32_t> mesh_corners(std::size_t faces, std::size_t vertices);
 
@@ -83,14 +76,11 @@ class NffReader {
   void read_accel(std::string_view keyword);
   void read_spp(std::string_view keyword);
 
-  ReadOptions options_;
-  LoadProgress* load_;
   ParseProgress progress_;
-  std::filesystem::path folder_;
   SceneFile file_;
   Words words_;
-  const Warn& warn_;
   Warnings warnings_;
+  NffMeshFiles meshes_;
   NffInput input_;
   SceneBuilder build_;
   NffView view_;
@@ -236,8 +226,8 @@ void NffReader::read_mat(std::string_view keyword) {
 }
 
 void NffReader::read_pl(std::string_view keyword) {
-  const Float3 a = input_.point("the plane's first point"),
-               b = input_.point("the plane's second point");
+  const Float3 a = input_.point("the plane's first point");
+  const Float3 b = input_.point("the plane's second point");
   build_.plane(a, b, input_.point("the plane's third point"), material(keyword));
   ++file_.counts.pl;
 }
@@ -288,8 +278,8 @@ std::vector<std::uint32_t> NffReader::mesh_corners(std::size_t faces, std::size_
 
 void NffReader::read_mesh(std::string_view keyword) {
   Mesh mesh;
-  const std::size_t vertices = input_.count("the mesh's vertices", 6),
-                    faces = input_.count("the mesh's faces", 6);
+  const std::size_t vertices = input_.count("the mesh's vertices", 6);
+  const std::size_t faces = input_.count("the mesh's faces", 6);
   mesh.x.reserve(vertices);
   mesh.y.reserve(vertices);
   mesh.z.reserve(vertices);
@@ -305,59 +295,13 @@ void NffReader::read_mesh(std::string_view keyword) {
   file_.counts.mesh += faces;
 }
 
-/// True where a file lies outside the scene's folder, all links followed. The reader asks before it
-/// opens the file, so a scene cannot even find out what there is.
-bool NffReader::is_outside(const std::string& path) const {
-  std::error_code error;
-  const std::filesystem::path home =
-      std::filesystem::canonical(folder_.empty() ? "." : folder_, error);
-  if (error)
-    return true;
-  // weakly_canonical() would leave a relative path where nothing is there.
-  const std::filesystem::path file =
-      std::filesystem::weakly_canonical(std::filesystem::absolute(path), error);
-  if (error)
-    return true;
-  return std::mismatch(home.begin(), home.end(), file.begin(), file.end()).first != home.end();
-}
-
 void NffReader::read_ply(std::string_view keyword) {
   const std::string_view name = words_.rest_of_line();
-  if (name.empty())
-    throw ParseError(input_.position(name), "a file name after \"ply\"", "end of line");
-  // the system would read no further, checks would
-  if (name.find('\0') != name.npos)
-    input_.fail(name, "a file name after \"ply\"");
-  const std::string path = (folder_ / std::string(name)).string();
-  if (!options_.allow_outside && is_outside(path))
-    throw ParseError(
-        input_.position(name),
-        "expected a file in the scene's folder or below it (or --allow-outside), found " +
-            quoted(name));
-  Mesh mesh;
-  try {
-    std::string bytes =
-        load_file(path, load_, false, [&](std::string_view text, std::size_t fresh) {
-          judge_beginning(path, true, text, fresh);
-        });
-    mesh = read_ply_mesh(path, bytes, warn_, load_);
-    file_.source_bytes = std::max<std::uint64_t>(file_.source_bytes, words_.size() + bytes.size());
-  } catch (const std::bad_alloc&) {
-    throw OutOfMemory(path);
-  } catch (const FileError& error) {
-    const std::string reason =
-        std::string(error.what()).substr(path.size() + std::string_view(": error: ").size());
-    throw FileError(path, reason + " (named at " + input_.position(name).text() + ')');
-  }
+  const std::string path = meshes_.path(input_, name);
+  Mesh mesh = meshes_.read(input_, name, path, file_);
   const std::size_t faces = mesh.face_count();
   if (faces == 0)
     file_.points += mesh.vertex_count();
-  const Triangles& triangles = file_.scene.geometry.triangles;
-  constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max();
-  if (mesh.vertex_count() > kMost - triangles.vertex_count() ||
-      mesh.corners.size() > kMost - triangles.size())
-    throw ParseError(input_.position(name),
-                     "expected fewer than 2^32 vertices and triangles in all, found more");
   build_.mesh(std::move(mesh), material(keyword));
   file_.counts.ply += faces;
   file_.meshes.push_back(path);

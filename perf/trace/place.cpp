@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "frontend/input/read_scene.hpp"
+
 namespace grelha::perf {
 namespace {
 

@@ -2,6 +2,7 @@
 // that lead nowhere.
 #include <sstream>
 
+#include "frontend/input/read_scene.hpp"
 #include "frontend/files/parse_error.hpp"
 #include "tests/fuzz/render_small.hpp"
 #include "tests/fuzz/target.hpp"

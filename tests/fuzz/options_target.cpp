@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "frontend/cli/options.hpp"
+#include "frontend/cli/command_line.hpp"
 #include "frontend/commands/batch.hpp"
 #include "frontend/files/parse_error.hpp"
 #include "tests/fuzz/target.hpp"

@@ -1,4 +1,5 @@
 // Fuzzes PLY: the bytes are a mesh, shown as one is that comes with no scene.
+#include "frontend/input/read_scene.hpp"
 #include "frontend/files/parse_error.hpp"
 #include "tests/fuzz/render_small.hpp"
 #include "tests/fuzz/target.hpp"

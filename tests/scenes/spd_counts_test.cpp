@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "frontend/scene/scene_file.hpp"
+#include "frontend/input/read_scene.hpp"
 #include "grelha/render.hpp"
 #include "scenes/generators.hpp"
 

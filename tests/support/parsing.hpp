@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "frontend/cli/options.hpp"
+#include "frontend/cli/command_line.hpp"
 
 namespace grelha::test {
 

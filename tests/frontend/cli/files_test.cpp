@@ -1,4 +1,5 @@
 // What the program may write over, and what it may not, however it is called.
+#include "frontend/input/read_scene.hpp"
 #include "frontend/commands/first_hits.hpp"
 #include "frontend/files/memory_limit.hpp"
 #include "frontend/files/place.hpp"

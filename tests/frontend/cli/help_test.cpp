@@ -1,4 +1,5 @@
-#include "frontend/cli/help.hpp"
+#include "frontend/cli/command_line.hpp"
+#include "frontend/cli/pages.hpp"
 
 #include "frontend/files/nearest.hpp"
 #include "tests/support/parsing.hpp"

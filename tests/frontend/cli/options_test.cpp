@@ -1,4 +1,4 @@
-#include "frontend/cli/options.hpp"
+#include "frontend/cli/command_line.hpp"
 
 #include "frontend/commands/batch.hpp"
 #include "frontend/commands/commands.hpp"

@@ -1,3 +1,4 @@
+#include "frontend/commands/needs.hpp"
 #include "frontend/commands/report.hpp"
 
 #include <gtest/gtest.h>

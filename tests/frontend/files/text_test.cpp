@@ -1,5 +1,7 @@
+#include "frontend/input/read_scene.hpp"
 #include "frontend/files/memory_limit.hpp"
 #include "frontend/files/plausible.hpp"
+#include "frontend/files/load_file.hpp"
 #include "frontend/files/text.hpp"
 
 #include <gtest/gtest.h>

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "frontend/input/read_scene.hpp"
 #include "frontend/files/text.hpp"
 #include "frontend/ply/ply_reader.hpp"
 #include "tests/support/reading.hpp"

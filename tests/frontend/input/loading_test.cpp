@@ -1,6 +1,6 @@
 // How far reading is, for every kind of file: the share never falls, says something on the way,
 // comes to 1, and stops when told.
-#include "frontend/scene/scene_file.hpp"
+#include "frontend/input/read_scene.hpp"
 #include "grelha/render.hpp"
 #include "scenes/generators.hpp"
 #include "tests/support/temporary_folder.hpp"

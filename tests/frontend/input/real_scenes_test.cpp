@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "frontend/scene/scene_file.hpp"
+#include "frontend/input/read_scene.hpp"
 
 namespace grelha {
 namespace {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <ctime>
 
+#include "frontend/input/read_scene.hpp"
 #include "tests/support/reading.hpp"
 
 namespace grelha {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "frontend/input/read_scene.hpp"
 #include "tests/support/reading.hpp"
 
 namespace grelha {

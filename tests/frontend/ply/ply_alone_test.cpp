@@ -1,3 +1,4 @@
+#include "frontend/input/read_scene.hpp"
 #include "frontend/ply/ply_reader.hpp"
 
 #include <gtest/gtest.h>

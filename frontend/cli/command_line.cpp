@@ -1,0 +1,186 @@
+#include "frontend/cli/command_line.hpp"
+
+#include "frontend/cli/option_checks.hpp"
+#include "frontend/cli/options.hpp"
+#include "frontend/files/atomic_file.hpp"
+#include "frontend/files/nearest.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <filesystem>
+
+namespace grelha {
+
+namespace {
+
+std::vector<std::string> option_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* o : app.get_options()) {
+    for (const std::string& name : o->get_lnames())
+      names.push_back("--" + name);
+    for (const std::string& name : o->get_snames())
+      names.push_back("-" + name);
+  }
+  return names;
+}
+
+/// `; did you mean --size?`, or nothing.
+std::string meant_option(const CLI::App& app, const std::string& word) {
+  const std::vector<std::string> names = option_names(app);
+  return did_you_mean(word.substr(0, word.find('=')),
+                      std::vector<std::string_view>(names.begin(), names.end()));
+}
+
+void want_known_option(const CLI::App& app, const std::string& word) {
+  const std::vector<std::string> names = option_names(app);
+  if (std::find(names.begin(), names.end(), word) == names.end())
+    throw UsageError("The following argument was not expected: " + word + meant_option(app, word) +
+                     " (see --help)");
+}
+
+/// CLI11 would only say that a command is missing.
+void want_known_command(const CLI::App& app, const std::string& word) {
+  if (word.starts_with('-'))
+    return want_known_option(app, word);
+  std::string commands;
+  std::vector<std::string_view> names;
+  for (const CLI::App* sub : app.get_subcommands({})) {
+    if (sub->get_name() == word)
+      return;
+    commands += (commands.empty() ? "" : ", ") + sub->get_name();
+    names.push_back(sub->get_name());
+  }
+  throw UsageError("command: expected one of " + commands + ", found \"" + word + '"' +
+                   did_you_mean(word, names));
+}
+
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+/// The command that was asked for, or the program itself.
+const CLI::App& asked(const CLI::App& app) {
+  const auto commands = app.get_subcommands();
+  return commands.empty() ? app : *commands.front();
+}
+
+/// The option that the first word nobody took was probably meant to be.
+std::string meant_option_left(const CLI::App& app) {
+  const std::vector<std::string> left = app.remaining(true);
+  const auto option = std::find_if(
+      left.begin(), left.end(), [](const std::string& word) { return word.starts_with('-'); });
+  return option == left.end() ? "" : meant_option(asked(app), *option);
+}
+
+/// Refuses the first option that was given more than once: CLI11 would count.
+void refuse_twice(const CLI::App& app) {
+  for (const CLI::Option* o : asked(app).get_options())
+    if (!o->get_positional() && o->get_expected_max() == 1 && o->count() > 1)
+      throw UsageError(o->get_name() + ": expected once, found \"" + o->results()[0] + "\" and \"" +
+                       o->results()[1] + '"');
+}
+
+CommandHelp help_of(const CLI::App& sub) {
+  CommandHelp help{sub.get_name(), sub.get_description(), {}, {}, sub.get_footer()};
+  for (const CLI::Option* o : sub.get_options()) {
+    if (o->get_positional()) {
+      const std::string name = o->get_name(true) + (o->get_expected_max() > 1 ? "..." : "");
+      help.usage += (help.usage.empty() ? "" : " ") + (o->get_required() ? name : "[" + name + "]");
+      continue;
+    }
+    OptionHelp option{{}, o->get_type_name(), o->get_description()};
+    for (const std::string& name : o->get_snames())
+      option.names.push_back("-" + name);
+    for (const std::string& name : o->get_lnames())
+      option.names.push_back("--" + name);
+    if (o != sub.get_help_ptr() && o != sub.get_help_all_ptr())
+      help.options.push_back(std::move(option));
+  }
+  return help;
+}
+
+TextCommand asked_help(const CLI::App& app, bool all) {
+  const CLI::App& about = asked(app);
+  return {&about == &app ? program_help(all_commands(), all) : help_text(help_of(about), all)};
+}
+
+}  // namespace
+
+std::vector<CommandHelp> all_commands() {
+  CLI::App app;
+  Commands unread;
+  add_commands(app, unread);
+  std::vector<CommandHelp> all;
+  for (const CLI::App* sub : app.get_subcommands({}))
+    all.push_back(help_of(*sub));
+  return all;
+}
+
+/// `grelha help COMMAND` as `grelha COMMAND --help`
+static Command help_of_command(const char* program, const std::string& command) {
+  const char* const words[] = {program, command.empty() ? "--help" : command.c_str(), "--help"};
+  return parse_command(command.empty() ? 2 : 3, words);
+}
+
+/// What follows the program's name, last first as CLI11 takes it. `-o=FILE` means FILE, as
+/// `--output=FILE` does.
+static std::vector<std::string> words_of(int argc, const char* const* argv) {
+  constexpr std::size_t kValue = 3;  // behind "-o="
+  std::vector<std::string> words;
+  for (int i = argc - 1; i > 0; --i) {
+    std::string word = argv[i];
+    const bool is_short =
+        word.size() >= kValue && word[0] == '-' && word[1] != '-' && word[2] == '=';
+    if (is_short)
+      words.push_back(word.substr(kValue));
+    words.push_back(is_short ? word.substr(0, kValue - 1) : std::move(word));
+  }
+  return words;
+}
+
+template <class C>
+static C checked(const C& command) {
+  check_together(command);
+  return command;
+}
+
+Command parse_command(int argc, const char* const* argv) {
+  CLI::App app{"", "grelha"};
+  app.set_version_flag("-V,--version", "grelha " GRELHA_VERSION);
+  app.require_subcommand(1);
+  Commands commands;
+  add_commands(app, commands);
+  if (argc > 1 && argv[1] == std::string_view("help"))
+    return help_of_command(argv[0], argc > 2 ? argv[2] : "");
+  if (argc > 1)
+    want_known_command(app, argv[1]);
+  try {
+    app.parse(words_of(argc, argv));
+  } catch (const CLI::CallForHelp&) {
+    return asked_help(app, false);
+  } catch (const CLI::CallForAllHelp&) {
+    return asked_help(app, true);
+  } catch (const CLI::CallForVersion& version) {
+    return TextCommand{std::string(version.what()) + '\n'};
+  } catch (const CLI::ExtrasError& error) {
+    throw UsageError(first_line(error.what()) + meant_option_left(app) + " (see --help)");
+  } catch (const CLI::ParseError& error) {
+    refuse_twice(app);
+    throw UsageError(first_line(error.what()) + " (see --help)");
+  }
+  if (app.got_subcommand("info"))
+    return checked(commands.info);
+  if (app.got_subcommand("compare"))
+    return commands.compare;
+  if (app.got_subcommand("merge"))
+    return checked(commands.merge);
+  if (app.got_subcommand("scene"))
+    return checked(commands.scene);
+  RenderCommand& render = commands.render;
+  RenderCommand first = render;  // as commands_for() will name its picture
+  if (first.image.empty() || is_folder(first.image))
+    first.image += default_image(first.scenes.front(), first.format);
+  check_together(first);
+  return render;
+}
+
+}  // namespace grelha

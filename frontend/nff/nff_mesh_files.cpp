@@ -1,0 +1,91 @@
+#include "frontend/nff/nff_mesh_files.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <new>
+
+#include "frontend/files/load_file.hpp"
+#include "frontend/files/memory_limit.hpp"
+#include "frontend/files/plausible.hpp"
+#include "frontend/ply/ply_reader.hpp"
+
+namespace grelha {
+namespace {
+
+void want_room(const NffInput& input,
+               std::string_view name,
+               const Mesh& mesh,
+               const Triangles& triangles) {
+  constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max();
+  if (mesh.vertex_count() > kMost - triangles.vertex_count() ||
+      mesh.corners.size() > kMost - triangles.size())
+    throw ParseError(input.position(name),
+                     "expected fewer than 2^32 vertices and triangles in all, found more");
+}
+
+}  // namespace
+
+NffMeshFiles::NffMeshFiles(const std::string& scene,
+                           const Warn& warn,
+                           const ReadOptions& options,
+                           LoadProgress* progress)
+    : folder_(std::filesystem::path(scene).parent_path()),
+      warn_(warn),
+      allow_outside_(options.allow_outside),
+      load_(progress) {}
+
+/// True where a file lies outside the scene's folder, all links followed. The reader asks before it
+/// opens the file, so a scene cannot even find out what there is.
+bool NffMeshFiles::is_outside(const std::string& path) const {
+  std::error_code error;
+  const std::filesystem::path home =
+      std::filesystem::canonical(folder_.empty() ? "." : folder_, error);
+  if (error)
+    return true;
+  // weakly_canonical() would leave a relative path where nothing is there.
+  const std::filesystem::path file =
+      std::filesystem::weakly_canonical(std::filesystem::absolute(path), error);
+  if (error)
+    return true;
+  return std::mismatch(home.begin(), home.end(), file.begin(), file.end()).first != home.end();
+}
+
+std::string NffMeshFiles::path(const NffInput& input, std::string_view name) const {
+  if (name.empty())
+    throw ParseError(input.position(name), "a file name after \"ply\"", "end of line");
+  // the system would read no further, checks would
+  if (name.find('\0') != name.npos)
+    input.fail(name, "a file name after \"ply\"");
+  const std::string path = (folder_ / std::string(name)).string();
+  if (!allow_outside_ && is_outside(path))
+    throw ParseError(
+        input.position(name),
+        "expected a file in the scene's folder or below it (or --allow-outside), found " +
+            quoted(name));
+  return path;
+}
+
+Mesh NffMeshFiles::read(const NffInput& input,
+                        std::string_view name,
+                        const std::string& path,
+                        SceneFile& scene) const {
+  try {
+    const auto judge = [&](std::string_view text, std::size_t fresh) {
+      judge_beginning(path, true, text, fresh);
+    };
+    const std::string bytes = load_file(path, load_, false, judge);
+    Mesh mesh = read_ply_mesh(path, bytes, warn_, load_);
+    const std::uint64_t held = input.words.size() + bytes.size();
+    scene.source_bytes = std::max(scene.source_bytes, held);
+    want_room(input, name, mesh, scene.scene.geometry.triangles);
+    return mesh;
+  } catch (const std::bad_alloc&) {
+    throw OutOfMemory(path);
+  } catch (const FileError& error) {
+    const std::string reason =
+        std::string(error.what()).substr(path.size() + std::string_view(": error: ").size());
+    throw FileError(path, reason + " (named at " + input.position(name).text() + ')');
+  }
+}
+
+}  // namespace grelha
