@@ -185,19 +185,23 @@ struct Waiting {
   int first = 0, end = 0;
 
   Waiting(const GridView& g, const WalkingRays& p) {
-    each_live_group(p, [&](int i, int) {
-      const Lanes org[3] = {
-          load<Lanes>(p.org[0] + i), load<Lanes>(p.org[1] + i), load<Lanes>(p.org[2] + i)};
-      const Lanes dir[3] = {
-          load<Lanes>(p.dir[0] + i), load<Lanes>(p.dir[1] + i), load<Lanes>(p.dir[2] + i)};
-      const Lanes begin = greater(load<Lanes>(p.start + i), load<Lanes>(p.t_min + i));
-      Course<Lanes> c;
-      Lanes cell[3];
-      const Mask<Lanes> come = enter(g, org, dir, begin, load<Lanes>(p.best + i), c, cell);
-      course.put(i, c, cell);
-      for (unsigned rays = bits(come); rays != 0; rays &= rays - 1)
-        ray[end++] = static_cast<std::uint8_t>(i + __builtin_ctz(rays));
-    });
+    each_live_group(p, [&](int i, int) { add(g, p, i); });
+  }
+
+ private:
+  void add(const GridView& g, const WalkingRays& p, int i) {
+    Lanes org[3];
+    Lanes dir[3];
+    for (int a = 0; a < 3; ++a) {
+      org[a] = load<Lanes>(p.org[a] + i);
+      dir[a] = load<Lanes>(p.dir[a] + i);
+    }
+    const Lanes begin = greater(load<Lanes>(p.start + i), load<Lanes>(p.t_min + i));
+    Course<Lanes> c;
+    Lanes cell[3];
+    const Mask<Lanes> come = enter(g, org, dir, begin, load<Lanes>(p.best + i), c, cell);
+    course.put(i, c, cell);
+    each_bit(bits(come), [&](int k) { ray[end++] = static_cast<std::uint8_t>(i + k); });
   }
 };
 
@@ -211,11 +215,43 @@ struct Walkers {
   int of[kAbreast] = {};  ///< place in the packet
   unsigned walking = 0;   ///< bits of those that do
 
+  /// The numbers of their cells.
+  [[gnu::always_inline]] Words<Lanes> cells(const GridView& g) const {
+    const auto at = [&](int a) { return to_words(load<Lanes>(course.cell[a])); };
+    const auto cells_along = [&](int a) { return static_cast<std::uint32_t>(g.n[a]); };
+    return at(0) + cells_along(0) * (at(1) + cells_along(1) * at(2));
+  }
+
+  /// Tests rays against what is in their cells. Returns bits of those whose search is over.
+  template <bool kAny>
+  [[gnu::always_inline]] unsigned test(const CellLists& lists,
+                                       const Words<Lanes>& cell,
+                                       unsigned rays,
+                                       Counters& n) {
+    std::uint32_t in[kAbreast];
+    store_words(in, cell);
+    const unsigned over = test_cells<kAny>(ray, lists, in, rays, n);
+    each_bit(rays, [&](int k) { best[k] = ray[k].best; });
+    return over;
+  }
+
+  /// Goes on to the next cells. Returns bits of those that come there.
+  [[gnu::always_inline]] unsigned go_on(const GridView& g, const Lanes& distance) {
+    Lanes at[3];
+    for (int a = 0; a < 3; ++a)
+      at[a] = load<Lanes>(course.cell[a]);
+    const Mask<Lanes> going = step(g, course.get(0), distance, load<Lanes>(best), at);
+    for (int a = 0; a < 3; ++a)
+      store(course.cell[a], select(going, at[a], Lanes(0)));
+    return bits(going);
+  }
+
   /// Waiting rays take the places of those that are done.
   void refill(Waiting& w, const Packet<In>& p, bool any_triangles) {
     for (unsigned idle = ~walking & ((1u << kAbreast) - 1u); idle != 0 && w.first < w.end;
          idle &= idle - 1) {
-      const int k = __builtin_ctz(idle), i = w.ray[w.first++];
+      const int k = __builtin_ctz(idle);
+      const int i = w.ray[w.first++];
       course.copy(k, w.course, i);
       ray[k] = single_of(p, i, any_triangles);
       best[k] = ray[k].best;
@@ -225,10 +261,7 @@ struct Walkers {
   }
   void retire(unsigned done, Packet<In>& p) {
     walking &= ~done;
-    for (; done != 0; done &= done - 1) {
-      const int k = __builtin_ctz(done);
-      put_back(ray[k], p, of[k]);
-    }
+    each_bit(done, [&](int k) { put_back(ray[k], p, of[k]); });
   }
 };
 
@@ -238,27 +271,12 @@ template <bool kAny, class In>
 [[gnu::always_inline]] inline unsigned look_and_step(const GridView& g,
                                                      Walkers<In>& w,
                                                      Counters& n) {
-  const std::uint32_t nx = static_cast<std::uint32_t>(g.n[0]),
-                      ny = static_cast<std::uint32_t>(g.n[1]);
-  Lanes at[3];
-  for (int a = 0; a < 3; ++a)
-    at[a] = load<Lanes>(w.course.cell[a]);
-  const Words<Lanes> cell = to_words(at[0]) + nx * (to_words(at[1]) + ny * to_words(at[2]));
+  const Words<Lanes> cell = w.cells(g);
   const Lanes distance = bytes_at(g.distance, cell);
   unsigned over = 0;
-  if (unsigned full = bits(distance == Lanes(0)) & w.walking; full != 0) {
-    std::uint32_t cells[kAbreast];
-    store_words(cells, cell);
-    over = test_cells<kAny>(w.ray, g.lists, cells, full, n);
-    for (; full != 0; full &= full - 1) {
-      const int k = __builtin_ctz(full);
-      w.best[k] = w.ray[k].best;
-    }
-  }
-  const Mask<Lanes> going = step(g, w.course.get(0), distance, load<Lanes>(w.best), at);
-  for (int a = 0; a < 3; ++a)
-    store(w.course.cell[a], select(going, at[a], Lanes(0)));
-  return over | ~bits(going);
+  if (const unsigned full = bits(distance == Lanes(0)) & w.walking; full != 0)
+    over = w.template test<kAny>(g.lists, cell, full, n);
+  return over | ~w.go_on(g, distance);
 }
 
 /// The live rays of a packet through a grid, each from p.start on and on its own (Amanatides & Woo

@@ -92,27 +92,32 @@ inline void walk_one(const GridView& g, Single<In>& r, Counters& n) {
   }
 }
 
-/// What a ray meets first, or with kAny whether it meets anything: t is not to be looked at then.
+/// All that a prepared ray meets. Returns what was taken from t.
 template <bool kAny>
-inline Hit trace_one(const SceneView& scene, const Ray& ray) {
-  Single<InFloat> r;
-  if (!prepare(r,
-               {ray.org.x, ray.org.y, ray.org.z},
-               {ray.dir.x, ray.dir.y, ray.dir.z},
-               ray.t_min,
-               ray.t_max,
-               scene.geometry.of<Triangle>().count > 0))
-    return {ray.t_max, kNoPrimitive};
+inline float walk_scene(const SceneView& scene, Single<InFloat>& r) {
   Counters n;
   if (test_infinite<kAny>(scene, r, n))
-    return {r.best, r.id};
-  const float shift = static_cast<float>(bring_near(scene, r));
+    return 0;
+  const float shift = bring_near(scene, r);
   if (test_cell<kAny>(r, scene.outside, 0, n))
-    return {r.best, r.id};
+    return 0;
   each_grid<kAny>(scene, r.org, r.dir, r.t_min, [&](const GridView& g) {
     if (serves(g, r.org))
       walk_one<kAny>(g, r, n);
   });
+  return shift;
+}
+
+/// What a ray meets first, or with kAny whether it meets anything: t is not to be looked at then.
+template <bool kAny>
+inline Hit trace_one(const SceneView& scene, const Ray& ray) {
+  const Vec3<float> org{ray.org.x, ray.org.y, ray.org.z};
+  const Vec3<float> dir{ray.dir.x, ray.dir.y, ray.dir.z};
+  const bool any_triangles = scene.geometry.of<Triangle>().count > 0;
+  Single<InFloat> r;
+  if (!prepare(r, org, dir, ray.t_min, ray.t_max, any_triangles))
+    return {ray.t_max, kNoPrimitive};
+  const float shift = walk_scene<kAny>(scene, r);
   return {r.id == kNoPrimitive ? ray.t_max : r.best + shift, r.id};
 }
 

@@ -1,30 +1,11 @@
 #pragma once
-// Rays side by side, and the tests of all of them against one primitive (SIMD over rays).
+// Rays side by side in float or in double, and the tests of all of them against one primitive (SIMD
+// over rays).
 
 #include "grelha/stats.hpp"
-#include "kernel/grid/view.hpp"
+#include "kernel/trace/walking_rays.hpp"
 
 namespace grelha::GRELHA_ISA {
-
-/// Most rays in a packet. A word has a bit for each group of lanes.
-inline constexpr int kPacket = kWidth<Lanes> == 1 ? 64 : 256;
-inline constexpr float kInfinity = __builtin_inff();
-
-/// Up to kPacket rays as arrays, as they walk grids. A ray searches (t_min, best); best <= t_min
-/// switches it off. Places between `size` and the end of the last group are switched off. `id`
-/// holds the bits of the nearest primitive so far.
-struct WalkingRays {
-  alignas(64) float org[3][kPacket];
-  alignas(64) float dir[3][kPacket];
-  alignas(64) float t_min[kPacket];
-  alignas(64) float best[kPacket];
-  alignas(64) float start[kPacket];  ///< t from which a grid is still to be searched
-  alignas(64) float id[kPacket];
-  alignas(64) float axis[kPacket];          ///< of the shear: 0, 1 or 2
-  int group_axis[kPacket / kWidth<Lanes>];  ///< the axis all rays of a group share, or -1
-  int size, groups;
-  std::uint64_t live;  ///< bit g: group g has a ray that still searches
-};
 
 /// What is tested in float: the rays that walk.
 template <class In>
@@ -65,21 +46,6 @@ inline void set_best(Packet<InDouble>& p, int i, double t) {
   p.best[i] = not_below(p.moved ? t - p.shift[i] : t);
 }
 
-inline std::uint32_t id_of(float bits) { return static_cast<std::uint32_t>(float_bits(bits)); }
-inline float bits_of(std::uint32_t id) { return bits_float(static_cast<std::int32_t>(id)); }
-
-/// A component of a direction below this meets none of its planes on any way that counts, and taken
-/// instead of it never makes NaN: over a scene the ray strays by 1e-12 of it, where float strays by
-/// 1e-7.
-template <class Real>
-inline Real least_headway(const Real& x, const Real& y, const Real& z) {
-  return Real(1e-12f) * greater(greater(magnitude(x), magnitude(y)), magnitude(z));
-}
-inline Lanes least_headway(const WalkingRays& p, int i) {
-  return least_headway(
-      load<Lanes>(p.dir[0] + i), load<Lanes>(p.dir[1] + i), load<Lanes>(p.dir[2] + i));
-}
-
 template <class In>
 inline Vec3<typename In::Rays> origin(const Packet<In>& p, int i) {
   using Real = typename In::Rays;
@@ -89,20 +55,7 @@ inline Vec3<typename In::Rays> origin(const Packet<In>& p, int i) {
 }
 template <class In>
 inline Vec3<typename In::Rays> direction(const Packet<In>& p, int i) {
-  using Real = typename In::Rays;
-  return {take<Real>(p.dir[0] + i), take<Real>(p.dir[1] + i), take<Real>(p.dir[2] + i)};
-}
-
-/// Fills the last group: its empty places repeat the last ray, switched off.
-inline void fill_up(WalkingRays& p) {
-  for (int i = p.size; i < p.groups * kWidth<Lanes>; ++i) {
-    for (int a = 0; a < 3; ++a) {
-      p.org[a][i] = p.org[a][p.size - 1];
-      p.dir[a][i] = p.dir[a][p.size - 1];
-    }
-    p.t_min[i] = 0;
-    p.best[i] = -kInfinity;
-  }
+  return take_vec<typename In::Rays>(p.dir, i);
 }
 
 /// Lets tests in float take the rays that walk.
@@ -122,43 +75,35 @@ inline void set_tested(Packet<InDouble>& p) {
     p.nearest[i] = p.best[i];
 }
 
+/// What tests take of directions from i on.
+template <class In>
+[[gnu::always_inline]] inline void set_directions(Packet<In>& p, int i, bool any_triangles) {
+  using Real = typename In::Rays;
+  const Vec3<Real> d = direction(p, i);
+  store(p.inv_dd + i, Real(1) / dot(d, d));
+  if (!any_triangles)
+    return;
+  const Vec3<Real> q = permuted(take<Real>(p.axis + i), d);
+  store(p.shear[0] + i, q.x / q.z);
+  store(p.shear[1] + i, q.y / q.z);
+  store(p.shear[2] + i, Real(1) / q.z);
+}
+
 /// Completes a packet whose org, dir, t_min, best and size are set.
 template <class In>
 inline void prepare(Packet<In>& p, bool any_triangles) {
-  using Real = typename In::Rays;
   constexpr int w = kWidth<Lanes>;
   p.groups = (p.size + w - 1) / w;
   p.live = ~std::uint64_t{0} >> (64 - p.groups);
   fill_up(p);
-  const float no_id = bits_of(kNoPrimitive);
   for (int g = 0; g < p.groups; ++g) {
     const int i = g * w;
-    const Vec3<Lanes> d{
-        load<Lanes>(p.dir[0] + i), load<Lanes>(p.dir[1] + i), load<Lanes>(p.dir[2] + i)};
-    const Vec3<Lanes> o{
-        load<Lanes>(p.org[0] + i), load<Lanes>(p.org[1] + i), load<Lanes>(p.org[2] + i)};
-    const Lanes dd = dot(d, d), inv = Lanes(1) / dd;
-    store(p.id + i, Lanes(no_id));
-    // NaN and infinity times zero are NaN; a ray with one, or without a direction, meets nothing.
-    const Mask<Lanes> sound = ((o.x + o.y) + (o.z + dd) + inv) * Lanes(0) == Lanes(0);
-    store(p.best + i, select(sound, load<Lanes>(p.best + i), Lanes(-kInfinity)));
-    if (any_triangles) {
-      const Lanes ax = magnitude(d.x), ay = magnitude(d.y), az = magnitude(d.z);
-      const Mask<Lanes> x_first = both(ax >= ay, ax >= az), y_first = ay >= az;
-      const Lanes axis = select(x_first, Lanes(0), select(y_first, Lanes(1), Lanes(2)));
-      store(p.axis + i, axis);
-      p.group_axis[g] = none(axis != Lanes(p.axis[i])) ? static_cast<int>(p.axis[i]) : -1;
-    }
-    for (int k = i; k < i + w; k += kWidth<Real>) {
-      const Vec3<Real> e = direction(p, k);
-      store(p.inv_dd + k, Real(1) / dot(e, e));
-      if (!any_triangles)
-        continue;
-      const Vec3<Real> q = permuted(take<Real>(p.axis + k), e);
-      store(p.shear[0] + k, q.x / q.z);
-      store(p.shear[1] + k, q.y / q.z);
-      store(p.shear[2] + k, Real(1) / q.z);
-    }
+    store(p.id + i, Lanes(bits_of(kNoPrimitive)));
+    switch_off_unsound(p, i);
+    if (any_triangles)
+      set_axes(p, i, g);
+    for (int k = i; k < i + w; k += kWidth<typename In::Rays>)
+      set_directions(p, k, any_triangles);
   }
   set_tested(p);
 }
@@ -174,6 +119,10 @@ template <bool kAny>
   store(p.best + i, select(candidate, kAny ? Lanes(-kInfinity) : t, best));
   store(p.id + i, select(candidate, Lanes(bits_of(id)), load<Lanes>(p.id + i)));
 }
+/// Stores floats not below the lanes: those with more added than rounding takes away.
+[[gnu::always_inline]] inline void store_not_below(float* to, const DoubleLanes& a) {
+  store_narrow(to, a + (magnitude(a) * DoubleLanes(1.2e-7) + DoubleLanes(1e-44)));
+}
 /// The same, without a branch for each lane.
 template <bool kAny>
 [[gnu::always_inline]] inline void store_hits(Packet<InDouble>& p,
@@ -185,15 +134,33 @@ template <bool kAny>
   constexpr int w = kWidth<DoubleLanes>;
   store(p.nearest + i, select(candidate, t, best));
   float near[w];
-  const DoubleLanes here = p.moved ? t - load<DoubleLanes>(p.shift + i) : t;
-  // more than rounding takes away
-  store_narrow(near, here + (magnitude(here) * DoubleLanes(1.2e-7) + DoubleLanes(1e-44)));
+  store_not_below(near, p.moved ? t - load<DoubleLanes>(p.shift + i) : t);
   const unsigned lanes = bits(candidate);
   for (int k = 0; k < w; ++k) {
     const bool met = lanes >> k & 1;
     p.best[i + k] = met ? near[k] : p.best[i + k];
     p.id[i + k] = met ? bits_of(id) : p.id[i + k];
   }
+}
+
+/// Stores hits of candidates from i on one by one: of those that tie, the lower id wins.
+template <bool kAny, class In>
+[[gnu::always_inline]] inline void store_one_by_one(Packet<In>& p,
+                                                    int i,
+                                                    unsigned candidates,
+                                                    unsigned ties,
+                                                    const typename In::Rays& t,
+                                                    std::uint32_t id) {
+  using Number = typename In::Number;
+  Number at[kWidth<typename In::Rays>];
+  store(at, t);
+  each_bit(candidates, [&](int k) {
+    const std::uint32_t held = id_of(p.id[i + k]);
+    if ((ties >> k & 1) && (held == kNoPrimitive || held <= id))
+      return;
+    set_best(p, i + k, kAny ? Number(-kInfinity) : at[k]);
+    p.id[i + k] = bits_of(id);
+  });
 }
 
 /// Notes hits of lanes from i on against one primitive: nearer wins, then the lower id. With kAny a
@@ -205,34 +172,15 @@ inline void note(Packet<In>& p,
                  const typename In::Rays& t,
                  std::uint32_t id) {
   using Real = typename In::Rays;
-  using Number = typename In::Number;
   const Real best = load<Real>(tested_best(p) + i);
   const Mask<Real> candidate = both(hit, kAny ? t < best : t <= best);
   if (none(candidate))
     return;
   const Mask<Real> tie = both(candidate, t == best);
   if (In::kDouble ? !kAny && none(tie) : kAny || none(tie))
-    return store_hits<kAny>(p, i, candidate, t, best, id);
-  Number at[kWidth<Real>];
-  store(at, t);
-  const unsigned ties = bits(tie);
-  for (unsigned left = bits(candidate); left != 0; left &= left - 1) {
-    const int k = __builtin_ctz(left);
-    const std::uint32_t held = id_of(p.id[i + k]);
-    if ((ties >> k & 1) && (held == kNoPrimitive || held <= id))
-      continue;
-    set_best(p, i + k, kAny ? Number(-kInfinity) : at[k]);
-    p.id[i + k] = bits_of(id);
-  }
-}
-
-/// Runs `test(i)` for the first lane i of every live group.
-template <class Test>
-[[gnu::always_inline]] inline void each_live_group(const WalkingRays& p, const Test& test) {
-  for (std::uint64_t left = p.live; left != 0; left &= left - 1) {
-    const int g = __builtin_ctzll(left);
-    test(g * kWidth<Lanes>, g);
-  }
+    store_hits<kAny>(p, i, candidate, t, best, id);
+  else
+    store_one_by_one<kAny>(p, i, bits(candidate), bits(tie), t, id);
 }
 
 /// Runs `test(i, g)` for the first lane i of every part, as wide as tests are, of every live group

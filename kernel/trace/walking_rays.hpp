@@ -1,0 +1,94 @@
+#pragma once
+// Rays side by side, as they walk grids: in float, whatever they are tested in.
+
+#include "kernel/simd/vec3.hpp"
+#include "kernel/grid/view.hpp"
+
+namespace grelha::GRELHA_ISA {
+
+/// Most rays in a packet. A word has a bit for each group of lanes.
+inline constexpr int kPacket = kWidth<Lanes> == 1 ? 64 : 256;
+inline constexpr float kInfinity = __builtin_inff();
+
+/// Up to kPacket rays as arrays, as they walk grids. A ray searches (t_min, best); best <= t_min
+/// switches it off. Places between `size` and the end of the last group are switched off. `id`
+/// holds the bits of the nearest primitive so far.
+struct WalkingRays {
+  alignas(64) float org[3][kPacket];
+  alignas(64) float dir[3][kPacket];
+  alignas(64) float t_min[kPacket];
+  alignas(64) float best[kPacket];
+  alignas(64) float start[kPacket];  ///< t from which a grid is still to be searched
+  alignas(64) float id[kPacket];
+  alignas(64) float axis[kPacket];          ///< of the shear: 0, 1 or 2
+  int group_axis[kPacket / kWidth<Lanes>];  ///< the axis all rays of a group share, or -1
+  int size, groups;
+  std::uint64_t live;  ///< bit g: group g has a ray that still searches
+};
+
+inline std::uint32_t id_of(float bits) { return static_cast<std::uint32_t>(float_bits(bits)); }
+inline float bits_of(std::uint32_t id) { return bits_float(static_cast<std::int32_t>(id)); }
+
+/// A component of a direction below this meets none of its planes on any way that counts, and taken
+/// instead of it never makes NaN: over a scene the ray strays by 1e-12 of it, where float strays by
+/// 1e-7.
+template <class Real>
+inline Real least_headway(const Real& x, const Real& y, const Real& z) {
+  return Real(1e-12f) * greater(greater(magnitude(x), magnitude(y)), magnitude(z));
+}
+
+/// Three components of lanes i, i + 1, ...
+template <class Real, class Number, int kRays>
+[[gnu::always_inline]] inline Vec3<Real> take_vec(const Number (&v)[3][kRays], int i) {
+  return {take<Real>(v[0] + i), take<Real>(v[1] + i), take<Real>(v[2] + i)};
+}
+inline Lanes least_headway(const WalkingRays& p, int i) {
+  const Vec3<Lanes> d = take_vec<Lanes>(p.dir, i);
+  return least_headway(d.x, d.y, d.z);
+}
+
+/// Fills the last group: its empty places repeat the last ray, switched off.
+inline void fill_up(WalkingRays& p) {
+  for (int i = p.size; i < p.groups * kWidth<Lanes>; ++i) {
+    for (int a = 0; a < 3; ++a) {
+      p.org[a][i] = p.org[a][p.size - 1];
+      p.dir[a][i] = p.dir[a][p.size - 1];
+    }
+    p.t_min[i] = 0;
+    p.best[i] = -kInfinity;
+  }
+}
+
+/// Switches off rays with a NaN, an infinity or no direction.
+[[gnu::always_inline]] inline void switch_off_unsound(WalkingRays& p, int i) {
+  const Vec3<Lanes> d = take_vec<Lanes>(p.dir, i);
+  const Vec3<Lanes> o = take_vec<Lanes>(p.org, i);
+  const Lanes dd = dot(d, d);
+  const Lanes inv = Lanes(1) / dd;
+  // NaN and infinity times zero are NaN
+  const Mask<Lanes> sound = ((o.x + o.y) + (o.z + dd) + inv) * Lanes(0) == Lanes(0);
+  store(p.best + i, select(sound, load<Lanes>(p.best + i), Lanes(-kInfinity)));
+}
+
+/// The axis along which each ray of a group goes most.
+[[gnu::always_inline]] inline void set_axes(WalkingRays& p, int i, int group) {
+  const Vec3<Lanes> d = take_vec<Lanes>(p.dir, i);
+  const Lanes x = magnitude(d.x);
+  const Lanes y = magnitude(d.y);
+  const Lanes z = magnitude(d.z);
+  const Lanes y_or_z = select(y >= z, Lanes(1), Lanes(2));
+  const Lanes axis = select(both(x >= y, x >= z), Lanes(0), y_or_z);
+  store(p.axis + i, axis);
+  p.group_axis[group] = none(axis != Lanes(p.axis[i])) ? static_cast<int>(p.axis[i]) : -1;
+}
+
+/// Runs `test(i)` for the first lane i of every live group.
+template <class Test>
+[[gnu::always_inline]] inline void each_live_group(const WalkingRays& p, const Test& test) {
+  for (std::uint64_t left = p.live; left != 0; left &= left - 1) {
+    const int g = __builtin_ctzll(left);
+    test(g * kWidth<Lanes>, g);
+  }
+}
+
+}  // namespace grelha::GRELHA_ISA
