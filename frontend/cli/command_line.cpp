@@ -32,9 +32,12 @@ std::string meant_option(const CLI::App& app, const std::string& word) {
                       std::vector<std::string_view>(names.begin(), names.end()));
 }
 
+bool contains(const std::vector<std::string>& words, const std::string& word) {
+  return std::ranges::find(words, word) != words.end();
+}
+
 void want_known_option(const CLI::App& app, const std::string& word) {
-  const std::vector<std::string> names = option_names(app);
-  if (std::find(names.begin(), names.end(), word) == names.end())
+  if (!contains(option_names(app), word))
     throw UsageError("The following argument was not expected: " + word + meant_option(app, word) +
                      " (see --help)");
 }
@@ -66,8 +69,7 @@ const CLI::App& asked(const CLI::App& app) {
 /// The option that the first word nobody took was probably meant to be.
 std::string meant_option_left(const CLI::App& app) {
   const std::vector<std::string> left = app.remaining(true);
-  const auto option = std::find_if(
-      left.begin(), left.end(), [](const std::string& word) { return word.starts_with('-'); });
+  const auto option = std::ranges::find_if(left, [](auto& w) { return w.starts_with('-'); });
   return option == left.end() ? "" : meant_option(asked(app), *option);
 }
 

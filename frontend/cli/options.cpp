@@ -50,10 +50,9 @@ void positional(CLI::App& app, const char* name, std::string& target, const char
   app.add_option(name, target, help)->required()->type_name("");
 }
 
-void positionals(CLI::App& app,
-                 const char* name,
-                 std::vector<std::string>& target,
-                 const char* help) {
+using Words = std::vector<std::string>;
+
+void positionals(CLI::App& app, const char* name, Words& target, const char* help) {
   app.add_option(name, target, help)->required()->type_name("");
 }
 

@@ -56,8 +56,8 @@ void sync(const std::string& path, const std::string& file) {
 /// Returns whether an open file is a file, and the one that stands under this name: whoever had it
 /// before may have renamed it away.
 bool stands_there(int file, const std::string& name) {
-  struct stat opened {
-  }, there{};
+  using Stat = struct stat;
+  Stat opened{}, there{};
   return fstat(file, &opened) == 0 && S_ISREG(opened.st_mode) && stat(name.c_str(), &there) == 0 &&
          opened.st_dev == there.st_dev && opened.st_ino == there.st_ino;
 }

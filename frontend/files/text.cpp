@@ -93,10 +93,11 @@ bool looks_like_number(std::string_view word) {
 
 constexpr std::size_t kLongestShown = 40;
 
+constexpr auto is_unprintable = [](char c) { return c < ' ' || c > '~'; };
+
 std::string printable(std::string_view word) {
   std::string shown(word.substr(0, kLongestShown));
-  std::ranges::replace_if(
-      shown, [](char c) { return c < ' ' || c > '~'; }, '?');
+  std::ranges::replace_if(shown, is_unprintable, '?');
   return word.size() > kLongestShown ? shown + "..." : shown;
 }
 
