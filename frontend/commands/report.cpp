@@ -5,7 +5,6 @@
 #include "frontend/files/memory_limit.hpp"
 
 #include <nlohmann/json.hpp>
-
 #include <sys/resource.h>
 
 #include <charconv>
@@ -26,7 +25,9 @@ Json tidy(float value) {
   return result;
 }
 
-Json to_json(Float3 v) { return {tidy(v.x), tidy(v.y), tidy(v.z)}; }
+Json to_json(Float3 v) {
+  return {tidy(v.x), tidy(v.y), tidy(v.z)};
+}
 
 Json to_json(const EntityCounts& c) {
   return {{"s", c.s},
@@ -193,11 +194,8 @@ Json error_json(const RefineOptions& asked, const ErrorStats& e) {
           {"most", e.most}};
 }
 
-Json tests_json(const TraceCounts& trace) {
-  return {{"sphere", trace.tests.sphere},
-          {"triangle", trace.tests.triangle},
-          {"cone", trace.tests.cone},
-          {"plane", trace.tests.plane}};
+Json to_json(const TestCounts& t) {
+  return {{"sphere", t.sphere}, {"triangle", t.triangle}, {"cone", t.cone}, {"plane", t.plane}};
 }
 
 Json packets_json(const TraceCounts& trace) {
@@ -228,7 +226,9 @@ std::string size_text(const Camera& camera) {
   return std::to_string(camera.width) + 'x' + std::to_string(camera.height);
 }
 
-std::string ranks_text(int ranks) { return ranks > 1 ? print("%d ranks, ", ranks) : ""; }
+std::string ranks_text(int ranks) {
+  return ranks > 1 ? print("%d ranks, ", ranks) : "";
+}
 
 std::string dropped_text(const Dropped& dropped) {
   const std::uint64_t all = dropped.not_finite + dropped.zero_area;
@@ -310,7 +310,7 @@ std::string stats_json(const RenderCommand& command, const RunReport& report) {
   if (command.render.refine.on())
     json["error"] = error_json(command.render.refine, render.error);
   json["visits"] = render.trace.visits;
-  json["tests"] = tests_json(render.trace);
+  json["tests"] = to_json(render.trace.tests);
   json["packets"] = packets_json(render.trace);
   json["seconds"] = to_json(report.seconds);
   json["phases"] = phases_json(render);

@@ -25,7 +25,13 @@ inline Surface<Real> surface_of(const GeometryView& g,
                                                                  nullptr}) {
   const Vec3<Real> at{org.x + t * dir.x, org.y + t * dir.y, org.z + t * dir.z};
   const Meeting<Real> met{
-      .org = org, .dir = dir, .t = t, .at = at, .smooth = smooth, .start = start,};
+      .org = org,
+      .dir = dir,
+      .t = t,
+      .at = at,
+      .smooth = smooth,
+      .start = start,
+  };
   Surface<Real> s{};
   // Inlined, or the linker could take another file's, compiled with other flags.
   for_each_shape([&]<class Shape>() __attribute__((always_inline)) {

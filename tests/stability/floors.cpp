@@ -24,7 +24,9 @@ constexpr Real kNearEdge = 0x1p-45L;
 Float3 rounded(const V& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
-Real largest_of(const V& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+Real largest_of(const V& v) {
+  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
 
 struct Place {
   V point, normal;  ///< of a facet: exact, unit, up
@@ -205,10 +207,6 @@ void floors(Random& random, std::size_t rays, const Sink& sink) {
   });
 }
 
-/// What a ray that left a place may be off by: a start is within an ulp of the point, and 4 ulp of
-/// it away.
-Real coarse_at(const V& point) { return 16 * oracle::kEps * largest_of(point); }
-
 /// Where a ray from `eye` to `aim` meets facet `id`: exactly, and as the renderer has it.
 struct Left {
   Place place;
@@ -232,7 +230,8 @@ void leave_for(Trial& trial, const Facets& facets, const Left& from, const Float
   const Float3 dir = light ? minus(to, start) : d;
   const V exact = light ? V(to) - from.place.point : V(d);
   const Real end = light ? 1 : 1e300L;
-  const Real coarse = coarse_at(from.place.point);
+  // A start is within an ulp of the point, and 4 ulp of it away.
+  const Real coarse = 16 * oracle::kEps * largest_of(from.place.point);
   trial.add(start,
             dir,
             facets.wanted({from.place.point, exact}, coarse, end, from.place.id),
