@@ -64,7 +64,9 @@ struct Result {
 std::map<std::string, Result> results;
 bool failed = false;
 
-double least(std::vector<double> v) { return *std::min_element(v.begin(), v.end()); }
+double least(std::vector<double> v) {
+  return *std::min_element(v.begin(), v.end());
+}
 double median(std::vector<double> v) {
   std::sort(v.begin(), v.end());
   return v[v.size() / 2];

@@ -22,8 +22,12 @@ namespace {
 class FlushDenormals {
 #if defined(__SSE__)
  public:
-  FlushDenormals() : before_(_mm_getcsr()) { _mm_setcsr(before_ | 0x8040); }
-  ~FlushDenormals() { _mm_setcsr(before_); }
+  FlushDenormals() : before_(_mm_getcsr()) {
+    _mm_setcsr(before_ | 0x8040);
+  }
+  ~FlushDenormals() {
+    _mm_setcsr(before_);
+  }
 
  private:
   unsigned before_;
@@ -380,8 +384,12 @@ std::unique_ptr<EmbreeScene> make_embree_scene(const Scene& scene, bool robust) 
 #else
 
 namespace grelha::perf {
-std::vector<EmbreeMode> embree_modes() { return {}; }
-std::unique_ptr<EmbreeScene> make_embree_scene(const Scene&, bool) { return nullptr; }
+std::vector<EmbreeMode> embree_modes() {
+  return {};
+}
+std::unique_ptr<EmbreeScene> make_embree_scene(const Scene&, bool) {
+  return nullptr;
+}
 }  // namespace grelha::perf
 
 #endif

@@ -48,7 +48,9 @@ class Recorder : public Observer {
 double now_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
-double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+double cpu_seconds() {
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
 
 FrameRays rays_of_frame(const World& world, const Camera& camera, RenderOptions options) {
   FrameRays frame;

@@ -13,7 +13,9 @@ namespace {
 // bow.
 constexpr double kLength = 3.2, kBeam = 1.0, kDraught = 0.55, kMastX = 0.25, kMastTop = 3.4;
 
-double hull_x(double u) { return kLength * (u - 0.5); }
+double hull_x(double u) {
+  return kLength * (u - 0.5);
+}
 
 /// Half the hull's width: a stern cut off, widest behind the middle, almost sharp at the bow.
 double half_beam(double u) {
@@ -21,7 +23,9 @@ double half_beam(double u) {
 }
 
 /// Height of the hull's edge: the sheer rises towards both ends.
-double edge_z(double u) { return 0.62 + 0.45 * (u - 0.35) * (u - 0.35); }
+double edge_z(double u) {
+  return 0.62 + 0.45 * (u - 0.35) * (u - 0.35);
+}
 
 /// A section of the hull, `angle` from -90 (right edge) to 90 degrees (left edge).
 Vec hull_point(double u, double angle_rad) {
@@ -106,7 +110,9 @@ Mesh boat_mesh(int n) {
 
 }  // namespace
 
-void write_boat_mesh(std::ostream& out, int size) { write_ply(out, boat_mesh(size)); }
+void write_boat_mesh(std::ostream& out, int size) {
+  write_ply(out, boat_mesh(size));
+}
 
 void write_boat(std::ostream& out, const SceneOptions& options) {
   NffWriter nff(out);

@@ -9,7 +9,9 @@ namespace {
 constexpr double kRadius = 0.3, kSpacing = 1.5;
 
 /// Ball i of `count`, the nearest first; the row is centred on the origin.
-Vec center(int i, int count) { return {kSpacing * ((count - 1) / 2.0 - i), 0, 0}; }
+Vec center(int i, int count) {
+  return {kSpacing * ((count - 1) / 2.0 - i), 0, 0};
+}
 
 /// Red, green, blue and round again, a little paler on each turn.
 Vec color(int i) {

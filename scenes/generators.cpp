@@ -65,7 +65,9 @@ constexpr std::array kGenerators{
 
 }  // namespace
 
-std::span<const Generator> generators() { return kGenerators; }
+std::span<const Generator> generators() {
+  return kGenerators;
+}
 
 const Generator* find_generator(std::string_view name) {
   const auto found = std::ranges::find(kGenerators, name, &Generator::name);

@@ -6,7 +6,9 @@
 
 namespace grelha::scenes {
 
-void write_knot_mesh(std::ostream& out, int size) { write_ply(out, knot_mesh(size)); }
+void write_knot_mesh(std::ostream& out, int size) {
+  write_ply(out, knot_mesh(size));
+}
 
 void write_knot(std::ostream& out, const SceneOptions& options) {
   NffWriter nff(out);

@@ -58,7 +58,9 @@ void want_known_command(const CLI::App& app, const std::string& word) {
                    did_you_mean(word, names));
 }
 
-std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+std::string first_line(const std::string& text) {
+  return text.substr(0, text.find('\n'));
+}
 
 /// The command that was asked for, or the program itself.
 const CLI::App& asked(const CLI::App& app) {

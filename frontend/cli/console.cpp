@@ -6,7 +6,9 @@
 
 namespace grelha {
 
-void warn(const std::string& line) { std::cerr << line << '\n'; }
+void warn(const std::string& line) {
+  std::cerr << line << '\n';
+}
 
 void print(const std::string& text) {
   std::cout << text << std::flush;

@@ -132,7 +132,9 @@ void check_together(const RenderCommand& command) {
     refuse("--layers and -o", "a .exr, which alone holds layers", command.image);
 }
 
-void check_together(const InfoCommand& command) { check_grid(command.build); }
+void check_together(const InfoCommand& command) {
+  check_grid(command.build);
+}
 
 void check_together(const MergeCommand& command) {
   check_output(command.output, command.format);

@@ -80,7 +80,9 @@ bool is_share(T value) {
   return value >= 0 && value <= 1;
 }
 
-bool is_time(double value) { return value > 0 && value <= kMaxSeconds; }
+bool is_time(double value) {
+  return value > 0 && value <= kMaxSeconds;
+}
 
 Subdivision subdivision(const std::string& text) {
   const auto p = parts("--aa", text, 2, 2, "adaptive:THRESHOLD,DEPTH");

@@ -32,7 +32,9 @@ std::vector<std::string> choices(const OptionHelp& o) {
   return words;
 }
 
-bool takes_file(const OptionHelp& o) { return o.placeholder.find("FILE") != std::string::npos; }
+bool takes_file(const OptionHelp& o) {
+  return o.placeholder.find("FILE") != std::string::npos;
+}
 
 std::string names_of(const std::vector<CommandHelp>& commands) {
   std::vector<std::string> names;

@@ -10,13 +10,17 @@ namespace grelha {
 
 namespace {
 
-bool any(Float3 v) { return v.x != 0 || v.y != 0 || v.z != 0; }
+bool any(Float3 v) {
+  return v.x != 0 || v.y != 0 || v.z != 0;
+}
 
 bool any(const std::vector<float>& values) {
   return std::ranges::any_of(values, [](float value) { return value != 0; });
 }
 
-bool has_normals(const Triangles& t) { return any(t.nx) || any(t.ny) || any(t.nz); }
+bool has_normals(const Triangles& t) {
+  return any(t.nx) || any(t.ny) || any(t.nz);
+}
 
 class Box {
  public:

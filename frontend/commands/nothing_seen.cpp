@@ -22,15 +22,21 @@ struct Direction {
 Direction operator+(const Direction& a, const Direction& b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
-Direction operator*(double s, const Direction& a) { return {s * a.x, s * a.y, s * a.z}; }
+Direction operator*(double s, const Direction& a) {
+  return {s * a.x, s * a.y, s * a.z};
+}
 Direction between(const Float3& from, const Float3& to) {
   return {double(to.x) - from.x, double(to.y) - from.y, double(to.z) - from.z};
 }
-double inner(const Direction& a, const Direction& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+double inner(const Direction& a, const Direction& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 Direction outer(const Direction& a, const Direction& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-Direction of_length_one(const Direction& a) { return 1 / std::sqrt(inner(a, a)) * a; }
+Direction of_length_one(const Direction& a) {
+  return 1 / std::sqrt(inner(a, a)) * a;
+}
 
 /// Bit i: beyond side i of the view.
 using Sides = unsigned;

@@ -129,7 +129,9 @@ AtomicFile::~AtomicFile() {
     close(lock_);
 }
 
-std::ostream& AtomicFile::stream() { return is_stdout() ? std::cout : stream_; }
+std::ostream& AtomicFile::stream() {
+  return is_stdout() ? std::cout : stream_;
+}
 
 void AtomicFile::commit() {
   if (is_stdout()) {
@@ -157,7 +159,9 @@ void AtomicFile::commit() {
     sync(path_, folder.empty() ? "." : folder);
 }
 
-std::string name_of_file(const std::string& path) { return path == kStdout ? "stdout" : path; }
+std::string name_of_file(const std::string& path) {
+  return path == kStdout ? "stdout" : path;
+}
 
 void write_file(const std::string& path, const std::string& bytes) {
   AtomicFile file(path);

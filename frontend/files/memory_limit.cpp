@@ -23,7 +23,9 @@ constexpr bool kSanitized = true;
 constexpr bool kSanitized = false;
 #endif
 
-bool memory_can_be_limited() { return !kSanitized; }
+bool memory_can_be_limited() {
+  return !kSanitized;
+}
 
 std::uint64_t machine_memory() {
   const long pages = sysconf(_SC_PHYS_PAGES), page_size = sysconf(_SC_PAGE_SIZE);
@@ -89,6 +91,8 @@ std::string memory_there_is() {
   return gigabytes(least) + ", all that this machine has (--max-memory sets another bound)";
 }
 
-std::string out_of_memory() { return "out of memory: needed more than " + memory_there_is(); }
+std::string out_of_memory() {
+  return "out of memory: needed more than " + memory_there_is();
+}
 
 }  // namespace grelha

@@ -8,9 +8,15 @@
 namespace grelha {
 namespace {
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-bool is_blank(char c) { return static_cast<unsigned char>(c) <= ' '; }
-bool ends_line(char c) { return c == '\n' || c == '\r'; }
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+bool is_blank(char c) {
+  return static_cast<unsigned char>(c) <= ' ';
+}
+bool ends_line(char c) {
+  return c == '\n' || c == '\r';
+}
 
 /// Decimal exponent of a well-formed number that no float can hold: its sign tells overflow from
 /// underflow.
@@ -62,8 +68,12 @@ bool parse(std::string_view word, Float& value) {
 
 }  // namespace
 
-bool to_number(std::string_view word, float& value) { return parse(word, value); }
-bool to_number(std::string_view word, double& value) { return parse(word, value); }
+bool to_number(std::string_view word, float& value) {
+  return parse(word, value);
+}
+bool to_number(std::string_view word, double& value) {
+  return parse(word, value);
+}
 
 bool to_integer(std::string_view word, std::int64_t& value) {
   const char *first = word.data(), *last = first + word.size();
@@ -156,7 +166,9 @@ std::string_view Words::peek_on_line() const {
   return {first, std::size_t(word_end(first) - first)};
 }
 
-void Words::skip_line() { at_ = std::find_if(at_, end_, ends_line); }
+void Words::skip_line() {
+  at_ = std::find_if(at_, end_, ends_line);
+}
 
 std::string_view Words::rest_of_line() {
   const char* last = std::find_if(at_, end_, ends_line);

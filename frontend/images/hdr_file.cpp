@@ -16,7 +16,9 @@ constexpr float kDarkest = 1e-38f, kLightest = 1e38f;  ///< of what the shared e
 constexpr int kLeastPacked = 8, kMostPacked = 32767;   ///< widths of rows that may be packed
 constexpr int kLongestRun = 127, kLongestDump = 128, kWorthARun = 4;
 
-float light(float value) { return value > 0 ? std::min(value, kLightest) : 0; }  // a NaN is none
+float light(float value) {
+  return value > 0 ? std::min(value, kLightest) : 0;
+}  // a NaN is none
 
 /// To the nearest mantissa: cut off, a picture would lose a quarter of a percent of its light.
 Rgbe shared_exponent(const float* rgb) {

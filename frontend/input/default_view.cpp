@@ -9,11 +9,15 @@ namespace {
 
 using Place3 = std::array<double, 3>;
 
-double along(const Place3& a, const Place3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+double along(const Place3& a, const Place3& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 Place3 moved(const Place3& a, double share, const Place3& b) {
   return {a[0] + share * b[0], a[1] + share * b[1], a[2] + share * b[2]};
 }
-Float3 as_floats(const Place3& v) { return {float(v[0]), float(v[1]), float(v[2])}; }
+Float3 as_floats(const Place3& v) {
+  return {float(v[0]), float(v[1]), float(v[2])};
+}
 
 /// Vertices that triangles name; others may lie anywhere.
 std::vector<Place3> corners_of(const Triangles& t) {

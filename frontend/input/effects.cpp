@@ -80,7 +80,9 @@ bool has_something_to_sample(const SceneFile& file, const Effects& effects) {
   return !(effects.glossy && effects.glossy->rays > 0) && has_rough_mirror(file.scene);
 }
 
-int ceiling_share(long long all, int parts) { return static_cast<int>((all + parts - 1) / parts); }
+int ceiling_share(long long all, int parts) {
+  return static_cast<int>((all + parts - 1) / parts);
+}
 
 /// Of a pixel; `otherwise` where neither effects nor the scene say.
 int samples_of(const Effects& e, const SceneFile& file, int lens_samples, int otherwise) {

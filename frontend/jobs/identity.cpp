@@ -137,7 +137,9 @@ using WordList = std::vector<std::string>;
 bool has(const WordList& words, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
-std::string key_of(const std::string& word) { return word.substr(0, word.find('=') + 1); }
+std::string key_of(const std::string& word) {
+  return word.substr(0, word.find('=') + 1);
+}
 
 /// The words that one has and the other has not, and those it lacks. The words may be
 /// anyone's.

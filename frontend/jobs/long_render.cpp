@@ -138,7 +138,9 @@ void LongRender::pursue(Habit& habit) {
   habit.last = Clock::now();
 }
 
-int LongRender::stops() const { return ranks_.first() ? StopSignals::seen() : 0; }
+int LongRender::stops() const {
+  return ranks_.first() ? StopSignals::seen() : 0;
+}
 
 bool LongRender::tried(const std::function<void()>& write) const {
   try {
@@ -236,7 +238,9 @@ void LongRender::keep_all() const {
   }
 }
 
-void LongRender::save() const { write_checkpoint(kept_, identity_, picture_, true); }
+void LongRender::save() const {
+  write_checkpoint(kept_, identity_, picture_, true);
+}
 
 /// What the picture's file says of it. With --time the samples taken make the picture again. A
 /// picture that is not done says so.

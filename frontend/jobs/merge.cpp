@@ -11,7 +11,9 @@ namespace {
 Range common(const Range& a, const Range& b) {
   return {std::max(a.begin, b.begin), std::min(a.end, b.end)};
 }
-bool empty(const Range& r) { return r.begin >= r.end; }
+bool empty(const Range& r) {
+  return r.begin >= r.end;
+}
 void widen(Range& r, const Range& by) {
   r = {std::min(r.begin, by.begin), std::max(r.end, by.end)};
 }
@@ -59,7 +61,9 @@ std::optional<Part> first_gap(const std::vector<Part>& parts, const Part& whole)
   return gap;
 }
 
-std::string percent(double share) { return std::to_string(int(share * 100)) + " %"; }
+std::string percent(double share) {
+  return std::to_string(int(share * 100)) + " %";
+}
 
 /// Reads every file twice. Nothing is allocated before it is known that the parts fill it. So a
 /// small file which claims to be of a huge picture takes no more than a small file's memory.
@@ -136,6 +140,8 @@ class Joiner {
 
 }  // namespace
 
-Partial merge_parts(const std::vector<std::string>& files) { return Joiner(files).run(); }
+Partial merge_parts(const std::vector<std::string>& files) {
+  return Joiner(files).run();
+}
 
 }  // namespace grelha

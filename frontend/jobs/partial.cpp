@@ -24,7 +24,9 @@ std::string part_text(const Part& part) {
   return "rows " + range_text(part.rows) + ", samples " + range_text(part.samples);
 }
 
-bool is_partial_name(std::string_view path) { return path.ends_with(".grelha"); }
+bool is_partial_name(std::string_view path) {
+  return path.ends_with(".grelha");
+}
 
 void write_partial(const std::string& path, const Partial& partial, bool durable) {
   write_part(path, partial.identity, partial.sums, durable);
@@ -34,6 +36,8 @@ Partial parse_partial(const std::string& path, std::string_view bytes) {
   return part_of(path, parse_checkpoint(path, bytes));
 }
 
-Partial read_partial(const std::string& path) { return part_of(path, read_checkpoint(path)); }
+Partial read_partial(const std::string& path) {
+  return part_of(path, read_checkpoint(path));
+}
 
 }  // namespace grelha

@@ -5,7 +5,9 @@ namespace grelha {
 
 Ranks::Ranks(int&, char**&) {}
 Ranks::~Ranks() = default;
-Ranks::Managed Ranks::managed(bool here) const { return {here, here}; }
+Ranks::Managed Ranks::managed(bool here) const {
+  return {here, here};
+}
 void Ranks::agree_on(const std::string&, const std::string&) const {}
 
 bool Ranks::advance(const World& world,

@@ -61,7 +61,9 @@ StopSignals::~StopSignals() {
   ::signal(SIGPIPE, pipe_before);
 }
 
-int StopSignals::seen() { return noted; }
+int StopSignals::seen() {
+  return noted;
+}
 
 const char* signal_name(int signal) {
   return signal == SIGHUP ? "SIGHUP" : signal == SIGINT ? "SIGINT" : "SIGTERM";

@@ -16,7 +16,9 @@ bool read_six(Words& words, Six& numbers) {
   return std::ranges::all_of(numbers, reads) && std::ranges::all_of(numbers, is_finite);
 }
 
-bool are_pairs(const Six& n) { return n[0] <= n[1] && n[2] <= n[3] && n[4] <= n[5]; }
+bool are_pairs(const Six& n) {
+  return n[0] <= n[1] && n[2] <= n[3] && n[4] <= n[5];
+}
 
 bool are_corners(const Six& n) {
   const bool ascend = n[0] <= n[3] && n[1] <= n[4] && n[2] <= n[5];

@@ -10,9 +10,15 @@ namespace {
 Float3 triple(const std::vector<NumberWord>& n, std::size_t first) {
   return {n[first].value, n[first + 1].value, n[first + 2].value};
 }
-Float3 operator-(const Float3& a, const Float3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-Float3 operator+(const Float3& a, const Float3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-Float3 operator*(float s, const Float3& a) { return {s * a.x, s * a.y, s * a.z}; }
+Float3 operator-(const Float3& a, const Float3& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+Float3 operator+(const Float3& a, const Float3& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+Float3 operator*(float s, const Float3& a) {
+  return {s * a.x, s * a.y, s * a.z};
+}
 Float3 cross(const Float3& a, const Float3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }

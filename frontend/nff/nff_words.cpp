@@ -23,7 +23,9 @@ constexpr std::pair<std::string_view, std::string_view> kFullNames[] = {
 };
 constexpr std::size_t kLongestMeant = 64;  ///< no keyword is meant by more
 
-char small_letter(char c) { return c >= 'A' && c <= 'Z' ? char(c + ('a' - 'A')) : c; }
+char small_letter(char c) {
+  return c >= 'A' && c <= 'Z' ? char(c + ('a' - 'A')) : c;
+}
 
 std::string in_small_letters(std::string_view word) {
   std::string small(word);

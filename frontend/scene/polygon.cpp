@@ -21,7 +21,9 @@ constexpr std::uint32_t kHopefulLooks[] = {0, 64};
 /// outlines.
 constexpr int kForcedLook = 64;
 
-double component(const Float3& p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
+double component(const Float3& p, int axis) {
+  return axis == 0 ? p.x : axis == 1 ? p.y : p.z;
+}
 
 }  // namespace
 

@@ -15,14 +15,20 @@ Double3 difference(const Float3& a, const Float3& b) {
 Double3 cross(const Double3& a, const Double3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
-double dot(const Double3& a, const Double3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-double length(const Double3& a) { return std::sqrt(dot(a, a)); }
+double dot(const Double3& a, const Double3& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+double length(const Double3& a) {
+  return std::sqrt(dot(a, a));
+}
 Float3 unit(const Double3& a) {
   const double l = length(a);
   return {float(a[0] / l), float(a[1] / l), float(a[2] / l)};
 }
 /// Nothing is left of it as floats: no area, or no direction.
-bool vanishes(const Double3& a) { return float(a[0]) == 0 && float(a[1]) == 0 && float(a[2]) == 0; }
+bool vanishes(const Double3& a) {
+  return float(a[0]) == 0 && float(a[1]) == 0 && float(a[2]) == 0;
+}
 
 /// A normal whose square a float can hold; (0,0,0), "none", for one that is no direction.
 Float3 sound_normal(const Float3& n) {
@@ -36,7 +42,9 @@ Float3 sound_normal(const Float3& n) {
   return unit(d);
 }
 
-bool is_none(const Float3& n) { return n == Float3{}; }
+bool is_none(const Float3& n) {
+  return n == Float3{};
+}
 
 }  // namespace
 

@@ -15,8 +15,12 @@ namespace grelha {
 inline constexpr float kLargest = 1e18f;
 
 /// False for NaN as well.
-inline bool drawable(float v) { return v >= -kLargest && v <= kLargest; }
-inline bool drawable(const Float3& v) { return drawable(v.x) && drawable(v.y) && drawable(v.z); }
+inline bool drawable(float v) {
+  return v >= -kLargest && v <= kLargest;
+}
+inline bool drawable(const Float3& v) {
+  return drawable(v.x) && drawable(v.y) && drawable(v.z);
+}
 
 /// Puts what the readers found into the kernel's arrays; what cannot be drawn is counted in
 /// SceneFile::dropped instead.

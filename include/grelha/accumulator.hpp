@@ -49,7 +49,9 @@ std::size_t piece_count(const Part& part);
 /// Share of the part that is in the sums, 0 to 1.
 double share_done(const Accumulator& a);
 /// True where all of the part is in the sums.
-inline bool is_complete(const Accumulator& a) { return share_done(a) == 1; }
+inline bool is_complete(const Accumulator& a) {
+  return share_done(a) == 1;
+}
 
 /// The part that piece i is.
 Part piece_of(const Part& part, std::size_t i);

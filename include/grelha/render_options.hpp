@@ -23,7 +23,9 @@ enum class Sampler {
 };
 
 /// True where samples lie in a grid, whose cells must be counted before the first is taken.
-constexpr bool is_jittered(Sampler s) { return s == Sampler::kJitter || s == Sampler::kUnshuffled; }
+constexpr bool is_jittered(Sampler s) {
+  return s == Sampler::kJitter || s == Sampler::kUnshuffled;
+}
 
 /// Where the samples of a picture lie: pure functions of (seed, pixel, sample, dimension).
 struct SampleOptions {

@@ -21,7 +21,8 @@ namespace grelha {
 namespace {
 
 /// Logarithms of the samples that a pixel begins with, with effects to sample and without.
-constexpr int kFirstLogOfEffects = 3, kFirstLog = 2;
+constexpr int kFirstLogOfEffects = 3;
+constexpr int kFirstLog = 2;
 
 bool has_effects(const SamplePlan& plan) {
   return plan.lens >= 0 || plan.light >= 0 || plan.gloss >= 0;

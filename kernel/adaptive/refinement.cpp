@@ -50,7 +50,9 @@ bool is_sound_sum(std::int64_t s) {
 }
 
 /// Two samples do not fall into kParts.
-bool is_sound_log(std::uint8_t l) { return l != 1 && l <= kMostLog; }
+bool is_sound_log(std::uint8_t l) {
+  return l != 1 && l <= kMostLog;
+}
 
 bool has_sound_sizes(const Refinement& r) {
   const std::size_t pixels = pixel_count(r);

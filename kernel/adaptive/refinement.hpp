@@ -24,7 +24,8 @@ static_assert(1 << kMostLog == kMostSamples);
 /// E[(A - B)^2] / 4 of the means A, B of its halves is V(n/2) - V(n), without a model; that V falls
 /// by `rho` a doubling, measured over the picture, gives V(n).
 struct Refinement {
-  int width = 0, height = 0;
+  int width = 0;
+  int height = 0;
   std::vector<std::int64_t> sums;  ///< [pixels][3] linear RGB, units of 2^-32
   /// [pixels][3] squared differences of halves, quarters, eighths, summed by level
   std::array<std::vector<float>, 3> squares;
@@ -36,7 +37,8 @@ struct Refinement {
   /// pixels that the round in work has not come to, in its order; between rounds none
   std::vector<std::uint32_t> wanted;
   /// of the last rounds: sums of squared differences of halves of everything, and of the new half
-  double variance_drop = 0, variance_level = 0;
+  double variance_drop = 0;
+  double variance_level = 0;
   double round_drop = 0, round_level = 0;  ///< the same of the round in work
   float variance_ratio = .4f;              ///< V(n) / V(n/2)
   float gain_threshold = .25f;  ///< gain a ray that a pixel of the round in work had to promise

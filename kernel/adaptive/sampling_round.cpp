@@ -167,7 +167,9 @@ std::vector<Chunk> cut_round(const Refinement& r, int first_log) {
 
 namespace {
 
-float squared(double x) { return static_cast<float>(x * x); }
+float squared(double x) {
+  return static_cast<float>(x * x);
+}
 
 /// One channel of a pixel's new samples.
 struct NewSamples {

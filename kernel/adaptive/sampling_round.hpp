@@ -19,7 +19,8 @@ inline constexpr int kRunsOfChunk = 256;
 struct Chunk {
   std::size_t begin, end;  ///< of the pixels wanted
   /// sums of squared differences, of halves of everything and of halves of the new half
-  double variance_drop = 0, variance_level = 0;
+  double variance_drop = 0;
+  double variance_level = 0;
 };
 
 /// What a picture has cost so far.

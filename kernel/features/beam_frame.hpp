@@ -22,7 +22,9 @@ struct BeamFrame {
   float depth;       ///< w from which the whole beam is on its way: of its farthest origin
 };
 
-inline Vec3f middle(const Vec3f (&p)[kCorners]) { return .25f * ((p[0] + p[1]) + (p[2] + p[3])); }
+inline Vec3f middle(const Vec3f (&p)[kCorners]) {
+  return .25f * ((p[0] + p[1]) + (p[2] + p[3]));
+}
 
 /// How far the origins of a beam's rays are apart, and how much farther they are a unit along it.
 struct BeamSpread {
@@ -118,7 +120,9 @@ struct Place {
   return {dot(d, f.to_x) / w, dot(d, f.to_y) / w, w};
 }
 /// How far out: at most 1 inside.
-inline float outness(float x, float y) { return greater(magnitude(x), magnitude(y)); }
+inline float outness(float x, float y) {
+  return greater(magnitude(x), magnitude(y));
+}
 
 /// Point of least outness of the stretch between two points: least at an end, on a diagonal or
 /// where it crosses an axis.

@@ -19,7 +19,9 @@ struct Doubt {
   float around = 0;
   bool none() const { return inside == 0 && around == 0; }
 };
-inline Doubt around(float weight) { return {0, weight}; }
+inline Doubt around(float weight) {
+  return {0, weight};
+}
 inline Doubt operator+(const Doubt& a, const Doubt& b) {
   return {greater(a.inside, b.inside), greater(a.around, b.around)};
 }

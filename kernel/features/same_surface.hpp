@@ -20,7 +20,9 @@ inline std::uint32_t material_of(const GeometryView& g, std::uint32_t id) {
   return g.of<Triangle>().material[triangle_of(g, id)];
 }
 
-inline bool same(const Vec3f& a, const Vec3f& b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+inline bool same(const Vec3f& a, const Vec3f& b) {
+  return a.x == b.x && a.y == b.y && a.z == b.z;
+}
 inline bool has(const Corners3& t, const Vec3f& p) {
   return same(t.at[0], p) || same(t.at[1], p) || same(t.at[2], p);
 }

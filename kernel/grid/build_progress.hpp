@@ -45,7 +45,9 @@ class BuildProgress {
       stopped_ = true;
   }
   std::function<bool(double)> report_;
-  double share_ = 0, end_ = 0, step_ = 0;
+  double share_ = 0;
+  double end_ = 0;
+  double step_ = 0;
   std::atomic<bool> stopped_ = false;
   std::mutex mutex_;
 };

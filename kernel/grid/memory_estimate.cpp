@@ -11,7 +11,8 @@ namespace {
 
 constexpr std::size_t kProbes = 16384;
 /// bytes while lists are written: a cell and an id; an id
-constexpr double kPair = 8, kId = 4;
+constexpr double kPair = 8;
+constexpr double kId = 4;
 /// a block of triangles in a list, and in a grid
 constexpr double kListed = ListStore<Triangle>::kEntry;
 constexpr double kBoxed = kListed + sizeof(BlockBoxes) / double{kBlock};

@@ -32,7 +32,9 @@ constexpr double kDensity = .7;
 using Ids = std::vector<std::uint32_t>;
 
 /// A NaN or an infinity: all bits of the exponent set.
-bool is_number(float x) { return (std::bit_cast<std::uint32_t>(x) & 0x7F800000u) != 0x7F800000u; }
+bool is_number(float x) {
+  return (std::bit_cast<std::uint32_t>(x) & 0x7F800000u) != 0x7F800000u;
+}
 bool are_numbers(Floats v) {
   std::uint32_t found = 0;
   for (const float x : v)
@@ -141,7 +143,9 @@ bool set_few_apart(const Primitives& p, Ids& ids, Ids& outside) {
 /// no less than its diagonal. Such rays are at most 1 + sqrt 3 reaches from any of them. A float
 /// test is off by at most 62 eps of that distance, and a walk by 32 eps of the reach (derived in
 /// docs/numerics.md).
-double pad_of(double reach) { return reach * 256 / 16777216; }
+double pad_of(double reach) {
+  return reach * 256 / 16777216;
+}
 
 /// Rays within `reach` of a box start near its grid; rounded inwards.
 void set_near(Grid& g, const Box& box, double reach) {

@@ -57,7 +57,10 @@ struct TraceOptions {
 struct Counters {
   std::uint64_t visits = 0;
   std::uint64_t tests[kKinds] = {};  ///< by kind
-  std::uint64_t formed = 0, fell_back = 0, issued = 0, busy = 0;
+  std::uint64_t formed = 0;
+  std::uint64_t fell_back = 0;
+  std::uint64_t issued = 0;
+  std::uint64_t busy = 0;
 };
 
 /// What is to be added to origins of rays that are tested in double, which are sums of two floats

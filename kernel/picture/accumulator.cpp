@@ -13,8 +13,12 @@ namespace {
 
 static_assert(kPieceRows == kBandRows);
 
-int size(const Range& r) { return r.end - r.begin; }
-int pieces(const Range& r, int piece) { return (size(r) + piece - 1) / piece; }
+int size(const Range& r) {
+  return r.end - r.begin;
+}
+int pieces(const Range& r, int piece) {
+  return (size(r) + piece - 1) / piece;
+}
 
 /// Piece k of a range.
 Range cut(const Range& r, int piece, std::size_t k) {
@@ -48,8 +52,12 @@ void add_rows(Accumulator& to, const Range& rows, const std::int64_t* sums) {
                               std::to_string(r.end) + " are not among 0:" + std::to_string(most));
 }
 
-bool within(const Range& r, const Range& all) { return r.begin >= all.begin && r.end <= all.end; }
-bool within(const Range& r, int most) { return r.begin < r.end && within(r, Range{0, most}); }
+bool within(const Range& r, const Range& all) {
+  return r.begin >= all.begin && r.end <= all.end;
+}
+bool within(const Range& r, int most) {
+  return r.begin < r.end && within(r, Range{0, most});
+}
 
 void check(const Accumulator& a, const Camera& camera, const RenderOptions& options) {
   if (options.subdivision.on || options.refine.on())

@@ -11,9 +11,13 @@ bool is_size(int width, int height) {
   return width >= 1 && height >= 1 && width <= kMostSide && height <= kMostSide;
 }
 
-std::uint64_t size_of(const Range& r) { return static_cast<std::uint64_t>(r.end - r.begin); }
+std::uint64_t size_of(const Range& r) {
+  return static_cast<std::uint64_t>(r.end - r.begin);
+}
 
-bool is_range(const Range& r, int most) { return r.begin >= 0 && r.begin < r.end && r.end <= most; }
+bool is_range(const Range& r, int most) {
+  return r.begin >= 0 && r.begin < r.end && r.end <= most;
+}
 
 // Each question about a picture, asked of every kind: the same name, told apart by the state.
 
@@ -45,25 +49,55 @@ bool advance_state(const World& world,
   return render_subdivided(world, camera, options, s, stats, should_continue);
 }
 
-int width_of(const Accumulator& a) { return a.width; }
-int width_of(const Refinement& r) { return r.width; }
-int width_of(const SubdivisionState& s) { return s.image.width; }
+int width_of(const Accumulator& a) {
+  return a.width;
+}
+int width_of(const Refinement& r) {
+  return r.width;
+}
+int width_of(const SubdivisionState& s) {
+  return s.image.width;
+}
 
-int height_of(const Accumulator& a) { return a.height; }
-int height_of(const Refinement& r) { return r.height; }
-int height_of(const SubdivisionState& s) { return s.image.height; }
+int height_of(const Accumulator& a) {
+  return a.height;
+}
+int height_of(const Refinement& r) {
+  return r.height;
+}
+int height_of(const SubdivisionState& s) {
+  return s.image.height;
+}
 
-double share_of(const Accumulator& a) { return share_done(a); }
-double share_of(const Refinement& r) { return r.share; }
-double share_of(const SubdivisionState& s) { return s.share; }
+double share_of(const Accumulator& a) {
+  return share_done(a);
+}
+double share_of(const Refinement& r) {
+  return r.share;
+}
+double share_of(const SubdivisionState& s) {
+  return s.share;
+}
 
-bool finished(const Accumulator& a) { return is_complete(a); }
-bool finished(const Refinement& r) { return r.finished; }
-bool finished(const SubdivisionState& s) { return s.share == 1; }
+bool finished(const Accumulator& a) {
+  return is_complete(a);
+}
+bool finished(const Refinement& r) {
+  return r.finished;
+}
+bool finished(const SubdivisionState& s) {
+  return s.share == 1;
+}
 
-Image image_of(const Accumulator& a) { return picture_so_far(a); }
-Image image_of(const Refinement& r) { return picture_so_far(r); }
-Image image_of(const SubdivisionState& s) { return s.image; }
+Image image_of(const Accumulator& a) {
+  return picture_so_far(a);
+}
+Image image_of(const Refinement& r) {
+  return picture_so_far(r);
+}
+Image image_of(const SubdivisionState& s) {
+  return s.image;
+}
 
 std::uint64_t samples_of(const Accumulator& a) {
   std::uint64_t samples = 0;
@@ -80,9 +114,13 @@ std::uint64_t samples_of(const Refinement& r) {
     samples += sample_count(r, p);
   return samples;
 }
-std::uint64_t samples_of(const SubdivisionState&) { return 0; }
+std::uint64_t samples_of(const SubdivisionState&) {
+  return 0;
+}
 
-Part part_of(const Accumulator& a) { return a.part; }
+Part part_of(const Accumulator& a) {
+  return a.part;
+}
 template <class State>
 Part part_of(const State& whole) {
   return {{0, height_of(whole)}, {0, 1}};

@@ -41,8 +41,12 @@ void expect_primitive(const PrimitiveIds& ids, std::uint32_t id) {
     throw std::invalid_argument("no primitive of this scene has this id");
 }
 
-scalar::Vec3<float> vec(const Float3& p) { return {p.x, p.y, p.z}; }
-Float3 float3(const scalar::Vec3<float>& v) { return {v.x, v.y, v.z}; }
+scalar::Vec3<float> vec(const Float3& p) {
+  return {p.x, p.y, p.z};
+}
+Float3 float3(const scalar::Vec3<float>& v) {
+  return {v.x, v.y, v.z};
+}
 
 }  // namespace
 

@@ -11,7 +11,9 @@ namespace scalar {
 extern const VariantLoops kLoops;
 }
 namespace {
-bool always() { return true; }
+bool always() {
+  return true;
+}
 const Variant kScalar{"scalar", 1, always, scalar::kLoops};
 }  // namespace
 
@@ -20,7 +22,9 @@ namespace sse2 {
 extern const VariantLoops kLoops;
 }
 namespace {
-bool has_sse2() { return __builtin_cpu_supports("sse2"); }
+bool has_sse2() {
+  return __builtin_cpu_supports("sse2");
+}
 const Variant kSse2{"sse2", 4, has_sse2, sse2::kLoops};
 }  // namespace
 #endif
@@ -30,7 +34,9 @@ namespace avx2 {
 extern const VariantLoops kLoops;
 }
 namespace {
-bool has_avx2() { return __builtin_cpu_supports("avx2"); }
+bool has_avx2() {
+  return __builtin_cpu_supports("avx2");
+}
 const Variant kAvx2{"avx2", 8, has_avx2, avx2::kLoops};
 }  // namespace
 #endif
@@ -66,7 +72,9 @@ constexpr const Variant* kVariants[] = {
 };
 }  // namespace
 
-std::span<const Variant* const> variants() { return kVariants; }
+std::span<const Variant* const> variants() {
+  return kVariants;
+}
 
 const Variant& best_variant() {
   static const Variant* const best = [] {

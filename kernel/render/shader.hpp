@@ -35,7 +35,9 @@ struct Shader {
 };
 
 /// Whether shares are more than weights tell: see split().
-inline bool keeps_shares(const Shader& s) { return s.shading.gains || s.work.plan.gloss_rays > 0; }
+inline bool keeps_shares(const Shader& s) {
+  return s.shading.gains || s.work.plan.gloss_rays > 0;
+}
 
 /// Elements i, i + 1, ... of arrays of a component each: Rows3 or Columns3.
 template <class Arrays>
@@ -49,7 +51,9 @@ inline void store3(Arrays& to, int i, const Lanes3& a) {
   store(to.z + i, a.z);
 }
 
-inline Lanes3 splat(const float* v) { return {Lanes(v[0]), Lanes(v[1]), Lanes(v[2])}; }
+inline Lanes3 splat(const float* v) {
+  return {Lanes(v[0]), Lanes(v[1]), Lanes(v[2])};
+}
 
 /// Lanes of an array of `count` from `first` on.
 inline unsigned lanes_of(int first, int count) {

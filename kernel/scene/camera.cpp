@@ -15,18 +15,26 @@ struct Double3 {
 Double3 minus(const Float3& a, const Float3& b) {
   return {double(a.x) - b.x, double(a.y) - b.y, double(a.z) - b.z};
 }
-double dot(const Double3& a, const Double3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+double dot(const Double3& a, const Double3& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 Double3 cross(const Double3& a, const Double3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-Double3 scaled(const Double3& a, double s) { return {a.x * s, a.y * s, a.z * s}; }
-Double3 unit(const Double3& a) { return scaled(a, 1 / std::sqrt(dot(a, a))); }
+Double3 scaled(const Double3& a, double s) {
+  return {a.x * s, a.y * s, a.z * s};
+}
+Double3 unit(const Double3& a) {
+  return scaled(a, 1 / std::sqrt(dot(a, a)));
+}
 
 bool finite(const Float3& a) {
   return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
 }
 
-bool is_picture_side(int pixels) { return pixels >= 1 && pixels <= kMostSide; }
+bool is_picture_side(int pixels) {
+  return pixels >= 1 && pixels <= kMostSide;
+}
 
 bool lens_is_sound(const Camera& c) {
   return c.aperture >= 0 && std::isfinite(c.aperture) && c.focus > 0 && std::isfinite(c.focus);

@@ -8,8 +8,12 @@ namespace {
 /// What counts as more light than came: .9 + .1 as floats is no gain.
 constexpr float kGain = 1.0001f;
 
-bool is_clear(const Material& m) { return m.transmission > 0; }
-bool obeys_fresnel(const Material& m) { return is_clear(m) && m.fresnel; }
+bool is_clear(const Material& m) {
+  return m.transmission > 0;
+}
+bool obeys_fresnel(const Material& m) {
+  return is_clear(m) && m.fresnel;
+}
 
 }  // namespace
 

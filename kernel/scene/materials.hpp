@@ -10,7 +10,9 @@
 
 namespace grelha {
 
-inline float largest_channel(const Float3& v) { return std::max({v.x, v.y, v.z}); }
+inline float largest_channel(const Float3& v) {
+  return std::max({v.x, v.y, v.z});
+}
 
 /// Materials one array per component, so that lanes gather what they need and no more; and what
 /// those that primitives have ask for.

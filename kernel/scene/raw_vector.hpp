@@ -47,7 +47,9 @@ struct RawAllocator {
     if constexpr (sizeof...(Args) > 0)
       ::new (static_cast<void*>(p)) U(std::forward<Args>(args)...);
   }
-  bool operator==(const RawAllocator&) const { return true; }
+  bool operator==(const RawAllocator&) const {
+    return true;
+  }
 };
 
 /// resize() leaves what is new unset.

@@ -84,8 +84,12 @@ inline constexpr int kBandRows = 8;
 inline constexpr int kTile = 8;
 /// Pixel k of a tile, along Morton's curve: any 4, 16 or 64 in a row from a multiple of that are a
 /// square.
-constexpr int tile_x(int k) { return (k & 1) | (k >> 1 & 2) | (k >> 2 & 4); }
-constexpr int tile_y(int k) { return tile_x(k >> 1); }
+constexpr int tile_x(int k) {
+  return (k & 1) | (k >> 1 & 2) | (k >> 2 & 4);
+}
+constexpr int tile_y(int k) {
+  return tile_x(k >> 1);
+}
 
 /// Consecutive samples of one pixel, in kParts parts of equal size with a sum each.
 struct PixelRun {

@@ -90,7 +90,8 @@ struct Sphere {
       inner_ = inner > 0 ? inner * inner * (1 - 1e-12) : -1;
     }
     bool operator()(const int (&at)[3]) const {
-      double near = 0, far = 0;
+      double near = 0;
+      double far = 0;
       for (int a = 0; a < 3; ++a) {
         const double lo = at[a] * cell_[a] - center_[a];
         const double hi = (at[a] + 1) * cell_[a] - center_[a];
@@ -204,7 +205,8 @@ template <class Real>
       select(middle < Real(0), middle - half, middle + half);  // like signs add: nothing cancels
   const Real power = dot(to_center, to_center) - rr;
   const Real other = (power * inv_dd) / q;
-  const Real enter = lesser(other, q), leave = greater(other, q);
+  const Real enter = lesser(other, q);
+  const Real leave = greater(other, q);
   t = select(both(enter > t_min, radius > Real(0)), enter, leave);
   if constexpr (kFloat) {
     const Mask<Real> near = both(crosses, magnitude(power) < Real(kFarPower) * rr);
@@ -321,7 +323,8 @@ inline SurfacePlace<Real> rounded_sphere_place(const Vec3<Real>& org,
 
 template <class Real>
 inline SurfacePlace<Real> sphere_place(const Vec3<Real>& c, const Real& r, const Vec3<Real>& at) {
-  const Vec3<Real> n = normalize(at - c), point = c + r * n;
+  const Vec3<Real> n = normalize(at - c);
+  const Vec3<Real> point = c + r * n;
   return {point, n, Real(16 * kRounding<Real>) * r + Real(4 * kRounding<Real>) * largest(point)};
 }
 

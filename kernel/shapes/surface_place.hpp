@@ -116,7 +116,8 @@ inline Surface<Real> surface_at(const Meeting<Real>& met,
   }
   PlaceParts<Real> parts;
   exact_places<Real>(met.start, met.org, met.dir, exact_place, parts);
-  const Vec3<Real> point = parts.vector(0), n = parts.vector(3);
+  const Vec3<Real> point = parts.vector(0);
+  const Vec3<Real> n = parts.vector(3);
   rest_of_points<Real>(point, parts);
   return {point, n, n, narrow<Real>(parts.part[6]), material, parts.vector(0)};
 }

@@ -23,8 +23,9 @@ inline TrianglePlace<Real> triangle_place(const Real& axis,
   const Crossing<Real> r =
       crossing<Real>(turned(org), turned(dir), {turned(c.a), turned(c.b), turned(c.c)});
   const Real o(0), one(1);
-  const Vec3<Real> w = select(r.inside, r.weights, Vec3<Real>{one, o, o}), e1 = c.b - c.a,
-                   e2 = c.c - c.a;
+  const Vec3<Real> w = select(r.inside, r.weights, Vec3<Real>{one, o, o});
+  const Vec3<Real> e1 = c.b - c.a;
+  const Vec3<Real> e2 = c.c - c.a;
   return {c.a + (w.y * e1 + w.z * e2), normalize(cross(e1, e2)), w};
 }
 

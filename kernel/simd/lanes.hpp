@@ -169,7 +169,9 @@ inline float not_above(double a) {
   const std::int32_t b = float_bits(r);
   return r == 0 ? bits_float(INT32_MIN + 1) : bits_float(r > 0 ? b - 1 : b + 1);
 }
-inline float not_below(double a) { return 0 - not_above(0 - a); }
+inline float not_below(double a) {
+  return 0 - not_above(0 - a);
+}
 
 /// Doubles beside some floats: kWideParts<Real> registers of them hold what one of Real does.
 template <class Real>

@@ -15,9 +15,15 @@ struct SimdWords<xsimd::avx2> {
 };
 using Avx2Words = SimdWords<xsimd::avx2>::Type;
 
-inline Avx2 lesser(const Avx2& a, const Avx2& b) { return Avx2(_mm256_min_ps(a.data, b.data)); }
-inline Avx2 greater(const Avx2& a, const Avx2& b) { return Avx2(_mm256_max_ps(a.data, b.data)); }
-inline unsigned bits(const Avx2Mask& m) { return unsigned(_mm256_movemask_ps(m.data)); }
+inline Avx2 lesser(const Avx2& a, const Avx2& b) {
+  return Avx2(_mm256_min_ps(a.data, b.data));
+}
+inline Avx2 greater(const Avx2& a, const Avx2& b) {
+  return Avx2(_mm256_max_ps(a.data, b.data));
+}
+inline unsigned bits(const Avx2Mask& m) {
+  return unsigned(_mm256_movemask_ps(m.data));
+}
 inline Avx2Mask but_not(const Avx2Mask& a, const Avx2Mask& b) {
   return Avx2Mask(_mm256_andnot_ps(b.data, a.data));
 }
@@ -42,7 +48,9 @@ inline DoubleLanes lesser(const DoubleLanes& a, const DoubleLanes& b) {
 inline DoubleLanes greater(const DoubleLanes& a, const DoubleLanes& b) {
   return DoubleLanes(_mm256_max_pd(a.data, b.data));
 }
-inline unsigned bits(const Avx2DoubleMask& m) { return unsigned(_mm256_movemask_pd(m.data)); }
+inline unsigned bits(const Avx2DoubleMask& m) {
+  return unsigned(_mm256_movemask_pd(m.data));
+}
 inline Avx2DoubleMask but_not(const Avx2DoubleMask& a, const Avx2DoubleMask& b) {
   return Avx2DoubleMask(_mm256_andnot_pd(b.data, a.data));
 }
@@ -54,7 +62,9 @@ inline bool any_set(Avx2Words a) {
 inline Lanes small_to_float(Avx2Words a) {
   return Lanes(_mm256_cvtepi32_ps(reinterpret_cast<__m256i>(a)));
 }
-inline Avx2Mask mask_of(Avx2Words a) { return Avx2Mask(reinterpret_cast<__m256>(a)); }
+inline Avx2Mask mask_of(Avx2Words a) {
+  return Avx2Mask(reinterpret_cast<__m256>(a));
+}
 inline Lanes floats_at(const float* from, Avx2Words at) {
   return Lanes(_mm256_i32gather_ps(from, reinterpret_cast<__m256i>(at), 4));
 }

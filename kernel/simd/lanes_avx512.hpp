@@ -16,11 +16,15 @@ struct SimdWords<xsimd::avx512bw> {
 };
 using Avx512Words = SimdWords<xsimd::avx512bw>::Type;
 
-inline Lanes lesser(const Lanes& a, const Lanes& b) { return Lanes(_mm512_min_ps(a.data, b.data)); }
+inline Lanes lesser(const Lanes& a, const Lanes& b) {
+  return Lanes(_mm512_min_ps(a.data, b.data));
+}
 inline Lanes greater(const Lanes& a, const Lanes& b) {
   return Lanes(_mm512_max_ps(a.data, b.data));
 }
-inline unsigned bits(const Avx512Mask& m) { return unsigned(m.data); }
+inline unsigned bits(const Avx512Mask& m) {
+  return unsigned(m.data);
+}
 inline Avx512Mask but_not(const Avx512Mask& a, const Avx512Mask& b) {
   return Avx512Mask(static_cast<__mmask16>(a.data & ~b.data));
 }
@@ -39,7 +43,9 @@ inline DoubleLanes lesser(const DoubleLanes& a, const DoubleLanes& b) {
 inline DoubleLanes greater(const DoubleLanes& a, const DoubleLanes& b) {
   return DoubleLanes(_mm512_max_pd(a.data, b.data));
 }
-inline unsigned bits(const Avx512DoubleMask& m) { return unsigned(m.data); }
+inline unsigned bits(const Avx512DoubleMask& m) {
+  return unsigned(m.data);
+}
 inline Avx512DoubleMask but_not(const Avx512DoubleMask& a, const Avx512DoubleMask& b) {
   return Avx512DoubleMask(static_cast<__mmask8>(a.data & ~b.data));
 }

@@ -17,9 +17,15 @@ struct SimdWords<xsimd::sse2> {
 };
 using Sse2Words = SimdWords<xsimd::sse2>::Type;
 
-inline Sse2 lesser(const Sse2& a, const Sse2& b) { return Sse2(_mm_min_ps(a.data, b.data)); }
-inline Sse2 greater(const Sse2& a, const Sse2& b) { return Sse2(_mm_max_ps(a.data, b.data)); }
-inline unsigned bits(const Sse2Mask& m) { return unsigned(_mm_movemask_ps(m.data)); }
+inline Sse2 lesser(const Sse2& a, const Sse2& b) {
+  return Sse2(_mm_min_ps(a.data, b.data));
+}
+inline Sse2 greater(const Sse2& a, const Sse2& b) {
+  return Sse2(_mm_max_ps(a.data, b.data));
+}
+inline unsigned bits(const Sse2Mask& m) {
+  return unsigned(_mm_movemask_ps(m.data));
+}
 inline Sse2Mask but_not(const Sse2Mask& a, const Sse2Mask& b) {
   return Sse2Mask(_mm_andnot_ps(b.data, a.data));
 }
@@ -30,7 +36,9 @@ inline Sse2Double lesser(const Sse2Double& a, const Sse2Double& b) {
 inline Sse2Double greater(const Sse2Double& a, const Sse2Double& b) {
   return Sse2Double(_mm_max_pd(a.data, b.data));
 }
-inline unsigned bits(const Sse2DoubleMask& m) { return unsigned(_mm_movemask_pd(m.data)); }
+inline unsigned bits(const Sse2DoubleMask& m) {
+  return unsigned(_mm_movemask_pd(m.data));
+}
 inline Sse2DoubleMask but_not(const Sse2DoubleMask& a, const Sse2DoubleMask& b) {
   return Sse2DoubleMask(_mm_andnot_pd(b.data, a.data));
 }
@@ -42,7 +50,9 @@ inline bool any_set(Sse2Words a) {
 inline Sse2 small_to_float(Sse2Words a) {
   return Sse2(_mm_cvtepi32_ps(reinterpret_cast<__m128i>(a)));
 }
-inline Sse2Mask mask_of(Sse2Words a) { return Sse2Mask(reinterpret_cast<__m128>(a)); }
+inline Sse2Mask mask_of(Sse2Words a) {
+  return Sse2Mask(reinterpret_cast<__m128>(a));
+}
 inline Sse2 floats_at(const float* from, Sse2Words at) {
   return Sse2(_mm_setr_ps(from[at[0]], from[at[1]], from[at[2]], from[at[3]]));
 }

@@ -27,7 +27,9 @@ struct Wanted {
   std::uint32_t slot;
 };
 
-float clamped(float x) { return x < 0 ? 0.f : x > 1 ? 1.f : x; }
+float clamped(float x) {
+  return x < 0 ? 0.f : x > 1 ? 1.f : x;
+}
 
 /// Whether a channel of two corners differs by more than the threshold.
 bool differ(const Float3 (&c)[4], float threshold) {

@@ -14,7 +14,9 @@ bool ascends(const std::vector<BorderPoint>& border) {
   return std::adjacent_find(border.begin(), border.end(), falls) == border.end();
 }
 
-bool is_side(int side) { return side >= 1 && side <= kMostSubdividedSide; }
+bool is_side(int side) {
+  return side >= 1 && side <= kMostSubdividedSide;
+}
 
 }  // namespace
 

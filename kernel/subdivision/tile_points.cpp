@@ -21,7 +21,9 @@ bool lies_on(std::uint32_t steps, int line) {
 
 }  // namespace
 
-std::uint64_t morton(LatticePoint p) { return spread(p.x) | spread(p.y) << 1; }
+std::uint64_t morton(LatticePoint p) {
+  return spread(p.x) | spread(p.y) << 1;
+}
 
 void TilePoints::load_border(const TileRect& rect,
                              const std::vector<BorderPoint>& above,

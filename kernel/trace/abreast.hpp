@@ -182,7 +182,8 @@ struct Courses {
 struct Waiting {
   Courses<kPacket> course;
   std::uint8_t ray[kPacket];
-  int first = 0, end = 0;
+  int first = 0;
+  int end = 0;
 
   Waiting(const GridView& g, const WalkingRays& p) {
     each_live_group(p, [&](int i, int) { add(g, p, i); });

@@ -51,7 +51,8 @@ template <class Real>
                                                const Real& best,
                                                Course<Real>& c,
                                                Real (&cell)[3]) {
-  Real t0 = begin, t1 = best;
+  Real t0 = begin;
+  Real t1 = best;
   const Mask<Real> search = best > begin;
   for (int a = 0; a < 3; ++a) {
     set_course(g, org, dir, a, c);

@@ -7,11 +7,12 @@
 
 namespace grelha::GRELHA_ISA {
 
-inline constexpr int kGroups = kPacket / kWidth<Lanes>,
-                     kGroupRow = kGroups > kWidth<Lanes> ? kGroups : kWidth<Lanes>;
+inline constexpr int kGroups = kPacket / kWidth<Lanes>;
+inline constexpr int kGroupRow = kGroups > kWidth<Lanes> ? kGroups : kWidth<Lanes>;
 
 /// rays of the packets that larger ones fall apart into
-inline constexpr int kSmall = 16, kMiddle = 64;
+inline constexpr int kSmall = 16;
+inline constexpr int kMiddle = 64;
 
 enum class Coherence {
   kMisses,     ///< no ray meets the grid

@@ -58,8 +58,8 @@ inline typename In::Number bring_near(const SceneView& scene, Single<In>& r) {
 template <bool kAny, class In>
 inline bool test_grid_cell(Single<In>& r, const CellLists& lists, std::uint32_t cell, Counters& n) {
   if (lists.of<Triangle>().first) {
-    const std::uint32_t first = lists.of<Triangle>().first[cell],
-                        end = lists.of<Triangle>().first[cell + 1];
+    const std::uint32_t first = lists.of<Triangle>().first[cell];
+    const std::uint32_t end = lists.of<Triangle>().first[cell + 1];
     float enters[kBlock];
     for (std::uint32_t at = first / kBlock * kBlock; at < end; at += kBlock)
       for (unsigned passed = passed_boxes(r, lists.of<Triangle>().boxes[at / kBlock], enters) &

@@ -33,14 +33,28 @@ struct Packet : WalkingRays, TestedRays<In> {
 };
 
 /// What tests take of ray i.
-inline const float* tested_org(const Packet<InFloat>& p, int axis) { return p.org[axis]; }
-inline const float* tested_t_min(const Packet<InFloat>& p) { return p.t_min; }
-inline const float* tested_best(const Packet<InFloat>& p) { return p.best; }
-inline void set_best(Packet<InFloat>& p, int i, float t) { p.best[i] = t; }
+inline const float* tested_org(const Packet<InFloat>& p, int axis) {
+  return p.org[axis];
+}
+inline const float* tested_t_min(const Packet<InFloat>& p) {
+  return p.t_min;
+}
+inline const float* tested_best(const Packet<InFloat>& p) {
+  return p.best;
+}
+inline void set_best(Packet<InFloat>& p, int i, float t) {
+  p.best[i] = t;
+}
 
-inline const double* tested_org(const Packet<InDouble>& p, int axis) { return p.from[axis]; }
-inline const float* tested_t_min(const Packet<InDouble>& p) { return p.after; }
-inline const double* tested_best(const Packet<InDouble>& p) { return p.nearest; }
+inline const double* tested_org(const Packet<InDouble>& p, int axis) {
+  return p.from[axis];
+}
+inline const float* tested_t_min(const Packet<InDouble>& p) {
+  return p.after;
+}
+inline const double* tested_best(const Packet<InDouble>& p) {
+  return p.nearest;
+}
 inline void set_best(Packet<InDouble>& p, int i, double t) {
   p.nearest[i] = t;
   p.best[i] = not_below(p.moved ? t - p.shift[i] : t);
@@ -238,7 +252,9 @@ struct AlignedRays {
   const TestedTriangle<In>* with;
   int i, axis;
   RayAndTriangle<Real> operator()() const {
-    const int k = axis, kx = kNextAxis[k], ky = kPreviousAxis[k];
+    const int k = axis;
+    const int kx = kNextAxis[k];
+    const int ky = kPreviousAxis[k];
     const Packet<In>& p = *with->p;
     const auto corner = [&](const float* v) {
       return Vec3<Real>{Real(v[kx]), Real(v[ky]), Real(v[k])};
@@ -279,7 +295,8 @@ template <bool kAny, class In>
       p, [&](int i, int g) __attribute__((always_inline)) {
         const Shear<Real> shear{
             load<Real>(p.shear[0] + i), load<Real>(p.shear[1] + i), load<Real>(p.shear[2] + i)};
-        const Real t_min = take<Real>(tested_t_min(p) + i), t_max = load<Real>(tested_best(p) + i);
+        const Real t_min = take<Real>(tested_t_min(p) + i);
+        const Real t_max = load<Real>(tested_best(p) + i);
         Real t(0);
         const int axis = p.group_axis[g];
         const Mask<Real> hit =

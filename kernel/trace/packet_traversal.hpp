@@ -130,7 +130,9 @@ template <class Visit>
 
 /// Beyond this many cells a slice, looking into each costs more than every ray walking alone
 /// (measured).
-inline int most_cells(int width) { return width > kMiddle ? 32 : width > kSmall ? 16 : 8; }
+inline int most_cells(int width) {
+  return width > kMiddle ? 32 : width > kSmall ? 16 : 8;
+}
 
 /// The rays of a packet that go through a grid together.
 template <bool kAny, class In>

@@ -35,14 +35,28 @@ struct Single : WalkingRay, TestedRay<In> {
 };
 
 /// What tests take of a ray.
-inline const float (&tested_org(const Single<InFloat>& r))[3] { return r.org; }
-inline float tested_t_min(const Single<InFloat>& r) { return r.t_min; }
-inline float tested_best(const Single<InFloat>& r) { return r.best; }
-inline void set_best(Single<InFloat>& r, float t) { r.best = t; }
+inline const float (&tested_org(const Single<InFloat>& r))[3] {
+  return r.org;
+}
+inline float tested_t_min(const Single<InFloat>& r) {
+  return r.t_min;
+}
+inline float tested_best(const Single<InFloat>& r) {
+  return r.best;
+}
+inline void set_best(Single<InFloat>& r, float t) {
+  r.best = t;
+}
 
-inline const double (&tested_org(const Single<InDouble>& r))[3] { return r.from; }
-inline float tested_t_min(const Single<InDouble>& r) { return r.after; }
-inline double tested_best(const Single<InDouble>& r) { return r.nearest; }
+inline const double (&tested_org(const Single<InDouble>& r))[3] {
+  return r.from;
+}
+inline float tested_t_min(const Single<InDouble>& r) {
+  return r.after;
+}
+inline double tested_best(const Single<InDouble>& r) {
+  return r.nearest;
+}
 inline void set_best(Single<InDouble>& r, double t) {
   r.nearest = t;
   r.best = not_below(t - r.shift);
@@ -167,8 +181,8 @@ inline bool note(Single<In>& r,
   store(at, t);
   for (; lanes != 0; lanes &= lanes - 1) {
     const int k = __builtin_ctz(lanes);
-    const bool closer = at[k] < tested_best(r),
-               tie = at[k] == tested_best(r) && r.id != kNoPrimitive && ids[k] < r.id;
+    const bool closer = at[k] < tested_best(r);
+    const bool tie = at[k] == tested_best(r) && r.id != kNoPrimitive && ids[k] < r.id;
     if (kAny && closer) {
       set_best(r, -kInfinity);
       r.id = ids[k];
@@ -240,7 +254,9 @@ struct RayAndBlock {
   const TriangleBlock* block;
   int i;
   RayAndTriangle<Real> operator()() const {
-    const int k = r->axis, kx = kNextAxis[k], ky = kPreviousAxis[k];
+    const int k = r->axis;
+    const int kx = kNextAxis[k];
+    const int ky = kPreviousAxis[k];
     const auto& from = tested_org(*r);
     const auto corner = [&](const float(&v)[3][kBlock]) {
       return Vec3<Real>{take<Real>(v[kx] + i), take<Real>(v[ky] + i), take<Real>(v[k] + i)};

@@ -97,7 +97,9 @@ inline void store_words(
       __builtin_memcpy(to + i * stride, from + i, sizeof(float));
 }
 
-inline bool met(const WalkingRays& p, int i) { return id_of(p.id[i]) != kNoPrimitive; }
+inline bool met(const WalkingRays& p, int i) {
+  return id_of(p.id[i]) != kNoPrimitive;
+}
 
 template <class In>
 inline void store_hits(const Packet<In>& p, const Rays& rays, std::size_t first, const Hits& hits) {

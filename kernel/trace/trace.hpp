@@ -16,10 +16,11 @@ inline double approach(const SceneView& scene, float (&org)[3], const float (&di
     far |= org[a] < scene.box_lo[a] - scene.reach || org[a] > scene.box_hi[a] + scene.reach;
   if (!far || !scene.finite)
     return 0;
-  double dd = 0, along = 0;
+  double dd = 0;
+  double along = 0;
   for (int a = 0; a < 3; ++a) {
-    const double d = dir[a],
-                 c = .5 * (static_cast<double>(scene.box_lo[a]) + scene.box_hi[a]) - org[a];
+    const double d = dir[a];
+    const double c = .5 * (static_cast<double>(scene.box_lo[a]) + scene.box_hi[a]) - org[a];
     dd += d * d;
     along += c * d;
   }
@@ -42,7 +43,8 @@ inline double plane_t(const GeometryView& g,
                p[3] = {g.of<Plane>().fields.point[0][i],
                        g.of<Plane>().fields.point[1][i],
                        g.of<Plane>().fields.point[2][i]};
-  double away = 0, along = 0;
+  double away = 0;
+  double along = 0;
   for (int a = 0; a < 3; ++a) {
     away += n[a] * (p[a] - org[a]);
     along += n[a] * dir[a];
@@ -180,10 +182,13 @@ inline bool start_in(const GridView& g, WalkingRays& p) {
 
 /// Where a ray comes to a grid; infinity: never.
 inline float entry(const GridView& g, const float (&org)[3], const float (&dir)[3], float t_min) {
-  float t0 = t_min, t1 = kInfinity;
+  float t0 = t_min;
+  float t1 = kInfinity;
   for (int a = 0; a < 3; ++a) {
-    const float d = dir[a], inv = 1 / (magnitude(d) < 1e-18f ? 1e-18f : d);
-    const float x = (g.lo_f[a] - org[a]) * inv, y = (g.hi_f[a] - org[a]) * inv;
+    const float d = dir[a];
+    const float inv = 1 / (magnitude(d) < 1e-18f ? 1e-18f : d);
+    const float x = (g.lo_f[a] - org[a]) * inv;
+    const float y = (g.hi_f[a] - org[a]) * inv;
     t0 = greater(lesser(x, y), t0);
     t1 = lesser(greater(x, y), t1);
   }
@@ -264,11 +269,15 @@ template <bool kAny, class In>
 inline float t_of(const Packet<InFloat>& p, int i) {
   return p.best[i] + (p.moved ? p.shift[i] : 0.f);
 }
-inline float t_of(const Packet<InDouble>& p, int i) { return static_cast<float>(p.nearest[i]); }
+inline float t_of(const Packet<InDouble>& p, int i) {
+  return static_cast<float>(p.nearest[i]);
+}
 /// The same before it is rounded.
 inline double t_double(const Packet<InFloat>& p, int i) {
   return static_cast<double>(p.best[i]) + (p.moved ? p.shift[i] : 0.f);
 }
-inline double t_double(const Packet<InDouble>& p, int i) { return p.nearest[i]; }
+inline double t_double(const Packet<InDouble>& p, int i) {
+  return p.nearest[i];
+}
 
 }  // namespace grelha::GRELHA_ISA

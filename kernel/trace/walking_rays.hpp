@@ -26,8 +26,12 @@ struct WalkingRays {
   std::uint64_t live;  ///< bit g: group g has a ray that still searches
 };
 
-inline std::uint32_t id_of(float bits) { return static_cast<std::uint32_t>(float_bits(bits)); }
-inline float bits_of(std::uint32_t id) { return bits_float(static_cast<std::int32_t>(id)); }
+inline std::uint32_t id_of(float bits) {
+  return static_cast<std::uint32_t>(float_bits(bits));
+}
+inline float bits_of(std::uint32_t id) {
+  return bits_float(static_cast<std::int32_t>(id));
+}
 
 /// A component of a direction below this meets none of its planes on any way that counts, and taken
 /// instead of it never makes NaN: over a scene the ray strays by 1e-12 of it, where float strays by

@@ -107,7 +107,9 @@ class Builds final : public EmbreeBuilds {
 
 }  // namespace
 
-bool has_embree() { return true; }
+bool has_embree() {
+  return true;
+}
 std::unique_ptr<EmbreeBuilds> make_embree_builds(const Scene& scene, int threads) {
   return std::make_unique<Builds>(scene, threads);
 }
@@ -117,8 +119,12 @@ std::unique_ptr<EmbreeBuilds> make_embree_builds(const Scene& scene, int threads
 #else
 
 namespace grelha::perf {
-bool has_embree() { return false; }
-std::unique_ptr<EmbreeBuilds> make_embree_builds(const Scene&, int) { return nullptr; }
+bool has_embree() {
+  return false;
+}
+std::unique_ptr<EmbreeBuilds> make_embree_builds(const Scene&, int) {
+  return nullptr;
+}
 }  // namespace grelha::perf
 
 #endif

@@ -33,7 +33,9 @@ V operator+(const V& a, const V& b) {
 V operator-(const V& a, const V& b) {
   return {{a.x[0] - b.x[0], a.x[1] - b.x[1], a.x[2] - b.x[2]}};
 }
-V operator*(double s, const V& a) { return {{s * a.x[0], s * a.x[1], s * a.x[2]}}; }
+V operator*(double s, const V& a) {
+  return {{s * a.x[0], s * a.x[1], s * a.x[2]}};
+}
 V rounded(const V& a) {
   return {{double(float(a.x[0])), double(float(a.x[1])), double(float(a.x[2]))}};
 }

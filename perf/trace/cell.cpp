@@ -18,7 +18,9 @@ double Cell::tests() const {
   return share_of(t.sphere + t.triangle + t.cone + t.plane, rays);
 }
 
-double Cell::cells() const { return share_of(counts.visits, rays); }
+double Cell::cells() const {
+  return share_of(counts.visits, rays);
+}
 
 double Cell::lanes_busy() const {
   return share_of(counts.packets.lanes_busy, counts.packets.lanes_issued);

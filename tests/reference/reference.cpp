@@ -31,7 +31,9 @@ void walk_occluded(const SceneView& scene,
   reference::add(n, counts);
 }
 
-bool always() { return true; }
+bool always() {
+  return true;
+}
 
 }  // namespace
 

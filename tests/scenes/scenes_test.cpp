@@ -57,7 +57,9 @@ struct KnownFile {
   const char* file;  ///< under the folder of shared scenes
 };
 
-void PrintTo(const KnownFile& known, std::ostream* out) { *out << known.file; }  // names the case
+void PrintTo(const KnownFile& known, std::ostream* out) {
+  *out << known.file;
+}  // names the case
 
 class AgainstFile : public testing::TestWithParam<KnownFile> {};
 

@@ -22,7 +22,9 @@ struct Published {
   double eye_hits, reflection, refraction, shadow;
 };
 
-std::ostream& operator<<(std::ostream& out, const Published& p) { return out << p.scene << p.size; }
+std::ostream& operator<<(std::ostream& out, const Published& p) {
+  return out << p.scene << p.size;
+}
 
 SceneFile spd_scene(const Published& p) {
   const auto path =

@@ -29,7 +29,9 @@ Ball ball(const Scene& s, std::size_t i) {
 Real farthest(const Facet& f, const V& p) {
   return std::max({length(f.a - p), length(f.b - p), length(f.c - p)});
 }
-Real farthest(const Ball& b, const V& p) { return length(b.center - p) + std::abs(b.radius); }
+Real farthest(const Ball& b, const V& p) {
+  return length(b.center - p) + std::abs(b.radius);
+}
 
 /// Gathers what may be met and what must be.
 class Found {

@@ -13,7 +13,9 @@
 
 namespace grelha::stability {
 
-inline Float3 of(const scalar::Vec3<float>& v) { return {v.x, v.y, v.z}; }
+inline Float3 of(const scalar::Vec3<float>& v) {
+  return {v.x, v.y, v.z};
+}
 inline double dot(const Float3& a, const Float3& b) {
   return double(a.x) * b.x + double(a.y) * b.y + double(a.z) * b.z;
 }

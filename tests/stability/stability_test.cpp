@@ -6,8 +6,12 @@
 
 namespace grelha::stability {
 
-void PrintTo(const Row& row, std::ostream* out) { *out << row.name; }
-void PrintTo(const PictureRow& row, std::ostream* out) { *out << row.name; }
+void PrintTo(const Row& row, std::ostream* out) {
+  *out << row.name;
+}
+void PrintTo(const PictureRow& row, std::ostream* out) {
+  *out << row.name;
+}
 
 namespace {
 

@@ -116,7 +116,9 @@ Scene flat(Random& random) {
 Scene single(Random& random) {
   return one_triangle(random.point(1), random.point(1), random.point(1));
 }
-Scene nothing(Random&) { return empty_scene(); }
+Scene nothing(Random&) {
+  return empty_scene();
+}
 // a teapot in a stadium: a body of 1e-4 of the ground and stands about it
 Scene crowded_cell(Random& random) {
   Scene s = empty_scene();

@@ -20,15 +20,27 @@ struct V {
   V(Real a, Real b, Real c) : x(a), y(b), z(c) {}
   V(const Float3& f) : x(f.x), y(f.y), z(f.z) {}
 };
-inline V operator+(const V& a, const V& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-inline V operator-(const V& a, const V& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-inline V operator*(Real s, const V& a) { return {s * a.x, s * a.y, s * a.z}; }
-inline Real dot(const V& a, const V& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline V operator+(const V& a, const V& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+inline V operator-(const V& a, const V& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+inline V operator*(Real s, const V& a) {
+  return {s * a.x, s * a.y, s * a.z};
+}
+inline Real dot(const V& a, const V& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 inline V cross(const V& a, const V& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-inline Real length(const V& a) { return std::sqrt(dot(a, a)); }
-inline V unit(const V& a) { return (1 / length(a)) * a; }
+inline Real length(const V& a) {
+  return std::sqrt(dot(a, a));
+}
+inline V unit(const V& a) {
+  return (1 / length(a)) * a;
+}
 
 struct Ray {
   V org, dir;

@@ -75,10 +75,14 @@ inline Float3 at(const Float3& a, double s, const Float3& d) {
           static_cast<float>(a.y + s * d.y),
           static_cast<float>(a.z + s * d.z)};
 }
-inline Float3 minus(const Float3& a, const Float3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline Float3 minus(const Float3& a, const Float3& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
 inline Float3 scaled(const Float3& a, double s) {
   return {static_cast<float>(a.x * s), static_cast<float>(a.y * s), static_cast<float>(a.z * s)};
 }
-inline float& component(Float3& v, std::uint32_t a) { return a == 0 ? v.x : a == 1 ? v.y : v.z; }
+inline float& component(Float3& v, std::uint32_t a) {
+  return a == 0 ? v.x : a == 1 ? v.y : v.z;
+}
 
 }  // namespace grelha::test

@@ -16,7 +16,9 @@
 #include "tests/support/ray_list.hpp"
 
 namespace grelha {
-inline void PrintTo(const Variant* v, std::ostream* out) { *out << v->name; }
+inline void PrintTo(const Variant* v, std::ostream* out) {
+  *out << v->name;
+}
 }  // namespace grelha
 
 namespace grelha::test {

@@ -86,7 +86,9 @@ const std::vector<Case> kEntities{
     {"ply # none\n", ":8:5: error: expected a file name after \"ply\", found end of line"},
 };
 
-TEST(Errors, Entities) { expect_after_view(kEntities); }
+TEST(Errors, Entities) {
+  expect_after_view(kEntities);
+}
 
 const std::vector<Case> kMaterialsAndLights{
     {"f 1 1\ns 0 0 0 1",
@@ -115,7 +117,9 @@ const std::vector<Case> kMaterialsAndLights{
      "file"},
 };
 
-TEST(Errors, MaterialsAndLights) { expect_after_view(kMaterialsAndLights); }
+TEST(Errors, MaterialsAndLights) {
+  expect_after_view(kMaterialsAndLights);
+}
 
 std::string view(
     const char* from, const char* at, const char* up, const char* angle, const char* resolution) {

@@ -19,7 +19,9 @@ using test::TemporaryFolder;
 using testing::Test;
 using Lines = std::vector<std::string>;
 
-const Triangles& triangles(const Reading& r) { return r.file.scene.geometry.triangles; }
+const Triangles& triangles(const Reading& r) {
+  return r.file.scene.geometry.triangles;
+}
 
 TEST(NffView, FieldsInAnyOrder) {
   const Reading r = read_text(

@@ -51,7 +51,9 @@ void expect_cover(const Outline& outline, const std::vector<Triangle>& triangles
   EXPECT_LE(triangles.size(), outline.size() - 2);
 }
 
-Outline reversed(Outline p) { return {p.rbegin(), p.rend()}; }
+Outline reversed(Outline p) {
+  return {p.rbegin(), p.rend()};
+}
 
 void expect_cover_any_way(const Outline& outline) {
   expect_cover(outline, cut(outline));

@@ -80,7 +80,9 @@ Image converged(const Case& c, int samples) {
   return render(world, c.file.camera, o, stats);
 }
 
-double shown(float v) { return v < 0 ? 0 : v > 1 ? 1 : v; }
+double shown(float v) {
+  return v < 0 ? 0 : v > 1 ? 1 : v;
+}
 
 /// Root mean square over a pixel's channels of what a screen would show of two pictures.
 double pixel_error(const Image& a, const Image& b, std::size_t p) {

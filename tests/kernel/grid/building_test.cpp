@@ -51,15 +51,25 @@ void give_back(void* p) {
 
 }  // namespace
 
-void* operator new(std::size_t n) { return count(std::malloc(n)); }
+void* operator new(std::size_t n) {
+  return count(std::malloc(n));
+}
 void* operator new(std::size_t n, std::align_val_t a) {
   void* p = nullptr;
   return count(posix_memalign(&p, static_cast<std::size_t>(a), n) == 0 ? p : nullptr);
 }
-void operator delete(void* p) noexcept { give_back(p); }
-void operator delete(void* p, std::size_t) noexcept { give_back(p); }
-void operator delete(void* p, std::align_val_t) noexcept { give_back(p); }
-void operator delete(void* p, std::size_t, std::align_val_t) noexcept { give_back(p); }
+void operator delete(void* p) noexcept {
+  give_back(p);
+}
+void operator delete(void* p, std::size_t) noexcept {
+  give_back(p);
+}
+void operator delete(void* p, std::align_val_t) noexcept {
+  give_back(p);
+}
+void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
+  give_back(p);
+}
 #endif
 
 namespace grelha::test {
@@ -69,7 +79,9 @@ struct Case {
   const char* name;
   int size;
 };
-void PrintTo(const Case& c, std::ostream* out) { *out << c.name << ' ' << c.size; }
+void PrintTo(const Case& c, std::ostream* out) {
+  *out << c.name << ' ' << c.size;
+}
 
 /// Small triangles anywhere in a cube: most blocks are not full. In clumps of so many that follow
 /// each other.

@@ -87,8 +87,12 @@ double rmse(
   return std::sqrt(errors / kPixels);
 }
 
-bool disc(const Pair& a, const Pair&) { return a.u * a.u + a.v * a.v < 2 / std::numbers::pi; }
-bool soft(const Pair& a, const Pair& b) { return a.u + b.u < 1 && a.v + b.v < 1.2; }
+bool disc(const Pair& a, const Pair&) {
+  return a.u * a.u + a.v * a.v < 2 / std::numbers::pi;
+}
+bool soft(const Pair& a, const Pair& b) {
+  return a.u + b.u < 1 && a.v + b.v < 1.2;
+}
 
 double slope(SamplePlan::Kind kind, double truth, const Integrand& f) {
   return std::log(rmse(kind, 16, truth, f) / rmse(kind, 1024, truth, f)) / std::log(64.);
@@ -204,7 +208,9 @@ std::uint32_t sobol_bits(std::uint32_t index, int dimension) {
 std::uint32_t owen_scrambled(std::uint32_t x, std::uint32_t seed) {
   return reversed(owen_hash(reversed(x), seed));
 }
-float unit(std::uint32_t x) { return static_cast<float>(x >> 8) / 16777216; }
+float unit(std::uint32_t x) {
+  return static_cast<float>(x >> 8) / 16777216;
+}
 float sobol(std::uint32_t seed, std::uint32_t index, int dimension) {
   return unit(owen_scrambled(sobol_bits(index, dimension),
                              scatter(seed, static_cast<std::uint32_t>(dimension))));
@@ -257,7 +263,9 @@ Ray ray(const FrameView& f, const SamplePlan& plan, int x, int y, std::uint32_t 
 
 constexpr SamplePlan::Kind kKinds[] = {
     SamplePlan::kSobol, SamplePlan::kJitter, SamplePlan::kUnshuffled, SamplePlan::kRandom};
-std::uint32_t bits_of(float x) { return std::bit_cast<std::uint32_t>(x); }
+std::uint32_t bits_of(float x) {
+  return std::bit_cast<std::uint32_t>(x);
+}
 
 using test::EveryVariant;
 using test::isa_name;

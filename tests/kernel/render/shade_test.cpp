@@ -136,11 +136,21 @@ struct HeadOn {
   Float3 eye, at;
 };
 
-void add_sphere(Geometry& g) { g.spheres.add({1, 2, 3}, 1, 0); }
-void add_sphere_around(Geometry& g) { g.spheres.add({1, 2, 3}, 4, 0); }
-void add_cylinder(Geometry& g) { g.cones.add({0, 0, 0}, 1, {0, 4, 0}, 1, 0); }
-void add_cone(Geometry& g) { g.cones.add({0, 0, 0}, 2, {0, 2, 0}, 0, 0); }
-void add_plane(Geometry& g) { g.planes.add({0, 1, 0}, {3, 3, 0}, 0); }
+void add_sphere(Geometry& g) {
+  g.spheres.add({1, 2, 3}, 1, 0);
+}
+void add_sphere_around(Geometry& g) {
+  g.spheres.add({1, 2, 3}, 4, 0);
+}
+void add_cylinder(Geometry& g) {
+  g.cones.add({0, 0, 0}, 1, {0, 4, 0}, 1, 0);
+}
+void add_cone(Geometry& g) {
+  g.cones.add({0, 0, 0}, 2, {0, 2, 0}, 0, 0);
+}
+void add_plane(Geometry& g) {
+  g.planes.add({0, 1, 0}, {3, 3, 0}, 0);
+}
 void add_facet(Geometry& g) {
   const Scene one = one_triangle({-1, -1, 0}, {1, -1, 0}, {0, 1, 0});
   g.triangles = one.geometry.triangles;

@@ -13,8 +13,12 @@ namespace grelha::test {
 using V = scalar::Vec3<float>;
 using Surface = scalar::Surface<float>;
 
-inline V vec(const Float3& p) { return {p.x, p.y, p.z}; }
-inline Float3 floats(const V& p) { return {p.x, p.y, p.z}; }
+inline V vec(const Float3& p) {
+  return {p.x, p.y, p.z};
+}
+inline Float3 floats(const V& p) {
+  return {p.x, p.y, p.z};
+}
 
 /// Closest hits of single rays.
 inline Answers scalar_hits(const World& world, const RayList& rays) {

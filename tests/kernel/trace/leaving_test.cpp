@@ -167,9 +167,15 @@ void check(const std::string& name, bool convex, const Make& make) {
   }
 }
 
-TEST(Leaving, Spheres) { check("sphere", true, make_sphere); }
-TEST(Leaving, Triangles) { check("triangle", false, make_triangle); }
-TEST(Leaving, Cones) { check("cone", true, make_cone); }
+TEST(Leaving, Spheres) {
+  check("sphere", true, make_sphere);
+}
+TEST(Leaving, Triangles) {
+  check("triangle", false, make_triangle);
+}
+TEST(Leaving, Cones) {
+  check("cone", true, make_cone);
+}
 
 TEST(Leaving, Planes) {
   // A plane's error is that of the point met, which grows with the distance of the origin.

@@ -22,7 +22,9 @@ struct Case {
   std::optional<Place> place{};  ///< where the scene is moved to; none: as it is made
 };
 
-void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+void PrintTo(const Case& c, std::ostream* out) {
+  *out << c.name;
+}
 
 template <auto Make, int Count>
 Scene crowd() {
@@ -63,9 +65,15 @@ Scene points() {
   return s;
 }
 
-Scene lattice() { return lattice_patch(12); }
-Scene closed_ball() { return ball_mesh(24, 12, .2); }
-Scene smooth_ball() { return ball_mesh(24, 12); }
+Scene lattice() {
+  return lattice_patch(12);
+}
+Scene closed_ball() {
+  return ball_mesh(24, 12, .2);
+}
+Scene smooth_ball() {
+  return ball_mesh(24, 12);
+}
 
 constexpr auto kSpheres = crowd<random_spheres, 300>;
 constexpr auto kTriangles = crowd<random_triangles, 300>;

@@ -13,7 +13,9 @@ struct Case {
   Scene (*make)();
   bool torus = false;
 };
-void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+void PrintTo(const Case& c, std::ostream* out) {
+  *out << c.name;
+}
 
 const Case kCases[] = {{"ball", [] { return ball_mesh(50, 25); }},
                        {"bumpy_ball", [] { return ball_mesh(16, 16, .15); }},
