@@ -10,6 +10,7 @@
 #include "grelha/camera.hpp"
 #include "grelha/geometry.hpp"
 #include "grelha/image.hpp"
+#include "grelha/point_grid.hpp"
 #include "grelha/query.hpp"
 #include "grelha/render.hpp"
 #include "grelha/scene_spans.hpp"

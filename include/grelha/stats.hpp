@@ -78,12 +78,20 @@ struct PhaseSeconds : std::array<double, kPhases> {
   }
 };
 
+/// Grids in the perspective of lights.
+struct PointGridStats {
+  int count = 0;
+  std::size_t bytes = 0;
+  double seconds = 0;  ///< to build them, 0 where they were there
+};
+
 /// Counts and times of a render.
 struct RenderStats {
   RayCounts rays;
   TraceCounts trace;
   PhaseSeconds phases;  ///< only with RenderOptions::phases
   ErrorStats error;     ///< only with RefineOptions
+  PointGridStats point_grids;
   int threads = 0;
   const char* isa = "";
 };

@@ -63,6 +63,7 @@ class AdaptiveSampler {
     stats_ = {};
     stats_.threads = thread_count(options, r.log.size());
     stats_.isa = setup.variant.name.data();
+    stats_.point_grids = setup.point_grids;
     for (std::size_t p = 0; p < order_.size(); ++p)
       samples_ += sample_count(r, p);
   }
@@ -184,7 +185,7 @@ class AdaptiveSampler {
     const RayCounts before = rays;
     const BandWork work = space.work(options_, 0, true);
     setup_.variant.loops.render_runs(
-        world_.view, world_.shading, setup_.frame, runs, count, work, trace, rays);
+        world_.view, setup_.shading, setup_.frame, runs, count, work, trace, rays);
     const std::int64_t* const sums = space.sums().data();
     for (int r = 0; r < count; ++r)
       add_run(r_, runs[r], sums + r * kParts * 3, first_log_, chunk);

@@ -139,14 +139,6 @@ bool set_few_apart(const Primitives& p, Ids& ids, Ids& outside) {
   return true;
 }
 
-/// The room around primitives for rays that start within `reach` of their box on each axis, `reach`
-/// no less than its diagonal. Such rays are at most 1 + sqrt 3 reaches from any of them. A float
-/// test is off by at most 62 eps of that distance, and a walk by 32 eps of the reach (derived in
-/// docs/numerics.md).
-double pad_of(double reach) {
-  return reach * 256 / 16777216;
-}
-
 /// Rays within `reach` of a box start near its grid; rounded inwards.
 void set_near(Grid& g, const Box& box, double reach) {
   constexpr float kInfinitelyFar = std::numeric_limits<float>::infinity();
@@ -181,6 +173,18 @@ void add_grids(const Primitives& p,
 }
 
 }  // namespace
+
+double pad_of(double reach) {
+  return reach * 256 / 16777216;
+}
+
+std::vector<std::uint32_t> sound_ids(const Primitives& p) {
+  Ids ids;
+  append(ids, p.first_finite(), p.ids.end());
+  if (!all_are_sound(p.geometry))
+    std::erase_if(ids, [&](std::uint32_t id) { return !is_sound(p, id); });
+  return ids;
+}
 
 int threads_of(const BuildOptions& options) {
   return options.threads > 0 ? options.threads : omp_get_num_procs();

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "grelha/rays.hpp"
+#include "kernel/perspective/view.hpp"
 #include "kernel/shapes/geometry_view.hpp"
 
 namespace grelha {
@@ -48,9 +49,19 @@ struct SceneView {
   bool finite = false;  ///< there is something besides planes
 };
 
+/// That rays end at one point, at t = 1: what is asked is whether anything lies between t = 0 and
+/// there.
+struct RaysToPoint {
+  const PointGridView* grid = nullptr;  ///< of the point; null: nothing is known of the rays
+  /// [rays] a primitive that the ray starts on and is known not to meet, or kNoPrimitive; null:
+  /// none
+  const std::uint32_t* leaves = nullptr;
+};
+
 struct TraceOptions {
   int packet;    ///< 1, 16, 64 or 256
   bool mailbox;  ///< for packets
+  RaysToPoint to = {};
 };
 
 /// What a trace counts.

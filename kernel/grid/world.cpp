@@ -71,6 +71,9 @@ World::Impl::Impl(const SceneSpans& s, const BuildOptions& options)
   progress.throw_if_stopped();
   view_primitives();
   view_grids(plan.all);
+  if (!options.grid)  // no primitive is large beside the others then
+    plan.apart.clear();
+  light_grids = std::make_unique<LightGrids>(primitives, scene.lights, plan.apart, plan.all);
   set_lights();
   set_materials();
 }

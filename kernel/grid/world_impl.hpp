@@ -2,9 +2,11 @@
 // What World holds: the built grids and the views of them that the hot loops see.
 
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "kernel/grid/grid.hpp"
+#include "kernel/grid/light_grids.hpp"
 #include "grelha/world.hpp"
 #include "kernel/scene/materials.hpp"
 #include "kernel/scene/shading_view.hpp"
@@ -24,6 +26,7 @@ struct World::Impl {
   std::vector<float> lights;  ///< [kLightFloats * count], see ShadingView
   SceneView view;
   ShadingView shading;
+  std::unique_ptr<LightGrids> light_grids;  ///< built when asked for
 
   Impl(const SceneSpans& scene, const BuildOptions& options);
 

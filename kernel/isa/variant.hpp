@@ -79,6 +79,7 @@ inline void points(const SceneView& scene,
 extern const VariantLoops kLoops;
 const VariantLoops kLoops{.closest = closest<InFloat>,
                           .occluded = occluded<InFloat>,
+                          .occluded_to = occluded_to,
                           .closest_one = closest_one,
                           .occluded_one = occluded_one,
                           .in_double = {.closest = closest<InDouble>,

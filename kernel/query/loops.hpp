@@ -33,6 +33,15 @@ inline void closest(const SceneView& scene,
   add(n, counts);
 }
 
+/// Stores a byte for each ray of a packet: whether it met anything.
+template <class In>
+inline void store_blocked(const Packet<In>& p, std::uint8_t* to) {
+  std::uint8_t bytes[kPacket];  // which nothing else may point to: SIMD
+  for (int i = 0; i < p.size; ++i)
+    bytes[i] = met(p, i);
+  __builtin_memcpy(to, bytes, static_cast<std::size_t>(p.size));
+}
+
 template <class In>
 inline void occluded(const SceneView& scene,
                      const Rays& rays,
@@ -41,13 +50,40 @@ inline void occluded(const SceneView& scene,
                      TraceCounts& counts) {
   Counters n;
   const auto store = [&](const Packet<In>& p, std::size_t first) {
-    std::uint8_t bytes[kPacket];  // which nothing else may point to: SIMD
-    for (int i = 0; i < p.size; ++i)
-      bytes[i] = met(p, i);
-    __builtin_memcpy(blocked + first, bytes, static_cast<std::size_t>(p.size));
+    store_blocked(p, blocked + first);
   };
   const auto load = [&](Packet<In>& p, std::size_t first) { load_rays(rays, {}, first, p); };
   trace<true, In>(scene, rays.count, options_of(settings), n, load, store);
+  add(n, counts);
+}
+
+/// Rays from points to one point.
+inline void load_rays_to(const PointQuery& query, std::size_t first, Packet<InFloat>& p) {
+  const float to[3] = {query.point.x, query.point.y, query.point.z};
+  for (int a = 0; a < 3; ++a) {
+    load_floats(query.points.at[a], query.points.stride, first, p.size, 0, p.org[a]);
+    for (int i = 0; i < p.size; ++i)
+      p.dir[a][i] = to[a] - p.org[a][i];
+  }
+  for (int i = 0; i < p.size; ++i) {
+    p.t_min[i] = 0;
+    p.best[i] = 1;
+  }
+}
+
+inline void occluded_to(const SceneView& scene,
+                        const PointQuery& query,
+                        std::uint8_t* blocked,
+                        const TraceSettings& settings,
+                        TraceCounts& counts) {
+  Counters n;
+  TraceOptions options = options_of(settings);
+  options.to = {query.grid, query.points.leaves};
+  const auto store = [&](const Packet<InFloat>& p, std::size_t first) {
+    store_blocked(p, blocked + first);
+  };
+  const auto load = [&](Packet<InFloat>& p, std::size_t first) { load_rays_to(query, first, p); };
+  trace<true, InFloat>(scene, query.points.count, options, n, load, store);
   add(n, counts);
 }
 

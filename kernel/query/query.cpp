@@ -5,17 +5,11 @@
 #include <string>
 
 #include "kernel/shapes/surface.hpp"
-#include "kernel/query/variants.hpp"
+#include "kernel/query/settings.hpp"
 #include "kernel/grid/world_impl.hpp"
 
 namespace grelha {
 namespace {
-
-TraceSettings settings_of(int packet) {
-  if (packet != 1 && packet != 16 && packet != 64 && packet != 256)
-    throw std::invalid_argument("a packet holds 1, 16, 64 or 256 rays");
-  return {packet == 1 ? Method::kSingle : Method::kPackets, packet, true};
-}
 
 /// Arrays that have no natural default.
 void expect_arrays(const Rays& rays) {

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "grelha/part.hpp"
+#include "grelha/point_grid.hpp"
 #include "grelha/rays.hpp"
 #include "kernel/scene/shading_view.hpp"
 #include "grelha/stats.hpp"
@@ -31,6 +32,13 @@ using ClosestLoop =
 using OccludedLoop =
     void (*)(const SceneView&, const Rays&, std::uint8_t*, const TraceSettings&, TraceCounts&);
 
+/// Points that ask whether they see one point.
+struct PointQuery {
+  const PointGridView* grid;  ///< of the point; null: rays go through the scene's grids
+  Float3 point;
+  const Points& points;
+};
+
 /// Loops that test rays against primitives in double lanes, with one rounding to float at the end.
 struct DoubleLoops {
   ClosestLoop closest;
@@ -42,6 +50,9 @@ struct DoubleLoops {
 struct VariantLoops {
   ClosestLoop closest;
   OccludedLoop occluded;
+  /// Whether anything is in the way to a point: [points.count] out, 1 or 0.
+  void (*occluded_to)(
+      const SceneView&, const PointQuery&, std::uint8_t*, const TraceSettings&, TraceCounts&);
   /// One ray by itself.
   Hit (*closest_one)(const SceneView&, const Ray&);
   bool (*occluded_one)(const SceneView&, const Ray&);

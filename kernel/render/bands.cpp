@@ -42,6 +42,7 @@ void render_bands(const World::Impl& world,
   stats = {};
   stats.threads = thread_count(options, most);
   stats.isa = setup.variant.name.data();
+  stats.point_grids = setup.point_grids;
   const Spaces spaces = band_spaces(setup, options, stats.threads);
   const auto first_pixel = [&](const Band& band) {
     return static_cast<std::uint32_t>(band.part.rows.begin) *
@@ -55,7 +56,7 @@ void render_bands(const World::Impl& world,
     for (Band band; !stopped && next(band);) {
       const BandWork work = space.work(options, first_pixel(band));
       setup.variant.loops.render_band(
-          world.view, world.shading, setup.frame, band.part, work, mine.trace, mine.rays);
+          world.view, setup.shading, setup.frame, band.part, work, mine.trace, mine.rays);
       if (!take(band, space.sums().data()))
         stopped = true;
       space.done(options);

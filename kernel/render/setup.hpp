@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "kernel/scene/frame.hpp"
 #include "grelha/render_options.hpp"
 #include "grelha/world.hpp"
@@ -12,6 +14,9 @@ struct Setup {
   const Variant& variant;
   FrameView frame;
   SamplePlan plan;
+  ShadingView shading;
+  std::vector<const PointGridView*> light_grids;  ///< what the shading points to
+  PointGridStats point_grids;
 };
 
 /// Throws std::invalid_argument for a bad camera or option.

@@ -176,7 +176,8 @@ inline void trace_shadows(const Shader& s, int n) {
                   .count = static_cast<std::size_t>(n),
                   .t_stride = 0};
   enter(s.work, Phase::shadow, rays);
-  const TraceOptions options = options_for(s, Phase::shadow);
+  TraceOptions options = options_for(s, Phase::shadow);
+  options.to = {b.grid, b.leaves};
   const LowParts low{b.org_low.x, b.org_low.y, b.org_low.z};
   if (const TraceLoops* const loops = s.work.in_double) {
     loops->blockers(s.scene, rays, low, b.id, options, s.counters);

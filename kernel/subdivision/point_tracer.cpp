@@ -103,7 +103,7 @@ class PointTracer {
     const PointList list{s.x, s.y, static_cast<int>(points.size())};
     const BandWork work = s.space.work(options_, 0, true);
     setup_.variant.loops.render_points(
-        world_.view, world_.shading, setup_.frame, list, work, s.trace, s.rays);
+        world_.view, setup_.shading, setup_.frame, list, work, s.trace, s.rays);
     const double share = 1 / (kLightUnit * setup_.plan.samples);
     const auto colour = [share](std::int64_t sum) {
       return static_cast<float>(static_cast<double>(sum) * share);
@@ -141,6 +141,7 @@ bool render_subdivided(const World& world,
   stats = {};
   stats.threads = options.threads > 0 ? options.threads : omp_get_num_procs();
   stats.isa = setup.variant.name.data();
+  stats.point_grids = setup.point_grids;
   GuardedProgress progress(options.progress, should_continue);
   PointTracer tracer(world.impl(), setup, options, progress, stats.threads);
   const bool finished = subdivide(

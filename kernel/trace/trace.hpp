@@ -3,6 +3,7 @@
 // with what t is left.
 
 #include "kernel/trace/packet_traversal.hpp"
+#include "kernel/trace/point_traversal.hpp"
 
 namespace grelha::GRELHA_ISA {
 
@@ -245,6 +246,30 @@ inline void trace_alone(const SceneView& scene, Packet<In>& p, bool any_triangle
     if (start_in(g, p))
       walk_apart<kAny>(g, p, any_triangles, n);
   });
+}
+
+/// Whether a packet starts as near to the scene as the lists of point grids allow for.
+inline bool starts_near(const SceneView& scene, const WalkingRays& p) {
+  Mask<Lanes> far = Lanes(0) != Lanes(0);
+  for (int i = 0; i < p.size; i += kWidth<Lanes>)
+    far = either(far, starts_far(scene, p, i));
+  return none(far);
+}
+
+/// Whether anything is in the way of the rays of a packet to a point; ray 0 is ray `first` of the
+/// stream. False: some start too far away, and nothing is done.
+[[gnu::noinline]] inline bool occlude_to_point(const SceneView& scene,
+                                               Packet<InFloat>& p,
+                                               const RaysToPoint& to,
+                                               std::size_t first,
+                                               Counters& n) {
+  prepare(p, false);
+  if (!starts_near(scene, p))
+    return false;
+  test_infinite<true>(scene, p, n);
+  const std::uint32_t* const leaves = to.leaves ? to.leaves + first : nullptr;
+  PointSearch(scene.geometry, *to.grid, p, leaves, n).run();
+  return true;
 }
 
 template <bool kAny, class In>

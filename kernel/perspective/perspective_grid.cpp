@@ -1,0 +1,394 @@
+#include "kernel/perspective/perspective_grid.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <exception>
+#include <mutex>
+
+#include "kernel/perspective/seen.hpp"
+#include "kernel/perspective/tiles.hpp"
+#include "kernel/perspective/tolerances.hpp"
+
+namespace grelha {
+namespace {
+
+constexpr double kMostReferencesEach = 16;  ///< a primitive, on average
+constexpr std::uint32_t kTileCrowd = 128;   ///< primitives of a tile that is parted
+constexpr double kPartCrowd = 16;           ///< primitives that each part is meant for
+constexpr int kMostColumns = 16;
+constexpr int kMostLevels = 4;
+
+/// A primitive in a list: number of what is seen of it.
+struct Place {
+  std::uint32_t tile, seen;
+};
+
+struct Reference {
+  float near;
+  std::uint32_t id, seen;
+  bool operator<(const Reference& o) const { return near != o.near ? near < o.near : id < o.id; }
+};
+
+/// What was thrown first by any thread: an exception must not leave a parallel region.
+class Thrown {
+ public:
+  template <class Work>
+  void in(const Work& work) {
+    try {
+      work();
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      if (!first_)
+        first_ = std::current_exception();
+    }
+  }
+  void on() const {
+    if (first_)
+      std::rethrow_exception(first_);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::exception_ptr first_;
+};
+
+class Builder {
+ public:
+  Builder(const Primitives& p,
+          std::span<const std::uint32_t> ids,
+          std::span<const std::uint32_t> large,
+          const Viewpoint& from,
+          const PerspectiveOptions& options)
+      : p_(p), ids_(ids), large_(large), from_(from), options_(options) {}
+
+  PerspectiveGrid build() {
+    std::copy(from_.at, from_.at + 3, g_.point);
+    look();
+    lay_tiles(options_.density);
+    each_seen([&](Seen& s, std::uint32_t) { s.to_tiles(g_.face[s.face]); });
+    place_all();
+    part_crowds();
+    write();
+    return std::move(g_);
+  }
+
+ private:
+  bool is_large(std::uint32_t id) const {
+    return std::binary_search(large_.begin(), large_.end(), id);
+  }
+  bool is_sphere(std::uint32_t id) const { return p_.ids.has(PrimitiveKind::kSphere, id); }
+
+  /// Finds what is seen of all primitives, and the part of each face that anything is seen in.
+  void look() {
+    Thrown thrown;
+#pragma omp parallel num_threads(options_.threads)
+    thrown.in([&] { look_in_one_thread(); });
+    thrown.on();
+    std::sort(g_.around.begin(), g_.around.end());
+  }
+
+  void look_in_one_thread() {
+    constexpr std::size_t kTurn = 1024;
+    Window window[kFaces];
+    std::vector<std::uint32_t> around;
+    SeenPages::Writer writer(seen_);
+    Seen* next = &writer.next();
+    for (std::size_t first; (first = turns_.fetch_add(kTurn)) < ids_.size();)
+      for (const std::uint32_t id : ids_.subspan(first, std::min(kTurn, ids_.size() - first))) {
+        const double distance = distance_of(p_, from_, id);
+        if (distance > kNearest * from_.pad)
+          look_at(id, distance, window, writer, next);
+        else
+          around.push_back(id);
+      }
+    const std::lock_guard lock(mutex_);
+    g_.around.insert(g_.around.end(), around.begin(), around.end());
+    for (int f = 0; f < kFaces; ++f)
+      window_[f].add(window[f]);
+  }
+
+  void look_at(std::uint32_t id,
+               double distance,
+               Window (&window)[kFaces],
+               SeenPages::Writer& writer,
+               Seen*& next) {
+    const Box box = p_.box(id);
+    const bool large = is_large(id);
+    for (int f = 0; f < kFaces; ++f) {
+      if (!may_be_seen(box, f) || !see(p_, from_, id, f, distance, next->outline))
+        continue;
+      if (!large)
+        window[f].add(next->outline);
+      window[f].near = std::min(window[f].near, next->outline.near);
+      next->id = id;
+      next->face = f;
+      next = &writer.next();
+    }
+  }
+
+  /// Whether anything of a box, or within pads of it, lies in the pyramid of a face.
+  bool may_be_seen(const Box& box, int face) const {
+    const int a = face / 2;
+    const double out = face % 2 == 0 ? box.hi[a] - from_.at[a] : from_.at[a] - box.lo[a];
+    const double deepest = out + 4 * from_.pad;
+    for (const int b : {(a + 1) % 3, (a + 2) % 3})
+      if (std::max(box.lo[b] - from_.at[b], from_.at[b] - box.hi[b]) > deepest)
+        return false;
+    return deepest > 0;
+  }
+
+  void lay_tiles(double density) {
+    std::uint64_t seen = 0;
+    for (const Window& w : window_)
+      seen += w.seen;
+    for (int f = 0; f < kFaces; ++f) {
+      PointFace& face = g_.face[f];
+      const Window& w = window_[f];
+      face = {};
+      face.first = static_cast<double>(tiles_.size());
+      face.depth = w.near < 1e300 ? w.near : 0;
+      if (w.seen > 0)
+        w.lay_tiles(face, density * static_cast<double>(w.seen));
+      for (int y = 0; y < face.ny; ++y)
+        for (int x = 0; x < face.nx; ++x)
+          tiles_.push_back({
+              double(x),
+              double(y),
+              1,
+              f,
+          });
+      tiles_.push_back({
+          0,
+          0,
+          0,
+          f,
+      });
+    }
+  }
+
+  template <class Visit>
+  void each_page(const Visit& visit) {
+    Thrown thrown;
+    const auto pages = static_cast<std::ptrdiff_t>(seen_.pages());
+#pragma omp parallel for schedule(dynamic, 1) num_threads(options_.threads)
+    for (std::ptrdiff_t page = 0; page < pages; ++page)
+      thrown.in([&] { visit(static_cast<std::uint32_t>(page)); });
+    thrown.on();
+  }
+  template <class Visit>
+  void each_of_page(std::uint32_t page, const Visit& visit) {
+    const std::uint32_t first = page * SeenPages::kPage;
+    for (std::uint32_t i = first; i < first + SeenPages::kPage; ++i) {
+      if (seen_[i].id == kNoPrimitive)
+        return;
+      visit(seen_[i], i);
+    }
+  }
+  template <class Visit>
+  void each_seen(const Visit& visit) {
+    each_page([&](std::uint32_t page) { each_of_page(page, visit); });
+  }
+
+  void count(std::uint32_t tile) {
+    std::atomic_ref(counts_[tile]).fetch_add(1, std::memory_order_relaxed);
+  }
+
+  void place_all() {
+    counts_.assign(tiles_.size(), 0);
+    places_.resize(seen_.pages());
+    each_page([&](std::uint32_t page) {
+      places_[page].reserve(4 * SeenPages::kPage);
+      each_of_page(page,
+                   [&](const Seen& s, std::uint32_t number) { place(s, number, places_[page]); });
+      for (const Place& at : places_[page])
+        count(at.tile);
+    });
+  }
+
+  /// The tiles of its face that a primitive may be met in.
+  void place(const Seen& s, std::uint32_t number, std::vector<Place>& to) const {
+    const PointFace& face = g_.face[s.face];
+    const auto first = static_cast<std::uint32_t>(face.first);
+    const int columns = static_cast<int>(face.nx);
+    const int rows = static_cast<int>(face.ny);
+    const auto beyond = static_cast<std::uint32_t>(columns * rows);
+    if (is_large(s.id))
+      to.push_back({first + beyond, number});
+    if (beyond == 0)
+      return;
+    TileWalk({0, 0, 1, columns, rows}, face).each(s, [&](std::uint32_t tile) {
+      to.push_back({first + tile, number});
+    });
+  }
+
+  /// Tiles with too many primitives get parts, and these again.
+  void part_crowds() {
+    g_.parts.resize(tiles_.size());
+    double references = 0;
+    for (const std::uint32_t n : counts_)
+      references += n;
+    const double most = kMostReferencesEach * static_cast<double>(ids_.size());
+    std::size_t begin = 0;
+    for (int level = 0; level < kMostLevels && references < most; ++level) {
+      const std::size_t end = tiles_.size();
+      for (std::size_t t = begin; t < end; ++t)
+        if (counts_[t] > kTileCrowd && tiles_[t].width > 0)
+          part(t);
+      begin = end;
+      if (tiles_.size() == end)
+        return;
+      g_.parts.resize(tiles_.size());
+      counts_.resize(tiles_.size());
+      place_parts();
+      references = 0;
+      for (std::size_t t = end; t < tiles_.size(); ++t)
+        references += counts_[t];
+    }
+  }
+
+  void part(std::size_t t) {
+    const int columns = static_cast<int>(
+        std::clamp(std::ceil(std::sqrt(counts_[t] / kPartCrowd)), 2., double{kMostColumns}));
+    g_.parts[t] = {static_cast<std::uint32_t>(tiles_.size()), static_cast<std::uint32_t>(columns)};
+    const Tile whole = tiles_[t];
+    const double width = whole.width / columns;
+    for (int y = 0; y < columns; ++y)
+      for (int x = 0; x < columns; ++x)
+        tiles_.push_back({
+            whole.x + x * width,
+            whole.y + y * width,
+            width,
+            whole.face,
+        });
+    counts_[t] = 0;
+  }
+
+  /// Takes what is placed in tiles with parts to these.
+  void place_parts() {
+    each_page([&](std::uint32_t page) {
+      std::vector<Place> places;
+      places.reserve(places_[page].size());
+      for (const Place& p : places_[page]) {
+        const TileParts& parts = g_.parts[p.tile];
+        if (parts.columns == 0) {
+          places.push_back(p);
+          continue;
+        }
+        const Tile& t = tiles_[p.tile];
+        const int n = static_cast<int>(parts.columns);
+        TileWalk({t.x, t.y, t.width / n, n, n}, g_.face[t.face])
+            .each(seen_[p.seen], [&](std::uint32_t part) {
+              places.push_back({parts.first + part, p.seen});
+              count(parts.first + part);
+            });
+      }
+      places_[page] = std::move(places);
+    });
+  }
+
+  /// Turns counts to places and brings references there.
+  template <class Chosen>
+  std::vector<std::uint32_t> collect(const Chosen& chosen) {
+    std::fill(counts_.begin(), counts_.end(), 0);
+    each_place(chosen, [&](const Place& p) { count(p.tile); });
+    std::vector<std::uint32_t> first(tiles_.size() + 1);
+    for (std::size_t t = 0; t < tiles_.size(); ++t)
+      first[t + 1] = first[t] + counts_[t];
+    std::copy(first.begin(), first.end() - 1, counts_.begin());
+    references_.resize(first.back());
+    each_place(chosen, [&](const Place& p) {
+      const Seen& s = seen_[p.seen];
+      const std::uint32_t to =
+          std::atomic_ref(counts_[p.tile]).fetch_add(1, std::memory_order_relaxed);
+      references_[to] = {
+          least_depth(s),
+          s.id,
+          p.seen,
+      };
+    });
+    return first;
+  }
+  template <class Chosen, class Visit>
+  void each_place(const Chosen& chosen, const Visit& visit) {
+    each_page([&](std::uint32_t page) {
+      for (const Place& p : places_[page])
+        if (chosen(seen_[p.seen].id))
+          visit(p);
+    });
+  }
+
+  void write() {
+    g_.outline_first = collect([&](std::uint32_t id) { return !is_sphere(id); });
+    g_.outlines.resize(g_.outline_first.back() / kOutlines + 1);
+    write_lists(g_.outline_first, [&](const Tile& t, std::uint32_t r) {
+      set_outline(g_.outlines[r / kOutlines], r % kOutlines, seen_[references_[r].seen], t);
+    });
+    g_.box_first = collect([&](std::uint32_t id) { return is_sphere(id); });
+    g_.boxes.resize(g_.box_first.back() / kOutlines + 1);
+    write_lists(g_.box_first, [&](const Tile& t, std::uint32_t r) {
+      set_box(g_.boxes[r / kOutlines], r % kOutlines, seen_[references_[r].seen], t);
+    });
+  }
+
+  template <class Write>
+  void write_lists(const std::vector<std::uint32_t>& first, const Write& write) {
+    const auto n = static_cast<std::ptrdiff_t>(tiles_.size());
+#pragma omp parallel for schedule(dynamic, 256) num_threads(options_.threads)
+    for (std::ptrdiff_t i = 0; i < n; ++i) {
+      const auto t = static_cast<std::size_t>(i);
+      std::sort(references_.begin() + first[t], references_.begin() + first[t + 1]);
+      for (std::uint32_t r = first[t]; r < first[t + 1]; ++r)
+        write(tiles_[t], r);
+    }
+  }
+
+  const Primitives& p_;
+  std::span<const std::uint32_t> ids_, large_;
+  const Viewpoint& from_;
+  const PerspectiveOptions& options_;
+  PerspectiveGrid g_;
+  Window window_[kFaces];
+  std::mutex mutex_;
+  std::atomic<std::size_t> turns_ = 0;
+  SeenPages seen_;
+  std::vector<Tile> tiles_;
+  std::vector<std::uint32_t> counts_;       ///< [tiles]
+  std::vector<std::vector<Place>> places_;  ///< [pages of what is seen]
+  RawVector<Reference> references_;
+};
+
+}  // namespace
+
+PerspectiveGrid build_perspective_grid(const Primitives& primitives,
+                                       std::span<const std::uint32_t> ids,
+                                       std::span<const std::uint32_t> large,
+                                       const Viewpoint& from,
+                                       const PerspectiveOptions& options) {
+  return Builder(primitives, ids, large, from, options).build();
+}
+
+PointGridView PerspectiveGrid::view() const {
+  PointGridView v;
+  std::copy(point, point + 3, v.point);
+  std::copy(face, face + kFaces, v.face);
+  v.parts = parts.data();
+  v.outline_first = outline_first.data();
+  v.outlines = outlines.data();
+  v.box_first = box_first.data();
+  v.boxes = boxes.data();
+  v.around = around.data();
+  v.around_count = static_cast<std::uint32_t>(around.size());
+  return v;
+}
+
+std::size_t PerspectiveGrid::references() const {
+  return std::size_t{outline_first.back()} + box_first.back();
+}
+
+std::size_t PerspectiveGrid::bytes() const {
+  return bytes_of(parts) + bytes_of(outline_first) + bytes_of(box_first) + bytes_of(outlines) +
+         bytes_of(boxes) + bytes_of(around);
+}
+
+}  // namespace grelha

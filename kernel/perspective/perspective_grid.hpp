@@ -1,0 +1,44 @@
+#pragma once
+// A grid in a point's perspective: the directions around it in tiles, each with the primitives that
+// rays through it may meet, nearest first. After Hunt, Mark, "Ray-Specialized Acceleration
+// Structures for Ray Tracing", RT 2008, and Haines, Greenberg, "The Light Buffer", 1986.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "kernel/perspective/outline.hpp"
+#include "kernel/perspective/view.hpp"
+#include "kernel/scene/raw_vector.hpp"
+
+namespace grelha {
+
+struct PerspectiveGrid {
+  double point[3] = {};
+  PointFace face[kFaces];
+  std::vector<TileParts> parts;
+  std::vector<std::uint32_t> outline_first, box_first;  ///< [tiles + 1]
+  RawVector<OutlineBlock> outlines;
+  RawVector<BoxBlock> boxes;
+  std::vector<std::uint32_t> around;
+
+  PointGridView view() const;
+  std::size_t bytes() const;
+  std::size_t tiles() const { return parts.size(); }
+  std::size_t references() const;
+};
+
+struct PerspectiveOptions {
+  double density = .25;  ///< tiles a primitive
+  int threads = 1;
+};
+
+/// Of the finite primitives `ids` of a scene, as seen from a point. Those of `large`, which is
+/// sorted, are left out where tiles are laid: they may be met in any direction.
+PerspectiveGrid build_perspective_grid(const Primitives& primitives,
+                                       std::span<const std::uint32_t> ids,
+                                       std::span<const std::uint32_t> large,
+                                       const Viewpoint& from,
+                                       const PerspectiveOptions& options);
+
+}  // namespace grelha

@@ -1,0 +1,25 @@
+#pragma once
+// What the lists of point grids allow for; docs/numerics.md derives each.
+
+namespace grelha {
+
+/// What look-ups in double round by, in u and v: 16 ulps of the largest, 1.
+inline constexpr double kLookUp = 0x1p-48;
+/// What places within a tile round by, in tiles: floats of at most 1, and a product.
+inline constexpr double kPlaceRounding = 0x1p-22;
+/// Of the coefficients of a side: what floats round by when it is evaluated, 8 u.
+inline constexpr double kSideRounding = 0x1p-21;
+/// Nearer primitives, in pads, have no outline: every ray meets them.
+inline constexpr double kNearest = 8;
+/// Of the pad, what is aside of a triangle: inside or outside is decided in double there, and what
+/// is left is how far a ray strays from the point, u of its way.
+inline constexpr double kFlatPad = 1. / 16;
+/// Directions beyond the edge of a face that count as its own: look-ups round.
+inline constexpr double kOverlap = 0x1p-30;
+/// Margins are this much wider than derived, for the rounding of doubles.
+inline constexpr double kRoom = 1 + 0x1p-20;
+/// Sides that are seen under a narrower angle are left out: doubles could not tell on which side of
+/// them a primitive lies.
+inline constexpr double kNarrowest = 1e-6;
+
+}  // namespace grelha

@@ -1,0 +1,262 @@
+#pragma once
+// Rays that go to a point, through its grid: each looks up the tile it goes through, and meets what
+// is in it, nearest to the point first.
+
+#include "kernel/trace/point_lookup.hpp"
+#include "kernel/trace/single.hpp"
+
+namespace grelha::GRELHA_ISA {
+
+static_assert(kOutlines == kBlock);
+
+/// A rectangle of places in a tile, and the depth of the farthest ray that looks through it.
+struct TileWindow {
+  float x0, x1, y0, y1, depth;
+};
+
+/// Lanes of a block that a window may show, and whether all of the block are near enough to.
+struct ShownLanes {
+  unsigned shown;
+  bool all_near;
+};
+
+[[gnu::always_inline]] inline Mask<Block> shows(const TileWindow& w, const OutlineBlock& b, int i) {
+  const auto side = [&](int s) {  // at the corner that is farthest inside
+    const Block p = load<Block>(b.side[s][0] + i);
+    const Block q = load<Block>(b.side[s][1] + i);
+    const Block x = greater(p * Block(w.x0), p * Block(w.x1));
+    const Block y = greater(q * Block(w.y0), q * Block(w.y1));
+    return (x + y) + load<Block>(b.side[s][2] + i);
+  };
+  return lesser(lesser(side(0), side(1)), side(2)) >= Block(0);
+}
+[[gnu::always_inline]] inline Mask<Block> shows(const TileWindow& w, const BoxBlock& b, int i) {
+  const Mask<Block> x =
+      both(load<Block>(b.lo[0] + i) <= Block(w.x1), load<Block>(b.hi[0] + i) >= Block(w.x0));
+  const Mask<Block> y =
+      both(load<Block>(b.lo[1] + i) <= Block(w.y1), load<Block>(b.hi[1] + i) >= Block(w.y0));
+  return both(x, y);
+}
+
+inline TileWindow window_around(const SearchPlaces& at,
+                                const Mask<Lanes>& here,
+                                const Lanes& depth) {
+  const Lanes out(kInfinity), in(-kInfinity);
+  return {
+      lane_min(select(here, at.x, out)),
+      lane_max(select(here, at.x, in)),
+      lane_min(select(here, at.y, out)),
+      lane_max(select(here, at.y, in)),
+      lane_max(depth),
+  };
+}
+
+/// Of places [first, end) of a list those in the block of `first`.
+template <class Listed>
+[[gnu::always_inline]] inline ShownLanes shown(const TileWindow& w,
+                                               const Listed& b,
+                                               std::uint32_t first,
+                                               std::uint32_t end) {
+  const unsigned lanes = blocks_between(first / kBlock * kBlock, first, end);
+  unsigned in = 0;
+  unsigned near = 0;
+  for (int i = 0; i < kBlock; i += kWidth<Block>) {
+    const Mask<Block> ahead = load<Block>(b.near + i) <= Block(w.depth);
+    in |= bits(both(shows(w, b, i), ahead)) << i;
+    near |= bits(ahead) << i;
+  }
+  return {in & lanes, (near & lanes) == lanes};
+}
+
+/// Lanes whose ray may meet primitive k of a block.
+[[gnu::always_inline]] inline Mask<Lanes> may_meet(const SearchPlaces& at,
+                                                   const OutlineBlock& b,
+                                                   unsigned k) {
+  const auto side = [&](int s) {
+    return (Lanes(b.side[s][0][k]) * at.x + Lanes(b.side[s][1][k]) * at.y) + Lanes(b.side[s][2][k]);
+  };
+  return lesser(lesser(side(0), side(1)), side(2)) >= Lanes(0);
+}
+[[gnu::always_inline]] inline Mask<Lanes> may_meet(const SearchPlaces& at,
+                                                   const BoxBlock& b,
+                                                   unsigned k) {
+  return both(both(at.x >= Lanes(b.lo[0][k]), at.x <= Lanes(b.hi[0][k])),
+              both(at.y >= Lanes(b.lo[1][k]), at.y <= Lanes(b.hi[1][k])));
+}
+
+/// One primitive of a kind against all rays of a packet.
+template <bool kAny, class In>
+inline void test_primitive(
+    Triangle, const GeometryView& g, Packet<In>& p, std::uint32_t i, std::uint32_t id) {
+  const Triangle::Arrays& t = g.of<Triangle>();
+  Triangle::Fields<float> triangle;
+  for (int k = 0; k < 3; ++k)
+    for (int a = 0; a < 3; ++a)
+      triangle.corner[k][a] = t.vertex[a][t.corner[k][i]];
+  test_triangle<kAny>(p, triangle, id);
+}
+template <bool kAny, class Shape, class In>
+inline void test_primitive(
+    Shape, const GeometryView& g, Packet<In>& p, std::uint32_t i, std::uint32_t id) {
+  test_one<kAny, Shape>(p, g.of<Shape>().fields, i, id);
+}
+
+/// Whether anything is in the way of the rays of a packet to a point. `leaves`: the primitive that
+/// each ray starts on and is known not to meet, or kNoPrimitive.
+class PointSearch {
+ public:
+  PointSearch(const GeometryView& geometry,
+              const PointGridView& grid,
+              Packet<InFloat>& p,
+              const std::uint32_t* leaves,
+              Counters& n)
+      : geometry_(geometry), grid_(grid), p_(p), leaves_(leaves), n_(n) {}
+
+  void run() {
+    const std::uint64_t live = p_.live;
+    prepare_for_all();
+    for (std::uint32_t i = 0; i < grid_.around_count; ++i)
+      test(grid_.around[i]);
+    look_up_all();
+    fetch_lists();
+    each_live_group(p_, [&](int, int group) { search(group); });
+    p_.live = live;
+  }
+
+ private:
+  static constexpr int kGroupCount = kPacket / kWidth<Lanes>;
+
+  Mask<Lanes> searches(int i) const { return load<Lanes>(p_.best + i) > load<Lanes>(p_.t_min + i); }
+
+  void look_up_all() {
+    each_live_group(p_, [&](int i, int group) {
+      const Vec3<Lanes> org{
+          load<Lanes>(p_.org[0] + i),
+          load<Lanes>(p_.org[1] + i),
+          load<Lanes>(p_.org[2] + i),
+      };
+      places_[group] = look_up(grid_, org, searches(i));
+      each_tile(places_[group].tile, [&](std::uint32_t tile, const Mask<Lanes>&) {
+        __builtin_prefetch(grid_.outline_first + tile);
+      });
+    });
+  }
+
+  /// Lists come from afar: all are asked for before the first is looked at.
+  void fetch_lists() const {
+    each_live_group(p_, [&](int, int group) {
+      each_tile(places_[group].tile, [&](std::uint32_t tile, const Mask<Lanes>&) {
+        const OutlineBlock* const b = grid_.outlines + grid_.outline_first[tile] / kBlock;
+        const char* const bytes = reinterpret_cast<const char*>(b);
+        for (std::size_t line = 0; line < sizeof *b; line += 64)
+          __builtin_prefetch(bytes + line);
+      });
+    });
+  }
+
+  void search(int group) {
+    group_ = group;
+    prepared_ = grid_.around_count > 0;
+    p_.live = std::uint64_t{1} << group;
+    const SearchPlaces& at = places_[group];
+    each_tile(at.tile,
+              [&](std::uint32_t tile, const Mask<Lanes>& here) { search_tile(tile, at, here); });
+  }
+
+  void search_tile(std::uint32_t tile, const SearchPlaces& at, const Mask<Lanes>& here) {
+    const TileParts parts = grid_.parts[tile];
+    if (parts.columns != 0)
+      return search_parts(parts, at, here);
+    ++n_.visits;
+    search_list(grid_.outlines, grid_.outline_first + tile, at, here);
+    search_list(grid_.boxes, grid_.box_first + tile, at, here);
+  }
+
+  [[gnu::noinline]] void search_parts(const TileParts& parts,
+                                      const SearchPlaces& at,
+                                      const Mask<Lanes>& here) {
+    const SearchPlaces within = look_closer(at, here, static_cast<float>(parts.columns));
+    each_tile(within.tile, [&](std::uint32_t part, const Mask<Lanes>& lanes) {
+      search_tile(parts.first + part, within, lanes);
+    });
+  }
+
+  /// Depths of the lanes that still search.
+  Lanes depths(const SearchPlaces& at, const Mask<Lanes>& here) const {
+    return select(both(here, searches(first_ray())), at.depth, Lanes(-kInfinity));
+  }
+
+  template <class Listed>
+  [[gnu::always_inline]] void search_list(const Listed* blocks,
+                                          const std::uint32_t* list,
+                                          const SearchPlaces& at,
+                                          const Mask<Lanes>& here) {
+    std::uint32_t first = list[0];
+    const std::uint32_t end = list[1];
+    if (first == end)
+      return;
+    Lanes depth = depths(at, here);
+    TileWindow w = window_around(at, here, depth);
+    for (; first < end; first = (first / kBlock + 1) * kBlock) {
+      const Listed& b = blocks[first / kBlock];
+      const ShownLanes lanes = shown(w, b, first, end);
+      for (unsigned left = lanes.shown; left != 0; left &= left - 1) {
+        const unsigned k = static_cast<unsigned>(__builtin_ctz(left));
+        const Mask<Lanes> met = both(may_meet(at, b, k), Lanes(b.near[k]) <= depth);
+        if ((bits(met) & ~leaving(b.id[k])) == 0)
+          continue;
+        test(b.id[k]);
+        depth = depths(at, here);
+        w.depth = lane_max(depth);
+      }
+      if (!lanes.all_near || !(w.depth >= 0))
+        return;
+    }
+  }
+
+  int first_ray() const { return group_ * kWidth<Lanes>; }
+
+  /// Lanes whose ray starts on a primitive.
+  unsigned leaving(std::uint32_t id) const {
+    if (!leaves_)
+      return 0;
+    const Words<Lanes> leaves = load_words<Lanes>(leaves_ + first_ray());
+    return bits(mask_of(Words<Lanes>(leaves == id)));
+  }
+
+  void test(std::uint32_t id) {
+    prepare_triangles();
+    visit_shape(FiniteShapes{}, geometry_.ids, id, [&]<class Shape>(std::uint32_t i) {
+      count_lanes<Shape>(p_, n_);
+      test_primitive<true>(Shape{}, geometry_, p_, i, id);
+    });
+  }
+
+  void prepare_triangles() {
+    if (prepared_)
+      return;
+    prepared_ = true;
+    prepare_group(group_);
+  }
+  void prepare_for_all() {
+    if (grid_.around_count > 0)
+      each_live_group(p_, [&](int, int group) { prepare_group(group); });
+    prepared_ = true;
+  }
+  void prepare_group(int group) {
+    const int first = group * kWidth<Lanes>;
+    set_axes(p_, first, group);
+    set_directions(p_, first, true);
+  }
+
+  const GeometryView& geometry_;
+  const PointGridView& grid_;
+  Packet<InFloat>& p_;
+  const std::uint32_t* leaves_;
+  Counters& n_;
+  int group_ = 0;
+  bool prepared_ = false;  ///< rays of the group are ready for triangles
+  SearchPlaces places_[kGroupCount];
+};
+
+}  // namespace grelha::GRELHA_ISA

@@ -1,0 +1,240 @@
+// Grids in perspective: whatever the scene and wherever the point, they answer as the scene's own
+// grids do.
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "grelha/grelha.hpp"
+#include "kernel/grid/world_impl.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace grelha::test {
+namespace {
+
+constexpr int kPoints = 4000;
+
+Float3 between(const Float3& a, const Float3& b, double share) {
+  return {static_cast<float>(a.x + (b.x - a.x) * share),
+          static_cast<float>(a.y + (b.y - a.y) * share),
+          static_cast<float>(a.z + (b.z - a.z) * share)};
+}
+
+/// Points that ask: anywhere, on surfaces, beyond corners of triangles as the point sees them, and
+/// on the borders of the cube's faces around it.
+class Askers {
+ public:
+  Askers(const World& world, const Scene& scene, const Float3& point, std::uint64_t seed)
+      : world_(world), scene_(scene), point_(point), random_(seed) {
+    for (int i = 0; i < kPoints; ++i)
+      points.push_back(next(i % 4));
+  }
+  std::vector<Float3> points;
+
+ private:
+  Float3 next(int kind) {
+    const Float3 any = random_.point(random_.chance(.2) ? 30 : 1.5);
+    if (kind == 1)
+      return on_surface(any);
+    if (kind == 2 && scene_.geometry.triangles.size() > 0)
+      return behind_edge();
+    if (kind == 3)
+      return on_border();
+    return any;
+  }
+  Float3 on_surface(const Float3& org) {
+    const Ray ray{org, random_.direction()};
+    const Hit hit = closest(world_, ray);
+    if (!hit)
+      return org;
+    const SurfacePoint s = surface(world_, ray, hit);
+    return s.leave({point_.x - s.point.x, point_.y - s.point.y, point_.z - s.point.z});
+  }
+  Float3 behind_edge() {
+    const Triangles& t = scene_.geometry.triangles;
+    const std::uint32_t i = random_.below(static_cast<std::uint32_t>(t.size()));
+    const auto corner = [&](std::uint32_t v) { return Float3{t.x[v], t.y[v], t.z[v]}; };
+    const double share = random_.chance(.3) ? 0 : random_.unit();
+    return between(point_, between(corner(t.a[i]), corner(t.b[i]), share), random_.in(.9, 3));
+  }
+  Float3 on_border() {
+    const float along = static_cast<float>(random_.log_in(.1, 10));
+    const float x = static_cast<float>(random_.sign()) * along;
+    const float y = static_cast<float>(random_.sign()) * along;
+    const float z = static_cast<float>(random_.in(-1, 1)) * along;
+    const int turn = static_cast<int>(random_.below(3));
+    const float c[3] = {x, y, z};
+    return {point_.x + c[turn], point_.y + c[(turn + 1) % 3], point_.z + c[(turn + 2) % 3]};
+  }
+  const World& world_;
+  const Scene& scene_;
+  Float3 point_;
+  Random random_;
+};
+
+std::vector<Ray> rays_to(const Float3& point, const std::vector<Float3>& from) {
+  std::vector<Ray> rays;
+  for (const Float3& p : from)
+    rays.push_back({p, {point.x - p.x, point.y - p.y, point.z - p.z}, 0, 1});
+  return rays;
+}
+
+/// Asks with every instruction set. Returns how many are blocked.
+long expect_same(const World& world, const Scene& scene, const Float3& point, std::uint64_t seed) {
+  const PointGrid grid(world, point, 2);
+  const Askers askers(world, scene, point, seed);
+  const std::vector<Ray> rays = rays_to(point, askers.points);
+  std::vector<std::uint8_t> wanted(rays.size());
+  occluded(world, rays, wanted);
+  for (const Isa& isa : isas()) {
+    if (!isa.compiled || !isa.runs_here)
+      continue;
+    std::vector<std::uint8_t> found(rays.size(), 7);
+    occluded(grid, Points::of(askers.points), found.data(), {.packet = 256, .isa = isa.name});
+    int wrong = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      wrong += found[i] != wanted[i];
+    EXPECT_EQ(wrong, 0) << isa.name << ", point " << point.x << ' ' << point.y << ' ' << point.z;
+  }
+  return std::count(wanted.begin(), wanted.end(), std::uint8_t{1});
+}
+
+struct Family {
+  const char* name;
+  std::function<Scene()> make;
+};
+
+const Family kFamilies[] = {
+    {"spheres", [] { return random_spheres(1, 300); }},
+    {"triangles", [] { return random_triangles(2, 500); }},
+    {"cones", [] { return random_cones(3, 200); }},
+    {"mixture", [] { return random_mixture(4, 600); }},
+    {"flat sheet", [] { return flat_sheet(5, 300); }},
+    {"lattice",
+     [] {
+       return placed(lattice_patch(16), .1, {-.8f, 0, -.8f});
+     }},
+    {"heap", [] { return heap(6, 40); }},
+    {"needles", [] { return needles(7, 200); }},
+    {"crowd on a plain", [] { return crowd_on_a_plain(8, 800, 40); }},
+    {"crowd on a wide plain", [] { return crowd_on_a_wide_plain(9, 400); }},
+    {"stadium", [] { return stadium(10, 400); }},
+    {"towns", [] { return towns_in_a_desert(11, 300); }},
+    {"moved away",
+     [] {
+       return placed(random_mixture(12, 300), 1, {4000, -900, 2e4f});
+     }},
+    {"tiny",
+     [] {
+       return placed(random_mixture(13, 300), 1e-4, {0, 0, 0});
+     }},
+};
+
+class PointGrids : public testing::TestWithParam<Family> {};
+
+/// Lights around, within, on things and far away.
+std::vector<Float3> lights(const Scene& scene, Random& random) {
+  std::vector<Float3> all{{2, 3, 1}, {0, 0, 0}, {.3f, -.2f, .1f}, {0, 5, 0}, {-700, 900, 100}};
+  all.push_back({1e6f, 2e6f, -1e6f});
+  all.push_back({0, -1e9f, 0});
+  const Geometry& g = scene.geometry;
+  if (g.triangles.size() > 0)
+    all.push_back({g.triangles.x[0], g.triangles.y[0], g.triangles.z[0]});
+  if (g.spheres.size() > 0)
+    all.push_back({g.spheres.x[0], g.spheres.y[0], g.spheres.z[0]});
+  if (g.cones.size() > 0)
+    all.push_back({g.cones.base_x[0], g.cones.base_y[0], g.cones.base_z[0]});
+  all.push_back(random.point(1));
+  return all;
+}
+
+TEST_P(PointGrids, AnswerAsTheScenesGridsDo) {
+  const Scene scene = GetParam().make();
+  const World world(scene, {});
+  Random random(99);
+  long blocked = 0;
+  std::uint64_t seed = 0;
+  for (const Float3& light : lights(scene, random))
+    blocked += expect_same(world, scene, light, ++seed);
+  EXPECT_GT(blocked, 100) << "what is asked is never hidden";
+}
+
+INSTANTIATE_TEST_SUITE_P(Families, PointGrids, testing::ValuesIn(kFamilies), [](const auto& info) {
+  std::string name = info.param.name;
+  std::erase(name, ' ');
+  return name;
+});
+
+bool same_lists(const PerspectiveGrid& a, const PerspectiveGrid& b) {
+  if (a.outline_first != b.outline_first || a.box_first != b.box_first || a.around != b.around)
+    return false;
+  bool same = true;
+  for (std::uint32_t r = 0; r < a.outline_first.back(); ++r)
+    same &=
+        a.outlines[r / kOutlines].id[r % kOutlines] == b.outlines[r / kOutlines].id[r % kOutlines];
+  for (std::uint32_t r = 0; r < a.box_first.back(); ++r)
+    same &= a.boxes[r / kOutlines].id[r % kOutlines] == b.boxes[r / kOutlines].id[r % kOutlines];
+  return same;
+}
+
+TEST(PointGridLists, AreTheSameForAnyNumberOfThreads) {
+  const Scene scene = random_mixture(21, 3000);
+  const World world(scene, {});
+  const auto build = [&](int threads) {
+    return world.impl().light_grids->build({.5f, 2, .1f}, threads);
+  };
+  const auto one = build(1);
+  ASSERT_TRUE(one);
+  for (const int threads : {2, 3, 7})
+    EXPECT_TRUE(same_lists(one->grid, build(threads)->grid)) << threads << " threads";
+}
+
+TEST(PointGridLists, PartCrowdedTiles) {
+  const Scene scene = towns_in_a_desert(22, 2000);
+  const World world(scene, {});
+  const auto built = world.impl().light_grids->build({0, 3000, 0}, 2);
+  ASSERT_TRUE(built);
+  const auto has_parts = [](const TileParts& t) { return t.columns > 0; };
+  EXPECT_TRUE(std::ranges::any_of(built->grid.parts, has_parts));
+}
+
+TEST(PointGridLists, StayFewWhereNeedlesSpanAllTiles) {
+  const Scene scene = needles(23, 3000);
+  const World world(scene, {});
+  const auto built = world.impl().light_grids->build({0, 4, 0}, 2);
+  ASSERT_TRUE(built);
+  EXPECT_LT(built->grid.references(), 100u * 3000u);
+}
+
+TEST(PointGrid, RefusesWhatIsNoPoint) {
+  const Scene scene = random_spheres(24, 20);
+  const World world(scene, {});
+  EXPECT_THROW(PointGrid(world, {0, kNaN, 0}), std::invalid_argument);
+  EXPECT_THROW(PointGrid(world, {0, 0, 0}, -1), std::invalid_argument);
+  const PointGrid grid(world, {0, 0, 3});
+  const Float3 point{1, 2, 3};
+  std::uint8_t blocked = 0;
+  EXPECT_THROW(occluded(grid, {.count = 1}, &blocked), std::invalid_argument);
+  EXPECT_THROW(occluded(grid, Points::of({&point, 1}), nullptr), std::invalid_argument);
+  occluded(grid, {}, nullptr);
+}
+
+TEST(PointGrid, TooFarAwayWalks) {
+  const Scene scene = random_spheres(25, 20);
+  const World world(scene, {});
+  EXPECT_EQ(PointGrid(world, {1e30f, 0, 0}).bytes(), 0u);
+  expect_same(world, scene, {1e30f, 0, 0}, 1);
+}
+
+TEST(PointGrid, OfAnEmptyWorldSeesEverything) {
+  const Scene scene = empty_scene();
+  const World world(scene, {});
+  const PointGrid grid(world, {0, 0, 0});
+  const Float3 points[] = {{1, 2, 3}, {0, 0, 0}, {kNaN, 1, kInf}};
+  std::uint8_t blocked[] = {7, 7, 7};
+  occluded(grid, Points::of(points), blocked);
+  for (const std::uint8_t b : blocked)
+    EXPECT_EQ(b, 0);
+}
+
+}  // namespace
+}  // namespace grelha::test
