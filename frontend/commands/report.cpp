@@ -1,68 +1,17 @@
 #include "frontend/commands/report.hpp"
 
+#include "frontend/commands/json.hpp"
 #include "frontend/commands/needs.hpp"
 #include "frontend/files/atomic_file.hpp"
 #include "frontend/files/memory_limit.hpp"
 
-#include <nlohmann/json.hpp>
 #include <sys/resource.h>
 
-#include <charconv>
 #include <cstdarg>
 #include <cstdio>
 
 namespace grelha {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-/// A float as the shortest decimal that names it: 0.1, not 0.10000000149011612.
-Json tidy(float value) {
-  char text[32];
-  double result = 0;
-  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
-  std::from_chars(text, end, result);
-  return result;
-}
-
-Json to_json(Float3 v) {
-  return {tidy(v.x), tidy(v.y), tidy(v.z)};
-}
-
-Json to_json(const EntityCounts& c) {
-  return {{"s", c.s},
-          {"p", c.p},
-          {"pp", c.pp},
-          {"c", c.c},
-          {"pl", c.pl},
-          {"box", c.box},
-          {"mesh", c.mesh},
-          {"ply", c.ply},
-          {"lights", c.lights},
-          {"materials", c.materials}};
-}
-
-Json to_json(const std::vector<GridStats>& grids) {
-  Json list = Json::array();
-  for (const GridStats& grid : grids)
-    list.push_back({{"cells", grid.cells},
-                    {"occupied", grid.occupied},
-                    {"references", grid.references},
-                    {"bytes", grid.bytes}});
-  return list;
-}
-
-Json to_json(const SceneBounds& bounds) {
-  if (bounds.empty)
-    return nullptr;
-  return {{"min", to_json(bounds.low)}, {"max", to_json(bounds.high)}};
-}
-
-Json to_json(const Subdivision& s) {
-  if (!s.on)
-    return nullptr;
-  return {{"threshold", tidy(s.threshold)}, {"depth", s.depth}};
-}
 
 /// Name and answer, in one order for both forms of the report.
 std::vector<std::pair<const char*, bool>> listed(const Needs& n) {
@@ -156,6 +105,17 @@ std::string primitives_text(std::size_t spheres,
   return text.empty() ? "no primitives" : text;
 }
 
+const char* point_grids_name(PointGrids choice) {
+  switch (choice) {
+    case PointGrids::kOn:
+      return "on";
+    case PointGrids::kOff:
+      return "off";
+    default:
+      return "auto";
+  }
+}
+
 Json options_json(const RenderCommand& command) {
   const SampleOptions& sampling = command.render.sampling;
   return {{"depth", command.render.depth},
@@ -166,6 +126,7 @@ Json options_json(const RenderCommand& command) {
           {"isa", command.render.isa},
           {"precision", command.render.precision == Precision::kDouble ? "double" : "single"},
           {"packet", command.render.packet},
+          {"point_grids", point_grids_name(command.render.point_grids)},
           {"samples", sampling.samples},
           {"sampler", sampler_name(sampling.sampler)},
           {"seed", sampling.seed},
@@ -173,13 +134,6 @@ Json options_json(const RenderCommand& command) {
           {"light_rays", sampling.light_rays},
           {"gloss_rays", sampling.gloss_rays},
           {"threads", command.render.threads}};
-}
-
-Json to_json(const RayCounts& rays) {
-  return {{"primary", rays.primary},
-          {"shadow", rays.shadow},
-          {"reflection", rays.reflection},
-          {"refraction", rays.refraction}};
 }
 
 Json error_json(const RefineOptions& asked, const ErrorStats& e) {
@@ -192,10 +146,6 @@ Json error_json(const RefineOptions& asked, const ErrorStats& e) {
           {"samples", e.samples},
           {"least", e.least},
           {"most", e.most}};
-}
-
-Json to_json(const TestCounts& t) {
-  return {{"sphere", t.sphere}, {"triangle", t.triangle}, {"cone", t.cone}, {"plane", t.plane}};
 }
 
 Json packets_json(const TraceCounts& trace) {
@@ -306,6 +256,7 @@ std::string stats_json(const RenderCommand& command, const RunReport& report) {
   json["options"] = options_json(command);
   json["scene"] = to_json(report.counts);
   json["grids"] = to_json(report.grids);
+  json["point_grids"] = to_json(render.point_grids);
   json["rays"] = to_json(render.rays);
   if (command.render.refine.on())
     json["error"] = error_json(command.render.refine, render.error);
