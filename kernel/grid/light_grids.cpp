@@ -15,6 +15,9 @@ constexpr double kFarthestPoint = 0x1p21;
 constexpr std::size_t kMostBytesEach = 1 << 10;
 constexpr std::size_t kMostBytes = 1 << 24;
 
+/// With fewer, threads wait for each other longer than they work: a millisecond became five.
+constexpr std::size_t kPrimitivesAThread = 8192;
+
 }  // namespace
 
 LightGrids::LightGrids(const Primitives& primitives,
@@ -49,7 +52,8 @@ const PointGridView* LightGrids::of(std::size_t light, int threads) {
     if (lights_[light].is_area() || bytes_ > kMostBytes + kMostBytesEach * primitives())
       return nullptr;
     try {
-      built_[light] = build(lights_[light].position, threads);
+      const int useful = 1 + static_cast<int>(primitives() / kPrimitivesAThread);
+      built_[light] = build(lights_[light].position, std::min(threads, useful));
     } catch (const std::bad_alloc&) {  // rays then walk, which takes no memory
     }
     if (!built_[light])
