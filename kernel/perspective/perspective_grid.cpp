@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <exception>
 #include <mutex>
 
 #include "kernel/perspective/seen.hpp"
+#include "kernel/perspective/thrown.hpp"
 #include "kernel/perspective/tiles.hpp"
 #include "kernel/perspective/tolerances.hpp"
 
@@ -14,6 +14,8 @@ namespace grelha {
 namespace {
 
 constexpr double kMostReferencesEach = 16;  ///< a primitive, on average
+constexpr double kMostExpectedEach = 64;    ///< the same, by boxes around what is seen
+constexpr double kMostTilesAtAll = 0x1p22;  ///< before crowds get parts
 constexpr std::uint32_t kTileCrowd = 128;   ///< primitives of a tile that is parted
 constexpr double kPartCrowd = 16;           ///< primitives that each part is meant for
 constexpr int kMostColumns = 16;
@@ -30,29 +32,6 @@ struct Reference {
   bool operator<(const Reference& o) const { return near != o.near ? near < o.near : id < o.id; }
 };
 
-/// What was thrown first by any thread: an exception must not leave a parallel region.
-class Thrown {
- public:
-  template <class Work>
-  void in(const Work& work) {
-    try {
-      work();
-    } catch (...) {
-      const std::lock_guard lock(mutex_);
-      if (!first_)
-        first_ = std::current_exception();
-    }
-  }
-  void on() const {
-    if (first_)
-      std::rethrow_exception(first_);
-  }
-
- private:
-  std::mutex mutex_;
-  std::exception_ptr first_;
-};
-
 class Builder {
  public:
   Builder(const Primitives& p,
@@ -65,7 +44,7 @@ class Builder {
   PerspectiveGrid build() {
     std::copy(from_.at, from_.at + 3, g_.point);
     look();
-    lay_tiles(options_.density);
+    lay_tiles_for_few_references();
     each_seen([&](Seen& s, std::uint32_t) { s.to_tiles(g_.face[s.face]); });
     place_all();
     part_crowds();
@@ -138,7 +117,36 @@ class Builder {
     return deepest > 0;
   }
 
+  /// Lays fewer tiles where needles, or primitives that cover each other, would fill lists without
+  /// bound; and no more than look-ups can number.
+  void lay_tiles_for_few_references() {
+    const double primitives = static_cast<double>(ids_.size());
+    double density = std::min(options_.density, kMostTilesAtAll / std::max(primitives, 1.));
+    for (lay_tiles(density); tiles_.size() > 2 * kFaces; lay_tiles(density)) {
+      if (most_references() <= kMostExpectedEach * primitives)
+        return;
+      density /= 4;
+    }
+  }
+
+  /// What lists hold at most, by the boxes around what is seen.
+  double most_references() const {
+    double sum = 0;
+    for (std::uint32_t i = 0; i < seen_.pages() * SeenPages::kPage; ++i) {
+      const Seen& s = seen_[i];
+      if (s.id == kNoPrimitive)
+        continue;
+      const PointFace& f = g_.face[s.face];
+      const Outline& o = s.outline;
+      const double across = std::min((o.hi[0] - o.lo[0]) * f.per_u + 1, f.nx);
+      const double up = std::min((o.hi[1] - o.lo[1]) * f.per_v + 1, f.ny);
+      sum += across * up;
+    }
+    return sum;
+  }
+
   void lay_tiles(double density) {
+    tiles_.clear();
     std::uint64_t seen = 0;
     for (const Window& w : window_)
       seen += w.seen;
@@ -301,11 +309,7 @@ class Builder {
       const Seen& s = seen_[p.seen];
       const std::uint32_t to =
           std::atomic_ref(counts_[p.tile]).fetch_add(1, std::memory_order_relaxed);
-      references_[to] = {
-          least_depth(s),
-          s.id,
-          p.seen,
-      };
+      references_[to] = {least_depth(s), s.id, p.seen};
     });
     return first;
   }

@@ -42,8 +42,9 @@ void Window::lay_tiles(PointFace& face, double tiles) const {
   for (int j = 0; j < 2; ++j)
     size[j] = std::max(hi[j] - lo[j], 0x1p-40) * (1 + 0x1p-10);
   const double edge = std::sqrt(size[0] * size[1] / std::max(tiles, 1.));
-  face.nx = std::clamp(std::round(size[0] / edge), 1., kMostTiles);
-  face.ny = std::clamp(std::round(size[1] / edge), 1., kMostTiles);
+  const double most = std::clamp(std::ceil(tiles), 1., kMostTiles);
+  face.nx = std::clamp(std::round(size[0] / edge), 1., most);
+  face.ny = std::clamp(std::round(size[1] / edge), 1., most);
   face.u = lo[0] - size[0] * 0x1p-12;
   face.v = lo[1] - size[1] * 0x1p-12;
   face.per_u = face.nx / size[0];

@@ -205,6 +205,17 @@ TEST(PointGridLists, StayFewWhereNeedlesSpanAllTiles) {
   EXPECT_LT(built->grid.references(), 100u * 3000u);
 }
 
+TEST(PointGridLists, StayFewWherePrimitivesCoverEachOther) {
+  Random random(26);
+  Scene scene = empty_scene();
+  add_spheres(scene, random, 4000, 1, .5, .9);
+  const World world(scene, {});
+  const auto built = world.impl().light_grids->build({0, 9, 0}, 2);
+  ASSERT_TRUE(built);
+  EXPECT_LE(built->grid.references(), 70u * 4000u);
+  expect_same(world, scene, {0, 9, 0}, 3);
+}
+
 TEST(PointGrid, RefusesWhatIsNoPoint) {
   const Scene scene = random_spheres(24, 20);
   const World world(scene, {});
