@@ -63,6 +63,14 @@ inline void load_own_rays(const Rays& rays, float t_max, std::size_t first, Pack
   }
 }
 
+/// Rays of a packet: as many as asked for, but no more than stay in the first cache where there is
+/// no grid that more of them would walk together.
+inline int rays_of_a_packet(const SceneView& scene, const TraceOptions& options) {
+  constexpr int few = 64;
+  const int asked = options.packet == 1 || options.packet > kPacket ? kPacket : options.packet;
+  return scene.grid_count == 0 && asked > few ? few : asked;
+}
+
 /// Closest hits (kAny false) or occlusion (kAny true) of `count` rays, `options.packet` neighbours
 /// at a time. `load(p, first)` fills a packet of p.size rays from `first` on, and `store(p, first)`
 /// takes its answers.
@@ -74,7 +82,7 @@ inline void trace(const SceneView& scene,
                   const Load& load,
                   const Store& store) {
   Packet<In> p;
-  const int most = options.packet == 1 || options.packet > kPacket ? kPacket : options.packet;
+  const int most = rays_of_a_packet(scene, options);
   const auto step = static_cast<std::size_t>(most);
   for (std::size_t first = 0; first < count; first += step) {
     p.size = count - first < step ? static_cast<int>(count - first) : most;
