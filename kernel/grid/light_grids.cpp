@@ -5,6 +5,7 @@
 #include <new>
 
 #include "kernel/grid/plan.hpp"
+#include "kernel/perspective/tolerances.hpp"
 
 namespace grelha {
 namespace {
@@ -34,7 +35,7 @@ std::unique_ptr<ViewedGrid> LightGrids::build(const Float3& point, int threads) 
   const double diagonal = box_.diagonal();
   const Viewpoint from{
       {point.x, point.y, point.z},
-      pad_of(diagonal),
+      kPads * pad_of(diagonal),
   };
   for (int a = 0; a < 3; ++a)
     if (!(std::abs(from.at[a] - box_.lo[a]) < kFarthestPoint * diagonal))

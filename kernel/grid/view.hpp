@@ -46,6 +46,8 @@ struct SceneView {
   float box_lo[3] = {}, box_hi[3] = {};  ///< of all finite primitives, grown
   /// rays that start further than this from the box are moved nearer first; see approach()
   float reach = 0;
+  /// rays that start further than this from it do not go through grids in perspective
+  float point_reach = 0;
   bool finite = false;  ///< there is something besides planes
 };
 

@@ -56,6 +56,11 @@ void check(const SceneSpans& scene) {
     throw std::invalid_argument("an object names a triangle that is not there");
 }
 
+/// Diagonals of the scene's box that rays may start away from it and still go through grids in
+/// perspective, where it lies within so many of the origin; docs/numerics.md derives both.
+constexpr float kPointReach = 128;
+constexpr double kPointOffset = 6;
+
 }  // namespace
 
 World::Impl::Impl(const SceneSpans& s, const BuildOptions& options)
@@ -96,11 +101,15 @@ void World::Impl::view_grids(const Box& all) {
   view.finite = !all.empty();
   if (!view.finite)
     return;
+  double offset = 0;
   for (int a = 0; a < 3; ++a) {
     view.box_lo[a] = static_cast<float>(all.lo[a]);
     view.box_hi[a] = static_cast<float>(all.hi[a]);
+    offset = std::max({offset, std::abs(all.lo[a]), std::abs(all.hi[a])});
   }
   view.reach = static_cast<float>(all.diagonal());
+  const bool central = offset <= kPointOffset * all.diagonal();
+  view.point_reach = view.reach * (central ? kPointReach : 1);
 }
 
 void World::Impl::set_lights() {

@@ -9,11 +9,14 @@ inline constexpr double kLookUp = 0x1p-48;
 inline constexpr double kPlaceRounding = 0x1p-22;
 /// Of the coefficients of a side: what floats round by when it is evaluated, 8 u.
 inline constexpr double kSideRounding = 0x1p-21;
-/// Nearer primitives, in pads, have no outline: every ray meets them.
+/// Pads of the object grids that go into one pad of these: what rays stray by that were brought near
+/// comes on top.
+inline constexpr double kPads = 2;
+/// Nearer primitives, in these pads, have no outline: every ray meets them.
 inline constexpr double kNearest = 8;
 /// Of the pad, what is aside of a triangle: inside or outside is decided in double there, and what
-/// is left is how far a ray strays from the point, u of its way.
-inline constexpr double kFlatPad = 1. / 16;
+/// is left is how far a ray strays from the point.
+inline constexpr double kFlatPad = .5;
 /// Directions beyond the edge of a face that count as its own: look-ups round.
 inline constexpr double kOverlap = 0x1p-30;
 /// Margins are this much wider than derived, for the rounding of doubles.

@@ -71,13 +71,13 @@ inline void move_near(const SceneView&, Packet<InDouble>& p, int i, double shift
   p.best[i] = not_below(p.nearest[i] - shift);
 }
 
-/// Rays of a group that start far from everything finite.
-inline Mask<Lanes> starts_far(const SceneView& scene, const WalkingRays& p, int i) {
+/// Rays of a group that start further than `reach` from everything finite.
+inline Mask<Lanes> starts_beyond(const SceneView& scene, float reach, const WalkingRays& p, int i) {
   Mask<Lanes> far = Lanes(0) != Lanes(0);
   for (int a = 0; a < 3; ++a) {
     const Lanes o = load<Lanes>(p.org[a] + i);
-    const Mask<Lanes> before = o < Lanes(scene.box_lo[a] - scene.reach);
-    const Mask<Lanes> behind = o > Lanes(scene.box_hi[a] + scene.reach);
+    const Mask<Lanes> before = o < Lanes(scene.box_lo[a] - reach);
+    const Mask<Lanes> behind = o > Lanes(scene.box_hi[a] + reach);
     far = either(far, either(before, behind));
   }
   return far;
@@ -92,7 +92,7 @@ inline void bring_near(const SceneView& scene, Packet<In>& p) {
   if (!scene.finite)
     return;
   for (int i = 0; i < p.size; i += kWidth<Lanes>) {
-    if (none(starts_far(scene, p, i)))
+    if (none(starts_beyond(scene, scene.reach, p, i)))
       continue;
     if (!p.moved)
       for (typename In::Number& shift : p.shift)
@@ -249,10 +249,10 @@ inline void trace_alone(const SceneView& scene, Packet<In>& p, bool any_triangle
 }
 
 /// Whether a packet starts as near to the scene as the lists of point grids allow for.
-inline bool starts_near(const SceneView& scene, const WalkingRays& p) {
+inline bool starts_within_point_reach(const SceneView& scene, const WalkingRays& p) {
   Mask<Lanes> far = Lanes(0) != Lanes(0);
   for (int i = 0; i < p.size; i += kWidth<Lanes>)
-    far = either(far, starts_far(scene, p, i));
+    far = either(far, starts_beyond(scene, scene.point_reach, p, i));
   return none(far);
 }
 
@@ -264,9 +264,10 @@ inline bool starts_near(const SceneView& scene, const WalkingRays& p) {
                                                std::size_t first,
                                                Counters& n) {
   prepare(p, false);
-  if (!starts_near(scene, p))
+  if (!starts_within_point_reach(scene, p))
     return false;
   test_infinite<true>(scene, p, n);
+  bring_near(scene, p);
   const std::uint32_t* const leaves = to.leaves ? to.leaves + first : nullptr;
   PointSearch(scene.geometry, *to.grid, p, leaves, n).run();
   return true;

@@ -32,7 +32,7 @@ class Askers {
 
  private:
   Float3 next(int kind) {
-    const Float3 any = random_.point(random_.chance(.2) ? 30 : 1.5);
+    const Float3 any = random_.point(random_.chance(.2) ? random_.log_in(3, 3000) : 1.5);
     if (kind == 1)
       return on_surface(any);
     if (kind == 2 && scene_.geometry.triangles.size() > 0)
@@ -54,7 +54,8 @@ class Askers {
     const std::uint32_t i = random_.below(static_cast<std::uint32_t>(t.size()));
     const auto corner = [&](std::uint32_t v) { return Float3{t.x[v], t.y[v], t.z[v]}; };
     const double share = random_.chance(.3) ? 0 : random_.unit();
-    return between(point_, between(corner(t.a[i]), corner(t.b[i]), share), random_.in(.9, 3));
+    const double away = random_.chance(.5) ? random_.in(.9, 3) : random_.log_in(3, 1000);
+    return between(point_, between(corner(t.a[i]), corner(t.b[i]), share), away);
   }
   Float3 on_border() {
     const float along = static_cast<float>(random_.log_in(.1, 10));
