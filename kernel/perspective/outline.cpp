@@ -139,6 +139,7 @@ void clear(Outline& o) {
   }
   o.near = 1e300;
   o.far = -1e300;
+  o.solid = false;
   for (HalfPlane& side : o.side)
     side = {};
 }
@@ -194,15 +195,21 @@ bool see(const Primitives& p,
   }
   if (!(o.far >= front) || !finish(o, aside, from.pad, least))
     return false;
+  o.solid = true;
   for (int k = 0; k < 3; ++k) {
     const Vector &a = c[(k + 1) % 3], &b = c[(k + 2) % 3];
     const Vector edge = b - a;
     const Vector n = cross(a, edge);
     const double square = dot(n, n);
     const double height = dot(n, c[k]);
-    if (!(square > kNarrowest * kNarrowest * dot(a, a) * dot(edge, edge)) || height == 0)
+    const double size = std::sqrt(square);
+    // else seen from the edge, and no side of it is for sure
+    o.solid &= std::abs(height) > kSolid * aside * size;
+    if (!(square > kNarrowest * kNarrowest * dot(a, a) * dot(edge, edge)) || height == 0) {
+      o.solid = false;
       continue;
-    o.side[k] = half_plane(height > 0 ? n : scaled(-1, n), std::sqrt(square), aside, least);
+    }
+    o.side[k] = half_plane(height > 0 ? n : scaled(-1, n), size, aside, least);
   }
   return true;
 }

@@ -24,6 +24,8 @@ struct Outline {
   double lo[2], hi[2];  ///< of u and v
   HalfPlane side[3];
   double near, far;  ///< along the face's axis
+  /// rays further inside of all sides than they leave open meet it for sure, between near and far
+  bool solid = false;
 };
 
 /// A point, and how far what rays meet may lie from the primitive that it belongs to.

@@ -65,6 +65,8 @@ void set_outline(OutlineBlock& block, std::uint32_t k, const Seen& seen, const T
     block.side[i][2][k] = beyond ? 1 : static_cast<float>(at_corner);
   }
   block.near[k] = least_depth(seen);
+  block.far[k] = beyond || !seen.outline.solid ? std::numeric_limits<float>::infinity()
+                                      : rounded_up(seen.outline.far);
   block.id[k] = seen.id;
 }
 

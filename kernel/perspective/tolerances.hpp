@@ -17,6 +17,9 @@ inline constexpr double kNearest = 8;
 /// Of the pad, what is aside of a triangle: inside or outside is decided in double there, and what
 /// is left is how far a ray strays from the point.
 inline constexpr double kFlatPad = .5;
+/// Margins that a corner lies at least inside of the side across from it, where rays may meet a
+/// triangle for sure.
+inline constexpr double kSolid = 4;
 /// Directions beyond the edge of a face that count as its own: look-ups round.
 inline constexpr double kOverlap = 0x1p-30;
 /// Margins are this much wider than derived, for the rounding of doubles.

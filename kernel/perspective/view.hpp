@@ -8,6 +8,9 @@ namespace grelha {
 /// Primitives side by side in a block.
 inline constexpr int kOutlines = 8;
 
+/// See OutlineBlock.
+inline constexpr float kSurelyInside = 2;
+
 /// How directions around a point are told apart: six faces of a cube, 2 axis + (negative ? 1 : 0).
 inline constexpr int kFaces = 6;
 
@@ -26,10 +29,12 @@ struct PointFace {
 
 /// What eight primitives look like from the point, within a tile: none of them can be met by a ray
 /// through place (x, y) of the tile, 0 to 1 each, where one of its three sides, side[i][0] x +
-/// side[i][1] y + side[i][2], is negative. What is left open is 1 on either side of it.
+/// side[i][1] y + side[i][2], is negative. What is left open is 1 on either side of it: a triangle
+/// is surely met where all are kSurelyInside or more, by rays that start behind its `far`.
 struct alignas(64) OutlineBlock {
   float side[3][3][kOutlines];
   float near[kOutlines];  ///< least depth
+  float far[kOutlines];   ///< greatest; infinite where no ray meets it for sure
   std::uint32_t id[kOutlines];
 };
 

@@ -68,20 +68,33 @@ template <class Listed>
   return {in & lanes, (near & lanes) == lanes};
 }
 
-/// Lanes whose ray may meet primitive k of a block.
-[[gnu::always_inline]] inline Mask<Lanes> may_meet(const SearchPlaces& at,
-                                                   const OutlineBlock& b,
-                                                   unsigned k) {
+/// Lanes whose ray may meet a primitive, and those whose ray does for sure.
+struct MetLanes {
+  Mask<Lanes> maybe, surely;
+};
+
+/// The same of primitive k of a block, for rays that search up to `depth`.
+[[gnu::always_inline]] inline MetLanes met_lanes(const SearchPlaces& at,
+                                                 const Lanes& depth,
+                                                 const OutlineBlock& b,
+                                                 unsigned k) {
   const auto side = [&](int s) {
     return (Lanes(b.side[s][0][k]) * at.x + Lanes(b.side[s][1][k]) * at.y) + Lanes(b.side[s][2][k]);
   };
-  return lesser(lesser(side(0), side(1)), side(2)) >= Lanes(0);
+  const Lanes inside = lesser(lesser(side(0), side(1)), side(2));
+  return {
+      both(inside >= Lanes(0), Lanes(b.near[k]) <= depth),
+      both(inside >= Lanes(kSurelyInside), Lanes(b.far[k]) <= depth),
+  };
 }
-[[gnu::always_inline]] inline Mask<Lanes> may_meet(const SearchPlaces& at,
-                                                   const BoxBlock& b,
-                                                   unsigned k) {
-  return both(both(at.x >= Lanes(b.lo[0][k]), at.x <= Lanes(b.hi[0][k])),
-              both(at.y >= Lanes(b.lo[1][k]), at.y <= Lanes(b.hi[1][k])));
+[[gnu::always_inline]] inline MetLanes met_lanes(const SearchPlaces& at,
+                                                 const Lanes& depth,
+                                                 const BoxBlock& b,
+                                                 unsigned k) {
+  const Mask<Lanes> met = both(both(at.x >= Lanes(b.lo[0][k]), at.x <= Lanes(b.hi[0][k])),
+                               both(at.y >= Lanes(b.lo[1][k]), at.y <= Lanes(b.hi[1][k])));
+  const Mask<Lanes> no = Lanes(0) != Lanes(0);
+  return {both(met, Lanes(b.near[k]) <= depth), no};
 }
 
 /// One primitive of a kind against all rays of a packet.
@@ -202,10 +215,13 @@ class PointSearch {
       const ShownLanes lanes = shown(w, b, first, end);
       for (unsigned left = lanes.shown; left != 0; left &= left - 1) {
         const unsigned k = static_cast<unsigned>(__builtin_ctz(left));
-        const Mask<Lanes> met = both(may_meet(at, b, k), Lanes(b.near[k]) <= depth);
-        if ((bits(met) & ~leaving(b.id[k])) == 0)
+        const MetLanes met = met_lanes(at, depth, b, k);
+        const unsigned asked = bits(met.maybe) & ~leaving(b.id[k]);
+        if (asked == 0)
           continue;
-        test(b.id[k]);
+        block(met.surely, b.id[k]);
+        if ((asked & ~bits(met.surely)) != 0)
+          test(b.id[k]);
         depth = depths(at, here);
         w.depth = lane_max(depth);
       }
@@ -222,6 +238,13 @@ class PointSearch {
       return 0;
     const Words<Lanes> leaves = load_words<Lanes>(leaves_ + first_ray());
     return bits(mask_of(Words<Lanes>(leaves == id)));
+  }
+
+  /// Notes that lanes of the group are blocked.
+  [[gnu::always_inline]] void block(const Mask<Lanes>& lanes, std::uint32_t id) {
+    const int i = first_ray();
+    store(p_.best + i, select(lanes, Lanes(-kInfinity), load<Lanes>(p_.best + i)));
+    store(p_.id + i, select(lanes, Lanes(bits_of(id)), load<Lanes>(p_.id + i)));
   }
 
   void test(std::uint32_t id) {
