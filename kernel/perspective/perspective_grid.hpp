@@ -29,7 +29,7 @@ struct PerspectiveGrid {
 };
 
 struct PerspectiveOptions {
-  double density = .25;  ///< tiles a primitive
+  double density = .125;  ///< tiles a primitive
   int threads = 1;
 };
 
