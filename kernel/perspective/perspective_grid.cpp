@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <mutex>
 
@@ -26,11 +27,22 @@ struct Place {
   std::uint32_t tile, seen;
 };
 
+/// The same in order: by depth, then by id.
 struct Reference {
-  float near;
-  std::uint32_t id, seen;
-  bool operator<(const Reference& o) const { return near != o.near ? near < o.near : id < o.id; }
+  std::uint64_t order;
+  std::uint32_t seen;
+  bool operator<(const Reference& o) const { return order < o.order; }
 };
+
+/// Floats as numbers in the same order.
+std::uint32_t ordered(float x) {
+  const auto bits = std::bit_cast<std::uint32_t>(x);
+  return bits >> 31 ? ~bits : bits | 0x80000000u;
+}
+
+Reference reference(const Seen& s, std::uint32_t seen) {
+  return {std::uint64_t{ordered(least_depth(s))} << 32 | s.id, seen};
+}
 
 class Builder {
  public:
@@ -198,19 +210,32 @@ class Builder {
     each_page([&](std::uint32_t page) { each_of_page(page, visit); });
   }
 
-  void count(std::uint32_t tile) {
-    std::atomic_ref(counts_[tile]).fetch_add(1, std::memory_order_relaxed);
+  /// Adds one, and returns what was there.
+  std::uint32_t next(std::uint32_t& n) const {
+    if (options_.threads == 1)
+      return n++;
+    return std::atomic_ref(n).fetch_add(1, std::memory_order_relaxed);
+  }
+  /// What stands in the list of a tile that a primitive belongs to.
+  std::uint32_t& counted(const Place& at) {
+    return counts_[2 * at.tile + in_boxes(at.seen)];
+  }
+  std::uint32_t in_boxes(std::uint32_t seen) const {
+    return is_sphere(seen_[seen].id) ? 1 : 0;
+  }
+  std::uint32_t primitives_of(std::size_t tile) const {
+    return counts_[2 * tile] + counts_[2 * tile + 1];
   }
 
   void place_all() {
-    counts_.assign(tiles_.size(), 0);
+    counts_.assign(2 * tiles_.size(), 0);
     places_.resize(seen_.pages());
     each_page([&](std::uint32_t page) {
       places_[page].reserve(4 * SeenPages::kPage);
       each_of_page(page,
                    [&](const Seen& s, std::uint32_t number) { place(s, number, places_[page]); });
       for (const Place& at : places_[page])
-        count(at.tile);
+        next(counted(at));
     });
   }
 
@@ -241,23 +266,23 @@ class Builder {
     for (int level = 0; level < kMostLevels && references < most; ++level) {
       const std::size_t end = tiles_.size();
       for (std::size_t t = begin; t < end; ++t)
-        if (counts_[t] > kTileCrowd && tiles_[t].width > 0)
+        if (primitives_of(t) > kTileCrowd && tiles_[t].width > 0)
           part(t);
       begin = end;
       if (tiles_.size() == end)
         return;
       g_.parts.resize(tiles_.size());
-      counts_.resize(tiles_.size());
+      counts_.resize(2 * tiles_.size());
       place_parts();
       references = 0;
       for (std::size_t t = end; t < tiles_.size(); ++t)
-        references += counts_[t];
+        references += primitives_of(t);
     }
   }
 
   void part(std::size_t t) {
     const int columns = static_cast<int>(
-        std::clamp(std::ceil(std::sqrt(counts_[t] / kPartCrowd)), 2., double{kMostColumns}));
+        std::clamp(std::ceil(std::sqrt(primitives_of(t) / kPartCrowd)), 2., double{kMostColumns}));
     g_.parts[t] = {static_cast<std::uint32_t>(tiles_.size()), static_cast<std::uint32_t>(columns)};
     const Tile whole = tiles_[t];
     const double width = whole.width / columns;
@@ -269,7 +294,8 @@ class Builder {
             width,
             whole.face,
         });
-    counts_[t] = 0;
+    counts_[2 * t] = 0;
+    counts_[2 * t + 1] = 0;
   }
 
   /// Takes what is placed in tiles with parts to these.
@@ -288,62 +314,57 @@ class Builder {
         TileWalk({t.x, t.y, t.width / n, n, n}, g_.face[t.face])
             .each(seen_[p.seen], [&](std::uint32_t part) {
               places.push_back({parts.first + part, p.seen});
-              count(parts.first + part);
+              next(counted(places.back()));
             });
       }
       places_[page] = std::move(places);
     });
   }
 
-  /// Turns counts to places and brings references there.
-  template <class Chosen>
-  std::vector<std::uint32_t> collect(const Chosen& chosen) {
-    std::fill(counts_.begin(), counts_.end(), 0);
-    each_place(chosen, [&](const Place& p) { count(p.tile); });
+  /// Where the lists of a kind begin, from counts; which become the next free place of each list in
+  /// all references, of which `before` come first.
+  std::vector<std::uint32_t> begin_lists(std::uint32_t kind, std::uint32_t before) {
     std::vector<std::uint32_t> first(tiles_.size() + 1);
-    for (std::size_t t = 0; t < tiles_.size(); ++t)
-      first[t + 1] = first[t] + counts_[t];
-    std::copy(first.begin(), first.end() - 1, counts_.begin());
-    references_.resize(first.back());
-    each_place(chosen, [&](const Place& p) {
-      const Seen& s = seen_[p.seen];
-      const std::uint32_t to =
-          std::atomic_ref(counts_[p.tile]).fetch_add(1, std::memory_order_relaxed);
-      references_[to] = {least_depth(s), s.id, p.seen};
-    });
+    for (std::size_t t = 0; t < tiles_.size(); ++t) {
+      std::uint32_t& n = counts_[2 * t + kind];
+      first[t + 1] = first[t] + n;
+      n = before + first[t];
+    }
     return first;
-  }
-  template <class Chosen, class Visit>
-  void each_place(const Chosen& chosen, const Visit& visit) {
-    each_page([&](std::uint32_t page) {
-      for (const Place& p : places_[page])
-        if (chosen(seen_[p.seen].id))
-          visit(p);
-    });
   }
 
   void write() {
-    g_.outline_first = collect([&](std::uint32_t id) { return !is_sphere(id); });
-    g_.outlines.resize(g_.outline_first.back() / kOutlines + 1);
-    write_lists(g_.outline_first, [&](const Tile& t, std::uint32_t r) {
-      set_outline(g_.outlines[r / kOutlines], r % kOutlines, seen_[references_[r].seen], t);
+    g_.outline_first = begin_lists(0, 0);
+    const std::uint32_t outlines = g_.outline_first.back();
+    g_.box_first = begin_lists(1, outlines);
+    references_.resize(outlines + g_.box_first.back());
+    each_page([&](std::uint32_t page) {
+      for (const Place& p : places_[page])
+        references_[next(counted(p))] = reference(seen_[p.seen], p.seen);
     });
-    g_.box_first = collect([&](std::uint32_t id) { return is_sphere(id); });
+    g_.outlines.resize(outlines / kOutlines + 1);
     g_.boxes.resize(g_.box_first.back() / kOutlines + 1);
-    write_lists(g_.box_first, [&](const Tile& t, std::uint32_t r) {
-      set_box(g_.boxes[r / kOutlines], r % kOutlines, seen_[references_[r].seen], t);
+    write_lists(g_.outline_first, 0, [&](std::uint32_t at, const Seen& s, const Tile& t) {
+      set_outline(g_.outlines[at / kOutlines], at % kOutlines, s, t);
+    });
+    write_lists(g_.box_first, outlines, [&](std::uint32_t at, const Seen& s, const Tile& t) {
+      set_box(g_.boxes[at / kOutlines], at % kOutlines, s, t);
     });
   }
 
+  /// Writes lists, of whose references `before` others come first.
   template <class Write>
-  void write_lists(const std::vector<std::uint32_t>& first, const Write& write) {
+  void write_lists(const std::vector<std::uint32_t>& first,
+                   std::uint32_t before,
+                   const Write& write) {
     const auto n = static_cast<std::ptrdiff_t>(tiles_.size());
+    Reference* const all = references_.data() + before;
 #pragma omp parallel for schedule(dynamic, 256) num_threads(options_.threads)
     for (std::ptrdiff_t i = 0; i < n; ++i) {
       const auto t = static_cast<std::size_t>(i);
-      std::sort(references_.begin() + first[t], references_.begin() + first[t + 1]);
-      for (std::uint32_t r = first[t]; r < first[t + 1]; ++r)
-        write(tiles_[t], r);
+      std::sort(all + first[t], all + first[t + 1]);
+      for (std::uint32_t at = first[t]; at < first[t + 1]; ++at)
+        write(at, seen_[all[at].seen], tiles_[t]);
     }
   }
 
@@ -357,7 +378,8 @@ class Builder {
   std::atomic<std::size_t> turns_ = 0;
   SeenPages seen_;
   std::vector<Tile> tiles_;
-  std::vector<std::uint32_t> counts_;       ///< [tiles]
+  /// [2 tiles] of each what is listed as outlines, then as boxes
+  std::vector<std::uint32_t> counts_;
   std::vector<std::vector<Place>> places_;  ///< [pages of what is seen]
   RawVector<Reference> references_;
 };

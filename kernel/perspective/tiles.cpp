@@ -66,7 +66,7 @@ void set_outline(OutlineBlock& block, std::uint32_t k, const Seen& seen, const T
   }
   block.near[k] = least_depth(seen);
   block.far[k] = beyond || !seen.outline.solid ? std::numeric_limits<float>::infinity()
-                                      : rounded_up(seen.outline.far);
+                                               : rounded_up(seen.outline.far);
   block.id[k] = seen.id;
 }
 
