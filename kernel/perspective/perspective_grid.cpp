@@ -352,6 +352,13 @@ class Builder {
     });
   }
 
+  /// Asks for what is seen of a primitive, which comes from afar.
+  static void fetch(const Seen& s) {
+    const char* const bytes = reinterpret_cast<const char*>(&s);
+    for (std::size_t line = 0; line < sizeof s; line += 64)
+      __builtin_prefetch(bytes + line);
+  }
+
   /// Writes lists, of whose references `before` others come first.
   template <class Write>
   void write_lists(const std::vector<std::uint32_t>& first,
@@ -362,6 +369,8 @@ class Builder {
 #pragma omp parallel for schedule(dynamic, 256) num_threads(options_.threads)
     for (std::ptrdiff_t i = 0; i < n; ++i) {
       const auto t = static_cast<std::size_t>(i);
+      for (std::uint32_t at = first[t]; at < first[t + 1]; ++at)
+        fetch(seen_[all[at].seen]);
       std::sort(all + first[t], all + first[t + 1]);
       for (std::uint32_t at = first[t]; at < first[t + 1]; ++at)
         write(at, seen_[all[at].seen], tiles_[t]);

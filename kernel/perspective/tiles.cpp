@@ -9,9 +9,10 @@ namespace {
 
 constexpr double kMostTiles = 4096;  ///< along an axis of a face
 
+/// Below x by two ulps at most, or by 1e-30.
 float rounded_down(double x) {
   const float f = static_cast<float>(x);
-  return double{f} > x ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;
+  return f - (std::abs(f) * 0x1p-23f + 1e-30f);
 }
 float rounded_up(double x) {
   return -rounded_down(-x);
