@@ -4,12 +4,9 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
-#include <mutex>
 
-#include "kernel/perspective/seen.hpp"
+#include "kernel/perspective/sight.hpp"
 #include "kernel/perspective/thrown.hpp"
-#include "kernel/perspective/tiles.hpp"
-#include "kernel/perspective/tolerances.hpp"
 
 namespace grelha {
 namespace {
@@ -55,7 +52,8 @@ class Builder {
 
   PerspectiveGrid build() {
     std::copy(from_.at, from_.at + 3, g_.point);
-    look();
+    look(p_, ids_, large_, from_, options_.threads, sight_);
+    g_.around = std::move(sight_.around);
     lay_tiles_for_few_references();
     each_seen([&](Seen& s, std::uint32_t) { s.to_tiles(g_.face[s.face]); });
     place_all();
@@ -65,69 +63,7 @@ class Builder {
   }
 
  private:
-  bool is_large(std::uint32_t id) const {
-    return std::binary_search(large_.begin(), large_.end(), id);
-  }
   bool is_sphere(std::uint32_t id) const { return p_.ids.has(PrimitiveKind::kSphere, id); }
-
-  /// Finds what is seen of all primitives, and the part of each face that anything is seen in.
-  void look() {
-    Thrown thrown;
-#pragma omp parallel num_threads(options_.threads)
-    thrown.in([&] { look_in_one_thread(); });
-    thrown.on();
-    std::sort(g_.around.begin(), g_.around.end());
-  }
-
-  void look_in_one_thread() {
-    constexpr std::size_t kTurn = 1024;
-    Window window[kFaces];
-    std::vector<std::uint32_t> around;
-    SeenPages::Writer writer(seen_);
-    Seen* next = &writer.next();
-    for (std::size_t first; (first = turns_.fetch_add(kTurn)) < ids_.size();)
-      for (const std::uint32_t id : ids_.subspan(first, std::min(kTurn, ids_.size() - first))) {
-        const double distance = distance_of(p_, from_, id);
-        if (distance > kNearest * from_.pad)
-          look_at(id, distance, window, writer, next);
-        else
-          around.push_back(id);
-      }
-    const std::lock_guard lock(mutex_);
-    g_.around.insert(g_.around.end(), around.begin(), around.end());
-    for (int f = 0; f < kFaces; ++f)
-      window_[f].add(window[f]);
-  }
-
-  void look_at(std::uint32_t id,
-               double distance,
-               Window (&window)[kFaces],
-               SeenPages::Writer& writer,
-               Seen*& next) {
-    const Box box = p_.box(id);
-    const bool large = is_large(id);
-    for (int f = 0; f < kFaces; ++f) {
-      if (!may_be_seen(box, f) || !see(p_, from_, id, f, distance, next->outline))
-        continue;
-      if (!large)
-        window[f].add(next->outline);
-      window[f].near = std::min(window[f].near, next->outline.near);
-      next->id = id;
-      next->face = f;
-      next = &writer.next();
-    }
-  }
-
-  /// Whether anything of a box, or within pads of it, lies in the pyramid of a face.
-  bool may_be_seen(const Box& box, int face) const {
-    const int a = face / 2;
-    const double out = face % 2 == 0 ? box.hi[a] - from_.at[a] : from_.at[a] - box.lo[a];
-    const double deepest = out + 4 * from_.pad;
-    for (const int b : {(a + 1) % 3, (a + 2) % 3})
-      if (std::max(box.lo[b] - from_.at[b], from_.at[b] - box.hi[b]) > deepest)
-        return false;
-    return deepest > 0;
-  }
 
   /// Lays fewer tiles where needles, or primitives that cover each other, would fill lists without
   /// bound; and no more than look-ups can number.
@@ -160,11 +96,11 @@ class Builder {
   void lay_tiles(double density) {
     tiles_.clear();
     std::uint64_t seen = 0;
-    for (const Window& w : window_)
+    for (const Window& w : sight_.window)
       seen += w.seen;
     for (int f = 0; f < kFaces; ++f) {
       PointFace& face = g_.face[f];
-      const Window& w = window_[f];
+      const Window& w = sight_.window[f];
       face = {};
       face.first = static_cast<double>(tiles_.size());
       face.depth = w.near < 1e300 ? w.near : 0;
@@ -246,7 +182,7 @@ class Builder {
     const int columns = static_cast<int>(face.nx);
     const int rows = static_cast<int>(face.ny);
     const auto beyond = static_cast<std::uint32_t>(columns * rows);
-    if (is_large(s.id))
+    if (s.large)
       to.push_back({first + beyond, number});
     if (beyond == 0)
       return;
@@ -382,10 +318,8 @@ class Builder {
   const Viewpoint& from_;
   const PerspectiveOptions& options_;
   PerspectiveGrid g_;
-  Window window_[kFaces];
-  std::mutex mutex_;
-  std::atomic<std::size_t> turns_ = 0;
-  SeenPages seen_;
+  Sight sight_;
+  SeenPages& seen_ = sight_.seen;
   std::vector<Tile> tiles_;
   /// [2 tiles] of each what is listed as outlines, then as boxes
   std::vector<std::uint32_t> counts_;

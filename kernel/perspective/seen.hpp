@@ -29,6 +29,7 @@ struct Seen {
   Outline outline;
   std::uint32_t id = kNoPrimitive;
   int face = 0;
+  bool large = false;  ///< it stands in no grid of the scene
 
   /// From directions to tiles. Sides are scaled as blocks hold them.
   void to_tiles(const PointFace& face);

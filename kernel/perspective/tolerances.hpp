@@ -9,8 +9,7 @@ inline constexpr double kLookUp = 0x1p-48;
 inline constexpr double kPlaceRounding = 0x1p-22;
 /// Of the coefficients of a side: what floats round by when it is evaluated, 8 u.
 inline constexpr double kSideRounding = 0x1p-21;
-/// Pads of the object grids that go into one pad of these: what rays stray by that were brought near
-/// comes on top.
+/// Pads of the object grids in one of these: for what rays stray that were brought near.
 inline constexpr double kPads = 2;
 /// Nearer primitives, in these pads, have no outline: every ray meets them.
 inline constexpr double kNearest = 8;

@@ -361,7 +361,9 @@ template <class Frustum>
 /// Groups of rays in a frustum that a triangle may be met by.
 template <class Frustum>
 inline std::uint64_t groups_near(const Frustum& f, const Triangle::Fields<float>& triangle) {
-  const auto& [a, b, c] = triangle.corner;
+  const float(&a)[3] = triangle.corner[0];
+  const float(&b)[3] = triangle.corner[1];
+  const float(&c)[3] = triangle.corner[2];
   const float end =
       greater(greater(f.to_slice * a[f.k], f.to_slice * b[f.k]), f.to_slice * c[f.k]) +
       f.zero_slice;

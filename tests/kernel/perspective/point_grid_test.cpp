@@ -2,6 +2,7 @@
 // grids do.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 
 #include "grelha/grelha.hpp"
@@ -12,6 +13,10 @@ namespace grelha::test {
 namespace {
 
 constexpr int kPoints = 4000;
+
+Float3 float3(const double (&p)[3]) {
+  return {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])};
+}
 
 Float3 between(const Float3& a, const Float3& b, double share) {
   return {static_cast<float>(a.x + (b.x - a.x) * share),
@@ -104,6 +109,25 @@ struct Family {
   std::function<Scene()> make;
 };
 
+/// Triangles whose planes hold the point (2, 3, 1) to the last bit, though products of their corners
+/// round.
+Scene seen_from_the_edge() {
+  Random random(14);
+  Scene s = empty_scene();
+  const auto number = [&] { return std::ldexp(std::floor(std::ldexp(random.in(-2, 2), 20)), -20); };
+  const double light[3] = {2, 3, 1};
+  for (int i = 0; i < 300; ++i) {
+    double a[3], b[3], c[3];
+    for (int k = 0; k < 3; ++k) {
+      a[k] = number();
+      b[k] = number();
+      c[k] = a[k] + b[k] - light[k];
+    }
+    add_triangle(s, float3(a), float3(b), float3(c));
+  }
+  return s;
+}
+
 const Family kFamilies[] = {
     {"spheres", [] { return random_spheres(1, 300); }},
     {"triangles", [] { return random_triangles(2, 500); }},
@@ -120,6 +144,7 @@ const Family kFamilies[] = {
     {"crowd on a wide plain", [] { return crowd_on_a_wide_plain(9, 400); }},
     {"stadium", [] { return stadium(10, 400); }},
     {"towns", [] { return towns_in_a_desert(11, 300); }},
+    {"seen from the edge", [] { return seen_from_the_edge(); }},
     {"moved away",
      [] {
        return placed(random_mixture(12, 300), 1, {4000, -900, 2e4f});
