@@ -114,7 +114,7 @@ struct Family {
 Scene seen_from_the_edge() {
   Random random(14);
   Scene s = empty_scene();
-  const auto number = [&] { return std::ldexp(std::floor(std::ldexp(random.in(-2, 2), 20)), -20); };
+  const auto number = [&] { return std::floor(random.in(-2, 2) * 0x1p20) * 0x1p-20; };
   const double light[3] = {2, 3, 1};
   for (int i = 0; i < 300; ++i) {
     double a[3], b[3], c[3];
