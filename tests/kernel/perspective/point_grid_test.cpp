@@ -109,8 +109,7 @@ struct Family {
   std::function<Scene()> make;
 };
 
-/// Triangles whose planes hold the point (2, 3, 1) to the last bit, though products of their corners
-/// round.
+/// Triangles whose planes hold the point (2, 3, 1) to the last bit, though products round.
 Scene seen_from_the_edge() {
   Random random(14);
   Scene s = empty_scene();
