@@ -192,12 +192,16 @@ std::string bounds_text(const SceneBounds& bounds) {
 }
 
 std::string memory_text(const SceneMemory& memory) {
-  return print(
+  std::string text = print(
       "memory        about %.1f MB to render: scene %.1f, grids %.1f, the rest to read, build and "
       "draw\n",
       double(memory.peak) / 1e6,
       double(memory.scene) / 1e6,
       double(memory.grids) / 1e6);
+  if (memory.lights > 0)
+    text += print("              %.1f MB more in large pictures, for grids of its point lights\n",
+                  double(memory.lights) / 1e6);
+  return text;
 }
 
 std::string grid_text(const GridStats& grid) {
@@ -289,7 +293,10 @@ std::string info_json(const SceneFile& file,
     json["aabb"] = box_order_name(file.box_order);
   json["resolution"] = {file.camera.width, file.camera.height};
   json["bounds"] = to_json(bounds_of(geometry));
-  json["memory"] = {{"scene", memory.scene}, {"grids", memory.grids}, {"peak", memory.peak}};
+  json["memory"] = {{"scene", memory.scene},
+                    {"grids", memory.grids},
+                    {"point_grids", memory.lights},
+                    {"peak", memory.peak}};
   json["grids"] = grids ? to_json(*grids) : nullptr;
   for (const auto& [name, needed] : listed(needs_of(file)))
     json["needs"][name] = needed;

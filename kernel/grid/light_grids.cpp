@@ -13,23 +13,39 @@ namespace {
 /// Diagonals to the farthest point: doubles still tell 2^20 tiles apart from there.
 constexpr double kFarthestPoint = 0x1p21;
 /// Bytes of the grids of all lights: 1 KiB a primitive, and 16 MiB.
-constexpr std::size_t kMostBytesEach = 1 << 10;
-constexpr std::size_t kMostBytes = 1 << 24;
+constexpr std::uint64_t kMostBytesEach = 1 << 10;
+constexpr std::uint64_t kMostBytes = 1 << 24;
+/// Bytes a primitive of one light: of spheres 42 to 61 were measured, of others 105 to 281.
+constexpr std::uint64_t kSphereBytes = 64;
+constexpr std::uint64_t kOtherBytes = 256;
 
 /// With fewer, threads wait for each other longer than they work: a millisecond became five.
 constexpr std::size_t kPrimitivesAThread = 8192;
+
+std::uint64_t most_bytes_of(const Primitives& primitives) {
+  return kMostBytes + kMostBytesEach * primitives.finite_count();
+}
 
 }  // namespace
 
 LightGrids::LightGrids(const Primitives& primitives,
                        std::span<const Light> lights,
                        std::span<const std::uint32_t> large,
-                       const Box& box)
+                       const Box& box,
+                       std::uint64_t most_bytes)
     : primitives_(primitives),
       lights_(lights),
       large_(large.begin(), large.end()),
       box_(box),
+      most_bytes_(std::min(most_bytes, most_bytes_of(primitives))),
       built_(lights.size()) {}
+
+std::uint64_t LightGrids::expected_bytes(const Primitives& primitives, std::size_t lights) {
+  const std::uint64_t spheres = primitives.of<Sphere>().size();
+  const std::uint64_t others = primitives.finite_count() - spheres;
+  return std::min(most_bytes_of(primitives),
+                  lights * (kSphereBytes * spheres + kOtherBytes * others));
+}
 
 std::unique_ptr<ViewedGrid> LightGrids::build(const Float3& point, int threads) const {
   const double diagonal = box_.diagonal();
@@ -47,16 +63,22 @@ std::unique_ptr<ViewedGrid> LightGrids::build(const Float3& point, int threads) 
   return built;
 }
 
+std::unique_ptr<ViewedGrid> LightGrids::try_to_build(const Light& light, int threads) const {
+  if (light.is_area() || bytes_ + expected_bytes(primitives_, 1) > most_bytes_)
+    return nullptr;
+  const int useful = 1 + static_cast<int>(primitives() / kPrimitivesAThread);
+  std::unique_ptr<ViewedGrid> built;
+  try {
+    built = build(light.position, std::min(threads, useful));
+  } catch (const std::bad_alloc&) {  // rays then walk, which takes no memory
+  }
+  return built && bytes_ + built->grid.bytes() <= most_bytes_ ? std::move(built) : nullptr;
+}
+
 const PointGridView* LightGrids::of(std::size_t light, int threads) {
   const std::lock_guard lock(mutex_);
   if (!built_[light]) {
-    if (lights_[light].is_area() || bytes_ > kMostBytes + kMostBytesEach * primitives())
-      return nullptr;
-    try {
-      const int useful = 1 + static_cast<int>(primitives() / kPrimitivesAThread);
-      built_[light] = build(lights_[light].position, std::min(threads, useful));
-    } catch (const std::bad_alloc&) {  // rays then walk, which takes no memory
-    }
+    built_[light] = try_to_build(lights_[light], threads);
     if (!built_[light])
       return nullptr;
     bytes_ += built_[light]->grid.bytes();

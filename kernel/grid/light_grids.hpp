@@ -23,11 +23,12 @@ struct ViewedGrid {
 class LightGrids {
  public:
   /// What may be met, as World has it: `large` is what stands in no grid, sorted; `box` holds
-  /// everything.
+  /// everything. `most_bytes`: that all grids together may take.
   LightGrids(const Primitives& primitives,
              std::span<const Light> lights,
              std::span<const std::uint32_t> large,
-             const Box& box);
+             const Box& box,
+             std::uint64_t most_bytes);
   LightGrids(const LightGrids&) = delete;
   LightGrids& operator=(const LightGrids&) = delete;
 
@@ -38,14 +39,20 @@ class LightGrids {
   const PointGridView* of(std::size_t light, int threads);
   /// The grid of any point; null: it is too far away.
   std::unique_ptr<ViewedGrid> build(const Float3& point, int threads) const;
+  /// About what the grids of so many lights take; never more than they are let.
+  static std::uint64_t expected_bytes(const Primitives& primitives, std::size_t lights);
   /// Of the grids of all lights that are built.
   std::size_t bytes() const;
 
  private:
+  /// The same; null as well where there is no memory.
+  std::unique_ptr<ViewedGrid> try_to_build(const Light& light, int threads) const;
+
   const Primitives& primitives_;
   std::span<const Light> lights_;
   std::vector<std::uint32_t> large_;
   Box box_;
+  std::uint64_t most_bytes_;
   mutable std::mutex mutex_;
   std::vector<std::unique_ptr<ViewedGrid>> built_;
   std::size_t bytes_ = 0;

@@ -78,9 +78,20 @@ World::Impl::Impl(const SceneSpans& s, const BuildOptions& options)
   view_grids(plan.all);
   if (!options.grid)  // no primitive is large beside the others then
     plan.apart.clear();
-  light_grids = std::make_unique<LightGrids>(primitives, scene.lights, plan.apart, plan.all);
+  const std::uint64_t most = options.most_bytes > 0 ? options.most_bytes : UINT64_MAX;
+  const std::uint64_t left = most - std::min<std::uint64_t>(most, bytes());
+  light_grids = std::make_unique<LightGrids>(primitives, scene.lights, plan.apart, plan.all, left);
   set_lights();
   set_materials();
+}
+
+std::size_t World::Impl::bytes() const {
+  std::size_t sum = outside.bytes();
+  for (const Grid& g : grids)
+    sum += g.stats().bytes;
+  for_each_shape(
+      [&]<class Shape>() { sum += Shape::Source::kPreparedBytes * primitives.of<Shape>().size(); });
+  return sum;
 }
 
 void World::Impl::view_primitives() {
@@ -167,7 +178,11 @@ BuildMemory World::estimate(const SceneSpans& scene, const BuildOptions& options
   check(options);
   const Primitives primitives(scene.geometry);
   BuildProgress nobody;
-  return memory_of(scene, primitives, plan_grids(primitives, options, nobody));
+  BuildMemory memory = memory_of(scene, primitives, plan_grids(primitives, options, nobody));
+  const auto is_point = [](const Light& l) { return !l.is_area(); };
+  const auto lights = std::ranges::count_if(scene.lights, is_point);
+  memory.lights = LightGrids::expected_bytes(primitives, static_cast<std::size_t>(lights));
+  return memory;
 }
 
 World::World(const SceneSpans& scene, const BuildOptions& options)
@@ -191,13 +206,7 @@ std::size_t World::geometry_bytes() const {
 }
 
 std::size_t World::grid_bytes() const {
-  std::size_t sum = impl_->outside.bytes();
-  for (const Grid& g : impl_->grids)
-    sum += g.stats().bytes;
-  for_each_shape([&]<class Shape>() {
-    sum += Shape::Source::kPreparedBytes * impl_->primitives.of<Shape>().size();
-  });
-  return sum;
+  return impl_->bytes();
 }
 
 }  // namespace grelha

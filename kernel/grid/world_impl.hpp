@@ -29,6 +29,8 @@ struct World::Impl {
   std::unique_ptr<LightGrids> light_grids;  ///< built when asked for
 
   Impl(const SceneSpans& scene, const BuildOptions& options);
+  /// Everything built beside the scene, but for grids of lights.
+  std::size_t bytes() const;
 
  private:
   void fill(Plan& plan, int threads, BuildProgress& progress);

@@ -191,7 +191,7 @@ TEST(Info, JsonSaysWhatTheSceneHolds) {
   file.counts = {.s = 1, .lights = 2, .materials = 1};
   file.dropped = {3, 4};
   file.camera.width = 640;
-  const Json json = Json::parse(info_json(file, {1, 2, 3}, std::vector<GridStats>{}));
+  const Json json = Json::parse(info_json(file, {1, 2, 3, 4}, std::vector<GridStats>{}));
   EXPECT_EQ(keys(json),
             (std::set<std::string>{"scene",
                                    "kernel",
@@ -210,7 +210,7 @@ TEST(Info, JsonSaysWhatTheSceneHolds) {
   EXPECT_EQ(json["bounds"], Json::parse(R"({"min":[0.5,1.5,2.5],"max":[1.5,2.5,3.5]})"));
   EXPECT_EQ(json["grids"], Json::array());
   EXPECT_TRUE(Json::parse(info_json(file, {}, {}))["grids"].is_null()) << "not built";
-  EXPECT_EQ(json["memory"], Json::parse(R"({"scene":1,"grids":2,"peak":3})"));
+  EXPECT_EQ(json["memory"], Json::parse(R"({"scene":1,"grids":2,"point_grids":4,"peak":3})"));
   EXPECT_EQ(json["needs"]["refraction"], true);
   EXPECT_EQ(json["needs"]["cones"], false);
 }
@@ -241,7 +241,7 @@ TEST(Info, SaysHowBoxesAreRead) {
 TEST(Info, TextListsTheSame) {
   SceneFile file = one_ball(material_with([](Material& m) { m.mirror = {1, 1, 1}; }));
   file.counts = {.s = 1, .lights = 2, .materials = 1};
-  const SceneMemory memory{100000, 200000, 1250000};
+  const SceneMemory memory{100000, 200000, 1250000, 30000000};
   EXPECT_EQ(info_text("x.nff", file, memory, std::vector<GridStats>{{{2, 3, 4}, 5, 6, 7}}),
             "x.nff: 512x512\n"
             "in the file   1 s\n"
@@ -251,6 +251,7 @@ TEST(Info, TextListsTheSame) {
             "bounds        (0.5, 1.5, 2.5) to (1.5, 2.5, 3.5)\n"
             "memory        about 1.2 MB to render: scene 0.1, grids 0.2, the rest to read, build "
             "and draw\n"
+            "              30.0 MB more in large pictures, for grids of its point lights\n"
             "grid          2 x 3 x 4 cells, 5 occupied, 6 references, 0.0 MB\n"
             "needs         spheres, reflection\n");
 }

@@ -72,5 +72,48 @@ TEST(LightGrids, AreNoneInDouble) {
   EXPECT_EQ(stats.point_grids.count, 0);
 }
 
+Scene lit_mixture() {
+  Scene s = random_mixture(31, 4000);
+  for (const Float3& at : {Float3{0, 9, 0}, Float3{4, 3, 1}, Float3{-5, 2, 2}})
+    s.lights.push_back({at, {.3f, .3f, .3f}});
+  return s;
+}
+
+TEST(LightGrids, LeaveOutWhatFindsNoRoom) {
+  const Scene scene = lit_mixture();
+  const World any(scene, {});
+  RenderOptions options;
+  options.point_grids = PointGrids::kOn;
+  RenderStats stats;
+  const Image wanted = render(any, camera_of(32), options, stats);
+  const int all = stats.point_grids.count;
+  ASSERT_GE(all, 3);
+  const std::size_t of_one = stats.point_grids.bytes / static_cast<std::size_t>(all);
+  // 256 bytes a primitive are counted on
+  const World some(scene, {.most_bytes = any.grid_bytes() + of_one + 5000 * 256});
+  EXPECT_EQ(render(some, camera_of(32), options, stats).rgb, wanted.rgb);
+  EXPECT_GT(stats.point_grids.count, 0);
+  EXPECT_LT(stats.point_grids.count, all);
+  EXPECT_LE(any.grid_bytes() + stats.point_grids.bytes, any.grid_bytes() + of_one + 5000 * 256);
+  const World none(scene, {.most_bytes = World::estimate(scene, {}).peak + 1000});
+  EXPECT_EQ(render(none, camera_of(32), options, stats).rgb, wanted.rgb);
+  EXPECT_EQ(stats.point_grids.count, 0);
+}
+
+TEST(LightGrids, AreEstimatedBeforeTheyAreBuilt) {
+  const Scene scene = lit_mixture();
+  const std::uint64_t expected = World::estimate(scene, {}).lights;
+  RenderOptions options;
+  options.point_grids = PointGrids::kOn;
+  RenderStats stats;
+  render(World(scene, {}), camera_of(16), options, stats);
+  EXPECT_GT(expected, stats.point_grids.bytes / 3);
+  EXPECT_LT(expected, stats.point_grids.bytes * 3);
+  Scene area = scene;
+  for (Light& light : area.lights)
+    light.edge1 = light.edge2 = {1, 0, 1};
+  EXPECT_EQ(World::estimate(area, {}).lights, 0u);
+}
+
 }  // namespace
 }  // namespace grelha::test
