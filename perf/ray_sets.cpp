@@ -63,6 +63,7 @@ struct Random {
 struct FirstHit {
   V point, normal, mirror;  ///< normal: geometric, unit, towards the viewer; mirror: unit
   float away;
+  std::uint32_t leaves;  ///< what a shadow ray from here leaves; see Points
   V start() const { return point + away * normal; }
 };
 
@@ -128,7 +129,10 @@ RayBuffer RayMaker::through_pixels(const FrameView& f, int samples, bool few) co
 }
 
 std::vector<FirstHit> RayMaker::first_hits(bool few) const {
-  const RayBuffer rays = through_pixels(pinhole_, 1, few);
+  return hits_of(through_pixels(pinhole_, 1, few));
+}
+
+std::vector<FirstHit> RayMaker::hits_of(const RayBuffer& rays) const {
   const SceneView& scene = world_.impl().view;
   Answers found;
   TraceCounts unused;
@@ -151,6 +155,8 @@ std::vector<FirstHit> RayMaker::first_hits(bool few) const {
     // kept above the surface, as shading does
     h.mirror = normalize(reflected - (2 * lesser(dot(reflected, h.normal), 0.f)) * h.normal);
     h.away = kClearance * s.away;
+    const bool flat = scene.geometry.ids.has(PrimitiveKind::kTriangle, found.id[i]);
+    h.leaves = flat || side > 0 ? found.id[i] : kNoPrimitive;
     if (scene.geometry.ids.has(PrimitiveKind::kPlane, found.id[i]))
       h.away += kPlaneClearance * (extent + largest(s.point));
     hits.push_back(h);
@@ -191,6 +197,7 @@ void Bounces::add_shadow(const FirstHit& h, const Float3& at) {
   const V org = h.start(), dir = V{at.x, at.y, at.z} - org;
   // of unit length, as Embree's cone curves want them: with others a third of rays is wrong
   add(rays, org, normalize(dir), length(dir));
+  rays.leaves.push_back(h.leaves);
 }
 
 /// To places all over the light, where all its corners are in front.
@@ -230,6 +237,7 @@ void Bounces::add_diffuse(const FirstHit& h) {
 void Bounces::add_rays(RayKind kind, const FirstHit& h) {
   switch (kind) {
     case RayKind::kShadow:
+    case RayKind::kMirrorShadow:
       if (lit && facing(h, light.position))
         add_shadow(h, light.position);
       break;
@@ -255,6 +263,11 @@ RayBuffer RayMaker::make(RayKind kind) const {
   if (kind == RayKind::kLens)
     return through_pixels(lens_, kSamples, true);
   Bounces bounces{light_, lit_};
+  if (kind == RayKind::kMirrorShadow) {
+    for (const FirstHit& h : hits_of(make(RayKind::kMirror)))
+      bounces.add_rays(kind, h);
+    return bounces.rays;
+  }
   for (const FirstHit& h : first_hits(kind == RayKind::kArea || kind == RayKind::kGlossy))
     bounces.add_rays(kind, h);
   return kind == RayKind::kIncoherent ? shuffled(bounces.rays) : bounces.rays;

@@ -11,9 +11,24 @@ namespace grelha::perf {
 
 struct FirstHit;
 
-enum class RayKind { kPrimary, kLens, kShadow, kArea, kMirror, kGlossy, kIncoherent };
-inline constexpr std::array<const char*, 7> kRayKinds = {
-    "primary", "AA + lens", "hard shadow", "area 16", "mirror", "glossy 16", "incoherent"};
+enum class RayKind {
+  kPrimary,
+  kLens,
+  kShadow,
+  kArea,
+  kMirror,
+  kGlossy,
+  kIncoherent,
+  kMirrorShadow
+};
+inline constexpr std::array<const char*, 8> kRayKinds = {"primary",
+                                                         "AA + lens",
+                                                         "hard shadow",
+                                                         "area 16",
+                                                         "mirror",
+                                                         "glossy 16",
+                                                         "incoherent",
+                                                         "shadow of mirror hits"};
 
 /// Makes ray sets of a picture of size x size, in tiles of 8 x 8 pixels. Of larger pictures than
 /// 512 x 512 one strip of four tiles of each block of strips is taken, so that sets are about as
@@ -28,15 +43,23 @@ inline constexpr std::array<const char*, 7> kRayKinds = {
 /// mirror       from each first hit, whatever it is made of
 /// glossy 16    16 around each such direction, in a lobe of roughness .1
 /// incoherent   from each first hit in a direction spread as diffuse light is, then all shuffled
+/// shadow of mirror hits   hard shadows of what the rays of `mirror` meet
 class RayMaker {
  public:
   RayMaker(const SceneFile& file, const World& world, int size);  ///< size: at least 32
   RayBuffer make(RayKind kind) const;
-  static bool any_hit(RayKind kind) { return kind == RayKind::kShadow || kind == RayKind::kArea; }
+  /// Rays to a point light; `leaves` of their points is known.
+  static constexpr bool to_point(RayKind kind) {
+    return kind == RayKind::kShadow || kind == RayKind::kMirrorShadow;
+  }
+  static bool any_hit(RayKind kind) { return to_point(kind) || kind == RayKind::kArea; }
+  /// Where the light is that these rays go to.
+  Float3 light() const { return light_.position; }
 
  private:
   RayBuffer through_pixels(const FrameView& frame, int samples, bool few) const;
   std::vector<FirstHit> first_hits(bool few) const;
+  std::vector<FirstHit> hits_of(const RayBuffer& rays) const;
 
   const World& world_;
   FrameView pinhole_, lens_;

@@ -22,6 +22,7 @@
 #include "perf/trace/modes.hpp"
 #include "perf/trace/options.hpp"
 #include "perf/trace/place.hpp"
+#include "perf/trace/point_way.hpp"
 #include "perf/trace/tables.hpp"
 
 namespace {
@@ -67,7 +68,8 @@ std::vector<bool> still_in(Cell& cell) {
   std::vector<bool> in(cell.ways.size());
   for (std::size_t i = 0; i < in.size(); ++i) {
     const Way& best = cell.ways[cell.best[cell.ways[i].side]];
-    in[i] = i == cell.chosen || median(cell.ways[i].ns) < kAlsoRan * median(best.ns);
+    in[i] = i == cell.chosen || i == cell.point_grid ||
+            median(cell.ways[i].ns) < kAlsoRan * median(best.ns);
   }
   return in;
 }
@@ -105,12 +107,16 @@ void count(benchmark::State& state, const Row& row, std::size_t kind, const Cell
   state.counters["cells/ray"] = cell.cells();
   state.counters["lanes busy"] = cell.lanes_busy();
   state.counters["fell back"] = cell.fell_back();
+  if (cell.point_grid != 0) {
+    state.counters["point grid ms"] = 1e-6 * cell.point_grid_ns;
+    state.counters["pays from"] = std::min(cell.pays_from(), 1e12);
+  }
   if (!cell.has_embree())
     return;
   state.counters["ratio"] = cell.ratio(cell.chosen, cell.best[kRobust]);
   state.counters["ratio of the best"] = cell.ratio(cell.best[kGrelha], cell.best[kRobust]);
   state.counters["ratio to fast"] = cell.ratio(cell.chosen, cell.best[kFast]);
-  if (!row.target.empty())
+  if (kind < row.target.size())
     state.counters["target"] = row.target[kind];
 }
 
@@ -157,6 +163,9 @@ void run(benchmark::State& state, const Row& row, std::size_t kind, const Option
     return fail(wrong);
   enter_ways(race);
   race.cell.chosen = renders(rays_kind);
+  PointWay point_way(p.world, p.maker.light());
+  if (RayMaker::to_point(rays_kind) && !point_way.enter(race.rays, race.cell))
+    return fail("wrong hits: the light's grid against packets");
   run_rounds(state, race);
   count(state, row, kind, race.cell);
   print_line(row, kind, race.cell);

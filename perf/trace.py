@@ -26,7 +26,7 @@ from chart import legend_below
 
 FIRST = [
     "rays", "hits", "disagree", "ns/ray", "tests/ray", "cells/ray", "lanes busy", "fell back",
-    "ratio", "ratio of the best", "ratio to fast", "target"]
+    "ratio", "ratio of the best", "ratio to fast", "target", "point grid ms", "pays from"]
 # Label, then marker and colours (after Okabe and Ito)
 FASTER = ("as a render traces them: faster than Embree", {"marker": "o", "color": "#0072B2"})
 SLOWER = ("as a render traces them: slower than Embree", {"marker": "s", "color": "#D55E00"})
@@ -36,7 +36,7 @@ TITLES = {
     "primary": "camera rays", "AA + lens": "through a lens,\n16 a pixel",
     "hard shadow": "to a point light", "area 16": "to an area light,\n16 a point",
     "mirror": "off mirrors", "glossy 16": "off rough mirrors,\n16 a point",
-    "incoherent": "scattered"
+    "incoherent": "scattered", "shadow of mirror hits": "to a point light,\noff mirrors"
 }
 
 

@@ -1,6 +1,7 @@
 #include "perf/trace/cell.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "perf/timing.hpp"
 
@@ -35,6 +36,11 @@ double Cell::ratio(std::size_t a, std::size_t b) const {
   for (std::size_t i = 0; i < std::min(ways[a].ns.size(), ways[b].ns.size()); ++i)
     r.push_back(ways[a].ns[i] / ways[b].ns[i]);
   return median(r);
+}
+
+double Cell::pays_from() const {
+  const double saved = median(ways[chosen].ns) - median(ways[point_grid].ns);
+  return saved > 0 ? point_grid_ns / saved : std::numeric_limits<double>::infinity();
 }
 
 void Cell::find_best() {

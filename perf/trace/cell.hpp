@@ -26,6 +26,9 @@ struct Cell {
   std::vector<Way> ways;
   std::size_t best[kSides] = {}, chosen = 0;
   TraceCounts counts;  ///< of the render's choice
+  /// The way through a grid in the light's perspective, where rays go to one; 0: there is none.
+  std::size_t point_grid = 0;
+  double point_grid_ns = 0;  ///< what building it took, of one thread
 
   double tests() const;  ///< a ray
   double cells() const;  ///< a ray
@@ -34,6 +37,9 @@ struct Cell {
   bool has_embree() const { return ways[best[kRobust]].side == kRobust; }
   /// Median over rounds of the times of one way over those of another.
   double ratio(std::size_t a, std::size_t b) const;
+  /// Rays until building the light's grid has paid, as the render's choice would trace them;
+  /// infinite: never.
+  double pays_from() const;
   /// Finds the best way of each side, by the rounds there were.
   void find_best();
 };

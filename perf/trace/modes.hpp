@@ -19,8 +19,8 @@ inline constexpr GrelhaMode kModes[] = {
 /// What a render takes: of one ray a pixel or point, only those from the camera in packets of 256;
 /// see options_for() in shader.hpp.
 constexpr std::size_t renders(RayKind kind) {
-  return kind == RayKind::kShadow || kind == RayKind::kMirror || kind == RayKind::kIncoherent ? 1
-                                                                                              : 0;
+  const bool alone = RayMaker::to_point(kind) || kind == RayKind::kMirror;
+  return alone || kind == RayKind::kIncoherent ? 1 : 0;
 }
 
 }  // namespace grelha::perf

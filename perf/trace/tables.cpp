@@ -11,25 +11,26 @@ namespace {
 
 using CellText = std::function<std::string(const Row&, std::size_t, const Cell&)>;
 
-void print_head(const Options& options, const std::string& title) {
+void print_head(const std::vector<std::size_t>& kinds, const std::string& title) {
   std::printf("\n%s\n\n| %-8s |", title.c_str(), "");
-  for (const std::size_t k : options.kinds)
+  for (const std::size_t k : kinds)
     std::printf(" %s |", kRayKinds[k]);
   std::printf("\n|---|");
-  for (std::size_t i = 0; i < options.kinds.size(); ++i)
+  for (std::size_t i = 0; i < kinds.size(); ++i)
     std::printf("--:|");
 }
 
 void print_table(const Options& options,
+                 const std::vector<std::size_t>& kinds,
                  const Results& results,
                  const std::string& title,
                  const CellText& text) {
-  print_head(options, title);
+  print_head(kinds, title);
   for (const Row& row : options.rows) {
     if (!results.count(row.name))
       continue;
     std::printf("\n| %-8s |", row.name.c_str());
-    for (const std::size_t k : options.kinds) {
+    for (const std::size_t k : kinds) {
       const auto& cells = results.at(row.name);
       const auto found = cells.find(k);
       std::printf(" %s |", found == cells.end() ? "" : text(row, k, found->second).c_str());
@@ -48,7 +49,7 @@ std::string format(const char* form, double a, double b = 0, double c = 0, doubl
 CellText against(Side side, bool choice) {
   return [=](const Row& row, std::size_t kind, const Cell& c) {
     const double r = c.ratio(choice ? c.chosen : c.best[kGrelha], c.best[side]);
-    const bool missed = side == kRobust && !row.target.empty() && r > row.target[kind];
+    const bool missed = side == kRobust && kind < row.target.size() && r > row.target[kind];
     return format(missed ? "%.2f (> %g)" : "%.2f", r, missed ? row.target[kind] : 0.);
   };
 }
@@ -65,11 +66,35 @@ std::string counts_text(const Row&, std::size_t, const Cell& c) {
                 100 * c.fell_back());
 }
 
+std::string point_grid_text(const Row&, std::size_t, const Cell& c) {
+  const double ns = median(c.ways[c.point_grid].ns);
+  const double ms = 1e-6 * c.point_grid_ns;
+  if (!c.has_embree())
+    return format("%.1f ns; %.1f ms, %.2g rays", ns, ms, c.pays_from());
+  const double ratio = c.ratio(c.point_grid, c.best[kRobust]);
+  return format("%.2f; %.1f ns; %.1f ms, %.2g rays", ratio, ns, ms, c.pays_from());
+}
+
+/// What rays to the light cost through a grid in its perspective.
+void print_point_grids(const Options& options, const Results& results) {
+  std::vector<std::size_t> kinds;
+  for (const std::size_t k : options.kinds)
+    if (RayMaker::to_point(static_cast<RayKind>(k)))
+      kinds.push_back(k);
+  if (!kinds.empty())
+    print_table(options,
+                kinds,
+                results,
+                "Through a grid in the light's perspective: over Embree's best, robust; ns a ray; "
+                "building it in one thread, and from how many rays on that pays",
+                point_grid_text);
+}
+
 }  // namespace
 
 void print_tables(const Options& options, const Results& results) {
   const auto print = [&](const std::string& title, const CellText& text) {
-    print_table(options, results, title, text);
+    print_table(options, options.kinds, results, title, text);
   };
   if (embree_modes().empty()) {
     std::printf("\nBuilt without Embree: no ratios.\n");
@@ -81,6 +106,7 @@ void print_tables(const Options& options, const Results& results) {
     print("Grelha's best / Embree's best, robust", against(kRobust, false));
     print("As a render forms them / Embree's best, not robust", against(kFast, true));
   }
+  print_point_grids(options, results);
   print("ns a ray, as a render forms packets", time_text);
   print("Lanes busy; tests a ray; cells a ray; packets that fell back", counts_text);
 }
