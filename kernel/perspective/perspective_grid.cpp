@@ -193,7 +193,7 @@ class Builder {
 
   /// Tiles with too many primitives get parts, and these again.
   void part_crowds() {
-    g_.parts.resize(tiles_.size());
+    g_.tiles.resize(tiles_.size());
     double references = 0;
     for (const std::uint32_t n : counts_)
       references += n;
@@ -207,7 +207,7 @@ class Builder {
       begin = end;
       if (tiles_.size() == end)
         return;
-      g_.parts.resize(tiles_.size());
+      g_.tiles.resize(tiles_.size());
       counts_.resize(2 * tiles_.size());
       place_parts();
       references = 0;
@@ -219,7 +219,8 @@ class Builder {
   void part(std::size_t t) {
     const int columns = static_cast<int>(
         std::clamp(std::ceil(std::sqrt(primitives_of(t) / kPartCrowd)), 2., double{kMostColumns}));
-    g_.parts[t] = {static_cast<std::uint32_t>(tiles_.size()), static_cast<std::uint32_t>(columns)};
+    g_.tiles[t].part = static_cast<std::uint32_t>(tiles_.size());
+    g_.tiles[t].columns = static_cast<std::uint32_t>(columns);
     const Tile whole = tiles_[t];
     const double width = whole.width / columns;
     for (int y = 0; y < columns; ++y)
@@ -240,16 +241,16 @@ class Builder {
       std::vector<Place> places;
       places.reserve(places_[page].size());
       for (const Place& p : places_[page]) {
-        const TileParts& parts = g_.parts[p.tile];
-        if (parts.columns == 0) {
+        const TileLists& whole = g_.tiles[p.tile];
+        if (whole.columns == 0) {
           places.push_back(p);
           continue;
         }
         const Tile& t = tiles_[p.tile];
-        const int n = static_cast<int>(parts.columns);
+        const int n = static_cast<int>(whole.columns);
         TileWalk({t.x, t.y, t.width / n, n, n}, g_.face[t.face])
             .each(seen_[p.seen], [&](std::uint32_t part) {
-              places.push_back({parts.first + part, p.seen});
+              places.push_back({whole.part + part, p.seen});
               next(counted(places.back()));
             });
       }
@@ -257,33 +258,35 @@ class Builder {
     });
   }
 
-  /// Where the lists of a kind begin, from counts; which become the next free place of each list in
-  /// all references, of which `before` come first.
-  std::vector<std::uint32_t> begin_lists(std::uint32_t kind, std::uint32_t before) {
-    std::vector<std::uint32_t> first(tiles_.size() + 1);
+  /// Sets where the lists of a kind begin, from counts; which become the next free place of each
+  /// list in all references, of which `before` come first. Returns how many there are.
+  std::uint32_t begin_lists(int kind, std::uint32_t before) {
+    std::uint32_t first = 0;
     for (std::size_t t = 0; t < tiles_.size(); ++t) {
-      std::uint32_t& n = counts_[2 * t + kind];
-      first[t + 1] = first[t] + n;
-      n = before + first[t];
+      std::uint32_t& n = counts_[2 * t + static_cast<std::size_t>(kind)];
+      g_.tiles[t].first[kind] = first;
+      first += n;
+      n = before + first - n;
     }
+    g_.tiles.back().first[kind] = first;
     return first;
   }
 
   void write() {
-    g_.outline_first = begin_lists(0, 0);
-    const std::uint32_t outlines = g_.outline_first.back();
-    g_.box_first = begin_lists(1, outlines);
-    references_.resize(outlines + g_.box_first.back());
+    g_.tiles.resize(tiles_.size() + 1);
+    const std::uint32_t outlines = begin_lists(kOutlineList, 0);
+    const std::uint32_t boxes = begin_lists(kBoxList, outlines);
+    references_.resize(outlines + boxes);
     each_page([&](std::uint32_t page) {
       for (const Place& p : places_[page])
         references_[next(counted(p))] = reference(seen_[p.seen], p.seen);
     });
     g_.outlines.resize(outlines / kOutlines + 1);
-    g_.boxes.resize(g_.box_first.back() / kOutlines + 1);
-    write_lists(g_.outline_first, 0, [&](std::uint32_t at, const Seen& s, const Tile& t) {
+    g_.boxes.resize(boxes / kOutlines + 1);
+    write_lists(kOutlineList, 0, [&](std::uint32_t at, const Seen& s, const Tile& t) {
       set_outline(g_.outlines[at / kOutlines], at % kOutlines, s, t);
     });
-    write_lists(g_.box_first, outlines, [&](std::uint32_t at, const Seen& s, const Tile& t) {
+    write_lists(kBoxList, outlines, [&](std::uint32_t at, const Seen& s, const Tile& t) {
       set_box(g_.boxes[at / kOutlines], at % kOutlines, s, t);
     });
   }
@@ -295,20 +298,20 @@ class Builder {
       __builtin_prefetch(bytes + line);
   }
 
-  /// Writes lists, of whose references `before` others come first.
+  /// Writes the lists of a kind, of whose references `before` others come first.
   template <class Write>
-  void write_lists(const std::vector<std::uint32_t>& first,
-                   std::uint32_t before,
-                   const Write& write) {
+  void write_lists(int kind, std::uint32_t before, const Write& write) {
     const auto n = static_cast<std::ptrdiff_t>(tiles_.size());
     Reference* const all = references_.data() + before;
 #pragma omp parallel for schedule(dynamic, 256) num_threads(options_.threads)
     for (std::ptrdiff_t i = 0; i < n; ++i) {
       const auto t = static_cast<std::size_t>(i);
-      for (std::uint32_t at = first[t]; at < first[t + 1]; ++at)
+      const std::uint32_t first = g_.tiles[t].first[kind];
+      const std::uint32_t end = g_.tiles[t + 1].first[kind];
+      for (std::uint32_t at = first; at < end; ++at)
         fetch(seen_[all[at].seen]);
-      std::sort(all + first[t], all + first[t + 1]);
-      for (std::uint32_t at = first[t]; at < first[t + 1]; ++at)
+      std::sort(all + first, all + end);
+      for (std::uint32_t at = first; at < end; ++at)
         write(at, seen_[all[at].seen], tiles_[t]);
     }
   }
@@ -341,10 +344,8 @@ PointGridView PerspectiveGrid::view() const {
   PointGridView v;
   std::copy(point, point + 3, v.point);
   std::copy(face, face + kFaces, v.face);
-  v.parts = parts.data();
-  v.outline_first = outline_first.data();
+  v.tiles = tiles.data();
   v.outlines = outlines.data();
-  v.box_first = box_first.data();
   v.boxes = boxes.data();
   v.around = around.data();
   v.around_count = static_cast<std::uint32_t>(around.size());
@@ -352,12 +353,11 @@ PointGridView PerspectiveGrid::view() const {
 }
 
 std::size_t PerspectiveGrid::references() const {
-  return std::size_t{outline_first.back()} + box_first.back();
+  return std::size_t{tiles.back().first[kOutlineList]} + tiles.back().first[kBoxList];
 }
 
 std::size_t PerspectiveGrid::bytes() const {
-  return bytes_of(parts) + bytes_of(outline_first) + bytes_of(box_first) + bytes_of(outlines) +
-         bytes_of(boxes) + bytes_of(around);
+  return bytes_of(tiles) + bytes_of(outlines) + bytes_of(boxes) + bytes_of(around);
 }
 
 }  // namespace grelha

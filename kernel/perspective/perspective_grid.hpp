@@ -16,15 +16,13 @@ namespace grelha {
 struct PerspectiveGrid {
   double point[3] = {};
   PointFace face[kFaces];
-  std::vector<TileParts> parts;
-  std::vector<std::uint32_t> outline_first, box_first;  ///< [tiles + 1]
+  std::vector<TileLists> tiles;  ///< and one behind the last
   RawVector<OutlineBlock> outlines;
   RawVector<BoxBlock> boxes;
   std::vector<std::uint32_t> around;
 
   PointGridView view() const;
   std::size_t bytes() const;
-  std::size_t tiles() const { return parts.size(); }
   std::size_t references() const;
 };
 

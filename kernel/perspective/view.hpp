@@ -45,19 +45,25 @@ struct alignas(64) BoxBlock {
   std::uint32_t id[kOutlines];
 };
 
-/// Where a crowded tile is looked up again: in columns x columns parts, which are tiles too.
-struct TileParts {
-  std::uint32_t first = 0, columns = 0;  ///< 0: it has none
+/// The two kinds of lists that a tile has.
+inline constexpr int kOutlineList = 0;
+inline constexpr int kBoxList = 1;
+
+/// A tile, all that a look-up needs to know of it in one place.
+struct TileLists {
+  /// where its lists begin, by kind, in places of blocks of eight; they end where the next tile's begin
+  std::uint32_t first[2] = {};
+  /// where it is looked up again since it is crowded: tiles, columns x columns of them; 0: nowhere
+  std::uint32_t part = 0, columns = 0;
+  bool operator==(const TileLists&) const = default;
 };
 
-/// Tile i owns places first[i] up to first[i + 1] - 1 of blocks of eight, nearest depth first.
+/// Lists hold what is nearest to the point first.
 struct PointGridView {
   double point[3] = {};
   PointFace face[kFaces];
-  const TileParts* parts = nullptr;  ///< [tiles]
-  const std::uint32_t* outline_first = nullptr;
+  const TileLists* tiles = nullptr;  ///< and one behind the last
   const OutlineBlock* outlines = nullptr;
-  const std::uint32_t* box_first = nullptr;
   const BoxBlock* boxes = nullptr;
   /// too near the point to have an outline: for every ray
   const std::uint32_t* around = nullptr;

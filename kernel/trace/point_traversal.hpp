@@ -150,19 +150,27 @@ class PointSearch {
       };
       places_[group] = look_up(grid_, org, searches(i));
       each_tile(places_[group].tile, [&](std::uint32_t tile, const Mask<Lanes>&) {
-        __builtin_prefetch(grid_.outline_first + tile);
+        __builtin_prefetch(grid_.tiles + tile);
       });
     });
+  }
+
+  /// Asks for the first block of a list.
+  template <class Listed>
+  static void fetch_list(const Listed* blocks, const TileLists* tile, int kind) {
+    if (tile[0].first[kind] == tile[1].first[kind])
+      return;
+    const char* const bytes = reinterpret_cast<const char*>(blocks + tile->first[kind] / kBlock);
+    for (std::size_t line = 0; line < sizeof *blocks; line += 64)
+      __builtin_prefetch(bytes + line);
   }
 
   /// Lists come from afar: all are asked for before the first is looked at.
   void fetch_lists() const {
     each_live_group(p_, [&](int, int group) {
       each_tile(places_[group].tile, [&](std::uint32_t tile, const Mask<Lanes>&) {
-        const OutlineBlock* const b = grid_.outlines + grid_.outline_first[tile] / kBlock;
-        const char* const bytes = reinterpret_cast<const char*>(b);
-        for (std::size_t line = 0; line < sizeof *b; line += 64)
-          __builtin_prefetch(bytes + line);
+        fetch_list(grid_.outlines, grid_.tiles + tile, kOutlineList);
+        fetch_list(grid_.boxes, grid_.tiles + tile, kBoxList);
       });
     });
   }
@@ -177,20 +185,20 @@ class PointSearch {
   }
 
   void search_tile(std::uint32_t tile, const SearchPlaces& at, const Mask<Lanes>& here) {
-    const TileParts parts = grid_.parts[tile];
-    if (parts.columns != 0)
-      return search_parts(parts, at, here);
+    const TileLists* const lists = grid_.tiles + tile;
+    if (lists->columns != 0)
+      return search_parts(*lists, at, here);
     ++n_.visits;
-    search_list(grid_.outlines, grid_.outline_first + tile, at, here);
-    search_list(grid_.boxes, grid_.box_first + tile, at, here);
+    search_list<kOutlineList>(grid_.outlines, lists, at, here);
+    search_list<kBoxList>(grid_.boxes, lists, at, here);
   }
 
-  [[gnu::noinline]] void search_parts(const TileParts& parts,
+  [[gnu::noinline]] void search_parts(const TileLists& whole,
                                       const SearchPlaces& at,
                                       const Mask<Lanes>& here) {
-    const SearchPlaces within = look_closer(at, here, static_cast<float>(parts.columns));
+    const SearchPlaces within = look_closer(at, here, static_cast<float>(whole.columns));
     each_tile(within.tile, [&](std::uint32_t part, const Mask<Lanes>& lanes) {
-      search_tile(parts.first + part, within, lanes);
+      search_tile(whole.part + part, within, lanes);
     });
   }
 
@@ -199,13 +207,13 @@ class PointSearch {
     return select(both(here, searches(first_ray())), at.depth, Lanes(-kInfinity));
   }
 
-  template <class Listed>
+  template <int kKind, class Listed>
   [[gnu::always_inline]] void search_list(const Listed* blocks,
-                                          const std::uint32_t* list,
+                                          const TileLists* tile,
                                           const SearchPlaces& at,
                                           const Mask<Lanes>& here) {
-    std::uint32_t first = list[0];
-    const std::uint32_t end = list[1];
+    std::uint32_t first = tile[0].first[kKind];
+    const std::uint32_t end = tile[1].first[kKind];
     if (first == end)
       return;
     Lanes depth = depths(at, here);

@@ -190,13 +190,13 @@ INSTANTIATE_TEST_SUITE_P(Families, PointGrids, testing::ValuesIn(kFamilies), [](
 });
 
 bool same_lists(const PerspectiveGrid& a, const PerspectiveGrid& b) {
-  if (a.outline_first != b.outline_first || a.box_first != b.box_first || a.around != b.around)
+  if (a.tiles != b.tiles || a.around != b.around)
     return false;
   bool same = true;
-  for (std::uint32_t r = 0; r < a.outline_first.back(); ++r)
+  for (std::uint32_t r = 0; r < a.tiles.back().first[kOutlineList]; ++r)
     same &=
         a.outlines[r / kOutlines].id[r % kOutlines] == b.outlines[r / kOutlines].id[r % kOutlines];
-  for (std::uint32_t r = 0; r < a.box_first.back(); ++r)
+  for (std::uint32_t r = 0; r < a.tiles.back().first[kBoxList]; ++r)
     same &= a.boxes[r / kOutlines].id[r % kOutlines] == b.boxes[r / kOutlines].id[r % kOutlines];
   return same;
 }
@@ -218,8 +218,8 @@ TEST(PointGridLists, PartCrowdedTiles) {
   const World world(scene, {});
   const auto built = world.impl().light_grids->build({0, 3000, 0}, 2);
   ASSERT_TRUE(built);
-  const auto has_parts = [](const TileParts& t) { return t.columns > 0; };
-  EXPECT_TRUE(std::ranges::any_of(built->grid.parts, has_parts));
+  const auto has_parts = [](const TileLists& t) { return t.columns > 0; };
+  EXPECT_TRUE(std::ranges::any_of(built->grid.tiles, has_parts));
 }
 
 TEST(PointGridLists, StayFewWhereNeedlesSpanAllTiles) {
