@@ -7,6 +7,16 @@
 
 namespace grelha::GRELHA_ISA {
 
+/// A row of a packet to or from a caller's array: too short for a call of the library's copy.
+inline void copy_row(const float* from, int count, float* to) {
+  constexpr int w = kWidth<Lanes>;
+  int i = 0;
+  for (; i + w <= count; i += w)
+    store(to + i, take<Lanes>(from + i));
+  for (; i < count; ++i)
+    to[i] = from[i];
+}
+
 /// Places [first, first + count) of an array of a view; of null, `instead`.
 inline void load_floats(const float* from,
                         std::ptrdiff_t stride,
@@ -15,7 +25,7 @@ inline void load_floats(const float* from,
                         float instead,
                         float* to) {
   if (from && stride == 1) {
-    __builtin_memcpy(to, from + first, static_cast<std::size_t>(count) * sizeof(float));
+    copy_row(from + first, count, to);
     return;
   }
   if (!from || stride == 0) {
@@ -52,10 +62,9 @@ inline void load_rays(const Rays& rays, const LowParts& low, std::size_t first, 
 
 /// The same of rays of our own: strides of org and dir are 1, all start at t = 0 and end at t_max.
 inline void load_own_rays(const Rays& rays, float t_max, std::size_t first, Packet<InFloat>& p) {
-  const std::size_t bytes = static_cast<std::size_t>(p.size) * sizeof(float);
   for (int a = 0; a < 3; ++a) {
-    __builtin_memcpy(p.org[a], rays.org[a] + first, bytes);
-    __builtin_memcpy(p.dir[a], rays.dir[a] + first, bytes);
+    copy_row(rays.org[a] + first, p.size, p.org[a]);
+    copy_row(rays.dir[a] + first, p.size, p.dir[a]);
   }
   for (int i = 0; i < p.size; i += kWidth<Lanes>) {
     store(p.t_min + i, Lanes(0));

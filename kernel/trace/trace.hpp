@@ -162,7 +162,8 @@ inline bool serves(const GridView& g, const float (&org)[3]) {
 /// Sets where each ray is to be searched from in a grid: nowhere when the grid is not for it.
 /// False: it is for none.
 inline bool start_in(const GridView& g, WalkingRays& p) {
-  __builtin_memcpy(p.start, p.t_min, sizeof p.start);
+  for (int i = 0; i < p.size; i += kWidth<Lanes>)
+    store(p.start + i, load<Lanes>(p.t_min + i));
   if (g.serves == Serves::kAll)
     return true;
   bool some = false;
