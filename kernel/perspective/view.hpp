@@ -51,7 +51,8 @@ inline constexpr int kBoxList = 1;
 
 /// A tile, all that a look-up needs to know of it in one place.
 struct TileLists {
-  /// where its lists begin, by kind, in places of blocks of eight; they end where the next tile's begin
+  /// where its lists begin, by kind, in places of blocks of eight; they end where the next tile's
+  /// begin
   std::uint32_t first[2] = {};
   /// where it is looked up again since it is crowded: tiles, columns x columns of them; 0: nowhere
   std::uint32_t part = 0, columns = 0;
