@@ -32,12 +32,14 @@ LightGrids::LightGrids(const Primitives& primitives,
                        std::span<const Light> lights,
                        std::span<const std::uint32_t> large,
                        const Box& box,
-                       std::uint64_t most_bytes)
+                       std::uint64_t most_bytes,
+                       bool far_rays)
     : primitives_(primitives),
       lights_(lights),
       large_(large.begin(), large.end()),
       box_(box),
       most_bytes_(std::min(most_bytes, most_bytes_of(primitives))),
+      far_rays_(far_rays),
       built_(lights.size()) {}
 
 std::uint64_t LightGrids::expected_bytes(const Primitives& primitives, std::size_t lights) {
@@ -51,7 +53,8 @@ std::unique_ptr<ViewedGrid> LightGrids::build(const Float3& point, int threads) 
   const double diagonal = box_.diagonal();
   const Viewpoint from{
       {point.x, point.y, point.z},
-      kPads * pad_of(diagonal),
+      (far_rays_ ? kFarPads : kNearPads) * pad_of(diagonal),
+      (far_rays_ ? kFarAside : kNearAside) * pad_of(diagonal),
   };
   for (int a = 0; a < 3; ++a)
     if (!(std::abs(from.at[a] - box_.lo[a]) < kFarthestPoint * diagonal))

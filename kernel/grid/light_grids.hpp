@@ -23,12 +23,14 @@ struct ViewedGrid {
 class LightGrids {
  public:
   /// What may be met, as World has it: `large` is what stands in no grid, sorted; `box` holds
-  /// everything. `most_bytes`: that all grids together may take.
+  /// everything. `most_bytes`: that all grids together may take. `far_rays`: rays are brought near
+  /// and looked up as well.
   LightGrids(const Primitives& primitives,
              std::span<const Light> lights,
              std::span<const std::uint32_t> large,
              const Box& box,
-             std::uint64_t most_bytes);
+             std::uint64_t most_bytes,
+             bool far_rays);
   LightGrids(const LightGrids&) = delete;
   LightGrids& operator=(const LightGrids&) = delete;
 
@@ -53,6 +55,7 @@ class LightGrids {
   std::vector<std::uint32_t> large_;
   Box box_;
   std::uint64_t most_bytes_;
+  bool far_rays_;
   mutable std::mutex mutex_;
   std::vector<std::unique_ptr<ViewedGrid>> built_;
   std::size_t bytes_ = 0;

@@ -1,6 +1,7 @@
 #include "kernel/grid/world_impl.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "kernel/shapes/copies.hpp"
@@ -60,6 +61,24 @@ void check(const SceneSpans& scene) {
 /// perspective, where it lies within so many of the origin; docs/numerics.md derives both.
 constexpr float kPointReach = 128;
 constexpr double kPointOffset = 6;
+/// Pads that half of the primitives are larger than: in others the room that is wanted for rays
+/// from afar would fill the lists.
+constexpr double kFarRoom = 32;
+
+/// The middle one of the diagonals of some primitives' boxes.
+double usual_size(const Primitives& p) {
+  constexpr std::size_t kSome = 256;
+  std::vector<double> sizes;
+  const std::size_t step = p.finite_count() / kSome + 1;
+  for (std::size_t id = p.first_finite(); id < p.ids.end(); id += step) {
+    const double size = p.box(static_cast<std::uint32_t>(id)).diagonal();
+    if (std::isfinite(size))
+      sizes.push_back(size);
+  }
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  return sizes.empty() ? 0 : *middle;
+}
 
 }  // namespace
 
@@ -80,7 +99,8 @@ World::Impl::Impl(const SceneSpans& s, const BuildOptions& options)
     plan.apart.clear();
   const std::uint64_t most = options.most_bytes > 0 ? options.most_bytes : UINT64_MAX;
   const std::uint64_t left = most - std::min<std::uint64_t>(most, bytes());
-  light_grids = std::make_unique<LightGrids>(primitives, scene.lights, plan.apart, plan.all, left);
+  light_grids = std::make_unique<LightGrids>(
+      primitives, scene.lights, plan.apart, plan.all, left, view.point_reach > view.reach);
   set_lights();
   set_materials();
 }
@@ -120,7 +140,8 @@ void World::Impl::view_grids(const Box& all) {
   }
   view.reach = static_cast<float>(all.diagonal());
   const bool central = offset <= kPointOffset * all.diagonal();
-  view.point_reach = view.reach * (central ? kPointReach : 1);
+  const bool large = usual_size(primitives) > kFarRoom * pad_of(all.diagonal());
+  view.point_reach = view.reach * (central && large ? kPointReach : 1);
 }
 
 void World::Impl::set_lights() {

@@ -182,7 +182,7 @@ bool see(const Primitives& p,
     c[k] = turned(relative(from, t.corner[k]), face);
   // Of the triangle what is deep enough; what rays meet may lie beside it.
   const double front = least - 2 * from.pad;
-  const double aside = from.pad * kFlatPad;
+  const double aside = from.aside;
   if (c[0].r < front && c[1].r < front && c[2].r < front)
     return false;
   clear(o);

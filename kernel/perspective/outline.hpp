@@ -32,6 +32,7 @@ struct Outline {
 struct Viewpoint {
   double at[3];
   double pad;
+  double aside;  ///< beside a triangle: inside or outside is decided in double there
 };
 
 /// Lower bound of the distance of a primitive, as the largest of three coordinates.

@@ -9,13 +9,14 @@ inline constexpr double kLookUp = 0x1p-48;
 inline constexpr double kPlaceRounding = 0x1p-22;
 /// Of the coefficients of a side: what floats round by when it is evaluated, 8 u.
 inline constexpr double kSideRounding = 0x1p-21;
-/// Pads of the object grids in one of these: for what rays stray that were brought near.
-inline constexpr double kPads = 2;
-/// Nearer primitives, in these pads, have no outline: every ray meets them.
+/// Nearer primitives, in pads, have no outline: every ray meets them.
 inline constexpr double kNearest = 8;
-/// Of the pad, what is aside of a triangle: inside or outside is decided in double there, and what
-/// is left is how far a ray strays from the point.
-inline constexpr double kFlatPad = .5;
+/// What rays may miss primitives by, in pads of the object grids, and how far they stray from the
+/// point: where only rays that start near the scene are looked up, and where they are brought near.
+inline constexpr double kNearPads = 1;
+inline constexpr double kNearAside = 1. / 16;
+inline constexpr double kFarPads = 2;
+inline constexpr double kFarAside = 1;
 /// Margins that a corner lies at least inside of the side across from it, where rays may meet a
 /// triangle for sure.
 inline constexpr double kSolid = 4;
