@@ -230,6 +230,19 @@ TEST(PointGridLists, StayFewWhereNeedlesSpanAllTiles) {
   EXPECT_LT(built->grid.references(), 100u * 3000u);
 }
 
+/// Room for rays from afar would be as wide as they are.
+TEST(PointGridLists, StayFewWherePrimitivesAreSmallInTheirScene) {
+  Random random(27);
+  Scene scene = empty_scene();
+  add_triangles(scene, random, 4000, 1, .01, .02);
+  scene.geometry.spheres.add({1500, 0, 0}, 1, 0);
+  const World world(scene, {});
+  const auto built = world.impl().light_grids->build({0, 9, 0}, 2);
+  ASSERT_TRUE(built);
+  EXPECT_LE(built->grid.references(), 2u * 4000u);
+  expect_same(world, scene, {0, 9, 0}, 4);
+}
+
 TEST(PointGridLists, StayFewWherePrimitivesCoverEachOther) {
   Random random(26);
   Scene scene = empty_scene();
