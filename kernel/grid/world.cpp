@@ -58,7 +58,7 @@ void check(const SceneSpans& scene) {
 }
 
 /// Diagonals of the scene's box that rays may start away from it and still go through grids in
-/// perspective, where it lies within so many of the origin; docs/numerics.md derives both.
+/// perspective, where it lies within so many of the origin; docs/perspective.md derives both.
 constexpr float kPointReach = 128;
 constexpr double kPointOffset = 6;
 /// Pads that half of the primitives are larger than: in others the room that is wanted for rays

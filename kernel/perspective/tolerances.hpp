@@ -1,5 +1,5 @@
 #pragma once
-// What the lists of point grids allow for; docs/numerics.md derives each.
+// What the lists of point grids allow for; docs/perspective.md derives it.
 
 namespace grelha {
 
