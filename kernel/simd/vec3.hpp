@@ -42,6 +42,11 @@ template <class Real>
 inline Vec3<Real> cross(const Vec3<Real>& a, const Vec3<Real>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
+/// The magnitude of each component.
+template <class Real>
+inline Vec3<Real> sizes(const Vec3<Real>& a) {
+  return {magnitude(a.x), magnitude(a.y), magnitude(a.z)};
+}
 template <class Real>
 inline Real length(const Vec3<Real>& a) {
   return square_root(dot(a, a));

@@ -183,11 +183,14 @@ TEST_P(PointGrids, AnswerAsTheScenesGridsDo) {
   EXPECT_GT(blocked, 100) << "what is asked is never hidden";
 }
 
-INSTANTIATE_TEST_SUITE_P(Families, PointGrids, testing::ValuesIn(kFamilies), [](const auto& info) {
-  std::string name = info.param.name;
-  std::erase(name, ' ');
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Families,
+                         PointGrids,
+                         testing::ValuesIn(kFamilies),
+                         [](const auto& family) {
+                           std::string name = family.param.name;
+                           std::erase(name, ' ');
+                           return name;
+                         });
 
 bool same_lists(const PerspectiveGrid& a, const PerspectiveGrid& b) {
   if (a.tiles != b.tiles || a.around != b.around)
