@@ -1,24 +1,19 @@
 #include "kernel/grid/block_box.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
+
+#include "kernel/shapes/rounding.hpp"
 
 namespace grelha {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// A little below, or above: what rounding to float (u of it) and the steps here (3 u) can come to,
-/// and no more than 4 u beyond.
-float not_above(double x) {
-  const float f = static_cast<float>(x);
-  return f - (std::abs(f) * 2.4e-7f + 1e-45f);
-}
-float not_below(double x) {
-  const float f = static_cast<float>(x);
-  return f + (std::abs(f) * 2.4e-7f + 1e-45f);
-}
+/// Times a grid's pad: how far boxes reach beyond what hits may be off by. A slab test in float is
+/// off by 3 u of the way to each plane, which is at most 2.8 diagonals (approach()), and compares
+/// two of them: 17 u diagonals. A quarter of a pad is 64 u.
+constexpr double kSlabRoom = .25;
 
 /// How far a block reaches along an axis; of an empty one, nowhere.
 struct Reach {
@@ -43,9 +38,7 @@ Reach reach_of(const TriangleBlock& block, int a) {
 }  // namespace
 
 // A hit h is off by no more than `pad` from its triangle, and found in a cell that it lies in. It
-// is in the triangle's box grown by pad as well. So it is in the box below, and pad / 4 = 64 u
-// diagonals inside it. A slab test in float is off by 3 u of the way to each plane, which is at
-// most 2.8 diagonals (approach()). It compares two of them: 17 u diagonals.
+// is in the triangle's box grown by pad as well. So it is in the box below, and kSlabRoom inside it.
 void bound_blocks(const Grid& g,
                   double pad,
                   std::size_t cell,
@@ -53,12 +46,13 @@ void bound_blocks(const Grid& g,
                   std::uint32_t end,
                   ListStore<Triangle>& s) {
   const CellBox box = cell_box(g, cell);
+  const double room = kSlabRoom * pad;
   for (std::uint32_t b = first; b < end; ++b) {
     BlockBoxes& boxes = s.boxes[b / kBlock];
     for (int a = 0; a < 3; ++a) {
       const Reach r = reach_of(s.blocks[b], a);
-      boxes.side[a][b % kBlock] = not_above(std::max(r.lo - pad, box.lo[a]) - pad / 4);
-      boxes.side[3 + a][b % kBlock] = not_below(std::min(r.hi + pad, box.hi[a]) + pad / 4);
+      boxes.side[a][b % kBlock] = float_not_above(std::max(r.lo - pad, box.lo[a]) - room);
+      boxes.side[3 + a][b % kBlock] = float_not_below(std::min(r.hi + pad, box.hi[a]) + room);
     }
   }
 }

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "kernel/shapes/rounding.hpp"
+
 namespace grelha {
 
 CellBox cell_box(const Grid& g, std::size_t cell) {
@@ -36,8 +38,7 @@ void Grid::set_axis(GridView& v, int a) const {
   v.cell[a] = cell[a];
   v.inv_cell[a] = 1 / cell[a];
   v.lo_f[a] = static_cast<float>(lo[a]);
-  v.hi_f[a] = static_cast<float>(lo[a] + cell[a] * n);
-  v.hi_f[a] += std::abs(v.hi_f[a]) * 1.2e-7f;
+  v.hi_f[a] = float_not_below(lo[a] + cell[a] * n);
   v.cell_f[a] = static_cast<float>(cell[a]);
   v.inv_cell_f[a] = static_cast<float>(1 / cell[a]);
 }

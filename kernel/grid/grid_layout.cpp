@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "kernel/grid/cell_finder.hpp"
+#include "kernel/shapes/rounding.hpp"
 
 namespace grelha {
 namespace {
@@ -122,12 +123,6 @@ double references(const Primitives& p, std::span<const std::uint32_t> ids, const
   return static_cast<double>(sum) / static_cast<double>(probed);
 }
 
-/// So that walks in float subtract a grid's corner without an error of its own.
-float float_not_above(double x) {
-  const float f = static_cast<float>(x);
-  return f > x ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;
-}
-
 /// References that the mean one of `count` primitives may have. A heap of large ones, or of
 /// slivers, would stand in thousands of cells each, and memory end. Grids of a scene share what
 /// there is by their primitives; small ones, which need little, get more.
@@ -156,6 +151,7 @@ Grid lay_out_grid(const Primitives& p,
   g.pad = pad;
   double extent[3];
   for (int a = 0; a < 3; ++a) {
+    // a float, so that walks subtract it without an error of its own
     g.lo[a] = float_not_above(b.lo[a]);
     extent[a] = b.hi[a] - g.lo[a];
   }

@@ -4,19 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include "kernel/shapes/rounding.hpp"
+
 namespace grelha {
 namespace {
 
 constexpr double kMostTiles = 4096;  ///< along an axis of a face
-
-/// Below x by two ulps at most, or by 1e-30.
-float rounded_down(double x) {
-  const float f = static_cast<float>(x);
-  return f - (std::abs(f) * 0x1p-23f + 1e-30f);
-}
-float rounded_up(double x) {
-  return -rounded_down(-x);
-}
 
 }  // namespace
 
@@ -53,7 +46,7 @@ void Window::lay_tiles(PointFace& face, double tiles) const {
 }
 
 float least_depth(const Seen& seen) {
-  return rounded_down(seen.outline.near);
+  return float_not_above(seen.outline.near);
 }
 
 void set_outline(OutlineBlock& block, std::uint32_t k, const Seen& seen, const Tile& t) {
@@ -67,7 +60,7 @@ void set_outline(OutlineBlock& block, std::uint32_t k, const Seen& seen, const T
   }
   block.near[k] = least_depth(seen);
   block.far[k] = beyond || !seen.outline.solid ? std::numeric_limits<float>::infinity()
-                                               : rounded_up(seen.outline.far);
+                                               : float_not_below(seen.outline.far);
   block.id[k] = seen.id;
 }
 
@@ -77,8 +70,8 @@ void set_box(BoxBlock& block, std::uint32_t k, const Seen& seen, const Tile& t) 
     const bool beyond = t.width == 0;
     const double lo = beyond ? -1 : (seen.outline.lo[j] - at[j]) / t.width;
     const double hi = beyond ? 2 : (seen.outline.hi[j] - at[j]) / t.width;
-    block.lo[j][k] = rounded_down(std::max(lo, -1.));
-    block.hi[j][k] = rounded_up(std::min(hi, 2.));
+    block.lo[j][k] = float_not_above(std::max(lo, -1.));
+    block.hi[j][k] = float_not_below(std::min(hi, 2.));
   }
   block.near[k] = least_depth(seen);
   block.id[k] = seen.id;

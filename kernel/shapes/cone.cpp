@@ -52,23 +52,28 @@ Cone::Fields<const float*> Cone::Source::fields() const {
   return out;
 }
 
-// A disc of radius r across a unit axis d reaches r sqrt(1 - d_a^2).
+// A disc of radius r across a unit axis d reaches r sqrt(1 - d_a^2). Doubles are off by 2^-26 of r
+// where that is nearly zero, a thousandth of what boxes are grown by.
 Box Cone::box(const Source& source, std::size_t i) {
   const ConeSpans& c = source.spans;
   const double ends[2][4] = {{c.base_x[i], c.base_y[i], c.base_z[i], c.base_radius[i]},
                              {c.apex_x[i], c.apex_y[i], c.apex_z[i], c.apex_radius[i]}};
-  const double height = source.prepared.height[i];
+  double axis[3];
+  double height = 0;
+  for (int a = 0; a < 3; ++a) {
+    axis[a] = ends[1][a] - ends[0][a];
+    height += axis[a] * axis[a];
+  }
   Box b;
   for (const auto& e : ends) {
     double reach[3];
     for (int a = 0; a < 3; ++a) {
-      const double d = source.prepared.axis[a][i];
-      reach[a] = std::abs(e[3]) * std::sqrt(std::max(0., 1 - d * d) + 1e-6);
+      const double across = std::max(0., 1 - axis[a] * axis[a] / height);
+      reach[a] = std::abs(e[3]) * std::sqrt(across);
     }
     b.add(e[0] - reach[0], e[1] - reach[1], e[2] - reach[2]);
     b.add(e[0] + reach[0], e[1] + reach[1], e[2] + reach[2]);
   }
-  b.grow(height * 1e-6);
   return b;
 }
 

@@ -75,7 +75,8 @@ struct Sphere {
     return b;
   }
 
-  /// A cell grown by pad against a ball's surface: nearest point inside, farthest outside.
+  /// A cell grown by pad against a ball's surface: nearest point inside, farthest outside. The pad is
+  /// a hundred thousand times what doubles round off.
   class Touch {
    public:
     Touch(const Fields<float>& s, const CellFrame& g, const CellRange&) {
@@ -86,8 +87,8 @@ struct Sphere {
       }
       const double r = radius + g.pad;
       const double inner = radius - g.pad;
-      reach_ = r * r * (1 + 1e-12);
-      inner_ = inner > 0 ? inner * inner * (1 - 1e-12) : -1;
+      reach_ = r * r;
+      inner_ = inner > 0 ? inner * inner : -1;
     }
     bool operator()(const int (&at)[3]) const {
       double near = 0;

@@ -1,6 +1,7 @@
 #pragma once
 // Which cells a triangle touches.
 
+#include <algorithm>
 #include <cmath>
 
 #include "kernel/shapes/box.hpp"
@@ -19,7 +20,7 @@ class TriangleTouch {
       for (int k = 0; k < 3; ++k)
         corner_[k][a] = corner[k][a] - g.lo[a];
       for (int k = 0; k < 3; ++k)
-        side_[k][a] = corner_[(k + 1) % 3][a] - corner_[k][a];
+        side_[k][a] = static_cast<double>(corner[(k + 1) % 3][a]) - corner[k][a];
     }
     set_plane();
     for (int a = 0; a < 3; ++a) {
@@ -41,9 +42,10 @@ class TriangleTouch {
   }
 
  private:
-  /// Times the terms of a difference, and times a sum: more than doubles round off.
-  static constexpr double kDifferenceError = 1e-14;
-  static constexpr double kSumError = 1e-12;
+  /// Times the products that a component of the normal is the difference of: what doubles round it
+  /// by, two sides, a product and the difference. Of needles that can be more than is left. Other
+  /// roundings come to less than a thousandth of the pad, which all cells are grown by.
+  static constexpr double kNormalError = 0x1p-51;
 
   struct Edge {
     int b, d;  ///< axes it is seen in
@@ -59,16 +61,18 @@ class TriangleTouch {
       const double p = side_[0][d] * side_[2][b];
       const double q = side_[0][b] * side_[2][d];
       n_[a] = p - q;
-      rounding_[a] = (std::abs(p) + std::abs(q)) * kDifferenceError;
       offset += n_[a] * corner_[0][a];
-      reach += std::abs(n_[a]) * half_[a];
+      const double from_corner =
+          std::max(std::abs(side_[0][a]), std::abs(side_[2][a])) + 2 * half_[a];
+      error_[a] = (std::abs(p) + std::abs(q)) * kNormalError;
+      reach += std::abs(n_[a]) * half_[a] + error_[a] * from_corner;
     }
     offset_ = offset;
-    reach_ = reach + std::abs(offset) * kSumError;
+    reach_ = reach;
   }
 
-  /// The edges seen along axis a, inward across each; rounding can turn them only where the
-  /// triangle is seen edge-on.
+  /// The edges seen along axis a, inward across each. Rounding can turn them only where the triangle
+  /// is seen edge-on: then all of it lies within that of each.
   void add_edges(int a, int b, int d) {
     const double sign = n_[a] < 0 ? -1 : 1;
     for (int k = 0; k < 3; ++k) {
@@ -76,14 +80,13 @@ class TriangleTouch {
       const double md = sign * side_[k][b];
       const double at = mb * corner_[k][b] + md * corner_[k][d];
       const double reach = std::abs(mb) * half_[b] + std::abs(md) * half_[d];
-      const double least = at - reach - rounding_[a] - std::abs(at) * kSumError;
-      edges_[count_++] = {b, d, mb, md, least};
+      edges_[count_++] = {b, d, mb, md, at - reach - error_[a]};
     }
   }
 
   double cell_[3], half_[3];
   double corner_[3][3], side_[3][3];
-  double n_[3], rounding_[3], offset_, reach_;
+  double n_[3], error_[3], offset_, reach_;
   int count_ = 0;
   Edge edges_[9];
 };

@@ -133,10 +133,6 @@ template <bool kAny>
   store(p.best + i, select(candidate, kAny ? Lanes(-kInfinity) : t, best));
   store(p.id + i, select(candidate, Lanes(bits_of(id)), load<Lanes>(p.id + i)));
 }
-/// Stores floats not below the lanes: those with more added than rounding takes away.
-[[gnu::always_inline]] inline void store_not_below(float* to, const DoubleLanes& a) {
-  store_narrow(to, a + (magnitude(a) * DoubleLanes(1.2e-7) + DoubleLanes(1e-44)));
-}
 /// The same, without a branch for each lane.
 template <bool kAny>
 [[gnu::always_inline]] inline void store_hits(Packet<InDouble>& p,

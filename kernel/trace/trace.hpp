@@ -182,13 +182,12 @@ inline bool start_in(const GridView& g, WalkingRays& p) {
   return some;
 }
 
-/// Where a ray comes to a grid; infinity: never.
+/// Where a ray comes to a grid; infinity: never, or along a plane of it.
 inline float entry(const GridView& g, const float (&org)[3], const float (&dir)[3], float t_min) {
   float t0 = t_min;
   float t1 = kInfinity;
   for (int a = 0; a < 3; ++a) {
-    const float d = dir[a];
-    const float inv = 1 / (magnitude(d) < 1e-18f ? 1e-18f : d);
+    const float inv = 1 / dir[a];
     const float x = (g.lo_f[a] - org[a]) * inv;
     const float y = (g.hi_f[a] - org[a]) * inv;
     t0 = greater(lesser(x, y), t0);
