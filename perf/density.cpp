@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "frontend/input/read_scene.hpp"
-#include "kernel/grid/world_impl.hpp"
+#include "kernel/world/world_impl.hpp"
 #include "perf/ray_sets.hpp"
 #include "perf/timing.hpp"
 

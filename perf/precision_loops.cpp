@@ -4,7 +4,7 @@
 #define GRELHA_ISA_avx512_fused 4
 #include "perf/precision_loops.hpp"
 
-#include "kernel/shapes/triangle.hpp"
+#include "kernel/triangle/triangle.hpp"
 
 namespace grelha::GRELHA_ISA {
 namespace {

@@ -13,7 +13,7 @@
 #include "kernel/render/band.hpp"
 #include "kernel/render/sampling.hpp"
 #include "kernel/shapes/surface.hpp"
-#include "kernel/grid/world_impl.hpp"
+#include "kernel/world/world_impl.hpp"
 
 namespace grelha::perf {
 

@@ -9,7 +9,7 @@
 
 #include <omp.h>
 
-#include "kernel/grid/world_impl.hpp"
+#include "kernel/world/world_impl.hpp"
 #include "kernel/adaptive/pixel_errors.hpp"
 #include "kernel/adaptive/pixel_features.hpp"
 #include "kernel/adaptive/pixel_order.hpp"

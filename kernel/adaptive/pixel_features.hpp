@@ -2,7 +2,7 @@
 // Looks for what the samples of a refined picture may have missed.
 
 #include "grelha/stats.hpp"
-#include "kernel/grid/world_impl.hpp"
+#include "kernel/world/world_impl.hpp"
 #include "kernel/adaptive/pixel_errors.hpp"
 #include "kernel/adaptive/refinement.hpp"
 #include "kernel/render/setup.hpp"

@@ -3,7 +3,7 @@
 
 #include "kernel/features/tolerances.hpp"
 #include "kernel/simd/vec3.hpp"
-#include "kernel/trace/packet.hpp"
+#include "kernel/walk/packet.hpp"
 
 namespace grelha::GRELHA_ISA {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "kernel/shapes/rounding.hpp"
+#include "kernel/primitive/rounding.hpp"
 
 namespace grelha {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "kernel/shapes/rounding.hpp"
+#include "kernel/primitive/rounding.hpp"
 
 namespace grelha {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "kernel/grid/cell_finder.hpp"
-#include "kernel/shapes/rounding.hpp"
+#include "kernel/primitive/rounding.hpp"
 
 namespace grelha {
 namespace {

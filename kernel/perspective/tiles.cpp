@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "kernel/shapes/rounding.hpp"
+#include "kernel/primitive/rounding.hpp"
 
 namespace grelha {
 namespace {

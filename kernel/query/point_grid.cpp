@@ -5,7 +5,7 @@
 
 #include <omp.h>
 
-#include "kernel/grid/world_impl.hpp"
+#include "kernel/world/world_impl.hpp"
 #include "kernel/query/settings.hpp"
 #include "kernel/query/variants.hpp"
 

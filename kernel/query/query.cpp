@@ -6,7 +6,7 @@
 
 #include "kernel/shapes/surface.hpp"
 #include "kernel/query/settings.hpp"
-#include "kernel/grid/world_impl.hpp"
+#include "kernel/world/world_impl.hpp"
 
 namespace grelha {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "grelha/part.hpp"
 #include "kernel/render/setup.hpp"
-#include "kernel/grid/world_impl.hpp"
+#include "kernel/world/world_impl.hpp"
 
 namespace grelha {
 

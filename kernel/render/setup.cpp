@@ -7,7 +7,7 @@
 #include <omp.h>
 
 #include "kernel/render/workspace.hpp"
-#include "kernel/grid/world_impl.hpp"
+#include "kernel/world/world_impl.hpp"
 
 namespace grelha {
 namespace {

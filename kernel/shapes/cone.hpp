@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "grelha/scene_spans.hpp"
-#include "kernel/shapes/arrays.hpp"
-#include "kernel/shapes/box.hpp"
-#include "kernel/shapes/surface_place.hpp"
-#include "kernel/shapes/ray_lanes.hpp"
+#include "kernel/primitive/arrays.hpp"
+#include "kernel/primitive/box.hpp"
+#include "kernel/primitive/surface_place.hpp"
+#include "kernel/primitive/ray_lanes.hpp"
 #include "kernel/simd/vec3.hpp"
 
 namespace grelha {

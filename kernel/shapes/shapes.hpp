@@ -11,7 +11,7 @@
 #include "kernel/shapes/cone.hpp"
 #include "kernel/shapes/plane.hpp"
 #include "kernel/shapes/sphere.hpp"
-#include "kernel/shapes/triangle_surface.hpp"
+#include "kernel/triangle/triangle_surface.hpp"
 
 namespace grelha {
 

@@ -10,7 +10,7 @@
 
 #include <omp.h>
 
-#include "kernel/grid/world_impl.hpp"
+#include "kernel/world/world_impl.hpp"
 #include "kernel/subdivision/subdivider.hpp"
 #include "kernel/render/setup.hpp"
 #include "kernel/render/workspace.hpp"

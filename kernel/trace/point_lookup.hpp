@@ -2,7 +2,7 @@
 // Where rays that go to a point look in its grid (kernel/perspective/).
 
 #include "kernel/perspective/view.hpp"
-#include "kernel/trace/packet.hpp"
+#include "kernel/walk/packet.hpp"
 
 namespace grelha::GRELHA_ISA {
 

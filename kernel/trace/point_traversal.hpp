@@ -3,7 +3,7 @@
 // is in it, nearest to the point first.
 
 #include "kernel/trace/point_lookup.hpp"
-#include "kernel/trace/single.hpp"
+#include "kernel/walk/single.hpp"
 
 namespace grelha::GRELHA_ISA {
 

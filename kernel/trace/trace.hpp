@@ -2,7 +2,7 @@
 // The rays of a packet against a whole scene: planes and outside primitives first, then each grid
 // with what t is left.
 
-#include "kernel/trace/packet_traversal.hpp"
+#include "kernel/walk/packet_traversal.hpp"
 #include "kernel/trace/point_traversal.hpp"
 
 namespace grelha::GRELHA_ISA {

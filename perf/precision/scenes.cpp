@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "kernel/grid/world_impl.hpp"
+#include "kernel/world/world_impl.hpp"
 #include "perf/embree.hpp"
 #include "perf/precision/counters.hpp"
 #include "perf/precision/workload.hpp"

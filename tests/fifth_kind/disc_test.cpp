@@ -9,7 +9,7 @@
 
 #include "grelha/grelha.hpp"
 #include "kernel/features/beam.hpp"
-#include "kernel/grid/world_impl.hpp"
+#include "kernel/world/world_impl.hpp"
 #include "kernel/shapes/copies.hpp"
 #include "tests/support/oracle.hpp"
 #include "tests/support/random.hpp"

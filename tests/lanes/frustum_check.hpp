@@ -2,7 +2,7 @@
 // What frustum.hpp promises, ray by ray: each is followed in long double through the slices that
 // the frustum covers, and held against its sides and planes.
 
-#include "kernel/trace/packet_traversal.hpp"
+#include "kernel/walk/packet_traversal.hpp"
 #include "tests/lanes/lane_functions.hpp"
 
 namespace grelha::GRELHA_ISA {

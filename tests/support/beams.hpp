@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "kernel/grid/world_impl.hpp"
+#include "kernel/world/world_impl.hpp"
 #include "kernel/query/variants.hpp"
 #include "kernel/scene/frame.hpp"
 #include "tests/support/scenes.hpp"

@@ -2,7 +2,7 @@
 // Triangles by themselves, and as the scalar kernel tests them.
 
 #define GRELHA_ISA scalar
-#include "kernel/shapes/triangle.hpp"
+#include "kernel/triangle/triangle.hpp"
 
 #include "tests/support/random.hpp"
 #include "tests/support/rays.hpp"

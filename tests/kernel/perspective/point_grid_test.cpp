@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "grelha/grelha.hpp"
-#include "kernel/grid/world_impl.hpp"
+#include "kernel/world/world_impl.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace grelha::test {

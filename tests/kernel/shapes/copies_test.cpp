@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "kernel/grid/world_impl.hpp"
+#include "kernel/world/world_impl.hpp"
 #include "tests/support/scenes.hpp"
 
 #include <gtest/gtest.h>

@@ -7,7 +7,7 @@
 // these. For one ray it ends in branches nobody can foretell; eight chains at once take little
 // longer than one, and branch only for cells that hold something.
 
-#include "kernel/trace/course.hpp"
+#include "kernel/walk/course.hpp"
 
 namespace grelha::GRELHA_ISA {
 

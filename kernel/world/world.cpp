@@ -1,4 +1,4 @@
-#include "kernel/grid/world_impl.hpp"
+#include "kernel/world/world_impl.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,8 @@
 
 #include "kernel/shapes/copies.hpp"
 #include "kernel/grid/grid_fill.hpp"
-#include "kernel/grid/memory_estimate.hpp"
-#include "kernel/grid/plan.hpp"
+#include "kernel/world/memory_estimate.hpp"
+#include "kernel/world/plan.hpp"
 #include "kernel/scene/raw_vector.hpp"
 
 namespace grelha {

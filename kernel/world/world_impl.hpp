@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "kernel/grid/grid.hpp"
-#include "kernel/grid/light_grids.hpp"
+#include "kernel/world/light_grids.hpp"
 #include "grelha/world.hpp"
 #include "kernel/scene/materials.hpp"
 #include "kernel/scene/shading_view.hpp"

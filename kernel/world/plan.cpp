@@ -1,4 +1,4 @@
-#include "kernel/grid/plan.hpp"
+#include "kernel/world/plan.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -1,8 +1,8 @@
 #pragma once
 // Where rays met triangles: points, normals and the mix of the vertices' normals.
 
-#include "kernel/shapes/surface_place.hpp"
-#include "kernel/shapes/triangle.hpp"
+#include "kernel/primitive/surface_place.hpp"
+#include "kernel/triangle/triangle.hpp"
 
 namespace grelha::GRELHA_ISA {
 

@@ -1,10 +1,10 @@
-#include "kernel/grid/light_grids.hpp"
+#include "kernel/world/light_grids.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <new>
 
-#include "kernel/grid/plan.hpp"
+#include "kernel/world/plan.hpp"
 #include "kernel/perspective/tolerances.hpp"
 
 namespace grelha {

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "kernel/shapes/arrays.hpp"
+#include "kernel/primitive/arrays.hpp"
 #include "kernel/simd/vec3.hpp"
 
 namespace grelha::GRELHA_ISA {

@@ -1,6 +1,6 @@
 // Which cells a triangle touches: needles, whose normals rounding spoils.
 
-#include "kernel/shapes/triangle_touch.hpp"
+#include "kernel/triangle/triangle_touch.hpp"
 
 #include <algorithm>
 #include <cmath>

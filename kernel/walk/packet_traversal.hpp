@@ -2,9 +2,9 @@
 // A packet through a grid: all rays together, slice by slice along their major axis, between four
 // bounding planes (frustum.hpp). Beams go through the same walk.
 
-#include "kernel/trace/culling.hpp"
-#include "kernel/trace/frustum_builder.hpp"
-#include "kernel/trace/mailbox.hpp"
+#include "kernel/walk/culling.hpp"
+#include "kernel/walk/frustum_builder.hpp"
+#include "kernel/walk/mailbox.hpp"
 
 namespace grelha::GRELHA_ISA {
 

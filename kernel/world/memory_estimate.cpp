@@ -1,4 +1,4 @@
-#include "kernel/grid/memory_estimate.hpp"
+#include "kernel/world/memory_estimate.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "kernel/shapes/triangle.hpp"
+#include "kernel/triangle/triangle.hpp"
 
 namespace grelha {
 

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "kernel/grid/plan.hpp"
+#include "kernel/world/plan.hpp"
 
 namespace grelha {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernel/shapes/box.hpp"
+#include "kernel/primitive/box.hpp"
 
 namespace grelha {
 

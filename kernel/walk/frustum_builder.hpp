@@ -1,8 +1,8 @@
 #pragma once
 // A frustum around the rays of a packet, or the edges of a beam.
 
-#include "kernel/trace/frustum.hpp"
-#include "kernel/trace/tolerances.hpp"
+#include "kernel/walk/frustum.hpp"
+#include "kernel/walk/tolerances.hpp"
 
 namespace grelha::GRELHA_ISA {
 

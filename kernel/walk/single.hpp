@@ -2,7 +2,7 @@
 // One ray at a time against blocks of primitives (SIMD over primitives): the way a packet goes on
 // when its rays have nothing left in common. abreast.hpp takes such rays through grids.
 
-#include "kernel/trace/packet.hpp"
+#include "kernel/walk/packet.hpp"
 
 namespace grelha::GRELHA_ISA {
 

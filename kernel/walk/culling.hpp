@@ -2,7 +2,7 @@
 // Which primitives of a cell reach into a frustum (SIMD over primitives). Each kind knows how to
 // tell.
 
-#include "kernel/trace/frustum.hpp"
+#include "kernel/walk/frustum.hpp"
 
 namespace grelha::GRELHA_ISA {
 

@@ -3,7 +3,7 @@
 
 #include <type_traits>
 
-#include "kernel/shapes/field_lanes.hpp"
+#include "kernel/primitive/field_lanes.hpp"
 #include "kernel/simd/vec3.hpp"
 
 namespace grelha::GRELHA_ISA {

@@ -7,10 +7,10 @@
 #include <cstddef>
 
 #include "grelha/scene_spans.hpp"
-#include "kernel/shapes/box.hpp"
-#include "kernel/shapes/triangle_block.hpp"
-#include "kernel/shapes/triangle_crossing.hpp"
-#include "kernel/shapes/triangle_touch.hpp"
+#include "kernel/primitive/box.hpp"
+#include "kernel/triangle/triangle_block.hpp"
+#include "kernel/triangle/triangle_crossing.hpp"
+#include "kernel/triangle/triangle_touch.hpp"
 #include "kernel/simd/vec3.hpp"
 
 namespace grelha {

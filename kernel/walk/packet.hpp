@@ -3,7 +3,7 @@
 // over rays).
 
 #include "grelha/stats.hpp"
-#include "kernel/trace/walking_rays.hpp"
+#include "kernel/walk/walking_rays.hpp"
 
 namespace grelha::GRELHA_ISA {
 

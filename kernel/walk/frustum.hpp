@@ -3,7 +3,7 @@
 // around them, slice by slice along their major axis. After Wald, Ize, Kensler, Knoll, Parker, "Ray
 // Tracing Animated Scenes using Coherent Grid Traversal", SIGGRAPH 2006.
 
-#include "kernel/trace/abreast.hpp"
+#include "kernel/walk/abreast.hpp"
 
 namespace grelha::GRELHA_ISA {
 
