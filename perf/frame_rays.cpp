@@ -77,7 +77,7 @@ FrameRays thinned(const FrameRays& frame, std::size_t stride) {
 
 std::array<double, 3> trace_seconds(const World& world,
                                     const Variant& variant,
-                                    const TraceSettings& settings,
+                                    const TraceOptions& settings,
                                     const FrameRays& frame,
                                     int threads) {
   std::array<double, 3> seconds{};

@@ -31,7 +31,7 @@ FrameRays thinned(const FrameRays& frame, std::size_t stride);
 /// Seconds that tracing takes, by kind: of the processor for one thread, by the clock for more.
 std::array<double, 3> trace_seconds(const World& world,
                                     const Variant& variant,
-                                    const TraceSettings& settings,
+                                    const TraceOptions& settings,
                                     const FrameRays& frame,
                                     int threads);
 

@@ -49,7 +49,7 @@ struct Place {
 struct Rung {
   const char* name;
   const char* isa;
-  TraceSettings settings;
+  TraceOptions settings;
   bool brute = false;
 };
 
@@ -57,17 +57,15 @@ const Rung kRungs[] = {
     {"brute force, scalar", "reference", {.mailbox = false}, true},
     {"grid, scalar", "reference", {.mailbox = false}},
     {"grid, scalar, mailboxes", "reference", {.mailbox = true}},
-    {"grid, scalar, leaping over empty cells", "scalar", {.method = Method::kSingle}},
-    {"single rays, SIMD over primitives", "best", {.method = Method::kSingle}},
-    {"packets of 16, sse2", "sse2", {.method = Method::kPackets, .packet = 16}},
-    {"packets of 16", "best", {.method = Method::kPackets, .packet = 16}},
-    {"packets of 64, no mailbox",
-     "best",
-     {.method = Method::kPackets, .packet = 64, .mailbox = false}},
-    {"packets of 64, sse2", "sse2", {.method = Method::kPackets, .packet = 64}},
-    {"packets of 64", "best", {.method = Method::kPackets, .packet = 64}},
-    {"packets of 256, sse2", "sse2", {.method = Method::kPackets, .packet = 256}},
-    {"packets of 256", "best", {.method = Method::kPackets, .packet = 256}},
+    {"grid, scalar, leaping over empty cells", "scalar", {.packet = 1}},
+    {"single rays, SIMD over primitives", "best", {.packet = 1}},
+    {"packets of 16, sse2", "sse2", {.packet = 16}},
+    {"packets of 16", "best", {.packet = 16}},
+    {"packets of 64, no mailbox", "best", {.packet = 64, .mailbox = false}},
+    {"packets of 64, sse2", "sse2", {.packet = 64}},
+    {"packets of 64", "best", {.packet = 64}},
+    {"packets of 256, sse2", "sse2", {.packet = 256}},
+    {"packets of 256", "best", {.packet = 256}},
 };
 const Variant* variant_of(const Rung& rung) {
   return std::string_view(rung.isa) == "reference" ? &reference_walk() : find_variant(rung.isa);

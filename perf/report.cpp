@@ -79,10 +79,7 @@ void render_packets(Picture& p, int threads) {
   p.keep("rest" + with, whole * (1 - tracing / all));
 }
 
-double trace_all(const World& w,
-                 const TraceSettings& settings,
-                 const FrameRays& rays,
-                 int threads) {
+double trace_all(const World& w, const TraceOptions& settings, const FrameRays& rays, int threads) {
   const auto t = trace_seconds(w, reference_walk(), settings, rays, threads);
   return t[0] + t[1] + t[2];
 }
@@ -109,7 +106,7 @@ void measure(Picture& p, int rounds) {
   const FrameRays few = stride > 1 ? thinned(p.rays, stride) : FrameRays{};
   const FrameRays& some = stride > 1 ? few : p.rays;
   const int threads = omp_get_num_procs();
-  const TraceSettings plain{.mailbox = false}, mailbox{.mailbox = true};
+  const TraceOptions plain{.mailbox = false}, mailbox{.mailbox = true};
   for (int round = 0; round < rounds; ++round) {
     for (const int n : {1, threads})
       render_packets(p, n);

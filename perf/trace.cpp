@@ -46,7 +46,7 @@ struct Race {
   Cell cell;
 };
 
-void trace_grelha(Race& race, const TraceSettings& settings, TraceCounts& counts) {
+void trace_grelha(Race& race, const TraceOptions& settings, TraceCounts& counts) {
   const Rays rays = race.rays.view();
   trace(race.place.world, best_variant(), settings, rays, race.any, race.answers, counts);
 }

@@ -95,7 +95,7 @@ bool Answers::same(std::size_t i, const Answers& others, std::size_t k) const {
 
 void trace(const World& world,
            const Variant& variant,
-           const TraceSettings& settings,
+           const TraceOptions& settings,
            const Rays& rays,
            bool any,
            Answers& a,

@@ -47,7 +47,7 @@ RayBuffer camera_rays(const Camera& camera);
 /// Answers to rays by one method of one instruction set; `any`: occlusion.
 void trace(const World& world,
            const Variant& variant,
-           const TraceSettings& settings,
+           const TraceOptions& settings,
            const Rays& rays,
            bool any,
            Answers& answers,

@@ -16,6 +16,7 @@ target_sources(point_grid_test PRIVATE kernel/world/light_grids_test.cpp)
 grelha_test(kernel/walk/frustum property grelha::kernel grelha_lane_functions)
 grelha_test(kernel/trace/watertight property grelha::kernel)
 grelha_test(kernel/simd/power property grelha::kernel grelha_lane_functions)
+grelha_test(kernel/simd/rounding property grelha::kernel)
 grelha_test(kernel/trace/leaving property grelha::kernel)
 target_sources(leaving_test PRIVATE kernel/trace/mirror_rays_test.cpp
   kernel/trace/next_hit_test.cpp kernel/trace/origin_test.cpp)

@@ -38,7 +38,7 @@ Reach reach_of(const TriangleBlock& block, int a) {
 }  // namespace
 
 // A hit h is off by no more than `pad` from its triangle, and found in a cell that it lies in. It
-// is in the triangle's box grown by pad as well. So it is in the box below, and kSlabRoom inside it.
+// is in the triangle's box grown by pad as well. So it is in the box below, kSlabRoom inside it.
 void bound_blocks(const Grid& g,
                   double pad,
                   std::size_t cell,

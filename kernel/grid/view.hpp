@@ -60,9 +60,10 @@ struct RaysToPoint {
   const std::uint32_t* leaves = nullptr;
 };
 
+/// How rays are traced. None of it changes an answer.
 struct TraceOptions {
-  int packet;    ///< 1, 16, 64 or 256
-  bool mailbox;  ///< for packets
+  int packet = 256;     ///< rays that walk together: 1, 16, 64 or 256
+  bool mailbox = true;  ///< for packets
   RaysToPoint to = {};
 };
 

@@ -18,18 +18,14 @@ inline void add(const Counters& n, TraceCounts& to) {
   to.packets.lanes_busy += n.busy;
 }
 
-inline TraceOptions options_of(const TraceSettings& s) {
-  return {s.method == Method::kSingle ? 1 : s.packet, s.mailbox};
-}
-
 template <class In>
 inline void closest(const SceneView& scene,
                     const Rays& rays,
                     const Hits& hits,
-                    const TraceSettings& settings,
+                    const TraceOptions& options,
                     TraceCounts& counts) {
   Counters n;
-  trace_closest<In>(scene, rays, {}, hits, options_of(settings), n);
+  trace_closest<In>(scene, rays, {}, hits, options, n);
   add(n, counts);
 }
 
@@ -46,14 +42,14 @@ template <class In>
 inline void occluded(const SceneView& scene,
                      const Rays& rays,
                      std::uint8_t* blocked,
-                     const TraceSettings& settings,
+                     const TraceOptions& options,
                      TraceCounts& counts) {
   Counters n;
   const auto store = [&](const Packet<In>& p, std::size_t first) {
     store_blocked(p, blocked + first);
   };
   const auto load = [&](Packet<In>& p, std::size_t first) { load_rays(rays, {}, first, p); };
-  trace<true, In>(scene, rays.count, options_of(settings), n, load, store);
+  trace<true, In>(scene, rays.count, options, n, load, store);
   add(n, counts);
 }
 
@@ -74,16 +70,16 @@ inline void load_rays_to(const PointQuery& query, std::size_t first, Packet<InFl
 inline void occluded_to(const SceneView& scene,
                         const PointQuery& query,
                         std::uint8_t* blocked,
-                        const TraceSettings& settings,
+                        const TraceOptions& options,
                         TraceCounts& counts) {
   Counters n;
-  TraceOptions options = options_of(settings);
-  options.to = {query.grid, query.points.leaves};
+  TraceOptions to_point = options;
+  to_point.to = {query.grid, query.points.leaves};
   const auto store = [&](const Packet<InFloat>& p, std::size_t first) {
     store_blocked(p, blocked + first);
   };
   const auto load = [&](Packet<InFloat>& p, std::size_t first) { load_rays_to(query, first, p); };
-  trace<true, InFloat>(scene, query.points.count, options, n, load, store);
+  trace<true, InFloat>(scene, query.points.count, to_point, n, load, store);
   add(n, counts);
 }
 

@@ -6,7 +6,7 @@
 #include <omp.h>
 
 #include "kernel/world/world_impl.hpp"
-#include "kernel/query/settings.hpp"
+#include "kernel/query/options.hpp"
 #include "kernel/query/variants.hpp"
 
 namespace grelha {
@@ -63,7 +63,7 @@ void occluded(const PointGrid& grid,
       .loops.occluded_to(g.world.view,
                          {view, g.point, points},
                          blocked,
-                         settings_of(options.packet),
+                         options_of(options.packet),
                          counts ? *counts : unread);
 }
 

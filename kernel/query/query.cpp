@@ -5,7 +5,7 @@
 #include <string>
 
 #include "kernel/shapes/surface.hpp"
-#include "kernel/query/settings.hpp"
+#include "kernel/query/options.hpp"
 #include "kernel/world/world_impl.hpp"
 
 namespace grelha {
@@ -53,7 +53,7 @@ void closest(const World& world,
   TraceCounts unread;
   choose_variant(options.isa)
       .loops.closest(
-          world.impl().view, rays, hits, settings_of(options.packet), counts ? *counts : unread);
+          world.impl().view, rays, hits, options_of(options.packet), counts ? *counts : unread);
 }
 void closest(const World& world,
              std::span<const Ray> rays,
@@ -78,7 +78,7 @@ void occluded(const World& world,
   TraceCounts unread;
   choose_variant(options.isa)
       .loops.occluded(
-          world.impl().view, rays, blocked, settings_of(options.packet), counts ? *counts : unread);
+          world.impl().view, rays, blocked, options_of(options.packet), counts ? *counts : unread);
 }
 void occluded(const World& world,
               std::span<const Ray> rays,

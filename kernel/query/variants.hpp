@@ -14,23 +14,12 @@
 
 namespace grelha {
 
-enum class Method {
-  kPackets,  ///< `packet` rays march together
-  kSingle,   ///< one ray at a time, SIMD over primitives, leaping over empty cells
-};
-
-struct TraceSettings {
-  Method method = Method::kPackets;
-  int packet = 256;  ///< 16, 64 or 256
-  bool mailbox = true;
-};
-
 /// What any number of rays meet first.
 using ClosestLoop =
-    void (*)(const SceneView&, const Rays&, const Hits&, const TraceSettings&, TraceCounts&);
+    void (*)(const SceneView&, const Rays&, const Hits&, const TraceOptions&, TraceCounts&);
 /// Whether anything is in their way: [rays.count] out, 1 or 0.
 using OccludedLoop =
-    void (*)(const SceneView&, const Rays&, std::uint8_t*, const TraceSettings&, TraceCounts&);
+    void (*)(const SceneView&, const Rays&, std::uint8_t*, const TraceOptions&, TraceCounts&);
 
 /// Points that ask whether they see one point.
 struct PointQuery {
@@ -52,7 +41,7 @@ struct VariantLoops {
   OccludedLoop occluded;
   /// Whether anything is in the way to a point: [points.count] out, 1 or 0.
   void (*occluded_to)(
-      const SceneView&, const PointQuery&, std::uint8_t*, const TraceSettings&, TraceCounts&);
+      const SceneView&, const PointQuery&, std::uint8_t*, const TraceOptions&, TraceCounts&);
   /// One ray by itself.
   Hit (*closest_one)(const SceneView&, const Ray&);
   bool (*occluded_one)(const SceneView&, const Ray&);

@@ -75,8 +75,8 @@ struct Sphere {
     return b;
   }
 
-  /// A cell grown by pad against a ball's surface: nearest point inside, farthest outside. The pad is
-  /// a hundred thousand times what doubles round off.
+  /// A cell grown by pad against a ball's surface: nearest point inside, farthest outside. Doubles
+  /// round by a thousandth of the pad and less.
   class Touch {
    public:
     Touch(const Fields<float>& s, const CellFrame& g, const CellRange&) {

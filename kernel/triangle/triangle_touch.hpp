@@ -71,8 +71,8 @@ class TriangleTouch {
     reach_ = reach;
   }
 
-  /// The edges seen along axis a, inward across each. Rounding can turn them only where the triangle
-  /// is seen edge-on: then all of it lies within that of each.
+  /// The edges seen along axis a, inward across each. Rounding can turn them only where the
+  /// triangle is seen edge-on: then all of it lies within that of each.
   void add_edges(int a, int b, int d) {
     const double sign = n_[a] < 0 ? -1 : 1;
     for (int k = 0; k < 3; ++k) {

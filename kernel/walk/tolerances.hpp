@@ -5,6 +5,10 @@
 
 namespace grelha {
 
+/// Times the largest component of a direction: what is taken for smaller ones. Over a scene a ray
+/// strays by as much of it, where floats stray by 1e-7.
+inline constexpr float kLeastHeadway = 1e-12f;
+
 /// Share of a ray's direction (sum of its components) that must lie along a packet's major axis:
 /// rays cross at most 17/3 cells sideways a slice. With less a slice is wider than what rays
 /// would walk alone, and nothing bounds the slopes (measured).

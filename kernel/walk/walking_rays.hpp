@@ -3,6 +3,7 @@
 
 #include "kernel/simd/vec3.hpp"
 #include "kernel/grid/view.hpp"
+#include "kernel/walk/tolerances.hpp"
 
 namespace grelha::GRELHA_ISA {
 
@@ -34,11 +35,10 @@ inline float bits_of(std::uint32_t id) {
 }
 
 /// A component of a direction below this meets none of its planes on any way that counts, and taken
-/// instead of it never makes NaN: over a scene the ray strays by 1e-12 of it, where float strays by
-/// 1e-7.
+/// instead of it never makes NaN.
 template <class Real>
 inline Real least_headway(const Real& x, const Real& y, const Real& z) {
-  return Real(1e-12f) * greater(greater(magnitude(x), magnitude(y)), magnitude(z));
+  return Real(kLeastHeadway) * greater(greater(magnitude(x), magnitude(y)), magnitude(z));
 }
 
 /// Three components of lanes i, i + 1, ...

@@ -154,7 +154,7 @@ std::string compare_embree(const Judge& judge, Cell& cell) {
 std::string check(const Place& place, const RayBuffer& rays, bool any, Cell& cell) {
   Judge judge{place, rays, any, {}};
   TraceCounts unused;
-  const TraceSettings& settings = kModes[0].settings;
+  const TraceOptions& settings = kModes[0].settings;
   trace(place.world, best_variant(), settings, rays.view(), any, judge.truth, unused);
   if (const std::string wrong = compare_modes(judge); !wrong.empty())
     return wrong;

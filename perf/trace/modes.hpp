@@ -8,13 +8,12 @@ namespace grelha::perf {
 
 struct GrelhaMode {
   const char* name;
-  TraceSettings settings;
+  TraceOptions settings;
 };
-inline constexpr GrelhaMode kModes[] = {
-    {"packets 256", {.method = Method::kPackets, .packet = 256}},
-    {"packets 64", {.method = Method::kPackets, .packet = 64}},
-    {"packets 16", {.method = Method::kPackets, .packet = 16}},
-    {"single", {.method = Method::kSingle}}};
+inline constexpr GrelhaMode kModes[] = {{"packets 256", {.packet = 256}},
+                                        {"packets 64", {.packet = 64}},
+                                        {"packets 16", {.packet = 16}},
+                                        {"single", {.packet = 1}}};
 
 /// What a render takes: of one ray a pixel or point, only those from the camera in packets of 256;
 /// see options_for() in shader.hpp.

@@ -13,7 +13,7 @@ template <class Real>
 void walk_closest(const SceneView& scene,
                   const Rays& rays,
                   const Hits& hits,
-                  const TraceSettings& settings,
+                  const TraceOptions& settings,
                   TraceCounts& counts) {
   Counters n;
   reference::closest<Real>(scene, rays, settings.mailbox, n, hits);
@@ -24,7 +24,7 @@ template <class Real>
 void walk_occluded(const SceneView& scene,
                    const Rays& rays,
                    std::uint8_t* blocked,
-                   const TraceSettings& settings,
+                   const TraceOptions& settings,
                    TraceCounts& counts) {
   Counters n;
   reference::occluded<Real>(scene, rays, settings.mailbox, n, blocked);

@@ -16,7 +16,8 @@ using oracle::Facet;
 using oracle::Real;
 using oracle::V;
 
-constexpr Real kClose = 16 * oracle::kEps;  ///< of t: twice the 8 eps of kernel/triangle/triangle.hpp
+/// Of t: twice the 8 eps of kernel/triangle/triangle.hpp.
+constexpr Real kClose = 16 * oracle::kEps;
 /// Of the farthest corner's distance: what double leaves open of an edge, some 30 roundings of
 /// 2^-53, and more.
 constexpr Real kNearEdge = 0x1p-45L;

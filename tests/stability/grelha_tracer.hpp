@@ -23,9 +23,8 @@ class GrelhaTracer final : public Tracer {
   }
 
  private:
-  static TraceSettings settings(int way) {
-    return way == 0 ? TraceSettings{Method::kPackets, 256, true}
-                    : TraceSettings{Method::kSingle, 1, true};
+  static TraceOptions settings(int way) {
+    return way == 0 ? TraceOptions{256, true} : TraceOptions{1, true};
   }
   const Variant& variant_;
   std::optional<World> world_;

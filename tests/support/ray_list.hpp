@@ -73,7 +73,7 @@ enum class Query { kClosest, kOccluded };
 inline Answers trace(const Variant& variant,
                      const World& world,
                      const RayList& rays,
-                     const TraceSettings& settings,
+                     const TraceOptions& settings,
                      Query query) {
   Answers a;
   const SceneView& scene = world.impl().view;

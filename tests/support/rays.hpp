@@ -29,18 +29,17 @@ inline constexpr int kManyRays = 1021;
 
 struct Way {
   const char* name;
-  TraceSettings settings;
+  TraceOptions settings;
 };
 
 inline const std::vector<Way>& every_way() {
-  static const std::vector<Way> ways{
-      {"packets of 256", {Method::kPackets, 256, true}},
-      {"packets of 256 without mailboxes", {Method::kPackets, 256, false}},
-      {"packets of 64", {Method::kPackets, 64, true}},
-      {"packets of 64 without mailboxes", {Method::kPackets, 64, false}},
-      {"packets of 16", {Method::kPackets, 16, true}},
-      {"packets of 16 without mailboxes", {Method::kPackets, 16, false}},
-      {"single", {Method::kSingle, 1, true}}};
+  static const std::vector<Way> ways{{"packets of 256", {256, true}},
+                                     {"packets of 256 without mailboxes", {256, false}},
+                                     {"packets of 64", {64, true}},
+                                     {"packets of 64 without mailboxes", {64, false}},
+                                     {"packets of 16", {16, true}},
+                                     {"packets of 16 without mailboxes", {16, false}},
+                                     {"single", {1, true}}};
   return ways;
 }
 

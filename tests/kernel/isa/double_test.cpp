@@ -136,8 +136,7 @@ TEST_P(Double, IsOffByRoundingAlone) {
   const auto& spheres = g.of<Sphere>().fields;
   const auto& triangles = g.of<Triangle>();
   const auto corner = [&](std::uint32_t i) { return three(triangles.vertex, i); };
-  for (const TraceSettings& settings :
-       {TraceSettings{Method::kPackets, 256, true}, TraceSettings{Method::kSingle, 1, true}}) {
+  for (const TraceOptions& settings : {TraceOptions{256, true}, TraceOptions{1, true}}) {
     const Answers a = trace(tested(), world, rays, settings, Query::kClosest);
     int judged = 0, wrongly_rounded = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {

@@ -46,7 +46,7 @@ TEST_P(Copies, RunAtTheirOwnWidth) {
   const World world(scene, {.grid = false});
   RayList rays;
   rays.add({0, 0, 5}, {0, 0, -1});
-  const Answers a = trace(variant(), world, rays, {Method::kPackets, 16, true}, Query::kClosest);
+  const Answers a = trace(variant(), world, rays, {16, true}, Query::kClosest);
   EXPECT_EQ(a.counts.packets.lanes_issued, static_cast<std::uint64_t>(variant().lanes));
   EXPECT_EQ(a.counts.packets.lanes_busy, 1u);
   EXPECT_EQ(a.counts.tests.sphere, 1u);

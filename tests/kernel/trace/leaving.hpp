@@ -22,7 +22,7 @@ inline Float3 floats(const V& p) {
 
 /// Closest hits of single rays.
 inline Answers scalar_hits(const World& world, const RayList& rays) {
-  return trace(*find_variant("scalar"), world, rays, {Method::kSingle, 1, true}, Query::kClosest);
+  return trace(*find_variant("scalar"), world, rays, {1, true}, Query::kClosest);
 }
 
 /// The surface that a ray meets at t.

@@ -7,13 +7,13 @@ namespace {
 
 struct Tracer {
   const Variant& variant;
-  TraceSettings settings;
+  TraceOptions settings;
 };
 
 /// Packets of a size, single rays and the reference.
 std::vector<Tracer> tracers(int packet) {
   const Variant& best = *find_variant("best");
-  return {{best, {.packet = packet}}, {best, {.method = Method::kSingle}}, {reference_walk(), {}}};
+  return {{best, {.packet = packet}}, {best, {.packet = 1}}, {reference_walk(), {}}};
 }
 
 /// Rays that leave primitive 0 where others meet it, from anywhere and at any t.

@@ -110,8 +110,7 @@ void expect_no_leak(const Variant& variant,
   if (what != "scale 1")
     return;
   const World plain(scene, {.grid = false});
-  const Way brute_force[] = {{"brute force", {Method::kPackets, 256, true}},
-                             {"brute force, single", {Method::kSingle, 1, true}}};
+  const Way brute_force[] = {{"brute force", {256, true}}, {"brute force, single", {1, true}}};
   for (const Way& way : brute_force)
     expect_none_leaks(variant, plain, rays, way, what);
 }

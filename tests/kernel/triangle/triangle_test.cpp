@@ -99,9 +99,9 @@ TEST(TriangleOracle, DecidesLikeTheExactOutline) {
   EXPECT_GT(inside, 20000);
 }
 
-/// How far the point found lies from the triangle, slivers included: kernel/triangle/triangle.hpp and
-/// docs/numerics.md say 46 eps reach. The weights are of doubles: the point they make lies on the
-/// ray but for some 64 roundings of the reach, which slivers lengthen.
+/// How far the point found lies from the triangle, slivers included: kernel/triangle/triangle.hpp
+/// and docs/numerics.md say 46 eps reach. The weights are of doubles: the point they make lies on
+/// the ray but for some 64 roundings of the reach, which slivers lengthen.
 TEST(TriangleOracle, PointsLieOnTheTriangle) {
   oracle::Real worst = 0;
   oracle::Real worst_weights = 0;

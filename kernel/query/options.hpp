@@ -1,11 +1,11 @@
 #pragma once
-// Settings of a caller's queries, checked.
+// Options of a caller's queries, checked.
 
 #include "kernel/query/variants.hpp"
 
 namespace grelha {
 
 /// Throws std::invalid_argument for a packet of another size than 1, 16, 64 or 256.
-TraceSettings settings_of(int packet);
+TraceOptions options_of(int packet);
 
 }  // namespace grelha

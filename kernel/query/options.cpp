@@ -1,13 +1,13 @@
-#include "kernel/query/settings.hpp"
+#include "kernel/query/options.hpp"
 
 #include <stdexcept>
 
 namespace grelha {
 
-TraceSettings settings_of(int packet) {
+TraceOptions options_of(int packet) {
   if (packet != 1 && packet != 16 && packet != 64 && packet != 256)
     throw std::invalid_argument("a packet holds 1, 16, 64 or 256 rays");
-  return {packet == 1 ? Method::kSingle : Method::kPackets, packet, true};
+  return {.packet = packet};
 }
 
 }  // namespace grelha
