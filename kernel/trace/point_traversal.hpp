@@ -97,6 +97,43 @@ struct MetLanes {
   return {both(met, Lanes(b.near[k]) <= depth), no};
 }
 
+/// A ray's place in a tile, and the depth of its start.
+struct TilePlace {
+  float x, y, depth;
+};
+
+/// Lanes of primitives that a ray may meet, those it does for sure, and those near enough to.
+struct MetPrimitives {
+  Mask<Block> maybe, surely, near;
+};
+
+/// The same of primitives i, i + 1, ... of a block.
+[[gnu::always_inline]] inline MetPrimitives met_primitives(const TilePlace& at,
+                                                           const OutlineBlock& b,
+                                                           int i) {
+  const Block x(at.x), y(at.y), depth(at.depth);
+  const auto side = [&](int s) {
+    return (load<Block>(b.side[s][0] + i) * x + load<Block>(b.side[s][1] + i) * y) +
+           load<Block>(b.side[s][2] + i);
+  };
+  const Block inside = lesser(lesser(side(0), side(1)), side(2));
+  const Mask<Block> near = load<Block>(b.near + i) <= depth;
+  return {
+      both(inside >= Block(0), near),
+      both(inside >= Block(kSurelyInside), load<Block>(b.far + i) <= depth),
+      near,
+  };
+}
+[[gnu::always_inline]] inline MetPrimitives met_primitives(const TilePlace& at,
+                                                           const BoxBlock& b,
+                                                           int i) {
+  const Block x(at.x), y(at.y), depth(at.depth);
+  const Mask<Block> in_x = both(x >= load<Block>(b.lo[0] + i), x <= load<Block>(b.hi[0] + i));
+  const Mask<Block> in_y = both(y >= load<Block>(b.lo[1] + i), y <= load<Block>(b.hi[1] + i));
+  const Mask<Block> near = load<Block>(b.near + i) <= depth;
+  return {both(both(in_x, in_y), near), depth != depth, near};
+}
+
 /// One primitive of a kind against all rays of a packet.
 template <bool kAny, class In>
 inline void test_primitive(
@@ -137,6 +174,9 @@ class PointSearch {
   }
 
  private:
+  /// Rays that look into one tile, up to which each goes through its lists by itself: for more of
+  /// them windows pay (measured).
+  static constexpr int kFew = 5;
   static constexpr int kGroupCount = kPacket / kWidth<Lanes>;
 
   Mask<Lanes> searches(int i) const { return load<Lanes>(p_.best + i) > load<Lanes>(p_.t_min + i); }
@@ -177,6 +217,7 @@ class PointSearch {
 
   void search(int group) {
     group_ = group;
+    tested_ = kNoPrimitive;
     prepared_ = grid_.around_count > 0;
     p_.live = std::uint64_t{1} << group;
     const SearchPlaces& at = places_[group];
@@ -189,6 +230,8 @@ class PointSearch {
     if (lists->columns != 0)
       return search_parts(*lists, at, here);
     ++n_.visits;
+    if (__builtin_popcount(bits(here)) <= kFew)
+      return search_one_by_one(lists, at, bits(here));
     search_list<kOutlineList>(grid_.outlines, lists, at, here);
     search_list<kBoxList>(grid_.boxes, lists, at, here);
   }
@@ -205,6 +248,66 @@ class PointSearch {
   /// Depths of the lanes that still search.
   Lanes depths(const SearchPlaces& at, const Mask<Lanes>& here) const {
     return select(both(here, searches(first_ray())), at.depth, Lanes(-kInfinity));
+  }
+
+  [[gnu::noinline]] void search_one_by_one(const TileLists* lists,
+                                           const SearchPlaces& at,
+                                           unsigned lanes) {
+    alignas(64) float x[kWidth<Lanes>], y[kWidth<Lanes>], depth[kWidth<Lanes>];
+    store(x, at.x);
+    store(y, at.y);
+    store(depth, at.depth);
+    each_bit(lanes, [&](int lane) {
+      const TilePlace place{x[lane], y[lane], depth[lane]};
+      search_alone<kOutlineList>(grid_.outlines, lists, place, first_ray() + lane);
+      search_alone<kBoxList>(grid_.boxes, lists, place, first_ray() + lane);
+    });
+  }
+
+  bool searches_still(int ray) const { return p_.best[ray] > p_.t_min[ray]; }
+
+  /// One ray and a list: SIMD over primitives.
+  template <int kKind, class Listed>
+  [[gnu::always_inline]] void search_alone(const Listed* blocks,
+                                           const TileLists* tile,
+                                           const TilePlace& at,
+                                           int ray) {
+    std::uint32_t first = tile[0].first[kKind];
+    const std::uint32_t end = tile[1].first[kKind];
+    for (; first < end && searches_still(ray); first = (first / kBlock + 1) * kBlock) {
+      const Listed& b = blocks[first / kBlock];
+      const unsigned listed = blocks_between(first / kBlock * kBlock, first, end);
+      unsigned maybe = 0;
+      unsigned surely = 0;
+      unsigned near = 0;
+      for (int i = 0; i < kBlock; i += kWidth<Block>) {
+        const MetPrimitives met = met_primitives(at, b, i);
+        maybe |= bits(met.maybe) << i;
+        surely |= bits(met.surely) << i;
+        near |= bits(met.near) << i;
+      }
+      if ((maybe & listed) != 0)
+        meet(b.id, maybe & listed, surely, ray);
+      if ((near & listed) != listed)
+        return;
+    }
+  }
+
+  /// Of a block's primitives those that a ray may meet: blocked by one that it surely does, or
+  /// tested.
+  void meet(const std::uint32_t (&ids)[kBlock], unsigned maybe, unsigned surely, int ray) {
+    const std::uint32_t leaves = leaves_ ? leaves_[ray] : kNoPrimitive;
+    for (; maybe != 0 && searches_still(ray); maybe &= maybe - 1) {
+      const unsigned k = static_cast<unsigned>(__builtin_ctz(maybe));
+      if (ids[k] == leaves)
+        continue;
+      if (surely >> k & 1) {
+        p_.best[ray] = -kInfinity;
+        p_.id[ray] = bits_of(ids[k]);
+      } else {
+        test(ids[k]);
+      }
+    }
   }
 
   template <int kKind, class Listed>
@@ -256,6 +359,9 @@ class PointSearch {
   }
 
   void test(std::uint32_t id) {
+    if (id == tested_)
+      return;
+    tested_ = id;
     prepare_triangles();
     visit_shape(FiniteShapes{}, geometry_.ids, id, [&]<class Shape>(std::uint32_t i) {
       count_lanes<Shape>(p_, n_);
@@ -286,7 +392,8 @@ class PointSearch {
   const std::uint32_t* leaves_;
   Counters& n_;
   int group_ = 0;
-  bool prepared_ = false;  ///< rays of the group are ready for triangles
+  std::uint32_t tested_ = kNoPrimitive;  ///< the last primitive that the group was tested against
+  bool prepared_ = false;                ///< rays of the group are ready for triangles
   SearchPlaces places_[kGroupCount];
 };
 
