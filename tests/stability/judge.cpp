@@ -271,7 +271,8 @@ Counts run(const Row& row, Tracer& tracer, std::size_t rays, std::uint64_t seed)
 
 std::vector<Row> all_rows() {
   std::vector<Row> all;
-  for (const auto& part : {mesh_rows(), sphere_rows(), floor_rows(), walk_rows(), contact_rows()})
+  for (const auto& part :
+       {mesh_rows(), sphere_rows(), floor_rows(), walk_rows(), contact_rows(), point_light_rows()})
     all.insert(all.end(), part.begin(), part.end());
   return all;
 }

@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -38,8 +39,9 @@ struct Trial {
   Scene scene;
   RayList rays;
   std::vector<Wanted> wanted;
-  float density = 0;      ///< of Grelha's grid
-  bool occlusion = true;  ///< whether the yes-or-no question is asked too
+  float density = 0;            ///< of Grelha's grid
+  bool occlusion = true;        ///< whether the yes-or-no question is asked too
+  std::optional<Float3> light;  ///< where all rays end, at t = 1
 
   void add(const Float3& org, const Float3& dir, const Wanted& w, float t_max = test::kInf) {
     rays.add(org, dir, 0, t_max);
@@ -90,6 +92,8 @@ std::vector<Row> sphere_rows();   ///< spheres.cpp
 std::vector<Row> walk_rows();     ///< walks.cpp: acceleration loses nothing
 std::vector<Row> contact_rows();  ///< contacts.cpp: rays that leave surfaces
 std::vector<Row> floor_rows();    ///< floors.cpp: triangles far larger than what stands on them
+/// point_lights.cpp: shadow rays, by grids of lights as well
+std::vector<Row> point_light_rows();
 std::vector<Row> all_rows();
 
 /// Every way of a tracer through one trial.
