@@ -24,23 +24,21 @@ struct RawAllocator {
   RawAllocator(const RawAllocator<U>&) {}
 
   T* allocate(std::size_t n) {
-    constexpr std::size_t kLine = 64;
-    constexpr std::size_t kPage = std::size_t{1} << 21;
     if (n > (static_cast<std::size_t>(-1) >> 2) / sizeof(T))
       throw std::bad_alloc();
-    const bool large = n * sizeof(T) >= 2 * kPage;
-    const std::size_t align = large ? kPage : kLine;
-    const std::size_t bytes = (n * sizeof(T) + kLine - 1) / kLine * kLine;
+    const std::size_t align = alignment(n);
+    std::size_t bytes = up_to(align, n * sizeof(T));
+    if (static_cast<double>(bytes) > kMostRoom * static_cast<double>(n * sizeof(T)))
+      bytes = up_to(kLine, n * sizeof(T));
     void* const p = ::operator new (bytes, std::align_val_t{align});
 #ifdef __linux__
-    if (large)
+    if (align == kPage)
       madvise(p, bytes, MADV_HUGEPAGE);  // a wish; refused, everything still works
 #endif
     return static_cast<T*>(p);
   }
   void deallocate(T* p, std::size_t n) {
-    ::operator delete (
-        p, std::align_val_t{n * sizeof(T) >= std::size_t{1} << 22 ? std::size_t{1} << 21 : 64});
+    ::operator delete (p, std::align_val_t{alignment(n)});
   }
   template <class U, class... Args>
   void construct(U* p, Args&&... args) {
@@ -49,6 +47,19 @@ struct RawAllocator {
   }
   bool operator==(const RawAllocator&) const {
     return true;
+  }
+
+ private:
+  static constexpr std::size_t kLine = 64;
+  static constexpr std::size_t kPage = std::size_t{1} << 21;  ///< a large one
+  /// Times what is asked for: what may be taken for the last page to be a large one too.
+  static constexpr double kMostRoom = 1.125;
+
+  static std::size_t alignment(std::size_t n) {
+    return n * sizeof(T) >= kPage ? kPage : kLine;
+  }
+  static std::size_t up_to(std::size_t unit, std::size_t bytes) {
+    return (bytes + unit - 1) / unit * unit;
   }
 };
 
