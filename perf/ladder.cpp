@@ -1,5 +1,5 @@
-// The rungs from brute force to packets, camera rays, one thread, all in one process: how much each
-// is worth.
+// The rungs from brute force to packets, and for shadow rays to a light's own grid; one thread, all
+// in one process: how much each is worth.
 //
 // ladder [--benchmark_filter=...] [other Google Benchmark options]
 //
@@ -16,6 +16,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include "perf/ray_sets.hpp"
 #include "perf/workloads.hpp"
 #include "tests/reference/reference.hpp"
 
@@ -24,18 +25,32 @@ namespace {
 using namespace grelha;
 using namespace grelha::perf;
 
+constexpr int kSide = 512;  ///< of the pictures whose shadow rays are made
+
 struct Place {
   std::string name;
   SceneFile file;
+  bool shadows;  ///< rays from what the camera sees to a light, in place of camera rays
   RayBuffer rays;
+  Float3 light;                                    ///< where they end
   Answers truth;                                   ///< of the reference walk
   std::map<float, std::unique_ptr<World>> worlds;  ///< by density; 0: no grid
+  std::unique_ptr<PointGrid> light_grid;
 
-  Place(std::string scene, int size)
-      : name(scene + " " + std::to_string(size)), file(make_scene(scene, size)) {
-    rays = camera_rays(file.camera);
+  Place(std::string scene, int size, bool shadows_)
+      : name(scene + " " + std::to_string(size) + (shadows_ ? ", shadow rays" : ", camera rays")),
+        file(make_scene(scene, size)),
+        shadows(shadows_) {
+    if (shadows) {
+      const RayMaker maker(file, world(2), kSide);
+      rays = maker.make(RayKind::kShadow);
+      light = maker.light();
+      light_grid = std::make_unique<PointGrid>(world(2), light, 1);
+    } else {
+      rays = camera_rays(file.camera);
+    }
     TraceCounts unused;
-    trace(world(2), reference_walk(), {}, rays.view(), false, truth, unused);
+    trace(world(2), reference_walk(), {}, rays.view(), shadows, truth, unused);
   }
   const World& world(float density) {
     auto& w = worlds[density];
@@ -49,8 +64,9 @@ struct Place {
 struct Rung {
   const char* name;
   const char* isa;
-  TraceOptions settings;
+  TraceOptions options;
   bool brute = false;
+  bool by_light = false;  ///< through the grid of the light; of shadow rays alone
 };
 
 const Rung kRungs[] = {
@@ -66,14 +82,42 @@ const Rung kRungs[] = {
     {"packets of 64", "best", {.packet = 64}},
     {"packets of 256, sse2", "sse2", {.packet = 256}},
     {"packets of 256", "best", {.packet = 256}},
+    {"the light's grid", "best", {}, false, true},
 };
 const Variant* variant_of(const Rung& rung) {
   return std::string_view(rung.isa) == "reference" ? &reference_walk() : find_variant(rung.isa);
 }
 constexpr float kDensities[] = {.5f, .7f, 1, 1.4f, 2, 2.8f, 4, 5.6f};
 
+/// Rays [first, first + count) of a place, by a rung.
+void ask(Place& place,
+         const Rung& rung,
+         const World& world,
+         std::size_t first,
+         std::size_t count,
+         Answers& answers,
+         TraceCounts& counts) {
+  if (!rung.by_light) {
+    const Rays rays = place.rays.view(first, count);
+    trace(world, *variant_of(rung), rung.options, rays, place.shadows, answers, counts);
+    return;
+  }
+  const RayBuffer& r = place.rays;
+  const Points points{.at = {r.ox.data() + first, r.oy.data() + first, r.oz.data() + first},
+                      .count = count,
+                      .leaves = r.leaves.data() + first};
+  answers.resize(count, true);
+  occluded(*place.light_grid, points, answers.blocked.data(), {}, &counts);
+}
+
+bool right(const Place& place, const Answers& answers, std::size_t first) {
+  for (std::size_t i = 0; i < answers.size(); ++i)
+    if (!answers.same(i, place.truth, first + i))
+      return false;
+  return true;
+}
+
 void run(benchmark::State& state, Place& place, const Rung& rung, float density) {
-  const Variant& variant = *variant_of(rung);
   const World& world = place.world(density);
   // Brute force: a few rows of tiles, spread over the picture.
   const std::size_t total = place.rays.size(), slice = rung.brute ? 256 : total,
@@ -82,17 +126,12 @@ void run(benchmark::State& state, Place& place, const Rung& rung, float density)
   TraceCounts counts;
   std::size_t traced = 0;
   for (auto _ : state) {
-    for (std::size_t first = 0; first < total; first += stride) {
-      const Rays rays = place.rays.view(first, slice);
-      trace(world, variant, rung.settings, rays, false, answers, counts);
+    for (std::size_t first = 0; first + slice <= total; first += stride) {
+      ask(place, rung, world, first, slice, answers, counts);
       traced += slice;
-      benchmark::DoNotOptimize(answers.t.data());
+      benchmark::DoNotOptimize(answers.size());
       state.PauseTiming();
-      if (!std::equal(answers.id.begin(),
-                      answers.id.end(),
-                      place.truth.id.begin() + std::ptrdiff_t(first)) ||
-          !std::equal(
-              answers.t.begin(), answers.t.end(), place.truth.t.begin() + std::ptrdiff_t(first)))
+      if (!right(place, answers, first))
         state.SkipWithError("wrong hits");
       state.ResumeTiming();
     }
@@ -136,7 +175,7 @@ class Table : public benchmark::ConsoleReporter {
         return least;
       };
       const double base = rungs.count("grid, scalar") ? best("grid, scalar").first : 0;
-      std::printf("\n%s, camera rays, each rung at its best density\n", scene.c_str());
+      std::printf("\n%s, each rung at its best density\n", scene.c_str());
       std::printf("| %-40s | %10s | %5s | %20s |\n|---|--:|--:|--:|\n",
                   "rung",
                   "ns a ray",
@@ -153,7 +192,7 @@ class Table : public benchmark::ConsoleReporter {
           std::printf("| %-40s | %10.1f | %5s | %20s |\n",
                       r.name,
                       ns,
-                      r.brute ? "" : density.c_str(),
+                      r.brute || r.by_light ? "" : density.c_str(),
                       times);
         }
     }
@@ -172,14 +211,16 @@ int main(int argc, char** argv) {
   if (benchmark::ReportUnrecognizedArguments(argc, argv))
     return 2;
   std::vector<std::unique_ptr<Place>> places;
-  places.push_back(std::make_unique<Place>("balls", 4));
-  places.push_back(std::make_unique<Place>("mount", 7));
+  for (const bool shadows : {false, true}) {
+    places.push_back(std::make_unique<Place>("balls", 4, shadows));
+    places.push_back(std::make_unique<Place>("mount", 7, shadows));
+  }
   for (const auto& place : places)
     for (const Rung& rung : kRungs) {
-      if (!variant_of(rung) || !variant_of(rung)->runs_here())
+      if (!variant_of(rung) || !variant_of(rung)->runs_here() || (rung.by_light && !place->shadows))
         continue;
       for (const float density : kDensities) {
-        if (rung.brute && density != kDensities[0])
+        if ((rung.brute || rung.by_light) && density != kDensities[0])
           continue;
         char m[16];
         std::snprintf(m, sizeof m, "%g", rung.brute ? 0. : static_cast<double>(density));
