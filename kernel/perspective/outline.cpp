@@ -8,6 +8,9 @@
 namespace grelha {
 namespace {
 
+/// Diagonals of its box from which on a primitive is as far away as that.
+constexpr double kFarInBoxes = 4;
+
 using Vector = FacePoint;
 
 Vector operator-(const Vector& a, const Vector& b) {
@@ -360,8 +363,11 @@ bool see(const Primitives& p,
 
 }  // namespace
 
-double distance_of(const Primitives& p, const Viewpoint& from, std::uint32_t id) {
-  return std::max(box_distance(p.box(id), from), p.visit(id, [&]<class Shape>(std::uint32_t i) {
+double distance_of(const Primitives& p, const Viewpoint& from, std::uint32_t id, const Box& box) {
+  const double by_box = box_distance(box, from);
+  if (by_box > kFarInBoxes * box.diagonal())
+    return by_box;
+  return std::max(by_box, p.visit(id, [&]<class Shape>(std::uint32_t i) {
     return distance(p, from, Shape{}, i);
   }));
 }

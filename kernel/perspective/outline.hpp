@@ -35,8 +35,11 @@ struct Viewpoint {
   double aside;  ///< beside a triangle: inside or outside is decided in double there
 };
 
-/// Lower bound of the distance of a primitive, as the largest of three coordinates.
-double distance_of(const Primitives& primitives, const Viewpoint& from, std::uint32_t id);
+/// Lower bound of the distance of a primitive within `box`, as the largest of three coordinates.
+double distance_of(const Primitives& primitives,
+                   const Viewpoint& from,
+                   std::uint32_t id,
+                   const Box& box);
 
 /// False: no ray through this face meets the primitive. `distance`: that of distance_of(), at least
 /// kNearest pads.

@@ -1,15 +1,16 @@
 #pragma once
 // What is seen of primitives through the faces around a point, in tiles.
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <mutex>
 #include <vector>
 
 #include "grelha/rays.hpp"
 #include "kernel/perspective/outline.hpp"
 #include "kernel/perspective/tolerances.hpp"
+#include "kernel/scene/raw_vector.hpp"
 
 namespace grelha {
 
@@ -85,12 +86,26 @@ class SeenPages {
   const Seen& operator[](std::uint32_t i) const { return pages_[i / kPage][i % kPage]; }
 
  private:
+  /// Pages are asked for one, two, four and so on at a time: many small ones are many faults.
+  static constexpr std::size_t kMostAtATime = 16;
+
   Seen* add() {
     const std::lock_guard lock(mutex_);
-    return pages_.emplace_back(std::make_unique<Seen[]>(kPage)).get();
+    if (left_ == 0) {
+      left_ = std::min(pages_.size() + 1, kMostAtATime);
+      memory_.emplace_back().resize(left_ * kPage);
+    }
+    Seen* const page = memory_.back().data() + memory_.back().size() - left_ * kPage;
+    --left_;
+    for (std::uint32_t i = 0; i < kPage; ++i)
+      page[i].id = kNoPrimitive;
+    pages_.push_back(page);
+    return page;
   }
   std::mutex mutex_;
-  std::vector<std::unique_ptr<Seen[]>> pages_;
+  std::vector<RawVector<Seen>> memory_;
+  std::vector<Seen*> pages_;
+  std::size_t left_ = 0;  ///< pages of the last memory
 };
 
 }  // namespace grelha

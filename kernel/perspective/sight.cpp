@@ -28,9 +28,10 @@ class Onlooker {
     Seen* next = &writer.next();
     for (std::size_t first; (first = turns_.fetch_add(kTurn)) < ids_.size();)
       for (const std::uint32_t id : ids_.subspan(first, std::min(kTurn, ids_.size() - first))) {
-        const double distance = distance_of(p_, from_, id);
+        const Box box = p_.box(id);
+        const double distance = distance_of(p_, from_, id, box);
         if (distance > kNearest * from_.pad)
-          look_at(id, distance, window, writer, next);
+          look_at(id, box, distance, window, writer, next);
         else
           around.push_back(id);
       }
@@ -42,11 +43,11 @@ class Onlooker {
 
  private:
   void look_at(std::uint32_t id,
+               const Box& box,
                double distance,
                Window (&window)[kFaces],
                SeenPages::Writer& writer,
                Seen*& next) {
-    const Box box = p_.box(id);
     const bool large = std::binary_search(large_.begin(), large_.end(), id);
     for (int f = 0; f < kFaces; ++f) {
       if (!may_be_seen(box, f) || !see(p_, from_, id, f, distance, next->outline))

@@ -66,10 +66,11 @@ void set_outline(OutlineBlock& block, std::uint32_t k, const Seen& seen, const T
 
 void set_box(BoxBlock& block, std::uint32_t k, const Seen& seen, const Tile& t) {
   const double at[2] = {t.x, t.y};
+  const bool beyond = t.width == 0;
+  const double columns = beyond ? 0 : 1 / t.width;
   for (int j = 0; j < 2; ++j) {
-    const bool beyond = t.width == 0;
-    const double lo = beyond ? -1 : (seen.outline.lo[j] - at[j]) / t.width;
-    const double hi = beyond ? 2 : (seen.outline.hi[j] - at[j]) / t.width;
+    const double lo = beyond ? -1 : (seen.outline.lo[j] - at[j]) * columns;
+    const double hi = beyond ? 2 : (seen.outline.hi[j] - at[j]) * columns;
     block.lo[j][k] = float_not_above(std::max(lo, -1.));
     block.hi[j][k] = float_not_below(std::min(hi, 2.));
   }
