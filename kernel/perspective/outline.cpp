@@ -8,7 +8,7 @@
 namespace grelha {
 namespace {
 
-/// Diagonals of its box from which on a primitive is as far away as that.
+/// Times its box's sides, all three: from there on a primitive is as far away as the box.
 constexpr double kFarInBoxes = 4;
 
 using Vector = FacePoint;
@@ -365,7 +365,8 @@ bool see(const Primitives& p,
 
 double distance_of(const Primitives& p, const Viewpoint& from, std::uint32_t id, const Box& box) {
   const double by_box = box_distance(box, from);
-  if (by_box > kFarInBoxes * box.diagonal())
+  const double sides = (box.hi[0] - box.lo[0]) + (box.hi[1] - box.lo[1]) + (box.hi[2] - box.lo[2]);
+  if (by_box > kFarInBoxes * sides)
     return by_box;
   return std::max(by_box, p.visit(id, [&]<class Shape>(std::uint32_t i) {
     return distance(p, from, Shape{}, i);
