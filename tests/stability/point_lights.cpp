@@ -16,15 +16,6 @@ struct LitScene {
   Float3 light;
 };
 
-Scene balls_and_triangles(Random& random, int n) {
-  Scene s = empty_scene();
-  add_spheres(s, random, n / 2, 1, .01, .2);
-  for (float& r : s.geometry.spheres.radius)
-    r = std::abs(r);
-  add_triangles(s, random, n / 2, 1, .01, .4);
-  return s;
-}
-
 /// Where a shadow ray starts: anywhere; beyond a corner or an edge as the light sees them; or in a
 /// direction in which two or three coordinates are equally far from it.
 Float3 start_of(Random& random, const LitScene& lit) {
@@ -69,13 +60,13 @@ void to_lights(Random& random, std::size_t rays, const Sink& sink) {
 }
 
 LitScene among(Random& random) {
-  Scene s = balls_and_triangles(random, 100);
+  Scene s = balls_and_triangles(random.next(), 100);
   return {std::move(s), random.point(1)};
 }
 
 /// At a corner, on an edge, within a face, at a ball's middle or on it.
 LitScene on_surfaces(Random& random) {
-  LitScene lit{balls_and_triangles(random, 60), {}};
+  LitScene lit{balls_and_triangles(random.next(), 60), {}};
   const Scene& s = lit.scene;
   const Float3 a = vertex(s, 0), b = vertex(s, 1), c = vertex(s, 2);
   const Spheres& balls = s.geometry.spheres;
@@ -90,7 +81,7 @@ LitScene on_surfaces(Random& random) {
 }
 
 LitScene far_away(Random& random) {
-  Scene s = balls_and_triangles(random, 100);
+  Scene s = balls_and_triangles(random.next(), 100);
   return {std::move(s), scaled(random.direction(), random.log_in(10, 1e6))};
 }
 

@@ -13,18 +13,6 @@ namespace {
 
 using namespace test;
 
-/// Spheres and triangles of many sizes: both tracers know them alike (cones have caps in Embree,
-/// planes end).
-Scene crowd(std::uint64_t seed, int n) {
-  Random random(seed);
-  Scene s = empty_scene();
-  add_spheres(s, random, n / 2, 1, .01, .2);
-  for (float& r : s.geometry.spheres.radius)
-    r = std::abs(r);
-  add_triangles(s, random, n / 2, 1, .01, .4);
-  return s;
-}
-
 void judge_all(Trial& trial, const RayList& rays) {
   const Size size = size_of(trial.scene);
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -39,7 +27,7 @@ void judge_all(Trial& trial, const RayList& rays) {
 void on_cells(Random& random, std::size_t rays, const Sink& sink) {
   for (const bool lattice : {false, true}) {
     Trial trial;
-    trial.scene = lattice ? lattice_patch(6) : crowd(random.next(), 100);
+    trial.scene = lattice ? lattice_patch(6) : balls_and_triangles(random.next(), 100);
     const World world(trial.scene, {});
     judge_all(trial, rays_on_cells(random, world, static_cast<int>(rays / 2)));
     sink(trial);
@@ -51,7 +39,7 @@ void on_cells(Random& random, std::size_t rays, const Sink& sink) {
 template <int kExponent>
 void odd_directions(Random& random, std::size_t rays, const Sink& sink) {
   Trial trial;
-  trial.scene = crowd(random.next(), 100);
+  trial.scene = balls_and_triangles(random.next(), 100);
   RayList list;
   for (std::size_t i = 0; i < rays; ++i) {
     const Float3 aim = random.point(1);
@@ -78,7 +66,7 @@ void odd_directions(Random& random, std::size_t rays, const Sink& sink) {
 /// feel it.
 void unsound_rays(Random& random, std::size_t rays, const Sink& sink) {
   Trial trial;
-  trial.scene = crowd(random.next(), 100);
+  trial.scene = balls_and_triangles(random.next(), 100);
   const Size size = size_of(trial.scene);
   for (std::size_t i = 0; i < rays; ++i) {
     Float3 org = at({0, 0, 0}, random.log_in(.1, 10), random.direction()),
@@ -187,7 +175,7 @@ void bounds_of_resolution(Random& random, std::size_t rays, const Sink& sink) {
 /// Three corners and a centre are no numbers: those primitives are not there, and all others are.
 void unsound_vertices(Random& random, std::size_t rays, const Sink& sink) {
   Trial trial;
-  trial.scene = crowd(random.next(), 100);
+  trial.scene = balls_and_triangles(random.next(), 100);
   Scene sound = trial.scene;
   const float odd[] = {kNaN, kInf, -kInf};
   for (std::uint32_t i = 3; i-- > 0;) {

@@ -100,6 +100,17 @@ inline Scene random_triangles(std::uint64_t seed, int n) {
   add_triangles(s, random, n, 1, .01, .4);
   return s;
 }
+/// Spheres and triangles of many sizes, which other tracers know as we do (cones have caps in
+/// Embree, planes end).
+inline Scene balls_and_triangles(std::uint64_t seed, int n) {
+  Random random(seed);
+  Scene s = empty_scene();
+  add_spheres(s, random, n / 2, 1, .01, .2);
+  for (float& r : s.geometry.spheres.radius)
+    r = std::abs(r);
+  add_triangles(s, random, n / 2, 1, .01, .4);
+  return s;
+}
 inline Scene random_cones(std::uint64_t seed, int n) {
   Random random(seed);
   Scene s = empty_scene();
