@@ -27,9 +27,7 @@ struct RawAllocator {
     if (n > (static_cast<std::size_t>(-1) >> 2) / sizeof(T))
       throw std::bad_alloc();
     const std::size_t align = alignment(n);
-    std::size_t bytes = up_to(align, n * sizeof(T));
-    if (static_cast<double>(bytes) > kMostRoom * static_cast<double>(n * sizeof(T)))
-      bytes = up_to(kLine, n * sizeof(T));
+    const std::size_t bytes = bytes_for(n);
     void* const p = ::operator new (bytes, std::align_val_t{align});
 #ifdef __linux__
     if (align == kPage)
@@ -38,7 +36,7 @@ struct RawAllocator {
     return static_cast<T*>(p);
   }
   void deallocate(T* p, std::size_t n) {
-    ::operator delete (p, std::align_val_t{alignment(n)});
+    ::operator delete (p, bytes_for(n), std::align_val_t{alignment(n)});
   }
   template <class U, class... Args>
   void construct(U* p, Args&&... args) {
@@ -60,6 +58,12 @@ struct RawAllocator {
   }
   static std::size_t up_to(std::size_t unit, std::size_t bytes) {
     return (bytes + unit - 1) / unit * unit;
+  }
+  static std::size_t bytes_for(std::size_t n) {
+    const std::size_t in_pages = up_to(alignment(n), n * sizeof(T));
+    const bool few =
+        static_cast<double>(in_pages) <= kMostRoom * static_cast<double>(n * sizeof(T));
+    return few ? in_pages : up_to(kLine, n * sizeof(T));
   }
 };
 

@@ -35,13 +35,16 @@ constexpr bool kCounted = false;
 #else
 constexpr bool kCounted = true;
 
-void* count(void* p) {
+void* count(void* p, std::size_t bytes) {
   if (!p)
     throw std::bad_alloc();
-  const std::ptrdiff_t now = owned += static_cast<std::ptrdiff_t>(malloc_usable_size(p));
+  const std::ptrdiff_t now = owned += static_cast<std::ptrdiff_t>(bytes);
   for (std::ptrdiff_t m = most; m < now && !most.compare_exchange_weak(m, now);) {
   }
   return p;
+}
+void* count(void* p) {
+  return count(p, p ? malloc_usable_size(p) : 0);
 }
 
 void give_back(void* p) {
@@ -54,9 +57,10 @@ void give_back(void* p) {
 void* operator new(std::size_t n) {
   return count(std::malloc(n));
 }
+// What begins on a large page lies in up to another that nothing touches: what is asked for counts.
 void* operator new(std::size_t n, std::align_val_t a) {
   void* p = nullptr;
-  return count(posix_memalign(&p, static_cast<std::size_t>(a), n) == 0 ? p : nullptr);
+  return count(posix_memalign(&p, static_cast<std::size_t>(a), n) == 0 ? p : nullptr, n);
 }
 void operator delete(void* p) noexcept {
   give_back(p);
@@ -67,8 +71,9 @@ void operator delete(void* p, std::size_t) noexcept {
 void operator delete(void* p, std::align_val_t) noexcept {
   give_back(p);
 }
-void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
-  give_back(p);
+void operator delete(void* p, std::size_t n, std::align_val_t) noexcept {
+  owned -= static_cast<std::ptrdiff_t>(n);
+  std::free(p);
 }
 #endif
 
