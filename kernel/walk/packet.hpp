@@ -30,6 +30,9 @@ struct Packet : WalkingRays, TestedRays<In> {
   /// how far a ray was brought near, in t; set only when `moved`
   alignas(64) Number shift[kPacket];
   bool moved = false;
+  /// packets before this one of which no two rays went together, and how many are still to go
+  /// without being asked to
+  int apart = 0, alone = 0;
 };
 
 /// What tests take of ray i.
