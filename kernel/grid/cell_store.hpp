@@ -12,8 +12,9 @@
 
 namespace grelha {
 
-/// The primitives of one kind: an entry each, their numbers in arrays of their own. Arrays end in
-/// kBlock entries of NaN, so that a whole block can be read from any place.
+/// The primitives of one kind: an entry each, their numbers in rows, one row a field. Rows end in
+/// kBlock entries of NaN, so that a whole block can be read from any place. All rows are one piece
+/// of memory: pieces of their own would be too small for large pages.
 template <class Shape>
 struct ListStore {
   /// Bytes of an entry.
@@ -21,28 +22,37 @@ struct ListStore {
 
   /// [cells + 1] where each cell's begin; empty where no cell holds any
   RawVector<std::uint32_t> first;
-  typename Shape::template Fields<RawVector<float>> fields;
+  RawVector<float> rows;
   RawVector<std::uint32_t> id;
 
   static std::uint32_t entries_of(std::uint32_t primitives) { return primitives; }
   void resize(std::size_t entries) {
-    pad(id, entries, kNoPrimitive);
-    const auto pad_array = [&](RawVector<float>& v) {
-      pad(v, entries, std::numeric_limits<float>::quiet_NaN());
-    };
-    Shape::for_each_field(pad_array, fields);
+    id.resize(entries + kBlock);
+    std::fill(id.begin() + static_cast<std::ptrdiff_t>(entries), id.end(), kNoPrimitive);
+    rows.resize(id.size() * kFields);
+    for (std::size_t row = 0; row < kFields; ++row)
+      std::fill_n(
+          rows.data() + row * id.size() + entries, kBlock, std::numeric_limits<float>::quiet_NaN());
   }
   void put(std::size_t entry, const typename Shape::template Fields<float>& one, std::uint32_t of) {
-    const auto put_number = [&](RawVector<float>& v, const float& x) { v[entry] = x; };
-    Shape::for_each_field(put_number, fields, one);
+    float* place = rows.data() + entry;
+    const auto put_number = [&](const float& x) {
+      *place = x;
+      place += id.size();
+    };
+    Shape::for_each_field(put_number, one);
     id[entry] = of;
   }
   typename Shape::CellList list() const {
     typename Shape::CellList out;
     if (first.empty())
       return out;
-    const auto point_to = [](const float*& to, const RawVector<float>& from) { to = from.data(); };
-    Shape::for_each_field(point_to, out.fields, fields);
+    const float* row = rows.data();
+    const auto point_to = [&](const float*& to) {
+      to = row;
+      row += id.size();
+    };
+    Shape::for_each_field(point_to, out.fields);
     out.first = first.data();
     out.id = id.data();
     return out;
@@ -50,11 +60,7 @@ struct ListStore {
   std::size_t bytes() const { return bytes_of(first) + id.size() * kEntry; }
 
  private:
-  template <class T>
-  static void pad(RawVector<T>& v, std::size_t entries, T with) {
-    v.resize(entries + kBlock);
-    std::fill(v.begin() + static_cast<std::ptrdiff_t>(entries), v.end(), with);
-  }
+  static constexpr std::size_t kFields = kEntry / sizeof(float) - 1;
 };
 
 /// Triangles: an entry is a block of them.

@@ -103,7 +103,8 @@ class CellTests {
     count_ = 0;
   }
 
-  /// Asks for what the first two blocks of primitives of cells are made of.
+  /// Asks for what the first two blocks of primitives of cells are made of, and for ids: a hit is
+  /// likely.
   template <class Shape>
   [[gnu::always_inline]] void fetch(const typename Shape::CellList& list, unsigned rays) {
     each_bit(rays, [&](int i) {
@@ -113,6 +114,7 @@ class CellTests {
         __builtin_prefetch(field + first + 16);
       };
       Shape::for_each_field(ask, list.fields);
+      __builtin_prefetch(list.id + first);
     });
   }
 

@@ -25,7 +25,7 @@ bool same(const CellStore& a, const CellStore& b) {
       compare(one.boxes, other.boxes);
     } else {
       compare(one.id, other.id);
-      Shape::for_each_field(compare, one.fields, other.fields);
+      compare(one.rows, other.rows);
     }
   });
   return all;
