@@ -33,7 +33,13 @@ class PointSearch {
               Packet<InFloat>& p,
               const std::uint32_t* leaves,
               Counters& n)
-      : geometry_(geometry), grid_(grid), p_(p), leaves_(leaves), n_(n) {}
+      : geometry_(geometry), grid_(grid), p_(p), n_(n) {
+    const int rays = leaves ? p.size : 0;
+    if (rays > 0)
+      __builtin_memcpy(leaves_, leaves, sizeof *leaves * static_cast<std::size_t>(rays));
+    for (int i = rays; i < p.groups * kWidth<Lanes>; ++i)
+      leaves_[i] = kNoPrimitive;
+  }
 
   void run() {
     const std::uint64_t live = p_.live;
@@ -147,6 +153,7 @@ class PointSearch {
                                            int ray) {
     std::uint32_t first = tile[0].first[kKind];
     const std::uint32_t end = tile[1].first[kKind];
+    const std::uint32_t leaves = leaves_[ray];
     for (; first < end && searches_still(ray); first = (first / kBlock + 1) * kBlock) {
       const Listed& b = blocks[first / kBlock];
       const unsigned listed = blocks_between(first / kBlock * kBlock, first, end);
@@ -159,27 +166,17 @@ class PointSearch {
         surely |= bits(met.surely) << i;
         near |= bits(met.near) << i;
       }
-      if ((maybe & listed) != 0)
-        meet(b.id, maybe & listed, surely, ray);
+      maybe &= listed;
+      each_bit(maybe, [&](int k) { maybe &= ~((b.id[k] == leaves ? 1u : 0u) << k); });
+      if ((maybe & surely) != 0) {
+        p_.best[ray] = -kInfinity;
+        p_.id[ray] = bits_of(b.id[__builtin_ctz(maybe & surely)]);
+        return;
+      }
+      for (; maybe != 0 && searches_still(ray); maybe &= maybe - 1)
+        test(b.id[__builtin_ctz(maybe)]);
       if ((near & listed) != listed)
         return;
-    }
-  }
-
-  /// Of a block's primitives those that a ray may meet: blocked by one that it surely does, or
-  /// tested.
-  void meet(const std::uint32_t (&ids)[kBlock], unsigned maybe, unsigned surely, int ray) {
-    const std::uint32_t leaves = leaves_ ? leaves_[ray] : kNoPrimitive;
-    for (; maybe != 0 && searches_still(ray); maybe &= maybe - 1) {
-      const unsigned k = static_cast<unsigned>(__builtin_ctz(maybe));
-      if (ids[k] == leaves)
-        continue;
-      if (surely >> k & 1) {
-        p_.best[ray] = -kInfinity;
-        p_.id[ray] = bits_of(ids[k]);
-      } else {
-        test(ids[k]);
-      }
     }
   }
 
@@ -197,15 +194,7 @@ class PointSearch {
     for (; first < end; first = (first / kBlock + 1) * kBlock) {
       const Listed& b = blocks[first / kBlock];
       const ShownLanes lanes = shown(w, b, first, end);
-      for (unsigned left = lanes.shown; left != 0; left &= left - 1) {
-        const unsigned k = static_cast<unsigned>(__builtin_ctz(left));
-        const MetLanes met = met_lanes(at, depth, b, k);
-        const unsigned asked = bits(met.maybe) & ~leaving(b.id[k]);
-        if (asked == 0)
-          continue;
-        block(met.surely, b.id[k]);
-        if ((asked & ~bits(met.surely)) != 0)
-          test(b.id[k]);
+      if (lanes.shown != 0 && meet(at, depth, b, lanes.shown)) {
         depth = depths(at, here);
         w.depth = lane_max(depth);
       }
@@ -214,21 +203,54 @@ class PointSearch {
     }
   }
 
+  /// The group against those primitives of a block that are shown; false: none may be met. No
+  /// branch for each: nobody can foretell them.
+  template <class Listed>
+  [[gnu::always_inline]] bool meet(const SearchPlaces& at,
+                                   const Lanes& depth,
+                                   const Listed& b,
+                                   unsigned shown) {
+    struct {
+      std::uint32_t id;
+      unsigned lanes;
+    } unsure[kBlock];
+    int count = 0;
+    Mask<Lanes> blocked = depth != depth;
+    Lanes by(0);
+    for (; shown != 0; shown &= shown - 1) {
+      const unsigned k = static_cast<unsigned>(__builtin_ctz(shown));
+      const MetLanes met = met_lanes(at, depth, b, k);
+      const Mask<Lanes> leaves = leaving(b.id[k]);
+      const Mask<Lanes> surely = but_not(met.surely, leaves);
+      blocked = either(blocked, surely);
+      by = select(surely, Lanes(bits_of(b.id[k])), by);
+      unsure[count] = {b.id[k], bits(but_not(but_not(met.maybe, leaves), surely))};
+      count += unsure[count].lanes != 0;
+    }
+    const unsigned done = bits(blocked);
+    if (done != 0)
+      block(blocked, by);
+    bool any_tested = false;
+    for (int i = 0; i < count; ++i)
+      if ((unsure[i].lanes & ~done) != 0) {
+        test(unsure[i].id);
+        any_tested = true;
+      }
+    return done != 0 || any_tested;
+  }
+
   int first_ray() const { return group_ * kWidth<Lanes>; }
 
   /// Lanes whose ray starts on a primitive.
-  unsigned leaving(std::uint32_t id) const {
-    if (!leaves_)
-      return 0;
-    const Words<Lanes> leaves = load_words<Lanes>(leaves_ + first_ray());
-    return bits(mask_of(Words<Lanes>(leaves == id)));
+  Mask<Lanes> leaving(std::uint32_t id) const {
+    return mask_of(Words<Lanes>(load_words<Lanes>(leaves_ + first_ray()) == id));
   }
 
   /// Notes that lanes of the group are blocked.
-  [[gnu::always_inline]] void block(const Mask<Lanes>& lanes, std::uint32_t id) {
+  [[gnu::always_inline]] void block(const Mask<Lanes>& lanes, const Lanes& by) {
     const int i = first_ray();
     store(p_.best + i, select(lanes, Lanes(-kInfinity), load<Lanes>(p_.best + i)));
-    store(p_.id + i, select(lanes, Lanes(bits_of(id)), load<Lanes>(p_.id + i)));
+    store(p_.id + i, select(lanes, by, load<Lanes>(p_.id + i)));
   }
 
   void test(std::uint32_t id) {
@@ -246,28 +268,23 @@ class PointSearch {
     if (prepared_)
       return;
     prepared_ = true;
-    prepare_group(group_);
+    prepare_to_test(p_, group_, true);
   }
   void prepare_for_all() {
     if (grid_.around_count > 0)
-      each_live_group(p_, [&](int, int group) { prepare_group(group); });
+      each_live_group(p_, [&](int, int group) { prepare_to_test(p_, group, true); });
     prepared_ = true;
-  }
-  void prepare_group(int group) {
-    const int first = group * kWidth<Lanes>;
-    set_axes(p_, first, group);
-    set_directions(p_, first, true);
   }
 
   const GeometryView& geometry_;
   const PointGridView& grid_;
   Packet<InFloat>& p_;
-  const std::uint32_t* leaves_;
   Counters& n_;
   int group_ = 0;
   std::uint32_t tested_ = kNoPrimitive;  ///< the last primitive that the group was tested against
   bool prepared_ = false;                ///< rays of the group are ready for triangles
   SearchPlaces places_[kGroupCount];
+  alignas(64) std::uint32_t leaves_[kPacket];  ///< or kNoPrimitive
 };
 
 }  // namespace grelha::GRELHA_ISA

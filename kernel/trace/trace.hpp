@@ -248,11 +248,11 @@ inline void trace_alone(const SceneView& scene, Packet<In>& p, bool any_triangle
   });
 }
 
-/// Whether a packet starts as near to the scene as the lists of point grids allow for.
-inline bool starts_within_point_reach(const SceneView& scene, const WalkingRays& p) {
+/// Whether no ray of a packet starts further than `reach` from everything finite.
+inline bool starts_within(const SceneView& scene, float reach, const WalkingRays& p) {
   Mask<Lanes> far = Lanes(0) != Lanes(0);
   for (int i = 0; i < p.size; i += kWidth<Lanes>)
-    far = either(far, starts_beyond(scene, scene.point_reach, p, i));
+    far = either(far, starts_beyond(scene, reach, p, i));
   return none(far);
 }
 
@@ -263,11 +263,14 @@ inline bool starts_within_point_reach(const SceneView& scene, const WalkingRays&
                                                const RaysToPoint& to,
                                                std::size_t first,
                                                Counters& n) {
-  prepare(p, false);
-  if (!starts_within_point_reach(scene, p))
+  prepare_to_walk(p);
+  const bool near = starts_within(scene, scene.reach, p);
+  if (!near && !starts_within(scene, scene.point_reach, p))
     return false;
   test_infinite<true>(scene, p, n);
-  bring_near(scene, p);
+  p.moved = false;
+  if (!near)
+    bring_near(scene, p);
   const std::uint32_t* const leaves = to.leaves ? to.leaves + first : nullptr;
   PointSearch(scene.geometry, *to.grid, p, leaves, n).run();
   return true;

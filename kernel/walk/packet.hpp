@@ -106,22 +106,34 @@ template <class In>
   store(p.shear[2] + i, Real(1) / q.z);
 }
 
-/// Completes a packet whose org, dir, t_min, best and size are set.
-template <class In>
-inline void prepare(Packet<In>& p, bool any_triangles) {
+/// Completes a packet whose org, dir, t_min, best and size are set, for walks.
+inline void prepare_to_walk(WalkingRays& p) {
   constexpr int w = kWidth<Lanes>;
   p.groups = (p.size + w - 1) / w;
   p.live = ~std::uint64_t{0} >> (64 - p.groups);
   fill_up(p);
-  for (int g = 0; g < p.groups; ++g) {
-    const int i = g * w;
+  for (int i = 0; i < p.groups * w; i += w) {
     store(p.id + i, Lanes(bits_of(kNoPrimitive)));
     switch_off_unsound(p, i);
-    if (any_triangles)
-      set_axes(p, i, g);
-    for (int k = i; k < i + w; k += kWidth<typename In::Rays>)
-      set_directions(p, k, any_triangles);
   }
+}
+
+/// The rest, of a group: for tests.
+template <class In>
+[[gnu::always_inline]] inline void prepare_to_test(Packet<In>& p, int group, bool any_triangles) {
+  const int i = group * kWidth<Lanes>;
+  if (any_triangles)
+    set_axes(p, i, group);
+  for (int k = i; k < i + kWidth<Lanes>; k += kWidth<typename In::Rays>)
+    set_directions(p, k, any_triangles);
+}
+
+/// Completes a packet whose org, dir, t_min, best and size are set.
+template <class In>
+inline void prepare(Packet<In>& p, bool any_triangles) {
+  prepare_to_walk(p);
+  for (int g = 0; g < p.groups; ++g)
+    prepare_to_test(p, g, any_triangles);
   set_tested(p);
 }
 

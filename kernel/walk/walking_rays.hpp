@@ -63,14 +63,17 @@ inline void fill_up(WalkingRays& p) {
   }
 }
 
+/// Squares of directions up to this have no inverse in float.
+inline constexpr float kNoInverse = 0x1p-128f;
+
 /// Switches off rays with a NaN, an infinity or no direction.
 [[gnu::always_inline]] inline void switch_off_unsound(WalkingRays& p, int i) {
   const Vec3<Lanes> d = take_vec<Lanes>(p.dir, i);
   const Vec3<Lanes> o = take_vec<Lanes>(p.org, i);
   const Lanes dd = dot(d, d);
-  const Lanes inv = Lanes(1) / dd;
   // NaN and infinity times zero are NaN
-  const Mask<Lanes> sound = ((o.x + o.y) + (o.z + dd) + inv) * Lanes(0) == Lanes(0);
+  const Mask<Lanes> finite = ((o.x + o.y) + (o.z + dd)) * Lanes(0) == Lanes(0);
+  const Mask<Lanes> sound = both(finite, dd > Lanes(kNoInverse));
   store(p.best + i, select(sound, load<Lanes>(p.best + i), Lanes(-kInfinity)));
 }
 

@@ -277,6 +277,24 @@ TEST(PointGrid, TooFarAwayWalks) {
   expect_same(world, scene, {1e30f, 0, 0}, 1);
 }
 
+/// The caller's array ends with the points, where groups of lanes do not (what is read beyond it
+/// shows under the address sanitizer).
+TEST(PointGrid, ReadsNoMoreLeavesThanPoints) {
+  Scene scene = empty_scene();
+  scene.geometry.spheres.add({0, 0, 0}, 1, 0);
+  const World world(scene, {});
+  const PointGrid grid(world, {0, 0, 4});
+  const Float3 points[] = {{0, 0, 1.01f}, {0, 0, -2}, {3, 0, -2}};
+  const std::vector<std::uint32_t> leaves{0, kNoPrimitive, 0};
+  Points to = Points::of(points);
+  to.leaves = leaves.data();
+  std::uint8_t blocked[3];
+  occluded(grid, to, blocked);
+  EXPECT_EQ(blocked[0], 0);
+  EXPECT_EQ(blocked[1], 1);
+  EXPECT_EQ(blocked[2], 0);
+}
+
 TEST(PointGrid, OfAnEmptyWorldSeesEverything) {
   const Scene scene = empty_scene();
   const World world(scene, {});
