@@ -3,130 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernel/perspective/cone_ends.hpp"
 #include "kernel/perspective/tolerances.hpp"
 
 namespace grelha {
 namespace {
 
-/// Times its box's sides, all three: from there on a primitive is as far away as the box.
-constexpr double kFarInBoxes = 4;
-
-using Vector = FacePoint;
-
-Vector operator-(const Vector& a, const Vector& b) {
-  return {
-      a.p - b.p,
-      a.q - b.q,
-      a.r - b.r,
-  };
-}
-double dot(const Vector& a, const Vector& b) {
-  return a.p * b.p + a.q * b.q + a.r * b.r;
-}
-double length(const Vector& a) {
-  return std::sqrt(dot(a, a));
-}
-Vector cross(const Vector& a, const Vector& b) {
-  return {
-      a.q * b.r - a.r * b.q,
-      a.r * b.p - a.p * b.r,
-      a.p * b.q - a.q * b.p,
-  };
-}
-Vector scaled(double s, const Vector& a) {
-  return {
-      s * a.p,
-      s * a.q,
-      s * a.r,
-  };
-}
-
-template <class T>
-Vector relative(const Viewpoint& from, const T (&x)[3]) {
-  return {
-      x[0] - from.at[0],
-      x[1] - from.at[1],
-      x[2] - from.at[2],
-  };
-}
-
-/// Turned to the axes of a face.
-Vector turned(const Vector& x, int face) {
-  const double c[3] = {
-      x.p,
-      x.q,
-      x.r,
-  };
-  const int a = face / 2;
-  return {
-      c[(a + 1) % 3],
-      c[(a + 2) % 3],
-      face % 2 == 0 ? c[a] : -c[a],
-  };
-}
-
-double box_distance(const Box& box, const Viewpoint& from) {
-  double far = 0;
-  for (int a = 0; a < 3; ++a)
-    far = std::max(far, std::max(box.lo[a] - from.at[a], from.at[a] - box.hi[a]));
-  return far;
-}
-
-/// What a length is at least as the largest of three coordinates.
-double as_largest(double length) {
-  return length * .57735;
-}
-
-double distance(const Primitives& p, const Viewpoint& from, Triangle, std::uint32_t i) {
-  const auto t = p.of<Triangle>()[i];
-  const Vector a = relative(from, t.corner[0]);
-  const Vector n = cross(relative(from, t.corner[1]) - a, relative(from, t.corner[2]) - a);
-  const double size = length(n);
-  return size > 0 ? as_largest(std::abs(dot(a, n)) / size) : 0;
-}
-double distance(const Primitives& p, const Viewpoint& from, Sphere, std::uint32_t i) {
-  const auto s = p.of<Sphere>()[i];
-  return as_largest(length(relative(from, s.center)) - std::abs(double{s.radius}));
-}
-
-/// The balls at the ends of a cone; it lies in their hull.
-struct Ends {
-  Vector center[2];
-  double radius[2];
-};
-Ends ends_of(const Cone::Fields<float>& c, const Viewpoint& from) {
-  Ends e;
-  e.center[0] = relative(from, c.base);
-  e.radius[0] = c.radius;
-  const Vector axis{
-      c.axis[0],
-      c.axis[1],
-      c.axis[2],
-  };
-  const double h = c.height;
-  e.center[1] = e.center[0] - scaled(-h, axis);
-  e.radius[1] = c.radius + static_cast<double>(c.slope) * h;
-  return e;
-}
-double distance(const Primitives& p, const Viewpoint& from, Cone, std::uint32_t i) {
-  const Ends e = ends_of(p.of<Cone>()[i], from);
-  const Vector along = e.center[1] - e.center[0];
-  const double size = dot(along, along);
-  const double at = size > 0 ? std::clamp(-dot(e.center[0], along) / size, 0., 1.) : 0;
-  const double axis = length(e.center[0] - scaled(-at, along));
-  return as_largest(axis - std::max(e.radius[0], e.radius[1]));
-}
-
-/// Of other kinds that of their box has to do.
-template <class Shape>
-double distance(const Primitives&, const Viewpoint&, Shape, std::uint32_t) {
-  return 0;
-}
-
-/// Widens the outline to a point's place, which has depth > 0.
-void add(Outline& o, const Vector& x) {
-  const double u = x.p / x.r;
-  const double v = x.q / x.r;
+/// Widens bounds to a point's place, which has depth > 0.
+void add(Bounds& o, const Vector& x) {
+  const double inverse = 1 / x.r;
+  const double u = x.p * inverse;
+  const double v = x.q * inverse;
   o.lo[0] = std::min(o.lo[0], u);
   o.hi[0] = std::max(o.hi[0], u);
   o.lo[1] = std::min(o.lo[1], v);
@@ -135,13 +22,16 @@ void add(Outline& o, const Vector& x) {
   o.far = std::max(o.far, x.r);
 }
 
-void clear(Outline& o) {
+void clear(Bounds& o) {
   for (int j = 0; j < 2; ++j) {
     o.lo[j] = 1e300;
     o.hi[j] = -1e300;
   }
   o.near = 1e300;
   o.far = -1e300;
+}
+void clear(Outline& o) {
+  clear(static_cast<Bounds&>(o));
   o.solid = false;
   for (HalfPlane& side : o.side)
     side = {};
@@ -149,26 +39,31 @@ void clear(Outline& o) {
 
 /// Grows what add() has put together by what rays may miss it by, `aside` and along, and cuts it to
 /// the face. False: nothing is left.
-bool finish(Outline& o, double aside, double pad, double least) {
+bool finish(Bounds& o, double aside, double pad, double least) {
   const double grow = 2 * aside / (least - 2 * pad) * kRoom;
+  bool some = true;
   for (int j = 0; j < 2; ++j) {
     o.lo[j] = std::max(o.lo[j] - grow, -1 - kOverlap);
     o.hi[j] = std::min(o.hi[j] + grow, 1 + kOverlap);
-    if (!(o.lo[j] <= o.hi[j]))
-      return false;
+    some &= o.lo[j] <= o.hi[j];
   }
   o.near = std::max(o.near - pad, least - pad);
   o.far += pad;
-  return true;
+  return some;
+}
+
+/// What a side leaves open, over the length of its normal.
+double side_margin(double pad, double least) {
+  return pad / (least - pad) * kRoom;
 }
 
 /// n: across the side, towards what is seen.
-HalfPlane half_plane(const Vector& n, double size, double pad, double least) {
+HalfPlane half_plane(const Vector& n, double margin) {
   return {
       n.p,
       n.q,
       n.r,
-      pad * size / (least - pad) * kRoom,
+      margin,
   };
 }
 
@@ -199,6 +94,7 @@ bool see(const Primitives& p,
   if (!(o.far >= front) || !finish(o, aside, from.pad, least))
     return false;
   o.solid = true;
+  const double margin = side_margin(aside, least);
   for (int k = 0; k < 3; ++k) {
     const Vector &a = c[(k + 1) % 3], &b = c[(k + 2) % 3];
     const Vector edge = b - a;
@@ -212,7 +108,7 @@ bool see(const Primitives& p,
       o.solid = false;
       continue;
     }
-    o.side[k] = half_plane(height > 0 ? n : scaled(-1, n), size, aside, least);
+    o.side[k] = half_plane(height > 0 ? n : scaled(-1, n), margin * size);
   }
   return true;
 }
@@ -267,15 +163,17 @@ struct FaceBox {
 };
 
 /// What of a box may be met.
-void add_box(Outline& o, const FaceBox& box, double front) {
+void add_box(Bounds& o, const FaceBox& box, double front) {
   const double far = box.hi[2];
   if (!(far >= front))
     return;
   o.near = std::max(box.lo[2], front);
   o.far = far;
+  const double at_near = 1 / o.near;
+  const double at_far = 1 / far;
   for (int j = 0; j < 2; ++j) {
-    o.lo[j] = box.lo[j] / (box.lo[j] < 0 ? o.near : far);
-    o.hi[j] = box.hi[j] / (box.hi[j] > 0 ? o.near : far);
+    o.lo[j] = box.lo[j] * (box.lo[j] < 0 ? at_near : at_far);
+    o.hi[j] = box.hi[j] * (box.hi[j] > 0 ? at_near : at_far);
   }
 }
 
@@ -292,6 +190,16 @@ FaceBox around(const Vector (&c)[2], const double (&radius)[2]) {
   return box;
 }
 
+/// What of a box may be met.
+bool see_box(const Box& box, const Viewpoint& from, int face, double least, Bounds& o) {
+  const Vector a = turned(relative(from, box.lo), face);
+  const Vector b = turned(relative(from, box.hi), face);
+  const double front = least - 2 * from.pad;
+  clear(o);
+  add_box(o, {{a.p, a.q, std::min(a.r, b.r)}, {b.p, b.q, std::max(a.r, b.r)}}, front);
+  return o.far >= front && finish(o, from.pad, from.pad, least);
+}
+
 /// A kind that has no outline of its own: its box.
 template <class Shape>
 bool see(const Primitives& p,
@@ -301,14 +209,30 @@ bool see(const Primitives& p,
          int face,
          double least,
          Outline& o) {
-  const Box box = Shape::box(p.of<Shape>(), i);
-  const Vector a = turned(relative(from, box.lo), face);
-  const Vector b = turned(relative(from, box.hi), face);
-  const double front = least - 2 * from.pad;
   clear(o);
-  add_box(o, around({a, b}, {0, 0}), front);
-  return o.far >= front && finish(o, from.pad, from.pad, least);
+  return see_box(Shape::box(p.of<Shape>(), i), from, face, least, o);
 }
+
+/// The bounds of its outline.
+template <class Shape>
+bool see_about(const Primitives& p,
+               const Viewpoint& from,
+               Shape shape,
+               std::uint32_t i,
+               int face,
+               double least,
+               Bounds& to) {
+  Outline outline;
+  const bool some = see(p, from, shape, i, face, least, outline);
+  to = outline;
+  return some;
+}
+
+/// Whether all of a kind's outline lies within that of its box.
+template <class Shape>
+constexpr bool kWithinItsBox = true;
+template <>
+constexpr bool kWithinItsBox<Cone> = false;  // its ends are balls
 
 /// The planes through the point that touch both balls.
 void add_sides(
@@ -330,8 +254,8 @@ void add_sides(
   if (!(rest > 0))
     return;
   const double z = std::sqrt(rest / det);
-  o.side[0] = half_plane(in - scaled(-z, across), 1, pad, least);
-  o.side[1] = half_plane(in - scaled(z, across), 1, pad, least);
+  o.side[0] = half_plane(in - scaled(-z, across), side_margin(pad, least));
+  o.side[1] = half_plane(in - scaled(z, across), side_margin(pad, least));
 }
 
 bool see(const Primitives& p,
@@ -363,16 +287,6 @@ bool see(const Primitives& p,
 
 }  // namespace
 
-double distance_of(const Primitives& p, const Viewpoint& from, std::uint32_t id, const Box& box) {
-  const double by_box = box_distance(box, from);
-  const double sides = (box.hi[0] - box.lo[0]) + (box.hi[1] - box.lo[1]) + (box.hi[2] - box.lo[2]);
-  if (by_box > kFarInBoxes * sides)
-    return by_box;
-  return std::max(by_box, p.visit(id, [&]<class Shape>(std::uint32_t i) {
-    return distance(p, from, Shape{}, i);
-  }));
-}
-
 bool see(const Primitives& p,
          const Viewpoint& from,
          std::uint32_t id,
@@ -381,6 +295,21 @@ bool see(const Primitives& p,
          Outline& outline) {
   return p.visit(id, [&]<class Shape>(std::uint32_t i) {
     return see(p, from, Shape{}, i, face, distance, outline);
+  });
+}
+
+bool see_about(const Primitives& p,
+               const Viewpoint& from,
+               std::uint32_t id,
+               const Box& box,
+               int face,
+               double distance,
+               Bounds& bounds) {
+  return p.visit(id, [&]<class Shape>(std::uint32_t i) {
+    if constexpr (kWithinItsBox<Shape>)
+      return see_box(box, from, face, distance, bounds);
+    else
+      return see_about(p, from, Shape{}, i, face, distance, bounds);
   });
 }
 

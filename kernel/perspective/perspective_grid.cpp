@@ -4,27 +4,30 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
+#include <numeric>
 
 #include "kernel/perspective/sight.hpp"
-#include "kernel/perspective/thrown.hpp"
+#include "kernel/perspective/turns.hpp"
+#include "kernel/primitive/rounding.hpp"
 
 namespace grelha {
 namespace {
 
 constexpr double kMostReferencesEach = 16;  ///< a primitive, on average
-constexpr double kMostExpectedEach = 64;    ///< the same, by boxes around what is seen
+constexpr double kMostExpectedEach = 64;    ///< the same, by bounds of what is seen
 constexpr double kMostTilesAtAll = 0x1p22;  ///< before crowds get parts
 constexpr std::uint32_t kTileCrowd = 128;   ///< primitives of a tile that is parted
 constexpr double kPartCrowd = 16;           ///< primitives that each part is meant for
 constexpr int kMostColumns = 16;
 constexpr int kMostLevels = 4;
+constexpr int kLists = 2;  ///< of a tile
 
-/// A primitive in a list: number of what is seen of it.
+/// A primitive in a list: which of all tiles' lists, and number of what is seen of the primitive.
 struct Place {
-  std::uint32_t tile, seen;
+  std::uint32_t list, seen;
 };
 
-/// The same in order: by depth, then by id.
+/// What is seen of a primitive in the order of lists: by depth, then by id.
 struct Reference {
   std::uint64_t order;
   std::uint32_t seen;
@@ -37,10 +40,6 @@ std::uint32_t ordered(float x) {
   return bits >> 31 ? ~bits : bits | 0x80000000u;
 }
 
-Reference reference(const Seen& s, std::uint32_t seen) {
-  return {std::uint64_t{ordered(least_depth(s))} << 32 | s.id, seen};
-}
-
 class Builder {
  public:
   Builder(const Primitives& p,
@@ -48,14 +47,14 @@ class Builder {
           std::span<const std::uint32_t> large,
           const Viewpoint& from,
           const PerspectiveOptions& options)
-      : p_(p), ids_(ids), large_(large), from_(from), options_(options) {}
+      : p_(p), onlooker_(p, ids, large, from), options_(options), primitives_(ids.size()) {
+    std::copy(from.at, from.at + 3, g_.point);
+  }
 
   PerspectiveGrid build() {
-    std::copy(from_.at, from_.at + 3, g_.point);
-    look(p_, ids_, large_, from_, options_.threads, sight_);
+    sight_ = survey(onlooker_, options_.threads);
     g_.around = std::move(sight_.around);
-    lay_tiles_for_few_references();
-    each_seen([&](Seen& s, std::uint32_t) { s.to_tiles(g_.face[s.face]); });
+    lay_tiles_for_few_references(sight_.window);
     place_all();
     part_crowds();
     write();
@@ -63,44 +62,26 @@ class Builder {
   }
 
  private:
-  bool is_sphere(std::uint32_t id) const { return p_.ids.has(PrimitiveKind::kSphere, id); }
-
   /// Lays fewer tiles where needles, or primitives that cover each other, would fill lists without
   /// bound; and no more than look-ups can number.
-  void lay_tiles_for_few_references() {
-    const double primitives = static_cast<double>(ids_.size());
+  void lay_tiles_for_few_references(const Window (&window)[kFaces]) {
+    const double primitives = static_cast<double>(primitives_);
     double density = std::min(options_.density, kMostTilesAtAll / std::max(primitives, 1.));
-    for (lay_tiles(density); tiles_.size() > 2 * kFaces; lay_tiles(density)) {
-      if (most_references() <= kMostExpectedEach * primitives)
+    for (lay_tiles(window, density); tiles_.size() > 2 * kFaces; lay_tiles(window, density)) {
+      double references = 0;
+      for (int f = 0; f < kFaces; ++f)
+        references += window[f].most_references(g_.face[f]);
+      if (references <= kMostExpectedEach * primitives)
         return;
       density /= 4;
     }
   }
 
-  /// What lists hold at most, by the boxes around what is seen.
-  double most_references() const {
-    double sum = 0;
-    for (std::uint32_t i = 0; i < seen_.pages() * SeenPages::kPage; ++i) {
-      const Seen& s = seen_[i];
-      if (s.id == kNoPrimitive)
-        continue;
-      const PointFace& f = g_.face[s.face];
-      const Outline& o = s.outline;
-      const double across = std::min((o.hi[0] - o.lo[0]) * f.per_u + 1, f.nx);
-      const double up = std::min((o.hi[1] - o.lo[1]) * f.per_v + 1, f.ny);
-      sum += across * up;
-    }
-    return sum;
-  }
-
-  void lay_tiles(double density) {
+  void lay_tiles(const Window (&window)[kFaces], double density) {
     tiles_.clear();
-    std::uint64_t seen = 0;
-    for (const Window& w : sight_.window)
-      seen += w.seen;
     for (int f = 0; f < kFaces; ++f) {
       PointFace& face = g_.face[f];
-      const Window& w = sight_.window[f];
+      const Window& w = window[f];
       face = {};
       face.first = static_cast<double>(tiles_.size());
       face.depth = w.near < 1e300 ? w.near : 0;
@@ -123,81 +104,87 @@ class Builder {
     }
   }
 
-  template <class Visit>
-  void each_page(const Visit& visit) {
-    Thrown thrown;
-    const auto pages = static_cast<std::ptrdiff_t>(seen_.pages());
-#pragma omp parallel for schedule(dynamic, 1) num_threads(options_.threads)
-    for (std::ptrdiff_t page = 0; page < pages; ++page)
-      thrown.in([&] { visit(static_cast<std::uint32_t>(page)); });
-    thrown.on();
-  }
-  template <class Visit>
-  void each_of_page(std::uint32_t page, const Visit& visit) {
-    const std::uint32_t first = page * SeenPages::kPage;
-    for (std::uint32_t i = first; i < first + SeenPages::kPage; ++i) {
-      if (seen_[i].id == kNoPrimitive)
-        return;
-      visit(seen_[i], i);
-    }
-  }
-  template <class Visit>
-  void each_seen(const Visit& visit) {
-    each_page([&](std::uint32_t page) { each_of_page(page, visit); });
-  }
-
   /// Adds one, and returns what was there.
   std::uint32_t next(std::uint32_t& n) const {
     if (options_.threads == 1)
       return n++;
     return std::atomic_ref(n).fetch_add(1, std::memory_order_relaxed);
   }
-  /// What stands in the list of a tile that a primitive belongs to.
-  std::uint32_t& counted(const Place& at) {
-    return counts_[2 * at.tile + in_boxes(at.seen)];
-  }
-  std::uint32_t in_boxes(std::uint32_t seen) const {
-    return is_sphere(seen_[seen].id) ? 1 : 0;
-  }
   std::uint32_t primitives_of(std::size_t tile) const {
-    return counts_[2 * tile] + counts_[2 * tile + 1];
+    return counts_[kLists * tile] + counts_[kLists * tile + 1];
   }
 
+  /// What a thread adds to.
+  struct Writers {
+    Writers(SeenPages<SeenOutline>& o, SeenPages<SeenBox>& b) : outlines(o), boxes(b) {}
+    SeenPages<SeenOutline>::Writer outlines;
+    SeenPages<SeenBox>::Writer boxes;
+  };
+
   void place_all() {
-    counts_.assign(2 * tiles_.size(), 0);
-    places_.resize(seen_.pages());
-    each_page([&](std::uint32_t page) {
-      places_[page].reserve(4 * SeenPages::kPage);
-      each_of_page(page,
-                   [&](const Seen& s, std::uint32_t number) { place(s, number, places_[page]); });
-      for (const Place& at : places_[page])
-        next(counted(at));
+    counts_.assign(kLists * tiles_.size(), 0);
+    places_.resize(onlooker_.turns());
+    each_turn(
+        places_.size(),
+        options_.threads,
+        [&] { return Writers(outlines_, boxes_); },
+        [&](std::size_t turn, Writers& writers) {
+          places_[turn].reserve(4 * Onlooker::kTurn);
+          place_turn(turn, writers);
+          for (const Place& at : places_[turn])
+            next(counts_[at.list]);
+        });
+  }
+
+  void place_turn(std::size_t turn, Writers& writers) {
+    onlooker_.each(turn, [&](std::size_t i, std::uint32_t id) {
+      for (unsigned left = sight_.glances[i].faces; left != 0; left &= left - 1)
+        place_seen(id, std::countr_zero(left), sight_.glances[i].distance, writers, places_[turn]);
     });
   }
 
+  /// What is seen of a primitive through a face.
+  void place_seen(
+      std::uint32_t id, int f, double distance, Writers& writers, std::vector<Place>& to) const {
+    Outline seen;
+    if (!onlooker_.see(id, f, distance, seen))
+      return;
+    const PointFace& face = g_.face[f];
+    if (p_.ids.has(PrimitiveKind::kSphere, id)) {
+      to_tiles(face, static_cast<Bounds&>(seen));
+      place(seen, id, f, kBoxList, writers.boxes.add({face, seen, id}), to);
+    } else {
+      to_tiles(face, seen);
+      place(seen, id, f, kOutlineList, writers.outlines.add({face, seen, id}), to);
+    }
+  }
+
   /// The tiles of its face that a primitive may be met in.
-  void place(const Seen& s, std::uint32_t number, std::vector<Place>& to) const {
-    const PointFace& face = g_.face[s.face];
+  void place(const Outline& seen,
+             std::uint32_t id,
+             int f,
+             std::uint32_t kind,
+             std::uint32_t number,
+             std::vector<Place>& to) const {
+    const PointFace& face = g_.face[f];
     const auto first = static_cast<std::uint32_t>(face.first);
     const int columns = static_cast<int>(face.nx);
     const int rows = static_cast<int>(face.ny);
     const auto beyond = static_cast<std::uint32_t>(columns * rows);
-    if (s.large)
-      to.push_back({first + beyond, number});
+    if (onlooker_.is_large(id))
+      to.push_back({kLists * (first + beyond) + kind, number});
     if (beyond == 0)
       return;
-    TileWalk({0, 0, 1, columns, rows}, face).each(s, [&](std::uint32_t tile) {
-      to.push_back({first + tile, number});
+    TileWalk({0, 0, 1, columns, rows}, face).each(seen, [&](std::uint32_t tile) {
+      to.push_back({kLists * (first + tile) + kind, number});
     });
   }
 
   /// Tiles with too many primitives get parts, and these again.
   void part_crowds() {
     g_.tiles.resize(tiles_.size());
-    double references = 0;
-    for (const std::uint32_t n : counts_)
-      references += n;
-    const double most = kMostReferencesEach * static_cast<double>(ids_.size());
+    double references = std::accumulate(counts_.begin(), counts_.end(), 0.);
+    const double most = kMostReferencesEach * static_cast<double>(primitives_);
     std::size_t begin = 0;
     for (int level = 0; level < kMostLevels && references < most; ++level) {
       const std::size_t end = tiles_.size();
@@ -208,8 +195,8 @@ class Builder {
       if (tiles_.size() == end)
         return;
       g_.tiles.resize(tiles_.size());
-      counts_.resize(2 * tiles_.size());
-      place_parts();
+      counts_.resize(kLists * tiles_.size());
+      each_turn(places_.size(), options_.threads, [&](std::size_t turn) { place_parts(turn); });
       references = 0;
       for (std::size_t t = end; t < tiles_.size(); ++t)
         references += primitives_of(t);
@@ -231,31 +218,44 @@ class Builder {
             width,
             whole.face,
         });
-    counts_[2 * t] = 0;
-    counts_[2 * t + 1] = 0;
+    counts_[kLists * t] = 0;
+    counts_[kLists * t + 1] = 0;
   }
 
   /// Takes what is placed in tiles with parts to these.
-  void place_parts() {
-    each_page([&](std::uint32_t page) {
-      std::vector<Place> places;
-      places.reserve(places_[page].size());
-      for (const Place& p : places_[page]) {
-        const TileLists& whole = g_.tiles[p.tile];
-        if (whole.columns == 0) {
-          places.push_back(p);
-          continue;
-        }
-        const Tile& t = tiles_[p.tile];
-        const int n = static_cast<int>(whole.columns);
-        TileWalk({t.x, t.y, t.width / n, n, n}, g_.face[t.face])
-            .each(seen_[p.seen], [&](std::uint32_t part) {
-              places.push_back({whole.part + part, p.seen});
-              next(counted(places.back()));
-            });
+  void place_parts(std::size_t turn) {
+    std::vector<Place> places;
+    places.reserve(places_[turn].size());
+    Outline seen;
+    Place last{kLists, 0};  // no list is of more kinds
+    for (const Place& p : places_[turn]) {
+      const std::uint32_t tile = p.list / kLists;
+      const std::uint32_t kind = p.list % kLists;
+      const TileLists& whole = g_.tiles[tile];
+      if (whole.columns == 0) {
+        places.push_back(p);
+        continue;
       }
-      places_[page] = std::move(places);
-    });
+      const Tile& t = tiles_[tile];
+      if (last.list != kind || last.seen != p.seen)
+        seen = seen_again(kind, p.seen, t.face);
+      last = {kind, p.seen};
+      const int n = static_cast<int>(whole.columns);
+      TileWalk({t.x, t.y, t.width / n, n, n}, g_.face[t.face]).each(seen, [&](std::uint32_t part) {
+        places.push_back({kLists * (whole.part + part) + kind, p.seen});
+        next(counts_[places.back().list]);
+      });
+    }
+    places_[turn] = std::move(places);
+  }
+
+  /// Outlines are kept as lists hold them; the few that are asked for again are made again.
+  Outline seen_again(std::uint32_t kind, std::uint32_t number, int f) const {
+    const std::uint32_t id = kind == kBoxList ? boxes_[number].id : outlines_[number].id;
+    Outline seen;
+    onlooker_.see(id, f, float_not_above(onlooker_.distance(id, onlooker_.box(id))), seen);
+    to_tiles(g_.face[f], seen);
+    return seen;
   }
 
   /// Sets where the lists of a kind begin, from counts; which become the next free place of each
@@ -263,7 +263,7 @@ class Builder {
   std::uint32_t begin_lists(int kind, std::uint32_t before) {
     std::uint32_t first = 0;
     for (std::size_t t = 0; t < tiles_.size(); ++t) {
-      std::uint32_t& n = counts_[2 * t + static_cast<std::size_t>(kind)];
+      std::uint32_t& n = counts_[kLists * t + static_cast<std::size_t>(kind)];
       g_.tiles[t].first[kind] = first;
       first += n;
       n = before + first - n;
@@ -277,57 +277,57 @@ class Builder {
     const std::uint32_t outlines = begin_lists(kOutlineList, 0);
     const std::uint32_t boxes = begin_lists(kBoxList, outlines);
     references_.resize(outlines + boxes);
-    each_page([&](std::uint32_t page) {
-      for (const Place& p : places_[page])
-        references_[next(counted(p))] = reference(seen_[p.seen], p.seen);
+    each_turn(places_.size(), options_.threads, [&](std::size_t turn) {
+      for (const Place& p : places_[turn])
+        references_[next(counts_[p.list])] = p.seen;
     });
     g_.outlines.resize(outlines / kOutlines + 1);
     g_.boxes.resize(boxes / kOutlines + 1);
-    write_lists(kOutlineList, 0, [&](std::uint32_t at, const Seen& s, const Tile& t) {
-      set_outline(g_.outlines[at / kOutlines], at % kOutlines, s, t);
-    });
-    write_lists(kBoxList, outlines, [&](std::uint32_t at, const Seen& s, const Tile& t) {
-      set_box(g_.boxes[at / kOutlines], at % kOutlines, s, t);
-    });
+    write_lists(kOutlineList, {references_.data(), outlines}, outlines_, g_.outlines.data());
+    write_lists(kBoxList, {references_.data() + outlines, boxes}, boxes_, g_.boxes.data());
   }
 
-  /// Asks for what is seen of a primitive, which comes from afar.
-  static void fetch(const Seen& s) {
-    const char* const bytes = reinterpret_cast<const char*>(&s);
-    for (std::size_t line = 0; line < sizeof s; line += 64)
-      __builtin_prefetch(bytes + line);
-  }
-
-  /// Writes the lists of a kind, of whose references `before` others come first.
-  template <class Write>
-  void write_lists(int kind, std::uint32_t before, const Write& write) {
-    const auto n = static_cast<std::ptrdiff_t>(tiles_.size());
-    Reference* const all = references_.data() + before;
-#pragma omp parallel for schedule(dynamic, 256) num_threads(options_.threads)
-    for (std::ptrdiff_t i = 0; i < n; ++i) {
-      const auto t = static_cast<std::size_t>(i);
-      const std::uint32_t first = g_.tiles[t].first[kind];
-      const std::uint32_t end = g_.tiles[t + 1].first[kind];
-      for (std::uint32_t at = first; at < end; ++at)
-        fetch(seen_[all[at].seen]);
-      std::sort(all + first, all + end);
-      for (std::uint32_t at = first; at < end; ++at)
-        write(at, seen_[all[at].seen], tiles_[t]);
-    }
+  /// Writes the lists of a kind. What is seen comes from afar: it is asked for early.
+  template <class Seen, class Block>
+  void write_lists(int kind,
+                   std::span<const std::uint32_t> all,
+                   const SeenPages<Seen>& seen,
+                   Block* blocks) {
+    constexpr std::size_t kTiles = 256;
+    constexpr std::size_t kAhead = 24;
+    const std::size_t turns = all.empty() ? 0 : (tiles_.size() + kTiles - 1) / kTiles;
+    const auto write = [&](std::size_t turn, std::vector<Reference>& sorted) {
+      const std::size_t last = std::min((turn + 1) * kTiles, tiles_.size());
+      for (std::size_t t = turn * kTiles; t < last; ++t) {
+        const std::uint32_t first = g_.tiles[t].first[kind];
+        const std::uint32_t end = g_.tiles[t + 1].first[kind];
+        sorted.clear();
+        for (std::uint32_t i = first; i < end; ++i) {
+          __builtin_prefetch(&seen[all[std::min(i + kAhead, all.size() - 1)]]);
+          const Seen& s = seen[all[i]];
+          sorted.push_back({std::uint64_t{ordered(s.near)} << 32 | s.id, all[i]});
+        }
+        std::sort(sorted.begin(), sorted.end());
+        for (std::uint32_t i = first; i < end; ++i)
+          set_place(blocks[i / kOutlines], i % kOutlines, seen[sorted[i - first].seen], tiles_[t]);
+      }
+    };
+    each_turn(
+        turns, options_.threads, [] { return std::vector<Reference>(); }, write);
   }
 
   const Primitives& p_;
-  std::span<const std::uint32_t> ids_, large_;
-  const Viewpoint& from_;
+  const Onlooker onlooker_;
   const PerspectiveOptions& options_;
+  const std::size_t primitives_;
   PerspectiveGrid g_;
   Sight sight_;
-  SeenPages& seen_ = sight_.seen;
+  SeenPages<SeenOutline> outlines_;
+  SeenPages<SeenBox> boxes_;
   std::vector<Tile> tiles_;
-  /// [2 tiles] of each what is listed as outlines, then as boxes
-  std::vector<std::uint32_t> counts_;
-  std::vector<std::vector<Place>> places_;  ///< [pages of what is seen]
-  RawVector<Reference> references_;
+  std::vector<std::uint32_t> counts_;       ///< [lists of all tiles] what stands in each
+  std::vector<std::vector<Place>> places_;  ///< [turns]
+  RawVector<std::uint32_t> references_;     ///< what is seen, list after list
 };
 
 }  // namespace

@@ -17,18 +17,34 @@ void Window::add(const Window& w) {
   for (int j = 0; j < 2; ++j) {
     lo[j] = std::min(lo[j], w.lo[j]);
     hi[j] = std::max(hi[j], w.hi[j]);
+    across[j] += w.across[j];
   }
   near = std::min(near, w.near);
   seen += w.seen;
+  large += w.large;
+  area += w.area;
 }
 
-void Window::add(const Outline& o) {
-  add(Window{
-      {o.lo[0], o.lo[1]},
-      {o.hi[0], o.hi[1]},
-      o.near,
-      1,
-  });
+void Window::add(const Bounds& o) {
+  for (int j = 0; j < 2; ++j) {
+    lo[j] = std::min(lo[j], o.lo[j]);
+    hi[j] = std::max(hi[j], o.hi[j]);
+    across[j] += o.hi[j] - o.lo[j];
+  }
+  near = std::min(near, o.near);
+  ++seen;
+  area += (o.hi[0] - o.lo[0]) * (o.hi[1] - o.lo[1]);
+}
+
+void Window::add_large(const Bounds& o) {
+  near = std::min(near, o.near);
+  ++large;
+}
+
+double Window::most_references(const PointFace& f) const {
+  const double all = static_cast<double>(large) * (f.nx * f.ny + 1);
+  return all + area * f.per_u * f.per_v + across[0] * f.per_u + across[1] * f.per_v +
+         static_cast<double>(seen);
 }
 
 void Window::lay_tiles(PointFace& face, double tiles) const {
@@ -45,36 +61,34 @@ void Window::lay_tiles(PointFace& face, double tiles) const {
   face.per_v = face.ny / size[1];
 }
 
-float least_depth(const Seen& seen) {
-  return float_not_above(seen.outline.near);
-}
-
-void set_outline(OutlineBlock& block, std::uint32_t k, const Seen& seen, const Tile& t) {
+void set_place(OutlineBlock& block, std::uint32_t k, const SeenOutline& seen, const Tile& t) {
   const bool beyond = t.width == 0;  // places mean nothing there
+  const float x = static_cast<float>(t.x - seen.anchor.x);
+  const float y = static_cast<float>(t.y - seen.anchor.y);
+  const float width = static_cast<float>(t.width);
   for (int i = 0; i < 3; ++i) {
-    const HalfPlane& s = seen.outline.side[i];
-    const double at_corner = s.c + (s.a * t.x + s.b * t.y);
-    block.side[i][0][k] = beyond ? 0 : static_cast<float>(s.a * t.width);
-    block.side[i][1][k] = beyond ? 0 : static_cast<float>(s.b * t.width);
-    block.side[i][2][k] = beyond ? 1 : static_cast<float>(at_corner);
+    const float* const s = seen.side[i];
+    const float at_corner = s[2] + (s[0] * x + s[1] * y);
+    block.side[i][0][k] = beyond ? 0 : s[0] * width;
+    block.side[i][1][k] = beyond ? 0 : s[1] * width;
+    block.side[i][2][k] = beyond ? 1 : at_corner;
   }
-  block.near[k] = least_depth(seen);
-  block.far[k] = beyond || !seen.outline.solid ? std::numeric_limits<float>::infinity()
-                                               : float_not_below(seen.outline.far);
+  block.near[k] = seen.near;
+  block.far[k] = beyond ? std::numeric_limits<float>::infinity() : seen.far;
   block.id[k] = seen.id;
 }
 
-void set_box(BoxBlock& block, std::uint32_t k, const Seen& seen, const Tile& t) {
-  const double at[2] = {t.x, t.y};
+void set_place(BoxBlock& block, std::uint32_t k, const SeenBox& seen, const Tile& t) {
+  const double at[2] = {t.x - seen.anchor.x, t.y - seen.anchor.y};
   const bool beyond = t.width == 0;
   const double columns = beyond ? 0 : 1 / t.width;
   for (int j = 0; j < 2; ++j) {
-    const double lo = beyond ? -1 : (seen.outline.lo[j] - at[j]) * columns;
-    const double hi = beyond ? 2 : (seen.outline.hi[j] - at[j]) * columns;
+    const double lo = beyond ? -1 : (seen.lo[j] - at[j]) * columns;
+    const double hi = beyond ? 2 : (seen.hi[j] - at[j]) * columns;
     block.lo[j][k] = float_not_above(std::max(lo, -1.));
     block.hi[j][k] = float_not_below(std::min(hi, 2.));
   }
-  block.near[k] = least_depth(seen);
+  block.near[k] = seen.near;
   block.id[k] = seen.id;
 }
 

@@ -12,10 +12,16 @@ struct Window {
   double lo[2] = {1e300, 1e300}, hi[2] = {-1e300, -1e300};
   double near = 1e300;
   std::uint64_t seen = 0;
+  std::uint64_t large = 0;    ///< others, which stand in no grid of the scene and widen no window
+  double across[2] = {0, 0};  ///< sums of widths and heights
+  double area = 0;
   void add(const Window& w);
-  void add(const Outline& o);
+  void add(const Bounds& o);
+  void add_large(const Bounds& o);
   /// Lays about so many square tiles, over a little more than the window.
   void lay_tiles(PointFace& face, double tiles) const;
+  /// What the lists of a face's tiles hold at most, by bounds of what is seen.
+  double most_references(const PointFace& face) const;
 };
 
 /// A tile of any level: its corner and width in tiles of its face. Width 0: beyond all others.
@@ -24,11 +30,8 @@ struct Tile {
   int face;
 };
 
-/// As lists hold it, not above.
-float least_depth(const Seen& seen);
-
 /// Sets place k of a block.
-void set_outline(OutlineBlock& block, std::uint32_t k, const Seen& seen, const Tile& tile);
-void set_box(BoxBlock& block, std::uint32_t k, const Seen& seen, const Tile& tile);
+void set_place(OutlineBlock& block, std::uint32_t k, const SeenOutline& seen, const Tile& tile);
+void set_place(BoxBlock& block, std::uint32_t k, const SeenBox& seen, const Tile& tile);
 
 }  // namespace grelha

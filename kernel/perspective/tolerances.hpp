@@ -9,6 +9,8 @@ inline constexpr double kLookUp = 0x1p-48;
 inline constexpr double kPlaceRounding = 0x1p-22;
 /// Of the coefficients of a side: what floats round by when it is evaluated, 8 u.
 inline constexpr double kSideRounding = 0x1p-21;
+/// Times that, for each tile between where a side is told from and where it is evaluated, 16 u.
+inline constexpr double kSpanRounding = 2;
 /// Nearer primitives, in pads, have no outline: every ray meets them.
 inline constexpr double kNearest = 8;
 /// What rays may miss primitives by, in pads of the object grids, and how far they stray from the

@@ -1,0 +1,56 @@
+#pragma once
+// Work in turns that threads take as they come, with exceptions that must not leave a thread.
+
+#include <cstddef>
+#include <exception>
+#include <mutex>
+
+namespace grelha {
+
+/// What was thrown first by any thread.
+class Thrown {
+ public:
+  template <class Work>
+  void in(const Work& work) {
+    try {
+      work();
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      if (!first_)
+        first_ = std::current_exception();
+    }
+  }
+  void on() const {
+    if (first_)
+      std::rethrow_exception(first_);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::exception_ptr first_;
+};
+
+/// Calls work(turn, state) for each turn below `count`, `state` being one of the thread's own, made
+/// by make_state().
+template <class MakeState, class Work>
+void each_turn(std::size_t count, int threads, const MakeState& make_state, const Work& work) {
+  Thrown thrown;
+  const auto turns = static_cast<std::ptrdiff_t>(count);
+#pragma omp parallel num_threads(threads)
+  {
+    auto state = make_state();
+#pragma omp for schedule(dynamic, 1)
+    for (std::ptrdiff_t turn = 0; turn < turns; ++turn)
+      thrown.in([&] { work(static_cast<std::size_t>(turn), state); });
+  }
+  thrown.on();
+}
+
+/// Calls work(turn) for each turn below `count`.
+template <class Work>
+void each_turn(std::size_t count, int threads, const Work& work) {
+  each_turn(
+      count, threads, [] { return 0; }, [&](std::size_t turn, int) { work(turn); });
+}
+
+}  // namespace grelha

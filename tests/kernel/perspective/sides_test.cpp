@@ -1,0 +1,73 @@
+// Sides of outlines as lists hold them, in floats: what lies inside of a side to the last bit of a
+// double is never outside of it, however far the list's tile is from where its primitive begins.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "kernel/perspective/tiles.hpp"
+#include "tests/support/random.hpp"
+
+namespace grelha::test {
+namespace {
+
+/// A face of so many tiles along each axis.
+PointFace face_of(double tiles) {
+  PointFace face;
+  face.u = face.v = -1;
+  face.nx = face.ny = tiles;
+  face.per_u = face.per_v = tiles / 2;
+  return face;
+}
+
+/// A side through a place of a face that leaves nothing open by itself, and bounds of its primitive
+/// that begin `span` tiles before the place, at most.
+Outline side_through(Random& random, const PointFace& face, const double (&place)[2], double span) {
+  Outline o = {};
+  const double angle = random.in(0, 6.28);
+  const double size = random.log_in(1e-3, 1e3);
+  for (HalfPlane& s : o.side) {
+    s.a = size * std::cos(angle);
+    s.b = size * std::sin(angle);
+    s.c = -(s.a * place[0] + s.b * place[1]);
+  }
+  for (int j = 0; j < 2; ++j) {
+    const double reach = random.in(0, span) / face.per_u;
+    o.lo[j] = std::max(place[j] - reach, -1.);
+    o.hi[j] = std::min(place[j] + random.in(0, .1), 1.);
+  }
+  return o;
+}
+
+/// As look-ups evaluate it, at a place of the tile that holds it.
+float evaluated(const Outline& tiled, const PointFace& face, const double (&place)[2]) {
+  double at[2], corner[2];
+  for (int j = 0; j < 2; ++j) {
+    const double in_tiles = (place[j] - (j == 0 ? face.u : face.v)) * face.per_u;
+    corner[j] = std::min(std::floor(in_tiles), face.nx - 1);
+    at[j] = in_tiles - corner[j];
+  }
+  OutlineBlock block;
+  set_place(block, 0, SeenOutline(face, tiled, 0), {corner[0], corner[1], 1, 0});
+  const float x = static_cast<float>(at[0]);
+  const float y = static_cast<float>(at[1]);
+  return (block.side[0][0][0] * x + block.side[0][1][0] * y) + block.side[0][2][0];
+}
+
+class Sides : public testing::TestWithParam<double> {};
+
+TEST_P(Sides, HoldWhatLiesOnThem) {
+  Random random(31);
+  const double span = GetParam();
+  const PointFace face = face_of(4096);
+  for (int i = 0; i < 20000; ++i) {
+    const double place[2] = {random.in(-1, 1), random.in(-1, 1)};
+    Outline seen = side_through(random, face, place, span);
+    to_tiles(face, seen);
+    ASSERT_GE(evaluated(seen, face, place), 0) << place[0] << ' ' << place[1];
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Spans, Sides, testing::Values(1., 30., 4000.));
+
+}  // namespace
+}  // namespace grelha::test
