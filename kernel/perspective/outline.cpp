@@ -40,11 +40,11 @@ void clear(Outline& o) {
 /// Grows what add() has put together by what rays may miss it by, `aside` and along, and cuts it to
 /// the face. False: nothing is left.
 bool finish(Bounds& o, double aside, double pad, double least) {
-  const double grow = 2 * aside / (least - 2 * pad) * kRoom;
+  const double grow = 2 * aside / (least - 2 * pad);
   bool some = true;
   for (int j = 0; j < 2; ++j) {
-    o.lo[j] = std::max(o.lo[j] - grow, -1 - kOverlap);
-    o.hi[j] = std::min(o.hi[j] + grow, 1 + kOverlap);
+    o.lo[j] = std::max(o.lo[j] - grow, -1.);
+    o.hi[j] = std::min(o.hi[j] + grow, 1.);
     some &= o.lo[j] <= o.hi[j];
   }
   o.near = std::max(o.near - pad, least - pad);
@@ -54,7 +54,7 @@ bool finish(Bounds& o, double aside, double pad, double least) {
 
 /// What a side leaves open, over the length of its normal.
 double side_margin(double pad, double least) {
-  return pad / (least - pad) * kRoom;
+  return pad / (least - pad);
 }
 
 /// n: across the side, towards what is seen.
@@ -99,16 +99,14 @@ bool see(const Primitives& p,
     const Vector &a = c[(k + 1) % 3], &b = c[(k + 2) % 3];
     const Vector edge = b - a;
     const Vector n = cross(a, edge);
-    const double square = dot(n, n);
+    const double size = length(n);
     const double height = dot(n, c[k]);
-    const double size = std::sqrt(square);
+    const double rounding = kNormalRounding * std::sqrt(dot(a, a) * dot(edge, edge));
+    const double unsure = rounding * length(c[k]);
     // else seen from the edge, and no side of it is for sure
-    o.solid &= std::abs(height) > kSolid * aside * size;
-    if (!(square > kNarrowest * kNarrowest * dot(a, a) * dot(edge, edge)) || height == 0) {
-      o.solid = false;
-      continue;
-    }
-    o.side[k] = half_plane(height > 0 ? n : scaled(-1, n), margin * size);
+    o.solid &= std::abs(height) > kSolid * (aside * size + unsure);
+    if (std::abs(height) > unsure)
+      o.side[k] = half_plane(height > 0 ? n : scaled(-1, n), margin * size + rounding);
   }
   return true;
 }
@@ -243,7 +241,7 @@ void add_sides(
   const double g01 = dot(c[0], c[1]);
   const double g11 = dot(c[1], c[1]);
   const double det = dot(across, across);
-  if (!(det > kNarrowest * g00 * g11))
+  if (!(det > kNarrowestCone * g00 * g11))
     return;
   const double r0 = radius[0] + pad;
   const double r1 = radius[1] + pad;

@@ -175,7 +175,7 @@ class Builder {
       to.push_back({kLists * (first + beyond) + kind, number});
     if (beyond == 0)
       return;
-    TileWalk({0, 0, 1, columns, rows}, face).each(seen, [&](std::uint32_t tile) {
+    TileWalk({0, 0, 1, columns, rows}).each(seen, [&](std::uint32_t tile) {
       to.push_back({kLists * (first + tile) + kind, number});
     });
   }
@@ -241,7 +241,7 @@ class Builder {
         seen = seen_again(kind, p.seen, t.face);
       last = {kind, p.seen};
       const int n = static_cast<int>(whole.columns);
-      TileWalk({t.x, t.y, t.width / n, n, n}, g_.face[t.face]).each(seen, [&](std::uint32_t part) {
+      TileWalk({t.x, t.y, t.width / n, n, n}).each(seen, [&](std::uint32_t part) {
         places.push_back({kLists * (whole.part + part) + kind, p.seen});
         next(counts_[places.back().list]);
       });

@@ -38,12 +38,11 @@ struct FaceTiles {
 };
 
 void scale_side(const FaceTiles& f, double rounding, HalfPlane& s) {
-  const double size = std::abs(s.a) + std::abs(s.b) + std::abs(s.c);
   s.c += s.a * f.u + s.b * f.v;
   s.a *= f.width;
   s.b *= f.height;
   const double across = std::abs(s.a) + std::abs(s.b);
-  const double margin = s.margin + kLookUp * size + rounding * across;
+  const double margin = s.margin + rounding * across;
   const double scale = margin > 0 ? 1 / margin : 0;
   s.a *= scale;
   s.b *= scale;
@@ -55,8 +54,8 @@ void scale_side(const FaceTiles& f, double rounding, HalfPlane& s) {
 void to_tiles(const PointFace& f, Bounds& o) {
   const double per[2] = {f.per_u, f.per_v}, at[2] = {f.u, f.v};
   for (int j = 0; j < 2; ++j) {
-    o.lo[j] = (o.lo[j] - at[j] - kLookUp) * per[j] - kPlaceRounding;
-    o.hi[j] = (o.hi[j] - at[j] + kLookUp) * per[j] + kPlaceRounding;
+    o.lo[j] = (o.lo[j] - at[j]) * per[j] - kPlaceRounding;
+    o.hi[j] = (o.hi[j] - at[j]) * per[j] + kPlaceRounding;
   }
   o.near -= f.depth;
   o.far -= f.depth;
@@ -70,7 +69,7 @@ void to_tiles(const PointFace& f, Outline& o) {
       1 / f.per_u,
       1 / f.per_v,
   };
-  const double rounding = kSideRounding * (1 + kSpanRounding * span_of(f, o));
+  const double rounding = kOutlineRounding * (1 + kSpanRounding * span_of(f, o));
   for (HalfPlane& s : o.side)
     scale_side(tiles, rounding, s);
 }
@@ -102,8 +101,8 @@ int TileWalk::row_of(double y) const {
 }
 
 TileRun TileWalk::run_between(double lo, double hi) const {
-  const double end = raster_.x + raster_.columns * raster_.width + slack_[0];
-  if (!(lo <= hi) || hi < raster_.x - slack_[0] || lo > end)
+  const double end = raster_.x + raster_.columns * raster_.width + kPlaceRounding;
+  if (!(lo <= hi) || hi < raster_.x - kPlaceRounding || lo > end)
     return {0, 0};
   return {
       clamped((lo - raster_.x) * squares_, raster_.columns),
@@ -112,16 +111,16 @@ TileRun TileWalk::run_between(double lo, double hi) const {
 }
 
 TileRun TileWalk::run_of(const Outline& seen, int row) const {
-  const double below = raster_.y + row * raster_.width - slack_[1];
-  const double above = raster_.y + (row + 1) * raster_.width + slack_[1];
+  const double below = raster_.y + row * raster_.width - kPlaceRounding;
+  const double above = raster_.y + (row + 1) * raster_.width + kPlaceRounding;
   double lo = seen.lo[0];
   double hi = seen.hi[0];
   for (const HalfPlane& s : seen.side) {
     const double c = s.c + s.b * (s.b > 0 ? above : below);
     if (s.a > 0)
-      lo = std::max(lo, -c / s.a - slack_[0]);
+      lo = std::max(lo, -c / s.a - kPlaceRounding);
     else if (s.a < 0)
-      hi = std::min(hi, -c / s.a + slack_[0]);
+      hi = std::min(hi, -c / s.a + kPlaceRounding);
     else if (c < 0)
       return {0, 0};
   }

@@ -34,10 +34,7 @@ void to_tiles(const PointFace& face, Outline& outline);
 /// The squares of a raster that a primitive may be met in.
 class TileWalk {
  public:
-  TileWalk(const TileRaster& raster, const PointFace& face)
-      : raster_(raster),
-        squares_(1 / raster.width),
-        slack_{kLookUp * face.per_u + kPlaceRounding, kLookUp * face.per_v + kPlaceRounding} {}
+  explicit TileWalk(const TileRaster& raster) : raster_(raster), squares_(1 / raster.width) {}
   /// Calls visit(number) for each; x runs fastest. `seen`: in tiles.
   template <class Visit>
   void each(const Outline& seen, const Visit& visit) const {
@@ -56,8 +53,7 @@ class TileWalk {
   TileRun bounds_of(const Bounds& seen) const { return run_between(seen.lo[0], seen.hi[0]); }
   TileRun run_between(double lo, double hi) const;
   TileRaster raster_;
-  double squares_;   ///< a tile's width
-  double slack_[2];  ///< what look-ups round by, in tiles
+  double squares_;  ///< a tile's width
 };
 
 /// A tile of a face that what is seen of a primitive is told from.

@@ -3,12 +3,11 @@
 
 namespace grelha {
 
-/// What look-ups in double round by, in u and v: 16 ulps of the largest, 1.
-inline constexpr double kLookUp = 0x1p-48;
-/// What places within a tile round by, in tiles: floats of at most 1, and a product.
+/// What places within a tile round by, in tiles: 2^-36 of look-ups in double, floats of at most 1,
+/// and a product for each level of parts.
 inline constexpr double kPlaceRounding = 0x1p-22;
 /// Of the coefficients of a side: what floats round by when it is evaluated, 8 u.
-inline constexpr double kSideRounding = 0x1p-21;
+inline constexpr double kOutlineRounding = 0x1p-21;
 /// Times that, for each tile between where a side is told from and where it is evaluated, 16 u.
 inline constexpr double kSpanRounding = 2;
 /// Nearer primitives, in pads, have no outline: every ray meets them.
@@ -22,12 +21,11 @@ inline constexpr double kFarAside = 1;
 /// Margins that a corner lies at least inside of the side across from it, where rays may meet a
 /// triangle for sure.
 inline constexpr double kSolid = 4;
-/// Directions beyond the edge of a face that count as its own: look-ups round.
-inline constexpr double kOverlap = 0x1p-30;
-/// Margins are this much wider than derived, for the rounding of doubles.
-inline constexpr double kRoom = 1 + 0x1p-20;
-/// Sides that are seen under a narrower angle are left out: doubles could not tell on which side of
-/// them a primitive lies.
-inline constexpr double kNarrowest = 1e-6;
+/// Times the lengths of its factors: what a normal is off by in doubles, along a direction whose
+/// largest component is 1.
+inline constexpr double kNormalRounding = 0x1p-49;
+/// Squared sine of the angle that a cone is seen under: thinner ones have no sides, of whose
+/// normals rounding would leave too little.
+inline constexpr double kNarrowestCone = 1e-6;
 
 }  // namespace grelha

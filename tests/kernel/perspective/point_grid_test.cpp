@@ -85,23 +85,26 @@ std::vector<Ray> rays_to(const Float3& point, const std::vector<Float3>& from) {
 }
 
 /// Asks with every instruction set. Returns how many are blocked.
-long expect_same(const World& world, const Scene& scene, const Float3& point, std::uint64_t seed) {
+long expect_same(const World& world, const Float3& point, const std::vector<Float3>& from) {
   const PointGrid grid(world, point, 2);
-  const Askers askers(world, scene, point, seed);
-  const std::vector<Ray> rays = rays_to(point, askers.points);
+  const std::vector<Ray> rays = rays_to(point, from);
   std::vector<std::uint8_t> wanted(rays.size());
   occluded(world, rays, wanted);
   for (const Isa& isa : isas()) {
     if (!isa.compiled || !isa.runs_here)
       continue;
     std::vector<std::uint8_t> found(rays.size(), 7);
-    occluded(grid, Points::of(askers.points), found.data(), {.packet = 256, .isa = isa.name});
+    occluded(grid, Points::of(from), found.data(), {.packet = 256, .isa = isa.name});
     int wrong = 0;
     for (std::size_t i = 0; i < rays.size(); ++i)
       wrong += found[i] != wanted[i];
     EXPECT_EQ(wrong, 0) << isa.name << ", point " << point.x << ' ' << point.y << ' ' << point.z;
   }
   return std::count(wanted.begin(), wanted.end(), std::uint8_t{1});
+}
+
+long expect_same(const World& world, const Scene& scene, const Float3& point, std::uint64_t seed) {
+  return expect_same(world, point, Askers(world, scene, point, seed).points);
 }
 
 struct Family {
@@ -202,6 +205,43 @@ bool same_lists(const PerspectiveGrid& a, const PerspectiveGrid& b) {
   for (std::uint32_t r = 0; r < a.tiles.back().first[kBoxList]; ++r)
     same &= a.boxes[r / kOutlines].id[r % kOutlines] == b.boxes[r / kOutlines].id[r % kOutlines];
   return same;
+}
+
+Float3 moved(const Float3& p, double along, const Float3& way) {
+  return {static_cast<float>(p.x + along * way.x),
+          static_cast<float>(p.y + along * way.y),
+          static_cast<float>(p.z + along * way.z)};
+}
+
+/// A place around an axis, one away from it.
+Float3 on_ring(Random& random, const Float3& axis) {
+  const Float3 d = random.direction();
+  const double along = d.x * axis.x + d.y * axis.y + d.z * axis.z;
+  const Float3 across = moved(d, -along, axis);
+  const double size = std::sqrt(1 - along * along);
+  return moved({0, 0, 0}, 1 / size, across);
+}
+
+/// Walls along the way from a light so far away that doubles hardly tell which side of their edges
+/// it is on; rays pass close by these.
+TEST(PointGrid, FindsWallsThatPointAtAFarLight) {
+  for (const double far : {1e4, 1e5, 3e5, 6e5, 9e5, 1.5e6}) {
+    Random random(29);
+    const Float3 way = random.direction();
+    Scene scene = empty_scene();
+    std::vector<Float3> points;
+    for (int i = 0; i < 300; ++i) {
+      const Float3 a = on_ring(random, way);
+      const Float3 c = moved(a, .2, on_ring(random, way));
+      add_triangle(scene, a, moved(a, 1, way), c);
+      for (int k = 0; k < 30; ++k) {
+        const Float3 beside = between(a, c, random.log_in(1e-7, 1));
+        points.push_back(moved(beside, random.in(-1, 1), way));
+      }
+    }
+    const World world(scene, {});
+    expect_same(world, moved({0, 0, 0}, far, way), points);
+  }
 }
 
 TEST(PointGridLists, AreTheSameForAnyNumberOfThreads) {

@@ -1,10 +1,12 @@
-// Sides of outlines as lists hold them, in floats: what lies inside of a side to the last bit of a
-// double is never outside of it, however far the list's tile is from where its primitive begins.
+// What lists hold, in floats: what lies inside of a side to the last bit of a double is never
+// outside of it, however far the list's tile is from where its primitive begins; and a box of no
+// width holds its place in parts of parts of a tile.
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "kernel/perspective/tiles.hpp"
+#include "kernel/trace/point_lookup.hpp"
 #include "tests/support/random.hpp"
 
 namespace grelha::test {
@@ -68,6 +70,60 @@ TEST_P(Sides, HoldWhatLiesOnThem) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Spans, Sides, testing::Values(1., 30., 4000.));
+
+/// A ray's way to ever smaller parts of tiles, and what is seen exactly where it goes.
+class Descent {
+ public:
+  Descent(const PointFace& face, double u, double v) {
+    seen_.lo[0] = seen_.hi[0] = u;
+    seen_.lo[1] = seen_.hi[1] = v;
+    for (HalfPlane& side : seen_.side)
+      side = {};
+    const double x = (u - face.u) * face.per_u;
+    const double y = (v - face.v) * face.per_v;
+    tile_ = {std::floor(x), std::floor(y), 1, 0};
+    at_ = {static_cast<float>(x - tile_.x), static_cast<float>(y - tile_.y), 0, 0};
+    to_tiles(face, static_cast<Bounds&>(seen_));
+    box_ = SeenBox(face, seen_, 0);
+  }
+  /// Goes on to one of n x n parts; false: what is seen is not placed there.
+  bool go_on(int n) {
+    at_ = scalar::look_closer(at_, true, static_cast<float>(n));
+    const int part = static_cast<int>(at_.tile);
+    const double width = tile_.width / n;
+    bool placed = false;
+    TileWalk({tile_.x, tile_.y, width, n, n}).each(seen_, [&](std::uint32_t number) {
+      placed |= static_cast<int>(number) == part;
+    });
+    tile_ = {tile_.x + part % n * width, tile_.y + part / n * width, width, 0};
+    return placed;
+  }
+  bool holds() const {
+    BoxBlock b;
+    set_place(b, 0, box_, tile_);
+    return b.lo[0][0] <= at_.x && at_.x <= b.hi[0][0] && b.lo[1][0] <= at_.y && at_.y <= b.hi[1][0];
+  }
+
+ private:
+  Outline seen_ = {};
+  SeenBox box_;
+  Tile tile_;
+  scalar::SearchPlaces at_;
+};
+
+TEST(Boxes, HoldTheirPlacesInParts) {
+  Random random(32);
+  const PointFace face = face_of(512);
+  for (int i = 0; i < 20000; ++i) {
+    Descent descent(face, random.in(-1, 1), random.in(-1, 1));
+    ASSERT_TRUE(descent.holds()) << i;
+    for (int level = 1; level <= 4; ++level) {
+      const bool placed = descent.go_on(2 + static_cast<int>(random.below(15)));
+      ASSERT_TRUE(placed) << i << ", level " << level;
+      ASSERT_TRUE(descent.holds()) << i << ", level " << level;
+    }
+  }
+}
 
 }  // namespace
 }  // namespace grelha::test
