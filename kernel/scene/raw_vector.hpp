@@ -36,7 +36,7 @@ struct RawAllocator {
     return static_cast<T*>(p);
   }
   void deallocate(T* p, std::size_t n) {
-    ::operator delete (p, bytes_for(n), std::align_val_t{alignment(n)});
+    ::operator delete (p, std::align_val_t{alignment(n)});
   }
   template <class U, class... Args>
   void construct(U* p, Args&&... args) {
