@@ -253,7 +253,7 @@ class PointSearch {
     store(p_.id + i, select(lanes, by, load<Lanes>(p_.id + i)));
   }
 
-  void test(std::uint32_t id) {
+  [[gnu::noinline]] void test(std::uint32_t id) {
     if (id == tested_)
       return;
     tested_ = id;
