@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdlib>
+#include <cstring>
 #include <new>
 #include <sstream>
 #include <vector>
@@ -58,9 +59,15 @@ void* operator new(std::size_t n) {
   return count(std::malloc(n));
 }
 // What begins on a large page lies in up to another that nothing touches: what is asked for counts.
+// It is written down in front of what is handed out.
 void* operator new(std::size_t n, std::align_val_t a) {
+  const auto front = static_cast<std::size_t>(a);
   void* p = nullptr;
-  return count(posix_memalign(&p, static_cast<std::size_t>(a), n) == 0 ? p : nullptr, n);
+  if (posix_memalign(&p, front, front + n) != 0)
+    throw std::bad_alloc();
+  char* const given = static_cast<char*>(p) + front;
+  std::memcpy(given - sizeof n, &n, sizeof n);
+  return count(given, n);
 }
 void operator delete(void* p) noexcept {
   give_back(p);
@@ -68,12 +75,14 @@ void operator delete(void* p) noexcept {
 void operator delete(void* p, std::size_t) noexcept {
   give_back(p);
 }
-void operator delete(void* p, std::align_val_t) noexcept {
-  give_back(p);
-}
-void operator delete(void* p, std::size_t n, std::align_val_t) noexcept {
+void operator delete(void* p, std::align_val_t a) noexcept {
+  std::size_t n = 0;
+  std::memcpy(&n, static_cast<char*>(p) - sizeof n, sizeof n);
   owned -= static_cast<std::ptrdiff_t>(n);
-  std::free(p);
+  std::free(static_cast<char*>(p) - static_cast<std::size_t>(a));
+}
+void operator delete(void* p, std::size_t, std::align_val_t a) noexcept {
+  operator delete(p, a);
 }
 #endif
 
