@@ -30,11 +30,14 @@ void clear(Bounds& o) {
   o.near = 1e300;
   o.far = -1e300;
 }
-void clear(Outline& o) {
-  clear(static_cast<Bounds&>(o));
+void clear_sides(Outline& o) {
   o.solid = false;
   for (HalfPlane& side : o.side)
     side = {};
+}
+void clear(Outline& o) {
+  clear(static_cast<Bounds&>(o));
+  clear_sides(o);
 }
 
 /// Grows what add() has put together by what rays may miss it by, `aside` and along, and cuts it to
@@ -67,6 +70,48 @@ HalfPlane half_plane(const Vector& n, double margin) {
   };
 }
 
+/// Bounds of what of a triangle is deep enough. False: nothing is.
+bool bound(Bounds& o, const Vector (&c)[3], double front) {
+  clear(o);
+  if (c[0].r >= front && c[1].r >= front && c[2].r >= front) {
+    for (const Vector& corner : c)
+      add(o, corner);
+    return true;
+  }
+  for (int k = 0; k < 3; ++k) {
+    const Vector &a = c[k], &b = c[(k + 1) % 3];
+    if (a.r >= front)
+      add(o, a);
+    if ((a.r < front) != (b.r < front))
+      add(o, a - scaled((front - a.r) / (a.r - b.r), b - a));
+  }
+  return o.far >= front;
+}
+
+/// What cross(a, edge) is off by, see kNormalRounding.
+double normal_rounding(const Vector& a, const Vector& edge) {
+  return kNormalRounding * std::sqrt(dot(a, a) * dot(edge, edge));
+}
+
+/// The sides of a triangle, where doubles tell on which side of each it lies.
+void set_sides(Outline& o, const Vector (&c)[3], double margin) {
+  // What the corners span with the point: each lies on one side of the plane of the others. Seen
+  // from the edge, nobody knows on which.
+  const Vector first = c[1] - c[0];
+  const double volume = dot(cross(c[0], first), c[2]);
+  const double unsure = normal_rounding(c[0], first) * length(c[2]);
+  if (!(std::abs(volume) > unsure))
+    return clear_sides(o);
+  o.solid = true;
+  for (int k = 0; k < 3; ++k) {
+    const Vector& a = c[k];
+    const Vector edge = c[k == 2 ? 0 : k + 1] - a;
+    const Vector n = cross(a, edge);
+    const double open = margin * length(n) + normal_rounding(a, edge);
+    o.side[k] = half_plane(volume > 0 ? n : scaled(-1, n), open);
+  }
+}
+
 bool see(const Primitives& p,
          const Viewpoint& from,
          Triangle,
@@ -75,39 +120,16 @@ bool see(const Primitives& p,
          double least,
          Outline& o) {
   const auto t = p.of<Triangle>()[i];
-  Vector c[3];
-  for (int k = 0; k < 3; ++k)
-    c[k] = turned(relative(from, t.corner[k]), face);
-  // Of the triangle what is deep enough; what rays meet may lie beside it.
-  const double front = least - 2 * from.pad;
-  const double aside = from.aside;
-  if (c[0].r < front && c[1].r < front && c[2].r < front)
+  const FaceAxes axes(face);
+  const Vector c[3] = {
+      relative(from, t.corner[0], axes),
+      relative(from, t.corner[1], axes),
+      relative(from, t.corner[2], axes),
+  };
+  // what rays meet may lie beside the triangle
+  if (!bound(o, c, least - 2 * from.pad) || !finish(o, from.aside, from.pad, least))
     return false;
-  clear(o);
-  for (int k = 0; k < 3; ++k) {
-    const Vector &a = c[k], &b = c[(k + 1) % 3];
-    if (a.r >= front)
-      add(o, a);
-    if ((a.r < front) != (b.r < front))
-      add(o, a - scaled((front - a.r) / (a.r - b.r), b - a));
-  }
-  if (!(o.far >= front) || !finish(o, aside, from.pad, least))
-    return false;
-  o.solid = true;
-  const double margin = side_margin(aside, least);
-  for (int k = 0; k < 3; ++k) {
-    const Vector &a = c[(k + 1) % 3], &b = c[(k + 2) % 3];
-    const Vector edge = b - a;
-    const Vector n = cross(a, edge);
-    const double size = length(n);
-    const double height = dot(n, c[k]);
-    const double rounding = kNormalRounding * std::sqrt(dot(a, a) * dot(edge, edge));
-    const double unsure = rounding * length(c[k]);
-    // else seen from the edge, and no side of it is for sure
-    o.solid &= std::abs(height) > kSolid * (aside * size + unsure);
-    if (std::abs(height) > unsure)
-      o.side[k] = half_plane(height > 0 ? n : scaled(-1, n), margin * size + rounding);
-  }
+  set_sides(o, c, side_margin(from.aside, least));
   return true;
 }
 
@@ -151,7 +173,7 @@ bool see(const Primitives& p,
   const auto s = p.of<Sphere>()[i];
   const double front = least - 2 * from.pad;
   clear(o);
-  add_ball(o, turned(relative(from, s.center), face), std::abs(double{s.radius}), front);
+  add_ball(o, relative(from, s.center, FaceAxes(face)), std::abs(double{s.radius}), front);
   return o.far >= front && finish(o, from.pad, from.pad, least);
 }
 
@@ -190,8 +212,9 @@ FaceBox around(const Vector (&c)[2], const double (&radius)[2]) {
 
 /// What of a box may be met.
 bool see_box(const Box& box, const Viewpoint& from, int face, double least, Bounds& o) {
-  const Vector a = turned(relative(from, box.lo), face);
-  const Vector b = turned(relative(from, box.hi), face);
+  const FaceAxes axes(face);
+  const Vector a = relative(from, box.lo, axes);
+  const Vector b = relative(from, box.hi, axes);
   const double front = least - 2 * from.pad;
   clear(o);
   add_box(o, {{a.p, a.q, std::min(a.r, b.r)}, {b.p, b.q, std::max(a.r, b.r)}}, front);

@@ -18,9 +18,6 @@ inline constexpr double kNearPads = 1;
 inline constexpr double kNearAside = 1. / 16;
 inline constexpr double kFarPads = 2;
 inline constexpr double kFarAside = 1;
-/// Margins that a corner lies at least inside of the side across from it, where rays may meet a
-/// triangle for sure.
-inline constexpr double kSolid = 4;
 /// Times the lengths of its factors: what a normal is off by in doubles, along a direction whose
 /// largest component is 1.
 inline constexpr double kNormalRounding = 0x1p-49;

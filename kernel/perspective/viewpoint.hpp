@@ -57,18 +57,40 @@ Vector relative(const Viewpoint& from, const T (&x)[3]) {
   };
 }
 
-/// Turned to the axes of a face.
-inline Vector turned(const Vector& x, int face) {
+/// The axes of a face.
+struct FaceAxes {
+  int p, q, r;
+  bool down;  ///< against its own axis
+
+  explicit FaceAxes(int face)
+      : p(kNext[face / 2]), q(kLast[face / 2]), r(face / 2), down(face % 2) {}
+
+ private:
+  static constexpr int kNext[3] = {1, 2, 0};
+  static constexpr int kLast[3] = {2, 0, 1};
+};
+
+/// A place or a direction along the axes of a face.
+template <class T>
+FacePoint relative(const Viewpoint& from, const T (&x)[3], const FaceAxes& axes) {
+  const double r = x[axes.r] - from.at[axes.r];
+  return {
+      x[axes.p] - from.at[axes.p],
+      x[axes.q] - from.at[axes.q],
+      axes.down ? -r : r,
+  };
+}
+inline FacePoint turned(const Vector& x, int face) {
   const double c[3] = {
       x.p,
       x.q,
       x.r,
   };
-  const int a = face / 2;
+  const FaceAxes axes(face);
   return {
-      c[(a + 1) % 3],
-      c[(a + 2) % 3],
-      face % 2 == 0 ? c[a] : -c[a],
+      c[axes.p],
+      c[axes.q],
+      axes.down ? -c[axes.r] : c[axes.r],
   };
 }
 

@@ -25,13 +25,14 @@ Float3 between(const Float3& a, const Float3& b, double share) {
 }
 
 /// Points that ask: anywhere, on surfaces, beyond corners of triangles as the point sees them, and
-/// on the borders of the cube's faces around it.
+/// on the borders of the cube's faces around it; half of them many side by side, which are looked
+/// up together.
 class Askers {
  public:
   Askers(const World& world, const Scene& scene, const Float3& point, std::uint64_t seed)
       : world_(world), scene_(scene), point_(point), random_(seed) {
     for (int i = 0; i < kPoints; ++i)
-      points.push_back(next(i % 4));
+      points.push_back(i % 64 < 32 ? next(i % 4) : near(points[points.size() - 1 - i % 32]));
   }
   std::vector<Float3> points;
 
@@ -45,6 +46,13 @@ class Askers {
     if (kind == 3)
       return on_border();
     return any;
+  }
+  Float3 near(const Float3& p) {
+    const Float3 d = random_.direction();
+    const double size = random_.log_in(1e-4, .3);
+    return {static_cast<float>(p.x + size * d.x),
+            static_cast<float>(p.y + size * d.y),
+            static_cast<float>(p.z + size * d.z)};
   }
   Float3 on_surface(const Float3& org) {
     const Ray ray{org, random_.direction()};
