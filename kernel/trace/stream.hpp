@@ -18,12 +18,12 @@ inline void copy_row(const float* from, int count, float* to) {
 }
 
 /// Places [first, first + count) of an array of a view; of null, `instead`.
-inline void load_floats(const float* from,
-                        std::ptrdiff_t stride,
-                        std::size_t first,
-                        int count,
-                        float instead,
-                        float* to) {
+[[gnu::noinline]] inline void load_floats(const float* from,
+                                          std::ptrdiff_t stride,
+                                          std::size_t first,
+                                          int count,
+                                          float instead,
+                                          float* to) {
   if (from && stride == 1) {
     copy_row(from + first, count, to);
     return;
