@@ -234,21 +234,6 @@ bool see(const Primitives& p,
   return see_box(Shape::box(p.of<Shape>(), i), from, face, least, o);
 }
 
-/// The bounds of its outline.
-template <class Shape>
-bool see_about(const Primitives& p,
-               const Viewpoint& from,
-               Shape shape,
-               std::uint32_t i,
-               int face,
-               double least,
-               Bounds& to) {
-  Outline outline;
-  const bool some = see(p, from, shape, i, face, least, outline);
-  to = outline;
-  return some;
-}
-
 /// Whether all of a kind's outline lies within that of its box.
 template <class Shape>
 constexpr bool kWithinItsBox = true;
@@ -329,8 +314,10 @@ bool see_about(const Primitives& p,
   return p.visit(id, [&]<class Shape>(std::uint32_t i) {
     if constexpr (kWithinItsBox<Shape>)
       return see_box(box, from, face, distance, bounds);
-    else
-      return see_about(p, from, Shape{}, i, face, distance, bounds);
+    Outline outline;
+    const bool some = see(p, from, Shape{}, i, face, distance, outline);
+    bounds = outline;
+    return some;
   });
 }
 

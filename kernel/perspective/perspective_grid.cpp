@@ -227,7 +227,8 @@ class Builder {
     std::vector<Place> places;
     places.reserve(places_[turn].size());
     Outline seen;
-    Place last{kLists, 0};  // no list is of more kinds
+    std::uint32_t seen_kind = kLists;  // of nothing yet
+    std::uint32_t seen_number = 0;
     for (const Place& p : places_[turn]) {
       const std::uint32_t tile = p.list / kLists;
       const std::uint32_t kind = p.list % kLists;
@@ -237,9 +238,10 @@ class Builder {
         continue;
       }
       const Tile& t = tiles_[tile];
-      if (last.list != kind || last.seen != p.seen)
+      if (seen_kind != kind || seen_number != p.seen)
         seen = seen_again(kind, p.seen, t.face);
-      last = {kind, p.seen};
+      seen_kind = kind;
+      seen_number = p.seen;
       const int n = static_cast<int>(whole.columns);
       TileWalk({t.x, t.y, t.width / n, n, n}).each(seen, [&](std::uint32_t part) {
         places.push_back({kLists * (whole.part + part) + kind, p.seen});
