@@ -2,6 +2,7 @@
 // What each variant_*.cpp compiles: the hot loops behind the functions of a Variant. Included once
 // per instruction set.
 
+#include "kernel/perspective/look.hpp"
 #include "kernel/render/band.hpp"
 #include "kernel/features/tile_doubt.hpp"
 #include "kernel/query/loops.hpp"
@@ -86,6 +87,7 @@ const VariantLoops kLoops{.closest = closest<InFloat>,
                                         .occluded = occluded<InDouble>,
                                         .trace = {.closest = trace_closest<InDouble>,
                                                   .blockers = trace_blockers_in_double}},
+                          .look = {.survey = survey, .see = see, .rank = rank},
                           .render_band = band,
                           .render_runs = pixel_runs,
                           .doubt = doubt,

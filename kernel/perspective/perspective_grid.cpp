@@ -6,9 +6,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "kernel/perspective/lists.hpp"
 #include "kernel/perspective/sight.hpp"
-#include "kernel/perspective/turns.hpp"
-#include "kernel/primitive/rounding.hpp"
 
 namespace grelha {
 namespace {
@@ -27,19 +26,6 @@ struct Place {
   std::uint32_t list, seen;
 };
 
-/// What is seen of a primitive in the order of lists: by depth, then by id.
-struct Reference {
-  std::uint64_t order;
-  std::uint32_t seen;
-  bool operator<(const Reference& o) const { return order < o.order; }
-};
-
-/// Floats as numbers in the same order.
-std::uint32_t ordered(float x) {
-  const auto bits = std::bit_cast<std::uint32_t>(x);
-  return bits >> 31 ? ~bits : bits | 0x80000000u;
-}
-
 class Builder {
  public:
   Builder(const Primitives& p,
@@ -47,7 +33,10 @@ class Builder {
           std::span<const std::uint32_t> large,
           const Viewpoint& from,
           const PerspectiveOptions& options)
-      : p_(p), onlooker_(p, ids, large, from), options_(options), primitives_(ids.size()) {
+      : p_(p),
+        onlooker_(p, ids, large, from, options.loops),
+        options_(options),
+        primitives_(ids.size()) {
     std::copy(from.at, from.at + 3, g_.point);
   }
 
@@ -136,31 +125,59 @@ class Builder {
         });
   }
 
+  /// Primitives that are seen through one face, until there are enough to be looked at together.
+  struct Waiting {
+    Few few;
+    float distance[kOutlines] = {};
+    void add(std::uint32_t id, float far) {
+      distance[few.count] = far;
+      few.id[few.count++] = id;
+    }
+  };
+
   void place_turn(std::size_t turn, Writers& writers) {
-    onlooker_.each(turn, [&](std::size_t i, std::uint32_t id) {
-      for (unsigned left = sight_.glances[i].faces; left != 0; left &= left - 1)
-        place_seen(id, std::countr_zero(left), sight_.glances[i].distance, writers, places_[turn]);
-    });
+    Waiting waiting[kFaces];
+    const auto place_waiting = [&](int f) {
+      if (waiting[f].few.count > 0)
+        place_few(waiting[f], f, writers, places_[turn]);
+      waiting[f].few.count = 0;
+    };
+    PrimitiveKind kind = PrimitiveKind::kPlane;  // of none yet
+    for (std::size_t i = onlooker_.begin(turn); i < onlooker_.end(turn); ++i) {
+      const std::uint32_t id = onlooker_.id(i);
+      if (!p_.ids.has(kind, id)) {
+        for (int f = 0; f < kFaces; ++f)
+          place_waiting(f);
+        kind = p_.kind_of(id);
+      }
+      for (unsigned left = sight_.glances[i].faces; left != 0; left &= left - 1) {
+        const int f = std::countr_zero(left);
+        waiting[f].add(id, sight_.glances[i].distance);
+        if (waiting[f].few.count == kOutlines)
+          place_waiting(f);
+      }
+    }
+    for (int f = 0; f < kFaces; ++f)
+      place_waiting(f);
   }
 
-  /// What is seen of a primitive through a face.
-  void place_seen(
-      std::uint32_t id, int f, double distance, Writers& writers, std::vector<Place>& to) const {
-    Outline seen;
-    if (!onlooker_.see(id, f, distance, seen))
-      return;
-    const PointFace& face = g_.face[f];
-    if (p_.ids.has(PrimitiveKind::kSphere, id)) {
-      to_tiles(face, static_cast<Bounds&>(seen));
-      place(seen, id, f, kBoxList, writers.boxes.add({face, seen, id}), to);
-    } else {
-      to_tiles(face, seen);
-      place(seen, id, f, kOutlineList, writers.outlines.add({face, seen, id}), to);
+  /// What is seen of some through a face.
+  void place_few(const Waiting& of, int f, Writers& writers, std::vector<Place>& to) const {
+    SeenFew seen;
+    onlooker_.see(of.few, of.distance, f, g_.face[f], seen);
+    for (unsigned left = seen.seen; left != 0; left &= left - 1) {
+      const int k = std::countr_zero(left);
+      const std::uint32_t id = of.few.id[k];
+      if (seen.sided)
+        place(seen, k, id, f, kOutlineList, writers.outlines.add({seen, k, id}), to);
+      else
+        place(seen, k, id, f, kBoxList, writers.boxes.add({seen, k, id}), to);
     }
   }
 
   /// The tiles of its face that a primitive may be met in.
-  void place(const Outline& seen,
+  void place(const SeenFew& seen,
+             int k,
              std::uint32_t id,
              int f,
              std::uint32_t kind,
@@ -175,7 +192,7 @@ class Builder {
       to.push_back({kLists * (first + beyond) + kind, number});
     if (beyond == 0)
       return;
-    TileWalk({0, 0, 1, columns, rows}).each(seen, [&](std::uint32_t tile) {
+    TileWalk({0, 0, 1, columns, rows}).each(seen, k, [&](std::uint32_t tile) {
       to.push_back({kLists * (first + tile) + kind, number});
     });
   }
@@ -222,42 +239,69 @@ class Builder {
     counts_[kLists * t + 1] = 0;
   }
 
+  /// Places in tiles with parts, of primitives that are looked at again together.
+  struct Crowd {
+    Waiting of;
+    PrimitiveKind kind = PrimitiveKind::kPlane;  ///< of nothing yet
+    int face = 0;
+    std::vector<Place> places;
+    std::vector<int> which;  ///< [places] of those that are looked at
+    bool is_of_last(const Place& p) const {
+      return !places.empty() && places.back().seen == p.seen &&
+             places.back().list % kLists == p.list % kLists;
+    }
+    void add(const Place& p) {
+      places.push_back(p);
+      which.push_back(of.few.count - 1);
+    }
+  };
+
   /// Takes what is placed in tiles with parts to these.
   void place_parts(std::size_t turn) {
-    std::vector<Place> places;
-    places.reserve(places_[turn].size());
-    Outline seen;
-    std::uint32_t seen_kind = kLists;  // of nothing yet
-    std::uint32_t seen_number = 0;
-    for (const Place& p : places_[turn]) {
-      const std::uint32_t tile = p.list / kLists;
-      const std::uint32_t kind = p.list % kLists;
-      const TileLists& whole = g_.tiles[tile];
-      if (whole.columns == 0) {
-        places.push_back(p);
-        continue;
-      }
-      const Tile& t = tiles_[tile];
-      if (seen_kind != kind || seen_number != p.seen)
-        seen = seen_again(kind, p.seen, t.face);
-      seen_kind = kind;
-      seen_number = p.seen;
-      const int n = static_cast<int>(whole.columns);
-      TileWalk({t.x, t.y, t.width / n, n, n}).each(seen, [&](std::uint32_t part) {
-        places.push_back({kLists * (whole.part + part) + kind, p.seen});
-        next(counts_[places.back().list]);
-      });
+    const std::vector<Place> all = std::move(places_[turn]);
+    std::vector<Place>& to = places_[turn];
+    to = {};
+    to.reserve(all.size());
+    Crowd crowd;
+    for (const Place& p : all)
+      if (g_.tiles[p.list / kLists].columns == 0)
+        to.push_back(p);
+      else
+        add(p, crowd, to);
+    place_crowd(crowd, to);
+  }
+
+  /// Adds a place, and before it ends what cannot take its primitive.
+  void add(const Place& p, Crowd& crowd, std::vector<Place>& to) {
+    const int f = tiles_[p.list / kLists].face;
+    if (f == crowd.face && crowd.is_of_last(p))
+      return crowd.add(p);
+    const std::uint32_t id = p.list % kLists == kBoxList ? boxes_[p.seen].id : outlines_[p.seen].id;
+    const bool fits = f == crowd.face && p_.ids.has(crowd.kind, id);
+    if (!fits || crowd.of.few.count == kOutlines) {
+      place_crowd(crowd, to);
+      crowd = {{}, p_.kind_of(id), f, {}, {}};
     }
-    places_[turn] = std::move(places);
+    crowd.of.add(id, sight_.glances[onlooker_.place_of(id)].distance);
+    crowd.add(p);
   }
 
   /// Outlines are kept as lists hold them; the few that are asked for again are made again.
-  Outline seen_again(std::uint32_t kind, std::uint32_t number, int f) const {
-    const std::uint32_t id = kind == kBoxList ? boxes_[number].id : outlines_[number].id;
-    Outline seen;
-    onlooker_.see(id, f, float_not_above(onlooker_.distance(id, onlooker_.box(id))), seen);
-    to_tiles(g_.face[f], seen);
-    return seen;
+  void place_crowd(const Crowd& crowd, std::vector<Place>& to) {
+    if (crowd.places.empty())
+      return;
+    SeenFew seen;
+    onlooker_.see(crowd.of.few, crowd.of.distance, crowd.face, g_.face[crowd.face], seen);
+    for (std::size_t i = 0; i < crowd.places.size(); ++i) {
+      const Place& p = crowd.places[i];
+      const std::uint32_t tile = p.list / kLists;
+      const Tile& t = tiles_[tile];
+      const int n = static_cast<int>(g_.tiles[tile].columns);
+      TileWalk({t.x, t.y, t.width / n, n, n}).each(seen, crowd.which[i], [&](std::uint32_t part) {
+        to.push_back({kLists * (g_.tiles[tile].part + part) + p.list % kLists, p.seen});
+        next(counts_[to.back().list]);
+      });
+    }
   }
 
   /// Sets where the lists of a kind begin, from counts; which become the next free place of each
@@ -285,37 +329,15 @@ class Builder {
     });
     g_.outlines.resize(outlines / kOutlines + 1);
     g_.boxes.resize(boxes / kOutlines + 1);
-    write_lists(kOutlineList, {references_.data(), outlines}, outlines_, g_.outlines.data());
-    write_lists(kBoxList, {references_.data() + outlines, boxes}, boxes_, g_.boxes.data());
-  }
-
-  /// Writes the lists of a kind. What is seen comes from afar: it is asked for early.
-  template <class Seen, class Block>
-  void write_lists(int kind,
-                   std::span<const std::uint32_t> all,
-                   const SeenPages<Seen>& seen,
-                   Block* blocks) {
-    constexpr std::size_t kTiles = 256;
-    constexpr std::size_t kAhead = 24;
-    const std::size_t turns = all.empty() ? 0 : (tiles_.size() + kTiles - 1) / kTiles;
-    const auto write = [&](std::size_t turn, std::vector<Reference>& sorted) {
-      const std::size_t last = std::min((turn + 1) * kTiles, tiles_.size());
-      for (std::size_t t = turn * kTiles; t < last; ++t) {
-        const std::uint32_t first = g_.tiles[t].first[kind];
-        const std::uint32_t end = g_.tiles[t + 1].first[kind];
-        sorted.clear();
-        for (std::uint32_t i = first; i < end; ++i) {
-          __builtin_prefetch(&seen[all[std::min(i + kAhead, all.size() - 1)]]);
-          const Seen& s = seen[all[i]];
-          sorted.push_back({std::uint64_t{ordered(s.near)} << 32 | s.id, all[i]});
-        }
-        std::sort(sorted.begin(), sorted.end());
-        for (std::uint32_t i = first; i < end; ++i)
-          set_place(blocks[i / kOutlines], i % kOutlines, seen[sorted[i - first].seen], tiles_[t]);
-      }
-    };
-    each_turn(
-        turns, options_.threads, [] { return std::vector<Reference>(); }, write);
+    const std::span<const std::uint32_t> all(references_.data(), references_.size());
+    write_lists<SeenOutline>({kOutlineList, tiles_, g_.tiles, all.first(outlines), outlines_},
+                             options_.loops,
+                             options_.threads,
+                             g_.outlines.data());
+    write_lists<SeenBox>({kBoxList, tiles_, g_.tiles, all.subspan(outlines), boxes_},
+                         options_.loops,
+                         options_.threads,
+                         g_.boxes.data());
   }
 
   const Primitives& p_;

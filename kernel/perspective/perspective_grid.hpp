@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "kernel/perspective/outline.hpp"
+#include "kernel/perspective/look_loops.hpp"
 #include "kernel/perspective/view.hpp"
 #include "kernel/scene/raw_vector.hpp"
 
@@ -27,6 +27,7 @@ struct PerspectiveGrid {
 };
 
 struct PerspectiveOptions {
+  const LookLoops& loops;
   double density = .125;  ///< tiles a primitive
   int threads = 1;
 };

@@ -4,127 +4,121 @@
 #include <cmath>
 #include <limits>
 
-#include "kernel/perspective/tolerances.hpp"
-#include "kernel/primitive/rounding.hpp"
-
 namespace grelha {
 namespace {
 
-/// Of n parts the one that holds x, or the nearest.
-int clamped(double x, int n) {
-  if (!(x > 0))
-    return 0;
-  return std::min(static_cast<int>(std::min(x, static_cast<double>(n))), n - 1);
-}
+constexpr double kMostTiles = 4096;  ///< along an axis of a face
 
-Anchor anchor_of(const PointFace& face, const Bounds& seen) {
-  const auto along = [](double x, double n) {
-    return static_cast<std::uint16_t>(clamped(x, std::max(static_cast<int>(n), 1)));
-  };
-  return {along(seen.lo[0], face.nx), along(seen.lo[1], face.ny)};
-}
-
-/// Tiles that lists tell a primitive's place over, along the longer axis.
-double span_of(const PointFace& face, const Bounds& seen) {
-  const Anchor from = anchor_of(face, seen);
-  const double x = std::min(seen.hi[0], face.nx) - from.x;
-  const double y = std::min(seen.hi[1], face.ny) - from.y;
-  return std::max(std::max(x, y), 1.);
-}
-
-/// A face's corner, and how wide its tiles are.
-struct FaceTiles {
-  double u, v, width, height;
-};
-
-void scale_side(const FaceTiles& f, double rounding, HalfPlane& s) {
-  s.c += s.a * f.u + s.b * f.v;
-  s.a *= f.width;
-  s.b *= f.height;
-  const double across = std::abs(s.a) + std::abs(s.b);
-  const double margin = s.margin + rounding * across;
-  const double scale = margin > 0 ? 1 / margin : 0;
-  s.a *= scale;
-  s.b *= scale;
-  s.c = s.c * scale + 1;
+Anchor anchor_of(const SeenFew& seen, int k) {
+  return {static_cast<std::uint16_t>(seen.anchor[0][k]),
+          static_cast<std::uint16_t>(seen.anchor[1][k])};
 }
 
 }  // namespace
 
-void to_tiles(const PointFace& f, Bounds& o) {
-  const double per[2] = {f.per_u, f.per_v}, at[2] = {f.u, f.v};
+SeenOutline::SeenOutline(const SeenFew& seen, int k, std::uint32_t of)
+    : near(seen.near[k]), far(seen.far[k]), id(of), anchor(anchor_of(seen, k)) {
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      side[i][j] = seen.side[3 * i + j][k];
+}
+
+SeenBox::SeenBox(const SeenFew& seen, int k, std::uint32_t of)
+    : near(seen.near[k]), id(of), anchor(anchor_of(seen, k)) {
   for (int j = 0; j < 2; ++j) {
-    o.lo[j] = (o.lo[j] - at[j]) * per[j] - kPlaceRounding;
-    o.hi[j] = (o.hi[j] - at[j]) * per[j] + kPlaceRounding;
+    lo[j] = seen.box_lo[j][k];
+    hi[j] = seen.box_hi[j][k];
   }
-  o.near -= f.depth;
-  o.far -= f.depth;
 }
 
-void to_tiles(const PointFace& f, Outline& o) {
-  to_tiles(f, static_cast<Bounds&>(o));
-  const FaceTiles tiles{
-      f.u,
-      f.v,
-      1 / f.per_u,
-      1 / f.per_v,
-  };
-  const double rounding = kOutlineRounding * (1 + kSpanRounding * span_of(f, o));
-  for (HalfPlane& s : o.side)
-    scale_side(tiles, rounding, s);
+WindowRows::WindowRows() {
+  for (int k = 0; k < kOutlines; ++k) {
+    for (int j = 0; j < 2; ++j) {
+      lo[j][k] = 1e300;
+      hi[j][k] = -1e300;
+      across[j][k] = 0;
+    }
+    near[k] = 1e300;
+    area[k] = 0;
+  }
 }
 
-SeenOutline::SeenOutline(const PointFace& face, const Outline& seen, std::uint32_t of)
-    : near(float_not_above(seen.near)),
-      far(seen.solid ? float_not_below(seen.far) : std::numeric_limits<float>::infinity()),
-      id(of),
-      anchor(anchor_of(face, seen)) {
+void Window::add(const Window& w) {
+  for (int j = 0; j < 2; ++j) {
+    lo[j] = std::min(lo[j], w.lo[j]);
+    hi[j] = std::max(hi[j], w.hi[j]);
+    across[j] += w.across[j];
+  }
+  near = std::min(near, w.near);
+  seen += w.seen;
+  large += w.large;
+  area += w.area;
+}
+
+void Window::add(const WindowRows& w) {
+  for (int k = 0; k < kOutlines; ++k) {
+    for (int j = 0; j < 2; ++j) {
+      lo[j] = std::min(lo[j], w.lo[j][k]);
+      hi[j] = std::max(hi[j], w.hi[j][k]);
+      across[j] += w.across[j][k];
+    }
+    near = std::min(near, w.near[k]);
+    area += w.area[k];
+  }
+  seen += w.seen;
+  large += w.large;
+}
+
+double Window::most_references(const PointFace& f) const {
+  const double all = static_cast<double>(large) * (f.nx * f.ny + 1);
+  return all + area * f.per_u * f.per_v + across[0] * f.per_u + across[1] * f.per_v +
+         static_cast<double>(seen);
+}
+
+void Window::lay_tiles(PointFace& face, double tiles) const {
+  double size[2];
+  for (int j = 0; j < 2; ++j)
+    size[j] = std::max(hi[j] - lo[j], 0x1p-40) * (1 + 0x1p-10);
+  const double edge = std::sqrt(size[0] * size[1] / std::max(tiles, 1.));
+  const double most = std::clamp(std::ceil(tiles), 1., kMostTiles);
+  face.nx = std::clamp(std::round(size[0] / edge), 1., most);
+  face.ny = std::clamp(std::round(size[1] / edge), 1., most);
+  face.u = lo[0] - size[0] * 0x1p-12;
+  face.v = lo[1] - size[1] * 0x1p-12;
+  face.per_u = face.nx / size[0];
+  face.per_v = face.ny / size[1];
+}
+
+void set_place(OutlineBlock& block, std::uint32_t k, const SeenOutline& seen, const Tile& t) {
+  const bool beyond = t.width == 0;  // places mean nothing there
+  const float x = static_cast<float>(t.x - seen.anchor.x);
+  const float y = static_cast<float>(t.y - seen.anchor.y);
+  const float width = static_cast<float>(t.width);
   for (int i = 0; i < 3; ++i) {
-    const HalfPlane& s = seen.side[i];
-    side[i][0] = static_cast<float>(s.a);
-    side[i][1] = static_cast<float>(s.b);
-    side[i][2] = static_cast<float>(s.c + (s.a * anchor.x + s.b * anchor.y));
+    const float* const s = seen.side[i];
+    const float at_corner = s[2] + (s[0] * x + s[1] * y);
+    block.side[i][0][k] = beyond ? 0 : s[0] * width;
+    block.side[i][1][k] = beyond ? 0 : s[1] * width;
+    block.side[i][2][k] = beyond ? 1 : at_corner;
   }
+  block.near[k] = seen.near;
+  block.far[k] = beyond ? std::numeric_limits<float>::infinity() : seen.far;
+  block.id[k] = seen.id;
 }
 
-SeenBox::SeenBox(const PointFace& face, const Bounds& seen, std::uint32_t of)
-    : near(float_not_above(seen.near)), id(of), anchor(anchor_of(face, seen)) {
-  const double at[2] = {double(anchor.x), double(anchor.y)};
+void set_place(BoxBlock& block, std::uint32_t k, const SeenBox& seen, const Tile& t) {
+  const double at[2] = {t.x - seen.anchor.x, t.y - seen.anchor.y};
+  const bool beyond = t.width == 0;
+  const double columns = beyond ? 0 : 1 / t.width;
   for (int j = 0; j < 2; ++j) {
-    lo[j] = float_not_above(seen.lo[j] - at[j]);
-    hi[j] = float_not_below(seen.hi[j] - at[j]);
+    const double lo = beyond ? -1 : (seen.lo[j] - at[j]) * columns;
+    const double hi = beyond ? 2 : (seen.hi[j] - at[j]) * columns;
+    // twice what floats of at most 2 round by
+    block.lo[j][k] = static_cast<float>(std::max(lo, -1.) - kPlaceRounding);
+    block.hi[j][k] = static_cast<float>(std::min(hi, 2.) + kPlaceRounding);
   }
-}
-
-int TileWalk::row_of(double y) const {
-  return clamped((y - raster_.y) * squares_, raster_.rows);
-}
-
-TileRun TileWalk::run_between(double lo, double hi) const {
-  const double end = raster_.x + raster_.columns * raster_.width + kPlaceRounding;
-  if (!(lo <= hi) || hi < raster_.x - kPlaceRounding || lo > end)
-    return {0, 0};
-  return {
-      clamped((lo - raster_.x) * squares_, raster_.columns),
-      clamped((hi - raster_.x) * squares_, raster_.columns) + 1,
-  };
-}
-
-TileRun TileWalk::run_of(const Outline& seen, int row) const {
-  const double below = raster_.y + row * raster_.width - kPlaceRounding;
-  const double above = raster_.y + (row + 1) * raster_.width + kPlaceRounding;
-  double lo = seen.lo[0];
-  double hi = seen.hi[0];
-  for (const HalfPlane& s : seen.side) {
-    const double c = s.c + s.b * (s.b > 0 ? above : below);
-    if (s.a > 0)
-      lo = std::max(lo, -c / s.a - kPlaceRounding);
-    else if (s.a < 0)
-      hi = std::min(hi, -c / s.a + kPlaceRounding);
-    else if (c < 0)
-      return {0, 0};
-  }
-  return run_between(lo, hi);
+  block.near[k] = seen.near;
+  block.id[k] = seen.id;
 }
 
 }  // namespace grelha

@@ -1,5 +1,5 @@
 #pragma once
-// What is seen of primitives through the faces around a point, in tiles.
+// What is seen of primitives through the faces around a point, in tiles, and as lists hold it.
 
 #include <algorithm>
 #include <cstddef>
@@ -7,8 +7,6 @@
 #include <mutex>
 #include <vector>
 
-#include "grelha/rays.hpp"
-#include "kernel/perspective/outline.hpp"
 #include "kernel/perspective/tolerances.hpp"
 #include "kernel/perspective/view.hpp"
 #include "kernel/scene/raw_vector.hpp"
@@ -26,34 +24,79 @@ struct TileRun {
   int begin, end;
 };
 
-/// From directions to tiles of a face.
-void to_tiles(const PointFace& face, Bounds& bounds);
-/// The same with sides, which are scaled so that what they leave open is 1.
-void to_tiles(const PointFace& face, Outline& outline);
+/// A side of each, where primitives have any: b y + c = at, and x >= at per_lo + lo, x <= at per_hi
+/// + hi. One of the two is no bound.
+struct SeenSide {
+  double b[kOutlines], c[kOutlines];
+  double per_lo[kOutlines], lo[kOutlines];
+  double per_hi[kOutlines], hi[kOutlines];
+};
+
+/// What is seen of up to eight primitives through one face, in its tiles: rows with a place for
+/// each.
+struct alignas(64) SeenFew {
+  double lo[2][kOutlines], hi[2][kOutlines];  ///< where rays may meet it
+  SeenSide side_of[3];
+  // the same as lists hold it, from the anchor on
+  float box_lo[2][kOutlines], box_hi[2][kOutlines];
+  float side[9][kOutlines];
+  float near[kOutlines], far[kOutlines];
+  float anchor[2][kOutlines];  ///< the tile that it begins in
+  unsigned seen;               ///< a bit for each of which there is anything
+  bool sided;
+};
 
 /// The squares of a raster that a primitive may be met in.
 class TileWalk {
  public:
-  explicit TileWalk(const TileRaster& raster) : raster_(raster), squares_(1 / raster.width) {}
-  /// Calls visit(number) for each; x runs fastest. `seen`: in tiles.
+  explicit TileWalk(const TileRaster& raster)
+      : raster_(raster),
+        squares_(1 / raster.width),
+        last_{raster.columns - 1., raster.rows - 1.},
+        end_(raster.x + raster.columns * raster.width + kPlaceRounding) {}
+  /// Calls visit(number) for each of primitive k's; x runs fastest.
   template <class Visit>
-  void each(const Outline& seen, const Visit& visit) const {
-    const int first = row_of(seen.lo[1]);
-    const int last = row_of(seen.hi[1]);
+  void each(const SeenFew& seen, int k, const Visit& visit) const {
+    const int first = clamped((seen.lo[1][k] - raster_.y) * squares_, last_[1]);
+    const int last = clamped((seen.hi[1][k] - raster_.y) * squares_, last_[1]);
+    const bool by_sides = first != last && seen.sided;
     for (int y = first; y <= last; ++y) {
-      const TileRun run = first == last ? bounds_of(seen) : run_of(seen, y);
+      const TileRun run = by_sides ? run_of(seen, k, y) : run_between(seen.lo[0][k], seen.hi[0][k]);
       for (int x = run.begin; x < run.end; ++x)
         visit(static_cast<std::uint32_t>(y * raster_.columns + x));
     }
   }
 
  private:
-  int row_of(double y) const;
-  TileRun run_of(const Outline& seen, int row) const;
-  TileRun bounds_of(const Bounds& seen) const { return run_between(seen.lo[0], seen.hi[0]); }
-  TileRun run_between(double lo, double hi) const;
+  /// Of parts up to number `last` the one that holds x, or the nearest.
+  static int clamped(double x, double last) {
+    return static_cast<int>(std::min(std::max(0., x), last));
+  }
+  TileRun run_of(const SeenFew& seen, int k, int row) const {
+    const double below = raster_.y + row * raster_.width - kPlaceRounding;
+    const double above = raster_.y + (row + 1) * raster_.width + kPlaceRounding;
+    double lo = seen.lo[0][k];
+    double hi = seen.hi[0][k];
+    for (const SeenSide& s : seen.side_of) {  // without branches, that nobody could foretell
+      const double at = s.c[k] + std::max(s.b[k] * below, s.b[k] * above);
+      lo = std::max(lo, at * s.per_lo[k] + s.lo[k]);
+      hi = std::min(hi, at * s.per_hi[k] + s.hi[k]);
+    }
+    return run_between(lo, hi);
+  }
+  TileRun run_between(double lo, double hi) const {
+    if (!(lo <= hi) || hi < raster_.x - kPlaceRounding || lo > end_)
+      return {0, 0};
+    return {
+        clamped((lo - raster_.x) * squares_, last_[0]),
+        clamped((hi - raster_.x) * squares_, last_[0]) + 1,
+    };
+  }
+
   TileRaster raster_;
   double squares_;  ///< a tile's width
+  double last_[2];
+  double end_;
 };
 
 /// A tile of a face that what is seen of a primitive is told from.
@@ -71,7 +114,8 @@ struct alignas(64) SeenOutline {
   Anchor anchor;
 
   SeenOutline() = default;
-  SeenOutline(const PointFace& face, const Outline& seen, std::uint32_t id);
+  /// Of primitive k.
+  SeenOutline(const SeenFew& seen, int k, std::uint32_t id);
 };
 
 /// The same of a sphere.
@@ -82,7 +126,7 @@ struct alignas(32) SeenBox {
   Anchor anchor;
 
   SeenBox() = default;
-  SeenBox(const PointFace& face, const Bounds& seen, std::uint32_t id);
+  SeenBox(const SeenFew& seen, int k, std::uint32_t id);
 };
 
 /// Many of them, in pages that threads fill side by side.
@@ -133,5 +177,41 @@ class SeenPages {
   std::vector<Seen*> pages_;
   std::size_t left_ = 0;  ///< pages of the last memory
 };
+
+/// What goes into a window, for each of eight places apart: sums of floats do not depend on how
+/// many are taken at a time.
+struct alignas(64) WindowRows {
+  double lo[2][kOutlines], hi[2][kOutlines], near[kOutlines];
+  double across[2][kOutlines], area[kOutlines];
+  std::uint64_t seen = 0;
+  std::uint64_t large = 0;
+  WindowRows();
+};
+
+/// The part of a face that primitives are seen in, and how many.
+struct Window {
+  double lo[2] = {1e300, 1e300}, hi[2] = {-1e300, -1e300};
+  double near = 1e300;
+  std::uint64_t seen = 0;
+  std::uint64_t large = 0;    ///< others, which stand in no grid of the scene and widen no window
+  double across[2] = {0, 0};  ///< sums of widths and heights
+  double area = 0;
+  void add(const Window& w);
+  void add(const WindowRows& w);
+  /// Lays about so many square tiles, over a little more than the window.
+  void lay_tiles(PointFace& face, double tiles) const;
+  /// What the lists of a face's tiles hold at most, by bounds of what is seen.
+  double most_references(const PointFace& face) const;
+};
+
+/// A tile of any level: its corner and width in tiles of its face. Width 0: beyond all others.
+struct Tile {
+  double x, y, width;
+  int face;
+};
+
+/// Sets place k of a block.
+void set_place(OutlineBlock& block, std::uint32_t k, const SeenOutline& seen, const Tile& tile);
+void set_place(BoxBlock& block, std::uint32_t k, const SeenBox& seen, const Tile& tile);
 
 }  // namespace grelha

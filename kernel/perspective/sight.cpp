@@ -1,9 +1,7 @@
 #include "kernel/perspective/sight.hpp"
 
-#include <bit>
-
+#include "kernel/perspective/tolerances.hpp"
 #include "kernel/perspective/turns.hpp"
-#include "kernel/primitive/rounding.hpp"
 
 namespace grelha {
 namespace {
@@ -14,36 +12,33 @@ struct TurnSight {
   std::vector<std::uint32_t> around;
 };
 
-/// Faces that a primitive is seen through, which are added to the part.
-std::uint32_t faces_seen(
-    const Onlooker& onlooker, std::uint32_t id, const Box& box, double distance, TurnSight& to) {
-  std::uint32_t seen = 0;
-  for (unsigned left = onlooker.faces(box); left != 0; left &= left - 1) {
-    const int f = std::countr_zero(left);
-    Bounds bounds;
-    if (!onlooker.see_about(id, box, f, distance, bounds))
-      continue;
-    if (onlooker.is_large(id))
-      to.window[f].add_large(bounds);
-    else
-      to.window[f].add(bounds);
-    seen |= 1u << f;
-  }
-  return seen;
-}
-
 void survey_turn(const Onlooker& onlooker, std::size_t turn, TurnSight& to, Glance* glances) {
-  onlooker.each(turn, [&](std::size_t i, std::uint32_t id) {
-    const Box box = onlooker.box(id);
-    const float distance = float_not_above(onlooker.distance(id, box));
-    const bool has_outline = onlooker.has_outline(distance);
-    if (!has_outline)
-      to.around.push_back(id);
-    glances[i] = {distance, has_outline ? faces_seen(onlooker, id, box, distance, to) : 0};
-  });
+  WindowRows window[kFaces];
+  const std::size_t end = onlooker.end(turn);
+  for (std::size_t i = onlooker.begin(turn); i < end;) {
+    const Few few = onlooker.few(i, end);
+    onlooker.survey(few, window, glances + i);
+    for (int k = 0; k < few.count; ++k, ++i)
+      if (!onlooker.has_outline(glances[i]))
+        to.around.push_back(few.id[k]);
+  }
+  for (int f = 0; f < kFaces; ++f)
+    to.window[f].add(window[f]);
 }
 
 }  // namespace
+
+bool Onlooker::has_outline(const Glance& glance) const {
+  return glance.distance > kNearest * from_.pad;
+}
+
+Few Onlooker::few(std::size_t i, std::size_t end) const {
+  Few few;
+  const PrimitiveKind kind = kind_of(ids_[i]);
+  for (; i < end && few.count < kOutlines && primitives_.ids.has(kind, ids_[i]); ++i)
+    few.id[few.count++] = ids_[i];
+  return few;
+}
 
 Sight survey(const Onlooker& onlooker, int threads) {
   Sight sum;

@@ -6,12 +6,11 @@
 #include <span>
 #include <vector>
 
-#include "kernel/perspective/distance.hpp"
-#include "kernel/perspective/tiles.hpp"
+#include "kernel/perspective/look_loops.hpp"
 
 namespace grelha {
 
-/// Primitives `ids` as seen from a point, looked at a thousand at a turn.
+/// Primitives `ids`, sorted, as seen from a point, looked at a thousand at a turn.
 class Onlooker {
  public:
   static constexpr std::size_t kTurn = 1024;
@@ -20,48 +19,49 @@ class Onlooker {
   Onlooker(const Primitives& primitives,
            std::span<const std::uint32_t> ids,
            std::span<const std::uint32_t> large,
-           const Viewpoint& from)
-      : primitives_(primitives), ids_(ids), large_(large), from_(from) {}
+           const Viewpoint& from,
+           const LookLoops& loops)
+      : primitives_(primitives), ids_(ids), large_(large), from_(from), loops_(loops) {}
 
   std::size_t count() const { return ids_.size(); }
   std::size_t turns() const { return (ids_.size() + kTurn - 1) / kTurn; }
+  /// Places among ids of those of a turn.
+  std::size_t begin(std::size_t turn) const { return turn * kTurn; }
+  std::size_t end(std::size_t turn) const { return std::min((turn + 1) * kTurn, ids_.size()); }
 
-  /// Calls visit(place among ids, id) for those of a turn.
-  template <class Visit>
-  void each(std::size_t turn, const Visit& visit) const {
-    const std::size_t end = std::min((turn + 1) * kTurn, ids_.size());
-    for (std::size_t i = turn * kTurn; i < end; ++i)
-      visit(i, ids_[i]);
+  std::uint32_t id(std::size_t i) const { return ids_[i]; }
+  /// The other way round.
+  std::size_t place_of(std::uint32_t id) const {
+    return static_cast<std::size_t>(std::lower_bound(ids_.begin(), ids_.end(), id) - ids_.begin());
   }
+  PrimitiveKind kind_of(std::uint32_t id) const { return primitives_.kind_of(id); }
   bool is_large(std::uint32_t id) const {
     return !large_.empty() && std::binary_search(large_.begin(), large_.end(), id);
   }
-  Box box(std::uint32_t id) const { return primitives_.box(id); }
-  double distance(std::uint32_t id, const Box& box) const {
-    return distance_of(primitives_, from_, id, box);
-  }
   /// What is nearer than kNearest pads has no outline.
-  bool has_outline(double distance) const { return distance > kNearest * from_.pad; }
-  unsigned faces(const Box& box) const { return faces_of(box, from_); }
-  /// Outlines through a face, in directions; false: nothing is seen there.
-  bool see(std::uint32_t id, int face, double distance, Outline& to) const {
-    return grelha::see(primitives_, from_, id, face, distance, to);
+  bool has_outline(const Glance& glance) const;
+  /// Up to eight of one kind from place i on, before `end`.
+  Few few(std::size_t i, std::size_t end) const;
+
+  void survey(const Few& few, WindowRows (&window)[kFaces], Glance* glances) const {
+    unsigned large = 0;
+    for (int k = 0; k < few.count; ++k)
+      large |= (is_large(few.id[k]) ? 1u : 0u) << k;
+    loops_.survey(primitives_, from_, few, large, window, glances);
   }
-  bool see_about(std::uint32_t id, const Box& box, int face, double distance, Bounds& to) const {
-    return grelha::see_about(primitives_, from_, id, box, face, distance, to);
+  void see(const Few& few,
+           const float (&distance)[kOutlines],
+           int face,
+           const PointFace& tiles,
+           SeenFew& to) const {
+    loops_.see(primitives_, from_, few, distance, face, tiles, to);
   }
 
  private:
   const Primitives& primitives_;
   std::span<const std::uint32_t> ids_, large_;
   const Viewpoint& from_;
-};
-
-/// What a first look tells of a primitive: how far it is at least, and faces that it is seen
-/// through, a bit each; none where it has no outline.
-struct Glance {
-  float distance;
-  std::uint32_t faces;
+  const LookLoops& loops_;
 };
 
 /// Where primitives stand around a point, before anything is known of tiles.

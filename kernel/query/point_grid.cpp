@@ -24,7 +24,8 @@ PointGrid::PointGrid(const World& world, Float3 point, int threads) {
     throw std::invalid_argument("threads must not be negative");
   const World::Impl& w = world.impl();
   const int some = threads > 0 ? threads : omp_get_num_procs();
-  impl_ = std::make_unique<Impl>(Impl{w, point, w.light_grids->build(point, some)});
+  const LookLoops& loops = best_variant().loops.look;
+  impl_ = std::make_unique<Impl>(Impl{w, point, w.light_grids->build(point, some, loops)});
 }
 PointGrid::PointGrid(PointGrid&&) noexcept = default;
 PointGrid& PointGrid::operator=(PointGrid&&) noexcept = default;

@@ -8,6 +8,7 @@
 #include "grelha/part.hpp"
 #include "grelha/point_grid.hpp"
 #include "grelha/rays.hpp"
+#include "kernel/perspective/look_loops.hpp"
 #include "kernel/scene/shading_view.hpp"
 #include "grelha/stats.hpp"
 #include "kernel/grid/view.hpp"
@@ -46,6 +47,8 @@ struct VariantLoops {
   Hit (*closest_one)(const SceneView&, const Ray&);
   bool (*occluded_one)(const SceneView&, const Ray&);
   DoubleLoops in_double;
+  /// For those who build point grids; all give the same.
+  LookLoops look;
   void (*render_band)(const SceneView&,
                       const ShadingView&,
                       const FrameView&,

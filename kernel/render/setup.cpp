@@ -117,7 +117,8 @@ void set_light_grids(const World::Impl& w, const RenderOptions& options, Setup& 
   const double begin = omp_get_wtime();
   const std::size_t bytes = w.light_grids->bytes();
   for (std::size_t i = 0; i < w.scene.lights.size(); ++i) {
-    setup.light_grids.push_back(w.light_grids->of(i, thread_count(options, kMostDepth)));
+    setup.light_grids.push_back(
+        w.light_grids->of(i, thread_count(options, kMostDepth), setup.variant.loops.look));
     setup.point_grids.count += setup.light_grids.back() != nullptr ? 1 : 0;
   }
   setup.shading.light_grids = setup.light_grids.data();

@@ -49,7 +49,9 @@ std::uint64_t LightGrids::expected_bytes(const Primitives& primitives, std::size
                   lights * (kSphereBytes * spheres + kOtherBytes * others));
 }
 
-std::unique_ptr<ViewedGrid> LightGrids::build(const Float3& point, int threads) const {
+std::unique_ptr<ViewedGrid> LightGrids::build(const Float3& point,
+                                              int threads,
+                                              const LookLoops& loops) const {
   const double diagonal = box_.diagonal();
   const Viewpoint from{
       {point.x, point.y, point.z},
@@ -61,27 +63,30 @@ std::unique_ptr<ViewedGrid> LightGrids::build(const Float3& point, int threads) 
       return nullptr;
   auto built = std::make_unique<ViewedGrid>();
   const std::vector<std::uint32_t> ids = sound_ids(primitives_);
-  built->grid = build_perspective_grid(primitives_, ids, large_, from, {.threads = threads});
+  built->grid =
+      build_perspective_grid(primitives_, ids, large_, from, {.loops = loops, .threads = threads});
   built->view = built->grid.view();
   return built;
 }
 
-std::unique_ptr<ViewedGrid> LightGrids::try_to_build(const Light& light, int threads) const {
+std::unique_ptr<ViewedGrid> LightGrids::try_to_build(const Light& light,
+                                                     int threads,
+                                                     const LookLoops& loops) const {
   if (light.is_area() || bytes_ + expected_bytes(primitives_, 1) > most_bytes_)
     return nullptr;
   const int useful = 1 + static_cast<int>(primitives() / kPrimitivesAThread);
   std::unique_ptr<ViewedGrid> built;
   try {
-    built = build(light.position, std::min(threads, useful));
+    built = build(light.position, std::min(threads, useful), loops);
   } catch (const std::bad_alloc&) {  // rays then walk, which takes no memory
   }
   return built && bytes_ + built->grid.bytes() <= most_bytes_ ? std::move(built) : nullptr;
 }
 
-const PointGridView* LightGrids::of(std::size_t light, int threads) {
+const PointGridView* LightGrids::of(std::size_t light, int threads, const LookLoops& loops) {
   const std::lock_guard lock(mutex_);
   if (!built_[light]) {
-    built_[light] = try_to_build(lights_[light], threads);
+    built_[light] = try_to_build(lights_[light], threads, loops);
     if (!built_[light])
       return nullptr;
     bytes_ += built_[light]->grid.bytes();

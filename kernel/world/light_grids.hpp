@@ -38,9 +38,9 @@ class LightGrids {
   std::size_t primitives() const { return primitives_.finite_count(); }
   /// What is in the way of rays to a light; null: it has no grid, since it is an area or too far
   /// away, or since the lights before have used up the memory.
-  const PointGridView* of(std::size_t light, int threads);
+  const PointGridView* of(std::size_t light, int threads, const LookLoops& loops);
   /// The grid of any point; null: it is too far away.
-  std::unique_ptr<ViewedGrid> build(const Float3& point, int threads) const;
+  std::unique_ptr<ViewedGrid> build(const Float3& point, int threads, const LookLoops& loops) const;
   /// About what the grids of so many lights take; never more than they are let.
   static std::uint64_t expected_bytes(const Primitives& primitives, std::size_t lights);
   /// Of the grids of all lights that are built.
@@ -48,7 +48,9 @@ class LightGrids {
 
  private:
   /// The same; null as well where there is no memory.
-  std::unique_ptr<ViewedGrid> try_to_build(const Light& light, int threads) const;
+  std::unique_ptr<ViewedGrid> try_to_build(const Light& light,
+                                           int threads,
+                                           const LookLoops& loops) const;
 
   const Primitives& primitives_;
   std::span<const Light> lights_;

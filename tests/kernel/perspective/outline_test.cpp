@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernel/perspective/distance.hpp"
-#include "kernel/perspective/outline.hpp"
-#include "kernel/perspective/tolerances.hpp"
+#include "kernel/perspective/look.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -48,22 +46,28 @@ Place place_of(const Exact& x, const double (&at)[3]) {
   return {2 * axis + (d[axis] < 0), d[(axis + 1) % 3] / depth, d[(axis + 2) % 3] / depth};
 }
 
+using Outline = scalar::Outline<double>;
+
 /// What the worst side lacks of letting a place in; 0: nothing.
 long double lacking(const Outline& o, const Place& p) {
   long double most = 0;
-  for (const HalfPlane& s : o.side)
+  for (const scalar::HalfPlane<double>& s : o.side)
     most = std::max(most, -s.margin - (s.a * p.u + s.b * p.v + s.c));
   return most;
 }
 
 /// Expects places of primitive 0 within its outline.
+template <class Shape>
 void expect_held(const Scene& scene, const Viewpoint& from, const std::vector<Exact>& places) {
   const Primitives p(scene.geometry);
-  const double distance = distance_of(p, from, 0, p.box(0));
+  const Few one{{0}, 1};
+  const scalar::FewFields<Shape> fields(p, one);
+  const auto shape = fields.template from<double>(0);
+  const double distance = scalar::distance_of(from, shape, fields.box(from, shape, 0));
   for (const Exact& x : places) {
     const Place place = place_of(x, from.at);
     Outline seen;
-    ASSERT_TRUE(see(p, from, 0, place.face, distance, seen));
+    ASSERT_TRUE(scalar::see({from, FaceAxes(place.face), distance}, shape, seen));
     ASSERT_EQ(lacking(seen, place), 0);
   }
 }
@@ -94,7 +98,7 @@ TEST_P(Outlines, HoldTrianglesByTheirSides) {
     std::vector<Exact> places;
     for (const double share : {0., .3, 1.})
       places.insert(places.end(), {between(a, b, share), between(b, c, share)});
-    expect_held(one_triangle(a, b, c), {{at.x, at.y, at.z}, 1e-7, 0}, places);
+    expect_held<Triangle>(one_triangle(a, b, c), {{at.x, at.y, at.z}, 1e-7, 0}, places);
     if (HasFatalFailure())
       FAIL() << i;
   }
@@ -134,7 +138,8 @@ TEST_P(Outlines, HoldCones) {
     const double r0 = random.in(.01, .3);
     const double r1 = random.in(.01, .3);
     const Scene scene = one_cone(a, static_cast<float>(r0), b, static_cast<float>(r1));
-    expect_held(scene, {{at.x, at.y, at.z}, pad, pad / 16}, around_cone(random, a, b, r0, r1));
+    expect_held<Cone>(
+        scene, {{at.x, at.y, at.z}, pad, pad / 16}, around_cone(random, a, b, r0, r1));
     if (HasFatalFailure())
       FAIL() << i;
   }

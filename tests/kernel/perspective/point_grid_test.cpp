@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "grelha/grelha.hpp"
+#include "kernel/query/variants.hpp"
 #include "kernel/world/world_impl.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -203,6 +204,13 @@ INSTANTIATE_TEST_SUITE_P(Families,
                            return name;
                          });
 
+std::unique_ptr<ViewedGrid> build(const World& world,
+                                  const Float3& at,
+                                  int threads,
+                                  const Variant& variant = best_variant()) {
+  return world.impl().light_grids->build(at, threads, variant.loops.look);
+}
+
 bool same_lists(const PerspectiveGrid& a, const PerspectiveGrid& b) {
   if (a.tiles != b.tiles || a.around != b.around)
     return false;
@@ -255,19 +263,30 @@ TEST(PointGrid, FindsWallsThatPointAtAFarLight) {
 TEST(PointGridLists, AreTheSameForAnyNumberOfThreads) {
   const Scene scene = random_mixture(21, 3000);
   const World world(scene, {});
-  const auto build = [&](int threads) {
-    return world.impl().light_grids->build({.5f, 2, .1f}, threads);
-  };
-  const auto one = build(1);
+  const Float3 at{.5f, 2, .1f};
+  const auto one = build(world, at, 1);
   ASSERT_TRUE(one);
   for (const int threads : {2, 3, 7})
-    EXPECT_TRUE(same_lists(one->grid, build(threads)->grid)) << threads << " threads";
+    EXPECT_TRUE(same_lists(one->grid, build(world, at, threads)->grid)) << threads << " threads";
+}
+
+TEST(PointGridLists, AreTheSameForEveryInstructionSet) {
+  const Scene scene = random_mixture(28, 3000);
+  const World world(scene, {});
+  const Float3 at{.5f, 2, .1f};
+  const auto one = build(world, at, 1);
+  ASSERT_TRUE(one);
+  for (const Variant* variant : variants()) {
+    if (!variant->runs_here())
+      continue;
+    EXPECT_TRUE(same_lists(one->grid, build(world, at, 1, *variant)->grid)) << variant->name;
+  }
 }
 
 TEST(PointGridLists, PartCrowdedTiles) {
   const Scene scene = towns_in_a_desert(22, 2000);
   const World world(scene, {});
-  const auto built = world.impl().light_grids->build({0, 3000, 0}, 2);
+  const auto built = build(world, {0, 3000, 0}, 2);
   ASSERT_TRUE(built);
   const auto has_parts = [](const TileLists& t) { return t.columns > 0; };
   EXPECT_TRUE(std::ranges::any_of(built->grid.tiles, has_parts));
@@ -276,7 +295,7 @@ TEST(PointGridLists, PartCrowdedTiles) {
 TEST(PointGridLists, StayFewWhereNeedlesSpanAllTiles) {
   const Scene scene = needles(23, 3000);
   const World world(scene, {});
-  const auto built = world.impl().light_grids->build({0, 4, 0}, 2);
+  const auto built = build(world, {0, 4, 0}, 2);
   ASSERT_TRUE(built);
   EXPECT_LT(built->grid.references(), 100u * 3000u);
 }
@@ -288,7 +307,7 @@ TEST(PointGridLists, StayFewWherePrimitivesAreSmallInTheirScene) {
   add_triangles(scene, random, 4000, 1, .01, .02);
   scene.geometry.spheres.add({1500, 0, 0}, 1, 0);
   const World world(scene, {});
-  const auto built = world.impl().light_grids->build({0, 9, 0}, 2);
+  const auto built = build(world, {0, 9, 0}, 2);
   ASSERT_TRUE(built);
   EXPECT_LE(built->grid.references(), 2u * 4000u);
   expect_same(world, scene, {0, 9, 0}, 4);
@@ -299,7 +318,7 @@ TEST(PointGridLists, StayFewWherePrimitivesCoverEachOther) {
   Scene scene = empty_scene();
   add_spheres(scene, random, 4000, 1, .5, .9);
   const World world(scene, {});
-  const auto built = world.impl().light_grids->build({0, 9, 0}, 2);
+  const auto built = build(world, {0, 9, 0}, 2);
   ASSERT_TRUE(built);
   EXPECT_LE(built->grid.references(), 70u * 4000u);
   expect_same(world, scene, {0, 9, 0}, 3);

@@ -5,12 +5,15 @@
 
 #include <cmath>
 
-#include "kernel/perspective/tiles.hpp"
+#include "kernel/perspective/in_tiles.hpp"
 #include "kernel/trace/point_lookup.hpp"
 #include "tests/support/random.hpp"
 
 namespace grelha::test {
 namespace {
+
+using Outline = scalar::Outline<double>;
+using HalfPlane = scalar::HalfPlane<double>;
 
 /// A face of so many tiles along each axis.
 PointFace face_of(double tiles) {
@@ -48,8 +51,10 @@ float evaluated(const Outline& tiled, const PointFace& face, const double (&plac
     corner[j] = std::min(std::floor(in_tiles), face.nx - 1);
     at[j] = in_tiles - corner[j];
   }
+  SeenFew kept;
+  scalar::keep(face, tiled, 0, kept);
   OutlineBlock block;
-  set_place(block, 0, SeenOutline(face, tiled, 0), {corner[0], corner[1], 1, 0});
+  set_place(block, 0, SeenOutline(kept, 0, 0), {corner[0], corner[1], 1, 0});
   const float x = static_cast<float>(at[0]);
   const float y = static_cast<float>(at[1]);
   return (block.side[0][0][0] * x + block.side[0][1][0] * y) + block.side[0][2][0];
@@ -64,7 +69,7 @@ TEST_P(Sides, HoldWhatLiesOnThem) {
   for (int i = 0; i < 20000; ++i) {
     const double place[2] = {random.in(-1, 1), random.in(-1, 1)};
     Outline seen = side_through(random, face, place, span);
-    to_tiles(face, seen);
+    scalar::to_tiles(face, seen);
     ASSERT_GE(evaluated(seen, face, place), 0) << place[0] << ' ' << place[1];
   }
 }
@@ -75,16 +80,15 @@ INSTANTIATE_TEST_SUITE_P(Spans, Sides, testing::Values(1., 30., 4000.));
 class Descent {
  public:
   Descent(const PointFace& face, double u, double v) {
-    seen_.lo[0] = seen_.hi[0] = u;
-    seen_.lo[1] = seen_.hi[1] = v;
-    for (HalfPlane& side : seen_.side)
-      side = {};
+    scalar::Bounds<double> seen{{u, v}, {u, v}, 1, 1};
     const double x = (u - face.u) * face.per_u;
     const double y = (v - face.v) * face.per_v;
     tile_ = {std::floor(x), std::floor(y), 1, 0};
     at_ = {static_cast<float>(x - tile_.x), static_cast<float>(y - tile_.y), 0, 0};
-    to_tiles(face, static_cast<Bounds&>(seen_));
-    box_ = SeenBox(face, seen_, 0);
+    scalar::to_tiles(face, seen);
+    scalar::keep(face, seen, 0, seen_);
+    seen_.sided = false;
+    box_ = SeenBox(seen_, 0, 0);
   }
   /// Goes on to one of n x n parts; false: what is seen is not placed there.
   bool go_on(int n) {
@@ -92,7 +96,7 @@ class Descent {
     const int part = static_cast<int>(at_.tile);
     const double width = tile_.width / n;
     bool placed = false;
-    TileWalk({tile_.x, tile_.y, width, n, n}).each(seen_, [&](std::uint32_t number) {
+    TileWalk({tile_.x, tile_.y, width, n, n}).each(seen_, 0, [&](std::uint32_t number) {
       placed |= static_cast<int>(number) == part;
     });
     tile_ = {tile_.x + part % n * width, tile_.y + part / n * width, width, 0};
@@ -105,7 +109,7 @@ class Descent {
   }
 
  private:
-  Outline seen_ = {};
+  SeenFew seen_;
   SeenBox box_;
   Tile tile_;
   scalar::SearchPlaces at_;
