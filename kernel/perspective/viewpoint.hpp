@@ -22,11 +22,7 @@ struct FaceAxes {
   bool down;    ///< against its own axis
 
   explicit FaceAxes(int face)
-      : p(kNext[face / 2]), q(kLast[face / 2]), r(face / 2), down(face % 2) {}
-
- private:
-  static constexpr int kNext[3] = {1, 2, 0};
-  static constexpr int kLast[3] = {2, 0, 1};
+      : p((face / 2 + 1) % 3), q((face / 2 + 2) % 3), r(face / 2), down(face % 2) {}
 };
 
 }  // namespace grelha

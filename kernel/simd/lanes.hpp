@@ -172,13 +172,16 @@ inline float not_above(double a) {
 inline float not_below(double a) {
   return 0 - not_above(0 - a);
 }
-/// Stores floats not below doubles, or not above: of these with more added, or taken away, than
-/// rounding changes, 2 u and the least float.
+/// More than rounding to a float changes a double by: 2 u and the least float.
+inline DoubleLanes float_room(const DoubleLanes& a) {
+  return magnitude(a) * DoubleLanes(0x1p-23) + DoubleLanes(0x1p-149);
+}
+/// Stores floats not below doubles, or not above.
 [[gnu::always_inline]] inline void store_not_below(float* to, const DoubleLanes& a) {
-  store_narrow(to, a + (magnitude(a) * DoubleLanes(0x1p-23) + DoubleLanes(0x1p-149)));
+  store_narrow(to, a + float_room(a));
 }
 [[gnu::always_inline]] inline void store_not_above(float* to, const DoubleLanes& a) {
-  store_narrow(to, a - (magnitude(a) * DoubleLanes(0x1p-23) + DoubleLanes(0x1p-149)));
+  store_narrow(to, a - float_room(a));
 }
 
 /// Doubles beside some floats: kWideParts<Real> registers of them hold what one of Real does.

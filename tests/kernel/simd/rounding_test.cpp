@@ -40,7 +40,7 @@ TEST(Rounding, FindsTheNextFloat) {
   EXPECT_TRUE(std::isnan(float_not_above(std::numeric_limits<double>::quiet_NaN())));
 }
 
-TEST(Rounding, StoresFloatsNotBelow) {
+TEST(Rounding, StoresFloatsBesideDoubles) {
   for (std::uint64_t seed = 0; seed < 300000; ++seed) {
     Random random(seed);
     const double x = any_double(random);
@@ -48,6 +48,9 @@ TEST(Rounding, StoresFloatsNotBelow) {
     scalar::store_not_below(&f, x);
     ASSERT_GE(f, x) << seed;
     ASSERT_LE(f, x + std::abs(x) * 0x1p-22 + 0x1p-148) << seed;
+    scalar::store_not_above(&f, x);
+    ASSERT_LE(f, x) << seed;
+    ASSERT_GE(f, x - std::abs(x) * 0x1p-22 - 0x1p-148) << seed;
   }
 }
 
