@@ -75,8 +75,10 @@ inline void keep(const HalfPlane<Real>& side, int i, SeenSide& to) {
 template <class Real>
 inline void keep(const PointFace& f, const Bounds<Real>& o, int i, SeenFew& to) {
   const double n[2] = {f.nx, f.ny};
+  const Real room(kPlaceRounding);
   for (int j = 0; j < 2; ++j) {
     const Real anchor = anchor_of(o.lo[j], n[j]);
+    store_narrow(to.last[j] + i, anchor_of(o.hi[j], n[j]));
     store(to.lo[j] + i, o.lo[j]);
     store(to.hi[j] + i, o.hi[j]);
     store_narrow(to.anchor[j] + i, anchor);
@@ -84,6 +86,9 @@ inline void keep(const PointFace& f, const Bounds<Real>& o, int i, SeenFew& to) 
     store_not_below(to.box_hi[j] + i, o.hi[j] - anchor);
   }
   store_not_above(to.near + i, o.near);
+  const Mask<Real> x = both(o.hi[0] >= Real(0) - room, o.lo[0] <= Real(f.nx) + room);
+  const Mask<Real> y = both(o.hi[1] >= Real(0) - room, o.lo[1] <= Real(f.ny) + room);
+  to.on_tiles |= bits(both(x, y)) << i;
 }
 /// The same with sides.
 template <class Real>

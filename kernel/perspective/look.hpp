@@ -201,6 +201,7 @@ inline void see(const Primitives& p,
                 const PointFace& tiles,
                 SeenFew& to) {
   to.seen = 0;
+  to.on_tiles = 0;
   p.visit(few.id[0], [&]<class Shape>(std::uint32_t) {
     const FewFields<Shape> fields(p, few);
     to.sided = kHasSides<Shape>;

@@ -169,9 +169,9 @@ class Builder {
       const int k = std::countr_zero(left);
       const std::uint32_t id = of.few.id[k];
       if (seen.sided)
-        place(seen, k, id, f, kOutlineList, writers.outlines.add({seen, k, id}), to);
+        place(seen, k, id, f, kOutlineList, writers.outlines.add(seen, k, id), to);
       else
-        place(seen, k, id, f, kBoxList, writers.boxes.add({seen, k, id}), to);
+        place(seen, k, id, f, kBoxList, writers.boxes.add(seen, k, id), to);
     }
   }
 
@@ -190,11 +190,24 @@ class Builder {
     const auto beyond = static_cast<std::uint32_t>(columns * rows);
     if (onlooker_.is_large(id))
       to.push_back({kLists * (first + beyond) + kind, number});
-    if (beyond == 0)
+    if (beyond == 0 || !(seen.on_tiles >> k & 1))
       return;
-    TileWalk({0, 0, 1, columns, rows}).each(seen, k, [&](std::uint32_t tile) {
+    const auto add = [&](std::uint32_t tile) {
       to.push_back({kLists * (first + tile) + kind, number});
-    });
+    };
+    if (seen.sided && seen.anchor[1][k] != seen.last[1][k])
+      TileWalk({0, 0, 1, columns, rows}).each(seen, k, add);
+    else
+      each_in_box(seen, k, columns, add);
+  }
+
+  /// The tiles of a face that the bounds of primitive k touch.
+  template <class Visit>
+  static void each_in_box(const SeenFew& seen, int k, int columns, const Visit& visit) {
+    const int end = static_cast<int>(seen.last[0][k]) + 1;
+    for (int y = static_cast<int>(seen.anchor[1][k]); y <= static_cast<int>(seen.last[1][k]); ++y)
+      for (int x = static_cast<int>(seen.anchor[0][k]); x < end; ++x)
+        visit(static_cast<std::uint32_t>(y * columns + x));
   }
 
   /// Tiles with too many primitives get parts, and these again.
@@ -258,17 +271,19 @@ class Builder {
 
   /// Takes what is placed in tiles with parts to these.
   void place_parts(std::size_t turn) {
-    const std::vector<Place> all = std::move(places_[turn]);
-    std::vector<Place>& to = places_[turn];
-    to = {};
-    to.reserve(all.size());
+    std::vector<Place>& places = places_[turn];
+    const auto in_parts = [&](const Place& p) { return g_.tiles[p.list / kLists].columns > 0; };
+    auto kept = std::find_if(places.begin(), places.end(), in_parts);
     Crowd crowd;
-    for (const Place& p : all)
-      if (g_.tiles[p.list / kLists].columns == 0)
-        to.push_back(p);
+    std::vector<Place> placed;
+    for (auto at = kept; at != places.end(); ++at)
+      if (in_parts(*at))
+        add(*at, crowd, placed);
       else
-        add(p, crowd, to);
-    place_crowd(crowd, to);
+        *kept++ = *at;
+    place_crowd(crowd, placed);
+    places.erase(kept, places.end());
+    places.insert(places.end(), placed.begin(), placed.end());
   }
 
   /// Adds a place, and before it ends what cannot take its primitive.

@@ -9,27 +9,7 @@ namespace {
 
 constexpr double kMostTiles = 4096;  ///< along an axis of a face
 
-Anchor anchor_of(const SeenFew& seen, int k) {
-  return {static_cast<std::uint16_t>(seen.anchor[0][k]),
-          static_cast<std::uint16_t>(seen.anchor[1][k])};
-}
-
 }  // namespace
-
-SeenOutline::SeenOutline(const SeenFew& seen, int k, std::uint32_t of)
-    : near(seen.near[k]), far(seen.far[k]), id(of), anchor(anchor_of(seen, k)) {
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      side[i][j] = seen.side[3 * i + j][k];
-}
-
-SeenBox::SeenBox(const SeenFew& seen, int k, std::uint32_t of)
-    : near(seen.near[k]), id(of), anchor(anchor_of(seen, k)) {
-  for (int j = 0; j < 2; ++j) {
-    lo[j] = seen.box_lo[j][k];
-    hi[j] = seen.box_hi[j][k];
-  }
-}
 
 WindowRows::WindowRows() {
   for (int k = 0; k < kOutlines; ++k) {
@@ -109,10 +89,9 @@ void set_place(OutlineBlock& block, std::uint32_t k, const SeenOutline& seen, co
 void set_place(BoxBlock& block, std::uint32_t k, const SeenBox& seen, const Tile& t) {
   const double at[2] = {t.x - seen.anchor.x, t.y - seen.anchor.y};
   const bool beyond = t.width == 0;
-  const double columns = beyond ? 0 : 1 / t.width;
   for (int j = 0; j < 2; ++j) {
-    const double lo = beyond ? -1 : (seen.lo[j] - at[j]) * columns;
-    const double hi = beyond ? 2 : (seen.hi[j] - at[j]) * columns;
+    const double lo = beyond ? -1 : (seen.lo[j] - at[j]) * t.columns;
+    const double hi = beyond ? 2 : (seen.hi[j] - at[j]) * t.columns;
     // twice what floats of at most 2 round by
     block.lo[j][k] = static_cast<float>(std::max(lo, -1.) - kPlaceRounding);
     block.hi[j][k] = static_cast<float>(std::min(hi, 2.) + kPlaceRounding);

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <mutex>
+#include <new>
 #include <vector>
 
 #include "kernel/perspective/tolerances.hpp"
@@ -41,8 +42,10 @@ struct alignas(64) SeenFew {
   float box_lo[2][kOutlines], box_hi[2][kOutlines];
   float side[9][kOutlines];
   float near[kOutlines], far[kOutlines];
-  float anchor[2][kOutlines];  ///< the tile that it begins in
-  unsigned seen;               ///< a bit for each of which there is anything
+  float anchor[2][kOutlines];  ///< the tile that it begins in, and that it ends in
+  float last[2][kOutlines];
+  unsigned seen;      ///< a bit for each of which there is anything
+  unsigned on_tiles;  ///< and not only beyond all tiles
   bool sided;
 };
 
@@ -103,6 +106,12 @@ class TileWalk {
 struct Anchor {
   std::uint16_t x = 0;
   std::uint16_t y = 0;
+
+  Anchor() = default;
+  /// Of primitive k.
+  Anchor(const SeenFew& seen, int k)
+      : x(static_cast<std::uint16_t>(seen.anchor[0][k])),
+        y(static_cast<std::uint16_t>(seen.anchor[1][k])) {}
 };
 
 /// What lists hold of a primitive that has an outline, in tiles from its anchor on. A line of
@@ -114,8 +123,12 @@ struct alignas(64) SeenOutline {
   Anchor anchor;
 
   SeenOutline() = default;
-  /// Of primitive k.
-  SeenOutline(const SeenFew& seen, int k, std::uint32_t id);
+  SeenOutline(const SeenFew& seen, int k, std::uint32_t of)
+      : near(seen.near[k]), far(seen.far[k]), id(of), anchor(seen, k) {
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        side[i][j] = seen.side[3 * i + j][k];
+  }
 };
 
 /// The same of a sphere.
@@ -126,7 +139,13 @@ struct alignas(32) SeenBox {
   Anchor anchor;
 
   SeenBox() = default;
-  SeenBox(const SeenFew& seen, int k, std::uint32_t id);
+  SeenBox(const SeenFew& seen, int k, std::uint32_t of)
+      : near(seen.near[k]), id(of), anchor(seen, k) {
+    for (int j = 0; j < 2; ++j) {
+      lo[j] = seen.box_lo[j][k];
+      hi[j] = seen.box_hi[j][k];
+    }
+  }
 };
 
 /// Many of them, in pages that threads fill side by side.
@@ -138,13 +157,13 @@ class SeenPages {
   class Writer {
    public:
     explicit Writer(SeenPages& to) : to_(to) {}
-    /// Returns the number of what was added.
-    std::uint32_t add(const Seen& seen) {
+    /// Adds primitive k, which has an id. Returns the number of what was added.
+    std::uint32_t add(const SeenFew& seen, int k, std::uint32_t id) {
       if (at_ == kPage) {
         first_ = to_.add(page_);
         at_ = 0;
       }
-      page_[at_] = seen;
+      new (page_ + at_) Seen(seen, k, id);
       return first_ + at_++;
     }
 
@@ -207,7 +226,10 @@ struct Window {
 /// A tile of any level: its corner and width in tiles of its face. Width 0: beyond all others.
 struct Tile {
   double x, y, width;
+  double columns;  ///< such tiles beside each other in one of the face; 0 beyond
   int face;
+  Tile(double left, double top, double wide, int of)
+      : x(left), y(top), width(wide), columns(wide > 0 ? 1 / wide : 0), face(of) {}
 };
 
 /// Sets place k of a block.

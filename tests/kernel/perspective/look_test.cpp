@@ -71,6 +71,8 @@ void expect_same(const SeenFew& a, const SeenFew& b, int k) {
   expect_row(a.hi, b.hi, k);
   expect_row(a.near, b.near, k);
   expect_row(a.anchor, b.anchor, k);
+  expect_row(a.last, b.last, k);
+  EXPECT_EQ(a.on_tiles >> k & 1, b.on_tiles >> k & 1);
   expect_row(a.box_lo, b.box_lo, k);
   expect_row(a.box_hi, b.box_hi, k);
   if (!a.sided)

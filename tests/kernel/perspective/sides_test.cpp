@@ -51,7 +51,7 @@ float evaluated(const Outline& tiled, const PointFace& face, const double (&plac
     corner[j] = std::min(std::floor(in_tiles), face.nx - 1);
     at[j] = in_tiles - corner[j];
   }
-  SeenFew kept;
+  SeenFew kept = {};
   scalar::keep(face, tiled, 0, kept);
   OutlineBlock block;
   set_place(block, 0, SeenOutline(kept, 0, 0), {corner[0], corner[1], 1, 0});
@@ -109,9 +109,9 @@ class Descent {
   }
 
  private:
-  SeenFew seen_;
+  SeenFew seen_ = {};
   SeenBox box_;
-  Tile tile_;
+  Tile tile_{0, 0, 1, 0};
   scalar::SearchPlaces at_;
 };
 
