@@ -88,13 +88,13 @@ void set_place(OutlineBlock& block, std::uint32_t k, const SeenOutline& seen, co
 
 void set_place(BoxBlock& block, std::uint32_t k, const SeenBox& seen, const Tile& t) {
   const double at[2] = {t.x - seen.anchor.x, t.y - seen.anchor.y};
-  const bool beyond = t.width == 0;
+  const double all = t.width == 0 ? 2 : 0;  // beyond all tiles: wherever it is
   for (int j = 0; j < 2; ++j) {
-    const double lo = beyond ? -1 : (seen.lo[j] - at[j]) * t.columns;
-    const double hi = beyond ? 2 : (seen.hi[j] - at[j]) * t.columns;
+    const double lo = std::max(-1., (seen.lo[j] - at[j]) * t.columns - all);
+    const double hi = std::min(2., (seen.hi[j] - at[j]) * t.columns + all);
     // twice what floats of at most 2 round by
-    block.lo[j][k] = static_cast<float>(std::max(lo, -1.) - kPlaceRounding);
-    block.hi[j][k] = static_cast<float>(std::min(hi, 2.) + kPlaceRounding);
+    block.lo[j][k] = static_cast<float>(lo - kPlaceRounding);
+    block.hi[j][k] = static_cast<float>(hi + kPlaceRounding);
   }
   block.near[k] = seen.near;
   block.id[k] = seen.id;
