@@ -86,13 +86,15 @@ inline LaneMask any_component(const Lanes3& a) {
   return either(either(a.x != Lanes(0), a.y != Lanes(0)), a.z != Lanes(0));
 }
 
-/// What the hits' materials hold.
+/// What the hits' materials hold. Neighbours are mostly of one.
 template <bool kOne>
 inline Lanes gather(const Shader& s, MaterialField field, const HitLanes<kOne>& at) {
+  const float* const held = s.shading.materials.field[field];
+  const std::uint32_t first = s.b.hits.material[at.i];
   if constexpr (kOne)
-    return Lanes(s.shading.materials.field[field][s.b.hits.material[at.i]]);
-  else
-    return floats_at(s.shading.materials.field[field], at(s.b.hits.material));
+    return Lanes(held[first]);
+  const LaneWords of = at(s.b.hits.material);
+  return lanes_where(of != first) == 0 ? Lanes(held[first]) : floats_at(held, of);
 }
 
 template <bool kOne>
