@@ -48,6 +48,23 @@ inline void set_low(Packet<InDouble>& p, const LowParts& low, std::size_t first)
     p.low[a] = low.of[a] ? low.of[a] + first : nullptr;
 }
 
+/// Notes the rows of rays from `next` on.
+inline void look_ahead(const Rays& rays, std::size_t next, RowsAhead& ahead) {
+  ahead.clear();
+  if (next >= rays.count)
+    return;
+  const auto add = [&](const float* array, std::ptrdiff_t stride) {
+    if (array && stride == 1)
+      ahead.add(array + next);
+  };
+  for (int a = 0; a < 3; ++a) {
+    add(rays.org[a], rays.org_stride);
+    add(rays.dir[a], rays.dir_stride);
+  }
+  add(rays.t_min, rays.t_stride);
+  add(rays.t_max, rays.t_stride);
+}
+
 /// Rays from `first` on, as many as the packet's size says.
 template <class In>
 inline void load_rays(const Rays& rays, const LowParts& low, std::size_t first, Packet<In>& p) {
@@ -58,6 +75,7 @@ inline void load_rays(const Rays& rays, const LowParts& low, std::size_t first, 
   load_floats(rays.t_min, rays.t_stride, first, p.size, 0, p.t_min);
   load_t_max(rays, first, p.size, p.best);
   set_low(p, low, first);
+  look_ahead(rays, first + static_cast<std::size_t>(p.size), p.ahead);
 }
 
 /// The same of rays of our own: strides of org and dir are 1, all start at t = 0 and end at t_max.
@@ -147,7 +165,13 @@ inline void trace_closest(const SceneView& scene,
                           const Hits& hits,
                           const TraceOptions& options,
                           Counters& n) {
-  const auto load = [&](Packet<In>& p, std::size_t first) { load_rays(rays, low, first, p); };
+  const auto load = [&](Packet<In>& p, std::size_t first) {
+    load_rays(rays, low, first, p);
+    if (hits.stride == 1 && hits.t && hits.id) {
+      p.ahead.add(hits.t + first);
+      p.ahead.add(hits.id + first);
+    }
+  };
   const auto store = [&](const Packet<In>& p, std::size_t first) {
     store_hits(p, rays, first, hits);
   };

@@ -106,16 +106,23 @@ template <class In>
   store(p.shear[2] + i, Real(1) / q.z);
 }
 
-/// Completes a packet whose org, dir, t_min, best and size are set, for walks.
-inline void prepare_to_walk(WalkingRays& p) {
+/// Completes a packet whose org, dir, t_min, best and size are set, for walks; `complete(g)` does
+/// what else is to be done for group g.
+template <class Complete>
+[[gnu::always_inline]] inline void prepare_to_walk(WalkingRays& p, const Complete& complete) {
   constexpr int w = kWidth<Lanes>;
   p.groups = (p.size + w - 1) / w;
   p.live = ~std::uint64_t{0} >> (64 - p.groups);
   fill_up(p);
-  for (int i = 0; i < p.groups * w; i += w) {
-    store(p.id + i, Lanes(bits_of(kNoPrimitive)));
-    switch_off_unsound(p, i);
+  for (int g = 0; g < p.groups; ++g) {
+    p.ahead.ask(g * w);
+    store(p.id + g * w, Lanes(bits_of(kNoPrimitive)));
+    switch_off_unsound(p, g * w);
+    complete(g);
   }
+}
+inline void prepare_to_walk(WalkingRays& p) {
+  prepare_to_walk(p, [](int) {});
 }
 
 /// The rest, of a group: for tests.
@@ -131,9 +138,8 @@ template <class In>
 /// Completes a packet whose org, dir, t_min, best and size are set.
 template <class In>
 inline void prepare(Packet<In>& p, bool any_triangles) {
-  prepare_to_walk(p);
-  for (int g = 0; g < p.groups; ++g)
-    prepare_to_test(p, g, any_triangles);
+  prepare_to_walk(
+      p, [&](int g) __attribute__((always_inline)) { prepare_to_test(p, g, any_triangles); });
   set_tested(p);
 }
 

@@ -11,6 +11,26 @@ namespace grelha::GRELHA_ISA {
 inline constexpr int kPacket = kWidth<Lanes> == 1 ? 64 : 256;
 inline constexpr float kInfinity = __builtin_inff();
 
+/// Rows of floats that are to be read or written soon. Asked for line by line, with work between,
+/// they come without being waited for: the first cache waits for few lines at once.
+class RowsAhead {
+ public:
+  void clear() { count_ = 0; }
+  void add(const void* row) { row_[count_++] = static_cast<const float*>(row); }
+  /// Asks for the lines that begin with float i of each row. Inlined by force: the compiler takes a
+  /// function that only asks for one that does nothing.
+  [[gnu::always_inline]] void ask(int i) const {
+    if (i % kLine == 0)
+      for (int k = 0; k < count_; ++k)
+        __builtin_prefetch(row_[k] + i);
+  }
+
+ private:
+  static constexpr int kLine = 16;
+  const float* row_[10];  ///< eight of rays, two of hits
+  int count_ = 0;
+};
+
 /// Up to kPacket rays as arrays, as they walk grids. A ray searches (t_min, best); best <= t_min
 /// switches it off. Places between `size` and the end of the last group are switched off. `id`
 /// holds the bits of the nearest primitive so far.
@@ -24,6 +44,7 @@ struct WalkingRays {
   alignas(64) float axis[kPacket];          ///< of the shear: 0, 1 or 2
   int group_axis[kPacket / kWidth<Lanes>];  ///< the axis all rays of a group share, or -1
   int size, groups;
+  RowsAhead ahead;     ///< what the next packet's rays come from, and this one's answers go to
   std::uint64_t live;  ///< bit g: group g has a ray that still searches
 };
 
