@@ -201,12 +201,15 @@ template <bool kAny, class Real, class Source>
     const Real slack = Real(kDepthError) * spread + Real(kDepthRounding) * magnitude(t);
     const Real first = t - slack;
     const Real last = t + slack;
+    const Mask<Real> beyond = first > t_min;
     Mask<Real> settled = either(either(last<t_min, first> t_max), both(inside, exact));
     if (kAny)
-      settled = either(settled, both(inside, both(first > t_min, last < t_max)));
+      settled = either(settled, both(inside, both(beyond, last < t_max)));
     const Mask<Real> unsure = but_not(maybe, settled);
-    if (any(unsure))
-      t = select(unsure, depth_in_double<Real, Source>(source, bits(unsure), t_min), t);
+    if (any(unsure)) {
+      const bool near = any(but_not(unsure, beyond));
+      t = select(unsure, depth_in_double<Real, Source>(source, bits(unsure), near, t_min), t);
+    }
     return both(maybe, t > t_min);  // a NaN anywhere fails here
   }
 }

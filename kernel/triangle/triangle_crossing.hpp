@@ -144,11 +144,13 @@ template <class Real>
   return both(apart, both(sure(left, sizes(to) + sizes(way)), sure(ahead, sizes(r.dir))));
 }
 
-/// t of chosen lanes by crossing(); NaN where the ray does not cross, or surely not beyond t_min.
+/// t of chosen lanes by crossing(); NaN where the ray does not cross, or surely not beyond t_min:
+/// what is `near` it is asked first.
 template <class Real, class Source>
-[[gnu::noinline]] Real depth_in_double(Source source, unsigned chosen, Real t_min) {
+[[gnu::noinline]] Real depth_in_double(Source source, unsigned chosen, bool near, Real t_min) {
   const RayAndTriangle<Real> from = source();
-  chosen &= ~bits(past_plane(from, t_min));
+  if (near)
+    chosen &= ~bits(past_plane(from, t_min));
   Wide<Real> t[kWideParts<Real>];
   for (Wide<Real>& part : t)
     part = Wide<Real>(__builtin_nan(""));
