@@ -9,19 +9,23 @@ namespace grelha::GRELHA_ISA {
 
 /// One primitive of a kind against all rays of a packet.
 template <bool kAny, class In>
-inline void test_primitive(
-    Triangle, const GeometryView& g, Packet<In>& p, std::uint32_t i, std::uint32_t id) {
+inline void test_primitive(Triangle,
+                           const GeometryView& g,
+                           Packet<In>& p,
+                           std::uint32_t i,
+                           std::uint32_t id,
+                           Counters& n) {
   const Triangle::Arrays& t = g.of<Triangle>();
   Triangle::Fields<float> triangle;
   for (int k = 0; k < 3; ++k)
     for (int a = 0; a < 3; ++a)
       triangle.corner[k][a] = t.vertex[a][t.corner[k][i]];
-  test_triangle<kAny>(p, triangle, id);
+  test_triangle<kAny>(p, triangle, id, n);
 }
 template <bool kAny, class Shape, class In>
 inline void test_primitive(
-    Shape, const GeometryView& g, Packet<In>& p, std::uint32_t i, std::uint32_t id) {
-  test_one<kAny, Shape>(p, g.of<Shape>().fields, i, id);
+    Shape, const GeometryView& g, Packet<In>& p, std::uint32_t i, std::uint32_t id, Counters& n) {
+  test_one<kAny, Shape>(p, g.of<Shape>().fields, i, id, n);
 }
 
 /// Whether anything is in the way of the rays of a packet to a point. `leaves`: the primitive that
@@ -259,8 +263,7 @@ class PointSearch {
     tested_ = id;
     prepare_triangles();
     visit_shape(FiniteShapes{}, geometry_.ids, id, [&]<class Shape>(std::uint32_t i) {
-      count_lanes<Shape>(p_, n_);
-      test_primitive<true>(Shape{}, geometry_, p_, i, id);
+      test_primitive<true>(Shape{}, geometry_, p_, i, id, n_);
     });
   }
 

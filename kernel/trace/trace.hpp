@@ -117,10 +117,8 @@ inline void test_infinite(const SceneView& scene, Packet<In>& p, Counters& n) {
   const GeometryView& g = scene.geometry;
   InfiniteShapes::for_each([&]<class Shape>() __attribute__((always_inline)) {
     const typename Shape::Arrays& all = g.of<Shape>();
-    for (std::uint32_t i = 0; i < all.count; ++i) {
-      count_lanes<Shape>(p, n);
-      test_one<kAny, Shape>(p, all.fields, i, g.ids.begin(Shape::kKind) + i);
-    }
+    for (std::uint32_t i = 0; i < all.count; ++i)
+      test_one<kAny, Shape>(p, all.fields, i, g.ids.begin(Shape::kKind) + i, n);
   });
 }
 
@@ -129,10 +127,8 @@ template <bool kAny, class In>
 inline void test_outside(const Triangle::CellList& list, Packet<In>& p, Counters& n) {
   for (std::uint32_t b = 0; b < list.first[1]; ++b) {
     const TriangleBlock& block = list.blocks[b];
-    for (int i = 0; i < kBlock && block.a[0][i] == block.a[0][i]; ++i) {
-      count_lanes<Triangle>(p, n);
-      test_triangle<kAny>(p, triangle_of(block, i), block.id[i]);
-    }
+    for (int i = 0; i < kBlock && block.a[0][i] == block.a[0][i]; ++i)
+      test_triangle<kAny>(p, triangle_of(block, i), block.id[i], n);
   }
 }
 
@@ -143,10 +139,8 @@ inline void test_outside(const CellLists& lists, Packet<In>& p, Counters& n) {
     test_outside<kAny>(lists.of<Triangle>(), p, n);
   ArrayShapes::for_each([&]<class Shape>() __attribute__((always_inline)) {
     const typename Shape::CellList& list = lists.of<Shape>();
-    for (std::uint32_t i = 0; list.first && i < list.first[1]; ++i) {
-      count_lanes<Shape>(p, n);
-      test_one<kAny, Shape>(p, list.fields, i, list.id[i]);
-    }
+    for (std::uint32_t i = 0; list.first && i < list.first[1]; ++i)
+      test_one<kAny, Shape>(p, list.fields, i, list.id[i], n);
   });
 }
 

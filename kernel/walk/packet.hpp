@@ -214,26 +214,21 @@ inline void note(Packet<In>& p,
     store_one_by_one<kAny>(p, i, bits(candidate), bits(tie), t, id);
 }
 
-/// Runs `test(i, g)` for the first lane i of every part, as wide as tests are, of every live group
-/// g.
-template <class In, class Test>
-[[gnu::always_inline]] inline void each_tested(const Packet<In>& p, const Test& test) {
+/// Tests all live rays against a primitive of a kind and counts that: runs `test(i, g)` for the
+/// first lane i of every part, as wide as tests are, of every live group g.
+template <class Shape, class In, class Test>
+[[gnu::always_inline]] inline void each_tested(const Packet<In>& p, Counters& n, const Test& test) {
+  unsigned busy = 0;  // in one pass with the tests: these look at best and t_min as well
   each_live_group(
       p, [&](int first, int g) __attribute__((always_inline)) {
+        const unsigned on = bits(load<Lanes>(p.best + first) > load<Lanes>(p.t_min + first));
+        busy += static_cast<unsigned>(__builtin_popcount(on));
         for (int i = first; i < first + kWidth<Lanes>; i += kWidth<typename In::Rays>)
           test(i, g);
       });
-}
-
-/// Counts tests of all live rays against a primitive.
-template <class Shape>
-inline void count_lanes(const WalkingRays& p, Counters& n) {
-  each_live_group(p, [&](int i, int) {
-    n.issued += kWidth<Lanes>;
-    const unsigned on = bits(load<Lanes>(p.best + i) > load<Lanes>(p.t_min + i));
-    n.busy += static_cast<unsigned>(__builtin_popcount(on));
-    n.tests[kNumber<Shape>] += static_cast<unsigned>(__builtin_popcount(on));
-  });
+  n.issued += static_cast<unsigned>(__builtin_popcountll(p.live) * kWidth<Lanes>);
+  n.busy += busy;
+  n.tests[kNumber<Shape>] += busy;
 }
 
 /// All live rays against primitive `index` of many.
@@ -241,10 +236,11 @@ template <bool kAny, class Shape, class In>
 inline void test_one(Packet<In>& p,
                      const FieldArrays<Shape>& of,
                      std::uint32_t index,
-                     std::uint32_t id) {
+                     std::uint32_t id,
+                     Counters& n) {
   using Real = typename In::Rays;
   const auto one = broadcast<Shape, Real>(of, index);
-  each_tested(p, [&](int i, int) {
+  each_tested<Shape>(p, n, [&](int i, int) {
     const RayLanes<Real> ray{.org = origin(p, i),
                              .dir = direction(p, i),
                              .inv_dd = load<Real>(p.inv_dd + i),
@@ -305,11 +301,12 @@ struct MixedRays {
 template <bool kAny, class In>
 [[gnu::noinline]] void test_triangle(Packet<In>& p,
                                      const Triangle::Fields<float>& triangle,
-                                     std::uint32_t id) {
+                                     std::uint32_t id,
+                                     Counters& n) {
   using Real = typename In::Rays;
   const TestedTriangle<In> with{&p, triangle.corner};
-  each_tested(
-      p, [&](int i, int g) __attribute__((always_inline)) {
+  each_tested<Triangle>(
+      p, n, [&](int i, int g) __attribute__((always_inline)) {
         const Shear<Real> shear{
             load<Real>(p.shear[0] + i), load<Real>(p.shear[1] + i), load<Real>(p.shear[2] + i)};
         const Real t_min = take<Real>(tested_t_min(p) + i);

@@ -193,7 +193,7 @@ class PacketVisit {
       if (seen(id))
         return;
       const Triangle::Fields<float> triangle = triangle_of(block, at);
-      const auto test = [&] { test_triangle<kAny>(p_, triangle, id); };
+      const auto test = [&] { test_triangle<kAny>(p_, triangle, id, n_); };
       test_near_groups<Triangle>(triangle, test);
     });
   }
@@ -204,7 +204,7 @@ class PacketVisit {
       const std::uint32_t id = list.id[i];
       if (seen(id))
         return;
-      const auto test = [&] { test_one<kAny, Shape>(p_, list.fields, i, id); };
+      const auto test = [&] { test_one<kAny, Shape>(p_, list.fields, i, id, n_); };
       test_near_groups<Shape>(broadcast<Shape, float>(list.fields, i), test);
     });
   }
@@ -216,10 +216,8 @@ class PacketVisit {
     const std::uint64_t live = p_.live;
     if (f_.by_group)
       p_.live &= groups_near(f_, one);
-    if (p_.live != 0) {
-      count_lanes<Shape>(p_, n_);
+    if (p_.live != 0)
       test();
-    }
     p_.live = live;
   }
 
