@@ -56,6 +56,12 @@ inline bool none(const SimdDoubleMask<A>& m) {
 }
 #endif
 
+/// The greater magnitude of two; of a NaN it is not the same on every instruction set.
+template <class Real>
+inline Real larger(const Real& a, const Real& b) {
+  return greater(magnitude(a), magnitude(b));
+}
+
 /// Calls visit(i) for each bit i, the lowest first.
 template <class Visit>
 [[gnu::always_inline]] inline void each_bit(unsigned bits, const Visit& visit) {

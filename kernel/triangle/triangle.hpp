@@ -180,10 +180,8 @@ template <bool kAny, class Real, class Source>
     const Real bx = ob.x - shear.x * ob.z, by = ob.y - shear.y * ob.z;
     const Real cx = oc.x - shear.x * oc.z, cy = oc.y - shear.y * oc.z;
     const Real u = cx * by - cy * bx, v = ax * cy - ay * cx, w = bx * ay - by * ax;
-    const Real size = greater(
-        greater(greater(magnitude(ax), magnitude(ay)), greater(magnitude(bx), magnitude(by))),
-        greater(magnitude(cx), magnitude(cy)));
-    const Real depth = greater(greater(magnitude(oa.z), magnitude(ob.z)), magnitude(oc.z));
+    const Real size = larger(larger(larger(ax, ay), larger(bx, by)), larger(cx, cy));
+    const Real depth = larger(larger(oa.z, ob.z), oc.z);
     const Real area = size * (size + depth);
     const Real error = Real(kEdgeError) * area;
     const Real least = lesser(lesser(u, v), w);

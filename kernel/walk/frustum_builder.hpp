@@ -127,7 +127,7 @@ class FrustumBuilder {
       f_.group_near[group] = lane_min(in);
       s0 = lesser(in, s0);
       s1 = greater(select(meets, at + leave * q, Lanes(-kInfinity)), s1);
-      far = greater(select(meets, magnitude(at), Lanes(0)), far);
+      far = larger(select(meets, at, Lanes(0)), far);
     });
     if (apart)
       return false;
@@ -187,8 +187,8 @@ class FrustumBuilder {
       lo1 = lesser(least1, lo1);
       hi0 = greater(most0, hi0);
       hi1 = greater(most1, hi1);
-      wide = greater(select(meets, magnitude(at), Lanes(0)), wide);
-      steep = greater(select(meets, magnitude(slope), Lanes(0)), steep);
+      wide = larger(select(meets, at, Lanes(0)), wide);
+      steep = larger(select(meets, slope, Lanes(0)), steep);
       if (f_.by_group) {
         groups_.lo0[j][group] = lane_min(least0);
         groups_.lo1[j][group] = lane_min(least1);
@@ -291,7 +291,7 @@ class FrustumBuilder {
     }
     const Lanes lo_slope = select(some, (lo1 - lo0) * Lanes(per_), o);
     const Lanes hi_slope = select(some, (hi1 - hi0) * Lanes(per_), o);
-    const Lanes steepest = greater(greater(magnitude(lo_slope), magnitude(hi_slope)), Lanes(1));
+    const Lanes steepest = greater(larger(lo_slope, hi_slope), Lanes(1));
     const Lanes cull = Lanes(cull_) + Lanes(cull_of_slope_) * steepest;
     const float zero = g_.lo_f[j == 0 ? f_.u : f_.v] * f_.a[2 * j];
     const float back = start_ - f_.from;

@@ -59,7 +59,7 @@ inline float bits_of(std::uint32_t id) {
 /// instead of it never makes NaN.
 template <class Real>
 inline Real least_headway(const Real& x, const Real& y, const Real& z) {
-  return Real(kLeastHeadway) * greater(greater(magnitude(x), magnitude(y)), magnitude(z));
+  return Real(kLeastHeadway) * larger(larger(x, y), z);
 }
 
 /// Three components of lanes i, i + 1, ...
