@@ -62,6 +62,54 @@ inline Real larger(const Real& a, const Real& b) {
   return greater(magnitude(a), magnitude(b));
 }
 
+/// Takes the lanes of each of four registers together, two by two, and stores what is left; what is
+/// left of many such fours is taken together in `all`.
+#if GRELHA_ISA_NUMBER == 1
+template <class Take>
+inline void fold_lanes(
+    float a, float b, float c, float d, const Take& take, float (&to)[4], float (&all)[4]) {
+  const float four[4] = {a, b, c, d};
+  for (int i = 0; i < 4; ++i) {
+    to[i] = four[i];
+    all[i] = take(four[i], all[i]);
+  }
+}
+#else
+template <class Take>
+[[gnu::always_inline]] inline void fold_lanes(const Lanes& a,
+                                              const Lanes& b,
+                                              const Lanes& c,
+                                              const Lanes& d,
+                                              const Take& take,
+                                              float (&to)[4],
+                                              float (&all)[4]) {
+  const Lanes ab = take(shuffled<0x44>(a, b), shuffled<0xEE>(a, b));
+  const Lanes cd = take(shuffled<0x44>(c, d), shuffled<0xEE>(c, d));
+  const Sse2 four = folded(take(shuffled<0x88>(ab, cd), shuffled<0xDD>(ab, cd)), take);
+  store(to, four);
+  store(all, take(four, Sse2::load_unaligned(all)));
+}
+#endif
+/// The same with the least lane of each, or the greatest.
+[[gnu::always_inline]] inline void lane_mins(const Lanes& a,
+                                             const Lanes& b,
+                                             const Lanes& c,
+                                             const Lanes& d,
+                                             float (&to)[4],
+                                             float (&all)[4]) {
+  fold_lanes(
+      a, b, c, d, [](const auto& x, const auto& y) { return lesser(x, y); }, to, all);
+}
+[[gnu::always_inline]] inline void lane_maxs(const Lanes& a,
+                                             const Lanes& b,
+                                             const Lanes& c,
+                                             const Lanes& d,
+                                             float (&to)[4],
+                                             float (&all)[4]) {
+  fold_lanes(
+      a, b, c, d, [](const auto& x, const auto& y) { return greater(x, y); }, to, all);
+}
+
 /// Calls visit(i) for each bit i, the lowest first.
 template <class Visit>
 [[gnu::always_inline]] inline void each_bit(unsigned bits, const Visit& visit) {

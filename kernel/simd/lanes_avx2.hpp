@@ -27,13 +27,19 @@ inline unsigned bits(const Avx2Mask& m) {
 inline Avx2Mask but_not(const Avx2Mask& a, const Avx2Mask& b) {
   return Avx2Mask(_mm256_andnot_ps(b.data, a.data));
 }
+template <int places>
+inline Avx2 shuffled(const Avx2& a, const Avx2& b) {
+  return Avx2(_mm256_shuffle_ps(a.data, b.data, places));
+}
+template <class Take>
+inline Sse2 folded(const Avx2& a, const Take& take) {
+  return take(Sse2(_mm256_castps256_ps128(a.data)), Sse2(_mm256_extractf128_ps(a.data, 1)));
+}
 inline float lane_min(const Avx2& a) {
-  return lane_min(
-      Sse2(_mm_min_ps(_mm256_castps256_ps128(a.data), _mm256_extractf128_ps(a.data, 1))));
+  return lane_min(folded(a, [](const Sse2& x, const Sse2& y) { return lesser(x, y); }));
 }
 inline float lane_max(const Avx2& a) {
-  return lane_max(
-      Sse2(_mm_max_ps(_mm256_castps256_ps128(a.data), _mm256_extractf128_ps(a.data, 1))));
+  return lane_max(folded(a, [](const Sse2& x, const Sse2& y) { return greater(x, y); }));
 }
 
 #if GRELHA_ISA_NUMBER == 3

@@ -37,6 +37,15 @@ inline unsigned bits(const Avx512Mask& m) {
 inline Avx512Mask but_not(const Avx512Mask& a, const Avx512Mask& b) {
   return Avx512Mask(static_cast<__mmask16>(a.data & ~b.data));
 }
+template <int places>
+inline Lanes shuffled(const Lanes& a, const Lanes& b) {
+  return Lanes(_mm512_shuffle_ps(a.data, b.data, places));
+}
+template <class Take>
+inline Sse2 folded(const Lanes& a, const Take& take) {
+  const Block low(_mm512_castps512_ps256(a.data));
+  return folded(take(low, Block(_mm512_extractf32x8_ps(a.data, 1))), take);
+}
 inline float lane_min(const Lanes& a) {
   return lane_min(
       lesser(Block(_mm512_castps512_ps256(a.data)), Block(_mm512_extractf32x8_ps(a.data, 1))));

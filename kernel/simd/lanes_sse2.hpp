@@ -81,6 +81,17 @@ inline float lane_max(const Sse2& a) {
       [](__m128 x, __m128 y) { return _mm_max_ss(x, y); });
 }
 
+/// Two places of `a`, then two of `b`, of each four lanes; `places` as of _mm_shuffle_ps.
+template <int places>
+inline Sse2 shuffled(const Sse2& a, const Sse2& b) {
+  return Sse2(_mm_shuffle_ps(a.data, b.data, places));
+}
+/// Takes lanes four apart together, until four are left.
+template <class Take>
+inline Sse2 folded(const Sse2& a, const Take&) {
+  return a;
+}
+
 #if GRELHA_ISA_NUMBER == 2
 
 using Lanes = Sse2;

@@ -6,14 +6,15 @@
 
 namespace grelha::GRELHA_ISA {
 
-/// Where the rays of each group lie on the slices `from` and `to`.
+/// Where the rays of each group lie on the slices `from` and `to`: least and greatest along U on
+/// the first, on the last, and along V.
 struct GroupBounds {
-  alignas(64) float lo0[2][kGroupRow], lo1[2][kGroupRow], hi0[2][kGroupRow], hi1[2][kGroupRow];
+  alignas(64) float lo[kGroupRow][4], hi[kGroupRow][4];
   void clear() {
-    for (int j = 0; j < 2; ++j)
-      for (int i = 0; i < kGroupRow; ++i) {
-        lo0[j][i] = lo1[j][i] = kInfinity;
-        hi0[j][i] = hi1[j][i] = -kInfinity;
+    for (int i = 0; i < kGroupRow; ++i)
+      for (int j = 0; j < 4; ++j) {
+        lo[i][j] = kInfinity;
+        hi[i][j] = -kInfinity;
       }
   }
 };
@@ -152,53 +153,43 @@ class FrustumBuilder {
     per_ = thin_ ? 0.f : 1.f / stay;
   }
 
+  /// Where the rays lie along the other axes, on the first slice and on the last.
   [[gnu::always_inline]] void bound_sides() {
     // Rays apart by more than a group are culled by groups: worth it where there are many, and
     // where a group is more than a ray.
     f_.by_group = kWidth<Lanes> > 1 && __builtin_popcountll(p_.live) * kWidth<Lanes> > kSmall;
     if (f_.by_group)
       groups_.clear();
-    slope_ = 1;
-    for (int j = 0; j < 2; ++j)
-      bound_side(j, j == 0 ? f_.u : f_.v);
-  }
-
-  /// Where the rays lie along one of the other axes, on the first slice and on the last.
-  [[gnu::always_inline]] void bound_side(int j, int a) {
-    Lanes lo0(kInfinity);
-    Lanes lo1(kInfinity);
-    Lanes hi0(-kInfinity);
-    Lanes hi1(-kInfinity);
+    float lo[4] = {kInfinity, kInfinity, kInfinity, kInfinity};
+    float hi[4] = {-kInfinity, -kInfinity, -kInfinity, -kInfinity};
     Lanes wide(0);
-    Lanes steep(0);
+    Lanes steep(1);
     each_live_group(p_, [&](int i, int group) {
       const Mask<Lanes> meets = load<Lanes>(f_.leave + i) > Lanes(-kInfinity);
-      const Lanes at = (load<Lanes>(p_.org[a] + i) - Lanes(g_.lo_f[a])) * Lanes(g_.inv_cell_f[a]);
-      const Lanes slope =
-          (load<Lanes>(p_.dir[a] + i) * Lanes(g_.inv_cell_f[a])) * load<Lanes>(f_.per_slice + i);
+      const Lanes per_slice = load<Lanes>(f_.per_slice + i);
       const Lanes k_at = load<Lanes>(f_.position + i);
-      const Lanes x0 = at + (Lanes(f_.from) - k_at) * slope;
-      const Lanes x1 = at + (Lanes(f_.to) - k_at) * slope;
-      const Lanes least0 = select(meets, x0, Lanes(kInfinity));
-      const Lanes least1 = select(meets, x1, Lanes(kInfinity));
-      const Lanes most0 = select(meets, x0, Lanes(-kInfinity));
-      const Lanes most1 = select(meets, x1, Lanes(-kInfinity));
-      lo0 = lesser(least0, lo0);
-      lo1 = lesser(least1, lo1);
-      hi0 = greater(most0, hi0);
-      hi1 = greater(most1, hi1);
-      wide = larger(select(meets, at, Lanes(0)), wide);
-      steep = larger(select(meets, slope, Lanes(0)), steep);
-      if (f_.by_group) {
-        groups_.lo0[j][group] = lane_min(least0);
-        groups_.lo1[j][group] = lane_min(least1);
-        groups_.hi0[j][group] = lane_max(most0);
-        groups_.hi1[j][group] = lane_max(most1);
-      }
+      const Lanes to_first = Lanes(f_.from) - k_at;
+      const Lanes to_last = Lanes(f_.to) - k_at;
+      const auto places = [&](int a) {
+        const Lanes inv(g_.inv_cell_f[a]);
+        const Lanes at = (load<Lanes>(p_.org[a] + i) - Lanes(g_.lo_f[a])) * inv;
+        const Lanes slope = (load<Lanes>(p_.dir[a] + i) * inv) * per_slice;
+        wide = larger(select(meets, at, Lanes(0)), wide);
+        steep = larger(select(meets, slope, Lanes(0)), steep);
+        return Places{at + to_first * slope, at + to_last * slope};
+      };
+      const Places u = places(f_.u);
+      const Places v = places(f_.v);
+      const auto least = [&](const Lanes& x) { return select(meets, x, Lanes(kInfinity)); };
+      const auto most = [&](const Lanes& x) { return select(meets, x, Lanes(-kInfinity)); };
+      lane_mins(
+          least(u.first), least(u.last), least(v.first), least(v.last), groups_.lo[group], lo);
+      lane_maxs(most(u.first), most(u.last), most(v.first), most(v.last), groups_.hi[group], hi);
     });
     farthest_ = greater(farthest_, lane_max(wide));
-    slope_ = greater(slope_, lane_max(steep));
-    set_side(j, lane_min(lo0), lane_min(lo1), lane_max(hi0), lane_max(hi1));
+    slope_ = lane_max(steep);
+    for (int j = 0; j < 2; ++j)
+      set_side(j, lo[2 * j], lo[2 * j + 1], hi[2 * j], hi[2 * j + 1]);
   }
 
   [[gnu::always_inline]] void set_side(int j, float lo0, float lo1, float hi0, float hi1) {
@@ -272,18 +263,28 @@ class FrustumBuilder {
 
   /// The planes of each group.
   [[gnu::always_inline]] void set_group_planes() {
+    alignas(64) float lo[4][kGroupRow];
+    alignas(64) float hi[4][kGroupRow];
+    for (int i = 0; i < kGroupRow; ++i)
+      for (int j = 0; j < 4; ++j) {
+        lo[j][i] = groups_.lo[i][j];
+        hi[j][i] = groups_.hi[i][j];
+      }
     for (int i = 0; i < kGroups; i += kWidth<Lanes>)
       for (int j = 0; j < 2; ++j)
-        set_planes_of_groups(i, j);
+        set_planes_of_groups(i, j, lo + 2 * j, hi + 2 * j);
   }
 
-  [[gnu::always_inline]] void set_planes_of_groups(int i, int j) {
+  [[gnu::always_inline]] void set_planes_of_groups(int i,
+                                                   int j,
+                                                   const float (*lo)[kGroupRow],
+                                                   const float (*hi)[kGroupRow]) {
     const Lanes nowhere(-kInfinity);
     const Lanes o(0);
-    Lanes lo0 = load<Lanes>(groups_.lo0[j] + i);
-    Lanes lo1 = load<Lanes>(groups_.lo1[j] + i);
-    Lanes hi0 = load<Lanes>(groups_.hi0[j] + i);
-    Lanes hi1 = load<Lanes>(groups_.hi1[j] + i);
+    Lanes lo0 = load<Lanes>(lo[0] + i);
+    Lanes lo1 = load<Lanes>(lo[1] + i);
+    Lanes hi0 = load<Lanes>(hi[0] + i);
+    Lanes hi1 = load<Lanes>(hi[1] + i);
     const Mask<Lanes> some = lo0 <= hi0;
     if (per_ == 0) {
       lo0 = lo1 = lesser(lo0, lo1);
@@ -307,6 +308,11 @@ class FrustumBuilder {
     store(f_.group_c[plane] + i, c);
     store(f_.group_reach[plane] + i, square_root(a * a + b * b) * Lanes(kReachSlack));
   }
+
+  /// Along one axis, on the first slice and on the last.
+  struct Places {
+    Lanes first, last;
+  };
 
   const GridView& g_;
   const WalkingRays& p_;
