@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "kernel/perspective/look_loops.hpp"
-#include "kernel/perspective/turns.hpp"
+#include "kernel/scene/turns.hpp"
 
 namespace grelha {
 

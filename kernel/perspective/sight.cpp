@@ -1,7 +1,7 @@
 #include "kernel/perspective/sight.hpp"
 
 #include "kernel/perspective/tolerances.hpp"
-#include "kernel/perspective/turns.hpp"
+#include "kernel/scene/turns.hpp"
 
 namespace grelha {
 namespace {
