@@ -124,7 +124,7 @@ FAULTS = [
           "both(inside >= Lanes(kSurelyInside), Lanes(b.near[k]) <= depth)", "point_grid",
           "*AnswerAsTheScenesGridsDo*"),
     Fault("tiles left out that a side passes through", "kernel/perspective/in_tiles.hpp",
-          "const Real room(kPlaceRounding);", "const Real room(-.02);", "point_grid",
+          "o - select(up, room, never)", "o - select(up, Real(-.02), never)", "point_grid",
           "*AnswerAsTheScenesGridsDo*"),
     Fault("the last of eight primitives for one of fewer", "kernel/perspective/look.hpp",
           "to.seen &= (1u << few.count) - 1;", "", "point_grid", "*Looks*", simd=True),

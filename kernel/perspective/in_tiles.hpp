@@ -9,7 +9,14 @@ namespace grelha::GRELHA_ISA {
 /// From directions to tiles of a face.
 template <class Real>
 inline void to_tiles(const PointFace& f, Bounds<Real>& o) {
-  const double per[2] = {f.per_u, f.per_v}, at[2] = {f.u, f.v};
+  const double per[2] = {
+      f.per_u,
+      f.per_v,
+  };
+  const double at[2] = {
+      f.u,
+      f.v,
+  };
   for (int j = 0; j < 2; ++j) {
     o.lo[j] = (o.lo[j] - Real(at[j])) * Real(per[j]) - Real(kPlaceRounding);
     o.hi[j] = (o.hi[j] - Real(at[j])) * Real(per[j]) + Real(kPlaceRounding);
@@ -74,7 +81,10 @@ inline void keep(const HalfPlane<Real>& side, int i, SeenSide& to) {
 /// What is kept of bounds in tiles: of lanes from i on.
 template <class Real>
 inline void keep(const PointFace& f, const Bounds<Real>& o, int i, SeenFew& to) {
-  const double n[2] = {f.nx, f.ny};
+  const double n[2] = {
+      f.nx,
+      f.ny,
+  };
   const Real room(kPlaceRounding);
   for (int j = 0; j < 2; ++j) {
     const Real anchor = anchor_of(o.lo[j], n[j]);

@@ -56,8 +56,16 @@ class FewFields {
         at[a + 3][k] = b.hi[a];
       }
     }
-    const Real lo[3] = {load<Real>(at[0]), load<Real>(at[1]), load<Real>(at[2])};
-    const Real hi[3] = {load<Real>(at[3]), load<Real>(at[4]), load<Real>(at[5])};
+    const Real lo[3] = {
+        load<Real>(at[0]),
+        load<Real>(at[1]),
+        load<Real>(at[2]),
+    };
+    const Real hi[3] = {
+        load<Real>(at[3]),
+        load<Real>(at[4]),
+        load<Real>(at[5]),
+    };
     return {relative(from, lo), relative(from, hi)};
   }
 

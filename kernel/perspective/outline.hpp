@@ -60,7 +60,10 @@ inline Mask<Real> no_lane() {
 template <class Real>
 [[gnu::always_inline]] inline void add(Bounds<Real>& o, const Vec3<Real>& x, const Mask<Real>& to) {
   const Real inverse = Real(1) / x.z;
-  const Real place[2] = {x.x * inverse, x.y * inverse};
+  const Real place[2] = {
+      x.x * inverse,
+      x.y * inverse,
+  };
   for (int j = 0; j < 2; ++j) {
     o.lo[j] = select(to, lesser(o.lo[j], place[j]), o.lo[j]);
     o.hi[j] = select(to, greater(o.hi[j], place[j]), o.hi[j]);
@@ -100,10 +103,12 @@ inline HalfPlane<Real> half_plane(const Mask<Real>& chosen,
                                   const Vec3<Real>& n,
                                   const Real& margin) {
   const Real o(0);
-  return {select(chosen, n.x, o),
-          select(chosen, n.y, o),
-          select(chosen, n.z, Real(1)),
-          select(chosen, margin, o)};
+  return {
+      select(chosen, n.x, o),
+      select(chosen, n.y, o),
+      select(chosen, n.z, Real(1)),
+      select(chosen, margin, o),
+  };
 }
 
 /// Widens bounds to what of a triangle is deep enough.
@@ -112,7 +117,11 @@ template <class Real>
                                          const Vec3<Real> (&c)[3],
                                          const Real& front) {
   clear(o);
-  Mask<Real> deep[3] = {c[0].z >= front, c[1].z >= front, c[2].z >= front};
+  const Mask<Real> deep[3] = {
+      c[0].z >= front,
+      c[1].z >= front,
+      c[2].z >= front,
+  };
   for (int k = 0; k < 3; ++k)
     add(o, c[k], deep[k]);
   const Mask<Real> all = both(both(deep[0], deep[1]), deep[2]);
@@ -222,8 +231,14 @@ inline void add_box(Bounds<Real>& o, const BoxAround<Real>& box, const Real& fro
   o.far = box.hi.z;
   const Real at_near = Real(1) / o.near;
   const Real at_far = Real(1) / o.far;
-  const Real lo[2] = {box.lo.x, box.lo.y};
-  const Real hi[2] = {box.hi.x, box.hi.y};
+  const Real lo[2] = {
+      box.lo.x,
+      box.lo.y,
+  };
+  const Real hi[2] = {
+      box.hi.x,
+      box.hi.y,
+  };
   for (int j = 0; j < 2; ++j) {
     o.lo[j] = lo[j] * select(lo[j] < zero, at_near, at_far);
     o.hi[j] = hi[j] * select(hi[j] > zero, at_near, at_far);
@@ -272,7 +287,11 @@ inline Mask<Real> see(const Look<Real>& look, const Cone::Fields<Real>& cone, Ou
   Vec3<Real> half[2];
   for (int i = 0; i < 2; ++i) {
     e.center[i] = turned(e.center[i], look.axes);
-    half[i] = {e.radius[i], e.radius[i], e.radius[i]};
+    half[i] = {
+        e.radius[i],
+        e.radius[i],
+        e.radius[i],
+    };
   }
   Bounds<Real> balls, box;
   clear(balls);

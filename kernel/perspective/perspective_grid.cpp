@@ -18,10 +18,7 @@ class Builder {
           std::span<const std::uint32_t> large,
           const Viewpoint& from,
           const PerspectiveOptions& options)
-      : p_(p),
-        onlooker_(p, ids, large, from, options.loops),
-        options_(options),
-        primitives_(ids.size()) {
+      : onlooker_(p, ids, large, from, options.loops), options_(options), primitives_(ids.size()) {
     std::copy(from.at, from.at + 3, g_.point);
   }
 
@@ -29,7 +26,7 @@ class Builder {
     Sight sight = survey(onlooker_, options_.threads);
     g_.around = std::move(sight.around);
     lay_tiles_for_few_references(sight.window);
-    Placing placing(p_, onlooker_, sight, options_.threads, tiles_, g_);
+    Placing placing(onlooker_, sight, options_.threads, g_.face, tiles_, g_.tiles);
     placing.place_all();
     placing.part_crowds();
     write(placing);
@@ -119,7 +116,6 @@ class Builder {
                          g_.boxes.data());
   }
 
-  const Primitives& p_;
   const Onlooker onlooker_;
   const PerspectiveOptions& options_;
   const std::size_t primitives_;

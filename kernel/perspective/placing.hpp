@@ -7,7 +7,6 @@
 #include <cmath>
 #include <vector>
 
-#include "kernel/perspective/perspective_grid.hpp"
 #include "kernel/perspective/sight.hpp"
 #include "kernel/scene/turns.hpp"
 
@@ -28,18 +27,20 @@ class Placing {
     std::vector<std::uint32_t> counts;  ///< [lists of all tiles] what stands in each
   };
 
-  Placing(const Primitives& primitives,
-          const Onlooker& onlooker,
+  /// `lists` has one for each tile, which parts are noted in.
+  Placing(const Onlooker& onlooker,
           const Sight& sight,
           int threads,
+          const PointFace (&faces)[kFaces],
           std::vector<Tile>& tiles,
-          PerspectiveGrid& grid)
-      : p_(primitives),
+          std::vector<TileLists>& lists)
+      : p_(onlooker.primitives()),
         onlooker_(onlooker),
         sight_(sight),
         threads_(threads),
+        faces_(faces),
         tiles_(tiles),
-        g_(grid) {}
+        lists_(lists) {}
 
   void place_all() {
     places_.resize(onlooker_.turns());
@@ -62,7 +63,7 @@ class Placing {
 
   /// Tiles with too many primitives get parts, and these again.
   void part_crowds() {
-    g_.tiles.resize(tiles_.size());
+    lists_.resize(tiles_.size());
     double references = 0;
     for (std::size_t t = 0; t < tiles_.size(); ++t)
       references += primitives_of(t);
@@ -76,7 +77,7 @@ class Placing {
       begin = end;
       if (tiles_.size() == end)
         return;
-      g_.tiles.resize(tiles_.size());
+      lists_.resize(tiles_.size());
       each_share([&](Share& share) {
         share.counts.resize(kLists * tiles_.size());
         for (const std::size_t turn : share.turns)
@@ -163,7 +164,7 @@ class Placing {
   /// What is seen of some through a face.
   void place_few(const Waiting& of, int f, Writers& writers, std::vector<Place>& to) const {
     SeenFew seen;
-    onlooker_.see(of.few, of.distance, f, g_.face[f], seen);
+    onlooker_.see(of.few, of.distance, f, faces_[f], seen);
     for (unsigned left = seen.seen; left != 0; left &= left - 1) {
       const int k = std::countr_zero(left);
       const std::uint32_t id = of.few.id[k];
@@ -182,7 +183,7 @@ class Placing {
              std::uint32_t kind,
              std::uint32_t number,
              std::vector<Place>& to) const {
-    const PointFace& face = g_.face[f];
+    const PointFace& face = faces_[f];
     const auto first = static_cast<std::uint32_t>(face.first);
     const int columns = static_cast<int>(face.nx);
     const int rows = static_cast<int>(face.ny);
@@ -212,8 +213,8 @@ class Placing {
   void part(std::size_t t) {
     const int columns = static_cast<int>(
         std::clamp(std::ceil(std::sqrt(primitives_of(t) / kPartCrowd)), 2., double{kMostColumns}));
-    g_.tiles[t].part = static_cast<std::uint32_t>(tiles_.size());
-    g_.tiles[t].columns = static_cast<std::uint32_t>(columns);
+    lists_[t].part = static_cast<std::uint32_t>(tiles_.size());
+    lists_[t].columns = static_cast<std::uint32_t>(columns);
     const Tile whole = tiles_[t];
     const double width = whole.width / columns;
     for (int y = 0; y < columns; ++y)
@@ -247,7 +248,7 @@ class Placing {
 
   /// Takes what is placed in tiles with parts to these.
   void place_parts(std::vector<Place>& places, Share& share) const {
-    const auto in_parts = [&](const Place& p) { return g_.tiles[p.list / kLists].columns > 0; };
+    const auto in_parts = [&](const Place& p) { return lists_[p.list / kLists].columns > 0; };
     auto kept = std::find_if(places.begin(), places.end(), in_parts);
     Crowd crowd;
     std::vector<Place> placed;
@@ -283,14 +284,14 @@ class Placing {
     if (crowd.places.empty())
       return;
     SeenFew seen;
-    onlooker_.see(crowd.of.few, crowd.of.distance, crowd.face, g_.face[crowd.face], seen);
+    onlooker_.see(crowd.of.few, crowd.of.distance, crowd.face, faces_[crowd.face], seen);
     for (std::size_t i = 0; i < crowd.places.size(); ++i) {
       const Place& p = crowd.places[i];
       const std::uint32_t tile = p.list / kLists;
       const Tile& t = tiles_[tile];
-      const int n = static_cast<int>(g_.tiles[tile].columns);
+      const int n = static_cast<int>(lists_[tile].columns);
       TileWalk({t.x, t.y, t.width / n, n, n}).each(seen, crowd.which[i], [&](std::uint32_t part) {
-        to.push_back({kLists * (g_.tiles[tile].part + part) + p.list % kLists, p.seen});
+        to.push_back({kLists * (lists_[tile].part + part) + p.list % kLists, p.seen});
       });
     }
   }
@@ -299,8 +300,9 @@ class Placing {
   const Onlooker& onlooker_;
   const Sight& sight_;
   int threads_;
+  const PointFace (&faces_)[kFaces];
   std::vector<Tile>& tiles_;
-  PerspectiveGrid& g_;
+  std::vector<TileLists>& lists_;
   SeenPages<SeenOutline> outlines_;
   SeenPages<SeenBox> boxes_;
   std::vector<std::vector<Place>> places_;  ///< [turns]

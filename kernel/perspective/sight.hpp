@@ -23,6 +23,7 @@ class Onlooker {
            const LookLoops& loops)
       : primitives_(primitives), ids_(ids), large_(large), from_(from), loops_(loops) {}
 
+  const Primitives& primitives() const { return primitives_; }
   std::size_t count() const { return ids_.size(); }
   std::size_t turns() const { return (ids_.size() + kTurn - 1) / kTurn; }
   /// Places among ids of those of a turn.

@@ -32,15 +32,27 @@ namespace grelha::GRELHA_ISA {
 /// A place as seen from a point, along x, y and z.
 template <class Real>
 inline Vec3<Real> relative(const Viewpoint& from, const Real (&x)[3]) {
-  return {x[0] - Real(from.at[0]), x[1] - Real(from.at[1]), x[2] - Real(from.at[2])};
+  return {
+      x[0] - Real(from.at[0]),
+      x[1] - Real(from.at[1]),
+      x[2] - Real(from.at[2]),
+  };
 }
 
 /// A place or a direction turned to a face: x and y run along its next axis and the one after, z
 /// along its own, outwards.
 template <class Real>
 [[gnu::always_inline]] inline Vec3<Real> turned(const Vec3<Real>& v, const FaceAxes& axes) {
-  const Real c[3] = {v.x, v.y, v.z};
-  return {c[axes.p], c[axes.q], axes.down ? Real(0) - c[axes.r] : c[axes.r]};
+  const Real c[3] = {
+      v.x,
+      v.y,
+      v.z,
+  };
+  return {
+      c[axes.p],
+      c[axes.q],
+      axes.down ? Real(0) - c[axes.r] : c[axes.r],
+  };
 }
 
 /// The balls at the ends of a cone; it lies in their hull.
@@ -67,11 +79,19 @@ struct BoxAround {
 
 template <class Real>
 inline Vec3<Real> least(const Vec3<Real>& a, const Vec3<Real>& b) {
-  return {lesser(a.x, b.x), lesser(a.y, b.y), lesser(a.z, b.z)};
+  return {
+      lesser(a.x, b.x),
+      lesser(a.y, b.y),
+      lesser(a.z, b.z),
+  };
 }
 template <class Real>
 inline Vec3<Real> most(const Vec3<Real>& a, const Vec3<Real>& b) {
-  return {greater(a.x, b.x), greater(a.y, b.y), greater(a.z, b.z)};
+  return {
+      greater(a.x, b.x),
+      greater(a.y, b.y),
+      greater(a.z, b.z),
+  };
 }
 
 template <class Real>
@@ -129,7 +149,12 @@ template <class Real, class Fields>
                                                const Fields& fields,
                                                const BoxAround<Real>& box) {
   const Real o(0);
-  const Vec3<Real> away = most(box.lo, {o - box.hi.x, o - box.hi.y, o - box.hi.z});
+  const Vec3<Real> back{
+      o - box.hi.x,
+      o - box.hi.y,
+      o - box.hi.z,
+  };
+  const Vec3<Real> away = most(box.lo, back);
   const Real by_box = greater(greater(greater(away.x, away.y), away.z), o);
   if constexpr (requires { own_distance(from, fields); }) {
     const Vec3<Real> size = box.hi - box.lo;
@@ -146,8 +171,16 @@ inline void faces_of(const Viewpoint& from,
                      const BoxAround<Real>& box,
                      Mask<Real> (&seen)[kFaces]) {
   const Real o(0);
-  const Real lo[3] = {box.lo.x, box.lo.y, box.lo.z};
-  const Real hi[3] = {box.hi.x, box.hi.y, box.hi.z};
+  const Real lo[3] = {
+      box.lo.x,
+      box.lo.y,
+      box.lo.z,
+  };
+  const Real hi[3] = {
+      box.hi.x,
+      box.hi.y,
+      box.hi.z,
+  };
   Real away[3];  // along each axis
   for (int a = 0; a < 3; ++a)
     away[a] = greater(greater(lo[a], o - hi[a]), o);
