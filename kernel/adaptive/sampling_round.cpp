@@ -184,7 +184,11 @@ NewSamples compare_parts(const std::int64_t* sums, double part) {
     m[k] = static_cast<double>(sums[k * 3]) * part;
   const double a = .5 * (m[0] + m[1]);
   const double b = .5 * (m[2] + m[3]);
-  return {.5 * (a + b), squared(a - b), squared(m[0] - m[1]) + squared(m[2] - m[3])};
+  return {
+      .5 * (a + b),
+      squared(a - b),
+      squared(m[0] - m[1]) + squared(m[2] - m[3]),
+  };
 }
 
 /// Begins the differences of channel i % 3 of pixel i / 3.

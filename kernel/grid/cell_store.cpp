@@ -40,7 +40,11 @@ void ListStore<Triangle>::end_block(std::size_t entry, std::size_t place) {
 Triangle::CellList ListStore<Triangle>::list() const {
   if (first.empty())
     return {};
-  return {first.data(), blocks.data(), boxes.empty() ? nullptr : boxes.data()};
+  return {
+      first.data(),
+      blocks.data(),
+      boxes.empty() ? nullptr : boxes.data(),
+  };
 }
 
 CellLists CellStore::lists() const {

@@ -44,7 +44,12 @@ void Grid::set_axis(GridView& v, int a) const {
 }
 
 GridStats Grid::stats() const {
-  return {cells, occupied, store.references, store.bytes() + bytes_of(distance)};
+  return {
+      cells,
+      occupied,
+      store.references,
+      store.bytes() + bytes_of(distance),
+  };
 }
 
 }  // namespace grelha

@@ -50,7 +50,11 @@ template <class Real>
 struct PlaceParts {
   Wide<Real> part[10][kWideParts<Real>];
   Vec3<Real> vector(int i) const {
-    return {narrow<Real>(part[i]), narrow<Real>(part[i + 1]), narrow<Real>(part[i + 2])};
+    return {
+        narrow<Real>(part[i]),
+        narrow<Real>(part[i + 1]),
+        narrow<Real>(part[i + 2]),
+    };
   }
 };
 
@@ -119,7 +123,14 @@ inline Surface<Real> surface_at(const Meeting<Real>& met,
   const Vec3<Real> point = parts.vector(0);
   const Vec3<Real> n = parts.vector(3);
   rest_of_points<Real>(point, parts);
-  return {point, n, n, narrow<Real>(parts.part[6]), material, parts.vector(0)};
+  return {
+      point,
+      n,
+      n,
+      narrow<Real>(parts.part[6]),
+      material,
+      parts.vector(0),
+  };
 }
 
 }  // namespace grelha::GRELHA_ISA

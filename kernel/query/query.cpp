@@ -97,7 +97,13 @@ SurfacePoint surface(const World& world, const Ray& ray, const Hit& hit) {
   expect_primitive(w.primitives.ids, hit.id);
   const scalar::Surface<float> s = scalar::surface_of<float>(
       w.view.geometry, hit.id, vec(ray.org), vec(ray.dir), hit.t, w.shading.smooth);
-  return {float3(s.point), float3(s.normal), float3(s.shading), s.away, s.material};
+  return {
+      float3(s.point),
+      float3(s.normal),
+      float3(s.shading),
+      s.away,
+      s.material,
+  };
 }
 
 Float3 SurfacePoint::leave(Float3 dir) const {

@@ -161,7 +161,12 @@ struct Refraction {
   const Lanes eta = select(inside, ior, one / ior);
   const Lanes cosine = greater(nv, o);
   const Lanes squared = one - (eta * eta) * (one - cosine * cosine);  // of the other
-  return {eta, cosine, square_root(greater(squared, o)), squared >= o};
+  return {
+      eta,
+      cosine,
+      square_root(greater(squared, o)),
+      squared >= o,
+  };
 }
 
 /// What goes up on total reflection, where the mirror ray takes over what would have passed: t is

@@ -42,7 +42,11 @@ inline bool keeps_shares(const Shader& s) {
 /// Elements i, i + 1, ... of arrays of a component each: Rows3 or Columns3.
 template <class Arrays>
 inline Lanes3 load3(const Arrays& of, int i) {
-  return {load<Lanes>(of.x + i), load<Lanes>(of.y + i), load<Lanes>(of.z + i)};
+  return {
+      load<Lanes>(of.x + i),
+      load<Lanes>(of.y + i),
+      load<Lanes>(of.z + i),
+  };
 }
 template <class Arrays>
 inline void store3(Arrays& to, int i, const Lanes3& a) {

@@ -13,13 +13,21 @@ struct Double3 {
 };
 
 Double3 minus(const Float3& a, const Float3& b) {
-  return {double(a.x) - b.x, double(a.y) - b.y, double(a.z) - b.z};
+  return {
+      double(a.x) - b.x,
+      double(a.y) - b.y,
+      double(a.z) - b.z,
+  };
 }
 double dot(const Double3& a, const Double3& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 Double3 cross(const Double3& a, const Double3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+  return {
+      a.y * b.z - a.z * b.y,
+      a.z * b.x - a.x * b.z,
+      a.x * b.y - a.y * b.x,
+  };
 }
 Double3 scaled(const Double3& a, double s) {
   return {a.x * s, a.y * s, a.z * s};

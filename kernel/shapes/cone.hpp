@@ -71,7 +71,11 @@ struct Cone {
     std::size_t size() const { return spans.size(); }
     Fields<const float*> fields() const;
     Arrays arrays() const {
-      return {fields(), spans.material.data(), static_cast<std::uint32_t>(size())};
+      return {
+          fields(),
+          spans.material.data(),
+          static_cast<std::uint32_t>(size()),
+      };
     }
     Fields<float> operator[](std::size_t i) const { return one_of<Cone>(prepared, i); }
   };

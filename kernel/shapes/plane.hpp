@@ -54,7 +54,11 @@ struct Plane {
               {spans.nx.data(), spans.ny.data(), spans.nz.data()}};
     }
     Arrays arrays() const {
-      return {fields(), spans.material.data(), static_cast<std::uint32_t>(size())};
+      return {
+          fields(),
+          spans.material.data(),
+          static_cast<std::uint32_t>(size()),
+      };
     }
     Fields<float> operator[](std::size_t i) const { return one_of<Plane>(fields(), i); }
   };

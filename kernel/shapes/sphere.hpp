@@ -58,7 +58,11 @@ struct Sphere {
       return {{spans.x.data(), spans.y.data(), spans.z.data()}, spans.radius.data()};
     }
     Arrays arrays() const {
-      return {fields(), spans.material.data(), static_cast<std::uint32_t>(size())};
+      return {
+          fields(),
+          spans.material.data(),
+          static_cast<std::uint32_t>(size()),
+      };
     }
     Fields<float> operator[](std::size_t i) const { return one_of<Sphere>(fields(), i); }
   };
@@ -326,7 +330,11 @@ template <class Real>
 inline SurfacePlace<Real> sphere_place(const Vec3<Real>& c, const Real& r, const Vec3<Real>& at) {
   const Vec3<Real> n = normalize(at - c);
   const Vec3<Real> point = c + r * n;
-  return {point, n, Real(16 * kRounding<Real>) * r + Real(4 * kRounding<Real>) * largest(point)};
+  return {
+      point,
+      n,
+      Real(16 * kRounding<Real>) * r + Real(4 * kRounding<Real>) * largest(point),
+  };
 }
 
 /// Where rays met spheres, of indices i.

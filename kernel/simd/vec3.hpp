@@ -40,7 +40,11 @@ inline Real dot(const Vec3<Real>& a, const Vec3<Real>& b) {
 }
 template <class Real>
 inline Vec3<Real> cross(const Vec3<Real>& a, const Vec3<Real>& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+  return {
+      a.y * b.z - a.z * b.y,
+      a.z * b.x - a.x * b.z,
+      a.x * b.y - a.y * b.x,
+  };
 }
 /// The magnitude of each component.
 template <class Real>
@@ -60,7 +64,11 @@ inline Vec3<Real> normalize(const Vec3<Real>& a) {
 }
 template <class Real>
 inline Vec3<Real> select(const Mask<Real>& m, const Vec3<Real>& a, const Vec3<Real>& b) {
-  return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)};
+  return {
+      select(m, a.x, b.x),
+      select(m, a.y, b.y),
+      select(m, a.z, b.z),
+  };
 }
 /// Part i of the lanes of each component, in double.
 template <int i, class Real>

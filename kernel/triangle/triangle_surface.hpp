@@ -26,7 +26,11 @@ inline TrianglePlace<Real> triangle_place(const Real& axis,
   const Vec3<Real> w = select(r.inside, r.weights, Vec3<Real>{one, o, o});
   const Vec3<Real> e1 = c.b - c.a;
   const Vec3<Real> e2 = c.c - c.a;
-  return {c.a + (w.y * e1 + w.z * e2), normalize(cross(e1, e2)), w};
+  return {
+      c.a + (w.y * e1 + w.z * e2),
+      normalize(cross(e1, e2)),
+      w,
+  };
 }
 
 template <class Real, int i = 0>

@@ -65,7 +65,11 @@ inline Real least_headway(const Real& x, const Real& y, const Real& z) {
 /// Three components of lanes i, i + 1, ...
 template <class Real, class Number, int kRays>
 [[gnu::always_inline]] inline Vec3<Real> take_vec(const Number (&v)[3][kRays], int i) {
-  return {take<Real>(v[0] + i), take<Real>(v[1] + i), take<Real>(v[2] + i)};
+  return {
+      take<Real>(v[0] + i),
+      take<Real>(v[1] + i),
+      take<Real>(v[2] + i),
+  };
 }
 inline Lanes least_headway(const WalkingRays& p, int i) {
   const Vec3<Lanes> d = take_vec<Lanes>(p.dir, i);
