@@ -131,6 +131,8 @@ FAULTS = [
     Fault("primitives of one depth in any order", "kernel/perspective/look.hpp",
           "other == depth ? first : none", "none", "point_grid",
           "*AnswerAsTheScenesGridsDo*:*PointGridLists*"),
+    Fault("ends of cones that face away", "kernel/perspective/outline.hpp",
+          "both(touches, same_side)", "touches", "point_grid", "*Outlines.HoldCones*"),
     Fault("a gap between faces", "kernel/perspective/outline.hpp",
           "o.hi[j] = lesser(o.hi[j] + grow, Real(1));",
           "o.hi[j] = lesser(o.hi[j] + grow, Real(1 - 1e-6));",

@@ -280,6 +280,26 @@ inline void add_sides(Outline<Real>& o, const Look<Real>& look, const Ends<Real>
   o.side[1] = half_plane(wide, in - out, margin);
 }
 
+/// The plane through the point that touches the wider ball across the axis, where both lie on the
+/// same side of it: with the two along the cone a triangle.
+template <class Real>
+inline void add_end(Outline<Real>& o, const Look<Real>& look, const Ends<Real>& e) {
+  const Mask<Real> first = e.radius[0] >= e.radius[1];
+  const Vec3<Real> wide = select(first, e.center[0], e.center[1]);
+  const Vec3<Real> narrow = select(first, e.center[1], e.center[0]);
+  const Real pad(look.from.pad);
+  const Real r = greater(e.radius[0], e.radius[1]) + pad;
+  const Real far = dot(wide, wide);
+  const Vec3<Real> across = narrow - (dot(narrow, wide) / far) * wide;
+  const Real beside = far - r * r;
+  // n = (r wide / |wide| + sqrt(|wide|^2 - r^2) across / |across|) / |wide|
+  const Real along = square_root(beside / (far * dot(across, across)));
+  const Vec3<Real> n = (r / far) * wide + along * across;
+  const Mask<Real> touches = both(beside > Real(0), dot(across, across) > Real(0));
+  const Mask<Real> same_side = dot(n, narrow) >= lesser(e.radius[0], e.radius[1]) + pad;
+  o.side[2] = half_plane(both(touches, same_side), n, side_margin(look.from.pad, look.distance));
+}
+
 template <class Real>
 inline Mask<Real> see(const Look<Real>& look, const Cone::Fields<Real>& cone, Outline<Real>& o) {
   Ends<Real> e = ends_of(look.from, cone);
@@ -310,6 +330,7 @@ inline Mask<Real> see(const Look<Real>& look, const Cone::Fields<Real>& cone, Ou
   o.far = select(whole, balls.far, box.far);
   o.solid = no_lane<Real>();
   add_sides(o, look, e);
+  add_end(o, look, e);
   return finish(o, look, look.from.pad);
 }
 

@@ -8,7 +8,10 @@
 namespace grelha {
 namespace {
 
-constexpr double kMostExpectedEach = 64;    ///< references a primitive, by bounds of what is seen
+constexpr double kMostExpectedEach = 64;  ///< references a primitive, by bounds of what is seen
+/// Primitives that stand one behind another, on average, by bounds of what is seen: of more, lists
+/// are longer than what a ray saves by them, however small tiles are.
+constexpr double kMostBehind = 128;
 constexpr double kMostTilesAtAll = 0x1p22;  ///< before crowds get parts
 
 class Builder {
@@ -22,18 +25,34 @@ class Builder {
     std::copy(from.at, from.at + 3, g_.point);
   }
 
-  PerspectiveGrid build() {
+  std::optional<PerspectiveGrid> build() {
     Sight sight = survey(onlooker_, options_.threads);
+    if (is_heap(sight.window))
+      return std::nullopt;
     g_.around = std::move(sight.around);
     lay_tiles_for_few_references(sight.window);
     Placing placing(onlooker_, sight, options_.threads, g_.face, tiles_, g_.tiles);
     placing.place_all();
-    placing.part_crowds();
+    if (!placing.part_crowds())
+      return std::nullopt;
     write(placing);
     return std::move(g_);
   }
 
  private:
+  static bool is_heap(const Window (&window)[kFaces]) {
+    double seen = 0;
+    double behind = 0;
+    for (const Window& w : window) {
+      const double whole = (w.hi[0] - w.lo[0]) * (w.hi[1] - w.lo[1]);
+      if (w.seen == 0 || !(whole > 0))
+        continue;
+      seen += static_cast<double>(w.seen);
+      behind += static_cast<double>(w.seen) * (w.area / whole);
+    }
+    return behind > kMostBehind * seen;
+  }
+
   /// Lays fewer tiles where needles, or primitives that cover each other, would fill lists without
   /// bound; and no more than look-ups can number.
   void lay_tiles_for_few_references(const Window (&window)[kFaces]) {
@@ -126,11 +145,11 @@ class Builder {
 
 }  // namespace
 
-PerspectiveGrid build_perspective_grid(const Primitives& primitives,
-                                       std::span<const std::uint32_t> ids,
-                                       std::span<const std::uint32_t> large,
-                                       const Viewpoint& from,
-                                       const PerspectiveOptions& options) {
+std::optional<PerspectiveGrid> build_perspective_grid(const Primitives& primitives,
+                                                      std::span<const std::uint32_t> ids,
+                                                      std::span<const std::uint32_t> large,
+                                                      const Viewpoint& from,
+                                                      const PerspectiveOptions& options) {
   return Builder(primitives, ids, large, from, options).build();
 }
 

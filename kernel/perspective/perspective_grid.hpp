@@ -4,6 +4,7 @@
 // Structures for Ray Tracing", RT 2008, and Haines, Greenberg, "The Light Buffer", 1986.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -33,11 +34,12 @@ struct PerspectiveOptions {
 };
 
 /// Of the finite primitives `ids` of a scene, as seen from a point. Those of `large`, which is
-/// sorted, are left out where tiles are laid: they may be met in any direction.
-PerspectiveGrid build_perspective_grid(const Primitives& primitives,
-                                       std::span<const std::uint32_t> ids,
-                                       std::span<const std::uint32_t> large,
-                                       const Viewpoint& from,
-                                       const PerspectiveOptions& options);
+/// sorted, are left out where tiles are laid: they may be met in any direction. None: primitives
+/// cover each other so much that rays are better off in the scene's grids.
+std::optional<PerspectiveGrid> build_perspective_grid(const Primitives& primitives,
+                                                      std::span<const std::uint32_t> ids,
+                                                      std::span<const std::uint32_t> large,
+                                                      const Viewpoint& from,
+                                                      const PerspectiveOptions& options);
 
 }  // namespace grelha

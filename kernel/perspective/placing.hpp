@@ -62,31 +62,29 @@ class Placing {
   }
 
   /// Tiles with too many primitives get parts, and these again.
-  void part_crowds() {
+  /// False: in parts, too, primitives cover each other so much that it is given up.
+  bool part_crowds() {
     lists_.resize(tiles_.size());
-    double references = 0;
-    for (std::size_t t = 0; t < tiles_.size(); ++t)
-      references += primitives_of(t);
-    const double most = kMostReferencesEach * static_cast<double>(onlooker_.count());
+    const auto primitives = static_cast<double>(onlooker_.count());
+    double references = references_from(0);
     std::size_t begin = 0;
-    for (int level = 0; level < kMostLevels && references < most; ++level) {
+    for (int level = 0; level < kMostLevels; ++level) {
+      if (references >= kMostReferencesEach * primitives)
+        return true;
       const std::size_t end = tiles_.size();
       for (std::size_t t = begin; t < end; ++t)
         if (primitives_of(t) > kTileCrowd && tiles_[t].width > 0)
           part(t);
       begin = end;
       if (tiles_.size() == end)
-        return;
+        return true;
       lists_.resize(tiles_.size());
-      each_share([&](Share& share) {
-        share.counts.resize(kLists * tiles_.size());
-        for (const std::size_t turn : share.turns)
-          place_parts(places_[turn], share);
-      });
-      references = 0;
-      for (std::size_t t = end; t < tiles_.size(); ++t)
-        references += primitives_of(t);
+      place_all_parts(kMostReferencesInParts * primitives);
+      references = references_from(end);
+      if (references > kMostReferencesInParts * primitives)
+        return false;
     }
+    return true;
   }
 
   /// Calls work(share) for each, side by side.
@@ -103,8 +101,10 @@ class Placing {
 
  private:
   static constexpr double kMostReferencesEach = 16;  ///< a primitive, on average
-  static constexpr std::uint32_t kTileCrowd = 128;   ///< primitives of a tile that is parted
-  static constexpr double kPartCrowd = 16;           ///< primitives that each part is meant for
+  /// The same where tiles have parts: lists of more are longer than what a ray saves by them.
+  static constexpr double kMostReferencesInParts = 128;
+  static constexpr std::uint32_t kTileCrowd = 128;  ///< primitives of a tile that is parted
+  static constexpr double kPartCrowd = 16;          ///< primitives that each part is meant for
   static constexpr int kMostColumns = 16;
   static constexpr int kMostLevels = 4;
   static constexpr int kMostShares = 16;  ///< each counts what stands in all tiles
@@ -246,8 +246,26 @@ class Placing {
     }
   };
 
-  /// Takes what is placed in tiles with parts to these.
-  void place_parts(std::vector<Place>& places, Share& share) const {
+  /// Of tiles from number `first` on.
+  double references_from(std::size_t first) const {
+    double sum = 0;
+    for (std::size_t t = first; t < tiles_.size(); ++t)
+      sum += primitives_of(t);
+    return sum;
+  }
+
+  /// Stops where any share has placed more than `most`.
+  void place_all_parts(double most) {
+    each_share([&](Share& share) {
+      share.counts.resize(kLists * tiles_.size());
+      double placed = 0;
+      for (std::size_t i = 0; i < share.turns.size() && placed <= most; ++i)
+        placed += static_cast<double>(place_parts(places_[share.turns[i]], share));
+    });
+  }
+
+  /// Takes what is placed in tiles with parts to these; returns how many places it has there.
+  std::size_t place_parts(std::vector<Place>& places, Share& share) const {
     const auto in_parts = [&](const Place& p) { return lists_[p.list / kLists].columns > 0; };
     auto kept = std::find_if(places.begin(), places.end(), in_parts);
     Crowd crowd;
@@ -262,6 +280,7 @@ class Placing {
       ++share.counts[p.list];
     places.erase(kept, places.end());
     places.insert(places.end(), placed.begin(), placed.end());
+    return placed.size();
   }
 
   /// Adds a place, and before it ends what cannot take its primitive.

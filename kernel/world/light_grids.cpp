@@ -40,6 +40,7 @@ LightGrids::LightGrids(const Primitives& primitives,
       box_(box),
       most_bytes_(std::min(most_bytes, most_bytes_of(primitives))),
       far_rays_(far_rays),
+      tried_(lights.size()),
       built_(lights.size()) {}
 
 std::uint64_t LightGrids::expected_bytes(const Primitives& primitives, std::size_t lights) {
@@ -61,10 +62,13 @@ std::unique_ptr<ViewedGrid> LightGrids::build(const Float3& point,
   for (int a = 0; a < 3; ++a)
     if (!(std::abs(from.at[a] - box_.lo[a]) < kFarthestPoint * diagonal))
       return nullptr;
-  auto built = std::make_unique<ViewedGrid>();
   const std::vector<std::uint32_t> ids = sound_ids(primitives_);
-  built->grid =
+  std::optional<PerspectiveGrid> grid =
       build_perspective_grid(primitives_, ids, large_, from, {.loops = loops, .threads = threads});
+  if (!grid)
+    return nullptr;
+  auto built = std::make_unique<ViewedGrid>();
+  built->grid = std::move(*grid);
   built->view = built->grid.view();
   return built;
 }
@@ -85,13 +89,13 @@ std::unique_ptr<ViewedGrid> LightGrids::try_to_build(const Light& light,
 
 const PointGridView* LightGrids::of(std::size_t light, int threads, const LookLoops& loops) {
   const std::lock_guard lock(mutex_);
-  if (!built_[light]) {
-    built_[light] = try_to_build(lights_[light], threads, loops);
-    if (!built_[light])
-      return nullptr;
-    bytes_ += built_[light]->grid.bytes();
+  std::unique_ptr<ViewedGrid>& built = built_[light];
+  if (!tried_[light]) {
+    tried_[light] = true;
+    built = try_to_build(lights_[light], threads, loops);
+    bytes_ += built ? built->grid.bytes() : 0;
   }
-  return &built_[light]->view;
+  return built ? &built->view : nullptr;
 }
 
 std::size_t LightGrids::bytes() const {

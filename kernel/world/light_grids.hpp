@@ -37,9 +37,9 @@ class LightGrids {
   /// Primitives that a grid holds.
   std::size_t primitives() const { return primitives_.finite_count(); }
   /// What is in the way of rays to a light; null: it has no grid, since it is an area or too far
-  /// away, or since the lights before have used up the memory.
+  /// away, since primitives cover each other too much, or since there is no memory left.
   const PointGridView* of(std::size_t light, int threads, const LookLoops& loops);
-  /// The grid of any point; null: it is too far away.
+  /// The grid of any point; null: it is too far away, or primitives cover each other too much.
   std::unique_ptr<ViewedGrid> build(const Float3& point, int threads, const LookLoops& loops) const;
   /// About what the grids of so many lights take; never more than they are let.
   static std::uint64_t expected_bytes(const Primitives& primitives, std::size_t lights);
@@ -59,6 +59,7 @@ class LightGrids {
   std::uint64_t most_bytes_;
   bool far_rays_;
   mutable std::mutex mutex_;
+  std::vector<bool> tried_;  ///< [lights]
   std::vector<std::unique_ptr<ViewedGrid>> built_;
   std::size_t bytes_ = 0;
 };

@@ -64,6 +64,8 @@ void expect_held(const Scene& scene, const Viewpoint& from, const std::vector<Ex
   const scalar::FewFields<Shape> fields(p, one);
   const auto shape = fields.template from<double>(0);
   const double distance = scalar::distance_of(from, shape, fields.box(from, shape, 0));
+  if (distance <= kNearest * from.pad)
+    return;  // it has none
   for (const Exact& x : places) {
     const Place place = place_of(x, from.at);
     Outline seen;
@@ -145,7 +147,7 @@ TEST_P(Outlines, HoldCones) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Distances, Outlines, testing::Values(4., 1e2, 1e4, 1e6));
+INSTANTIATE_TEST_SUITE_P(Distances, Outlines, testing::Values(1., 4., 1e2, 1e4, 1e6));
 
 }  // namespace
 }  // namespace grelha::test
