@@ -13,7 +13,7 @@
 namespace grelha {
 
 /// What is seen of a World from one point, in tiles of directions. Many rays that end at the point
-/// meet what is in their way in one look-up each, where a World has to walk. It pays from some 20
+/// meet what is in their way in one look-up each, where a World has to walk. It pays from some 10
 /// rays a primitive on (docs/perspective.md). It does not change; any number of threads may ask it.
 class PointGrid {
  public:
@@ -28,7 +28,8 @@ class PointGrid {
 
   /// The point.
   Float3 point() const;
-  /// Memory of the tiles; 0: the point is so far away that rays walk through the World's own grids.
+  /// Memory of the tiles; 0: rays walk through the World's own grids, since the point is too far
+  /// away or since more than a hundred primitives stand one behind another.
   std::size_t bytes() const;
 
   struct Impl;
