@@ -295,7 +295,8 @@ inline void add_end(Outline<Real>& o, const Look<Real>& look, const Ends<Real>& 
   // n = (r wide / |wide| + sqrt(|wide|^2 - r^2) across / |across|) / |wide|
   const Real along = square_root(beside / (far * dot(across, across)));
   const Vec3<Real> n = (r / far) * wide + along * across;
-  const Mask<Real> touches = both(beside > Real(0), dot(across, across) > Real(0));
+  const Mask<Real> touches =
+      both(beside > Real(0), dot(across, across) > Real(kNarrowestCone) * dot(narrow, narrow));
   const Mask<Real> same_side = dot(n, narrow) >= lesser(e.radius[0], e.radius[1]) + pad;
   o.side[2] = half_plane(both(touches, same_side), n, side_margin(look.from.pad, look.distance));
 }

@@ -135,10 +135,11 @@ TEST_P(Outlines, HoldCones) {
   Random random(52);
   for (int i = 0; i < 1000; ++i) {
     const Float3 at = along(random.direction(), far);
+    const double size = random.log_in(1e-4, 1);
     const Float3 a = random.point(1);
-    const Float3 b = sum(a, random.point(1));
-    const double r0 = random.in(.01, .3);
-    const double r1 = random.in(.01, .3);
+    const Float3 b = sum(a, random.point(size));
+    const double r0 = size * random.in(.01, .3);
+    const double r1 = size * random.in(.01, .3);
     const Scene scene = one_cone(a, static_cast<float>(r0), b, static_cast<float>(r1));
     expect_held<Cone>(
         scene, {{at.x, at.y, at.z}, pad, pad / 16}, around_cone(random, a, b, r0, r1));
