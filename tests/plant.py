@@ -122,7 +122,7 @@ FAULTS = [
     Fault("triangles met for sure in front of a ray's start", "kernel/trace/listed.hpp",
           "both(inside >= Lanes(kSurelyInside), Lanes(b.far[k]) <= depth)",
           "both(inside >= Lanes(kSurelyInside), Lanes(b.near[k]) <= depth)", "point_grid",
-          "*AnswerAsTheScenesGridsDo*"),
+          "*AnswerAsTheScenesGridsDo*", simd=True),
     Fault("tiles left out that a side passes through", "kernel/perspective/in_tiles.hpp",
           "o - select(up, room, never)", "o - select(up, Real(-.02), never)", "point_grid",
           "*AnswerAsTheScenesGridsDo*"),

@@ -135,7 +135,7 @@ TEST_P(Outlines, HoldCones) {
   Random random(52);
   for (int i = 0; i < 1000; ++i) {
     const Float3 at = along(random.direction(), far);
-    const double size = random.log_in(1e-4, 1);
+    const double size = random.chance(.5) ? 1 : random.log_in(1e-4, 1);
     const Float3 a = random.point(1);
     const Float3 b = sum(a, random.point(size));
     const double r0 = size * random.in(.01, .3);
