@@ -106,6 +106,16 @@ TEST_P(Outlines, HoldTrianglesByTheirSides) {
   }
 }
 
+Float3 moved_towards(const Float3& p, const Float3& to, double by) {
+  const double x = double{to.x} - p.x;
+  const double y = double{to.y} - p.y;
+  const double z = double{to.z} - p.z;
+  const double share = by / std::sqrt(x * x + y * y + z * z);
+  return {static_cast<float>(p.x + share * x),
+          static_cast<float>(p.y + share * y),
+          static_cast<float>(p.z + share * z)};
+}
+
 /// Places on a cone: on the circle at `share` of its axis.
 std::vector<Exact> around_cone(
     Random& random, const Float3& a, const Float3& b, double r0, double r1) {
@@ -137,12 +147,14 @@ TEST_P(Outlines, HoldCones) {
     const Float3 at = along(random.direction(), far);
     const double size = random.chance(.5) ? 1 : random.log_in(1e-4, 1);
     const Float3 a = random.point(1);
-    const Float3 b = sum(a, random.point(size));
+    const bool aimed = random.chance(.3);  // at the viewer, as wide all along
+    const Float3 b = aimed ? moved_towards(a, at, size * random.in(.1, .9)) : a;
+    const Float3 end = sum(b, random.point(aimed ? .03 * size : size));
     const double r0 = size * random.in(.01, .3);
-    const double r1 = size * random.in(.01, .3);
-    const Scene scene = one_cone(a, static_cast<float>(r0), b, static_cast<float>(r1));
+    const double r1 = aimed ? r0 * random.in(.95, 1) : size * random.in(.01, .3);
+    const Scene scene = one_cone(a, static_cast<float>(r0), end, static_cast<float>(r1));
     expect_held<Cone>(
-        scene, {{at.x, at.y, at.z}, pad, pad / 16}, around_cone(random, a, b, r0, r1));
+        scene, {{at.x, at.y, at.z}, pad, pad / 16}, around_cone(random, a, end, r0, r1));
     if (HasFatalFailure())
       FAIL() << i;
   }
