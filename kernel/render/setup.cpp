@@ -97,7 +97,7 @@ void check_refinement(const RenderOptions& o) {
 
 /// Samples a pixel that a picture to an error is taken to need, to weigh what pays.
 constexpr double kRefinedSamples = 8;
-/// Pixels times samples for each primitive from which a light's grid pays. Measured: in 18 of 20
+/// Pixels times samples for each primitive from which a light's grid pays. Measured: in 16 of 20
 /// scenes (docs/perspective.md).
 constexpr double kPayingRays = 16;
 
