@@ -6,22 +6,23 @@
 namespace grelha::GRELHA_ISA {
 
 /// As test_infinite(Packet&). Returns whether the search is over.
-template <bool kAny, class In>
-inline bool test_infinite(const SceneView& scene, Single<In>& r, Counters& n) {
-  using Number = typename In::Number;
+template <bool kAny>
+inline bool test_infinite(const SceneView& scene, Single& r, Counters& n) {
   const GeometryView& g = scene.geometry;
-  const RayLanes<Number> ray{.org = vec(tested_org(r)),
-                             .dir = spread<Number>(r.dir),
-                             .inv_dd = r.inv_dd,
-                             .t_min = tested_t_min(r)};
+  const RayLanes<float> ray{
+      .org = vec(r.org),
+      .dir = vec(r.dir),
+      .inv_dd = r.inv_dd,
+      .t_min = r.t_min,
+  };
   bool over = false;
   InfiniteShapes::for_each([&]<class Shape>() __attribute__((always_inline)) {
     const typename Shape::Arrays& all = g.of<Shape>();
     for (std::uint32_t i = 0; !over && i < all.count; ++i) {
       ++n.tests[kNumber<Shape>];
-      Number t = 0;
-      const bool hit = meet(ray, broadcast<Shape, Number>(all.fields, i), t);
-      over = record_hit<kAny>(r, hit, t, g.ids.begin(Shape::kKind) + i);
+      float t = 0;
+      const bool hit = meet(ray, broadcast<Shape, float>(all.fields, i), t);
+      over = hit && take_hit<kAny>(r, t, g.ids.begin(Shape::kKind) + i);
     }
   });
   return over;
@@ -29,7 +30,7 @@ inline bool test_infinite(const SceneView& scene, Single<In>& r, Counters& n) {
 
 /// Moves a ray that starts at `from` on to where r.org is, `shift` away in t.
 inline void move_near(const SceneView& scene,
-                      Single<InFloat>& r,
+                      Single& r,
                       const float (&from)[3],
                       double shift) {
   const bool met = r.id != kNoPrimitive;
@@ -37,26 +38,20 @@ inline void move_near(const SceneView& scene,
   r.t_min = static_cast<float>(r.t_min - shift);
   r.best = static_cast<float>(best - shift);
 }
-inline void move_near(const SceneView&, Single<InDouble>& r, const float (&)[3], double shift) {
-  r.shift = shift;
-  r.t_min = not_above(r.after - shift);
-  r.best = not_below(r.nearest - shift);
-}
 
 /// As bring_near(Packet&). Returns how far the ray was brought, in t.
-template <class In>
-inline typename In::Number bring_near(const SceneView& scene, Single<In>& r) {
+inline float bring_near(const SceneView& scene, Single& r) {
   const float from[3] = {r.org[0], r.org[1], r.org[2]};
   const double shift = approach(scene, r.org, r.dir);
   if (!(shift > 0))
     return 0;
   move_near(scene, r, from, shift);
-  return static_cast<typename In::Number>(shift);
+  return static_cast<float>(shift);
 }
 
 /// All primitives of one cell of a grid. Returns whether the search is over.
-template <bool kAny, class In>
-inline bool test_grid_cell(Single<In>& r, const CellLists& lists, std::uint32_t cell, Counters& n) {
+template <bool kAny>
+inline bool test_grid_cell(Single& r, const CellLists& lists, std::uint32_t cell, Counters& n) {
   if (lists.of<Triangle>().first) {
     const std::uint32_t first = lists.of<Triangle>().first[cell];
     const std::uint32_t end = lists.of<Triangle>().first[cell + 1];
@@ -76,8 +71,8 @@ inline bool test_grid_cell(Single<In>& r, const CellLists& lists, std::uint32_t 
 }
 
 /// As walk_apart().
-template <bool kAny, class In>
-inline void walk_one(const GridView& g, Single<In>& r, Counters& n) {
+template <bool kAny>
+inline void walk_one(const GridView& g, Single& r, Counters& n) {
   CellWalk walk(g);
   if (!walk.start(r))
     return;
@@ -94,7 +89,7 @@ inline void walk_one(const GridView& g, Single<In>& r, Counters& n) {
 
 /// All that a prepared ray meets. Returns what was taken from t.
 template <bool kAny>
-inline float walk_scene(const SceneView& scene, Single<InFloat>& r) {
+inline float walk_scene(const SceneView& scene, Single& r) {
   Counters n;
   if (test_infinite<kAny>(scene, r, n))
     return 0;
@@ -114,7 +109,7 @@ inline Hit trace_one(const SceneView& scene, const Ray& ray) {
   const Vec3<float> org{ray.org.x, ray.org.y, ray.org.z};
   const Vec3<float> dir{ray.dir.x, ray.dir.y, ray.dir.z};
   const bool any_triangles = scene.geometry.of<Triangle>().count > 0;
-  Single<InFloat> r;
+  Single r;
   if (!prepare(r, org, dir, ray.t_min, ray.t_max, any_triangles))
     return {ray.t_max, kNoPrimitive};
   const float shift = walk_scene<kAny>(scene, r);

@@ -228,17 +228,16 @@ inline void each_grid(const SceneView& scene, const WalkingRays& p, const Visit&
 }
 
 template <bool kAny, class In>
-inline void trace_alone(const SceneView& scene, Packet<In>& p, bool any_triangles, Counters& n) {
+inline void trace_alone(const SceneView& scene, Packet<In>& p, Counters& n) {
   for (int i = 0; i < p.size; ++i) {
     if (!(p.best[i] > p.t_min[i]))
       continue;
-    Single<In> r = single_of(p, i, any_triangles);
+    PacketRay<In> r{p, i};
     test_cell<kAny>(r, scene.outside, 0, n);
-    put_back(r, p, i);
   }
   each_grid<kAny>(scene, p, [&](const GridView& g) {
     if (start_in(g, p))
-      walk_apart<kAny>(g, p, any_triangles, n);
+      walk_apart<kAny>(g, p, n);
   });
 }
 
@@ -280,11 +279,11 @@ template <bool kAny, class In>
   test_infinite<kAny>(scene, p, n);
   bring_near(scene, p);
   if (options.packet == 1)
-    return trace_alone<kAny>(scene, p, any_triangles, n);
+    return trace_alone<kAny>(scene, p, n);
   test_outside<kAny>(scene.outside, p, n);
   each_grid<kAny>(scene, p, [&](const GridView& g) {
     if (start_in(g, p))
-      traverse_packet<kAny>(g, p, options.mailbox, any_triangles, n);
+      traverse_packet<kAny>(g, p, options.mailbox, n);
   });
 }
 

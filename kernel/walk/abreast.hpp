@@ -1,17 +1,16 @@
 #pragma once
-// Rays that have nothing in common but that they are many, each on its own through a grid: their
-// steps side by side (SIMD over rays), the primitives of a cell for the one ray that came there
-// (SIMD over primitives).
+// Rays that have nothing in common but that they are many, each on its own through a grid. All that
+// are under way step side by side (SIMD over rays); then those that came to cells with something in
+// them go through these, each by itself (SIMD over primitives).
 //
-// A step is a chain of some 60 cycles: the cell's distance, the planes that far, the next cell from
-// these. For one ray it ends in branches nobody can foretell; eight chains at once take little
-// longer than one, and branch only for cells that hold something.
+// What a ray does next nobody can foretell, nor what is in the cell it came to: so no branch
+// depends on one ray. Each phase goes through a list of the rays, boxes or blocks that the phase
+// before it chose, and asks memory for what the phase after it looks at.
 
 #include "kernel/walk/course.hpp"
+#include "kernel/walk/single.hpp"
 
 namespace grelha::GRELHA_ISA {
-
-inline constexpr int kAbreast = kWidth<Lanes>;
 
 /// Asks for the memory of an object, line by line.
 template <class T>
@@ -24,263 +23,292 @@ template <class T>
 /// Bytes of the fields of kinds whose primitives are asked for early: of more, they come too late.
 inline constexpr std::size_t kAskedFor = 16;
 
-/// Rays that came to cells with something in them, each against its own cell. What a ray needs is
-/// asked for before what another needs is computed with: memory is farther away than the next seven
-/// rays.
+/// What is chosen is stored with as much behind it as a register holds.
+inline constexpr int kWayRow = kPacket + kWidth<Lanes>;
+
+/// Rays that came to cells with something in them.
+struct Arrivals {
+  int count = 0;
+  alignas(64) std::uint32_t ray[kWayRow];  ///< places in the packet
+  alignas(64) std::uint32_t cell[kWayRow];
+};
+
+/// Inverses of the directions of rays of a packet; no component of them is 0.
+struct Inverses {
+  alignas(64) float of[3][kPacket];
+
+  void set(const WalkingRays& p, int i) {
+    const Lanes least = least_headway(p, i);
+    for (int a = 0; a < 3; ++a) {
+      const Lanes d = load<Lanes>(p.dir[a] + i);
+      store(of[a] + i, Lanes(1) / select(magnitude(d) < least, least, d));
+    }
+  }
+};
+
+/// Rays against what is in the cells they came to.
 template <bool kAny, class In>
 class CellTests {
  public:
-  CellTests(Single<In>* rays,
-            const CellLists& lists,
-            const std::uint32_t (&cells)[kAbreast],
-            Counters& n)
-      : rays_(rays), lists_(lists), cells_(cells), n_(n) {}
+  CellTests(const GridView& g, Packet<In>& p, Counters& n) : lists_(g.lists), p_(p), n_(n) {
+    each_live_group(p, [&](int i, int) { inverse_.set(p, i); });
+  }
 
-  /// The rays with a bit in `full`. Returns bits of those whose search is over.
-  [[gnu::always_inline]] unsigned test(unsigned full) {
+  void test(const Arrivals& to) {
     if (triangles_.first)
-      test_triangles(full);
-    bool any_arrays = false;
+      test_triangles(to);
     ArrayShapes::for_each([&]<class Shape>() __attribute__((always_inline)) {
-      const typename Shape::CellList& list = lists_.of<Shape>();
-      any_arrays = any_arrays || list.first;
-      if constexpr (sizeof(typename Shape::template Fields<float>) <= kAskedFor)
-        if (list.first)
-          fetch<Shape>(list, full & ~over_);
+      if (lists_.of<Shape>().first)
+        test_arrays<Shape>(to);
     });
-    if (any_arrays)
-      each_bit(full & ~over_,
-               [&](int i) { end_if(test_arrays<kAny>(rays_[i], lists_, cells_[i], n_), i); });
-    return over_;
   }
 
  private:
-  static constexpr int kMost = 32;
-  /// A block that a ray is still to be tested against.
-  struct Due {
-    int ray;
-    std::uint32_t block;
-    float enter;  ///< t of its box; what was met since may be nearer
-  };
+  static constexpr int kMost = 512;  ///< blocks that are due at once
 
-  [[gnu::always_inline]] void end_if(bool over, int ray) {
-    if (over)
-      over_ |= 1u << ray;
-  }
+  bool searches(int ray) const { return p_.best[ray] > p_.t_min[ray]; }
 
-  [[gnu::always_inline]] void test_triangles(unsigned full) {
-    each_bit(full, [&](int i) {
-      first_[i] = triangles_.first[cells_[i]];
-      end_[i] = triangles_.first[cells_[i] + 1];
-      prefetch(triangles_.boxes + first_[i] / kBlock);
-    });
-    each_bit(full, [&](int i) {
-      for (std::uint32_t at = first_[i] / kBlock * kBlock; at < end_[i]; at += kBlock)
-        take_blocks(i, at);
-    });
+  [[gnu::always_inline]] void test_triangles(const Arrivals& to) {
+    for (int k = 0; k < to.count; ++k) {
+      first_[k] = triangles_.first[to.cell[k]];
+      end_[k] = triangles_.first[to.cell[k] + 1];
+      prefetch(triangles_.boxes + first_[k] / kBlock);
+    }
+    for (int k = 0; k < to.count; ++k)
+      for (std::uint32_t at = first_[k] / kBlock * kBlock; at < end_[k]; at += kBlock)
+        take_blocks(to.ray[k], at, blocks_between(at, first_[k], end_[k]));
     settle();
   }
 
-  /// Takes the blocks from `at` on whose boxes ray i passes.
-  [[gnu::always_inline]] void take_blocks(int i, std::uint32_t at) {
-    const unsigned passed = passed_boxes(rays_[i], triangles_.boxes[at / kBlock], enters_);
-    each_bit(passed & blocks_between(at, first_[i], end_[i]), [&](int k) {
-      const std::uint32_t block = at + static_cast<unsigned>(k);
-      prefetch(triangles_.blocks + block);
-      due_[count_++] = {i, block, enters_[k]};
-      if (count_ == kMost)
-        settle();
-    });
-  }
-
-  /// Tests the blocks that are due.
-  [[gnu::always_inline]] void settle() {
-    for (int k = 0; k < count_; ++k) {
-      const int i = due_[k].ray;
-      if (!(over_ >> i & 1) && due_[k].enter <= rays_[i].best)
-        end_if(test_block<kAny>(rays_[i], triangles_.blocks[due_[k].block], n_), i);
+  /// Takes those of some blocks from `at` on whose boxes a ray passes.
+  [[gnu::always_inline]] void take_blocks(std::uint32_t ray, std::uint32_t at, unsigned blocks) {
+    const BlockBoxes& boxes = triangles_.boxes[at / kBlock];
+    for (int i = 0; i < kBlock; i += kWidth<Block>) {
+      Block enter(p_.t_min[ray]);
+      Block leave(p_.best[ray]);
+      for (int a = 0; a < 3; ++a) {
+        const Block org(p_.org[a][ray]);
+        const Block inverse(inverse_.of[a][ray]);
+        const int back = inverse_.of[a][ray] < 0 ? 3 : 0;
+        enter = greater((load<Block>(boxes.side[a + back] + i) - org) * inverse, enter);
+        leave = lesser((load<Block>(boxes.side[a + 3 - back] + i) - org) * inverse, leave);
+      }
+      take(ray, at + static_cast<unsigned>(i), bits(enter <= leave) & blocks >> i, enter);
     }
-    count_ = 0;
   }
 
-  /// Asks for what the first two blocks of primitives of cells are made of, and for ids: a hit is
-  /// likely.
+  [[gnu::always_inline]] void take(std::uint32_t ray,
+                                   std::uint32_t first,
+                                   unsigned passed,
+                                   const Block& enter) {
+    const Chosen chosen(passed);
+    const Words<Block> rays = Words<Block>{} + ray;
+    chosen.store(due_ray_ + due_, rays);
+    chosen.store(due_block_ + due_, counted_words<Block>(first));
+    chosen.store(due_enter_ + due_, enter);
+    due_ += chosen.count();
+    if (due_ >= kMost)
+      settle();
+  }
+
+  /// Tests the blocks that are due. What was met since a box was passed may be nearer.
+  [[gnu::noinline]] void settle() {
+    for (int k = 0; k < due_; ++k) {
+      const TriangleBlock& block = triangles_.blocks[due_block_[k]];
+      if (k + kAhead < due_)
+        prefetch(triangles_.blocks + due_block_[k + kAhead]);
+      const int ray = static_cast<int>(due_ray_[k]);
+      if (due_enter_[k] <= p_.best[ray]) {
+        PacketRay<In> r{p_, ray};
+        test_block<kAny>(r, block, n_);
+      }
+    }
+    due_ = 0;
+  }
+
   template <class Shape>
-  [[gnu::always_inline]] void fetch(const typename Shape::CellList& list, unsigned rays) {
-    each_bit(rays, [&](int i) {
-      const std::uint32_t first = list.first[cells_[i]];
-      const auto ask = [first](const float* const& field) {
-        __builtin_prefetch(field + first);
-        __builtin_prefetch(field + first + 16);
-      };
-      Shape::for_each_field(ask, list.fields);
-      __builtin_prefetch(list.id + first);
-    });
+  [[gnu::noinline]] void test_arrays(const Arrivals& to) {
+    const typename Shape::CellList& list = lists_.of<Shape>();
+    if constexpr (sizeof(typename Shape::template Fields<float>) <= kAskedFor)
+      for (int k = 0; k < to.count; ++k)
+        fetch<Shape>(list, list.first[to.cell[k]]);
+    for (int k = 0; k < to.count; ++k) {
+      PacketRay<In> r{p_, static_cast<int>(to.ray[k])};
+      if (searches(r.i))
+        test_list<kAny, Shape>(r, list, to.cell[k], n_);
+    }
   }
 
-  Single<In>* rays_;
+  /// Asks for what the first two blocks of primitives from `first` on are made of, and for ids: a
+  /// hit is likely.
+  template <class Shape>
+  [[gnu::always_inline]] void fetch(const typename Shape::CellList& list, std::uint32_t first) {
+    const auto ask = [first](const float* const& field) {
+      __builtin_prefetch(field + first);
+      __builtin_prefetch(field + first + 16);
+    };
+    Shape::for_each_field(ask, list.fields);
+    __builtin_prefetch(list.id + first);
+  }
+
+  static constexpr int kAhead = 8;
+
   const CellLists& lists_;
   const Triangle::CellList& triangles_ = lists_.of<Triangle>();
-  const std::uint32_t (&cells_)[kAbreast];
+  Packet<In>& p_;
   Counters& n_;
-  unsigned over_ = 0;
-  int count_ = 0;
-  Due due_[kMost];
-  std::uint32_t first_[kAbreast];
-  std::uint32_t end_[kAbreast];
-  float enters_[kBlock];
+  Inverses inverse_;
+  std::uint32_t first_[kPacket];
+  std::uint32_t end_[kPacket];
+  int due_ = 0;
+  alignas(64) std::uint32_t due_ray_[kMost + kBlock];
+  alignas(64) std::uint32_t due_block_[kMost + kBlock];
+  alignas(64) float due_enter_[kMost + kBlock];
 };
 
-template <bool kAny, class In>
-inline unsigned test_cells(Single<In>* rays,
-                           const CellLists& lists,
-                           const std::uint32_t (&cells)[kAbreast],
-                           unsigned full,
-                           Counters& n) {
-  return CellTests<kAny, In>(rays, lists, cells, n).test(full);
-}
-
-/// Courses and cells of many rays.
-template <int kRays>
-struct Courses {
-  alignas(64) float place[3][kRays];
-  alignas(64) float speed[3][kRays];
-  alignas(64) float inverse[3][kRays];
-  alignas(64) float cell[3][kRays];
-  alignas(64) float end[kRays];
-
-  void put(int i, const Course<Lanes>& c, const Lanes (&at)[3]) {
-    for (int a = 0; a < 3; ++a) {
-      store(place[a] + i, c.place[a]);
-      store(speed[a] + i, c.speed[a]);
-      store(inverse[a] + i, c.inverse[a]);
-      store(cell[a] + i, at[a]);
-    }
-    store(end + i, c.end);
+/// The rays of a packet that are under way through a grid, among others that are no longer.
+class RaysUnderWay {
+ public:
+  RaysUnderWay(const GridView& g, const WalkingRays& p) : g_(g), p_(p) {
+    each_live_group(p, [&](int i, int) { add(i); });
+    going_ = count_;
+    fill_up();
   }
-  Course<Lanes> get(int i) const {
-    Course<Lanes> c;
-    for (int a = 0; a < 3; ++a) {
-      c.place[a] = load<Lanes>(place[a] + i);
-      c.speed[a] = load<Lanes>(speed[a] + i);
-      c.inverse[a] = load<Lanes>(inverse[a] + i);
-    }
-    c.end = load<Lanes>(end + i);
-    return c;
-  }
-  template <int kOthers>
-  void copy(int k, const Courses<kOthers>& from, int i) {
-    for (int a = 0; a < 3; ++a) {
-      place[a][k] = from.place[a][i];
-      speed[a][k] = from.speed[a][i];
-      inverse[a][k] = from.inverse[a][i];
-      cell[a][k] = from.cell[a][i];
-    }
-    end[k] = from.end[i];
-  }
-};
 
-/// Rays of a packet that come to a grid and wait for their turn in it.
-struct Waiting {
-  Courses<kPacket> course;
-  std::uint8_t ray[kPacket];
-  int first = 0;
-  int end = 0;
+  bool any() const { return going_ > 0; }
+  int going() const { return going_; }
 
-  Waiting(const GridView& g, const WalkingRays& p) {
-    each_live_group(p, [&](int i, int) { add(g, p, i); });
+  /// Notes those whose cells hold something.
+  void arrive(Arrivals& to) {
+    to.count = 0;
+    for (int i = 0; i < count_; i += kWidth<Lanes>)
+      arrive(i, to);
+  }
+
+  /// Goes on to the next cells.
+  void step() {
+    going_ = 0;
+    for (int i = 0; i < count_; i += kWidth<Lanes>)
+      step(i);
+    if (2 * going_ <= count_)
+      close_ranks();
   }
 
  private:
-  void add(const GridView& g, const WalkingRays& p, int i) {
+  void add(int i) {
     Lanes org[3];
     Lanes dir[3];
     for (int a = 0; a < 3; ++a) {
-      org[a] = load<Lanes>(p.org[a] + i);
-      dir[a] = load<Lanes>(p.dir[a] + i);
+      org[a] = load<Lanes>(p_.org[a] + i);
+      dir[a] = load<Lanes>(p_.dir[a] + i);
     }
-    const Lanes begin = greater(load<Lanes>(p.start + i), load<Lanes>(p.t_min + i));
+    const Lanes begin = greater(load<Lanes>(p_.start + i), load<Lanes>(p_.t_min + i));
     Course<Lanes> c;
     Lanes cell[3];
-    const Mask<Lanes> come = enter(g, org, dir, begin, load<Lanes>(p.best + i), c, cell);
-    course.put(i, c, cell);
-    each_bit(bits(come), [&](int k) { ray[end++] = static_cast<std::uint8_t>(i + k); });
-  }
-};
-
-/// The rays that walk side by side. What is not walking goes on computing, within the grid, and is
-/// not looked at.
-template <class In>
-struct Walkers {
-  Courses<kAbreast> course = {};
-  alignas(64) float best[kAbreast] = {};
-  Single<In> ray[kAbreast];
-  int of[kAbreast] = {};  ///< place in the packet
-  unsigned walking = 0;   ///< bits of those that do
-
-  /// The numbers of their cells.
-  [[gnu::always_inline]] Words<Lanes> cells(const GridView& g) const {
-    const auto at = [&](int a) { return to_words(load<Lanes>(course.cell[a])); };
-    const auto cells_along = [&](int a) { return static_cast<std::uint32_t>(g.n[a]); };
-    return at(0) + cells_along(0) * (at(1) + cells_along(1) * at(2));
+    const Mask<Lanes> come = enter(g_, org, dir, begin, load<Lanes>(p_.best + i), c, cell);
+    const Chosen chosen(bits(come));
+    put(chosen, count_, c, cell, counted_words<Lanes>(static_cast<std::uint32_t>(i)));
+    count_ += chosen.count();
   }
 
-  /// Tests rays against what is in their cells. Returns bits of those whose search is over.
-  template <bool kAny>
-  [[gnu::always_inline]] unsigned test(const CellLists& lists,
-                                       const Words<Lanes>& cell,
-                                       unsigned rays,
-                                       Counters& n) {
-    std::uint32_t in[kAbreast];
-    store_words(in, cell);
-    const unsigned over = test_cells<kAny>(ray, lists, in, rays, n);
-    each_bit(rays, [&](int k) { best[k] = ray[k].best; });
-    return over;
+  [[gnu::always_inline]] void put(const Chosen& chosen,
+                                  int to,
+                                  const Course<Lanes>& c,
+                                  const Lanes (&cell)[3],
+                                  const Words<Lanes>& ray) {
+    for (int a = 0; a < 3; ++a) {
+      chosen.store(place_[a] + to, c.place[a]);
+      chosen.store(speed_[a] + to, c.speed[a]);
+      chosen.store(inverse_[a] + to, c.inverse[a]);
+      chosen.store(cell_[a] + to, cell[a]);
+    }
+    chosen.store(end_ + to, c.end);
+    chosen.store(ray_ + to, ray);
   }
 
-  /// Goes on to the next cells. Returns bits of those that come there.
-  [[gnu::always_inline]] unsigned go_on(const GridView& g, const Lanes& distance) {
+  [[gnu::always_inline]] void arrive(int i, Arrivals& to) {
+    const auto at = [&](int a) { return to_words(load<Lanes>(cell_[a] + i)); };
+    const auto cells_along = [&](int a) { return static_cast<std::uint32_t>(g_.n[a]); };
+    const Words<Lanes> cell = at(0) + cells_along(0) * (at(1) + cells_along(1) * at(2));
+    const Lanes distance = bytes_at(g_.distance, cell);
+    store(distance_ + i, distance);
+    const Chosen full(bits(distance == Lanes(0)) & walking(i));
+    full.store(to.ray + to.count, load_words<Lanes>(ray_ + i));
+    full.store(to.cell + to.count, cell);
+    to.count += full.count();
+  }
+
+  /// Bits of the lanes from i on that are under way.
+  unsigned walking(int i) const {
+    return bits(load<Lanes>(end_ + i) > Lanes(-kInfinity)) & lanes_before(i);
+  }
+  unsigned lanes_before(int i) const {
+    const int left = count_ - i;
+    return left >= kWidth<Lanes> ? ~0u : (1u << left) - 1u;
+  }
+
+  [[gnu::always_inline]] Course<Lanes> course(int i) const {
+    Course<Lanes> c;
+    for (int a = 0; a < 3; ++a) {
+      c.place[a] = load<Lanes>(place_[a] + i);
+      c.speed[a] = load<Lanes>(speed_[a] + i);
+      c.inverse[a] = load<Lanes>(inverse_[a] + i);
+    }
+    c.end = load<Lanes>(end_ + i);
+    return c;
+  }
+
+  [[gnu::always_inline]] void step(int i) {
     Lanes at[3];
     for (int a = 0; a < 3; ++a)
-      at[a] = load<Lanes>(course.cell[a]);
-    const Mask<Lanes> going = step(g, course.get(0), distance, load<Lanes>(best), at);
+      at[a] = load<Lanes>(cell_[a] + i);
+    const Lanes best = floats_at(p_.best, load_words<Lanes>(ray_ + i));
+    const Course<Lanes> c = course(i);
+    const Mask<Lanes> goes = grelha::GRELHA_ISA::step(g_, c, load<Lanes>(distance_ + i), best, at);
     for (int a = 0; a < 3; ++a)
-      store(course.cell[a], select(going, at[a], Lanes(0)));
-    return bits(going);
+      store(cell_[a] + i, select(goes, at[a], Lanes(0)));
+    // where it ends is what tells a ray that is under way
+    store(end_ + i, select(goes, c.end, Lanes(-kInfinity)));
+    going_ += __builtin_popcount(bits(goes) & lanes_before(i));
   }
 
-  /// Waiting rays take the places of those that are done.
-  void refill(Waiting& w, const Packet<In>& p, bool any_triangles) {
-    for (unsigned idle = ~walking & ((1u << kAbreast) - 1u); idle != 0 && w.first < w.end;
-         idle &= idle - 1) {
-      const int k = __builtin_ctz(idle);
-      const int i = w.ray[w.first++];
-      course.copy(k, w.course, i);
-      ray[k] = single_of(p, i, any_triangles);
-      best[k] = ray[k].best;
-      of[k] = i;
-      walking |= 1u << k;
+  void close_ranks() {
+    int to = 0;
+    for (int i = 0; i < count_; i += kWidth<Lanes>) {
+      const Chosen chosen(walking(i));
+      Lanes cell[3];
+      for (int a = 0; a < 3; ++a)
+        cell[a] = load<Lanes>(cell_[a] + i);
+      put(chosen, to, course(i), cell, load_words<Lanes>(ray_ + i));
+      to += chosen.count();
+    }
+    count_ = to;
+    fill_up();
+  }
+
+  /// Makes lanes behind the last ray fit to be computed with.
+  void fill_up() {
+    const int end = count_ + kWidth<Lanes>;
+    for (int i = count_; i < end; ++i) {
+      for (int a = 0; a < 3; ++a)
+        cell_[a][i] = 0;
+      end_[i] = -kInfinity;
+      ray_[i] = 0;
     }
   }
-  void retire(unsigned done, Packet<In>& p) {
-    walking &= ~done;
-    each_bit(done, [&](int k) { put_back(ray[k], p, of[k]); });
-  }
-};
 
-/// Each walker looks into its cell and goes on to the next. Returns bits of those whose search is
-/// over.
-template <bool kAny, class In>
-[[gnu::always_inline]] inline unsigned look_and_step(const GridView& g,
-                                                     Walkers<In>& w,
-                                                     Counters& n) {
-  const Words<Lanes> cell = w.cells(g);
-  const Lanes distance = bytes_at(g.distance, cell);
-  unsigned over = 0;
-  if (const unsigned full = bits(distance == Lanes(0)) & w.walking; full != 0)
-    over = w.template test<kAny>(g.lists, cell, full, n);
-  return over | ~w.go_on(g, distance);
-}
+  const GridView& g_;
+  const WalkingRays& p_;
+  int count_ = 0;
+  int going_ = 0;
+  alignas(64) float place_[3][kWayRow];
+  alignas(64) float speed_[3][kWayRow];
+  alignas(64) float inverse_[3][kWayRow];
+  alignas(64) float cell_[3][kWayRow];
+  alignas(64) float end_[kWayRow];
+  alignas(64) float distance_[kWayRow];
+  alignas(64) std::uint32_t ray_[kWayRow];
+};
 
 /// The live rays of a packet through a grid, each from p.start on and on its own (Amanatides & Woo
 /// 1987), with leaps over empty cells by their distance (Cohen & Sheffer, "Proximity Clouds",
@@ -289,22 +317,20 @@ template <bool kAny, class In>
 /// a ray to the wrong side of a corner it is off by less than what primitives were grown by
 /// (docs/numerics.md).
 template <bool kAny, class In>
-inline void walk_apart(const GridView& g, Packet<In>& p, bool any_triangles, Counters& n) {
-  Waiting waiting(g, p);
-  if (waiting.end == 0)
+[[gnu::noinline]] void walk_apart(const GridView& g, Packet<In>& p, Counters& n) {
+  RaysUnderWay rays(g, p);
+  if (!rays.any())
     return;
-  Walkers<In> w;
+  CellTests<kAny, In> tests(g, p, n);
+  Arrivals arrivals;
   // No walk crosses more planes than there are, whatever rounding does.
-  const std::int64_t most = std::int64_t{waiting.end} * (g.n[0] + g.n[1] + g.n[2] + 3);
-  for (std::int64_t step = 0; step < most; ++step) {
-    if (waiting.first < waiting.end && 2 * __builtin_popcount(w.walking) <= kAbreast)
-      w.refill(waiting, p, any_triangles);
-    if (w.walking == 0)
-      return;
-    n.visits += static_cast<unsigned>(__builtin_popcount(w.walking));
-    w.retire(look_and_step<kAny>(g, w, n) & w.walking, p);
+  const int most = g.n[0] + g.n[1] + g.n[2] + 3;
+  for (int round = 0; round < most && rays.any(); ++round) {
+    n.visits += static_cast<unsigned>(rays.going());
+    rays.arrive(arrivals);
+    tests.test(arrivals);
+    rays.step();
   }
-  w.retire(w.walking, p);
 }
 
 }  // namespace grelha::GRELHA_ISA

@@ -296,21 +296,20 @@ inline std::uint64_t traverse_together(
 /// All rays of a packet through one grid, from p.start on. A stream whose packets all fall apart is
 /// asked for a packet now and then only.
 template <bool kAny, class In>
-inline void traverse_packet(
-    const GridView& g, Packet<In>& p, bool use_mailbox, bool any_triangles, Counters& n) {
+inline void traverse_packet(const GridView& g, Packet<In>& p, bool use_mailbox, Counters& n) {
   constexpr int kSurelyApart = 24;  // packets one after another (measured)
   constexpr int kLeftAlone = 24;
   const std::uint64_t live = p.live;
   if (p.alone > 0) {
     --p.alone;
-    return walk_apart<kAny>(g, p, any_triangles, n);
+    return walk_apart<kAny>(g, p, n);
   }
   p.live = traverse_together<kAny>(g, p, p.size, use_mailbox, n);
   p.apart = p.live == live ? p.apart + 1 : 0;
   if (p.apart >= kSurelyApart)
     p.alone = kLeftAlone;
   if (p.live != 0)
-    walk_apart<kAny>(g, p, any_triangles, n);
+    walk_apart<kAny>(g, p, n);
   p.live = live;
 }
 

@@ -16,50 +16,87 @@ struct WalkingRay {
   int near[3];
 };
 
-/// As TestedRays.
-template <class In>
-struct TestedRay {};
-template <>
-struct TestedRay<InDouble> {
-  double from[3];
-  float after;
-  double nearest;
-  double shift;  ///< 0 for rays not moved
+/// A ray by itself, tested in float.
+struct Single : WalkingRay {
+  using In = InFloat;
+  float inv_dd;
+  float shear[3];
 };
 
-/// A ray that is tested against primitives in float or in double.
-template <class In>
-struct Single : WalkingRay, TestedRay<In> {
-  typename In::Number inv_dd;
-  typename In::Number shear[3];
+/// A ray of a packet.
+template <class In_>
+struct PacketRay {
+  using In = In_;
+  Packet<In>& p;
+  int i;
 };
 
 /// What tests take of a ray.
-inline const float (&tested_org(const Single<InFloat>& r))[3] {
-  return r.org;
+inline float tested_org(const Single& r, int axis) {
+  return r.org[axis];
 }
-inline float tested_t_min(const Single<InFloat>& r) {
+inline float direction(const Single& r, int axis) {
+  return r.dir[axis];
+}
+inline float tested_t_min(const Single& r) {
   return r.t_min;
 }
-inline float tested_best(const Single<InFloat>& r) {
+inline float tested_best(const Single& r) {
   return r.best;
 }
-inline void set_best(Single<InFloat>& r, float t) {
+inline float inverse_square(const Single& r) {
+  return r.inv_dd;
+}
+inline float shear_of(const Single& r, int which) {
+  return r.shear[which];
+}
+inline int axis_of(const Single& r) {
+  return r.axis;
+}
+inline std::uint32_t id_of(const Single& r) {
+  return r.id;
+}
+inline void set_hit(Single& r, float t, std::uint32_t id) {
   r.best = t;
+  r.id = id;
 }
 
-inline const double (&tested_org(const Single<InDouble>& r))[3] {
-  return r.from;
+template <class In>
+inline typename In::Number tested_org(const PacketRay<In>& r, int axis) {
+  return tested_org(r.p, axis)[r.i];
 }
-inline float tested_t_min(const Single<InDouble>& r) {
-  return r.after;
+template <class In>
+inline float direction(const PacketRay<In>& r, int axis) {
+  return r.p.dir[axis][r.i];
 }
-inline double tested_best(const Single<InDouble>& r) {
-  return r.nearest;
+template <class In>
+inline float tested_t_min(const PacketRay<In>& r) {
+  return tested_t_min(r.p)[r.i];
 }
-inline void set_best(Single<InDouble>& r, double t) {
-  r.nearest = t;
-  r.best = not_below(t - r.shift);
+template <class In>
+inline typename In::Number tested_best(const PacketRay<In>& r) {
+  return tested_best(r.p)[r.i];
+}
+template <class In>
+inline typename In::Number inverse_square(const PacketRay<In>& r) {
+  return r.p.inv_dd[r.i];
+}
+template <class In>
+inline typename In::Number shear_of(const PacketRay<In>& r, int which) {
+  return r.p.shear[which][r.i];
+}
+template <class In>
+inline int axis_of(const PacketRay<In>& r) {
+  return static_cast<int>(r.p.axis[r.i]);
+}
+template <class In>
+inline std::uint32_t id_of(const PacketRay<In>& r) {
+  return id_of(r.p.id[r.i]);
+}
+template <class In>
+inline void set_hit(const PacketRay<In>& r, typename In::Number t, std::uint32_t id) {
+  set_best(r.p, r.i, t);
+  r.p.id[r.i] = bits_of(id);
 }
 
 /// What tests of triangles need of a direction besides the shear.
@@ -71,24 +108,13 @@ inline void set_inverse(WalkingRay& r) {
   }
 }
 
-inline void set_tested(Single<InFloat>&) {}
-inline void set_tested(Single<InDouble>& r) {
-  for (int a = 0; a < 3; ++a)
-    r.from[a] = r.org[a];
-  r.after = r.t_min;
-  r.nearest = r.best;
-  r.shift = 0;
-}
-
 /// A ray by itself, as prepare(Packet&) makes many. False: it meets nothing, and r is not whole.
-template <class In>
-inline bool prepare(Single<In>& r,
+inline bool prepare(Single& r,
                     const Vec3<float>& org,
                     const Vec3<float>& d,
                     float t_min,
                     float t_max,
                     bool any_triangles) {
-  using Number = typename In::Number;
   if (!(t_max > t_min))
     return false;
   const float dd = dot(d, d);
@@ -105,113 +131,50 @@ inline bool prepare(Single<In>& r,
   r.t_min = t_min;
   r.best = t_max;
   r.id = kNoPrimitive;
-  const Vec3<Number> e{d.x, d.y, d.z};
-  r.inv_dd = 1 / dot(e, e);
+  r.inv_dd = 1 / dd;
   r.axis = 0;
   if (any_triangles) {
     r.axis = shear_axis(d.x, d.y, d.z);
-    const Vec3<Number> q = permuted<Number>(static_cast<Number>(r.axis), e);
+    const Vec3<float> q = permuted<float>(static_cast<float>(r.axis), d);
     r.shear[0] = q.x / q.z;
     r.shear[1] = q.y / q.z;
     r.shear[2] = 1 / q.z;
     set_inverse(r);
   }
-  set_tested(r);
   return true;
 }
 
-/// Takes from a packet what only tests in double look at.
-inline void take_tested(Single<InFloat>&, const Packet<InFloat>&, int) {}
-inline void take_tested(Single<InDouble>& r, const Packet<InDouble>& p, int i) {
-  for (int a = 0; a < 3; ++a)
-    r.from[a] = p.from[a][i];
-  r.after = p.after[i];
-  r.nearest = p.nearest[i];
-  r.shift = p.moved ? p.shift[i] : 0;
-}
-/// Gives it back.
-inline void put_tested(const Single<InFloat>&, Packet<InFloat>&, int) {}
-inline void put_tested(const Single<InDouble>& r, Packet<InDouble>& p, int i) {
-  p.nearest[i] = r.nearest;
-}
-
-template <class In>
-inline Single<In> single_of(const Packet<In>& p, int i, bool any_triangles) {
-  Single<In> r;
-  for (int a = 0; a < 3; ++a) {
-    r.org[a] = p.org[a][i];
-    r.dir[a] = p.dir[a][i];
+/// Takes one hit. Returns whether the search is over (kAny and something was hit).
+template <bool kAny, class Ray, class Number>
+[[gnu::always_inline]] inline bool take_hit(Ray& r, Number t, std::uint32_t id) {
+  const Number best = tested_best(r);
+  const bool closer = t < best;
+  if (kAny) {
+    if (closer)
+      set_hit(r, Number(-kInfinity), id);
+    return closer;
   }
-  r.inv_dd = p.inv_dd[i];
-  r.t_min = p.t_min[i];
-  r.best = p.best[i];
-  r.id = id_of(p.id[i]);
-  take_tested(r, p, i);
-  r.axis = 0;
-  if (any_triangles) {
-    r.axis = static_cast<int>(p.axis[i]);
-    for (int a = 0; a < 3; ++a)
-      r.shear[a] = p.shear[a][i];
-    set_inverse(r);
-  }
-  return r;
-}
-
-/// What a ray has met goes back to its packet.
-template <class In>
-inline void put_back(const Single<In>& r, Packet<In>& p, int i) {
-  p.best[i] = r.best;
-  p.id[i] = bits_of(r.id);
-  put_tested(r, p, i);
-}
-
-/// Takes the hits of a block in order of place. Returns whether the search is over (kAny and
-/// something was hit).
-template <bool kAny, class In>
-inline bool note(Single<In>& r,
-                 const Mask<typename In::Primitives>& hit,
-                 const typename In::Primitives& t,
-                 const std::uint32_t* ids) {
-  using Real = typename In::Primitives;
-  using Number = typename In::Number;
-  unsigned lanes = bits(both(hit, t <= Real(tested_best(r))));
-  if (lanes == 0)
-    return false;
-  Number at[kWidth<Real>];
-  store(at, t);
-  for (; lanes != 0; lanes &= lanes - 1) {
-    const int k = __builtin_ctz(lanes);
-    const bool closer = at[k] < tested_best(r);
-    const bool tie = at[k] == tested_best(r) && r.id != kNoPrimitive && ids[k] < r.id;
-    if (kAny && closer) {
-      set_best(r, -kInfinity);
-      r.id = ids[k];
-      return true;
-    }
-    if (!kAny && (closer || tie)) {
-      set_best(r, at[k]);
-      r.id = ids[k];
-    }
-  }
+  if (closer || (t == best && id_of(r) != kNoPrimitive && id < id_of(r)))
+    set_hit(r, t, id);
   return false;
 }
 
-/// Takes one hit; as note().
-template <bool kAny, class In>
-inline bool record_hit(Single<In>& r, bool hit, typename In::Number t, std::uint32_t id) {
-  if (!hit)
+/// Takes the hits of a block in order of place. Returns whether the search is over.
+template <bool kAny, class Ray>
+inline bool note(Ray& r,
+                 const Mask<typename Ray::In::Primitives>& hit,
+                 const typename Ray::In::Primitives& t,
+                 const std::uint32_t* ids) {
+  using Real = typename Ray::In::Primitives;
+  unsigned lanes = bits(both(hit, t <= Real(tested_best(r))));
+  if (lanes == 0)
     return false;
-  const typename In::Number best = tested_best(r);
-  if (kAny) {
-    if (!(t < best))
-      return false;
-    set_best(r, -kInfinity);
-    r.id = id;
-    return true;
-  }
-  if (t < best || (t == best && r.id != kNoPrimitive && id < r.id)) {
-    set_best(r, t);
-    r.id = id;
+  typename Ray::In::Number at[kWidth<Real>];
+  store(at, t);
+  for (; lanes != 0; lanes &= lanes - 1) {
+    const int k = __builtin_ctz(lanes);
+    if (take_hit<kAny>(r, at[k], ids[k]))
+      return true;
   }
   return false;
 }
@@ -241,42 +204,36 @@ inline unsigned blocks_between(std::uint32_t at, std::uint32_t first, std::uint3
   return end - at < kBlock ? from & ~(kAll << (end - at)) & kAll : from & kAll;
 }
 
-template <class Real, class Number>
-inline Vec3<Real> spread(const Number (&v)[3]) {
-  return {Real(v[0]), Real(v[1]), Real(v[2])};
-}
-
 /// A ray and triangles of a block from i on.
-template <class In>
+template <class Ray>
 struct RayAndBlock {
-  using Real = typename In::Primitives;
-  const Single<In>* r;
+  using Real = typename Ray::In::Primitives;
+  const Ray* r;
   const TriangleBlock* block;
   int i;
   RayAndTriangle<Real> operator()() const {
-    const int k = r->axis;
+    const int k = axis_of(*r);
     const int kx = kNextAxis[k];
     const int ky = kPreviousAxis[k];
-    const auto& from = tested_org(*r);
     const auto corner = [&](const float(&v)[3][kBlock]) {
       return Vec3<Real>{take<Real>(v[kx] + i), take<Real>(v[ky] + i), take<Real>(v[k] + i)};
     };
-    return {{Real(from[kx]), Real(from[ky]), Real(from[k])},
-            {Real(r->dir[kx]), Real(r->dir[ky]), Real(r->dir[k])},
+    return {{Real(tested_org(*r, kx)), Real(tested_org(*r, ky)), Real(tested_org(*r, k))},
+            {Real(direction(*r, kx)), Real(direction(*r, ky)), Real(direction(*r, k))},
             {corner(block->a), corner(block->b), corner(block->c)}};
   }
 };
 
-template <bool kAny, class In>
-[[gnu::noinline]] bool test_block(Single<In>& r, const TriangleBlock& block, Counters& n) {
-  using Real = typename In::Primitives;
-  const Shear<Real> shear{Real(r.shear[0]), Real(r.shear[1]), Real(r.shear[2])};
+template <bool kAny, class Ray>
+[[gnu::noinline]] bool test_block(Ray& r, const TriangleBlock& block, Counters& n) {
+  using Real = typename Ray::In::Primitives;
+  const Shear<Real> shear{Real(shear_of(r, 0)), Real(shear_of(r, 1)), Real(shear_of(r, 2))};
   const Real t_min(tested_t_min(r));
   n.tests[kNumber<Triangle>] += kBlock;
   for (int i = 0; i < kBlock; i += kWidth<Real>) {
     Real t(0);
     const Mask<Real> hit =
-        hit_triangle<kAny>(RayAndBlock<In>{&r, &block, i}, shear, t_min, Real(tested_best(r)), t);
+        hit_triangle<kAny>(RayAndBlock<Ray>{&r, &block, i}, shear, t_min, Real(tested_best(r)), t);
     if (note<kAny>(r, hit, t, block.id + i))
       return true;
   }
@@ -285,16 +242,17 @@ template <bool kAny, class In>
 
 /// Primitives of one kind in one cell. Reading past its end meets those of the next, which costs
 /// nothing and is never wrong: a hit is a hit.
-template <bool kAny, class Shape, class In>
-[[gnu::always_inline]] inline bool test_list(Single<In>& r,
+template <bool kAny, class Shape, class Ray>
+[[gnu::always_inline]] inline bool test_list(Ray& r,
                                              const typename Shape::CellList& list,
                                              std::size_t cell,
                                              Counters& n) {
-  using Real = typename In::Primitives;
-  const RayLanes<Real> ray{.org = spread<Real>(tested_org(r)),
-                           .dir = spread<Real>(r.dir),
-                           .inv_dd = Real(r.inv_dd),
-                           .t_min = Real(tested_t_min(r))};
+  using Real = typename Ray::In::Primitives;
+  const RayLanes<Real> ray{
+      .org = {Real(tested_org(r, 0)), Real(tested_org(r, 1)), Real(tested_org(r, 2))},
+      .dir = {Real(direction(r, 0)), Real(direction(r, 1)), Real(direction(r, 2))},
+      .inv_dd = Real(inverse_square(r)),
+      .t_min = Real(tested_t_min(r))};
   const std::uint32_t end = list.first[cell + 1];
   for (std::uint32_t i = list.first[cell]; i < end; i += kWidth<Real>) {
     n.tests[kNumber<Shape>] += kWidth<Real>;
@@ -307,8 +265,8 @@ template <bool kAny, class Shape, class In>
 }
 
 /// What stands in arrays in one cell.
-template <bool kAny, class In>
-inline bool test_arrays(Single<In>& r, const CellLists& lists, std::size_t cell, Counters& n) {
+template <bool kAny, class Ray>
+inline bool test_arrays(Ray& r, const CellLists& lists, std::size_t cell, Counters& n) {
   bool over = false;
   ArrayShapes::for_each([&]<class Shape>() __attribute__((always_inline)) {
     const typename Shape::CellList& list = lists.of<Shape>();
@@ -318,8 +276,8 @@ inline bool test_arrays(Single<In>& r, const CellLists& lists, std::size_t cell,
 }
 
 /// All primitives of one cell.
-template <bool kAny, class In>
-inline bool test_cell(Single<In>& r, const CellLists& lists, std::size_t cell, Counters& n) {
+template <bool kAny, class Ray>
+inline bool test_cell(Ray& r, const CellLists& lists, std::size_t cell, Counters& n) {
   const Triangle::CellList& triangles = lists.of<Triangle>();
   if (triangles.first)
     for (std::uint32_t i = triangles.first[cell]; i < triangles.first[cell + 1]; ++i)
