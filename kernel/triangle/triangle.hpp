@@ -148,6 +148,34 @@ inline constexpr float kDepthRounding = 0x1p-20f;
 /// 8 u of itself, and the point within 46 u of the farthest corner's distance.
 inline constexpr float kMostSpread = 2;
 
+/// Where rays pass triangles, in float.
+template <class Real>
+struct EdgeFunctions {
+  Vec3<Real> oa, ob, oc;  ///< from the rays' origins to the corners
+  Real u, v, w;           ///< of the edges opposite to a, b and c
+  Real least, most;       ///< of these
+  Real area;              ///< S (S + Z)
+
+  [[gnu::always_inline]] EdgeFunctions(const RayAndTriangle<Real>& from, const Shear<Real>& shear)
+      : oa(from.corner.a - from.org), ob(from.corner.b - from.org), oc(from.corner.c - from.org) {
+    const Real ax = oa.x - shear.x * oa.z, ay = oa.y - shear.y * oa.z;
+    const Real bx = ob.x - shear.x * ob.z, by = ob.y - shear.y * ob.z;
+    const Real cx = oc.x - shear.x * oc.z, cy = oc.y - shear.y * oc.z;
+    u = cx * by - cy * bx;
+    v = ax * cy - ay * cx;
+    w = bx * ay - by * ax;
+    const Real size = larger(larger(larger(ax, ay), larger(bx, by)), larger(cx, cy));
+    const Real depth = larger(larger(oa.z, ob.z), oc.z);
+    area = size * (size + depth);
+    least = lesser(lesser(u, v), w);
+    most = greater(greater(u, v), w);
+  }
+  /// Lanes of which float does not tell that the ray passes beside the triangle.
+  [[gnu::always_inline]] Mask<Real> may_cross() const {
+    return lesser(most, Real(0) - least) <= Real(kEdgeError) * area;
+  }
+};
+
 /// Point where each ray meets one triangle, from either side; watertight along shared edges and at
 /// shared vertices.
 ///
@@ -173,28 +201,17 @@ template <bool kAny, class Real, class Source>
     t = r.t;
     return both(r.inside, t > t_min);
   } else {
-    const Real o(0);
-    const Vec3<Real> oa = from.corner.a - from.org, ob = from.corner.b - from.org,
-                     oc = from.corner.c - from.org;
-    const Real ax = oa.x - shear.x * oa.z, ay = oa.y - shear.y * oa.z;
-    const Real bx = ob.x - shear.x * ob.z, by = ob.y - shear.y * ob.z;
-    const Real cx = oc.x - shear.x * oc.z, cy = oc.y - shear.y * oc.z;
-    const Real u = cx * by - cy * bx, v = ax * cy - ay * cx, w = bx * ay - by * ax;
-    const Real size = larger(larger(larger(ax, ay), larger(bx, by)), larger(cx, cy));
-    const Real depth = larger(larger(oa.z, ob.z), oc.z);
-    const Real area = size * (size + depth);
-    const Real error = Real(kEdgeError) * area;
-    const Real least = lesser(lesser(u, v), w);
-    const Real most = greater(greater(u, v), w);
-    const Mask<Real> maybe = lesser(most, o - least) <= error;
+    const EdgeFunctions<Real> edge(from, shear);
+    const Mask<Real> maybe = edge.may_cross();
     if (none(maybe))
       return maybe;
+    const auto& [oa, ob, oc, u, v, w, least, most, area] = edge;
     const Real inverse = Real(1) / ((u + v) + w);
     const Real ta = shear.z * oa.z, tb = shear.z * ob.z, tc = shear.z * oc.z;
     t = ((u * inverse) * ta + (v * inverse) * tb) + (w * inverse) * tc;
     const Real range = greater(greater(ta, tb), tc) - lesser(lesser(ta, tb), tc);
     const Real spread = (area * magnitude(inverse)) * range;
-    const Mask<Real> inside = greater(least, o - most) > error;
+    const Mask<Real> inside = greater(least, Real(0) - most) > Real(kEdgeError) * area;
     const Mask<Real> exact = spread <= Real(kMostSpread) * magnitude(t);
     const Real slack = Real(kDepthError) * spread + Real(kDepthRounding) * magnitude(t);
     const Real first = t - slack;

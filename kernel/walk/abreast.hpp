@@ -74,14 +74,24 @@ class CellTests {
       end_[k] = triangles_.first[to.cell[k] + 1];
       prefetch(triangles_.boxes + first_[k] / kBlock);
     }
+    int due = 0;
     for (int k = 0; k < to.count; ++k)
-      for (std::uint32_t at = first_[k] / kBlock * kBlock; at < end_[k]; at += kBlock)
-        take_blocks(to.ray[k], at, blocks_between(at, first_[k], end_[k]));
-    settle();
+      for (std::uint32_t at = first_[k] / kBlock * kBlock; at < end_[k]; at += kBlock) {
+        due = take_blocks(to.ray[k], at, blocks_between(at, first_[k], end_[k]), due);
+        if (due >= kMost) {
+          settle(due);
+          due = 0;
+        }
+      }
+    settle(due);
   }
 
-  /// Takes those of some blocks from `at` on whose boxes a ray passes.
-  [[gnu::always_inline]] void take_blocks(std::uint32_t ray, std::uint32_t at, unsigned blocks) {
+  /// Puts those of some blocks from `at` on whose boxes a ray passes behind those that are due.
+  /// Returns how many there are then.
+  [[gnu::always_inline]] int take_blocks(std::uint32_t ray,
+                                         std::uint32_t at,
+                                         unsigned blocks,
+                                         int due) {
     const BlockBoxes& boxes = triangles_.boxes[at / kBlock];
     for (int i = 0; i < kBlock; i += kWidth<Block>) {
       Block enter(p_.t_min[ray]);
@@ -93,37 +103,50 @@ class CellTests {
         enter = greater((load<Block>(boxes.side[a + back] + i) - org) * inverse, enter);
         leave = lesser((load<Block>(boxes.side[a + 3 - back] + i) - org) * inverse, leave);
       }
-      take(ray, at + static_cast<unsigned>(i), bits(enter <= leave) & blocks >> i, enter);
+      const Chosen passed(bits(enter <= leave) & blocks >> i);
+      const Words<Block> rays = Words<Block>{} + ray;
+      passed.store(due_ray_ + due, rays);
+      passed.store(due_block_ + due, counted_words<Block>(at + static_cast<unsigned>(i)));
+      passed.store(due_enter_ + due, enter);
+      due += passed.count();
     }
-  }
-
-  [[gnu::always_inline]] void take(std::uint32_t ray,
-                                   std::uint32_t first,
-                                   unsigned passed,
-                                   const Block& enter) {
-    const Chosen chosen(passed);
-    const Words<Block> rays = Words<Block>{} + ray;
-    chosen.store(due_ray_ + due_, rays);
-    chosen.store(due_block_ + due_, counted_words<Block>(first));
-    chosen.store(due_enter_ + due_, enter);
-    due_ += chosen.count();
-    if (due_ >= kMost)
-      settle();
+    return due;
   }
 
   /// Tests the blocks that are due. What was met since a box was passed may be nearer.
-  [[gnu::noinline]] void settle() {
-    for (int k = 0; k < due_; ++k) {
-      const TriangleBlock& block = triangles_.blocks[due_block_[k]];
-      if (k + kAhead < due_)
-        prefetch(triangles_.blocks + due_block_[k + kAhead]);
-      const int ray = static_cast<int>(due_ray_[k]);
-      if (due_enter_[k] <= p_.best[ray]) {
-        PacketRay<In> r{p_, ray};
-        test_block<kAny>(r, block, n_);
-      }
+  [[gnu::noinline]] void settle(int due) {
+    for (int k = 0; k < due && k < kAhead; ++k)
+      prefetch(triangles_.blocks + due_block_[k]);
+    std::uint32_t met[kMost + kBlock];
+    int count = 0;
+    for (int k = 0; k < due; ++k) {
+      const int next = k + kAhead < due ? k + kAhead : due - 1;
+      prefetch(triangles_.blocks + due_block_[next]);
+      met[count] = static_cast<std::uint32_t>(k);
+      count += may_cross(due_ray_[k], triangles_.blocks[due_block_[k]]);
     }
-    due_ = 0;
+    for (int j = 0; j < count; ++j) {
+      const std::uint32_t k = met[j];
+      PacketRay<In> r{p_, static_cast<int>(due_ray_[k])};
+      if (due_enter_[k] <= p_.best[r.i])
+        test_block<kAny>(r, triangles_.blocks[due_block_[k]], n_);
+    }
+  }
+
+  /// Whether float does not tell that a ray passes beside all triangles of a block.
+  [[gnu::always_inline]] bool may_cross(std::uint32_t ray, const TriangleBlock& block) {
+    if constexpr (In::kDouble) {
+      return true;
+    } else {
+      const PacketRay<In> r{p_, static_cast<int>(ray)};
+      const Shear<Block> shear{
+          Block(shear_of(r, 0)), Block(shear_of(r, 1)), Block(shear_of(r, 2))};
+      unsigned some = 0;
+      for (int i = 0; i < kBlock; i += kWidth<Block>)
+        some |= bits(EdgeFunctions<Block>(RayAndBlock<PacketRay<In>>{&r, &block, i}(), shear)
+                         .may_cross());
+      return some != 0;
+    }
   }
 
   template <class Shape>
@@ -160,7 +183,6 @@ class CellTests {
   Inverses inverse_;
   std::uint32_t first_[kPacket];
   std::uint32_t end_[kPacket];
-  int due_ = 0;
   alignas(64) std::uint32_t due_ray_[kMost + kBlock];
   alignas(64) std::uint32_t due_block_[kMost + kBlock];
   alignas(64) float due_enter_[kMost + kBlock];
