@@ -21,6 +21,23 @@ struct TestedRays<InDouble> {
   const float* low[3] = {};  ///< what is to be added to the origins as they came, or null
 };
 
+/// How packets of a stream fared: whether to ask the next one to go together.
+class Luck {
+ public:
+  /// Where most fell apart one in eight is asked all the same.
+  bool worth_asking() { return sum_ >= 0 || ++left_out_ % 8 == 0; }
+  void note(bool together) {
+    // one that goes together saves twice what one costs that does not (measured)
+    sum_ += together ? 2 : -1;
+    sum_ = sum_ > kMost ? kMost : sum_ < -kMost ? -kMost : sum_;
+  }
+
+ private:
+  static constexpr int kMost = 16;
+  int sum_ = 0;
+  unsigned left_out_ = 0;
+};
+
 /// Rays that are tested against primitives in float or in double.
 template <class In>
 struct Packet : WalkingRays, TestedRays<In> {
@@ -33,6 +50,7 @@ struct Packet : WalkingRays, TestedRays<In> {
   /// packets before this one of which no two rays went together, and how many are still to go
   /// without being asked to
   int apart = 0, alone = 0;
+  Luck luck;  ///< of the smallest packets
 };
 
 /// What tests take of ray i.

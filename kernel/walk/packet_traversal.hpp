@@ -131,7 +131,7 @@ template <class Visit>
 /// Beyond this many cells a slice, looking into each costs more than every ray walking alone
 /// (measured).
 inline int most_cells(int width) {
-  return width > kMiddle ? 32 : width > kSmall ? 16 : 8;
+  return width > kMiddle ? 32 : 8;
 }
 
 /// The rays of a packet that go through a grid together.
@@ -256,11 +256,17 @@ inline std::uint64_t split_packet(
   if (width <= kSmall)
     return live;
   const int rays = width > kMiddle ? kMiddle : kSmall;
+  if (rays == kSmall && !p.luck.worth_asking())
+    return live;
   const int each = rays / kWidth<Lanes>;
   std::uint64_t apart = 0;
   for (int first = 0; first < p.groups; first += each)
-    if ((p.live = live & ((std::uint64_t{1} << each) - 1) << first) != 0)
-      apart |= traverse_together<kAny>(g, p, rays, use_mailbox, n);
+    if ((p.live = live & ((std::uint64_t{1} << each) - 1) << first) != 0) {
+      const std::uint64_t these = traverse_together<kAny>(g, p, rays, use_mailbox, n);
+      if (rays == kSmall)
+        p.luck.note(these == 0);
+      apart |= these;
+    }
   p.live = live;
   return apart;
 }
