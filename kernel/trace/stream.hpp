@@ -90,12 +90,11 @@ inline void load_own_rays(const Rays& rays, float t_max, std::size_t first, Pack
   }
 }
 
-/// Rays of a packet: as many as asked for, but no more than stay in the first cache where there is
-/// no grid that more of them would walk together.
-inline int rays_of_a_packet(const SceneView& scene, const TraceOptions& options) {
+/// Rays that are loaded together: what fewer of them walk together goes on by itself with many. No
+/// more than stay in the first cache where there is no grid to walk.
+inline int rays_of_a_packet(const SceneView& scene) {
   constexpr int few = 64;
-  const int asked = options.packet == 1 || options.packet > kPacket ? kPacket : options.packet;
-  return scene.grid_count == 0 && asked > few ? few : asked;
+  return scene.grid_count == 0 ? few : kPacket;
 }
 
 /// Closest hits (kAny false) or occlusion (kAny true) of `count` rays, `options.packet` neighbours
@@ -109,7 +108,7 @@ inline void trace(const SceneView& scene,
                   const Load& load,
                   const Store& store) {
   Packet<In> p;
-  const int most = rays_of_a_packet(scene, options);
+  const int most = rays_of_a_packet(scene);
   const auto step = static_cast<std::size_t>(most);
   for (std::size_t first = 0; first < count; first += step) {
     p.size = count - first < step ? static_cast<int>(count - first) : most;

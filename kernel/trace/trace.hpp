@@ -283,7 +283,7 @@ template <bool kAny, class In>
   test_outside<kAny>(scene.outside, p, n);
   each_grid<kAny>(scene, p, [&](const GridView& g) {
     if (start_in(g, p))
-      traverse_packet<kAny>(g, p, options.mailbox, n);
+      traverse_packet<kAny>(g, p, options.packet, options.mailbox, n);
   });
 }
 

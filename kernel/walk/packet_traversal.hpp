@@ -247,17 +247,11 @@ template <bool kAny, class In>
 inline std::uint64_t traverse_together(
     const GridView& g, Packet<In>& p, int width, bool use_mailbox, Counters& n);
 
-/// Rays that do not go together in one packet may in four; what does not in these goes ray by ray.
+/// The live rays of a packet in smaller ones of `rays` neighbours each; see traverse_together().
 template <bool kAny, class In>
-inline std::uint64_t split_packet(
-    const GridView& g, Packet<In>& p, int width, bool use_mailbox, Counters& n) {
+inline std::uint64_t traverse_parts(
+    const GridView& g, Packet<In>& p, int rays, bool use_mailbox, Counters& n) {
   const std::uint64_t live = p.live;
-  ++n.fell_back;
-  if (width <= kSmall)
-    return live;
-  const int rays = width > kMiddle ? kMiddle : kSmall;
-  if (rays == kSmall && !p.luck.worth_asking())
-    return live;
   const int each = rays / kWidth<Lanes>;
   std::uint64_t apart = 0;
   for (int first = 0; first < p.groups; first += each)
@@ -269,6 +263,17 @@ inline std::uint64_t split_packet(
     }
   p.live = live;
   return apart;
+}
+
+/// Rays that do not go together in one packet may in four; what does not in these goes ray by ray.
+template <bool kAny, class In>
+inline std::uint64_t split_packet(
+    const GridView& g, Packet<In>& p, int width, bool use_mailbox, Counters& n) {
+  ++n.fell_back;
+  const int rays = width > kMiddle ? kMiddle : kSmall;
+  if (width <= kSmall || (rays == kSmall && !p.luck.worth_asking()))
+    return p.live;
+  return traverse_parts<kAny>(g, p, rays, use_mailbox, n);
 }
 
 /// The live rays of a packet, `width` at most, through one grid, each from p.start on, as far as
@@ -299,10 +304,11 @@ inline std::uint64_t traverse_together(
   return 0;
 }
 
-/// All rays of a packet through one grid, from p.start on. A stream whose packets all fall apart is
+/// All rays of a packet through one grid, from p.start on, `width` neighbours together. A stream whose packets all fall apart is
 /// asked for a packet now and then only.
 template <bool kAny, class In>
-inline void traverse_packet(const GridView& g, Packet<In>& p, bool use_mailbox, Counters& n) {
+inline void traverse_packet(
+    const GridView& g, Packet<In>& p, int width, bool use_mailbox, Counters& n) {
   constexpr int kSurelyApart = 24;  // packets one after another (measured)
   constexpr int kLeftAlone = 24;
   const std::uint64_t live = p.live;
@@ -310,7 +316,8 @@ inline void traverse_packet(const GridView& g, Packet<In>& p, bool use_mailbox, 
     --p.alone;
     return walk_apart<kAny>(g, p, n);
   }
-  p.live = traverse_together<kAny>(g, p, p.size, use_mailbox, n);
+  p.live = width < p.size ? traverse_parts<kAny>(g, p, width, use_mailbox, n)
+                          : traverse_together<kAny>(g, p, p.size, use_mailbox, n);
   p.apart = p.live == live ? p.apart + 1 : 0;
   if (p.apart >= kSurelyApart)
     p.alone = kLeftAlone;
