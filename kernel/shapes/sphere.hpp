@@ -173,6 +173,29 @@ template <class Real>
   return narrow<Real>(t);
 }
 
+/// What of rays lies in spheres.
+template <class Real>
+struct Chord {
+  Vec3<Real> to_center;
+  Real middle;  ///< t
+  Real rr;      ///< radius squared
+  Real inside;  ///< half its length, squared; negative of rays that pass beside
+
+  [[gnu::always_inline]] Chord(const Vec3<Real>& org,
+                               const Vec3<Real>& dir,
+                               const Real& inv_dd,
+                               const Vec3<Real>& center,
+                               const Real& radius)
+      : to_center(center - org), middle(dot(to_center, dir) * inv_dd), rr(radius * radius) {
+    const Vec3<Real> gap = middle * dir - to_center;  // center to the line's nearest point
+    inside = rr - dot(gap, gap);                      // b*b - a*c would cancel from afar
+  }
+  /// Below it `inside` is of a ray that passes beside, whatever rounding did.
+  static Real least(const Real& rr) {
+    return (sizeof(Scalar<Real>) == sizeof(float) ? Real(-kChordError) : Real(0)) * rr;
+  }
+};
+
 /// First point of each ray on one sphere, from outside or inside.
 ///
 /// Shapes    rays and spheres pair up lane by lane; either side may be a broadcast.
@@ -197,12 +220,8 @@ template <class Real>
                                                     const Real& radius,
                                                     Real& t) {
   constexpr bool kFloat = sizeof(Scalar<Real>) == sizeof(float);
-  const Vec3<Real> to_center = center - org;
-  const Real middle = dot(to_center, dir) * inv_dd;
-  const Vec3<Real> gap = middle * dir - to_center;  // center to the line's nearest point
-  const Real rr = radius * radius;
-  const Real inside = rr - dot(gap, gap);  // b*b - a*c would cancel from afar
-  const Mask<Real> crosses = inside >= (kFloat ? Real(-kChordError) * rr : Real(0));
+  const auto [to_center, middle, rr, inside] = Chord<Real>(org, dir, inv_dd, center, radius);
+  const Mask<Real> crosses = inside >= Chord<Real>::least(rr);
   if (none(crosses))
     return crosses;
   const Real half = square_root(inside * inv_dd);
@@ -234,6 +253,14 @@ template <class Real>
                                               Real& t) {
   return hit_sphere<Real>(
       ray.org, ray.dir, ray.inv_dd, ray.t_min, vec(sphere.center), sphere.radius, t);
+}
+
+/// Lanes of spheres that a ray may meet, at any t.
+template <class Real>
+[[gnu::always_inline]] inline Mask<Real> may_meet(const RayLanes<Real>& ray,
+                                                  const Sphere::Fields<Real>& sphere) {
+  const Chord<Real> chord(ray.org, ray.dir, ray.inv_dd, vec(sphere.center), sphere.radius);
+  return chord.inside >= Chord<Real>::least(chord.rr);
 }
 
 /// Lanes of spheres i, i + 1, ... that reach into a frustum.

@@ -64,6 +64,7 @@ class CellTests {
   }
 
  private:
+  using Real = typename In::Primitives;
   static constexpr int kMost = 512;  ///< blocks that are due at once
 
   bool searches(int ray) const { return p_.best[ray] > p_.t_min[ray]; }
@@ -133,19 +134,16 @@ class CellTests {
     }
   }
 
-  /// Whether float does not tell that a ray passes beside all triangles of a block.
+  /// Whether float does not tell that a ray passes beside all triangles of a block. To ask first
+  /// takes longer than a foretold branch where a block fills more than one register.
   [[gnu::always_inline]] bool may_cross(std::uint32_t ray, const TriangleBlock& block) {
-    if constexpr (In::kDouble) {
+    if constexpr (In::kDouble || kWidth<Block> < kBlock) {
       return true;
     } else {
       const PacketRay<In> r{p_, static_cast<int>(ray)};
-      const Shear<Block> shear{
-          Block(shear_of(r, 0)), Block(shear_of(r, 1)), Block(shear_of(r, 2))};
-      unsigned some = 0;
-      for (int i = 0; i < kBlock; i += kWidth<Block>)
-        some |= bits(EdgeFunctions<Block>(RayAndBlock<PacketRay<In>>{&r, &block, i}(), shear)
-                         .may_cross());
-      return some != 0;
+      const Shear<Block> shear{Block(shear_of(r, 0)), Block(shear_of(r, 1)), Block(shear_of(r, 2))};
+      const EdgeFunctions<Block> edge(RayAndBlock<PacketRay<In>>{&r, &block, 0}(), shear);
+      return any(edge.may_cross());
     }
   }
 
@@ -155,10 +153,49 @@ class CellTests {
     if constexpr (sizeof(typename Shape::template Fields<float>) <= kAskedFor)
       for (int k = 0; k < to.count; ++k)
         fetch<Shape>(list, list.first[to.cell[k]]);
+    if constexpr (!kAny && kSortsOut<Shape>)
+      test_chosen_rows<Shape>(list, to);
+    else
+      for (int k = 0; k < to.count; ++k) {
+        PacketRay<In> r{p_, static_cast<int>(to.ray[k])};
+        if (searches(r.i))
+          test_list<kAny, Shape>(r, list, to.cell[k], n_);
+      }
+  }
+
+  /// Whether primitives that are missed are sorted out before others are tested.
+  template <class Shape>
+  static constexpr bool kSortsOut =
+      requires(const RayLanes<Real>& ray, const typename Shape::template Fields<Real>& row) {
+    may_meet(ray, row);
+  };
+
+  template <class Shape>
+  [[gnu::always_inline]] void test_chosen_rows(const typename Shape::CellList& list,
+                                               const Arrivals& to) {
+    int due = 0;
     for (int k = 0; k < to.count; ++k) {
-      PacketRay<In> r{p_, static_cast<int>(to.ray[k])};
+      const RayLanes<Real> ray = spread(PacketRay<In>{p_, static_cast<int>(to.ray[k])});
+      const std::uint32_t end = list.first[to.cell[k] + 1];
+      for (std::uint32_t i = list.first[to.cell[k]]; i < end; i += kWidth<Real>) {
+        due_ray_[due] = to.ray[k];
+        due_block_[due] = i;
+        due += any(may_meet(ray, side_by_side<Shape, Real>(list.fields, i)));
+        if (due == kMost) {
+          test_rows<Shape>(list, due);
+          due = 0;
+        }
+      }
+    }
+    test_rows<Shape>(list, due);
+  }
+
+  template <class Shape>
+  [[gnu::always_inline]] void test_rows(const typename Shape::CellList& list, int due) {
+    for (int k = 0; k < due; ++k) {
+      PacketRay<In> r{p_, static_cast<int>(due_ray_[k])};
       if (searches(r.i))
-        test_list<kAny, Shape>(r, list, to.cell[k], n_);
+        test_row<kAny, Shape>(r, spread(r), list, due_block_[k], n_);
     }
   }
 

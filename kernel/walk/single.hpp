@@ -240,6 +240,30 @@ template <bool kAny, class Ray>
   return false;
 }
 
+/// One ray, for primitives side by side.
+template <class Ray, class Real = typename Ray::In::Primitives>
+[[gnu::always_inline]] inline RayLanes<Real> spread(const Ray& r) {
+  return {.org = {Real(tested_org(r, 0)), Real(tested_org(r, 1)), Real(tested_org(r, 2))},
+          .dir = {Real(direction(r, 0)), Real(direction(r, 1)), Real(direction(r, 2))},
+          .inv_dd = Real(inverse_square(r)),
+          .t_min = Real(tested_t_min(r))};
+}
+
+/// Primitives of one kind side by side, from place i of a list on; `ray`: r, spread. Returns whether
+/// the search is over.
+template <bool kAny, class Shape, class Ray>
+[[gnu::always_inline]] inline bool test_row(Ray& r,
+                                            const RayLanes<typename Ray::In::Primitives>& ray,
+                                            const typename Shape::CellList& list,
+                                            std::uint32_t i,
+                                            Counters& n) {
+  using Real = typename Ray::In::Primitives;
+  n.tests[kNumber<Shape>] += kWidth<Real>;
+  Real t(0);
+  const Mask<Real> hit = meet(ray, side_by_side<Shape, Real>(list.fields, i), t);
+  return note<kAny>(r, hit, t, list.id + i);
+}
+
 /// Primitives of one kind in one cell. Reading past its end meets those of the next, which costs
 /// nothing and is never wrong: a hit is a hit.
 template <bool kAny, class Shape, class Ray>
@@ -248,19 +272,11 @@ template <bool kAny, class Shape, class Ray>
                                              std::size_t cell,
                                              Counters& n) {
   using Real = typename Ray::In::Primitives;
-  const RayLanes<Real> ray{
-      .org = {Real(tested_org(r, 0)), Real(tested_org(r, 1)), Real(tested_org(r, 2))},
-      .dir = {Real(direction(r, 0)), Real(direction(r, 1)), Real(direction(r, 2))},
-      .inv_dd = Real(inverse_square(r)),
-      .t_min = Real(tested_t_min(r))};
+  const RayLanes<Real> ray = spread(r);
   const std::uint32_t end = list.first[cell + 1];
-  for (std::uint32_t i = list.first[cell]; i < end; i += kWidth<Real>) {
-    n.tests[kNumber<Shape>] += kWidth<Real>;
-    Real t(0);
-    const Mask<Real> hit = meet(ray, side_by_side<Shape, Real>(list.fields, i), t);
-    if (note<kAny>(r, hit, t, list.id + i))
+  for (std::uint32_t i = list.first[cell]; i < end; i += kWidth<Real>)
+    if (test_row<kAny, Shape>(r, ray, list, i, n))
       return true;
-  }
   return false;
 }
 
