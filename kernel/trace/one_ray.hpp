@@ -29,10 +29,7 @@ inline bool test_infinite(const SceneView& scene, Single& r, Counters& n) {
 }
 
 /// Moves a ray that starts at `from` on to where r.org is, `shift` away in t.
-inline void move_near(const SceneView& scene,
-                      Single& r,
-                      const float (&from)[3],
-                      double shift) {
+inline void move_near(const SceneView& scene, Single& r, const float (&from)[3], double shift) {
   const bool met = r.id != kNoPrimitive;
   const double best = met ? plane_t(scene.geometry, r.id, from, r.dir) : r.best;
   r.t_min = static_cast<float>(r.t_min - shift);

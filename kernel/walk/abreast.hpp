@@ -165,8 +165,8 @@ class CellTests {
 
   /// Whether primitives that are missed are sorted out before others are tested.
   template <class Shape>
-  static constexpr bool kSortsOut =
-      requires(const RayLanes<Real>& ray, const typename Shape::template Fields<Real>& row) {
+  static constexpr bool kSortsOut = requires(const RayLanes<Real>& ray,
+                                             const typename Shape::template Fields<Real>& row) {
     may_meet(ray, row);
   };
 
@@ -342,10 +342,9 @@ class RaysUnderWay {
       to += chosen.count();
     }
     count_ = to;
-    fill_up();
   }
 
-  /// Makes lanes behind the last ray fit to be computed with.
+  /// Makes lanes behind the last ray fit to be computed with; later such lanes hold old rays.
   void fill_up() {
     const int end = count_ + kWidth<Lanes>;
     for (int i = count_; i < end; ++i) {

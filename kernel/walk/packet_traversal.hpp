@@ -304,8 +304,8 @@ inline std::uint64_t traverse_together(
   return 0;
 }
 
-/// All rays of a packet through one grid, from p.start on, `width` neighbours together. A stream whose packets all fall apart is
-/// asked for a packet now and then only.
+/// All rays of a packet through one grid, from p.start on, `width` neighbours together. A stream
+/// whose packets all fall apart is asked for a packet now and then only.
 template <bool kAny, class In>
 inline void traverse_packet(
     const GridView& g, Packet<In>& p, int width, bool use_mailbox, Counters& n) {

@@ -249,8 +249,8 @@ template <class Ray, class Real = typename Ray::In::Primitives>
           .t_min = Real(tested_t_min(r))};
 }
 
-/// Primitives of one kind side by side, from place i of a list on; `ray`: r, spread. Returns whether
-/// the search is over.
+/// Primitives of one kind side by side, from place i of a list on; `ray` is r, spread. Returns
+/// whether the search is over.
 template <bool kAny, class Shape, class Ray>
 [[gnu::always_inline]] inline bool test_row(Ray& r,
                                             const RayLanes<typename Ray::In::Primitives>& ray,

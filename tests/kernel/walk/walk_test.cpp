@@ -75,6 +75,19 @@ Scene smooth_ball() {
   return ball_mesh(24, 12);
 }
 
+/// Skins of an onion among sheets of paper: a ray passes more of a cell's primitives than any other
+/// scene has there.
+Scene layers() {
+  Scene s = empty_scene();
+  for (int i = 0; i < 200; ++i)
+    s.geometry.spheres.add({}, .2f + .004f * static_cast<float>(i), 0);
+  for (int i = 0; i < 1500; ++i) {
+    const float y = .001f * static_cast<float>(i) - .75f;
+    add_triangle(s, {-.4f, y, -.4f}, {.4f, y, -.4f}, {0, y, .6f});
+  }
+  return s;
+}
+
 constexpr auto kSpheres = crowd<random_spheres, 300>;
 constexpr auto kTriangles = crowd<random_triangles, 300>;
 constexpr auto kCones = crowd<random_cones, 200>;
@@ -101,6 +114,7 @@ const std::vector<Case> kCases{
     {"wide_plain_seen_from_all_over", kPlain, 300},
     {"one_sphere_many_times", one_sphere_many_times, 1, {1, 2, 3}},
     {"points", points, 1e-12},
+    {"layers", layers, 1},
     {"tiny", kMixture, 1e-6, {}, Place{1e-6}},
     {"huge", kMixture, 1e6, {}, Place{1e6}},
     {"far_1e3", kMixture, 1, k1e3, Place{1, k1e3}},
