@@ -42,29 +42,6 @@ inline float lane_max(const Avx2& a) {
   return lane_max(folded(a, [](const Sse2& x, const Sse2& y) { return greater(x, y); }));
 }
 
-/// Row m: the numbers of the bits set in m, a byte each.
-struct SetBits {
-  std::uint64_t row[256];
-  constexpr SetBits() : row{} {
-    for (unsigned m = 0; m < 256; ++m)
-      for (std::uint64_t k = 0, at = 0; k < 8; ++k)
-        if (m >> k & 1) {
-          row[m] |= k << at;
-          at += 8;
-        }
-  }
-};
-inline constexpr SetBits kSetBits;
-
-template <class T, class Vector>
-requires(sizeof(Vector) == 32) inline void store_chosen(T* to, const Vector& a, unsigned lanes) {
-  const __m256i order =
-      _mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(kSetBits.row + lanes)));
-  __m256i v;
-  __builtin_memcpy(&v, &a, sizeof v);
-  _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm256_permutevar8x32_epi32(v, order));
-}
-
 #if GRELHA_ISA_NUMBER == 3
 
 using Lanes = Avx2;
@@ -119,6 +96,29 @@ inline DoubleLanes widen_part(const Lanes& a) {
 }
 inline Lanes narrow_parts(const DoubleLanes (&part)[2]) {
   return Lanes(_mm256_set_m128(_mm256_cvtpd_ps(part[1].data), _mm256_cvtpd_ps(part[0].data)));
+}
+
+/// Row m: the numbers of the bits set in m, a byte each.
+struct SetBits {
+  std::uint64_t row[256];
+  constexpr SetBits() : row{} {
+    for (unsigned m = 0; m < 256; ++m)
+      for (std::uint64_t k = 0, at = 0; k < 8; ++k)
+        if (m >> k & 1) {
+          row[m] |= k << at;
+          at += 8;
+        }
+  }
+};
+inline constexpr SetBits kSetBits;
+
+template <class T, class Vector>
+requires(sizeof(Vector) == 32) inline void store_chosen(T* to, const Vector& a, unsigned lanes) {
+  const __m256i order =
+      _mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(kSetBits.row + lanes)));
+  __m256i v;
+  __builtin_memcpy(&v, &a, sizeof v);
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm256_permutevar8x32_epi32(v, order));
 }
 
 #endif

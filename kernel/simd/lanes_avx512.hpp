@@ -119,5 +119,12 @@ requires(sizeof(Vector) == 64) inline void store_chosen(T* to, const Vector& a, 
   __builtin_memcpy(&v, &a, sizeof v);
   _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(static_cast<__mmask16>(lanes), v));
 }
+template <class T, class Vector>
+requires(sizeof(Vector) == 32) inline void store_chosen(T* to, const Vector& a, unsigned lanes) {
+  __m256i v;
+  __builtin_memcpy(&v, &a, sizeof v);
+  const __m256i chosen = _mm256_maskz_compress_epi32(static_cast<__mmask8>(lanes), v);
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), chosen);
+}
 
 }  // namespace grelha::GRELHA_ISA

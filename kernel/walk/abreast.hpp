@@ -33,15 +33,20 @@ struct Arrivals {
   alignas(64) std::uint32_t cell[kWayRow];
 };
 
-/// Inverses of the directions of rays of a packet; no component of them is 0.
-struct Inverses {
-  alignas(64) float of[3][kPacket];
+/// What tests of boxes take of the directions of rays of a packet.
+struct SlabRays {
+  alignas(64) float inverse[3][kPacket];  ///< no component is 0
+  /// the side of a box that the ray meets first, along each axis
+  alignas(64) std::uint32_t near[3][kPacket];
 
   void set(const WalkingRays& p, int i) {
     const Lanes least = least_headway(p, i);
     for (int a = 0; a < 3; ++a) {
       const Lanes d = load<Lanes>(p.dir[a] + i);
-      store(of[a] + i, Lanes(1) / select(magnitude(d) < least, least, d));
+      const Lanes of = Lanes(1) / select(magnitude(d) < least, least, d);
+      const auto low = static_cast<float>(a);
+      store(inverse[a] + i, of);
+      store_words(near[a] + i, to_words(select(of < Lanes(0), Lanes(low + 3), Lanes(low))));
     }
   }
 };
@@ -51,7 +56,7 @@ template <bool kAny, class In>
 class CellTests {
  public:
   CellTests(const GridView& g, Packet<In>& p, Counters& n) : lists_(g.lists), p_(p), n_(n) {
-    each_live_group(p, [&](int i, int) { inverse_.set(p, i); });
+    each_live_group(p, [&](int i, int) { slab_.set(p, i); });
   }
 
   void test(const Arrivals& to) {
@@ -99,14 +104,15 @@ class CellTests {
       Block leave(p_.best[ray]);
       for (int a = 0; a < 3; ++a) {
         const Block org(p_.org[a][ray]);
-        const Block inverse(inverse_.of[a][ray]);
-        const int back = inverse_.of[a][ray] < 0 ? 3 : 0;
-        enter = greater((load<Block>(boxes.side[a + back] + i) - org) * inverse, enter);
-        leave = lesser((load<Block>(boxes.side[a + 3 - back] + i) - org) * inverse, leave);
+        const Block inverse(slab_.inverse[a][ray]);
+        const std::uint32_t near = slab_.near[a][ray];
+        const std::uint32_t far = 2u * static_cast<std::uint32_t>(a) + 3 - near;
+        enter = greater((load<Block>(boxes.side[near] + i) - org) * inverse, enter);
+        leave = lesser((load<Block>(boxes.side[far] + i) - org) * inverse, leave);
       }
       const Chosen passed(bits(enter <= leave) & blocks >> i);
       const Words<Block> rays = Words<Block>{} + ray;
-      passed.store(due_ray_ + due, rays);
+      store_words(due_ray_ + due, rays);  // the same in each place
       passed.store(due_block_ + due, counted_words<Block>(at + static_cast<unsigned>(i)));
       passed.store(due_enter_ + due, enter);
       due += passed.count();
@@ -217,7 +223,7 @@ class CellTests {
   const Triangle::CellList& triangles_ = lists_.of<Triangle>();
   Packet<In>& p_;
   Counters& n_;
-  Inverses inverse_;
+  SlabRays slab_;
   std::uint32_t first_[kPacket];
   std::uint32_t end_[kPacket];
   alignas(64) std::uint32_t due_ray_[kMost + kBlock];
