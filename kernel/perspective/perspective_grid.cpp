@@ -158,8 +158,8 @@ PointGridView PerspectiveGrid::view() const {
   std::copy(point, point + 3, v.point);
   std::copy(face, face + kFaces, v.face);
   v.tiles = tiles.data();
-  v.outlines = outlines.data();
-  v.boxes = boxes.data();
+  v.outlines = tiles.back().first[kOutlineList] > 0 ? outlines.data() : nullptr;
+  v.boxes = tiles.back().first[kBoxList] > 0 ? boxes.data() : nullptr;
   v.around = around.data();
   v.around_count = static_cast<std::uint32_t>(around.size());
   return v;

@@ -42,6 +42,10 @@ inline float lane_max(const Avx2& a) {
   return lane_max(folded(a, [](const Sse2& x, const Sse2& y) { return greater(x, y); }));
 }
 
+inline Avx2Mask mask_of(Avx2Words a) {
+  return Avx2Mask(reinterpret_cast<__m256>(a));
+}
+
 #if GRELHA_ISA_NUMBER == 3
 
 using Lanes = Avx2;
@@ -67,9 +71,6 @@ inline bool any_set(Avx2Words a) {
 }
 inline Lanes small_to_float(Avx2Words a) {
   return Lanes(_mm256_cvtepi32_ps(reinterpret_cast<__m256i>(a)));
-}
-inline Avx2Mask mask_of(Avx2Words a) {
-  return Avx2Mask(reinterpret_cast<__m256>(a));
 }
 inline Lanes floats_at(const float* from, Avx2Words at) {
   return Lanes(_mm256_i32gather_ps(from, reinterpret_cast<__m256i>(at), 4));

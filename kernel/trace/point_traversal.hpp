@@ -2,8 +2,7 @@
 // Rays that go to a point, through its grid: each looks up the tile it goes through, and meets what
 // is in it, nearest to the point first.
 
-#include "kernel/trace/listed.hpp"
-#include "kernel/walk/single.hpp"
+#include "kernel/trace/point_alone.hpp"
 
 namespace grelha::GRELHA_ISA {
 
@@ -15,12 +14,7 @@ inline void test_primitive(Triangle,
                            std::uint32_t i,
                            std::uint32_t id,
                            Counters& n) {
-  const Triangle::Arrays& t = g.of<Triangle>();
-  Triangle::Fields<float> triangle;
-  for (int k = 0; k < 3; ++k)
-    for (int a = 0; a < 3; ++a)
-      triangle.corner[k][a] = t.vertex[a][t.corner[k][i]];
-  test_triangle<kAny>(p, triangle, id, n);
+  test_triangle<kAny>(p, triangle_at(g.of<Triangle>(), i), id, n);
 }
 template <bool kAny, class Shape, class In>
 inline void test_primitive(
@@ -37,7 +31,7 @@ class PointSearch {
               Packet<InFloat>& p,
               const std::uint32_t* leaves,
               Counters& n)
-      : geometry_(geometry), grid_(grid), p_(p), n_(n) {
+      : geometry_(geometry), grid_(grid), p_(p), n_(n), alone_(geometry, grid, p, leaves_, n) {
     const int rays = leaves ? p.size : 0;
     if (rays > 0)
       __builtin_memcpy(leaves_, leaves, sizeof *leaves * static_cast<std::size_t>(rays));
@@ -54,6 +48,7 @@ class PointSearch {
     fetch_lists();
     each_live_group(p_, [&](int, int group) { search(group); });
     p_.live = live;
+    alone_.run();
   }
 
  private:
@@ -103,18 +98,27 @@ class PointSearch {
     tested_ = kNoPrimitive;
     prepared_ = grid_.around_count > 0;
     p_.live = std::uint64_t{1} << group;
-    const SearchPlaces& at = places_[group];
-    each_tile(at.tile,
-              [&](std::uint32_t tile, const Mask<Lanes>& here) { search_tile(tile, at, here); });
+    search_tiles(0, places_[group]);
   }
 
-  void search_tile(std::uint32_t tile, const SearchPlaces& at, const Mask<Lanes>& here) {
-    const TileLists* const lists = grid_.tiles + tile;
-    if (lists->columns != 0)
-      return search_parts(*lists, at, here);
-    ++n_.visits;
-    if (__builtin_popcount(bits(here)) <= kFew)
-      return search_one_by_one(lists, at, bits(here));
+  /// The tiles that rays of the group look into, of which number `first` is 0 there.
+  void search_tiles(std::uint32_t first, const SearchPlaces& at) {
+    unsigned lone = 0;
+    each_tile(at.tile, [&](std::uint32_t tile, const Mask<Lanes>& here) {
+      const TileLists* const lists = grid_.tiles + first + tile;
+      if (lists->columns != 0)
+        return search_parts(*lists, at, here);
+      ++n_.visits;
+      if (__builtin_popcount(bits(here)) <= kFew)
+        lone |= bits(here);
+      else
+        search_lists(lists, at, here);
+    });
+    if (lone != 0)
+      alone_.add(to_words(at.tile) + first, at, first_ray(), lone);
+  }
+
+  void search_lists(const TileLists* lists, const SearchPlaces& at, const Mask<Lanes>& here) {
     search_list<kOutlineList>(grid_.outlines, lists, at, here);
     search_list<kBoxList>(grid_.boxes, lists, at, here);
   }
@@ -122,66 +126,12 @@ class PointSearch {
   [[gnu::noinline]] void search_parts(const TileLists& whole,
                                       const SearchPlaces& at,
                                       const Mask<Lanes>& here) {
-    const SearchPlaces within = look_closer(at, here, static_cast<float>(whole.columns));
-    each_tile(within.tile, [&](std::uint32_t part, const Mask<Lanes>& lanes) {
-      search_tile(whole.part + part, within, lanes);
-    });
+    search_tiles(whole.part, look_closer(at, here, static_cast<float>(whole.columns)));
   }
 
   /// Depths of the lanes that still search.
   Lanes depths(const SearchPlaces& at, const Mask<Lanes>& here) const {
     return select(both(here, searches(first_ray())), at.depth, Lanes(-kInfinity));
-  }
-
-  [[gnu::noinline]] void search_one_by_one(const TileLists* lists,
-                                           const SearchPlaces& at,
-                                           unsigned lanes) {
-    alignas(64) float x[kWidth<Lanes>], y[kWidth<Lanes>], depth[kWidth<Lanes>];
-    store(x, at.x);
-    store(y, at.y);
-    store(depth, at.depth);
-    each_bit(lanes, [&](int lane) {
-      const TilePlace place{x[lane], y[lane], depth[lane]};
-      search_alone<kOutlineList>(grid_.outlines, lists, place, first_ray() + lane);
-      search_alone<kBoxList>(grid_.boxes, lists, place, first_ray() + lane);
-    });
-  }
-
-  bool searches_still(int ray) const { return p_.best[ray] > p_.t_min[ray]; }
-
-  /// One ray and a list: SIMD over primitives.
-  template <int kKind, class Listed>
-  [[gnu::always_inline]] void search_alone(const Listed* blocks,
-                                           const TileLists* tile,
-                                           const TilePlace& at,
-                                           int ray) {
-    std::uint32_t first = tile[0].first[kKind];
-    const std::uint32_t end = tile[1].first[kKind];
-    const std::uint32_t leaves = leaves_[ray];
-    for (; first < end && searches_still(ray); first = (first / kBlock + 1) * kBlock) {
-      const Listed& b = blocks[first / kBlock];
-      const unsigned listed = blocks_between(first / kBlock * kBlock, first, end);
-      unsigned maybe = 0;
-      unsigned surely = 0;
-      unsigned near = 0;
-      for (int i = 0; i < kBlock; i += kWidth<Block>) {
-        const MetPrimitives met = met_primitives(at, b, i);
-        maybe |= bits(met.maybe) << i;
-        surely |= bits(met.surely) << i;
-        near |= bits(met.near) << i;
-      }
-      maybe &= listed;
-      each_bit(maybe, [&](int k) { maybe &= ~((b.id[k] == leaves ? 1u : 0u) << k); });
-      if ((maybe & surely) != 0) {
-        p_.best[ray] = -kInfinity;
-        p_.id[ray] = bits_of(b.id[__builtin_ctz(maybe & surely)]);
-        return;
-      }
-      for (; maybe != 0 && searches_still(ray); maybe &= maybe - 1)
-        test(b.id[__builtin_ctz(maybe)]);
-      if ((near & listed) != listed)
-        return;
-    }
   }
 
   template <int kKind, class Listed>
@@ -288,6 +238,7 @@ class PointSearch {
   bool prepared_ = false;                ///< rays of the group are ready for triangles
   SearchPlaces places_[kGroupCount];
   alignas(64) std::uint32_t leaves_[kPacket];  ///< or kNoPrimitive
+  LoneSearch alone_;
 };
 
 }  // namespace grelha::GRELHA_ISA
