@@ -1,9 +1,10 @@
 // What a call for one ray costs, beside streams of the same rays and Embree's rtcIntersect1 and
 // rtcOccluded1: one thread, one process, taking turns.
 //
-// calls [--size N] [--rounds N]
+// calls [--size N] [--rounds N] [--scene NAME]...
 //
-// The rays are a camera's, one a pixel of N x N, in the order of the picture and in none. No way is
+// A scene is a file, or `GENERATOR SIZE`; without any, 2000 spheres and a mountain. The rays are a
+// camera's, one a pixel of N x N, in the order of the picture and in none. No way is
 // timed whose answers differ from those of the stream: in a bit for Grelha, in kDisagree of the
 // rays for Embree. Empty: the same rays with nothing between t_min and t_max.
 
@@ -16,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "frontend/input/read_scene.hpp"
 #include "grelha/query.hpp"
 #include "perf/embree.hpp"
 #include "perf/timing.hpp"
@@ -30,6 +32,7 @@ constexpr double kDisagree = .005;
 
 struct Options {
   int size = 256, rounds = 15;
+  std::vector<std::string> scenes;
 };
 
 struct Way {
@@ -169,19 +172,53 @@ bool table(const std::string& name, const Scene& scene, const Camera& camera, co
   return right;
 }
 
+/// A file, or what a generator makes.
+SceneFile scene_named(const std::string& name) {
+  const auto space = name.find(' ');
+  if (space != std::string::npos)
+    return make_scene(name.substr(0, space), std::atoi(name.c_str() + space));
+  return read_scene(name, [](const std::string&) {});
+}
+
+bool table_of_file(const std::string& name, const Options& o) {
+  const SceneFile file = scene_named(name);
+  Camera camera = file.camera;
+  camera.width = camera.height = o.size;
+  const auto slash = name.rfind('/');
+  return table(slash == std::string::npos ? name : name.substr(slash + 1), file.scene, camera, o);
+}
+
+bool table_of_spheres(const Options& o) {
+  Camera camera;
+  camera.eye = {.5f, .5f, 3};
+  camera.at = {.5f, .5f, .5f};
+  camera.angle_deg = 30;
+  camera.width = camera.height = o.size;
+  return table("2000 spheres", spheres(2000), camera, o);
+}
+
+bool set_option(const std::string& word, const std::string& value, Options& o) {
+  const int number = std::atoi(value.c_str());
+  if (word == "--scene")
+    o.scenes.push_back(value);
+  else if (word == "--size" && number >= 1 && number <= 4096)
+    o.size = number;
+  else if (word == "--rounds" && number >= 1 && number <= 4096)
+    o.rounds = number;
+  else
+    return false;
+  return true;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   Options options;
-  for (int i = 1; i < argc; i += 2) {
-    const std::string word = argv[i];
-    const int value = i + 1 < argc ? std::atoi(argv[i + 1]) : 0;
-    if ((word != "--size" && word != "--rounds") || value < 1 || value > 4096) {
-      std::fprintf(stderr, "usage: calls [--size N] [--rounds N]\n");
+  for (int i = 1; i < argc; i += 2)
+    if (i + 1 == argc || !set_option(argv[i], argv[i + 1], options)) {
+      std::fprintf(stderr, "usage: calls [--size N] [--rounds N] [--scene NAME]...\n");
       return 2;
     }
-    (word == "--size" ? options.size : options.rounds) = value;
-  }
   const bool beside = !embree_modes().empty();
   std::printf(
       "ns a ray, median of %d rounds\n\n| | call | empty | stream of 1 | stream of 64 |%s\n"
@@ -189,15 +226,12 @@ int main(int argc, char** argv) {
       options.rounds,
       beside ? " rtcIntersect1 | empty |" : "",
       beside ? "--:|--:|" : "");
-  Camera camera;
-  camera.eye = {.5f, .5f, 3};
-  camera.at = {.5f, .5f, .5f};
-  camera.angle_deg = 30;
-  camera.width = camera.height = options.size;
-  bool right = table("2000 spheres", spheres(2000), camera, options);
-  const SceneFile mount = make_scene("mount", 6);
-  Camera over = mount.camera;
-  over.width = over.height = options.size;
-  right &= table("mount 6", mount.scene, over, options);
+  bool right = true;
+  if (options.scenes.empty()) {
+    right &= table_of_spheres(options);
+    options.scenes = {"mount 6"};
+  }
+  for (const std::string& scene : options.scenes)
+    right &= table_of_file(scene, options);
   return right ? 0 : 1;
 }
