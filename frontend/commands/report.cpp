@@ -148,6 +148,10 @@ Json error_json(const RefineOptions& asked, const ErrorStats& e) {
           {"most", e.most}};
 }
 
+Json to_json(const RowCounts& rows) {
+  return {{"boxes", rows.boxes}, {"primitives", rows.primitives}, {"outlines", rows.outlines}};
+}
+
 Json packets_json(const TraceCounts& trace) {
   return {{"formed", trace.packets.formed},
           {"fell_back", trace.packets.fell_back},
@@ -266,6 +270,7 @@ std::string stats_json(const RenderCommand& command, const RunReport& report) {
     json["error"] = error_json(command.render.refine, render.error);
   json["visits"] = render.trace.visits;
   json["tests"] = to_json(render.trace.tests);
+  json["rows"] = to_json(render.trace.rows);
   json["packets"] = packets_json(render.trace);
   json["seconds"] = to_json(report.seconds);
   json["phases"] = phases_json(render);

@@ -37,10 +37,18 @@ struct PacketCounts {
   std::uint64_t lanes_busy = 0;    ///< those of them that carried a ray still searching
 };
 
+/// Counts of what rays that go by themselves are held against, up to eight side by side.
+struct RowCounts {
+  std::uint64_t boxes = 0;       ///< one ray against boxes of blocks of primitives
+  std::uint64_t primitives = 0;  ///< one ray against primitives
+  std::uint64_t outlines = 0;    ///< one ray against what a light sees of primitives
+};
+
 /// Counts of a trace.
 struct TraceCounts {
   std::uint64_t visits = 0;  ///< grid cells looked into, by a packet or by a ray
   TestCounts tests;
+  RowCounts rows;
   PacketCounts packets;
   /// Adds what another thread or call did.
   void operator+=(const TraceCounts& o) {
@@ -49,6 +57,9 @@ struct TraceCounts {
     tests.triangle += o.tests.triangle;
     tests.cone += o.tests.cone;
     tests.plane += o.tests.plane;
+    rows.boxes += o.rows.boxes;
+    rows.primitives += o.rows.primitives;
+    rows.outlines += o.rows.outlines;
     packets.formed += o.packets.formed;
     packets.fell_back += o.packets.fell_back;
     packets.lanes_issued += o.packets.lanes_issued;

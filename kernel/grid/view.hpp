@@ -71,6 +71,9 @@ struct TraceOptions {
 struct Counters {
   std::uint64_t visits = 0;
   std::uint64_t tests[kKinds] = {};  ///< by kind
+  std::uint64_t box_rows = 0;
+  std::uint64_t primitive_rows = 0;
+  std::uint64_t outline_rows = 0;
   std::uint64_t formed = 0;
   std::uint64_t fell_back = 0;
   std::uint64_t issued = 0;

@@ -12,6 +12,9 @@ inline void add(const Counters& n, TraceCounts& to) {
   to.tests.triangle += n.tests[kNumber<Triangle>];
   to.tests.cone += n.tests[kNumber<Cone>];
   to.tests.plane += n.tests[kNumber<Plane>];
+  to.rows.boxes += n.box_rows;
+  to.rows.primitives += n.primitive_rows;
+  to.rows.outlines += n.outline_rows;
   to.packets.formed += n.formed;
   to.packets.fell_back += n.fell_back;
   to.packets.lanes_issued += n.issued;

@@ -60,7 +60,7 @@ inline bool test_grid_cell(Single& r, const CellLists& lists, std::uint32_t cell
            passed &= passed - 1) {
         const unsigned k = static_cast<unsigned>(__builtin_ctz(passed));
         // what was met since may be nearer
-        if (enters[k] <= r.best && test_block<kAny>(r, lists.of<Triangle>().blocks[at + k], n))
+        if (enters[k] <= r.best && test_block<kAny>(r, lists.of<Triangle>().blocks[at + k]))
           return true;
       }
   }

@@ -144,6 +144,7 @@ class LoneSearch {
                                    std::uint32_t k,
                                    std::uint32_t first,
                                    std::uint32_t end) {
+    ++n_.outline_rows;
     const std::uint32_t ray = ray_[k];
     const TilePlace at{x_[k], y_[k], depth_[k]};
     const unsigned listed = blocks_between(first / kBlock * kBlock, first, end);

@@ -224,12 +224,19 @@ struct RayAndBlock {
   }
 };
 
+/// Counts rows of primitives that a ray is tested against.
+template <class Shape>
+inline void count_rows(Counters& n, int rows, int width) {
+  n.primitive_rows += static_cast<unsigned>(rows);
+  n.tests[kNumber<Shape>] += static_cast<unsigned>(rows * width);
+}
+
+/// Callers count rows.
 template <bool kAny, class Ray>
-[[gnu::noinline]] bool test_block(Ray& r, const TriangleBlock& block, Counters& n) {
+[[gnu::noinline]] bool test_block(Ray& r, const TriangleBlock& block) {
   using Real = typename Ray::In::Primitives;
   const Shear<Real> shear{Real(shear_of(r, 0)), Real(shear_of(r, 1)), Real(shear_of(r, 2))};
   const Real t_min(tested_t_min(r));
-  n.tests[kNumber<Triangle>] += kBlock;
   for (int i = 0; i < kBlock; i += kWidth<Real>) {
     Real t(0);
     const Mask<Real> hit =
@@ -250,15 +257,13 @@ template <class Ray, class Real = typename Ray::In::Primitives>
 }
 
 /// Primitives of one kind side by side, from place i of a list on; `ray` is r, spread. Returns
-/// whether the search is over.
+/// whether the search is over. Callers count rows.
 template <bool kAny, class Shape, class Ray>
 [[gnu::always_inline]] inline bool test_row(Ray& r,
                                             const RayLanes<typename Ray::In::Primitives>& ray,
                                             const typename Shape::CellList& list,
-                                            std::uint32_t i,
-                                            Counters& n) {
+                                            std::uint32_t i) {
   using Real = typename Ray::In::Primitives;
-  n.tests[kNumber<Shape>] += kWidth<Real>;
   Real t(0);
   const Mask<Real> hit = meet(ray, side_by_side<Shape, Real>(list.fields, i), t);
   return note<kAny>(r, hit, t, list.id + i);
@@ -274,9 +279,11 @@ template <bool kAny, class Shape, class Ray>
   using Real = typename Ray::In::Primitives;
   const RayLanes<Real> ray = spread(r);
   const std::uint32_t end = list.first[cell + 1];
-  for (std::uint32_t i = list.first[cell]; i < end; i += kWidth<Real>)
-    if (test_row<kAny, Shape>(r, ray, list, i, n))
+  for (std::uint32_t i = list.first[cell]; i < end; i += kWidth<Real>) {
+    count_rows<Shape>(n, 1, kWidth<Real>);
+    if (test_row<kAny, Shape>(r, ray, list, i))
       return true;
+  }
   return false;
 }
 
@@ -296,9 +303,11 @@ template <bool kAny, class Ray>
 inline bool test_cell(Ray& r, const CellLists& lists, std::size_t cell, Counters& n) {
   const Triangle::CellList& triangles = lists.of<Triangle>();
   if (triangles.first)
-    for (std::uint32_t i = triangles.first[cell]; i < triangles.first[cell + 1]; ++i)
-      if (test_block<kAny>(r, triangles.blocks[i], n))
+    for (std::uint32_t i = triangles.first[cell]; i < triangles.first[cell + 1]; ++i) {
+      count_rows<Triangle>(n, 1, kBlock);
+      if (test_block<kAny>(r, triangles.blocks[i]))
         return true;
+    }
   return test_arrays<kAny>(r, lists, cell, n);
 }
 

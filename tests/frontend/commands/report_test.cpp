@@ -140,7 +140,7 @@ RunReport some_run() {
   report.height = 3;
   report.grids = {{{2, 3, 4}, 5, 6, 7}};
   report.render.rays = {12, 13, 14, 15};
-  report.render.trace = {16, {17, 18, 19, 20}, {21, 22, 80, 60}};
+  report.render.trace = {16, {17, 18, 19, 20}, {23, 24, 25}, {21, 22, 80, 60}};
   report.render.threads = 2;
   report.render.isa = "avx2";
   report.seconds = {1, 2, 3, 4};
@@ -162,6 +162,7 @@ TEST(Stats, HoldWhatWasCounted) {
             Json::parse(R"({"primary":12,"shadow":13,"reflection":14,"refraction":15})"));
   EXPECT_EQ(json["visits"], 16);
   EXPECT_EQ(json["tests"], Json::parse(R"({"sphere":17,"triangle":18,"cone":19,"plane":20})"));
+  EXPECT_EQ(json["rows"], Json::parse(R"({"boxes":23,"primitives":24,"outlines":25})"));
   EXPECT_EQ(json["packets"], Json::parse(R"({"formed":21,"fell_back":22,"lanes_busy":0.75})"));
   EXPECT_EQ(json["seconds"],
             Json::parse(R"({"load":1.0,"build":2.0,"render":3.0,"write":4.0,"render_cpu":0.0})"));

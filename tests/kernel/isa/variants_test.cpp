@@ -39,6 +39,20 @@ TEST(Variants, IsasListsAllKnown) {
 class Copies : public EveryVariant {};
 GRELHA_FOR_EVERY_ISA(Copies);
 
+/// Of rays that go by themselves all that is tested is tested in rows.
+TEST_P(Copies, CountRowsOfLoneRays) {
+  const Scene scene = ball_mesh(48, 24);
+  const World world(scene, {});
+  ASSERT_FALSE(world.impl().grids.empty());
+  Random random(4);
+  const RayList rays = rays_about(random, {}, 1, 500);
+  const Answers a = trace(variant(), world, rays, {1, true}, Query::kClosest);
+  EXPECT_GT(hits_of(a), 100u);
+  EXPECT_GT(a.counts.rows.boxes, rays.size() / 2);
+  EXPECT_EQ(a.counts.rows.primitives * kBlock, a.counts.tests.triangle);
+  EXPECT_EQ(a.counts.rows.outlines, 0u);
+}
+
 /// Lanes are issued in whole registers of this copy: one ray alone costs as many lanes as the copy
 /// claims to have.
 TEST_P(Copies, RunAtTheirOwnWidth) {
@@ -50,6 +64,7 @@ TEST_P(Copies, RunAtTheirOwnWidth) {
   EXPECT_EQ(a.counts.packets.lanes_issued, static_cast<std::uint64_t>(variant().lanes));
   EXPECT_EQ(a.counts.packets.lanes_busy, 1u);
   EXPECT_EQ(a.counts.tests.sphere, 1u);
+  EXPECT_EQ(a.counts.rows.primitives, 0u);
   RenderStats stats;
   RenderOptions options;
   options.isa = variant().name;

@@ -1,0 +1,151 @@
+// What a ray by itself looks into, beside a tree of boxes (counts/bvh8.hpp): counts, which no noise
+// can move.
+//
+// counts [--size N] [--most RATIO] [--scene NAME]...
+//
+// A scene is a file, or `GENERATOR SIZE`; of its primitives triangles alone are taken. Of ours rows
+// are counted, up to eight boxes or triangles against one ray; of the tree's nodes and leaves. With
+// --most the program fails where ours over the tree's is above.
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "frontend/input/read_scene.hpp"
+#include "grelha/query.hpp"
+#include "perf/counts/bvh8.hpp"
+#include "perf/ray_sets.hpp"
+#include "perf/workloads.hpp"
+
+namespace {
+
+using namespace grelha;
+using namespace grelha::perf;
+
+struct Options {
+  int size = 256;
+  double most = 0;  ///< 0: none is set
+  std::vector<std::string> scenes;
+};
+
+/// A file, or what a generator makes; triangles alone.
+SceneFile triangles_of(const std::string& name) {
+  const auto space = name.find(' ');
+  SceneFile file = space == std::string::npos
+                       ? read_scene(name, [](const std::string&) {})
+                       : make_scene(name.substr(0, space), std::atoi(name.c_str() + space));
+  file.scene.geometry.spheres = {};
+  file.scene.geometry.cones = {};
+  file.scene.geometry.planes = {};
+  return file;
+}
+
+struct Ours {
+  double visits, boxes, triangles, hits;
+};
+
+Ours count_ours(const World& world, const RayBuffer& rays, bool any) {
+  TraceCounts counts;
+  Answers answers;
+  answers.resize(rays.size(), any);
+  if (any)
+    occluded(world, rays.view(), answers.blocked.data(), {.packet = 1}, &counts);
+  else
+    closest(world, rays.view(), {answers.t.data(), answers.id.data()}, {.packet = 1}, &counts);
+  std::uint64_t hits = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    hits += answers.met(i);
+  const auto each = [&](std::uint64_t n) {
+    return static_cast<double>(n) / static_cast<double>(rays.size());
+  };
+  return {
+      each(counts.visits),
+      each(counts.rows.boxes),
+      each(counts.rows.primitives),
+      each(hits),
+  };
+}
+
+/// Rays that may meet something in the one and nothing in the other.
+constexpr double kDisagree = .005;
+
+/// A row of the table. False: ours is more than asked, or the tree's rays meet other things.
+bool count(const std::string& name,
+           const World& world,
+           const Bvh8& tree,
+           const RayBuffer& rays,
+           RayKind kind,
+           double most) {
+  const bool any = RayMaker::any_hit(kind);
+  const Ours ours = count_ours(world, rays, any);
+  TreeCounts theirs;
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    tree.count({{rays.ox[i], rays.oy[i], rays.oz[i]},
+                {rays.dx[i], rays.dy[i], rays.dz[i]},
+                rays.t_min[i],
+                rays.t_max[i]},
+               any,
+               theirs);
+  const auto n = static_cast<double>(rays.size());
+  const double nodes = static_cast<double>(theirs.nodes) / n;
+  const double leaves = static_cast<double>(theirs.leaves) / n;
+  const double ratio = (ours.boxes + ours.triangles) / (nodes + leaves);
+  std::printf("| %s | %s | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f |\n",
+              name.c_str(),
+              kRayKinds[static_cast<std::size_t>(kind)],
+              ours.visits,
+              ours.boxes,
+              ours.triangles,
+              nodes,
+              leaves,
+              ratio);
+  const bool same = std::abs(static_cast<double>(theirs.hits) / n - ours.hits) <= kDisagree;
+  return same && (most == 0 || ratio <= most);
+}
+
+bool count_scene(const std::string& name, const Options& o) {
+  const SceneFile file = triangles_of(name);
+  const World world(file.scene, {});
+  const RayMaker maker(file, world, o.size);
+  const Bvh8 tree(file.scene.geometry.triangles);
+  const auto slash = name.rfind('/');
+  const std::string shown = slash == std::string::npos ? name : name.substr(slash + 1);
+  bool within = true;
+  for (const RayKind kind : {RayKind::kShadow, RayKind::kMirror, RayKind::kIncoherent})
+    within &= count(shown, world, tree, maker.make(kind), kind, o.most);
+  return within;
+}
+
+bool set_option(const std::string& word, const std::string& value, Options& o) {
+  if (word == "--scene")
+    o.scenes.push_back(value);
+  else if (word == "--size")
+    o.size = std::atoi(value.c_str());
+  else if (word == "--most")
+    o.most = std::atof(value.c_str());
+  else
+    return false;
+  return o.size >= 32 && o.size <= 4096;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  for (int i = 1; i < argc; i += 2)
+    if (i + 1 == argc || !set_option(argv[i], argv[i + 1], options)) {
+      std::fprintf(stderr, "usage: counts [--size N] [--most RATIO] [--scene NAME]...\n");
+      return 2;
+    }
+  if (options.scenes.empty())
+    options.scenes = {"mount 8", "knot 15", "gears 4"};
+  std::printf(
+      "| scene | rays | cells | rows of boxes | rows of triangles | nodes | leaves | "
+      "rows / nodes and leaves |\n|---|---|--:|--:|--:|--:|--:|--:|\n");
+  bool within = true;
+  for (const std::string& scene : options.scenes)
+    within &= count_scene(scene, options);
+  return within ? 0 : 1;
+}
