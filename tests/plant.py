@@ -190,6 +190,8 @@ FAULTS = [
     Fault("ends of a search without rounding", "kernel/triangle/triangle.hpp",
           "kDepthRounding = 0x1p-20f;", "kDepthRounding = 0;", "triangle",
           "TriangleOracle.EndsOfASearchDecideAsTDoes"),
+    Fault("lights' grids for few primitives", "kernel/render/setup.cpp", "kFewestSeen = 32;",
+          "kFewestSeen = 0;", "point_grid", "LightGrids.AreNotBuiltForFew"),
     Fault("no room for the blocks that a ray is due at", "kernel/walk/abreast.hpp",
           "settle(due); due = 0;", "due = 0;", "walk", "*Walk*layers", simd=True),
     Fault("no room for the spheres that a ray is due at", "kernel/walk/abreast.hpp",

@@ -100,8 +100,12 @@ constexpr double kRefinedSamples = 8;
 /// Pixels times samples for each primitive from which a light's grid pays. Measured: in 16 of 20
 /// scenes (docs/perspective.md).
 constexpr double kPayingRays = 16;
+/// Primitives that a look-up can spare a ray: of fewer it takes longer than the walk (measured).
+constexpr std::size_t kFewestSeen = 32;
 
 bool pay(const RenderOptions& options, const Setup& setup, std::size_t primitives) {
+  if (primitives < kFewestSeen)
+    return false;
   const double samples = options.refine.on() ? kRefinedSamples : setup.plan.samples;
   const double pixels = static_cast<double>(setup.frame.width) * setup.frame.height;
   return pixels * samples >= kPayingRays * static_cast<double>(primitives);

@@ -61,6 +61,19 @@ TEST(LightGrids, AreBuiltWhereSamplesOutweighPrimitives) {
   EXPECT_GT(stats.point_grids.count, 0);
 }
 
+/// A walk among few primitives takes less than a look-up.
+TEST(LightGrids, AreNotBuiltForFew) {
+  for (const int count : {20, 60}) {
+    Scene scene = random_spheres(5, count);
+    scene.lights.push_back({{3, 4, 5}, {1, 1, 1}});
+    const World world(scene, {});
+    ASSERT_FALSE(world.grids().empty());
+    RenderStats stats;
+    render(world, camera_of(96), {}, stats);
+    EXPECT_EQ(stats.point_grids.count, count < 32 ? 0 : 1) << count;
+  }
+}
+
 TEST(LightGrids, AreNoneInDouble) {
   const Scene scene = lit_from_everywhere();
   const World world(scene, {});
