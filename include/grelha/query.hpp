@@ -20,9 +20,9 @@ struct QueryOptions {
   std::string_view isa = "best";  ///< see isas()
 };
 
-/// The nearest hit of each ray of a packet, or of a stream of any length. 64 neighbours are taken
-/// at a time, fastest where they go a similar way. Runs on the calling thread. Of two
-/// hits at equal t the lower id wins. Each ray is told the same bits alone and in any company.
+/// The nearest hit of each ray of a packet, or of a stream of any length: the longer the faster,
+/// and fastest where neighbours go a similar way. Runs on the calling thread. Of two hits at equal
+/// t the lower id wins. Each ray is told the same bits alone and in any company.
 /// `counts`, where given, grows by what was done. Throws std::invalid_argument for a packet size or
 /// an instruction set that is not there, and for rays without origins or directions.
 void closest(const World& world,
