@@ -341,7 +341,7 @@ TEST(PointGridLists, AreNotPutTogetherOfHeaps) {
 
 /// Thousands of specks that rays from afar cannot tell apart: in each part of their tile all stand.
 TEST(PointGridLists, AreNotPutTogetherOfSpecksInOnePlace) {
-  const Scene scene = towns_in_a_desert(22, 2000);
+  const Scene scene = towns_in_a_desert(22, 4000);
   const World world(scene, {});
   EXPECT_FALSE(build(world, {0, 3000, 0}, 2));
   expect_same(world, scene, {0, 3000, 0}, 3);
