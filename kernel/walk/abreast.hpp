@@ -100,13 +100,30 @@ class CellTests {
         enter = greater((load<Block>(boxes.side[near] + i) - org) * inverse, enter);
         leave = lesser((load<Block>(boxes.side[far] + i) - org) * inverse, leave);
       }
-      const Chosen passed(bits(enter <= leave) & blocks >> i);
+      due = take_passed(
+          ray, at + static_cast<unsigned>(i), bits(enter <= leave) & blocks >> i, enter, due);
+    }
+    return due;
+  }
+
+  /// Those of blocks from `first` on with a bit in `passed`.
+  [[gnu::always_inline]] int take_passed(
+      std::uint32_t ray, std::uint32_t first, unsigned passed, const Block& enter, int due) {
+    if constexpr (kWidth<Block> == kBlock) {
+      const Chosen chosen(passed);
       const Words<Block> rays = Words<Block>{} + ray;
       store_words(due_ray_ + due, rays);  // the same in each place
-      passed.store(due_block_ + due, counted_words<Block>(at + static_cast<unsigned>(i)));
-      passed.store(due_enter_ + due, enter);
-      due += passed.count();
+      chosen.store(due_block_ + due, counted_words<Block>(first));
+      chosen.store(due_enter_ + due, enter);
+      return due + chosen.count();
     }
+    float enters[kWidth<Block>];
+    store(enters, enter);
+    each_bit(passed, [&](int k) {
+      due_ray_[due] = ray;
+      due_block_[due] = first + static_cast<unsigned>(k);
+      due_enter_[due++] = enters[k];
+    });
     return due;
   }
 
