@@ -17,7 +17,6 @@
 #include <string>
 #include <vector>
 
-#include "frontend/input/read_scene.hpp"
 #include "grelha/query.hpp"
 #include "perf/embree.hpp"
 #include "perf/timing.hpp"
@@ -170,14 +169,6 @@ bool table(const std::string& name, const Scene& scene, const Camera& camera, co
                    any,
                    o);
   return right;
-}
-
-/// A file, or what a generator makes.
-SceneFile scene_named(const std::string& name) {
-  const auto space = name.find(' ');
-  if (space != std::string::npos)
-    return make_scene(name.substr(0, space), std::atoi(name.c_str() + space));
-  return read_scene(name, [](const std::string&) {});
 }
 
 bool table_of_file(const std::string& name, const Options& o) {

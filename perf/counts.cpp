@@ -13,7 +13,6 @@
 #include <string>
 #include <vector>
 
-#include "frontend/input/read_scene.hpp"
 #include "grelha/query.hpp"
 #include "perf/counts/bvh8.hpp"
 #include "perf/ray_sets.hpp"
@@ -30,12 +29,9 @@ struct Options {
   std::vector<std::string> scenes;
 };
 
-/// A file, or what a generator makes; triangles alone.
+/// The triangles of a scene alone.
 SceneFile triangles_of(const std::string& name) {
-  const auto space = name.find(' ');
-  SceneFile file = space == std::string::npos
-                       ? read_scene(name, [](const std::string&) {})
-                       : make_scene(name.substr(0, space), std::atoi(name.c_str() + space));
+  SceneFile file = scene_named(name);
   file.scene.geometry.spheres = {};
   file.scene.geometry.cones = {};
   file.scene.geometry.planes = {};

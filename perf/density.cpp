@@ -18,7 +18,6 @@
 #include <string>
 #include <vector>
 
-#include "frontend/input/read_scene.hpp"
 #include "kernel/world/world_impl.hpp"
 #include "perf/ray_sets.hpp"
 #include "perf/timing.hpp"
@@ -37,13 +36,6 @@ struct Options {
   int size = 256, rounds = 5;
   bool csv = false;
 };
-
-SceneFile scene_named(const std::string& name) {
-  const auto space = name.find(' ');
-  if (space != std::string::npos)
-    return make_scene(name.substr(0, space), std::atoi(name.c_str() + space));
-  return read_scene(name, [](const std::string&) {});
-}
 
 /// CPU time of each density relative to that of the kernel's own choice, and this in ns.
 struct Cell {

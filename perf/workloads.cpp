@@ -1,6 +1,7 @@
 #include "perf/workloads.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -48,6 +49,13 @@ SceneFile make_scene(const std::string& name, int size) {
   SceneFile scene = read_scene(file.string(), [](const std::string&) {});
   std::filesystem::remove_all(folder);
   return scene;
+}
+
+SceneFile scene_named(const std::string& name) {
+  const auto space = name.find(' ');
+  if (space != std::string::npos)
+    return make_scene(name.substr(0, space), std::atoi(name.c_str() + space));
+  return read_scene(name, [](const std::string&) {});
 }
 
 RayBuffer camera_rays(const Camera& camera) {

@@ -40,6 +40,8 @@ struct Answers {
 
 /// A scene of the project's own generators, read back through the readers: "balls", 4.
 SceneFile make_scene(const std::string& name, int size);
+/// A file, or what `GENERATOR SIZE` says.
+SceneFile scene_named(const std::string& name);
 
 /// One ray through the centre of every pixel, in tiles of 8 x 8 pixels as a render traces them.
 RayBuffer camera_rays(const Camera& camera);

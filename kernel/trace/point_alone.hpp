@@ -1,7 +1,7 @@
 #pragma once
 // Rays that go to a point, each by itself through the lists of its tile (SIMD over primitives).
 // As where rays walk grids by themselves (kernel/walk/abreast.hpp) each phase goes through a list
-// that the phase before it made, and no branch depends on one ray.
+// that the phase before it made, and few branches depend on one ray.
 
 #include "kernel/trace/listed.hpp"
 #include "kernel/walk/single.hpp"
@@ -45,14 +45,8 @@ inline void test_alone(Triangle, const GeometryView& g, Ray& r, std::uint32_t i,
 }
 template <class Shape, class Ray>
 inline void test_alone(Shape, const GeometryView& g, Ray& r, std::uint32_t i, std::uint32_t id) {
-  const RayLanes<float> ray{
-      .org = {tested_org(r, 0), tested_org(r, 1), tested_org(r, 2)},
-      .dir = {direction(r, 0), direction(r, 1), direction(r, 2)},
-      .inv_dd = inverse_square(r),
-      .t_min = tested_t_min(r),
-  };
   float t = 0;
-  if (meet(ray, broadcast<Shape, float>(g.of<Shape>().fields, i), t))
+  if (meet(spread<Ray, float>(r), broadcast<Shape, float>(g.of<Shape>().fields, i), t))
     take_hit<true>(r, t, id);
 }
 

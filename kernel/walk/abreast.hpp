@@ -3,9 +3,9 @@
 // are under way step side by side (SIMD over rays); then those that came to cells with something in
 // them go through these, each by itself (SIMD over primitives).
 //
-// What a ray does next nobody can foretell, nor what is in the cell it came to: so no branch
-// depends on one ray. Each phase goes through a list of the rays, boxes or blocks that the phase
-// before it chose, and asks memory for what the phase after it looks at.
+// What a ray does next nobody can foretell, nor what is in the cell it came to: so but for hits
+// hardly a branch depends on one ray. Each phase goes through a list of the rays, boxes or blocks
+// that the phase before it chose, and asks memory for what the phase after it looks at.
 
 #include "kernel/walk/under_way.hpp"
 
