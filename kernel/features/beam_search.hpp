@@ -48,9 +48,34 @@ class MetInBeam {
   Met& met_;
 };
 
+/// What a grid is to a beam.
+enum class Looked : std::uint8_t { kInto, kPast, kNobodyKnows };
+
+/// Whether the box of a grid surely lies where dot(out, p - apex) > 0.
+inline bool lies_outside(const GridView& g, const Vec3f& apex, const Vec3f& out) {
+  const float n[3] = {out.x, out.y, out.z};
+  const float from[3] = {apex.x, apex.y, apex.z};
+  float least = 0;
+  float terms = 0;
+  for (int a = 0; a < 3; ++a) {
+    const float at = n[a] * ((n[a] > 0 ? g.lo_f[a] : g.hi_f[a]) - from[a]);
+    least += at;
+    terms += magnitude(at);
+  }
+  return least > kBesideSlack * terms;
+}
+
+/// Whether it lies beyond one side of a beam's pyramid.
+inline bool lies_beside(const GridView& g, const BeamFrame& f) {
+  return lies_outside(g, f.apex, f.to_x - f.unit) ||
+         lies_outside(g, f.apex, -1.f * f.to_x - f.unit) ||
+         lies_outside(g, f.apex, f.to_y - f.unit) ||
+         lies_outside(g, f.apex, -1.f * f.to_y - f.unit);
+}
+
 /// A beam goes where all of its edges go: the grid of rays that start far away holds for those that
-/// start near as well.
-inline bool for_beam(const GridView& g, const WalkingRays& p) {
+/// start near as well. Where such rays go one by one, beams from afar do not go.
+inline Looked looked_at(const GridView& g, const WalkingRays& p, const BeamFrame& f) {
   bool all = true;
   bool some = false;
   for (int i = 0; i < kCorners; ++i) {
@@ -58,7 +83,9 @@ inline bool for_beam(const GridView& g, const WalkingRays& p) {
     all &= served;
     some |= served;
   }
-  return g.serves == Serves::kNear ? all : some;
+  if (g.serves == Serves::kNearAndAfar && !all)
+    return lies_beside(g, f) ? Looked::kPast : Looked::kNobodyKnows;
+  return (g.serves == Serves::kNear ? all : some) ? Looked::kInto : Looked::kPast;
 }
 
 /// The edges of the pyramid as a packet, with w for t, up to w = `far`.
@@ -105,9 +132,14 @@ inline bool collect(const SceneView& scene,
   Packet<InFloat> p;
   set_edges(scene, f, far, p);
   const int axis = main_axis(f.unit);
-  for (int g = 0; g < scene.grid_count; ++g)
-    if (for_beam(scene.grids[g], p) && (!walk_beam(scene.grids[g], p, axis, see, n) || met.full))
+  for (int i = 0; i < scene.grid_count; ++i) {
+    const GridView& g = scene.grids[i];
+    const Looked looked = looked_at(g, p, f);
+    if (looked == Looked::kNobodyKnows)
       return false;
+    if (looked == Looked::kInto && (!walk_beam(g, p, axis, see, n) || met.full))
+      return false;
+  }
   return true;
 }
 

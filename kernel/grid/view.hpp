@@ -21,8 +21,9 @@ inline constexpr int kMostGrids = 2 * kMostGroups;  ///< each has one or two
 
 /// The rays a grid is for, by where they start: anywhere, in the box `near_lo` to `near_hi`, or
 /// outside of it. Primitives stand in one grid for all, or in one for the rays that start near and
-/// one for those that start far away, whose tests are off by more.
-enum class Serves : std::uint8_t { kAll, kNear, kFar };
+/// one for those that start far away, whose tests are off by more. Triangles that are small beside
+/// that stand in one for rays near by, through which those from afar go each by itself.
+enum class Serves : std::uint8_t { kAll, kNear, kFar, kNearAndAfar };
 
 struct GridView {
   CellLists lists;

@@ -46,30 +46,37 @@ inline float bring_near(const SceneView& scene, Single& r) {
   return static_cast<float>(shift);
 }
 
-/// All primitives of one cell of a grid. Returns whether the search is over.
-template <bool kAny>
-inline bool test_grid_cell(Single& r, const CellLists& lists, std::uint32_t cell, Counters& n) {
-  if (lists.of<Triangle>().first) {
-    const std::uint32_t first = lists.of<Triangle>().first[cell];
-    const std::uint32_t end = lists.of<Triangle>().first[cell + 1];
-    float enters[kBlock];
-    for (std::uint32_t at = first / kBlock * kBlock; at < end; at += kBlock)
-      for (unsigned passed = passed_boxes(r, lists.of<Triangle>().boxes[at / kBlock], enters) &
-                             blocks_between(at, first, end);
-           passed != 0;
-           passed &= passed - 1) {
-        const unsigned k = static_cast<unsigned>(__builtin_ctz(passed));
-        // what was met since may be nearer
-        if (enters[k] <= r.best && test_block<kAny>(r, lists.of<Triangle>().blocks[at + k]))
-          return true;
-      }
-  }
-  return test_arrays<kAny>(r, lists, cell, n);
+/// The triangles of one cell of a grid. `walking` is the ray as it walks: in the frame of the grid,
+/// when it comes kFromAfar. Returns whether the search is over.
+template <bool kAny, bool kFromAfar = false>
+inline bool test_triangles(Single& r,
+                           const WalkingRay& walking,
+                           const GridView& g,
+                           std::uint32_t cell) {
+  const Triangle::CellList& list = g.lists.of<Triangle>();
+  const std::uint32_t first = list.first[cell];
+  const std::uint32_t end = list.first[cell + 1];
+  float enters[kBlock];
+  for (std::uint32_t at = first / kBlock * kBlock; at < end; at += kBlock)
+    for (unsigned passed =
+             passed_boxes<kFromAfar>(walking, list.boxes[at / kBlock], enters, g.lo_f) &
+             blocks_between(at, first, end);
+         passed != 0;
+         passed &= passed - 1) {
+      const unsigned k = static_cast<unsigned>(__builtin_ctz(passed));
+      // what was met since may be nearer
+      if (enters[k] <= walking.best && test_block<kAny>(r, list.blocks[at + k]))
+        return true;
+    }
+  return false;
 }
 
-/// As walk_apart().
-template <bool kAny>
-inline void walk_one(const GridView& g, Single& r, Counters& n) {
+/// Takes a ray through a grid, which tells test(cell) of the cells with something in them.
+template <class Test>
+[[gnu::always_inline]] inline void walk_one(const GridView& g,
+                                            const WalkingRay& r,
+                                            Counters& n,
+                                            const Test& test) {
   CellWalk walk(g);
   if (!walk.start(r))
     return;
@@ -77,11 +84,38 @@ inline void walk_one(const GridView& g, Single& r, Counters& n) {
   for (int left = g.n[0] + g.n[1] + g.n[2] + 3; left > 0; --left) {
     ++n.visits;
     const int distance = g.distance[walk.cell()];
-    if (distance == 0 && test_grid_cell<kAny>(r, g.lists, static_cast<unsigned>(walk.cell()), n))
+    if (distance == 0 && test(static_cast<std::uint32_t>(walk.cell())))
       return;
     if (!(distance > 1 ? walk.leap(distance - 1, r.best) : walk.step(r.best)))
       return;
   }
+}
+
+/// As walk_apart().
+template <bool kAny>
+inline void walk_one(const GridView& g, Single& r, Counters& n) {
+  walk_one(g, r, n, [&](std::uint32_t cell) {
+    return (g.lists.of<Triangle>().first && test_triangles<kAny>(r, r, g, cell)) ||
+           test_arrays<kAny>(r, g.lists, cell, n);
+  });
+}
+
+/// As walk_from_afar().
+template <bool kAny>
+[[gnu::noinline]] void walk_one_from_afar(const GridView& g, Single& r, Counters& n) {
+  Arrival to;
+  if (!arrive(g, r.org, r.dir, r.t_min, r.best, to))
+    return;
+  WalkingRay walking = r;
+  for (int a = 0; a < 3; ++a)
+    walking.org[a] = to.org[a];
+  walking.t_min = to.earliest(r.t_min);
+  walking.best = to.latest(r.best);
+  walk_one(in_its_frame(g), walking, n, [&](std::uint32_t cell) {
+    const bool over = test_triangles<kAny, true>(r, walking, g, cell);
+    walking.best = to.latest(r.best);
+    return over;
+  });
 }
 
 /// All that a prepared ray meets. Returns what was taken from t.
@@ -96,6 +130,8 @@ inline float walk_scene(const SceneView& scene, Single& r) {
   each_grid<kAny>(scene, r.org, r.dir, r.t_min, [&](const GridView& g) {
     if (serves(g, r.org))
       walk_one<kAny>(g, r, n);
+    else if (g.serves == Serves::kNearAndAfar)
+      walk_one_from_afar<kAny>(g, r, n);
   });
   return shift;
 }

@@ -2,8 +2,9 @@
 // The rays of a packet against a whole scene: planes and outside primitives first, then each grid
 // with what t is left.
 
-#include "kernel/walk/packet_traversal.hpp"
+#include "kernel/trace/afar.hpp"
 #include "kernel/trace/point_traversal.hpp"
+#include "kernel/walk/packet_traversal.hpp"
 
 namespace grelha::GRELHA_ISA {
 
@@ -144,17 +145,13 @@ inline void test_outside(const CellLists& lists, Packet<In>& p, Counters& n) {
   });
 }
 
+/// Whether a grid is for a ray as it is; there may be another way for those from afar.
 inline bool serves(const GridView& g, const float (&org)[3]) {
-  if (g.serves == Serves::kAll)
-    return true;
-  bool near = true;
-  for (int a = 0; a < 3; ++a)
-    near &= org[a] >= g.near_lo[a] && org[a] <= g.near_hi[a];
-  return near == (g.serves == Serves::kNear);
+  return g.serves == Serves::kAll || starts_near(g, org) == (g.serves != Serves::kFar);
 }
 
-/// Sets where each ray is to be searched from in a grid: nowhere when the grid is not for it.
-/// False: it is for none.
+/// Sets where each ray is to be searched from in a grid: nowhere when the grid is not for it as it
+/// is. False: it is for none.
 inline bool start_in(const GridView& g, WalkingRays& p) {
   for (int i = 0; i < p.size; i += kWidth<Lanes>)
     store(p.start + i, load<Lanes>(p.t_min + i));
@@ -167,7 +164,7 @@ inline bool start_in(const GridView& g, WalkingRays& p) {
       const Lanes o = load<Lanes>(p.org[a] + i);
       away = either(away, either(o<Lanes(g.near_lo[a]), o> Lanes(g.near_hi[a])));
     }
-    const bool near = g.serves == Serves::kNear;
+    const bool near = g.serves != Serves::kFar;
     const Lanes start = load<Lanes>(p.start + i), never(kInfinity);
     const Lanes from = select(away, near ? never : start, near ? start : never);
     some |= any(from < never);
@@ -238,6 +235,8 @@ inline void trace_alone(const SceneView& scene, Packet<In>& p, Counters& n) {
   each_grid<kAny>(scene, p, [&](const GridView& g) {
     if (start_in(g, p))
       walk_apart<kAny>(g, p, n);
+    if (g.serves == Serves::kNearAndAfar)
+      walk_from_afar<kAny>(g, p, n);
   });
 }
 
@@ -284,6 +283,8 @@ template <bool kAny, class In>
   each_grid<kAny>(scene, p, [&](const GridView& g) {
     if (start_in(g, p))
       traverse_packet<kAny>(g, p, options.packet, options.mailbox, n);
+    if (g.serves == Serves::kNearAndAfar)
+      walk_from_afar<kAny>(g, p, n);
   });
 }
 

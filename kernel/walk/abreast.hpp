@@ -40,21 +40,24 @@ struct SlabRays {
   }
 };
 
-/// Rays against what is in the cells they came to.
-template <bool kAny, class In>
+/// Rays against what is in the cells they came to. `walking` are the rays of p as they walk: in the
+/// frame of the grid, which begins at its corner, when they come kFromAfar.
+template <bool kAny, class In, bool kFromAfar = false>
 class CellTests {
  public:
-  CellTests(const GridView& g, Packet<In>& p, Counters& n) : lists_(g.lists), p_(p), n_(n) {
-    each_live_group(p, [&](int i, int) { slab_.set(p, i); });
+  CellTests(const GridView& g, const WalkingRays& walking, Packet<In>& p, Counters& n)
+      : grid_(g), lists_(g.lists), walking_(walking), p_(p), n_(n) {
+    each_live_group(walking, [&](int i, int) { slab_.set(walking, i); });
   }
 
   void test(const Arrivals& to) {
     if (triangles_.first)
       test_triangles(to);
-    ArrayShapes::for_each([&]<class Shape>() __attribute__((always_inline)) {
-      if (lists_.of<Shape>().first)
-        test_arrays<Shape>(to);
-    });
+    if constexpr (!kFromAfar)
+      ArrayShapes::for_each([&]<class Shape>() __attribute__((always_inline)) {
+        if (lists_.of<Shape>().first)
+          test_arrays<Shape>(to);
+      });
   }
 
  private:
@@ -90,20 +93,29 @@ class CellTests {
     const BlockBoxes& boxes = triangles_.boxes[at / kBlock];
     ++n_.box_rows;
     for (int i = 0; i < kBlock; i += kWidth<Block>) {
-      Block enter(p_.t_min[ray]);
-      Block leave(p_.best[ray]);
+      Block enter(walking_.t_min[ray]);
+      Block leave(walking_.best[ray]);
       for (int a = 0; a < 3; ++a) {
-        const Block org(p_.org[a][ray]);
+        const Block org(walking_.org[a][ray]);
         const Block inverse(slab_.inverse[a][ray]);
         const std::uint32_t near = slab_.near[a][ray];
         const std::uint32_t far = 2u * static_cast<std::uint32_t>(a) + 3 - near;
-        enter = greater((load<Block>(boxes.side[near] + i) - org) * inverse, enter);
-        leave = lesser((load<Block>(boxes.side[far] + i) - org) * inverse, leave);
+        enter = greater((side(boxes, near, a, i) - org) * inverse, enter);
+        leave = lesser((side(boxes, far, a, i) - org) * inverse, leave);
       }
       due = take_passed(
           ray, at + static_cast<unsigned>(i), bits(enter <= leave) & blocks >> i, enter, due);
     }
     return due;
+  }
+
+  /// A side of boxes from i on, in the frame of the rays.
+  [[gnu::always_inline]] Block side(const BlockBoxes& boxes,
+                                    std::uint32_t which,
+                                    int axis,
+                                    int i) const {
+    const Block at = load<Block>(boxes.side[which] + i);
+    return kFromAfar ? at - Block(grid_.lo_f[axis]) : at;
   }
 
   /// Those of blocks from `first` on with a bit in `passed`.
@@ -143,7 +155,7 @@ class CellTests {
     for (int j = 0; j < count; ++j) {
       const std::uint32_t k = met[j];
       PacketRay<In> r{p_, static_cast<int>(due_ray_[k])};
-      if (due_enter_[k] <= p_.best[r.i])
+      if (due_enter_[k] <= walking_.best[r.i])
         test_block<kAny>(r, triangles_.blocks[due_block_[k]]);
     }
   }
@@ -228,8 +240,10 @@ class CellTests {
 
   static constexpr int kAhead = 8;
 
+  const GridView& grid_;
   const CellLists& lists_;
   const Triangle::CellList& triangles_ = lists_.of<Triangle>();
+  const WalkingRays& walking_;
   Packet<In>& p_;
   Counters& n_;
   SlabRays slab_;
@@ -239,6 +253,23 @@ class CellTests {
   alignas(64) std::uint32_t due_block_[kMost + kBlock];
   alignas(64) float due_enter_[kMost + kBlock];
 };
+
+/// Takes rays through a grid; test(arrivals) tests those that came to cells with something in them.
+template <class Test>
+[[gnu::always_inline]] inline void go_abreast(const GridView& g,
+                                              RaysUnderWay& rays,
+                                              Counters& n,
+                                              const Test& test) {
+  Arrivals arrivals;
+  // No walk crosses more planes than there are, whatever rounding does.
+  const int most = g.n[0] + g.n[1] + g.n[2] + 3;
+  for (int round = 0; round < most && rays.any(); ++round) {
+    n.visits += static_cast<unsigned>(rays.going());
+    rays.arrive(arrivals);
+    test(arrivals);
+    rays.step();
+  }
+}
 
 /// The live rays of a packet through a grid, each from p.start on and on its own (Amanatides & Woo
 /// 1987), with leaps over empty cells by their distance (Cohen & Sheffer, "Proximity Clouds",
@@ -251,16 +282,8 @@ template <bool kAny, class In>
   RaysUnderWay rays(g, p);
   if (!rays.any())
     return;
-  CellTests<kAny, In> tests(g, p, n);
-  Arrivals arrivals;
-  // No walk crosses more planes than there are, whatever rounding does.
-  const int most = g.n[0] + g.n[1] + g.n[2] + 3;
-  for (int round = 0; round < most && rays.any(); ++round) {
-    n.visits += static_cast<unsigned>(rays.going());
-    rays.arrive(arrivals);
-    tests.test(arrivals);
-    rays.step();
-  }
+  CellTests<kAny, In> tests(g, p, p, n);
+  go_abreast(g, rays, n, [&](const Arrivals& to) { tests.test(to); });
 }
 
 }  // namespace grelha::GRELHA_ISA

@@ -180,16 +180,25 @@ inline bool note(Ray& r,
 }
 
 /// Bits of the boxes that a ray passes through before its search ends, and where it enters them.
+/// The ray is in the frame that begins at `corner`, when it comes kFromAfar.
+template <bool kFromAfar = false>
 inline unsigned passed_boxes(const WalkingRay& r,
                              const BlockBoxes& boxes,
-                             float (&enters)[kBlock]) {
+                             float (&enters)[kBlock],
+                             const float* corner = nullptr) {
   unsigned passed = 0;
   for (int i = 0; i < kBlock; i += kWidth<Block>) {
     Block enter(r.t_min), leave(r.best);
     for (int a = 0; a < 3; ++a) {
       const Block org(r.org[a]), inv(r.inv[a]);
-      enter = greater((load<Block>(boxes.side[r.near[a]] + i) - org) * inv, enter);
-      leave = lesser((load<Block>(boxes.side[2 * a + 3 - r.near[a]] + i) - org) * inv, leave);
+      Block near = load<Block>(boxes.side[r.near[a]] + i);
+      Block far = load<Block>(boxes.side[2 * a + 3 - r.near[a]] + i);
+      if constexpr (kFromAfar) {
+        near = near - Block(corner[a]);
+        far = far - Block(corner[a]);
+      }
+      enter = greater((near - org) * inv, enter);
+      leave = lesser((far - org) * inv, leave);
     }
     passed |= bits(enter <= leave) << i;
     store(enters + i, enter);
@@ -324,7 +333,8 @@ inline double tame(double d, double least) {
   return d < least ? least : d;
 }
 
-inline GridRay to_grid(const GridView& g, const float (&org)[3], const float (&dir)[3]) {
+template <class Number>
+inline GridRay to_grid(const GridView& g, const Number (&org)[3], const float (&dir)[3]) {
   GridRay r;
   const double least = least_headway(dir[0], dir[1], dir[2]);
   for (int a = 0; a < 3; ++a) {

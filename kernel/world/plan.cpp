@@ -26,6 +26,8 @@ constexpr double kMostPads = 64;
 constexpr double kFewestPads = 8;
 /// scenes so many times as wide as near rays reach have both: in others it would gain little
 constexpr double kVast = 4;
+/// Of the scene's diagonal: what tests and walks in double are off by beside a ray, 100 roundings.
+constexpr double kDoublesOff = 0x1p-46;
 /// M; packets like it coarser than the report's 2 (docs/performance.md)
 constexpr double kDensity = .7;
 
@@ -148,9 +150,16 @@ void set_near(Grid& g, const Box& box, double reach) {
   }
 }
 
+bool are_triangles(const Primitives& p, const Ids& ids) {
+  return std::all_of(ids.begin(), ids.end(), [&](std::uint32_t id) {
+    return p.ids.has(PrimitiveKind::kTriangle, id);
+  });
+}
+
 /// The grid of some primitives in a scene of that diagonal. Rays from all over the scene may ask
 /// for a pad that is large beside the cells. Then there are two grids: one with such a pad, and one
-/// for the rays that start near, which are most.
+/// for the rays that start near, which are most. Where the cells of the former would be larger,
+/// triangles have the latter alone, to which rays from afar come each by itself.
 void add_grids(const Primitives& p,
                const Ids& ids,
                const Box& box,
@@ -163,13 +172,16 @@ void add_grids(const Primitives& p,
     grids.push_back(lay_out_grid(p, ids, box, density, pad_of(diagonal)));
     return;
   }
-  for (const Serves serves : {Serves::kNear, Serves::kFar}) {
-    const double pad = pad_of(serves == Serves::kNear ? reach : diagonal);
-    const double coarser = density * std::min(1., edge / (kFewestPads * pad));
-    Grid& g = grids.emplace_back(lay_out_grid(p, ids, box, coarser, pad));
+  const double of_far_rays = edge / (kFewestPads * pad_of(diagonal));
+  const auto add = [&](Serves serves, double of_density, double pad) {
+    Grid& g = grids.emplace_back(lay_out_grid(p, ids, box, of_density, pad));
     g.serves = serves;
     set_near(g, box, reach);
-  }
+  };
+  if (of_far_rays < 1 && are_triangles(p, ids))
+    return add(Serves::kNearAndAfar, density, pad_of(reach) + kDoublesOff * diagonal);
+  add(Serves::kNear, density, pad_of(reach));
+  add(Serves::kFar, density * std::min(1., of_far_rays), pad_of(diagonal));
 }
 
 }  // namespace

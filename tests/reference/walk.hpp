@@ -210,6 +210,17 @@ bool walk_grid(WalkedRay<Real>& r, const GridView& g, RayMailbox* box, Counters&
   return false;
 }
 
+/// All cells of a grid, one after the other.
+template <bool kAny, class Real>
+bool test_cells(WalkedRay<Real>& r, const GridView& g, RayMailbox* box, Counters& n) {
+  const std::size_t cells = static_cast<std::size_t>(g.n[0]) * static_cast<std::size_t>(g.n[1]) *
+                            static_cast<std::size_t>(g.n[2]);
+  for (std::size_t cell = 0; cell < cells; ++cell)
+    if (test_lists<kAny>(r, g.lists, cell, box, n))
+      return true;
+  return false;
+}
+
 /// False when the ray can meet nothing.
 template <class Real>
 bool load_ray(const Ray& ray, WalkedRay<Real>& r) {
@@ -258,9 +269,12 @@ void trace_ray(const SceneView& scene, WalkedRay<Real>& r, RayMailbox* box, Coun
   bring_near(scene, r);
   if (test_lists<kAny>(r, scene.outside, 0, nullptr, n))
     return;
-  for (int g = 0; g < scene.grid_count; ++g)
-    if (serves(scene.grids[g], r.near_org) && walk_grid<kAny>(r, scene.grids[g], box, n))
+  for (int i = 0; i < scene.grid_count; ++i) {
+    const GridView& g = scene.grids[i];
+    if (serves(g, r.near_org) ? walk_grid<kAny>(r, g, box, n)
+                              : g.serves == Serves::kNearAndAfar && test_cells<kAny>(r, g, box, n))
       return;
+  }
 }
 
 /// Ray i of a view.

@@ -338,6 +338,7 @@ inline Scene ball_mesh(int nu, int nv, double bumps = 0, std::uint64_t seed = 1)
                   static_cast<float>(r * std::sin(a) * std::sin(b))};
   });
 }
+
 inline Scene torus_mesh(int nu, int nv, double tube) {
   return closed_mesh(nu, nv, false, [&](double u, double v) {
     const double a = 2 * std::numbers::pi * u, b = 2 * std::numbers::pi * v,
@@ -350,6 +351,28 @@ inline Scene torus_mesh(int nu, int nv, double tube) {
 inline Float3 vertex(const Scene& s, std::uint32_t i) {
   const Triangles& t = s.geometry.triangles;
   return {t.x[i], t.y[i], t.z[i]};
+}
+
+/// The triangles of a mesh, as an object of its own.
+inline void add_object(Scene& s, const Scene& mesh) {
+  const Triangles& from = mesh.geometry.triangles;
+  const auto first = static_cast<std::uint32_t>(s.geometry.triangles.size());
+  for (std::size_t t = 0; t < from.size(); ++t)
+    add_triangle(s, vertex(mesh, from.a[t]), vertex(mesh, from.b[t]), vertex(mesh, from.c[t]));
+  s.geometry.objects.push_back({first, static_cast<std::uint32_t>(from.size())});
+}
+
+/// A mesh on so wide a floor that the cells of a grid for rays from all over would hold much of it.
+inline Scene in_a_vast_scene(const Scene& mesh) {
+  Scene s = empty_scene();
+  add_object(s, mesh);
+  const float half = 1e6;
+  add_triangle(s, {-half, -1.3f, -half}, {half, -1.3f, -half}, {half, -1.3f, half});
+  add_triangle(s, {-half, -1.3f, -half}, {half, -1.3f, half}, {-half, -1.3f, half});
+  return s;
+}
+inline Scene mesh_in_a_vast_scene() {
+  return in_a_vast_scene(ball_mesh(24, 12, .2));
 }
 
 }  // namespace grelha::test

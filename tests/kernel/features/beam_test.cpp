@@ -241,6 +241,24 @@ TEST_P(Beam, IsTheSameWhereGridsServeNearRaysOrFarOnes) {
   EXPECT_FALSE(near[1]);
 }
 
+/// A mesh too far away for beams to go through its grid: what it may hide in is doubted, what it is
+/// beside is not.
+TEST_P(Beam, DoubtsAMeshFromAfarWhereItMayBe) {
+  Scene s = wall();
+  s.lights.clear();
+  Scene ball = placed(ball_mesh(24, 12), 1e-3, {-1.3f, 2.4f, 0});  // pixel (2, 1)
+  add_object(s, ball);
+  add_triangle(s, {-1e6f, -1e6f, -9}, {1e6f, -1e6f, -9}, {0, 1e6f, -9});  // behind the wall
+  bool afar = false;
+  for (const GridView& g : World(s, {}).impl().grid_views)
+    afar |= g.serves == Serves::kNearAndAfar && over_units().eye.z > g.near_hi[2];
+  EXPECT_TRUE(afar);
+  const Tile tile = look(s);
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 8; ++x)
+      EXPECT_EQ(at(tile, x, y) > 0, x == 2 && y == 1) << x << ' ' << y;
+}
+
 INSTANTIATE_TEST_SUITE_P(,
                          Beam,
                          testing::ValuesIn(variants().begin(), variants().end()),

@@ -30,15 +30,6 @@ template <auto Make, int Count>
 Scene crowd() {
   return Make(7, Count);
 }
-/// The triangles of a mesh, as an object of its own.
-void add_object(Scene& s, const Scene& mesh) {
-  const Triangles& from = mesh.geometry.triangles;
-  const auto first = static_cast<std::uint32_t>(s.geometry.triangles.size());
-  for (std::size_t t = 0; t < from.size(); ++t)
-    add_triangle(s, vertex(mesh, from.a[t]), vertex(mesh, from.b[t]), vertex(mesh, from.c[t]));
-  s.geometry.objects.push_back({first, static_cast<std::uint32_t>(from.size())});
-}
-
 /// Three grids one behind another: what is left of a packet's rays after one goes on through the
 /// next.
 Scene objects_in_a_row() {
@@ -112,6 +103,7 @@ const std::vector<Case> kCases{
     {"stadium_seen_from_the_stands", kStadium, 900},
     {"wide_plain", kPlain, 1},
     {"wide_plain_seen_from_all_over", kPlain, 300},
+    {"mesh_in_a_vast_scene", mesh_in_a_vast_scene, 1},
     {"one_sphere_many_times", one_sphere_many_times, 1, {1, 2, 3}},
     {"points", points, 1e-12},
     {"layers", layers, 1},
@@ -204,6 +196,76 @@ TEST(FarRays, FindWhatBruteForceFinds) {
     met += id < 400u + 50u;
   EXPECT_GT(met, 2000u);
   expect_truth(*find_variant("best"), world, rays, truth, "far rays");
+}
+
+/// Sheets of paper in the middle of a vast scene, the lowest first.
+Scene pages_in_a_vast_scene() {
+  Scene pages = empty_scene();
+  for (int sheet = 0; sheet < 20; ++sheet)
+    for (int i = 0; i < 64; ++i) {
+      const auto at = [&](int x, int z) {
+        return Float3{.25f * static_cast<float>(x - 4),
+                      .03f * static_cast<float>(sheet) - .3f,
+                      .25f * static_cast<float>(z - 4)};
+      };
+      const int x = i % 8, z = i / 8;
+      add_triangle(pages, at(x, z), at(x + 1, z), at(x + 1, z + 1));
+      add_triangle(pages, at(x, z), at(x + 1, z + 1), at(x, z + 1));
+    }
+  return in_a_vast_scene(pages);
+}
+
+class RaysFromAfar : public EveryVariant {};
+GRELHA_FOR_EVERY_ISA(RaysFromAfar);
+
+/// Also rays that end or start within a few units in the last place of what they meet. Of sheets
+/// that t from afar does not tell apart the lowest is met, which lies behind others.
+TEST_P(RaysFromAfar, MeetMeshesOfTheirOwnScale) {
+  for (const Scene& scene : {mesh_in_a_vast_scene(), pages_in_a_vast_scene()}) {
+    const World world(scene, {});
+    ASSERT_EQ(world.impl().grids.size(), 1u);
+    ASSERT_EQ(world.impl().grids[0].serves, Serves::kNearAndAfar);
+    Random random(4);
+    RayList rays;
+    for (int i = 0; i < 2000; ++i) {
+      const Float3 from = random.direction();
+      const Float3 eye = at({}, random.log_in(100, 2e6), {from.x, std::abs(from.y), from.z});
+      rays.add(eye, scaled(minus(random.point(1), eye), random.log_in(1e-3, 1e3)));
+    }
+    const Answers met = truth_of(scene, rays).closest;
+    std::size_t of_mesh = 0;
+    for (std::size_t i = 0; i < met.id.size(); ++i) {
+      of_mesh += met.id[i] < scene.geometry.objects[0].triangle_count;
+      const double off = random.sign() * random.log_in(0x1p-25, 0x1p-18);
+      const auto t = static_cast<float>(met.t[i] * (1 + off));
+      const bool ends = random.chance(.5);
+      rays.add(rays.org(i), rays.dir(i), ends ? 0 : t, ends ? t : kInf);
+    }
+    EXPECT_GT(of_mesh, 500u);
+    expect_truth(*GetParam(), world, rays, truth_of(scene, rays), "rays from afar");
+  }
+}
+
+/// So small beside the scene that its cells are as wide as what doubles make of places out there.
+/// Rays through its middle alone are floats.
+TEST_P(RaysFromAfar, MeetASpeck) {
+  Scene scene = placed(mesh_in_a_vast_scene(), 1e-3, {});
+  Triangles& t = scene.geometry.triangles;
+  for (std::size_t corner = t.x.size() - 6; corner < t.x.size(); ++corner) {
+    t.x[corner] *= 1e11f;
+    t.z[corner] *= 1e11f;
+  }
+  Random random(6);
+  RayList rays;
+  for (int i = 0; i < 800; ++i) {
+    const auto way = [&] { return static_cast<float>(random.below(200)) - 99.5f; };
+    const Float3 from{way(), 1 + std::abs(way()), way()};
+    rays.add(scaled(from, 0x1p35), scaled(from, -1));
+  }
+  const World world(scene, {});
+  const Truth truth = truth_of(scene, rays);
+  EXPECT_EQ(hits_of(truth.closest), 800u);
+  expect_truth(*GetParam(), world, rays, truth, "rays through a speck");
 }
 
 /// What hides behind a mesh costs closest hits nothing, in whatever order meshes are listed.

@@ -208,7 +208,7 @@ TEST(GridSize, AnOutlierDoesNotPutEverythingEverywhere) {
   // each side.
   s.geometry.triangles.z[0] = 0;
   const World alone(s, {});
-  ASSERT_EQ(world.grids().size(), 2u);
+  ASSERT_EQ(world.grids().size(), 1u);
   ASSERT_EQ(alone.grids().size(), 1u);
   EXPECT_LE(static_cast<double>(world.grids()[0].references),
             std::pow(1 + 2. / 64, 3) * static_cast<double>(alone.grids()[0].references));
@@ -229,6 +229,20 @@ TEST(GridChoice, OnlyVastScenesHaveGridsForNearAndForFarRays) {
     EXPECT_EQ(grids[1].serves, Serves::kFar);
     EXPECT_GT(grids[0].cells[0], grids[1].cells[0]);
   }
+}
+
+/// Were there a grid for rays from afar, its cells would hold a mesh by the thousand; with spheres
+/// among the triangles there is one.
+TEST(GridChoice, SmallMeshesInVastScenesHaveOneGridForAllRays) {
+  Scene scene = mesh_in_a_vast_scene();
+  const World world(scene, {});
+  ASSERT_EQ(world.impl().grids.size(), 1u);
+  const Grid& g = world.impl().grids[0];
+  EXPECT_EQ(g.serves, Serves::kNearAndAfar);
+  EXPECT_LE(g.pad, g.cell[0] / 32);
+  Scene alone = empty_scene();
+  add_object(alone, ball_mesh(24, 12, .2));
+  EXPECT_EQ(g.cells, World(alone, {}).impl().grids[0].cells);
 }
 
 TEST(GridChoice, HugePrimitivesStandOutside) {
