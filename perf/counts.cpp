@@ -109,7 +109,7 @@ bool count_scene(const std::string& name, const Options& o) {
   const auto slash = name.rfind('/');
   const std::string shown = slash == std::string::npos ? name : name.substr(slash + 1);
   bool within = true;
-  for (const RayKind kind : {RayKind::kShadow, RayKind::kMirror, RayKind::kIncoherent})
+  for (const RayKind kind : {RayKind::kShadow, RayKind::kMirror, RayKind::kScattered})
     within &= count(shown, world, tree, maker.make(kind), kind, o.most);
   return within;
 }

@@ -36,16 +36,6 @@ void add(RayBuffer& rays, const V& org, const V& dir, float t_end) {
   rays.add({org.x, org.y, org.z}, {dir.x, dir.y, dir.z}, t_end);
 }
 
-RayBuffer shuffled(const RayBuffer& rays) {
-  RayBuffer out;
-  const auto count = static_cast<std::uint32_t>(rays.size());
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint32_t k = permuted(i, count, 0x9E3779B9u);
-    out.add({rays.ox[k], rays.oy[k], rays.oz[k]}, {rays.dx[k], rays.dy[k], rays.dz[k]}, kInfinity);
-  }
-  return out;
-}
-
 /// Uniform in [0, 1), the same numbers everywhere.
 struct Random {
   std::mt19937 bits{1};
@@ -270,7 +260,7 @@ RayBuffer RayMaker::make(RayKind kind) const {
   }
   for (const FirstHit& h : first_hits(kind == RayKind::kArea || kind == RayKind::kGlossy))
     bounces.add_rays(kind, h);
-  return kind == RayKind::kIncoherent ? shuffled(bounces.rays) : bounces.rays;
+  return bounces.rays;
 }
 
 }  // namespace grelha::perf

@@ -18,7 +18,7 @@ enum class RayKind {
   kArea,
   kMirror,
   kGlossy,
-  kIncoherent,
+  kScattered,
   kMirrorShadow
 };
 inline constexpr std::array<const char*, 8> kRayKinds = {"primary",
@@ -27,7 +27,7 @@ inline constexpr std::array<const char*, 8> kRayKinds = {"primary",
                                                          "area 16",
                                                          "mirror",
                                                          "glossy 16",
-                                                         "incoherent",
+                                                         "scattered",
                                                          "shadow of mirror hits"};
 
 /// Makes ray sets of a picture of size x size, in tiles of 8 x 8 pixels. Of larger pictures than
@@ -42,7 +42,7 @@ inline constexpr std::array<const char*, 8> kRayKinds = {"primary",
 ///              the point looked at
 /// mirror       from each first hit, whatever it is made of
 /// glossy 16    16 around each such direction, in a lobe of roughness .1
-/// incoherent   from each first hit in a direction spread as diffuse light is, then all shuffled
+/// scattered    from each first hit in a direction spread as diffuse light is
 /// shadow of mirror hits   hard shadows of what the rays of `mirror` meet
 class RayMaker {
  public:

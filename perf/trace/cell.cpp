@@ -43,6 +43,22 @@ double Cell::pays_from() const {
   return saved > 0 ? point_grid_ns / saved : std::numeric_limits<double>::infinity();
 }
 
+std::vector<double> Cell::library_ratios() const {
+  const auto best_of = [&](const std::string& name) {
+    std::size_t found = best[kRobust];
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < ways.size(); ++i)
+      if (ways[i].side == kRobust && ways[i].name.starts_with(name) && median(ways[i].ns) < least) {
+        least = median(ways[i].ns);
+        found = i;
+      }
+    return found;
+  };
+  return {ratio(library, best_of("single")),
+          ratio(library + 1, best_of("8")),
+          ratio(library + 2, best[kRobust])};
+}
+
 void Cell::find_best() {
   for (std::size_t side = 0; side < kSides; ++side) {
     double least = 1e300;

@@ -19,7 +19,7 @@ inline constexpr GrelhaMode kModes[] = {{"packets 256", {.packet = 256}},
 /// see options_for() in shader.hpp.
 constexpr std::size_t renders(RayKind kind) {
   const bool alone = RayMaker::to_point(kind) || kind == RayKind::kMirror;
-  return alone || kind == RayKind::kIncoherent ? 1 : 0;
+  return alone || kind == RayKind::kScattered ? 1 : 0;
 }
 
 }  // namespace grelha::perf

@@ -75,6 +75,11 @@ std::string point_grid_text(const Row&, std::size_t, const Cell& c) {
   return format("%.2f; %.1f ns; %.1f ms, %.2g rays", ratio, ns, ms, c.pays_from());
 }
 
+std::string library_text(const Row&, std::size_t, const Cell& c) {
+  const std::vector<double> r = c.library_ratios();
+  return format("%.2f; %.2f; %.2f", r[0], r[1], r[2]);
+}
+
 /// What rays to the light cost through a grid in its perspective.
 void print_point_grids(const Options& options, const Results& results) {
   std::vector<std::size_t> kinds;
@@ -105,6 +110,10 @@ void print_tables(const Options& options, const Results& results) {
         against(kRobust, true));
     print("Grelha's best / Embree's best, robust", against(kRobust, false));
     print("As a render forms them / Embree's best, not robust", against(kFast, true));
+    print(
+        "As a caller asks, robust: one ray a call / rtcIntersect1; streams of 8 / rtcIntersect8; "
+        "one stream with the library's own options / Embree's best",
+        library_text);
   }
   print_point_grids(options, results);
   print("ns a ray, as a render forms packets", time_text);
