@@ -11,16 +11,7 @@ namespace grelha::perf {
 
 struct FirstHit;
 
-enum class RayKind {
-  kPrimary,
-  kLens,
-  kShadow,
-  kArea,
-  kMirror,
-  kGlossy,
-  kScattered,
-  kMirrorShadow
-};
+enum class RayKind { kPrimary, kLens, kShadow, kArea, kMirror, kGlossy, kScattered, kMirrorShadow };
 inline constexpr std::array<const char*, 8> kRayKinds = {"primary",
                                                          "AA + lens",
                                                          "hard shadow",

@@ -21,19 +21,20 @@ struct TestedRays<InDouble> {
   const float* low[3] = {};  ///< what is to be added to the origins as they came, or null
 };
 
-/// How packets of a stream fared: whether to ask the next one to go together.
+/// How packets of a size fared in a stream: whether to ask the next one to go together.
 class Luck {
  public:
   /// Where most fell apart one in eight is asked all the same.
   bool worth_asking() { return sum_ >= 0 || ++left_out_ % 8 == 0; }
-  void note(bool together) {
-    // one that goes together saves twice what one costs that does not (measured)
-    sum_ += together ? 2 : -1;
+  /// `saved`: the share of its rays' ways that a packet went together.
+  void note(float saved) {
+    // what goes together saves twice what asking costs (measured)
+    sum_ += static_cast<int>(10 * saved) - 3;
     sum_ = sum_ > kMost ? kMost : sum_ < -kMost ? -kMost : sum_;
   }
 
  private:
-  static constexpr int kMost = 16;
+  static constexpr int kMost = 64;
   int sum_ = 0;
   unsigned left_out_ = 0;
 };
@@ -50,7 +51,8 @@ struct Packet : WalkingRays, TestedRays<In> {
   /// packets before this one of which no two rays went together, and how many are still to go
   /// without being asked to
   int apart = 0, alone = 0;
-  Luck luck;  ///< of the smallest packets
+  Luck small_luck, middle_luck;  ///< of packets of 16 and of 64
+  float saved = 0;  ///< share of its rays' ways that the last packet went that fell apart
 };
 
 /// What tests take of ray i.

@@ -145,7 +145,10 @@ class PacketVisit {
       held_.clear();
   }
 
-  bool start() { return (active_ = update_live(f_, p_, f_.from - f_.margin)) > 0; }
+  bool start() {
+    started_ = active_ = update_live(f_, p_, f_.from - f_.margin);
+    return active_ > 0;
+  }
 
   bool enter(int slice, const CellRect& r) {
     const long cells = r.cells();
@@ -173,6 +176,12 @@ class PacketVisit {
 
   /// The slice before which the rays no longer had enough in common, or -1.
   int split_at() const { return split_at_; }
+  /// The share of the ways of all rays that was gone until then.
+  float saved() const {
+    const float way = f_.to + 1 - f_.from;
+    const float left = lesser(f_.to + 1 - static_cast<float>(split_at_), way);
+    return 1 - static_cast<float>(active_) / static_cast<float>(started_) * (left / way);
+  }
 
  private:
   bool seen(std::uint32_t id) { return mailbox_ && held_.seen(id); }
@@ -227,6 +236,7 @@ class PacketVisit {
   Counters& n_;
   int width_;
   int limit_;
+  int started_ = 0;
   int active_ = 0;
   int split_at_ = -1;
   bool mailbox_;
@@ -246,6 +256,33 @@ inline void start_from_slice(const Frustum& f, WalkingRays& p, int slice) {
 template <bool kAny, class In>
 inline std::uint64_t traverse_together(
     const GridView& g, Packet<In>& p, int width, bool use_mailbox, Counters& n);
+template <bool kAny, class In>
+inline std::uint64_t split_packet(
+    const GridView& g, Packet<In>& p, int width, bool use_mailbox, Counters& n);
+
+/// The live rays of a packet of 64, or of a part of a larger one, if such packets do well.
+template <bool kAny, class In>
+inline std::uint64_t traverse_middle(const GridView& g,
+                                     Packet<In>& p,
+                                     bool use_mailbox,
+                                     Counters& n) {
+  if (!p.middle_luck.worth_asking())
+    return split_packet<kAny>(g, p, kMiddle, use_mailbox, n);
+  const std::uint64_t apart = traverse_together<kAny>(g, p, kMiddle, use_mailbox, n);
+  p.middle_luck.note(apart == 0 ? 1 : p.saved);
+  return apart;
+}
+
+/// The same of 16.
+template <bool kAny, class In>
+inline std::uint64_t traverse_small(const GridView& g,
+                                    Packet<In>& p,
+                                    bool use_mailbox,
+                                    Counters& n) {
+  const std::uint64_t apart = traverse_together<kAny>(g, p, kSmall, use_mailbox, n);
+  p.small_luck.note(apart == 0 ? 1 : 0);
+  return apart;
+}
 
 /// The live rays of a packet in smaller ones of `rays` neighbours each; see traverse_together().
 template <bool kAny, class In>
@@ -255,12 +292,9 @@ inline std::uint64_t traverse_parts(
   const int each = rays / kWidth<Lanes>;
   std::uint64_t apart = 0;
   for (int first = 0; first < p.groups; first += each)
-    if ((p.live = live & ((std::uint64_t{1} << each) - 1) << first) != 0) {
-      const std::uint64_t these = traverse_together<kAny>(g, p, rays, use_mailbox, n);
-      if (rays == kSmall)
-        p.luck.note(these == 0);
-      apart |= these;
-    }
+    if ((p.live = live & ((std::uint64_t{1} << each) - 1) << first) != 0)
+      apart |= rays == kSmall ? traverse_small<kAny>(g, p, use_mailbox, n)
+                              : traverse_middle<kAny>(g, p, use_mailbox, n);
   p.live = live;
   return apart;
 }
@@ -271,7 +305,7 @@ inline std::uint64_t split_packet(
     const GridView& g, Packet<In>& p, int width, bool use_mailbox, Counters& n) {
   ++n.fell_back;
   const int rays = width > kMiddle ? kMiddle : kSmall;
-  if (width <= kSmall || (rays == kSmall && !p.luck.worth_asking()))
+  if (width <= kSmall || (rays == kSmall && !p.small_luck.worth_asking()))
     return p.live;
   return traverse_parts<kAny>(g, p, rays, use_mailbox, n);
 }
@@ -288,6 +322,7 @@ inline std::uint64_t traverse_together(
     case Coherence::kMisses:
       return 0;
     case Coherence::kIncoherent:
+      p.saved = 0;
       return split_packet<kAny>(g, p, width, use_mailbox, n);
     case Coherence::kTogether:
       break;
@@ -297,6 +332,7 @@ inline std::uint64_t traverse_together(
     walk_frustum(g, f, n, visit);
   p.live = live;
   if (visit.split_at() >= 0) {
+    p.saved = visit.saved();
     start_from_slice(f, p, visit.split_at());
     return split_packet<kAny>(g, p, width, use_mailbox, n);
   }

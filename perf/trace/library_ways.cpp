@@ -19,8 +19,7 @@ void LibraryWays::enter(const RayBuffer& rays, Cell& cell) {
 
 void LibraryWays::call(const RayBuffer& r) {
   for (std::size_t i = 0; i < r.size(); ++i) {
-    const Ray ray{
-        {r.ox[i], r.oy[i], r.oz[i]}, {r.dx[i], r.dy[i], r.dz[i]}, r.t_min[i], r.t_max[i]};
+    const Ray ray{{r.ox[i], r.oy[i], r.oz[i]}, {r.dx[i], r.dy[i], r.dz[i]}, r.t_min[i], r.t_max[i]};
     if (any_) {
       answers_.blocked[i] = occluded(world_, ray);
       continue;
