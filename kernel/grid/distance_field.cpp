@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "kernel/grid/grid.hpp"
+#include "kernel/scene/turns.hpp"
 
 namespace grelha {
 namespace {
@@ -64,20 +65,20 @@ void chebyshev_distance(std::vector<std::uint8_t>& d,
   const std::ptrdiff_t ny = cells[1];
   const std::ptrdiff_t nz = cells[2];
   std::vector<std::uint8_t> other(d.size());
-#pragma omp parallel num_threads(threads)
-  {
-#pragma omp for schedule(static)
-    for (std::ptrdiff_t z = 0; z < nz; ++z) {
-      const std::ptrdiff_t slice = z * nx * ny;
-      for (std::ptrdiff_t y = 0; y < ny; ++y)
-        sweep(d.data() + slice + y * nx, nx);
-      for (std::ptrdiff_t y = 0; y < ny; ++y)
-        nearest_along(d.data() + slice + y * nx, other.data() + slice + y * nx, nx, nx, y, ny);
-    }
-#pragma omp for schedule(static)
-    for (std::ptrdiff_t y = 0; y < ny * nz; ++y)
-      nearest_along(other.data() + y * nx, d.data() + y * nx, nx, nx * ny, y / ny, nz);
-  }
+  const auto along_x_and_y = [&](std::size_t z) {
+    const std::ptrdiff_t slice = static_cast<std::ptrdiff_t>(z) * nx * ny;
+    for (std::ptrdiff_t y = 0; y < ny; ++y)
+      sweep(d.data() + slice + y * nx, nx);
+    for (std::ptrdiff_t y = 0; y < ny; ++y)
+      nearest_along(d.data() + slice + y * nx, other.data() + slice + y * nx, nx, nx, y, ny);
+  };
+  const auto along_z = [&](std::size_t slice) {
+    const auto z = static_cast<std::ptrdiff_t>(slice);
+    for (std::ptrdiff_t row = z * ny; row < (z + 1) * ny; ++row)
+      nearest_along(other.data() + row * nx, d.data() + row * nx, nx, nx * ny, z, nz);
+  };
+  each_turn(cells[2], threads, along_x_and_y);
+  each_turn(cells[2], threads, along_z);
 }
 
 std::vector<std::uint8_t> chebyshev_distance(const std::vector<std::uint8_t>& occupied,

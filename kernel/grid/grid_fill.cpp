@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <exception>
 #include <numeric>
 #include <optional>
 #include <stdexcept>
@@ -15,6 +14,7 @@
 #include "kernel/grid/cell_finder.hpp"
 #include "kernel/grid/distance_field.hpp"
 #include "kernel/grid/grid_layout.hpp"
+#include "kernel/scene/turns.hpp"
 #include "kernel/shapes/copies.hpp"
 
 // A store is filled in three passes, each shared among threads that write to places of their own:
@@ -58,30 +58,17 @@ void for_each_list(CellStore& store, const Visit& visit) {
   });
 }
 
-/// Calls work(i, state) for i below count, each thread with a state of its own. An exception cannot
-/// leave a thread: the last is kept and thrown again behind the loop.
+/// Calls work(i, state) for i below count, each thread with a state of its own.
 template <class State, class Work>
 void share_out(const Filling& f, std::size_t count, const Work& work) {
-  std::exception_ptr trouble;
-  const auto end = static_cast<std::ptrdiff_t>(count);
-#pragma omp parallel num_threads(f.threads)
-  {
-    State state;
-#pragma omp for schedule(dynamic)
-    for (std::ptrdiff_t i = 0; i < end; ++i) {
-      try {
-        if (f.progress.stopped())
-          continue;
-        work(static_cast<std::size_t>(i), state);
-        f.progress.step();
-      } catch (...) {
-#pragma omp critical
-        trouble = std::current_exception();
-      }
-    }
-  }
-  if (trouble)
-    std::rethrow_exception(trouble);
+  const auto take = [&](std::size_t i, State& state) {
+    if (f.progress.stopped())
+      return;
+    work(i, state);
+    f.progress.step();
+  };
+  each_turn(
+      count, f.threads, [] { return State(); }, take);
   f.progress.throw_if_stopped();
 }
 
@@ -182,10 +169,7 @@ bool drop_copies(Filling& f) {
 
 /// Counts all buckets, each by a thread.
 void count_buckets(Filling& f, std::vector<PerKind>& counts) {
-  const auto buckets = static_cast<std::ptrdiff_t>(f.buckets.count);
-#pragma omp parallel for schedule(dynamic) num_threads(f.threads)
-  for (std::ptrdiff_t i = 0; i < buckets; ++i)
-    counts[static_cast<std::size_t>(i)] = count(f, static_cast<std::size_t>(i));
+  each_turn(f.buckets.count, f.threads, [&](std::size_t i) { counts[i] = count(f, i); });
 }
 
 /// Turns counts into where the lists of each begin; returns their sums.

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <mutex>
 
 #include "kernel/grid/cell_finder.hpp"
 #include "kernel/primitive/rounding.hpp"
+#include "kernel/scene/turns.hpp"
 
 namespace grelha {
 namespace {
@@ -31,6 +33,15 @@ double cube_root(double x) {
   }
 }
 
+/// Calls look(run) for runs of ids, which are all in the end.
+template <class Look>
+void each_run(std::span<const std::uint32_t> ids, int threads, const Look& look) {
+  constexpr std::size_t kRun = std::size_t{1} << 12;
+  each_turn((ids.size() + kRun - 1) / kRun, threads, [&](std::size_t i) {
+    look(ids.subspan(i * kRun, std::min(kRun, ids.size() - i * kRun)));
+  });
+}
+
 /// Grows a box by another; returns the square of that one's diagonal.
 double add_box(Box& to, const Box& b) {
   double sum = 0;
@@ -46,21 +57,17 @@ double add_box(Box& to, const Box& b) {
 
 Extent extent_of(const Primitives& p, std::span<const std::uint32_t> ids, int threads) {
   Extent all;
-  const auto count = static_cast<std::ptrdiff_t>(ids.size());
-#pragma omp parallel num_threads(useful_threads(threads, ids.size()))
-  {
-    Box mine;
+  std::mutex mutex;
+  each_run(ids, threads, [&](std::span<const std::uint32_t> run) {
+    Box box;
     double longest = 0;  // squared: one root in the end
-#pragma omp for schedule(static) nowait
-    for (std::ptrdiff_t i = 0; i < count; ++i)
-      longest = std::max(longest, add_box(mine, p.box(ids[static_cast<std::size_t>(i)])));
-#pragma omp critical  // least and most do not depend on the order
-    {
-      if (!mine.empty())
-        all.box.add(mine);
-      all.longest = std::max(all.longest, std::sqrt(longest));
-    }
-  }
+    for (const std::uint32_t id : run)
+      longest = std::max(longest, add_box(box, p.box(id)));
+    const std::lock_guard lock(mutex);  // least and most do not depend on the order
+    if (!box.empty())
+      all.box.add(box);
+    all.longest = std::max(all.longest, std::sqrt(longest));
+  });
   return all;
 }
 
@@ -71,15 +78,14 @@ std::vector<std::uint32_t> longer_than(const Primitives& p,
                                        int threads) {
   std::vector<std::uint32_t> found(most + 1);
   std::atomic<std::size_t> next = 0;
-  const auto count = static_cast<std::ptrdiff_t>(ids.size());
-#pragma omp parallel for schedule(static) num_threads(useful_threads(threads, ids.size()))
-  for (std::ptrdiff_t i = 0; i < count; ++i) {
-    const std::uint32_t id = ids[static_cast<std::size_t>(i)];
-    if (!(p.box(id).diagonal() > diagonal))
-      continue;
-    if (const std::size_t at = next++; at < found.size())
-      found[at] = id;
-  }
+  each_run(ids, threads, [&](std::span<const std::uint32_t> run) {
+    for (const std::uint32_t id : run) {
+      if (!(p.box(id).diagonal() > diagonal))
+        continue;
+      if (const std::size_t at = next++; at < found.size())
+        found[at] = id;
+    }
+  });
   found.resize(std::min(next.load(), found.size()));
   std::sort(found.begin(), found.end());
   return found;

@@ -1,9 +1,13 @@
 #pragma once
 // Work in turns that threads take as they come, with exceptions that must not leave a thread.
 
+#include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <exception>
 #include <mutex>
+
+#include "kernel/scene/crew.hpp"
 
 namespace grelha {
 
@@ -35,14 +39,14 @@ class Thrown {
 template <class MakeState, class Work>
 void each_turn(std::size_t count, int threads, const MakeState& make_state, const Work& work) {
   Thrown thrown;
-  const auto turns = static_cast<std::ptrdiff_t>(count);
-#pragma omp parallel num_threads(threads)
-  {
+  std::atomic<std::size_t> next = 0;
+  const auto take_turns = [&] {
     auto state = make_state();
-#pragma omp for schedule(dynamic, 1)
-    for (std::ptrdiff_t turn = 0; turn < turns; ++turn)
-      thrown.in([&] { work(static_cast<std::size_t>(turn), state); });
-  }
+    for (std::size_t turn; (turn = next++) < count;)
+      thrown.in([&] { work(turn, state); });
+  };
+  const auto useful = std::min(static_cast<std::size_t>(threads), count);
+  by_crew(static_cast<int>(useful), [&] { thrown.in(take_turns); });
   thrown.on();
 }
 

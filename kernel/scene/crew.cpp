@@ -1,0 +1,128 @@
+#include "kernel/scene/crew.hpp"
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+#include <unistd.h>
+
+namespace grelha {
+namespace {
+
+/// A thread that sleeps until it is asked.
+class Member {
+ public:
+  /// Throws std::system_error when there can be no more threads.
+  Member() {
+    std::thread([this] { serve(); }).detach();
+  }
+
+  void ask(const std::function<void()>& work) {
+    work_ = &work;
+    state_ = kAsked;
+    state_.notify_one();
+  }
+  /// Takes back what it was asked and has not begun; else waits until it is done.
+  void dismiss() {
+    int asked = kAsked;
+    if (state_.compare_exchange_strong(asked, kIdle))
+      return;
+    wait_while(kAtWork);
+  }
+
+ private:
+  enum : int { kIdle, kAsked, kAtWork };
+
+  [[noreturn]] void serve() {
+    for (;;) {
+      wait_while(kIdle);
+      int asked = kAsked;
+      if (!state_.compare_exchange_strong(asked, kAtWork))
+        continue;
+      (*work_)();
+      state_ = kIdle;
+      state_.notify_all();
+    }
+  }
+
+  /// The next stretch mostly comes soon, and to be woken takes as long as some stretches. Those who
+  /// yield in place of a pause stay behind the caller, on its core.
+  void wait_while(int state) {
+    for (int i = 0; i < kPauses && state_ == state; ++i)
+      pause();
+    while (state_ == state)
+      state_.wait(state);
+  }
+  static void pause() {
+#if defined(__x86_64__) || defined(__i386__)
+    __builtin_ia32_pause();
+#endif
+  }
+  /// A third of a millisecond: a build has nothing to share out for about so long at a time.
+  static constexpr int kPauses = 20000;
+
+  const std::function<void()>* work_ = nullptr;
+  std::atomic<int> state_ = kIdle;
+};
+
+/// All threads that there are, lent to whoever asks.
+class Members {
+ public:
+  /// Up to so many; fewer when there can be no more threads.
+  std::vector<Member*> lend(int count) {
+    const std::lock_guard lock(mutex_);
+    if (process_ != getpid()) {  // a child that fork() made has none of them
+      process_ = getpid();
+      idle_.clear();
+    }
+    std::vector<Member*> lent;
+    while (static_cast<int>(lent.size()) < count && (!idle_.empty() || add())) {
+      lent.push_back(idle_.back());
+      idle_.pop_back();
+    }
+    return lent;
+  }
+  void take_back(const std::vector<Member*>& lent) {
+    const std::lock_guard lock(mutex_);
+    idle_.insert(idle_.end(), lent.begin(), lent.end());
+  }
+
+ private:
+  bool add() try {
+    all_.push_back(std::make_unique<Member>());
+    idle_.push_back(all_.back().get());
+    return true;
+  } catch (const std::system_error&) {
+    return false;
+  }
+
+  std::mutex mutex_;
+  pid_t process_ = getpid();
+  std::vector<std::unique_ptr<Member>> all_;
+  std::vector<Member*> idle_;
+};
+
+/// Never destroyed: they sleep on while the program ends.
+Members& members() {
+  static Members* const all = new Members;
+  return *all;
+}
+
+}  // namespace
+
+void by_crew(int threads, const std::function<void()>& work) {
+  if (threads < 2)
+    return work();
+  const std::vector<Member*> lent = members().lend(threads - 1);
+  for (Member* const m : lent)
+    m->ask(work);
+  work();
+  for (Member* const m : lent)
+    m->dismiss();
+  members().take_back(lent);
+}
+
+}  // namespace grelha

@@ -1,0 +1,17 @@
+#pragma once
+// Threads that help with short stretches of work, and sleep between them.
+
+#include <functional>
+
+namespace grelha {
+
+/// Calls work() here, and on up to `threads` - 1 other threads meanwhile; returns when all are
+/// done. Others may come late or not at all: whoever calls work() must find all that is left to do.
+/// It may not throw. Safe from several threads.
+///
+/// OpenMP's threads spin for milliseconds where one waits for another. On a busy machine, where the
+/// other is not running, a scene of 8,000 triangles took forty times as long to build with two
+/// threads as with one. Here nobody waits for a thread that has not begun.
+void by_crew(int threads, const std::function<void()>& work);
+
+}  // namespace grelha
