@@ -6,7 +6,7 @@ set(names "sin|cos|tan|asin|acos|atan|atan2|sinh|cosh|tanh")
 string(APPEND names "|exp|exp2|expm1|log|log2|log10|log1p|pow|cbrt|hypot|erf|erfc|tgamma|lgamma")
 # No colour that was traced: the steps of sRGB, doubles rounded to floats; a map of sample counts; a
 # ratio that is printed.
-set(allowed "frontend/images/image_file.cpp: std::pow" "frontend/cli/render_scene.cpp: std::log2"
+set(allowed "frontend/images/tone.cpp: std::pow" "frontend/cli/render_scene.cpp: std::log2"
   "frontend/images/compare.cpp: std::log10")
 
 # Sets `wrong` to a list of "file: call".
@@ -42,10 +42,10 @@ endif()
 file(REMOVE_RECURSE ${SCRATCH})
 file(WRITE ${SCRATCH}/kernel/a.cpp "double f(double x) { return std::tan(x); }  // std::sin(x)\n")
 file(WRITE ${SCRATCH}/kernel/b.hpp "double g(double x) { return std::sqrt(x) + std::cosine(x); }\n")
-file(WRITE ${SCRATCH}/frontend/images/image_file.cpp
+file(WRITE ${SCRATCH}/frontend/images/tone.cpp
   "float h(float x) { return std::pow(x, 2) + std::powf(x, 3); }\n")
 find_library_calls(${SCRATCH})
-set(expected "kernel/a.cpp: std::tan;frontend/images/image_file.cpp: std::powf")
+set(expected "kernel/a.cpp: std::tan;frontend/images/tone.cpp: std::powf")
 if(NOT wrong STREQUAL expected)
   message(FATAL_ERROR "planted calls:\n  expected ${expected}\n  found    ${wrong}")
 endif()

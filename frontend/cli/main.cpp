@@ -16,6 +16,7 @@
 #include "frontend/files/parse_error.hpp"
 #include "frontend/images/compare.hpp"
 #include "frontend/images/image_file.hpp"
+#include "frontend/images/tone.hpp"
 #include "frontend/jobs/merge.hpp"
 #include "frontend/jobs/preparation.hpp"
 #include "frontend/jobs/ranks.hpp"

@@ -5,16 +5,14 @@
 #include "frontend/images/exr_file.hpp"
 #include "frontend/images/hdr_file.hpp"
 #include "frontend/images/png_chunks.hpp"
+#include "frontend/images/tone.hpp"
 
 #include <stb/stb_image.h>
 #include <stb/stb_image_write.h>
 
-#include <algorithm>
-#include <array>
 #include <bit>
 #include <cerrno>
 #include <charconv>
-#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -28,24 +26,6 @@ namespace {
 
 constexpr std::int64_t kStbBytes = 2'000'000'000;  // stb counts bytes in an int
 constexpr int kMaxSide = 65536;
-
-/// IEC 61966-2-1.
-double light_of_srgb(double encoded) {
-  return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
-}
-
-/// Byte k begins at thresholds[k - 1]. A table, not a curve per pixel: two machines whose powf
-/// differ in the last bit would otherwise write different files.
-const std::array<float, 255>& srgb_thresholds() {
-  static const auto table = [] {
-    std::array<float, 255> thresholds;
-    for (std::size_t k = 1; k <= thresholds.size(); ++k) {
-      thresholds[k - 1] = float(light_of_srgb((double(k) - 0.5) / 255));
-    }
-    return thresholds;
-  }();
-  return table;
-}
 
 void append(void* bytes, void* data, int size) {
   static_cast<std::string*>(bytes)->append(static_cast<const char*>(data), std::size_t(size));
@@ -212,18 +192,6 @@ std::string_view ending_of(ImageFormat format) {
   return "";
 }
 
-std::uint8_t to_byte(float value, Tone tone) {
-  if (!(value > 0))
-    return 0;
-  if (value >= 1)
-    return 255;
-  if (tone == Tone::authored)
-    return std::uint8_t(value * 255 + 0.5f);
-  const auto& thresholds = srgb_thresholds();
-  return std::uint8_t(std::upper_bound(thresholds.begin(), thresholds.end(), value) -
-                      thresholds.begin());
-}
-
 bool image_fits(ImageFormat format, int width, int height) {
   const bool in_range = width >= 1 && height >= 1 && width <= kMaxSide && height <= kMaxSide;
   const bool by_stb = format == ImageFormat::png || format == ImageFormat::hdr;
@@ -231,10 +199,7 @@ bool image_fits(ImageFormat format, int width, int height) {
 }
 
 std::string encode_png(const Image& image, Tone tone, const Notes& notes) {
-  std::vector<std::uint8_t> pixels(image.rgb.size());
-  std::transform(image.rgb.begin(), image.rgb.end(), pixels.begin(), [tone](float v) {
-    return to_byte(v, tone);
-  });
+  const std::vector<std::uint8_t> pixels = to_bytes(image, tone);
   std::string bytes;
   if (!stbi_write_png_to_func(
           append, &bytes, image.width, image.height, 3, pixels.data(), 3 * image.width))
@@ -298,15 +263,6 @@ Image read_image(const std::string& path, Encoding* encoding) {
   Image image = read_by_stb(path, bytes, *format);
   if (encoding && *format == ImageFormat::png)
     *encoding = png_encoding(bytes);
-  return image;
-}
-
-Image as_light(Image image, const Encoding& encoding) {
-  if (encoding.kind == Encoding::Kind::light)
-    return image;
-  const bool power = encoding.kind == Encoding::Kind::power;
-  for (float& v : image.rgb)
-    v = float(power ? std::pow(double(v), 1 / encoding.exponent) : light_of_srgb(v));
   return image;
 }
 

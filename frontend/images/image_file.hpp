@@ -16,9 +16,6 @@ std::optional<ImageFormat> image_format(std::string_view path);
 /// The ending of such files: "png".
 std::string_view ending_of(ImageFormat format);
 
-/// 0..1 to 0..255, to nearest; what lies outside is clamped and NaN is black.
-std::uint8_t to_byte(float value, Tone tone);
-
 /// Returns whether the format's writer can hold a picture of that size.
 bool image_fits(ImageFormat format, int width, int height);
 
@@ -36,8 +33,5 @@ std::string encoding_text(const Encoding& encoding);
 /// Reads what write_image writes and other files of these kinds. A PNG's bytes come as byte / 255,
 /// unbent; `encoding`, where given, says how they were bent.
 Image read_image(const std::string& path, Encoding* encoding = nullptr);
-
-/// The light that numbers so encoded stand for.
-Image as_light(Image image, const Encoding& encoding);
 
 }  // namespace grelha

@@ -1,6 +1,7 @@
 #include "frontend/images/image_file.hpp"
 
 #include "frontend/images/hdr_file.hpp"
+#include "frontend/images/tone.hpp"
 #include "tests/support/file_error.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -1,0 +1,21 @@
+#pragma once
+// Light as a picture's numbers, and back.
+
+#include <cstdint>
+#include <vector>
+
+#include "frontend/images/image_style.hpp"
+#include "grelha/image.hpp"
+
+namespace grelha {
+
+/// 0..1 to 0..255, to nearest; what lies outside is clamped and NaN is black.
+std::uint8_t to_byte(float value, Tone tone);
+
+/// The same for a whole picture, by all threads.
+std::vector<std::uint8_t> to_bytes(const Image& image, Tone tone);
+
+/// The light that numbers so encoded stand for.
+Image as_light(Image image, const Encoding& encoding);
+
+}  // namespace grelha
