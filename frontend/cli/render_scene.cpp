@@ -1,5 +1,7 @@
 #include "frontend/cli/render_scene.hpp"
 
+#include <omp.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -103,6 +105,9 @@ class SceneRender {
         bars_(!command_.quiet && stderr_is_terminal()) {}
 
   int run() {
+    // to read and to write; a thread more than there are processors would only wait there
+    if (const int threads = command_.render.threads; threads > 0)
+      omp_set_num_threads(std::min(threads, omp_get_num_procs()));
     const Stopwatch load;
     if (!ranks_.together([this] { read(); }))
       return kFileFailed;

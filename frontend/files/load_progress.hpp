@@ -45,10 +45,10 @@ class ParseProgress {
   ParseProgress(LoadProgress* progress, const char* begin) : progress_(progress), told_(begin) {}
   void at(const char* here) {
     constexpr std::ptrdiff_t kStride = 1 << 20;
-    if (!progress_ || here - told_ < kStride)
-      return;
-    progress_->done(kParsing * static_cast<double>(here - told_));
-    told_ = here;
+    while (progress_ && here - told_ >= kStride) {
+      told_ += kStride;
+      progress_->done(kParsing * double(kStride));
+    }
   }
 
  private:

@@ -1,6 +1,7 @@
 #include "frontend/files/text.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -17,6 +18,52 @@ bool is_blank(char c) {
 bool ends_line(char c) {
   return c == '\n' || c == '\r';
 }
+
+constexpr double kPowersOfTen[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                   1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
+                                   1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+
+/// A number without sign as it is written: its digits times a power of ten.
+struct Decimal {
+  std::uint64_t digits = 0;
+  int power = 0;
+
+  /// Returns where it ends, or nullptr: no number, or too long a one.
+  const char* read(const char* p, const char* end) {
+    const char* const first = p;
+    p = read_digits(p, end);
+    std::ptrdiff_t count = p - first;
+    if (p != end && *p == '.') {
+      const char* const point = p;
+      p = read_digits(p + 1, end);
+      power = -int(std::min<std::ptrdiff_t>(p - point - 1, kTooMany));
+      count = p - first - 1;
+    }
+    if (count == 0 || count >= kTooMany)
+      return nullptr;
+    return p != end && (*p == 'e' || *p == 'E') ? read_power(p + 1, end) : p;
+  }
+
+ private:
+  static constexpr int kTooMany = 20;  ///< digits, for a number of 64 bits
+
+  const char* read_digits(const char* p, const char* end) {
+    for (; p != end && is_digit(*p); ++p)
+      digits = 10 * digits + std::uint64_t(*p - '0');
+    return p;
+  }
+  const char* read_power(const char* p, const char* end) {
+    const bool negative = p != end && *p == '-';
+    if (p != end && (*p == '-' || *p == '+'))
+      ++p;
+    int value = 0;
+    const char* const first = p;
+    for (; p != end && is_digit(*p) && p - first < 3; ++p)
+      value = 10 * value + (*p - '0');
+    power += negative ? -value : value;
+    return p == first ? nullptr : p;
+  }
+};
 
 /// Decimal exponent of a well-formed number that no float can hold: its sign tells overflow from
 /// underflow.
@@ -48,6 +95,28 @@ long decimal_exponent(std::string_view word) {
   return exponent + (digits > 0 ? digits : -leading);
 }
 
+/// Reads a number of at most 2^53 and a power of ten up to 22, as written without its point, both
+/// of which a double holds: the quotient or product is the nearest double then. It rounds to the
+/// float that the number itself is nearest to, unless it lies right between two. Returns where the
+/// number ends, or nullptr: it is none of these, or goes on.
+const char* short_number(const char* p, const char* end, float& value) {
+  constexpr std::uint64_t kMost = std::uint64_t(1) << 53;
+  constexpr std::uint64_t kBelow = (std::uint64_t(1) << 29) - 1, kHalf = std::uint64_t(1) << 28;
+  const bool negative = p != end && *p == '-';
+  Decimal decimal;
+  p = decimal.read(negative ? p + 1 : p, end);
+  if (!p || decimal.digits > kMost || decimal.power < -22 || decimal.power > 22)
+    return nullptr;
+  const auto whole = double(decimal.digits);
+  const double exact = decimal.power < 0 ? whole / kPowersOfTen[-decimal.power]
+                                         : whole * kPowersOfTen[decimal.power];
+  // a double has 29 bits more than a float
+  if ((std::bit_cast<std::uint64_t>(exact) & kBelow) == kHalf)
+    return nullptr;
+  value = float(negative ? -exact : exact);
+  return p;
+}
+
 template <class Float>
 bool parse(std::string_view word, Float& value) {
   const char *first = word.data(), *last = first + word.size();
@@ -69,7 +138,8 @@ bool parse(std::string_view word, Float& value) {
 }  // namespace
 
 bool to_number(std::string_view word, float& value) {
-  return parse(word, value);
+  const char* const last = word.data() + word.size();
+  return short_number(word.data(), last, value) == last || parse(word, value);
 }
 bool to_number(std::string_view word, double& value) {
   return parse(word, value);
@@ -152,6 +222,17 @@ std::string_view Words::next() {
   const char* first = skip_blanks(at_, false, fresh_line_);
   at_ = word_end(first);
   return {first, std::size_t(at_ - first)};
+}
+
+bool Words::next_number(float& value) {
+  const char* first = at_;
+  while (first != end_ && is_blank(*first))
+    ++first;
+  const char* const last = short_number(first, end_, value);
+  if (!last || (last != end_ && !is_blank(*last) && *last != comment_))
+    return false;
+  at_ = last;
+  return true;
 }
 
 std::string_view Words::peek() const {

@@ -37,8 +37,11 @@ class Words {
   /// end of its line, wherever it stands; '\0': there are none.
   Words(std::string file, std::string_view text, std::size_t begin, char comment);
 
-  std::string_view next();        ///< next word on any line; empty at the end of the file
-  std::string_view peek() const;  ///< the same, left in place
+  std::string_view next();  ///< next word on any line; empty at the end of the file
+  /// Steps over the next word if it is a number as most are, with few digits: `value`, as
+  /// to_number() reads it. False, and nothing is stepped over, for other words, comments, the end.
+  bool next_number(float& value);
+  std::string_view peek() const;  ///< what next() would return, left in place
   /// empty when the line ends first; then data() is where it ends
   std::string_view peek_on_line() const;
   bool fresh_line() const {
@@ -47,6 +50,9 @@ class Words {
   }
   void skip_line();                 ///< to the end of this line; the next word is fresh
   std::string_view rest_of_line();  ///< up to the comment or line end, trimmed; consumes it
+
+  /// Has reading go on at a place of the text, where cursor() was or would be.
+  void go_on_at(const char* place) { at_ = place; }
 
   std::size_t bytes_left() const { return std::size_t(end_ - at_); }
   std::size_t size() const { return std::size_t(end_ - begin_); }

@@ -14,8 +14,10 @@ void NffInput::warn_once(std::string_view kind, std::string_view word, const std
 }
 
 float NffInput::number(const char* what) {
-  const std::string_view word = words.next();
   float value;
+  if (words.next_number(value))
+    return value;
+  const std::string_view word = words.next();
   if (!to_number(word, value))
     fail(word, std::string("a number for ") + what);
   return value;

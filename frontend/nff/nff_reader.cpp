@@ -6,10 +6,12 @@
 #include "frontend/files/load_progress.hpp"
 #include "frontend/files/plausible.hpp"
 #include "frontend/nff/nff_boxes.hpp"
+#include "frontend/nff/nff_chunks.hpp"
 #include "frontend/nff/nff_input.hpp"
 #include "frontend/nff/nff_lights.hpp"
 #include "frontend/nff/nff_material.hpp"
 #include "frontend/nff/nff_mesh_files.hpp"
+#include "frontend/nff/nff_plain.hpp"
 #include "frontend/nff/nff_view.hpp"
 #include "frontend/nff/nff_words.hpp"
 #include "frontend/scene/scene_builder.hpp"
@@ -24,13 +26,16 @@ class NffReader {
             std::string_view text,
             const Warn& warn,
             const ReadOptions& options,
-            LoadProgress* progress)
+            LoadProgress* progress,
+            const ChunkSizes& chunks)
       : progress_(progress, text.data()),
         words_(path, text, text.starts_with("\xEF\xBB\xBF") ? 3 : 0, '#'),
         warnings_(warn),
         meshes_(path, warn, options, progress),
         input_(words_, warnings_),
         build_(file_),
+        plain_(input_, file_),
+        chunks_(path, text, chunks),
         lights_(file_) {
     file_.source_bytes = text.size();
   }
@@ -46,19 +51,15 @@ class NffReader {
   static const Named kEntities[];
 
   void warn_of_nul(std::string_view text);
+  NffChunks::Taken read_ahead(std::string_view word);
   bool read_entity(std::string_view word);
   void skip_other(std::string_view word, std::string_view last_entity);
   static std::string meant(std::string_view word);
   void refuse_sense8(std::string_view word);
-  std::uint32_t material(std::string_view keyword);
-  void polygon(std::string_view keyword, bool patch);
+  std::uint32_t material(std::string_view keyword) { return plain_.material(keyword); }
   std::vector<std::uint32_t> mesh_corners(std::size_t faces, std::size_t vertices);
 
-  void read_s(std::string_view keyword);
-  void read_p(std::string_view keyword) { polygon(keyword, false); }
-  void read_pp(std::string_view keyword) { polygon(keyword, true); }
-  void read_c(std::string_view keyword);
-  void read_f(std::string_view keyword);
+  void read_plain(std::string_view keyword) { plain_.read(keyword); }
   void read_mat(std::string_view keyword);
   void read_l(std::string_view) { lights_.read_point(input_); }
   void read_b(std::string_view) {
@@ -83,16 +84,17 @@ class NffReader {
   NffMeshFiles meshes_;
   NffInput input_;
   SceneBuilder build_;
+  NffPlain plain_;
+  NffChunks chunks_;
   NffView view_;
   NffLights lights_;
-  std::vector<Float3> corners_, normals_;
 };
 
 // The frequent ones first: the search is linear.
 const NffReader::Named NffReader::kEntities[] = {
-    {"s", &NffReader::read_s},         {"p", &NffReader::read_p},
-    {"pp", &NffReader::read_pp},       {"c", &NffReader::read_c},
-    {"f", &NffReader::read_f},         {"mat", &NffReader::read_mat},
+    {"s", &NffReader::read_plain},     {"p", &NffReader::read_plain},
+    {"pp", &NffReader::read_plain},    {"c", &NffReader::read_plain},
+    {"f", &NffReader::read_plain},     {"mat", &NffReader::read_mat},
     {"l", &NffReader::read_l},         {"b", &NffReader::read_b},
     {"bclr", &NffReader::read_b},      {"pl", &NffReader::read_pl},
     {"npl", &NffReader::read_npl},     {"box", &NffReader::read_box},
@@ -121,11 +123,24 @@ SceneFile NffReader::read(std::string_view text) {
       return std::move(file_);
     }
     progress_.at(words_.cursor());
-    if (read_entity(word))
+    if (const NffChunks::Taken taken = read_ahead(word); taken.end)
+      last_entity = taken.last_entity;
+    else if (read_entity(word))
       last_entity = word;
     else
       skip_other(word, last_entity);
   }
+}
+
+/// From this entity on, by all threads: what came of it, where that is worth while.
+NffChunks::Taken NffReader::read_ahead(std::string_view word) {
+  if (!chunks_.due(word.data()) || !is_plain(word) || file_.scene.materials.empty())
+    return {};
+  const auto tell = [this](const char* here) { progress_.at(here); };
+  const NffChunks::Taken taken = chunks_.read_run(word.data(), file_, tell);
+  if (taken.end)
+    words_.go_on_at(taken.end);
+  return taken;
 }
 
 bool NffReader::read_entity(std::string_view word) {
@@ -173,51 +188,6 @@ void NffReader::refuse_sense8(std::string_view word) {
   if (ahead.next() == "version")
     throw ParseError(input_.position(word),
                      "expected Haines' Neutral File Format, found Sense8's (WorldToolKit) NFF");
-}
-
-std::uint32_t NffReader::material(std::string_view keyword) {
-  std::vector<Material>& all = file_.scene.materials;
-  if (all.empty()) {
-    input_.warn_once(
-        "no material", keyword, "an object before the first \"f\"; it is drawn dull white");
-    all.push_back(default_material());
-  }
-  return std::uint32_t(all.size() - 1);
-}
-
-void NffReader::read_s(std::string_view keyword) {
-  const Float3 center = input_.point("the sphere's center");
-  build_.sphere(center, input_.number("the sphere's radius"), material(keyword));
-  ++file_.counts.s;
-}
-
-void NffReader::polygon(std::string_view keyword, bool patch) {
-  const std::string_view word = words_.peek();
-  const std::size_t size = input_.count("the polygon's corners", patch ? 12 : 6);
-  if (size < 3)
-    input_.fail(word, "at least 3 corners of a polygon");
-  corners_.clear();
-  normals_.clear();
-  for (std::size_t i = 0; i < size; ++i) {
-    corners_.push_back(input_.point("the polygon's corner"));
-    if (patch)
-      normals_.push_back(input_.point("the corner's normal"));
-  }
-  build_.polygon(corners_, normals_, material(keyword));
-  ++(patch ? file_.counts.pp : file_.counts.p);
-}
-
-void NffReader::read_c(std::string_view keyword) {
-  const Float3 base = input_.point("the cone's base");
-  const float base_radius = input_.number("the cone's base radius");
-  const Float3 apex = input_.point("the cone's apex");
-  build_.cone(base, base_radius, apex, input_.number("the cone's apex radius"), material(keyword));
-  ++file_.counts.c;
-}
-
-void NffReader::read_f(std::string_view keyword) {
-  file_.scene.materials.push_back(read_nff_fill(input_, keyword));
-  ++file_.counts.materials;
 }
 
 void NffReader::read_mat(std::string_view keyword) {
@@ -338,8 +308,9 @@ SceneFile read_nff(const std::string& path,
                    std::string_view text,
                    const Warn& warn,
                    const ReadOptions& options,
-                   LoadProgress* progress) {
-  return NffReader(path, text, warn, options, progress).read(text);
+                   LoadProgress* progress,
+                   const ChunkSizes& chunks) {
+  return NffReader(path, text, warn, options, progress, chunks).read(text);
 }
 
 }  // namespace grelha

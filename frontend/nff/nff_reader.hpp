@@ -3,6 +3,7 @@
 #include <string>
 #include <string_view>
 
+#include "frontend/nff/nff_chunks.hpp"
 #include "frontend/scene/scene_file.hpp"
 
 namespace grelha {
@@ -11,11 +12,13 @@ class LoadProgress;
 
 /// Reads NFF and the dialects built on it (the entities of docs/nff.md) as a stream of words. The
 /// line end matters only behind `l`, `f`, `mat`, `al` and to comments. Files named by `ply` are
-/// looked for beside `path`.
+/// looked for beside `path`. Threads share long runs of plain entities, cut by `chunks`: the scene,
+/// its warnings and errors are the same for any.
 SceneFile read_nff(const std::string& path,
                    std::string_view text,
                    const Warn& warn,
                    const ReadOptions& options = {},
-                   LoadProgress* progress = nullptr);
+                   LoadProgress* progress = nullptr,
+                   const ChunkSizes& chunks = {});
 
 }  // namespace grelha

@@ -150,6 +150,21 @@ bool SceneBuilder::bends(std::span<const Float3> corners) const {
   });
 }
 
+/// What a polygon of three corners comes to, of which most scenes have the most.
+void SceneBuilder::triangle(std::span<const Float3> corners,
+                            std::span<const Float3> normals,
+                            std::uint32_t material) {
+  const Float3& o = corners[0];
+  if (vanishes(cross(difference(corners[1], o), difference(corners[2], o)))) {
+    ++file_.dropped.zero_area;
+    return;
+  }
+  const auto first = std::uint32_t(file_.scene.geometry.triangles.vertex_count());
+  for (std::size_t i = 0; i < 3; ++i)
+    add_vertex(corners[i], normals.empty() ? Float3{} : sound_normal(normals[i]));
+  add_triangle(first, first + 1, first + 2, material);
+}
+
 void SceneBuilder::polygon(std::span<const Float3> corners,
                            std::span<const Float3> normals,
                            std::uint32_t material) {
@@ -157,13 +172,15 @@ void SceneBuilder::polygon(std::span<const Float3> corners,
     ++file_.dropped.not_finite;
     return;
   }
+  if (corners.size() == 3)
+    return triangle(corners, normals, material);
   pieces_.clear();
   if (!cutter_.cut(corners, pieces_)) {
     ++file_.dropped.zero_area;
     return;
   }
   Float3 shared_normal;
-  if (normals.empty() && corners.size() > 3 && bends(corners))
+  if (normals.empty() && bends(corners))
     shared_normal = unit(cutter_.normal());
   const auto first = std::uint32_t(file_.scene.geometry.triangles.vertex_count());
   for (std::size_t i = 0; i < corners.size(); ++i)

@@ -49,6 +49,9 @@ class SceneBuilder {
   void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t material);
   /// Returns whether anything is left of the triangle's area in floats.
   bool has_area(std::uint32_t a, std::uint32_t b, std::uint32_t c) const;
+  void triangle(std::span<const Float3> corners,
+                std::span<const Float3> normals,
+                std::uint32_t material);
   bool bends(std::span<const Float3> corners) const;
   void mesh_triangles(std::span<const std::uint32_t> corners,
                       std::uint32_t first_vertex,

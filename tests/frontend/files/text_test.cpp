@@ -6,8 +6,11 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
+#include <charconv>
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include "tests/support/gzip.hpp"
 #include "tests/support/reading.hpp"
@@ -222,6 +225,79 @@ TEST(LoadFile, SaysWhyItCannot) {
   const std::string self = folder.path().string();
   EXPECT_EQ(message_of([&] { load_file(self); }), self + ": error: cannot read: Is a directory");
   EXPECT_THROW(load_file("/dev/null"), FileError);
+}
+
+/// What the library reads, which rounds to the nearest float.
+float nearest_float(std::string_view word) {
+  float value = 0;
+  std::from_chars(word.data(), word.data() + word.size(), value);
+  return value;
+}
+
+/// One way reads words of few digits, another the rest: no word may show which.
+void expect_nearest(const std::string& word) {
+  float value = 7, again = 7;
+  ASSERT_TRUE(to_number(word, value)) << word;
+  const auto wanted = std::bit_cast<std::uint32_t>(nearest_float(word));
+  ASSERT_EQ(std::bit_cast<std::uint32_t>(value), wanted) << word;
+  for (const std::string& text : {word, " \n" + word + " 1", word + "#"}) {
+    Words words("w", text, 0, '#');
+    if (!words.next_number(again))
+      continue;
+    ASSERT_EQ(std::bit_cast<std::uint32_t>(again), wanted) << word;
+    ASSERT_EQ(words.cursor(), text.data() + text.find(word) + word.size()) << word;
+  }
+}
+
+TEST(Number, OfFewDigitsAreTheNearestFloats) {
+  std::mt19937_64 random(1);
+  for (int i = 0; i < 200000; ++i) {
+    std::string word = std::to_string(random() >> random() % 64);
+    if (random() % 4 > 0)
+      word.insert(random() % (word.size() + 1), ".");
+    if (random() % 3 == 0)
+      word += 'e' + std::to_string(int(random() % 40) - 20);
+    expect_nearest(random() % 2 ? "-" + word : word);
+  }
+}
+
+/// Where two floats are as near, or would be but for one of the last digits.
+TEST(Number, BetweenTwoFloatsAreTheNearest) {
+  std::mt19937 random(1);
+  for (int i = 0; i < 20000; ++i) {
+    const float low = std::ldexp(float((1 << 23) + random() % (1 << 23)), int(random() % 20) - 30);
+    const double middle = (double(low) + double(std::nextafter(low, 1e30f))) / 2;
+    for (const int digits : {9, 15, 16, 17, 40}) {
+      char word[64];
+      std::snprintf(word, sizeof word, "%.*g", digits, middle);
+      if (std::string_view(word).find('e') == std::string_view::npos || digits < 40)
+        expect_nearest(word);
+    }
+  }
+}
+
+TEST(Words, NextNumberLeavesWhatIsNone) {
+  for (const std::string text : {"",
+                                 " ",
+                                 "x",
+                                 "1x",
+                                 "1.5.2",
+                                 "--1",
+                                 "-",
+                                 ".",
+                                 "e5",
+                                 "1e",
+                                 "0x10",
+                                 "#1",
+                                 "nan",
+                                 "1e400",
+                                 "123456789012345678901",
+                                 "+1"}) {
+    Words words("w", text, 0, '#');
+    float value;
+    EXPECT_FALSE(words.next_number(value)) << text;
+    EXPECT_EQ(words.cursor(), text.data()) << text;
+  }
 }
 
 }  // namespace

@@ -1,0 +1,70 @@
+#include "frontend/nff/nff_plain.hpp"
+
+#include "frontend/nff/nff_material.hpp"
+
+namespace grelha {
+
+bool NffPlain::read(std::string_view keyword) {
+  if (keyword == "p")
+    read_polygon(keyword, false);
+  else if (keyword == "s")
+    read_sphere(keyword);
+  else if (keyword == "pp")
+    read_polygon(keyword, true);
+  else if (keyword == "c")
+    read_cone(keyword);
+  else if (keyword == "f")
+    read_fill(keyword);
+  else
+    return false;
+  return true;
+}
+
+std::uint32_t NffPlain::material(std::string_view keyword) {
+  std::vector<Material>& all = file_.scene.materials;
+  if (all.empty()) {
+    input_.warn_once(
+        "no material", keyword, "an object before the first \"f\"; it is drawn dull white");
+    all.push_back(default_material());
+  }
+  return std::uint32_t(all.size() - 1);
+}
+
+void NffPlain::read_sphere(std::string_view keyword) {
+  const Float3 center = input_.point("the sphere's center");
+  build_.sphere(center, input_.number("the sphere's radius"), material(keyword));
+  ++file_.counts.s;
+}
+
+void NffPlain::read_polygon(std::string_view keyword, bool patch) {
+  const char* const before = input_.words.cursor();
+  const std::size_t size = input_.count("the polygon's corners", patch ? 12 : 6);
+  if (size < 3) {
+    input_.words.go_on_at(before);
+    input_.fail(input_.words.peek(), "at least 3 corners of a polygon");
+  }
+  corners_.clear();
+  normals_.clear();
+  for (std::size_t i = 0; i < size; ++i) {
+    corners_.push_back(input_.point("the polygon's corner"));
+    if (patch)
+      normals_.push_back(input_.point("the corner's normal"));
+  }
+  build_.polygon(corners_, normals_, material(keyword));
+  ++(patch ? file_.counts.pp : file_.counts.p);
+}
+
+void NffPlain::read_cone(std::string_view keyword) {
+  const Float3 base = input_.point("the cone's base");
+  const float base_radius = input_.number("the cone's base radius");
+  const Float3 apex = input_.point("the cone's apex");
+  build_.cone(base, base_radius, apex, input_.number("the cone's apex radius"), material(keyword));
+  ++file_.counts.c;
+}
+
+void NffPlain::read_fill(std::string_view keyword) {
+  file_.scene.materials.push_back(read_nff_fill(input_, keyword));
+  ++file_.counts.materials;
+}
+
+}  // namespace grelha

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "frontend/nff/nff_input.hpp"
+#include "frontend/scene/scene_builder.hpp"
+#include "frontend/scene/scene_file.hpp"
+
+namespace grelha {
+
+/// `s`, `p`, `pp`, `c` and `f`: what large files are made of. What they become hangs on nothing
+/// before them but which material is the last.
+class NffPlain {
+ public:
+  NffPlain(NffInput& input, SceneFile& file) : input_(input), file_(file), build_(file) {}
+
+  /// After such a word: reads what it begins. False, and nothing is read, after any other.
+  bool read(std::string_view keyword);
+
+  /// Index of the last material; without any, a dull white one, which is warned of.
+  std::uint32_t material(std::string_view keyword);
+
+ private:
+  void read_sphere(std::string_view keyword);
+  void read_polygon(std::string_view keyword, bool patch);
+  void read_cone(std::string_view keyword);
+  void read_fill(std::string_view keyword);
+
+  NffInput& input_;
+  SceneFile& file_;
+  SceneBuilder build_;
+  std::vector<Float3> corners_, normals_;
+};
+
+/// Returns whether it is one of the words that NffPlain reads.
+inline bool is_plain(std::string_view word) {
+  return word == "p" || word == "s" || word == "pp" || word == "c" || word == "f";
+}
+
+}  // namespace grelha
