@@ -5,65 +5,79 @@
 namespace grelha {
 namespace {
 
-using Indices = std::vector<std::uint32_t>;
-
-template <class T>
-void append(std::vector<T>& all, const std::vector<T>& more) {
-  all.insert(all.end(), more.begin(), more.end());
+/// Calls `use` with each array of a whole and the same one of its part.
+template <class Use>
+void with_arrays(Triangles& all, const Triangles& part, const Use& use) {
+  use(all.x, part.x);
+  use(all.y, part.y);
+  use(all.z, part.z);
+  use(all.a, part.a);
+  use(all.b, part.b);
+  use(all.c, part.c);
+  use(all.material, part.material);
+}
+template <class Use>
+void with_arrays(Spheres& all, const Spheres& part, const Use& use) {
+  use(all.x, part.x);
+  use(all.y, part.y);
+  use(all.z, part.z);
+  use(all.radius, part.radius);
+  use(all.material, part.material);
+}
+template <class Use>
+void with_arrays(Cones& all, const Cones& part, const Use& use) {
+  use(all.base_x, part.base_x);
+  use(all.base_y, part.base_y);
+  use(all.base_z, part.base_z);
+  use(all.base_radius, part.base_radius);
+  use(all.apex_x, part.apex_x);
+  use(all.apex_y, part.apex_y);
+  use(all.apex_z, part.apex_z);
+  use(all.apex_radius, part.apex_radius);
+  use(all.material, part.material);
 }
 
-void append_shifted(Indices& all, const Indices& more, std::uint32_t shift) {
-  const std::size_t before = all.size();
-  append(all, more);
-  for (std::size_t i = before; i < all.size(); ++i)
-    all[i] += shift;
+constexpr auto append = [](auto& all, const auto& part) {
+  all.insert(all.end(), part.begin(), part.end());
+};
+
+void shift(std::vector<std::uint32_t>& indices, std::size_t first, std::uint32_t by) {
+  for (std::size_t i = first; i < indices.size(); ++i)
+    indices[i] += by;
 }
 
 /// Normals are empty where no vertex has one, and short until one has.
-void append_normals(Triangles& all, const Triangles& more) {
-  if (all.nx.empty() && more.nx.empty())
+void append_normals(Triangles& all, const Triangles& part) {
+  if (all.nx.empty() && part.nx.empty())
     return;
-  const std::size_t before = all.vertex_count(), after = before + more.vertex_count();
-  const auto append_one = [&](std::vector<float>& n, const std::vector<float>& n_more) {
+  const std::size_t before = all.vertex_count(), after = before + part.vertex_count();
+  const auto append_one = [&](std::vector<float>& n, const std::vector<float>& more) {
     n.resize(before);
-    append(n, n_more);
+    append(n, more);
     n.resize(after);
   };
-  append_one(all.nx, more.nx);
-  append_one(all.ny, more.ny);
-  append_one(all.nz, more.nz);
+  append_one(all.nx, part.nx);
+  append_one(all.ny, part.ny);
+  append_one(all.nz, part.nz);
 }
 
-void append_triangles(Triangles& all, const Triangles& more, std::uint32_t first_material) {
+void append_triangles(Triangles& all, const Triangles& part, std::uint32_t first_material) {
   const auto first_vertex = std::uint32_t(all.vertex_count());
-  append_normals(all, more);
-  append(all.x, more.x);
-  append(all.y, more.y);
-  append(all.z, more.z);
-  append_shifted(all.a, more.a, first_vertex);
-  append_shifted(all.b, more.b, first_vertex);
-  append_shifted(all.c, more.c, first_vertex);
-  append_shifted(all.material, more.material, first_material);
+  const std::size_t first = all.size();
+  append_normals(all, part);
+  with_arrays(all, part, append);
+  shift(all.a, first, first_vertex);
+  shift(all.b, first, first_vertex);
+  shift(all.c, first, first_vertex);
+  shift(all.material, first, first_material);
 }
 
-void append_spheres(Spheres& all, const Spheres& more, std::uint32_t first_material) {
-  append(all.x, more.x);
-  append(all.y, more.y);
-  append(all.z, more.z);
-  append(all.radius, more.radius);
-  append_shifted(all.material, more.material, first_material);
-}
-
-void append_cones(Cones& all, const Cones& more, std::uint32_t first_material) {
-  append(all.base_x, more.base_x);
-  append(all.base_y, more.base_y);
-  append(all.base_z, more.base_z);
-  append(all.base_radius, more.base_radius);
-  append(all.apex_x, more.apex_x);
-  append(all.apex_y, more.apex_y);
-  append(all.apex_z, more.apex_z);
-  append(all.apex_radius, more.apex_radius);
-  append_shifted(all.material, more.material, first_material);
+/// Spheres or cones.
+template <class Kind>
+void append_kind(Kind& all, const Kind& part, std::uint32_t first_material) {
+  const std::size_t first = all.size();
+  with_arrays(all, part, append);
+  shift(all.material, first, first_material);
 }
 
 void add_counts(SceneFile& file, const SceneFile& part) {
@@ -84,10 +98,21 @@ void append_part(SceneFile& file, const SceneFile& part) {
   std::vector<Material>& materials = file.scene.materials;
   const auto first_material = std::uint32_t(materials.size() - 1);
   append_triangles(all.triangles, more.triangles, first_material);
-  append_spheres(all.spheres, more.spheres, first_material);
-  append_cones(all.cones, more.cones, first_material);
+  append_kind(all.spheres, more.spheres, first_material);
+  append_kind(all.cones, more.cones, first_material);
   materials.insert(materials.end(), part.scene.materials.begin() + 1, part.scene.materials.end());
   add_counts(file, part);
+}
+
+void reserve_for_parts(SceneFile& file, const SceneFile& part, double times) {
+  const auto reserve = [times](auto& all, const auto& more) {
+    all.reserve(all.size() + std::size_t(double(more.size()) * times));
+  };
+  Geometry& all = file.scene.geometry;
+  const Geometry& first = part.scene.geometry;
+  with_arrays(all.triangles, first.triangles, reserve);
+  with_arrays(all.spheres, first.spheres, reserve);
+  with_arrays(all.cones, first.cones, reserve);
 }
 
 }  // namespace grelha
