@@ -177,7 +177,8 @@ class Run {
       return;
     }
     lock.unlock();
-    if (!taken_.end)  // what follows may well be as the first chunk is
+    if (!taken_.end &&
+        fragment.next >= fragment.stop)  // what follows may well be as the first chunk is
       reserve_for_parts(file_, fragment.file, double(end_ - here_) / double(fragment.next - here_));
     append_part(file_, fragment.file);
     lock.lock();

@@ -1,5 +1,6 @@
 #include "frontend/scene/scene_parts.hpp"
 
+#include <exception>
 #include <vector>
 
 namespace grelha {
@@ -104,7 +105,7 @@ void append_part(SceneFile& file, const SceneFile& part) {
   add_counts(file, part);
 }
 
-void reserve_for_parts(SceneFile& file, const SceneFile& part, double times) {
+void reserve_for_parts(SceneFile& file, const SceneFile& part, double times) noexcept try {
   const auto reserve = [times](auto& all, const auto& more) {
     all.reserve(all.size() + std::size_t(double(more.size()) * times));
   };
@@ -113,6 +114,7 @@ void reserve_for_parts(SceneFile& file, const SceneFile& part, double times) {
   with_arrays(all.triangles, first.triangles, reserve);
   with_arrays(all.spheres, first.spheres, reserve);
   with_arrays(all.cones, first.cones, reserve);
+} catch (const std::exception&) {  // then they grow as far as they can
 }
 
 }  // namespace grelha

@@ -9,8 +9,8 @@ namespace grelha {
 /// `file`, which has one. Throws std::bad_alloc, and leaves no scene then.
 void append_part(SceneFile& file, const SceneFile& part);
 
-/// Takes memory for so many times what the part has, so that arrays need not be copied as they grow.
-/// Throws std::bad_alloc.
-void reserve_for_parts(SceneFile& file, const SceneFile& part, double times);
+/// Takes memory, if there is, for so many times what the part has, so that arrays need not be
+/// copied as they grow.
+void reserve_for_parts(SceneFile& file, const SceneFile& part, double times) noexcept;
 
 }  // namespace grelha
