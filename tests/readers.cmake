@@ -10,7 +10,8 @@ target_sources(nff_reader_test PRIVATE frontend/nff/nff_chunks_test.cpp
   frontend/nff/nff_noise_test.cpp)
 target_link_libraries(nff_reader_test PRIVATE OpenMP::OpenMP_CXX)
 grelha_test(frontend/ply/ply_reader unit grelha::frontend)
-target_sources(ply_reader_test PRIVATE frontend/ply/ply_alone_test.cpp)
+target_sources(ply_reader_test PRIVATE frontend/ply/ply_alone_test.cpp
+  frontend/ply/ply_triangles_test.cpp)
 grelha_test(frontend/input/default_view unit grelha::frontend)
 grelha_test(frontend/input/errors unit grelha::frontend)
 grelha_test(frontend/commands/nothing_seen unit grelha::frontend)

@@ -224,14 +224,36 @@ std::string_view Words::next() {
   return {first, std::size_t(at_ - first)};
 }
 
-bool Words::next_number(float& value) {
-  const char* first = at_;
-  while (first != end_ && is_blank(*first))
-    ++first;
-  const char* const last = short_number(first, end_, value);
-  if (!last || (last != end_ && !is_blank(*last) && *last != comment_))
+/// The next word's first byte, unless a comment comes first: then the comment's.
+const char* Words::past_blanks() const {
+  const char* p = at_;
+  while (p != end_ && is_blank(*p))
+    ++p;
+  return p;
+}
+
+/// Steps over what was read of the next word up to `last`, if that is all of it.
+bool Words::take_to(const char* last) {
+  if (last != end_ && !is_blank(*last) && *last != comment_)
     return false;
   at_ = last;
+  return true;
+}
+
+bool Words::next_number(float& value) {
+  const char* const last = short_number(past_blanks(), end_, value);
+  return last && take_to(last);
+}
+
+bool Words::next_index(std::int64_t& value) {
+  constexpr std::ptrdiff_t kMostDigits = 18;
+  const char *const first = past_blanks(), *p = first;
+  std::int64_t found = 0;
+  for (; p != end_ && is_digit(*p) && p - first < kMostDigits; ++p)
+    found = 10 * found + (*p - '0');
+  if (p == first || !take_to(p))
+    return false;
+  value = found;
   return true;
 }
 

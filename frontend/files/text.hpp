@@ -41,6 +41,8 @@ class Words {
   /// Steps over the next word if it is a number as most are, with few digits: `value`, as
   /// to_number() reads it. False, and nothing is stepped over, for other words, comments, the end.
   bool next_number(float& value);
+  /// The same for digits alone, as to_integer() reads them.
+  bool next_index(std::int64_t& value);
   std::string_view peek() const;  ///< what next() would return, left in place
   /// empty when the line ends first; then data() is where it ends
   std::string_view peek_on_line() const;
@@ -65,6 +67,8 @@ class Words {
  private:
   const char* skip_blanks(const char* p, bool stay_on_line, bool& line_ended) const;
   const char* word_end(const char* p) const;
+  const char* past_blanks() const;
+  bool take_to(const char* last);
 
   std::string file_;
   const char *begin_, *end_, *at_;

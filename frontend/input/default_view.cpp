@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
 namespace grelha {
 namespace {
@@ -21,11 +23,12 @@ Float3 as_floats(const Place3& v) {
 
 /// Vertices that triangles name; others may lie anywhere.
 std::vector<Place3> corners_of(const Triangles& t) {
-  std::vector<bool> named(t.vertex_count());
+  std::vector<std::uint8_t> named(t.vertex_count());
   for (const auto* of : {&t.a, &t.b, &t.c})
     for (const std::uint32_t v : *of)
-      named[v] = true;
+      named[v] = 1;
   std::vector<Place3> found;
+  found.reserve(t.vertex_count());
   for (std::size_t v = 0; v < t.vertex_count(); ++v)
     if (named[v])
       found.push_back({t.x[v], t.y[v], t.z[v]});

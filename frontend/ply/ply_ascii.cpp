@@ -15,6 +15,39 @@ std::string_view PlyAscii::word(const PlyElement& element, std::uint64_t row) {
   return found;
 }
 
+std::int64_t PlyAscii::read_index(const PlyElement& element,
+                                  std::uint64_t row,
+                                  const PlyFaces& faces) {
+  const char* const before = words_.cursor();
+  std::int64_t index = 0;
+  if (words_.next_index(index) && faces.accepts(index))
+    return index;
+  words_.go_on_at(before);
+  const std::string_view item = word(element, row);
+  if (!to_integer(item, index) || !faces.accepts(index))
+    throw ParseError(words_.position(item),
+                     "the index of a vertex, 0 or more and below their number",
+                     quoted(item));
+  return index;
+}
+
+void PlyAscii::read_number(const PlyElement& element,
+                           const PlyProperty& property,
+                           std::uint64_t row,
+                           std::vector<float>* target) {
+  float value;
+  if (target && words_.next_number(value))
+    return target->push_back(value);
+  const std::string_view found = word(element, row);
+  if (!target)
+    return;
+  if (!to_number(found, value))
+    throw ParseError(words_.position(found),
+                     "a number for \"" + property.name + "\" of \"" + element.name + '"',
+                     quoted(found));
+  target->push_back(value);
+}
+
 void PlyAscii::read_list(const PlyElement& element,
                          const PlyProperty& list,
                          std::uint64_t row,
@@ -32,15 +65,11 @@ void PlyAscii::read_list(const PlyElement& element,
                          "\" (the file ends before)",
                      quoted(size_word));
   for (std::int64_t i = 0; i < size; ++i) {
-    const std::string_view item = word(element, row);
-    if (!faces)
+    if (!faces) {
+      word(element, row);
       continue;
-    std::int64_t index = 0;
-    if (!to_integer(item, index) || !faces->accepts(index))
-      throw ParseError(words_.position(item),
-                       "the index of a vertex, 0 or more and below their number",
-                       quoted(item));
-    faces->add(index);
+    }
+    faces->add(read_index(element, row, *faces));
     progress_.at(words_.cursor());
   }
   if (faces)
@@ -86,15 +115,7 @@ void PlyAscii::read(const PlyElement& element, const PlyPlan& plan, Mesh& mesh, 
         read_list(element, property, row, int(i) == plan.list ? &faces : nullptr);
         continue;
       }
-      const std::string_view found = word(element, row);
-      if (!targets[i])
-        continue;
-      float value;
-      if (!to_number(found, value))
-        throw ParseError(words_.position(found),
-                         "a number for \"" + property.name + "\" of \"" + element.name + '"',
-                         quoted(found));
-      targets[i]->push_back(value);
+      read_number(element, property, row, targets[i]);
     }
     end_row(element, row);
     progress_.at(words_.cursor());

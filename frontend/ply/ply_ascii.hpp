@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string_view>
+#include <vector>
 
 #include "frontend/files/load_progress.hpp"
 #include "frontend/files/text.hpp"
@@ -30,6 +31,11 @@ class PlyAscii {
                  const PlyProperty& list,
                  std::uint64_t row,
                  PlyFaces* faces);
+  std::int64_t read_index(const PlyElement& element, std::uint64_t row, const PlyFaces& faces);
+  void read_number(const PlyElement& element,
+                   const PlyProperty& property,
+                   std::uint64_t row,
+                   std::vector<float>* target);  ///< nullptr: steps over it
   void end_row(const PlyElement& element, std::uint64_t row);
   Extra judge(const PlyElement& element, std::uint64_t row) const;
 

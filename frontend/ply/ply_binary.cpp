@@ -1,6 +1,7 @@
 #include "frontend/ply/ply_binary.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 
@@ -9,10 +10,10 @@ namespace {
 
 template <class T>
 T load(const char* p, bool swap) {
-  char bytes[sizeof(T)];
-  std::memcpy(bytes, p, sizeof(T));
+  std::array<char, sizeof(T)> bytes;
+  std::memcpy(bytes.data(), p, sizeof(T));
   if (swap)
-    std::reverse(bytes, bytes + sizeof(T));
+    std::reverse(bytes.begin(), bytes.end());
   return std::bit_cast<T>(bytes);
 }
 
@@ -151,6 +152,47 @@ void PlyBinary::read_list(const PlyElement& element,
   faces->end(std::uint32_t(size));
 }
 
+/// Reads rows, at most so many, as long as each is a list of three sound indices and nothing else,
+/// as nearly all are. Returns how many; who reads the next one says what is wrong with it, if so.
+template <class Index>
+std::uint64_t PlyBinary::read_triangles(std::uint64_t rows, PlyFaces& faces) {
+  constexpr std::size_t kRow = 1 + 3 * sizeof(Index), kBlock = 4096;
+  const std::uint64_t whole = std::min<std::uint64_t>(rows, std::size_t(end_ - at_) / kRow);
+  std::array<std::uint32_t, 3 * kBlock> corners;
+  std::uint64_t done = 0;
+  for (std::size_t count = kBlock; done < whole && count == kBlock; done += count) {
+    const std::size_t most = std::size_t(std::min<std::uint64_t>(kBlock, whole - done));
+    for (count = 0; count < most && *at_ == 3; ++count, at_ += kRow) {
+      bool sound = true;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const auto index = std::int64_t(load<Index>(at_ + 1 + i * sizeof(Index), swap_));
+        sound = sound && faces.accepts(index);
+        corners[3 * count + i] = std::uint32_t(index);
+      }
+      if (!sound)
+        break;
+    }
+    faces.add_triangles({corners.data(), 3 * count});
+    progress_.at(at_);
+  }
+  return done;
+}
+
+/// The same, for rows of any kind: none where they hold anything else.
+std::uint64_t PlyBinary::read_triangles(const PlyElement& element,
+                                        const PlyPlan& plan,
+                                        std::uint64_t rows,
+                                        PlyFaces& faces) {
+  const PlyProperty& list = element.properties[0];
+  const bool plain = element.properties.size() == 1 && plan.list == 0 && !faces.are_strips() &&
+                     size_of(list.count_type) == 1;
+  if (plain && list.type == PlyType::kInt32)
+    return read_triangles<std::int32_t>(rows, faces);
+  if (plain && list.type == PlyType::kUint32)
+    return read_triangles<std::uint32_t>(rows, faces);
+  return 0;
+}
+
 void PlyBinary::read_rows(const PlyElement& element,
                           const PlyPlan& plan,
                           Mesh& mesh,
@@ -160,6 +202,9 @@ void PlyBinary::read_rows(const PlyElement& element,
     if (plan.columns[i] >= 0)
       targets[std::size_t(plan.columns[i])] = &column(mesh, i);
   for (std::uint64_t row = 0; row < element.count; ++row) {
+    row += read_triangles(element, plan, element.count - row, faces);
+    if (row == element.count)
+      return;
     for (std::size_t i = 0; i < element.properties.size(); ++i) {
       const PlyProperty& property = element.properties[i];
       if (property.is_list) {

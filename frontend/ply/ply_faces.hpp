@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "frontend/ply/ply_header.hpp"
 #include "frontend/scene/mesh.hpp"
@@ -31,6 +32,13 @@ class PlyFaces {
     mesh_.close_face(3);
     return true;
   }
+  /// Whole triangles, sound ones, where lists are no strips.
+  void add_triangles(std::span<const std::uint32_t> corners) {
+    mesh_.corners.insert(mesh_.corners.end(), corners.begin(), corners.end());
+    if (!mesh_.sizes.empty())
+      mesh_.sizes.insert(mesh_.sizes.end(), corners.size() / 3, 3);
+  }
+  bool are_strips() const { return strips_; }
   void end(std::uint32_t size) {
     run_ = 0;
     if (!strips_)

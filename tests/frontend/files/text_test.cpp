@@ -300,5 +300,25 @@ TEST(Words, NextNumberLeavesWhatIsNone) {
   }
 }
 
+TEST(Words, NextIndexReadsDigitsAlone) {
+  for (const std::string text : {"0", " 7 8", "\n999999999999999999", "00012#", "12\t"}) {
+    Words words("w", text, 0, '#'), again = words;
+    const std::string_view word = again.next();
+    std::int64_t value = -1, wanted = -2;
+    EXPECT_TRUE(words.next_index(value)) << text;
+    EXPECT_TRUE(to_integer(word, wanted)) << text;
+    EXPECT_EQ(value, wanted) << text;
+    EXPECT_EQ(words.cursor(), again.cursor()) << text;
+  }
+  for (const std::string text :
+       {"", " ", "-1", "+1", "1.0", "1e2", "x", "#1", "1000000000000000000"}) {
+    Words words("w", text, 0, '#');
+    std::int64_t value = -1;
+    EXPECT_FALSE(words.next_index(value)) << text;
+    EXPECT_EQ(value, -1) << text;
+    EXPECT_EQ(words.cursor(), text.data()) << text;
+  }
+}
+
 }  // namespace
 }  // namespace grelha
