@@ -58,7 +58,7 @@ class Growing {
   /// Room for up to `most` bytes more; at least one, unless `most` is none.
   std::span<char> room(std::size_t most) {
     if (have_ == bytes_.size())
-      bytes_.resize(have_ + std::min(most, std::clamp(have_, kLeast, kPiece)));
+      bytes_.resize(have_ + std::min(most, std::clamp(have_, kLeast, kMostAtOnce)));
     return {bytes_.data() + have_, std::min(most, bytes_.size() - have_)};
   }
   /// So many bytes of the room were filled.
@@ -77,6 +77,8 @@ class Growing {
 
  private:
   static constexpr std::size_t kLeast = std::size_t(1) << 16;
+  /// what is cleared for them is still in the cache when the bytes come
+  static constexpr std::size_t kMostAtOnce = std::size_t(1) << 18;
 
   void judge() {
     const std::string_view all(bytes_.data(), have_);
