@@ -201,8 +201,8 @@ class Run {
 
 }  // namespace
 
-NffChunks::NffChunks(const std::string& path, std::string_view text, const ChunkSizes& sizes)
-    : path_(path),
+NffChunks::NffChunks(std::string path, std::string_view text, const ChunkSizes& sizes)
+    : path_(std::move(path)),
       end_(text.data() + text.size()),
       next_(omp_get_max_threads() > 1 ? text.data() : end_),
       sizes_(sizes) {}

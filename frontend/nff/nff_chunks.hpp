@@ -32,7 +32,7 @@ class NffChunks {
   };
 
   /// `text` is the whole file: entities are held against how much of it is left.
-  NffChunks(const std::string& path, std::string_view text, const ChunkSizes& sizes);
+  NffChunks(std::string path, std::string_view text, const ChunkSizes& sizes);
 
   /// Returns whether a run is worth while from the entity at `begin`: there are threads, text for
   /// them is left, and where the last run ended early is some way behind.
@@ -45,7 +45,7 @@ class NffChunks {
   Taken read_run(const char* begin, SceneFile& file, const Tell& tell);
 
  private:
-  const std::string& path_;
+  std::string path_;
   const char *end_, *next_;
   ChunkSizes sizes_;
 };
