@@ -1,11 +1,14 @@
 #include "frontend/images/strip_deflate.hpp"
 
+#include <omp.h>
 #include <zlib.h>
 
 #include <algorithm>
 #include <cstdint>
 #include <new>
 #include <vector>
+
+#include "kernel/scene/turns.hpp"
 
 namespace grelha {
 namespace {
@@ -77,13 +80,11 @@ std::string zlib_checksum(uLong adler) {
 std::string deflate_in_strips(std::string_view data, int level) {
   const std::size_t count = std::max<std::size_t>(1, (data.size() + kStripBytes - 1) / kStripBytes);
   std::vector<Strip> strips(count);
-#pragma omp parallel
-  {
-    StripDeflater deflater(level);
-#pragma omp for schedule(dynamic)
-    for (std::size_t i = 0; i < count; ++i)
-      strips[i] = deflater.strip(data, i * kStripBytes);
-  }
+  const auto pack = [&](std::size_t i, StripDeflater& deflater) {
+    strips[i] = deflater.strip(data, i * kStripBytes);
+  };
+  each_turn(
+      count, omp_get_max_threads(), [level] { return StripDeflater(level); }, pack);
   std::string stream = zlib_header();
   uLong checksum = 1;
   for (std::size_t i = 0; i < count; ++i) {

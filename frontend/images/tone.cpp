@@ -1,11 +1,15 @@
 #include "frontend/images/tone.hpp"
 
+#include <omp.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+
+#include "kernel/scene/turns.hpp"
 
 namespace grelha {
 namespace {
@@ -69,9 +73,12 @@ std::uint8_t to_byte(float value, Tone tone) {
 
 std::vector<std::uint8_t> to_bytes(const Image& image, Tone tone) {
   std::vector<std::uint8_t> bytes(image.rgb.size());
-#pragma omp parallel for schedule(static)
-  for (std::size_t i = 0; i < bytes.size(); ++i)
-    bytes[i] = to_byte(image.rgb[i], tone);
+  constexpr std::size_t kEach = std::size_t(1) << 16;
+  each_turn((bytes.size() + kEach - 1) / kEach, omp_get_max_threads(), [&](std::size_t part) {
+    const std::size_t end = std::min((part + 1) * kEach, bytes.size());
+    for (std::size_t i = part * kEach; i < end; ++i)
+      bytes[i] = to_byte(image.rgb[i], tone);
+  });
   return bytes;
 }
 

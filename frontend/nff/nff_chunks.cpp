@@ -11,6 +11,7 @@
 
 #include "frontend/nff/nff_plain.hpp"
 #include "frontend/scene/scene_parts.hpp"
+#include "kernel/scene/crew.hpp"
 
 namespace grelha {
 namespace {
@@ -210,8 +211,9 @@ NffChunks::NffChunks(std::string path, std::string_view text, const ChunkSizes& 
 NffChunks::Taken NffChunks::read_run(const char* begin, SceneFile& file, const Tell& tell) {
   const Cutter cutter(begin, end_, sizes_.bytes);
   Run run(path_, cutter, begin, end_, sizes_.ahead, file);
-#pragma omp parallel
-  run.work(omp_get_thread_num() == 0 ? &tell : nullptr);
+  const std::thread::id here = std::this_thread::get_id();
+  by_crew(omp_get_max_threads(),
+          [&] { run.work(std::this_thread::get_id() == here ? &tell : nullptr); });
   const Taken taken = run.finish();
   tell(run.here());  // others may have read on since it was told
   if (run.here() != end_)

@@ -7,10 +7,10 @@
 #include <thread>
 #include <vector>
 
-#include <unistd.h>
-
 namespace grelha {
 namespace {
+
+std::atomic<int> more_follow = 0;
 
 /// A thread that sleeps until it is asked.
 class Member {
@@ -48,10 +48,10 @@ class Member {
     }
   }
 
-  /// The next stretch mostly comes soon, and to be woken takes as long as some stretches. Those who
-  /// yield in place of a pause stay behind the caller, on its core.
+  /// To be woken takes as long as some stretches. Who yields in place of a pause stays behind the
+  /// caller, on its core.
   void wait_while(int state) {
-    for (int i = 0; i < kPauses && state_ == state; ++i)
+    for (int i = 0; i < kPauses && state_ == state && (more_follow > 0 || state == kAtWork); ++i)
       pause();
     while (state_ == state)
       state_.wait(state);
@@ -74,10 +74,6 @@ class Members {
   /// Up to so many; fewer when there can be no more threads.
   std::vector<Member*> lend(int count) {
     const std::lock_guard lock(mutex_);
-    if (process_ != getpid()) {  // a child that fork() made has none of them
-      process_ = getpid();
-      idle_.clear();
-    }
     std::vector<Member*> lent;
     while (static_cast<int>(lent.size()) < count && (!idle_.empty() || add())) {
       lent.push_back(idle_.back());
@@ -100,7 +96,6 @@ class Members {
   }
 
   std::mutex mutex_;
-  pid_t process_ = getpid();
   std::vector<std::unique_ptr<Member>> all_;
   std::vector<Member*> idle_;
 };
@@ -112,6 +107,13 @@ Members& members() {
 }
 
 }  // namespace
+
+StretchesFollow::StretchesFollow() {
+  ++more_follow;
+}
+StretchesFollow::~StretchesFollow() {
+  --more_follow;
+}
 
 void by_crew(int threads, const std::function<void()>& work) {
   if (threads < 2)

@@ -14,4 +14,13 @@ namespace grelha {
 /// threads as with one. Here nobody waits for a thread that has not begun.
 void by_crew(int threads, const std::function<void()>& work);
 
+/// That one stretch of work follows another: while there is such an object, threads stay awake for
+/// a while after each. Without, they sleep, and leave their cores to others.
+class StretchesFollow {
+ public:
+  StretchesFollow();
+  ~StretchesFollow();
+  StretchesFollow(const StretchesFollow&) = delete;
+};
+
 }  // namespace grelha

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <new>
 
+#include "kernel/scene/crew.hpp"
 #include "kernel/world/plan.hpp"
 #include "kernel/perspective/tolerances.hpp"
 
@@ -62,6 +63,7 @@ std::unique_ptr<ViewedGrid> LightGrids::build(const Float3& point,
   for (int a = 0; a < 3; ++a)
     if (!(std::abs(from.at[a] - box_.lo[a]) < kFarthestPoint * diagonal))
       return nullptr;
+  const StretchesFollow awake;
   const std::vector<std::uint32_t> ids = sound_ids(primitives_);
   std::optional<PerspectiveGrid> grid =
       build_perspective_grid(primitives_, ids, large_, from, {.loops = loops, .threads = threads});

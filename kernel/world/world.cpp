@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "kernel/scene/crew.hpp"
 #include "kernel/shapes/copies.hpp"
 #include "kernel/grid/grid_fill.hpp"
 #include "kernel/world/memory_estimate.hpp"
@@ -84,6 +85,7 @@ double usual_size(const Primitives& p) {
 
 World::Impl::Impl(const SceneSpans& s, const BuildOptions& options)
     : scene((check(s), s)), primitives(s.geometry), materials(s) {
+  const StretchesFollow awake;
   BuildProgress progress(options.progress);
   Plan plan = plan_grids(primitives, options, progress);
   if (options.most_bytes > 0 && !surely_fits(primitives, options.most_bytes))

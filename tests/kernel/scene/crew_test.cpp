@@ -1,5 +1,6 @@
 // Threads that share work: all of it is done once, whoever asks, and from wherever.
 #include <atomic>
+#include <chrono>
 #include <stdexcept>
 #include <thread>
 #include <vector>
@@ -56,6 +57,7 @@ TEST(Crew, HasNoMoreMembersThanThreads) {
         [&] { return ++states; },
         [&](std::size_t, int) {
           const int now = ++at_once;
+          std::this_thread::sleep_for(std::chrono::microseconds(200));  // so that others begin
           for (int seen = most; seen < now && !most.compare_exchange_weak(seen, now);) {
           }
           --at_once;
@@ -80,7 +82,7 @@ TEST(Crew, HandsOnWhatIsThrown) {
   }
 }
 
-/// The child has none of the threads of its parent.
+/// The child has none of the threads of its parent, and waits for none.
 TEST(Crew, OutlivesAFork) {
 #if defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "the thread sanitizer lets no child start threads";
