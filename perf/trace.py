@@ -86,8 +86,8 @@ def ratios(cells):
 
     return (f"One thread of a virtual {cpu_name()}, {date.today():%B %Y}:\n\n" +
             table(["", *kinds], rows(ratio)) + "\n\nAs a caller of the library asks, with no "
-            "options: one ray a call over `rtcIntersect1`; streams of eight over the better of "
-            "`rtcIntersect8`'s hints; one stream of all over Embree's best mode:\n\n" +
+            "options. One ray a call over `rtcIntersect1`. Streams of eight over `rtcIntersect8`, "
+            "by the better of its hints. One stream of all over Embree's best mode:\n\n" +
             table(["", *kinds], rows(library)) + "\n")
 
 

@@ -8,6 +8,11 @@
 
 namespace grelha::GRELHA_ISA {
 
+/// Whether a ray that starts far away comes nearer by that much of t.
+inline bool moves(double shift) {
+  return shift > 0 && shift < 1e300;
+}
+
 /// Moves the origin of a ray that starts far from everything finite to where it comes near, in
 /// double: from afar float tests would be off by eps times the distance, more than the grids allow
 /// for. Returns the t it moved by. A function of ray and scene alone, so every way of tracing sees
@@ -27,7 +32,7 @@ inline double approach(const SceneView& scene, float (&org)[3], const float (&di
     along += c * d;
   }
   const double shift = along / dd - scene.reach / __builtin_sqrt(dd);
-  if (!(shift > 0) || !(shift < 1e300))
+  if (!moves(shift))
     return 0;
   for (int a = 0; a < 3; ++a)
     org[a] = static_cast<float>(org[a] + shift * dir[a]);
@@ -84,6 +89,40 @@ inline Mask<Lanes> starts_beyond(const SceneView& scene, float reach, const Walk
   return far;
 }
 
+/// Where approach() would move the rays of a group of lanes to, whether they start far or not.
+struct Approached {
+  double shift[kWidth<Lanes>];
+  float org[3][kWidth<Lanes>];
+
+  [[gnu::always_inline]] Approached(const SceneView& scene, const WalkingRays& p, int i) {
+    for (int k = 0; k < kWidth<Lanes>; k += kWidth<DoubleLanes>)
+      move_part(scene, p, i, k);
+  }
+
+ private:
+  [[gnu::always_inline]] void move_part(const SceneView& scene,
+                                        const WalkingRays& p,
+                                        int i,
+                                        int k) {
+    DoubleLanes dd(0);
+    DoubleLanes along(0);
+    DoubleLanes o[3], d[3];
+    for (int a = 0; a < 3; ++a) {
+      o[a] = take<DoubleLanes>(p.org[a] + i + k);
+      d[a] = take<DoubleLanes>(p.dir[a] + i + k);
+      const double middle = .5 * (static_cast<double>(scene.box_lo[a]) + scene.box_hi[a]);
+      const DoubleLanes c = DoubleLanes(middle) - o[a];
+      dd = dd + d[a] * d[a];
+      along = along + c * d[a];
+    }
+    const DoubleLanes reach(static_cast<double>(scene.reach));
+    const DoubleLanes by = along / dd - reach / square_root(dd);
+    store(shift + k, by);
+    for (int a = 0; a < 3; ++a)
+      store_narrow(org[a] + k, o[a] + by * d[a]);
+  }
+};
+
 /// approach() for the rays of a packet that have met planes and nothing else yet. Planes come
 /// first, since a ray that leaves a plane and is then moved along would meet it again, by as little
 /// as the rounding of the way.
@@ -93,22 +132,21 @@ inline void bring_near(const SceneView& scene, Packet<In>& p) {
   if (!scene.finite)
     return;
   for (int i = 0; i < p.size; i += kWidth<Lanes>) {
-    if (none(starts_beyond(scene, scene.reach, p, i)))
+    const unsigned far = bits(starts_beyond(scene, scene.reach, p, i));
+    if (far == 0)
       continue;
     if (!p.moved)
       for (typename In::Number& shift : p.shift)
         shift = 0;
     p.moved = true;
-    for (int k = i; k < i + kWidth<Lanes> && k < p.size; ++k) {
-      float org[3] = {p.org[0][k], p.org[1][k], p.org[2][k]};
-      const float dir[3] = {p.dir[0][k], p.dir[1][k], p.dir[2][k]};
-      const double shift = approach(scene, org, dir);
-      if (!(shift > 0))
-        continue;
-      move_near(scene, p, k, shift);
+    const Approached to(scene, p, i);
+    each_bit(far, [&](int k) {
+      if (i + k >= p.size || !moves(to.shift[k]))
+        return;
+      move_near(scene, p, i + k, to.shift[k]);
       for (int a = 0; a < 3; ++a)
-        p.org[a][k] = org[a];
-    }
+        p.org[a][i + k] = to.org[a][k];
+    });
   }
 }
 

@@ -25,7 +25,7 @@ class LongWork : public testing::Test {
 /// Some 0.3 s of work for one thread each: as many samples in every pixel, by error, so many
 /// samples in all, by subdivision.
 inline constexpr const char* kJobs[] = {
-    "render ball.nff --quiet --size 120x80 --samples 650 --threads 1 ",
+    "render ball.nff --quiet --size 120x80 --samples 1500 --threads 1 ",
     "render ball.nff --quiet --size 120x80 --lens 9 --shadows random:2 --error .0002 --threads 1 ",
     "render ball.nff --quiet --size 120x80 --lens 9 --time samples:7000000 --threads 1 ",
     "render ball.nff --quiet --size 120x80 --lens 9,0,40 --aa adaptive:.02,5 --threads 1 "};

@@ -63,7 +63,7 @@ TEST_F(LongWork, StoppingLeavesSomethingToGoOnFrom) {
     SCOPED_TRACE(any);
     ASSERT_EQ(run(std::string(any) + "-o whole.pfm").status, 0);
     int stopped = 0;
-    for (double seconds = .1;
+    for (double seconds = .05;
          run(std::string(any) + "-o x.pfm",
              "timeout --foreground --preserve-status -s INT " + std::to_string(seconds))
              .status != 0;
@@ -84,9 +84,9 @@ TEST_F(LongWork, StoppingLeavesSomethingToGoOnFrom) {
 }
 
 TEST_F(LongWork, WhatOtherPicturesLeftStays) {
-  const std::string job = "render ball.nff --size 120x80 --samples 600 -j 1 --seed ";
+  const std::string job = "render ball.nff --size 120x80 --samples 1500 -j 1 --seed ";
   const auto stop = [&](const std::string& seed) {
-    for (double seconds = .1; seconds < 20; seconds *= 1.3) {
+    for (double seconds = .05; seconds < 20; seconds *= 1.3) {
       const Outcome outcome = run(
           job + seed, "timeout --foreground --preserve-status -s INT " + std::to_string(seconds));
       if (outcome.status == 0)
