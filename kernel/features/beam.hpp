@@ -33,7 +33,24 @@ inline bool find_point(const Triangle::Arrays& triangles,
   return at.w > f.depth && at.w < far && outness(at.x, at.y) <= 1;
 }
 
-/// The same of what has a ball_toward() the beam's axis.
+/// Whether a ray of the beam to a place meets one primitive nearer than w = `far`, and where.
+template <class Fields>
+inline bool meets_toward(
+    const BeamFrame& f, const Vec3<float>& at, const Fields& one, float far, Vec3<float>& p) {
+  if (!is_inside(f, at))
+    return false;
+  const Place toward = place(f, at);
+  const Vec3<float> dir = f.axis + toward.x * f.right + toward.y * f.up;
+  const Vec3<float> org = f.apex + f.depth * dir;
+  float t = 0;
+  const bool hit = meet<float>({org, dir, 1 / dot(dir, dir), 0}, one, t);
+  p = org + t * dir;
+  return hit && f.depth + t < far;
+}
+
+/// The same of what has a ball_toward() the beam's axis. Of what is not all in such a ball, places
+/// on its surface are tried first: where the ball is an end of it, a ray that just meets that may
+/// miss it when it is sent again.
 template <class Shape>
 inline bool find_point_toward_ball(const typename Shape::Arrays& all,
                                    const BeamFrame& f,
@@ -41,16 +58,14 @@ inline bool find_point_toward_ball(const typename Shape::Arrays& all,
                                    float far,
                                    Vec3<float>& p) {
   const auto one = broadcast<Shape, float>(all.fields, i);
+  if constexpr (requires { surface_places(one); }) {
+    const auto places = surface_places(one);
+    for (int which = 0; which < places.kCount; ++which)
+      if (meets_toward(f, places[which], one, far, p))
+        return true;
+  }
   const Ball<float> ball = ball_toward(one, f.apex, f.unit);
-  const Place toward = place(f, ball_point(f, ball.center, ball.radius));
-  if (!(toward.w > 0) || !(outness(toward.x, toward.y) <= 1))
-    return false;
-  const Vec3<float> dir = f.axis + toward.x * f.right + toward.y * f.up;
-  const Vec3<float> org = f.apex + f.depth * dir;
-  float t = 0;
-  const bool hit = meet<float>({org, dir, 1 / dot(dir, dir), 0}, one, t);
-  p = org + t * dir;
-  return hit && f.depth + t < far;
+  return meets_toward(f, ball_point(f, ball.center, ball.radius), one, far, p);
 }
 
 /// A point of a primitive's surface inside the beam, nearer than w = `far`; false when it has none

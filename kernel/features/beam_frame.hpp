@@ -119,6 +119,12 @@ struct Place {
   const float w = dot(d, f.unit);
   return {dot(d, f.to_x) / w, dot(d, f.to_y) / w, w};
 }
+/// Whether a place lies in the pyramid of a beam.
+inline bool is_inside(const BeamFrame& f, const Vec3f& p) {
+  const Vec3f d = p - f.apex;
+  const float w = dot(d, f.unit);
+  return w > 0 && magnitude(dot(d, f.to_x)) <= w && magnitude(dot(d, f.to_y)) <= w;
+}
 /// How far out: at most 1 inside.
 inline float outness(float x, float y) {
   return greater(magnitude(x), magnitude(y));

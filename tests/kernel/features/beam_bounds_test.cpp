@@ -79,6 +79,54 @@ TEST_P(BeamBounds, MeetsConesAlongItselfByTheirMiddles) {
   }
 }
 
+/// Whether the ray through a place, from the middle of the pixel, meets a cone.
+bool sees_cone(const World& world, float x, float y) {
+  const Float3 eye = over_units().eye;
+  const Hit hit = closest(world, {eye, minus({kMiddle.x + x, kMiddle.y + y, 0}, eye)});
+  return hit && primitive_of(world, hit.id).kind == PrimitiveKind::kCone;
+}
+
+/// Whether two of 24 x 24 rays through the pixel meet a cone, and none through its beam's corners.
+bool hides_cone(const Scene& s) {
+  constexpr int kRays = 24;
+  const World world(s, {});
+  for (const float x : {-kHalfBeam, kHalfBeam})
+    for (const float y : {-kHalfBeam, kHalfBeam})
+      if (sees_cone(world, x, y))
+        return false;
+  int rays = 0;
+  for (int i = 0; i < kRays * kRays; ++i) {
+    const auto place = [](int k) { return .96f * ((float(k) + .5f) / kRays - .5f); };
+    rays += sees_cone(world, place(i % kRays), place(i / kRays));
+  }
+  return rays > 1;
+}
+
+/// Short and long, flat and pointed, along the beam and across. Where the place of its axis that is
+/// nearest to the beam's is an end, the ball there lies half beyond the cone.
+TEST_P(BeamBounds, MeetsConesHoweverTheyLie) {
+  Random random(5);
+  int hidden = 0;
+  int missed = 0;
+  for (int i = 0; i < 2000; ++i) {
+    Scene s = dark_wall();
+    const double size = random.log_in(.02, 1);
+    const Float3 base = at({kMiddle.x, kMiddle.y, 2}, random.in(0, .6), random.direction());
+    const Float3 end = at(base, size, random.direction());
+    const auto radius = [&] {
+      return static_cast<float>(random.chance(.3) ? 0 : size * random.log_in(.05, 2));
+    };
+    const float at_end = radius();
+    s.geometry.cones.add(base, at_end > 0 ? radius() : .3f * float(size), end, at_end, 0);
+    if (!hides_cone(s))
+      continue;
+    ++hidden;
+    missed += at(look(s), kX, kY) == 0;
+  }
+  EXPECT_GT(hidden, 1000);
+  EXPECT_EQ(missed, 0);
+}
+
 /// A wall across the beam, of triangles smaller than the pixel: all lie as far along the beam as
 /// what its corners meet, but for rounding. Those left out would leave holes in the wall.
 TEST_P(BeamBounds, MissesNoTriangleOfAWallAcrossIt) {
