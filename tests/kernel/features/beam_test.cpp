@@ -250,7 +250,8 @@ TEST_P(Beam, DoubtsAMeshFromAfarWhereItMayBe) {
   add_object(s, ball);
   add_triangle(s, {-1e6f, -1e6f, -9}, {1e6f, -1e6f, -9}, {0, 1e6f, -9});  // behind the wall
   bool afar = false;
-  for (const GridView& g : World(s, {}).impl().grid_views)
+  const World world(s, {});
+  for (const GridView& g : world.impl().grid_views)
     afar |= g.serves == Serves::kNearAndAfar && over_units().eye.z > g.near_hi[2];
   EXPECT_TRUE(afar);
   const Tile tile = look(s);
