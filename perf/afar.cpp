@@ -17,7 +17,6 @@
 #include <string>
 #include <vector>
 
-#include "grelha/query.hpp"
 #include "perf/embree.hpp"
 #include "perf/timing.hpp"
 #include "perf/workloads.hpp"
@@ -112,21 +111,6 @@ RayBuffer rays_from(const Bounds& mesh, double sizes, int rays, int share) {
   return all;
 }
 
-void call(const World& world, const RayBuffer& r, Answers& a) {
-  a.resize(r.size(), false);
-  for (std::size_t i = 0; i < r.size(); ++i) {
-    const Hit hit = closest(
-        world, {{r.ox[i], r.oy[i], r.oz[i]}, {r.dx[i], r.dy[i], r.dz[i]}, r.t_min[i], r.t_max[i]});
-    a.t[i] = hit.t;
-    a.id[i] = hit.id;
-  }
-}
-
-void stream(const World& world, const RayBuffer& r, Answers& a) {
-  a.resize(r.size(), false);
-  closest(world, r.view(), {a.t.data(), a.id.data()}, {.packet = 256});
-}
-
 struct Way {
   std::function<void()> trace;
   std::vector<double> ns{};
@@ -146,13 +130,15 @@ bool row(const std::string& name,
          const RayBuffer& rays,
          int rounds) {
   Answers truth, found;
-  stream(world, rays, truth);
-  call(world, rays, found);
+  ask_in_streams(world, rays, false, rays.size(), {.packet = 256}, truth);
+  call_each(world, rays, false, found);
   if (!(truth == found)) {
     std::printf("%s: calls and streams differ\n", name.c_str());
     return false;
   }
-  std::vector<Way> ways{{[&] { stream(world, rays, found); }}, {[&] { call(world, rays, found); }}};
+  std::vector<Way> ways{
+      {[&] { ask_in_streams(world, rays, false, rays.size(), {.packet = 256}, found); }},
+      {[&] { call_each(world, rays, false, found); }}};
   for (const EmbreeMode& mode : embree_modes())
     ways.push_back({[&, mode] { embree->trace(rays, false, mode); }});
   for (int round = 0; round < rounds; ++round)
@@ -221,12 +207,13 @@ bool set_option(const std::string& word, const std::string& value, Options& o) {
 
 int main(int argc, char** argv) {
   Options options;
-  for (int i = 1; i < argc; i += 2)
-    if (i + 1 == argc || !set_option(argv[i], argv[i + 1], options)) {
-      std::fprintf(stderr,
-                   "usage: afar [--rays N] [--rounds N] [--floor SIZES] [--scene NAME]...\n");
-      return 2;
-    }
+  const auto set = [&](const char* word, const char* value) {
+    return set_option(word, value, options);
+  };
+  if (!set_options(argc, argv, set)) {
+    std::fprintf(stderr, "usage: afar [--rays N] [--rounds N] [--floor SIZES] [--scene NAME]...\n");
+    return 2;
+  }
   const bool beside = !embree_modes().empty();
   std::printf("ns a ray, median of %d rounds\n\n| | stream | call |%s\n|---|--:|--:|%s\n",
               options.rounds,

@@ -72,31 +72,6 @@ RayBuffer emptied(RayBuffer rays) {
   return rays;
 }
 
-Ray ray_of(const RayBuffer& r, std::size_t i) {
-  return {{r.ox[i], r.oy[i], r.oz[i]}, {r.dx[i], r.dy[i], r.dz[i]}, r.t_min[i], r.t_max[i]};
-}
-
-void call(const World& world, const RayBuffer& r, bool any, Answers& a) {
-  a.resize(r.size(), any);
-  for (std::size_t i = 0; i < r.size(); ++i) {
-    if (any) {
-      a.blocked[i] = occluded(world, ray_of(r, i));
-      continue;
-    }
-    const Hit hit = closest(world, ray_of(r, i));
-    a.t[i] = hit.t;
-    a.id[i] = hit.id;
-  }
-}
-
-void stream(const World& world, const RayBuffer& r, bool any, int packet, Answers& a) {
-  a.resize(r.size(), any);
-  if (any)
-    occluded(world, r.view(), a.blocked.data(), {.packet = packet});
-  else
-    closest(world, r.view(), {a.t.data(), a.id.data()}, {.packet = packet});
-}
-
 /// Rays whose answers differ.
 std::size_t different(const Answers& a, const Answers& b) {
   std::size_t n = 0;
@@ -122,16 +97,18 @@ bool row(const std::string& name,
          const Options& options) {
   const RayBuffer empty = emptied(rays);
   Answers truth, found;
-  stream(world, rays, any, 64, truth);
-  call(world, rays, any, found);
+  ask_in_streams(world, rays, any, rays.size(), {.packet = 64}, truth);
+  call_each(world, rays, any, found);
   if (different(truth, found) != 0) {
     std::printf("%s: calls and streams differ\n", name.c_str());
     return false;
   }
-  std::vector<Way> ways{{"call", [&] { call(world, rays, any, found); }},
-                        {"empty", [&] { call(world, empty, any, found); }},
-                        {"stream of 1", [&] { stream(world, rays, any, 1, found); }},
-                        {"stream of 64", [&] { stream(world, rays, any, 64, found); }}};
+  std::vector<Way> ways{
+      {"call", [&] { call_each(world, rays, any, found); }},
+      {"empty", [&] { call_each(world, empty, any, found); }},
+      {"stream of 1", [&] { ask_in_streams(world, rays, any, rays.size(), {.packet = 1}, found); }},
+      {"stream of 64",
+       [&] { ask_in_streams(world, rays, any, rays.size(), {.packet = 64}, found); }}};
   if (embree) {
     const EmbreeMode single = embree_modes()[0];
     embree->trace(rays, any, single);
@@ -205,11 +182,13 @@ bool set_option(const std::string& word, const std::string& value, Options& o) {
 
 int main(int argc, char** argv) {
   Options options;
-  for (int i = 1; i < argc; i += 2)
-    if (i + 1 == argc || !set_option(argv[i], argv[i + 1], options)) {
-      std::fprintf(stderr, "usage: calls [--size N] [--rounds N] [--scene NAME]...\n");
-      return 2;
-    }
+  const auto set = [&](const char* word, const char* value) {
+    return set_option(word, value, options);
+  };
+  if (!set_options(argc, argv, set)) {
+    std::fprintf(stderr, "usage: calls [--size N] [--rounds N] [--scene NAME]...\n");
+    return 2;
+  }
   const bool beside = !embree_modes().empty();
   std::printf(
       "ns a ray, median of %d rounds\n\n| | call | empty | stream of 1 | stream of 64 |%s\n"

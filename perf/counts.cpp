@@ -130,11 +130,13 @@ bool set_option(const std::string& word, const std::string& value, Options& o) {
 
 int main(int argc, char** argv) {
   Options options;
-  for (int i = 1; i < argc; i += 2)
-    if (i + 1 == argc || !set_option(argv[i], argv[i + 1], options)) {
-      std::fprintf(stderr, "usage: counts [--size N] [--most RATIO] [--scene NAME]...\n");
-      return 2;
-    }
+  const auto set = [&](const char* word, const char* value) {
+    return set_option(word, value, options);
+  };
+  if (!set_options(argc, argv, set)) {
+    std::fprintf(stderr, "usage: counts [--size N] [--most RATIO] [--scene NAME]...\n");
+    return 2;
+  }
   if (options.scenes.empty())
     options.scenes = {"mount 8", "knot 15", "gears 4"};
   std::printf(

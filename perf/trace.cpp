@@ -19,7 +19,7 @@
 
 #include "perf/timing.hpp"
 #include "perf/trace/check.hpp"
-#include "perf/trace/library_ways.hpp"
+#include "perf/trace/caller_ways.hpp"
 #include "perf/trace/modes.hpp"
 #include "perf/trace/options.hpp"
 #include "perf/trace/place.hpp"
@@ -66,7 +66,7 @@ void enter_ways(Race& race) {
 /// Whether a way is told of however slow it is.
 bool is_told(const Cell& cell, std::size_t i) {
   const Way& way = cell.ways[i];
-  return i == cell.chosen || i == cell.point_grid || i >= cell.library ||
+  return i == cell.chosen || i == cell.point_grid || i >= cell.first_caller ||
          (way.side == kRobust && !way.name.starts_with("16"));
 }
 
@@ -123,10 +123,10 @@ void count(benchmark::State& state, const Row& row, std::size_t kind, const Cell
   state.counters["ratio"] = cell.ratio(cell.chosen, cell.best[kRobust]);
   state.counters["ratio of the best"] = cell.ratio(cell.best[kGrelha], cell.best[kRobust]);
   state.counters["ratio to fast"] = cell.ratio(cell.chosen, cell.best[kFast]);
-  const std::vector<double> library = cell.library_ratios();
-  state.counters["ratio of calls"] = library[0];
-  state.counters["ratio of streams of 8"] = library[1];
-  state.counters["ratio by default"] = library[2];
+  const std::vector<double> caller = cell.caller_ratios();
+  state.counters["ratio of calls"] = caller[0];
+  state.counters["ratio of streams of 8"] = caller[1];
+  state.counters["ratio by default"] = caller[2];
   if (kind < row.target.size())
     state.counters["target"] = row.target[kind];
 }
@@ -177,8 +177,8 @@ void run(benchmark::State& state, const Row& row, std::size_t kind, const Option
   PointWay point_way(p.world, p.maker.light());
   if (RayMaker::to_point(rays_kind) && !point_way.enter(race.rays, race.cell))
     return fail("wrong hits: the light's grid against packets");
-  LibraryWays library_ways(p.world, race.any);
-  library_ways.enter(race.rays, race.cell);
+  CallerWays caller_ways(p.world, race.any);
+  caller_ways.enter(race.rays, race.cell);
   run_rounds(state, race);
   count(state, row, kind, race.cell);
   print_line(row, kind, race.cell);

@@ -28,7 +28,7 @@ FIRST = [
     "rays", "hits", "disagree", "ns/ray", "tests/ray", "cells/ray", "lanes busy", "fell back",
     "ratio", "ratio of the best", "ratio to fast", "ratio of calls", "ratio of streams of 8",
     "ratio by default", "target", "point grid ms", "pays from"]
-LIBRARY = ["ratio of calls", "ratio of streams of 8", "ratio by default"]
+CALLER = ["ratio of calls", "ratio of streams of 8", "ratio by default"]
 # Label, then marker and colours (after Okabe and Ito)
 FASTER = ("as a render traces them: faster than Embree", {"marker": "o", "color": "#0072B2"})
 SLOWER = ("as a render traces them: slower than Embree", {"marker": "s", "color": "#D55E00"})
@@ -76,8 +76,8 @@ def ratios(cells):
         missed = c["ratio"] > c.get("target", c["ratio"])
         return f"**{c['ratio']:.2f}**" if missed else f"{c['ratio']:.2f}"
 
-    def library(c):
-        return "; ".join(f"{c[k]:.2f}" for k in LIBRARY)
+    def caller(c):
+        return "; ".join(f"{c[k]:.2f}" for k in CALLER)
 
     def rows(text):
         scenes = dict.fromkeys(scene for scene, _ in cells)
@@ -88,7 +88,7 @@ def ratios(cells):
             table(["", *kinds], rows(ratio)) + "\n\nAs a caller of the library asks, with no "
             "options. One ray a call over `rtcIntersect1`. Streams of eight over `rtcIntersect8`, "
             "by the better of its hints. One stream of all over Embree's best mode:\n\n" +
-            table(["", *kinds], rows(library)) + "\n")
+            table(["", *kinds], rows(caller)) + "\n")
 
 
 def cells_from_csv():

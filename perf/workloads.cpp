@@ -101,6 +101,36 @@ bool Answers::same(std::size_t i, const Answers& others, std::size_t k) const {
   return std::memcmp(&t[i], &others.t[k], sizeof t[i]) == 0 && id[i] == others.id[k];
 }
 
+void call_each(const World& world, const RayBuffer& r, bool any, Answers& a) {
+  a.resize(r.size(), any);
+  for (std::size_t i = 0; i < r.size(); ++i) {
+    const Ray ray{{r.ox[i], r.oy[i], r.oz[i]}, {r.dx[i], r.dy[i], r.dz[i]}, r.t_min[i], r.t_max[i]};
+    if (any) {
+      a.blocked[i] = occluded(world, ray);
+      continue;
+    }
+    const Hit hit = closest(world, ray);
+    a.t[i] = hit.t;
+    a.id[i] = hit.id;
+  }
+}
+
+void ask_in_streams(const World& world,
+                    const RayBuffer& rays,
+                    bool any,
+                    std::size_t each,
+                    const QueryOptions& options,
+                    Answers& a) {
+  a.resize(rays.size(), any);
+  for (std::size_t i = 0; i < rays.size(); i += each) {
+    const Rays some = rays.view(i, std::min(each, rays.size() - i));
+    if (any)
+      occluded(world, some, a.blocked.data() + i, options);
+    else
+      closest(world, some, {a.t.data() + i, a.id.data() + i}, options);
+  }
+}
+
 void trace(const World& world,
            const Variant& variant,
            const TraceOptions& settings,

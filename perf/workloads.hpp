@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "frontend/scene/scene_file.hpp"
+#include "grelha/query.hpp"
 #include "grelha/render.hpp"
 #include "kernel/query/variants.hpp"
 
@@ -45,6 +46,26 @@ SceneFile scene_named(const std::string& name);
 
 /// One ray through the centre of every pixel, in tiles of 8 x 8 pixels as a render traces them.
 RayBuffer camera_rays(const Camera& camera);
+
+/// Answers by the functions a caller has: a call for each ray.
+void call_each(const World& world, const RayBuffer& rays, bool any, Answers& answers);
+/// The same in streams of so many rays.
+void ask_in_streams(const World& world,
+                    const RayBuffer& rays,
+                    bool any,
+                    std::size_t each,
+                    const QueryOptions& options,
+                    Answers& answers);
+
+/// Sets what a command line says by set(word, value), which is false for what it does not know, as
+/// is this.
+template <class Set>
+bool set_options(int argc, char** argv, const Set& set) {
+  for (int i = 1; i < argc; i += 2)
+    if (i + 1 == argc || !set(argv[i], argv[i + 1]))
+      return false;
+  return true;
+}
 
 /// Answers to rays by one method of one instruction set; `any`: occlusion.
 void trace(const World& world,

@@ -43,7 +43,7 @@ double Cell::pays_from() const {
   return saved > 0 ? point_grid_ns / saved : std::numeric_limits<double>::infinity();
 }
 
-std::vector<double> Cell::library_ratios() const {
+std::vector<double> Cell::caller_ratios() const {
   const auto best_of = [&](const std::string& name) {
     std::size_t found = best[kRobust];
     double least = std::numeric_limits<double>::infinity();
@@ -54,9 +54,9 @@ std::vector<double> Cell::library_ratios() const {
       }
     return found;
   };
-  return {ratio(library, best_of("single")),
-          ratio(library + 1, best_of("8")),
-          ratio(library + 2, best[kRobust])};
+  return {ratio(first_caller, best_of("single")),
+          ratio(first_caller + 1, best_of("8")),
+          ratio(first_caller + 2, best[kRobust])};
 }
 
 void Cell::find_best() {

@@ -29,8 +29,8 @@ struct Cell {
   /// The way through a grid in the light's perspective, where rays go to one; 0: there is none.
   std::size_t point_grid = 0;
   double point_grid_ns = 0;  ///< what building it took, of one thread
-  /// The first of the ways of LibraryWays; 0: there are none.
-  std::size_t library = 0;
+  /// The first of the ways of CallerWays; 0: there are none.
+  std::size_t first_caller = 0;
 
   double tests() const;  ///< a ray
   double cells() const;  ///< a ray
@@ -44,7 +44,7 @@ struct Cell {
   double pays_from() const;
   /// What a caller's ways take over those of Embree's that ask alike: calls of one ray, streams of
   /// eight, and one stream over the best.
-  std::vector<double> library_ratios() const;
+  std::vector<double> caller_ratios() const;
   /// Finds the best way of each side, by the rounds there were.
   void find_best();
 };

@@ -75,8 +75,8 @@ std::string point_grid_text(const Row&, std::size_t, const Cell& c) {
   return format("%.2f; %.1f ns; %.1f ms, %.2g rays", ratio, ns, ms, c.pays_from());
 }
 
-std::string library_text(const Row&, std::size_t, const Cell& c) {
-  const std::vector<double> r = c.library_ratios();
+std::string caller_text(const Row&, std::size_t, const Cell& c) {
+  const std::vector<double> r = c.caller_ratios();
   return format("%.2f; %.2f; %.2f", r[0], r[1], r[2]);
 }
 
@@ -113,7 +113,7 @@ void print_tables(const Options& options, const Results& results) {
     print(
         "As a caller asks, robust: one ray a call / rtcIntersect1; streams of 8 / rtcIntersect8; "
         "one stream with the library's own options / Embree's best",
-        library_text);
+        caller_text);
   }
   print_point_grids(options, results);
   print("ns a ray, as a render forms packets", time_text);
