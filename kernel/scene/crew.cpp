@@ -1,8 +1,8 @@
 #include "kernel/scene/crew.hpp"
 
 #include <atomic>
-#include <memory>
 #include <mutex>
+#include <new>
 #include <system_error>
 #include <thread>
 #include <vector>
@@ -75,6 +75,7 @@ class Members {
   std::vector<Member*> lend(int count) {
     const std::lock_guard lock(mutex_);
     std::vector<Member*> lent;
+    lent.reserve(static_cast<std::size_t>(count));
     while (static_cast<int>(lent.size()) < count && (!idle_.empty() || add())) {
       lent.push_back(idle_.back());
       idle_.pop_back();
@@ -87,16 +88,20 @@ class Members {
   }
 
  private:
+  /// A member is never destroyed: its thread serves on.
   bool add() try {
-    all_.push_back(std::make_unique<Member>());
-    idle_.push_back(all_.back().get());
+    idle_.reserve(count_ + 1);  // now, so that none that is there finds no place
+    idle_.push_back(new Member);
+    ++count_;
     return true;
   } catch (const std::system_error&) {
+    return false;
+  } catch (const std::bad_alloc&) {
     return false;
   }
 
   std::mutex mutex_;
-  std::vector<std::unique_ptr<Member>> all_;
+  std::size_t count_ = 0;
   std::vector<Member*> idle_;
 };
 

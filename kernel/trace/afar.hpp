@@ -21,7 +21,7 @@ inline bool starts_near(const GridView& g, const float (&org)[3]) {
 }
 
 /// Where a ray from afar comes to a grid.
-struct Arrival {
+struct Entry {
   float org[3];  ///< from the corner of the grid
   double shift;  ///< t there
   float slack;   ///< what t of its hits may be off by
@@ -32,12 +32,12 @@ struct Arrival {
 
 /// False: the ray, which starts outside the grid, does not come to it from t_min to t_max.
 template <class Number>
-inline bool arrive(const GridView& g,
-                   const Number (&org)[3],
-                   const float (&dir)[3],
-                   double t_min,
-                   double t_max,
-                   Arrival& to) {
+inline bool enter_from_afar(const GridView& g,
+                            const Number (&org)[3],
+                            const float (&dir)[3],
+                            double t_min,
+                            double t_max,
+                            Entry& to) {
   const GridRay r = to_grid(g, org, dir);
   double t0 = -static_cast<double>(kInfinity);
   double t1 = static_cast<double>(kInfinity);
@@ -80,7 +80,7 @@ class RaysFromAfar : public WalkingRays {
   /// What these have met since may be nearer.
   void note_hits_of(const Arrivals& rays) {
     for (int k = 0; k < rays.count; ++k)
-      best[rays.ray[k]] = arrival_[rays.ray[k]].latest(tested_best(p_)[rays.ray[k]]);
+      best[rays.ray[k]] = entry_[rays.ray[k]].latest(tested_best(p_)[rays.ray[k]]);
   }
 
  private:
@@ -92,11 +92,11 @@ class RaysFromAfar : public WalkingRays {
       at[a] = p_.org[a][i];
       way[a] = dir[a][i] = p_.dir[a][i];
     }
-    Arrival& to = arrival_[i];
+    Entry& to = entry_[i];
     const double from_t = tested_t_min(p_)[i];
     const double to_t = tested_best(p_)[i];
-    const bool comes =
-        p_.best[i] > p_.t_min[i] && !starts_near(g, at) && arrive(g, from, way, from_t, to_t, to);
+    const bool comes = p_.best[i] > p_.t_min[i] && !starts_near(g, at) &&
+                       enter_from_afar(g, from, way, from_t, to_t, to);
     for (int a = 0; a < 3; ++a)
       org[a][i] = comes ? to.org[a] : 0;
     t_min[i] = start[i] = comes ? to.earliest(from_t) : 0;
@@ -105,7 +105,7 @@ class RaysFromAfar : public WalkingRays {
   }
 
   const Packet<In>& p_;
-  Arrival arrival_[kPacket];
+  Entry entry_[kPacket];
 };
 
 /// The live rays of a packet that start far from a grid, each on its own.

@@ -103,8 +103,8 @@ inline void walk_one(const GridView& g, Single& r, Counters& n) {
 /// As walk_from_afar().
 template <bool kAny>
 [[gnu::noinline]] void walk_one_from_afar(const GridView& g, Single& r, Counters& n) {
-  Arrival to;
-  if (!arrive(g, r.org, r.dir, r.t_min, r.best, to))
+  Entry to;
+  if (!enter_from_afar(g, r.org, r.dir, r.t_min, r.best, to))
     return;
   WalkingRay walking = r;
   for (int a = 0; a < 3; ++a)
