@@ -3,6 +3,7 @@
 // render that can go on. This is the one file of the frontend that knows the generators.
 #include "frontend/cli/console.hpp"
 #include "frontend/cli/command_line.hpp"
+#include "frontend/cli/compare_pictures.hpp"
 #include "frontend/cli/render_scene.hpp"
 #include "frontend/commands/batch.hpp"
 #include "frontend/commands/nothing_seen.hpp"
@@ -14,9 +15,7 @@
 #include "frontend/files/memory_limit.hpp"
 #include "frontend/files/nearest.hpp"
 #include "frontend/files/parse_error.hpp"
-#include "frontend/images/compare.hpp"
 #include "frontend/images/image_file.hpp"
-#include "frontend/images/tone.hpp"
 #include "frontend/jobs/merge.hpp"
 #include "frontend/jobs/preparation.hpp"
 #include "frontend/jobs/ranks.hpp"
@@ -38,8 +37,6 @@
 namespace grelha {
 
 namespace {
-
-constexpr int kAboveBound = 1;  ///< of compare: the pictures differ by more
 
 /// The exit status of `work`, or of the error it ends with, which is told in one line.
 template <class Work>
@@ -140,55 +137,8 @@ int run(const InfoCommand& command, const Ranks& ranks) {
   return worst;
 }
 
-std::string size_text(const Image& image) {
-  return std::to_string(image.width) + 'x' + std::to_string(image.height);
-}
-
-void write_difference(const CompareCommand& command,
-                      const Image& a,
-                      const Image& b,
-                      double largest) {
-  const bool stretch =
-      image_format(command.diff) == ImageFormat::png && largest > 0 && largest <= 1e30;
-  write_image(command.diff,
-              difference(a, b, stretch ? 1 / largest : 1),
-              {.notes = {kSoftware, {"Comment", "difference of two pictures"}}});
-}
-
 int run(const CompareCommand& command) {
-  if (!command.diff.empty())
-    want_not_read({{"--diff", command.diff}}, {command.a, command.b});
-  Encoding of_a, of_b;
-  Image a = read_image(command.a, &of_a), b = read_image(command.b, &of_b);
-  if (a.width != b.width || a.height != b.height)
-    throw UsageError("the pictures have unequal sizes, " + size_text(a) + " and " + size_text(b));
-  if (of_a != of_b) {
-    warn(command.a + " holds " + encoding_text(of_a) + ", " + command.b + ' ' +
-         encoding_text(of_b) + ": compared as light");
-    a = as_light(std::move(a), of_a);
-    b = as_light(std::move(b), of_b);
-  }
-  if (command.display) {
-    a = displayed(std::move(a));
-    b = displayed(std::move(b));
-  }
-  const Comparison c = compare(a, b);
-  if (!command.diff.empty())
-    write_difference(command, a, b, c.largest);
-  char text[256];
-  std::snprintf(
-      text,
-      sizeof text,
-      "RMSE %.6g, PSNR %.4g dB, largest difference %.6g at (%d, %d), %llu of %llu pixels differ\n",
-      c.rmse,
-      c.psnr_db,
-      c.largest,
-      c.largest_x,
-      c.largest_y,
-      static_cast<unsigned long long>(c.differing),
-      static_cast<unsigned long long>(c.pixels));
-  print(text);
-  return command.max_rmse && !(c.rmse <= *command.max_rmse) ? kAboveBound : kOk;
+  return compare_pictures(command);
 }
 
 int run(const MergeCommand& command) {
