@@ -53,6 +53,13 @@ void positional(CLI::App& app, const char* name, std::string& target, const char
   app.add_option(name, target, help)->required()->type_name("");
 }
 
+void image_file(CLI::App& app, const char* name, std::string& target, const char* help) {
+  value(app, name, "FILE", help, [name, &target](const std::string& text) {
+    want_image_name(name, text);
+    target = text;
+  });
+}
+
 using Words = std::vector<std::string>;
 
 void positionals(CLI::App& app, const char* name, Words& target, const char* help) {
@@ -179,22 +186,11 @@ void add_sample_counts(CLI::App& sub, RenderCommand& command) {
         "SECONDS",
         "the same for so long; samples:N repeats what a run reported",
         [&command](const std::string& text) { parse_time(text, command.render.refine); });
-  value(sub,
-        "--samples-map",
-        "FILE",
-        "with --error or --time: picture of the samples of each pixel",
-        [&command](const std::string& text) {
-          want_image_name("--samples-map", text);
-          command.samples_map = text;
-        });
-  value(sub,
-        "--error-map",
-        "FILE",
-        "and of its estimated standard error",
-        [&command](const std::string& text) {
-          want_image_name("--error-map", text);
-          command.error_map = text;
-        });
+  image_file(sub,
+             "--samples-map",
+             command.samples_map,
+             "with --error or --time: picture of the samples of each pixel");
+  image_file(sub, "--error-map", command.error_map, "and of its estimated standard error");
 }
 
 /// Where samples lie.
@@ -328,14 +324,8 @@ void add_compare(CLI::App& app, CompareCommand& command) {
   sub.add_flag("--display",
                command.display,
                "compare what a screen shows: each channel cut to 0 to 1 first");
-  value(sub,
-        "--diff",
-        "FILE",
-        "write |A - B|; in a .png the largest difference is made white",
-        [&command](const std::string& text) {
-          want_image_name("--diff", text);
-          command.diff = text;
-        });
+  image_file(
+      sub, "--diff", command.diff, "write |A - B|; in a .png the largest difference is made white");
 }
 
 void add_merge(CLI::App& app, MergeCommand& command) {
