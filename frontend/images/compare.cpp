@@ -16,18 +16,27 @@ double distance(float a, float b) {
   return same ? 0 : std::isnan(d) ? kInfinity : d;
 }
 
+/// The square of a distance, of bright colours as a share of them.
+double relative_square(double distance, float reference) {
+  constexpr double kDark = .01;                // no less counts as the square of a colour
+  if (distance == 0 || distance == kInfinity)  // the reference may be no number
+    return distance;
+  return distance * distance / (double(reference) * reference + kDark);
+}
+
 }  // namespace
 
 Comparison compare(const Image& a, const Image& b) {
   Comparison result;
   result.pixels = std::uint64_t(a.width) * std::uint64_t(a.height);
-  double sum = 0;
+  double sum = 0, relative = 0;
   for (int y = 0; y < a.height; ++y) {
     for (int x = 0; x < a.width; ++x) {
       double pixel = 0;
       for (int channel = 3 * x; channel < 3 * x + 3; ++channel) {
         const double d = distance(a.row(y)[channel], b.row(y)[channel]);
         sum += d * d;
+        relative += relative_square(d, b.row(y)[channel]);
         pixel = std::max(pixel, d);
       }
       if (pixel > 0)
@@ -39,7 +48,9 @@ Comparison compare(const Image& a, const Image& b) {
       }
     }
   }
-  result.rmse = std::sqrt(sum / double(3 * result.pixels));
+  const double channels = double(3 * result.pixels);
+  result.rmse = std::sqrt(sum / channels);
+  result.relative_mse = relative / channels;
   result.psnr_db = result.rmse > 0 ? -20 * std::log10(result.rmse) : kInfinity;
   return result;
 }

@@ -12,6 +12,8 @@ namespace grelha {
 struct Comparison {
   double rmse = 0;
   double psnr_db = 0;  ///< against white 1; infinite for equal pictures
+  /// mean of (a - b)^2 / (b^2 + .01): b is the reference
+  double relative_mse = 0;
   double largest = 0;  ///< of the differences between channels
   int largest_x = 0, largest_y = 0;
   std::uint64_t pixels = 0, differing = 0;

@@ -39,6 +39,16 @@ TEST(Compare, NumbersWorkedOutByHand) {
   EXPECT_EQ(c.differing, 1u);
 }
 
+/// Of a dark reference .25 / .01, of a bright one .25 / (1 + .01); the first picture is no divisor.
+TEST(Compare, RelativeMseIsOfTheSecondPicture) {
+  const Image dark = image_of(1, 1, {0, 0, 0}), half = image_of(1, 1, {0.5f, 0, 0}),
+              white = image_of(1, 1, {1, 0, 0});
+  EXPECT_NEAR(compare(half, dark).relative_mse, 0.25 / 0.01 / 3, 1e-12);
+  EXPECT_NEAR(compare(dark, half).relative_mse, 0.25 / (0.25 + 0.01) / 3, 1e-12);
+  EXPECT_NEAR(compare(half, white).relative_mse, 0.25 / (1 + 0.01) / 3, 1e-12);
+  EXPECT_EQ(compare(half, half).relative_mse, 0);
+}
+
 TEST(Compare, BlackAgainstWhiteIsZeroDecibels) {
   const Comparison c = compare(image_of(1, 1, {0, 0, 0}), image_of(1, 1, {1, 1, 1}));
   EXPECT_EQ(c.rmse, 1);
@@ -51,7 +61,10 @@ TEST(Compare, NoNumberNeverPassesForSmall) {
     EXPECT_EQ(compare(a, b).rmse, std::numeric_limits<double>::infinity());
     EXPECT_EQ(compare(b, a).largest, std::numeric_limits<double>::infinity());
     EXPECT_EQ(compare(a, b).differing, 1u);
+    EXPECT_EQ(compare(a, b).relative_mse, std::numeric_limits<double>::infinity());
+    EXPECT_EQ(compare(b, a).relative_mse, std::numeric_limits<double>::infinity());
     EXPECT_EQ(compare(a, a).rmse, 0);
+    EXPECT_EQ(compare(a, a).relative_mse, 0);
   }
   EXPECT_EQ(
       compare(image_of(1, 1, {kInfinity, 0, 0}), image_of(1, 1, {-kInfinity, 0, 0})).differing, 1u);
