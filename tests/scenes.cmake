@@ -7,12 +7,18 @@ target_sources(image_file_test PRIVATE frontend/images/exr_file_test.cpp
 find_package(ZLIB REQUIRED)
 target_link_libraries(image_file_test PRIVATE ZLIB::ZLIB OpenMP::OpenMP_CXX)
 grelha_test(frontend/images/compare unit grelha::frontend)
+target_sources(compare_test PRIVATE frontend/images/likeness_test.cpp)
+add_test(NAME picture_measures COMMAND ${CMAKE_COMMAND} -E env PATH=/usr/bin:$ENV{PATH}
+  sh ${CMAKE_CURRENT_SOURCE_DIR}/with_python.sh ${CMAKE_CURRENT_SOURCE_DIR}/picture_measures.py
+  $<TARGET_FILE:grelha>)
+set_tests_properties(picture_measures PROPERTIES LABELS image SKIP_RETURN_CODE 77)
 grelha_test(frontend/cli/options unit grelha::frontend)
 target_sources(options_test PRIVATE frontend/cli/option_checks_test.cpp
   frontend/cli/help_test.cpp)
 grelha_test(frontend/commands/report unit grelha::frontend nlohmann_json::nlohmann_json)
 grelha_test(frontend/cli/program image grelha::frontend grelha::scenes nlohmann_json::nlohmann_json)
-target_sources(program_test PRIVATE frontend/cli/memory_test.cpp)
+target_sources(program_test PRIVATE frontend/cli/compare_pictures_test.cpp
+  frontend/cli/memory_test.cpp)
 grelha_test(frontend/cli/files image grelha::frontend)
 grelha_test(frontend/cli/hostile image grelha::frontend)
 target_link_libraries(hostile_test PRIVATE ZLIB::ZLIB)

@@ -1,6 +1,7 @@
 #include "frontend/cli/compare_pictures.hpp"
 
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -8,6 +9,7 @@
 #include "frontend/commands/outputs.hpp"
 #include "frontend/images/compare.hpp"
 #include "frontend/images/image_file.hpp"
+#include "frontend/images/likeness.hpp"
 #include "frontend/images/tone.hpp"
 #include "frontend/jobs/identity.hpp"
 
@@ -31,16 +33,68 @@ void write_difference(const CompareCommand& command,
               {.notes = {kSoftware, {"Comment", "difference of two pictures"}}});
 }
 
+void write_error_map(const std::string& path, const Likeness& likeness) {
+  const auto picture = image_format(path) == ImageFormat::png ? in_colours : in_numbers;
+  write_image(path, picture(likeness), {.notes = {kSoftware, {"Comment", "FLIP of two pictures"}}});
+}
+
+void check_outputs(const CompareCommand& command) {
+  const Output diff{"--diff", command.diff}, map{"--error-map", command.error_map};
+  for (const Output& output : {diff, map})
+    if (!output.second.empty())
+      want_not_read({output}, {command.a, command.b});
+  if (!command.diff.empty() && !command.error_map.empty())
+    want_apart(diff, map);
+}
+
+/// What a screen shows, as sRGB values: light through the curve, other numbers as they are, for
+/// they are sRGB values or colours as authored.
+Image on_screen(Image image, const Encoding& encoding, bool is_light) {
+  if (encoding.kind == Encoding::Kind::power && !is_light) {
+    image = as_light(std::move(image), encoding);
+    is_light = true;
+  }
+  image = displayed(std::move(image));
+  return is_light ? as_srgb(std::move(image)) : image;
+}
+
+std::string text_of(const Comparison& c) {
+  char text[256];
+  std::snprintf(
+      text,
+      sizeof text,
+      "RMSE %.6g, PSNR %.4g dB, largest difference %.6g at (%d, %d), %llu of %llu pixels differ\n"
+      "relative MSE %.6g",
+      c.rmse,
+      c.psnr_db,
+      c.largest,
+      c.largest_x,
+      c.largest_y,
+      static_cast<unsigned long long>(c.differing),
+      static_cast<unsigned long long>(c.pixels),
+      c.relative_mse);
+  return text;
+}
+
+/// "-" for what is not there
+std::string text_of(std::optional<double> number) {
+  if (!number)
+    return "-";
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", *number);
+  return text;
+}
+
 }  // namespace
 
 int compare_pictures(const CompareCommand& command) {
-  if (!command.diff.empty())
-    want_not_read({{"--diff", command.diff}}, {command.a, command.b});
+  check_outputs(command);
   Encoding of_a, of_b;
   Image a = read_image(command.a, &of_a), b = read_image(command.b, &of_b);
   if (a.width != b.width || a.height != b.height)
     throw UsageError("the pictures have unequal sizes, " + size_text(a) + " and " + size_text(b));
-  if (of_a != of_b) {
+  const bool as_light_both = of_a != of_b;
+  if (as_light_both) {
     warn(command.a + " holds " + encoding_text(of_a) + ", " + command.b + ' ' +
          encoding_text(of_b) + ": compared as light");
     a = as_light(std::move(a), of_a);
@@ -53,19 +107,11 @@ int compare_pictures(const CompareCommand& command) {
   const Comparison c = compare(a, b);
   if (!command.diff.empty())
     write_difference(command, a, b, c.largest);
-  char text[256];
-  std::snprintf(
-      text,
-      sizeof text,
-      "RMSE %.6g, PSNR %.4g dB, largest difference %.6g at (%d, %d), %llu of %llu pixels differ\n",
-      c.rmse,
-      c.psnr_db,
-      c.largest,
-      c.largest_x,
-      c.largest_y,
-      static_cast<unsigned long long>(c.differing),
-      static_cast<unsigned long long>(c.pixels));
-  print(text);
+  const Likeness l = likeness(on_screen(std::move(a), of_a, as_light_both),
+                              on_screen(std::move(b), of_b, as_light_both));
+  if (!command.error_map.empty())
+    write_error_map(command.error_map, l);
+  print(text_of(c) + ", SSIM " + text_of(l.ssim) + ", FLIP " + text_of(l.flip) + '\n');
   return command.max_rmse && !(c.rmse <= *command.max_rmse) ? kAboveBound : kOk;
 }
 

@@ -78,7 +78,8 @@ struct CompareCommand {
   std::string a, b;
   std::optional<double> max_rmse;
   bool display = false;  ///< compare what a screen shows, channels from 0 to 1
-  std::string diff;      ///< file for the difference picture, or empty
+  /// files for the pictures of the difference and of what one sees of it, or empty
+  std::string diff, error_map;
 };
 
 struct MergeCommand {

@@ -17,10 +17,14 @@ struct Use {
   const RenderCommand* command;
 };
 
+[[noreturn]] void refuse(const Output& first, const Output& second) {
+  throw UsageError(second.first + " and " + first.first + ": expected two files, found \"" +
+                   first.second + "\" twice");
+}
+
 [[noreturn]] void refuse(const Use& first, const Use& second) {
   if (first.command == second.command)
-    throw UsageError(second.option + " and " + first.option + ": expected two files, found \"" +
-                     first.file + "\" twice");
+    refuse(Output(first.option, first.file), Output(second.option, second.file));
   throw UsageError(second.option + ": " + first.command->scene + " and " + second.command->scene +
                    " would both be written to " + second.file +
                    "; {} in a name stands for the scene's");
@@ -67,6 +71,11 @@ void want_not_read(const std::vector<Output>& outputs, const std::vector<std::st
     throw UsageError(option + ": expected another file than " + found->second +
                      ", which is read, found \"" + file + '"');
   }
+}
+
+void want_apart(const Output& first, const Output& second) {
+  if (!is_special_file(first.second) && place_of(first.second) == place_of(second.second))
+    refuse(first, second);
 }
 
 void want_apart(const std::vector<RenderCommand>& commands) {

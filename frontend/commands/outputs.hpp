@@ -35,7 +35,10 @@ void want_no_terminal(const std::string& file);
 /// Throws UsageError when one of the outputs is a file that is read, by whatever name.
 void want_not_read(const std::vector<Output>& outputs, const std::vector<std::string>& read);
 
-/// Throws UsageError when two outputs are one file, be it of one command or of two.
+/// Throws UsageError when two outputs are one file.
+void want_apart(const Output& first, const Output& second);
+
+/// The same for all outputs, be it of one command or of two.
 void want_apart(const std::vector<RenderCommand>& commands);
 
 }  // namespace grelha

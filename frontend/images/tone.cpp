@@ -12,12 +12,12 @@
 #include "kernel/scene/turns.hpp"
 
 namespace grelha {
-namespace {
 
-/// IEC 61966-2-1.
 double light_of_srgb(double encoded) {
   return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
 }
+
+namespace {
 
 /// Byte k begins at thresholds[k - 1]; behind the last one comes what no value reaches. A table,
 /// not a curve per pixel: two machines whose powf differ in the last bit would otherwise write
@@ -61,6 +61,10 @@ const SrgbBytes& srgb_bytes() {
   return table;
 }
 
+double srgb_of_light(double light) {
+  return light <= 0.0031308 ? light * 12.92 : 1.055 * std::pow(light, 1 / 2.4) - 0.055;
+}
+
 }  // namespace
 
 std::uint8_t to_byte(float value, Tone tone) {
@@ -89,6 +93,12 @@ Image as_light(Image image, const Encoding& encoding) {
   for (float& v : image.rgb)
     v = float(power ? std::pow(double(v), 1 / encoding.exponent) : light_of_srgb(v));
   return image;
+}
+
+Image as_srgb(Image light) {
+  for (float& v : light.rgb)
+    v = float(srgb_of_light(v));
+  return light;
 }
 
 }  // namespace grelha

@@ -9,6 +9,9 @@
 
 namespace grelha {
 
+/// The light of an sRGB value, both from 0 to 1. IEC 61966-2-1.
+double light_of_srgb(double encoded);
+
 /// 0..1 to 0..255, to nearest; what lies outside is clamped and NaN is black.
 std::uint8_t to_byte(float value, Tone tone);
 
@@ -17,5 +20,8 @@ std::vector<std::uint8_t> to_bytes(const Image& image, Tone tone);
 
 /// The light that numbers so encoded stand for.
 Image as_light(Image image, const Encoding& encoding);
+
+/// The other way: light from 0 to 1 as sRGB values.
+Image as_srgb(Image light);
 
 }  // namespace grelha

@@ -1,0 +1,39 @@
+#pragma once
+// Sums of neighbours with weights, which SSIM and FLIP are made of.
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+namespace grelha {
+
+/// One number a pixel, row by row.
+struct Plane {
+  int width, height;
+  std::vector<double> values;  ///< [height * width]
+
+  /// Of zeros.
+  Plane(int w, int h) : width(w), height(h), values(std::size_t(w) * std::size_t(h)) {}
+  double* row(int y) { return values.data() + std::size_t(y) * std::size_t(width); }
+  const double* row(int y) const { return values.data() + std::size_t(y) * std::size_t(width); }
+};
+
+/// The weights of numbers side by side, an odd number of them.
+using Taps = std::vector<double>;
+
+/// exp(-x^2 / (2 sigma^2)) at -radius to radius.
+Taps bell(int radius, double sigma);
+
+double sum(const Taps& taps);
+
+/// Taps that sum to 1.
+Taps averaging(Taps taps);
+
+/// Sums over a square of neighbours: `across` within a row times `down` within a column, of as many
+/// taps. Whole squares alone: of width and height as many are lost as there are taps, less one.
+Plane filtered(const Plane& plane, const Taps& across, const Taps& down);
+
+/// Calls work(first, end) for strips of rows below `height`, by all threads.
+void each_strip(int height, const std::function<void(int first, int end)>& work);
+
+}  // namespace grelha

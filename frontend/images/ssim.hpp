@@ -1,0 +1,15 @@
+#pragma once
+// Structural similarity: Wang, Bovik, Sheikh and Simoncelli, "Image quality assessment: from error
+// visibility to structural similarity", IEEE Transactions on Image Processing 13 (2004).
+
+#include <optional>
+
+#include "grelha/image.hpp"
+
+namespace grelha {
+
+/// The mean over all whole windows (11 x 11, Gaussian of sigma 1.5) of what a screen shows, values
+/// from 0 to 1: of its luma after Rec. 601. 1 for equal pictures; absent where no window fits.
+std::optional<double> ssim(const Image& a, const Image& b);
+
+}  // namespace grelha
