@@ -1,0 +1,258 @@
+#!/usr/bin/env python3
+"""What --error promises against what it keeps, on generated scenes that are hard to sample.
+
+    ./run perf error_suite [--kinds A,B] [--variants N] [--errors A,B] [--seeds N] [--size N]
+                           [--time] [--folder F] [--keep]
+
+A row per kind of perf/lib/hostile_scenes.py. For each E, the true RMSE over E: worst and median of
+all variants and seeds. Errors are in display units (channels cut to 0 to 1), against a mean of two
+references whose own error is at most a quarter of the finest E. It is taken off in squares; runs
+whose reference stays coarser than half their E are left out. Then shares of runs:
+
+- kept: true RMSE at most E; beyond: above 1.25 E
+- bound: the run's own bound is at least the true RMSE
+- missed: tiny things, in %, that show less than a tenth of what the reference shows; by E
+- mean: the pictures' mean over the reference's, on average
+- time: CPU seconds over those of the best fixed number of samples for the same true RMSE
+
+Scenes, references and a CSV of all runs stay in the build folder, or in F.
+"""
+import argparse
+import csv
+import pathlib
+import shlex
+import statistics
+import sys
+
+import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "lib"))
+from bench import DOCS, ROOT
+from hostile_scenes import COUNTED, KINDS, VARIANTS, scene
+from image_error import Workshop, read_pfm, rmse, time_to_reach
+
+MOST = 2 * 65536               # samples of a reference, in two halves
+LEAST, LEAST_COUNTED = 2 * 1024, 2 * 16384
+SHOWN = .02                    # a tiny thing counts that adds as much to its pixels
+FIXED = [2 ** k for k in range(11)]
+COLUMNS = [
+    "kind", "variant", "error", "seed", "true", "reference_error", "claimed", "bound", "samples",
+    "things", "missed", "mean", "seconds", "time", "command"]
+
+
+def reference(shop, path, options, least, finest):
+    """Of as many samples as its own error asks for: a quarter of the finest E, if that can be."""
+    samples = least
+    while True:
+        picture, own = shop.reference(path, options, samples)
+        if own <= finest / 4 or samples >= MOST:
+            return picture, own
+        samples = min(4 * samples, MOST)
+
+
+def display(picture):
+    return np.clip(picture, 0, 1).mean(axis=2)
+
+
+def things(excess):
+    """Numbers of the pixels that tiny things brighten, from 1; neighbours belong together."""
+    on = excess > SHOWN / 2
+    labels = np.where(on, 1 + np.arange(on.size).reshape(on.shape), 0)
+    while True:
+        padded, before = np.pad(labels, 1), labels
+        around = [padded[1 + y:padded.shape[0] - 1 + y, 1 + x:padded.shape[1] - 1 + x]
+                  for y in (-1, 0, 1) for x in (-1, 0, 1)]
+        labels = np.where(on, np.max(around, axis=0), 0)
+        if (labels == before).all():
+            return np.unique(labels, return_inverse=True)[1].reshape(on.shape)
+
+
+class Tiny:
+    """The countable things of a scene: where they are, and how much the reference shows of each."""
+
+    def __init__(self, picture, bare):
+        self.bare = display(bare)
+        excess = display(picture) - self.bare
+        self.labels = things(excess)
+        self.shows = self.sums(excess)
+        self.counted = self.shows >= SHOWN
+
+    def sums(self, excess):
+        return np.bincount(self.labels.ravel(), excess.ravel())[1:]
+
+    def missed(self, picture):
+        got = self.sums(display(picture) - self.bare)
+        return int((got < self.shows / 10)[self.counted].sum())
+
+
+def fixed_curve(shop, path, options, picture, own):
+    """Points of plain samples, for time_to_reach."""
+    curve = []
+    for n in FIXED:
+        stats = shop.render(path, [*options, "--samples", n, "--seed", 1],
+                            shop.folder / "point.pfm")
+        curve.append({"rmse": without(rmse(read_pfm(shop.folder / "point.pfm"), picture), own),
+                      "seconds": stats["seconds"]["render_cpu"]})
+    return curve
+
+
+def without(measured, own):
+    """The RMSE to the truth, of that to a reference which has an error of its own."""
+    return max(measured ** 2 - own ** 2, 1e-18) ** .5
+
+
+def runs_of(shop, kind, variant, asked):
+    """A dict of COLUMNS for each E and seed of one scene."""
+    text, options = scene(kind, variant)
+    path = shop.folder / f"{kind}-{variant}.nff"
+    path.write_text(text)
+    options = [*options, "-j", "1"]
+    counted, finest = kind in COUNTED, min(asked.errors)
+    picture, own = reference(shop, path, options, LEAST_COUNTED if counted else LEAST, finest)
+    tiny, curve, point = None, None, shop.folder / "point.pfm"
+    if counted:
+        bare = shop.folder / f"{kind}-{variant}-bare.nff"
+        bare.write_text(scene(kind, variant, bare=True)[0])
+        tiny = Tiny(picture, reference(shop, bare, options, LEAST, SHOWN / 4)[0])
+    if asked.time:
+        curve = fixed_curve(shop, path, options, picture, own)
+    for error in asked.errors:
+        for seed in range(1, asked.seeds + 1):
+            words = [*options, "--error", error, "--seed", seed]
+            stats = shop.render(path, words, point)
+            image, told = read_pfm(point), stats["error"]
+            true, seconds = without(rmse(image, picture), own), stats["seconds"]["render_cpu"]
+            reached = time_to_reach(curve, true) if curve else None
+            yield {
+                "kind": kind, "variant": variant, "error": error, "seed": seed, "true": true,
+                "reference_error": own, "claimed": told["rmse"], "bound": told["rmse_bound"],
+                "samples": told["samples"] / image[..., 0].size,
+                "things": int(tiny.counted.sum()) if tiny else 0,
+                "missed": tiny.missed(image) if tiny else 0,
+                "mean": display(image).mean() / max(display(picture).mean(), 1e-9),
+                "seconds": seconds, "time": seconds / reached if reached else "",
+                "command": shlex.join(["./run", "render", str(path), "-o", "p.pfm", *shop.size, *map(str, words)])}
+
+
+def share(hits):
+    hits = list(hits)
+    return sum(hits) / len(hits) if hits else float("nan")
+
+
+def told_share(value):
+    return "" if value != value else f"{100 * value:.1f} %"
+
+
+def share_missed(runs):
+    count = sum(r["things"] for r in runs)
+    return sum(r["missed"] for r in runs) / count if count else float("nan")
+
+
+class Summary:
+    """Figures of a set of runs."""
+
+    def __init__(self, runs):
+        self.whole = runs
+        self.runs = [r for r in runs if r["reference_error"] <= r["error"] / 2]
+        self.kept = share(r["true"] <= r["error"] for r in self.runs)
+        self.beyond = share(r["true"] > 1.25 * r["error"] for r in self.runs)
+        self.bound = share(r["bound"] >= r["true"] for r in self.runs)
+        self.missed = share_missed(runs)
+        self.mean = statistics.fmean(r["mean"] for r in self.runs) if self.runs else float("nan")
+        times = [r["time"] for r in self.runs if r["time"]]
+        self.time = statistics.median(times) if times else None
+
+    def ratios(self, error):
+        own = [r["true"] / error for r in self.runs if r["error"] == error]
+        return f"{max(own):.2f}, {statistics.median(own):.2f}" if own else ""
+
+    def missed_at(self, errors):
+        shares = [share_missed([r for r in self.whole if r["error"] == e]) for e in errors]
+        return ", ".join(f"{100 * s:.1f}" for s in shares if s == s)
+
+    def cells(self, errors):
+        return [f"{len(self.runs)} of {len(self.whole)}", *(self.ratios(e) for e in errors),
+                told_share(self.kept), told_share(self.beyond), told_share(self.bound),
+                self.missed_at(errors), f"{self.mean:.4f}", f"{self.time:.2f}" if self.time else ""]
+
+
+def verdict(total):
+    wanted = {
+        "true RMSE at most E in 95 % of runs": total.kept >= .95,
+        "never above 1.25 E": total.beyond == 0,
+        "bound at least the truth in 95 %": total.bound >= .95,
+        "missed at most 1 %": not total.missed > .01,
+        "mean within .3 %": abs(total.mean - 1) <= .003}
+    print("\n" + "; ".join(f"{what}: {'met' if met else '**not met**'}"
+                           for what, met in wanted.items()))
+    return all(wanted.values())
+
+
+def tell_worst(runs, count=10):
+    print("\nWorst runs, as true RMSE over E:\n")
+    for r in sorted(runs, key=lambda r: -r["true"] / r["error"])[:count]:
+        print(f"    {r['true'] / r['error']:.2f}  {r['command']}")
+
+
+def write_csv(runs, path):
+    with open(path, "w", newline="") as f:
+        table = csv.DictWriter(f, COLUMNS, extrasaction="ignore", lineterminator="\n")
+        table.writeheader()
+        for r in runs:
+            table.writerow({k: f"{v:.4g}" if isinstance(v, float) else v for k, v in r.items()})
+
+
+def asked_for():
+    def names(text):
+        wrong = set(text.split(",")) - set(KINDS)
+        if wrong:
+            raise argparse.ArgumentTypeError(f"no kind: {', '.join(sorted(wrong))}; there are "
+                                             f"{', '.join(KINDS)}")
+        return text.split(",")
+
+    def numbers(text):
+        return [float(word) for word in text.split(",")]
+
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--program", default=ROOT / "build/release/grelha",
+                        help="[build/release/grelha]")
+    parser.add_argument("--kinds", type=names, default=list(KINDS), help="[all]")
+    parser.add_argument("--variants", type=int, default=VARIANTS,
+                        help=f"of each kind, at most {VARIANTS} [{VARIANTS}]")
+    parser.add_argument("--errors", type=numbers, default=[.03, .01, .003, .001],
+                        help="[.03,.01,.003,.001]")
+    parser.add_argument("--seeds", type=int, default=5, help="runs of each scene and E [5]")
+    parser.add_argument("--size", type=int, default=64, help="side of the pictures [64]")
+    parser.add_argument("--time", action="store_true", help="compare with fixed samples too")
+    parser.add_argument("--folder", default="error_suite",
+                        help="where scenes and references stay [error_suite beside the program]")
+    parser.add_argument("--keep", action="store_true", help="write docs/error-suite.csv as well")
+    return parser.parse_args()
+
+
+def main():
+    asked = asked_for()
+    shop = Workshop(asked.program, asked.folder, asked.size)
+    head = [f"true / E at {e:g}: worst, median" for e in asked.errors]
+    print("| kind | runs |", " | ".join(head), "| kept | beyond | bound | missed | mean | time |")
+    print("|---|--:" + "|--:" * (len(head) + 6) + "|")
+    runs = []
+    for kind in asked.kinds:
+        own = []
+        for variant in range(min(asked.variants, VARIANTS)):
+            own += runs_of(shop, kind, variant, asked)
+        runs += own
+        print(f"| {kind} |", " | ".join(Summary(own).cells(asked.errors)), "|", flush=True)
+        write_csv(runs, shop.folder / "error-suite.csv")
+    total = Summary(runs)
+    print("| all |", " | ".join(total.cells(asked.errors)), "|")
+    tell_worst(runs)
+    if asked.keep:
+        for r in runs:
+            r["command"] = r["command"].replace(f"{shop.folder}/", "")
+        write_csv(runs, DOCS / "error-suite.csv")
+    sys.exit(not verdict(total))
+
+
+if __name__ == "__main__":
+    main()
