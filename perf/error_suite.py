@@ -131,7 +131,8 @@ def runs_of(shop, kind, variant, asked):
                 "missed": tiny.missed(image) if tiny else 0,
                 "mean": display(image).mean() / max(display(picture).mean(), 1e-9),
                 "seconds": seconds, "time": seconds / reached if reached else "",
-                "command": shlex.join(["./run", "render", str(path), "-o", "p.pfm", *shop.size, *map(str, words)])}
+                "command": shlex.join([
+                    "./run", "render", str(path), "-o", "p.pfm", *shop.size, *map(str, words)])}
 
 
 def share(hits):
