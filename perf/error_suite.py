@@ -46,8 +46,14 @@ def reference(shop, path, options, least, finest):
     while True:
         picture, own = shop.reference(path, options, samples)
         if own <= finest / 4 or samples >= MOST:
+            write_pfm(picture, path.with_name(f"{path.stem}-reference.pfm"))
             return picture, own
         samples = min(4 * samples, MOST)
+
+
+def write_pfm(picture, path):
+    height, width, _ = picture.shape
+    path.write_bytes(b"PF\n%d %d\n-1\n" % (width, height) + picture[::-1].astype("<f4").tobytes())
 
 
 def display(picture):
@@ -189,10 +195,11 @@ def verdict(total):
     return all(wanted.values())
 
 
-def tell_worst(runs, count=10):
+def tell_worst(runs, folder, count=10):
     print("\nWorst runs, as true RMSE over E:\n")
     for r in sorted(runs, key=lambda r: -r["true"] / r["error"])[:count]:
         print(f"    {r['true'] / r['error']:.2f}  {r['command']}")
+    print(f"\nand for each: ./run compare p.pfm {folder}/KIND-VARIANT-reference.pfm --display")
 
 
 def write_csv(runs, path):
@@ -247,7 +254,7 @@ def main():
         write_csv(runs, shop.folder / "error-suite.csv")
     total = Summary(runs)
     print("| all |", " | ".join(total.cells(asked.errors)), "|")
-    tell_worst(runs)
+    tell_worst(runs, shop.folder)
     if asked.keep:
         for r in runs:
             r["command"] = r["command"].replace(f"{shop.folder}/", "")
