@@ -207,7 +207,7 @@ def write_csv(runs, path):
         table = csv.DictWriter(f, COLUMNS, extrasaction="ignore", lineterminator="\n")
         table.writeheader()
         for r in runs:
-            table.writerow({k: f"{v:.4g}" if isinstance(v, float) else v for k, v in r.items()})
+            table.writerow({k: f"{v:.5g}" if isinstance(v, float) else v for k, v in r.items()})
 
 
 def asked_for():
