@@ -254,7 +254,7 @@ def main():
         write_csv(runs, shop.folder / "error-suite.csv")
     total = Summary(runs)
     print("| all |", " | ".join(total.cells(asked.errors)), "|")
-    tell_worst(runs, shop.folder)
+    tell_worst(total.runs, shop.folder)
     if asked.keep:
         for r in runs:
             r["command"] = r["command"].replace(f"{shop.folder}/", "")
