@@ -8,6 +8,7 @@
 
 #include "kernel/features/beam_search.hpp"
 #include "kernel/features/closed_sheet.hpp"
+#include "kernel/scene/refraction.hpp"
 
 namespace grelha::GRELHA_ISA {
 
@@ -29,18 +30,24 @@ inline Doubt operator+(const Doubt& a, const Doubt& b) {
 /// The surfaces that a beam's corners met.
 using CornerSurfaces = Surface<float>[kCorners];
 
+/// How often a beam is still followed.
+struct ToFollow {
+  int mirrors;
+  int clears;  ///< surfaces that it passes through
+};
+
 class Watcher {
  public:
   Watcher(const SceneView& scene, const ShadingView& shading, Counters& counters)
       : scene_(scene), shading_(shading), n_(counters) {}
 
   /// What may hide in the light that comes along the beam with `weight`. None: it is plain, one
-  /// smooth surface under light that is whole or wholly blocked, and so in mirrors `bounces` more
-  /// times. `whole`: only a surface that is one convex primitive counts, which makes the answer
+  /// smooth surface under light that is whole or wholly blocked, and so in mirrors and behind clear
+  /// surfaces, as far as they are followed. `whole`: only a surface that is one convex primitive counts, which makes the answer
   /// sure.
   Doubt doubt(const Beam& beam,
               bool whole,
-              int bounces,
+              ToFollow follow,
               float weight,
               std::uint32_t mirror_id = kNoPrimitive) {
     BeamFrame f;
@@ -61,15 +68,27 @@ class Watcher {
     if (sight.id[0] == kNoPrimitive)
       return {};
     CornerSurfaces s;
-    if (!find_surfaces(beam, sight, s))
-      return around(weight);
-    if (field(s[0], kTransmission) > 0)
+    bool within = false;
+    if (!find_surfaces(beam, sight, s, within))
       return around(weight);
     const Doubt found = uneven_lights(s, sight.id, whole, weight);
-    return found + in_mirror(beam, s, sight.id[0], whole, bounces, weight, found.inside);
+    const Way way{beam, s, sight.id[0], whole, follow, weight};
+    if (field(s[0], kTransmission) > 0)
+      return whole ? around(weight) : found + in_glass(way, within, found.inside);
+    return found + in_mirror(way, largest(color(s[0], kMirrorR)), found.inside);
   }
 
  private:
+  /// A beam that met a surface, and how far it is to be followed.
+  struct Way {
+    const Beam& beam;
+    const CornerSurfaces& s;
+    std::uint32_t id;  ///< of the surface
+    bool whole;
+    ToFollow follow;
+    float weight;
+  };
+
   /// Whether corners met different surfaces, or, if `whole`, other than one convex primitive.
   bool corners_differ(const std::uint32_t (&id)[kCorners], bool whole) const {
     const GeometryView& g = scene_.geometry;
@@ -122,17 +141,21 @@ class Watcher {
     return mirror_id != kNoPrimitive && (id == mirror_id || kin(scene_.geometry, id, mirror_id));
   }
 
-  /// The surfaces at the corners, their normals towards the beam; false when these turn too far.
-  bool find_surfaces(const Beam& beam, const Sight& sight, CornerSurfaces& s) const {
+  /// The surfaces at the corners, their normals towards the beam, and whether it comes from
+  /// `within`; false when they turn too far.
+  bool find_surfaces(const Beam& beam, const Sight& sight, CornerSurfaces& s, bool& within) const {
     const Vec3f zero{0, 0, 0};
     for (int i = 0; i < kCorners; ++i) {
       s[i] = surface_of<float>(
           scene_.geometry, sight.id[i], beam.org[i], beam.dir[i], sight.t[i], shading_.smooth);
-      if (dot(beam.dir[i], s[i].normal) > 0) {
+      const bool behind = dot(beam.dir[i], s[i].normal) > 0;
+      if (behind) {
         s[i].normal = zero - s[i].normal;
         s[i].shading = zero - s[i].shading;
       }
-      if (dot(s[i].normal, s[0].normal) < kOneSurface)
+      if (i == 0)
+        within = behind;
+      if (behind != within || dot(s[i].normal, s[0].normal) < kOneSurface)
         return false;
     }
     return true;
@@ -164,25 +187,54 @@ class Watcher {
     return most;
   }
 
-  /// What hides in the mirror that the corners met. Mirrors that weigh little are not followed, nor
-  /// those in which no more could hide than `found`.
-  Doubt in_mirror(const Beam& beam,
-                  const CornerSurfaces& s,
-                  std::uint32_t id,
-                  bool whole,
-                  int bounces,
-                  float weight,
-                  float found) {
-    const float mirror = lesser(largest(color(s[0], kMirrorR)), 1.f) * weight;
-    if (!(mirror > found) || mirror < kLeastMirror || field(s[0], kRoughness) > 0 || bounces == 0)
+  /// What hides in the mirror that the corners met, of which `share` of the light comes. Mirrors
+  /// that weigh little are not followed, nor those in which no more could hide than `found`.
+  Doubt in_mirror(const Way& way, float share, float found) {
+    const float mirror = lesser(share, 1.f) * way.weight;
+    if (!(mirror > found) || mirror < kLeastMirror || field(way.s[0], kRoughness) > 0 ||
+        way.follow.mirrors == 0)
       return {};
     Beam mirrored;
     for (int i = 0; i < kCorners; ++i) {
-      const float across = dot(beam.dir[i], s[i].shading);
-      mirrored.dir[i] = normalize(beam.dir[i] - (across + across) * s[i].shading);
-      mirrored.org[i] = s[i].point + s[i].away * s[i].normal;
+      const Surface<float>& s = way.s[i];
+      const float across = dot(way.beam.dir[i], s.shading);
+      mirrored.dir[i] = normalize(way.beam.dir[i] - (across + across) * s.shading);
+      mirrored.org[i] = s.point + s.away * s.normal;
     }
-    return doubt(mirrored, whole, bounces - 1, mirror, id);
+    const ToFollow left{way.follow.mirrors - 1, way.follow.clears};
+    return doubt(mirrored, way.whole, left, mirror, way.id);
+  }
+
+  /// What hides behind the clear surface that the corners met, and in its mirror: followed as light
+  /// is sent on (kernel/render/children.hpp). Where some of it is reflected as a whole, nobody can
+  /// tell.
+  Doubt in_glass(const Way& way, bool within, float found) {
+    const float ior = field(way.s[0], kIor);
+    Beam through;
+    float least = 1;
+    float most = 0;
+    for (int i = 0; i < kCorners; ++i) {
+      const Surface<float>& s = way.s[i];
+      const Vec3f v = Vec3f{0, 0, 0} - way.beam.dir[i];
+      const Refraction<float> f = snell(ior, within, dot(s.shading, v));
+      if (!f.passes)
+        return around(way.weight);
+      const float mirrored = schlick(ior, f);
+      least = lesser(least, mirrored);
+      most = greater(most, mirrored);
+      through.dir[i] = normalize(passed_on(f, s.shading, v));
+      through.org[i] = s.point - s.away * s.normal;
+    }
+    const bool fresnel = shading_.fresnel && field(way.s[0], kFresnel) > 0;
+    const Doubt up = in_mirror(way, fresnel ? most : largest(color(way.s[0], kMirrorR)), found);
+    const float share = fresnel ? 1 - least : lesser(field(way.s[0], kTransmission), 1.f);
+    const float passes = share * way.weight;
+    if (passes < kLeastMirror || passes <= found)
+      return up;
+    if (way.follow.clears == 0)
+      return up + around(passes);
+    const ToFollow left{way.follow.mirrors, way.follow.clears - 1};
+    return up + doubt(through, false, left, passes, way.id);
   }
 
   /// The beam from a light to a patch.

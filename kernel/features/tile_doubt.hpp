@@ -68,7 +68,8 @@ inline void tile_doubt(Watcher& watcher,
   const int first = y0 % kTile * kTile + x0 % kTile;
   if ((asked & square_bits(first, size)) == 0)
     return;
-  const Doubt doubt = watcher.doubt(pixel_beam(f, x0, y0, size), size > 1, bounces, 1);
+  const Doubt doubt =
+      watcher.doubt(pixel_beam(f, x0, y0, size), size > 1, {bounces, kClearsFollowed}, 1);
   if (size == 1 || doubt.none()) {
     found.set(first, size, doubt);
     return;

@@ -52,6 +52,9 @@ inline constexpr float kBeforeSurface = .9999f;
 /// four steps of a picture of 8 bits.
 inline constexpr float kLeastMirror = 1.f / 64;
 
+/// Clear surfaces that a beam is followed through: two panes of glass have four (a choice).
+inline constexpr int kClearsFollowed = 4;
+
 /// A beam is this much wider than its pixel, lest it doubts what its neighbours
 /// see, or than a square of pixels that is to be left out as a whole: what only
 /// touches an edge counts as well.

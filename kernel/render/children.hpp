@@ -2,6 +2,7 @@
 // The reflected and refracted rays that hits send on.
 
 #include "kernel/render/shader.hpp"
+#include "kernel/scene/refraction.hpp"
 #include "kernel/shapes/surface.hpp"
 
 namespace grelha::GRELHA_ISA {
@@ -135,40 +136,6 @@ struct Bounce {
   Lanes3 through;  ///< the refracted direction
 };
 
-/// Schlick's share of the mirror.
-inline Lanes schlick(const Lanes& ior, const Lanes& cosine) {
-  const Lanes one(1);
-  const Lanes r = (ior - one) / (ior + one);
-  const Lanes r0 = r * r;
-  const Lanes c = one - cosine;
-  const Lanes cc = c * c;
-  return r0 + (one - r0) * ((cc * cc) * c);
-}
-
-/// Snell's law at hits.
-struct Refraction {
-  Lanes eta;           ///< index of refraction of the viewer's side over that of the other
-  Lanes cosine;        ///< to the viewer
-  Lanes other_cosine;  ///< on the other side
-  LaneMask passes;     ///< else: total reflection
-};
-
-/// `nv`: cosine between normal and viewer.
-[[gnu::always_inline]] inline Refraction snell(const Lanes& ior,
-                                               const LaneMask& inside,
-                                               const Lanes& nv) {
-  const Lanes o(0), one(1);
-  const Lanes eta = select(inside, ior, one / ior);
-  const Lanes cosine = greater(nv, o);
-  const Lanes squared = one - (eta * eta) * (one - cosine * cosine);  // of the other
-  return {
-      eta,
-      cosine,
-      square_root(greater(squared, o)),
-      squared >= o,
-  };
-}
-
 /// What goes up on total reflection, where the mirror ray takes over what would have passed: t is
 /// added to `up`, or all goes up where the material obeys Fresnel.
 [[gnu::always_inline]] inline Lanes3 totally_reflected(const Lanes3& up,
@@ -187,13 +154,12 @@ struct Shares {
 };
 
 /// Fresnel's law in the place of the given shares, where a material asks for it.
-[[gnu::always_inline]] inline Shares fresnel_shares(const Refraction& f,
+[[gnu::always_inline]] inline Shares fresnel_shares(const Refraction<Lanes>& f,
                                                     const Lanes& ior,
                                                     const LaneMask& asked,
                                                     const Shares& given) {
   const Lanes one(1);
-  // the angle on the thinner side
-  const Lanes kr = schlick(ior, select(f.eta > one, f.other_cosine, f.cosine));
+  const Lanes kr = schlick(ior, f);
   return {select(asked, Lanes3{kr, kr, kr}, given.mirror), select(asked, one - kr, given.through)};
 }
 
@@ -210,14 +176,14 @@ inline Bounce refract(const Shader& s,
   const Lanes ior = gather(s, kIor, at);
   const Lanes fresnel = gather(s, kFresnel, at);
   const LaneMask clear = t > o;
-  const Refraction f = snell(ior, at(s.b.hits.inside) > o, nv);
+  const Refraction<Lanes> f = snell(ior, at(s.b.hits.inside) > o, nv);
   Shares shares{mirror, t};
   if (s.shading.fresnel)
     shares = fresnel_shares(f, ior, fresnel > o, shares);
   const Lanes through = select(both(clear, f.passes), shares.through, o);
   Lanes3 up = select(clear, shares.mirror, mirror);
   up = select(but_not(clear, f.passes), totally_reflected(up, t, fresnel == o), up);
-  return {up, {through, through, through}, (f.eta * f.cosine - f.other_cosine) * n - f.eta * v};
+  return {up, {through, through, through}, passed_on(f, n, v)};
 }
 
 /// The rays that leave mirrors.

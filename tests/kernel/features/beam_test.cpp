@@ -84,6 +84,56 @@ TEST_P(Beam, DoubtsWhatAMirrorShowsByItsWeight) {
       EXPECT_EQ(at(tile, x, y), x == 2 && y == 1 ? 2 * .5f : 0) << x << ' ' << y;
 }
 
+/// Adds a clear sheet at height z over the whole picture.
+void add_pane(Scene& s, float z, float ior) {
+  Material& clear = s.materials.emplace_back();
+  clear.transmission = .75f;
+  clear.ior = ior;
+  const auto m = static_cast<std::uint32_t>(s.materials.size() - 1);
+  add_triangle(s, {-50, -50, z}, {50, -50, z}, {0, 90, z}, m);
+}
+
+TEST_P(Beam, DoubtsOnlyThePixelWithTheSpeckBehindAPane) {
+  Scene s = wall();
+  s.lights.clear();
+  // the eye sees this at (-1.5, 2.5, 0), the middle of pixel (2, 1)
+  s.geometry.spheres.add({-1.35f, 2.25f, 20}, .02f, 0);
+  add_pane(s, 60, 1);
+  add_pane(s, 50, 1);
+  const Tile tile = look(s);
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 8; ++x)
+      EXPECT_EQ(at(tile, x, y), x == 2 && y == 1 ? 2 * .5625f : 0) << x << ' ' << y;
+}
+
+TEST_P(Beam, FollowsLightThatABallBends) {
+  Scene s = wall();
+  s.lights.clear();
+  Material& glass = s.materials.emplace_back();
+  glass.transmission = 1;
+  glass.ior = 1.5f;
+  // it brings nearly parallel rays together at 1.5 of its radii behind its centre: before that each
+  // pixel has a place of its own
+  s.geometry.spheres.add({0, 0, 100}, 30, 1);
+  const Tile empty = look(s);
+  s.geometry.spheres.add({-.07f, .07f, 64}, .02f, 0);
+  const Tile tile = look(s);
+  for (const int y : {3, 4})
+    for (const int x : {3, 4}) {
+      EXPECT_EQ(at(empty, x, y), 0) << x << ' ' << y;
+      EXPECT_EQ(at(tile, x, y) > 0, x == 3 && y == 3) << x << ' ' << y;
+    }
+}
+
+TEST_P(Beam, SaysSoWhereAPaneIsOneTooMany) {
+  Scene s = wall();
+  s.lights.clear();
+  for (int i = 0; i < 5; ++i)
+    add_pane(s, 50 + static_cast<float>(i), 1);
+  for (const float d : look(s))
+    EXPECT_GT(d, 0);
+}
+
 TEST_P(Beam, TakesASmoothMeshForOneSurface) {
   Scene s = empty_scene();
   for (int y = -6; y < 6; ++y)  // a gently bent sheet, several triangles a pixel
