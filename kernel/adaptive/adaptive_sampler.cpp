@@ -77,7 +77,8 @@ class AdaptiveSampler {
       if (!judged)
         continue;
       if (r_.rounds++ == 0)
-        find_hidden_features(world_, setup_, errors_, stats_.threads, r_, stats_.trace);
+        find_hidden_features(
+            world_, setup_, errors_, options_.refine.error, stats_.threads, r_, stats_.trace);
       errors_.judge();
       r_.finished =
           !choose_round(r_, errors_, options_.refine, order_, {samples_, seconds()}, first_log_);

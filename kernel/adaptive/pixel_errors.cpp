@@ -35,7 +35,6 @@ float PixelErrors::own_variance(std::size_t p) const {
   return sum / 3;
 }
 
-/// The greatest difference a channel of a pixel shows to one around it, on a screen.
 float PixelErrors::contrast(int x, int y) const {
   const auto shown = [&](std::size_t i) { return std::clamp(mean_so_far(r_, i), 0.f, 1.f); };
   float most = 0;

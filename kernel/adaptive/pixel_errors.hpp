@@ -42,6 +42,8 @@ class PixelErrors {
 
   /// Whether no sample of a pixel differed.
   bool agrees(std::size_t p) const { return agrees(own_variance(p), p); }
+  /// The greatest difference a channel of a pixel shows to one around it, on a screen.
+  float contrast(int x, int y) const;
 
  private:
   std::size_t at(int x, int y) const {
@@ -55,7 +57,6 @@ class PixelErrors {
   }
   float differences(std::size_t p) const;
   float own_variance(std::size_t p) const;
-  float contrast(int x, int y) const;
   float with_neighbours(int x, int y, const RatioPowers& scale) const;
   void judge_pixel(int x, int y, const RatioPowers& scale);
 

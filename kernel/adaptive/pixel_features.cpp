@@ -1,5 +1,6 @@
 #include "kernel/adaptive/pixel_features.hpp"
 
+#include "kernel/adaptive/small_things.hpp"
 #include "kernel/query/variants.hpp"
 
 namespace grelha {
@@ -12,58 +13,76 @@ std::size_t pixel_at(const Refinement& r, int x, int y) {
          static_cast<std::size_t>(x);
 }
 
-/// Pixels of the tile at (x0, y0) whose samples agree, a bit each.
-std::uint64_t agreeing_pixels(const Refinement& r, const PixelErrors& errors, int x0, int y0) {
-  std::uint64_t agree = 0;
-  for (int i = 0; i < kTile * kTile; ++i) {
-    const int x = x0 + i % kTile;
-    const int y = y0 + i / kTile;
-    if (x < r.width && y < r.height && errors.agrees(pixel_at(r, x, y)))
-      agree |= std::uint64_t{1} << i;
-  }
-  return agree;
-}
+/// Pixels of a tile, a bit each.
+struct TilePixels {
+  std::uint64_t agree = 0;  ///< those whose samples agree
+  std::uint64_t asked = 0;  ///< those of them near anything that samples may have missed
+};
 
-/// The tile whose upper left pixel is (x0, y0).
-void search_tile(const World::Impl& world,
-                 const Setup& setup,
-                 const PixelErrors& errors,
-                 int x0,
-                 int y0,
-                 Refinement& r,
-                 TraceCounts& counts) {
-  const std::uint64_t agree = agreeing_pixels(r, errors, x0, y0);
-  if (agree == 0)
-    return;
-  float inside[kTile * kTile], around[kTile * kTile];
-  setup.variant.loops.doubt(world.view,
-                            world.shading,
-                            setup.frame,
-                            x0,
-                            y0,
-                            kBouncesWatched,
-                            agree,
-                            inside,
-                            around,
-                            counts);
-  for (int i = 0; i < kTile * kTile; ++i) {
-    // what varies was met; should it agree later, its neighbours tell
-    if (!(agree >> i & 1))
-      continue;
-    const std::size_t p = pixel_at(r, x0 + i % kTile, y0 + i / kTile);
-    r.inside[p] = inside[i];
-    r.around[p] = around[i];
+/// The picture when its first samples are there, and what looks for what they missed.
+struct Search {
+  const World::Impl& world;
+  const Setup& setup;
+  const PixelErrors& errors;
+  const PixelMarks& marks;
+  const float faint;  ///< differences to pixels around that show no edge
+  Refinement& r;
+
+  TilePixels pixels_of(int x0, int y0) const {
+    TilePixels of;
+    for (int i = 0; i < kTile * kTile; ++i) {
+      const int x = x0 + i % kTile;
+      const int y = y0 + i / kTile;
+      if (x >= r.width || y >= r.height || !errors.agrees(pixel_at(r, x, y)))
+        continue;
+      of.agree |= std::uint64_t{1} << i;
+      if (errors.contrast(x, y) > faint)
+        of.asked |= std::uint64_t{1} << i;
+    }
+    of.asked |= of.agree & marks.tile(x0, y0);
+    return of;
   }
-}
+
+  /// The tile whose upper left pixel is (x0, y0).
+  void search_tile(int x0, int y0, TraceCounts& counts) const {
+    const TilePixels of = pixels_of(x0, y0);
+    if (of.agree == 0)
+      return;
+    float inside[kTile * kTile] = {}, around[kTile * kTile] = {};
+    setup.variant.loops.doubt(world.view,
+                              world.shading,
+                              setup.frame,
+                              x0,
+                              y0,
+                              kBouncesWatched,
+                              of.asked,
+                              of.agree & ~of.asked,
+                              inside,
+                              around,
+                              counts);
+    for (int i = 0; i < kTile * kTile; ++i) {
+      // what varies was met; should it agree later, its neighbours tell
+      if (!(of.agree >> i & 1))
+        continue;
+      const std::size_t p = pixel_at(r, x0 + i % kTile, y0 + i / kTile);
+      r.inside[p] = inside[i];
+      r.around[p] = around[i];
+    }
+  }
+};
 
 }  // namespace
 
 void find_hidden_features(const World::Impl& world,
                           const Setup& setup,
                           const PixelErrors& errors,
+                          double error,
                           int threads,
                           Refinement& r,
                           TraceCounts& counts) {
+  const PixelMarks marks = mark_small_things(world, setup, threads, counts);
+  const float faint = error > 0 ? kFaintInErrors * static_cast<float>(error) : kFaint;
+  const Search search{world, setup, errors, marks, faint, r};
   const int columns = (r.width + kTile - 1) / kTile;
   const int rows = (r.height + kTile - 1) / kTile;
 #pragma omp parallel num_threads(threads)
@@ -71,7 +90,7 @@ void find_hidden_features(const World::Impl& world,
     TraceCounts mine;
 #pragma omp for schedule(dynamic, 4)
     for (int tile = 0; tile < columns * rows; ++tile)
-      search_tile(world, setup, errors, tile % columns * kTile, tile / columns * kTile, r, mine);
+      search.search_tile(tile % columns * kTile, tile / columns * kTile, mine);
 #pragma omp critical(grelha_stats)
     counts += mine;
   }

@@ -10,10 +10,11 @@
 namespace grelha {
 
 /// Asks of every pixel whose samples agree whether anything can hide there; sets `inside` and
-/// `around` of the picture.
+/// `around` of the picture. `error`: what is asked for, or 0.
 void find_hidden_features(const World::Impl& world,
                           const Setup& setup,
                           const PixelErrors& errors,
+                          double error,
                           int threads,
                           Refinement& r,
                           TraceCounts& counts);

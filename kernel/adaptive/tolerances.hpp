@@ -29,4 +29,10 @@ inline constexpr float kHiddenWidth = 6;
 /// of it where variances fall by .4 a doubling.
 inline constexpr float kAgreement = .005f;
 
+/// Pixels that look like those around them, within this, hide no edge that matters: with n = 4
+/// samples it leaves a standard error of sqrt(kHiddenVariance) / (3 n) of it, a quarter of the
+/// error asked for. Where none is asked for: four steps of 8 bits (a choice).
+inline constexpr float kFaintInErrors = 8;
+inline constexpr float kFaint = 1.f / 64;
+
 }  // namespace grelha

@@ -43,8 +43,8 @@ class Watcher {
 
   /// What may hide in the light that comes along the beam with `weight`. None: it is plain, one
   /// smooth surface under light that is whole or wholly blocked, and so in mirrors and behind clear
-  /// surfaces, as far as they are followed. `whole`: only a surface that is one convex primitive counts, which makes the answer
-  /// sure.
+  /// surfaces, as far as they are followed. `whole`: only what is sure of each part of the beam
+  /// counts, which is a surface that is one convex primitive, or a nearly flat patch of a mesh.
   Doubt doubt(const Beam& beam,
               bool whole,
               ToFollow follow,
@@ -58,10 +58,13 @@ class Watcher {
     const bool differ = corners_differ(sight.id, whole);
     if (whole && differ)
       return around(weight);
+    const bool mesh = is_triangle(scene_.geometry, sight.id[0]);
     Met met;
-    if (!collect(scene_, f, farthest_hit(f, beam, sight), sight.id, whole, met, n_))
+    if (!collect(scene_, f, farthest_hit(f, beam, sight), sight.id, whole && !mesh, met, n_))
       return around(weight);
-    if (const Doubt found = hidden(f, met, sight.id, mirror_id, weight); !found.none())
+    if (whole && !is_patch(met, sight.id[0]))
+      return around(weight);
+    if (const Doubt found = hidden(f, met, sight.id, mirror_id, weight); !whole && !found.none())
       return found;
     if (differ || !closed(scene_.geometry, f, met, sight.id))
       return around(weight);
@@ -71,7 +74,7 @@ class Watcher {
     bool within = false;
     if (!find_surfaces(beam, sight, s, within))
       return around(weight);
-    const Doubt found = uneven_lights(s, sight.id, whole, weight);
+    const Doubt found = uneven_lights({s, sight.id, met, whole}, weight);
     const Way way{beam, s, sight.id[0], whole, follow, weight};
     if (field(s[0], kTransmission) > 0)
       return whole ? around(weight) : found + in_glass(way, within, found.inside);
@@ -89,14 +92,38 @@ class Watcher {
     float weight;
   };
 
-  /// Whether corners met different surfaces, or, if `whole`, other than one convex primitive.
+  /// What a beam's corners met: one surface.
+  struct Patch {
+    const CornerSurfaces& s;
+    const std::uint32_t (&on)[kCorners];
+    const Met& met;  ///< what else reaches into the beam
+    bool whole;
+
+    bool holds(std::uint32_t id) const {
+      for (int i = 0; i < met.size; ++i)
+        if (met.id[i] == id)
+          return true;
+      return any_of(on, [id](std::uint32_t corner) { return corner == id; });
+    }
+  };
+
+  /// Whether corners met different surfaces, or, if `whole`, neither one convex primitive nor
+  /// triangles that lie nearly in one plane.
   bool corners_differ(const std::uint32_t (&id)[kCorners], bool whole) const {
     const GeometryView& g = scene_.geometry;
-    return whole ? any_of(id,
-                          [&](std::uint32_t i) {
-                            return i != id[0] || g.ids.has(PrimitiveKind::kCone, i);
-                          })
-                 : !one_surface(g, id);
+    if (!whole)
+      return !one_surface(g, id);
+    return any_of(id, [&](std::uint32_t i) {
+      return g.ids.has(PrimitiveKind::kCone, i) || !alike(g, id[0], i, kOnePatchSquared);
+    });
+  }
+
+  /// Whether all that was met lies nearly in the plane of a triangle.
+  bool is_patch(const Met& met, std::uint32_t front) const {
+    for (int i = 0; i < met.size; ++i)
+      if (!alike(scene_.geometry, front, met.id[i], kOnePatchSquared))
+        return false;
+    return true;
   }
 
   /// Sends rays to points first, first + 1, ... that were met, at most a packet of 16.
@@ -171,18 +198,15 @@ class Watcher {
   }
 
   /// Doubt whether the lights are even between the corners.
-  Doubt uneven_lights(const CornerSurfaces& s,
-                      const std::uint32_t (&on)[kCorners],
-                      bool whole,
-                      float weight) {
-    const Vec3f answer = color(s[0], kDiffuseR) + color(s[0], kSpecularR);
+  Doubt uneven_lights(const Patch& patch, float weight) {
+    const Vec3f answer = color(patch.s[0], kDiffuseR) + color(patch.s[0], kSpecularR);
     Doubt most;
     for (int l = 0; l < shading_.light_count; ++l) {
       const float* const light = shading_.lights + kLightFloats * l;
       const Vec3f sent = answer * Vec3f{light[3], light[4], light[5]};
       const float part = lesser(largest(sent), 1.f) * weight;
       if (part > most.inside)
-        most = most + uneven_light({light[0], light[1], light[2]}, s, on, whole, part);
+        most = most + uneven_light({light[0], light[1], light[2]}, patch, part);
     }
     return most;
   }
@@ -270,12 +294,8 @@ class Watcher {
 
   /// Doubt whether the light, of weight `part`, reaches all of the patch between four points, or
   /// none of it.
-  Doubt uneven_light(const Vec3f& light,
-                     const CornerSurfaces& s,
-                     const std::uint32_t (&on)[kCorners],
-                     bool whole,
-                     float part) {
-    const LightBeam b = light_beam(light, s);
+  Doubt uneven_light(const Vec3f& light, const Patch& patch, float part) {
+    const LightBeam b = light_beam(light, patch.s);
     if (b.facing == 0)
       return {};
     BeamFrame f;
@@ -283,10 +303,10 @@ class Watcher {
       return around(part);
     Sight sight;
     trace_corners(scene_, b.beam, sight, n_);
-    const int lit = lit_corners(b, sight, on);
+    const int lit = lit_corners(b, sight, patch.on);
     if (lit == 0)
-      return blocked(f, b, sight.id, whole) ? Doubt{} : around(part);
-    return lit == kCorners ? shadows(f, b, on, whole, part) : around(part);
+      return blocked(f, b, sight.id, patch.whole) ? Doubt{} : around(part);
+    return lit == kCorners ? shadows(f, b, patch, part) : around(part);
   }
 
   /// Whether all of a beam whose corners are dark is: one solid, or one closed sheet stands in it.
@@ -307,20 +327,18 @@ class Watcher {
   }
 
   /// Doubt of a patch that is lit at its corners: whatever stands between throws its shadow inside.
-  Doubt shadows(const BeamFrame& f,
-                const LightBeam& b,
-                const std::uint32_t (&on)[kCorners],
-                bool whole,
-                float part) {
+  Doubt shadows(const BeamFrame& f, const LightBeam& b, const Patch& patch, float part) {
+    const auto& on = patch.on;
     float least = kInfinity;
     for (const float length : b.length)
       least = lesser(length, least);
     Met met;
-    if (!collect(scene_, f, least * kBeforeSurface, on, whole, met, n_))
+    const bool mesh = is_triangle(scene_.geometry, on[0]);
+    if (!collect(scene_, f, least * kBeforeSurface, on, patch.whole && !mesh, met, n_))
       return around(part);
     Doubt found;
     for (int i = 0; i < met.size; ++i) {
-      if (touches_any(on, met.id[i]))
+      if (patch.holds(met.id[i]) || touches_any(on, met.id[i]))
         continue;
       if (!any_of(on, [&](std::uint32_t own) { return kin(scene_.geometry, own, met.id[i]); }))
         return {part, part};

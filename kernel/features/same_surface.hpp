@@ -34,7 +34,10 @@ inline bool kin(const GeometryView& g, std::uint32_t a, std::uint32_t b) {
 
 /// Whether two primitives pass for one surface: triangles of one material that face nearly one way.
 /// Where one hides the other and both are lit alike, nobody can tell.
-inline bool alike(const GeometryView& g, std::uint32_t a, std::uint32_t b) {
+inline bool alike(const GeometryView& g,
+                  std::uint32_t a,
+                  std::uint32_t b,
+                  float cosine_squared = kOneSurfaceSquared) {
   if (a == b)
     return true;
   if (!kin(g, a, b))
@@ -46,7 +49,7 @@ inline bool alike(const GeometryView& g, std::uint32_t a, std::uint32_t b) {
   const Vec3f n = flat_normal(a);
   const Vec3f m = flat_normal(b);
   const float d = dot(n, m);
-  return d * d > kOneSurfaceSquared * (dot(n, n) * dot(m, m));
+  return d * d > cosine_squared * (dot(n, n) * dot(m, m));
 }
 
 inline bool one_surface(const GeometryView& g, const std::uint32_t (&id)[kCorners]) {

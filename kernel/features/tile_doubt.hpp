@@ -31,6 +31,40 @@ inline Beam pixel_beam(const FrameView& f, int x0, int y0, int size) {
   return b;
 }
 
+/// Whether a primitive sends on enough light to be followed.
+inline bool is_bent(const SceneView& scene, const ShadingView& shading, std::uint32_t id) {
+  const GeometryView& g = scene.geometry;
+  const std::uint32_t m = visit_shape(
+      Shapes{}, g.ids, id, [&]<class Shape>(std::uint32_t i) __attribute__((always_inline)) {
+        return g.of<Shape>().material[i];
+      });
+  const auto field = [&](MaterialField f) { return shading.materials.field[f][m]; };
+  return field(kTransmission) > 0 || field(kMirrorR) >= kLeastMirror ||
+         field(kMirrorG) >= kLeastMirror || field(kMirrorB) >= kLeastMirror;
+}
+
+/// Bits of the pixels of a tile of 8 x 8 whose middle shows a mirror or something clear.
+inline std::uint64_t bent_pixels(const SceneView& scene,
+                                 const ShadingView& shading,
+                                 const FrameView& f,
+                                 int x0,
+                                 int y0,
+                                 Counters& n) {
+  Packet<InFloat> p;
+  p.size = kTile * kTile;
+  for (int i = 0; i < p.size; ++i) {
+    const float x = static_cast<float>(x0 + i % kTile) + .5f;
+    const float y = static_cast<float>(y0 + i / kTile) + .5f;
+    set_ray(p, i, {f.eye[0], f.eye[1], f.eye[2]}, direction_through(f, x, y), kInfinity);
+  }
+  trace_packet<false>(scene, p, {p.size, true}, n);
+  std::uint64_t bent = 0;
+  for (int i = 0; i < p.size; ++i)
+    if (id_of(p.id[i]) != kNoPrimitive && is_bent(scene, shading, id_of(p.id[i])))
+      bent |= std::uint64_t{1} << i;
+  return bent;
+}
+
 /// Doubt of pixels, [8 y + x] of their tile.
 struct TileDoubt {
   float (&inside)[kTile * kTile];

@@ -67,8 +67,9 @@ struct VariantLoops {
                       RayCounts&);
   /// Doubt of the pixels of the 8 x 8 tile at (x0, y0), [8 y + x] each: the weight, 0 to 1, of what
   /// could hide from samples there, followed into `bounces` mirrors; both 0: nothing can. Of pixels
-  /// with a bit in `asked`, all within the picture; the others keep what they hold, or get theirs
-  /// as well. See Doubt in doubt.hpp.
+  /// with a bit in `asked`, and of those with one in `if_bent` that see a mirror or something clear,
+  /// all within the picture; the others keep what they hold, or get theirs as well. See Doubt in
+  /// doubt.hpp.
   void (*doubt)(const SceneView&,
                 const ShadingView&,
                 const FrameView&,
@@ -76,6 +77,7 @@ struct VariantLoops {
                 int y0,
                 int bounces,
                 std::uint64_t asked,
+                std::uint64_t if_bent,
                 float (&inside)[kTile * kTile],
                 float (&around)[kTile * kTile],
                 TraceCounts&);

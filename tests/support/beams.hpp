@@ -34,7 +34,7 @@ inline Tile doubt(const Scene& scene,
   float inside[kTile * kTile], around[kTile * kTile];
   TraceCounts counts;
   variant.loops.doubt(
-      w.view, w.shading, make_frame(camera), 0, 0, 2, ~std::uint64_t{0}, inside, around, counts);
+      w.view, w.shading, make_frame(camera), 0, 0, 2, ~std::uint64_t{0}, 0, inside, around, counts);
   Tile out;
   for (std::size_t i = 0; i < out.size(); ++i)
     out[i] = std::max(2 * inside[i], around[i]);

@@ -1,0 +1,129 @@
+#include "kernel/adaptive/mesh_rims.hpp"
+
+#include <bit>
+
+#include "kernel/scene/turns.hpp"
+
+namespace grelha {
+namespace {
+
+constexpr std::size_t kMostTriangles = std::size_t{1} << 22;  ///< of more, nothing is kept
+constexpr std::size_t kItemsOfTurn = 4096;
+
+/// Avalanche of 32 bits (C. Wellons' lowbias32).
+std::uint32_t scattered(std::uint32_t x) {
+  x ^= x >> 16;
+  x *= 0x7FEB352Du;
+  x ^= x >> 15;
+  x *= 0x846CA68Bu;
+  return x ^ x >> 16;
+}
+
+/// The same for 0 and -0.
+std::uint32_t bits_of_coordinate(float x) {
+  return std::bit_cast<std::uint32_t>(x + 0.f);
+}
+
+std::uint32_t hash_of_place(const TriangleSpans& t, std::uint32_t vertex) {
+  std::uint32_t h = scattered(bits_of_coordinate(t.x[vertex]));
+  h = scattered(h ^ bits_of_coordinate(t.y[vertex]));
+  return scattered(h + bits_of_coordinate(t.z[vertex]));
+}
+
+bool same_place(const TriangleSpans& t, std::uint32_t a, std::uint32_t b) {
+  return t.x[a] == t.x[b] && t.y[a] == t.y[b] && t.z[a] == t.z[b];
+}
+
+/// The vertex that came first to the place of another, by open addressing.
+std::uint32_t first_at_place(const TriangleSpans& t,
+                             std::uint32_t vertex,
+                             std::uint32_t name,
+                             std::vector<std::atomic<std::uint32_t>>& held) {
+  for (std::size_t at = name;; ++at) {
+    std::atomic<std::uint32_t>& slot = held[at & (held.size() - 1)];
+    std::uint32_t there = slot.load(std::memory_order_relaxed);
+    if (there == 0 && slot.compare_exchange_strong(there, vertex + 1, std::memory_order_relaxed))
+      return vertex;
+    if (same_place(t, there - 1, vertex))
+      return there - 1;
+  }
+}
+
+template <class Work>
+void each_of(std::size_t count, int threads, const Work& work) {
+  each_turn((count + kItemsOfTurn - 1) / kItemsOfTurn, threads, [&](std::size_t turn) {
+    const std::size_t end = std::min((turn + 1) * kItemsOfTurn, count);
+    for (std::size_t i = turn * kItemsOfTurn; i < end; ++i)
+      work(i);
+  });
+}
+
+}  // namespace
+
+MeshRims::MeshRims(const TriangleSpans& triangles, int threads)
+    : triangles_(triangles), threads_(threads) {
+  if (triangles.size() > kMostTriangles)
+    return;
+  const std::size_t vertices = triangles.vertex_count();
+  first_.resize(vertices);
+  name_.resize(vertices);
+  open_ = std::vector<std::atomic<std::uint32_t>>(vertices);
+  sides_ = std::vector<std::atomic<std::uint8_t>>(vertices);
+  std::vector<std::atomic<std::uint32_t>> held(std::bit_ceil(2 * vertices));  // a vertex + 1
+  each_of(vertices, threads, [&](std::size_t v) {
+    const auto vertex = static_cast<std::uint32_t>(v);
+    name_[v] = hash_of_place(triangles, vertex);
+    first_[v] = first_at_place(triangles, vertex, name_[v], held);
+  });
+  each_of(triangles.size(), threads, [&](std::size_t i) { add_neighbours(i); });
+}
+
+void MeshRims::add_neighbours(std::size_t i) {
+  const std::uint32_t vertex[3] = {triangles_.a[i], triangles_.b[i], triangles_.c[i]};
+  std::uint32_t name[3];
+  for (int k = 0; k < 3; ++k)
+    name[k] = scattered(name_[vertex[k]] + triangles_.material[i]);
+  for (int k = 0; k < 3; ++k)
+    open_[first_[vertex[k]]].fetch_xor(name[(k + 1) % 3] ^ name[(k + 2) % 3],
+                                      std::memory_order_relaxed);
+}
+
+void MeshRims::look_from(const double (&point)[3]) {
+  if (sides_.empty())
+    return;
+  for (std::atomic<std::uint8_t>& side : sides_)
+    side.store(0, std::memory_order_relaxed);
+  each_of(triangles_.size(), threads_, [&](std::size_t i) { add_side(i, point); });
+}
+
+void MeshRims::add_side(std::size_t i, const double (&point)[3]) {
+  const std::uint32_t vertex[3] = {triangles_.a[i], triangles_.b[i], triangles_.c[i]};
+  double p[3][3];
+  for (int k = 0; k < 3; ++k) {
+    p[k][0] = triangles_.x[vertex[k]] - point[0];
+    p[k][1] = triangles_.y[vertex[k]] - point[1];
+    p[k][2] = triangles_.z[vertex[k]] - point[2];
+  }
+  const double volume = p[0][0] * (p[1][1] * p[2][2] - p[1][2] * p[2][1]) +
+                        p[0][1] * (p[1][2] * p[2][0] - p[1][0] * p[2][2]) +
+                        p[0][2] * (p[1][0] * p[2][1] - p[1][1] * p[2][0]);
+  const std::uint8_t side = volume < 0 ? kFront : kBack;
+  for (const std::uint32_t v : vertex) {
+    std::atomic<std::uint8_t>& seen = sides_[first_[v]];
+    if ((seen.load(std::memory_order_relaxed) & side) == 0)
+      seen.fetch_or(side, std::memory_order_relaxed);
+  }
+}
+
+bool MeshRims::has(std::size_t i) const {
+  if (sides_.empty())
+    return true;
+  for (const std::uint32_t v : {triangles_.a[i], triangles_.b[i], triangles_.c[i]}) {
+    const std::uint32_t s = first_[v];
+    if (open_[s] != 0 || sides_[s] == (kFront | kBack))
+      return true;
+  }
+  return false;
+}
+
+}  // namespace grelha

@@ -1,0 +1,44 @@
+#pragma once
+// Where triangles that share corners end, or turn away from a point: what is inside of a mesh is no
+// thing of its own.
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "grelha/scene_spans.hpp"
+
+namespace grelha {
+
+/// Corners of triangles, those at one place taken for one.
+class MeshRims {
+ public:
+  MeshRims(const TriangleSpans& triangles, int threads);
+
+  /// Forgets what was seen from another point.
+  void look_from(const double (&point)[3]);
+
+  /// Whether a corner of triangle i lies where a mesh of one material ends, or where some of its
+  /// triangles face the point and some do not. With very many triangles: always.
+  bool has(std::size_t i) const;
+
+ private:
+  /// What is told of a corner.
+  static constexpr std::uint8_t kFront = 1;
+  static constexpr std::uint8_t kBack = 2;
+
+  void add_neighbours(std::size_t i);
+  void add_side(std::size_t i, const double (&point)[3]);
+
+  const TriangleSpans& triangles_;
+  const int threads_;
+  std::vector<std::uint32_t> first_;  ///< [vertices] one at the same place
+  std::vector<std::uint32_t> name_;   ///< [vertices] a hash of the place
+  /// [vertices] of the neighbours of a corner, each as often as triangles have both: 0 where each
+  /// comes twice
+  std::vector<std::atomic<std::uint32_t>> open_;
+  std::vector<std::atomic<std::uint8_t>> sides_;
+};
+
+}  // namespace grelha

@@ -1,0 +1,64 @@
+#pragma once
+// A bit for each pixel of a picture, set by any number of threads.
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "kernel/scene/shading_view.hpp"
+
+namespace grelha {
+
+class PixelMarks {
+ public:
+  PixelMarks(int width, int height)
+      : width_(width),
+        height_(height),
+        columns_((width + kTile - 1) / kTile),
+        tiles_(static_cast<std::size_t>(columns_) *
+               static_cast<std::size_t>((height + kTile - 1) / kTile)) {}
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+
+  /// Sets pixels that reach into a box of the picture, in pixels from its upper left corner.
+  void mark(double x0, double y0, double x1, double y1) {
+    if (!(x1 >= 0 && y1 >= 0 && x0 < width_ && y0 < height_ && x0 <= x1 && y0 <= y1))
+      return;
+    const int left = static_cast<int>(std::max(x0, 0.));
+    const int right = static_cast<int>(std::min(x1, width_ - 1.));
+    const int upper = static_cast<int>(std::max(y0, 0.));
+    const int lower = static_cast<int>(std::min(y1, height_ - 1.));
+    for (int y = upper; y <= lower; ++y)
+      for (int x = left; x <= right; ++x)
+        set(x, y);
+  }
+  void mark_all() {
+    for (std::atomic<std::uint64_t>& tile : tiles_)
+      tile = ~std::uint64_t{0};
+  }
+
+  /// Of the tile whose upper left pixel is (x0, y0), bits [8 y + x].
+  std::uint64_t tile(int x0, int y0) const { return tiles_[tile_at(x0, y0)]; }
+  bool has(int x, int y) const { return tile(x, y) >> bit_at(x, y) & 1; }
+
+ private:
+  std::size_t tile_at(int x, int y) const {
+    return static_cast<std::size_t>(y / kTile) * static_cast<std::size_t>(columns_) +
+           static_cast<std::size_t>(x / kTile);
+  }
+  static int bit_at(int x, int y) { return y % kTile * kTile + x % kTile; }
+  void set(int x, int y) {
+    std::atomic<std::uint64_t>& tile = tiles_[tile_at(x, y)];
+    const std::uint64_t bit = std::uint64_t{1} << bit_at(x, y);
+    if ((tile.load(std::memory_order_relaxed) & bit) == 0)
+      tile.fetch_or(bit, std::memory_order_relaxed);
+  }
+
+  int width_, height_, columns_;
+  std::vector<std::atomic<std::uint64_t>> tiles_;
+};
+
+}  // namespace grelha

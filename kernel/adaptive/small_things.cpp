@@ -1,0 +1,327 @@
+#include "kernel/adaptive/small_things.hpp"
+
+#include <atomic>
+#include <mutex>
+
+#include "kernel/adaptive/mesh_rims.hpp"
+#include "kernel/adaptive/rod.hpp"
+#include "kernel/scene/turns.hpp"
+
+namespace grelha {
+namespace {
+
+/// Pixels: what is wider holds whole ones, however it lies on them.
+constexpr double kThin = 2;
+/// Share of a pixel that beams are wider than pixels, and what rounding may move.
+constexpr double kMargin = .1;
+/// Where planes have no end: pixels are looked at that are so much wider than those at the farthest
+/// of all else (a choice).
+constexpr double kBeyond = 8;
+/// Things in front of whose shadows every pixel is asked: as many as pixels over this.
+constexpr std::size_t kPixelsAThing = 2;
+constexpr std::size_t kThingsOfTurn = 1024;
+constexpr int kMostPlaces = 64;  ///< of a rod that its shadow is followed from
+
+/// A camera in double.
+class ToPicture {
+ public:
+  explicit ToPicture(const FrameView& f) : f_(f) {
+    for (int a = 0; a < 3; ++a) {
+      eye[a] = f.eye[a];
+      ff_ += square(f.forward[a]);
+      rr_ += square(f.right[a]);
+      uu_ += square(f.up[a]);
+    }
+  }
+  struct Spot {
+    double x, y;   ///< pixels
+    double depth;  ///< in lengths of `forward`
+  };
+  Spot operator()(const Place3& p) const {
+    double z = 0;
+    double x = 0;
+    double y = 0;
+    for (int a = 0; a < 3; ++a) {
+      const double d = p[a] - eye[a];
+      z += d * f_.forward[a];
+      x += d * f_.right[a];
+      y += d * f_.up[a];
+    }
+    z /= ff_;
+    return {.5 * f_.width + x / (rr_ * z), .5 * f_.height - y / (uu_ * z), z};
+  }
+  /// How wide a pixel is.
+  double pixel(double depth) const { return depth * std::sqrt(rr_); }
+
+  Place3 eye;
+
+ private:
+  static double square(double x) { return x * x; }
+  const FrameView& f_;
+  double ff_ = 0;
+  double rr_ = 0;
+  double uu_ = 0;
+};
+
+/// Cuts off what of a rod lies behind the eye, or nearly so; false: nothing is left.
+bool cut_behind(const ToPicture& to, Rod& rod) {
+  const double z[2] = {to(rod.end[0]).depth, to(rod.end[1]).depth};
+  const double least = 1e-3 * std::max(z[0], z[1]);
+  if (!(least > 0))
+    return false;
+  for (int k = 0; k < 2; ++k)
+    for (int a = 0; z[k] < least && a < 3; ++a)
+      rod.end[k][a] += (least - z[k]) / (z[1 - k] - z[k]) * (rod.end[1 - k][a] - rod.end[k][a]);
+  return true;
+}
+
+/// Marks the way from one spot to another.
+void mark_way(const ToPicture::Spot& a, const ToPicture::Spot& b, double reach, PixelMarks& marks) {
+  const double dx = b.x - a.x;
+  const double dy = b.y - a.y;
+  const double most = 4. * (marks.width() + marks.height());
+  const double steps = std::clamp(std::ceil(std::max(std::abs(dx), std::abs(dy))), 1., most);
+  for (int i = 0; i < steps; ++i) {
+    const double x0 = a.x + i / steps * dx;
+    const double y0 = a.y + i / steps * dy;
+    const double x1 = a.x + (i + 1) / steps * dx;
+    const double y1 = a.y + (i + 1) / steps * dy;
+    marks.mark(std::min(x0, x1) - reach,
+               std::min(y0, y1) - reach,
+               std::max(x0, x1) + reach,
+               std::max(y0, y1) + reach);
+  }
+}
+
+/// Whether a rod looks thin to the eye; what of it lies behind that is cut off.
+bool looks_thin(const ToPicture& to, Rod& rod) {
+  return cut_behind(to, rod) &&
+         rod.width < kThin * to.pixel(std::max(to(rod.end[0]).depth, to(rod.end[1]).depth));
+}
+
+void mark_seen(const ToPicture& to, const Rod& rod, PixelMarks& marks) {
+  const ToPicture::Spot a = to(rod.end[0]);
+  const ToPicture::Spot b = to(rod.end[1]);
+  mark_way(a, b, rod.reach / to.pixel(std::min(a.depth, b.depth)) + kMargin, marks);
+}
+
+/// Rays from a light behind points of rods, and what becomes of their shadows there.
+class Shadows {
+ public:
+  Shadows(const World::Impl& world,
+          const Setup& setup,
+          const ToPicture& to,
+          const float* light,
+          PixelMarks& marks,
+          TraceCounts& counts)
+      : world_(world),
+        setup_(setup),
+        to_(to),
+        light_{light[0], light[1], light[2]},
+        marks_(marks),
+        counts_(counts) {}
+
+  void add(const Rod& rod) {
+    const double apart = std::max(2 * rod.width, 1e-300);
+    const int points =
+        static_cast<int>(std::clamp(std::ceil(rod.length() / apart), 1., double{kMostPlaces}));
+    for (int k = 0; k < points; ++k)
+      add_point(rod, (k + .5) / points, k > 0);
+    if (count_ + kMostPlaces > kRoom)
+      follow();
+  }
+
+  void follow() {
+    const float from[3] = {light_[0], light_[1], light_[2]};
+    Rays rays{.org = {&from[0], &from[1], &from[2]},
+              .dir = {dir_[0], dir_[1], dir_[2]},
+              .t_min = t_min_,
+              .count = static_cast<std::size_t>(count_),
+              .org_stride = 0};
+    float t[kRoom];
+    std::uint32_t id[kRoom];
+    setup_.variant.loops.closest(world_.view, rays, {.t = t, .id = id}, {}, counts_);
+    ToPicture::Spot last{};
+    bool held = false;
+    for (int i = 0; i < count_; ++i) {
+      if (id[i] == kNoPrimitive) {
+        held = false;
+        continue;
+      }
+      Place3 at;
+      for (int a = 0; a < 3; ++a)
+        at[a] = light_[a] + static_cast<double>(t[i]) * dir_[a][i];
+      const ToPicture::Spot spot = to_(at);
+      if (!(spot.depth > 0)) {
+        held = false;
+        continue;
+      }
+      const double reach = reach_[i] * t[i] / to_.pixel(spot.depth) + 1;
+      const bool joined = held && goes_on_[i] && std::abs(spot.x - last.x) < kJoined &&
+                          std::abs(spot.y - last.y) < kJoined;
+      if (reach_[i] * t[i] < kThin * to_.pixel(spot.depth))
+        mark_way(joined ? last : spot, spot, reach, marks_);
+      last = spot;
+      held = true;
+    }
+    count_ = 0;
+  }
+
+ private:
+  static constexpr int kRoom = 320;
+  static constexpr double kJoined = 16;  ///< pixels: nearer shadows of one rod are one
+
+  void add_point(const Rod& rod, double at, bool goes_on) {
+    double length = 0;
+    for (int a = 0; a < 3; ++a) {
+      const double p = rod.end[0][a] + at * (rod.end[1][a] - rod.end[0][a]);
+      dir_[a][count_] = static_cast<float>(p - light_[a]);
+      length += dir_[a][count_] * dir_[a][count_];
+    }
+    length = std::sqrt(length);
+    if (!(length > rod.reach))
+      return;
+    t_min_[count_] = static_cast<float>(1 + 1.01 * rod.reach / length + 1e-6);
+    reach_[count_] = static_cast<float>(rod.reach);
+    goes_on_[count_] = goes_on;
+    ++count_;
+  }
+
+  const World::Impl& world_;
+  const Setup& setup_;
+  const ToPicture& to_;
+  const float light_[3];
+  PixelMarks& marks_;
+  TraceCounts& counts_;
+  int count_ = 0;
+  float dir_[3][kRoom], t_min_[kRoom], reach_[kRoom];
+  bool goes_on_[kRoom];
+};
+
+/// Marks what small things there are.
+class Marker {
+ public:
+  Marker(const World::Impl& world,
+         const Setup& setup,
+         int threads,
+         PixelMarks& marks,
+         TraceCounts& counts)
+      : world_(world),
+        setup_(setup),
+        g_(world.primitives.geometry),
+        threads_(threads),
+        to_(setup.frame),
+        widest_(kThin * widest_pixel()),
+        marks_(marks),
+        counts_(counts) {}
+
+  void run() {
+    mark_things_seen();
+    for (int l = 0; l < world_.shading.light_count; ++l)
+      mark_shadows(world_.shading.lights + kLightFloats * l);
+  }
+
+ private:
+  /// Of all pixels that anything finite is seen in.
+  double widest_pixel() const {
+    const SceneView& v = world_.view;
+    double most = 0;
+    for (int k = 0; k < 8; ++k) {
+      const Place3 corner = {k & 1 ? v.box_hi[0] : v.box_lo[0],
+                             k & 2 ? v.box_hi[1] : v.box_lo[1],
+                             k & 4 ? v.box_hi[2] : v.box_lo[2]};
+      most = std::max(most, to_(corner).depth);
+    }
+    return to_.pixel(most) * (g_.planes.size() > 0 ? kBeyond : 1);
+  }
+
+  void look_from(const Place3& point) {
+    if (g_.triangles.size() == 0)
+      return;
+    if (!rims_)
+      rims_ = std::make_unique<MeshRims>(g_.triangles, threads_);
+    rims_->look_from(point);
+  }
+
+  std::size_t turns() const {
+    return (g_.spheres.size() + g_.cones.size() + g_.triangles.size() + kThingsOfTurn - 1) / kThingsOfTurn;
+  }
+
+  /// Calls take(rod) for the things of a turn that is_thin(rod) holds for, as seen from a point.
+  template <class IsThin, class Take>
+  void each_thing(std::size_t turn,
+                  const Place3& from,
+                  const IsThin& is_thin,
+                  const Take& take) const {
+    const std::size_t cones = g_.spheres.size();
+    const std::size_t triangles = cones + g_.cones.size();
+    const std::size_t end = std::min((turn + 1) * kThingsOfTurn, triangles + g_.triangles.size());
+    for (std::size_t i = turn * kThingsOfTurn; i < end; ++i) {
+      Rod rod = i < cones       ? rod_of(g_.spheres, i)
+                : i < triangles ? rod_of(g_.cones, i - cones)
+                                : rod_of(g_.triangles, i - triangles, from);
+      if (is_thin(rod) && (i < triangles || rims_->has(i - triangles)))
+        take(rod);
+    }
+  }
+
+  void mark_things_seen() {
+    look_from(to_.eye);
+    each_turn(turns(), threads_, [&](std::size_t turn) {
+      each_thing(
+          turn,
+          to_.eye,
+          [&](Rod& rod) { return looks_thin(to_, rod); },
+          [&](const Rod& rod) { mark_seen(to_, rod, marks_); });
+    });
+  }
+
+  void mark_shadows(const float* light) {
+    const Place3 from = {light[0], light[1], light[2]};
+    look_from(from);
+    const std::size_t most = static_cast<std::size_t>(marks_.width()) *
+                             static_cast<std::size_t>(marks_.height()) / kPixelsAThing;
+    std::atomic<std::size_t> thin = 0;
+    each_turn(turns(), threads_, [&](std::size_t turn) {
+      TraceCounts counts;
+      Shadows shadows(world_, setup_, to_, light, marks_, counts);
+      each_thing(
+          turn,
+          from,
+          [&](const Rod& rod) { return rod.width < widest_; },
+          [&](const Rod& rod) {
+            if (thin++ < most)
+              shadows.add(rod);
+          });
+      shadows.follow();
+      const std::lock_guard lock(sum_);
+      counts_ += counts;
+    });
+    if (thin > most)
+      marks_.mark_all();
+  }
+
+  const World::Impl& world_;
+  const Setup& setup_;
+  const GeometrySpans& g_;
+  const int threads_;
+  const ToPicture to_;
+  const double widest_;
+  PixelMarks& marks_;
+  TraceCounts& counts_;
+  std::mutex sum_;
+  std::unique_ptr<MeshRims> rims_;
+};
+
+}  // namespace
+
+PixelMarks mark_small_things(const World::Impl& world,
+                             const Setup& setup,
+                             int threads,
+                             TraceCounts& counts) {
+  PixelMarks marks(setup.frame.width, setup.frame.height);
+  Marker(world, setup, threads, marks, counts).run();
+  return marks;
+}
+
+}  // namespace grelha
