@@ -3,7 +3,7 @@
 // finds is then asked for a point inside, so that the answer is a function of beam and scene, not
 // of the grid.
 
-#include "kernel/features/beam_frame.hpp"
+#include "kernel/features/beam_clip.hpp"
 #include "kernel/shapes/surface.hpp"
 #include "kernel/trace/trace.hpp"
 
@@ -21,66 +21,120 @@ inline Corners3 triangle_corners(const Triangle::Arrays& triangles, std::uint32_
   return c;
 }
 
-/// A point of a triangle inside the beam, nearer than w = `far`; false when it has none.
-inline bool find_point(const Triangle::Arrays& triangles,
-                       const BeamFrame& f,
-                       std::uint32_t i,
-                       float far,
-                       Vec3<float>& p) {
-  if (!triangle_point(f, triangle_corners(triangles, i).at, p))
+/// What of a primitive lies within a beam.
+struct PartInBeam {
+  Vec3<float> point;  ///< of its surface, one that a ray may be sent to
+  BeamBox box;        ///< all of it that is seen
+};
+
+/// Of a triangle, nearer than w = `far`; false when there is none.
+inline bool find_part(const Triangle::Arrays& triangles,
+                      const BeamFrame& f,
+                      std::uint32_t i,
+                      float far,
+                      PartInBeam& part) {
+  BeamPolygon polygon(f, triangle_corners(triangles, i).at);
+  if (!polygon.keep({f.depth, far}))
     return false;
-  const Place at = place(f, p);
-  return at.w > f.depth && at.w < far && outness(at.x, at.y) <= 1;
+  part.point = point_of(f, polygon.middle());
+  for (int k = 0; k < polygon.size(); ++k)
+    part.box.add(polygon[k].x / polygon[k].w, polygon[k].y / polygon[k].w);
+  return true;
 }
 
-/// Whether a ray of the beam to a place meets one primitive nearer than w = `far`, and where.
+/// Whether the ray of the beam through a place meets one primitive nearer than w = `far`, and where.
 template <class Fields>
-inline bool meets_toward(
-    const BeamFrame& f, const Vec3<float>& at, const Fields& one, float far, Vec3<float>& p) {
-  if (!is_inside(f, at))
-    return false;
-  const Place toward = place(f, at);
-  const Vec3<float> dir = f.axis + toward.x * f.right + toward.y * f.up;
+inline bool meets_through(
+    const BeamFrame& f, float x, float y, const Fields& one, float far, Vec3<float>& p) {
+  const Vec3<float> dir = f.axis + x * f.right + y * f.up;
   const Vec3<float> org = f.apex + f.depth * dir;
   float t = 0;
   const bool hit = meet<float>({org, dir, 1 / dot(dir, dir), 0}, one, t);
   p = org + t * dir;
   return hit && f.depth + t < far;
 }
-
-/// The same of what has a ball_toward() the beam's axis. Of what is not all in such a ball, places
-/// on its surface are tried first: where the ball is an end of it, a ray that just meets that may
-/// miss it when it is sent again.
-template <class Shape>
-inline bool find_point_toward_ball(const typename Shape::Arrays& all,
-                                   const BeamFrame& f,
-                                   std::uint32_t i,
-                                   float far,
-                                   Vec3<float>& p) {
-  const auto one = broadcast<Shape, float>(all.fields, i);
-  if constexpr (requires { surface_places(one); }) {
-    const auto places = surface_places(one);
-    for (int which = 0; which < places.kCount; ++which)
-      if (meets_toward(f, places[which], one, far, p))
-        return true;
-  }
-  const Ball<float> ball = ball_toward(one, f.apex, f.unit);
-  return meets_toward(f, ball_point(f, ball.center, ball.radius), one, far, p);
+/// The same of the ray to a point, where that lies within the beam.
+template <class Fields>
+inline bool meets_toward(
+    const BeamFrame& f, const Vec3<float>& at, const Fields& one, float far, Vec3<float>& p) {
+  if (!is_inside(f, at))
+    return false;
+  const Place toward = place(f, at);
+  return meets_through(f, toward.x, toward.y, one, far, p);
+}
+/// The same of the ray through the place nearest to that of a point before the apex.
+template <class Fields>
+inline bool meets_beside(
+    const BeamFrame& f, const BeamPoint& at, const Fields& one, float far, Vec3<float>& p) {
+  if (!(at.w > 0))
+    return false;
+  const auto within = [](float x) {
+    return x < -kRimShare ? -kRimShare : x > kRimShare ? kRimShare : x;
+  };
+  return meets_through(f, within(at.x / at.w), within(at.y / at.w), one, far, p);
 }
 
-/// A point of a primitive's surface inside the beam, nearer than w = `far`; false when it has none
-/// that this finds. The point lies in a cell that lists the primitive and that the beam walks
-/// through, whatever the grid.
+/// Of what has a ball_toward() the beam's axis.
+template <class Fields>
+inline bool find_part_toward_ball(const Fields& one,
+                                  const BeamFrame& f,
+                                  float far,
+                                  PartInBeam& part) {
+  const Ball<float> ball = ball_toward(one, f.apex, f.unit);
+  const BeamPoint center = in_beam(f, ball.center);
+  part.box.add_ball(f, center, ball.radius);
+  return meets_beside(f, center, one, far, part.point) ||
+         meets_toward(f, ball_point(f, ball.center, ball.radius), one, far, part.point);
+}
+
+/// Of a kind that lies around a stretch, as far from it as ball_toward() says at most. Rays go to
+/// the middle of what of the stretch lies within the beam, to places beside what lies around it,
+/// then to places on the surface: where none finds it a corner may still reach in.
+template <class Fields>
+inline bool find_part_along(const Fields& one, const BeamFrame& f, float far, PartInBeam& part) {
+  const Stretch<float> stretch = stretch_of(one);
+  BeamPoint a = in_beam(f, stretch.end[0]);
+  BeamPoint b = in_beam(f, stretch.end[1]);
+  const float widest = stretch.radius * greater(length(f.to_x), length(f.to_y));
+  const float from = greater(f.depth, .5f * greater(greater(a.w, b.w), 0.f) * 1e-3f);
+  BeamPoint in[2] = {a, b};
+  const bool crosses = clip({f.depth, far}, in[0], in[1]);
+  // around the beam, as wide as what may reach into it
+  if (!clip({from, kInfinity, 1 + widest / greater(lesser(a.w, b.w), from)}, a, b))
+    return false;
+  part.box.add_ball(f, a, stretch.radius);
+  part.box.add_ball(f, b, stretch.radius);
+  if (crosses && meets_beside(f, between(in[0], in[1], .5f), one, far, part.point))
+    return true;
+  for (const float t : {.5f, .25f, .75f, .05f, .95f})
+    if (meets_beside(f, between(a, b, t), one, far, part.point))
+      return true;
+  const auto places = surface_places(one);
+  for (int which = 0; which < places.kCount; ++which)
+    if (meets_toward(f, places[which], one, far, part.point))
+      return true;
+  const Ball<float> ball = ball_toward(one, f.apex, f.unit);
+  return meets_toward(f, ball_point(f, ball.center, ball.radius), one, far, part.point);
+}
+
+/// What of a primitive lies within the beam, nearer than w = `far`; false when that finds nothing.
+/// Its point lies in a cell that lists the primitive and that the beam walks through, whatever the
+/// grid.
 [[gnu::noinline]] inline bool meets(
-    const SceneView& scene, const BeamFrame& f, std::uint32_t id, float far, Vec3<float>& p) {
+    const SceneView& scene, const BeamFrame& f, std::uint32_t id, float far, PartInBeam& part) {
   const GeometryView& g = scene.geometry;
   const auto find = [&]<class Shape>(std::uint32_t i) __attribute__((always_inline)) {
-    if constexpr (!Shape::kFinite)
+    if constexpr (!Shape::kFinite) {
       return false;  // it ends nowhere inside a beam: the corners see it
-    else if constexpr (Shape::kInBlocks)
-      return find_point(g.of<Shape>(), f, i, far, p);
-    else
-      return find_point_toward_ball<Shape>(g.of<Shape>(), f, i, far, p);
+    } else if constexpr (Shape::kInBlocks) {
+      return find_part(g.of<Shape>(), f, i, far, part);
+    } else {
+      const auto one = broadcast<Shape, float>(g.of<Shape>().fields, i);
+      if constexpr (requires { stretch_of(one); })
+        return find_part_along(one, f, far, part);
+      else
+        return find_part_toward_ball(one, f, far, part);
+    }
   };
   return visit_shape(Shapes{}, g.ids, id, find);
 }
@@ -88,7 +142,7 @@ inline bool find_point_toward_ball(const typename Shape::Arrays& all,
 /// The primitives, other than those of `known`, that meet() a beam; each once.
 struct Met {
   std::uint32_t id[kMostMet];
-  Vec3<float> point[kMostMet];
+  PartInBeam part[kMostMet];
   int size = 0;
   bool full = false;  ///< there were more
 };

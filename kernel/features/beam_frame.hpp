@@ -130,82 +130,12 @@ inline float outness(float x, float y) {
   return greater(magnitude(x), magnitude(y));
 }
 
-/// Point of least outness of the stretch between two points: least at an end, on a diagonal or
-/// where it crosses an axis.
-inline Place innermost(const Place& a, const Place& b) {
-  const float dx = b.x - a.x;
-  const float dy = b.y - a.y;
-  const float at[6] = {
-      0, 1, (a.y - a.x) / (dx - dy), (0 - (a.x + a.y)) / (dx + dy), (0 - a.x) / dx, (0 - a.y) / dy};
-  Place best{a.x, a.y, outness(a.x, a.y)};
-  for (const float t : at) {
-    if (!(t >= 0) || !(t <= 1))
-      continue;
-    const float x = a.x + t * dx;
-    const float y = a.y + t * dy;
-    const float out = outness(x, y);
-    if (out < best.w)
-      best = {x, y, out};
-  }
-  return best;  // w: the outness
-}
-
 /// Point of a ball nearest to the axis.
 inline Vec3f ball_point(const BeamFrame& f, const Vec3f& c, float r) {
   const Vec3f d = c - f.apex;
   const Vec3f off = d - (dot(d, f.axis) / dot(f.axis, f.axis)) * f.axis;
   const float far = length(off);
   return far <= r ? c - off : c - ((kRimShare * r) / far) * off;
-}
-
-/// Innermost of the edges between three places, w: its outness; the axis itself where it lies
-/// within.
-[[gnu::always_inline]] inline Place innermost_of_three(const Place (&q)[3]) {
-  int left = 0;
-  int right = 0;
-  Place best{0, 0, kInfinity};
-  for (int i = 0; i < 3; ++i) {
-    const Place& a = q[i];
-    const Place& b = q[(i + 1) % 3];
-    const float side = a.x * (b.y - a.y) - a.y * (b.x - a.x);
-    left += side >= 0;
-    right += side <= 0;
-    const Place in = innermost(a, b);
-    if (in.w < best.w)
-      best = in;
-  }
-  if (left == 3 || right == 3)
-    return {0, 0, 0};
-  return best;
-}
-
-/// Where a direction from the apex pierces the plane of three corners; false when it does not.
-[[gnu::always_inline]] inline bool pierce(const BeamFrame& f,
-                                          const Vec3f& dir,
-                                          const Vec3f (&c)[3],
-                                          Vec3f& out) {
-  const Vec3f n = cross(c[1] - c[0], c[2] - c[0]);
-  const float t = dot(c[0] - f.apex, n) / dot(dir, n);
-  if (!(t > 0) || !(t < kInfinity))
-    return false;
-  out = f.apex + t * dir;
-  return true;
-}
-
-/// Innermost point of a triangle, a little off its edge; false when a corner lies behind the apex.
-inline bool triangle_point(const BeamFrame& f, const Vec3f (&c)[3], Vec3f& out) {
-  Place q[3];
-  for (int i = 0; i < 3; ++i) {
-    q[i] = place(f, c[i]);
-    if (!(q[i].w > 0))
-      return false;
-  }
-  const Place best = innermost_of_three(q);
-  const float mx = (1.f / 3) * ((q[0].x + q[1].x) + q[2].x);
-  const float my = (1.f / 3) * ((q[0].y + q[1].y) + q[2].y);
-  const float x = best.x + kOffEdge * (mx - best.x);
-  const float y = best.y + kOffEdge * (my - best.y);
-  return pierce(f, f.axis + x * f.right + y * f.up, c, out);
 }
 
 }  // namespace grelha::GRELHA_ISA

@@ -21,15 +21,15 @@ class MetInBeam {
   void operator()(std::uint32_t id) const {
     if (met_.full || any_of(known_, [id](std::uint32_t known) { return id == known; }))
       return;
-    Vec3f point;
-    if (!meets(scene_, f_, id, far_, point) || has(id))
+    PartInBeam part;
+    if (!meets(scene_, f_, id, far_, part) || has(id))
       return;
     if (met_.size == kMostMet || single_) {
       met_.full = true;
       return;
     }
     met_.id[met_.size] = id;
-    met_.point[met_.size++] = point;
+    met_.part[met_.size++] = part;
   }
 
  private:

@@ -24,16 +24,20 @@ class Sheet {
       for (int k = 0; k < 3; ++k) {
         const Vec3f& a = corners_[i].at[k];
         const Vec3f& b = corners_[i].at[(k + 1) % 3];
-        // its other triangle may lie just outside
-        if (innermost(place(f, a), place(f, b)).w > kEdgeInside)
-          continue;
-        if (!shared(i, a, b))
+        if (!shared(i, a, b) && reaches_in(f, a, b))
           return false;
       }
     return true;
   }
 
  private:
+  /// Whether an edge lies in the beam: its other triangle may lie just outside.
+  static bool reaches_in(const BeamFrame& f, const Vec3f& a, const Vec3f& b) {
+    BeamPoint p = in_beam(f, a);
+    BeamPoint q = in_beam(f, b);
+    return clip({f.depth, kInfinity, kEdgeInside}, p, q);
+  }
+
   /// Whether another triangle than i has the edge as well.
   bool shared(int i, const Vec3f& a, const Vec3f& b) const {
     for (int j = 0; j < size_; ++j)

@@ -130,7 +130,7 @@ class Watcher {
   void trace_points(const BeamFrame& f, const Met& met, int first, Packet<InFloat>& p) {
     p.size = met.size - first < 16 ? met.size - first : 16;
     for (int i = 0; i < p.size; ++i) {
-      const Vec3f to = normalize(met.point[first + i] - f.apex);
+      const Vec3f to = normalize(met.part[first + i].point - f.apex);
       const Vec3f start = f.apex + (f.depth / dot(to, f.unit)) * to;
       set_ray(p, i, start, to, kInfinity);
     }

@@ -19,11 +19,10 @@ inline constexpr float kFarthestApex = 1e4f;
 /// (measured). With less the mirror would be found in its own beam.
 inline constexpr float kDepthMargin = .1f;
 
-/// How near the rim a ball is aimed at, and how far off its edge a triangle: a ray that must hit
-/// stays off what rounding decides. What reaches less than that into a beam is not found in it
-/// (taste).
+/// How near the rim a ball is aimed at, and how near its edge a beam is looked through: a ray that
+/// must hit stays off what rounding decides. What reaches less than that into a beam is not found
+/// in it (taste).
 inline constexpr float kRimShare = .9f;
-inline constexpr float kOffEdge = .01f;
 
 /// Times what a beam's corners meet, from its apex: how far the beam is looked at, and its grids
 /// are walked. What lies as far as they meet counts as met. Rounding takes less than 10 u of the

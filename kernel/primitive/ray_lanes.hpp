@@ -19,4 +19,11 @@ struct Ball {
   Real radius;
 };
 
+/// Two points, and how far all that lies around the way between them is from it at most.
+template <class Real>
+struct Stretch {
+  Vec3<Real> end[2];
+  Real radius;
+};
+
 }  // namespace grelha::GRELHA_ISA

@@ -216,6 +216,13 @@ inline Ball<float> ball_toward(const Cone::Fields<float>& cone,
   return {base + h * axis, cone.radius + cone.slope * h};
 }
 
+/// The way between the middles of a cone's ends; it lies around that.
+inline Stretch<float> stretch_of(const Cone::Fields<float>& cone) {
+  const Vec3<float> base = vec(cone.base);
+  const float other = cone.radius + cone.slope * cone.height;
+  return {{base, base + cone.height * vec(cone.axis)}, greater(cone.radius, other)};
+}
+
 /// Places all over a cone's side, for rays that want to meet it somewhere: five rings of eight, a
 /// little within, where rounding does not decide.
 struct ConePlaces {

@@ -152,12 +152,12 @@ TEST(Disc, IsFoundInABeam) {
   scalar::BeamFrame frame;
   ASSERT_TRUE(scalar::frame_of(beam, frame));
   const std::uint32_t first = view.geometry.ids.begin(PrimitiveKind::kDisc);
-  scalar::Vec3<float> point{};
-  ASSERT_TRUE(scalar::meets(view, frame, first, 10, point));
-  const scalar::Place at = scalar::place(frame, point);
+  scalar::PartInBeam part;
+  ASSERT_TRUE(scalar::meets(view, frame, first, 10, part));
+  const scalar::Place at = scalar::place(frame, part.point);
   EXPECT_LE(scalar::outness(at.x, at.y), 1);
-  EXPECT_NEAR(point.z, 5, .01f);
-  EXPECT_FALSE(scalar::meets(view, frame, first + 1, 10, point));
+  EXPECT_NEAR(part.point.z, 5, .01f);
+  EXPECT_FALSE(scalar::meets(view, frame, first + 1, 10, part));
 }
 
 TEST(Disc, IsRefusedWhereArraysAreUneven) {

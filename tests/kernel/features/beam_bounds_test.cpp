@@ -79,25 +79,26 @@ TEST_P(BeamBounds, MeetsConesAlongItselfByTheirMiddles) {
   }
 }
 
-/// Whether the ray through a place, from the middle of the pixel, meets a cone.
-bool sees_cone(const World& world, float x, float y) {
+/// Whether the ray through a place, from the middle of the pixel, meets something before the wall.
+bool sees_thing(const World& world, float x, float y) {
   const Float3 eye = over_units().eye;
   const Hit hit = closest(world, {eye, minus({kMiddle.x + x, kMiddle.y + y, 0}, eye)});
-  return hit && primitive_of(world, hit.id).kind == PrimitiveKind::kCone;
+  return hit && primitive_of(world, hit.id).kind != PrimitiveKind::kPlane;
 }
 
-/// Whether two of 24 x 24 rays through the pixel meet a cone, and none through its beam's corners.
-bool hides_cone(const Scene& s) {
+/// Whether two of 24 x 24 rays through the pixel meet something before the wall, and none through
+/// its beam's corners.
+bool hides_thing(const Scene& s) {
   constexpr int kRays = 24;
   const World world(s, {});
   for (const float x : {-kHalfBeam, kHalfBeam})
     for (const float y : {-kHalfBeam, kHalfBeam})
-      if (sees_cone(world, x, y))
+      if (sees_thing(world, x, y))
         return false;
   int rays = 0;
   for (int i = 0; i < kRays * kRays; ++i) {
     const auto place = [](int k) { return .96f * ((float(k) + .5f) / kRays - .5f); };
-    rays += sees_cone(world, place(i % kRays), place(i / kRays));
+    rays += sees_thing(world, place(i % kRays), place(i / kRays));
   }
   return rays > 1;
 }
@@ -118,13 +119,46 @@ TEST_P(BeamBounds, MeetsConesHoweverTheyLie) {
     };
     const float at_end = radius();
     s.geometry.cones.add(base, at_end > 0 ? radius() : .3f * float(size), end, at_end, 0);
-    if (!hides_cone(s))
+    if (!hides_thing(s))
       continue;
     ++hidden;
     missed += at(look(s), kX, kY) == 0;
   }
   EXPECT_GT(hidden, 1000);
   EXPECT_EQ(missed, 0);
+}
+
+/// Primitives of any size, to a thousand pixels, that reach into the pixel and far beyond, past the
+/// eye as well.
+TEST_P(BeamBounds, MeetsWhatReachesFarBeyondIt) {
+  Random random(7);
+  int hidden[3] = {};
+  int missed[3] = {};
+  for (std::size_t i = 0; i < 3000; ++i) {
+    const std::size_t kind = i % 3;
+    Scene s = dark_wall();
+    const Float3 in =
+        at({kMiddle.x, kMiddle.y, float(random.in(2, 150))}, random.in(0, .7), random.direction());
+    const auto away = [&] { return at(in, random.log_in(.02, 1000), random.direction()); };
+    const float thin = static_cast<float>(random.log_in(.005, .5));
+    if (kind == 0) {
+      const Float3 end = away();
+      add_triangle(s, in, end, random.chance(.5) ? away() : at(end, thin, random.direction()));
+    } else if (kind == 1) {
+      s.geometry.cones.add(away(), thin, away(), random.chance(.5) ? thin : 0, 0);
+    } else {
+      const double radius = random.log_in(.01, 100);
+      s.geometry.spheres.add(at(in, radius, random.direction()), static_cast<float>(radius), 0);
+    }
+    if (!hides_thing(s))
+      continue;
+    ++hidden[kind];
+    missed[kind] += at(look(s), kX, kY) == 0;
+  }
+  for (std::size_t kind = 0; kind < 3; ++kind) {
+    EXPECT_GT(hidden[kind], 50) << kind;
+    EXPECT_EQ(missed[kind], 0) << kind;
+  }
 }
 
 /// A wall across the beam, of triangles smaller than the pixel: all lie as far along the beam as
