@@ -169,20 +169,22 @@ class AdaptiveSampler {
     }
   }
 
-  /// The next samples of each pixel of a chunk; `pixels` get their names, sum by sum.
-  int runs_of(const Chunk& chunk, PixelRun* runs, std::vector<std::uint32_t>& pixels) const {
+  /// The next samples of each pixel of a chunk; the space gets their names and boxes, sum by sum.
+  int runs_of(const Chunk& chunk, PixelRun* runs, Workspace& space) const {
     const std::size_t count = chunk.end - chunk.begin;
     for (std::size_t r = 0; r < count; ++r) {
       const std::uint32_t p = r_.wanted[chunk.begin + r];
       runs[r] = {p, sample_count(r_, p), next_count(r_, p, first_log_)};
-      std::fill_n(pixels.begin() + static_cast<std::ptrdiff_t>(r * kParts), kParts, p);
+      const auto sum = static_cast<std::ptrdiff_t>(r * kParts);
+      std::fill_n(space.pixels().begin() + sum, kParts, p);
+      std::fill_n(space.boxes().begin() + sum, kParts, r_.box[p]);
     }
     return static_cast<int>(count);
   }
 
   void take_chunk(Chunk& chunk, Workspace& space, TraceCounts& trace, RayCounts& rays) {
     PixelRun runs[kRunsOfChunk];
-    const int count = runs_of(chunk, runs, space.pixels());
+    const int count = runs_of(chunk, runs, space);
     const RayCounts before = rays;
     const BandWork work = space.work(options_, 0, true);
     setup_.variant.loops.render_runs(

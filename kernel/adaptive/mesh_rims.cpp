@@ -85,45 +85,60 @@ void MeshRims::add_neighbours(std::size_t i) {
     name[k] = scattered(name_[vertex[k]] + triangles_.material[i]);
   for (int k = 0; k < 3; ++k)
     open_[first_[vertex[k]]].fetch_xor(name[(k + 1) % 3] ^ name[(k + 2) % 3],
-                                      std::memory_order_relaxed);
+                                       std::memory_order_relaxed);
 }
 
 void MeshRims::look_from(const double (&point)[3]) {
   if (sides_.empty())
     return;
+  std::copy(point, point + 3, from_);
   for (std::atomic<std::uint8_t>& side : sides_)
     side.store(0, std::memory_order_relaxed);
-  each_of(triangles_.size(), threads_, [&](std::size_t i) { add_side(i, point); });
+  each_of(triangles_.size(), threads_, [&](std::size_t i) { add_side(i); });
 }
 
-void MeshRims::add_side(std::size_t i, const double (&point)[3]) {
+/// Which side of a triangle is seen. Those of a mesh need not be turned alike.
+std::uint8_t MeshRims::side_of(std::size_t i) const {
   const std::uint32_t vertex[3] = {triangles_.a[i], triangles_.b[i], triangles_.c[i]};
   double p[3][3];
   for (int k = 0; k < 3; ++k) {
-    p[k][0] = triangles_.x[vertex[k]] - point[0];
-    p[k][1] = triangles_.y[vertex[k]] - point[1];
-    p[k][2] = triangles_.z[vertex[k]] - point[2];
+    p[k][0] = triangles_.x[vertex[k]] - from_[0];
+    p[k][1] = triangles_.y[vertex[k]] - from_[1];
+    p[k][2] = triangles_.z[vertex[k]] - from_[2];
   }
   const double volume = p[0][0] * (p[1][1] * p[2][2] - p[1][2] * p[2][1]) +
                         p[0][1] * (p[1][2] * p[2][0] - p[1][0] * p[2][2]) +
                         p[0][2] * (p[1][0] * p[2][1] - p[1][1] * p[2][0]);
-  const std::uint8_t side = volume < 0 ? kFront : kBack;
-  for (const std::uint32_t v : vertex) {
+  return volume < 0 ? kFront : kBack;
+}
+
+void MeshRims::add_side(std::size_t i) {
+  const std::uint8_t side = side_of(i);
+  for (const std::uint32_t v : {triangles_.a[i], triangles_.b[i], triangles_.c[i]}) {
     std::atomic<std::uint8_t>& seen = sides_[first_[v]];
     if ((seen.load(std::memory_order_relaxed) & side) == 0)
       seen.fetch_or(side, std::memory_order_relaxed);
   }
 }
 
+bool MeshRims::stands_alone(std::size_t i) const {
+  if (sides_.empty())
+    return true;
+  return open_[first_[triangles_.a[i]]] != 0 && open_[first_[triangles_.b[i]]] != 0 &&
+         open_[first_[triangles_.c[i]]] != 0;
+}
+
 bool MeshRims::has(std::size_t i) const {
   if (sides_.empty())
     return true;
+  bool turns = false;
   for (const std::uint32_t v : {triangles_.a[i], triangles_.b[i], triangles_.c[i]}) {
-    const std::uint32_t s = first_[v];
-    if (open_[s] != 0 || sides_[s] == (kFront | kBack))
+    const std::uint32_t first = first_[v];
+    if (open_[first] != 0)
       return true;
+    turns |= sides_[first] == (kFront | kBack);
   }
-  return false;
+  return turns;
 }
 
 }  // namespace grelha

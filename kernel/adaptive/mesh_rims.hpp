@@ -22,6 +22,8 @@ class MeshRims {
   /// Whether a corner of triangle i lies where a mesh of one material ends, or where some of its
   /// triangles face the point and some do not. With very many triangles: always.
   bool has(std::size_t i) const;
+  /// Whether all corners of triangle i lie where a mesh ends: it is no part of a larger surface.
+  bool stands_alone(std::size_t i) const;
 
  private:
   /// What is told of a corner.
@@ -29,10 +31,12 @@ class MeshRims {
   static constexpr std::uint8_t kBack = 2;
 
   void add_neighbours(std::size_t i);
-  void add_side(std::size_t i, const double (&point)[3]);
+  void add_side(std::size_t i);
+  std::uint8_t side_of(std::size_t i) const;
 
   const TriangleSpans& triangles_;
   const int threads_;
+  double from_[3] = {};
   std::vector<std::uint32_t> first_;  ///< [vertices] one at the same place
   std::vector<std::uint32_t> name_;   ///< [vertices] a hash of the place
   /// [vertices] of the neighbours of a corner, each as often as triangles have both: 0 where each

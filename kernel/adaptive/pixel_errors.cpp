@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernel/scene/pixel_box.hpp"
+
 namespace grelha {
 
 PixelErrors::PixelErrors(const Refinement& r, bool effects, int first_log, int threads)
@@ -65,10 +67,29 @@ float PixelErrors::with_neighbours(int x, int y, const RatioPowers& scale) const
   return (own_[p] * mine + sum / count * theirs) / (mine + theirs);
 }
 
+/// Something was found in a box of the pixel. As long as no sample was sent there it counts as
+/// missed, all of it: a disc in that box. Of m samples in the box it then counts what none of them
+/// met.
+PixelErrors::Hidden PixelErrors::in_box(std::size_t p) const {
+  const float most = unpacked(r_.box[p]).area() * r_.boxed[p];
+  const float sent = samples(p) - static_cast<float>(1u << first_log_);
+  if (!(sent > 0)) {
+    const float missed = kDiscInBox * most;
+    return {missed * missed, 2 * most};
+  }
+  const float share = most / (.5f * sent);
+  return {kHiddenVariance * share * share, kHiddenWidth * share};
+}
+
 void PixelErrors::judge_pixel(int x, int y, const RatioPowers& scale) {
   const std::size_t p = at(x, y);
   float v = watched(p) ? with_neighbours(x, y, scale) : own_[p];
   float wide = 2 * kNormal * std::sqrt(v);
+  if (r_.box[p] != 0) {
+    const Hidden found = in_box(p);
+    v += found.variance;
+    wide = std::max(wide, found.width);
+  }
   // What none of n samples met covers at most 3 / n of the pixel, at 95 % confidence (the rule of
   // three), on either side: that is how wide the interval must be. Its share has Beta(1, n + 1),
   // whose second moment is 2 / n^2; it differs from what they met by the doubt at most, by about a

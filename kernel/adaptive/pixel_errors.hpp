@@ -57,6 +57,11 @@ class PixelErrors {
   }
   float differences(std::size_t p) const;
   float own_variance(std::size_t p) const;
+  /// What hides from a pixel's samples adds to its variance, and how wide its interval must be.
+  struct Hidden {
+    float variance, width;
+  };
+  Hidden in_box(std::size_t p) const;
   float with_neighbours(int x, int y, const RatioPowers& scale) const;
   void judge_pixel(int x, int y, const RatioPowers& scale);
 

@@ -16,7 +16,8 @@ std::size_t pixel_at(const Refinement& r, int x, int y) {
 /// Pixels of a tile, a bit each.
 struct TilePixels {
   std::uint64_t agree = 0;  ///< those whose samples agree
-  std::uint64_t asked = 0;  ///< those of them near anything that samples may have missed
+  std::uint64_t asked = 0;  ///< those near anything that samples may have missed
+  std::uint64_t others = 0;
 };
 
 /// The picture when its first samples are there, and what looks for what they missed.
@@ -24,7 +25,7 @@ struct Search {
   const World::Impl& world;
   const Setup& setup;
   const PixelErrors& errors;
-  const PixelMarks& marks;
+  const SmallThings& things;
   const float faint;  ///< differences to pixels around that show no edge
   Refinement& r;
 
@@ -33,22 +34,28 @@ struct Search {
     for (int i = 0; i < kTile * kTile; ++i) {
       const int x = x0 + i % kTile;
       const int y = y0 + i / kTile;
-      if (x >= r.width || y >= r.height || !errors.agrees(pixel_at(r, x, y)))
+      if (x >= r.width || y >= r.height)
         continue;
-      of.agree |= std::uint64_t{1} << i;
+      const std::uint64_t bit = std::uint64_t{1} << i;
+      const bool agrees = errors.agrees(pixel_at(r, x, y));
+      if (agrees || things.stand_alone)
+        of.others |= bit;
+      if (things.marks.has(x, y))
+        of.asked |= bit;
+      if (!agrees)
+        continue;
+      of.agree |= bit;
       if (errors.contrast(x, y) > faint)
-        of.asked |= std::uint64_t{1} << i;
+        of.asked |= bit;
     }
-    of.asked |= of.agree & marks.tile(x0, y0);
+    of.others &= ~of.asked;
     return of;
   }
 
   /// The tile whose upper left pixel is (x0, y0).
   void search_tile(int x0, int y0, TraceCounts& counts) const {
     const TilePixels of = pixels_of(x0, y0);
-    if (of.agree == 0)
-      return;
-    float inside[kTile * kTile] = {}, around[kTile * kTile] = {};
+    PixelDoubts found;
     setup.variant.loops.doubt(world.view,
                               world.shading,
                               setup.frame,
@@ -56,17 +63,25 @@ struct Search {
                               y0,
                               kBouncesWatched,
                               of.asked,
-                              of.agree & ~of.asked,
-                              inside,
-                              around,
+                              of.others,
+                              found,
                               counts);
     for (int i = 0; i < kTile * kTile; ++i) {
-      // what varies was met; should it agree later, its neighbours tell
-      if (!(of.agree >> i & 1))
+      if (!((of.asked | of.others) >> i & 1))
         continue;
       const std::size_t p = pixel_at(r, x0 + i % kTile, y0 + i / kTile);
-      r.inside[p] = inside[i];
-      r.around[p] = around[i];
+      // Where samples vary, what they vary by may be all there is, but for what is so small that it
+      // has a box. Should they agree later, the pixels around tell.
+      if (setup.frame.lens) {  // it is not where the middle of the lens sees it
+        found.inside[i] = std::max(found.inside[i], found.boxed[i]);
+      } else {
+        r.boxed[p] = found.boxed[i];
+        r.box[p] = found.box[i];
+      }
+      if (!(of.agree >> i & 1))
+        continue;
+      r.inside[p] = found.inside[i];
+      r.around[p] = found.around[i];
     }
   }
 };
@@ -80,9 +95,9 @@ void find_hidden_features(const World::Impl& world,
                           int threads,
                           Refinement& r,
                           TraceCounts& counts) {
-  const PixelMarks marks = mark_small_things(world, setup, threads, counts);
+  const SmallThings things(world, setup, threads, counts);
   const float faint = error > 0 ? kFaintInErrors * static_cast<float>(error) : kFaint;
-  const Search search{world, setup, errors, marks, faint, r};
+  const Search search{world, setup, errors, things, faint, r};
   const int columns = (r.width + kTile - 1) / kTile;
   const int rows = (r.height + kTile - 1) / kTile;
 #pragma omp parallel num_threads(threads)

@@ -59,10 +59,15 @@ bool has_sound_sizes(const Refinement& r) {
   for (const auto& level : r.squares)
     if (level.size() != pixels * 3)
       return false;
-  for (const auto* values : {&r.cost, &r.inside, &r.around})
+  for (const auto* values : {&r.cost, &r.inside, &r.around, &r.boxed})
     if (values->size() != pixels)
       return false;
-  return r.sums.size() == pixels * 3 && r.log.size() == pixels;
+  return r.sums.size() == pixels * 3 && r.log.size() == pixels && r.box.size() == pixels;
+}
+
+/// Its sides are in order; see packed().
+bool is_sound_box(std::uint32_t box) {
+  return (box & 255) <= (box >> 16 & 255) && (box >> 8 & 255) <= box >> 24;
 }
 
 bool has_sound_arrays(const Refinement& r) {
@@ -71,11 +76,12 @@ bool has_sound_arrays(const Refinement& r) {
   for (const auto& level : r.squares)
     if (!all_from_0_on(level))
       return false;
-  for (const auto* values : {&r.cost, &r.inside, &r.around})
+  for (const auto* values : {&r.cost, &r.inside, &r.around, &r.boxed})
     if (!all_from_0_on(*values))
       return false;
   return std::all_of(r.sums.begin(), r.sums.end(), is_sound_sum) &&
          std::all_of(r.log.begin(), r.log.end(), is_sound_log) &&
+         std::all_of(r.box.begin(), r.box.end(), is_sound_box) &&
          std::all_of(r.cost.begin(), r.cost.end(), [](float c) { return c >= 1; });
 }
 
@@ -92,6 +98,8 @@ Refinement make_refinement(const Camera& camera) {
   r.cost.resize(pixels, 1);
   r.inside.resize(pixels, 0);
   r.around.resize(pixels, 1);
+  r.boxed.resize(pixels, 0);
+  r.box.resize(pixels, 0);
   r.log.resize(pixels, 0);
   return r;
 }

@@ -32,7 +32,9 @@ struct Refinement {
   /// [pixels] rays a sample takes, of the part of the picture last sampled with the pixel
   std::vector<float> cost;
   /// [pixels] weights of what may hide from the samples, see Doubt
-  std::vector<float> inside, around;
+  std::vector<float> inside, around, boxed;
+  /// [pixels] where in the pixel `boxed` is, see PixelBox
+  std::vector<std::uint32_t> box;
   std::vector<std::uint8_t> log;  ///< [pixels] of the number of samples; 0: none yet
   /// pixels that the round in work has not come to, in its order; between rounds none
   std::vector<std::uint32_t> wanted;

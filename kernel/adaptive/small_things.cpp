@@ -215,6 +215,9 @@ class Marker {
         marks_(marks),
         counts_(counts) {}
 
+  /// Whether something that looks thin is no part of a larger mesh.
+  bool stand_alone() const { return stand_alone_; }
+
   void run() {
     mark_things_seen();
     for (int l = 0; l < world_.shading.light_count; ++l)
@@ -244,10 +247,11 @@ class Marker {
   }
 
   std::size_t turns() const {
-    return (g_.spheres.size() + g_.cones.size() + g_.triangles.size() + kThingsOfTurn - 1) / kThingsOfTurn;
+    return (g_.spheres.size() + g_.cones.size() + g_.triangles.size() + kThingsOfTurn - 1) /
+           kThingsOfTurn;
   }
 
-  /// Calls take(rod) for the things of a turn that is_thin(rod) holds for, as seen from a point.
+  /// Calls take(rod, alone) for the things of a turn that is_thin(rod) holds for, as seen from a point.
   template <class IsThin, class Take>
   void each_thing(std::size_t turn,
                   const Place3& from,
@@ -261,7 +265,7 @@ class Marker {
                 : i < triangles ? rod_of(g_.cones, i - cones)
                                 : rod_of(g_.triangles, i - triangles, from);
       if (is_thin(rod) && (i < triangles || rims_->has(i - triangles)))
-        take(rod);
+        take(rod, i < triangles || rims_->stands_alone(i - triangles));
     }
   }
 
@@ -272,7 +276,11 @@ class Marker {
           turn,
           to_.eye,
           [&](Rod& rod) { return looks_thin(to_, rod); },
-          [&](const Rod& rod) { mark_seen(to_, rod, marks_); });
+          [&](const Rod& rod, bool alone) {
+            mark_seen(to_, rod, marks_);
+            if (alone)
+              stand_alone_ = true;
+          });
     });
   }
 
@@ -289,7 +297,7 @@ class Marker {
           turn,
           from,
           [&](const Rod& rod) { return rod.width < widest_; },
-          [&](const Rod& rod) {
+          [&](const Rod& rod, bool) {
             if (thin++ < most)
               shadows.add(rod);
           });
@@ -310,18 +318,20 @@ class Marker {
   PixelMarks& marks_;
   TraceCounts& counts_;
   std::mutex sum_;
+  std::atomic<bool> stand_alone_ = false;
   std::unique_ptr<MeshRims> rims_;
 };
 
 }  // namespace
 
-PixelMarks mark_small_things(const World::Impl& world,
-                             const Setup& setup,
-                             int threads,
-                             TraceCounts& counts) {
-  PixelMarks marks(setup.frame.width, setup.frame.height);
-  Marker(world, setup, threads, marks, counts).run();
-  return marks;
+SmallThings::SmallThings(const World::Impl& world,
+                         const Setup& setup,
+                         int threads,
+                         TraceCounts& counts)
+    : marks(setup.frame.width, setup.frame.height) {
+  Marker marker(world, setup, threads, marks, counts);
+  marker.run();
+  stand_alone = marker.stand_alone();
 }
 
 }  // namespace grelha

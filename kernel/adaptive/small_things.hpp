@@ -9,11 +9,14 @@
 
 namespace grelha {
 
-/// Triangles inside of a mesh are no things of their own, see MeshRims. Shadows are those of lights'
-/// centres on what lies right behind.
-PixelMarks mark_small_things(const World::Impl& world,
-                             const Setup& setup,
-                             int threads,
-                             TraceCounts& counts);
+/// Where they are. Triangles inside of a mesh are no things of their own, see MeshRims. Shadows are
+/// those of the middles of lights, on what lies right behind.
+struct SmallThings {
+  SmallThings(const World::Impl& world, const Setup& setup, int threads, TraceCounts& counts);
+
+  PixelMarks marks;
+  /// Something thin is no part of a larger mesh: mirrors and clear surfaces may show it anywhere.
+  bool stand_alone = false;
+};
 
 }  // namespace grelha

@@ -25,6 +25,9 @@ inline constexpr float kHiddenVariance = .15f;
 /// / n on either side (the rule of three).
 inline constexpr float kHiddenWidth = 6;
 
+/// Share of its box that a disc covers, pi / 4.
+inline constexpr float kDiscInBox = .7853982f;
+
 /// Times 1 / n^2, for n samples: what variance they agree to. One that differs by .1 shows as .0049
 /// of it where variances fall by .4 a doubling.
 inline constexpr float kAgreement = .005f;

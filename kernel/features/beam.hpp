@@ -42,7 +42,8 @@ inline bool find_part(const Triangle::Arrays& triangles,
   return true;
 }
 
-/// Whether the ray of the beam through a place meets one primitive nearer than w = `far`, and where.
+/// Whether the ray of the beam through a place meets one primitive nearer than w = `far`, and
+/// where.
 template <class Fields>
 inline bool meets_through(
     const BeamFrame& f, float x, float y, const Fields& one, float far, Vec3<float>& p) {

@@ -71,8 +71,18 @@ class BeamPolygon {
 
   /// Keeps what lies in a piece of the beam; false: nothing does.
   bool keep(const BeamPiece& piece) {
-    for (int side = 0; side < BeamPiece::kSides && size_ > 0; ++side)
-      cut(piece, side);
+    unsigned crossed = 0;
+    for (int side = 0; side < BeamPiece::kSides; ++side) {
+      int within = 0;
+      for (int i = 0; i < size_; ++i)
+        within += piece(side, at_[i]) >= 0;
+      if (within == 0)
+        return false;
+      crossed |= (within < size_ ? 1u : 0u) << side;
+    }
+    for (int side = 0; crossed != 0 && size_ > 0; ++side, crossed >>= 1)
+      if (crossed & 1)
+        cut(piece, side);
     return size_ > 0;
   }
 
@@ -129,6 +139,8 @@ struct BeamBox {
     add(other.lo[0], other.lo[1]);
     add(other.hi[0], other.hi[1]);
   }
+  /// Of the beam.
+  float share() const { return .25f * (hi[0] - lo[0]) * (hi[1] - lo[1]); }
   /// What a ball covers at most.
   void add_ball(const BeamFrame& f, const BeamPoint& c, float radius) {
     const float x = radius * length(f.to_x);

@@ -98,7 +98,10 @@ inline bool frame_of(const Beam& b, BeamFrame& f) {
     const float along = dot(b.dir[i], f.unit);
     if (!(along > kNarrow))
       return false;
-    spread_by(spread, b.org[i] - org, (1 / along) * b.dir[i] - f.unit);
+    // where it passes the plane across the axis: on a slanting mirror rays start apart along it too
+    const Vec3f away = b.org[i] - org;
+    const Vec3f across = away - (dot(away, f.unit) / along) * b.dir[i];
+    spread_by(spread, across, (1 / along) * b.dir[i] - f.unit);
   }
   f.depth = apex_distance(spread);
   f.apex = org - f.depth * f.unit;

@@ -6,29 +6,10 @@
 // Genetti, Gordon, Williams, "Adaptive Supersampling in Object Space Using Pyramidal Rays", 1998,
 // move the decision from colours to objects; here the objects only say where to go on sampling.
 
-#include "kernel/features/beam_search.hpp"
-#include "kernel/features/closed_sheet.hpp"
+#include "kernel/features/light_watch.hpp"
 #include "kernel/scene/refraction.hpp"
 
 namespace grelha::GRELHA_ISA {
-
-/// The weight, 0 to 1, of what may hide: `inside`, where something was met that no corner sees;
-/// `around`, where the corners differ, or the beam cannot tell: what hides then shows in the pixels
-/// around as well, whose colours bound it.
-struct Doubt {
-  float inside = 0;
-  float around = 0;
-  bool none() const { return inside == 0 && around == 0; }
-};
-inline Doubt around(float weight) {
-  return {0, weight};
-}
-inline Doubt operator+(const Doubt& a, const Doubt& b) {
-  return {greater(a.inside, b.inside), greater(a.around, b.around)};
-}
-
-/// The surfaces that a beam's corners met.
-using CornerSurfaces = Surface<float>[kCorners];
 
 /// How often a beam is still followed.
 struct ToFollow {
@@ -58,27 +39,20 @@ class Watcher {
     const bool differ = corners_differ(sight.id, whole);
     if (whole && differ)
       return around(weight);
-    const bool mesh = is_triangle(scene_.geometry, sight.id[0]);
+    const float far = farthest_hit(f, beam, sight);
     Met met;
-    if (!collect(scene_, f, farthest_hit(f, beam, sight), sight.id, whole && !mesh, met, n_))
-      return around(weight);
-    if (whole && !is_patch(met, sight.id[0]))
-      return around(weight);
-    if (const Doubt found = hidden(f, met, sight.id, mirror_id, weight); !whole && !found.none())
+    if (whole) {
+      if (!holds_patch(f, sight.id, far, met))
+        return around(weight);
+    } else if (const Doubt found = met_inside(f, sight.id, far, differ, mirror_id, weight, met);
+               !found.none()) {
       return found;
+    }
     if (differ || !closed(scene_.geometry, f, met, sight.id))
       return around(weight);
     if (sight.id[0] == kNoPrimitive)
       return {};
-    CornerSurfaces s;
-    bool within = false;
-    if (!find_surfaces(beam, sight, s, within))
-      return around(weight);
-    const Doubt found = uneven_lights({s, sight.id, met, whole}, weight);
-    const Way way{beam, s, sight.id[0], whole, follow, weight};
-    if (field(s[0], kTransmission) > 0)
-      return whole ? around(weight) : found + in_glass(way, within, found.inside);
-    return found + in_mirror(way, largest(color(s[0], kMirrorR)), found.inside);
+    return on_surface(beam, sight, met, whole, follow, weight);
   }
 
  private:
@@ -92,38 +66,67 @@ class Watcher {
     float weight;
   };
 
-  /// What a beam's corners met: one surface.
-  struct Patch {
-    const CornerSurfaces& s;
-    const std::uint32_t (&on)[kCorners];
-    const Met& met;  ///< what else reaches into the beam
-    bool whole;
-
-    bool holds(std::uint32_t id) const {
-      for (int i = 0; i < met.size; ++i)
-        if (met.id[i] == id)
-          return true;
-      return any_of(on, [id](std::uint32_t corner) { return corner == id; });
-    }
-  };
-
   /// Whether corners met different surfaces, or, if `whole`, neither one convex primitive nor
-  /// triangles that lie nearly in one plane.
+  /// triangles side by side that lie nearly in one plane: of more there are too many to look at.
   bool corners_differ(const std::uint32_t (&id)[kCorners], bool whole) const {
     const GeometryView& g = scene_.geometry;
     if (!whole)
       return !one_surface(g, id);
     return any_of(id, [&](std::uint32_t i) {
-      return g.ids.has(PrimitiveKind::kCone, i) || !alike(g, id[0], i, kOnePatchSquared);
+      return g.ids.has(PrimitiveKind::kCone, i) ||
+             (i != id[0] && !(touch(g, id[0], i) && alike(g, id[0], i, kOnePatchSquared)));
     });
   }
 
-  /// Whether all that was met lies nearly in the plane of a triangle.
-  bool is_patch(const Met& met, std::uint32_t front) const {
+  /// Whether there is nothing else, or all that is met lies nearly in the plane of the triangle that
+  /// a corner met.
+  bool holds_patch(const BeamFrame& f,
+                   const std::uint32_t (&front)[kCorners],
+                   float far,
+                   Met& met) {
+    const GeometryView& g = scene_.geometry;
+    if (!collect(scene_, f, far, front, !is_triangle(g, front[0]), met, n_))
+      return false;
     for (int i = 0; i < met.size; ++i)
-      if (!alike(scene_.geometry, front, met.id[i], kOnePatchSquared))
+      if (!alike(g, front[0], met.id[i], kOnePatchSquared))
         return false;
     return true;
+  }
+
+  /// What is met of which corners do not tell.
+  Doubt met_inside(const BeamFrame& f,
+                   const std::uint32_t (&front)[kCorners],
+                   float far,
+                   bool differ,
+                   std::uint32_t mirror_id,
+                   float weight,
+                   Met& met) {
+    const bool all = collect(scene_, f, far, front, false, met, n_);
+    Doubt found = hidden(f, met, front, mirror_id, weight);
+    if (differ)
+      found = found + at_corners(f, met, front, weight);
+    if (!all)
+      found.around = weight;
+    return found;
+  }
+
+  /// What hides in the light on the surface that the corners met, in its mirror and behind it.
+  Doubt on_surface(const Beam& beam,
+                   const Sight& sight,
+                   const Met& met,
+                   bool whole,
+                   ToFollow follow,
+                   float weight) {
+    CornerSurfaces s;
+    bool within = false;
+    if (!find_surfaces(beam, sight, s, within))
+      return around(weight);
+    const Doubt found =
+        LightWatch(scene_, shading_, n_).uneven_lights({s, sight.id, met, whole}, weight);
+    const Way way{beam, s, sight.id[0], whole, follow, weight};
+    if (field(s[0], kTransmission) > 0)
+      return whole ? around(weight) : found + in_glass(way, within, found.inside);
+    return found + in_mirror(way, largest(color(s[0], kMirrorR)), found.inside);
   }
 
   /// Sends rays to points first, first + 1, ... that were met, at most a packet of 16.
@@ -156,11 +159,49 @@ class Watcher {
           continue;
         if (!is_own_mirror(id, mirror_id) &&
             !any_of(front, [&](std::uint32_t seen) { return kin(g, seen, id); }))
-          return {weight, weight};
-        found = around(weight);
+          found.add(weight * brightness(id), met.part[first + i].box);
+        found.around = weight;
       }
     }
     return found;
+  }
+
+  /// Small things that one corner met and no other.
+  Doubt at_corners(const BeamFrame& f,
+                   const Met& met,
+                   const std::uint32_t (&front)[kCorners],
+                   float weight) const {
+    const GeometryView& g = scene_.geometry;
+    Doubt found;
+    for (const std::uint32_t id : front) {
+      int corners = 0;
+      for (const std::uint32_t other : front)
+        corners += alike(g, id, other);
+      PartInBeam part;
+      if (id == kNoPrimitive || corners > 1 || !meets(scene_, f, id, kInfinity, part))
+        continue;
+      for (int i = 0; i < met.size; ++i)
+        if (alike(g, id, met.id[i]))
+          part.box.add(met.part[i].box);
+      if (part.box.share() <= kLargestBox)
+        found = found + Doubt{0, weight, weight * brightness(id), part.box};
+    }
+    return found;
+  }
+
+  /// The most that something sends an eye, or 1 where that is less than white: what it hides may be
+  /// as bright.
+  float brightness(std::uint32_t id) const {
+    const std::uint32_t m = material_of_any(scene_.geometry, id);
+    const auto row = [&](MaterialField red) { return material_color(shading_.materials, m, red); };
+    Vec3f lights{0, 0, 0};
+    for (int l = 0; l < shading_.light_count; ++l) {
+      const float* const c = shading_.lights + kLightFloats * l + 3;
+      lights = lights + Vec3f{c[0], c[1], c[2]};
+    }
+    const Vec3f own = row(kEmissionR) + (row(kDiffuseR) + row(kSpecularR)) * lights;
+    const float sent_on = largest(row(kMirrorR)) + shading_.materials.field[kTransmission][m];
+    return greater(1.f, largest(own) + sent_on * shading_.brightest);
   }
 
   /// Whether a bulging mirror stands in its own way.
@@ -192,23 +233,7 @@ class Watcher {
     return shading_.materials.field[k][s.material];
   }
   Vec3f color(const Surface<float>& s, MaterialField red) const {
-    return {field(s, red),
-            field(s, static_cast<MaterialField>(red + 1)),
-            field(s, static_cast<MaterialField>(red + 2))};
-  }
-
-  /// Doubt whether the lights are even between the corners.
-  Doubt uneven_lights(const Patch& patch, float weight) {
-    const Vec3f answer = color(patch.s[0], kDiffuseR) + color(patch.s[0], kSpecularR);
-    Doubt most;
-    for (int l = 0; l < shading_.light_count; ++l) {
-      const float* const light = shading_.lights + kLightFloats * l;
-      const Vec3f sent = answer * Vec3f{light[3], light[4], light[5]};
-      const float part = lesser(largest(sent), 1.f) * weight;
-      if (part > most.inside)
-        most = most + uneven_light({light[0], light[1], light[2]}, patch, part);
-    }
-    return most;
+    return material_color(shading_.materials, s.material, red);
   }
 
   /// What hides in the mirror that the corners met, of which `share` of the light comes. Mirrors
@@ -259,92 +284,6 @@ class Watcher {
       return up + around(passes);
     const ToFollow left{way.follow.mirrors, way.follow.clears - 1};
     return up + doubt(through, false, left, passes, way.id);
-  }
-
-  /// The beam from a light to a patch.
-  struct LightBeam {
-    Beam beam;
-    float length[kCorners];
-    int facing = 0;  ///< corners of the patch that face the light
-  };
-  static LightBeam light_beam(const Vec3f& light, const CornerSurfaces& s) {
-    LightBeam b;
-    for (int i = 0; i < kCorners; ++i) {
-      const Vec3f to = s[i].point + s[i].away * s[i].normal - light;
-      b.length[i] = length(to);
-      b.beam.org[i] = light;
-      b.beam.dir[i] = (1 / b.length[i]) * to;
-      b.facing += dot(to, s[i].normal) < 0;
-    }
-    return b;
-  }
-
-  /// Corners of a patch that the light reaches.
-  int lit_corners(const LightBeam& b,
-                  const Sight& sight,
-                  const std::uint32_t (&on)[kCorners]) const {
-    int lit = 0;
-    for (int i = 0; i < kCorners; ++i)
-      lit += !(sight.t[i] < b.length[i] * kBeforeSurface) || touches_any(on, sight.id[i]);
-    return lit;
-  }
-  bool touches_any(const std::uint32_t (&on)[kCorners], std::uint32_t id) const {
-    return any_of(on, [&](std::uint32_t own) { return touch(scene_.geometry, own, id); });
-  }
-
-  /// Doubt whether the light, of weight `part`, reaches all of the patch between four points, or
-  /// none of it.
-  Doubt uneven_light(const Vec3f& light, const Patch& patch, float part) {
-    const LightBeam b = light_beam(light, patch.s);
-    if (b.facing == 0)
-      return {};
-    BeamFrame f;
-    if (!frame_of(b.beam, f))
-      return around(part);
-    Sight sight;
-    trace_corners(scene_, b.beam, sight, n_);
-    const int lit = lit_corners(b, sight, patch.on);
-    if (lit == 0)
-      return blocked(f, b, sight.id, patch.whole) ? Doubt{} : around(part);
-    return lit == kCorners ? shadows(f, b, patch, part) : around(part);
-  }
-
-  /// Whether all of a beam whose corners are dark is: one solid, or one closed sheet stands in it.
-  bool blocked(const BeamFrame& f,
-               const LightBeam& b,
-               const std::uint32_t (&id)[kCorners],
-               bool whole) {
-    const GeometryView& g = scene_.geometry;
-    const bool one = id[0] == id[1] && id[0] == id[2] && id[0] == id[3];
-    if (one && id[0] < g.ids.begin(PrimitiveKind::kCone))
-      return true;
-    float far = 0;
-    for (const float length : b.length)
-      far = greater(length, far);
-    Met shade;
-    return !whole && one_surface(g, id) && collect(scene_, f, far, id, false, shade, n_) &&
-           closed(g, f, shade, id);
-  }
-
-  /// Doubt of a patch that is lit at its corners: whatever stands between throws its shadow inside.
-  Doubt shadows(const BeamFrame& f, const LightBeam& b, const Patch& patch, float part) {
-    const auto& on = patch.on;
-    float least = kInfinity;
-    for (const float length : b.length)
-      least = lesser(length, least);
-    Met met;
-    const bool mesh = is_triangle(scene_.geometry, on[0]);
-    if (!collect(scene_, f, least * kBeforeSurface, on, patch.whole && !mesh, met, n_))
-      return around(part);
-    Doubt found;
-    for (int i = 0; i < met.size; ++i) {
-      if (patch.holds(met.id[i]) || touches_any(on, met.id[i]))
-        continue;
-      if (!any_of(on, [&](std::uint32_t own) { return kin(scene_.geometry, own, met.id[i]); }))
-        return {part, part};
-      found = around(part);
-    }
-    return found;
   }
 
   const SceneView& scene_;

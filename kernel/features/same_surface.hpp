@@ -3,6 +3,7 @@
 
 #include "kernel/features/beam.hpp"
 #include "kernel/features/corner_hits.hpp"
+#include "kernel/scene/shading_view.hpp"
 
 namespace grelha::GRELHA_ISA {
 
@@ -18,6 +19,17 @@ inline Corners3 corners_of(const GeometryView& g, std::uint32_t id) {
 }
 inline std::uint32_t material_of(const GeometryView& g, std::uint32_t id) {
   return g.of<Triangle>().material[triangle_of(g, id)];
+}
+
+/// Material of a primitive of any kind.
+inline std::uint32_t material_of_any(const GeometryView& g, std::uint32_t id) {
+  return visit_shape(
+      Shapes{}, g.ids, id, [&]<class Shape>(std::uint32_t i) __attribute__((always_inline)) {
+        return g.of<Shape>().material[i];
+      });
+}
+inline Vec3f material_color(const MaterialView& materials, std::uint32_t m, MaterialField red) {
+  return {materials.field[red][m], materials.field[red + 1][m], materials.field[red + 2][m]};
 }
 
 inline bool same(const Vec3f& a, const Vec3f& b) {

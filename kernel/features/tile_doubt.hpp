@@ -2,6 +2,7 @@
 // Doubt of the pixels of a tile.
 
 #include "kernel/features/doubt.hpp"
+#include "kernel/scene/pixel_box.hpp"
 
 namespace grelha::GRELHA_ISA {
 
@@ -33,14 +34,9 @@ inline Beam pixel_beam(const FrameView& f, int x0, int y0, int size) {
 
 /// Whether a primitive sends on enough light to be followed.
 inline bool is_bent(const SceneView& scene, const ShadingView& shading, std::uint32_t id) {
-  const GeometryView& g = scene.geometry;
-  const std::uint32_t m = visit_shape(
-      Shapes{}, g.ids, id, [&]<class Shape>(std::uint32_t i) __attribute__((always_inline)) {
-        return g.of<Shape>().material[i];
-      });
-  const auto field = [&](MaterialField f) { return shading.materials.field[f][m]; };
-  return field(kTransmission) > 0 || field(kMirrorR) >= kLeastMirror ||
-         field(kMirrorG) >= kLeastMirror || field(kMirrorB) >= kLeastMirror;
+  const std::uint32_t m = material_of_any(scene.geometry, id);
+  return shading.materials.field[kTransmission][m] > 0 ||
+         largest(material_color(shading.materials, m, kMirrorR)) >= kLeastMirror;
 }
 
 /// Bits of the pixels of a tile of 8 x 8 whose middle shows a mirror or something clear.
@@ -65,20 +61,30 @@ inline std::uint64_t bent_pixels(const SceneView& scene,
   return bent;
 }
 
-/// Doubt of pixels, [8 y + x] of their tile.
-struct TileDoubt {
-  float (&inside)[kTile * kTile];
-  float (&around)[kTile * kTile];
-
-  /// Sets those of a square.
-  void set(int first, int size, const Doubt& doubt) const {
-    for (int y = 0; y < size; ++y)
-      for (int x = 0; x < size; ++x) {
-        inside[first + y * kTile + x] = doubt.inside;
-        around[first + y * kTile + x] = doubt.around;
-      }
+/// What of a pixel a box of its beam is, with room for what bends light on the way.
+inline std::uint32_t box_of_pixel(const BeamBox& box) {
+  if (!(box.lo[0] <= box.hi[0]))
+    return 0;
+  float lo[2], hi[2];
+  for (int j = 0; j < 2; ++j) {
+    const float room = kBoxRoom + kBoxGrowth * (box.hi[j] - box.lo[j]);
+    lo[j] = .5f + .5f * kPixelGrowth * (box.lo[j] - room);
+    hi[j] = .5f + .5f * kPixelGrowth * (box.hi[j] + room);
   }
-};
+  return packed({lo[0], lo[1], hi[0], hi[1]});
+}
+
+/// Sets the doubt of the pixels of a square.
+inline void set_square(PixelDoubts& of, int first, int size, const Doubt& doubt) {
+  for (int y = 0; y < size; ++y)
+    for (int x = 0; x < size; ++x) {
+      const int i = first + y * kTile + x;
+      of.inside[i] = doubt.inside;
+      of.around[i] = doubt.around;
+      of.box[i] = box_of_pixel(doubt.box);
+      of.boxed[i] = of.box[i] != 0 ? doubt.boxed : 0;
+    }
+}
 
 /// Bits of the pixels of a square.
 inline std::uint64_t square_bits(int first, int size) {
@@ -98,14 +104,14 @@ inline void tile_doubt(Watcher& watcher,
                        int size,
                        int bounces,
                        std::uint64_t asked,
-                       const TileDoubt& found) {
+                       PixelDoubts& found) {
   const int first = y0 % kTile * kTile + x0 % kTile;
   if ((asked & square_bits(first, size)) == 0)
     return;
   const Doubt doubt =
       watcher.doubt(pixel_beam(f, x0, y0, size), size > 1, {bounces, kClearsFollowed}, 1);
   if (size == 1 || doubt.none()) {
-    found.set(first, size, doubt);
+    set_square(found, first, size, doubt);
     return;
   }
   const int h = size / 2;

@@ -58,6 +58,12 @@ inline constexpr float kLeastMirror = 1.f / 64;
 /// Clear surfaces that a beam is followed through: two panes of glass have four (a choice).
 inline constexpr int kClearsFollowed = 4;
 
+/// In places of a beam: what a box of things found is grown by, and the share of its size. Light
+/// that comes by way of a bent surface leaves the pixel a little beside its place in the beam (a
+/// choice: what lies outside is sampled all the same, only less often).
+inline constexpr float kBoxRoom = .02f;
+inline constexpr float kBoxGrowth = .1f;
+
 /// A beam is this much wider than its pixel, lest it doubts what its neighbours
 /// see, or than a square of pixels that is to be left out as a whole: what only
 /// touches an edge counts as well.

@@ -56,14 +56,13 @@ inline void doubt(const SceneView& scene,
                   int bounces,
                   std::uint64_t asked,
                   std::uint64_t if_bent,
-                  float (&inside)[kTile * kTile],
-                  float (&around)[kTile * kTile],
+                  PixelDoubts& found,
                   TraceCounts& trace_counts) {
   Counters n;
   Watcher watcher(scene, shading, n);
   if (if_bent != 0 && (shading.reflects || shading.refracts))
     asked |= if_bent & bent_pixels(scene, shading, frame, x0, y0, n);
-  tile_doubt(watcher, frame, x0, y0, kTile, bounces, asked, {inside, around});
+  tile_doubt(watcher, frame, x0, y0, kTile, bounces, asked, found);
   add(n, trace_counts);
 }
 

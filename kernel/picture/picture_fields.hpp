@@ -69,6 +69,8 @@ void visit_arrays(Archive& archive, State& r) {
   archive.list(r.cost, pixels);
   archive.list(r.inside, pixels);
   archive.list(r.around, pixels);
+  archive.list(r.boxed, pixels);
+  archive.list(r.box, pixels);
   archive.size(r.wanted, sizeof r.wanted[0]);
   archive.list(r.wanted, r.wanted.size());
 }

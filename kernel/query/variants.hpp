@@ -9,6 +9,7 @@
 #include "grelha/point_grid.hpp"
 #include "grelha/rays.hpp"
 #include "kernel/perspective/look_loops.hpp"
+#include "kernel/scene/pixel_box.hpp"
 #include "kernel/scene/shading_view.hpp"
 #include "grelha/stats.hpp"
 #include "kernel/grid/view.hpp"
@@ -65,11 +66,10 @@ struct VariantLoops {
                       const BandWork&,
                       TraceCounts&,
                       RayCounts&);
-  /// Doubt of the pixels of the 8 x 8 tile at (x0, y0), [8 y + x] each: the weight, 0 to 1, of what
-  /// could hide from samples there, followed into `bounces` mirrors; both 0: nothing can. Of pixels
-  /// with a bit in `asked`, and of those with one in `if_bent` that see a mirror or something clear,
-  /// all within the picture; the others keep what they hold, or get theirs as well. See Doubt in
-  /// doubt.hpp.
+  /// What could hide from samples of the pixels of the 8 x 8 tile at (x0, y0), followed into
+  /// `bounces` mirrors: see Doubt in what_hides.hpp. Of pixels with a bit in `asked`, and of those
+  /// with one in `if_bent` that see a mirror or something clear, all within the picture. The others
+  /// keep what they hold, or get theirs as well.
   void (*doubt)(const SceneView&,
                 const ShadingView&,
                 const FrameView&,
@@ -78,8 +78,7 @@ struct VariantLoops {
                 int bounces,
                 std::uint64_t asked,
                 std::uint64_t if_bent,
-                float (&inside)[kTile * kTile],
-                float (&around)[kTile * kTile],
+                PixelDoubts&,
                 TraceCounts&);
   /// All samples of points of the picture, whose names work.pixels holds.
   void (*render_points)(const SceneView&,

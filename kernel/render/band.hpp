@@ -6,6 +6,7 @@
 
 #include "grelha/part.hpp"
 #include "kernel/render/shade.hpp"
+#include "kernel/scene/pixel_box.hpp"
 
 namespace grelha::GRELHA_ISA {
 
@@ -50,19 +51,37 @@ struct LaneRays {
 }
 
 /// Stores camera rays i, i + 1, ..., not yet normalized.
-[[gnu::always_inline]] inline void store_camera_rays(BatchRays& b,
-                                                     int i,
-                                                     const LaneRays& rays,
-                                                     bool in_double) {
-  const Lanes one(1);
+[[gnu::always_inline]] inline void store_camera_rays(
+    BatchRays& b, int i, const LaneRays& rays, const Lanes& weight, bool in_double) {
   const LaneWords zero{};
   store3(b.org, i, rays.org);
   if (in_double)
     store3(b.org_low, i, {Lanes(0), Lanes(0), Lanes(0)});
   store3(b.dir, i, normalize(rays.dir));
-  store3(b.weight, i, {one, one, one});
+  store3(b.weight, i, {weight, weight, weight});
   store_words(b.depth + i, zero + 1u);
   store_words(b.path + i, zero);
+}
+
+/// Moves half of the samples into boxes, where their pixels have any, so that those that lie in a
+/// box weigh as much less as they are more. Returns the weights.
+[[gnu::always_inline]] inline Lanes move_into_boxes(const LaneWords& boxes, PairOf<Lanes>& in) {
+  const Lanes half(.5f), one(1), two(2), part(1.f / 256);
+  const auto side = [&](unsigned shift, std::uint32_t step) {
+    return part * small_to_float((boxes >> shift & 255u) + step);
+  };
+  const Lanes x0 = side(0, 0), y0 = side(8, 0), x1 = side(16, 1), y1 = side(24, 1);
+  const LaneMask has = mask_of(LaneWords(boxes != 0u));
+  const LaneMask aimed = in.u >= half;
+  const Lanes u = select(aimed, two * in.u - one, two * in.u);
+  const PairOf<Lanes> moved{select(aimed, x0 + u * (x1 - x0), u),
+                            select(aimed, y0 + in.v * (y1 - y0), in.v)};
+  const LaneMask within =
+      both(both(moved.u >= x0, moved.u < x1), both(moved.v >= y0, moved.v < y1));
+  const Lanes area = (x1 - x0) * (y1 - y0);
+  const Lanes weight = select(either(aimed, within), two * area / (area + one), two);
+  in = {select(has, moved.u, in.u), select(has, moved.v, in.v)};
+  return select(has, weight, one);
 }
 
 /// Makes camera rays [0, count) of the batch. Each goes through a place of the picture, which org.x
@@ -87,12 +106,15 @@ struct LaneRays {
     PairOf<Lanes> in{middle, middle};
     if (in_pixels && plan.samples > 1)
       in = sample(0);
+    Lanes weight(1);
+    if (work.boxes)
+      weight = move_into_boxes(words_at(work.boxes, load_words<Lanes>(b.pixel + i)), in);
     const Lanes x = load<Lanes>(b.org.x + i) + in.u;
     const Lanes y = load<Lanes>(b.org.y + i) + in.v;
     LaneRays rays{camera.eye, camera.toward(x, y)};
     if (f.lens)
       rays = through_lens(f, rays, sample(plan.lens));
-    store_camera_rays(b, i, rays, work.in_double != nullptr);
+    store_camera_rays(b, i, rays, weight, work.in_double != nullptr);
   }
 }
 

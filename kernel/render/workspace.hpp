@@ -58,19 +58,20 @@ class Workspace {
         floats_(static_cast<std::size_t>(capacity_) * kStackFloats),
         words_(static_cast<std::size_t>(capacity_) * kStackWords),
         sums_(sums * 3),
-        pixels_(sums) {}
+        pixels_(sums),
+        boxes_(sums) {}
 
   /// What one takes.
   static std::uint64_t bytes(std::size_t sums, int depth, int gloss_rays) {
     constexpr std::uint64_t ray =
         kStackFloats * sizeof(float) + kStackWords * sizeof(std::uint32_t);
-    constexpr std::uint64_t sum = 3 * sizeof(std::int64_t) + sizeof(std::uint32_t);
+    constexpr std::uint64_t sum = 3 * sizeof(std::int64_t) + 2 * sizeof(std::uint32_t);
     return sizeof(Batch) + ray * static_cast<std::uint64_t>(capacity_of(depth, gloss_rays)) +
            sum * sums;
   }
 
   /// Empty sums, of pixels first_pixel, first_pixel + 1, ... or, when `named`, of those that
-  /// pixels() is filled with.
+  /// pixels() is filled with, with boxes as boxes() has them.
   BandWork work(const RenderOptions& options, std::uint32_t first_pixel, bool named = false) {
     if (options.phases)
       clock_.start(Phase::sums);
@@ -90,6 +91,7 @@ class Workspace {
         .most_light = std::min(kMostTerm, kMostLight / static_cast<float>(plan_.samples)),
         .plan = plan_,
         .pixels = named ? pixels_.data() : nullptr,
+        .boxes = named ? boxes_.data() : nullptr,
         .observer = observer(options),
         .in_double = in_double_,
     };
@@ -102,6 +104,7 @@ class Workspace {
   const PhaseSeconds& phases() const { return clock_.seconds(); }
   const std::vector<std::int64_t>& sums() const { return sums_; }
   std::vector<std::uint32_t>& pixels() { return pixels_; }
+  std::vector<std::uint32_t>& boxes() { return boxes_; }
 
  private:
   /// of a ray that waits, see RayStack
@@ -154,6 +157,7 @@ class Workspace {
   std::vector<std::uint32_t> words_;
   std::vector<std::int64_t> sums_;
   std::vector<std::uint32_t> pixels_;
+  std::vector<std::uint32_t> boxes_;
 };
 
 }  // namespace grelha

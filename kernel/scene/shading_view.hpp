@@ -118,6 +118,9 @@ struct BandWork {
   SamplePlan plan = {};
   /// [sums] the pixel each sum belongs to; null: sum i to first_pixel + i
   const std::uint32_t* pixels = nullptr;
+  /// [sums] the PixelBox of each sum's pixel, which gets half of the samples besides its share of
+  /// the others; null: none has one
+  const std::uint32_t* boxes = nullptr;
   Observer* observer = nullptr;           ///< null: nobody asks
   const TraceLoops* in_double = nullptr;  ///< what traces; null: the loops of this copy, in single
 };

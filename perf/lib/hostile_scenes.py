@@ -7,7 +7,7 @@ What is left shows how bright their pixels are without them.
 import math
 import random
 
-from nff_text import SIDE, Scene, add, cross, dot, log_uniform, unit
+from nff_text import SIDE, Scene, add, cross, dot, log_uniform, unit, words
 
 VARIANTS = 20
 

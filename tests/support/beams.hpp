@@ -31,13 +31,13 @@ inline Tile doubt(const Scene& scene,
                   const Camera& camera = over_units()) {
   const World world(scene, build);
   const World::Impl& w = world.impl();
-  float inside[kTile * kTile], around[kTile * kTile];
+  PixelDoubts found;
   TraceCounts counts;
   variant.loops.doubt(
-      w.view, w.shading, make_frame(camera), 0, 0, 2, ~std::uint64_t{0}, 0, inside, around, counts);
+      w.view, w.shading, make_frame(camera), 0, 0, 2, ~std::uint64_t{0}, 0, found, counts);
   Tile out;
   for (std::size_t i = 0; i < out.size(); ++i)
-    out[i] = std::max(2 * inside[i], around[i]);
+    out[i] = std::max(2 * std::max(found.inside[i], found.boxed[i]), found.around[i]);
   return out;
 }
 

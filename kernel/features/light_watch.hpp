@@ -1,0 +1,153 @@
+#pragma once
+// Whether lights shine evenly on what a beam's corners met.
+
+#include "kernel/features/beam_search.hpp"
+#include "kernel/features/closed_sheet.hpp"
+#include "kernel/features/what_hides.hpp"
+
+namespace grelha::GRELHA_ISA {
+
+/// The surfaces that a beam's corners met.
+using CornerSurfaces = Surface<float>[kCorners];
+
+/// What a beam's corners met: one surface.
+struct Patch {
+  const CornerSurfaces& s;
+  const std::uint32_t (&on)[kCorners];
+  const Met& met;  ///< what else reaches into the beam
+  bool whole;
+
+  bool holds(std::uint32_t id) const {
+    for (int i = 0; i < met.size; ++i)
+      if (met.id[i] == id)
+        return true;
+    return any_of(on, [id](std::uint32_t corner) { return corner == id; });
+  }
+};
+
+/// Looks from lights.
+class LightWatch {
+ public:
+  LightWatch(const SceneView& scene, const ShadingView& shading, Counters& counters)
+      : scene_(scene), shading_(shading), n_(counters) {}
+
+  /// Doubt whether the lights are even between the corners.
+  Doubt uneven_lights(const Patch& patch, float weight) {
+    const auto row = [&](MaterialField red) {
+      return material_color(shading_.materials, patch.s[0].material, red);
+    };
+    const Vec3f answer = row(kDiffuseR) + row(kSpecularR);
+    Doubt most;
+    for (int l = 0; l < shading_.light_count; ++l) {
+      const float* const light = shading_.lights + kLightFloats * l;
+      const Vec3f sent = answer * Vec3f{light[3], light[4], light[5]};
+      const float part = lesser(largest(sent), 1.f) * weight;
+      if (part > most.inside)
+        most = most + uneven_light(light, patch, part);
+    }
+    return most;
+  }
+
+ private:
+  /// The beam from a light to a patch.
+  struct LightBeam {
+    Beam beam;
+    float length[kCorners];
+    int facing = 0;  ///< corners of the patch that face the light
+  };
+  static LightBeam light_beam(const Vec3f& light, const CornerSurfaces& s) {
+    LightBeam b;
+    for (int i = 0; i < kCorners; ++i) {
+      const Vec3f to = s[i].point + s[i].away * s[i].normal - light;
+      b.length[i] = length(to);
+      b.beam.org[i] = light;
+      b.beam.dir[i] = (1 / b.length[i]) * to;
+      b.facing += dot(to, s[i].normal) < 0;
+    }
+    return b;
+  }
+
+  /// Corners of a patch that the light reaches.
+  int lit_corners(const LightBeam& b,
+                  const Sight& sight,
+                  const std::uint32_t (&on)[kCorners]) const {
+    int lit = 0;
+    for (int i = 0; i < kCorners; ++i)
+      lit += !(sight.t[i] < b.length[i] * kBeforeSurface) || touches_any(on, sight.id[i]);
+    return lit;
+  }
+  bool touches_any(const std::uint32_t (&on)[kCorners], std::uint32_t id) const {
+    return any_of(on, [&](std::uint32_t own) { return touch(scene_.geometry, own, id); });
+  }
+
+  /// Whether a light has no area.
+  bool is_point(const float* light) const {
+    for (int k = 6; shading_.area && k < kLightFloats; ++k)
+      if (light[k] != 0)
+        return false;
+    return true;
+  }
+
+  /// Doubt whether the light, of weight `part`, reaches all of the patch between four points, or
+  /// none of it.
+  Doubt uneven_light(const float* light, const Patch& patch, float part) {
+    const LightBeam b = light_beam({light[0], light[1], light[2]}, patch.s);
+    if (b.facing == 0)
+      return {};
+    BeamFrame f;
+    if (!frame_of(b.beam, f))
+      return around(part);
+    Sight sight;
+    trace_corners(scene_, b.beam, sight, n_);
+    const int lit = lit_corners(b, sight, patch.on);
+    if (lit == 0)
+      return blocked(f, b, sight.id, patch.whole) ? Doubt{} : around(part);
+    return lit == kCorners ? shadows(f, b, patch, is_point(light), part) : around(part);
+  }
+
+  /// Whether all of a beam whose corners are dark is: one solid, or one closed sheet stands in it.
+  bool blocked(const BeamFrame& f,
+               const LightBeam& b,
+               const std::uint32_t (&id)[kCorners],
+               bool whole) {
+    const GeometryView& g = scene_.geometry;
+    const bool one = id[0] == id[1] && id[0] == id[2] && id[0] == id[3];
+    if (one && id[0] < g.ids.begin(PrimitiveKind::kCone))
+      return true;
+    float far = 0;
+    for (const float length : b.length)
+      far = greater(length, far);
+    Met shade;
+    return !whole && one_surface(g, id) && collect(scene_, f, far, id, false, shade, n_) &&
+           closed(g, f, shade, id);
+  }
+
+  /// Doubt of a patch that is lit at its corners: whatever stands between throws its shadow inside.
+  /// Only that of a point lies where the beam says.
+  Doubt shadows(
+      const BeamFrame& f, const LightBeam& b, const Patch& patch, bool point, float part) {
+    const auto& on = patch.on;
+    float least = kInfinity;
+    for (const float length : b.length)
+      least = lesser(length, least);
+    Met met;
+    const bool mesh = is_triangle(scene_.geometry, on[0]);
+    if (!collect(scene_, f, least * kBeforeSurface, on, patch.whole && !mesh, met, n_))
+      return around(part);
+    Doubt found;
+    for (int i = 0; i < met.size; ++i) {
+      if (patch.holds(met.id[i]) || touches_any(on, met.id[i]))
+        continue;
+      if (!any_of(on, [&](std::uint32_t own) { return kin(scene_.geometry, own, met.id[i]); }))
+        found.add(part, point ? met.part[i].box : BeamBox::all());
+      found.around = part;
+    }
+    return found;
+  }
+
+  const SceneView& scene_;
+  const ShadingView& shading_;
+  Counters& n_;
+};
+
+}  // namespace grelha::GRELHA_ISA
