@@ -141,9 +141,11 @@ Json error_json(const RefineOptions& asked, const ErrorStats& e) {
           {"seconds", asked.seconds},
           {"rmse", e.rmse},
           {"rmse_bound", e.rmse_bound},
+          {"audited", e.audited},
           {"widest", e.widest},
           {"rounds", e.rounds},
           {"samples", e.samples},
+          {"met_at", e.met_at},
           {"least", e.least},
           {"most", e.most}};
 }
@@ -226,14 +228,28 @@ std::string needs_text(const SceneFile& file) {
   return "needs         " + (needs.empty() ? "nothing but the background" : needs) + '\n';
 }
 
-std::string error_text(const ErrorStats& e, const RunReport& report) {
-  return print("; RMSE about %.2g, at most %.2g (95 %%); %llu samples, %.1f a pixel, %u to %u",
-               e.rmse,
-               e.rmse_bound,
-               static_cast<unsigned long long>(e.samples),
-               double(e.samples) / report.width / report.height,
-               e.least,
-               e.most);
+/// What ended a picture by error.
+std::string end_text(const RefineOptions& asked, const ErrorStats& e) {
+  if (asked.error <= 0)
+    return "";
+  if (e.met_at == 0)
+    return print("; %g is not met with %u samples in a pixel", asked.error, e.most);
+  if (e.met_at == e.samples)
+    return "";
+  return print(", %.0f %% of them for pixels with wide intervals",
+               100 * (1 - double(e.met_at) / double(e.samples)));
+}
+
+std::string error_text(const RefineOptions& asked, const ErrorStats& e, const RunReport& report) {
+  std::string text = print("; RMSE about %.2g, at most %.2g (95 %%)", e.rmse, e.rmse_bound);
+  if (e.audited > 0)
+    text += print(", audited %.2g", e.audited);
+  text += print("; %llu samples, %.1f a pixel, %u to %u",
+                static_cast<unsigned long long>(e.samples),
+                double(e.samples) / report.width / report.height,
+                e.least,
+                e.most);
+  return text + end_text(asked, e);
 }
 
 }  // namespace
@@ -348,7 +364,7 @@ std::string summary_line(const RenderCommand& command, const RunReport& report) 
       print("load %.2f, build %.2f, render %.2f, write %.2f s", s.load, s.build, s.render, s.write);
   const double speed = s.render > 0 ? rays / s.render / 1e6 : 0;
   const ErrorStats& e = report.render.error;
-  const std::string error = e.samples == 0 ? "" : error_text(e, report);
+  const std::string error = e.samples == 0 ? "" : error_text(command.render.refine, e, report);
   return name_of_file(command.image) + ": " +
          primitives_text(report.spheres, report.triangles, report.cones, report.planes) + "; " +
          grids_text(report.grids) + "; " + print("%.3f Mrays in ", rays / 1e6) + times +

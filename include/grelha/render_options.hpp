@@ -41,8 +41,8 @@ struct SampleOptions {
 /// Samples spent where they help most, instead of SampleOptions::samples a pixel. The sampler must
 /// be kSobol or kRandom.
 struct RefineOptions {
-  /// > 0: until the RMSE is at most this at 95 % confidence and no pixel's 95 % interval is wider
-  /// than 8 times this; display units, 0 to 1
+  /// > 0: until the RMSE is at most this at 95 % confidence. Of 99.9 % of the pixels 95 % intervals
+  /// are no wider than 8 times this. Display units, 0 to 1
   double error = 0;
   /// > 0: until these are spent, which depends on the machine; ErrorStats::samples says what to ask
   /// for to repeat it

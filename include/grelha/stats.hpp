@@ -72,9 +72,14 @@ struct TraceCounts {
 struct ErrorStats {
   /// of all pixels and channels against the converged picture, estimated
   double rmse = 0;
-  double rmse_bound = 0;      ///< not exceeded at 95 % confidence
+  double rmse_bound = 0;  ///< not exceeded at 95 % confidence
+  /// the same of about 1 % of the pixels by a second, independent set of samples; 0: there was none
+  double audited = 0;
   double widest = 0;          ///< widest 95 % interval of a pixel
-  std::uint64_t samples = 0;  ///< of all pixels; RefineOptions::samples repeats a run by time
+  std::uint64_t samples = 0;  ///< of all pixels. RefineOptions::samples repeats a run by time.
+  /// there were when the RMSE asked for was met: the others went to pixels with wide intervals. 0:
+  /// it was not met, or not asked for.
+  std::uint64_t met_at = 0;
   std::uint32_t least = 0, most = 0;  ///< of one pixel
   int rounds = 0;                     ///< of doubling
 };

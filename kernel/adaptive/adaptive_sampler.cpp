@@ -10,6 +10,7 @@
 #include <omp.h>
 
 #include "kernel/world/world_impl.hpp"
+#include "kernel/adaptive/audit.hpp"
 #include "kernel/adaptive/pixel_errors.hpp"
 #include "kernel/adaptive/pixel_features.hpp"
 #include "kernel/adaptive/pixel_order.hpp"
@@ -23,6 +24,12 @@ namespace {
 /// Logarithms of the samples that a pixel begins with, with effects to sample and without.
 constexpr int kFirstLogOfEffects = 3;
 constexpr int kFirstLog = 2;
+
+/// Audits of a picture, how much samples grow from one to the next, and how much worse than claimed
+/// they find it at most: few pixels tell.
+constexpr int kMostAudits = 16;
+constexpr double kGrowthOfAudits = 1.5;
+constexpr double kMostWorse = 16;
 
 bool has_effects(const SamplePlan& plan) {
   return plan.lens >= 0 || plan.light >= 0 || plan.gloss >= 0;
@@ -79,9 +86,9 @@ class AdaptiveSampler {
       if (r_.rounds++ == 0)
         find_hidden_features(
             world_, setup_, errors_, options_.refine.error, stats_.threads, r_, stats_.trace);
-      errors_.judge();
-      r_.finished =
-          !choose_round(r_, errors_, options_.refine, order_, {samples_, seconds()}, first_log_);
+      choose_next();
+      if (options_.refine.error > 0 && is_audit_due() && !errors_stand())
+        choose_next();
     }
     if (!judged)
       errors_.judge();
@@ -96,9 +103,12 @@ class AdaptiveSampler {
   void report(SampleMaps* maps) const {
     const PixelErrors::Totals totals = errors_.totals();
     ErrorStats& e = stats_.error;
-    e.rmse = totals.rmse;
-    e.rmse_bound = totals.bound;
+    const bool by_audit = r_.met && !(totals.bound <= options_.refine.error);
+    e.rmse = by_audit ? std::sqrt(r_.audited) : totals.rmse;
+    e.rmse_bound = by_audit ? std::sqrt(r_.audited_bound) : totals.bound;
     e.widest = totals.widest;
+    e.audited = std::sqrt(r_.audited);
+    e.met_at = r_.met_at;
     e.rounds = r_.rounds;
     e.samples = samples_;
     e.least = kMostSamples;
@@ -119,6 +129,46 @@ class AdaptiveSampler {
       maps.samples[p] = sample_count(r_, p);
       maps.error[p] = std::sqrt(errors_.variance(p));
     }
+  }
+
+  void choose_next() {
+    errors_.judge();
+    r_.finished =
+        !choose_round(r_, errors_, options_.refine, order_, {samples_, seconds()}, first_log_);
+  }
+
+  /// Where the error asked for seems to be met; and from then on, if that does not stand, each time
+  /// that samples have grown by half.
+  bool is_audit_due() const {
+    if (r_.last || r_.audits == kMostAudits)
+      return false;
+    return r_.audits == 0 ? r_.finished
+                          : r_.finished || static_cast<double>(samples_) >=
+                                               kGrowthOfAudits * static_cast<double>(r_.audited_at);
+  }
+
+  /// Whether an audit agrees with what pixels claim, or says that the error is met; what it finds
+  /// counts from now on.
+  bool errors_stand() {
+    const std::uint64_t before = stats_.rays.total();
+    const Audit found = audit(world_, setup_, options_, errors_, r_, first_log_, stats_);
+    r_.rays += stats_.rays.total() - before;
+    const AuditedPixels& others = found.others;
+    const AuditedPixels& agreeing = found.agreeing;
+    const bool first = r_.audits++ == 0;
+    const bool worse = others.is_worse() || agreeing.is_worse();
+    r_.audited = found.mean_square();
+    r_.audited_at = samples_;
+    r_.audited_bound = found.bound();
+    const double error = options_.refine.error;
+    r_.met = r_.audited_bound <= error * error;
+    if (r_.met || (first && !worse))
+      return r_.finished;
+    if (others.count > 0 && others.claimed > 0)
+      r_.worse = std::clamp(r_.worse * others.squared / others.claimed, 1., kMostWorse);
+    if (agreeing.count > 0)
+      r_.least_by_sample = agreeing.by_sample / agreeing.count;
+    return false;
   }
 
   bool resume() {

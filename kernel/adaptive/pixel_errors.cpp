@@ -83,7 +83,9 @@ PixelErrors::Hidden PixelErrors::in_box(std::size_t p) const {
 
 void PixelErrors::judge_pixel(int x, int y, const RatioPowers& scale) {
   const std::size_t p = at(x, y);
-  float v = watched(p) ? with_neighbours(x, y, scale) : own_[p];
+  float v = static_cast<float>(r_.worse) * (watched(p) ? with_neighbours(x, y, scale) : own_[p]);
+  if (r_.least_by_sample > 0 && agrees(own_[p], p))
+    v = std::max(v, static_cast<float>(r_.least_by_sample) / samples(p));
   float wide = 2 * kNormal * std::sqrt(v);
   if (r_.box[p] != 0) {
     const Hidden found = in_box(p);

@@ -36,6 +36,10 @@ bool has_sound_numbers(const Refinement& r) {
   for (const double v : {r.variance_drop, r.variance_level, r.round_drop, r.round_level, r.seconds})
     if (!lies(v, 0.0, kMost))
       return false;
+  if (!lies(r.worse, 1.0, kMost) || !lies(r.least_by_sample, 0.0, kMost) ||
+      !lies(r.audited, 0.0, kMost) || !lies(r.audited_bound, 0.0, kMost) ||
+      !lies(r.audits, 0, 1 << 20))
+    return false;
   return lies(r.variance_ratio, .1f, .6f) && lies(r.gain_threshold, 0.f, .25f) &&
          lies(r.share, 0.0, 1.0) && lies(r.rounds, 0, 1 << 20);
 }

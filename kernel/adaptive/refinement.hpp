@@ -44,8 +44,16 @@ struct Refinement {
   double round_drop = 0, round_level = 0;  ///< the same of the round in work
   float variance_ratio = .4f;              ///< V(n) / V(n/2)
   float gain_threshold = .25f;  ///< gain a ray that a pixel of the round in work had to promise
-  int rounds = 0;               ///< done
-  bool last = false;            ///< no round follows the one in work
+  /// what audits found: variances that are so many times what pixels show, and so much over the
+  /// number of samples at least where these agree; mean squares, of the last
+  double worse = 1, least_by_sample = 0, audited = 0;
+  double audited_bound = 0;
+  int audits = 0;
+  bool met = false;              ///< so the last audit said
+  std::uint64_t audited_at = 0;  ///< samples there were then
+  std::uint64_t met_at = 0;      ///< samples there were when the error was met; 0: it is not
+  int rounds = 0;                ///< done
+  bool last = false;             ///< no round follows the one in work
   bool finished = false;
   std::uint64_t rays = 0;  ///< sent so far
   double seconds = 0;      ///< spent so far

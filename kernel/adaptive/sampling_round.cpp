@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <iterator>
 
 namespace grelha {
 namespace {
@@ -10,8 +12,10 @@ constexpr std::uint64_t kSamplesOfChunk = 4096;  ///< work handed to a thread at
 /// the threshold falls by this a round: two or three rounds double all samples
 constexpr float kThresholdStep = .5f;
 constexpr float kLeastThreshold = 1e-20f;  ///< below it no pixel is worth a ray
-/// widest 95 % interval a pixel may have, in units of the error asked for; see RefineOptions::error
+/// widest 95 % interval a pixel may have, in units of the error asked for, and the share of pixels
+/// that may have wider ones all the same; see RefineOptions::error
 constexpr double kWidestInterval = 8;
+constexpr double kShareOfWider = .001;
 constexpr double kLeastRatio = .1, kMostRatio = .6;  ///< of variances, a doubling
 constexpr double kMemory = .5;  ///< share of what rounds before the last one said that counts
 
@@ -119,6 +123,23 @@ void want_gaining(Refinement& r, const PixelErrors& errors, const Pixels& order)
   } while (r.wanted.empty() && r.gain_threshold >= kLeastThreshold);
 }
 
+/// Wants the pixels whose intervals are too wide, but for the widest of them that may be so.
+void want_wide(Refinement& r, const PixelErrors& errors, const Pixels& order, double error) {
+  const std::vector<float>& widths = errors.widths();
+  const auto too_wide = [&](float width) { return width > kWidestInterval * error; };
+  std::vector<float> wide;
+  std::copy_if(widths.begin(), widths.end(), std::back_inserter(wide), too_wide);
+  const auto spared = static_cast<std::size_t>(kShareOfWider * static_cast<double>(widths.size()));
+  if (wide.size() <= spared) {
+    r.wanted.clear();
+    return;
+  }
+  const auto last = wide.begin() + static_cast<std::ptrdiff_t>(spared);
+  std::nth_element(wide.begin(), last, wide.end(), std::greater<>());
+  const float most = *last;
+  want(r, order, [&](std::size_t p) { return too_wide(widths[p]) && widths[p] <= most; });
+}
+
 }  // namespace
 
 bool choose_round(Refinement& r,
@@ -130,12 +151,11 @@ bool choose_round(Refinement& r,
   if (r.last)
     return false;
   const PixelErrors::Totals totals = errors.totals();
-  const bool met = asked.error > 0 && totals.bound <= asked.error;
+  const bool met = asked.error > 0 && (r.met || totals.bound <= asked.error);
   tell_share(r, totals, asked, spent);
+  r.met_at = !met ? 0 : r.met_at == 0 ? spent.samples : r.met_at;
   if (met)
-    want(r, order, [&](std::size_t p) {
-      return errors.widths()[p] > kWidestInterval * asked.error;
-    });
+    want_wide(r, errors, order, asked.error);
   else
     want_gaining(r, errors, order);
   if (asked.error > 0 && !met)

@@ -251,7 +251,8 @@ class Marker {
            kThingsOfTurn;
   }
 
-  /// Calls take(rod, alone) for the things of a turn that is_thin(rod) holds for, as seen from a point.
+  /// Calls take(rod, alone) for the things of a turn that is_thin(rod) holds for, as seen from a
+  /// point.
   template <class IsThin, class Take>
   void each_thing(std::size_t turn,
                   const Place3& from,

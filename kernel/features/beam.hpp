@@ -3,6 +3,8 @@
 // finds is then asked for a point inside, so that the answer is a function of beam and scene, not
 // of the grid.
 
+#include <utility>
+
 #include "kernel/features/beam_clip.hpp"
 #include "kernel/shapes/surface.hpp"
 #include "kernel/trace/trace.hpp"
@@ -146,6 +148,15 @@ struct Met {
   PartInBeam part[kMostMet];
   int size = 0;
   bool full = false;  ///< there were more
+
+  /// Puts them in the order of their ids: that in which they were met is the grid's.
+  void sort() {
+    for (int i = 1; i < size; ++i)
+      for (int k = i; k > 0 && id[k - 1] > id[k]; --k) {
+        std::swap(id[k - 1], id[k]);
+        std::swap(part[k - 1], part[k]);
+      }
+  }
 };
 
 /// A beam in a grid: tells see(id) of the primitives that reach into its frustum, some more than

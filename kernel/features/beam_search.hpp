@@ -127,8 +127,10 @@ inline bool collect(const SceneView& scene,
   see_outside(scene.outside, see);
   if (met.full)
     return false;
-  if (scene.grid_count == 0)
+  if (scene.grid_count == 0) {
+    met.sort();
     return true;
+  }
   Packet<InFloat> p;
   set_edges(scene, f, far, p);
   const int axis = main_axis(f.unit);
@@ -140,6 +142,7 @@ inline bool collect(const SceneView& scene,
     if (looked == Looked::kInto && (!walk_beam(g, p, axis, see, n) || met.full))
       return false;
   }
+  met.sort();
   return true;
 }
 

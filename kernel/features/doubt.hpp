@@ -78,8 +78,8 @@ class Watcher {
     });
   }
 
-  /// Whether there is nothing else, or all that is met lies nearly in the plane of the triangle that
-  /// a corner met.
+  /// Whether there is nothing else, or all that is met lies nearly in the plane of the triangle
+  /// that a corner met.
   bool holds_patch(const BeamFrame& f,
                    const std::uint32_t (&front)[kCorners],
                    float far,
@@ -101,13 +101,10 @@ class Watcher {
                    std::uint32_t mirror_id,
                    float weight,
                    Met& met) {
-    const bool all = collect(scene_, f, far, front, false, met, n_);
-    Doubt found = hidden(f, met, front, mirror_id, weight);
-    if (differ)
-      found = found + at_corners(f, met, front, weight);
-    if (!all)
-      found.around = weight;
-    return found;
+    if (!collect(scene_, f, far, front, false, met, n_))
+      return around(weight);
+    const Doubt found = hidden(f, met, front, mirror_id, weight);
+    return differ ? found + at_corners(f, met, front, weight) : found;
   }
 
   /// What hides in the light on the surface that the corners met, in its mirror and behind it.

@@ -53,7 +53,8 @@ void visit_arrays(Archive& archive, State& a) {
 template <class Archive, class State>
 requires std::is_same_v<std::remove_const_t<State>, Refinement>
 void visit_numbers(Archive& archive, State& r) {
-  archive.numbers(kKindOf<Refinement>, r.width, r.height, r.rounds, r.last, r.finished);
+  archive.numbers(
+      kKindOf<Refinement>, r.width, r.height, r.rounds, r.audits, r.last, r.met, r.finished);
 }
 
 template <class Archive, class State>
@@ -61,6 +62,7 @@ requires std::is_same_v<std::remove_const_t<State>, Refinement>
 void visit_arrays(Archive& archive, State& r) {
   const std::size_t pixels = pixels_of(r.width, r.height);
   archive.values(r.variance_drop, r.variance_level, r.round_drop, r.round_level);
+  archive.values(r.worse, r.least_by_sample, r.audited, r.audited_bound, r.audited_at, r.met_at);
   archive.values(r.seconds, r.share, r.rays, r.variance_ratio, r.gain_threshold);
   archive.list(r.log, pixels);
   archive.list(r.sums, pixels * 3);

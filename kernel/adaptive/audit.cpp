@@ -1,0 +1,177 @@
+#include "kernel/adaptive/audit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include <omp.h>
+
+#include "kernel/render/workspace.hpp"
+
+namespace grelha {
+namespace {
+
+constexpr double kAuditedShare = .01;   ///< of pixels
+constexpr double kFewestAudited = 256;  ///< but of small pictures
+constexpr double kMostAudited = 1. / 16;
+constexpr std::uint32_t kOtherSeed = 0x5BD1E995u;
+constexpr std::size_t kPixelsOfTurn = 64;
+
+/// Avalanche of 32 bits (C. Wellons' lowbias32).
+std::uint32_t scattered_bits(std::uint32_t x) {
+  x ^= x >> 16;
+  x *= 0x7FEB352Du;
+  x ^= x >> 15;
+  x *= 0x846CA68Bu;
+  return x ^ x >> 16;
+}
+
+std::vector<std::uint32_t> audited_pixels(const Refinement& r, std::uint32_t seed) {
+  const double share = std::max(
+      kAuditedShare, std::min(kMostAudited, kFewestAudited / static_cast<double>(r.log.size())));
+  std::vector<std::uint32_t> chosen;
+  for (std::uint32_t p = 0; p < r.log.size(); ++p)
+    if (scattered_bits(p ^ scattered_bits(seed)) < share * 0x1p32)
+      chosen.push_back(p);
+  return chosen;
+}
+
+double shown(double x) {
+  return std::clamp(x, 0., 1.);
+}
+
+/// Samples pixels once more.
+class Auditor {
+ public:
+  Auditor(const World::Impl& world,
+          const Setup& setup,
+          const RenderOptions& options,
+          const Refinement& r,
+          int first_log,
+          RenderStats& stats)
+      : world_(world),
+        setup_(setup),
+        options_(options),
+        r_(r),
+        first_(1u << first_log),
+        stats_(stats),
+        plan_(setup.plan) {
+    plan_.seed = scattered_bits(plan_.seed ^ kOtherSeed);
+  }
+
+  /// Sets half the squared differences of pixels.
+  void compare(const std::vector<std::uint32_t>& pixels, std::vector<double>& to) const {
+    const int threads = stats_.threads;
+#pragma omp parallel num_threads(threads)
+    {
+      const TraceLoops* const loops = loops_of(setup_.variant, options_.precision);
+      Workspace space(2 * kPixelsOfTurn * kParts, options_.depth, plan_, loops);
+      TraceCounts trace;
+      RayCounts rays;
+#pragma omp for schedule(dynamic)
+      for (std::size_t first = 0; first < pixels.size(); first += kPixelsOfTurn)
+        compare_turn(pixels, first, space, to, trace, rays);
+#pragma omp critical(grelha_stats)
+      {
+        stats_.trace += trace;
+        stats_.rays += rays;
+      }
+    }
+  }
+
+ private:
+  void compare_turn(const std::vector<std::uint32_t>& pixels,
+                    std::size_t first,
+                    Workspace& space,
+                    std::vector<double>& to,
+                    TraceCounts& trace,
+                    RayCounts& rays) const {
+    const std::size_t end = std::min(first + kPixelsOfTurn, pixels.size());
+    PixelRun runs[2 * kPixelsOfTurn];
+    int count = 0;
+    const auto add = [&](std::uint32_t p, std::uint32_t from, std::uint32_t samples, bool boxed) {
+      const auto sum = static_cast<std::ptrdiff_t>(count) * kParts;
+      std::fill_n(space.pixels().begin() + sum, kParts, p);
+      std::fill_n(space.boxes().begin() + sum, kParts, boxed ? r_.box[p] : 0);
+      runs[count++] = {p, from, samples};
+    };
+    for (std::size_t i = first; i < end; ++i) {
+      add(pixels[i], 0, first_, false);
+      if (sample_count(r_, pixels[i]) > first_)
+        add(pixels[i], first_, sample_count(r_, pixels[i]) - first_, true);
+    }
+    const BandWork work = space.work(options_, 0, true);
+    setup_.variant.loops.render_runs(
+        world_.view, setup_.shading, setup_.frame, runs, count, work, trace, rays);
+    int run = 0;
+    for (std::size_t i = first; i < end; ++i) {
+      const int next = run + (sample_count(r_, pixels[i]) > first_ ? 2 : 1);
+      to[i] = half_square(pixels[i], space.sums().data() + run * kParts * 3, (next - run) * kParts);
+      run = next;
+    }
+    space.done(options_);
+  }
+
+  /// Mean of a pixel's channels.
+  double half_square(std::uint32_t p, const std::int64_t* sums, int parts) const {
+    double squares = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      std::int64_t sum = 0;
+      for (int k = 0; k < parts; ++k)
+        sum += sums[static_cast<std::size_t>(k) * 3 + c];
+      const double again = static_cast<double>(sum) / (kLightUnit * sample_count(r_, p));
+      const double d =
+          shown(static_cast<double>(mean_so_far(r_, std::size_t{p} * 3 + c))) - shown(again);
+      squares += d * d;
+    }
+    return squares / 6;
+  }
+
+  const World::Impl& world_;
+  const Setup& setup_;
+  const RenderOptions& options_;
+  const Refinement& r_;
+  const std::uint32_t first_;
+  RenderStats& stats_;
+  SamplePlan plan_;
+};
+
+}  // namespace
+
+bool AuditedPixels::is_worse() const {
+  return squared - claimed > std::sqrt(difference);
+}
+
+double Audit::bound() const {
+  const double n = agreeing.count + others.count;
+  const double mean = mean_square();
+  const double spread = (agreeing.fourth + others.fourth) / n - mean * mean;
+  return mean + kNormalOneSided * std::sqrt(std::max(spread, 0.) / n);
+}
+
+Audit audit(const World::Impl& world,
+            const Setup& setup,
+            const RenderOptions& options,
+            const PixelErrors& errors,
+            const Refinement& r,
+            int first_log,
+            RenderStats& stats) {
+  const std::vector<std::uint32_t> pixels = audited_pixels(r, setup.plan.seed);
+  std::vector<double> squares(pixels.size());
+  Auditor(world, setup, options, r, first_log, stats).compare(pixels, squares);
+  Audit sum;
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const std::uint32_t p = pixels[i];
+    AuditedPixels& of = errors.agrees(p) ? sum.agreeing : sum.others;
+    const double claimed = static_cast<double>(errors.variance(p));
+    of.squared += squares[i];
+    of.by_sample += squares[i] * sample_count(r, p);
+    of.claimed += claimed;
+    of.difference += (squares[i] - claimed) * (squares[i] - claimed);
+    of.fourth += squares[i] * squares[i];
+    of.count += 1;
+  }
+  return sum;
+}
+
+}  // namespace grelha

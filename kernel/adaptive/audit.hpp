@@ -1,0 +1,48 @@
+#pragma once
+// A second opinion on a refined picture: some pixels once more, with other samples. Estimates that
+// decided where to stop cannot be wrong in the same way twice.
+
+#include <cstddef>
+
+#include "grelha/render_options.hpp"
+#include "grelha/stats.hpp"
+#include "kernel/adaptive/pixel_errors.hpp"
+#include "kernel/render/setup.hpp"
+#include "kernel/world/world_impl.hpp"
+
+namespace grelha {
+
+/// Of some pixels, as many samples again: half the squared difference of the two, which in the mean
+/// is their error squared, beside what was claimed.
+struct AuditedPixels {
+  double squared = 0;     ///< sum of it
+  double by_sample = 0;   ///< sum of it times the pixel's samples
+  double claimed = 0;     ///< sum of variances
+  double difference = 0;  ///< sum of squares of the differences of the two
+  double fourth = 0;      ///< sum of squares of the first
+  double count = 0;
+
+  /// Whether more than chance speaks against the claim.
+  bool is_worse() const;
+};
+
+struct Audit {
+  AuditedPixels agreeing, others;  ///< pixels whose samples agree, and those whose do not
+
+  double mean_square() const {
+    return (agreeing.squared + others.squared) / (agreeing.count + others.count);
+  }
+  /// Not exceeded at 95 % confidence.
+  double bound() const;
+};
+
+/// The same for any number of threads.
+Audit audit(const World::Impl& world,
+            const Setup& setup,
+            const RenderOptions& options,
+            const PixelErrors& errors,
+            const Refinement& r,
+            int first_log,
+            RenderStats& stats);
+
+}  // namespace grelha
