@@ -27,6 +27,7 @@ struct Search {
   const PixelErrors& errors;
   const SmallThings& things;
   const float faint;  ///< differences to pixels around that show no edge
+  const float least;  ///< weight of light that is followed
   Refinement& r;
 
   TilePixels pixels_of(int x0, int y0) const {
@@ -40,7 +41,8 @@ struct Search {
       const bool agrees = errors.agrees(pixel_at(r, x, y));
       if (agrees || things.stand_alone)
         of.others |= bit;
-      if (things.marks.has(x, y))
+      // where samples vary only what is small is missed for long
+      if (agrees ? things.thin.has(x, y) : things.small.has(x, y))
         of.asked |= bit;
       if (!agrees)
         continue;
@@ -62,6 +64,7 @@ struct Search {
                               x0,
                               y0,
                               kBouncesWatched,
+                              least,
                               of.asked,
                               of.others,
                               found,
@@ -97,7 +100,8 @@ void find_hidden_features(const World::Impl& world,
                           TraceCounts& counts) {
   const SmallThings things(world, setup, threads, counts);
   const float faint = error > 0 ? kFaintInErrors * static_cast<float>(error) : kFaint;
-  const Search search{world, setup, errors, things, faint, r};
+  const Search search{
+      world, setup, errors, things, faint, kForgiven * static_cast<float>(error), r};
   const int columns = (r.width + kTile - 1) / kTile;
   const int rows = (r.height + kTile - 1) / kTile;
 #pragma omp parallel num_threads(threads)

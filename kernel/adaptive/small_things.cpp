@@ -75,6 +75,12 @@ bool cut_behind(const ToPicture& to, Rod& rod) {
   return true;
 }
 
+/// Where thin things may show, and those among them that are small.
+struct Marks {
+  PixelMarks& thin;
+  PixelMarks& small;
+};
+
 /// Marks the way from one spot to another.
 void mark_way(const ToPicture::Spot& a, const ToPicture::Spot& b, double reach, PixelMarks& marks) {
   const double dx = b.x - a.x;
@@ -99,10 +105,13 @@ bool looks_thin(const ToPicture& to, Rod& rod) {
          rod.width < kThin * to.pixel(std::max(to(rod.end[0]).depth, to(rod.end[1]).depth));
 }
 
-void mark_seen(const ToPicture& to, const Rod& rod, PixelMarks& marks) {
+void mark_seen(const ToPicture& to, const Rod& rod, const Marks& marks) {
   const ToPicture::Spot a = to(rod.end[0]);
   const ToPicture::Spot b = to(rod.end[1]);
-  mark_way(a, b, rod.reach / to.pixel(std::min(a.depth, b.depth)) + kMargin, marks);
+  const double reach = rod.reach / to.pixel(std::min(a.depth, b.depth));
+  mark_way(a, b, reach + kMargin, marks.thin);
+  if (std::max(std::abs(a.x - b.x), std::abs(a.y - b.y)) + 2 * reach < kThin)
+    mark_way(a, b, reach + kMargin, marks.small);
 }
 
 /// Rays from a light behind points of rods, and what becomes of their shadows there.
@@ -112,7 +121,7 @@ class Shadows {
           const Setup& setup,
           const ToPicture& to,
           const float* light,
-          PixelMarks& marks,
+          const Marks& marks,
           TraceCounts& counts)
       : world_(world),
         setup_(setup),
@@ -160,7 +169,7 @@ class Shadows {
       const bool joined = held && goes_on_[i] && std::abs(spot.x - last.x) < kJoined &&
                           std::abs(spot.y - last.y) < kJoined;
       if (reach_[i] * t[i] < kThin * to_.pixel(spot.depth))
-        mark_way(joined ? last : spot, spot, reach, marks_);
+        mark(joined ? last : spot, spot, reach, small_[i]);
       last = spot;
       held = true;
     }
@@ -170,6 +179,12 @@ class Shadows {
  private:
   static constexpr int kRoom = 320;
   static constexpr double kJoined = 16;  ///< pixels: nearer shadows of one rod are one
+
+  void mark(const ToPicture::Spot& from, const ToPicture::Spot& to, double reach, bool small) {
+    mark_way(from, to, reach, marks_.thin);
+    if (small)
+      mark_way(from, to, reach, marks_.small);
+  }
 
   void add_point(const Rod& rod, double at, bool goes_on) {
     double length = 0;
@@ -184,6 +199,7 @@ class Shadows {
     t_min_[count_] = static_cast<float>(1 + 1.01 * rod.reach / length + 1e-6);
     reach_[count_] = static_cast<float>(rod.reach);
     goes_on_[count_] = goes_on;
+    small_[count_] = rod.length() <= 2 * rod.width;
     ++count_;
   }
 
@@ -191,11 +207,11 @@ class Shadows {
   const Setup& setup_;
   const ToPicture& to_;
   const float light_[3];
-  PixelMarks& marks_;
+  const Marks marks_;
   TraceCounts& counts_;
   int count_ = 0;
   float dir_[3][kRoom], t_min_[kRoom], reach_[kRoom];
-  bool goes_on_[kRoom];
+  bool goes_on_[kRoom], small_[kRoom];
 };
 
 /// Marks what small things there are.
@@ -204,7 +220,7 @@ class Marker {
   Marker(const World::Impl& world,
          const Setup& setup,
          int threads,
-         PixelMarks& marks,
+         const Marks& marks,
          TraceCounts& counts)
       : world_(world),
         setup_(setup),
@@ -288,8 +304,8 @@ class Marker {
   void mark_shadows(const float* light) {
     const Place3 from = {light[0], light[1], light[2]};
     look_from(from);
-    const std::size_t most = static_cast<std::size_t>(marks_.width()) *
-                             static_cast<std::size_t>(marks_.height()) / kPixelsAThing;
+    const std::size_t most = static_cast<std::size_t>(marks_.thin.width()) *
+                             static_cast<std::size_t>(marks_.thin.height()) / kPixelsAThing;
     std::atomic<std::size_t> thin = 0;
     each_turn(turns(), threads_, [&](std::size_t turn) {
       TraceCounts counts;
@@ -306,8 +322,10 @@ class Marker {
       const std::lock_guard lock(sum_);
       counts_ += counts;
     });
-    if (thin > most)
-      marks_.mark_all();
+    if (thin > most) {
+      marks_.thin.mark_all();
+      marks_.small.mark_all();
+    }
   }
 
   const World::Impl& world_;
@@ -316,7 +334,7 @@ class Marker {
   const int threads_;
   const ToPicture to_;
   const double widest_;
-  PixelMarks& marks_;
+  const Marks marks_;
   TraceCounts& counts_;
   std::mutex sum_;
   std::atomic<bool> stand_alone_ = false;
@@ -329,8 +347,8 @@ SmallThings::SmallThings(const World::Impl& world,
                          const Setup& setup,
                          int threads,
                          TraceCounts& counts)
-    : marks(setup.frame.width, setup.frame.height) {
-  Marker marker(world, setup, threads, marks, counts);
+    : thin(setup.frame.width, setup.frame.height), small(setup.frame.width, setup.frame.height) {
+  Marker marker(world, setup, threads, {thin, small}, counts);
   marker.run();
   stand_alone = marker.stand_alone();
 }

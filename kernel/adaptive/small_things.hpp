@@ -14,7 +14,8 @@ namespace grelha {
 struct SmallThings {
   SmallThings(const World::Impl& world, const Setup& setup, int threads, TraceCounts& counts);
 
-  PixelMarks marks;
+  PixelMarks thin;   ///< where things show that are thinner than two pixels
+  PixelMarks small;  ///< and no longer
   /// Something thin is no part of a larger mesh: mirrors and clear surfaces may show it anywhere.
   bool stand_alone = false;
 };

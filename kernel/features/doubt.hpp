@@ -19,8 +19,13 @@ struct ToFollow {
 
 class Watcher {
  public:
-  Watcher(const SceneView& scene, const ShadingView& shading, Counters& counters)
-      : scene_(scene), shading_(shading), n_(counters) {}
+  /// Light that weighs less than `least` is not followed.
+  Watcher(const SceneView& scene, const ShadingView& shading, float least, Counters& counters)
+      : scene_(scene),
+        shading_(shading),
+        least_(least),
+        least_sent_(greater(kLeastMirror, least / greater(1.f, shading.brightest))),
+        n_(counters) {}
 
   /// What may hide in the light that comes along the beam with `weight`. None: it is plain, one
   /// smooth surface under light that is whole or wholly blocked, and so in mirrors and behind clear
@@ -119,7 +124,7 @@ class Watcher {
     if (!find_surfaces(beam, sight, s, within))
       return around(weight);
     const Doubt found =
-        LightWatch(scene_, shading_, n_).uneven_lights({s, sight.id, met, whole}, weight);
+        LightWatch(scene_, shading_, least_, n_).uneven_lights({s, sight.id, met, whole}, weight);
     const Way way{beam, s, sight.id[0], whole, follow, weight};
     if (field(s[0], kTransmission) > 0)
       return whole ? around(weight) : found + in_glass(way, within, found.inside);
@@ -237,7 +242,7 @@ class Watcher {
   /// that weigh little are not followed, nor those in which no more could hide than `found`.
   Doubt in_mirror(const Way& way, float share, float found) {
     const float mirror = lesser(share, 1.f) * way.weight;
-    if (!(mirror > found) || mirror < kLeastMirror || field(way.s[0], kRoughness) > 0 ||
+    if (!(mirror > found) || mirror < least_sent_ || field(way.s[0], kRoughness) > 0 ||
         way.follow.mirrors == 0)
       return {};
     Beam mirrored;
@@ -275,7 +280,7 @@ class Watcher {
     const Doubt up = in_mirror(way, fresnel ? most : largest(color(way.s[0], kMirrorR)), found);
     const float share = fresnel ? 1 - least : lesser(field(way.s[0], kTransmission), 1.f);
     const float passes = share * way.weight;
-    if (passes < kLeastMirror || passes <= found)
+    if (passes < least_sent_ || passes <= found)
       return up;
     if (way.follow.clears == 0)
       return up + around(passes);
@@ -285,6 +290,7 @@ class Watcher {
 
   const SceneView& scene_;
   const ShadingView& shading_;
+  const float least_, least_sent_;
   Counters& n_;
 };
 

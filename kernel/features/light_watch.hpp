@@ -28,8 +28,9 @@ struct Patch {
 /// Looks from lights.
 class LightWatch {
  public:
-  LightWatch(const SceneView& scene, const ShadingView& shading, Counters& counters)
-      : scene_(scene), shading_(shading), n_(counters) {}
+  /// Light that weighs less than `least` is left out.
+  LightWatch(const SceneView& scene, const ShadingView& shading, float least, Counters& counters)
+      : scene_(scene), shading_(shading), least_(least), n_(counters) {}
 
   /// Doubt whether the lights are even between the corners.
   Doubt uneven_lights(const Patch& patch, float weight) {
@@ -42,7 +43,7 @@ class LightWatch {
       const float* const light = shading_.lights + kLightFloats * l;
       const Vec3f sent = answer * Vec3f{light[3], light[4], light[5]};
       const float part = lesser(largest(sent), 1.f) * weight;
-      if (part > most.inside)
+      if (part > most.inside && part >= least_)
         most = most + uneven_light(light, patch, part);
     }
     return most;
@@ -147,6 +148,7 @@ class LightWatch {
 
   const SceneView& scene_;
   const ShadingView& shading_;
+  const float least_;
   Counters& n_;
 };
 

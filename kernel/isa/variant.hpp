@@ -54,12 +54,13 @@ inline void doubt(const SceneView& scene,
                   int x0,
                   int y0,
                   int bounces,
+                  float least,
                   std::uint64_t asked,
                   std::uint64_t if_bent,
                   PixelDoubts& found,
                   TraceCounts& trace_counts) {
   Counters n;
-  Watcher watcher(scene, shading, n);
+  Watcher watcher(scene, shading, least, n);
   if (if_bent != 0 && (shading.reflects || shading.refracts))
     asked |= if_bent & bent_pixels(scene, shading, frame, x0, y0, n);
   tile_doubt(watcher, frame, x0, y0, kTile, bounces, asked, found);

@@ -34,7 +34,7 @@ inline Tile doubt(const Scene& scene,
   PixelDoubts found;
   TraceCounts counts;
   variant.loops.doubt(
-      w.view, w.shading, make_frame(camera), 0, 0, 2, ~std::uint64_t{0}, 0, found, counts);
+      w.view, w.shading, make_frame(camera), 0, 0, 2, 0, ~std::uint64_t{0}, 0, found, counts);
   Tile out;
   for (std::size_t i = 0; i < out.size(); ++i)
     out[i] = std::max(2 * std::max(found.inside[i], found.boxed[i]), found.around[i]);
