@@ -162,7 +162,8 @@ class AdaptiveSampler {
     r_.audited_bound = found.bound();
     const double error = options_.refine.error;
     r_.met = r_.audited_bound <= error * error;
-    if (r_.met || (first && !worse))
+    // that pixels claim so as well makes the middle of what the first says do
+    if (r_.met || (first && (!worse || r_.audited <= error * error)))
       return r_.finished;
     if (others.count > 0 && others.claimed > 0)
       r_.worse = std::clamp(r_.worse * others.squared / others.claimed, 1., kMostWorse);

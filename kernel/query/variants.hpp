@@ -67,7 +67,8 @@ struct VariantLoops {
                       TraceCounts&,
                       RayCounts&);
   /// What could hide from samples of the pixels of the 8 x 8 tile at (x0, y0), followed into
-  /// `bounces` mirrors: see Doubt in what_hides.hpp. What weighs less than `least` is left out. Of pixels with a bit in `asked`, and of those
+  /// `bounces` mirrors: see Doubt in what_hides.hpp. What weighs less than `least` is left out. Of
+  /// pixels with a bit in `asked`, and of those
   /// with one in `if_bent` that see a mirror or something clear, all within the picture. The others
   /// keep what they hold, or get theirs as well.
   void (*doubt)(const SceneView&,
