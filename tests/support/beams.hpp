@@ -25,16 +25,24 @@ inline Camera over_units() {
   return c;
 }
 
-inline Tile doubt(const Scene& scene,
-                  const Variant& variant,
-                  const BuildOptions& build = {},
-                  const Camera& camera = over_units()) {
+inline PixelDoubts doubts(const Scene& scene,
+                          const Variant& variant,
+                          const BuildOptions& build = {},
+                          const Camera& camera = over_units()) {
   const World world(scene, build);
   const World::Impl& w = world.impl();
   PixelDoubts found;
   TraceCounts counts;
   variant.loops.doubt(
       w.view, w.shading, make_frame(camera), 0, 0, 2, 0, ~std::uint64_t{0}, 0, found, counts);
+  return found;
+}
+
+inline Tile doubt(const Scene& scene,
+                  const Variant& variant,
+                  const BuildOptions& build = {},
+                  const Camera& camera = over_units()) {
+  const PixelDoubts found = doubts(scene, variant, build, camera);
   Tile out;
   for (std::size_t i = 0; i < out.size(); ++i)
     out[i] = std::max(2 * std::max(found.inside[i], found.boxed[i]), found.around[i]);

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "kernel/features/beam.hpp"
 #include "tests/support/random.hpp"
 
@@ -69,6 +71,49 @@ TEST(BeamFrame, HoldsSpreadingRaysOfAnySize) {
         EXPECT_NEAR(p.x, kSigns[i][0], .001) << half << ' ' << way;
         EXPECT_NEAR(p.y, kSigns[i][1], .001) << half << ' ' << way;
       }
+  }
+}
+
+/// The beam around the rays of one eye at 0 through a square, at z = -1, of half side `half`: from
+/// where they pass a plane through (0, 0, -1).
+Beam beam_from_plane(float half, const Vector& normal) {
+  Beam b;
+  for (int i = 0; i < kCorners; ++i) {
+    const auto [x, y] = kSigns[i];
+    b.dir[i] = normalize(Vector{x * half, y * half, -1});
+    b.org[i] = (-normal.z / dot(b.dir[i], normal)) * b.dir[i];
+  }
+  return b;
+}
+
+/// However slanted the plane is the apex is the eye. The mean of the corners is off the axis by
+/// half^2 times the tangent of the slant, and a little more; offsets and growths round by some 16 u
+/// of the way, which is 1 and more, where they are `half`. From an apex that is so far off, corners
+/// are seen aside by as much of the width.
+TEST(BeamFrame, HasItsApexAtTheEyeBehindSlantedPlanes) {
+  constexpr double kUnit = 0x1p-24;
+  Random random(2);
+  for (int i = 0; i < 2000; ++i) {
+    const double slant = random.in(0, 75) * std::numbers::pi / 180;
+    const double turn = random.in(0, 7);
+    const float half = static_cast<float>(random.log_in(1e-3, .04));
+    BeamFrame f;
+    ASSERT_TRUE(frame_of(beam_from_plane(half,
+                                         {static_cast<float>(std::sin(slant) * std::cos(turn)),
+                                          static_cast<float>(std::sin(slant) * std::sin(turn)),
+                                          static_cast<float>(std::cos(slant))}),
+                         f));
+    const double h = static_cast<double>(half);
+    const double off = 2 * h * h * std::tan(slant) + 16 * kUnit / h;
+    EXPECT_LE(length(f.apex), off) << i;
+    for (int k = 0; k < 20; ++k) {
+      const float x = static_cast<float>(random.in(-1, 1));
+      const float y = static_cast<float>(random.in(-1, 1));
+      const float way = static_cast<float>(random.log_in(1, 100));
+      const Place p = place(f, way * Vector{x * half, y * half, -1});
+      EXPECT_NEAR(p.x, x, off / h) << i;
+      EXPECT_NEAR(p.y, y, off / h) << i;
+    }
   }
 }
 
