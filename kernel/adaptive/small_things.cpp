@@ -186,17 +186,35 @@ class Shadows {
       mark_way(from, to, reach, marks_.small);
   }
 
-  void add_point(const Rod& rod, double at, bool goes_on) {
-    double length = 0;
+  /// How far behind a place of its axis, `part` of it before, a ray leaves a rod: at its side, or at
+  /// its end.
+  static double way_out(const Rod& rod, double part, const double (&ray)[3], double ray_length) {
+    const double length = rod.length();
+    if (!(length > 0))
+      return rod.reach;
+    double along = 0;
+    for (int a = 0; a < 3; ++a)
+      along += (rod.end[1][a] - rod.end[0][a]) * ray[a];
+    const double cosine = along / (length * ray_length);
+    const double sine = std::sqrt(std::max(1 - cosine * cosine, 0.));
+    const double to_end = (cosine > 0 ? 1 - part : part) * length * std::abs(cosine);
+    const double at_end = to_end + rod.reach * sine;
+    return sine * at_end < rod.reach ? at_end : rod.reach / sine;
+  }
+
+  void add_point(const Rod& rod, double part, bool goes_on) {
+    double ray[3];
+    double square = 0;
     for (int a = 0; a < 3; ++a) {
-      const double p = rod.end[0][a] + at * (rod.end[1][a] - rod.end[0][a]);
-      dir_[a][count_] = static_cast<float>(p - light_[a]);
-      length += dir_[a][count_] * dir_[a][count_];
+      ray[a] = rod.end[0][a] + part * (rod.end[1][a] - rod.end[0][a]) - light_[a];
+      dir_[a][count_] = static_cast<float>(ray[a]);
+      square += ray[a] * ray[a];
     }
-    length = std::sqrt(length);
+    const double length = std::sqrt(square);
     if (!(length > rod.reach))
       return;
-    t_min_[count_] = static_cast<float>(1 + 1.01 * rod.reach / length + 1e-6);
+    const double out = way_out(rod, part, ray, length);
+    t_min_[count_] = static_cast<float>(1 + 1.01 * out / length + 1e-6);
     reach_[count_] = static_cast<float>(rod.reach);
     goes_on_[count_] = goes_on;
     small_[count_] = rod.length() <= 2 * rod.width;
