@@ -134,8 +134,9 @@ class Shadows {
     const double apart = std::max(2 * rod.width, 1e-300);
     const int points =
         static_cast<int>(std::clamp(std::ceil(rod.length() / apart), 1., double{kMostPlaces}));
+    bool goes_on = false;
     for (int k = 0; k < points; ++k)
-      add_point(rod, (k + .5) / points, k > 0);
+      goes_on = add_point(rod, points > 1 ? k / (points - 1.) : .5, goes_on);
     if (count_ + kMostPlaces > kRoom)
       follow();
   }
@@ -166,8 +167,8 @@ class Shadows {
         continue;
       }
       const double reach = reach_[i] * t[i] / to_.pixel(spot.depth) + 1;
-      const bool joined = held && goes_on_[i] && std::abs(spot.x - last.x) < kJoined &&
-                          std::abs(spot.y - last.y) < kJoined;
+      const bool near = std::abs(spot.x - last.x) < kJoined && std::abs(spot.y - last.y) < kJoined;
+      const bool joined = held && goes_on_[i] && (near || id[i] == id[i - 1]);
       if (reach_[i] * t[i] < kThin * to_.pixel(spot.depth))
         mark(joined ? last : spot, spot, reach, small_[i]);
       last = spot;
@@ -178,7 +179,8 @@ class Shadows {
 
  private:
   static constexpr int kRoom = 320;
-  static constexpr double kJoined = 16;  ///< pixels: nearer shadows of one rod are one
+  /// Pixels: nearer shadows of one rod are one, and so are those on one primitive.
+  static constexpr double kJoined = 16;
 
   void mark(const ToPicture::Spot& from, const ToPicture::Spot& to, double reach, bool small) {
     mark_way(from, to, reach, marks_.thin);
@@ -202,7 +204,8 @@ class Shadows {
     return sine * at_end < rod.reach ? at_end : rod.reach / sine;
   }
 
-  void add_point(const Rod& rod, double part, bool goes_on) {
+  /// A ray to a place of a rod; `goes_on`: after one to the place before. False: there is none.
+  bool add_point(const Rod& rod, double part, bool goes_on) {
     double ray[3];
     double square = 0;
     for (int a = 0; a < 3; ++a) {
@@ -212,13 +215,14 @@ class Shadows {
     }
     const double length = std::sqrt(square);
     if (!(length > rod.reach))
-      return;
+      return false;
     const double out = way_out(rod, part, ray, length);
     t_min_[count_] = static_cast<float>(1 + 1.01 * out / length + 1e-6);
     reach_[count_] = static_cast<float>(rod.reach);
     goes_on_[count_] = goes_on;
     small_[count_] = rod.length() <= 2 * rod.width;
     ++count_;
+    return true;
   }
 
   const World::Impl& world_;
