@@ -1,0 +1,238 @@
+// Pixels that are looked at since something thin, or its shadow, may be there.
+#include "kernel/adaptive/small_things.hpp"
+
+#include "tests/support/rays.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace grelha::test {
+namespace {
+
+constexpr int kSide = 32;  ///< pixels
+constexpr int kFine = 8;   ///< places of a pixel, each way
+
+/// From z = 10 along -z; pixels are .01 wide a unit of way.
+Camera small_camera() {
+  Camera c;
+  c.eye = {0, 0, 10};
+  c.at = {0, 0, 0};
+  c.up = {0, 1, 0};
+  c.width = c.height = kSide;
+  c.angle_deg = 360 / std::numbers::pi * std::atan(.005 * kSide);
+  return c;
+}
+constexpr double kPixelAUnit = .01;
+
+SmallThings small_things(const World& world) {
+  const Setup setup = set_up(world, small_camera(), {});
+  TraceCounts counts;
+  return SmallThings(world.impl(), setup, 2, counts);
+}
+
+/// Through the middles of kFine x kFine parts of each pixel, pixel by pixel.
+RayList raster() {
+  const FrameView f = make_frame(small_camera());
+  RayList rays;
+  for (int p = 0; p < kSide * kSide; ++p)
+    for (int part = 0; part < kFine * kFine; ++part) {
+      const double x = p % kSide + (part % kFine + .5) / kFine - .5 * kSide;
+      const double y = .5 * kSide - p / kSide - (part / kFine + .5) / kFine;
+      const auto along = [&](int a) {
+        return static_cast<float>(double{f.forward[a]} + x * double{f.right[a]} +
+                                  y * double{f.up[a]});
+      };
+      rays.add({f.eye[0], f.eye[1], f.eye[2]}, {along(0), along(1), along(2)});
+    }
+  return rays;
+}
+
+/// [pixels] parts of which something is true.
+using Parts = std::vector<int>;
+Parts parts_of(const std::vector<bool>& of_rays) {
+  Parts parts(kSide * kSide);
+  for (std::size_t i = 0; i < of_rays.size(); ++i)
+    parts[i / (kFine * kFine)] += of_rays[i];
+  return parts;
+}
+
+Answers closest_of(const World& world, const RayList& rays) {
+  return trace(*variants().back(), world, rays, {}, Query::kClosest);
+}
+
+Parts parts_seen(const World& world, const RayList& rays) {
+  const Answers met = closest_of(world, rays);
+  std::vector<bool> seen(rays.size());
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    seen[i] = met.id[i] != kNoPrimitive;
+  return parts_of(seen);
+}
+
+/// A place that the camera sees, and how wide a pixel is there.
+struct Spot {
+  Float3 at;
+  double pixel;
+};
+Spot spot(Random& random) {
+  const double way = random.log_in(1, 30);
+  const double half = .5 * kSide * kPixelAUnit * way;
+  return {{static_cast<float>(random.in(-half, half)),
+           static_cast<float>(random.in(-half, half)),
+           static_cast<float>(10 - way)},
+          kPixelAUnit * way};
+}
+
+/// Adds a thing through a place, of .02 to 1.5 times `pixel`, short or long: to the eye and past it.
+void add_thin(Scene& s, Random& random, const Float3& at_place, double pixel) {
+  const double width = pixel * random.log_in(.02, 1.5);
+  const auto radius = static_cast<float>(.5 * width);
+  const Float3 way = random.direction();
+  const double length = width * random.log_in(1, 3000);
+  const Float3 a = at(at_place, random.unit() * length, way);
+  const Float3 b = at(a, -length, way);
+  switch (random.below(3)) {
+    case 0:
+      s.geometry.spheres.add(at_place, radius, 0);
+      break;
+    case 1:
+      s.geometry.cones.add(a, radius, b, random.chance(.3) ? 0 : radius, 0);
+      break;
+    default:
+      add_triangle(s, a, b, at(random.chance(.5) ? a : b, width, random.direction()));
+  }
+}
+
+int missed(const Parts& parts, const SmallThings& things, bool even_if_whole) {
+  int n = 0;
+  for (int p = 0; p < kSide * kSide; ++p) {
+    const int found = parts[static_cast<std::size_t>(p)];
+    n += found > 0 && (even_if_whole || found < kFine * kFine) &&
+         !things.thin.has(p % kSide, p / kSide);
+  }
+  return n;
+}
+
+/// Every pixel in which one of 64 rays meets something thin is marked.
+TEST(SmallThings, AreMarkedWhereTheyAreSeen) {
+  Random random(1);
+  const RayList rays = raster();
+  int seen = 0;
+  for (int i = 0; i < 120; ++i) {
+    Scene s = empty_scene();
+    const Spot where = spot(random);
+    add_thin(s, random, where.at, where.pixel);
+    const World world(s, {});
+    const Parts parts = parts_seen(world, rays);
+    for (const int n : parts)
+      seen += n > 0;
+    const SmallThings things = small_things(world);
+    EXPECT_EQ(missed(parts, things, true), 0) << i;
+    EXPECT_TRUE(things.stand_alone) << i;
+  }
+  EXPECT_GT(seen, 1000);
+}
+
+/// The parts of pixels that are dark though they face the light.
+Parts parts_dark(const World& world, const RayList& rays, const Float3& light) {
+  const Answers met = closest_of(world, rays);
+  std::vector<bool> dark(rays.size());
+  RayList to_light;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Float3 p = at(rays.org(i), double{met.t[i]}, rays.dir(i));
+    to_light.add(light, minus(p, light), 0, .999f);
+  }
+  const Answers blocked = trace(*variants().back(), world, to_light, {}, Query::kOccluded);
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    dark[i] = primitive_of(world, met.id[i]).kind == PrimitiveKind::kPlane &&
+              blocked.id[i] != kNoPrimitive;
+  return parts_of(dark);
+}
+
+/// A wall, a light and a place on the wall that the camera sees.
+struct Lit {
+  Scene scene = one_plane({0, 0, 0}, {0, 0, 1});
+  Float3 light, on_wall;
+
+  explicit Lit(Random& random) {
+    const auto in = [&](double half) { return static_cast<float>(random.in(-half, half)); };
+    light = {in(5), in(5), 8};
+    on_wall = {in(1.6), in(1.6), 0};
+    scene.lights = {{light, {1, 1, 1}}};
+  }
+  Float3 on_way(double share) const { return at(light, share, minus(on_wall, light)); }
+};
+
+/// Wants every pixel with the edge of a shadow marked; returns how many there are.
+int expect_edges_marked(const Lit& lit, const RayList& rays) {
+  const World world(lit.scene, {});
+  const Parts parts = parts_dark(world, rays, lit.light);
+  EXPECT_EQ(missed(parts, small_things(world), false), 0);
+  int edges = 0;
+  for (const int n : parts)
+    edges += n > 0 && n < kFine * kFine;
+  return edges;
+}
+
+/// Things on the way to a place that the camera sees, on a wall that light falls on at 40 degrees
+/// and more.
+TEST(SmallThings, AreMarkedWhereTheirShadowsFall) {
+  Random random(2);
+  const RayList rays = raster();
+  int edges = 0;
+  for (int i = 0; i < 80; ++i) {
+    SCOPED_TRACE(i);
+    Lit lit(random);
+    const double share = random.in(.2, .9);
+    add_thin(lit.scene, random, lit.on_way(share), share * kPixelAUnit * 10);
+    edges += expect_edges_marked(lit, rays);
+  }
+  EXPECT_GT(edges, 400);
+}
+
+/// Rods of up to 2000 pixels, to where one end's shadow is: what they are followed from is far
+/// apart.
+TEST(SmallThings, AreMarkedWhereShadowsOfLongRodsFall) {
+  Random random(3);
+  const RayList rays = raster();
+  int edges = 0;
+  for (int i = 0; i < 30; ++i) {
+    SCOPED_TRACE(i);
+    Lit lit(random);
+    const double share = random.in(.5, .9);
+    Float3 way = random.direction();
+    way.z = -.01f;  // away from the light
+    const Float3 a = lit.on_way(share);
+    lit.scene.geometry.cones.add(a, .01f, at(a, random.log_in(20, 200), way), .01f, 0);
+    edges += expect_edges_marked(lit, rays);
+  }
+  EXPECT_GT(edges, 300);
+}
+
+int marked(const SmallThings& things) {
+  int n = 0;
+  for (int p = 0; p < kSide * kSide; ++p)
+    n += things.thin.has(p % kSide, p / kSide);
+  return n;
+}
+
+/// Where all is large nothing is: neither walls and balls, nor the inside of a mesh of small
+/// triangles, though its outline may be.
+TEST(SmallThings, AreNotWhereAllIsLarge) {
+  Scene s = one_plane({0, 0, 0}, {0, 0, 1});
+  s.lights = {{{3, 3, 8}, {1, 1, 1}}};
+  s.geometry.spheres.add({-.5f, .5f, 0}, .4f, 0);
+  s.geometry.cones.add({.5f, -.5f, 0}, .3f, {.5f, 0, 1}, .2f, 0);
+  add_triangle(s, {-1, -1, .5f}, {0, -1, .5f}, {0, 0, .5f});
+  const SmallThings large = small_things(World(s, {}));
+  EXPECT_EQ(marked(large), 0);
+  EXPECT_FALSE(large.stand_alone);
+
+  Scene mesh = ball_mesh(60, 30);  // 20 pixels wide, its triangles one
+  mesh.lights = {{{3, 3, 8}, {1, 1, 1}}};
+  const SmallThings outline = small_things(World(mesh, {}));
+  EXPECT_GT(marked(outline), 60);
+  EXPECT_LT(marked(outline), 360);
+  EXPECT_FALSE(outline.thin.has(kSide / 2, kSide / 2));
+  EXPECT_FALSE(outline.stand_alone);
+}
+
+}  // namespace
+}  // namespace grelha::test
