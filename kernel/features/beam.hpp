@@ -3,8 +3,6 @@
 // finds is then asked for a point inside, so that the answer is a function of beam and scene, not
 // of the grid.
 
-#include <utility>
-
 #include "kernel/features/beam_clip.hpp"
 #include "kernel/shapes/surface.hpp"
 #include "kernel/trace/trace.hpp"
@@ -149,13 +147,19 @@ struct Met {
   int size = 0;
   bool full = false;  ///< there were more
 
-  /// Puts them in the order of their ids: that in which they were met is the grid's.
+  /// By their ids: grids find them in orders of their own.
   void sort() {
-    for (int i = 1; i < size; ++i)
-      for (int k = i; k > 0 && id[k - 1] > id[k]; --k) {
-        std::swap(id[k - 1], id[k]);
-        std::swap(part[k - 1], part[k]);
+    for (int i = 1; i < size; ++i) {
+      const std::uint32_t new_id = id[i];
+      const PartInBeam new_part = part[i];
+      int to = i;
+      for (; to > 0 && new_id < id[to - 1]; --to) {
+        id[to] = id[to - 1];
+        part[to] = part[to - 1];
       }
+      id[to] = new_id;
+      part[to] = new_part;
+    }
   }
 };
 

@@ -114,8 +114,8 @@ inline Looked looked_at(const GridView& g, const WalkingRays& p, const BeamFrame
   return y >= z ? 1 : 2;
 }
 
-/// Primitives that meet the beam before w = `far`, other than `known`; false when no answer can be
-/// had, or when `single` and there is one.
+/// Primitives that meet the beam before w = `far`, other than `known`, by their ids; false when no
+/// answer can be had, or when `single` and there is one: then which are found depends on the grids.
 inline bool collect(const SceneView& scene,
                     const BeamFrame& f,
                     float far,
@@ -127,12 +127,9 @@ inline bool collect(const SceneView& scene,
   see_outside(scene.outside, see);
   if (met.full)
     return false;
-  if (scene.grid_count == 0) {
-    met.sort();
-    return true;
-  }
   Packet<InFloat> p;
-  set_edges(scene, f, far, p);
+  if (scene.grid_count > 0)
+    set_edges(scene, f, far, p);
   const int axis = main_axis(f.unit);
   for (int i = 0; i < scene.grid_count; ++i) {
     const GridView& g = scene.grids[i];

@@ -106,10 +106,15 @@ class Watcher {
                    std::uint32_t mirror_id,
                    float weight,
                    Met& met) {
-    if (!collect(scene_, f, far, front, false, met, n_))
-      return around(weight);
-    const Doubt found = hidden(f, met, front, mirror_id, weight);
-    return differ ? found + at_corners(f, met, front, weight) : found;
+    const bool all = collect(scene_, f, far, front, false, met, n_);
+    if (!all)
+      met.size = 0;  // some of them, and other grids would find others
+    Doubt found = hidden(f, met, front, mirror_id, weight);
+    if (differ)
+      found = found + at_corners(f, met, front, weight);
+    if (!all)
+      found.around = weight;
+    return found;
   }
 
   /// What hides in the light on the surface that the corners met, in its mirror and behind it.
