@@ -141,6 +141,11 @@ struct BeamBox {
   }
   /// Of the beam.
   float share() const { return .25f * (hi[0] - lo[0]) * (hi[1] - lo[1]); }
+  /// Whether all of it lies beside the pixel, where its beam is wider.
+  bool is_beside() const {
+    constexpr float kSide = 1 / kPixelGrowth;
+    return lo[0] > kSide || lo[1] > kSide || hi[0] < -kSide || hi[1] < -kSide;
+  }
   /// What a ball covers at most.
   void add_ball(const BeamFrame& f, const BeamPoint& c, float radius) {
     const float x = radius * length(f.to_x);

@@ -18,13 +18,20 @@ struct Doubt {
 
   bool none() const { return inside == 0 && around == 0 && boxed == 0; }
 
-  /// Adds what was met: into the box where that stays small.
+  /// Adds what was met: into the box where that stays small. What lies beside the pixel makes way.
   void add(float weight, const BeamBox& where) {
     BeamBox all = box;
     all.add(where);
     if (all.share() <= kLargestBox) {
       box = all;
       boxed = greater(boxed, weight);
+    } else if (where.is_beside()) {
+      around = greater(around, weight);
+    } else if (boxed > 0 && box.is_beside()) {
+      around = greater(around, boxed);
+      boxed = 0;
+      box = {};
+      add(weight, where);
     } else {
       inside = greater(inside, weight);
     }
