@@ -192,6 +192,12 @@ TEST(Checkpoint, OfImpossibleNumbersIsRefused) {
     r.inside.pop_back();
     r.inside.push_back(-1);
   }));
+  EXPECT_TRUE(refused([](Refinement& r) { r.boxed[4] = -1; }));
+  EXPECT_TRUE(refused([&](Refinement& r) { r.boxed[4] = nan; }));
+  EXPECT_TRUE(refused([](Refinement& r) { r.box[4] = 0x40304041; })) << "its left is right of it";
+  EXPECT_TRUE(refused([](Refinement& r) { r.box[4] = 0x2F403010; })) << "its top is below it";
+  EXPECT_FALSE(refused([](Refinement& r) { r.box[4] = 0x40303010; }));
+  EXPECT_TRUE(refused([](Refinement& r) { r.box.pop_back(); }));
 }
 
 TEST(Checkpoint, OfBrokenGzipDataIsDamaged) {

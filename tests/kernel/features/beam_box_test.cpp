@@ -150,6 +150,48 @@ TEST_P(BeamBoxes, AreThoseOfSpecksBesideWhatIsLarge) {
   }
 }
 
+/// Specks apart, of which one box holds some, and others not: which ones does not depend on the way
+/// they were found.
+TEST_P(BeamBoxes, AreTheSameForEveryGrid) {
+  Random random(5);
+  for (int i = 0; i < 4; ++i) {
+    Scene s = dark_wall();
+    for (int k = 0; k < 60; ++k)
+      s.geometry.spheres.add({static_cast<float>(random.in(-4, 4)),
+                              static_cast<float>(random.in(-4, 4)),
+                              static_cast<float>(random.in(0, 4))},
+                             static_cast<float>(random.log_in(.01, .1)),
+                             0);
+    const PixelDoubts want = doubts(s, *variants().front(), {.grid = false});
+    for (const float density : {.5f, 4.f}) {
+      const PixelDoubts got = doubts(s, variant(), {.density = density});
+      for (std::size_t p = 0; p < kTile * kTile; ++p) {
+        EXPECT_EQ(got.box[p], want.box[p]) << i << ": " << density << ' ' << p;
+        EXPECT_EQ(got.boxed[p], want.boxed[p]) << i << ": " << density << ' ' << p;
+        EXPECT_EQ(got.inside[p], want.inside[p]) << i << ": " << density << ' ' << p;
+      }
+    }
+  }
+}
+
+/// A speck just beside the pixel is its neighbour's, and takes no box from one in it.
+TEST_P(BeamBoxes, AreThoseOfSpecksInThePixel) {
+  for (const bool first : {false, true})
+    for (const float x : {-2.02f, -.98f}) {
+      Scene s = dark_wall();
+      const Float3 p{x < -1.5f ? -1.1f : -1.9f, 2.1f, 0};
+      if (first)
+        s.geometry.spheres.add(p, .01f, 0);
+      s.geometry.spheres.add({x, 2.9f, 0}, .01f, 0);
+      if (!first)
+        s.geometry.spheres.add(p, .01f, 0);
+      const PixelDoubts found = look(s);
+      EXPECT_EQ(found.boxed[kPixel], 1);
+      EXPECT_EQ(found.inside[kPixel], 0);
+      expect_disc(found.box[kPixel], p, .01, .0101);
+    }
+}
+
 /// What is brighter than white hides as much more, also in a mirror and where one corner meets it;
 /// what is darker may hide white.
 TEST_P(BeamBoxes, WeighWhatShinesByItsLight) {
