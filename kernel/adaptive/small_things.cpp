@@ -188,8 +188,8 @@ class Shadows {
       mark_way(from, to, reach, marks_.small);
   }
 
-  /// How far behind a place of its axis, `part` of it before, a ray leaves a rod: at its side, or at
-  /// its end.
+  /// How far behind a place of its axis a ray leaves a rod, at its side or its end; `part` of the
+  /// rod lies before the place.
   static double way_out(const Rod& rod, double part, const double (&ray)[3], double ray_length) {
     const double length = rod.length();
     if (!(length > 0))

@@ -80,7 +80,7 @@ Spot spot(Random& random) {
           kPixelAUnit * way};
 }
 
-/// Adds a thing through a place, of .02 to 1.5 times `pixel`, short or long: to the eye and past it.
+/// Adds a thing through a place, of .02 to 1.5 times `pixel`, short or long: past the eye as well.
 void add_thin(Scene& s, Random& random, const Float3& at_place, double pixel) {
   const double width = pixel * random.log_in(.02, 1.5);
   const auto radius = static_cast<float>(.5 * width);

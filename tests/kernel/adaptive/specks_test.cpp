@@ -76,9 +76,9 @@ struct Stripes {
   }
 };
 
-/// A speck adds .0126 to its pixel: were they missed, in one pixel of four, the error would be .006.
-/// It covers .13 of its box, which gets 30 samples and more: chance misses one in a hundred at most,
-/// and of samples that are a net fewer than half of those.
+/// A speck adds .0126 to its pixel: were they missed, one in four pixels, the error would be .006.
+/// It covers .13 of its box, which gets 30 samples and more. Chance misses one in a hundred; of
+/// samples that are a net, fewer than half of those.
 TEST(Specks, AreMissedNowhere) {
   constexpr double kAsked = .003;
   for (const std::uint32_t seed : {1u, 2u, 3u}) {
