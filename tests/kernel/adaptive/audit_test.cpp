@@ -1,0 +1,115 @@
+// A second set of samples: that it tells the error of the first, and of a picture that is wrong.
+#include "kernel/adaptive/audit.hpp"
+
+#include <cmath>
+
+#include "kernel/adaptive/adaptive_sampler.hpp"
+#include "tests/support/rays.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace grelha::test {
+namespace {
+
+constexpr int kFirstLog = 2;
+
+/// Balls over a wall, in front of a light: edges and shadows.
+Scene balls_and_shadows() {
+  Scene s = one_plane({0, 0, 0}, {0, 0, 1});
+  s.lights = {{{6, 4, 12}, {1, 1, 1}}};
+  Random random(3);
+  for (int i = 0; i < 60; ++i)
+    s.geometry.spheres.add(
+        {float(random.in(-4, 4)), float(random.in(-4, 4)), float(random.in(1, 3))},
+        float(random.in(.1, .5)),
+        0);
+  return s;
+}
+
+class Audits : public testing::Test {
+ protected:
+  Audits() : scene_(balls_and_shadows()), world_(scene_, {}) {
+    camera_.eye = {0, 0, 20};
+    camera_.at = {0, 0, 0};
+    camera_.up = {0, 1, 0};
+    camera_.angle_deg = 25;
+    camera_.width = camera_.height = 128;
+    options_.threads = 2;
+    options_.refine.error = .02;
+    picture_ = make_refinement(camera_);
+    EXPECT_TRUE(refine(world_, camera_, options_, picture_, stats_));
+  }
+
+  Audit audited(const Refinement& picture) {
+    grelha::Setup setup = set_up(world_, camera_, options_);
+    setup.plan.on = true;
+    setup.plan.samples = kMostSamples;
+    PixelErrors errors(picture, false, kFirstLog, 2);
+    errors.judge();
+    return audit(world_.impl(), setup, options_, errors, picture, kFirstLog, stats_);
+  }
+
+  double true_mean_square() const {
+    RenderOptions many;
+    many.threads = 2;
+    many.sampling.samples = 1024;
+    many.sampling.seed = 99;
+    RenderStats stats;
+    const Image truth = render(world_, camera_, many, stats);
+    const Image image = picture_so_far(picture_);
+    double sum = 0;
+    for (std::size_t i = 0; i < truth.rgb.size(); ++i)
+      sum += std::pow(double(image.rgb[i]) - double(truth.rgb[i]), 2);
+    return sum / static_cast<double>(truth.rgb.size());
+  }
+
+  Scene scene_;
+  World world_;
+  Camera camera_;
+  RenderOptions options_;
+  RenderStats stats_;
+  Refinement picture_;
+};
+
+/// Of 16384 pixels some 256, of which an eighth vary: their mean is off by a fifth or two.
+TEST_F(Audits, TellTheTrueError) {
+  const Audit found = audited(picture_);
+  const double truth = true_mean_square();
+  EXPECT_NEAR(found.agreeing.count + found.others.count, 256, 60);
+  EXPECT_GT(found.mean_square(), truth / 2);
+  EXPECT_LT(found.mean_square(), truth * 2);
+  EXPECT_GT(found.bound(), found.mean_square());
+  EXPECT_LT(found.bound(), 3 * found.mean_square());
+}
+
+/// A picture that is too dark by d is off by d squared, of which half is counted: two means of which
+/// one is wrong lie apart by that.
+TEST_F(Audits, SeeThroughAPictureThatIsTooDark) {
+  constexpr double kDarker = .05;
+  const double before = audited(picture_).mean_square();
+  Refinement dark = picture_;
+  for (std::size_t i = 0; i < dark.sums.size(); ++i)
+    dark.sums[i] -= static_cast<std::int64_t>(kDarker * kLightUnit * sample_count(dark, i / 3));
+  const Audit found = audited(dark);
+  EXPECT_GT(found.mean_square(), before + .3 * kDarker * kDarker);
+  EXPECT_TRUE(found.agreeing.is_worse() || found.others.is_worse());
+}
+
+TEST_F(Audits, AreTheSameForAnyNumberOfThreads) {
+  const double two = audited(picture_).mean_square();
+  stats_.threads = 1;
+  EXPECT_EQ(audited(picture_).mean_square(), two);
+}
+
+TEST(AuditedPixels, AreNotWorseByChance) {
+  AuditedPixels of;
+  of.count = 100;
+  of.claimed = 1;
+  of.squared = 1.05;
+  of.difference = .01;  // a spread of .1
+  EXPECT_FALSE(of.is_worse());
+  of.squared = 1.15;
+  EXPECT_TRUE(of.is_worse());
+}
+
+}  // namespace
+}  // namespace grelha::test
