@@ -52,6 +52,12 @@ class ToPicture {
   }
   /// How wide a pixel is.
   double pixel(double depth) const { return depth * std::sqrt(rr_); }
+  /// Pixels that a ball of a radius reaches from its middle at most, anywhere in the picture: balls
+  /// look longer in its corners.
+  double reach(double radius, double depth) const {
+    const double corner = square(.5 * f_.width) * rr_ + square(.5 * f_.height) * uu_;
+    return radius / pixel(depth) * std::sqrt(1 + corner / ff_);
+  }
 
   Place3 eye;
 
@@ -108,7 +114,7 @@ bool looks_thin(const ToPicture& to, Rod& rod) {
 void mark_seen(const ToPicture& to, const Rod& rod, const Marks& marks) {
   const ToPicture::Spot a = to(rod.end[0]);
   const ToPicture::Spot b = to(rod.end[1]);
-  const double reach = rod.reach / to.pixel(std::min(a.depth, b.depth));
+  const double reach = to.reach(rod.reach, std::min(a.depth, b.depth));
   mark_way(a, b, reach + kMargin, marks.thin);
   if (std::max(std::abs(a.x - b.x), std::abs(a.y - b.y)) + 2 * reach < kThin)
     mark_way(a, b, reach + kMargin, marks.small);
@@ -166,7 +172,7 @@ class Shadows {
         held = false;
         continue;
       }
-      const double reach = reach_[i] * t[i] / to_.pixel(spot.depth) + 1;
+      const double reach = to_.reach(double{reach_[i]} * double{t[i]}, spot.depth) + 1;
       const bool near = std::abs(spot.x - last.x) < kJoined && std::abs(spot.y - last.y) < kJoined;
       const bool joined = held && goes_on_[i] && (near || id[i] == id[i - 1]);
       if (reach_[i] * t[i] < kThin * to_.pixel(spot.depth))

@@ -10,27 +10,28 @@ namespace {
 constexpr int kSide = 32;  ///< pixels
 constexpr int kFine = 8;   ///< places of a pixel, each way
 
-/// From z = 10 along -z; pixels are .01 wide a unit of way.
-Camera small_camera() {
+/// From z = 10 along -z; pixels are so wide a unit of way.
+constexpr double kPixelAUnit = .01;
+constexpr double kWidePixel = .07;  ///< 96 degrees in all
+Camera small_camera(double pixel = kPixelAUnit) {
   Camera c;
   c.eye = {0, 0, 10};
   c.at = {0, 0, 0};
   c.up = {0, 1, 0};
   c.width = c.height = kSide;
-  c.angle_deg = 360 / std::numbers::pi * std::atan(.005 * kSide);
+  c.angle_deg = 360 / std::numbers::pi * std::atan(.5 * pixel * kSide);
   return c;
 }
-constexpr double kPixelAUnit = .01;
 
-SmallThings small_things(const World& world) {
-  const Setup setup = set_up(world, small_camera(), {});
+SmallThings small_things(const World& world, double pixel = kPixelAUnit) {
+  const Setup setup = set_up(world, small_camera(pixel), {});
   TraceCounts counts;
   return SmallThings(world.impl(), setup, 2, counts);
 }
 
 /// Through the middles of kFine x kFine parts of each pixel, pixel by pixel.
-RayList raster() {
-  const FrameView f = make_frame(small_camera());
+RayList raster(double pixel = kPixelAUnit) {
+  const FrameView f = make_frame(small_camera(pixel));
   RayList rays;
   for (int p = 0; p < kSide * kSide; ++p)
     for (int part = 0; part < kFine * kFine; ++part) {
@@ -71,13 +72,13 @@ struct Spot {
   Float3 at;
   double pixel;
 };
-Spot spot(Random& random) {
+Spot spot(Random& random, double pixel) {
   const double way = random.log_in(1, 30);
-  const double half = .5 * kSide * kPixelAUnit * way;
+  const double half = .5 * kSide * pixel * way;
   return {{static_cast<float>(random.in(-half, half)),
            static_cast<float>(random.in(-half, half)),
            static_cast<float>(10 - way)},
-          kPixelAUnit * way};
+          pixel * way};
 }
 
 /// Adds a thing through a place, of .02 to 1.5 times `pixel`, short or long: past the eye as well.
@@ -113,19 +114,21 @@ int missed(const Parts& parts, const SmallThings& things, bool even_if_whole) {
 /// Every pixel in which one of 64 rays meets something thin is marked.
 TEST(SmallThings, AreMarkedWhereTheyAreSeen) {
   Random random(1);
-  const RayList rays = raster();
   int seen = 0;
-  for (int i = 0; i < 120; ++i) {
-    Scene s = empty_scene();
-    const Spot where = spot(random);
-    add_thin(s, random, where.at, where.pixel);
-    const World world(s, {});
-    const Parts parts = parts_seen(world, rays);
-    for (const int n : parts)
-      seen += n > 0;
-    const SmallThings things = small_things(world);
-    EXPECT_EQ(missed(parts, things, true), 0) << i;
-    EXPECT_TRUE(things.stand_alone) << i;
+  for (const double pixel : {kPixelAUnit, kWidePixel}) {
+    const RayList rays = raster(pixel);
+    for (int i = 0; i < 120; ++i) {
+      Scene s = empty_scene();
+      const Spot where = spot(random, pixel);
+      add_thin(s, random, where.at, where.pixel);
+      const World world(s, {});
+      const Parts parts = parts_seen(world, rays);
+      for (const int n : parts)
+        seen += n > 0;
+      const SmallThings things = small_things(world, pixel);
+      EXPECT_EQ(missed(parts, things, true), 0) << pixel << ": " << i;
+      EXPECT_TRUE(things.stand_alone) << pixel << ": " << i;
+    }
   }
   EXPECT_GT(seen, 1000);
 }
