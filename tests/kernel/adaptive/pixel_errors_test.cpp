@@ -124,5 +124,24 @@ TEST(PixelErrors, SeeASampleThatDiffersByATenth) {
   EXPECT_FALSE(agree_but_for_one(1));
 }
 
+/// What is in a box counts as missed until samples are sent there: a disc in the box, of which the
+/// mean shows nothing. Then it is what none of them may have met, as in a pixel.
+TEST(PixelErrors, CountWhatIsInABoxAsMissed) {
+  Refinement r = pixels(3, kFirstLog);
+  r.inside.assign(3, 0);
+  r.around.assign(3, 0);
+  r.boxed = {0, 2, 2};
+  r.box = {0, 0x3F3F2020, 0x3F3F2020};  // an eighth of the pixel each way
+  r.log[2] = kFirstLog + 1;             // of 8 new samples 4 went to the box
+  const PixelErrors errors = judged(r);
+  constexpr float kMost = 2.f / 64;
+  constexpr float kDisc = .785398f * kMost;
+  EXPECT_EQ(errors.variance(0), 0);
+  EXPECT_NEAR(errors.variance(1) / (kDisc * kDisc), 1, 1e-5);
+  EXPECT_NEAR(errors.widths()[1] / (2 * kMost), 1, 1e-5);
+  EXPECT_NEAR(errors.variance(2) / (.15f * kMost * kMost / 16), 1, 1e-5);
+  EXPECT_NEAR(errors.widths()[2] / (6 * kMost / 4), 1, 1e-5);
+}
+
 }  // namespace
 }  // namespace grelha::test
