@@ -81,8 +81,8 @@ TEST_F(Audits, TellTheTrueError) {
   EXPECT_LT(found.bound(), 3 * found.mean_square());
 }
 
-/// A picture that is too dark by d is off by d squared, of which half is counted: two means of which
-/// one is wrong lie apart by that.
+/// A picture that is too dark by d is off by d squared, of which half is counted: two means of
+/// which one is wrong lie apart by that.
 TEST_F(Audits, SeeThroughAPictureThatIsTooDark) {
   constexpr double kDarker = .05;
   const double before = audited(picture_).mean_square();
