@@ -103,10 +103,11 @@ class AdaptiveSampler {
   void report(SampleMaps* maps) const {
     const PixelErrors::Totals totals = errors_.totals();
     ErrorStats& e = stats_.error;
+    // what pixels claim and the last audit, which is as likely above the truth as below
     const bool by_audit = r_.met && !(totals.bound <= options_.refine.error);
     e.rmse = by_audit ? std::sqrt(r_.audited) : totals.rmse;
-    e.rmse_bound = by_audit ? std::sqrt(r_.audited_bound) : totals.bound;
-    e.widest = totals.widest;
+    e.rmse_bound =
+        by_audit ? std::sqrt(r_.audited_bound) : std::max(totals.bound, std::sqrt(r_.audited));
     e.audited = std::sqrt(r_.audited);
     e.met_at = r_.met_at;
     e.rounds = r_.rounds;
