@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numeric>
 
 #include <omp.h>
 
@@ -14,6 +15,8 @@ namespace {
 constexpr double kAuditedShare = .01;   ///< of pixels
 constexpr double kFewestAudited = 256;  ///< but of small pictures
 constexpr double kMostAudited = 1. / 16;
+/// Those that claim most are audited for themselves: few could hold most of an error.
+constexpr std::size_t kWorstAudited = 16;
 constexpr std::uint32_t kOtherSeed = 0x5BD1E995u;
 constexpr std::size_t kPixelsOfTurn = 64;
 
@@ -26,14 +29,37 @@ std::uint32_t scattered_bits(std::uint32_t x) {
   return x ^ x >> 16;
 }
 
-std::vector<std::uint32_t> audited_pixels(const Refinement& r, std::uint32_t seed) {
-  const double share = std::max(
-      kAuditedShare, std::min(kMostAudited, kFewestAudited / static_cast<double>(r.log.size())));
-  std::vector<std::uint32_t> chosen;
-  for (std::uint32_t p = 0; p < r.log.size(); ++p)
-    if (scattered_bits(p ^ scattered_bits(seed)) < share * 0x1p32)
-      chosen.push_back(p);
-  return chosen;
+struct Sample {
+  std::vector<std::uint32_t> pixels;
+  std::size_t worst = 0;  ///< the first stand for themselves,
+  double stands_for = 1;  ///< each of the others for so many
+};
+
+/// The pixels that claim the greatest variances, then others by a hash.
+Sample audited_pixels(const Refinement& r, const PixelErrors& errors, std::uint32_t seed) {
+  const std::size_t count = r.log.size();
+  Sample sample;
+  std::vector<std::uint32_t>& pixels = sample.pixels;
+  pixels.resize(count);
+  std::iota(pixels.begin(), pixels.end(), 0u);
+  sample.worst = std::min(kWorstAudited, count / 16);
+  const auto worst = pixels.begin() + static_cast<std::ptrdiff_t>(sample.worst);
+  std::nth_element(pixels.begin(), worst, pixels.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return errors.variance(a) != errors.variance(b) ? errors.variance(a) > errors.variance(b)
+                                                    : a < b;
+  });
+  std::sort(pixels.begin(), worst);
+  const double share =
+      std::max(kAuditedShare, std::min(kMostAudited, kFewestAudited / static_cast<double>(count)));
+  const auto others = std::remove_if(worst, pixels.end(), [&](std::uint32_t p) {
+    return !(scattered_bits(p ^ scattered_bits(seed)) < share * 0x1p32);
+  });
+  pixels.erase(others, pixels.end());
+  std::sort(pixels.begin() + static_cast<std::ptrdiff_t>(sample.worst), pixels.end());
+  if (pixels.size() > sample.worst)
+    sample.stands_for = static_cast<double>(count - sample.worst) /
+                        static_cast<double>(pixels.size() - sample.worst);
+  return sample;
 }
 
 double shown(double x) {
@@ -142,11 +168,19 @@ bool AuditedPixels::is_worse() const {
   return squared - claimed > std::sqrt(difference);
 }
 
+void AuditedPixels::add(double half_square, double variance, double samples, double stands_for) {
+  const double off = stands_for * (half_square - variance);
+  squared += stands_for * half_square;
+  by_sample += stands_for * half_square * samples;
+  claimed += stands_for * variance;
+  difference += off * off;
+  fourth += stands_for * half_square * (stands_for * half_square);
+  count += stands_for;
+}
+
 double Audit::bound() const {
-  const double n = agreeing.count + others.count;
-  const double mean = mean_square();
-  const double spread = (agreeing.fourth + others.fourth) / n - mean * mean;
-  return mean + kNormalOneSided * std::sqrt(std::max(spread, 0.) / n);
+  const double spread = std::sqrt(agreeing.fourth + others.fourth);
+  return mean_square() + kNormalOneSided * spread / (agreeing.count + others.count);
 }
 
 Audit audit(const World::Impl& world,
@@ -156,20 +190,17 @@ Audit audit(const World::Impl& world,
             const Refinement& r,
             int first_log,
             RenderStats& stats) {
-  const std::vector<std::uint32_t> pixels = audited_pixels(r, setup.plan.seed);
-  std::vector<double> squares(pixels.size());
-  Auditor(world, setup, options, r, first_log, stats).compare(pixels, squares);
+  const Sample sample = audited_pixels(r, errors, setup.plan.seed);
+  std::vector<double> squares(sample.pixels.size());
+  Auditor(world, setup, options, r, first_log, stats).compare(sample.pixels, squares);
   Audit sum;
-  for (std::size_t i = 0; i < pixels.size(); ++i) {
-    const std::uint32_t p = pixels[i];
+  for (std::size_t i = 0; i < squares.size(); ++i) {
+    const std::uint32_t p = sample.pixels[i];
     AuditedPixels& of = errors.agrees(p) ? sum.agreeing : sum.others;
-    const double claimed = static_cast<double>(errors.variance(p));
-    of.squared += squares[i];
-    of.by_sample += squares[i] * sample_count(r, p);
-    of.claimed += claimed;
-    of.difference += (squares[i] - claimed) * (squares[i] - claimed);
-    of.fourth += squares[i] * squares[i];
-    of.count += 1;
+    of.add(squares[i],
+           static_cast<double>(errors.variance(p)),
+           sample_count(r, p),
+           i < sample.worst ? 1 : sample.stands_for);
   }
   return sum;
 }

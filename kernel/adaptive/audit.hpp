@@ -13,14 +13,16 @@
 namespace grelha {
 
 /// Of some pixels, as many samples again: half the squared difference of the two, which in the mean
-/// is their error squared, beside what was claimed.
+/// is their error squared, beside what was claimed. Each stands for several.
 struct AuditedPixels {
   double squared = 0;     ///< sum of it
   double by_sample = 0;   ///< sum of it times the pixel's samples
   double claimed = 0;     ///< sum of variances
   double difference = 0;  ///< sum of squares of the differences of the two
   double fourth = 0;      ///< sum of squares of the first
-  double count = 0;
+  double count = 0;       ///< of pixels that they stand for
+
+  void add(double half_square, double variance, double samples, double stands_for);
 
   /// Whether more than chance speaks against the claim.
   bool is_worse() const;
