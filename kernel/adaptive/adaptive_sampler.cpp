@@ -84,8 +84,7 @@ class AdaptiveSampler {
       if (!judged)
         continue;
       if (r_.rounds++ == 0)
-        find_hidden_features(
-            world_, setup_, errors_, options_.refine.error, stats_.threads, r_, stats_.trace);
+        find_hidden();
       choose_next();
       if (options_.refine.error > 0 && is_audit_due() && !errors_stand())
         choose_next();
@@ -122,6 +121,12 @@ class AdaptiveSampler {
   }
 
  private:
+  void find_hidden() {
+    errors_.measure();
+    find_hidden_features(
+        world_, setup_, errors_, options_.refine.error, stats_.threads, r_, stats_.trace);
+  }
+
   void fill(SampleMaps& maps) const {
     maps.samples.resize(order_.size());
     maps.error.resize(order_.size());

@@ -12,6 +12,7 @@ PixelErrors::PixelErrors(const Refinement& r, bool effects, int first_log, int t
       effects_(effects),
       first_log_(first_log),
       threads_(threads),
+      shown_(3 * r.log.size()),
       own_(r.log.size()),
       variance_(r.log.size()),
       widest_(r.log.size()) {}
@@ -31,19 +32,23 @@ float PixelErrors::own_variance(std::size_t p) const {
          r_.variance_ratio * (r_.squares[1][i] + r_.variance_ratio * r_.squares[2][i])) /
         (4 * differences(p));
     const float v = drop * r_.variance_ratio / (1 - r_.variance_ratio);
-    if (!(mean_so_far(r_, i) - 3 * std::sqrt(v) > 1))
-      sum += v;  // else white on any screen
+    const bool white = shown_[i] == 1 && mean_so_far(r_, i) - 3 * std::sqrt(v) > 1;
+    if (!white)  // on any screen
+      sum += v;
   }
   return sum / 3;
 }
 
 float PixelErrors::contrast(int x, int y) const {
-  const auto shown = [&](std::size_t i) { return std::clamp(mean_so_far(r_, i), 0.f, 1.f); };
+  const float* const own = &shown_[at(x, y) * 3];
+  const int left = std::max(x - 1, 0);
+  const int count = std::min(x + 1, r_.width - 1) - left + 1;
   float most = 0;
-  for (int j = std::max(y - 1, 0); j <= std::min(y + 1, r_.height - 1); ++j)
-    for (int i = std::max(x - 1, 0); i <= std::min(x + 1, r_.width - 1); ++i)
-      for (std::size_t c = 0; c < 3; ++c)
-        most = std::max(most, std::abs(shown(at(i, j) * 3 + c) - shown(at(x, y) * 3 + c)));
+  for (int j = std::max(y - 1, 0); j <= std::min(y + 1, r_.height - 1); ++j) {
+    const float* const row = &shown_[at(left, j) * 3];
+    for (int i = 0; i < count * 3; ++i)
+      most = std::max(most, std::abs(row[i] - own[i % 3]));
+  }
   return most;
 }
 
@@ -84,7 +89,7 @@ PixelErrors::Hidden PixelErrors::in_box(std::size_t p) const {
 void PixelErrors::judge_pixel(int x, int y, const RatioPowers& scale) {
   const std::size_t p = at(x, y);
   float v = static_cast<float>(r_.worse) * (watched(p) ? with_neighbours(x, y, scale) : own_[p]);
-  if (r_.least_by_sample > 0 && agrees(own_[p], p))
+  if (r_.least_by_sample > 0 && agrees(p))
     v = std::max(v, static_cast<float>(r_.least_by_sample) / samples(p));
   float wide = 2 * kNormal * std::sqrt(v);
   if (r_.box[p] != 0) {
@@ -96,7 +101,7 @@ void PixelErrors::judge_pixel(int x, int y, const RatioPowers& scale) {
   // three), on either side: that is how wide the interval must be. Its share has Beta(1, n + 1),
   // whose second moment is 2 / n^2; it differs from what they met by the doubt at most, by about a
   // quarter of it in the mean.
-  if ((r_.inside[p] > 0 || r_.around[p] > 0) && agrees(own_[p], p)) {
+  if ((r_.inside[p] > 0 || r_.around[p] > 0) && agrees(p)) {
     // An edge that comes in from a neighbour leaves no room among n samples of a net for more than
     // about 1 / n.
     const float doubt = std::max(r_.inside[p], r_.around[p] * contrast(x, y) / 3);
@@ -108,23 +113,27 @@ void PixelErrors::judge_pixel(int x, int y, const RatioPowers& scale) {
   widest_[p] = wide;
 }
 
+void PixelErrors::measure() {
+#pragma omp parallel for num_threads(threads_) schedule(static)
+  for (std::size_t p = 0; p < own_.size(); ++p) {
+    for (std::size_t i = p * 3; i < p * 3 + 3; ++i)
+      shown_[i] = std::clamp(mean_so_far(r_, i), 0.f, 1.f);
+    own_[p] = own_variance(p);
+  }
+}
+
 void PixelErrors::judge() {
+  measure();
   RatioPowers scale;
   scale[kMostLog] = 1;
   for (std::size_t i = 0; i < kMostLog; ++i) {
     scale[kMostLog + i + 1] = scale[kMostLog + i] * r_.variance_ratio;
     scale[kMostLog - i - 1] = scale[kMostLog - i] / r_.variance_ratio;
   }
-#pragma omp parallel num_threads(threads_)
-  {
-#pragma omp for schedule(static)
-    for (std::size_t p = 0; p < own_.size(); ++p)
-      own_[p] = own_variance(p);
-#pragma omp for schedule(static)
-    for (int y = 0; y < r_.height; ++y)
-      for (int x = 0; x < r_.width; ++x)
-        judge_pixel(x, y, scale);
-  }
+#pragma omp parallel for num_threads(threads_) schedule(static)
+  for (int y = 0; y < r_.height; ++y)
+    for (int x = 0; x < r_.width; ++x)
+      judge_pixel(x, y, scale);
 }
 
 PixelErrors::Totals PixelErrors::totals() const {

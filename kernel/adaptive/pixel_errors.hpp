@@ -18,6 +18,9 @@ class PixelErrors {
   /// begins with.
   PixelErrors(const Refinement& r, bool effects, int first_log, int threads);
 
+  /// Takes from the picture what the rest is told by. Part of judge().
+  void measure();
+
   /// Variance and interval of every pixel. Few differences tell little: pixels that may hold more
   /// than one surface, or an effect, borrow from their neighbours of the same kind, so that chance
   /// stops no pixel and drives none on.
@@ -41,7 +44,9 @@ class PixelErrors {
   }
 
   /// Whether no sample of a pixel differed.
-  bool agrees(std::size_t p) const { return agrees(own_variance(p), p); }
+  bool agrees(std::size_t p) const {
+    return own_[p] <= kAgreement / (samples(p) * samples(p));
+  }
   /// The greatest difference a channel of a pixel shows to one around it, on a screen.
   float contrast(int x, int y) const;
 
@@ -52,9 +57,6 @@ class PixelErrors {
   }
   float samples(std::size_t p) const { return static_cast<float>(1u << r_.log[p]); }
   bool watched(std::size_t p) const { return effects_ || r_.inside[p] > 0 || r_.around[p] > 0; }
-  bool agrees(float variance, std::size_t p) const {
-    return variance <= kAgreement / (samples(p) * samples(p));
-  }
   float differences(std::size_t p) const;
   float own_variance(std::size_t p) const;
   /// What hides from a pixel's samples adds to its variance, and how wide its interval must be.
@@ -68,6 +70,7 @@ class PixelErrors {
   const Refinement& r_;
   const bool effects_;
   const int first_log_, threads_;
+  std::vector<float> shown_;  ///< [pixels][3] what a screen shows
   std::vector<float> own_, variance_, widest_;  ///< [pixels] own_: from a pixel's own differences
 };
 

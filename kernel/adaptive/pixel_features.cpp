@@ -16,8 +16,7 @@ std::size_t pixel_at(const Refinement& r, int x, int y) {
 /// Pixels of a tile, a bit each.
 struct TilePixels {
   std::uint64_t agree = 0;  ///< those whose samples agree
-  std::uint64_t asked = 0;  ///< those near anything that samples may have missed
-  std::uint64_t others = 0;
+  PixelsAsked asked;
 };
 
 /// The picture when its first samples are there, and what looks for what they missed.
@@ -39,18 +38,17 @@ struct Search {
         continue;
       const std::uint64_t bit = std::uint64_t{1} << i;
       const bool agrees = errors.agrees(pixel_at(r, x, y));
-      if (agrees || things.stand_alone)
-        of.others |= bit;
       // where samples vary only what is small is missed for long
-      if (agrees ? things.thin.has(x, y) : things.small.has(x, y))
-        of.asked |= bit;
-      if (!agrees)
-        continue;
-      of.agree |= bit;
-      if (errors.contrast(x, y) > faint)
-        of.asked |= bit;
+      const bool anything = agrees ? errors.contrast(x, y) > faint : things.small.has(x, y);
+      if (agrees)
+        of.agree |= bit;
+      if (anything || (agrees && things.thin.has(x, y)))
+        of.asked.things |= bit;
+      if (anything || (agrees && things.shadows.has(x, y)))
+        of.asked.shadows |= bit;
+      if (agrees || things.stand_alone)
+        of.asked.if_bent |= bit;
     }
-    of.others &= ~of.asked;
     return of;
   }
 
@@ -66,11 +64,10 @@ struct Search {
                               kBouncesWatched,
                               least,
                               of.asked,
-                              of.others,
                               found,
                               counts);
     for (int i = 0; i < kTile * kTile; ++i) {
-      if (!((of.asked | of.others) >> i & 1))
+      if (!(of.asked.any() >> i & 1))
         continue;
       const std::size_t p = pixel_at(r, x0 + i % kTile, y0 + i / kTile);
       // Where samples vary, what they vary by may be all there is, but for what is so small that it

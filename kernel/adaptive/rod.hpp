@@ -12,10 +12,10 @@ namespace grelha {
 using Place3 = double[3];
 
 /// What holds a primitive: all within `reach` of a stretch. Seen from some point it looks no wider
-/// than `width`.
+/// than `width`, and all within `aside` of the stretch.
 struct Rod {
   double end[2][3];
-  double width, reach;
+  double width, reach, aside;
 
   double length() const {
     double sum = 0;
@@ -27,20 +27,22 @@ struct Rod {
 
 inline Rod rod_of(const SphereSpans& s, std::size_t i) {
   const double r = std::abs(static_cast<double>(s.radius[i]));
-  return {{{s.x[i], s.y[i], s.z[i]}, {s.x[i], s.y[i], s.z[i]}}, 2 * r, r};
+  return {{{s.x[i], s.y[i], s.z[i]}, {s.x[i], s.y[i], s.z[i]}}, 2 * r, r, r};
 }
 
 inline Rod rod_of(const ConeSpans& c, std::size_t i) {
   const double r = std::max(std::abs(static_cast<double>(c.base_radius[i])),
                             std::abs(static_cast<double>(c.apex_radius[i])));
-  Rod rod{
-      {{c.base_x[i], c.base_y[i], c.base_z[i]}, {c.apex_x[i], c.apex_y[i], c.apex_z[i]}}, 2 * r, r};
+  Rod rod{{{c.base_x[i], c.base_y[i], c.base_z[i]}, {c.apex_x[i], c.apex_y[i], c.apex_z[i]}},
+          2 * r,
+          r,
+          r};
   rod.width = std::min(rod.width, rod.length() + 2 * r);
   return rod;
 }
 
-/// Of a triangle: along its longest edge. Its width is its height over the edge that looks longest
-/// from the point.
+/// Of a triangle: along the edge that looks longest from the point. Its width is its height over
+/// it.
 Rod rod_of(const TriangleSpans& t, std::size_t i, const Place3& from);
 
 }  // namespace grelha

@@ -84,6 +84,7 @@ bool cut_behind(const ToPicture& to, Rod& rod) {
 /// Where thin things may show, and those among them that are small.
 struct Marks {
   PixelMarks& thin;
+  PixelMarks& shadows;
   PixelMarks& small;
 };
 
@@ -114,7 +115,7 @@ bool looks_thin(const ToPicture& to, Rod& rod) {
 void mark_seen(const ToPicture& to, const Rod& rod, const Marks& marks) {
   const ToPicture::Spot a = to(rod.end[0]);
   const ToPicture::Spot b = to(rod.end[1]);
-  const double reach = to.reach(rod.reach, std::min(a.depth, b.depth));
+  const double reach = to.reach(rod.aside, std::min(a.depth, b.depth));
   mark_way(a, b, reach + kMargin, marks.thin);
   if (std::max(std::abs(a.x - b.x), std::abs(a.y - b.y)) + 2 * reach < kThin)
     mark_way(a, b, reach + kMargin, marks.small);
@@ -137,7 +138,8 @@ class Shadows {
         counts_(counts) {}
 
   void add(const Rod& rod) {
-    const double apart = std::max(2 * rod.width, 1e-300);
+    const double depth = std::max(std::abs(to_(rod.end[0]).depth), std::abs(to_(rod.end[1]).depth));
+    const double apart = std::max({2 * rod.width, to_.pixel(depth), 1e-300});
     const int points =
         static_cast<int>(std::clamp(std::ceil(rod.length() / apart), 1., double{kMostPlaces}));
     bool goes_on = false;
@@ -189,7 +191,7 @@ class Shadows {
   static constexpr double kJoined = 16;
 
   void mark(const ToPicture::Spot& from, const ToPicture::Spot& to, double reach, bool small) {
-    mark_way(from, to, reach, marks_.thin);
+    mark_way(from, to, reach, marks_.shadows);
     if (small)
       mark_way(from, to, reach, marks_.small);
   }
@@ -224,7 +226,7 @@ class Shadows {
       return false;
     const double out = way_out(rod, part, ray, length);
     t_min_[count_] = static_cast<float>(1 + 1.01 * out / length + 1e-6);
-    reach_[count_] = static_cast<float>(rod.reach);
+    reach_[count_] = static_cast<float>(rod.aside);
     goes_on_[count_] = goes_on;
     small_[count_] = rod.length() <= 2 * rod.width;
     ++count_;
@@ -351,7 +353,7 @@ class Marker {
       counts_ += counts;
     });
     if (thin > most) {
-      marks_.thin.mark_all();
+      marks_.shadows.mark_all();
       marks_.small.mark_all();
     }
   }
@@ -375,8 +377,10 @@ SmallThings::SmallThings(const World::Impl& world,
                          const Setup& setup,
                          int threads,
                          TraceCounts& counts)
-    : thin(setup.frame.width, setup.frame.height), small(setup.frame.width, setup.frame.height) {
-  Marker marker(world, setup, threads, {thin, small}, counts);
+    : thin(setup.frame.width, setup.frame.height),
+      shadows(setup.frame.width, setup.frame.height),
+      small(setup.frame.width, setup.frame.height) {
+  Marker marker(world, setup, threads, {thin, shadows, small}, counts);
   marker.run();
   stand_alone = marker.stand_alone();
 }

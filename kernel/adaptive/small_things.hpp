@@ -14,8 +14,9 @@ namespace grelha {
 struct SmallThings {
   SmallThings(const World::Impl& world, const Setup& setup, int threads, TraceCounts& counts);
 
-  PixelMarks thin;   ///< where things show that are thinner than two pixels
-  PixelMarks small;  ///< and no longer
+  PixelMarks thin;     ///< where things show that are thinner than two pixels
+  PixelMarks shadows;  ///< where such shadows do
+  PixelMarks small;    ///< where either does that is no longer than that
   /// Something thin is no part of a larger mesh: mirrors and clear surfaces may show it anywhere.
   bool stand_alone = false;
 };

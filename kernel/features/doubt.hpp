@@ -17,6 +17,12 @@ struct ToFollow {
   int clears;  ///< surfaces that it passes through
 };
 
+/// What is looked for on the first surface. What a mirror shows is looked for wherever there is one.
+struct LookFor {
+  bool things = true;   ///< that corners miss
+  bool shadows = true;  ///< and other uneven light
+};
+
 class Watcher {
  public:
   /// Light that weighs less than `least` is not followed.
@@ -35,6 +41,7 @@ class Watcher {
               bool whole,
               ToFollow follow,
               float weight,
+              LookFor look = {},
               std::uint32_t mirror_id = kNoPrimitive) {
     BeamFrame f;
     if (!frame_of(beam, f))
@@ -49,18 +56,26 @@ class Watcher {
     if (whole) {
       if (!holds_patch(f, sight.id, far, met))
         return around(weight);
-    } else if (const Doubt found = met_inside(f, sight.id, far, differ, mirror_id, weight, met);
-               !found.none()) {
-      return found;
+    } else if (look.things || look.shadows || differ) {
+      const Doubt found = met_inside(f, sight.id, far, differ, mirror_id, weight, met);
+      if (!found.none())
+        return found;
     }
-    if (differ || !closed(scene_.geometry, f, met, sight.id))
+    if (differ || (look.things && !closed(scene_.geometry, f, met, sight.id)))
       return around(weight);
     if (sight.id[0] == kNoPrimitive)
       return {};
-    return on_surface(beam, sight, met, whole, follow, weight);
+    return on_surface(beam, sight, met, {whole, look.shadows, follow}, weight);
   }
 
  private:
+  /// What to do on a surface.
+  struct OnSurface {
+    bool whole;
+    bool look_for_shadows;
+    ToFollow follow;
+  };
+
   /// A beam that met a surface, and how far it is to be followed.
   struct Way {
     const Beam& beam;
@@ -121,52 +136,61 @@ class Watcher {
   Doubt on_surface(const Beam& beam,
                    const Sight& sight,
                    const Met& met,
-                   bool whole,
-                   ToFollow follow,
+                   const OnSurface& on,
                    float weight) {
     CornerSurfaces s;
     bool within = false;
     if (!find_surfaces(beam, sight, s, within))
       return around(weight);
-    const Doubt found =
-        LightWatch(scene_, shading_, least_, n_).uneven_lights({s, sight.id, met, whole}, weight);
-    const Way way{beam, s, sight.id[0], whole, follow, weight};
+    Doubt found;
+    if (on.look_for_shadows)
+      found = LightWatch(scene_, shading_, least_, n_)
+                  .uneven_lights({s, sight.id, met, on.whole}, weight);
+    const Way way{beam, s, sight.id[0], on.whole, on.follow, weight};
     if (field(s[0], kTransmission) > 0)
-      return whole ? around(weight) : found + in_glass(way, within, found.inside);
+      return on.whole ? around(weight) : found + in_glass(way, within, found.inside);
     return found + in_mirror(way, largest(color(s[0], kMirrorR)), found.inside);
   }
 
-  /// Sends rays to points first, first + 1, ... that were met, at most a packet of 16.
-  void trace_points(const BeamFrame& f, const Met& met, int first, Packet<InFloat>& p) {
-    p.size = met.size - first < 16 ? met.size - first : 16;
+  /// Sends rays to the points of some of what was met, at most a packet of 16.
+  void trace_points(const BeamFrame& f, const Met& met, const int* which, Packet<InFloat>& p) {
     for (int i = 0; i < p.size; ++i) {
-      const Vec3f to = normalize(met.part[first + i].point - f.apex);
+      const Vec3f to = normalize(met.part[which[i]].point - f.apex);
       const Vec3f start = f.apex + (f.depth / dot(to, f.unit)) * to;
       set_ray(p, i, start, to, kInfinity);
     }
     trace_packet<false>(scene_, p, {16, true}, n_);
   }
 
-  /// Sends a ray to each point met. Where all of them end on what passes for a surface that the
-  /// corners see, nothing hides; where one ends on another side of their mesh, that shows around as
-  /// well.
+  /// Sends a ray to each point met, but for those on what passes for a surface that the corners see.
+  /// Where all of them end on such, nothing hides; where one ends on another side of their mesh,
+  /// that shows around as well.
   Doubt hidden(const BeamFrame& f,
                const Met& met,
                const std::uint32_t (&front)[kCorners],
                std::uint32_t mirror_id,
                float weight) {
     const GeometryView& g = scene_.geometry;
+    const auto is_front = [&](std::uint32_t id) {
+      return any_of(front, [&](std::uint32_t seen) { return alike(g, seen, id); });
+    };
+    int which[kMostMet];
+    int others = 0;
+    for (int i = 0; i < met.size; ++i)
+      if (!is_front(met.id[i]))
+        which[others++] = i;
     Doubt found;
-    for (int first = 0; first < met.size; first += 16) {
+    for (int first = 0; first < others; first += 16) {
       Packet<InFloat> p;
-      trace_points(f, met, first, p);
+      p.size = others - first < 16 ? others - first : 16;
+      trace_points(f, met, which + first, p);
       for (int i = 0; i < p.size; ++i) {
         const std::uint32_t id = id_of(p.id[i]);
-        if (any_of(front, [&](std::uint32_t seen) { return alike(g, seen, id); }))
+        if (is_front(id))
           continue;
         if (!is_own_mirror(id, mirror_id) &&
             !any_of(front, [&](std::uint32_t seen) { return kin(g, seen, id); }))
-          found.add(weight * brightness(id), met.part[first + i].box);
+          found.add(weight * brightness(id), met.part[which[first + i]].box);
         found.around = weight;
       }
     }
@@ -258,7 +282,7 @@ class Watcher {
       mirrored.org[i] = s.point + s.away * s.normal;
     }
     const ToFollow left{way.follow.mirrors - 1, way.follow.clears};
-    return doubt(mirrored, way.whole, left, mirror, way.id);
+    return doubt(mirrored, way.whole, left, mirror, {}, way.id);
   }
 
   /// What hides behind the clear surface that the corners met, and in its mirror: followed as light
@@ -290,7 +314,7 @@ class Watcher {
     if (way.follow.clears == 0)
       return up + around(passes);
     const ToFollow left{way.follow.mirrors, way.follow.clears - 1};
-    return up + doubt(through, false, left, passes, way.id);
+    return up + doubt(through, false, left, passes, {}, way.id);
   }
 
   const SceneView& scene_;

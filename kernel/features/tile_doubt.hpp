@@ -95,21 +95,23 @@ inline std::uint64_t square_bits(int first, int size) {
   return bits;
 }
 
-/// Doubt of the pixels of an 8 x 8 tile, those with a bit in `asked`. Squares that are plain as a
-/// whole save their parts.
+/// Doubt of the pixels of an 8 x 8 tile that are asked. Squares that are plain as a whole save their
+/// parts.
 inline void tile_doubt(Watcher& watcher,
                        const FrameView& f,
                        int x0,
                        int y0,
                        int size,
                        int bounces,
-                       std::uint64_t asked,
+                       const PixelsAsked& asked,
                        PixelDoubts& found) {
   const int first = y0 % kTile * kTile + x0 % kTile;
-  if ((asked & square_bits(first, size)) == 0)
+  const std::uint64_t bits = square_bits(first, size);
+  if ((asked.any() & bits) == 0)
     return;
+  const LookFor look{(asked.things & bits) != 0, (asked.shadows & bits) != 0};
   const Doubt doubt =
-      watcher.doubt(pixel_beam(f, x0, y0, size), size > 1, {bounces, kClearsFollowed}, 1);
+      watcher.doubt(pixel_beam(f, x0, y0, size), size > 1, {bounces, kClearsFollowed}, 1, look);
   if (size == 1 || doubt.none()) {
     set_square(found, first, size, doubt);
     return;

@@ -55,15 +55,17 @@ inline void doubt(const SceneView& scene,
                   int y0,
                   int bounces,
                   float least,
-                  std::uint64_t asked,
-                  std::uint64_t if_bent,
+                  const PixelsAsked& asked,
                   PixelDoubts& found,
                   TraceCounts& trace_counts) {
   Counters n;
   Watcher watcher(scene, shading, least, n);
-  if (if_bent != 0 && (shading.reflects || shading.refracts))
-    asked |= if_bent & bent_pixels(scene, shading, frame, x0, y0, n);
-  tile_doubt(watcher, frame, x0, y0, kTile, bounces, asked, found);
+  PixelsAsked of = asked;
+  if (of.if_bent != 0)
+    of.if_bent &= shading.reflects || shading.refracts
+                      ? bent_pixels(scene, shading, frame, x0, y0, n)
+                      : std::uint64_t{0};
+  tile_doubt(watcher, frame, x0, y0, kTile, bounces, of, found);
   add(n, trace_counts);
 }
 

@@ -68,9 +68,8 @@ struct VariantLoops {
                       RayCounts&);
   /// What could hide from samples of the pixels of the 8 x 8 tile at (x0, y0), followed into
   /// `bounces` mirrors: see Doubt in what_hides.hpp. What weighs less than `least` is left out. Of
-  /// pixels with a bit in `asked`, and of those
-  /// with one in `if_bent` that see a mirror or something clear, all within the picture. The others
-  /// keep what they hold, or get theirs as well.
+  /// pixels that are asked, all within the picture; the others keep what they hold, or get theirs as
+  /// well.
   void (*doubt)(const SceneView&,
                 const ShadingView&,
                 const FrameView&,
@@ -78,8 +77,7 @@ struct VariantLoops {
                 int y0,
                 int bounces,
                 float least,
-                std::uint64_t asked,
-                std::uint64_t if_bent,
+                const PixelsAsked& asked,
                 PixelDoubts&,
                 TraceCounts&);
   /// All samples of points of the picture, whose names work.pixels holds.

@@ -33,8 +33,9 @@ inline PixelDoubts doubts(const Scene& scene,
   const World::Impl& w = world.impl();
   PixelDoubts found;
   TraceCounts counts;
+  constexpr std::uint64_t kAll = ~std::uint64_t{0};
   variant.loops.doubt(
-      w.view, w.shading, make_frame(camera), 0, 0, 2, 0, ~std::uint64_t{0}, 0, found, counts);
+      w.view, w.shading, make_frame(camera), 0, 0, 2, 0, {kAll, kAll}, found, counts);
   return found;
 }
 

@@ -101,12 +101,11 @@ void add_thin(Scene& s, Random& random, const Float3& at_place, double pixel) {
   }
 }
 
-int missed(const Parts& parts, const SmallThings& things, bool even_if_whole) {
+int missed(const Parts& parts, const PixelMarks& marks, bool even_if_whole) {
   int n = 0;
   for (int p = 0; p < kSide * kSide; ++p) {
     const int found = parts[static_cast<std::size_t>(p)];
-    n += found > 0 && (even_if_whole || found < kFine * kFine) &&
-         !things.thin.has(p % kSide, p / kSide);
+    n += found > 0 && (even_if_whole || found < kFine * kFine) && !marks.has(p % kSide, p / kSide);
   }
   return n;
 }
@@ -126,7 +125,7 @@ TEST(SmallThings, AreMarkedWhereTheyAreSeen) {
       for (const int n : parts)
         seen += n > 0;
       const SmallThings things = small_things(world, pixel);
-      EXPECT_EQ(missed(parts, things, true), 0) << pixel << ": " << i;
+      EXPECT_EQ(missed(parts, things.thin, true), 0) << pixel << ": " << i;
       EXPECT_TRUE(things.stand_alone) << pixel << ": " << i;
     }
   }
@@ -167,7 +166,7 @@ struct Lit {
 int expect_edges_marked(const Lit& lit, const RayList& rays) {
   const World world(lit.scene, {});
   const Parts parts = parts_dark(world, rays, lit.light);
-  EXPECT_EQ(missed(parts, small_things(world), false), 0);
+  EXPECT_EQ(missed(parts, small_things(world).shadows, false), 0);
   int edges = 0;
   for (const int n : parts)
     edges += n > 0 && n < kFine * kFine;
@@ -212,7 +211,7 @@ TEST(SmallThings, AreMarkedWhereShadowsOfLongRodsFall) {
 int marked(const SmallThings& things) {
   int n = 0;
   for (int p = 0; p < kSide * kSide; ++p)
-    n += things.thin.has(p % kSide, p / kSide);
+    n += things.thin.has(p % kSide, p / kSide) || things.shadows.has(p % kSide, p / kSide);
   return n;
 }
 
