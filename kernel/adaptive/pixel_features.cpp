@@ -44,7 +44,8 @@ struct Search {
         of.agree |= bit;
       if (anything || (agrees && things.thin.has(x, y)))
         of.asked.things |= bit;
-      if (anything || (agrees && things.shadows.has(x, y)))
+      of.asked.lights[i] = anything ? ~std::uint64_t{0} : agrees ? things.lights(x, y) : 0;
+      if (of.asked.lights[i] != 0)
         of.asked.shadows |= bit;
       if (agrees || things.stand_alone)
         of.asked.if_bent |= bit;
@@ -67,7 +68,7 @@ struct Search {
                               found,
                               counts);
     for (int i = 0; i < kTile * kTile; ++i) {
-      if (!(of.asked.any() >> i & 1))
+      if (!((of.asked.things | of.asked.shadows | of.asked.if_bent) >> i & 1))
         continue;
       const std::size_t p = pixel_at(r, x0 + i % kTile, y0 + i / kTile);
       // Where samples vary, what they vary by may be all there is, but for what is so small that it

@@ -5,6 +5,7 @@
 
 #include "kernel/adaptive/mesh_rims.hpp"
 #include "kernel/adaptive/rod.hpp"
+#include "kernel/scene/pixel_box.hpp"
 #include "kernel/scene/turns.hpp"
 
 namespace grelha {
@@ -84,7 +85,6 @@ bool cut_behind(const ToPicture& to, Rod& rod) {
 /// Where thin things may show, and those among them that are small.
 struct Marks {
   PixelMarks& thin;
-  PixelMarks& shadows;
   PixelMarks& small;
 };
 
@@ -191,7 +191,7 @@ class Shadows {
   static constexpr double kJoined = 16;
 
   void mark(const ToPicture::Spot& from, const ToPicture::Spot& to, double reach, bool small) {
-    mark_way(from, to, reach, marks_.shadows);
+    mark_way(from, to, reach, marks_.thin);
     if (small)
       mark_way(from, to, reach, marks_.small);
   }
@@ -250,7 +250,7 @@ class Marker {
   Marker(const World::Impl& world,
          const Setup& setup,
          int threads,
-         const Marks& marks,
+         SmallThings& things,
          TraceCounts& counts)
       : world_(world),
         setup_(setup),
@@ -258,16 +258,15 @@ class Marker {
         threads_(threads),
         to_(setup.frame),
         widest_(kThin * widest_pixel()),
-        marks_(marks),
+        things_(things),
         counts_(counts) {}
-
-  /// Whether something that looks thin is no part of a larger mesh.
-  bool stand_alone() const { return stand_alone_; }
 
   void run() {
     mark_things_seen();
-    for (int l = 0; l < world_.shading.light_count; ++l)
-      mark_shadows(world_.shading.lights + kLightFloats * l);
+    for (int l = 0; l < world_.shading.light_count; ++l) {
+      PixelMarks& shadows = things_.shadows[static_cast<std::size_t>(l % kLightBits)];
+      mark_shadows(world_.shading.lights + kLightFloats * l, {shadows, things_.small});
+    }
   }
 
  private:
@@ -318,28 +317,31 @@ class Marker {
 
   void mark_things_seen() {
     look_from(to_.eye);
+    std::atomic<bool> stand_alone = false;
+    const Marks marks{things_.thin, things_.small};
     each_turn(turns(), threads_, [&](std::size_t turn) {
       each_thing(
           turn,
           to_.eye,
           [&](Rod& rod) { return looks_thin(to_, rod); },
           [&](const Rod& rod, bool alone) {
-            mark_seen(to_, rod, marks_);
+            mark_seen(to_, rod, marks);
             if (alone)
-              stand_alone_ = true;
+              stand_alone = true;
           });
     });
+    things_.stand_alone = stand_alone;
   }
 
-  void mark_shadows(const float* light) {
+  void mark_shadows(const float* light, const Marks& marks) {
     const Place3 from = {light[0], light[1], light[2]};
     look_from(from);
-    const std::size_t most = static_cast<std::size_t>(marks_.thin.width()) *
-                             static_cast<std::size_t>(marks_.thin.height()) / kPixelsAThing;
+    const std::size_t most = static_cast<std::size_t>(setup_.frame.width) *
+                             static_cast<std::size_t>(setup_.frame.height) / kPixelsAThing;
     std::atomic<std::size_t> thin = 0;
     each_turn(turns(), threads_, [&](std::size_t turn) {
       TraceCounts counts;
-      Shadows shadows(world_, setup_, to_, light, marks_, counts);
+      Shadows shadows(world_, setup_, to_, light, marks, counts);
       each_thing(
           turn,
           from,
@@ -353,8 +355,8 @@ class Marker {
       counts_ += counts;
     });
     if (thin > most) {
-      marks_.shadows.mark_all();
-      marks_.small.mark_all();
+      marks.thin.mark_all();
+      marks.small.mark_all();
     }
   }
 
@@ -364,10 +366,9 @@ class Marker {
   const int threads_;
   const ToPicture to_;
   const double widest_;
-  const Marks marks_;
+  SmallThings& things_;
   TraceCounts& counts_;
   std::mutex sum_;
-  std::atomic<bool> stand_alone_ = false;
   std::unique_ptr<MeshRims> rims_;
 };
 
@@ -377,12 +378,18 @@ SmallThings::SmallThings(const World::Impl& world,
                          const Setup& setup,
                          int threads,
                          TraceCounts& counts)
-    : thin(setup.frame.width, setup.frame.height),
-      shadows(setup.frame.width, setup.frame.height),
-      small(setup.frame.width, setup.frame.height) {
-  Marker marker(world, setup, threads, {thin, shadows, small}, counts);
+    : thin(setup.frame.width, setup.frame.height), small(setup.frame.width, setup.frame.height) {
+  for (int l = 0; l < std::min(world.shading.light_count, kLightBits); ++l)
+    shadows.emplace_back(setup.frame.width, setup.frame.height);
+  Marker marker(world, setup, threads, *this, counts);
   marker.run();
-  stand_alone = marker.stand_alone();
+}
+
+std::uint64_t SmallThings::lights(int x, int y) const {
+  std::uint64_t bits = 0;
+  for (std::size_t l = 0; l < shadows.size(); ++l)
+    bits |= std::uint64_t{shadows[l].has(x, y)} << l;
+  return bits;
 }
 
 }  // namespace grelha

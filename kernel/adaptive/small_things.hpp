@@ -14,9 +14,12 @@ namespace grelha {
 struct SmallThings {
   SmallThings(const World::Impl& world, const Setup& setup, int threads, TraceCounts& counts);
 
-  PixelMarks thin;     ///< where things show that are thinner than two pixels
-  PixelMarks shadows;  ///< where such shadows do
-  PixelMarks small;    ///< where either does that is no longer than that
+  /// Bits of the lights whose thin shadows may show in a pixel, see kLightBits.
+  std::uint64_t lights(int x, int y) const;
+
+  PixelMarks thin;                  ///< where things show that are thinner than two pixels
+  std::vector<PixelMarks> shadows;  ///< [bits of lights] where such shadows do
+  PixelMarks small;                 ///< where either does that is no longer than that
   /// Something thin is no part of a larger mesh: mirrors and clear surfaces may show it anywhere.
   bool stand_alone = false;
 };

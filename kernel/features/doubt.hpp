@@ -19,8 +19,8 @@ struct ToFollow {
 
 /// What is looked for on the first surface. What a mirror shows is looked for wherever there is one.
 struct LookFor {
-  bool things = true;   ///< that corners miss
-  bool shadows = true;  ///< and other uneven light
+  bool things = true;                         ///< that corners miss
+  std::uint64_t lights = ~std::uint64_t{0};  ///< that may be uneven: bits, see kLightBits
 };
 
 class Watcher {
@@ -56,7 +56,7 @@ class Watcher {
     if (whole) {
       if (!holds_patch(f, sight.id, far, met))
         return around(weight);
-    } else if (look.things || look.shadows || differ) {
+    } else if (look.things || look.lights != 0 || differ) {
       const Doubt found = met_inside(f, sight.id, far, differ, mirror_id, weight, met);
       if (!found.none())
         return found;
@@ -65,14 +65,14 @@ class Watcher {
       return around(weight);
     if (sight.id[0] == kNoPrimitive)
       return {};
-    return on_surface(beam, sight, met, {whole, look.shadows, follow}, weight);
+    return on_surface(beam, sight, met, {whole, look.lights, follow}, weight);
   }
 
  private:
   /// What to do on a surface.
   struct OnSurface {
     bool whole;
-    bool look_for_shadows;
+    std::uint64_t lights;
     ToFollow follow;
   };
 
@@ -142,10 +142,8 @@ class Watcher {
     bool within = false;
     if (!find_surfaces(beam, sight, s, within))
       return around(weight);
-    Doubt found;
-    if (on.look_for_shadows)
-      found = LightWatch(scene_, shading_, least_, n_)
-                  .uneven_lights({s, sight.id, met, on.whole}, weight);
+    const Doubt found = LightWatch(scene_, shading_, least_, n_)
+                            .uneven_lights({s, sight.id, met, on.whole}, on.lights, weight);
     const Way way{beam, s, sight.id[0], on.whole, on.follow, weight};
     if (field(s[0], kTransmission) > 0)
       return on.whole ? around(weight) : found + in_glass(way, within, found.inside);

@@ -32,14 +32,16 @@ class LightWatch {
   LightWatch(const SceneView& scene, const ShadingView& shading, float least, Counters& counters)
       : scene_(scene), shading_(shading), least_(least), n_(counters) {}
 
-  /// Doubt whether the lights are even between the corners.
-  Doubt uneven_lights(const Patch& patch, float weight) {
+  /// Doubt whether the lights of some bits are even between the corners.
+  Doubt uneven_lights(const Patch& patch, std::uint64_t lights, float weight) {
     const auto row = [&](MaterialField red) {
       return material_color(shading_.materials, patch.s[0].material, red);
     };
     const Vec3f answer = row(kDiffuseR) + row(kSpecularR);
     Doubt most;
-    for (int l = 0; l < shading_.light_count; ++l) {
+    for (int l = 0; lights != 0 && l < shading_.light_count; ++l) {
+      if (!(lights >> l % kLightBits & 1))
+        continue;
       const float* const light = shading_.lights + kLightFloats * l;
       const Vec3f sent = answer * Vec3f{light[3], light[4], light[5]};
       const float part = lesser(largest(sent), 1.f) * weight;

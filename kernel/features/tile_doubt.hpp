@@ -1,6 +1,8 @@
 #pragma once
 // Doubt of the pixels of a tile.
 
+#include <bit>
+
 #include "kernel/features/doubt.hpp"
 #include "kernel/scene/pixel_box.hpp"
 
@@ -95,6 +97,14 @@ inline std::uint64_t square_bits(int first, int size) {
   return bits;
 }
 
+/// The lights that some pixels are asked about.
+inline std::uint64_t lights_of(const PixelsAsked& asked, std::uint64_t bits) {
+  std::uint64_t lights = 0;
+  for (std::uint64_t left = asked.shadows & bits; left != 0; left &= left - 1)
+    lights |= asked.lights[std::countr_zero(left)];
+  return lights;
+}
+
 /// Doubt of the pixels of an 8 x 8 tile that are asked. Squares that are plain as a whole save their
 /// parts.
 inline void tile_doubt(Watcher& watcher,
@@ -107,9 +117,9 @@ inline void tile_doubt(Watcher& watcher,
                        PixelDoubts& found) {
   const int first = y0 % kTile * kTile + x0 % kTile;
   const std::uint64_t bits = square_bits(first, size);
-  if ((asked.any() & bits) == 0)
+  if (((asked.things | asked.shadows | asked.if_bent) & bits) == 0)
     return;
-  const LookFor look{(asked.things & bits) != 0, (asked.shadows & bits) != 0};
+  const LookFor look{(asked.things & bits) != 0, lights_of(asked, bits)};
   const Doubt doubt =
       watcher.doubt(pixel_beam(f, x0, y0, size), size > 1, {bounces, kClearsFollowed}, 1, look);
   if (size == 1 || doubt.none()) {

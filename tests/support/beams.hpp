@@ -34,8 +34,9 @@ inline PixelDoubts doubts(const Scene& scene,
   PixelDoubts found;
   TraceCounts counts;
   constexpr std::uint64_t kAll = ~std::uint64_t{0};
-  variant.loops.doubt(
-      w.view, w.shading, make_frame(camera), 0, 0, 2, 0, {kAll, kAll}, found, counts);
+  PixelsAsked asked{.things = kAll, .shadows = kAll};
+  std::fill(asked.lights, asked.lights + kTile * kTile, kAll);
+  variant.loops.doubt(w.view, w.shading, make_frame(camera), 0, 0, 2, 0, asked, found, counts);
   return found;
 }
 

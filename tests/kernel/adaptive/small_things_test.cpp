@@ -166,7 +166,7 @@ struct Lit {
 int expect_edges_marked(const Lit& lit, const RayList& rays) {
   const World world(lit.scene, {});
   const Parts parts = parts_dark(world, rays, lit.light);
-  EXPECT_EQ(missed(parts, small_things(world).shadows, false), 0);
+  EXPECT_EQ(missed(parts, small_things(world).shadows.at(0), false), 0);
   int edges = 0;
   for (const int n : parts)
     edges += n > 0 && n < kFine * kFine;
@@ -211,7 +211,7 @@ TEST(SmallThings, AreMarkedWhereShadowsOfLongRodsFall) {
 int marked(const SmallThings& things) {
   int n = 0;
   for (int p = 0; p < kSide * kSide; ++p)
-    n += things.thin.has(p % kSide, p / kSide) || things.shadows.has(p % kSide, p / kSide);
+    n += things.thin.has(p % kSide, p / kSide) || things.lights(p % kSide, p / kSide) != 0;
   return n;
 }
 
