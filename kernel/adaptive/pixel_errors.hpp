@@ -44,9 +44,7 @@ class PixelErrors {
   }
 
   /// Whether no sample of a pixel differed.
-  bool agrees(std::size_t p) const {
-    return own_[p] <= kAgreement / (samples(p) * samples(p));
-  }
+  bool agrees(std::size_t p) const { return own_[p] <= kAgreement / (samples(p) * samples(p)); }
   /// The greatest difference a channel of a pixel shows to one around it, on a screen.
   float contrast(int x, int y) const;
 
@@ -70,7 +68,7 @@ class PixelErrors {
   const Refinement& r_;
   const bool effects_;
   const int first_log_, threads_;
-  std::vector<float> shown_;  ///< [pixels][3] what a screen shows
+  std::vector<float> shown_;                    ///< [pixels][3] what a screen shows
   std::vector<float> own_, variance_, widest_;  ///< [pixels] own_: from a pixel's own differences
 };
 

@@ -17,9 +17,10 @@ struct ToFollow {
   int clears;  ///< surfaces that it passes through
 };
 
-/// What is looked for on the first surface. What a mirror shows is looked for wherever there is one.
+/// What is looked for on the first surface. What a mirror shows is looked for wherever there is
+/// one.
 struct LookFor {
-  bool things = true;                         ///< that corners miss
+  bool things = true;                        ///< that corners miss
   std::uint64_t lights = ~std::uint64_t{0};  ///< that may be uneven: bits, see kLightBits
 };
 
@@ -133,11 +134,8 @@ class Watcher {
   }
 
   /// What hides in the light on the surface that the corners met, in its mirror and behind it.
-  Doubt on_surface(const Beam& beam,
-                   const Sight& sight,
-                   const Met& met,
-                   const OnSurface& on,
-                   float weight) {
+  Doubt on_surface(
+      const Beam& beam, const Sight& sight, const Met& met, const OnSurface& on, float weight) {
     CornerSurfaces s;
     bool within = false;
     if (!find_surfaces(beam, sight, s, within))
@@ -160,9 +158,9 @@ class Watcher {
     trace_packet<false>(scene_, p, {16, true}, n_);
   }
 
-  /// Sends a ray to each point met, but for those on what passes for a surface that the corners see.
-  /// Where all of them end on such, nothing hides; where one ends on another side of their mesh,
-  /// that shows around as well.
+  /// Sends a ray to each point met, but for those on what passes for a surface that the corners
+  /// see. Where all of them end on such, nothing hides; where one ends on another side of their
+  /// mesh, that shows around as well.
   Doubt hidden(const BeamFrame& f,
                const Met& met,
                const std::uint32_t (&front)[kCorners],

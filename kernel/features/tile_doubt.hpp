@@ -105,8 +105,8 @@ inline std::uint64_t lights_of(const PixelsAsked& asked, std::uint64_t bits) {
   return lights;
 }
 
-/// Doubt of the pixels of an 8 x 8 tile that are asked. Squares that are plain as a whole save their
-/// parts.
+/// Doubt of the pixels of an 8 x 8 tile that are asked. Squares that are plain as a whole save
+/// their parts.
 inline void tile_doubt(Watcher& watcher,
                        const FrameView& f,
                        int x0,

@@ -68,8 +68,8 @@ struct VariantLoops {
                       RayCounts&);
   /// What could hide from samples of the pixels of the 8 x 8 tile at (x0, y0), followed into
   /// `bounces` mirrors: see Doubt in what_hides.hpp. What weighs less than `least` is left out. Of
-  /// pixels that are asked, all within the picture; the others keep what they hold, or get theirs as
-  /// well.
+  /// pixels that are asked, all within the picture; the others keep what they hold, or get theirs
+  /// as well.
   void (*doubt)(const SceneView&,
                 const ShadingView&,
                 const FrameView&,
