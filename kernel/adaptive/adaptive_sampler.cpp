@@ -15,6 +15,7 @@
 #include "kernel/adaptive/pixel_features.hpp"
 #include "kernel/adaptive/pixel_order.hpp"
 #include "kernel/adaptive/sampling_round.hpp"
+#include "kernel/adaptive/tolerances.hpp"
 #include "kernel/render/setup.hpp"
 #include "kernel/render/workspace.hpp"
 
@@ -105,8 +106,8 @@ class AdaptiveSampler {
     // what pixels claim and the last audit, which is as likely above the truth as below
     const bool by_audit = r_.met && !(totals.bound <= options_.refine.error);
     e.rmse = by_audit ? std::sqrt(r_.audited) : totals.rmse;
-    e.rmse_bound =
-        by_audit ? std::sqrt(r_.audited_bound) : std::max(totals.bound, std::sqrt(r_.audited));
+    e.rmse_bound = stated(by_audit ? std::sqrt(r_.audited_bound)
+                                   : std::max(totals.bound, std::sqrt(r_.audited)));
     e.audited = std::sqrt(r_.audited);
     e.met_at = r_.met_at;
     e.rounds = r_.rounds;
@@ -125,6 +126,12 @@ class AdaptiveSampler {
     errors_.measure();
     find_hidden_features(
         world_, setup_, errors_, options_.refine.error, stats_.threads, r_, stats_.trace);
+  }
+
+  /// A bound as it is told. Runs stop where theirs happens to be low; the error asked for is met
+  /// all the same.
+  double stated(double bound) const {
+    return std::min(kStoppedLow * bound, std::max(bound, options_.refine.error));
   }
 
   void fill(SampleMaps& maps) const {

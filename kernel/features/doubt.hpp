@@ -17,6 +17,13 @@ struct ToFollow {
   int clears;  ///< surfaces that it passes through
 };
 
+/// Whether a primitive sends on enough light to be followed.
+inline bool is_bent(const SceneView& scene, const ShadingView& shading, std::uint32_t id) {
+  const std::uint32_t m = material_of_any(scene.geometry, id);
+  return shading.materials.field[kTransmission][m] > 0 ||
+         largest(material_color(shading.materials, m, kMirrorR)) >= kLeastMirror;
+}
+
 /// What is looked for on the first surface. What a mirror shows is looked for wherever there is
 /// one.
 struct LookFor {
@@ -62,7 +69,9 @@ class Watcher {
       if (!found.none())
         return found;
     }
-    if (differ || (look.things && !closed(scene_.geometry, f, met, sight.id)))
+    if (differ)
+      return at_edge(beam, sight, follow, weight);
+    if (look.things && !closed(scene_.geometry, f, met, sight.id))
       return around(weight);
     if (sight.id[0] == kNoPrimitive)
       return {};
@@ -131,6 +140,37 @@ class Watcher {
     if (!all)
       found.around = weight;
     return found;
+  }
+
+  /// What may hide where the corners differ: also in a mirror or pane of triangles that one of them
+  /// met, as though it went on.
+  Doubt at_edge(const Beam& beam, const Sight& sight, ToFollow follow, float weight) {
+    for (int i = 0; i < kCorners; ++i) {
+      const std::uint32_t id = sight.id[i];
+      CornerSurfaces s;
+      bool within = false;
+      if (id == kNoPrimitive || !is_triangle(scene_.geometry, id) ||
+          !is_bent(scene_, shading_, id) || !go_on(beam, sight, i, s, within))
+        continue;
+      const Way way{beam, s, id, false, follow, weight};
+      return around(weight) + (field(s[0], kTransmission) > 0
+                                   ? in_glass(way, within, 0)
+                                   : in_mirror(way, largest(color(s[0], kMirrorR)), 0));
+    }
+    return around(weight);
+  }
+
+  /// The plane that one corner ray met, at all of them; false: one misses it.
+  bool go_on(const Beam& beam, const Sight& sight, int one, CornerSurfaces& s, bool& within) const {
+    const Surface<float> there = facing(beam, sight, one, within);
+    for (int i = 0; i < kCorners; ++i) {
+      const float t = dot(there.point - beam.org[i], there.normal) / dot(beam.dir[i], there.normal);
+      if (!(t > 0 && t < kInfinity))
+        return false;
+      s[i] = there;
+      s[i].point = beam.org[i] + t * beam.dir[i];
+    }
+    return true;
   }
 
   /// What hides in the light on the surface that the corners met, in its mirror and behind it.
@@ -236,20 +276,26 @@ class Watcher {
     return mirror_id != kNoPrimitive && (id == mirror_id || kin(scene_.geometry, id, mirror_id));
   }
 
-  /// The surfaces at the corners, their normals towards the beam, and whether it comes from
-  /// `within`; false when they turn too far.
-  bool find_surfaces(const Beam& beam, const Sight& sight, CornerSurfaces& s, bool& within) const {
+  /// The surface that a corner ray met, its normals towards the beam; whether that comes from
+  /// `within`.
+  Surface<float> facing(const Beam& beam, const Sight& sight, int i, bool& within) const {
     const Vec3f zero{0, 0, 0};
-    for (int i = 0; i < kCorners; ++i) {
-      s[i] = surface_of<float>(
-          scene_.geometry, sight.id[i], beam.org[i], beam.dir[i], sight.t[i], shading_.smooth);
-      const bool behind = dot(beam.dir[i], s[i].normal) > 0;
-      if (behind) {
-        s[i].normal = zero - s[i].normal;
-        s[i].shading = zero - s[i].shading;
-      }
-      if (i == 0)
-        within = behind;
+    Surface<float> s = surface_of<float>(
+        scene_.geometry, sight.id[i], beam.org[i], beam.dir[i], sight.t[i], shading_.smooth);
+    within = dot(beam.dir[i], s.normal) > 0;
+    if (within) {
+      s.normal = zero - s.normal;
+      s.shading = zero - s.shading;
+    }
+    return s;
+  }
+
+  /// The same at all corners; false when they turn too far.
+  bool find_surfaces(const Beam& beam, const Sight& sight, CornerSurfaces& s, bool& within) const {
+    s[0] = facing(beam, sight, 0, within);
+    for (int i = 1; i < kCorners; ++i) {
+      bool behind = false;
+      s[i] = facing(beam, sight, i, behind);
       if (behind != within || dot(s[i].normal, s[0].normal) < kOneSurface)
         return false;
     }

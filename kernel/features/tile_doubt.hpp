@@ -34,13 +34,6 @@ inline Beam pixel_beam(const FrameView& f, int x0, int y0, int size) {
   return b;
 }
 
-/// Whether a primitive sends on enough light to be followed.
-inline bool is_bent(const SceneView& scene, const ShadingView& shading, std::uint32_t id) {
-  const std::uint32_t m = material_of_any(scene.geometry, id);
-  return shading.materials.field[kTransmission][m] > 0 ||
-         largest(material_color(shading.materials, m, kMirrorR)) >= kLeastMirror;
-}
-
 /// Bits of the pixels of a tile of 8 x 8 whose middle shows a mirror or something clear.
 inline std::uint64_t bent_pixels(const SceneView& scene,
                                  const ShadingView& shading,

@@ -113,6 +113,26 @@ TEST_P(BeamBoxes, HoldWhatAMirrorShows) {
   }
 }
 
+/// A mirror that ends within the pixel, so that two of its corners see nothing.
+TEST_P(BeamBoxes, HoldWhatAMirrorShowsBesideItsEdge) {
+  Random random(9);
+  for (int i = 0; i < 100; ++i) {
+    SCOPED_TRACE(i);
+    const Float3 p = somewhere(random);
+    const double radius = random.log_in(.005, .03);
+    const float edge = p.x - static_cast<float>(random.in(.04, .09));
+    Scene s;
+    s.materials.resize(2);
+    s.materials[0].mirror = {.5f, .5f, .5f};
+    add_triangle(s, {edge, -50, 0}, {edge, 50, 0}, {100, 0, 0});
+    s.geometry.spheres.add({1.3f * p.x, 1.3f * p.y, 60}, static_cast<float>(radius * 1.3), 1);
+    const PixelDoubts found = look(s);
+    EXPECT_EQ(found.boxed[kPixel], .5f);
+    EXPECT_EQ(found.around[kPixel], 1);
+    expect_disc(found.box[kPixel], p, radius, radius * 1.02);
+  }
+}
+
 /// The shadow of a ball is at most 1.3 times as long as it is wide: light falls on the wall at 51
 /// degrees and more.
 TEST_P(BeamBoxes, HoldShadows) {
