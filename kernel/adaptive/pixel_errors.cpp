@@ -14,6 +14,8 @@ PixelErrors::PixelErrors(const Refinement& r, bool effects, int first_log, int t
       threads_(threads),
       shown_(3 * r.log.size()),
       own_(r.log.size()),
+      of_one_(r.log.size()),
+      watched_(r.log.size()),
       variance_(r.log.size()),
       widest_(r.log.size()) {}
 
@@ -52,24 +54,23 @@ float PixelErrors::contrast(int x, int y) const {
   return most;
 }
 
-float PixelErrors::with_neighbours(int x, int y, const RatioPowers& scale) const {
+float PixelErrors::with_neighbours(int x, int y, const RatioPowers& powers) const {
   const std::size_t p = at(x, y);
   float sum = 0;
-  float count = 0;
+  int count = 0;
   for (int j = std::max(y - 1, 0); j <= std::min(y + 1, r_.height - 1); ++j)
     for (int i = std::max(x - 1, 0); i <= std::min(x + 1, r_.width - 1); ++i) {
       const std::size_t q = at(i, j);
-      if (q == p || !watched(q))
-        continue;
-      const int power = kMostLog + r_.log[p] - r_.log[q];
-      sum += own_[q] * scale[static_cast<std::size_t>(power)];
-      count += 1;
+      sum += q == p ? 0 : of_one_[q];
+      count += q == p ? 0 : watched_[q];
     }
   if (count == 0)
     return own_[p];
   const float mine = differences(p);
-  const float theirs = mine * count / 8;
-  return (own_[p] * mine + sum / count * theirs) / (mine + theirs);
+  // of eight neighbours each an eighth as much
+  const float theirs = mine / 8;
+  const float shared = theirs * sum * powers[r_.log[p]];
+  return (own_[p] * mine + shared) / (mine + theirs * static_cast<float>(count));
 }
 
 /// Something was found in a box of the pixel. As long as no sample was sent there it counts as
@@ -86,9 +87,9 @@ PixelErrors::Hidden PixelErrors::in_box(std::size_t p) const {
   return {kHiddenVariance * share * share, kHiddenWidth * share};
 }
 
-void PixelErrors::judge_pixel(int x, int y, const RatioPowers& scale) {
+void PixelErrors::judge_pixel(int x, int y, const RatioPowers& powers) {
   const std::size_t p = at(x, y);
-  float v = static_cast<float>(r_.worse) * (watched(p) ? with_neighbours(x, y, scale) : own_[p]);
+  float v = static_cast<float>(r_.worse) * (watched_[p] ? with_neighbours(x, y, powers) : own_[p]);
   if (r_.least_by_sample > 0 && agrees(p))
     v = std::max(v, static_cast<float>(r_.least_by_sample) / samples(p));
   float wide = 2 * kNormal * std::sqrt(v);
@@ -124,16 +125,22 @@ void PixelErrors::measure() {
 
 void PixelErrors::judge() {
   measure();
-  RatioPowers scale;
-  scale[kMostLog] = 1;
-  for (std::size_t i = 0; i < kMostLog; ++i) {
-    scale[kMostLog + i + 1] = scale[kMostLog + i] * r_.variance_ratio;
-    scale[kMostLog - i - 1] = scale[kMostLog - i] / r_.variance_ratio;
+  RatioPowers powers;
+  powers[0] = 1;
+  for (std::size_t i = 0; i < kMostLog; ++i)
+    powers[i + 1] = powers[i] * r_.variance_ratio;
+#pragma omp parallel num_threads(threads_)
+  {
+#pragma omp for schedule(static)
+    for (std::size_t p = 0; p < own_.size(); ++p) {
+      watched_[p] = watched(p);
+      of_one_[p] = watched_[p] ? own_[p] / powers[r_.log[p]] : 0;
+    }
+#pragma omp for schedule(static)
+    for (int y = 0; y < r_.height; ++y)
+      for (int x = 0; x < r_.width; ++x)
+        judge_pixel(x, y, powers);
   }
-#pragma omp parallel for num_threads(threads_) schedule(static)
-  for (int y = 0; y < r_.height; ++y)
-    for (int x = 0; x < r_.width; ++x)
-      judge_pixel(x, y, scale);
 }
 
 PixelErrors::Totals PixelErrors::totals() const {

@@ -10,8 +10,8 @@ namespace grelha {
 /// What the samples of a refined picture say of its error, pixel by pixel. Nothing of it is kept:
 /// it follows from the picture.
 class PixelErrors {
-  /// variance_ratio^(i - kMostLog)
-  using RatioPowers = std::array<float, 2 * kMostLog + 1>;
+  /// variance_ratio^i
+  using RatioPowers = std::array<float, kMostLog + 1>;
 
  public:
   /// `effects`: there is more to sample than the pixel. `first_log`: of the samples that a pixel
@@ -62,14 +62,16 @@ class PixelErrors {
     float variance, width;
   };
   Hidden in_box(std::size_t p) const;
-  float with_neighbours(int x, int y, const RatioPowers& scale) const;
-  void judge_pixel(int x, int y, const RatioPowers& scale);
+  float with_neighbours(int x, int y, const RatioPowers& powers) const;
+  void judge_pixel(int x, int y, const RatioPowers& powers);
 
   const Refinement& r_;
   const bool effects_;
   const int first_log_, threads_;
   std::vector<float> shown_;                    ///< [pixels][3] what a screen shows
   std::vector<float> own_, variance_, widest_;  ///< [pixels] own_: from a pixel's own differences
+  std::vector<float> of_one_;  ///< [pixels] own_ as it would be of one sample; 0: not watched
+  std::vector<std::uint8_t> watched_;  ///< [pixels]
 };
 
 }  // namespace grelha

@@ -11,6 +11,8 @@ namespace {
 constexpr std::uint64_t kSamplesOfChunk = 4096;  ///< work handed to a thread at a time: at most
 /// the threshold falls by this a round: two or three rounds double all samples
 constexpr float kThresholdStep = .5f;
+/// Of so many pixels one at least is wanted: to look at all of them costs as much as that.
+constexpr std::size_t kPixelsAWanted = 256;
 constexpr float kLeastThreshold = 1e-20f;  ///< below it no pixel is worth a ray
 /// widest 95 % interval a pixel may have, in units of the error asked for, and the share of pixels
 /// that may have wider ones all the same; see RefineOptions::error
@@ -117,10 +119,11 @@ void tell_share(Refinement& r,
 
 /// Wants the pixels that gain more than the threshold, which falls until there are some.
 void want_gaining(Refinement& r, const PixelErrors& errors, const Pixels& order) {
+  const std::size_t least = order.size() / kPixelsAWanted;
   do {
     r.gain_threshold *= kThresholdStep;
     want(r, order, [&](std::size_t p) { return errors.gain_per_ray(p) > r.gain_threshold; });
-  } while (r.wanted.empty() && r.gain_threshold >= kLeastThreshold);
+  } while (r.wanted.size() <= least && r.gain_threshold >= kLeastThreshold);
 }
 
 /// Wants the pixels whose intervals are too wide, but for the widest of them that may be so.
