@@ -2,12 +2,13 @@
 """What --error promises against what it keeps, on generated scenes that are hard to sample.
 
     ./run perf error_suite [--kinds A,B] [--variants N] [--errors A,B] [--seeds N] [--size N]
-                           [--time] [--folder F] [--keep]
+                           [--time] [--folder F] [--keep] [SCENE...]
 
-A row per kind of perf/lib/hostile_scenes.py. For each E, the true RMSE over E: worst and median of
-all variants and seeds. Errors are in display units (channels cut to 0 to 1), against a mean of two
-references whose own error is at most a quarter of the finest E. It is taken off in squares; runs
-whose reference stays coarser than half their E are left out. Then shares of runs:
+A row per kind of perf/lib/hostile_scenes.py, and one of the files named, if any. For each E, the
+true RMSE over E: worst and median of all variants and seeds. Errors are in display units (channels
+cut to 0 to 1), against a mean of two references whose own error is at most a quarter of the finest
+E. It is taken off in squares; runs whose reference stays coarser than half their E are left out.
+Then shares of runs:
 
 - kept: true RMSE at most E; beyond: above 1.25 E
 - bound: the run's own bound is at least the true RMSE
@@ -19,6 +20,7 @@ Scenes, references and a CSV of all runs stay in the build folder, or in F.
 """
 import argparse
 import csv
+import dataclasses
 import pathlib
 import shlex
 import statistics
@@ -46,7 +48,7 @@ def reference(shop, path, options, least, finest):
     while True:
         picture, own = shop.reference(path, options, samples)
         if own <= finest / 4 or samples >= MOST:
-            write_pfm(picture, path.with_name(f"{path.stem}-reference.pfm"))
+            write_pfm(picture, shop.folder / f"{path.stem}-reference.pfm")
             return picture, own
         samples = min(4 * samples, MOST)
 
@@ -107,19 +109,34 @@ def without(measured, own):
     return max(measured ** 2 - own ** 2, 1e-18) ** .5
 
 
-def runs_of(shop, kind, variant, asked):
-    """A dict of COLUMNS for each E and seed of one scene."""
+@dataclasses.dataclass
+class Subject:
+    """A scene of the suite."""
+    kind: str
+    variant: str
+    path: pathlib.Path
+    options: list
+    bare: pathlib.Path = None  # without its tiny things, where these are counted
+
+
+def generated(folder, kind, variant):
     text, options = scene(kind, variant)
-    path = shop.folder / f"{kind}-{variant}.nff"
+    path, bare = folder / f"{kind}-{variant}.nff", None
     path.write_text(text)
-    options = [*options, "-j", "1"]
-    counted, finest = kind in COUNTED, min(asked.errors)
-    picture, own = reference(shop, path, options, LEAST_COUNTED if counted else LEAST, finest)
-    tiny, curve, point = None, None, shop.folder / "point.pfm"
-    if counted:
-        bare = shop.folder / f"{kind}-{variant}-bare.nff"
+    if kind in COUNTED:
+        bare = folder / f"{kind}-{variant}-bare.nff"
         bare.write_text(scene(kind, variant, bare=True)[0])
-        tiny = Tiny(picture, reference(shop, bare, options, LEAST, SHOWN / 4)[0])
+    return Subject(kind, variant, path, [*options, "-j", "1"], bare)
+
+
+def runs_of(shop, of, asked):
+    """A dict of COLUMNS for each E and seed of one scene."""
+    path, options = of.path, of.options
+    least = LEAST_COUNTED if of.bare else LEAST
+    picture, own = reference(shop, path, options, least, min(asked.errors))
+    tiny, curve, point = None, None, shop.folder / "point.pfm"
+    if of.bare:
+        tiny = Tiny(picture, reference(shop, of.bare, options, LEAST, SHOWN / 4)[0])
     if asked.time:
         curve = fixed_curve(shop, path, options, picture, own)
     for error in asked.errors:
@@ -130,7 +147,7 @@ def runs_of(shop, kind, variant, asked):
             true, seconds = without(rmse(image, picture), own), stats["seconds"]["render_cpu"]
             reached = time_to_reach(curve, true) if curve else None
             yield {
-                "kind": kind, "variant": variant, "error": error, "seed": seed, "true": true,
+                "kind": of.kind, "variant": of.variant, "error": error, "seed": seed, "true": true,
                 "reference_error": own, "claimed": told["rmse"], "bound": told["rmse_bound"],
                 "samples": told["samples"] / image[..., 0].size,
                 "things": int(tiny.counted.sum()) if tiny else 0,
@@ -235,7 +252,18 @@ def asked_for():
     parser.add_argument("--folder", default="error_suite",
                         help="where scenes and references stay [error_suite beside the program]")
     parser.add_argument("--keep", action="store_true", help="write docs/error-suite.csv as well")
+    parser.add_argument("scenes", nargs="*", type=pathlib.Path, metavar="SCENE",
+                        help="scene files and meshes besides")
     return parser.parse_args()
+
+
+def rows(shop, asked):
+    """What each row of the table is of."""
+    for kind in asked.kinds if asked.variants > 0 else []:
+        yield kind, [generated(shop.folder, kind, variant)
+                     for variant in range(min(asked.variants, VARIANTS))]
+    if asked.scenes:
+        yield "files", [Subject("files", path.name, path, ["-j", "1"]) for path in asked.scenes]
 
 
 def main():
@@ -245,10 +273,8 @@ def main():
     print("| kind | runs |", " | ".join(head), "| kept | beyond | bound | missed | mean | time |")
     print("|---|--:" + "|--:" * (len(head) + 6) + "|")
     runs = []
-    for kind in asked.kinds:
-        own = []
-        for variant in range(min(asked.variants, VARIANTS)):
-            own += runs_of(shop, kind, variant, asked)
+    for kind, subjects in rows(shop, asked):
+        own = [run for subject in subjects for run in runs_of(shop, subject, asked)]
         runs += own
         print(f"| {kind} |", " | ".join(Summary(own).cells(asked.errors)), "|", flush=True)
         write_csv(runs, shop.folder / "error-suite.csv")
@@ -257,7 +283,8 @@ def main():
     tell_worst(total.runs, shop.folder)
     if asked.keep:
         for r in runs:
-            r["command"] = r["command"].replace(f"{shop.folder}/", "")
+            for folder in [shop.folder, *(path.parent for path in asked.scenes)]:
+                r["command"] = r["command"].replace(f"{folder}/", "")
         write_csv(runs, DOCS / "error-suite.csv")
     sys.exit(not verdict(total))
 

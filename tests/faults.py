@@ -19,8 +19,8 @@ def tolerance(name, room, constant, value, planted, test, cases):
                  f"{constant} = {planted};", test, cases)
 
 
-def adaptive(name, file, old, new, cases):
-    return Fault(name, f"kernel/adaptive/{file}.cpp", old, new, "small_things", cases)
+def marks(name, file, old, new, cases):
+    return Fault(name, f"kernel/marks/{file}.cpp", old, new, "small_things", cases)
 
 
 def beam(name, file, old, new, cases):
@@ -263,17 +263,23 @@ FAULTS = [
     Fault("samples in boxes that weigh as all", "kernel/render/band.hpp",
           "return select(has, weight, one);", "return one;", "sampling", "*PixelBoxes.Move*"),
     tolerance("no disc", "adaptive", "kDiscInBox", ".7853982f", "0", "refinement", "*InABox*"),
-    adaptive("things of a pixel and more taken for large", "small_things", "kThin = 2;",
+    tolerance("bounds that stopping chose", "adaptive", "kStoppedLow", "1.15", "1", "refinement",
+              "Audits.Bounds*"),
+    marks("lamps out of focus by their middles", "glows",
+          "most + to_.reach(rod.aside, depth) + 1", "most", "Glows.AreMarked*"),
+    marks("lamps of any brightness", "glows", "std::ilogb(sent)", "std::ilogb(2 * sent)",
+          "Glows.AreMarked*"),
+    marks("things of a pixel and more taken for large", "small_things", "kThin = 2;",
              "kThin = 1;", "SmallThings.AreMarkedWhereTheyAreSeen"),
-    adaptive("shadows of cones on themselves", "small_things", "way_out(rod, part, ray, length);",
+    marks("shadows of cones on themselves", "small_things", "way_out(rod, part, ray, length);",
              "rod.reach;", "SmallThings.AreMarkedWhereTheirShadowsFall"),
-    adaptive("gaps in long shadows", "small_things", "(near || id[i] == id[i - 1])", "near",
+    marks("gaps in long shadows", "small_things", "(near || id[i] == id[i - 1])", "near",
              "SmallThings.AreMarkedWhereShadowsOfLong*"),
-    adaptive("meshes of any materials", "mesh_rims", "+ triangles_.material[i]", "",
+    marks("meshes of any materials", "mesh_rims", "+ triangles_.material[i]", "",
              "MeshRims.AreAroundHoles*"),
-    adaptive("places by the sign of their zeros", "mesh_rims", "(x + 0.f)", "(x)",
+    marks("places by the sign of their zeros", "mesh_rims", "(x + 0.f)", "(x)",
              "MeshRims.AreWhereEdges*"),
-    adaptive("meshes without outlines", "mesh_rims",
+    marks("meshes without outlines", "mesh_rims",
              "turns |= sides_[first] == (kFront | kBack);", "", "MeshRims.AreTheOutlines*"),
     Fault("cones met by their balls alone", "kernel/features/beam.hpp", "which < places.kCount;",
           "which < 0;", "beam", "*MeetsCones*"),

@@ -17,8 +17,8 @@ namespace {
 constexpr std::uint64_t kPixel = 12;  ///< bytes of a picture's pixel: three floats
 /// and of its file's, before that is written: .pfm and .hdr; a .png takes half of it
 constexpr std::uint64_t kFilePixel = 12;
-constexpr std::uint64_t kSum = 24;      ///< three sums of light
-constexpr std::uint64_t kRefined = 90;  ///< docs/architecture.md
+constexpr std::uint64_t kSum = 24;       ///< three sums of light
+constexpr std::uint64_t kRefined = 116;  ///< docs/architecture.md
 /// most pixels that are subdivided at a time, and bytes of one, measured
 constexpr std::uint64_t kSubdivided = 1 << 20, kSubdividedPixel = 56;
 constexpr std::uint64_t kMaps = 12;             ///< samples, errors and widths

@@ -14,10 +14,10 @@ PixelErrors::PixelErrors(const Refinement& r, bool effects, int first_log, int t
       threads_(threads),
       shown_(3 * r.log.size()),
       own_(r.log.size()),
-      of_one_(r.log.size()),
-      watched_(r.log.size()),
       variance_(r.log.size()),
-      widest_(r.log.size()) {}
+      widest_(r.log.size()),
+      of_one_(r.log.size()),
+      watched_(r.log.size()) {}
 
 float PixelErrors::differences(std::size_t p) const {
   return r_.log[p] == first_log_ ? kYoung : kOld;
@@ -106,9 +106,9 @@ void PixelErrors::judge_pixel(int x, int y, const RatioPowers& powers) {
     // An edge that comes in from a neighbour leaves no room among n samples of a net for more than
     // about 1 / n.
     const float doubt = std::max(r_.inside[p], r_.around[p] * contrast(x, y) / 3);
-    const float miss = doubt / samples(p);
+    const float miss = std::min(doubt / samples(p), 1.f);  // of what a screen shows
     v = std::max(v, kHiddenVariance * miss * miss);
-    wide = std::max(wide, kHiddenWidth * doubt / samples(p));
+    wide = std::max(wide, kHiddenWidth * miss);
   }
   variance_[p] = v;
   widest_[p] = wide;

@@ -1,6 +1,7 @@
 #include "kernel/adaptive/pixel_features.hpp"
 
-#include "kernel/adaptive/small_things.hpp"
+#include "kernel/marks/glows.hpp"
+#include "kernel/marks/small_things.hpp"
 #include "kernel/query/variants.hpp"
 
 namespace grelha {
@@ -29,6 +30,7 @@ struct Search {
   const Setup& setup;
   const PixelErrors& errors;
   const SmallThings& things;
+  const Glows& glows;
   const float faint;  ///< differences to pixels around that show no edge
   const float least;  ///< weight of light that is followed
   Refinement& r;
@@ -96,7 +98,7 @@ struct Search {
       }
       if (!(of.agree >> i & 1))
         continue;
-      r.inside[p] = found.inside[i];
+      r.inside[p] = std::max(found.inside[i], glows.brightest(x0 + i % kTile, y0 + i / kTile));
       r.around[p] = of.edges >> i & 1 ? 1 : found.around[i];
     }
   }
@@ -113,8 +115,9 @@ void find_hidden_features(const World::Impl& world,
                           TraceCounts& counts) {
   const SmallThings things(world, setup, threads, counts);
   const float faint = error > 0 ? kFaintInErrors * static_cast<float>(error) : kFaint;
+  const Glows glows(world, setup, error * kFaintGlow);
   const Search search{
-      world, setup, errors, things, faint, kForgiven * static_cast<float>(error), r};
+      world, setup, errors, things, glows, faint, kForgiven * static_cast<float>(error), r};
   const int columns = (r.width + kTile - 1) / kTile;
   const int rows = (r.height + kTile - 1) / kTile;
 #pragma omp parallel num_threads(threads)

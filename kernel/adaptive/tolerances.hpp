@@ -39,7 +39,9 @@ inline constexpr float kAgreement = .005f;
 /// samples it leaves a standard error of sqrt(kHiddenVariance) / (3 n) of it, a quarter of the
 /// error asked for. Where none is asked for: four steps of 8 bits (a choice).
 inline constexpr float kFaintInErrors = 8;
-/// The same of light: what hides in so much leaves sqrt(kHiddenVariance) / n of it, a fifth of the
+/// Times the error asked for: what a lamp out of focus adds to its pixels that counts (a choice).
+inline constexpr double kFaintGlow = .5;
+/// Of light: what hides in so much leaves sqrt(kHiddenVariance) / n of it, a fifth of the
 /// error asked for.
 inline constexpr float kForgiven = 2;
 inline constexpr float kFaint = 1.f / 64;

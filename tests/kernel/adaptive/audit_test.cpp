@@ -94,6 +94,21 @@ TEST_F(Audits, SeeThroughAPictureThatIsTooDark) {
   EXPECT_TRUE(found.agreeing.is_worse() || found.others.is_worse());
 }
 
+/// A run stops when its bound happens to be low: what is told is higher, up to the error asked for.
+TEST_F(Audits, BoundsAllowForThatTheyMadeRunsStop) {
+  PixelErrors errors(picture_, false, kFirstLog, 2);
+  errors.judge();
+  const double low = std::max(errors.totals().bound, std::sqrt(picture_.audited));
+  ASSERT_LT(low, options_.refine.error);
+  EXPECT_EQ(stats_.error.rmse_bound, std::min(1.15 * low, options_.refine.error));
+  options_.refine = {.samples = 100000};
+  Refinement budget = make_refinement(camera_);
+  EXPECT_TRUE(refine(world_, camera_, options_, budget, stats_));
+  PixelErrors of_budget(budget, false, kFirstLog, 2);
+  of_budget.judge();
+  EXPECT_EQ(stats_.error.rmse_bound, of_budget.totals().bound);
+}
+
 TEST_F(Audits, AreTheSameForAnyNumberOfThreads) {
   const double two = audited(picture_).mean_square();
   stats_.threads = 1;

@@ -1,10 +1,10 @@
-#include "kernel/adaptive/small_things.hpp"
+#include "kernel/marks/small_things.hpp"
 
 #include <atomic>
 #include <mutex>
 
-#include "kernel/adaptive/mesh_rims.hpp"
-#include "kernel/adaptive/rod.hpp"
+#include "kernel/marks/mesh_rims.hpp"
+#include "kernel/marks/to_picture.hpp"
 #include "kernel/scene/pixel_box.hpp"
 #include "kernel/scene/turns.hpp"
 
@@ -23,88 +23,11 @@ constexpr std::size_t kPixelsAThing = 2;
 constexpr std::size_t kThingsOfTurn = 1024;
 constexpr int kMostPlaces = 64;  ///< of a rod that its shadow is followed from
 
-/// A camera in double.
-class ToPicture {
- public:
-  explicit ToPicture(const FrameView& f) : f_(f) {
-    for (int a = 0; a < 3; ++a) {
-      eye[a] = f.eye[a];
-      ff_ += square(f.forward[a]);
-      rr_ += square(f.right[a]);
-      uu_ += square(f.up[a]);
-    }
-  }
-  struct Spot {
-    double x, y;   ///< pixels
-    double depth;  ///< in lengths of `forward`
-  };
-  Spot operator()(const Place3& p) const {
-    double z = 0;
-    double x = 0;
-    double y = 0;
-    for (int a = 0; a < 3; ++a) {
-      const double d = p[a] - eye[a];
-      z += d * f_.forward[a];
-      x += d * f_.right[a];
-      y += d * f_.up[a];
-    }
-    z /= ff_;
-    return {.5 * f_.width + x / (rr_ * z), .5 * f_.height - y / (uu_ * z), z};
-  }
-  /// How wide a pixel is.
-  double pixel(double depth) const { return depth * std::sqrt(rr_); }
-  /// Pixels that a ball of a radius reaches from its middle at most, anywhere in the picture: balls
-  /// look longer in its corners.
-  double reach(double radius, double depth) const {
-    const double corner = square(.5 * f_.width) * rr_ + square(.5 * f_.height) * uu_;
-    return radius / pixel(depth) * std::sqrt(1 + corner / ff_);
-  }
-
-  Place3 eye;
-
- private:
-  static double square(double x) { return x * x; }
-  const FrameView& f_;
-  double ff_ = 0;
-  double rr_ = 0;
-  double uu_ = 0;
-};
-
-/// Cuts off what of a rod lies behind the eye, or nearly so; false: nothing is left.
-bool cut_behind(const ToPicture& to, Rod& rod) {
-  const double z[2] = {to(rod.end[0]).depth, to(rod.end[1]).depth};
-  const double least = 1e-3 * std::max(z[0], z[1]);
-  if (!(least > 0))
-    return false;
-  for (int k = 0; k < 2; ++k)
-    for (int a = 0; z[k] < least && a < 3; ++a)
-      rod.end[k][a] += (least - z[k]) / (z[1 - k] - z[k]) * (rod.end[1 - k][a] - rod.end[k][a]);
-  return true;
-}
-
 /// Where thin things may show, and those among them that are small.
 struct Marks {
   PixelMarks& thin;
   PixelMarks& small;
 };
-
-/// Marks the way from one spot to another.
-void mark_way(const ToPicture::Spot& a, const ToPicture::Spot& b, double reach, PixelMarks& marks) {
-  const double dx = b.x - a.x;
-  const double dy = b.y - a.y;
-  const double most = 4. * (marks.width() + marks.height());
-  const double steps = std::clamp(std::ceil(std::max(std::abs(dx), std::abs(dy))), 1., most);
-  for (int i = 0; i < steps; ++i) {
-    const double x0 = a.x + i / steps * dx;
-    const double y0 = a.y + i / steps * dy;
-    const double x1 = a.x + (i + 1) / steps * dx;
-    const double y1 = a.y + (i + 1) / steps * dy;
-    marks.mark(std::min(x0, x1) - reach,
-               std::min(y0, y1) - reach,
-               std::max(x0, x1) + reach,
-               std::max(y0, y1) + reach);
-  }
-}
 
 /// Whether a rod looks thin to the eye; what of it lies behind that is cut off.
 bool looks_thin(const ToPicture& to, Rod& rod) {

@@ -1,4 +1,4 @@
-#include "kernel/adaptive/mesh_rims.hpp"
+#include "kernel/marks/mesh_rims.hpp"
 
 #include <bit>
 

@@ -1,5 +1,5 @@
 // Pixels that are looked at since something thin, or its shadow, may be there.
-#include "kernel/adaptive/small_things.hpp"
+#include "kernel/marks/small_things.hpp"
 
 #include "tests/support/rays.hpp"
 #include "tests/support/scenes.hpp"

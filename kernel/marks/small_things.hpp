@@ -3,7 +3,7 @@
 // agree may all have missed it. What is wider covers whole pixels, whose samples tell of it.
 
 #include "grelha/stats.hpp"
-#include "kernel/adaptive/pixel_marks.hpp"
+#include "kernel/marks/pixel_marks.hpp"
 #include "kernel/render/setup.hpp"
 #include "kernel/world/world_impl.hpp"
 

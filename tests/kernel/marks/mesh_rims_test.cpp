@@ -1,5 +1,5 @@
 // Where meshes end, and where they turn away from a point.
-#include "kernel/adaptive/mesh_rims.hpp"
+#include "kernel/marks/mesh_rims.hpp"
 
 #include <gtest/gtest.h>
 

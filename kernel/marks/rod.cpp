@@ -1,4 +1,4 @@
-#include "kernel/adaptive/rod.hpp"
+#include "kernel/marks/rod.hpp"
 
 #include <cstdint>
 
