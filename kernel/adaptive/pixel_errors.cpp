@@ -143,6 +143,11 @@ void PixelErrors::judge() {
   }
 }
 
+float PixelErrors::forgiven(double error) const {
+  const double of_one = std::sqrt(double{kHiddenVariance}) / (1 << first_log_);
+  return static_cast<float>(kForgiven * error / of_one);
+}
+
 PixelErrors::Totals PixelErrors::totals() const {
   double sum = 0;
   double spread = 0;

@@ -26,6 +26,9 @@ class PixelErrors {
   /// stops no pixel and drives none on.
   void judge();
 
+  /// Weight of light in which what hides does not matter, for an error asked for.
+  float forgiven(double error) const;
+
   struct Totals {
     double sum, bound;    ///< of the variances; of the RMSE
     double rmse, widest;  ///< as ErrorStats has them

@@ -116,8 +116,7 @@ void find_hidden_features(const World::Impl& world,
   const SmallThings things(world, setup, threads, counts);
   const float faint = error > 0 ? kFaintInErrors * static_cast<float>(error) : kFaint;
   const Glows glows(world, setup, error * kFaintGlow);
-  const Search search{
-      world, setup, errors, things, glows, faint, kForgiven * static_cast<float>(error), r};
+  const Search search{world, setup, errors, things, glows, faint, errors.forgiven(error), r};
   const int columns = (r.width + kTile - 1) / kTile;
   const int rows = (r.height + kTile - 1) / kTile;
 #pragma omp parallel num_threads(threads)

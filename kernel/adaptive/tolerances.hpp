@@ -35,15 +35,16 @@ inline constexpr float kDiscInBox = .7853982f;
 /// of it where variances fall by .4 a doubling.
 inline constexpr float kAgreement = .005f;
 
+/// Times the error asked for: what a lamp out of focus adds to its pixels that counts (a choice).
+inline constexpr double kFaintGlow = .5;
+/// What hides in light of weight w leaves a standard error of sqrt(kHiddenVariance) w / n among the
+/// n samples that a pixel begins with: of so much of the error asked for, light is not followed (a
+/// choice: were it in every pixel, the whole would be off by a twentieth).
+inline constexpr double kForgiven = 1. / 3;
 /// Pixels that look like those around them, within this, hide no edge that matters: with n = 4
 /// samples it leaves a standard error of sqrt(kHiddenVariance) / (3 n) of it, a quarter of the
 /// error asked for. Where none is asked for: four steps of 8 bits (a choice).
 inline constexpr float kFaintInErrors = 8;
-/// Times the error asked for: what a lamp out of focus adds to its pixels that counts (a choice).
-inline constexpr double kFaintGlow = .5;
-/// Of light: what hides in so much leaves sqrt(kHiddenVariance) / n of it, a fifth of the
-/// error asked for.
-inline constexpr float kForgiven = 2;
 inline constexpr float kFaint = 1.f / 64;
 
 }  // namespace grelha
