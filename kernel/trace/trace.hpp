@@ -9,8 +9,9 @@
 namespace grelha::GRELHA_ISA {
 
 /// Whether a ray that starts far away comes nearer by that much of t.
+inline constexpr double kFarthest = 1e300;
 inline bool moves(double shift) {
-  return shift > 0 && shift < 1e300;
+  return shift > 0 && shift < kFarthest;
 }
 
 /// Moves the origin of a ray that starts far from everything finite to where it comes near, in
@@ -89,10 +90,14 @@ inline Mask<Lanes> starts_beyond(const SceneView& scene, float reach, const Walk
   return far;
 }
 
-/// Where approach() would move the rays of a group of lanes to, whether they start far or not.
+/// Where approach() would move the rays of a group of lanes to, whether they start far or not, and
+/// their t from there.
 struct Approached {
   double shift[kWidth<Lanes>];
   float org[3][kWidth<Lanes>];
+  float t_min[kWidth<Lanes>], best[kWidth<Lanes>];
+  float shift_f[kWidth<Lanes>];
+  float moves[kWidth<Lanes>];  ///< 1: what starts far is moved
 
   [[gnu::always_inline]] Approached(const SceneView& scene, const WalkingRays& p, int i) {
     for (int k = 0; k < kWidth<Lanes>; k += kWidth<DoubleLanes>)
@@ -118,10 +123,39 @@ struct Approached {
     const DoubleLanes reach(static_cast<double>(scene.reach));
     const DoubleLanes by = along / dd - reach / square_root(dd);
     store(shift + k, by);
+    store_narrow(t_min + k, take<DoubleLanes>(p.t_min + i + k) - by);
+    store_narrow(best + k, take<DoubleLanes>(p.best + i + k) - by);
+    store_narrow(shift_f + k, by);
+    const DoubleLanes no(0);
+    const auto moving = both(by > no, by < DoubleLanes(kFarthest));
+    store_narrow(moves + k, select(moving, DoubleLanes(1), no));
     for (int a = 0; a < 3; ++a)
       store_narrow(org[a] + k, o[a] + by * d[a]);
   }
 };
+
+inline bool any_infinite(const SceneView& scene) {
+  bool some = false;
+  InfiniteShapes::for_each([&]<class Shape>() { some |= scene.geometry.of<Shape>().count > 0; });
+  return some;
+}
+
+/// Moves rays of a group that have met nothing.
+[[gnu::always_inline]] inline void move_near(const SceneView& scene,
+                                             Packet<InFloat>& p,
+                                             int i,
+                                             const Approached& to) {
+  const Mask<Lanes> moving = load<Lanes>(to.moves) > Lanes(0);
+  const Mask<Lanes> moved = both(starts_beyond(scene, scene.reach, p, i), moving);
+  const auto take = [&](float* of, const float* from) {
+    store(of + i, select(moved, load<Lanes>(from), load<Lanes>(of + i)));
+  };
+  take(p.t_min, to.t_min);
+  take(p.best, to.best);
+  take(p.shift, to.shift_f);
+  for (int a = 0; a < 3; ++a)
+    take(p.org[a], to.org[a]);
+}
 
 /// approach() for the rays of a packet that have met planes and nothing else yet. Planes come
 /// first, since a ray that leaves a plane and is then moved along would meet it again, by as little
@@ -140,6 +174,11 @@ inline void bring_near(const SceneView& scene, Packet<In>& p) {
         shift = 0;
     p.moved = true;
     const Approached to(scene, p, i);
+    if constexpr (!In::kDouble)
+      if (!any_infinite(scene)) {
+        move_near(scene, p, i, to);
+        continue;
+      }
     each_bit(far, [&](int k) {
       if (i + k >= p.size || !moves(to.shift[k]))
         return;
