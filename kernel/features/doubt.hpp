@@ -17,11 +17,14 @@ struct ToFollow {
   int clears;  ///< surfaces that it passes through
 };
 
-/// Whether a primitive sends on enough light to be followed.
-inline bool is_bent(const SceneView& scene, const ShadingView& shading, std::uint32_t id) {
+/// Whether a primitive sends on enough light to be followed: `least` by a mirror.
+inline bool is_bent(const SceneView& scene,
+                    const ShadingView& shading,
+                    std::uint32_t id,
+                    float least = kLeastMirror) {
   const std::uint32_t m = material_of_any(scene.geometry, id);
   return shading.materials.field[kTransmission][m] > 0 ||
-         largest(material_color(shading.materials, m, kMirrorR)) >= kLeastMirror;
+         largest(material_color(shading.materials, m, kMirrorR)) >= least;
 }
 
 /// What is looked for on the first surface. What a mirror shows is looked for wherever there is
@@ -40,6 +43,9 @@ class Watcher {
         least_(least),
         least_sent_(greater(kLeastMirror, least / greater(1.f, shading.brightest))),
         n_(counters) {}
+
+  /// Weight of the faintest mirror that is followed.
+  float least_sent() const { return least_sent_; }
 
   /// What may hide in the light that comes along the beam with `weight`. None: it is plain, one
   /// smooth surface under light that is whole or wholly blocked, and so in mirrors and behind clear

@@ -34,12 +34,14 @@ inline Beam pixel_beam(const FrameView& f, int x0, int y0, int size) {
   return b;
 }
 
-/// Bits of the pixels of a tile of 8 x 8 whose middle shows a mirror or something clear.
+/// Bits of the pixels of a tile of 8 x 8 whose middle shows something clear, or a mirror of weight
+/// `least`.
 inline std::uint64_t bent_pixels(const SceneView& scene,
                                  const ShadingView& shading,
                                  const FrameView& f,
                                  int x0,
                                  int y0,
+                                 float least,
                                  Counters& n) {
   Packet<InFloat> p;
   p.size = kTile * kTile;
@@ -51,7 +53,7 @@ inline std::uint64_t bent_pixels(const SceneView& scene,
   trace_packet<false>(scene, p, {p.size, true}, n);
   std::uint64_t bent = 0;
   for (int i = 0; i < p.size; ++i)
-    if (id_of(p.id[i]) != kNoPrimitive && is_bent(scene, shading, id_of(p.id[i])))
+    if (id_of(p.id[i]) != kNoPrimitive && is_bent(scene, shading, id_of(p.id[i]), least))
       bent |= std::uint64_t{1} << i;
   return bent;
 }
@@ -113,8 +115,11 @@ inline void tile_doubt(Watcher& watcher,
   if (((asked.things | asked.shadows | asked.if_bent) & bits) == 0)
     return;
   const LookFor look{(asked.things & bits) != 0, lights_of(asked, bits)};
+  // Of squares that only show what bends light small ones are as good as a pixel.
+  const bool bent_alone = !look.things && look.lights == 0;
+  const bool whole = bent_alone ? size > kBentSquare : size > 1;
   const Doubt doubt =
-      watcher.doubt(pixel_beam(f, x0, y0, size), size > 1, {bounces, kClearsFollowed}, 1, look);
+      watcher.doubt(pixel_beam(f, x0, y0, size), whole, {bounces, kClearsFollowed}, 1, look);
   if (size == 1 || doubt.none()) {
     set_square(found, first, size, doubt);
     return;

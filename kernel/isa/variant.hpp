@@ -63,7 +63,7 @@ inline void doubt(const SceneView& scene,
   PixelsAsked of = asked;
   if (of.if_bent != 0)
     of.if_bent &= shading.reflects || shading.refracts
-                      ? bent_pixels(scene, shading, frame, x0, y0, n)
+                      ? bent_pixels(scene, shading, frame, x0, y0, watcher.least_sent(), n)
                       : std::uint64_t{0};
   tile_doubt(watcher, frame, x0, y0, kTile, bounces, of, found);
   add(n, trace_counts);
