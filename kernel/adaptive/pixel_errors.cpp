@@ -23,17 +23,24 @@ float PixelErrors::differences(std::size_t p) const {
   return r_.log[p] == first_log_ ? kYoung : kOld;
 }
 
-/// Variance of a pixel, mean of its channels, from its own differences: of the three levels there
-/// are 1, 2 and 4.
+/// Variance by squared differences of halves, quarters and eighths, so many in all.
+float PixelErrors::variance_by(float halves, float quarters, float eighths, float count) const {
+  const float ratio = r_.variance_ratio;
+  const float drop = (halves + ratio * (quarters + ratio * eighths)) / (4 * count);
+  return drop * ratio / (1 - ratio);
+}
+
+/// The same of channel i % 3 of pixel i / 3: of the three levels there are 1, 2 and 4.
+float PixelErrors::channel_variance(std::size_t i) const {
+  return variance_by(r_.squares[0][i], r_.squares[1][i], r_.squares[2][i], differences(i / 3));
+}
+
+/// Variance of a pixel, mean of its channels, from its own differences.
 float PixelErrors::own_variance(std::size_t p) const {
   float sum = 0;
   for (std::size_t c = 0; c < 3; ++c) {
     const std::size_t i = p * 3 + c;
-    const float drop =
-        (r_.squares[0][i] +
-         r_.variance_ratio * (r_.squares[1][i] + r_.variance_ratio * r_.squares[2][i])) /
-        (4 * differences(p));
-    const float v = drop * r_.variance_ratio / (1 - r_.variance_ratio);
+    const float v = channel_variance(i);
     const bool white = shown_[i] == 1 && mean_so_far(r_, i) - 3 * std::sqrt(v) > 1;
     if (!white)  // on any screen
       sum += v;
@@ -87,6 +94,28 @@ PixelErrors::Hidden PixelErrors::in_box(std::size_t p) const {
   return {kHiddenVariance * share * share, kHiddenWidth * share};
 }
 
+/// The weight of what none of a pixel's samples met.
+float PixelErrors::doubt_of(int x, int y) const {
+  const std::size_t p = at(x, y);
+  // An edge that comes in from a neighbour leaves no room among n samples of a net for more than
+  // about 1 / n.
+  if (agrees(p))
+    return r_.around[p] > 0 ? std::max(r_.inside[p], r_.around[p] * contrast(x, y) / 3)
+                            : r_.inside[p];
+  return r_.inside[p] > 1 && !met_lamp(p) ? r_.inside[p] : 0;
+}
+
+/// Whether what differs among a pixel's samples is as much as one of them that met a lamp of weight
+/// w makes of it, in the channel where it is brightest: w / 2 at least, see Glows.
+bool PixelErrors::met_lamp(std::size_t p) const {
+  const float of_one = .5f * r_.inside[p] / samples(p);
+  const float square = kSlightlyLess * of_one * of_one;  // in means of all, twice of halves, ...
+  const float least = variance_by(4 * square, 16 * square, 64 * square, kOld);
+  return std::max(
+             {channel_variance(p * 3), channel_variance(p * 3 + 1), channel_variance(p * 3 + 2)}) >=
+         least;
+}
+
 void PixelErrors::judge_pixel(int x, int y, const RatioPowers& powers) {
   const std::size_t p = at(x, y);
   float v = static_cast<float>(r_.worse) * (watched_[p] ? with_neighbours(x, y, powers) : own_[p]);
@@ -102,10 +131,7 @@ void PixelErrors::judge_pixel(int x, int y, const RatioPowers& powers) {
   // three), on either side: that is how wide the interval must be. Its share has Beta(1, n + 1),
   // whose second moment is 2 / n^2; it differs from what they met by the doubt at most, by about a
   // quarter of it in the mean.
-  if ((r_.inside[p] > 0 || r_.around[p] > 0) && agrees(p)) {
-    // An edge that comes in from a neighbour leaves no room among n samples of a net for more than
-    // about 1 / n.
-    const float doubt = std::max(r_.inside[p], r_.around[p] * contrast(x, y) / 3);
+  if (const float doubt = doubt_of(x, y); doubt > 0) {
     const float miss = std::min(doubt / samples(p), 1.f);  // of what a screen shows
     v = std::max(v, kHiddenVariance * miss * miss);
     wide = std::max(wide, kHiddenWidth * miss);
@@ -146,6 +172,10 @@ void PixelErrors::judge() {
 float PixelErrors::forgiven(double error) const {
   const double of_one = std::sqrt(double{kHiddenVariance}) / (1 << first_log_);
   return static_cast<float>(kForgiven * error / of_one);
+}
+
+float PixelErrors::faint(double error) {
+  return error > 0 ? kFaintInErrors * static_cast<float>(error) : kFaint;
 }
 
 PixelErrors::Totals PixelErrors::totals() const {

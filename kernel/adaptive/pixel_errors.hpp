@@ -28,6 +28,8 @@ class PixelErrors {
 
   /// Weight of light in which what hides does not matter, for an error asked for.
   float forgiven(double error) const;
+  /// Differences to pixels around that show no edge that matters, for an error asked for, or 0.
+  static float faint(double error);
 
   struct Totals {
     double sum, bound;    ///< of the variances; of the RMSE
@@ -59,12 +61,16 @@ class PixelErrors {
   float samples(std::size_t p) const { return static_cast<float>(1u << r_.log[p]); }
   bool watched(std::size_t p) const { return effects_ || r_.inside[p] > 0 || r_.around[p] > 0; }
   float differences(std::size_t p) const;
+  float variance_by(float halves, float quarters, float eighths, float count) const;
+  float channel_variance(std::size_t i) const;
   float own_variance(std::size_t p) const;
   /// What hides from a pixel's samples adds to its variance, and how wide its interval must be.
   struct Hidden {
     float variance, width;
   };
   Hidden in_box(std::size_t p) const;
+  float doubt_of(int x, int y) const;
+  bool met_lamp(std::size_t p) const;
   float with_neighbours(int x, int y, const RatioPowers& powers) const;
   void judge_pixel(int x, int y, const RatioPowers& powers);
 

@@ -98,8 +98,19 @@ struct Search {
       }
       if (!(of.agree >> i & 1))
         continue;
-      r.inside[p] = std::max(found.inside[i], glows.brightest(x0 + i % kTile, y0 + i / kTile));
+      r.inside[p] = found.inside[i];
       r.around[p] = of.edges >> i & 1 ? 1 : found.around[i];
+    }
+    add_glows(x0, y0);
+  }
+
+  /// Where samples vary, a lamp shows more than they do.
+  void add_glows(int x0, int y0) const {
+    for (int i = 0; i < kTile * kTile; ++i) {
+      const int x = x0 + i % kTile;
+      const int y = y0 + i / kTile;
+      if (x < r.width && y < r.height)
+        r.inside[pixel_at(r, x, y)] = std::max(r.inside[pixel_at(r, x, y)], glows.brightest(x, y));
     }
   }
 };
@@ -114,8 +125,8 @@ void find_hidden_features(const World::Impl& world,
                           Refinement& r,
                           TraceCounts& counts) {
   const SmallThings things(world, setup, threads, counts);
-  const float faint = error > 0 ? kFaintInErrors * static_cast<float>(error) : kFaint;
   const Glows glows(world, setup, error * kFaintGlow);
+  const float faint = PixelErrors::faint(error);
   const Search search{world, setup, errors, things, glows, faint, errors.forgiven(error), r};
   const int columns = (r.width + kTile - 1) / kTile;
   const int rows = (r.height + kTile - 1) / kTile;

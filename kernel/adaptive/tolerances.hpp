@@ -28,6 +28,9 @@ inline constexpr float kHiddenVariance = .15f;
 /// / n on either side (the rule of three).
 inline constexpr float kHiddenWidth = 6;
 
+/// Times what differs where one sample met a lamp: what rounding leaves of it.
+inline constexpr float kSlightlyLess = .99f;
+
 /// Share of its box that a disc covers, pi / 4.
 inline constexpr float kDiscInBox = .7853982f;
 

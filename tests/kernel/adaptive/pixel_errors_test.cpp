@@ -124,6 +124,71 @@ TEST(PixelErrors, SeeASampleThatDiffersByATenth) {
   EXPECT_FALSE(agree_but_for_one(1));
 }
 
+/// Light that is forgiven, were it to hide in every pixel, would leave a third of the error asked
+/// for: with that the whole is off by a twentieth.
+TEST(PixelErrors, ForgiveWhatLeavesATwentieth) {
+  for (const double error : {.1, .01, .001}) {
+    Refinement r = pixels(3, kFirstLog);
+    r.around.assign(3, 0);
+    r.inside.assign(3, PixelErrors(r, false, kFirstLog, 1).forgiven(error));
+    const double left = judged(r).totals().rmse / error;
+    EXPECT_LE(std::hypot(1, left), 1.055) << error;
+    EXPECT_GT(left, .3) << error;  // and no more is followed than that takes
+  }
+}
+
+/// Edges that are not asked about, were they in every pixel, would leave a quarter of it among four
+/// samples.
+TEST(PixelErrors, TakeFaintDifferencesForNoEdge) {
+  constexpr int kLogOfFour = 2;
+  for (const double error : {.03, .01, .001}) {
+    const float faint = PixelErrors::faint(error);
+    Refinement r = pixels(2, kLogOfFour);
+    r.inside.assign(2, 0);
+    r.around.assign(2, 1);
+    for (std::size_t c = 3; c < 6; ++c)
+      r.sums[c] = static_cast<std::int64_t>(4 * double{faint} * kLightUnit);
+    PixelErrors errors(r, false, kLogOfFour, 1);
+    errors.judge();
+    ASSERT_NEAR(errors.contrast(0, 0), faint, 1e-6);
+    const double left = errors.totals().rmse / error;
+    EXPECT_LE(left, .26) << error;
+    EXPECT_GT(left, .2) << error;
+  }
+  EXPECT_LE(PixelErrors::faint(0) * 256, 4);  // steps of a picture of 8 bits
+}
+
+/// The interval of a pixel of which one sample met light `sent` in one channel and all others
+/// nothing, where `inside` is doubted.
+float width_of_one(std::uint8_t log, float ratio, float sent, float inside) {
+  Refinement r = pixels(1, log);
+  r.variance_ratio = ratio;
+  r.inside = {inside};
+  r.around = {0};
+  const float of_one = sent / static_cast<float>(1 << log);
+  float square = 4 * of_one * of_one;
+  for (int level = 0; level < (log == kFirstLog ? 2 : 3); ++level, square *= 4)
+    r.squares[static_cast<std::size_t>(level)][1] = square;
+  return judged(r).widths()[0];
+}
+
+/// A lamp is doubted among samples that vary less than one would that met it, and no longer once
+/// one did. What is no brighter than white is doubted among samples that agree alone.
+TEST(PixelErrors, DoubtLampsUntilASampleMeetsThem) {
+  constexpr float kSent = 40;  // Glows say up to twice as much
+  for (const std::uint8_t log : {std::uint8_t{kFirstLog}, std::uint8_t{10}})
+    for (const float ratio : {.1f, .4f, .7f}) {
+      const auto width = [&](float sent, float inside) {
+        return width_of_one(log, ratio, sent, inside);
+      };
+      const float hidden = 6 * std::min(2 * kSent / static_cast<float>(1 << log), 1.f);
+      EXPECT_EQ(width(.2f, 2 * kSent), hidden) << ratio;
+      EXPECT_EQ(width(kSent, 2 * kSent), width(kSent, 0)) << ratio;
+      EXPECT_EQ(width(kSent, kSent), width(kSent, 0)) << ratio;
+      EXPECT_EQ(width(1, 1), width(1, 0)) << ratio;
+    }
+}
+
 /// What is in a box counts as missed until samples are sent there: a disc in the box, of which the
 /// mean shows nothing. Then it is what none of them may have met, as in a pixel.
 TEST(PixelErrors, CountWhatIsInABoxAsMissed) {
