@@ -94,7 +94,8 @@ PixelErrors::Hidden PixelErrors::in_box(std::size_t p) const {
   return {kHiddenVariance * share * share, kHiddenWidth * share};
 }
 
-/// The weight of what none of a pixel's samples met.
+/// The weight of what none of a pixel's samples met. What is brighter than white shows by itself
+/// when one did, whatever else makes them differ.
 float PixelErrors::doubt_of(int x, int y) const {
   const std::size_t p = at(x, y);
   // An edge that comes in from a neighbour leaves no room among n samples of a net for more than

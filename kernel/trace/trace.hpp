@@ -8,8 +8,10 @@
 
 namespace grelha::GRELHA_ISA {
 
-/// Whether a ray that starts far away comes nearer by that much of t.
+/// More than any t by which a ray comes nearer.
 inline constexpr double kFarthest = 1e300;
+
+/// Whether a ray that starts far away comes nearer by that much of t.
 inline bool moves(double shift) {
   return shift > 0 && shift < kFarthest;
 }
@@ -134,6 +136,7 @@ struct Approached {
   }
 };
 
+/// Whether there is anything that has no end.
 inline bool any_infinite(const SceneView& scene) {
   bool some = false;
   InfiniteShapes::for_each([&]<class Shape>() { some |= scene.geometry.of<Shape>().count > 0; });
