@@ -173,7 +173,6 @@ void run(benchmark::State& state, const Row& row, std::size_t kind, const Option
   if (const std::string wrong = check(p, race.rays, race.any, race.cell); !wrong.empty())
     return fail(wrong);
   enter_ways(race);
-  race.cell.chosen = renders(rays_kind);
   PointWay point_way(p.world, p.maker.light());
   if (RayMaker::to_point(rays_kind) && !point_way.enter(race.rays, race.cell))
     return fail("wrong hits: the light's grid against packets");

@@ -15,8 +15,8 @@ namespace grelha {
 
 /// How a stream of rays is traced. None of it changes an answer.
 struct QueryOptions {
-  /// most neighbours that march together: 1, 16, 64, or for neighbours very near each other 256
-  int packet = 64;
+  /// most neighbours that march together: 1, 16, 64 or 256
+  int packet = 256;
   std::string_view isa = "best";  ///< see isas()
 };
 

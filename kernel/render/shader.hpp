@@ -135,13 +135,6 @@ template <bool kOne>
                              strata);
 }
 
-/// Rays of several samples of a pixel go together by the hundred; of one sample, those from the
-/// camera alone (docs/performance.md).
-inline TraceOptions options_for(const Shader& s, Phase phase) {
-  const bool near = s.work.plan.on || phase == Phase::primary;
-  return {near || s.work.packet < kMiddle ? s.work.packet : kMiddle, s.work.mailbox};
-}
-
 /// Traces rays [first, end) of the batch: their id and t. In single, rays that start far from
 /// everything are brought near for good: the surface is found from there, where t counts from.
 inline void trace_run(const Shader& s, int first, int end, Phase phase) {
@@ -150,7 +143,7 @@ inline void trace_run(const Shader& s, int first, int end, Phase phase) {
                   .dir = {b.dir.x + first, b.dir.y + first, b.dir.z + first},
                   .count = static_cast<std::size_t>(end - first)};
   enter(s.work, phase, rays);
-  const TraceOptions options = options_for(s, phase);
+  const TraceOptions options{s.work.packet, s.work.mailbox};
   const Hits hits{.t = b.t + first, .id = b.id + first, .t_double = b.t_double + first};
   if (const TraceLoops* const loops = s.work.in_double) {
     const LowParts low{b.org_low.x + first, b.org_low.y + first, b.org_low.z + first};
@@ -182,8 +175,7 @@ inline void trace_shadows(const Shader& s, int n) {
                   .count = static_cast<std::size_t>(n),
                   .t_stride = 0};
   enter(s.work, Phase::shadow, rays);
-  TraceOptions options = options_for(s, Phase::shadow);
-  options.to = {b.grid, b.leaves};
+  const TraceOptions options{s.work.packet, s.work.mailbox, {b.grid, b.leaves}};
   const LowParts low{b.org_low.x, b.org_low.y, b.org_low.z};
   if (const TraceLoops* const loops = s.work.in_double) {
     loops->blockers(s.scene, rays, low, b.id, options, s.counters);

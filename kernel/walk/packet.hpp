@@ -24,17 +24,17 @@ struct TestedRays<InDouble> {
 /// How packets of a size fared in a stream: whether to ask the next one to go together.
 class Luck {
  public:
-  /// Where most fell apart one in eight is asked all the same.
-  bool worth_asking() { return sum_ >= 0 || ++left_out_ % 8 == 0; }
+  /// Where most fell apart one in 16 is asked all the same.
+  bool worth_asking() { return sum_ >= 0 || ++left_out_ % 16 == 0; }
   /// `saved`: the share of its rays' ways that a packet went together.
   void note(float saved) {
-    // what goes together saves twice what asking costs (measured)
-    sum_ += static_cast<int>(10 * saved) - 3;
+    // asking costs as much as a fifth of the rays' ways (measured)
+    sum_ += static_cast<int>(10 * saved) - 2;
     sum_ = sum_ > kMost ? kMost : sum_ < -kMost ? -kMost : sum_;
   }
 
  private:
-  static constexpr int kMost = 64;
+  static constexpr int kMost = 24;
   int sum_ = 0;
   unsigned left_out_ = 0;
 };
@@ -48,11 +48,7 @@ struct Packet : WalkingRays, TestedRays<In> {
   /// how far a ray was brought near, in t; set only when `moved`
   alignas(64) Number shift[kPacket];
   bool moved = false;
-  /// packets before this one of which no two rays went together, and how many are still to go
-  /// without being asked to
-  int apart = 0, alone = 0;
-  Luck small_luck, middle_luck;  ///< of packets of 16 and of 64
-  float saved = 0;  ///< share of its rays' ways that the last packet went that fell apart
+  Luck small_luck, middle_luck, large_luck;  ///< of packets of up to 16, 64 and 256
 };
 
 /// What tests take of ray i.

@@ -131,7 +131,7 @@ template <class Visit>
 /// Beyond this many cells a slice, looking into each costs more than every ray walking alone
 /// (measured).
 inline int most_cells(int width) {
-  return width > kMiddle ? 32 : 8;
+  return width > kMiddle ? 24 : width > kSmall ? 10 : 6;
 }
 
 /// The rays of a packet that go through a grid together.
@@ -256,32 +256,10 @@ inline void start_from_slice(const Frustum& f, WalkingRays& p, int slice) {
 template <bool kAny, class In>
 inline std::uint64_t traverse_together(
     const GridView& g, Packet<In>& p, int width, bool use_mailbox, Counters& n);
-template <bool kAny, class In>
-inline std::uint64_t split_packet(
-    const GridView& g, Packet<In>& p, int width, bool use_mailbox, Counters& n);
 
-/// The live rays of a packet of 64, or of a part of a larger one, if such packets do well.
-template <bool kAny, class In>
-inline std::uint64_t traverse_middle(const GridView& g,
-                                     Packet<In>& p,
-                                     bool use_mailbox,
-                                     Counters& n) {
-  if (!p.middle_luck.worth_asking())
-    return split_packet<kAny>(g, p, kMiddle, use_mailbox, n);
-  const std::uint64_t apart = traverse_together<kAny>(g, p, kMiddle, use_mailbox, n);
-  p.middle_luck.note(apart == 0 ? 1 : p.saved);
-  return apart;
-}
-
-/// The same of 16.
-template <bool kAny, class In>
-inline std::uint64_t traverse_small(const GridView& g,
-                                    Packet<In>& p,
-                                    bool use_mailbox,
-                                    Counters& n) {
-  const std::uint64_t apart = traverse_together<kAny>(g, p, kSmall, use_mailbox, n);
-  p.small_luck.note(apart == 0 ? 1 : 0);
-  return apart;
+template <class In>
+inline Luck& luck_of(Packet<In>& p, int width) {
+  return width > kMiddle ? p.large_luck : width > kSmall ? p.middle_luck : p.small_luck;
 }
 
 /// The live rays of a packet in smaller ones of `rays` neighbours each; see traverse_together().
@@ -293,8 +271,7 @@ inline std::uint64_t traverse_parts(
   std::uint64_t apart = 0;
   for (int first = 0; first < p.groups; first += each)
     if ((p.live = live & ((std::uint64_t{1} << each) - 1) << first) != 0)
-      apart |= rays == kSmall ? traverse_small<kAny>(g, p, use_mailbox, n)
-                              : traverse_middle<kAny>(g, p, use_mailbox, n);
+      apart |= traverse_together<kAny>(g, p, rays, use_mailbox, n);
   p.live = live;
   return apart;
 }
@@ -304,25 +281,28 @@ template <bool kAny, class In>
 inline std::uint64_t split_packet(
     const GridView& g, Packet<In>& p, int width, bool use_mailbox, Counters& n) {
   ++n.fell_back;
-  const int rays = width > kMiddle ? kMiddle : kSmall;
-  if (width <= kSmall || (rays == kSmall && !p.small_luck.worth_asking()))
+  if (width <= kSmall)
     return p.live;
-  return traverse_parts<kAny>(g, p, rays, use_mailbox, n);
+  return traverse_parts<kAny>(g, p, width > kMiddle ? kMiddle : kSmall, use_mailbox, n);
 }
 
 /// The live rays of a packet, `width` at most, through one grid, each from p.start on, as far as
-/// they go together. Returns the groups whose rays are to go on by themselves, from p.start on. On
-/// return `live` is what it was.
+/// they go together, if those before did. Returns the groups whose rays are to go on by themselves,
+/// from p.start on. On return `live` is what it was.
 template <bool kAny, class In>
 inline std::uint64_t traverse_together(
     const GridView& g, Packet<In>& p, int width, bool use_mailbox, Counters& n) {
+  Luck& luck = luck_of(p, width);
+  if (!luck.worth_asking())
+    return split_packet<kAny>(g, p, width, use_mailbox, n);
   const std::uint64_t live = p.live;
   Frustum f;
   switch (bound_rays(g, p, f)) {
     case Coherence::kMisses:
+      luck.note(1);
       return 0;
     case Coherence::kIncoherent:
-      p.saved = 0;
+      luck.note(0);
       return split_packet<kAny>(g, p, width, use_mailbox, n);
     case Coherence::kTogether:
       break;
@@ -332,31 +312,22 @@ inline std::uint64_t traverse_together(
     walk_frustum(g, f, n, visit);
   p.live = live;
   if (visit.split_at() >= 0) {
-    p.saved = visit.saved();
+    luck.note(visit.saved());
     start_from_slice(f, p, visit.split_at());
     return split_packet<kAny>(g, p, width, use_mailbox, n);
   }
+  luck.note(1);
   ++n.formed;
   return 0;
 }
 
-/// All rays of a packet through one grid, from p.start on, `width` neighbours together. A stream
-/// whose packets all fall apart is asked for a packet now and then only.
+/// All rays of a packet through one grid, from p.start on, `width` neighbours together.
 template <bool kAny, class In>
 inline void traverse_packet(
     const GridView& g, Packet<In>& p, int width, bool use_mailbox, Counters& n) {
-  constexpr int kSurelyApart = 24;  // packets one after another (measured)
-  constexpr int kLeftAlone = 24;
   const std::uint64_t live = p.live;
-  if (p.alone > 0) {
-    --p.alone;
-    return walk_apart<kAny>(g, p, n);
-  }
   p.live = width < p.size ? traverse_parts<kAny>(g, p, width, use_mailbox, n)
                           : traverse_together<kAny>(g, p, p.size, use_mailbox, n);
-  p.apart = p.live == live ? p.apart + 1 : 0;
-  if (p.apart >= kSurelyApart)
-    p.alone = kLeftAlone;
   if (p.live != 0)
     walk_apart<kAny>(g, p, n);
   p.live = live;
