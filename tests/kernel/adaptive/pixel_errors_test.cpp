@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/support/random.hpp"
@@ -187,6 +188,39 @@ TEST(PixelErrors, DoubtLampsUntilASampleMeetsThem) {
       EXPECT_EQ(width(kSent, kSent), width(kSent, 0)) << ratio;
       EXPECT_EQ(width(1, 1), width(1, 0)) << ratio;
     }
+}
+
+/// What the means of halves, quarters and eighths of n samples differ by, squared, where one has
+/// `one` units of light and all others `rest`.
+float square_of_one(std::int64_t one, std::int64_t rest, double n, int level) {
+  const double part = n / static_cast<double>(2u << level);
+  const double light = static_cast<double>(rest) * part;
+  const double with = (light + static_cast<double>(one - rest)) / (part * kLightUnit);
+  const double without = light / (part * kLightUnit);
+  return static_cast<float>((with - without) * (with - without));
+}
+
+/// One sample that met a lamp ends the doubt of it, whatever rounding leaves of its light: in
+/// shading, in units, in means beside other light, in squares.
+TEST(PixelErrors, KnowALampByOneSampleWhateverIsRounded) {
+  Random random(1);
+  for (int i = 0; i < 3000; ++i) {
+    const auto log = static_cast<std::uint8_t>(kFirstLog + 1 + random.below(12));
+    const float lamp = static_cast<float>(random.log_in(1.01, 300));
+    const double sent = .5 * double{lamp} * (1 - 0x1p-20);  // glows say up to twice as much
+    const double rest = random.unit();
+    const auto units = [](double light) { return static_cast<std::int64_t>(light * kLightUnit); };
+    Refinement r = pixels(1, log);
+    r.variance_ratio = static_cast<float>(random.in(.1, .9));
+    r.around = {0};
+    for (int level = 0; level < 3; ++level)
+      std::ranges::fill(r.squares[static_cast<std::size_t>(level)],
+                        square_of_one(units(rest + sent), units(rest), 1u << log, level));
+    r.inside = {0};
+    const float known = judged(r).widths()[0];
+    r.inside = {lamp};
+    ASSERT_EQ(judged(r).widths()[0], known) << lamp << " of " << (1 << log) << ", " << rest;
+  }
 }
 
 /// What is in a box counts as missed until samples are sent there: a disc in the box, of which the

@@ -132,6 +132,27 @@ TEST(SmallThings, AreMarkedWhereTheyAreSeen) {
   EXPECT_GT(seen, 1000);
 }
 
+/// A tenth of a pixel beside a thing pixels are marked as well, no further: so wide are the beams
+/// that look for it.
+TEST(SmallThings, AreMarkedATenthBesideThem) {
+  constexpr double kPixel = 10 * kPixelAUnit;
+  constexpr double kRadius = .3;  // pixels
+  for (const double beside : {.01, .08, .12, .3})
+    for (const double side : {-1., 1.}) {
+      SCOPED_TRACE(side * beside);
+      const double middle = 20.5 + side * (.5 - beside - kRadius);
+      Scene s = empty_scene();
+      s.geometry.spheres.add({static_cast<float>((middle - .5 * kSide) * kPixel), 0, 0},
+                             static_cast<float>(kRadius * kPixel),
+                             0);
+      const SmallThings things = small_things(World(s, {}));
+      const int next = 20 + static_cast<int>(side);
+      EXPECT_TRUE(things.thin.has(20, kSide / 2));
+      EXPECT_EQ(things.thin.has(next, kSide / 2), beside < .1);
+      EXPECT_EQ(things.small.has(next, kSide / 2), beside < .1);
+    }
+}
+
 /// The parts of pixels that are dark though they face the light.
 Parts parts_dark(const World& world, const RayList& rays, const Float3& light) {
   const Answers met = closest_of(world, rays);
