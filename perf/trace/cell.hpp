@@ -24,8 +24,9 @@ struct Cell {
   std::size_t rays = 0;
   double hit_share = 0, disagree = 0;
   std::vector<Way> ways;
-  std::size_t best[kSides] = {}, chosen = 0;
-  TraceCounts counts;  ///< of the render's choice
+  std::size_t best[kSides] = {};
+  static constexpr std::size_t chosen = 0;  ///< the way that a render takes, see kModes
+  TraceCounts counts;                       ///< of the render's choice
   /// The way through a grid in the light's perspective, where rays go to one; 0: there is none.
   std::size_t point_grid = 0;
   double point_grid_ns = 0;  ///< what building it took, of one thread

@@ -34,7 +34,7 @@ double samples_a_pixel(double error) {
 }
 
 /// What adds half of the error asked for is looked for until a sample meets it; what adds less is
-/// left to the samples there are.
+/// left to the eight samples that each pixel begins with, and an audit's.
 TEST(Lamps, AreFollowedFromHalfOfTheErrorOn) {
   EXPECT_LT(samples_a_pixel(2 * kAdded * 1.1), 10);
   EXPECT_GT(samples_a_pixel(2 * kAdded / 1.1), 12);

@@ -51,7 +51,7 @@ TEST(Query, OneRayAPacketAndAStreamSeeWhatBruteForceSees) {
   const World world(scene, {});
   const RayList rays = some_rays(1);
   const Truth truth = truth_of(scene, rays);
-  for (const int packet : {1, 16, 64}) {
+  for (const int packet : {1, 16, 64, 256}) {
     const Answers a = ask(world, rays, Query::kClosest, {.packet = packet});
     EXPECT_TRUE(same_bits(a.t, truth.closest.t)) << packet;
     EXPECT_EQ(a.id, truth.closest.id) << packet;
