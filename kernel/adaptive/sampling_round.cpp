@@ -12,7 +12,7 @@ constexpr std::uint64_t kSamplesOfChunk = 4096;  ///< work handed to a thread at
 /// the threshold falls by this a round: two or three rounds double all samples
 constexpr float kThresholdStep = .5f;
 /// Of so many pixels one at least is wanted: to look at all of them costs as much as that.
-constexpr std::size_t kPixelsAWanted = 256;
+constexpr std::size_t kPixelsAWanted = 32;
 constexpr float kLeastThreshold = 1e-20f;  ///< below it no pixel is worth a ray
 /// widest 95 % interval a pixel may have, in units of the error asked for, and the share of pixels
 /// that may have wider ones all the same; see RefineOptions::error

@@ -80,6 +80,8 @@ class BeamPolygon {
         return false;
       crossed |= (within < size_ ? 1u : 0u) << side;
     }
+    if (crossed != 0 && passes())
+      return false;
     for (int side = 0; crossed != 0 && size_ > 0; ++side, crossed >>= 1)
       if (crossed & 1)
         cut(piece, side);
@@ -99,6 +101,20 @@ class BeamPolygon {
 
  private:
   static constexpr int kMost = 3 + BeamPiece::kSides;
+
+  /// Whether the triangle surely passes by the beam: a plane through the apex and one of its edges
+  /// has it on one side and the beam, one wide, on the other. Most that cuts leave nothing of do.
+  bool passes() const {
+    for (int i = 0; i < 3; ++i) {
+      const Vec3f a = as_vector(at_[i]);
+      const Vec3f n = cross(a, as_vector(at_[(i + 1) % 3]) - a);
+      const float widest = magnitude(n.x) + magnitude(n.y);
+      if (dot(n, as_vector(at_[(i + 2) % 3])) > 0 ? n.z < -widest : n.z > widest)
+        return true;
+    }
+    return false;
+  }
+  static Vec3f as_vector(const BeamPoint& p) { return {p.x, p.y, p.w}; }
 
   void cut(const BeamPiece& piece, int side) {
     BeamPoint kept[kMost + 1];
