@@ -179,6 +179,10 @@ float PixelErrors::faint(double error) {
   return error > 0 ? kFaintInErrors * static_cast<float>(error) : kFaint;
 }
 
+float PixelErrors::dear(double error) {
+  return error > 0 ? kDearInErrors * static_cast<float>(error) : kFaint;
+}
+
 PixelErrors::Totals PixelErrors::totals() const {
   double sum = 0;
   double spread = 0;

@@ -30,6 +30,8 @@ class PixelErrors {
   float forgiven(double error) const;
   /// Differences to pixels around that show no edge that matters, for an error asked for, or 0.
   static float faint(double error);
+  /// The same from which on beams tell sooner than samples what hides at the edge.
+  static float dear(double error);
 
   struct Totals {
     double sum, bound;    ///< of the variances; of the RMSE

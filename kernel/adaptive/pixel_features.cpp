@@ -20,7 +20,7 @@ std::size_t pixel_at(const Refinement& r, int x, int y) {
 /// Pixels of a tile, a bit each.
 struct TilePixels {
   std::uint64_t agree = 0;  ///< those whose samples agree
-  std::uint64_t edges = 0;  ///< whose lights are not watched, though they differ from those around
+  std::uint64_t edges = 0;  ///< that differ from those around, and are left to samples
   PixelsAsked asked;
 };
 
@@ -32,30 +32,44 @@ struct Search {
   const SmallThings& things;
   const Glows& glows;
   const float faint;  ///< differences to pixels around that show no edge
+  const float dear;   ///< such from which on samples take longer than beams
   const float least;  ///< weight of light that is followed
   Refinement& r;
 
-  /// What pixel i of a tile, (x, y), is asked. Where samples vary only what is small is missed for
-  /// long.
+  /// What pixel i of a tile, (x, y), is asked.
   void ask(int x, int y, int i, TilePixels& of) const {
     const std::uint64_t bit = std::uint64_t{1} << i;
-    const bool agrees = errors.agrees(pixel_at(r, x, y));
-    const bool edge = agrees && errors.contrast(x, y) > faint;
-    const bool anything = edge || (!agrees && things.small.has(x, y));
-    const bool too_many = edge && world.shading.light_count > kLightsWatched;
-    if (agrees)
-      of.agree |= bit;
-    if (too_many)
-      of.edges |= bit;
-    if (anything || (agrees && things.thin.has(x, y)))
-      of.asked.things |= bit;
-    if (anything && !too_many)
-      of.asked.lights[i] = ~std::uint64_t{0};
-    else if (agrees)
-      of.asked.lights[i] = things.lights(x, y);
+    if (errors.agrees(pixel_at(r, x, y)))
+      ask_agreeing(x, y, i, of);
+    else
+      ask_varying(x, y, i, of);
     if (of.asked.lights[i] != 0)
       of.asked.shadows |= bit;
-    if (agrees || things.stand_alone)
+  }
+
+  void ask_agreeing(int x, int y, int i, TilePixels& of) const {
+    const std::uint64_t bit = std::uint64_t{1} << i;
+    const float contrast = errors.contrast(x, y);
+    const bool lit_by_few = world.shading.light_count <= kLightsWatched;
+    const bool watched = contrast > dear && lit_by_few;
+    of.agree |= bit;
+    if (contrast > faint && !watched)
+      of.edges |= bit;
+    if (contrast > dear || things.thin.has(x, y))
+      of.asked.things |= bit;
+    of.asked.lights[i] = watched ? ~std::uint64_t{0} : things.lights(x, y);
+    if (things.mirrored)
+      of.asked.if_bent |= bit;
+  }
+
+  /// Where samples vary only what is small is missed for long.
+  void ask_varying(int x, int y, int i, TilePixels& of) const {
+    const std::uint64_t bit = std::uint64_t{1} << i;
+    if (things.small.has(x, y)) {
+      of.asked.things |= bit;
+      of.asked.lights[i] = ~std::uint64_t{0};
+    }
+    if (things.stand_alone)
       of.asked.if_bent |= bit;
   }
 
@@ -85,7 +99,7 @@ struct Search {
                               found,
                               counts);
     for (int i = 0; i < kTile * kTile; ++i) {
-      if (!((of.asked.things | of.asked.shadows | of.asked.if_bent) >> i & 1))
+      if (!((of.agree | of.asked.things | of.asked.shadows | of.asked.if_bent) >> i & 1))
         continue;
       const std::size_t p = pixel_at(r, x0 + i % kTile, y0 + i / kTile);
       // Where samples vary, what they vary by may be all there is, but for what is so small that it
@@ -127,7 +141,8 @@ void find_hidden_features(const World::Impl& world,
   const SmallThings things(world, setup, threads, counts);
   const Glows glows(world, setup, error * kFaintGlow);
   const float faint = PixelErrors::faint(error);
-  const Search search{world, setup, errors, things, glows, faint, errors.forgiven(error), r};
+  const float dear = PixelErrors::dear(error);
+  const Search search{world, setup, errors, things, glows, faint, dear, errors.forgiven(error), r};
   const int columns = (r.width + kTile - 1) / kTile;
   const int rows = (r.height + kTile - 1) / kTile;
 #pragma omp parallel num_threads(threads)

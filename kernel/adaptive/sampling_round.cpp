@@ -11,7 +11,7 @@ namespace {
 constexpr std::uint64_t kSamplesOfChunk = 4096;  ///< work handed to a thread at a time: at most
 /// the threshold falls by this a round: two or three rounds double all samples
 constexpr float kThresholdStep = .5f;
-/// Of so many pixels one at least is wanted: to look at all of them costs as much as that.
+/// Of so many pixels one at least is wanted: to look at all of them costs as much as its samples.
 constexpr std::size_t kPixelsAWanted = 32;
 constexpr float kLeastThreshold = 1e-20f;  ///< below it no pixel is worth a ray
 /// widest 95 % interval a pixel may have, in units of the error asked for, and the share of pixels

@@ -49,5 +49,8 @@ inline constexpr double kForgiven = 1. / 3;
 /// error asked for. Where none is asked for: four steps of 8 bits (a choice).
 inline constexpr float kFaintInErrors = 8;
 inline constexpr float kFaint = 1.f / 64;
+/// Edges up to here are left to samples: 16 make the interval of what hides there narrow enough,
+/// and a beam costs 20 to 60 (measured).
+inline constexpr float kDearInErrors = 64;
 
 }  // namespace grelha

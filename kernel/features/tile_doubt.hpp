@@ -34,8 +34,8 @@ inline Beam pixel_beam(const FrameView& f, int x0, int y0, int size) {
   return b;
 }
 
-/// Bits of the pixels of a tile of 8 x 8 whose middle shows something clear, or a mirror of weight
-/// `least`.
+/// Bits of the pixels of a tile of 8 x 8 at a corner of which something clear shows, or a mirror of
+/// weight `least`.
 inline std::uint64_t bent_pixels(const SceneView& scene,
                                  const ShadingView& shading,
                                  const FrameView& f,
@@ -43,19 +43,29 @@ inline std::uint64_t bent_pixels(const SceneView& scene,
                                  int y0,
                                  float least,
                                  Counters& n) {
-  Packet<InFloat> p;
-  p.size = kTile * kTile;
-  for (int i = 0; i < p.size; ++i) {
-    const float x = static_cast<float>(x0 + i % kTile) + .5f;
-    const float y = static_cast<float>(y0 + i / kTile) + .5f;
-    set_ray(p, i, {f.eye[0], f.eye[1], f.eye[2]}, direction_through(f, x, y), kInfinity);
+  constexpr int kSide = kTile + 1;
+  bool bent[kSide * kSide];
+  for (int first = 0; first < kSide * kSide; first += kTile * kTile) {
+    Packet<InFloat> p;
+    p.size = first == 0 ? kTile * kTile : kSide * kSide - kTile * kTile;
+    for (int i = 0; i < p.size; ++i) {
+      const float x = static_cast<float>(x0 + (first + i) % kSide);
+      const float y = static_cast<float>(y0 + (first + i) / kSide);
+      set_ray(p, i, {f.eye[0], f.eye[1], f.eye[2]}, direction_through(f, x, y), kInfinity);
+    }
+    trace_packet<false>(scene, p, {p.size, true}, n);
+    for (int i = 0; i < p.size; ++i)
+      bent[first + i] =
+          id_of(p.id[i]) != kNoPrimitive && is_bent(scene, shading, id_of(p.id[i]), least);
   }
-  trace_packet<false>(scene, p, {p.size, true}, n);
-  std::uint64_t bent = 0;
-  for (int i = 0; i < p.size; ++i)
-    if (id_of(p.id[i]) != kNoPrimitive && is_bent(scene, shading, id_of(p.id[i]), least))
-      bent |= std::uint64_t{1} << i;
-  return bent;
+  std::uint64_t bits = 0;
+  for (int y = 0; y < kTile; ++y)
+    for (int x = 0; x < kTile; ++x) {
+      const bool* const at = bent + y * kSide + x;
+      if (at[0] || at[1] || at[kSide] || at[kSide + 1])
+        bits |= std::uint64_t{1} << (y * kTile + x);
+    }
+  return bits;
 }
 
 /// What of a pixel a box of its beam is, with room for what bends light on the way.

@@ -128,16 +128,19 @@ bool MeshRims::stands_alone(std::size_t i) const {
          open_[first_[triangles_.c[i]]] != 0;
 }
 
-bool MeshRims::has(std::size_t i) const {
+bool MeshRims::ends_at(std::size_t i) const {
   if (sides_.empty())
     return true;
+  return open_[first_[triangles_.a[i]]] != 0 || open_[first_[triangles_.b[i]]] != 0 ||
+         open_[first_[triangles_.c[i]]] != 0;
+}
+
+bool MeshRims::has(std::size_t i) const {
+  if (ends_at(i))
+    return true;
   bool turns = false;
-  for (const std::uint32_t v : {triangles_.a[i], triangles_.b[i], triangles_.c[i]}) {
-    const std::uint32_t first = first_[v];
-    if (open_[first] != 0)
-      return true;
-    turns |= sides_[first] == (kFront | kBack);
-  }
+  for (const std::uint32_t v : {triangles_.a[i], triangles_.b[i], triangles_.c[i]})
+    turns |= sides_[first_[v]] == (kFront | kBack);
   return turns;
 }
 

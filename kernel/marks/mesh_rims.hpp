@@ -22,6 +22,8 @@ class MeshRims {
   /// Whether a corner of triangle i lies where a mesh of one material ends, or where some of its
   /// triangles face the point and some do not. With very many triangles: always.
   bool has(std::size_t i) const;
+  /// Whether a corner of triangle i lies where a mesh ends. With very many triangles: always.
+  bool ends_at(std::size_t i) const;
   /// Whether all corners of triangle i lie where a mesh ends: it is no part of a larger surface.
   bool stands_alone(std::size_t i) const;
 

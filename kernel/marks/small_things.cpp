@@ -2,8 +2,10 @@
 
 #include <atomic>
 #include <mutex>
+#include <span>
 
 #include "kernel/marks/mesh_rims.hpp"
+#include "kernel/marks/mesh_thickness.hpp"
 #include "kernel/marks/to_picture.hpp"
 #include "kernel/scene/pixel_box.hpp"
 #include "kernel/scene/turns.hpp"
@@ -18,6 +20,9 @@ constexpr double kMargin = .1;
 /// Where planes have no end: pixels are looked at that are so much wider than those at the farthest
 /// of all else (a choice).
 constexpr double kBeyond = 8;
+/// A flat mirror shows nothing from farther away than so many times the farthest corner of the
+/// scene: the way to the mirror, and once across.
+constexpr double kByMirror = 3;
 /// Things in front of whose shadows every pixel is asked: as many as pixels over this.
 constexpr std::size_t kPixelsAThing = 2;
 constexpr std::size_t kThingsOfTurn = 1024;
@@ -100,7 +105,7 @@ class Shadows {
       const double reach = to_.reach(double{reach_[i]} * double{t[i]}, spot.depth) + 1;
       const bool near = std::abs(spot.x - last.x) < kJoined && std::abs(spot.y - last.y) < kJoined;
       const bool joined = held && goes_on_[i] && (near || id[i] == id[i - 1]);
-      if (reach_[i] * t[i] < kThin * to_.pixel(spot.depth))
+      if (half_width_[i] * t[i] < kThin * to_.pixel(spot.depth))
         mark(joined ? last : spot, spot, reach, small_[i]);
       last = spot;
       held = true;
@@ -150,6 +155,7 @@ class Shadows {
     const double out = way_out(rod, part, ray, length);
     t_min_[count_] = static_cast<float>(1 + 1.01 * out / length + 1e-6);
     reach_[count_] = static_cast<float>(rod.aside);
+    half_width_[count_] = static_cast<float>(std::max(rod.aside, .5 * rod.width));
     goes_on_[count_] = goes_on;
     small_[count_] = rod.length() <= 2 * rod.width;
     ++count_;
@@ -163,7 +169,7 @@ class Shadows {
   const Marks marks_;
   TraceCounts& counts_;
   int count_ = 0;
-  float dir_[3][kRoom], t_min_[kRoom], reach_[kRoom];
+  float dir_[3][kRoom], t_min_[kRoom], reach_[kRoom], half_width_[kRoom];
   bool goes_on_[kRoom], small_[kRoom];
 };
 
@@ -181,11 +187,13 @@ class Marker {
         threads_(threads),
         to_(setup.frame),
         widest_(kThin * widest_pixel()),
+        thickness_(world, setup),
         things_(things),
         counts_(counts) {}
 
   void run() {
     mark_things_seen();
+    things_.mirrored = has_loner(kThin * kByMirror * to_.pixel(farthest()));
     for (int l = 0; l < world_.shading.light_count; ++l) {
       PixelMarks& shadows = things_.shadows[static_cast<std::size_t>(l % kLightBits)];
       mark_shadows(world_.shading.lights + kLightFloats * l, {shadows, things_.small});
@@ -206,6 +214,32 @@ class Marker {
     return to_.pixel(most) * (g_.planes.size() > 0 ? kBeyond : 1);
   }
 
+  /// Distance of the farthest corner of all that is finite, in lengths of `forward`.
+  double farthest() const {
+    const SceneView& v = world_.view;
+    double square = 0;
+    for (int a = 0; a < 3; ++a) {
+      const double most = std::max(std::abs(static_cast<double>(v.box_lo[a]) - to_.eye[a]),
+                                   std::abs(static_cast<double>(v.box_hi[a]) - to_.eye[a]));
+      square += most * most;
+    }
+    return to_.depth_of(std::sqrt(square));
+  }
+
+  /// Whether anything that is no part of a larger mesh is thinner than that.
+  bool has_loner(double width) const {
+    for (std::size_t i = 0; i < g_.spheres.size(); ++i)
+      if (rod_of(g_.spheres, i).width < width)
+        return true;
+    for (std::size_t i = 0; i < g_.cones.size(); ++i)
+      if (rod_of(g_.cones, i).width < width)
+        return true;
+    for (std::size_t i = 0; i < g_.triangles.size(); ++i)
+      if (rims_->stands_alone(i) && rod_of(g_.triangles, i, to_.eye).width < width)
+        return true;
+    return false;
+  }
+
   void look_from(const Place3& point) {
     if (g_.triangles.size() == 0)
       return;
@@ -219,22 +253,53 @@ class Marker {
            kThingsOfTurn;
   }
 
+  Rod rod_at(std::size_t i, const Place3& from) const {
+    const std::size_t cones = g_.spheres.size();
+    const std::size_t triangles = cones + g_.cones.size();
+    return i < cones       ? rod_of(g_.spheres, i)
+           : i < triangles ? rod_of(g_.cones, i - cones)
+                           : rod_of(g_.triangles, i - triangles, from);
+  }
+
   /// Calls take(rod, alone) for the things of a turn that is_thin(rod) holds for, as seen from a
   /// point.
   template <class IsThin, class Take>
   void each_thing(std::size_t turn,
                   const Place3& from,
                   const IsThin& is_thin,
-                  const Take& take) const {
-    const std::size_t cones = g_.spheres.size();
-    const std::size_t triangles = cones + g_.cones.size();
+                  const Take& take,
+                  TraceCounts& counts) const {
+    const std::size_t triangles = g_.spheres.size() + g_.cones.size();
     const std::size_t end = std::min((turn + 1) * kThingsOfTurn, triangles + g_.triangles.size());
+    std::uint32_t outlines[kThingsOfTurn];
+    std::size_t count = 0;
     for (std::size_t i = turn * kThingsOfTurn; i < end; ++i) {
-      Rod rod = i < cones       ? rod_of(g_.spheres, i)
-                : i < triangles ? rod_of(g_.cones, i - cones)
-                                : rod_of(g_.triangles, i - triangles, from);
-      if (is_thin(rod) && (i < triangles || rims_->has(i - triangles)))
-        take(rod, i < triangles || rims_->stands_alone(i - triangles));
+      const Rod rod = rod_at(i, from);
+      if (!is_thin(rod))
+        continue;
+      const std::size_t triangle = i - triangles;
+      if (i < triangles || rims_->ends_at(triangle))
+        take(rod, i < triangles || rims_->stands_alone(triangle));
+      else if (rims_->has(triangle))
+        outlines[count++] = static_cast<std::uint32_t>(triangle);
+    }
+    take_outlines({outlines, count}, from, is_thin, take, counts);
+  }
+
+  /// The same of triangles inside of meshes, which are as thick as these are there at least.
+  template <class IsThin, class Take>
+  void take_outlines(std::span<const std::uint32_t> outlines,
+                     const Place3& from,
+                     const IsThin& is_thin,
+                     const Take& take,
+                     TraceCounts& counts) const {
+    double thickness[kThingsOfTurn];
+    thickness_.measure(outlines, thickness, counts);
+    for (std::size_t k = 0; k < outlines.size(); ++k) {
+      Rod rod = rod_of(g_.triangles, outlines[k], from);
+      rod.width = std::max(rod.width, thickness[k]);
+      if (is_thin(rod))
+        take(rod, false);
     }
   }
 
@@ -243,15 +308,16 @@ class Marker {
     std::atomic<bool> stand_alone = false;
     const Marks marks{things_.thin, things_.small};
     each_turn(turns(), threads_, [&](std::size_t turn) {
-      each_thing(
-          turn,
-          to_.eye,
-          [&](Rod& rod) { return looks_thin(to_, rod); },
-          [&](const Rod& rod, bool alone) {
-            mark_seen(to_, rod, marks);
-            if (alone)
-              stand_alone = true;
-          });
+      TraceCounts counts;
+      const auto is_thin = [&](Rod rod) { return looks_thin(to_, rod); };
+      const auto mark = [&](Rod rod, bool alone) {
+        cut_behind(to_, rod);
+        mark_seen(to_, rod, marks);
+        if (alone)
+          stand_alone = true;
+      };
+      each_thing(turn, to_.eye, is_thin, mark, counts);
+      add(counts);
     });
     things_.stand_alone = stand_alone;
   }
@@ -265,22 +331,24 @@ class Marker {
     each_turn(turns(), threads_, [&](std::size_t turn) {
       TraceCounts counts;
       Shadows shadows(world_, setup_, to_, light, marks, counts);
-      each_thing(
-          turn,
-          from,
-          [&](const Rod& rod) { return rod.width < widest_; },
-          [&](const Rod& rod, bool) {
-            if (thin++ < most)
-              shadows.add(rod);
-          });
+      const auto is_thin = [&](const Rod& rod) { return rod.width < widest_; };
+      const auto follow = [&](const Rod& rod, bool) {
+        if (thin++ < most)
+          shadows.add(rod);
+      };
+      each_thing(turn, from, is_thin, follow, counts);
       shadows.follow();
-      const std::lock_guard lock(sum_);
-      counts_ += counts;
+      add(counts);
     });
     if (thin > most) {
       marks.thin.mark_all();
       marks.small.mark_all();
     }
+  }
+
+  void add(const TraceCounts& counts) {
+    const std::lock_guard lock(sum_);
+    counts_ += counts;
   }
 
   const World::Impl& world_;
@@ -289,6 +357,7 @@ class Marker {
   const int threads_;
   const ToPicture to_;
   const double widest_;
+  const MeshThickness thickness_;
   SmallThings& things_;
   TraceCounts& counts_;
   std::mutex sum_;

@@ -9,8 +9,9 @@
 
 namespace grelha {
 
-/// Where they are. Triangles inside of a mesh are no things of their own, see MeshRims. Shadows are
-/// those of the middles of lights, on what lies right behind.
+/// Where they are. Triangles inside of a mesh are no things of their own, see MeshRims, nor are
+/// outlines where it is thicker, see MeshThickness. Shadows are those of the middles of lights, on
+/// what lies right behind.
 struct SmallThings {
   SmallThings(const World::Impl& world, const Setup& setup, int threads, TraceCounts& counts);
 
@@ -22,6 +23,8 @@ struct SmallThings {
   PixelMarks small;                 ///< where either does that is no longer than that
   /// Something thin is no part of a larger mesh: mirrors and clear surfaces may show it anywhere.
   bool stand_alone = false;
+  /// The same of what looks so thin by way of a mirror: else none shows anything thin.
+  bool mirrored = false;
 };
 
 }  // namespace grelha

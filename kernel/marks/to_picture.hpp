@@ -35,6 +35,8 @@ class ToPicture {
     z /= ff_;
     return {.5 * f_.width + x / (rr_ * z), .5 * f_.height - y / (uu_ * z), z};
   }
+  /// The depth of what lies so far away straight on.
+  double depth_of(double distance) const { return distance / std::sqrt(ff_); }
   /// How wide a pixel is.
   double pixel(double depth) const { return depth * std::sqrt(rr_); }
   /// Pixels that a ball of a radius reaches from its middle at most, anywhere in the picture: balls

@@ -25,17 +25,23 @@ inline Camera over_units() {
   return c;
 }
 
+/// Everything, of every pixel.
+inline PixelsAsked all_asked() {
+  constexpr std::uint64_t kAll = ~std::uint64_t{0};
+  PixelsAsked asked{.things = kAll, .shadows = kAll};
+  std::fill(asked.lights, asked.lights + kTile * kTile, kAll);
+  return asked;
+}
+
 inline PixelDoubts doubts(const Scene& scene,
                           const Variant& variant,
                           const BuildOptions& build = {},
-                          const Camera& camera = over_units()) {
+                          const Camera& camera = over_units(),
+                          const PixelsAsked& asked = all_asked()) {
   const World world(scene, build);
   const World::Impl& w = world.impl();
   PixelDoubts found;
   TraceCounts counts;
-  constexpr std::uint64_t kAll = ~std::uint64_t{0};
-  PixelsAsked asked{.things = kAll, .shadows = kAll};
-  std::fill(asked.lights, asked.lights + kTile * kTile, kAll);
   variant.loops.doubt(w.view, w.shading, make_frame(camera), 0, 0, 2, 0, asked, found, counts);
   return found;
 }

@@ -159,6 +159,31 @@ TEST(PixelErrors, TakeFaintDifferencesForNoEdge) {
   EXPECT_LE(PixelErrors::faint(0) * 256, 4);  // steps of a picture of 8 bits
 }
 
+/// The widest interval of two pixels that differ so much, of 2^log samples that agree.
+float width_at_edge(float difference, std::uint8_t log) {
+  Refinement r = pixels(2, log);
+  r.inside.assign(2, 0);
+  r.around.assign(2, 1);
+  for (std::size_t c = 3; c < 6; ++c)
+    r.sums[c] =
+        static_cast<std::int64_t>((1 << log) * static_cast<double>(difference) * kLightUnit);
+  const PixelErrors errors = judged(r);
+  EXPECT_NEAR(errors.contrast(0, 0), difference, 1e-6);
+  return errors.widths()[0];
+}
+
+/// Of edges that are left to samples 16 know enough, and fewer do not.
+TEST(PixelErrors, LeaveEdgesToSixteenSamples) {
+  constexpr float kWidest = 8;  // errors asked for, see kWidestInterval
+  for (const float error : {.01f, .003f, .001f}) {
+    const float dear = PixelErrors::dear(double{error});
+    EXPECT_LE(width_at_edge(dear, 4), 1.001f * kWidest * error);
+    EXPECT_GT(width_at_edge(dear, 3), kWidest * error);
+    EXPECT_GT(width_at_edge(1.1f * dear, 4), kWidest * error);
+  }
+  EXPECT_EQ(PixelErrors::dear(0), PixelErrors::faint(0));
+}
+
 /// The interval of a pixel of which one sample met light `sent` in one channel and all others
 /// nothing, where `inside` is doubted.
 float width_of_one(std::uint8_t log, float ratio, float sent, float inside) {

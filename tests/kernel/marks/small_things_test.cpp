@@ -1,6 +1,7 @@
 // Pixels that are looked at since something thin, or its shadow, may be there.
 #include "kernel/marks/small_things.hpp"
 
+#include "tests/support/boxes.hpp"
 #include "tests/support/rays.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -82,23 +83,30 @@ Spot spot(Random& random, double pixel) {
 }
 
 /// Adds a thing through a place, of .02 to 1.5 times `pixel`, short or long: past the eye as well.
-void add_thin(Scene& s, Random& random, const Float3& at_place, double pixel) {
+/// Returns whether its primitives are things of their own.
+bool add_thin(Scene& s, Random& random, const Float3& at_place, double pixel) {
   const double width = pixel * random.log_in(.02, 1.5);
   const auto radius = static_cast<float>(.5 * width);
   const Float3 way = random.direction();
   const double length = width * random.log_in(1, 3000);
   const Float3 a = at(at_place, random.unit() * length, way);
   const Float3 b = at(a, -length, way);
-  switch (random.below(3)) {
+  switch (random.below(4)) {
     case 0:
       s.geometry.spheres.add(at_place, radius, 0);
       break;
     case 1:
       s.geometry.cones.add(a, radius, b, random.chance(.3) ? 0 : radius, 0);
       break;
+    case 2: {
+      const double sides[3] = {width, width * random.log_in(.1, 1), length};
+      add_box(s, at_place, random_axes(random), sides);
+      return false;
+    }
     default:
       add_triangle(s, a, b, at(random.chance(.5) ? a : b, width, random.direction()));
   }
+  return true;
 }
 
 int missed(const Parts& parts, const PixelMarks& marks, bool even_if_whole) {
@@ -119,14 +127,14 @@ TEST(SmallThings, AreMarkedWhereTheyAreSeen) {
     for (int i = 0; i < 120; ++i) {
       Scene s = empty_scene();
       const Spot where = spot(random, pixel);
-      add_thin(s, random, where.at, where.pixel);
+      const bool alone = add_thin(s, random, where.at, where.pixel);
       const World world(s, {});
       const Parts parts = parts_seen(world, rays);
       for (const int n : parts)
         seen += n > 0;
       const SmallThings things = small_things(world, pixel);
       EXPECT_EQ(missed(parts, things.thin, true), 0) << pixel << ": " << i;
-      EXPECT_TRUE(things.stand_alone) << pixel << ": " << i;
+      EXPECT_EQ(things.stand_alone, alone) << pixel << ": " << i;
     }
   }
   EXPECT_GT(seen, 1000);
@@ -251,10 +259,36 @@ TEST(SmallThings, AreNotWhereAllIsLarge) {
   Scene mesh = ball_mesh(60, 30);  // 20 pixels wide, its triangles one
   mesh.lights = {{{3, 3, 8}, {1, 1, 1}}};
   const SmallThings outline = small_things(World(mesh, {}));
-  EXPECT_GT(marked(outline), 60);
-  EXPECT_LT(marked(outline), 360);
-  EXPECT_FALSE(outline.thin.has(kSide / 2, kSide / 2));
+  EXPECT_EQ(marked(outline), 0);
   EXPECT_FALSE(outline.stand_alone);
+  EXPECT_FALSE(outline.mirrored);
+}
+
+/// What looks thin from as far as a mirror may be counts for mirrors: in front of the camera,
+/// behind it, and of any kind, but no mesh.
+TEST(SmallThings, CountForMirrorsAsFarAsTheseShowThem) {
+  Random random(5);
+  for (const float z : {0.f, 20.f})
+    for (const double pixels : {.1, 1., 2.5, 5.5, 6.5, 30.}) {
+      const double width = pixels * 10 * kPixelAUnit;
+      const auto radius = static_cast<float>(width / 2);
+      Scene ball = one_sphere({0, 0, z}, radius);
+      Scene rod = one_cone({0, 0, z - radius}, radius, {0, 0, z + radius}, radius);
+      Scene face = one_triangle({0, 0, z}, {0, radius, z}, {radius, 0, z});
+      Scene box = empty_scene();
+      const double length[3] = {width, width, width};
+      add_box(box, {0, 0, z}, random_axes(random), length);
+      // no wider than 2 pixels, from 3 times the way to the farthest corner
+      const double least = 6, most = 6 * std::hypot(1 + radius / 10., radius / 10., radius / 10.);
+      for (const Scene* s : {&ball, &rod, &face}) {
+        const bool thin = small_things(World(*s, {})).mirrored;
+        if (pixels < least)
+          EXPECT_TRUE(thin) << z << ' ' << pixels;
+        if (s != &face && pixels > most)
+          EXPECT_FALSE(thin) << z << ' ' << pixels;
+      }
+      EXPECT_FALSE(small_things(World(box, {})).mirrored) << pixels;
+    }
 }
 
 }  // namespace
