@@ -12,35 +12,38 @@ PixelErrors::PixelErrors(const Refinement& r, bool effects, int first_log, int t
       effects_(effects),
       first_log_(first_log),
       threads_(threads),
+      seen_(r.log.size()),
       shown_(3 * r.log.size()),
+      contrast_(r.log.size(), kUnknown),
       own_(r.log.size()),
       variance_(r.log.size()),
       widest_(r.log.size()),
-      of_one_(r.log.size()),
-      watched_(r.log.size()) {}
+      gain_(r.log.size()),
+      lent_(lent_at(-1, r.height + 1)),
+      lends_(lent_.size()) {}
 
-float PixelErrors::differences(std::size_t p) const {
-  return r_.log[p] == first_log_ ? kYoung : kOld;
+bool PixelErrors::is_young(std::size_t p) const {
+  return r_.log[p] == first_log_;
 }
 
-/// Variance by squared differences of halves, quarters and eighths, so many in all.
-float PixelErrors::variance_by(float halves, float quarters, float eighths, float count) const {
+/// Variance by squared differences of halves, quarters and eighths, of which there are 1, 2 and 4,
+/// but no eighths of the young.
+float PixelErrors::variance_by(float halves, float quarters, float eighths, bool young) const {
   const float ratio = r_.variance_ratio;
-  const float drop = (halves + ratio * (quarters + ratio * eighths)) / (4 * count);
-  return drop * ratio / (1 - ratio);
+  return (halves + ratio * (quarters + ratio * eighths)) * (young ? of_young_ : of_old_);
 }
 
-/// The same of channel i % 3 of pixel i / 3: of the three levels there are 1, 2 and 4.
-float PixelErrors::channel_variance(std::size_t i) const {
-  return variance_by(r_.squares[0][i], r_.squares[1][i], r_.squares[2][i], differences(i / 3));
+/// The same of channel i % 3 of pixel i / 3.
+float PixelErrors::channel_variance(std::size_t i, bool young) const {
+  return variance_by(r_.squares[0][i], r_.squares[1][i], r_.squares[2][i], young);
 }
 
 /// Variance of a pixel, mean of its channels, from its own differences.
 float PixelErrors::own_variance(std::size_t p) const {
+  const bool young = is_young(p);
   float sum = 0;
-  for (std::size_t c = 0; c < 3; ++c) {
-    const std::size_t i = p * 3 + c;
-    const float v = channel_variance(i);
+  for (std::size_t i = p * 3; i < p * 3 + 3; ++i) {
+    const float v = channel_variance(i, young);
     const bool white = shown_[i] == 1 && mean_so_far(r_, i) - 3 * std::sqrt(v) > 1;
     if (!white)  // on any screen
       sum += v;
@@ -54,30 +57,37 @@ float PixelErrors::contrast(int x, int y) const {
   const int count = std::min(x + 1, r_.width - 1) - left + 1;
   float most = 0;
   for (int j = std::max(y - 1, 0); j <= std::min(y + 1, r_.height - 1); ++j) {
-    const float* const row = &shown_[at(left, j) * 3];
-    for (int i = 0; i < count * 3; ++i)
-      most = std::max(most, std::abs(row[i] - own[i % 3]));
+    const float* other = &shown_[at(left, j) * 3];
+    for (int i = 0; i < count; ++i, other += 3)
+      for (int c = 0; c < 3; ++c)
+        most = std::max(most, std::abs(other[c] - own[c]));
   }
   return most;
 }
 
-float PixelErrors::with_neighbours(int x, int y, const RatioPowers& powers) const {
-  const std::size_t p = at(x, y);
-  float sum = 0;
-  int count = 0;
-  for (int j = std::max(y - 1, 0); j <= std::min(y + 1, r_.height - 1); ++j)
-    for (int i = std::max(x - 1, 0); i <= std::min(x + 1, r_.width - 1); ++i) {
-      const std::size_t q = at(i, j);
-      sum += q == p ? 0 : of_one_[q];
-      count += q == p ? 0 : watched_[q];
-    }
-  if (count == 0)
+float PixelErrors::contrast_so_far(int x, int y) {
+  float& known = contrast_[at(x, y)];
+  if (known == kUnknown)
+    known = contrast(x, y);
+  return known;
+}
+
+/// What pixels around lend, of one sample, and how many do.
+struct PixelErrors::Around {
+  float sum;
+  int count;
+};
+
+float PixelErrors::with_neighbours(std::size_t p,
+                                   const Around& around,
+                                   const RatioPowers& powers) const {
+  if (around.count == 0)
     return own_[p];
-  const float mine = differences(p);
+  const float mine = is_young(p) ? kYoung : kOld;
   // of eight neighbours each an eighth as much
   const float theirs = mine / 8;
-  const float shared = theirs * sum * powers[r_.log[p]];
-  return (own_[p] * mine + shared) / (mine + theirs * static_cast<float>(count));
+  const float shared = theirs * around.sum * powers[r_.log[p]];
+  return (own_[p] * mine + shared) / (mine + theirs * static_cast<float>(around.count));
 }
 
 /// Something was found in a box of the pixel. As long as no sample was sent there it counts as
@@ -96,12 +106,12 @@ PixelErrors::Hidden PixelErrors::in_box(std::size_t p) const {
 
 /// The weight of what none of a pixel's samples met. What is brighter than white shows by itself
 /// when one did, whatever else makes them differ.
-float PixelErrors::doubt_of(int x, int y) const {
+float PixelErrors::doubt_of(int x, int y) {
   const std::size_t p = at(x, y);
   // An edge that comes in from a neighbour leaves no room among n samples of a net for more than
   // about 1 / n.
   if (agrees(p))
-    return r_.around[p] > 0 ? std::max(r_.inside[p], r_.around[p] * contrast(x, y) / 3)
+    return r_.around[p] > 0 ? std::max(r_.inside[p], r_.around[p] * contrast_so_far(x, y) / 3)
                             : r_.inside[p];
   return r_.inside[p] > 1 && !met_lamp(p) ? r_.inside[p] : 0;
 }
@@ -111,15 +121,18 @@ float PixelErrors::doubt_of(int x, int y) const {
 bool PixelErrors::met_lamp(std::size_t p) const {
   const float of_one = .5f * r_.inside[p] / samples(p);
   const float square = kSlightlyLess * of_one * of_one;  // in means of all, twice of halves, ...
-  const float least = variance_by(4 * square, 16 * square, 64 * square, kOld);
-  return std::max(
-             {channel_variance(p * 3), channel_variance(p * 3 + 1), channel_variance(p * 3 + 2)}) >=
-         least;
+  const float least = variance_by(4 * square, 16 * square, 64 * square, false);
+  const bool young = is_young(p);
+  const float most = std::max({channel_variance(p * 3, young),
+                               channel_variance(p * 3 + 1, young),
+                               channel_variance(p * 3 + 2, young)});
+  return most >= least;
 }
 
-void PixelErrors::judge_pixel(int x, int y, const RatioPowers& powers) {
+void PixelErrors::judge_pixel(int x, int y, const Around& around, const RatioPowers& powers) {
   const std::size_t p = at(x, y);
-  float v = static_cast<float>(r_.worse) * (watched_[p] ? with_neighbours(x, y, powers) : own_[p]);
+  float v = static_cast<float>(r_.worse) *
+            (lends_[lent_at(x, y)] ? with_neighbours(p, around, powers) : own_[p]);
   if (r_.least_by_sample > 0 && agrees(p))
     v = std::max(v, static_cast<float>(r_.least_by_sample) / samples(p));
   float wide = 2 * kNormal * std::sqrt(v);
@@ -139,14 +152,58 @@ void PixelErrors::judge_pixel(int x, int y, const RatioPowers& powers) {
   }
   variance_[p] = v;
   widest_[p] = wide;
+  gain_[p] = r_.log[p] < kMostLog ? v * (1 - r_.variance_ratio) / (samples(p) * r_.cost[p]) : 0;
+}
+
+void PixelErrors::show_new() {
+  const auto is_new = [&](std::size_t p) { return seen_[p] != r_.log[p]; };
+#pragma omp parallel for num_threads(threads_) schedule(static)
+  for (std::size_t p = 0; p < own_.size(); ++p)
+    if (is_new(p))
+      for (std::size_t i = p * 3; i < p * 3 + 3; ++i)
+        shown_[i] = std::clamp(mean_so_far(r_, i), 0.f, 1.f);
+  for (std::size_t p = 0; p < own_.size(); ++p) {
+    if (!is_new(p))
+      continue;
+    seen_[p] = r_.log[p];
+    const int x = static_cast<int>(p % static_cast<std::size_t>(r_.width));
+    const int y = static_cast<int>(p / static_cast<std::size_t>(r_.width));
+    for (int j = std::max(y - 1, 0); j <= std::min(y + 1, r_.height - 1); ++j)
+      for (int i = std::max(x - 1, 0); i <= std::min(x + 1, r_.width - 1); ++i)
+        contrast_[at(i, j)] = kUnknown;
+  }
 }
 
 void PixelErrors::measure() {
+  show_new();
+  // the ratio of variances is another after each round, for all
+  const float ratio = r_.variance_ratio;
+  of_young_ = ratio / (1 - ratio) / (4 * kYoung);
+  of_old_ = ratio / (1 - ratio) / (4 * kOld);
 #pragma omp parallel for num_threads(threads_) schedule(static)
-  for (std::size_t p = 0; p < own_.size(); ++p) {
-    for (std::size_t i = p * 3; i < p * 3 + 3; ++i)
-      shown_[i] = std::clamp(mean_so_far(r_, i), 0.f, 1.f);
+  for (std::size_t p = 0; p < own_.size(); ++p)
     own_[p] = own_variance(p);
+}
+
+void PixelErrors::lend_row(int y, const RatioPowers& powers) {
+  for (int x = 0; x < r_.width; ++x) {
+    const std::size_t p = at(x, y);
+    const bool lends = watched(p);
+    lends_[lent_at(x, y)] = lends;
+    lent_[lent_at(x, y)] = lends ? own_[p] / powers[r_.log[p]] : 0;
+  }
+}
+
+void PixelErrors::judge_row(int y, const RatioPowers& powers) {
+  const auto stride = static_cast<std::ptrdiff_t>(lent_at(0, 1) - lent_at(0, 0));
+  const auto around = [&](const auto* of) {
+    const auto* const above = of - stride;
+    const auto* const below = of + stride;
+    return above[-1] + above[0] + above[1] + of[-1] + of[1] + below[-1] + below[0] + below[1];
+  };
+  for (int x = 0; x < r_.width; ++x) {
+    const std::size_t at_x = lent_at(x, y);
+    judge_pixel(x, y, {around(&lent_[at_x]), around(&lends_[at_x])}, powers);
   }
 }
 
@@ -159,14 +216,11 @@ void PixelErrors::judge() {
 #pragma omp parallel num_threads(threads_)
   {
 #pragma omp for schedule(static)
-    for (std::size_t p = 0; p < own_.size(); ++p) {
-      watched_[p] = watched(p);
-      of_one_[p] = watched_[p] ? own_[p] / powers[r_.log[p]] : 0;
-    }
+    for (int y = 0; y < r_.height; ++y)
+      lend_row(y, powers);
 #pragma omp for schedule(static)
     for (int y = 0; y < r_.height; ++y)
-      for (int x = 0; x < r_.width; ++x)
-        judge_pixel(x, y, powers);
+      judge_row(y, powers);
   }
 }
 

@@ -43,12 +43,8 @@ class PixelErrors {
   float variance(std::size_t p) const { return variance_[p]; }
   const std::vector<float>& widths() const { return widest_; }  ///< [pixels] of the 95 % interval
 
-  /// Variance that a ray takes away, were the pixel's samples doubled.
-  float gain_per_ray(std::size_t p) const {
-    if (r_.log[p] >= kMostLog)
-      return 0;
-    return variance_[p] * (1 - r_.variance_ratio) / (samples(p) * r_.cost[p]);
-  }
+  /// [pixels] Variance that a ray takes away, were the pixel's samples doubled.
+  const std::vector<float>& gains_per_ray() const { return gain_; }
 
   /// Whether no sample of a pixel differed.
   bool agrees(std::size_t p) const { return own_[p] <= kAgreement / (samples(p) * samples(p)); }
@@ -56,33 +52,50 @@ class PixelErrors {
   float contrast(int x, int y) const;
 
  private:
+  static constexpr float kUnknown = -1;
+  struct Around;
+
   std::size_t at(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(r_.width) +
            static_cast<std::size_t>(x);
   }
+  /// The same in arrays that have a pixel more on each side.
+  std::size_t lent_at(int x, int y) const {
+    return static_cast<std::size_t>(y + 1) * static_cast<std::size_t>(r_.width + 2) +
+           static_cast<std::size_t>(x + 1);
+  }
   float samples(std::size_t p) const { return static_cast<float>(1u << r_.log[p]); }
   bool watched(std::size_t p) const { return effects_ || r_.inside[p] > 0 || r_.around[p] > 0; }
-  float differences(std::size_t p) const;
-  float variance_by(float halves, float quarters, float eighths, float count) const;
-  float channel_variance(std::size_t i) const;
+  bool is_young(std::size_t p) const;
+  float variance_by(float halves, float quarters, float eighths, bool young) const;
+  float channel_variance(std::size_t i, bool young) const;
   float own_variance(std::size_t p) const;
   /// What hides from a pixel's samples adds to its variance, and how wide its interval must be.
   struct Hidden {
     float variance, width;
   };
   Hidden in_box(std::size_t p) const;
-  float doubt_of(int x, int y) const;
+  float doubt_of(int x, int y);
   bool met_lamp(std::size_t p) const;
-  float with_neighbours(int x, int y, const RatioPowers& powers) const;
-  void judge_pixel(int x, int y, const RatioPowers& powers);
+  float contrast_so_far(int x, int y);
+  float with_neighbours(std::size_t p, const Around& around, const RatioPowers& powers) const;
+  void show_new();
+  void lend_row(int y, const RatioPowers& powers);
+  void judge_pixel(int x, int y, const Around& around, const RatioPowers& powers);
+  void judge_row(int y, const RatioPowers& powers);
 
   const Refinement& r_;
   const bool effects_;
   const int first_log_, threads_;
+  float of_young_ = 0, of_old_ = 0;             ///< what squared differences, summed by level, tell
+  std::vector<std::uint8_t> seen_;              ///< [pixels] Refinement::log when `shown_` was set
   std::vector<float> shown_;                    ///< [pixels][3] what a screen shows
+  std::vector<float> contrast_;                 ///< [pixels] as far as it was asked for
   std::vector<float> own_, variance_, widest_;  ///< [pixels] own_: from a pixel's own differences
-  std::vector<float> of_one_;  ///< [pixels] own_ as it would be of one sample; 0: not watched
-  std::vector<std::uint8_t> watched_;  ///< [pixels]
+  std::vector<float> gain_;                     ///< [pixels]
+  /// own_ as it would be of one sample, of those that lend it, see lent_at(); 0 for others
+  std::vector<float> lent_;
+  std::vector<std::uint8_t> lends_;
 };
 
 }  // namespace grelha

@@ -41,7 +41,7 @@ struct Rank {
 std::vector<Rank> ranked(const Pixels& wanted, const PixelErrors& errors) {
   std::vector<Rank> ranks(wanted.size());
   for (std::size_t i = 0; i < ranks.size(); ++i)
-    ranks[i] = {errors.gain_per_ray(wanted[i]), static_cast<std::uint32_t>(i)};
+    ranks[i] = {errors.gains_per_ray()[wanted[i]], static_cast<std::uint32_t>(i)};
   std::sort(ranks.begin(), ranks.end(), [](const Rank& a, const Rank& b) {
     return a.gain != b.gain ? a.gain > b.gain : a.place < b.place;
   });
@@ -78,11 +78,17 @@ void keep_for_error(Refinement& r,
                     const PixelErrors::Totals& totals,
                     double error) {
   const double excess = totals.sum * (1 - error * error / (totals.bound * totals.bound));
+  const auto drop_of = [&](std::size_t p) { return errors.variance(p) * (1 - r.variance_ratio); };
+  double all = 0;
+  for (const std::uint32_t p : r.wanted)
+    all += drop_of(p);
+  if (all < excess)
+    return;
   double drop = 0;
   keep_best(r.wanted, errors, [&](std::size_t p) {
     if (!(drop < excess))
       return false;
-    drop += errors.variance(p) * (1 - r.variance_ratio);
+    drop += drop_of(p);
     return true;
   });
 }
@@ -119,11 +125,14 @@ void tell_share(Refinement& r,
 
 /// Wants the pixels that gain more than the threshold, which falls until there are some.
 void want_gaining(Refinement& r, const PixelErrors& errors, const Pixels& order) {
-  const std::size_t least = order.size() / kPixelsAWanted;
-  do {
+  const std::vector<float>& gains = errors.gains_per_ray();
+  const auto least = static_cast<std::ptrdiff_t>(order.size() / kPixelsAWanted);
+  const auto gaining = [&](float gain) { return gain > r.gain_threshold; };
+  do
     r.gain_threshold *= kThresholdStep;
-    want(r, order, [&](std::size_t p) { return errors.gain_per_ray(p) > r.gain_threshold; });
-  } while (r.wanted.size() <= least && r.gain_threshold >= kLeastThreshold);
+  while (std::count_if(gains.begin(), gains.end(), gaining) <= least &&
+         r.gain_threshold >= kLeastThreshold);
+  want(r, order, [&](std::size_t p) { return gaining(gains[p]); });
 }
 
 /// Wants the pixels whose intervals are too wide, but for the widest of them that may be so.

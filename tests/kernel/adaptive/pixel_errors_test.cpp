@@ -159,6 +159,42 @@ TEST(PixelErrors, TakeFaintDifferencesForNoEdge) {
   EXPECT_LE(PixelErrors::faint(0) * 256, 4);  // steps of a picture of 8 bits
 }
 
+/// Each of the eight pixels around a pixel that may hide something lends it as much.
+TEST(PixelErrors, BorrowFromEightPixels) {
+  constexpr int kWidth = 5;
+  constexpr int kMiddle = 12;
+  Camera camera;
+  camera.width = camera.height = kWidth;
+  for (const int step : {-6, -5, -4, -1, 1, 4, 5, 6}) {
+    const std::size_t lender = static_cast<std::size_t>(kMiddle + step);
+    Refinement r = make_refinement(camera);
+    r.log.assign(kWidth * kWidth, kFirstLog + 1);
+    r.cost.assign(kWidth * kWidth, 1);
+    r.inside.assign(kWidth * kWidth, 1e-6f);
+    r.squares[0][3 * lender] = 1;
+    const PixelErrors errors = judged(r);
+    EXPECT_NEAR(errors.variance(kMiddle) / errors.variance(lender), 1. / 8, 1e-3) << step;
+  }
+}
+
+/// What is kept of a pixel from one round to the next follows the samples of those around it.
+TEST(PixelErrors, FollowThePixelsAround) {
+  constexpr int kWidth = 4;
+  Refinement r = pixels(kWidth, kFirstLog);
+  r.inside.assign(kWidth, 0);
+  r.around.assign(kWidth, 1);
+  PixelErrors errors(r, false, kFirstLog, 1);
+  errors.judge();
+  for (const std::size_t p : {1, 3, 2, 0}) {
+    ++r.log[p];
+    for (std::size_t c = 0; c < 3; ++c)
+      r.sums[3 * p + c] = static_cast<std::int64_t>((p + 1) * kLightUnit);
+    errors.judge();
+    EXPECT_EQ(errors.widths(), judged(r).widths()) << p;
+    EXPECT_EQ(errors.gains_per_ray(), judged(r).gains_per_ray()) << p;
+  }
+}
+
 /// The widest interval of two pixels that differ so much, of 2^log samples that agree.
 float width_at_edge(float difference, std::uint8_t log) {
   Refinement r = pixels(2, log);
