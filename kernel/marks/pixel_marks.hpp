@@ -31,9 +31,10 @@ class PixelMarks {
     const int right = static_cast<int>(std::min(x1, width_ - 1.));
     const int upper = static_cast<int>(std::max(y0, 0.));
     const int lower = static_cast<int>(std::min(y1, height_ - 1.));
-    for (int y = upper; y <= lower; ++y)
-      for (int x = left; x <= right; ++x)
-        set(x, y);
+    for (int y = upper - upper % kTile; y <= lower; y += kTile)
+      for (int x = left - left % kTile; x <= right; x += kTile)
+        set(tiles_[tile_at(x, y)],
+            kColumn * bits(left - x, right - x) & rows(upper - y, lower - y));
   }
   void mark_all() {
     for (std::atomic<std::uint64_t>& tile : tiles_)
@@ -50,12 +51,22 @@ class PixelMarks {
            static_cast<std::size_t>(x / kTile);
   }
   static int bit_at(int x, int y) { return y % kTile * kTile + x % kTile; }
-  void set(int x, int y) {
-    std::atomic<std::uint64_t>& tile = tiles_[tile_at(x, y)];
-    const std::uint64_t bit = std::uint64_t{1} << bit_at(x, y);
-    if ((tile.load(std::memory_order_relaxed) & bit) == 0)
-      tile.fetch_or(bit, std::memory_order_relaxed);
+  /// Bits from one to another, of the eight there are.
+  static std::uint64_t bits(int first, int last) {
+    return 0xFFu >> (kTile - 1 - std::min(last, kTile - 1)) & 0xFFu << std::max(first, 0);
   }
+  /// The same of bytes.
+  static std::uint64_t rows(int first, int last) {
+    return ~std::uint64_t{0} >> 8 * (kTile - 1 - std::min(last, kTile - 1)) &
+           ~std::uint64_t{0} << 8 * std::max(first, 0);
+  }
+  static void set(std::atomic<std::uint64_t>& tile, std::uint64_t bits) {
+    if ((~tile.load(std::memory_order_relaxed) & bits) != 0)
+      tile.fetch_or(bits, std::memory_order_relaxed);
+  }
+
+  static constexpr std::uint64_t kColumn = 0x0101010101010101;
+  static_assert(kTile == 8);
 
   int width_, height_, columns_;
   std::vector<std::atomic<std::uint64_t>> tiles_;

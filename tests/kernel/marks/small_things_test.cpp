@@ -2,6 +2,7 @@
 #include "kernel/marks/small_things.hpp"
 
 #include "tests/support/boxes.hpp"
+#include "tests/support/random.hpp"
 #include "tests/support/rays.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -289,6 +290,28 @@ TEST(SmallThings, CountForMirrorsAsFarAsTheseShowThem) {
       }
       EXPECT_FALSE(small_things(World(box, {})).mirrored) << pixels;
     }
+}
+
+/// A box marks the pixels that it reaches into, whatever tiles they lie in and however much of it
+/// lies outside.
+TEST(PixelMarks, AreThoseThatABoxReachesInto) {
+  constexpr int kWidth = 29;
+  constexpr int kHeight = 21;
+  Random random(7);
+  for (int k = 0; k < 2000; ++k) {
+    const double x0 = random.in(-10, kWidth + 2);
+    const double y0 = random.in(-10, kHeight + 2);
+    const double x1 = x0 + random.in(0, 30);
+    const double y1 = y0 + random.in(0, 30);
+    PixelMarks marks(kWidth, kHeight);
+    marks.mark(x0, y0, x1, y1);
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        ASSERT_EQ(marks.has(x, y), x1 >= x && x0 < x + 1 && y1 >= y && y0 < y + 1)
+            << x << ' ' << y << " of " << x0 << ' ' << y0 << ' ' << x1 << ' ' << y1;
+      }
+    }
+  }
 }
 
 }  // namespace
