@@ -23,6 +23,10 @@ def marks(name, file, old, new, cases):
     return Fault(name, f"kernel/marks/{file}.cpp", old, new, "small_things", cases)
 
 
+def thin_shadows(name, old, new, cases):
+    return Fault(name, "kernel/marks/thin_shadows.hpp", old, new, "small_things", cases)
+
+
 def beam(name, file, old, new, cases):
     return Fault(name, f"kernel/features/{file}.hpp", old, new, "beam", cases)
 
@@ -269,22 +273,30 @@ FAULTS = [
           "most + to_.reach(rod.aside, depth) + 1", "most", "Glows.AreMarked*"),
     marks("lamps of any brightness", "glows", "std::ilogb(sent)", "std::ilogb(2 * sent)",
           "Glows.AreMarked*"),
-    marks("things of a pixel and more taken for large", "small_things", "kThin = 2;",
-             "kThin = 1;", "SmallThings.AreMarkedWhereTheyAreSeen"),
+    thin_shadows("things of a pixel and more taken for large", "kThin = 2;", "kThin = 1;",
+                 "SmallThings.AreMarkedWhereTheyAreSeen"),
     marks("things marked no wider than they are", "small_things", "kMargin = .1;", "kMargin = 0;",
           "SmallThings.AreMarkedATenth*"),
-    marks("shadows of cones on themselves", "small_things", "way_out(rod, part, ray, length);",
-             "rod.reach;", "SmallThings.AreMarkedWhereTheirShadowsFall"),
-    marks("gaps in long shadows", "small_things", "(near || id[i] == id[i - 1])", "near",
-             "SmallThings.AreMarkedWhereShadowsOfLong*"),
+    thin_shadows("shadows of cones on themselves", "way_out(rod, part, ray, length);",
+                 "rod.reach;", "SmallThings.AreMarkedWhereTheirShadowsFall"),
+    thin_shadows("gaps in long shadows", "(near || id[i] == id[i - 1])", "near",
+                 "SmallThings.AreMarkedWhereShadowsOfLong*"),
     marks("meshes of any materials", "mesh_rims", "+ triangles_.material[i]", "",
              "MeshRims.AreAroundHoles*"),
     marks("places by the sign of their zeros", "mesh_rims", "(x + 0.f)", "(x)",
              "MeshRims.AreWhereEdges*"),
     marks("outlines of thick meshes", "small_things",
           "rod.width = std::max(rod.width, thickness[k]);", "", "SmallThings.AreNotWhere*"),
-    marks("no outlines", "small_things", "if (is_thin(rod)) take(rod, false);", "",
+    marks("no outlines", "small_things", "add_outlines(outlines, from, things, counts);", "",
           "SmallThings.AreMarkedWhere*"),
+    marks("small things in marked pixels", "small_things", "(!w.small ||", "(true ||",
+          "SmallThings.AreSmallBeside*"),
+    thin_shadows("shadows of as many things as there are", "rods > most", "rods > 2 * most",
+                 "SmallThings.AreManyWhere*"),
+    thin_shadows("shadows that may always be anywhere", "rods > most", "rods >= most",
+                 "SmallThings.AreManyWhere*"),
+    marks("ways that are not quite enough", "mesh_thickness", "kEnough = 1 + 0x1p-20;",
+          "kEnough = 1;", "MeshThickness.IsTold*"),
     marks("meshes thick on one side", "mesh_thickness", "std::min(t[2 * k], t[2 * k + 1])",
           "t[2 * k]", "MeshThickness.*"),
     marks("triangles that are behind themselves", "mesh_thickness", "kRounding = 0x1p-20;",
@@ -344,6 +356,8 @@ FAULTS = [
     Fault("marks a column too wide", "kernel/marks/pixel_marks.hpp",
           "bits(left - x, right - x)", "bits(left - x, right - x + 1)", "small_things",
           "PixelMarks.*"),
+    Fault("marks of some of a box", "kernel/marks/pixel_marks.hpp",
+          "if (!go_on(", "if (x < left && !go_on(", "small_things", "PixelMarks.AreAll*"),
     Fault("marks a row short", "kernel/marks/pixel_marks.hpp",
           "rows(upper - y, lower - y)", "rows(upper - y + 1, lower - y)", "small_things",
           "PixelMarks.*"),

@@ -12,13 +12,16 @@ namespace {
 constexpr std::size_t kRaysOfTurn = 256;
 /// Times the greatest coordinate: hits so near are those of the triangle itself, by rounding.
 constexpr double kRounding = 0x1p-20;
+/// Ways that are enough, as floats, are no less than that.
+constexpr double kEnough = 1 + 0x1p-20;
 
 /// Both rays of some triangles.
 struct BothWays {
-  float org[3][kRaysOfTurn], dir[3][kRaysOfTurn], t_min[kRaysOfTurn];
+  float org[3][kRaysOfTurn], dir[3][kRaysOfTurn], t_min[kRaysOfTurn], t_max[kRaysOfTurn];
 };
 
-void set_rays(const TriangleSpans& t, std::uint32_t i, std::size_t at, BothWays& rays) {
+void set_rays(
+    const TriangleSpans& t, std::uint32_t i, double enough, std::size_t at, BothWays& rays) {
   const std::uint32_t vertex[3] = {t.a[i], t.b[i], t.c[i]};
   double p[3][3];
   for (int k = 0; k < 3; ++k) {
@@ -44,12 +47,14 @@ void set_rays(const TriangleSpans& t, std::uint32_t i, std::size_t at, BothWays&
       rays.dir[a][at + way] = static_cast<float>((way == 0 ? of_one : -of_one) * normal[a]);
     }
     rays.t_min[at + way] = static_cast<float>(kRounding * farthest);
+    rays.t_max[at + way] = static_cast<float>(kEnough * enough);
   }
 }
 
 }  // namespace
 
 void MeshThickness::measure(std::span<const std::uint32_t> triangles,
+                            std::span<const double> enough,
                             std::span<double> thickness,
                             TraceCounts& counts) const {
   BothWays both;
@@ -58,10 +63,11 @@ void MeshThickness::measure(std::span<const std::uint32_t> triangles,
   for (std::size_t first = 0; first < triangles.size(); first += kRaysOfTurn / 2) {
     const std::size_t count = std::min(kRaysOfTurn / 2, triangles.size() - first);
     for (std::size_t k = 0; k < count; ++k)
-      set_rays(spans, triangles[first + k], 2 * k, both);
+      set_rays(spans, triangles[first + k], enough[first + k], 2 * k, both);
     const Rays rays{.org = {both.org[0], both.org[1], both.org[2]},
                     .dir = {both.dir[0], both.dir[1], both.dir[2]},
                     .t_min = both.t_min,
+                    .t_max = both.t_max,
                     .count = 2 * count};
     setup_.variant.loops.closest(world_.view, rays, {.t = t}, {}, counts);
     for (std::size_t k = 0; k < count; ++k) {

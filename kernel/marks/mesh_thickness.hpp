@@ -18,9 +18,10 @@ class MeshThickness {
  public:
   MeshThickness(const World::Impl& world, const Setup& setup) : world_(world), setup_(setup) {}
 
-  /// Sets the way to the nearer of what lies on either side of triangles, infinity where that is
-  /// nothing; 0 for triangles without an area.
+  /// Sets the way to the nearer of what lies on either side of triangles; 0 for triangles without
+  /// an area. Where it is `enough` or more, that is all that it tells.
   void measure(std::span<const std::uint32_t> triangles,
+               std::span<const double> enough,
                std::span<double> thickness,
                TraceCounts& counts) const;
 

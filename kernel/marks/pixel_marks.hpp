@@ -22,19 +22,21 @@ class PixelMarks {
 
   int width() const { return width_; }
   int height() const { return height_; }
+  /// In which anything that crosses the picture is marked.
+  double most_steps() const { return 4. * (width_ + height_); }
 
   /// Sets pixels that reach into a box of the picture, in pixels from its upper left corner.
   void mark(double x0, double y0, double x1, double y1) {
-    if (!(x1 >= 0 && y1 >= 0 && x0 < width_ && y0 < height_ && x0 <= x1 && y0 <= y1))
-      return;
-    const int left = static_cast<int>(std::max(x0, 0.));
-    const int right = static_cast<int>(std::min(x1, width_ - 1.));
-    const int upper = static_cast<int>(std::max(y0, 0.));
-    const int lower = static_cast<int>(std::min(y1, height_ - 1.));
-    for (int y = upper - upper % kTile; y <= lower; y += kTile)
-      for (int x = left - left % kTile; x <= right; x += kTile)
-        set(tiles_[tile_at(x, y)],
-            kColumn * bits(left - x, right - x) & rows(upper - y, lower - y));
+    each_tile(x0, y0, x1, y1, [&](std::size_t tile, std::uint64_t bits) {
+      set(tiles_[tile], bits);
+      return true;
+    });
+  }
+  /// Whether all of these are set.
+  bool has_all(double x0, double y0, double x1, double y1) const {
+    return each_tile(x0, y0, x1, y1, [&](std::size_t tile, std::uint64_t bits) {
+      return (~tiles_[tile].load(std::memory_order_relaxed) & bits) == 0;
+    });
   }
   void mark_all() {
     for (std::atomic<std::uint64_t>& tile : tiles_)
@@ -46,6 +48,22 @@ class PixelMarks {
   bool has(int x, int y) const { return tile(x, y) >> bit_at(x, y) & 1; }
 
  private:
+  /// Calls go_on(tile, bits) for the pixels of a box, as long as it says so; returns whether it
+  /// always did.
+  template <class GoOn>
+  bool each_tile(double x0, double y0, double x1, double y1, const GoOn& go_on) const {
+    if (!(x1 >= 0 && y1 >= 0 && x0 < width_ && y0 < height_ && x0 <= x1 && y0 <= y1))
+      return true;
+    const int left = static_cast<int>(std::max(x0, 0.));
+    const int right = static_cast<int>(std::min(x1, width_ - 1.));
+    const int upper = static_cast<int>(std::max(y0, 0.));
+    const int lower = static_cast<int>(std::min(y1, height_ - 1.));
+    for (int y = upper - upper % kTile; y <= lower; y += kTile)
+      for (int x = left - left % kTile; x <= right; x += kTile)
+        if (!go_on(tile_at(x, y), kColumn * bits(left - x, right - x) & rows(upper - y, lower - y)))
+          return false;
+    return true;
+  }
   std::size_t tile_at(int x, int y) const {
     return static_cast<std::size_t>(y / kTile) * static_cast<std::size_t>(columns_) +
            static_cast<std::size_t>(x / kTile);

@@ -68,25 +68,51 @@ inline bool cut_behind(const ToPicture& to, Rod& rod) {
   return true;
 }
 
-/// Marks the way from one spot to another.
-inline void mark_way(const ToPicture::Spot& a,
+/// Calls go_on(x0, y0, x1, y1) for boxes around the way from one spot to another, as long as it
+/// says so; returns whether it always did.
+template <class GoOn>
+bool each_box_on_way(const ToPicture::Spot& a,
                      const ToPicture::Spot& b,
                      double reach,
-                     PixelMarks& marks) {
+                     double most,
+                     const GoOn& go_on) {
   const double dx = b.x - a.x;
   const double dy = b.y - a.y;
-  const double most = 4. * (marks.width() + marks.height());
   const double steps = std::clamp(std::ceil(std::max(std::abs(dx), std::abs(dy))), 1., most);
   for (int i = 0; i < steps; ++i) {
     const double x0 = a.x + i / steps * dx;
     const double y0 = a.y + i / steps * dy;
     const double x1 = a.x + (i + 1) / steps * dx;
     const double y1 = a.y + (i + 1) / steps * dy;
-    marks.mark(std::min(x0, x1) - reach,
+    if (!go_on(std::min(x0, x1) - reach,
                std::min(y0, y1) - reach,
                std::max(x0, x1) + reach,
-               std::max(y0, y1) + reach);
+               std::max(y0, y1) + reach))
+      return false;
   }
+  return true;
+}
+
+/// Marks the way from one spot to another.
+inline void mark_way(const ToPicture::Spot& a,
+                     const ToPicture::Spot& b,
+                     double reach,
+                     PixelMarks& marks) {
+  each_box_on_way(a, b, reach, marks.most_steps(), [&](double x0, double y0, double x1, double y1) {
+    marks.mark(x0, y0, x1, y1);
+    return true;
+  });
+}
+
+/// Whether that would mark no pixel more.
+inline bool is_way_marked(const ToPicture::Spot& a,
+                          const ToPicture::Spot& b,
+                          double reach,
+                          const PixelMarks& marks) {
+  return each_box_on_way(
+      a, b, reach, marks.most_steps(), [&](double x0, double y0, double x1, double y1) {
+        return marks.has_all(x0, y0, x1, y1);
+      });
 }
 
 }  // namespace grelha

@@ -13,14 +13,18 @@
 namespace grelha::test {
 namespace {
 
-std::vector<double> thickness_of(const Scene& scene) {
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+/// `enough`: all that is asked.
+std::vector<double> thickness_of(const Scene& scene, double enough = kInfinite) {
   const World world(scene, {});
   const Setup setup = set_up(world, Camera{}, {});
   std::vector<std::uint32_t> all(scene.geometry.triangles.size());
   std::iota(all.begin(), all.end(), 0u);
   std::vector<double> out(all.size());
   TraceCounts counts;
-  MeshThickness(world.impl(), setup).measure(all, out, counts);
+  const std::vector<double> all_enough(all.size(), enough);
+  MeshThickness(world.impl(), setup).measure(all, all_enough, out, counts);
   return out;
 }
 
@@ -57,12 +61,31 @@ TEST(MeshThickness, IsTheGapWhereThatIsLess) {
   }
 }
 
+/// What is less than enough is told as it is, all else as enough or more.
+TEST(MeshThickness, IsToldWhereItIsLessThanEnough) {
+  Random random(2);
+  for (int i = 0; i < 300; ++i) {
+    Scene s = empty_scene();
+    const double length[3] = {random.log_in(.02, 1), random.log_in(.02, 1), random.log_in(.02, 1)};
+    add_box(s, {0, 0, 0}, random_axes(random), length);
+    const std::vector<double> thickness = thickness_of(s);
+    const double enough = random.log_in(.02, 1);
+    const std::vector<double> told = thickness_of(s, enough);
+    for (std::size_t t = 0; t < 12; ++t) {
+      if (thickness[t] < enough)
+        EXPECT_EQ(told[t], thickness[t]) << i << ' ' << t;
+      else
+        EXPECT_GE(told[t], enough) << i << ' ' << t;
+    }
+  }
+}
+
 TEST(MeshThickness, IsInfiniteWhereNothingIsAndNoneOfWhatHasNoArea) {
   Scene s = empty_scene();
   add_triangle(s, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
   add_triangle(s, {0, 0, 5}, {1, 0, 5}, {2, 0, 5});
   const std::vector<double> thickness = thickness_of(s);
-  EXPECT_EQ(thickness[0], std::numeric_limits<double>::infinity());
+  EXPECT_EQ(thickness[0], kInfinite);
   EXPECT_EQ(thickness[1], 0);
 }
 

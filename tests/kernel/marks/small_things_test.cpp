@@ -283,14 +283,53 @@ TEST(SmallThings, CountForMirrorsAsFarAsTheseShowThem) {
       const double least = 6, most = 6 * std::hypot(1 + radius / 10., radius / 10., radius / 10.);
       for (const Scene* s : {&ball, &rod, &face}) {
         const bool thin = small_things(World(*s, {})).mirrored;
-        if (pixels < least)
-          EXPECT_TRUE(thin) << z << ' ' << pixels;
-        if (s != &face && pixels > most)
-          EXPECT_FALSE(thin) << z << ' ' << pixels;
+        EXPECT_TRUE(thin || pixels >= least) << z << ' ' << pixels;
+        EXPECT_FALSE(thin && s != &face && pixels > most) << z << ' ' << pixels;
       }
       EXPECT_FALSE(small_things(World(box, {})).mirrored) << pixels;
     }
 }
+
+/// A short thing in pixels that a long one before it has marked.
+TEST(SmallThings, AreSmallBesideLongOnes) {
+  Scene s = empty_scene();
+  s.geometry.cones.add({-1, 0, 0}, .02f, {1, 0, 0}, .02f, 0);
+  EXPECT_TRUE(small_things(World(s, {})).thin.has(kSide / 2, kSide / 2));
+  EXPECT_FALSE(small_things(World(s, {})).small.has(kSide / 2, kSide / 2));
+  s.geometry.cones.add({-.02f, 0, .1f}, .02f, {.02f, 0, .1f}, .02f, 0);
+  EXPECT_TRUE(small_things(World(s, {})).small.has(kSide / 2, kSide / 2));
+}
+
+/// Shadows of more things than half the pixels may be anywhere.
+TEST(SmallThings, AreManyWhereTheirShadowsMayBeAnywhere) {
+  constexpr int kPixels = kSide * kSide;
+  for (const int count : {kPixels / 2, kPixels / 2 + 1, 20 * kPixels}) {
+    Scene s = one_plane({0, 0, 0}, {0, 0, 1});
+    s.lights = {{{0, 0, 8}, {1, 1, 1}}};
+    for (int i = 0; i < count; ++i)
+      s.geometry.spheres.add({.001f * static_cast<float>(i % 100), 0, 4}, .01f, 0);
+    const SmallThings things = small_things(World(s, {}));
+    int lit_by = 0;
+    for (int p = 0; p < kPixels; ++p)
+      lit_by += things.lights(p % kSide, p / kSide) != 0;
+    if (count > kPixels / 2)
+      EXPECT_EQ(lit_by, kPixels) << count;
+    else
+      EXPECT_LT(lit_by, kPixels / 4) << count;
+    EXPECT_GT(lit_by, 0) << count;
+  }
+}
+
+struct Box {
+  double x0, y0, x1, y1;
+
+  Box(Random& random, int width, int height)
+      : x0(random.in(-10, width + 2)),
+        y0(random.in(-10, height + 2)),
+        x1(x0 + random.in(0, 30)),
+        y1(y0 + random.in(0, 30)) {}
+  bool reaches(int x, int y) const { return x1 >= x && x0 < x + 1 && y1 >= y && y0 < y + 1; }
+};
 
 /// A box marks the pixels that it reaches into, whatever tiles they lie in and however much of it
 /// lies outside.
@@ -299,19 +338,37 @@ TEST(PixelMarks, AreThoseThatABoxReachesInto) {
   constexpr int kHeight = 21;
   Random random(7);
   for (int k = 0; k < 2000; ++k) {
-    const double x0 = random.in(-10, kWidth + 2);
-    const double y0 = random.in(-10, kHeight + 2);
-    const double x1 = x0 + random.in(0, 30);
-    const double y1 = y0 + random.in(0, 30);
+    const Box box(random, kWidth, kHeight);
     PixelMarks marks(kWidth, kHeight);
-    marks.mark(x0, y0, x1, y1);
-    for (int y = 0; y < kHeight; ++y) {
-      for (int x = 0; x < kWidth; ++x) {
-        ASSERT_EQ(marks.has(x, y), x1 >= x && x0 < x + 1 && y1 >= y && y0 < y + 1)
-            << x << ' ' << y << " of " << x0 << ' ' << y0 << ' ' << x1 << ' ' << y1;
-      }
-    }
+    marks.mark(box.x0, box.y0, box.x1, box.y1);
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x)
+        ASSERT_EQ(marks.has(x, y), box.reaches(x, y)) << k << ' ' << x << ' ' << y;
   }
+}
+
+/// A box has all its marks where each pixel that it reaches into has one.
+TEST(PixelMarks, AreAllThereWhereNoPixelOfABoxIsLeft) {
+  constexpr int kWidth = 29;
+  constexpr int kHeight = 21;
+  Random random(8);
+  int full = 0;
+  for (int k = 0; k < 2000; ++k) {
+    PixelMarks marks(kWidth, kHeight);
+    for (int i = 0; i < 3; ++i) {
+      const Box box(random, kWidth, kHeight);
+      marks.mark(box.x0, box.y0, box.x1, box.y1);
+    }
+    const Box box(random, kWidth, kHeight);
+    bool all = true;
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x)
+        all &= !box.reaches(x, y) || marks.has(x, y);
+    ASSERT_EQ(marks.has_all(box.x0, box.y0, box.x1, box.y1), all) << k;
+    full += all;
+  }
+  EXPECT_GT(full, 100);
+  EXPECT_LT(full, 1900);
 }
 
 }  // namespace
