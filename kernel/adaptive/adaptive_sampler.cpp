@@ -52,7 +52,7 @@ Spaces run_spaces(const Setup& setup, const RenderOptions& options, int threads)
 class AdaptiveSampler {
  public:
   AdaptiveSampler(const World::Impl& world,
-                  const Setup& setup,
+                  Setup& setup,
                   const RenderOptions& options,
                   GuardedProgress& progress,
                   Refinement& r,
@@ -71,7 +71,6 @@ class AdaptiveSampler {
     stats_ = {};
     stats_.threads = thread_count(options, r.log.size());
     stats_.isa = setup.variant.name.data();
-    stats_.point_grids = setup.point_grids;
     for (std::size_t p = 0; p < order_.size(); ++p)
       samples_ += sample_count(r, p);
   }
@@ -197,6 +196,7 @@ class AdaptiveSampler {
   /// Doubles the samples of the wanted pixels, or takes the first ones. Returns whether it came to
   /// the end.
   bool take_round() {
+    look_for_light_grids();
     std::vector<Chunk> chunks = cut_round(r_, first_log_);
     std::atomic<std::size_t> begun = 0;
 #pragma omp parallel num_threads(stats_.threads)
@@ -221,6 +221,17 @@ class AdaptiveSampler {
       }
     }
     return end_round(r_, chunks, std::min(begun.load(), chunks.size()));
+  }
+
+  /// They pay by the samples to come: those of the round, and what its share of the way to the end
+  /// took foretells. Samples go where they help most, so errors fall about as their number grows.
+  void look_for_light_grids() {
+    double round = 0;
+    for (const std::uint32_t p : r_.wanted)
+      round += next_count(r_, p, first_log_);
+    const double left = r_.share > 0 ? static_cast<double>(samples_) * (1 / r_.share - 1) : 0;
+    set_light_grids(world_, options_, std::max(round, left), setup_);
+    stats_.point_grids = setup_.point_grids;
   }
 
   void tell_progress() {
@@ -266,7 +277,7 @@ class AdaptiveSampler {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start_ = Clock::now();
   const World::Impl& world_;
-  const Setup& setup_;
+  Setup& setup_;
   const RenderOptions& options_;
   GuardedProgress& progress_;
   Refinement& r_;

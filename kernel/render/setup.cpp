@@ -95,28 +95,28 @@ void check_refinement(const RenderOptions& o) {
   require(!o.subdivision.on, "samples are spent by error or by subdivision, not by both");
 }
 
-/// Samples a pixel that a picture to an error is taken to need, to weigh what pays.
-constexpr double kRefinedSamples = 8;
-/// Pixels times samples for each primitive from which a light's grid pays. Measured: in 16 of 20
-/// scenes (docs/perspective.md).
-constexpr double kPayingRays = 16;
+/// Samples of a picture for each primitive from which a light's grid pays. Measured: in 16 of 20
+/// scenes (docs/perspective.md). By error they go less together, where packets take longer.
+constexpr double kPayingSamples = 16;
+constexpr double kPayingRefined = 8;
 /// Primitives that a look-up can spare a ray: of fewer it takes longer than the walk (measured).
 constexpr std::size_t kFewestSeen = 32;
 
-bool pay(const RenderOptions& options, const Setup& setup, std::size_t primitives) {
-  if (primitives < kFewestSeen)
-    return false;
-  const double samples = options.refine.on() ? kRefinedSamples : setup.plan.samples;
-  const double pixels = static_cast<double>(setup.frame.width) * setup.frame.height;
-  return pixels * samples >= kPayingRays * static_cast<double>(primitives);
+bool pay(const RenderOptions& options, double samples, std::size_t primitives) {
+  const double of_each = options.refine.on() ? kPayingRefined : kPayingSamples;
+  return primitives >= kFewestSeen && samples >= of_each * static_cast<double>(primitives);
 }
 
-/// Builds the grids of lights that pay, or finds them where they are built.
-void set_light_grids(const World::Impl& w, const RenderOptions& options, Setup& setup) {
+}  // namespace
+
+void set_light_grids(const World::Impl& w,
+                     const RenderOptions& options,
+                     double samples,
+                     Setup& setup) {
   if (w.grids.empty() || options.point_grids == PointGrids::kOff ||
-      options.precision == Precision::kDouble ||
+      options.precision == Precision::kDouble || !setup.light_grids.empty() ||
       (options.point_grids == PointGrids::kAuto &&
-       !pay(options, setup, w.light_grids->primitives())))
+       !pay(options, samples, w.light_grids->primitives())))
     return;
   const double begin = omp_get_wtime();
   const std::size_t bytes = w.light_grids->bytes();
@@ -130,8 +130,6 @@ void set_light_grids(const World::Impl& w, const RenderOptions& options, Setup& 
   if (setup.point_grids.bytes > bytes)
     setup.point_grids.seconds = omp_get_wtime() - begin;
 }
-
-}  // namespace
 
 void check_options(const Camera& camera, const RenderOptions& options) {
   require(camera_is_sound(camera), "the camera cannot see: check eye, at, up, angle and size");
@@ -155,7 +153,10 @@ Setup set_up(const World& world, const Camera& camera, const RenderOptions& opti
               .shading = w.shading,
               .light_grids = {},
               .point_grids = {}};
-  set_light_grids(w, options, setup);
+  if (!options.refine.on()) {
+    const double pixels = static_cast<double>(camera.width) * camera.height;
+    set_light_grids(w, options, pixels * setup.plan.samples, setup);
+  }
   return setup;
 }
 

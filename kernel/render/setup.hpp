@@ -26,6 +26,13 @@ void check_options(const Camera& camera, const RenderOptions& options);
 /// bad camera or option.
 Setup set_up(const World& world, const Camera& camera, const RenderOptions& options);
 
+/// Builds the grids of lights, or finds them where they are built, if so many samples of the
+/// picture pay for them. Those of a picture by error are known as it goes.
+void set_light_grids(const World::Impl& world,
+                     const RenderOptions& options,
+                     double samples,
+                     Setup& setup);
+
 /// Threads for `pieces` of work.
 int thread_count(const RenderOptions& options, std::size_t pieces);
 

@@ -61,6 +61,30 @@ TEST(LightGrids, AreBuiltWhereSamplesOutweighPrimitives) {
   EXPECT_GT(stats.point_grids.count, 0);
 }
 
+/// By what is left to do, as far as rounds foretell it: 8 for each primitive. 64 pixels take 256 at
+/// first, and no round of the last case takes 2400.
+TEST(LightGrids, AreBuiltWherePicturesByErrorTakeManySamples) {
+  struct Case {
+    int spheres;
+    double error;
+    int grids;
+  };
+  for (const Case& c : {Case{64, .3, 0}, Case{300, .03, 0}, Case{300, .01, 1}}) {
+    Scene scene = random_spheres(5, c.spheres);
+    scene.lights.push_back({{3, 4, 5}, {1, 1, 1}});
+    const World world(scene, {});
+    RenderOptions options;
+    RenderStats stats;
+    options.refine.error = c.error;
+    options.point_grids = PointGrids::kOff;
+    const Image wanted = render(world, camera_of(8), options, stats);
+    EXPECT_EQ(stats.point_grids.count, 0);
+    options.point_grids = PointGrids::kAuto;
+    EXPECT_EQ(render(world, camera_of(8), options, stats).rgb, wanted.rgb);
+    EXPECT_EQ(stats.point_grids.count, c.grids) << c.spheres << ' ' << c.error;
+  }
+}
+
 /// A walk among few primitives takes less than a look-up.
 TEST(LightGrids, AreNotBuiltForFew) {
   for (const int count : {20, 60}) {
