@@ -1,6 +1,8 @@
 #include "kernel/marks/mesh_rims.hpp"
 
+#include <algorithm>
 #include <bit>
+#include <mutex>
 
 #include "kernel/scene/turns.hpp"
 
@@ -76,6 +78,30 @@ MeshRims::MeshRims(const TriangleSpans& triangles, int threads)
     first_[v] = first_at_place(triangles, vertex, name_[v], held);
   });
   each_of(triangles.size(), threads, [&](std::size_t i) { add_neighbours(i); });
+  find_borders();
+}
+
+int MeshRims::open_corners(std::size_t i) const {
+  return is_open(triangles_.a[i]) + is_open(triangles_.b[i]) + is_open(triangles_.c[i]);
+}
+
+MeshRims::Edge MeshRims::edge(std::size_t i, int k) const {
+  const std::uint32_t vertex[3] = {triangles_.a[i], triangles_.b[i], triangles_.c[i]};
+  const auto [lower, upper] = std::minmax(first_[vertex[k]], first_[vertex[(k + 1) % 3]]);
+  return {lower, upper, triangles_.material[i]};
+}
+
+/// With one corner inside, the edge of the other two is all that loners may have in common with it.
+void MeshRims::find_borders() {
+  std::mutex adding;
+  each_of(triangles_.size(), threads_, [&](std::size_t i) {
+    if (open_corners(i) != 2)
+      return;
+    const int k = !is_open(triangles_.a[i]) ? 1 : !is_open(triangles_.b[i]) ? 2 : 0;
+    const std::lock_guard lock(adding);
+    borders_.push_back(edge(i, k));
+  });
+  std::sort(borders_.begin(), borders_.end());
 }
 
 void MeshRims::add_neighbours(std::size_t i) {
@@ -124,15 +150,16 @@ void MeshRims::add_side(std::size_t i) {
 bool MeshRims::stands_alone(std::size_t i) const {
   if (sides_.empty())
     return true;
-  return open_[first_[triangles_.a[i]]] != 0 && open_[first_[triangles_.b[i]]] != 0 &&
-         open_[first_[triangles_.c[i]]] != 0;
+  if (open_corners(i) < 3)
+    return false;
+  for (int k = 0; k < 3; ++k)
+    if (std::binary_search(borders_.begin(), borders_.end(), edge(i, k)))
+      return false;
+  return true;
 }
 
 bool MeshRims::ends_at(std::size_t i) const {
-  if (sides_.empty())
-    return true;
-  return open_[first_[triangles_.a[i]]] != 0 || open_[first_[triangles_.b[i]]] != 0 ||
-         open_[first_[triangles_.c[i]]] != 0;
+  return sides_.empty() || open_corners(i) > 0;
 }
 
 bool MeshRims::has(std::size_t i) const {

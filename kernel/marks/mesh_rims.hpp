@@ -3,6 +3,7 @@
 // thing of its own.
 
 #include <atomic>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -24,7 +25,8 @@ class MeshRims {
   bool has(std::size_t i) const;
   /// Whether a corner of triangle i lies where a mesh ends. With very many triangles: always.
   bool ends_at(std::size_t i) const;
-  /// Whether all corners of triangle i lie where a mesh ends: it is no part of a larger surface.
+  /// Whether triangle i is no part of a larger surface: all its corners lie where a mesh ends, and
+  /// so do those of the triangles that it has an edge in common with. With very many: always.
   bool stands_alone(std::size_t i) const;
 
  private:
@@ -32,7 +34,17 @@ class MeshRims {
   static constexpr std::uint8_t kFront = 1;
   static constexpr std::uint8_t kBack = 2;
 
+  /// Of triangles of one material, by the first vertices at its places.
+  struct Edge {
+    std::uint32_t lower, upper, material;
+    auto operator<=>(const Edge&) const = default;
+  };
+
   void add_neighbours(std::size_t i);
+  void find_borders();
+  bool is_open(std::uint32_t vertex) const { return open_[first_[vertex]] != 0; }
+  int open_corners(std::size_t i) const;
+  Edge edge(std::size_t i, int k) const;
   void add_side(std::size_t i);
   std::uint8_t side_of(std::size_t i) const;
 
@@ -44,6 +56,7 @@ class MeshRims {
   /// [vertices] of the neighbours of a corner, each as often as triangles have both: 0 where each
   /// comes twice
   std::vector<std::atomic<std::uint32_t>> open_;
+  std::vector<Edge> borders_;  ///< of triangles that have corners inside of a mesh, in order
   std::vector<std::atomic<std::uint8_t>> sides_;
 };
 

@@ -38,18 +38,26 @@ double volume(const Triangles& t, std::size_t i, const double (&from)[3]) {
 struct Plainly {
   std::set<Corner> open;
   std::map<Corner, std::set<bool>> sides;
+  /// of triangles with a corner inside of a mesh
+  std::set<std::pair<Edge, std::uint32_t>> borders;
 
   Plainly(const Triangles& t, const double (&from)[3]) {
     std::map<std::pair<Edge, std::uint32_t>, int> edges;
     for (std::size_t i = 0; i < t.size(); ++i)
       for (std::size_t k = 0; k < 3; ++k) {
-        const Edge e = std::minmax(corner(t, i, k), corner(t, i, k + 1));
-        ++edges[{e, t.material[i]}];
+        ++edges[{edge_of(t, i, k), t.material[i]}];
         sides[corner(t, i, k)].insert(volume(t, i, from) < 0);
       }
     for (const auto& [edge, count] : edges)
       if (count % 2 != 0)
         open.insert({edge.first.first, edge.first.second});
+    for (std::size_t i = 0; i < t.size(); ++i)
+      for (std::size_t k = 0; k < 3 && !all_open(t, i); ++k)
+        borders.insert({edge_of(t, i, k), t.material[i]});
+  }
+
+  static Edge edge_of(const Triangles& t, std::size_t i, std::size_t k) {
+    return std::minmax(corner(t, i, k), corner(t, i, k + 1));
   }
 
   bool has(const Triangles& t, std::size_t i) const {
@@ -58,11 +66,17 @@ struct Plainly {
         return true;
     return false;
   }
-  bool stands_alone(const Triangles& t, std::size_t i) const {
+  bool all_open(const Triangles& t, std::size_t i) const {
     for (std::size_t k = 0; k < 3; ++k)
       if (!open.contains(corner(t, i, k)))
         return false;
     return true;
+  }
+  bool stands_alone(const Triangles& t, std::size_t i) const {
+    for (std::size_t k = 0; k < 3; ++k)
+      if (borders.contains({edge_of(t, i, k), t.material[i]}))
+        return false;
+    return all_open(t, i);
   }
 };
 
@@ -188,6 +202,26 @@ TEST(MeshRims, TellWhatStandsAlone) {
     add_triangle(polygon, place(0), place(k), place(k + 1));
   EXPECT_EQ(told(polygon.geometry.triangles, kAfar).loners, 4);
   EXPECT_EQ(told(polygon.geometry.triangles, kAfar).rims, 4);
+}
+
+/// A square of 3 x 3 squares, cut so that one triangle is its corner; a spike of two triangles at a
+/// side of it; a strip at another, as wide as one square.
+TEST(MeshRims, HaveTheirCornersAndSpikesForParts) {
+  Scene s = empty_scene();
+  const auto square = [&](float x, float y) {
+    add_triangle(s, {x, y, 0}, {x + 1, y, 0}, {x, y + 1, 0});
+    add_triangle(s, {x + 1, y, 0}, {x + 1, y + 1, 0}, {x, y + 1, 0});
+  };
+  for (int i = 0; i < 9; ++i)
+    square(static_cast<float>(i % 3), static_cast<float>(i / 3));
+  EXPECT_EQ(told(s.geometry.triangles, kAfar).loners, 0);
+  add_triangle(s, {1, 3, 0}, {2, 3, 0}, {1, 4, 0});
+  EXPECT_EQ(told(s.geometry.triangles, kAfar).loners, 0);
+  add_triangle(s, {2, 3, 0}, {1, 4, 0}, {1, 9, 0});
+  EXPECT_EQ(told(s.geometry.triangles, kAfar).loners, 1);
+  for (int i = 3; i < 8; ++i)
+    square(static_cast<float>(i), 1);
+  EXPECT_EQ(told(s.geometry.triangles, kAfar).loners, 1 + 5 * 2 - 1);
 }
 
 /// Of no triangle nothing is told, and nothing breaks.
