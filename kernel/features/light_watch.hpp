@@ -104,22 +104,27 @@ class LightWatch {
     trace_corners(scene_, b.beam, sight, n_);
     const int lit = lit_corners(b, sight, patch.on);
     if (lit == 0)
-      return blocked(f, b, sight.id, patch.whole) ? Doubt{} : around(part);
+      return blocked(f, b, sight, patch.whole) ? Doubt{} : around(part);
     return lit == kCorners ? shadows(f, b, patch, is_point(light), part) : around(part);
   }
 
   /// Whether all of a beam whose corners are dark is: one solid, or one closed sheet stands in it.
-  bool blocked(const BeamFrame& f,
-               const LightBeam& b,
-               const std::uint32_t (&id)[kCorners],
-               bool whole) {
+  /// Of a sheet no more is looked at than as far behind what the corner rays met as that is deep.
+  bool blocked(const BeamFrame& f, const LightBeam& b, const Sight& sight, bool whole) {
     const GeometryView& g = scene_.geometry;
+    const auto& id = sight.id;
     const bool one = id[0] == id[1] && id[0] == id[2] && id[0] == id[3];
     if (one && id[0] < g.ids.begin(PrimitiveKind::kCone))
       return true;
-    float far = 0;
-    for (const float length : b.length)
-      far = greater(length, far);
+    const float behind = farthest_hit(f, b.beam, sight);
+    float before = behind;
+    float end = 0;
+    for (int i = 0; i < kCorners; ++i) {
+      const Vec3f hit = b.beam.org[i] + sight.t[i] * b.beam.dir[i];
+      before = lesser(place(f, hit).w, before);
+      end = greater(b.length[i], end);
+    }
+    const float far = lesser(behind + (behind - before), end);
     Met shade;
     return !whole && one_surface(g, id) && collect(scene_, f, far, id, false, shade, n_) &&
            closed(g, f, shade, id);
