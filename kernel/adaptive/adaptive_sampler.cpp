@@ -163,7 +163,8 @@ class AdaptiveSampler {
   /// counts from now on.
   bool errors_stand() {
     const std::uint64_t before = stats_.rays.total();
-    const Audit found = audit(world_, setup_, options_, errors_, r_, first_log_, stats_);
+    const Audit found =
+        audit(world_, setup_, options_, errors_, r_, first_log_, audit_samples_, stats_);
     r_.rays += stats_.rays.total() - before;
     const AuditedPixels& others = found.others;
     const AuditedPixels& agreeing = found.agreeing;
@@ -287,6 +288,7 @@ class AdaptiveSampler {
   const std::vector<std::uint32_t> order_;
   std::uint64_t samples_ = 0;  ///< taken, of all pixels
   PixelErrors errors_;
+  AuditSamples audit_samples_;
   const Spaces spaces_;
 };
 

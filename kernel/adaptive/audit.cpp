@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 #include <numeric>
+#include <span>
 
 #include <omp.h>
 
@@ -85,8 +86,12 @@ class Auditor {
     plan_.seed = scattered_bits(plan_.seed ^ kOtherSeed);
   }
 
-  /// Sets half the squared differences of pixels.
-  void compare(const std::vector<std::uint32_t>& pixels, std::vector<double>& to) const {
+  /// Brings what was sampled of pixels to as many samples as the picture has of them.
+  void sample(const std::vector<std::uint32_t>& pixels, AuditSamples& samples) const {
+    std::vector<AuditSamples::Pixel*> of;
+    of.reserve(pixels.size());
+    for (const std::uint32_t p : pixels)
+      of.push_back(&samples.pixels[p]);
     const int threads = stats_.threads;
 #pragma omp parallel num_threads(threads)
     {
@@ -95,8 +100,10 @@ class Auditor {
       TraceCounts trace;
       RayCounts rays;
 #pragma omp for schedule(dynamic)
-      for (std::size_t first = 0; first < pixels.size(); first += kPixelsOfTurn)
-        compare_turn(pixels, first, space, to, trace, rays);
+      for (std::size_t first = 0; first < pixels.size(); first += kPixelsOfTurn) {
+        const std::size_t count = std::min(kPixelsOfTurn, pixels.size() - first);
+        sample_turn({pixels.data() + first, count}, of.data() + first, space, trace, rays);
+      }
 #pragma omp critical(grelha_stats)
       {
         stats_.trace += trace;
@@ -105,52 +112,47 @@ class Auditor {
     }
   }
 
- private:
-  void compare_turn(const std::vector<std::uint32_t>& pixels,
-                    std::size_t first,
-                    Workspace& space,
-                    std::vector<double>& to,
-                    TraceCounts& trace,
-                    RayCounts& rays) const {
-    const std::size_t end = std::min(first + kPixelsOfTurn, pixels.size());
-    PixelRun runs[2 * kPixelsOfTurn];
-    int count = 0;
-    const auto add = [&](std::uint32_t p, std::uint32_t from, std::uint32_t samples, bool boxed) {
-      const auto sum = static_cast<std::ptrdiff_t>(count) * kParts;
-      std::fill_n(space.pixels().begin() + sum, kParts, p);
-      std::fill_n(space.boxes().begin() + sum, kParts, boxed ? r_.box[p] : 0);
-      runs[count++] = {p, from, samples};
-    };
-    for (std::size_t i = first; i < end; ++i) {
-      add(pixels[i], 0, first_, false);
-      if (sample_count(r_, pixels[i]) > first_)
-        add(pixels[i], first_, sample_count(r_, pixels[i]) - first_, true);
-    }
-    const BandWork work = space.work(options_, 0, true);
-    setup_.variant.loops.render_runs(
-        world_.view, setup_.shading, setup_.frame, runs, count, work, trace, rays);
-    int run = 0;
-    for (std::size_t i = first; i < end; ++i) {
-      const int next = run + (sample_count(r_, pixels[i]) > first_ ? 2 : 1);
-      to[i] = half_square(pixels[i], space.sums().data() + run * kParts * 3, (next - run) * kParts);
-      run = next;
-    }
-    space.done(options_);
-  }
-
-  /// Mean of a pixel's channels.
-  double half_square(std::uint32_t p, const std::int64_t* sums, int parts) const {
+  /// Half the squared difference, mean of a pixel's channels.
+  double half_square(std::uint32_t p, const AuditSamples::Pixel& sampled) const {
     double squares = 0;
     for (std::size_t c = 0; c < 3; ++c) {
-      std::int64_t sum = 0;
-      for (int k = 0; k < parts; ++k)
-        sum += sums[static_cast<std::size_t>(k) * 3 + c];
-      const double again = static_cast<double>(sum) / (kLightUnit * sample_count(r_, p));
+      const double again = static_cast<double>(sampled.sums[c]) / (kLightUnit * sampled.count);
       const double d =
           shown(static_cast<double>(mean_so_far(r_, std::size_t{p} * 3 + c))) - shown(again);
       squares += d * d;
     }
     return squares / 6;
+  }
+
+ private:
+  void sample_turn(std::span<const std::uint32_t> pixels,
+                   AuditSamples::Pixel* const* of,
+                   Workspace& space,
+                   TraceCounts& trace,
+                   RayCounts& rays) const {
+    PixelRun runs[2 * kPixelsOfTurn];
+    AuditSamples::Pixel* owner[2 * kPixelsOfTurn];
+    int count = 0;
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      // the first samples go to all of a pixel, the others in part to its box
+      for (const std::uint32_t end : {first_, sample_count(r_, pixels[i])}) {
+        const std::uint32_t begin = of[i]->count;
+        if (begin >= end)
+          continue;
+        const auto sum = static_cast<std::ptrdiff_t>(count) * kParts;
+        std::fill_n(space.pixels().begin() + sum, kParts, pixels[i]);
+        std::fill_n(space.boxes().begin() + sum, kParts, begin > 0 ? r_.box[pixels[i]] : 0);
+        owner[count] = of[i];
+        runs[count++] = {pixels[i], begin, end - begin};
+        of[i]->count = end;
+      }
+    }
+    const BandWork work = space.work(options_, 0, true);
+    setup_.variant.loops.render_runs(
+        world_.view, setup_.shading, setup_.frame, runs, count, work, trace, rays);
+    for (int i = 0; i < count * kParts * 3; ++i)
+      owner[i / (kParts * 3)]->sums[i % 3] += space.sums()[static_cast<std::size_t>(i)];
+    space.done(options_);
   }
 
   const World::Impl& world_;
@@ -189,15 +191,16 @@ Audit audit(const World::Impl& world,
             const PixelErrors& errors,
             const Refinement& r,
             int first_log,
+            AuditSamples& samples,
             RenderStats& stats) {
   const Sample sample = audited_pixels(r, errors, setup.plan.seed);
-  std::vector<double> squares(sample.pixels.size());
-  Auditor(world, setup, options, r, first_log, stats).compare(sample.pixels, squares);
+  const Auditor auditor(world, setup, options, r, first_log, stats);
+  auditor.sample(sample.pixels, samples);
   Audit sum;
-  for (std::size_t i = 0; i < squares.size(); ++i) {
+  for (std::size_t i = 0; i < sample.pixels.size(); ++i) {
     const std::uint32_t p = sample.pixels[i];
     AuditedPixels& of = errors.agrees(p) ? sum.agreeing : sum.others;
-    of.add(squares[i],
+    of.add(auditor.half_square(p, samples.pixels.at(p)),
            static_cast<double>(errors.variance(p)),
            sample_count(r, p),
            i < sample.worst ? 1 : sample.stands_for);

@@ -3,6 +3,8 @@
 // decided where to stop cannot be wrong in the same way twice.
 
 #include <cstddef>
+#include <cstdint>
+#include <unordered_map>
 
 #include "grelha/render_options.hpp"
 #include "grelha/stats.hpp"
@@ -38,13 +40,24 @@ struct Audit {
   double bound() const;
 };
 
-/// The same for any number of threads.
+/// What audits of a picture have sampled. A pixel's sequence only grows, so the next audit takes
+/// what comes behind.
+struct AuditSamples {
+  struct Pixel {
+    std::uint32_t count = 0;
+    std::int64_t sums[3] = {};  ///< of light, in kLightUnit
+  };
+  std::unordered_map<std::uint32_t, Pixel> pixels;
+};
+
+/// The same for any number of threads, and whatever was sampled before.
 Audit audit(const World::Impl& world,
             const Setup& setup,
             const RenderOptions& options,
             const PixelErrors& errors,
             const Refinement& r,
             int first_log,
+            AuditSamples& samples,
             RenderStats& stats);
 
 }  // namespace grelha

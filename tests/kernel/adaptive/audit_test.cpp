@@ -40,12 +40,16 @@ class Audits : public testing::Test {
   }
 
   Audit audited(const Refinement& picture) {
+    AuditSamples none;
+    return audited(picture, none);
+  }
+  Audit audited(const Refinement& picture, AuditSamples& samples) {
     grelha::Setup setup = set_up(world_, camera_, options_);
     setup.plan.on = true;
     setup.plan.samples = kMostSamples;
     PixelErrors errors(picture, false, kFirstLog, 2);
     errors.judge();
-    return audit(world_.impl(), setup, options_, errors, picture, kFirstLog, stats_);
+    return audit(world_.impl(), setup, options_, errors, picture, kFirstLog, samples, stats_);
   }
 
   double true_mean_square() const {
@@ -113,6 +117,32 @@ TEST_F(Audits, AreTheSameForAnyNumberOfThreads) {
   const double two = audited(picture_).mean_square();
   stats_.threads = 1;
   EXPECT_EQ(audited(picture_).mean_square(), two);
+}
+
+/// An audit of a picture that went on says what one does that begins anew, and takes no sample that
+/// an earlier one took.
+TEST_F(Audits, GoOnWhereEarlierOnesEnded) {
+  AuditSamples samples;
+  audited(picture_, samples);
+  options_.refine.error = .01;
+  picture_.finished = picture_.met = false;
+  EXPECT_TRUE(refine(world_, camera_, options_, picture_, stats_));
+  const auto rays_of = [&](AuditSamples& some, double& mean_square) {
+    const std::uint64_t before = stats_.rays.primary;
+    mean_square = audited(picture_, some).mean_square();
+    return stats_.rays.primary - before;
+  };
+  double anew = 0;
+  double going_on = 0;
+  double again = 0;
+  AuditSamples none;
+  const std::uint64_t all = rays_of(none, anew);
+  const std::uint64_t rest = rays_of(samples, going_on);
+  EXPECT_EQ(going_on, anew);
+  EXPECT_GT(rest, 0u);
+  EXPECT_LT(rest, all);
+  EXPECT_EQ(rays_of(samples, again), 0u);
+  EXPECT_EQ(again, anew);
 }
 
 TEST(AuditedPixels, AreNotWorseByChance) {
