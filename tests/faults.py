@@ -325,7 +325,7 @@ FAULTS = [
          "if (at[0] || at[1] || at[kSide] || at[kSide + 1])", "if (at[0])",
          "*HoldWhatAMirrorShowsBeside*"),
     marks("meshes without outlines", "mesh_rims",
-             "turns |= sides_[first_[v]] == (kFront | kBack);", "", "MeshRims.AreTheOutlines*"),
+             "told == (kFront | kBack)", "false", "MeshRims.AreTheOutlines*"),
     Fault("cones met by their balls alone", "kernel/features/beam.hpp", "which < places.kCount;",
           "which < 0;", "beam", "*MeetsCones*"),
     tolerance("panes that end beams", "features", "kClearsFollowed", "4", "0", "beam",

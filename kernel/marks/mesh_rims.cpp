@@ -12,6 +12,8 @@ namespace {
 constexpr std::size_t kMostTriangles = std::size_t{1} << 22;  ///< of more, nothing is kept
 constexpr std::size_t kItemsOfTurn = 4096;
 
+using Words = std::vector<std::atomic<std::uint32_t>>;
+
 /// Avalanche of 32 bits (C. Wellons' lowbias32).
 std::uint32_t scattered(std::uint32_t x) {
   x ^= x >> 16;
@@ -40,7 +42,7 @@ bool same_place(const TriangleSpans& t, std::uint32_t a, std::uint32_t b) {
 std::uint32_t first_at_place(const TriangleSpans& t,
                              std::uint32_t vertex,
                              std::uint32_t name,
-                             std::vector<std::atomic<std::uint32_t>>& held) {
+                             Words& held) {
   for (std::size_t at = name;; ++at) {
     std::atomic<std::uint32_t>& slot = held[at & (held.size() - 1)];
     std::uint32_t there = slot.load(std::memory_order_relaxed);
@@ -68,16 +70,17 @@ MeshRims::MeshRims(const TriangleSpans& triangles, int threads)
     return;
   const std::size_t vertices = triangles.vertex_count();
   first_.resize(vertices);
-  name_.resize(vertices);
-  open_ = std::vector<std::atomic<std::uint32_t>>(vertices);
-  sides_ = std::vector<std::atomic<std::uint8_t>>(vertices);
-  std::vector<std::atomic<std::uint32_t>> held(std::bit_ceil(2 * vertices));  // a vertex + 1
+  told_ = std::vector<std::atomic<std::uint8_t>>(vertices);
+  Words held(std::bit_ceil(2 * vertices));  // a vertex + 1
+  Words open(vertices);
+  std::vector<std::uint32_t> name(vertices);
   each_of(vertices, threads, [&](std::size_t v) {
     const auto vertex = static_cast<std::uint32_t>(v);
-    name_[v] = hash_of_place(triangles, vertex);
-    first_[v] = first_at_place(triangles, vertex, name_[v], held);
+    name[v] = hash_of_place(triangles, vertex);
+    first_[v] = first_at_place(triangles, vertex, name[v], held);
   });
-  each_of(triangles.size(), threads, [&](std::size_t i) { add_neighbours(i); });
+  each_of(triangles.size(), threads, [&](std::size_t i) { add_neighbours(i, name, open); });
+  each_of(vertices, threads, [&](std::size_t v) { told_[v] = open[v] != 0 ? kOpen : 0; });
   find_borders();
 }
 
@@ -104,22 +107,25 @@ void MeshRims::find_borders() {
   std::sort(borders_.begin(), borders_.end());
 }
 
-void MeshRims::add_neighbours(std::size_t i) {
+/// Adds to each corner of a triangle its neighbours there, by `name`. Those that come twice are
+/// gone: of a corner inside of a mesh 0 is left.
+void MeshRims::add_neighbours(std::size_t i,
+                              const std::vector<std::uint32_t>& name,
+                              std::vector<std::atomic<std::uint32_t>>& open) const {
   const std::uint32_t vertex[3] = {triangles_.a[i], triangles_.b[i], triangles_.c[i]};
-  std::uint32_t name[3];
+  std::uint32_t of[3];
   for (int k = 0; k < 3; ++k)
-    name[k] = scattered(name_[vertex[k]] + triangles_.material[i]);
+    of[k] = scattered(name[vertex[k]] + triangles_.material[i]);
   for (int k = 0; k < 3; ++k)
-    open_[first_[vertex[k]]].fetch_xor(name[(k + 1) % 3] ^ name[(k + 2) % 3],
-                                       std::memory_order_relaxed);
+    open[first_[vertex[k]]].fetch_xor(of[(k + 1) % 3] ^ of[(k + 2) % 3], std::memory_order_relaxed);
 }
 
 void MeshRims::look_from(const double (&point)[3]) {
-  if (sides_.empty())
+  if (told_.empty())
     return;
   std::copy(point, point + 3, from_);
-  for (std::atomic<std::uint8_t>& side : sides_)
-    side.store(0, std::memory_order_relaxed);
+  for (std::atomic<std::uint8_t>& told : told_)
+    told.store(told.load(std::memory_order_relaxed) & kOpen, std::memory_order_relaxed);
   each_of(triangles_.size(), threads_, [&](std::size_t i) { add_side(i); });
 }
 
@@ -141,14 +147,14 @@ std::uint8_t MeshRims::side_of(std::size_t i) const {
 void MeshRims::add_side(std::size_t i) {
   const std::uint8_t side = side_of(i);
   for (const std::uint32_t v : {triangles_.a[i], triangles_.b[i], triangles_.c[i]}) {
-    std::atomic<std::uint8_t>& seen = sides_[first_[v]];
+    std::atomic<std::uint8_t>& seen = told_[first_[v]];
     if ((seen.load(std::memory_order_relaxed) & side) == 0)
       seen.fetch_or(side, std::memory_order_relaxed);
   }
 }
 
 bool MeshRims::stands_alone(std::size_t i) const {
-  if (sides_.empty())
+  if (told_.empty())
     return true;
   if (open_corners(i) < 3)
     return false;
@@ -159,16 +165,18 @@ bool MeshRims::stands_alone(std::size_t i) const {
 }
 
 bool MeshRims::ends_at(std::size_t i) const {
-  return sides_.empty() || open_corners(i) > 0;
+  return told_.empty() || open_corners(i) > 0;
 }
 
 bool MeshRims::has(std::size_t i) const {
-  if (ends_at(i))
+  if (told_.empty())
     return true;
-  bool turns = false;
-  for (const std::uint32_t v : {triangles_.a[i], triangles_.b[i], triangles_.c[i]})
-    turns |= sides_[first_[v]] == (kFront | kBack);
-  return turns;
+  bool any = false;
+  for (const std::uint32_t v : {triangles_.a[i], triangles_.b[i], triangles_.c[i]}) {
+    const std::uint8_t told = told_[first_[v]];
+    any |= (told & kOpen) != 0 || told == (kFront | kBack);
+  }
+  return any;
 }
 
 }  // namespace grelha

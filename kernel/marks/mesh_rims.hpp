@@ -33,6 +33,7 @@ class MeshRims {
   /// What is told of a corner.
   static constexpr std::uint8_t kFront = 1;
   static constexpr std::uint8_t kBack = 2;
+  static constexpr std::uint8_t kOpen = 4;  ///< a mesh ends there
 
   /// Of triangles of one material, by the first vertices at its places.
   struct Edge {
@@ -40,9 +41,11 @@ class MeshRims {
     auto operator<=>(const Edge&) const = default;
   };
 
-  void add_neighbours(std::size_t i);
+  void add_neighbours(std::size_t i,
+                      const std::vector<std::uint32_t>& name,
+                      std::vector<std::atomic<std::uint32_t>>& open) const;
   void find_borders();
-  bool is_open(std::uint32_t vertex) const { return open_[first_[vertex]] != 0; }
+  bool is_open(std::uint32_t vertex) const { return (told_[first_[vertex]] & kOpen) != 0; }
   int open_corners(std::size_t i) const;
   Edge edge(std::size_t i, int k) const;
   void add_side(std::size_t i);
@@ -52,12 +55,8 @@ class MeshRims {
   const int threads_;
   double from_[3] = {};
   std::vector<std::uint32_t> first_;  ///< [vertices] one at the same place
-  std::vector<std::uint32_t> name_;   ///< [vertices] a hash of the place
-  /// [vertices] of the neighbours of a corner, each as often as triangles have both: 0 where each
-  /// comes twice
-  std::vector<std::atomic<std::uint32_t>> open_;
-  std::vector<Edge> borders_;  ///< of triangles that have corners inside of a mesh, in order
-  std::vector<std::atomic<std::uint8_t>> sides_;
+  std::vector<Edge> borders_;         ///< of triangles that have corners inside of a mesh, in order
+  std::vector<std::atomic<std::uint8_t>> told_;  ///< [vertices] of those that are first
 };
 
 }  // namespace grelha
