@@ -11,6 +11,7 @@
 
 #include "kernel/world/world_impl.hpp"
 #include "kernel/adaptive/audit.hpp"
+#include "kernel/adaptive/foreseen_samples.hpp"
 #include "kernel/adaptive/pixel_errors.hpp"
 #include "kernel/adaptive/pixel_features.hpp"
 #include "kernel/adaptive/pixel_order.hpp"
@@ -224,15 +225,23 @@ class AdaptiveSampler {
     return end_round(r_, chunks, std::min(begun.load(), chunks.size()));
   }
 
-  /// They pay by the samples to come: those of the round, and what its share of the way to the end
-  /// took foretells. Samples go where they help most, so errors fall about as their number grows.
+  /// They pay by the samples to come: those of the round, and what is foreseen after it.
   void look_for_light_grids() {
+    if (!setup_.light_grids.empty() || world_.shading.light_count == 0)
+      return;
     double round = 0;
     for (const std::uint32_t p : r_.wanted)
       round += next_count(r_, p, first_log_);
-    const double left = r_.share > 0 ? static_cast<double>(samples_) * (1 / r_.share - 1) : 0;
-    set_light_grids(world_, options_, std::max(round, left), setup_);
+    set_light_grids(world_, options_, std::max(round, samples_left()), setup_);
     stats_.point_grids = setup_.point_grids;
+  }
+
+  /// As far as is foreseen.
+  double samples_left() const {
+    if (r_.rounds == 0 || r_.share <= 0)
+      return 0;
+    return options_.refine.error > 0 ? foreseen_samples(r_, errors_, options_.refine.error)
+                                     : static_cast<double>(samples_) * (1 / r_.share - 1);
   }
 
   void tell_progress() {

@@ -98,7 +98,7 @@ void check_refinement(const RenderOptions& o) {
 /// Samples of a picture for each primitive from which a light's grid pays. Measured: in 16 of 20
 /// scenes (docs/perspective.md). By error they go less together, where packets take longer.
 constexpr double kPayingSamples = 16;
-constexpr double kPayingRefined = 8;
+constexpr double kPayingRefined = 4;
 /// Primitives that a look-up can spare a ray: of fewer it takes longer than the walk (measured).
 constexpr std::size_t kFewestSeen = 32;
 

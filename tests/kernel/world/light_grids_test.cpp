@@ -61,15 +61,15 @@ TEST(LightGrids, AreBuiltWhereSamplesOutweighPrimitives) {
   EXPECT_GT(stats.point_grids.count, 0);
 }
 
-/// By what is left to do, as far as rounds foretell it: 8 for each primitive. 64 pixels take 256 at
-/// first, and no round of the last case takes 2400.
+/// By what is left to do, as far as rounds foretell it: 4 for each primitive. 64 pixels take 256 at
+/// first, and no round of the last case takes 1200.
 TEST(LightGrids, AreBuiltWherePicturesByErrorTakeManySamples) {
   struct Case {
     int spheres;
     double error;
     int grids;
   };
-  for (const Case& c : {Case{64, .3, 0}, Case{300, .03, 0}, Case{300, .01, 1}}) {
+  for (const Case& c : {Case{100, .3, 0}, Case{300, .1, 0}, Case{300, .01, 1}}) {
     Scene scene = random_spheres(5, c.spheres);
     scene.lights.push_back({{3, 4, 5}, {1, 1, 1}});
     const World world(scene, {});
