@@ -51,7 +51,8 @@ FAULTS = [
     Fault("< for <= in the walk", "kernel/walk/packet_traversal.hpp", "slice <= last;",
           "slice < last;", "walk", "Isa/Walk.*"),
     Fault("adding up instead of computing again", "kernel/walk/course.hpp",
-          "return (plane - place[axis]) * inverse[axis];", """return [&] {
+          "return (plane - place[axis]) * inverse[axis];",
+          """return [&] {
         const float from = place[axis], to = plane, step = inverse[axis];
         float k = to > from ? __builtin_ceilf(from) : __builtin_floorf(from);
         float sum = (k - from) * step;
@@ -72,7 +73,8 @@ FAULTS = [
     Fault("outlines without room beside them", "kernel/perspective/in_tiles.hpp",
           "const Real margin = s.margin + rounding * (magnitude(s.a) + magnitude(s.b));",
           "const Real margin = Real(1e-9) * (s.margin + rounding * (magnitude(s.a) + "
-          "magnitude(s.b)));", "point_grid", "*AnswerAsTheScenesGridsDo*"),
+          "magnitude(s.b)));",
+          "point_grid", "*AnswerAsTheScenesGridsDo*"),
     Fault("sides without their rounding", "kernel/perspective/tolerances.hpp",
           "kOutlineRounding = 0x1p-21;", "kOutlineRounding = 0x1p-26;", "point_grid",
           "*HoldWhatLiesOnThem*"),

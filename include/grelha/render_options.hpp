@@ -59,7 +59,7 @@ enum class Precision { kSingle, kDouble };
 /// Whether lights that are points get grids in their own perspective (docs/perspective.md). No bit
 /// of a picture depends on it.
 enum class PointGrids {
-  kAuto,  ///< where the picture has so many pixels and samples that they pay
+  kAuto,  ///< where the picture takes so many samples that they pay
   kOn,
   kOff
 };

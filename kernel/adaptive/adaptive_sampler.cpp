@@ -236,9 +236,10 @@ class AdaptiveSampler {
     stats_.point_grids = setup_.point_grids;
   }
 
-  /// As far as is foreseen.
+  /// As far as is foreseen. Where an audit has met the error few pixels are left, whatever they
+  /// claim.
   double samples_left() const {
-    if (r_.rounds == 0 || r_.share <= 0)
+    if (r_.rounds == 0 || r_.share <= 0 || r_.met)
       return 0;
     return options_.refine.error > 0 ? foreseen_samples(r_, errors_, options_.refine.error)
                                      : static_cast<double>(samples_) * (1 / r_.share - 1);

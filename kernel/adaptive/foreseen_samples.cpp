@@ -48,14 +48,17 @@ double foreseen_samples(const Refinement& r, const PixelErrors& errors, double e
   const auto by_powers = doubled(r.variance_ratio);
   const PixelErrors::Totals totals = errors.totals();
   const double wanted = totals.sum * error * error / (totals.bound * totals.bound);
+  std::size_t highest = kExponents - 1;
+  while (highest > 0 && pixels.samples[highest] == 0)
+    --highest;
   double more = 0;
   double variance = totals.sum;
-  for (std::size_t threshold = kExponents - 1; variance > wanted && threshold > 0; --threshold) {
-    variance = 0;
+  for (std::size_t threshold = highest; variance > wanted && threshold > 0; --threshold) {
+    variance = totals.sum;
     more = 0;
-    for (std::size_t e = 0; e < kExponents; ++e) {
-      const Doubled by = e < threshold ? Doubled{} : by_powers[e - threshold];
-      variance += by.variance * pixels.variance[e];
+    for (std::size_t e = threshold; e <= highest; ++e) {
+      const Doubled by = by_powers[e - threshold];
+      variance -= (1 - by.variance) * pixels.variance[e];
       more += (by.samples - 1) * pixels.samples[e];
     }
   }
