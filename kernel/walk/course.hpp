@@ -113,9 +113,8 @@ template <class Real>
   return going;
 }
 
-/// The cells of a grid that one ray comes through, by the same rule. Where it goes to the next
-/// cell, one coordinate changes and one plane: a prediction of which one is all that the next cell
-/// waits for.
+/// The cells of a grid that one ray comes through, by the same rule, for all axes at once. Which
+/// plane comes next no processor foretells, so no branch depends on it.
 class CellWalk {
  public:
   explicit CellWalk(const GridView& grid) : g_(grid) {}
@@ -124,78 +123,117 @@ class CellWalk {
 
   /// False: the ray does not come to the grid.
   [[gnu::always_inline]] bool start(const WalkingRay& r) {
-    float first[3];
-    if (!enter<float>(g_, r.org, r.dir, r.t_min, r.best, c_, first))
+    set_course(r);
+    const float begin = first_t(r.t_min);
+    end_ = last_t(r.best);
+    if (!(r.best > r.t_min) || !(begin <= end_))
       return false;
-    stride_[0] = 1;
-    stride_[1] = g_.n[0];
-    stride_[2] = g_.n[0] * g_.n[1];
-    cell_ = 0;
-    for (int a = 0; a < 3; ++a) {
-      up_[a] = c_.inverse[a] > 0;
-      set(a, static_cast<int>(first[a]));
-      cell_ += at_[a] * stride_[a];
-    }
+    const FourInts up = inverse_ > four(0);
+    up_ = chosen(up, four(1));
+    way_ = (up_ + up_) - four(1);
+    edge_ = chosen(up, last_);
+    signed_strides_ = up ? strides_ : FourInts{} - strides_;
+    go_to(cell_at(four(begin)));
     return true;
   }
 
   /// Goes on to the next cell. False: there is none before t = best.
-  bool step(float best) {
-    const int axis = first_axis();
-    const int next = up_[axis] ? at_[axis] + 1 : at_[axis] - 1;
-    if (!goes_on(axis, next, best))
+  [[gnu::always_inline]] bool step(float best) {
+    const FourInts axis = first_axis(exit_);
+    if (!any(axis & (at_ != edge_) & goes_on(exit_, best)))
       return false;
-    cell_ += up_[axis] ? stride_[axis] : -stride_[axis];
-    set(axis, next);
+    at_ = at_ + chosen(axis, way_);
+    cell_ += sum(signed_strides_ & axis);
+    exit_ = axis ? ahead_ : exit_;
+    ahead_ = far_side(at_ + way_);
     return true;
   }
 
   /// The same over cells that are empty, as are those within `by` of this one on each side.
   bool leap(int by, float best) {
-    for (int a = 0; a < 3; ++a)
-      exit_[a] = far_side(a, at_[a] + (up_[a] ? by : -by));
-    const int axis = first_axis();
-    const int next = up_[axis] ? at_[axis] + by + 1 : at_[axis] - by - 1;
-    if (!goes_on(axis, next, best))
+    const Four far = four(static_cast<float>(by));
+    const Four exit = far_side(at_ + way_ * far);
+    const FourInts axis = first_axis(exit);
+    if (!any(axis & ((edge_ - at_) * way_ > far) & goes_on(exit, best)))
       return false;
-    const float t = exit_[axis];
-    for (int a = 0; a < 3; ++a)
-      set(a, a == axis ? next : beside(a, by, t));
-    cell_ = at_[0] + stride_[1] * at_[1] + stride_[2] * at_[2];
+    const FourInts at = to_ints(at_);
+    const FourInts next = at + to_ints(way_) * (by + 1);
+    const FourInts side = cell_at(of_axis(axis, exit));
+    go_to(axis ? next : lesser(greater(side, at - by), at + by));
     return true;
   }
 
  private:
-  /// Of the planes that are met next.
-  int first_axis() const {
-    if (exit_[1] < exit_[0])
-      return exit_[2] < exit_[1] ? 2 : 1;
-    return exit_[2] < exit_[0] ? 2 : 0;
+  static constexpr float kNever = __builtin_inff();
+
+  /// As the free function does. The fourth place stays where it is: its planes are never met.
+  [[gnu::always_inline]] void set_course(const WalkingRay& r) {
+    const Four dir = four(r.dir, 0);
+    const Four least = four(least_headway(r.dir[0], r.dir[1], r.dir[2]));
+    const Four tiny = dir < four(0) ? four(0) - least : least;
+    const Four cells = four(g_.inv_cell_f, 1);
+    const FourInts n{g_.n[0], g_.n[1], g_.n[2], 1};
+    place_ = (four(r.org, 0) - four(g_.lo_f, 0)) * cells;
+    speed_ = (magnitude(dir) < least ? tiny : dir) * cells;
+    inverse_ = four(1) / speed_;
+    inverse_[3] = kNever;
+    last_ = to_floats(n) - four(1);
+    strides_ = FourInts{1, n[0], n[0] * n[1], 0};
   }
-  bool goes_on(int axis, int next, float best) const {
-    return best > exit_[axis] && exit_[axis] <= c_.end &&
-           static_cast<unsigned>(next) < static_cast<unsigned>(g_.n[axis]);
+  /// t of the planes around all cells, lesser and greater.
+  Four first_planes() const { return (four(0) - place_) * inverse_; }
+  Four last_planes() const { return ((last_ + four(1)) - place_) * inverse_; }
+  float first_t(float t_min) const {
+    Four t = lesser(first_planes(), last_planes());
+    t[3] = t_min;
+    return most(greater(t, four(t_min)));
   }
-  /// The cell at t along an axis, at most `by` from this one.
-  int beside(int a, int by, float t) const {
-    const int side = static_cast<int>(c_.cell_at(a, t, g_.n[a]));
-    const int least = at_[a] - by;
-    const int most = at_[a] + by;
-    return side < least ? least : side > most ? most : side;
+  float last_t(float best) const {
+    Four t = greater(first_planes(), last_planes());
+    t[3] = best;
+    return least(lesser(t, four(best)));
+  }
+
+  /// Of the planes that are met next: of those that are met at once that of the first axis. None
+  /// where one is NaN.
+  static FourInts first_axis(const Four& exit) {
+    const Four after = __builtin_shufflevector(exit, exit, 1, 2, 0, 3);
+    const Four before = __builtin_shufflevector(exit, exit, 2, 0, 1, 3);
+    const FourInts wins_ties_after{-1, -1, 0, 0};
+    const FourInts wins_ties_before{-1, 0, 0, 0};
+    return ((exit < after) | ((exit <= after) & wins_ties_after)) &
+           ((exit < before) | ((exit <= before) & wins_ties_before));
+  }
+  static Four of_axis(const FourInts& axis, const Four& exit) {
+    return reinterpret_cast<Four>(any_of(reinterpret_cast<FourInts>(chosen(axis, exit))));
+  }
+  FourInts goes_on(const Four& exit, float best) const {
+    return (four(best) > exit) & (exit <= four(end_));
   }
   /// t at the far side of a cell.
-  float far_side(int a, int i) const { return c_.t_at(a, static_cast<float>(i + up_[a])); }
-  void set(int a, int i) {
-    at_[a] = i;
-    exit_[a] = far_side(a, i);
+  Four far_side(const Four& at) const { return ((at + up_) - place_) * inverse_; }
+  /// The cell at t, of those that there are.
+  FourInts cell_at(const Four& t) const {
+    return to_ints(lesser(greater(place_ + t * speed_, four(0)), last_));
+  }
+  void go_to(const FourInts& at) {
+    cell_ = sum(at * strides_);
+    at_ = to_floats(at);
+    exit_ = far_side(at_);
+    ahead_ = far_side(at_ + way_);
   }
 
   const GridView& g_;
-  Course<float> c_;
-  int stride_[3];
-  int at_[3];
-  int up_[3];      ///< 1 along axes on which it goes up, else 0
-  float exit_[3];  ///< t of the plane that it meets next on each axis
+  Four place_, speed_, inverse_;  ///< as of a Course
+  float end_;                     ///< the same
+  Four last_;                     ///< the last cell of all
+  Four up_;                       ///< 1 along axes on which the ray goes up, else 0
+  Four way_;                      ///< 1 or -1
+  Four edge_;                     ///< the last cell along its way
+  Four at_;                       ///< the cell it is in
+  Four exit_;                     ///< t of the plane that it meets next on each axis
+  Four ahead_;                    ///< the same of the plane after that
+  FourInts strides_, signed_strides_;
   int cell_;
 };
 

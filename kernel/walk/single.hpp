@@ -2,6 +2,7 @@
 // One ray at a time against blocks of primitives (SIMD over primitives): the way a packet goes on
 // when its rays have nothing left in common. abreast.hpp takes such rays through grids.
 
+#include "kernel/simd/lanes_four.hpp"
 #include "kernel/walk/packet.hpp"
 
 namespace grelha::GRELHA_ISA {
@@ -10,17 +11,18 @@ namespace grelha::GRELHA_ISA {
 struct WalkingRay {
   float org[3], dir[3], t_min, best;
   std::uint32_t id;
-  int axis;      ///< of the shear
-  float inv[3];  ///< inverse of the direction; this and what follows with triangles only
+  int axis;  ///< of the shear
+  /// inverse of the direction; this and what follows with triangles only, and a place more
+  float inv[4];
   /// the side of a box that the ray meets first, along each axis; the other is 3 places on or back
-  int near[3];
+  int near[4];
 };
 
 /// A ray by itself, tested in float.
 struct Single : WalkingRay {
   using In = InFloat;
   float inv_dd;
-  float shear[3];
+  float shear[4];  ///< and a place more
 };
 
 /// A ray of a packet.
@@ -100,12 +102,13 @@ inline void set_hit(const PacketRay<In>& r, typename In::Number t, std::uint32_t
 }
 
 /// What tests of triangles need of a direction besides the shear.
-inline void set_inverse(WalkingRay& r) {
-  const float least = least_headway(r.dir[0], r.dir[1], r.dir[2]);
-  for (int a = 0; a < 3; ++a) {
-    r.inv[a] = 1 / (magnitude(r.dir[a]) < least ? least : r.dir[a]);
-    r.near[a] = r.inv[a] < 0 ? 3 + a : a;
-  }
+inline void set_inverse(WalkingRay& r, const Vec3<float>& d) {
+  const Four least = four(least_headway(d.x, d.y, d.z));
+  const Four dir{d.x, d.y, d.z, 1};
+  const Four inverse = four(1) / (magnitude(dir) < least ? least : dir);
+  const FourInts low{0, 1, 2, 0};
+  store(r.inv, inverse);
+  store(r.near, inverse < four(0) ? low + 3 : low);
 }
 
 /// A ray by itself, as prepare(Packet&) makes many. False: it meets nothing, and r is not whole.
@@ -136,10 +139,8 @@ inline bool prepare(Single& r,
   if (any_triangles) {
     r.axis = shear_axis(d.x, d.y, d.z);
     const Vec3<float> q = permuted<float>(static_cast<float>(r.axis), d);
-    r.shear[0] = q.x / q.z;
-    r.shear[1] = q.y / q.z;
-    r.shear[2] = 1 / q.z;
-    set_inverse(r);
+    store(r.shear, Four{q.x, q.y, 1, 1} / four(q.z));
+    set_inverse(r, d);
   }
   return true;
 }
