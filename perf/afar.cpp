@@ -214,7 +214,10 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: afar [--rays N] [--rounds N] [--floor SIZES] [--scene NAME]...\n");
     return 2;
   }
-  const bool beside = !embree_modes().empty();
+  const std::string embree = embree_name();
+  const bool beside = !embree.empty();
+  if (beside)
+    std::printf("beside %s\n", embree.c_str());
   std::printf("ns a ray, median of %d rounds\n\n| | stream | call |%s\n|---|--:|--:|%s\n",
               options.rounds,
               beside ? " Embree's best | stream over it | call over rtcIntersect1 |" : "",

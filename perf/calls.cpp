@@ -189,7 +189,10 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: calls [--size N] [--rounds N] [--scene NAME]...\n");
     return 2;
   }
-  const bool beside = !embree_modes().empty();
+  const std::string embree = embree_name();
+  const bool beside = !embree.empty();
+  if (beside)
+    std::printf("beside %s\n", embree.c_str());
   std::printf(
       "ns a ray, median of %d rounds\n\n| | call | empty | stream of 1 | stream of 64 |%s\n"
       "|---|--:|--:|--:|--:|%s\n",

@@ -4,15 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <stdexcept>
 
-#include <embree3/rtcore.h>
 #if defined(__SSE__)
 #include <xmmintrin.h>
 #endif
 
 #include "kernel/grid/view.hpp"
+#include "perf/embree_api.hpp"
 
 namespace grelha::perf {
 namespace {
@@ -117,25 +118,11 @@ template <int kWidth>
 struct Wide;
 template <>
 struct Wide<8> {
-  using Ray = RTCRay8;
   using RayHit = RTCRayHit8;
-  static void closest(const int* valid, RTCScene s, RTCIntersectContext* c, RayHit* r) {
-    rtcIntersect8(valid, s, c, r);
-  }
-  static void occluded(const int* valid, RTCScene s, RTCIntersectContext* c, Ray* r) {
-    rtcOccluded8(valid, s, c, r);
-  }
 };
 template <>
 struct Wide<16> {
-  using Ray = RTCRay16;
   using RayHit = RTCRayHit16;
-  static void closest(const int* valid, RTCScene s, RTCIntersectContext* c, RayHit* r) {
-    rtcIntersect16(valid, s, c, r);
-  }
-  static void occluded(const int* valid, RTCScene s, RTCIntersectContext* c, Ray* r) {
-    rtcOccluded16(valid, s, c, r);
-  }
 };
 
 class Built final : public EmbreeScene {
@@ -170,16 +157,13 @@ class Built final : public EmbreeScene {
     primitive_.resize(rays.size());
     geometry_.resize(rays.size());
     const FlushDenormals flush;
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags =
-        mode.coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    EmbreeHint hint(mode.coherent);
     any_ = any;
     if (mode.width == 8)
-      return wide<8>(rays, context);
+      return wide<8>(rays, hint);
     if (mode.width == 16)
-      return wide<16>(rays, context);
-    single(rays, context);
+      return wide<16>(rays, hint);
+    single(rays, hint);
   }
 
   Answers answers() const override {
@@ -289,7 +273,7 @@ class Built final : public EmbreeScene {
   }
 
   // What does not change from ray to ray is set once: Embree leaves it alone.
-  void single(const RayBuffer& r, RTCIntersectContext& context) {
+  void single(const RayBuffer& r, EmbreeHint& hint) {
     RTCRayHit hit;
     RTCRay& ray = hit.ray;
     ray.time = 0;
@@ -306,10 +290,10 @@ class Built final : public EmbreeScene {
       ray.dir_z = r.dz[i];
       ray.tfar = r.t_max[i];
       if (any_) {
-        rtcOccluded1(scene_, &context, &ray);
+        occlude(scene_, hint, ray);
       } else {
         hit.hit.geomID = hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-        rtcIntersect1(scene_, &context, &hit);
+        intersect(scene_, hint, hit);
         primitive_[i] = hit.hit.primID;
         geometry_[i] = hit.hit.geomID;
       }
@@ -318,7 +302,7 @@ class Built final : public EmbreeScene {
   }
 
   template <int kWidth>
-  void wide(const RayBuffer& r, RTCIntersectContext& context) {
+  void wide(const RayBuffer& r, EmbreeHint& hint) {
     alignas(64) int valid[kWidth];
     std::fill(valid, valid + kWidth, -1);
     typename Wide<kWidth>::RayHit hit;
@@ -337,11 +321,11 @@ class Built final : public EmbreeScene {
       std::memcpy(ray.tnear, &r.t_min[i], bytes);
       std::memcpy(ray.tfar, &r.t_max[i], bytes);
       if (any_) {
-        Wide<kWidth>::occluded(valid, scene_, &context, &ray);
+        occlude(valid, scene_, hint, ray);
       } else {
         std::memset(hit.hit.geomID, 0xFF, sizeof hit.hit.geomID);
         std::memset(hit.hit.instID, 0xFF, sizeof hit.hit.instID);
-        Wide<kWidth>::closest(valid, scene_, &context, &hit);
+        intersect(valid, scene_, hint, hit);
         std::memcpy(&primitive_[i], hit.hit.primID, bytes);
         std::memcpy(&geometry_[i], hit.hit.geomID, bytes);
       }
@@ -368,6 +352,21 @@ class Built final : public EmbreeScene {
 
 }  // namespace
 
+std::string embree_name() {
+  const RTCDevice device = rtcNewDevice("threads=1");
+  const auto part = [&](RTCDeviceProperty of) {
+    return static_cast<int>(rtcGetDeviceProperty(device, of));
+  };
+  char name[64];
+  std::snprintf(name,
+                sizeof name,
+                "Embree %d.%d.%d",
+                part(RTC_DEVICE_PROPERTY_VERSION_MAJOR),
+                part(RTC_DEVICE_PROPERTY_VERSION_MINOR),
+                part(RTC_DEVICE_PROPERTY_VERSION_PATCH));
+  rtcReleaseDevice(device);
+  return name;
+}
 std::vector<EmbreeMode> embree_modes() {
   return {{"single", 1, false},
           {"8 coherent", 8, true},
@@ -384,6 +383,9 @@ std::unique_ptr<EmbreeScene> make_embree_scene(const Scene& scene, bool robust) 
 #else
 
 namespace grelha::perf {
+std::string embree_name() {
+  return {};
+}
 std::vector<EmbreeMode> embree_modes() {
   return {};
 }

@@ -2,6 +2,7 @@
 // Embree on the same scene and the same rays, where CMake found it.
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "perf/workloads.hpp"
@@ -31,6 +32,8 @@ class EmbreeScene {
   virtual Answers answers() const = 0;
 };
 
+/// "Embree 3.13.5": the one that runs. Empty without Embree.
+std::string embree_name();
 /// Empty without Embree.
 std::vector<EmbreeMode> embree_modes();
 /// Null without Embree.

@@ -1,4 +1,4 @@
-// What a ray costs, by kind and scene, beside Embree 3 on the same rays: one thread, one process,
+// What a ray costs, by kind and scene, beside Embree on the same rays: one thread, one process,
 // taking turns.
 //
 // trace [--scene NAME]... [--kind NAME]... [--size N] [--rounds N] [--scenes DIR] [Google Benchmark
@@ -210,6 +210,10 @@ int main(int argc, char** argv) {
   Options options;
   if (!parse(argc, argv, options))
     return usage();
+  if (const std::string beside = embree_name(); !beside.empty()) {
+    std::printf("beside %s\n", beside.c_str());
+    benchmark::AddCustomContext("embree", beside);
+  }
   for (const Row& row : options.rows)
     for (const std::size_t kind : options.kinds)
       benchmark::RegisterBenchmark((row.name + "/" + kRayKinds[kind]).c_str(),

@@ -42,10 +42,10 @@ TITLES = {
 }
 
 
-def cells_of(path):
+def cells_of(figures):
     """Counters by (scene, kind), in the order they were measured."""
     cells = {}
-    for b in json.loads(path.read_text())["benchmarks"]:
+    for b in figures["benchmarks"]:
         if not b.get("error_occurred") and b["run_type"] == "iteration":
             *scene, kind = b["name"].split("/iterations:")[0].split("/")
             known = ("repetition_index", "family_index", "per_family_instance_index", "repetitions",
@@ -68,8 +68,8 @@ def write_csv(cells, path):
                                for k in FIRST + ways)])
 
 
-def ratios(cells):
-    """Markdown: a ratio a cell, in bold where it misses its target."""
+def ratios(cells, embree):
+    """Markdown: a ratio a cell, in bold where it misses its target. `embree`: its name."""
     kinds = list(dict.fromkeys(k for _, k in cells))
 
     def ratio(c):
@@ -84,7 +84,7 @@ def ratios(cells):
         return [[scene, *(text(cells[scene, k]) if (scene, k) in cells else "" for k in kinds)]
                 for scene in scenes]
 
-    return (f"One thread of a virtual {cpu_name()}, {date.today():%B %Y}:\n\n" +
+    return (f"One thread of a virtual {cpu_name()}, {embree}, {date.today():%B %Y}:\n\n" +
             table(["", *kinds], rows(ratio)) + "\n\nAs a caller of the library asks, with no "
             "options. One ray a call over `rtcIntersect1`. Streams of eight over `rtcIntersect8`, "
             "by the better of its hints. One stream of all over Embree's best mode:\n\n" +
@@ -164,7 +164,8 @@ def main():
         folder / "trace", f"--benchmark_out={figures}", "--benchmark_out_format=json", *rest])
     if done.returncode == 2 or not figures.exists():
         sys.exit(done.returncode)
-    cells = cells_of(figures)
+    told_by_benchmark = json.loads(figures.read_text())
+    cells = cells_of(told_by_benchmark)
     if not cells:
         sys.exit(done.returncode or 1)
     whole = not rest or rest[0] == "--rounds" and len(rest) == 2
@@ -176,9 +177,10 @@ def main():
         draw(cells, picture)
         told.append(str(picture))
         if whole:
+            text = ratios(cells, told_by_benchmark["context"]["embree"])
             page = ROOT / "docs/performance.md"
             page.write_text(re.sub(r"(<!-- trace -->\n).*(<!-- end of trace -->)",
-                                   lambda m: m[1] + "\n" + ratios(cells) + "\n" + m[2],
+                                   lambda m: m[1] + "\n" + text + "\n" + m[2],
                                    page.read_text(),
                                    flags=re.S))
             told.append(str(page))

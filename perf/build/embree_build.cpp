@@ -8,9 +8,8 @@
 #include <string>
 #include <vector>
 
-#include <embree3/rtcore.h>
-
 #include "perf/build/clock.hpp"
+#include "perf/embree_api.hpp"
 
 namespace grelha::perf {
 namespace {
