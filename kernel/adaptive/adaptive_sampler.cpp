@@ -27,12 +27,6 @@ namespace {
 constexpr int kFirstLogOfEffects = 3;
 constexpr int kFirstLog = 2;
 
-/// Audits of a picture, how much samples grow from one to the next, and how much worse than claimed
-/// they find it at most: few pixels tell.
-constexpr int kMostAudits = 16;
-constexpr double kGrowthOfAudits = 1.5;
-constexpr double kMostWorse = 16;
-
 bool has_effects(const SamplePlan& plan) {
   return plan.lens >= 0 || plan.light >= 0 || plan.gloss >= 0;
 }
@@ -179,8 +173,7 @@ class AdaptiveSampler {
     // that pixels claim so as well makes the middle of what the first says do
     if (r_.met || (first && (!worse || r_.audited <= error * error)))
       return r_.finished;
-    if (others.count > 0 && others.claimed > 0)
-      r_.worse = std::clamp(r_.worse * others.squared / others.claimed, 1., kMostWorse);
+    r_.worse = others.how_much_worse(r_.worse);
     if (agreeing.count > 0)
       r_.least_by_sample = agreeing.by_sample / agreeing.count;
     return false;

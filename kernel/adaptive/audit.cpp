@@ -170,6 +170,12 @@ bool AuditedPixels::is_worse() const {
   return squared - claimed > std::sqrt(difference);
 }
 
+double AuditedPixels::how_much_worse(double so_far) const {
+  if (!(count > 0) || !(claimed > 0))
+    return so_far;
+  return std::clamp(so_far * squared / claimed, 1., kMostWorse);
+}
+
 void AuditedPixels::add(double half_square, double variance, double samples, double stands_for) {
   const double off = stands_for * (half_square - variance);
   squared += stands_for * half_square;

@@ -28,6 +28,9 @@ struct AuditedPixels {
 
   /// Whether more than chance speaks against the claim.
   bool is_worse() const;
+  /// How many times what pixels show their variances are, where it was taken for `so_far` times: 1
+  /// at least, kMostWorse at most.
+  double how_much_worse(double so_far) const;
 };
 
 struct Audit {

@@ -93,6 +93,17 @@ void keep_for_error(Refinement& r,
   });
 }
 
+/// Keeps no more of the round than is to be sampled before the next audit.
+void keep_for_audit(Refinement& r, const PixelErrors& errors, const Spent& spent, int first_log) {
+  double left =
+      kGrowthOfAudits * static_cast<double>(r.audited_at) - static_cast<double>(spent.samples);
+  keep_best(r.wanted, errors, [&](std::uint32_t p) {
+    const bool taken = left > 0;
+    left -= next_count(r, p, first_log);
+    return taken;
+  });
+}
+
 /// Keeps what the seconds or samples asked for still buy: a round that does not fit is the last.
 void keep_for_budget(Refinement& r,
                      const PixelErrors& errors,
@@ -174,6 +185,8 @@ bool choose_round(Refinement& r,
     keep_for_error(r, errors, totals, asked.error);
   else if (asked.seconds > 0 || asked.samples > 0)
     keep_for_budget(r, errors, asked, spent, first_log);
+  if (!met && r.audits > 0 && r.audits < kMostAudits)
+    keep_for_audit(r, errors, spent, first_log);
   return !r.wanted.empty();
 }
 

@@ -38,6 +38,14 @@ inline constexpr float kDiscInBox = .7853982f;
 /// of it where variances fall by .4 a doubling.
 inline constexpr float kAgreement = .005f;
 
+/// Times the samples of an audit: as many are taken before the next one, no more (a choice). Where
+/// an audit found more than pixels claim, what they claim from then on is rough.
+inline constexpr double kGrowthOfAudits = 1.5;
+/// How much worse than claimed audits find a picture at most: few pixels tell (a choice).
+inline constexpr double kMostWorse = 16;
+/// Audits of a picture.
+inline constexpr int kMostAudits = 16;
+
 /// Times the error asked for: what a lamp out of focus adds to its pixels that counts (a choice).
 inline constexpr double kFaintGlow = .5;
 /// What hides in light of weight w leaves a standard error of sqrt(kHiddenVariance) w / n among the

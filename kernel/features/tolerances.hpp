@@ -39,9 +39,9 @@ inline constexpr float kBesideSlack = 1e-5f;
 inline constexpr float kOneSurface = .8f;
 inline constexpr float kOneSurfaceSquared = .64f;
 
-/// The same of half that angle: all triangles of a patch within it of one of them pass for one
-/// surface with each other.
-inline constexpr float kOnePatchSquared = .9f;
+/// The same of half that angle, squared: all triangles of a patch within it of one of them pass for
+/// one surface with each other.
+inline constexpr float kOnePatchSquared = (1 + kOneSurface) / 2;
 
 /// An edge farther out than this share of a beam may have its other triangle
 /// just outside.

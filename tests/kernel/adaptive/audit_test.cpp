@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "kernel/adaptive/adaptive_sampler.hpp"
+#include "kernel/adaptive/pixel_order.hpp"
+#include "kernel/adaptive/sampling_round.hpp"
 #include "tests/support/rays.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -119,6 +121,32 @@ TEST_F(Audits, AreTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(audited(picture_).mean_square(), two);
 }
 
+/// What an audit that disagrees makes of the variances is rough: the next one comes before samples
+/// have doubled.
+TEST_F(Audits, LetSamplesGrowByHalfUntilTheNext) {
+  std::uint64_t samples = 0;
+  for (std::size_t p = 0; p < picture_.log.size(); ++p)
+    samples += sample_count(picture_, p);
+  PixelErrors errors(picture_, false, kFirstLog, 2);
+  errors.judge();
+  const auto in_round = [&](int audits) {
+    Refinement r = picture_;
+    r.met = false;
+    r.audits = audits;
+    r.audited_at = samples;
+    r.gain_threshold = 1e-12f;
+    const std::vector<std::uint32_t> order = pixel_order(r.width, r.height);
+    EXPECT_TRUE(choose_round(r, errors, {.error = 1e-4}, order, {samples, 0}, kFirstLog));
+    std::uint64_t next = 0;
+    for (const std::uint32_t p : r.wanted)
+      next += next_count(r, p, kFirstLog);
+    return next;
+  };
+  ASSERT_GT(in_round(0), 6 * samples / 10) << "it could take more";
+  EXPECT_LE(in_round(1), 51 * samples / 100);
+  EXPECT_GE(in_round(1), 49 * samples / 100);
+}
+
 /// An audit of a picture that went on says what one does that begins anew, and takes no sample that
 /// an earlier one took.
 TEST_F(Audits, GoOnWhereEarlierOnesEnded) {
@@ -154,6 +182,19 @@ TEST(AuditedPixels, AreNotWorseByChance) {
   EXPECT_FALSE(of.is_worse());
   of.squared = 1.15;
   EXPECT_TRUE(of.is_worse());
+}
+
+TEST(AuditedPixels, SayHowMuchWorseWithinReason) {
+  AuditedPixels of;
+  EXPECT_EQ(of.how_much_worse(3), 3) << "none of them";
+  of.count = 100;
+  of.claimed = 2;
+  of.squared = 4;
+  EXPECT_EQ(of.how_much_worse(3), 6) << "beyond what it was taken for";
+  of.squared = .5;
+  EXPECT_EQ(of.how_much_worse(3), 1);
+  of.squared = 100;
+  EXPECT_EQ(of.how_much_worse(1), 16);
 }
 
 }  // namespace
