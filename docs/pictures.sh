@@ -10,6 +10,10 @@ mkdir -p "$out"
 ./run render scenes/data/balls.nff -o "$out/balls.png"
 ./run render scenes/data/balls.nff -o "$out/effects.png" --samples 64 \
   --shadows area:1,8 --lens 12 --glossy .08
+for sampler in sobol blue; do
+  ./run render scenes/data/columns.nff -o "$out/$sampler-4.png" --size 256x256 --samples 4 \
+    --shadows random:3 --sampler "$sampler"
+done
 for scene in mount:7 gears:3 boat:10 tree:11; do
   name=${scene%:*}
   ./run scene "$name" --size "${scene#*:}" -o "$work/$name.nff"

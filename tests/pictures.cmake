@@ -5,7 +5,8 @@ add_test(NAME readme COMMAND ${CMAKE_COMMAND} -D ROOT=${PROJECT_SOURCE_DIR}
   -D SCRATCH=${CMAKE_CURRENT_BINARY_DIR}/readme -P ${CMAKE_CURRENT_SOURCE_DIR}/readme.cmake)
 set_tests_properties(readme PROPERTIES LABELS image)
 grelha_test(kernel/render/sampling property grelha::kernel grelha_lane_functions)
-target_sources(sampling_test PRIVATE kernel/render/pixel_box_test.cpp)
+target_sources(sampling_test PRIVATE kernel/render/pixel_box_test.cpp
+  kernel/render/pixel_curve_test.cpp)
 grelha_test(frontend/input/effects image grelha::frontend)
 grelha_test(kernel/adaptive/refinement image grelha::frontend grelha::scenes)
 target_sources(refinement_test PRIVATE kernel/adaptive/pixel_errors_test.cpp

@@ -48,7 +48,7 @@ void check_refined(const RenderCommand& command) {
     return;
   if (e.samples || e.jitter > 0 || e.adaptive.on)
     throw UsageError("--error and --time choose the samples: no --samples or --aa beside them");
-  if (e.sampler && is_jittered(*e.sampler))
+  if (e.sampler && is_counted_first(*e.sampler))
     throw UsageError("--sampler: expected sobol or random with --error or --time");
   if (e.lens && e.lens->samples > 0)
     throw UsageError("--error and --time choose the samples: no N in --lens beside them");
@@ -62,6 +62,9 @@ void check_sampler(const Effects& e) {
   if (e.jitter > 1 && e.sampler && !is_jittered(*e.sampler))
     throw UsageError(
         "--aa jitter:N and --sampler: expected jitter or unshuffled for jittered subpixels");
+  if (e.adaptive.on && e.sampler == Sampler::kBlue)
+    throw UsageError(
+        "--aa adaptive and --sampler: expected any but blue, which is of whole pixels");
 }
 
 void check_grid(const BuildOptions& build) {

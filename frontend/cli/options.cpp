@@ -27,6 +27,7 @@ constexpr std::array kPointGrids{std::pair<std::string_view, PointGrids>{"auto",
                                  std::pair<std::string_view, PointGrids>{"off", PointGrids::kOff}};
 constexpr std::array kSamplers{
     std::pair<std::string_view, Sampler>{"sobol", Sampler::kSobol},
+    std::pair<std::string_view, Sampler>{"blue", Sampler::kBlue},
     std::pair<std::string_view, Sampler>{"jitter", Sampler::kJitter},
     std::pair<std::string_view, Sampler>{"unshuffled", Sampler::kUnshuffled},
     std::pair<std::string_view, Sampler>{"random", Sampler::kRandom}};
@@ -197,7 +198,7 @@ void add_sample_counts(CLI::App& sub, RenderCommand& command) {
 void add_sample_places(CLI::App& sub, Effects& effects) {
   value(sub,
         "--sampler",
-        "sobol|jitter|unshuffled|random",
+        "sobol|blue|jitter|unshuffled|random",
         "where they lie [sobol]",
         [&effects](const std::string& text) {
           effects.sampler = choice("--sampler", text, kSamplers);

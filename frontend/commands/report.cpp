@@ -262,6 +262,8 @@ const char* sampler_name(Sampler sampler) {
       return "jitter";
     case Sampler::kUnshuffled:
       return "unshuffled";
+    case Sampler::kBlue:
+      return "blue";
     case Sampler::kRandom:
       return "random";
   }

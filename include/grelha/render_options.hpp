@@ -20,11 +20,18 @@ enum class Sampler {
   // for
   kUnshuffled,
   kRandom,  ///< independent
+  // one such sequence over the whole picture, of which pixels that are neighbours draw runs that
+  // follow each other: the same error, spread as blue noise
+  kBlue
 };
 
-/// True where samples lie in a grid, whose cells must be counted before the first is taken.
+/// True where samples lie in a grid.
 constexpr bool is_jittered(Sampler s) {
   return s == Sampler::kJitter || s == Sampler::kUnshuffled;
+}
+/// True where the samples of a pixel must be counted before the first is taken.
+constexpr bool is_counted_first(Sampler s) {
+  return is_jittered(s) || s == Sampler::kBlue;
 }
 
 /// Where the samples of a picture lie: pure functions of (seed, pixel, sample, dimension).

@@ -9,6 +9,7 @@
 #include <omp.h>
 
 #include "kernel/render/workspace.hpp"
+#include "kernel/scene/hash.hpp"
 
 namespace grelha {
 namespace {
@@ -20,15 +21,6 @@ constexpr double kMostAudited = 1. / 16;
 constexpr std::size_t kWorstAudited = 16;
 constexpr std::uint32_t kOtherSeed = 0x5BD1E995u;
 constexpr std::size_t kPixelsOfTurn = 64;
-
-/// Avalanche of 32 bits (C. Wellons' lowbias32).
-std::uint32_t scattered_bits(std::uint32_t x) {
-  x ^= x >> 16;
-  x *= 0x7FEB352Du;
-  x ^= x >> 15;
-  x *= 0x846CA68Bu;
-  return x ^ x >> 16;
-}
 
 struct Sample {
   std::vector<std::uint32_t> pixels;

@@ -6,6 +6,7 @@
 
 #include <omp.h>
 
+#include "kernel/render/pixel_curve.hpp"
 #include "kernel/render/workspace.hpp"
 #include "kernel/world/world_impl.hpp"
 
@@ -21,7 +22,7 @@ Strata strata_for(int count) {
   const auto n = static_cast<std::uint32_t>(count);
   while ((columns + 1) * (columns + 1) <= n)
     ++columns;
-  return {columns, (n + columns - 1) / columns};
+  return {columns, (n + columns - 1) / columns, n};
 }
 
 SamplePlan::Kind kind_of(Sampler sampler) {
@@ -32,6 +33,8 @@ SamplePlan::Kind kind_of(Sampler sampler) {
       return SamplePlan::kUnshuffled;
     case Sampler::kRandom:
       return SamplePlan::kRandom;
+    case Sampler::kBlue:
+      return SamplePlan::kBlue;
     case Sampler::kSobol:
       break;
   }
@@ -83,14 +86,19 @@ void check_samples(const SampleOptions& s) {
           "rays around the mirror direction must be from 0 to 256");
 }
 
+void check_sampler(const RenderOptions& o) {
+  require(o.sampling.sampler != Sampler::kBlue || !o.subdivision.on,
+          "samples of blue belong to pixels, not to points that divide them");
+}
+
 void check_refinement(const RenderOptions& o) {
   const RefineOptions& r = o.refine;
   require(r.error >= 0 && r.seconds >= 0, "an error and a time must not be negative");
   if (!r.on())
     return;
-  require(!is_jittered(o.sampling.sampler),
-          "jittered samples must be counted before they are taken: to meet an error, use sobol or "
-          "random");
+  require(!is_counted_first(o.sampling.sampler),
+          "jittered samples and those of blue must be counted before they are taken: to meet an "
+          "error, use sobol or random");
   require(o.sampling.light_rays <= 1, "to meet an error every sample sends one ray to a light");
   require(!o.subdivision.on, "samples are spent by error or by subdivision, not by both");
 }
@@ -135,6 +143,7 @@ void check_options(const Camera& camera, const RenderOptions& options) {
   require(camera_is_sound(camera), "the camera cannot see: check eye, at, up, angle and size");
   check_rays(options);
   check_samples(options.sampling);
+  check_sampler(options);
   check_refinement(options);
   require(options.threads >= 0, "threads must not be negative");
 }
@@ -152,7 +161,12 @@ Setup set_up(const World& world, const Camera& camera, const RenderOptions& opti
               .plan = plan_samples(sampling, camera, w.shading),
               .shading = w.shading,
               .light_grids = {},
-              .point_grids = {}};
+              .point_grids = {},
+              .places = {}};
+  if (setup.plan.on && setup.plan.kind == SamplePlan::kBlue) {
+    setup.places = drawing_places(camera.width, camera.height, sampling.seed);
+    setup.plan.places = setup.places.data();
+  }
   if (!options.refine.on()) {
     const double pixels = static_cast<double>(camera.width) * camera.height;
     set_light_grids(w, options, pixels * setup.plan.samples, setup);

@@ -17,6 +17,7 @@ struct Setup {
   ShadingView shading;
   std::vector<const PointGridView*> light_grids;  ///< what the shading points to
   PointGridStats point_grids;
+  std::vector<std::uint32_t> places;  ///< what the plan points to
 };
 
 /// Throws std::invalid_argument for a bad camera or option.

@@ -62,16 +62,17 @@ struct ShadingView {
 
 inline constexpr int kLightFloats = 12;
 
-/// A near-square grid of at least `count` cells, for jittered samples.
+/// A near-square grid for `count` jittered samples, of no fewer cells.
 struct Strata {
   std::uint32_t columns = 1;
   std::uint32_t rows = 1;
+  std::uint32_t count = 1;
 };
 
 /// Which samples a picture takes. Only effects that are there get dimensions: pixel 2, then lens,
 /// light, gloss 2 each.
 struct SamplePlan {
-  enum Kind : int { kSobol, kJitter, kUnshuffled, kRandom };
+  enum Kind : int { kSobol, kJitter, kUnshuffled, kRandom, kBlue };
   bool on = false;  ///< false: one ray through each pixel's centre and nothing to sample
   int samples = 1;  ///< a pixel
   Kind kind = kSobol;
@@ -81,6 +82,7 @@ struct SamplePlan {
   /// rays around the mirror direction, added to that direction itself; 0: one ray in its place
   int gloss_rays = 0;
   Strata pixel_strata, light_strata, gloss_strata;
+  const std::uint32_t* places = nullptr;  ///< [pixels] of kBlue, see drawing_places()
 };
 
 /// image rows a thread takes at a time: one row of 8 x 8 packets

@@ -34,6 +34,9 @@ void apply(char effect, Job& job) {
     case 'r':
       job.options.sampling.sampler = Sampler::kRandom;
       break;
+    case 'b':
+      job.options.sampling.sampler = Sampler::kBlue;
+      break;
   }
 }
 

@@ -289,8 +289,10 @@ TEST(Refinement, RefusesWhatItCannotDo) {
   Case c = std::move(cases(16).front());
   EXPECT_THROW(refined(c, to_error(-1)), std::invalid_argument);
   EXPECT_THROW(refined(c, to_error(std::nan(""))), std::invalid_argument);
-  c.options.sampling.sampler = Sampler::kJitter;
-  EXPECT_THROW(refined(c, to_error(.1)), std::invalid_argument);
+  for (const Sampler counted : {Sampler::kJitter, Sampler::kUnshuffled, Sampler::kBlue}) {
+    c.options.sampling.sampler = counted;
+    EXPECT_THROW(refined(c, to_error(.1)), std::invalid_argument);
+  }
   c.options.sampling.sampler = Sampler::kSobol;
   c.options.sampling.light_rays = 4;
   EXPECT_THROW(refined(c, to_error(.1)), std::invalid_argument);

@@ -14,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "kernel/query/variants.hpp"
+#include "kernel/render/pixel_curve.hpp"
 #include "tests/lanes/lane_functions.hpp"
 #include "tests/support/rays.hpp"
 
@@ -227,6 +228,15 @@ Pair sample(const SamplePlan& plan,
   const float x = unit(scatter(own, 2 * index)), y = unit(scatter(own, 2 * index + 1));
   if (plan.kind == SamplePlan::kRandom)
     return {x, y};
+  if (plan.kind == SamplePlan::kBlue) {
+    const std::uint32_t all = scatter(plan.seed);
+    const std::uint32_t run = plan.places[pixel] * strata.count + index;
+    if (key == 0)
+      return {sobol(all, run, dimension), sobol(all, run, dimension + 1)};
+    const std::uint32_t name = scatter(all, scatter(key, static_cast<std::uint32_t>(dimension)));
+    const std::uint32_t at = owen_scrambled(run, scatter(name, 0x68E31DA4u));
+    return {sobol(name, at, 0), sobol(name, at, 1)};
+  }
   if (plan.kind == SamplePlan::kSobol) {
     if (key == 0)
       return {sobol(base, index, dimension), sobol(base, index, dimension + 1)};
@@ -261,8 +271,12 @@ Ray ray(const FrameView& f, const SamplePlan& plan, int x, int y, std::uint32_t 
 
 }  // namespace plain
 
-constexpr SamplePlan::Kind kKinds[] = {
-    SamplePlan::kSobol, SamplePlan::kJitter, SamplePlan::kUnshuffled, SamplePlan::kRandom};
+constexpr SamplePlan::Kind kKinds[] = {SamplePlan::kSobol,
+                                       SamplePlan::kJitter,
+                                       SamplePlan::kUnshuffled,
+                                       SamplePlan::kRandom,
+                                       SamplePlan::kBlue};
+constexpr int kSide = 67;
 std::uint32_t bits_of(float x) {
   return std::bit_cast<std::uint32_t>(x);
 }
@@ -275,6 +289,7 @@ GRELHA_FOR_EVERY_ISA(SampleBits);
 TEST_P(SampleBits, AreThePlainOnesInEveryLane) {
   constexpr int n = 203;
   test::Random random(11);
+  const std::vector<std::uint32_t> places = drawing_places(kSide, kSide, 5);
   const auto word = [&] {
     return static_cast<std::uint32_t>(random.below(65536)) << 16 |
            static_cast<std::uint32_t>(random.below(65536));
@@ -282,11 +297,12 @@ TEST_P(SampleBits, AreThePlainOnesInEveryLane) {
   for (const auto kind : kKinds)
     for (int d = 0; d < kSobolDimensions; d += 2)
       for (int keys = 0; keys < 3; ++keys)  // all the joint sequence, none, some
-        for (const Strata strata : {Strata{1, 1}, Strata{4, 5}, Strata{64, 64}}) {
-          const SamplePlan plan = plan_of(kind, word(), 16);
+        for (const Strata strata : {Strata{1, 1, 1}, Strata{4, 5, 18}, Strata{64, 64, 4096}}) {
+          SamplePlan plan = plan_of(kind, word(), 16);
+          plan.places = places.data();
           std::uint32_t pixel[n], index[n], key[n];
           for (int i = 0; i < n; ++i) {
-            pixel[i] = word();
+            pixel[i] = kind == SamplePlan::kBlue ? random.below(kSide * kSide) : word();
             index[i] = i < 100 ? static_cast<std::uint32_t>(i) : word() >> random.below(32);
             key[i] = keys == 0 || (keys == 2 && random.chance(.5)) ? 0 : word() | 1;
           }
@@ -309,14 +325,16 @@ TEST_P(SampleBits, OfRaysAreThePlainOnes) {
               {.1f, .02f, .01f},
               {-.02f, .1f, .005f}};
   f.focus = 1.7f;
-  f.width = 67;
+  f.width = kSide;
   f.height = 43;
+  const std::vector<std::uint32_t> places = drawing_places(f.width, f.height, 5);
   const auto batch = std::make_unique<Batch>();
   for (const auto kind : kKinds)
     for (const bool lens : {false, true})
       for (const int samples : {1, 7, 64})
         for (const int count : {1, 2, 3, 4, 5, 7, 8, 9, 15, 16, 17, 31, 33, 61, kBatch}) {
           SamplePlan plan = plan_of(kind, 5, samples);
+          plan.places = places.data();
           f.lens = lens;
           plan.lens = lens ? 2 : -1;
           const auto x = [](int i) { return 13 + i / 7; };
