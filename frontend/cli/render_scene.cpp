@@ -123,6 +123,8 @@ class SceneRender {
     }
     if (!ranks_.first())
       return kOk;
+    // its threads would wait on the processors where others pack the picture
+    omp_pause_resource_all(omp_pause_soft);
     write(work, world, maps);
     report(world);
     log_.want_none(command_.input);  // saves may have failed on the way

@@ -17,8 +17,9 @@ namespace {
 constexpr std::uint64_t kPixel = 12;  ///< bytes of a picture's pixel: three floats
 /// and of its file's, before that is written: .pfm and .hdr; a .png takes half of it
 constexpr std::uint64_t kFilePixel = 12;
-constexpr std::uint64_t kSum = 24;       ///< three sums of light
-constexpr std::uint64_t kRefined = 116;  ///< docs/architecture.md
+constexpr std::uint64_t kSum = 24;         ///< three sums of light
+constexpr std::uint64_t kPlaceOfBlue = 4;  ///< where its samples begin
+constexpr std::uint64_t kRefined = 116;    ///< docs/architecture.md
 /// most pixels that are subdivided at a time, and bytes of one, measured
 constexpr std::uint64_t kSubdivided = 1 << 20, kSubdividedPixel = 56;
 constexpr std::uint64_t kMaps = 12;             ///< samples, errors and widths
@@ -122,6 +123,8 @@ PictureMemory picture_memory(const RenderCommand& command, const Camera& camera)
                               : 0);
   if (!part)
     memory.rest += (kPixel + kFilePixel) * pixels;
+  if (command.render.sampling.sampler == Sampler::kBlue)
+    memory.rest += kPlaceOfBlue * pixels;
   return memory;
 }
 
