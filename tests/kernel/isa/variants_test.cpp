@@ -89,6 +89,37 @@ TEST_P(Copies, ReturnTheScalarBits) {
   }
 }
 
+/// A call for one ray takes the best copy; the others are as right.
+TEST_P(Copies, AskOneRayAsInAStream) {
+  Random random(23);
+  Scene sparse = empty_scene();
+  RayList aimed;
+  for (int i = 0; i < 2000; ++i) {
+    const Float3 corner{i & 1 ? 1.f : -1.f, i & 2 ? 1.f : -1.f, i & 4 ? 1.f : -1.f};
+    const Float3 a = at(corner, .3 * random.unit(), random.direction());
+    add_triangle(sparse, a, at(a, .05, random.direction()), at(a, .05, random.direction()));
+    const Float3 from = random.point(2);
+    aimed.add(from, minus(a, from));
+  }
+  for (const Scene& scene : {sparse, random_mixture(24, 600), random_spheres(25, 600)}) {
+    const World world(scene, {});
+    RayList rays = with_odd_values(random, rays_about(random, {}, 1, kManyRays), .05);
+    rays.add(rays_about(random, {}, 1e5, 200));
+    rays.add(aimed);
+    const Answers met = trace(*find_variant("scalar"), world, rays, {1, true}, Query::kClosest);
+    EXPECT_GT(hits_of(met), 100u);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const Ray ray{rays.org(i), rays.dir(i), rays.t_min[i], rays.t[i]};
+      const Hit hit = variant().loops.closest_one(world.impl().view, ray);
+      ASSERT_EQ(hit.id, met.id[i]) << rays.describe(i);
+      ASSERT_EQ(std::bit_cast<std::uint32_t>(hit.t), std::bit_cast<std::uint32_t>(met.t[i]))
+          << rays.describe(i);
+      ASSERT_EQ(variant().loops.occluded_one(world.impl().view, ray), met.id[i] != kNoPrimitive)
+          << rays.describe(i);
+    }
+  }
+}
+
 /// Counts of rays of 0 to 70: every tail of every packet and register, and nothing written behind
 /// the last.
 TEST_P(Copies, TakeAnyNumberOfRays) {
