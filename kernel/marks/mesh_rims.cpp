@@ -4,6 +4,7 @@
 #include <bit>
 #include <mutex>
 
+#include "kernel/scene/hash.hpp"
 #include "kernel/scene/turns.hpp"
 
 namespace grelha {
@@ -14,24 +15,15 @@ constexpr std::size_t kItemsOfTurn = 4096;
 
 using Words = std::vector<std::atomic<std::uint32_t>>;
 
-/// Avalanche of 32 bits (C. Wellons' lowbias32).
-std::uint32_t scattered(std::uint32_t x) {
-  x ^= x >> 16;
-  x *= 0x7FEB352Du;
-  x ^= x >> 15;
-  x *= 0x846CA68Bu;
-  return x ^ x >> 16;
-}
-
-/// The same for 0 and -0.
+/// Bits that are the same for 0 and -0.
 std::uint32_t bits_of_coordinate(float x) {
   return std::bit_cast<std::uint32_t>(x + 0.f);
 }
 
 std::uint32_t hash_of_place(const TriangleSpans& t, std::uint32_t vertex) {
-  std::uint32_t h = scattered(bits_of_coordinate(t.x[vertex]));
-  h = scattered(h ^ bits_of_coordinate(t.y[vertex]));
-  return scattered(h + bits_of_coordinate(t.z[vertex]));
+  std::uint32_t h = scattered_bits(bits_of_coordinate(t.x[vertex]));
+  h = scattered_bits(h ^ bits_of_coordinate(t.y[vertex]));
+  return scattered_bits(h + bits_of_coordinate(t.z[vertex]));
 }
 
 bool same_place(const TriangleSpans& t, std::uint32_t a, std::uint32_t b) {
@@ -115,7 +107,7 @@ void MeshRims::add_neighbours(std::size_t i,
   const std::uint32_t vertex[3] = {triangles_.a[i], triangles_.b[i], triangles_.c[i]};
   std::uint32_t of[3];
   for (int k = 0; k < 3; ++k)
-    of[k] = scattered(name[vertex[k]] + triangles_.material[i]);
+    of[k] = scattered_bits(name[vertex[k]] + triangles_.material[i]);
   for (int k = 0; k < 3; ++k)
     open[first_[vertex[k]]].fetch_xor(of[(k + 1) % 3] ^ of[(k + 2) % 3], std::memory_order_relaxed);
 }
