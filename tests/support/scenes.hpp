@@ -100,6 +100,17 @@ inline Scene random_triangles(std::uint64_t seed, int n) {
   add_triangles(s, random, n, 1, .01, .4);
   return s;
 }
+/// Small triangles about the corners of a cube, with much room between: rays leap it.
+inline Scene triangles_at_corners(std::uint64_t seed, int n) {
+  Random random(seed);
+  Scene s = empty_scene();
+  for (int i = 0; i < n; ++i) {
+    const Float3 corner{i & 1 ? 1.f : -1.f, i & 2 ? 1.f : -1.f, i & 4 ? 1.f : -1.f};
+    const Float3 a = at(corner, .3 * random.unit(), random.direction());
+    add_triangle(s, a, at(a, .05, random.direction()), at(a, .05, random.direction()));
+  }
+  return s;
+}
 /// Spheres and triangles of many sizes, which other tracers know as we do (cones have caps in
 /// Embree, planes end).
 inline Scene balls_and_triangles(std::uint64_t seed, int n) {

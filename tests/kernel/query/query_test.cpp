@@ -109,23 +109,16 @@ TEST(Query, OneRayAloneIsToldWhatAStreamIs) {
 }
 
 TEST(Query, OneRayAloneLeapsOverEmptyCellsAsAStreamDoes) {
-  Random random(17);
-  Scene corners = empty_scene();
-  std::vector<Float3> aims;
-  for (int i = 0; i < 2400; ++i) {
-    const Float3 corner{i & 1 ? 1.f : -1.f, i & 2 ? 1.f : -1.f, i & 4 ? 1.f : -1.f};
-    const Float3 a = at(corner, .3 * random.unit(), random.direction());
-    add_triangle(corners, a, at(a, .05, random.direction()), at(a, .05, random.direction()));
-    aims.push_back(a);
-  }
+  const Scene corners = triangles_at_corners(17, 2400);
   const World world(corners, {});
   const GridView& grid = world.impl().view.grids[0];
   ASSERT_EQ(world.grids().size(), 1u);
   ASSERT_GE(*std::max_element(grid.distance, grid.distance + grid.n[0] * grid.n[1] * grid.n[2]), 3);
+  Random random(18);
   RayList rays;
-  for (const Float3& a : aims) {
+  for (std::uint32_t i = 0; i < 2400; ++i) {
     const Float3 from = random.point(2);
-    rays.add(from, {a.x - from.x, a.y - from.y, a.z - from.z});
+    rays.add(from, minus(vertex(corners, 3 * i), from));
   }
   expect_calls_like_streams(corners, rays, "corners of a cube");
 }
