@@ -125,11 +125,8 @@ inline void tile_doubt(Watcher& watcher,
   if (((asked.things | asked.shadows | asked.if_bent) & bits) == 0)
     return;
   const LookFor look{(asked.things & bits) != 0, lights_of(asked, bits)};
-  // Of squares that only show what bends light small ones are as good as a pixel.
-  const bool bent_alone = !look.things && look.lights == 0;
-  const bool whole = bent_alone ? size > kBentSquare : size > 1;
   const Doubt doubt =
-      watcher.doubt(pixel_beam(f, x0, y0, size), whole, {bounces, kClearsFollowed}, 1, look);
+      watcher.doubt(pixel_beam(f, x0, y0, size), size > 1, {bounces, kClearsFollowed}, 1, look);
   if (size == 1 || doubt.none()) {
     set_square(found, first, size, doubt);
     return;

@@ -55,10 +55,6 @@ inline constexpr float kBeforeSurface = .9999f;
 /// four steps of a picture of 8 bits.
 inline constexpr float kLeastMirror = 1.f / 64;
 
-/// Side of the largest square of pixels of which what bends light is followed as from one pixel:
-/// those of 4 are parted too often behind glass (measured).
-inline constexpr int kBentSquare = 2;
-
 /// Clear surfaces that a beam is followed through: two panes of glass have four (a choice).
 inline constexpr int kClearsFollowed = 4;
 
