@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstring>
 #include <stdexcept>
+#include <type_traits>
 
 #if defined(__SSE__)
 #include <xmmintrin.h>
@@ -115,15 +116,7 @@ void put_square(const Square& s, double half, float* v) {
 }
 
 template <int kWidth>
-struct Wide;
-template <>
-struct Wide<8> {
-  using RayHit = RTCRayHit8;
-};
-template <>
-struct Wide<16> {
-  using RayHit = RTCRayHit16;
-};
+using Wide = std::conditional_t<kWidth == 8, RTCRayHit8, RTCRayHit16>;
 
 class Built final : public EmbreeScene {
  public:
@@ -305,7 +298,7 @@ class Built final : public EmbreeScene {
   void wide(const RayBuffer& r, EmbreeHint& hint) {
     alignas(64) int valid[kWidth];
     std::fill(valid, valid + kWidth, -1);
-    typename Wide<kWidth>::RayHit hit;
+    Wide<kWidth> hit;
     auto& ray = hit.ray;
     std::memset(ray.time, 0, sizeof ray.time);
     std::memset(ray.mask, 0xFF, sizeof ray.mask);

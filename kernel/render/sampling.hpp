@@ -250,21 +250,6 @@ template <class Word>
   return PairOf<Real>{unit_float(u), unit_float(v)};
 }
 
-/// Sample `index` of a pixel's run: of the one sequence of a picture, or of that which `key` names.
-template <class Real>
-[[gnu::always_inline]] inline PairOf<Real> drawn_pair(const SamplePlan& plan,
-                                                      Words<Real> pixel,
-                                                      Words<Real> index,
-                                                      int dimension,
-                                                      Words<Real> key,
-                                                      const Strata& strata) {
-  using Word = Words<Real>;
-  const Word base = Word{} + scatter(plan.seed);
-  const Word own = scatter(base, scatter(key, static_cast<std::uint32_t>(dimension)));
-  const Word at = words_at(plan.places, pixel) * strata.count + index;
-  return sobol_pair(base, own, at, dimension, key);
-}
-
 /// Two numbers in [0, 1): sample `index` of a pixel in dimensions `dimension` and the next. `key`
 /// tells apart the uses of a pair along a path (bounces, lights). 0 is the joint sequence; any
 /// other is a sequence of its own, in an order of its own. The same points in the same order again
@@ -278,7 +263,8 @@ inline PairOf<Real> sample_pairs(const SamplePlan& plan,
                                  const Strata& strata) {
   using Word = Words<Real>;
   const auto use = static_cast<std::uint32_t>(dimension);
-  const Word base = scatter(plan.seed, pixel);
+  const bool blue = plan.kind == SamplePlan::kBlue;  // pixels draw runs of one sequence
+  const Word base = blue ? Word{} + scatter(plan.seed) : scatter(plan.seed, pixel);
   const Word own = scatter(base, scatter(key, use));
   if (plan.kind == SamplePlan::kJitter)
     return jittered<Real>(own, index, strata, key | use);
@@ -286,9 +272,8 @@ inline PairOf<Real> sample_pairs(const SamplePlan& plan,
     return jittered<Real>(own, index, strata, Word{});
   if (plan.kind == SamplePlan::kRandom)
     return random_pair(own, index);
-  if (plan.kind == SamplePlan::kBlue)
-    return drawn_pair<Real>(plan, pixel, index, dimension, key, strata);
-  return sobol_pair(base, own, index, dimension, key);
+  const Word at = blue ? words_at(plan.places, pixel) * strata.count + index : index;
+  return sobol_pair(base, own, at, dimension, key);
 }
 inline Pair sample_pair(const SamplePlan& plan,
                         std::uint32_t pixel,

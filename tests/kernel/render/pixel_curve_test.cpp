@@ -48,7 +48,7 @@ struct PictureErrors {
   double pixel = 0, square = 0;
 };
 PictureErrors errors_of(SamplePlan::Kind kind, int samples, std::uint32_t key) {
-  constexpr int kAcross = 64, kSquare = 4, kSeeds = 16;
+  constexpr int kAcross = 64, kSquare = 4, kSeeds = 64;
   constexpr double kEach = 1. / (kSeeds * kAcross * kAcross);
   PictureErrors sum;
   for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
@@ -85,17 +85,19 @@ PictureErrors errors_of(SamplePlan::Kind kind, int samples, std::uint32_t key) {
 }
 
 /// Pixels of which each has its own sequence have errors that know nothing of each other: those of
-/// sixteen together are a quarter. Runs of one sequence make up for each other.
+/// sixteen together are a quarter. Runs of one sequence make up for each other. Of one scramble the
+/// errors of all pixels hang together: from 64 seeds to the next 64 their RMSE beside the other
+/// spreads by .02, that of squares by .01 (measured over 640 seeds). Four times that is allowed.
 TEST(Samples, OfBlueErrAsMuchButNotTogether) {
   for (const std::uint32_t key : {0u, 9u})
     for (const int samples : {1, 4, 9, 16}) {
       const PictureErrors apart = errors_of(SamplePlan::kSobol, samples, key);
       const PictureErrors blue = errors_of(SamplePlan::kBlue, samples, key);
-      // runs of 9 begin anywhere in a net
-      const double room = std::has_single_bit(static_cast<unsigned>(samples)) ? .06 : .15;
+      // runs of 9 begin anywhere in a net: .1 more
+      const double room = std::has_single_bit(static_cast<unsigned>(samples)) ? .08 : .18;
       EXPECT_NEAR(blue.pixel, apart.pixel, room * apart.pixel) << samples << ", key " << key;
-      EXPECT_NEAR(apart.square, apart.pixel / 4, .1 * apart.pixel / 4) << samples;
-      EXPECT_LT(blue.square, .75 * apart.square) << samples << ", key " << key;
+      EXPECT_NEAR(apart.square, apart.pixel / 4, .04 * apart.pixel / 4) << samples;
+      EXPECT_LT(blue.square, .67 * apart.square) << samples << ", key " << key;  // .42 to .63
     }
 }
 
