@@ -13,6 +13,9 @@ PixelErrors::PixelErrors(const Refinement& r, bool effects, int first_log, int t
       first_log_(first_log),
       threads_(threads),
       seen_(r.log.size()),
+      touched_(r.log.size(), 1),
+      touched_rows_(static_cast<std::size_t>(r.height), 1),
+      white_(r.log.size()),
       shown_(3 * r.log.size()),
       contrast_(r.log.size(), kUnknown),
       own_(r.log.size()),
@@ -20,7 +23,11 @@ PixelErrors::PixelErrors(const Refinement& r, bool effects, int first_log, int t
       widest_(r.log.size()),
       gain_(r.log.size()),
       lent_(lent_at(-1, r.height + 1)),
-      lends_(lent_.size()) {}
+      lends_(lent_.size()),
+      rows_(static_cast<std::size_t>(r.height)) {
+  for (std::vector<float>& level : levels_)
+    level.resize(r.log.size());
+}
 
 bool PixelErrors::is_young(std::size_t p) const {
   return r_.log[p] == first_log_;
@@ -28,22 +35,21 @@ bool PixelErrors::is_young(std::size_t p) const {
 
 /// Variance by squared differences of halves, quarters and eighths, of which there are 1, 2 and 4,
 /// but no eighths of the young.
-float PixelErrors::variance_by(float halves, float quarters, float eighths, bool young) const {
+float PixelErrors::variance_by(float halves, float quarters, float eighths, float freedom) const {
   const float ratio = r_.variance_ratio;
-  return (halves + ratio * (quarters + ratio * eighths)) * (young ? of_young_ : of_old_);
+  return (halves + ratio * (quarters + ratio * eighths)) * (of_all_ / freedom);
 }
 
 /// The same of channel i % 3 of pixel i / 3.
-float PixelErrors::channel_variance(std::size_t i, bool young) const {
-  return variance_by(r_.squares[0][i], r_.squares[1][i], r_.squares[2][i], young);
+float PixelErrors::channel_variance(std::size_t i, float freedom) const {
+  return variance_by(r_.squares[0][i], r_.squares[1][i], r_.squares[2][i], freedom);
 }
 
-/// Variance of a pixel, mean of its channels, from its own differences.
+/// Variance of a pixel, mean of its channels, from its own differences; of one with white channels.
 float PixelErrors::own_variance(std::size_t p) const {
-  const bool young = is_young(p);
   float sum = 0;
   for (std::size_t i = p * 3; i < p * 3 + 3; ++i) {
-    const float v = channel_variance(i, young);
+    const float v = channel_variance(i, freedom(p));
     const bool white = shown_[i] == 1 && mean_so_far(r_, i) - 3 * std::sqrt(v) > 1;
     if (!white)  // on any screen
       sum += v;
@@ -121,11 +127,10 @@ float PixelErrors::doubt_of(int x, int y) {
 bool PixelErrors::met_lamp(std::size_t p) const {
   const float of_one = .5f * r_.inside[p] / samples(p);
   const float square = kSlightlyLess * of_one * of_one;  // in means of all, twice of halves, ...
-  const float least = variance_by(4 * square, 16 * square, 64 * square, false);
-  const bool young = is_young(p);
-  const float most = std::max({channel_variance(p * 3, young),
-                               channel_variance(p * 3 + 1, young),
-                               channel_variance(p * 3 + 2, young)});
+  const float least = variance_by(4 * square, 16 * square, 64 * square, 4 * kOld);
+  const float most = std::max({channel_variance(p * 3, freedom(p)),
+                               channel_variance(p * 3 + 1, freedom(p)),
+                               channel_variance(p * 3 + 2, freedom(p))});
   return most >= least;
 }
 
@@ -155,34 +160,64 @@ void PixelErrors::judge_pixel(int x, int y, const Around& around, const RatioPow
   gain_[p] = r_.log[p] < kMostLog ? v * (1 - r_.variance_ratio) / (samples(p) * r_.cost[p]) : 0;
 }
 
+/// Takes from the picture what is told by pixel p.
+void PixelErrors::show(std::size_t p) {
+  bool white = false;
+  for (std::size_t i = p * 3; i < p * 3 + 3; ++i) {
+    shown_[i] = std::clamp(mean_so_far(r_, i), 0.f, 1.f);
+    white |= shown_[i] == 1;
+  }
+  white_[p] = white;
+  const float share = 1 / (3 * freedom(p));
+  for (int l = 0; l < 3; ++l) {
+    const float* const squares = &r_.squares[l][p * 3];
+    levels_[l][p] = ((squares[0] + squares[1]) + squares[2]) * share;
+  }
+}
+
+/// Pixel p is another: so is what those around it are told.
+void PixelErrors::touch(std::size_t p) {
+  const int x = static_cast<int>(p % static_cast<std::size_t>(r_.width));
+  const int y = static_cast<int>(p / static_cast<std::size_t>(r_.width));
+  for (int j = std::max(y - 1, 0); j <= std::min(y + 1, r_.height - 1); ++j) {
+    touched_rows_[static_cast<std::size_t>(j)] = 1;
+    for (int i = std::max(x - 1, 0); i <= std::min(x + 1, r_.width - 1); ++i) {
+      contrast_[at(i, j)] = kUnknown;
+      touched_[at(i, j)] = 1;
+    }
+  }
+}
+
 void PixelErrors::show_new() {
-  const auto is_new = [&](std::size_t p) { return seen_[p] != r_.log[p]; };
-#pragma omp parallel for num_threads(threads_) schedule(static)
+  std::vector<std::uint32_t> changed;
   for (std::size_t p = 0; p < own_.size(); ++p)
-    if (is_new(p))
-      for (std::size_t i = p * 3; i < p * 3 + 3; ++i)
-        shown_[i] = std::clamp(mean_so_far(r_, i), 0.f, 1.f);
-  for (std::size_t p = 0; p < own_.size(); ++p) {
-    if (!is_new(p))
-      continue;
+    if (seen_[p] != r_.log[p])
+      changed.push_back(static_cast<std::uint32_t>(p));
+#pragma omp parallel for num_threads(threads_) schedule(static)
+  for (std::size_t i = 0; i < changed.size(); ++i)
+    show(changed[i]);
+  for (const std::uint32_t p : changed) {
     seen_[p] = r_.log[p];
-    const int x = static_cast<int>(p % static_cast<std::size_t>(r_.width));
-    const int y = static_cast<int>(p / static_cast<std::size_t>(r_.width));
-    for (int j = std::max(y - 1, 0); j <= std::min(y + 1, r_.height - 1); ++j)
-      for (int i = std::max(x - 1, 0); i <= std::min(x + 1, r_.width - 1); ++i)
-        contrast_[at(i, j)] = kUnknown;
+    touch(p);
   }
 }
 
 void PixelErrors::measure() {
   show_new();
-  // the ratio of variances is another after each round, for all
   const float ratio = r_.variance_ratio;
-  of_young_ = ratio / (1 - ratio) / (4 * kYoung);
-  of_old_ = ratio / (1 - ratio) / (4 * kOld);
+  of_all_ = ratio / (1 - ratio);
+  const bool all = ratio != measured_ratio_;  // then all pixels have another variance
+  measured_ratio_ = ratio;
 #pragma omp parallel for num_threads(threads_) schedule(static)
-  for (std::size_t p = 0; p < own_.size(); ++p)
-    own_[p] = own_variance(p);
+  for (int y = 0; y < r_.height; ++y) {
+    if (!all && touched_rows_[static_cast<std::size_t>(y)] == 0)
+      continue;
+    for (std::size_t p = at(0, y); p < at(0, y + 1); ++p)
+      own_[p] = of_all_ * (levels_[0][p] + ratio * (levels_[1][p] + ratio * levels_[2][p]));
+    for (std::size_t p = at(0, y); p < at(0, y + 1); ++p)
+      if (white_[p] && own_[p] > 0)
+        own_[p] = own_variance(p);
+  }
 }
 
 void PixelErrors::lend_row(int y, const RatioPowers& powers) {
@@ -202,13 +237,35 @@ void PixelErrors::judge_row(int y, const RatioPowers& powers) {
     return above[-1] + above[0] + above[1] + of[-1] + of[1] + below[-1] + below[0] + below[1];
   };
   for (int x = 0; x < r_.width; ++x) {
+    std::uint8_t& touched = touched_[at(x, y)];
+    if (!touched)
+      continue;
+    touched = 0;
     const std::size_t at_x = lent_at(x, y);
     judge_pixel(x, y, {around(&lent_[at_x]), around(&lends_[at_x])}, powers);
+  }
+  sum_row(y);
+}
+
+void PixelErrors::sum_row(int y) {
+  RowTotals& row = rows_[static_cast<std::size_t>(y)];
+  row = {};
+  for (std::size_t p = at(0, y); p < at(0, y + 1); ++p) {
+    const double v = static_cast<double>(variance_[p]);
+    row.sum += v;
+    row.spread += v * v;
+    row.widest = std::max(row.widest, widest_[p]);
   }
 }
 
 void PixelErrors::judge() {
   measure();
+  const Told told{r_.variance_ratio, r_.worse, r_.least_by_sample};
+  if (told != judged_) {
+    std::fill(touched_.begin(), touched_.end(), std::uint8_t{1});
+    std::fill(touched_rows_.begin(), touched_rows_.end(), std::uint8_t{1});
+  }
+  judged_ = told;
   RatioPowers powers;
   powers[0] = 1;
   for (std::size_t i = 0; i < kMostLog; ++i)
@@ -217,11 +274,14 @@ void PixelErrors::judge() {
   {
 #pragma omp for schedule(static)
     for (int y = 0; y < r_.height; ++y)
-      lend_row(y, powers);
+      if (touched_rows_[static_cast<std::size_t>(y)])
+        lend_row(y, powers);
 #pragma omp for schedule(static)
     for (int y = 0; y < r_.height; ++y)
-      judge_row(y, powers);
+      if (touched_rows_[static_cast<std::size_t>(y)])
+        judge_row(y, powers);
   }
+  std::fill(touched_rows_.begin(), touched_rows_.end(), std::uint8_t{0});
 }
 
 float PixelErrors::forgiven(double error) const {
@@ -241,11 +301,10 @@ PixelErrors::Totals PixelErrors::totals() const {
   double sum = 0;
   double spread = 0;
   double widest = 0;
-  for (std::size_t p = 0; p < variance_.size(); ++p) {
-    const double v = static_cast<double>(variance_[p]);
-    sum += v;
-    spread += v * v;
-    widest = std::max(widest, static_cast<double>(widest_[p]));
+  for (const RowTotals& row : rows_) {
+    sum += row.sum;
+    spread += row.spread;
+    widest = std::max(widest, static_cast<double>(row.widest));
   }
   const double n = static_cast<double>(variance_.size());
   // A pixel's estimate has the spread of chi squared: variance 2 v^2 over the degrees of freedom.

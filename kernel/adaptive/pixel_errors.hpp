@@ -67,8 +67,9 @@ class PixelErrors {
   float samples(std::size_t p) const { return static_cast<float>(1u << r_.log[p]); }
   bool watched(std::size_t p) const { return effects_ || r_.inside[p] > 0 || r_.around[p] > 0; }
   bool is_young(std::size_t p) const;
-  float variance_by(float halves, float quarters, float eighths, bool young) const;
-  float channel_variance(std::size_t i, bool young) const;
+  float freedom(std::size_t p) const { return is_young(p) ? 4 * kYoung : 4 * kOld; }
+  float variance_by(float halves, float quarters, float eighths, float freedom) const;
+  float channel_variance(std::size_t i, float freedom) const;
   float own_variance(std::size_t p) const;
   /// What hides from a pixel's samples adds to its variance, and how wide its interval must be.
   struct Hidden {
@@ -79,16 +80,38 @@ class PixelErrors {
   bool met_lamp(std::size_t p) const;
   float contrast_so_far(int x, int y);
   float with_neighbours(std::size_t p, const Around& around, const RatioPowers& powers) const;
+  void show(std::size_t p);
+  void touch(std::size_t p);
   void show_new();
   void lend_row(int y, const RatioPowers& powers);
   void judge_pixel(int x, int y, const Around& around, const RatioPowers& powers);
   void judge_row(int y, const RatioPowers& powers);
+  void sum_row(int y);
+
+  /// What is the same for all pixels.
+  struct Told {
+    float ratio;
+    double worse, least_by_sample;
+    bool operator==(const Told&) const = default;
+  };
+  /// Sums over a row.
+  struct RowTotals {
+    double sum = 0, spread = 0;
+    float widest = 0;
+  };
 
   const Refinement& r_;
   const bool effects_;
   const int first_log_, threads_;
-  float of_young_ = 0, of_old_ = 0;             ///< what squared differences, summed by level, tell
-  std::vector<std::uint8_t> seen_;              ///< [pixels] Refinement::log when `shown_` was set
+  float of_all_ = 0;                        ///< times what is told by level: a variance
+  float measured_ratio_ = 0;                ///< that own_ was set by
+  Told judged_{};                           ///< that the rest was
+  std::vector<std::uint8_t> seen_;          ///< [pixels] Refinement::log when `shown_` was set
+  std::vector<std::uint8_t> touched_;       ///< [pixels] to be judged again
+  std::vector<std::uint8_t> touched_rows_;  ///< [rows] with such
+  /// [pixels] Squared differences of each level, sums over channels, over the degrees of freedom
+  std::vector<float> levels_[3];
+  std::vector<std::uint8_t> white_;             ///< [pixels] whether a channel is shown as white
   std::vector<float> shown_;                    ///< [pixels][3] what a screen shows
   std::vector<float> contrast_;                 ///< [pixels] as far as it was asked for
   std::vector<float> own_, variance_, widest_;  ///< [pixels] own_: from a pixel's own differences
@@ -96,6 +119,7 @@ class PixelErrors {
   /// own_ as it would be of one sample, of those that lend it, see lent_at(); 0 for others
   std::vector<float> lent_;
   std::vector<std::uint8_t> lends_;
+  std::vector<RowTotals> rows_;
 };
 
 }  // namespace grelha
