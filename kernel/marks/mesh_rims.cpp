@@ -1,8 +1,10 @@
 #include "kernel/marks/mesh_rims.hpp"
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <bit>
-#include <mutex>
+#include <compare>
 
 #include "kernel/scene/hash.hpp"
 #include "kernel/scene/turns.hpp"
@@ -30,12 +32,9 @@ bool same_place(const TriangleSpans& t, std::uint32_t a, std::uint32_t b) {
   return t.x[a] == t.x[b] && t.y[a] == t.y[b] && t.z[a] == t.z[b];
 }
 
-/// The vertex that came first to the place of another, by open addressing.
-std::uint32_t first_at_place(const TriangleSpans& t,
-                             std::uint32_t vertex,
-                             std::uint32_t name,
-                             Words& held) {
-  for (std::size_t at = name;; ++at) {
+/// A vertex at the place of another, the same for all that are there, by open addressing.
+std::uint32_t one_at_place(const TriangleSpans& t, std::uint32_t vertex, Words& held) {
+  for (std::size_t at = hash_of_place(t, vertex);; ++at) {
     std::atomic<std::uint32_t>& slot = held[at & (held.size() - 1)];
     std::uint32_t there = slot.load(std::memory_order_relaxed);
     if (there == 0 && slot.compare_exchange_strong(there, vertex + 1, std::memory_order_relaxed))
@@ -43,6 +42,16 @@ std::uint32_t first_at_place(const TriangleSpans& t,
     if (same_place(t, there - 1, vertex))
       return there - 1;
   }
+}
+
+/// Adds 1 and returns what was there. A thread alone needs no lock, which takes longer than all
+/// else.
+std::uint32_t counted(std::atomic<std::uint32_t>& count, int threads) {
+  if (threads > 1)
+    return count.fetch_add(1, std::memory_order_relaxed);
+  const std::uint32_t before = count.load(std::memory_order_relaxed);
+  count.store(before + 1, std::memory_order_relaxed);
+  return before;
 }
 
 template <class Work>
@@ -56,119 +65,167 @@ void each_of(std::size_t count, int threads, const Work& work) {
 
 }  // namespace
 
+/// The edges of all triangles.
+class MeshRims::Edges {
+ public:
+  Edges(const TriangleSpans& triangles, int threads)
+      : triangles_(triangles),
+        place_(triangles.vertex_count()),
+        begin_(place_.size() + 1),
+        edges_(3 * triangles.size()) {
+    Words held(std::bit_ceil(2 * place_.size()));  // a vertex + 1
+    each_of(place_.size(), threads, [&](std::size_t v) {
+      place_[v] = one_at_place(triangles, static_cast<std::uint32_t>(v), held);
+    });
+    Words next(place_.size());
+    each_edge(threads, [&](std::uint32_t lower, const Edge&) { counted(next[lower], threads); });
+    for (std::size_t v = 0; v < place_.size(); ++v) {
+      begin_[v + 1] = begin_[v] + next[v];
+      next[v] = begin_[v];
+    }
+    each_edge(threads, [&](std::uint32_t lower, const Edge& edge) {
+      edges_[counted(next[lower], threads)] = edge;
+    });
+  }
+
+  /// The places of a triangle's corners, each named by one of the vertices there.
+  std::array<std::uint32_t, 3> corners(std::size_t i) const {
+    return {place_[triangles_.a[i]], place_[triangles_.b[i]], place_[triangles_.c[i]]};
+  }
+  static bool is_flat(const std::array<std::uint32_t, 3>& corner) {
+    return corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0];
+  }
+
+  /// Sets what lies across the edges from a place to greater ones.
+  void link(std::size_t place, std::vector<std::uint32_t>& across) {
+    const auto end = edges_.begin() + begin_[place + 1];
+    auto first = edges_.begin() + begin_[place];
+    std::sort(first, end);
+    while (first != end) {
+      const auto last = std::find_if(
+          first + 1, end, [&](const Edge& edge) { return edge.upper != first->upper; });
+      link({first, last}, across);
+      first = last;
+    }
+  }
+
+ private:
+  /// Edge number % 3 of triangle number / 3, to the greater of the places at its ends.
+  struct Edge {
+    std::uint32_t upper, number;
+    auto operator<=>(const Edge&) const = default;
+    std::uint32_t triangle() const { return number / 3; }
+  };
+
+  std::uint32_t material(const Edge& edge) const { return triangles_.material[edge.triangle()]; }
+
+  /// The same of edges between two places: across each lies the next of its material, across the
+  /// last the first.
+  void link(std::span<Edge> edges, std::vector<std::uint32_t>& across) const {
+    if (edges.size() > 2)
+      std::stable_sort(edges.begin(), edges.end(), [&](const Edge& a, const Edge& b) {
+        return material(a) < material(b);
+      });
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+      const bool last = i + 1 == edges.size() || material(edges[i]) != material(edges[i + 1]);
+      if (i > first || !last)
+        across[edges[i].number] = edges[last ? first : i + 1].triangle();
+      if (last)
+        first = i + 1;
+    }
+  }
+
+  /// Calls visit(lower, edge) for the edges of triangles that have any.
+  template <class Visit>
+  void each_edge(int threads, const Visit& visit) const {
+    each_of(triangles_.size(), threads, [&](std::size_t i) {
+      const std::array<std::uint32_t, 3> corner = corners(i);
+      for (std::size_t k = 0; k < 3 && !is_flat(corner); ++k) {
+        const auto [lower, upper] = std::minmax(corner[k], corner[(k + 1) % 3]);
+        visit(lower, {upper, static_cast<std::uint32_t>(3 * i + k)});
+      }
+    });
+  }
+
+  const TriangleSpans& triangles_;
+  std::vector<std::uint32_t> place_;  ///< [vertices] one at the same place
+  std::vector<std::uint32_t> begin_;  ///< [places + 1] of the edges of each
+  std::vector<Edge> edges_;           ///< by the lesser of the places at their ends
+};
+
 MeshRims::MeshRims(const TriangleSpans& triangles, int threads)
     : triangles_(triangles), threads_(threads) {
   if (triangles.size() > kMostTriangles)
     return;
-  const std::size_t vertices = triangles.vertex_count();
-  first_.resize(vertices);
-  told_ = std::vector<std::atomic<std::uint8_t>>(vertices);
-  Words held(std::bit_ceil(2 * vertices));  // a vertex + 1
-  Words open(vertices);
-  std::vector<std::uint32_t> name(vertices);
-  each_of(vertices, threads, [&](std::size_t v) {
-    const auto vertex = static_cast<std::uint32_t>(v);
-    name[v] = hash_of_place(triangles, vertex);
-    first_[v] = first_at_place(triangles, vertex, name[v], held);
-  });
-  each_of(triangles.size(), threads, [&](std::size_t i) { add_neighbours(i, name, open); });
-  each_of(vertices, threads, [&](std::size_t v) { told_[v] = open[v] != 0 ? kOpen : 0; });
-  find_borders();
+  across_.resize(3 * triangles.size(), kNone);
+  told_.resize(triangles.size());
+  sides_.resize(triangles.size());
+  Edges edges(triangles, threads);
+  each_of(triangles.vertex_count(), threads, [&](std::size_t v) { edges.link(v, across_); });
+  tell_of_corners(edges);
 }
 
-int MeshRims::open_corners(std::size_t i) const {
-  return is_open(triangles_.a[i]) + is_open(triangles_.b[i]) + is_open(triangles_.c[i]);
-}
-
-MeshRims::Edge MeshRims::edge(std::size_t i, int k) const {
-  const std::uint32_t vertex[3] = {triangles_.a[i], triangles_.b[i], triangles_.c[i]};
-  const auto [lower, upper] = std::minmax(first_[vertex[k]], first_[vertex[(k + 1) % 3]]);
-  return {lower, upper, triangles_.material[i]};
-}
-
-/// With one corner inside, the edge of the other two is all that loners may have in common with it.
-void MeshRims::find_borders() {
-  std::mutex adding;
+void MeshRims::tell_of_corners(const Edges& edges) {
+  std::vector<std::atomic<bool>> open(triangles_.vertex_count());
   each_of(triangles_.size(), threads_, [&](std::size_t i) {
-    if (open_corners(i) != 2)
-      return;
-    const int k = !is_open(triangles_.a[i]) ? 1 : !is_open(triangles_.b[i]) ? 2 : 0;
-    const std::lock_guard lock(adding);
-    borders_.push_back(edge(i, k));
+    const std::array<std::uint32_t, 3> corner = edges.corners(i);
+    told_[i] = Edges::is_flat(corner) ? kFlat : 0;
+    for (std::size_t k = 0; k < 3 && told_[i] != kFlat; ++k)
+      if (across_[3 * i + k] == kNone) {
+        told_[i] |= static_cast<std::uint8_t>(1u << k);
+        open[corner[k]].store(true, std::memory_order_relaxed);
+        open[corner[(k + 1) % 3]].store(true, std::memory_order_relaxed);
+      }
   });
-  std::sort(borders_.begin(), borders_.end());
+  each_of(triangles_.size(), threads_, [&](std::size_t i) {
+    const std::array<std::uint32_t, 3> corner = edges.corners(i);
+    if (told_[i] != kFlat && open[corner[0]] && open[corner[1]] && open[corner[2]])
+      told_[i] |= kOpenCorners;
+  });
 }
 
-/// Adds to each corner of a triangle its neighbours there, by `name`. Those that come twice are
-/// gone: of a corner inside of a mesh 0 is left.
-void MeshRims::add_neighbours(std::size_t i,
-                              const std::vector<std::uint32_t>& name,
-                              std::vector<std::atomic<std::uint32_t>>& open) const {
-  const std::uint32_t vertex[3] = {triangles_.a[i], triangles_.b[i], triangles_.c[i]};
-  std::uint32_t of[3];
-  for (int k = 0; k < 3; ++k)
-    of[k] = scattered_bits(name[vertex[k]] + triangles_.material[i]);
-  for (int k = 0; k < 3; ++k)
-    open[first_[vertex[k]]].fetch_xor(of[(k + 1) % 3] ^ of[(k + 2) % 3], std::memory_order_relaxed);
-}
-
-void MeshRims::look_from(const double (&point)[3]) {
-  if (told_.empty())
-    return;
-  std::copy(point, point + 3, from_);
-  for (std::atomic<std::uint8_t>& told : told_)
-    told.store(told.load(std::memory_order_relaxed) & kOpen, std::memory_order_relaxed);
-  each_of(triangles_.size(), threads_, [&](std::size_t i) { add_side(i); });
+void MeshRims::look_from(std::span<const SeenFrom> from) {
+  each_of(sides_.size(), threads_, [&](std::size_t i) { sides_[i] = sides_of(i, from); });
 }
 
 /// Which side of a triangle is seen. Those of a mesh need not be turned alike.
-std::uint8_t MeshRims::side_of(std::size_t i) const {
-  const std::uint32_t vertex[3] = {triangles_.a[i], triangles_.b[i], triangles_.c[i]};
-  double p[3][3];
-  for (int k = 0; k < 3; ++k) {
-    p[k][0] = triangles_.x[vertex[k]] - from_[0];
-    p[k][1] = triangles_.y[vertex[k]] - from_[1];
-    p[k][2] = triangles_.z[vertex[k]] - from_[2];
+std::uint8_t MeshRims::sides_of(std::size_t i, std::span<const SeenFrom> from) const {
+  const Triple a = vertex_of(triangles_, triangles_.a[i]);
+  const Triple normal = cross(minus(vertex_of(triangles_, triangles_.b[i]), a),
+                              minus(vertex_of(triangles_, triangles_.c[i]), a));
+  unsigned backs = 0;
+  for (std::size_t v = 0; v < from.size(); ++v) {
+    const double(&at)[3] = from[v].at;
+    backs |= unsigned{dot(minus(a, {at[0], at[1], at[2]}), normal) >= 0} << v;
   }
-  const double volume = p[0][0] * (p[1][1] * p[2][2] - p[1][2] * p[2][1]) +
-                        p[0][1] * (p[1][2] * p[2][0] - p[1][0] * p[2][2]) +
-                        p[0][2] * (p[1][0] * p[2][1] - p[1][1] * p[2][0]);
-  return volume < 0 ? kFront : kBack;
+  return static_cast<std::uint8_t>(backs);
 }
 
-void MeshRims::add_side(std::size_t i) {
-  const std::uint8_t side = side_of(i);
-  for (const std::uint32_t v : {triangles_.a[i], triangles_.b[i], triangles_.c[i]}) {
-    std::atomic<std::uint8_t>& seen = told_[first_[v]];
-    if ((seen.load(std::memory_order_relaxed) & side) == 0)
-      seen.fetch_or(side, std::memory_order_relaxed);
-  }
+unsigned MeshRims::rims(std::size_t i, std::size_t v) const {
+  unsigned bits = ends(i);
+  if (told_.empty())
+    return bits;
+  for (std::size_t k = 0; k < 3; ++k)
+    if (const std::uint32_t other = across_[3 * i + k]; other != kNone)
+      bits |= ((unsigned{sides_[i]} ^ sides_[other]) >> v & 1) << k;
+  return bits;
+}
+
+unsigned MeshRims::ends(std::size_t i) const {
+  return told_.empty() ? kAllEdges : told_[i] & kAllEdges;
 }
 
 bool MeshRims::stands_alone(std::size_t i) const {
   if (told_.empty())
     return true;
-  if (open_corners(i) < 3)
+  if ((told_[i] & kOpenCorners) == 0)
     return false;
-  for (int k = 0; k < 3; ++k)
-    if (std::binary_search(borders_.begin(), borders_.end(), edge(i, k)))
+  for (std::size_t k = 0; k < 3; ++k)
+    if (const std::uint32_t other = across_[3 * i + k];
+        other != kNone && (told_[other] & kOpenCorners) == 0)
       return false;
   return true;
-}
-
-bool MeshRims::ends_at(std::size_t i) const {
-  return told_.empty() || open_corners(i) > 0;
-}
-
-bool MeshRims::has(std::size_t i) const {
-  if (told_.empty())
-    return true;
-  bool any = false;
-  for (const std::uint32_t v : {triangles_.a[i], triangles_.b[i], triangles_.c[i]}) {
-    const std::uint8_t told = told_[first_[v]];
-    any |= (told & kOpen) != 0 || told == (kFront | kBack);
-  }
-  return any;
 }
 
 }  // namespace grelha

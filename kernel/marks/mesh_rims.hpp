@@ -1,62 +1,56 @@
 #pragma once
-// Where triangles that share corners end, or turn away from a point: what is inside of a mesh is no
-// thing of its own.
+// Edges at which triangles that share corners end, or turn away from a point: what is inside of a
+// mesh is no thing of its own.
 
-#include <atomic>
-#include <compare>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "grelha/scene_spans.hpp"
+#include "kernel/marks/rod.hpp"
 
 namespace grelha {
 
-/// Corners of triangles, those at one place taken for one.
+/// Edges of triangles, corners at one place taken for one. Edge k of a triangle goes from its
+/// corner k to the next. Triangles with two corners at one place have none: no ray meets them.
 class MeshRims {
  public:
+  static constexpr std::size_t kMostViewpoints = 8;
+
   MeshRims(const TriangleSpans& triangles, int threads);
 
-  /// Forgets what was seen from another point.
-  void look_from(const double (&point)[3]);
+  /// Forgets what was seen from others. Takes kMostViewpoints at most.
+  void look_from(std::span<const SeenFrom> from);
 
-  /// Whether a corner of triangle i lies where a mesh of one material ends, or where some of its
-  /// triangles face the point and some do not. With very many triangles: always.
-  bool has(std::size_t i) const;
-  /// Whether a corner of triangle i lies where a mesh ends. With very many triangles: always.
-  bool ends_at(std::size_t i) const;
+  /// Bits of the edges of triangle i at which a mesh of one material ends, or where one of its
+  /// triangles faces viewpoint v and the other does not. With very many triangles: all.
+  unsigned rims(std::size_t i, std::size_t v) const;
+  /// Bits of the edges of triangle i at which a mesh ends. With very many triangles: all.
+  unsigned ends(std::size_t i) const;
+  /// The triangle across edge k of triangle i, at which no mesh ends.
+  std::size_t across(std::size_t i, std::size_t k) const { return across_[3 * i + k]; }
   /// Whether triangle i is no part of a larger surface: all its corners lie where a mesh ends, and
   /// so do those of the triangles that it has an edge in common with. With very many: always.
   bool stands_alone(std::size_t i) const;
 
  private:
-  /// What is told of a corner.
-  static constexpr std::uint8_t kFront = 1;
-  static constexpr std::uint8_t kBack = 2;
-  static constexpr std::uint8_t kOpen = 4;  ///< a mesh ends there
+  static constexpr unsigned kAllEdges = 7;
+  /// What is told of a triangle, besides the bits of the edges at which its mesh ends.
+  static constexpr std::uint8_t kOpenCorners = 8;  ///< at all of its corners a mesh ends
+  static constexpr std::uint8_t kFlat = 16;        ///< two corners are at one place
+  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
-  /// Of triangles of one material, by the first vertices at its places.
-  struct Edge {
-    std::uint32_t lower, upper, material;
-    auto operator<=>(const Edge&) const = default;
-  };
+  class Edges;
 
-  void add_neighbours(std::size_t i,
-                      const std::vector<std::uint32_t>& name,
-                      std::vector<std::atomic<std::uint32_t>>& open) const;
-  void find_borders();
-  bool is_open(std::uint32_t vertex) const { return (told_[first_[vertex]] & kOpen) != 0; }
-  int open_corners(std::size_t i) const;
-  Edge edge(std::size_t i, int k) const;
-  void add_side(std::size_t i);
-  std::uint8_t side_of(std::size_t i) const;
+  void tell_of_corners(const Edges& edges);
+  std::uint8_t sides_of(std::size_t i, std::span<const SeenFrom> from) const;
 
   const TriangleSpans& triangles_;
   const int threads_;
-  double from_[3] = {};
-  std::vector<std::uint32_t> first_;  ///< [vertices] one at the same place
-  std::vector<Edge> borders_;         ///< of triangles that have corners inside of a mesh, in order
-  std::vector<std::atomic<std::uint8_t>> told_;  ///< [vertices] of those that are first
+  std::vector<std::uint32_t> across_;  ///< [triangles][3] the triangle behind an edge, or kNone
+  std::vector<std::uint8_t> told_;     ///< [triangles]
+  std::vector<std::uint8_t> sides_;    ///< [triangles] bits of the viewpoints that see its back
 };
 
 }  // namespace grelha

@@ -54,8 +54,8 @@ void set_rays(
 }  // namespace
 
 void MeshThickness::measure(std::span<const std::uint32_t> triangles,
-                            std::span<const double> enough,
-                            std::span<double> thickness,
+                            double enough,
+                            std::span<float> thickness,
                             TraceCounts& counts) const {
   BothWays both;
   float t[kRaysOfTurn];
@@ -63,7 +63,7 @@ void MeshThickness::measure(std::span<const std::uint32_t> triangles,
   for (std::size_t first = 0; first < triangles.size(); first += kRaysOfTurn / 2) {
     const std::size_t count = std::min(kRaysOfTurn / 2, triangles.size() - first);
     for (std::size_t k = 0; k < count; ++k)
-      set_rays(spans, triangles[first + k], enough[first + k], 2 * k, both);
+      set_rays(spans, triangles[first + k], enough, 2 * k, both);
     const Rays rays{.org = {both.org[0], both.org[1], both.org[2]},
                     .dir = {both.dir[0], both.dir[1], both.dir[2]},
                     .t_min = both.t_min,
@@ -72,7 +72,7 @@ void MeshThickness::measure(std::span<const std::uint32_t> triangles,
     setup_.variant.loops.closest(world_.view, rays, {.t = t}, {}, counts);
     for (std::size_t k = 0; k < count; ++k) {
       const bool flat = !std::isfinite(both.dir[0][2 * k]);
-      thickness[first + k] = flat ? 0. : static_cast<double>(std::min(t[2 * k], t[2 * k + 1]));
+      thickness[first + k] = flat ? 0 : std::min(t[2 * k], t[2 * k + 1]);
     }
   }
 }

@@ -21,8 +21,8 @@ class MeshThickness {
   /// Sets the way to the nearer of what lies on either side of triangles; 0 for triangles without
   /// an area. Where it is `enough` or more, that is all that it tells.
   void measure(std::span<const std::uint32_t> triangles,
-               std::span<const double> enough,
-               std::span<double> thickness,
+               double enough,
+               std::span<float> thickness,
                TraceCounts& counts) const;
 
  private:

@@ -5,19 +5,6 @@
 namespace grelha {
 namespace {
 
-struct Triple {
-  double x, y, z;
-};
-Triple minus(const Triple& a, const Triple& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-Triple cross(const Triple& a, const Triple& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-double dot(const Triple& a, const Triple& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
 /// How long an edge looks along a direction, squared; times the direction, squared.
 double across(const Triple& edge, const Triple& along) {
   const Triple c = cross(edge, along);
@@ -30,7 +17,7 @@ Rod rod_of(const TriangleSpans& t, std::size_t i, const Place3& from) {
   const std::uint32_t vertex[3] = {t.a[i], t.b[i], t.c[i]};
   Triple p[3], edge[3];
   for (int k = 0; k < 3; ++k)
-    p[k] = {t.x[vertex[k]], t.y[vertex[k]], t.z[vertex[k]]};
+    p[k] = vertex_of(t, vertex[k]);
   for (int k = 0; k < 3; ++k)
     edge[k] = minus(p[(k + 1) % 3], p[k]);
   const Triple sum{p[0].x + p[1].x + p[2].x, p[0].y + p[1].y + p[2].y, p[0].z + p[1].z + p[2].z};

@@ -6,16 +6,23 @@
 #include <cstddef>
 
 #include "grelha/scene_spans.hpp"
+#include "kernel/marks/triple.hpp"
 
 namespace grelha {
 
 using Place3 = double[3];
+/// A point that a scene is looked at from.
+struct SeenFrom {
+  Place3 at;
+};
 
-/// What holds a primitive: all within `reach` of a stretch. Seen from some point it looks no wider
-/// than `width`, and all within `aside` of the stretch.
+/// What holds a primitive, or what of a mesh lies beside an edge of one: all within `reach` of a
+/// stretch. Seen from some point it looks no wider than `width`, and all within `aside` of the
+/// stretch.
 struct Rod {
   double end[2][3];
   double width, reach, aside;
+  double whole = 0;  ///< length of the primitive, where the stretch is shorter
 
   double length() const {
     double sum = 0;

@@ -1,11 +1,15 @@
 #include "kernel/marks/small_things.hpp"
 
 #include <atomic>
+#include <bit>
+#include <memory>
 #include <mutex>
 #include <span>
+#include <vector>
 
 #include "kernel/marks/mesh_rims.hpp"
 #include "kernel/marks/mesh_thickness.hpp"
+#include "kernel/marks/rim_walk.hpp"
 #include "kernel/marks/thin_shadows.hpp"
 #include "kernel/scene/pixel_box.hpp"
 #include "kernel/scene/turns.hpp"
@@ -24,6 +28,12 @@ constexpr double kByMirror = 3;
 /// Things in front of whose shadows every pixel is asked: as many as pixels over this.
 constexpr std::size_t kPixelsAThing = 2;
 constexpr std::size_t kThingsOfTurn = 1024;
+
+template <class Visit>
+void each_bit(unsigned bits, const Visit& visit) {
+  for (; bits != 0; bits &= bits - 1)
+    visit(static_cast<std::size_t>(std::countr_zero(bits)));
+}
 
 /// What a rod shows to the eye; what of it lies behind that is cut off.
 class SeenThings {
@@ -57,7 +67,10 @@ class SeenThings {
     cut_behind(to_, rod);
     Way w{.a = to_(rod.end[0]), .b = to_(rod.end[1])};
     w.reach = to_.reach(rod.aside, std::min(w.a.depth, w.b.depth));
-    w.small = std::max(std::abs(w.a.x - w.b.x), std::abs(w.a.y - w.b.y)) + 2 * w.reach < kThin;
+    const double length = std::max({std::abs(w.a.x - w.b.x),
+                                    std::abs(w.a.y - w.b.y),
+                                    rod.whole / to_.pixel(std::max(w.a.depth, w.b.depth))});
+    w.small = length + 2 * w.reach < kThin;
     return w;
   }
 
@@ -80,19 +93,33 @@ class Marker {
         to_(setup.frame),
         widest_(kThin * widest_pixel()),
         thickness_(world, setup),
+        thick_(g_.triangles.size(), kUnknown),
         things_(things),
-        counts_(counts) {}
+        counts_(counts) {
+    const Place3& eye = to_.eye;
+    viewpoints_.push_back({{eye[0], eye[1], eye[2]}});
+    for (int l = 0; l < world.shading.light_count; ++l) {
+      const float* const at = world.shading.lights + kLightFloats * l;
+      viewpoints_.push_back({{at[0], at[1], at[2]}});
+    }
+    if (g_.triangles.size() > 0)
+      rims_ = std::make_unique<MeshRims>(g_.triangles, threads);
+  }
 
   void run() {
+    look_from(0);
     mark_things_seen();
     things_.mirrored = has_loner(kThin * kByMirror * to_.pixel(farthest()));
-    for (int l = 0; l < world_.shading.light_count; ++l) {
-      PixelMarks& shadows = things_.shadows[static_cast<std::size_t>(l % kLightBits)];
-      mark_shadows(world_.shading.lights + kLightFloats * l, {shadows, things_.small});
+    for (std::size_t v = 1; v < viewpoints_.size(); ++v) {
+      look_from(v);
+      const std::size_t light = v - 1;
+      mark_shadows(v, {things_.shadows[light % kLightBits], things_.small});
     }
   }
 
  private:
+  static constexpr float kUnknown = -1;
+
   /// Of all pixels that anything finite is seen in.
   double widest_pixel() const {
     const SceneView& v = world_.view;
@@ -127,17 +154,23 @@ class Marker {
       if (rod_of(g_.cones, i).width < width)
         return true;
     for (std::size_t i = 0; i < g_.triangles.size(); ++i)
-      if (rims_->stands_alone(i) && rod_of(g_.triangles, i, to_.eye).width < width)
+      if (rims_->stands_alone(i) && is_thin_at(i, rims_->ends(i), width))
         return true;
     return false;
   }
+  /// Whether a mesh that ends at some edges of a triangle is thinner than that there.
+  bool is_thin_at(std::size_t i, unsigned edges, double width) const {
+    const RimWalk walk = walk_from(0);
+    bool thin = false;
+    each_bit(edges, [&](std::size_t k) { thin |= walk.strip(i, k, width).width < width; });
+    return thin;
+  }
 
-  void look_from(const Place3& point) {
-    if (g_.triangles.size() == 0)
-      return;
-    if (!rims_)
-      rims_ = std::make_unique<MeshRims>(g_.triangles, threads_);
-    rims_->look_from(point);
+  /// Makes rims tell of a viewpoint, and of those after it.
+  void look_from(std::size_t v) {
+    constexpr std::size_t kMost = MeshRims::kMostViewpoints;
+    if (rims_ && v % kMost == 0)
+      rims_->look_from(std::span(viewpoints_).subspan(v, std::min(kMost, viewpoints_.size() - v)));
   }
 
   std::size_t turns() const {
@@ -145,97 +178,124 @@ class Marker {
            kThingsOfTurn;
   }
 
-  Rod rod_at(std::size_t i, const Place3& from) const {
+  /// Adds the things of a turn that are thin as seen from a viewpoint. Returns whether any of them
+  /// is no part of a larger mesh.
+  template <class Things>
+  bool add_things(std::size_t turn, std::size_t v, Things& things, TraceCounts& counts) {
     const std::size_t cones = g_.spheres.size();
     const std::size_t triangles = cones + g_.cones.size();
-    return i < cones       ? rod_of(g_.spheres, i)
-           : i < triangles ? rod_of(g_.cones, i - cones)
-                           : rod_of(g_.triangles, i - triangles, from);
-  }
-
-  /// Adds the things of a turn that are thin as seen from a point. Returns whether any of them is
-  /// no part of a larger mesh.
-  template <class Things>
-  bool add_things(std::size_t turn, const Place3& from, Things& things, TraceCounts& counts) const {
-    const std::size_t triangles = g_.spheres.size() + g_.cones.size();
     const std::size_t end = std::min((turn + 1) * kThingsOfTurn, triangles + g_.triangles.size());
     Outlines outlines;
     bool any_alone = false;
-    for (std::size_t i = turn * kThingsOfTurn; i < end; ++i) {
-      const std::size_t triangle = i - triangles;
-      if (i >= triangles && !rims_->has(triangle))
-        continue;
-      const Rod rod = rod_at(i, from);
-      const double thin = things.thin(rod);
-      if (!(rod.width < thin))
-        continue;
-      any_alone |= i < triangles || rims_->stands_alone(triangle);
-      if (things.is_known(rod))
-        continue;
-      if (i < triangles || rims_->ends_at(triangle))
-        things.add(rod);
-      else
-        outlines.add(triangle, thin);
-    }
-    add_outlines(outlines, from, things, counts);
-    return any_alone;
+    for (std::size_t i = turn * kThingsOfTurn; i < end; ++i)
+      any_alone |= i < cones       ? add_rod(rod_of(g_.spheres, i), things)
+                   : i < triangles ? add_rod(rod_of(g_.cones, i - cones), things)
+                                   : add_triangle(i - triangles, v, things, outlines);
+    return add_outlines(outlines, v, things, counts) || any_alone;
   }
 
-  /// Triangles inside of meshes, each with the width below which it is thin.
+  /// Returns whether it is thin.
+  template <class Things>
+  static bool add_rod(const Rod& rod, Things& things) {
+    if (!(rod.width < things.thin(rod)))
+      return false;
+    if (!things.is_known(rod))
+      things.add(rod);
+    return true;
+  }
+
+  /// Edges of triangles at which meshes turn away, each with the width below which that is thin.
   struct Outlines {
-    std::uint32_t triangle[kThingsOfTurn];
-    double thin[kThingsOfTurn];
+    static constexpr std::size_t kMost = 3 * kThingsOfTurn;
+    std::uint32_t triangle[kMost];
+    std::uint8_t edge[kMost];
+    double thin[kMost];
     std::size_t count = 0;
 
-    void add(std::size_t i, double width) {
+    void add(std::size_t i, std::size_t k, double width) {
       triangle[count] = static_cast<std::uint32_t>(i);
+      edge[count] = static_cast<std::uint8_t>(k);
       thin[count++] = width;
     }
   };
 
-  /// They are as thick as their meshes are there at least.
+  RimWalk walk_from(std::size_t v) const {
+    return {g_.triangles, *rims_, v % MeshRims::kMostViewpoints, viewpoints_[v].at};
+  }
+
+  /// What is thin where the mesh of a triangle ends. Where it turns away it may be thick. Returns
+  /// whether any of it is no part of a larger mesh.
   template <class Things>
-  void add_outlines(const Outlines& outlines,
-                    const Place3& from,
-                    Things& things,
-                    TraceCounts& counts) const {
-    double thickness[kThingsOfTurn];
-    const std::size_t count = outlines.count;
-    thickness_.measure({outlines.triangle, count}, {outlines.thin, count}, thickness, counts);
-    for (std::size_t k = 0; k < count; ++k) {
-      if (!(thickness[k] < outlines.thin[k]))
+  bool add_triangle(std::size_t i, std::size_t v, Things& things, Outlines& outlines) const {
+    const unsigned rims = rims_->rims(i, v % MeshRims::kMostViewpoints);
+    if (rims == 0)
+      return false;
+    const RimWalk walk = walk_from(v);
+    bool any_thin = false;
+    each_bit(rims, [&](std::size_t k) {
+      const double thin = things.thin(walk.edge(i, k));
+      if (!walk.may_be_thin(i, k, thin))
+        return;
+      if (rims_->ends(i) >> k & 1)
+        any_thin |= add_rod(walk.strip(i, k, thin), things);
+      else
+        outlines.add(i, k, thin);
+    });
+    return any_thin && rims_->stands_alone(i);
+  }
+
+  /// They are as thick as their meshes are there at least. Returns the same.
+  template <class Things>
+  bool add_outlines(const Outlines& of, std::size_t v, Things& things, TraceCounts& counts) {
+    measure(of, counts);
+    const RimWalk walk = walk_from(v);
+    bool any_alone = false;
+    for (std::size_t j = 0; j < of.count; ++j) {
+      if (!(thick_[of.triangle[j]] < of.thin[j]))
         continue;
-      Rod rod = rod_of(g_.triangles, outlines.triangle[k], from);
-      rod.width = std::max(rod.width, thickness[k]);
-      things.add(rod);
+      const Rod strip = walk.strip(of.triangle[j], of.edge[j], of.thin[j]);
+      any_alone |= add_rod(strip, things) && rims_->stands_alone(of.triangle[j]);
     }
+    return any_alone;
+  }
+
+  /// Each triangle is measured once, whatever sees its outline.
+  void measure(const Outlines& of, TraceCounts& counts) {
+    std::uint32_t unknown[Outlines::kMost];
+    float thickness[Outlines::kMost];
+    std::size_t count = 0;
+    for (std::size_t j = 0; j < of.count; ++j) {
+      const std::uint32_t i = of.triangle[j];
+      if (thick_[i] == kUnknown && (count == 0 || unknown[count - 1] != i))
+        unknown[count++] = i;
+    }
+    thickness_.measure({unknown, count}, widest_, thickness, counts);
+    for (std::size_t j = 0; j < count; ++j)
+      thick_[unknown[j]] = thickness[j];
   }
 
   void mark_things_seen() {
-    look_from(to_.eye);
     std::atomic<bool> stand_alone = false;
     each_turn(turns(), threads_, [&](std::size_t turn) {
       TraceCounts counts;
       SeenThings seen(to_, {things_.thin, things_.small});
-      if (add_things(turn, to_.eye, seen, counts))
+      if (add_things(turn, 0, seen, counts))
         stand_alone = true;
       add(counts);
     });
     things_.stand_alone = stand_alone;
   }
 
-  void mark_shadows(const float* light, const Marks& marks) {
-    const Place3 from = {light[0], light[1], light[2]};
-    look_from(from);
+  void mark_shadows(std::size_t v, const Marks& marks) {
     const std::size_t pixels = static_cast<std::size_t>(setup_.frame.width) *
                                static_cast<std::size_t>(setup_.frame.height);
-    ShadowCaster caster{light, widest_, marks, pixels / kPixelsAThing};
+    ShadowCaster caster{viewpoints_[v].at, widest_, marks, pixels / kPixelsAThing};
     each_turn(turns(), threads_, [&](std::size_t turn) {
       if (caster.is_anywhere())
         return;
       TraceCounts counts;
       ThinShadows shadows(world_, setup_, to_, caster, counts);
-      add_things(turn, from, shadows, counts);
+      add_things(turn, v, shadows, counts);
       shadows.follow();
       add(counts);
     });
@@ -257,10 +317,12 @@ class Marker {
   const ToPicture to_;
   const double widest_;
   const MeshThickness thickness_;
+  std::vector<float> thick_;  ///< [triangles] as measured, or kUnknown
   SmallThings& things_;
   TraceCounts& counts_;
   std::mutex sum_;
-  std::unique_ptr<MeshRims> rims_;
+  std::vector<SeenFrom> viewpoints_;  ///< the eye, and the middles of lights
+  std::unique_ptr<MeshRims> rims_;    ///< where there are triangles
 };
 
 }  // namespace

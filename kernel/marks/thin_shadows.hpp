@@ -24,7 +24,7 @@ struct Marks {
 
 /// A light, and what all threads share that follow its shadows.
 struct ShadowCaster {
-  const float* position;
+  const Place3& position;
   double widest;  ///< below it a rod may be thin
   Marks marks;
   std::size_t most;  ///< of more rods no shadow is followed: it may be anywhere
@@ -45,7 +45,9 @@ class ThinShadows {
         setup_(setup),
         to_(to),
         caster_(light),
-        light_{light.position[0], light.position[1], light.position[2]},
+        light_{static_cast<float>(light.position[0]),
+               static_cast<float>(light.position[1]),
+               static_cast<float>(light.position[2])},
         marks_(light.marks),
         counts_(counts) {}
 
@@ -149,7 +151,7 @@ class ThinShadows {
     reach_[count_] = static_cast<float>(rod.aside);
     half_width_[count_] = static_cast<float>(std::max(rod.aside, .5 * rod.width));
     goes_on_[count_] = goes_on;
-    small_[count_] = rod.length() <= 2 * rod.width;
+    small_[count_] = std::max(rod.length(), rod.whole) <= 2 * rod.width;
     ++count_;
     return true;
   }

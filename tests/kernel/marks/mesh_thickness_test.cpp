@@ -16,15 +16,14 @@ namespace {
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 /// `enough`: all that is asked.
-std::vector<double> thickness_of(const Scene& scene, double enough = kInfinite) {
+std::vector<float> thickness_of(const Scene& scene, double enough = kInfinite) {
   const World world(scene, {});
   const Setup setup = set_up(world, Camera{}, {});
   std::vector<std::uint32_t> all(scene.geometry.triangles.size());
   std::iota(all.begin(), all.end(), 0u);
-  std::vector<double> out(all.size());
+  std::vector<float> out(all.size());
   TraceCounts counts;
-  const std::vector<double> all_enough(all.size(), enough);
-  MeshThickness(world.impl(), setup).measure(all, all_enough, out, counts);
+  MeshThickness(world.impl(), setup).measure(all, enough, out, counts);
   return out;
 }
 
@@ -38,7 +37,7 @@ TEST(MeshThickness, IsThatOfBoxes) {
     for (double& l : length)
       l = size * random.log_in(.02, 1);
     add_box(s, at({0, 0, 0}, away, random.direction()), random_axes(random), length);
-    const std::vector<double> thickness = thickness_of(s);
+    const std::vector<float> thickness = thickness_of(s);
     ASSERT_EQ(thickness.size(), 12u);
     for (std::size_t t = 0; t < 12; ++t)
       EXPECT_NEAR(thickness[t] / length[t / 4], 1, .02) << i << ' ' << t << ' ' << away / size;
@@ -53,9 +52,9 @@ TEST(MeshThickness, IsTheGapWhereThatIsLess) {
     Scene s = empty_scene();
     add_box(s, {0, 0, 0}, axes, length);
     add_box(s, {static_cast<float>(1 + gap), 0, 0}, axes, length);
-    const std::vector<double> thickness = thickness_of(s);
+    const std::vector<float> thickness = thickness_of(s);
     int of_gap = 0;
-    for (const double t : thickness)
+    for (const float t : thickness)
       of_gap += std::abs(t - gap) < 1e-3;
     EXPECT_EQ(of_gap, gap < 1 ? 4 : 0) << gap;
   }
@@ -68,9 +67,9 @@ TEST(MeshThickness, IsToldWhereItIsLessThanEnough) {
     Scene s = empty_scene();
     const double length[3] = {random.log_in(.02, 1), random.log_in(.02, 1), random.log_in(.02, 1)};
     add_box(s, {0, 0, 0}, random_axes(random), length);
-    const std::vector<double> thickness = thickness_of(s);
+    const std::vector<float> thickness = thickness_of(s);
     const double enough = random.log_in(.02, 1);
-    const std::vector<double> told = thickness_of(s, enough);
+    const std::vector<float> told = thickness_of(s, enough);
     for (std::size_t t = 0; t < 12; ++t) {
       if (thickness[t] < enough)
         EXPECT_EQ(told[t], thickness[t]) << i << ' ' << t;
@@ -84,7 +83,7 @@ TEST(MeshThickness, IsInfiniteWhereNothingIsAndNoneOfWhatHasNoArea) {
   Scene s = empty_scene();
   add_triangle(s, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
   add_triangle(s, {0, 0, 5}, {1, 0, 5}, {2, 0, 5});
-  const std::vector<double> thickness = thickness_of(s);
+  const std::vector<float> thickness = thickness_of(s);
   EXPECT_EQ(thickness[0], kInfinite);
   EXPECT_EQ(thickness[1], 0);
 }

@@ -245,8 +245,8 @@ int marked(const SmallThings& things) {
   return n;
 }
 
-/// Where all is large nothing is: neither walls and balls, nor the inside of a mesh of small
-/// triangles, though its outline may be.
+/// Where all is large nothing is: neither walls and balls, nor a mesh of small triangles, nor a
+/// polygon of slivers.
 TEST(SmallThings, AreNotWhereAllIsLarge) {
   Scene s = one_plane({0, 0, 0}, {0, 0, 1});
   s.lights = {{{3, 3, 8}, {1, 1, 1}}};
@@ -263,6 +263,18 @@ TEST(SmallThings, AreNotWhereAllIsLarge) {
   EXPECT_EQ(marked(outline), 0);
   EXPECT_FALSE(outline.stand_alone);
   EXPECT_FALSE(outline.mirrored);
+
+  Scene polygon = empty_scene();
+  const auto corner = [](int k) {
+    const double angle = std::numbers::pi * k / 45;
+    return Float3{static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)), 0};
+  };
+  for (int k = 1; k < 89; ++k)
+    add_triangle(polygon, corner(0), corner(k), corner(k + 1));
+  polygon.lights = mesh.lights;
+  EXPECT_EQ(marked(small_things(World(polygon, {}))), 0);
+  EXPECT_FALSE(small_things(World(polygon, {})).stand_alone);
+  EXPECT_FALSE(small_things(World(polygon, {})).mirrored);
 }
 
 /// What looks thin from as far as a mirror may be counts for mirrors: in front of the camera,
