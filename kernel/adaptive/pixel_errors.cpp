@@ -136,6 +136,10 @@ bool PixelErrors::met_lamp(std::size_t p) const {
 
 void PixelErrors::judge_pixel(int x, int y, const Around& around, const RatioPowers& powers) {
   const std::size_t p = at(x, y);
+  if (own_[p] == 0 && around.sum == 0 && is_plain(p)) {
+    variance_[p] = widest_[p] = gain_[p] = 0;
+    return;
+  }
   float v = static_cast<float>(r_.worse) *
             (lends_[lent_at(x, y)] ? with_neighbours(p, around, powers) : own_[p]);
   if (r_.least_by_sample > 0 && agrees(p))
@@ -237,13 +241,12 @@ void PixelErrors::judge_row(int y, const RatioPowers& powers) {
     return above[-1] + above[0] + above[1] + of[-1] + of[1] + below[-1] + below[0] + below[1];
   };
   for (int x = 0; x < r_.width; ++x) {
-    std::uint8_t& touched = touched_[at(x, y)];
-    if (!touched)
+    if (!touched_[at(x, y)])
       continue;
-    touched = 0;
     const std::size_t at_x = lent_at(x, y);
     judge_pixel(x, y, {around(&lent_[at_x]), around(&lends_[at_x])}, powers);
   }
+  std::fill_n(touched_.begin() + static_cast<std::ptrdiff_t>(at(0, y)), r_.width, std::uint8_t{0});
   sum_row(y);
 }
 

@@ -67,6 +67,10 @@ class PixelErrors {
   float samples(std::size_t p) const { return static_cast<float>(1u << r_.log[p]); }
   bool watched(std::size_t p) const { return effects_ || r_.inside[p] > 0 || r_.around[p] > 0; }
   bool is_young(std::size_t p) const;
+  /// Whether nothing but differences of samples adds to a pixel's variance.
+  bool is_plain(std::size_t p) const {
+    return r_.inside[p] == 0 && r_.around[p] == 0 && r_.box[p] == 0 && r_.least_by_sample == 0;
+  }
   float freedom(std::size_t p) const { return is_young(p) ? 4 * kYoung : 4 * kOld; }
   float variance_by(float halves, float quarters, float eighths, float freedom) const;
   float channel_variance(std::size_t i, float freedom) const;
