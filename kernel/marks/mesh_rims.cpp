@@ -204,8 +204,6 @@ std::uint8_t MeshRims::sides_of(std::size_t i, std::span<const SeenFrom> from) c
 
 unsigned MeshRims::rims(std::size_t i, std::size_t v) const {
   unsigned bits = ends(i);
-  if (told_.empty())
-    return bits;
   for (std::size_t k = 0; k < 3; ++k)
     if (const std::uint32_t other = across_[3 * i + k]; other != kNone)
       bits |= ((unsigned{sides_[i]} ^ sides_[other]) >> v & 1) << k;
@@ -213,12 +211,10 @@ unsigned MeshRims::rims(std::size_t i, std::size_t v) const {
 }
 
 unsigned MeshRims::ends(std::size_t i) const {
-  return told_.empty() ? kAllEdges : told_[i] & kAllEdges;
+  return told_[i] & kEnds;
 }
 
 bool MeshRims::stands_alone(std::size_t i) const {
-  if (told_.empty())
-    return true;
   if ((told_[i] & kOpenCorners) == 0)
     return false;
   for (std::size_t k = 0; k < 3; ++k)

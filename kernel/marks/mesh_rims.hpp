@@ -23,19 +23,21 @@ class MeshRims {
   /// Forgets what was seen from others. Takes kMostViewpoints at most.
   void look_from(std::span<const SeenFrom> from);
 
+  /// Whether there are few enough triangles for anything to be told of them.
+  bool tell() const { return !told_.empty(); }
   /// Bits of the edges of triangle i at which a mesh of one material ends, or where one of its
-  /// triangles faces viewpoint v and the other does not. With very many triangles: all.
+  /// triangles faces viewpoint v and the other does not.
   unsigned rims(std::size_t i, std::size_t v) const;
-  /// Bits of the edges of triangle i at which a mesh ends. With very many triangles: all.
+  /// Bits of the edges of triangle i at which a mesh ends.
   unsigned ends(std::size_t i) const;
   /// The triangle across edge k of triangle i, at which no mesh ends.
   std::size_t across(std::size_t i, std::size_t k) const { return across_[3 * i + k]; }
   /// Whether triangle i is no part of a larger surface: all its corners lie where a mesh ends, and
-  /// so do those of the triangles that it has an edge in common with. With very many: always.
+  /// so do those of the triangles that it has an edge in common with.
   bool stands_alone(std::size_t i) const;
 
  private:
-  static constexpr unsigned kAllEdges = 7;
+  static constexpr unsigned kEnds = 7;
   /// What is told of a triangle, besides the bits of the edges at which its mesh ends.
   static constexpr std::uint8_t kOpenCorners = 8;  ///< at all of its corners a mesh ends
   static constexpr std::uint8_t kFlat = 16;        ///< two corners are at one place

@@ -2,7 +2,6 @@
 
 #include <atomic>
 #include <bit>
-#include <memory>
 #include <mutex>
 #include <span>
 #include <vector>
@@ -93,7 +92,7 @@ class Marker {
         to_(setup.frame),
         widest_(kThin * widest_pixel()),
         thickness_(world, setup),
-        thick_(g_.triangles.size(), kUnknown),
+        rims_(g_.triangles, threads),
         things_(things),
         counts_(counts) {
     const Place3& eye = to_.eye;
@@ -102,8 +101,8 @@ class Marker {
       const float* const at = world.shading.lights + kLightFloats * l;
       viewpoints_.push_back({{at[0], at[1], at[2]}});
     }
-    if (g_.triangles.size() > 0)
-      rims_ = std::make_unique<MeshRims>(g_.triangles, threads);
+    if (rims_.tell())
+      thick_.resize(g_.triangles.size(), kUnknown);
   }
 
   void run() {
@@ -154,7 +153,8 @@ class Marker {
       if (rod_of(g_.cones, i).width < width)
         return true;
     for (std::size_t i = 0; i < g_.triangles.size(); ++i)
-      if (rims_->stands_alone(i) && is_thin_at(i, rims_->ends(i), width))
+      if (rims_.tell() ? rims_.stands_alone(i) && is_thin_at(i, rims_.ends(i), width)
+                       : rod_of(g_.triangles, i, to_.eye).width < width)
         return true;
     return false;
   }
@@ -169,8 +169,8 @@ class Marker {
   /// Makes rims tell of a viewpoint, and of those after it.
   void look_from(std::size_t v) {
     constexpr std::size_t kMost = MeshRims::kMostViewpoints;
-    if (rims_ && v % kMost == 0)
-      rims_->look_from(std::span(viewpoints_).subspan(v, std::min(kMost, viewpoints_.size() - v)));
+    if (v % kMost == 0)
+      rims_.look_from(std::span(viewpoints_).subspan(v, std::min(kMost, viewpoints_.size() - v)));
   }
 
   std::size_t turns() const {
@@ -220,14 +220,16 @@ class Marker {
   };
 
   RimWalk walk_from(std::size_t v) const {
-    return {g_.triangles, *rims_, v % MeshRims::kMostViewpoints, viewpoints_[v].at};
+    return {g_.triangles, rims_, v % MeshRims::kMostViewpoints, viewpoints_[v].at};
   }
 
-  /// What is thin where the mesh of a triangle ends. Where it turns away it may be thick. Returns
-  /// whether any of it is no part of a larger mesh.
+  /// What is thin where the mesh of a triangle ends. Where it turns away it may be thick. Where
+  /// rims tell nothing a triangle is a mesh. Returns whether any of it is no part of a larger one.
   template <class Things>
   bool add_triangle(std::size_t i, std::size_t v, Things& things, Outlines& outlines) const {
-    const unsigned rims = rims_->rims(i, v % MeshRims::kMostViewpoints);
+    if (!rims_.tell())
+      return add_rod(rod_of(g_.triangles, i, viewpoints_[v].at), things);
+    const unsigned rims = rims_.rims(i, v % MeshRims::kMostViewpoints);
     if (rims == 0)
       return false;
     const RimWalk walk = walk_from(v);
@@ -236,12 +238,12 @@ class Marker {
       const double thin = things.thin(walk.edge(i, k));
       if (!walk.may_be_thin(i, k, thin))
         return;
-      if (rims_->ends(i) >> k & 1)
+      if (rims_.ends(i) >> k & 1)
         any_thin |= add_rod(walk.strip(i, k, thin), things);
       else
         outlines.add(i, k, thin);
     });
-    return any_thin && rims_->stands_alone(i);
+    return any_thin && rims_.stands_alone(i);
   }
 
   /// They are as thick as their meshes are there at least. Returns the same.
@@ -254,7 +256,7 @@ class Marker {
       if (!(thick_[of.triangle[j]] < of.thin[j]))
         continue;
       const Rod strip = walk.strip(of.triangle[j], of.edge[j], of.thin[j]);
-      any_alone |= add_rod(strip, things) && rims_->stands_alone(of.triangle[j]);
+      any_alone |= add_rod(strip, things) && rims_.stands_alone(of.triangle[j]);
     }
     return any_alone;
   }
@@ -318,11 +320,11 @@ class Marker {
   const double widest_;
   const MeshThickness thickness_;
   std::vector<float> thick_;  ///< [triangles] as measured, or kUnknown
+  MeshRims rims_;
   SmallThings& things_;
   TraceCounts& counts_;
   std::mutex sum_;
   std::vector<SeenFrom> viewpoints_;  ///< the eye, and the middles of lights
-  std::unique_ptr<MeshRims> rims_;    ///< where there are triangles
 };
 
 }  // namespace
