@@ -13,8 +13,6 @@ PixelErrors::PixelErrors(const Refinement& r, bool effects, int first_log, int t
       first_log_(first_log),
       threads_(threads),
       seen_(r.log.size()),
-      touched_(r.log.size(), 1),
-      touched_rows_(static_cast<std::size_t>(r.height), 1),
       white_(r.log.size()),
       shown_(3 * r.log.size()),
       contrast_(r.log.size(), kUnknown),
@@ -23,8 +21,7 @@ PixelErrors::PixelErrors(const Refinement& r, bool effects, int first_log, int t
       widest_(r.log.size()),
       gain_(r.log.size()),
       lent_(lent_at(-1, r.height + 1)),
-      lends_(lent_.size()),
-      rows_(static_cast<std::size_t>(r.height)) {
+      lends_(lent_.size()) {
   for (std::vector<float>& level : levels_)
     level.resize(r.log.size());
 }
@@ -179,17 +176,13 @@ void PixelErrors::show(std::size_t p) {
   }
 }
 
-/// Pixel p is another: so is what those around it are told.
-void PixelErrors::touch(std::size_t p) {
+/// Pixel p is another: so are contrasts of those around it.
+void PixelErrors::forget_contrasts(std::size_t p) {
   const int x = static_cast<int>(p % static_cast<std::size_t>(r_.width));
   const int y = static_cast<int>(p / static_cast<std::size_t>(r_.width));
-  for (int j = std::max(y - 1, 0); j <= std::min(y + 1, r_.height - 1); ++j) {
-    touched_rows_[static_cast<std::size_t>(j)] = 1;
-    for (int i = std::max(x - 1, 0); i <= std::min(x + 1, r_.width - 1); ++i) {
+  for (int j = std::max(y - 1, 0); j <= std::min(y + 1, r_.height - 1); ++j)
+    for (int i = std::max(x - 1, 0); i <= std::min(x + 1, r_.width - 1); ++i)
       contrast_[at(i, j)] = kUnknown;
-      touched_[at(i, j)] = 1;
-    }
-  }
 }
 
 void PixelErrors::show_new() {
@@ -202,20 +195,17 @@ void PixelErrors::show_new() {
     show(changed[i]);
   for (const std::uint32_t p : changed) {
     seen_[p] = r_.log[p];
-    touch(p);
+    forget_contrasts(p);
   }
 }
 
 void PixelErrors::measure() {
   show_new();
+  // the ratio of variances is another after each round, for all
   const float ratio = r_.variance_ratio;
   of_all_ = ratio / (1 - ratio);
-  const bool all = ratio != measured_ratio_;  // then all pixels have another variance
-  measured_ratio_ = ratio;
 #pragma omp parallel for num_threads(threads_) schedule(static)
   for (int y = 0; y < r_.height; ++y) {
-    if (!all && touched_rows_[static_cast<std::size_t>(y)] == 0)
-      continue;
     for (std::size_t p = at(0, y); p < at(0, y + 1); ++p)
       own_[p] = of_all_ * (levels_[0][p] + ratio * (levels_[1][p] + ratio * levels_[2][p]));
     for (std::size_t p = at(0, y); p < at(0, y + 1); ++p)
@@ -241,34 +231,13 @@ void PixelErrors::judge_row(int y, const RatioPowers& powers) {
     return above[-1] + above[0] + above[1] + of[-1] + of[1] + below[-1] + below[0] + below[1];
   };
   for (int x = 0; x < r_.width; ++x) {
-    if (!touched_[at(x, y)])
-      continue;
     const std::size_t at_x = lent_at(x, y);
     judge_pixel(x, y, {around(&lent_[at_x]), around(&lends_[at_x])}, powers);
-  }
-  std::fill_n(touched_.begin() + static_cast<std::ptrdiff_t>(at(0, y)), r_.width, std::uint8_t{0});
-  sum_row(y);
-}
-
-void PixelErrors::sum_row(int y) {
-  RowTotals& row = rows_[static_cast<std::size_t>(y)];
-  row = {};
-  for (std::size_t p = at(0, y); p < at(0, y + 1); ++p) {
-    const double v = static_cast<double>(variance_[p]);
-    row.sum += v;
-    row.spread += v * v;
-    row.widest = std::max(row.widest, widest_[p]);
   }
 }
 
 void PixelErrors::judge() {
   measure();
-  const Told told{r_.variance_ratio, r_.worse, r_.least_by_sample};
-  if (told != judged_) {
-    std::fill(touched_.begin(), touched_.end(), std::uint8_t{1});
-    std::fill(touched_rows_.begin(), touched_rows_.end(), std::uint8_t{1});
-  }
-  judged_ = told;
   RatioPowers powers;
   powers[0] = 1;
   for (std::size_t i = 0; i < kMostLog; ++i)
@@ -277,14 +246,11 @@ void PixelErrors::judge() {
   {
 #pragma omp for schedule(static)
     for (int y = 0; y < r_.height; ++y)
-      if (touched_rows_[static_cast<std::size_t>(y)])
-        lend_row(y, powers);
+      lend_row(y, powers);
 #pragma omp for schedule(static)
     for (int y = 0; y < r_.height; ++y)
-      if (touched_rows_[static_cast<std::size_t>(y)])
-        judge_row(y, powers);
+      judge_row(y, powers);
   }
-  std::fill(touched_rows_.begin(), touched_rows_.end(), std::uint8_t{0});
 }
 
 float PixelErrors::forgiven(double error) const {
@@ -304,10 +270,11 @@ PixelErrors::Totals PixelErrors::totals() const {
   double sum = 0;
   double spread = 0;
   double widest = 0;
-  for (const RowTotals& row : rows_) {
-    sum += row.sum;
-    spread += row.spread;
-    widest = std::max(widest, static_cast<double>(row.widest));
+  for (std::size_t p = 0; p < variance_.size(); ++p) {
+    const double v = static_cast<double>(variance_[p]);
+    sum += v;
+    spread += v * v;
+    widest = std::max(widest, static_cast<double>(widest_[p]));
   }
   const double n = static_cast<double>(variance_.size());
   // A pixel's estimate has the spread of chi squared: variance 2 v^2 over the degrees of freedom.

@@ -85,34 +85,17 @@ class PixelErrors {
   float contrast_so_far(int x, int y);
   float with_neighbours(std::size_t p, const Around& around, const RatioPowers& powers) const;
   void show(std::size_t p);
-  void touch(std::size_t p);
+  void forget_contrasts(std::size_t p);
   void show_new();
   void lend_row(int y, const RatioPowers& powers);
   void judge_pixel(int x, int y, const Around& around, const RatioPowers& powers);
   void judge_row(int y, const RatioPowers& powers);
-  void sum_row(int y);
-
-  /// What is the same for all pixels.
-  struct Told {
-    float ratio;
-    double worse, least_by_sample;
-    bool operator==(const Told&) const = default;
-  };
-  /// Sums over a row.
-  struct RowTotals {
-    double sum = 0, spread = 0;
-    float widest = 0;
-  };
 
   const Refinement& r_;
   const bool effects_;
   const int first_log_, threads_;
-  float of_all_ = 0;                        ///< times what is told by level: a variance
-  float measured_ratio_ = 0;                ///< that own_ was set by
-  Told judged_{};                           ///< that the rest was
-  std::vector<std::uint8_t> seen_;          ///< [pixels] Refinement::log when `shown_` was set
-  std::vector<std::uint8_t> touched_;       ///< [pixels] to be judged again
-  std::vector<std::uint8_t> touched_rows_;  ///< [rows] with such
+  float of_all_ = 0;                ///< times what is told by level: a variance
+  std::vector<std::uint8_t> seen_;  ///< [pixels] Refinement::log when `shown_` was set
   /// [pixels] Squared differences of each level, sums over channels, over the degrees of freedom
   std::vector<float> levels_[3];
   std::vector<std::uint8_t> white_;             ///< [pixels] whether a channel is shown as white
@@ -123,7 +106,6 @@ class PixelErrors {
   /// own_ as it would be of one sample, of those that lend it, see lent_at(); 0 for others
   std::vector<float> lent_;
   std::vector<std::uint8_t> lends_;
-  std::vector<RowTotals> rows_;
 };
 
 }  // namespace grelha

@@ -41,7 +41,7 @@ struct Refinement {
   /// of the last rounds: sums of squared differences of halves of everything, and of the new half
   double variance_drop = 0;
   double variance_level = 0;
-  double round_drop = 0, round_level = 0;  ///< the same of rounds that are not in these yet
+  double round_drop = 0, round_level = 0;  ///< the same of the round in work
   float variance_ratio = .4f;              ///< V(n) / V(n/2)
   float gain_threshold = .25f;  ///< gain a ray that a pixel of the round in work had to promise
   /// what audits found: variances that are so many times what pixels show, and so much over the

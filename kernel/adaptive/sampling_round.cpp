@@ -20,9 +20,6 @@ constexpr double kWidestInterval = 8;
 constexpr double kShareOfWider = .001;
 constexpr double kLeastRatio = .1, kMostRatio = .6;  ///< of variances, a doubling
 constexpr double kMemory = .5;  ///< share of what rounds before the last one said that counts
-/// Share of the ratio of variances by which another may differ and is taken for the same (a choice:
-/// variances are off by up to twice that, and are told by a handful of differences each).
-constexpr double kRatioKept = .01;
 
 using Pixels = std::vector<std::uint32_t>;
 
@@ -279,19 +276,15 @@ void add_run(
 
 namespace {
 
-/// Takes what the round measured of the variances into what earlier ones did. Where that is next to
-/// nothing the ratio stays: with another all pixels would be judged anew.
+/// Takes what the round measured of the variances into what earlier ones did.
 void close_round(Refinement& r) {
   r.variance_drop = kMemory * r.variance_drop + r.round_drop;
   r.variance_level = kMemory * r.variance_level + r.round_level;
   r.round_drop = 0;
   r.round_level = 0;
-  if (!(r.variance_level > 0))
-    return;
-  const double ratio = std::clamp(r.variance_drop / r.variance_level, kLeastRatio, kMostRatio);
-  const double before = static_cast<double>(r.variance_ratio);
-  if (r.rounds == 0 || std::abs(ratio - before) > kRatioKept * before)
-    r.variance_ratio = static_cast<float>(ratio);
+  if (r.variance_level > 0)
+    r.variance_ratio =
+        static_cast<float>(std::clamp(r.variance_drop / r.variance_level, kLeastRatio, kMostRatio));
 }
 
 }  // namespace
