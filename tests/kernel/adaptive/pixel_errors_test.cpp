@@ -253,6 +253,19 @@ TEST(PixelErrors, DoubtLampsUntilASampleMeetsThem) {
     }
 }
 
+/// Where there are effects to sample, a pixel whose samples agree by chance borrows from those
+/// around it; where neither tells anything there is no error.
+TEST(PixelErrors, BorrowWhereSamplesAgreeByChance) {
+  Refinement r = pixels(5, kFirstLog);
+  r.around.assign(5, 0);
+  Random random(1);
+  draw(r, 0, 1e-4, random);
+  PixelErrors errors(r, true, kFirstLog, 1);
+  errors.judge();
+  EXPECT_GT(errors.variance(1), 0);
+  EXPECT_EQ(errors.variance(3), 0);
+}
+
 /// What the means of halves, quarters and eighths of n samples differ by, squared, where one has
 /// `one` units of light and all others `rest`.
 float square_of_one(std::int64_t one, std::int64_t rest, double n, int level) {
