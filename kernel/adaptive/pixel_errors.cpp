@@ -124,7 +124,7 @@ float PixelErrors::doubt_of(int x, int y) {
 bool PixelErrors::met_lamp(std::size_t p) const {
   const float of_one = .5f * r_.inside[p] / samples(p);
   const float square = kSlightlyLess * of_one * of_one;  // in means of all, twice of halves, ...
-  const float least = variance_by(4 * square, 16 * square, 64 * square, 4 * kOld);
+  const float least = variance_by(4 * square, 16 * square, 64 * square, kOld);
   const float most = std::max({channel_variance(p * 3, freedom(p)),
                                channel_variance(p * 3 + 1, freedom(p)),
                                channel_variance(p * 3 + 2, freedom(p))});
@@ -203,7 +203,7 @@ void PixelErrors::measure() {
   show_new();
   // the ratio of variances is another after each round, for all
   const float ratio = r_.variance_ratio;
-  of_all_ = ratio / (1 - ratio);
+  of_all_ = ratio / (1 - ratio) / 4;
 #pragma omp parallel for num_threads(threads_) schedule(static)
   for (int y = 0; y < r_.height; ++y) {
     for (std::size_t p = at(0, y); p < at(0, y + 1); ++p)

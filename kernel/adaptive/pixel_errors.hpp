@@ -71,7 +71,7 @@ class PixelErrors {
   bool is_plain(std::size_t p) const {
     return r_.inside[p] == 0 && r_.around[p] == 0 && r_.box[p] == 0 && r_.least_by_sample == 0;
   }
-  float freedom(std::size_t p) const { return is_young(p) ? 4 * kYoung : 4 * kOld; }
+  float freedom(std::size_t p) const { return is_young(p) ? kYoung : kOld; }
   float variance_by(float halves, float quarters, float eighths, float freedom) const;
   float channel_variance(std::size_t i, float freedom) const;
   float own_variance(std::size_t p) const;
@@ -94,9 +94,9 @@ class PixelErrors {
   const Refinement& r_;
   const bool effects_;
   const int first_log_, threads_;
-  float of_all_ = 0;                ///< times what is told by level: a variance
+  float of_all_ = 0;  ///< times squared differences over degrees of freedom: a variance
   std::vector<std::uint8_t> seen_;  ///< [pixels] Refinement::log when `shown_` was set
-  /// [pixels] Squared differences of each level, sums over channels, over the degrees of freedom
+  /// [pixels] Squared differences of each level over degrees of freedom, mean of the channels
   std::vector<float> levels_[3];
   std::vector<std::uint8_t> white_;             ///< [pixels] whether a channel is shown as white
   std::vector<float> shown_;                    ///< [pixels][3] what a screen shows

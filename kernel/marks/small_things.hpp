@@ -9,9 +9,9 @@
 
 namespace grelha {
 
-/// Where they are. Triangles inside of a mesh are no things of their own, see MeshRims, nor are
-/// outlines where it is thicker, see MeshThickness. Shadows are those of the middles of lights, on
-/// what lies right behind.
+/// Where they are. Triangles inside of a mesh are no things of their own, see MeshRims, nor is a
+/// mesh where it looks wider, see RimWalk, or turns away and is thicker, see MeshThickness. Shadows
+/// are those of the middles of lights, on what lies right behind.
 struct SmallThings {
   SmallThings(const World::Impl& world, const Setup& setup, int threads, TraceCounts& counts);
 
