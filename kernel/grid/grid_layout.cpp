@@ -19,7 +19,8 @@ constexpr double kMostInAll = 1 << 22;
 constexpr double kSmallShare = 8;  ///< any grid of a scene may hold an eighth of them
 /// references a primitive, of any number; scenes of a million have 1.3 to 2.6
 constexpr double kAlways = 4;
-constexpr std::size_t kProbe = 128;  ///< primitives that say how many there are
+/// primitives that say how many there are
+constexpr std::size_t kFirstProbes = 128, kMoreProbes = std::size_t{1} << 14;
 
 /// A cube root from + - * / alone, so that resolutions agree between machines; Newton's steps until
 /// they stop falling.
@@ -118,15 +119,29 @@ std::size_t divide(Grid& g, const double (&extent)[3], double per_length) {
   return cells;
 }
 
-/// In how many cells the mean primitive stands, by some of them, evenly picked.
-double references(const Primitives& p, std::span<const std::uint32_t> ids, const Grid& g) {
+/// Whether the mean primitive stands in more than `most` cells, by so many of them, evenly picked.
+bool have_more(double most,
+               const Primitives& p,
+               std::span<const std::uint32_t> ids,
+               const Grid& g,
+               std::size_t probes) {
   const CellFinder finder(p, g);
-  const std::size_t stride = std::max<std::size_t>(1, ids.size() / kProbe);
+  const std::size_t stride = std::max<std::size_t>(1, ids.size() / probes);
+  const std::size_t first = stride / 2;
+  const std::size_t probed = (ids.size() - first + stride - 1) / stride;
+  const double enough = most * static_cast<double>(probed);
   std::uint64_t sum = 0;
-  std::uint64_t probed = 0;
-  for (std::size_t i = 0; i < ids.size(); i += stride, ++probed)
+  for (std::size_t i = first; i < ids.size() && static_cast<double>(sum) <= enough; i += stride)
     finder(ids[i], [&](std::size_t) { ++sum; });
-  return static_cast<double>(sum) / static_cast<double>(probed);
+  return static_cast<double>(sum) > enough;
+}
+
+/// The same. One of a few may be the largest of all: where these say so, many are asked.
+bool have_more(double most,
+               const Primitives& p,
+               std::span<const std::uint32_t> ids,
+               const Grid& g) {
+  return have_more(most, p, ids, g, kFirstProbes) && have_more(most, p, ids, g, kMoreProbes);
 }
 
 /// References that the mean one of `count` primitives may have. A heap of large ones, or of
@@ -164,7 +179,7 @@ Grid lay_out_grid(const Primitives& p,
   const double per_length = cells_per_length(extent, ids.size(), density);
   std::size_t cells = divide(g, extent, per_length);
   const double most = most_references(p, ids.size());
-  for (double coarser = per_length / 2; cells > kMostReferences && references(p, ids, g) > most;
+  for (double coarser = per_length / 2; cells > kMostReferences && have_more(most, p, ids, g);
        coarser /= 2)
     cells = divide(g, extent, coarser);
   return g;

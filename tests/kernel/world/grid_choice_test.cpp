@@ -173,6 +173,28 @@ TEST(GridSize, StaysWithinItsBounds) {
         EXPECT_TRUE(n >= 1 && n <= 1024) << n;
 }
 
+/// A ball with half a million small ones around it: wherever it stands among them, so also where it
+/// is one of the few that say how many references there will be.
+TEST(GridSize, OneLargePrimitiveAmongManyLeavesCellsSmall) {
+  constexpr std::size_t kSmall = 500'000, kStride = (kSmall + 1) / 128;
+  std::set<std::uint32_t> cells;
+  for (const std::size_t place : {std::size_t{0}, kStride / 2, 64 * kStride + kStride / 2}) {
+    Random random(3);
+    Scene s = empty_scene();
+    for (std::size_t i = 0; i < kSmall; ++i) {
+      if (i == place)
+        s.geometry.spheres.add({.5f, .5f, .5f}, .2f, 0);
+      const auto x = static_cast<float>(random.unit()), y = static_cast<float>(random.unit());
+      s.geometry.spheres.add({x, y, static_cast<float>(random.unit())}, 1e-3f, 0);
+    }
+    const World world(s, {});
+    ASSERT_EQ(world.grids().size(), 1u);
+    cells.insert(world.grids()[0].cells[0]);
+    EXPECT_GE(world.grids()[0].cells[0], 50u) << place;
+  }
+  EXPECT_EQ(cells.size(), 1u);
+}
+
 /// Spikes of a star: each crosses half of the grid, whatever its cells. 128 of them, picked evenly,
 /// say how many references there will be; all are alike but for their direction, which changes the
 /// cells on their way by sqrt 2.

@@ -1,0 +1,57 @@
+#include "kernel/scene/pages.hpp"
+
+#include <algorithm>
+#include <cstdint>
+
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
+namespace grelha {
+namespace {
+
+/// The least that is asked for: below, the call takes as long as what it saves.
+constexpr std::size_t kLeast = std::size_t{1} << 15;
+
+#if defined(MADV_HUGEPAGE) && defined(MADV_POPULATE_WRITE)
+constexpr std::size_t kPage = 4096;  // where they are larger, most of this is refused
+constexpr int kLarge = MADV_HUGEPAGE, kNow = MADV_POPULATE_WRITE;
+#else
+constexpr std::size_t kPage = kLargePage;
+constexpr int kLarge = 0, kNow = 0;
+
+void madvise(void*, std::size_t, int) {}
+#endif
+
+/// Whole pages of memory. What else is on the first and the last may be in use.
+struct Pages {
+  std::uintptr_t begin, end;
+
+  void advise(int what) const {
+    if (begin < end)
+      madvise(reinterpret_cast<void*>(begin), end - begin, what);
+  }
+};
+
+Pages pages_of(std::size_t size, const void* memory, std::size_t bytes) {
+  const auto place = reinterpret_cast<std::uintptr_t>(memory);
+  const std::uintptr_t begin = (place + size - 1) / size * size;
+  return {begin, std::max(begin, (place + bytes) / size * size)};
+}
+
+}  // namespace
+
+void allow_large_pages(void* memory, std::size_t bytes) {
+  pages_of(kLargePage, memory, bytes).advise(kLarge);
+}
+
+void ask_for_pages(void* memory, std::size_t bytes) {
+  if (bytes < kLeast)
+    return;
+  const Pages all = pages_of(kPage, memory, bytes), large = pages_of(kLargePage, memory, bytes);
+  large.advise(kLarge);  // each thread that writes there takes its own
+  Pages{all.begin, std::min(large.begin, all.end)}.advise(kNow);
+  Pages{std::max(large.end, large.begin), all.end}.advise(kNow);
+}
+
+}  // namespace grelha
