@@ -25,6 +25,7 @@ target_sources(leaving_test PRIVATE kernel/trace/mirror_rays_test.cpp
   kernel/trace/next_hit_test.cpp kernel/trace/origin_test.cpp)
 grelha_test(kernel/scene/camera unit grelha::kernel)
 grelha_test(kernel/scene/crew unit grelha::kernel)
+grelha_test(kernel/scene/pages unit grelha::kernel)
 grelha_test(kernel/isa/variants property grelha::kernel)
 grelha_test(kernel/isa/double property grelha::kernel)
 grelha_test(kernel/features/beam unit grelha::kernel)

@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <poll.h>
-#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <zlib.h>
@@ -18,6 +17,7 @@
 #include "frontend/files/load_progress.hpp"
 #include "frontend/files/parse_error.hpp"
 #include "frontend/files/plausible.hpp"
+#include "kernel/scene/pages.hpp"
 
 namespace grelha {
 namespace {
@@ -35,30 +35,18 @@ bool is_gzip(std::string_view data) {
          static_cast<unsigned char>(data[1]) == 0x8b;
 }
 
-/// Asks for pages of 2 MiB, which a system may have: filling four thousand small ones takes longer
-/// than reading what goes into them.
-void prefer_large_pages(char* begin, std::size_t size) {
-#ifdef MADV_HUGEPAGE
-  constexpr std::uintptr_t kPage = std::uintptr_t(1) << 21;
-  const auto first = (reinterpret_cast<std::uintptr_t>(begin) + kPage - 1) / kPage * kPage;
-  const auto last = (reinterpret_cast<std::uintptr_t>(begin) + size) / kPage * kPage;
-  if (first < last)
-    madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE);
-#endif
-}
-
 /// Bytes as they come, a piece at a time: memory is taken for no more, whatever was promised.
 class Growing {
  public:
   Growing(const Judge& judge, std::size_t promised) : judge_(judge) {
     bytes_.reserve(promised);
-    prefer_large_pages(bytes_.data(), promised);
+    allow_large_pages(bytes_.data(), promised);
   }
 
   /// Room for up to `most` bytes more; at least one, unless `most` is none.
   std::span<char> room(std::size_t most) {
     if (have_ == bytes_.size())
-      bytes_.resize(have_ + std::min(most, std::clamp(have_, kLeast, kMostAtOnce)));
+      resize_to_fill(bytes_, have_ + std::min(most, std::clamp(have_, kLeast, kMostAtOnce)));
     return {bytes_.data() + have_, std::min(most, bytes_.size() - have_)};
   }
   /// So many bytes of the room were filled.

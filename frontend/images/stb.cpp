@@ -8,6 +8,8 @@
 #include <new>
 #include <string>
 
+#include "kernel/scene/pages.hpp"
+
 namespace {
 
 // stb asks for 8: five times the time for 7 % fewer bytes (ready scene balls at 640x480)
@@ -30,8 +32,19 @@ unsigned checksum_by_zlib(const unsigned char* data, int size) {
   return unsigned(crc32(0, data, uInt(size)));
 }
 
+/// For rows of a picture, which are soon written.
+void* memory_to_fill(std::size_t bytes) {
+  void* const memory = std::malloc(bytes);
+  if (memory)
+    grelha::ask_for_pages(memory, bytes);
+  return memory;
+}
+
 }  // namespace
 
+#define STBIW_MALLOC memory_to_fill
+#define STBIW_REALLOC std::realloc
+#define STBIW_FREE std::free
 #define STBIW_ZLIB_COMPRESS deflate_by_zlib
 #define STBIW_CRC32 checksum_by_zlib
 #define STB_IMAGE_WRITE_IMPLEMENTATION

@@ -8,6 +8,7 @@
 #include <new>
 #include <vector>
 
+#include "kernel/scene/pages.hpp"
 #include "kernel/scene/turns.hpp"
 
 namespace grelha {
@@ -51,19 +52,21 @@ class StripDeflater {
     constexpr std::size_t kFlush = 16;  // what ends a part that is not the last, and to spare
     deflateReset(&stream_);
     deflateSetDictionary(&stream_, bytes_of(before), uInt(before.size()));
-    std::string packed(deflateBound(&stream_, uLong(strip.size())) + kFlush, '\0');
+    room_.resize(deflateBound(&stream_, uLong(strip.size())) + kFlush);
     stream_.next_in = const_cast<Bytef*>(bytes_of(strip));
     stream_.avail_in = uInt(strip.size());
-    stream_.next_out = reinterpret_cast<Bytef*>(packed.data());
-    stream_.avail_out = uInt(packed.size());
+    stream_.next_out = reinterpret_cast<Bytef*>(room_.data());
+    stream_.avail_out = uInt(room_.size());
     deflate(&stream_, last ? Z_FINISH : Z_SYNC_FLUSH);
-    packed.resize(packed.size() - stream_.avail_out);
-    return packed;
+    return room_.substr(0, room_.size() - stream_.avail_out);
   }
 
   z_stream stream_{};
+  std::string room_;  ///< of one strip after another
   bool ready_;
 };
+
+constexpr std::size_t kMostAround = 8;  ///< bytes of header and checksum, and to spare
 
 /// A window of 32 KiB, and about how hard was tried: readers do not care.
 std::string zlib_header() {
@@ -85,7 +88,11 @@ std::string deflate_in_strips(std::string_view data, int level) {
   };
   each_turn(
       count, omp_get_max_threads(), [level] { return StripDeflater(level); }, pack);
+  std::size_t bytes = kMostAround;
+  for (const Strip& strip : strips)
+    bytes += strip.packed.size();
   std::string stream = zlib_header();
+  reserve_to_fill(stream, bytes);
   uLong checksum = 1;
   for (std::size_t i = 0; i < count; ++i) {
     if (strips[i].packed.empty())
@@ -94,7 +101,8 @@ std::string deflate_in_strips(std::string_view data, int level) {
     const std::size_t size = std::min(kStripBytes, data.size() - i * kStripBytes);
     checksum = adler32_combine(checksum, strips[i].checksum, z_off_t(size));
   }
-  return stream + zlib_checksum(checksum);
+  stream += zlib_checksum(checksum);
+  return stream;
 }
 
 }  // namespace grelha

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <limits>
 
+#include "kernel/scene/pages.hpp"
 #include "kernel/scene/turns.hpp"
 
 namespace grelha {
@@ -76,7 +77,7 @@ std::uint8_t to_byte(float value, Tone tone) {
 }
 
 std::vector<std::uint8_t> to_bytes(const Image& image, Tone tone) {
-  std::vector<std::uint8_t> bytes(image.rgb.size());
+  auto bytes = array_to_fill<std::vector<std::uint8_t>>(image.rgb.size());
   constexpr std::size_t kEach = std::size_t(1) << 16;
   each_turn((bytes.size() + kEach - 1) / kEach, omp_get_max_threads(), [&](std::size_t part) {
     const std::size_t end = std::min((part + 1) * kEach, bytes.size());

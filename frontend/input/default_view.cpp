@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "kernel/scene/pages.hpp"
+
 namespace grelha {
 namespace {
 
@@ -28,7 +30,7 @@ std::vector<Place3> corners_of(const Triangles& t) {
     for (const std::uint32_t v : *of)
       named[v] = 1;
   std::vector<Place3> found;
-  found.reserve(t.vertex_count());
+  reserve_to_fill(found, t.vertex_count());
   for (std::size_t v = 0; v < t.vertex_count(); ++v)
     if (named[v])
       found.push_back({t.x[v], t.y[v], t.z[v]});

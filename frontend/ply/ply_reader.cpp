@@ -4,6 +4,7 @@
 
 #include "frontend/ply/ply_ascii.hpp"
 #include "frontend/ply/ply_binary.hpp"
+#include "kernel/scene/pages.hpp"
 
 namespace grelha {
 namespace {
@@ -79,9 +80,9 @@ Mesh read_rows(const PlyHeader& header, std::size_t bytes, Rows& rows) {
       plan = plan_faces(element);
     for (int i = 0; i < 6; ++i)
       if (plan.columns[i] >= 0)
-        column(mesh, i).reserve(std::size_t(element.count));
+        reserve_to_fill(column(mesh, i), std::size_t(element.count));
     if (element.name == "face")
-      mesh.corners.reserve(likely_corners(header, element, plan.list, bytes));
+      reserve_to_fill(mesh.corners, likely_corners(header, element, plan.list, bytes));
     rows.read(element, plan, mesh, is_strips ? strips : polygons);
   }
   return mesh;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "kernel/scene/pages.hpp"
+
 namespace grelha {
 namespace {
 
@@ -54,7 +56,7 @@ void SceneBuilder::sphere(Float3 center, float radius, std::uint32_t material) {
   else if (radius == 0)
     ++file_.dropped.zero_area;
   else
-    file_.scene.geometry.spheres.add(center, radius, material);
+    add_sphere(center, radius, material);
 }
 
 void SceneBuilder::cone(
@@ -99,6 +101,14 @@ void SceneBuilder::plane(Float3 normal, float distance, std::uint32_t material) 
     file_.scene.geometry.planes.add(point, unit(n), material);
 }
 
+void SceneBuilder::add_sphere(Float3 center, float radius, std::uint32_t material) {
+  Spheres& s = file_.scene.geometry.spheres;
+  for (std::vector<float>* const of : {&s.x, &s.y, &s.z, &s.radius})
+    make_room(*of);
+  make_room(s.material);
+  s.add(center, radius, material);
+}
+
 std::uint32_t SceneBuilder::add_vertex(Float3 point, Float3 normal) {
   Triangles& t = file_.scene.geometry.triangles;
   const std::size_t index = t.x.size();
@@ -107,6 +117,8 @@ std::uint32_t SceneBuilder::add_vertex(Float3 point, Float3 normal) {
     t.ny.resize(index);
     t.nz.resize(index);
   }
+  for (std::vector<float>* const of : {&t.x, &t.y, &t.z})
+    make_room(*of);
   t.x.push_back(point.x);
   t.y.push_back(point.y);
   t.z.push_back(point.z);
@@ -123,6 +135,8 @@ void SceneBuilder::add_triangle(std::uint32_t a,
                                 std::uint32_t c,
                                 std::uint32_t material) {
   Triangles& t = file_.scene.geometry.triangles;
+  for (std::vector<std::uint32_t>* const of : {&t.a, &t.b, &t.c, &t.material})
+    make_room(*of);
   t.a.push_back(a);
   t.b.push_back(b);
   t.c.push_back(c);
@@ -323,10 +337,10 @@ void SceneBuilder::mesh_triangles(std::span<const std::uint32_t> corners,
   Triangles& t = file_.scene.geometry.triangles;
   std::size_t at = t.size();
   const std::size_t most = at + corners.size() / 3;
-  t.a.resize(most);
-  t.b.resize(most);
-  t.c.resize(most);
-  t.material.resize(most, material);
+  resize_to_fill(t.a, most);
+  resize_to_fill(t.b, most);
+  resize_to_fill(t.c, most);
+  resize_to_fill(t.material, most, material);
   for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
     const std::uint32_t a = first_vertex + corners[i], b = first_vertex + corners[i + 1],
                         c = first_vertex + corners[i + 2];

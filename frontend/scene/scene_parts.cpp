@@ -3,6 +3,8 @@
 #include <exception>
 #include <vector>
 
+#include "kernel/scene/pages.hpp"
+
 namespace grelha {
 namespace {
 
@@ -39,6 +41,7 @@ void with_arrays(Cones& all, const Cones& part, const Use& use) {
 }
 
 constexpr auto append = [](auto& all, const auto& part) {
+  reserve_to_fill(all, all.size() + part.size());
   all.insert(all.end(), part.begin(), part.end());
 };
 

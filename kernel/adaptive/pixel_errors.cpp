@@ -3,27 +3,24 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernel/scene/pages.hpp"
 #include "kernel/scene/pixel_box.hpp"
 
 namespace grelha {
 
 PixelErrors::PixelErrors(const Refinement& r, bool effects, int first_log, int threads)
-    : r_(r),
-      effects_(effects),
-      first_log_(first_log),
-      threads_(threads),
-      seen_(r.log.size()),
-      white_(r.log.size()),
-      shown_(3 * r.log.size()),
-      contrast_(r.log.size(), kUnknown),
-      own_(r.log.size()),
-      variance_(r.log.size()),
-      widest_(r.log.size()),
-      gain_(r.log.size()),
-      lent_(lent_at(-1, r.height + 1)),
-      lends_(lent_.size()) {
+    : r_(r), effects_(effects), first_log_(first_log), threads_(threads) {
+  const std::size_t pixels = r.log.size(), lent = lent_at(-1, r.height + 1);
+  resize_to_fill(seen_, pixels);
   for (std::vector<float>& level : levels_)
-    level.resize(r.log.size());
+    resize_to_fill(level, pixels);
+  resize_to_fill(white_, pixels);
+  resize_to_fill(shown_, 3 * pixels);
+  resize_to_fill(contrast_, pixels, kUnknown);
+  for (std::vector<float>* const of : {&own_, &variance_, &widest_, &gain_})
+    resize_to_fill(*of, pixels);
+  resize_to_fill(lent_, lent);
+  resize_to_fill(lends_, lent);
 }
 
 bool PixelErrors::is_young(std::size_t p) const {

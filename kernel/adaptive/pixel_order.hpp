@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "kernel/scene/pages.hpp"
 #include "kernel/scene/shading_view.hpp"
 
 namespace grelha {
@@ -11,7 +12,7 @@ namespace grelha {
 /// neighbours share packets.
 inline std::vector<std::uint32_t> pixel_order(int width, int height) {
   std::vector<std::uint32_t> order;
-  order.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  reserve_to_fill(order, static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   for (int ty = 0; ty < height; ty += kTile)
     for (int tx = 0; tx < width; tx += kTile)
       for (int i = 0; i < kTile * kTile; ++i) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernel/scene/image_to_fill.hpp"
+
 namespace grelha {
 namespace {
 
@@ -96,15 +98,15 @@ Refinement make_refinement(const Camera& camera) {
   r.width = camera.width;
   r.height = camera.height;
   const std::size_t pixels = pixel_count(r);
-  r.sums.resize(pixels * 3);
+  resize_to_fill(r.sums, pixels * 3);
   for (auto& level : r.squares)
-    level.resize(pixels * 3);
-  r.cost.resize(pixels, 1);
-  r.inside.resize(pixels, 0);
-  r.around.resize(pixels, 1);
-  r.boxed.resize(pixels, 0);
-  r.box.resize(pixels, 0);
-  r.log.resize(pixels, 0);
+    resize_to_fill(level, pixels * 3);
+  resize_to_fill(r.cost, pixels, 1.f);
+  resize_to_fill(r.inside, pixels);
+  resize_to_fill(r.around, pixels, 1.f);
+  resize_to_fill(r.boxed, pixels);
+  resize_to_fill(r.box, pixels);
+  resize_to_fill(r.log, pixels);
   return r;
 }
 
@@ -117,7 +119,7 @@ bool is_sound(const Refinement& r) {
 }
 
 Image picture_so_far(const Refinement& r) {
-  Image image(r.width, r.height);
+  Image image = image_to_fill(r.width, r.height);
   for (std::size_t i = 0; i < image.rgb.size(); ++i)
     image.rgb[i] = mean_so_far(r, i);
   return image;

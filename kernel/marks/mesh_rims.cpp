@@ -7,6 +7,8 @@
 #include <compare>
 
 #include "kernel/scene/hash.hpp"
+#include "kernel/scene/pages.hpp"
+#include "kernel/scene/raw_vector.hpp"
 #include "kernel/scene/turns.hpp"
 
 namespace grelha {
@@ -15,7 +17,8 @@ namespace {
 constexpr std::size_t kMostTriangles = std::size_t{1} << 22;  ///< of more, nothing is kept
 constexpr std::size_t kItemsOfTurn = 4096;
 
-using Words = std::vector<std::atomic<std::uint32_t>>;
+using Words = std::vector<std::uint32_t>;
+using SharedWord = std::atomic_ref<std::uint32_t>;
 
 /// Bits that are the same for 0 and -0.
 std::uint32_t bits_of_coordinate(float x) {
@@ -35,7 +38,7 @@ bool same_place(const TriangleSpans& t, std::uint32_t a, std::uint32_t b) {
 /// A vertex at the place of another, the same for all that are there, by open addressing.
 std::uint32_t one_at_place(const TriangleSpans& t, std::uint32_t vertex, Words& held) {
   for (std::size_t at = hash_of_place(t, vertex);; ++at) {
-    std::atomic<std::uint32_t>& slot = held[at & (held.size() - 1)];
+    const SharedWord slot(held[at & (held.size() - 1)]);
     std::uint32_t there = slot.load(std::memory_order_relaxed);
     if (there == 0 && slot.compare_exchange_strong(there, vertex + 1, std::memory_order_relaxed))
       return vertex;
@@ -46,12 +49,8 @@ std::uint32_t one_at_place(const TriangleSpans& t, std::uint32_t vertex, Words& 
 
 /// Adds 1 and returns what was there. A thread alone needs no lock, which takes longer than all
 /// else.
-std::uint32_t counted(std::atomic<std::uint32_t>& count, int threads) {
-  if (threads > 1)
-    return count.fetch_add(1, std::memory_order_relaxed);
-  const std::uint32_t before = count.load(std::memory_order_relaxed);
-  count.store(before + 1, std::memory_order_relaxed);
-  return before;
+std::uint32_t counted(std::uint32_t& count, int threads) {
+  return threads > 1 ? SharedWord(count).fetch_add(1, std::memory_order_relaxed) : count++;
 }
 
 template <class Work>
@@ -70,14 +69,14 @@ class MeshRims::Edges {
  public:
   Edges(const TriangleSpans& triangles, int threads)
       : triangles_(triangles),
-        place_(triangles.vertex_count()),
-        begin_(place_.size() + 1),
+        place_(array_to_fill<Words>(triangles.vertex_count())),
+        begin_(array_to_fill<Words>(place_.size() + 1)),
         edges_(3 * triangles.size()) {
-    Words held(std::bit_ceil(2 * place_.size()));  // a vertex + 1
+    auto held = array_to_fill<Words>(std::bit_ceil(2 * place_.size()));  // a vertex + 1
     each_of(place_.size(), threads, [&](std::size_t v) {
       place_[v] = one_at_place(triangles, static_cast<std::uint32_t>(v), held);
     });
-    Words next(place_.size());
+    auto next = array_to_fill<Words>(place_.size());
     each_edge(threads, [&](std::uint32_t lower, const Edge&) { counted(next[lower], threads); });
     for (std::size_t v = 0; v < place_.size(); ++v) {
       begin_[v + 1] = begin_[v] + next[v];
@@ -149,18 +148,18 @@ class MeshRims::Edges {
   }
 
   const TriangleSpans& triangles_;
-  std::vector<std::uint32_t> place_;  ///< [vertices] one at the same place
-  std::vector<std::uint32_t> begin_;  ///< [places + 1] of the edges of each
-  std::vector<Edge> edges_;           ///< by the lesser of the places at their ends
+  Words place_;            ///< [vertices] one at the same place
+  Words begin_;            ///< [places + 1] of the edges of each
+  RawVector<Edge> edges_;  ///< by the lesser of the places at their ends
 };
 
 MeshRims::MeshRims(const TriangleSpans& triangles, int threads)
     : triangles_(triangles), threads_(threads) {
   if (triangles.size() > kMostTriangles)
     return;
-  across_.resize(3 * triangles.size(), kNone);
-  told_.resize(triangles.size());
-  sides_.resize(triangles.size());
+  resize_to_fill(across_, 3 * triangles.size(), kNone);
+  resize_to_fill(told_, triangles.size());
+  resize_to_fill(sides_, triangles.size());
   Edges edges(triangles, threads);
   each_of(triangles.vertex_count(), threads, [&](std::size_t v) { edges.link(v, across_); });
   tell_of_corners(edges);

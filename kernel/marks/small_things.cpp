@@ -10,6 +10,7 @@
 #include "kernel/marks/mesh_thickness.hpp"
 #include "kernel/marks/rim_walk.hpp"
 #include "kernel/marks/thin_shadows.hpp"
+#include "kernel/scene/pages.hpp"
 #include "kernel/scene/pixel_box.hpp"
 #include "kernel/scene/turns.hpp"
 
@@ -102,7 +103,7 @@ class Marker {
       viewpoints_.push_back({{at[0], at[1], at[2]}});
     }
     if (rims_.tell())
-      thick_.resize(g_.triangles.size(), kUnknown);
+      resize_to_fill(thick_, g_.triangles.size(), kUnknown);
   }
 
   void run() {

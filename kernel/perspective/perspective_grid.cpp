@@ -4,6 +4,7 @@
 
 #include "kernel/perspective/lists.hpp"
 #include "kernel/perspective/placing.hpp"
+#include "kernel/scene/pages.hpp"
 
 namespace grelha {
 namespace {
@@ -78,6 +79,9 @@ class Builder {
       face.depth = w.near < 1e300 ? w.near : 0;
       if (w.seen > 0)
         w.lay_tiles(face, density * static_cast<double>(w.seen));
+      const auto columns = static_cast<std::size_t>(face.nx),
+                 rows = static_cast<std::size_t>(face.ny);
+      reserve_to_fill(tiles_, tiles_.size() + columns * rows + 1);
       for (int y = 0; y < face.ny; ++y)
         for (int x = 0; x < face.nx; ++x)
           tiles_.push_back({
@@ -112,7 +116,7 @@ class Builder {
   }
 
   void write(Placing& placing) {
-    g_.tiles.resize(tiles_.size() + 1);
+    resize_to_fill(g_.tiles, tiles_.size() + 1);
     const std::uint32_t outlines = begin_lists(placing, kOutlineList, 0);
     const std::uint32_t boxes = begin_lists(placing, kBoxList, outlines);
     references_.resize(outlines + boxes);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "kernel/perspective/sight.hpp"
+#include "kernel/scene/pages.hpp"
 #include "kernel/scene/turns.hpp"
 
 namespace grelha {
@@ -46,7 +47,7 @@ class Placing {
     places_.resize(onlooker_.turns());
     shares_.resize(static_cast<std::size_t>(std::min(threads_, kMostShares)));
     for (Share& share : shares_)
-      share.counts.assign(kLists * tiles_.size(), 0);
+      resize_to_fill(share.counts, kLists * tiles_.size());
     std::atomic<std::size_t> next = 0;
     each_turn(
         places_.size(),
@@ -64,7 +65,7 @@ class Placing {
   /// Tiles with too many primitives get parts, and these again.
   /// False: in parts, too, primitives cover each other so much that it is given up.
   bool part_crowds() {
-    lists_.resize(tiles_.size());
+    resize_to_fill(lists_, tiles_.size());
     const auto primitives = static_cast<double>(onlooker_.count());
     double references = references_from(0);
     std::size_t begin = 0;
@@ -78,7 +79,7 @@ class Placing {
       begin = end;
       if (tiles_.size() == end)
         return true;
-      lists_.resize(tiles_.size());
+      resize_to_fill(lists_, tiles_.size());
       place_all_parts(kMostReferencesInParts * primitives);
       references = references_from(end);
       if (references > kMostReferencesInParts * primitives)
@@ -257,7 +258,7 @@ class Placing {
   /// Stops where any share has placed more than `most`.
   void place_all_parts(double most) {
     each_share([&](Share& share) {
-      share.counts.resize(kLists * tiles_.size());
+      resize_to_fill(share.counts, kLists * tiles_.size());
       double placed = 0;
       for (std::size_t i = 0; i < share.turns.size() && placed <= most; ++i)
         placed += static_cast<double>(place_parts(places_[share.turns[i]], share));

@@ -7,6 +7,7 @@
 
 #include "kernel/render/guarded_progress.hpp"
 #include "kernel/render/bands.hpp"
+#include "kernel/scene/image_to_fill.hpp"
 
 namespace grelha {
 namespace {
@@ -75,7 +76,7 @@ Accumulator make_accumulator(const Camera& camera, const RenderOptions& options,
   if (!within(part.samples, samples))
     refuse("samples", part.samples, samples);
   Accumulator a{camera.width, camera.height, samples, part, {}, {}};
-  a.sums.resize(sum_count(part.rows, camera.width));
+  resize_to_fill(a.sums, sum_count(part.rows, camera.width));
   a.done.resize(piece_count(part));
   return a;
 }
@@ -179,7 +180,7 @@ void add(Accumulator& whole, const Accumulator& part) {
 }
 
 Image picture_so_far(const Accumulator& a) {
-  Image image(a.width, a.height);
+  Image image = image_to_fill(a.width, a.height);
   const std::size_t bands = static_cast<std::size_t>(pieces(a.part.rows, kPieceRows));
   for (std::size_t b = 0; b < bands; ++b) {
     int samples = 0;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "grelha/render_options.hpp"
+#include "kernel/scene/pages.hpp"
 #include "kernel/scene/shading_view.hpp"
 #include "kernel/query/variants.hpp"
 
@@ -55,11 +56,12 @@ class Workspace {
         in_double_(in_double),
         take_(take_of(depth, plan.gloss_rays)),
         capacity_(capacity_of(depth, plan.gloss_rays)),
-        floats_(static_cast<std::size_t>(capacity_) * kStackFloats),
-        words_(static_cast<std::size_t>(capacity_) * kStackWords),
-        sums_(sums * 3),
+        sums_(array_to_fill<std::vector<std::int64_t>>(sums * 3)),
         pixels_(sums),
-        boxes_(sums) {}
+        boxes_(sums) {
+    resize_to_fill(floats_, static_cast<std::size_t>(capacity_) * kStackFloats);
+    resize_to_fill(words_, static_cast<std::size_t>(capacity_) * kStackWords);
+  }
 
   /// What one takes.
   static std::uint64_t bytes(std::size_t sums, int depth, int gloss_rays) {

@@ -11,7 +11,7 @@ namespace grelha {
 namespace {
 
 /// The least that is asked for: below, the call takes as long as what it saves.
-constexpr std::size_t kLeast = std::size_t{1} << 15;
+constexpr std::size_t kLeast = std::size_t{1} << 16;
 
 #if defined(MADV_HUGEPAGE) && defined(MADV_POPULATE_WRITE)
 constexpr std::size_t kPage = 4096;  // where they are larger, most of this is refused
@@ -21,6 +21,9 @@ constexpr std::size_t kPage = kLargePage;
 constexpr int kLarge = 0, kNow = 0;
 
 void madvise(void*, std::size_t, int) {}
+int mincore(void*, std::size_t, unsigned char*) {
+  return -1;
+}
 #endif
 
 /// Whole pages of memory. What else is on the first and the last may be in use.
@@ -30,6 +33,17 @@ struct Pages {
   void advise(int what) const {
     if (begin < end)
       madvise(reinterpret_cast<void*>(begin), end - begin, what);
+  }
+  /// Memory that was used before mostly has its pages still: to ask for these would take long.
+  void take() const {
+    if (begin < end && !(has(begin) && has(end - kPage)))
+      advise(kNow);
+  }
+
+ private:
+  static bool has(std::uintptr_t page) {
+    unsigned char there = 0;
+    return mincore(reinterpret_cast<void*>(page), kPage, &there) == 0 && (there & 1) != 0;
   }
 };
 
@@ -50,8 +64,8 @@ void ask_for_pages(void* memory, std::size_t bytes) {
     return;
   const Pages all = pages_of(kPage, memory, bytes), large = pages_of(kLargePage, memory, bytes);
   large.advise(kLarge);  // each thread that writes there takes its own
-  Pages{all.begin, std::min(large.begin, all.end)}.advise(kNow);
-  Pages{std::max(large.end, large.begin), all.end}.advise(kNow);
+  Pages{all.begin, std::min(large.begin, all.end)}.take();
+  Pages{large.end, all.end}.take();
 }
 
 }  // namespace grelha

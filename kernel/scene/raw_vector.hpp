@@ -9,9 +9,7 @@
 #include <utility>
 #include <vector>
 
-#ifdef __linux__
-#include <sys/mman.h>
-#endif
+#include "kernel/scene/pages.hpp"
 
 namespace grelha {
 
@@ -29,32 +27,24 @@ struct RawAllocator {
     const std::size_t align = alignment(n);
     const std::size_t bytes = bytes_for(n);
     void* const p = ::operator new (bytes, std::align_val_t{align});
-#ifdef __linux__
-    if (align == kPage)
-      madvise(p, bytes, MADV_HUGEPAGE);  // a wish; refused, everything still works
-#endif
+    ask_for_pages(p, bytes);
     return static_cast<T*>(p);
   }
-  void deallocate(T* p, std::size_t n) {
-    ::operator delete (p, std::align_val_t{alignment(n)});
-  }
+  void deallocate(T* p, std::size_t n) { ::operator delete (p, std::align_val_t{alignment(n)}); }
   template <class U, class... Args>
   void construct(U* p, Args&&... args) {
     if constexpr (sizeof...(Args) > 0)
       ::new (static_cast<void*>(p)) U(std::forward<Args>(args)...);
   }
-  bool operator==(const RawAllocator&) const {
-    return true;
-  }
+  bool operator==(const RawAllocator&) const { return true; }
 
  private:
   static constexpr std::size_t kLine = 64;
-  static constexpr std::size_t kPage = std::size_t{1} << 21;  ///< a large one
   /// Times what is asked for: what may be taken for the last page to be a large one too.
   static constexpr double kMostRoom = 1.125;
 
   static std::size_t alignment(std::size_t n) {
-    return n * sizeof(T) >= kPage ? kPage : kLine;
+    return n * sizeof(T) >= kLargePage ? kLargePage : kLine;
   }
   static std::size_t up_to(std::size_t unit, std::size_t bytes) {
     return (bytes + unit - 1) / unit * unit;

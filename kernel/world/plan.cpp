@@ -9,6 +9,7 @@
 
 #include "kernel/grid/crowds.hpp"
 #include "kernel/grid/grid_layout.hpp"
+#include "kernel/scene/pages.hpp"
 
 namespace grelha {
 namespace {
@@ -79,7 +80,7 @@ void group_triangles(const Primitives& p, std::vector<Ids>& groups) {
     if (o.triangle_count < kSmallObject || groups.size() >= kMostGroups) {
       append(groups.front(), first, next);
     } else {
-      groups.emplace_back().reserve(o.triangle_count);
+      reserve_to_fill(groups.emplace_back(), o.triangle_count);
       append(groups.back(), first, next);
     }
   }
@@ -96,7 +97,7 @@ std::size_t triangles_in_objects(const Primitives& p) {
 /// One group of ids a grid: first what is loose (with small objects), then each larger object.
 std::vector<Ids> group(const Primitives& p) {
   std::vector<Ids> groups(1);
-  groups.front().reserve(p.finite_count() - triangles_in_objects(p));
+  reserve_to_fill(groups.front(), p.finite_count() - triangles_in_objects(p));
   for_each_finite_shape([&]<class Shape>() {
     if constexpr (Shape::kKind == PrimitiveKind::kTriangle)
       group_triangles(p, groups);
