@@ -19,6 +19,7 @@
 #include "kernel/adaptive/tolerances.hpp"
 #include "kernel/render/setup.hpp"
 #include "kernel/render/workspace.hpp"
+#include "kernel/scene/pages.hpp"
 
 namespace grelha {
 namespace {
@@ -71,6 +72,7 @@ class AdaptiveSampler {
   }
 
   void run() {
+    reserve_to_fill(r_.wanted, order_.size());
     if (r_.wanted.empty() && !r_.finished)
       r_.wanted = order_;
     bool judged = false;

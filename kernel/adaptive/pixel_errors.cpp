@@ -1,6 +1,7 @@
 #include "kernel/adaptive/pixel_errors.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "kernel/scene/pages.hpp"
@@ -12,6 +13,7 @@ PixelErrors::PixelErrors(const Refinement& r, bool effects, int first_log, int t
     : r_(r), effects_(effects), first_log_(first_log), threads_(threads) {
   const std::size_t pixels = r.log.size(), lent = lent_at(-1, r.height + 1);
   resize_to_fill(seen_, pixels);
+  reserve_to_fill(changed_, pixels);
   for (std::vector<float>& level : levels_)
     resize_to_fill(level, pixels);
   resize_to_fill(white_, pixels);
@@ -130,10 +132,6 @@ bool PixelErrors::met_lamp(std::size_t p) const {
 
 void PixelErrors::judge_pixel(int x, int y, const Around& around, const RatioPowers& powers) {
   const std::size_t p = at(x, y);
-  if (own_[p] == 0 && around.sum == 0 && is_plain(p)) {
-    variance_[p] = widest_[p] = gain_[p] = 0;
-    return;
-  }
   float v = static_cast<float>(r_.worse) *
             (lends_[lent_at(x, y)] ? with_neighbours(p, around, powers) : own_[p]);
   if (r_.least_by_sample > 0 && agrees(p))
@@ -183,14 +181,14 @@ void PixelErrors::forget_contrasts(std::size_t p) {
 }
 
 void PixelErrors::show_new() {
-  std::vector<std::uint32_t> changed;
+  changed_.clear();
   for (std::size_t p = 0; p < own_.size(); ++p)
     if (seen_[p] != r_.log[p])
-      changed.push_back(static_cast<std::uint32_t>(p));
+      changed_.push_back(static_cast<std::uint32_t>(p));
 #pragma omp parallel for num_threads(threads_) schedule(static)
-  for (std::size_t i = 0; i < changed.size(); ++i)
-    show(changed[i]);
-  for (const std::uint32_t p : changed) {
+  for (std::size_t i = 0; i < changed_.size(); ++i)
+    show(changed_[i]);
+  for (const std::uint32_t p : changed_) {
     seen_[p] = r_.log[p];
     forget_contrasts(p);
   }
@@ -220,7 +218,29 @@ void PixelErrors::lend_row(int y, const RatioPowers& powers) {
   }
 }
 
+/// Judges a row as though nothing told of its pixels but their samples. So it is of most, and many
+/// are taken at once.
+void PixelErrors::judge_plain_row(int y) {
+  const std::uint8_t* const log = r_.log.data();
+  const float* const own = own_.data();
+  const float* const cost = r_.cost.data();
+  float* const variance = variance_.data();
+  float* const widest = widest_.data();
+  float* const gain = gain_.data();
+  const float worse = static_cast<float>(r_.worse), falls = 1 - r_.variance_ratio;
+  const float least = static_cast<float>(r_.least_by_sample);
+  for (std::size_t p = at(0, y); p < at(0, y + 1); ++p) {
+    const float by_sample = std::bit_cast<float>((127u - log[p]) << 23);  // 1 / samples
+    const bool agree = own[p] <= kAgreement * by_sample * by_sample;
+    const float v = std::max(worse * own[p], agree ? least * by_sample : 0.f);
+    variance[p] = v;
+    widest[p] = 2 * kNormal * std::sqrt(v);
+    gain[p] = log[p] < kMostLog ? v * falls * by_sample / cost[p] : 0;
+  }
+}
+
 void PixelErrors::judge_row(int y, const RatioPowers& powers) {
+  judge_plain_row(y);
   const auto stride = static_cast<std::ptrdiff_t>(lent_at(0, 1) - lent_at(0, 0));
   const auto around = [&](const auto* of) {
     const auto* const above = of - stride;
@@ -229,6 +249,8 @@ void PixelErrors::judge_row(int y, const RatioPowers& powers) {
   };
   for (int x = 0; x < r_.width; ++x) {
     const std::size_t at_x = lent_at(x, y);
+    if (!lends_[at_x] && r_.box[at(x, y)] == 0)
+      continue;
     judge_pixel(x, y, {around(&lent_[at_x]), around(&lends_[at_x])}, powers);
   }
 }

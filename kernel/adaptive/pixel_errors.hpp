@@ -67,10 +67,6 @@ class PixelErrors {
   float samples(std::size_t p) const { return static_cast<float>(1u << r_.log[p]); }
   bool watched(std::size_t p) const { return effects_ || r_.inside[p] > 0 || r_.around[p] > 0; }
   bool is_young(std::size_t p) const;
-  /// Whether nothing but differences of samples adds to a pixel's variance.
-  bool is_plain(std::size_t p) const {
-    return r_.inside[p] == 0 && r_.around[p] == 0 && r_.box[p] == 0 && r_.least_by_sample == 0;
-  }
   float freedom(std::size_t p) const { return is_young(p) ? kYoung : kOld; }
   float variance_by(float halves, float quarters, float eighths, float freedom) const;
   float channel_variance(std::size_t i, float freedom) const;
@@ -88,6 +84,7 @@ class PixelErrors {
   void forget_contrasts(std::size_t p);
   void show_new();
   void lend_row(int y, const RatioPowers& powers);
+  void judge_plain_row(int y);
   void judge_pixel(int x, int y, const Around& around, const RatioPowers& powers);
   void judge_row(int y, const RatioPowers& powers);
 
@@ -95,7 +92,8 @@ class PixelErrors {
   const bool effects_;
   const int first_log_, threads_;
   float of_all_ = 0;  ///< times squared differences over degrees of freedom: a variance
-  std::vector<std::uint8_t> seen_;  ///< [pixels] Refinement::log when `shown_` was set
+  std::vector<std::uint8_t> seen_;      ///< [pixels] Refinement::log when `shown_` was set
+  std::vector<std::uint32_t> changed_;  ///< pixels whose samples are other than those seen
   /// [pixels] Squared differences of each level over degrees of freedom, mean of the channels
   std::vector<float> levels_[3];
   std::vector<std::uint8_t> white_;             ///< [pixels] whether a channel is shown as white

@@ -266,6 +266,27 @@ TEST(PixelErrors, BorrowWhereSamplesAgreeByChance) {
   EXPECT_EQ(errors.variance(3), 0);
 }
 
+/// Pixels of which nothing but their samples tells are judged many at a time: as one by one.
+TEST(PixelErrors, JudgeManyAsOneByOne) {
+  Random random(1);
+  for (std::uint8_t log = kFirstLog; log <= kMostLog; ++log)
+    for (const double least : {0., 1e-3}) {
+      Refinement r = pixels(1, log);
+      r.worse = random.in(1, 4);
+      r.least_by_sample = least;
+      r.cost[0] = static_cast<float>(random.in(1, 9));
+      if (random.below(2) == 1)  // else its samples agree
+        draw(r, 0, random.log_in(1e-9, 1e-2), random);
+      r.around[0] = 0;
+      const PixelErrors many = judged(r);
+      r.around[0] = 1;  // as far as it differs from those around it, of which there are none
+      const PixelErrors one = judged(r);
+      EXPECT_EQ(many.variance(0), one.variance(0)) << int{log};
+      EXPECT_EQ(many.widths()[0], one.widths()[0]) << int{log};
+      EXPECT_EQ(many.gains_per_ray()[0], one.gains_per_ray()[0]) << int{log};
+    }
+}
+
 /// What the means of halves, quarters and eighths of n samples differ by, squared, where one has
 /// `one` units of light and all others `rest`.
 float square_of_one(std::int64_t one, std::int64_t rest, double n, int level) {
