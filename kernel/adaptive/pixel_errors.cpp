@@ -13,7 +13,6 @@ PixelErrors::PixelErrors(const Refinement& r, bool effects, int first_log, int t
     : r_(r), effects_(effects), first_log_(first_log), threads_(threads) {
   const std::size_t pixels = r.log.size(), lent = lent_at(-1, r.height + 1);
   resize_to_fill(seen_, pixels);
-  reserve_to_fill(changed_, pixels);
   for (std::vector<float>& level : levels_)
     resize_to_fill(level, pixels);
   resize_to_fill(white_, pixels);
@@ -181,14 +180,14 @@ void PixelErrors::forget_contrasts(std::size_t p) {
 }
 
 void PixelErrors::show_new() {
-  changed_.clear();
+  std::vector<std::uint32_t> changed;
   for (std::size_t p = 0; p < own_.size(); ++p)
     if (seen_[p] != r_.log[p])
-      changed_.push_back(static_cast<std::uint32_t>(p));
+      changed.push_back(static_cast<std::uint32_t>(p));
 #pragma omp parallel for num_threads(threads_) schedule(static)
-  for (std::size_t i = 0; i < changed_.size(); ++i)
-    show(changed_[i]);
-  for (const std::uint32_t p : changed_) {
+  for (std::size_t i = 0; i < changed.size(); ++i)
+    show(changed[i]);
+  for (const std::uint32_t p : changed) {
     seen_[p] = r_.log[p];
     forget_contrasts(p);
   }
