@@ -92,7 +92,7 @@ class PixelErrors {
   const bool effects_;
   const int first_log_, threads_;
   float of_all_ = 0;  ///< times squared differences over degrees of freedom: a variance
-  std::vector<std::uint8_t> seen_;      ///< [pixels] Refinement::log when `shown_` was set
+  std::vector<std::uint8_t> seen_;  ///< [pixels] Refinement::log when `shown_` was set
   /// [pixels] Squared differences of each level over degrees of freedom, mean of the channels
   std::vector<float> levels_[3];
   std::vector<std::uint8_t> white_;             ///< [pixels] whether a channel is shown as white
