@@ -13,9 +13,10 @@ namespace {
 /// The least that is asked for: below, the call takes as long as what it saves.
 constexpr std::size_t kLeast = std::size_t{1} << 16;
 
-#if defined(MADV_HUGEPAGE) && defined(MADV_POPULATE_WRITE)
+#ifdef __linux__
 constexpr std::size_t kPage = 4096;  // where they are larger, most of this is refused
-constexpr int kLarge = MADV_HUGEPAGE, kNow = MADV_POPULATE_WRITE;
+constexpr int kLarge = MADV_HUGEPAGE;
+constexpr int kNow = 23;  ///< MADV_POPULATE_WRITE, which older systems and headers do not know
 #else
 constexpr std::size_t kPage = kLargePage;
 constexpr int kLarge = 0, kNow = 0;

@@ -35,12 +35,14 @@ void reserve_to_fill(Array& v, std::size_t n) {
 }
 
 /// Room for one element more of an array that grows by these: its pages are asked for piece by
-/// piece, so that no more of them are taken than are filled.
+/// piece, so that no more of them are taken than are filled. What was reserved is filled first.
 template <class Array>
 void make_room(Array& v) {
   constexpr std::size_t kAtOnce = (std::size_t{1} << 17) / sizeof v[0];
-  if (v.size() % kAtOnce == 0 && !v.empty())
-    reserve_to_fill(v, v.size() + kAtOnce);
+  if (v.size() % kAtOnce != 0 || v.empty())
+    return;
+  const std::size_t n = v.size() + kAtOnce;
+  reserve_to_fill(v, v.size() < v.capacity() ? std::min(n, v.capacity()) : n);
 }
 
 /// v.resize(n, ...), of an array whose new elements are soon written, each of them.

@@ -118,6 +118,19 @@ TYPED_TEST(ArraysToFill, GrowByOneInFewSteps) {
   EXPECT_LE(steps, 24);  // twice as large each: 22
 }
 
+/// A file that says how much there is says it once: no array is made anew before that is full.
+TEST(Pages, OfWhatWasReservedAreEnough) {
+  constexpr std::size_t kCount = 200'000;
+  std::vector<std::uint32_t> v;
+  v.reserve(kCount);
+  const std::uint32_t* const first = v.data();
+  for (std::uint32_t i = 0; i < kCount; ++i) {
+    make_room(v);
+    v.push_back(i);
+    ASSERT_EQ(v.data(), first) << i;
+  }
+}
+
 TEST(Pages, OfText) {
   std::string text = "abc";
   resize_to_fill(text, 1'000'000);

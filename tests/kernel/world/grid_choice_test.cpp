@@ -195,7 +195,7 @@ TEST(GridSize, OneLargePrimitiveAmongManyLeavesCellsSmall) {
   EXPECT_EQ(cells.size(), 1u);
 }
 
-/// Spikes of a star: each crosses half of the grid, whatever its cells. 128 of them, picked evenly,
+/// Spikes of a star: each crosses half of the grid, whatever its cells. A few, picked evenly,
 /// say how many references there will be; all are alike but for their direction, which changes the
 /// cells on their way by sqrt 2.
 TEST(GridSize, SliversDoNotFillMemory) {
