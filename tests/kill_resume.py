@@ -55,8 +55,11 @@ def kill_and_resume(options, folder):
             run = subprocess.Popen(command + options + [
                 "-o", picture, "--checkpoint", checkpoint, "--checkpoint-every", str(alone / 30),
                 "--threads", str(rng.randint(1, 3)), "--stats", stats])
+            # longer and longer: on a machine that has become busier since `alone` was measured, a
+            # render might otherwise never live until its next checkpoint
+            patience = .5 * alone * (1 + attempt / 20)
             try:
-                run.wait(rng.uniform(0, .5 * alone))
+                run.wait(rng.uniform(0, patience))
                 break
             except subprocess.TimeoutExpired:
                 run.send_signal(signal.SIGKILL)
