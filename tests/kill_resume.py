@@ -55,9 +55,9 @@ def kill_and_resume(options, folder):
             run = subprocess.Popen(command + options + [
                 "-o", picture, "--checkpoint", checkpoint, "--checkpoint-every", str(alone / 30),
                 "--threads", str(rng.randint(1, 3)), "--stats", stats])
-            # longer and longer: on a machine that has become busier since `alone` was measured, a
-            # render might otherwise never live until its next checkpoint
-            patience = .5 * alone * (1 + attempt / 20)
+            # twice as long every 20 times: where the machine is busier than when `alone` was
+            # measured, a render might otherwise never live until its next checkpoint
+            patience = .5 * alone * 2 ** (attempt / 20)
             try:
                 run.wait(rng.uniform(0, patience))
                 break
