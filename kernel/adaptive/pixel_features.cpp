@@ -3,6 +3,7 @@
 #include "kernel/marks/glows.hpp"
 #include "kernel/marks/small_things.hpp"
 #include "kernel/query/variants.hpp"
+#include "kernel/scene/turns.hpp"
 
 namespace grelha {
 namespace {
@@ -145,15 +146,17 @@ void find_hidden_features(const World::Impl& world,
   const Search search{world, setup, errors, things, glows, faint, dear, errors.forgiven(error), r};
   const int columns = (r.width + kTile - 1) / kTile;
   const int rows = (r.height + kTile - 1) / kTile;
+  Thrown thrown;
 #pragma omp parallel num_threads(threads)
   {
     TraceCounts mine;
 #pragma omp for schedule(dynamic, 4)
     for (int tile = 0; tile < columns * rows; ++tile)
-      search.search_tile(tile % columns * kTile, tile / columns * kTile, mine);
+      thrown.in([&] { search.search_tile(tile % columns * kTile, tile / columns * kTile, mine); });
 #pragma omp critical(grelha_stats)
     counts += mine;
   }
+  thrown.on();
 }
 
 }  // namespace grelha

@@ -11,7 +11,11 @@ inline constexpr int kCorners = 4;
 
 struct Beam {
   Vec3f org[kCorners], dir[kCorners];  ///< around the beam, in order; unit directions
+  float growth = 1;                    ///< times as wide is what counts as inside
 };
+
+/// Signs of the corners of a beam along x and y.
+inline constexpr float kCornerSigns[kCorners][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
 
 /// A beam as a pyramid over a parallelogram: its rays seem to come from the apex, and a point apex
 /// + w (axis + x right + y up) lies inside when |x| and |y| are at most 1.
@@ -48,7 +52,7 @@ struct BeamSpread {
   return s.growth > 0 ? lesser(s.offset / s.growth, farthest) : farthest;
 }
 
-/// Sets where the corner rays pierce w = 1.
+/// Sets where the corner rays pierce w = 1, and how wide the beam is there.
 [[gnu::always_inline]] inline void span_parallelogram(const Beam& b, BeamFrame& f) {
   Vec3f c[kCorners];
   const float along = f.depth > 0 ? 0.f : 1.f;
@@ -58,8 +62,8 @@ struct BeamSpread {
     c[i] = (1 / dot(at, f.unit)) * at;
   }
   f.axis = middle(c);
-  f.right = .25f * ((c[1] - c[0]) + (c[2] - c[3]));
-  f.up = .25f * ((c[3] - c[0]) + (c[2] - c[1]));
+  f.right = (.25f * b.growth) * ((c[1] - c[0]) + (c[2] - c[3]));
+  f.up = (.25f * b.growth) * ((c[3] - c[0]) + (c[2] - c[1]));
 }
 
 /// Sets what finds x and y; false of a pyramid without width. Along the axis x = det(p, up, axis) /
@@ -84,7 +88,8 @@ struct BeamSpread {
     first = lesser(w, first);
     last = greater(w, last);
   }
-  return last + kDepthMargin * (last - first);
+  const float grown = .5f * (b.growth - 1);
+  return last + (grown + b.growth * kDepthMargin) * (last - first);
 }
 
 /// False when the rays spread too far to be a beam.

@@ -2,7 +2,7 @@
 // What the corner rays of a beam meet.
 
 #include "kernel/features/beam_frame.hpp"
-#include "kernel/trace/trace.hpp"
+#include "kernel/shapes/surface.hpp"
 
 namespace grelha::GRELHA_ISA {
 
@@ -30,31 +30,21 @@ inline bool any_of(const std::uint32_t (&id)[kCorners], const Test& test) {
   p.best[i] = end;
 }
 
-/// Nearest hits of the corner rays.
-inline void trace_corners(const SceneView& scene, const Beam& beam, Sight& sight, Counters& n) {
-  Packet<InFloat> p;
-  p.size = kCorners;
-  for (int i = 0; i < kCorners; ++i)
-    set_ray(p, i, beam.org[i], beam.dir[i], kInfinity);
-  trace_packet<false>(scene, p, {16, true}, n);
-  for (int i = 0; i < kCorners; ++i) {
-    sight.id[i] = id_of(p.id[i]);
-    sight.t[i] = t_of(p, i);
-  }
-}
+/// The surfaces that a beam's corners met.
+using CornerSurfaces = Surface<float>[kCorners];
 
-/// The w before which all corner rays end, with room for rounding.
-[[gnu::always_inline]] inline float farthest_hit(const BeamFrame& f,
-                                                 const Beam& beam,
-                                                 const Sight& sight) {
+/// The w before which a beam ends on a surface that goes on beside its corners as it lies there,
+/// with room for rounding.
+[[gnu::always_inline]] inline float farthest_hit(const BeamFrame& f, const CornerSurfaces& s) {
   float far = 0;
   for (int i = 0; i < kCorners; ++i) {
-    float w = kInfinity;
-    if (sight.id[i] != kNoPrimitive)
-      w = place(f, beam.org[i] + sight.t[i] * beam.dir[i]).w * kBehindHit;
-    far = greater(w, far);
+    const auto [x, y] = kCornerSigns[i];
+    const Vec3f to = s[i].point - f.apex;
+    const float w = dot(to, s[i].normal) / dot(f.axis + x * f.right + y * f.up, s[i].normal);
+    far = greater(dot(to, f.unit), far);
+    far = w > 0 ? greater(w, far) : kInfinity;
   }
-  return far;
+  return far * kBehindHit;
 }
 
 }  // namespace grelha::GRELHA_ISA

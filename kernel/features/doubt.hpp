@@ -7,7 +7,6 @@
 // move the decision from colours to objects; here the objects only say where to go on sampling.
 
 #include "kernel/features/light_watch.hpp"
-#include "kernel/scene/refraction.hpp"
 
 namespace grelha::GRELHA_ISA {
 
@@ -16,16 +15,6 @@ struct ToFollow {
   int mirrors;
   int clears;  ///< surfaces that it passes through
 };
-
-/// Whether a primitive sends on enough light to be followed: `least` by a mirror.
-inline bool is_bent(const SceneView& scene,
-                    const ShadingView& shading,
-                    std::uint32_t id,
-                    float least = kLeastMirror) {
-  const std::uint32_t m = material_of_any(scene.geometry, id);
-  return shading.materials.field[kTransmission][m] > 0 ||
-         largest(material_color(shading.materials, m, kMirrorR)) >= least;
-}
 
 /// What is looked for on the first surface. What a mirror shows is looked for wherever there is
 /// one.
@@ -47,44 +36,69 @@ class Watcher {
   /// Weight of the faintest mirror that is followed.
   float least_sent() const { return least_sent_; }
 
-  /// What may hide in the light that comes along the beam with `weight`. None: it is plain, one
+  /// What may hide in the light that comes through a square with `weight`. None: it is plain, one
   /// smooth surface under light that is whole or wholly blocked, and so in mirrors and behind clear
   /// surfaces, as far as they are followed. `whole`: only what is sure of each part of the beam
   /// counts, which is a surface that is one convex primitive, or a nearly flat patch of a mesh.
-  Doubt doubt(const Beam& beam,
+  Doubt doubt(const FieldSquare& square,
               bool whole,
               ToFollow follow,
               float weight,
               LookFor look = {},
               std::uint32_t mirror_id = kNoPrimitive) {
+    if (!square.has_rays())
+      return around(weight);
+    const Beam beam = square.beam();
     BeamFrame f;
     if (!frame_of(beam, f))
       return around(weight);
-    Sight sight;
-    trace_corners(scene_, beam, sight, n_);
-    const bool differ = corners_differ(sight.id, whole);
+    const Seen seen = see(square);
+    const bool differ = corners_differ(seen.id, whole);
     if (whole && differ)
       return around(weight);
-    const float far = farthest_hit(f, beam, sight);
+    const float far = seen.all ? farthest_hit(f, seen.s) : kInfinity;
     Met met;
     if (whole) {
-      if (!holds_patch(f, sight.id, far, met))
+      if (!holds_patch(f, seen.id, far, met))
         return around(weight);
     } else if (look.things || look.lights != 0 || differ) {
-      const Doubt found = met_inside(f, sight.id, far, differ, mirror_id, weight, met);
+      const Doubt found = met_inside(f, seen.id, far, differ, mirror_id, weight, met);
       if (!found.none())
         return found;
     }
     if (differ)
-      return at_edge(beam, sight, follow, weight);
-    if (look.things && !closed(scene_.geometry, f, met, sight.id))
+      return at_edge(beam, seen, follow, weight);
+    if (look.things && !closed(scene_.geometry, f, met, seen.id))
       return around(weight);
-    if (sight.id[0] == kNoPrimitive)
+    if (seen.id[0] == kNoPrimitive)
       return {};
-    return on_surface(beam, sight, met, {whole, look.lights, follow}, weight);
+    return on_surface(square, seen, met, {whole, look.lights, follow}, weight);
   }
 
  private:
+  /// What the corners of a square met.
+  struct Seen {
+    std::uint32_t id[kCorners];
+    CornerSurfaces s;  ///< of those that met something
+    bool within[kCorners];
+    bool all = true;  ///< met something
+  };
+
+  static Seen see(const FieldSquare& square) {
+    Seen seen;
+    for (int i = 0; i < kCorners; ++i) {
+      seen.id[i] = square.field.id(square.at[i]);
+      if (seen.id[i] == kNoPrimitive) {
+        seen.all = false;
+        continue;
+      }
+      const FacedSurface& faced = square.field.faced(square.at[i]);
+      seen.s[i] = faced.surface;
+      seen.within[i] = faced.within;
+    }
+    return seen;
+  }
+
   /// What to do on a surface.
   struct OnSurface {
     bool whole;
@@ -95,6 +109,7 @@ class Watcher {
   /// A beam that met a surface, and how far it is to be followed.
   struct Way {
     const Beam& beam;
+    const FieldSquare* square;  ///< null: the surface is a plane that is taken to go on
     const CornerSurfaces& s;
     std::uint32_t id;  ///< of the surface
     bool whole;
@@ -150,25 +165,23 @@ class Watcher {
 
   /// What may hide where the corners differ: also in a mirror or pane of triangles that one of them
   /// met, as though it went on.
-  Doubt at_edge(const Beam& beam, const Sight& sight, ToFollow follow, float weight) {
+  Doubt at_edge(const Beam& beam, const Seen& seen, ToFollow follow, float weight) {
     for (int i = 0; i < kCorners; ++i) {
-      const std::uint32_t id = sight.id[i];
+      const std::uint32_t id = seen.id[i];
       CornerSurfaces s;
-      bool within = false;
       if (id == kNoPrimitive || !is_triangle(scene_.geometry, id) ||
-          !is_bent(scene_, shading_, id) || !go_on(beam, sight, i, s, within))
+          !is_bent(scene_, shading_, id) || !go_on(beam, seen.s[i], s))
         continue;
-      const Way way{beam, s, id, false, follow, weight};
+      const Way way{beam, nullptr, s, id, false, follow, weight};
       return around(weight) + (field(s[0], kTransmission) > 0
-                                   ? in_glass(way, within, 0)
+                                   ? in_glass(way, seen.within[i], 0)
                                    : in_mirror(way, largest(color(s[0], kMirrorR)), 0));
     }
     return around(weight);
   }
 
   /// The plane that one corner ray met, at all of them; false: one misses it.
-  bool go_on(const Beam& beam, const Sight& sight, int one, CornerSurfaces& s, bool& within) const {
-    const Surface<float> there = facing(beam, sight, one, within);
+  static bool go_on(const Beam& beam, const Surface<float>& there, CornerSurfaces& s) {
     for (int i = 0; i < kCorners; ++i) {
       const float t = dot(there.point - beam.org[i], there.normal) / dot(beam.dir[i], there.normal);
       if (!(t > 0 && t < kInfinity))
@@ -180,17 +193,21 @@ class Watcher {
   }
 
   /// What hides in the light on the surface that the corners met, in its mirror and behind it.
-  Doubt on_surface(
-      const Beam& beam, const Sight& sight, const Met& met, const OnSurface& on, float weight) {
-    CornerSurfaces s;
-    bool within = false;
-    if (!find_surfaces(beam, sight, s, within))
-      return around(weight);
+  Doubt on_surface(const FieldSquare& square,
+                   const Seen& seen,
+                   const Met& met,
+                   const OnSurface& on,
+                   float weight) {
+    const CornerSurfaces& s = seen.s;
+    for (int i = 1; i < kCorners; ++i)
+      if (seen.within[i] != seen.within[0] || dot(s[i].normal, s[0].normal) < kOneSurface)
+        return around(weight);
     const Doubt found = LightWatch(scene_, shading_, least_, n_)
-                            .uneven_lights({s, sight.id, met, on.whole}, on.lights, weight);
-    const Way way{beam, s, sight.id[0], on.whole, on.follow, weight};
+                            .uneven_lights({square, s, seen.id, met, on.whole}, on.lights, weight);
+    const Beam beam = square.beam();
+    const Way way{beam, &square, s, seen.id[0], on.whole, on.follow, weight};
     if (field(s[0], kTransmission) > 0)
-      return on.whole ? around(weight) : found + in_glass(way, within, found.inside);
+      return on.whole ? around(weight) : found + in_glass(way, seen.within[0], found.inside);
     return found + in_mirror(way, largest(color(s[0], kMirrorR)), found.inside);
   }
 
@@ -282,32 +299,6 @@ class Watcher {
     return mirror_id != kNoPrimitive && (id == mirror_id || kin(scene_.geometry, id, mirror_id));
   }
 
-  /// The surface that a corner ray met, its normals towards the beam; whether that comes from
-  /// `within`.
-  Surface<float> facing(const Beam& beam, const Sight& sight, int i, bool& within) const {
-    const Vec3f zero{0, 0, 0};
-    Surface<float> s = surface_of<float>(
-        scene_.geometry, sight.id[i], beam.org[i], beam.dir[i], sight.t[i], shading_.smooth);
-    within = dot(beam.dir[i], s.normal) > 0;
-    if (within) {
-      s.normal = zero - s.normal;
-      s.shading = zero - s.shading;
-    }
-    return s;
-  }
-
-  /// The same at all corners; false when they turn too far.
-  bool find_surfaces(const Beam& beam, const Sight& sight, CornerSurfaces& s, bool& within) const {
-    s[0] = facing(beam, sight, 0, within);
-    for (int i = 1; i < kCorners; ++i) {
-      bool behind = false;
-      s[i] = facing(beam, sight, i, behind);
-      if (behind != within || dot(s[i].normal, s[0].normal) < kOneSurface)
-        return false;
-    }
-    return true;
-  }
-
   float field(const Surface<float>& s, MaterialField k) const {
     return shading_.materials.field[k][s.material];
   }
@@ -322,15 +313,13 @@ class Watcher {
     if (!(mirror > found) || mirror < least_sent_ || field(way.s[0], kRoughness) > 0 ||
         way.follow.mirrors == 0)
       return {};
-    Beam mirrored;
-    for (int i = 0; i < kCorners; ++i) {
-      const Surface<float>& s = way.s[i];
-      const float across = dot(way.beam.dir[i], s.shading);
-      mirrored.dir[i] = normalize(way.beam.dir[i] - (across + across) * s.shading);
-      mirrored.org[i] = s.point + s.away * s.normal;
-    }
+    StartedRay mirrored[kCorners];
+    for (int i = 0; i < kCorners; ++i)
+      mirrored[i] = mirrored_ray(way.beam.dir[i], way.s[i]);
     const ToFollow left{way.follow.mirrors - 1, way.follow.clears};
-    return doubt(mirrored, way.whole, left, mirror, {}, way.id);
+    return follow_on(way, mirrored, &CornerField::mirrored, [&](const FieldSquare& square) {
+      return doubt(square, way.whole, left, mirror, {}, way.id);
+    });
   }
 
   /// What hides behind the clear surface that the corners met, and in its mirror: followed as light
@@ -338,20 +327,17 @@ class Watcher {
   /// tell.
   Doubt in_glass(const Way& way, bool within, float found) {
     const float ior = field(way.s[0], kIor);
-    Beam through;
+    StartedRay passed[kCorners];
     float least = 1;
     float most = 0;
     for (int i = 0; i < kCorners; ++i) {
-      const Surface<float>& s = way.s[i];
-      const Vec3f v = Vec3f{0, 0, 0} - way.beam.dir[i];
-      const Refraction<float> f = snell(ior, within, dot(s.shading, v));
+      const Refraction<float> f = refraction_at(way.beam.dir[i], way.s[i], ior, within);
       if (!f.passes)
         return around(way.weight);
       const float mirrored = schlick(ior, f);
       least = lesser(least, mirrored);
       most = greater(most, mirrored);
-      through.dir[i] = normalize(passed_on(f, s.shading, v));
-      through.org[i] = s.point - s.away * s.normal;
+      passed[i] = passed_ray(way.beam.dir[i], way.s[i], f);
     }
     const bool fresnel = shading_.fresnel && field(way.s[0], kFresnel) > 0;
     const Doubt up = in_mirror(way, fresnel ? most : largest(color(way.s[0], kMirrorR)), found);
@@ -362,7 +348,24 @@ class Watcher {
     if (way.follow.clears == 0)
       return up + around(passes);
     const ToFollow left{way.follow.mirrors, way.follow.clears - 1};
-    return up + doubt(through, false, left, passes, {}, way.id);
+    return up + follow_on(way, passed, &CornerField::passed, [&](const FieldSquare& square) {
+             return doubt(square, false, left, passes, {}, way.id);
+           });
+  }
+
+  /// What `watch` says of the four rays: in the field that the corners' own becomes, or alone.
+  template <class Watch>
+  Doubt follow_on(const Way& way,
+                  const StartedRay (&rays)[kCorners],
+                  CornerField& (CornerField::*become)(),
+                  const Watch& watch) {
+    if (way.square)
+      return watch({(way.square->field.*become)(), way.square->at, way.beam.growth});
+    CornerField own(scene_, shading_, n_);
+    for (int i = 0; i < kCorners; ++i)
+      own.set(i, rays[i], ~std::uint64_t{0});
+    own.trace();
+    return watch({own, {0, 1, 2, 3}, way.beam.growth});
   }
 
   const SceneView& scene_;

@@ -3,15 +3,14 @@
 
 #include "kernel/features/beam_search.hpp"
 #include "kernel/features/closed_sheet.hpp"
+#include "kernel/features/corner_field.hpp"
 #include "kernel/features/what_hides.hpp"
 
 namespace grelha::GRELHA_ISA {
 
-/// The surfaces that a beam's corners met.
-using CornerSurfaces = Surface<float>[kCorners];
-
 /// What a beam's corners met: one surface.
 struct Patch {
+  const FieldSquare& square;
   const CornerSurfaces& s;
   const std::uint32_t (&on)[kCorners];
   const Met& met;  ///< what else reaches into the beam
@@ -46,7 +45,7 @@ class LightWatch {
       const Vec3f sent = answer * Vec3f{light[3], light[4], light[5]};
       const float part = lesser(largest(sent), 1.f) * weight;
       if (part > most.inside && part >= least_)
-        most = most + uneven_light(light, patch, part);
+        most = most + uneven_light(l, patch, part);
     }
     return most;
   }
@@ -55,28 +54,31 @@ class LightWatch {
   /// The beam from a light to a patch.
   struct LightBeam {
     Beam beam;
+    Sight sight;
     float length[kCorners];
     int facing = 0;  ///< corners of the patch that face the light
   };
-  static LightBeam light_beam(const Vec3f& light, const CornerSurfaces& s) {
+  static LightBeam light_beam(int l, const Patch& patch) {
+    const LightRays& rays = patch.square.field.from_light(l, patch.square.at);
     LightBeam b;
+    b.beam.growth = patch.square.growth;
     for (int i = 0; i < kCorners; ++i) {
-      const Vec3f to = s[i].point + s[i].away * s[i].normal - light;
-      b.length[i] = length(to);
-      b.beam.org[i] = light;
-      b.beam.dir[i] = (1 / b.length[i]) * to;
-      b.facing += dot(to, s[i].normal) < 0;
+      const int at = patch.square.at[i];
+      b.length[i] = rays.length[at];
+      b.beam.org[i] = rays.org[at];
+      b.beam.dir[i] = rays.dir[at];
+      b.sight.id[i] = rays.id[at];
+      b.sight.t[i] = rays.t[at];
+      b.facing += dot(rays.dir[at], patch.s[i].normal) < 0;
     }
     return b;
   }
 
   /// Corners of a patch that the light reaches.
-  int lit_corners(const LightBeam& b,
-                  const Sight& sight,
-                  const std::uint32_t (&on)[kCorners]) const {
+  int lit_corners(const LightBeam& b, const std::uint32_t (&on)[kCorners]) const {
     int lit = 0;
     for (int i = 0; i < kCorners; ++i)
-      lit += !(sight.t[i] < b.length[i] * kBeforeSurface) || touches_any(on, sight.id[i]);
+      lit += !(b.sight.t[i] < b.length[i] * kBeforeSurface) || touches_any(on, b.sight.id[i]);
     return lit;
   }
   bool touches_any(const std::uint32_t (&on)[kCorners], std::uint32_t id) const {
@@ -93,41 +95,44 @@ class LightWatch {
 
   /// Doubt whether the light, of weight `part`, reaches all of the patch between four points, or
   /// none of it.
-  Doubt uneven_light(const float* light, const Patch& patch, float part) {
-    const LightBeam b = light_beam({light[0], light[1], light[2]}, patch.s);
+  Doubt uneven_light(int l, const Patch& patch, float part) {
+    const LightBeam b = light_beam(l, patch);
     if (b.facing == 0)
       return {};
     BeamFrame f;
     if (!frame_of(b.beam, f))
       return around(part);
-    Sight sight;
-    trace_corners(scene_, b.beam, sight, n_);
-    const int lit = lit_corners(b, sight, patch.on);
+    const int lit = lit_corners(b, patch.on);
     if (lit == 0)
-      return blocked(f, b, sight, patch.whole) ? Doubt{} : around(part);
-    return lit == kCorners ? shadows(f, b, patch, is_point(light), part) : around(part);
+      return blocked(f, b, patch.whole) ? Doubt{} : around(part);
+    if (lit < kCorners)
+      return around(part);
+    return shadows(f, b, patch, is_point(shading_.lights + kLightFloats * l), part);
   }
 
   /// Whether all of a beam whose corners are dark is: one solid, or one closed sheet stands in it.
   /// Of a sheet no more is looked at than as far behind what the corner rays met as that is deep.
-  bool blocked(const BeamFrame& f, const LightBeam& b, const Sight& sight, bool whole) {
+  bool blocked(const BeamFrame& f, const LightBeam& b, bool whole) {
     const GeometryView& g = scene_.geometry;
-    const auto& id = sight.id;
+    const auto& id = b.sight.id;
     const bool one = id[0] == id[1] && id[0] == id[2] && id[0] == id[3];
     if (one && id[0] < g.ids.begin(PrimitiveKind::kCone))
       return true;
-    const float behind = farthest_hit(f, b.beam, sight);
-    float before = behind;
+    if (whole || !one_surface(g, id))
+      return false;
+    CornerSurfaces s;
+    float before = kInfinity;
     float end = 0;
     for (int i = 0; i < kCorners; ++i) {
-      const Vec3f hit = b.beam.org[i] + sight.t[i] * b.beam.dir[i];
-      before = lesser(place(f, hit).w, before);
+      s[i] =
+          surface_of<float>(g, id[i], b.beam.org[i], b.beam.dir[i], b.sight.t[i], shading_.smooth);
+      before = lesser(place(f, s[i].point).w, before);
       end = greater(b.length[i], end);
     }
+    const float behind = farthest_hit(f, s);
     const float far = lesser(behind + (behind - before), end);
     Met shade;
-    return !whole && one_surface(g, id) && collect(scene_, f, far, id, false, shade, n_) &&
-           closed(g, f, shade, id);
+    return collect(scene_, f, far, id, false, shade, n_) && closed(g, f, shade, id);
   }
 
   /// Doubt of a patch that is lit at its corners: whatever stands between throws its shadow inside.

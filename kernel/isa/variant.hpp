@@ -59,13 +59,7 @@ inline void doubt(const SceneView& scene,
                   PixelDoubts& found,
                   TraceCounts& trace_counts) {
   Counters n;
-  Watcher watcher(scene, shading, least, n);
-  PixelsAsked of = asked;
-  if (of.if_bent != 0)
-    of.if_bent &= shading.reflects || shading.refracts
-                      ? bent_pixels(scene, shading, frame, x0, y0, watcher.least_sent(), n)
-                      : std::uint64_t{0};
-  tile_doubt(watcher, frame, x0, y0, kTile, bounces, of, found);
+  tile_doubt(scene, shading, frame, x0, y0, bounces, least, asked, found, n);
   add(n, trace_counts);
 }
 
