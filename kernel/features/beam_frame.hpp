@@ -62,8 +62,9 @@ struct BeamSpread {
     c[i] = (1 / dot(at, f.unit)) * at;
   }
   f.axis = middle(c);
-  f.right = (.25f * b.growth) * ((c[1] - c[0]) + (c[2] - c[3]));
-  f.up = (.25f * b.growth) * ((c[3] - c[0]) + (c[2] - c[1]));
+  const float half = .25f * b.growth;
+  f.right = half * ((c[1] - c[0]) + (c[2] - c[3]));
+  f.up = half * ((c[3] - c[0]) + (c[2] - c[1]));
 }
 
 /// Sets what finds x and y; false of a pyramid without width. Along the axis x = det(p, up, axis) /
@@ -79,17 +80,20 @@ struct BeamSpread {
 }
 
 /// The w from which the whole beam is on its way. Its corners are nearly the ends of a slanting
-/// mirror.
+/// mirror, whose 1 / w is linear across the beam. Not above 0: it never is.
 [[gnu::always_inline]] inline float depth_of(const Beam& b, const BeamFrame& f) {
   float first = kInfinity;
   float last = 0;
+  float mean = 0;  // of 1 / w
   for (int i = 0; i < kCorners; ++i) {
     const float w = dot(b.org[i] - f.apex, f.unit);
     first = lesser(w, first);
     last = greater(w, last);
+    mean += .25f / w;
   }
-  const float grown = .5f * (b.growth - 1);
-  return last + (grown + b.growth * kDepthMargin) * (last - first);
+  const auto grown = [&](float w) { return 1 / (mean + b.growth * (1 / w - mean)); };
+  const float end = grown(last);
+  return end > 0 ? greater(end, last) + kDepthMargin * (end - grown(first)) : 0;
 }
 
 /// False when the rays spread too far to be a beam.
@@ -113,9 +117,10 @@ inline bool frame_of(const Beam& b, BeamFrame& f) {
   span_parallelogram(b, f);
   if (!set_coordinates(f))
     return false;
-  if (f.depth != 0)
-    f.depth = depth_of(b, f);
-  return true;
+  if (f.depth == 0)
+    return true;
+  f.depth = depth_of(b, f);
+  return f.depth > 0;
 }
 
 /// Place in the beam, see BeamFrame.

@@ -124,8 +124,6 @@ class CornerField {
   }
   void trace() { rays_.trace(scene_, n_); }
 
-  bool has(int at) const { return rays_.there[at]; }
-  std::uint64_t lights_of(int at) const { return lights_of_[at]; }
   std::uint32_t id(int at) const { return rays_.id[at]; }
   const CornerRays& rays() const { return rays_; }
 
@@ -167,7 +165,7 @@ class CornerField {
     std::unique_ptr<LightRays>& rays = from_lights_[l < kLightBits ? l : kLightBits];
     if (rays && l < kLightBits)
       return *rays;
-    rays = std::make_unique<LightRays>();
+    rays = std::make_unique_for_overwrite<LightRays>();
     if (l < kLightBits)
       for (int at = 0; at < kTileCorners; ++at)
         set_from(l, at, *rays);
@@ -240,9 +238,6 @@ struct FieldSquare {
   SquareCorners at;
   float growth;
 
-  bool has_rays() const {
-    return field.has(at[0]) && field.has(at[1]) && field.has(at[2]) && field.has(at[3]);
-  }
   Beam beam() const {
     Beam b;
     for (int i = 0; i < kCorners; ++i) {

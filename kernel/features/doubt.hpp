@@ -46,8 +46,6 @@ class Watcher {
               float weight,
               LookFor look = {},
               std::uint32_t mirror_id = kNoPrimitive) {
-    if (!square.has_rays())
-      return around(weight);
     const Beam beam = square.beam();
     BeamFrame f;
     if (!frame_of(beam, f))

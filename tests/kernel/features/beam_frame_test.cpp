@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "kernel/features/beam.hpp"
+#include "kernel/features/corner_hits.hpp"
 #include "tests/support/random.hpp"
 
 namespace grelha::test {
@@ -16,6 +17,8 @@ namespace {
 
 using beam_frame::Beam;
 using beam_frame::BeamFrame;
+using beam_frame::CornerSurfaces;
+using beam_frame::farthest_hit;
 using beam_frame::frame_of;
 using beam_frame::kCorners;
 using beam_frame::place;
@@ -131,6 +134,9 @@ Beam mirrored_beam(float half, const Vector& normal) {
   return b;
 }
 
+/// Widths that beams have, for those of their rays.
+constexpr float kGrowths[] = {1, kPixelGrowth, kSquareGrowth};
+
 /// No point of the mirror lies beyond where the pyramid begins. The corners would be its ends, were
 /// what the pyramid cuts out of it their trapezoid. It reaches beyond them by up to .08 of the way
 /// between first and last.
@@ -142,8 +148,10 @@ TEST(BeamFrame, BeginsBehindItsMirror) {
     if (n.z < .1f)  // more than 84 degrees aslant
       continue;
     const Vector normal{n.x, n.y, n.z};
+    Beam b = mirrored_beam(static_cast<float>(random.log_in(1e-5, .04)), normal);
+    b.growth = kGrowths[i % 3];
     BeamFrame f;
-    if (!frame_of(mirrored_beam(static_cast<float>(random.log_in(1e-5, .04)), normal), f))
+    if (!frame_of(b, f))
       continue;
     ++beams;
     for (int part = 0; part < 25; ++part) {
@@ -155,6 +163,68 @@ TEST(BeamFrame, BeginsBehindItsMirror) {
     }
   }
   EXPECT_GT(beams, 1000);
+}
+
+/// A beam is as much wider than its rays as it is told.
+TEST(BeamFrame, IsWiderThanItsRays) {
+  for (const float growth : kGrowths) {
+    Beam b = square_beam(1, .01f);
+    b.growth = growth;
+    BeamFrame f;
+    ASSERT_TRUE(frame_of(b, f));
+    for (int i = 0; i < kCorners; ++i) {
+      const Place p = place(f, b.org[i] + 100.f * b.dir[i]);
+      EXPECT_NEAR(p.x, kSigns[i][0] / growth, .001) << growth;
+      EXPECT_NEAR(p.y, kSigns[i][1] / growth, .001) << growth;
+    }
+  }
+}
+
+/// A plane, or two that meet in a ridge between the corners, lies before the end of the beam, also
+/// where that is wider than its rays.
+TEST(BeamFrame, EndsBehindWhatItsCornersMet) {
+  Random random(3);
+  int beams = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const double slant = random.in(0, 80) * std::numbers::pi / 180;
+    const double turn = random.in(0, 7);
+    Vector normal{static_cast<float>(std::sin(slant) * std::cos(turn)),
+                  static_cast<float>(std::sin(slant) * std::sin(turn)),
+                  static_cast<float>(std::cos(slant))};
+    // the ridge goes along y through the middle: what is right of it is the left half's mirror image
+    const bool ridge = i % 2 == 1;
+    Beam b = square_beam(0, static_cast<float>(random.log_in(1e-3, .03)));
+    b.growth = kGrowths[i % 3];
+    BeamFrame f;
+    ASSERT_TRUE(frame_of(b, f));
+    const auto normal_at = [&](float x) {
+      return ridge && x > 0 ? Vector{-normal.x, normal.y, normal.z} : normal;
+    };
+    const auto depth = [&](float x, float y) {
+      const Vector dir = f.axis + x * f.right + y * f.up;
+      return dot(Vector{0, 0, -1}, normal_at(x)) / dot(dir, normal_at(x));
+    };
+    CornerSurfaces s{};
+    for (int k = 0; k < kCorners; ++k) {
+      const auto [x, y] = kSigns[k];
+      s[k].normal = normal_at(x);
+      const float w = depth(x / b.growth, y / b.growth);
+      s[k].point = (w / dot(b.dir[k], f.unit)) * b.dir[k];
+    }
+    const float far = farthest_hit(f, s);
+    float deepest = 0;
+    bool before = true;
+    for (const auto [x, y] : kSigns) {
+      before &= depth(x, y) > 0;
+      deepest = std::max({deepest, depth(x, y), depth(x / b.growth, y / b.growth)});
+    }
+    if (!before)
+      continue;
+    ++beams;
+    ASSERT_LT(deepest, far) << i;
+    ASSERT_LT(far, 1.001f * deepest) << i;
+  }
+  EXPECT_GT(beams, 2000);
 }
 
 }  // namespace

@@ -246,6 +246,39 @@ TEST_P(Beam, DoubtsWhereTheShadowOfWhatIsNearTheSurfaceFalls) {
   EXPECT_EQ(at(look(s), 2, 1), 2);
 }
 
+/// Lights are told apart by their number modulo 64, and each by itself all the same: only the last
+/// of 70 shines past the speck.
+TEST_P(Beam, DoubtsTheShadowsOfSeventyLights) {
+  Scene s = wall();
+  const Light last = s.lights[0];
+  Light behind = last;
+  behind.position = {30, 0, -40};
+  s.lights.assign(69, behind);
+  s.lights.push_back(last);
+  s.geometry.spheres.add({14.25f, 1.25f, 20}, .02f, 0);
+  const Tile tile = look(s);
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 8; ++x)
+      EXPECT_EQ(at(tile, x, y), x == 2 && y == 1 ? 2 : 0) << x << ' ' << y;
+}
+
+/// Pixels side by side share corners, whatever lights they are asked about.
+TEST_P(Beam, AsksEachPixelItsOwnLight) {
+  Scene s = wall();
+  s.lights.push_back({{-30, 0, 40}, {1, 1, 1}});
+  s.geometry.spheres.add({14.25f, 1.25f, 20}, .02f, 0);   // half way from the first to (-1.5, 2.5)
+  s.geometry.spheres.add({-15.25f, 1.25f, 20}, .02f, 0);  // from the second to (-.5, 2.5)
+  constexpr int kLeft = 8 + 2, kRight = 8 + 3;
+  PixelsAsked asked;
+  for (const int i : {kLeft, kRight}) {
+    asked.shadows |= std::uint64_t{1} << i;
+    asked.lights[i] = i == kLeft ? 1 : 2;
+  }
+  const PixelDoubts found = doubts(s, *GetParam(), {}, over_units(), asked);
+  EXPECT_EQ(found.boxed[kLeft], 1);
+  EXPECT_EQ(found.boxed[kRight], 1);
+}
+
 TEST_P(Beam, LeavesOutMirrorsThatWeighNothing) {
   for (const float weight : {.02f, .01f}) {  // of 1 / 64 and less
     Scene s = wall();
