@@ -80,13 +80,14 @@ template <class A>
 inline SimdDouble<A> magnitude(const SimdDouble<A>& a) {
   return xsimd::abs(a);
 }
+// xsimd's own cast takes a type of batches in older versions, one of lanes in newer ones.
 template <class A>
 inline SimdInt<A> float_bits(const Simd<A>& a) {
-  return xsimd::bitwise_cast<SimdInt<A>>(a);
+  return __builtin_bit_cast(SimdInt<A>, a);
 }
 template <class A>
 inline Simd<A> bits_float(const SimdInt<A>& a) {
-  return xsimd::bitwise_cast<Simd<A>>(a);
+  return __builtin_bit_cast(Simd<A>, a);
 }
 template <class A>
 inline Simd<A> to_float(const SimdInt<A>& a) {
