@@ -33,6 +33,17 @@ TEST_P(BeamBounds, MeetsABallByItsRim) {
   }
 }
 
+/// A ball beside an edge of the beam, which reaches beyond the two sides that meet there and yet not
+/// to where they do.
+TEST_P(BeamBounds, MissesABallBesideItsEdge) {
+  for (const float radius : {.1f, .3f, .45f}) {
+    Scene s = dark_wall();
+    const float beside = kHalfBeam + .8f * radius;
+    s.geometry.spheres.add({kMiddle.x + beside, kMiddle.y + beside, 0}, radius, 0);
+    EXPECT_EQ(at(look(s), kX, kY), 0) << radius;
+  }
+}
+
 /// Triangles of which only a tip reaches into the beam. A ray to the very tip may pass it by.
 TEST_P(BeamBounds, MeetsTrianglesByTheirTips) {
   Random random(1);
