@@ -180,17 +180,15 @@ void PixelErrors::forget_contrasts(std::size_t p) {
 }
 
 void PixelErrors::show_new() {
-  std::vector<std::uint32_t> changed;
-  for (std::size_t p = 0; p < own_.size(); ++p)
-    if (seen_[p] != r_.log[p])
-      changed.push_back(static_cast<std::uint32_t>(p));
 #pragma omp parallel for num_threads(threads_) schedule(static)
-  for (std::size_t i = 0; i < changed.size(); ++i)
-    show(changed[i]);
-  for (const std::uint32_t p : changed) {
-    seen_[p] = r_.log[p];
-    forget_contrasts(p);
-  }
+  for (std::size_t p = 0; p < seen_.size(); ++p)
+    if (seen_[p] != r_.log[p])
+      show(p);
+  for (std::size_t p = 0; p < seen_.size(); ++p)
+    if (seen_[p] != r_.log[p]) {
+      forget_contrasts(p);
+      seen_[p] = r_.log[p];
+    }
 }
 
 void PixelErrors::measure() {
