@@ -212,7 +212,7 @@ FAULTS = [
     Fault("pixels that can have no more", "kernel/adaptive/pixel_errors.cpp",
           "gain[p] = log[p] < kMostLog ?", "gain[p] = true ?", "refinement", "*OneByOne*"),
     Fault("pixels as they were once shown", "kernel/adaptive/pixel_errors.cpp",
-          "if (seen_[p] != r_.log[p])", "if (seen_[p] == 0)", "refinement",
+          "if (seen_[p] != r_.log[p]) show(p);", "if (seen_[p] == 0) show(p);", "refinement",
           "*FollowThePixels*"),
     Fault("nothing lent from below", "kernel/adaptive/pixel_errors.cpp",
           "below[-1] + below[0] + below[1]", "0", "refinement", "PixelErrors.*"),
