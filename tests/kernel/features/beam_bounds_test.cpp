@@ -33,7 +33,7 @@ TEST_P(BeamBounds, MeetsABallByItsRim) {
   }
 }
 
-/// A ball beside an edge of the beam, which reaches beyond the two sides that meet there and yet not
+/// A ball beside an edge of the beam: it reaches beyond the two sides that meet there, and yet not
 /// to where they do.
 TEST_P(BeamBounds, MissesABallBesideItsEdge) {
   for (const float radius : {.1f, .3f, .45f}) {

@@ -191,7 +191,7 @@ TEST(BeamFrame, EndsBehindWhatItsCornersMet) {
     Vector normal{static_cast<float>(std::sin(slant) * std::cos(turn)),
                   static_cast<float>(std::sin(slant) * std::sin(turn)),
                   static_cast<float>(std::cos(slant))};
-    // the ridge goes along y through the middle: what is right of it is the left half's mirror image
+    // the ridge goes along y through the middle: what is right of it mirrors the left half
     const bool ridge = i % 2 == 1;
     Beam b = square_beam(0, static_cast<float>(random.log_in(1e-3, .03)));
     b.growth = kGrowths[i % 3];
