@@ -311,9 +311,7 @@ class Watcher {
     if (!(mirror > found) || mirror < least_sent_ || field(way.s[0], kRoughness) > 0 ||
         way.follow.mirrors == 0)
       return {};
-    StartedRay mirrored[kCorners];
-    for (int i = 0; i < kCorners; ++i)
-      mirrored[i] = mirrored_ray(way.beam.dir[i], way.s[i]);
+    const auto mirrored = [&](int i) { return mirrored_ray(way.beam.dir[i], way.s[i]); };
     const ToFollow left{way.follow.mirrors - 1, way.follow.clears};
     return follow_on(way, mirrored, &CornerField::mirrored, [&](const FieldSquare& square) {
       return doubt(square, way.whole, left, mirror, {}, way.id);
@@ -325,17 +323,16 @@ class Watcher {
   /// tell.
   Doubt in_glass(const Way& way, bool within, float found) {
     const float ior = field(way.s[0], kIor);
-    StartedRay passed[kCorners];
+    Refraction<float> bent[kCorners];
     float least = 1;
     float most = 0;
     for (int i = 0; i < kCorners; ++i) {
-      const Refraction<float> f = refraction_at(way.beam.dir[i], way.s[i], ior, within);
-      if (!f.passes)
+      bent[i] = refraction_at(way.beam.dir[i], way.s[i], ior, within);
+      if (!bent[i].passes)
         return around(way.weight);
-      const float mirrored = schlick(ior, f);
+      const float mirrored = schlick(ior, bent[i]);
       least = lesser(least, mirrored);
       most = greater(most, mirrored);
-      passed[i] = passed_ray(way.beam.dir[i], way.s[i], f);
     }
     const bool fresnel = shading_.fresnel && field(way.s[0], kFresnel) > 0;
     const Doubt up = in_mirror(way, fresnel ? most : largest(color(way.s[0], kMirrorR)), found);
@@ -345,23 +342,25 @@ class Watcher {
       return up;
     if (way.follow.clears == 0)
       return up + around(passes);
+    const auto passed = [&](int i) { return passed_ray(way.beam.dir[i], way.s[i], bent[i]); };
     const ToFollow left{way.follow.mirrors, way.follow.clears - 1};
     return up + follow_on(way, passed, &CornerField::passed, [&](const FieldSquare& square) {
              return doubt(square, false, left, passes, {}, way.id);
            });
   }
 
-  /// What `watch` says of the four rays: in the field that the corners' own becomes, or alone.
-  template <class Watch>
+  /// What `watch` says of the four rays: in the field that the corners' own becomes, or, made by
+  /// ray(i), alone.
+  template <class Ray, class Watch>
   Doubt follow_on(const Way& way,
-                  const StartedRay (&rays)[kCorners],
+                  const Ray& ray,
                   CornerField& (CornerField::*become)(),
                   const Watch& watch) {
     if (way.square)
       return watch({(way.square->field.*become)(), way.square->at, way.beam.growth});
     CornerField own(scene_, shading_, n_);
     for (int i = 0; i < kCorners; ++i)
-      own.set(i, rays[i], ~std::uint64_t{0});
+      own.set(i, ray(i), ~std::uint64_t{0});
     own.trace();
     return watch({own, {0, 1, 2, 3}, way.beam.growth});
   }
