@@ -36,7 +36,7 @@ target_sources(small_things_test PRIVATE kernel/marks/glows_test.cpp
   kernel/marks/mesh_rims_test.cpp kernel/marks/mesh_thickness_test.cpp
   kernel/marks/rim_walk_test.cpp)
 grelha_test(kernel/query/query unit grelha::kernel)
-target_sources(query_test PRIVATE kernel/query/rays_test.cpp)
+target_sources(query_test PRIVATE kernel/query/any_size_test.cpp kernel/query/rays_test.cpp)
 grelha_test(kernel/render/shade unit grelha::kernel)
 target_sources(shade_test PRIVATE kernel/render/bounces_test.cpp)
 grelha_test(kernel/shapes/copies unit grelha::kernel)

@@ -215,13 +215,18 @@ inline Real take(const double* p) {
   return load<Real>(p);
 }
 
+/// The floats after and before a number.
+inline float next_above(float a) {
+  const std::int32_t b = float_bits(a);
+  return bits_float(a == 0 ? 1 : a > 0 ? b + 1 : b - 1);
+}
+inline float next_below(float a) {
+  return 0 - next_above(0 - a);
+}
 /// The greatest float not above, and the least not below, a number; NaN for NaN.
 inline float not_above(double a) {
   const float r = static_cast<float>(a);
-  if (!(r > a))
-    return r;
-  const std::int32_t b = float_bits(r);
-  return r == 0 ? bits_float(INT32_MIN + 1) : bits_float(r > 0 ? b - 1 : b + 1);
+  return r > a ? next_below(r) : r;
 }
 inline float not_below(double a) {
   return 0 - not_above(0 - a);

@@ -28,21 +28,20 @@ inline bool test_infinite(const SceneView& scene, Single& r, Counters& n) {
   return over;
 }
 
-/// Moves a ray that starts at `from` on to where r.org is, `shift` away in t.
-inline void move_near(const SceneView& scene, Single& r, const float (&from)[3], double shift) {
-  const bool met = r.id != kNoPrimitive;
-  const double best = met ? plane_t(scene.geometry, r.id, from, r.dir) : r.best;
-  r.t_min = static_cast<float>(r.t_min - shift);
-  r.best = static_cast<float>(best - shift);
-}
-
 /// As bring_near(Packet&). Returns how far the ray was brought, in t.
 inline float bring_near(const SceneView& scene, Single& r) {
   const float from[3] = {r.org[0], r.org[1], r.org[2]};
   const double shift = approach(scene, r.org, r.dir);
   if (!(shift > 0))
     return 0;
-  move_near(scene, r, from, shift);
+  const bool met = r.id != kNoPrimitive;
+  const double best = met ? plane_t(scene.geometry, r.id, from, r.dir) : r.best;
+  if (met && !(best > shift)) {
+    r.t_min = r.best;
+    return 0;
+  }
+  r.t_min = static_cast<float>(r.t_min - shift);
+  r.best = static_cast<float>(best - shift);
   return static_cast<float>(shift);
 }
 
@@ -125,8 +124,8 @@ inline float walk_scene(const SceneView& scene, Single& r) {
   if (test_infinite<kAny>(scene, r, n))
     return 0;
   const float shift = bring_near(scene, r);
-  if (test_cell<kAny>(r, scene.outside, 0, n))
-    return 0;
+  if (!(r.best > r.t_min) || test_cell<kAny>(r, scene.outside, 0, n))
+    return shift;
   each_grid<kAny>(scene, r.org, r.dir, r.t_min, [&](const GridView& g) {
     if (serves(g, r.org))
       walk_one<kAny>(g, r, n);
@@ -146,7 +145,9 @@ inline Hit trace_one(const SceneView& scene, const Ray& ray) {
   if (!prepare(r, org, dir, ray.t_min, ray.t_max, any_triangles))
     return {ray.t_max, kNoPrimitive};
   const float shift = walk_scene<kAny>(scene, r);
-  return {r.id == kNoPrimitive ? ray.t_max : r.best + shift, r.id};
+  if (r.id == kNoPrimitive)
+    return {ray.t_max, kNoPrimitive};
+  return {strictly_between(r.best + shift, ray.t_min, ray.t_max), r.id};
 }
 
 inline Hit closest_one(const SceneView& scene, const Ray& ray) {

@@ -147,12 +147,19 @@ inline void store_hits(const Packet<In>& p, const Rays& rays, std::size_t first,
     return;
   alignas(64) float t[kPacket];
   load_t_max(rays, first, p.size, t);
+  const bool rounded = In::kDouble || p.moved;
+  float t_min[kPacket];
+  if (rounded)
+    load_floats(rays.t_min, rays.t_stride, first, p.size, 0, t_min);
+  const auto answer = [&](auto of_hit, int i) {
+    return !met(p, i) ? t[i] : rounded ? strictly_between(of_hit, t_min[i], t[i]) : of_hit;
+  };
   for (int i = 0; i < p.size && hits.t_double; ++i)
-    hits.t_double[first + static_cast<std::size_t>(i)] = met(p, i) ? t_double(p, i) : t[i];
+    hits.t_double[first + static_cast<std::size_t>(i)] = answer(t_double(p, i), i);
   if (!hits.t)
     return;
   for (int i = 0; i < p.size; ++i)
-    t[i] = met(p, i) ? t_of(p, i) : t[i];
+    t[i] = answer(t_of(p, i), i);
   store_words(t, p.size, first, hits.stride, hits.t);
 }
 

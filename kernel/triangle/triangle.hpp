@@ -222,8 +222,8 @@ template <bool kAny, class Real, class Source>
       settled = either(settled, both(inside, both(beyond, last < t_max)));
     const Mask<Real> unsure = but_not(maybe, settled);
     if (any(unsure)) {
-      const bool near = any(but_not(unsure, beyond));
-      t = select(unsure, depth_in_double<Real, Source>(source, bits(unsure), near, t_min), t);
+      const Mask<Real> near = but_not(unsure, beyond);
+      t = select(unsure, depth_in_double<Real, Source>(source, unsure, near, t_min), t);
     }
     return both(maybe, t > t_min);  // a NaN anywhere fails here
   }

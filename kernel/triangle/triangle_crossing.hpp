@@ -145,18 +145,24 @@ template <class Real>
 }
 
 /// t of chosen lanes by crossing(); NaN where the ray does not cross, or surely not beyond t_min:
-/// what is `near` it is asked first.
+/// what is `near` it is asked first. Each lane is told what it would be told alone.
 template <class Real, class Source>
-[[gnu::noinline]] Real depth_in_double(Source source, unsigned chosen, bool near, Real t_min) {
+[[gnu::noinline]] Real depth_in_double(Source source,
+                                       Mask<Real> chosen,
+                                       Mask<Real> near,
+                                       Real t_min) {
   const RayAndTriangle<Real> from = source();
-  if (near)
-    chosen &= ~bits(past_plane(from, t_min));
+  if (any(near))
+    chosen = but_not(chosen, both(near, past_plane(from, t_min)));
+  const Real nowhere(__builtin_nanf(""));
+  const unsigned lanes = bits(chosen);
+  if (lanes == 0)
+    return nowhere;
   Wide<Real> t[kWideParts<Real>];
   for (Wide<Real>& part : t)
     part = Wide<Real>(__builtin_nan(""));
-  if (chosen != 0)
-    part_in_double<0, Real>(from, chosen, t);
-  return narrow<Real>(t);
+  part_in_double<0, Real>(from, lanes, t);
+  return select(chosen, narrow<Real>(t), nowhere);
 }
 
 }  // namespace grelha::GRELHA_ISA

@@ -241,33 +241,37 @@ bool load_ray(const Ray& ray, WalkedRay<Real>& r) {
   return ((((org[0] + org[1]) + (org[2] + dd)) + 1 / dd) * 0 == 0) && r.best > r.t_min;
 }
 
-/// Moves a ray that starts far from everything to where it comes near, see approach().
+/// Moves a ray that starts far from everything to where it comes near, see approach(). Returns
+/// whether its search is over: a plane that it meets before that hides all else.
 template <class Real>
-void bring_near(const SceneView& scene, WalkedRay<Real>& r) {
+bool bring_near(const SceneView& scene, WalkedRay<Real>& r) {
   const float from[3] = {r.near_org[0], r.near_org[1], r.near_org[2]};
   const double shift = approach(scene, r.near_org, r.dir);
   if (!(shift > 0))
-    return;
-  r.shift = static_cast<Real>(shift);
+    return false;
   if (WalkedRay<Real>::kInDouble) {
+    r.shift = static_cast<Real>(shift);
     r.near_t_min = not_above(r.t_min - shift);
     r.near_best = not_below(r.best - shift);
-    return;
+    return false;
   }
   const bool met = r.id != kNoPrimitive;
   const double best = met ? plane_t(scene.geometry, r.id, from, r.dir) : r.best;
+  if (met && !(best > shift))
+    return true;
+  r.shift = static_cast<Real>(shift);
   r.t_min = r.near_t_min = static_cast<float>(r.t_min - shift);
   r.best = r.near_best = static_cast<float>(best - shift);
   for (int a = 0; a < 3; ++a)
     r.org[a] = r.near_org[a];
+  return false;
 }
 
 template <bool kAny, class Real>
 void trace_ray(const SceneView& scene, WalkedRay<Real>& r, RayMailbox* box, Counters& n) {
   if (test_planes<kAny>(r, scene.geometry, n))
     return;
-  bring_near(scene, r);
-  if (test_lists<kAny>(r, scene.outside, 0, nullptr, n))
+  if (bring_near(scene, r) || test_lists<kAny>(r, scene.outside, 0, nullptr, n))
     return;
   for (int i = 0; i < scene.grid_count; ++i) {
     const GridView& g = scene.grids[i];
@@ -313,15 +317,15 @@ void closest(
   const auto store = [&](std::ptrdiff_t i, const Ray& ray, const WalkedRay<Real>& r) {
     const bool met = r.id != kNoPrimitive;
     const float shift = static_cast<float>(r.shift);
+    const auto answer = [&](auto t) {
+      return met ? strictly_between(t, ray.t_min, ray.t_max) : ray.t_max;
+    };
     if (hits.t)
-      hits.t[i * hits.stride] =
-          met ? static_cast<float>(kInDouble ? r.best : r.best + shift) : ray.t_max;
+      hits.t[i * hits.stride] = answer(static_cast<float>(kInDouble ? r.best : r.best + shift));
     if (hits.id)
       hits.id[i * hits.stride] = r.id;
     if (hits.t_double)
-      hits.t_double[i] = !met        ? ray.t_max
-                         : kInDouble ? r.best
-                                     : static_cast<double>(r.best) + shift;
+      hits.t_double[i] = answer(kInDouble ? double{r.best} : double{r.best} + shift);
   };
   trace_reference<false, Real>(scene, rays, mailbox, n, store);
 }
