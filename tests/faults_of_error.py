@@ -34,7 +34,7 @@ FAULTS = [
     tolerance("no width of what hides", "adaptive", "kHiddenWidth", "6", "0", "refinement",
               "*ReckonsWith*"),
     tolerance("no trust below 1", "adaptive", "kVarianceInflation", "1.12 * 1.12", "1",
-              "refinement", "*IsNotFooled*"),
+              "refinement", "PixelErrors.BoundTheErrorOf*"),
     tolerance("beams of any width", "features", "kNarrow", ".998f", "0", "beam", "*IsThereFor*"),
     tolerance("no apex of parallel rays", "features", "kFarthestApex", "1e4f", "0",
               "beam", "BeamFrame.HoldsParallel*"),
