@@ -7,6 +7,9 @@
 namespace grelha {
 namespace {
 
+/// Of the wider radius: what is flatter is taken to be so high, which moves it by 4 u of that.
+constexpr double kFlattest = 0x1p-22;
+
 struct ConeEnd {
   double at[3], radius;
 };
@@ -27,6 +30,7 @@ Cone::Fields<float> prepared_cone(const ConeSpans& c, std::size_t i) {
     out.base[a] = static_cast<float>(narrow.at[a]);
     out.axis[a] = static_cast<float>((wide.at[a] - narrow.at[a]) / height);
   }
+  height = std::max(height, kFlattest * wide.radius);
   out.height = static_cast<float>(height);
   out.radius = static_cast<float>(narrow.radius);
   out.slope = static_cast<float>((wide.radius - narrow.radius) / height);

@@ -94,12 +94,26 @@ struct Cone {
 
 namespace grelha::GRELHA_ISA {
 
+/// Cones that widen faster are met in double: rounding moves the height of a point by u of what
+/// surrounds it, and so its place between the ends by the slope times that (docs/numerics.md).
+inline constexpr float kSteep = 8;
+
+template <class Real>
+[[gnu::noinline, gnu::cold]] Mask<Real> hit_steep_cones(const Vec3<Real>& org,
+                                                        const Vec3<Real>& dir,
+                                                        const Real& inv_dd,
+                                                        const Real& t_min,
+                                                        const Cone::Fields<Real>& cone,
+                                                        const Mask<Real>& steep,
+                                                        Real& t);
+
 /// First point of each ray on the side of a cone frustum or cylinder, from outside or (through the
 /// open ends) inside.
 ///
 /// Returns   lanes whose t is above t_min; t means nothing in the others.
 /// Accuracy  hit point within 32 eps (|org - base| + height + wider radius) of the surface; a ray
-///           that leaves it from that far above it does not meet it (cone_test.cpp). The
+///           that leaves it from that far above it does not meet it, however flat the cone
+///           (cone_test.cpp). The
 ///           quadratic is solved about the ray's point nearest to the narrower end, where what it
 ///           is made of is as small as what surrounds the hit. Its discriminant b b - a c is, by
 ///           Lagrange's identity, also w w - m m: where the roots meet, at a tip, b b is the
@@ -129,6 +143,9 @@ template <class Real>
   const Mask<Real> near_by = within >= o;
   if (none(near_by))
     return near_by;
+  if constexpr (sizeof(Scalar<Real>) == sizeof(float))
+    if (const Mask<Real> steep = both(near_by, cone.slope > Real(kSteep)); any(steep))
+      return hit_steep_cones<Real>(org, dir, inv_dd, t_min, cone, steep, t);
   const Real near = dot(to_base, dir) * inv_dd;
   const Vec3<Real> p = near * dir - to_base;  // narrower end to the line's nearest point
   const Real pz = dot(p, axis), dz = dot(dir, axis);
@@ -162,6 +179,42 @@ template <class Real>
   const Mask<Real> first = both(ok1, either(but_not(ok1, ok2), t1 < t2));
   t = near + select(first, t1, t2);
   return both(crosses, either(ok1, ok2));
+}
+
+/// t of hit_cone() in double, part after part of the lanes; NaN where the ray meets nothing.
+template <int i, class Real>
+inline void cones_in_double(const Vec3<Real>& org,
+                            const Vec3<Real>& dir,
+                            const Real& t_min,
+                            const Cone::Fields<Real>& cone,
+                            Wide<Real> (&t)[kWideParts<Real>]) {
+  using W = Wide<Real>;
+  const Vec3<W> d = widen<i>(dir);
+  W met(0);
+  const Mask<W> hit = hit_cone<W>(
+      widen<i>(org), d, W(1) / dot(d, d), widen<i>(t_min), widened<Cone, i, Real>(cone), met);
+  t[i] = select(hit, met, W(__builtin_nan("")));
+  if constexpr (i + 1 < kWideParts<Real>)
+    cones_in_double<i + 1, Real>(org, dir, t_min, cone, t);
+}
+
+/// hit_cone() where some are steep.
+template <class Real>
+Mask<Real> hit_steep_cones(const Vec3<Real>& org,
+                           const Vec3<Real>& dir,
+                           const Real& inv_dd,
+                           const Real& t_min,
+                           const Cone::Fields<Real>& cone,
+                           const Mask<Real>& steep,
+                           Real& t) {
+  Wide<Real> parts[kWideParts<Real>];
+  cones_in_double<0, Real>(org, dir, t_min, cone, parts);
+  const Real exact = narrow<Real>(parts);
+  Cone::Fields<Real> others = cone;
+  others.slope = select(steep, Real(0), cone.slope);
+  const Mask<Real> hit = hit_cone<Real>(org, dir, inv_dd, t_min, others, t);
+  t = select(steep, exact, t);
+  return either(but_not(hit, steep), both(steep, exact > t_min));
 }
 
 template <class Real>
@@ -267,9 +320,15 @@ inline SurfacePlace<Real> cone_place(const Cone::Fields<Real>& cone, const Vec3<
   const Vec3<Real> base = vec(cone.base);
   const Vec3<Real> axis = vec(cone.axis);
   const Vec3<Real> from_base = at - base;
-  const Real along = dot(from_base, axis);
+  const Real above = dot(from_base, axis);
+  const Vec3<Real> radial = from_base - above * axis;
+  Real along = above;
+  // what rounding does to the height of a point, the slope times that would do to its radius
+  if (const Mask<Real> steep = cone.slope > Real(kSteep); any(steep)) {
+    const Real by_radius = (square_root(dot(radial, radial)) - cone.radius) / cone.slope;
+    along = select(steep, by_radius, along);
+  }
   const Real h = select(along < Real(0), Real(0), select(along > cone.height, cone.height, along));
-  const Vec3<Real> radial = from_base - h * axis;
   Vec3<Real> u, v;
   across(axis, u, v);
   const Vec3<Real> out = select(

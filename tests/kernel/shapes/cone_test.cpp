@@ -40,12 +40,25 @@ Shape random_shape(Random& random, double& size) {
   return s;
 }
 
+/// The same down to washers 1e-18 times as high as wide: most of these have no height left unless
+/// they lie at the origin.
+Shape flat_shape(Random& random, double& size) {
+  for (;;) {
+    Shape s = random_shape(random, size);
+    const double wide = std::max(std::abs(s.r0), std::abs(s.r1));
+    s.apex = at(s.base, wide * random.log_in(1e-18, .05), random.direction());
+    size = wide;
+    if (s.apex.x != s.base.x || s.apex.y != s.base.y || s.apex.z != s.base.z)
+      return s;
+  }
+}
+
 TEST_P(Cone, ReturnsTheScalarBits) {
   std::size_t hits = 0;
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     Random random(seed);
     double size;
-    const Shape c = random_shape(random, size);
+    const Shape c = seed % 3 == 2 ? flat_shape(random, size) : random_shape(random, size);
     const Scene scene = one_cone(c.base, c.r0, c.apex, c.r1);
     const World world(scene, {.grid = false});
     const RayList rays =
@@ -90,7 +103,7 @@ struct Case {
 
 /// What a ray is aimed at. Near a tip the quadratic's roots meet, and its coefficients may be large
 /// beside what lies between them.
-enum class Aim { kSide, kNarrowEnd, kAlongTheSide };
+enum class Aim { kSide, kNarrowEnd, kAlongTheSide, kFlat };
 
 /// A point of the wider end's rim, on the side where `out` points.
 Float3 rim_point(const oracle::V& narrow,
@@ -108,8 +121,9 @@ Case random_case(std::uint64_t seed, double farthest, Aim aim) {
   Random random(seed);
   double size;
   Case k;
-  k.shape = random_shape(random, size);
-  if (aim != Aim::kSide) {  // half with a tip, the others down to nearly one, at either end
+  k.shape = aim == Aim::kFlat ? flat_shape(random, size) : random_shape(random, size);
+  if (aim == Aim::kNarrowEnd ||
+      aim == Aim::kAlongTheSide) {  // half with a tip, the others down to nearly one, at either end
     const double share = random.log_in(1e-7, 1);
     if (k.shape.r0 == 0)
       k.shape.r0 = k.shape.r1;
@@ -125,8 +139,8 @@ Case random_case(std::uint64_t seed, double farthest, Aim aim) {
   const Float3 side = random.direction(), off = random.direction();
   k.org = at(k.shape.base, size * distance, side);
   Float3 target;
-  if (aim == Aim::kSide) {
-    const double height = random.unit(), beside = random.in(0, .5);
+  if (aim == Aim::kSide || aim == Aim::kFlat) {
+    const double height = random.unit(), beside = random.in(0, aim == Aim::kFlat ? 1.2 : .5);
     target = at(at(k.shape.base, height, minus(k.shape.apex, k.shape.base)), size * beside, off);
   } else {
     const double beside = random.log_in(1e-9, 1);
@@ -170,14 +184,16 @@ TEST_P(ConePoints, LieOnTheSurface) {
   EXPECT_GT(hits, 60000);
 }
 
-INSTANTIATE_TEST_SUITE_P(Aims,
-                         ConePoints,
-                         testing::Values(Aim::kSide, Aim::kNarrowEnd, Aim::kAlongTheSide),
-                         [](const auto& aim) {
-                           return aim.param == Aim::kSide        ? "Side"
-                                  : aim.param == Aim::kNarrowEnd ? "NarrowEnd"
-                                                                 : "AlongTheSide";
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Aims,
+    ConePoints,
+    testing::Values(Aim::kSide, Aim::kNarrowEnd, Aim::kAlongTheSide, Aim::kFlat),
+    [](const auto& aim) {
+      return aim.param == Aim::kSide        ? "Side"
+             : aim.param == Aim::kFlat      ? "Flat"
+             : aim.param == Aim::kNarrowEnd ? "NarrowEnd"
+                                            : "AlongTheSide";
+    });
 
 /// What a ray surely meets: it, and each of six moved by twice the bound, crosses the surface, and
 /// not within the bound of an end. A hole narrower than the bound may be passed or not.
@@ -252,6 +268,67 @@ TEST(ConeOracle, FindsTheFirstCrossing) {
   EXPECT_GT(judged, 40000);
 }
 
+/// What is shaded lies on the surface, within a quarter of what a new ray is moved away by,
+/// and where the ray met it: its height is off by up to 32 units, its radius by kSteep times that.
+TEST(ConeOracle, IsShadedWhereItIs) {
+  int judged = 0, off = 0, aside = 0;
+  for (std::uint64_t seed = 0; seed < 40000; ++seed) {
+    const Case k = random_case(seed, 1e3, seed % 2 ? Aim::kFlat : Aim::kSide);
+    const Scene scene = one_cone(k.shape.base, k.shape.r0, k.shape.apex, k.shape.r1);
+    const World world(scene, {.grid = false, .threads = 1});
+    const Ray ray{.org = k.org, .dir = k.dir};
+    const grelha::Hit met = closest(world, ray);
+    if (!met)
+      continue;
+    const SurfacePoint at = surface(world, ray, met);
+    const oracle::Frustum f{k.shape.base, k.shape.apex, k.shape.r0, k.shape.r1};
+    ++judged;
+    const oracle::Real bound =
+        oracle::kEps * (8 * (f.height() + std::max(std::abs(f.r0), std::abs(f.r1))) +
+                        4 * length(oracle::V(at.point)));
+    off += !(f.distance(oracle::V(at.point)) <= bound);
+    aside +=
+        !(length(oracle::V(at.point) - oracle::Ray{k.org, k.dir}.point(met.t)) <= 256 * k.unit);
+  }
+  std::printf("cone: %d shaded, %d off, %d elsewhere\n", judged, off, aside);
+  EXPECT_EQ(off, 0);
+  EXPECT_EQ(aside, 0);
+  EXPECT_GT(judged, 8000);
+}
+
+/// Flat cones are met between their rims, and not beside: as flat as can be, the ray crosses their
+/// plane where its distance from the axis says so by more than the bound.
+TEST(ConeOracle, MeetsFlatOnesBetweenTheirRims) {
+  int between = 0, lost = 0, beside = 0, met = 0;
+  for (std::uint64_t seed = 0; seed < 300000; ++seed) {
+    const Case k = random_case(seed, 1e3, Aim::kFlat);
+    const oracle::Frustum f{k.shape.base, k.shape.apex, k.shape.r0, k.shape.r1};
+    if (k.shape.r0 + k.shape.r1 <= 0 || k.shape.r0 == k.shape.r1)
+      continue;
+    const oracle::V org = oracle::V(k.org), dir = oracle::V(k.dir);
+    const oracle::Real along = dot(dir, f.axis()) / length(dir);
+    const oracle::Real t = dot(f.base - org, f.axis()) / dot(dir, f.axis());
+    const oracle::Real room = (32 * k.unit + f.height()) / std::abs(along);
+    const oracle::V p = org + t * dir;
+    const oracle::Real rho = length(cross(f.axis(), p - f.base));
+    if (std::abs(along) < .05L || t * length(dir) < room)
+      continue;
+    const oracle::Real least = std::min(f.r0, f.r1), most = std::max(f.r0, f.r1);
+    const bool hits = hit(k.org, k.dir, k.shape).hit;
+    const bool inside = rho > least + room && rho < most - room;
+    const bool outside = rho < least - room || rho > most + room;
+    between += inside;
+    lost += inside && !hits;
+    beside += outside;
+    met += outside && hits;
+  }
+  std::printf("cone: %d flat ones met, %d lost; %d passed, %d met\n", between, lost, beside, met);
+  EXPECT_EQ(lost, 0);
+  EXPECT_EQ(met, 0);
+  EXPECT_GT(between, 40000);
+  EXPECT_GT(beside, 40000);
+}
+
 /// Rays that start a quarter of what surfaces are left by (`away` in surface.hpp) above the side,
 /// and go outwards: nearly along it, or nearly along a line of the cone. Convex as it is, none
 /// meets it.
@@ -260,7 +337,7 @@ TEST(ConeOracle, IsNotMetByWhatLeavesIt) {
   for (std::uint64_t seed = 0; seed < 600000; ++seed) {
     Random random(seed);
     double size;
-    const Shape shape = random_shape(random, size);
+    const Shape shape = random.chance(.3) ? flat_shape(random, size) : random_shape(random, size);
     if (shape.r0 + shape.r1 <= 0)
       continue;  // no radius, or only the inside
     const oracle::Frustum f{shape.base, shape.apex, shape.r0, shape.r1};
