@@ -183,11 +183,11 @@ template <class Real>
 
 /// t of hit_cone() in double, part after part of the lanes; NaN where the ray meets nothing.
 template <int i, class Real>
-inline void cones_in_double(const Vec3<Real>& org,
-                            const Vec3<Real>& dir,
-                            const Real& t_min,
-                            const Cone::Fields<Real>& cone,
-                            Wide<Real> (&t)[kWideParts<Real>]) {
+[[gnu::always_inline]] inline void cones_in_double(const Vec3<Real>& org,
+                                                   const Vec3<Real>& dir,
+                                                   const Real& t_min,
+                                                   const Cone::Fields<Real>& cone,
+                                                   Wide<Real> (&t)[kWideParts<Real>]) {
   using W = Wide<Real>;
   const Vec3<W> d = widen<i>(dir);
   W met(0);
