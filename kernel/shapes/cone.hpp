@@ -113,13 +113,12 @@ template <class Real>
 /// Returns   lanes whose t is above t_min; t means nothing in the others.
 /// Accuracy  hit point within 32 eps (|org - base| + height + wider radius) of the surface; a ray
 ///           that leaves it from that far above it does not meet it, however flat the cone
-///           (cone_test.cpp). The
-///           quadratic is solved about the ray's point nearest to the narrower end, where what it
-///           is made of is as small as what surrounds the hit. Its discriminant b b - a c is, by
-///           Lagrange's identity, also w w - m m: where the roots meet, at a tip, b b is the
-///           larger, along the side w w. Less is lost of the smaller. What lies across the axis
-///           (pn, n, e, w) is a cross product with it, as long and turned by a quarter: m is p . e
-///           then.
+///           (cone_test.cpp). The quadratic is solved about the ray's point nearest to the narrower
+///           end, where what it is made of is as small as what surrounds the hit. Its discriminant
+///           b b - a c is, by Lagrange's identity, also w w - m m: where the roots meet, at a tip,
+///           b b is the larger, along the side w w. Less is lost of the smaller. What lies across
+///           the axis (pn, n, e, w) is a cross product with it, as long and turned by a quarter: m
+///           is p . e then.
 /// Source    Haines, NFF document 3.9 (SPD), "c"; stable roots as in Press et al., Numerical
 ///           Recipes, 5.6.
 template <class Real>

@@ -28,7 +28,8 @@ inline bool test_infinite(const SceneView& scene, Single& r, Counters& n) {
   return over;
 }
 
-/// As bring_near(Packet&). Returns how far the ray was brought, in t.
+/// As bring_near(Packet&): where a ray met a plane on the way its search is over, and its t stays.
+/// Returns how far the ray was brought, in t.
 inline float bring_near(const SceneView& scene, Single& r) {
   const float from[3] = {r.org[0], r.org[1], r.org[2]};
   const double shift = approach(scene, r.org, r.dir);
