@@ -67,12 +67,13 @@ struct BeamSpread {
   f.up = half * ((c[3] - c[0]) + (c[2] - c[1]));
 }
 
-/// Sets what finds x and y; false of a pyramid without width. Along the axis x = det(p, up, axis) /
-/// det(right, up, axis), over w.
+/// Sets what finds x and y; false of a pyramid that floats do not tell from a sheet. Along the axis
+/// x = det(p, up, axis) / det(right, up, axis), over w.
 [[gnu::always_inline]] inline bool set_coordinates(BeamFrame& f) {
   const Vec3f n = cross(f.right, f.up);
   const float det = dot(n, f.axis);
-  if (!(det * det > 0))
+  const float widest = greater(dot(f.right, f.right), dot(f.up, f.up));
+  if (!(det * det > kThinnest * kThinnest * widest))
     return false;
   f.to_x = (1 / det) * cross(f.up, f.axis);
   f.to_y = (1 / det) * cross(f.axis, f.right);

@@ -10,6 +10,10 @@ namespace grelha {
 /// walk half the scene).
 inline constexpr float kNarrow = .998f;
 
+/// A beam this thin, a unit along it, is none: places in it would be rounding. 32 u: a pixel of a
+/// thousand rows has that where the picture is .007 degrees high.
+inline constexpr float kThinnest = 0x1p-19f;
+
 /// Times the distance of a beam's rays from its middle: as far as an apex may lie. Rays that keep
 /// apart have one there. Over a hundred widths of way they stray from its pyramid by less than a
 /// hundredth, and what floats make of so far a place is off by less than that.

@@ -142,9 +142,11 @@ template <class Real>
   const Mask<Real> near_by = within >= o;
   if (none(near_by))
     return near_by;
+  const bool tapers = any(cone.slope > o);
   if constexpr (sizeof(Scalar<Real>) == sizeof(float))
-    if (const Mask<Real> steep = both(near_by, cone.slope > Real(kSteep)); any(steep))
-      return hit_steep_cones<Real>(org, dir, inv_dd, t_min, cone, steep, t);
+    if (tapers)
+      if (const Mask<Real> steep = both(near_by, cone.slope > Real(kSteep)); any(steep))
+        return hit_steep_cones<Real>(org, dir, inv_dd, t_min, cone, steep, t);
   const Real near = dot(to_base, dir) * inv_dd;
   const Vec3<Real> p = near * dir - to_base;  // narrower end to the line's nearest point
   const Real pz = dot(p, axis), dz = dot(dir, axis);
@@ -152,7 +154,7 @@ template <class Real>
   Real r = cone.radius, a = de, b = dot(pn, e);
   Vec3<Real> w = r * e;
   // of a cylinder the lines below change no bit
-  if (const Mask<Real> tapers = cone.slope > o; !none(tapers)) {
+  if (tapers) {
     const Real rd = cone.slope * dz, erd = inv_dd * rd;
     r = r + cone.slope * pz;
     a = a - rd * erd;

@@ -15,6 +15,7 @@
 namespace grelha::test {
 namespace {
 
+using beam_frame::across;
 using beam_frame::Beam;
 using beam_frame::BeamFrame;
 using beam_frame::CornerSurfaces;
@@ -44,6 +45,43 @@ TEST(BeamFrame, IsThereForNarrowBeamsAlone) {
   EXPECT_TRUE(frame_of(square_beam(0, .04f), f));   // 3.2 degrees to a corner
   EXPECT_FALSE(frame_of(square_beam(0, .05f), f));  // 4
   EXPECT_FALSE(frame_of(square_beam(0, .5f), f));
+}
+
+/// A patch that is seen from its side is as thin as a sheet, straight across or along a slant.
+/// Directions round by some 3 u: what is told of the places of corners is off by a quarter at most,
+/// for what is thinner than 32 u is no beam.
+TEST(BeamFrame, IsThereForNoSheet) {
+  Random random(4);
+  int beams = 0;
+  int sheets = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Float3 toward = random.direction();
+    const Vector axis{toward.x, toward.y, toward.z};
+    Vector u, v;
+    across(axis, u, v);
+    const float wide = static_cast<float>(random.log_in(1e-5, .02));
+    const float thin = static_cast<float>(random.log_in(1e-9, 1e-4));
+    const float slant = static_cast<float>(random.chance(.5) ? random.log_in(1e-5, .02) : 0);
+    Beam b;
+    for (int k = 0; k < kCorners; ++k) {
+      const auto [x, y] = kSigns[k];
+      b.org[k] = {0, 0, 0};
+      b.dir[k] = normalize(axis + (x * wide + y * slant) * u + (y * thin) * v);
+    }
+    BeamFrame f;
+    if (!frame_of(b, f)) {
+      ++sheets;
+      continue;
+    }
+    ++beams;
+    for (int k = 0; k < kCorners; ++k) {
+      const Place p = place(f, b.dir[k]);
+      ASSERT_NEAR(p.x, kSigns[k][0], .25) << i << ": " << wide << ' ' << thin << ' ' << slant;
+      ASSERT_NEAR(p.y, kSigns[k][1], .25) << i << ": " << wide << ' ' << thin << ' ' << slant;
+    }
+  }
+  EXPECT_GT(beams, 5000);
+  EXPECT_GT(sheets, 5000);
 }
 
 /// Rays that never meet, on their way of up to a hundred widths: they stay at the corners of the
