@@ -160,8 +160,6 @@ FAULTS = [
     tolerance("no room in boxes", "features", "kBoxRoom", ".02f", "-.02f", "beam", "*BeamBoxes*"),
     tolerance("no growth of bent boxes", "features", "kBoxGrowth", ".1f", "-.1f", "beam",
               "*BeamBoxes*"),
-    tolerance("grids beside any beam", "features", "kBesideSlack", "1e-5f", "-1", "beam",
-              "*MeshFromAfar*"),
     Fault("no box pays", "kernel/scene/pixel_box.hpp", "kLargestBox = .25f;", "kLargestBox = 0;",
           "beam", "*BeamBoxes*"),
     tolerance("all light is followed", "adaptive", "kForgiven", "1. / 3", "0", "refinement",

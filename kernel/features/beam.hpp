@@ -205,17 +205,16 @@ class BeamVisit {
 };
 
 /// Calls see(id) for every primitive whose bounds the beam meets in this grid, some more than once.
-/// False when no frustum holds the beam's edges.
+/// Its edges lie within kNarrow of its axis, so one frustum holds them along the axis where that
+/// goes farthest.
 template <class See>
-inline bool walk_beam(
+inline void walk_beam(
     const GridView& g, const WalkingRays& p, int axis, const See& see, Counters& n) {
   Frustum f;
-  const Coherence edges = bound_rays(g, p, f, axis);
-  if (edges != Coherence::kTogether)
-    return edges == Coherence::kMisses;
+  if (bound_rays(g, p, f, axis) == Coherence::kMisses)
+    return;
   BeamVisit<See> visit(g, f, see);
   walk_frustum(g, f, n, visit);
-  return true;
 }
 
 template <class See>

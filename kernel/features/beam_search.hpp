@@ -48,34 +48,12 @@ class MetInBeam {
   Met& met_;
 };
 
-/// What a grid is to a beam.
-enum class Looked : std::uint8_t { kInto, kPast, kNobodyKnows };
-
-/// Whether the box of a grid surely lies where dot(out, p - apex) > 0.
-inline bool lies_outside(const GridView& g, const Vec3f& apex, const Vec3f& out) {
-  const float n[3] = {out.x, out.y, out.z};
-  const float from[3] = {apex.x, apex.y, apex.z};
-  float least = 0;
-  float terms = 0;
-  for (int a = 0; a < 3; ++a) {
-    const float at = n[a] * ((n[a] > 0 ? g.lo_f[a] : g.hi_f[a]) - from[a]);
-    least += at;
-    terms += magnitude(at);
-  }
-  return least > kBesideSlack * terms;
-}
-
-/// Whether it lies beyond one side of a beam's pyramid.
-inline bool lies_beside(const GridView& g, const BeamFrame& f) {
-  return lies_outside(g, f.apex, f.to_x - f.unit) ||
-         lies_outside(g, f.apex, -1.f * f.to_x - f.unit) ||
-         lies_outside(g, f.apex, f.to_y - f.unit) ||
-         lies_outside(g, f.apex, -1.f * f.to_y - f.unit);
-}
-
-/// A beam goes where all of its edges go: the grid of rays that start far away holds for those that
-/// start near as well. Where such rays go one by one, beams from afar do not go.
-inline Looked looked_at(const GridView& g, const WalkingRays& p, const BeamFrame& f) {
+/// Whether a beam walks a grid: it goes where all of its edges go, and the grid of rays that start
+/// far away holds for those that start near as well. Where rays from afar walk one by one beams do
+/// not: what a frustum allows for grows with the way.
+inline bool walks(const GridView& g, const WalkingRays& p) {
+  if (g.serves == Serves::kNearAndAfar)
+    return true;
   bool all = true;
   bool some = false;
   for (int i = 0; i < kCorners; ++i) {
@@ -83,9 +61,7 @@ inline Looked looked_at(const GridView& g, const WalkingRays& p, const BeamFrame
     all &= served;
     some |= served;
   }
-  if (g.serves == Serves::kNearAndAfar && !all)
-    return lies_beside(g, f) ? Looked::kPast : Looked::kNobodyKnows;
-  return (g.serves == Serves::kNear ? all : some) ? Looked::kInto : Looked::kPast;
+  return g.serves == Serves::kNear ? all : some;
 }
 
 /// The edges of the pyramid as a packet, with w for t, up to w = `far`.
@@ -133,10 +109,9 @@ inline bool collect(const SceneView& scene,
   const int axis = main_axis(f.unit);
   for (int i = 0; i < scene.grid_count; ++i) {
     const GridView& g = scene.grids[i];
-    const Looked looked = looked_at(g, p, f);
-    if (looked == Looked::kNobodyKnows)
-      return false;
-    if (looked == Looked::kInto && (!walk_beam(g, p, axis, see, n) || met.full))
+    if (walks(g, p))
+      walk_beam(g, p, axis, see, n);
+    if (met.full)
       return false;
   }
   met.sort();

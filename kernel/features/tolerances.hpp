@@ -33,10 +33,6 @@ inline constexpr float kRimShare = .9f;
 /// way, of 1678.
 inline constexpr float kBehindHit = 1.0001f;
 
-/// Times the terms that are summed: what says that a grid lies beside a beam rounds by less than
-/// 20 u of them, of 168.
-inline constexpr float kBesideSlack = 1e-5f;
-
 /// Cosine of the widest angle, 37 degrees, at which two triangles pass for one
 /// surface, and that the normals of one may turn within a beam (taste: beyond
 /// it light is not smooth).

@@ -324,9 +324,8 @@ TEST_P(Beam, IsTheSameWhereGridsServeNearRaysOrFarOnes) {
   EXPECT_FALSE(near[1]);
 }
 
-/// A mesh too far away for beams to go through its grid: what it may hide in is doubted, what it is
-/// beside is not.
-TEST_P(Beam, DoubtsAMeshFromAfarWhereItMayBe) {
+/// A mesh so far away that rays walk its grid one by one.
+TEST_P(Beam, DoubtsAMeshFromAfarWhereItIs) {
   Scene s = wall();
   s.lights.clear();
   Scene ball = placed(ball_mesh(24, 12), 1e-3, {-1.3f, 2.4f, 0});  // pixel (2, 1)
@@ -341,6 +340,7 @@ TEST_P(Beam, DoubtsAMeshFromAfarWhereItMayBe) {
   for (int y = 0; y < 8; ++y)
     for (int x = 0; x < 8; ++x)
       EXPECT_EQ(at(tile, x, y) > 0, x == 2 && y == 1) << x << ' ' << y;
+  EXPECT_EQ(tile, doubt(s, *GetParam(), {.grid = false}));
 }
 
 INSTANTIATE_TEST_SUITE_P(,
