@@ -140,7 +140,26 @@ inline bool find_part_along(const Fields& one, const BeamFrame& f, float far, Pa
   return visit_shape(Shapes{}, g.ids, id, find);
 }
 
-/// The primitives, other than those of `known`, that meet() a beam; each once.
+/// Whether two finite primitives are the same but for id and material, bit for bit. Grids list the
+/// first of such alone where cells are crowded, which is for nobody to see.
+inline bool are_copies(const GeometryView& g, std::uint32_t a, std::uint32_t b) {
+  const auto compare = [&]<class Shape>(std::uint32_t i) __attribute__((always_inline)) {
+    if (!g.ids.has(Shape::kKind, b))
+      return false;
+    const std::uint32_t k = b - g.ids.begin(Shape::kKind);
+    const auto equal = [](const auto& x, const auto& y) {
+      return __builtin_memcmp(&x, &y, sizeof x) == 0;
+    };
+    if constexpr (Shape::kInBlocks)
+      return equal(triangle_corners(g.of<Shape>(), i), triangle_corners(g.of<Shape>(), k));
+    else
+      return equal(broadcast<Shape, float>(g.of<Shape>().fields, i),
+                   broadcast<Shape, float>(g.of<Shape>().fields, k));
+  };
+  return visit_shape(FiniteShapes{}, g.ids, a, compare);
+}
+
+/// The primitives, other than those of `known`, that meet() a beam; each once, copies none.
 struct Met {
   std::uint32_t id[kMostMet];
   PartInBeam part[kMostMet];

@@ -22,8 +22,14 @@ class MetInBeam {
     if (met_.full || any_of(known_, [id](std::uint32_t known) { return id == known; }))
       return;
     PartInBeam part;
-    if (!meets(scene_, f_, id, far_, part) || has(id))
+    const auto is_copy = [&](std::uint32_t of) { return are_copies(scene_.geometry, id, of); };
+    if (!meets(scene_, f_, id, far_, part) || any_of(known_, is_copy))
       return;
+    for (int i = 0; i < met_.size; ++i)
+      if (met_.part[i].point.x == part.point.x && is_copy(met_.id[i])) {
+        met_.id[i] = id < met_.id[i] ? id : met_.id[i];
+        return;
+      }
     if (met_.size == kMostMet || single_) {
       met_.full = true;
       return;
@@ -33,13 +39,6 @@ class MetInBeam {
   }
 
  private:
-  bool has(std::uint32_t id) const {
-    for (int i = 0; i < met_.size; ++i)
-      if (met_.id[i] == id)
-        return true;
-    return false;
-  }
-
   const SceneView& scene_;
   const BeamFrame& f_;
   const float far_;

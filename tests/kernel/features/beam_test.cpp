@@ -290,7 +290,7 @@ TEST_P(Beam, LeavesOutMirrorsThatWeighNothing) {
   }
 }
 
-TEST_P(Beam, IsTheSameForEveryGridAndCopy) {
+TEST_P(Beam, IsTheSameForEveryGridAndInstructionSet) {
   Scene s = wall();
   Random random(7);
   add_spheres(s, random, 60, 6, .01, .4);
@@ -304,6 +304,50 @@ TEST_P(Beam, IsTheSameForEveryGridAndCopy) {
     plain += d == 0;
   EXPECT_GT(plain, 0);
   EXPECT_LT(plain, 64);
+}
+
+/// Each primitive `times` more often, of another material.
+Scene with_copies(const Scene& of, int times) {
+  Scene s = of;
+  const std::uint32_t other = 1;
+  s.materials.resize(2);
+  for (int k = 0; k < times; ++k) {
+    const Spheres& balls = of.geometry.spheres;
+    for (std::size_t i = 0; i < balls.size(); ++i)
+      s.geometry.spheres.add({balls.x[i], balls.y[i], balls.z[i]}, balls.radius[i], other);
+    const Triangles& t = of.geometry.triangles;
+    for (std::size_t i = 0; i < t.size(); ++i)
+      add_triangle(s, vertex(of, t.a[i]), vertex(of, t.b[i]), vertex(of, t.c[i]), other);
+  }
+  return s;
+}
+
+/// Grids leave out copies where cells are crowded. The first of a kind is what is seen.
+TEST_P(Beam, IsTheSameWithCopiesAsWithout) {
+  Scene s = wall();
+  Random random(8);
+  add_spheres(s, random, 30, 6, .01, .4);
+  add_triangles(s, random, 30, 6, .1, 2);
+  s.materials[0].mirror = {.6f, .6f, .6f};
+  const Tile want = look(s);
+  for (const int times : {1, 60}) {
+    const Scene copied = with_copies(s, times);
+    EXPECT_EQ(look(copied), want) << times;
+    EXPECT_EQ(doubt(copied, *GetParam(), {.grid = false}), want) << times;
+  }
+}
+
+/// A ray to the middle of a copy meets a speck before it, and would take it for as large.
+TEST_P(Beam, LooksForNoCopyOfWhatItsCornersMet) {
+  Scene s = empty_scene();
+  add_triangle(s, {-50, -50, 0}, {50, -50, 0}, {0, 90, 0});
+  s.geometry.spheres.add({-1.5f, 2.5f, 0}, .1f, 0);  // in the middle of pixel (2, 1)
+  constexpr int kPixel = 8 + 2;
+  for (const int times : {0, 1}) {
+    const PixelDoubts found = doubts(with_copies(s, times), *GetParam());
+    EXPECT_EQ(found.boxed[kPixel], 1) << times;
+    EXPECT_EQ(found.inside[kPixel], 0) << times;
+  }
 }
 
 TEST_P(Beam, IsTheSameWhereGridsServeNearRaysOrFarOnes) {
