@@ -36,7 +36,7 @@ FAULTS = [
     tolerance("no trust below 1", "adaptive", "kVarianceInflation", "1.12 * 1.12", "1",
               "refinement", "PixelErrors.BoundTheErrorOf*"),
     tolerance("beams of any width", "features", "kNarrow", ".998f", "0", "beam", "*IsThereFor*"),
-    tolerance("sheets for beams", "features", "kThinnest", "0x1p-19f", "0", "beam",
+    tolerance("sheets for beams", "features", "kThinnest", "0x1p-21f", "0x1p-22f", "beam",
               "BeamFrame.IsThereForNoSheet"),
     tolerance("no apex of parallel rays", "features", "kFarthestApex", "1e4f", "0",
               "beam", "BeamFrame.HoldsParallel*"),

@@ -48,8 +48,8 @@ class MetInBeam {
 };
 
 /// Whether a beam walks a grid: it goes where all of its edges go, and the grid of rays that start
-/// far away holds for those that start near as well. Where rays from afar walk one by one beams do
-/// not: what a frustum allows for grows with the way.
+/// far away holds for those that start near as well. It also walks one that rays from afar walk one
+/// by one: what a frustum allows for grows with the way, as what rays in float stray by.
 inline bool walks(const GridView& g, const WalkingRays& p) {
   if (g.serves == Serves::kNearAndAfar)
     return true;

@@ -48,8 +48,8 @@ TEST(BeamFrame, IsThereForNarrowBeamsAlone) {
 }
 
 /// A patch that is seen from its side is as thin as a sheet, straight across or along a slant.
-/// Directions round by some 3 u: what is told of the places of corners is off by a quarter at most,
-/// for what is thinner than 32 u is no beam.
+/// What rounds moves the corners by up to 2.5 u (of two million beams), which is so many times the
+/// beam: .3125 of one as thin as 8 u, and thinner ones are none.
 TEST(BeamFrame, IsThereForNoSheet) {
   Random random(4);
   int beams = 0;
@@ -76,8 +76,8 @@ TEST(BeamFrame, IsThereForNoSheet) {
     ++beams;
     for (int k = 0; k < kCorners; ++k) {
       const Place p = place(f, b.dir[k]);
-      ASSERT_NEAR(p.x, kSigns[k][0], .25) << i << ": " << wide << ' ' << thin << ' ' << slant;
-      ASSERT_NEAR(p.y, kSigns[k][1], .25) << i << ": " << wide << ' ' << thin << ' ' << slant;
+      ASSERT_NEAR(p.x, kSigns[k][0], .32) << i << ": " << wide << ' ' << thin << ' ' << slant;
+      ASSERT_NEAR(p.y, kSigns[k][1], .32) << i << ": " << wide << ' ' << thin << ' ' << slant;
     }
   }
   EXPECT_GT(beams, 5000);
