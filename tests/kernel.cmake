@@ -30,7 +30,8 @@ grelha_test(kernel/isa/variants property grelha::kernel)
 grelha_test(kernel/isa/double property grelha::kernel)
 grelha_test(kernel/features/beam unit grelha::kernel)
 target_sources(beam_test PRIVATE kernel/features/beam_bounds_test.cpp
-  kernel/features/beam_box_test.cpp kernel/features/beam_frame_test.cpp)
+  kernel/features/beam_box_test.cpp kernel/features/beam_frame_test.cpp
+  kernel/features/beam_grids_test.cpp)
 grelha_test(kernel/marks/small_things unit grelha::kernel)
 target_sources(small_things_test PRIVATE kernel/marks/glows_test.cpp
   kernel/marks/mesh_rims_test.cpp kernel/marks/mesh_thickness_test.cpp

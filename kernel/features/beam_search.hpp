@@ -63,11 +63,10 @@ inline bool walks(const GridView& g, const WalkingRays& p) {
   return g.serves == Serves::kNear ? all : some;
 }
 
-/// The edges of the pyramid as a packet, with w for t, up to w = `far`.
-[[gnu::always_inline]] inline void set_edges(const SceneView& scene,
-                                             const BeamFrame& f,
-                                             float far,
-                                             Packet<InFloat>& p) {
+/// The edges of the pyramid as a packet, with w for t, up to w = `far`. They start where the beam
+/// does, however far from the scene: brought near one by one, as rays are, they would not hold what
+/// lies between them, nor would frustums allow for the rounding of the way.
+[[gnu::always_inline]] inline void set_edges(const BeamFrame& f, float far, Packet<InFloat>& p) {
   p.size = kCorners;
   for (int i = 0; i < kCorners; ++i) {
     const float x = i == 1 || i == 2 ? 1.f : -1.f;
@@ -76,7 +75,6 @@ inline bool walks(const GridView& g, const WalkingRays& p) {
     set_ray(p, i, f.apex + f.depth * dir, dir, kBehindHit * far - f.depth);
   }
   prepare(p, false);
-  bring_near(scene, p);
 }
 
 /// The axis along which a direction goes farthest.
@@ -104,7 +102,7 @@ inline bool collect(const SceneView& scene,
     return false;
   Packet<InFloat> p;
   if (scene.grid_count > 0)
-    set_edges(scene, f, far, p);
+    set_edges(f, far, p);
   const int axis = main_axis(f.unit);
   for (int i = 0; i < scene.grid_count; ++i) {
     const GridView& g = scene.grids[i];

@@ -10,8 +10,9 @@ namespace grelha {
 /// walk half the scene).
 inline constexpr float kNarrow = .998f;
 
-/// A beam whose half thickness is less, a unit along it, is none: places in it are off by 2.5 u over
-/// that (measured). 8 u: pixels of a thousand rows have that where the picture is .05 degrees high.
+/// A beam whose half thickness is less, a unit along it, is none: places in it are off by 2.5 u
+/// over that (measured). 8 u: pixels of a thousand rows have that where the picture is .05 degrees
+/// high.
 inline constexpr float kThinnest = 0x1p-21f;
 
 /// Times the distance of a beam's rays from its middle: as far as an apex may lie. Rays that keep

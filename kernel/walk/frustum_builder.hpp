@@ -30,15 +30,18 @@ class FrustumBuilder {
   Coherence around(int axis) {
     const bool all = axis != kAnyAxis;
     const int first = all ? clip_rays(axis, axis + 1) : clip_rays(0, 3);
-    if (first < 0)
-      return Coherence::kMisses;
+    // what lies between edges of a beam may meet a grid that none of them meets
     if (all)
       take_all_rays();
-    set_axes(first, all ? axis : steepest_axis(first));
+    else if (first < 0)
+      return Coherence::kMisses;
+    set_axes(all ? 0 : first, all ? axis : steepest_axis(first));
     if (!bound_slices())
       return Coherence::kIncoherent;
     bound_sides();
     set_margin();
+    if (first_ > size_ + f_.margin || last_ < -f_.margin)
+      return Coherence::kMisses;
     set_planes();
     set_reach();
     set_near();
@@ -144,6 +147,8 @@ class FrustumBuilder {
   }
 
   void set_stay(float first, float last) {
+    first_ = first;
+    last_ = last;
     f_.from = greater(first, 0.f);
     f_.to = lesser(last, size_);
     if (!(f_.from <= f_.to))
@@ -320,6 +325,7 @@ class FrustumBuilder {
   alignas(64) float enter_[kPacket];  ///< t at which each ray comes to the grid
   GroupBounds groups_;
   float size_;            ///< slices of the grid
+  float first_, last_;    ///< slice that the rays come to the grid in, and leave it from
   bool thin_;             ///< the stay has no slopes
   float per_;             ///< 1 / stay, or 0
   float farthest_;        ///< from the grid's corner, of origins and of the grid, in cells
