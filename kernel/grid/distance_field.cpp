@@ -2,91 +2,137 @@
 
 #include <algorithm>
 
-#include "kernel/grid/grid.hpp"
 #include "kernel/scene/turns.hpp"
 
 namespace grelha {
 namespace {
 
-/// Makes a row of `nx` distances no greater than those of the lower of two rows `k` away allow;
-/// returns the greatest.
-int bring_nearer(std::uint8_t* to,
-                 const std::uint8_t* a,
-                 const std::uint8_t* b,
-                 std::ptrdiff_t nx,
-                 std::ptrdiff_t k) {
-  const auto least = static_cast<std::uint8_t>(k);
-  std::uint8_t most = 0;
-  for (std::ptrdiff_t x = 0; x < nx; ++x) {
-    const std::uint8_t near = std::max(least, std::min(a[x], b[x]));
-    to[x] = std::min(to[x], near);
-    most = std::max(most, to[x]);
-  }
-  return most;
+constexpr std::uint8_t kFarthest = 255;
+
+std::size_t count_of(const std::array<std::uint32_t, 3>& cells) {
+  return std::size_t{cells[0]} * cells[1] * cells[2];
 }
 
-/// to[i] = min over k of max(k, from[i - k steps], from[i + k steps]) along one axis, for a row of
-/// `nx` lines at once; `at` of `n`.
-void nearest_along(const std::uint8_t* from,
-                   std::uint8_t* to,
-                   std::ptrdiff_t nx,
-                   std::ptrdiff_t step,
-                   std::ptrdiff_t at,
-                   std::ptrdiff_t n) {
-  std::copy_n(from, nx, to);
-  for (std::ptrdiff_t k = 1; k < 255; ++k) {
-    const std::uint8_t* const below = at - k >= 0 ? from - k * step : nullptr;
-    const std::uint8_t* const above = at + k < n ? from + k * step : nullptr;
-    if (!below && !above)
-      return;
-    // what is farther away than the farthest can better nothing
-    if (bring_nearer(to, below ? below : above, above ? above : below, nx, k) <= k + 1)
-      return;
+/// The distances of one octant, row by row against its way.
+class OctantSweep {
+ public:
+  OctantSweep(const std::uint8_t* empty,
+              std::uint8_t* to,
+              const std::array<std::uint32_t, 3>& cells,
+              std::size_t octant)
+      : empty_(empty),
+        to_(to),
+        n_{cells[0], cells[1], cells[2]},
+        octant_(octant),
+        nothing_(cells[0], kFarthest),
+        least_(cells[0] + 1) {}
+
+  void run() {
+    for (std::ptrdiff_t k = 0; k < n_[2]; ++k)
+      for (std::ptrdiff_t j = 0; j < n_[1]; ++j)
+        row(place(1, j), place(2, k));
   }
+
+ private:
+  bool is_down(int axis) const { return octant_ >> axis & 1; }
+  /// The i-th place along an axis, the last on the way of the octant first.
+  std::ptrdiff_t place(int axis, std::ptrdiff_t i) const {
+    return is_down(axis) ? i : n_[axis] - 1 - i;
+  }
+  std::ptrdiff_t next(int axis, std::ptrdiff_t i) const { return is_down(axis) ? i - 1 : i + 1; }
+
+  std::ptrdiff_t start_of(std::ptrdiff_t y, std::ptrdiff_t z) const {
+    return (z * n_[1] + y) * n_[0];
+  }
+  const std::uint8_t* found(std::ptrdiff_t y, std::ptrdiff_t z) const {
+    const bool is_inside = y >= 0 && y < n_[1] && z >= 0 && z < n_[2];
+    return is_inside ? to_ + start_of(y, z) : nothing_.data();
+  }
+
+  void row(std::ptrdiff_t y, std::ptrdiff_t z) {
+    const std::uint8_t* const a = found(next(1, y), z);
+    const std::uint8_t* const b = found(y, next(2, z));
+    const std::uint8_t* const c = found(next(1, y), next(2, z));
+    // where x goes down a row stands a place further on, behind what is beyond the grid
+    std::uint8_t* const least = least_.data() + is_down(0);
+    for (std::ptrdiff_t x = 0; x < n_[0]; ++x)
+      least[x] = std::min(std::min(a[x], b[x]), c[x]);
+    least_[is_down(0) ? 0 : static_cast<std::size_t>(n_[0])] = kFarthest;
+    along_x(empty_ + start_of(y, z), to_ + start_of(y, z));
+  }
+
+  /// A cell's own place in least_ and the next are x and x + 1, or the other way round.
+  void along_x(const std::uint8_t* empty, std::uint8_t* to) {
+    constexpr std::uint8_t kLastStep = kFarthest - 1;
+    for (std::ptrdiff_t x = 0; x < n_[0]; ++x)
+      to[x] = std::min(
+          std::min(least_[static_cast<std::size_t>(x)], least_[static_cast<std::size_t>(x) + 1]),
+          kLastStep);
+    std::uint8_t before = kFarthest;
+    const auto step = [&](std::ptrdiff_t x) {
+      before = static_cast<std::uint8_t>((std::min(before, to[x]) + 1) & empty[x]);
+      to[x] = before;
+    };
+    if (is_down(0))
+      for (std::ptrdiff_t x = 0; x < n_[0]; ++x)
+        step(x);
+    else
+      for (std::ptrdiff_t x = n_[0]; x-- > 0;)
+        step(x);
+  }
+
+  const std::uint8_t* const empty_;  ///< 0: occupied, or 255
+  std::uint8_t* const to_;
+  const std::ptrdiff_t n_[3];
+  const std::size_t octant_;
+  const std::vector<std::uint8_t> nothing_;
+  std::vector<std::uint8_t> least_;  ///< of the three rows on the way of one
+};
+
+void take_lesser(const std::uint8_t* from, std::uint8_t* to, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i)
+    to[i] = std::min(to[i], from[i]);
 }
 
-/// A row along x, by two sweeps.
-void sweep(std::uint8_t* row, std::ptrdiff_t nx) {
-  const auto step = [](std::uint8_t& to, std::uint8_t from) {
-    to = static_cast<std::uint8_t>(std::min<int>(to, from + 1));
-  };
-  for (std::ptrdiff_t x = 1; x < nx; ++x)
-    step(row[x], row[x - 1]);
-  for (std::ptrdiff_t x = nx - 1; x-- > 0;)
-    step(row[x], row[x + 1]);
+/// One octant after the other, for want of place.
+void find_in_all_directions(std::vector<std::uint8_t>& d,
+                            const std::array<std::uint32_t, 3>& cells) {
+  const std::size_t count = count_of(cells);
+  const std::vector<std::uint8_t> empty = d;
+  std::vector<std::uint8_t> octant(count);
+  for (std::size_t o = 0; o < kOctants; ++o) {
+    OctantSweep(empty.data(), octant.data(), cells, o).run();
+    take_lesser(octant.data(), d.data(), count);
+  }
 }
 
 }  // namespace
 
-void chebyshev_distance(std::vector<std::uint8_t>& d,
-                        const std::array<std::uint32_t, 3>& cells,
-                        int threads) {
-  const std::ptrdiff_t nx = cells[0];
-  const std::ptrdiff_t ny = cells[1];
-  const std::ptrdiff_t nz = cells[2];
-  std::vector<std::uint8_t> other(d.size());
-  const auto along_x_and_y = [&](std::size_t z) {
-    const std::ptrdiff_t slice = static_cast<std::ptrdiff_t>(z) * nx * ny;
-    for (std::ptrdiff_t y = 0; y < ny; ++y)
-      sweep(d.data() + slice + y * nx, nx);
-    for (std::ptrdiff_t y = 0; y < ny; ++y)
-      nearest_along(d.data() + slice + y * nx, other.data() + slice + y * nx, nx, nx, y, ny);
-  };
-  const auto along_z = [&](std::size_t slice) {
-    const auto z = static_cast<std::ptrdiff_t>(slice);
-    for (std::ptrdiff_t row = z * ny; row < (z + 1) * ny; ++row)
-      nearest_along(other.data() + row * nx, d.data() + row * nx, nx, nx * ny, z, nz);
-  };
-  each_turn(cells[2], threads, along_x_and_y);
-  each_turn(cells[2], threads, along_z);
+void find_distances(std::vector<std::uint8_t>& d,
+                    const std::array<std::uint32_t, 3>& cells,
+                    std::size_t fields,
+                    int threads) {
+  if (fields == 1)
+    return find_in_all_directions(d, cells);
+  const std::size_t count = count_of(cells);
+  const auto field = [&](std::size_t octant) { return d.data() + (1 + octant) * count; };
+  each_turn(kOctants, threads, [&](std::size_t octant) {
+    OctantSweep(d.data(), field(octant), cells, octant).run();
+  });
+  const std::size_t slice = std::size_t{cells[0]} * cells[1];
+  each_turn(cells[2], threads, [&](std::size_t z) {
+    for (std::size_t octant = 0; octant < kOctants; ++octant)
+      take_lesser(field(octant) + z * slice, d.data() + z * slice, slice);
+  });
 }
 
-std::vector<std::uint8_t> chebyshev_distance(const std::vector<std::uint8_t>& occupied,
-                                             const std::array<std::uint32_t, 3>& cells) {
-  std::vector<std::uint8_t> d(occupied.size());
-  for (std::size_t c = 0; c < d.size(); ++c)
-    d[c] = occupied[c] ? 0 : 255;
-  chebyshev_distance(d, cells, 1);
+std::vector<std::uint8_t> distances_to_occupied(const std::vector<std::uint8_t>& occupied,
+                                                const std::array<std::uint32_t, 3>& cells,
+                                                std::size_t fields) {
+  std::vector<std::uint8_t> d(fields * count_of(cells) + 3);
+  for (std::size_t c = 0; c < occupied.size(); ++c)
+    d[c] = occupied[c] ? 0 : kFarthest;
+  find_distances(d, cells, fields, 1);
   return d;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "kernel/grid/distance_field.hpp"
 #include "kernel/primitive/rounding.hpp"
 
 namespace grelha {
@@ -23,6 +24,8 @@ GridView Grid::view() const {
   v.lists = store.lists();
   v.serves = serves;
   v.distance = distance.data();
+  const std::size_t count = cell_count(cells);
+  v.field_places = distance_fields(count) > 1 ? static_cast<std::uint32_t>(count) : 0;
   v.pad = static_cast<float>(pad);
   for (int a = 0; a < 3; ++a)
     set_axis(v, a);

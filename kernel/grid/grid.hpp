@@ -24,8 +24,7 @@ struct Grid {
   /// corner (a float's value, so that walks subtract it exactly) and cell size
   double lo[3] = {}, cell[3] = {};
   CellStore store;
-  /// [cells + 3] Chebyshev distance to the nearest non-empty cell, at most 255
-  std::vector<std::uint8_t> distance;
+  std::vector<std::uint8_t> distance;  ///< of cells, see distance_field.hpp
   std::uint64_t occupied = 0;
   Serves serves = Serves::kAll;
   float near_lo[3] = {}, near_hi[3] = {};  ///< see Serves

@@ -346,13 +346,14 @@ void fill_grid(const Primitives& p,
                BuildProgress& progress,
                double share) {
   const std::size_t cells = cell_count(g.cells);
-  g.distance.resize(cells + 3);  // so that four bytes can be read from any place
+  const std::size_t fields = distance_fields(cells);
+  g.distance.resize(fields * cells + 3);
   const CellFinder finder(p, g);
   Filling filling{p, ids, g, g.pad, useful_threads(threads, ids.size()), progress};
   const auto cells_of = [&](std::uint32_t id, const auto& visit) { finder(id, visit); };
   g.occupied = fill(filling, cells_of, g.distance.data(), share);
   g.store = std::move(filling.store);
-  chebyshev_distance(g.distance, g.cells, useful_threads(threads, cells));
+  find_distances(g.distance, g.cells, fields, useful_threads(threads, cells));
 }
 
 CellStore build_list(const Primitives& p, std::span<const std::uint32_t> ids) {

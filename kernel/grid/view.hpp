@@ -29,8 +29,11 @@ struct GridView {
   CellLists lists;
   Serves serves = Serves::kAll;
   float near_lo[3] = {}, near_hi[3] = {};
-  /// [cells] Chebyshev distance to the nearest cell that holds something; 0: this one does
+  /// [cells] Chebyshev distance to the nearest cell that holds something; 0: this one does. Behind
+  /// it fields of [cells] by octants of directions, each so many places after the one before, or 0
+  /// places: there are none.
   const std::uint8_t* distance = nullptr;
+  std::uint32_t field_places = 0;
   int n[3] = {};  ///< cells per axis; x runs fastest
   double lo[3] = {}, cell[3] = {}, inv_cell[3] = {};
   float pad = 0;  ///< what primitives grew by before they were put into cells

@@ -71,13 +71,17 @@ inline std::int32_t sum(const FourInts& a) {
 inline FourInts any_of(const FourInts& a) {
   return together(a, [](const FourInts& x, const FourInts& y) { return x | y; });
 }
+/// A bit for each place of a mask.
+inline unsigned bits(const FourInts& mask) {
+#ifdef __SSE2__
+  return static_cast<unsigned>(_mm_movemask_ps(reinterpret_cast<__m128>(mask)));
+#else
+  return static_cast<unsigned>(any_of(mask & FourInts{1, 2, 4, 8})[0]);
+#endif
+}
 /// Whether a mask has a place.
 inline bool any(const FourInts& mask) {
-#ifdef __SSE2__
-  return _mm_movemask_ps(reinterpret_cast<__m128>(mask)) != 0;
-#else
-  return any_of(mask)[0] != 0;
-#endif
+  return bits(mask) != 0;
 }
 inline float least(const Four& a) {
   return together(a, [](const Four& x, const Four& y) { return lesser(x, y); })[0];

@@ -71,6 +71,10 @@ inline bool test_triangles(Single& r,
   return false;
 }
 
+/// Over fewer cells steps are sooner than a leap, which finds its place anew: calls took 2 to 4 %
+/// longer with 1, and 1 to 8 % with 3 or 5.
+inline constexpr int kLeastLeap = 2;
+
 /// Takes a ray through a grid, which tells test(cell) of the cells with something in them.
 template <class Test>
 [[gnu::always_inline]] inline void walk_one(const GridView& g,
@@ -83,10 +87,10 @@ template <class Test>
   // no more planes than there are, whatever rounding does
   for (int left = g.n[0] + g.n[1] + g.n[2] + 3; left > 0; --left) {
     ++n.visits;
-    const int distance = g.distance[walk.cell()];
+    const int distance = walk.distance();
     if (distance == 0 && test(static_cast<std::uint32_t>(walk.cell())))
       return;
-    if (!(distance > 1 ? walk.leap(distance - 1, r.best) : walk.step(r.best)))
+    if (!(distance > kLeastLeap ? walk.leap(distance - 1, r.best) : walk.step(r.best)))
       return;
   }
 }

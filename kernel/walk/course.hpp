@@ -12,6 +12,11 @@ inline Real clamp_cells(const Real& x, int n) {
   return whole(lesser(greater(x, Real(0)), Real(static_cast<float>(n - 1))));
 }
 
+/// Distances of cells for rays of one octant: of what lies before them alone.
+inline const std::uint8_t* distances_in(const GridView& g, unsigned octant) {
+  return g.distance + (1 + std::size_t{octant}) * g.field_places;
+}
+
 /// Rays in the units of one grid's cells.
 template <class Real>
 struct Course {
@@ -85,27 +90,28 @@ struct FirstPlane {
   }
 };
 
-/// The next cells of rays whose cells are `distance` from the nearest that holds something. Returns
-/// those that come there before they have met anything.
+/// The next cells of rays whose cells are `distance` from the nearest before them that holds
+/// something. Returns those that come there before they have met anything.
 template <class Real>
 [[gnu::always_inline]] inline Mask<Real> step(const GridView& g,
                                               const Course<Real>& c,
                                               const Real& distance,
                                               const Real& best,
                                               Real (&cell)[3]) {
-  // cells this far on each side are empty too
+  // cells this far on are empty too
   const Real leap = greater(distance - Real(1), Real(0));
-  Real t[3], next[3];
+  Real t[3], last[3], next[3];
   for (int a = 0; a < 3; ++a) {
     const Mask<Real> up = c.inverse[a] > Real(0);
-    next[a] = select(up, cell[a] + leap + Real(1), cell[a] - leap - Real(1));
+    last[a] = select(up, cell[a] + leap, cell[a] - leap);
+    next[a] = select(up, last[a] + Real(1), last[a] - Real(1));
     t[a] = c.t_at(a, select(up, next[a], next[a] + Real(1)));
   }
   const FirstPlane<Real> exit(t);
   Mask<Real> going = both(best > exit.t, exit.t <= c.end);
   for (int a = 0; a < 3; ++a) {
     const Real at = c.cell_at(a, exit.t, g.n[a]);
-    const Real side = lesser(greater(at, cell[a] - leap), cell[a] + leap);
+    const Real side = lesser(greater(at, lesser(cell[a], last[a])), greater(cell[a], last[a]));
     cell[a] = select(exit.axis[a], next[a], side);
     const Real size(static_cast<float>(g.n[a]));
     going = both(going, both(cell[a] >= Real(0), cell[a] < size));
@@ -120,6 +126,8 @@ class CellWalk {
   explicit CellWalk(const GridView& grid) : g_(grid) {}
 
   int cell() const { return cell_; }
+  /// Of its cell to the nearest before it that holds something.
+  int distance() const { return distance_[cell_]; }
 
   /// False: the ray does not come to the grid.
   [[gnu::always_inline]] bool start(const WalkingRay& r) {
@@ -133,6 +141,7 @@ class CellWalk {
     way_ = (up_ + up_) - four(1);
     edge_ = chosen(up, last_);
     signed_strides_ = up ? strides_ : FourInts{} - strides_;
+    distance_ = distances_in(g_, bits(inverse_ < four(0)));
     go_to(cell_at(four(begin)));
     return true;
   }
@@ -149,7 +158,7 @@ class CellWalk {
     return true;
   }
 
-  /// The same over cells that are empty, as are those within `by` of this one on each side.
+  /// The same over cells that are empty, as are those within `by` of this one on its way.
   bool leap(int by, float best) {
     const Four far = four(static_cast<float>(by));
     const Four exit = far_side(at_ + way_ * far);
@@ -157,9 +166,10 @@ class CellWalk {
     if (!any(axis & ((edge_ - at_) * way_ > far) & goes_on(exit, best)))
       return false;
     const FourInts at = to_ints(at_);
-    const FourInts next = at + to_ints(way_) * (by + 1);
+    const FourInts last = at + to_ints(way_) * by;
+    const FourInts next = last + to_ints(way_);
     const FourInts side = cell_at(of_axis(axis, exit));
-    go_to(axis ? next : lesser(greater(side, at - by), at + by));
+    go_to(axis ? next : lesser(greater(side, lesser(at, last)), greater(at, last)));
     return true;
   }
 
@@ -234,6 +244,7 @@ class CellWalk {
   Four exit_;                     ///< t of the plane that it meets next on each axis
   Four ahead_;                    ///< the same of the plane after that
   FourInts strides_, signed_strides_;
+  const std::uint8_t* distance_;  ///< of cells, for its octant
   int cell_;
 };
 

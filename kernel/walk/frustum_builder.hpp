@@ -169,6 +169,7 @@ class FrustumBuilder {
     float hi[4] = {-kInfinity, -kInfinity, -kInfinity, -kInfinity};
     Lanes wide(0);
     Lanes steep(1);
+    AxesTaken taken;
     each_live_group(p_, [&](int i, int group) {
       const Mask<Lanes> meets = load<Lanes>(f_.leave + i) > Lanes(-kInfinity);
       const Lanes per_slice = load<Lanes>(f_.per_slice + i);
@@ -181,6 +182,7 @@ class FrustumBuilder {
         const Lanes slope = (load<Lanes>(p_.dir[a] + i) * inv) * per_slice;
         wide = larger(select(meets, at, Lanes(0)), wide);
         steep = larger(select(meets, slope, Lanes(0)), steep);
+        taken.add(a, bits(meets), bits(slope < Lanes(0)));
         return Places{at + to_first * slope, at + to_last * slope};
       };
       const Places u = places(f_.u);
@@ -193,8 +195,27 @@ class FrustumBuilder {
     });
     farthest_ = greater(farthest_, lane_max(wide));
     slope_ = lane_max(steep);
+    set_distance(taken);
     for (int j = 0; j < 2; ++j)
       set_side(j, lo[2 * j], lo[2 * j + 1], hi[2 * j], hi[2 * j + 1]);
+  }
+
+  /// Lanes with a ray that goes up or down along an axis.
+  struct AxesTaken {
+    unsigned up[3] = {}, down[3] = {};
+    void add(int axis, unsigned rays, unsigned falling) {
+      up[axis] |= rays & ~falling;
+      down[axis] |= rays & falling;
+    }
+    bool both_ways(int axis) const { return up[axis] != 0 && down[axis] != 0; }
+  };
+
+  void set_distance(const AxesTaken& taken) {
+    const auto bit = [](bool down, int axis) { return down ? 1u << axis : 0u; };
+    const unsigned octant =
+        bit(f_.flip, f_.k) | bit(taken.down[f_.u] != 0, f_.u) | bit(taken.down[f_.v] != 0, f_.v);
+    const bool apart = taken.both_ways(f_.u) || taken.both_ways(f_.v);
+    f_.distance = apart ? g_.distance : distances_in(g_, octant);
   }
 
   [[gnu::always_inline]] void set_side(int j, float lo0, float lo1, float hi0, float hi1) {

@@ -54,7 +54,7 @@ inline Interval side_in(const Frustum& f, int j, const SliceSpan& s) {
 }
 
 /// Calls visit.look(cell) for the cells with something in them that lie in a rectangle of a slice.
-/// Returns the least distance that a cell of it has to one with something in it.
+/// Returns the least distance that a cell of it has to one before it with something in it.
 template <class Visit>
 [[gnu::always_inline]] inline int look_into_cells(
     const GridView& g, const Frustum& f, int slice, const CellRect& r, Counters& n, Visit& visit) {
@@ -70,7 +70,7 @@ template <class Visit>
                                static_cast<std::size_t>(u) * stride[f.u] +
                                static_cast<std::size_t>(v) * stride[f.v];
       ++n.visits;
-      const int distance = g.distance[cell];
+      const int distance = f.distance[cell];
       nearest = distance < nearest ? distance : nearest;
       if (distance == 0)
         visit.look(cell);

@@ -56,15 +56,25 @@ class RaysUnderWay {
     Lanes cell[3];
     const Mask<Lanes> come = enter(g_, org, dir, begin, load<Lanes>(p_.best + i), c, cell);
     const Chosen chosen(bits(come));
-    put(chosen, count_, c, cell, counted_words<Lanes>(static_cast<std::uint32_t>(i)));
+    put(chosen, count_, c, cell, counted_words<Lanes>(static_cast<std::uint32_t>(i)), field_of(c));
     count_ += chosen.count();
+  }
+
+  /// Where the distances begin that are those of the octants of rays.
+  Words<Lanes> field_of(const Course<Lanes>& c) const {
+    const Lanes o(0);
+    Lanes field(1);
+    for (int a = 0; a < 3; ++a)
+      field = field + select(c.inverse[a] < o, Lanes(static_cast<float>(1 << a)), o);
+    return g_.field_places * to_words(field);
   }
 
   [[gnu::always_inline]] void put(const Chosen& chosen,
                                   int to,
                                   const Course<Lanes>& c,
                                   const Lanes (&cell)[3],
-                                  const Words<Lanes>& ray) {
+                                  const Words<Lanes>& ray,
+                                  const Words<Lanes>& field) {
     for (int a = 0; a < 3; ++a) {
       chosen.store(place_[a] + to, c.place[a]);
       chosen.store(speed_[a] + to, c.speed[a]);
@@ -73,13 +83,14 @@ class RaysUnderWay {
     }
     chosen.store(end_ + to, c.end);
     chosen.store(ray_ + to, ray);
+    chosen.store(field_ + to, field);
   }
 
   [[gnu::always_inline]] void arrive(int i, Arrivals& to) {
     const auto at = [&](int a) { return to_words(load<Lanes>(cell_[a] + i)); };
     const auto cells_along = [&](int a) { return static_cast<std::uint32_t>(g_.n[a]); };
     const Words<Lanes> cell = at(0) + cells_along(0) * (at(1) + cells_along(1) * at(2));
-    const Lanes distance = bytes_at(g_.distance, cell);
+    const Lanes distance = bytes_at(g_.distance, load_words<Lanes>(field_ + i) + cell);
     store(distance_ + i, distance);
     const Chosen full(bits(distance == Lanes(0)) & walking(i));
     full.store(to.ray + to.count, load_words<Lanes>(ray_ + i));
@@ -128,7 +139,8 @@ class RaysUnderWay {
       Lanes cell[3];
       for (int a = 0; a < 3; ++a)
         cell[a] = load<Lanes>(cell_[a] + i);
-      put(chosen, to, course(i), cell, load_words<Lanes>(ray_ + i));
+      const Words<Lanes> ray = load_words<Lanes>(ray_ + i);
+      put(chosen, to, course(i), cell, ray, load_words<Lanes>(field_ + i));
       to += chosen.count();
     }
     count_ = to;
@@ -142,6 +154,7 @@ class RaysUnderWay {
         cell_[a][i] = 0;
       end_[i] = -kInfinity;
       ray_[i] = 0;
+      field_[i] = 0;
     }
   }
 
@@ -156,6 +169,7 @@ class RaysUnderWay {
   alignas(64) float end_[kWayRow];
   alignas(64) float distance_[kWayRow];
   alignas(64) std::uint32_t ray_[kWayRow];
+  alignas(64) std::uint32_t field_[kWayRow];
 };
 
 }  // namespace grelha::GRELHA_ISA

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "kernel/grid/cell_finder.hpp"
+#include "kernel/grid/distance_field.hpp"
 #include "kernel/scene/shading_view.hpp"
 
 namespace grelha {
@@ -111,6 +112,10 @@ Lists of_outside(const Primitives& p, const Plan& plan) {
   return lists;
 }
 
+double fields_of(double cells) {
+  return static_cast<double>(distance_fields(static_cast<std::size_t>(cells)));
+}
+
 /// Bytes as a build goes on.
 struct Memory {
   double kept = 0;     ///< by what is built
@@ -122,11 +127,12 @@ struct Memory {
 
   /// A grid of so many cells.
   void add(const Lists& lists, double cells) {
-    double own = cells + lists.bytes(kBoxed);  // a distance each
+    const double distances = fields_of(cells) * cells;
+    double own = distances + lists.bytes(kBoxed);
     for (const double n : lists.references)
       own += n > 0 ? kId * cells : 0;
-    // the pairs, then the distances once more
-    raise(own, std::max(kPair * lists.all(), cells));
+    // the pairs, then two fields besides where there is one
+    raise(own, std::max(kPair * lists.all(), distances > cells ? 0 : 2 * cells));
     kept += own;
   }
 };

@@ -19,7 +19,11 @@ namespace {
 
 int naive_distance(const std::vector<std::uint8_t>& occupied,
                    const std::array<std::uint32_t, 3>& n,
-                   std::uint32_t at) {
+                   std::uint32_t at,
+                   std::size_t field) {
+  const auto is_before = [&](int from, int to, int axis) {
+    return field == 0 || ((field - 1) >> axis & 1 ? to <= from : to >= from);
+  };
   const auto place = [&](std::uint32_t c) {
     return std::array<int, 3>{int(c % n[0]), int(c / n[0] % n[1]), int(c / n[0] / n[1])};
   };
@@ -29,6 +33,8 @@ int naive_distance(const std::vector<std::uint8_t>& occupied,
     if (!occupied[c])
       continue;
     const auto q = place(c);
+    if (!is_before(p[0], q[0], 0) || !is_before(p[1], q[1], 1) || !is_before(p[2], q[2], 2))
+      continue;
     least = std::min(
         least, std::max({std::abs(p[0] - q[0]), std::abs(p[1] - q[1]), std::abs(p[2] - q[2])}));
   }
@@ -44,9 +50,13 @@ TEST(Distance, IsThatOfTheNearestOccupiedCell) {
     const double share = random.log_in(1e-3, .5);
     for (auto& o : occupied)
       o = random.chance(share);
-    const auto distance = chebyshev_distance(occupied, n);
-    for (std::uint32_t c = 0; c < occupied.size(); ++c)
-      ASSERT_EQ(distance[c], naive_distance(occupied, n, c)) << "seed " << seed << ", cell " << c;
+    const auto distance = distances_to_occupied(occupied, n, 1 + kOctants);
+    for (std::size_t field = 0; field <= kOctants; ++field)
+      for (std::uint32_t c = 0; c < occupied.size(); ++c)
+        ASSERT_EQ(distance[field * occupied.size() + c], naive_distance(occupied, n, c, field))
+            << "seed " << seed << ", cell " << c << ", field " << field;
+    const auto alone = distances_to_occupied(occupied, n, 1);
+    EXPECT_TRUE(std::equal(alone.begin(), alone.end() - 3, distance.begin()));
   }
 }
 
@@ -54,12 +64,16 @@ TEST(Distance, StopsAt255) {
   const std::array<std::uint32_t, 3> n{600, 2, 1};
   std::vector<std::uint8_t> occupied(1200);
   occupied[0] = 1;
-  const auto distance = chebyshev_distance(occupied, n);
-  for (std::uint32_t x = 0; x < 600; ++x)
+  const auto distance = distances_to_occupied(occupied, n, 1 + kOctants);
+  constexpr std::uint32_t up = 1200, down = 2400;  // along x
+  for (std::uint32_t x = 0; x < 600; ++x) {
     EXPECT_EQ(distance[x], std::min(x, 255u)) << x;
+    EXPECT_EQ(distance[up + x], x == 0 ? 0 : 255) << x;
+    EXPECT_EQ(distance[down + x], std::min(x, 255u)) << x;
+  }
   // nothing anywhere
-  EXPECT_EQ(chebyshev_distance(std::vector<std::uint8_t>(8), {2, 2, 2}),
-            std::vector<std::uint8_t>(8, 255));
+  const auto nothing = distances_to_occupied(std::vector<std::uint8_t>(8), {2, 2, 2}, 1 + kOctants);
+  EXPECT_TRUE(std::all_of(nothing.begin(), nothing.begin() + 72, [](int d) { return d == 255; }));
 }
 
 // ---- rows ----
@@ -176,9 +190,7 @@ TEST(GridRows, HoldWhatTheyPromise) {
           far[id] += g.serves != Serves::kNear;
         }
         EXPECT_EQ(g.occupied, std::accumulate(occupied.begin(), occupied.end(), std::uint64_t{0}));
-        const auto distance = chebyshev_distance(occupied, g.cells);
-        ASSERT_GE(g.distance.size(), cells + 3) << "four bytes are read at once";
-        EXPECT_TRUE(std::equal(distance.begin(), distance.end(), g.distance.begin()));
+        EXPECT_EQ(g.distance, distances_to_occupied(occupied, g.cells, 1 + kOctants));
       }
       std::vector<std::uint32_t> all(w.primitives.finite_count());
       std::iota(all.begin(), all.end(), w.primitives.first_finite());

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <thread>
 
+#include "kernel/grid/distance_field.hpp"
 #include "tests/support/oracle.hpp"
 #include "tests/support/rays.hpp"
 #include "tests/support/scenes.hpp"
@@ -121,6 +122,31 @@ TEST(Query, OneRayAloneLeapsOverEmptyCellsAsAStreamDoes) {
     rays.add(from, minus(vertex(corners, 3 * i), from));
   }
   expect_calls_like_streams(corners, rays, "corners of a cube");
+}
+
+TEST(Query, GridsOfVeryManyCellsKnowNoOctants) {
+  Random random(19);
+  Scene specks = empty_scene();
+  for (int i = 0; i < 60; ++i) {
+    const Float3 a = random.point(1);
+    add_triangle(specks, a, at(a, .002, random.direction()), at(a, .002, random.direction()));
+  }
+  const World many(specks, {.density = 106}), few(specks, {});
+  ASSERT_GT(cell_count(many.grids()[0].cells), kMostCellsOfOctants);
+  EXPECT_EQ(many.impl().view.grids[0].field_places, 0u);
+  EXPECT_GT(few.impl().view.grids[0].field_places, 0u);
+  RayList rays;
+  for (std::uint32_t i = 0; i < 600; ++i) {
+    const Float3 from = random.point(2);
+    rays.add(from, minus(vertex(specks, i % 180), from));
+  }
+  const Answers a = ask(many, rays, Query::kClosest), b = ask(few, rays, Query::kClosest);
+  EXPECT_GT(std::count(b.id.begin(), b.id.end(), kNoPrimitive), 0);
+  EXPECT_LT(std::count(b.id.begin(), b.id.end(), kNoPrimitive), 500);
+  EXPECT_EQ(a.id, b.id);
+  EXPECT_EQ(a.t, b.t);
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    EXPECT_EQ(closest(many, Ray{rays.org(i), rays.dir(i)}).id, b.id[i]) << rays.describe(i);
 }
 
 TEST(Query, SomethingIsInTheWayWhereSomethingIsMet) {
