@@ -55,7 +55,7 @@ FAULTS = [
           "Isa/Walk.*"),
     Fault("packets both ways that take one for all", "kernel/walk/frustum_builder.hpp",
           "f_.distance = apart ? g_.distance :", "f_.distance = apart && false ? g_.distance :",
-          "walk", "Isa/Walk.*"),
+          "query", "Query.PacketsThatGoBothWaysSeeWhatIsOnEither"),
     Fault("distances without what lies across a corner", "kernel/grid/distance_field.cpp",
           "const c = found(next(1, y), next(2, z))", "const c = found(y, next(2, z))", "grid",
           "Distance.IsThatOfTheNearestOccupiedCell"),

@@ -124,6 +124,38 @@ TEST(Query, OneRayAloneLeapsOverEmptyCellsAsAStreamDoes) {
   expect_calls_like_streams(corners, rays, "corners of a cube");
 }
 
+/// From one point, row by row, so that those of a row go both ways along one axis.
+RayList fan_of_rays() {
+  RayList rays;
+  for (const bool turned : {false, true})
+    for (int row = 0; row < 64; ++row)
+      for (int i = 0; i < 64; ++i) {
+        const float along = (float(i) - 31.5f) / 100;
+        const float across = (float(row) - 31.5f) / 100;
+        rays.add({0, 0, -1.2f}, turned ? Float3{across, along, 1} : Float3{along, across, 1});
+      }
+  return rays;
+}
+
+TEST(Query, PacketsThatGoBothWaysSeeWhatIsOnEither) {
+  const RayList rays = fan_of_rays();
+  std::ptrdiff_t hits = 0;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    Random random(seed);
+    Scene specks = empty_scene();
+    add_spheres(specks, random, 20, 1, .029, .03);
+    const World sparse(specks, {.density = 5});
+    ASSERT_EQ(sparse.grids().size(), 1u);
+    const Truth truth = truth_of(specks, rays);
+    for (const std::uint32_t id : truth.closest.id)
+      hits += id != kNoPrimitive;
+    for (const int packet : {64, 256})
+      EXPECT_EQ(ask(sparse, rays, Query::kClosest, {.packet = packet}).id, truth.closest.id)
+          << seed;
+  }
+  EXPECT_GT(hits, 1000);
+}
+
 TEST(Query, GridsOfVeryManyCellsKnowNoOctants) {
   Random random(19);
   Scene specks = empty_scene();
