@@ -9,10 +9,6 @@ namespace {
 
 constexpr std::uint8_t kFarthest = 255;
 
-std::size_t count_of(const std::array<std::uint32_t, 3>& cells) {
-  return std::size_t{cells[0]} * cells[1] * cells[2];
-}
-
 /// The distances of one octant, row by row against its way.
 class OctantSweep {
  public:
@@ -97,7 +93,7 @@ void take_lesser(const std::uint8_t* from, std::uint8_t* to, std::size_t count) 
 /// One octant after the other, for want of place.
 void find_in_all_directions(std::vector<std::uint8_t>& d,
                             const std::array<std::uint32_t, 3>& cells) {
-  const std::size_t count = count_of(cells);
+  const std::size_t count = cell_count(cells);
   const std::vector<std::uint8_t> empty = d;
   std::vector<std::uint8_t> octant(count);
   for (std::size_t o = 0; o < kOctants; ++o) {
@@ -114,7 +110,7 @@ void find_distances(std::vector<std::uint8_t>& d,
                     int threads) {
   if (fields == 1)
     return find_in_all_directions(d, cells);
-  const std::size_t count = count_of(cells);
+  const std::size_t count = cell_count(cells);
   const auto field = [&](std::size_t octant) { return d.data() + (1 + octant) * count; };
   each_turn(kOctants, threads, [&](std::size_t octant) {
     OctantSweep(d.data(), field(octant), cells, octant).run();
@@ -129,7 +125,7 @@ void find_distances(std::vector<std::uint8_t>& d,
 std::vector<std::uint8_t> distances_to_occupied(const std::vector<std::uint8_t>& occupied,
                                                 const std::array<std::uint32_t, 3>& cells,
                                                 std::size_t fields) {
-  std::vector<std::uint8_t> d(fields * count_of(cells) + 3);
+  std::vector<std::uint8_t> d(fields * cell_count(cells) + 3);
   for (std::size_t c = 0; c < occupied.size(); ++c)
     d[c] = occupied[c] ? 0 : kFarthest;
   find_distances(d, cells, fields, 1);

@@ -8,6 +8,10 @@
 
 namespace grelha {
 
+inline std::size_t cell_count(const std::array<std::uint32_t, 3>& cells) {
+  return std::size_t{cells[0]} * cells[1] * cells[2];
+}
+
 /// Octants of directions: bit a of an octant is set where they go down along axis a. A field for
 /// each stands behind that of all directions.
 inline constexpr std::size_t kOctants = 8;

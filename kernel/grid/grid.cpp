@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "kernel/grid/distance_field.hpp"
 #include "kernel/primitive/rounding.hpp"
 
 namespace grelha {

@@ -9,14 +9,11 @@
 
 #include "grelha/stats.hpp"
 #include "kernel/grid/cell_store.hpp"
+#include "kernel/grid/distance_field.hpp"
 #include "kernel/grid/view.hpp"
 #include "kernel/shapes/primitives.hpp"
 
 namespace grelha {
-
-inline std::size_t cell_count(const std::array<std::uint32_t, 3>& cells) {
-  return std::size_t{cells[0]} * cells[1] * cells[2];
-}
 
 struct Grid {
   std::array<std::uint32_t, 3> cells{1, 1, 1};  ///< per axis, each >= 1; x runs fastest

@@ -27,8 +27,8 @@ enum class Coherence {
 struct Frustum {
   int k, u, v;
   bool flip;
-  /// of cells to what lies before them: in the octant of all rays, or where they have none in
-  /// common in all directions
+  /// of cells to what lies before them in the octant of all rays, or, where they have none in
+  /// common, in any direction
   const std::uint8_t* distance;
   float from, to;
   float lo[2], lo_slope[2], hi[2], hi_slope[2];  ///< at s = from, and per slice

@@ -11,12 +11,18 @@ class BeamGrids : public EveryVariant {
 };
 GRELHA_FOR_EVERY_ISA(BeamGrids);
 
-TEST_P(BeamGrids, IsTheSameForEveryGridAndInstructionSet) {
+/// A wall that mirrors, with so many spheres and triangles about it.
+Scene crowded_wall(std::uint64_t seed, int count) {
   Scene s = wall();
-  Random random(7);
-  add_spheres(s, random, 60, 6, .01, .4);
-  add_triangles(s, random, 60, 6, .1, 2);
+  Random random(seed);
+  add_spheres(s, random, count, 6, .01, .4);
+  add_triangles(s, random, count, 6, .1, 2);
   s.materials[0].mirror = {.6f, .6f, .6f};
+  return s;
+}
+
+TEST_P(BeamGrids, IsTheSameForEveryGridAndInstructionSet) {
+  const Scene s = crowded_wall(7, 60);
   const Tile want = doubt(s, *variants().front(), {.grid = false});
   for (const float density : {.5f, 1.f, 4.f})
     EXPECT_EQ(doubt(s, variant(), {.density = density}), want) << density;
@@ -45,11 +51,7 @@ Scene with_copies(const Scene& of, int times) {
 
 /// Grids leave out copies where cells are crowded. The first of a kind is what is seen.
 TEST_P(BeamGrids, IsTheSameWithCopiesAsWithout) {
-  Scene s = wall();
-  Random random(8);
-  add_spheres(s, random, 30, 6, .01, .4);
-  add_triangles(s, random, 30, 6, .1, 2);
-  s.materials[0].mirror = {.6f, .6f, .6f};
+  const Scene s = crowded_wall(8, 30);
   const Tile want = look(s);
   for (const int times : {1, 60}) {
     const Scene copied = with_copies(s, times);
