@@ -90,7 +90,7 @@ TEST(Glows, AreMarkedWhereALensSpreadsLamps) {
       of.push_back(lens_ray(f, random));
       rays.add(of.back().org, of.back().dir);
     }
-    const Answers answers = trace(*variants().back(), world, rays, {}, Query::kClosest);
+    const Answers answers = trace(best_variant(), world, rays, {}, Query::kClosest);
     int lost = 0;
     for (std::size_t k = 0; k < rays.size(); ++k)
       if (answers.id[k] != kNoPrimitive) {

@@ -58,7 +58,7 @@ Parts parts_of(const std::vector<bool>& of_rays) {
 }
 
 Answers closest_of(const World& world, const RayList& rays) {
-  return trace(*variants().back(), world, rays, {}, Query::kClosest);
+  return trace(best_variant(), world, rays, {}, Query::kClosest);
 }
 
 Parts parts_seen(const World& world, const RayList& rays) {
@@ -171,7 +171,7 @@ Parts parts_dark(const World& world, const RayList& rays, const Float3& light) {
     const Float3 p = at(rays.org(i), double{met.t[i]}, rays.dir(i));
     to_light.add(light, minus(p, light), 0, .999f);
   }
-  const Answers blocked = trace(*variants().back(), world, to_light, {}, Query::kOccluded);
+  const Answers blocked = trace(best_variant(), world, to_light, {}, Query::kOccluded);
   for (std::size_t i = 0; i < rays.size(); ++i)
     dark[i] = primitive_of(world, met.id[i]).kind == PrimitiveKind::kPlane &&
               blocked.id[i] != kNoPrimitive;
