@@ -204,7 +204,8 @@ class BeamVisit {
 
  private:
   void look_into(const Triangle::CellList& list, std::size_t cell) {
-    for (std::uint32_t b = list.first[cell]; b < list.first[cell + 1]; ++b)
+    const auto [first, end] = list.blocks_of(cell);
+    for (std::uint32_t b = first; b < end; ++b)
       each_inside_block(f_, list.blocks[b], [&](int i) { once(list.blocks[b].id[i]); });
   }
   template <class Fields>

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "kernel/grid/box_places.hpp"
 #include "kernel/primitive/rounding.hpp"
 
 namespace grelha {
@@ -37,22 +38,42 @@ Reach reach_of(const TriangleBlock& block, int a) {
 
 }  // namespace
 
+std::uint64_t place_boxes(std::size_t begin,
+                          std::size_t end,
+                          std::uint64_t row,
+                          std::uint64_t block,
+                          ListStore<Triangle>& s) {
+  BoxPlaces places(row);
+  for (std::size_t c = begin; c < end; ++c) {
+    const std::uint32_t blocks = s.first[c];
+    const std::uint64_t free = places.next();
+    const std::uint64_t place = places.take(blocks);
+    if (place != free)
+      s.end_row(free);
+    for (std::uint64_t r = (place + kBlock - 1) / kBlock; r < places.rows(); ++r)
+      s.first_block[r] = static_cast<std::uint32_t>(block + r * kBlock - place);
+    s.first[c] = static_cast<std::uint32_t>(place);
+    block += blocks;
+  }
+  s.end_row(places.next());
+  return places.rows();
+}
+
 // A hit h is off by no more than `pad` from its triangle, and found in a cell that it lies in. It
 // is in the triangle's box grown by pad as well. So it is in the box below, kSlabRoom inside it.
-void bound_blocks(const Grid& g,
-                  double pad,
-                  std::size_t cell,
-                  std::uint32_t first,
-                  std::uint32_t end,
-                  ListStore<Triangle>& s) {
+void bound_blocks(
+    const Grid& g, double pad, std::size_t cell, std::uint32_t triangles, ListStore<Triangle>& s) {
   const CellBox box = cell_box(g, cell);
   const double room = kSlabRoom * pad;
-  for (std::uint32_t b = first; b < end; ++b) {
-    BlockBoxes& boxes = s.boxes[b / kBlock];
+  const std::uint32_t first = s.first[cell];
+  const std::uint32_t block = s.list().blocks_of(cell).first;
+  for (std::uint32_t b = 0; b < s.entries_of(triangles); ++b) {
+    BlockBoxes& boxes = s.boxes[(first + b) / kBlock];
+    const std::uint32_t at = (first + b) % kBlock;
     for (int a = 0; a < 3; ++a) {
-      const Reach r = reach_of(s.blocks[b], a);
-      boxes.side[a][b % kBlock] = float_not_above(std::max(r.lo - pad, box.lo[a]) - room);
-      boxes.side[3 + a][b % kBlock] = float_not_below(std::min(r.hi + pad, box.hi[a]) + room);
+      const Reach r = reach_of(s.blocks[block + b], a);
+      boxes.side[a][at] = float_not_above(std::max(r.lo - pad, box.lo[a]) - room);
+      boxes.side[3 + a][at] = float_not_below(std::min(r.hi + pad, box.hi[a]) + room);
     }
   }
 }

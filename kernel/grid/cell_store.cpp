@@ -7,11 +7,18 @@ constexpr float kNoNumber = std::numeric_limits<float>::quiet_NaN();
 
 }  // namespace
 
-void ListStore<Triangle>::resize_boxes() {
-  boxes.resize((blocks.size() + kBlock - 1) / kBlock);
-  // places without a block
-  for (auto& side : boxes.back().side)
-    std::fill(std::begin(side), std::end(side), kNoNumber);
+void ListStore<Triangle>::resize_boxes(std::size_t rows) {
+  boxes.resize(rows);
+  first_block.resize(rows + 1);
+  first_block[rows] = static_cast<std::uint32_t>(blocks.size());
+}
+
+void ListStore<Triangle>::end_row(std::size_t place) {
+  for (; place % kBlock != 0; ++place)
+    for (int a = 0; a < 3; ++a) {
+      boxes[place / kBlock].side[a][place % kBlock] = kInfinity;
+      boxes[place / kBlock].side[3 + a][place % kBlock] = -kInfinity;
+    }
 }
 
 void ListStore<Triangle>::put(std::size_t entry,
@@ -44,6 +51,7 @@ Triangle::CellList ListStore<Triangle>::list() const {
       first.data(),
       blocks.data(),
       boxes.empty() ? nullptr : boxes.data(),
+      boxes.empty() ? nullptr : first_block.data(),
   };
 }
 

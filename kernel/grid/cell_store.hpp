@@ -70,19 +70,25 @@ struct ListStore<Triangle> {
 
   RawVector<std::uint32_t> first;
   RawVector<TriangleBlock> blocks;
-  RawVector<BlockBoxes> boxes;  ///< of all blocks, or none
+  RawVector<BlockBoxes> boxes;           ///< of all blocks, or none
+  RawVector<std::uint32_t> first_block;  ///< [rows + 1] of each row of boxes, and where all end
 
   static std::uint32_t entries_of(std::uint32_t primitives) {
     return (primitives + kBlock - 1) / kBlock;
   }
   void resize(std::size_t entries) { blocks.resize(entries); }
-  void resize_boxes();
+  /// Once blocks have their room.
+  void resize_boxes(std::size_t rows);
+  /// No block has a box of this row from a place on, if that is within it.
+  void end_row(std::size_t place);
   /// Puts a triangle in one of the places of blocks from `entry` on.
   void put(std::size_t entry, std::size_t place, const Triangle::Fields<float>&, std::uint32_t of);
   /// The last block holds nothing from a place on.
   void end_block(std::size_t entry, std::size_t place);
   Triangle::CellList list() const;
-  std::size_t bytes() const { return bytes_of(first) + bytes_of(blocks) + bytes_of(boxes); }
+  std::size_t bytes() const {
+    return bytes_of(first) + bytes_of(blocks) + bytes_of(boxes) + bytes_of(first_block);
+  }
 };
 
 /// The primitives of cells, each kind apart.

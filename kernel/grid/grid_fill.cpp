@@ -9,6 +9,7 @@
 
 #include "kernel/grid/block_box.hpp"
 #include "kernel/grid/block_order.hpp"
+#include "kernel/grid/box_places.hpp"
 #include "kernel/grid/bucket_pairs.hpp"
 #include "kernel/grid/build_progress.hpp"
 #include "kernel/grid/cell_finder.hpp"
@@ -33,7 +34,11 @@ constexpr double kEmitShare = .2;  ///< of the time; counting takes next to none
 constexpr std::uint32_t kCrowded = 1024;
 constexpr std::uint64_t kMostEntries = 0xFFFFFF00u;
 
-using PerKind = std::array<std::uint64_t, kKinds>;
+/// Entries by kind, and rows of boxes; of a bucket, or of all before it.
+struct Sums {
+  std::array<std::uint64_t, kKinds> entries{};
+  std::uint64_t rows = 0;
+};
 
 /// What all passes see.
 struct Filling {
@@ -107,21 +112,25 @@ void for_each_pair(const Filling& f, std::size_t bucket, const Visit& visit) {
 }
 
 /// Turns primitives of each of a bucket's cells into entries; returns their sums.
-PerKind count_entries(Filling& f, std::size_t bucket) {
-  PerKind sums{};
+Sums count_entries(Filling& f, std::size_t bucket) {
+  Sums sums;
+  BoxPlaces places(0);
   for_each_list(f.store, [&]<class Shape>(ListStore<Shape>& list, std::size_t kind) {
     for (std::size_t c = f.buckets.begin(bucket); c < f.buckets.end(bucket); ++c) {
       std::uint32_t& n = list.first[c];
       f.crowded[bucket] |= n > kCrowded;
       n = ListStore<Shape>::entries_of(n);
-      sums[kind] += n;
+      sums.entries[kind] += n;
+      if (Shape::kInBlocks && f.pad)
+        places.take(n);
     }
   });
+  sums.rows = places.rows();
   return sums;
 }
 
 /// The second pass, of one bucket: entries of each of its cells, and their sums.
-PerKind count(Filling& f, std::size_t bucket) {
+Sums count(Filling& f, std::size_t bucket) {
   const std::size_t begin = f.buckets.begin(bucket);
   const std::size_t end = f.buckets.end(bucket);
   std::uint32_t* first[kKinds] = {};
@@ -168,25 +177,29 @@ bool drop_copies(Filling& f) {
 }
 
 /// Counts all buckets, each by a thread.
-void count_buckets(Filling& f, std::vector<PerKind>& counts) {
+void count_buckets(Filling& f, std::vector<Sums>& counts) {
   each_turn(f.buckets.count, f.threads, [&](std::size_t i) { counts[i] = count(f, i); });
 }
 
 /// Turns counts into where the lists of each begin; returns their sums.
-PerKind add_up(std::vector<PerKind>& counts) {
-  PerKind total{};
-  for (PerKind& start : counts)
+Sums add_up(std::vector<Sums>& counts) {
+  Sums total;
+  for (Sums& start : counts) {
     for (std::size_t k = 0; k < kKinds; ++k)
-      total[k] += std::exchange(start[k], total[k]);
-  for (const std::uint64_t n : total)
-    if (n > kMostEntries)
-      throw std::length_error("the grid's lists are too long: choose a smaller density");
+      total.entries[k] += std::exchange(start.entries[k], total.entries[k]);
+    total.rows += std::exchange(start.rows, total.rows);
+  }
+  std::uint64_t most = total.rows * kBlock;
+  for (const std::uint64_t n : total.entries)
+    most = std::max(most, n);
+  if (most > kMostEntries)
+    throw std::length_error("the grid's lists are too long: choose a smaller density");
   return total;
 }
 
 /// All buckets; returns where the lists of each begin, and makes room for them.
-std::vector<PerKind> count_all(Filling& f) {
-  std::vector<PerKind> starts(f.buckets.count);
+std::vector<Sums> count_all(Filling& f) {
+  std::vector<Sums> starts(f.buckets.count);
   for (const PairChunk& c : f.chunks)
     f.store.references += c.pairs.size();
   f.crowded.assign(f.buckets.count, 0);
@@ -194,13 +207,16 @@ std::vector<PerKind> count_all(Filling& f) {
   const bool crowded = std::find(f.crowded.begin(), f.crowded.end(), 1) != f.crowded.end();
   if (crowded && drop_copies(f))
     count_buckets(f, starts);
-  const PerKind total = add_up(starts);
+  const Sums total = add_up(starts);
   for_each_list(f.store, [&]<class Shape>(ListStore<Shape>& list, std::size_t kind) {
-    list.first[f.buckets.cells] = static_cast<std::uint32_t>(total[kind]);
-    list.resize(total[kind]);
+    std::uint64_t end = total.entries[kind];
+    list.resize(end);
     if constexpr (Shape::kInBlocks)
-      if (f.pad)
-        list.resize_boxes();
+      if (f.pad) {
+        list.resize_boxes(total.rows);
+        end = total.rows * kBlock;
+      }
+    list.first[f.buckets.cells] = static_cast<std::uint32_t>(end);
   });
   return starts;
 }
@@ -213,7 +229,7 @@ void put_triangles(Filling& f,
   auto& list = f.store.of<Triangle>();
   const auto& triangles = f.primitives.of<Triangle>();
   const std::uint32_t first_id = f.primitives.ids.begin(PrimitiveKind::kTriangle);
-  const std::uint32_t first = list.first[cell];
+  const std::uint32_t first = list.list().blocks_of(cell).first;
   std::span<const std::uint32_t> places;
   if (f.pad)
     places = order.places(f.primitives, ids, f.grid, cell);
@@ -221,39 +237,46 @@ void put_triangles(Filling& f,
     list.put(first, f.pad ? places[i] : i, triangles[ids[i] - first_id], ids[i]);
   if (ids.size() % kBlock != 0)
     list.end_block(first, ids.size());
-  const auto count = static_cast<std::uint32_t>(ids.size());
   if (f.pad)
-    bound_blocks(f.grid, *f.pad, cell, first, first + list.entries_of(count), list);
+    bound_blocks(f.grid, *f.pad, cell, static_cast<std::uint32_t>(ids.size()), list);
 }
 
 /// What a thread needs to write buckets.
 struct Scratch {
   std::vector<std::uint32_t> written;  ///< primitives so far, by kind and cell
-  /// ids of the bucket, cell after cell, each from a multiple of kBlock on
+  /// ids of the bucket, cell after cell, kBlock for each place
   RawVector<std::uint32_t> triangles;
   BlockOrder order;
 };
 
 /// Turns the counts of a bucket's cells into where their lists begin.
-void place_lists(Filling& f, std::size_t bucket, const PerKind& start, Scratch& scratch) {
+void place_lists(Filling& f, std::size_t bucket, const Sums& start, Scratch& scratch) {
+  const std::size_t begin = f.buckets.begin(bucket), end = f.buckets.end(bucket);
   for_each_list(f.store, [&]<class Shape>(ListStore<Shape>& list, std::size_t kind) {
-    auto sum = static_cast<std::uint32_t>(start[kind]);
-    for (std::size_t c = f.buckets.begin(bucket); c < f.buckets.end(bucket); ++c)
-      sum += std::exchange(list.first[c], sum);
+    std::uint64_t from = start.entries[kind];
+    std::uint64_t sum = from;
+    if (Shape::kInBlocks && f.pad) {
+      auto& triangles = f.store.of<Triangle>();
+      from = start.rows * kBlock;
+      sum = kBlock * place_boxes(begin, end, start.rows, start.entries[kind], triangles);
+    } else {
+      for (std::size_t c = begin; c < end; ++c)
+        sum += std::exchange(list.first[c], static_cast<std::uint32_t>(sum));
+    }
     if constexpr (Shape::kInBlocks)
-      scratch.triangles.resize((sum - start[kind]) * kBlock);
+      scratch.triangles.resize((sum - from) * kBlock);
   });
 }
 
 /// A bucket in the third pass.
 class BucketLists {
  public:
-  BucketLists(Filling& f, std::size_t bucket, const PerKind& start, Scratch& scratch)
+  BucketLists(Filling& f, std::size_t bucket, const Sums& start, Scratch& scratch)
       : f_(f),
         bucket_(bucket),
         begin_(f.buckets.begin(bucket)),
         size_(f.buckets.end(bucket) - begin_),
-        first_block_(start[kTriangles]),
+        first_place_(f.pad ? start.rows * kBlock : start.entries[kTriangles]),
         scratch_(scratch) {
     scratch.written.assign(kKinds * size_, 0);
     place_lists(f, bucket, start, scratch);
@@ -302,19 +325,19 @@ class BucketLists {
     return scratch_.written[kind * size_ + i];
   }
   std::uint32_t* triangles_of(std::size_t cell) {
-    return &scratch_.triangles[(f_.store.of<Triangle>().first[cell] - first_block_) * kBlock];
+    return &scratch_.triangles[(f_.store.of<Triangle>().first[cell] - first_place_) * kBlock];
   }
 
   Filling& f_;
   const std::size_t bucket_, begin_, size_;
-  const std::uint64_t first_block_;
+  const std::uint64_t first_place_;  ///< of triangles
   Scratch& scratch_;
 };
 
 /// The third pass, of one bucket: its lists; returns how many of its cells hold something. `empty`,
 /// where given, becomes 0 for cells that do and 255 for others.
 std::uint64_t write(
-    Filling& f, std::size_t bucket, const PerKind& start, std::uint8_t* empty, Scratch& scratch) {
+    Filling& f, std::size_t bucket, const Sums& start, std::uint8_t* empty, Scratch& scratch) {
   BucketLists lists(f, bucket, start, scratch);
   lists.put_primitives();
   lists.put_blocks();
@@ -328,7 +351,7 @@ std::uint64_t fill(Filling& f, const CellsOf& cells_of, std::uint8_t* empty, dou
   f.progress.expect(kEmitShare * share, f.chunks.size());
   share_out<std::vector<Pair>>(
       f, f.chunks.size(), [&](std::size_t i, auto& pairs) { emit(f, i, cells_of, pairs); });
-  const std::vector<PerKind> starts = count_all(f);
+  const std::vector<Sums> starts = count_all(f);
   f.progress.expect((1 - kEmitShare) * share, f.buckets.count);
   std::vector<std::uint64_t> held(f.buckets.count);
   share_out<Scratch>(f, f.buckets.count, [&](std::size_t i, Scratch& scratch) {

@@ -57,7 +57,8 @@ inline bool test_triangles(Single& r,
   const std::uint32_t first = list.first[cell];
   const std::uint32_t end = list.first[cell + 1];
   float enters[kBlock];
-  for (std::uint32_t at = first / kBlock * kBlock; at < end; at += kBlock)
+  for (std::uint32_t at = first / kBlock * kBlock; at < end; at += kBlock) {
+    const TriangleBlock* const blocks = list.blocks + list.block_at(at);
     for (unsigned passed =
              passed_boxes<kFromAfar>(walking, list.boxes[at / kBlock], enters, g.lo_f) &
              blocks_between(at, first, end);
@@ -65,9 +66,10 @@ inline bool test_triangles(Single& r,
          passed &= passed - 1) {
       const unsigned k = static_cast<unsigned>(__builtin_ctz(passed));
       // what was met since may be nearer
-      if (enters[k] <= walking.best && test_block<kAny>(r, list.blocks[at + k]))
+      if (enters[k] <= walking.best && test_block<kAny>(r, blocks[k]))
         return true;
     }
+  }
   return false;
 }
 

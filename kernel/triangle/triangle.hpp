@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 
 #include "grelha/scene_spans.hpp"
 #include "kernel/primitive/box.hpp"
@@ -41,12 +42,25 @@ struct Triangle {
     const std::uint32_t* material = nullptr;
     std::uint32_t count = 0;
   };
-  /// Cell after cell: cell i owns blocks first[i] up to first[i + 1] - 1. Where no cell holds any,
-  /// first == nullptr.
+  /// Cell after cell: cell i owns blocks first[i] up to first[i + 1] - 1, or, where blocks have
+  /// boxes, those in places first[i] up to first[i + 1] - 1 of box_places.hpp. Where no cell holds
+  /// any, first == nullptr.
   struct CellList {
     const std::uint32_t* first = nullptr;
     const TriangleBlock* blocks = nullptr;
-    const BlockBoxes* boxes = nullptr;  ///< of all blocks, or none
+    const BlockBoxes* boxes = nullptr;           ///< of all blocks, or none
+    const std::uint32_t* first_block = nullptr;  ///< of each row of boxes, and where all end
+
+    /// Where blocks have boxes: the block in a place.
+    std::uint32_t block_at(std::uint32_t place) const {
+      return first_block[place / kBlock] + place % kBlock;
+    }
+    /// A cell's blocks: the first, and the one behind the last.
+    std::pair<std::uint32_t, std::uint32_t> blocks_of(std::size_t cell) const {
+      if (!boxes)
+        return {first[cell], first[cell + 1]};
+      return {block_at(first[cell]), block_at(first[cell + 1])};
+    }
   };
 
   /// The caller's arrays of coordinates.

@@ -91,6 +91,7 @@ class CellTests {
                                          unsigned blocks,
                                          int due) {
     const BlockBoxes& boxes = triangles_.boxes[at / kBlock];
+    const std::uint32_t block = triangles_.block_at(at);
     ++n_.box_rows;
     for (int i = 0; i < kBlock; i += kWidth<Block>) {
       Block enter(walking_.t_min[ray]);
@@ -104,7 +105,7 @@ class CellTests {
         leave = lesser((side(boxes, far, a, i) - org) * inverse, leave);
       }
       due = take_passed(
-          ray, at + static_cast<unsigned>(i), bits(enter <= leave) & blocks >> i, enter, due);
+          ray, block + static_cast<unsigned>(i), bits(enter <= leave) & blocks >> i, enter, due);
     }
     return due;
   }

@@ -191,8 +191,9 @@ class PacketVisit {
     const std::uint32_t end = list.first[cell + 1];
     for (std::uint32_t at = first / kBlock * kBlock; at < end; at += kBlock) {
       unsigned left = boxes_inside(f_, list.boxes[at / kBlock]) & blocks_between(at, first, end);
+      const TriangleBlock* const blocks = list.blocks + list.block_at(at);
       for (; left != 0; left &= left - 1)
-        test_block(list.blocks[at + static_cast<unsigned>(__builtin_ctz(left))]);
+        test_block(blocks[__builtin_ctz(left)]);
     }
   }
 

@@ -23,6 +23,7 @@ bool same(const CellStore& a, const CellStore& b) {
     if constexpr (Shape::kInBlocks) {
       compare(one.blocks, other.blocks);
       compare(one.boxes, other.boxes);
+      compare(one.first_block, other.first_block);
     } else {
       compare(one.id, other.id);
       compare(one.rows, other.rows);

@@ -78,8 +78,8 @@ bool test_triangles(
   const int k = r.axis;
   const int kx = kNextAxis[k];
   const int ky = kPreviousAxis[k];
-  for (std::uint32_t b = lists.of<Triangle>().first[cell]; b < lists.of<Triangle>().first[cell + 1];
-       ++b) {
+  const auto [first, end] = lists.of<Triangle>().blocks_of(cell);
+  for (std::uint32_t b = first; b < end; ++b) {
     const TriangleBlock& block = lists.of<Triangle>().blocks[b];
     for (int i = 0; i < kBlock && block.id[i] != kNoPrimitive; ++i) {
       if (box && box->seen(block.id[i]))

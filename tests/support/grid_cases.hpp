@@ -15,16 +15,19 @@ inline std::vector<std::uint32_t> ids_of(const CellStore& s, std::size_t cell) {
   std::vector<std::uint32_t> out;
   for_each_finite_shape([&]<class Shape>() {
     const auto& list = s.of<Shape>();
-    const auto others = static_cast<std::ptrdiff_t>(out.size());
-    for (std::size_t i = 0; !list.first.empty() && i < list.first[cell + 1] - list.first[cell]; ++i)
-      if constexpr (Shape::kInBlocks) {
-        for (const std::uint32_t id : list.blocks[list.first[cell] + i].id)
+    if (list.first.empty())
+      return;
+    if constexpr (Shape::kInBlocks) {
+      const auto others = static_cast<std::ptrdiff_t>(out.size());
+      const auto [first, end] = list.list().blocks_of(cell);
+      for (std::uint32_t b = first; b < end; ++b)
+        for (const std::uint32_t id : list.blocks[b].id)
           if (id != kNoPrimitive)
             out.push_back(id);
-        std::sort(out.begin() + others, out.end());
-      } else {
-        out.push_back(list.id[list.first[cell] + i]);
-      }
+      std::sort(out.begin() + others, out.end());
+    } else {
+      out.insert(out.end(), &list.id[list.first[cell]], &list.id[list.first[cell + 1]]);
+    }
   });
   return out;
 }

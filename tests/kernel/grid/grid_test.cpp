@@ -87,7 +87,7 @@ void expect_sound_rows(const CellStore& s, std::size_t cells) {
     EXPECT_EQ(list.first.front(), 0u);
     EXPECT_TRUE(std::is_sorted(list.first.begin(), list.first.end()));
     if constexpr (Shape::kInBlocks) {
-      EXPECT_EQ(list.first.back(), list.blocks.size());
+      EXPECT_EQ(list.list().blocks_of(cells - 1).second, list.blocks.size());
     } else {
       // a whole block can be read from any place
       EXPECT_EQ(list.first.back() + kBlock, list.id.size());
@@ -132,6 +132,7 @@ void expect_same_store(const CellStore& a, const CellStore& b) {
     if constexpr (Shape::kInBlocks) {
       expect_same_bytes(one.blocks, other.blocks);
       expect_same_bytes(one.boxes, other.boxes);
+      expect_same_bytes(one.first_block, other.first_block);
     } else {
       expect_same_bytes(one.id, other.id);
       expect_same_bytes(one.rows, other.rows);

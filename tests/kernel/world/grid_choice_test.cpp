@@ -121,7 +121,8 @@ TEST(BlockBoxes, HoldWhatLiesInTheirCell) {
       for (std::size_t cell = 0; cell + 1 < s.first.size(); ++cell) {
         const std::size_t at[3] = {
             cell % g.cells[0], cell / g.cells[0] % g.cells[1], cell / g.cells[0] / g.cells[1]};
-        for (std::uint32_t b = s.first[cell]; b < s.first[cell + 1]; ++b)
+        const auto [first, end] = s.list().blocks_of(cell);
+        for (std::uint32_t b = first; b < end; ++b)
           for (const std::uint32_t id : s.blocks[b].id) {
             if (id == kNoPrimitive)
               continue;
@@ -131,9 +132,10 @@ TEST(BlockBoxes, HoldWhatLiesInTheirCell) {
                 inside &= q.x[a] >= g.lo[a] + double(at[a]) * g.cell[a] &&
                           q.x[a] <= g.lo[a] + double(at[a] + 1) * g.cell[a];
                 // A quarter of pad, less the rounding of boxes to floats.
-                const auto& side = s.boxes[b / kBlock].side;
-                boxed &= q.x[a] - .24 * pad >= side[a][b % kBlock] &&
-                         q.x[a] + .24 * pad <= side[3 + a][b % kBlock];
+                const std::uint32_t place = s.first[cell] + (b - first);
+                const auto& side = s.boxes[place / kBlock].side;
+                boxed &= q.x[a] - .24 * pad >= side[a][place % kBlock] &&
+                         q.x[a] + .24 * pad <= side[3 + a][place % kBlock];
               }
               if (!inside)
                 continue;
@@ -145,6 +147,50 @@ TEST(BlockBoxes, HoldWhatLiesInTheirCell) {
     }
   }
   EXPECT_GT(points, 5000u);
+}
+
+/// Each place's block, and those of no block, of grids with triangles.
+std::vector<bool> places_taken(const ListStore<Triangle>& s) {
+  std::vector<bool> taken(s.boxes.size() * kBlock);
+  for (std::size_t cell = 0; cell + 1 < s.first.size(); ++cell) {
+    const auto [first, end] = s.list().blocks_of(cell);
+    for (std::uint32_t b = first; b < end; ++b) {
+      const std::uint32_t place = s.first[cell] + (b - first);
+      EXPECT_EQ(s.list().block_at(place), b);
+      EXPECT_FALSE(taken[place]);
+      taken[place] = true;
+    }
+  }
+  return taken;
+}
+
+TEST(BlockBoxes, StandInNoMoreRowsThanTheyFill) {
+  constexpr float kNever = std::numeric_limits<float>::infinity();
+  std::size_t begun = 0, gaps = 0;  // cells that begin within a row; places without a block
+  for (const Case& c : cases()) {
+    const World world(c.scene, {.density = 1});
+    for (const Grid& g : world.impl().grids) {
+      const ListStore<Triangle>& s = g.store.of<Triangle>();
+      for (std::size_t cell = 0; cell + 1 < s.first.size(); ++cell) {
+        const auto [first, end] = s.list().blocks_of(cell);
+        const std::uint32_t place = s.first[cell];
+        if (first == end)
+          continue;
+        EXPECT_EQ((place + (end - first) - 1) / kBlock - place / kBlock, (end - first - 1) / kBlock)
+            << c.name << ", cell " << cell;
+        begun += place % kBlock != 0;
+      }
+      const std::vector<bool> taken = places_taken(s);
+      for (std::size_t place = 0; place < taken.size(); ++place)
+        for (std::size_t a = 0; a < 3 && !taken[place]; ++a) {
+          EXPECT_EQ(s.boxes[place / kBlock].side[a][place % kBlock], kNever) << c.name;
+          EXPECT_EQ(s.boxes[place / kBlock].side[3 + a][place % kBlock], -kNever) << c.name;
+          ++gaps;
+        }
+    }
+  }
+  EXPECT_GT(begun, 300u);
+  EXPECT_GT(gaps, 300u);
 }
 
 // ---- sizes and choices ----
