@@ -7,7 +7,7 @@ namespace grelha::GRELHA_ISA {
 
 /// As test_infinite(Packet&). Returns whether the search is over.
 template <bool kAny>
-inline bool test_infinite(const SceneView& scene, Single& r, Counters& n) {
+inline bool test_infinite(const SceneView& scene, Single& r) {
   const GeometryView& g = scene.geometry;
   const RayLanes<float> ray{
       .org = vec(r.org),
@@ -19,7 +19,6 @@ inline bool test_infinite(const SceneView& scene, Single& r, Counters& n) {
   InfiniteShapes::for_each([&]<class Shape>() __attribute__((always_inline)) {
     const typename Shape::Arrays& all = g.of<Shape>();
     for (std::uint32_t i = 0; !over && i < all.count; ++i) {
-      ++n.tests[kNumber<Shape>];
       float t = 0;
       const bool hit = meet(ray, broadcast<Shape, float>(all.fields, i), t);
       over = hit && take_hit<kAny>(r, t, g.ids.begin(Shape::kKind) + i);
@@ -81,14 +80,12 @@ inline constexpr int kLeastLeap = 3;
 template <class Test>
 [[gnu::always_inline]] inline void walk_one(const GridView& g,
                                             const WalkingRay& r,
-                                            Counters& n,
                                             const Test& test) {
   CellWalk walk(g);
   if (!walk.start(r))
     return;
   // no more planes than there are, whatever rounding does
   for (int left = g.n[0] + g.n[1] + g.n[2] + 3; left > 0; --left) {
-    ++n.visits;
     const int distance = walk.distance();
     if (distance == 0 && test(static_cast<std::uint32_t>(walk.cell())))
       return;
@@ -99,16 +96,19 @@ template <class Test>
 
 /// As walk_apart().
 template <bool kAny>
-inline void walk_one(const GridView& g, Single& r, Counters& n) {
-  walk_one(g, r, n, [&](std::uint32_t cell) {
-    return (g.lists.of<Triangle>().first && test_triangles<kAny>(r, r, g, cell)) ||
-           test_arrays<kAny>(r, g.lists, cell, n);
+inline void walk_one(const GridView& g, Single& r) {
+  const bool triangles = g.lists.of<Triangle>().first;
+  const bool arrays = holds_arrays(g.lists);
+  NoCounters n;
+  walk_one(g, r, [&](std::uint32_t cell) {
+    return (triangles && test_triangles<kAny>(r, r, g, cell)) ||
+           (arrays && test_arrays<kAny>(r, g.lists, cell, n));
   });
 }
 
 /// As walk_from_afar().
 template <bool kAny>
-[[gnu::noinline]] void walk_one_from_afar(const GridView& g, Single& r, Counters& n) {
+[[gnu::noinline]] void walk_one_from_afar(const GridView& g, Single& r) {
   Entry to;
   if (!enter_from_afar(g, r.org, r.dir, r.t_min, r.best, to))
     return;
@@ -117,7 +117,7 @@ template <bool kAny>
     walking.org[a] = to.org[a];
   walking.t_min = to.earliest(r.t_min);
   walking.best = to.latest(r.best);
-  walk_one(in_its_frame(g), walking, n, [&](std::uint32_t cell) {
+  walk_one(in_its_frame(g), walking, [&](std::uint32_t cell) {
     const bool over = test_triangles<kAny, true>(r, walking, g, cell);
     walking.best = to.latest(r.best);
     return over;
@@ -127,17 +127,17 @@ template <bool kAny>
 /// All that a prepared ray meets. Returns what was taken from t.
 template <bool kAny>
 inline float walk_scene(const SceneView& scene, Single& r) {
-  Counters n;
-  if (test_infinite<kAny>(scene, r, n))
+  if (test_infinite<kAny>(scene, r))
     return 0;
   const float shift = bring_near(scene, r);
+  NoCounters n;
   if (!(r.best > r.t_min) || test_cell<kAny>(r, scene.outside, 0, n))
     return shift;
   each_grid<kAny>(scene, r.org, r.dir, r.t_min, [&](const GridView& g) {
     if (serves(g, r.org))
-      walk_one<kAny>(g, r, n);
+      walk_one<kAny>(g, r);
     else if (g.serves == Serves::kNearAndAfar)
-      walk_one_from_afar<kAny>(g, r, n);
+      walk_one_from_afar<kAny>(g, r);
   });
   return shift;
 }

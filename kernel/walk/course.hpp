@@ -159,7 +159,7 @@ class CellWalk {
   }
 
   /// The same over cells that are empty, as are those within `by` of this one on its way.
-  bool leap(int by, float best) {
+  [[gnu::always_inline]] bool leap(int by, float best) {
     const Four far = four(static_cast<float>(by));
     const Four exit = far_side(at_ + way_ * far);
     const FourInts axis = first_axis(exit);

@@ -234,9 +234,18 @@ struct RayAndBlock {
   }
 };
 
+/// In place of Counters where nobody asks for them: to clear those took up to a twentieth of a call
+/// for one ray.
+struct NoCounters {
+  struct Nowhere {
+    void operator+=(unsigned) const {}
+  };
+  Nowhere primitive_rows, tests[kKinds];
+};
+
 /// Counts rows of primitives that a ray is tested against.
-template <class Shape>
-inline void count_rows(Counters& n, int rows, int width) {
+template <class Shape, class Counts>
+inline void count_rows(Counts& n, int rows, int width) {
   n.primitive_rows += static_cast<unsigned>(rows);
   n.tests[kNumber<Shape>] += static_cast<unsigned>(rows * width);
 }
@@ -281,11 +290,11 @@ template <bool kAny, class Shape, class Ray>
 
 /// Primitives of one kind in one cell. Reading past its end meets those of the next, which costs
 /// nothing and is never wrong: a hit is a hit.
-template <bool kAny, class Shape, class Ray>
+template <bool kAny, class Shape, class Ray, class Counts>
 [[gnu::always_inline]] inline bool test_list(Ray& r,
                                              const typename Shape::CellList& list,
                                              std::size_t cell,
-                                             Counters& n) {
+                                             Counts& n) {
   using Real = typename Ray::In::Primitives;
   const RayLanes<Real> ray = spread(r);
   const std::uint32_t end = list.first[cell + 1];
@@ -297,9 +306,16 @@ template <bool kAny, class Shape, class Ray>
   return false;
 }
 
+/// Whether anything stands in arrays in some cell.
+inline bool holds_arrays(const CellLists& lists) {
+  bool some = false;
+  ArrayShapes::for_each([&]<class Shape>() { some = some || lists.of<Shape>().first; });
+  return some;
+}
+
 /// What stands in arrays in one cell.
-template <bool kAny, class Ray>
-inline bool test_arrays(Ray& r, const CellLists& lists, std::size_t cell, Counters& n) {
+template <bool kAny, class Ray, class Counts>
+[[gnu::noinline]] bool test_arrays(Ray& r, const CellLists& lists, std::size_t cell, Counts& n) {
   bool over = false;
   ArrayShapes::for_each([&]<class Shape>() __attribute__((always_inline)) {
     const typename Shape::CellList& list = lists.of<Shape>();
@@ -309,8 +325,8 @@ inline bool test_arrays(Ray& r, const CellLists& lists, std::size_t cell, Counte
 }
 
 /// All primitives of one cell.
-template <bool kAny, class Ray>
-inline bool test_cell(Ray& r, const CellLists& lists, std::size_t cell, Counters& n) {
+template <bool kAny, class Ray, class Counts>
+inline bool test_cell(Ray& r, const CellLists& lists, std::size_t cell, Counts& n) {
   const Triangle::CellList& triangles = lists.of<Triangle>();
   if (triangles.first)
     for (std::uint32_t i = triangles.first[cell]; i < triangles.first[cell + 1]; ++i) {
