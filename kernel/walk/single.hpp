@@ -334,7 +334,7 @@ inline bool test_cell(Ray& r, const CellLists& lists, std::size_t cell, Counts& 
       if (test_block<kAny>(r, triangles.blocks[i]))
         return true;
     }
-  return test_arrays<kAny>(r, lists, cell, n);
+  return holds_arrays(lists) && test_arrays<kAny>(r, lists, cell, n);
 }
 
 /// A ray in the units of one grid's cells, in double: plane distances come from the plane's index,
