@@ -149,7 +149,7 @@ TEST(BlockBoxes, HoldWhatLiesInTheirCell) {
   EXPECT_GT(points, 5000u);
 }
 
-/// Each place's block, and those of no block, of grids with triangles.
+/// Of each place whether it has a block; that block must be the one its cell says.
 std::vector<bool> places_taken(const ListStore<Triangle>& s) {
   std::vector<bool> taken(s.boxes.size() * kBlock);
   for (std::size_t cell = 0; cell + 1 < s.first.size(); ++cell) {
