@@ -1,5 +1,4 @@
-// The rungs from brute force to packets, and for shadow rays to a light's own grid; one thread, all
-// in one process: how much each is worth.
+// The rungs from brute force to packets; one thread, all in one process: how much each is worth.
 //
 // ladder [--benchmark_filter=...] [other Google Benchmark options]
 //
@@ -32,10 +31,8 @@ struct Place {
   SceneFile file;
   bool shadows;  ///< rays from what the camera sees to a light, in place of camera rays
   RayBuffer rays;
-  Float3 light;                                    ///< where they end
   Answers truth;                                   ///< of the reference walk
   std::map<float, std::unique_ptr<World>> worlds;  ///< by density; 0: no grid
-  std::unique_ptr<PointGrid> light_grid;
 
   Place(std::string scene, int size, bool shadows_)
       : name(scene + " " + std::to_string(size) + (shadows_ ? ", shadow rays" : ", camera rays")),
@@ -44,8 +41,6 @@ struct Place {
     if (shadows) {
       const RayMaker maker(file, world(2), kSide);
       rays = maker.make(RayKind::kShadow);
-      light = maker.light();
-      light_grid = std::make_unique<PointGrid>(world(2), light, 1);
     } else {
       rays = camera_rays(file.camera);
     }
@@ -66,7 +61,6 @@ struct Rung {
   const char* isa;
   TraceOptions options;
   bool brute = false;
-  bool by_light = false;  ///< through the grid of the light; of shadow rays alone
 };
 
 const Rung kRungs[] = {
@@ -82,7 +76,6 @@ const Rung kRungs[] = {
     {"packets of 64", "best", {.packet = 64}},
     {"packets of 256, sse2", "sse2", {.packet = 256}},
     {"packets of 256", "best", {.packet = 256}},
-    {"the light's grid", "best", {}, false, true},
 };
 const Variant* variant_of(const Rung& rung) {
   return std::string_view(rung.isa) == "reference" ? &reference_walk() : find_variant(rung.isa);
@@ -97,17 +90,8 @@ void ask(Place& place,
          std::size_t count,
          Answers& answers,
          TraceCounts& counts) {
-  if (!rung.by_light) {
-    const Rays rays = place.rays.view(first, count);
-    trace(world, *variant_of(rung), rung.options, rays, place.shadows, answers, counts);
-    return;
-  }
-  const RayBuffer& r = place.rays;
-  const Points points{.at = {r.ox.data() + first, r.oy.data() + first, r.oz.data() + first},
-                      .count = count,
-                      .leaves = r.leaves.data() + first};
-  answers.resize(count, true);
-  occluded(*place.light_grid, points, answers.blocked.data(), {}, &counts);
+  const Rays rays = place.rays.view(first, count);
+  trace(world, *variant_of(rung), rung.options, rays, place.shadows, answers, counts);
 }
 
 bool right(const Place& place, const Answers& answers, std::size_t first) {
@@ -192,7 +176,7 @@ class Table : public benchmark::ConsoleReporter {
           std::printf("| %-40s | %10.1f | %5s | %20s |\n",
                       r.name,
                       ns,
-                      r.brute || r.by_light ? "" : density.c_str(),
+                      r.brute ? "" : density.c_str(),
                       times);
         }
     }
@@ -217,10 +201,10 @@ int main(int argc, char** argv) {
   }
   for (const auto& place : places)
     for (const Rung& rung : kRungs) {
-      if (!variant_of(rung) || !variant_of(rung)->runs_here() || (rung.by_light && !place->shadows))
+      if (!variant_of(rung) || !variant_of(rung)->runs_here())
         continue;
       for (const float density : kDensities) {
-        if ((rung.brute || rung.by_light) && density != kDensities[0])
+        if (rung.brute && density != kDensities[0])
           continue;
         char m[16];
         std::snprintf(m, sizeof m, "%g", rung.brute ? 0. : static_cast<double>(density));

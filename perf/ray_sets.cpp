@@ -53,7 +53,6 @@ struct Random {
 struct FirstHit {
   V point, normal, mirror;  ///< normal: geometric, unit, towards the viewer; mirror: unit
   float away;
-  std::uint32_t leaves;  ///< what a shadow ray from here leaves; see Points
   V start() const { return point + away * normal; }
 };
 
@@ -145,8 +144,6 @@ std::vector<FirstHit> RayMaker::hits_of(const RayBuffer& rays) const {
     // kept above the surface, as shading does
     h.mirror = normalize(reflected - (2 * lesser(dot(reflected, h.normal), 0.f)) * h.normal);
     h.away = kClearance * s.away;
-    const bool flat = scene.geometry.ids.has(PrimitiveKind::kTriangle, found.id[i]);
-    h.leaves = flat || side > 0 ? found.id[i] : kNoPrimitive;
     if (scene.geometry.ids.has(PrimitiveKind::kPlane, found.id[i]))
       h.away += kPlaneClearance * (extent + largest(s.point));
     hits.push_back(h);
@@ -187,7 +184,6 @@ void Bounces::add_shadow(const FirstHit& h, const Float3& at) {
   const V org = h.start(), dir = V{at.x, at.y, at.z} - org;
   // of unit length, as Embree's cone curves want them: with others a third of rays is wrong
   add(rays, org, normalize(dir), length(dir));
-  rays.leaves.push_back(h.leaves);
 }
 
 /// To places all over the light, where all its corners are in front.

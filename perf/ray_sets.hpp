@@ -39,7 +39,7 @@ class RayMaker {
  public:
   RayMaker(const SceneFile& file, const World& world, int size);  ///< size: at least 32
   RayBuffer make(RayKind kind) const;
-  /// Rays to a point light; `leaves` of their points is known.
+  /// Rays to a point light.
   static constexpr bool to_point(RayKind kind) {
     return kind == RayKind::kShadow || kind == RayKind::kMirrorShadow;
   }

@@ -57,7 +57,7 @@ class EmbreeTracer final : public Tracer {
     const perf::EmbreeMode mode =
         way == 0 ? perf::EmbreeMode{"", 8, true} : perf::EmbreeMode{"", 1, false};
     scene_->trace(
-        {rays.ox, rays.oy, rays.oz, rays.dx, rays.dy, rays.dz, rays.t_min, rays.t, {}}, any, mode);
+        {rays.ox, rays.oy, rays.oz, rays.dx, rays.dy, rays.dz, rays.t_min, rays.t}, any, mode);
     return scene_->answers();
   }
   bool robust_;

@@ -23,7 +23,6 @@
 #include "perf/trace/modes.hpp"
 #include "perf/trace/options.hpp"
 #include "perf/trace/place.hpp"
-#include "perf/trace/point_way.hpp"
 #include "perf/trace/tables.hpp"
 
 namespace {
@@ -66,7 +65,7 @@ void enter_ways(Race& race) {
 /// Whether a way is told of however slow it is.
 bool is_told(const Cell& cell, std::size_t i) {
   const Way& way = cell.ways[i];
-  return i == cell.chosen || i == cell.point_grid || i >= cell.first_caller ||
+  return i == cell.chosen || i >= cell.first_caller ||
          (way.side == kRobust && !way.name.starts_with("16"));
 }
 
@@ -114,10 +113,6 @@ void count(benchmark::State& state, const Row& row, std::size_t kind, const Cell
   state.counters["cells/ray"] = cell.cells();
   state.counters["lanes busy"] = cell.lanes_busy();
   state.counters["fell back"] = cell.fell_back();
-  if (cell.point_grid != 0) {
-    state.counters["point grid ms"] = 1e-6 * cell.point_grid_ns;
-    state.counters["pays from"] = std::min(cell.pays_from(), 1e12);
-  }
   if (!cell.has_embree())
     return;
   state.counters["ratio"] = cell.ratio(cell.chosen, cell.best[kRobust]);
@@ -173,9 +168,6 @@ void run(benchmark::State& state, const Row& row, std::size_t kind, const Option
   if (const std::string wrong = check(p, race.rays, race.any, race.cell); !wrong.empty())
     return fail(wrong);
   enter_ways(race);
-  PointWay point_way(p.world, p.maker.light());
-  if (RayMaker::to_point(rays_kind) && !point_way.enter(race.rays, race.cell))
-    return fail("wrong hits: the light's grid against packets");
   CallerWays caller_ways(p.world, race.any);
   caller_ways.enter(race.rays, race.cell);
   run_rounds(state, race);

@@ -27,7 +27,7 @@ from chart import legend_below
 FIRST = [
     "rays", "hits", "disagree", "ns/ray", "tests/ray", "cells/ray", "lanes busy", "fell back",
     "ratio", "ratio of the best", "ratio to fast", "ratio of calls", "ratio of streams of 8",
-    "ratio by default", "target", "point grid ms", "pays from"]
+    "ratio by default", "target"]
 CALLER = ["ratio of calls", "ratio of streams of 8", "ratio by default"]
 # Label, then marker and colours (after Okabe and Ito)
 FASTER = ("as a render traces them: faster than Embree", {"marker": "o", "color": "#0072B2"})

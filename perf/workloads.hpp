@@ -17,7 +17,6 @@ namespace grelha::perf {
 /// Rays as arrays, with room for their answers.
 struct RayBuffer {
   std::vector<float> ox, oy, oz, dx, dy, dz, t_min, t_max;
-  std::vector<std::uint32_t> leaves;  ///< of rays to a point: see Points
   std::size_t size() const { return ox.size(); }
   void add(const float (&org)[3], const float (&dir)[3], float t_end);
   /// Rays [first, first + count).

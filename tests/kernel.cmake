@@ -11,11 +11,6 @@ target_sources(grid_test PRIVATE kernel/world/grid_choice_test.cpp)
 grelha_test(kernel/grid/crowds property grelha::kernel)
 grelha_test(kernel/world/building property grelha::frontend grelha::scenes)
 grelha_test(kernel/walk/walk property grelha::kernel)
-grelha_test(kernel/perspective/point_grid property grelha::kernel)
-target_sources(point_grid_test PRIVATE kernel/perspective/sides_test.cpp
-  kernel/perspective/look_test.cpp kernel/perspective/outline_test.cpp
-  kernel/world/point_reach_test.cpp
-  kernel/world/light_grids_test.cpp)
 grelha_test(kernel/walk/frustum property grelha::kernel grelha_lane_functions)
 grelha_test(kernel/trace/watertight property grelha::kernel)
 grelha_test(kernel/simd/power property grelha::kernel grelha_lane_functions)

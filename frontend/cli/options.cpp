@@ -22,9 +22,6 @@ constexpr std::array kPackets{Word{"1", 1}, Word{"16", 16}, Word{"64", 64}, Word
 constexpr std::array kPrecisions{
     std::pair<std::string_view, Precision>{"single", Precision::kSingle},
     std::pair<std::string_view, Precision>{"double", Precision::kDouble}};
-constexpr std::array kPointGrids{std::pair<std::string_view, PointGrids>{"auto", PointGrids::kAuto},
-                                 std::pair<std::string_view, PointGrids>{"on", PointGrids::kOn},
-                                 std::pair<std::string_view, PointGrids>{"off", PointGrids::kOff}};
 constexpr std::array kSamplers{
     std::pair<std::string_view, Sampler>{"sobol", Sampler::kSobol},
     std::pair<std::string_view, Sampler>{"blue", Sampler::kBlue},
@@ -255,13 +252,6 @@ void add_traversal(CLI::App& sub, RenderCommand& command) {
         "of the tests of rays and primitives [single]",
         [&command](const std::string& text) {
           command.render.precision = choice("--precision", text, kPrecisions);
-        });
-  value(sub,
-        "--point-grids",
-        "auto|on|off",
-        "grids in the perspective of point lights [auto: where they pay]",
-        [&command](const std::string& text) {
-          command.render.point_grids = choice("--point-grids", text, kPointGrids);
         });
   value(sub,
         "--packet",

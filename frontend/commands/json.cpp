@@ -39,10 +39,6 @@ Json to_json(const std::vector<GridStats>& grids) {
   return list;
 }
 
-Json to_json(const PointGridStats& grids) {
-  return {{"count", grids.count}, {"bytes", grids.bytes}, {"seconds", grids.seconds}};
-}
-
 Json to_json(const SceneBounds& bounds) {
   if (bounds.empty)
     return nullptr;

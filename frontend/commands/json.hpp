@@ -18,7 +18,6 @@ Json tidy(float value);
 Json to_json(Float3 v);
 Json to_json(const EntityCounts& c);
 Json to_json(const std::vector<GridStats>& grids);
-Json to_json(const PointGridStats& grids);
 Json to_json(const SceneBounds& bounds);
 Json to_json(const Subdivision& s);
 Json to_json(const RayCounts& rays);

@@ -105,17 +105,6 @@ std::string primitives_text(std::size_t spheres,
   return text.empty() ? "no primitives" : text;
 }
 
-const char* point_grids_name(PointGrids choice) {
-  switch (choice) {
-    case PointGrids::kOn:
-      return "on";
-    case PointGrids::kOff:
-      return "off";
-    default:
-      return "auto";
-  }
-}
-
 Json options_json(const RenderCommand& command) {
   const SampleOptions& sampling = command.render.sampling;
   return {{"depth", command.render.depth},
@@ -126,7 +115,6 @@ Json options_json(const RenderCommand& command) {
           {"isa", command.render.isa},
           {"precision", command.render.precision == Precision::kDouble ? "double" : "single"},
           {"packet", command.render.packet},
-          {"point_grids", point_grids_name(command.render.point_grids)},
           {"samples", sampling.samples},
           {"sampler", sampler_name(sampling.sampler)},
           {"seed", sampling.seed},
@@ -151,7 +139,7 @@ Json error_json(const RefineOptions& asked, const ErrorStats& e) {
 }
 
 Json to_json(const RowCounts& rows) {
-  return {{"boxes", rows.boxes}, {"primitives", rows.primitives}, {"outlines", rows.outlines}};
+  return {{"boxes", rows.boxes}, {"primitives", rows.primitives}};
 }
 
 Json packets_json(const TraceCounts& trace) {
@@ -198,16 +186,12 @@ std::string bounds_text(const SceneBounds& bounds) {
 }
 
 std::string memory_text(const SceneMemory& memory) {
-  std::string text = print(
+  return print(
       "memory        about %.1f MB to render: scene %.1f, grids %.1f, the rest to read, build and "
       "draw\n",
       double(memory.peak) / 1e6,
       double(memory.scene) / 1e6,
       double(memory.grids) / 1e6);
-  if (memory.lights > 0)
-    text += print("              %.1f MB more in large pictures, for grids of its point lights\n",
-                  double(memory.lights) / 1e6);
-  return text;
 }
 
 std::string grid_text(const GridStats& grid) {
@@ -282,7 +266,6 @@ std::string stats_json(const RenderCommand& command, const RunReport& report) {
   json["options"] = options_json(command);
   json["scene"] = to_json(report.counts);
   json["grids"] = to_json(report.grids);
-  json["point_grids"] = to_json(render.point_grids);
   json["rays"] = to_json(render.rays);
   if (command.render.refine.on())
     json["error"] = error_json(command.render.refine, render.error);
@@ -316,10 +299,7 @@ std::string info_json(const SceneFile& file,
     json["aabb"] = box_order_name(file.box_order);
   json["resolution"] = {file.camera.width, file.camera.height};
   json["bounds"] = to_json(bounds_of(geometry));
-  json["memory"] = {{"scene", memory.scene},
-                    {"grids", memory.grids},
-                    {"point_grids", memory.lights},
-                    {"peak", memory.peak}};
+  json["memory"] = {{"scene", memory.scene}, {"grids", memory.grids}, {"peak", memory.peak}};
   json["grids"] = grids ? to_json(*grids) : nullptr;
   for (const auto& [name, needed] : listed(needs_of(file)))
     json["needs"][name] = needed;

@@ -35,7 +35,6 @@ struct RunReport {
 struct SceneMemory {
   std::uint64_t scene = 0, grids = 0;  ///< while it is rendered
   std::uint64_t peak = 0;              ///< at most, be it while reading, building or rendering
-  std::uint64_t lights = 0;  ///< on top: grids of its point lights, where these pay and find room
 };
 
 std::string stats_json(const RenderCommand& command, const RunReport& report);

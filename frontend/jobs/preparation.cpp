@@ -134,7 +134,6 @@ SceneMemory memory_of(const SceneFile& file, const BuildOptions& options) {
   SceneMemory memory;
   memory.scene = geometry_bytes(file.scene);
   memory.grids = build.kept;
-  memory.lights = build.lights;
   memory.peak = memory.scene + std::max(kProgram + std::max(file.source_bytes, build.peak),
                                         build.kept + picture.sums + picture.rest);
   return memory;

@@ -10,7 +10,6 @@
 #include "grelha/camera.hpp"
 #include "grelha/geometry.hpp"
 #include "grelha/image.hpp"
-#include "grelha/point_grid.hpp"
 #include "grelha/query.hpp"
 #include "grelha/render.hpp"
 #include "grelha/scene_spans.hpp"

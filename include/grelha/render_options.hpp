@@ -63,14 +63,6 @@ struct RefineOptions {
 /// The floats that rays are tested against primitives in.
 enum class Precision { kSingle, kDouble };
 
-/// Whether lights that are points get grids in their own perspective (docs/perspective.md). No bit
-/// of a picture depends on it.
-enum class PointGrids {
-  kAuto,  ///< where the picture takes so many samples that they pay
-  kOn,
-  kOff
-};
-
 /// How a picture is rendered.
 struct RenderOptions {
   int threads = 0;  ///< 0: one per processor
@@ -85,7 +77,6 @@ struct RenderOptions {
   std::string_view isa = "best";
   /// of the tests of rays and primitives; hits are shaded in single
   Precision precision = Precision::kSingle;
-  PointGrids point_grids = PointGrids::kAuto;
   SampleOptions sampling;
   RefineOptions refine;
   bool phases = false;           ///< measure where the time goes

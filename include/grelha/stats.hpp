@@ -41,7 +41,6 @@ struct PacketCounts {
 struct RowCounts {
   std::uint64_t boxes = 0;       ///< one ray against boxes of blocks of primitives
   std::uint64_t primitives = 0;  ///< one ray against primitives
-  std::uint64_t outlines = 0;    ///< one ray against what a light sees of primitives
 };
 
 /// Counts of a trace.
@@ -59,7 +58,6 @@ struct TraceCounts {
     tests.plane += o.tests.plane;
     rows.boxes += o.rows.boxes;
     rows.primitives += o.rows.primitives;
-    rows.outlines += o.rows.outlines;
     packets.formed += o.packets.formed;
     packets.fell_back += o.packets.fell_back;
     packets.lanes_issued += o.packets.lanes_issued;
@@ -94,20 +92,12 @@ struct PhaseSeconds : std::array<double, kPhases> {
   }
 };
 
-/// Grids in the perspective of lights.
-struct PointGridStats {
-  int count = 0;
-  std::size_t bytes = 0;
-  double seconds = 0;  ///< to build them, 0 where they were there
-};
-
 /// Counts and times of a render.
 struct RenderStats {
   RayCounts rays;
   TraceCounts trace;
   PhaseSeconds phases;  ///< only with RenderOptions::phases
   ErrorStats error;     ///< only with RefineOptions
-  PointGridStats point_grids;
   int threads = 0;
   const char* isa = "";
 };

@@ -21,7 +21,7 @@ struct BuildOptions {
   float density = 0;
   int threads = 0;  ///< 0: one per processor. The number changes no bit of the grid.
   /// Most bytes beside the scene's own arrays; 0: any. A build that will probably take more throws
-  /// TooLarge before it begins. Grids of lights that find no room later are left out.
+  /// TooLarge before it begins.
   std::uint64_t most_bytes = 0;
   /// Called now and then from one thread at a time with the share done, which grows from 0 to 1.
   /// Returns false to have the constructor throw Stopped.
@@ -32,8 +32,6 @@ struct BuildOptions {
 struct BuildMemory {
   std::uint64_t peak = 0;  ///< while a World is built
   std::uint64_t kept = 0;  ///< as long as it lives
-  /// about what grids in perspective of its point lights take, where pictures have them built
-  std::uint64_t lights = 0;
 };
 
 /// Thrown by a function whose progress said to stop.
@@ -67,7 +65,7 @@ class World {
   /// One grid for the loose primitives and one for each larger object.
   std::vector<GridStats> grids() const;
   std::size_t geometry_bytes() const;  ///< the scene's own arrays
-  std::size_t grid_bytes() const;      ///< everything built beside them, but for grids of lights
+  std::size_t grid_bytes() const;      ///< everything built beside them
 
   struct Impl;  ///< the kernel's own
   /// For the kernel alone.

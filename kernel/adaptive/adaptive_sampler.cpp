@@ -193,7 +193,6 @@ class AdaptiveSampler {
   /// Doubles the samples of the wanted pixels, or takes the first ones. Returns whether it came to
   /// the end.
   bool take_round() {
-    look_for_light_grids();
     std::vector<Chunk> chunks = cut_round(r_, first_log_);
     std::atomic<std::size_t> begun = 0;
 #pragma omp parallel num_threads(stats_.threads)
@@ -218,17 +217,6 @@ class AdaptiveSampler {
       }
     }
     return end_round(r_, chunks, std::min(begun.load(), chunks.size()));
-  }
-
-  /// They pay by the samples to come: those of the round, and what is foreseen after it.
-  void look_for_light_grids() {
-    if (!setup_.light_grids.empty() || world_.shading.light_count == 0)
-      return;
-    double round = 0;
-    for (const std::uint32_t p : r_.wanted)
-      round += next_count(r_, p, first_log_);
-    set_light_grids(world_, options_, std::max(round, samples_left()), setup_);
-    stats_.point_grids = setup_.point_grids;
   }
 
   /// As far as is foreseen. Where an audit has met the error few pixels are left, whatever they

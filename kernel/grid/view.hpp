@@ -5,7 +5,6 @@
 #include <cstdint>
 
 #include "grelha/rays.hpp"
-#include "kernel/perspective/view.hpp"
 #include "kernel/shapes/geometry_view.hpp"
 
 namespace grelha {
@@ -50,25 +49,13 @@ struct SceneView {
   float box_lo[3] = {}, box_hi[3] = {};  ///< of all finite primitives, grown
   /// rays that start further than this from the box are moved nearer first; see approach()
   float reach = 0;
-  /// rays that start further than this from it do not go through grids in perspective
-  float point_reach = 0;
   bool finite = false;  ///< there is something besides planes
-};
-
-/// That rays end at one point, at t = 1: what is asked is whether anything lies between t = 0 and
-/// there.
-struct RaysToPoint {
-  const PointGridView* grid = nullptr;  ///< of the point; null: nothing is known of the rays
-  /// [rays] a primitive that the ray starts on and is known not to meet, or kNoPrimitive; null:
-  /// none
-  const std::uint32_t* leaves = nullptr;
 };
 
 /// How rays are traced. None of it changes an answer.
 struct TraceOptions {
   int packet = 256;     ///< rays that walk together: 1, 16, 64 or 256
   bool mailbox = true;  ///< for packets
-  RaysToPoint to = {};
 };
 
 /// What a trace counts.
@@ -77,7 +64,6 @@ struct Counters {
   std::uint64_t tests[kKinds] = {};  ///< by kind
   std::uint64_t box_rows = 0;
   std::uint64_t primitive_rows = 0;
-  std::uint64_t outline_rows = 0;
   std::uint64_t formed = 0;
   std::uint64_t fell_back = 0;
   std::uint64_t issued = 0;

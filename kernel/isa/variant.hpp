@@ -2,7 +2,6 @@
 // What each variant_*.cpp compiles: the hot loops behind the functions of a Variant. Included once
 // per instruction set.
 
-#include "kernel/perspective/look.hpp"
 #include "kernel/render/band.hpp"
 #include "kernel/features/tile_doubt.hpp"
 #include "kernel/query/loops.hpp"
@@ -79,14 +78,12 @@ inline void points(const SceneView& scene,
 extern const VariantLoops kLoops;
 const VariantLoops kLoops{.closest = closest<InFloat>,
                           .occluded = occluded<InFloat>,
-                          .occluded_to = occluded_to,
                           .closest_one = closest_one,
                           .occluded_one = occluded_one,
                           .in_double = {.closest = closest<InDouble>,
                                         .occluded = occluded<InDouble>,
                                         .trace = {.closest = trace_closest<InDouble>,
                                                   .blockers = trace_blockers_in_double}},
-                          .look = {.survey = survey, .see = see, .rank = rank},
                           .render_band = band,
                           .render_runs = pixel_runs,
                           .doubt = doubt,

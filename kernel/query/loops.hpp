@@ -14,7 +14,6 @@ inline void add(const Counters& n, TraceCounts& to) {
   to.tests.plane += n.tests[kNumber<Plane>];
   to.rows.boxes += n.box_rows;
   to.rows.primitives += n.primitive_rows;
-  to.rows.outlines += n.outline_rows;
   to.packets.formed += n.formed;
   to.packets.fell_back += n.fell_back;
   to.packets.lanes_issued += n.issued;
@@ -53,36 +52,6 @@ inline void occluded(const SceneView& scene,
   };
   const auto load = [&](Packet<In>& p, std::size_t first) { load_rays(rays, {}, first, p); };
   trace<true, In>(scene, rays.count, options, n, load, store);
-  add(n, counts);
-}
-
-/// Rays from points to one point.
-inline void load_rays_to(const PointQuery& query, std::size_t first, Packet<InFloat>& p) {
-  const float to[3] = {query.point.x, query.point.y, query.point.z};
-  for (int a = 0; a < 3; ++a) {
-    load_floats(query.points.at[a], query.points.stride, first, p.size, 0, p.org[a]);
-    for (int i = 0; i < p.size; ++i)
-      p.dir[a][i] = to[a] - p.org[a][i];
-  }
-  for (int i = 0; i < p.size; ++i) {
-    p.t_min[i] = 0;
-    p.best[i] = 1;
-  }
-}
-
-inline void occluded_to(const SceneView& scene,
-                        const PointQuery& query,
-                        std::uint8_t* blocked,
-                        const TraceOptions& options,
-                        TraceCounts& counts) {
-  Counters n;
-  TraceOptions to_point = options;
-  to_point.to = {query.grid, query.points.leaves};
-  const auto store = [&](const Packet<InFloat>& p, std::size_t first) {
-    store_blocked(p, blocked + first);
-  };
-  const auto load = [&](Packet<InFloat>& p, std::size_t first) { load_rays_to(query, first, p); };
-  trace<true, InFloat>(scene, query.points.count, to_point, n, load, store);
   add(n, counts);
 }
 

@@ -6,9 +6,7 @@
 #include <string_view>
 
 #include "grelha/part.hpp"
-#include "grelha/point_grid.hpp"
 #include "grelha/rays.hpp"
-#include "kernel/perspective/look_loops.hpp"
 #include "kernel/scene/pixel_box.hpp"
 #include "kernel/scene/shading_view.hpp"
 #include "grelha/stats.hpp"
@@ -23,13 +21,6 @@ using ClosestLoop =
 using OccludedLoop =
     void (*)(const SceneView&, const Rays&, std::uint8_t*, const TraceOptions&, TraceCounts&);
 
-/// Points that ask whether they see one point.
-struct PointQuery {
-  const PointGridView* grid;  ///< of the point; null: rays go through the scene's grids
-  Float3 point;
-  const Points& points;
-};
-
 /// Loops that test rays against primitives in double lanes, with one rounding to float at the end.
 struct DoubleLoops {
   ClosestLoop closest;
@@ -41,15 +32,10 @@ struct DoubleLoops {
 struct VariantLoops {
   ClosestLoop closest;
   OccludedLoop occluded;
-  /// Whether anything is in the way to a point: [points.count] out, 1 or 0.
-  void (*occluded_to)(
-      const SceneView&, const PointQuery&, std::uint8_t*, const TraceOptions&, TraceCounts&);
   /// One ray by itself.
   Hit (*closest_one)(const SceneView&, const Ray&);
   bool (*occluded_one)(const SceneView&, const Ray&);
   DoubleLoops in_double;
-  /// For those who build point grids; all give the same.
-  LookLoops look;
   void (*render_band)(const SceneView&,
                       const ShadingView&,
                       const FrameView&,

@@ -42,7 +42,6 @@ void render_bands(const World::Impl& world,
   stats = {};
   stats.threads = thread_count(options, most);
   stats.isa = setup.variant.name.data();
-  stats.point_grids = setup.point_grids;
   const Spaces spaces = band_spaces(setup, options, stats.threads);
   const auto first_pixel = [&](const Band& band) {
     return static_cast<std::uint32_t>(band.part.rows.begin) *

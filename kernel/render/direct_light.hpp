@@ -96,8 +96,6 @@ template <bool kOne>
   chosen.store(b.dir, n, dir);
   chosen.store(b.light, n, light);
   chosen.store(b.pixel + n, at(s.b.hits.pixel));
-  if (b.grid)
-    chosen.store(b.leaves + n, at(s.b.hits.leaves));
   n += chosen.count();
   if (n + kLanes <= kBatch)
     return n;
@@ -165,7 +163,6 @@ inline void light_hits(const Shader& s, int hits, int light_index, bool area) {
   const int each = area ? s.work.plan.light_rays : 1;
   const Lanes share(1.f / static_cast<float>(each));
   const Lanes3 color = share * splat(light + 3);
-  s.b.shadows.grid = s.shading.light_grids ? s.shading.light_grids[light_index] : nullptr;
   light_up(s,
            each == 1 ? send_one_each(s, hits, light_index, area, color)
                      : send_many_each(s, hits, light_index, each, color));

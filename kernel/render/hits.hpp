@@ -28,29 +28,9 @@ namespace grelha::GRELHA_ISA {
                           : surface_of<Lanes>(s.scene.geometry, id, org, dir, t, s.shading.smooth);
 }
 
-/// What rays that leave towards the side they came from do not meet again: triangles, and round
-/// primitives met from outside, since they bulge.
-[[gnu::always_inline]] inline LaneWords left_primitives(const Shader& s,
-                                                        const LaneWords& id,
-                                                        const LaneMask& inside) {
-  const PrimitiveIds& ids = s.scene.geometry.ids;
-  const LaneWords first = LaneWords{} + ids.begin(PrimitiveKind::kTriangle);
-  const LaneWords flat = LaneWords(id - first < ids.count(PrimitiveKind::kTriangle));
-  const unsigned kept = bits(mask_of(flat)) | ~bits(inside);
-  alignas(64) std::uint32_t leaves[kLanes];
-  store_words(leaves, id);
-  for (int k = 0; k < kLanes; ++k)
-    leaves[k] = kept >> k & 1 ? leaves[k] : kNoPrimitive;
-  return load_words<Lanes>(leaves);
-}
-
 /// Stores where the chosen of some rays met surfaces, from hit `to` on.
-[[gnu::always_inline]] inline void store_surfaces(const Shader& s,
-                                                  const Chosen& hit,
-                                                  int to,
-                                                  const LaneWords& id,
-                                                  const Lanes3& dir,
-                                                  const Surface<Lanes>& f) {
+[[gnu::always_inline]] inline void store_surfaces(
+    const Shader& s, const Chosen& hit, int to, const Lanes3& dir, const Surface<Lanes>& f) {
   BatchHits& h = s.b.hits;
   const Lanes zero(0), one(1);
   const LaneMask inside = dot(dir, f.normal) > zero;
@@ -64,8 +44,6 @@ namespace grelha::GRELHA_ISA {
   hit.store(h.away + to, f.away);
   hit.store(h.inside + to, select(inside, one, zero));
   hit.store(h.material + to, f.material);
-  if (s.shading.light_grids)
-    hit.store(h.leaves + to, left_primitives(s, id, inside));
 }
 
 /// Stores what the chosen of rays i, i + 1, ... carry, from hit `to` on.
@@ -100,7 +78,7 @@ inline int find_surfaces(const Shader& s, int count) {
     if (hit.count() == 0)
       continue;
     const Lanes3 dir = load3(r.dir, i);
-    store_surfaces(s, hit, hits, id, dir, surface_at_rays(s, i, id, dir));
+    store_surfaces(s, hit, hits, dir, surface_at_rays(s, i, id, dir));
     store_carried(s, hit, hits, i, weight);
     hits += hit.count();
   }

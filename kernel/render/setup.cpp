@@ -103,41 +103,7 @@ void check_refinement(const RenderOptions& o) {
   require(!o.subdivision.on, "samples are spent by error or by subdivision, not by both");
 }
 
-/// Samples of a picture for each primitive from which a light's grid pays. Measured: in 16 of 20
-/// scenes (docs/perspective.md). By error they go less together, where packets take longer.
-constexpr double kPayingSamples = 16;
-constexpr double kPayingRefined = 4;
-/// Primitives that a look-up can spare a ray: of fewer it takes longer than the walk (measured).
-constexpr std::size_t kFewestSeen = 32;
-
-bool pay(const RenderOptions& options, double samples, std::size_t primitives) {
-  const double of_each = options.refine.on() ? kPayingRefined : kPayingSamples;
-  return primitives >= kFewestSeen && samples >= of_each * static_cast<double>(primitives);
-}
-
 }  // namespace
-
-void set_light_grids(const World::Impl& w,
-                     const RenderOptions& options,
-                     double samples,
-                     Setup& setup) {
-  if (w.grids.empty() || options.point_grids == PointGrids::kOff ||
-      options.precision == Precision::kDouble || !setup.light_grids.empty() ||
-      (options.point_grids == PointGrids::kAuto &&
-       !pay(options, samples, w.light_grids->primitives())))
-    return;
-  const double begin = omp_get_wtime();
-  const std::size_t bytes = w.light_grids->bytes();
-  for (std::size_t i = 0; i < w.scene.lights.size(); ++i) {
-    setup.light_grids.push_back(
-        w.light_grids->of(i, thread_count(options, kMostDepth), setup.variant.loops.look));
-    setup.point_grids.count += setup.light_grids.back() != nullptr ? 1 : 0;
-  }
-  setup.shading.light_grids = setup.light_grids.data();
-  setup.point_grids.bytes = w.light_grids->bytes();
-  if (setup.point_grids.bytes > bytes)
-    setup.point_grids.seconds = omp_get_wtime() - begin;
-}
 
 void check_options(const Camera& camera, const RenderOptions& options) {
   require(camera_is_sound(camera), "the camera cannot see: check eye, at, up, angle and size");
@@ -160,16 +126,10 @@ Setup set_up(const World& world, const Camera& camera, const RenderOptions& opti
               .frame = make_frame(camera),
               .plan = plan_samples(sampling, camera, w.shading),
               .shading = w.shading,
-              .light_grids = {},
-              .point_grids = {},
               .places = {}};
   if (setup.plan.on && setup.plan.kind == SamplePlan::kBlue) {
     setup.places = drawing_places(camera.width, camera.height, sampling.seed);
     setup.plan.places = setup.places.data();
-  }
-  if (!options.refine.on()) {
-    const double pixels = static_cast<double>(camera.width) * camera.height;
-    set_light_grids(w, options, pixels * setup.plan.samples, setup);
   }
   return setup;
 }

@@ -15,8 +15,6 @@ struct Setup {
   FrameView frame;
   SamplePlan plan;
   ShadingView shading;
-  std::vector<const PointGridView*> light_grids;  ///< what the shading points to
-  PointGridStats point_grids;
   std::vector<std::uint32_t> places;  ///< what the plan points to
 };
 
@@ -26,13 +24,6 @@ void check_options(const Camera& camera, const RenderOptions& options);
 /// Throws std::invalid_argument for an instruction set that is unknown or does not run here, or a
 /// bad camera or option.
 Setup set_up(const World& world, const Camera& camera, const RenderOptions& options);
-
-/// Builds the grids of lights, or finds them where they are built, if so many samples of the
-/// picture pay for them. Those of a picture by error are known as it goes.
-void set_light_grids(const World::Impl& world,
-                     const RenderOptions& options,
-                     double samples,
-                     Setup& setup);
 
 /// Threads for `pieces` of work.
 int thread_count(const RenderOptions& options, std::size_t pieces);

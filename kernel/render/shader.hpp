@@ -175,7 +175,7 @@ inline void trace_shadows(const Shader& s, int n) {
                   .count = static_cast<std::size_t>(n),
                   .t_stride = 0};
   enter(s.work, Phase::shadow, rays);
-  const TraceOptions options{s.work.packet, s.work.mailbox, {b.grid, b.leaves}};
+  const TraceOptions options{s.work.packet, s.work.mailbox};
   const LowParts low{b.org_low.x, b.org_low.y, b.org_low.z};
   if (const TraceLoops* const loops = s.work.in_double) {
     loops->blockers(s.scene, rays, low, b.id, options, s.counters);

@@ -6,8 +6,6 @@
 
 namespace grelha {
 
-struct PointGridView;
-
 inline constexpr int kBatch = 512;     ///< rays shaded together
 inline constexpr int kCacheLine = 16;  ///< floats
 /// Length of an array of a batch: a cache line more than a power of two. A cache keeps few lines
@@ -65,7 +63,6 @@ struct BatchHits {
   alignas(64) float share[kBatchRow];   ///< see split()
   std::uint32_t pixel[kBatchRow], depth[kBatchRow], material[kBatchRow];
   std::uint32_t sample[kBatchRow], path[kBatchRow];
-  std::uint32_t leaves[kBatchRow];  ///< see RaysToPoint; only where lights have grids
 };
 
 /// Shadow rays and the light each lets through.
@@ -75,8 +72,6 @@ struct BatchShadows {
   Rows3 light;
   std::uint32_t id[kBatchRow];  ///< of something in the way
   std::uint32_t pixel[kBatchRow];
-  const PointGridView* grid;  ///< of the light that they go to, or null
-  std::uint32_t leaves[kBatchRow];
 };
 
 /// One thread's arrays for one batch; the caller allocates one a thread.

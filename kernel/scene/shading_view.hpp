@@ -31,8 +31,6 @@ enum MaterialField {
   kMaterialFields
 };
 
-struct PointGridView;
-
 struct MaterialView {
   const float* field[kMaterialFields] = {};  ///< [materials] each; kFresnel holds 0 or 1
 };
@@ -43,8 +41,6 @@ struct ShadingView {
   MaterialView materials;
   const float* lights = nullptr;  ///< [kLightFloats * light_count] centre, colour, edge, edge
   int light_count = 0;
-  /// [light_count] what is in the way of rays to a light, null where it has no grid; or null
-  const PointGridView* const* light_grids = nullptr;
   float background[3] = {};
   bool smooth = false;
   bool reflects = false;

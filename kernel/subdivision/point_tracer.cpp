@@ -141,7 +141,6 @@ bool render_subdivided(const World& world,
   stats = {};
   stats.threads = options.threads > 0 ? options.threads : omp_get_num_procs();
   stats.isa = setup.variant.name.data();
-  stats.point_grids = setup.point_grids;
   GuardedProgress progress(options.progress, should_continue);
   PointTracer tracer(world.impl(), setup, options, progress, stats.threads);
   const bool finished = subdivide(

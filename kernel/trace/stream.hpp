@@ -113,11 +113,7 @@ inline void trace(const SceneView& scene,
   for (std::size_t first = 0; first < count; first += step) {
     p.size = count - first < step ? static_cast<int>(count - first) : most;
     load(p, first);
-    bool done = false;
-    if constexpr (kAny && !In::kDouble)
-      done = options.to.grid && occlude_to_point(scene, p, options.to, first, n);
-    if (!done)
-      trace_packet<kAny>(scene, p, options, n);
+    trace_packet<kAny>(scene, p, options, n);
     store(p, first);
   }
 }

@@ -4,7 +4,6 @@
 
 #include "kernel/trace/afar.hpp"
 #include "kernel/trace/approach.hpp"
-#include "kernel/trace/point_traversal.hpp"
 #include "kernel/walk/packet_traversal.hpp"
 
 namespace grelha::GRELHA_ISA {
@@ -135,34 +134,6 @@ inline void trace_alone(const SceneView& scene, Packet<In>& p, Counters& n) {
     if (g.serves == Serves::kNearAndAfar)
       walk_from_afar<kAny>(g, p, n);
   });
-}
-
-/// Whether no ray of a packet starts further than `reach` from everything finite.
-inline bool starts_within(const SceneView& scene, float reach, const WalkingRays& p) {
-  Mask<Lanes> far = Lanes(0) != Lanes(0);
-  for (int i = 0; i < p.size; i += kWidth<Lanes>)
-    far = either(far, starts_beyond(scene, reach, p, i));
-  return none(far);
-}
-
-/// Whether anything is in the way of the rays of a packet to a point; ray 0 is ray `first` of the
-/// stream. False: some start too far away, and nothing is done.
-[[gnu::noinline]] inline bool occlude_to_point(const SceneView& scene,
-                                               Packet<InFloat>& p,
-                                               const RaysToPoint& to,
-                                               std::size_t first,
-                                               Counters& n) {
-  prepare_to_walk(p);
-  const bool near = starts_within(scene, scene.reach, p);
-  if (!near && !starts_within(scene, scene.point_reach, p))
-    return false;
-  test_infinite<true>(scene, p, n);
-  p.moved = false;
-  if (!near)
-    bring_near(scene, p);
-  const std::uint32_t* const leaves = to.leaves ? to.leaves + first : nullptr;
-  PointSearch(scene.geometry, *to.grid, p, leaves, n).run();
-  return true;
 }
 
 template <bool kAny, class In>

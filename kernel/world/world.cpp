@@ -1,7 +1,6 @@
 #include "kernel/world/world_impl.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
 #include "kernel/scene/crew.hpp"
@@ -58,29 +57,6 @@ void check(const SceneSpans& scene) {
     throw std::invalid_argument("an object names a triangle that is not there");
 }
 
-/// Diagonals of the scene's box that rays may start away from it and still go through grids in
-/// perspective, where it lies within so many of the origin; docs/perspective.md derives both.
-constexpr float kPointReach = 128;
-constexpr double kPointOffset = 6;
-/// Pads that half of the primitives are larger than: in others the room that is wanted for rays
-/// from afar would fill the lists.
-constexpr double kFarRoom = 32;
-
-/// The middle one of the diagonals of some primitives' boxes.
-double usual_size(const Primitives& p) {
-  constexpr std::size_t kSome = 256;
-  std::vector<double> sizes;
-  const std::size_t step = p.finite_count() / kSome + 1;
-  for (std::size_t id = p.first_finite(); id < p.ids.end(); id += step) {
-    const double size = p.box(static_cast<std::uint32_t>(id)).diagonal();
-    if (std::isfinite(size))
-      sizes.push_back(size);
-  }
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return sizes.empty() ? 0 : *middle;
-}
-
 }  // namespace
 
 World::Impl::Impl(const SceneSpans& s, const BuildOptions& options)
@@ -97,12 +73,6 @@ World::Impl::Impl(const SceneSpans& s, const BuildOptions& options)
   progress.throw_if_stopped();
   view_primitives();
   view_grids(plan.all);
-  if (!options.grid)  // no primitive is large beside the others then
-    plan.apart.clear();
-  const std::uint64_t most = options.most_bytes > 0 ? options.most_bytes : UINT64_MAX;
-  const std::uint64_t left = most - std::min<std::uint64_t>(most, bytes());
-  light_grids = std::make_unique<LightGrids>(
-      primitives, scene.lights, plan.apart, plan.all, left, view.point_reach > view.reach);
   set_lights();
   set_materials();
 }
@@ -134,16 +104,11 @@ void World::Impl::view_grids(const Box& all) {
   view.finite = !all.empty();
   if (!view.finite)
     return;
-  double offset = 0;
   for (int a = 0; a < 3; ++a) {
     view.box_lo[a] = static_cast<float>(all.lo[a]);
     view.box_hi[a] = static_cast<float>(all.hi[a]);
-    offset = std::max({offset, std::abs(all.lo[a]), std::abs(all.hi[a])});
   }
   view.reach = static_cast<float>(all.diagonal());
-  const bool central = offset <= kPointOffset * all.diagonal();
-  const bool large = usual_size(primitives) > kFarRoom * pad_of(all.diagonal());
-  view.point_reach = view.reach * (central && large ? kPointReach : 1);
 }
 
 void World::Impl::set_lights() {
@@ -201,11 +166,7 @@ BuildMemory World::estimate(const SceneSpans& scene, const BuildOptions& options
   check(options);
   const Primitives primitives(scene.geometry);
   BuildProgress nobody;
-  BuildMemory memory = memory_of(scene, primitives, plan_grids(primitives, options, nobody));
-  const auto is_point = [](const Light& l) { return !l.is_area(); };
-  const auto lights = std::ranges::count_if(scene.lights, is_point);
-  memory.lights = LightGrids::expected_bytes(primitives, static_cast<std::size_t>(lights));
-  return memory;
+  return memory_of(scene, primitives, plan_grids(primitives, options, nobody));
 }
 
 World::World(const SceneSpans& scene, const BuildOptions& options)

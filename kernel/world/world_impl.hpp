@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "kernel/grid/grid.hpp"
-#include "kernel/world/light_grids.hpp"
 #include "grelha/world.hpp"
 #include "kernel/scene/materials.hpp"
 #include "kernel/scene/shading_view.hpp"
@@ -26,10 +25,9 @@ struct World::Impl {
   std::vector<float> lights;  ///< [kLightFloats * count], see ShadingView
   SceneView view;
   ShadingView shading;
-  std::unique_ptr<LightGrids> light_grids;  ///< built when asked for
 
   Impl(const SceneSpans& scene, const BuildOptions& options);
-  /// Everything built beside the scene, but for grids of lights.
+  /// Everything built beside the scene.
   std::size_t bytes() const;
 
  private:

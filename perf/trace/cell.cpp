@@ -38,11 +38,6 @@ double Cell::ratio(std::size_t a, std::size_t b) const {
   return median(r);
 }
 
-double Cell::pays_from() const {
-  const double saved = median(ways[chosen].ns) - median(ways[point_grid].ns);
-  return saved > 0 ? point_grid_ns / saved : std::numeric_limits<double>::infinity();
-}
-
 std::vector<double> Cell::caller_ratios() const {
   const auto best_of = [&](const std::string& name) {
     std::size_t found = best[kRobust];

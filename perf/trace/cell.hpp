@@ -27,9 +27,6 @@ struct Cell {
   std::size_t best[kSides] = {};
   static constexpr std::size_t chosen = 0;  ///< the way that a render takes, see kModes
   TraceCounts counts;                       ///< of the render's choice
-  /// The way through a grid in the light's perspective, where rays go to one; 0: there is none.
-  std::size_t point_grid = 0;
-  double point_grid_ns = 0;  ///< what building it took, of one thread
   /// The first of the ways of CallerWays; 0: there are none.
   std::size_t first_caller = 0;
 
@@ -40,9 +37,6 @@ struct Cell {
   bool has_embree() const { return ways[best[kRobust]].side == kRobust; }
   /// Median over rounds of the times of one way over those of another.
   double ratio(std::size_t a, std::size_t b) const;
-  /// Rays until building the light's grid has paid, as the render's choice would trace them;
-  /// infinite: never.
-  double pays_from() const;
   /// What a caller's ways take over those of Embree's that ask alike: calls of one ray, streams of
   /// eight, and one stream over the best.
   std::vector<double> caller_ratios() const;

@@ -66,33 +66,9 @@ std::string counts_text(const Row&, std::size_t, const Cell& c) {
                 100 * c.fell_back());
 }
 
-std::string point_grid_text(const Row&, std::size_t, const Cell& c) {
-  const double ns = median(c.ways[c.point_grid].ns);
-  const double ms = 1e-6 * c.point_grid_ns;
-  if (!c.has_embree())
-    return format("%.1f ns; %.1f ms, %.2g rays", ns, ms, c.pays_from());
-  const double ratio = c.ratio(c.point_grid, c.best[kRobust]);
-  return format("%.2f; %.1f ns; %.1f ms, %.2g rays", ratio, ns, ms, c.pays_from());
-}
-
 std::string caller_text(const Row&, std::size_t, const Cell& c) {
   const std::vector<double> r = c.caller_ratios();
   return format("%.2f; %.2f; %.2f", r[0], r[1], r[2]);
-}
-
-/// What rays to the light cost through a grid in its perspective.
-void print_point_grids(const Options& options, const Results& results) {
-  std::vector<std::size_t> kinds;
-  for (const std::size_t k : options.kinds)
-    if (RayMaker::to_point(static_cast<RayKind>(k)))
-      kinds.push_back(k);
-  if (!kinds.empty())
-    print_table(options,
-                kinds,
-                results,
-                "Through a grid in the light's perspective: over Embree's best, robust; ns a ray; "
-                "building it in one thread, and from how many rays on that pays",
-                point_grid_text);
 }
 
 }  // namespace
@@ -115,7 +91,6 @@ void print_tables(const Options& options, const Results& results) {
         "one stream with the library's own options / Embree's best",
         caller_text);
   }
-  print_point_grids(options, results);
   print("ns a ray, as a render forms packets", time_text);
   print("Lanes busy; tests a ray; cells a ray; packets that fell back", counts_text);
 }

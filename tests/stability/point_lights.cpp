@@ -47,7 +47,6 @@ void to_lights(Random& random, std::size_t rays, const Sink& sink) {
     const LitScene lit = make(random);
     Trial trial;
     trial.scene = lit.scene;
-    trial.light = lit.light;
     const Size size = size_of(trial.scene);
     for (std::size_t i = 0; i < std::min(each, rays); ++i) {
       const Float3 org = start_of(random, lit);

@@ -39,9 +39,8 @@ struct Trial {
   Scene scene;
   RayList rays;
   std::vector<Wanted> wanted;
-  float density = 0;            ///< of Grelha's grid
-  bool occlusion = true;        ///< whether the yes-or-no question is asked too
-  std::optional<Float3> light;  ///< where all rays end, at t = 1
+  float density = 0;      ///< of Grelha's grid
+  bool occlusion = true;  ///< whether the yes-or-no question is asked too
 
   void add(const Float3& org, const Float3& dir, const Wanted& w, float t_max = test::kInf) {
     rays.add(org, dir, 0, t_max);
@@ -87,13 +86,12 @@ struct Row {
   void (*make)(Random& random, std::size_t rays, const Sink& sink);
 };
 
-std::vector<Row> mesh_rows();     ///< meshes.cpp: nothing falls between two triangles
-std::vector<Row> sphere_rows();   ///< spheres.cpp
-std::vector<Row> walk_rows();     ///< walks.cpp: acceleration loses nothing
-std::vector<Row> contact_rows();  ///< contacts.cpp: rays that leave surfaces
-std::vector<Row> floor_rows();    ///< floors.cpp: triangles far larger than what stands on them
-/// point_lights.cpp: shadow rays, by grids of lights as well
-std::vector<Row> point_light_rows();
+std::vector<Row> mesh_rows();         ///< meshes.cpp: nothing falls between two triangles
+std::vector<Row> sphere_rows();       ///< spheres.cpp
+std::vector<Row> walk_rows();         ///< walks.cpp: acceleration loses nothing
+std::vector<Row> contact_rows();      ///< contacts.cpp: rays that leave surfaces
+std::vector<Row> floor_rows();        ///< floors.cpp: triangles far larger than what stands on them
+std::vector<Row> point_light_rows();  ///< point_lights.cpp: shadow rays
 std::vector<Row> all_rows();
 
 /// Every way of a tracer through one trial.

@@ -140,7 +140,7 @@ RunReport some_run() {
   report.height = 3;
   report.grids = {{{2, 3, 4}, 5, 6, 7}};
   report.render.rays = {12, 13, 14, 15};
-  report.render.trace = {16, {17, 18, 19, 20}, {23, 24, 25}, {21, 22, 80, 60}};
+  report.render.trace = {16, {17, 18, 19, 20}, {23, 24}, {21, 22, 80, 60}};
   report.render.threads = 2;
   report.render.isa = "avx2";
   report.seconds = {1, 2, 3, 4};
@@ -162,7 +162,7 @@ TEST(Stats, HoldWhatWasCounted) {
             Json::parse(R"({"primary":12,"shadow":13,"reflection":14,"refraction":15})"));
   EXPECT_EQ(json["visits"], 16);
   EXPECT_EQ(json["tests"], Json::parse(R"({"sphere":17,"triangle":18,"cone":19,"plane":20})"));
-  EXPECT_EQ(json["rows"], Json::parse(R"({"boxes":23,"primitives":24,"outlines":25})"));
+  EXPECT_EQ(json["rows"], Json::parse(R"({"boxes":23,"primitives":24})"));
   EXPECT_EQ(json["packets"], Json::parse(R"({"formed":21,"fell_back":22,"lanes_busy":0.75})"));
   EXPECT_EQ(json["seconds"],
             Json::parse(R"({"load":1.0,"build":2.0,"render":3.0,"write":4.0,"render_cpu":0.0})"));
@@ -192,7 +192,7 @@ TEST(Info, JsonSaysWhatTheSceneHolds) {
   file.counts = {.s = 1, .lights = 2, .materials = 1};
   file.dropped = {3, 4};
   file.camera.width = 640;
-  const Json json = Json::parse(info_json(file, {1, 2, 3, 4}, std::vector<GridStats>{}));
+  const Json json = Json::parse(info_json(file, {1, 2, 3}, std::vector<GridStats>{}));
   EXPECT_EQ(keys(json),
             (std::set<std::string>{"scene",
                                    "kernel",
@@ -211,7 +211,7 @@ TEST(Info, JsonSaysWhatTheSceneHolds) {
   EXPECT_EQ(json["bounds"], Json::parse(R"({"min":[0.5,1.5,2.5],"max":[1.5,2.5,3.5]})"));
   EXPECT_EQ(json["grids"], Json::array());
   EXPECT_TRUE(Json::parse(info_json(file, {}, {}))["grids"].is_null()) << "not built";
-  EXPECT_EQ(json["memory"], Json::parse(R"({"scene":1,"grids":2,"point_grids":4,"peak":3})"));
+  EXPECT_EQ(json["memory"], Json::parse(R"({"scene":1,"grids":2,"peak":3})"));
   EXPECT_EQ(json["needs"]["refraction"], true);
   EXPECT_EQ(json["needs"]["cones"], false);
 }
@@ -242,7 +242,7 @@ TEST(Info, SaysHowBoxesAreRead) {
 TEST(Info, TextListsTheSame) {
   SceneFile file = one_ball(material_with([](Material& m) { m.mirror = {1, 1, 1}; }));
   file.counts = {.s = 1, .lights = 2, .materials = 1};
-  const SceneMemory memory{100000, 200000, 1250000, 30000000};
+  const SceneMemory memory{100000, 200000, 1250000};
   EXPECT_EQ(info_text("x.nff", file, memory, std::vector<GridStats>{{{2, 3, 4}, 5, 6, 7}}),
             "x.nff: 512x512\n"
             "in the file   1 s\n"
@@ -252,7 +252,6 @@ TEST(Info, TextListsTheSame) {
             "bounds        (0.5, 1.5, 2.5) to (1.5, 2.5, 3.5)\n"
             "memory        about 1.2 MB to render: scene 0.1, grids 0.2, the rest to read, build "
             "and draw\n"
-            "              30.0 MB more in large pictures, for grids of its point lights\n"
             "grid          2 x 3 x 4 cells, 5 occupied, 6 references, 0.0 MB\n"
             "needs         spheres, reflection\n");
 }

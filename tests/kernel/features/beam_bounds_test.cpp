@@ -1,4 +1,5 @@
 // What a beam's tolerances are for: scenes in which each of them decides.
+#include "grelha/query.hpp"
 #include "tests/support/beams.hpp"
 #include "tests/support/rays.hpp"
 

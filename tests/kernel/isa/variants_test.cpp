@@ -50,7 +50,6 @@ TEST_P(Copies, CountRowsOfLoneRays) {
   EXPECT_GT(hits_of(a), 100u);
   EXPECT_GT(a.counts.rows.boxes, rays.size() / 2);
   EXPECT_EQ(a.counts.rows.primitives * kBlock, a.counts.tests.triangle);
-  EXPECT_EQ(a.counts.rows.outlines, 0u);
 }
 
 /// Lanes are issued in whole registers of this copy: one ray alone costs as many lanes as the copy

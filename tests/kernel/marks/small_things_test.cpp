@@ -1,6 +1,7 @@
 // Pixels that are looked at since something thin, or its shadow, may be there.
 #include "kernel/marks/small_things.hpp"
 
+#include "grelha/query.hpp"
 #include "tests/support/boxes.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/rays.hpp"

@@ -3,6 +3,7 @@
 #define GRELHA_ISA scalar
 #include "kernel/shapes/cone.hpp"
 
+#include "grelha/query.hpp"
 #include "kernel/shapes/primitives.hpp"
 #include "tests/support/oracle.hpp"
 #include "tests/support/rays.hpp"
