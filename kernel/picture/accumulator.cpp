@@ -7,6 +7,7 @@
 
 #include "kernel/render/guarded_progress.hpp"
 #include "kernel/render/bands.hpp"
+#include "kernel/scene/forked.hpp"
 #include "kernel/scene/image_to_fill.hpp"
 
 namespace grelha {
@@ -164,7 +165,9 @@ bool accumulate(const World& world,
     }
     return !progress.stopped();
   };
-  render_bands(world.impl(), setup, options, to_render.left(), next_band, take_band, stats);
+  run_fork_safe([&] {
+    render_bands(world.impl(), setup, options, to_render.left(), next_band, take_band, stats);
+  });
   progress.rethrow();
   return is_complete(a);
 }

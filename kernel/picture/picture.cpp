@@ -3,6 +3,7 @@
 #include "kernel/adaptive/adaptive_sampler.hpp"
 #include "kernel/subdivision/point_tracer.hpp"
 #include "kernel/render/setup.hpp"
+#include "kernel/scene/forked.hpp"
 
 namespace grelha {
 namespace {
@@ -158,11 +159,12 @@ bool Picture::advance(const World& world,
                       RenderStats& stats,
                       SampleMaps* maps,
                       const ShouldContinue& should_continue) {
-  return std::visit(
-      [&](auto& state) {
-        return advance_state(world, camera, options, state, stats, maps, should_continue);
-      },
-      state_);
+  bool done = false;
+  const auto advance_any = [&](auto& state) {
+    done = advance_state(world, camera, options, state, stats, maps, should_continue);
+  };
+  run_fork_safe([&] { std::visit(advance_any, state_); });
+  return done;
 }
 
 int Picture::width() const {

@@ -7,6 +7,8 @@
 #include <thread>
 #include <vector>
 
+#include <pthread.h>
+
 namespace grelha {
 namespace {
 
@@ -105,10 +107,21 @@ class Members {
   std::vector<Member*> idle_;
 };
 
+Members* all_members = nullptr;
+
+/// A forked process has none of its parent's threads.
+void forget_members() {
+  all_members = new Members;
+}
+
 /// Never destroyed: they sleep on while the program ends.
 Members& members() {
-  static Members* const all = new Members;
-  return *all;
+  static const int registered = [] {
+    forget_members();
+    return pthread_atfork(nullptr, nullptr, forget_members);
+  }();
+  static_cast<void>(registered);
+  return *all_members;
 }
 
 }  // namespace
