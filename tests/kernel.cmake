@@ -23,6 +23,7 @@ grelha_test(kernel/scene/crew unit grelha::kernel)
 grelha_test(kernel/scene/pages unit grelha::kernel)
 grelha_test(kernel/isa/variants property grelha::kernel)
 grelha_test(kernel/isa/double property grelha::kernel)
+target_sources(double_test PRIVATE kernel/isa/kinds_test.cpp)
 grelha_test(kernel/features/beam unit grelha::kernel)
 target_sources(beam_test PRIVATE kernel/features/beam_bounds_test.cpp
   kernel/features/beam_box_test.cpp kernel/features/beam_frame_test.cpp
@@ -40,6 +41,7 @@ grelha_test(kernel/render/path_weight unit grelha::kernel)
 grelha_test(kernel/subdivision/subdivision image grelha::kernel)
 target_sources(subdivision_test PRIVATE kernel/subdivision/adaptive_test.cpp)
 grelha_test(kernel/picture/determinism image grelha::frontend grelha::scenes)
+target_sources(determinism_test PRIVATE kernel/picture/fork_test.cpp)
 
 # What ./run builds first: the copies for one processor, which nobody may install.
 add_test(NAME first_build COMMAND ${CMAKE_COMMAND} -D ROOT=${PROJECT_SOURCE_DIR}

@@ -98,19 +98,38 @@ namespace grelha::GRELHA_ISA {
 /// surrounds it, and so its place between the ends by the slope times that (docs/numerics.md).
 inline constexpr float kSteep = 8;
 
-template <class Real>
-[[gnu::noinline, gnu::cold]] Mask<Real> hit_steep_cones(const Vec3<Real>& org,
-                                                        const Vec3<Real>& dir,
-                                                        const Real& inv_dd,
-                                                        const Real& t_min,
-                                                        const Cone::Fields<Real>& cone,
-                                                        const Mask<Real>& steep,
-                                                        Real& t);
+/// Lines that surely pass a cone by. aside is off by k = 8 u |to_base| / |dir|, however small the
+/// sine between ray and axis: (w + k)^2 <= 9/8 w^2 + 9 k^2.
+inline constexpr float kWider = 1.125f;
+inline constexpr float kSineRoom = 0x1p-38f;
+/// Squares of wider radii below which products of floats may underflow.
+inline constexpr float kLeastWidth = 0x1p-100f;
 
-/// First point of each ray on the side of a cone frustum or cylinder, from outside or (through the
-/// open ends) inside.
+/// The unit vector that a float axis stands for.
+template <class Real>
+[[gnu::always_inline]] inline Vec3<Real> axis_of(const Cone::Fields<Real>& cone) {
+  const Vec3<Real> axis = vec(cone.axis);
+  if constexpr (sizeof(Scalar<Real>) == sizeof(float))
+    return axis;
+  else
+    return normalize(axis);
+}
+
+/// Where rays meet the sides of cones.
+template <class Real>
+struct ConeCrossings {
+  Mask<Real> some;     ///< the line crosses
+  Real first, second;  ///< t, in either order; NaN where it is not of the side
+};
+
+/// cone_crossings() of float lanes in double, each t rounded once.
+template <class Real>
+[[gnu::noinline, gnu::cold]] ConeCrossings<Real> cone_crossings_in_double(
+    const Vec3<Real>& org, const Vec3<Real>& dir, const Cone::Fields<Real>& cone);
+
+/// The points of each ray on the side of a cone frustum or cylinder, from outside or (through the
+/// open ends) inside, at any t.
 ///
-/// Returns   lanes whose t is above t_min; t means nothing in the others.
 /// Accuracy  hit point within 32 eps (|org - base| + height + wider radius) of the surface; a ray
 ///           that leaves it from that far above it does not meet it, however flat the cone
 ///           (cone_test.cpp). The quadratic is solved about the ray's point nearest to the narrower
@@ -118,35 +137,38 @@ template <class Real>
 ///           b b - a c is, by Lagrange's identity, also w w - m m: where the roots meet, at a tip,
 ///           b b is the larger, along the side w w. Less is lost of the smaller. What lies across
 ///           the axis (pn, n, e, w) is a cross product with it, as long and turned by a quarter: m
-///           is p . e then.
+///           is p . e then. Steep cones are met in double, and tiny ones, whose products
+///           underflow.
 /// Source    Haines, NFF document 3.9 (SPD), "c"; stable roots as in Press et al., Numerical
 ///           Recipes, 5.6.
 template <class Real>
-[[gnu::always_inline]] inline Mask<Real> hit_cone(const Vec3<Real>& org,
-                                                  const Vec3<Real>& dir,
-                                                  const Real& inv_dd,
-                                                  const Real& t_min,
-                                                  const Cone::Fields<Real>& cone,
-                                                  Real& t) {
+[[gnu::always_inline]] inline ConeCrossings<Real> cone_crossings(const Vec3<Real>& org,
+                                                                 const Vec3<Real>& dir,
+                                                                 const Real& inv_dd,
+                                                                 const Cone::Fields<Real>& cone) {
+  constexpr bool kFloat = sizeof(Scalar<Real>) == sizeof(float);
   const Real o(0);
-  const Vec3<Real> axis = vec(cone.axis);
+  const Vec3<Real> axis = axis_of(cone);
   const Vec3<Real> to_base = vec(cone.base) - org;
-  // what of `dir` runs across the axis, turned by a quarter
+  // across the axis, turned by a quarter
   const Vec3<Real> n = cross(dir, axis);
   // by dir . dir, or products of four lengths overflow beyond 1e9
   const Vec3<Real> e = inv_dd * n;
   const Real aside = dot(to_base, e), de = dot(n, e);
   const Real wide = cone.radius + cone.slope * cone.height;
-  const Real within = (wide * wide) * inv_dd * de - aside * aside;
+  const Real room = Real(kWider) * (wide * wide) * de + Real(kSineRoom) * dot(to_base, to_base);
+  const Real within = room * inv_dd - aside * aside;
   // most lines pass the axis further away than the wider radius
-  const Mask<Real> near_by = within >= o;
+  Mask<Real> near_by = within >= o;
+  Mask<Real> exactly = o != o;
+  if constexpr (kFloat)
+    if (exactly = wide * wide < Real(kLeastWidth); any(exactly)) [[unlikely]]
+      near_by = either(near_by, exactly);
   if (none(near_by))
-    return near_by;
+    return {near_by, o, o};
   const bool tapers = any(cone.slope > o);
-  if constexpr (sizeof(Scalar<Real>) == sizeof(float))
-    if (tapers)
-      if (const Mask<Real> steep = both(near_by, cone.slope > Real(kSteep)); any(steep))
-        return hit_steep_cones<Real>(org, dir, inv_dd, t_min, cone, steep, t);
+  if (kFloat && tapers)
+    exactly = either(exactly, both(near_by, cone.slope > Real(kSteep)));
   const Real near = dot(to_base, dir) * inv_dd;
   const Vec3<Real> p = near * dir - to_base;  // narrower end to the line's nearest point
   const Real pz = dot(p, axis), dz = dot(dir, axis);
@@ -164,58 +186,73 @@ template <class Real>
   const Real c = inv_dd * (dot(pn, pn) - r * r), bb = b * b, ww = dot(w, w), moment = dot(p, e);
   const Real disc = select(bb < ww, bb - a * c, ww - moment * moment);
   // so that no lane's answer depends on its neighbours, whatever overflows
-  const Mask<Real> crosses = both(near_by, disc >= o);
+  const Mask<Real> crosses = both(near_by, either(disc >= o, exactly));
   if (none(crosses))
-    return crosses;
+    return {crosses, o, o};
   const Real root = square_root(disc);
   const Real q = select(b < o, root - b, o - (b + root));
-  const Real t1 = q / a, t2 = c / q;
-  const auto valid = [&](const Real& s) __attribute__((always_inline)) {
+  const auto on_side = [&](const Real& s) __attribute__((always_inline)) {
     const Real h = pz + s * dz;
     const Mask<Real> leaving = (a * s + b) >= o;  // on a tip neither; let no ray out there
-    return both(both(both(h >= o, h <= cone.height), (near + s) > t_min),
-                either(cone.side > o, leaving));
+    return select(both(both(h >= o, h <= cone.height), either(cone.side > o, leaving)),
+                  near + s,
+                  Real(__builtin_nanf("")));
   };
-  const Mask<Real> ok1 = valid(t1), ok2 = valid(t2);
-  const Mask<Real> first = both(ok1, either(but_not(ok1, ok2), t1 < t2));
-  t = near + select(first, t1, t2);
-  return both(crosses, either(ok1, ok2));
+  ConeCrossings<Real> found{crosses, on_side(q / a), on_side(c / q)};
+  if constexpr (kFloat)
+    if (any(exactly)) [[unlikely]] {
+      const ConeCrossings<Real> exact = cone_crossings_in_double<Real>(org, dir, cone);
+      found.first = select(exactly, exact.first, found.first);
+      found.second = select(exactly, exact.second, found.second);
+    }
+  return found;
 }
 
-/// t of hit_cone() in double, part after part of the lanes; NaN where the ray meets nothing.
+/// Part after part of the lanes.
 template <int i, class Real>
-[[gnu::always_inline]] inline void cones_in_double(const Vec3<Real>& org,
-                                                   const Vec3<Real>& dir,
-                                                   const Real& t_min,
-                                                   const Cone::Fields<Real>& cone,
-                                                   Wide<Real> (&t)[kWideParts<Real>]) {
+[[gnu::always_inline]] inline void cone_crossing_parts(const Vec3<Real>& org,
+                                                       const Vec3<Real>& dir,
+                                                       const Cone::Fields<Real>& cone,
+                                                       Wide<Real> (&first)[kWideParts<Real>],
+                                                       Wide<Real> (&second)[kWideParts<Real>]) {
   using W = Wide<Real>;
   const Vec3<W> d = widen<i>(dir);
-  W met(0);
-  const Mask<W> hit = hit_cone<W>(
-      widen<i>(org), d, W(1) / dot(d, d), widen<i>(t_min), widened<Cone, i, Real>(cone), met);
-  t[i] = select(hit, met, W(__builtin_nan("")));
+  const ConeCrossings<W> met =
+      cone_crossings<W>(widen<i>(org), d, W(1) / dot(d, d), widened<Cone, i, Real>(cone));
+  const W nowhere(__builtin_nan(""));
+  first[i] = select(met.some, met.first, nowhere);
+  second[i] = select(met.some, met.second, nowhere);
   if constexpr (i + 1 < kWideParts<Real>)
-    cones_in_double<i + 1, Real>(org, dir, t_min, cone, t);
+    cone_crossing_parts<i + 1, Real>(org, dir, cone, first, second);
 }
 
-/// hit_cone() where some are steep.
 template <class Real>
-Mask<Real> hit_steep_cones(const Vec3<Real>& org,
-                           const Vec3<Real>& dir,
-                           const Real& inv_dd,
-                           const Real& t_min,
-                           const Cone::Fields<Real>& cone,
-                           const Mask<Real>& steep,
-                           Real& t) {
-  Wide<Real> parts[kWideParts<Real>];
-  cones_in_double<0, Real>(org, dir, t_min, cone, parts);
-  const Real exact = narrow<Real>(parts);
-  Cone::Fields<Real> others = cone;
-  others.slope = select(steep, Real(0), cone.slope);
-  const Mask<Real> hit = hit_cone<Real>(org, dir, inv_dd, t_min, others, t);
-  t = select(steep, exact, t);
-  return either(but_not(hit, steep), both(steep, exact > t_min));
+ConeCrossings<Real> cone_crossings_in_double(const Vec3<Real>& org,
+                                             const Vec3<Real>& dir,
+                                             const Cone::Fields<Real>& cone) {
+  Wide<Real> first[kWideParts<Real>], second[kWideParts<Real>];
+  cone_crossing_parts<0, Real>(org, dir, cone, first, second);
+  return {Real(0) == Real(0), narrow<Real>(first), narrow<Real>(second)};
+}
+
+/// First point of each ray on the side of a cone whose t is above t_min.
+///
+/// Returns   lanes that have one; t means nothing in the others.
+template <class Real>
+[[gnu::always_inline]] inline Mask<Real> hit_cone(const Vec3<Real>& org,
+                                                  const Vec3<Real>& dir,
+                                                  const Real& inv_dd,
+                                                  const Real& t_min,
+                                                  const Cone::Fields<Real>& cone,
+                                                  Real& t) {
+  const ConeCrossings<Real> met = cone_crossings<Real>(org, dir, inv_dd, cone);
+  if (none(met.some))
+    return met.some;
+  const Mask<Real> first = met.first > t_min;  // NaN is not
+  const Mask<Real> second = met.second > t_min;
+  t = select(
+      both(first, either(but_not(first, second), met.first < met.second)), met.first, met.second);
+  return both(met.some, either(first, second));
 }
 
 template <class Real>
@@ -319,7 +356,7 @@ inline ConePlaces surface_places(const Cone::Fields<float>& cone) {
 template <class Real>
 inline SurfacePlace<Real> cone_place(const Cone::Fields<Real>& cone, const Vec3<Real>& at) {
   const Vec3<Real> base = vec(cone.base);
-  const Vec3<Real> axis = vec(cone.axis);
+  const Vec3<Real> axis = axis_of(cone);
   const Vec3<Real> from_base = at - base;
   const Real above = dot(from_base, axis);
   const Vec3<Real> radial = from_base - above * axis;

@@ -126,51 +126,54 @@ inline constexpr float kPowerError = 0x1p-21f;
 inline constexpr float kChordError = 0x1p-20f;
 /// Floats do for t where |power| is not below this part of r^2: what rounds is 96 u of it there.
 inline constexpr float kFarPower = 0x1p-4f;
+/// Squares of radii below which what is left of squares may underflow.
+inline constexpr float kLeastSquare = 0x1p-100f;
+
+/// Where rays meet spheres.
+template <class Real>
+struct SphereCrossings {
+  Mask<Real> some;    ///< the line crosses
+  Real enter, leave;  ///< t; NaN where that is not known after all
+};
 
 template <class Real>
-[[gnu::always_inline]] inline Mask<Real> hit_sphere(const Vec3<Real>& org,
-                                                    const Vec3<Real>& dir,
-                                                    const Real& inv_dd,
-                                                    const Real& t_min,
-                                                    const Vec3<Real>& center,
-                                                    const Real& radius,
-                                                    Real& t);
+[[gnu::always_inline]] inline SphereCrossings<Real> sphere_crossings(const Vec3<Real>& org,
+                                                                     const Vec3<Real>& dir,
+                                                                     const Real& inv_dd,
+                                                                     const Vec3<Real>& center,
+                                                                     const Real& radius);
 
 /// What a test is given. A copy: of the hot loop's own variables the address would be taken, and
 /// they would leave their registers.
 template <class Real>
 struct SphereRay {
-  Vec3<Real> org, dir;
-  Real t_min;
-  Vec3<Real> center;
+  Vec3<Real> org, dir, center;
   Real radius;
 };
 
-/// hit_sphere() of float lanes in double, part after part: t where a ray hits, NaN where not.
+/// sphere_crossings() of float lanes in double, part after part; NaN where the line passes by.
 template <class Real, int i = 0>
 [[gnu::always_inline]] inline void wide_sphere(const SphereRay<Real>& r,
-                                               Wide<Real> (&t)[kWideParts<Real>]) {
+                                               Wide<Real> (&enter)[kWideParts<Real>],
+                                               Wide<Real> (&leave)[kWideParts<Real>]) {
   using Wider = Wide<Real>;
   const Vec3<Wider> dir = widen<i>(r.dir);
   const Wider inv_dd = Wider(1) / dot(dir, dir);
-  Wider found(0);
-  const Mask<Wider> hit = hit_sphere<Wider>(widen<i>(r.org),
-                                            dir,
-                                            inv_dd,
-                                            widen<i>(r.t_min),
-                                            widen<i>(r.center),
-                                            widen<i>(r.radius),
-                                            found);
-  t[i] = select(hit, found, Wider(__builtin_nan("")));
+  const SphereCrossings<Wider> met =
+      sphere_crossings<Wider>(widen<i>(r.org), dir, inv_dd, widen<i>(r.center), widen<i>(r.radius));
+  const Wider nowhere(__builtin_nan(""));
+  enter[i] = select(met.some, met.enter, nowhere);
+  leave[i] = select(met.some, met.leave, nowhere);
   if constexpr (i + 1 < kWideParts<Real>)
-    wide_sphere<Real, i + 1>(r, t);
+    wide_sphere<Real, i + 1>(r, enter, leave);
 }
 
+/// Each t rounded once: only what is rounded tells whether it lies beyond the start of a search.
 template <class Real>
-[[gnu::noinline]] Real sphere_in_double(const SphereRay<Real>& ray) {
-  Wide<Real> t[kWideParts<Real>];
-  wide_sphere<Real>(ray, t);
-  return narrow<Real>(t);
+[[gnu::noinline]] SphereCrossings<Real> sphere_in_double(const SphereRay<Real>& ray) {
+  Wide<Real> enter[kWideParts<Real>], leave[kWideParts<Real>];
+  wide_sphere<Real>(ray, enter, leave);
+  return {Real(0) == Real(0), narrow<Real>(enter), narrow<Real>(leave)};
 }
 
 /// What of rays lies in spheres.
@@ -196,21 +199,57 @@ struct Chord {
   }
 };
 
-/// First point of each ray on one sphere, from outside or inside.
+/// Both points of each ray on one sphere, at any t.
 ///
 /// Shapes    rays and spheres pair up lane by lane; either side may be a broadcast.
 /// Units     center, radius: scene units; t: multiples of dir. inv_dd is 1 / dot(dir, dir),
 ///           computed once a ray.
-/// Requires  |radius| > 0; a negative radius shows only the inside. A lane with a NaN reports a
-///           miss.
-/// Returns   lanes whose t is above t_min; t is written in all lanes and means nothing in the
-///           others.
+/// Requires  |radius| > 0. A lane with a NaN reports a miss.
 /// Accuracy  hit point within 8 eps max(|radius|, |org - center|) of the surface
 ///           (sphere_test.cpp). Rays that start near the surface, where |center - org|^2 and
 ///           radius^2 nearly agree, are tested in double.
 /// Source    Haines, Günther, Akenine-Möller, "Precision Improvements for Ray/Sphere
 ///           Intersection", Ray Tracing Gems (2019), ch. 7, in units of t so that one division is
 ///           left.
+template <class Real>
+[[gnu::always_inline]] inline SphereCrossings<Real> sphere_crossings(const Vec3<Real>& org,
+                                                                     const Vec3<Real>& dir,
+                                                                     const Real& inv_dd,
+                                                                     const Vec3<Real>& center,
+                                                                     const Real& radius) {
+  constexpr bool kFloat = sizeof(Scalar<Real>) == sizeof(float);
+  const auto [to_center, middle, rr, inside] = Chord<Real>(org, dir, inv_dd, center, radius);
+  const Mask<Real> crosses = inside >= Chord<Real>::least(rr);
+  if (none(crosses))
+    return {crosses, middle, middle};
+  const Real half = square_root(inside * inv_dd);  // NaN where inside is negative
+  const Real q =
+      select(middle < Real(0), middle - half, middle + half);  // like signs add: nothing cancels
+  const Real power = dot(to_center, to_center) - rr;
+  const Real other = (power * inv_dd) / q;
+  SphereCrossings<Real> found{crosses, lesser(other, q), greater(other, q)};
+  if constexpr (kFloat) {
+    const Mask<Real> tiny = rr < Real(kLeastSquare);
+    const Mask<Real> near = both(crosses, either(magnitude(power) < Real(kFarPower) * rr, tiny));
+    if (any(near)) {
+      // A ray that is surely outside and heads away stays outside, such as one that leaves.
+      const Mask<Real> ahead = either(middle > Real(0), power <= Real(kPowerError) * rr);
+      const Mask<Real> unsure = both(near, either(ahead, tiny));
+      if (any(unsure)) [[unlikely]] {
+        const SphereCrossings<Real> exact =
+            sphere_in_double<Real>(SphereRay<Real>{org, dir, center, radius});
+        found.enter = select(unsure, exact.enter, found.enter);
+        found.leave = select(unsure, exact.leave, found.leave);
+      }
+    }
+  }
+  return found;
+}
+
+/// First point of each ray on one sphere, from outside or inside, whose t is above t_min; of a
+/// negative radius from the inside alone.
+///
+/// Returns   lanes that have one; t is written in all lanes and means nothing in the others.
 template <class Real>
 [[gnu::always_inline]] inline Mask<Real> hit_sphere(const Vec3<Real>& org,
                                                     const Vec3<Real>& dir,
@@ -219,32 +258,11 @@ template <class Real>
                                                     const Vec3<Real>& center,
                                                     const Real& radius,
                                                     Real& t) {
-  constexpr bool kFloat = sizeof(Scalar<Real>) == sizeof(float);
-  const auto [to_center, middle, rr, inside] = Chord<Real>(org, dir, inv_dd, center, radius);
-  const Mask<Real> crosses = inside >= Chord<Real>::least(rr);
-  if (none(crosses))
-    return crosses;
-  const Real half = square_root(inside * inv_dd);
-  const Real q =
-      select(middle < Real(0), middle - half, middle + half);  // like signs add: nothing cancels
-  const Real power = dot(to_center, to_center) - rr;
-  const Real other = (power * inv_dd) / q;
-  const Real enter = lesser(other, q);
-  const Real leave = greater(other, q);
-  t = select(both(enter > t_min, radius > Real(0)), enter, leave);
-  if constexpr (kFloat) {
-    const Mask<Real> near = both(crosses, magnitude(power) < Real(kFarPower) * rr);
-    if (any(near)) {
-      // A ray that is surely outside and heads away stays outside, such as one that leaves.
-      const Mask<Real> ahead = either(middle > Real(0), power <= Real(kPowerError) * rr);
-      const Mask<Real> unsure = both(near, ahead);
-      if (any(unsure)) [[unlikely]] {
-        const SphereRay<Real> ray{org, dir, t_min, center, radius};
-        t = select(unsure, sphere_in_double<Real>(ray), t);
-      }
-    }
-  }
-  return both(crosses, t > t_min);  // NaN fails: half is NaN where inside is negative
+  const SphereCrossings<Real> met = sphere_crossings<Real>(org, dir, inv_dd, center, radius);
+  if (none(met.some))
+    return met.some;
+  t = select(both(met.enter > t_min, radius > Real(0)), met.enter, met.leave);
+  return both(met.some, t > t_min);  // NaN fails
 }
 
 template <class Real>

@@ -142,9 +142,9 @@ inline float walk_scene(const SceneView& scene, Single& r) {
   return shift;
 }
 
-/// What a ray meets first, or with kAny whether it meets anything: t is not to be looked at then.
+/// As trace_one(), of a ray whose direction is fine.
 template <bool kAny>
-inline Hit trace_one(const SceneView& scene, const Ray& ray) {
+inline Hit trace_sound(const SceneView& scene, const Ray& ray) {
   const Vec3<float> org{ray.org.x, ray.org.y, ray.org.z};
   const Vec3<float> dir{ray.dir.x, ray.dir.y, ray.dir.z};
   const bool any_triangles = scene.geometry.of<Triangle>().count > 0;
@@ -155,6 +155,26 @@ inline Hit trace_one(const SceneView& scene, const Ray& ray) {
   if (r.id == kNoPrimitive)
     return {ray.t_max, kNoPrimitive};
   return {strictly_between(r.best + shift, ray.t_min, ray.t_max), r.id};
+}
+
+/// With its direction shortened.
+template <bool kAny>
+[[gnu::noinline, gnu::cold]] Hit trace_in_units(const SceneView& scene, Ray ray, float unit) {
+  const Ray as_it_came = ray;
+  for (float* const d : {&ray.dir.x, &ray.dir.y, &ray.dir.z})
+    *d /= unit;
+  count_in(unit, ray.t_min, ray.t_max);
+  const Hit hit = trace_sound<kAny>(scene, ray);
+  if (hit.id == kNoPrimitive)
+    return {as_it_came.t_max, kNoPrimitive};
+  return {strictly_between(hit.t / unit, as_it_came.t_min, as_it_came.t_max), hit.id};
+}
+
+/// What a ray meets first, or with kAny whether it meets anything: t is not to be looked at then.
+template <bool kAny>
+inline Hit trace_one(const SceneView& scene, const Ray& ray) {
+  const float unit = length_unit(Vec3<float>{ray.dir.x, ray.dir.y, ray.dir.z});
+  return unit == 1 ? trace_sound<kAny>(scene, ray) : trace_in_units<kAny>(scene, ray, unit);
 }
 
 inline Hit closest_one(const SceneView& scene, const Ray& ray) {

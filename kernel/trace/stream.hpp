@@ -143,7 +143,7 @@ inline void store_hits(const Packet<In>& p, const Rays& rays, std::size_t first,
     return;
   alignas(64) float t[kPacket];
   load_t_max(rays, first, p.size, t);
-  const bool rounded = In::kDouble || p.moved;
+  const bool rounded = In::kDouble || p.moved || p.has_units;
   float t_min[kPacket];
   if (rounded)
     load_floats(rays.t_min, rays.t_stride, first, p.size, 0, t_min);

@@ -165,19 +165,24 @@ inline double strictly_between(double t, float t_min, float t_max) {
   return t > t_min && t < t_max ? t : strictly_between(static_cast<float>(t), t_min, t_max);
 }
 
+/// The length that the t of a ray of a packet is counted in.
+inline float unit_of(const WalkingRays& p, int i) {
+  return p.has_units ? p.unit[i] : 1.f;
+}
+
 /// Where a ray of a packet met what it met, as t of the ray as it came.
 inline float t_of(const Packet<InFloat>& p, int i) {
-  return p.best[i] + (p.moved ? p.shift[i] : 0.f);
-}
-inline float t_of(const Packet<InDouble>& p, int i) {
-  return static_cast<float>(p.nearest[i]);
+  return (p.best[i] + (p.moved ? p.shift[i] : 0.f)) / unit_of(p, i);
 }
 /// The same before it is rounded.
 inline double t_double(const Packet<InFloat>& p, int i) {
-  return static_cast<double>(p.best[i]) + (p.moved ? p.shift[i] : 0.f);
+  return (static_cast<double>(p.best[i]) + (p.moved ? p.shift[i] : 0.f)) / unit_of(p, i);
 }
 inline double t_double(const Packet<InDouble>& p, int i) {
-  return p.nearest[i];
+  return p.nearest[i] / unit_of(p, i);
+}
+inline float t_of(const Packet<InDouble>& p, int i) {
+  return static_cast<float>(t_double(p, i));
 }
 
 }  // namespace grelha::GRELHA_ISA

@@ -157,6 +157,8 @@ inline constexpr float kEdgeError = 0x1p-19f;
 /// to a float, 128 u. It is 72 u by the edges and 36 u by the mean.
 inline constexpr float kDepthError = 0x1p-17f;
 inline constexpr float kDepthRounding = 0x1p-20f;
+/// Added to S (S + Z): edge functions that underflow are off by 2^-148, and so within its bound.
+inline constexpr float kLeastArea = 0x1p-100f;
 /// The largest spread over t for which floats do for t. It is about the tangent of the angle
 /// between ray and normal where a triangle is well shaped and far away; on what is left t is within
 /// 8 u of itself, and the point within 46 u of the farthest corner's distance.
@@ -168,7 +170,7 @@ struct EdgeFunctions {
   Vec3<Real> oa, ob, oc;  ///< from the rays' origins to the corners
   Real u, v, w;           ///< of the edges opposite to a, b and c
   Real least, most;       ///< of these
-  Real area;              ///< S (S + Z)
+  Real area;              ///< S (S + Z), and a little
 
   [[gnu::always_inline]] EdgeFunctions(const RayAndTriangle<Real>& from, const Shear<Real>& shear)
       : oa(from.corner.a - from.org), ob(from.corner.b - from.org), oc(from.corner.c - from.org) {
@@ -180,7 +182,7 @@ struct EdgeFunctions {
     w = bx * ay - by * ax;
     const Real size = larger(larger(larger(ax, ay), larger(bx, by)), larger(cx, cy));
     const Real depth = larger(larger(oa.z, ob.z), oc.z);
-    area = size * (size + depth);
+    area = size * (size + depth) + Real(kLeastArea);
     least = lesser(lesser(u, v), w);
     most = greater(greater(u, v), w);
   }

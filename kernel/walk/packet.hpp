@@ -129,11 +129,12 @@ template <class Complete>
   constexpr int w = kWidth<Lanes>;
   p.groups = (p.size + w - 1) / w;
   p.live = ~std::uint64_t{0} >> (64 - p.groups);
+  p.has_units = false;
   fill_up(p);
   for (int g = 0; g < p.groups; ++g) {
     p.ahead.ask(g * w);
     store(p.id + g * w, Lanes(bits_of(kNoPrimitive)));
-    switch_off_unsound(p, g * w);
+    check_rays(p, g * w);
     complete(g);
   }
 }

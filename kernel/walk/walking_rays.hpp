@@ -41,6 +41,8 @@ struct WalkingRays {
   alignas(64) float best[kPacket];
   alignas(64) float start[kPacket];  ///< t from which a grid is still to be searched
   alignas(64) float id[kPacket];
+  alignas(64) float unit[kPacket];  ///< length that t is counted in, where `has_units`
+  bool has_units;
   alignas(64) float axis[kPacket];          ///< of the shear: 0, 1 or 2
   int group_axis[kPacket / kWidth<Lanes>];  ///< the axis all rays of a group share, or -1
   int size, groups;
@@ -90,12 +92,58 @@ inline void fill_up(WalkingRays& p) {
 
 /// Squares of directions up to this have no inverse in float.
 inline constexpr float kNoInverse = 0x1p-128f;
+/// Squared lengths of directions that are traced as they are. With others products of t, lengths of
+/// directions and sizes of primitives, from 2^-60 to 2^60, leave what floats can hold.
+inline constexpr float kShortest = 0x1p-4f;
+inline constexpr float kLongest = 0x1p16f;
 
-/// Switches off rays with a NaN, an infinity or no direction.
-[[gnu::always_inline]] inline void switch_off_unsound(WalkingRays& p, int i) {
-  const Vec3<Lanes> d = take_vec<Lanes>(p.dir, i);
+/// The powers of two by which directions are divided so that their largest component is in [1, 2);
+/// 1 where they are fine as they are, or sound at no length.
+template <class Real>
+inline Real length_unit(const Vec3<Real>& dir) {
+  const Real squared = dot(dir, dir);
+  const Mask<Real> fine = both(squared >= Real(kShortest), squared <= Real(kLongest));
+  const Mask<Real> sound = both(squared > Real(kNoInverse), squared < Real(kInfinity));
+  constexpr int kMantissa = 23;
+  const Int<Real> exponent = float_bits(largest(dir)) >> kMantissa;
+  return select(but_not(sound, fine), bits_float(Int<Real>(exponent << kMantissa)), Real(1));
+}
+
+/// A search from t_min to t_max by a direction that was divided by `unit`: empty where no float
+/// lies between.
+inline void count_in(float unit, float& t_min, float& t_max) {
+  t_max = next_above(t_min) < t_max ? t_max * unit : -kInfinity;
+  t_min = t_min * unit;
+}
+
+/// Divides the directions of a group that need it. That changes no bit of an answer but where
+/// something left the range of floats.
+[[gnu::noinline]] inline void set_length_units(WalkingRays& p, int first) {
+  const Vec3<Lanes> d = take_vec<Lanes>(p.dir, first);
+  const Lanes unit = length_unit(d);
+  store(p.unit + first, unit);
+  store(p.dir[0] + first, d.x / unit);
+  store(p.dir[1] + first, d.y / unit);
+  store(p.dir[2] + first, d.z / unit);
+  for (int i = first; i < first + kWidth<Lanes>; ++i)
+    if (p.unit[i] != 1)
+      count_in(p.unit[i], p.t_min[i], p.best[i]);
+}
+
+/// Prepares directions and switches off rays with a NaN, an infinity or no direction.
+[[gnu::always_inline]] inline void check_rays(WalkingRays& p, int i) {
+  Vec3<Lanes> d = take_vec<Lanes>(p.dir, i);
+  Lanes dd = dot(d, d);
+  if (any(either(dd<Lanes(kShortest), dd> Lanes(kLongest)))) [[unlikely]] {
+    if (!p.has_units)
+      for (float& unit : p.unit)
+        unit = 1;
+    p.has_units = true;
+    set_length_units(p, i);
+    d = take_vec<Lanes>(p.dir, i);
+    dd = dot(d, d);
+  }
   const Vec3<Lanes> o = take_vec<Lanes>(p.org, i);
-  const Lanes dd = dot(d, d);
   // NaN and infinity times zero are NaN
   const Mask<Lanes> finite = ((o.x + o.y) + (o.z + dd)) * Lanes(0) == Lanes(0);
   const Mask<Lanes> sound = both(finite, dd > Lanes(kNoInverse));
