@@ -1,13 +1,15 @@
 # Files in: words, NFF and its dialects, PLY, polygons, and what is said of broken files.
 grelha_test(frontend/files/text unit grelha::frontend)
 find_package(ZLIB REQUIRED)
+target_sources(text_test PRIVATE frontend/files/other_formats_test.cpp
+  frontend/files/shown_test.cpp)
 target_link_libraries(text_test PRIVATE ZLIB::ZLIB)
 grelha_test(frontend/input/loading unit grelha::frontend grelha::scenes)
 target_link_libraries(loading_test PRIVATE ZLIB::ZLIB)
 grelha_test(frontend/scene/polygon unit grelha::frontend)
 grelha_test(frontend/nff/nff_reader unit grelha::frontend)
 target_sources(nff_reader_test PRIVATE frontend/nff/nff_chunks_test.cpp
-  frontend/nff/nff_noise_test.cpp)
+  frontend/nff/nff_dialects_test.cpp frontend/nff/nff_noise_test.cpp)
 target_link_libraries(nff_reader_test PRIVATE OpenMP::OpenMP_CXX)
 grelha_test(frontend/ply/ply_reader unit grelha::frontend)
 target_sources(ply_reader_test PRIVATE frontend/ply/ply_alone_test.cpp

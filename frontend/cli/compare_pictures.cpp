@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "frontend/cli/console.hpp"
+#include "frontend/commands/console.hpp"
 #include "frontend/commands/outputs.hpp"
 #include "frontend/images/compare.hpp"
 #include "frontend/images/image_file.hpp"

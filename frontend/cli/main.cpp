@@ -1,7 +1,7 @@
 // The program. Errors become exit statuses here and nowhere else. 1: a file cannot be read or
 // written. 2: bad usage, or a scene that cannot be one. 128 and its number: a signal stopped a
 // render that can go on. This is the one file of the frontend that knows the generators.
-#include "frontend/cli/console.hpp"
+#include "frontend/commands/console.hpp"
 #include "frontend/cli/command_line.hpp"
 #include "frontend/cli/compare_pictures.hpp"
 #include "frontend/cli/render_scene.hpp"
@@ -15,6 +15,7 @@
 #include "frontend/files/memory_limit.hpp"
 #include "frontend/files/nearest.hpp"
 #include "frontend/files/parse_error.hpp"
+#include "frontend/files/shown.hpp"
 #include "frontend/images/image_file.hpp"
 #include "frontend/jobs/merge.hpp"
 #include "frontend/jobs/preparation.hpp"
@@ -45,7 +46,7 @@ int status_of(const Ranks& ranks, const Work& work) {
     // what failed everywhere the first says, and ends all
     if (!ranks.first())
       std::this_thread::sleep_for(std::chrono::seconds(3));
-    std::cerr << line << '\n';
+    warn(line);
     return status;
   };
   try {
@@ -160,8 +161,9 @@ int run(const MergeCommand& command) {
                 {format, command.srgb ? Tone::srgb : Tone::authored, notes_of(joined.identity)});
   }
   const std::size_t n = command.parts.size();
-  const std::string summary = name_of_file(command.output) + ": " + part_text(a.part) + " from " +
-                              std::to_string(n) + (n == 1 ? " part\n" : " parts\n");
+  const std::string summary = shown_on_a_line(name_of_file(command.output)) + ": " +
+                              part_text(a.part) + " from " + std::to_string(n) +
+                              (n == 1 ? " part\n" : " parts\n");
   if (!command.quiet)
     tell(summary, command.output == kStdout);
   return kOk;

@@ -9,7 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "frontend/cli/console.hpp"
+#include "frontend/commands/console.hpp"
+#include "frontend/commands/cut_light.hpp"
 #include "frontend/commands/first_hits.hpp"
 #include "frontend/commands/nothing_seen.hpp"
 #include "frontend/commands/outputs.hpp"
@@ -154,6 +155,7 @@ class SceneRender {
     camera_ = camera_of(file_, command_);
     want_room(format_of(command_.image, command_.format), camera_.width, camera_.height);
     warn_of_nothing(command_.scene, file_, camera_, log_.telling());
+    warn_of_cut_light(command_.scene, file_.scene, prepared_.render, log_.telling());
     log_.want_none(command_.input);
     const PictureMemory memory = picture_memory(prepared_, camera_);
     want_memory(command_.scene, memory.sums + memory.rest);

@@ -4,6 +4,7 @@
 #include "frontend/commands/needs.hpp"
 #include "frontend/files/atomic_file.hpp"
 #include "frontend/files/memory_limit.hpp"
+#include "frontend/files/shown.hpp"
 
 #include <sys/resource.h>
 
@@ -166,6 +167,11 @@ Json phases_json(const RenderStats& render) {
   return json;
 }
 
+/// In ASCII: a file may have a name that is no Unicode, and a terminal obeys some characters.
+std::string text_of(const Json& json) {
+  return json.dump(2, ' ', true, Json::error_handler_t::replace);
+}
+
 std::string size_text(const Camera& camera) {
   return std::to_string(camera.width) + 'x' + std::to_string(camera.height);
 }
@@ -277,7 +283,7 @@ std::string stats_json(const RenderCommand& command, const RunReport& report) {
   json["phases"] = phases_json(render);
   json["bytes"] = {
       {"geometry", report.geometry_bytes}, {"grids", report.grid_bytes}, {"peak", peak_bytes()}};
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+  return text_of(json) + '\n';
 }
 
 std::string info_json(const SceneFile& file,
@@ -304,15 +310,14 @@ std::string info_json(const SceneFile& file,
   for (const auto& [name, needed] : listed(needs_of(file)))
     json["needs"][name] = needed;
   json["made_up"] = {{"camera", file.default_camera}, {"light", file.default_light}};
-  return json.dump(2) + '\n';
+  return text_of(json) + '\n';
 }
 
 std::string info_json(const std::vector<std::pair<std::string, std::string>>& of_files) {
   Json all;
   for (const auto& [file, text] : of_files)
     all[file] = Json::parse(text);
-  // a file may have a name that is no Unicode
-  return all.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+  return text_of(all) + '\n';
 }
 
 std::string info_text(const std::string& path,
@@ -320,7 +325,7 @@ std::string info_text(const std::string& path,
                       const SceneMemory& memory,
                       const std::optional<std::vector<GridStats>>& grids) {
   const Geometry& g = file.scene.geometry;
-  std::string text = path + ": " + size_text(file.camera) + '\n';
+  std::string text = shown_on_a_line(path) + ": " + size_text(file.camera) + '\n';
   list_entities(text, file.counts);
   text += "primitives    " +
           primitives_text(g.spheres.size(), g.triangles.size(), g.cones.size(), g.planes.size()) +
@@ -347,7 +352,7 @@ std::string summary_line(const RenderCommand& command, const RunReport& report) 
   const double speed = s.render > 0 ? rays / s.render / 1e6 : 0;
   const ErrorStats& e = report.render.error;
   const std::string error = e.samples == 0 ? "" : error_text(command.render.refine, e, report);
-  return name_of_file(command.image) + ": " +
+  return shown_on_a_line(name_of_file(command.image)) + ": " +
          primitives_text(report.spheres, report.triangles, report.cones, report.planes) + "; " +
          grids_text(report.grids) + "; " + print("%.3f Mrays in ", rays / 1e6) + times +
          print("; %.2f Mrays/s (%s, ", speed, report.render.isa) + ranks_text(report.ranks) +

@@ -2,10 +2,10 @@
 
 #include <cstddef>
 #include <functional>
-#include <iostream>
 #include <string>
 
 #include "frontend/commands/commands.hpp"
+#include "frontend/commands/console.hpp"
 
 namespace grelha {
 
@@ -25,7 +25,7 @@ class WarningLog {
  private:
   void tell(const std::string& line) {
     ++count_;
-    std::cerr << line << '\n';
+    warn(line);
   }
 
   std::size_t count_ = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "frontend/files/other_formats.hpp"
 #include "frontend/files/text.hpp"
 
 namespace grelha {
@@ -21,8 +22,10 @@ void judge_beginning(const std::string& path, bool ply, std::string_view text, s
     throw ParseError(
         Position{path, 1, 1, 0},
         "expected a scene, found a Git LFS pointer: the file it stands for was not downloaded");
+  if (const std::string_view name = fresh == 0 ? other_format(text) : ""; !name.empty())
+    throw ParseError(Position{path, 1, 1, 0}, ply ? "PLY" : "NFF or PLY", name);
   if (ply && fresh == 0) {
-    Words words(path, start, 0, '\0');
+    Words words(path, start, byte_order_mark(start), Comments::kNone);
     const std::string_view magic = words.next();
     if (!magic.empty() && magic != "ply")
       throw ParseError(words.position(magic), "\"ply\" on the first line", quoted(magic));

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace grelha {
 namespace {
@@ -117,6 +118,42 @@ const char* short_number(const char* p, const char* end, float& value) {
   return p;
 }
 
+/// What Microsoft's C library wrote behind `1.` for numbers that are none.
+constexpr std::string_view kMsvcNames[] = {"#INF", "#IND", "#QNAN", "#SNAN"};
+/// The same of a few digits, rounded as if the letters were some.
+constexpr std::string_view kRoundedNames[] = {
+    "#IO", "#J", "#QNB", "#QO", "#R", "#SNB", "#SO", "#T"};
+
+/// Where such a name ends with the digits that fill its width, and an exponent; or nullptr.
+const char* past_name(const char* p, const char* end, std::span<const std::string_view> names) {
+  const std::string_view text(p, std::size_t(end - p));
+  const auto found =
+      std::ranges::find_if(names, [text](std::string_view name) { return text.starts_with(name); });
+  if (found == names.end())
+    return nullptr;
+  p = std::find_if_not(p + found->size(), end, is_digit);
+  if (p != end && *p == 'e')
+    p = std::find_if_not(p + 1, end, [](char c) { return is_digit(c) || c == '+' || c == '-'; });
+  return p == end || is_blank(*p) ? p : nullptr;
+}
+
+template <class Float>
+bool parse_name(std::string_view word, Float& value) {
+  const bool negative = word.starts_with('-');
+  if (negative || word.starts_with('+'))
+    word.remove_prefix(1);
+  const char* const end = word.data() + word.size();
+  if (!word.starts_with("1."))
+    return false;
+  const char* const name = word.data() + 2;
+  if (past_name(name, end, kMsvcNames) != end && past_name(name, end, kRoundedNames) != end)
+    return false;
+  using Limits = std::numeric_limits<Float>;
+  const Float found = word.starts_with("1.#INF") ? Limits::infinity() : Limits::quiet_NaN();
+  value = negative ? -found : found;
+  return true;
+}
+
 template <class Float>
 bool parse(std::string_view word, Float& value) {
   const char *first = word.data(), *last = first + word.size();
@@ -126,7 +163,7 @@ bool parse(std::string_view word, Float& value) {
   }
   const auto read = std::from_chars(first, last, value);
   if (read.ptr != last || read.ec == std::errc::invalid_argument)
-    return false;
+    return parse_name(word, value);
   if (read.ec == std::errc::result_out_of_range) {
     value = decimal_exponent(word) > 0 ? std::numeric_limits<Float>::infinity() : Float(0);
     if (*first == '-')
@@ -171,6 +208,11 @@ bool looks_like_number(std::string_view word) {
   return to_number(word, ignored);
 }
 
+std::size_t byte_order_mark(std::string_view text) {
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";
+  return text.starts_with(kMark) ? kMark.size() : 0;
+}
+
 constexpr std::size_t kLongestShown = 40;
 
 constexpr auto is_unprintable = [](char c) { return c < ' ' || c > '~'; };
@@ -185,34 +227,60 @@ std::string quoted(std::string_view word) {
   return word.empty() ? "end of file" : '"' + printable(word) + '"';
 }
 
-Words::Words(std::string file, std::string_view text, std::size_t begin, char comment)
+Words::Words(std::string file, std::string_view text, std::size_t begin, Comments comments)
     : file_(std::move(file)),
       begin_(text.data()),
       end_(text.data() + text.size()),
       at_(text.data() + begin),
-      comment_(comment),
+      comments_(comments),
       known_(text.data()) {}
 
 const char* Words::skip_blanks(const char* p, bool stay_on_line, bool& line_ended) const {
-  for (; p != end_; ++p) {
-    if (*p == comment_ && comment_ != '\0') {
-      p = std::find_if(p, end_, ends_line);
-      if (p == end_)
+  while (p != end_) {
+    const char* const past = is_blank(*p) ? p + 1 : past_comment(p);
+    if (past == p)
+      break;
+    if (std::any_of(p, past, ends_line)) {
+      if (stay_on_line)
         break;
+      line_ended = true;
     }
-    if (!is_blank(*p))
-      break;
-    if (!ends_line(*p))
-      continue;
-    if (stay_on_line)
-      break;
-    line_ended = true;
+    p = past;
   }
   return p;
 }
 
+/// The first "*/" from there on, or the end of the text. Asked in ascending order it reads the text
+/// once.
+const char* Words::find_close(const char* from) const {
+  if (!searched_ || from < searched_ || from > close_) {
+    const std::string_view rest(from, std::size_t(end_ - from));
+    searched_ = from;
+    close_ = from + std::min(rest.find("*/"), rest.size());
+  }
+  return close_;
+}
+
+/// Where the comment ends that begins at `p`, or `p`: none does.
+const char* Words::past_comment(const char* p) const {
+  if (comments_ == Comments::kNone || p == end_)
+    return p;
+  if (*p == '#') {
+    const bool behind_one = p - begin_ >= 2 && p[-1] == '.' && p[-2] == '1';
+    return behind_one && past_name(p, end_, kMsvcNames) ? p : std::find_if(p, end_, ends_line);
+  }
+  if (*p != '/' || p + 1 == end_)
+    return p;
+  if (p[1] == '/')
+    return std::find_if(p, end_, ends_line);
+  if (p[1] != '*' || comments_ == Comments::kOfLines)
+    return p;
+  const char* const close = find_close(p + 2);
+  return close == end_ ? p : close + 2;
+}
+
 const char* Words::word_end(const char* p) const {
-  while (p != end_ && !is_blank(*p) && (*p != comment_ || comment_ == '\0'))
+  while (p != end_ && !is_blank(*p) && past_comment(p) == p)
     ++p;
   return p;
 }
@@ -234,7 +302,7 @@ const char* Words::past_blanks() const {
 
 /// Steps over what was read of the next word up to `last`, if that is all of it.
 bool Words::take_to(const char* last) {
-  if (last != end_ && !is_blank(*last) && *last != comment_)
+  if (last != end_ && !is_blank(*last) && past_comment(last) == last)
     return false;
   at_ = last;
   return true;
@@ -270,18 +338,34 @@ std::string_view Words::peek_on_line() const {
 }
 
 void Words::skip_line() {
-  at_ = std::find_if(at_, end_, ends_line);
+  while (at_ != end_ && !ends_line(*at_)) {
+    const char* const past = past_comment(at_);
+    at_ = past == at_ ? at_ + 1 : past;
+  }
+}
+
+/// Where a name of several words ends, and what may follow it on its line begins.
+const char* Words::name_end(const char* first) const {
+  const char *const line_end = std::find_if(first, end_, ends_line), *p = first;
+  if (p != line_end && (*p == '"' || *p == '\''))
+    if (const char* const quote = std::find(p + 1, line_end, *p); quote != line_end)
+      p = quote + 1;
+  for (; p != line_end; ++p) {
+    const bool is_apart = p == first || is_blank(p[-1]);
+    if ((*p == '#' || is_apart) && past_comment(p) != p)
+      break;
+  }
+  return p;
 }
 
 std::string_view Words::rest_of_line() {
-  const char* last = std::find_if(at_, end_, ends_line);
-  const char* stop = comment_ == '\0' ? last : std::find(at_, last, comment_);
-  const char* first = at_;
-  while (first != stop && is_blank(*first))
-    ++first;
+  const auto is_gap = [](char c) { return is_blank(c) && !ends_line(c); };
+  const char* const first = std::find_if_not(at_, end_, is_gap);
+  const char* stop = name_end(first);
+  at_ = stop;
+  skip_line();
   while (stop != first && is_blank(stop[-1]))
     --stop;
-  at_ = last;
   return {first, std::size_t(stop - first)};
 }
 

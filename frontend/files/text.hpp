@@ -9,8 +9,9 @@
 
 namespace grelha {
 
-/// A whole word as a number: decimal, with or without sign and exponent, inf or nan. Too large
-/// becomes infinite, too small zero. False when the word is anything else ("1.5.2", "0x10", "").
+/// A whole word as a number: decimal, with or without sign and exponent, inf or nan, also as
+/// Microsoft's C library wrote these (1.#INF, -1.#IND00, 1.#QNAN). Too large becomes infinite, too
+/// small zero. False when the word is anything else ("1.5.2", "0x10", "").
 bool to_number(std::string_view word, float& value);
 bool to_number(std::string_view word, double& value);
 /// A whole word as an integer; numbers such as "3.0" or "+3" count. What is too large becomes the
@@ -21,6 +22,9 @@ bool to_integer(std::string_view word, std::int64_t& value);
 /// point, or it reads as one.
 bool looks_like_number(std::string_view word);
 
+/// Bytes of the mark that some editors put before UTF-8: 3, or 0 when the text has none.
+std::size_t byte_order_mark(std::string_view text);
+
 /// Shortened, nothing unprintable.
 std::string printable(std::string_view word);
 
@@ -28,14 +32,17 @@ std::string printable(std::string_view word);
 /// empty word.
 std::string quoted(std::string_view word);
 
+/// What Words steps over: nothing; `#` and `//` to the end of their line; `/*` to `*/` as well.
+enum class Comments : std::uint8_t { kNone, kOfLines, kAll };
+
 /// Text in memory as words between blanks. Every byte up to ' ' is a blank; LF, CRLF and lone CR
 /// end lines. Words are views into the text, so that their place can be asked later and costs
 /// nothing until then.
 class Words {
  public:
-  /// `text` must outlive this. Reading starts at byte `begin`. `comment` starts a comment to the
-  /// end of its line, wherever it stands; '\0': there are none.
-  Words(std::string file, std::string_view text, std::size_t begin, char comment);
+  /// `text` must outlive this. Reading starts at byte `begin`. A comment begins wherever it stands,
+  /// also behind a word; a `/*` that nothing closes is a word.
+  Words(std::string file, std::string_view text, std::size_t begin, Comments comments);
 
   std::string_view next();  ///< next word on any line; empty at the end of the file
   /// Steps over the next word if it is a number as most are, with few digits: `value`, as
@@ -50,8 +57,10 @@ class Words {
     return fresh_line_;
     /// whether the last next() stepped over a line end, or was the first
   }
-  void skip_line();                 ///< to the end of this line; the next word is fresh
-  std::string_view rest_of_line();  ///< up to the comment or line end, trimmed; consumes it
+  void skip_line();  ///< to the end of this line; the next word is fresh
+  /// Up to the comment or line end, trimmed; consumes it. What begins with a quote holds all up to
+  /// the next one. In a name `/` is no comment: `//` and `/*` begin one behind a blank.
+  std::string_view rest_of_line();
 
   /// Has reading go on at a place of the text, where cursor() was or would be.
   void go_on_at(const char* place) { at_ = place; }
@@ -67,15 +76,20 @@ class Words {
  private:
   const char* skip_blanks(const char* p, bool stay_on_line, bool& line_ended) const;
   const char* word_end(const char* p) const;
+  const char* past_comment(const char* p) const;
+  const char* find_close(const char* from) const;
+  const char* name_end(const char* first) const;
   const char* past_blanks() const;
   bool take_to(const char* last);
 
   std::string file_;
   const char *begin_, *end_, *at_;
-  char comment_;
+  Comments comments_;
   bool fresh_line_ = true;
   mutable const char* known_;  ///< start of the line last counted to
   mutable std::uint64_t known_line_ = 1;
+  /// the first "*/" (or the end) behind a place that was searched from
+  mutable const char *searched_ = nullptr, *close_ = nullptr;
 };
 
 }  // namespace grelha

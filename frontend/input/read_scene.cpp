@@ -31,13 +31,12 @@ std::string extension(const std::string& path) {
   return point == std::string::npos ? "" : name.substr(point);
 }
 
-/// True by the extension; a file with another one is PLY when it says so.
+/// True by the extension; a file with another one is PLY when it says so: NFF's `ply` has a name
+/// behind it.
 bool is_ply(const std::string& path, std::string_view bytes) {
-  const std::string kind = extension(path);
-  if (kind == ".ply")
+  if (extension(path) == ".ply")
     return true;
-  if (kind == ".nff" || kind == ".p3f")
-    return false;
+  bytes.remove_prefix(byte_order_mark(bytes));
   return bytes.starts_with("ply\n") || bytes.starts_with("ply\r");
 }
 

@@ -30,7 +30,8 @@ struct WouldWarn {};
 void read_entities(const std::string& path, const char* end, Fragment& fragment) {
   const Warn stop = [](const std::string&) { throw WouldWarn(); };
   Warnings warnings(stop);
-  Words words(path, {fragment.begin, std::size_t(end - fragment.begin)}, 0, '#');
+  // a `/*` ends the fragment: how far it reaches is not this fragment's to find out
+  Words words(path, {fragment.begin, std::size_t(end - fragment.begin)}, 0, Comments::kOfLines);
   NffInput input(words, warnings);
   NffPlain plain(input, fragment.file);
   fragment.file.scene.materials.resize(1);  // the last one before it

@@ -2,6 +2,7 @@
 
 #include "frontend/scene/scene_builder.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace grelha {
@@ -22,10 +23,12 @@ Float3 operator*(float s, const Float3& a) {
 Float3 cross(const Float3& a, const Float3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
+double length(const Float3& a) {
+  return std::sqrt(double(a.x) * a.x + double(a.y) * a.y + double(a.z) * a.z);
+}
 Float3 unit(const Float3& a) {
-  const double length = std::sqrt(double(a.x) * a.x + double(a.y) * a.y + double(a.z) * a.z);
-  return length > 0 ? Float3{float(a.x / length), float(a.y / length), float(a.z / length)}
-                    : Float3{0, 0, 1};
+  const double l = length(a);
+  return l > 0 ? Float3{float(a.x / l), float(a.y / l), float(a.z / l)} : Float3{0, 0, 1};
 }
 
 /// A rectangle centered at a position, facing `at`.
@@ -119,11 +122,72 @@ void NffLights::read_area(NffInput& input, std::string_view keyword) {
   add_area(input, keyword, light);
 }
 
+/// `r g b power`, and perhaps `atten` and three numbers of how the light falls off.
+void NffLights::read_glow(NffInput& input, std::string_view keyword) {
+  const Float3 color = input.bounded_point("the light's color");
+  const float power = input.bounded("the light's power");
+  if (input.words.peek_on_line() == "atten") {
+    input.words.next();
+    input.bounded_point("the light's falloff");
+  }
+  glow_ = power * color;
+  if (glows())
+    input.warn_once("L",
+                    keyword,
+                    "polygons behind \"L\" are area lights; light does not fall off here, so the "
+                    "brightest of them gets the power 1");
+}
+
+bool NffLights::read_glowing(NffInput& input, std::string_view keyword) {
+  const char* const before = input.words.cursor();
+  const std::size_t size = input.count("the polygon's corners", keyword == "pp" ? 12 : 6);
+  Float3 corners[4];
+  for (std::size_t i = 0; size == 4 && i < size; ++i) {
+    corners[i] = input.point("the polygon's corner");
+    if (keyword == "pp")
+      input.point("the corner's normal");
+  }
+  const auto& [a, b, c, d] = corners;
+  const Float3 across = c - a, gap = (b + d) - (a + c);
+  if (size != 4 || !drawable(across) || !(length(gap) <= 1e-3 * length(across))) {
+    input.words.go_on_at(before);
+    input.warn_once("glowing polygon",
+                    keyword,
+                    "a polygon behind \"L\" that is no parallelogram; "
+                    "it does not shine");
+    return false;
+  }
+  AreaLight light;
+  light.corner = a;
+  light.edge1 = b - a;
+  light.edge2 = d - a;
+  light.color = glow_;
+  glowing_.push_back(file_.area_lights.size());
+  add_area(input, keyword, light);
+  return true;
+}
+
+/// The powers of `L` are of lights that fall off.
+void NffLights::finish_glowing() {
+  float most = 0;
+  for (const std::size_t i : glowing_) {
+    const Float3& color = file_.area_lights[i].color;
+    most = std::max({most, color.x, color.y, color.z});
+  }
+  for (const std::size_t i : glowing_) {
+    AreaLight& light = file_.area_lights[i];
+    if (most > 0)
+      light.color = {light.color.x / most, light.color.y / most, light.color.z / most};
+    file_.scene.lights[light.light].color = light.color;
+  }
+}
+
 /// No intensity is prescribed for lights without color; SPD's own writers use 1/sqrt(N).
 void NffLights::finish() {
   const auto even = float(1 / std::sqrt(double(file_.scene.lights.size())));
   for (const std::size_t i : colorless_)
     file_.scene.lights[i].color = {even, even, even};
+  finish_glowing();
 }
 
 }  // namespace grelha

@@ -74,7 +74,7 @@ void warn_fields(NffInput& input, std::string_view keyword, std::size_t found) {
 }  // namespace
 
 Material read_nff_fill(NffInput& input, std::string_view keyword) {
-  Fields fields = input.numbers(8, kWhat);
+  Fields fields = input.numbers(keyword == "material" ? 11 : 8, kWhat);
   need_fields(input, fields, 3);
   const std::size_t count = fields.size();
   if (count != 8 && count != 11 && count != 12 && count != 14)

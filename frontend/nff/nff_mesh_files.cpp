@@ -23,6 +23,16 @@ void want_room(const NffInput& input,
                      "expected fewer than 2^32 vertices and triangles in all, found more");
 }
 
+/// The name that a program of Windows wrote, as it is here: without quotes, `/` between folders.
+std::string from_windows(std::string_view name) {
+  const bool is_quoted = name.size() > 2 && (name[0] == '"' || name[0] == '\'');
+  if (is_quoted && name.front() == name.back())
+    name = name.substr(1, name.size() - 2);
+  std::string here(name);
+  std::ranges::replace(here, '\\', '/');
+  return here;
+}
+
 }  // namespace
 
 NffMeshFiles::NffMeshFiles(const std::string& scene,
@@ -56,8 +66,12 @@ std::string NffMeshFiles::path(const NffInput& input, std::string_view name) con
   // the system would read no further, checks would
   if (name.find('\0') != name.npos)
     input.fail(name, "a file name after \"ply\"");
-  const std::string path = (folder_ / std::string(name)).string();
-  if (!allow_outside_ && is_outside(path))
+  std::string path = (folder_ / std::string(name)).string();
+  std::error_code ignored;
+  const auto may_look = [&] { return allow_outside_ || !is_outside(path); };
+  if (may_look() && !std::filesystem::exists(path, ignored))
+    path = (folder_ / from_windows(name)).string();
+  if (!may_look())
     throw ParseError(
         input.position(name),
         "expected a file in the scene's folder or below it (or --allow-outside), found " +

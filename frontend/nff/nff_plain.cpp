@@ -5,15 +5,15 @@
 namespace grelha {
 
 bool NffPlain::read(std::string_view keyword) {
-  if (keyword == "p")
-    read_polygon(keyword, false);
-  else if (keyword == "s")
+  if (keyword == "p" || keyword == "pt")
+    read_polygon(keyword, false, keyword == "pt");
+  else if (keyword == "s" || keyword == "st")
     read_sphere(keyword);
-  else if (keyword == "pp")
-    read_polygon(keyword, true);
+  else if (keyword == "pp" || keyword == "ppt")
+    read_polygon(keyword, true, keyword == "ppt");
   else if (keyword == "c")
     read_cone(keyword);
-  else if (keyword == "f")
+  else if (keyword == "f" || keyword == "material")
     read_fill(keyword);
   else
     return false;
@@ -30,15 +30,25 @@ std::uint32_t NffPlain::material(std::string_view keyword) {
   return std::uint32_t(all.size() - 1);
 }
 
+void NffPlain::leave_out_texture(std::string_view keyword) {
+  input_.warn_once(
+      "texture", keyword, "textures are left out: the material is seen in their place");
+}
+
 void NffPlain::read_sphere(std::string_view keyword) {
+  if (keyword == "st")
+    leave_out_texture(keyword);
   const Float3 center = input_.point("the sphere's center");
   build_.sphere(center, input_.number("the sphere's radius"), material(keyword));
   ++file_.counts.s;
 }
 
-void NffPlain::read_polygon(std::string_view keyword, bool patch) {
+void NffPlain::read_polygon(std::string_view keyword, bool patch, bool textured) {
+  if (textured)
+    leave_out_texture(keyword);
   const char* const before = input_.words.cursor();
-  const std::size_t size = input_.count("the polygon's corners", patch ? 12 : 6);
+  const std::size_t numbers = (patch ? 6 : 3) + (textured ? 2 : 0);
+  const std::size_t size = input_.count("the polygon's corners", 2 * numbers);
   if (size < 3) {
     input_.words.go_on_at(before);
     input_.fail(input_.words.peek(), "at least 3 corners of a polygon");
@@ -49,6 +59,8 @@ void NffPlain::read_polygon(std::string_view keyword, bool patch) {
     corners_.push_back(input_.point("the polygon's corner"));
     if (patch)
       normals_.push_back(input_.point("the corner's normal"));
+    for (int k = 0; textured && k < 2; ++k)
+      input_.number("the corner's place in the texture");
   }
   build_.polygon(corners_, normals_, material(keyword));
   ++(patch ? file_.counts.pp : file_.counts.p);

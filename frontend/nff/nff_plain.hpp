@@ -10,7 +10,8 @@
 namespace grelha {
 
 /// `s`, `p`, `pp`, `c` and `f`: what large files are made of. What they become hangs on nothing
-/// before them but which material is the last.
+/// before them but which material is the last. And `st`, `pt`, `ppt`, which are the same with a
+/// texture that is left out, and `material`.
 class NffPlain {
  public:
   NffPlain(NffInput& input, SceneFile& file) : input_(input), file_(file), build_(file) {}
@@ -23,7 +24,8 @@ class NffPlain {
 
  private:
   void read_sphere(std::string_view keyword);
-  void read_polygon(std::string_view keyword, bool patch);
+  void read_polygon(std::string_view keyword, bool patch, bool textured);
+  void leave_out_texture(std::string_view keyword);
   void read_cone(std::string_view keyword);
   void read_fill(std::string_view keyword);
 
@@ -33,7 +35,7 @@ class NffPlain {
   std::vector<Float3> corners_, normals_;
 };
 
-/// Returns whether it is one of the words that NffPlain reads.
+/// Returns whether it is one of the words that NffPlain reads without a warning.
 inline bool is_plain(std::string_view word) {
   return word == "p" || word == "s" || word == "pp" || word == "c" || word == "f";
 }

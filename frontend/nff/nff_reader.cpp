@@ -29,7 +29,7 @@ class NffReader {
             LoadProgress* progress,
             const ChunkSizes& chunks)
       : progress_(progress, text.data()),
-        words_(path, text, text.starts_with("\xEF\xBB\xBF") ? 3 : 0, '#'),
+        words_(path, text, byte_order_mark(text), Comments::kAll),
         warnings_(warn),
         meshes_(path, warn, options, progress),
         input_(words_, warnings_),
@@ -52,14 +52,16 @@ class NffReader {
 
   void warn_of_nul(std::string_view text);
   NffChunks::Taken read_ahead(std::string_view word);
+  static const Named* entity_named(std::string_view word);
   bool read_entity(std::string_view word);
   void skip_other(std::string_view word, std::string_view last_entity);
   static std::string meant(std::string_view word);
-  void refuse_sense8(std::string_view word);
+  void refuse_sense8();
   std::uint32_t material(std::string_view keyword) { return plain_.material(keyword); }
   std::vector<std::uint32_t> mesh_corners(std::size_t faces, std::size_t vertices);
 
-  void read_plain(std::string_view keyword) { plain_.read(keyword); }
+  void read_plain(std::string_view keyword);
+  void read_texture(std::string_view keyword);
   void read_mat(std::string_view keyword);
   void read_l(std::string_view) { lights_.read_point(input_); }
   void read_b(std::string_view) {
@@ -73,6 +75,7 @@ class NffReader {
   void read_ply(std::string_view keyword);
   void read_light(std::string_view keyword) { lights_.read_light(input_, keyword); }
   void read_al(std::string_view keyword) { lights_.read_area(input_, keyword); }
+  void read_glow(std::string_view keyword) { lights_.read_glow(input_, keyword); }
   void read_env(std::string_view keyword);
   void read_accel(std::string_view keyword);
   void read_spp(std::string_view keyword);
@@ -102,6 +105,9 @@ const NffReader::Named NffReader::kEntities[] = {
     {"ply", &NffReader::read_ply},     {"light", &NffReader::read_light},
     {"al", &NffReader::read_al},       {"env", &NffReader::read_env},
     {"accel", &NffReader::read_accel}, {"spp", &NffReader::read_spp},
+    {"L", &NffReader::read_glow},      {"material", &NffReader::read_plain},
+    {"t", &NffReader::read_texture},   {"ppt", &NffReader::read_plain},
+    {"pt", &NffReader::read_plain},    {"st", &NffReader::read_plain},
 };
 
 /// They stand between words as blanks do, which is seldom what was meant.
@@ -112,7 +118,7 @@ void NffReader::warn_of_nul(std::string_view text) {
 }
 
 SceneFile NffReader::read(std::string_view text) {
-  refuse_sense8(words_.peek());
+  refuse_sense8();
   warn_of_nul(text);
   std::string_view last_entity;
   for (;;) {
@@ -134,7 +140,8 @@ SceneFile NffReader::read(std::string_view text) {
 
 /// From this entity on, by all threads: what came of it, where that is worth while.
 NffChunks::Taken NffReader::read_ahead(std::string_view word) {
-  if (!chunks_.due(word.data()) || !is_plain(word) || file_.scene.materials.empty())
+  if (!chunks_.due(word.data()) || !is_plain(word) || file_.scene.materials.empty() ||
+      lights_.glows())
     return {};
   const auto tell = [this](const char* here) { progress_.at(here); };
   const NffChunks::Taken taken = chunks_.read_run(word.data(), file_, tell);
@@ -143,14 +150,20 @@ NffChunks::Taken NffReader::read_ahead(std::string_view word) {
   return taken;
 }
 
+const NffReader::Named* NffReader::entity_named(std::string_view word) {
+  const Named* const found = std::ranges::find(kEntities, word, &Named::name);
+  return found == std::end(kEntities) ? nullptr : found;
+}
+
 bool NffReader::read_entity(std::string_view word) {
-  for (const Named& entity : kEntities) {
-    if (entity.name != word)
-      continue;
-    (this->*entity.read)(word);
-    return true;
-  }
-  return view_.read(word, input_, file_.lens);
+  // a word of headings as well
+  if (word == "material" && !looks_like_number(words_.peek_on_line()))
+    return false;
+  const Named* const entity = entity_named(word);
+  if (!entity)
+    return view_.read(word, input_, file_.lens);
+  (this->*entity->read)(word);
+  return true;
 }
 
 /// ` (did you mean "angle"?)`, or nothing.
@@ -179,15 +192,29 @@ void NffReader::skip_other(std::string_view word, std::string_view last_entity) 
   words_.skip_line();
 }
 
-/// Another format by the same three letters (WorldToolKit): `nff` and `version` on its first lines.
-void NffReader::refuse_sense8(std::string_view word) {
-  if (word != "nff" && word != "NFF")
-    return;
+/// Another format by the same three letters (WorldToolKit): they stand alone on its first line, and
+/// no word of Haines' on the next.
+void NffReader::refuse_sense8() {
   Words ahead = words_;
-  ahead.next();
-  if (ahead.next() == "version")
+  const std::string_view word = ahead.next();
+  if ((word != "nff" && word != "NFF") || !ahead.peek_on_line().empty())
+    return;
+  const std::string_view next = ahead.next();
+  const auto view_words = NffView::words();
+  if (!entity_named(next) && std::ranges::find(view_words, next) == view_words.end())
     throw ParseError(input_.position(word),
                      "expected Haines' Neutral File Format, found Sense8's (WorldToolKit) NFF");
+}
+
+void NffReader::read_plain(std::string_view keyword) {
+  const bool is_polygon = keyword == "p" || keyword == "pp";
+  if (!is_polygon || !lights_.glows() || !lights_.read_glowing(input_, keyword))
+    plain_.read(keyword);
+}
+
+void NffReader::read_texture(std::string_view keyword) {
+  const std::string_view name = words_.rest_of_line();
+  input_.warn_once("texture", keyword, "texture " + quoted(name) + " is left out");
 }
 
 void NffReader::read_mat(std::string_view keyword) {

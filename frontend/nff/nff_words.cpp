@@ -13,13 +13,13 @@ namespace {
 // What people write who know the thing and not its keyword, which is too short to be found by
 // letters.
 constexpr std::pair<std::string_view, std::string_view> kFullNames[] = {
-    {"sphere", "s"},        {"ball", "s"},        {"polygon", "p"},       {"triangle", "p"},
-    {"tri", "p"},           {"quad", "p"},        {"patch", "pp"},        {"cone", "c"},
-    {"cylinder", "c"},      {"plane", "pl"},      {"cube", "box"},        {"fill", "f"},
-    {"material", "f"},      {"color", "f"},       {"colour", "f"},        {"background", "b"},
-    {"viewpoint", "v"},     {"lookfrom", "from"}, {"position", "from"},   {"lookat", "at"},
-    {"target", "at"},       {"fov", "angle"},     {"size", "resolution"}, {"samples", "spp"},
-    {"environment", "env"}, {"include", "ply"},
+    {"sphere", "s"},      {"ball", "s"},          {"polygon", "p"},    {"triangle", "p"},
+    {"tri", "p"},         {"quad", "p"},          {"patch", "pp"},     {"cone", "c"},
+    {"cylinder", "c"},    {"plane", "pl"},        {"cube", "box"},     {"fill", "f"},
+    {"color", "f"},       {"colour", "f"},        {"background", "b"}, {"viewpoint", "v"},
+    {"lookfrom", "from"}, {"position", "from"},   {"lookat", "at"},    {"target", "at"},
+    {"fov", "angle"},     {"size", "resolution"}, {"samples", "spp"},  {"environment", "env"},
+    {"include", "ply"},
 };
 constexpr std::size_t kLongestMeant = 64;  ///< no keyword is meant by more
 

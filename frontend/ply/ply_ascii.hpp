@@ -18,7 +18,7 @@ class PlyAscii {
            std::string_view bytes,
            const PlyHeader& header,
            LoadProgress* progress)
-      : words_(path, bytes, header.data_begin, '\0'),
+      : words_(path, bytes, header.data_begin, Comments::kNone),
         header_(header),
         progress_(progress, bytes.data()) {}
   void read(const PlyElement& element, const PlyPlan& plan, Mesh& mesh, PlyFaces& faces);

@@ -40,7 +40,7 @@ class HeaderReader {
                Warnings& warnings,
                LoadProgress* progress)
       : bytes_(bytes),
-        whole_(path, bytes, 0, '\0'),
+        whole_(path, bytes, 0, Comments::kNone),
         warnings_(warnings),
         progress_(progress, bytes.data()) {}
 
@@ -222,6 +222,7 @@ void HeaderReader::warn_of_nul() const {
 
 PlyHeader HeaderReader::read() {
   find_line_end();
+  next_ = byte_order_mark(bytes_);
   next_line();
   const std::string_view magic = word();
   if (magic != "ply")

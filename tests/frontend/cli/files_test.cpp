@@ -322,5 +322,48 @@ TEST_F(Files, ComparesLightWithLight) {
   EXPECT_EQ(run("compare a.png a.png --max-rmse 0").err, "") << "of one kind: as they are";
 }
 
+/// A scene, a mesh, outputs, and an option by names that would clear a screen or begin a line.
+TEST_F(Files, NoNameReachesATerminalAsItIs) {
+  const std::string name = "a\x1b[2J\nb\x9b\x7f\xC2\x9B\xE2\x80\xAE\xC3\xA9";
+  std::filesystem::create_directory(folder_.file(name));
+  folder_.write(name + ".nff", kBall);
+  folder_.write(name + ".ply", "ply\n");
+  folder_.write("of mesh.nff", kBall + ("ply " + name + ".ply\nfoo\x1b[2J 1\n"));
+  folder_.write("noise.nff", kBall + ("\x1b[2J 1\nenv \x1b[2J\n" + name + " 3\n"));
+  const std::string quoted = "'" + name + "'";
+  const std::vector<std::string> lines{
+      "render " + quoted + ".nff --size 4x4",
+      "render " + quoted + ".nff -o " + quoted + "/x.png --size 4x4",
+      "render " + quoted + ".nff -o " + quoted + ".xyz",
+      "render " + quoted + ".nff -o none/" + quoted + ".png",
+      "render ball.nff -o ball.pfm --size 4x4 --stats " + quoted,
+      "render ball.nff --checkpoint " + quoted,
+      "render ball.nff --size " + quoted,
+      "render ball.nff --" + quoted,
+      "render none" + quoted,
+      "render " + quoted,
+      "info " + quoted + ".nff",
+      "info --json " + quoted + ".nff ball.nff",
+      "info 'of mesh.nff'",
+      "info noise.nff",
+      "scene " + quoted,
+      "scene balls --size 1 -o none/" + quoted,
+      "compare " + quoted + ".png " + quoted,
+      "merge " + quoted + ".grelha ball.nff -o x.pfm",
+      quoted};
+  for (const std::string& line : lines) {
+    const test::Outcome outcome = run(line);
+    const std::string said = outcome.out + outcome.err;
+    EXPECT_NE(outcome.status, -1) << line;
+    for (const char c : said)
+      EXPECT_TRUE(c == '\n' || static_cast<unsigned char>(c) >= ' ') << said;
+    for (const char* sign : {"\x7f", "\x9b", "\xAE"})
+      EXPECT_EQ(said.find(sign), said.npos) << said;
+    if (outcome.status != 0) {
+      EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace grelha

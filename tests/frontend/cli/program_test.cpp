@@ -175,6 +175,34 @@ TEST_F(Program, StrictTakesWarningsForErrors) {
   EXPECT_EQ(run("render -o x.png --quiet --strict ball.nff").status, 0);
 }
 
+/// Sums of light end somewhere, and no term is cut without a word.
+TEST_F(Program, LightThatMayBeCutIsSaid) {
+  const std::string ball = kBall;
+  const auto lit = [&](const std::string& light) {
+    folder_.write(
+        "lit.nff",
+        ball.substr(0, ball.find("l 5 5 5")) + light + "\nf 1 0 0 1 0 1 0 1\ns 0 0 0 1\n");
+  };
+  const auto said = [&](const std::string& options) {
+    const Outcome outcome = run("render lit.nff -o x.pfm " + options);
+    EXPECT_EQ(outcome.status, 0);
+    return outcome.err;
+  };
+  lit("l 5 5 5 1e7 1e7 1e7");
+  EXPECT_EQ(
+      said(""),
+      "lit.nff: warning: light may reach 1e+07 in a sample: what is beyond 1.04858e+06 is cut\n");
+  EXPECT_EQ(run("render lit.nff -o x.pfm --strict").status, 2);
+  lit("l 5 5 5 1e6 1e6 1e6");
+  EXPECT_EQ(said(""), "");
+  EXPECT_EQ(said("--samples 64"),
+            "lit.nff: warning: light may reach 1e+06 in a sample: what is beyond 524288 is cut\n");
+  lit("b 2e6 0 0 l 5 5 5 1 1 1");
+  EXPECT_NE(said(""), "");
+  lit("l 5 5 5 1000 1000 1000");
+  EXPECT_NE(said("--error .1"), "") << "which may take 65536 samples a pixel";
+}
+
 TEST_F(Program, OneBadSceneDoesNotKeepTheOthers) {
   const Outcome outcome = run("render no.nff ball.nff -o {}.pfm --size 8x4");
   EXPECT_EQ(outcome.status, 1);

@@ -42,6 +42,28 @@ TEST(Number, ReadsWhatFilesHold) {
   EXPECT_TRUE(std::isnan(number("nan")));
 }
 
+TEST(Number, ReadsWhatMicrosoftWrote) {
+  for (const char* word : {"1.#INF", "+1.#INF", "1.#INF00", "1.#INF00e+000"})
+    EXPECT_EQ(number(word), kInfinity) << word;
+  EXPECT_EQ(number("-1.#INF"), -kInfinity);
+  for (const char* word : {"1.#IND",
+                           "-1.#IND",
+                           "-1.#IND00",
+                           "1.#QNAN",
+                           "1.#QNAN0e+000",
+                           "1.#SNAN",
+                           "1.#J",
+                           "-1.#IO",
+                           "-nan(ind)",
+                           "nan(snan)"})
+    EXPECT_TRUE(std::isnan(number(word))) << word;
+  float value;
+  double of_double;
+  EXPECT_TRUE(to_number("-1.#INF", of_double) && of_double < 0 && std::isinf(of_double));
+  for (const char* word : {"1.#", "2.#INF", "1.#INFO", "1.#X", "1#INF", "1.#INF 0", "#INF"})
+    EXPECT_FALSE(to_number(word, value)) << word;
+}
+
 TEST(Number, TooLargeIsInfiniteTooSmallIsZero) {
   EXPECT_EQ(number("1e39"), kInfinity);
   EXPECT_EQ(number("-1e39"), -kInfinity);
@@ -93,13 +115,51 @@ TEST(Integer, LooksLikeANumber) {
 }
 
 TEST(Words, SplitAtBlanksAndComments) {
-  Words words("f", "  a\tb#c d\r\n# e\rf\n\n\fg", 0, '#');
+  Words words("f", "  a\tb#c d\r\n# e\rf\n\n\fg", 0, Comments::kAll);
   for (const char* expected : {"a", "b", "f", "g", "", ""})
     EXPECT_EQ(words.next(), expected);
 }
 
+TEST(Words, StepOverCommentsOfC) {
+  const std::string_view text = "a//b\nc/*d*/e /*f\n*/ /*/g*/ 1.#h\ni/j 1.#INF / * /*k";
+  Words all("f", text, 0, Comments::kAll), of_lines("f", text, 0, Comments::kOfLines);
+  for (const char* expected : {"a", "c", "e", "1.", "i/j", "1.#INF", "/", "*", "/*k", ""})
+    EXPECT_EQ(all.next(), expected);
+  for (const char* expected : {"a", "c/*d*/e", "/*f", "*/", "/*/g*/", "1."})
+    EXPECT_EQ(of_lines.next(), expected);
+  Words none("f", "a //b # /*c*/", 0, Comments::kNone);
+  for (const char* expected : {"a", "//b", "#", "/*c*/", ""})
+    EXPECT_EQ(none.next(), expected);
+}
+
+TEST(Words, ACommentOfManyLinesEndsTheLine) {
+  Words words("f", "a /* 1 */ b /* 2\n3 */ c d /* 4\n5 */ e\nf", 0, Comments::kAll);
+  words.next();
+  EXPECT_EQ(words.peek_on_line(), "b");
+  words.next();
+  EXPECT_EQ(words.peek_on_line(), "");
+  words.next();
+  EXPECT_TRUE(words.fresh_line());
+  words.skip_line();
+  EXPECT_EQ(words.next(), "f") << "e stands on the line on which the comment began";
+}
+
+TEST(Words, NamesMayHoldWhatCommentsBeginWith) {
+  for (const auto& [line, name] : {std::pair(" a//b/*c.ply // d", "a//b/*c.ply"),
+                                   std::pair(" 'a #b' /* d */", "'a #b'"),
+                                   std::pair("\"a // b\"# d", "\"a // b\""),
+                                   std::pair("\"a # b", "\"a"),
+                                   std::pair("  # d", ""),
+                                   std::pair("", "")}) {
+    const std::string text = std::string(line) + "\nnext";
+    Words words("f", text, 0, Comments::kAll);
+    EXPECT_EQ(words.rest_of_line(), name) << line;
+    EXPECT_EQ(words.next(), "next") << line;
+  }
+}
+
 TEST(Words, KnowWhereTheLineEnds) {
-  Words words("f", "a b # c\n\nd", 0, '#');
+  Words words("f", "a b # c\n\nd", 0, Comments::kAll);
   words.next();
   EXPECT_TRUE(words.fresh_line());
   EXPECT_EQ(words.peek_on_line(), "b");
@@ -112,7 +172,7 @@ TEST(Words, KnowWhereTheLineEnds) {
 }
 
 TEST(Words, SkipLinesAndTakeTheirRest) {
-  Words words("f", "a  b c  # d\re f\r\ng", 0, '#');
+  Words words("f", "a  b c  # d\re f\r\ng", 0, Comments::kAll);
   words.next();
   EXPECT_EQ(words.rest_of_line(), "b c");
   EXPECT_EQ(words.next(), "e");
@@ -122,7 +182,7 @@ TEST(Words, SkipLinesAndTakeTheirRest) {
 }
 
 TEST(Words, CountLinesByAnyEnd) {
-  Words words("f", "a\nb\r\nc\rd\n\re", 0, '#');
+  Words words("f", "a\nb\r\nc\rd\n\re", 0, Comments::kAll);
   const char* const expected[] = {"f:1:1", "f:2:1", "f:3:1", "f:4:1", "f:6:1", "f:6:2"};
   std::vector<std::string_view> found;
   for (const char* place : expected) {
@@ -241,7 +301,7 @@ void expect_nearest(const std::string& word) {
   const auto wanted = std::bit_cast<std::uint32_t>(nearest_float(word));
   ASSERT_EQ(std::bit_cast<std::uint32_t>(value), wanted) << word;
   for (const std::string& text : {word, " \n" + word + " 1", word + "#"}) {
-    Words words("w", text, 0, '#');
+    Words words("w", text, 0, Comments::kAll);
     if (!words.next_number(again))
       continue;
     ASSERT_EQ(std::bit_cast<std::uint32_t>(again), wanted) << word;
@@ -293,7 +353,7 @@ TEST(Words, NextNumberLeavesWhatIsNone) {
                                  "1e400",
                                  "123456789012345678901",
                                  "+1"}) {
-    Words words("w", text, 0, '#');
+    Words words("w", text, 0, Comments::kAll);
     float value;
     EXPECT_FALSE(words.next_number(value)) << text;
     EXPECT_EQ(words.cursor(), text.data()) << text;
@@ -302,7 +362,7 @@ TEST(Words, NextNumberLeavesWhatIsNone) {
 
 TEST(Words, NextIndexReadsDigitsAlone) {
   for (const std::string text : {"0", " 7 8", "\n999999999999999999", "00012#", "12\t"}) {
-    Words words("w", text, 0, '#'), again = words;
+    Words words("w", text, 0, Comments::kAll), again = words;
     const std::string_view word = again.next();
     std::int64_t value = -1, wanted = -2;
     EXPECT_TRUE(words.next_index(value)) << text;
@@ -312,7 +372,7 @@ TEST(Words, NextIndexReadsDigitsAlone) {
   }
   for (const std::string text :
        {"", " ", "-1", "+1", "1.0", "1e2", "x", "#1", "1000000000000000000"}) {
-    Words words("w", text, 0, '#');
+    Words words("w", text, 0, Comments::kAll);
     std::int64_t value = -1;
     EXPECT_FALSE(words.next_index(value)) << text;
     EXPECT_EQ(value, -1) << text;

@@ -122,7 +122,7 @@ class Author {
 
   void end_line() {
     constexpr const char* kEnds[] = {
-        "\n", "\r\n", "\r", "\n\n", " # p 3 here\n", "\n# s 1 2 3 4\n", " ", "\t\n", "\n \n"};
+        "\n", "\r\n", "\r", "\n\n", " # p 3 here\n", "\n# s 1 2 3 4\n", " ", "\t\n", "// s 1\n"};
     text_ += kEnds[below(9)];
   }
   /// Between the words of an entity, mostly a blank.
@@ -198,6 +198,14 @@ class Author {
                                "pl 0 0 0 1 0 0 0 1 0",
                                "box 0 0 0 1 1 1",
                                "aabb 0 0 0 1 1 1",
+                               "/* a ball\ns 1 1 1 1\n*/ s 2 2 2 2",
+                               "s 0 0 /* z */ 0 1",
+                               "s 0 0 0 1 /*",
+                               "s 1.#IND 0 0 1",
+                               "st 0 0 0 1",
+                               "pt 3 0 0 0 0 0 1 0 0 1 0 0 1 0 0 1",
+                               "L 1 1 1 2\np 4 0 0 0 1 0 0 1 1 0 0 1 0",
+                               "L 0 0 0 0",
                                "mesh 3 1 0 0 0 1 0 0 0 1 0 1 2 3",
                                "mat 1 1 1 .5 1 0 0 .2 5 0 1",
                                "spp 4",

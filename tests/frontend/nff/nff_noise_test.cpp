@@ -85,7 +85,7 @@ TEST(NffNoise, FullNamesAreAnsweredWithTheKeyword) {
       {"TRIANGLE", "p"},
       {"plane", "pl"},
       {"cylinder", "c"},
-      {"material", "f"},
+      {"materials", "material"},
       {"LIGHT", "light"},
       {"S", "s"},
       {"Box", "box"},

@@ -8,6 +8,8 @@ namespace grelha {
 /// Exit statuses. Beyond kSignalled: the number of the signal that stopped the program.
 inline constexpr int kOk = 0, kFileFailed = 1, kBadInput = 2, kSignalled = 128;
 
+// Whatever is said passes shown(): no name of a file reaches a terminal as it is.
+
 /// Writes a line to stderr.
 void warn(const std::string& line);
 

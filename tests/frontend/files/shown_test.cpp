@@ -1,0 +1,50 @@
+// What a terminal gets to see. A part of text_test.
+#include "frontend/files/shown.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace grelha {
+namespace {
+
+using std::string_literals::operator""s;
+
+TEST(Shown, WordsOfAnyLanguageStay) {
+  for (const char* text : {"",
+                           "a b/c-d.nff",
+                           "bal\xC3\xB5"
+                           "es",
+                           "\xE7\x90\x83.nff",
+                           "\xF0\x9F\x8E\xB1"})
+    EXPECT_EQ(shown(text), text);
+  EXPECT_EQ(shown("a\nb\n"), "a\nb\n");
+  EXPECT_EQ(shown_on_a_line("a\nb"), "a?b");
+}
+
+TEST(Shown, WhatATerminalObeysDoesNot) {
+  const std::pair<std::string, const char*> table[] = {
+      {"\x1b[2J\x1b]0;title\x07", "?[2J?]0;title?"},
+      {"a\rb\tc\0d\x7f"s, "a?b?c?d?"},
+      {"\x9b"
+       "31m",
+       "?31m"},  // CSI in eight bits
+      {"\xC2\x9B"
+       "31m",
+       "?31m"},  // the same as UTF-8
+      {"a\xE2\x80\xAE"
+       "fdp.nff",
+       "a?fdp.nff"},                 // right to left
+      {"\xE2\x80\xA8", "?"},         // a line separator
+      {"\xC0\x9B", "??"},            // longer than need be
+      {"\xE2\x80", "??"},            // cut
+      {"\xED\xA0\x80", "???"},       // half of a pair of UTF-16
+      {"\xF4\x90\x80\x80", "????"},  // beyond Unicode
+      {"\xFF\xFEx", "??x"},
+  };
+  for (const auto& [text, clean] : table)
+    EXPECT_EQ(shown(text), clean);
+}
+
+}  // namespace
+}  // namespace grelha
