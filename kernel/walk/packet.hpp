@@ -105,7 +105,7 @@ inline void set_tested(Packet<InDouble>& p) {
       p.from[a][i] += p.low[a][i];
   }
   for (int i = 0; i < end; ++i)
-    p.nearest[i] = p.best[i];
+    p.nearest[i] = p.best[i] == kInfinity ? kEndOfFloats : p.best[i];
 }
 
 /// What tests take of directions from i on.

@@ -10,6 +10,8 @@ namespace grelha::GRELHA_ISA {
 /// Most rays in a packet. A word has a bit for each group of lanes.
 inline constexpr int kPacket = kWidth<Lanes> == 1 ? 64 : 256;
 inline constexpr float kInfinity = __builtin_inff();
+inline constexpr float kGreatest = 0x1.fffffep127f;
+inline constexpr double kEndOfFloats = 0x1.ffffffp127;  ///< what is less rounds to a finite one
 
 /// Rows of floats that are to be read or written soon. Asked for line by line, with work between,
 /// they come without being waited for: the first cache waits for few lines at once.
@@ -110,9 +112,11 @@ inline Real length_unit(const Vec3<Real>& dir) {
 }
 
 /// A search from t_min to t_max by a direction that was divided by `unit`: empty where no float
-/// lies between.
+/// lies between, and never so long that t is not finite.
 inline void count_in(float unit, float& t_min, float& t_max) {
-  t_max = next_above(t_min) < t_max ? t_max * unit : -kInfinity;
+  const bool is_empty = !(next_above(t_min) < t_max);
+  const float end = t_max == kInfinity && unit < 1 ? next_above(kGreatest * unit) : t_max * unit;
+  t_max = is_empty ? -kInfinity : end;
   t_min = t_min * unit;
 }
 

@@ -232,6 +232,8 @@ bool load_ray(const Ray& ray, WalkedRay<Real>& r) {
   }
   r.t_min = r.near_t_min = ray.t_min;
   r.best = r.near_best = ray.t_max;
+  if (sizeof(Real) == sizeof(double) && ray.t_max == kInfinity)
+    r.best = static_cast<Real>(kEndOfFloats);
   const float dd = (d[0] * d[0] + d[1] * d[1]) + d[2] * d[2];
   const Vec3<Real> dir{d[0], d[1], d[2]};
   r.inv_dd = 1 / dot(dir, dir);
