@@ -183,7 +183,8 @@ class SceneRender {
 
   void write(LongRender& work, const World& world, const SampleMaps& maps) {
     const Stopwatch write;
-    work.finish(command_.layers.any() ? first_hits(world, camera_, command_.layers) : Layers{});
+    work.finish(command_.layers.any() ? first_hits(world, camera_, file_.frame, command_.layers)
+                                      : Layers{});
     write_map(command_.samples_map, "samples of each pixel", maps.samples, camera_, [](double n) {
       return std::log2(n);
     });

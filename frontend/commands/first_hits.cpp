@@ -30,7 +30,10 @@ Float3 facing(const Float3& normal, const Float3& direction) {
 
 }  // namespace
 
-Layers first_hits(const World& world, const Camera& camera, const LayerChoice& wanted) {
+Layers first_hits(const World& world,
+                  const Camera& camera,
+                  const Frame& frame_of_scene,
+                  const LayerChoice& wanted) {
   const FrameView frame = make_frame(camera);
   std::vector<Ray> rays(std::size_t(frame.width));
   std::vector<Hit> hits(rays.size());
@@ -48,7 +51,7 @@ Layers first_hits(const World& world, const Camera& camera, const LayerChoice& w
     for (std::size_t x = 0; x < rays.size(); ++x) {
       const Hit& hit = hits[x];
       if (wanted.depth)
-        layers.depth.push_back(hit.t);
+        layers.depth.push_back(static_cast<float>(hit.t / frame_of_scene.scale));
       if (wanted.id)
         layers.id.push_back(hit.id);
       if (!wanted.normal)

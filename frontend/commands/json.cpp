@@ -39,9 +39,11 @@ Json to_json(const std::vector<GridStats>& grids) {
   return list;
 }
 
-Json to_json(const SceneBounds& bounds) {
+Json to_json(const Frame& frame, const SceneBounds& bounds) {
   if (bounds.empty)
     return nullptr;
+  if (frame != Frame{})
+    return {{"min", frame.outside(bounds.low)}, {"max", frame.outside(bounds.high)}};
   return {{"min", to_json(bounds.low)}, {"max", to_json(bounds.high)}};
 }
 

@@ -5,7 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "frontend/commands/needs.hpp"
+#include "frontend/scene/bounds.hpp"
+#include "frontend/scene/frame.hpp"
 #include "frontend/scene/scene_file.hpp"
 #include "grelha/render.hpp"
 
@@ -18,7 +19,7 @@ Json tidy(float value);
 Json to_json(Float3 v);
 Json to_json(const EntityCounts& c);
 Json to_json(const std::vector<GridStats>& grids);
-Json to_json(const SceneBounds& bounds);
+Json to_json(const Frame& frame, const SceneBounds& bounds);  ///< as the file has them
 Json to_json(const Subdivision& s);
 Json to_json(const RayCounts& rays);
 Json to_json(const TestCounts& t);

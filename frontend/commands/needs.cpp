@@ -1,8 +1,6 @@
 #include "frontend/commands/needs.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 
 #include "grelha/scene_spans.hpp"
 
@@ -20,52 +18,6 @@ bool any(const std::vector<float>& values) {
 
 bool has_normals(const Triangles& t) {
   return any(t.nx) || any(t.ny) || any(t.nz);
-}
-
-class Box {
- public:
-  void grow(Float3 center, Float3 reach) {
-    grow_axis(center.x, reach.x, bounds_.low.x, bounds_.high.x);
-    grow_axis(center.y, reach.y, bounds_.low.y, bounds_.high.y);
-    grow_axis(center.z, reach.z, bounds_.low.z, bounds_.high.z);
-    bounds_.empty = false;
-  }
-  const SceneBounds& bounds() const { return bounds_; }
-
- private:
-  void grow_axis(float center, float reach, float& low, float& high) const {
-    low = bounds_.empty ? center - reach : std::min(low, center - reach);
-    high = bounds_.empty ? center + reach : std::max(high, center + reach);
-  }
-
-  SceneBounds bounds_;
-};
-
-/// How far a disc of that radius reaches along each axis; `x y z` is its normal, of any length.
-Float3 disc_reach(double radius, double x, double y, double z) {
-  const double square = x * x + y * y + z * z;
-  const auto reach = [&](double c) {
-    return float(std::abs(radius) * std::sqrt(std::max(0.0, 1 - c * c / square)));
-  };
-  return {reach(x), reach(y), reach(z)};
-}
-
-void grow(Box& box, const Spheres& s, std::size_t i) {
-  const float r = std::abs(s.radius[i]);
-  box.grow({s.x[i], s.y[i], s.z[i]}, {r, r, r});
-}
-
-void grow(Box& box, const Cones& c, std::size_t i) {
-  const double x = double(c.apex_x[i]) - c.base_x[i], y = double(c.apex_y[i]) - c.base_y[i];
-  const double z = double(c.apex_z[i]) - c.base_z[i];
-  box.grow({c.base_x[i], c.base_y[i], c.base_z[i]}, disc_reach(c.base_radius[i], x, y, z));
-  box.grow({c.apex_x[i], c.apex_y[i], c.apex_z[i]}, disc_reach(c.apex_radius[i], x, y, z));
-}
-
-/// By a triangle: its mesh may hold vertices that none uses.
-void grow(Box& box, const Triangles& t, std::size_t i) {
-  for (const std::uint32_t vertex : {t.a[i], t.b[i], t.c[i]})
-    box.grow({t.x[vertex], t.y[vertex], t.z[vertex]}, {});
 }
 
 void add_needs(Needs& needs, const Material& material) {
@@ -96,17 +48,6 @@ Needs needs_of(const SceneFile& file) {
       add_needs(needs, file.scene.materials[i]);
   }
   return needs;
-}
-
-SceneBounds bounds_of(const Geometry& geometry) {
-  Box box;
-  for (std::size_t i = 0; i < geometry.spheres.size(); ++i)
-    grow(box, geometry.spheres, i);
-  for (std::size_t i = 0; i < geometry.cones.size(); ++i)
-    grow(box, geometry.cones, i);
-  for (std::size_t i = 0; i < geometry.triangles.size(); ++i)
-    grow(box, geometry.triangles, i);
-  return box.bounds();
 }
 
 }  // namespace grelha

@@ -18,12 +18,4 @@ struct Needs {
 
 Needs needs_of(const SceneFile& file);
 
-/// The least box around everything but planes; `empty` when there is nothing.
-struct SceneBounds {
-  bool empty = true;
-  Float3 low, high;
-};
-
-SceneBounds bounds_of(const Geometry& geometry);
-
 }  // namespace grelha

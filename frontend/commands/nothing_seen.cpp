@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <span>
 
-#include "frontend/commands/needs.hpp"
+#include "frontend/scene/bounds.hpp"
 #include "frontend/commands/report.hpp"
 #include "grelha/scene_spans.hpp"
 
@@ -144,9 +144,10 @@ bool is_lit(const Scene& scene) {
   return false;
 }
 
-std::string point_words(const Float3& p) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%g %g %g", double(p.x), double(p.y), double(p.z));
+std::string point_words(const Frame& frame, const Float3& at) {
+  const auto [x, y, z] = frame.outside(at);
+  char text[96];
+  std::snprintf(text, sizeof text, frame == Frame{} ? "%g %g %g" : "%.10g %.10g %.10g", x, y, z);
   return text;
 }
 
@@ -156,14 +157,14 @@ Float3 middle_of(const SceneBounds& b) {
           b.low.z + (b.high.z - b.low.z) / 2};
 }
 
-std::string elsewhere(const Scene& scene, const Unseen& found) {
+std::string elsewhere(const SceneFile& file, const Unseen& found) {
   if (found.common & kBehind)
     return "everything lies behind the eye: exchange \"from\" and \"at\", or turn the view round";
-  const SceneBounds bounds = bounds_of(scene.geometry);
+  const SceneBounds bounds = bounds_of(file.scene.geometry);
   return "everything lies outside the view: widen \"angle\"" +
-         (bounds.empty
-              ? ""
-              : ", or look \"at " + point_words(middle_of(bounds)) + "\", the middle of the scene");
+         (bounds.empty ? ""
+                       : ", or look \"at " + point_words(file.frame, middle_of(bounds)) +
+                             "\", the middle of the scene");
 }
 
 }  // namespace
@@ -184,9 +185,9 @@ void warn_of_nothing(const std::string& path,
   }
   if (!is_lit(scene))
     say("no light: surfaces will show no color of their own; add one, such as \"l " +
-        point_words(camera.eye) + '"');
+        point_words(file.frame, camera.eye) + '"');
   if (const Unseen found = unseen(scene.geometry, View(camera)); found.all)
-    say(elsewhere(scene, found));
+    say(elsewhere(file, found));
 }
 
 }  // namespace grelha

@@ -2,6 +2,7 @@
 
 #include "frontend/commands/json.hpp"
 #include "frontend/commands/needs.hpp"
+#include "frontend/scene/bounds.hpp"
 #include "frontend/files/atomic_file.hpp"
 #include "frontend/files/memory_limit.hpp"
 #include "frontend/files/shown.hpp"
@@ -70,8 +71,11 @@ std::string grids_text(const std::vector<GridStats>& grids) {
   return std::to_string(grids.size()) + " grids (" + first + ", ...)";
 }
 
-std::string point_text(Float3 v) {
-  return print("(%g, %g, %g)", double(v.x), double(v.y), double(v.z));
+/// As the file has it: with as many digits as floats have from the middle of the scene.
+std::string point_text(const Frame& frame, const Float3& v) {
+  const auto [x, y, z] = frame.outside(v);
+  const char* const form = frame == Frame{} ? "(%g, %g, %g)" : "(%.10g, %.10g, %.10g)";
+  return print(form, x, y, z);
 }
 
 void list_entities(std::string& text, const EntityCounts& c) {
@@ -185,10 +189,10 @@ std::string dropped_text(const Dropped& dropped) {
   return all == 0 ? "" : "dropped       " + std::to_string(all) + " that cannot be drawn\n";
 }
 
-std::string bounds_text(const SceneBounds& bounds) {
-  return bounds.empty
-             ? ""
-             : "bounds        " + point_text(bounds.low) + " to " + point_text(bounds.high) + '\n';
+std::string bounds_text(const Frame& frame, const SceneBounds& bounds) {
+  return bounds.empty ? ""
+                      : "bounds        " + point_text(frame, bounds.low) + " to " +
+                            point_text(frame, bounds.high) + '\n';
 }
 
 std::string memory_text(const SceneMemory& memory) {
@@ -304,7 +308,8 @@ std::string info_json(const SceneFile& file,
   if (file.box_order != BoxOrder::kNone)
     json["aabb"] = box_order_name(file.box_order);
   json["resolution"] = {file.camera.width, file.camera.height};
-  json["bounds"] = to_json(bounds_of(geometry));
+  json["bounds"] = to_json(file.frame, bounds_of(geometry));
+  json["frame"] = {{"offset", file.frame.offset}, {"scale", file.frame.scale}};
   json["memory"] = {{"scene", memory.scene}, {"grids", memory.grids}, {"peak", memory.peak}};
   json["grids"] = grids ? to_json(*grids) : nullptr;
   for (const auto& [name, needed] : listed(needs_of(file)))
@@ -336,7 +341,10 @@ std::string info_text(const std::string& path,
   if (file.box_order != BoxOrder::kNone)
     text += std::string("aabb          read as ") + box_order_name(file.box_order) + '\n';
   text += "materials     " + std::to_string(file.counts.materials) + '\n';
-  text += bounds_text(bounds_of(g)) + memory_text(memory);
+  text += bounds_text(file.frame, bounds_of(g));
+  if (file.frame != Frame{})
+    text += "coordinates   " + text_of(file.frame) + '\n';
+  text += memory_text(memory);
   if (!grids)
     text += "grid          not built: it would take more than " + memory_there_is() + '\n';
   for (const GridStats& grid : grids.value_or(std::vector<GridStats>{}))

@@ -1,6 +1,7 @@
 #include "frontend/input/read_scene.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <new>
 #include <stdexcept>
 #include <utility>
@@ -43,10 +44,12 @@ bool is_ply(const std::string& path, std::string_view bytes) {
 SceneFile read_mesh_alone(const std::string& path,
                           std::string bytes,
                           const Warn& warn,
+                          const Frame& frame,
                           LoadProgress& progress) {
   SceneFile file;
+  file.frame = frame;
   file.source_bytes = bytes.size();
-  Mesh mesh = read_ply_mesh(path, bytes, warn, &progress);
+  Mesh mesh = read_ply_mesh(path, bytes, warn, &progress, frame);
   std::string().swap(bytes);  // as large as what is made of it
   file.counts.ply = mesh.face_count();
   if (file.counts.ply == 0)
@@ -67,19 +70,55 @@ void warn_of_dropped(const std::string& path, const Dropped& dropped, const Warn
        std::to_string(dropped.zero_area) + " without area");
 }
 
-}  // namespace
-
-SceneFile read_scene(const std::string& path, const Warn& warn, const ReadOptions& options) try {
-  LoadProgress progress(options.progress);
+std::string load_scene(const std::string& path, LoadProgress& progress) {
   std::string bytes =
       load_file(path, &progress, true, [&](std::string_view text, std::size_t fresh) {
         judge_beginning(path, is_ply(path, text), text, fresh);
       });
   if (bytes.empty())
     throw ParseError(Position{path, 1, 1, 0}, "expected a scene, found an empty file");
-  SceneFile file = is_ply(path, bytes) ? read_mesh_alone(path, std::move(bytes), warn, progress)
-                                       : read_nff(path, bytes, warn, options, &progress);
+  return bytes;
+}
+
+SceneFile parse_scene(const std::string& path,
+                      std::string bytes,
+                      const Warn& warn,
+                      const ReadOptions& options,
+                      LoadProgress& progress) {
+  return is_ply(path, bytes)
+             ? read_mesh_alone(path, std::move(bytes), warn, options.frame, progress)
+             : read_nff(path, bytes, warn, options, &progress);
+}
+
+/// The scene once more in a frame, from what was read first if that cannot be read again. What is
+/// to be warned of was said the first time.
+SceneFile read_in_frame(const std::string& path,
+                        std::string bytes,
+                        const Frame& frame,
+                        ReadOptions options) {
+  const auto progress = std::move(options.progress);
+  options.progress = [&](double) { return !progress || progress(1); };
+  options.frame = frame;
+  LoadProgress again(options.progress);
+  if (bytes.empty())
+    bytes = load_scene(path, again);
+  return parse_scene(
+      path, std::move(bytes), [](const std::string&) {}, options, again);
+}
+
+}  // namespace
+
+SceneFile read_scene(const std::string& path, const Warn& warn, const ReadOptions& options) try {
+  LoadProgress progress(options.progress);
+  std::string bytes = load_scene(path, progress);
+  std::string kept = std::filesystem::is_regular_file(path) ? std::string() : bytes;
+  SceneFile file = parse_scene(path, std::move(bytes), warn, options, progress);
   progress.finish();
+  if (const std::optional<Frame> frame = better_frame(file)) {
+    SceneFile framed = read_in_frame(path, std::move(kept), *frame, options);
+    if (needs_its_frame(framed))
+      file = std::move(framed);
+  }
   warn_of_dropped(path, file.dropped, warn);
   return file;
 } catch (const std::bad_alloc&) {

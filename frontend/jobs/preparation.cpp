@@ -71,12 +71,15 @@ SceneFile load_scene(const std::string& path,
                      const Warn& warn,
                      const ReadOptions& options,
                      bool shown) {
-  return interruptible(
+  SceneFile file = interruptible(
       "load", "reading " + path, shown, [&](const std::function<bool(double)>& progress) {
         ReadOptions watched_options = options;
         watched_options.progress = progress;
         return read_scene(path, warn, watched_options);
       });
+  if (file.frame != Frame{})
+    grelha::warn(path + ": note: coordinates do not fit floats; they are " + text_of(file.frame));
+  return file;
 }
 
 void want_memory(const std::string& path, std::uint64_t bytes) {

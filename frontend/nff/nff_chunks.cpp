@@ -27,12 +27,15 @@ struct Fragment {
 /// What a fragment must not say.
 struct WouldWarn {};
 
-void read_entities(const std::string& path, const char* end, Fragment& fragment) {
+void read_entities(const std::string& path,
+                   const char* end,
+                   const Frame& frame,
+                   Fragment& fragment) {
   const Warn stop = [](const std::string&) { throw WouldWarn(); };
   Warnings warnings(stop);
   // a `/*` ends the fragment: how far it reaches is not this fragment's to find out
   Words words(path, {fragment.begin, std::size_t(end - fragment.begin)}, 0, Comments::kOfLines);
-  NffInput input(words, warnings);
+  NffInput input(words, warnings, frame);
   NffPlain plain(input, fragment.file);
   fragment.file.scene.materials.resize(1);  // the last one before it
   for (;;) {
@@ -45,9 +48,12 @@ void read_entities(const std::string& path, const char* end, Fragment& fragment)
 }
 
 /// Errors and warnings are for whoever reads the same place again, and knows the place's line.
-void read_fragment(const std::string& path, const char* end, Fragment& fragment) noexcept try {
+void read_fragment(const std::string& path,
+                   const char* end,
+                   const Frame& frame,
+                   Fragment& fragment) noexcept try {
   fragment.next = fragment.begin;
-  read_entities(path, end, fragment);
+  read_entities(path, end, frame, fragment);
 } catch (const WouldWarn&) {
 } catch (const ParseError&) {
 } catch (...) {  // memory ran out: nobody knows where
@@ -118,7 +124,7 @@ class Run {
     for (std::size_t chunk = 0; claim(chunk);) {
       Fragment fragment = cutter_.cut(chunk);
       if (fragment.begin)
-        read_fragment(path_, end_, fragment);
+        read_fragment(path_, end_, file_.frame, fragment);
       deliver(chunk, std::move(fragment));
       if (tell)
         (*tell)(here());

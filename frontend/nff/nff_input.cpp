@@ -47,6 +47,34 @@ Float3 NffInput::bounded_point(const char* what) {
   return {x, y, z};
 }
 
+double NffInput::wide_number(const char* what) {
+  const std::string_view word = words.next();
+  double value;
+  if (!to_number(word, value))
+    fail(word, std::string("a number for ") + what);
+  return value;
+}
+
+Float3 NffInput::place(const char* what) {
+  if (frame == Frame{})
+    return point(what);
+  const double x = wide_number(what), y = wide_number(what), z = wide_number(what);
+  return frame.inside({x, y, z});
+}
+
+Float3 NffInput::bounded_place(const char* what) {
+  const Words before = words;
+  const Float3 as_it_stands = bounded_point(what);
+  if (frame == Frame{})
+    return as_it_stands;
+  words = before;
+  return place(what);
+}
+
+float NffInput::length(const char* what) {
+  return frame == Frame{} ? number(what) : frame.length(wide_number(what));
+}
+
 std::size_t NffInput::count(const char* what, std::size_t least_bytes) {
   const std::string_view word = words.next();
   std::int64_t value = 0;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "frontend/files/text.hpp"
+#include "frontend/scene/frame.hpp"
 #include "frontend/scene/warnings.hpp"
 #include "grelha/geometry.hpp"
 
@@ -20,13 +21,19 @@ struct NumberWord {
 /// found. `what` completes "expected a number for ...".
 class NffInput {
  public:
-  NffInput(Words& all_words, Warnings& all_warnings) : words(all_words), warnings(all_warnings) {}
+  NffInput(Words& all_words, Warnings& all_warnings, const Frame& of_scene)
+      : words(all_words), warnings(all_warnings), frame(of_scene) {}
 
   /// infinite and NaN pass: the caller drops what cannot be drawn
   float number(const char* what);
   float bounded(const char* what);  ///< for what cannot be dropped: camera, lights, materials
-  Float3 point(const char* what);
+  Float3 point(const char* what);   ///< three numbers, whatever they are
   Float3 bounded_point(const char* what);
+  /// A place in the scene, and a length: in its frame.
+  Float3 place(const char* what);
+  Float3 bounded_place(const char* what);
+  float length(const char* what);
+  double wide_number(const char* what);  ///< in the file's own frame
   /// A count of things that take at least `least_bytes` each, checked against the rest of the file.
   std::size_t count(const char* what, std::size_t least_bytes);
 
@@ -40,6 +47,7 @@ class NffInput {
 
   Words& words;
   Warnings& warnings;
+  const Frame frame;
 
  private:
   void check_bounds(std::string_view word, float value, const char* what) const;

@@ -3,6 +3,7 @@
 #include "frontend/scene/scene_builder.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace grelha {
@@ -10,6 +11,16 @@ namespace {
 
 Float3 triple(const std::vector<NumberWord>& n, std::size_t first) {
   return {n[first].value, n[first + 1].value, n[first + 2].value};
+}
+/// The same of a place in the scene, and of a length along each axis.
+Float3 place(const Frame& frame, const std::vector<NumberWord>& n, std::size_t first) {
+  std::array<double, 3> p{};
+  for (std::size_t a = 0; a < 3; ++a)
+    to_number(n[first + a].word, p[a]);
+  return frame.inside(p);
+}
+Float3 vector(const Frame& frame, const std::vector<NumberWord>& n, std::size_t first) {
+  return place({{}, frame.scale}, n, first);
 }
 Float3 operator-(const Float3& a, const Float3& b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
@@ -53,7 +64,7 @@ void NffLights::add_point(Float3 position, Float3 color) {
 }
 
 void NffLights::read_point(NffInput& input) {
-  const Float3 position = input.bounded_point("the light's position");
+  const Float3 position = input.bounded_place("the light's position");
   if (!looks_like_number(input.words.peek_on_line())) {
     colorless_.push_back(file_.scene.lights.size());
     add_point(position, {});
@@ -84,14 +95,14 @@ void NffLights::add_area(NffInput& input, std::string_view keyword, AreaLight li
 void NffLights::read_light(NffInput& input, std::string_view keyword) {
   const std::string_view kind = input.words.next();
   if (kind == "punctual") {
-    const Float3 position = input.bounded_point("the light's position");
+    const Float3 position = input.bounded_place("the light's position");
     add_point(position, input.bounded_point("the light's color"));
   } else if (kind == "quad") {
     AreaLight light;
-    light.corner = input.bounded_point("the light's corner");
+    light.corner = input.bounded_place("the light's corner");
     light.color = input.bounded_point("the light's color");
-    light.edge1 = input.bounded_point("the light's second corner") - light.corner;
-    light.edge2 = input.bounded_point("the light's third corner") - light.corner;
+    light.edge1 = input.bounded_place("the light's second corner") - light.corner;
+    light.edge2 = input.bounded_place("the light's third corner") - light.corner;
     const std::string_view samples = input.words.next();
     std::int64_t count = 0;
     if (!to_integer(samples, count) || count < 0 || count > 1000000)
@@ -109,15 +120,19 @@ void NffLights::read_area(NffInput& input, std::string_view keyword) {
     input.fail(
         input.words.peek(),
         "a number for the area light (field " + std::to_string(n.size() + 1) + " of 11 or 12)");
+  const Frame& frame = input.frame;
   if (n.size() == 11) {
-    add_area(
-        input, keyword, facing(triple(n, 0), triple(n, 3), n[6].value, n[7].value, triple(n, 8)));
+    const float width = frame.length(double{n[6].value});
+    const float height = frame.length(double{n[7].value});
+    add_area(input,
+             keyword,
+             facing(place(frame, n, 0), place(frame, n, 3), width, height, triple(n, 8)));
     return;
   }
   AreaLight light;
-  light.corner = triple(n, 0);
-  light.edge1 = triple(n, 3);
-  light.edge2 = triple(n, 6);
+  light.corner = place(frame, n, 0);
+  light.edge1 = vector(frame, n, 3);
+  light.edge2 = vector(frame, n, 6);
   light.color = triple(n, 9);
   add_area(input, keyword, light);
 }
@@ -143,7 +158,7 @@ bool NffLights::read_glowing(NffInput& input, std::string_view keyword) {
   const std::size_t size = input.count("the polygon's corners", keyword == "pp" ? 12 : 6);
   Float3 corners[4];
   for (std::size_t i = 0; size == 4 && i < size; ++i) {
-    corners[i] = input.point("the polygon's corner");
+    corners[i] = input.place("the polygon's corner");
     if (keyword == "pp")
       input.point("the corner's normal");
   }

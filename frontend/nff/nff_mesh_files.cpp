@@ -88,7 +88,7 @@ Mesh NffMeshFiles::read(const NffInput& input,
       judge_beginning(path, true, text, fresh);
     };
     const std::string bytes = load_file(path, load_, false, judge);
-    Mesh mesh = read_ply_mesh(path, bytes, warn_, load_);
+    Mesh mesh = read_ply_mesh(path, bytes, warn_, load_, scene.frame);
     const std::uint64_t held = input.words.size() + bytes.size();
     scene.source_bytes = std::max(scene.source_bytes, held);
     want_room(input, name, mesh, scene.scene.geometry.triangles);

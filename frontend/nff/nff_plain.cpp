@@ -38,8 +38,8 @@ void NffPlain::leave_out_texture(std::string_view keyword) {
 void NffPlain::read_sphere(std::string_view keyword) {
   if (keyword == "st")
     leave_out_texture(keyword);
-  const Float3 center = input_.point("the sphere's center");
-  build_.sphere(center, input_.number("the sphere's radius"), material(keyword));
+  const Float3 center = input_.place("the sphere's center");
+  build_.sphere(center, input_.length("the sphere's radius"), material(keyword));
   ++file_.counts.s;
 }
 
@@ -56,7 +56,7 @@ void NffPlain::read_polygon(std::string_view keyword, bool patch, bool textured)
   corners_.clear();
   normals_.clear();
   for (std::size_t i = 0; i < size; ++i) {
-    corners_.push_back(input_.point("the polygon's corner"));
+    corners_.push_back(input_.place("the polygon's corner"));
     if (patch)
       normals_.push_back(input_.point("the corner's normal"));
     for (int k = 0; textured && k < 2; ++k)
@@ -67,10 +67,10 @@ void NffPlain::read_polygon(std::string_view keyword, bool patch, bool textured)
 }
 
 void NffPlain::read_cone(std::string_view keyword) {
-  const Float3 base = input_.point("the cone's base");
-  const float base_radius = input_.number("the cone's base radius");
-  const Float3 apex = input_.point("the cone's apex");
-  build_.cone(base, base_radius, apex, input_.number("the cone's apex radius"), material(keyword));
+  const Float3 base = input_.place("the cone's base");
+  const float base_radius = input_.length("the cone's base radius");
+  const Float3 apex = input_.place("the cone's apex");
+  build_.cone(base, base_radius, apex, input_.length("the cone's apex radius"), material(keyword));
   ++file_.counts.c;
 }
 

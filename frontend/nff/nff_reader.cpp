@@ -1,6 +1,7 @@
 #include "frontend/nff/nff_reader.hpp"
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include "frontend/files/load_progress.hpp"
@@ -32,12 +33,13 @@ class NffReader {
         words_(path, text, byte_order_mark(text), Comments::kAll),
         warnings_(warn),
         meshes_(path, warn, options, progress),
-        input_(words_, warnings_),
+        input_(words_, warnings_, options.frame),
         build_(file_),
         plain_(input_, file_),
         chunks_(path, text, chunks),
         lights_(file_) {
     file_.source_bytes = text.size();
+    file_.frame = options.frame;
   }
 
   SceneFile read(std::string_view text);
@@ -223,35 +225,41 @@ void NffReader::read_mat(std::string_view keyword) {
 }
 
 void NffReader::read_pl(std::string_view keyword) {
-  const Float3 a = input_.point("the plane's first point");
-  const Float3 b = input_.point("the plane's second point");
-  build_.plane(a, b, input_.point("the plane's third point"), material(keyword));
+  const Float3 a = input_.place("the plane's first point");
+  const Float3 b = input_.place("the plane's second point");
+  build_.plane(a, b, input_.place("the plane's third point"), material(keyword));
   ++file_.counts.pl;
 }
 
 /// normal . x + constant = 0, as the one reader has it that is known to take `npl`.
 void NffReader::read_npl(std::string_view keyword) {
-  const Float3 normal = input_.point("the plane's normal");
-  const float constant = input_.number("the plane's constant");
-  build_.plane(normal, 0 - constant, material(keyword));  // 0 - 0 is no -0
+  std::array<double, 3> n;
+  for (double& component : n)
+    component = input_.wide_number("the plane's normal");
+  const double constant = input_.wide_number("the plane's constant");
+  const double distance = input_.frame.distance(n, 0 - constant);  // 0 - 0 is no -0
+  build_.plane({static_cast<float>(n[0]), static_cast<float>(n[1]), static_cast<float>(n[2])},
+               static_cast<float>(distance),
+               material(keyword));
   ++file_.counts.pl;
 }
 
 void NffReader::read_box(std::string_view keyword) {
-  const Float3 corner = input_.point("the box's first corner");
-  build_.box(corner, input_.point("the box's second corner"), material(keyword));
+  const Float3 corner = input_.place("the box's first corner");
+  build_.box(corner, input_.place("the box's second corner"), material(keyword));
   ++file_.counts.box;
 }
 
 void NffReader::read_aabb(std::string_view keyword) {
   if (file_.box_order == BoxOrder::kNone)
     file_.box_order = aabb_order(words_);
-  const Float3 p = input_.point("the box's bounds");
-  const Float3 q = input_.point("the box's bounds");
+  std::array<double, 6> v;
+  for (double& bound : v)
+    bound = input_.wide_number("the box's bounds");
   if (file_.box_order == BoxOrder::kPairs)
-    build_.box({p.x, p.z, q.y}, {p.y, q.x, q.z}, material(keyword));
-  else
-    build_.box(p, q, material(keyword));
+    v = {v[0], v[2], v[4], v[1], v[3], v[5]};
+  const Frame& frame = input_.frame;
+  build_.box(frame.inside({v[0], v[1], v[2]}), frame.inside({v[3], v[4], v[5]}), material(keyword));
   ++file_.counts.box;
 }
 
@@ -282,7 +290,7 @@ void NffReader::read_mesh(std::string_view keyword) {
   mesh.z.reserve(vertices);
   for (std::size_t i = 0; i < vertices; ++i) {
     progress_.at(words_.cursor());
-    const Float3 p = input_.point("the mesh's vertex");
+    const Float3 p = input_.place("the mesh's vertex");
     mesh.x.push_back(p.x);
     mesh.y.push_back(p.y);
     mesh.z.push_back(p.z);

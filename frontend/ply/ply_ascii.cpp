@@ -34,18 +34,19 @@ std::int64_t PlyAscii::read_index(const PlyElement& element,
 void PlyAscii::read_number(const PlyElement& element,
                            const PlyProperty& property,
                            std::uint64_t row,
-                           std::vector<float>* target) {
-  float value;
-  if (target && words_.next_number(value))
-    return target->push_back(value);
+                           const PlyColumn& target) {
+  float value = 0;
+  if (target.to && target.keeps() && words_.next_number(value))
+    return target.to->push_back(value);
   const std::string_view found = word(element, row);
-  if (!target)
+  if (!target.to)
     return;
-  if (!to_number(found, value))
+  double wide = 0;
+  if (target.keeps() ? !to_number(found, value) : !to_number(found, wide))
     throw ParseError(words_.position(found),
                      "a number for \"" + property.name + "\" of \"" + element.name + '"',
                      quoted(found));
-  target->push_back(value);
+  target.to->push_back(target.keeps() ? value : target.value(wide));
 }
 
 void PlyAscii::read_list(const PlyElement& element,
@@ -104,10 +105,10 @@ void PlyAscii::end_row(const PlyElement& element, std::uint64_t row) {
 void PlyAscii::read(const PlyElement& element, const PlyPlan& plan, Mesh& mesh, PlyFaces& faces) {
   if (element.properties.empty())
     return;
-  std::vector<std::vector<float>*> targets(element.properties.size(), nullptr);
+  std::vector<PlyColumn> targets(element.properties.size());
   for (int i = 0; i < 6; ++i)
     if (plan.columns[i] >= 0)
-      targets[std::size_t(plan.columns[i])] = &column(mesh, i);
+      targets[std::size_t(plan.columns[i])] = column(mesh, plan, i);
   for (std::uint64_t row = 0; row < element.count; ++row) {
     for (std::size_t i = 0; i < element.properties.size(); ++i) {
       const PlyProperty& property = element.properties[i];

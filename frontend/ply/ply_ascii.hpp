@@ -35,7 +35,7 @@ class PlyAscii {
   void read_number(const PlyElement& element,
                    const PlyProperty& property,
                    std::uint64_t row,
-                   std::vector<float>* target);  ///< nullptr: steps over it
+                   const PlyColumn& target);  ///< of nothing: steps over it
   void end_row(const PlyElement& element, std::uint64_t row);
   Extra judge(const PlyElement& element, std::uint64_t row) const;
 

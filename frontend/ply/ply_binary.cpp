@@ -50,13 +50,15 @@ void append_column(PlyType type,
                    std::size_t stride,
                    std::size_t rows,
                    bool swap,
-                   std::vector<float>& out) {
-  const std::size_t before = out.size();
-  out.resize(before + rows);
+                   const PlyColumn& out) {
+  const std::size_t before = out.to->size();
+  out.to->resize(before + rows);
   with_type(type, [&](auto t) {
-    float* to = out.data() + before;
-    for (std::size_t i = 0; i < rows; ++i, p += stride)
+    float* to = out.to->data() + before;
+    for (std::size_t i = 0; i < rows && out.keeps(); ++i, p += stride)
       to[i] = float(load<decltype(t)>(p, swap));
+    for (std::size_t i = 0; i < rows && !out.keeps(); ++i, p += stride)
+      to[i] = out.value(double(load<decltype(t)>(p, swap)));
   });
 }
 
@@ -114,7 +116,7 @@ void PlyBinary::read_fixed(const PlyElement& element, const PlyPlan& plan, Mesh&
         continue;
       const auto k = std::size_t(plan.columns[i]);
       append_column(
-          element.properties[k].type, at_ + offsets[k], stride, rows, swap_, column(mesh, i));
+          element.properties[k].type, at_ + offsets[k], stride, rows, swap_, column(mesh, plan, i));
     }
     at_ += rows * stride;
     progress_.at(at_);
@@ -197,10 +199,10 @@ void PlyBinary::read_rows(const PlyElement& element,
                           const PlyPlan& plan,
                           Mesh& mesh,
                           PlyFaces& faces) {
-  std::vector<std::vector<float>*> targets(element.properties.size(), nullptr);
+  std::vector<PlyColumn> targets(element.properties.size());
   for (int i = 0; i < 6; ++i)
     if (plan.columns[i] >= 0)
-      targets[std::size_t(plan.columns[i])] = &column(mesh, i);
+      targets[std::size_t(plan.columns[i])] = column(mesh, plan, i);
   for (std::uint64_t row = 0; row < element.count; ++row) {
     row += read_triangles(element, plan, element.count - row, faces);
     if (row == element.count)
@@ -212,8 +214,8 @@ void PlyBinary::read_rows(const PlyElement& element,
         continue;
       }
       const char* const p = take(size_of(property.type), element, row);
-      if (targets[i])
-        append_column(property.type, p, 0, 1, swap_, *targets[i]);
+      if (targets[i].to)
+        append_column(property.type, p, 0, 1, swap_, targets[i]);
     }
     progress_.at(at_);
   }

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "frontend/ply/ply_header.hpp"
+#include "frontend/scene/frame.hpp"
 #include "frontend/scene/mesh.hpp"
 
 namespace grelha {
@@ -73,12 +74,23 @@ class PlyFaces {
 struct PlyPlan {
   int columns[6] = {-1, -1, -1, -1, -1, -1};  ///< x y z nx ny nz of `vertex`
   int list = -1;                              ///< the indices of `face` or `tristrips`
+  Frame frame{};                              ///< of x y z
 };
 
-/// The six arrays of a mesh in the order of PlyPlan::columns.
-inline std::vector<float>& column(Mesh& mesh, int i) {
-  std::vector<float>* const kAll[] = {&mesh.x, &mesh.y, &mesh.z, &mesh.nx, &mesh.ny, &mesh.nz};
-  return *kAll[i];
+/// Where the numbers of a property go, and what becomes of them.
+struct PlyColumn {
+  std::vector<float>* to = nullptr;
+  double minus = 0, times = 1;
+  bool keeps() const { return minus == 0 && times == 1; }
+  float value(double number) const { return static_cast<float>((number - minus) * times); }
+};
+
+/// One of PlyPlan::columns.
+inline PlyColumn column(Mesh& mesh, const PlyPlan& plan, int i) {
+  std::vector<float>* const all[] = {&mesh.x, &mesh.y, &mesh.z, &mesh.nx, &mesh.ny, &mesh.nz};
+  if (i >= 3)
+    return {all[i]};
+  return {all[i], plan.frame.offset[std::size_t(i)], plan.frame.scale};
 }
 
 }  // namespace grelha

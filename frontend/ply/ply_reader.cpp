@@ -15,9 +15,10 @@ int find_property(const PlyElement& element, std::string_view name) {
   return found == all.end() ? -1 : int(found - all.begin());
 }
 
-PlyPlan plan_vertex(const PlyElement& element) {
+PlyPlan plan_vertex(const PlyElement& element, const Frame& frame) {
   static constexpr std::string_view kNames[] = {"x", "y", "z", "nx", "ny", "nz"};
   PlyPlan plan;
+  plan.frame = frame;
   for (int i = 0; i < 6; ++i) {
     const int found = find_property(element, kNames[i]);
     const bool scalar = found >= 0 && !element.properties[std::size_t(found)].is_list;
@@ -64,7 +65,7 @@ std::size_t likely_corners(const PlyHeader& header,
 }
 
 template <class Rows>
-Mesh read_rows(const PlyHeader& header, std::size_t bytes, Rows& rows) {
+Mesh read_rows(const PlyHeader& header, std::size_t bytes, const Frame& frame, Rows& rows) {
   Mesh mesh;
   std::uint64_t vertices = 0;
   for (const PlyElement& element : header.elements)
@@ -75,12 +76,12 @@ Mesh read_rows(const PlyHeader& header, std::size_t bytes, Rows& rows) {
     const bool is_strips = element.name == "tristrips";
     PlyPlan plan;
     if (element.name == "vertex")
-      plan = plan_vertex(element);
+      plan = plan_vertex(element, frame);
     if (element.name == "face" || is_strips)
       plan = plan_faces(element);
     for (int i = 0; i < 6; ++i)
       if (plan.columns[i] >= 0)
-        reserve_to_fill(column(mesh, i), std::size_t(element.count));
+        reserve_to_fill(*column(mesh, plan, i).to, std::size_t(element.count));
     if (element.name == "face")
       reserve_to_fill(mesh.corners, likely_corners(header, element, plan.list, bytes));
     rows.read(element, plan, mesh, is_strips ? strips : polygons);
@@ -93,15 +94,16 @@ Mesh read_rows(const PlyHeader& header, std::size_t bytes, Rows& rows) {
 Mesh read_ply_mesh(const std::string& path,
                    std::string_view bytes,
                    const Warn& warn,
-                   LoadProgress* progress) {
+                   LoadProgress* progress,
+                   const Frame& frame) {
   Warnings warnings(warn);
   const PlyHeader header = read_ply_header(path, bytes, warnings, progress);
   if (header.format == PlyFormat::kAscii) {
     PlyAscii rows(path, bytes, header, progress);
-    return read_rows(header, bytes.size(), rows);
+    return read_rows(header, bytes.size(), frame, rows);
   }
   PlyBinary rows(path, bytes, header, progress);
-  return read_rows(header, bytes.size(), rows);
+  return read_rows(header, bytes.size(), frame, rows);
 }
 
 }  // namespace grelha

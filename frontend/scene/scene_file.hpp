@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "frontend/scene/frame.hpp"
 #include "grelha/camera.hpp"
 #include "grelha/geometry.hpp"
 
@@ -50,6 +51,7 @@ enum class BoxOrder : std::uint8_t {
 struct SceneFile {
   Scene scene;
   Camera camera;
+  Frame frame;  ///< in which all lies
   EntityCounts counts;
   Dropped dropped;
   std::uint64_t points = 0;  ///< vertices of meshes without faces
@@ -70,6 +72,7 @@ using Warn = std::function<void(const std::string&)>;
 
 struct ReadOptions {
   bool allow_outside = false;  ///< a scene may name files outside its own folder
+  Frame frame{};               ///< to read it in
   /// Told the share done, 0 to 1, never less than before; returns false to have reading throw
   /// Stopped.
   std::function<bool(double)> progress{};

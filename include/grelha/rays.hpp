@@ -63,7 +63,8 @@ struct Hits {
   float* t = nullptr;
   /// [i * stride] out: the primitive, see primitive_of(); kNoPrimitive where nothing was met
   std::uint32_t* id = nullptr;
-  double* t_double = nullptr;  ///< [i] out: t before it was rounded to float
+  /// [i] out: t before it was rounded to float, where rays were tested in double; else the same t
+  double* t_double = nullptr;
   std::ptrdiff_t stride = 1;   ///< of t and id, in units of four bytes
 
   /// A view of an array of hits.

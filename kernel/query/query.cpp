@@ -15,7 +15,7 @@ namespace {
 void expect_arrays(const Rays& rays) {
   if (rays.count > std::size_t{PTRDIFF_MAX})
     throw std::invalid_argument("rays: expected a count that memory can hold, found " +
-                                std::to_string(static_cast<std::ptrdiff_t>(rays.count)));
+                                std::to_string(rays.count));
   if (rays.count == 0)
     return;
   for (int a = 0; a < 3; ++a)

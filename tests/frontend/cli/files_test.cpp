@@ -292,7 +292,8 @@ TEST_F(Files, LayersAreOfWhatThePictureShows) {
     EXPECT_NE(bytes.find(channel + std::string(1, '\0')), bytes.npos) << channel;
   const SceneFile file = read_scene(folder_.file("ball.nff"), [](const std::string&) {});
   const World world(file.scene, {});
-  const Layers layers = first_hits(world, file.camera, {.depth = true, .normal = true, .id = true});
+  const Layers layers =
+      first_hits(world, file.camera, {}, {.depth = true, .normal = true, .id = true});
   const Image picture = read_image(folder_.file("a.pfm"));
   int met = 0;
   for (std::size_t i = 0; i < layers.id.size(); ++i) {

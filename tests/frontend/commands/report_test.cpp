@@ -1,4 +1,5 @@
 #include "frontend/commands/needs.hpp"
+#include "frontend/scene/bounds.hpp"
 #include "frontend/commands/report.hpp"
 
 #include <gtest/gtest.h>
