@@ -201,6 +201,7 @@ TEST(Info, JsonSaysWhatTheSceneHolds) {
                                    "dropped",
                                    "resolution",
                                    "bounds",
+                                   "frame",
                                    "memory",
                                    "grids",
                                    "needs",
