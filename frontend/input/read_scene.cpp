@@ -55,7 +55,9 @@ SceneFile read_mesh_alone(const std::string& path,
   if (file.counts.ply == 0)
     file.points = mesh.vertex_count();
   file.scene.materials.push_back(default_mesh_material());
-  SceneBuilder(file).mesh(std::move(mesh), 0);
+  const CrossedFaces crossed = SceneBuilder(file).mesh(std::move(mesh), 0);
+  if (const std::string text = crossed.text(); !text.empty() && warn)
+    warn(path + ": warning: " + text);
   add_default_view(file);
   return file;
 }

@@ -24,6 +24,9 @@ struct Fragment {
   const char* next = nullptr;  ///< the first word that is not taken
 };
 
+/// Of a polygon in a fragment: a larger one may take seconds, for nothing where it is warned of.
+constexpr std::size_t kMostCorners = 4096;
+
 /// What a fragment must not say.
 struct WouldWarn {};
 
@@ -36,7 +39,7 @@ void read_entities(const std::string& path,
   // a `/*` ends the fragment: how far it reaches is not this fragment's to find out
   Words words(path, {fragment.begin, std::size_t(end - fragment.begin)}, 0, Comments::kOfLines);
   NffInput input(words, warnings, frame);
-  NffPlain plain(input, fragment.file);
+  NffPlain plain(input, fragment.file, kMostCorners);
   fragment.file.scene.materials.resize(1);  // the last one before it
   for (;;) {
     const std::string_view word = words.next();

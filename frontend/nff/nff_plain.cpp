@@ -6,11 +6,11 @@ namespace grelha {
 
 bool NffPlain::read(std::string_view keyword) {
   if (keyword == "p" || keyword == "pt")
-    read_polygon(keyword, false, keyword == "pt");
-  else if (keyword == "s" || keyword == "st")
+    return read_polygon(keyword, false, keyword == "pt");
+  if (keyword == "pp" || keyword == "ppt")
+    return read_polygon(keyword, true, keyword == "ppt");
+  if (keyword == "s" || keyword == "st")
     read_sphere(keyword);
-  else if (keyword == "pp" || keyword == "ppt")
-    read_polygon(keyword, true, keyword == "ppt");
   else if (keyword == "c")
     read_cone(keyword);
   else if (keyword == "f" || keyword == "material")
@@ -43,7 +43,7 @@ void NffPlain::read_sphere(std::string_view keyword) {
   ++file_.counts.s;
 }
 
-void NffPlain::read_polygon(std::string_view keyword, bool patch, bool textured) {
+bool NffPlain::read_polygon(std::string_view keyword, bool patch, bool textured) {
   if (textured)
     leave_out_texture(keyword);
   const char* const before = input_.words.cursor();
@@ -52,6 +52,10 @@ void NffPlain::read_polygon(std::string_view keyword, bool patch, bool textured)
   if (size < 3) {
     input_.words.go_on_at(before);
     input_.fail(input_.words.peek(), "at least 3 corners of a polygon");
+  }
+  if (size > most_corners_) {
+    input_.words.go_on_at(before);
+    return false;
   }
   corners_.clear();
   normals_.clear();
@@ -62,8 +66,17 @@ void NffPlain::read_polygon(std::string_view keyword, bool patch, bool textured)
     for (int k = 0; textured && k < 2; ++k)
       input_.number("the corner's place in the texture");
   }
-  build_.polygon(corners_, normals_, material(keyword));
+  build_.polygon(corners_, normals_, material(keyword), [&](SceneBuilder::Result result) {
+    if (result == SceneBuilder::Result::kFilled)
+      input_.warn_once(
+          "crossed", keyword, "a polygon that crosses itself; it is filled by the even-odd rule");
+    else
+      input_.warn_once("crossed too often",
+                       keyword,
+                       "a polygon that crosses itself too often to be filled; it is left out");
+  });
   ++(patch ? file_.counts.pp : file_.counts.p);
+  return true;
 }
 
 void NffPlain::read_cone(std::string_view keyword) {

@@ -14,7 +14,9 @@ namespace grelha {
 /// texture that is left out, and `material`.
 class NffPlain {
  public:
-  NffPlain(NffInput& input, SceneFile& file) : input_(input), file_(file), build_(file) {}
+  /// `most_corners`: a polygon of more is not read.
+  NffPlain(NffInput& input, SceneFile& file, std::size_t most_corners = std::size_t(-1))
+      : input_(input), file_(file), build_(file), most_corners_(most_corners) {}
 
   /// After such a word: reads what it begins. False, and nothing is read, after any other.
   bool read(std::string_view keyword);
@@ -24,7 +26,7 @@ class NffPlain {
 
  private:
   void read_sphere(std::string_view keyword);
-  void read_polygon(std::string_view keyword, bool patch, bool textured);
+  bool read_polygon(std::string_view keyword, bool patch, bool textured);
   void leave_out_texture(std::string_view keyword);
   void read_cone(std::string_view keyword);
   void read_fill(std::string_view keyword);
@@ -32,6 +34,7 @@ class NffPlain {
   NffInput& input_;
   SceneFile& file_;
   SceneBuilder build_;
+  std::size_t most_corners_;
   std::vector<Float3> corners_, normals_;
 };
 

@@ -307,7 +307,9 @@ void NffReader::read_ply(std::string_view keyword) {
   const std::size_t faces = mesh.face_count();
   if (faces == 0)
     file_.points += mesh.vertex_count();
-  build_.mesh(std::move(mesh), material(keyword));
+  const CrossedFaces crossed = build_.mesh(std::move(mesh), material(keyword));
+  if (const std::string text = crossed.text(); !text.empty() && warnings_.first("of " + path))
+    warnings_.say(path + ": warning: " + text);
   file_.counts.ply += faces;
   file_.meshes.push_back(path);
 }

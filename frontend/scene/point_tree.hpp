@@ -4,18 +4,9 @@
 #include <span>
 #include <vector>
 
+#include "frontend/scene/exact_turn.hpp"
+
 namespace grelha {
-
-struct Point2 {
-  double x = 0, y = 0;
-  bool operator==(const Point2&) const = default;
-};
-
-/// Twice the signed area of a, b, c; positive when they turn left. Exact in sign for float
-/// coordinates of like size.
-inline double turn(const Point2& a, const Point2& b, const Point2& c) {
-  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-}
 
 /// A balanced k-d tree over points that are only ever taken away. Answers whether a triangle holds
 /// any of those left; looks at boxes the triangle crosses only, deepest inside it first.

@@ -4,6 +4,10 @@
 #include <cmath>
 #include <utility>
 
+#include "frontend/scene/double3.hpp"
+#include "frontend/scene/flat_triangles.hpp"
+#include "frontend/scene/polygon_plane.hpp"
+
 namespace grelha {
 namespace {
 
@@ -21,59 +25,130 @@ constexpr std::uint32_t kHopefulLooks[] = {0, 64};
 /// outlines.
 constexpr int kForcedLook = 64;
 
+/// Sides of so few corners are held against each other; of more, a sweep finds out faster.
+constexpr std::size_t kFew = 16;
+
 double component(const Float3& p, int axis) {
   return axis == 0 ? p.x : axis == 1 ? p.y : p.z;
 }
 
+/// A point in common of two sides that are no neighbours.
+bool do_meet(const Point2& a, const Point2& b, const Point2& c, const Point2& d) {
+  const auto apart = [](double p, double q, double r, double s) {
+    return std::max(p, q) < std::min(r, s) || std::max(r, s) < std::min(p, q);
+  };
+  return !apart(a.x, b.x, c.x, d.x) && !apart(a.y, b.y, c.y, d.y) &&
+         exact_turn(a, b, c) * exact_turn(a, b, d) <= 0 &&
+         exact_turn(c, d, a) * exact_turn(c, d, b) <= 0;
+}
+
+/// Neighbours that go back over each other.
+bool is_spike(const Point2& a, const Point2& b, const Point2& c) {
+  return exact_turn(a, b, c) == 0 && (a.x - b.x) * (c.x - b.x) + (a.y - b.y) * (c.y - b.y) > 0;
+}
+
 }  // namespace
 
-bool PolygonCutter::cut(std::span<const Float3> corners, std::vector<Triangle>& triangles) {
+Float3 at_crossing(std::span<const Float3> of_corners, const SideCrossing& crossing) {
+  Double3 sum{};
+  for (const auto& [corner, share] : crossing) {
+    const Float3 &a = of_corners[corner], &b = of_corners[(corner + 1) % of_corners.size()];
+    const Double3 edge = difference(b, a);
+    sum[0] += a.x + share * edge[0];
+    sum[1] += a.y + share * edge[1];
+    sum[2] += a.z + share * edge[2];
+  }
+  return {float(sum[0] / 2), float(sum[1] / 2), float(sum[2] / 2)};
+}
+
+PolygonCutter::Result PolygonCutter::cut(std::span<const Float3> corners,
+                                         std::vector<Triangle>& triangles) {
   normal_ = {};
+  crossings_.clear();
   if (corners.size() < 3)
-    return false;
-  find_normal(corners);
-  // What vanishes as floats has no direction to shade by.
-  if (float(normal_[0]) == 0 && float(normal_[1]) == 0 && float(normal_[2]) == 0)
-    return false;
+    return Result::kNoArea;
+  normal_ = polygon_normal(corners);
+  if (vanishes(normal_))  // there is no direction to shade by
+    return Result::kNoArea;
   if (corners.size() == 3) {
     triangles.push_back({0, 1, 2});
-    return true;
+    return Result::kCut;
   }
+  points_.clear();
   project(corners);
   even_ = corners.size() >= kMany;
   if (!even_ && convex()) {
     for (std::uint32_t i = 2; i < corners.size(); ++i)
       triangles.push_back({0, i - 1, i});
-    return true;
+    return Result::kCut;
   }
+  return cut_up(corners, triangles);
+}
+
+PolygonCutter::Result PolygonCutter::cut_up(std::span<const Float3> corners,
+                                            std::vector<Triangle>& triangles) {
+  for (bool again = false;; again = true) {
+    if (is_plainly_simple()) {
+      clip(triangles);
+      return Result::kCut;
+    }
+    Outline outline(points_);
+    const Outline::State state = outline.arrange();
+    // the sum of what crosses itself is of no plane in particular
+    if (!again && state != Outline::State::kSimple)
+      normal_ = larger_normal(corners, normal_);
+    if (again || state == Outline::State::kSimple || !project(corners))
+      return fill(corners, outline, state, triangles);
+  }
+}
+
+/// An outline that touches itself and goes nowhere round its inside twice is clipped as any other.
+PolygonCutter::Result PolygonCutter::fill(std::span<const Float3> corners,
+                                          const Outline& outline,
+                                          Outline::State state,
+                                          std::vector<Triangle>& triangles) {
+  if (state == Outline::State::kTooMany)
+    return Result::kTooOften;
+  const EvenOddFill& fill = outline.fill();
+  if (!fill.is_crossed) {
+    const std::size_t before = triangles.size();
+    clip(triangles);
+    if (state == Outline::State::kSimple || !forced_)
+      return Result::kCut;
+    triangles.resize(before);
+  }
+  note_crossings(corners, outline);
+  std::vector<Triangle> pieces = fill.triangles;
+  mend_flat_triangles(points_, pieces);
+  triangles.insert(triangles.end(), pieces.begin(), pieces.end());
+  return fill.is_crossed ? Result::kFilled : Result::kCut;
+}
+
+void PolygonCutter::note_crossings(std::span<const Float3> corners, const Outline& outline) {
+  for (const OutlineCrossing& crossing : outline.crossings()) {
+    const auto place = [&](std::uint32_t side) {
+      return PlaceOnSide{side, outline.share_of(side, crossing.place)};
+    };
+    crossings_.push_back({place(crossing.sides[0]), place(crossing.sides[1])});
+    points_.push_back(projected(at_crossing(corners, crossings_.back())));
+  }
+}
+
+/// Clips ears until nothing is left.
+void PolygonCutter::clip(std::vector<Triangle>& triangles) {
+  forced_ = false;
   if (even_)
     for (const std::uint32_t looks : kHopefulLooks)
       if (clip_hopefully(looks, triangles))
-        return true;
+        return;
   looks_ = PointTree::kAllNodes;
   link_corners();
   plant_tree();
   clip_ears(triangles);
-  return true;
 }
 
-/// Sums over differences to the first corner: those of nearby floats are exact, so that corners on
-/// one line give zero.
-void PolygonCutter::find_normal(std::span<const Float3> corners) {
-  const Float3 o = corners[0];
-  std::array<double, 3> p{
-      double(corners[1].x) - o.x, double(corners[1].y) - o.y, double(corners[1].z) - o.z};
-  for (std::size_t i = 2; i < corners.size(); ++i) {
-    const std::array<double, 3> q{
-        double(corners[i].x) - o.x, double(corners[i].y) - o.y, double(corners[i].z) - o.z};
-    normal_[0] += p[1] * q[2] - p[2] * q[1];
-    normal_[1] += p[2] * q[0] - p[0] * q[2];
-    normal_[2] += p[0] * q[1] - p[1] * q[0];
-    p = q;
-  }
-}
-
-void PolygonCutter::project(std::span<const Float3> corners) {
+/// Along the normal's largest axis. Returns whether that is another way than before.
+bool PolygonCutter::project(std::span<const Float3> corners) {
   int axis = std::abs(normal_[1]) > std::abs(normal_[0]) ? 1 : 0;
   if (std::abs(normal_[2]) > std::abs(normal_[std::size_t(axis)]))
     axis = 2;
@@ -81,18 +156,52 @@ void PolygonCutter::project(std::span<const Float3> corners) {
   // seen from behind: mirror, so that it turns left
   if (normal_[std::size_t(axis)] < 0)
     std::swap(u, v);
+  if (points_.size() == corners.size() && std::exchange(axes_, {u, v}) == std::array{u, v})
+    return false;
+  axes_ = {u, v};
   points_.resize(corners.size());
   for (std::size_t i = 0; i < corners.size(); ++i)
-    points_[i] = {component(corners[i], u), component(corners[i], v)};
+    points_[i] = projected(corners[i]);
+  return true;
 }
 
-/// Every corner turns left. An outline that does so while it goes round more than once crosses
-/// itself, and then a fan is as good as anything.
+Point2 PolygonCutter::projected(const Float3& p) const {
+  return {component(p, axes_[0]), component(p, axes_[1])};
+}
+
+/// Every corner turns left, and the outline goes round once: it has one leftmost and one rightmost
+/// corner.
 bool PolygonCutter::convex() const {
   const std::size_t n = points_.size();
-  for (std::size_t i = 0; i < n; ++i)
-    if (!(grelha::turn(points_[i], points_[(i + 1) % n], points_[(i + 2) % n]) > 0))
+  int turns_back = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Point2 &a = points_[i], &b = points_[(i + 1) % n], &c = points_[(i + 2) % n];
+    if (!(grelha::turn(a, b, c) > 0))
       return false;
+    turns_back += swept_before(a, b) != swept_before(b, c) ? 1 : 0;
+  }
+  return turns_back == 2;
+}
+
+/// Few corners whose sides meet nowhere but at them.
+bool PolygonCutter::is_plainly_simple() const {
+  if (points_.size() > kFew)
+    return false;
+  std::array<Point2, kFew + 1> ring;
+  std::size_t n = 0;
+  for (const Point2& p : points_)
+    if (n == 0 || ring[n - 1] != p)
+      ring[n++] = p;
+  while (n > 1 && ring[n - 1] == ring[0])
+    --n;
+  const auto at = [&](std::size_t i) -> const Point2& { return ring[i % n]; };
+  for (std::size_t i = 0; i < n; ++i) {
+    if (is_spike(at(i), at(i + 1), at(i + 2)))
+      return false;
+    for (std::size_t j = i + 2; j < n && j < n + i - 1; ++j)
+      if (do_meet(at(i), at(i + 1), at(j), at(j + 1)))
+        return false;
+  }
   return true;
 }
 
@@ -223,6 +332,7 @@ bool PolygonCutter::clip_hopefully(std::uint32_t looks, std::vector<Triangle>& t
 /// No ear is left, so the outline crosses or touches itself: clip some corner all the same, so that
 /// clipping ends.
 void PolygonCutter::force_clip(std::vector<Triangle>& triangles) {
+  forced_ = true;
   std::uint32_t corner = start_;
   for (int i = 0; i < kForcedLook && !(turn(corner) > 0); ++i)
     corner = following_[corner];
@@ -266,8 +376,10 @@ void PolygonCutter::clip_ears(std::vector<Triangle>& triangles) {
     }
     take_queue();
   }
-  if (left_ == 3 && turn(start_) > 0)
+  const double last = left_ == 3 ? turn(start_) : 0;
+  if (last > 0)
     triangles.push_back({previous_[start_], start_, following_[start_]});
+  forced_ = forced_ || last < 0;
 }
 
 }  // namespace grelha

@@ -5,35 +5,64 @@
 #include <span>
 #include <vector>
 
+#include "frontend/scene/outline.hpp"
 #include "frontend/scene/point_tree.hpp"
 #include "grelha/geometry.hpp"
 
 namespace grelha {
 
+/// A place on a side of a polygon: from a corner so far, as a share, to the next one.
+struct PlaceOnSide {
+  std::uint32_t corner;
+  double share;
+};
+/// Where two sides cross.
+using SideCrossing = std::array<PlaceOnSide, 2>;
+
+/// What a polygon's corners have, where two of its sides cross: the mean of both.
+Float3 at_crossing(std::span<const Float3> of_corners, const SideCrossing& crossing);
+
 /// Cuts planar polygons into triangles over their own corners by clipping ears (Meisters 1975;
 /// Eberly, "Triangulation by Ear Clipping"). Concave outlines of any size: only corners that are
-/// not strictly convex are tested for lying in an ear, found through a tree. Always ends; an
-/// outline that crosses itself gives some triangles of its corners. Each corner is asked a few
-/// times, and an ear meets about as many leaves of the tree as its length crosses, at most some
-/// sqrt n. Where looking at a few of them is enough, which the triangles' signs prove afterwards,
-/// no more is looked at: a million corners take .1 to 4 s. Outlines of a thousand and more are cut
-/// evenly, into short triangles. One object serves many polygons and keeps its buffers.
+/// not strictly convex are tested for lying in an ear, found through a tree. What an outline that
+/// crosses itself holds by the even-odd rule a sweep cuts up (Outline), over corners and crossings.
+/// Each corner is asked a few times, and an ear meets about as many leaves of the tree as its
+/// length crosses, at most some sqrt n. Where looking at a few of them is enough, which the
+/// triangles' signs prove afterwards, no more is looked at: a million corners take .1 to 4 s.
+/// Outlines of a thousand and more are cut evenly, into short triangles. One object serves many
+/// polygons and keeps its buffers.
 class PolygonCutter {
  public:
   using Triangle = std::array<std::uint32_t, 3>;
+  enum class Result {
+    kCut,       ///< at most corners - 2 triangles, none without area
+    kFilled,    ///< it crosses itself: what it holds by the even-odd rule
+    kNoArea,    ///< no triangle
+    kTooOften,  ///< it crosses itself too often (Outline::kMostCuts): no triangle
+  };
 
-  /// Appends at most corners.size() - 2 triangles, none without area, counter-clockwise where the
-  /// outline is. False, and nothing appended, when the polygon has no area. Coordinates must be
-  /// finite and at most 1e18.
-  bool cut(std::span<const Float3> corners, std::vector<Triangle>& triangles);
+  /// Appends triangles, counter-clockwise where the outline is. Coordinates must be finite and at
+  /// most 1e18. Numbers from corners.size() on are of crossings().
+  Result cut(std::span<const Float3> corners, std::vector<Triangle>& triangles);
 
-  /// Twice the area long, of the last polygon cut (Newell's sum: every corner counts).
+  /// Of the last polygon cut, one that was filled: where two of its sides cross.
+  std::span<const SideCrossing> crossings() const { return crossings_; }
+
+  /// Of the last polygon cut: see polygon_normal(), or larger_normal() for one that was filled.
   const std::array<double, 3>& normal() const { return normal_; }
 
  private:
-  void find_normal(std::span<const Float3> corners);
-  void project(std::span<const Float3> corners);
+  bool project(std::span<const Float3> corners);
+  Point2 projected(const Float3& p) const;
   bool convex() const;
+  bool is_plainly_simple() const;
+  Result cut_up(std::span<const Float3> corners, std::vector<Triangle>& triangles);
+  Result fill(std::span<const Float3> corners,
+              const Outline& outline,
+              Outline::State state,
+              std::vector<Triangle>& triangles);
+  void note_crossings(std::span<const Float3> corners, const Outline& outline);
+  void clip(std::vector<Triangle>& triangles);
   void link_corners();
   void plant_tree();
   bool clip_hopefully(std::uint32_t looks, std::vector<Triangle>& triangles);
@@ -50,14 +79,17 @@ class PolygonCutter {
   std::array<double, 3> normal_{};
   /// [corners] seen along the normal's largest axis; front side up
   std::vector<Point2> points_;
+  std::array<int, 2> axes_{};                        ///< those that are seen
   std::vector<std::uint32_t> previous_, following_;  ///< ring of the corners left
   std::vector<std::uint8_t> gone_, queued_, in_tree_;
   std::vector<std::uint8_t> waits_;  ///< for the next pass: a neighbour was clipped in this one
   bool even_ = false;                ///< triangles are wanted short
+  bool forced_ = false;              ///< some corner was clipped that is no ear
   std::uint32_t looks_ = 0;          ///< at so many nodes of the tree an ear's test looks at most
   std::vector<std::uint32_t> candidates_, next_candidates_;
   std::uint32_t left_ = 0, start_ = 0;
   PointTree tree_;  ///< the corners that are flat or reflex
+  std::vector<SideCrossing> crossings_;
 };
 
 }  // namespace grelha

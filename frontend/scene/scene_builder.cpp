@@ -4,22 +4,12 @@
 #include <cmath>
 #include <utility>
 
+#include "frontend/scene/double3.hpp"
 #include "kernel/scene/pages.hpp"
 
 namespace grelha {
 namespace {
 
-using Double3 = std::array<double, 3>;
-
-Double3 difference(const Float3& a, const Float3& b) {
-  return {double(a.x) - b.x, double(a.y) - b.y, double(a.z) - b.z};
-}
-Double3 cross(const Double3& a, const Double3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-double dot(const Double3& a, const Double3& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 double length(const Double3& a) {
   return std::sqrt(dot(a, a));
 }
@@ -27,12 +17,12 @@ Float3 unit(const Double3& a) {
   const double l = length(a);
   return {float(a[0] / l), float(a[1] / l), float(a[2] / l)};
 }
-/// Nothing is left of it as floats: no area, or no direction.
-bool vanishes(const Double3& a) {
-  return float(a[0]) == 0 && float(a[1]) == 0 && float(a[2]) == 0;
+bool is_none(const Float3& n) {
+  return n == Float3{};
 }
 
-/// A normal whose square a float can hold; (0,0,0), "none", for one that is no direction.
+}  // namespace
+
 Float3 sound_normal(const Float3& n) {
   constexpr double kLeast = 1e-30, kMost = 1e30;
   const Double3 d{n.x, n.y, n.z};
@@ -43,12 +33,6 @@ Float3 sound_normal(const Float3& n) {
     return {};
   return unit(d);
 }
-
-bool is_none(const Float3& n) {
-  return n == Float3{};
-}
-
-}  // namespace
 
 void SceneBuilder::sphere(Float3 center, float radius, std::uint32_t material) {
   if (!drawable(center) || !drawable(radius))
@@ -151,14 +135,13 @@ bool SceneBuilder::has_area(std::uint32_t a, std::uint32_t b, std::uint32_t c) c
 
 /// Returns whether the normal of a piece leaves the polygon's by more than a milliradian: slivers
 /// of rounded corners do, and would shade as scratches.
-bool SceneBuilder::bends(std::span<const Float3> corners) const {
+bool SceneBuilder::bends(std::span<const Float3> points) const {
   constexpr double kSine = 1e-3;
   const Double3& whole = cutter_.normal();
   const double whole_length = length(whole);
   return std::any_of(pieces_.begin(), pieces_.end(), [&](const PolygonCutter::Triangle& piece) {
-    const Float3& o = corners[piece[0]];
-    const Double3 normal =
-        cross(difference(corners[piece[1]], o), difference(corners[piece[2]], o));
+    const Float3& o = points[piece[0]];
+    const Double3 normal = cross(difference(points[piece[1]], o), difference(points[piece[2]], o));
     return !(dot(normal, whole) > 0) ||
            length(cross(normal, whole)) > kSine * length(normal) * whole_length;
   });
@@ -179,9 +162,20 @@ void SceneBuilder::triangle(std::span<const Float3> corners,
   add_triangle(first, first + 1, first + 2, material);
 }
 
+/// Makes of what the corners have what corners and crossings have, if any.
+void SceneBuilder::with_crossings(std::span<const Float3>& of_corners, std::vector<Float3>& all) {
+  if (of_corners.empty() || cutter_.crossings().empty())
+    return;
+  all.assign(of_corners.begin(), of_corners.end());
+  for (const SideCrossing& crossing : cutter_.crossings())
+    all.push_back(at_crossing(of_corners, crossing));
+  of_corners = all;
+}
+
 void SceneBuilder::polygon(std::span<const Float3> corners,
                            std::span<const Float3> normals,
-                           std::uint32_t material) {
+                           std::uint32_t material,
+                           const std::function<void(Result)>& tell) {
   if (!std::all_of(corners.begin(), corners.end(), [](const Float3& p) { return drawable(p); })) {
     ++file_.dropped.not_finite;
     return;
@@ -189,10 +183,14 @@ void SceneBuilder::polygon(std::span<const Float3> corners,
   if (corners.size() == 3)
     return triangle(corners, normals, material);
   pieces_.clear();
-  if (!cutter_.cut(corners, pieces_)) {
-    ++file_.dropped.zero_area;
+  const Result result = cutter_.cut(corners, pieces_);
+  if (tell && (result == Result::kFilled || result == Result::kTooOften))
+    tell(result);
+  file_.dropped.zero_area += result == Result::kNoArea ? 1 : 0;
+  if (pieces_.empty())
     return;
-  }
+  with_crossings(corners, all_points_);
+  with_crossings(normals, all_normals_);
   Float3 shared_normal;
   if (normals.empty() && bends(corners))
     shared_normal = unit(cutter_.normal());
@@ -229,147 +227,6 @@ void SceneBuilder::box(Float3 corner, Float3 opposite, std::uint32_t material) {
       continue;
     add_triangle(first + a, first + b, first + c, material);
     add_triangle(first + a, first + c, first + d, material);
-  }
-}
-
-/// Moves the vertices behind those already there. Vertices that cannot be drawn stay, at the
-/// origin, so that indices hold; their faces are left out by the caller.
-void SceneBuilder::append_vertices(Mesh& mesh) {
-  Triangles& t = file_.scene.geometry.triangles;
-  const std::size_t before = t.x.size(), count = mesh.vertex_count();
-  const auto append = [before](std::vector<float>& all, std::vector<float>& more) {
-    if (before == 0)
-      all = std::move(more);
-    else
-      all.insert(all.end(), more.begin(), more.end());
-  };
-  bool any_normal = false;
-  for (std::size_t i = 0; i < mesh.nx.size(); ++i) {
-    const Float3 n = sound_normal({mesh.nx[i], mesh.ny[i], mesh.nz[i]});
-    mesh.nx[i] = n.x;
-    mesh.ny[i] = n.y;
-    mesh.nz[i] = n.z;
-    any_normal = any_normal || !is_none(n);
-  }
-  if (any_normal) {
-    t.nx.resize(before);
-    t.ny.resize(before);
-    t.nz.resize(before);
-    append(t.nx, mesh.nx);
-    append(t.ny, mesh.ny);
-    append(t.nz, mesh.nz);
-  } else if (!t.nx.empty()) {
-    t.nx.resize(before + count);
-    t.ny.resize(before + count);
-    t.nz.resize(before + count);
-  }
-  append(t.x, mesh.x);
-  append(t.y, mesh.y);
-  append(t.z, mesh.z);
-}
-
-void SceneBuilder::mesh_face(std::span<const std::uint32_t> corners,
-                             std::uint32_t first_vertex,
-                             std::uint32_t material) {
-  if (corners.size() == 3) {
-    const std::uint32_t a = first_vertex + corners[0], b = first_vertex + corners[1],
-                        c = first_vertex + corners[2];
-    if (has_area(a, b, c))
-      add_triangle(a, b, c, material);
-    else
-      ++file_.dropped.zero_area;
-    return;
-  }
-  const Triangles& t = file_.scene.geometry.triangles;
-  face_.clear();
-  for (const std::uint32_t i : corners) {
-    const std::uint32_t v = first_vertex + i;
-    face_.push_back({t.x[v], t.y[v], t.z[v]});
-  }
-  pieces_.clear();
-  if (!cutter_.cut(face_, pieces_)) {
-    ++file_.dropped.zero_area;
-    return;
-  }
-  for (const auto& [i, j, k] : pieces_) {
-    const std::uint32_t a = first_vertex + corners[i], b = first_vertex + corners[j],
-                        c = first_vertex + corners[k];
-    if (has_area(a, b, c))
-      add_triangle(a, b, c, material);
-  }
-}
-
-void SceneBuilder::mesh(Mesh mesh, std::uint32_t material) {
-  Triangles& t = file_.scene.geometry.triangles;
-  const auto first_vertex = std::uint32_t(t.vertex_count()),
-             first_triangle = std::uint32_t(t.size());
-  std::vector<bool> bad;  // empty when every vertex can be drawn
-  for (std::size_t i = 0; i < mesh.vertex_count(); ++i) {
-    if (drawable(Float3{mesh.x[i], mesh.y[i], mesh.z[i]}))
-      continue;
-    bad.resize(mesh.vertex_count());
-    bad[i] = true;
-    mesh.x[i] = mesh.y[i] = mesh.z[i] = 0;
-  }
-  append_vertices(mesh);
-  const std::size_t wanted = t.size() + mesh.face_count();
-  // at least twice as much as before: a scene may name thousands of small meshes
-  if (wanted > t.a.capacity()) {
-    const std::size_t room = std::max(wanted, 2 * t.a.capacity());
-    t.a.reserve(room);
-    t.b.reserve(room);
-    t.c.reserve(room);
-    t.material.reserve(room);
-  }
-  if (mesh.sizes.empty() && bad.empty())
-    mesh_triangles(mesh.corners, first_vertex, material);
-  else
-    mesh_faces(mesh, bad, first_vertex, material);
-  const auto count = std::uint32_t(t.size()) - first_triangle;
-  if (count > 0)
-    file_.scene.geometry.objects.push_back({first_triangle, count});
-}
-
-/// The common case, without a look at each face's size.
-void SceneBuilder::mesh_triangles(std::span<const std::uint32_t> corners,
-                                  std::uint32_t first_vertex,
-                                  std::uint32_t material) {
-  Triangles& t = file_.scene.geometry.triangles;
-  std::size_t at = t.size();
-  const std::size_t most = at + corners.size() / 3;
-  resize_to_fill(t.a, most);
-  resize_to_fill(t.b, most);
-  resize_to_fill(t.c, most);
-  resize_to_fill(t.material, most, material);
-  for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
-    const std::uint32_t a = first_vertex + corners[i], b = first_vertex + corners[i + 1],
-                        c = first_vertex + corners[i + 2];
-    t.a[at] = a;
-    t.b[at] = b;
-    t.c[at] = c;
-    at += has_area(a, b, c) ? 1 : 0;  // the next one overwrites what has none
-  }
-  file_.dropped.zero_area += most - at;
-  t.a.resize(at);
-  t.b.resize(at);
-  t.c.resize(at);
-  t.material.resize(at);
-}
-
-void SceneBuilder::mesh_faces(const Mesh& mesh,
-                              const std::vector<bool>& bad,
-                              std::uint32_t first_vertex,
-                              std::uint32_t material) {
-  std::size_t at = 0;
-  for (std::size_t f = 0, faces = mesh.face_count(); f < faces; ++f) {
-    const std::size_t size = mesh.sizes.empty() ? 3 : mesh.sizes[f];
-    const std::span<const std::uint32_t> corners(mesh.corners.data() + at, size);
-    at += size;
-    if (!bad.empty() &&
-        std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return bad[v]; }))
-      ++file_.dropped.not_finite;
-    else
-      mesh_face(corners, first_vertex, material);
   }
 }
 

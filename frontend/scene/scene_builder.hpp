@@ -2,7 +2,9 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "frontend/scene/mesh.hpp"
@@ -22,6 +24,18 @@ inline bool drawable(const Float3& v) {
   return drawable(v.x) && drawable(v.y) && drawable(v.z);
 }
 
+/// A normal whose square a float can hold; (0,0,0), "none", for one that is no direction.
+Float3 sound_normal(const Float3& n);
+
+/// Faces of a mesh whose outlines cross themselves: those that are filled by the even-odd rule, and
+/// those that do so too often (PolygonCutter::Result).
+struct CrossedFaces {
+  std::uint64_t filled = 0, left_out = 0;
+  std::uint64_t first = 0;  ///< number of the first one, from 0
+  /// What to say of them; empty when there are none.
+  std::string text() const;
+};
+
 /// Puts what the readers found into the kernel's arrays; what cannot be drawn is counted in
 /// SceneFile::dropped instead.
 class SceneBuilder {
@@ -34,15 +48,18 @@ class SceneBuilder {
   void plane(Float3 a, Float3 b, Float3 c, std::uint32_t material);
   /// The points q with normal . q = distance.
   void plane(Float3 normal, float distance, std::uint32_t material);
-  /// `normals`: one per corner, or empty.
+  using Result = PolygonCutter::Result;
+  /// `normals`: one per corner, or empty. `tell` is called of an outline that crosses itself,
+  /// before anything is added; it may throw.
   void polygon(std::span<const Float3> corners,
                std::span<const Float3> normals,
-               std::uint32_t material);
+               std::uint32_t material,
+               const std::function<void(Result)>& tell = {});
   /// Any two opposite corners. A box without thickness along one axis is drawn as its two large
   /// faces.
   void box(Float3 corner, Float3 opposite, std::uint32_t material);
   /// Becomes an object of its own.
-  void mesh(Mesh mesh, std::uint32_t material);
+  CrossedFaces mesh(Mesh mesh, std::uint32_t material);
 
  private:
   void add_sphere(Float3 center, float radius, std::uint32_t material);
@@ -53,23 +70,26 @@ class SceneBuilder {
   void triangle(std::span<const Float3> corners,
                 std::span<const Float3> normals,
                 std::uint32_t material);
+  void with_crossings(std::span<const Float3>& of_corners, std::vector<Float3>& all);
   bool bends(std::span<const Float3> corners) const;
   void mesh_triangles(std::span<const std::uint32_t> corners,
                       std::uint32_t first_vertex,
                       std::uint32_t material);
-  void mesh_faces(const Mesh& mesh,
-                  const std::vector<bool>& bad,
-                  std::uint32_t first_vertex,
-                  std::uint32_t material);
-  void mesh_face(std::span<const std::uint32_t> corners,
-                 std::uint32_t first_vertex,
-                 std::uint32_t material);
+  CrossedFaces mesh_faces(const Mesh& mesh,
+                          const std::vector<bool>& bad,
+                          std::uint32_t first_vertex,
+                          std::uint32_t material);
+  Result mesh_face(std::span<const std::uint32_t> corners,
+                   std::uint32_t first_vertex,
+                   std::uint32_t material);
+  void add_crossings();
   void append_vertices(Mesh& mesh);
 
   SceneFile& file_;
   PolygonCutter cutter_;
   std::vector<PolygonCutter::Triangle> pieces_;
-  std::vector<Float3> face_;
+  std::vector<Float3> face_, all_points_, all_normals_;
+  std::vector<std::uint32_t> face_vertices_;
 };
 
 }  // namespace grelha

@@ -124,6 +124,24 @@ TEST_F(Hostile, StarsOfManyCorners) {
   expect_both_bounded("round.nff", 0, "");
 }
 
+/// The same with one corner pulled across thousands of spikes, and corners anywhere.
+TEST_F(Hostile, PolygonsOfManyCrossings) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> decades(-6, 0);
+  std::string text = star(1000000, [&](int) { return std::pow(10, decades(random)); });
+  const std::size_t corner = text.find('\n', text.find("p 1000000") + 200) + 1;
+  text.replace(corner, text.find('\n', corner) - corner, ".9 -.1 0");
+  folder_.write("pulled.nff", text);
+  expect_both_bounded("pulled.nff", 0, "it is filled by the even-odd rule");
+  for (const int corners : {1400, 1000000}) {
+    std::string noise = std::string(test::kBall) + "p " + std::to_string(corners) + '\n';
+    for (int i = 0; i < corners; ++i)
+      noise += std::to_string(random() % 100000) + ' ' + std::to_string(random() % 100000) + " 0\n";
+    folder_.write("noise.nff", noise);
+    expect_both_bounded("noise.nff", 0, corners > 1400 ? "it is left out" : "it is filled");
+  }
+}
+
 /// A comb across both axes, its teeth over three decades: the row of their feet lies on the side of
 /// an ear as long as the comb.
 TEST_F(Hostile, CombOfAMillionCorners) {

@@ -51,6 +51,19 @@ TEST(NffDropped, OneWarningForTheFile) {
             ": warning: 3 primitives are left out: 1 not finite (or beyond 1e18), 2 without area"});
 }
 
+TEST(NffNoise, PolygonsThatCrossThemselvesAreFilledAndSaid) {
+  const Reading r = read_with_view(
+      kFill +
+      "p 4 0 0 0 1 0 0 1 1 0 0 1 0\n  p 5 0 1.8 0 1.058 -1.456 0 -1.712 .556 0 1.712 .556 0 "
+      "-1.058 -1.456 0\npp 4 0 0 0 0 0 1 1 1 0 0 0 1 1 0 0 0 0 1 0 1 0 0 0 1\n");
+  EXPECT_EQ(r.file.scene.geometry.triangles.size(), 2u + 5 + 2);
+  EXPECT_EQ(r.file.counts.p, 2u);
+  EXPECT_EQ(r.file.dropped.zero_area, 0u);
+  EXPECT_EQ(r.warnings,
+            Lines{"scene.nff:10:3: warning: a polygon that crosses itself; it is filled by the "
+                  "even-odd rule"});
+}
+
 TEST(NffNoise, IsWarnedOfOnceAKindAndSkipped) {
   const Reading r = read_with_view(
       "# a comment\n/ another\nFloor of wood\n" + kFill +

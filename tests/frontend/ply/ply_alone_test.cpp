@@ -64,5 +64,31 @@ TEST(PlyAlone, IsToldByItsExtensionOrItsFirstWord) {
         << name;
 }
 
+/// Alone and named by a scene; a triangle whose vertices have normals gets a crossing that has one.
+TEST(PlyAlone, FacesThatCrossThemselvesAreFilledAndSaid) {
+  const TemporaryFolder folder;
+  const std::string mesh = folder.add(
+      "ties.ply",
+      "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float "
+      "z\nproperty float nx\nproperty float ny\nproperty float nz\nelement face 3\nproperty list "
+      "uchar int vertex_indices\nend_header\n0 0 0 0 0 1\n1 1 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n"
+      "2 2 0 0 0 1\n3 0 2 1\n4 0 1 2 3\n4 3 2 1 0\n");
+  const std::string scene = folder.add("scene.nff", test::kView + "f 1 1 1\nply ties.ply\n");
+  const std::string said =
+      mesh +
+      ": warning: 2 faces cross themselves, face 1 from 0 is the first: filled by the "
+      "even-odd rule";
+  for (const std::string& file : {mesh, scene}) {
+    std::vector<std::string> warnings;
+    const SceneFile read =
+        read_scene(file, [&](const std::string& line) { warnings.push_back(line); });
+    const Triangles& t = read.scene.geometry.triangles;
+    EXPECT_EQ(t.size(), 5u);
+    EXPECT_EQ(t.vertex_count(), 7u);
+    EXPECT_EQ((Float3{t.x.at(6), t.y.at(6), t.nz.at(6)}), (Float3{.5f, .5f, 1}));
+    EXPECT_NE(std::find(warnings.begin(), warnings.end(), said), warnings.end());
+  }
+}
+
 }  // namespace
 }  // namespace grelha

@@ -175,20 +175,19 @@ TEST(Polygon, AnyPlaneGivesTheSameCut) {
 TEST(Polygon, NormalIsTwiceTheArea) {
   PolygonCutter cutter;
   std::vector<Triangle> triangles;
-  ASSERT_TRUE(
-      cutter.cut(std::vector<Float3>{{0, 0, 1}, {2, 0, 1}, {2, 3, 1}, {0, 3, 1}}, triangles));
+  ASSERT_EQ(cutter.cut(std::vector<Float3>{{0, 0, 1}, {2, 0, 1}, {2, 3, 1}, {0, 3, 1}}, triangles),
+            PolygonCutter::Result::kCut);
   EXPECT_EQ(cutter.normal(), (std::array<double, 3>{0, 0, 12}));
 }
 
 TEST(Polygon, WithoutAreaThereIsNothing) {
   PolygonCutter cutter;
   std::vector<Triangle> triangles;
-  EXPECT_FALSE(cutter.cut(
-      std::vector<Float3>{
-          {0.1f, 0.1f, 0.1f}, {0.2f, 0.2f, 0.2f}, {0.7f, 0.7f, 0.7f}, {0.3f, 0.3f, 0.3f}},
-      triangles));
-  EXPECT_FALSE(cutter.cut(std::vector<Float3>{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}, triangles));
-  EXPECT_FALSE(cutter.cut(std::vector<Float3>{{1, 1, 1}, {1, 2, 1}}, triangles));
+  for (const Outline& outline :
+       {Outline{{0.1f, 0.1f, 0.1f}, {0.2f, 0.2f, 0.2f}, {0.7f, 0.7f, 0.7f}, {0.3f, 0.3f, 0.3f}},
+        Outline{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}},
+        Outline{{1, 1, 1}, {1, 2, 1}}})
+    EXPECT_EQ(cutter.cut(outline, triangles), PolygonCutter::Result::kNoArea);
   EXPECT_TRUE(triangles.empty());
 }
 
@@ -268,21 +267,6 @@ TEST(Polygon, StarsOfAMillionCornersEndSoon) {
     EXPECT_LT(seconds_for(outline, triangles), kPatience);
     expect_cover(outline, triangles);
     EXPECT_EQ(triangles.size(), outline.size() - 2);
-  }
-}
-
-TEST(Polygon, NoiseEndsSoon) {
-  std::mt19937 random(11);
-  std::uniform_int_distribution<int> coordinate(-20, 20);
-  for (const int n : {4, 5, 6, 7, 8, 50, 1000, 50000}) {
-    for (int round = 0; round < (n < 100 ? 2000 : 1); ++round) {
-      Outline outline;
-      for (int i = 0; i < n; ++i)
-        outline.push_back({float(coordinate(random)), float(coordinate(random)), 0});
-      std::vector<Triangle> triangles;
-      EXPECT_LT(seconds_for(outline, triangles), kPatience);
-      EXPECT_LE(triangles.size(), outline.size() - 2);
-    }
   }
 }
 

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <array>
+
+#include "grelha/geometry.hpp"
+
+namespace grelha {
+
+/// A vector in double: differences of nearby floats are exact in it.
+using Double3 = std::array<double, 3>;
+
+/// From b to a.
+inline Double3 difference(const Float3& a, const Float3& b) {
+  return {double(a.x) - b.x, double(a.y) - b.y, double(a.z) - b.z};
+}
+inline Double3 cross(const Double3& a, const Double3& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+inline double dot(const Double3& a, const Double3& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// Nothing is left of it as floats: no area, or no direction.
+inline bool vanishes(const Double3& a) {
+  return float(a[0]) == 0 && float(a[1]) == 0 && float(a[2]) == 0;
+}
+
+}  // namespace grelha

@@ -1,0 +1,321 @@
+#include "frontend/scene/even_odd.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "frontend/scene/sweep_line.hpp"
+
+namespace grelha {
+namespace {
+
+constexpr std::uint32_t kNone = SweepEvents::kNone;
+
+/// Where the area ends that is cut up, between two neighbours on the line with the inside between
+/// them: points from the lower edge's left end to the upper one's. Inner corners are reflex or
+/// flat.
+struct Front {
+  std::uint32_t low, high, foremost;  ///< nodes
+};
+
+class FillingSweep {
+ public:
+  FillingSweep(const std::vector<Point2>& points, const std::vector<OutlineEdge>& edges)
+      : points_(points),
+        edges_(edges),
+        events_(points.size(), edges),
+        line_(points, edges),
+        places_(edges.size()),
+        above_(edges.size()) {}
+
+  std::optional<EvenOddFill> run() {
+    for (std::uint32_t point = 0; point < points_.size(); ++point) {
+      pass(point);
+      if (!is_arranged_)
+        return std::nullopt;
+    }
+    return std::move(fill_);
+  }
+
+ private:
+  struct Node {
+    std::uint32_t point, down, up;
+  };
+  /// What lies above an edge on the line.
+  struct Gap {
+    std::uint32_t front = kNone;  ///< where it is inside
+    std::int32_t winding = 0;
+  };
+  struct Fronts {
+    std::uint32_t below = kNone, above = kNone;
+  };
+
+  bool go_on(std::uint32_t point);
+  void pass(std::uint32_t point);
+  Fronts end_edges(std::uint32_t point, SweepLine::Place& above);
+  void begin_edges(std::uint32_t point,
+                   SweepLine::Place above,
+                   const Gap& below,
+                   const Fronts& fronts);
+  std::uint32_t begin_front(std::uint32_t point);
+  Fronts split(std::uint32_t front, std::uint32_t point);
+  std::uint32_t join(std::uint32_t below, std::uint32_t above);
+  void add_below(Front& front, std::uint32_t point);
+  void add_above(Front& front, std::uint32_t point);
+  void close(std::uint32_t front, std::uint32_t point);
+
+  void note(std::int32_t winding, bool is_inside) {
+    fill_.is_crossed = fill_.is_crossed || winding != (is_inside ? 1 : 0);
+  }
+  /// An edge and its new neighbour.
+  void check_below(SweepLine::Place place) {
+    if (place != line_.begin() && place != line_.end())
+      is_arranged_ = is_arranged_ && !SweepLine::do_meet(*std::prev(place), *place);
+  }
+  Gap& gap_above(SweepLine::Place place) { return above_[place->edge]; }
+  std::uint32_t add_node(std::uint32_t point, std::uint32_t down, std::uint32_t up) {
+    nodes_.push_back({point, down, up});
+    return std::uint32_t(nodes_.size() - 1);
+  }
+  int turn_of(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
+    return exact_turn(points_[a], points_[b], points_[c]);
+  }
+  void emit(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    fill_.triangles.push_back({a, b, c});
+  }
+
+  const std::vector<Point2>& points_;
+  const std::vector<OutlineEdge>& edges_;
+  SweepEvents events_;
+  SweepLine line_;
+  std::vector<SweepLine::Place> places_;  ///< [edges] of those on the line
+  std::vector<Gap> above_;                ///< [edges]
+  std::vector<Node> nodes_;
+  std::vector<Front> fronts_;
+  std::vector<std::uint32_t> closing_;
+  EvenOddFill fill_;
+  bool is_arranged_ = true;
+};
+
+/// One edge ends and one begins, in the same place.
+bool FillingSweep::go_on(std::uint32_t point) {
+  if (!events_.goes_on(point))
+    return false;
+  const SweepLine::Place place = places_[events_.first_ending(point)];
+  const bool is_lowest = place == line_.begin();
+  const Gap below = is_lowest ? Gap{} : gap_above(std::prev(place));
+  const std::uint32_t above = gap_above(place).front;
+  if (below.front != kNone)
+    add_above(fronts_[below.front], point);
+  if (above != kNone)
+    add_below(fronts_[above], point);
+  const std::uint32_t edge = events_.first_beginning(point);
+  line_.exchange(place, edge);
+  places_[edge] = place;
+  check_below(place);
+  check_below(std::next(place));
+  note(below.winding + edges_[edge].winding, above != kNone);
+  above_[edge] = {above, below.winding + edges_[edge].winding};
+  return true;
+}
+
+void FillingSweep::pass(std::uint32_t point) {
+  if (go_on(point))
+    return;
+  if (events_.first_ending(point) == kNone && events_.first_beginning(point) == kNone)
+    return;  // all its edges lay on others
+  SweepLine::Place above = line_.end();
+  Fronts fronts = end_edges(point, above);
+  const bool is_lowest = above == line_.begin();
+  Gap* const below = is_lowest ? nullptr : &gap_above(std::prev(above));
+  if (events_.first_beginning(point) != kNone) {
+    const Gap before = below ? *below : Gap{};
+    if (below)
+      below->front = fronts.below;
+    begin_edges(point, above, before, fronts);
+  } else {
+    check_below(above);
+    if (below && fronts.below != kNone && fronts.above != kNone)
+      below->front = join(fronts.below, fronts.above);
+  }
+}
+
+/// Takes the edges that end at the point off the line. Returns the fronts of the inside below and
+/// above it, which have the point, and the place above it.
+FillingSweep::Fronts FillingSweep::end_edges(std::uint32_t point, SweepLine::Place& above) {
+  const std::uint32_t any = events_.first_ending(point);
+  if (any == kNone) {
+    above = line_.first_above(points_[point]);
+    const std::uint32_t front = above == line_.begin() ? kNone : gap_above(std::prev(above)).front;
+    return front == kNone ? Fronts{} : split(front, point);
+  }
+  SweepLine::Place lowest = places_[any];
+  while (lowest != line_.begin() && edges_[std::prev(lowest)->edge].right == point)
+    --lowest;
+  Fronts fronts;
+  if (lowest != line_.begin())
+    fronts.below = gap_above(std::prev(lowest)).front;
+  for (above = lowest;;) {
+    const std::uint32_t front = gap_above(above).front;
+    above = line_.erase(above);
+    if (above == line_.end() || edges_[above->edge].right != point) {
+      fronts.above = front;
+      break;
+    }
+    if (front != kNone)
+      close(front, point);
+  }
+  if (fronts.below != kNone)
+    add_above(fronts_[fronts.below], point);
+  if (fronts.above != kNone)
+    add_below(fronts_[fronts.above], point);
+  return fronts;
+}
+
+/// Puts the edges that begin at the point on the line, each with what is above it.
+void FillingSweep::begin_edges(std::uint32_t point,
+                               SweepLine::Place above,
+                               const Gap& below,
+                               const Fronts& fronts) {
+  std::uint32_t count = 0;
+  SweepLine::Place lowest = line_.end();
+  for (std::uint32_t e = events_.first_beginning(point); e != kNone;
+       e = events_.next_beginning(e)) {
+    places_[e] = line_.insert(above, e);
+    lowest = places_[e];
+    ++count;
+  }
+  while (lowest != line_.begin() && edges_[std::prev(lowest)->edge].left == point)
+    --lowest;
+  std::int32_t winding = below.winding;
+  bool is_inside = fronts.below != kNone;
+  SweepLine::Place place = lowest;
+  for (; count-- > 0; ++place) {
+    if (place == line_.end() || edges_[place->edge].left != point) {
+      is_arranged_ = false;  // another edge passes the point
+      return;
+    }
+    check_below(place);
+    winding += edges_[place->edge].winding;
+    is_inside = !is_inside;
+    note(winding, is_inside);
+    const std::uint32_t inner = is_inside && count > 0 ? begin_front(point) : kNone;
+    gap_above(place) = {count == 0 ? fronts.above : inner, winding};
+  }
+  check_below(place);
+}
+
+std::uint32_t FillingSweep::begin_front(std::uint32_t point) {
+  const std::uint32_t node = add_node(point, kNone, kNone);
+  fronts_.push_back({node, node, node});
+  return std::uint32_t(fronts_.size() - 1);
+}
+
+/// A point within: the foremost one of the front sees it, and belongs to both parts.
+FillingSweep::Fronts FillingSweep::split(std::uint32_t front, std::uint32_t point) {
+  Front& lower = fronts_[front];
+  const std::uint32_t middle = lower.foremost, up = nodes_[middle].up;
+  const std::uint32_t twin = add_node(nodes_[middle].point, kNone, up);
+  Front upper{twin, lower.high, twin};
+  if (up != kNone)
+    nodes_[up].down = twin;
+  else
+    upper.high = twin;
+  nodes_[middle].up = kNone;
+  lower.high = middle;
+  add_above(lower, point);
+  add_below(upper, point);
+  fronts_.push_back(upper);
+  return {front, std::uint32_t(fronts_.size() - 1)};
+}
+
+/// Two fronts that end and begin with the same point.
+std::uint32_t FillingSweep::join(std::uint32_t below, std::uint32_t above) {
+  Front &lower = fronts_[below], &upper = fronts_[above];
+  const std::uint32_t next = nodes_[upper.low].up;
+  nodes_[lower.high].up = next;
+  if (next != kNone) {
+    nodes_[next].down = lower.high;
+    lower.foremost = lower.high;
+    lower.high = upper.high;
+  }
+  return below;
+}
+
+/// The upper edge of the inside comes to a point: cuts off what the point sees from its end on. Of
+/// corners in line with the point the nearest hides the others.
+void FillingSweep::add_above(Front& front, std::uint32_t point) {
+  std::uint32_t last = front.high;
+  for (std::uint32_t next = nodes_[last].down; next != kNone; next = nodes_[last].down) {
+    if (turn_of(nodes_[next].point, point, nodes_[last].point) <= 0)
+      break;
+    const std::uint32_t apex = nodes_[last].point;
+    for (std::uint32_t nearer = nodes_[next].down;
+         nearer != kNone && turn_of(nodes_[nearer].point, point, nodes_[next].point) == 0 &&
+         swept_before(points_[nodes_[next].point], points_[nodes_[nearer].point]);
+         nearer = nodes_[next].down) {
+      emit(nodes_[next].point, nodes_[nearer].point, apex);
+      next = nearer;
+    }
+    emit(nodes_[next].point, point, apex);
+    last = next;
+  }
+  front.high = front.foremost = add_node(point, last, kNone);
+  nodes_[last].up = front.high;
+}
+
+/// The same from below.
+void FillingSweep::add_below(Front& front, std::uint32_t point) {
+  std::uint32_t last = front.low;
+  for (std::uint32_t next = nodes_[last].up; next != kNone; next = nodes_[last].up) {
+    if (turn_of(nodes_[last].point, point, nodes_[next].point) <= 0)
+      break;
+    const std::uint32_t apex = nodes_[last].point;
+    for (std::uint32_t nearer = nodes_[next].up;
+         nearer != kNone && turn_of(nodes_[next].point, point, nodes_[nearer].point) == 0 &&
+         swept_before(points_[nodes_[next].point], points_[nodes_[nearer].point]);
+         nearer = nodes_[next].up) {
+      emit(apex, nodes_[nearer].point, nodes_[next].point);
+      next = nearer;
+    }
+    emit(apex, point, nodes_[next].point);
+    last = next;
+  }
+  front.low = front.foremost = add_node(point, kNone, last);
+  nodes_[last].down = front.low;
+}
+
+/// Both edges end at the point, which sees all of the front. Corners in line with it stand on one
+/// of the edges that end: they are cut off from the corner beside them.
+void FillingSweep::close(std::uint32_t front, std::uint32_t point) {
+  closing_.clear();
+  for (std::uint32_t node = fronts_[front].low; node != kNone; node = nodes_[node].up)
+    closing_.push_back(nodes_[node].point);
+  std::size_t first = 0, last = closing_.size() - 1;
+  while (first < last && turn_of(closing_[first], point, closing_[first + 1]) == 0)
+    ++first;
+  while (first < last && turn_of(closing_[last - 1], point, closing_[last]) == 0)
+    --last;
+  if (first == last)
+    return;
+  // `first` and `last` end the lines that go on to the point past those before and behind them
+  for (std::size_t i = first; i > 0; --i)
+    emit(closing_[i], closing_[i - 1], closing_[first + 1]);
+  std::uint32_t low = closing_[0];
+  for (std::size_t i = first + 1; i < last; ++i) {
+    emit(low, point, closing_[i]);
+    low = closing_[i];
+  }
+  for (std::size_t i = last; i + 1 < closing_.size(); ++i)
+    emit(low, closing_[i + 1], closing_[i]);
+  emit(low, point, closing_.back());
+}
+
+}  // namespace
+
+std::optional<EvenOddFill> fill_even_odd(const std::vector<Point2>& points,
+                                         const std::vector<OutlineEdge>& edges) {
+  return FillingSweep(points, edges).run();
+}
+
+}  // namespace grelha

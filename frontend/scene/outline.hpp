@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "frontend/scene/cutting_sweep.hpp"
+#include "frontend/scene/even_odd.hpp"
+#include "frontend/scene/exact_turn.hpp"
+
+namespace grelha {
+
+/// The outline of a polygon, arranged where need be: as edges that meet at their ends alone.
+///
+/// A sweep finds where sides cross, touch or lie on each other (Bentley and Ottmann 1979) and cuts
+/// them there. A point where two cross is rounded, which may move a side over another; so sweeps
+/// follow until one finds nothing. That one proves it, and fills what the outline holds. Of n sides
+/// with k crossings a sweep takes (n + k) log n steps.
+class Outline {
+ public:
+  enum class State {
+    kSimple,    ///< sides share nothing but the corner between neighbours
+    kArranged,  ///< sides met elsewhere, and were cut there
+    kTooMany,   ///< it would take more than kMostCuts cuts, or too many sweeps
+  };
+  static constexpr std::size_t kMostCuts = std::size_t(1) << 19;
+
+  /// Corners in turn; the last is joined to the first.
+  explicit Outline(std::span<const Point2> corners);
+
+  State arrange();
+
+  /// Of an arranged outline: what is inside, over the corners and, behind them, the crossings.
+  const EvenOddFill& fill() const { return fill_; }
+  const std::vector<OutlineCrossing>& crossings() const { return crossings_; }
+  /// How far along a side a place is, as a share of it.
+  double share_of(std::uint32_t side, const Point2& place) const;
+
+ private:
+  bool tidy();
+  void merge_equal_edges();
+  bool try_fill();
+  double grid_step() const;
+
+  std::vector<Point2> corners_;         ///< in a plane that may be leaned to the side, as all else
+  std::vector<Point2> points_;          ///< as they are swept
+  std::vector<std::uint32_t> numbers_;  ///< [points] of the corner or, behind them, the crossing
+  std::vector<OutlineCrossing> crossings_;
+  std::vector<OutlineEdge> edges_;
+  EvenOddFill fill_;
+  bool is_doubled_ = false;  ///< sides that lie on each other turn round the inside more than once
+};
+
+}  // namespace grelha

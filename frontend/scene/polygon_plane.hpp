@@ -1,0 +1,17 @@
+#pragma once
+
+#include <span>
+
+#include "frontend/scene/double3.hpp"
+
+namespace grelha {
+
+/// Twice the area long, of a polygon of three corners or more (Newell's sum: every corner counts).
+/// Where parts that turn either way cancel each other out in it, of a triangle over the corners.
+Double3 polygon_normal(std::span<const Float3> corners);
+
+/// `sum` or, where it is larger, the normal of a large triangle over the corners, turned as the sum
+/// is, or as the first corners are.
+Double3 larger_normal(std::span<const Float3> corners, const Double3& sum);
+
+}  // namespace grelha

@@ -1,0 +1,191 @@
+// Meshes in a scene, as SceneBuilder puts them there.
+#include <algorithm>
+#include <utility>
+
+#include "frontend/scene/scene_builder.hpp"
+#include "kernel/scene/pages.hpp"
+
+namespace grelha {
+
+/// Moves the vertices behind those already there. Vertices that cannot be drawn stay, at the
+/// origin, so that indices hold; their faces are left out by the caller.
+void SceneBuilder::append_vertices(Mesh& mesh) {
+  Triangles& t = file_.scene.geometry.triangles;
+  const std::size_t before = t.x.size(), count = mesh.vertex_count();
+  const auto append = [before](std::vector<float>& all, std::vector<float>& more) {
+    if (before == 0)
+      all = std::move(more);
+    else
+      all.insert(all.end(), more.begin(), more.end());
+  };
+  bool any_normal = false;
+  for (std::size_t i = 0; i < mesh.nx.size(); ++i) {
+    const Float3 n = sound_normal({mesh.nx[i], mesh.ny[i], mesh.nz[i]});
+    mesh.nx[i] = n.x;
+    mesh.ny[i] = n.y;
+    mesh.nz[i] = n.z;
+    any_normal = any_normal || n != Float3{};
+  }
+  if (any_normal) {
+    t.nx.resize(before);
+    t.ny.resize(before);
+    t.nz.resize(before);
+    append(t.nx, mesh.nx);
+    append(t.ny, mesh.ny);
+    append(t.nz, mesh.nz);
+  } else if (!t.nx.empty()) {
+    t.nx.resize(before + count);
+    t.ny.resize(before + count);
+    t.nz.resize(before + count);
+  }
+  append(t.x, mesh.x);
+  append(t.y, mesh.y);
+  append(t.z, mesh.z);
+}
+
+SceneBuilder::Result SceneBuilder::mesh_face(std::span<const std::uint32_t> corners,
+                                             std::uint32_t first_vertex,
+                                             std::uint32_t material) {
+  if (corners.size() == 3) {
+    const std::uint32_t a = first_vertex + corners[0], b = first_vertex + corners[1],
+                        c = first_vertex + corners[2];
+    if (has_area(a, b, c))
+      add_triangle(a, b, c, material);
+    else
+      ++file_.dropped.zero_area;
+    return Result::kCut;
+  }
+  const Triangles& t = file_.scene.geometry.triangles;
+  face_.clear();
+  face_vertices_.clear();
+  for (const std::uint32_t i : corners) {
+    const std::uint32_t v = first_vertex + i;
+    face_.push_back({t.x[v], t.y[v], t.z[v]});
+    face_vertices_.push_back(v);
+  }
+  pieces_.clear();
+  const Result result = cutter_.cut(face_, pieces_);
+  file_.dropped.zero_area += result == Result::kNoArea ? 1 : 0;
+  add_crossings();
+  for (const auto& [i, j, k] : pieces_) {
+    const std::uint32_t a = face_vertices_[i], b = face_vertices_[j], c = face_vertices_[k];
+    if (has_area(a, b, c))
+      add_triangle(a, b, c, material);
+  }
+  return result;
+}
+
+/// Vertices where sides of the face cross.
+void SceneBuilder::add_crossings() {
+  if (cutter_.crossings().empty())
+    return;
+  const Triangles& t = file_.scene.geometry.triangles;
+  all_normals_.assign(face_.size(), Float3{});
+  for (std::size_t i = 0; i < face_.size() && !t.nx.empty(); ++i) {
+    const std::uint32_t v = face_vertices_[i];
+    all_normals_[i] = {t.nx[v], t.ny[v], t.nz[v]};
+  }
+  for (const SideCrossing& crossing : cutter_.crossings())
+    face_vertices_.push_back(add_vertex(at_crossing(face_, crossing),
+                                        sound_normal(at_crossing(all_normals_, crossing))));
+}
+
+CrossedFaces SceneBuilder::mesh(Mesh mesh, std::uint32_t material) {
+  Triangles& t = file_.scene.geometry.triangles;
+  const auto first_vertex = std::uint32_t(t.vertex_count()),
+             first_triangle = std::uint32_t(t.size());
+  std::vector<bool> bad;  // empty when every vertex can be drawn
+  for (std::size_t i = 0; i < mesh.vertex_count(); ++i) {
+    if (drawable(Float3{mesh.x[i], mesh.y[i], mesh.z[i]}))
+      continue;
+    bad.resize(mesh.vertex_count());
+    bad[i] = true;
+    mesh.x[i] = mesh.y[i] = mesh.z[i] = 0;
+  }
+  append_vertices(mesh);
+  const std::size_t wanted = t.size() + mesh.face_count();
+  // at least twice as much as before: a scene may name thousands of small meshes
+  if (wanted > t.a.capacity()) {
+    const std::size_t room = std::max(wanted, 2 * t.a.capacity());
+    t.a.reserve(room);
+    t.b.reserve(room);
+    t.c.reserve(room);
+    t.material.reserve(room);
+  }
+  CrossedFaces crossed;
+  if (mesh.sizes.empty() && bad.empty())
+    mesh_triangles(mesh.corners, first_vertex, material);
+  else
+    crossed = mesh_faces(mesh, bad, first_vertex, material);
+  const auto count = std::uint32_t(t.size()) - first_triangle;
+  if (count > 0)
+    file_.scene.geometry.objects.push_back({first_triangle, count});
+  return crossed;
+}
+
+/// The common case, without a look at each face's size.
+void SceneBuilder::mesh_triangles(std::span<const std::uint32_t> corners,
+                                  std::uint32_t first_vertex,
+                                  std::uint32_t material) {
+  Triangles& t = file_.scene.geometry.triangles;
+  std::size_t at = t.size();
+  const std::size_t most = at + corners.size() / 3;
+  resize_to_fill(t.a, most);
+  resize_to_fill(t.b, most);
+  resize_to_fill(t.c, most);
+  resize_to_fill(t.material, most, material);
+  for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
+    const std::uint32_t a = first_vertex + corners[i], b = first_vertex + corners[i + 1],
+                        c = first_vertex + corners[i + 2];
+    t.a[at] = a;
+    t.b[at] = b;
+    t.c[at] = c;
+    at += has_area(a, b, c) ? 1 : 0;  // the next one overwrites what has none
+  }
+  file_.dropped.zero_area += most - at;
+  t.a.resize(at);
+  t.b.resize(at);
+  t.c.resize(at);
+  t.material.resize(at);
+}
+
+CrossedFaces SceneBuilder::mesh_faces(const Mesh& mesh,
+                                      const std::vector<bool>& bad,
+                                      std::uint32_t first_vertex,
+                                      std::uint32_t material) {
+  CrossedFaces crossed;
+  std::size_t at = 0;
+  for (std::size_t f = 0, faces = mesh.face_count(); f < faces; ++f) {
+    const std::size_t size = mesh.sizes.empty() ? 3 : mesh.sizes[f];
+    const std::span<const std::uint32_t> corners(mesh.corners.data() + at, size);
+    at += size;
+    if (!bad.empty() &&
+        std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return bad[v]; })) {
+      ++file_.dropped.not_finite;
+      continue;
+    }
+    const Result result = mesh_face(corners, first_vertex, material);
+    if (result != Result::kFilled && result != Result::kTooOften)
+      continue;
+    if (crossed.filled + crossed.left_out == 0)
+      crossed.first = f;
+    ++(result == Result::kFilled ? crossed.filled : crossed.left_out);
+  }
+  return crossed;
+}
+
+std::string CrossedFaces::text() const {
+  const std::uint64_t all = filled + left_out;
+  if (all == 0)
+    return "";
+  const std::string which = "face " + std::to_string(first) + " from 0";
+  const std::string text =
+      all == 1 ? which + " crosses itself"
+               : std::to_string(all) + " faces cross themselves, " + which + " is the first";
+  return text + ": filled by the even-odd rule" +
+         (left_out == 0 ? ""
+                        : ", but " + std::to_string(left_out) +
+                              " that cross themselves too often are left out");
+}
+
+}  // namespace grelha

@@ -1,0 +1,150 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <iterator>
+#include <memory_resource>
+#include <set>
+#include <vector>
+
+#include "frontend/scene/exact_turn.hpp"
+
+namespace grelha {
+
+/// A piece of an outline's side between two points, the left one swept first.
+struct OutlineEdge {
+  std::uint32_t left = 0, right = 0;
+  std::uint32_t side = 0;    ///< of the outline: from corner `side` to the next
+  std::int32_t winding = 0;  ///< added to an outline's winding number from below the edge to above
+};
+
+/// The edges that a vertical line meets, from below upwards, on its way over an arrangement of
+/// edges (Shamos and Hoey 1976).
+class SweepLine {
+ public:
+  /// An edge with its ends, which are looked at more often than anything else. It may be exchanged
+  /// for one in the same place on the line.
+  struct Slot {
+    mutable std::uint32_t edge;
+    mutable Point2 left, right;
+    int side_of(const Point2& p) const { return exact_turn(left, right, p); }
+    /// Between its ends, as the sweep goes.
+    bool has_on_the_way(const Point2& p) const {
+      return swept_before(left, p) && swept_before(p, right);
+    }
+    bool goes_through(const Point2& p) const { return has_on_the_way(p) && side_of(p) == 0; }
+  };
+  /// Returns whether two edges have a point in common that is not an end of both.
+  static bool do_meet(const Slot& a, const Slot& b) {
+    const auto [a_low, a_high] = std::minmax(a.left.y, a.right.y);
+    const auto [b_low, b_high] = std::minmax(b.left.y, b.right.y);
+    if (a_high < b_low || b_high < a_low)
+      return false;
+    const int side1 = a.side_of(b.left), side2 = a.side_of(b.right);
+    if (side1 * side2 > 0)
+      return false;
+    const int side3 = b.side_of(a.left), side4 = b.side_of(a.right);
+    if (side1 * side2 < 0 && side3 * side4 < 0)
+      return true;
+    return (side1 == 0 && a.has_on_the_way(b.left)) || (side2 == 0 && a.has_on_the_way(b.right)) ||
+           (side3 == 0 && b.has_on_the_way(a.left)) || (side4 == 0 && b.has_on_the_way(a.right));
+  }
+
+ private:
+  struct Below {
+    using is_transparent = void;
+    bool operator()(const Slot& a, const Slot& b) const {
+      int side = 0;
+      if (swept_before(b.left, a.left))
+        side = -b.side_of(a.left);
+      else if (a.left != b.left)
+        side = a.side_of(b.left);
+      if (side == 0)
+        side = a.side_of(b.right);
+      return side != 0 ? side > 0 : a.edge < b.edge;
+    }
+    /// Whether an edge passes below a point that the line stands at.
+    bool operator()(const Slot& a, const Point2& p) const { return a.side_of(p) > 0; }
+  };
+
+ public:
+  using Place = std::pmr::multiset<Slot, Below>::iterator;
+
+  SweepLine(const std::vector<Point2>& points, const std::vector<OutlineEdge>& edges)
+      : points_(points), edges_(edges) {}
+
+  /// Right below `above`, which is found by a search where that is not its place.
+  Place insert(Place above, std::uint32_t edge) { return slots_.insert(above, slot_of(edge)); }
+  Place erase(Place place) { return slots_.erase(place); }
+  /// The place is another edge's from now on.
+  void exchange(Place place, std::uint32_t edge) const {
+    const Slot slot = slot_of(edge);
+    place->edge = edge;
+    place->left = slot.left;
+    place->right = slot.right;
+  }
+  Place first_above(const Point2& p) const { return slots_.lower_bound(p); }
+  Place begin() const { return slots_.begin(); }
+  Place end() const { return slots_.end(); }
+
+ private:
+  Slot slot_of(std::uint32_t edge) const {
+    return {edge, points_[edges_[edge].left], points_[edges_[edge].right]};
+  }
+
+  const std::vector<Point2>& points_;
+  const std::vector<OutlineEdge>& edges_;
+  std::pmr::unsynchronized_pool_resource memory_;
+  std::pmr::multiset<Slot, Below> slots_{&memory_};
+};
+
+/// The points of an arrangement in the order of the sweep, each with the edges that end there and
+/// those that begin.
+class SweepEvents {
+ public:
+  static constexpr std::uint32_t kNone = 0xffffffff;
+
+  SweepEvents(std::size_t points, const std::vector<OutlineEdge>& edges)
+      : first_ending_(points, kNone), first_beginning_(points, kNone) {
+    for (std::uint32_t e = 0; e < edges.size(); ++e)
+      add(e, edges[e]);
+  }
+  void add(std::uint32_t e, const OutlineEdge& edge) {
+    add_ending(e, edge.right);
+    add_beginning(e, edge.left);
+  }
+  void add_ending(std::uint32_t e, std::uint32_t point) {
+    push(next_ending_, first_ending_, e, point);
+  }
+  void add_beginning(std::uint32_t e, std::uint32_t point) {
+    push(next_beginning_, first_beginning_, e, point);
+  }
+  void add_point() {
+    first_ending_.push_back(kNone);
+    first_beginning_.push_back(kNone);
+  }
+
+  std::uint32_t first_ending(std::uint32_t point) const { return first_ending_[point]; }
+  std::uint32_t first_beginning(std::uint32_t point) const { return first_beginning_[point]; }
+  std::uint32_t next_ending(std::uint32_t edge) const { return next_ending_[edge]; }
+  std::uint32_t next_beginning(std::uint32_t edge) const { return next_beginning_[edge]; }
+  /// Whether one edge ends there and one begins, which takes its place on the line.
+  bool goes_on(std::uint32_t point) const {
+    const std::uint32_t a = first_ending_[point], b = first_beginning_[point];
+    return a != kNone && b != kNone && next_ending_[a] == kNone && next_beginning_[b] == kNone;
+  }
+
+ private:
+  using List = std::vector<std::uint32_t>;
+  static void push(List& next, List& first, std::uint32_t edge, std::uint32_t point) {
+    if (next.size() <= edge)
+      next.resize(edge + 1, kNone);
+    next[edge] = first[point];
+    first[point] = edge;
+  }
+
+  List first_ending_, first_beginning_;  ///< [points]
+  List next_ending_, next_beginning_;    ///< [edges]
+};
+
+}  // namespace grelha
