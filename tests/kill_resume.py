@@ -77,7 +77,7 @@ def kill_and_resume(options, folder):
         os.remove(picture), os.remove(stats)
         left = [
             n for n in os.listdir(folder)
-            if n != "whole.pfm" and not n.startswith(".grelha-") and n != "kept.grelha.new"]
+            if n != "whole.pfm" and not n.endswith(".grelha-tmp")]
         if left:
             sys.exit(f"{where}: left behind {left}")
     print(

@@ -4,10 +4,13 @@ target_sources(parts_test PRIVATE frontend/jobs/checkpoint_test.cpp frontend/job
   frontend/jobs/merge_test.cpp)
 grelha_test(frontend/jobs/identity unit grelha::frontend grelha::scenes)
 grelha_test(frontend/jobs/long_work image grelha::frontend)
-target_sources(long_work_test PRIVATE frontend/jobs/refused_work_test.cpp
-  frontend/jobs/stopping_test.cpp)
-target_compile_definitions(long_work_test PRIVATE GRELHA_PROGRAM="$<TARGET_FILE:grelha>")
-add_dependencies(long_work_test grelha)
+target_sources(long_work_test PRIVATE frontend/jobs/full_disk_test.cpp
+  frontend/jobs/refused_work_test.cpp frontend/jobs/stopping_test.cpp)
+add_library(grelha_full_disk MODULE support/full_disk.cpp)
+target_link_libraries(grelha_full_disk PRIVATE grelha_test_flags ${CMAKE_DL_LIBS})
+target_compile_definitions(long_work_test PRIVATE GRELHA_PROGRAM="$<TARGET_FILE:grelha>"
+  GRELHA_FULL_DISK="$<TARGET_FILE:grelha_full_disk>")
+add_dependencies(long_work_test grelha grelha_full_disk)
 grelha_test(frontend/commands/terminal image grelha::frontend)
 target_compile_definitions(terminal_test PRIVATE GRELHA_PROGRAM="$<TARGET_FILE:grelha>")
 add_dependencies(terminal_test grelha)

@@ -144,6 +144,7 @@ int run(const CompareCommand& command) {
 
 int run(const MergeCommand& command) {
   want_no_terminal(command.output);
+  want_not_read({{"-o", command.output}}, command.parts);
   check_writable(command.output);
   const Partial joined = merge_parts(command.parts);
   const Accumulator& a = joined.sums;

@@ -88,10 +88,9 @@ std::string man_page(const std::vector<CommandHelp>& commands) {
       ".TP\n.I PREFIX/share/doc/grelha\nREADME.md, CHANGELOG.md, farm.sh (one picture by a Slurm "
       "array), examples of the library\n"
       ".TP\n.I *.grelha\npart of a picture, or what a checkpoint keeps\n"
-      ".TP\n.IR NAME .partial.png \", \" NAME .png.partial\nwhat a stopped render leaves: the "
+      ".TP\n.IR NAME .partial.png \", \" NAME .partial.grelha\nwhat a stopped render leaves: the "
       "picture so far, and what the same command goes on from\n"
-      ".TP\n.IR FILE .new\nthe checkpoint FILE while it is written\n"
-      ".TP\n.RI . FILE .grelha\\-tmp\nany other FILE while it is written\n";
+      ".TP\n.RI . FILE .grelha\\-tmp\na FILE while it is written\n";
   return text +
          ".SH EXIT STATUS\n0; 1 when reading or writing a file fails; 2 for bad usage or a scene "
          "that cannot be one;\n"

@@ -11,6 +11,7 @@
 
 #include <cstdarg>
 #include <cstdio>
+#include <cstdlib>
 
 namespace grelha {
 namespace {
@@ -222,9 +223,18 @@ std::string needs_text(const SceneFile& file) {
   return "needs         " + (needs.empty() ? "nothing but the background" : needs) + '\n';
 }
 
-/// What ended a picture by error.
+/// Two digits, none of them too low: what is promised holds.
+std::string rounded_up(double value) {
+  const std::string text = print("%.1e", value);
+  int tens = 10 * (text[0] - '0') + (text[2] - '0'), power = std::atoi(text.c_str() + 4) - 1;
+  if (!(value > 0) || std::strtod(text.c_str(), nullptr) >= value)
+    return print("%.2g", value);
+  return print("%.2g", std::strtod(print("%de%d", ++tens, power).c_str(), nullptr));
+}
+
+/// What ended a picture by error. The last samples may have met it, and nobody asked again.
 std::string end_text(const RefineOptions& asked, const ErrorStats& e) {
-  if (asked.error <= 0)
+  if (asked.error <= 0 || (e.met_at == 0 && e.rmse_bound <= asked.error))
     return "";
   if (e.met_at == 0)
     return print("; %g is not met with %u samples in a pixel", asked.error, e.most);
@@ -235,7 +245,8 @@ std::string end_text(const RefineOptions& asked, const ErrorStats& e) {
 }
 
 std::string error_text(const RefineOptions& asked, const ErrorStats& e, const RunReport& report) {
-  std::string text = print("; RMSE about %.2g, at most %.2g (95 %%)", e.rmse, e.rmse_bound);
+  std::string text =
+      print("; RMSE about %.2g, at most ", e.rmse) + rounded_up(e.rmse_bound) + " (95 %)";
   if (e.audited > 0)
     text += print(", audited %.2g", e.audited);
   text += print("; %llu samples, %.1f a pixel, %u to %u",

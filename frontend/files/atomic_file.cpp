@@ -112,9 +112,7 @@ AtomicFile::AtomicFile(const std::string& path, bool durable)
   const bool special = is_special(target_);
   if (durable && special)
     throw FileError(path, "cannot write: not a regular file");
-  if (durable)
-    beside_ = target_ + ".new";
-  else if (!special)
+  if (!special)
     create_beside();
   errno = 0;
   stream_.open(beside_.empty() ? target_ : beside_, std::ios::binary);

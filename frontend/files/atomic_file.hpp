@@ -14,9 +14,7 @@ inline constexpr const char* kStdout = "-";
 /// would replace it. Every failure is a FileError that names `path`.
 ///
 /// A durable one is on the disk when commit() returns, so that a machine that stops a moment later
-/// finds the old file or the new one. Programs that may be killed write it again and again. The
-/// name beside it, `path` and .new, is always the same, and the next program writes over what one
-/// leaves. Only one program at a time may write it, and only to a regular file.
+/// finds the old file or the new one. It must be a regular file.
 class AtomicFile {
  public:
   /// `path`: kStdout is none, then stdout is written.

@@ -20,6 +20,12 @@ void write_checkpoint(const std::string& path,
                       const Identity& identity,
                       const Picture& picture,
                       bool durable);
+/// The same over the bytes of the file that is there, which a full disk allows: nothing grows.
+/// Throws FileError where it would, and nothing is done; or where writing fails, and the file is
+/// damaged.
+void write_over_checkpoint(const std::string& path,
+                           const Identity& identity,
+                           const Picture& picture);
 /// The same of a part.
 void write_part(const std::string& path,
                 const Identity& identity,

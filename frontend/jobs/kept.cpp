@@ -1,11 +1,12 @@
 #include "frontend/jobs/kept.hpp"
 
+#include <cstdlib>
 #include <filesystem>
 
 #include "frontend/files/atomic_file.hpp"
+#include "frontend/files/parse_error.hpp"
 #include "frontend/files/place.hpp"
 #include "frontend/images/image_file.hpp"
-#include "frontend/jobs/partial.hpp"
 
 namespace grelha {
 namespace {
@@ -21,26 +22,46 @@ std::string picture_name(const RenderCommand& command) {
   return default_image(command.scene, format_of(command.image, command.format));
 }
 
-}  // namespace
-
-std::string partial_picture(const RenderCommand& command) {
-  const fs::path name = picture_name(command);
-  const auto format = format_of(name.string(), command.format);
-  if (!format)
-    return "";
-  return (name.parent_path() /
-          (name.stem().string() + ".partial." + std::string(ending_of(*format))))
-      .string();
+bool is_there(const fs::path& path) {
+  std::error_code ignored;
+  return fs::exists(fs::symlink_status(path, ignored));
 }
 
-std::string kept_name(const RenderCommand& command,
-                      const std::function<bool(const std::string&)>& fits) {
-  const std::string name = picture_name(command) + ".partial";
+}  // namespace
+
+KeptNames kept_names(const RenderCommand& command,
+                     const std::function<bool(const std::string&)>& fits) {
+  const fs::path name = picture_name(command);
+  const auto format = format_of(name.string(), command.format);
+  KeptNames names;
   for (int i = 0; i < kPlacesToKeep; ++i) {
-    const std::string numbered = i == 0 ? name : name + std::to_string(i);
-    std::error_code ignored;
-    if (!fs::exists(fs::symlink_status(numbered, ignored)) || fits(numbered))
-      return numbered;
+    const std::string stem = (name.parent_path() / name.stem()).string() + ".partial" +
+                             (i == 0 ? "" : std::to_string(i));
+    names.picture = format ? stem + '.' + std::string(ending_of(*format)) : "";
+    names.work = stem + ".grelha";
+    if (!is_there(names.work) || fits(names.work))
+      return names;
+  }
+  return {};
+}
+
+std::string write_elsewhere(const std::string& work,
+                            const std::function<void(const std::string&)>& write) {
+  std::error_code none;
+  const fs::path own = fs::absolute(work, none).parent_path(), name = fs::path(work).filename();
+  // a folder that nobody else can have put anything into
+  std::string fresh = (fs::temp_directory_path(none) / "grelha-XXXXXX").string();
+  const bool is_fresh = mkdtemp(fresh.data()) != nullptr;
+  for (const fs::path& folder : {fs::path(is_fresh ? fresh : ""), fs::current_path(none)}) {
+    const fs::path place = folder / name;
+    if (folder.empty() || is_there(place) || fs::equivalent(folder, own, none))
+      continue;
+    try {
+      write(place.string());
+      return place.string();
+    } catch (const FileError&) {  // there is no room either
+      fs::remove(fresh, none);    // where it is empty
+    }
   }
   return "";
 }

@@ -9,13 +9,20 @@
 
 namespace grelha {
 
-/// `dir/x.png` gives `dir/x.partial.png`; empty for a .grelha. What goes to stdout or a device is
-/// named after the scene.
-std::string partial_picture(const RenderCommand& command);
+/// Two files of one name. What goes to stdout or a device is named after the scene.
+struct KeptNames {
+  std::string work;     ///< `dir/x.partial.grelha` of `dir/x.png`; empty: there is no free name
+  std::string picture;  ///< `dir/x.partial.png`; empty for a .grelha
+};
 
-/// `dir/x.png.partial`, or with a number behind it where other pictures are kept: the first name
-/// that nothing has, or that `fits`. Empty when there is none.
-std::string kept_name(const RenderCommand& command,
-                      const std::function<bool(const std::string&)>& fits);
+/// With a number behind `partial` where other pictures are kept: the first name that nothing has,
+/// or whose work `fits`.
+KeptNames kept_names(const RenderCommand& command,
+                     const std::function<bool(const std::string&)>& fits);
+
+/// Has the work written in another folder, where the picture's has no room: one in the system's
+/// folder for what is temporary, or the current one. Returns where, or "".
+std::string write_elsewhere(const std::string& work,
+                            const std::function<void(const std::string&)>& write);
 
 }  // namespace grelha

@@ -5,10 +5,11 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <utility>
 
+#include "frontend/commands/console.hpp"
 #include "frontend/files/parse_error.hpp"
 #include "frontend/images/image_file.hpp"
-#include "frontend/jobs/kept.hpp"
 #include "frontend/jobs/partial.hpp"
 #include "frontend/jobs/stop_signals.hpp"
 
@@ -96,28 +97,44 @@ LongRender::LongRender(
     go_on_from_kept();
     return;
   }
-  kept_ = prepared.work.checkpoint;
-  went_on_ = exists(kept_);
-  if (went_on_)
-    picture_ = saved_picture(kept_, identity_, picture_);
+  kept_ = kept_names(command_, [](const std::string&) { return true; });
+  kept_.work = prepared.work.checkpoint;
+  went_on_ = exists(kept_.work);
+  if (!went_on_)
+    return;
+  picture_ = saved_picture(kept_.work, identity_, picture_);
+  note_place();
+}
+
+void LongRender::note_place() {
+  kept_place_ = place_of(kept_.work);
+}
+
+void LongRender::say(const std::string& line) const {
+  if (!command_.quiet)
+    grelha::warn(line);
 }
 
 void LongRender::go_on_from_kept() {
-  kept_ = kept_name(command_, [this](const std::string& path) {
+  kept_ = kept_names(command_, [this](const std::string& path) {
     try {
       Checkpoint found = read_checkpoint(path);
-      went_on_ = misfit(found, identity_, picture_).empty();
+      const std::string why = misfit(found, identity_, picture_);
+      went_on_ = why.empty();
       if (went_on_)
         picture_ = std::move(found.picture);
+      else
+        say("grelha: " + path + " stays, which keeps another picture: it " + why);
     } catch (const std::exception&) {  // nobody said that this file should be one
     }
     return went_on_;
   });
-  if (!went_on_ || command_.quiet)
+  if (!went_on_)
     return;
+  note_place();
   char text[32];
   std::snprintf(text, sizeof text, ", %.1f %% done", 100 * share_done());
-  warn_("grelha: goes on from " + kept_ + text);
+  say("grelha: goes on from " + kept_.work + text);
 }
 
 bool LongRender::is_due(const Habit& habit) {
@@ -153,17 +170,41 @@ bool LongRender::tried(const std::function<void()>& write) const {
 }
 
 void LongRender::keep() {
-  if (asked_to_save()) {
+  if (asked_to_save() || share_done() > 0)
+    tried([this] { saved_in_ = keep_somewhere(); });
+  if (share_done() > 0 && !kept_.picture.empty())
+    shown_ = tried([&] { write_image(kept_.picture, picture_.image(), style()); });
+}
+
+/// Saves what there is where it belongs. On a full disk over what is kept there of the picture,
+/// whose bytes are room enough, or in another folder. Returns where; throws FileError as the first
+/// place did.
+std::string LongRender::keep_somewhere() {
+  if (kept_.work.empty())
+    return "";
+  try {
     save();
-    saved_ = true;
+    return kept_.work;
+  } catch (const FileError&) {
+    const bool is_ours = kept_place_ && kept_place_ == place_of(kept_.work);
+    if (is_ours && wrote_over())
+      return kept_.work;
+    const std::string place = write_elsewhere(kept_.work, [this](const std::string& path) {
+      write_checkpoint(path, identity_, picture_, true);
+    });
+    if (place.empty())
+      throw;
+    return place;
   }
-  if (share_done() == 0)
-    return;
-  if (!saved_ && !kept_.empty())
-    saved_ = tried([this] { save(); });
-  const std::string picture = partial_picture(command_);
-  if (!picture.empty())
-    shown_ = tried([&] { write_image(picture, picture_.image(), style()); });
+}
+
+bool LongRender::wrote_over() const {
+  try {
+    write_over_checkpoint(kept_.work, identity_, picture_);
+    return true;
+  } catch (const FileError&) {
+    return false;
+  }
 }
 
 std::string LongRender::stop_text(int signal) const {
@@ -174,10 +215,11 @@ std::string LongRender::stop_text(int signal) const {
                 signal_name(signal),
                 100 * share_done());
   std::string all = text;
-  if (saved_)
-    all += " and saved in " + kept_ + ": the same command goes on from there";
+  if (!saved_in_.empty())
+    all += " and saved in " + saved_in_ + ": the same command " + with_checkpoint() +
+           "goes on from there";
   if (shown_)
-    all += (saved_ ? "; " : ": ") + partial_picture(command_) + " is the picture so far";
+    all += (saved_in_.empty() ? ": " : "; ") + kept_.picture + " is the picture so far";
   return all;
 }
 
@@ -219,27 +261,34 @@ void LongRender::finish(Layers layers) {
   }
   if (command_.work.kept_till_the_last && asked_to_save())
     return save();
-  if (went_on_ || asked_to_save())
-    unlink(kept_.c_str());
+  if (kept_place_ && kept_place_ == place_of(kept_.work))
+    unlink(kept_.work.c_str());
   if (went_on_)
-    unlink(partial_picture(command_).c_str());
+    unlink(kept_.picture.c_str());
 }
 
-void LongRender::keep_all() const {
-  if (asked_to_save())
-    return save();
-  if (kept_.empty())
-    return;
+void LongRender::keep_all() {
   try {
-    save();
-    warn_("grelha: all of the picture is kept in " + kept_ + ": the same command writes it");
-    // the disk is full, say: why the picture could not be written is told
-  } catch (const FileError&) {
+    saved_in_ = keep_somewhere();
+  } catch (const FileError&) {  // why the picture could not be written is told
   }
+  if (saved_in_.empty() || (asked_to_save() && saved_in_ == kept_.work))
+    return;
+  warn_("grelha: all of the picture is kept in " + saved_in_ + ": the same command " +
+        with_checkpoint() + "writes it");
 }
 
-void LongRender::save() const {
-  write_checkpoint(kept_, identity_, picture_, true);
+/// What the command needs to find what was saved.
+std::string LongRender::with_checkpoint() const {
+  return saved_in_ == kept_.work ? "" : "with --checkpoint " + saved_in_ + ' ';
+}
+
+void LongRender::save() {
+  const bool is_foreign = exists(kept_.work) && kept_place_ != place_of(kept_.work);
+  if (is_foreign && asked_to_save() && !std::exchange(is_shared_, true))
+    warn_(kept_.work + ": warning: another run saves there as well: each writes over the other's");
+  write_checkpoint(kept_.work, identity_, picture_, true);
+  note_place();
 }
 
 /// What the picture's file says of it. With --time the samples taken make the picture again. A

@@ -2,10 +2,13 @@
 
 #include <chrono>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "frontend/commands/commands.hpp"
+#include "frontend/files/place.hpp"
 #include "frontend/jobs/checkpoint.hpp"
+#include "frontend/jobs/kept.hpp"
 #include "frontend/jobs/ranks.hpp"
 
 namespace grelha {
@@ -61,9 +64,15 @@ class LongRender {
   int stops() const;  ///< the signal to stop for, or 0
   void go_on_from_kept();
   void keep();
-  void keep_all() const;                                 ///< of a picture that cannot be written
+  std::string keep_somewhere();
+  bool wrote_over() const;
+  /// Of a picture that cannot be written.
+  void keep_all();
   bool tried(const std::function<void()>& write) const;  ///< warns of what it throws
-  void save() const;
+  void save();
+  void note_place();
+  std::string with_checkpoint() const;
+  void say(const std::string& line) const;
   ImageStyle style() const;
   void write() const;
 
@@ -72,11 +81,15 @@ class LongRender {
   const Warn warn_;
   Identity identity_;
   Picture picture_;
-  /// what is gone on from: the checkpoint, or a file beside the picture; empty: nothing is kept
-  std::string kept_;
-  bool went_on_ = false;                ///< from what was there
-  Layers layers_;                       ///< of the picture, when it is done
-  bool saved_ = false, shown_ = false;  ///< when stopped
+  /// what is gone on from, the checkpoint or a file beside the picture's, and the picture so far;
+  /// empty: there is none
+  KeptNames kept_;
+  std::optional<Place> kept_place_;  ///< of that file, as this program wrote or read it
+  bool went_on_ = false;             ///< from what was there
+  bool is_shared_ = false;           ///< another program writes the checkpoint as well
+  Layers layers_;                    ///< of the picture, when it is done
+  std::string saved_in_;             ///< when stopped; empty: nowhere
+  bool shown_ = false;               ///< when stopped
 };
 
 }  // namespace grelha

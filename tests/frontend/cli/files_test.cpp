@@ -248,11 +248,12 @@ TEST_F(Files, StdoutHoldsOneResult) {
   refused("scene boat -o -", "-o: expected a file, for a mesh is written beside it, found \"-\"");
   const Outcome full = run("render ball.nff -o - --quiet", "sh -c '\"$0\" \"$@\" >/dev/full' ");
   EXPECT_EQ(full.status, 1);
-  EXPECT_EQ(full.err,
-            "grelha: all of the picture is kept in ball.png.partial: the same command writes it\n"
-            "stdout: error: cannot write\n");
+  EXPECT_EQ(
+      full.err,
+      "grelha: all of the picture is kept in ball.partial.grelha: the same command writes it\n"
+      "stdout: error: cannot write\n");
   EXPECT_TRUE(run("render ball.nff -o -")
-                  .err.starts_with("grelha: goes on from ball.png.partial, 100.0 % done\n"));
+                  .err.starts_with("grelha: goes on from ball.partial.grelha, 100.0 % done\n"));
 }
 
 /// What is said of a picture makes the picture again, and is the same whatever changes no bit of

@@ -276,5 +276,39 @@ TEST(Summary, SaysHowManyRanksAndThreadsEach) {
   EXPECT_EQ(Json::parse(stats_json({}, shared))["ranks"], 4);
 }
 
+/// What is said of the error and of its end agree, digit by digit.
+TEST(Summary, SaysOfAnErrorWhetherItIsMet) {
+  RenderCommand command;
+  command.image = "x.png";
+  command.render.refine.error = .01;
+  const auto said = [&](double bound, std::uint64_t met_at) {
+    RunReport report;
+    report.width = report.height = 10;
+    ErrorStats& e = report.render.error;
+    e.samples = 1000;
+    e.rmse = .007;
+    e.rmse_bound = bound;
+    e.met_at = met_at;
+    e.least = 4;
+    e.most = 128;
+    const std::string line = summary_line(command, report);
+    return line.substr(line.find("; RMSE"));
+  };
+  const std::string samples = " (95 %); 1000 samples, 10.0 a pixel, 4 to 128";
+  EXPECT_EQ(said(.0091, 0), "; RMSE about 0.007, at most 0.0091" + samples + '\n')
+      << "met by the last samples";
+  EXPECT_EQ(said(.01, 1000), "; RMSE about 0.007, at most 0.01" + samples + '\n');
+  EXPECT_EQ(said(.01001, 0),
+            "; RMSE about 0.007, at most 0.011" + samples +
+                "; 0.01 is not met with 128 samples in a pixel\n");
+  EXPECT_EQ(said(.00999, 500),
+            "; RMSE about 0.007, at most 0.01" + samples +
+                ", 50 % of them for pixels with wide intervals\n");
+  command.render.refine.error = .1;
+  EXPECT_EQ(said(.0991, 1000), "; RMSE about 0.007, at most 0.1" + samples + '\n');
+  EXPECT_EQ(said(1e-8, 1000), "; RMSE about 0.007, at most 1e-08" + samples + '\n');
+  EXPECT_EQ(said(0, 1000), "; RMSE about 0.007, at most 0" + samples + '\n');
+}
+
 }  // namespace
 }  // namespace grelha

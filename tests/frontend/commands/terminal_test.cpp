@@ -115,11 +115,12 @@ TEST(Terminal, ControlCLeavesThePictureSoFar) {
   terminal.type(kControlC);
   const std::string said = terminal.read_all();
   EXPECT_EQ(terminal.status(), 128 + SIGINT);
-  EXPECT_NE(said.find(" % done and saved in ball.png.partial: the same command goes on from there; "
-                      "ball.partial.png is the picture so far"),
-            said.npos)
+  EXPECT_NE(
+      said.find(" % done and saved in ball.partial.grelha: the same command goes on from there; "
+                "ball.partial.png is the picture so far"),
+      said.npos)
       << said;
-  EXPECT_EQ(folder.list(), "ball.nff ball.partial.png ball.png.partial");
+  EXPECT_EQ(folder.list(), "ball.nff ball.partial.grelha ball.partial.png");
 }
 
 TEST(Terminal, IsNoPlaceForAPicture) {

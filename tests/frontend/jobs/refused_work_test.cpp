@@ -12,6 +12,7 @@ namespace grelha {
 namespace {
 
 using test::kBall;
+using test::kJobs;
 using test::LongWork;
 using test::Outcome;
 
@@ -89,6 +90,33 @@ TEST_F(LongWork, AFullDiskIsOneLine) {
   expect_line(
       run("merge a.grelha -o b.grelha", full), 1, "b.grelha: error: cannot write: File too large");
   EXPECT_EQ(folder_.list(), "a.grelha ball.nff x.pfm");
+}
+
+/// Two at once, each of which saves all the time and ends when it likes.
+TEST_F(LongWork, RunsThatShareACheckpointAreTold) {
+  const std::string program = " '" GRELHA_PROGRAM "' ",
+                    job = std::string(kJobs[0]) + "--checkpoint kept --checkpoint-every 1e-9 -o ";
+  const Outcome outcome = run(job + "x.pfm", "(" + program + job + "y.pfm 2>/dev/null &) && ");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  while (!std::filesystem::exists(folder_.file("y.pfm")))  // the other ends soon
+    usleep(10000);
+  EXPECT_EQ(outcome.err.find("No such file"), outcome.err.npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("kept: warning: another run saves there as well"), outcome.err.npos);
+  EXPECT_TRUE(folder_.read("x.pfm") == folder_.read("y.pfm"));
+}
+
+TEST_F(LongWork, MergeDoesNotWriteOverAPart) {
+  ASSERT_EQ(run("render ball.nff --rows 0:8 -o a.grelha").status, 0);
+  ASSERT_EQ(run("render ball.nff --rows 8:16 -o b.grelha").status, 0);
+  const std::string part = folder_.read("a.grelha");
+  std::filesystem::create_symlink("a.grelha", folder_.file("link.grelha"));
+  for (const std::string output : {"a.grelha", "./a.grelha", "link.grelha"})
+    expect_line(run("merge b.grelha a.grelha -o " + output),
+                2,
+                "grelha: error: -o: expected another file than a.grelha, which is read, found \"" +
+                    output + '"');
+  EXPECT_EQ(folder_.read("a.grelha"), part);
+  EXPECT_EQ(run("merge b.grelha a.grelha -o c.grelha").status, 0);
 }
 
 TEST_F(LongWork, APictureThatCannotBeWrittenLeavesTheCheckpoint) {

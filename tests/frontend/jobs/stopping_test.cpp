@@ -70,10 +70,10 @@ TEST_F(LongWork, StoppingLeavesSomethingToGoOnFrom) {
          seconds *= 1.3) {
       EXPECT_FALSE(std::filesystem::exists(folder_.file("x.pfm")));
       // nothing was done yet
-      if (!std::filesystem::exists(folder_.file("x.pfm.partial")))
+      if (!std::filesystem::exists(folder_.file("x.partial.grelha")))
         continue;
       ++stopped;
-      EXPECT_NO_THROW(read_checkpoint(folder_.file("x.pfm.partial")));
+      EXPECT_NO_THROW(read_checkpoint(folder_.file("x.partial.grelha")));
       EXPECT_EQ(folder_.read("x.partial.pfm").size(), folder_.read("whole.pfm").size());
     }
     EXPECT_GE(stopped, 1);
@@ -97,14 +97,23 @@ TEST_F(LongWork, WhatOtherPicturesLeftStays) {
     }
     return std::string("too slow");
   };
-  EXPECT_EQ(stop("1"), "saved in ball.png.partial");
-  EXPECT_EQ(stop("2"), "saved in ball.png.partial1");
-  EXPECT_TRUE(run(job + "2").err.starts_with("grelha: goes on from ball.png.partial1, "));
-  EXPECT_TRUE(std::filesystem::exists(folder_.file("ball.png.partial"))) << "the first's";
-  EXPECT_FALSE(std::filesystem::exists(folder_.file("ball.png.partial1")));
-  folder_.write("ball.png.partial", "a letter");
+  EXPECT_EQ(stop("1"), "saved in ball.partial.grelha");
+  EXPECT_EQ(stop("2"), "saved in ball.partial1.grelha");
+  EXPECT_EQ(folder_.list(),
+            "ball.nff ball.partial.grelha ball.partial.png ball.partial1.grelha ball.partial1.png");
+  const std::string other =
+      "grelha: ball.partial.grelha stays, which keeps another picture: it has "
+      "seed=1, this render has seed=";
+  EXPECT_TRUE(
+      run(job + "2").err.starts_with(other + "2\ngrelha: goes on from ball.partial1.grelha, "));
+  EXPECT_EQ(run(job + "3 --strict").err, other + "3\n") << "which is no warning";
+  EXPECT_EQ(run(job + "3 --quiet").err, "");
+  EXPECT_EQ(folder_.list(), "ball.nff ball.partial.grelha ball.partial.png ball.png");
+  EXPECT_TRUE(run(job + "1").err.starts_with("grelha: goes on from ball.partial.grelha, "));
+  EXPECT_EQ(folder_.list(), "ball.nff ball.png");
+  folder_.write("ball.partial.grelha", "a letter");
   EXPECT_EQ(run(job + "3").err, "");
-  EXPECT_EQ(folder_.read("ball.png.partial"), "a letter");
+  EXPECT_EQ(folder_.read("ball.partial.grelha"), "a letter");
 }
 
 TEST_F(LongWork, MapsAreThoseOfAnUndisturbedRun) {
@@ -167,7 +176,7 @@ TEST_F(LongWork, SignalsStopReadingAndBuilding) {
     seen[1] |= building;
   }
   EXPECT_TRUE(seen[0] && seen[1]);
-  for (const char* left : {"t.partial.png", "t.png.partial"})
+  for (const char* left : {"t.partial.png", "t.partial.grelha"})
     std::filesystem::remove(folder_.file(left));
   EXPECT_EQ(folder_.list(), "ball.nff t.nff t.ply t.png");
   const Outcome info =

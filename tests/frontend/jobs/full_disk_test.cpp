@@ -1,0 +1,126 @@
+// No room for a picture that is done, nor for its checkpoint. A part of long_work_test.
+#include <filesystem>
+
+#include "frontend/files/memory_limit.hpp"
+#include "frontend/jobs/partial.hpp"
+#include "tests/frontend/jobs/long_work.hpp"
+
+namespace grelha {
+namespace {
+
+namespace fs = std::filesystem;
+using test::kJobs;
+using test::Outcome;
+
+/// A disk without room is mounted at full/, or so it seems to the program; tmp/ is for what is
+/// temporary.
+class FullDisk : public test::LongWork {
+ protected:
+  FullDisk() {
+    fs::create_directory(folder_.file("full"));
+    fs::create_directory(folder_.file("tmp"));
+  }
+  void SetUp() override {
+    if (!memory_can_be_limited())
+      GTEST_SKIP() << "sanitizers want to be loaded first";
+  }
+  Outcome run_full(const std::string& arguments,
+                   const std::string& before = "",
+                   const std::string& temporary = "tmp") {
+    return run(
+        arguments,
+        "TMPDIR='" + folder_.file(temporary) + "' LD_PRELOAD='" GRELHA_FULL_DISK "' " + before);
+  }
+  /// The one file below tmp/.
+  std::string kept_elsewhere() {
+    std::string found;
+    for (const auto& entry : fs::recursive_directory_iterator(folder_.file("tmp")))
+      if (entry.is_regular_file())
+        found += entry.path().string();
+    return found;
+  }
+};
+
+constexpr char kNoRoom[] = "full/x.pfm: error: cannot write: No space left on device\n";
+
+TEST_F(FullDisk, KeepsAFinishedPictureElsewhere) {
+  for (const std::string job : kJobs) {
+    SCOPED_TRACE(job);
+    ASSERT_EQ(run(job + "-o whole.pfm").status, 0);
+    const Outcome outcome = run_full(job + "-o full/x.pfm");
+    const std::string kept = kept_elsewhere();
+    ASSERT_TRUE(kept.ends_with("/x.partial.grelha")) << kept;
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_EQ(outcome.err,
+              "grelha: all of the picture is kept in " + kept +
+                  ": the same command with --checkpoint " + kept + " writes it\n" + kNoRoom);
+    EXPECT_EQ(run(job + "-o full/x.pfm --checkpoint " + kept).status, 0);
+    EXPECT_EQ(folder_.read("full/x.pfm"), folder_.read("whole.pfm"));
+    EXPECT_EQ(kept_elsewhere(), "") << "done with";
+    fs::remove(folder_.file("full/x.pfm"));
+  }
+}
+
+/// The checkpoint has room already, that of what it held before.
+TEST_F(FullDisk, TheCheckpointHoldsAllOfAFinishedPicture) {
+  const std::string job = std::string(kJobs[0]) + "-o full/x.pfm --checkpoint full/kept";
+  ASSERT_EQ(run(std::string(kJobs[0]) + "-o whole.pfm").status, 0);
+  Outcome outcome;
+  for (double seconds = .05; !fs::exists(folder_.file("full/kept")); seconds *= 1.3) {
+    ASSERT_LT(seconds, 20);
+    outcome = run(job, "timeout --foreground --preserve-status -s INT " + std::to_string(seconds));
+    fs::remove(folder_.file("full/x.pfm"));
+  }
+  outcome = run_full(job);
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_EQ(outcome.err, kNoRoom);
+  EXPECT_EQ(share_done(read_partial(folder_.file("full/kept")).sums), 1);
+  EXPECT_EQ(folder_.list(), "ball.nff full tmp whole.pfm");
+  EXPECT_EQ(kept_elsewhere(), "");
+  EXPECT_EQ(run(job).status, 0) << "there is only the file to write";
+  EXPECT_EQ(folder_.read("full/x.pfm"), folder_.read("whole.pfm"));
+  EXPECT_FALSE(fs::exists(folder_.file("full/kept")));
+}
+
+TEST_F(FullDisk, KeepsWhatASignalStopped) {
+  const std::string job = std::string(kJobs[0]) + "-o full/x.pfm ";
+  for (const std::string option : {"", "--checkpoint full/kept"}) {
+    Outcome outcome;
+    for (double seconds = .05; kept_elsewhere().empty(); seconds *= 1.3) {
+      ASSERT_LT(seconds, 20);
+      outcome = run_full(
+          job + option,
+          "timeout --foreground --preserve-status -s INT " + std::to_string(seconds) + ' ');
+      fs::remove(folder_.file("full/x.pfm"));
+    }
+    const std::string kept = kept_elsewhere();
+    if (outcome.status == 1) {
+      fs::remove(kept);
+      continue;  // so fast that it had come to the end
+    }
+    EXPECT_EQ(outcome.status, 130);
+    EXPECT_NE(outcome.err.find("and saved in " + kept + ": the same command with --checkpoint " +
+                               kept + " goes on from there"),
+              outcome.err.npos)
+        << outcome.err;
+    EXPECT_EQ(run(job + "--checkpoint " + kept).status, 0);
+  }
+}
+
+TEST_F(FullDisk, WithoutAnyRoomThereIsOneLine) {
+  const std::string scene = folder_.file("ball.nff");
+  fs::copy(scene, folder_.file("full/ball.nff"));
+  const Outcome outcome = test::run(
+      folder_,
+      "render ball.nff --quiet -o x.pfm",
+      "cd full && TMPDIR='" + folder_.file("full") + "' LD_PRELOAD='" GRELHA_FULL_DISK "' ");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_EQ(outcome.err, "x.pfm: error: cannot write: No space left on device\n");
+  std::string left;
+  for (const auto& entry : fs::directory_iterator(folder_.file("full")))
+    left += entry.path().filename().string() + ' ';
+  EXPECT_EQ(left, "ball.nff ");
+}
+
+}  // namespace
+}  // namespace grelha
