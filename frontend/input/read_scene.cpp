@@ -14,6 +14,7 @@
 #include "frontend/input/default_view.hpp"
 #include "frontend/nff/nff_reader.hpp"
 #include "frontend/ply/ply_reader.hpp"
+#include "frontend/scene/choose_frame.hpp"
 #include "frontend/scene/scene_builder.hpp"
 #include "frontend/scene/warnings.hpp"
 

@@ -1,14 +1,11 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <string>
 
 #include "grelha/geometry.hpp"
 
 namespace grelha {
-
-struct SceneFile;
 
 /// Where a scene lies. A coordinate that a file gives is offset + coordinate in the scene / scale.
 ///
@@ -43,12 +40,6 @@ struct Frame {
     return {outside(p.x, 0), outside(p.y, 1), outside(p.z, 2)};
   }
 };
-
-/// The frame for a scene that was read in the file's own, if another one keeps more of it.
-std::optional<Frame> better_frame(const SceneFile& file);
-
-/// Whether the file's own frame loses something: a coordinate read in `file.frame` is no float there.
-bool needs_its_frame(const SceneFile& file);
 
 /// "1000 0 0", and what it is enlarged by: for messages.
 std::string text_of(const Frame& frame);

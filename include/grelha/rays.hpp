@@ -65,7 +65,7 @@ struct Hits {
   std::uint32_t* id = nullptr;
   /// [i] out: t before it was rounded to float, where rays were tested in double; else the same t
   double* t_double = nullptr;
-  std::ptrdiff_t stride = 1;   ///< of t and id, in units of four bytes
+  std::ptrdiff_t stride = 1;  ///< of t and id, in units of four bytes
 
   /// A view of an array of hits.
   static Hits of(std::span<Hit> hits);

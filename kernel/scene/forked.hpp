@@ -9,8 +9,8 @@ namespace grelha {
 ///
 /// A fork copies none of the parent's threads, but libgomp in the child still counts on those that
 /// the calling thread's team had, and waits for them for ever. A team belongs to the thread that
-/// starts it. So a forked process calls work() in a new thread, which starts a team of its own. What
-/// work() throws is thrown on.
+/// starts it. So a forked process calls work() in a new thread, which starts a team of its own.
+/// Exceptions of work() are thrown on.
 void run_fork_safe(const std::function<void()>& work);
 
 }  // namespace grelha

@@ -122,10 +122,13 @@ struct ConeCrossings {
   Real first, second;  ///< t, in either order; NaN where it is not of the side
 };
 
-/// cone_crossings() of float lanes in double, each t rounded once.
+/// Takes those float lanes from cone_crossings() in double, each t rounded once.
 template <class Real>
-[[gnu::noinline, gnu::cold]] ConeCrossings<Real> cone_crossings_in_double(
-    const Vec3<Real>& org, const Vec3<Real>& dir, const Cone::Fields<Real>& cone);
+[[gnu::noinline, gnu::cold]] void cross_cones_in_double(const Mask<Real>& exactly,
+                                                        const Vec3<Real>& org,
+                                                        const Vec3<Real>& dir,
+                                                        const Cone::Fields<Real>& cone,
+                                                        ConeCrossings<Real>& found);
 
 /// The points of each ray on the side of a cone frustum or cylinder, from outside or (through the
 /// open ends) inside, at any t.
@@ -150,8 +153,7 @@ template <class Real>
   const Real o(0);
   const Vec3<Real> axis = axis_of(cone);
   const Vec3<Real> to_base = vec(cone.base) - org;
-  // across the axis, turned by a quarter
-  const Vec3<Real> n = cross(dir, axis);
+  const Vec3<Real> n = cross(dir, axis);  // across the axis, turned by a quarter
   // by dir . dir, or products of four lengths overflow beyond 1e9
   const Vec3<Real> e = inv_dd * n;
   const Real aside = dot(to_base, e), de = dot(n, e);
@@ -159,8 +161,7 @@ template <class Real>
   const Real room = Real(kWider) * (wide * wide) * de + Real(kSineRoom) * dot(to_base, to_base);
   const Real within = room * inv_dd - aside * aside;
   // most lines pass the axis further away than the wider radius
-  Mask<Real> near_by = within >= o;
-  Mask<Real> exactly = o != o;
+  Mask<Real> near_by = within >= o, exactly = o != o;
   if constexpr (kFloat)
     if (exactly = wide * wide < Real(kLeastWidth); any(exactly)) [[unlikely]]
       near_by = either(near_by, exactly);
@@ -200,11 +201,8 @@ template <class Real>
   };
   ConeCrossings<Real> found{crosses, on_side(q / a), on_side(c / q)};
   if constexpr (kFloat)
-    if (any(exactly)) [[unlikely]] {
-      const ConeCrossings<Real> exact = cone_crossings_in_double<Real>(org, dir, cone);
-      found.first = select(exactly, exact.first, found.first);
-      found.second = select(exactly, exact.second, found.second);
-    }
+    if (any(exactly)) [[unlikely]]
+      cross_cones_in_double(exactly, org, dir, cone, found);
   return found;
 }
 
@@ -227,12 +225,15 @@ template <int i, class Real>
 }
 
 template <class Real>
-ConeCrossings<Real> cone_crossings_in_double(const Vec3<Real>& org,
-                                             const Vec3<Real>& dir,
-                                             const Cone::Fields<Real>& cone) {
+void cross_cones_in_double(const Mask<Real>& exactly,
+                           const Vec3<Real>& org,
+                           const Vec3<Real>& dir,
+                           const Cone::Fields<Real>& cone,
+                           ConeCrossings<Real>& found) {
   Wide<Real> first[kWideParts<Real>], second[kWideParts<Real>];
   cone_crossing_parts<0, Real>(org, dir, cone, first, second);
-  return {Real(0) == Real(0), narrow<Real>(first), narrow<Real>(second)};
+  found.first = select(exactly, narrow<Real>(first), found.first);
+  found.second = select(exactly, narrow<Real>(second), found.second);
 }
 
 /// First point of each ray on the side of a cone whose t is above t_min.

@@ -1,6 +1,6 @@
-// Each kind of primitive, however it lies and wherever rays start, by each precision and instruction
-// set against long double: all crossings of a ray, found by walking on from each to the next, and
-// where rays leave from what double met.
+// Each kind of primitive, however it lies and wherever rays start, by each precision and
+// instruction set against long double: all crossings of a ray, found by walking on from each to
+// the next, and where rays leave from what double met.
 #include "grelha/query.hpp"
 #include "kernel/shapes/surface.hpp"
 #include "tests/support/oracle.hpp"

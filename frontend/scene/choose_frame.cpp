@@ -1,0 +1,110 @@
+#include "frontend/scene/choose_frame.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "frontend/scene/bounds.hpp"
+
+namespace grelha {
+namespace {
+
+/// Sizes of a scene that its middle may lie from the origin: floats then keep a millionth of them.
+constexpr double kFarthest = 4;
+/// Squares of lengths from here on are sound floats whatever is done with them.
+constexpr double kSmallest = 0x1p-40;
+
+struct Place {
+  std::array<double, 3> middle;
+  double size;  ///< of the largest side
+};
+
+Place place_of(const SceneBounds& bounds) {
+  const float low[3] = {bounds.low.x, bounds.low.y, bounds.low.z};
+  const float high[3] = {bounds.high.x, bounds.high.y, bounds.high.z};
+  Place place{{}, 0};
+  for (std::size_t a = 0; a < 3; ++a) {
+    place.middle[a] = .5 * (double{low[a]} + high[a]);
+    place.size = std::max(place.size, double{high[a]} - low[a]);
+  }
+  return place;
+}
+
+double largest(const std::array<double, 3>& v) {
+  return std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
+}
+
+/// The least power of two that is not below.
+double power_of_two(double least) {
+  return std::ldexp(1, std::ilogb(least) + 1);
+}
+
+std::array<double, 3> offset_of(const Place& place) {
+  // as fine as floats are there, where nothing of the size is left
+  const double step = power_of_two(std::max(place.size, 0x1p-22 * largest(place.middle)));
+  std::array<double, 3> offset;
+  for (std::size_t a = 0; a < 3; ++a)
+    offset[a] = step * std::nearbyint(place.middle[a] / step);
+  return offset;
+}
+
+/// Calls visit(coordinates of one axis, axis) for every place of a scene but the camera's.
+template <class Visit>
+void each_place(const Geometry& g, const Visit& visit) {
+  const std::span<const float> places[][3] = {
+      {g.spheres.x, g.spheres.y, g.spheres.z},
+      {g.triangles.x, g.triangles.y, g.triangles.z},
+      {g.cones.base_x, g.cones.base_y, g.cones.base_z},
+      {g.cones.apex_x, g.cones.apex_y, g.cones.apex_z},
+      {g.planes.x, g.planes.y, g.planes.z},
+  };
+  for (const auto& place : places)
+    for (std::size_t a = 0; a < 3; ++a)
+      visit(place[a], a);
+}
+
+/// The largest coordinate of all that is seen or lights it.
+double reach_of(const SceneFile& file) {
+  double most = 0;
+  const auto add = [&](const Float3& p) { most = std::max(most, largest({p.x, p.y, p.z})); };
+  each_place(file.scene.geometry, [&](std::span<const float> places, std::size_t) {
+    for (const float c : places)
+      most = std::max(most, std::abs(double{c}));
+  });
+  if (!file.default_camera)
+    for (const Float3& p : {file.camera.eye, file.camera.at})
+      add(p);
+  for (const Light& light : file.scene.lights)
+    if (!file.default_light)
+      add(light.position);
+  return most;
+}
+
+}  // namespace
+
+std::optional<Frame> better_frame(const SceneFile& file) {
+  const SceneBounds bounds = bounds_of(file.scene.geometry);
+  const double reach = reach_of(file);
+  if (reach > 0 && reach < kSmallest)
+    return Frame{{}, 1 / power_of_two(reach)};
+  if (bounds.empty)
+    return {};
+  const Place place = place_of(bounds);
+  if (!std::isfinite(place.size) || !(largest(place.middle) > kFarthest * place.size))
+    return {};
+  return Frame{offset_of(place), 1};
+}
+
+bool needs_its_frame(const SceneFile& file) {
+  const Frame& frame = file.frame;
+  bool needed = frame.scale != 1;
+  each_place(file.scene.geometry, [&](std::span<const float> places, std::size_t a) {
+    needed = needed || std::ranges::any_of(places, [&](float c) {
+               const double outside = frame.outside(c, a);
+               return double{static_cast<float>(outside)} != outside;
+             });
+  });
+  return needed;
+}
+
+}  // namespace grelha
