@@ -14,7 +14,7 @@ set(allowed_kernel "^(kernel|grelha)/")
 set(allowed_frontend "^(frontend|kernel|grelha)/")
 # Rooms: each may include those before it and itself.
 set(rooms_kernel simd scene primitive triangle shapes grid world walk trace query
-  render features marks adaptive subdivision picture isa)
+  render adaptive subdivision picture isa)
 set(rooms_frontend files images scene ply nff input commands jobs cli)
 
 # Sets `result` to whether a file of a room includes one of a room above it, or one outside all

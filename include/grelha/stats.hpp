@@ -71,9 +71,10 @@ struct ErrorStats {
   /// of all pixels and channels against the converged picture, estimated
   double rmse = 0;
   double rmse_bound = 0;  ///< not exceeded at 95 % confidence
-  /// the same of about 1 % of the pixels by a second, independent set of samples; 0: there was none
+  /// rmse of about 5 % of the pixels by a second, independent set of samples; 0: there was none
   double audited = 0;
-  double widest = 0;          ///< widest 95 % interval of a pixel
+  int audits = 0;                   ///< such sets, of other pixels each
+  std::uint64_t audit_samples = 0;  ///< that they took, which are no part of the picture
   std::uint64_t samples = 0;  ///< of all pixels. RefineOptions::samples repeats a run by time.
   /// there were when the RMSE asked for was met: the others went to pixels with wide intervals. 0:
   /// it was not met, or not asked for.

@@ -10,11 +10,9 @@
 #include <omp.h>
 
 #include "kernel/world/world_impl.hpp"
+#include "kernel/adaptive/aimed_rays.hpp"
 #include "kernel/adaptive/audit.hpp"
-#include "kernel/adaptive/foreseen_samples.hpp"
-#include "kernel/adaptive/pixel_errors.hpp"
-#include "kernel/adaptive/pixel_features.hpp"
-#include "kernel/adaptive/pixel_order.hpp"
+#include "kernel/adaptive/block_errors.hpp"
 #include "kernel/adaptive/sampling_round.hpp"
 #include "kernel/adaptive/tolerances.hpp"
 #include "kernel/render/setup.hpp"
@@ -24,19 +22,11 @@
 namespace grelha {
 namespace {
 
-/// Logarithms of the samples that a pixel begins with, with effects to sample and without.
-constexpr int kFirstLogOfEffects = 3;
-constexpr int kFirstLog = 2;
-
-bool has_effects(const SamplePlan& plan) {
-  return plan.lens >= 0 || plan.light >= 0 || plan.gloss >= 0;
-}
-
 using Spaces = std::vector<std::unique_ptr<Workspace>>;
 
 /// A workspace a thread, for a chunk of runs.
 Spaces run_spaces(const Setup& setup, const RenderOptions& options, int threads) {
-  const std::size_t sums = std::size_t{kRunsOfChunk} * kParts;
+  const std::size_t sums = std::size_t{kBlocksOfChunk} * kBlockPixels * kParts;
   const TraceLoops* const loops = loops_of(setup.variant, options.precision);
   Spaces spaces;
   for (int i = 0; i < threads; ++i)
@@ -60,15 +50,14 @@ class AdaptiveSampler {
         r_(r),
         stats_(stats),
         seconds_before_(r.seconds),
-        first_log_(has_effects(setup.plan) ? kFirstLogOfEffects : kFirstLog),
-        order_(pixel_order(r.width, r.height)),
-        errors_(r, has_effects(setup.plan), first_log_, thread_count(options, r.log.size())),
+        blocks_(r.blocks()),
+        order_(blocks_.by_tiles()),
+        samples_(samples_taken(r)),
+        errors_(r, thread_count(options, r.log.size())),
         spaces_(run_spaces(setup, options, thread_count(options, r.log.size()))) {
     stats_ = {};
     stats_.threads = thread_count(options, r.log.size());
     stats_.isa = setup.variant.name.data();
-    for (std::size_t p = 0; p < order_.size(); ++p)
-      samples_ += sample_count(r, p);
   }
 
   void run() {
@@ -81,7 +70,7 @@ class AdaptiveSampler {
       if (!judged)
         continue;
       if (r_.rounds++ == 0)
-        find_hidden();
+        aim();
       choose_next();
       if (options_.refine.error > 0 && is_audit_due() && !errors_stand())
         choose_next();
@@ -97,53 +86,51 @@ class AdaptiveSampler {
 
   /// Describes the picture as it is.
   void report(SampleMaps* maps) const {
-    const PixelErrors::Totals totals = errors_.totals();
+    const BlockErrors::Totals totals = errors_.totals();
     ErrorStats& e = stats_.error;
     // what pixels claim and the last audit, which is as likely above the truth as below
     const bool by_audit = r_.met && !(totals.bound <= options_.refine.error);
     e.rmse = by_audit ? std::sqrt(r_.audited) : totals.rmse;
-    e.rmse_bound = stated(by_audit ? std::sqrt(r_.audited_bound)
-                                   : std::max(totals.bound, std::sqrt(r_.audited)));
+    e.rmse_bound =
+        by_audit ? std::sqrt(r_.audited_bound) : std::max(totals.bound, std::sqrt(r_.audited));
     e.audited = std::sqrt(r_.audited);
+    e.audits = r_.audits;
+    e.audit_samples = r_.audit_samples;
     e.met_at = r_.met_at;
     e.rounds = r_.rounds;
     e.samples = samples_;
     e.least = kMostSamples;
-    for (std::size_t p = 0; p < order_.size(); ++p) {
-      e.least = std::min(e.least, sample_count(r_, p));
-      e.most = std::max(e.most, sample_count(r_, p));
+    for (std::size_t b = 0; b < blocks_.count(); ++b) {
+      e.least = std::min(e.least, sample_count(r_, b));
+      e.most = std::max(e.most, sample_count(r_, b));
     }
     if (maps)
       fill(*maps);
   }
 
  private:
-  void find_hidden() {
-    errors_.measure();
-    find_hidden_features(
-        world_, setup_, errors_, options_.refine.error, stats_.threads, r_, stats_.trace);
-  }
-
-  /// A bound as it is told. Runs stop where theirs happens to be low; the error asked for is met
-  /// all the same.
-  double stated(double bound) const {
-    return std::min(kStoppedLow * bound, std::max(bound, options_.refine.error));
+  /// Looks for things that samples may miss, unless all of them together could not matter.
+  void aim() {
+    const double error = options_.refine.error, pixels = static_cast<double>(r_.box.size());
+    if (std::min(static_cast<double>(thing_count(world_)), pixels) <= error * error * pixels)
+      return;
+    errors_.set_missed(aim_at_small_things(world_, setup_, stats_.threads, r_, stats_.trace));
   }
 
   void fill(SampleMaps& maps) const {
-    maps.samples.resize(order_.size());
-    maps.error.resize(order_.size());
+    maps.samples.resize(r_.box.size());
+    maps.error.resize(r_.box.size());
     maps.width = errors_.widths();
-    for (std::size_t p = 0; p < order_.size(); ++p) {
-      maps.samples[p] = sample_count(r_, p);
-      maps.error[p] = std::sqrt(errors_.variance(p));
-    }
+    for (std::size_t b = 0; b < blocks_.count(); ++b)
+      blocks_.each_pixel(b, [&](std::size_t p) {
+        maps.samples[p] = sample_count(r_, b);
+        maps.error[p] = std::sqrt(errors_.variance(b));
+      });
   }
 
   void choose_next() {
     errors_.judge();
-    r_.finished =
-        !choose_round(r_, errors_, options_.refine, order_, {samples_, seconds()}, first_log_);
+    r_.finished = !choose_round(r_, errors_, options_.refine, order_, {samples_, seconds()});
   }
 
   /// Where the error asked for seems to be met; and from then on, if that does not stand, each time
@@ -156,13 +143,13 @@ class AdaptiveSampler {
                                                kGrowthOfAudits * static_cast<double>(r_.audited_at);
   }
 
-  /// Whether an audit agrees with what pixels claim, or says that the error is met; what it finds
+  /// Whether an audit agrees with what blocks claim, or says that the error is met; what it finds
   /// counts from now on.
   bool errors_stand() {
-    const std::uint64_t before = stats_.rays.total();
-    const Audit found =
-        audit(world_, setup_, options_, errors_, r_, first_log_, audit_samples_, stats_);
-    r_.rays += stats_.rays.total() - before;
+    const RayCounts before = stats_.rays;
+    const Audit found = audit(world_, setup_, options_, errors_, r_, stats_);
+    r_.rays += stats_.rays.total() - before.total();
+    r_.audit_samples += stats_.rays.primary - before.primary;
     const AuditedPixels& others = found.others;
     const AuditedPixels& agreeing = found.agreeing;
     const bool first = r_.audits++ == 0;
@@ -172,7 +159,7 @@ class AdaptiveSampler {
     r_.audited_bound = found.bound();
     const double error = options_.refine.error;
     r_.met = r_.audited_bound <= error * error;
-    // that pixels claim so as well makes the middle of what the first says do
+    // that blocks claim so as well makes the middle of what the first says do
     if (r_.met || (first && (!worse || r_.audited <= error * error)))
       return r_.finished;
     r_.worse = others.how_much_worse(r_.worse);
@@ -190,10 +177,10 @@ class AdaptiveSampler {
     return seconds_before_ + std::chrono::duration<double>(Clock::now() - start_).count();
   }
 
-  /// Doubles the samples of the wanted pixels, or takes the first ones. Returns whether it came to
+  /// Doubles the samples of the wanted blocks, or takes the first ones. Returns whether it came to
   /// the end.
   bool take_round() {
-    std::vector<Chunk> chunks = cut_round(r_, first_log_);
+    std::vector<Chunk> chunks = cut_round(r_);
     std::atomic<std::size_t> begun = 0;
 #pragma omp parallel num_threads(stats_.threads)
     {
@@ -219,15 +206,6 @@ class AdaptiveSampler {
     return end_round(r_, chunks, std::min(begun.load(), chunks.size()));
   }
 
-  /// As far as is foreseen. Where an audit has met the error few pixels are left, whatever they
-  /// claim.
-  double samples_left() const {
-    if (r_.rounds == 0 || r_.share <= 0 || r_.met)
-      return 0;
-    return options_.refine.error > 0 ? foreseen_samples(r_, errors_, options_.refine.error)
-                                     : static_cast<double>(samples_) * (1 / r_.share - 1);
-  }
-
   void tell_progress() {
 #pragma omp critical(grelha_progress)
     {
@@ -240,32 +218,38 @@ class AdaptiveSampler {
 
   /// The next samples of each pixel of a chunk; the space gets their names and boxes, sum by sum.
   int runs_of(const Chunk& chunk, PixelRun* runs, Workspace& space) const {
-    const std::size_t count = chunk.end - chunk.begin;
-    for (std::size_t r = 0; r < count; ++r) {
-      const std::uint32_t p = r_.wanted[chunk.begin + r];
-      runs[r] = {p, sample_count(r_, p), next_count(r_, p, first_log_)};
-      const auto sum = static_cast<std::ptrdiff_t>(r * kParts);
-      std::fill_n(space.pixels().begin() + sum, kParts, p);
-      std::fill_n(space.boxes().begin() + sum, kParts, r_.box[p]);
+    int count = 0;
+    for (std::size_t w = chunk.begin; w < chunk.end; ++w) {
+      const std::uint32_t b = r_.wanted[w];
+      blocks_.each_pixel(b, [&](std::size_t p) {
+        const auto sum = static_cast<std::ptrdiff_t>(count) * kParts;
+        const auto pixel = static_cast<std::uint32_t>(p);
+        std::fill_n(space.pixels().begin() + sum, kParts, pixel);
+        std::fill_n(space.boxes().begin() + sum, kParts, r_.box[p]);
+        runs[count++] = {pixel, sample_count(r_, b), next_count(r_, b)};
+      });
     }
-    return static_cast<int>(count);
+    return count;
   }
 
   void take_chunk(Chunk& chunk, Workspace& space, TraceCounts& trace, RayCounts& rays) {
-    PixelRun runs[kRunsOfChunk];
+    PixelRun runs[kBlocksOfChunk * kBlockPixels];
     const int count = runs_of(chunk, runs, space);
     const RayCounts before = rays;
-    const BandWork work = space.work(options_, 0, true);
+    const BandWork work = space.work(options_, 0, true, r_.rounds > 0);
     setup_.variant.loops.render_runs(
         world_.view, setup_.shading, setup_.frame, runs, count, work, trace, rays);
     const std::int64_t* const sums = space.sums().data();
     for (int r = 0; r < count; ++r)
-      add_run(r_, runs[r], sums + r * kParts * 3, first_log_, chunk);
+      add_run(r_, runs[r], sums + r * kParts * 3, chunk);
     space.done(options_);
     const float cost = static_cast<float>(rays.total() - before.total()) /
                        static_cast<float>(rays.primary - before.primary);
-    for (int r = 0; r < count; ++r)
-      r_.cost[runs[r].pixel] = cost;
+    for (std::size_t w = chunk.begin; w < chunk.end; ++w) {
+      const std::uint32_t b = r_.wanted[w];
+      r_.cost[b] = cost;
+      r_.log[b] = static_cast<std::uint8_t>(r_.log[b] == 0 ? kFirstLog : r_.log[b] + 1);
+    }
   }
 
   using Clock = std::chrono::steady_clock;
@@ -277,11 +261,10 @@ class AdaptiveSampler {
   Refinement& r_;
   RenderStats& stats_;
   const double seconds_before_;
-  const int first_log_;
+  const Blocks blocks_;
   const std::vector<std::uint32_t> order_;
-  std::uint64_t samples_ = 0;  ///< taken, of all pixels
-  PixelErrors errors_;
-  AuditSamples audit_samples_;
+  std::uint64_t samples_;  ///< taken, of all pixels
+  BlockErrors errors_;
   const Spaces spaces_;
 };
 

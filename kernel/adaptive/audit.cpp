@@ -14,45 +14,82 @@
 namespace grelha {
 namespace {
 
-constexpr double kAuditedShare = .01;   ///< of pixels
+/// Share of the pixels that an audit samples again: so few that it costs no more than that, and
+/// enough to notice one wrong pixel in a thousand of a picture of 192 x 192 (measured: with .01
+/// runs stopped above the error asked for three times as often).
+constexpr double kAuditedShare = .05;
 constexpr double kFewestAudited = 256;  ///< but of small pictures
-constexpr double kMostAudited = 1. / 16;
-/// Those that claim most are audited for themselves: few could hold most of an error.
+constexpr double kMostAudited = 1. / 8;
+/// Blocks that claim most are audited for themselves: few could hold most of an error.
 constexpr std::size_t kWorstAudited = 16;
 constexpr std::uint32_t kOtherSeed = 0x5BD1E995u;
 constexpr std::size_t kPixelsOfTurn = 64;
 
-struct Sample {
-  std::vector<std::uint32_t> pixels;
-  std::size_t worst = 0;  ///< the first stand for themselves,
-  double stands_for = 1;  ///< each of the others for so many
+/// A pixel that is sampled again.
+struct Audited {
+  std::uint32_t pixel, block;
+  double stands_for;  ///< so many pixels
+  std::int64_t sums[3] = {};
 };
 
-/// The pixels that claim the greatest variances, then others by a hash.
-Sample audited_pixels(const Refinement& r, const PixelErrors& errors, std::uint32_t seed) {
-  const std::size_t count = r.log.size();
-  Sample sample;
-  std::vector<std::uint32_t>& pixels = sample.pixels;
-  pixels.resize(count);
-  std::iota(pixels.begin(), pixels.end(), 0u);
-  sample.worst = std::min(kWorstAudited, count / 16);
-  const auto worst = pixels.begin() + static_cast<std::ptrdiff_t>(sample.worst);
-  std::nth_element(pixels.begin(), worst, pixels.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return errors.variance(a) != errors.variance(b) ? errors.variance(a) > errors.variance(b)
-                                                    : a < b;
-  });
-  std::sort(pixels.begin(), worst);
-  const double share =
-      std::max(kAuditedShare, std::min(kMostAudited, kFewestAudited / static_cast<double>(count)));
-  const auto others = std::remove_if(worst, pixels.end(), [&](std::uint32_t p) {
-    return !(scattered_bits(p ^ scattered_bits(seed)) < share * 0x1p32);
-  });
-  pixels.erase(others, pixels.end());
-  std::sort(pixels.begin() + static_cast<std::ptrdiff_t>(sample.worst), pixels.end());
-  if (pixels.size() > sample.worst)
-    sample.stands_for = static_cast<double>(count - sample.worst) /
-                        static_cast<double>(pixels.size() - sample.worst);
-  return sample;
+/// Blocks by falling variance: the first kWorstAudited.
+std::vector<std::uint32_t> worst_blocks(const BlockErrors& errors, std::size_t count) {
+  std::vector<std::uint32_t> blocks(count);
+  std::iota(blocks.begin(), blocks.end(), 0u);
+  const std::size_t worst = std::min(kWorstAudited, count / 16);
+  std::nth_element(blocks.begin(),
+                   blocks.begin() + static_cast<std::ptrdiff_t>(worst),
+                   blocks.end(),
+                   [&](std::uint32_t a, std::uint32_t b) {
+                     return errors.variance(a) != errors.variance(b)
+                                ? errors.variance(a) > errors.variance(b)
+                                : a < b;
+                   });
+  blocks.resize(worst);
+  std::sort(blocks.begin(), blocks.end());
+  return blocks;
+}
+
+/// Where none of m pixels is off, 3 / m of all may be, by no more than 1: enough of them for an
+/// error asked for.
+double share_for(double error, std::size_t pixels) {
+  const double count = static_cast<double>(pixels);
+  return std::min(std::max(kAuditedShare, std::min(kMostAudited, kFewestAudited / count)),
+                  6 / (error * error * count));
+}
+
+/// One pixel of each of the blocks that claim most, then others by a hash, block by block.
+std::vector<Audited> audited_pixels(const Refinement& r,
+                                    const BlockErrors& errors,
+                                    std::uint32_t seed,
+                                    double error) {
+  const Blocks blocks = r.blocks();
+  const std::vector<std::uint32_t> worst = worst_blocks(errors, blocks.count());
+  const double share = share_for(error, r.box.size());
+  const std::uint32_t draw = scattered_bits(seed + static_cast<std::uint32_t>(r.audits));
+  std::vector<Audited> audited;
+  std::size_t others = 0, of_worst = 0;
+  for (std::uint32_t b = 0; b < blocks.count(); ++b) {
+    const bool is_worst = std::binary_search(worst.begin(), worst.end(), b);
+    const std::size_t in_block = blocks.pixels(b);
+    const std::size_t drawn = scattered_bits(b ^ draw) % in_block;
+    std::size_t k = 0;
+    blocks.each_pixel(b, [&](std::size_t p) {
+      const auto pixel = static_cast<std::uint32_t>(p);
+      if (is_worst && k++ == drawn)
+        audited.push_back({pixel, b, static_cast<double>(in_block)});
+      else if (!is_worst && scattered_bits(pixel ^ draw) < share * 0x1p32)
+        audited.push_back({pixel, b, 0});
+    });
+    if (is_worst)
+      of_worst += in_block;
+  }
+  for (const Audited& a : audited)
+    others += a.stands_for == 0;
+  for (Audited& a : audited)
+    if (a.stands_for == 0)
+      a.stands_for = static_cast<double>(r.box.size() - of_worst) / static_cast<double>(others);
+  return audited;
 }
 
 double shown(double x) {
@@ -66,24 +103,18 @@ class Auditor {
           const Setup& setup,
           const RenderOptions& options,
           const Refinement& r,
-          int first_log,
           RenderStats& stats)
       : world_(world),
         setup_(setup),
         options_(options),
         r_(r),
-        first_(1u << first_log),
         stats_(stats),
         plan_(setup.plan) {
     plan_.seed = scattered_bits(plan_.seed ^ kOtherSeed);
   }
 
-  /// Brings what was sampled of pixels to as many samples as the picture has of them.
-  void sample(const std::vector<std::uint32_t>& pixels, AuditSamples& samples) const {
-    std::vector<AuditSamples::Pixel*> of;
-    of.reserve(pixels.size());
-    for (const std::uint32_t p : pixels)
-      of.push_back(&samples.pixels[p]);
+  /// Gives pixels as many samples as the picture has of them.
+  void sample(std::vector<Audited>& pixels) const {
     const int threads = stats_.threads;
 #pragma omp parallel num_threads(threads)
     {
@@ -94,7 +125,7 @@ class Auditor {
 #pragma omp for schedule(dynamic)
       for (std::size_t first = 0; first < pixels.size(); first += kPixelsOfTurn) {
         const std::size_t count = std::min(kPixelsOfTurn, pixels.size() - first);
-        sample_turn({pixels.data() + first, count}, of.data() + first, space, trace, rays);
+        sample_turn({pixels.data() + first, count}, space, trace, rays);
       }
 #pragma omp critical(grelha_stats)
       {
@@ -105,41 +136,43 @@ class Auditor {
   }
 
   /// Half the squared difference, mean of a pixel's channels.
-  double half_square(std::uint32_t p, const AuditSamples::Pixel& sampled) const {
+  double half_square(const Audited& of) const {
+    const std::uint32_t samples = sample_count(r_, of.block);
     double squares = 0;
     for (std::size_t c = 0; c < 3; ++c) {
-      const double again = static_cast<double>(sampled.sums[c]) / (kLightUnit * sampled.count);
+      const double again = static_cast<double>(of.sums[c]) / (kLightUnit * samples);
       const double d =
-          shown(static_cast<double>(mean_so_far(r_, std::size_t{p} * 3 + c))) - shown(again);
+          shown(static_cast<double>(mean_so_far(r_, std::size_t{of.pixel} * 3 + c, samples))) -
+          shown(again);
       squares += d * d;
     }
     return squares / 6;
   }
 
  private:
-  void sample_turn(std::span<const std::uint32_t> pixels,
-                   AuditSamples::Pixel* const* of,
+  void sample_turn(std::span<Audited> pixels,
                    Workspace& space,
                    TraceCounts& trace,
                    RayCounts& rays) const {
+    constexpr std::uint32_t kFirst = 1u << kFirstLog;
     PixelRun runs[2 * kPixelsOfTurn];
-    AuditSamples::Pixel* owner[2 * kPixelsOfTurn];
+    Audited* owner[2 * kPixelsOfTurn];
     int count = 0;
-    for (std::size_t i = 0; i < pixels.size(); ++i) {
+    for (Audited& a : pixels) {
       // the first samples go to all of a pixel, the others in part to its box
-      for (const std::uint32_t end : {first_, sample_count(r_, pixels[i])}) {
-        const std::uint32_t begin = of[i]->count;
+      std::uint32_t begin = 0;
+      for (const std::uint32_t end : {kFirst, sample_count(r_, a.block)}) {
         if (begin >= end)
           continue;
         const auto sum = static_cast<std::ptrdiff_t>(count) * kParts;
-        std::fill_n(space.pixels().begin() + sum, kParts, pixels[i]);
-        std::fill_n(space.boxes().begin() + sum, kParts, begin > 0 ? r_.box[pixels[i]] : 0);
-        owner[count] = of[i];
-        runs[count++] = {pixels[i], begin, end - begin};
-        of[i]->count = end;
+        std::fill_n(space.pixels().begin() + sum, kParts, a.pixel);
+        std::fill_n(space.boxes().begin() + sum, kParts, begin > 0 ? r_.box[a.pixel] : 0);
+        owner[count] = &a;
+        runs[count++] = {a.pixel, begin, end - begin};
+        begin = end;
       }
     }
-    const BandWork work = space.work(options_, 0, true);
+    const BandWork work = space.work(options_, 0, true, true);
     setup_.variant.loops.render_runs(
         world_.view, setup_.shading, setup_.frame, runs, count, work, trace, rays);
     for (int i = 0; i < count * kParts * 3; ++i)
@@ -151,7 +184,6 @@ class Auditor {
   const Setup& setup_;
   const RenderOptions& options_;
   const Refinement& r_;
-  const std::uint32_t first_;
   RenderStats& stats_;
   SamplePlan plan_;
 };
@@ -186,22 +218,20 @@ double Audit::bound() const {
 Audit audit(const World::Impl& world,
             const Setup& setup,
             const RenderOptions& options,
-            const PixelErrors& errors,
+            const BlockErrors& errors,
             const Refinement& r,
-            int first_log,
-            AuditSamples& samples,
             RenderStats& stats) {
-  const Sample sample = audited_pixels(r, errors, setup.plan.seed);
-  const Auditor auditor(world, setup, options, r, first_log, stats);
-  auditor.sample(sample.pixels, samples);
+  std::vector<Audited> pixels =
+      audited_pixels(r, errors, setup.plan.seed, options.refine.error);
+  const Auditor auditor(world, setup, options, r, stats);
+  auditor.sample(pixels);
   Audit sum;
-  for (std::size_t i = 0; i < sample.pixels.size(); ++i) {
-    const std::uint32_t p = sample.pixels[i];
-    AuditedPixels& of = errors.agrees(p) ? sum.agreeing : sum.others;
-    of.add(auditor.half_square(p, samples.pixels.at(p)),
-           static_cast<double>(errors.variance(p)),
-           sample_count(r, p),
-           i < sample.worst ? 1 : sample.stands_for);
+  for (const Audited& a : pixels) {
+    AuditedPixels& of = errors.agrees(a.block) ? sum.agreeing : sum.others;
+    of.add(auditor.half_square(a),
+           static_cast<double>(errors.variance(a.block)),
+           sample_count(r, a.block),
+           a.stands_for);
   }
   return sum;
 }

@@ -3,12 +3,10 @@
 // decided where to stop cannot be wrong in the same way twice.
 
 #include <cstddef>
-#include <cstdint>
-#include <unordered_map>
 
 #include "grelha/render_options.hpp"
 #include "grelha/stats.hpp"
-#include "kernel/adaptive/pixel_errors.hpp"
+#include "kernel/adaptive/block_errors.hpp"
 #include "kernel/render/setup.hpp"
 #include "kernel/world/world_impl.hpp"
 
@@ -34,7 +32,7 @@ struct AuditedPixels {
 };
 
 struct Audit {
-  AuditedPixels agreeing, others;  ///< pixels whose samples agree, and those whose do not
+  AuditedPixels agreeing, others;  ///< pixels of blocks whose samples agree, and of others
 
   double mean_square() const {
     return (agreeing.squared + others.squared) / (agreeing.count + others.count);
@@ -43,24 +41,13 @@ struct Audit {
   double bound() const;
 };
 
-/// What audits of a picture have sampled. A pixel's sequence only grows, so the next audit takes
-/// what comes behind.
-struct AuditSamples {
-  struct Pixel {
-    std::uint32_t count = 0;
-    std::int64_t sums[3] = {};  ///< of light, in kLightUnit
-  };
-  std::unordered_map<std::uint32_t, Pixel> pixels;
-};
-
-/// The same for any number of threads, and whatever was sampled before.
+/// Samples some pixels of a picture once more, by another sequence: others each time. The same for
+/// any number of threads. `stats` gets the rays, r.audit_samples stays as it is.
 Audit audit(const World::Impl& world,
             const Setup& setup,
             const RenderOptions& options,
-            const PixelErrors& errors,
+            const BlockErrors& errors,
             const Refinement& r,
-            int first_log,
-            AuditSamples& samples,
             RenderStats& stats);
 
 }  // namespace grelha

@@ -17,13 +17,13 @@ bool lies(T value, T least, T most) {
   return value >= least && value <= most;  // NaN does not
 }
 
-/// Pixels that can take more samples, each once: threads work on all of them at the same time.
+/// Blocks that can take more samples, each once: threads work on all of them at the same time.
 bool is_round(const Refinement& r) {
   std::vector<bool> there(r.log.size());
-  for (const std::uint32_t p : r.wanted) {
-    if (p >= there.size() || there[p] || r.log[p] >= kMostLog)
+  for (const std::uint32_t b : r.wanted) {
+    if (b >= there.size() || there[b] || r.log[b] >= kMostLog)
       return false;
-    there[p] = true;
+    there[b] = true;
   }
   return true;
 }
@@ -55,20 +55,17 @@ bool is_sound_sum(std::int64_t s) {
   return lies(s, -kMost, kMost);
 }
 
-/// Two samples do not fall into kParts.
 bool is_sound_log(std::uint8_t l) {
-  return l != 1 && l <= kMostLog;
+  return l == 0 || (l >= kFirstLog && l <= kMostLog);
 }
 
 bool has_sound_sizes(const Refinement& r) {
-  const std::size_t pixels = pixel_count(r);
+  const std::size_t pixels = pixel_count(r), blocks = r.blocks().count();
   for (const auto& level : r.squares)
     if (level.size() != pixels * 3)
       return false;
-  for (const auto* values : {&r.cost, &r.inside, &r.around, &r.boxed})
-    if (values->size() != pixels)
-      return false;
-  return r.sums.size() == pixels * 3 && r.log.size() == pixels && r.box.size() == pixels;
+  return r.sums.size() == pixels * 3 && r.box.size() == pixels && r.log.size() == blocks &&
+         r.cost.size() == blocks;
 }
 
 /// Its sides are in order; see packed().
@@ -82,12 +79,9 @@ bool has_sound_arrays(const Refinement& r) {
   for (const auto& level : r.squares)
     if (!all_from_0_on(level))
       return false;
-  for (const auto* values : {&r.cost, &r.inside, &r.around, &r.boxed})
-    if (!all_from_0_on(*values))
-      return false;
   return std::all_of(r.sums.begin(), r.sums.end(), is_sound_sum) &&
          std::all_of(r.log.begin(), r.log.end(), is_sound_log) &&
-         std::all_of(r.box.begin(), r.box.end(), is_sound_box) &&
+         std::all_of(r.box.begin(), r.box.end(), is_sound_box) && all_from_0_on(r.cost) &&
          std::all_of(r.cost.begin(), r.cost.end(), [](float c) { return c >= 1; });
 }
 
@@ -97,16 +91,13 @@ Refinement make_refinement(const Camera& camera) {
   Refinement r;
   r.width = camera.width;
   r.height = camera.height;
-  const std::size_t pixels = pixel_count(r);
+  const std::size_t pixels = pixel_count(r), blocks = r.blocks().count();
   resize_to_fill(r.sums, pixels * 3);
   for (auto& level : r.squares)
     resize_to_fill(level, pixels * 3);
-  resize_to_fill(r.cost, pixels, 1.f);
-  resize_to_fill(r.inside, pixels);
-  resize_to_fill(r.around, pixels, 1.f);
-  resize_to_fill(r.boxed, pixels);
   resize_to_fill(r.box, pixels);
-  resize_to_fill(r.log, pixels);
+  resize_to_fill(r.cost, blocks, 1.f);
+  resize_to_fill(r.log, blocks);
   return r;
 }
 
@@ -118,10 +109,22 @@ bool is_sound(const Refinement& r) {
   return !r.finished && is_round(r);
 }
 
+std::uint64_t samples_taken(const Refinement& r) {
+  const Blocks blocks = r.blocks();
+  std::uint64_t samples = 0;
+  for (std::size_t b = 0; b < r.log.size(); ++b)
+    samples += sample_count(r, b) * blocks.pixels(b);
+  return samples;
+}
+
 Image picture_so_far(const Refinement& r) {
   Image image = image_to_fill(r.width, r.height);
-  for (std::size_t i = 0; i < image.rgb.size(); ++i)
-    image.rgb[i] = mean_so_far(r, i);
+  const Blocks blocks = r.blocks();
+  for (std::size_t b = 0; b < r.log.size(); ++b)
+    blocks.each_pixel(b, [&](std::size_t p) {
+      for (std::size_t i = 3 * p; i < 3 * p + 3; ++i)
+        image.rgb[i] = mean_so_far(r, i, 1u << r.log[b]);
+    });
   return image;
 }
 

@@ -10,41 +10,42 @@
 #include "grelha/camera.hpp"
 #include "grelha/image.hpp"
 #include "grelha/render_options.hpp"
+#include "kernel/adaptive/blocks.hpp"
 #include "kernel/scene/light_unit.hpp"
 
 namespace grelha {
 
 inline constexpr int kMostLog = 16;
 static_assert(1 << kMostLog == kMostSamples);
+/// Logarithm of the samples that a pixel begins with: two packets a block, and a difference of
+/// eighths in each pixel.
+inline constexpr int kFirstLog = 3;
 
 /// All that is known of a picture between two pieces of its work.
 ///
-/// Every pixel starts with a few samples; each round then doubles those of the pixels whose
+/// Every pixel starts with 2^kFirstLog samples; each round then doubles those of the blocks whose
 /// variance would fall most for each new ray. A pixel's samples are one Owen-scrambled sequence:
 /// E[(A - B)^2] / 4 of the means A, B of its halves is V(n/2) - V(n), without a model; that V falls
-/// by `rho` a doubling, measured over the picture, gives V(n).
+/// by `variance_ratio` a doubling, measured over the picture, gives V(n).
 struct Refinement {
   int width = 0;
   int height = 0;
   std::vector<std::int64_t> sums;  ///< [pixels][3] linear RGB, units of 2^-32
   /// [pixels][3] squared differences of halves, quarters, eighths, summed by level
   std::array<std::vector<float>, 3> squares;
-  /// [pixels] rays a sample takes, of the part of the picture last sampled with the pixel
-  std::vector<float> cost;
-  /// [pixels] weights of what may hide from the samples, see Doubt
-  std::vector<float> inside, around, boxed;
-  /// [pixels] where in the pixel `boxed` is, see PixelBox
-  std::vector<std::uint32_t> box;
-  std::vector<std::uint8_t> log;  ///< [pixels] of the number of samples; 0: none yet
-  /// pixels that the round in work has not come to, in its order; between rounds none
+  std::vector<std::uint32_t> box;  ///< [pixels] where aimed rays arrived, see PixelBox; 0: nowhere
+  std::vector<float> cost;  ///< [blocks] rays a sample takes, of the chunk last sampled with it
+  /// [blocks] of the number of samples of each pixel; 0: none yet
+  std::vector<std::uint8_t> log;
+  /// blocks that the round in work has not come to, in its order; between rounds none
   std::vector<std::uint32_t> wanted;
   /// of the last rounds: sums of squared differences of halves of everything, and of the new half
   double variance_drop = 0;
   double variance_level = 0;
   double round_drop = 0, round_level = 0;  ///< the same of the round in work
   float variance_ratio = .4f;              ///< V(n) / V(n/2)
-  float gain_threshold = .25f;  ///< gain a ray that a pixel of the round in work had to promise
-  /// what audits found: variances that are so many times what pixels show, and so much over the
+  float gain_threshold = .25f;  ///< gain a ray that a block of the round in work had to promise
+  /// what audits found: variances that are so many times what blocks show, and so much over the
   /// number of samples at least where these agree; mean squares, of the last
   double worse = 1, least_by_sample = 0, audited = 0;
   double audited_bound = 0;
@@ -52,23 +53,26 @@ struct Refinement {
   bool met = false;              ///< so the last audit said
   std::uint64_t audited_at = 0;  ///< samples there were then
   std::uint64_t met_at = 0;      ///< samples there were when the error was met; 0: it is not
-  int rounds = 0;                ///< done
-  bool last = false;             ///< no round follows the one in work
+  std::uint64_t audit_samples = 0;  ///< taken for audits alone
+  int rounds = 0;                   ///< done
+  bool last = false;                ///< no round follows the one in work
   bool finished = false;
   std::uint64_t rays = 0;  ///< sent so far
   double seconds = 0;      ///< spent so far
   double share = 0;        ///< of the way to what was asked for, as far as is known
+
+  Blocks blocks() const { return {width, height}; }
 };
 
-/// Samples a pixel has.
-inline std::uint32_t sample_count(const Refinement& r, std::size_t pixel) {
-  return r.log[pixel] == 0 ? 0 : 1u << r.log[pixel];
+/// Samples that each pixel of a block has.
+inline std::uint32_t sample_count(const Refinement& r, std::size_t block) {
+  return r.log[block] == 0 ? 0 : 1u << r.log[block];
 }
 
-/// Mean of the samples so far, of channel i % 3 of pixel i / 3.
-inline float mean_so_far(const Refinement& r, std::size_t i) {
+/// Mean of `samples` samples, of channel i % 3 of pixel i / 3.
+inline float mean_so_far(const Refinement& r, std::size_t i, std::uint32_t samples) {
   return static_cast<float>(static_cast<double>(r.sums[i]) /
-                            (kLightUnit * static_cast<double>(1u << r.log[i / 3])));
+                            (kLightUnit * static_cast<double>(samples)));
 }
 
 /// Of a picture nothing is known of.
@@ -77,6 +81,9 @@ Refinement make_refinement(const Camera& camera);
 /// Whether no array has another size than the others and no number is one that rendering cannot
 /// leave behind: what a file says must pass this before it is gone on with.
 bool is_sound(const Refinement& r);
+
+/// Samples taken, of all pixels.
+std::uint64_t samples_taken(const Refinement& r);
 
 /// What has no sample yet is black.
 Image picture_so_far(const Refinement& r);

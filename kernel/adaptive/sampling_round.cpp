@@ -8,12 +8,13 @@
 namespace grelha {
 namespace {
 
-constexpr std::uint64_t kSamplesOfChunk = 4096;  ///< work handed to a thread at a time: at most
+constexpr std::uint64_t kSamplesOfChunk = 8192;  ///< work handed to a thread at a time: at most
 /// the threshold falls by this a round: two or three rounds double all samples
 constexpr float kThresholdStep = .5f;
-/// Of so many pixels one at least is wanted: to look at all of them costs as much as its samples.
-constexpr std::size_t kPixelsAWanted = 32;
-constexpr float kLeastThreshold = 1e-20f;  ///< below it no pixel is worth a ray
+/// Of so many blocks one at least is wanted: to judge all of them costs a twentieth of its samples
+/// (measured).
+constexpr std::size_t kBlocksAWanted = 32;
+constexpr float kLeastThreshold = 1e-20f;  ///< below it no block is worth a ray
 /// widest 95 % interval a pixel may have, in units of the error asked for, and the share of pixels
 /// that may have wider ones all the same; see RefineOptions::error
 constexpr double kWidestInterval = 8;
@@ -21,24 +22,29 @@ constexpr double kShareOfWider = .001;
 constexpr double kLeastRatio = .1, kMostRatio = .6;  ///< of variances, a doubling
 constexpr double kMemory = .5;  ///< share of what rounds before the last one said that counts
 
-using Pixels = std::vector<std::uint32_t>;
+using List = std::vector<std::uint32_t>;
 
-template <class Test>
-void want(Refinement& r, const Pixels& order, const Test& test) {
-  r.wanted.clear();
-  for (const std::uint32_t p : order)
-    if (r.log[p] < kMostLog && test(p))
-      r.wanted.push_back(p);
+double new_samples(const Refinement& r, std::size_t block) {
+  return static_cast<double>(next_count(r, block)) *
+         static_cast<double>(r.blocks().pixels(block));
 }
 
-/// A wanted pixel: what it promises, and its place among the wanted.
+template <class Test>
+void want(Refinement& r, const List& order, const Test& test) {
+  r.wanted.clear();
+  for (const std::uint32_t b : order)
+    if (r.log[b] < kMostLog && test(b))
+      r.wanted.push_back(b);
+}
+
+/// A wanted block: what it promises, and its place among the wanted.
 struct Rank {
   float gain;
   std::uint32_t place;
 };
 
-/// The wanted pixels by falling gain.
-std::vector<Rank> ranked(const Pixels& wanted, const PixelErrors& errors) {
+/// The wanted blocks by falling gain.
+std::vector<Rank> ranked(const List& wanted, const BlockErrors& errors) {
   std::vector<Rank> ranks(wanted.size());
   for (std::size_t i = 0; i < ranks.size(); ++i)
     ranks[i] = {errors.gains_per_ray()[wanted[i]], static_cast<std::uint32_t>(i)};
@@ -49,7 +55,7 @@ std::vector<Rank> ranked(const Pixels& wanted, const PixelErrors& errors) {
 }
 
 /// Keeps those of the ranks, in the order they had.
-void keep(Pixels& wanted, std::vector<Rank>& ranks) {
+void keep(List& wanted, std::vector<Rank>& ranks) {
   std::sort(
       ranks.begin(), ranks.end(), [](const Rank& a, const Rank& b) { return a.place < b.place; });
   for (std::size_t i = 0; i < ranks.size(); ++i)
@@ -57,10 +63,10 @@ void keep(Pixels& wanted, std::vector<Rank>& ranks) {
   wanted.resize(ranks.size());
 }
 
-/// Goes through the wanted pixels by falling gain while `take` says yes; the others are wanted no
+/// Goes through the wanted blocks by falling gain while `take` says yes; the others are wanted no
 /// more. Returns whether there were any.
 template <class Take>
-bool keep_best(Pixels& wanted, const PixelErrors& errors, const Take& take) {
+bool keep_best(List& wanted, const BlockErrors& errors, const Take& take) {
   std::vector<Rank> ranks = ranked(wanted, errors);
   std::size_t kept = 0;
   while (kept < ranks.size() && take(wanted[ranks[kept].place]))
@@ -74,55 +80,58 @@ bool keep_best(Pixels& wanted, const PixelErrors& errors, const Take& take) {
 
 /// Keeps no more of the round than the error takes.
 void keep_for_error(Refinement& r,
-                    const PixelErrors& errors,
-                    const PixelErrors::Totals& totals,
+                    const BlockErrors& errors,
+                    const BlockErrors::Totals& totals,
                     double error) {
   const double excess = totals.sum * (1 - error * error / (totals.bound * totals.bound));
-  const auto drop_of = [&](std::size_t p) { return errors.variance(p) * (1 - r.variance_ratio); };
+  const Blocks blocks = r.blocks();
+  const auto drop_of = [&](std::size_t b) {
+    return static_cast<double>(errors.variance(b) * (1 - r.variance_ratio)) *
+           static_cast<double>(blocks.pixels(b));
+  };
   double all = 0;
-  for (const std::uint32_t p : r.wanted)
-    all += drop_of(p);
+  for (const std::uint32_t b : r.wanted)
+    all += drop_of(b);
   if (all < excess)
     return;
   double drop = 0;
-  keep_best(r.wanted, errors, [&](std::size_t p) {
+  keep_best(r.wanted, errors, [&](std::size_t b) {
     if (!(drop < excess))
       return false;
-    drop += drop_of(p);
+    drop += drop_of(b);
     return true;
   });
 }
 
 /// Keeps no more of the round than is to be sampled before the next audit.
-void keep_for_audit(Refinement& r, const PixelErrors& errors, const Spent& spent, int first_log) {
+void keep_for_audit(Refinement& r, const BlockErrors& errors, const Spent& spent) {
   double left =
       kGrowthOfAudits * static_cast<double>(r.audited_at) - static_cast<double>(spent.samples);
-  keep_best(r.wanted, errors, [&](std::uint32_t p) {
+  keep_best(r.wanted, errors, [&](std::uint32_t b) {
     const bool taken = left > 0;
-    left -= next_count(r, p, first_log);
+    left -= new_samples(r, b);
     return taken;
   });
 }
 
 /// Keeps what the seconds or samples asked for still buy: a round that does not fit is the last.
 void keep_for_budget(Refinement& r,
-                     const PixelErrors& errors,
+                     const BlockErrors& errors,
                      const RefineOptions& asked,
-                     const Spent& spent,
-                     int first_log) {
+                     const Spent& spent) {
   const bool timed = asked.seconds > 0;
   const double seconds_a_ray = spent.seconds / static_cast<double>(r.rays);
   double left = timed ? asked.seconds - spent.seconds
                       : static_cast<double>(asked.samples) - static_cast<double>(spent.samples);
-  r.last = keep_best(r.wanted, errors, [&](std::uint32_t p) {
-    left -= next_count(r, p, first_log) * (timed ? r.cost[p] * seconds_a_ray : 1);
+  r.last = keep_best(r.wanted, errors, [&](std::uint32_t b) {
+    left -= new_samples(r, b) * (timed ? static_cast<double>(r.cost[b]) * seconds_a_ray : 1);
     return left >= 0;
   });
 }
 
 /// Says how far the picture is.
 void tell_share(Refinement& r,
-                const PixelErrors::Totals& totals,
+                const BlockErrors::Totals& totals,
                 const RefineOptions& asked,
                 const Spent& spent) {
   const bool met = totals.bound <= asked.error;
@@ -134,46 +143,53 @@ void tell_share(Refinement& r,
         std::min(1.0, static_cast<double>(spent.samples) / static_cast<double>(asked.samples));
 }
 
-/// Wants the pixels that gain more than the threshold, which falls until there are some.
-void want_gaining(Refinement& r, const PixelErrors& errors, const Pixels& order) {
+/// Wants the blocks that gain more than the threshold, which falls until there are some.
+void want_gaining(Refinement& r, const BlockErrors& errors, const List& order) {
   const std::vector<float>& gains = errors.gains_per_ray();
-  const auto least = static_cast<std::ptrdiff_t>(order.size() / kPixelsAWanted);
+  const auto least = static_cast<std::ptrdiff_t>(order.size() / kBlocksAWanted);
   const auto gaining = [&](float gain) { return gain > r.gain_threshold; };
   do
     r.gain_threshold *= kThresholdStep;
   while (std::count_if(gains.begin(), gains.end(), gaining) <= least &&
          r.gain_threshold >= kLeastThreshold);
-  want(r, order, [&](std::size_t p) { return gaining(gains[p]); });
+  want(r, order, [&](std::size_t b) { return gaining(gains[b]); });
 }
 
-/// Wants the pixels whose intervals are too wide, but for the widest of them that may be so.
-void want_wide(Refinement& r, const PixelErrors& errors, const Pixels& order, double error) {
-  const std::vector<float>& widths = errors.widths();
+/// Wants the blocks with pixels whose intervals are too wide, but for the widest of them, which may
+/// be so.
+void want_wide(Refinement& r, const BlockErrors& errors, const List& order, double error) {
+  r.wanted.clear();
+  if (kWidestInterval * error >= 2 * static_cast<double>(kNormal))
+    return;  // no variance is above 1
+  const std::vector<float> widths = errors.widths();
   const auto too_wide = [&](float width) { return width > kWidestInterval * error; };
   std::vector<float> wide;
   std::copy_if(widths.begin(), widths.end(), std::back_inserter(wide), too_wide);
   const auto spared = static_cast<std::size_t>(kShareOfWider * static_cast<double>(widths.size()));
-  if (wide.size() <= spared) {
-    r.wanted.clear();
+  if (wide.size() <= spared)
     return;
-  }
   const auto last = wide.begin() + static_cast<std::ptrdiff_t>(spared);
   std::nth_element(wide.begin(), last, wide.end(), std::greater<>());
   const float most = *last;
-  want(r, order, [&](std::size_t p) { return too_wide(widths[p]) && widths[p] <= most; });
+  const Blocks blocks = r.blocks();
+  want(r, order, [&](std::size_t b) {
+    bool any = false;
+    blocks.each_pixel(
+        b, [&](std::size_t p) { any = any || (too_wide(widths[p]) && widths[p] <= most); });
+    return any;
+  });
 }
 
 }  // namespace
 
 bool choose_round(Refinement& r,
-                  const PixelErrors& errors,
+                  const BlockErrors& errors,
                   const RefineOptions& asked,
-                  const Pixels& order,
-                  const Spent& spent,
-                  int first_log) {
+                  const List& order,
+                  const Spent& spent) {
   if (r.last)
     return false;
-  const PixelErrors::Totals totals = errors.totals();
+  const BlockErrors::Totals totals = errors.totals();
   const bool met = asked.error > 0 && (r.met || totals.bound <= asked.error);
   tell_share(r, totals, asked, spent);
   r.met_at = !met ? 0 : r.met_at == 0 ? spent.samples : r.met_at;
@@ -184,22 +200,22 @@ bool choose_round(Refinement& r,
   if (asked.error > 0 && !met)
     keep_for_error(r, errors, totals, asked.error);
   else if (asked.seconds > 0 || asked.samples > 0)
-    keep_for_budget(r, errors, asked, spent, first_log);
+    keep_for_budget(r, errors, asked, spent);
   if (!met && r.audits > 0 && r.audits < kMostAudits)
-    keep_for_audit(r, errors, spent, first_log);
+    keep_for_audit(r, errors, spent);
   return !r.wanted.empty();
 }
 
-std::uint32_t next_count(const Refinement& r, std::uint32_t pixel, int first_log) {
-  return 1u << (r.log[pixel] == 0 ? first_log : r.log[pixel]);
+std::uint32_t next_count(const Refinement& r, std::size_t block) {
+  return 1u << (r.log[block] == 0 ? kFirstLog : r.log[block]);
 }
 
-std::vector<Chunk> cut_round(const Refinement& r, int first_log) {
+std::vector<Chunk> cut_round(const Refinement& r) {
   std::vector<Chunk> chunks;
   std::uint64_t in_chunk = 0;
   for (std::size_t i = 0; i < r.wanted.size(); ++i) {
-    const std::uint32_t n = next_count(r, r.wanted[i], first_log);
-    if (chunks.empty() || chunks.back().end - chunks.back().begin == kRunsOfChunk ||
+    const std::uint32_t n = next_count(r, r.wanted[i]) * kBlockPixels;
+    if (chunks.empty() || chunks.back().end - chunks.back().begin == kBlocksOfChunk ||
         in_chunk + n > kSamplesOfChunk) {
       chunks.push_back({i, i});
       in_chunk = 0;
@@ -256,22 +272,18 @@ void add_differences(Refinement& r, std::size_t i, double mean, const NewSamples
 
 }  // namespace
 
-void add_run(
-    Refinement& r, const PixelRun& run, const std::int64_t* sums, int first_log, Chunk& chunk) {
-  const bool first = run.first == 0;
+void add_run(Refinement& r, const PixelRun& run, const std::int64_t* sums, Chunk& chunk) {
   const double unit = kLightUnit * run.count;
   for (std::size_t c = 0; c < 3; ++c) {
     const std::size_t i = std::size_t{run.pixel} * 3 + c;
     const NewSamples s = compare_parts(sums + c, kParts / unit);
-    if (first)
+    if (run.first == 0)
       begin_differences(r, i, s, chunk);
     else
       add_differences(r, i, static_cast<double>(r.sums[i]) / unit, s, chunk);
     for (std::size_t k = 0; k < kParts; ++k)
       r.sums[i] += sums[k * 3 + c];
   }
-  std::uint8_t& log = r.log[run.pixel];
-  log = static_cast<std::uint8_t>(first ? first_log : log + 1);
 }
 
 namespace {

@@ -1,23 +1,23 @@
 #pragma once
-// A round of a refined picture: which pixels it doubles, how threads share them, and what their
+// A round of a refined picture: which blocks it doubles, how threads share them, and what their
 // new samples add to the picture.
 
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "kernel/adaptive/pixel_errors.hpp"
+#include "kernel/adaptive/block_errors.hpp"
 #include "kernel/adaptive/refinement.hpp"
 #include "kernel/scene/shading_view.hpp"
 
 namespace grelha {
 
-/// Most pixels a thread takes at a time.
-inline constexpr int kRunsOfChunk = 256;
+/// Most blocks a thread takes at a time.
+inline constexpr int kBlocksOfChunk = 16;
 
 /// Work handed to a thread.
 struct Chunk {
-  std::size_t begin, end;  ///< of the pixels wanted
+  std::size_t begin, end;  ///< of the blocks wanted
   /// sums of squared differences, of halves of everything and of halves of the new half
   double variance_drop = 0;
   double variance_level = 0;
@@ -29,27 +29,25 @@ struct Spent {
   double seconds;
 };
 
-/// Wants the pixels of the next round, in the order of `order`, and says how far the picture is.
-/// Returns whether there is a round. `first_log`: of the samples that a pixel begins with.
+/// Wants the blocks of the next round, in the order of `order`, and says how far the picture is.
+/// Returns whether there is a round.
 bool choose_round(Refinement& r,
-                  const PixelErrors& errors,
+                  const BlockErrors& errors,
                   const RefineOptions& asked,
                   const std::vector<std::uint32_t>& order,
-                  const Spent& spent,
-                  int first_log);
+                  const Spent& spent);
 
-/// Samples that the next round gives a pixel.
-std::uint32_t next_count(const Refinement& r, std::uint32_t pixel, int first_log);
+/// Samples that the next round gives each pixel of a block.
+std::uint32_t next_count(const Refinement& r, std::size_t block);
 
-/// Chunks of the pixels wanted. Cut anywhere between two of them, the rest of a round is cut into
+/// Chunks of the blocks wanted. Cut anywhere between two of them, the rest of a round is cut into
 /// the same chunks as in one go: what a sample costs is known by chunk.
-std::vector<Chunk> cut_round(const Refinement& r, int first_log);
+std::vector<Chunk> cut_round(const Refinement& r);
 
 /// Adds a pixel's new samples, by their sums of kParts parts.
-void add_run(
-    Refinement& r, const PixelRun& run, const std::int64_t* sums, int first_log, Chunk& chunk);
+void add_run(Refinement& r, const PixelRun& run, const std::int64_t* sums, Chunk& chunk);
 
-/// Takes in the first `done` chunks of a round. Returns whether these were all: else the pixels of
+/// Takes in the first `done` chunks of a round. Returns whether these were all: else the blocks of
 /// the others stay wanted.
 bool end_round(Refinement& r, const std::vector<Chunk>& chunks, std::size_t done);
 

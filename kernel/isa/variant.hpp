@@ -3,7 +3,6 @@
 // per instruction set.
 
 #include "kernel/render/band.hpp"
-#include "kernel/features/tile_doubt.hpp"
 #include "kernel/query/loops.hpp"
 #include "kernel/trace/one_ray.hpp"
 
@@ -47,21 +46,6 @@ inline void pixel_runs(const SceneView& scene,
   tally(n, rays, trace_counts, ray_counts);
 }
 
-inline void doubt(const SceneView& scene,
-                  const ShadingView& shading,
-                  const FrameView& frame,
-                  int x0,
-                  int y0,
-                  int bounces,
-                  float least,
-                  const PixelsAsked& asked,
-                  PixelDoubts& found,
-                  TraceCounts& trace_counts) {
-  Counters n;
-  tile_doubt(scene, shading, frame, x0, y0, bounces, least, asked, found, n);
-  add(n, trace_counts);
-}
-
 inline void points(const SceneView& scene,
                    const ShadingView& shading,
                    const FrameView& frame,
@@ -86,7 +70,6 @@ const VariantLoops kLoops{.closest = closest<InFloat>,
                                                   .blockers = trace_blockers_in_double}},
                           .render_band = band,
                           .render_runs = pixel_runs,
-                          .doubt = doubt,
                           .render_points = points};
 
 }  // namespace grelha::GRELHA_ISA

@@ -110,10 +110,7 @@ std::uint64_t samples_of(const Accumulator& a) {
   return samples * static_cast<std::uint64_t>(a.width);
 }
 std::uint64_t samples_of(const Refinement& r) {
-  std::uint64_t samples = 0;
-  for (std::size_t p = 0; p < r.log.size(); ++p)
-    samples += sample_count(r, p);
-  return samples;
+  return samples_taken(r);
 }
 std::uint64_t samples_of(const SubdivisionState&) {
   return 0;

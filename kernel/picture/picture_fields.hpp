@@ -26,7 +26,7 @@ inline constexpr std::string_view kKindOf = "";
 template <>
 inline constexpr std::string_view kKindOf<Accumulator> = "picture";
 template <>
-inline constexpr std::string_view kKindOf<Refinement> = "refined";
+inline constexpr std::string_view kKindOf<Refinement> = "by-error";
 template <>
 inline constexpr std::string_view kKindOf<SubdivisionState> = "subdivided";
 
@@ -63,15 +63,13 @@ void visit_arrays(Archive& archive, State& r) {
   const std::size_t pixels = pixels_of(r.width, r.height);
   archive.values(r.variance_drop, r.variance_level, r.round_drop, r.round_level);
   archive.values(r.worse, r.least_by_sample, r.audited, r.audited_bound, r.audited_at, r.met_at);
+  archive.values(r.audit_samples);
   archive.values(r.seconds, r.share, r.rays, r.variance_ratio, r.gain_threshold);
-  archive.list(r.log, pixels);
+  archive.list(r.log, r.blocks().count());
+  archive.list(r.cost, r.blocks().count());
   archive.list(r.sums, pixels * 3);
   for (auto& level : r.squares)
     archive.list(level, pixels * 3);
-  archive.list(r.cost, pixels);
-  archive.list(r.inside, pixels);
-  archive.list(r.around, pixels);
-  archive.list(r.boxed, pixels);
   archive.list(r.box, pixels);
   archive.size(r.wanted, sizeof r.wanted[0]);
   archive.list(r.wanted, r.wanted.size());

@@ -7,7 +7,6 @@
 
 #include "grelha/part.hpp"
 #include "grelha/rays.hpp"
-#include "kernel/scene/pixel_box.hpp"
 #include "kernel/scene/shading_view.hpp"
 #include "grelha/stats.hpp"
 #include "kernel/grid/view.hpp"
@@ -52,20 +51,6 @@ struct VariantLoops {
                       const BandWork&,
                       TraceCounts&,
                       RayCounts&);
-  /// What could hide from samples of the pixels of the 8 x 8 tile at (x0, y0), followed into
-  /// `bounces` mirrors: see Doubt in what_hides.hpp. What weighs less than `least` is left out. Of
-  /// pixels that are asked, all within the picture; the others keep what they hold, or get theirs
-  /// as well.
-  void (*doubt)(const SceneView&,
-                const ShadingView&,
-                const FrameView&,
-                int x0,
-                int y0,
-                int bounces,
-                float least,
-                const PixelsAsked& asked,
-                PixelDoubts&,
-                TraceCounts&);
   /// All samples of points of the picture, whose names work.pixels holds.
   void (*render_points)(const SceneView&,
                         const ShadingView&,

@@ -73,8 +73,11 @@ class Workspace {
   }
 
   /// Empty sums, of pixels first_pixel, first_pixel + 1, ... or, when `named`, of those that
-  /// pixels() is filled with, with boxes as boxes() has them.
-  BandWork work(const RenderOptions& options, std::uint32_t first_pixel, bool named = false) {
+  /// pixels() is filled with, with boxes as boxes() has them, when `boxed`.
+  BandWork work(const RenderOptions& options,
+                std::uint32_t first_pixel,
+                bool named = false,
+                bool boxed = false) {
     if (options.phases)
       clock_.start(Phase::sums);
     std::fill(sums_.begin(), sums_.end(), 0);
@@ -93,7 +96,7 @@ class Workspace {
         .most_light = std::min(kMostTerm, kMostLight / static_cast<float>(plan_.samples)),
         .plan = plan_,
         .pixels = named ? pixels_.data() : nullptr,
-        .boxes = named ? boxes_.data() : nullptr,
+        .boxes = boxed ? boxes_.data() : nullptr,
         .observer = observer(options),
         .in_double = in_double_,
     };

@@ -35,24 +35,4 @@ inline PixelBox unpacked(std::uint32_t word) {
   return {side(word), side(word >> 8), side(word >> 16) + kStep, side(word >> 24) + kStep};
 }
 
-/// Lights are told apart by their number modulo this: a bit each.
-inline constexpr int kLightBits = 64;
-
-/// Which pixels of a tile are asked, [8 y + x] or bit 8 y + x, and what about.
-struct PixelsAsked {
-  std::uint64_t things = 0;   ///< whether they show anything that their corners miss
-  std::uint64_t if_bent = 0;  ///< what they mirror, or what is behind, where that is so
-  std::uint64_t shadows = 0;  ///< whether some light on them is even
-  std::uint64_t lights[kTile * kTile] = {};  ///< bits of those lights
-};
-
-/// What may hide from the samples of the pixels of a tile, [8 y + x]: the weights of Doubt, and
-/// where in the pixel.
-struct PixelDoubts {
-  float inside[kTile * kTile] = {};
-  float around[kTile * kTile] = {};
-  float boxed[kTile * kTile] = {};
-  std::uint32_t box[kTile * kTile] = {};
-};
-
 }  // namespace grelha

@@ -1,0 +1,322 @@
+#include "kernel/adaptive/aimed_rays.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "kernel/adaptive/mesh_pieces.hpp"
+#include "kernel/adaptive/to_picture.hpp"
+#include "kernel/adaptive/tolerances.hpp"
+#include "kernel/query/variants.hpp"
+#include "kernel/scene/pixel_box.hpp"
+#include "kernel/scene/turns.hpp"
+
+namespace grelha {
+namespace {
+
+constexpr double kThin = 1;        ///< pixels: what looks wider is met by samples of a net
+constexpr double kMostParts = 256;  ///< of a rod
+constexpr int kMostClear = 6;       ///< surfaces on the way to a thing
+constexpr double kMostBlur = .25;   ///< pixels: of what is more out of focus, boxes hold too little
+constexpr double kMargin = .02;     ///< pixels around a box, for what rounding does
+constexpr std::size_t kRaysOfTurn = 256;
+
+/// A part of a rod, which one ray is aimed at.
+struct Aim {
+  Place3 end[2];
+  double radius;
+  std::uint32_t material;
+  bool arrives = false;
+
+  Place3 middle() const {
+    Place3 m;
+    for (std::size_t a = 0; a < 3; ++a)
+      m[a] = .5 * (end[0][a] + end[1][a]);
+    return m;
+  }
+};
+
+std::vector<Rod> rods_of(const World::Impl& world) {
+  const GeometrySpans& g = world.primitives.geometry;
+  std::vector<Rod> rods = mesh_pieces(g.triangles);
+  for (std::size_t i = 0; i < g.spheres.size(); ++i)
+    rods.push_back(rod_of(g.spheres, i));
+  for (std::size_t i = 0; i < g.cones.size(); ++i)
+    rods.push_back(rod_of(g.cones, i));
+  return rods;
+}
+
+/// Rays of one turn, from one point each.
+struct AimedRay {
+  float org[3][kRaysOfTurn], dir[3][kRaysOfTurn], t_min[kRaysOfTurn], t[kRaysOfTurn];
+  std::uint32_t id[kRaysOfTurn];
+
+  void set(std::size_t i, const Place3& from, const Place3& to, double least) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      org[a][i] = static_cast<float>(from[a]);
+      dir[a][i] = static_cast<float>(to[a] - from[a]);
+    }
+    t_min[i] = static_cast<float>(least);
+  }
+};
+
+class Aiming {
+ public:
+  Aiming(const World::Impl& world, const Setup& setup, int threads, Refinement& r, TraceCounts& n)
+      : world_(world),
+        setup_(setup),
+        threads_(threads),
+        to_(setup.frame),
+        r_(r),
+        counts_(n),
+        rods_(rods_of(world)),
+        missed_(r.blocks().count()) {}
+
+  std::vector<float> run() {
+    std::vector<Aim> aims = aims_from_eye();
+    each_turn_of(aims, [&](AimedRay& rays, std::size_t first, std::size_t count, TraceCounts& n) {
+      look(rays, aims.data() + first, count, n);
+    });
+    mark(aims);
+    // blurred shadows are met by samples; many lights leave little of each shadow to see
+    std::size_t left = r_.box.size();
+    for (int l = 0; !world_.shading.area && l < world_.shading.light_count; ++l) {
+      const float* const at = world_.shading.lights + kLightFloats * l;
+      if (left < rods_.size())
+        break;
+      left -= rods_.size();
+      throw_shadows({{at[0], at[1], at[2]}});
+    }
+    return std::move(missed_);
+  }
+
+ private:
+  template <class Work>
+  void each_turn_of(const std::vector<Aim>& aims, const Work& work) {
+    const std::size_t turns = (aims.size() + kRaysOfTurn - 1) / kRaysOfTurn;
+    std::vector<TraceCounts> counts(turns);
+    each_turn(
+        turns,
+        threads_,
+        [] { return std::make_unique<AimedRay>(); },
+        [&](std::size_t turn, const std::unique_ptr<AimedRay>& rays) {
+          const std::size_t first = turn * kRaysOfTurn;
+          work(*rays, first, std::min(kRaysOfTurn, aims.size() - first), counts[turn]);
+        });
+    for (const TraceCounts& n : counts)
+      counts_ += n;
+  }
+
+  /// Radius of the disc that a point shows as, in pixels.
+  double blur(double depth) const {
+    const FrameView& f = setup_.frame;
+    if (!f.lens)
+      return 0;
+    const Place3 right{{f.lens_right[0], f.lens_right[1], f.lens_right[2]}};
+    const double focus = static_cast<double>(f.focus);
+    return std::abs(focus / depth - 1) * std::sqrt(dot(right, right)) / to_.pixel(focus);
+  }
+
+  void add_parts(const Rod& rod, double pixel, std::vector<Aim>& aims) const {
+    const double parts = std::clamp(std::ceil(rod.length() / pixel), 1., kMostParts);
+    for (double k = 0; k < parts; ++k) {
+      Aim aim{{}, rod.radius, rod.material};
+      for (std::size_t e = 0; e < 2; ++e)
+        for (std::size_t a = 0; a < 3; ++a)
+          aim.end[e][a] = rod.end[0][a] + (k + static_cast<double>(e)) / parts *
+                                              (rod.end[1][a] - rod.end[0][a]);
+      aims.push_back(aim);
+    }
+  }
+
+  /// Parts of rods before the eye that look thin there.
+  std::vector<Aim> aims_from_eye() const {
+    std::vector<Aim> aims;
+    for (Rod rod : rods_) {
+      if (!cut_behind(to_, rod))
+        continue;
+      const double pixel = to_.pixel(std::max(to_(rod.end[0]).depth, to_(rod.end[1]).depth));
+      if (2 * rod.radius < kThin * pixel)
+        add_parts(rod, pixel, aims);
+    }
+    return aims;
+  }
+
+  void closest(const AimedRay& rays, AimedRay& hits, std::size_t count, TraceCounts& n) const {
+    const Rays in{.org = {rays.org[0], rays.org[1], rays.org[2]},
+                  .dir = {rays.dir[0], rays.dir[1], rays.dir[2]},
+                  .t_min = rays.t_min,
+                  .count = count};
+    setup_.variant.loops.closest(world_.view, in, {.t = hits.t, .id = hits.id}, {}, n);
+  }
+
+  bool is_clear(std::uint32_t id) const {
+    const GeometrySpans& g = world_.primitives.geometry;
+    const Primitive p = world_.primitives.ids.primitive(id);
+    const auto material = [&] {
+      switch (p.kind) {
+        case PrimitiveKind::kSphere: return g.spheres.material[p.index];
+        case PrimitiveKind::kCone: return g.cones.material[p.index];
+        case PrimitiveKind::kTriangle: return g.triangles.material[p.index];
+        default: return g.planes.material[p.index];
+      }
+    };
+    return world_.shading.materials.field[kTransmission][material()] > 0;
+  }
+
+  /// Share of the way to its middle at which a ray has surely come to a thing.
+  static double near(const Aim& aim, const Place3& from) {
+    const Place3 d = aim.middle() - from;
+    const double half = .5 * std::sqrt(dot(aim.end[1] - aim.end[0], aim.end[1] - aim.end[0]));
+    return 1 - (aim.radius + half) / std::sqrt(dot(d, d)) - 1e-4;
+  }
+
+  /// Which of the aims a ray from the eye arrives at.
+  void look(AimedRay& rays, Aim* aims, std::size_t count, TraceCounts& n) const {
+    for (std::size_t i = 0; i < count; ++i)
+      rays.set(i, to_.eye, aims[i].middle(), 0);
+    closest(rays, rays, count, n);
+    const auto before = [&](std::size_t i) {
+      return rays.id[i] != kNoPrimitive &&
+             static_cast<double>(rays.t[i]) < near(aims[i], to_.eye);
+    };
+    for (int k = 0; k < kMostClear; ++k) {
+      bool any = false;
+      for (std::size_t i = 0; i < count; ++i)
+        if (before(i) && is_clear(rays.id[i])) {
+          rays.t_min[i] = rays.t[i] * 1.00001f;
+          any = true;
+        }
+      if (!any)
+        break;
+      closest(rays, rays, count, n);
+    }
+    for (std::size_t i = 0; i < count; ++i)
+      aims[i].arrives = !before(i);
+  }
+
+  /// Marks where shadows of thin rods fall, if the eye sees that.
+  void throw_shadows(const Place3& light) {
+    std::vector<Aim> aims;
+    for (const Rod& rod : rods_)
+      if (const double depth = std::abs(to_(rod.end[0]).depth);
+          2 * rod.radius < 2 * kThin * to_.pixel(depth))
+        add_parts(rod, to_.pixel(depth), aims);
+    each_turn_of(aims, [&](AimedRay& rays, std::size_t first, std::size_t count, TraceCounts& n) {
+      cast_shadows(rays, light, aims.data() + first, count, n);
+    });
+    mark(aims);
+  }
+
+  /// Moves things on to the surfaces behind them.
+  void cast_shadows(AimedRay& rays,
+                    const Place3& light,
+                    Aim* aims,
+                    std::size_t count,
+                    TraceCounts& n) const {
+    for (std::size_t i = 0; i < count; ++i)
+      rays.set(i, light, aims[i].middle(), 2 - near(aims[i], light));
+    closest(rays, rays, count, n);
+    for (std::size_t i = 0; i < count; ++i) {
+      aims[i].arrives = rays.id[i] != kNoPrimitive;
+      if (!aims[i].arrives)
+        continue;
+      const double t = static_cast<double>(rays.t[i]);
+      for (Place3& end : aims[i].end)
+        for (std::size_t a = 0; a < 3; ++a)
+          end[a] = light[a] + t * (end[a] - light[a]);
+      aims[i].radius *= t;
+    }
+    for (std::size_t i = 0; i < count; ++i)
+      rays.set(i, to_.eye, aims[i].middle(), 0);
+    closest(rays, rays, count, n);
+    for (std::size_t i = 0; i < count; ++i)
+      aims[i].arrives = aims[i].arrives && rays.id[i] != kNoPrimitive && rays.t[i] > .999f;
+  }
+
+  /// The brightest that a thing may look, over white.
+  float brightness(std::uint32_t material) const {
+    const auto of = [&](int field, std::size_t c) {
+      return world_.shading.materials.field[static_cast<std::size_t>(field) + c][material];
+    };
+    float most = 1;
+    for (std::size_t c = 0; c < 3; ++c)
+      most = std::max(most, of(kEmissionR, c));
+    return most;
+  }
+
+  void mark(const std::vector<Aim>& aims) {
+    for (const Aim& aim : aims)
+      if (aim.arrives)
+        mark(aim);
+  }
+
+  void mark(const Aim& aim) {
+    const ToPicture::Spot a = to_(aim.end[0]), b = to_(aim.end[1]);
+    const double depth = std::min(a.depth, b.depth);
+    if (!(depth > 0) || !(blur(depth) <= kMostBlur))
+      return;
+    const double reach = to_.reach(aim.radius, depth) + blur(depth) + kMargin;
+    const double x0 = std::min(a.x, b.x) - reach, x1 = std::max(a.x, b.x) + reach;
+    const double y0 = std::min(a.y, b.y) - reach, y1 = std::max(a.y, b.y) + reach;
+    const auto first = [](double least) { return static_cast<int>(std::max(0., least)); };
+    const auto end = [](double most, int size) {
+      return most < 0 ? 0 : static_cast<int>(std::min(most + 1, static_cast<double>(size)));
+    };
+    const float bright = brightness(aim.material);
+    for (int y = first(y0); y < end(y1, r_.height); ++y)
+      for (int x = first(x0); x < end(x1, r_.width); ++x)
+        add_box(x, y, {side(x0 - x), side(y0 - y), side(x1 - x), side(y1 - y)}, bright);
+  }
+
+  static float side(double v) { return static_cast<float>(std::clamp(v, 0., 1.)); }
+
+  void add_box(int x, int y, PixelBox box, float bright) {
+    std::uint32_t& word =
+        r_.box[static_cast<std::size_t>(y) * static_cast<std::size_t>(r_.width) +
+               static_cast<std::size_t>(x)];
+    if (word != 0) {
+      const PixelBox other = unpacked(word);
+      box = {std::min(box.x0, other.x0),
+             std::min(box.y0, other.y0),
+             std::max(box.x1, other.x1),
+             std::max(box.y1, other.y1)};
+    }
+    const std::uint32_t packed_box = packed(box);
+    if (packed_box == 0 || unpacked(packed_box).area() > kLargestBox)
+      return;
+    word = packed_box;
+    // a disc in the box that no sample met, as though it were black or white
+    const float most = std::min(1.f, kDiscInBox * unpacked(word).area() * bright);
+    const Blocks blocks = r_.blocks();
+    const std::size_t b = blocks.of(x, y);
+    missed_[b] += most * most / static_cast<float>(blocks.pixels(b));
+  }
+
+  const World::Impl& world_;
+  const Setup& setup_;
+  const int threads_;
+  const ToPicture to_;
+  Refinement& r_;
+  TraceCounts& counts_;
+  const std::vector<Rod> rods_;
+  std::vector<float> missed_;
+};
+
+}  // namespace
+
+std::size_t thing_count(const World::Impl& world) {
+  const GeometrySpans& g = world.primitives.geometry;
+  return g.spheres.size() + g.cones.size() + g.triangles.size();
+}
+
+std::vector<float> aim_at_small_things(const World::Impl& world,
+                                       const Setup& setup,
+                                       int threads,
+                                       Refinement& r,
+                                       TraceCounts& counts) {
+  return Aiming(world, setup, threads, r, counts).run();
+}
+
+}  // namespace grelha
