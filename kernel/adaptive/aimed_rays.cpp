@@ -118,8 +118,11 @@ class Aiming {
     return std::abs(focus / depth - 1) * std::sqrt(dot(right, right)) / to_.pixel(focus);
   }
 
-  void add_parts(const Rod& rod, double pixel, std::vector<Aim>& aims) const {
-    const double parts = std::clamp(std::ceil(rod.length() / pixel), 1., kMostParts);
+  static double parts_of(const Rod& rod, double step) {
+    return std::clamp(std::ceil(rod.length() / step), 1., kMostParts);
+  }
+  static void add_parts(const Rod& rod, double step, std::vector<Aim>& aims) {
+    const double parts = parts_of(rod, step);
     for (double k = 0; k < parts; ++k) {
       Aim aim{{}, rod.radius, rod.material};
       for (std::size_t e = 0; e < 2; ++e)
@@ -130,17 +133,40 @@ class Aiming {
     }
   }
 
-  /// Parts of rods before the eye that look thin there.
-  std::vector<Aim> aims_from_eye() const {
+  /// A rod that looks thin, and how wide a pixel is there.
+  struct Thin {
+    Rod rod;
+    double pixel;
+  };
+
+  /// Parts a pixel long; longer ones where there would be more than pixels of the picture.
+  std::vector<Aim> parts_of(const std::vector<Thin>& thin) const {
+    const auto count = [&](double pixels) {
+      double sum = 0;
+      for (const Thin& t : thin)
+        sum += parts_of(t.rod, pixels * t.pixel);
+      return sum;
+    };
+    const auto most = static_cast<double>(r_.box.size());
+    double pixels = 1;
+    while (pixels < kMostParts && count(pixels) > most)
+      pixels *= 2;
     std::vector<Aim> aims;
+    for (const Thin& t : thin)
+      add_parts(t.rod, pixels * t.pixel, aims);
+    return aims;
+  }
+
+  std::vector<Aim> aims_from_eye() const {
+    std::vector<Thin> thin;
     for (Rod rod : rods_) {
       if (!cut_behind(to_, rod))
         continue;
-      const double pixel = to_.pixel(std::max(to_(rod.end[0]).depth, to_(rod.end[1]).depth));
+      const double pixel = to_.pixel(std::min(to_(rod.end[0]).depth, to_(rod.end[1]).depth));
       if (2 * rod.radius < kThin * pixel)
-        add_parts(rod, pixel, aims);
+        thin.push_back({rod, pixel});
     }
-    return aims;
+    return parts_of(thin);
   }
 
   void closest(const AimedRay& rays, AimedRay& hits, std::size_t count, TraceCounts& n) const {
@@ -198,11 +224,11 @@ class Aiming {
 
   /// Marks where shadows of thin rods fall, if the eye sees that.
   void throw_shadows(const Place3& light) {
-    std::vector<Aim> aims;
+    std::vector<Thin> thin;
     for (const Rod& rod : rods_)
-      if (const double depth = std::abs(to_(rod.end[0]).depth);
-          2 * rod.radius < 2 * kThin * to_.pixel(depth))
-        add_parts(rod, to_.pixel(depth), aims);
+      if (const double pixel = to_.pixel(std::abs(to_(rod.end[0]).depth)); rod.radius < kThin * pixel)
+        thin.push_back({rod, pixel});
+    std::vector<Aim> aims = parts_of(thin);
     each_turn_of(aims, [&](AimedRay& rays, std::size_t first, std::size_t count, TraceCounts& n) {
       cast_shadows(rays, light, aims.data() + first, count, n);
     });

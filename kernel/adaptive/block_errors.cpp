@@ -6,23 +6,14 @@
 
 namespace grelha {
 
-/// Blocks judged together: variance and means of one sample, of all pixels.
-struct BlockErrors::Pool {
-  float by_sample = 0;          ///< sum over blocks of the variance of one sample
-  float hits = 0, squares = 0;  ///< see Sums, as though each pixel had one sample
-  float blocks = 1;
-  const Sums* sums = nullptr;  ///< of the first
-  float falls = 1;             ///< variance of the mean of a pixel of the first over that of a sample
-
-  /// As many pixels of equal differences would tell as much.
-  float certainty() const { return squares > 0 ? hits * hits / squares : 0; }
-  void operator+=(const Pool& o) {
-    by_sample += o.by_sample;
-    hits += o.hits;
-    squares += o.squares;
-    blocks += o.blocks;
-  }
-};
+void BlockErrors::Sums::operator+=(const Sums& o) {
+  hits += o.hits;
+  squares += o.squares;
+  pixels += o.pixels;
+  samples += o.samples;
+  for (int c = 0; c < 3; ++c)
+    colour[c] += o.colour[c];
+}
 
 BlockErrors::BlockErrors(const Refinement& r, int threads)
     : r_(r), blocks_(r.blocks()), threads_(threads) {
@@ -33,6 +24,13 @@ BlockErrors::BlockErrors(const Refinement& r, int threads)
   resize_to_fill(missed_at_, count);
   for (std::vector<float>* const of : {&variance_, &certainty_, &gain_})
     resize_to_fill(*of, count);
+  int columns = blocks_.columns, rows = blocks_.rows;
+  for (Level& level : levels_) {
+    level = {columns, rows, {}};
+    resize_to_fill(level.cells, static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+    columns = (columns + kCell - 1) / kCell;
+    rows = (rows + kCell - 1) / kCell;
+  }
 }
 
 void BlockErrors::set_missed(std::vector<float> missed) {
@@ -58,36 +56,36 @@ void BlockErrors::measure_pixel(std::size_t p, int log, Sums& sums) const {
     for (int k = 0; k < 3; ++k)
       levels[k] += l[k] / (3 * free);
   }
-  const float hit = levels[0] + kTypicalRatio * (levels[1] + kTypicalRatio * levels[2]);
+  // of independent samples, which rare hits are: times n, as though the pixel had one
+  const float n = static_cast<float>(1u << log);
+  const float hit = .25f * n * (levels[0] + .5f * (levels[1] + .5f * levels[2]));
   for (int k = 0; k < 3; ++k)
     sums.levels[k] += levels[k];
   sums.hits += hit;
   sums.squares += hit * hit;
   ++sums.pixels;
+  sums.samples += n;
 }
 
 void BlockErrors::measure(std::size_t b) {
   Sums sums;
   blocks_.each_pixel(b, [&](std::size_t p) { measure_pixel(p, r_.log[b], sums); });
-  float one_sample = 1;  // hits of a pixel that had one sample
-  for (int k = 0; k < r_.log[b]; ++k)
-    one_sample /= kTypicalRatio;
-  sums.hits *= one_sample;
-  sums.squares *= one_sample * one_sample;
   sums_[b] = sums;
   seen_[b] = r_.log[b];
   if (missed_at_[b] != r_.log[b])
     missed_[b] = 0;
+  levels_[0].cells[b] = sums.has_few_hits() ? sums : Sums{};
 }
 
-void BlockErrors::measure() {
-  powers_[0] = 1;
-  for (std::size_t i = 0; i < kMostLog; ++i)
-    powers_[i + 1] = powers_[i] * r_.variance_ratio;
-#pragma omp parallel for num_threads(threads_) schedule(static)
-  for (std::size_t b = 0; b < blocks_.count(); ++b)
-    if (seen_[b] != r_.log[b])
-      measure(b);
+/// Sums up the level below.
+void BlockErrors::fill_level(int l) {
+  Level& level = levels_[l];
+  const Level& below = levels_[l - 1];
+  std::fill(level.cells.begin(), level.cells.end(), Sums{});
+  for (int y = 0; y < below.rows; ++y)
+    for (int x = 0; x < below.columns; ++x)
+      level.cells[static_cast<std::size_t>(y / kCell * level.columns + x / kCell)] +=
+          below.cells[static_cast<std::size_t>(y * below.columns + x)];
 }
 
 /// Variance by sums of squared differences over degrees of freedom.
@@ -101,55 +99,64 @@ bool BlockErrors::agrees(std::size_t b) const {
   return own_variance(sums_[b].levels) <= kAgreement / (n * n);
 }
 
-BlockErrors::Pool BlockErrors::own(std::size_t b) const {
-  const Sums& sums = sums_[b];
-  const float falls = powers_[r_.log[b]];
-  return {.by_sample = own_variance(sums.levels) / (sums.pixels * falls),
-          .hits = sums.hits,
-          .squares = sums.squares,
-          .sums = &sums,
-          .falls = falls};
-}
-
-/// Whether two blocks may show one surface: their means differ no more than samples do.
-bool BlockErrors::alike(const Pool& a, const Pool& b) const {
-  float difference = 0;
-  for (int c = 0; c < 3; ++c) {
-    const float d = a.sums->colour[c] / a.sums->pixels - b.sums->colour[c] / b.sums->pixels;
-    difference += d * d;
-  }
-  const float by_sample = std::max(a.by_sample, b.by_sample);
-  return difference <= 3 * kAlike * kAlike * by_sample *
-                           (a.falls / a.sums->pixels + b.falls / b.sums->pixels);
-}
-
-BlockErrors::Pool BlockErrors::pooled(std::size_t b) const {
-  const Pool mine = own(b);
-  if (mine.certainty() >= kEnoughHits)
-    return mine;
-  Pool pool = mine;
-  const auto columns = static_cast<std::size_t>(blocks_.columns);
-  const int bx = static_cast<int>(b % columns), by = static_cast<int>(b / columns);
-  for (int y = std::max(by - 1, 0); y <= std::min(by + 1, blocks_.rows - 1); ++y)
-    for (int x = std::max(bx - 1, 0); x <= std::min(bx + 1, blocks_.columns - 1); ++x) {
-      const std::size_t o = static_cast<std::size_t>(y) * columns + static_cast<std::size_t>(x);
-      if (o == b)
-        continue;
-      if (const Pool other = own(o); alike(mine, other))
-        pool += other;
+/// Adds to a pool what of the cells around (x, y), and of that cell, may show one surface with a
+/// block: their means differ no more than samples that hit as often as any of them do.
+void BlockErrors::pool_around(
+    const Level& level, int x, int y, const Sums& mine, Sums& pool) const {
+  const auto each = [&](const auto& visit) {
+    for (int j = std::max(y - 1, 0); j <= std::min(y + 1, level.rows - 1); ++j)
+      for (int i = std::max(x - 1, 0); i <= std::min(x + 1, level.columns - 1); ++i)
+        visit(level.cells[static_cast<std::size_t>(j * level.columns + i)]);
+  };
+  float by_sample = mine.by_sample();
+  each([&](const Sums& cell) { by_sample = std::max(by_sample, cell.by_sample()); });
+  if (!(by_sample > 0))
+    return;
+  each([&](const Sums& cell) {
+    if (!(cell.pixels > 0))
+      return;
+    float difference = 0;
+    for (int c = 0; c < 3; ++c) {
+      const float d = mine.colour[c] / mine.pixels - cell.colour[c] / cell.pixels;
+      difference += d * d;
     }
-  return pool;
+    const float chance = by_sample * (1 / mine.samples + 1 / cell.samples);
+    if (difference <= 3 * kAlike * kAlike * chance)
+      pool += cell;
+  });
+}
+
+/// Variance of a block of few hits, by the blocks around: of as few of them as tell enough.
+float BlockErrors::rare_variance(std::size_t b, float& certainty) const {
+  const Sums& mine = sums_[b];
+  const auto columns = static_cast<std::size_t>(blocks_.columns);
+  int x = static_cast<int>(b % columns), y = static_cast<int>(b / columns);
+  Sums pool = mine;
+  for (const Level& level : levels_) {
+    Sums around{};
+    pool_around(level, x, y, mine, around);
+    if (around.pixels > pool.pixels)
+      pool = around;
+    if (pool.certainty() >= kEnoughHits)
+      break;
+    x /= kCell;
+    y /= kCell;
+  }
+  certainty = pool.certainty();
+  if (pool.pixels == mine.pixels)
+    return own_variance(mine.levels) / mine.pixels;
+  return pool.by_sample() * mine.pixels / mine.samples;
 }
 
 void BlockErrors::judge(std::size_t b) {
-  const Pool pool = pooled(b);
-  const float certainty = pool.certainty();
+  const Sums& mine = sums_[b];
   const auto samples = static_cast<float>(sample_count(r_, b));
-  float v = 0;
+  float certainty = mine.certainty();
+  float v = mine.has_few_hits() ? rare_variance(b, certainty)
+                                : own_variance(mine.levels) / mine.pixels;
   // k hits in N samples have chances of Beta(k + 1, N - k + 1), whose mean is that of one hit more
   if (certainty > 0)
-    v = static_cast<float>(r_.worse) * (1 + 1 / certainty) * pool.by_sample / pool.blocks *
-        powers_[r_.log[b]];
+    v *= static_cast<float>(r_.worse) * (1 + 1 / certainty);
   if (agrees(b))
     v = std::max(v, static_cast<float>(r_.least_by_sample) / samples);
   v = std::min(v + missed_[b], 1.f);  // of what a screen shows
@@ -159,7 +166,12 @@ void BlockErrors::judge(std::size_t b) {
 }
 
 void BlockErrors::judge() {
-  measure();
+#pragma omp parallel for num_threads(threads_) schedule(static)
+  for (std::size_t b = 0; b < blocks_.count(); ++b)
+    if (seen_[b] != r_.log[b])
+      measure(b);
+  for (int l = 1; l < kLevels; ++l)
+    fill_level(l);
 #pragma omp parallel for num_threads(threads_) schedule(static)
   for (std::size_t b = 0; b < blocks_.count(); ++b)
     judge(b);

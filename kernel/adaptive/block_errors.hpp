@@ -1,6 +1,6 @@
 #pragma once
 
-#include <array>
+#include <algorithm>
 
 #include "kernel/adaptive/refinement.hpp"
 #include "kernel/adaptive/tolerances.hpp"
@@ -13,8 +13,8 @@ class BlockErrors {
  public:
   BlockErrors(const Refinement& r, int threads);
 
-  /// Variance of every block, from the differences its pixels hold. Where few of them differ, those
-  /// of the blocks around that may show the same surface count as well.
+  /// Variance of every block, from the differences its pixels hold. Where few of them differ, blocks
+  /// around that may show the same surface tell how often samples hit.
   void judge();
 
   struct Totals {
@@ -37,34 +37,44 @@ class BlockErrors {
   void set_missed(std::vector<float> missed);
 
  private:
-  /// variance_ratio^i
-  using RatioPowers = std::array<float, kMostLog + 1>;
   /// Sums over the pixels of a block.
   struct Sums {
     float levels[3] = {};  ///< of squared differences over degrees of freedom, mean of the channels
-    float hits = 0, squares = 0;  ///< of what a pixel's sample differs by, squared; of its squares
+    float hits = 0, squares = 0;  ///< of variances of pixels' samples; of their squares
     float colour[3] = {};         ///< of what a screen shows
-    float pixels = 0;
-  };
-  struct Pool;
+    float pixels = 0, samples = 0;
 
-  void measure();
+    void operator+=(const Sums& o);
+    /// As many pixels of equal differences would tell as much.
+    float certainty() const { return squares > 0 ? hits * hits / squares : 0; }
+    bool has_few_hits() const {
+      return certainty() <= std::max(kFewHits, kRareHits * samples);
+    }
+    float by_sample() const { return pixels > 0 ? hits / pixels : 0; }
+  };
+  /// Sums of blocks of rare hits, in cells of kCell x kCell cells of the level before.
+  struct Level {
+    int columns, rows;
+    std::vector<Sums> cells;
+  };
+  static constexpr int kLevels = 3, kCell = 4;
+
   void measure(std::size_t b);
   void measure_pixel(std::size_t p, int log, Sums& sums) const;
+  void fill_level(int l);
   float freedom(int log) const { return log == kFirstLog ? kYoung : kOld; }
   float own_variance(const float (&levels)[3]) const;
-  bool alike(const Pool& a, const Pool& b) const;
-  Pool own(std::size_t b) const;
-  Pool pooled(std::size_t b) const;
+  void pool_around(const Level& level, int x, int y, const Sums& mine, Sums& pool) const;
+  float rare_variance(std::size_t b, float& certainty) const;
   void judge(std::size_t b);
 
   const Refinement& r_;
   const Blocks blocks_;
   const int threads_;
-  RatioPowers powers_{};
   std::vector<std::uint8_t> seen_;  ///< [blocks] Refinement::log when `sums_` was set
   std::vector<Sums> sums_;          ///< [blocks]
-  std::vector<float> missed_;       ///< [blocks]
+  Level levels_[kLevels];
+  std::vector<float> missed_;            ///< [blocks]
   std::vector<std::uint8_t> missed_at_;  ///< [blocks] Refinement::log of `missed_`
   std::vector<float> variance_, certainty_, gain_;  ///< [blocks] certainty_: of how many hits
 };

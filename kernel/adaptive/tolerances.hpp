@@ -13,9 +13,13 @@ inline constexpr float kOld = 7;
 /// picture's own: so a block tells the same whenever it is asked.
 inline constexpr float kTypicalRatio = .4f;
 
-/// Differing pixels a block must hold for its estimate to stand alone. Of Gaussian noise all 16
-/// count as 12; of fewer hits the neighbours tell as well. Eight leave it off by a third.
-inline constexpr float kEnoughHits = 8;
+/// Differing pixels a block must hold for its estimate to stand alone. An edge crosses four or so;
+/// where fewer differ, rare hits may be what makes them, and blocks around tell as well.
+inline constexpr float kFewHits = 3;
+/// Hits that blocks around are asked for until there are as many: they tell a variance to a quarter.
+inline constexpr float kEnoughHits = 16;
+/// Share of samples that hit, up to which hits are rare.
+inline constexpr float kRareHits = .01f;
 /// Blocks lie on one surface as far as samples tell where their means differ by no more standard
 /// errors than this: chance parts one pair in 370.
 inline constexpr float kAlike = 3;
