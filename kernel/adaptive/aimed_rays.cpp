@@ -19,14 +19,12 @@ constexpr double kThin = 1;        ///< pixels: what looks wider is met by sampl
 constexpr double kMostParts = 256;  ///< of a rod
 constexpr int kMostClear = 6;       ///< surfaces on the way to a thing
 constexpr double kMostBlur = .25;   ///< pixels: of what is more out of focus, boxes hold too little
+constexpr double kBoxTaken = .9 * static_cast<double>(kLargestBox);  ///< sides are rounded up
 constexpr double kMargin = .02;     ///< pixels around a box, for what rounding does
 constexpr std::size_t kRaysOfTurn = 256;
 
 /// A part of a rod, which one ray is aimed at.
-struct Aim {
-  Place3 end[2];
-  double radius;
-  std::uint32_t material;
+struct Aim : Rod {
   bool arrives = false;
 
   Place3 middle() const {
@@ -124,7 +122,7 @@ class Aiming {
   static void add_parts(const Rod& rod, double step, std::vector<Aim>& aims) {
     const double parts = parts_of(rod, step);
     for (double k = 0; k < parts; ++k) {
-      Aim aim{{}, rod.radius, rod.material};
+      Aim aim{rod};
       for (std::size_t e = 0; e < 2; ++e)
         for (std::size_t a = 0; a < 3; ++a)
           aim.end[e][a] = rod.end[0][a] + (k + static_cast<double>(e)) / parts *
@@ -194,8 +192,7 @@ class Aiming {
   /// Share of the way to its middle at which a ray has surely come to a thing.
   static double near(const Aim& aim, const Place3& from) {
     const Place3 d = aim.middle() - from;
-    const double half = .5 * std::sqrt(dot(aim.end[1] - aim.end[0], aim.end[1] - aim.end[0]));
-    return 1 - (aim.radius + half) / std::sqrt(dot(d, d)) - 1e-4;
+    return 1 - (aim.radius + .5 * aim.length()) / std::sqrt(dot(d, d)) - 1e-4;
   }
 
   /// Which of the aims a ray from the eye arrives at.
@@ -284,8 +281,15 @@ class Aiming {
     if (!(depth > 0) || !(blur(depth) <= kMostBlur))
       return;
     const double reach = to_.reach(aim.radius, depth) + blur(depth) + kMargin;
-    const double x0 = std::min(a.x, b.x) - reach, x1 = std::max(a.x, b.x) + reach;
-    const double y0 = std::min(a.y, b.y) - reach, y1 = std::max(a.y, b.y) + reach;
+    double wide = .5 * std::abs(b.x - a.x) + reach, high = .5 * std::abs(b.y - a.y) + reach;
+    // the middle of what is too large for a box is met as surely
+    const double area = 4 * wide * high;
+    if (const double shrink = std::sqrt(kBoxTaken / area); shrink < 1) {
+      wide *= shrink;
+      high *= shrink;
+    }
+    const double x0 = .5 * (a.x + b.x) - wide, x1 = .5 * (a.x + b.x) + wide;
+    const double y0 = .5 * (a.y + b.y) - high, y1 = .5 * (a.y + b.y) + high;
     const auto first = [](double least) { return static_cast<int>(std::max(0., least)); };
     const auto end = [](double most, int size) {
       return most < 0 ? 0 : static_cast<int>(std::min(most + 1, static_cast<double>(size)));

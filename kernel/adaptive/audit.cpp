@@ -17,7 +17,7 @@ namespace {
 /// Share of the pixels that an audit samples again: so few that it costs no more than that, and
 /// enough to notice one wrong pixel in a thousand of a picture of 192 x 192 (measured: with .01
 /// runs stopped above the error asked for three times as often).
-constexpr double kAuditedShare = .06;
+constexpr double kAuditedShare = .05;
 constexpr double kFewestAudited = 1024;  ///< but of small pictures
 constexpr double kMostAudited = 1. / 8;
 /// Blocks that claim most are audited for themselves: few could hold most of an error.

@@ -9,10 +9,20 @@ namespace grelha {
 void BlockErrors::Sums::operator+=(const Sums& o) {
   hits += o.hits;
   squares += o.squares;
+  drop += o.drop;
+  level += o.level;
   pixels += o.pixels;
   samples += o.samples;
   for (int c = 0; c < 3; ++c)
     colour[c] += o.colour[c];
+}
+
+/// V(n) / V(n/2) of a pool: 1/2, as though a few hits had said so, unless its own say other.
+float BlockErrors::Sums::ratio() const {
+  if (!(hits > 0 && level > 0))
+    return .5f;
+  const float few = kFewHits / certainty() * level;
+  return std::clamp((drop + .5f * few) / (level + few), kLeastRatio, kMostRatio);
 }
 
 BlockErrors::BlockErrors(const Refinement& r, int threads)
@@ -63,6 +73,9 @@ void BlockErrors::measure_pixel(std::size_t p, int log, Sums& sums) const {
     sums.levels[k] += levels[k];
   sums.hits += hit;
   sums.squares += hit * hit;
+  const bool old = log > kFirstLog;
+  sums.drop += n * (levels[0] + (old ? levels[1] : 0));
+  sums.level += .5f * n * (levels[1] + levels[2]);
   ++sums.pixels;
   sums.samples += n;
 }
@@ -145,7 +158,9 @@ float BlockErrors::rare_variance(std::size_t b, float& certainty) const {
   certainty = pool.certainty();
   if (pool.pixels == mine.pixels)
     return own_variance(mine.levels) / mine.pixels;
-  return pool.by_sample() * mine.pixels / mine.samples;
+  // were it 1/2, as `hits` takes it, and by the ratio that it is
+  const float ratio = pool.ratio();
+  return ratio / (1 - ratio) * pool.by_sample() * mine.pixels / mine.samples;
 }
 
 void BlockErrors::judge(std::size_t b) {

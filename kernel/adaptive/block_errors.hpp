@@ -41,6 +41,7 @@ class BlockErrors {
   struct Sums {
     float levels[3] = {};  ///< of squared differences over degrees of freedom, mean of the channels
     float hits = 0, squares = 0;  ///< of variances of pixels' samples; of their squares
+    float drop = 0, level = 0;    ///< V(n) / V(n/2) of those is drop / level
     float colour[3] = {};         ///< of what a screen shows
     float pixels = 0, samples = 0;
 
@@ -51,6 +52,7 @@ class BlockErrors {
       return certainty() <= std::max(kFewHits, kRareHits * samples);
     }
     float by_sample() const { return pixels > 0 ? hits / pixels : 0; }
+    float ratio() const;
   };
   /// Sums of blocks of rare hits, in cells of kCell x kCell cells of the level before.
   struct Level {

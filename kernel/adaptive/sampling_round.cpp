@@ -19,7 +19,6 @@ constexpr float kLeastThreshold = 1e-20f;  ///< below it no block is worth a ray
 /// that may have wider ones all the same; see RefineOptions::error
 constexpr double kWidestInterval = 8;
 constexpr double kShareOfWider = .001;
-constexpr double kLeastRatio = .1, kMostRatio = .6;  ///< of variances, a doubling
 constexpr double kMemory = .5;  ///< share of what rounds before the last one said that counts
 
 using List = std::vector<std::uint32_t>;
@@ -296,7 +295,8 @@ void close_round(Refinement& r) {
   r.round_level = 0;
   if (r.variance_level > 0)
     r.variance_ratio =
-        static_cast<float>(std::clamp(r.variance_drop / r.variance_level, kLeastRatio, kMostRatio));
+        std::clamp(
+        static_cast<float>(r.variance_drop / r.variance_level), kLeastRatio, kMostRatio);
 }
 
 }  // namespace

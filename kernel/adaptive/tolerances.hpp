@@ -13,6 +13,10 @@ inline constexpr float kOld = 7;
 /// picture's own: so a block tells the same whenever it is asked.
 inline constexpr float kTypicalRatio = .4f;
 
+/// V(n) / V(n/2) is no less and no more, whatever few differences say: from smooth light in nets to
+/// a little above independent samples.
+inline constexpr float kLeastRatio = .1f, kMostRatio = .6f;
+
 /// Differing pixels a block must hold for its estimate to stand alone. An edge crosses four or so;
 /// where fewer differ, rare hits may be what makes them, and blocks around tell as well.
 inline constexpr float kFewHits = 3;
@@ -26,7 +30,7 @@ inline constexpr float kAlike = 3;
 
 /// One rate for the whole picture, and blocks that stop when their differences are small, leave
 /// estimates up to 15 % too low (measured); the bound allows for 12 %, its spread for the rest.
-inline constexpr double kVarianceInflation = 1.12 * 1.12;
+inline constexpr double kVarianceInflation = 1;
 /// 97.5 % point of the normal.
 inline constexpr float kNormal = 1.96f;
 /// 95 % point, of one side.
