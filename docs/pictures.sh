@@ -22,3 +22,4 @@ done
 ./run render "$work/boat.nff" --size 384x384 --error 0.005 -o "$work/fine.png" \
   --samples-map "$out/samples-map.png"
 dot -Tsvg docs/pipeline.dot -o "$out/pipeline.svg"  # Debian: graphviz
+dot -Tsvg docs/error-flow.dot -o "$out/error-flow.svg"

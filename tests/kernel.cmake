@@ -24,14 +24,6 @@ grelha_test(kernel/scene/pages unit grelha::kernel)
 grelha_test(kernel/isa/variants property grelha::kernel)
 grelha_test(kernel/isa/double property grelha::kernel)
 target_sources(double_test PRIVATE kernel/isa/kinds_test.cpp)
-grelha_test(kernel/features/beam unit grelha::kernel)
-target_sources(beam_test PRIVATE kernel/features/beam_bounds_test.cpp
-  kernel/features/beam_box_test.cpp kernel/features/beam_frame_test.cpp
-  kernel/features/beam_grids_test.cpp)
-grelha_test(kernel/marks/small_things unit grelha::kernel)
-target_sources(small_things_test PRIVATE kernel/marks/glows_test.cpp
-  kernel/marks/mesh_rims_test.cpp kernel/marks/mesh_thickness_test.cpp
-  kernel/marks/rim_walk_test.cpp)
 grelha_test(kernel/query/query unit grelha::kernel)
 target_sources(query_test PRIVATE kernel/query/any_size_test.cpp kernel/query/rays_test.cpp)
 grelha_test(kernel/render/shade unit grelha::kernel)

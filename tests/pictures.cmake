@@ -9,9 +9,9 @@ target_sources(sampling_test PRIVATE kernel/render/pixel_box_test.cpp
   kernel/render/pixel_curve_test.cpp)
 grelha_test(frontend/input/effects image grelha::frontend)
 grelha_test(kernel/adaptive/refinement image grelha::frontend grelha::scenes)
-target_sources(refinement_test PRIVATE kernel/adaptive/pixel_errors_test.cpp
-  kernel/adaptive/specks_test.cpp kernel/adaptive/lamps_test.cpp kernel/adaptive/audit_test.cpp
-  kernel/adaptive/edges_test.cpp kernel/adaptive/foreseen_samples_test.cpp)
+target_sources(refinement_test PRIVATE kernel/adaptive/aimed_rays_test.cpp
+  kernel/adaptive/audit_test.cpp kernel/adaptive/block_errors_test.cpp
+  kernel/adaptive/specks_test.cpp)
 
 # By Debian's Python, where there is one: it has the modules of its packages.
 add_test(NAME other_programs COMMAND ${CMAKE_COMMAND} -E env PATH=/usr/bin:$ENV{PATH}

@@ -19,7 +19,7 @@ constexpr std::uint64_t kPixel = 12;  ///< bytes of a picture's pixel: three flo
 constexpr std::uint64_t kFilePixel = 12;
 constexpr std::uint64_t kSum = 24;         ///< three sums of light
 constexpr std::uint64_t kPlaceOfBlue = 4;  ///< where its samples begin
-constexpr std::uint64_t kRefined = 116;    ///< docs/architecture.md
+constexpr std::uint64_t kRefined = 80;     ///< docs/architecture.md, and 9 a pixel for blocks
 /// most pixels that are subdivided at a time, and bytes of one, measured
 constexpr std::uint64_t kSubdivided = 1 << 20, kSubdividedPixel = 56;
 constexpr std::uint64_t kMaps = 12;             ///< samples, errors and widths

@@ -114,7 +114,7 @@ class AdaptiveSampler {
     const double error = options_.refine.error, pixels = static_cast<double>(r_.box.size());
     if (std::min(static_cast<double>(thing_count(world_)), pixels) <= error * error * pixels)
       return;
-    errors_.set_missed(aim_at_small_things(world_, setup_, stats_.threads, r_, stats_.trace));
+    aim_at_small_things(world_, setup_, stats_.threads, r_, stats_.trace);
   }
 
   void fill(SampleMaps& maps) const {
@@ -248,6 +248,7 @@ class AdaptiveSampler {
     for (std::size_t w = chunk.begin; w < chunk.end; ++w) {
       const std::uint32_t b = r_.wanted[w];
       r_.cost[b] = cost;
+      r_.missed[b] = 0;
       r_.log[b] = static_cast<std::uint8_t>(r_.log[b] == 0 ? kFirstLog : r_.log[b] + 1);
     }
   }

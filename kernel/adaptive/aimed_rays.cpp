@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <utility>
 
 #include "kernel/adaptive/mesh_pieces.hpp"
 #include "kernel/adaptive/to_picture.hpp"
@@ -68,10 +67,9 @@ class Aiming {
         to_(setup.frame),
         r_(r),
         counts_(n),
-        rods_(rods_of(world)),
-        missed_(r.blocks().count()) {}
+        rods_(rods_of(world)) {}
 
-  std::vector<float> run() {
+  void run() {
     std::vector<Aim> aims = aims_from_eye();
     each_turn_of(aims, [&](AimedRay& rays, std::size_t first, std::size_t count, TraceCounts& n) {
       look(rays, aims.data() + first, count, n);
@@ -86,7 +84,6 @@ class Aiming {
       left -= rods_.size();
       throw_shadows({{at[0], at[1], at[2]}});
     }
-    return std::move(missed_);
   }
 
  private:
@@ -321,7 +318,7 @@ class Aiming {
     const float most = std::min(1.f, kDiscInBox * unpacked(word).area() * bright);
     const Blocks blocks = r_.blocks();
     const std::size_t b = blocks.of(x, y);
-    missed_[b] += most * most / static_cast<float>(blocks.pixels(b));
+    r_.missed[b] += most * most / static_cast<float>(blocks.pixels(b));
   }
 
   const World::Impl& world_;
@@ -331,7 +328,6 @@ class Aiming {
   Refinement& r_;
   TraceCounts& counts_;
   const std::vector<Rod> rods_;
-  std::vector<float> missed_;
 };
 
 }  // namespace
@@ -341,12 +337,12 @@ std::size_t thing_count(const World::Impl& world) {
   return g.spheres.size() + g.cones.size() + g.triangles.size();
 }
 
-std::vector<float> aim_at_small_things(const World::Impl& world,
-                                       const Setup& setup,
-                                       int threads,
-                                       Refinement& r,
-                                       TraceCounts& counts) {
-  return Aiming(world, setup, threads, r, counts).run();
+void aim_at_small_things(const World::Impl& world,
+                         const Setup& setup,
+                         int threads,
+                         Refinement& r,
+                         TraceCounts& counts) {
+  Aiming(world, setup, threads, r, counts).run();
 }
 
 }  // namespace grelha

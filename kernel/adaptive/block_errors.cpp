@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace grelha {
 
@@ -30,8 +29,6 @@ BlockErrors::BlockErrors(const Refinement& r, int threads)
   const std::size_t count = blocks_.count();
   resize_to_fill(seen_, count);
   resize_to_fill(sums_, count);
-  resize_to_fill(missed_, count);
-  resize_to_fill(missed_at_, count);
   for (std::vector<float>* const of : {&variance_, &certainty_, &gain_})
     resize_to_fill(*of, count);
   int columns = blocks_.columns, rows = blocks_.rows;
@@ -41,11 +38,6 @@ BlockErrors::BlockErrors(const Refinement& r, int threads)
     columns = (columns + kCell - 1) / kCell;
     rows = (rows + kCell - 1) / kCell;
   }
-}
-
-void BlockErrors::set_missed(std::vector<float> missed) {
-  missed_ = std::move(missed);
-  missed_at_ = r_.log;
 }
 
 /// Adds pixel p, of 2^log samples.
@@ -85,8 +77,6 @@ void BlockErrors::measure(std::size_t b) {
   blocks_.each_pixel(b, [&](std::size_t p) { measure_pixel(p, r_.log[b], sums); });
   sums_[b] = sums;
   seen_[b] = r_.log[b];
-  if (missed_at_[b] != r_.log[b])
-    missed_[b] = 0;
   levels_[0].cells[b] = sums.has_few_hits() ? sums : Sums{};
 }
 
@@ -174,7 +164,7 @@ void BlockErrors::judge(std::size_t b) {
     v *= static_cast<float>(r_.worse) * (1 + 1 / certainty);
   if (agrees(b))
     v = std::max(v, static_cast<float>(r_.least_by_sample) / samples);
-  v = std::min(v + missed_[b], 1.f);  // of what a screen shows
+  v = std::min(v + r_.missed[b], 1.f);  // of what a screen shows
   variance_[b] = v;
   certainty_[b] = certainty;
   gain_[b] = r_.log[b] < kMostLog ? v * (1 - r_.variance_ratio) / (samples * r_.cost[b]) : 0;
@@ -216,7 +206,7 @@ BlockErrors::Totals BlockErrors::totals() const {
     spread += v * v / std::max(1., static_cast<double>(certainty_[b]));
   }
   const double n = static_cast<double>(r_.box.size());
-  const double bound = kVarianceInflation * (sum + kNormalOneSided * std::sqrt(spread));
+  const double bound = sum + kNormalOneSided * std::sqrt(spread);
   return {sum, std::sqrt(bound / n), std::sqrt(sum / n)};
 }
 

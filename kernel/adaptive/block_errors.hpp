@@ -32,10 +32,6 @@ class BlockErrors {
   /// [pixels] Widths of 95 % intervals.
   std::vector<float> widths() const;
 
-  /// What things found in a block add to its variance, as long as no sample was sent to them: see
-  /// AimedRays. Gone once the block has more samples.
-  void set_missed(std::vector<float> missed);
-
  private:
   /// Sums over the pixels of a block.
   struct Sums {
@@ -76,8 +72,6 @@ class BlockErrors {
   std::vector<std::uint8_t> seen_;  ///< [blocks] Refinement::log when `sums_` was set
   std::vector<Sums> sums_;          ///< [blocks]
   Level levels_[kLevels];
-  std::vector<float> missed_;            ///< [blocks]
-  std::vector<std::uint8_t> missed_at_;  ///< [blocks] Refinement::log of `missed_`
   std::vector<float> variance_, certainty_, gain_;  ///< [blocks] certainty_: of how many hits
 };
 

@@ -65,7 +65,7 @@ bool has_sound_sizes(const Refinement& r) {
     if (level.size() != pixels * 3)
       return false;
   return r.sums.size() == pixels * 3 && r.box.size() == pixels && r.log.size() == blocks &&
-         r.cost.size() == blocks;
+         r.missed.size() == blocks && r.cost.size() == blocks;
 }
 
 /// Its sides are in order; see packed().
@@ -81,7 +81,8 @@ bool has_sound_arrays(const Refinement& r) {
       return false;
   return std::all_of(r.sums.begin(), r.sums.end(), is_sound_sum) &&
          std::all_of(r.log.begin(), r.log.end(), is_sound_log) &&
-         std::all_of(r.box.begin(), r.box.end(), is_sound_box) && all_from_0_on(r.cost) &&
+         std::all_of(r.box.begin(), r.box.end(), is_sound_box) && all_from_0_on(r.missed) &&
+         all_from_0_on(r.cost) &&
          std::all_of(r.cost.begin(), r.cost.end(), [](float c) { return c >= 1; });
 }
 
@@ -96,6 +97,7 @@ Refinement make_refinement(const Camera& camera) {
   for (auto& level : r.squares)
     resize_to_fill(level, pixels * 3);
   resize_to_fill(r.box, pixels);
+  resize_to_fill(r.missed, blocks);
   resize_to_fill(r.cost, blocks, 1.f);
   resize_to_fill(r.log, blocks);
   return r;

@@ -34,6 +34,8 @@ struct Refinement {
   /// [pixels][3] squared differences of halves, quarters, eighths, summed by level
   std::array<std::vector<float>, 3> squares;
   std::vector<std::uint32_t> box;  ///< [pixels] where aimed rays arrived, see PixelBox; 0: nowhere
+  /// [blocks] variance that things with boxes may add, until the block has samples in those
+  std::vector<float> missed;
   std::vector<float> cost;  ///< [blocks] rays a sample takes, of the chunk last sampled with it
   /// [blocks] of the number of samples of each pixel; 0: none yet
   std::vector<std::uint8_t> log;

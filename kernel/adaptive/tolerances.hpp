@@ -28,9 +28,6 @@ inline constexpr float kRareHits = .01f;
 /// errors than this: chance parts one pair in 370.
 inline constexpr float kAlike = 3;
 
-/// One rate for the whole picture, and blocks that stop when their differences are small, leave
-/// estimates up to 15 % too low (measured); the bound allows for 12 %, its spread for the rest.
-inline constexpr double kVarianceInflation = 1;
 /// 97.5 % point of the normal.
 inline constexpr float kNormal = 1.96f;
 /// 95 % point, of one side.

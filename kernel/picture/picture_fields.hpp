@@ -66,6 +66,7 @@ void visit_arrays(Archive& archive, State& r) {
   archive.values(r.audit_samples);
   archive.values(r.seconds, r.share, r.rays, r.variance_ratio, r.gain_threshold);
   archive.list(r.log, r.blocks().count());
+  archive.list(r.missed, r.blocks().count());
   archive.list(r.cost, r.blocks().count());
   archive.list(r.sums, pixels * 3);
   for (auto& level : r.squares)

@@ -293,67 +293,6 @@ inline std::uint64_t groups_near(const Frustum&, const Cone::Fields<float>&) {
   return ~std::uint64_t{0};
 }
 
-/// The ball around the cone's axis where that passes nearest to a line of unit direction; NaN where
-/// the two are parallel.
-inline Ball<float> ball_toward(const Cone::Fields<float>& cone,
-                               const Vec3<float>& org,
-                               const Vec3<float>& dir) {
-  const Vec3<float> base = vec(cone.base);
-  const Vec3<float> axis = vec(cone.axis);
-  const Vec3<float> d = base - org;
-  const float ab = dot(axis, dir);
-  const float k = 1 - ab * ab;
-  float h = (ab * dot(d, dir) - dot(d, axis)) / k;
-  h = h < 0 ? 0 : h > cone.height ? cone.height : h;
-  return {base + h * axis, cone.radius + cone.slope * h};
-}
-
-/// The way between the middles of a cone's ends; it lies around that.
-inline Stretch<float> stretch_of(const Cone::Fields<float>& cone) {
-  const Vec3<float> base = vec(cone.base);
-  const float other = cone.radius + cone.slope * cone.height;
-  return {{base, base + cone.height * vec(cone.axis)}, greater(cone.radius, other)};
-}
-
-/// Places all over a cone's side, for rays that want to meet it somewhere: five rings of eight, a
-/// little within, where rounding does not decide.
-struct ConePlaces {
-  static constexpr int kCount = 40;
-
-  explicit ConePlaces(const Cone::Fields<float>& cone)
-      : base_(vec(cone.base)),
-        way_(cone.height * vec(cone.axis)),
-        radius_(kWithin * cone.radius),
-        growth_(kWithin * cone.slope * cone.height) {
-    across(vec(cone.axis), across_[0], across_[1]);
-  }
-  Vec3<float> operator[](int which) const {
-    constexpr float kAlong[] = {.5f, .1f, .9f, .3f, .7f};
-    constexpr float kHalf = .70710678f;
-    constexpr float kRing[][2] = {{1, 0},
-                                  {0, 1},
-                                  {-1, 0},
-                                  {0, -1},
-                                  {kHalf, kHalf},
-                                  {-kHalf, kHalf},
-                                  {kHalf, -kHalf},
-                                  {-kHalf, -kHalf}};
-    const float along = kAlong[which / 8];
-    const float(&on)[2] = kRing[which % 8];
-    const float radius = radius_ + along * growth_;
-    return base_ + along * way_ + (radius * on[0]) * across_[0] + (radius * on[1]) * across_[1];
-  }
-
- private:
-  static constexpr float kWithin = .95f;
-
-  Vec3<float> base_, way_, across_[2];
-  float radius_, growth_;
-};
-inline ConePlaces surface_places(const Cone::Fields<float>& cone) {
-  return ConePlaces(cone);
-}
-
 template <class Real>
 inline SurfacePlace<Real> cone_place(const Cone::Fields<Real>& cone, const Vec3<Real>& at) {
   const Vec3<Real> base = vec(cone.base);

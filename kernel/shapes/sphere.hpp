@@ -306,13 +306,6 @@ inline std::uint64_t groups_near(const Frustum& f, const Sphere::Fields<float>& 
   });
 }
 
-/// Itself.
-inline Ball<float> ball_toward(const Sphere::Fields<float>& sphere,
-                               const Vec3<float>&,
-                               const Vec3<float>&) {
-  return {vec(sphere.center), magnitude(sphere.radius)};
-}
-
 /// Point and normal where a ray meets a sphere, in double: those of the crossing next to t.
 template <class Real>
 inline void sphere_crossing(const Vec3<Real>& org,

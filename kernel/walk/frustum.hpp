@@ -1,5 +1,5 @@
 #pragma once
-// The volume that the rays of a packet, or the edges of a beam, go through in a grid: four planes
+// The volume that the rays of a packet go through in a grid: four planes
 // around them, slice by slice along their major axis. After Wald, Ize, Kensler, Knoll, Parker, "Ray
 // Tracing Animated Scenes using Coherent Grid Traversal", SIGGRAPH 2006.
 

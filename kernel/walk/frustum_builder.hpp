@@ -1,5 +1,5 @@
 #pragma once
-// A frustum around the rays of a packet, or the edges of a beam.
+// A frustum around the rays of a packet.
 
 #include "kernel/walk/frustum.hpp"
 #include "kernel/walk/tolerances.hpp"
@@ -19,23 +19,16 @@ struct GroupBounds {
   }
 };
 
-/// The axis along which the first ray crosses most cells.
-inline constexpr int kAnyAxis = -1;
-
 /// Bounds one packet in one grid.
 class FrustumBuilder {
  public:
   FrustumBuilder(const GridView& g, const WalkingRays& p, Frustum& f) : g_(g), p_(p), f_(f) {}
 
-  Coherence around(int axis) {
-    const bool all = axis != kAnyAxis;
-    const int first = all ? clip_rays(axis, axis + 1) : clip_rays(0, 3);
-    // what lies between edges of a beam may meet a grid that none of them meets
-    if (all)
-      take_all_rays();
-    else if (first < 0)
+  Coherence around() {
+    const int first = clip_rays();
+    if (first < 0)
       return Coherence::kMisses;
-    set_axes(all ? 0 : first, all ? axis : steepest_axis(first));
+    set_axes(first, steepest_axis(first));
     if (!bound_slices())
       return Coherence::kIncoherent;
     bound_sides();
@@ -51,15 +44,14 @@ class FrustumBuilder {
   }
 
  private:
-  /// Entry and exit of every ray between the planes of axes [begin, end). Returns the first ray
-  /// that meets the grid, or -1.
-  [[gnu::always_inline]] int clip_rays(int begin, int end) {
+  /// Entry and exit of every ray. Returns the first that meets the grid, or -1.
+  [[gnu::always_inline]] int clip_rays() {
     int first = -1;
     each_live_group(p_, [&](int i, int) {
       Lanes t0 = load<Lanes>(p_.start + i);
       Lanes t1 = load<Lanes>(p_.best + i);
       const Lanes least = least_headway(p_, i);
-      for (int a = begin; a < end; ++a) {
+      for (int a = 0; a < 3; ++a) {
         const Lanes d = load<Lanes>(p_.dir[a] + i);
         const Lanes o = load<Lanes>(p_.org[a] + i);
         const Lanes inv = Lanes(1) / select(magnitude(d) < least, least, d);
@@ -75,15 +67,6 @@ class FrustumBuilder {
         first = i + __builtin_ctz(lanes);
     });
     return first;
-  }
-
-  /// Takes rays that pass the grid by as well.
-  void take_all_rays() {
-    each_live_group(p_, [&](int i, int) {
-      const Mask<Lanes> ray = load<Lanes>(p_.best + i) > load<Lanes>(p_.t_min + i);
-      const Lanes leave = greater(load<Lanes>(f_.leave + i), load<Lanes>(enter_ + i));
-      store(f_.leave + i, select(ray, leave, Lanes(-kInfinity)));
-    });
   }
 
   /// The axis along which a ray crosses most cells.
@@ -359,13 +342,9 @@ class FrustumBuilder {
 };
 
 /// Entry and exit of every ray, then the frustum around those that meet the grid, along the axis on
-/// which the first of them crosses most cells; or, with `axis`, around all of them along that one,
-/// whether they meet the grid themselves or pass it by on both sides.
-inline Coherence bound_rays(const GridView& g,
-                            const WalkingRays& p,
-                            Frustum& f,
-                            int axis = kAnyAxis) {
-  return FrustumBuilder(g, p, f).around(axis);
+/// which the first of them crosses most cells.
+inline Coherence bound_rays(const GridView& g, const WalkingRays& p, Frustum& f) {
+  return FrustumBuilder(g, p, f).around();
 }
 
 }  // namespace grelha::GRELHA_ISA

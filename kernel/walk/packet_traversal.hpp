@@ -1,6 +1,6 @@
 #pragma once
 // A packet through a grid: all rays together, slice by slice along their major axis, between four
-// bounding planes (frustum.hpp). Beams go through the same walk.
+// bounding planes (frustum.hpp).
 
 #include "kernel/walk/culling.hpp"
 #include "kernel/walk/frustum_builder.hpp"

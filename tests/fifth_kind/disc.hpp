@@ -150,21 +150,6 @@ inline std::uint64_t groups_near(const Frustum& f, const Disc::Fields<float>& di
   return groups_near(f, Sphere::Fields<float>{{x, y, z}, disc.radius});
 }
 
-/// Its point nearest to where a line crosses its plane; off the rim, where rounding decides.
-inline Ball<float> ball_toward(const Disc::Fields<float>& disc,
-                               const Vec3<float>& org,
-                               const Vec3<float>& dir) {
-  constexpr float kOffRim = .9f;
-  const Vec3<float> center = vec(disc.center);
-  const Vec3<float> normal = vec(disc.normal);
-  const float t = dot(center - org, normal) / dot(dir, normal);
-  const Vec3<float> off = org + t * dir - center;
-  const float far = length(off);
-  if (far <= kOffRim * disc.radius)
-    return {center + off, 0};
-  return {far < __builtin_inff() ? center + (kOffRim * disc.radius / far) * off : center, 0};
-}
-
 /// Where rays met discs, of indices i: as on their planes.
 template <class Real>
 inline Surface<Real> surface_on(const Disc::Arrays& discs,

@@ -8,7 +8,6 @@
 #include <numeric>
 
 #include "grelha/grelha.hpp"
-#include "kernel/features/beam.hpp"
 #include "kernel/world/world_impl.hpp"
 #include "kernel/shapes/copies.hpp"
 #include "tests/support/oracle.hpp"
@@ -135,29 +134,6 @@ TEST(Disc, IsACopyOfAnEqualOneAlone) {
   std::vector<std::uint32_t> ids(30);
   std::iota(ids.begin(), ids.end(), primitives.ids.begin(PrimitiveKind::kDisc));
   EXPECT_EQ(copies_among(primitives, ids).size(), 28u);
-}
-
-TEST(Disc, IsFoundInABeam) {
-  Scene scene = mixture(0);
-  scene.geometry.discs.add({.003f, -.002f, 5}, {.3f, .1f, 1}, .004f, 0);
-  scene.geometry.discs.add({.3f, 0, 5}, {.3f, .1f, 1}, .004f, 0);
-  const World world(scene, {});
-  const auto& view = world.impl().view;
-  scalar::Beam beam;
-  for (int i = 0; i < scalar::kCorners; ++i) {
-    beam.org[i] = {0, 0, 0};
-    const float x = i == 1 || i == 2 ? .002f : -.002f, y = i >= 2 ? .002f : -.002f;
-    beam.dir[i] = scalar::normalize(scalar::Vec3<float>{x, y, 1});
-  }
-  scalar::BeamFrame frame;
-  ASSERT_TRUE(scalar::frame_of(beam, frame));
-  const std::uint32_t first = view.geometry.ids.begin(PrimitiveKind::kDisc);
-  scalar::PartInBeam part;
-  ASSERT_TRUE(scalar::meets(view, frame, first, 10, part));
-  const scalar::Place at = scalar::place(frame, part.point);
-  EXPECT_LE(scalar::outness(at.x, at.y), 1);
-  EXPECT_NEAR(part.point.z, 5, .01f);
-  EXPECT_FALSE(scalar::meets(view, frame, first + 1, 10, part));
 }
 
 TEST(Disc, IsRefusedWhereArraysAreUneven) {

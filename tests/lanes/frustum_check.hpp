@@ -9,7 +9,7 @@ namespace grelha::GRELHA_ISA {
 
 class FrustumChecker {
  public:
-  FrustumChecker(const GridView& g, const Rays& rays, int axis) : g_(g) {
+  FrustumChecker(const GridView& g, const Rays& rays) : g_(g) {
     p_.size = static_cast<int>(rays.count);
     for (int i = 0; i < p_.size; ++i) {
       for (int a = 0; a < 3; ++a) {
@@ -20,7 +20,7 @@ class FrustumChecker {
       p_.best[i] = rays.t_max[i];
     }
     prepare(p_, false);
-    out_.together = bound_rays(g, p_, f_, axis) == Coherence::kTogether;
+    out_.together = bound_rays(g, p_, f_) == Coherence::kTogether;
   }
 
   test::FrustumCheck check() {
@@ -159,8 +159,8 @@ class FrustumChecker {
   test::FrustumCheck out_;
 };
 
-inline test::FrustumCheck check_frustum(const GridView& g, const Rays& rays, int axis) {
-  return FrustumChecker(g, rays, axis).check();
+inline test::FrustumCheck check_frustum(const GridView& g, const Rays& rays) {
+  return FrustumChecker(g, rays).check();
 }
 
 }  // namespace grelha::GRELHA_ISA

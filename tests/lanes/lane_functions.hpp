@@ -36,9 +36,9 @@ struct LaneFunctions {
                   int count);
   /// Camera rays of the work's batch.
   void (*camera_rays)(const FrameView&, const BandWork&, int count, bool in_pixels);
-  /// Bounds rays in a grid, along an axis or -1, and follows each in long double.
+  /// Bounds rays in a grid, and follows each in long double.
   /// Of the rays of one packet.
-  FrustumCheck (*check_frustum)(const GridView&, const Rays&, int axis);
+  FrustumCheck (*check_frustum)(const GridView&, const Rays&);
   int most_rays;  ///< of a packet
 };
 

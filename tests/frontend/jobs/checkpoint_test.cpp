@@ -170,7 +170,7 @@ TEST(Checkpoint, OfImpossibleNumbersIsRefused) {
   };
   const float nan = std::numeric_limits<float>::quiet_NaN();
   EXPECT_FALSE(refused([](Refinement&) {}));
-  EXPECT_TRUE(refused([&](Refinement& r) { r.cost[5] = nan; })) << "pixels are sorted by it";
+  EXPECT_TRUE(refused([&](Refinement& r) { r.cost[5] = nan; })) << "blocks are sorted by it";
   EXPECT_TRUE(refused([](Refinement& r) { r.cost[5] = 0; }));
   EXPECT_TRUE(refused([&](Refinement& r) { r.squares[1][7] = nan; }));
   EXPECT_TRUE(refused([&](Refinement& r) { r.gain_threshold = nan; }))
@@ -179,21 +179,18 @@ TEST(Checkpoint, OfImpossibleNumbersIsRefused) {
       refused([](Refinement& r) { r.gain_threshold = std::numeric_limits<float>::infinity(); }));
   EXPECT_TRUE(refused([](Refinement& r) { r.variance_ratio = 1; }));
   EXPECT_TRUE(refused([](Refinement& r) { r.log[3] = 17; }));
-  EXPECT_TRUE(refused([](Refinement& r) { r.log[3] = 1; }));
+  EXPECT_TRUE(refused([](Refinement& r) { r.log[3] = 2; }));
   EXPECT_TRUE(refused([](Refinement& r) { r.log[r.wanted[0]] = 16; })) << "it can take no more";
   EXPECT_TRUE(refused([](Refinement& r) { r.wanted[1] = r.wanted[0]; }))
       << "two threads would work on it";
-  EXPECT_TRUE(refused([](Refinement& r) { r.wanted[1] = 37 * 29; }));
+  EXPECT_TRUE(refused([](Refinement& r) { r.wanted[1] = 10 * 8; }));
   EXPECT_TRUE(refused([](Refinement& r) { r.wanted.clear(); })) << "neither finished nor begun";
   EXPECT_TRUE(refused([](Refinement& r) { r.finished = true; }));
   EXPECT_TRUE(refused([](Refinement& r) { r.sums[8] = std::numeric_limits<std::int64_t>::max(); }));
   EXPECT_TRUE(refused([](Refinement& r) { r.seconds = -1; }));
-  EXPECT_TRUE(refused([](Refinement& r) {
-    r.inside.pop_back();
-    r.inside.push_back(-1);
-  }));
-  EXPECT_TRUE(refused([](Refinement& r) { r.boxed[4] = -1; }));
-  EXPECT_TRUE(refused([&](Refinement& r) { r.boxed[4] = nan; }));
+  EXPECT_TRUE(refused([](Refinement& r) { r.missed.pop_back(); }));
+  EXPECT_TRUE(refused([](Refinement& r) { r.missed[4] = -1; }));
+  EXPECT_TRUE(refused([&](Refinement& r) { r.missed[4] = nan; }));
   EXPECT_TRUE(refused([](Refinement& r) { r.box[4] = 0x40304041; })) << "its left is right of it";
   EXPECT_TRUE(refused([](Refinement& r) { r.box[4] = 0x2F403010; })) << "its top is below it";
   EXPECT_FALSE(refused([](Refinement& r) { r.box[4] = 0x40303010; }));

@@ -4,15 +4,12 @@
 #include <cmath>
 
 #include "kernel/adaptive/adaptive_sampler.hpp"
-#include "kernel/adaptive/pixel_order.hpp"
 #include "kernel/adaptive/sampling_round.hpp"
 #include "tests/support/rays.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace grelha::test {
 namespace {
-
-constexpr int kFirstLog = 2;
 
 /// Balls over a wall, in front of a light: edges and shadows.
 Scene balls_and_shadows() {
@@ -42,16 +39,12 @@ class Audits : public testing::Test {
   }
 
   Audit audited(const Refinement& picture) {
-    AuditSamples none;
-    return audited(picture, none);
-  }
-  Audit audited(const Refinement& picture, AuditSamples& samples) {
     grelha::Setup setup = set_up(world_, camera_, options_);
     setup.plan.on = true;
     setup.plan.samples = kMostSamples;
-    PixelErrors errors(picture, false, kFirstLog, 2);
+    BlockErrors errors(picture, 2);
     errors.judge();
-    return audit(world_.impl(), setup, options_, errors, picture, kFirstLog, samples, stats_);
+    return audit(world_.impl(), setup, options_, errors, picture, stats_);
   }
 
   double true_mean_square() const {
@@ -76,7 +69,7 @@ class Audits : public testing::Test {
   Refinement picture_;
 };
 
-/// Of 16384 pixels some 256, of which an eighth vary: their mean is off by a fifth or two.
+/// Of 16384 pixels some 1024, of which an eighth vary: their mean is off by a tenth or two.
 TEST_F(Audits, TellTheTrueError) {
   const Audit found = audited(picture_);
   const double truth = true_mean_square();
@@ -93,26 +86,35 @@ TEST_F(Audits, SeeThroughAPictureThatIsTooDark) {
   constexpr double kDarker = .05;
   const double before = audited(picture_).mean_square();
   Refinement dark = picture_;
+  const Blocks blocks = dark.blocks();
   for (std::size_t i = 0; i < dark.sums.size(); ++i)
-    dark.sums[i] -= static_cast<std::int64_t>(kDarker * kLightUnit * sample_count(dark, i / 3));
+    dark.sums[i] -= static_cast<std::int64_t>(kDarker * kLightUnit *
+                                              sample_count(dark, blocks.of_pixel(i / 3)));
   const Audit found = audited(dark);
   EXPECT_GT(found.mean_square(), before + .3 * kDarker * kDarker);
   EXPECT_TRUE(found.agreeing.is_worse() || found.others.is_worse());
 }
 
-/// A run stops when its bound happens to be low: what is told is higher, up to the error asked for.
-TEST_F(Audits, BoundsAllowForThatTheyMadeRunsStop) {
-  PixelErrors errors(picture_, false, kFirstLog, 2);
-  errors.judge();
-  const double low = std::max(errors.totals().bound, std::sqrt(picture_.audited));
-  ASSERT_LT(low, options_.refine.error);
-  EXPECT_EQ(stats_.error.rmse_bound, std::min(1.15 * low, options_.refine.error));
-  options_.refine = {.samples = 100000};
-  Refinement budget = make_refinement(camera_);
-  EXPECT_TRUE(refine(world_, camera_, options_, budget, stats_));
-  PixelErrors of_budget(budget, false, kFirstLog, 2);
-  of_budget.judge();
-  EXPECT_EQ(stats_.error.rmse_bound, of_budget.totals().bound);
+/// The next audit draws other pixels.
+TEST_F(Audits, LookAtOtherPixelsEachTime) {
+  const double first = audited(picture_).mean_square();
+  Refinement next = picture_;
+  ++next.audits;
+  EXPECT_NE(audited(next).mean_square(), first);
+}
+
+/// So few pixels are enough for a coarse error that none of them could hide it.
+TEST_F(Audits, CostLittleWhereTheErrorIsCoarse) {
+  const auto samples = [&](double error) {
+    options_.refine.error = error;
+    const std::uint64_t before = stats_.rays.primary;
+    audited(picture_);
+    return stats_.rays.primary - before;
+  };
+  const std::uint64_t all = samples_taken(picture_);
+  EXPECT_LT(samples(1), all / 100);
+  EXPECT_GT(samples(.01), all / 25);
+  EXPECT_LT(samples(.01), all / 10);
 }
 
 TEST_F(Audits, AreTheSameForAnyNumberOfThreads) {
@@ -124,10 +126,8 @@ TEST_F(Audits, AreTheSameForAnyNumberOfThreads) {
 /// What an audit that disagrees makes of the variances is rough: the next one comes before samples
 /// have doubled.
 TEST_F(Audits, LetSamplesGrowByHalfUntilTheNext) {
-  std::uint64_t samples = 0;
-  for (std::size_t p = 0; p < picture_.log.size(); ++p)
-    samples += sample_count(picture_, p);
-  PixelErrors errors(picture_, false, kFirstLog, 2);
+  const std::uint64_t samples = samples_taken(picture_);
+  BlockErrors errors(picture_, 2);
   errors.judge();
   const auto in_round = [&](int audits) {
     Refinement r = picture_;
@@ -135,42 +135,16 @@ TEST_F(Audits, LetSamplesGrowByHalfUntilTheNext) {
     r.audits = audits;
     r.audited_at = samples;
     r.gain_threshold = 1e-12f;
-    const std::vector<std::uint32_t> order = pixel_order(r.width, r.height);
-    EXPECT_TRUE(choose_round(r, errors, {.error = 1e-4}, order, {samples, 0}, kFirstLog));
+    const std::vector<std::uint32_t> order = r.blocks().by_tiles();
+    EXPECT_TRUE(choose_round(r, errors, {.error = 1e-4}, order, {samples, 0}));
     std::uint64_t next = 0;
-    for (const std::uint32_t p : r.wanted)
-      next += next_count(r, p, kFirstLog);
+    for (const std::uint32_t b : r.wanted)
+      next += next_count(r, b) * kBlockPixels;
     return next;
   };
   ASSERT_GT(in_round(0), 6 * samples / 10) << "it could take more";
   EXPECT_LE(in_round(1), 51 * samples / 100);
   EXPECT_GE(in_round(1), 49 * samples / 100);
-}
-
-/// An audit of a picture that went on says what one does that begins anew, and takes no sample that
-/// an earlier one took.
-TEST_F(Audits, GoOnWhereEarlierOnesEnded) {
-  AuditSamples samples;
-  audited(picture_, samples);
-  options_.refine.error = .01;
-  picture_.finished = picture_.met = false;
-  EXPECT_TRUE(refine(world_, camera_, options_, picture_, stats_));
-  const auto rays_of = [&](AuditSamples& some, double& mean_square) {
-    const std::uint64_t before = stats_.rays.primary;
-    mean_square = audited(picture_, some).mean_square();
-    return stats_.rays.primary - before;
-  };
-  double anew = 0;
-  double going_on = 0;
-  double again = 0;
-  AuditSamples none;
-  const std::uint64_t all = rays_of(none, anew);
-  const std::uint64_t rest = rays_of(samples, going_on);
-  EXPECT_EQ(going_on, anew);
-  EXPECT_GT(rest, 0u);
-  EXPECT_LT(rest, all);
-  EXPECT_EQ(rays_of(samples, again), 0u);
-  EXPECT_EQ(again, anew);
 }
 
 TEST(AuditedPixels, AreNotWorseByChance) {
