@@ -267,7 +267,8 @@ def asked_for():
     parser.add_argument("--long", action="store_true", help="the whole of it: hours")
     parser.add_argument("--folder", default="error_suite",
                         help="where scenes and references stay [error_suite beside the program]")
-    parser.add_argument("--keep", action="store_true", help="write the table and the CSV of docs/ as well")
+    parser.add_argument("--keep", action="store_true",
+                        help="write the table and the CSV of docs/ as well")
     parser.add_argument("scenes", nargs="*", type=pathlib.Path, metavar="SCENE",
                         help="scene files and meshes besides")
     asked = parser.parse_args()

@@ -51,6 +51,9 @@ FAULTS = [
                "AimedRays.FindShadows"),
     refinement("boxes of what is out of focus", "aimed_rays.cpp", "kMostBlur = .25;",
                "kMostBlur = 1e9;", "AimedRays.LeaveWhat*"),
+    refinement("mirrors that show all", "aimed_rays.cpp",
+               "static_cast<double>(rays.t[i]) >= near(real, from)", "true",
+               "AimedRays.LookIntoFlatMirrors"),
     refinement("pieces that touch nothing", "mesh_pieces.cpp", "  weld(triangles, sets);", "",
                "MeshPieces.AreConnected*"),
 ]

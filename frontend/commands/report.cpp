@@ -249,7 +249,9 @@ std::string error_text(const RefineOptions& asked, const ErrorStats& e, const Ru
   std::string text =
       print("; RMSE about %.2g, at most ", e.rmse) + rounded_up(e.rmse_bound) + " (95 %)";
   if (e.audited > 0)
-    text += print(", audited %.2g", e.audited);
+    text += print(", audited %.2g by %.1f %% more samples",
+                  e.audited,
+                  100 * double(e.audit_samples) / double(e.samples));
   text += print("; %llu samples, %.1f a pixel, %u to %u",
                 static_cast<unsigned long long>(e.samples),
                 double(e.samples) / report.width / report.height,

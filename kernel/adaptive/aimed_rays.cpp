@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "kernel/adaptive/flat_mirrors.hpp"
 #include "kernel/adaptive/mesh_pieces.hpp"
 #include "kernel/adaptive/to_picture.hpp"
 #include "kernel/adaptive/tolerances.hpp"
@@ -14,12 +15,12 @@
 namespace grelha {
 namespace {
 
-constexpr double kThin = 1;        ///< pixels: what looks wider is met by samples of a net
+constexpr double kThin = 1;         ///< pixels: what looks wider is met by samples of a net
 constexpr double kMostParts = 256;  ///< of a rod
 constexpr int kMostClear = 6;       ///< surfaces on the way to a thing
 constexpr double kMostBlur = .25;   ///< pixels: of what is more out of focus, boxes hold too little
 constexpr double kBoxTaken = .9 * static_cast<double>(kLargestBox);  ///< sides are rounded up
-constexpr double kMargin = .02;     ///< pixels around a box, for what rounding does
+constexpr double kMargin = .02;  ///< pixels around a box, for what rounding does
 constexpr std::size_t kRaysOfTurn = 256;
 
 /// A part of a rod, which one ray is aimed at.
@@ -70,11 +71,13 @@ class Aiming {
         rods_(rods_of(world)) {}
 
   void run() {
-    std::vector<Aim> aims = aims_from_eye();
+    std::vector<Aim> aims = aims_from_eye([](const Rod& rod) { return rod; });
     each_turn_of(aims, [&](AimedRay& rays, std::size_t first, std::size_t count, TraceCounts& n) {
       look(rays, aims.data() + first, count, n);
     });
     mark(aims);
+    for (const MirrorPlane& mirror : flat_mirrors(world_))
+      look_into(mirror);
     // blurred shadows are met by samples; many lights leave little of each shadow to see
     std::size_t left = r_.box.size();
     for (int l = 0; !world_.shading.area && l < world_.shading.light_count; ++l) {
@@ -122,8 +125,8 @@ class Aiming {
       Aim aim{rod};
       for (std::size_t e = 0; e < 2; ++e)
         for (std::size_t a = 0; a < 3; ++a)
-          aim.end[e][a] = rod.end[0][a] + (k + static_cast<double>(e)) / parts *
-                                              (rod.end[1][a] - rod.end[0][a]);
+          aim.end[e][a] = rod.end[0][a] +
+                          (k + static_cast<double>(e)) / parts * (rod.end[1][a] - rod.end[0][a]);
       aims.push_back(aim);
     }
   }
@@ -152,9 +155,12 @@ class Aiming {
     return aims;
   }
 
-  std::vector<Aim> aims_from_eye() const {
+  /// At where rods seem to be.
+  template <class Place>
+  std::vector<Aim> aims_from_eye(const Place& place) const {
     std::vector<Thin> thin;
-    for (Rod rod : rods_) {
+    for (const Rod& real : rods_) {
+      Rod rod = place(real);
       if (!cut_behind(to_, rod))
         continue;
       const double pixel = to_.pixel(std::min(to_(rod.end[0]).depth, to_(rod.end[1]).depth));
@@ -172,18 +178,13 @@ class Aiming {
     setup_.variant.loops.closest(world_.view, in, {.t = hits.t, .id = hits.id}, {}, n);
   }
 
-  bool is_clear(std::uint32_t id) const {
+  std::uint32_t material_of(std::uint32_t id) const {
     const GeometrySpans& g = world_.primitives.geometry;
     const Primitive p = world_.primitives.ids.primitive(id);
-    const auto material = [&] {
-      switch (p.kind) {
-        case PrimitiveKind::kSphere: return g.spheres.material[p.index];
-        case PrimitiveKind::kCone: return g.cones.material[p.index];
-        case PrimitiveKind::kTriangle: return g.triangles.material[p.index];
-        default: return g.planes.material[p.index];
-      }
-    };
-    return world_.shading.materials.field[kTransmission][material()] > 0;
+    return p.kind == PrimitiveKind::kSphere     ? g.spheres.material[p.index]
+           : p.kind == PrimitiveKind::kCone     ? g.cones.material[p.index]
+           : p.kind == PrimitiveKind::kTriangle ? g.triangles.material[p.index]
+                                                : g.planes.material[p.index];
   }
 
   /// Share of the way to its middle at which a ray has surely come to a thing.
@@ -198,13 +199,13 @@ class Aiming {
       rays.set(i, to_.eye, aims[i].middle(), 0);
     closest(rays, rays, count, n);
     const auto before = [&](std::size_t i) {
-      return rays.id[i] != kNoPrimitive &&
-             static_cast<double>(rays.t[i]) < near(aims[i], to_.eye);
+      return rays.id[i] != kNoPrimitive && static_cast<double>(rays.t[i]) < near(aims[i], to_.eye);
     };
     for (int k = 0; k < kMostClear; ++k) {
       bool any = false;
       for (std::size_t i = 0; i < count; ++i)
-        if (before(i) && is_clear(rays.id[i])) {
+        if (before(i) &&
+            world_.shading.materials.field[kTransmission][material_of(rays.id[i])] > 0) {
           rays.t_min[i] = rays.t[i] * 1.00001f;
           any = true;
         }
@@ -216,11 +217,57 @@ class Aiming {
       aims[i].arrives = !before(i);
   }
 
+  /// Marks where thin rods show in a mirror.
+  void look_into(const MirrorPlane& mirror) {
+    std::vector<Aim> aims = aims_from_eye([&](Rod rod) {
+      for (Place3& end : rod.end)
+        end = mirror.image(end);
+      return rod;
+    });
+    each_turn_of(aims, [&](AimedRay& rays, std::size_t first, std::size_t count, TraceCounts& n) {
+      look_by_mirror(mirror, rays, aims.data() + first, count, n);
+    });
+    mark(aims);
+  }
+
+  /// Which of the images a ray from the eye arrives at by way of the mirror.
+  void look_by_mirror(const MirrorPlane& mirror,
+                      AimedRay& rays,
+                      Aim* aims,
+                      std::size_t count,
+                      TraceCounts& n) const {
+    for (std::size_t i = 0; i < count; ++i)
+      rays.set(i, to_.eye, aims[i].middle(), 0);
+    closest(rays, rays, count, n);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Place3 image = aims[i].middle();
+      const double eye_above = mirror.above(to_.eye), all = eye_above - mirror.above(image);
+      const double t = eye_above / all;  // where the way to the image crosses the mirror
+      aims[i].arrives = rays.id[i] != kNoPrimitive && t > 0 && t < 1 &&
+                        std::abs(static_cast<double>(rays.t[i]) - t) <= 1e-3 * t &&
+                        is_smooth_mirror(world_.shading.materials, material_of(rays.id[i]));
+      Place3 at = to_.eye;
+      for (std::size_t a = 0; a < 3 && aims[i].arrives; ++a)
+        at[a] += t * (image[a] - to_.eye[a]);
+      rays.set(i, at, mirror.image(image), 1e-4);
+    }
+    closest(rays, rays, count, n);
+    for (std::size_t i = 0; i < count; ++i) {
+      Aim real = aims[i];
+      for (Place3& end : real.end)
+        end = mirror.image(end);
+      const Place3 from{{rays.org[0][i], rays.org[1][i], rays.org[2][i]}};
+      aims[i].arrives = aims[i].arrives && (rays.id[i] == kNoPrimitive ||
+                                            static_cast<double>(rays.t[i]) >= near(real, from));
+    }
+  }
+
   /// Marks where shadows of thin rods fall, if the eye sees that.
   void throw_shadows(const Place3& light) {
     std::vector<Thin> thin;
     for (const Rod& rod : rods_)
-      if (const double pixel = to_.pixel(std::abs(to_(rod.end[0]).depth)); rod.radius < kThin * pixel)
+      if (const double pixel = to_.pixel(std::abs(to_(rod.end[0]).depth));
+          rod.radius < kThin * pixel)
         thin.push_back({rod, pixel});
     std::vector<Aim> aims = parts_of(thin);
     each_turn_of(aims, [&](AimedRay& rays, std::size_t first, std::size_t count, TraceCounts& n) {
@@ -230,11 +277,8 @@ class Aiming {
   }
 
   /// Moves things on to the surfaces behind them.
-  void cast_shadows(AimedRay& rays,
-                    const Place3& light,
-                    Aim* aims,
-                    std::size_t count,
-                    TraceCounts& n) const {
+  void cast_shadows(
+      AimedRay& rays, const Place3& light, Aim* aims, std::size_t count, TraceCounts& n) const {
     for (std::size_t i = 0; i < count; ++i)
       rays.set(i, light, aims[i].middle(), 2 - near(aims[i], light));
     closest(rays, rays, count, n);
@@ -300,9 +344,8 @@ class Aiming {
   static float side(double v) { return static_cast<float>(std::clamp(v, 0., 1.)); }
 
   void add_box(int x, int y, PixelBox box, float bright) {
-    std::uint32_t& word =
-        r_.box[static_cast<std::size_t>(y) * static_cast<std::size_t>(r_.width) +
-               static_cast<std::size_t>(x)];
+    std::uint32_t& word = r_.box[static_cast<std::size_t>(y) * static_cast<std::size_t>(r_.width) +
+                                 static_cast<std::size_t>(x)];
     if (word != 0) {
       const PixelBox other = unpacked(word);
       box = {std::min(box.x0, other.x0),
@@ -337,11 +380,8 @@ std::size_t thing_count(const World::Impl& world) {
   return g.spheres.size() + g.cones.size() + g.triangles.size();
 }
 
-void aim_at_small_things(const World::Impl& world,
-                         const Setup& setup,
-                         int threads,
-                         Refinement& r,
-                         TraceCounts& counts) {
+void aim_at_small_things(
+    const World::Impl& world, const Setup& setup, int threads, Refinement& r, TraceCounts& counts) {
   Aiming(world, setup, threads, r, counts).run();
 }
 

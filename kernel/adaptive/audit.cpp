@@ -104,12 +104,7 @@ class Auditor {
           const RenderOptions& options,
           const Refinement& r,
           RenderStats& stats)
-      : world_(world),
-        setup_(setup),
-        options_(options),
-        r_(r),
-        stats_(stats),
-        plan_(setup.plan) {
+      : world_(world), setup_(setup), options_(options), r_(r), stats_(stats), plan_(setup.plan) {
     plan_.seed = scattered_bits(plan_.seed ^ kOtherSeed);
   }
 
@@ -221,8 +216,7 @@ Audit audit(const World::Impl& world,
             const BlockErrors& errors,
             const Refinement& r,
             RenderStats& stats) {
-  std::vector<Audited> pixels =
-      audited_pixels(r, errors, setup.plan.seed, options.refine.error);
+  std::vector<Audited> pixels = audited_pixels(r, errors, setup.plan.seed, options.refine.error);
   const Auditor auditor(world, setup, options, r, stats);
   auditor.sample(pixels);
   Audit sum;

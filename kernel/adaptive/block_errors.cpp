@@ -157,8 +157,8 @@ void BlockErrors::judge(std::size_t b) {
   const Sums& mine = sums_[b];
   const auto samples = static_cast<float>(sample_count(r_, b));
   float certainty = mine.certainty();
-  float v = mine.has_few_hits() ? rare_variance(b, certainty)
-                                : own_variance(mine.levels) / mine.pixels;
+  float v =
+      mine.has_few_hits() ? rare_variance(b, certainty) : own_variance(mine.levels) / mine.pixels;
   // k hits in N samples have chances of Beta(k + 1, N - k + 1), whose mean is that of one hit more
   if (certainty > 0)
     v *= static_cast<float>(r_.worse) * (1 + 1 / certainty);

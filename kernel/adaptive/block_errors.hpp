@@ -13,8 +13,8 @@ class BlockErrors {
  public:
   BlockErrors(const Refinement& r, int threads);
 
-  /// Variance of every block, from the differences its pixels hold. Where few of them differ, blocks
-  /// around that may show the same surface tell how often samples hit.
+  /// Variance of every block, from the differences its pixels hold. Where few of them differ,
+  /// blocks around that may show the same surface tell how often samples hit.
   void judge();
 
   struct Totals {
@@ -44,9 +44,7 @@ class BlockErrors {
     void operator+=(const Sums& o);
     /// As many pixels of equal differences would tell as much.
     float certainty() const { return squares > 0 ? hits * hits / squares : 0; }
-    bool has_few_hits() const {
-      return certainty() <= std::max(kFewHits, kRareHits * samples);
-    }
+    bool has_few_hits() const { return certainty() <= std::max(kFewHits, kRareHits * samples); }
     float by_sample() const { return pixels > 0 ? hits / pixels : 0; }
     float ratio() const;
   };

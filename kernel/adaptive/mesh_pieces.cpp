@@ -38,10 +38,6 @@ std::array<std::uint32_t, 3> corners(const TriangleSpans& t, std::size_t i) {
   return {t.a[i], t.b[i], t.c[i]};
 }
 
-Place3 vertex_of(const TriangleSpans& t, std::uint32_t v) {
-  return {{t.x[v], t.y[v], t.z[v]}};
-}
-
 struct PlaceHash {
   std::size_t operator()(const Place3& p) const {
     std::uint32_t hash = 0;
@@ -67,7 +63,7 @@ void weld(const TriangleSpans& t, Sets& sets) {
     if (sizes[sets.root(t.a[i])] > kFewTriangles)
       continue;
     for (const std::uint32_t v : corners(t, i))
-      sets.join(first.try_emplace(vertex_of(t, v), v).first->second, v);
+      sets.join(first.try_emplace(corner_of(t, v), v).first->second, v);
   }
 }
 
@@ -97,10 +93,10 @@ class MeshPieces {
   MeshPieces(const TriangleSpans& t, Sets& sets) : t_(t), of_(t.size()) {
     std::unordered_map<std::uint32_t, std::uint32_t> number;
     for (std::size_t i = 0; i < t.size(); ++i) {
-      const auto [known, is_new] = number.try_emplace(
-          sets.root(t.a[i]), static_cast<std::uint32_t>(pieces_.size()));
+      const auto [known, is_new] =
+          number.try_emplace(sets.root(t.a[i]), static_cast<std::uint32_t>(pieces_.size()));
       if (is_new) {
-        const Place3 first = vertex_of(t, t.a[i]);
+        const Place3 first = corner_of(t, t.a[i]);
         pieces_.push_back({{{first, first}, 0, t.material[i]}});
       }
       of_[i] = known->second;
@@ -136,7 +132,7 @@ class MeshPieces {
       Piece& piece = pieces_[of_[i]];
       if (piece.seen++ % (piece.triangles / kMostSeen + 1) == 0)
         for (const std::uint32_t v : corners(t_, i))
-          visit(piece, of_[i], vertex_of(t_, v));
+          visit(piece, of_[i], corner_of(t_, v));
     }
   }
 

@@ -52,9 +52,9 @@ struct Refinement {
   double worse = 1, least_by_sample = 0, audited = 0;
   double audited_bound = 0;
   int audits = 0;
-  bool met = false;              ///< so the last audit said
-  std::uint64_t audited_at = 0;  ///< samples there were then
-  std::uint64_t met_at = 0;      ///< samples there were when the error was met; 0: it is not
+  bool met = false;                 ///< so the last audit said
+  std::uint64_t audited_at = 0;     ///< samples there were then
+  std::uint64_t met_at = 0;         ///< samples there were when the error was met; 0: it is not
   std::uint64_t audit_samples = 0;  ///< taken for audits alone
   int rounds = 0;                   ///< done
   bool last = false;                ///< no round follows the one in work

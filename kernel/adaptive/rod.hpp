@@ -47,4 +47,8 @@ inline Rod rod_of(const ConeSpans& c, std::size_t i) {
           c.material[i]};
 }
 
+inline Place3 corner_of(const TriangleSpans& t, std::uint32_t vertex) {
+  return {{t.x[vertex], t.y[vertex], t.z[vertex]}};
+}
+
 }  // namespace grelha

@@ -24,8 +24,7 @@ constexpr double kMemory = .5;  ///< share of what rounds before the last one sa
 using List = std::vector<std::uint32_t>;
 
 double new_samples(const Refinement& r, std::size_t block) {
-  return static_cast<double>(next_count(r, block)) *
-         static_cast<double>(r.blocks().pixels(block));
+  return static_cast<double>(next_count(r, block)) * static_cast<double>(r.blocks().pixels(block));
 }
 
 template <class Test>
@@ -295,8 +294,7 @@ void close_round(Refinement& r) {
   r.round_level = 0;
   if (r.variance_level > 0)
     r.variance_ratio =
-        std::clamp(
-        static_cast<float>(r.variance_drop / r.variance_level), kLeastRatio, kMostRatio);
+        std::clamp(static_cast<float>(r.variance_drop / r.variance_level), kLeastRatio, kMostRatio);
 }
 
 }  // namespace

@@ -20,7 +20,8 @@ inline constexpr float kLeastRatio = .1f, kMostRatio = .6f;
 /// Differing pixels a block must hold for its estimate to stand alone. An edge crosses four or so;
 /// where fewer differ, rare hits may be what makes them, and blocks around tell as well.
 inline constexpr float kFewHits = 3;
-/// Hits that blocks around are asked for until there are as many: they tell a variance to a quarter.
+/// Hits that blocks around are asked for until there are so many: they tell a variance to a
+/// quarter.
 inline constexpr float kEnoughHits = 16;
 /// Share of samples that hit, up to which hits are rare.
 inline constexpr float kRareHits = .01f;

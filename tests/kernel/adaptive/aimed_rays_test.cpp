@@ -96,6 +96,24 @@ TEST(AimedRays, FollowLongThings) {
   EXPECT_LE(boxes(mesh), 10u);
 }
 
+/// A flat mirror shows a speck as far behind it as it lies before; the back of a wall hides it.
+TEST(AimedRays, LookIntoFlatMirrors) {
+  Scene s = one_sphere({2.5f, -3.15f, 100}, .1f);
+  s.materials.emplace_back().mirror = {.9f, .9f, .9f};
+  add_triangle(s, {-8, -8, 0}, {8, -8, 0}, {8, 8, 0}, 1);
+  add_triangle(s, {-8, -8, 0}, {8, 8, 0}, {-8, 8, 0}, 1);
+  const double nearer = 1000. / 1100, direct = 1000. / 900;
+  const Refinement r = searched(s);
+  EXPECT_EQ(boxes(r), 2u);
+  expect_box(r, 2.5 * nearer, -3.15 * nearer, .1 * nearer);
+  expect_box(r, 2.5 * direct, -3.15 * direct, .1 * direct);
+  s.materials[1].roughness = .1f;
+  EXPECT_EQ(boxes(searched(s)), 1u) << "rough mirrors blur it";
+  s.materials[1].roughness = 0;
+  add_triangle(s, {-8, -8, 50}, {8, -8, 50}, {8, 8, 50}, 0);
+  EXPECT_EQ(boxes(searched(s)), 1u) << "a wall between mirror and speck";
+}
+
 /// A point light throws the shadow of a speck twice as far to the side as the speck.
 TEST(AimedRays, FindShadows) {
   Scene s = one_sphere({40.25f, .25f, 10}, .05f);

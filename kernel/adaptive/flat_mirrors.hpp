@@ -1,0 +1,30 @@
+#pragma once
+
+#include <vector>
+
+#include "kernel/adaptive/rod.hpp"
+#include "kernel/world/world_impl.hpp"
+
+namespace grelha {
+
+/// The plane of points p with dot(normal, p) = distance.
+struct MirrorPlane {
+  Place3 normal;  ///< a unit vector
+  double distance;
+
+  double above(const Place3& p) const { return dot(normal, p) - distance; }
+  /// Where a place seems to be in the mirror.
+  Place3 image(const Place3& p) const {
+    const double twice = 2 * above(p);
+    return {{p[0] - twice * normal[0], p[1] - twice * normal[1], p[2] - twice * normal[2]}};
+  }
+};
+
+/// Planes of smooth mirrors, each once; none where there are more than a few: those of a curved
+/// mirror.
+std::vector<MirrorPlane> flat_mirrors(const World::Impl& world);
+
+/// Whether a material mirrors, and is smooth.
+bool is_smooth_mirror(const MaterialView& materials, std::uint32_t material);
+
+}  // namespace grelha
