@@ -8,6 +8,15 @@ cd "$(dirname "$0")/.."
 out=${1:-$PWD/build/docs}
 rm -rf "$out"
 mkdir -p "$out"
+case $PWD in
+  *' '*)  # Doxygen ends names of pages at a blank
+    copy=$(mktemp -d)
+    trap 'rm -rf "$copy"' EXIT
+    cp -r README.md CHANGELOG.md CONTRIBUTING.md LICENSE CMakePresets.json docs include examples \
+      "$copy"
+    cd "$copy"
+    ;;
+esac
 {
   cat docs/Doxyfile
   echo "OUTPUT_DIRECTORY=\"$out\""
@@ -23,6 +32,10 @@ cp -r docs "$out/html/docs"
 cp -r docs/images docs/*.csv docs/*.sh CMakePresets.json LICENSE "$out/html"
 cp -r examples "$out"
 cd "$out/html"
+if grep -n '@ref' ./*.html; then  # a link broken over two lines
+  echo "docs/build.sh: a page shows a link as Doxygen writes it" >&2
+  exit 1
+fi
 if grep -oiE 'href="file:[^"]*"' ./*.html; then  # words that Doxygen takes for an address
   echo "docs/build.sh: a page links to no page" >&2
   exit 1

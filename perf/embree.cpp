@@ -265,22 +265,19 @@ class Built final : public EmbreeScene {
     attach(g, first);
   }
 
-  // What does not change from ray to ray is set once: Embree leaves it alone.
+  // What does not change from ray to ray is set once: Embree leaves it alone. It reads start and
+  // direction as vectors, which would wait for scalar stores.
   void single(const RayBuffer& r, EmbreeHint& hint) {
+    using Four [[gnu::vector_size(16)]] = float;
     RTCRayHit hit;
     RTCRay& ray = hit.ray;
-    ray.time = 0;
     ray.mask = ~0u;
     ray.id = 0;
     ray.flags = 0;
     for (std::size_t i = 0; i < r.size(); ++i) {
-      ray.org_x = r.ox[i];
-      ray.org_y = r.oy[i];
-      ray.org_z = r.oz[i];
-      ray.tnear = r.t_min[i];
-      ray.dir_x = r.dx[i];
-      ray.dir_y = r.dy[i];
-      ray.dir_z = r.dz[i];
+      const Four org{r.ox[i], r.oy[i], r.oz[i], r.t_min[i]}, dir{r.dx[i], r.dy[i], r.dz[i], 0};
+      std::memcpy(&ray.org_x, &org, sizeof org);  // tnear is the fourth
+      std::memcpy(&ray.dir_x, &dir, sizeof dir);  // and time
       ray.tfar = r.t_max[i];
       if (any_) {
         occlude(scene_, hint, ray);

@@ -28,13 +28,12 @@ import math
 import pathlib
 import shlex
 import statistics
-import subprocess
 import sys
 
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "lib"))
-from bench import DOCS, ROOT, cpu_name, put_section, table
+from bench import DOCS, ROOT, commit, cpu_name, put_section, table
 from hostile_scenes import COUNTED, KINDS, VARIANTS, scene
 from image_error import Workshop, read_pfm, rmse, time_to_reach
 
@@ -298,12 +297,6 @@ def subjects_by_row(shop, asked):
     yield from of_kind.items()
     yield "ordinary", [Subject("ordinary", path.name, path, ["-j", "1"])
                        for path in ordinary_scenes(asked)]
-
-
-def commit():
-    done = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short", "HEAD"],
-                          stdout=subprocess.PIPE, text=True)
-    return done.stdout.strip() or "no commit"
 
 
 def main():

@@ -122,8 +122,6 @@ void count(benchmark::State& state, const Row& row, std::size_t kind, const Cell
   state.counters["ratio of calls"] = caller[0];
   state.counters["ratio of streams of 8"] = caller[1];
   state.counters["ratio by default"] = caller[2];
-  if (kind < row.target.size())
-    state.counters["target"] = row.target[kind];
 }
 
 void print_line(const Row& row, std::size_t kind, const Cell& cell) {

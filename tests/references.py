@@ -67,30 +67,36 @@ class Tree:
             for p in (root / folder).rglob("*")
             if p.is_file())
         self.files += sorted(p.relative_to(root) for p in root.iterdir() if p.is_file())
-        self.code = {}
+        self.words = {}
+        self.found = {}
 
     def find(self, name, near):
+        if (name, near) not in self.found:
+            self.found[name, near] = self.look_for(name, near)
+        return self.found[name, near]
+
+    def look_for(self, name, near):
         """Files a reference may mean: from the root, in the folder that names it, or anywhere."""
         pattern = re.compile(
             re.sub(r"\\\*|<\w+>", r"[^/]*",
                    re.escape(name).replace(r"\<", "<").replace(r"\>", ">")))
-        whole = [f for f in self.files if pattern.fullmatch(str(f))]
+        whole = [f for f in self.files if f.name[-3:] == name[-3:] and pattern.fullmatch(str(f))]
         beside = [f for f in self.files if f.parent == near and pattern.fullmatch(f.name)]
         return whole or beside or [
             f for f in self.files if "/" not in name and pattern.fullmatch(f.name)
         ]
 
-    def code_of(self, file):
-        """Its text without comments."""
-        if file not in self.code:
+    def words_of(self, file):
+        """Those of its code, without comments."""
+        if file not in self.words:
             text = (self.root / file).read_text(errors="replace")
-            self.code[file] = "\n".join(split(line, mark_of(file))[0] for line in text.splitlines())
-        return self.code[file]
+            code = (split(line, mark_of(file))[0] for line in text.splitlines())
+            self.words[file] = {word for line in code for word in re.findall(r"\w+", line)}
+        return self.words[file]
 
     def holds(self, file, symbol):
-        return all(
-            re.search(rf"\b{re.escape(part)}\b", self.code_of(file))
-            for part in symbol.removesuffix("()").split("::"))
+        parts = symbol.removesuffix("()").replace("~", "").split("::")
+        return all(part in self.words_of(file) for part in parts)
 
     def anywhere(self, symbol):
         sources = [f for f in self.files if mark_of(f) and str(f) not in LEFT_OUT]

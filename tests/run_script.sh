@@ -45,8 +45,15 @@ if [ -e $2/broken ]; then
 fi
 echo "[4/4 12.5 1] two"
 CMAKE
-printf '#!/bin/sh\necho tested\n' >stand-ins/ctest
-chmod +x stand-ins/cmake stand-ins/ctest
+cat >stand-ins/ctest <<CTEST
+#!/bin/sh
+echo "1/2 Test #1: one ....   Passed    0.01 sec"
+echo "2/2 Test #2: two ....***Failed    0.02 sec"
+echo "50% tests passed, 1 tests failed out of 2"
+exit 8
+CTEST
+printf '#!/bin/sh\necho "why: ${2##*/}"\n' >stand-ins/python3
+chmod +x stand-ins/cmake stand-ins/ctest stand-ins/python3
 try() {  # try() EXPECTED COMMAND...: what it says on a pipe, lines joined by |
   expected=$1
   shift
@@ -72,7 +79,19 @@ try 'here: info x.nff|' info x.nff
 try "${steps}here: render --isa avx2|" render --isa avx2
 asked GRELHA_ISAS=all
 touch project/kernel/new.cpp
-try 'run: configuring (release)|run: building everything|tested|' test
+failures='2/2 Test #2: two ....***Failed    0.02 sec|50% tests passed, 1 tests failed out of 2|'
+log=$2/project/build/release/test.log
+try "run: configuring (release)|run: building everything|${failures}why: LastTest.log|$(
+  )run: tests failed; all that was said is in $log|" test
+grep -q '^1/2 Test #1: one' "$log" || { echo "the log of tests is incomplete"; exit 1; }
+# Help and wrong names install and build nothing.
+rm asked
+project/run | grep -q '^  render SCENE' || { echo "no help"; exit 1; }
+project/run help | grep -q '^  perf ' || { echo "no help of perf"; exit 1; }
+said=$(project/run perf nope 2>&1) && { echo "a wrong benchmark ended well"; exit 1; }
+case $said in "run: no benchmark nope; there are: "*) ;; *) echo "perf nope said: $said"; exit 1 ;; esac
+[ ! -e asked ] || { echo "help built something"; exit 1; }
+echo 'cmake GRELHA_ISAS=all' >asked
 try 'here: info x.nff|' info x.nff
 touch project/include/new.hpp
 try "${steps}here: info x.nff|" info x.nff

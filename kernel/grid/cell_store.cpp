@@ -1,9 +1,12 @@
 #include "kernel/grid/cell_store.hpp"
 
+#include <limits>
+
 namespace grelha {
 namespace {
 
 constexpr float kNoNumber = std::numeric_limits<float>::quiet_NaN();
+constexpr float kNowhere = std::numeric_limits<float>::infinity();
 
 }  // namespace
 
@@ -16,8 +19,8 @@ void ListStore<Triangle>::resize_boxes(std::size_t rows) {
 void ListStore<Triangle>::end_row(std::size_t place) {
   for (; place % kBlock != 0; ++place)
     for (int a = 0; a < 3; ++a) {
-      boxes[place / kBlock].side[a][place % kBlock] = kInfinity;
-      boxes[place / kBlock].side[3 + a][place % kBlock] = -kInfinity;
+      boxes[place / kBlock].side[a][place % kBlock] = kNowhere;
+      boxes[place / kBlock].side[3 + a][place % kBlock] = -kNowhere;
     }
 }
 

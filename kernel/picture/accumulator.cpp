@@ -110,26 +110,19 @@ namespace {
 /// Pieces that are not done, and who renders which.
 class Pieces {
  public:
-  Pieces(const Accumulator& a, const NextPiece& next) : next_(next), count_(a.done.size()) {
-    for (std::size_t i = 0; i < count_; ++i)
+  Pieces(const Accumulator& a, const NextPiece& next) : next_(next) {
+    for (std::size_t i = 0; i < a.done.size(); ++i)
       if (a.done[i] == 0)
         left_.push_back(i);
   }
   std::size_t left() const { return left_.size(); }
 
-  /// The next to render, or one past the last.
-  std::size_t take() {
-    if (next_)
-      return next_();
-    const std::size_t at = begun_++;
-    return at < left_.size() ? left_[at] : count_;
-  }
+  /// Which to render in a turn, or one past the last.
+  std::size_t take(std::size_t turn) const { return next_ ? next_() : left_[turn]; }
 
  private:
   const NextPiece& next_;
-  std::size_t count_;
   std::vector<std::size_t> left_;
-  std::atomic<std::size_t> begun_ = 0;
 };
 
 }  // namespace
@@ -143,10 +136,10 @@ bool accumulate(const World& world,
                 const std::function<bool()>& should_continue) {
   const Setup setup = set_up(world, camera, options);
   check(a, camera, options);
-  Pieces to_render(a, next);
+  const Pieces to_render(a, next);
   GuardedProgress progress(options.progress, should_continue);
-  const auto next_band = [&](Band& band) {
-    band.number = to_render.take();
+  const auto next_band = [&](std::size_t turn, Band& band) {
+    band.number = to_render.take(turn);
     if (band.number >= a.done.size())
       return false;
     band.part = piece_of(a.part, band.number);

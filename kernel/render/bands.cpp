@@ -52,7 +52,13 @@ void render_bands(const World::Impl& world,
   {
     Workspace& space = *spaces[static_cast<std::size_t>(omp_get_thread_num())];
     RenderStats mine;
-    for (Band band; !stopped && next(band);) {
+#pragma omp for schedule(dynamic) nowait
+    for (std::size_t turn = 0; turn < most; ++turn) {
+      Band band;
+      if (stopped || !next(turn, band)) {
+        stopped = true;
+        continue;
+      }
       const BandWork work = space.work(options, first_pixel(band));
       setup.variant.loops.render_band(
           world.view, setup.shading, setup.frame, band.part, work, mine.trace, mine.rays);

@@ -14,16 +14,16 @@ struct Band {
   Part part;
 };
 
-/// Sets the next band to render; false when there is none left. Called by all threads, two at a
-/// time as well.
-using NextBand = std::function<bool(Band&)>;
+/// Sets band `turn` of those to render; false when there is none left. Called by all threads, two at
+/// a time as well.
+using NextBand = std::function<bool(std::size_t turn, Band&)>;
 
 /// Handed the sums of a band, [rows][width][3] in units of 1 / kLightUnit, by the thread that
 /// rendered it, while others do the same; returns false to stop.
 using TakeBand = std::function<bool(const Band&, const std::int64_t* sums)>;
 
-/// Renders bands in parallel, by no more threads than there are bands, `most`. What the functions
-/// throw ends the program.
+/// Renders at most `most` bands in parallel, each by the thread that is free next (OpenMP, dynamic
+/// schedule over bands of rows). What the functions throw ends the program.
 void render_bands(const World::Impl& world,
                   const Setup& setup,
                   const RenderOptions& options,

@@ -2,6 +2,11 @@
 // Which instruction set this copy of the hot loops is compiled for: GRELHA_ISA names its namespace,
 // GRELHA_ISA_NUMBER tells the sets apart.
 
+// x87 keeps floats in 80 bits until they are stored: pictures would be others.
+#if __FLT_EVAL_METHOD__ != 0
+#error "floats must be rounded after each operation: compile with -msse2 -mfpmath=sse"
+#endif
+
 // What is compiled once, such as the building of grids, sees the scalar copy.
 #ifndef GRELHA_ISA
 #define GRELHA_ISA scalar

@@ -116,6 +116,13 @@ def cpu_name():
     return "an unnamed processor"
 
 
+def commit():
+    """The one that is measured."""
+    done = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short", "HEAD"],
+                          stdout=subprocess.PIPE, text=True)
+    return done.stdout.strip() or "no commit"
+
+
 def table(header, rows):
     """Markdown, the first column to the left."""
     lines = ["| " + " | ".join(header) + " |", "|---" + "|--:" * (len(header) - 1) + "|"]

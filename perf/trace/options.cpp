@@ -8,26 +8,24 @@
 namespace grelha::perf {
 namespace {
 
-const std::vector<double> kBalls{.2, .2, .5, .9, .5, .35, .9}, kMesh{.75, .7, .9, .9, 1.2, 1., 1.3},
-    kStadium{.8, .7, 1., 1.1, 1.3, 1.2, 1.3}, kDistant{.4, .4, .4, .4, .4, .4, .5};
 const std::vector<Row> kRows{
-    {"balls 4", "", "balls", 4, kBalls},
-    {"balls 5", "", "balls", 5, kBalls},
-    {"balls 6", "", "balls", 6, kBalls},
-    {"mount 6", "", "mount", 6, {}},
-    {"mount 8", "", "mount", 8, kMesh},
-    {"mount 9", "", "mount", 9, kMesh},
-    {"bunny", "ply/bunny.ply", "knot", 15, kMesh},
-    {"dragon", "ply/dragon.ply", "knot", 18, {}},
-    {"armadillo", "ply/armadillo.ply", "knot", 11, {}},
-    {"lucy", "ply/lucy.ply", "knot", 18, {}},
-    {"blade", "ply/turbineblade.ply", "knot", 25, {}},
-    {"horse", "ply/horse.ply", "knot", 18, {}},
-    {"teapot", "spd/teapot.nff", "knot", 3, kMesh},
-    {"gears", "", "gears", 4, {}},
-    {"rings", "", "rings", 7, {}},
-    {"stadium", "", "stadium", 6, kStadium},
-    {"distant", "", "distant", 3, kDistant},
+    {"balls 4", "", "balls", 4},
+    {"balls 5", "", "balls", 5},
+    {"balls 6", "", "balls", 6},
+    {"mount 6", "", "mount", 6},
+    {"mount 8", "", "mount", 8},
+    {"mount 9", "", "mount", 9},
+    {"bunny", "ply/bunny.ply", "knot", 15},
+    {"dragon", "ply/dragon.ply", "knot", 18},
+    {"armadillo", "ply/armadillo.ply", "knot", 11},
+    {"lucy", "ply/lucy.ply", "knot", 18},
+    {"blade", "ply/turbineblade.ply", "knot", 25},
+    {"horse", "ply/horse.ply", "knot", 18},
+    {"teapot", "spd/teapot.nff", "knot", 3},
+    {"gears", "", "gears", 4},
+    {"rings", "", "rings", 7},
+    {"stadium", "", "stadium", 6},
+    {"distant", "", "distant", 3},
 };
 
 /// A row of the table, `GENERATOR SIZE`, or a file.
@@ -37,8 +35,8 @@ Row row_named(const std::string& name) {
       return row;
   const auto space = name.find(' ');
   if (space != std::string::npos)
-    return {name, "", name.substr(0, space), std::atoi(name.c_str() + space), {}};
-  return {name, name, "", 0, {}};
+    return {name, "", name.substr(0, space), std::atoi(name.c_str() + space)};
+  return {name, name, "", 0};
 }
 
 bool set_option(const std::string& word, const std::string& value, Options& o) {

@@ -12,7 +12,6 @@ struct Row {
   std::string name, file;  ///< file, below the folder of real scenes; if it is not there:
   std::string generator;
   int size;
-  std::vector<double> target;  ///< ratios to stay below, by kind; empty: none is set
 };
 
 struct Options {

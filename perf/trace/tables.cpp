@@ -47,10 +47,8 @@ std::string format(const char* form, double a, double b = 0, double c = 0, doubl
 
 /// Grelha's time over that of a side, by the render's choice or by the best there is.
 CellText against(Side side, bool choice) {
-  return [=](const Row& row, std::size_t kind, const Cell& c) {
-    const double r = c.ratio(choice ? c.chosen : c.best[kGrelha], c.best[side]);
-    const bool missed = side == kRobust && kind < row.target.size() && r > row.target[kind];
-    return format(missed ? "%.2f (> %g)" : "%.2f", r, missed ? row.target[kind] : 0.);
+  return [=](const Row&, std::size_t, const Cell& c) {
+    return format("%.2f", c.ratio(choice ? c.chosen : c.best[kGrelha], c.best[side]));
   };
 }
 
@@ -81,8 +79,7 @@ void print_tables(const Options& options, const Results& results) {
     std::printf("\nBuilt without Embree: no ratios.\n");
   } else {
     print(
-        "Time of Grelha, packets as a render forms them / time of Embree's best mode, robust "
-        "(> target, where missed)",
+        "Time of Grelha, packets as a render forms them / time of Embree's best mode, robust",
         against(kRobust, true));
     print("Grelha's best / Embree's best, robust", against(kRobust, false));
     print("As a render forms them / Embree's best, not robust", against(kFast, true));

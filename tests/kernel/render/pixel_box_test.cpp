@@ -82,7 +82,7 @@ std::vector<std::int64_t> sums(const Variant& variant,
   Workspace space(kParts, options.depth, setup.plan, nullptr);
   std::fill(space.boxes().begin(), space.boxes().end(), box);
   const PixelRun run{0, 0, samples};
-  const BandWork work = space.work(options, 0, true);
+  const BandWork work = space.work(options, 0, true, true);
   TraceCounts counts;
   RayCounts rays;
   variant.loops.render_runs(
