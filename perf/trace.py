@@ -102,7 +102,8 @@ def ratios(cells, embree):
 
     return (f"One thread of a virtual {cpu_name()}, {embree}, {date.today():%B %Y}, "
             f"{commit()}:\n\n" + table(["", *kinds], rows(ratio)) + "\n\n" + "; ".join(told) +
-            ".\n\nAs a caller of the library asks, with no options. One ray a call over `rtcIntersect1`. Streams of eight over `rtcIntersect8`, "
+            ".\n\nAs a caller of the library asks, with no options. One ray a call over "
+            "`rtcIntersect1`. Streams of eight over `rtcIntersect8`, "
             "by the better of its hints. One stream of all over Embree's best mode:\n\n" +
             table(["", *kinds], rows(caller)) + "\n")
 

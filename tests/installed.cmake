@@ -66,4 +66,8 @@ string(CONCAT expected "^sphere 1 at t = 3.2, lit\n800 of 1000 rays meet somethi
 if(NOT output MATCHES "${expected}")
   message(FATAL_ERROR "the example said\n${output}")
 endif()
+run("the README's example" ${SCRATCH}/build/first_hit)
+if(NOT output STREQUAL "primitive 0 at t = 4\n")
+  message(FATAL_ERROR "the README's example said\n${output}")
+endif()
 run("the program" ${prefix}/bin/grelha info ${prefix}/share/grelha/scenes/balls.nff)

@@ -35,6 +35,13 @@ target_sources(subdivision_test PRIVATE kernel/subdivision/adaptive_test.cpp)
 grelha_test(kernel/picture/determinism image grelha::frontend grelha::scenes)
 target_sources(determinism_test PRIVATE kernel/picture/fork_test.cpp)
 
+# The kernel refuses arithmetic that rounds only when it stores, as x87 does.
+add_test(NAME refuses_x87 COMMAND ${CMAKE_CXX_COMPILER} -std=c++20 -fsyntax-only -w -x c++
+  -U__FLT_EVAL_METHOD__ -D__FLT_EVAL_METHOD__=2 -I ${PROJECT_SOURCE_DIR}
+  ${PROJECT_SOURCE_DIR}/kernel/simd/isa.hpp)
+set_tests_properties(refuses_x87 PROPERTIES LABELS unit
+  PASS_REGULAR_EXPRESSION "rounded after each operation")
+
 # What ./run builds first: the copies for one processor, which nobody may install.
 add_test(NAME first_build COMMAND ${CMAKE_COMMAND} -D ROOT=${PROJECT_SOURCE_DIR}
   -D SCRATCH=${CMAKE_CURRENT_BINARY_DIR}/first_build

@@ -13,6 +13,13 @@ target_sources(refinement_test PRIVATE kernel/adaptive/aimed_rays_test.cpp
   kernel/adaptive/audit_test.cpp kernel/adaptive/block_errors_test.cpp
   kernel/adaptive/specks_test.cpp)
 
+# What once failed and is no part of the project.
+add_test(NAME shared_faults COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/with_python.sh
+  ${CMAKE_CURRENT_SOURCE_DIR}/shared_faults.py ${PROJECT_SOURCE_DIR}/../shared/faults
+  $<TARGET_FILE:grelha> ${CMAKE_CURRENT_BINARY_DIR}/shared_faults ${CMAKE_CXX_COMPILER}
+  ${PROJECT_SOURCE_DIR}/include $<TARGET_FILE:grelha_kernel>)
+set_tests_properties(shared_faults PROPERTIES LABELS "image;faults" SKIP_RETURN_CODE 77)
+
 # By Debian's Python, where there is one: it has the modules of its packages.
 add_test(NAME other_programs COMMAND ${CMAKE_COMMAND} -E env PATH=/usr/bin:$ENV{PATH}
   sh ${CMAKE_CURRENT_SOURCE_DIR}/with_python.sh ${CMAKE_CURRENT_SOURCE_DIR}/other_programs.py

@@ -89,7 +89,10 @@ rm asked
 project/run | grep -q '^  render SCENE' || { echo "no help"; exit 1; }
 project/run help | grep -q '^  perf ' || { echo "no help of perf"; exit 1; }
 said=$(project/run perf nope 2>&1) && { echo "a wrong benchmark ended well"; exit 1; }
-case $said in "run: no benchmark nope; there are: "*) ;; *) echo "perf nope said: $said"; exit 1 ;; esac
+case $said in
+  "run: no benchmark nope; there are: "*) ;;
+  *) echo "perf nope said: $said"; exit 1 ;;
+esac
 [ ! -e asked ] || { echo "help built something"; exit 1; }
 echo 'cmake GRELHA_ISAS=all' >asked
 try 'here: info x.nff|' info x.nff

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""summary.py LOG: what of a ctest log ends a run of all tests: the tests that failed, with what they
-said last, and the reasons of those that were skipped, with how many there are of each."""
+"""summary.py LOG: what ends a run of all tests, from ctest's log: the tests that failed, with what
+they said last, and why others were skipped, with how many there are of each."""
 import collections
 import re
 import sys

@@ -14,8 +14,8 @@ struct Band {
   Part part;
 };
 
-/// Sets band `turn` of those to render; false when there is none left. Called by all threads, two at
-/// a time as well.
+/// Sets band `turn` of those to render; false when there is none left. Called by all threads, two
+/// at a time as well.
 using NextBand = std::function<bool(std::size_t turn, Band&)>;
 
 /// Handed the sums of a band, [rows][width][3] in units of 1 / kLightUnit, by the thread that

@@ -78,9 +78,8 @@ void print_tables(const Options& options, const Results& results) {
   if (embree_modes().empty()) {
     std::printf("\nBuilt without Embree: no ratios.\n");
   } else {
-    print(
-        "Time of Grelha, packets as a render forms them / time of Embree's best mode, robust",
-        against(kRobust, true));
+    print("Time of Grelha, packets as a render forms them / time of Embree's best mode, robust",
+          against(kRobust, true));
     print("Grelha's best / Embree's best, robust", against(kRobust, false));
     print("As a render forms them / Embree's best, not robust", against(kFast, true));
     print(
