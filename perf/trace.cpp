@@ -101,7 +101,7 @@ void run_rounds(benchmark::State& state, Race& race) {
   trace_grelha(race, kModes[cell.chosen].settings, cell.counts);
 }
 
-void count(benchmark::State& state, const Row& row, std::size_t kind, const Cell& cell) {
+void count(benchmark::State& state, const Cell& cell) {
   constexpr const char* kSideNames[] = {"grelha ", "embree robust ", "embree fast "};
   for (const Way& w : cell.ways)
     state.counters[kSideNames[w.side] + w.name + " ns"] = median(w.ns);
