@@ -169,7 +169,7 @@ void run(benchmark::State& state, const Row& row, std::size_t kind, const Option
   CallerWays caller_ways(p.world, race.any);
   caller_ways.enter(race.rays, race.cell);
   run_rounds(state, race);
-  count(state, row, kind, race.cell);
+  count(state, race.cell);
   print_line(row, kind, race.cell);
   results[row.name][kind] = race.cell;
 }

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <thread>
 
 namespace grelha {
 
@@ -20,8 +21,8 @@ constexpr std::uint64_t kFilePixel = 12;
 constexpr std::uint64_t kSum = 24;         ///< three sums of light
 constexpr std::uint64_t kPlaceOfBlue = 4;  ///< where its samples begin
 constexpr std::uint64_t kRefined = 80;     ///< docs/architecture.md, and 9 a pixel for blocks
-/// most pixels that are subdivided at a time, and bytes of one, measured
-constexpr std::uint64_t kSubdivided = 1 << 20, kSubdividedPixel = 56;
+/// a thread's tile: 2^20 points, a quarter of the most, and the squares between them that wait
+constexpr std::uint64_t kSubdividedTile = 56 << 20;
 constexpr std::uint64_t kMaps = 12;             ///< samples, errors and widths
 constexpr std::uint64_t kProgram = 12'000'000;  ///< bytes of the program itself: libraries, stacks
 
@@ -118,12 +119,15 @@ PictureMemory picture_memory(const RenderCommand& command, const Camera& camera)
   const std::uint64_t kept = refined      ? kRefined * pixels
                              : subdivided ? kPixel * pixels
                                           : kSum * width * height;
+  const auto threads = static_cast<std::uint64_t>(
+      command.render.threads > 0 ? command.render.threads : std::thread::hardware_concurrency());
   PictureMemory memory;
   memory.sums = kept;
-  memory.rest = kProgram + thread_bytes(camera, command.render) +
-                (refined      ? kMaps * pixels
-                 : subdivided ? kSubdividedPixel * std::min(pixels, kSubdivided)
-                              : 0);
+  memory.rest =
+      kProgram + thread_bytes(camera, command.render) +
+      (refined      ? kMaps * pixels
+       : subdivided ? kSubdividedTile * std::min<std::uint64_t>(threads, pixels / 4096 + 1)
+                    : 0);
   if (!part)
     memory.rest += (kPixel + kFilePixel) * pixels;
   if (command.render.sampling.sampler == Sampler::kBlue)

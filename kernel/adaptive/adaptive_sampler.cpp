@@ -91,8 +91,8 @@ class AdaptiveSampler {
     // what pixels claim and the last audit, which is as likely above the truth as below
     const bool by_audit = r_.met && !(totals.bound <= options_.refine.error);
     e.rmse = by_audit ? std::sqrt(r_.audited) : totals.rmse;
-    e.rmse_bound =
-        by_audit ? std::sqrt(r_.audited_bound) : std::max(totals.bound, std::sqrt(r_.audited));
+    e.rmse_bound = stated(by_audit ? std::sqrt(r_.audited_bound)
+                                   : std::max(totals.bound, std::sqrt(r_.audited)));
     e.audited = std::sqrt(r_.audited);
     e.audits = r_.audits;
     e.audit_samples = r_.audit_samples;
@@ -115,6 +115,12 @@ class AdaptiveSampler {
     if (std::min(static_cast<double>(thing_count(world_)), pixels) <= error * error * pixels)
       return;
     aim_at_small_things(world_, setup_, stats_.threads, r_, stats_.trace);
+  }
+
+  /// A bound as it is told. Runs stop where theirs happens to be low; the error asked for is met
+  /// all the same.
+  double stated(double bound) const {
+    return std::min(kBoundedLow * bound, std::max(bound, options_.refine.error));
   }
 
   void fill(SampleMaps& maps) const {

@@ -206,7 +206,7 @@ BlockErrors::Totals BlockErrors::totals() const {
     spread += v * v / std::max(1., static_cast<double>(certainty_[b]));
   }
   const double n = static_cast<double>(r_.box.size());
-  const double bound = sum + kNormalOneSided * std::sqrt(spread);
+  const double bound = kStoppedLow * sum + kNormalOneSided * std::sqrt(spread);
   return {sum, std::sqrt(bound / n), std::sqrt(sum / n)};
 }
 

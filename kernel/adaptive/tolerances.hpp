@@ -29,6 +29,11 @@ inline constexpr float kRareHits = .01f;
 /// errors than this: chance parts one pair in 370.
 inline constexpr float kAlike = 3;
 
+/// Blocks stop when their estimates happen to be low: the sum of all is by a tenth (measured).
+inline constexpr double kStoppedLow = 1.1;
+/// Bounds that a run stopped by are lower than the truth in one of eight, by up to this in two of
+/// three of those (measured: docs/error-suite.csv).
+inline constexpr double kBoundedLow = 1.15;
 /// 97.5 % point of the normal.
 inline constexpr float kNormal = 1.96f;
 /// 95 % point, of one side.

@@ -28,7 +28,7 @@ inline constexpr std::string_view kKindOf<Accumulator> = "picture";
 template <>
 inline constexpr std::string_view kKindOf<Refinement> = "by-error";
 template <>
-inline constexpr std::string_view kKindOf<SubdivisionState> = "subdivided";
+inline constexpr std::string_view kKindOf<SubdivisionState> = "by-squares";
 
 inline std::size_t pixels_of(int width, int height) {
   return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
@@ -79,30 +79,16 @@ void visit_arrays(Archive& archive, State& r) {
 template <class Archive, class State>
 requires std::is_same_v<std::remove_const_t<State>, SubdivisionState>
 void visit_numbers(Archive& archive, State& s) {
-  archive.numbers(kKindOf<SubdivisionState>, s.image.width, s.image.height, s.tiles);
-}
-
-template <class Archive, class Border>
-void visit_border(Archive& archive, Border& border) {
-  constexpr std::size_t kBorderPoint = 20;  // bytes of a key and a colour
-  archive.size(border, kBorderPoint);
-  for (auto& [key, colour] : border)
-    archive.values(key, colour.x, colour.y, colour.z);
+  archive.numbers(kKindOf<SubdivisionState>, s.image.width, s.image.height);
 }
 
 template <class Archive, class State>
 requires std::is_same_v<std::remove_const_t<State>, SubdivisionState>
 void visit_arrays(Archive& archive, State& s) {
-  constexpr std::size_t kLength = 8, kColour = 12;  // bytes
   archive.values(s.share);
   archive.list(s.image.rgb, pixels_of(s.image.width, s.image.height) * 3);
-  archive.size(s.above, kLength);
-  for (auto& border : s.above)
-    visit_border(archive, border);
-  visit_border(archive, s.left);
-  archive.size(s.colours, kColour);
-  for (auto& colour : s.colours)
-    archive.values(colour.x, colour.y, colour.z);
+  archive.size(s.done, sizeof s.done[0]);
+  archive.list(s.done, s.done.size());
 }
 
 }  // namespace grelha

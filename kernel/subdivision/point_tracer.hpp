@@ -10,7 +10,7 @@
 namespace grelha {
 
 /// Goes on with a picture by subdivision, see Picture::advance(). Returns whether it is finished.
-/// Tells subdivide() the colours of points. `stats` are of this call. Throws like render().
+/// Threads take tiles as they come. `stats` are of this call. Throws like render().
 bool render_subdivided(const World& world,
                        const Camera& camera,
                        const RenderOptions& options,

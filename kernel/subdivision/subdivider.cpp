@@ -7,18 +7,18 @@
 #include <string>
 #include <vector>
 
-#include "kernel/subdivision/tile_points.hpp"
-#include "kernel/subdivision/tile_sums.hpp"
-
 namespace grelha {
 namespace {
 
-constexpr int kBlock = 8;  ///< points a side, of those numbered together on level 0
+/// Pixels a side: with fewer, too many corners lie between tiles.
+constexpr int kMostTile = 32, kLeastTile = 8;
+constexpr int kTileSteps = 256;  ///< points a side that are aimed at, were every square split
+constexpr int kCornerBlock = 8;  ///< corners a side, of those traced next to each other
 
 struct Square {
   LatticePoint at;          ///< upper left corner
   std::uint32_t pixel;      ///< of the tile
-  std::uint32_t corner[4];  ///< into the tile's colours, by rows
+  std::uint32_t corner[4];  ///< numbers of points, by rows
 };
 
 /// One of the five new points of a split square: 5 square + {above, left, centre, right, below}.
@@ -26,6 +26,20 @@ struct Wanted {
   std::uint64_t key;
   std::uint32_t slot;
 };
+
+/// Bits of x at every other place.
+std::uint64_t spread(std::uint64_t x) {
+  x = (x | x << 16) & 0x0000FFFF0000FFFFu;
+  x = (x | x << 8) & 0x00FF00FF00FF00FFu;
+  x = (x | x << 4) & 0x0F0F0F0F0F0F0F0Fu;
+  x = (x | x << 2) & 0x3333333333333333u;
+  return (x | x << 1) & 0x5555555555555555u;
+}
+
+/// Place on Morton's curve: points sorted by it are neighbours, for the packets' sake.
+std::uint64_t morton(LatticePoint p) {
+  return spread(p.x) | spread(p.y) << 1;
+}
 
 float clamped(float x) {
   return x < 0 ? 0.f : x > 1 ? 1.f : x;
@@ -43,54 +57,62 @@ bool differ(const Float3 (&c)[4], float threshold) {
   return differs(&Float3::x) || differs(&Float3::y) || differs(&Float3::z);
 }
 
-/// How far the picture is when a tile comes to a level. Shares of a tile's work are halved from
-/// level to level: nobody knows beforehand how much is to come.
-struct TileShare {
-  double before;  ///< of the picture, done before the tile
-  double part;    ///< of the picture that the tile is
-  int depth;
-  double at(int level) const {
-    return before + part * (level > depth ? 1 : 1 - std::ldexp(1, -level));
-  }
-};
+double sum_of(const Float3 (&c)[4], float Float3::*channel) {
+  const double upper = static_cast<double>(c[0].*channel) + c[1].*channel;
+  const double lower = static_cast<double>(c[2].*channel) + c[3].*channel;
+  return upper + lower;
+}
 
-/// Goes on with one tile.
+/// Makes one tile.
 class TileSubdivider {
  public:
-  TileSubdivider(SubdivisionState& picture,
-                 const Subdivision& options,
-                 const TracePoints& trace,
-                 const ShouldContinue& should_continue,
-                 const TileRect& rect,
-                 const TileShare& share)
-      : picture_(picture),
+  TileSubdivider(const TileRect& rect, const Subdivision& options, const TracePoints& trace)
+      : rect_(rect),
         options_(options),
         trace_(trace),
-        should_continue_(should_continue),
-        rect_(rect),
-        share_(share),
-        sums_(rect) {}
+        sums_(static_cast<std::size_t>(across() - 1) * static_cast<std::size_t>(down() - 1)) {}
 
-  /// Whether the tile is finished. `above`: of its column.
-  bool run(std::vector<BorderPoint>& above) {
-    points_.load_border(rect_, above, picture_.left, picture_.colours);
-    if (!trace_corners())
-      return false;
+  void run(Image& image) {
+    trace_corners();
     for (int level = 0; level < options_.depth && !split_.empty(); ++level)
-      if (!split_all(level))
-        return false;
-    sums_.show(picture_.image);
-    points_.store_border(picture_.colours, above, picture_.left);
-    picture_.colours.clear();
-    return true;
+      split_all(level);
+    show(image);
   }
 
  private:
+  /// Corners of pixels a row, and a column.
+  int across() const { return rect_.x1 - rect_.x0 + 1; }
+  int down() const { return rect_.y1 - rect_.y0 + 1; }
+
+  LatticePoint corner_at(int x, int y) const {
+    return {static_cast<std::uint32_t>(rect_.x0 + x) * kLatticeSteps,
+            static_cast<std::uint32_t>(rect_.y0 + y) * kLatticeSteps};
+  }
+  std::uint32_t& id_at(int x, int y) {
+    return ids_[static_cast<std::size_t>(y) * static_cast<std::size_t>(across()) +
+                static_cast<std::size_t>(x)];
+  }
+
+  std::uint32_t number(LatticePoint p) {
+    fresh_.push_back(p);
+    return static_cast<std::uint32_t>(colours_.size() + fresh_.size() - 1);
+  }
+
+  /// Traces the points numbered since the last time.
+  void trace_fresh() {
+    const std::size_t first = colours_.size();
+    colours_.resize(first + fresh_.size());
+    trace_(fresh_, colours_.data() + first);
+    fresh_.clear();
+  }
+
   /// Level 0, in blocks of points; then every pixel is a square.
-  bool trace_corners() {
-    number_corners();
-    if (!trace_fresh(0))
-      return false;
+  void trace_corners() {
+    ids_.resize(static_cast<std::size_t>(across()) * static_cast<std::size_t>(down()));
+    for (int y = 0; y < down(); y += kCornerBlock)
+      for (int x = 0; x < across(); x += kCornerBlock)
+        number_block(x, y);
+    trace_fresh();
     std::uint32_t pixel = 0;
     for (int y = 0; y + 1 < down(); ++y)
       for (int x = 0; x + 1 < across(); ++x, ++pixel) {
@@ -98,53 +120,24 @@ class TileSubdivider {
         const std::uint32_t* const lower = &id_at(x, y + 1);
         resolve({corner_at(x, y), pixel, {upper[0], upper[1], lower[0], lower[1]}}, 0, split_);
       }
-    return true;
   }
 
-  /// Corners of pixels a row, and a column.
-  int across() const { return rect_.x1 - rect_.x0 + 1; }
-  int down() const { return rect_.y1 - rect_.y0 + 1; }
-
-  std::uint32_t& id_at(int x, int y) {
-    return ids_[static_cast<std::size_t>(y) * static_cast<std::size_t>(across()) +
-                static_cast<std::size_t>(x)];
-  }
-
-  void number_corners() {
-    ids_.resize(static_cast<std::size_t>(across()) * static_cast<std::size_t>(down()));
-    for (int y = 0; y < down(); y += kBlock)
-      for (int x = 0; x < across(); x += kBlock)
-        number_block(x, y);
-  }
-
-  /// Numbers kBlock x kBlock corners, those of them that the tile has.
   void number_block(int x0, int y0) {
-    const int x1 = std::min(x0 + kBlock, across());
-    const int y1 = std::min(y0 + kBlock, down());
-    for (int y = y0; y < y1; ++y)
-      for (int x = x0; x < x1; ++x) {
-        const LatticePoint p = corner_at(x, y);
-        id_at(x, y) = points_.number(p, morton(p));
-      }
-  }
-
-  LatticePoint corner_at(int x, int y) const {
-    return {static_cast<std::uint32_t>(rect_.x0 + x) * kLatticeSteps,
-            static_cast<std::uint32_t>(rect_.y0 + y) * kLatticeSteps};
+    for (int y = y0; y < std::min(y0 + kCornerBlock, down()); ++y)
+      for (int x = x0; x < std::min(x0 + kCornerBlock, across()); ++x)
+        id_at(x, y) = number(corner_at(x, y));
   }
 
   /// Splits the squares of `level` that wait for it.
-  bool split_all(int level) {
+  void split_all(int level) {
     const std::uint32_t half = kLatticeSteps >> (level + 1);
     number_new_points(half);
-    if (!trace_fresh(level + 1))
-      return false;
+    trace_fresh();
     next_.clear();
     for (std::size_t i = 0; i < split_.size(); ++i)
       for (const Square& quarter : quarters(split_[i], half, ids_.data() + 5 * i))
         resolve(quarter, level + 1, next_);
     split_.swap(next_);
-    return true;
   }
 
   /// The quarters of a square with sides of twice `half`; n: its five new points.
@@ -177,7 +170,7 @@ class TileSubdivider {
     for (std::size_t i = 0; i < wanted_.size(); ++i) {
       const auto& [key, slot] = wanted_[i];
       if (i == 0 || key != wanted_[i - 1].key)
-        id = points_.number(new_point(slot, half), key);
+        id = number(new_point(slot, half));
       ids_[slot] = id;
     }
   }
@@ -190,158 +183,71 @@ class TileSubdivider {
     return {at.x + by.x * half, at.y + by.y * half};
   }
 
-  /// Traces the points that have no colours yet. Returns whether all have them then. A tile that
-  /// is gone on with may bring all colours along, or the first of them.
-  bool trace_fresh(int level) {
-    const std::size_t end = points_.first_fresh() + points_.fresh().size();
-    while (picture_.colours.size() < end) {
-      if (trace_some(level) == end)
-        break;
-      if (level == 0)
-        show_corners();
-      else
-        show_squares(level - 1);
-      if (!should_continue_ || !should_continue_())
-        return false;
-    }
-    points_.accept_fresh();
-    return true;
-  }
-
-  /// Traces points that have no colours yet, until progress says to stop. Returns how many points
-  /// of the tile have colours then.
-  std::size_t trace_some(int level) {
-    std::vector<Float3>& colours = picture_.colours;
-    const std::size_t begin = colours.size();
-    const std::size_t first = points_.first_fresh();
-    const std::span<const LatticePoint> fresh = points_.fresh();
-    const double before = share_.at(level);
-    const auto share_at = [&](std::size_t traced) {
-      return before + (share_.at(level + 1) - before) * static_cast<double>(traced - first) /
-                          static_cast<double>(fresh.size());
-    };
-    const std::size_t end = first + fresh.size();
-    colours.resize(end);
-    const std::size_t traced = begin + trace_(fresh.subspan(begin - first),
-                                              colours.data() + begin,
-                                              share_at(begin),
-                                              share_at(end));
-    colours.resize(traced);
-    picture_.share = std::min(1.0, share_at(traced));
-    return traced;
-  }
-
   /// A square whose corners are known joins those to be split, or its pixel's sum. The order of a
   /// pixel's terms is that of its own squares alone.
   void resolve(const Square& s, int level, std::vector<Square>& to_split) {
-    const std::vector<Float3>& colours = picture_.colours;
     const Float3 c[4] = {
-        colours[s.corner[0]], colours[s.corner[1]], colours[s.corner[2]], colours[s.corner[3]]};
-    if (level < options_.depth && differ(c, options_.threshold))
+        colours_[s.corner[0]], colours_[s.corner[1]], colours_[s.corner[2]], colours_[s.corner[3]]};
+    if (level < options_.depth && differ(c, options_.threshold)) {
       to_split.push_back(s);
-    else
-      sums_.add(s.pixel, c, level);
-  }
-
-  /// Shows a tile that is stopped on level 0: until all corners are seen a pixel is its first one.
-  void show_corners() {
-    TileSums sums(rect_);
-    for (std::size_t i = 0; i < sums.size(); ++i) {
-      // a row has one corner more than pixels
-      const std::uint32_t id = ids_[i + i / sums.width()];
-      if (id >= picture_.colours.size())
-        continue;
-      const Float3 c = picture_.colours[id];
-      sums.add(static_cast<std::uint32_t>(i), {c, c, c, c}, 0);
+      return;
     }
-    sums.show(picture_.image);
+    const double share = std::ldexp(.25, -2 * level);
+    std::array<double, 3>& sum = sums_[s.pixel];
+    sum[0] += share * sum_of(c, &Float3::x);
+    sum[1] += share * sum_of(c, &Float3::y);
+    sum[2] += share * sum_of(c, &Float3::z);
   }
 
-  /// Shows a tile that is stopped later: squares that wait to be split are what their corners are.
-  void show_squares(int level) {
-    const std::vector<Float3>& colours = picture_.colours;
-    TileSums sums = sums_;
-    for (const auto& [at, pixel, n] : split_)
-      sums.add(pixel, {colours[n[0]], colours[n[1]], colours[n[2]], colours[n[3]]}, level);
-    sums.show(picture_.image);
+  void show(Image& image) const {
+    const std::array<double, 3>* sum = sums_.data();
+    for (int y = rect_.y0; y < rect_.y1; ++y) {
+      float* out = image.row(y) + 3 * static_cast<std::size_t>(rect_.x0);
+      for (int x = rect_.x0; x < rect_.x1; ++x, ++sum)
+        for (const double channel : *sum)
+          *out++ = static_cast<float>(channel);
+    }
   }
 
-  SubdivisionState& picture_;
+  const TileRect rect_;
   const Subdivision& options_;
   const TracePoints& trace_;
-  const ShouldContinue& should_continue_;
-  const TileRect rect_;
-  const TileShare share_;
-  TileSums sums_;
-  TilePoints points_;
-  std::vector<std::uint32_t> ids_;  ///< of corners by rows, or of new points by slot
-  std::vector<Square> split_, next_;
+  std::vector<Float3> colours_;       ///< of points, by number
+  std::vector<LatticePoint> fresh_;   ///< those that have numbers and no colours yet
+  std::vector<std::uint32_t> ids_;    ///< of corners by rows, or of new points by slot
+  std::vector<Square> split_, next_;  ///< squares that wait to be split
   std::vector<Wanted> wanted_;
+  std::vector<std::array<double, 3>> sums_;  ///< [pixels]
 };
-
-/// Tiles of a picture, by rows.
-struct Tiling {
-  Tiling(const Image& image, int a_side)
-      : side(a_side), rows(tiles_of(image.height)), columns(tiles_of(image.width)) {}
-
-  std::size_t tiles_of(int pixels) const {
-    return static_cast<std::size_t>((pixels - 1) / side + 1);
-  }
-  std::size_t size() const { return rows * columns; }
-  TileRect rect(std::size_t tile, const Image& image) const {
-    TileRect r;
-    r.x0 = static_cast<int>(tile % columns) * side;
-    r.y0 = static_cast<int>(tile / columns) * side;
-    r.x1 = std::min(r.x0 + side, image.width);
-    r.y1 = std::min(r.y0 + side, image.height);
-    return r;
-  }
-
-  int side;
-  std::size_t rows, columns;
-};
-
-/// Goes through the tiles that are not finished.
-bool subdivide_tiles(SubdivisionState& picture,
-                     const Subdivision& options,
-                     const TracePoints& trace,
-                     int side,
-                     const ShouldContinue& should_continue) {
-  const Tiling tiles(picture.image, side);
-  if (picture.tiles == 0)
-    picture.above.resize(tiles.columns);
-  if (picture.above.size() != tiles.columns || picture.tiles > tiles.size())
-    throw std::invalid_argument("this picture was made in tiles of another size");
-  const double part = 1 / static_cast<double>(tiles.size());
-  for (; picture.tiles < tiles.size(); ++picture.tiles) {
-    const std::size_t column = picture.tiles % tiles.columns;
-    if (column == 0)
-      picture.left.clear();
-    const TileShare share{static_cast<double>(picture.tiles) * part, part, options.depth};
-    const TileRect rect = tiles.rect(picture.tiles, picture.image);
-    TileSubdivider tile(picture, options, trace, should_continue, rect, share);
-    if (!tile.run(picture.above[column]))
-      return false;
-  }
-  picture.share = 1;
-  return true;
-}
 
 }  // namespace
 
-bool subdivide(SubdivisionState& picture,
-               const Subdivision& options,
-               const TracePoints& trace,
-               int tile,
-               const ShouldContinue& should_continue) {
+Tiles::Tiles(const Image& image, const Subdivision& options, int side)
+    : width_(image.width),
+      height_(image.height),
+      side_(side > 0 ? side : std::clamp(kTileSteps >> options.depth, kLeastTile, kMostTile)),
+      rows_(static_cast<std::size_t>((height_ - 1) / side_ + 1)),
+      columns_(static_cast<std::size_t>((width_ - 1) / side_ + 1)) {}
+
+TileRect Tiles::operator[](std::size_t tile) const {
+  const int x0 = static_cast<int>(tile % columns_) * side_;
+  const int y0 = static_cast<int>(tile / columns_) * side_;
+  return {x0, y0, std::min(x0 + side_, width_), std::min(y0 + side_, height_)};
+}
+
+void check_subdivision(const Subdivision& options) {
   if (!(options.threshold >= 0) || options.threshold > 1)
     throw std::invalid_argument("the threshold of subdivision must be from 0 to 1");
   if (options.depth < 0 || options.depth > kMostSubdivisions)
     throw std::invalid_argument("the depth of subdivision must be from 0 to " +
                                 std::to_string(kMostSubdivisions));
-  if (tile <= 0)
-    tile = std::min(1024, 4096 >> options.depth);
-  return subdivide_tiles(picture, options, trace, tile, should_continue);
+}
+
+void subdivide(const TileRect& tile,
+               const Subdivision& options,
+               const TracePoints& trace,
+               Image& image) {
+  TileSubdivider(tile, options, trace).run(image);
 }
 
 }  // namespace grelha

@@ -1,32 +1,46 @@
 #pragma once
-// Makes a picture by subdivision: interrupted, kept, gone on with, to the bits of one that was made
-// in one go. Knows nothing of rays: whoever makes it says what a point sees.
+// Makes tiles of a picture by subdivision. Knows nothing of rays: whoever makes one says what a
+// point sees.
 
 #include <cstddef>
 #include <functional>
 #include <span>
 
+#include "grelha/image.hpp"
 #include "grelha/subdivision.hpp"
-#include "kernel/render/guarded_progress.hpp"
-#include "kernel/subdivision/subdivision_state.hpp"
 
 namespace grelha {
 
-/// Traces points, all different and none asked for before, and sets their colours. `from` and `to`
-/// say which share of the picture is done before and after. Returns how many it traced, from the
-/// first on; fewer than all to stop.
-using TracePoints = std::function<std::size_t(
-    std::span<const LatticePoint> points, Float3* colours, double from, double to)>;
+/// Pixels x0 <= x < x1, y0 <= y < y1.
+struct TileRect {
+  int x0, y0, x1, y1;
+};
 
-/// Makes the picture whose pixels are their squares: the mean of four corners, or of four quarters
-/// where a square is split. Returns whether it is finished: what was stopped another call goes on
-/// with, unless `should_continue` says to go on all the same. Works in tiles of `tile` pixels a
-/// side (0: as large as 2^24 points allow were every square split), which changes nothing but the
-/// order of points.
-bool subdivide(SubdivisionState& picture,
+/// Tiles of a picture, row by row. A point on the border of two is seen by both: no pixel depends
+/// on how large they are.
+class Tiles {
+ public:
+  /// `side` pixels a side; 0: from 32 to 8, fewer the deeper squares are split.
+  Tiles(const Image& image, const Subdivision& options, int side = 0);
+  std::size_t size() const { return rows_ * columns_; }
+  TileRect operator[](std::size_t tile) const;
+
+ private:
+  int width_, height_, side_;
+  std::size_t rows_, columns_;
+};
+
+/// Sets the colours of points that are all different, neighbours next to each other.
+using TracePoints = std::function<void(std::span<const LatticePoint> points, Float3* colours)>;
+
+/// Throws std::invalid_argument for options out of their range.
+void check_subdivision(const Subdivision& options);
+
+/// Makes the pixels of a tile: of each the mean of the four corners of its square, or of its four
+/// quarters where it is split.
+void subdivide(const TileRect& tile,
                const Subdivision& options,
                const TracePoints& trace,
-               int tile = 0,
-               const ShouldContinue& should_continue = {});
+               Image& image);
 
 }  // namespace grelha

@@ -9,11 +9,6 @@
 namespace grelha {
 namespace {
 
-bool ascends(const std::vector<BorderPoint>& border) {
-  const auto falls = [](const BorderPoint& a, const BorderPoint& b) { return a.key >= b.key; };
-  return std::adjacent_find(border.begin(), border.end(), falls) == border.end();
-}
-
 bool is_side(int side) {
   return side >= 1 && side <= kMostSubdividedSide;
 }
@@ -30,9 +25,8 @@ SubdivisionState make_subdivision(int width, int height) {
 }
 
 bool is_sound(const SubdivisionState& s) {
-  if (!is_side(s.image.width) || !is_side(s.image.height) || !(s.share >= 0) || s.share > 1)
-    return false;
-  return ascends(s.left) && std::all_of(s.above.begin(), s.above.end(), ascends);
+  return is_side(s.image.width) && is_side(s.image.height) && s.share >= 0 && s.share <= 1 &&
+         std::all_of(s.done.begin(), s.done.end(), [](std::uint8_t d) { return d <= 1; });
 }
 
 }  // namespace grelha

@@ -73,7 +73,7 @@ class Checkpoints : public testing::TestWithParam<bool> {
     if (GetParam())
       job_.options.refine.error = 1e-3;
     else
-      job_.options.subdivision = {true, .05f, 8};  // tiles of 16 pixels: six
+      job_.options.subdivision = {true, .05f, 8};  // tiles of 8 pixels
   }
   Job job_;
 };

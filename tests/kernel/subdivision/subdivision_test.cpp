@@ -4,6 +4,7 @@
 #include <set>
 
 #include "kernel/subdivision/subdivider.hpp"
+#include "kernel/subdivision/subdivision_state.hpp"
 #include "tests/support/rays.hpp"
 #include "tests/support/recursion.hpp"
 #include "tests/support/scenes.hpp"
@@ -14,7 +15,10 @@ namespace {
 Image subdivided(
     int width, int height, const Subdivision& options, const TracePoints& see, int tile = 0) {
   SubdivisionState picture = make_subdivision(width, height);
-  subdivide(picture, options, see, tile);
+  check_subdivision(options);
+  const Tiles tiles(picture.image, options, tile);
+  for (std::size_t t = 0; t < tiles.size(); ++t)
+    subdivide(tiles[t], options, see, picture.image);
   return std::move(picture.image);
 }
 
@@ -42,7 +46,8 @@ Colour random_discs(std::uint64_t seed, double width, double height) {
   };
 }
 
-TEST(Subdivide, IsTheRecursionAndSeesNoPointTwice) {
+/// Tiles see the points between them twice.
+TEST(Subdivide, IsTheRecursionAndSeesItsPointsAlone) {
   const std::pair<int, int> sizes[] = {{1, 1}, {7, 5}, {1, 9}, {19, 12}};
   std::uint64_t seed = 0;
   for (const auto& [w, h] : sizes)
@@ -51,14 +56,12 @@ TEST(Subdivide, IsTheRecursionAndSeesNoPointTwice) {
         for (const int tile : {0, 1, 3, 8}) {
           const Colour colour = random_discs(++seed, w, h);
           std::set<Place> seen;
-          std::size_t twice = 0;
-          const auto see = [&](std::span<const LatticePoint> points,
-                               Float3* colours,
-                               double,
-                               double) {
-            for (const LatticePoint& p : points)
-              twice += !seen.insert({p.x, p.y}).second, *colours++ = colour(p.x / 256., p.y / 256.);
-            return points.size();
+          std::size_t inside = 0;
+          const auto see = [&](std::span<const LatticePoint> points, Float3* colours) {
+            for (const LatticePoint& p : points) {
+              inside += !seen.insert({p.x, p.y}).second && p.x % 256 != 0 && p.y % 256 != 0;
+              *colours++ = colour(p.x / 256., p.y / 256.);
+            }
           };
           const Image image = subdivided(w, h, {true, threshold, depth}, see, tile);
           Recursion recursion(colour, threshold, depth);
@@ -70,15 +73,13 @@ TEST(Subdivide, IsTheRecursionAndSeesNoPointTwice) {
                     << w << " x " << h << ", threshold " << threshold << ", depth " << depth
                     << ", tile " << tile << ", pixel " << x << ' ' << y;
             }
-          ASSERT_EQ(twice, 0u) << "depth " << depth << ", tile " << tile;
+          ASSERT_EQ(inside, 0u) << "seen twice, depth " << depth << ", tile " << tile;
           ASSERT_EQ(seen, recursion.points()) << "depth " << depth << ", tile " << tile;
         }
 }
 
 TEST(Subdivide, RefusesWhatMakesNoSense) {
-  const auto see = [](std::span<const LatticePoint>, Float3*, double, double) {
-    return std::size_t{0};
-  };
+  const auto see = [](std::span<const LatticePoint>, Float3*) {};
   for (const float threshold : {-.1f, 1.01f, kNaN})
     EXPECT_THROW(subdivided(4, 4, {true, threshold, 2}, see), std::invalid_argument);
   for (const int depth : {-1, 9})
@@ -90,98 +91,21 @@ TEST(Subdivide, RefusesWhatMakesNoSense) {
   EXPECT_NO_THROW(subdivided(65536, 1, {true, 1, 8}, see));
 }
 
-TEST(Subdivide, StopsWhenToldAndTellsHowFarItIs) {
-  const Colour colour = random_discs(3, 8, 8);
-  std::size_t calls = 0, stop_at = 0;
-  double last = 0;
-  const auto see =
-      [&](std::span<const LatticePoint> points, Float3* colours, double from, double to) {
-        EXPECT_GE(from, last - 1e-12);
-        EXPECT_LE(from, to);
-        last = to;
-        if (++calls == stop_at)
-          return std::size_t{0};
-        for (const LatticePoint& p : points)
-          *colours++ = colour(p.x / 256., p.y / 256.);
-        return points.size();
-      };
-  const Image whole = subdivided(8, 8, {true, .1f, 2}, see, 4);
-  EXPECT_EQ(calls, 12u) << "four tiles, three levels";
-  EXPECT_NEAR(last, 1, 1e-12);
-  calls = 0;
-  stop_at = 8;
-  last = 0;
-  const Image part = subdivided(8, 8, {true, .1f, 2}, see, 4);
-  EXPECT_EQ(calls, 8u);
-  for (int y = 0; y < 8; ++y)
-    for (int x = 0; x < 8; ++x) {
-      if (y >= 4 && x < 4)
-        continue;
-      EXPECT_EQ(part.row(y)[3 * x], y < 4 ? whole.row(y)[3 * x] : 0)
-          << x << ' ' << y << ": two tiles are finished, one is not begun";
-    }
-  // Of the third tile the corners are there, and no more.
-  const Image corners =
-      subdivided(8, 8, {true, .1f, 0}, [&](auto points, Float3* colours, double, double) {
-        for (const LatticePoint& p : points)
-          *colours++ = colour(p.x / 256., p.y / 256.);
-        return points.size();
-      });
-  for (int y = 4; y < 8; ++y)
-    for (int x = 0; x < 4; ++x)
-      EXPECT_EQ(part.row(y)[3 * x], corners.row(y)[3 * x]) << x << ' ' << y;
-}
-
-/// Points are seen a few at a time, in a picture that is copied between them: none is seen twice,
-/// and the picture is that made in one go.
-TEST(Subdivide, StoppedAnywhereGoesOnToTheSameBits) {
-  Random random(4);
-  for (const int tile : {0, 3, 8})
-    for (const int depth : {0, 1, 4}) {
-      SCOPED_TRACE(testing::Message() << "tile " << tile << ", depth " << depth);
-      const Colour colour = random_discs(11, 19, 12);
-      std::set<Place> seen;
-      std::size_t twice = 0, most = ~std::size_t{0};
-      const auto see = [&](std::span<const LatticePoint> points, Float3* colours, double, double) {
-        const std::size_t n = std::min(points.size(), most);
-        for (const LatticePoint& p : points.first(n))
-          twice += !seen.insert({p.x, p.y}).second, *colours++ = colour(p.x / 256., p.y / 256.);
-        return n;
-      };
-      const Image whole = subdivided(19, 12, {true, .1f, depth}, see, tile);
-      const std::set<Place> all = std::exchange(seen, {});
-      SubdivisionState kept = make_subdivision(19, 12);
-      for (bool done = false; !done;) {
-        SubdivisionState copy = kept;
-        most = random.below(100);
-        done = subdivide(copy, {true, .1f, depth}, see, tile);
-        ASSERT_TRUE(is_sound(copy));
-        ASSERT_GE(copy.share, kept.share);
-        kept = std::move(copy);
+TEST(Subdivide, TilesCoverThePicture) {
+  for (const auto& [w, h] : {std::pair{1, 1}, {64, 64}, {65, 3}, {200, 150}})
+    for (int depth = 0; depth <= kMostSubdivisions; ++depth) {
+      const Image image(w, h);
+      const Tiles tiles(image, {true, .1f, depth});
+      std::vector<int> covered(static_cast<std::size_t>(w * h));
+      for (std::size_t t = 0; t < tiles.size(); ++t) {
+        const TileRect r = tiles[t];
+        EXPECT_LE(std::max(r.x1 - r.x0, r.y1 - r.y0), depth < 4 ? 32 : 16);
+        for (int y = r.y0; y < r.y1; ++y)
+          for (int x = r.x0; x < r.x1; ++x)
+            ++covered[static_cast<std::size_t>(y * w + x)];
       }
-      EXPECT_EQ(kept.share, 1);
-      EXPECT_EQ(kept.image.rgb, whole.rgb);
-      EXPECT_EQ(seen, all);
-      EXPECT_EQ(twice, 0u);
-      EXPECT_TRUE(subdivide(kept, {true, .1f, depth}, see, tile)) << "nothing is left to do";
-      EXPECT_EQ(twice, 0u);
+      EXPECT_EQ(std::count(covered.begin(), covered.end(), 1), w * h) << depth;
     }
-}
-
-/// Until all corners are seen a pixel shows its first, then squares that wait to be split show
-/// theirs: all of it lies between what was seen.
-TEST(Subdivide, ShowsOfATileWhatThereIs) {
-  SubdivisionState picture = make_subdivision(16, 8);
-  const auto see_some = [](std::span<const LatticePoint> points, Float3* colours, double, double) {
-    // corners come in blocks of 8 x 8
-    const std::size_t n = std::min<std::size_t>(points.size(), 64);
-    for (std::size_t i = 0; i < n; ++i)
-      colours[i] = {static_cast<float>(points[i].x / 256), 0, 0};
-    return n;
-  };
-  EXPECT_FALSE(subdivide(picture, {true, .1f, 0}, see_some));
-  for (int x = 0; x < 16; ++x)
-    EXPECT_EQ(picture.image.row(3)[3 * x], x < 8 ? x : 0) << x;
 }
 
 TEST(LatticeHash, TellsPointsApart) {
