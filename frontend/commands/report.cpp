@@ -233,14 +233,12 @@ std::string rounded_up(double value) {
   return print("%.2g", std::strtod(print("%de%d", ++tens, power).c_str(), nullptr));
 }
 
-/// What ended a picture by error. The last samples may have met it, and nobody asked again.
+/// What ended a picture by error.
 std::string end_text(const RefineOptions& asked, const ErrorStats& e) {
-  if (asked.error <= 0 || (e.met_at == 0 && e.rmse_bound <= asked.error))
+  if (asked.error <= 0 || e.met_at == e.samples)
     return "";
   if (e.met_at == 0)
     return print("; %g is not met with %u samples in a pixel", asked.error, e.most);
-  if (e.met_at == e.samples)
-    return "";
   return print(", %.0f %% of them for pixels with wide intervals",
                100 * (1 - double(e.met_at) / double(e.samples)));
 }

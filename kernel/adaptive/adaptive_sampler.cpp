@@ -96,7 +96,9 @@ class AdaptiveSampler {
     e.audited = std::sqrt(r_.audited);
     e.audits = r_.audits;
     e.audit_samples = r_.audit_samples;
-    e.met_at = r_.met_at;
+    // the last samples may have met it, and the last audit may deny it
+    const bool met = e.rmse_bound <= options_.refine.error;
+    e.met_at = !met ? 0 : r_.met_at > 0 ? r_.met_at : samples_;
     e.rounds = r_.rounds;
     e.samples = samples_;
     e.least = kMostSamples;

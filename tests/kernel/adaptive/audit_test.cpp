@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "frontend/input/read_scene.hpp"
 #include "kernel/adaptive/adaptive_sampler.hpp"
 #include "kernel/adaptive/sampling_round.hpp"
 #include "tests/support/rays.hpp"
@@ -145,6 +146,23 @@ TEST_F(Audits, LetSamplesGrowByHalfUntilTheNext) {
   ASSERT_GT(in_round(0), 6 * samples / 10) << "it could take more";
   EXPECT_LE(in_round(1), 51 * samples / 100);
   EXPECT_GE(in_round(1), 49 * samples / 100);
+}
+
+/// The last samples may meet an error, and nobody asks again: the bound and met_at agree.
+TEST(Audit, AgreesWithWhetherTheErrorIsMet) {
+  SceneFile file =
+      read_scene(GRELHA_SOURCE_DIR "/scenes/data/balls.nff", [](const std::string&) {});
+  file.camera.width = file.camera.height = 64;
+  const World world(file.scene, {});
+  RenderOptions options;
+  options.threads = 2;
+  for (const double asked : {.006, .007, .01}) {
+    options.refine.error = asked;
+    RenderStats stats;
+    render(world, file.camera, options, stats);
+    EXPECT_EQ(stats.error.met_at > 0, stats.error.rmse_bound <= asked) << asked;
+    EXPECT_LE(stats.error.met_at, stats.error.samples) << asked;
+  }
 }
 
 TEST(AuditedPixels, AreNotWorseByChance) {
