@@ -286,7 +286,9 @@ std::string LongRender::with_checkpoint() const {
 void LongRender::save() {
   const bool is_foreign = exists(kept_.work) && kept_place_ != place_of(kept_.work);
   if (is_foreign && asked_to_save() && !std::exchange(is_shared_, true))
-    warn_(kept_.work + ": warning: another run saves there as well: each writes over the other's");
+    warn_(kept_.work +
+          ": warning: another run saves there as well, and each writes over the other's: give each "
+          "its own --checkpoint");
   write_checkpoint(kept_.work, identity_, picture_, true);
   note_place();
 }

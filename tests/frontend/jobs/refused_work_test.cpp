@@ -101,7 +101,10 @@ TEST_F(LongWork, RunsThatShareACheckpointAreTold) {
   while (!std::filesystem::exists(folder_.file("y.pfm")))  // the other ends soon
     usleep(10000);
   EXPECT_EQ(outcome.err.find("No such file"), outcome.err.npos) << outcome.err;
-  EXPECT_NE(outcome.err.find("kept: warning: another run saves there as well"), outcome.err.npos);
+  EXPECT_NE(outcome.err.find("kept: warning: another run saves there as well, and each writes over "
+                             "the other's: give each its own --checkpoint\n"),
+            outcome.err.npos)
+      << outcome.err;
   EXPECT_TRUE(folder_.read("x.pfm") == folder_.read("y.pfm"));
 }
 
