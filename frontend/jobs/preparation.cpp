@@ -1,5 +1,6 @@
 #include "frontend/jobs/preparation.hpp"
 
+#include "frontend/commands/console.hpp"
 #include "frontend/commands/progress.hpp"
 #include "frontend/files/memory_limit.hpp"
 #include "frontend/files/parse_error.hpp"

@@ -17,6 +17,7 @@ void ListStore<Triangle>::resize_boxes(std::size_t rows) {
 }
 
 void ListStore<Triangle>::end_row(std::size_t place) {
+  constexpr float kNowhere = std::numeric_limits<float>::infinity();
   for (; place % kBlock != 0; ++place)
     for (int a = 0; a < 3; ++a) {
       boxes[place / kBlock].side[a][place % kBlock] = kNowhere;
