@@ -35,3 +35,10 @@ foreach(line IN LISTS lines)
     -D SCRATCH=${CMAKE_CURRENT_BINARY_DIR}/hashes -P ${CMAKE_CURRENT_SOURCE_DIR}/hashes.cmake)
   set_tests_properties(hash_${name} PROPERTIES LABELS image SKIP_REGULAR_EXPRESSION "SKIPPED")
 endforeach()
+# Those that are not there say so.
+foreach(isa sse2 avx2 avx512)
+  add_test(NAME hash_by_${isa} COMMAND ${CMAKE_COMMAND} -D PROGRAM=$<TARGET_FILE:grelha>
+    -D ISA=${isa} -D ROOT=${PROJECT_SOURCE_DIR} -D SCRATCH=${CMAKE_CURRENT_BINARY_DIR}/hashes
+    -P ${CMAKE_CURRENT_SOURCE_DIR}/hashes.cmake)
+  set_tests_properties(hash_by_${isa} PROPERTIES LABELS image SKIP_REGULAR_EXPRESSION "SKIPPED")
+endforeach()
