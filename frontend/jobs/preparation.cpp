@@ -19,11 +19,10 @@ namespace {
 constexpr std::uint64_t kPixel = 12;  ///< bytes of a picture's pixel: three floats
 /// and of its file's, before that is written: .pfm and .hdr; a .png takes half of it
 constexpr std::uint64_t kFilePixel = 12;
-constexpr std::uint64_t kSum = 24;         ///< three sums of light
-constexpr std::uint64_t kPlaceOfBlue = 4;  ///< where its samples begin
-constexpr std::uint64_t kRefined = 80;     ///< docs/architecture.md, and 9 a pixel for blocks
-/// a thread's tile: 2^20 points, a quarter of the most, and the squares between them that wait
-constexpr std::uint64_t kSubdividedTile = 56 << 20;
+constexpr std::uint64_t kSum = 24;              ///< three sums of light
+constexpr std::uint64_t kPlaceOfBlue = 4;       ///< where its samples begin
+constexpr std::uint64_t kRefined = 80;          ///< docs/architecture.md, and 9 a pixel for blocks
+constexpr std::uint64_t kTilePoint = 56;        ///< of a tile that is subdivided, with its squares
 constexpr std::uint64_t kMaps = 12;             ///< samples, errors and widths
 constexpr std::uint64_t kProgram = 12'000'000;  ///< bytes of the program itself: libraries, stacks
 
@@ -122,13 +121,14 @@ PictureMemory picture_memory(const RenderCommand& command, const Camera& camera)
                                           : kSum * width * height;
   const auto threads = static_cast<std::uint64_t>(
       command.render.threads > 0 ? command.render.threads : std::thread::hardware_concurrency());
+  // of 32 pixels a side and three divisions, or 8 and more than five
+  const std::uint64_t tile_points = 1ull << std::max(16, 6 + 2 * command.render.subdivision.depth);
   PictureMemory memory;
   memory.sums = kept;
-  memory.rest =
-      kProgram + thread_bytes(camera, command.render) +
-      (refined      ? kMaps * pixels
-       : subdivided ? kSubdividedTile * std::min<std::uint64_t>(threads, pixels / 4096 + 1)
-                    : 0);
+  memory.rest = kProgram + thread_bytes(camera, command.render) +
+                (refined      ? kMaps * pixels
+                 : subdivided ? kTilePoint * tile_points * threads
+                              : 0);
   if (!part)
     memory.rest += (kPixel + kFilePixel) * pixels;
   if (command.render.sampling.sampler == Sampler::kBlue)

@@ -133,7 +133,8 @@ TEST(Refinement, MeetsItsErrorAndItsIntervalsHold) {
     EXPECT_GT(e.met_at, 0u) << c.name;
     EXPECT_LE(e.met_at, e.samples) << c.name;
     EXPECT_LE(wider_share(got.maps, 8 * kAsked), .001) << c.name;
-    EXPECT_NEAR(e.rmse / error, 1, .3) << c.name;
+    EXPECT_GE(e.rmse / error, .8) << c.name;
+    EXPECT_LE(e.rmse / error, 1.5) << c.name << ": one hit more is counted than was seen";
     for (std::size_t p = 0; p < got.maps.width.size(); ++p) {
       ++pixels;
       inside +=
