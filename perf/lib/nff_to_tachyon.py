@@ -1,7 +1,8 @@
 """NFF of the project's generators as a scene for Tachyon.
 
 They write spheres, polygons of three corners, planes and point lights: cones, which Tachyon has
-not, and other polygons are refused. The same camera, lights, colours, mirrors and depth.
+not, and other polygons are refused. The same camera, lights, colours, mirrors and depth; what is
+clear bends no light there. Its pictures are mirrored, so x is turned around.
 """
 import math
 
@@ -22,12 +23,17 @@ def camera(view, depth):
     # a picture as high as 1 / zoom, in front of the eye by 1
     zoom = .5 / math.tan(math.radians(view["angle"]) / 2)
     return (f"RESOLUTION {width} {height}\nCAMERA ZOOM {zoom:.9g} ASPECTRATIO 1 ANTIALIASING 0 "
-            f"RAYDEPTH {depth}\nCENTER {words(view['from'])}\nVIEWDIR {words(forward)}\n"
-            f"UPDIR {words(view['up'])}\nEND_CAMERA\n")
+            f"RAYDEPTH {depth}\nCENTER {place(view['from'])}\nVIEWDIR {place(forward)}\n"
+            f"UPDIR {place(view['up'])}\nEND_CAMERA\n")
 
 
 def words(vector):
     return " ".join(f"{a:.9g}" for a in vector)
+
+
+def place(values):
+    x, y, z = map(float, values)
+    return words((-x, y, z))
 
 
 def convert(text, depth):
@@ -48,17 +54,17 @@ def convert(text, depth):
             view["resolution"] = (int(w[1]), int(w[2]))
         elif w[0] == "l":
             colour = words(numbers(w[4:7])) if len(w) > 4 else "1 1 1"
-            lights.append(f"LIGHT CENTER {words(numbers(w[1:4]))} RAD 1e-6 COLOR {colour}\n")
+            lights.append(f"LIGHT CENTER {place(w[1:4])} RAD 1e-6 COLOR {colour}\n")
         elif w[0] == "f":
             look = texture(numbers(w[1:9]))
         elif w[0] == "s":
-            things.append(f"SPHERE CENTER {w[1]} {w[2]} {w[3]} RAD {w[4]}\n{look}")
+            things.append(f"SPHERE CENTER {place(w[1:4])} RAD {w[4]}\n{look}")
         elif w[0] == "p" and w[1] == "3":
-            a, b, c = (next(lines) for _ in range(3))
+            a, b, c = (place(next(lines).split()[:3]) for _ in range(3))
             things.append(f"TRI V0 {a} V1 {b} V2 {c}\n{look}")
         elif w[0] == "pl":
             a, b, c = (Vector(*numbers(w[i:i + 3])) for i in (1, 4, 7))
-            things.append(f"PLANE CENTER {words(a)} NORMAL {words(cross(b - a, c - a).unit())}\n"
+            things.append(f"PLANE CENTER {place(a)} NORMAL {place(cross(b - a, c - a).unit())}\n"
                           f"{look}")
         elif w[0] not in ("aperture", "focal"):
             raise ValueError(f"no conversion for {line!r}")
