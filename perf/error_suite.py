@@ -39,7 +39,7 @@ from image_error import Workshop, read_pfm, rmse, time_to_reach
 
 LEAST, LEAST_COUNTED = 2 * 1024, 2 * 4096  # samples of a reference, in two halves
 SHOWN = .02                    # a tiny thing counts that adds as much; a finer E asks for it
-FIXED = [2 ** k for k in range(10)]
+FIXED = [2 ** k for k in range(9)]
 ORDINARY = [
     "spd/balls.nff", "spd/gears.nff", "spd/jacks3.nff", "spd/lattice4.nff", "spd/mount4.nff",
     "spd/rings.nff", "spd/sombrero.nff", "spd/teapot.nff", "spd/tetra-5.nff",
@@ -261,8 +261,8 @@ def asked_for():
     parser.add_argument("--errors", type=numbers, default=[.03, .01, .003], help="[.03,.01,.003]")
     parser.add_argument("--seeds", type=int, default=2, help="runs of each scene and E [2]")
     parser.add_argument("--size", type=int, default=64, help="side of the pictures [64]")
-    parser.add_argument("--most", type=int, default=2 * 8192,
-                        help="samples of a reference [16384]")
+    parser.add_argument("--most", type=int, default=2 * 4096,
+                        help="samples of a reference [8192]")
     parser.add_argument("--long", action="store_true", help="the whole of it: hours")
     parser.add_argument("--folder", default="error_suite",
                         help="where scenes and references stay [error_suite beside the program]")
