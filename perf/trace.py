@@ -93,7 +93,7 @@ def ratios(cells, embree):
 
     told = [in_words([c["ratio"] for c in cells.values()], "Rays as a render traces them")]
     told += [in_words([c[k] for c in cells.values()], words) for k, words in zip(CALLER, (
-        "calls of one ray", "streams of 8", "one stream by default"))]
+        "Calls of one ray", "Streams of 8", "One stream by default"))]
 
     def rows(text):
         scenes = dict.fromkeys(scene for scene, _ in cells)
@@ -101,7 +101,7 @@ def ratios(cells, embree):
                 for scene in scenes]
 
     return (f"One thread of a virtual {cpu_name()}, {embree}, {date.today():%B %Y}, "
-            f"{commit()}:\n\n" + table(["", *kinds], rows(ratio)) + "\n\n" + "; ".join(told) +
+            f"{commit()}:\n\n" + table(["", *kinds], rows(ratio)) + "\n\n" + ". ".join(told) +
             ".\n\nAs a caller of the library asks, with no options. One ray a call over "
             "`rtcIntersect1`. Streams of eight over `rtcIntersect8`, "
             "by the better of its hints. One stream of all over Embree's best mode:\n\n" +
