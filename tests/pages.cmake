@@ -20,6 +20,10 @@ set_tests_properties(docs architecture references references_self_test sentences
   PROPERTIES
   LABELS build SKIP_RETURN_CODE 77)
 
+add_test(NAME summary COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/with_python.sh
+  ${CMAKE_CURRENT_LIST_DIR}/summary.py --self-test)
+set_tests_properties(summary PROPERTIES LABELS build SKIP_RETURN_CODE 77)
+
 # Every source has the form that CONTRIBUTING.md asks for. The self test plants offences.
 set(form sh ${CMAKE_CURRENT_LIST_DIR}/with_python.sh ${CMAKE_CURRENT_LIST_DIR}/form.py)
 foreach(rules text functions format)

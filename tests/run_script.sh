@@ -52,7 +52,7 @@ echo "2/2 Test #2: two ....***Failed    0.02 sec"
 echo "50% tests passed, 1 tests failed out of 2"
 exit 8
 CTEST
-printf '#!/bin/sh\necho "why: ${2##*/}"\n' >stand-ins/python3
+printf '#!/bin/sh\necho "why: ${3##*/}"\n' >stand-ins/python3
 chmod +x stand-ins/cmake stand-ins/ctest stand-ins/python3
 try() {  # try() EXPECTED COMMAND...: what it says on a pipe, lines joined by |
   expected=$1

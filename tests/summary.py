@@ -1,22 +1,56 @@
 #!/usr/bin/env python3
-"""summary.py LOG: what ends a run of all tests, from ctest's log: the tests that failed, with what
-they said last, and why others were skipped, with how many there are of each."""
+"""summary.py PRINTED LOG: what ends a run of all tests, from what ctest printed and its
+LastTest.log: why tests were skipped, and those that failed with what they said last.
+
+    summary.py --self-test
+"""
 import collections
 import re
 import sys
 
 SAID = 12  # lines of a failed test
-REASON = re.compile(r"skipped|SKIPPED|: Skipped$", re.I)
+RESULT = re.compile(r"^\s*\d+/\d+ Test\s+#\d+: (.*?) \.*\*\*\*(\w[\w ]*?)\s", re.M)
+TESTING = re.compile(
+    r"^\d+/\d+ Testing: (.*)\n(?:.*\n)*?Output:\n-+\n((?:.*\n)*?)<end of output>", re.M)
+WHY = re.compile(r"skipped|not looked at|no [\w/]+ here", re.I)
+SAMPLE = """ 1/4 Test #1: one ....   Passed    0.01 sec
+ 2/4 Test #2: Isa/Two.Is/avx512  # GetParam() = avx512 ...***Skipped   0.01 sec
+ 3/4 Test #3: docs .....***Skipped   0.01 sec
+ 4/4 Test #4: four .....***Failed    0.02 sec
+"""
+SAMPLE_LOG = """1/4 Testing: one
+1/4 Test: one
+Output:
+----------
+fine
+<end of output>
+Test Passed.
+2/4 Testing: Isa/Two.Is/avx512  # GetParam() = avx512
+Output:
+----------
+[ RUN      ] Two
+tests/two.cpp:1: Skipped
+this processor has no avx512
 
-
-def tests(text):
-    """Name, output and result of each."""
-    for part in re.split(r"^\d+/\d+ Testing: ", text, flags=re.M)[1:]:
-        name, _, rest = part.partition("\n")
-        output = re.search(r"^Output:\n-+\n(.*?)^<end of output>", rest, re.S | re.M)
-        result = re.search(r"^Test (Passed|Failed|Skipped|Not Run|Timeout)|^Test time = .*$", rest,
-                           re.M)
-        yield name, output.group(1) if output else "", result.group(0) if result else "no result"
+[  SKIPPED ] Two
+<end of output>
+Test Passed.
+3/4 Testing: docs
+Output:
+----------
+skipped: no doxygen
+<end of output>
+4/4 Testing: four
+Output:
+----------
+expected 1, found 2
+<end of output>
+Test Failed.
+"""
+SAMPLE_SAID = """skipped: this processor has no avx512: Isa/Two.Is/avx512
+skipped: no doxygen: docs
+FAILED: four
+    expected 1, found 2"""
 
 
 def reason(output):
@@ -25,25 +59,34 @@ def reason(output):
     for line, following in zip(lines, lines[1:]):
         if line.endswith(": Skipped"):
             return following
-    own = [line for line in lines if REASON.search(line) and not line.startswith("[")]
-    return own[-1] if own else "no reason given"
+    own = [line for line in lines if WHY.search(line) and not line.startswith("[")]
+    return own[-1].removeprefix("skipped: ") if own else "no reason given"
+
+
+def summary(printed, log):
+    said = dict(TESTING.findall(log))
+    failed, skipped = [], collections.defaultdict(list)
+    for name, result in RESULT.findall(printed):
+        output = said.get(name, "")
+        if result == "Skipped":
+            skipped[reason(output)].append(name.partition("  # ")[0])
+        else:
+            failed += [f"FAILED: {name}"]
+            failed += [f"    {line}" for line in output.rstrip().splitlines()[-SAID:]]
+    for why, names in skipped.items():
+        more = f" and {len(names) - 3} more" if len(names) > 3 else ""
+        yield f"skipped: {why}: {', '.join(names[:3])}{more}"
+    yield from failed
 
 
 def main():
-    failed, skipped = [], collections.defaultdict(list)
-    with open(sys.argv[1], errors="replace") as f:
-        for name, output, result in tests(f.read()):
-            if result == "Test Skipped":
-                skipped[reason(output)].append(name)
-            elif result != "Test Passed":
-                failed.append((name, output))
-    for why, names in skipped.items():
-        print(f"skipped: {why}: {', '.join(names[:3])}" +
-              (f" and {len(names) - 3} more" if len(names) > 3 else ""))
-    for name, output in failed:
-        print(f"FAILED: {name}")
-        for line in output.rstrip().splitlines()[-SAID:]:
-            print(f"    {line}")
+    if sys.argv[1] == "--self-test":
+        found = "\n".join(summary(SAMPLE, SAMPLE_LOG))
+        if found != SAMPLE_SAID:
+            sys.exit(f"expected\n{SAMPLE_SAID}\nfound\n{found}")
+        return
+    texts = [open(path, errors="replace").read() for path in sys.argv[1:3]]
+    print("\n".join(summary(*texts)))
 
 
 if __name__ == "__main__":
