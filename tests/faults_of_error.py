@@ -22,7 +22,7 @@ FAULTS = [
     adaptive("one difference too few of the old", "kOld", "7", "6", "*.EstimateThe*"),
     adaptive("no intervals", "kNormal", "1.96f", "0", "*MakeIntervals*"),
     adaptive("intervals of twice the width", "kNormal", "1.96f", "3.92f", "*MakeIntervals*"),
-    adaptive("bounds without spread", "kNormalOneSided", "1.645", "-1.645", "*.BoundThe*"),
+    adaptive("bounds below the claim", "kStoppedLow", "1.1", ".8", "*.BoundThe*"),
     adaptive("none agree", "kAgreement", ".005f", "0", "*SeeASample*"),
     adaptive("too many agree", "kAgreement", ".005f", ".02f", "*SeeASample*"),
     adaptive("every block for itself", "kEnoughHits", "16", "0", "*.PoolRareHits"),

@@ -110,7 +110,7 @@ TEST(AimedRays, LookIntoFlatMirrors) {
   s.materials[1].roughness = .1f;
   EXPECT_EQ(boxes(searched(s)), 1u) << "rough mirrors blur it";
   s.materials[1].roughness = 0;
-  add_triangle(s, {-8, -8, 50}, {8, -8, 50}, {8, 8, 50}, 0);
+  add_triangle(s, {2.3f, -2.9f, 95}, {2.3f, -8, 95}, {8, -2.9f, 95}, 0);
   EXPECT_EQ(boxes(searched(s)), 1u) << "a wall between mirror and speck";
 }
 
