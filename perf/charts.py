@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Charts of speed against accuracy, as CSV and SVG in docs/, and one page for all of them.
 
-    ./run charts [rays] [picture] [grid] [features] [--quick] [--rounds N] [--draw]
+    ./run charts [picture] [grid] [features] [--quick] [--rounds N] [--draw]
 
 Without a name, all. Every point tells the command that repeats it: in the CSV, in the SVG when the
 mouse rests on it, and in report.html, which opens without a network. --quick: smaller pictures,
@@ -28,7 +28,7 @@ from chart import draw  # noqa: E402
 from image_error import Workshop  # noqa: E402
 from page import make_page  # noqa: E402
 
-NAMES = ("rays", "picture", "grid", "features")
+NAMES = ("picture", "grid", "features")
 
 
 @dataclasses.dataclass

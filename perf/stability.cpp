@@ -44,7 +44,7 @@ class EmbreeTracer final : public Tracer {
   const char* way_name(int way) const override { return way == 0 ? "8 coherent" : "single"; }
   Answers closest(const RayList& rays, int way) override {
     const perf::Answers a = ask(rays, false, way);
-    return {a.t, a.id, {}, {}};
+    return {a.t, a.id, {}};
   }
   Answers occluded(const RayList& rays, int way) override {
     Answers out;

@@ -30,7 +30,6 @@ try:
     import image_error
     import page
     import picture
-    import rays
     import bench
     from bench import table
 except ImportError as missing:
@@ -132,7 +131,7 @@ class Twins(unittest.TestCase):
 
 class Kept(unittest.TestCase):
     """Charts of docs/ come from its CSVs."""
-    modules = {"rays": rays, "picture": picture, "grid": grid, "features": features}
+    modules = {"picture": picture, "grid": grid, "features": features}
 
     def test_what_is_read_back_is_what_was_written(self):
         for name, module in self.modules.items():
@@ -281,25 +280,6 @@ class Page(unittest.TestCase):
             page.markdown("![x](x.svg)\n\nA < B\n\n" + table(["", "x"], [["a", "**1**"]])),
             "<p>A &lt; B</p>\n"
             "<table><tr><th></th><th>x</th></tr><tr><td>a</td><td><b>1</b></td></tr></table>")
-
-    def test_rays_are_drawn_from_what_the_benchmark_writes(self):
-        told = [("scalar", "single", "watertight", 3, 0, 90),
-                ("avx2", "single", "watertight", 3, 0, 20),
-                ("embree", "single", "robust", 40, 2, 15),
-                ("avx2", "double", "moeller", 0, 0, 35)]
-        rows = [{
-            "isa": isa, "precision": precision, "method": method, "fma": False, "scene": "balls",
-            "rays": 1000, "max_ulp": ulp, "p999_ulp": ulp / 2, "wrong": wrong, "leaks": 0, "ns": ns}
-                for isa, precision, method, ulp, wrong, ns in told]
-        (drawn,) = rays.charts({"rows": rows})
-        self.assertEqual([s["name"] for s in drawn["panels"][0]["series"]],
-                         ["single watertight", "double moeller", "Embree single robust"])
-        with tempfile.TemporaryDirectory() as folder:
-            svg = pathlib.Path(folder) / "rays.svg"
-            chart.draw(drawn, svg, pathlib.Path(folder) / "rays.png")
-            self.assertEqual(svg.read_text().count("<title>"), 3 * len(rows))
-        self.assertIn("| balls | Embree | single robust | 40 | 20 | 2 of 1000 | 0 | 15 |",
-                      rays.tell({"rows": rows}, table))
 
 
 class Smoke(unittest.TestCase):

@@ -13,7 +13,7 @@ set(allowed_include "^grelha/")
 set(allowed_kernel "^(kernel|grelha)/")
 set(allowed_frontend "^(frontend|kernel|grelha)/")
 # Rooms: each may include those before it and itself.
-set(rooms_kernel simd scene primitive triangle shapes grid world walk trace query
+set(rooms_kernel simd scene exact primitive triangle shapes grid world walk trace query
   render adaptive subdivision picture isa)
 set(rooms_frontend files images scene ply nff input commands jobs cli)
 

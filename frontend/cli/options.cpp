@@ -19,9 +19,6 @@ using Name = std::pair<std::string_view, std::string_view>;
 constexpr std::array kAccelerators{Word{"grid", 1}, Word{"none", 0}};
 constexpr std::array kSwitch{Word{"on", 1}, Word{"off", 0}};
 constexpr std::array kPackets{Word{"1", 1}, Word{"16", 16}, Word{"64", 64}, Word{"256", 256}};
-constexpr std::array kPrecisions{
-    std::pair<std::string_view, Precision>{"single", Precision::kSingle},
-    std::pair<std::string_view, Precision>{"double", Precision::kDouble}};
 constexpr std::array kSamplers{
     std::pair<std::string_view, Sampler>{"sobol", Sampler::kSobol},
     std::pair<std::string_view, Sampler>{"blue", Sampler::kBlue},
@@ -246,13 +243,6 @@ void add_traversal(CLI::App& sub, RenderCommand& command) {
         "scalar|sse2|avx2|avx512|best",
         "instruction set [best]",
         [&command](const std::string& text) { command.render.isa = choice("--isa", text, kIsas); });
-  value(sub,
-        "--precision",
-        "single|double",
-        "of the tests of rays and primitives [single]",
-        [&command](const std::string& text) {
-          command.render.precision = choice("--precision", text, kPrecisions);
-        });
   value(sub,
         "--packet",
         "1|16|64|256",

@@ -119,7 +119,6 @@ Json options_json(const RenderCommand& command) {
           {"accel", command.build.grid ? "grid" : "none"},
           {"mailbox", command.render.mailbox},
           {"isa", command.render.isa},
-          {"precision", command.render.precision == Precision::kDouble ? "double" : "single"},
           {"packet", command.render.packet},
           {"samples", sampling.samples},
           {"sampler", sampler_name(sampling.sampler)},

@@ -98,8 +98,6 @@ std::string settings_text(const RenderCommand& prepared, const Camera& camera) {
                       std::to_string(camera.height) + ' ' + samples_text(o) +
                       " sampler=" + sampler_name(s.sampler) + " seed=" + std::to_string(s.seed) +
                       " depth=" + std::to_string(o.depth) + " min-weight=" + text(o.min_weight);
-  if (o.precision == Precision::kDouble)
-    words += " precision=double";
   if (e.shadows)
     words += std::string(" shadows=") + (e.shadows->hard ? "hard" : text(e.shadows->size));
   if (s.light_rays > 1)

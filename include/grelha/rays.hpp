@@ -63,7 +63,7 @@ struct Hits {
   float* t = nullptr;
   /// [i * stride] out: the primitive, see primitive_of(); kNoPrimitive where nothing was met
   std::uint32_t* id = nullptr;
-  /// [i] out: t before it was rounded to float, where rays were tested in double; else the same t
+  /// [i] out: t in double, within 2^-45 of itself
   double* t_double = nullptr;
   std::ptrdiff_t stride = 1;  ///< of t and id, in units of four bytes
 

@@ -60,9 +60,6 @@ struct RefineOptions {
   bool on() const { return error > 0 || seconds > 0 || samples > 0; }
 };
 
-/// The floats that rays are tested against primitives in.
-enum class Precision { kSingle, kDouble };
-
 /// How a picture is rendered.
 struct RenderOptions {
   int threads = 0;  ///< 0: one per processor
@@ -75,8 +72,6 @@ struct RenderOptions {
   int packet = 256;
   bool mailbox = true;  ///< skip primitives a ray or packet has already met in another cell
   std::string_view isa = "best";
-  /// of the tests of rays and primitives; hits are shaded in single
-  Precision precision = Precision::kSingle;
   SampleOptions sampling;
   RefineOptions refine;
   bool phases = false;           ///< measure where the time goes

@@ -27,10 +27,9 @@ using Spaces = std::vector<std::unique_ptr<Workspace>>;
 /// A workspace a thread, for a chunk of runs.
 Spaces run_spaces(const Setup& setup, const RenderOptions& options, int threads) {
   const std::size_t sums = std::size_t{kBlocksOfChunk} * kBlockPixels * kParts;
-  const TraceLoops* const loops = loops_of(setup.variant, options.precision);
   Spaces spaces;
   for (int i = 0; i < threads; ++i)
-    spaces.push_back(std::make_unique<Workspace>(sums, options.depth, setup.plan, loops));
+    spaces.push_back(std::make_unique<Workspace>(sums, options.depth, setup.plan));
   return spaces;
 }
 

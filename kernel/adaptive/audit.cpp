@@ -113,8 +113,7 @@ class Auditor {
     const int threads = stats_.threads;
 #pragma omp parallel num_threads(threads)
     {
-      const TraceLoops* const loops = loops_of(setup_.variant, options_.precision);
-      Workspace space(2 * kPixelsOfTurn * kParts, options_.depth, plan_, loops);
+      Workspace space(2 * kPixelsOfTurn * kParts, options_.depth, plan_);
       TraceCounts trace;
       RayCounts rays;
 #pragma omp for schedule(dynamic)

@@ -1,5 +1,6 @@
 #include "kernel/grid/grid.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "kernel/primitive/rounding.hpp"
@@ -21,21 +22,37 @@ CellBox cell_box(const Grid& g, std::size_t cell) {
 GridView Grid::view() const {
   GridView v;
   v.lists = store.lists();
-  v.serves = serves;
   v.distance = distance.data();
   const std::size_t count = cell_count(cells);
   v.field_places = distance_fields(count) > 1 ? static_cast<std::uint32_t>(count) : 0;
   v.pad = static_cast<float>(pad);
   for (int a = 0; a < 3; ++a)
     set_axis(v, a);
+  set_rooms(v);
   return v;
+}
+
+// Rays that start near by are no further from a primitive, along each axis, than the grid is long
+// and the reach; one is no larger than the grid. In the grid's frame a coordinate of a ray and one
+// of a primitive round by u of these each.
+void Grid::set_rooms(GridView& v) const {
+  constexpr double kUnit = 0x1p-24;
+  double far = 0;
+  double longest = 0;
+  for (int a = 0; a < 3; ++a) {
+    const double extent = cell[a] * v.n[a];
+    far += extent + reach;
+    longest = std::max(longest, extent);
+  }
+  v.room = float_not_below(17 * kUnit * (far + longest));
+  v.off = float_not_below(4 * kUnit * (longest + reach));
 }
 
 void Grid::set_axis(GridView& v, int a) const {
   const std::uint32_t n = cells[static_cast<std::size_t>(a)];
   v.n[a] = static_cast<int>(n);
-  v.near_lo[a] = near_lo[a];
-  v.near_hi[a] = near_hi[a];
+  v.near_lo[a] = -float_not_above(-(lo[a] - reach));
+  v.near_hi[a] = float_not_above(lo[a] + cell[a] * n + reach);
   v.lo[a] = lo[a];
   v.cell[a] = cell[a];
   v.inv_cell[a] = 1 / cell[a];

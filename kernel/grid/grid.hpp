@@ -23,14 +23,14 @@ struct Grid {
   CellStore store;
   std::vector<std::uint8_t> distance;  ///< of cells, see distance_field.hpp
   std::uint64_t occupied = 0;
-  Serves serves = Serves::kAll;
-  float near_lo[3] = {}, near_hi[3] = {};  ///< see Serves
+  double reach = 0;  ///< how far from their box rays start that walk it from where they start
 
   GridView view() const;
   GridStats stats() const;
 
  private:
   void set_axis(GridView& v, int a) const;
+  void set_rooms(GridView& v) const;
 };
 
 /// A cell, in scene units.

@@ -15,19 +15,14 @@ struct CellListOf : Shape::CellList {};
 /// Cells of one grid, one after the other, each kind apart.
 struct CellLists : PerShape<CellListOf, FiniteShapes> {};
 
-inline constexpr int kMostGroups = 17;              ///< of primitives
-inline constexpr int kMostGrids = 2 * kMostGroups;  ///< each has one or two
-
-/// The rays a grid is for, by where they start: anywhere, in the box `near_lo` to `near_hi`, or
-/// outside of it. Primitives stand in one grid for all, or in one for the rays that start near and
-/// one for those that start far away, whose tests are off by more. Triangles that are small beside
-/// that stand in one for rays near by, through which those from afar go each by itself.
-enum class Serves : std::uint8_t { kAll, kNear, kFar, kNearAndAfar };
+inline constexpr int kMostGrids = 17;
 
 struct GridView {
   CellLists lists;
-  Serves serves = Serves::kAll;
+  /// rays that start outside of this box are moved into the frame of the grid first
   float near_lo[3] = {}, near_hi[3] = {};
+  float room = 0;  ///< RayLanes::room of rays that start within it
+  float off = 0;   ///< what coordinates are off by in the frame of the grid
   /// [cells] Chebyshev distance to the nearest cell that holds something; 0: this one does. Behind
   /// it fields of [cells] by octants of directions, each so many places after the one before, or 0
   /// places: there are none.
@@ -46,10 +41,8 @@ struct SceneView {
   CellLists outside;
   const GridView* grids = nullptr;
   int grid_count = 0;
-  float box_lo[3] = {}, box_hi[3] = {};  ///< of all finite primitives, grown
-  /// rays that start further than this from the box are moved nearer first; see approach()
-  float reach = 0;
-  bool finite = false;  ///< there is something besides planes
+  float box_lo[3] = {}, box_hi[3] = {};  ///< of all finite primitives
+  bool finite = false;                   ///< there is something besides planes
 };
 
 /// How rays are traced. None of it changes an answer.
@@ -68,24 +61,6 @@ struct Counters {
   std::uint64_t fell_back = 0;
   std::uint64_t issued = 0;
   std::uint64_t busy = 0;
-};
-
-/// What is to be added to origins of rays that are tested in double, which are sums of two floats
-/// then: an array for each component, or null.
-struct LowParts {
-  const float* of[3] = {};
-};
-
-/// trace_closest() and trace_blockers_in_double() of a copy of the kernel.
-struct TraceLoops {
-  void (*closest)(
-      const SceneView&, const Rays&, const LowParts&, const Hits&, const TraceOptions&, Counters&);
-  void (*blockers)(const SceneView&,
-                   const Rays&,
-                   const LowParts&,
-                   std::uint32_t* id,
-                   const TraceOptions&,
-                   Counters&);
 };
 
 }  // namespace grelha

@@ -60,14 +60,10 @@ inline void points(const SceneView& scene,
 }
 
 extern const VariantLoops kLoops;
-const VariantLoops kLoops{.closest = closest<InFloat>,
-                          .occluded = occluded<InFloat>,
+const VariantLoops kLoops{.closest = closest,
+                          .occluded = occluded,
                           .closest_one = closest_one,
                           .occluded_one = occluded_one,
-                          .in_double = {.closest = closest<InDouble>,
-                                        .occluded = occluded<InDouble>,
-                                        .trace = {.closest = trace_closest<InDouble>,
-                                                  .blockers = trace_blockers_in_double}},
                           .render_band = band,
                           .render_runs = pixel_runs,
                           .render_points = points};

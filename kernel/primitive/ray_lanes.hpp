@@ -1,15 +1,67 @@
 #pragma once
-// Rays as the tests of primitives see them.
+// Rays as the tests of primitives see them, and what a test finds.
 
+#include <type_traits>
+
+#include "kernel/exact/crossing.hpp"
 #include "kernel/simd/vec3.hpp"
 
 namespace grelha::GRELHA_ISA {
 
+/// Rays as they came, for what tests do not tell: place i of each array.
+struct GivenRays {
+  const float* org[3] = {};
+  const float* dir[3] = {};
+  const float* t_min = nullptr;
+  const double* shift = nullptr;  ///< t of them less t of those that are tested; null: none
+
+  ExactRay ray(int i) const {
+    return {{org[0][i], org[1][i], org[2][i]}, {dir[0][i], dir[1][i], dir[2][i]}, t_min[i]};
+  }
+  double shift_of(int i) const { return shift ? shift[i] : 0; }
+};
+
+/// Rays beside each other, or one in all lanes. They may stand in the frame of a grid: `base` is
+/// taken from the coordinates of primitives then.
 template <class Real>
 struct RayLanes {
   Vec3<Real> org, dir;
-  Real inv_dd;  ///< 1 / dot(dir, dir)
+  Real inv_dd;      ///< 1 / dot(dir, dir)
+  Real inv_length;  ///< 1 / |dir|
   Real t_min;
+  Real off;                     ///< what coordinates in the frame are off by
+  Real room;                    ///< kFarError times what primitives are away at most, or infinity
+  const float* base = nullptr;  ///< x, y, z; null: 0
+  const GivenRays* given = nullptr;
+  int first = 0;  ///< place of the first lane among those given
+  int step = 0;   ///< 1: a ray a lane; 0: one in all
+
+  /// From the rays to points of primitives.
+  [[gnu::always_inline]] Vec3<Real> to(const Vec3<Real>& point) const {
+    if (!base)
+      return point - org;
+    return (point - Vec3<Real>{Real(base[0]), Real(base[1]), Real(base[2])}) - org;
+  }
+};
+
+/// Half an ulp of 1.
+template <class Real>
+inline constexpr double kUnit = std::is_same_v<Scalar<Real>, float> ? 0x1p-24 : 0x1p-53;
+/// So many of them, as a number of Real's.
+template <class Real>
+[[gnu::always_inline]] inline Real units(double count) {
+  return Real(static_cast<Scalar<Real>>(count * kUnit<Real>));
+}
+/// Products of four lengths below it may have underflowed.
+template <class Real>
+inline constexpr double kUnderflow = std::is_same_v<Scalar<Real>, float> ? 0x1p-100 : 0x1p-900;
+
+/// The first crossings beyond t_min and before t_max that tests find. Lanes that are not `some`
+/// have none. Those that are `sure` have one, at t from lo to hi.
+template <class Real>
+struct Found {
+  Mask<Real> some, sure;
+  Real lo, hi;
 };
 
 }  // namespace grelha::GRELHA_ISA

@@ -20,38 +20,33 @@ inline void add(const Counters& n, TraceCounts& to) {
   to.packets.lanes_busy += n.busy;
 }
 
-template <class In>
 inline void closest(const SceneView& scene,
                     const Rays& rays,
                     const Hits& hits,
                     const TraceOptions& options,
                     TraceCounts& counts) {
   Counters n;
-  trace_closest<In>(scene, rays, {}, hits, options, n);
+  trace_closest(scene, rays, hits, options, n);
   add(n, counts);
 }
 
 /// Stores a byte for each ray of a packet: whether it met anything.
-template <class In>
-inline void store_blocked(const Packet<In>& p, std::uint8_t* to) {
+inline void store_blocked(const Packet& p, std::uint8_t* to) {
   std::uint8_t bytes[kPacket];  // which nothing else may point to: SIMD
   for (int i = 0; i < p.size; ++i)
     bytes[i] = met(p, i);
   __builtin_memcpy(to, bytes, static_cast<std::size_t>(p.size));
 }
 
-template <class In>
 inline void occluded(const SceneView& scene,
                      const Rays& rays,
                      std::uint8_t* blocked,
                      const TraceOptions& options,
                      TraceCounts& counts) {
   Counters n;
-  const auto store = [&](const Packet<In>& p, std::size_t first) {
-    store_blocked(p, blocked + first);
-  };
-  const auto load = [&](Packet<In>& p, std::size_t first) { load_rays(rays, {}, first, p); };
-  trace<true, In>(scene, rays.count, options, n, load, store);
+  const auto store = [&](const Packet& p, std::size_t first) { store_blocked(p, blocked + first); };
+  const auto load = [&](Packet& p, std::size_t first) { load_rays(rays, first, p); };
+  trace<true>(scene, rays.count, options, n, load, store);
   add(n, counts);
 }
 

@@ -20,21 +20,13 @@ using ClosestLoop =
 using OccludedLoop =
     void (*)(const SceneView&, const Rays&, std::uint8_t*, const TraceOptions&, TraceCounts&);
 
-/// Loops that test rays against primitives in double lanes, with one rounding to float at the end.
-struct DoubleLoops {
-  ClosestLoop closest;
-  OccludedLoop occluded;
-  TraceLoops trace;  ///< for shading, which is in float
-};
-
-/// What one instruction set's file provides: loops in float, but for those `in_double`.
+/// What one instruction set's file provides.
 struct VariantLoops {
   ClosestLoop closest;
   OccludedLoop occluded;
   /// One ray by itself.
   Hit (*closest_one)(const SceneView&, const Ray&);
   bool (*occluded_one)(const SceneView&, const Ray&);
-  DoubleLoops in_double;
   void (*render_band)(const SceneView&,
                       const ShadingView&,
                       const FrameView&,

@@ -51,12 +51,12 @@ struct LaneRays {
 }
 
 /// Stores camera rays i, i + 1, ..., not yet normalized.
-[[gnu::always_inline]] inline void store_camera_rays(
-    BatchRays& b, int i, const LaneRays& rays, const Lanes& weight, bool in_double) {
+[[gnu::always_inline]] inline void store_camera_rays(BatchRays& b,
+                                                     int i,
+                                                     const LaneRays& rays,
+                                                     const Lanes& weight) {
   const LaneWords zero{};
   store3(b.org, i, rays.org);
-  if (in_double)
-    store3(b.org_low, i, {Lanes(0), Lanes(0), Lanes(0)});
   store3(b.dir, i, normalize(rays.dir));
   store3(b.weight, i, {weight, weight, weight});
   store_words(b.depth + i, zero + 1u);
@@ -114,7 +114,7 @@ struct LaneRays {
     LaneRays rays{camera.eye, camera.toward(x, y)};
     if (f.lens)
       rays = through_lens(f, rays, sample(plan.lens));
-    store_camera_rays(b, i, rays, weight, work.in_double != nullptr);
+    store_camera_rays(b, i, rays, weight);
   }
 }
 
@@ -142,8 +142,6 @@ class StackMove {
                                              const StackMove& move) {
   BatchRays& b = s.b.rays;
   move(b.org, stack.org);
-  if (s.work.in_double)
-    move(b.org_low, stack.org_low);
   move(b.dir, stack.dir);
   move(b.weight, stack.weight);
   if (keeps_shares(s))

@@ -17,10 +17,9 @@ using Spaces = std::vector<std::unique_ptr<Workspace>>;
 /// be told: an exception must not leave a parallel region.
 Spaces band_spaces(const Setup& setup, const RenderOptions& options, int threads) {
   const std::size_t sums = static_cast<std::size_t>(setup.frame.width) * kBandRows;
-  const TraceLoops* const loops = loops_of(setup.variant, options.precision);
   Spaces spaces;
   for (int i = 0; i < threads; ++i)
-    spaces.push_back(std::make_unique<Workspace>(sums, options.depth, setup.plan, loops));
+    spaces.push_back(std::make_unique<Workspace>(sums, options.depth, setup.plan));
   return spaces;
 }
 

@@ -19,16 +19,6 @@ struct Branch {
   std::uint32_t number = 0;
 };
 
-/// leave() of points in double.
-[[gnu::always_inline]] inline TwoFloats<Lanes> left_exactly(const TwoFloats<Lanes>& point,
-                                                            const Lanes3& normal,
-                                                            const Lanes& away,
-                                                            const Lanes3& dir) {
-  const Lanes zero(0);
-  const Lanes by = select(dot(dir, normal) < zero, zero - away, away);
-  return moved_exactly<Lanes>(point, normal, by);
-}
-
 /// Puts where rays towards `dir` leave the chosen hits i, i + 1, ... on top of the stack.
 [[gnu::always_inline]] inline void push_origins(
     const Shader& s, RayStack& stack, int i, const Chosen& chosen, const Lanes3& dir) {
@@ -37,14 +27,7 @@ struct Branch {
   const Lanes3 point = at(h.point);
   const Lanes3 normal = at(h.normal);
   const Lanes away = at(h.away);
-  TwoFloats<Lanes> org;
-  if (s.work.in_double) {
-    org = left_exactly({point, at(h.point_low)}, normal, away, dir);
-    chosen.store(stack.org_low, stack.size, org.low);
-  } else {
-    org.high = leave(point, normal, away, dir);
-  }
-  chosen.store(stack.org, stack.size, org.high);
+  chosen.store(stack.org, stack.size, leave(point, normal, away, dir));
 }
 
 /// The samples of the chosen hits i, i + 1, ..., and which bounces lead to where their rays go.

@@ -50,14 +50,10 @@ inline void light_up(const Shader& s, int n) {
 
 /// Where shadow rays start: on the lit side, which is the viewer's.
 template <bool kOne>
-[[gnu::always_inline]] inline TwoFloats<Lanes> shadow_origins(const Shader& s,
-                                                              const HitLanes<kOne>& at,
-                                                              const Lanes3& normal) {
-  const BatchHits& h = s.b.hits;
-  const Lanes o(0);
-  if (s.work.in_double)
-    return moved_exactly<Lanes>({at(h.point), at(h.point_low)}, normal, at(h.away));
-  return {at(h.point) + at(h.away) * normal, {o, o, o}};
+[[gnu::always_inline]] inline Lanes3 shadow_origins(const Shader& s,
+                                                    const HitLanes<kOne>& at,
+                                                    const Lanes3& normal) {
+  return at(s.b.hits.point) + at(s.b.hits.away) * normal;
 }
 
 /// What the material sends to the viewer of light from the unit direction l: Lambert's cosine
@@ -85,14 +81,12 @@ template <bool kOne>
 [[gnu::always_inline]] inline int put_shadow_rays(const Shader& s,
                                                   const HitLanes<kOne>& at,
                                                   const Chosen& chosen,
-                                                  const TwoFloats<Lanes>& org,
+                                                  const Lanes3& org,
                                                   const Lanes3& dir,
                                                   const Lanes3& light,
                                                   int n) {
   BatchShadows& b = s.b.shadows;
-  chosen.store(b.org, n, org.high);
-  if (s.work.in_double)
-    chosen.store(b.org_low, n, org.low);
+  chosen.store(b.org, n, org);
   chosen.store(b.dir, n, dir);
   chosen.store(b.light, n, light);
   chosen.store(b.pixel + n, at(s.b.hits.pixel));
@@ -115,8 +109,8 @@ inline int send_to_light(const Shader& s,
   const BatchHits& h = s.b.hits;
   const Lanes3 g = at(h.normal);
   const Lanes3 normal = at(h.shading);
-  const TwoFloats<Lanes> org = shadow_origins(s, at, g);
-  const Lanes3 dir = to - org.high;
+  const Lanes3 org = shadow_origins(s, at, g);
+  const Lanes3 dir = to - org;
   const Lanes3 l = normalize(dir);
   const Lanes nl = dot(normal, l);
   const Lanes o(0);

@@ -6,17 +6,6 @@
 
 namespace grelha::GRELHA_ISA {
 
-/// Surfaces of rays i, i + 1, ..., which were traced in double.
-[[gnu::noinline]] inline Surface<Lanes> surface_in_double(const Shader& s,
-                                                          int i,
-                                                          const LaneWords& id,
-                                                          const Lanes3& org,
-                                                          const Lanes3& dir,
-                                                          const Lanes& t) {
-  const ExactStart<Lanes> start{load3(s.b.rays.org_low, i), s.b.rays.t_double + i};
-  return surface_of<Lanes>(s.scene.geometry, id, org, dir, t, s.shading.smooth, start);
-}
-
 /// Surfaces of rays i, i + 1, ..., which met `id`.
 [[gnu::always_inline]] inline Surface<Lanes> surface_at_rays(const Shader& s,
                                                              int i,
@@ -24,8 +13,7 @@ namespace grelha::GRELHA_ISA {
                                                              const Lanes3& dir) {
   const Lanes3 org = load3(s.b.rays.org, i);
   const Lanes t = load<Lanes>(s.b.rays.t + i);
-  return s.work.in_double ? surface_in_double(s, i, id, org, dir, t)
-                          : surface_of<Lanes>(s.scene.geometry, id, org, dir, t, s.shading.smooth);
+  return surface_of<Lanes>(s.scene.geometry, id, org, dir, t, s.shading.smooth, true);
 }
 
 /// Stores where the chosen of some rays met surfaces, from hit `to` on.
@@ -36,8 +24,6 @@ namespace grelha::GRELHA_ISA {
   const LaneMask inside = dot(dir, f.normal) > zero;
   const Lanes side = select(inside, Lanes(-1), one);
   hit.store(h.point, to, f.point);
-  if (s.work.in_double)
-    hit.store(h.point_low, to, f.low);
   hit.store(h.normal, to, side * f.normal);
   hit.store(h.shading, to, side * f.shading);
   hit.store(h.viewer, to, normalize(Lanes3{zero, zero, zero} - dir));

@@ -135,8 +135,7 @@ template <bool kOne>
                              strata);
 }
 
-/// Traces rays [first, end) of the batch: their id and t. In single, rays that start far from
-/// everything are brought near for good: the surface is found from there, where t counts from.
+/// Traces rays [first, end) of the batch: their id, and t where surfaces are found by it.
 inline void trace_run(const Shader& s, int first, int end, Phase phase) {
   BatchRays& b = s.b.rays;
   const Rays rays{.org = {b.org.x + first, b.org.y + first, b.org.z + first},
@@ -144,25 +143,12 @@ inline void trace_run(const Shader& s, int first, int end, Phase phase) {
                   .count = static_cast<std::size_t>(end - first)};
   enter(s.work, phase, rays);
   const TraceOptions options{s.work.packet, s.work.mailbox};
-  const Hits hits{.t = b.t + first, .id = b.id + first, .t_double = b.t_double + first};
-  if (const TraceLoops* const loops = s.work.in_double) {
-    const LowParts low{b.org_low.x + first, b.org_low.y + first, b.org_low.z + first};
-    loops->closest(s.scene, rays, low, hits, options, s.counters);
-    return;
-  }
-  const auto store = [&](const Packet<InFloat>& p, std::size_t at) {
-    store_words(p.id, p.size, at, 1, hits.id);
-    store_words(p.best, p.size, at, 1, hits.t);
-    if (!p.moved)
-      return;
-    store_words(p.org[0], p.size, at, 1, b.org.x + first);
-    store_words(p.org[1], p.size, at, 1, b.org.y + first);
-    store_words(p.org[2], p.size, at, 1, b.org.z + first);
+  const auto store = [&](const Packet& p, std::size_t at) {
+    store_words(p.id, p.size, at, 1, b.id + first);
+    store_t_of_places(p, b.t + first + at);
   };
-  const auto load = [&](Packet<InFloat>& p, std::size_t at) {
-    load_own_rays(rays, kInfinity, at, p);
-  };
-  trace<false, InFloat>(s.scene, rays.count, options, s.counters, load, store);
+  const auto load = [&](Packet& p, std::size_t at) { load_own_rays(rays, kInfinity, at, p); };
+  trace<false>(s.scene, rays.count, options, s.counters, load, store);
 }
 
 /// Traces the first n shadow rays of the batch, each up to its light: what is in their way.
@@ -176,16 +162,11 @@ inline void trace_shadows(const Shader& s, int n) {
                   .t_stride = 0};
   enter(s.work, Phase::shadow, rays);
   const TraceOptions options{s.work.packet, s.work.mailbox};
-  const LowParts low{b.org_low.x, b.org_low.y, b.org_low.z};
-  if (const TraceLoops* const loops = s.work.in_double) {
-    loops->blockers(s.scene, rays, low, b.id, options, s.counters);
-    return;
-  }
-  const auto load = [&](Packet<InFloat>& p, std::size_t at) { load_own_rays(rays, kLight, at, p); };
-  const auto store = [&](const Packet<InFloat>& p, std::size_t at) {
+  const auto load = [&](Packet& p, std::size_t at) { load_own_rays(rays, kLight, at, p); };
+  const auto store = [&](const Packet& p, std::size_t at) {
     store_words(p.id, p.size, at, 1, b.id);
   };
-  trace<true, InFloat>(s.scene, rays.count, options, s.counters, load, store);
+  trace<true>(s.scene, rays.count, options, s.counters, load, store);
 }
 
 }  // namespace grelha::GRELHA_ISA

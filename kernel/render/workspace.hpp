@@ -42,18 +42,12 @@ class PhaseClock : public Observer {
   PhaseSeconds seconds_;
 };
 
-/// What traces for this copy's shading: null when that does.
-inline const TraceLoops* loops_of(const Variant& v, Precision p) {
-  return p == Precision::kDouble ? &v.loops.in_double.trace : nullptr;
-}
-
 class Workspace {
  public:
   /// `sums`: how many sums of light it holds.
-  Workspace(std::size_t sums, int depth, const SamplePlan& plan, const TraceLoops* in_double)
+  Workspace(std::size_t sums, int depth, const SamplePlan& plan)
       : batch_(std::make_unique<Batch>()),
         plan_(plan),
-        in_double_(in_double),
         take_(take_of(depth, plan.gloss_rays)),
         capacity_(capacity_of(depth, plan.gloss_rays)),
         sums_(array_to_fill<std::vector<std::int64_t>>(sums * 3)),
@@ -98,7 +92,6 @@ class Workspace {
         .pixels = named ? pixels_.data() : nullptr,
         .boxes = boxed ? boxes_.data() : nullptr,
         .observer = observer(options),
-        .in_double = in_double_,
     };
   }
   /// Call when the sums of a work() are used up.
@@ -113,7 +106,7 @@ class Workspace {
 
  private:
   /// of a ray that waits, see RayStack
-  static constexpr std::size_t kStackFloats = 13;
+  static constexpr std::size_t kStackFloats = 10;
   static constexpr std::size_t kStackWords = 4;
   static int take_of(int depth, int gloss_rays) {
     return std::clamp(65536 / (depth * (gloss_rays + 1)), 16, kBatch);
@@ -135,8 +128,7 @@ class Workspace {
         .org = vectors(0),
         .dir = vectors(3),
         .weight = vectors(6),
-        .org_low = vectors(9),
-        .share = floats(12),
+        .share = floats(9),
         .pixel = words(0),
         .depth = words(1),
         .sample = words(2),
@@ -156,7 +148,6 @@ class Workspace {
   std::unique_ptr<Batch> batch_;
   PhaseClock clock_;
   SamplePlan plan_;
-  const TraceLoops* in_double_;
   int take_, capacity_;
   std::vector<float> floats_;
   std::vector<std::uint32_t> words_;

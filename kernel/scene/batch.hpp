@@ -28,8 +28,7 @@ inline constexpr std::uint32_t kRefracted = 1u << 31;
 /// Rays waiting for their turn, last in first out. Arrays of `capacity` each.
 struct RayStack {
   Columns3 org, dir, weight;
-  Columns3 org_low;  ///< only when what traces is in double: origins are sums of two floats
-  float* share;      ///< only where keeps_shares()
+  float* share;  ///< only where keeps_shares()
   std::uint32_t *pixel, *depth;
   std::uint32_t *sample, *path;  ///< only when the plan is on
   int size, capacity;
@@ -38,21 +37,17 @@ struct RayStack {
 /// The rays.
 struct BatchRays {
   Rows3 org, dir;
-  alignas(64) float t[kBatchRow];  ///< of what they met
+  alignas(64) float t[kBatchRow];  ///< of what they met, where surfaces are found by it
   Rows3 weight;
   alignas(64) float share[kBatchRow];
   std::uint32_t id[kBatchRow], pixel[kBatchRow], depth[kBatchRow];
   std::uint32_t sample[kBatchRow];  ///< of its pixel
   std::uint32_t path[kBatchRow];    ///< which bounces led here (0: none)
-  // of rays traced in double: what their origins have besides, and t
-  Rows3 org_low;
-  alignas(64) double t_double[kBatchRow];
 };
 
 /// What they met, misses left out.
 struct BatchHits {
   Rows3 point;                          ///< on the surface
-  Rows3 point_low;                      ///< of rays traced in double: what it has besides
   Rows3 normal;                         ///< geometric, unit, towards the viewer
   Rows3 shading;                        ///< normal for shading, unit, towards the viewer
   Rows3 viewer;                         ///< unit vector to it
@@ -68,7 +63,6 @@ struct BatchHits {
 /// Shadow rays and the light each lets through.
 struct BatchShadows {
   Rows3 org, dir;
-  Rows3 org_low;  ///< of rays traced in double
   Rows3 light;
   std::uint32_t id[kBatchRow];  ///< of something in the way
   std::uint32_t pixel[kBatchRow];

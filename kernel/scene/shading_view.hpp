@@ -99,8 +99,6 @@ struct PixelRun {
 };
 inline constexpr int kParts = 4;
 
-struct TraceLoops;  // view.hpp
-
 struct BandWork {
   Batch* batch = nullptr;
   RayStack stack = {};
@@ -119,8 +117,7 @@ struct BandWork {
   /// [sums] the PixelBox of each sum's pixel, which gets half of the samples besides its share of
   /// the others; null: none has one
   const std::uint32_t* boxes = nullptr;
-  Observer* observer = nullptr;           ///< null: nobody asks
-  const TraceLoops* in_double = nullptr;  ///< what traces; null: the loops of this copy, in single
+  Observer* observer = nullptr;  ///< null: nobody asks
 };
 
 /// Points of the picture in pixels from its upper left corner, neighbours next to each other; point

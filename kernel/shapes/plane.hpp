@@ -6,7 +6,7 @@
 #include "grelha/scene_spans.hpp"
 #include "kernel/primitive/arrays.hpp"
 #include "kernel/primitive/surface_place.hpp"
-#include "kernel/primitive/ray_lanes.hpp"
+#include "kernel/primitive/settling.hpp"
 #include "kernel/simd/vec3.hpp"
 
 namespace grelha {
@@ -15,6 +15,7 @@ namespace grelha {
 struct Plane {
   static constexpr PrimitiveKind kKind = PrimitiveKind::kPlane;
   static constexpr bool kFinite = false;
+  static constexpr bool kPlacedByRay = true;  ///< a surface is found without t
 
   /// What tests see of a plane, or of many, an array each.
   template <class T>
@@ -68,26 +69,33 @@ struct Plane {
 
 namespace grelha::GRELHA_ISA {
 
-/// Point where each ray meets an infinite plane, from either side; parallel rays miss. Accuracy: t
-/// within 6 eps (|point - org| |normal| / |dot(dir, normal)| + |t| (1 + 1 / sin)) of the exact one,
-/// sin that of the angle between ray and plane (plane_test.cpp).
+/// What a precision tells of rays and infinite planes, from either side; parallel rays do not
+/// cross. docs/numerics.md derives the bounds: of the product with the direction 4 u of its terms,
+/// of that with the way to the point 5 u, which are 8 here.
 template <class Real>
-[[gnu::always_inline]] inline Mask<Real> hit_plane(const Vec3<Real>& org,
-                                                   const Vec3<Real>& dir,
-                                                   const Real& t_min,
-                                                   const Vec3<Real>& point,
-                                                   const Vec3<Real>& normal,
-                                                   Real& t) {
-  const Real along = dot(dir, normal);
-  t = dot(point - org, normal) / along;
-  return both(along != Real(0), t > t_min);
+[[gnu::always_inline]] inline Found<Real> bound(const RayLanes<Real>& ray,
+                                                const Plane::Fields<Real>& plane,
+                                                const Real& best) {
+  const Vec3<Real> n = vec(plane.normal);
+  const Vec3<Real> to = ray.to(vec(plane.point));
+  const Real along = dot(ray.dir, n);
+  const Real inverse = Real(1) / along;
+  const Real t = dot(to, n) * inverse;
+  const Real room = units<Real>(8) * dot(sizes(ray.dir), sizes(n)) +
+                    Real(static_cast<Scalar<Real>>(kUnderflow<Real>));
+  const Real slack =
+      (units<Real>(16) * dot(sizes(to), sizes(n)) + Real(2) * (magnitude(t) * room)) *
+          magnitude(inverse) +
+      Real(static_cast<Scalar<Real>>(kUnderflow<Real>));
+  const Real lo = t - slack;
+  const Real hi = t + slack;
+  const Mask<Real> known = magnitude(along) > Real(2) * room;
+  const Mask<Real> some = but_not(t == t, both(known, either(hi <= ray.t_min, lo > best)));
+  return {some, both(some, both(known, lo > ray.t_min)), lo, hi};
 }
 
-template <class Real>
-[[gnu::always_inline]] inline Mask<Real> meet(const RayLanes<Real>& ray,
-                                              const Plane::Fields<Real>& plane,
-                                              Real& t) {
-  return hit_plane<Real>(ray.org, ray.dir, ray.t_min, vec(plane.point), vec(plane.normal), t);
+inline ExactCrossing exact_crossing(const ExactRay& ray, const Plane::Fields<float>& plane) {
+  return cross_plane(ray, plane.point, plane.normal);
 }
 
 /// Through `through`, across `across`, of any length.
@@ -96,9 +104,7 @@ inline SurfacePlace<Real> plane_place(const Vec3<Real>& through,
                                       const Vec3<Real>& across,
                                       const Vec3<Real>& at) {
   const Vec3<Real> n = normalize(across);
-  return {at - dot(at - through, n) * n,
-          n,
-          Real(8 * kRounding<Real>) * (largest(at) + largest(through))};
+  return {at - dot(at - through, n) * n, n, Real(8 * kEps) * (largest(at) + largest(through))};
 }
 
 /// Where rays met planes, of indices i.
@@ -109,11 +115,9 @@ inline Surface<Real> surface_on(const Plane::Arrays& planes,
   const auto plane = gathered<Plane, Real>(planes.fields, i);
   const Vec3<Real> p = vec(plane.point);
   const Vec3<Real> n = vec(plane.normal);
-  return surface_at<Real>(
-      met,
-      [&] { return plane_place<Real>(p, n, met.at); },
-      [&](auto k, const auto& here) { return plane_place(widen<k>(p), widen<k>(n), here); },
-      words_at(planes.material, i));
+  const Real t = dot(p - met.org, n) / dot(met.dir, n);
+  const Vec3<Real> at = met.first ? met.org + t * met.dir : met.at;
+  return surface_at<Real>(plane_place<Real>(p, n, at), words_at(planes.material, i));
 }
 
 }  // namespace grelha::GRELHA_ISA

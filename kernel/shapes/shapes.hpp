@@ -42,6 +42,13 @@ constexpr auto those_in_blocks(ShapeSet<Shape...>) {
           std::conditional_t<Shape::kInBlocks == kInBlocks, ShapeSet<Shape>, ShapeSet<>>{});
 }
 
+/// Those whose surfaces are found by t.
+template <class... Shape>
+constexpr auto those_placed_by_t(ShapeSet<Shape...>) {
+  return (ShapeSet<>{} + ... +
+          std::conditional_t<requires { Shape::kPlacedByRay; }, ShapeSet<>, ShapeSet<Shape>>{});
+}
+
 /// All kinds, in the order of their ids. A further kind is a line here.
 using Shapes = ShapeSet<Plane, Sphere, Triangle, Cone>;
 /// How many; PrimitiveKind numbers them.

@@ -7,7 +7,6 @@
 // Block                the same, at most 8 wide: one primitive of a block a lane
 // float                the scalar twin; every function exists for it too, with the same bits
 // DoubleLanes, double  the same in double precision, half as many lanes
-// InFloat, InDouble    what rays and primitives are tested in; all else is float
 // Words<Lanes>         unsigned 32-bit integers beside them; Words<float> is one. + - * ^ & | <<
 //                      >>, == and ?: are written as for one
 //
@@ -181,21 +180,6 @@ inline Words<Real> counted_words(std::uint32_t first) {
   return load_words<Real>(kCount) + first;
 }
 
-/// The precision that rays are tested against primitives in. Grids are walked in float whichever it
-/// is.
-struct InFloat {
-  using Number = float;
-  using Rays = Lanes;        ///< of a packet, side by side
-  using Primitives = Block;  ///< of a block, side by side
-  static constexpr bool kDouble = false;
-};
-struct InDouble {
-  using Number = double;
-  using Rays = DoubleLanes;
-  using Primitives = DoubleLanes;
-  static constexpr bool kDouble = true;
-};
-
 /// Floats as they are, or widened.
 template <class Real>
 inline Real take(const float* p) {
@@ -231,18 +215,6 @@ inline float not_above(double a) {
 inline float not_below(double a) {
   return 0 - not_above(0 - a);
 }
-/// More than rounding to a float changes a double by: 2 u and the least float.
-inline DoubleLanes float_room(const DoubleLanes& a) {
-  return magnitude(a) * DoubleLanes(0x1p-23) + DoubleLanes(0x1p-149);
-}
-/// Stores floats not below doubles, or not above.
-[[gnu::always_inline]] inline void store_not_below(float* to, const DoubleLanes& a) {
-  store_narrow(to, a + float_room(a));
-}
-[[gnu::always_inline]] inline void store_not_above(float* to, const DoubleLanes& a) {
-  store_narrow(to, a - float_room(a));
-}
-
 /// Doubles beside some floats: kWideParts<Real> registers of them hold what one of Real does.
 template <class Real>
 struct WideOf {

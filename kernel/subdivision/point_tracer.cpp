@@ -27,8 +27,7 @@ class PointTracer {
       : world_(world),
         setup_(setup),
         options_(options),
-        space_(kMostPoints, options.depth, setup.plan, loops_of(setup.variant, options.precision)) {
-  }
+        space_(kMostPoints, options.depth, setup.plan) {}
 
   void operator()(std::span<const LatticePoint> points, Float3* colours) {
     for (std::size_t first = 0; first < points.size(); first += kMostPoints)

@@ -1,17 +1,11 @@
 #pragma once
-// Rays that start far from a small grid of triangles in a vast scene. Which triangles they meet is
-// not off, however far they come from; t is, and so are walks and boxes in float. So each walks by
-// itself in the frame of the grid: from the grid's corner, and from where it comes to the grid,
-// which is found in double. It is tested as it came (docs/numerics.md).
+// Rays that start far from a grid. Floats lose such a ray's way through it, so it walks in the
+// frame of the grid: from the grid's corner, and from where it comes near, which is found in
+// double. What float tests do not tell there is told of the ray as it came.
 
-#include "kernel/walk/abreast.hpp"
+#include "kernel/walk/packet_traversal.hpp"
 
 namespace grelha::GRELHA_ISA {
-
-/// Of the way to a grid from afar: what t of a hit is off by beside t of a walk. 46 u of the way to
-/// the farthest corner, which is at most three times that, and what taking it off rounds by: 140 u,
-/// of 256 u.
-inline constexpr double kAfarSlack = 0x1p-16;
 
 inline bool starts_near(const GridView& g, const float (&org)[3]) {
   bool near = true;
@@ -20,20 +14,25 @@ inline bool starts_near(const GridView& g, const float (&org)[3]) {
   return near;
 }
 
-/// Where a ray from afar comes to a grid.
+/// Where a ray comes near a grid.
 struct Entry {
   float org[3];  ///< from the corner of the grid
   double shift;  ///< t there
-  float slack;   ///< what t of its hits may be off by
-
-  float earliest(double t) const { return static_cast<float>(t - shift) - slack; }
-  float latest(double t) const { return static_cast<float>(t - shift) + slack; }
 };
 
-/// False: the ray, which starts outside the grid, does not come to it from t_min to t_max.
-template <class Number>
+/// A coordinate of a ray at t, from x on.
+inline double place_at(double org, double dir, double t, double x) {
+  double along = 0, rest = 0, from = 0, of_from = 0, sum = 0, of_sum = 0;
+  two_product(t, dir, along, rest);
+  two_sum(org, -x, from, of_from);
+  two_sum(along, from, sum, of_sum);
+  return sum + (of_sum + (rest + of_from));
+}
+
+/// False: the ray, which starts far from a grid, does not come to it from t_min to t_max. Places on
+/// its way are off by 2^-100 of it, and so is a second look by as much of what the first is off by.
 inline bool enter_from_afar(const GridView& g,
-                            const Number (&org)[3],
+                            const float (&org)[3],
                             const float (&dir)[3],
                             double t_min,
                             double t_max,
@@ -42,85 +41,166 @@ inline bool enter_from_afar(const GridView& g,
   double t0 = -static_cast<double>(kInfinity);
   double t1 = static_cast<double>(kInfinity);
   clip_to_grid(g, r, t0, t1);
-  const double slack = kAfarSlack * t0;
+  const double slack = 0x1p-48 * t0;
   // NaN comes nowhere
-  if (!(t0 <= t1) || !(t0 > 0) || !(t_min <= t1 + slack) || !(t_max >= t0 - slack))
+  if (!(t0 <= t1 + slack) || !(t0 > 0) || !(t_min <= t1 + slack) || !(t_max >= t0 - slack))
     return false;
-  to.shift = t0;
-  to.slack = static_cast<float>(slack);
+  to.shift = greater(t0, t_min);
   for (int a = 0; a < 3; ++a)
-    to.org[a] = static_cast<float>((r.p[a] + t0 * r.q[a]) * g.cell[a]);
+    to.org[a] = static_cast<float>(place_at(org[a], dir[a], to.shift, g.lo[a]));
   return true;
+}
+
+/// Times t: what entries and exits in float are off by, 3 u, and more.
+inline constexpr float kSlabRoom = 0x1p-20f;
+
+/// What t is no later and no earlier than, counted from `shift` on.
+inline float no_later(float t, double shift) {
+  return not_below((t - shift) + magnitude(shift) * 0x1p-51);
+}
+inline float no_earlier(float t, double shift) {
+  return not_above((t - shift) - magnitude(shift) * 0x1p-51);
+}
+/// Where a search begins that does so at t_min before the ray is shifted, or there.
+inline float begin_from(double t_min, double shift) {
+  return t_min < shift ? -kInfinity : 0.f;
 }
 
 /// A grid in its own frame.
 inline GridView in_its_frame(const GridView& g) {
   GridView own = g;
-  for (float& lo : own.lo_f)
-    lo = 0;
+  for (int a = 0; a < 3; ++a) {
+    own.lo_f[a] = 0;
+    own.hi_f[a] = not_below(g.cell[a] * g.n[a]);
+    own.lo[a] = 0;
+  }
   return own;
 }
 
 /// Those rays of a packet that start far from a grid and come to it, in the frame of the grid.
-template <class In>
-class RaysFromAfar : public WalkingRays {
+class RaysFromAfar {
  public:
-  RaysFromAfar(const GridView& g, const Packet<In>& p) : p_(p) {
-    size = p.size;
-    groups = p.groups;
-    live = 0;
+  RaysFromAfar(const GridView& g, Packet& p) : p_(p) {
+    Packet& w = moved_;
+    w.size = p.size;
+    w.groups = p.groups;
+    w.has_units = false;
+    w.geometry = p.geometry;
+    w.base = g.lo_f;
+    w.off = g.off;
+    w.room = g.room + 32 * g.off;
+    w.given = p.given;
+    w.given.shift = shift_;
+    w.end = p.best;
+    w.live = 0;
     each_live_group(p, [&](int i, int group) {
-      bool some = false;
-      for (int k = i; k < i + kWidth<Lanes>; ++k)
-        some |= set(g, k);
-      live |= static_cast<std::uint64_t>(some) << group;
+      if (set_group(g, i, group))
+        w.live |= std::uint64_t{1} << group;
     });
   }
 
-  /// What these have met since may be nearer.
-  void note_hits_of(const Arrivals& rays) {
-    for (int k = 0; k < rays.count; ++k)
-      best[rays.ray[k]] = entry_[rays.ray[k]].latest(tested_best(p_)[rays.ray[k]]);
+  bool any() const { return moved_.live != 0; }
+  Packet& packet() { return moved_; }
+
+  /// What was met, as t of the rays as they came.
+  template <bool kAny>
+  void take_hits() {
+    each_live_group(moved_, [&](int i, int) {
+      for (int k = i; k < i + kWidth<Lanes>; ++k)
+        if (comes_[k] && id_of(moved_.id[k]) != id_of(p_.id[k]))
+          take_hit<kAny>(k);
+    });
   }
 
  private:
-  bool set(const GridView& g, int i) {
-    typename In::Number from[3];
-    float at[3], way[3];
+  /// Rays of a group that start far from a grid and do not surely pass it by.
+  static unsigned may_come(const GridView& g, const Packet& p, int i) {
+    Mask<Lanes> away = Lanes(0) != Lanes(0);
+    Lanes t0 = load<Lanes>(p.t_min + i);
+    Lanes t1 = load<Lanes>(p.best + i);
+    const Mask<Lanes> searching = t1 > t0;
     for (int a = 0; a < 3; ++a) {
-      from[a] = tested_org(p_, a)[i];
-      at[a] = p_.org[a][i];
-      way[a] = dir[a][i] = p_.dir[a][i];
+      const Lanes o = load<Lanes>(p.org[a] + i);
+      const Lanes inverse = Lanes(1) / load<Lanes>(p.dir[a] + i);
+      away = either(away, either(o<Lanes(g.near_lo[a]), o> Lanes(g.near_hi[a])));
+      // NaN, of a ray along a plane, bounds nothing
+      const Lanes x = (Lanes(g.lo_f[a]) - o) * inverse;
+      const Lanes y = (Lanes(g.hi_f[a]) - o) * inverse;
+      const Mask<Lanes> sound = x - y == x - y;
+      t0 = greater(select(sound, lesser(x, y), t0), t0);
+      t1 = lesser(select(sound, greater(x, y), t1), t1);
     }
-    Entry& to = entry_[i];
-    const double from_t = tested_t_min(p_)[i];
-    const double to_t = tested_best(p_)[i];
-    const bool comes = p_.best[i] > p_.t_min[i] && !starts_near(g, at) &&
-                       enter_from_afar(g, from, way, from_t, to_t, to);
-    for (int a = 0; a < 3; ++a)
-      org[a][i] = comes ? to.org[a] : 0;
-    t_min[i] = start[i] = comes ? to.earliest(from_t) : 0;
-    best[i] = comes ? to.latest(to_t) : -kInfinity;
-    return comes;
+    const Lanes room = Lanes(kSlabRoom) * larger(t0, t1);
+    return bits(both(both(away, searching), but_not(away, t0 - room > t1 + room)));
   }
 
-  const Packet<In>& p_;
-  Entry entry_[kPacket];
+  bool set_group(const GridView& g, int i, int group) {
+    Packet& w = moved_;
+    bool some = false;
+    const unsigned lanes = may_come(g, p_, i);
+    if (lanes == 0)
+      return false;
+    for (int k = i; k < i + kWidth<Lanes>; ++k) {
+      float org[3], dir[3];
+      for (int a = 0; a < 3; ++a) {
+        org[a] = p_.org[a][k];
+        dir[a] = p_.dir[a][k];
+      }
+      Entry to{};
+      const bool comes =
+          (lanes >> (k - i) & 1) && enter_from_afar(g, org, dir, p_.t_min[k], p_.best[k], to);
+      comes_[k] = comes;
+      some |= comes;
+      shift_[k] = to.shift;
+      for (int a = 0; a < 3; ++a)
+        w.org[a][k] = to.org[a];
+      w.t_min[k] = w.start[k] = begin_from(p_.t_min[k], to.shift);
+      w.best[k] = comes ? no_later(p_.best[k], to.shift) : -kInfinity;
+      w.low[k] = no_earlier(p_.low[k], to.shift);
+    }
+    if (some)
+      copy_group(i, group);
+    return some;
+  }
+
+  void copy_group(int i, int group) {
+    const auto copy = [i](const float* from, float* to) { store(to + i, load<Lanes>(from + i)); };
+    Packet& w = moved_;
+    w.group_axis[group] = p_.group_axis[group];
+    copy(p_.id, w.id);
+    copy(p_.axis, w.axis);
+    copy(p_.inv_dd, w.inv_dd);
+    copy(p_.inv_length, w.inv_length);
+    for (int a = 0; a < 3; ++a) {
+      copy(p_.dir[a], w.dir[a]);
+      copy(p_.shear[a], w.shear[a]);
+    }
+  }
+
+  template <bool kAny>
+  void take_hit(int k) {
+    p_.id[k] = moved_.id[k];
+    p_.best[k] = kAny ? -kInfinity : no_later(moved_.best[k], -shift_[k]);
+    p_.low[k] = kAny ? -kInfinity : no_earlier(moved_.low[k], -shift_[k]);
+  }
+
+  Packet& p_;
+  Packet moved_;
+  alignas(64) double shift_[kPacket];
+  bool comes_[kPacket];
 };
 
-/// The live rays of a packet that start far from a grid, each on its own.
-template <bool kAny, class In>
-[[gnu::noinline]] void walk_from_afar(const GridView& g, Packet<In>& p, Counters& n) {
-  RaysFromAfar<In> rays(g, p);
-  if (rays.live == 0)
-    return;
-  const GridView own = in_its_frame(g);
-  RaysUnderWay under_way(own, rays);
-  CellTests<kAny, In, true> tests(g, rays, p, n);
-  go_abreast(own, under_way, n, [&](const Arrivals& to) {
-    tests.test(to);
-    rays.note_hits_of(to);
-  });
+/// The live rays of a packet that start far from a grid.
+template <bool kAny>
+[[gnu::noinline]] void search_from_afar(const GridView& g,
+                                        Packet& p,
+                                        const TraceOptions& options,
+                                        Counters& n) {
+  RaysFromAfar rays(g, p);
+  if (rays.any()) {
+    traverse_packet<kAny>(in_its_frame(g), rays.packet(), options.packet, options.mailbox, n);
+    rays.template take_hits<kAny>();
+  }
 }
 
 }  // namespace grelha::GRELHA_ISA

@@ -9,49 +9,21 @@ namespace grelha::GRELHA_ISA {
 template <bool kAny>
 inline bool test_infinite(const SceneView& scene, Single& r) {
   const GeometryView& g = scene.geometry;
-  const RayLanes<float> ray{
-      .org = vec(r.org),
-      .dir = vec(r.dir),
-      .inv_dd = r.inv_dd,
-      .t_min = r.t_min,
-  };
+  const RayLanes<float> ray = spread<float>(r);
   bool over = false;
   InfiniteShapes::for_each([&]<class Shape>() __attribute__((always_inline)) {
     const typename Shape::Arrays& all = g.of<Shape>();
     for (std::uint32_t i = 0; !over && i < all.count; ++i) {
-      float t = 0;
-      const bool hit = meet(ray, broadcast<Shape, float>(all.fields, i), t);
-      over = hit && take_hit<kAny>(r, t, g.ids.begin(Shape::kKind) + i);
+      const Found<float> found = meet<Shape>(ray, broadcast<Shape, float>(all.fields, i), r.best);
+      over = found.some && take_hit<kAny>(r, {found.lo, found.hi}, g.ids.begin(Shape::kKind) + i);
     }
   });
   return over;
 }
 
-/// As bring_near(Packet&): where a ray met a plane on the way its search is over, and its t stays.
-/// Returns how far the ray was brought, in t.
-inline float bring_near(const SceneView& scene, Single& r) {
-  const float from[3] = {r.org[0], r.org[1], r.org[2]};
-  const double shift = approach(scene, r.org, r.dir);
-  if (!(shift > 0))
-    return 0;
-  const bool met = r.id != kNoPrimitive;
-  const double best = met ? plane_t(scene.geometry, r.id, from, r.dir) : r.best;
-  if (met && !(best > shift)) {
-    r.t_min = r.best;
-    return 0;
-  }
-  r.t_min = static_cast<float>(r.t_min - shift);
-  r.best = static_cast<float>(best - shift);
-  return static_cast<float>(shift);
-}
-
-/// The triangles of one cell of a grid. `walking` is the ray as it walks: in the frame of the grid,
-/// when it comes kFromAfar. Returns whether the search is over.
-template <bool kAny, bool kFromAfar = false>
-inline bool test_triangles(Single& r,
-                           const WalkingRay& walking,
-                           const GridView& g,
-                           std::uint32_t cell) {
+/// The triangles of one cell of a grid. Returns whether the search is over.
+template <bool kAny>
+inline bool test_triangles(Single& r, const GridView& g, std::uint32_t cell) {
   const Triangle::CellList& list = g.lists.of<Triangle>();
   const std::uint32_t first = list.first[cell];
   const std::uint32_t end = list.first[cell + 1];
@@ -59,13 +31,12 @@ inline bool test_triangles(Single& r,
   for (std::uint32_t at = first / kBlock * kBlock; at < end; at += kBlock) {
     const TriangleBlock* const blocks = list.blocks + list.block_at(at);
     for (unsigned passed =
-             passed_boxes<kFromAfar>(walking, list.boxes[at / kBlock], enters, g.lo_f) &
-             blocks_between(at, first, end);
+             passed_boxes(r, list.boxes[at / kBlock], enters) & blocks_between(at, first, end);
          passed != 0;
          passed &= passed - 1) {
       const unsigned k = static_cast<unsigned>(__builtin_ctz(passed));
       // what was met since may be nearer
-      if (enters[k] <= walking.best && test_block<kAny>(r, blocks[k]))
+      if (enters[k] <= r.best && test_block<kAny>(r, blocks[k]))
         return true;
     }
   }
@@ -76,105 +47,109 @@ inline bool test_triangles(Single& r,
 /// to 4 % longer with 2, up to 5 % with 4 and up to 12 % with 6.
 inline constexpr int kLeastLeap = 3;
 
-/// Takes a ray through a grid, which tells test(cell) of the cells with something in them.
-template <class Test>
-[[gnu::always_inline]] inline void walk_one(const GridView& g,
-                                            const WalkingRay& r,
-                                            const Test& test) {
+/// As walk_apart().
+template <bool kAny>
+inline void walk_one(const GridView& g, Single& r) {
   CellWalk walk(g);
   if (!walk.start(r))
     return;
+  const bool triangles = g.lists.of<Triangle>().first;
+  const bool arrays = holds_arrays(g.lists);
+  NoCounters n;
   // no more planes than there are, whatever rounding does
   for (int left = g.n[0] + g.n[1] + g.n[2] + 3; left > 0; --left) {
     const int distance = walk.distance();
-    if (distance == 0 && test(static_cast<std::uint32_t>(walk.cell())))
+    const auto cell = static_cast<std::uint32_t>(walk.cell());
+    if (distance == 0 && ((triangles && test_triangles<kAny>(r, g, cell)) ||
+                          (arrays && test_arrays<kAny>(r, g.lists, cell, n))))
       return;
     if (!(distance >= kLeastLeap ? walk.leap(distance - 1, r.best) : walk.step(r.best)))
       return;
   }
 }
 
-/// As walk_apart().
-template <bool kAny>
-inline void walk_one(const GridView& g, Single& r) {
-  const bool triangles = g.lists.of<Triangle>().first;
-  const bool arrays = holds_arrays(g.lists);
-  NoCounters n;
-  walk_one(g, r, [&](std::uint32_t cell) {
-    return (triangles && test_triangles<kAny>(r, r, g, cell)) ||
-           (arrays && test_arrays<kAny>(r, g.lists, cell, n));
-  });
-}
-
-/// As walk_from_afar().
+/// As search_from_afar().
 template <bool kAny>
 [[gnu::noinline]] void walk_one_from_afar(const GridView& g, Single& r) {
   Entry to;
   if (!enter_from_afar(g, r.org, r.dir, r.t_min, r.best, to))
     return;
-  WalkingRay walking = r;
+  Single moved = r;
   for (int a = 0; a < 3; ++a)
-    walking.org[a] = to.org[a];
-  walking.t_min = to.earliest(r.t_min);
-  walking.best = to.latest(r.best);
-  walk_one(in_its_frame(g), walking, [&](std::uint32_t cell) {
-    const bool over = test_triangles<kAny, true>(r, walking, g, cell);
-    walking.best = to.latest(r.best);
-    return over;
-  });
+    moved.org[a] = to.org[a];
+  moved.t_min = begin_from(r.t_min, to.shift);
+  moved.best = no_later(r.best, to.shift);
+  moved.low = no_earlier(r.low, to.shift);
+  moved.base = g.lo_f;
+  moved.off = g.off;
+  moved.room = g.room + 32 * g.off;
+  moved.shift = to.shift;
+  moved.given.shift = &moved.shift;
+  walk_one<kAny>(in_its_frame(g), moved);
+  if (moved.id == r.id)
+    return;
+  r.block = moved.block;
+  if (kAny)
+    set_hit(r, {-kInfinity, -kInfinity}, moved.id);
+  else
+    set_hit(r, {no_earlier(moved.low, -to.shift), no_later(moved.best, -to.shift)}, moved.id);
 }
 
-/// All that a prepared ray meets. Returns what was taken from t.
+/// t of what a ray met, rounded once, counted as `ray` does; of a triangle by what the test saw of
+/// it, which is near by.
+inline float t_of(const Single& r, const ExactRay& ray) {
+  const GeometryView& g = *r.geometry;
+  if (r.block && g.ids.has(PrimitiveKind::kTriangle, r.id)) {
+    int place = 0;
+    for (int k = 1; k < kBlock; ++k)
+      place = r.block->id[k] == r.id ? k : place;
+    const Found<double> found = bound_triangle(ray, triangle_of(*r.block, place).corner);
+    const auto first = static_cast<float>(found.lo);
+    if (r.block->id[place] == r.id && found.sure && first == static_cast<float>(found.hi))
+      return first;
+  }
+  return rounded_t(g, ray, r.id);
+}
+
+/// All that a prepared ray meets.
 template <bool kAny>
-inline float walk_scene(const SceneView& scene, Single& r) {
-  if (test_infinite<kAny>(scene, r))
-    return 0;
-  const float shift = bring_near(scene, r);
+inline void walk_scene(const SceneView& scene, Single& r) {
   NoCounters n;
-  if (!(r.best > r.t_min) || test_cell<kAny>(r, scene.outside, 0, n))
-    return shift;
+  if (test_infinite<kAny>(scene, r))
+    return;
+  r.room = room_in(scene, vec(r.org));
+  if (test_cell<kAny>(r, scene.outside, 0, n))
+    return;
   each_grid<kAny>(scene, r.org, r.dir, r.t_min, [&](const GridView& g) {
-    if (serves(g, r.org))
+    r.room = g.room;
+    if (starts_near(g, r.org))
       walk_one<kAny>(g, r);
-    else if (g.serves == Serves::kNearAndAfar)
+    else
       walk_one_from_afar<kAny>(g, r);
   });
-  return shift;
-}
-
-/// As trace_one(), of a ray whose direction is fine.
-template <bool kAny>
-inline Hit trace_sound(const SceneView& scene, const Ray& ray) {
-  const Vec3<float> org{ray.org.x, ray.org.y, ray.org.z};
-  const Vec3<float> dir{ray.dir.x, ray.dir.y, ray.dir.z};
-  const bool any_triangles = scene.geometry.of<Triangle>().count > 0;
-  Single r;
-  if (!prepare(r, org, dir, ray.t_min, ray.t_max, any_triangles))
-    return {ray.t_max, kNoPrimitive};
-  const float shift = walk_scene<kAny>(scene, r);
-  if (r.id == kNoPrimitive)
-    return {ray.t_max, kNoPrimitive};
-  return {strictly_between(r.best + shift, ray.t_min, ray.t_max), r.id};
-}
-
-/// With its direction shortened.
-template <bool kAny>
-[[gnu::noinline, gnu::cold]] Hit trace_in_units(const SceneView& scene, Ray ray, float unit) {
-  const Ray as_it_came = ray;
-  for (float* const d : {&ray.dir.x, &ray.dir.y, &ray.dir.z})
-    *d /= unit;
-  count_in(unit, ray.t_min, ray.t_max);
-  const Hit hit = trace_sound<kAny>(scene, ray);
-  if (hit.id == kNoPrimitive)
-    return {as_it_came.t_max, kNoPrimitive};
-  return {strictly_between(hit.t / unit, as_it_came.t_min, as_it_came.t_max), hit.id};
 }
 
 /// What a ray meets first, or with kAny whether it meets anything: t is not to be looked at then.
 template <bool kAny>
 inline Hit trace_one(const SceneView& scene, const Ray& ray) {
-  const float unit = length_unit(Vec3<float>{ray.dir.x, ray.dir.y, ray.dir.z});
-  return unit == 1 ? trace_sound<kAny>(scene, ray) : trace_in_units<kAny>(scene, ray, unit);
+  Vec3<float> dir{ray.dir.x, ray.dir.y, ray.dir.z};
+  float t_min = ray.t_min;
+  float t_max = ray.t_max;
+  const float unit = length_unit(dir);
+  if (unit != 1) [[unlikely]] {
+    dir = {dir.x / unit, dir.y / unit, dir.z / unit};
+    count_in(unit, t_min, t_max);
+  }
+  const bool any_triangles = scene.geometry.of<Triangle>().count > 0;
+  Single r;
+  if (!prepare(r, {ray.org.x, ray.org.y, ray.org.z}, dir, t_min, t_max, any_triangles))
+    return {ray.t_max, kNoPrimitive};
+  r.geometry = &scene.geometry;
+  walk_scene<kAny>(scene, r);
+  if (kAny || r.id == kNoPrimitive)
+    return {ray.t_max, r.id};
+  const ExactRay as_it_came = r.given.ray(0).in_units_of(1 / static_cast<double>(unit));
+  return {strictly_between(t_of(r, as_it_came), ray.t_min, ray.t_max), r.id};
 }
 
 inline Hit closest_one(const SceneView& scene, const Ray& ray) {

@@ -1,7 +1,6 @@
 #pragma once
 // Any number of rays through a whole scene, a packet at a time. Rays are loaded from the caller's
-// arrays, and what they meet is stored as of rays that start where the caller's do: that some were
-// brought near on the way is nobody's affair.
+// arrays, and what they meet is stored.
 
 #include "kernel/trace/trace.hpp"
 
@@ -42,12 +41,6 @@ inline void load_t_max(const Rays& rays, std::size_t first, int count, float* to
   load_floats(rays.t_max, rays.t_stride, first, count, kInfinity, to);
 }
 
-inline void set_low(Packet<InFloat>&, const LowParts&, std::size_t) {}
-inline void set_low(Packet<InDouble>& p, const LowParts& low, std::size_t first) {
-  for (int a = 0; a < 3; ++a)
-    p.low[a] = low.of[a] ? low.of[a] + first : nullptr;
-}
-
 /// Notes the rows of rays from `next` on.
 inline void look_ahead(const Rays& rays, std::size_t next, RowsAhead& ahead) {
   ahead.clear();
@@ -66,20 +59,18 @@ inline void look_ahead(const Rays& rays, std::size_t next, RowsAhead& ahead) {
 }
 
 /// Rays from `first` on, as many as the packet's size says.
-template <class In>
-inline void load_rays(const Rays& rays, const LowParts& low, std::size_t first, Packet<In>& p) {
+inline void load_rays(const Rays& rays, std::size_t first, Packet& p) {
   for (int a = 0; a < 3; ++a) {
     load_floats(rays.org[a], rays.org_stride, first, p.size, 0, p.org[a]);
     load_floats(rays.dir[a], rays.dir_stride, first, p.size, 0, p.dir[a]);
   }
   load_floats(rays.t_min, rays.t_stride, first, p.size, 0, p.t_min);
   load_t_max(rays, first, p.size, p.best);
-  set_low(p, low, first);
   look_ahead(rays, first + static_cast<std::size_t>(p.size), p.ahead);
 }
 
 /// The same of rays of our own: strides of org and dir are 1, all start at t = 0 and end at t_max.
-inline void load_own_rays(const Rays& rays, float t_max, std::size_t first, Packet<InFloat>& p) {
+inline void load_own_rays(const Rays& rays, float t_max, std::size_t first, Packet& p) {
   for (int a = 0; a < 3; ++a) {
     copy_row(rays.org[a] + first, p.size, p.org[a]);
     copy_row(rays.dir[a] + first, p.size, p.dir[a]);
@@ -100,14 +91,14 @@ inline int rays_of_a_packet(const SceneView& scene) {
 /// Closest hits (kAny false) or occlusion (kAny true) of `count` rays, `options.packet` neighbours
 /// at a time. `load(p, first)` fills a packet of p.size rays from `first` on, and `store(p, first)`
 /// takes its answers.
-template <bool kAny, class In, class Load, class Store>
+template <bool kAny, class Load, class Store>
 inline void trace(const SceneView& scene,
                   std::size_t count,
                   const TraceOptions& options,
                   Counters& n,
                   const Load& load,
                   const Store& store) {
-  Packet<In> p;
+  Packet p;
   const int most = rays_of_a_packet(scene);
   const auto step = static_cast<std::size_t>(most);
   for (std::size_t first = 0; first < count; first += step) {
@@ -135,65 +126,58 @@ inline bool met(const WalkingRays& p, int i) {
   return id_of(p.id[i]) != kNoPrimitive;
 }
 
-template <class In>
-inline void store_hits(const Packet<In>& p, const Rays& rays, std::size_t first, const Hits& hits) {
+/// t of what a packet met, where surfaces are found by it.
+inline void store_t_of_places(const Packet& p, float* to) {
+  using PlacedByT = decltype(those_placed_by_t(Shapes{}));
+  bool some = false;
+  PlacedByT::for_each(
+      [&]<class Shape>() { some = some || p.geometry->ids.count(Shape::kKind) > 0; });
+  for (int i = 0; some && i < p.size; i += kLanes)
+    round_hits<PlacedByT>(p, i, to + i);
+}
+
+inline void store_doubles(const Packet& p, const Rays& rays, std::size_t first, double* to) {
+  float t_max[kPacket];
+  load_t_max(rays, first, p.size, t_max);
+  for (int i = 0; i < p.size; ++i)
+    to[i] = met(p, i) ? double_t(*p.geometry, as_it_came(p, i), id_of(p.id[i])) : t_max[i];
+}
+
+inline void store_hits(const Packet& p, const Rays& rays, std::size_t first, const Hits& hits) {
   if (hits.id)
     store_words(p.id, p.size, first, hits.stride, hits.id);
-  if (!hits.t && !hits.t_double)
-    return;
-  alignas(64) float t[kPacket];
-  load_t_max(rays, first, p.size, t);
-  const bool rounded = In::kDouble || p.moved || p.has_units;
-  float t_min[kPacket];
-  if (rounded)
-    load_floats(rays.t_min, rays.t_stride, first, p.size, 0, t_min);
-  const auto answer = [&](auto of_hit, int i) {
-    return !met(p, i) ? t[i] : rounded ? strictly_between(of_hit, t_min[i], t[i]) : of_hit;
-  };
-  for (int i = 0; i < p.size && hits.t_double; ++i)
-    hits.t_double[first + static_cast<std::size_t>(i)] = answer(t_double(p, i), i);
+  if (hits.t_double)
+    store_doubles(p, rays, first, hits.t_double + first);
   if (!hits.t)
     return;
+  alignas(64) float t[kPacket];
+  float t_min[kPacket];
+  float of_hit[kPacket];
+  load_t_max(rays, first, p.size, t);
+  load_floats(rays.t_min, rays.t_stride, first, p.size, 0, t_min);
+  for (int i = 0; i < p.size; i += kLanes)
+    round_hits<Shapes>(p, i, of_hit + i);
   for (int i = 0; i < p.size; ++i)
-    t[i] = answer(t_of(p, i), i);
+    if (met(p, i))
+      t[i] = strictly_between(of_hit[i], t_min[i], t[i]);
   store_words(t, p.size, first, hits.stride, hits.t);
 }
 
 /// What the rays of a view meet first.
-template <class In>
 inline void trace_closest(const SceneView& scene,
                           const Rays& rays,
-                          const LowParts& low,
                           const Hits& hits,
                           const TraceOptions& options,
                           Counters& n) {
-  const auto load = [&](Packet<In>& p, std::size_t first) {
-    load_rays(rays, low, first, p);
+  const auto load = [&](Packet& p, std::size_t first) {
+    load_rays(rays, first, p);
     if (hits.stride == 1 && hits.t && hits.id) {
       p.ahead.add(hits.t + first);
       p.ahead.add(hits.id + first);
     }
   };
-  const auto store = [&](const Packet<In>& p, std::size_t first) {
-    store_hits(p, rays, first, hits);
-  };
-  trace<false, In>(scene, rays.count, options, n, load, store);
-}
-
-/// Something that is in the way of each: [rays.count] out, or kNoPrimitive. What it is depends on
-/// the packet.
-inline void trace_blockers_in_double(const SceneView& scene,
-                                     const Rays& rays,
-                                     const LowParts& low,
-                                     std::uint32_t* id,
-                                     const TraceOptions& options,
-                                     Counters& n) {
-  using P = Packet<InDouble>;
-  const auto load = [&](P& p, std::size_t first) { load_rays(rays, low, first, p); };
-  const auto store = [&](const P& p, std::size_t first) {
-    store_words(p.id, p.size, first, 1, id);
-  };
-  trace<true, InDouble>(scene, rays.count, options, n, load, store);
+  const auto store = [&](const Packet& p, std::size_t first) { store_hits(p, rays, first, hits); };
+  trace<false>(scene, rays.count, options, n, load, store);
 }
 
 }  // namespace grelha::GRELHA_ISA

@@ -3,14 +3,13 @@
 // with what t is left.
 
 #include "kernel/trace/afar.hpp"
-#include "kernel/trace/approach.hpp"
-#include "kernel/walk/packet_traversal.hpp"
+#include "kernel/trace/rounding.hpp"
 
 namespace grelha::GRELHA_ISA {
 
 /// What stands in no grid since it has no end.
-template <bool kAny, class In>
-inline void test_infinite(const SceneView& scene, Packet<In>& p, Counters& n) {
+template <bool kAny>
+inline void test_infinite(const SceneView& scene, Packet& p, Counters& n) {
   const GeometryView& g = scene.geometry;
   InfiniteShapes::for_each([&]<class Shape>() __attribute__((always_inline)) {
     const typename Shape::Arrays& all = g.of<Shape>();
@@ -20,8 +19,8 @@ inline void test_infinite(const SceneView& scene, Packet<In>& p, Counters& n) {
 }
 
 /// The triangles that lie in no grid.
-template <bool kAny, class In>
-inline void test_outside(const Triangle::CellList& list, Packet<In>& p, Counters& n) {
+template <bool kAny>
+inline void test_outside(const Triangle::CellList& list, Packet& p, Counters& n) {
   for (std::uint32_t b = 0; b < list.first[1]; ++b) {
     const TriangleBlock& block = list.blocks[b];
     for (int i = 0; i < kBlock && block.a[0][i] == block.a[0][i]; ++i)
@@ -30,8 +29,8 @@ inline void test_outside(const Triangle::CellList& list, Packet<In>& p, Counters
 }
 
 /// The few primitives that lie in no grid, each against all rays.
-template <bool kAny, class In>
-inline void test_outside(const CellLists& lists, Packet<In>& p, Counters& n) {
+template <bool kAny>
+inline void test_outside(const CellLists& lists, Packet& p, Counters& n) {
   if (lists.of<Triangle>().first)
     test_outside<kAny>(lists.of<Triangle>(), p, n);
   ArrayShapes::for_each([&]<class Shape>() __attribute__((always_inline)) {
@@ -41,32 +40,37 @@ inline void test_outside(const CellLists& lists, Packet<In>& p, Counters& n) {
   });
 }
 
-/// Whether a grid is for a ray as it is; there may be another way for those from afar.
-inline bool serves(const GridView& g, const float (&org)[3]) {
-  return g.serves == Serves::kAll || starts_near(g, org) == (g.serves != Serves::kFar);
-}
+/// Which of the live rays of a packet start near a grid.
+struct Starts {
+  bool some_near, some_far;
+};
 
-/// Sets where each ray is to be searched from in a grid: nowhere when the grid is not for it as it
-/// is. False: it is for none.
-inline bool start_in(const GridView& g, WalkingRays& p) {
-  for (int i = 0; i < p.size; i += kWidth<Lanes>)
-    store(p.start + i, load<Lanes>(p.t_min + i));
-  if (g.serves == Serves::kAll)
-    return true;
-  bool some = false;
+/// Lets those rays be searched from their start that start near a grid, and others from nowhere.
+inline Starts set_starts(const GridView& g, WalkingRays& p) {
+  Starts starts{false, false};
   each_live_group(p, [&](int i, int) {
     Mask<Lanes> away = Lanes(0) != Lanes(0);
     for (int a = 0; a < 3; ++a) {
       const Lanes o = load<Lanes>(p.org[a] + i);
       away = either(away, either(o<Lanes(g.near_lo[a]), o> Lanes(g.near_hi[a])));
     }
-    const bool near = g.serves != Serves::kFar;
-    const Lanes start = load<Lanes>(p.start + i), never(kInfinity);
-    const Lanes from = select(away, near ? never : start, near ? start : never);
-    some |= any(from < never);
-    store(p.start + i, from);
+    const Lanes start = load<Lanes>(p.t_min + i);
+    const unsigned searching = bits(load<Lanes>(p.best + i) > start);
+    starts.some_far |= (bits(away) & searching) != 0;
+    starts.some_near |= (~bits(away) & searching) != 0;
+    store(p.start + i, select(away, Lanes(kInfinity), start));
   });
-  return some;
+  return starts;
+}
+
+/// RayLanes::room of rays from a place on, for all finite primitives of a scene.
+template <class Real>
+inline Real room_in(const SceneView& scene, const Vec3<Real>& org) {
+  const auto along = [&](const Real& o, int a) {
+    return larger(Real(scene.box_lo[a]) - o, Real(scene.box_hi[a]) - o);
+  };
+  const Real far = (along(org.x, 0) + along(org.y, 1)) + along(org.z, 2);
+  return Real(static_cast<float>(2 * (kFarError + 1) * kUnit<float>)) * far;
 }
 
 /// Where a ray comes to a grid; infinity: never, or along a plane of it.
@@ -120,69 +124,41 @@ inline void each_grid(const SceneView& scene, const WalkingRays& p, const Visit&
   each_grid<kAny>(scene, org, dir, p.t_min[0], visit);
 }
 
-template <bool kAny, class In>
-inline void trace_alone(const SceneView& scene, Packet<In>& p, Counters& n) {
-  for (int i = 0; i < p.size; ++i) {
-    if (!(p.best[i] > p.t_min[i]))
-      continue;
-    PacketRay<In> r{p, i};
-    test_cell<kAny>(r, scene.outside, 0, n);
-  }
-  each_grid<kAny>(scene, p, [&](const GridView& g) {
-    if (start_in(g, p))
-      walk_apart<kAny>(g, p, n);
-    if (g.serves == Serves::kNearAndAfar)
-      walk_from_afar<kAny>(g, p, n);
-  });
+/// The live rays of a packet through a grid.
+template <bool kAny>
+inline void search_grid(const GridView& g, Packet& p, const TraceOptions& options, Counters& n) {
+  const Starts starts = set_starts(g, p);
+  p.room = g.room;
+  if (starts.some_near)
+    traverse_packet<kAny>(g, p, options.packet, options.mailbox, n);
+  if (starts.some_far)
+    search_from_afar<kAny>(g, p, options, n);
 }
 
-template <bool kAny, class In>
+inline float room_of(const SceneView& scene, const Packet& p) {
+  Lanes most(0);
+  each_live_group(
+      p, [&](int i, int) { most = greater(room_in(scene, take_vec<Lanes>(p.org, i)), most); });
+  return lane_max(most);
+}
+
+template <bool kAny>
 [[gnu::noinline]] void trace_packet(const SceneView& scene,
-                                    Packet<In>& p,
+                                    Packet& p,
                                     const TraceOptions& options,
                                     Counters& n) {
-  const bool any_triangles = scene.geometry.of<Triangle>().count > 0;
-  prepare(p, any_triangles);
+  prepare(p, scene.geometry, scene.geometry.of<Triangle>().count > 0);
   test_infinite<kAny>(scene, p, n);
-  bring_near(scene, p);
-  if (options.packet == 1)
-    return trace_alone<kAny>(scene, p, n);
+  if (scene.outside.of<Sphere>().first)
+    p.room = room_of(scene, p);
   test_outside<kAny>(scene.outside, p, n);
-  each_grid<kAny>(scene, p, [&](const GridView& g) {
-    if (start_in(g, p))
-      traverse_packet<kAny>(g, p, options.packet, options.mailbox, n);
-    if (g.serves == Serves::kNearAndAfar)
-      walk_from_afar<kAny>(g, p, n);
-  });
+  each_grid<kAny>(scene, p, [&](const GridView& g) { search_grid<kAny>(g, p, options, n); });
 }
 
 /// t of a hit between the ends of its search, which rounding may have taken it to.
 inline float strictly_between(float t, float t_min, float t_max) {
   const float after = t > t_min ? t : next_above(t_min);
   return after < t_max ? after : next_below(t_max);
-}
-inline double strictly_between(double t, float t_min, float t_max) {
-  return t > t_min && t < t_max ? t : strictly_between(static_cast<float>(t), t_min, t_max);
-}
-
-/// The length that the t of a ray of a packet is counted in.
-inline float unit_of(const WalkingRays& p, int i) {
-  return p.has_units ? p.unit[i] : 1.f;
-}
-
-/// Where a ray of a packet met what it met, as t of the ray as it came.
-inline float t_of(const Packet<InFloat>& p, int i) {
-  return (p.best[i] + (p.moved ? p.shift[i] : 0.f)) / unit_of(p, i);
-}
-/// The same before it is rounded.
-inline double t_double(const Packet<InFloat>& p, int i) {
-  return (static_cast<double>(p.best[i]) + (p.moved ? p.shift[i] : 0.f)) / unit_of(p, i);
-}
-inline double t_double(const Packet<InDouble>& p, int i) {
-  return p.nearest[i] / unit_of(p, i);
-}
-inline float t_of(const Packet<InDouble>& p, int i) {
-  return static_cast<float>(t_double(p, i));
 }
 
 }  // namespace grelha::GRELHA_ISA

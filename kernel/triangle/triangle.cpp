@@ -26,4 +26,9 @@ Triangle::Arrays Triangle::Source::arrays() const {
   return out;
 }
 
+CrossingSpan triangle_span(const ExactRay& ray, const float (&corner)[3][3], double shift) {
+  return scalar::settle_one(
+      scalar::bound_triangle(ray, corner), shift, [&] { return cross_triangle(ray, corner); });
+}
+
 }  // namespace grelha

@@ -9,6 +9,7 @@
 
 #include "grelha/scene_spans.hpp"
 #include "kernel/primitive/box.hpp"
+#include "kernel/primitive/settling.hpp"
 #include "kernel/triangle/triangle_block.hpp"
 #include "kernel/triangle/triangle_crossing.hpp"
 #include "kernel/triangle/triangle_touch.hpp"
@@ -20,7 +21,8 @@ namespace grelha {
 struct Triangle {
   static constexpr PrimitiveKind kKind = PrimitiveKind::kTriangle;
   static constexpr bool kFinite = true;
-  static constexpr bool kInBlocks = true;  ///< a list's entry is a block
+  static constexpr bool kPlacedByRay = true;  ///< a surface is found without t
+  static constexpr bool kInBlocks = true;     ///< a list's entry is a block
 
   /// What tests see of a triangle.
   template <class T>
@@ -41,6 +43,14 @@ struct Triangle {
     const std::uint32_t* corner[3] = {};  ///< which vertices a triangle has
     const std::uint32_t* material = nullptr;
     std::uint32_t count = 0;
+
+    Fields<float> triangle(std::uint32_t i) const {
+      Fields<float> t;
+      for (int k = 0; k < 3; ++k)
+        for (int a = 0; a < 3; ++a)
+          t.corner[k][a] = vertex[a][corner[k][i]];
+      return t;
+    }
   };
   /// Cell after cell: cell i owns blocks first[i] up to first[i + 1] - 1, or, where blocks have
   /// boxes, those in places first[i] up to first[i + 1] - 1 of box_places.hpp. Where no cell holds
@@ -115,6 +125,14 @@ struct Triangle {
 
 }  // namespace grelha
 
+namespace grelha {
+
+/// The span of t of the crossing beyond t_min of a ray and a triangle, in t - shift, as doubles and
+/// then exact numbers tell it.
+CrossingSpan triangle_span(const ExactRay& ray, const float (&corner)[3][3], double shift);
+
+}  // namespace grelha
+
 namespace grelha::GRELHA_ISA {
 
 /// A ray's own frame for triangle tests: axis `k` is where |dir| is largest (x before y before z on
@@ -123,6 +141,7 @@ namespace grelha::GRELHA_ISA {
 template <class Real>
 struct Shear {
   Real x, y, z;  ///< dir[kx] / dir[kz], dir[ky] / dir[kz], 1 / dir[kz]
+  Real off;      ///< what differences of coordinates are off by before they are rounded
 };
 
 /// Index of the axis the frame stands on; the other two follow cyclically.
@@ -146,30 +165,26 @@ inline Vec3<Real> permuted(const Real& axis, const Vec3<Real>& v) {
           select(x, v.x, select(y, v.y, v.z))};
 }
 
-// What floats leave open, in u = 2^-24; docs/numerics.md derives each, triangle_test.cpp pins
-// them. S: the largest sheared coordinate of a corner, Z: the largest depth of one. "Spread" is S
-// (S + Z) over the sum of the edge functions, times the range of the corners' t.
+// What numbers of a precision leave open, in u, its half an ulp of 1; docs/numerics.md derives
+// each, triangle_test.cpp pins them. S: the largest sheared coordinate of a corner, Z: the largest
+// depth of one. "Spread" is S (S + Z) over the sum of the edge functions, times the range of the
+// corners' t.
 
-/// Times S (S + Z): bound of an edge function's error, 32 u. It is 24 u: a sheared corner is off by
-/// u (4 (S + Z) + S).
-inline constexpr float kEdgeError = 0x1p-19f;
-/// Times the spread: with kDepthRounding times t, bound of how far t is from that of double rounded
-/// to a float, 128 u. It is 72 u by the edges and 36 u by the mean.
-inline constexpr float kDepthError = 0x1p-17f;
-inline constexpr float kDepthRounding = 0x1p-20f;
-/// Added to S (S + Z): edge functions that underflow are off by 2^-148, and so within its bound.
-inline constexpr float kLeastArea = 0x1p-100f;
-/// The largest spread over t for which floats do for t. It is about the tangent of the angle
-/// between ray and normal where a triangle is well shaped and far away; on what is left t is within
-/// 8 u of itself, and the point within 46 u of the farthest corner's distance.
-inline constexpr float kMostSpread = 2;
+/// Times S (S + Z): bound of an edge function's error. It is 24 u: a sheared corner is off by u (4
+/// (S + Z) + S).
+inline constexpr double kEdgeError = 32;
+/// Times the spread: with kDepthRounding times t, bound of the error of t. It is 72 u by the edges,
+/// a quarter of whose sum may be wrong, and 36 u by the mean.
+inline constexpr double kDepthError = 256;
+inline constexpr double kDepthRounding = 16;
 
-/// Where rays pass triangles, in float.
+/// Where rays pass triangles.
 template <class Real>
 struct EdgeFunctions {
   Vec3<Real> oa, ob, oc;  ///< from the rays' origins to the corners
   Real u, v, w;           ///< of the edges opposite to a, b and c
   Real least, most;       ///< of these
+  Real wide;              ///< what depths are larger by, for coordinates that are off
   Real area;              ///< S (S + Z), and a little
 
   [[gnu::always_inline]] EdgeFunctions(const RayAndTriangle<Real>& from, const Shear<Real>& shear)
@@ -180,69 +195,100 @@ struct EdgeFunctions {
     u = cx * by - cy * bx;
     v = ax * cy - ay * cx;
     w = bx * ay - by * ax;
-    const Real size = larger(larger(larger(ax, ay), larger(bx, by)), larger(cx, cy));
+    const Real size = larger(larger(larger(ax, ay), larger(bx, by)), larger(cx, cy)) + shear.off;
     const Real depth = larger(larger(oa.z, ob.z), oc.z);
-    area = size * (size + depth) + Real(kLeastArea);
+    wide = Real(static_cast<Scalar<Real>>(.25 / kUnit<Real>)) * shear.off;
+    area = size * ((size + depth) + wide) + Real(static_cast<Scalar<Real>>(kUnderflow<Real>));
     least = lesser(lesser(u, v), w);
     most = greater(greater(u, v), w);
   }
-  /// Lanes of which float does not tell that the ray passes beside the triangle.
+  /// Lanes of which these do not tell that the ray passes beside the triangle.
   [[gnu::always_inline]] Mask<Real> may_cross() const {
-    return lesser(most, Real(0) - least) <= Real(kEdgeError) * area;
+    return lesser(most, Real(0) - least) <= units<Real>(kEdgeError) * area;
   }
 };
 
-/// Point where each ray meets one triangle, from either side; watertight along shared edges and at
-/// shared vertices.
+/// What a precision tells of rays and triangles, from either side, edges and corners included.
 ///
-/// Takes     source() gives rays and triangles. It is asked again where double is needed: registers
-///           need not hold till then what few tests look at. It is copied; 16 bytes are best.
-/// Returns   lanes whose ray crosses the triangle, edges and corners included, with t above t_min.
-///           The caller drops those beyond t_max.
-/// Accuracy  Floats decide what they can; all else is taken again in double: rays within rounding
-///           of an edge, and t of triangles that are large beside it or seen at a flat angle. So
-///           inside or outside is what crossing() says, for every ray (watertight_test.cpp),
-///           and t is within 8 eps of itself, whatever the triangle's size
-///           (triangle_test.cpp). A t that is surely below t_min or above t_max, or with kAny
-///           surely between, stays as floats found it: it is on the right side of both.
 /// Source    Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013; the
 ///           filter after Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust
 ///           Geometric Predicates", 1997.
-template <bool kAny, class Real, class Source>
-[[gnu::always_inline]] inline Mask<Real> hit_triangle(
-    const Source& source, const Shear<Real>& shear, const Real& t_min, const Real& t_max, Real& t) {
-  const RayAndTriangle<Real> from = source();
-  if constexpr (sizeof(Scalar<Real>) == sizeof(double)) {
-    const Crossing<Real> r = crossing<Real>(from.org, from.dir, from.corner);
-    t = r.t;
-    return both(r.inside, t > t_min);
-  } else {
-    const EdgeFunctions<Real> edge(from, shear);
-    const Mask<Real> maybe = edge.may_cross();
-    if (none(maybe))
-      return maybe;
-    const auto& [oa, ob, oc, u, v, w, least, most, area] = edge;
-    const Real inverse = Real(1) / ((u + v) + w);
-    const Real ta = shear.z * oa.z, tb = shear.z * ob.z, tc = shear.z * oc.z;
-    t = ((u * inverse) * ta + (v * inverse) * tb) + (w * inverse) * tc;
-    const Real range = greater(greater(ta, tb), tc) - lesser(lesser(ta, tb), tc);
-    const Real spread = (area * magnitude(inverse)) * range;
-    const Mask<Real> inside = greater(least, Real(0) - most) > Real(kEdgeError) * area;
-    const Mask<Real> exact = spread <= Real(kMostSpread) * magnitude(t);
-    const Real slack = Real(kDepthError) * spread + Real(kDepthRounding) * magnitude(t);
-    const Real first = t - slack;
-    const Real last = t + slack;
-    const Mask<Real> beyond = first > t_min;
-    Mask<Real> settled = either(either(last<t_min, first> t_max), both(inside, exact));
-    if (kAny)
-      settled = either(settled, both(inside, both(beyond, last < t_max)));
-    const Mask<Real> unsure = but_not(maybe, settled);
-    if (any(unsure)) {
-      const Mask<Real> near = but_not(unsure, beyond);
-      t = select(unsure, depth_in_double<Real, Source>(source, unsure, near, t_min), t);
-    }
-    return both(maybe, t > t_min);  // a NaN anywhere fails here
+template <class Real>
+[[gnu::always_inline]] inline Found<Real> bound_triangle(const RayAndTriangle<Real>& from,
+                                                         const Shear<Real>& shear,
+                                                         const Real& t_min,
+                                                         const Real& best) {
+  const EdgeFunctions<Real> edge(from, shear);
+  Found<Real> found{edge.may_cross(), {}, t_min, t_min};
+  if (none(found.some)) {
+    found.sure = found.some;
+    return found;
   }
+  const auto& [oa, ob, oc, u, v, w, least, most, wide, area] = edge;
+  const Real inverse = Real(1) / ((u + v) + w);
+  const Real ta = shear.z * oa.z, tb = shear.z * ob.z, tc = shear.z * oc.z;
+  const Real t = ((u * inverse) * ta + (v * inverse) * tb) + (w * inverse) * tc;
+  const Real range = greater(greater(ta, tb), tc) - lesser(lesser(ta, tb), tc);
+  const Real spread = (area * magnitude(inverse)) * range;
+  const Real size = magnitude(t) + wide * magnitude(shear.z);
+  const Real slack = units<Real>(kDepthError) * spread + units<Real>(kDepthRounding) * size;
+  found.lo = t - slack;
+  found.hi = t + slack;
+  const Mask<Real> inside = greater(least, Real(0) - most) > units<Real>(kEdgeError) * area;
+  found.some = but_not(found.some, either(found.hi <= t_min, found.lo > best));
+  found.sure = both(found.some, both(inside, found.lo > t_min));  // a NaN anywhere is not sure
+  return found;
+}
+
+/// The same of one ray and one triangle, in double.
+inline Found<double> bound_triangle(const ExactRay& r, const float (&corner)[3][3]) {
+  const int k = shear_axis(
+      static_cast<float>(r.dir[0]), static_cast<float>(r.dir[1]), static_cast<float>(r.dir[2]));
+  const int kx = kNextAxis[k];
+  const int ky = kPreviousAxis[k];
+  const auto turned = [&](const auto& v) { return Vec3<double>{v[kx], v[ky], v[k]}; };
+  const RayAndTriangle<double> from{
+      turned(r.org), turned(r.dir), {turned(corner[0]), turned(corner[1]), turned(corner[2])}};
+  const Shear<double> shear{from.dir.x / from.dir.z, from.dir.y / from.dir.z, 1 / from.dir.z, 0};
+  return bound_triangle<double>(from, shear, r.t_min, __builtin_inf());
+}
+
+/// Takes what a float test does not tell of chosen lanes from double, and then from exact numbers.
+/// `source` is copied; 16 bytes are best.
+template <class Real, class Source>
+[[gnu::noinline]] void settle_triangles(Source source,
+                                        Mask<Real> chosen,
+                                        Real t_min,
+                                        Found<Real>& found) {
+  if (source.off() == 0) {  // of the triangle that a ray starts on
+    const Mask<Real> past = both(chosen, past_plane(source(), t_min));
+    chosen = but_not(chosen, past);
+    found.some = but_not(found.some, past);
+  }
+  replace_lanes(bits(chosen), found, [&](int k) {
+    float corner[3][3];
+    source.take_corners(k, corner);
+    return triangle_span(source.given(k), corner, source.shift(k));
+  });
+}
+
+/// Where rays cross triangles.
+///
+/// Takes     source() gives rays and triangles. It is asked again where floats do not tell:
+///           registers need not hold till then what few tests look at.
+/// Returns   lanes whose ray crosses its triangle at a t beyond t_min, which is from lo to hi.
+///           Those whose t is surely beyond `best` are left out. The sign of every decision is that
+///           of real arithmetic: triangles that share an edge or a corner agree about it.
+template <class Real, class Source>
+[[gnu::always_inline]] inline Found<Real> meet_triangle(const Source& source,
+                                                        const Shear<Real>& shear,
+                                                        const Real& t_min,
+                                                        const Real& best) {
+  Found<Real> found = bound_triangle<Real>(source(), shear, t_min, best);
+  const Mask<Real> unsure = but_not(found.some, found.sure);
+  if (any(unsure)) [[unlikely]]
+    settle_triangles<Real, Source>(source, unsure, t_min, found);
+  return found;
 }
 
 /// Triangle i of a block.

@@ -12,18 +12,15 @@ struct TrianglePlace {
   Vec3<Real> point, normal, weights;
 };
 
-/// Corners as they are, not permuted; `axis` is that of shear_axis(). Rays that do not cross are
-/// taken to the first corner.
+/// Corners as they are, not permuted; `axis` is that of shear_axis().
 template <class Real>
 inline TrianglePlace<Real> triangle_place(const Real& axis,
                                           const Vec3<Real>& org,
                                           const Vec3<Real>& dir,
                                           const Corners<Real>& c) {
   const auto turned = [&](const Vec3<Real>& p) { return permuted<Real>(axis, p); };
-  const Crossing<Real> r =
-      crossing<Real>(turned(org), turned(dir), {turned(c.a), turned(c.b), turned(c.c)});
-  const Real o(0), one(1);
-  const Vec3<Real> w = select(r.inside, r.weights, Vec3<Real>{one, o, o});
+  const Vec3<Real> w =
+      weights_at<Real>(turned(org), turned(dir), {turned(c.a), turned(c.b), turned(c.c)});
   const Vec3<Real> e1 = c.b - c.a;
   const Vec3<Real> e2 = c.c - c.a;
   return {
@@ -36,18 +33,17 @@ inline TrianglePlace<Real> triangle_place(const Real& axis,
 template <class Real, int i = 0>
 inline void triangle_places(const Real& axis,
                             const Vec3<Real>& org,
-                            const Vec3<Real>& low,
                             const Vec3<Real>& dir,
                             const Corners<Real>& c,
                             PlaceParts<Real>& to) {
   const TrianglePlace<Wide<Real>> p =
-      triangle_place<Wide<Real>>(widen<i>(axis), widen<i>(org, low), widen<i>(dir), widen<i>(c));
+      triangle_place<Wide<Real>>(widen<i>(axis), widen<i>(org), widen<i>(dir), widen<i>(c));
   int k = 0;
   for (const Vec3<Wide<Real>>* v : {&p.point, &p.normal, &p.weights})
     for (const Wide<Real>* x : {&v->x, &v->y, &v->z})
       to.part[k++][i] = *x;
   if constexpr (i + 1 < kWideParts<Real>)
-    triangle_places<Real, i + 1>(axis, org, low, dir, c, to);
+    triangle_places<Real, i + 1>(axis, org, dir, c, to);
 }
 
 /// Square of the length of mixed unit normals below which they cancel: rounding decides where such
@@ -100,7 +96,7 @@ inline Surface<Real> surface_on(const Triangle::Arrays& triangles,
                            three_at(triangles.vertex, v[1]),
                            three_at(triangles.vertex, v[2])};
   PlaceParts<Real> place;
-  triangle_places<Real>(shear_axes(met.dir), met.org, met.start.low, met.dir, c, place);
+  triangle_places<Real>(shear_axes(met.dir), met.org, met.dir, c, place);
   const Vec3<Real> point = place.vector(0);
   const Vec3<Real> n = place.vector(3);
   const Vec3<Real> weights = place.vector(6);
@@ -111,14 +107,7 @@ inline Surface<Real> surface_on(const Triangle::Arrays& triangles,
       .shading = n,
       .away = Real(4 * kEps) * largest(point) + Real(kWideEps) * corners,
       .material = words_at(triangles.material, i),
-      .low = {Real(0), Real(0), Real(0)},
   };
-  if (met.start.t) {
-    rest_of_points<Real>(point, place);
-    s.low = place.vector(0);
-    s.away =
-        Real(4 * static_cast<float>(kRounding<double>)) * largest(point) + Real(kWideEps) * corners;
-  }
   if (met.smooth)
     s.shading = mixed_normal<Real>(triangles, v, weights, n);
   return s;

@@ -40,28 +40,24 @@ struct SlabRays {
   }
 };
 
-/// Rays against what is in the cells they came to. `walking` are the rays of p as they walk: in the
-/// frame of the grid, which begins at its corner, when they come kFromAfar.
-template <bool kAny, class In, bool kFromAfar = false>
+/// Rays against what is in the cells they came to.
+template <bool kAny>
 class CellTests {
  public:
-  CellTests(const GridView& g, const WalkingRays& walking, Packet<In>& p, Counters& n)
-      : grid_(g), lists_(g.lists), walking_(walking), p_(p), n_(n) {
-    each_live_group(walking, [&](int i, int) { slab_.set(walking, i); });
+  CellTests(const GridView& g, Packet& p, Counters& n) : lists_(g.lists), p_(p), n_(n) {
+    each_live_group(p, [&](int i, int) { slab_.set(p, i); });
   }
 
   void test(const Arrivals& to) {
     if (triangles_.first)
       test_triangles(to);
-    if constexpr (!kFromAfar)
-      ArrayShapes::for_each([&]<class Shape>() __attribute__((always_inline)) {
-        if (lists_.of<Shape>().first)
-          test_arrays<Shape>(to);
-      });
+    ArrayShapes::for_each([&]<class Shape>() __attribute__((always_inline)) {
+      if (lists_.of<Shape>().first)
+        test_arrays<Shape>(to);
+    });
   }
 
  private:
-  using Real = typename In::Primitives;
   static constexpr int kMost = 512;  ///< blocks that are due at once
 
   bool searches(int ray) const { return p_.best[ray] > p_.t_min[ray]; }
@@ -94,10 +90,10 @@ class CellTests {
     const std::uint32_t block = triangles_.block_at(at);
     ++n_.box_rows;
     for (int i = 0; i < kBlock; i += kWidth<Block>) {
-      Block enter(walking_.t_min[ray]);
-      Block leave(walking_.best[ray]);
+      Block enter(p_.t_min[ray]);
+      Block leave(p_.best[ray]);
       for (int a = 0; a < 3; ++a) {
-        const Block org(walking_.org[a][ray]);
+        const Block org(p_.org[a][ray]);
         const Block inverse(slab_.inverse[a][ray]);
         const std::uint32_t near = slab_.near[a][ray];
         const std::uint32_t far = 2u * static_cast<std::uint32_t>(a) + 3 - near;
@@ -116,7 +112,7 @@ class CellTests {
                                     int axis,
                                     int i) const {
     const Block at = load<Block>(boxes.side[which] + i);
-    return kFromAfar ? at - Block(grid_.lo_f[axis]) : at;
+    return p_.base ? at - Block(p_.base[axis]) : at;
   }
 
   /// Those of blocks from `first` on with a bit in `passed`.
@@ -155,8 +151,8 @@ class CellTests {
     }
     for (int j = 0; j < count; ++j) {
       const std::uint32_t k = met[j];
-      PacketRay<In> r{p_, static_cast<int>(due_ray_[k])};
-      if (due_enter_[k] <= walking_.best[r.i])
+      PacketRay r{p_, static_cast<int>(due_ray_[k])};
+      if (due_enter_[k] <= p_.best[r.i])
         test_block<kAny>(r, triangles_.blocks[due_block_[k]]);
     }
   }
@@ -164,12 +160,13 @@ class CellTests {
   /// Whether float does not tell that a ray passes beside all triangles of a block. To ask first
   /// takes longer than a foretold branch where a block fills more than one register.
   [[gnu::always_inline]] bool may_cross(std::uint32_t ray, const TriangleBlock& block) {
-    if constexpr (In::kDouble || kWidth<Block> < kBlock) {
+    if constexpr (kWidth<Block> < kBlock) {
       return true;
     } else {
-      const PacketRay<In> r{p_, static_cast<int>(ray)};
-      const Shear<Block> shear{Block(shear_of(r, 0)), Block(shear_of(r, 1)), Block(shear_of(r, 2))};
-      const EdgeFunctions<Block> edge(RayAndBlock<PacketRay<In>>{&r, &block, 0}(), shear);
+      const PacketRay r{p_, static_cast<int>(ray)};
+      const Shear<Block> shear{
+          Block(shear_of(r, 0)), Block(shear_of(r, 1)), Block(shear_of(r, 2)), Block(p_.off)};
+      const EdgeFunctions<Block> edge(RayAndBlock<PacketRay>{&r, &block, 0}(), shear);
       return any(edge.may_cross());
     }
   }
@@ -184,7 +181,7 @@ class CellTests {
       test_chosen_rows<Shape>(list, to);
     else
       for (int k = 0; k < to.count; ++k) {
-        PacketRay<In> r{p_, static_cast<int>(to.ray[k])};
+        PacketRay r{p_, static_cast<int>(to.ray[k])};
         if (searches(r.i))
           test_list<kAny, Shape>(r, list, to.cell[k], n_);
       }
@@ -192,8 +189,8 @@ class CellTests {
 
   /// Whether primitives that are missed are sorted out before others are tested.
   template <class Shape>
-  static constexpr bool kSortsOut = requires(const RayLanes<Real>& ray,
-                                             const typename Shape::template Fields<Real>& row) {
+  static constexpr bool kSortsOut = requires(const RayLanes<Block>& ray,
+                                             const typename Shape::template Fields<Block>& row) {
     may_meet(ray, row);
   };
 
@@ -202,13 +199,13 @@ class CellTests {
                                                const Arrivals& to) {
     int due = 0;
     for (int k = 0; k < to.count; ++k) {
-      const RayLanes<Real> ray = spread(PacketRay<In>{p_, static_cast<int>(to.ray[k])});
+      const RayLanes<Block> ray = spread<Block>(PacketRay{p_, static_cast<int>(to.ray[k])});
       const std::uint32_t end = list.first[to.cell[k] + 1];
-      for (std::uint32_t i = list.first[to.cell[k]]; i < end; i += kWidth<Real>) {
-        count_rows<Shape>(n_, 1, kWidth<Real>);
+      for (std::uint32_t i = list.first[to.cell[k]]; i < end; i += kWidth<Block>) {
+        count_rows<Shape>(n_, 1, kWidth<Block>);
         due_ray_[due] = to.ray[k];
         due_block_[due] = i;
-        due += any(may_meet(ray, side_by_side<Shape, Real>(list.fields, i)));
+        due += any(may_meet(ray, side_by_side<Shape, Block>(list.fields, i)));
         if (due == kMost) {
           test_rows<Shape>(list, due);
           due = 0;
@@ -221,9 +218,9 @@ class CellTests {
   template <class Shape>
   [[gnu::always_inline]] void test_rows(const typename Shape::CellList& list, int due) {
     for (int k = 0; k < due; ++k) {
-      PacketRay<In> r{p_, static_cast<int>(due_ray_[k])};
+      PacketRay r{p_, static_cast<int>(due_ray_[k])};
       if (searches(r.i))
-        test_row<kAny, Shape>(r, spread(r), list, due_block_[k]);
+        test_row<kAny, Shape>(r, spread<Block>(r), list, due_block_[k]);
     }
   }
 
@@ -241,11 +238,9 @@ class CellTests {
 
   static constexpr int kAhead = 8;
 
-  const GridView& grid_;
   const CellLists& lists_;
   const Triangle::CellList& triangles_ = lists_.of<Triangle>();
-  const WalkingRays& walking_;
-  Packet<In>& p_;
+  Packet& p_;
   Counters& n_;
   SlabRays slab_;
   std::uint32_t first_[kPacket];
@@ -255,36 +250,27 @@ class CellTests {
   alignas(64) float due_enter_[kMost + kBlock];
 };
 
-/// Takes rays through a grid; test(arrivals) tests those that came to cells with something in them.
-template <class Test>
-[[gnu::always_inline]] inline void go_abreast(const GridView& g,
-                                              RaysUnderWay& rays,
-                                              Counters& n,
-                                              const Test& test) {
-  Arrivals arrivals;
-  // No walk crosses more planes than there are, whatever rounding does.
-  const int most = g.n[0] + g.n[1] + g.n[2] + 3;
-  for (int round = 0; round < most && rays.any(); ++round) {
-    n.visits += static_cast<unsigned>(rays.going());
-    rays.arrive(arrivals);
-    test(arrivals);
-    rays.step();
-  }
-}
-
 /// The live rays of a packet through a grid, each from p.start on and on its own (Amanatides & Woo
 /// 1987), with leaps over empty cells by their distance (Cohen & Sheffer, "Proximity Clouds",
 /// 1994). A hit is never clipped to its cell; a walk ends once the hit lies at or before the exit
 /// of the cell. Plane distances come from the plane's index, never by adding up; where float takes
 /// a ray to the wrong side of a corner it is off by less than what primitives were grown by
 /// (docs/numerics.md).
-template <bool kAny, class In>
-[[gnu::noinline]] void walk_apart(const GridView& g, Packet<In>& p, Counters& n) {
+template <bool kAny>
+[[gnu::noinline]] void walk_apart(const GridView& g, Packet& p, Counters& n) {
   RaysUnderWay rays(g, p);
   if (!rays.any())
     return;
-  CellTests<kAny, In> tests(g, p, p, n);
-  go_abreast(g, rays, n, [&](const Arrivals& to) { tests.test(to); });
+  CellTests<kAny> tests(g, p, n);
+  Arrivals arrivals;
+  // No walk crosses more planes than there are, whatever rounding does.
+  const int most = g.n[0] + g.n[1] + g.n[2] + 3;
+  for (int round = 0; round < most && rays.any(); ++round) {
+    n.visits += static_cast<unsigned>(rays.going());
+    rays.arrive(arrivals);
+    tests.test(arrivals);
+    rays.step();
+  }
 }
 
 }  // namespace grelha::GRELHA_ISA

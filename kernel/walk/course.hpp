@@ -130,7 +130,7 @@ class CellWalk {
   int distance() const { return distance_[cell_]; }
 
   /// False: the ray does not come to the grid.
-  [[gnu::always_inline]] bool start(const WalkingRay& r) {
+  [[gnu::always_inline]] bool start(const Single& r) {
     set_course(r);
     const float begin = first_t(r.t_min);
     end_ = last_t(r.best);
@@ -177,7 +177,7 @@ class CellWalk {
   static constexpr float kNever = __builtin_inff();
 
   /// As the free function does. The fourth place stays where it is: its planes are never met.
-  [[gnu::always_inline]] void set_course(const WalkingRay& r) {
+  [[gnu::always_inline]] void set_course(const Single& r) {
     const Four dir = four(r.dir, 0);
     const Four least = four(least_headway(r.dir[0], r.dir[1], r.dir[2]));
     const Four tiny = dir < four(0) ? four(0) - least : least;

@@ -44,6 +44,9 @@ class FrustumBuilder {
   }
 
  private:
+  /// Where the grid begins in the coordinates of primitives, which planes are for.
+  float corner_of(int axis) const { return p_.base ? p_.base[axis] : g_.lo_f[axis]; }
+
   /// Entry and exit of every ray. Returns the first that meets the grid, or -1.
   [[gnu::always_inline]] int clip_rays() {
     int first = -1;
@@ -220,7 +223,7 @@ class FrustumBuilder {
     float corner = 0;
     for (int a = 0; a < 3; ++a) {
       farthest_ = greater(static_cast<float>(g_.n[a]), farthest_);
-      corner = greater(magnitude(g_.lo_f[a] * g_.inv_cell_f[a]), corner);
+      corner = greater(magnitude(corner_of(a) * g_.inv_cell_f[a]), corner);
     }
     for (int j = 0; j < 2; ++j)
       f_.steepest =
@@ -237,12 +240,12 @@ class FrustumBuilder {
     const float ik = g_.inv_cell_f[k];
     // s = along x + start
     along_ = f_.flip ? -ik : ik;
-    start_ = f_.flip ? size_ + g_.lo_f[k] * ik : -(g_.lo_f[k] * ik);
+    start_ = f_.flip ? size_ + corner_of(k) * ik : -(corner_of(k) * ik);
     const float cull = cull_ + cull_of_slope_ * f_.steepest;
     for (int j = 0; j < 2; ++j) {
       const int a = j == 0 ? f_.u : f_.v;
       const float iu = g_.inv_cell_f[a];
-      const float zero = g_.lo_f[a] * iu;
+      const float zero = corner_of(a) * iu;
       f_.a[2 * j] = iu;
       f_.b[2 * j] = -(f_.lo_slope[j] * along_);
       f_.c[2 * j] = cull - zero - f_.lo[j] - f_.lo_slope[j] * (start_ - f_.from);
@@ -303,7 +306,7 @@ class FrustumBuilder {
     const Lanes hi_slope = select(some, (hi1 - hi0) * Lanes(per_), o);
     const Lanes steepest = greater(larger(lo_slope, hi_slope), Lanes(1));
     const Lanes cull = Lanes(cull_) + Lanes(cull_of_slope_) * steepest;
-    const float zero = g_.lo_f[j == 0 ? f_.u : f_.v] * f_.a[2 * j];
+    const float zero = corner_of(j == 0 ? f_.u : f_.v) * f_.a[2 * j];
     const float back = start_ - f_.from;
     const Lanes lo_c = cull - Lanes(zero) - lo0 - lo_slope * Lanes(back);
     const Lanes hi_c = cull + Lanes(zero) + hi0 + hi_slope * Lanes(back);

@@ -135,11 +135,10 @@ inline int most_cells(int width) {
 }
 
 /// The rays of a packet that go through a grid together.
-template <bool kAny, class In>
+template <bool kAny>
 class PacketVisit {
  public:
-  PacketVisit(
-      const GridView& g, const Frustum& f, Packet<In>& p, int width, bool mailbox, Counters& n)
+  PacketVisit(const GridView& g, const Frustum& f, Packet& p, int width, bool mailbox, Counters& n)
       : g_(g), f_(f), p_(p), n_(n), width_(width), limit_(most_cells(width)), mailbox_(mailbox) {
     if (mailbox)
       held_.clear();
@@ -233,7 +232,7 @@ class PacketVisit {
 
   const GridView& g_;
   const Frustum& f_;
-  Packet<In>& p_;
+  Packet& p_;
   Counters& n_;
   int width_;
   int limit_;
@@ -254,19 +253,18 @@ inline void start_from_slice(const Frustum& f, WalkingRays& p, int slice) {
   });
 }
 
-template <bool kAny, class In>
+template <bool kAny>
 inline std::uint64_t traverse_together(
-    const GridView& g, Packet<In>& p, int width, bool use_mailbox, Counters& n);
+    const GridView& g, Packet& p, int width, bool use_mailbox, Counters& n);
 
-template <class In>
-inline Luck& luck_of(Packet<In>& p, int width) {
+inline Luck& luck_of(Packet& p, int width) {
   return width > kMiddle ? p.large_luck : width > kSmall ? p.middle_luck : p.small_luck;
 }
 
 /// The live rays of a packet in smaller ones of `rays` neighbours each; see traverse_together().
-template <bool kAny, class In>
+template <bool kAny>
 inline std::uint64_t traverse_parts(
-    const GridView& g, Packet<In>& p, int rays, bool use_mailbox, Counters& n) {
+    const GridView& g, Packet& p, int rays, bool use_mailbox, Counters& n) {
   const std::uint64_t live = p.live;
   const int each = rays / kWidth<Lanes>;
   std::uint64_t apart = 0;
@@ -278,9 +276,9 @@ inline std::uint64_t traverse_parts(
 }
 
 /// Rays that do not go together in one packet may in four; what does not in these goes ray by ray.
-template <bool kAny, class In>
+template <bool kAny>
 inline std::uint64_t split_packet(
-    const GridView& g, Packet<In>& p, int width, bool use_mailbox, Counters& n) {
+    const GridView& g, Packet& p, int width, bool use_mailbox, Counters& n) {
   ++n.fell_back;
   if (width <= kSmall)
     return p.live;
@@ -290,9 +288,9 @@ inline std::uint64_t split_packet(
 /// The live rays of a packet, `width` at most, through one grid, each from p.start on, as far as
 /// they go together, if those before did. Returns the groups whose rays are to go on by themselves,
 /// from p.start on. On return `live` is what it was.
-template <bool kAny, class In>
+template <bool kAny>
 inline std::uint64_t traverse_together(
-    const GridView& g, Packet<In>& p, int width, bool use_mailbox, Counters& n) {
+    const GridView& g, Packet& p, int width, bool use_mailbox, Counters& n) {
   Luck& luck = luck_of(p, width);
   if (!luck.worth_asking())
     return split_packet<kAny>(g, p, width, use_mailbox, n);
@@ -308,7 +306,7 @@ inline std::uint64_t traverse_together(
     case Coherence::kTogether:
       break;
   }
-  PacketVisit<kAny, In> visit(g, f, p, width, use_mailbox, n);
+  PacketVisit<kAny> visit(g, f, p, width, use_mailbox, n);
   if (visit.start())
     walk_frustum(g, f, n, visit);
   p.live = live;
@@ -323,9 +321,11 @@ inline std::uint64_t traverse_together(
 }
 
 /// All rays of a packet through one grid, from p.start on, `width` neighbours together.
-template <bool kAny, class In>
+template <bool kAny>
 inline void traverse_packet(
-    const GridView& g, Packet<In>& p, int width, bool use_mailbox, Counters& n) {
+    const GridView& g, Packet& p, int width, bool use_mailbox, Counters& n) {
+  if (width == 1)
+    return walk_apart<kAny>(g, p, n);
   const std::uint64_t live = p.live;
   p.live = width < p.size ? traverse_parts<kAny>(g, p, width, use_mailbox, n)
                           : traverse_together<kAny>(g, p, p.size, use_mailbox, n);

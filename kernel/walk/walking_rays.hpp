@@ -1,8 +1,9 @@
 #pragma once
-// Rays side by side, as they walk grids: in float, whatever they are tested in.
+// Rays side by side, as they walk grids.
 
 #include "kernel/simd/vec3.hpp"
 #include "kernel/grid/view.hpp"
+#include "kernel/shapes/exact_hits.hpp"
 #include "kernel/walk/tolerances.hpp"
 
 namespace grelha::GRELHA_ISA {
@@ -11,7 +12,6 @@ namespace grelha::GRELHA_ISA {
 inline constexpr int kPacket = kWidth<Lanes> == 1 ? 64 : 256;
 inline constexpr float kInfinity = __builtin_inff();
 inline constexpr float kGreatest = 0x1.fffffep127f;
-inline constexpr double kEndOfFloats = 0x1.ffffffp127;  ///< what is less rounds to a finite one
 
 /// Rows of floats that are to be read or written soon. Asked for line by line, with work between,
 /// they come without being waited for: the first cache waits for few lines at once.
@@ -33,14 +33,18 @@ class RowsAhead {
   int count_ = 0;
 };
 
-/// Up to kPacket rays as arrays, as they walk grids. A ray searches (t_min, best); best <= t_min
-/// switches it off. Places between `size` and the end of the last group are switched off. `id`
-/// holds the bits of the nearest primitive so far.
+/// Up to kPacket rays as arrays. A ray searches (t_min, best); best <= t_min switches it off.
+/// Places between `size` and the end of the last group are switched off. `id` holds the bits of the
+/// nearest primitive so far, which is met at a t from `low` to `best`; while there is none both are
+/// the end of the search.
+///
+/// Rays from afar are copied into the frame of a grid: what is `given` is the rays as they came.
 struct WalkingRays {
   alignas(64) float org[3][kPacket];
   alignas(64) float dir[3][kPacket];
   alignas(64) float t_min[kPacket];
   alignas(64) float best[kPacket];
+  alignas(64) float low[kPacket];
   alignas(64) float start[kPacket];  ///< t from which a grid is still to be searched
   alignas(64) float id[kPacket];
   alignas(64) float unit[kPacket];  ///< length that t is counted in, where `has_units`
@@ -50,6 +54,11 @@ struct WalkingRays {
   int size, groups;
   RowsAhead ahead;     ///< what the next packet's rays come from, and this one's answers go to
   std::uint64_t live;  ///< bit g: group g has a ray that still searches
+  const float* base = nullptr;  ///< x, y, z of where their frame begins; null: 0
+  float off = 0;                ///< what coordinates in the frame are off by
+  float room = kInfinity;       ///< see RayLanes
+  GivenRays given;
+  const float* end = nullptr;  ///< t where the search of a ray that has met nothing ends, as given
 };
 
 inline std::uint32_t id_of(float bits) {
@@ -134,7 +143,7 @@ inline void count_in(float unit, float& t_min, float& t_max) {
       count_in(p.unit[i], p.t_min[i], p.best[i]);
 }
 
-/// Prepares directions and switches off rays with a NaN, an infinity or no direction.
+/// Prepares directions and switches off rays with a NaN, an infinity, no direction or no way.
 [[gnu::always_inline]] inline void check_rays(WalkingRays& p, int i) {
   Vec3<Lanes> d = take_vec<Lanes>(p.dir, i);
   Lanes dd = dot(d, d);
@@ -150,8 +159,10 @@ inline void count_in(float unit, float& t_min, float& t_max) {
   const Vec3<Lanes> o = take_vec<Lanes>(p.org, i);
   // NaN and infinity times zero are NaN
   const Mask<Lanes> finite = ((o.x + o.y) + (o.z + dd)) * Lanes(0) == Lanes(0);
-  const Mask<Lanes> sound = both(finite, dd > Lanes(kNoInverse));
-  store(p.best + i, select(sound, load<Lanes>(p.best + i), Lanes(-kInfinity)));
+  const Lanes best = load<Lanes>(p.best + i);
+  const Mask<Lanes> searches = best > load<Lanes>(p.t_min + i);
+  const Mask<Lanes> sound = both(both(finite, dd > Lanes(kNoInverse)), searches);
+  store(p.best + i, select(sound, best, Lanes(-kInfinity)));
 }
 
 /// The axis along which each ray of a group goes most.

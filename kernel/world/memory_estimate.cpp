@@ -146,11 +146,10 @@ BuildMemory memory_of(const SceneSpans& scene, const Primitives& p, const Plan& 
   Memory m;
   m.kept = kMaterial * static_cast<double>(scene.materials.size()) + prepared_bytes(p);
   m.waiting = ids_bytes(plan.apart);
-  for (const PlannedGrids& part : plan.parts)
+  for (const PlannedGrid& part : plan.parts)
     m.waiting += ids_bytes(part.ids);
-  for (const PlannedGrids& part : plan.parts) {
-    for (const Grid& g : part.grids)
-      m.add(expected(p, part.ids, g), static_cast<double>(cell_count(g.cells)));
+  for (const PlannedGrid& part : plan.parts) {
+    m.add(expected(p, part.ids, part.grid), static_cast<double>(cell_count(part.grid.cells)));
     m.waiting -= ids_bytes(part.ids);
   }
   const Lists outside = of_outside(p, plan);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
 
 #include <omp.h>
 
@@ -21,13 +20,11 @@ constexpr std::size_t kMostOutside = 32;  ///< primitives without a grid, each m
 constexpr std::size_t kSmallObject = 256;
 /// of the diagonal of what it lies among: larger primitives get no grid
 constexpr double kHuge = .5;
-/// a cell, of a grid for near rays: more would not make its lists shorter
+/// a cell: more would not make its lists shorter
 constexpr double kMostPads = 64;
-/// a cell, of a grid for far rays: with fewer, lists are long, and no faster
-constexpr double kFewestPads = 8;
-/// scenes so many times as wide as near rays reach have both: in others it would gain little
-constexpr double kVast = 4;
-/// Of the scene's diagonal: what tests and walks in double are off by beside a ray, 100 roundings.
+/// Scenes' diagonals: rays seldom start further away.
+constexpr double kFarEnough = 4;
+/// Of the scene's diagonal: what rays that are moved to a grid in double are off by, 100 roundings.
 constexpr double kDoublesOff = 0x1p-46;
 /// M; packets like it coarser than the report's 2 (docs/performance.md)
 constexpr double kDensity = .7;
@@ -77,7 +74,7 @@ void group_triangles(const Primitives& p, std::vector<Ids>& groups) {
     const std::uint32_t first = first_id + o.first_triangle;
     append(groups.front(), next, first);
     next = first + o.triangle_count;
-    if (o.triangle_count < kSmallObject || groups.size() >= kMostGroups) {
+    if (o.triangle_count < kSmallObject || groups.size() >= static_cast<std::size_t>(kMostGrids)) {
       append(groups.front(), first, next);
     } else {
       reserve_to_fill(groups.emplace_back(), o.triangle_count);
@@ -142,47 +139,16 @@ bool set_few_apart(const Primitives& p, Ids& ids, Ids& outside) {
   return true;
 }
 
-/// Rays within `reach` of a box start near its grid; rounded inwards.
-void set_near(Grid& g, const Box& box, double reach) {
-  constexpr float kInfinitelyFar = std::numeric_limits<float>::infinity();
-  for (int a = 0; a < 3; ++a) {
-    g.near_lo[a] = std::nextafter(static_cast<float>(box.lo[a] - reach), kInfinitelyFar);
-    g.near_hi[a] = std::nextafter(static_cast<float>(box.hi[a] + reach), -kInfinitelyFar);
-  }
-}
-
-bool are_triangles(const Primitives& p, const Ids& ids) {
-  return std::all_of(ids.begin(), ids.end(), [&](std::uint32_t id) {
-    return p.ids.has(PrimitiveKind::kTriangle, id);
-  });
-}
-
-/// The grid of some primitives in a scene of that diagonal. Rays from all over the scene may ask
-/// for a pad that is large beside the cells. Then there are two grids: one with such a pad, and one
-/// for the rays that start near, which are most. Where the cells of the former would be larger,
-/// triangles have the latter alone, to which rays from afar come each by itself.
-void add_grids(const Primitives& p,
-               const Ids& ids,
-               const Box& box,
-               double density,
-               double diagonal,
-               std::vector<Grid>& grids) {
+/// The grid of some primitives in a scene of that diagonal, with a pad for rays that start as far
+/// away as most do: in a vast scene that would be more than the cells.
+Grid grid_over(
+    const Primitives& p, const Ids& ids, const Box& box, double density, double diagonal) {
   const double edge = cell_edge(box, ids.size(), density);
-  const double reach = std::max(box.diagonal(), edge / pad_of(kMostPads));
-  if (!(diagonal > kVast * reach)) {
-    grids.push_back(lay_out_grid(p, ids, box, density, pad_of(diagonal)));
-    return;
-  }
-  const double of_far_rays = edge / (kFewestPads * pad_of(diagonal));
-  const auto add = [&](Serves serves, double of_density, double pad) {
-    Grid& g = grids.emplace_back(lay_out_grid(p, ids, box, of_density, pad));
-    g.serves = serves;
-    set_near(g, box, reach);
-  };
-  if (of_far_rays < 1 && are_triangles(p, ids))
-    return add(Serves::kNearAndAfar, density, pad_of(reach) + kDoublesOff * diagonal);
-  add(Serves::kNear, density, pad_of(reach));
-  add(Serves::kFar, density * std::min(1., of_far_rays), pad_of(diagonal));
+  const double far = std::min(edge / pad_of(kMostPads), kFarEnough * diagonal);
+  const double reach = std::max(box.diagonal(), far);
+  Grid g = lay_out_grid(p, ids, box, density, pad_of(reach) + kDoublesOff * diagonal);
+  g.reach = reach;
+  return g;
 }
 
 }  // namespace
@@ -248,7 +214,8 @@ class Planner {
     Extent extent = set_huge_apart(p_, ids, before, plan_.apart, threads_);
     if (set_few_apart(p_, ids, plan_.apart))
       extent = extent_of(p_, ids, threads_);
-    auto crowds = take_crowds(p_, ids, extent.box, density_, kMostGroups - groups_.size());
+    auto crowds = take_crowds(
+        p_, ids, extent.box, density_, static_cast<std::size_t>(kMostGrids) - groups_.size());
     if (crowds.empty())
       return extent;
     for (Ids& crowd : crowds) {
@@ -259,9 +226,8 @@ class Planner {
   }
 
   void plan_group(Ids ids, const Box& box) {
-    std::vector<Grid> grids;
-    add_grids(p_, ids, box, density_, plan_.all.diagonal(), grids);
-    plan_.parts.push_back({std::move(ids), std::move(grids)});
+    Grid grid = grid_over(p_, ids, box, density_, plan_.all.diagonal());
+    plan_.parts.push_back({std::move(ids), std::move(grid)});
   }
 
   const Primitives& p_;

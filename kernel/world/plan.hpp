@@ -10,14 +10,13 @@
 
 namespace grelha {
 
-struct PlannedGrids {
+struct PlannedGrid {
   std::vector<std::uint32_t> ids;  ///< ascending
-  /// over them, laid out and empty: one, or one for near rays and one for far ones
-  std::vector<Grid> grids;
+  Grid grid;                       ///< over them, laid out and empty
 };
 
 struct Plan {
-  std::vector<PlannedGrids> parts;
+  std::vector<PlannedGrid> parts;
   std::vector<std::uint32_t> apart;  ///< what has no grid, ascending
   Box all;                           ///< of everything finite
 };
@@ -26,8 +25,8 @@ constexpr double kPlanShare = .08;  ///< of the time of a build, before lists ar
 
 int threads_of(const BuildOptions& options);
 /// The room around primitives for rays that start within `reach` of their box on each axis, `reach`
-/// no less than its diagonal. Such rays are at most 1 + sqrt 3 reaches from any of them. A float
-/// test is off by at most 62 eps of that distance, and a walk by 32 eps of the reach (derived in
+/// no less than its diagonal. Such rays are at most 1 + sqrt 3 reaches from any of them. A walk in
+/// float is off by at most 32 u of the reach, and by as much along its way (derived in
 /// docs/numerics.md).
 double pad_of(double reach);
 /// All finite primitives that have a place.

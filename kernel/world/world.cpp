@@ -108,7 +108,6 @@ void World::Impl::view_grids(const Box& all) {
     view.box_lo[a] = static_cast<float>(all.lo[a]);
     view.box_hi[a] = static_cast<float>(all.hi[a]);
   }
-  view.reach = static_cast<float>(all.diagonal());
 }
 
 void World::Impl::set_lights() {
@@ -144,20 +143,18 @@ void World::Impl::set_materials() {
 /// The plan's grids, each part's ids gone when they are done with.
 void World::Impl::fill(Plan& plan, int threads, BuildProgress& progress) {
   double work = 0;
-  for (const PlannedGrids& part : plan.parts)
-    work += static_cast<double>(part.ids.size() * part.grids.size());
-  for (PlannedGrids& part : plan.parts) {
+  for (const PlannedGrid& part : plan.parts)
+    work += static_cast<double>(part.ids.size());
+  for (PlannedGrid& part : plan.parts) {
     const std::vector<std::uint32_t> ids = std::move(part.ids);
-    for (Grid& g : part.grids) {
-      progress.throw_if_stopped();
-      grids.push_back(std::move(g));
-      fill_grid(primitives,
-                ids,
-                grids.back(),
-                threads,
-                progress,
-                (1 - kPlanShare) * static_cast<double>(ids.size()) / work);
-    }
+    progress.throw_if_stopped();
+    grids.push_back(std::move(part.grid));
+    fill_grid(primitives,
+              ids,
+              grids.back(),
+              threads,
+              progress,
+              (1 - kPlanShare) * static_cast<double>(ids.size()) / work);
   }
 }
 

@@ -14,7 +14,7 @@ from chart import FRONT, LOOKS, STAR
 LIBRARY = pathlib.Path("/usr/share/javascript/chart.js/chart.min.js")
 TEMPLATE = pathlib.Path(__file__).resolve().parent / "page.html"
 TITLES = {
-    "rays": "Rays: error against time", "picture": "Pictures: error against time",
+    "picture": "Pictures: error against time",
     "grid": "Grids: time and memory", "features": "No more than needed"}
 
 

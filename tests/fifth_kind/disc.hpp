@@ -114,26 +114,52 @@ struct Disc {
 
 namespace grelha::GRELHA_ISA {
 
-/// Point where each ray meets a disc, from either side; rays along it miss.
-///
-/// Accuracy  in eps w, w = |center - org| / |cosine of the angle between ray and normal|: t |dir|
-///           is within 16 of the exact one, and the rim is where it is by 32 (disc_test.cpp). Way
-///           and place are taken from the ray's point nearest to the center: what is large cancels
-///           once.
+/// What a precision tells of rays and discs, from either side; rays along one do not cross. Way and
+/// place are taken from the ray's point nearest to the center: what is large cancels once. They are
+/// off by 16 u w, w = |center - org| / |cosine of the angle between ray and normal|.
 template <class Real>
-[[gnu::always_inline]] inline Mask<Real> meet(const RayLanes<Real>& ray,
-                                              const Disc::Fields<Real>& disc,
-                                              Real& t) {
+[[gnu::always_inline]] inline Found<Real> bound(const RayLanes<Real>& ray,
+                                                const Disc::Fields<Real>& disc,
+                                                const Real& best) {
   const Vec3<Real> normal = vec(disc.normal);
-  const Vec3<Real> to_center = vec(disc.center) - ray.org;
+  const Vec3<Real> to_center = ray.to(vec(disc.center));
   const Real middle = dot(to_center, ray.dir) * ray.inv_dd;
   const Vec3<Real> gap = middle * ray.dir - to_center;
   const Real along = dot(ray.dir, normal);
   const Real rest = (Real(0) - dot(gap, normal)) / along;
   const Vec3<Real> off = gap + rest * ray.dir;
-  t = middle + rest;
-  const Mask<Real> within = dot(off, off) <= disc.radius * disc.radius;  // NaN fails
-  return both(both(along != Real(0), within), t > ray.t_min);
+  const Real t = middle + rest;
+  const Vec3<Real> size = sizes(to_center);
+  const Real far = ((size.x + size.y) + size.z) + disc.radius;
+  const Real cosine = magnitude(along) * ray.inv_length;
+  const Real room = (units<Real>(32) * far + Real(8) * ray.off) / cosine;
+  const Real lo = t - room * ray.inv_length;
+  const Real hi = t + room * ray.inv_length;
+  const Mask<Real> known = cosine > units<Real>(64);
+  const Real outer = disc.radius + room;
+  const Real inner = disc.radius - room;
+  const Mask<Real> beside = dot(off, off) > outer * outer;
+  const Mask<Real> never = either(beside, either(hi <= ray.t_min, lo > best));
+  const Mask<Real> some = but_not(disc.radius == disc.radius, both(known, never));
+  const Mask<Real> within = both(inner > Real(0), dot(off, off) < inner * inner);
+  return {some, both(both(some, known), both(within, lo > ray.t_min)), lo, hi};
+}
+
+/// With 106 bits.
+inline ExactCrossing exact_crossing(const ExactRay& ray, const Disc::Fields<float>& disc) {
+  const auto& [c, n, radius] = disc;
+  const WideVector to_center{DoubleDouble(c[0]) - ray.org[0],
+                             DoubleDouble(c[1]) - ray.org[1],
+                             DoubleDouble(c[2]) - ray.org[2]};
+  const WideVector dir{ray.dir[0], ray.dir[1], ray.dir[2]};
+  const WideVector normal{n[0], n[1], n[2]};
+  const DoubleDouble along = dot(dir, normal);
+  if (along.high == 0)
+    return {};
+  const DoubleDouble t = dot(to_center, normal) / along;
+  const WideVector off = t * dir - to_center;
+  const bool within = !(dot(off, off) > DoubleDouble(radius) * radius);
+  return within && t > ray.t_min ? ExactCrossing(t) : ExactCrossing();
 }
 
 /// Lanes of discs i, i + 1, ... whose balls reach into a frustum.
@@ -158,11 +184,7 @@ inline Surface<Real> surface_on(const Disc::Arrays& discs,
   const auto disc = gathered<Disc, Real>(discs.fields, i);
   const Vec3<Real> c = vec(disc.center);
   const Vec3<Real> n = vec(disc.normal);
-  return surface_at<Real>(
-      met,
-      [&] { return plane_place<Real>(c, n, met.at); },
-      [&](auto k, const auto& here) { return plane_place(widen<k>(c), widen<k>(n), here); },
-      words_at(discs.material, i));
+  return surface_at<Real>(plane_place<Real>(c, n, met.at), words_at(discs.material, i));
 }
 
 }  // namespace grelha::GRELHA_ISA

@@ -87,7 +87,6 @@ void render_small(SceneFile file, Choices choices) {
   apply_effects(effects, file, options);
   file.camera.width = file.camera.height = kSide;
   options.depth = 1 + int(choices.below(5));
-  options.precision = choices.below(8) == 0 ? Precision::kDouble : Precision::kSingle;
   const Image image = picture(file, options, some_way(choices));
   if (cost > kMostTwice)
     return;

@@ -19,7 +19,7 @@ class FrustumChecker {
       p_.t_min[i] = p_.start[i] = rays.t_min[i];
       p_.best[i] = rays.t_max[i];
     }
-    prepare(p_, false);
+    prepare(p_, none_, false);
     out_.together = bound_rays(g, p_, f_) == Coherence::kTogether;
   }
 
@@ -154,7 +154,8 @@ class FrustumChecker {
   }
 
   const GridView& g_;
-  Packet<InFloat> p_;
+  Packet p_;
+  const GeometryView none_;
   Frustum f_;
   test::FrustumCheck out_;
 };

@@ -9,25 +9,23 @@
 namespace grelha {
 namespace {
 
-template <class Real>
 void walk_closest(const SceneView& scene,
                   const Rays& rays,
                   const Hits& hits,
                   const TraceOptions& settings,
                   TraceCounts& counts) {
   Counters n;
-  reference::closest<Real>(scene, rays, settings.mailbox, n, hits);
+  reference::closest(scene, rays, settings.mailbox, n, hits);
   reference::add(n, counts);
 }
 
-template <class Real>
 void walk_occluded(const SceneView& scene,
                    const Rays& rays,
                    std::uint8_t* blocked,
                    const TraceOptions& settings,
                    TraceCounts& counts) {
   Counters n;
-  reference::occluded<Real>(scene, rays, settings.mailbox, n, blocked);
+  reference::occluded(scene, rays, settings.mailbox, n, blocked);
   reference::add(n, counts);
 }
 
@@ -40,10 +38,8 @@ bool always() {
 const Variant& reference_walk() {
   static const VariantLoops loops = [] {
     VariantLoops l{};
-    l.closest = walk_closest<float>;
-    l.occluded = walk_occluded<float>;
-    l.in_double.closest = walk_closest<double>;
-    l.in_double.occluded = walk_occluded<double>;
+    l.closest = walk_closest;
+    l.occluded = walk_occluded;
     return l;
   }();
   static const Variant variant{"reference", 1, always, loops};

@@ -6,7 +6,7 @@
 
 namespace grelha {
 
-/// Traces one ray and one primitive at a time, without SIMD, in single precision or in double. Of
+/// Traces one ray and one primitive at a time, without SIMD and without floats. Of
 /// the settings it heeds the mailbox alone. Its loops have no other functions than those two.
 const Variant& reference_walk();
 

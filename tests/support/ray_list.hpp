@@ -54,7 +54,6 @@ struct Answers {
   std::vector<float> t;
   std::vector<std::uint32_t> id;
   TraceCounts counts;
-  std::vector<double> t_double;  ///< t before it was rounded
 
   /// Answers of occluded(): of rays with something in the way t is -infinity, and the id 0.
   void block(const RayList& rays, const std::vector<std::uint8_t>& blocked) {
@@ -62,7 +61,6 @@ struct Answers {
       if (blocked[i] > 1)
         throw std::logic_error("expected 0 or 1 for ray " + std::to_string(i));
       t.push_back(blocked[i] ? -kInf : rays.t[i]);
-      t_double.push_back(t.back());
       id.push_back(blocked[i] ? 0 : kNoPrimitive);
     }
   }
@@ -84,9 +82,8 @@ inline Answers trace(const Variant& variant,
     return a;
   }
   a.t.assign(rays.size(), 12345);  // what no trace may leave behind
-  a.t_double.assign(rays.size(), 12345);
   a.id.assign(rays.size(), 12345u);
-  const Hits hits{.t = a.t.data(), .id = a.id.data(), .t_double = a.t_double.data()};
+  const Hits hits{.t = a.t.data(), .id = a.id.data()};
   variant.loops.closest(scene, rays.view(), hits, settings, a.counts);
   return a;
 }

@@ -95,10 +95,7 @@ inline testing::AssertionResult same(const Answers& wanted,
                          : (wanted.id[i] == kNoPrimitive) == (got.id[i] == kNoPrimitive);
     if (ids && wanted.id[i] == kNoPrimitive && !sound(rays, i))
       continue;
-    if (ids &&
-        std::bit_cast<std::uint32_t>(wanted.t[i]) == std::bit_cast<std::uint32_t>(got.t[i]) &&
-        std::bit_cast<std::uint64_t>(wanted.t_double[i]) ==
-            std::bit_cast<std::uint64_t>(got.t_double[i]))
+    if (ids && std::bit_cast<std::uint32_t>(wanted.t[i]) == std::bit_cast<std::uint32_t>(got.t[i]))
       continue;
     ++wrong;
     first = i;

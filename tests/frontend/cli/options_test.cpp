@@ -82,7 +82,7 @@ TEST(Render, EveryOption) {
   const auto command = std::get<RenderCommand>(
       parse("render x.nff -o y.png --size 640x480 --threads 7 --depth 3 --min-weight .25 --density "
             "2.5 --mailbox off "
-            "--isa avx2 --precision double --packet 16 --stats s.json --quiet --srgb"));
+            "--isa avx2 --packet 16 --stats s.json --quiet --srgb"));
   EXPECT_EQ(command.image, "y.png");
   EXPECT_EQ(command.width, 640);
   EXPECT_EQ(command.height, 480);
@@ -90,7 +90,6 @@ TEST(Render, EveryOption) {
   EXPECT_EQ(command.render.depth, 3);
   EXPECT_EQ(command.render.min_weight, .25);
   EXPECT_EQ(command.render.packet, 16);
-  EXPECT_EQ(command.render.precision, Precision::kDouble);
   EXPECT_FALSE(command.render.mailbox);
   EXPECT_EQ(command.render.isa, "avx2");
   EXPECT_FALSE(std::get<RenderCommand>(parse("render x.nff --accel none")).build.grid);
@@ -255,7 +254,6 @@ const Line kWrong[] = {
     {"render a --mailbox yes", "--mailbox: expected one of on, off, found \"yes\""},
     {"render a --isa neon",
      "--isa: expected one of scalar, sse2, avx2, avx512, best, found \"neon\""},
-    {"render a --precision half", "--precision: expected one of single, double, found \"half\""},
     {"render a --packet 8", "--packet: expected one of 1, 16, 64, 256, found \"8\""},
     {"render a --samples 0", "--samples: expected a whole number from 1 to 65536, found \"0\""},
     {"render a --sampler halton",

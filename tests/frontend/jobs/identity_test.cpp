@@ -80,8 +80,6 @@ TEST(Identity, NamesAllThatPixelsDependOn) {
               c.render.subdivision = {true, .1f, 2};
             }),
             "adaptive=0.1,2, a has no adaptive=");
-  EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.precision = Precision::kDouble; }),
-            "precision=double, a has no precision=");
   EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.effects.shadows = Effects::Shadows{true}; }),
             "shadows=hard, a has no shadows=");
   EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.sampling.light_rays = 3; }),

@@ -79,7 +79,7 @@ std::vector<std::int64_t> sums(const Variant& variant,
   options.sampling.samples = kSamples;
   options.sampling.seed = seed;
   const grelha::Setup setup = set_up(world, one_pixel(), options);
-  Workspace space(kParts, options.depth, setup.plan, nullptr);
+  Workspace space(kParts, options.depth, setup.plan);
   std::fill(space.boxes().begin(), space.boxes().end(), box);
   const PixelRun run{0, 0, samples};
   const BandWork work = space.work(options, 0, true, true);

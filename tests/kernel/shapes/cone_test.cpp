@@ -1,10 +1,10 @@
-// hit_cone: every instruction set and method against the scalar one bit for bit; the scalar one
-// against long double.
-#define GRELHA_ISA scalar
+// Cones: every instruction set and method against the reference bit for bit; exact numbers
+// against long double, floats and doubles against exact numbers.
 #include "kernel/shapes/cone.hpp"
 
 #include "grelha/query.hpp"
 #include "kernel/shapes/primitives.hpp"
+#include "tests/support/one_hit.hpp"
 #include "tests/support/oracle.hpp"
 #include "tests/support/rays.hpp"
 #include "tests/support/scenes.hpp"
@@ -71,29 +71,10 @@ TEST_P(Cone, ReturnsTheScalarBits) {
   EXPECT_GT(hits, 60u * kManyRays / 12);
 }
 
-struct Hit {
-  bool hit;
-  float t;
-};
-
-Hit hit(const Float3& o, const Float3& d, const Shape& s, float t_min = 0) {
+OneHit hit(const Float3& o, const Float3& d, const Shape& s, float t_min = 0) {
   Geometry g;
   g.cones.add(s.base, s.r0, s.apex, s.r1, 0);
-  const grelha::Cone::Fields<float> c = grelha::Cone::Source(g)[0];
-  const float inv_dd = 1 / ((d.x * d.x + d.y * d.y) + d.z * d.z);
-  float t = -1;
-  const bool h = scalar::hit_cone<float>({o.x, o.y, o.z},
-                                         {d.x, d.y, d.z},
-                                         inv_dd,
-                                         t_min,
-                                         {{c.base[0], c.base[1], c.base[2]},
-                                          {c.axis[0], c.axis[1], c.axis[2]},
-                                          c.height,
-                                          c.radius,
-                                          c.slope,
-                                          c.side},
-                                         t);
-  return {h, t};
+  return one_hit<grelha::Cone>(exact_ray(o, d, t_min), grelha::Cone::Source(g)[0]);
 }
 
 struct Case {

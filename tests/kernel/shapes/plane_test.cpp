@@ -1,8 +1,8 @@
-// hit_plane: every instruction set and method against the scalar one bit for bit; the scalar one
-// against long double.
-#define GRELHA_ISA scalar
+// Planes: every instruction set and method against the reference bit for bit; exact numbers
+// against long double, floats and doubles against exact numbers.
 #include "kernel/shapes/plane.hpp"
 
+#include "tests/support/one_hit.hpp"
 #include "tests/support/oracle.hpp"
 #include "tests/support/rays.hpp"
 #include "tests/support/scenes.hpp"
@@ -52,9 +52,8 @@ TEST(PlaneOracle, KeepsTheBound) {
                        sine = along / (length(ray.dir) * length(sheet.normal));
     if (sine < 1e-3L)
       continue;  // from here on the bound's first order is all there is
-    float t = -1;
-    const bool found = scalar::hit_plane<float>(
-        {o.x, o.y, o.z}, {d.x, d.y, d.z}, 0, {p.x, p.y, p.z}, {n.x, n.y, n.z}, t);
+    const auto [found, t] =
+        one_hit<grelha::Plane>(exact_ray(o, d), {{p.x, p.y, p.z}, {n.x, n.y, n.z}});
     const auto wanted = sheet.first(ray, -1e30L);
     const oracle::Real bound =
         oracle::kEps * (length(sheet.point - ray.org) * length(sheet.normal) / along +
@@ -76,10 +75,7 @@ TEST(PlaneOracle, KeepsTheBound) {
 
 TEST(PlaneCorners, ParallelRaysMiss) {
   const auto hit = [](const Float3& o, const Float3& d) {
-    float t = -1;
-    return scalar::hit_plane<float>({o.x, o.y, o.z}, {d.x, d.y, d.z}, 0, {0, 1, 0}, {0, 1, 0}, t)
-               ? t
-               : -1;
+    return one_hit<grelha::Plane>(exact_ray(o, d), {{0, 1, 0}, {0, 1, 0}}).t;
   };
   EXPECT_EQ(hit({0, 0, 0}, {1, 0, 0}), -1);
   EXPECT_EQ(hit({0, 0, 0}, {1, -0.f, 0}), -1);

@@ -1,8 +1,8 @@
-// hit_sphere: every instruction set and method against the scalar one bit for bit; the scalar one
-// against long double.
-#define GRELHA_ISA scalar
+// Spheres: every instruction set and method against the reference bit for bit; exact numbers
+// against long double, floats and doubles against exact numbers.
 #include "kernel/shapes/sphere.hpp"
 
+#include "tests/support/one_hit.hpp"
 #include "tests/support/oracle.hpp"
 #include "tests/support/rays.hpp"
 #include "tests/support/scenes.hpp"
@@ -30,17 +30,8 @@ TEST_P(Sphere, ReturnsTheScalarBits) {
   EXPECT_GT(hits, 60u * kManyRays / 4);  // or the sweep says nothing
 }
 
-struct Hit {
-  bool hit;
-  float t;
-};
-
-Hit hit(const Float3& o, const Float3& d, const Float3& c, float radius, float t_min = 0) {
-  const float inv_dd = 1 / ((d.x * d.x + d.y * d.y) + d.z * d.z);
-  float t = -1;
-  const bool h = scalar::hit_sphere<float>(
-      {o.x, o.y, o.z}, {d.x, d.y, d.z}, inv_dd, t_min, {c.x, c.y, c.z}, radius, t);
-  return {h, t};
+OneHit hit(const Float3& o, const Float3& d, const Float3& c, float radius, float t_min = 0) {
+  return one_hit<grelha::Sphere>(exact_ray(o, d, t_min), {{c.x, c.y, c.z}, radius});
 }
 
 /// The header's bound: 8 eps max(radius, distance of the origin from the centre), measured from the

@@ -36,12 +36,4 @@ inline Float3 start_of(const Surface& s, const Float3& dir) {
   return floats(scalar::leave(s.point, s.normal, s.away, vec(dir)));
 }
 
-/// The origin that a trace uses: near the scene.
-inline Float3 approached(const World& world, const Float3& org, const Float3& dir) {
-  float moved[3] = {org.x, org.y, org.z};
-  const float along[3] = {dir.x, dir.y, dir.z};
-  scalar::approach(world.impl().view, moved, along);
-  return {moved[0], moved[1], moved[2]};
-}
-
 }  // namespace grelha::test

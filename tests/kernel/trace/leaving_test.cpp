@@ -45,7 +45,7 @@ RayList rays_to(
                     random.log_in(1e-2, 1e2)));
   }
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const Float3 org = approached(world, rays.org(i), rays.dir(i));
+    const Float3 org = rays.org(i);
     rays.ox[i] = org.x;
     rays.oy[i] = org.y;
     rays.oz[i] = org.z;

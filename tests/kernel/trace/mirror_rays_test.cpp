@@ -28,7 +28,7 @@ void measure(Mirrored& m, const Surface& s, const oracle::V& n, float radius) {
 void reflect(Mirrored& m, const Float3& center, const Seen& seen) {
   const Scene scene = one_sphere(center, seen.radius);
   const World world(scene, {.grid = false});
-  const Float3 org = approached(world, seen.org, seen.dir);
+  const Float3 org = seen.org;
   const oracle::Ball ball{center, seen.radius};
   const oracle::Ray in{org, seen.dir};
   const auto exact = ball.first({org, seen.dir}, 0);

@@ -178,12 +178,10 @@ INSTANTIATE_TEST_SUITE_P(Isa,
                                   std::get<1>(p.param).name;
                          });
 
-/// From so far away that what is met lies beside its primitive by more than the cells of near rays
-/// allow for.
+/// From so far away that floats would be off by more than the cells are wide.
 TEST(FarRays, FindWhatBruteForceFinds) {
   const Scene scene = crowd_on_a_wide_plain(7, 400);
   const World world(scene, {.density = 4});
-  ASSERT_EQ(world.impl().grids.size(), 2u);
   Random random(3);
   RayList rays;
   for (int i = 0; i < 20000; ++i) {
@@ -224,7 +222,6 @@ TEST_P(RaysFromAfar, MeetMeshesOfTheirOwnScale) {
   for (const Scene& scene : {mesh_in_a_vast_scene(), pages_in_a_vast_scene()}) {
     const World world(scene, {});
     ASSERT_EQ(world.impl().grids.size(), 1u);
-    ASSERT_EQ(world.impl().grids[0].serves, Serves::kNearAndAfar);
     Random random(4);
     RayList rays;
     for (int i = 0; i < 2000; ++i) {

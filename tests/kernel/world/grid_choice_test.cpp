@@ -82,27 +82,18 @@ TEST(BlockOrder, PutsNeighboursInOneBlock) {
   }
 }
 
-/// By what a test and a walk can be off, 170 and 32 u of how far away rays may start
-/// (docs/numerics.md).
+/// By what a walk can be off, 32 u of how far away rays may start beside its way and along it
+/// (docs/numerics.md); rays start further than the grid is wide.
 TEST(Pads, HoldWhatRoundingTakes) {
   constexpr double kLeast = 202 * 0x1p-24;
   for (const Case& c : cases()) {
     const World world(c.scene, {});
     for (const Grid& g : world.impl().grids) {
-      double reach = world.impl().view.reach;
-      // near_lo to near_hi are the box and the reach on both sides
-      if (g.serves == Serves::kNear) {
-        double box = 0;
-        reach = 1e300;
-        for (int a = 0; a < 3; ++a)
-          reach = std::min(reach, .5 * (double(g.near_hi[a]) - g.near_lo[a]));
-        for (int a = 0; a < 3; ++a)
-          box = std::max(box, double(g.near_hi[a]) - g.near_lo[a] - 2 * reach);
-        reach -= .5 * box;
-      }
-      EXPECT_GE(g.pad, kLeast * reach) << c.name;
-      for (int a = 0; a < 3; ++a)
+      EXPECT_GE(g.pad, kLeast * g.reach) << c.name;
+      for (int a = 0; a < 3; ++a) {
+        EXPECT_GE(g.reach, .99 * g.cell[a] * g.cells[static_cast<std::size_t>(a)]) << c.name;
         EXPECT_GE(g.cell[a], 1.99 * g.pad) << c.name;
+      }
     }
   }
 }
@@ -282,35 +273,21 @@ TEST(GridSize, AnOutlierDoesNotPutEverythingEverywhere) {
             std::pow(1 + 2. / 64, 3) * static_cast<double>(alone.grids()[0].references));
 }
 
-TEST(GridChoice, OnlyVastScenesHaveGridsForNearAndForFarRays) {
-  for (const float half : {100.f, 500.f, 1e5f}) {
-    const Scene scene = crowd_on_a_plain(3, 300, half);
-    const World world(scene, {});
-    const auto& grids = world.impl().grids;
-    if (half < 1000) {
-      ASSERT_EQ(grids.size(), 1u) << half;
-      EXPECT_EQ(grids[0].serves, Serves::kAll);
-      continue;
-    }
-    ASSERT_EQ(grids.size(), 2u);
-    EXPECT_EQ(grids[0].serves, Serves::kNear);
-    EXPECT_EQ(grids[1].serves, Serves::kFar);
-    EXPECT_GT(grids[0].cells[0], grids[1].cells[0]);
-  }
-}
-
-/// Were there a grid for rays from afar, its cells would hold a mesh by the thousand; with spheres
-/// among the triangles there is one.
-TEST(GridChoice, SmallMeshesInVastScenesHaveOneGridForAllRays) {
-  Scene scene = mesh_in_a_vast_scene();
-  const World world(scene, {});
+/// Rays from all over a vast scene may ask for a pad that is large beside the cells; its grid is as
+/// fine as if there were nothing else.
+TEST(GridChoice, WhatIsSmallInAVastSceneHasOneGridAsIfAlone) {
+  const Scene vast = mesh_in_a_vast_scene();
+  const World world(vast, {});
   ASSERT_EQ(world.impl().grids.size(), 1u);
   const Grid& g = world.impl().grids[0];
-  EXPECT_EQ(g.serves, Serves::kNearAndAfar);
   EXPECT_LE(g.pad, g.cell[0] / 32);
   Scene alone = empty_scene();
   add_object(alone, ball_mesh(24, 12, .2));
   EXPECT_EQ(g.cells, World(alone, {}).impl().grids[0].cells);
+  for (const float half : {100.f, 1e3f, 1e5f}) {
+    const Scene crowd = crowd_on_a_plain(3, 300, half);
+    EXPECT_EQ(World(crowd, {}).grids().size(), 1u) << half;
+  }
 }
 
 TEST(GridChoice, HugePrimitivesStandOutside) {

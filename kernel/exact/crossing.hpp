@@ -1,0 +1,64 @@
+#pragma once
+// Where rays cross primitives, by real arithmetic: what is left when floats and doubles do not
+// tell. Floats given are exact numbers. Derivations: docs/numerics.md.
+
+#include "kernel/exact/double_double.hpp"
+
+namespace grelha {
+
+/// A ray as it came; every number is a float's.
+struct ExactRay {
+  double org[3];
+  double dir[3];
+  double t_min;
+
+  /// With t counted in another length: a power of two.
+  ExactRay in_units_of(double unit) const {
+    return {{org[0], org[1], org[2]}, {dir[0] / unit, dir[1] / unit, dir[2] / unit}, t_min * unit};
+  }
+};
+
+/// The first crossing beyond t_min of a ray and a primitive.
+class ExactCrossing {
+ public:
+  ExactCrossing() = default;  ///< there is none
+  /// t = numerator / denominator, which is not 0.
+  ExactCrossing(const Expansion& numerator, const Expansion& denominator)
+      : some_(true), rational_(true), numerator_(numerator), denominator_(denominator) {}
+  explicit ExactCrossing(const DoubleDouble& t) : some_(true), t_(t) {}
+
+  bool some() const { return some_; }
+  /// The sign of t - x: exact for triangles and planes, of 100 bits for spheres and cones.
+  int compare(double x) const;
+  /// The sign of t - other.t: exact of two that are triangles or planes. Of others what agrees in
+  /// its first 90 bits is equal.
+  int compare(const ExactCrossing& other) const;
+  /// t, within 2^-50 of itself.
+  double estimate() const;
+  /// The float nearest to t; of two the even one.
+  float rounded() const;
+
+ private:
+  DoubleDouble wide() const;
+
+  bool some_ = false;
+  bool rational_ = false;
+  Expansion numerator_, denominator_;
+  DoubleDouble t_;
+};
+
+/// From either side, edges and corners included. Rays in the plane of a triangle, and triangles
+/// without an area, do not cross.
+ExactCrossing cross_triangle(const ExactRay& ray, const float (&corner)[3][3]);
+/// From either side. Rays along a plane do not cross.
+ExactCrossing cross_plane(const ExactRay& ray, const float (&point)[3], const float (&normal)[3]);
+/// From outside or inside; of a negative radius from inside alone. A line that touches crosses.
+ExactCrossing cross_sphere(const ExactRay& ray, const float (&center)[3], float radius);
+
+/// The side of a cone frustum, as Cone::Fields has it.
+struct ExactCone {
+  float base[3], axis[3], height, radius, slope, side;
+};
+ExactCrossing cross_cone(const ExactRay& ray, const ExactCone& cone);
+
+}  // namespace grelha

@@ -1,0 +1,107 @@
+#pragma once
+// What floats do not tell of a crossing is taken from doubles, and what these do not tell from
+// exact numbers.
+
+#include "kernel/primitive/ray_lanes.hpp"
+
+namespace grelha {
+
+/// t of a crossing, from lo to hi; NaN: there is none.
+struct CrossingSpan {
+  float lo = __builtin_nanf("");
+  float hi = __builtin_nanf("");
+};
+
+}  // namespace grelha
+
+namespace grelha::GRELHA_ISA {
+
+/// One ray in double.
+inline RayLanes<double> in_double(const ExactRay& r) {
+  const Vec3<double> dir = vec(r.dir);
+  const double inv_dd = 1 / dot(dir, dir);
+  return {.org = vec(r.org),
+          .dir = dir,
+          .inv_dd = inv_dd,
+          .inv_length = square_root(inv_dd),
+          .t_min = r.t_min,
+          .off = 0,
+          .room = __builtin_inf()};
+}
+
+/// Part i of rays as they came, in double.
+template <int i, class Real>
+[[gnu::always_inline]] inline RayLanes<Wide<Real>> given_in_double(const RayLanes<Real>& ray) {
+  using W = Wide<Real>;
+  const auto of = [&](const auto& member, const Real& own) {
+    if (!ray.base)
+      return widen<i>(own);
+    const float* const given = member(*ray.given) + ray.first;
+    return ray.step == 0 ? W(static_cast<double>(*given)) : take<W>(given + i * kWidth<W>);
+  };
+  const auto origin = [](int axis) { return [axis](const GivenRays& g) { return g.org[axis]; }; };
+  const Vec3<W> dir = widen<i>(ray.dir);
+  const W inv_dd = W(1) / dot(dir, dir);
+  return {.org = {of(origin(0), ray.org.x), of(origin(1), ray.org.y), of(origin(2), ray.org.z)},
+          .dir = dir,
+          .inv_dd = inv_dd,
+          .inv_length = square_root(inv_dd),
+          .t_min = of([](const GivenRays& g) { return g.t_min; }, ray.t_min),
+          .off = W(0),
+          .room = W(0)};
+}
+/// What t of rays as they came has more.
+template <int i, class Real>
+[[gnu::always_inline]] inline Wide<Real> shift_in_double(const RayLanes<Real>& ray) {
+  using W = Wide<Real>;
+  if (!ray.base)
+    return W(0);
+  return ray.step == 0 ? W(ray.given->shift[ray.first])
+                       : load<W>(ray.given->shift + ray.first + i * kWidth<W>);
+}
+/// Doubles that round to floats not above or not below others: more than 2 u and the least float.
+template <class W>
+[[gnu::always_inline]] inline W rounded_down(const W& a) {
+  return a - (magnitude(a) * W(0x1p-23) + W(0x1p-149));
+}
+template <class W>
+[[gnu::always_inline]] inline W rounded_up(const W& a) {
+  return a + (magnitude(a) * W(0x1p-23) + W(0x1p-149));
+}
+
+/// Of what doubles found, or else of cross(); t is counted from `shift` on.
+template <class Cross>
+inline CrossingSpan settle_one(const Found<double>& found, double shift, const Cross& cross) {
+  if (!found.some)
+    return {};
+  double lo = found.lo;
+  double hi = found.hi;
+  if (!found.sure) {
+    const ExactCrossing exact = cross();
+    if (!exact.some())
+      return {};
+    const double t = exact.estimate();
+    lo = t - magnitude(t) * 0x1p-48;
+    hi = t + magnitude(t) * 0x1p-48;
+  }
+  const double room = magnitude(shift) * 0x1p-51;
+  return {not_above((lo - shift) - room), not_below((hi - shift) + room)};
+}
+
+/// Replaces chosen lanes of `found` by span(lane).
+template <class Real, class SpanOf>
+inline void replace_lanes(unsigned chosen, Found<Real>& found, const SpanOf& span_of) {
+  Scalar<Real> lo[kWidth<Real>], hi[kWidth<Real>];
+  store(lo, found.lo);
+  store(hi, found.hi);
+  each_bit(chosen, [&](int k) {
+    const CrossingSpan span = span_of(k);
+    lo[k] = span.lo;
+    hi[k] = span.hi;
+  });
+  load(lo, found.lo);
+  load(hi, found.hi);
+  found.some = both(found.some, found.hi == found.hi);
+}
+
+}  // namespace grelha::GRELHA_ISA

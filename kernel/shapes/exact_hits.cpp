@@ -1,0 +1,128 @@
+#include "kernel/shapes/exact_hits.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace grelha {
+namespace {
+
+constexpr double kNoEnd = std::numeric_limits<double>::infinity();
+
+template <class Shape>
+using One = typename Shape::template Fields<float>;
+
+template <class Shape>
+One<Shape> primitive_at(const typename Shape::Arrays& all, std::uint32_t i) {
+  if constexpr (Shape::kKind == PrimitiveKind::kTriangle) {
+    return all.triangle(i);
+  } else {
+    return one_of<Shape>(all.fields, i);
+  }
+}
+
+template <class Shape>
+scalar::Found<double> found_in_double(const ExactRay& ray, const One<Shape>& one) {
+  if constexpr (Shape::kKind == PrimitiveKind::kTriangle) {
+    return scalar::bound_triangle(ray, one.corner);
+  } else {
+    const scalar::RayLanes<double> wide = scalar::in_double(ray);
+    return scalar::bound(wide, scalar::widened<Shape, 0, float>(one), kNoEnd);
+  }
+}
+
+template <class Shape>
+ExactCrossing crossing_of(const ExactRay& ray, const One<Shape>& one) {
+  if constexpr (Shape::kKind == PrimitiveKind::kTriangle) {
+    return cross_triangle(ray, one.corner);
+  } else {
+    return scalar::exact_crossing(ray, one);
+  }
+}
+
+/// Calls visit.operator()<Shape>(fields) for a primitive.
+template <class Visit>
+auto visit_primitive(const GeometryView& g, std::uint32_t id, const Visit& visit) {
+  return visit_shape(Shapes{}, g.ids, id, [&]<class Shape>(std::uint32_t i) {
+    return visit.template operator()<Shape>(primitive_at<Shape>(g.of<Shape>(), i));
+  });
+}
+
+scalar::Found<double> found_in_double(const GeometryView& g,
+                                      const ExactRay& ray,
+                                      std::uint32_t id) {
+  return visit_primitive(
+      g, id, [&]<class Shape>(const One<Shape>& one) { return found_in_double<Shape>(ray, one); });
+}
+ExactCrossing crossing_of(const GeometryView& g, const ExactRay& ray, std::uint32_t id) {
+  return visit_primitive(
+      g, id, [&]<class Shape>(const One<Shape>& one) { return crossing_of<Shape>(ray, one); });
+}
+
+}  // namespace
+
+namespace {
+template <class Shape>
+CrossingSpan span_of(const ExactRay& ray, const One<Shape>& primitive, double shift) {
+  return scalar::settle_one(found_in_double<Shape>(ray, primitive), shift, [&] {
+    return crossing_of<Shape>(ray, primitive);
+  });
+}
+}  // namespace
+
+CrossingSpan crossing_span(PrimitiveKind kind,
+                           const ExactRay& ray,
+                           const void* fields,
+                           double shift) {
+  CrossingSpan span;
+  for_each_shape([&]<class Shape>() {
+    if (kind == Shape::kKind)
+      span = span_of<Shape>(ray, *static_cast<const One<Shape>*>(fields), shift);
+  });
+  return span;
+}
+
+CrossingSpan crossing_span(const GeometryView& g,
+                           const ExactRay& ray,
+                           std::uint32_t id,
+                           double shift) {
+  return visit_primitive(
+      g, id, [&]<class Shape>(const One<Shape>& one) { return span_of<Shape>(ray, one, shift); });
+}
+
+bool comes_first(const GeometryView& g,
+                 const ExactRay& ray,
+                 std::uint32_t id,
+                 std::uint32_t other) {
+  const scalar::Found<double> a = found_in_double(g, ray, id);
+  const scalar::Found<double> b = found_in_double(g, ray, other);
+  if (a.sure && b.sure && (a.hi < b.lo || b.hi < a.lo))
+    return a.hi < b.lo;
+  const int order = crossing_of(g, ray, id).compare(crossing_of(g, ray, other));
+  return order != 0 ? order < 0 : id < other;
+}
+
+bool comes_before(const GeometryView& g, const ExactRay& ray, std::uint32_t id, float t_max) {
+  const scalar::Found<double> found = found_in_double(g, ray, id);
+  const double end = t_max;
+  if (found.sure && (found.hi < end || found.lo >= end))
+    return found.hi < end;
+  return crossing_of(g, ray, id).compare(end) < 0;
+}
+
+double double_t(const GeometryView& g, const ExactRay& ray, std::uint32_t id) {
+  const scalar::Found<double> found = found_in_double(g, ray, id);
+  const double t = .5 * found.lo + .5 * found.hi;
+  if (found.sure && found.hi - found.lo <= 0x1p-45 * std::abs(t))
+    return t;
+  return crossing_of(g, ray, id).estimate();
+}
+
+float rounded_t(const GeometryView& g, const ExactRay& ray, std::uint32_t id) {
+  const scalar::Found<double> found = found_in_double(g, ray, id);
+  const auto first = static_cast<float>(found.lo);
+  if (found.sure && first == static_cast<float>(found.hi))
+    return first;
+  return crossing_of(g, ray, id).rounded();
+}
+
+}  // namespace grelha

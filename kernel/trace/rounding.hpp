@@ -1,0 +1,100 @@
+#pragma once
+// t of what rays met, rounded once: in double, side by side, and exactly where that does not tell
+// which float is nearest.
+
+#include "kernel/walk/packet.hpp"
+
+namespace grelha::GRELHA_ISA {
+
+/// What tests see of primitives of indices i.
+template <class Shape>
+[[gnu::always_inline]] inline typename Shape::template Fields<Lanes> fields_at(
+    const typename Shape::Arrays& all, const LaneWords& i) {
+  if constexpr (Shape::kKind == PrimitiveKind::kTriangle) {
+    Triangle::Fields<Lanes> to;
+    for (int k = 0; k < 3; ++k) {
+      const LaneWords vertex = words_at(all.corner[k], i);
+      for (int a = 0; a < 3; ++a)
+        to.corner[k][a] = floats_at(all.vertex[a], vertex);
+    }
+    return to;
+  } else {
+    return gathered<Shape, Lanes>(all.fields, i);
+  }
+}
+
+/// What double tells of part k of rays and the primitives that they met.
+template <class Shape, int k>
+[[gnu::always_inline]] inline Found<DoubleLanes> bound_part(
+    const RayLanes<Lanes>& rays,
+    const Lanes& axis,
+    const typename Shape::template Fields<Lanes>& met) {
+  using W = DoubleLanes;
+  const W never(static_cast<double>(kInfinity));
+  if constexpr (Shape::kKind == PrimitiveKind::kTriangle) {
+    const W on = widen<k>(axis);
+    const auto turned = [&](const Vec3<Lanes>& v) { return permuted<W>(on, widen<k>(v)); };
+    const RayAndTriangle<W> from{
+        turned(rays.org),
+        turned(rays.dir),
+        {turned(vec(met.corner[0])), turned(vec(met.corner[1])), turned(vec(met.corner[2]))}};
+    const W one = W(1) / from.dir.z;
+    const Shear<W> shear{from.dir.x * one, from.dir.y * one, one, W(0)};
+    return bound_triangle<W>(from, shear, widen<k>(rays.t_min), never);
+  } else {
+    return bound(given_in_double<k>(rays), widened<Shape, k, Lanes>(met), never);
+  }
+}
+
+/// Spans of t, part after part; NaN where double does not tell that there is a crossing.
+template <class Shape, int k = 0>
+[[gnu::always_inline]] inline void bound_parts_of(const RayLanes<Lanes>& rays,
+                                                  const Lanes& axis,
+                                                  const typename Shape::template Fields<Lanes>& met,
+                                                  DoubleLanes (&lo)[kWideParts<Lanes>],
+                                                  DoubleLanes (&hi)[kWideParts<Lanes>]) {
+  const Found<DoubleLanes> found = bound_part<Shape, k>(rays, axis, met);
+  lo[k] = select(found.sure, found.lo, DoubleLanes(__builtin_nan("")));
+  hi[k] = found.hi;
+  if constexpr (k + 1 < kWideParts<Lanes>)
+    bound_parts_of<Shape, k + 1>(rays, axis, met, lo, hi);
+}
+
+/// A ray of a packet, with t counted as the caller does.
+inline ExactRay as_it_came(const Packet& p, int i) {
+  const ExactRay ray = p.given.ray(i);
+  return p.has_units ? ray.in_units_of(1 / static_cast<double>(p.unit[i])) : ray;
+}
+
+/// t of the rays of a packet from i on that met primitives of the kinds of a set, to t[0] and on.
+template <class Set>
+inline void round_hits(const Packet& p, int i, float* t) {
+  const GeometryView& g = *p.geometry;
+  const LaneWords id = load_words<Lanes>(reinterpret_cast<const std::uint32_t*>(p.id + i));
+  Set::for_each([&]<class Shape>() __attribute__((always_inline)) {
+    const std::uint32_t first = g.ids.begin(Shape::kKind);
+    const auto here = id - first < g.ids.count(Shape::kKind);
+    unsigned lanes = lanes_where(here);
+    if (lanes == 0)
+      return;
+    const LaneWords index(here ? id - first : LaneWords{});
+    DoubleLanes lo[kWideParts<Lanes>], hi[kWideParts<Lanes>];
+    bound_parts_of<Shape>(
+        ray_lanes(p, i), load<Lanes>(p.axis + i), fields_at<Shape>(g.of<Shape>(), index), lo, hi);
+    if (p.has_units) [[unlikely]]
+      for (int k = 0; k < kWideParts<Lanes>; ++k) {
+        const auto unit = take<DoubleLanes>(p.unit + i + k * kWidth<DoubleLanes>);
+        lo[k] = lo[k] / unit;
+        hi[k] = hi[k] / unit;
+      }
+    const Lanes least = narrow<Lanes>(lo);
+    float rounded[kLanes];
+    store(rounded, least);
+    const unsigned known = bits(least == narrow<Lanes>(hi));
+    each_bit(lanes, [&](int k) {
+      t[k] = known >> k & 1 ? rounded[k] : rounded_t(g, as_it_came(p, i + k), id_of(p.id[i + k]));
+    });
+  });
+}
+
+}  // namespace grelha::GRELHA_ISA
