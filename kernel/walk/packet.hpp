@@ -165,13 +165,11 @@ inline void test_one(
   });
 }
 
-/// A triangle that the rays of a packet are tested against.
+/// A triangle that the rays of a packet are tested against, as it is and in their frame.
 struct TestedTriangle {
   const Packet* p;
-  const float (&corner)[3][3];
-
-  /// Coordinate a of corner k in the frame of the rays.
-  float at(int k, int a) const { return p->base ? corner[k][a] - p->base[a] : corner[k][a]; }
+  const Triangle::Fields<float>& as_it_is;
+  const float (*corner)[3];
 };
 
 /// It and the rays from i on.
@@ -181,7 +179,9 @@ struct TriangleAndRays {
   float off() const { return with->p->off; }
   ExactRay given(int k) const { return with->p->given.ray(i + k); }
   double shift(int k) const { return with->p->given.shift_of(i + k); }
-  void take_corners(int, float (&to)[3][3]) const { __builtin_memcpy(to, with->corner, sizeof to); }
+  void take_corners(int, float (&to)[3][3]) const {
+    __builtin_memcpy(to, with->as_it_is.corner, sizeof to);
+  }
 };
 
 /// The same of a group whose rays share an axis.
@@ -193,7 +193,8 @@ struct AlignedRays : TriangleAndRays {
     const int ky = kPreviousAxis[k];
     const Packet& p = *with->p;
     const auto corner = [&](int c) {
-      return Vec3<Lanes>{Lanes(with->at(c, kx)), Lanes(with->at(c, ky)), Lanes(with->at(c, k))};
+      const float* const v = with->corner[c];
+      return Vec3<Lanes>{Lanes(v[kx]), Lanes(v[ky]), Lanes(v[k])};
     };
     return {{load<Lanes>(p.org[kx] + i), load<Lanes>(p.org[ky] + i), load<Lanes>(p.org[k] + i)},
             {load<Lanes>(p.dir[kx] + i), load<Lanes>(p.dir[ky] + i), load<Lanes>(p.dir[k] + i)},
@@ -207,8 +208,8 @@ struct MixedRays : TriangleAndRays {
     const Packet& p = *with->p;
     const Lanes axis = load<Lanes>(p.axis + i);
     const auto corner = [&](int c) {
-      return permuted<Lanes>(axis,
-                             {Lanes(with->at(c, 0)), Lanes(with->at(c, 1)), Lanes(with->at(c, 2))});
+      const float* const v = with->corner[c];
+      return permuted<Lanes>(axis, {Lanes(v[0]), Lanes(v[1]), Lanes(v[2])});
     };
     return {permuted(axis, take_vec<Lanes>(p.org, i)),
             permuted(axis, take_vec<Lanes>(p.dir, i)),
@@ -221,7 +222,11 @@ template <bool kAny>
                                      const Triangle::Fields<float>& triangle,
                                      std::uint32_t id,
                                      Counters& n) {
-  const TestedTriangle with{&p, triangle.corner};
+  Triangle::Fields<float> framed;
+  for (int k = 0; p.base && k < 3; ++k)
+    for (int a = 0; a < 3; ++a)
+      framed.corner[k][a] = triangle.corner[k][a] - p.base[a];
+  const TestedTriangle with{&p, triangle, p.base ? framed.corner : triangle.corner};
   each_tested<Triangle>(
       p, n, [&](int i, int g) __attribute__((always_inline)) {
         const Shear<Lanes> shear{load<Lanes>(p.shear[0] + i),

@@ -10,6 +10,7 @@
 #include "grelha/grelha.hpp"
 #include "kernel/world/world_impl.hpp"
 #include "kernel/shapes/copies.hpp"
+#include "tests/support/one_hit.hpp"
 #include "tests/support/oracle.hpp"
 #include "tests/support/random.hpp"
 
@@ -64,11 +65,8 @@ TEST(Disc, IsMetWhereItIs) {
     const Real t_true = dot(center - org, normal) / dot(dir, normal);
     const Real from_rim = length(org + t_true * dir - center) - r;
     const Real bound = test::oracle::kEps * length(center - org) / cosine;
-    const scalar::Vec3<float> ray_dir{d.x, d.y, d.z};
-    float t = 0;
-    const scalar::RayLanes<float> ray{{o.x, o.y, o.z}, ray_dir, 1 / dot(ray_dir, ray_dir), 0};
-    const Disc::Fields<float> disc{{c.x, c.y, c.z}, {n.x, n.y, n.z}, r};
-    const bool found = scalar::meet(ray, disc, t);
+    const auto [found, t] =
+        test::one_hit<Disc>(test::exact_ray(o, d), {{c.x, c.y, c.z}, {n.x, n.y, n.z}, r});
     if (std::abs(from_rim) > 32 * bound) {
       ASSERT_EQ(found, from_rim < 0 && t_true > 0) << "case " << i;
     }
