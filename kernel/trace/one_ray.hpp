@@ -103,9 +103,15 @@ inline float t_of(const Single& r, const ExactRay& ray) {
     int place = 0;
     for (int k = 1; k < kBlock; ++k)
       place = r.block->id[k] == r.id ? k : place;
-    const Found<double> found = bound_triangle(ray, triangle_of(*r.block, place).corner);
-    const auto first = static_cast<float>(found.lo);
-    if (r.block->id[place] == r.id && found.sure && first == static_cast<float>(found.hi))
+    const Triangle::Fields<float> met = triangle_of(*r.block, place);
+    const auto at = [&](int k) {
+      const auto& c = met.corner[k];
+      return Vec3<double>{c[0], c[1], c[2]};
+    };
+    const PlaneSpan<double> span =
+        plane_span<double>(vec(ray.org), vec(ray.dir), {at(0), at(1), at(2)});
+    const auto first = static_cast<float>(span.lo);
+    if (r.block->id[place] == r.id && span.known && first == static_cast<float>(span.hi))
       return first;
   }
   return rounded_t(g, ray, r.id);

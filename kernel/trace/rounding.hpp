@@ -23,41 +23,28 @@ template <class Shape>
   }
 }
 
-/// What double tells of part k of rays and the primitives that they met.
-template <class Shape, int k>
-[[gnu::always_inline]] inline Found<DoubleLanes> bound_part(
-    const RayLanes<Lanes>& rays,
-    const Lanes& axis,
-    const typename Shape::template Fields<Lanes>& met) {
-  using W = DoubleLanes;
-  const W never(static_cast<double>(kInfinity));
-  if constexpr (Shape::kKind == PrimitiveKind::kTriangle) {
-    const W on = widen<k>(axis);
-    const auto turned = [&](const Vec3<Lanes>& v) { return permuted<W>(on, widen<k>(v)); };
-    const RayAndTriangle<W> from{
-        turned(rays.org),
-        turned(rays.dir),
-        {turned(vec(met.corner[0])), turned(vec(met.corner[1])), turned(vec(met.corner[2]))}};
-    const W one = W(1) / from.dir.z;
-    const Shear<W> shear{from.dir.x * one, from.dir.y * one, one, W(0)};
-    return bound_triangle<W>(from, shear, widen<k>(rays.t_min), never);
-  } else {
-    return bound(given_in_double<k>(rays), widened<Shape, k, Lanes>(met), never);
-  }
-}
-
-/// Spans of t, part after part; NaN where double does not tell that there is a crossing.
+/// Spans of t, part after part; NaN where double does not tell.
 template <class Shape, int k = 0>
-[[gnu::always_inline]] inline void bound_parts_of(const RayLanes<Lanes>& rays,
-                                                  const Lanes& axis,
-                                                  const typename Shape::template Fields<Lanes>& met,
-                                                  DoubleLanes (&lo)[kWideParts<Lanes>],
-                                                  DoubleLanes (&hi)[kWideParts<Lanes>]) {
-  const Found<DoubleLanes> found = bound_part<Shape, k>(rays, axis, met);
-  lo[k] = select(found.sure, found.lo, DoubleLanes(__builtin_nan("")));
-  hi[k] = found.hi;
+[[gnu::always_inline]] inline void met_spans(const RayLanes<Lanes>& rays,
+                                             const typename Shape::template Fields<Lanes>& met,
+                                             DoubleLanes (&lo)[kWideParts<Lanes>],
+                                             DoubleLanes (&hi)[kWideParts<Lanes>]) {
+  using W = DoubleLanes;
+  const W unknown(__builtin_nan(""));
+  if constexpr (Shape::kKind == PrimitiveKind::kTriangle) {
+    const auto& c = met.corner;
+    const Corners<W> corner{widen<k>(vec(c[0])), widen<k>(vec(c[1])), widen<k>(vec(c[2]))};
+    const PlaneSpan<W> span = plane_span<W>(widen<k>(rays.org), widen<k>(rays.dir), corner);
+    lo[k] = select(span.known, span.lo, unknown);
+    hi[k] = span.hi;
+  } else {
+    const W never(static_cast<double>(kInfinity));
+    const Found<W> found = bound(given_in_double<k>(rays), widened<Shape, k, Lanes>(met), never);
+    lo[k] = select(found.sure, found.lo, unknown);
+    hi[k] = found.hi;
+  }
   if constexpr (k + 1 < kWideParts<Lanes>)
-    bound_parts_of<Shape, k + 1>(rays, axis, met, lo, hi);
+    met_spans<Shape, k + 1>(rays, met, lo, hi);
 }
 
 /// A ray of a packet, with t counted as the caller does.
@@ -79,8 +66,7 @@ inline void round_hits(const Packet& p, int i, float* t) {
       return;
     const LaneWords index(here ? id - first : LaneWords{});
     DoubleLanes lo[kWideParts<Lanes>], hi[kWideParts<Lanes>];
-    bound_parts_of<Shape>(
-        ray_lanes(p, i), load<Lanes>(p.axis + i), fields_at<Shape>(g.of<Shape>(), index), lo, hi);
+    met_spans<Shape>(ray_lanes(p, i), fields_at<Shape>(g.of<Shape>(), index), lo, hi);
     if (p.has_units) [[unlikely]]
       for (int k = 0; k < kWideParts<Lanes>; ++k) {
         const auto unit = take<DoubleLanes>(p.unit + i + k * kWidth<DoubleLanes>);
