@@ -77,13 +77,19 @@ ExactCrossing cross_triangle(const ExactRay& ray, const float (&corner)[3][3]) {
   const ExactVector b = difference(widened(corner[1]).at, ray.org);
   const ExactVector c = difference(widened(corner[2]).at, ray.org);
   const ExactVector bc = cross(b, c);
-  const Expansion edge[3] = {
-      dot(bc, ray.dir), dot(cross(c, a), ray.dir), dot(cross(a, b), ray.dir)};
-  const int signs[3] = {edge[0].sign(), edge[1].sign(), edge[2].sign()};
-  const int least = std::min({signs[0], signs[1], signs[2]});
-  const int most = std::max({signs[0], signs[1], signs[2]});
-  const Expansion sum = edge[0] + edge[1] + edge[2];
-  if (least * most < 0 || sum.sign() == 0)
+  const ExactVector next[2] = {cross(c, a), cross(a, b)};
+  Expansion sum = dot(bc, ray.dir);
+  int least = sum.sign();
+  int most = least;
+  for (const ExactVector& n : next) {
+    const Expansion edge = dot(n, ray.dir);
+    least = std::min(least, edge.sign());
+    most = std::max(most, edge.sign());
+    if (least * most < 0)
+      return {};
+    sum += edge;
+  }
+  if (sum.sign() == 0)
     return {};
   const ExactCrossing found(dot(bc, a), sum);
   return found.compare(ray.t_min) > 0 ? found : ExactCrossing();

@@ -3,6 +3,8 @@
 // Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997.
 
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 
 namespace grelha {
 
@@ -35,6 +37,13 @@ class Expansion {
   static constexpr int kMost = 40;
 
   Expansion() = default;
+  Expansion(const Expansion& e) { *this = e; }
+  Expansion& operator=(const Expansion& e) {
+    count_ = e.count_;
+    is_lost_ = e.is_lost_;
+    std::memmove(part_, e.part_, static_cast<std::size_t>(count_) * sizeof(double));
+    return *this;
+  }
   explicit Expansion(double x) { add(x); }
   static Expansion difference(double x, double y) {
     Expansion e(x);
@@ -43,7 +52,7 @@ class Expansion {
   }
 
   void add(double x) {
-    if (is_lost_)
+    if (is_lost_ || x == 0)
       return;
     int count = 0;
     for (int i = 0; i < count_; ++i) {

@@ -1,0 +1,91 @@
+#!/usr/bin/env python3
+"""Wrong answers against time, beside Embree: runs perf/exact.cpp and draws what it prints.
+
+    ./run perf exact [--keep] [--draw] [options of the benchmark: --rays N, --rounds N, --scene NAME]
+
+--keep writes docs/exact.csv, docs/images/exact.svg and the table of docs/accuracy.md; else CSV and
+chart stand beside the program.
+"""
+import argparse
+import csv
+import io
+import pathlib
+import subprocess
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "lib"))
+from bench import COLOURS, DOCS, DRAW_HELP, ROOT, commit, cpu_name, plt, put_section, table
+
+LOOKS = {"grelha, calls": ("o", 0), "grelha, streams": ("s", 2), "embree robust": ("^", 1),
+         "embree": ("v", 4)}
+
+
+def wrong(row):
+    return sum(int(row[k]) for k in ("lost", "false", "other"))
+
+
+def draw(rows, rays, path):
+    fig, axes = plt.subplots(figsize=(7, 4.6), layout="constrained")
+    for who, (marker, colour) in LOOKS.items():
+        own = [r for r in rows if r["who"] == who]
+        axes.scatter([float(r["ns"]) for r in own], [100 * wrong(r) / rays for r in own],
+                     marker=marker, s=36, facecolors="none", edgecolors=COLOURS[colour], label=who)
+    axes.set_xscale("log")
+    axes.set_yscale("symlog", linthresh=.01)
+    axes.set(xlabel="nanoseconds a ray, one thread", ylabel="wrong answers, % of rays",
+             title="Rays at vertices, edges and faces of two scans: 0 is no wrong answer",
+             ylim=(-.002, 120))
+    axes.set_yticks([0, .01, .1, 1, 10, 100], ["0", ".01", ".1", "1", "10", "100"])
+    axes.grid(alpha=.3)
+    axes.legend(loc="upper right", fontsize=9)
+    fig.savefig(path, metadata={"Date": None})
+    plt.close(fig)
+
+
+def told(rows, about):
+    places = list(dict.fromkeys((r["mesh"], r["moved"], r["eye"]) for r in rows))
+    names = [who for who in LOOKS if any(r["who"] == who for r in rows)]
+    cells = {(r["mesh"], r["moved"], r["eye"], r["who"]): r for r in rows}
+    lines = []
+    for place in places:
+        line = [place[0].split(".")[0], f"{float(place[1]):,.0f}", f"{float(place[2]):,g}"]
+        for who in names:
+            r = cells[(*place, who)]
+            counts = ", ".join(r[k] for k in ("lost", "false", "other")) if wrong(r) else "0"
+            line.append(f"{counts}; {float(r['ns']):,.0f}")
+        lines.append(line)
+    sums = {who: sum(wrong(r) for r in rows if r["who"] == who) for who in names}
+    said = ", ".join(f"{who} {n:,}" for who, n in sums.items())
+    return (f"{about} Of each: lost, false, another triangle (0: none of these); ns a ray.\n\n"
+            + table(["mesh", "moved by, diagonals", "eye, diagonals", *names], lines)
+            + f"\n\nWrong in all: {said}. {cpu_name()}, commit {commit()}, `./run perf exact --keep`.")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--program", default=ROOT / "build/release/grelha",
+                        help="the benchmark stands beside it [build/release/grelha]")
+    parser.add_argument("--keep", action="store_true", help="write into docs/")
+    parser.add_argument("--draw", action="store_true", help=DRAW_HELP)
+    asked, rest = parser.parse_known_args()
+    folder = pathlib.Path(asked.program).resolve().parent
+    to = DOCS if asked.keep or asked.draw else folder
+    numbers = to / "exact.csv"
+    if not asked.draw:
+        done = subprocess.run([folder / "exact", *rest], stdout=subprocess.PIPE, text=True)
+        if done.returncode:
+            sys.exit(done.returncode)
+        numbers.write_text(done.stdout)
+    about, _, text = numbers.read_text().partition("\n")
+    about = about[2:]
+    rows = list(csv.DictReader(io.StringIO(text)))
+    chart = (DOCS / "images" if to == DOCS else folder) / "exact.svg"
+    draw(rows, int(about.split()[0]), chart)
+    section = told(rows, about[0].upper() + about[1:] + ".")
+    if asked.keep:
+        put_section(DOCS / "accuracy.md", "perf/exact.py", section)
+    print(section, numbers, chart, sep="\n")
+
+
+if __name__ == "__main__":
+    main()
