@@ -206,11 +206,11 @@ void ask_all(const std::string& name, double moved, double away, const Options& 
     row.tell(who, compare(j, id, t, false), ns);
   };
   const Row row{name.substr(name.find_last_of('/') + 1), moved, away};
-  ask(row, "grelha, calls", [&] {
+  ask(row, "grelha calls", [&] {
     for (std::size_t i = 0; i < rays.size(); ++i)
       hits[i] = closest(world, rays[i]);
   });
-  ask(row, "grelha, streams", [&] { closest(world, std::span(rays), std::span(hits)); });
+  ask(row, "grelha streams", [&] { closest(world, std::span(rays), std::span(hits)); });
   const RayBuffer buffer = buffer_of(rays);
   ask_embree(row, s, true, buffer, j, o.rounds);
   ask_embree(row, s, false, buffer, j, o.rounds);

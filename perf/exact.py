@@ -16,7 +16,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "lib"))
 from bench import COLOURS, DOCS, DRAW_HELP, ROOT, commit, cpu_name, plt, put_section, table
 
-LOOKS = {"grelha, calls": ("o", 0), "grelha, streams": ("s", 2), "embree robust": ("^", 1),
+LOOKS = {"grelha calls": ("o", 0), "grelha streams": ("s", 2), "embree robust": ("^", 1),
          "embree": ("v", 4)}
 
 
