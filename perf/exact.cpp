@@ -6,9 +6,10 @@
 // Prints CSV; perf/exact.py draws it.
 //
 // A scene is a file, or `GENERATOR SIZE`, of which triangles alone are taken; without any, two real
-// scans. It stands where it is, and moved by a thousand and by a million of its diagonals. An answer
-// is wrong where something is met and nothing should be, or the other way round, and where another
-// triangle is met. Of equal t the lower id is right; Embree, which promises none, may name any.
+// scans. It stands where it is, and moved by a thousand and by a million of its diagonals. An
+// answer is wrong where something is met and nothing should be, or the other way round, and where
+// another triangle is met. Of equal t the lower id is right; Embree, which promises none, may name
+// any.
 
 #include <algorithm>
 #include <chrono>

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Wrong answers against time, beside Embree: runs perf/exact.cpp and draws what it prints.
 
-    ./run perf exact [--keep] [--draw] [options of the benchmark: --rays N, --rounds N, --scene NAME]
+    ./run perf exact [--keep] [--draw] [--rays N] [--rounds N] [--scene NAME]
 
 --keep writes docs/exact.csv, docs/images/exact.svg and the table of docs/accuracy.md; else CSV and
 chart stand beside the program.
@@ -58,7 +58,8 @@ def told(rows, about):
     said = ", ".join(f"{who} {n:,}" for who, n in sums.items())
     return (f"{about} Of each: lost, false, another triangle (0: none of these); ns a ray.\n\n"
             + table(["mesh", "moved by, diagonals", "eye, diagonals", *names], lines)
-            + f"\n\nWrong in all: {said}. {cpu_name()}, commit {commit()}, `./run perf exact --keep`.")
+            + f"\n\nWrong in all: {said}. {cpu_name()}, commit {commit()}, "
+            + "`./run perf exact --keep`.")
 
 
 def main():
