@@ -45,9 +45,12 @@ class Faults:
         return done.returncode, done.stdout + done.stderr, values
 
     def tilted_cone_nff(self):
+        """The cone is there, and lit."""
         values = self.render("tilted_cone.nff", size="300x300")[2]
+        pixels = zip(values[::3], values[1::3], values[2::3])
+        cone = sum(max(abs(r - .2), abs(g - .3), abs(b - .5)) > 1e-6 for r, g, b in pixels)
         black = sum(v == 0 for v in values)
-        return len(values) > 0 and black < len(values) // 2
+        return 11000 < cone < 12000 and black < 1000
 
     def utm_double_ply(self):
         pictures = [self.render(name) for name in ("utm_double.ply", "utm_double_at_origin.ply")]

@@ -2,6 +2,7 @@
 // Queries: what the caller's rays meet. Any number of threads may call any function at once, on one
 // World or on many. A World does not change, and a call writes only the arrays it was given.
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -55,6 +56,13 @@ void occluded(const World& world,
               TraceCounts* counts = nullptr);
 /// The same of one ray.
 bool occluded(const World& world, const Ray& ray);
+
+/// How many triangles a ray crosses between its t_min and t_max; other primitives do not count, and
+/// exact copies of a triangle may count as one. Edges and corners are decided as if the ray lay
+/// beside them by less than any number, the same way for all: of a closed mesh the count is odd from
+/// inside and even from outside, whatever ray is chosen. Simulation of simplicity, Edelsbrunner and
+/// Mücke 1990; docs/numerics.md.
+std::size_t count_crossings(const World& world, const Ray& ray);
 
 /// Where a ray met a surface, and where new rays leave it.
 struct SurfacePoint {

@@ -95,6 +95,51 @@ ExactCrossing cross_triangle(const ExactRay& ray, const float (&corner)[3][3]) {
   return found.compare(ray.t_min) > 0 ? found : ExactCrossing();
 }
 
+namespace {
+
+/// The sign of an edge function of a ray that starts beside, by e along one axis and e^2 along
+/// another, e being less than any number: of d (p x q) less e (d x u) (q - p), and so on.
+int sign_beside(const ExactRay& ray, const Expansion& edge, const ExactVector& along) {
+  if (edge.sign() != 0)
+    return edge.sign();
+  const double* const d = ray.dir;
+  const double x = std::abs(d[0]);
+  const double y = std::abs(d[1]);
+  const double z = std::abs(d[2]);
+  const Expansion* const v[3] = {&along.x, &along.y, &along.z};
+  const int k = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
+  for (const int u : {(k + 1) % 3, (k + 2) % 3}) {
+    const int after = (u + 1) % 3;
+    const int last = (u + 2) % 3;
+    const int sign = (*v[after] * d[last] - *v[last] * d[after]).sign();
+    if (sign != 0)
+      return -sign;
+  }
+  return 0;
+}
+
+}  // namespace
+
+bool crosses_beside(const ExactRay& ray, const float (&corner)[3][3], double t_max) {
+  ExactVector at[3];
+  for (int i = 0; i < 3; ++i)
+    at[i] = difference(widened(corner[i]).at, ray.org);
+  Expansion sum;
+  int signs[3];
+  for (int i = 0; i < 3; ++i) {
+    const int from = (i + 1) % 3;
+    const int to = (i + 2) % 3;
+    const Expansion edge = dot(cross(at[from], at[to]), ray.dir);
+    const ExactVector along = difference(widened(corner[to]).at, widened(corner[from]).at);
+    signs[i] = sign_beside(ray, edge, along);
+    sum += edge;
+  }
+  if (signs[0] == 0 || signs[0] != signs[1] || signs[0] != signs[2] || sum.sign() == 0)
+    return false;
+  const ExactCrossing found(dot(cross(at[1], at[2]), at[0]), sum);
+  return found.compare(ray.t_min) > 0 && found.compare(t_max) < 0;
+}
+
 ExactCrossing cross_plane(const ExactRay& ray, const float (&point)[3], const float (&normal)[3]) {
   const double n[3] = {normal[0], normal[1], normal[2]};
   Expansion along;

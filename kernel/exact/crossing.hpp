@@ -50,6 +50,10 @@ class ExactCrossing {
 /// From either side, edges and corners included. Rays in the plane of a triangle, and triangles
 /// without an area, do not cross.
 ExactCrossing cross_triangle(const ExactRay& ray, const float (&corner)[3][3]);
+/// Whether a ray that is moved aside by less than any number crosses between t_min and t_max: of a
+/// closed mesh such a ray crosses no edge and no corner, so its crossings are even in number
+/// outside and odd inside. Edelsbrunner & Mücke, "Simulation of Simplicity", 1990.
+bool crosses_beside(const ExactRay& ray, const float (&corner)[3][3], double t_max);
 /// From either side. Rays along a plane do not cross.
 ExactCrossing cross_plane(const ExactRay& ray, const float (&point)[3], const float (&normal)[3]);
 /// From outside or inside; of a negative radius from inside alone. A line that touches crosses.
