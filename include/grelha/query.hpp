@@ -57,11 +57,11 @@ void occluded(const World& world,
 /// The same of one ray.
 bool occluded(const World& world, const Ray& ray);
 
-/// How many triangles a ray crosses between its t_min and t_max; other primitives do not count, and
+/// How many triangles a ray crosses between its t_min and t_max. Other primitives do not count, and
 /// exact copies of a triangle may count as one. Edges and corners are decided as if the ray lay
-/// beside them by less than any number, the same way for all: of a closed mesh the count is odd from
-/// inside and even from outside, whatever ray is chosen. Simulation of simplicity, Edelsbrunner and
-/// Mücke 1990; docs/numerics.md.
+/// beside them by less than any number, the same way for all. So of a closed mesh the count is odd
+/// from inside and even from outside, whatever ray is chosen. Simulation of simplicity,
+/// Edelsbrunner and Mücke 1990; docs/numerics.md.
 std::size_t count_crossings(const World& world, const Ray& ray);
 
 /// Where a ray met a surface, and where new rays leave it.

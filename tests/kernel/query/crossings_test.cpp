@@ -1,5 +1,5 @@
-// A point lies inside a closed mesh or not, whatever ray is asked: through vertices, along edges, in
-// the planes of triangles.
+// A point lies inside a closed mesh or not, whatever ray is asked: through vertices, along edges,
+// in the planes of triangles.
 #include "grelha/query.hpp"
 #include "tests/support/closed.hpp"
 #include "tests/support/rays.hpp"

@@ -34,21 +34,14 @@ struct Row {
   }
 };
 
-/// Rays to a primitive from all around, from origins that a trace uses.
-RayList rays_to(
-    Random& random, const World& world, const Float3& place, double size, double farthest) {
+/// Rays to a primitive from all around.
+RayList rays_to(Random& random, const Float3& place, double size, double farthest) {
   RayList rays;
   for (int i = 0; i < 16; ++i) {
     const Float3 org = at(place, size * random.log_in(1.5, farthest), random.direction());
     rays.add(org,
              scaled(minus(at(place, size * random.unit(), random.direction()), org),
                     random.log_in(1e-2, 1e2)));
-  }
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    const Float3 org = rays.org(i);
-    rays.ox[i] = org.x;
-    rays.oy[i] = org.y;
-    rays.oz[i] = org.z;
   }
   return rays;
 }
@@ -106,7 +99,7 @@ Result leave_from(std::uint64_t seeds, const Row& row, bool convex, const Make& 
     const Float3 place = random.point(size * offset);
     const Scene scene = make(random, size, place);
     const World world(scene, {.grid = false});
-    const RayList rays = rays_to(random, world, place, size, row.farthest);
+    const RayList rays = rays_to(random, place, size, row.farthest);
     const Leaving leaving = rays_from_hits(random, world, rays, size, convex, r);
     r.rays += leaving.rays.size();
     const Answers again = scalar_hits(world, leaving.rays);
