@@ -26,6 +26,7 @@ grelha_test(kernel/isa/kinds property grelha::kernel)
 find_library(GRELHA_GMPXX gmpxx)
 if(GRELHA_GMPXX)
   grelha_test(kernel/trace/exact property grelha::kernel ${GRELHA_GMPXX} gmp)
+  target_sources(exact_test PRIVATE kernel/trace/expansion_test.cpp)
 else()
   add_test(NAME exact COMMAND ${CMAKE_COMMAND} -E echo
     "SKIPPED: rational numbers need GMP (Debian: libgmp-dev)")

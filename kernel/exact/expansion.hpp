@@ -33,8 +33,9 @@ inline void two_sum(double x, double y, double& high, double& low) {
 /// are multiples of 2^-1043 below 2^1000.
 class Expansion {
  public:
-  /// The parts are nonadjacent: of the 2100 bits of doubles each takes 54 or more.
-  static constexpr int kMost = 40;
+  /// Compressed, each part is less than a last place of the next: doubles have 2100 bits, and so 40
+  /// parts.
+  static constexpr int kMost = 64;
 
   Expansion() = default;
   Expansion(const Expansion& e) { *this = e; }
@@ -54,6 +55,8 @@ class Expansion {
   void add(double x) {
     if (is_lost_ || x == 0)
       return;
+    if (count_ == kMost)
+      compress();
     int count = 0;
     for (int i = 0; i < count_; ++i) {
       double low = 0;
@@ -121,6 +124,31 @@ class Expansion {
   }
 
  private:
+  /// Shewchuk's Compress, figure 15: the same sum in as few parts as it takes.
+  void compress() {
+    double found[kMost];
+    int bottom = count_ - 1;
+    double sum = part_[bottom];
+    for (int i = count_ - 2; i >= 0; --i) {
+      double rest = 0;
+      two_sum(sum, part_[i], sum, rest);
+      if (rest != 0) {
+        found[bottom--] = sum;
+        sum = rest;
+      }
+    }
+    found[bottom] = sum;
+    int top = 0;
+    for (int i = bottom + 1; i < count_; ++i) {
+      double rest = 0;
+      two_sum(found[i], sum, sum, rest);
+      if (rest != 0)
+        part_[top++] = rest;
+    }
+    part_[top++] = sum;
+    count_ = top;
+  }
+
   double part_[kMost];
   int count_ = 0;
   bool is_lost_ = false;  ///< a part is no number: it left the range

@@ -120,9 +120,8 @@ double double_t(const GeometryView& g, const ExactRay& ray, std::uint32_t id) {
 float rounded_t(const GeometryView& g, const ExactRay& ray, std::uint32_t id) {
   const scalar::Found<double> found = found_in_double(g, ray, id);
   const auto first = static_cast<float>(found.lo);
-  if (found.sure && first == static_cast<float>(found.hi))
-    return first;
-  return crossing_of(g, ray, id).rounded();
+  const bool known = found.sure && first == static_cast<float>(found.hi);
+  return (known ? first : crossing_of(g, ray, id).rounded()) + 0.f;  // no zero is -0
 }
 
 }  // namespace grelha

@@ -110,7 +110,7 @@ inline float t_of(const Single& r, const ExactRay& ray) {
     };
     const PlaneSpan<double> span =
         plane_span<double>(vec(ray.org), vec(ray.dir), {at(0), at(1), at(2)});
-    const auto first = static_cast<float>(span.lo);
+    const float first = static_cast<float>(span.lo) + 0.f;  // no zero is -0
     if (r.block->id[place] == r.id && span.known && first == static_cast<float>(span.hi))
       return first;
   }

@@ -73,7 +73,7 @@ inline void round_hits(const Packet& p, int i, float* t) {
         lo[k] = lo[k] / unit;
         hi[k] = hi[k] / unit;
       }
-    const Lanes least = narrow<Lanes>(lo);
+    const Lanes least = narrow<Lanes>(lo) + Lanes(0);  // no zero is -0
     float rounded[kLanes];
     store(rounded, least);
     const unsigned known = bits(least == narrow<Lanes>(hi));
