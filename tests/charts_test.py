@@ -163,17 +163,6 @@ class Kept(unittest.TestCase):
                 charts.wrapped(module.tell(module.from_csv(bench.read_csv(f"charts-{name}")),
                                            table)), words, name)
 
-    def test_what_is_said_of_error_is_in_the_numbers(self):
-        def words(page):
-            return " ".join((ROOT / page).read_text().split())
-
-        effects = picture.from_csv(bench.read_csv("charts-picture"))["effects"]
-        ratios = [float(picture.beside_samples(effect)["0.01"]) for effect in effects]
-        self.assertIn(f"{min(ratios):.1f} to {max(ratios):.1f} times as fast without it",
-                      words("docs/accuracy.md"))
-        low, high = (f"{1 / ratio:.2f}".lstrip("0") for ratio in (max(ratios), min(ratios)))
-        self.assertIn(f"{low} to {high} of the time of `--error 0.01`", words("docs/sampling.md"))
-
 
 class Saved:
     """Takes the place of a benchmark's folder and keeps the figure."""
