@@ -12,8 +12,8 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// Times a grid's pad: how far boxes reach beyond what hits may be off by. A slab test in float is
-/// off by 3 u of the way to each plane, which is at most 2.8 diagonals (approach()), and compares
-/// two of them: 17 u diagonals. A quarter of a pad is 64 u.
+/// off by 3 u of the way to each plane, which is at most 2.8 reaches of the grid, and compares
+/// two of them: 17 u reaches. A quarter of a pad is 64 u.
 constexpr double kSlabRoom = .25;
 
 /// How far a block reaches along an axis; of an empty one, nowhere.

@@ -52,7 +52,7 @@ inline bool enter_from_afar(const GridView& g,
 }
 
 /// Times t: what entries and exits in float are off by, 3 u, and more.
-inline constexpr float kSlabRoom = 0x1p-20f;
+inline constexpr float kEntryRoom = 0x1p-20f;
 
 /// What t is no later and no earlier than, counted from `shift` on.
 inline float no_later(float t, double shift) {
@@ -130,7 +130,7 @@ class RaysFromAfar {
       t0 = greater(select(sound, lesser(x, y), t0), t0);
       t1 = lesser(select(sound, greater(x, y), t1), t1);
     }
-    const Lanes room = Lanes(kSlabRoom) * larger(t0, t1);
+    const Lanes room = Lanes(kEntryRoom) * larger(t0, t1);
     return bits(both(both(away, searching), but_not(away, t0 - room > t1 + room)));
   }
 
