@@ -62,13 +62,13 @@ std::string first_line(const std::string& text) {
   return text.substr(0, text.find('\n'));
 }
 
-/// The command that was asked for, or the program itself.
+/// Returns the selected command, or the program itself.
 const CLI::App& asked(const CLI::App& app) {
   const auto commands = app.get_subcommands();
   return commands.empty() ? app : *commands.front();
 }
 
-/// The option that the first word nobody took was probably meant to be.
+/// Returns `; did you mean --size?` for the first unparsed word that begins with `-`, or nothing.
 std::string meant_option_left(const CLI::App& app) {
   const std::vector<std::string> left = app.remaining(true);
   const auto option = std::ranges::find_if(left, [](auto& w) { return w.starts_with('-'); });
@@ -125,8 +125,8 @@ static Command help_of_command(const char* program, const std::string& command) 
   return parse_command(command.empty() ? 2 : 3, words);
 }
 
-/// What follows the program's name, last first as CLI11 takes it. `-o=FILE` means FILE, as
-/// `--output=FILE` does.
+/// Returns the arguments behind the program's name, in reverse order as CLI11 expects them.
+/// `-o=FILE` means FILE, as `--output=FILE` does.
 static std::vector<std::string> words_of(int argc, const char* const* argv) {
   constexpr std::size_t kValue = 3;  // behind "-o="
   std::vector<std::string> words;

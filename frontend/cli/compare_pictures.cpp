@@ -47,8 +47,8 @@ void check_outputs(const CompareCommand& command) {
     want_apart(diff, map);
 }
 
-/// What a screen shows, as sRGB values: light through the curve, other numbers as they are, for
-/// they are sRGB values or colours as authored.
+/// Returns the sRGB values that a screen shows. Light passes through the sRGB curve; other numbers
+/// are sRGB values or authored colours already, and stay.
 Image on_screen(Image image, const Encoding& encoding, bool is_light) {
   if (encoding.kind == Encoding::Kind::power && !is_light) {
     image = as_light(std::move(image), encoding);
@@ -76,7 +76,7 @@ std::string text_of(const Comparison& c) {
   return text;
 }
 
-/// "-" for what is not there
+/// Returns "-" for an absent number.
 std::string text_of(std::optional<double> number) {
   if (!number)
     return "-";

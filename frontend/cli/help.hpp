@@ -1,6 +1,6 @@
 #pragma once
-// What the command line takes, as data: options.cpp says it once; --help, the man page and the
-// completions are made of it.
+// The commands and options as data, taken from options.cpp. --help, the man page and the shell
+// completions are generated from it.
 
 #include <string>
 #include <vector>
@@ -9,14 +9,14 @@ namespace grelha {
 
 struct OptionHelp {
   std::vector<std::string> names;  ///< "-o", "--output"
-  /// of its value: FILE, or words with | between them; empty: a switch
+  /// the value in the usage line: FILE, or words with | between them; empty for a switch
   std::string placeholder;
   std::string text;
 };
 
 struct CommandHelp {
   std::string name, text;
-  std::string usage;  ///< what stands behind the command: "SCENE..."
+  std::string usage;  ///< the arguments behind the command: "SCENE..."
   std::vector<OptionHelp> options;
   std::string footer;  ///< examples, exit status; lines
   /// Returns whether --help shows the option, or only --help-all, the man page and the completions.

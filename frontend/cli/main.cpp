@@ -39,11 +39,11 @@ namespace grelha {
 
 namespace {
 
-/// The exit status of `work`, or of the error it ends with, which is told in one line.
+/// Runs `work` and returns its exit status. If it throws, prints one line and returns the error's.
 template <class Work>
 int status_of(const Ranks& ranks, const Work& work) {
   const auto fail = [&ranks](int status, const std::string& line) {
-    // what failed everywhere the first says, and ends all
+    // the first rank reports an error of all ranks, and ends them
     if (!ranks.first())
       std::this_thread::sleep_for(std::chrono::seconds(3));
     warn(line);
@@ -70,7 +70,7 @@ int status_of(const Ranks& ranks, const Work& work) {
   }
 }
 
-/// The exit status after a signal that came while a finished picture was written.
+/// Returns the exit status after a signal that came while a finished picture was written.
 int stopped_between(int signal, const std::string& next) {
   warn("grelha: stopped by " + std::string(signal_name(signal)) + " before " + next);
   return kSignalled + signal;
@@ -82,7 +82,7 @@ void remove_checkpoint(const RenderCommand& command) {
     std::filesystem::remove(command.work.checkpoint, ignored);
 }
 
-/// Renders every scene, whatever becomes of the others, until a signal stops one, or one of several
+/// Renders every scene, even if another one fails. Stops after a signal, or when one of several
 /// ranks fails alone.
 int run(const RenderCommand& command, Ranks& ranks) {
   limit_memory(command.input.max_memory);
@@ -188,7 +188,7 @@ int list_scenes() {
   return kOk;
 }
 
-/// The mesh goes first: a scene must not stand there without what it refers to.
+/// Writes the mesh first, so that no scene refers to a missing file.
 void write_with_mesh(const scenes::Generator& generator,
                      scenes::SceneOptions options,
                      const std::string& path) {
@@ -265,7 +265,7 @@ int run_program(int argc, char** argv, Ranks& ranks) {
 
 int main(int argc, char** argv) {
   std::ios::sync_with_stdio(false);
-  std::signal(SIGXFSZ, SIG_IGN);  // then writing fails, and can be told
+  std::signal(SIGXFSZ, SIG_IGN);  // then writing fails with an error
   grelha::Ranks ranks(argc, argv);
   const int status = grelha::run_program(argc, argv, ranks);
   if (status >= grelha::kSignalled || (status != 0 && !ranks.in_step()))

@@ -14,7 +14,7 @@ namespace {
 
 using option_values::refuse;
 
-/// Samples a pixel that --aa and --lens ask for; 0: they leave it open.
+/// Samples per pixel that --aa and --lens ask for; 0 if they do not say.
 long long samples_asked(const Effects& e) {
   const int lens = e.lens && e.lens->aperture > 0 ? e.lens->samples : 0;
   return e.jitter == 0 ? lens : 1LL * e.jitter * e.jitter * (lens > 0 ? lens : 1);

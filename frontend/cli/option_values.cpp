@@ -29,7 +29,7 @@ std::string meant_kind(const std::string& text, std::initializer_list<std::strin
              : "; did you mean " + std::string(kind) + text.substr(end) + '?';
 }
 
-/// The whole of `text` as a number; the locale has no say.
+/// Parses the whole of `text` as a number, independent of the locale.
 template <class T>
 std::optional<T> number(std::string_view text) {
   T value{};
@@ -39,7 +39,7 @@ std::optional<T> number(std::string_view text) {
   return value;
 }
 
-/// "a,b,c" as its parts; refuses another number of them.
+/// Splits "a,b,c" at its commas; refuses fewer than `least` or more than `most` parts.
 std::vector<std::string> parts(const std::string& option,
                                const std::string& text,
                                std::size_t least,
@@ -57,7 +57,7 @@ std::vector<std::string> parts(const std::string& option,
   return found;
 }
 
-/// The number that is said, of those that fit; refuses any other.
+/// Parses a number that fits(); refuses any other text.
 template <class T>
 T fitting(const std::string& option,
           const std::string& text,
@@ -69,7 +69,7 @@ T fitting(const std::string& option,
   return *value;
 }
 
-/// Of something in a scene, where no length is larger.
+/// Parses a length in a scene, from 0 to kLargest.
 double not_negative(const std::string& option, const std::string& text, const char* what) {
   const std::string expected = std::string(what) + " from 0 to 1e18";
   return fitting<double>(option, text, expected, [](double v) { return v >= 0 && v <= kLargest; });
@@ -90,7 +90,7 @@ Subdivision subdivision(const std::string& text) {
   return {true, threshold, whole("--aa", p[1], 0, kMostSubdivisions)};
 }
 
-/// N of samples:N.
+/// Parses N of `samples:N`.
 std::uint64_t sample_count(const std::string& text, std::size_t begin) {
   const auto count = number<std::uint64_t>(std::string_view(text).substr(begin));
   if (!count || *count == 0)

@@ -1,6 +1,6 @@
 #pragma once
-// What stands behind an option, as a value. Each refuses with a UsageError that says what was
-// expected and what was found.
+// Parsers for the values of options. Each throws a UsageError that says what was expected and what
+// was found.
 
 #include <array>
 #include <cstddef>
@@ -44,13 +44,13 @@ void want_image_name(const std::string& option, const std::string& path);
 std::string file_name(const std::string& option, const std::string& text);
 std::string regular_file_name(const std::string& option, const std::string& text);
 
-/// "depth,normal,id", or some of them.
+/// "depth,normal,id", or some of these words.
 LayerChoice layers(const std::string& text);
 
-/// A number of bytes, or of powers of 1024 with K, M, G or T behind it.
+/// A number of bytes; a suffix K, M, G or T multiplies it by a power of 1024.
 std::uint64_t memory_size(const std::string& text);
 
-/// One of the words an option takes, and what each stands for.
+/// Returns the value of the word that stands behind an option.
 template <class T, std::size_t N>
 T choice(const std::string& option,
          const std::string& text,

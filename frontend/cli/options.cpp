@@ -35,7 +35,7 @@ constexpr std::array kIsas{Name{"scalar", "scalar"},
                            Name{"avx512", "avx512"},
                            Name{"best", "best"}};
 
-/// Wires one option: CLI11 finds its text, `take` makes a value of it, and our own words complain.
+/// Adds one option: CLI11 finds its text, `take` parses it, and errors use our own messages.
 CLI::Option* value(CLI::App& app,
                    const char* names,
                    const char* placeholder,
@@ -140,7 +140,7 @@ void add_picture_files(CLI::App& sub, RenderCommand& command) {
         [&command](const std::string& text) { command.layers = layers(text); });
 }
 
-/// Size, threads and where paths end.
+/// Adds the options for size, threads and the length of paths.
 void add_limits(CLI::App& sub, RenderCommand& command) {
   value(sub, "--size", "WxH", "pixels [as the scene says]", [&command](const std::string& text) {
     parse_size(text, command.width, command.height);
@@ -163,7 +163,7 @@ void add_limits(CLI::App& sub, RenderCommand& command) {
         [&command](const std::string& text) { command.render.min_weight = min_weight(text); });
 }
 
-/// How many samples.
+/// Adds the options for the number of samples.
 void add_sample_counts(CLI::App& sub, RenderCommand& command) {
   value(sub,
         "--samples",
@@ -188,7 +188,7 @@ void add_sample_counts(CLI::App& sub, RenderCommand& command) {
   image_file(sub, "--error-map", command.error_map, "and of its estimated standard error");
 }
 
-/// Where samples lie.
+/// Adds the options for the positions of samples.
 void add_sample_places(CLI::App& sub, Effects& effects) {
   value(sub,
         "--sampler",
@@ -229,7 +229,7 @@ void add_effects(CLI::App& sub, Effects& effects) {
         [&effects](const std::string& text) { parse_glossy(text, effects); });
 }
 
-/// How rays are traced.
+/// Adds the options for ray traversal.
 void add_traversal(CLI::App& sub, RenderCommand& command) {
   value(sub,
         "--mailbox",

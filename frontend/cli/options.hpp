@@ -1,5 +1,5 @@
 #pragma once
-// Every option, said once.
+// The definitions of all options.
 
 #include "frontend/commands/commands.hpp"
 
@@ -9,7 +9,7 @@ class App;
 
 namespace grelha {
 
-/// What the commands' options fill in.
+/// The commands, as their options fill them in.
 struct Commands {
   RenderCommand render;
   InfoCommand info;

@@ -1,4 +1,4 @@
-// The man page and the shells' completions, of what help.hpp says.
+// Generates the man page and the shell completions from the data of help.hpp.
 #include "frontend/cli/pages.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ std::string replaced(std::string text, std::string_view what, std::string_view b
   return text;
 }
 
-/// Text as roff takes it: hyphens that can be copied, nothing that starts a request.
+/// Escapes text for roff: hyphens that can be copied, and no line that starts a request.
 std::string roff(const std::string& text) {
   const std::string out = replaced(replaced(text, "\\", "\\e"), "-", "\\-");
   const bool reads_as_command = out.starts_with('.') || out.starts_with('\'');

@@ -43,7 +43,7 @@ constexpr const char* kMoreIsas = "; `./run render --isa ...` or cmake -D GRELHA
 constexpr const char* kMoreIsas = "";
 #endif
 
-/// Asks before the scene is read: a large one takes seconds to read.
+/// Checks the instruction set before the scene is read: a large one takes seconds to read.
 void want_isa(std::string_view name) {
   if (name == "best")
     return;
@@ -141,7 +141,7 @@ class SceneRender {
     want_not_read(outputs_of(command_), file_.meshes);
   }
 
-  /// Makes of the command and the scene what is to be rendered.
+  /// Applies the effects of the command to the scene, before rendering.
   void prepare() {
     want_shareable(command_, ranks_);
     scene_ = scene_digest(file_);
@@ -150,7 +150,7 @@ class SceneRender {
     apply_effects(command_.effects, file_, prepared_.render);
   }
 
-  /// Throws what can be known before the work. Returns what the picture will take.
+  /// Throws the errors that are known before rendering. Returns the memory for the picture.
   PictureMemory check() {
     camera_ = camera_of(file_, command_);
     want_room(format_of(command_.image, command_.format), camera_.width, camera_.height);

@@ -23,14 +23,15 @@ bool ends_with_any(std::string name, std::initializer_list<std::string_view> ext
       extensions.begin(), extensions.end(), [&](std::string_view e) { return name.ends_with(e); });
 }
 
-/// Meshes beside scenes are mostly parts of them.
+/// Returns the scenes in a folder, or its meshes if it has no scene: a mesh beside a scene is
+/// mostly part of that scene.
 Names files_of(const std::string& folder) {
   Names scenes, meshes;
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
     const std::string name = it->path().string();
     if (it->is_fifo(error))
-      continue;  // to read one is to wait for a writer: by its own name only
+      continue;  // reading a FIFO blocks until a writer comes: it must be named itself
     if (ends_with_any(name, {".nff", ".p3f"}))
       scenes.push_back(name);
     if (ends_with_any(name, {".ply"}))

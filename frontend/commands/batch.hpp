@@ -8,9 +8,9 @@
 
 namespace grelha {
 
-/// The files that arguments name. A file names itself (- is /dev/stdin). A folder names its .nff
-/// and .p3f files or, where it has none, its .ply files (each also .gz), by name. Throws FileError
-/// for a folder that cannot be read or has none.
+/// Lists the files that the arguments name. A file names itself (- is /dev/stdin). A folder names
+/// its .nff and .p3f files or, where it has none, its .ply files (each also .gz), by name. Throws
+/// FileError for a folder that cannot be read or has none.
 std::vector<std::string> scene_files(const std::vector<std::string>& arguments);
 
 /// One command for each scene, with the names of its files: -o may be a folder, and {} in a name

@@ -24,25 +24,25 @@ struct UsageError : std::runtime_error {
 /// Options of reading a scene that may be anyone's.
 struct InputOptions {
   ReadOptions read;
-  bool strict = false;           ///< no warning is let pass
+  bool strict = false;           ///< a warning is an error
   std::uint64_t max_memory = 0;  ///< bytes; 0: as much as the machine has
 };
 
 inline constexpr double kSaveEvery = 60;  ///< seconds between saves of a checkpoint
 
-/// Work that may be cut to pieces, interrupted and gone on with.
+/// A render that may be split into parts, interrupted and continued.
 struct LongWork {
   std::optional<Range> rows, samples;  ///< the part to render; absent: all
-  std::string checkpoint;              ///< file to save to, and to go on from, or empty
+  std::string checkpoint;              ///< file to save to and to continue from, or empty
   std::optional<double> save_every;    ///< seconds; absent: kSaveEvery
-  /// seconds between pictures of what there is so far; 0: none
+  /// seconds between intermediate pictures; 0: none
   double show_every = 0;
-  /// the checkpoint: until the pictures of all scenes are written
+  /// keeps the checkpoint until the pictures of all scenes are written
   bool kept_till_the_last = false;
   bool is_part() const { return rows || samples; }
 };
 
-/// What an OpenEXR picture holds beside its colours.
+/// The layers that an OpenEXR picture holds beside its colours.
 struct LayerChoice {
   bool depth = false, normal = false, id = false;
   bool any() const { return depth || normal || id; }
@@ -63,7 +63,7 @@ struct RenderCommand {
   RenderOptions render;
   Effects effects;
   std::string stats;                   ///< file for the counts, or empty
-  std::string samples_map, error_map;  ///< pictures of what was spent and what it bought, or empty
+  std::string samples_map, error_map;  ///< pictures of sample counts and of errors, or empty
   bool quiet = false, srgb = false;
 };
 
@@ -77,8 +77,8 @@ struct InfoCommand {
 struct CompareCommand {
   std::string a, b;
   std::optional<double> max_rmse;
-  bool display = false;  ///< compare what a screen shows, channels from 0 to 1
-  /// files for the pictures of the difference and of what one sees of it, or empty
+  bool display = false;  ///< compare displayed values, channels from 0 to 1
+  /// files for the pictures of the difference and of its visibility (FLIP), or empty
   std::string diff, error_map;
 };
 
@@ -104,8 +104,8 @@ struct TextCommand {
 using Command = std::
     variant<RenderCommand, InfoCommand, CompareCommand, MergeCommand, SceneCommand, TextCommand>;
 
-/// Returns whether a path names a folder, there already or, by a / at its end, meant to be. What
-/// cannot be looked at is none.
+/// Returns true if a path names an existing folder, or ends with /. A path that cannot be examined
+/// is no folder.
 bool is_folder(const std::string& path);
 
 /// `dir/x.nff.gz` gives `x.png`: the picture lies in the current folder.
@@ -114,7 +114,7 @@ std::string default_image(const std::string& scene, std::optional<ImageFormat> f
 /// The format of the picture called `image`; a .grelha has none.
 std::optional<ImageFormat> format_of(const std::string& image, std::optional<ImageFormat> asked);
 
-/// Returns whether results go to stdout, so that what is said must not.
+/// Returns true if results go to stdout; messages must then go to stderr.
 bool writes_to_stdout(const RenderCommand& command);
 
 }  // namespace grelha

@@ -1,5 +1,5 @@
 #pragma once
-// What the program says, and the status that it ends with.
+// Terminal output and exit statuses.
 
 #include <string>
 
@@ -8,7 +8,7 @@ namespace grelha {
 /// Exit statuses. Beyond kSignalled: the number of the signal that stopped the program.
 inline constexpr int kOk = 0, kFileFailed = 1, kBadInput = 2, kSignalled = 128;
 
-// Whatever is said passes shown(): no name of a file reaches a terminal as it is.
+// All output passes through shown(), so no file name reaches a terminal unescaped.
 
 /// Writes a line to stderr.
 void warn(const std::string& line);

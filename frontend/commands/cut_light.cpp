@@ -13,8 +13,8 @@ double most_of(const Float3& v) {
   return std::max({double(v.x), double(v.y), double(v.z)});
 }
 
-/// A term at most: a light that a surface returns, a glow or the background, seen through as many
-/// mirrors as a path may have.
+/// Returns an upper bound of one term of a sample: a light that a surface reflects, a glow or the
+/// background, seen through as many mirrors as a path may have.
 double brightest(const Scene& scene, const RenderOptions& options) {
   double light = 0;
   for (const Light& one : scene.lights) {

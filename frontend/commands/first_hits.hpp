@@ -5,8 +5,8 @@
 
 namespace grelha {
 
-/// What a pinhole camera's rays through the centres of pixels meet first; depths as the file's
-/// lengths.
+/// Finds the first hits of a pinhole camera's rays through the pixel centres. Depths are in the
+/// file's units.
 Layers first_hits(const World& world,
                   const Camera& camera,
                   const Frame& frame,

@@ -1,5 +1,5 @@
 #pragma once
-// What reports say, as JSON.
+// Converts values to JSON, for reports.
 
 #include <vector>
 

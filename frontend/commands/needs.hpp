@@ -1,12 +1,11 @@
 #pragma once
-// What a scene asks of a renderer, and how far it reaches.
+// The features of a renderer that a scene needs.
 
 #include "frontend/scene/scene_file.hpp"
 
 namespace grelha {
 
-/// Which parts of a renderer a scene calls for, from what its primitives use: an unused material
-/// asks for nothing.
+/// The features that a scene uses. Materials that no primitive has do not count.
 struct Needs {
   bool spheres = false, triangles = false, cones = false, planes = false;
   bool smooth_normals = false;

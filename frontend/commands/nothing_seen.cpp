@@ -89,8 +89,8 @@ class View {
   std::vector<Direction> corners_;
 };
 
-/// The sides that every primitive lies beyond, each on its own: `common`; and whether each lies
-/// beyond some.
+/// `common`: the sides that all primitives lie beyond. `all`: every primitive lies beyond some
+/// side.
 struct Unseen {
   Sides common = kAllSides;
   bool all = true;

@@ -25,11 +25,11 @@ using Output = std::pair<std::string, std::string>;
 /// Those that are named.
 std::vector<Output> outputs_of(const RenderCommand& command);
 
-/// Makes the folders that are missing, and throws now, as far as that can be known, what writing
-/// would throw after a long render.
+/// Creates missing folders, and throws now the errors of writing that would otherwise come after a
+/// long render, as far as they can be known.
 void prepare_outputs(const RenderCommand& command);
 
-/// Throws UsageError when bytes that are no text would go to a terminal.
+/// Throws UsageError when binary data would go to a terminal.
 void want_no_terminal(const std::string& file);
 
 /// Throws UsageError when one of the outputs is a file that is read, by whatever name.

@@ -5,15 +5,15 @@
 
 namespace grelha {
 
-/// `render [#####.....]  50 %  3 s left`: what a bar says after `elapsed_s` seconds with `share` (0
-/// to 1) done. At most `columns` wide: the bar shrinks first, then time and name are left out.
+/// `render [#####.....]  50 %  3 s left`: the text of a bar after `elapsed_s` seconds with `share`
+/// (0 to 1) done. At most `columns` wide: the bar shrinks first, then time and name are left out.
 std::string progress_text(const std::string& name, double share, double elapsed_s, int columns);
 
 /// A bar on stderr that redraws itself in place a few times a second, as wide as the terminal is
 /// then, and wipes itself off at the end.
 class ProgressBar {
  public:
-  /// `share`: done before it began. `name`: of what is done.
+  /// `share`: the share done before the bar began. `name`: of the task.
   explicit ProgressBar(bool shown, double share = 0, const char* name = "render")
       : shown_(shown), first_(share), name_(name) {}
   ~ProgressBar();

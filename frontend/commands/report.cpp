@@ -16,7 +16,7 @@
 namespace grelha {
 namespace {
 
-/// Name and answer, in one order for both forms of the report.
+/// Names and values of the needs, in the same order for both forms of the report.
 std::vector<std::pair<const char*, bool>> listed(const Needs& n) {
   return {{"spheres", n.spheres},
           {"triangles", n.triangles},
@@ -72,7 +72,7 @@ std::string grids_text(const std::vector<GridStats>& grids) {
   return std::to_string(grids.size()) + " grids (" + first + ", ...)";
 }
 
-/// As the file has it: with as many digits as floats have from the middle of the scene.
+/// A point in the file's frame, with as many digits as floats have from the middle of the scene.
 std::string point_text(const Frame& frame, const Float3& v) {
   const auto [x, y, z] = frame.outside(v);
   const char* const form = frame == Frame{} ? "(%g, %g, %g)" : "(%.10g, %.10g, %.10g)";
@@ -223,7 +223,7 @@ std::string needs_text(const SceneFile& file) {
   return "needs         " + (needs.empty() ? "nothing but the background" : needs) + '\n';
 }
 
-/// Two digits, none of them too low: what is promised holds.
+/// Rounds up to two digits, so that the printed bound still holds.
 std::string rounded_up(double value) {
   const std::string text = print("%.1e", value);
   int tens = 10 * (text[0] - '0') + (text[2] - '0'), power = std::atoi(text.c_str() + 4) - 1;
@@ -232,7 +232,7 @@ std::string rounded_up(double value) {
   return print("%.2g", std::strtod(print("%de%d", ++tens, power).c_str(), nullptr));
 }
 
-/// What ended a picture by error.
+/// Says why a picture by --error ended: the error was not met, or some pixels had wide intervals.
 std::string end_text(const RefineOptions& asked, const ErrorStats& e) {
   if (asked.error <= 0 || e.met_at == e.samples)
     return "";

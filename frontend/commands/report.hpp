@@ -11,15 +11,15 @@
 
 namespace grelha {
 
-/// The name that --sampler has for it.
+/// Returns the word of --sampler for a sampler.
 const char* sampler_name(Sampler sampler);
 
 struct Seconds {
   double load = 0, build = 0, render = 0, write = 0;
-  double render_cpu = 0;  ///< of all threads together: what a busy machine cannot stretch
+  double render_cpu = 0;  ///< of all threads together, independent of other load on the machine
 };
 
-/// What one run of `grelha render` did.
+/// The statistics of one run of `grelha render`.
 struct RunReport {
   EntityCounts counts;
   std::size_t spheres = 0, triangles = 0, cones = 0, planes = 0;  ///< as the kernel holds them

@@ -18,15 +18,15 @@ namespace grelha {
 namespace {
 
 constexpr int kNamesToTry = 100;
-// of a name, in the name beside it: file systems end names at 255 bytes
+// bytes of the target's name in the temporary name: file systems limit names to 255 bytes
 constexpr std::size_t kLongestKept = 200;
 
 [[noreturn]] void fail(const std::string& path, const std::string& what, int error) {
   throw FileError(path, what + ": " + std::strerror(error));
 }
 
-/// Returns whether something stands at `path` that renaming must not replace. A file that cannot be
-/// written could be renamed over all the same.
+/// Returns true if renaming must not replace the file at `path`. A rename would replace even a file
+/// that cannot be written.
 bool is_special(const std::string& path) {
   struct stat info {};
   if (stat(path.c_str(), &info) != 0) {
@@ -41,7 +41,7 @@ bool is_special(const std::string& path) {
   return !S_ISREG(info.st_mode);
 }
 
-/// Has what was written to a file, or the names in a folder, reach the disk.
+/// Flushes the data of a file, or the names in a folder, to the disk.
 void sync(const std::string& path, const std::string& file) {
   const int handle = open(file.c_str(), O_RDONLY | O_CLOEXEC);
   if (handle < 0)
@@ -53,8 +53,8 @@ void sync(const std::string& path, const std::string& file) {
     fail(path, "cannot write", error);
 }
 
-/// Returns whether an open file is a file, and the one that stands under this name: whoever had it
-/// before may have renamed it away.
+/// Returns true if an open file is a regular file and still has this name: its previous writer may
+/// have renamed it.
 bool stands_there(int file, const std::string& name) {
   using Stat = struct stat;
   Stat opened{}, there{};
@@ -76,9 +76,9 @@ void take_mode(int file, const std::string& from) {
 
 }  // namespace
 
-/// Creates a file in the same folder, so that renaming cannot cross file systems. Its name is made
-/// of the target's: what a killed program left there is written over. The writing process holds a
-/// lock, which dies with it; another that writes the same takes the next name.
+/// Creates a file in the same folder, so that renaming cannot cross file systems. Its name derives
+/// from the target's, so that it replaces the file that a killed program left. The writing process
+/// holds a lock, which dies with it; another writer of the same target takes the next name.
 void AtomicFile::create_beside() {
   const auto target = std::filesystem::path(target_);
   const std::string name = target.filename().string().substr(0, kLongestKept);
@@ -168,7 +168,7 @@ void write_file(const std::string& path, const std::string& bytes) {
 }
 
 void check_writable(const std::string& path, bool durable) {
-  // to open a pipe is to wait for a reader, to close it his end
+  // opening a pipe waits for a reader, and closing it ends that reader
   if (path != kStdout && (durable || !is_special(path)))
     AtomicFile probe(path, durable);
 }

@@ -8,16 +8,16 @@ namespace grelha {
 /// The name that stands for stdout, as in other tools.
 inline constexpr const char* kStdout = "-";
 
-/// A file that appears whole or not at all: written beside its place under another name, then
-/// renamed onto it, with the mode of the file it replaces. A symbolic link stays, also one to
-/// nothing yet. What is not a regular file (/dev/stdout, a pipe) is written directly, for renaming
-/// would replace it. Every failure is a FileError that names `path`.
+/// A file that appears whole or not at all. It is written under a temporary name in the same
+/// folder, then renamed, with the mode of the file it replaces. A symbolic link stays, even a
+/// dangling one. A target that is not a regular file (/dev/stdout, a pipe) is written directly,
+/// because renaming would replace it. Every failure throws a FileError that names `path`.
 ///
-/// A durable one is on the disk when commit() returns, so that a machine that stops a moment later
-/// finds the old file or the new one. It must be a regular file.
+/// A durable file is on the disk when commit() returns: a crash a moment later leaves the old file
+/// or the new one. It must be a regular file.
 class AtomicFile {
  public:
-  /// `path`: kStdout is none, then stdout is written.
+  /// `path`: kStdout writes to stdout.
   explicit AtomicFile(const std::string& path, bool durable = false);
   ~AtomicFile();  ///< without commit() nothing is left behind
   AtomicFile(const AtomicFile&) = delete;
@@ -32,17 +32,17 @@ class AtomicFile {
 
   std::string path_, target_, beside_;  ///< beside_ is empty when written directly
   bool durable_;
-  int lock_ = -1;  ///< of what stands under beside_
+  int lock_ = -1;  ///< on the file named beside_
   std::ofstream stream_;
 };
 
-/// The name of a file in messages: its own, or stdout.
+/// Returns the name of a file for messages: its own, or stdout.
 std::string name_of_file(const std::string& path);
 
 void write_file(const std::string& path, const std::string& bytes);
 
-/// Throws now what writing would throw later, as far as that can be known: better before a long
-/// render than after.
+/// Throws now the errors that writing would throw later, as far as they can be known before a long
+/// render.
 void check_writable(const std::string& path, bool durable = false);
 
 }  // namespace grelha

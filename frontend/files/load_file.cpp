@@ -35,7 +35,7 @@ bool is_gzip(std::string_view data) {
          static_cast<unsigned char>(data[1]) == 0x8b;
 }
 
-/// Bytes as they come, a piece at a time: memory is taken for no more, whatever was promised.
+/// A buffer that grows with the bytes that arrive, a piece at a time, whatever size was promised.
 class Growing {
  public:
   Growing(const Judge& judge, std::size_t promised) : judge_(judge) {
@@ -65,7 +65,7 @@ class Growing {
 
  private:
   static constexpr std::size_t kLeast = std::size_t(1) << 16;
-  /// what is cleared for them is still in the cache when the bytes come
+  /// the cleared memory is still in the cache when the bytes arrive
   static constexpr std::size_t kMostAtOnce = std::size_t(1) << 18;
 
   void judge() {
@@ -80,8 +80,7 @@ class Growing {
   std::size_t have_ = 0, judged_ = 0;
 };
 
-/// Reads a pipe to its end, which may never come: whoever waits looks up now and
-/// then.
+/// Reads a pipe to its end, which may never come: checks for a stop every kLookUp milliseconds.
 std::string read_pipe(const std::string& path, LoadProgress* progress, const Judge& judge) {
   constexpr int kLookUp = 100;  // ms
   const int handle = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
@@ -140,8 +139,8 @@ std::string read_bytes(const std::string& path,
   return bytes.finish();
 }
 
-/// Owns zlib's state; feeds it 16 MiB at a time: its counters have 32 bits, and progress is told of
-/// each.
+/// Owns zlib's state. Feeds it 16 MiB at a time, because its counters have 32 bits, and reports
+/// progress after each piece.
 class Inflater {
  public:
   Inflater(const std::string& path, std::string_view data, LoadProgress* progress)

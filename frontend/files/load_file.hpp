@@ -9,20 +9,21 @@ namespace grelha {
 
 class LoadProgress;
 
-/// Asked of all bytes so far, of which those from `fresh` on are new; throws ParseError to end it.
+/// Checks the bytes read so far; those from `fresh` on are new. Throws ParseError to stop reading.
 using Judge = std::function<void(std::string_view bytes, std::size_t fresh)>;
 
-/// The whole file; gzip data (told by their first two bytes) come back inflated. Only `pipe_too`
-/// lets it be a pipe, for which one waits. Throws FileError when it cannot be read, ParseError when
-/// the gzip data are broken or inflate beyond reason. `progress` is told of what is read, and of
-/// what parsing it will be. `judge` is asked of the bytes, inflated, as they come.
+/// Reads a whole file, and inflates gzip data (recognized by their first two bytes). With
+/// `pipe_too` the file may be a pipe, and the call waits for its end. Throws FileError when the
+/// file cannot be read, ParseError when gzip data are broken or inflate beyond inflate_limit().
+/// `progress` receives the bytes read, and the work of parsing to come. `judge` checks the inflated
+/// bytes as they arrive.
 std::string load_file(const std::string& path,
                       LoadProgress* progress = nullptr,
                       bool pipe_too = false,
                       const Judge& judge = {});
 
-/// How much so many bytes of gzip data may inflate to: text of scenes shrinks to a third or a
-/// tenth, a bomb to a thousandth.
+/// Returns the largest size that so many bytes of gzip data may inflate to: scene text shrinks to a
+/// third or a tenth, a gzip bomb to a thousandth.
 std::size_t inflate_limit(std::size_t bytes);
 
 /// Inflates gzip data of one or more members; `path` is for messages. Refuses to grow past `limit`

@@ -1,5 +1,5 @@
 #pragma once
-// How far reading is.
+// Progress of reading a scene.
 
 #include <algorithm>
 #include <cstddef>
@@ -9,22 +9,21 @@
 
 namespace grelha {
 
-/// A share that never falls, though a scene may come to name another large file when it seemed all
-/// but read.
+/// The share that is read. It never falls, even when a scene names another large file near its end.
 class LoadProgress {
  public:
-  /// `report` is told the share done, and returns false to stop; empty: nobody asks.
+  /// `report` receives the share done and returns false to stop; it may be empty.
   explicit LoadProgress(const std::function<bool(double)>& report) : report_(report) {}
 
-  /// So much more is to come, or less.
+  /// Adds to the bytes still to come; a negative number subtracts.
   void expect(double bytes) { left_ += bytes; }
-  /// So much of it is done. Throws Stopped.
+  /// Counts bytes as done. Throws Stopped.
   void done(double bytes) {
     share_ += (1 - share_) * (left_ > bytes ? bytes / left_ : 1);
     left_ = std::max(0., left_ - bytes);
     waiting();
   }
-  /// Nothing is done. Throws Stopped.
+  /// Reports the same share again, while waiting. Throws Stopped.
   void waiting() const {
     if (report_ && !report_(share_))
       throw Stopped();
@@ -38,8 +37,8 @@ class LoadProgress {
 
 inline constexpr double kParsing = 5;  ///< times as long as reading the bytes that are parsed
 
-/// Tells of bytes as they are parsed, a million at a time: of a small file that names a large one,
-/// nothing.
+/// Reports bytes as they are parsed, a million at a time. A small file that names a large one
+/// reports nothing.
 class ParseProgress {
  public:
   ParseProgress(LoadProgress* progress, const char* begin) : progress_(progress), told_(begin) {}

@@ -47,7 +47,7 @@ std::uint64_t memory_owned() {
   return pages[5] * std::uint64_t(sysconf(_SC_PAGE_SIZE));
 }
 
-bool asked_for = false;  ///< the limit, by --max-memory: it is the process's, and so is who set it
+bool asked_for = false;  ///< the limit comes from --max-memory; global, as the limit is
 
 }  // namespace
 

@@ -25,7 +25,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }
 
 std::string_view nearest(std::string_view found, std::span<const std::string_view> words) {
-  constexpr std::size_t kLongest = 64;  // nobody mistypes more; noise is not worth the time
+  constexpr std::size_t kLongest = 64;  // longer words are noise, no typing errors
   std::string_view best;
   if (found.size() > kLongest)
     return best;

@@ -73,7 +73,7 @@ bool is_stl(std::string_view text) {
   return (text.starts_with("solid") && has(text.substr(0, kLook), "facet")) || is_binary_stl(text);
 }
 
-/// `OFF` behind the letters of what its vertices have.
+/// Returns true for `OFF`, also behind letters for vertex attributes (`NOFF`).
 bool is_off(std::string_view word) {
   for (const std::string_view letter : {"ST"sv, "C"sv, "N"sv, "4"sv, "n"sv})
     if (word.starts_with(letter))
@@ -81,8 +81,8 @@ bool is_off(std::string_view word) {
   return word == "OFF";
 }
 
-/// The first line says something of OBJ, and a line of the beginning has a vertex: `v` and a
-/// number, where NFF's `v` begins a view.
+/// Returns true if the first line begins with a keyword of OBJ and an early line is a vertex: `v`
+/// and a number. NFF's `v` begins a view.
 bool is_obj(std::string_view text) {
   static constexpr std::string_view kFirst[] = {
       "v", "vn", "vt", "o", "g", "mtllib", "usemtl", "s", "f"};

@@ -4,8 +4,8 @@
 
 namespace grelha {
 
-/// What a file is that is neither NFF nor PLY, as the message names it ("an STL mesh: convert it to
-/// PLY"), by its first bytes; empty when nothing known begins so. `text`: as much as there is.
+/// Names the format of a file that is neither NFF nor PLY by its first bytes, as in messages ("an
+/// STL mesh: convert it to PLY"); empty for an unknown format. `text`: the bytes read so far.
 std::string_view other_format(std::string_view text);
 
 }  // namespace grelha

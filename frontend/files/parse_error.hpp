@@ -7,7 +7,7 @@
 
 namespace grelha {
 
-/// Where a token starts. Text: line and column from 1. Binary: byte offset from 0, line 0.
+/// The start of a token. Text: line and column from 1. Binary: byte offset from 0, line 0.
 struct Position {
   std::string file;
   std::uint64_t line = 0, column = 0, byte = 0;

@@ -6,12 +6,13 @@
 
 namespace grelha {
 
-/// Where a name leads to, whatever it is written like: ./, links of both kinds. Equal places are
-/// one file, there or yet to be written.
+/// The file that a name leads to, however it is written: with ./, symbolic or hard links. Equal
+/// places are one file, existing or not.
 struct Place {
-  /// of the file or, where there is none, of the folder it would lie in
+  /// of the file or, if it does not exist, of its folder
   std::uint64_t device = 0, inode = 0;
-  /// the last of the name where there is no file; all of it where there is no folder either
+  /// the last part of the name if the file does not exist; the whole name if its folder does not
+  /// exist
   std::string name;
   auto operator<=>(const Place&) const = default;
 };
@@ -21,8 +22,7 @@ Place place_of(const std::string& path);
 /// The name behind symbolic links, also those to a file that is not there yet.
 std::string behind_links(const std::string& path);
 
-/// Returns whether something is there that is written to directly and cannot be lost, such as
-/// /dev/null or a pipe.
+/// Returns true if the path is written to directly and cannot be lost, such as /dev/null or a pipe.
 bool is_special_file(const std::string& path);
 
 }  // namespace grelha

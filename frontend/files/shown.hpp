@@ -5,13 +5,12 @@
 
 namespace grelha {
 
-/// Text as a terminal may show it. Names of files and words of scenes come from strangers: in them
-/// a control character could move the cursor, set a title or hide what stands before it. Each
-/// stands as `?`, and so does a byte that is no UTF-8, and a mark that turns the direction of
-/// writing. Ends of lines stay.
+/// Makes text safe for a terminal. File names and words of scenes are untrusted: a control
+/// character in them could move the cursor, set a title or hide text. Each becomes `?`, as do bytes
+/// that are not UTF-8 and marks that change the direction of writing. Line ends stay.
 std::string shown(std::string_view text);
 
-/// The same where one line is promised.
+/// The same for text that must stay on one line.
 std::string shown_on_a_line(std::string_view text);
 
 }  // namespace grelha

@@ -29,7 +29,7 @@ struct Decimal {
   std::uint64_t digits = 0;
   int power = 0;
 
-  /// Returns where it ends, or nullptr: no number, or too long a one.
+  /// Returns its end, or nullptr if it is no number or too long.
   const char* read(const char* p, const char* end) {
     const char* const first = p;
     p = read_digits(p, end);
@@ -96,10 +96,10 @@ long decimal_exponent(std::string_view word) {
   return exponent + (digits > 0 ? digits : -leading);
 }
 
-/// Reads a number of at most 2^53 and a power of ten up to 22, as written without its point, both
-/// of which a double holds: the quotient or product is the nearest double then. It rounds to the
-/// float that the number itself is nearest to, unless it lies right between two. Returns where the
-/// number ends, or nullptr: it is none of these, or goes on.
+/// Reads a number whose digits, without the point, are at most 2^53 and whose power of ten is at
+/// most 22. A double holds both exactly, so their quotient or product is the double nearest to the
+/// number. It rounds to the float nearest to the number, unless it lies exactly between two floats.
+/// Returns the end of the number, or nullptr for any other number.
 const char* short_number(const char* p, const char* end, float& value) {
   constexpr std::uint64_t kMost = std::uint64_t(1) << 53;
   constexpr std::uint64_t kBelow = (std::uint64_t(1) << 29) - 1, kHalf = std::uint64_t(1) << 28;
@@ -118,13 +118,13 @@ const char* short_number(const char* p, const char* end, float& value) {
   return p;
 }
 
-/// What Microsoft's C library wrote behind `1.` for numbers that are none.
+/// The text that Microsoft's C library wrote behind `1.` for infinities and NaNs.
 constexpr std::string_view kMsvcNames[] = {"#INF", "#IND", "#QNAN", "#SNAN"};
-/// The same of a few digits, rounded as if the letters were some.
+/// The same names cut to a few digits, and rounded as if the letters were digits.
 constexpr std::string_view kRoundedNames[] = {
     "#IO", "#J", "#QNB", "#QO", "#R", "#SNB", "#SO", "#T"};
 
-/// Where such a name ends with the digits that fill its width, and an exponent; or nullptr.
+/// Returns the end of such a name, with the digits that fill its width and an exponent; or nullptr.
 const char* past_name(const char* p, const char* end, std::span<const std::string_view> names) {
   const std::string_view text(p, std::size_t(end - p));
   const auto found =
@@ -250,8 +250,8 @@ const char* Words::skip_blanks(const char* p, bool stay_on_line, bool& line_ende
   return p;
 }
 
-/// The first "*/" from there on, or the end of the text. Asked in ascending order it reads the text
-/// once.
+/// Returns the first "*/" from `from` on, or the end of the text. Calls in ascending order read the
+/// text once.
 const char* Words::find_close(const char* from) const {
   if (!searched_ || from < searched_ || from > close_) {
     const std::string_view rest(from, std::size_t(end_ - from));
@@ -261,7 +261,7 @@ const char* Words::find_close(const char* from) const {
   return close_;
 }
 
-/// Where the comment ends that begins at `p`, or `p`: none does.
+/// Returns the end of the comment that begins at `p`, or `p` if none does.
 const char* Words::past_comment(const char* p) const {
   if (comments_ == Comments::kNone || p == end_)
     return p;
@@ -292,7 +292,7 @@ std::string_view Words::next() {
   return {first, std::size_t(at_ - first)};
 }
 
-/// The next word's first byte, unless a comment comes first: then the comment's.
+/// Returns the first byte of the next word or comment.
 const char* Words::past_blanks() const {
   const char* p = at_;
   while (p != end_ && is_blank(*p))
@@ -300,7 +300,7 @@ const char* Words::past_blanks() const {
   return p;
 }
 
-/// Steps over what was read of the next word up to `last`, if that is all of it.
+/// Steps over the next word if it ends at `last`.
 bool Words::take_to(const char* last) {
   if (last != end_ && !is_blank(*last) && past_comment(last) == last)
     return false;
@@ -344,7 +344,7 @@ void Words::skip_line() {
   }
 }
 
-/// Where a name of several words ends, and what may follow it on its line begins.
+/// Returns the end of a name of several words, before a comment or the end of its line.
 const char* Words::name_end(const char* first) const {
   const char *const line_end = std::find_if(first, end_, ends_line), *p = first;
   if (p != line_end && (*p == '"' || *p == '\''))

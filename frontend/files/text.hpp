@@ -14,25 +14,26 @@ namespace grelha {
 /// small zero. False when the word is anything else ("1.5.2", "0x10", "").
 bool to_number(std::string_view word, float& value);
 bool to_number(std::string_view word, double& value);
-/// A whole word as an integer; numbers such as "3.0" or "+3" count. What is too large becomes the
-/// largest, so that whoever wants less says how much.
+/// A whole word as an integer; numbers such as "3.0" or "+3" count. A number that is too large
+/// becomes the largest int64, so that the caller's message names its own limit.
 bool to_integer(std::string_view word, std::int64_t& value);
 
-/// Returns whether a word is meant as a number, well formed or not: a digit follows its sign and
-/// point, or it reads as one.
+/// Returns true if a word is meant as a number, well formed or not: a digit follows its sign and
+/// point, or to_number() accepts it.
 bool looks_like_number(std::string_view word);
 
 /// Bytes of the mark that some editors put before UTF-8: 3, or 0 when the text has none.
 std::size_t byte_order_mark(std::string_view text);
 
-/// Shortened, nothing unprintable.
+/// Shortens a word, and replaces unprintable bytes.
 std::string printable(std::string_view word);
 
 /// A word as it stands in a message: quoted, shortened, nothing unprintable; "end of file" for the
 /// empty word.
 std::string quoted(std::string_view word);
 
-/// What Words steps over: nothing; `#` and `//` to the end of their line; `/*` to `*/` as well.
+/// The comments that Words steps over: none; `#` and `//` to the end of their line; `/*` to `*/` as
+/// well.
 enum class Comments : std::uint8_t { kNone, kOfLines, kAll };
 
 /// Text in memory as words between blanks. Every byte up to ' ' is a blank; LF, CRLF and lone CR
@@ -58,11 +59,11 @@ class Words {
     /// whether the last next() stepped over a line end, or was the first
   }
   void skip_line();  ///< to the end of this line; the next word is fresh
-  /// Up to the comment or line end, trimmed; consumes it. What begins with a quote holds all up to
-  /// the next one. In a name `/` is no comment: `//` and `/*` begin one behind a blank.
+  /// Consumes the text up to a comment or the line end, and returns it trimmed. A quoted text
+  /// extends to the next quote. In a name, `//` and `/*` begin a comment only behind a blank.
   std::string_view rest_of_line();
 
-  /// Has reading go on at a place of the text, where cursor() was or would be.
+  /// Continues reading at a place of the text that cursor() returned or would return.
   void go_on_at(const char* place) { at_ = place; }
 
   std::size_t bytes_left() const { return std::size_t(end_ - at_); }
@@ -70,7 +71,7 @@ class Words {
   const char* cursor() const { return at_; }
   const std::string& file() const { return file_; }
 
-  /// Where a word of this text starts. Cheap when asked in ascending order.
+  /// The position of a word of this text. Cheap for calls in ascending order.
   Position position(std::string_view word) const;
 
  private:

@@ -16,7 +16,7 @@ double distance(float a, float b) {
   return same ? 0 : std::isnan(d) ? kInfinity : d;
 }
 
-/// The square of a distance, of bright colours as a share of them.
+/// The square of a difference, relative to the square of the reference colour.
 double relative_square(double distance, float reference) {
   constexpr double kDark = .01;                // no less counts as the square of a colour
   if (distance == 0 || distance == kInfinity)  // the reference may be no number

@@ -21,7 +21,7 @@ struct Comparison {
 
 Comparison compare(const Image& a, const Image& b);
 
-/// What a screen shows of it: every channel from 0 to 1, infinities too. A NaN stays one.
+/// Clamps every channel to 0 to 1, as a screen does, infinities too. A NaN stays a NaN.
 Image displayed(Image image);
 
 /// |a - b|, times `scale`.

@@ -15,10 +15,10 @@ namespace {
 
 constexpr int kMostExrSide = 65536;
 constexpr std::uint64_t kMostPixelsAByte =
-    1024;  ///< deflate packs a thousandfold at most; so does what a file may claim
+    1024;  ///< deflate packs a thousandfold at most, so a file may claim no more
 constexpr int kExrZipLevel = 4;  ///< as for PNG
 
-/// A file in memory, and what the library complained of first.
+/// A file in memory, and the first error of the library.
 struct ExrMemory {
   std::string bytes;
   std::string error;
@@ -57,7 +57,7 @@ std::int64_t write_to(exr_const_context_t,
   return std::int64_t(size);
 }
 
-/// The library's words quote names from the file, whatever bytes they are.
+/// Stores a message of the library. It may quote names from the file, with any bytes.
 void complain(exr_const_context_t context, exr_result_t, const char* message) {
   if (!context)
     return;
@@ -69,8 +69,8 @@ void complain(exr_const_context_t context, exr_result_t, const char* message) {
       error.begin(), error.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
 }
 
-/// Returns whether memory was lacking: the library says so of damaged blocks as well (OpenEXR 3.1,
-/// B44), and gives this function no context.
+/// True if an allocation failed: the library reports lack of memory for damaged blocks as well
+/// (OpenEXR 3.1, B44), and gives take_memory() no context.
 thread_local bool memory_lacked = false;
 
 void* take_memory(std::size_t size) {
@@ -291,7 +291,7 @@ class ExrReader {
     return at == known.npos ? -1 : int(at);
   }
 
-  /// A block may reach beyond what is shown: it is unpacked apart.
+  /// Unpacks a block apart from the image, because it may reach beyond the display window.
   void read_block(const exr_chunk_info_t& block, int x, int y) {
     const std::size_t pixels = std::size_t(block.width) * std::size_t(block.height);
     std::array<std::vector<float>, 3> planes;

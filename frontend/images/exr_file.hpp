@@ -16,7 +16,7 @@ namespace grelha {
 std::string encode_exr(const Image& image, const Layers& layers = {}, const Notes& notes = {});
 
 /// The channels R, G and B, or Y alone, of the first part that has them, whatever its types, tiles
-/// and compression. What lies outside the data window is black. Throws FileError.
+/// and compression. Pixels outside the data window are black. Throws FileError.
 Image read_exr(const std::string& path, const std::string& bytes);
 
 }  // namespace grelha

@@ -11,7 +11,7 @@
 namespace grelha {
 namespace {
 
-/// Rows that are filtered at a time: what lies beside them is read again for the next.
+/// Rows that are filtered at a time; the rows around them are read again for the next strip.
 constexpr int kStrip = 64;
 
 void add(double* to, const double* from, double weight, int count) {

@@ -1,5 +1,5 @@
 #pragma once
-// Sums of neighbours with weights, which SSIM and FLIP are made of.
+// Weighted sums of neighbouring pixels, for SSIM and FLIP.
 
 #include <cstddef>
 #include <functional>
@@ -18,7 +18,7 @@ struct Plane {
   const double* row(int y) const { return values.data() + std::size_t(y) * std::size_t(width); }
 };
 
-/// The weights of numbers side by side, an odd number of them.
+/// The weights of adjacent numbers; their count is odd.
 using Taps = std::vector<double>;
 
 /// exp(-x^2 / (2 sigma^2)) at -radius to radius.
@@ -26,11 +26,12 @@ Taps bell(int radius, double sigma);
 
 double sum(const Taps& taps);
 
-/// Taps that sum to 1.
+/// Scales taps to a sum of 1.
 Taps averaging(Taps taps);
 
-/// Sums over a square of neighbours: `across` within a row times `down` within a column, of as many
-/// taps. Whole squares alone: of width and height as many are lost as there are taps, less one.
+/// Applies a separable filter: `across` within a row times `down` within a column, both with the
+/// same number of taps. Only whole windows count, so width and height shrink by the number of taps
+/// less one.
 Plane filtered(const Plane& plane, const Taps& across, const Taps& down);
 
 /// Calls work(first, end) for strips of rows below `height`, by all threads.

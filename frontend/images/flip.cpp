@@ -78,7 +78,7 @@ double colour_error(double distance) {
   return distance < knee ? .95 / knee * distance : .95 + .05 * (distance - knee) / (largest - knee);
 }
 
-/// Weights of one sign sum to 1, of the other to -1.
+/// Scales the positive weights to a sum of 1, and the negative ones to a sum of -1.
 Taps balanced(Taps taps) {
   double positive = 0, negative = 0;
   for (const double weight : taps)
@@ -88,17 +88,17 @@ Taps balanced(Taps taps) {
   return taps;
 }
 
-/// With zeros on both sides, as many taps as colours have.
+/// Pads taps with zeros on both sides, to as many as the colour filters have.
 Taps widened(const Taps& taps) {
   Taps wide(2 * kRadius + 1);
   std::ranges::copy(taps, wide.begin() + std::ptrdiff_t(wide.size() - taps.size()) / 2);
   return wide;
 }
 
-/// What an eye makes of a picture at that distance.
+/// The filters of human vision at that distance.
 struct Eye {
-  /// The Gaussians of the contrast it sees: light and dark, red and green, blue and yellow (of two,
-  /// of which the narrow one has the share `narrow`).
+  /// The Gaussians of contrast sensitivity: light and dark, red and green, blue and yellow. The
+  /// last is a sum of two, in which the narrow one has the share `narrow`.
   Taps light, red_green, blue_yellow, blue_yellow_narrow;
   double narrow;
   /// A Gaussian across an edge or a point, and its first and second derivative along.
@@ -132,7 +132,8 @@ Eye make_eye() {
   return eye;
 }
 
-/// Y, X - Y and Y - Z, over those of white: YCxCz but for factors, which filters leave as they are.
+/// Y, X - Y and Y - Z, relative to white: YCxCz without its constant factors, because the filters
+/// are linear.
 using Opponents = std::array<Plane, 3>;
 
 /// Rows from `first` up to `end` and kRadius pixels around them; beyond the picture the nearest of

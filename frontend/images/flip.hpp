@@ -9,8 +9,8 @@
 
 namespace grelha {
 
-/// How much one sees, at each pixel, when two pictures of sRGB values from 0 to 1 alternate on a
-/// screen of 67 pixels a degree: from 0 to 1, [height * width].
+/// Computes the visible difference at each pixel, when two pictures of sRGB values from 0 to 1
+/// alternate on a screen of 67 pixels a degree: from 0 to 1, [height * width].
 std::vector<float> flip(const Image& a, const Image& b);
 
 }  // namespace grelha

@@ -12,7 +12,7 @@ namespace {
 using Rgbe = std::array<std::uint8_t, 4>;
 
 constexpr int kMantissa = 8, kExponentBias = 128;
-constexpr float kDarkest = 1e-38f, kLightest = 1e38f;  ///< of what the shared exponent reaches
+constexpr float kDarkest = 1e-38f, kLightest = 1e38f;  ///< range of the shared exponent
 constexpr int kLeastPacked = 8, kMostPacked = 32767;   ///< widths of rows that may be packed
 constexpr int kLongestRun = 127, kLongestDump = 128, kWorthARun = 4;
 

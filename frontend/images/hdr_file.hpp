@@ -9,7 +9,7 @@
 
 namespace grelha {
 
-/// The file's bytes; notes are comments of its head. A value is light: what is below 0 or no number
+/// The file's bytes; notes are comments of its head. Values are light: a negative value or a NaN
 /// becomes 0.
 std::string encode_hdr(const Image& image, const Notes& notes = {});
 

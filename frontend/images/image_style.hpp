@@ -1,5 +1,5 @@
 #pragma once
-// What writers and readers of pictures share: how a picture is written, and what a file says of it.
+// Types that the readers and writers of pictures share: the style of a picture, and its notes.
 
 #include <cstdint>
 #include <optional>
@@ -15,12 +15,12 @@ enum class ImageFormat { png, hdr, pfm, exr };
 /// curve.
 enum class Tone { authored, srgb };
 
-/// What a file says of its picture: key and text, both printable ASCII without line ends.
+/// A note in a picture's file: key and text, both printable ASCII without line ends.
 using Note = std::pair<std::string, std::string>;
 using Notes = std::vector<Note>;
 
-/// What camera rays through the centres of pixels meet first, beside the picture in an OpenEXR
-/// file. Empty: not there.
+/// The first hits of camera rays through the pixel centres, stored beside the picture in an OpenEXR
+/// file. An empty vector is absent.
 struct Layers {
   /// [pixels] from the eye, scene units; infinite where nothing is met
   std::vector<float> depth{};
@@ -30,7 +30,7 @@ struct Layers {
   std::vector<std::uint32_t> id{};
 };
 
-/// How a picture is written.
+/// The options for writing a picture.
 struct ImageStyle {
   std::optional<ImageFormat> format{};  ///< absent: by the name's ending
   Tone tone = Tone::authored;
@@ -38,7 +38,7 @@ struct ImageStyle {
   Layers layers{};
 };
 
-/// What the numbers of a file stand for.
+/// The encoding of the numbers in a file.
 struct Encoding {
   enum class Kind {
     light,  ///< as they are; also where a PNG does not say: then they are the colours as authored

@@ -1,5 +1,5 @@
 #pragma once
-// What a PNG says beside its pixels: https://www.w3.org/TR/png-3/
+// The chunks of a PNG beside its pixels: https://www.w3.org/TR/png-3/
 
 #include <string>
 #include <string_view>
@@ -11,7 +11,7 @@ namespace grelha {
 /// `png` with an sRGB chunk, when that is its tone, and one tEXt chunk a note, before the pixels.
 std::string with_chunks(const std::string& png, Tone tone, const Notes& notes);
 
-/// What its chunks sRGB and gAMA say.
+/// Reads the encoding from the chunks sRGB and gAMA.
 Encoding png_encoding(std::string_view png);
 
 }  // namespace grelha

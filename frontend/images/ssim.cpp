@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kBeside = 5;
 constexpr double kSigma = 1.5;
-/// What keeps quotients of small numbers calm, white being 1.
+/// Constants that stabilize quotients of small numbers; white is 1.
 constexpr double kC1 = .01 * .01, kC2 = .03 * .03;
 
 /// Rows from `first` up to `end`.

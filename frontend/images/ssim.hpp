@@ -8,8 +8,8 @@
 
 namespace grelha {
 
-/// The mean over all whole windows (11 x 11, Gaussian of sigma 1.5) of what a screen shows, values
-/// from 0 to 1: of its luma after Rec. 601. 1 for equal pictures; absent where no window fits.
+/// Computes the mean SSIM over all whole windows (11 x 11, Gaussian of sigma 1.5), of the Rec. 601
+/// luma of displayed values from 0 to 1. It is 1 for equal pictures, and absent if no window fits.
 std::optional<double> ssim(const Image& a, const Image& b);
 
 }  // namespace grelha

@@ -14,10 +14,10 @@
 namespace grelha {
 namespace {
 
-constexpr std::size_t kWindow = 32768;  ///< so far back a deflated stream refers
+constexpr std::size_t kWindow = 32768;  ///< a deflated stream refers back so far
 constexpr int kRaw = -15;               ///< that window, and neither header nor checksum
 
-/// A part of the stream and the checksum of what it holds. No part: memory ran out.
+/// A part of the stream and the checksum of its data. An empty part means that memory ran out.
 struct Strip {
   std::string packed;
   uLong checksum = 0;
@@ -49,7 +49,7 @@ class StripDeflater {
  private:
   /// Every part but the last ends on a whole byte, ready for the next.
   std::string pack(std::string_view before, std::string_view strip, bool last) {
-    constexpr std::size_t kFlush = 16;  // what ends a part that is not the last, and to spare
+    constexpr std::size_t kFlush = 16;  // end of a part that is not the last, and some spare bytes
     deflateReset(&stream_);
     deflateSetDictionary(&stream_, bytes_of(before), uInt(before.size()));
     room_.resize(deflateBound(&stream_, uLong(strip.size())) + kFlush);
@@ -68,7 +68,7 @@ class StripDeflater {
 
 constexpr std::size_t kMostAround = 8;  ///< bytes of header and checksum, and to spare
 
-/// A window of 32 KiB, and about how hard was tried: readers do not care.
+/// A window of 32 KiB, and a compression level that readers ignore.
 std::string zlib_header() {
   return "\x78\x5e";
 }

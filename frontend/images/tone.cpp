@@ -20,7 +20,7 @@ double light_of_srgb(double encoded) {
 
 namespace {
 
-/// Byte k begins at thresholds[k - 1]; behind the last one comes what no value reaches. A table,
+/// Byte k begins at thresholds[k - 1]; the entry behind the last one is beyond all values. A table,
 /// not a curve per pixel: two machines whose powf differ in the last bit would otherwise write
 /// different files.
 using Thresholds = std::array<float, 256>;

@@ -1,5 +1,5 @@
 #pragma once
-// Light as a picture's numbers, and back.
+// Converts light to the numbers of a picture, and back.
 
 #include <cstdint>
 #include <vector>
@@ -12,16 +12,16 @@ namespace grelha {
 /// The light of an sRGB value, both from 0 to 1. IEC 61966-2-1.
 double light_of_srgb(double encoded);
 
-/// 0..1 to 0..255, to nearest; what lies outside is clamped and NaN is black.
+/// Rounds 0..1 to 0..255; other values are clamped, and NaN is black.
 std::uint8_t to_byte(float value, Tone tone);
 
 /// The same for a whole picture, by all threads.
 std::vector<std::uint8_t> to_bytes(const Image& image, Tone tone);
 
-/// The light that numbers so encoded stand for.
+/// Decodes an image to light.
 Image as_light(Image image, const Encoding& encoding);
 
-/// The other way: light from 0 to 1 as sRGB values.
+/// Encodes light from 0 to 1 as sRGB values.
 Image as_srgb(Image light);
 
 }  // namespace grelha

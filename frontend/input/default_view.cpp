@@ -23,7 +23,7 @@ Float3 as_floats(const Place3& v) {
   return {float(v[0]), float(v[1]), float(v[2])};
 }
 
-/// Vertices that triangles name; others may lie anywhere.
+/// Returns the vertices that triangles use; others may lie anywhere.
 std::vector<Place3> corners_of(const Triangles& t) {
   std::vector<std::uint8_t> named(t.vertex_count());
   for (const auto* of : {&t.a, &t.b, &t.c})
@@ -47,8 +47,8 @@ double farthest_out(const std::vector<Place3>& points) {
   return most;
 }
 
-/// How much of the box's cross-section the lowest points along an axis span: a mesh stands on what
-/// is wide.
+/// The share of the box's cross-section that the lowest points along an axis span: a mesh stands on
+/// a wide base.
 double support(const std::vector<Place3>& points, std::size_t axis) {
   constexpr double kLowest = .02;  // of the height
   Place3 low = points[0], high = points[0];
@@ -71,7 +71,8 @@ double support(const std::vector<Place3>& points, std::size_t axis) {
   return share;
 }
 
-/// Scans have y up, most other things z: where the mesh stands on its z side far more surely, that.
+/// Scans have y up, most other meshes z. Returns true if the mesh stands on its z side far more
+/// surely.
 bool stands_on_z(const std::vector<Place3>& points) {
   constexpr double kSurely = 4, kLeast = .1;
   const double z = support(points, 2);

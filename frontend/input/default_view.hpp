@@ -4,10 +4,10 @@
 
 namespace grelha {
 
-/// Gives a mesh alone, whose file knows neither camera nor light, both. The camera frames the
-/// triangles from a three-quarter view, with y up, or z where the mesh surely stands on that side.
-/// A key light stands above the left shoulder, a fill at the eye, so that no face it sees is black,
-/// and one light behind. The background is soft.
+/// Adds a camera and lights to the scene of a bare mesh, whose file has neither. The camera frames
+/// the triangles from a three-quarter view, with y up, or z where the mesh surely stands on that
+/// side. A key light stands above the left shoulder, a fill at the eye, so that no face it sees is
+/// black, and one light behind. The background is soft.
 void add_default_view(SceneFile& file);
 
 /// Light grey with a mild highlight.

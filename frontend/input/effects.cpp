@@ -84,7 +84,7 @@ int ceiling_share(long long all, int parts) {
   return static_cast<int>((all + parts - 1) / parts);
 }
 
-/// Of a pixel; `otherwise` where neither effects nor the scene say.
+/// Returns the samples of a pixel; `otherwise` if neither effects nor the scene set them.
 int samples_of(const Effects& e, const SceneFile& file, int lens_samples, int otherwise) {
   if (e.samples)
     return *e.samples;

@@ -7,7 +7,7 @@
 
 namespace grelha {
 
-/// Effects as the command line asks for them, over and above what the scene says.
+/// Effects of the command line, which override the scene's.
 struct Effects {
   struct Shadows {
     bool hard = false;  ///< area lights of the scene shine from their centre
@@ -37,10 +37,10 @@ struct Effects {
   std::optional<Glossy> glossy;
 };
 
-/// Puts effects into scene, camera and options. Without --samples or --aa a scene with something to
-/// sample takes its own `spp`, or 16 rays a pixel; any other takes one. A lens, an area light and a
-/// rough mirror are such. A point of a subdivided picture takes one ray, or as many as --samples or
-/// a lens of N points say.
+/// Applies effects to scene, camera and options. Without --samples or --aa, a scene with a lens, an
+/// area light or a rough mirror takes its own `spp`, or 16 rays a pixel; any other scene takes one.
+/// A point of a subdivided picture takes one ray, or the number of --samples or of a lens with N
+/// points.
 void apply_effects(const Effects& effects, SceneFile& file, RenderOptions& options);
 
 }  // namespace grelha

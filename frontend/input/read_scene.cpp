@@ -33,8 +33,8 @@ std::string extension(const std::string& path) {
   return point == std::string::npos ? "" : name.substr(point);
 }
 
-/// True by the extension; a file with another one is PLY when it says so: NFF's `ply` has a name
-/// behind it.
+/// Returns true for the extension .ply, or for a file that begins with `ply` alone: NFF's `ply` has
+/// a name behind it.
 bool is_ply(const std::string& path, std::string_view bytes) {
   if (extension(path) == ".ply")
     return true;
@@ -51,7 +51,7 @@ SceneFile read_mesh_alone(const std::string& path,
   file.frame = frame;
   file.source_bytes = bytes.size();
   Mesh mesh = read_ply_mesh(path, bytes, warn, &progress, frame);
-  std::string().swap(bytes);  // as large as what is made of it
+  std::string().swap(bytes);  // they are as large as the mesh
   file.counts.ply = mesh.face_count();
   if (file.counts.ply == 0)
     file.points = mesh.vertex_count();
@@ -93,8 +93,8 @@ SceneFile parse_scene(const std::string& path,
              : read_nff(path, bytes, warn, options, &progress);
 }
 
-/// The scene once more in a frame, from what was read first if that cannot be read again. What is
-/// to be warned of was said the first time.
+/// Reads the scene again in a frame, from the first bytes if the file cannot be read again. The
+/// first reading has already given the warnings.
 SceneFile read_in_frame(const std::string& path,
                         std::string bytes,
                         const Frame& frame,

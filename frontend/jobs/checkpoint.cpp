@@ -18,7 +18,7 @@ namespace {
 constexpr std::string_view kMagic = "grelha partial 1\n";
 constexpr std::size_t kChecksum = 8;
 
-/// The lines of the head, to write.
+/// Writes the lines of the header.
 class HeadWriter {
  public:
   std::string text;
@@ -31,19 +31,19 @@ class HeadWriter {
   }
 };
 
-/// The lines of the head, and what lies behind them.
+/// Reads the lines of the header; rest() is the data behind them.
 class HeadReader {
  public:
   explicit HeadReader(std::string_view bytes) : left_(bytes) {}
 
   std::string_view rest() const { return left_; }
 
-  /// Whether the next line begins with this word.
+  /// Returns true if the next line begins with this word.
   bool next_is(std::string_view word) const {
     return left_.starts_with(word) && left_.substr(word.size()).starts_with(' ');
   }
 
-  /// What stands behind the word that the next line begins with.
+  /// Consumes the next line, which must begin with this word, and returns the text behind it.
   std::string_view line(std::string_view word) {
     const std::size_t end = left_.find('\n');
     want(end != left_.npos && end > word.size() && next_is(word));

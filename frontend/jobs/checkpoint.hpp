@@ -8,21 +8,21 @@
 
 namespace grelha {
 
-/// A picture as a file keeps it. docs/parts.md has the format.
+/// A picture in a checkpoint file. docs/parts.md describes the format.
 struct Checkpoint {
   Identity identity;
   Picture picture;
 };
 
-/// Equal checkpoints make equal files. `durable`: on the disk, come what may, when this returns;
-/// see AtomicFile.
+/// Equal checkpoints make equal files. `durable`: the file is on the disk when this returns; see
+/// AtomicFile.
 void write_checkpoint(const std::string& path,
                       const Identity& identity,
                       const Picture& picture,
                       bool durable);
-/// The same over the bytes of the file that is there, which a full disk allows: nothing grows.
-/// Throws FileError where it would, and nothing is done; or where writing fails, and the file is
-/// damaged.
+/// The same in place, over the bytes of the existing file, which works on a full disk. Throws
+/// FileError if the file would grow, and then leaves it unchanged; or if writing fails, and then
+/// the file is damaged.
 void write_over_checkpoint(const std::string& path,
                            const Identity& identity,
                            const Picture& picture);
@@ -32,7 +32,7 @@ void write_part(const std::string& path,
                 const Accumulator& part,
                 bool durable);
 
-/// Throws FileError for a file that is damaged or none of ours.
+/// Throws FileError for a file that is damaged or has another format.
 Checkpoint read_checkpoint(const std::string& path);
 Checkpoint parse_checkpoint(const std::string& path, std::string_view bytes);
 

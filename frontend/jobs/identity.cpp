@@ -12,7 +12,7 @@
 namespace grelha {
 namespace {
 
-/// Lengths go in as well: else what ends one array could begin the next.
+/// Digests the length as well; otherwise the end of one array could be the beginning of the next.
 template <class T>
 void take(Digest& digest, const std::vector<T>& values) {
   const std::uint64_t size = values.size();
@@ -37,7 +37,7 @@ void take(Digest& digest, const Material& m) {
 }
 
 void take(Digest& digest, const Geometry& g) {
-  // objects are how the kernel lays triangles out: no pixel depends on it
+  // objects only order the triangles in memory: no pixel depends on them
   const auto& [s, t, c, p, objects] = g;
   take_all(digest, s.x, s.y, s.z, s.radius, s.material);
   take_all(digest, t.x, t.y, t.z, t.nx, t.ny, t.nz, t.a, t.b, t.c, t.material);
@@ -61,7 +61,7 @@ std::string text(Number value) {
   return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr};
 }
 
-/// How many samples a pixel gets, or what decides it.
+/// The number of samples a pixel, or the option that determines it.
 std::string samples_text(const RenderOptions& o) {
   const RefineOptions& r = o.refine;
   if (r.error > 0)
@@ -139,8 +139,8 @@ std::string key_of(const std::string& word) {
   return word.substr(0, word.find('=') + 1);
 }
 
-/// The words that one has and the other has not, and those it lacks. The words may be
-/// anyone's.
+/// Lists the words that `here` has and `there` lacks, and the missing keys. The words are
+/// untrusted.
 std::string own_words(const WordList& here, const WordList& there) {
   constexpr int kMost = 8;
   WordList keys;

@@ -7,12 +7,12 @@
 
 namespace grelha {
 
-/// What two parts must have in common to be parts of one picture.
+/// The properties that two parts of one picture must share.
 struct Identity {
-  std::string scene;  ///< digest of what a ray can see of the scene as read, and of the view
-  /// all else that pixels depend on, as words: version=0.1.0 size=512x512 samples=16 ...
+  std::string scene;  ///< digest of the scene as read, as far as rays see it, and of the view
+  /// the other settings that pixels depend on, as words: version=0.1.0 size=512x512 samples=16 ...
   std::string settings;
-  /// what the first of them calls the scene, printable; parts need not agree on it
+  /// the scene's name in the first part, printable; parts need not agree on it
   std::string name{};
   bool operator==(const Identity&) const = default;
 };
@@ -20,15 +20,15 @@ struct Identity {
 /// `file`: before apply_effects().
 std::string scene_digest(const SceneFile& file);
 
-/// `camera` and `prepared.render`: after apply_effects(). What changes no bit (threads, isa,
-/// packet, grid ...) is left out.
+/// `camera` and `prepared.render`: after apply_effects(). Options that change no bit (threads, isa,
+/// packet, grid ...) are left out.
 std::string settings_text(const RenderCommand& prepared, const Camera& camera);
 
 /// The note that every picture has.
 extern const Note kSoftware;
 
-/// What a picture's file says of it: Software, Title, Scene, Settings. Nothing that changes no bit
-/// of the picture.
+/// The notes of a picture's file: Software, Title, Scene, Settings. Options that change no bit of
+/// the picture are left out.
 Notes notes_of(const Identity& identity);
 
 /// `dir/balls.nff.gz` is called balls.

@@ -49,7 +49,7 @@ std::string write_elsewhere(const std::string& work,
                             const std::function<void(const std::string&)>& write) {
   std::error_code none;
   const fs::path own = fs::absolute(work, none).parent_path(), name = fs::path(work).filename();
-  // a folder that nobody else can have put anything into
+  // a new folder, into which no other user can have put a file
   std::string fresh = (fs::temp_directory_path(none) / "grelha-XXXXXX").string();
   const bool is_fresh = mkdtemp(fresh.data()) != nullptr;
   for (const fs::path& folder : {fs::path(is_fresh ? fresh : ""), fs::current_path(none)}) {

@@ -1,6 +1,6 @@
 #pragma once
-// What a stopped render leaves beside the place of its picture: the picture so far, and what the
-// same command goes on from.
+// Files that a stopped render leaves beside its picture: the unfinished picture, and the work from
+// which the same command continues.
 
 #include <functional>
 #include <string>
@@ -9,19 +9,20 @@
 
 namespace grelha {
 
-/// Two files of one name. What goes to stdout or a device is named after the scene.
+/// Two files with a common name. Those of a picture for stdout or a device are named after the
+/// scene.
 struct KeptNames {
   std::string work;     ///< `dir/x.partial.grelha` of `dir/x.png`; empty: there is no free name
   std::string picture;  ///< `dir/x.partial.png`; empty for a .grelha
 };
 
-/// With a number behind `partial` where other pictures are kept: the first name that nothing has,
+/// Adds a number behind `partial` where other pictures are kept. Takes the first name that is free
 /// or whose work `fits`.
 KeptNames kept_names(const RenderCommand& command,
                      const std::function<bool(const std::string&)>& fits);
 
-/// Has the work written in another folder, where the picture's has no room: one in the system's
-/// folder for what is temporary, or the current one. Returns where, or "".
+/// Writes the work to another folder if the picture's has no room: a new one in the system's
+/// temporary folder, or the current folder. Returns the path, or "".
 std::string write_elsewhere(const std::string& work,
                             const std::function<void(const std::string&)>& write);
 

@@ -34,11 +34,11 @@ Part part_of(const RenderCommand& command, const Camera& camera) {
 
 bool exists(const std::string& path) {
   struct stat about {};
-  // what cannot be looked at is for the reader to complain of
+  // the reader reports a file that cannot be examined
   return stat(path.c_str(), &about) == 0 || errno != ENOENT;
 }
 
-/// Why a checkpoint is not of the very picture that is asked for; empty when it is.
+/// Returns why a checkpoint belongs to another picture than the wanted one; empty if it fits.
 std::string misfit(const Checkpoint& found, const Identity& wanted, const Picture& begun) {
   if (found.identity.scene != wanted.scene)
     return "is of another scene";
@@ -61,7 +61,7 @@ Picture saved_picture(const std::string& path, const Identity& wanted, const Pic
   return std::move(found.picture);
 }
 
-/// Settings by --time as those by --time samples:N that repeat them.
+/// Replaces --time SECONDS in settings by the --time samples:N that repeats the picture.
 std::string repeatable(const std::string& settings, std::uint64_t samples) {
   constexpr std::string_view kTime = " time=", kSamples = "samples:";
   const std::size_t at = settings.find(kTime);
@@ -125,7 +125,7 @@ void LongRender::go_on_from_kept() {
         picture_ = std::move(found.picture);
       else
         say("grelha: " + path + " stays, which keeps another picture: it " + why);
-    } catch (const std::exception&) {  // nobody said that this file should be one
+    } catch (const std::exception&) {  // the command did not name this file as a checkpoint
     }
     return went_on_;
   });
@@ -146,7 +146,7 @@ void LongRender::pursue(Habit& habit) {
     return;
   try {
     habit.act();
-    // the work is worth more than this; nothing may leave a parallel region either
+    // a failed save must not end the render, and no exception may leave a parallel region
   } catch (const std::exception& error) {
     if (!habit.warned)
       warn_(std::string(error.what()) + " (rendering goes on)");
@@ -176,9 +176,8 @@ void LongRender::keep() {
     shown_ = tried([&] { write_image(kept_.picture, picture_.image(), style()); });
 }
 
-/// Saves what there is where it belongs. On a full disk over what is kept there of the picture,
-/// whose bytes are room enough, or in another folder. Returns where; throws FileError as the first
-/// place did.
+/// Saves the work at its place. On a full disk, overwrites the earlier save there in place, or
+/// saves in another folder. Returns the path; throws the FileError of the first place.
 std::string LongRender::keep_somewhere() {
   if (kept_.work.empty())
     return "";
@@ -270,7 +269,7 @@ void LongRender::finish(Layers layers) {
 void LongRender::keep_all() {
   try {
     saved_in_ = keep_somewhere();
-  } catch (const FileError&) {  // why the picture could not be written is told
+  } catch (const FileError&) {  // the caller reports why the picture could not be written
   }
   if (saved_in_.empty() || (asked_to_save() && saved_in_ == kept_.work))
     return;
@@ -278,7 +277,7 @@ void LongRender::keep_all() {
         with_checkpoint() + "writes it");
 }
 
-/// What the command needs to find what was saved.
+/// Returns the option that the command needs to find the saved work.
 std::string LongRender::with_checkpoint() const {
   return saved_in_ == kept_.work ? "" : "with --checkpoint " + saved_in_ + ' ';
 }
@@ -293,8 +292,8 @@ void LongRender::save() {
   note_place();
 }
 
-/// What the picture's file says of it. With --time the samples taken make the picture again. A
-/// picture that is not done says so.
+/// Returns the style of the picture's file, with its notes. With --time, the notes give the number
+/// of samples that repeats the picture. The notes of an unfinished picture say so.
 ImageStyle LongRender::style() const {
   Identity identity = identity_;
   identity.settings = repeatable(identity.settings, picture_.samples_taken());

@@ -13,17 +13,18 @@
 
 namespace grelha {
 
-/// Throws UsageError when several ranks are to share what only one can render.
+/// Throws UsageError when several ranks are to share a picture that only one can render.
 void want_shareable(const RenderCommand& command, const Ranks& ranks);
 
-/// A render that saves what it has, shows it, and can be stopped.
+/// A render that saves and shows its intermediate state, and can be stopped.
 class LongRender {
  public:
   using Warn = std::function<void(const std::string&)>;
 
-  /// `prepared`: after apply_effects(); it must outlive this. Goes on from the checkpoint if that
-  /// is there: throws UsageError when it is of another picture, FileError when it cannot be read.
-  /// Without --checkpoint goes on from what an earlier run of the command left when it was stopped.
+  /// `prepared`: after apply_effects(); it must outlive this. Continues from the checkpoint if it
+  /// exists: throws UsageError when it is of another picture, FileError when it cannot be read.
+  /// Without --checkpoint, continues from the work that an earlier, stopped run of the command
+  /// left.
   LongRender(const RenderCommand& prepared,
              const Camera& camera,
              std::string scene_digest,
@@ -32,17 +33,17 @@ class LongRender {
 
   double share_done() const { return picture_.share_done(); }
 
-  /// `progress` is told the share done. SIGHUP, SIGINT and SIGTERM stop it after what is in work,
-  /// while StopSignals live: keeps what there is and returns the signal, otherwise 0. Saves that
-  /// fail on the way are warned of once, and tried again. `maps` are filled when samples are spent
-  /// by error.
+  /// `progress` receives the share done. While StopSignals live, SIGHUP, SIGINT and SIGTERM stop
+  /// the render after the pieces in work; it keeps the work and returns the signal, otherwise 0.
+  /// Warns once of saves that fail on the way, and tries them again. `maps` are filled when samples
+  /// are spent by error.
   int run(const World& world,
           const Camera& camera,
           const std::function<void(double)>& progress,
           RenderStats& stats,
           SampleMaps& maps);
 
-  /// One line about what stopping left.
+  /// One line about the files that a stopped render left.
   std::string stop_text(int signal) const;
 
   /// Writes picture or partial, by the first rank alone. Then the checkpoint has done its work and
@@ -51,7 +52,7 @@ class LongRender {
   void finish(Layers layers = {});
 
  private:
-  /// Something done now and then. What fails is warned of once and tried again.
+  /// An action repeated at intervals. Warns once of a failure, and tries again.
   struct Habit {
     double every;  ///< seconds; 0: never
     std::function<void()> act;
@@ -66,9 +67,9 @@ class LongRender {
   void keep();
   std::string keep_somewhere();
   bool wrote_over() const;
-  /// Of a picture that cannot be written.
+  /// Keeps the work of a picture that cannot be written.
   void keep_all();
-  bool tried(const std::function<void()>& write) const;  ///< warns of what it throws
+  bool tried(const std::function<void()>& write) const;  ///< warns of its exceptions
   void save();
   void note_place();
   std::string with_checkpoint() const;
@@ -81,10 +82,10 @@ class LongRender {
   const Warn warn_;
   Identity identity_;
   Picture picture_;
-  /// what is gone on from, the checkpoint or a file beside the picture's, and the picture so far;
-  /// empty: there is none
+  /// names of the work to continue, the checkpoint or a file beside the picture's, and of the
+  /// unfinished picture; empty: absent
   KeptNames kept_;
-  std::optional<Place> kept_place_;  ///< of that file, as this program wrote or read it
+  std::optional<Place> kept_place_;  ///< of the work's file, as this program wrote or read it
   bool went_on_ = false;             ///< from what was there
   bool is_shared_ = false;           ///< another program writes the checkpoint as well
   Layers layers_;                    ///< of the picture, when it is done

@@ -18,7 +18,7 @@ void widen(Range& r, const Range& by) {
   r = {std::min(r.begin, by.begin), std::max(r.end, by.end)};
 }
 
-/// The first samples among `wanted` that none of the parts has of row `y`.
+/// Returns the first samples in `wanted` that no part has for row `y`.
 Range missing_of_row(const std::vector<Part>& parts, const Range& wanted, int y) {
   std::vector<Range> here;
   for (const Part& p : parts)
@@ -35,7 +35,7 @@ Range missing_of_row(const std::vector<Part>& parts, const Range& wanted, int y)
   return {at, wanted.end};
 }
 
-/// What is missing of `whole`, the first of it. Rows change only where a part begins or ends.
+/// Returns the first missing part of `whole`. Rows change only where a part begins or ends.
 std::optional<Part> first_gap(const std::vector<Part>& parts, const Part& whole) {
   std::vector<int> cuts{whole.rows.end};
   for (const Part& p : parts) {
@@ -65,8 +65,8 @@ std::string percent(double share) {
   return std::to_string(int(share * 100)) + " %";
 }
 
-/// Reads every file twice. Nothing is allocated before it is known that the parts fill it. So a
-/// small file which claims to be of a huge picture takes no more than a small file's memory.
+/// Reads every file twice, and allocates the sums only after checking that the parts fill them. So
+/// a small file which claims to be of a huge picture takes only a small file's memory.
 class Joiner {
  public:
   explicit Joiner(const std::vector<std::string>& files) : files_(files) {}

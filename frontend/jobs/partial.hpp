@@ -7,7 +7,7 @@
 
 namespace grelha {
 
-/// A part of a picture, finished or not: what `merge` takes of .grelha files.
+/// A part of a picture, finished or not, as `merge` reads it from .grelha files.
 struct Partial {
   Identity identity;
   Accumulator sums;
@@ -18,11 +18,12 @@ bool is_partial_name(std::string_view path);
 /// `rows 0:8, samples 16:32`
 std::string part_text(const Part& part);
 
-/// Equal partials make equal files. `durable`: on the disk, come what may, when this returns; see
+/// Equal partials make equal files. `durable`: the file is on the disk when this returns; see
 /// AtomicFile.
 void write_partial(const std::string& path, const Partial& partial, bool durable = false);
 
-/// Throws FileError for a file that is damaged, none of ours, or of a picture that has no parts.
+/// Throws FileError for a file that is damaged, has another format, or is of a picture without
+/// parts.
 Partial read_partial(const std::string& path);
 Partial parse_partial(const std::string& path, std::string_view bytes);
 

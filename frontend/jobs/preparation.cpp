@@ -114,7 +114,7 @@ PictureMemory picture_memory(const RenderCommand& command, const Camera& camera)
              subdivided = command.effects.adaptive.on;
   const auto width = std::uint64_t(camera.width), pixels = width * std::uint64_t(camera.height);
   const Range rows = command.work.rows.value_or(Range{0, camera.height});
-  // what the picture lacks is refused later
+  // rows outside the picture are refused later
   const auto height = std::uint64_t(std::clamp(rows.end - rows.begin, 1, camera.height));
   const std::uint64_t kept = refined      ? kRefined * pixels
                              : subdivided ? kPixel * pixels

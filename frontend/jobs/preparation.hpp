@@ -1,6 +1,6 @@
 #pragma once
-// From a file to what rays need, with a bar to look at, an end when a signal asks for it, and no
-// more memory than there may be.
+// Reads a scene and builds its grids, with a progress bar, a stop on signals, and a limit on
+// memory.
 
 #include <cstdint>
 #include <stdexcept>
@@ -25,18 +25,18 @@ SceneFile load_scene(const std::string& path,
                      const ReadOptions& options,
                      bool shown);
 
-/// The grids of a scene that `later` more bytes are wanted for. Throws Interrupted, and FileError
-/// (in the scene's name) when by its estimate it would take more than there may be.
+/// Builds the grids of a scene that needs `later` more bytes for rendering. Throws Interrupted, and
+/// FileError (in the scene's name) when the estimate exceeds the memory limit.
 World build_world(const std::string& path,
                   const Scene& scene,
                   const BuildOptions& options,
                   std::uint64_t later,
                   bool shown);
 
-/// Bytes of the picture that a command makes, or of the part of it: --rows.
+/// Bytes for the picture of a command, or for the part of it that --rows selects.
 struct PictureMemory {
-  std::uint64_t sums = 0;  ///< of work that is kept: taken before the grids are built
-  std::uint64_t rest = 0;  ///< the program, what its threads work in, the picture, and its file
+  std::uint64_t sums = 0;  ///< of the sums in memory: allocated before the grids are built
+  std::uint64_t rest = 0;  ///< the program, buffers of its threads, the picture, and its file
 };
 
 PictureMemory picture_memory(const RenderCommand& command, const Camera& camera);
@@ -44,7 +44,7 @@ PictureMemory picture_memory(const RenderCommand& command, const Camera& camera)
 /// Throws FileError, in the scene's name, when there are not so many bytes left.
 void want_memory(const std::string& path, std::uint64_t bytes);
 
-/// What rendering a scene at its own size, one sample a pixel, takes.
+/// Estimates the memory for rendering a scene at its own size with one sample a pixel.
 SceneMemory memory_of(const SceneFile& file, const BuildOptions& options);
 
 }  // namespace grelha

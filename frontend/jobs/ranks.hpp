@@ -1,6 +1,6 @@
 #pragma once
-// One render by several processes on several machines. Built with GRELHA_MPI they are the ranks of
-// an MPI run, otherwise there is one.
+// One render by several processes on several machines. With GRELHA_MPI they are the ranks of an MPI
+// run; otherwise there is one rank.
 
 #include <functional>
 #include <string>
@@ -20,27 +20,27 @@ class Ranks {
   int count() const { return count_; }
   bool first() const { return rank_ == 0; }  ///< the one that writes and speaks
 
-  /// Throws UsageError on ranks to whom `what` is not what it is to the first; `otherwise` says
-  /// what such a rank is or did.
+  /// Throws UsageError on ranks whose `what` differs from the first rank's. `otherwise` describes
+  /// such a rank.
   void agree_on(const std::string& what, const std::string& otherwise) const;
 
-  /// Runs work that each rank does by itself, and tells each whether all of them managed. Where
-  /// some did not, theirs is the error that is thrown, or the first rank's alone when it is among
-  /// them: then all go on to something else together.
+  /// Runs work that each rank does by itself, and returns true if all ranks succeeded. Ranks that
+  /// failed throw their error. If the first rank is among them it alone throws, and all continue
+  /// together.
   bool together(const std::function<void()>& work);
 
-  /// False from work that all managed to the end of advance(): to fail there leaves the others
-  /// waiting.
+  /// False from work in which all ranks succeeded to the end of advance(): a failure there leaves
+  /// the others waiting.
   bool in_step() const { return in_step_; }
 
-  /// The others will not come to the end, or need not: this one leaves without waiting for them,
-  /// and MPI ends them.
+  /// Makes this rank leave without waiting for the others, which will not or need not reach the
+  /// end; MPI ends them.
   void abandon() { abandoned_ = true; }
 
-  /// Picture::advance() by all ranks together: pieces are handed out one by one to whoever asks.
-  /// Only pictures that have parts can be shared. The first rank's picture counts, and gets all
-  /// pieces; the others' are for them to work in, of the same part. `stop_seen` tells the first
-  /// rank to wait for nobody any more.
+  /// Picture::advance() by all ranks together: each rank takes one piece at a time. Only pictures
+  /// that have parts can be shared. The first rank's picture receives all pieces; the pictures of
+  /// the other ranks, of the same part, are buffers. `stop_seen` tells the first rank to stop
+  /// waiting.
   bool advance(const World& world,
                const Camera& camera,
                const RenderOptions& options,

@@ -1,9 +1,9 @@
-// The build with MPI. One rank a node, with threads inside: any of them may call MPI, one at a time
+// The build with MPI. One rank a node, with threads inside: any thread may call MPI, one at a time
 // (MPI_THREAD_SERIALIZED).
 //
-// The number of the next piece stands in the first rank's memory, and every rank takes it from
-// there by a one-sided fetch-and-add; nobody has to answer. Sums of a piece go to the first rank as
-// one message when the piece is done, and are received between its own pieces.
+// The number of the next piece is in the first rank's memory, and every rank takes it with a
+// one-sided fetch-and-add, without a reply. A rank sends the sums of a finished piece to the first
+// rank in one message, which the first rank receives between its own pieces.
 #include <mpi.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace grelha {
 namespace {
 
 constexpr int kFirst = 0, kPieceTag = 1, kEndTag = 2;
-/// messages: beyond that a rank waits for the first to take some
+/// messages; a rank with more waits until the first rank has received some
 constexpr std::size_t kMostOnTheWay = 64;
 
 std::size_t sums_of_rows(const Accumulator& a, const Range& rows) {
@@ -67,9 +67,9 @@ class Counter {
   std::int64_t* value_ = nullptr;
 };
 
-/// Looks into MPI every millisecond. Over a network that cannot read and write memory by itself a
-/// rank answers requests to its memory only while it is inside MPI. The first rank's threads may be
-/// a second in a piece; thanks to this others wait for a number no longer than a millisecond.
+/// Calls MPI every millisecond. On a network without remote memory access in hardware, a rank
+/// answers requests to its memory only inside an MPI call. The first rank's threads may take a
+/// second for a piece; with this thread, others wait for a number at most a millisecond.
 class Doorkeeper {
  public:
   Doorkeeper(std::mutex& mpi, const std::function<bool()>& stop_seen)
@@ -78,7 +78,7 @@ class Doorkeeper {
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
             const std::lock_guard lock(mpi);
             if (stop_seen())
-              return;  // others may be gone then, and MPI would have this one go with them
+              return;  // other ranks may be gone by then, and MPI would end this one too
             int there = 0;
             MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &there, MPI_STATUS_IGNORE);
           }
@@ -135,8 +135,8 @@ class Outbox {
   std::list<Letter> on_the_way_;
 };
 
-/// Takes in what has come; returns how many ranks said that it was their last, and what rays they
-/// sent.
+/// Receives the messages that have arrived. Returns how many ranks ended, and adds the rays that
+/// they counted.
 int receive(Accumulator& a, RayCounts& rays) {
   int ended = 0;
   for (;;) {
@@ -211,14 +211,14 @@ class SharedPieces {
     return first_ ? std::make_unique<Doorkeeper>(mutex_, stop_seen_) : nullptr;
   }
 
-  /// What all but the first rank do in the end; true.
+  /// Ends the work of a rank other than the first: sends its remaining messages. Returns true.
   bool say_goodbye(const RayCounts& rays) {
     outbox_.finish(rays);
     return true;
   }
 
-  /// What the first rank does in the end: takes in what is still to come, and adds the rays of
-  /// others to its own. Returns whether all ranks came to their end.
+  /// Ends the work of the first rank: receives the remaining messages, and adds the rays of other
+  /// ranks to its own. Returns true if all ranks reached their end.
   bool wait_for_others(const std::function<bool(double)>& progress,
                        const ShouldContinue& should_continue,
                        RayCounts& rays) {
@@ -243,7 +243,7 @@ class SharedPieces {
   std::vector<std::size_t> left_;
   std::unique_ptr<Counter> counter_;
   Outbox outbox_;
-  std::mutex mutex_;                  ///< of all that follows, and of MPI
+  std::mutex mutex_;                  ///< for the members below, and for MPI
   std::vector<std::size_t> in_work_;  ///< of this rank
   int ended_ = 0;
   RayCounts elsewhere_;

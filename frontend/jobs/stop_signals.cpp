@@ -13,15 +13,16 @@ namespace grelha {
 
 namespace {
 
-/// Any thread may get a signal, and all of them ask: sig_atomic_t would be for one thread alone.
+/// Any thread may receive a signal, and all threads read this: sig_atomic_t is safe within one
+/// thread only.
 std::atomic<int> noted = 0;
 static_assert(std::atomic<int>::is_always_lock_free, "a handler may take no lock");
 
 bool on_terminal = false;
 void (*pipe_before)(int) = SIG_DFL;
 
-/// Says in the handler itself that a signal came, for what is in work may take long. It does only
-/// what a handler may do.
+/// Reports the signal in the handler itself, because the work in progress may take long. Calls only
+/// async-signal-safe functions.
 void note(int signal) {
   constexpr std::string_view kWipe = "\r\033[K";  // the bar
   constexpr std::string_view kAnswer = "grelha: stopping; once more ends it at once\n";
@@ -41,7 +42,7 @@ void act(void (*handler)(int), int flags) {
   for (const int signal : {SIGHUP, SIGINT, SIGTERM}) {
     struct sigaction old {};
     sigaction(signal, nullptr, &old);
-    // whoever started the program may have it ignore one
+    // the parent process may have set a signal to be ignored
     if (old.sa_handler != SIG_IGN)
       sigaction(signal, &action, nullptr);
   }

@@ -2,9 +2,9 @@
 
 namespace grelha {
 
-/// While one lives, SIGHUP, SIGINT and SIGTERM are noted and answered on stderr at once instead of
-/// ending the program, each the first time. A pipe that nobody reads any more ends nothing either:
-/// whoever read it may have got the same Ctrl-C.
+/// While an object lives, the first SIGHUP, SIGINT or SIGTERM of each kind is recorded and answered
+/// on stderr instead of ending the program. SIGPIPE is ignored: the reader of the pipe may have
+/// received the same Ctrl-C.
 class StopSignals {
  public:
   StopSignals();
@@ -12,7 +12,7 @@ class StopSignals {
   StopSignals(const StopSignals&) = delete;
   StopSignals& operator=(const StopSignals&) = delete;
 
-  static int seen();  ///< one of them, or 0
+  static int seen();  ///< the signal, or 0
 };
 
 /// The name of one of these signals.

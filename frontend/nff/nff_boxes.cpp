@@ -9,7 +9,7 @@ namespace {
 
 using Six = std::array<float, 6>;
 
-/// False where an error is to come, or a box that is left out.
+/// Returns false if reading the box gives an error or drops it.
 bool read_six(Words& words, Six& numbers) {
   const auto reads = [&](float& number) { return to_number(words.next(), number); };
   const auto is_finite = [](float number) { return std::isfinite(number); };

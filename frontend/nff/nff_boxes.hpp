@@ -5,8 +5,9 @@
 
 namespace grelha {
 
-/// What the six numbers of every `aabb` in a file are. Two orders are about, and only the numbers
-/// tell them apart: those of one box often allow both, so all boxes of the file are asked.
+/// Determines the order of the six numbers of every `aabb` in a file. Two orders are in use, and
+/// only the numbers tell them apart. The numbers of one box often allow both, so this reads all
+/// boxes of the file.
 ///
 /// Pairs have every minimum before its maximum; corners ascend, or descend, on every axis. Pairs
 /// when all boxes are in pairs and some cannot be corners; corners otherwise, which any six numbers

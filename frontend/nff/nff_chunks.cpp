@@ -16,7 +16,7 @@
 namespace grelha {
 namespace {
 
-/// A chunk as it was read on its own: entities up to the first that is odd.
+/// A chunk that was read on its own: entities up to the first irregular one.
 struct Fragment {
   const char *begin = nullptr, *stop = nullptr;  ///< entities that begin between belong to it
   SceneFile file;
@@ -24,10 +24,11 @@ struct Fragment {
   const char* next = nullptr;  ///< the first word that is not taken
 };
 
-/// Of a polygon in a fragment: a larger one may take seconds, for nothing where it is warned of.
+/// Most corners of a polygon in a fragment: a larger one may take seconds, which are lost if it
+/// gives a warning.
 constexpr std::size_t kMostCorners = 4096;
 
-/// What a fragment must not say.
+/// Thrown in place of a warning, which a fragment must not give.
 struct WouldWarn {};
 
 void read_entities(const std::string& path,
@@ -36,7 +37,7 @@ void read_entities(const std::string& path,
                    Fragment& fragment) {
   const Warn stop = [](const std::string&) { throw WouldWarn(); };
   Warnings warnings(stop);
-  // a `/*` ends the fragment: how far it reaches is not this fragment's to find out
+  // a `/*` ends the fragment, because its end may lie far outside
   Words words(path, {fragment.begin, std::size_t(end - fragment.begin)}, 0, Comments::kOfLines);
   NffInput input(words, warnings, frame);
   NffPlain plain(input, fragment.file, kMostCorners);
@@ -50,7 +51,7 @@ void read_entities(const std::string& path,
   }
 }
 
-/// Errors and warnings are for whoever reads the same place again, and knows the place's line.
+/// Drops errors and warnings: the sequential reader reads the same place again, and knows its line.
 void read_fragment(const std::string& path,
                    const char* end,
                    const Frame& frame,
@@ -59,7 +60,7 @@ void read_fragment(const std::string& path,
   read_entities(path, end, frame, fragment);
 } catch (const WouldWarn&) {
 } catch (const ParseError&) {
-} catch (...) {  // memory ran out: nobody knows where
+} catch (...) {  // memory ran out at an unknown place
   fragment.taken = {};
 }
 
@@ -67,7 +68,7 @@ bool begins_line(const char* p) {
   return p[-1] == '\n' || p[-1] == '\r';
 }
 
-/// Returns whether a plain entity's keyword stands at `p`, and a blank behind it.
+/// Returns true if a plain entity's keyword and a blank stand at `p`.
 bool is_keyword_at(const char* p, const char* end) {
   constexpr std::size_t kLongest = 2;
   const std::string_view ahead(p, std::min(kLongest + 1, std::size_t(end - p)));
@@ -75,7 +76,7 @@ bool is_keyword_at(const char* p, const char* end) {
   return length != ahead.npos && is_plain(ahead.substr(0, length));
 }
 
-/// The text from an entity on, cut.
+/// Cuts the text from an entity on into chunks.
 class Cutter {
  public:
   Cutter(const char* begin, const char* end, std::size_t bytes)
@@ -83,8 +84,8 @@ class Cutter {
 
   std::size_t count() const { return (std::size_t(end_ - begin_) + bytes_ - 1) / bytes_; }
 
-  /// Where chunk `i` begins and the next one does. Where no line seems to begin an entity, it has
-  /// no beginning; what is before such a chunk ends with it.
+  /// Returns the beginnings of chunk `i` and of the next one. If no line in it seems to begin an
+  /// entity, the chunk has no beginning, and the chunk before it includes its text.
   Fragment cut(std::size_t i) const {
     Fragment fragment;
     const char* const begin = find_start(i);
@@ -110,8 +111,9 @@ class Cutter {
   std::size_t bytes_;
 };
 
-/// Threads take chunks as they can. Whoever has read the next one that the scene lacks puts it
-/// there, and those that wait behind it; nobody else waits for that unless all are too far ahead.
+/// Threads claim chunks in order. The thread that has read the next missing chunk of the scene
+/// appends it, and the chunks that wait behind it. Other threads wait only if they are too far
+/// ahead.
 class Run {
  public:
   Run(const std::string& path,
@@ -122,7 +124,7 @@ class Run {
       SceneFile& file)
       : path_(path), cutter_(cutter), end_(end), slots_(ahead), file_(file), here_(begin) {}
 
-  /// What each thread does; the one that `tell` is given to calls it.
+  /// The work of each thread. The thread that is given `tell` calls it.
   void work(const NffChunks::Tell* tell) noexcept try {
     for (std::size_t chunk = 0; claim(chunk);) {
       Fragment fragment = cutter_.cut(chunk);
@@ -138,7 +140,7 @@ class Run {
     error_ = std::current_exception();
   }
 
-  /// After all work: what came of it, or what was thrown.
+  /// After all work: returns the result, or rethrows the error.
   NffChunks::Taken finish() const {
     if (error_)
       std::rethrow_exception(error_);
@@ -189,7 +191,7 @@ class Run {
     }
     lock.unlock();
     if (!taken_.end &&
-        fragment.next >= fragment.stop)  // what follows may well be as the first chunk is
+        fragment.next >= fragment.stop)  // the rest is probably like the first chunk
       reserve_for_parts(file_, fragment.file, double(end_ - here_) / double(fragment.next - here_));
     append_part(file_, fragment.file);
     lock.lock();
@@ -205,7 +207,7 @@ class Run {
   std::size_t claimed_ = 0, joined_ = 0;  ///< chunks
   bool is_joining_ = false, is_over_ = false;
   SceneFile& file_;
-  const char* here_;  ///< what the scene lacks begins here
+  const char* here_;  ///< the text that the scene lacks begins here
   NffChunks::Taken taken_;
   std::exception_ptr error_;
 };

@@ -17,8 +17,8 @@ struct NumberWord {
   std::string_view word;
 };
 
-/// Words of an NFF file read as what an entity wants; anything else is a ParseError at the word
-/// found. `what` completes "expected a number for ...".
+/// Reads the words of an NFF file as the values of an entity. Any other word throws a ParseError
+/// there. `what` completes "expected a number for ...".
 class NffInput {
  public:
   NffInput(Words& all_words, Warnings& all_warnings, const Frame& of_scene)
@@ -27,9 +27,9 @@ class NffInput {
   /// infinite and NaN pass: the caller drops what cannot be drawn
   float number(const char* what);
   float bounded(const char* what);  ///< for what cannot be dropped: camera, lights, materials
-  Float3 point(const char* what);   ///< three numbers, whatever they are
+  Float3 point(const char* what);   ///< three numbers, without checks
   Float3 bounded_point(const char* what);
-  /// A place in the scene, and a length: in its frame.
+  /// A place or a length, converted to the frame of the scene.
   Float3 place(const char* what);
   Float3 bounded_place(const char* what);
   float length(const char* what);

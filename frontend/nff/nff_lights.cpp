@@ -182,7 +182,8 @@ bool NffLights::read_glowing(NffInput& input, std::string_view keyword) {
   return true;
 }
 
-/// The powers of `L` are of lights that fall off.
+/// Scales the lights of `L` to a largest component of 1: their powers assume light that falls off
+/// with distance.
 void NffLights::finish_glowing() {
   float most = 0;
   for (const std::size_t i : glowing_) {

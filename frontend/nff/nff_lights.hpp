@@ -15,7 +15,7 @@ class NffLights {
   void read_point(NffInput& input);                            ///< after `l`
   void read_light(NffInput& input, std::string_view keyword);  ///< after `light`
   void read_area(NffInput& input, std::string_view keyword);   ///< after `al`
-  /// After `L`: what polygons behind it shine with, until an `L` of power 0.
+  /// After `L`: the emission of the polygons behind it, until an `L` of power 0.
   void read_glow(NffInput& input, std::string_view keyword);
   bool glows() const { return glow_ != Float3{}; }
   /// After `p` or `pp`, while polygons shine: a parallelogram is an area light. False, and nothing

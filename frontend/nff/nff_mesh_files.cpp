@@ -23,7 +23,7 @@ void want_room(const NffInput& input,
                      "expected fewer than 2^32 vertices and triangles in all, found more");
 }
 
-/// The name that a program of Windows wrote, as it is here: without quotes, `/` between folders.
+/// Converts a name that a Windows program wrote: removes quotes, and puts `/` between folders.
 std::string from_windows(std::string_view name) {
   const bool is_quoted = name.size() > 2 && (name[0] == '"' || name[0] == '\'');
   if (is_quoted && name.front() == name.back())
@@ -44,8 +44,8 @@ NffMeshFiles::NffMeshFiles(const std::string& scene,
       allow_outside_(options.allow_outside),
       load_(progress) {}
 
-/// True where a file lies outside the scene's folder, all links followed. The reader asks before it
-/// opens the file, so a scene cannot even find out what there is.
+/// Returns true if a file lies outside the scene's folder, after following all links. The reader
+/// checks this before it opens the file, so a scene cannot even probe for files.
 bool NffMeshFiles::is_outside(const std::string& path) const {
   std::error_code error;
   const std::filesystem::path home =
@@ -63,7 +63,7 @@ bool NffMeshFiles::is_outside(const std::string& path) const {
 std::string NffMeshFiles::path(const NffInput& input, std::string_view name) const {
   if (name.empty())
     throw ParseError(input.position(name), "a file name after \"ply\"", "end of line");
-  // the system would read no further, checks would
+  // the system ignores the text behind a NUL, but checks would not
   if (name.find('\0') != name.npos)
     input.fail(name, "a file name after \"ply\"");
   std::string path = (folder_ / std::string(name)).string();

@@ -15,17 +15,17 @@ class LoadProgress;
 
 class NffMeshFiles {
  public:
-  /// Of the scene in that file.
+  /// `scene`: the scene's file.
   NffMeshFiles(const std::string& scene,
                const Warn& warn,
                const ReadOptions& options,
                LoadProgress* progress);
 
-  /// Where the file of that name lies. Throws ParseError at the name when there is none, or where
-  /// the scene may not look.
+  /// Returns the path of the file with that name. Throws ParseError at the name if the file does
+  /// not exist, or lies where the scene may not read.
   std::string path(const NffInput& input, std::string_view name) const;
 
-  /// The mesh in a file, small enough to join those of the scene; notes what it took of memory.
+  /// Reads the mesh in a file, checks that it fits into the scene, and records its memory.
   Mesh read(const NffInput& input,
             std::string_view name,
             const std::string& path,

@@ -9,16 +9,16 @@
 
 namespace grelha {
 
-/// `s`, `p`, `pp`, `c` and `f`: what large files are made of. What they become hangs on nothing
-/// before them but which material is the last. And `st`, `pt`, `ppt`, which are the same with a
-/// texture that is left out, and `material`.
+/// Reads `s`, `p`, `pp`, `c` and `f`, the entities of large files. They depend on nothing before
+/// them but the last material. Also reads `material`, and `st`, `pt` and `ppt`, the same entities
+/// with a texture that is left out.
 class NffPlain {
  public:
   /// `most_corners`: a polygon of more is not read.
   NffPlain(NffInput& input, SceneFile& file, std::size_t most_corners = std::size_t(-1))
       : input_(input), file_(file), build_(file), most_corners_(most_corners) {}
 
-  /// After such a word: reads what it begins. False, and nothing is read, after any other.
+  /// After such a word: reads its entity. Returns false, and reads nothing, after any other word.
   bool read(std::string_view keyword);
 
   /// Index of the last material; without any, a dull white one, which is warned of.
@@ -38,7 +38,7 @@ class NffPlain {
   std::vector<Float3> corners_, normals_;
 };
 
-/// Returns whether it is one of the words that NffPlain reads without a warning.
+/// Returns true for the words that NffPlain reads without a warning.
 inline bool is_plain(std::string_view word) {
   return word == "p" || word == "s" || word == "pp" || word == "c" || word == "f";
 }

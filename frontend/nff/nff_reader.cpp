@@ -112,7 +112,7 @@ const NffReader::Named NffReader::kEntities[] = {
     {"pt", &NffReader::read_plain},    {"st", &NffReader::read_plain},
 };
 
-/// They stand between words as blanks do, which is seldom what was meant.
+/// Warns of NUL bytes: they separate words as blanks do, which is seldom intended.
 void NffReader::warn_of_nul(std::string_view text) {
   const std::size_t nul = text.find('\0');
   if (nul != text.npos)
@@ -140,7 +140,7 @@ SceneFile NffReader::read(std::string_view text) {
   }
 }
 
-/// From this entity on, by all threads: what came of it, where that is worth while.
+/// Reads from this entity on with all threads, if that pays. Returns the part it read.
 NffChunks::Taken NffReader::read_ahead(std::string_view word) {
   if (!chunks_.due(word.data()) || !is_plain(word) || file_.scene.materials.empty() ||
       lights_.glows())
@@ -177,8 +177,8 @@ std::string NffReader::meant(std::string_view word) {
   return near.empty() ? "" : " (did you mean " + grelha::quoted(near) + "?)";
 }
 
-/// What no entity asked for: warned of once a kind, and the rest of its line with it. A file may
-/// hold millions: only the first of a kind is worth a search for the word that was meant.
+/// Skips a word that begins no entity, with the rest of its line, and warns once per kind. A file
+/// may hold millions of them, so only the first of a kind is searched for the intended word.
 void NffReader::skip_other(std::string_view word, std::string_view last_entity) {
   if (!looks_like_number(word)) {
     if (warnings_.first("word " + std::string(word)))
@@ -194,8 +194,8 @@ void NffReader::skip_other(std::string_view word, std::string_view last_entity) 
   words_.skip_line();
 }
 
-/// Another format by the same three letters (WorldToolKit): they stand alone on its first line, and
-/// no word of Haines' on the next.
+/// Refuses another format named NFF (WorldToolKit): those letters stand alone on its first line,
+/// and the next line has no keyword of Haines' format.
 void NffReader::refuse_sense8() {
   Words ahead = words_;
   const std::string_view word = ahead.next();
@@ -231,7 +231,7 @@ void NffReader::read_pl(std::string_view keyword) {
   ++file_.counts.pl;
 }
 
-/// normal . x + constant = 0, as the one reader has it that is known to take `npl`.
+/// The plane normal . x + constant = 0, as in the only other reader known to accept `npl`.
 void NffReader::read_npl(std::string_view keyword) {
   std::array<double, 3> n;
   for (double& component : n)
@@ -324,7 +324,7 @@ void NffReader::read_accel(std::string_view) {
   file_.accelerator = std::string(words_.rest_of_line());
 }
 
-/// A hint; what is too much is cut, and said.
+/// Reads a hint for the samples a pixel; a larger number is clamped, with a warning.
 void NffReader::read_spp(std::string_view) {
   const std::string_view word = words_.next();
   const std::string most = std::to_string(kMostSamples);

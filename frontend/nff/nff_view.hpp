@@ -8,11 +8,11 @@
 
 namespace grelha {
 
-/// The lines of `v` and `camera`. They are taken in any order and wherever they stand; what must be
-/// there is checked at the end of the file.
+/// The lines of `v` and `camera`. They may stand in any order and anywhere; finish() checks the
+/// required lines at the end of the file.
 class NffView {
  public:
-  /// All that it knows.
+  /// All keywords of the view.
   static std::span<const std::string_view> words();
   /// Reads the entity if `word` is one of the view's; false if it is not.
   bool read(std::string_view word, NffInput& input, LensHint& lens);

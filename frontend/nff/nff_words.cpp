@@ -10,8 +10,8 @@
 namespace grelha {
 namespace {
 
-// What people write who know the thing and not its keyword, which is too short to be found by
-// letters.
+// Full names of entities, for users who do not know the keyword. Keywords are too short for a
+// search by edit distance.
 constexpr std::pair<std::string_view, std::string_view> kFullNames[] = {
     {"sphere", "s"},      {"ball", "s"},          {"polygon", "p"},    {"triangle", "p"},
     {"tri", "p"},         {"quad", "p"},          {"patch", "pp"},     {"cone", "c"},

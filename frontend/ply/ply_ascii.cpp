@@ -4,7 +4,7 @@
 
 namespace grelha {
 
-/// The next word, which a row still needs.
+/// Returns the next word, which the row needs.
 std::string_view PlyAscii::word(const PlyElement& element, std::uint64_t row) {
   const std::string_view found = words_.next();
   if (found.empty())

@@ -155,7 +155,7 @@ void PlyBinary::read_list(const PlyElement& element,
 }
 
 /// Reads rows, at most so many, as long as each is a list of three sound indices and nothing else,
-/// as nearly all are. Returns how many; who reads the next one says what is wrong with it, if so.
+/// as nearly all are. Returns their number; the general reader reports errors in the next row.
 template <class Index>
 std::uint64_t PlyBinary::read_triangles(std::uint64_t rows, PlyFaces& faces) {
   constexpr std::size_t kRow = 1 + 3 * sizeof(Index), kBlock = 4096;

@@ -24,7 +24,8 @@ class PlyFaces {
     else
       mesh_.corners.push_back(std::uint32_t(index));
   }
-  /// A whole triangle at once, when it is one and sound; false: take it item by item.
+  /// Adds a whole triangle at once. Returns false if it is a strip or has a bad index: then add it
+  /// item by item.
   bool add_triangle(std::int64_t a, std::int64_t b, std::int64_t c) {
     if (strips_ || !accepts(a) || !accepts(b) || !accepts(c))
       return false;
@@ -77,7 +78,7 @@ struct PlyPlan {
   Frame frame{};                              ///< of x y z
 };
 
-/// Where the numbers of a property go, and what becomes of them.
+/// The array that receives the numbers of a property, and their transformation.
 struct PlyColumn {
   std::vector<float>* to = nullptr;
   double minus = 0, times = 1;
@@ -85,7 +86,7 @@ struct PlyColumn {
   float value(double number) const { return static_cast<float>((number - minus) * times); }
 };
 
-/// One of PlyPlan::columns.
+/// Returns the column for an element of PlyPlan::columns.
 inline PlyColumn column(Mesh& mesh, const PlyPlan& plan, int i) {
   std::vector<float>* const all[] = {&mesh.x, &mesh.y, &mesh.z, &mesh.nx, &mesh.ny, &mesh.nz};
   if (i >= 3)

@@ -76,8 +76,8 @@ class HeaderReader {
   std::vector<std::string_view> count_words_;   ///< [elements]
 };
 
-/// As seen behind `ply`. Binary data may begin with 0x0A or 0x0D, so a CR alone must not swallow an
-/// LF.
+/// Takes the line end behind `ply` for all lines. Binary data may begin with 0x0A or 0x0D, so a CR
+/// alone must not swallow an LF.
 void HeaderReader::find_line_end() {
   const std::size_t end = bytes_.find_first_of("\r\n");
   const std::string_view found = bytes_.substr(std::min(end, bytes_.size()), 2);
@@ -177,8 +177,8 @@ void HeaderReader::read_property() {
   element.properties.push_back(std::move(property));
 }
 
-/// Every row takes its smallest size at least; what the file cannot hold is refused before memory
-/// is taken for it.
+/// Refuses counts of rows that the file cannot hold, given the smallest size of a row, before
+/// memory is allocated for them.
 void HeaderReader::check_counts() const {
   std::uint64_t left =
       bytes_.size() - header_.data_begin + (header_.format == PlyFormat::kAscii ? 1 : 0);
@@ -197,7 +197,7 @@ void HeaderReader::check_counts() const {
   }
 }
 
-/// Exporters leave lines of their own, such as a comment gone on with; binary data are no line.
+/// Skips lines that exporters add, such as a continued comment. Binary data are no line.
 void HeaderReader::skip_stray(std::string_view keyword) {
   const auto is_text = [](char c) {
     return static_cast<unsigned char>(c) >= ' ' || c == '\t' || c == '\r';
@@ -212,7 +212,7 @@ void HeaderReader::skip_stray(std::string_view keyword) {
                   "no line of a PLY header begins with " + quoted(keyword) + "; it is skipped");
 }
 
-/// They stand between words as blanks do, which is seldom what was meant.
+/// Warns of NUL bytes: they separate words as blanks do, which is seldom intended.
 void HeaderReader::warn_of_nul() const {
   const bool ascii = header_.format == PlyFormat::kAscii;
   const std::size_t nul = bytes_.substr(0, ascii ? bytes_.size() : header_.data_begin).find('\0');

@@ -53,8 +53,8 @@ struct PlyHeader {
 };
 
 /// Everything up to `end_header` and its one line end. Counts are checked against the rest of the
-/// file, so that memory may be taken for them. A line of text that is none of a header is warned of
-/// and skipped. Throws ParseError, and Stopped.
+/// file, so that memory may be taken for them. Warns of a line of text that does not belong to a
+/// header, and skips it. Throws ParseError, and Stopped.
 PlyHeader read_ply_header(const std::string& path,
                           std::string_view bytes,
                           Warnings& warnings,

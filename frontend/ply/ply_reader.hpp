@@ -10,8 +10,8 @@ namespace grelha {
 
 class LoadProgress;
 
-/// The vertices and faces of a PLY file; whatever else it holds is stepped over. `tristrips` become
-/// triangles, without those that repeat a vertex: they only stitch. Every index is checked.
+/// Reads the vertices and faces of a PLY file, and skips all other data. `tristrips` become
+/// triangles, without those that repeat a vertex, which only stitch strips. Every index is checked.
 /// Vertices come in the frame. Throws ParseError, which names the byte inside binary data.
 Mesh read_ply_mesh(const std::string& path,
                    std::string_view bytes,

@@ -25,7 +25,8 @@ class Box {
   SceneBounds bounds_;
 };
 
-/// How far a disc of that radius reaches along each axis; `x y z` is its normal, of any length.
+/// Returns the extent of a disc of that radius along each axis; `x y z` is its normal, of any
+/// length.
 Float3 disc_reach(double radius, double x, double y, double z) {
   const double square = x * x + y * y + z * z;
   const auto reach = [&](double c) {
@@ -46,7 +47,7 @@ void grow(Box& box, const Cones& c, std::size_t i) {
   box.grow({c.apex_x[i], c.apex_y[i], c.apex_z[i]}, disc_reach(c.apex_radius[i], x, y, z));
 }
 
-/// By a triangle: its mesh may hold vertices that none uses.
+/// Grows the box by one triangle: its mesh may hold unused vertices.
 void grow(Box& box, const Triangles& t, std::size_t i) {
   for (const std::uint32_t vertex : {t.a[i], t.b[i], t.c[i]})
     box.grow({t.x[vertex], t.y[vertex], t.z[vertex]}, {});

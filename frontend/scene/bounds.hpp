@@ -4,7 +4,7 @@
 
 namespace grelha {
 
-/// The box of all that has an end; vertices count where a triangle names them.
+/// The bounding box of all finite primitives. Vertices count if a triangle uses them.
 struct SceneBounds {
   bool empty = true;
   Float3 low, high;

@@ -9,9 +9,10 @@
 namespace grelha {
 namespace {
 
-/// Sizes of a scene that its middle may lie from the origin: floats then keep a millionth of them.
+/// Largest distance from the origin to a scene's middle, in sizes of the scene: floats then resolve
+/// a millionth of the size.
 constexpr double kFarthest = 4;
-/// Squares of lengths from here on are sound floats whatever is done with them.
+/// Squares of lengths from here on are normal floats, with room for further products.
 constexpr double kSmallest = 0x1p-40;
 
 struct Place {
@@ -40,7 +41,7 @@ double power_of_two(double least) {
 }
 
 std::array<double, 3> offset_of(const Place& place) {
-  // as fine as floats are there, where nothing of the size is left
+  // no finer than floats are there, if the size vanishes
   const double step = power_of_two(std::max(place.size, 0x1p-22 * largest(place.middle)));
   std::array<double, 3> offset;
   for (std::size_t a = 0; a < 3; ++a)
@@ -63,7 +64,7 @@ void each_place(const Geometry& g, const Visit& visit) {
       visit(place[a], a);
 }
 
-/// The largest coordinate of all that is seen or lights it.
+/// Returns the largest coordinate of primitives, camera and lights.
 double reach_of(const SceneFile& file) {
   double most = 0;
   const auto add = [&](const Float3& p) { most = std::max(most, largest({p.x, p.y, p.z})); };

@@ -6,11 +6,11 @@
 
 namespace grelha {
 
-/// The frame for a scene that was read in the file's own, if another one keeps more of it.
+/// Returns a more precise frame for a scene that was read in the file's own frame, if there is one.
 std::optional<Frame> better_frame(const SceneFile& file);
 
-/// Whether the file's own frame loses something: a coordinate read in `file.frame` is no float
-/// there.
+/// Returns true if the file's own frame loses precision: a coordinate read in `file.frame` is not a
+/// float there.
 bool needs_its_frame(const SceneFile& file);
 
 }  // namespace grelha

@@ -7,7 +7,7 @@
 namespace grelha {
 namespace {
 
-constexpr int kNear = 2;  ///< steps of the grid from an end, which a crossing is taken for
+constexpr int kNear = 2;  ///< a crossing so few grid steps from an end becomes that end
 
 }  // namespace
 
@@ -49,7 +49,7 @@ bool CuttingSweep::go_on() {
   return true;
 }
 
-/// Whose neighbours may turn out to begin here as well.
+/// Inserts the edges that begin here; checks may find that their neighbours begin here as well.
 void CuttingSweep::insert_beginning() {
   for (std::size_t i = 0; i < beginning_.size(); ++i) {
     const std::uint32_t e = beginning_[i];
@@ -103,7 +103,7 @@ void CuttingSweep::pass(std::uint32_t point) {
   insert_beginning();
 }
 
-/// Two that have become neighbours on the line.
+/// Checks two edges that have become neighbours on the line.
 void CuttingSweep::check(SweepLine::Place below, SweepLine::Place above) {
   if (above == line_.end())
     return;
@@ -120,8 +120,8 @@ void CuttingSweep::check(SweepLine::Place below, SweepLine::Place above) {
     check(std::prev(next), next);
 }
 
-/// Cuts what the two have in common besides an end, or a first part of it. Returns whether edges on
-/// the line have changed.
+/// Cuts two edges where they meet besides a common end, or at the first such place. Returns whether
+/// edges on the line have changed.
 bool CuttingSweep::cut_one(SweepLine::Place a, SweepLine::Place b) {
   if (!SweepLine::do_meet(*a, *b))
     return false;
@@ -148,7 +148,7 @@ bool CuttingSweep::cut_at_crossing(SweepLine::Place a, SweepLine::Place b) {
   return of_a || of_b;
 }
 
-/// Where two edges cross, rounded: one of their ends, or a new point.
+/// Returns the rounded crossing of two edges: one of their ends, or a new point.
 std::uint32_t CuttingSweep::crossing_of(SweepLine::Place a, SweepLine::Place b) {
   const auto& [ignored_a, a1, a2] = *a;
   const auto& [ignored_b, b1, b2] = *b;
@@ -161,7 +161,7 @@ std::uint32_t CuttingSweep::crossing_of(SweepLine::Place a, SweepLine::Place b) 
   p.x = std::clamp(p.x, std::max(a1.x, b1.x), std::min(a2.x, b2.x));
   p.y = std::clamp(p.y, std::max(a_low, b_low), std::min(a_high, b_high));
   const Point2 coarse{std::round(p.x / step_) * step_, std::round(p.y / step_) * step_};
-  // they cross before the sweep, which has to come by
+  // the crossing lies behind the sweep, which has to pass it
   const Point2& here = points_[here_];
   if (swept_before(here, coarse) && a->has_on_the_way(coarse) && b->has_on_the_way(coarse))
     p = coarse;
@@ -176,7 +176,7 @@ std::uint32_t CuttingSweep::crossing_of(SweepLine::Place a, SweepLine::Place b) 
   return point_at(p, {e.side, f.side});
 }
 
-/// The point there is at a place, or a new one.
+/// Returns the point at a place, or adds a new one.
 std::uint32_t CuttingSweep::point_at(const Point2& p, const std::array<std::uint32_t, 2>& sides) {
   const auto end = points_.begin() + std::ptrdiff_t(known_);
   const auto known = std::lower_bound(points_.begin(), end, p, swept_before);
@@ -193,9 +193,9 @@ std::uint32_t CuttingSweep::point_at(const Point2& p, const std::array<std::uint
   return point;
 }
 
-/// Cuts an edge on the line. What is left of the point stays there, by another number. Returns
-/// false when the sweep has passed the point, or would go back on its way along the edge: then the
-/// edge is cut at the end.
+/// Cuts an edge on the line at a point. The part left of the point stays on the line, under another
+/// number. Returns false if the sweep has passed the point, or would go back on its way along the
+/// edge: then the edge is cut after the sweep.
 bool CuttingSweep::cut(SweepLine::Place place, std::uint32_t point) {
   is_clean_ = false;
   const std::uint32_t edge = place->edge;

@@ -10,14 +10,14 @@
 
 namespace grelha {
 
-/// Where two sides of an outline cross.
+/// A crossing of two sides of an outline.
 struct OutlineCrossing {
   std::array<std::uint32_t, 2> sides;
   Point2 place;
 };
 
-/// One sweep over an arrangement to be, which it cuts where edges meet (see Outline). Points come
-/// as they are swept; new points and edges stand behind the old ones, a crossing for each point.
+/// One sweep over edges, which cuts them where they meet (see Outline). Points come as they are
+/// swept; new points and edges stand behind the old ones, a crossing for each point.
 class CuttingSweep {
  public:
   CuttingSweep(std::vector<Point2>& points,
@@ -67,12 +67,12 @@ class CuttingSweep {
   std::vector<OutlineCrossing>& crossings_;
   std::vector<OutlineEdge>& edges_;
   const std::size_t known_;                        ///< points there were before
-  const double step_;                              ///< crossings lie on a grid of this
-  std::size_t next_ = 0;                           ///< of them
+  const double step_;                              ///< of the grid that crossings are rounded to
+  std::size_t next_ = 0;                           ///< the next known point
   std::map<Point2, std::uint32_t, Before> fresh_;  ///< crossings to come
   SweepEvents events_;
   SweepLine line_;
-  std::vector<SweepLine::Place> places_;  ///< [edges] of those on the line
+  std::vector<SweepLine::Place> places_;  ///< [edges] places of edges on the line
   std::size_t most_;
   std::uint32_t here_ = 0;  ///< the point
   SweepLine::Place above_;  ///< the first edge above it

@@ -20,7 +20,7 @@ inline double dot(const Double3& a, const Double3& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// Nothing is left of it as floats: no area, or no direction.
+/// Returns true if the vector is zero in floats: no area, or no direction.
 inline bool vanishes(const Double3& a) {
   return float(a[0]) == 0 && float(a[1]) == 0 && float(a[2]) == 0;
 }

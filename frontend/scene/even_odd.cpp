@@ -11,9 +11,9 @@ namespace {
 
 constexpr std::uint32_t kNone = SweepEvents::kNone;
 
-/// Where the area ends that is cut up, between two neighbours on the line with the inside between
-/// them: points from the lower edge's left end to the upper one's. Inner corners are reflex or
-/// flat.
+/// The boundary of the triangulated area, between two neighbours on the line with the inside
+/// between them: points from the lower edge's left end to the upper one's. Inner corners are reflex
+/// or flat.
 struct Front {
   std::uint32_t low, high, foremost;  ///< nodes
 };
@@ -41,7 +41,7 @@ class FillingSweep {
   struct Node {
     std::uint32_t point, down, up;
   };
-  /// What lies above an edge on the line.
+  /// The region above an edge on the line.
   struct Gap {
     std::uint32_t front = kNone;  ///< where it is inside
     std::int32_t winding = 0;
@@ -67,7 +67,7 @@ class FillingSweep {
   void note(std::int32_t winding, bool is_inside) {
     fill_.is_crossed = fill_.is_crossed || winding != (is_inside ? 1 : 0);
   }
-  /// An edge and its new neighbour.
+  /// Checks an edge and its new neighbour below.
   void check_below(SweepLine::Place place) {
     if (place != line_.begin() && place != line_.end())
       is_arranged_ = is_arranged_ && !SweepLine::do_meet(*std::prev(place), *place);
@@ -88,7 +88,7 @@ class FillingSweep {
   const std::vector<OutlineEdge>& edges_;
   SweepEvents events_;
   SweepLine line_;
-  std::vector<SweepLine::Place> places_;  ///< [edges] of those on the line
+  std::vector<SweepLine::Place> places_;  ///< [edges] places of edges on the line
   std::vector<Gap> above_;                ///< [edges]
   std::vector<Node> nodes_;
   std::vector<Front> fronts_;
@@ -172,7 +172,7 @@ FillingSweep::Fronts FillingSweep::end_edges(std::uint32_t point, SweepLine::Pla
   return fronts;
 }
 
-/// Puts the edges that begin at the point on the line, each with what is above it.
+/// Puts the edges that begin at the point on the line, each with the region above it.
 void FillingSweep::begin_edges(std::uint32_t point,
                                SweepLine::Place above,
                                const Gap& below,
@@ -211,7 +211,8 @@ std::uint32_t FillingSweep::begin_front(std::uint32_t point) {
   return std::uint32_t(fronts_.size() - 1);
 }
 
-/// A point within: the foremost one of the front sees it, and belongs to both parts.
+/// Splits a front at a point inside: its foremost point sees the new one, and belongs to both
+/// parts.
 FillingSweep::Fronts FillingSweep::split(std::uint32_t front, std::uint32_t point) {
   Front& lower = fronts_[front];
   const std::uint32_t middle = lower.foremost, up = nodes_[middle].up;
@@ -229,7 +230,7 @@ FillingSweep::Fronts FillingSweep::split(std::uint32_t front, std::uint32_t poin
   return {front, std::uint32_t(fronts_.size() - 1)};
 }
 
-/// Two fronts that end and begin with the same point.
+/// Joins two fronts that end and begin with the same point.
 std::uint32_t FillingSweep::join(std::uint32_t below, std::uint32_t above) {
   Front &lower = fronts_[below], &upper = fronts_[above];
   const std::uint32_t next = nodes_[upper.low].up;
@@ -242,8 +243,9 @@ std::uint32_t FillingSweep::join(std::uint32_t below, std::uint32_t above) {
   return below;
 }
 
-/// The upper edge of the inside comes to a point: cuts off what the point sees from its end on. Of
-/// corners in line with the point the nearest hides the others.
+/// Adds the right end of the inside's upper edge: cuts off the triangles that this point sees, from
+/// the front's upper end on. The nearest of several corners in line with the point hides the
+/// others.
 void FillingSweep::add_above(Front& front, std::uint32_t point) {
   std::uint32_t last = front.high;
   for (std::uint32_t next = nodes_[last].down; next != kNone; next = nodes_[last].down) {

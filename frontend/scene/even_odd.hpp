@@ -9,13 +9,13 @@
 
 namespace grelha {
 
-/// The inside of an arrangement of edges by the even-odd rule: what lies above an odd number of
-/// them.
+/// The inside of an arrangement of edges by the even-odd rule: the area above an odd number of
+/// edges.
 struct EvenOddFill {
-  /// Over the points, each turning left. They share corners and sides, so nothing is seen
-  /// between them; none has a point on a side.
+  /// Triangles over the points, each turning left. They share corners and sides without gaps, and
+  /// no point lies on a side.
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  /// The edges turn round some place neither not at all nor once: other rules fill another area.
+  /// Some place has a winding number other than 0 and 1, so other rules fill another area.
   bool is_crossed = false;
 };
 

@@ -24,7 +24,7 @@ inline double turn(const Point2& a, const Point2& b, const Point2& c) {
 int exactly_summed_turn(const Point2& a, const Point2& b, const Point2& c);
 
 /// The sign of the same, exact for all doubles whose products neither over- nor underflow: 1, 0 or
-/// -1. Products are added without rounding where it might decide (Shewchuk 1997).
+/// -1. Adds the products without rounding if rounding could change the sign (Shewchuk 1997).
 inline int exact_turn(const Point2& a, const Point2& b, const Point2& c) {
   constexpr double kRounding = 3.3306690738754716e-16;  // (3 + 16u) u of the two products' sizes
   const double left = (b.x - a.x) * (c.y - a.y), right = (b.y - a.y) * (c.x - a.x);

@@ -47,7 +47,7 @@ class Mender {
         best = other;
     return best;
   }
-  /// One of which two corners are at one place leaves nothing to slip through.
+  /// A triangle with two corners at one place leaves no gap for rays.
   void note_if_flat(std::uint32_t t) {
     if (!is_flat(triangles_[t]))
       return;

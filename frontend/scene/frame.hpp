@@ -7,12 +7,13 @@
 
 namespace grelha {
 
-/// Where a scene lies. A coordinate that a file gives is offset + coordinate in the scene / scale.
+/// The coordinate frame of a scene. A coordinate in the file is offset + coordinate in the scene /
+/// scale.
 ///
-/// Floats have seven digits: of a survey in metres from the equator they keep decimetres. Such a
-/// scene is counted from near its middle, in double until the offset is taken off. One that is so
-/// small that squares of its lengths underflow is enlarged. Both are powers of two, or multiples of
-/// one, so that they cost no digit.
+/// Floats have seven digits: for a survey in metres from the equator they resolve decimetres. The
+/// coordinates of such a scene count from near its middle, and are doubles until the offset is
+/// subtracted. A scene so small that squares of its lengths underflow is enlarged. The scale is a
+/// power of two and the offset a multiple of one, so they cost no digit.
 struct Frame {
   std::array<double, 3> offset{};
   double scale = 1;
@@ -41,7 +42,7 @@ struct Frame {
   }
 };
 
-/// "1000 0 0", and what it is enlarged by: for messages.
+/// "1000 0 0", and the scale: for messages.
 std::string text_of(const Frame& frame);
 
 }  // namespace grelha

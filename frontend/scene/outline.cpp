@@ -12,14 +12,15 @@
 namespace grelha {
 namespace {
 
-/// Crossings are rounded to a grid of so many bits of the outline's size: those of sides that have
-/// a point in common come to one point, far below the last place of a float.
+/// Crossings are rounded to a grid of so many bits of the outline's size, far below the last place
+/// of a float. Crossings of sides with a common point become one point.
 constexpr int kGridBits = 46;
-/// Three or four sweeps are enough but for some of hundreds of sides on a lattice. From then on
-/// each has a grid twice as coarse, for what crosses anew as soon as it is rounded.
+/// Three or four sweeps are enough, except for some outlines of hundreds of sides on a lattice.
+/// Further sweeps each double the grid step, because some sides cross again as soon as they are
+/// rounded.
 constexpr int kFineSweeps = 4, kMostSweeps = 24;
 
-/// Leans a point to the side. Returns whether no bit was lost.
+/// Shears a point to the side. Returns true if no bit was lost.
 bool lean(Point2& p) {
   constexpr double kShare = 0x61C88p-20;  // a golden section: few drawings have such a slope
   const double off = kShare * p.y, x = p.x + off;
@@ -30,8 +31,9 @@ bool lean(Point2& p) {
 
 }  // namespace
 
-/// Sides along the line of the sweep, or nearly so, would all be met at once, in an order that
-/// rounding decides: the plane is leaned, which keeps what turns left. Not where that cost a bit.
+/// Shears the plane: the sweep would meet sides along its line, or nearly so, all at once, in an
+/// order that depends on rounding. Shearing preserves left turns. Keeps the corners if shearing
+/// would lose a bit.
 Outline::Outline(std::span<const Point2> corners) : corners_(corners.begin(), corners.end()) {
   if (!std::ranges::all_of(corners_, lean, [](Point2& p) -> Point2& { return p; }))
     corners_.assign(corners.begin(), corners.end());
@@ -54,8 +56,7 @@ double Outline::share_of(std::uint32_t side, const Point2& place) const {
   return std::clamp(((place.x - a.x) * x + (place.y - a.y) * y) / (x * x + y * y), 0., 1.);
 }
 
-/// Orders the points and the edges, and makes one of points at one place. Returns whether there
-/// were any such.
+/// Sorts the points and the edges, and merges points at one place. Returns true if there were any.
 bool Outline::tidy() {
   struct Placed {
     Point2 p;

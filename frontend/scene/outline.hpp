@@ -10,7 +10,8 @@
 
 namespace grelha {
 
-/// The outline of a polygon, arranged where need be: as edges that meet at their ends alone.
+/// The outline of a polygon. If necessary it is arranged: cut into edges that meet only at their
+/// ends.
 ///
 /// A sweep finds where sides cross, touch or lie on each other (Bentley and Ottmann 1979) and cuts
 /// them there. A point where two cross is rounded, which may move a side over another; so sweeps
@@ -30,7 +31,7 @@ class Outline {
 
   State arrange();
 
-  /// Of an arranged outline: what is inside, over the corners and, behind them, the crossings.
+  /// The inside of an arranged outline, over the corners and, behind them, the crossings.
   const EvenOddFill& fill() const { return fill_; }
   const std::vector<OutlineCrossing>& crossings() const { return crossings_; }
   /// How far along a side a place is, as a share of it.
@@ -42,7 +43,7 @@ class Outline {
   bool try_fill();
   double grid_step() const;
 
-  std::vector<Point2> corners_;         ///< in a plane that may be leaned to the side, as all else
+  std::vector<Point2> corners_;         ///< in a plane that may be sheared, as are all points
   std::vector<Point2> points_;          ///< as they are swept
   std::vector<std::uint32_t> numbers_;  ///< [points] of the corner or, behind them, the crossing
   std::vector<OutlineCrossing> crossings_;

@@ -7,7 +7,7 @@
 
 namespace grelha {
 
-/// Its two longer sides come first: of a sliver they tell of nearly every box and point.
+/// Its two longer sides come first: for a sliver they decide nearly every test of a box or point.
 class PointTree::Triangle {
   /// A side of a triangle, and which corner of any box lies farthest to its left.
   struct Side {
@@ -55,7 +55,7 @@ class PointTree::Triangle {
     }
     return least;
   }
-  /// Returns whether a point lies in it, other than at a corner; what is no number does not.
+  /// Returns true if a point lies in it, other than at a corner; false for NaN.
   bool has(const Place& place) const {
     const Point2 p{place.x, place.y};
     const auto inside = [p](const Side& s) { return s.turn(p.x, p.y) >= 0; };

@@ -8,8 +8,8 @@
 
 namespace grelha {
 
-/// A balanced k-d tree over points that are only ever taken away. Answers whether a triangle holds
-/// any of those left; looks at boxes the triangle crosses only, deepest inside it first.
+/// A balanced k-d tree over points, which are only removed. Tests if a triangle holds a remaining
+/// point. Visits only boxes that the triangle crosses, the deepest inside it first.
 class PointTree {
  public:
   static constexpr std::uint32_t kAllNodes = 0xffffffff;
@@ -17,7 +17,7 @@ class PointTree {
   /// `points[i]` for i in `ids`; `points` must stay in place. Their coordinates must be floats'.
   void build(std::span<const Point2> points, std::span<const std::uint32_t> ids);
   void remove(std::uint32_t id);
-  /// Returns whether most of what it was built with is gone: built anew it would answer faster.
+  /// Returns true if most points are removed: a new tree would answer faster.
   bool is_thin() const { return 2 * std::size_t(nodes_[0].alive) < order_.size(); }
   /// Returns whether a point left lies in the closed triangle (which turns left), other than at one
   /// of its corners. Gives up, and says no, when it has looked below so many nodes.

@@ -21,18 +21,17 @@ constexpr std::uint32_t kMany = 1024;
 /// Nodes of the tree that an ear's test looks at, in turn, before it looks at all. In a star of a
 /// million uneven spikes an ear's triangle, long and thin, meets hundreds, and holds no corner.
 constexpr std::uint32_t kHopefulLooks[] = {0, 64};
-/// How far a forced clip looks for a corner that at least has area; bounds the work on hopeless
-/// outlines.
+/// Corners that a forced clip searches for one with area; bounds the work on hopeless outlines.
 constexpr int kForcedLook = 64;
 
-/// Sides of so few corners are held against each other; of more, a sweep finds out faster.
+/// The sides of outlines with so few corners are compared in pairs; for more, a sweep is faster.
 constexpr std::size_t kFew = 16;
 
 double component(const Float3& p, int axis) {
   return axis == 0 ? p.x : axis == 1 ? p.y : p.z;
 }
 
-/// A point in common of two sides that are no neighbours.
+/// Returns true if two sides that are not neighbours have a point in common.
 bool do_meet(const Point2& a, const Point2& b, const Point2& c, const Point2& d) {
   const auto apart = [](double p, double q, double r, double s) {
     return std::max(p, q) < std::min(r, s) || std::max(r, s) < std::min(p, q);
@@ -42,7 +41,7 @@ bool do_meet(const Point2& a, const Point2& b, const Point2& c, const Point2& d)
          exact_turn(c, d, a) * exact_turn(c, d, b) <= 0;
 }
 
-/// Neighbours that go back over each other.
+/// Returns true if two adjacent sides overlap.
 bool is_spike(const Point2& a, const Point2& b, const Point2& c) {
   return exact_turn(a, b, c) == 0 && (a.x - b.x) * (c.x - b.x) + (a.y - b.y) * (c.y - b.y) > 0;
 }
@@ -94,7 +93,7 @@ PolygonCutter::Result PolygonCutter::cut_up(std::span<const Float3> corners,
     }
     Outline outline(points_);
     const Outline::State state = outline.arrange();
-    // the sum of what crosses itself is of no plane in particular
+    // the normal sum of an outline that crosses itself belongs to no particular plane
     if (!again && state != Outline::State::kSimple)
       normal_ = larger_normal(corners, normal_);
     if (again || state == Outline::State::kSimple || !project(corners))
@@ -102,7 +101,8 @@ PolygonCutter::Result PolygonCutter::cut_up(std::span<const Float3> corners,
   }
 }
 
-/// An outline that touches itself and goes nowhere round its inside twice is clipped as any other.
+/// An outline that touches itself, and nowhere winds twice round its inside, is clipped like a
+/// simple one.
 PolygonCutter::Result PolygonCutter::fill(std::span<const Float3> corners,
                                           const Outline& outline,
                                           Outline::State state,
@@ -169,8 +169,8 @@ Point2 PolygonCutter::projected(const Float3& p) const {
   return {component(p, axes_[0]), component(p, axes_[1])};
 }
 
-/// Every corner turns left, and the outline goes round once: it has one leftmost and one rightmost
-/// corner.
+/// Returns true if every corner turns left and the outline winds once: it has one leftmost and one
+/// rightmost corner.
 bool PolygonCutter::convex() const {
   const std::size_t n = points_.size();
   int turns_back = 0;
@@ -183,7 +183,7 @@ bool PolygonCutter::convex() const {
   return turns_back == 2;
 }
 
-/// Few corners whose sides meet nowhere but at them.
+/// Returns true if the outline has few corners, and its sides meet only there.
 bool PolygonCutter::is_plainly_simple() const {
   if (points_.size() > kFew)
     return false;
@@ -205,7 +205,7 @@ bool PolygonCutter::is_plainly_simple() const {
   return true;
 }
 
-/// A ring without corners that repeat the one before.
+/// Links the corners to a ring, without corners that repeat the one before.
 void PolygonCutter::link_corners() {
   const auto n = std::uint32_t(points_.size());
   previous_.resize(n);
@@ -266,7 +266,7 @@ void PolygonCutter::take_queue() {
     plant_tree();
 }
 
-/// Takes a corner out of the ring. Its neighbours may have become convex and get another turn.
+/// Removes a corner from the ring. Its neighbours may have become convex and are tested again.
 void PolygonCutter::remove(std::uint32_t corner) {
   const std::uint32_t before = previous_[corner], after = following_[corner];
   following_[before] = after;
@@ -310,11 +310,12 @@ bool PolygonCutter::try_clip(std::uint32_t corner, std::vector<Triangle>& triang
   return true;
 }
 
-/// Clips corners that turn left and looks for others in their triangles only so far; takes all back
-/// and is false when that was not enough. Clipping keeps the sum of winding numbers: triangles that
-/// all turn left cover each point as often as the outline goes round it, so a simple outline's
-/// inside once. A corner missed inside a triangle leaves a place that is covered twice. The rest
-/// would have to make up for it, and cannot end in a triangle that turns left.
+/// Clips corners that turn left, and searches their triangles for other corners only up to `looks`
+/// nodes. Undoes everything and returns false if that was not enough. Clipping keeps the sum of
+/// winding numbers: triangles that all turn left cover each point as often as the outline goes
+/// round it, so a simple outline's inside once. A corner missed inside a triangle leaves a place
+/// that is covered twice. The rest would have to make up for it, and cannot end in a triangle that
+/// turns left.
 bool PolygonCutter::clip_hopefully(std::uint32_t looks, std::vector<Triangle>& triangles) {
   const std::size_t before = triangles.size();
   looks_ = looks;
@@ -342,7 +343,7 @@ void PolygonCutter::force_clip(std::vector<Triangle>& triangles) {
   remove(corner);
 }
 
-/// Asks corners until none is left to ask. True when one was clipped.
+/// Tests corners until no candidate is left. Returns true if one was clipped.
 bool PolygonCutter::clip_candidates(std::vector<Triangle>& triangles) {
   bool clipped = false;
   next_candidates_.clear();

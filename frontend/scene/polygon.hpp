@@ -11,24 +11,24 @@
 
 namespace grelha {
 
-/// A place on a side of a polygon: from a corner so far, as a share, to the next one.
+/// A place on a side of a polygon: the share of the way from a corner to the next one.
 struct PlaceOnSide {
   std::uint32_t corner;
   double share;
 };
-/// Where two sides cross.
+/// A crossing of two sides.
 using SideCrossing = std::array<PlaceOnSide, 2>;
 
-/// What a polygon's corners have, where two of its sides cross: the mean of both.
+/// Interpolates values of a polygon's corners at a crossing: the mean of both sides.
 Float3 at_crossing(std::span<const Float3> of_corners, const SideCrossing& crossing);
 
 /// Cuts planar polygons into triangles over their own corners by clipping ears (Meisters 1975;
-/// Eberly, "Triangulation by Ear Clipping"). Concave outlines of any size: only corners that are
-/// not strictly convex are tested for lying in an ear, found through a tree. What an outline that
-/// crosses itself holds by the even-odd rule a sweep cuts up (Outline), over corners and crossings.
-/// Each corner is asked a few times, and an ear meets about as many leaves of the tree as its
-/// length crosses, at most some sqrt n. Where looking at a few of them is enough, which the
-/// triangles' signs prove afterwards, no more is looked at: a million corners take .1 to 4 s.
+/// Eberly, "Triangulation by Ear Clipping"). Outlines may be concave and of any size: only corners
+/// that are not strictly convex can lie in an ear, and a tree finds them. If an outline crosses
+/// itself, a sweep (Outline) triangulates its inside by the even-odd rule, over corners and
+/// crossings. Each corner is tested a few times, and an ear visits about as many leaves of the tree
+/// as its length crosses, at most some sqrt n. A first pass looks at only a few leaves, and the
+/// triangles' signs prove afterwards that this was enough: a million corners take .1 to 4 s.
 /// Outlines of a thousand and more are cut evenly, into short triangles. One object serves many
 /// polygons and keeps its buffers.
 class PolygonCutter {
@@ -36,7 +36,7 @@ class PolygonCutter {
   using Triangle = std::array<std::uint32_t, 3>;
   enum class Result {
     kCut,       ///< at most corners - 2 triangles, none without area
-    kFilled,    ///< it crosses itself: what it holds by the even-odd rule
+    kFilled,    ///< it crosses itself: its inside by the even-odd rule
     kNoArea,    ///< no triangle
     kTooOften,  ///< it crosses itself too often (Outline::kMostCuts): no triangle
   };
@@ -45,7 +45,7 @@ class PolygonCutter {
   /// most 1e18. Numbers from corners.size() on are of crossings().
   Result cut(std::span<const Float3> corners, std::vector<Triangle>& triangles);
 
-  /// Of the last polygon cut, one that was filled: where two of its sides cross.
+  /// The crossings of sides of the last polygon cut, if it was filled.
   std::span<const SideCrossing> crossings() const { return crossings_; }
 
   /// Of the last polygon cut: see polygon_normal(), or larger_normal() for one that was filled.
@@ -84,8 +84,8 @@ class PolygonCutter {
   std::vector<std::uint8_t> gone_, queued_, in_tree_;
   std::vector<std::uint8_t> waits_;  ///< for the next pass: a neighbour was clipped in this one
   bool even_ = false;                ///< triangles are wanted short
-  bool forced_ = false;              ///< some corner was clipped that is no ear
-  std::uint32_t looks_ = 0;          ///< at so many nodes of the tree an ear's test looks at most
+  bool forced_ = false;              ///< a corner was clipped that is no ear
+  std::uint32_t looks_ = 0;          ///< most nodes of the tree that an ear's test looks at
   std::vector<std::uint32_t> candidates_, next_candidates_;
   std::uint32_t left_ = 0, start_ = 0;
   PointTree tree_;  ///< the corners that are flat or reflex

@@ -10,7 +10,7 @@ double squared(const Double3& a) {
   return dot(a, a);
 }
 
-/// Sums over differences to the first corner: those of nearby floats are exact, so that corners on
+/// Sums over differences to the first corner. Differences of nearby floats are exact, so corners on
 /// one line give zero.
 Double3 newell_sum(std::span<const Float3> corners) {
   Double3 sum{};
@@ -25,8 +25,8 @@ Double3 newell_sum(std::span<const Float3> corners) {
   return sum;
 }
 
-/// Twice the area long, of the first corner, the one farthest from it, and the one farthest from
-/// both.
+/// The normal, with twice the area as its length, of the first corner, the one farthest from it,
+/// and the one farthest from both.
 Double3 normal_of_three(std::span<const Float3> corners) {
   Double3 reach{}, normal{};
   for (const Float3& p : corners)
@@ -52,8 +52,8 @@ Double3 larger_normal(std::span<const Float3> corners, const Double3& sum) {
   return other;
 }
 
-/// What is left of parts that cancel out may be rounding, or what a bent outline shows to the side:
-/// then it is far from the normal of a large triangle, and much smaller. Of a plane outline both
+/// If parts cancel, the rest may be rounding error, or the side view of a bent outline. Then it is
+/// much smaller than the normal of a large triangle, and points elsewhere. For a plane outline both
 /// are the same.
 Double3 polygon_normal(std::span<const Float3> corners) {
   constexpr double kSmaller = 2, kCosine = .9;

@@ -6,8 +6,9 @@
 
 namespace grelha {
 
-/// Twice the area long, of a polygon of three corners or more (Newell's sum: every corner counts).
-/// Where parts that turn either way cancel each other out in it, of a triangle over the corners.
+/// The normal of a polygon of three corners or more, with twice the area as its length (Newell's
+/// sum over all corners). If parts with opposite turns cancel in the sum, the normal of a triangle
+/// over the corners.
 Double3 polygon_normal(std::span<const Float3> corners);
 
 /// `sum` or, where it is larger, the normal of a large triangle over the corners, turned as the sum

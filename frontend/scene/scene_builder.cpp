@@ -133,8 +133,8 @@ bool SceneBuilder::has_area(std::uint32_t a, std::uint32_t b, std::uint32_t c) c
   return !vanishes(cross(difference(q, p), difference(r, p)));
 }
 
-/// Returns whether the normal of a piece leaves the polygon's by more than a milliradian: slivers
-/// of rounded corners do, and would shade as scratches.
+/// Returns true if the normal of a piece differs from the polygon's by more than a milliradian:
+/// slivers of rounded corners do, and would shade as scratches.
 bool SceneBuilder::bends(std::span<const Float3> points) const {
   constexpr double kSine = 1e-3;
   const Double3& whole = cutter_.normal();
@@ -147,7 +147,7 @@ bool SceneBuilder::bends(std::span<const Float3> points) const {
   });
 }
 
-/// What a polygon of three corners comes to, of which most scenes have the most.
+/// Adds a polygon of three corners, the most frequent kind in most scenes.
 void SceneBuilder::triangle(std::span<const Float3> corners,
                             std::span<const Float3> normals,
                             std::uint32_t material) {
@@ -162,7 +162,7 @@ void SceneBuilder::triangle(std::span<const Float3> corners,
   add_triangle(first, first + 1, first + 2, material);
 }
 
-/// Makes of what the corners have what corners and crossings have, if any.
+/// Extends values of the corners by those at the crossings, if there are any.
 void SceneBuilder::with_crossings(std::span<const Float3>& of_corners, std::vector<Float3>& all) {
   if (of_corners.empty() || cutter_.crossings().empty())
     return;

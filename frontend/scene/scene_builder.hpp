@@ -24,7 +24,7 @@ inline bool drawable(const Float3& v) {
   return drawable(v.x) && drawable(v.y) && drawable(v.z);
 }
 
-/// A normal whose square a float can hold; (0,0,0), "none", for one that is no direction.
+/// Returns a normal whose square fits a float; (0,0,0), "none", if it has no direction.
 Float3 sound_normal(const Float3& n);
 
 /// Faces of a mesh whose outlines cross themselves: those that are filled by the even-odd rule, and
@@ -32,12 +32,12 @@ Float3 sound_normal(const Float3& n);
 struct CrossedFaces {
   std::uint64_t filled = 0, left_out = 0;
   std::uint64_t first = 0;  ///< number of the first one, from 0
-  /// What to say of them; empty when there are none.
+  /// The text of a warning; empty if there are no such faces.
   std::string text() const;
 };
 
-/// Puts what the readers found into the kernel's arrays; what cannot be drawn is counted in
-/// SceneFile::dropped instead.
+/// Adds the primitives of the readers to the kernel's arrays. Primitives that cannot be drawn are
+/// counted in SceneFile::dropped instead.
 class SceneBuilder {
  public:
   explicit SceneBuilder(SceneFile& file) : file_(file) {}

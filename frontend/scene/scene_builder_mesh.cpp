@@ -75,7 +75,7 @@ SceneBuilder::Result SceneBuilder::mesh_face(std::span<const std::uint32_t> corn
   return result;
 }
 
-/// Vertices where sides of the face cross.
+/// Adds vertices where sides of the face cross.
 void SceneBuilder::add_crossings() {
   if (cutter_.crossings().empty())
     return;
@@ -140,7 +140,7 @@ void SceneBuilder::mesh_triangles(std::span<const std::uint32_t> corners,
     t.a[at] = a;
     t.b[at] = b;
     t.c[at] = c;
-    at += has_area(a, b, c) ? 1 : 0;  // the next one overwrites what has none
+    at += has_area(a, b, c) ? 1 : 0;  // the next triangle overwrites one without area
   }
   file_.dropped.zero_area += most - at;
   t.a.resize(at);

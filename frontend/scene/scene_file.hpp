@@ -12,7 +12,7 @@
 
 namespace grelha {
 
-/// What the file holds, as it says it: a polygon is one `p` however many triangles it becomes;
+/// Counts of entities as written in the file: a polygon is one `p`, for any number of triangles;
 /// `mesh` and `ply` count faces.
 struct EntityCounts {
   std::uint64_t s = 0, p = 0, pp = 0, c = 0, pl = 0, box = 0, mesh = 0, ply = 0, lights = 0,
@@ -20,12 +20,12 @@ struct EntityCounts {
   bool operator==(const EntityCounts&) const = default;
 };
 
-/// Primitives left out because nothing can be drawn of them.
+/// Primitives left out because they cannot be drawn.
 struct Dropped {
   std::uint64_t not_finite = 0, zero_area = 0;
 };
 
-/// Lens fields as the file states them; `present` when any of them stood there.
+/// Lens fields as the file states them; `present` if the file has any.
 struct LensHint {
   bool present = false;
   double aperture = 0;  ///< lens diameter in pixels of the view plane at `at`; 0: pinhole
@@ -40,7 +40,7 @@ struct AreaLight {
   std::uint32_t light = 0;  ///< index into Scene::lights
 };
 
-/// What the six numbers of a file's `aabb` were taken for.
+/// The order in which the six numbers of a file's `aabb` were read.
 enum class BoxOrder : std::uint8_t {
   kNone,     ///< the file has no `aabb`
   kCorners,  ///< two opposite corners
@@ -61,7 +61,7 @@ struct SceneFile {
   int samples_per_pixel = 0;  ///< `spp` hint, 0: none
   BoxOrder box_order = BoxOrder::kNone;
   std::string environment;  ///< `env` folder as written, or empty
-  /// of text, or whatever was parsed, that stood in memory at once
+  /// of text or binary input in memory at once
   std::uint64_t source_bytes = 0;
   std::vector<std::string> meshes;                     ///< files it named
   bool default_camera = false, default_light = false;  ///< made up, for a bare PLY
@@ -73,7 +73,7 @@ using Warn = std::function<void(const std::string&)>;
 struct ReadOptions {
   bool allow_outside = false;  ///< a scene may name files outside its own folder
   Frame frame{};               ///< to read it in
-  /// Told the share done, 0 to 1, never less than before; returns false to have reading throw
+  /// Receives the share done, 0 to 1, never less than before. If it returns false, reading throws
   /// Stopped.
   std::function<bool(double)> progress{};
 };

@@ -63,7 +63,7 @@ class SweepLine {
         side = a.side_of(b.right);
       return side != 0 ? side > 0 : a.edge < b.edge;
     }
-    /// Whether an edge passes below a point that the line stands at.
+    /// Returns true if an edge passes below a point on the line.
     bool operator()(const Slot& a, const Point2& p) const { return a.side_of(p) > 0; }
   };
 
@@ -128,7 +128,7 @@ class SweepEvents {
   std::uint32_t first_beginning(std::uint32_t point) const { return first_beginning_[point]; }
   std::uint32_t next_ending(std::uint32_t edge) const { return next_ending_[edge]; }
   std::uint32_t next_beginning(std::uint32_t edge) const { return next_beginning_[edge]; }
-  /// Whether one edge ends there and one begins, which takes its place on the line.
+  /// Returns true if one edge ends at the point and one begins, which takes its place on the line.
   bool goes_on(std::uint32_t point) const {
     const std::uint32_t a = first_ending_[point], b = first_beginning_[point];
     return a != kNone && b != kNone && next_ending_[a] == kNone && next_beginning_[b] == kNone;

@@ -12,7 +12,8 @@ namespace grelha {
 
 inline constexpr std::string_view kNulIsBlank = "the text holds NUL bytes, which count as blanks";
 
-/// Says each thing once; after kMost of them, nothing more, so that a file of noise stays readable.
+/// Prints each kind of warning once, and at most kMost kinds, so that the output for a file of
+/// noise stays readable.
 class Warnings {
  public:
   explicit Warnings(const Warn& warn) : warn_(warn) {}

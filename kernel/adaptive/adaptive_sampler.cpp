@@ -110,7 +110,7 @@ class AdaptiveSampler {
   }
 
  private:
-  /// Looks for things that samples may miss, unless all of them together could not matter.
+  /// Aims rays at things that samples may miss, unless all such things together could not matter.
   void aim() {
     const double error = options_.refine.error, pixels = static_cast<double>(r_.box.size());
     if (std::min(static_cast<double>(thing_count(world_)), pixels) <= error * error * pixels)
@@ -118,8 +118,8 @@ class AdaptiveSampler {
     aim_at_small_things(world_, setup_, stats_.threads, r_, stats_.trace);
   }
 
-  /// A bound as it is told. Runs stop where theirs happens to be low; the error asked for is met
-  /// all the same.
+  /// The bound as reported to the caller. Runs stop where their bound happens to be low; the error
+  /// asked for is met all the same.
   double stated(double bound) const {
     return std::min(kBoundedLow * bound, std::max(bound, options_.refine.error));
   }
@@ -140,8 +140,8 @@ class AdaptiveSampler {
     r_.finished = !choose_round(r_, errors_, options_.refine, order_, {samples_, seconds()});
   }
 
-  /// Where the error asked for seems to be met; and from then on, if that does not stand, each time
-  /// that samples have grown by half.
+  /// True when the error asked for seems to be met. After an audit that did not confirm this, also
+  /// each time the number of samples has grown by half.
   bool is_audit_due() const {
     if (r_.last || r_.audits == kMostAudits)
       return false;
@@ -150,8 +150,8 @@ class AdaptiveSampler {
                                                kGrowthOfAudits * static_cast<double>(r_.audited_at);
   }
 
-  /// Whether an audit agrees with what blocks claim, or says that the error is met; what it finds
-  /// counts from now on.
+  /// Audits the picture. Returns true if the audit agrees with the variances that blocks claim, or
+  /// shows that the error is met. Its findings count from now on.
   bool errors_stand() {
     const RayCounts before = stats_.rays;
     const Audit found = audit(world_, setup_, options_, errors_, r_, stats_);
@@ -166,7 +166,7 @@ class AdaptiveSampler {
     r_.audited_bound = found.bound();
     const double error = options_.refine.error;
     r_.met = r_.audited_bound <= error * error;
-    // that blocks claim so as well makes the middle of what the first says do
+    // the blocks claim so as well, so the first audit's mean suffices in place of its bound
     if (r_.met || (first && (!worse || r_.audited <= error * error)))
       return r_.finished;
     r_.worse = others.how_much_worse(r_.worse);
@@ -195,7 +195,7 @@ class AdaptiveSampler {
       TraceCounts trace;
       RayCounts rays;
       while (!progress_.stopped()) {
-        // what has a number is done, so that what is done is the first so many
+        // a numbered chunk is always finished, so the finished chunks are the first so many
         const std::size_t c = begun++;
         if (c >= chunks.size())
           break;

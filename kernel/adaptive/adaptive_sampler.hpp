@@ -1,5 +1,5 @@
 #pragma once
-// Spends samples where they help most; refinement.hpp has what is kept in between.
+// Spends samples where they help most; refinement.hpp holds the state between runs.
 
 #include "grelha/camera.hpp"
 #include "grelha/image.hpp"
@@ -11,9 +11,9 @@
 
 namespace grelha {
 
-/// Goes on until what is asked for is met, see Picture::advance(). Returns whether it is.
-/// `stats.error` and `maps`, where given, describe the picture so far; other counts are of this
-/// call. Throws like render().
+/// Goes on until the target is met, see Picture::advance(). Returns true if it is. `stats.error`
+/// and `maps`, where given, describe the picture so far; other counts are of this call. Throws like
+/// render().
 bool refine(const World& world,
             const Camera& camera,
             const RenderOptions& options,

@@ -15,12 +15,12 @@
 namespace grelha {
 namespace {
 
-constexpr double kThin = 1;         ///< pixels: what looks wider is met by samples of a net
-constexpr double kMostParts = 256;  ///< of a rod
-constexpr int kMostClear = 6;       ///< surfaces on the way to a thing
-constexpr double kMostBlur = .25;   ///< pixels: of what is more out of focus, boxes hold too little
+constexpr double kThin = 1;         ///< pixels: samples of a net hit everything wider
+constexpr double kMostParts = 256;  ///< parts of a rod
+constexpr int kMostClear = 6;       ///< transparent surfaces on the way to a thing
+constexpr double kMostBlur = .25;   ///< pixels: a box holds too little of a thing with more blur
 constexpr double kBoxTaken = .9 * static_cast<double>(kLargestBox);  ///< sides are rounded up
-constexpr double kMargin = .02;  ///< pixels around a box, for what rounding does
+constexpr double kMargin = .02;  ///< pixels around a box, for rounding
 constexpr std::size_t kRaysOfTurn = 256;
 
 /// A part of a rod, which one ray is aimed at.
@@ -323,7 +323,7 @@ class Aiming {
       return;
     const double reach = to_.reach(aim.radius, depth) + blur(depth) + kMargin;
     double wide = .5 * std::abs(b.x - a.x) + reach, high = .5 * std::abs(b.y - a.y) + reach;
-    // the middle of what is too large for a box is met as surely
+    // a thing too large for a box is hit as surely by samples of its middle
     const double area = 4 * wide * high;
     if (const double shrink = std::sqrt(kBoxTaken / area); shrink < 1) {
       wide *= shrink;

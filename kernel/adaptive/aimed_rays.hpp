@@ -7,14 +7,14 @@
 
 namespace grelha {
 
-/// Things that samples may miss: primitives that are no triangles, and triangles.
+/// Number of things that samples may miss: triangles and all other primitives.
 std::size_t thing_count(const World::Impl& world);
 
-/// Sends a ray to each sphere, cone or piece of a mesh that looks thinner than a pixel, one a pixel
-/// of its length, straight on through what is clear, by way of flat mirrors, and from each point
-/// light on to the surface behind it. Where it arrives, the pixels of a refined picture get boxes
-/// that later samples aim at; until then r.missed has what the things may add to the variances of
-/// blocks.
+/// Sends a ray to each sphere, cone or piece of a mesh that looks thinner than a pixel, one per
+/// pixel of its length: straight through transparent surfaces, by way of flat mirrors, and from
+/// each point light on to the surface behind it. The pixels of a refined picture that a ray arrives
+/// at get boxes that later samples aim at; until then r.missed holds the variances that the things
+/// may add to blocks.
 void aim_at_small_things(
     const World::Impl& world, const Setup& setup, int threads, Refinement& r, TraceCounts& counts);
 

@@ -50,15 +50,16 @@ std::vector<std::uint32_t> worst_blocks(const BlockErrors& errors, std::size_t c
   return blocks;
 }
 
-/// Where none of m pixels is off, 3 / m of all may be, by no more than 1: enough of them for an
-/// error asked for.
+/// Share of the pixels to audit for an error asked for. If all m audited pixels are right, 3 / m of
+/// all pixels may be off, each by no more than 1.
 double share_for(double error, std::size_t pixels) {
   const double count = static_cast<double>(pixels);
   return std::min(std::max(kAuditedShare, std::min(kMostAudited, kFewestAudited / count)),
                   6 / (error * error * count));
 }
 
-/// One pixel of each of the blocks that claim most, then others by a hash, block by block.
+/// One pixel of each of the blocks that claim the largest variance, then others by a hash, block by
+/// block.
 std::vector<Audited> audited_pixels(const Refinement& r,
                                     const BlockErrors& errors,
                                     std::uint32_t seed,
@@ -108,7 +109,7 @@ class Auditor {
     plan_.seed = scattered_bits(plan_.seed ^ kOtherSeed);
   }
 
-  /// Gives pixels as many samples as the picture has of them.
+  /// Gives each pixel as many new samples as it has in the picture.
   void sample(std::vector<Audited>& pixels) const {
     const int threads = stats_.threads;
 #pragma omp parallel num_threads(threads)

@@ -12,8 +12,9 @@
 
 namespace grelha {
 
-/// Of some pixels, as many samples again: half the squared difference of the two, which in the mean
-/// is their error squared, beside what was claimed. Each stands for several.
+/// Sums over audited pixels, which get as many samples again: half the squared difference of the
+/// two estimates, whose mean is their squared error, and the variance claimed. Each stands for
+/// several.
 struct AuditedPixels {
   double squared = 0;     ///< sum of it
   double by_sample = 0;   ///< sum of it times the pixel's samples
@@ -24,10 +25,10 @@ struct AuditedPixels {
 
   void add(double half_square, double variance, double samples, double stands_for);
 
-  /// Whether more than chance speaks against the claim.
+  /// True if the difference from the claim exceeds chance.
   bool is_worse() const;
-  /// How many times what pixels show their variances are, where it was taken for `so_far` times: 1
-  /// at least, kMostWorse at most.
+  /// Factor of the variances over those that pixels show, if it was taken to be `so_far`: 1 at
+  /// least, kMostWorse at most.
   double how_much_worse(double so_far) const;
 };
 

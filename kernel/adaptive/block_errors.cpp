@@ -49,7 +49,7 @@ void BlockErrors::measure_pixel(std::size_t p, int log, Sums& sums) const {
     const float mean = mean_so_far(r_, i, 1u << log);
     const float l[3] = {r_.squares[0][i], r_.squares[1][i], r_.squares[2][i]};
     sums.colour[c] += std::clamp(mean, 0.f, 1.f);
-    if (mean > 1) {  // what is surely white is so on any screen
+    if (mean > 1) {  // a surely white pixel is white on any screen
       constexpr float kOfAll = kTypicalRatio / (1 - kTypicalRatio) / 4;
       const float v = kOfAll * (l[0] + kTypicalRatio * (l[1] + kTypicalRatio * l[2])) / free;
       if (mean - 3 * std::sqrt(v) > 1)
@@ -102,8 +102,9 @@ bool BlockErrors::agrees(std::size_t b) const {
   return own_variance(sums_[b].levels) <= kAgreement / (n * n);
 }
 
-/// Adds to a pool what of the cells around (x, y), and of that cell, may show one surface with a
-/// block: their means differ no more than samples that hit as often as any of them do.
+/// Adds to a pool the cells around (x, y), and that cell, that may show one surface with a block:
+/// means differ by no more than chance explains if samples hit as often as in the cell with most
+/// hits.
 void BlockErrors::pool_around(
     const Level& level, int x, int y, const Sums& mine, Sums& pool) const {
   const auto each = [&](const auto& visit) {
@@ -129,7 +130,7 @@ void BlockErrors::pool_around(
   });
 }
 
-/// Variance of a block of few hits, by the blocks around: of as few of them as tell enough.
+/// Variance of a block with few hits, from as few surrounding blocks as give enough certainty.
 float BlockErrors::rare_variance(std::size_t b, float& certainty) const {
   const Sums& mine = sums_[b];
   const auto columns = static_cast<std::size_t>(blocks_.columns);
@@ -164,7 +165,7 @@ void BlockErrors::judge(std::size_t b) {
     v *= static_cast<float>(r_.worse) * (1 + 1 / certainty);
   if (agrees(b))
     v = std::max(v, static_cast<float>(r_.least_by_sample) / samples);
-  v = std::min(v + r_.missed[b], 1.f);  // of what a screen shows
+  v = std::min(v + r_.missed[b], 1.f);  // of displayed values, 0 to 1
   variance_[b] = v;
   certainty_[b] = certainty;
   gain_[b] = r_.log[b] < kMostLog ? v * (1 - r_.variance_ratio) / (samples * r_.cost[b]) : 0;

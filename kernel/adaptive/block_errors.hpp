@@ -7,27 +7,28 @@
 
 namespace grelha {
 
-/// What the samples of a refined picture say of its error, block by block. Nothing of it is kept:
-/// it follows from the picture.
+/// Error estimates from the samples of a refined picture, block by block. They are not saved: they
+/// follow from the picture.
 class BlockErrors {
  public:
   BlockErrors(const Refinement& r, int threads);
 
-  /// Variance of every block, from the differences its pixels hold. Where few of them differ,
-  /// blocks around that may show the same surface tell how often samples hit.
+  /// Computes the variance of every block from the differences its pixels hold. If few pixels
+  /// differ, surrounding blocks that may show the same surface tell how often samples hit.
   void judge();
 
   struct Totals {
-    double sum, bound;  ///< of the variances of all pixels; of the RMSE, at 95 % confidence
+    double sum, bound;  ///< sum of the variances of all pixels; bound of the RMSE at 95 %
+                        ///< confidence
     double rmse;
   };
   Totals totals() const;
 
-  /// of a pixel of the block, mean over channels
+  /// Variance of a pixel of the block, mean over channels.
   float variance(std::size_t b) const { return variance_[b]; }
-  /// [blocks] Variance that a ray takes away, were the block's samples doubled.
+  /// [blocks] Variance that each ray removes if the block's samples are doubled.
   const std::vector<float>& gains_per_ray() const { return gain_; }
-  /// Whether no sample of the block's pixels differed.
+  /// True if no sample of the block's pixels differed.
   bool agrees(std::size_t b) const;
   /// [pixels] Widths of 95 % intervals.
   std::vector<float> widths() const;
@@ -37,12 +38,12 @@ class BlockErrors {
   struct Sums {
     float levels[3] = {};  ///< of squared differences over degrees of freedom, mean of the channels
     float hits = 0, squares = 0;  ///< of variances of pixels' samples; of their squares
-    float drop = 0, level = 0;    ///< V(n) / V(n/2) of those is drop / level
-    float colour[3] = {};         ///< of what a screen shows
+    float drop = 0, level = 0;    ///< V(n) / V(n/2) is drop / level
+    float colour[3] = {};         ///< displayed values
     float pixels = 0, samples = 0;
 
     void operator+=(const Sums& o);
-    /// As many pixels of equal differences would tell as much.
+    /// Number of pixels with equal differences that would be as certain.
     float certainty() const { return squares > 0 ? hits * hits / squares : 0; }
     bool has_few_hits() const { return certainty() <= std::max(kFewHits, kRareHits * samples); }
     float by_sample() const { return pixels > 0 ? hits / pixels : 0; }

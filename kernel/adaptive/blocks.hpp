@@ -10,8 +10,8 @@
 
 namespace grelha {
 
-/// Pixels whose samples are taken together, along each side: a packet is full however few samples
-/// each of them takes.
+/// Side of a block of pixels whose samples are taken together: a packet is full even if each pixel
+/// takes few samples.
 inline constexpr int kBlockSide = 4;
 inline constexpr int kBlockPixels = kBlockSide * kBlockSide;
 

@@ -13,18 +13,17 @@ struct MirrorPlane {
   double distance;
 
   double above(const Place3& p) const { return dot(normal, p) - distance; }
-  /// Where a place seems to be in the mirror.
+  /// The mirror image of a place.
   Place3 image(const Place3& p) const {
     const double twice = 2 * above(p);
     return {{p[0] - twice * normal[0], p[1] - twice * normal[1], p[2] - twice * normal[2]}};
   }
 };
 
-/// Planes of smooth mirrors, each once; none where there are more than a few: those of a curved
-/// mirror.
+/// Planes of smooth mirrors, each once; empty if there are more than a few, as in a curved mirror.
 std::vector<MirrorPlane> flat_mirrors(const World::Impl& world);
 
-/// Whether a material mirrors, and is smooth.
+/// True if a material is a smooth mirror.
 bool is_smooth_mirror(const MaterialView& materials, std::uint32_t material);
 
 }  // namespace grelha

@@ -17,7 +17,8 @@ bool lies(T value, T least, T most) {
   return value >= least && value <= most;  // NaN does not
 }
 
-/// Blocks that can take more samples, each once: threads work on all of them at the same time.
+/// True if r.wanted lists blocks that can take more samples, each once: threads work on all blocks
+/// of a round at the same time.
 bool is_round(const Refinement& r) {
   std::vector<bool> there(r.log.size());
   for (const std::uint32_t b : r.wanted) {

@@ -37,18 +37,18 @@ struct Refinement {
   /// [blocks] variance that things with boxes may add, until the block has samples in those
   std::vector<float> missed;
   std::vector<float> cost;  ///< [blocks] rays a sample takes, of the chunk last sampled with it
-  /// [blocks] of the number of samples of each pixel; 0: none yet
+  /// [blocks] log2 of the samples of each pixel; 0: none yet
   std::vector<std::uint8_t> log;
-  /// blocks that the round in work has not come to, in its order; between rounds none
+  /// blocks that the round in work has not reached yet, in its order; empty between rounds
   std::vector<std::uint32_t> wanted;
-  /// of the last rounds: sums of squared differences of halves of everything, and of the new half
+  /// over the last rounds, sums of squared differences of halves: of all samples, of the new ones
   double variance_drop = 0;
   double variance_level = 0;
   double round_drop = 0, round_level = 0;  ///< the same of the round in work
   float variance_ratio = .4f;              ///< V(n) / V(n/2)
   float gain_threshold = .25f;  ///< gain a ray that a block of the round in work had to promise
-  /// what audits found: variances that are so many times what blocks show, and so much over the
-  /// number of samples at least where these agree; mean squares, of the last
+  /// found by audits: variances are `worse` times what blocks claim, and at least least_by_sample /
+  /// samples where samples agree; mean square error found by the last audit
   double worse = 1, least_by_sample = 0, audited = 0;
   double audited_bound = 0;
   int audits = 0;
@@ -61,7 +61,7 @@ struct Refinement {
   bool finished = false;
   std::uint64_t rays = 0;  ///< sent so far
   double seconds = 0;      ///< spent so far
-  double share = 0;        ///< of the way to what was asked for, as far as is known
+  double share = 0;        ///< of the way to the target, as far as is known
 
   Blocks blocks() const { return {width, height}; }
 };
@@ -77,17 +77,17 @@ inline float mean_so_far(const Refinement& r, std::size_t i, std::uint32_t sampl
                             (kLightUnit * static_cast<double>(samples)));
 }
 
-/// Of a picture nothing is known of.
+/// A picture without samples.
 Refinement make_refinement(const Camera& camera);
 
-/// Whether no array has another size than the others and no number is one that rendering cannot
-/// leave behind: what a file says must pass this before it is gone on with.
+/// True if the sizes of the arrays match and rendering can produce every number. Check a loaded
+/// file with this before going on with it.
 bool is_sound(const Refinement& r);
 
-/// Samples taken, of all pixels.
+/// Number of samples taken, over all pixels.
 std::uint64_t samples_taken(const Refinement& r);
 
-/// What has no sample yet is black.
+/// The picture so far; pixels without samples are black.
 Image picture_so_far(const Refinement& r);
 
 }  // namespace grelha

@@ -1,5 +1,5 @@
 #pragma once
-// What is sampled as a thing of its own, as straight rods.
+// Rods: straight bounds of the things that are sampled individually.
 
 #include <algorithm>
 #include <cmath>

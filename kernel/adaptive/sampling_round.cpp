@@ -8,10 +8,10 @@
 namespace grelha {
 namespace {
 
-constexpr std::uint64_t kSamplesOfChunk = 8192;  ///< work handed to a thread at a time: at most
-/// the threshold falls by this a round: two or three rounds double all samples
+constexpr std::uint64_t kSamplesOfChunk = 8192;  ///< most work handed to a thread at a time
+/// the threshold falls by this factor in a round: two or three rounds double all samples
 constexpr float kThresholdStep = .5f;
-/// Of so many blocks one at least is wanted: to judge all of them costs a twentieth of its samples
+/// At least one of so many blocks is wanted: judging all blocks costs a twentieth of its samples
 /// (measured).
 constexpr std::size_t kBlocksAWanted = 32;
 constexpr float kLeastThreshold = 1e-20f;  ///< below it no block is worth a ray
@@ -19,7 +19,7 @@ constexpr float kLeastThreshold = 1e-20f;  ///< below it no block is worth a ray
 /// that may have wider ones all the same; see RefineOptions::error
 constexpr double kWidestInterval = 8;
 constexpr double kShareOfWider = .001;
-constexpr double kMemory = .5;  ///< share of what rounds before the last one said that counts
+constexpr double kMemory = .5;  ///< weight of the rounds before the last one
 
 using List = std::vector<std::uint32_t>;
 
@@ -153,8 +153,8 @@ void want_gaining(Refinement& r, const BlockErrors& errors, const List& order) {
   want(r, order, [&](std::size_t b) { return gaining(gains[b]); });
 }
 
-/// Wants the blocks with pixels whose intervals are too wide, but for the widest of them, which may
-/// be so.
+/// Wants the blocks with pixels whose intervals are too wide, except for the share of widest pixels
+/// that is allowed.
 void want_wide(Refinement& r, const BlockErrors& errors, const List& order, double error) {
   r.wanted.clear();
   if (kWidestInterval * error >= 2 * static_cast<double>(kNormal))

@@ -23,7 +23,7 @@ struct Chunk {
   double variance_level = 0;
 };
 
-/// What a picture has cost so far.
+/// The cost of a picture so far.
 struct Spent {
   std::uint64_t samples;  ///< of all pixels
   double seconds;
@@ -40,15 +40,15 @@ bool choose_round(Refinement& r,
 /// Samples that the next round gives each pixel of a block.
 std::uint32_t next_count(const Refinement& r, std::size_t block);
 
-/// Chunks of the blocks wanted. Cut anywhere between two of them, the rest of a round is cut into
-/// the same chunks as in one go: what a sample costs is known by chunk.
+/// Cuts the wanted blocks into chunks. After an interruption between two chunks, the rest of the
+/// round is cut into the same chunks as without it: the cost of a sample is measured by chunk.
 std::vector<Chunk> cut_round(const Refinement& r);
 
 /// Adds a pixel's new samples, by their sums of kParts parts.
 void add_run(Refinement& r, const PixelRun& run, const std::int64_t* sums, Chunk& chunk);
 
-/// Takes in the first `done` chunks of a round. Returns whether these were all: else the blocks of
-/// the others stay wanted.
+/// Adds the first `done` chunks of a round. Returns true if these were all; otherwise the blocks of
+/// the other chunks stay wanted.
 bool end_round(Refinement& r, const std::vector<Chunk>& chunks, std::size_t done);
 
 }  // namespace grelha

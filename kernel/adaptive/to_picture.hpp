@@ -1,12 +1,12 @@
 #pragma once
-// Where places of a scene show in its picture.
+// Projects points of a scene into its picture.
 
 #include "kernel/adaptive/rod.hpp"
 #include "kernel/scene/frame.hpp"
 
 namespace grelha {
 
-/// A camera in double.
+/// A camera in double precision.
 class ToPicture {
  public:
   explicit ToPicture(const FrameView& f) : f_(f) {

@@ -1,6 +1,6 @@
 #pragma once
-// What `--error` takes for granted of samples; docs/sampling.md has the derivations and what was
-// measured, docs/numerics.md names the test that pins each.
+// Assumptions of `--error` about samples; docs/sampling.md has the derivations and the
+// measurements, docs/numerics.md names the test that pins each.
 
 namespace grelha {
 
@@ -31,8 +31,8 @@ inline constexpr float kAlike = 3;
 
 /// Blocks stop when their estimates happen to be low: the sum of all is by a tenth (measured).
 inline constexpr double kStoppedLow = 1.1;
-/// Bounds that a run stopped by are lower than the truth in one of eight, by up to this in two of
-/// three of those (measured: docs/error-suite.csv).
+/// A bound that stopped a run is lower than the truth in one of eight cases, and by up to this
+/// factor in two of three such cases (measured: docs/error-suite.csv).
 inline constexpr double kBoundedLow = 1.15;
 /// 97.5 % point of the normal.
 inline constexpr float kNormal = 1.96f;
@@ -42,16 +42,16 @@ inline constexpr double kNormalOneSided = 1.645;
 /// Share of its box that a disc covers, pi / 4.
 inline constexpr float kDiscInBox = .7853982f;
 
-/// Times 1 / n^2, for n samples: what variance they agree to. One that differs by .1 shows as .0049
-/// of it where variances fall by .4 a doubling.
+/// Times 1 / n^2: variance below which n samples agree. One sample that differs by .1 gives .0049 /
+/// n^2 if variances fall by .4 per doubling.
 inline constexpr float kAgreement = .005f;
 
-/// Times the samples of an audit: as many are taken before the next one, no more (a choice). Where
-/// an audit found more than blocks claim, what they claim from then on is rough.
+/// Times the samples at an audit: most samples at the next one (a choice). After an audit found a
+/// larger error than blocks claim, their claims are rough.
 inline constexpr double kGrowthOfAudits = 1.5;
-/// How much worse than claimed audits find a picture at most: few pixels tell (a choice).
+/// Largest factor by which audits find a picture worse than claimed: few pixels tell (a choice).
 inline constexpr double kMostWorse = 16;
-/// Audits of a picture.
+/// Most audits of a picture.
 inline constexpr int kMostAudits = 16;
 
 }  // namespace grelha

@@ -1,6 +1,6 @@
 #pragma once
-// Where rays cross primitives, by real arithmetic: what is left when floats and doubles do not
-// tell. Floats given are exact numbers. Derivations: docs/numerics.md.
+// Crossings of rays and primitives in exact arithmetic, for cases that floats and doubles cannot
+// decide. Given floats are exact numbers. Derivations: docs/numerics.md.
 
 #include "kernel/exact/double_double.hpp"
 
@@ -30,8 +30,8 @@ class ExactCrossing {
   bool some() const { return some_; }
   /// The sign of t - x: exact for triangles and planes, of 100 bits for spheres and cones.
   int compare(double x) const;
-  /// The sign of t - other.t: exact of two that are triangles or planes. Of others what agrees in
-  /// its first 90 bits is equal.
+  /// The sign of t - other.t: exact if both are triangles or planes. Others are equal if their
+  /// first 90 bits agree.
   int compare(const ExactCrossing& other) const;
   /// t, within 2^-50 of itself.
   double estimate() const;
@@ -50,8 +50,8 @@ class ExactCrossing {
 /// From either side, edges and corners included. Rays in the plane of a triangle, and triangles
 /// without an area, do not cross.
 ExactCrossing cross_triangle(const ExactRay& ray, const float (&corner)[3][3]);
-/// Whether a ray that is moved aside by less than any number crosses between t_min and t_max: of a
-/// closed mesh such a ray crosses no edge and no corner, so its crossings are even in number
+/// True if a ray that is moved aside by an infinitesimal amount crosses between t_min and t_max.
+/// Such a ray crosses no edge and no corner of a closed mesh, so its crossings are even in number
 /// outside and odd inside. Edelsbrunner & Mücke, "Simulation of Simplicity", 1990.
 bool crosses_beside(const ExactRay& ray, const float (&corner)[3][3], double t_max);
 /// From either side. Rays along a plane do not cross.

@@ -29,8 +29,8 @@ inline void two_sum(double x, double y, double& high, double& low) {
   low = (x - (high - of_y)) + (y - of_y);
 }
 
-/// An exact number. Products of up to seven floats, and differences of them, stay in range: they
-/// are multiples of 2^-1043 below 2^1000.
+/// An exact number. Products of up to seven floats, and their differences, stay in range: they are
+/// multiples of 2^-1043 below 2^1000.
 class Expansion {
  public:
   /// Compressed, each part is less than a last place of the next: doubles have 2100 bits, and so 40
@@ -103,20 +103,20 @@ class Expansion {
   friend Expansion operator+(Expansion a, const Expansion& b) { return a += b; }
   friend Expansion operator-(Expansion a, const Expansion& b) { return a -= b; }
 
-  /// -1, 0 or 1; 0 of what left the range. The last part is larger than all others together.
+  /// -1, 0 or 1; 0 if the number left the range. The last part is larger than all others together.
   int sign() const {
     if (count_ == 0 || is_lost_)
       return 0;
     return part_[count_ - 1] < 0 ? -1 : 1;
   }
-  /// Within 2^-52 of itself.
+  /// The number, within 2^-52 of itself.
   double estimate() const {
     double sum = is_lost_ ? std::nan("") : 0;
     for (int i = 0; i < count_; ++i)
       sum += part_[i];
     return sum;
   }
-  /// What the estimate leaves, within 2^-52 of itself.
+  /// The number minus estimate(), within 2^-52 of itself.
   double rest() const {
     Expansion e = *this;
     e.add(-estimate());

@@ -11,12 +11,12 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// Times a grid's pad: how far boxes reach beyond what hits may be off by. A slab test in float is
-/// off by 3 u of the way to each plane, which is at most 2.8 reaches of the grid, and compares
-/// two of them: 17 u reaches. A quarter of a pad is 64 u.
+/// Times a grid's pad: how far boxes reach beyond the error of hits. A slab test in float is off by
+/// 3 u of the distance to each plane, which is at most 2.8 reaches of the grid, and compares two
+/// such values: 17 u reaches. A quarter of a pad is 64 u.
 constexpr double kSlabRoom = .25;
 
-/// How far a block reaches along an axis; of an empty one, nowhere.
+/// Extent of a block along an axis; empty if the block is.
 struct Reach {
   float lo = kInfinity;
   float hi = -kInfinity;

@@ -8,17 +8,17 @@
 
 namespace grelha {
 
-/// Turns how many blocks cells [begin, end) have into where their boxes begin, from a row on whose
-/// first is that of `block`. Returns the row behind the last.
+/// Replaces the numbers of blocks in cells [begin, end) by the places where their boxes begin, from
+/// `row` on, whose first box is that of `block`. Returns the row behind the last.
 std::uint64_t place_boxes(std::size_t begin,
                           std::size_t end,
                           std::uint64_t row,
                           std::uint64_t block,
                           ListStore<Triangle>& store);
 
-/// A box for each block of the triangles of one cell: of the part of them within the cell. Both are
-/// grown by `pad` as when triangles are given to cells, and by a quarter more for the rounding of a
-/// test of it.
+/// Computes a box for each block of the triangles of one cell: their bounds within the cell. Bounds
+/// and cell are grown by `pad`, as when triangles are given to cells, and the box by a quarter more
+/// for the rounding of its slab test.
 void bound_blocks(const Grid& grid,
                   double pad,
                   std::size_t cell,

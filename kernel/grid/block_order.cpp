@@ -52,7 +52,7 @@ struct CellParts {
         hi(static_cast<float>(box.hi[a])),
         half(static_cast<float>(kCellParts / (2 * grid.cell[a]))) {}
 
-  /// That of the middle of what three corners span, cut off at the cell; of NaN, 0.
+  /// Part that holds the middle of the extent of three corners, clipped to the cell; 0 for NaN.
   std::int16_t of_middle(float a, float b, float c) const {
     const float least = std::max(lo, std::min(std::min(a, b), c));
     const float most = std::min(hi, std::max(std::max(a, b), c));

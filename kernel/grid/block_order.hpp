@@ -13,14 +13,14 @@ namespace grelha {
 /// Puts the triangles of a cell in an order in which each eight are neighbours, so that the boxes
 /// of blocks are small.
 ///
-/// Method  strips across the longest side of what the middles of their boxes, cut off at the cell,
-///         span; blocks along the strips, both of whole blocks.
+/// Method  strips across the longest side of the bounds of the middles of the triangles' boxes,
+///         clipped to the cell; blocks along the strips. Strips and blocks hold whole blocks.
 /// Source  Leutenegger, Lopez, Edgington, "STR: A Simple and Efficient Algorithm for R-Tree
 ///         Packing", ICDE 1997.
 class BlockOrder {
  public:
-  /// The place of each triangle of a cell, a function of the cell and of them alone. The span lives
-  /// until the next call.
+  /// The place of each triangle of a cell, a function of the cell and its triangles alone. The span
+  /// lives until the next call.
   std::span<const std::uint32_t> places(const Primitives& p,
                                         std::span<const std::uint32_t> ids,
                                         const Grid& grid,

@@ -1,5 +1,5 @@
 #pragma once
-// Where boxes of blocks stand.
+// Places of the boxes of blocks.
 
 #include <cstdint>
 
@@ -7,15 +7,16 @@
 
 namespace grelha {
 
-/// Deals out places in rows of boxes, cell after cell. A cell's boxes are in no more rows than they
-/// fill: else most cells would lie across two, and rays look into both. Where what is left of a row
-/// does not do, the cell begins the next one, and those places stay empty.
+/// Assigns places in rows of boxes, cell after cell. A cell's boxes are in no more rows than they
+/// fill: otherwise most cells would lie across two rows, and rays would read both. If the rest of a
+/// row is too short, the cell begins the next row, and those places stay empty.
 class BoxPlaces {
  public:
   /// From a row on.
   explicit BoxPlaces(std::uint64_t row) : next_(row * kBlock) {}
 
-  /// Where the boxes of a cell of so many blocks begin; of one of none, where those before it end.
+  /// Returns where the boxes of a cell with `blocks` blocks begin; for 0 blocks, where the last
+  /// end.
   std::uint64_t take(std::uint32_t blocks) {
     if (blocks != 0 && next_ % kBlock + blocks > rows_of(blocks) * kBlock)
       next_ = rows() * kBlock;
@@ -24,7 +25,7 @@ class BoxPlaces {
     return place;
   }
   std::uint64_t next() const { return next_; }
-  /// Those until here, what is left of the last among them.
+  /// Number of rows up to next(), including one that is partly filled.
   std::uint64_t rows() const { return rows_of(next_); }
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// How far a build has come, told by the threads that build.
+// Progress of a build, reported by the threads that build.
 
 #include <algorithm>
 #include <atomic>
@@ -12,18 +12,18 @@ namespace grelha {
 
 class BuildProgress {
  public:
-  BuildProgress() = default;  ///< nobody asks
+  BuildProgress() = default;  ///< reports nothing
   explicit BuildProgress(const std::function<bool(double)>& report) : report_(report) {}
 
-  /// What comes next, in so many steps, is that share of the whole; what came before is done. By
-  /// one thread.
+  /// Starts the next stage, which has `steps` steps and takes `share` of the whole; the stages
+  /// before it are done. Called by one thread.
   void expect(double share, std::size_t steps) {
     share_ = end_;
     end_ += share;
     step_ = share / static_cast<double>(std::max<std::size_t>(steps, 1));
     tell(share_);
   }
-  /// One of the steps is done. By any thread.
+  /// Reports that a step is done. Called by any thread.
   void step() {
     if (!report_)
       return;
@@ -32,7 +32,7 @@ class BuildProgress {
   }
   void finish() { tell(1); }
 
-  /// Whether it is no use to go on. By any thread.
+  /// True if the caller stopped the build. Called by any thread.
   bool stopped() const { return stopped_.load(std::memory_order_relaxed); }
   void throw_if_stopped() const {
     if (stopped())

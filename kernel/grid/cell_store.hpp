@@ -63,7 +63,7 @@ struct ListStore {
   static constexpr std::size_t kFields = kEntry / sizeof(float) - 1;
 };
 
-/// Triangles: an entry is a block of them.
+/// Triangles: an entry is a block of triangles.
 template <>
 struct ListStore<Triangle> {
   static constexpr std::size_t kEntry = sizeof(TriangleBlock);

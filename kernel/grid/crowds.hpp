@@ -1,5 +1,5 @@
 #pragma once
-// Where one level of cells is not enough: many primitives in few of them.
+// Crowds: many primitives in few cells, where one level of cells is not enough.
 
 #include <cstdint>
 #include <vector>
@@ -8,14 +8,14 @@
 
 namespace grelha {
 
-/// Takes crowds out of some primitives in a box: towns in a desert, of which cells of a grid of
-/// that density would hold too much. Each is for a grid of its own, with cells of its own size.
+/// Takes crowds out of some primitives in a box: towns in a desert, where cells of a grid of that
+/// density would hold too much. Each crowd is for a grid of its own, with cells of its own size.
 /// `ids` (ascending) keeps the rest. At most `most` crowds are taken, each smaller than half the
 /// box, so that taking ends.
 ///
-/// Method  a thousand primitives, evenly picked, are a probe. Where by it the mean primitive shares
-///         its cell with more than kBad, cells with more than kCrowd are crowded. Touching ones and
-///         the cells around them are one crowd. Only then are all primitives looked at.
+/// Method  a thousand primitives, evenly picked, are a probe. If the mean primitive of the probe
+///         shares its cell with more than kBad, cells with more than kCrowd are crowded. Touching
+///         ones and the cells around them are one crowd. Only then are all primitives looked at.
 std::vector<std::vector<std::uint32_t>> take_crowds(const Primitives& p,
                                                     std::vector<std::uint32_t>& ids,
                                                     const Box& box,

@@ -49,7 +49,7 @@ class OctantSweep {
     const std::uint8_t* const a = found(next(1, y), z);
     const std::uint8_t* const b = found(y, next(2, z));
     const std::uint8_t* const c = found(next(1, y), next(2, z));
-    // where x goes down a row stands a place further on, behind what is beyond the grid
+    // where x goes down, a row stands a place further on, behind the border of the grid
     std::uint8_t* const least = least_.data() + is_down(0);
     for (std::ptrdiff_t x = 0; x < n_[0]; ++x)
       least[x] = std::min(std::min(a[x], b[x]), c[x]);

@@ -15,11 +15,11 @@ inline std::size_t cell_count(const std::array<std::uint32_t, 3>& cells) {
 /// Octants of directions: bit a of an octant is set where they go down along axis a. A field for
 /// each stands behind that of all directions.
 inline constexpr std::size_t kOctants = 8;
-/// Grids of more cells have the one of all directions alone: places in fields are numbers of 31
-/// bits, and memory is what it is.
+/// Grids of more cells have only the field of all directions: places in fields are numbers of 31
+/// bits, and memory is limited.
 inline constexpr std::size_t kMostCellsOfOctants = std::size_t{1} << 26;
 
-/// What grids of so many cells have: 1 field, or 1 + kOctants.
+/// Number of distance fields of a grid of so many cells: 1, or 1 + kOctants.
 inline std::size_t distance_fields(std::size_t cells) {
   return cells > kMostCellsOfOctants ? 1 : 1 + kOctants;
 }

@@ -17,7 +17,7 @@ namespace grelha {
 
 struct Grid {
   std::array<std::uint32_t, 3> cells{1, 1, 1};  ///< per axis, each >= 1; x runs fastest
-  double pad = 0;                               ///< what primitives were grown by
+  double pad = 0;                               ///< room added around primitives
   /// corner (a float's value, so that walks subtract it exactly) and cell size
   double lo[3] = {}, cell[3] = {};
   CellStore store;

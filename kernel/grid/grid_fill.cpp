@@ -40,12 +40,12 @@ struct Sums {
   std::uint64_t rows = 0;
 };
 
-/// What all passes see.
+/// State that all passes share.
 struct Filling {
   const Primitives& primitives;
   std::span<const std::uint32_t> ids;
-  const Grid& grid;           ///< its cells; no more
-  std::optional<double> pad;  ///< with it, blocks get boxes, and neighbours share them
+  const Grid& grid;           ///< for its cells alone
+  std::optional<double> pad;  ///< if set, blocks get boxes, and neighbours share blocks
   int threads;
   BuildProgress& progress;
   Buckets buckets{cell_count(grid.cells)};
@@ -77,7 +77,7 @@ void share_out(const Filling& f, std::size_t count, const Work& work) {
   f.progress.throw_if_stopped();
 }
 
-/// Makes room for where lists of those kinds begin that there are any of.
+/// Allocates the list starts of each kind that has primitives.
 void find_kinds(Filling& f) {
   for_each_finite_shape([&]<class Shape>() {
     const PrimitiveIds& ids = f.primitives.ids;
@@ -158,7 +158,7 @@ std::vector<std::uint32_t> in_crowded_buckets(const Filling& f) {
   return ids;
 }
 
-/// Takes from all cells what is a copy of something in the crowded ones; whether there was any. A
+/// Removes copies of primitives in crowded cells from all cells; returns true if there were any. A
 /// copy has the cells of its original.
 bool drop_copies(Filling& f) {
   const std::vector<std::uint32_t> found = copies_among(f.primitives, in_crowded_buckets(f));
@@ -241,7 +241,7 @@ void put_triangles(Filling& f,
     bound_blocks(f.grid, *f.pad, cell, static_cast<std::uint32_t>(ids.size()), list);
 }
 
-/// What a thread needs to write buckets.
+/// Working memory of a thread that writes buckets.
 struct Scratch {
   std::vector<std::uint32_t> written;  ///< primitives so far, by kind and cell
   /// ids of the bucket, cell after cell, kBlock for each place

@@ -10,8 +10,8 @@
 
 namespace grelha {
 
-/// Writes the lists of a grid that lay_out_grid() chose the cells of, and tells of its progress,
-/// which is `share` of the whole.
+/// Writes the lists of a grid whose cells lay_out_grid() chose, and reports progress, `share` of
+/// the whole.
 void fill_grid(const Primitives& primitives,
                std::span<const std::uint32_t> ids,
                Grid& grid,

@@ -13,13 +13,13 @@ namespace grelha {
 namespace {
 
 constexpr double kMostCells = 1024;     ///< along an axis
-constexpr double kMostReferences = 64;  ///< a primitive; the scenes measured have 1.3 to 10
-/// references, unless there are more primitives than these serve; 200 MB
+constexpr double kMostReferences = 64;  ///< per primitive; the scenes measured have 1.3 to 10
+/// references in all, unless so many primitives need more; 200 MB
 constexpr double kMostInAll = 1 << 22;
-constexpr double kSmallShare = 8;  ///< any grid of a scene may hold an eighth of them
-/// references a primitive, of any number; scenes of a million have 1.3 to 2.6
+constexpr double kSmallShare = 8;  ///< any grid of a scene may hold an eighth of kMostInAll
+/// references per primitive, however many there are; scenes of a million have 1.3 to 2.6
 constexpr double kAlways = 4;
-/// primitives that say how many there are
+/// primitives from which the number of references is estimated
 constexpr std::size_t kFirstProbes = 128, kMoreProbes = std::size_t{1} << 14;
 
 /// A cube root from + - * / alone, so that resolutions agree between machines; Newton's steps until
@@ -119,7 +119,7 @@ std::size_t divide(Grid& g, const double (&extent)[3], double per_length) {
   return cells;
 }
 
-/// Whether the mean primitive stands in more than `most` cells, by so many of them, evenly picked.
+/// True if the mean of so many primitives, evenly picked, stands in more than `most` cells.
 bool have_more(double most,
                const Primitives& p,
                std::span<const std::uint32_t> ids,

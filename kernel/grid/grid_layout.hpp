@@ -22,9 +22,9 @@ inline int useful_threads(int threads, std::size_t work) {
 ///
 /// Resolution  cells per axis = M extent / cbrt(volume / count) + 1 (Cleary & Wyvill 1988;
 ///             Amanatides & Woo's report form). Extents below 1/1000 of the largest count as that.
-///             At most 1024 cells an axis, none smaller than 2 pad. Cells are coarser, by halves,
-///             where the mean of some primitives would stand in more than 64 of them, or all of
-///             many primitives in more than 2^22 (or 4 each).
+///             At most 1024 cells an axis, none smaller than 2 pad. Cells are coarsened by halves
+///             if primitives of a probe would stand in more than 64 cells on average, or all
+///             primitives together in more than 2^22 (or 4 each).
 /// Guarantee   every primitive stands in each cell that its box grown by `pad` touches, unless the
 ///             cell lies beyond `pad` of its surface. In each cell spheres and cones ascend by id,
 ///             triangles stand as BlockOrder says. Same lists on every machine, by any number of
@@ -48,8 +48,8 @@ struct Extent {
   double longest = 0;
 };
 Extent extent_of(const Primitives& primitives, std::span<const std::uint32_t> ids, int threads);
-/// Those of `ids` whose box has a longer diagonal, ascending; most + 1 of them, whichever, when
-/// there are more than `most`.
+/// Returns the `ids` whose box has a longer diagonal, ascending; if there are more than `most`, any
+/// most + 1 such ids.
 std::vector<std::uint32_t> longer_than(const Primitives& primitives,
                                        std::span<const std::uint32_t> ids,
                                        double diagonal,

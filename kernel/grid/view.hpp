@@ -22,7 +22,7 @@ struct GridView {
   /// rays that start outside of this box are moved into the frame of the grid first
   float near_lo[3] = {}, near_hi[3] = {};
   float room = 0;  ///< RayLanes::room of rays that start within it
-  float off = 0;   ///< what coordinates are off by in the frame of the grid
+  float off = 0;   ///< error of coordinates in the frame of the grid
   /// [cells] Chebyshev distance to the nearest cell that holds something; 0: this one does. Behind
   /// it fields of [cells] by octants of directions, each so many places after the one before, or 0
   /// places: there are none.
@@ -30,11 +30,11 @@ struct GridView {
   std::uint32_t field_places = 0;
   int n[3] = {};  ///< cells per axis; x runs fastest
   double lo[3] = {}, cell[3] = {}, inv_cell[3] = {};
-  float pad = 0;  ///< what primitives grew by before they were put into cells
+  float pad = 0;  ///< room added around primitives before they were put into cells
   float lo_f[3] = {}, hi_f[3] = {}, cell_f[3] = {}, inv_cell_f[3] = {};
 };
 
-/// What rays can meet, and the grids it stands in.
+/// The primitives that rays can meet, and their grids.
 struct SceneView {
   GeometryView geometry;
   /// one "cell" of primitives that no grid holds: few, or as large as the scene
@@ -51,7 +51,7 @@ struct TraceOptions {
   bool mailbox = true;  ///< for packets
 };
 
-/// What a trace counts.
+/// Counts of a trace.
 struct Counters {
   std::uint64_t visits = 0;
   std::uint64_t tests[kKinds] = {};  ///< by kind

@@ -1,6 +1,6 @@
 #pragma once
-// What each variant_*.cpp compiles: the hot loops behind the functions of a Variant. Included once
-// per instruction set.
+// The hot loops behind the functions of a Variant, as each variant_*.cpp compiles them. Included
+// once per instruction set.
 
 #include "kernel/render/band.hpp"
 #include "kernel/query/loops.hpp"

@@ -19,8 +19,8 @@
 
 namespace grelha {
 
-/// All that is known of a picture between two pieces of its work: plain data, to be copied and
-/// kept. The options that it began with say what it is, and every call needs the same ones.
+/// The state of a picture between two pieces of its work: plain data, to be copied and kept. The
+/// options that it began with define it, and every call needs the same ones.
 class Picture {
  public:
   /// A picture without samples. Throws std::invalid_argument for a bad camera or option.
@@ -32,12 +32,12 @@ class Picture {
   Picture(Refinement state) : state_(std::move(state)) {}        ///< one by error
   Picture(SubdivisionState state) : state_(std::move(state)) {}  ///< one by subdivision
 
-  /// Renders until the picture is finished; returns whether it is. Where options.progress says to
-  /// stop, threads end what they have in work. Then `should_continue` is asked whether to go on all
-  /// the same; it may read the picture, which options.progress must not. From the picture, or from
-  /// a copy, another call goes on, here or on another machine. `stats` are of this call, but
-  /// stats.error and `maps` of the picture so far: set when samples are spent by error. Throws like
-  /// render().
+  /// Renders until the picture is finished; returns true if it is. When options.progress says to
+  /// stop, threads finish the work they have begun. Then `should_continue` decides whether to go on
+  /// all the same; it may read the picture, which options.progress must not. Another call goes on
+  /// from the picture or from a copy, here or on another machine. `stats` are of this call;
+  /// stats.error and `maps` are of the picture so far, and set if samples are spent by error.
+  /// Throws like render().
   bool advance(const World& world,
                const Camera& camera,
                const RenderOptions& options,
@@ -65,8 +65,8 @@ class Picture {
   /// The same, to work on.
   Accumulator* sums() { return std::get_if<Accumulator>(&state_); }
 
-  /// Whether rendering can have left it behind: what a file says must pass this before it is gone
-  /// on with.
+  /// True if rendering can produce this state. Check a loaded file with this before going on with
+  /// it.
   bool is_sound() const;
 
   /// Gives an archive the numbers that say what the picture is, then its arrays; see
@@ -89,7 +89,7 @@ class Picture {
     std::visit([&](auto& state) { visit_numbers(archive, state); }, picture.state_);
     return picture;
   }
-  /// Whether the numbers alone are sound: ask before load_arrays(), which allocates by them.
+  /// True if the numbers alone are sound: check before load_arrays(), which allocates by them.
   bool has_sound_numbers() const;
   /// Takes from an archive what save_arrays() gave it.
   template <class Archive>

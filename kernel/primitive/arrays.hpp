@@ -8,17 +8,17 @@ namespace grelha {
 
 inline constexpr int kBlock = 8;  ///< primitives side by side in memory
 
-/// Primitives by index, for what is done once a hit rather than once a test.
+/// Primitives by index, for work that is done once per hit rather than once per test.
 template <class Fields>
 struct IndexedArrays {
   Fields fields = {};
   const std::uint32_t* material = nullptr;
-  std::uint32_t count = 0;  ///< of those that need be tested; of planes, those behind are copies
+  std::uint32_t count = 0;  ///< primitives to test; planes behind these are copies
 };
 
-/// Primitives cell after cell: cell i owns places first[i] up to first[i + 1] - 1. Where no cell
-/// holds any, first == nullptr. Arrays are padded with kBlock NaN entries, so a whole block can be
-/// read from any place.
+/// Primitives cell after cell: cell i owns places first[i] up to first[i + 1] - 1. If no cell holds
+/// any, first == nullptr. Arrays are padded with kBlock NaN entries, so a whole block can be read
+/// from any place.
 template <class Fields>
 struct CellArrays {
   const std::uint32_t* first = nullptr;

@@ -38,7 +38,7 @@ struct Box {
   }
 };
 
-/// How the cells of a grid lie. What is in reach of a cell, `pad`, belongs to it.
+/// Corner and size of the cells of a grid. Everything within `pad` of a cell belongs to it.
 struct CellFrame {
   double lo[3], cell[3];  ///< corner of the first, size of each
   double pad;

@@ -1,6 +1,5 @@
 #pragma once
-// What floats do not tell of a crossing is taken from doubles, and what these do not tell from
-// exact numbers.
+// Crossings that floats cannot decide are decided by doubles, and the rest by exact numbers.
 
 #include "kernel/primitive/ray_lanes.hpp"
 
@@ -23,7 +22,7 @@ inline RayLanes<double> in_double(const ExactRay& r) {
   return {.org = vec(r.org),
           .dir = dir,
           .inv_dd = inv_dd,
-          .inv_length = square_root(inv_dd),
+          .inv_length = inverse_length(dir, inv_dd),
           .t_min = r.t_min,
           .off = 0,
           .room = __builtin_inf()};
@@ -45,12 +44,12 @@ template <int i, class Real>
   return {.org = {of(origin(0), ray.org.x), of(origin(1), ray.org.y), of(origin(2), ray.org.z)},
           .dir = dir,
           .inv_dd = inv_dd,
-          .inv_length = square_root(inv_dd),
+          .inv_length = inverse_length(dir, inv_dd),
           .t_min = of([](const GivenRays& g) { return g.t_min; }, ray.t_min),
           .off = W(0),
           .room = W(0)};
 }
-/// What t of rays as they came has more.
+/// t of the rays as given minus t of the tested rays.
 template <int i, class Real>
 [[gnu::always_inline]] inline Wide<Real> shift_in_double(const RayLanes<Real>& ray) {
   using W = Wide<Real>;
@@ -59,7 +58,8 @@ template <int i, class Real>
   return ray.step == 0 ? W(ray.given->shift[ray.first])
                        : load<W>(ray.given->shift + ray.first + i * kWidth<W>);
 }
-/// Doubles that round to floats not above or not below others: more than 2 u and the least float.
+/// Moves a double by more than 2 u and the least float: it rounds to a float not above, or not
+/// below.
 template <class W>
 [[gnu::always_inline]] inline W rounded_down(const W& a) {
   return a - (magnitude(a) * W(0x1p-23) + W(0x1p-149));
@@ -69,7 +69,7 @@ template <class W>
   return a + (magnitude(a) * W(0x1p-23) + W(0x1p-149));
 }
 
-/// Of what doubles found, or else of cross(); t is counted from `shift` on.
+/// The span of a crossing from doubles, or else from cross(); t is counted from `shift` on.
 template <class Cross>
 inline CrossingSpan settle_one(const Found<double>& found, double shift, const Cross& cross) {
   if (!found.some)

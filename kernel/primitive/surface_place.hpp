@@ -10,7 +10,7 @@ namespace grelha::GRELHA_ISA {
 
 inline constexpr float kEps = 5.9604645e-8f;  ///< half an ulp of 1
 
-/// What double takes from a point of a triangle, of its largest coordinate: some 30 roundings of
+/// Times the largest coordinate of a point of a triangle: its error in double, some 30 roundings of
 /// 2^-53.
 inline constexpr float kWideEps = 0x1p-48f;
 
@@ -55,7 +55,7 @@ template <class Real>
 struct Meeting {
   const Vec3<Real>&org, &dir;
   const Real& t;
-  bool first;     ///< what was met is the first crossing beyond t = 0; t may be unknown
+  bool first;     ///< the hit is the first crossing beyond t = 0; t may be unknown
   Vec3<Real> at;  ///< org + t dir
   bool smooth;    ///< normals of vertices are mixed
 };

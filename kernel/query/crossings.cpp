@@ -23,7 +23,7 @@ class Crossings {
     std::sort(ids_.begin(), ids_.end());
   }
 
-  /// Those that stand in several cells count once.
+  /// Number of primitives; one that stands in several cells counts once.
   std::size_t count() const {
     std::size_t count = 0;
     for (std::size_t i = 0; i < ids_.size(); ++i)

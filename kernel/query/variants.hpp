@@ -13,14 +13,14 @@
 
 namespace grelha {
 
-/// What any number of rays meet first.
+/// Finds the closest hits of any number of rays.
 using ClosestLoop =
     void (*)(const SceneView&, const Rays&, const Hits&, const TraceOptions&, TraceCounts&);
-/// Whether anything is in their way: [rays.count] out, 1 or 0.
+/// Tests whether anything is in the way of the rays: [rays.count] out, 1 or 0.
 using OccludedLoop =
     void (*)(const SceneView&, const Rays&, std::uint8_t*, const TraceOptions&, TraceCounts&);
 
-/// What one instruction set's file provides.
+/// The functions of one instruction set.
 struct VariantLoops {
   ClosestLoop closest;
   OccludedLoop occluded;

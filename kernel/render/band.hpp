@@ -36,7 +36,7 @@ struct LaneCamera {
   Lanes half_width, half_height;
 };
 
-/// Where rays start, and their directions.
+/// Origins and directions of rays.
 struct LaneRays {
   Lanes3 org, dir;
 };
@@ -118,7 +118,7 @@ struct LaneRays {
   }
 }
 
-/// Moves some of kLanes rays of a stack, from one of them on, to a place of the batch.
+/// Moves the chosen of kLanes rays, from place `from` of a stack on, to place `to` of the batch.
 class StackMove {
  public:
   StackMove(const Chosen& chosen, int from, int to) : chosen_(chosen), from_(from), to_(to) {}
@@ -176,8 +176,8 @@ inline void pop(const Shader& s, RayStack& stack, int (&ends)[kClasses]) {
   }
 }
 
-/// Camera rays [0, count) of the batch and all that comes of them. The stack is empty before and
-/// after.
+/// Traces camera rays [0, count) of the batch and all their descendants. The stack is empty before
+/// and after.
 inline void follow(const Shader& s, RayStack& stack, int count) {
   s.rays.primary += static_cast<unsigned>(count);
   if (keeps_shares(s))
@@ -248,8 +248,8 @@ inline constexpr TilePlaces kTilePlaces;
 
 /// Renders a part of at most kBandRows rows into work.sums.
 ///
-/// Depths never fall towards the top of the stack. Rays of depth d + 1 are only added when fewer
-/// than `take` of them are there, and by at most c take. A hit sends c rays: 2, or gloss_rays + 2
+/// Depths never fall towards the top of the stack. Rays of depth d + 1 are only added while fewer
+/// than `take` such rays are there, and by at most c take. A hit sends c rays: 2, or gloss_rays + 2
 /// with rough mirrors. So the stack holds at most c kBatch + c take (depth - 2) rays however the
 /// light bounces.
 inline void render_band(const SceneView& scene,
@@ -302,8 +302,8 @@ inline void render_runs(const SceneView& scene,
   batch.finish();
 }
 
-/// All samples of each point into the point's sum: what adaptive subdivision asks for. Points that
-/// stand next to each other make a packet.
+/// Adds all samples of each point to the point's sum, for adaptive subdivision. Points that stand
+/// next to each other make a packet.
 inline void render_points(const SceneView& scene,
                           const ShadingView& shading,
                           const FrameView& frame,

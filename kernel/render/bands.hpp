@@ -14,8 +14,8 @@ struct Band {
   Part part;
 };
 
-/// Sets band `turn` of those to render; false when there is none left. Called by all threads, two
-/// at a time as well.
+/// Sets `band` to number `turn` of the bands to render; returns false when none is left. Called by
+/// all threads, possibly at the same time.
 using NextBand = std::function<bool(std::size_t turn, Band&)>;
 
 /// Handed the sums of a band, [rows][width][3] in units of 1 / kLightUnit, by the thread that
@@ -23,7 +23,7 @@ using NextBand = std::function<bool(std::size_t turn, Band&)>;
 using TakeBand = std::function<bool(const Band&, const std::int64_t* sums)>;
 
 /// Renders at most `most` bands in parallel, each by the thread that is free next (OpenMP, dynamic
-/// schedule over bands of rows). What the functions throw ends the program.
+/// schedule over bands of rows). An exception from one of the functions ends the program.
 void render_bands(const World::Impl& world,
                   const Setup& setup,
                   const RenderOptions& options,

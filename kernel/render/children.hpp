@@ -7,19 +7,19 @@
 
 namespace grelha::GRELHA_ISA {
 
-/// What a ray carries of its sample: a weight a channel, and its share, see split().
+/// Contribution of a ray to its sample: a weight per channel, and its share, see split().
 struct Carried {
   Lanes3 weight;
   Lanes share;
 };
 
-/// What the rays that leave hits are: the bits kRefracted sets in their depth, and which of a fan.
+/// Kind of a ray that leaves a hit, as set in its depth, and its number within a fan.
 struct Branch {
   std::uint32_t kind = 0;  ///< kRefracted, or 0: reflected
   std::uint32_t number = 0;
 };
 
-/// Puts where rays towards `dir` leave the chosen hits i, i + 1, ... on top of the stack.
+/// Pushes the origins of rays towards `dir` from the chosen hits i, i + 1, ... on the stack.
 [[gnu::always_inline]] inline void push_origins(
     const Shader& s, RayStack& stack, int i, const Chosen& chosen, const Lanes3& dir) {
   const HitLanes<false> at{i};
@@ -66,8 +66,8 @@ inline void push(const Shader& s,
 }
 
 /// Directions in the lobes of the rough mirrors at the hits i, i + 1, ...: the unit mirror
-/// directions moved within a disc across them, kept above the surface. Each takes `rays` of them;
-/// this is the `ray`-th.
+/// directions moved within a disc across them, kept above the surface. Each mirror sends `rays`
+/// such rays; this is the `ray`-th.
 [[gnu::noinline]] inline Lanes3 lobe_directions(
     const Shader& s, int i, const Lanes3& mirror, const Lanes& roughness, int ray, int rays) {
   const SamplePlan& plan = s.work.plan;
@@ -82,13 +82,13 @@ inline void push(const Shader& s,
   return normalize(select(under < Lanes(0), to - (under + under) * normal, to));
 }
 
-/// What the reflected and the refracted ray of a hit carry; `up`, `down`: what the material sends
-/// on of what it gets.
+/// Computes the weights and shares of the reflected and the refracted ray of a hit. `up`, `down`:
+/// fractions of the light that the material reflects and transmits.
 ///
-/// By its share a ray goes on or ends. It is the weight of the brightest channel, but for two
-/// cases: of a material that sends on more than it gets the two have shares of one, so that all
-/// shares of a sample together never grow, and rays that fan out in a lobe have the share of one in
-/// their place, since they end together.
+/// The share of a ray decides whether it goes on or ends. It is the weight of the brightest
+/// channel, with two exceptions: if a material sends on more than it gets, the two shares add up to
+/// that of the hit, so that the sum of a sample's shares never grows; and rays that fan out in a
+/// lobe have the share of the one ray they replace, since they end together.
 inline void split(const Shader& s,
                   int i,
                   const Lanes3& up,
@@ -109,18 +109,18 @@ inline void split(const Shader& s,
   refracted.share = share * t;
 }
 
-/// Least weights that a fan of rays in a lobe must have together; else one goes in its place.
+/// Least weights that a fan of rays in a lobe must have together; otherwise one ray replaces it.
 inline constexpr float kFanWeights = 8;
 
-/// What materials send on of the light they get, a share a channel, and where to.
+/// Fractions of the light that materials reflect and transmit, per channel, and the directions.
 struct Bounce {
   Lanes3 up;       ///< along the mirror direction
   Lanes3 down;     ///< along `through`
   Lanes3 through;  ///< the refracted direction
 };
 
-/// What goes up on total reflection, where the mirror ray takes over what would have passed: t is
-/// added to `up`, or all goes up where the material obeys Fresnel.
+/// Fraction reflected at total reflection, where the mirror ray takes over the transmitted light: t
+/// is added to `up`, or all light is reflected if the material obeys Fresnel's law.
 [[gnu::always_inline]] inline Lanes3 totally_reflected(const Lanes3& up,
                                                        const Lanes& t,
                                                        const LaneMask& additive) {
@@ -130,13 +130,13 @@ struct Bounce {
   return select(additive, Lanes3{up.x + all, up.y + all, up.z + all}, Lanes3{whole, whole, whole});
 }
 
-/// What is sent on of the light at hits, and where it may pass.
+/// Fractions of the light at hits that are reflected and transmitted.
 struct Shares {
   Lanes3 mirror;
   Lanes through;
 };
 
-/// Fresnel's law in the place of the given shares, where a material asks for it.
+/// Replaces the given shares by Fresnel's law where a material asks for it.
 [[gnu::always_inline]] inline Shares fresnel_shares(const Refraction<Lanes>& f,
                                                     const Lanes& ior,
                                                     const LaneMask& asked,
@@ -146,8 +146,8 @@ struct Shares {
   return {select(asked, Lanes3{kr, kr, kr}, given.mirror), select(asked, one - kr, given.through)};
 }
 
-/// The bounce at hits of which some transmit `t` > 0; at the others all of `mirror` goes up. `nv`:
-/// cosine between the normal n and the unit vector v to the viewer.
+/// The bounce at hits where some transmit `t` > 0; the others reflect all of `mirror`. `nv`: cosine
+/// between the normal n and the unit vector v to the viewer.
 inline Bounce refract(const Shader& s,
                       const HitLanes<false>& at,
                       const Lanes3& mirror,
@@ -173,12 +173,12 @@ inline Bounce refract(const Shader& s,
 struct Lobe {
   Lanes3 first;    ///< direction of each mirror's first
   LaneMask many;   ///< rough, and worth a fan: see kFanWeights
-  Chosen on_many;  ///< those of them that send rays
+  Chosen on_many;  ///< those that send rays
   Lanes roughness;
 };
 
-/// Of hits i, i + 1, ... those with a bit in `mirrors` send rays on along `reflected`, of `weight`
-/// each.
+/// Computes the lobes of hits i, i + 1, ...: those with a bit in `mirrors` send rays on along
+/// `reflected`, each of `weight`.
 inline Lobe lobe_of(const Shader& s,
                     int i,
                     unsigned mirrors,
@@ -231,13 +231,13 @@ inline Lobe lobe_of(const Shader& s,
   }
 }
 
-/// Those of hits i, i + 1, ... that send rays on, a bit each, and what along.
+/// The hits i, i + 1, ... that send rays on, a bit each, and the weights and shares of these.
 struct Sending {
   unsigned mirrors, clears;
   Carried up, down;
 };
 
-/// What hits i, i + 1, ... send on before any path ends.
+/// The rays that hits i, i + 1, ... send on before any path ends.
 [[gnu::always_inline]] inline Sending sending_of(const Shader& s,
                                                  int i,
                                                  int hits,

@@ -1,5 +1,5 @@
 #pragma once
-// Local light: shadow rays from hits to lights, and what they carry.
+// Local light: shadow rays from hits to lights, and the light they carry.
 
 #include "kernel/render/shader.hpp"
 #include "kernel/simd/power.hpp"
@@ -27,7 +27,7 @@ inline Lanes3 light_points(const Shader& s,
   return splat(light) + (a * splat(light + 6) + c * splat(light + 9));
 }
 
-/// Adds what the first n shadow rays carry that met nothing.
+/// Adds the light of unblocked rays among the first n shadow rays.
 [[gnu::always_inline]] inline void add_unblocked(const Shader& s, int n) {
   const BatchShadows& b = s.b.shadows;
   for (int i = 0; i < n; i += kLanes) {
@@ -37,8 +37,7 @@ inline Lanes3 light_points(const Shader& s,
   }
 }
 
-/// Traces the first n shadow rays of the batch and adds what those carry that nothing stands in the
-/// way of.
+/// Traces the first n shadow rays of the batch and adds the light of the unblocked ones.
 inline void light_up(const Shader& s, int n) {
   if (n == 0)
     return;
@@ -48,7 +47,7 @@ inline void light_up(const Shader& s, int n) {
   add_unblocked(s, n);
 }
 
-/// Where shadow rays start: on the lit side, which is the viewer's.
+/// Origins of shadow rays: on the lit side, which is the viewer's.
 template <bool kOne>
 [[gnu::always_inline]] inline Lanes3 shadow_origins(const Shader& s,
                                                     const HitLanes<kOne>& at,
@@ -56,8 +55,8 @@ template <bool kOne>
   return at(s.b.hits.point) + at(s.b.hits.away) * normal;
 }
 
-/// What the material sends to the viewer of light from the unit direction l: Lambert's cosine
-/// `nl`, and Blinn's highlight.
+/// Light that the material sends to the viewer from the unit direction l: Lambert's cosine `nl`,
+/// and Blinn's highlight.
 template <bool kOne>
 [[gnu::always_inline]] inline Lanes3 reflected_light(const Shader& s,
                                                      const HitLanes<kOne>& at,
@@ -98,7 +97,7 @@ template <bool kOne>
 }
 
 /// Puts a shadow ray to `to` behind the first n for each of the lanes whose hit faces it; returns
-/// how many there are then. `color`: what a ray carries of the light's.
+/// the new number. `color`: the part of the light's colour that a ray carries.
 template <bool kOne>
 inline int send_to_light(const Shader& s,
                          const HitLanes<kOne>& at,

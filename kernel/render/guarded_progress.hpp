@@ -22,14 +22,14 @@ class GuardedProgress {
   GuardedProgress(const GuardedProgress&) = delete;
   GuardedProgress& operator=(const GuardedProgress&) = delete;
 
-  /// Whether threads must end what they have in work and begin nothing.
+  /// True if threads must finish the work they have begun and begin nothing.
   bool stopped() const { return stopped_; }
 
   /// Tells the share done, 0 to 1. For one thread at a time.
   void tell(double share);
 
-  /// Whether stopped work goes on all the same. Call it while no thread changes the picture. It
-  /// asks no more once the answer was no.
+  /// Returns true if stopped work goes on all the same. Call it while no thread changes the
+  /// picture. After a no it does not ask again.
   bool resume();
 
   void rethrow() const;

@@ -32,7 +32,7 @@ namespace grelha::GRELHA_ISA {
   hit.store(h.material + to, f.material);
 }
 
-/// Stores what the chosen of rays i, i + 1, ... carry, from hit `to` on.
+/// Stores the weights and shares of the chosen rays i, i + 1, ..., from hit `to` on.
 [[gnu::always_inline]] inline void store_carried(
     const Shader& s, const Chosen& hit, int to, int i, const Lanes3& weight) {
   const BatchRays& r = s.b.rays;

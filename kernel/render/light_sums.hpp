@@ -6,14 +6,14 @@
 
 namespace grelha::GRELHA_ISA {
 
-/// Lanes whose light is converted together, and the compiler's own vectors of them.
+/// Lanes whose light is converted together, and the compiler's vectors of that many elements.
 inline constexpr int kConverted = kLanes < 8 ? kLanes : 8;
 using Floats = float __attribute__((vector_size(4 * kConverted)));
 using Doubles = double __attribute__((vector_size(8 * kConverted)));
 using Integers = std::int64_t __attribute__((vector_size(8 * kConverted)));
 
-/// Light in units of the sums, ties away from zero; what is not a number counts nothing. The
-/// compiler's own vectors know which instruction sets can make such integers.
+/// Light in units of the sums, ties away from zero; NaN counts as 0. The compiler's own vectors
+/// know which instruction sets can convert to such integers.
 inline void light_units(const Lanes& x, float most, std::int64_t (&units)[kLanes]) {
   const Lanes number = select(x == x, x, Lanes(0));
   float light[kLanes];
@@ -54,8 +54,8 @@ struct LaneLight {
   return lanes;
 }
 
-/// Adds the light of the chosen lanes to their pixels' sums. Where neighbours have one pixel its
-/// sum is touched once.
+/// Adds the light of the chosen lanes to the sums of their pixels. Neighbours with the same pixel
+/// touch its sum once.
 inline void add_light(const BandWork& work,
                       const std::uint32_t* pixel,
                       const Lanes3& light,

@@ -5,13 +5,13 @@
 
 namespace grelha {
 
-/// The order in which the pixels of a picture draw runs of one sequence: along Morton's curve, in
-/// each square of which the quarters come in a random order. Runs of neighbours lie next to each
-/// other. Together they are as even as each alone, so the errors of neighbours differ as much as
-/// errors can: blue noise.
+/// The order in which the pixels of a picture draw runs of one sequence: along Morton's curve, with
+/// the quarters of each square in random order. Runs of neighbours lie next to each other. Together
+/// they are as even as each alone, so the errors of neighbours differ as much as errors can: blue
+/// noise.
 ///
-/// Returns   [width * height] places, as of a picture whose sides are a power of two; 2^32 of them
-///           at most, after which they begin anew.
+/// Returns   [width * height] places, as in a picture whose sides are a power of two; they begin
+///           anew after 2^32 places.
 /// Source    Ahmed & Wonka, "Screen-Space Blue-Noise Diffusion of Monte Carlo Sampling Error via
 ///           Hierarchical Ordering of Pixels", 2020.
 std::vector<std::uint32_t> drawing_places(int width, int height, std::uint32_t seed);

@@ -87,7 +87,7 @@ struct SobolMatrices {
     }
   }
 
-  /// The i-th direction number, of those before it.
+  /// Computes the i-th direction number from those before it.
   static constexpr std::uint32_t direction(const SobolPolynomial& p,
                                            const std::uint32_t* before,
                                            unsigned i) {

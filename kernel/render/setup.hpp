@@ -9,13 +9,13 @@
 
 namespace grelha {
 
-/// What every way of rendering starts from.
+/// Starting state of every way of rendering.
 struct Setup {
   const Variant& variant;
   FrameView frame;
   SamplePlan plan;
   ShadingView shading;
-  std::vector<std::uint32_t> places;  ///< what the plan points to
+  std::vector<std::uint32_t> places;  ///< the plan points to these
 };
 
 /// Throws std::invalid_argument for a bad camera or option.

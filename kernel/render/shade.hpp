@@ -24,7 +24,7 @@ namespace grelha::GRELHA_ISA {
   }
 }
 
-/// Adds what the surfaces at the hits send of themselves.
+/// Adds the emission of the surfaces at the hits.
 [[gnu::always_inline]] inline void add_emission(const Shader& s, int hits) {
   const BatchHits& h = s.b.hits;
   for (int i = 0; i < hits; i += kLanes) {
@@ -33,7 +33,7 @@ namespace grelha::GRELHA_ISA {
   }
 }
 
-/// Whether a light has an area: an edge that is not 0.
+/// True if a light has an area: an edge that is not 0.
 [[gnu::always_inline]] inline bool has_area(const Shader& s, int light_index) {
   const float* const edges = s.shading.lights + kLightFloats * light_index + 6;
   bool area = false;

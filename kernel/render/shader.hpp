@@ -1,5 +1,5 @@
 #pragma once
-// What a thread's shading knows, and the hits of a batch as lanes.
+// The state of a thread's shading, and the hits of a batch as lanes.
 
 #include "kernel/render/light_sums.hpp"
 #include "kernel/render/sampling.hpp"
@@ -7,7 +7,7 @@
 
 namespace grelha::GRELHA_ISA {
 
-/// Says what comes next, to whoever asks; nothing else depends on it.
+/// Tells the observer, if any, which phase comes next; nothing else depends on it.
 inline void enter(const BandWork& work, Phase phase) {
   if (work.observer)
     work.observer->enter(*work.observer, phase, nullptr);
@@ -34,12 +34,12 @@ struct Shader {
   Batch& b;
 };
 
-/// Whether shares are more than weights tell: see split().
+/// True if shares may differ from weights: see split().
 inline bool keeps_shares(const Shader& s) {
   return s.shading.gains || s.work.plan.gloss_rays > 0;
 }
 
-/// Elements i, i + 1, ... of arrays of a component each: Rows3 or Columns3.
+/// Elements i, i + 1, ... of arrays with one component each: Rows3 or Columns3.
 template <class Arrays>
 inline Lanes3 load3(const Arrays& of, int i) {
   return {
@@ -65,8 +65,8 @@ inline unsigned lanes_of(int first, int count) {
   return left >= kLanes ? ~0u >> (32 - kLanes) : (1u << left) - 1u;
 }
 
-/// Which hits the lanes are: i, i + 1, ..., or hit i in each of them. Behind the last hit arrays
-/// hold what is old, but valid.
+/// Selects the hits in the lanes: i, i + 1, ..., or hit i in every lane. Behind the last hit,
+/// arrays hold old but valid values.
 template <bool kOne>
 struct HitLanes {
   int i;
@@ -85,12 +85,12 @@ struct HitLanes {
   Lanes3 operator()(const Rows3& of) const { return {(*this)(of.x), (*this)(of.y), (*this)(of.z)}; }
 };
 
-/// Lanes of which a component is not 0.
+/// Lanes with a component that is not 0.
 inline LaneMask any_component(const Lanes3& a) {
   return either(either(a.x != Lanes(0), a.y != Lanes(0)), a.z != Lanes(0));
 }
 
-/// What the hits' materials hold. Neighbours are mostly of one.
+/// Reads a field of the hits' materials. Neighbouring hits mostly share one material.
 template <bool kOne>
 inline Lanes gather(const Shader& s, MaterialField field, const HitLanes<kOne>& at) {
   const float* const held = s.shading.materials.field[field];
@@ -151,7 +151,7 @@ inline void trace_run(const Shader& s, int first, int end, Phase phase) {
   trace<false>(s.scene, rays.count, options, s.counters, load, store);
 }
 
-/// Traces the first n shadow rays of the batch, each up to its light: what is in their way.
+/// Traces the first n shadow rays of the batch, each up to its light, and stores what blocks them.
 inline void trace_shadows(const Shader& s, int n) {
   constexpr float kLight = 1;  // t
   BatchShadows& b = s.b.shadows;

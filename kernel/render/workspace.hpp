@@ -1,5 +1,5 @@
 #pragma once
-// What one thread works in; allocated before the first ray, never grown.
+// Working memory of one thread; allocated before the first ray, never grown.
 
 #include <algorithm>
 #include <chrono>
@@ -14,8 +14,8 @@
 
 namespace grelha {
 
-/// Where one thread's time goes. It looks at the clock some ten times a batch of 512 rays and their
-/// shadow rays.
+/// Measures how one thread spends its time. It reads the clock some ten times per batch of 512 rays
+/// and their shadow rays.
 class PhaseClock : public Observer {
  public:
   PhaseClock()
@@ -57,7 +57,7 @@ class Workspace {
     resize_to_fill(words_, static_cast<std::size_t>(capacity_) * kStackWords);
   }
 
-  /// What one takes.
+  /// Bytes of a workspace.
   static std::uint64_t bytes(std::size_t sums, int depth, int gloss_rays) {
     constexpr std::uint64_t ray =
         kStackFloats * sizeof(float) + kStackWords * sizeof(std::uint32_t);
@@ -66,8 +66,8 @@ class Workspace {
            sum * sums;
   }
 
-  /// Empty sums, of pixels first_pixel, first_pixel + 1, ... or, when `named`, of those that
-  /// pixels() is filled with, with boxes as boxes() has them, when `boxed`.
+  /// Empty sums for pixels first_pixel, first_pixel + 1, ... or, if `named`, for the pixels that
+  /// pixels() lists; if `boxed`, with the boxes that boxes() lists.
   BandWork work(const RenderOptions& options,
                 std::uint32_t first_pixel,
                 bool named = false,
@@ -138,7 +138,7 @@ class Workspace {
     };
   }
 
-  /// Who asks what comes next: the caller, the clock or nobody.
+  /// Returns the observer that hears of phases: the caller's, the clock or null.
   Observer* observer(const RenderOptions& options) {
     if (options.observer)
       return options.observer;

@@ -1,6 +1,6 @@
 #pragma once
-// The arrays one thread shades in: a batch of rays, what they met, the shadow rays that leaves
-// there, and the rays that wait for their turn.
+// The arrays one thread shades in: a batch of rays, their hits, the shadow rays from these, and the
+// rays that wait for their turn.
 
 #include <cstdint>
 
@@ -10,14 +10,14 @@ inline constexpr int kBatch = 512;     ///< rays shaded together
 inline constexpr int kCacheLine = 16;  ///< floats
 /// Length of an array of a batch: a cache line more than a power of two. A cache keeps few lines
 /// whose addresses are equal modulo 4 KiB, and each hit writes to some thirty arrays side by side.
-/// With the odd line all of them stay.
+/// With the odd line all these stay in the cache.
 inline constexpr int kBatchRow = kBatch + kCacheLine;
-/// Of a vector each: arrays of a batch, an array per component.
+/// Vectors of a batch, an array per component.
 struct Rows3 {
   alignas(64) float x[kBatchRow], y[kBatchRow], z[kBatchRow];
 };
 
-/// The same of longer arrays that stand elsewhere.
+/// The same for longer arrays that stand elsewhere.
 struct Columns3 {
   float *x, *y, *z;
 };
@@ -37,7 +37,7 @@ struct RayStack {
 /// The rays.
 struct BatchRays {
   Rows3 org, dir;
-  alignas(64) float t[kBatchRow];  ///< of what they met, where surfaces are found by it
+  alignas(64) float t[kBatchRow];  ///< t of the hit, if its surface is computed from t
   Rows3 weight;
   alignas(64) float share[kBatchRow];
   std::uint32_t id[kBatchRow], pixel[kBatchRow], depth[kBatchRow];
@@ -45,7 +45,7 @@ struct BatchRays {
   std::uint32_t path[kBatchRow];    ///< which bounces led here (0: none)
 };
 
-/// What they met, misses left out.
+/// The hits of the rays, without the misses.
 struct BatchHits {
   Rows3 point;                          ///< on the surface
   Rows3 normal;                         ///< geometric, unit, towards the viewer
@@ -54,7 +54,7 @@ struct BatchHits {
   alignas(64) float away[kBatchRow];    ///< how far along the normal a ray must start so as not to
                                         ///< meet its own surface
   alignas(64) float inside[kBatchRow];  ///< 1: met from within
-  Rows3 weight;                         ///< of what this point sends
+  Rows3 weight;                         ///< of the light from this point
   alignas(64) float share[kBatchRow];   ///< see split()
   std::uint32_t pixel[kBatchRow], depth[kBatchRow], material[kBatchRow];
   std::uint32_t sample[kBatchRow], path[kBatchRow];
@@ -64,7 +64,7 @@ struct BatchHits {
 struct BatchShadows {
   Rows3 org, dir;
   Rows3 light;
-  std::uint32_t id[kBatchRow];  ///< of something in the way
+  std::uint32_t id[kBatchRow];  ///< a primitive in the way
   std::uint32_t pixel[kBatchRow];
 };
 

@@ -48,10 +48,10 @@ bool lens_is_sound(const Camera& c) {
   return c.aperture >= 0 && std::isfinite(c.aperture) && c.focus > 0 && std::isfinite(c.focus);
 }
 
-/// Sine of the least angle between view and up, squared: below it rounding decides what is right.
+/// Squared sine of the least angle between view and up: below it rounding decides where right is.
 constexpr double kLeastSineSquared = 1e-18;
 
-/// Whether the camera looks somewhere, and knows what is up there.
+/// True if the camera has a view direction, and up is not along it.
 bool directions_are_sound(const Camera& c) {
   const Double3 view = minus(c.at, c.eye);
   const Double3 up{c.up.x, c.up.y, c.up.z};
@@ -106,8 +106,8 @@ FrameView make_frame(const Camera& c) {
   f.width = c.width;
   f.height = c.height;
   f.lens = c.aperture > 0;
-  // Directions are as long as the focus is far, and rays take lengths whose squares are floats. A
-  // lens whose focus lies that far has none of its rays bent against the others by a rounding.
+  // Directions are as long as the focus is far, and rays take lengths whose squares are floats. If
+  // a lens is focused that far away, rounding bends no ray against the others.
   f.focus = static_cast<float>(std::clamp(c.focus, 1e-15, 1e15));
   put(f.lens_right, scaled(right, c.aperture / 2));
   put(f.lens_up, scaled(up, c.aperture / 2));

@@ -109,12 +109,12 @@ class Members {
 
 Members* all_members = nullptr;
 
-/// A forked process has none of its parent's threads.
+/// Forgets the parent's threads, which do not exist in a forked process.
 void forget_members() {
   all_members = new Members;
 }
 
-/// Never destroyed: they sleep on while the program ends.
+/// Never destroyed: the threads sleep on while the program ends.
 Members& members() {
   static const int registered = [] {
     forget_members();

@@ -11,11 +11,11 @@ namespace grelha {
 ///
 /// OpenMP's threads spin for milliseconds where one waits for another. On a busy machine, where the
 /// other is not running, a scene of 8,000 triangles took forty times as long to build with two
-/// threads as with one. Here nobody waits for a thread that has not begun.
+/// threads as with one. Here no thread waits for one that has not begun.
 void by_crew(int threads, const std::function<void()>& work);
 
-/// That one stretch of work follows another: while there is such an object, threads stay awake for
-/// a while after each. Without, they sleep, and leave their cores to others.
+/// Says that stretches of work follow each other: while such an object exists, threads stay awake
+/// for a while after each. Otherwise they sleep, and leave their cores to others.
 class StretchesFollow {
  public:
   StretchesFollow();

@@ -1,5 +1,5 @@
 #pragma once
-// What a process that another one forked does about threads.
+// Starts OpenMP threads safely in a forked process.
 
 #include <functional>
 
@@ -7,7 +7,7 @@ namespace grelha {
 
 /// Calls work(), which may start OpenMP threads.
 ///
-/// A fork copies none of the parent's threads, but libgomp in the child still counts on those that
+/// A fork does not copy the parent's threads, but libgomp in the child still counts on those that
 /// the calling thread's team had, and waits for them for ever. A team belongs to the thread that
 /// starts it. So a forked process calls work() in a new thread, which starts a team of its own.
 /// Exceptions of work() are thrown on.

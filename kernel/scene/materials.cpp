@@ -5,7 +5,7 @@
 namespace grelha {
 namespace {
 
-/// What counts as more light than came: .9 + .1 as floats is no gain.
+/// Least ratio of light sent on to light received that is a gain: .9 + .1 as floats is none.
 constexpr float kGain = 1.0001f;
 
 bool is_clear(const Material& m) {

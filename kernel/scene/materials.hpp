@@ -27,13 +27,13 @@ struct MaterialTable {
   bool highlights = false;
   bool gloss = false;
   bool gains = false;
-  /// of light of 1 a point sends an eye at most so much; and what the brightest sends by itself
+  /// greatest radiance towards an eye: of a point, per light of 1; and of the brightest emitter
   float lit = 0;
   float emitted = 0;
 
  private:
   void set_fields(std::size_t i, const Material& m);
-  /// What a material that is used asks for.
+  /// Notes the effects that a used material asks for.
   void note_effects(const Material& m);
 };
 

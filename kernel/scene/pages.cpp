@@ -27,7 +27,7 @@ int mincore(void*, std::size_t, unsigned char*) {
 }
 #endif
 
-/// Whole pages of memory. What else is on the first and the last may be in use.
+/// Pages that lie wholly within a piece of memory: the others may hold other data.
 struct Pages {
   std::uintptr_t begin, end;
 
@@ -35,7 +35,7 @@ struct Pages {
     if (begin < end)
       madvise(reinterpret_cast<void*>(begin), end - begin, what);
   }
-  /// Memory that was used before mostly has its pages still: to ask for these would take long.
+  /// Memory that was used before mostly still has its pages: asking for these would take long.
   void take() const {
     if (begin < end && !(has(begin) && has(end - kPage)))
       advise(kNow);

@@ -34,8 +34,8 @@ void reserve_to_fill(Array& v, std::size_t n) {
   }
 }
 
-/// Room for one element more of an array that grows by these: its pages are asked for piece by
-/// piece, so that no more of them are taken than are filled. What was reserved is filled first.
+/// Makes room for one more element of an array that grows by single elements: asks for its pages
+/// piece by piece, so that it takes no more pages than it fills. Reserved memory is filled first.
 template <class Array>
 void make_room(Array& v) {
   constexpr std::size_t kAtOnce = (std::size_t{1} << 17) / sizeof v[0];
@@ -45,14 +45,14 @@ void make_room(Array& v) {
   reserve_to_fill(v, v.size() < v.capacity() ? std::min(n, v.capacity()) : n);
 }
 
-/// v.resize(n, ...), of an array whose new elements are soon written, each of them.
+/// v.resize(n, ...) for an array whose new elements are all written soon.
 template <class Array, class... Value>
 void resize_to_fill(Array& v, std::size_t n, const Value&... value) {
   reserve_to_fill(v, n);
   v.resize(n, value...);
 }
 
-/// An array of n elements that are soon written.
+/// An array of n elements that are all written soon.
 template <class Array>
 Array array_to_fill(std::size_t n) {
   Array v;

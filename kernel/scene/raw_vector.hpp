@@ -40,7 +40,7 @@ struct RawAllocator {
 
  private:
   static constexpr std::size_t kLine = 64;
-  /// Times what is asked for: what may be taken for the last page to be a large one too.
+  /// Times the bytes asked for: most that is taken so that the last page is a large one too.
   static constexpr double kMostRoom = 1.125;
 
   static std::size_t alignment(std::size_t n) {
@@ -57,7 +57,7 @@ struct RawAllocator {
   }
 };
 
-/// resize() leaves what is new unset.
+/// resize() leaves new elements uninitialized.
 template <class T>
 using RawVector = std::vector<T, RawAllocator<T>>;
 

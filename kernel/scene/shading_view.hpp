@@ -1,5 +1,5 @@
 #pragma once
-// What shading sees, as plain pointers.
+// The data that shading reads, as plain pointers.
 
 #include <cstdint>
 
@@ -35,8 +35,8 @@ struct MaterialView {
   const float* field[kMaterialFields] = {};  ///< [materials] each; kFresnel holds 0 or 1
 };
 
-/// The scene's light and colour, and which of its effects exist at all: what no material asks for
-/// is never computed.
+/// The scene's light and colour, and which of its effects exist at all: effects that no material
+/// asks for are never computed.
 struct ShadingView {
   MaterialView materials;
   const float* lights = nullptr;  ///< [kLightFloats * light_count] centre, colour, edge, edge
@@ -117,7 +117,7 @@ struct BandWork {
   /// [sums] the PixelBox of each sum's pixel, which gets half of the samples besides its share of
   /// the others; null: none has one
   const std::uint32_t* boxes = nullptr;
-  Observer* observer = nullptr;  ///< null: nobody asks
+  Observer* observer = nullptr;  ///< null: no observer
 };
 
 /// Points of the picture in pixels from its upper left corner, neighbours next to each other; point

@@ -11,7 +11,7 @@
 
 namespace grelha {
 
-/// What was thrown first by any thread.
+/// Stores the first exception that any thread throws.
 class Thrown {
  public:
   template <class Work>

@@ -7,7 +7,8 @@
 namespace grelha {
 namespace {
 
-/// Of the wider radius: what is flatter is taken to be so high, which moves it by 4 u of that.
+/// Times the wider radius: least height. A flatter cone is taken to be so high, which moves it by 4
+/// u of that radius.
 constexpr double kFlattest = 0x1p-22;
 
 struct ConeEnd {
@@ -57,7 +58,7 @@ Cone::Fields<const float*> Cone::Source::fields() const {
 }
 
 // A disc of radius r across a unit axis d reaches r sqrt(1 - d_a^2). Doubles are off by 2^-26 of r
-// where that is nearly zero, a thousandth of what boxes are grown by.
+// where that is nearly zero, a thousandth of the room that is added to boxes.
 Box Cone::box(const Source& source, std::size_t i) {
   const ConeSpans& c = source.spans;
   const double ends[2][4] = {{c.base_x[i], c.base_y[i], c.base_z[i], c.base_radius[i]},

@@ -56,7 +56,7 @@ inline SurfacePlace<Real> cone_place(const Cone::Fields<Real>& cone, const Vec3<
   const Real above = dot(from_base, axis);
   const Vec3<Real> radial = from_base - above * axis;
   Real along = above;
-  // what rounding does to the height of a point, the slope times that would do to its radius
+  // a rounding error of a point's height would move its radius by the slope times as much
   if (const Mask<Real> steep = cone.slope > Real(kSteep); any(steep)) {
     const Real by_radius = (square_root(dot(radial, radial)) - cone.radius) / cone.slope;
     along = select(steep, by_radius, along);
@@ -72,7 +72,7 @@ inline SurfacePlace<Real> cone_place(const Cone::Fields<Real>& cone, const Vec3<
   return {point, n, Real(32 * kEps) * (cone.height + wide) + Real(4 * kEps) * largest(point)};
 }
 
-/// Where rays met cones, of indices i.
+/// Surfaces of cones i at the rays' hits.
 template <class Real>
 inline Surface<Real> surface_on(const Cone::Arrays& cones,
                                 const Words<Real>& i,

@@ -19,7 +19,7 @@ struct Cone {
   static constexpr bool kFinite = true;
   static constexpr bool kInBlocks = false;
 
-  /// What tests see of the side of a cone frustum, or of many, an array each.
+  /// The side of a cone frustum as tests read it; or the sides of many, an array per field.
   template <class T>
   struct Fields {
     T base[3];         ///< centre of the narrower end, a cone's tip
@@ -54,7 +54,7 @@ struct Cone {
       visit(*v);
   }
   static const ConeSpans& spans_of(const GeometrySpans& g) { return g.cones; }
-  /// Whether they have one length.
+  /// True if all arrays have the same length.
   static bool is_even(const ConeSpans& spans) {
     bool even = true;
     for_each_array(spans, [&](Floats v) { even &= v.size() == spans.size(); });
@@ -62,7 +62,7 @@ struct Cone {
   }
   static std::size_t bytes(const ConeSpans& spans) { return spans.size() * 9 * sizeof(float); }
 
-  /// The caller's cones, with what tests see of them.
+  /// The caller's cones, and the fields that tests read, prepared from these.
   struct Source {
     static constexpr std::size_t kPreparedBytes = sizeof(Fields<float>);  ///< a cone
     ConeSpans spans;
@@ -80,7 +80,7 @@ struct Cone {
     Fields<float> operator[](std::size_t i) const { return one_of<Cone>(prepared, i); }
   };
 
-  /// Of the discs at both ends.
+  /// Box around the discs at both ends.
   static Box box(const Source& source, std::size_t i);
 
   /// Cells of its box are not looked at again.

@@ -1,5 +1,5 @@
 #pragma once
-// Where rays cross the sides of cones, as floats and doubles tell it.
+// Crossings of rays and the sides of cones, in float and in double.
 
 #include <type_traits>
 
@@ -7,9 +7,9 @@
 
 namespace grelha::GRELHA_ISA {
 
-/// Lines that surely pass a cone by. aside is off by k = 8 u |to_base| / |dir|, however small the
-/// sine between ray and axis, and by 4 times what coordinates are off by: (w + k)^2 <= 9/8 w^2 + 9
-/// k^2.
+/// Test for lines that surely pass a cone by. aside is off by k = 8 u |to_base| / |dir|, however
+/// small the sine between ray and axis, and by 4 times the error of coordinates: (w + k)^2 <= 9/8
+/// w^2 + 9 k^2.
 inline constexpr float kWider = 1.125f;
 inline constexpr float kSineRoom = 0x1p-37f;
 /// Squares of wider radii below which products of floats may underflow.
@@ -31,9 +31,9 @@ template <class Real>
   return either(room * ray.inv_dd - aside * aside >= Real(0), wide * wide < Real(kLeastWidth));
 }
 
-// What numbers of a precision leave open, in u; docs/numerics.md derives each, cone_test.cpp pins
-// them. T: the distance from the ray's origin to the cone and its size together, with what
-// coordinates are off by, in u: places beside the cone are off by 8 u T. G: (1 + slope)^2.
+// Error bounds of floats or doubles, in u; docs/numerics.md derives each, cone_test.cpp pins them.
+// T: the distance from the ray's origin to the cone and its size together, with the error of
+// coordinates, in u: places beside the cone are off by 8 u T. G: (1 + slope)^2.
 
 /// Times T R G^2 / dir^2: of the discriminant, R being how far from the narrower end the line
 /// passes and the radius there together.
@@ -76,10 +76,10 @@ struct ConeLine {
   Real slopes;         ///< G
   Mask<Real> outside, inside;  ///< where the ray surely starts, beside the side
 
-  /// The quadratic is solved about the ray's point nearest to the narrower end, where what it is
-  /// made of is as small as what surrounds the hit. Its discriminant is, by Lagrange's identity,
-  /// also w w - m m: where the roots meet, at a tip, b b is the larger, along the side w w. Less is
-  /// lost of the smaller.
+  /// The quadratic is solved about the ray's point nearest to the narrower end, where its
+  /// coefficients are as small as the surroundings of the hit. Its discriminant is, by Lagrange's
+  /// identity, also w w - m m: where the roots meet, at a tip, b b is the larger, along the side w
+  /// w. The smaller of the two loses less.
   [[gnu::always_inline]] ConeLine(const RayLanes<Real>& ray, const Cone::Fields<Real>& cone)
       : axis(axis_of(cone)) {
     const Vec3<Real> to_base = ray.to(vec(cone.base));
@@ -172,7 +172,7 @@ struct ConeRoot {
   }
 };
 
-/// What a precision tells of rays and cones that the line may cross.
+/// Bounds the crossings of rays and cones that the line may cross, in a precision.
 template <class Real>
 [[gnu::always_inline]] inline Found<Real> bound_roots(const RayLanes<Real>& ray,
                                                       const Cone::Fields<Real>& cone) {
@@ -225,7 +225,7 @@ template <class Real>
   found.hi = select(chosen, narrow<Real>(hi), found.hi);
 }
 
-/// What a precision tells of rays and cones; what floats do not is asked of doubles.
+/// Bounds the crossings of rays and cones in a precision; doubles decide what floats cannot.
 template <class Real>
 [[gnu::always_inline]] inline Found<Real> bound(const RayLanes<Real>& ray,
                                                 const Cone::Fields<Real>& cone,

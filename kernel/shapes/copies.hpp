@@ -1,6 +1,6 @@
 #pragma once
-// Exact copies of primitives: whatever a ray meets of them it meets of the one with the lowest id,
-// so that the others need not be tested.
+// Exact copies of primitives: a ray that meets some meets the one with the lowest id, so that the
+// others need not be tested.
 
 #include <cstdint>
 #include <span>
@@ -10,12 +10,12 @@
 
 namespace grelha {
 
-/// Those of some finite primitives (ids ascending) that are copies of another of them with a lower
-/// id: the numbers that a test sees have the same bits. Where two shapes have one hash, a copy may
+/// Finds, among some finite primitives (ids ascending), the copies of another one with a lower id:
+/// the numbers that a test reads have the same bits. If two shapes have the same hash, a copy may
 /// be missed.
 std::vector<std::uint32_t> copies_among(const Primitives& p, std::span<const std::uint32_t> ids);
 
-/// So many of the first planes are all there are: those behind are copies.
+/// Number of planes before the first copy: all planes behind these are copies.
 std::uint32_t planes_without_copies(const PlaneSpans& planes);
 
 }  // namespace grelha

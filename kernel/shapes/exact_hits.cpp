@@ -117,8 +117,28 @@ double double_t(const GeometryView& g, const ExactRay& ray, std::uint32_t id) {
   return crossing_of(g, ray, id).estimate();
 }
 
-float rounded_t(const GeometryView& g, const ExactRay& ray, std::uint32_t id) {
-  const scalar::Found<double> found = found_in_double(g, ray, id);
+namespace {
+scalar::Found<double> found_within(const GeometryView& g,
+                                   const ExactRay& ray,
+                                   std::uint32_t id,
+                                   const CrossingSpan& span) {
+  if (g.ids.has(PrimitiveKind::kSphere, id)) {
+    const One<Sphere> sphere =
+        primitive_at<Sphere>(g.of<Sphere>(), id - g.ids.begin(PrimitiveKind::kSphere));
+    const scalar::Found<double> found = scalar::narrowed<double>(
+        scalar::in_double(ray), scalar::widened<Sphere, 0, float>(sphere), span.lo, span.hi);
+    if (found.sure)
+      return found;
+  }
+  return found_in_double(g, ray, id);
+}
+}  // namespace
+
+float rounded_t(const GeometryView& g,
+                const ExactRay& ray,
+                std::uint32_t id,
+                const CrossingSpan& span) {
+  const scalar::Found<double> found = found_within(g, ray, id, span);
   const auto first = static_cast<float>(found.lo);
   const bool known = found.sure && first == static_cast<float>(found.hi);
   return (known ? first : crossing_of(g, ray, id).rounded()) + 0.f;  // no zero is -0

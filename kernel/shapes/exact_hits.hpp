@@ -1,38 +1,41 @@
 #pragma once
-// What no float tells of hits: where one is, which of two is first. Doubles are asked, and then
-// exact numbers.
+// Decides what floats cannot: where a hit is, and which of two hits is first. Doubles are tried
+// first, then exact numbers.
 
 #include "kernel/shapes/geometry_view.hpp"
 
 namespace grelha {
 
-/// The span of t of the first crossing beyond t_min of a ray and one primitive of a kind, whose
-/// Fields<float> are given, in t - shift.
+/// The span of t - shift of the first crossing beyond t_min of a ray and one primitive of a kind,
+/// with the given Fields<float>.
 CrossingSpan crossing_span(PrimitiveKind kind,
                            const ExactRay& ray,
                            const void* fields,
                            double shift);
-/// The same of the primitive `id`.
+/// The same for the primitive `id`.
 CrossingSpan crossing_span(const GeometryView& g,
                            const ExactRay& ray,
                            std::uint32_t id,
                            double shift);
 
-/// Which of two primitives a ray that crosses both beyond t_min crosses first; of equal t the lower
-/// id.
+/// True if a ray that crosses two primitives beyond t_min crosses `id` first; of equal t the lower
+/// id is first.
 bool comes_first(const GeometryView& g, const ExactRay& ray, std::uint32_t id, std::uint32_t other);
-/// Whether a ray crosses a primitive, which it does beyond t_min, before t_max.
+/// True if a ray crosses a primitive before t_max, given that it crosses it beyond t_min.
 bool comes_before(const GeometryView& g, const ExactRay& ray, std::uint32_t id, float t_max);
 /// t of that crossing, within 2^-45 of itself.
 double double_t(const GeometryView& g, const ExactRay& ray, std::uint32_t id);
-/// The same rounded once.
-float rounded_t(const GeometryView& g, const ExactRay& ray, std::uint32_t id);
+/// The same rounded once; faster for a sphere if `span` holds it.
+float rounded_t(const GeometryView& g,
+                const ExactRay& ray,
+                std::uint32_t id,
+                const CrossingSpan& span = {});
 
 }  // namespace grelha
 
 namespace grelha::GRELHA_ISA {
 
-/// Replaces chosen lanes of what floats found.
+/// Replaces the chosen lanes of crossings that floats found.
 template <class Shape, class Real>
 [[gnu::noinline, gnu::cold]] void settle(const RayLanes<Real>& ray,
                                          const typename Shape::template Fields<Real>& primitive,
@@ -51,8 +54,8 @@ template <class Shape, class Real>
   });
 }
 
-/// Where rays cross primitives: lanes whose ray does so at a t beyond t_min, which is from lo to
-/// hi. Those whose t is surely beyond `best` are left out.
+/// Finds crossings of rays and primitives: lanes whose ray crosses at a t beyond t_min, which is
+/// from lo to hi. Lanes whose t is surely beyond `best` are left out.
 template <class Shape, class Real>
 [[gnu::always_inline]] inline Found<Real> meet(
     const RayLanes<Real>& ray,

@@ -23,11 +23,11 @@ struct PrimitiveIds {
     return end(kind) - begin(kind);
   }
   [[gnu::always_inline]] constexpr std::uint32_t end() const { return first[kKinds]; }
-  /// Whether an id is of a kind.
+  /// True if an id is of a kind.
   [[gnu::always_inline]] constexpr bool has(PrimitiveKind kind, std::uint32_t id) const {
     return id - begin(kind) < count(kind);
   }
-  /// Of an id below end().
+  /// The kind of an id below end().
   [[gnu::always_inline]] constexpr PrimitiveKind kind_of(std::uint32_t id) const {
     std::size_t kind = 0;
     for (std::size_t k = 1; k < kKinds; ++k)

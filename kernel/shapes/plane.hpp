@@ -17,7 +17,7 @@ struct Plane {
   static constexpr bool kFinite = false;
   static constexpr bool kPlacedByRay = true;  ///< a surface is found without t
 
-  /// What tests see of a plane, or of many, an array each.
+  /// A plane as tests read it; or many, an array per field.
   template <class T>
   struct Fields {
     T point[3], normal[3];
@@ -36,7 +36,7 @@ struct Plane {
       visit(*v);
   }
   static const PlaneSpans& spans_of(const GeometrySpans& g) { return g.planes; }
-  /// Whether they have one length.
+  /// True if all arrays have the same length.
   static bool is_even(const PlaneSpans& spans) {
     bool even = true;
     for_each_array(spans, [&](Floats v) { even &= v.size() == spans.size(); });
@@ -69,9 +69,9 @@ struct Plane {
 
 namespace grelha::GRELHA_ISA {
 
-/// What a precision tells of rays and infinite planes, from either side; parallel rays do not
-/// cross. docs/numerics.md derives the bounds: of the product with the direction 4 u of its terms,
-/// of that with the way to the point 5 u, which are 8 here.
+/// Bounds the crossings of rays and infinite planes in a precision, from either side; parallel rays
+/// do not cross. docs/numerics.md derives the bounds: 4 u of its terms for the product with the
+/// direction, 5 u for the product with the way to the point; 8 u are used here.
 template <class Real>
 [[gnu::always_inline]] inline Found<Real> bound(const RayLanes<Real>& ray,
                                                 const Plane::Fields<Real>& plane,
@@ -107,7 +107,7 @@ inline SurfacePlace<Real> plane_place(const Vec3<Real>& through,
   return {at - dot(at - through, n) * n, n, Real(8 * kEps) * (largest(at) + largest(through))};
 }
 
-/// Where rays met planes, of indices i.
+/// Surfaces of planes i at the rays' hits.
 template <class Real>
 inline Surface<Real> surface_on(const Plane::Arrays& planes,
                                 const Words<Real>& i,

@@ -14,7 +14,7 @@ struct SourceOf {
   explicit SourceOf(const GeometrySpans& g) : source(g) {}
 };
 
-/// The caller's arrays with what is derived from them.
+/// The caller's arrays, and the data derived from them.
 class Primitives {
  public:
   explicit Primitives(const GeometrySpans& geometry);
@@ -31,7 +31,7 @@ class Primitives {
   auto visit(std::uint32_t id, const Visit& visit) const {
     return visit_shape(FiniteShapes{}, ids, id, visit);
   }
-  /// Of a finite primitive.
+  /// Box of a finite primitive.
   Box box(std::uint32_t id) const {
     return visit(id, [&]<class Shape>(std::uint32_t i) { return Shape::box(of<Shape>(), i); });
   }

@@ -29,20 +29,20 @@ constexpr ShapeSet<A..., B...> operator+(ShapeSet<A...>, ShapeSet<B...>) {
   return {};
 }
 
-/// What of a set stands in grids, or not.
+/// The kinds of a set that stand in grids, or the others.
 template <bool kFinite, class... Shape>
 constexpr auto those_finite(ShapeSet<Shape...>) {
   return (ShapeSet<>{} + ... +
           std::conditional_t<Shape::kFinite == kFinite, ShapeSet<Shape>, ShapeSet<>>{});
 }
-/// What of a set of finite ones stands there in blocks, or not.
+/// The kinds of a set of finite ones that stand in blocks, or the others.
 template <bool kInBlocks, class... Shape>
 constexpr auto those_in_blocks(ShapeSet<Shape...>) {
   return (ShapeSet<>{} + ... +
           std::conditional_t<Shape::kInBlocks == kInBlocks, ShapeSet<Shape>, ShapeSet<>>{});
 }
 
-/// Those whose surfaces are found by t.
+/// The kinds whose surface points are computed from t.
 template <class... Shape>
 constexpr auto those_placed_by_t(ShapeSet<Shape...>) {
   return (ShapeSet<>{} + ... +
@@ -64,12 +64,12 @@ constexpr bool are_numbered(ShapeSet<Shape...>) {
 }
 static_assert(are_numbered(Shapes{}), "the list has the order of PrimitiveKind");
 
-/// Those that stand in grids, and those that do not.
+/// The kinds that stand in grids, and the kinds that do not.
 using FiniteShapes = decltype(those_finite<true>(Shapes{}));
 using InfiniteShapes = decltype(those_finite<false>(Shapes{}));
-/// Those whose lists are arrays of their fields.
+/// The kinds whose lists are arrays of their fields.
 using ArrayShapes = decltype(those_in_blocks<false>(FiniteShapes{}));
-/// Those of a cell in the order in which they are tested: what stands in blocks comes first.
+/// The kinds in a cell in the order of their tests: kinds in blocks come first.
 using CellShapes = decltype(those_in_blocks<true>(FiniteShapes{}) + ArrayShapes{});
 
 template <class Visit>

@@ -21,7 +21,7 @@ struct Sphere {
   static constexpr bool kPlacedByRay = true;  ///< a surface is found without t
   static constexpr bool kInBlocks = false;
 
-  /// What tests see of a sphere, or of many, an array each.
+  /// A sphere as tests read it; or many, an array per field.
   template <class T>
   struct Fields {
     T center[3], radius;
@@ -41,7 +41,7 @@ struct Sphere {
       visit(*v);
   }
   static const SphereSpans& spans_of(const GeometrySpans& g) { return g.spheres; }
-  /// Whether they have one length.
+  /// True if all arrays have the same length.
   static bool is_even(const SphereSpans& spans) {
     bool even = spans.material.size() == spans.size();
     for_each_array(spans, [&](Floats v) { even &= v.size() == spans.size(); });
@@ -118,9 +118,8 @@ struct Sphere {
 
 namespace grelha::GRELHA_ISA {
 
-// What numbers of a precision leave open, in u; docs/numerics.md derives each, sphere_test.cpp pins
-// them. L: the distances to the centre along the axes together, and what coordinates are off by, in
-// u.
+// Error bounds of floats or doubles, in u; docs/numerics.md derives each, sphere_test.cpp pins
+// them. L: the distances to the centre along the axes together, and the error of coordinates, in u.
 
 /// Times L + r, w: with that of a root (r + w) w bounds the error of the square of half a chord,
 /// and w / |dir| that of its middle.
@@ -141,14 +140,14 @@ struct Chord {
     const Vec3<Real> gap = middle * ray.dir - to_center;  // center to the line's nearest point
     inside = rr - dot(gap, gap);                          // b*b - a*c would cancel from afar
   }
-  /// Lanes that surely have none are left out, by a bound for all spheres that are near enough.
+  /// Leaves out lanes that surely have no chord, by a bound for all spheres that are near enough.
   [[gnu::always_inline]] Mask<Real> may_be(const RayLanes<Real>& ray, const Real& radius) const {
     return inside + ray.room * (magnitude(radius) + ray.room) >= Real(0);
   }
 };
 
-/// Whether rays surely start outside of spheres or inside, by the power of their origins: it tells
-/// more than where they cross of those that leave a sphere or lie within.
+/// Tells whether rays surely start outside of spheres or inside, by the power of their origins. For
+/// rays that leave a sphere or lie within, it decides more cases than the crossings do.
 template <class Real>
 struct SphereSide {
   Real w;     ///< see kFarError
@@ -176,7 +175,8 @@ struct SphereSide {
   }
 };
 
-/// What a precision tells of rays and spheres; of a negative radius from inside alone.
+/// Bounds the crossings of rays and spheres in a precision; a negative radius shows the inside
+/// alone.
 ///
 /// Requires  |radius| > 0. A lane with a NaN has no crossing.
 /// Source    Haines, Günther, Akenine-Möller, "Precision Improvements for Ray/Sphere
@@ -215,6 +215,35 @@ template <class Real>
           both(both(some, crosses), either(enters, leaves)),
           lo,
           select(past, leave_hi, enter_hi)};
+}
+
+/// Narrows spans that hold a crossing each; not `sure` where it may not.
+///
+/// Source    Moore, Interval Analysis (1966): one step of Newton's method from the middle of the
+///           span, by the slope's interval over it. No square root; docs/numerics.md has the bound.
+template <class Real>
+[[gnu::always_inline]] inline Found<Real> narrowed(const RayLanes<Real>& ray,
+                                                   const Sphere::Fields<Real>& sphere,
+                                                   const Real& lo,
+                                                   const Real& hi) {
+  const Real t = Real(.5) * (lo + hi);
+  const Vec3<Real> to_center = ray.to(vec(sphere.center));
+  const Vec3<Real> way = t * ray.dir;
+  const Vec3<Real> gap = way - to_center;
+  const Vec3<Real> size = sizes(way) + sizes(to_center);
+  const Vec3<Real> steep = sizes(ray.dir);
+  const Real rr = sphere.radius * sphere.radius;
+  const Real error = units<Real>(16) * (dot(sizes(gap), size) + rr) +
+                     Real(static_cast<Scalar<Real>>(kUnderflow<Real>));
+  const Real inverse = Real(.5) / dot(gap, ray.dir);
+  const Real step = (dot(gap, gap) - rr) * inverse;
+  // what the slope varies by, relative to itself
+  const Real vary = (Real(2) * dot(steep, steep) * (hi - lo) + units<Real>(16) * dot(size, steep)) *
+                    magnitude(inverse);
+  const Real slack = error * magnitude(inverse) + Real(2) * (magnitude(step) * vary) +
+                     units<Real>(8) * (magnitude(step) + magnitude(t));
+  const Mask<Real> known = vary < Real(.25);
+  return {known, known, (t - step) - slack, (t - step) + slack};
 }
 
 inline ExactCrossing exact_crossing(const ExactRay& ray, const Sphere::Fields<float>& sphere) {
@@ -301,7 +330,7 @@ inline void sphere_places(const Meeting<Real>& met,
 /// normal has the wrong sign, 64 u^2. It takes 13 u^2.
 inline constexpr float kBulge = 0x1p-42f;
 
-/// Where rays met spheres, of indices i: rounded once.
+/// Surfaces of spheres i at the rays' hits, rounded once.
 template <class Real>
 inline Surface<Real> surface_on(const Sphere::Arrays& spheres,
                                 const Words<Real>& i,
@@ -312,7 +341,7 @@ inline Surface<Real> surface_on(const Sphere::Arrays& spheres,
   const Vec3<Real> point = parts.vector(0);
   const Real p = largest(point);
   const Real r = magnitude(sphere.radius);
-  // The middle term spares most rays that leave the test in double; they would be as right without.
+  // The middle term spares most rays that leave the test in double; the result is right without it.
   const Real away = Real(4 * kEps) * p + Real(16 * kEps) * lesser(r, p) + Real(kBulge) * r;
   return surface_at<Real>({point, parts.vector(3), away}, words_at(spheres.material, i));
 }

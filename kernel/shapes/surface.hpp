@@ -1,20 +1,19 @@
 #pragma once
-// Where a ray met its primitive: the point, its normals, and how far a new ray must start away from
-// it.
+// The surface at a hit: the point, its normals, and how far away from it a new ray must start.
 //
-// A ray that leaves a surface must not meet it again, nor skip what lies close. The point is taken
-// from the primitive, not from org + t dir, which is off by eps times the distance travelled; what
-// error is left (`away`) is bounded from the primitive's size and place: pbrt's idea (Pharr, Jakob,
-// Humphreys, PBR 4th ed., 6.8), one scalar bound for all axes. Derivations: docs/numerics.md; kept
-// by leaving_test.cpp.
+// A ray that leaves a surface must not meet it again, nor skip what lies close. The point is
+// computed from the primitive, not from org + t dir, which is off by eps times the distance
+// travelled; the remaining error (`away`) is bounded from the primitive's size and place: pbrt's
+// idea (Pharr, Jakob, Humphreys, PBR 4th ed., 6.8), one scalar bound for all axes. Derivations:
+// docs/numerics.md; kept by leaving_test.cpp.
 
 #include "kernel/shapes/geometry_view.hpp"
 
 namespace grelha::GRELHA_ISA {
 
-/// Surfaces of primitives `id`, where rays met them; of lanes that met nothing, anything. What the
-/// lanes met decides which kinds are looked at; mostly it is one. Where rays met the `first`
-/// crossing beyond t = 0, t need be known of cones alone.
+/// Surfaces of primitives `id` at the rays' hits; undefined in lanes without a hit. Only kinds that
+/// some lane hit are computed; mostly it is one. If the hit is the `first` crossing beyond t = 0,
+/// only cones need t.
 template <class Real>
 inline Surface<Real> surface_of(const GeometryView& g,
                                 const Words<Real>& id,
@@ -52,8 +51,7 @@ inline Surface<Real> surface_of(const GeometryView& g,
   return s;
 }
 
-/// Where a ray that leaves `point` on the side its direction points to must start. `normal` is
-/// unit.
+/// Origin of a ray that leaves `point` on the side its direction points to. `normal` is unit.
 template <class Real>
 inline Vec3<Real> leave(const Vec3<Real>& point,
                         const Vec3<Real>& normal,

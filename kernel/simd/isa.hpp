@@ -7,7 +7,7 @@
 #error "floats must be rounded after each operation: compile with -msse2 -mfpmath=sse"
 #endif
 
-// What is compiled once, such as the building of grids, sees the scalar copy.
+// Code that is compiled once, such as the building of grids, sees the scalar copy.
 #ifndef GRELHA_ISA
 #define GRELHA_ISA scalar
 #endif

@@ -61,8 +61,8 @@ inline Real larger(const Real& a, const Real& b) {
   return greater(magnitude(a), magnitude(b));
 }
 
-/// Takes the lanes of each of four registers together, two by two, and stores what is left; what is
-/// left of many such fours is taken together in `all`.
+/// Folds the lanes of each of four registers, two by two, and stores the results; folds the results
+/// of many such fours together in `all`.
 #if GRELHA_ISA_NUMBER == 1
 template <class Take>
 inline void fold_lanes(
@@ -215,7 +215,7 @@ inline float not_above(double a) {
 inline float not_below(double a) {
   return 0 - not_above(0 - a);
 }
-/// Doubles beside some floats: kWideParts<Real> registers of them hold what one of Real does.
+/// Doubles that hold floats: kWideParts<Real> registers hold as many as one Real.
 template <class Real>
 struct WideOf {
   using Type = DoubleLanes;

@@ -53,12 +53,12 @@ inline Four to_floats(const FourInts& a) {
   return __builtin_convertvector(a, Four);
 }
 
-/// What a mask leaves; 0 elsewhere.
+/// Elements of `a` that a mask selects; 0 elsewhere.
 inline Four chosen(const FourInts& mask, const Four& a) {
   return reinterpret_cast<Four>(reinterpret_cast<FourInts>(a) & mask);
 }
 
-/// Takes all four together, two by two: in each place.
+/// Combines all four elements, two by two; every element holds the result.
 template <class Vector, class Take>
 inline Vector together(const Vector& a, const Take& take) {
   const Vector b = take(a, __builtin_shufflevector(a, a, 2, 3, 0, 1));
@@ -71,7 +71,7 @@ inline std::int32_t sum(const FourInts& a) {
 inline FourInts any_of(const FourInts& a) {
   return together(a, [](const FourInts& x, const FourInts& y) { return x | y; });
 }
-/// A bit for each place of a mask.
+/// A bit for each element of a mask.
 inline unsigned bits(const FourInts& mask) {
 #ifdef __SSE2__
   return static_cast<unsigned>(_mm_movemask_ps(reinterpret_cast<__m128>(mask)));
@@ -79,7 +79,7 @@ inline unsigned bits(const FourInts& mask) {
   return static_cast<unsigned>(any_of(mask & FourInts{1, 2, 4, 8})[0]);
 #endif
 }
-/// Whether a mask has a place.
+/// True if any element of a mask is set.
 inline bool any(const FourInts& mask) {
   return bits(mask) != 0;
 }

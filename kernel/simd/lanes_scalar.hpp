@@ -99,14 +99,14 @@ inline void store(float* p, float a) {
 inline void store(double* p, double a) {
   *p = a;
 }
-/// whether any lane is not 0
+/// True if any lane is not 0.
 inline bool any_set(std::uint32_t a) {
   return a != 0;
 }
 inline float small_to_float(std::uint32_t a) {
   return static_cast<float>(a);
 }  ///< a < 2^24: exact
-/// Least and greatest of the lanes, none of them NaN.
+/// Least and greatest of the lanes; no lane is NaN.
 inline float lane_min(float a) {
   return a;
 }

@@ -1,7 +1,7 @@
 #pragma once
-// What is the same for the lanes of every instruction set that xsimd knows. Functions for doubles
-// are spelled out: xsimd's own templates of the same names would be as good a match for one over
-// both.
+// Functions that are the same for the lanes of every instruction set that xsimd knows. Those for
+// doubles are spelled out: xsimd's own templates of the same names would be as good a match for one
+// over both.
 
 #include "kernel/simd/lanes_scalar.hpp"
 

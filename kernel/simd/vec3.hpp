@@ -12,7 +12,7 @@ struct Vec3 {
 using Vec3f = Vec3<float>;
 using Lanes3 = Vec3<Lanes>;  ///< one vector per lane
 
-/// Of components in an array.
+/// A vector from an array of components.
 template <class T>
 [[gnu::always_inline]] inline Vec3<T> vec(const T (&v)[3]) {
   return {v[0], v[1], v[2]};
@@ -75,7 +75,7 @@ template <int i, class Real>
 inline Vec3<Wide<Real>> widen(const Vec3<Real>& a) {
   return {widen<i>(a.x), widen<i>(a.y), widen<i>(a.z)};
 }
-/// Part i of doubles as sums of two floats, the second what rounding took from the first: 48 bits.
+/// Part i of doubles as sums of two floats, the second the rounding error of the first: 48 bits.
 template <int i, class Real>
 inline Vec3<Wide<Real>> widen(const Vec3<Real>& a, const Vec3<Real>& low) {
   return widen<i>(a) + widen<i>(low);

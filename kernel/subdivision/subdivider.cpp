@@ -12,8 +12,8 @@ namespace {
 
 /// Pixels a side: with fewer, too many corners lie between tiles.
 constexpr int kMostTile = 32, kLeastTile = 8;
-constexpr int kTileSteps = 256;  ///< points a side that are aimed at, were every square split
-constexpr int kCornerBlock = 8;  ///< corners a side, of those traced next to each other
+constexpr int kTileSteps = 256;  ///< points a side to aim at, if every square is split
+constexpr int kCornerBlock = 8;  ///< corners a side of a block that is traced in one go
 
 struct Square {
   LatticePoint at;          ///< upper left corner
@@ -45,7 +45,7 @@ float clamped(float x) {
   return x < 0 ? 0.f : x > 1 ? 1.f : x;
 }
 
-/// Whether a channel of two corners differs by more than the threshold.
+/// True if a channel differs by more than the threshold between two corners.
 bool differ(const Float3 (&c)[4], float threshold) {
   const auto differs = [&](float Float3::*channel) {
     const auto [least, most] = std::minmax({clamped(c[0].*channel),

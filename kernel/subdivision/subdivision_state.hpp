@@ -18,8 +18,8 @@ struct SubdivisionState {
 /// A picture without points. Throws std::invalid_argument for a size that has no lattice.
 SubdivisionState make_subdivision(int width, int height);
 
-/// Whether every number is one that rendering can leave behind: what a file says must pass this
-/// before it is gone on with.
+/// True if rendering can produce every number. Check a loaded file with this before going on with
+/// it.
 bool is_sound(const SubdivisionState& s);
 
 }  // namespace grelha

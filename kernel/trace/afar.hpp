@@ -1,7 +1,7 @@
 #pragma once
 // Rays that start far from a grid. Floats lose such a ray's way through it, so it walks in the
-// frame of the grid: from the grid's corner, and from where it comes near, which is found in
-// double. What float tests do not tell there is told of the ray as it came.
+// frame of the grid: from the grid's corner, and from the point where it comes near, which is found
+// in double. Cases that float tests cannot decide there are decided with the ray as given.
 
 #include "kernel/walk/packet_traversal.hpp"
 
@@ -14,13 +14,13 @@ inline bool starts_near(const GridView& g, const float (&org)[3]) {
   return near;
 }
 
-/// Where a ray comes near a grid.
+/// The point where a ray comes near a grid.
 struct Entry {
   float org[3];  ///< from the corner of the grid
-  double shift;  ///< t there
+  double shift;  ///< t at that point
 };
 
-/// A coordinate of a ray at t, from x on.
+/// A coordinate of a ray at t, relative to x.
 inline double place_at(double org, double dir, double t, double x) {
   double along = 0, rest = 0, from = 0, of_from = 0, sum = 0, of_sum = 0;
   two_product(t, dir, along, rest);
@@ -29,8 +29,9 @@ inline double place_at(double org, double dir, double t, double x) {
   return sum + (of_sum + (rest + of_from));
 }
 
-/// False: the ray, which starts far from a grid, does not come to it from t_min to t_max. Places on
-/// its way are off by 2^-100 of it, and so is a second look by as much of what the first is off by.
+/// Returns false if the ray, which starts far from a grid, does not come to it from t_min to t_max.
+/// Points on its way are off by 2^-100 of it; a second look would be off by that much of the first
+/// error.
 inline bool enter_from_afar(const GridView& g,
                             const float (&org)[3],
                             const float (&dir)[3],
@@ -42,7 +43,7 @@ inline bool enter_from_afar(const GridView& g,
   double t1 = static_cast<double>(kInfinity);
   clip_to_grid(g, r, t0, t1);
   const double slack = 0x1p-48 * t0;
-  // NaN comes nowhere
+  // a NaN fails these tests
   if (!(t0 <= t1 + slack) || !(t0 > 0) || !(t_min <= t1 + slack) || !(t_max >= t0 - slack))
     return false;
   to.shift = greater(t0, t_min);
@@ -51,17 +52,17 @@ inline bool enter_from_afar(const GridView& g,
   return true;
 }
 
-/// Times t: what entries and exits in float are off by, 3 u, and more.
+/// Times t: bound of the error of entries and exits in float, which is 3 u.
 inline constexpr float kEntryRoom = 0x1p-20f;
 
-/// What t is no later and no earlier than, counted from `shift` on.
+/// Upper and lower bounds of t, counted from `shift` on.
 inline float no_later(float t, double shift) {
   return not_below((t - shift) + magnitude(shift) * 0x1p-51);
 }
 inline float no_earlier(float t, double shift) {
   return not_above((t - shift) - magnitude(shift) * 0x1p-51);
 }
-/// Where a search begins that does so at t_min before the ray is shifted, or there.
+/// Start of a search from `shift` on: unlimited if t_min comes before the shift, else 0.
 inline float begin_from(double t_min, double shift) {
   return t_min < shift ? -kInfinity : 0.f;
 }
@@ -77,7 +78,7 @@ inline GridView in_its_frame(const GridView& g) {
   return own;
 }
 
-/// Those rays of a packet that start far from a grid and come to it, in the frame of the grid.
+/// Copies rays that start far from a grid and come to it into the frame of the grid.
 class RaysFromAfar {
  public:
   RaysFromAfar(const GridView& g, Packet& p) : p_(p) {
@@ -102,7 +103,7 @@ class RaysFromAfar {
   bool any() const { return moved_.live != 0; }
   Packet& packet() { return moved_; }
 
-  /// What was met, as t of the rays as they came.
+  /// Stores the hits, with t of the rays as given.
   template <bool kAny>
   void take_hits() {
     each_live_group(moved_, [&](int i, int) {

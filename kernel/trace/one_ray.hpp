@@ -35,7 +35,7 @@ inline bool test_triangles(Single& r, const GridView& g, std::uint32_t cell) {
          passed != 0;
          passed &= passed - 1) {
       const unsigned k = static_cast<unsigned>(__builtin_ctz(passed));
-      // what was met since may be nearer
+      // a hit found since may be nearer
       if (enters[k] <= r.best && test_block<kAny>(r, blocks[k]))
         return true;
     }
@@ -95,9 +95,9 @@ template <bool kAny>
     set_hit(r, {no_earlier(moved.low, -to.shift), no_later(moved.best, -to.shift)}, moved.id);
 }
 
-/// t of what a ray met, rounded once, counted as `ray` does; of a triangle by what the test saw of
-/// it, which is near by.
-inline float t_of(const Single& r, const ExactRay& ray) {
+/// t of a ray's hit, rounded once, in the units of `ray`; of a triangle from the corners that the
+/// test read, which are close in memory. `span` holds t, or is empty.
+inline float t_of(const Single& r, const ExactRay& ray, const CrossingSpan& span) {
   const GeometryView& g = *r.geometry;
   if (r.block && g.ids.has(PrimitiveKind::kTriangle, r.id)) {
     int place = 0;
@@ -114,7 +114,7 @@ inline float t_of(const Single& r, const ExactRay& ray) {
     if (r.block->id[place] == r.id && span.known && first == static_cast<float>(span.hi))
       return first;
   }
-  return rounded_t(g, ray, r.id);
+  return rounded_t(g, ray, r.id, span);
 }
 
 /// All that a prepared ray meets.
@@ -135,7 +135,7 @@ inline void walk_scene(const SceneView& scene, Single& r) {
   });
 }
 
-/// What a ray meets first, or with kAny whether it meets anything: t is not to be looked at then.
+/// The closest hit of a ray, or with kAny any hit: its t must not be used then.
 template <bool kAny>
 inline Hit trace_one(const SceneView& scene, const Ray& ray) {
   Vec3<float> dir{ray.dir.x, ray.dir.y, ray.dir.z};
@@ -155,7 +155,8 @@ inline Hit trace_one(const SceneView& scene, const Ray& ray) {
   if (kAny || r.id == kNoPrimitive)
     return {ray.t_max, r.id};
   const ExactRay as_it_came = r.given.ray(0).in_units_of(1 / static_cast<double>(unit));
-  return {strictly_between(t_of(r, as_it_came), ray.t_min, ray.t_max), r.id};
+  const CrossingSpan span = unit == 1 ? CrossingSpan{r.low, r.best} : CrossingSpan{};
+  return {strictly_between(t_of(r, as_it_came, span), ray.t_min, ray.t_max), r.id};
 }
 
 inline Hit closest_one(const SceneView& scene, const Ray& ray) {

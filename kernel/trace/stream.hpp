@@ -1,6 +1,6 @@
 #pragma once
-// Any number of rays through a whole scene, a packet at a time. Rays are loaded from the caller's
-// arrays, and what they meet is stored.
+// Traces any number of rays through a whole scene, a packet at a time. Rays are loaded from the
+// caller's arrays, and their hits are stored.
 
 #include "kernel/trace/trace.hpp"
 
@@ -81,8 +81,8 @@ inline void load_own_rays(const Rays& rays, float t_max, std::size_t first, Pack
   }
 }
 
-/// Rays that are loaded together: what fewer of them walk together goes on by itself with many. No
-/// more than stay in the first cache where there is no grid to walk.
+/// Number of rays that are loaded together, so that many step side by side when packets fall apart.
+/// Without a grid to walk, no more than stay in the first cache.
 inline int rays_of_a_packet(const SceneView& scene) {
   constexpr int few = 64;
   return scene.grid_count == 0 ? few : kPacket;
@@ -126,7 +126,7 @@ inline bool met(const WalkingRays& p, int i) {
   return id_of(p.id[i]) != kNoPrimitive;
 }
 
-/// t of what a packet met, where surfaces are found by it.
+/// Stores t of a packet's hits, if some surfaces are computed from t.
 inline void store_t_of_places(const Packet& p, float* to) {
   using PlacedByT = decltype(those_placed_by_t(Shapes{}));
   bool some = false;
@@ -150,20 +150,24 @@ inline void store_hits(const Packet& p, const Rays& rays, std::size_t first, con
     store_doubles(p, rays, first, hits.t_double + first);
   if (!hits.t)
     return;
-  alignas(64) float t[kPacket];
-  float t_min[kPacket];
-  float of_hit[kPacket];
-  load_t_max(rays, first, p.size, t);
+  alignas(64) float t_max[kPacket] = {};
+  alignas(64) float t_min[kPacket] = {};
+  load_t_max(rays, first, p.size, t_max);
   load_floats(rays.t_min, rays.t_stride, first, p.size, 0, t_min);
-  for (int i = 0; i < p.size; i += kLanes)
-    round_hits<Shapes>(p, i, of_hit + i);
-  for (int i = 0; i < p.size; ++i)
-    if (met(p, i))
-      t[i] = strictly_between(of_hit[i], t_min[i], t[i]);
+  alignas(64) float t[kPacket];
+  __builtin_memcpy(t, t_max, sizeof t);
+  for (int i = 0; i < p.size; i += kLanes) {
+    round_hits<Shapes>(p, i, t + i);
+    const Lanes to = load<Lanes>(t + i);
+    const unsigned within = bits(both(to > load<Lanes>(t_min + i), to < load<Lanes>(t_max + i)));
+    const unsigned hits_here = lanes_where(ids_at(p, i) != kNoPrimitive);
+    each_bit(hits_here & ~within,
+             [&](int k) { t[i + k] = strictly_between(t[i + k], t_min[i + k], t_max[i + k]); });
+  }
   store_words(t, p.size, first, hits.stride, hits.t);
 }
 
-/// What the rays of a view meet first.
+/// Finds the closest hits of the rays of a view.
 inline void trace_closest(const SceneView& scene,
                           const Rays& rays,
                           const Hits& hits,

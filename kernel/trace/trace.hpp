@@ -1,13 +1,13 @@
 #pragma once
-// The rays of a packet against a whole scene: planes and outside primitives first, then each grid
-// with what t is left.
+// Traces the rays of a packet through a whole scene: planes and outside primitives first, then each
+// grid with the remaining range of t.
 
 #include "kernel/trace/afar.hpp"
 #include "kernel/trace/rounding.hpp"
 
 namespace grelha::GRELHA_ISA {
 
-/// What stands in no grid since it has no end.
+/// Tests the primitives that stand in no grid since they are infinite.
 template <bool kAny>
 inline void test_infinite(const SceneView& scene, Packet& p, Counters& n) {
   const GeometryView& g = scene.geometry;
@@ -18,7 +18,7 @@ inline void test_infinite(const SceneView& scene, Packet& p, Counters& n) {
   });
 }
 
-/// The triangles that lie in no grid.
+/// Tests the triangles that lie in no grid.
 template <bool kAny>
 inline void test_outside(const Triangle::CellList& list, Packet& p, Counters& n) {
   for (std::uint32_t b = 0; b < list.first[1]; ++b) {
@@ -73,7 +73,7 @@ inline Real room_in(const SceneView& scene, const Vec3<Real>& org) {
   return Real(static_cast<float>(2 * (kFarError + 1) * kUnit<float>)) * far;
 }
 
-/// Where a ray comes to a grid; infinity: never, or along a plane of it.
+/// t at which a ray enters a grid; infinity if it never does, or runs along a plane of the grid.
 inline float entry(const GridView& g, const float (&org)[3], const float (&dir)[3], float t_min) {
   float t0 = t_min;
   float t1 = kInfinity;
@@ -87,8 +87,8 @@ inline float entry(const GridView& g, const float (&org)[3], const float (&dir)[
   return t0 <= t1 ? t0 : kInfinity;
 }
 
-/// The grids, for closest hits front to back as a ray meets them: what is met early cuts the others
-/// short. Answers do not depend on it, since ties go to the lower id.
+/// Visits the grids, for closest hits front to back as a ray meets them: early hits cut the other
+/// searches short. Answers do not depend on the order, since ties go to the lower id.
 template <bool kAny, class Visit>
 inline void each_grid(const SceneView& scene,
                       const float (&org)[3],

@@ -1,7 +1,6 @@
 #pragma once
-// Triangles: what they are, and where rays meet them. Files beside this one hold what else is known
-// of them: blocks of eight, which cells they touch, their surfaces, and where rays cross them for
-// double to tell.
+// Triangles: their data, and the ray test. Files beside this one hold the rest: blocks of eight,
+// the cells that triangles touch, their surfaces, and crossings in double.
 
 #include <algorithm>
 #include <cstddef>
@@ -24,7 +23,7 @@ struct Triangle {
   static constexpr bool kPlacedByRay = true;  ///< a surface is found without t
   static constexpr bool kInBlocks = true;     ///< a list's entry is a block
 
-  /// What tests see of a triangle.
+  /// A triangle as tests read it.
   template <class T>
   struct Fields {
     T corner[3][3];  ///< x, y, z of each
@@ -52,16 +51,16 @@ struct Triangle {
       return t;
     }
   };
-  /// Cell after cell: cell i owns blocks first[i] up to first[i + 1] - 1, or, where blocks have
-  /// boxes, those in places first[i] up to first[i + 1] - 1 of box_places.hpp. Where no cell holds
-  /// any, first == nullptr.
+  /// Cell after cell: cell i owns blocks first[i] up to first[i + 1] - 1, or, if blocks have boxes,
+  /// those in places first[i] up to first[i + 1] - 1 of box_places.hpp. If no cell holds any, first
+  /// == nullptr.
   struct CellList {
     const std::uint32_t* first = nullptr;
     const TriangleBlock* blocks = nullptr;
-    const BlockBoxes* boxes = nullptr;           ///< of all blocks, or none
-    const std::uint32_t* first_block = nullptr;  ///< of each row of boxes, and where all end
+    const BlockBoxes* boxes = nullptr;           ///< of all blocks, or null
+    const std::uint32_t* first_block = nullptr;  ///< the first of each row of boxes, and the end
 
-    /// Where blocks have boxes: the block in a place.
+    /// The block in a place, if blocks have boxes.
     std::uint32_t block_at(std::uint32_t place) const {
       return first_block[place / kBlock] + place % kBlock;
     }
@@ -80,7 +79,7 @@ struct Triangle {
       visit(*v);
   }
   static const TriangleSpans& spans_of(const GeometrySpans& g) { return g.triangles; }
-  /// Whether arrays of triangles have one length, and those of vertices.
+  /// True if all arrays of triangles have the same length, and so do all arrays of vertices.
   static bool is_even(const TriangleSpans& spans);
   static std::size_t bytes(const TriangleSpans& spans) {
     return spans.size() * 4 * sizeof(std::uint32_t) +
@@ -165,10 +164,10 @@ inline Vec3<Real> permuted(const Real& axis, const Vec3<Real>& v) {
           select(x, v.x, select(y, v.y, v.z))};
 }
 
-// What numbers of a precision leave open, in u, its half an ulp of 1; docs/numerics.md derives
-// each, triangle_test.cpp pins them. S: the largest sheared coordinate of a corner, Z: the largest
-// depth of one. "Spread" is S (S + Z) over the sum of the edge functions, times the range of the
-// corners' t.
+// Error bounds of floats or doubles, in u, half an ulp of 1; docs/numerics.md derives each,
+// triangle_test.cpp pins them. S: the largest sheared coordinate of a corner, Z: the largest depth
+// of one. "Spread" is S (S + Z) over the sum of the edge functions, times the range of the corners'
+// t.
 
 /// Times S (S + Z): bound of an edge function's error. It is 24 u: a sheared corner is off by u (4
 /// (S + Z) + S).
@@ -178,13 +177,13 @@ inline constexpr double kEdgeError = 32;
 inline constexpr double kDepthError = 256;
 inline constexpr double kDepthRounding = 16;
 
-/// Where rays pass triangles.
+/// Edge functions of triangles and rays, and their error bounds.
 template <class Real>
 struct EdgeFunctions {
   Vec3<Real> oa, ob, oc;  ///< from the rays' origins to the corners
   Real u, v, w;           ///< of the edges opposite to a, b and c
   Real least, most;       ///< of these
-  Real wide;              ///< what depths are larger by, for coordinates that are off
+  Real wide;              ///< added to depths, for the error of coordinates
   Real area;              ///< S (S + Z), and a little
 
   [[gnu::always_inline]] EdgeFunctions(const RayAndTriangle<Real>& from, const Shear<Real>& shear)
@@ -202,13 +201,13 @@ struct EdgeFunctions {
     least = lesser(lesser(u, v), w);
     most = greater(greater(u, v), w);
   }
-  /// Lanes of which these do not tell that the ray passes beside the triangle.
+  /// Lanes whose ray does not surely pass beside the triangle.
   [[gnu::always_inline]] Mask<Real> may_cross() const {
     return lesser(most, Real(0) - least) <= units<Real>(kEdgeError) * area;
   }
 };
 
-/// What a precision tells of rays and triangles, from either side, edges and corners included.
+/// Bounds the crossings of rays and triangles, from either side, edges and corners included.
 ///
 /// Source    Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013; the
 ///           filter after Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust
@@ -253,8 +252,8 @@ inline Found<double> bound_triangle(const ExactRay& r, const float (&corner)[3][
   return bound_triangle<double>(from, shear, r.t_min, __builtin_inf());
 }
 
-/// Takes what a float test does not tell of chosen lanes from double, and then from exact numbers.
-/// `source` is copied; 16 bytes are best.
+/// Decides chosen lanes that a float test cannot, in double, and then in exact numbers. `source` is
+/// copied; 16 bytes are best.
 template <class Real, class Source>
 [[gnu::noinline]] void settle_triangles(Source source,
                                         Mask<Real> chosen,
@@ -272,10 +271,10 @@ template <class Real, class Source>
   });
 }
 
-/// Where rays cross triangles.
+/// Finds where rays cross triangles.
 ///
-/// Takes     source() gives rays and triangles. It is asked again where floats do not tell:
-///           registers need not hold till then what few tests look at.
+/// Takes     source() gives rays and triangles. It is called again where floats cannot decide, so
+///           that registers need not hold until then what few tests read.
 /// Returns   lanes whose ray crosses its triangle at a t beyond t_min, which is from lo to hi.
 ///           Those whose t is surely beyond `best` are left out. The sign of every decision is that
 ///           of real arithmetic: triangles that share an edge or a corner agree about it.

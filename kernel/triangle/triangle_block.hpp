@@ -13,10 +13,10 @@ struct alignas(64) TriangleBlock {
   std::uint32_t id[kBlock];
 };
 
-/// A row of boxes, of up to eight blocks that follow each other: of each, what of its triangles
-/// lies in its cell, boxed and grown. A ray that meets one of them there passes through. No ray
-/// passes through a box of no block, which ends before it begins. Place p is box p % kBlock of row
-/// p / kBlock; box_places.hpp says which block has which.
+/// A row of boxes, for up to eight blocks that follow each other: each holds the part of a block's
+/// triangles within its cell, and is grown. A ray that meets a triangle there passes through the
+/// box. The box of an unused place ends before it begins, so no ray passes through it. Place p is
+/// box p % kBlock of row p / kBlock; box_places.hpp says which block has which.
 struct alignas(64) BlockBoxes {
   float side[6][kBlock];  ///< least x, y, z, greatest x, y, z
 };

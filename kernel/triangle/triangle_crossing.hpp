@@ -1,5 +1,5 @@
 #pragma once
-// Where on triangles rays cross them, and which rays are past them.
+// Crossing points of rays and triangles, and rays that are past a triangle's plane.
 
 #include "kernel/primitive/ray_lanes.hpp"
 
@@ -18,8 +18,8 @@ struct RayAndTriangle {
   Corners<Real> corner;
 };
 
-/// Weights of the corners of triangles where rays cross them: not negative, 1 together. What
-/// rounding takes beyond an edge is brought back.
+/// Barycentric weights of points where rays cross triangles: not negative, 1 together. Weights that
+/// rounding makes negative are set to 0.
 template <class Real>
 [[gnu::always_inline]] inline Vec3<Real> weights_at(const Vec3<Real>& org,
                                                     const Vec3<Real>& dir,
@@ -37,17 +37,16 @@ template <class Real>
   return select(sum < Real(2), (one / sum) * w, Vec3<Real>{one, o, o});
 }
 
-/// Where lines surely meet the planes of triangles.
+/// Spans of t where lines meet the planes of triangles, if known.
 template <class Real>
 struct PlaneSpan {
   Mask<Real> known;
   Real lo, hi;  ///< t
 };
 
-/// t of a ray that crosses its triangle, by the normal n = e x f: of the products that a component
-/// is the difference of, with the sizes of what it is multiplied by, n (a - org) and n dir are off
-/// by 8 u. Fewer steps than by the edge functions, and wider bounds: for doubles, which have digits
-/// to spare.
+/// t of a ray that crosses its triangle, by the normal n = e x f. n (a - org) and n dir are off by
+/// 8 u of the same sums over the sizes of all products. Fewer steps than by the edge functions, and
+/// wider bounds: for doubles, which have digits to spare.
 template <class Real>
 [[gnu::always_inline]] inline PlaneSpan<Real> plane_span(const Vec3<Real>& org,
                                                          const Vec3<Real>& dir,
@@ -79,9 +78,9 @@ inline Corners<Wide<Real>> widen(const Corners<Real>& c) {
 inline constexpr float kProductError = 0x1p-20f;
 inline constexpr float kLeastProduct = 0x1p-100f;
 
-/// Rays that are surely past the plane of their triangle at t_min, by its normal. Of the triangle
-/// that a ray starts on it tells more than the edges do: their error grows with the distance to the
-/// corners.
+/// Rays that are surely past the plane of their triangle at t_min, by its normal. For the triangle
+/// that a ray starts on, this decides more cases than the edges do: their error grows with the
+/// distance to the corners.
 template <class Real>
 [[gnu::always_inline]] inline Mask<Real> past_plane(const RayAndTriangle<Real>& r,
                                                     const Real& t_min) {

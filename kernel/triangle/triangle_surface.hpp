@@ -1,12 +1,12 @@
 #pragma once
-// Where rays met triangles: points, normals and the mix of the vertices' normals.
+// Surfaces of triangles at hits: points, normals and the mix of the vertices' normals.
 
 #include "kernel/primitive/surface_place.hpp"
 #include "kernel/triangle/triangle.hpp"
 
 namespace grelha::GRELHA_ISA {
 
-/// What of a triangle's surface is computed in double, and rounded once.
+/// The part of a triangle's surface that is computed in double, and rounded once.
 template <class Real>
 struct TrianglePlace {
   Vec3<Real> point, normal, weights;
@@ -84,7 +84,7 @@ inline Vec3<Real> mixed_normal(const Triangle::Arrays& triangles,
   return select(both(sound, mm > Real(kLeastMix)), same_side, flat);
 }
 
-/// Where rays met triangles, of indices i.
+/// Surfaces of triangles i at the rays' hits.
 template <class Real>
 inline Surface<Real> surface_on(const Triangle::Arrays& triangles,
                                 const Words<Real>& i,

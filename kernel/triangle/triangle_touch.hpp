@@ -9,8 +9,8 @@
 namespace grelha {
 
 /// A cell grown by pad against a triangle: the plane, and each edge seen along the axes across
-/// which the triangle spans several cells. Together with boxes that meet these are all the
-/// separating axes, so what is left is touched.
+/// which the triangle spans several cells. Together with boxes that meet, these are all the
+/// separating axes, so the remaining cells are touched.
 class TriangleTouch {
  public:
   TriangleTouch(const float (&corner)[3][3], const CellFrame& g, const CellRange& range) {
@@ -42,8 +42,8 @@ class TriangleTouch {
   }
 
  private:
-  /// Times the products that a component of the normal is the difference of: what doubles round it
-  /// by, two sides, a product and the difference. Of needles that can be more than is left. Other
+  /// Times the products whose difference a component of the normal is: their rounding in double,
+  /// for two sides, a product and the difference. For needles it can exceed the result. Other
   /// roundings come to less than a thousandth of the pad, which all cells are grown by.
   static constexpr double kNormalError = 0x1p-51;
 

@@ -1,17 +1,17 @@
 #pragma once
-// Rays that have nothing in common but that they are many, each on its own through a grid. All that
-// are under way step side by side (SIMD over rays); then those that came to cells with something in
-// them go through these, each by itself (SIMD over primitives).
+// Takes many rays that have nothing else in common through a grid, each on its own. All rays under
+// way step side by side (SIMD over rays); then the rays that came to cells with something in them
+// are tested there, each by itself (SIMD over primitives).
 //
-// What a ray does next nobody can foretell, nor what is in the cell it came to: so but for hits
+// What a ray does next cannot be predicted, nor what is in the cell it came to: so except for hits
 // hardly a branch depends on one ray. Each phase goes through a list of the rays, boxes or blocks
-// that the phase before it chose, and asks memory for what the phase after it looks at.
+// that the phase before it chose, and prefetches what the phase after it reads.
 
 #include "kernel/walk/under_way.hpp"
 
 namespace grelha::GRELHA_ISA {
 
-/// Asks for the memory of an object, line by line.
+/// Prefetches an object, line by line.
 template <class T>
 [[gnu::always_inline]] inline void prefetch(const T* object) {
   const char* const bytes = reinterpret_cast<const char*>(object);
@@ -19,10 +19,10 @@ template <class T>
     __builtin_prefetch(bytes + at);
 }
 
-/// Bytes of the fields of kinds whose primitives are asked for early: of more, they come too late.
+/// Most bytes of the fields of kinds whose primitives are prefetched: larger ones come too late.
 inline constexpr std::size_t kAskedFor = 16;
 
-/// What tests of boxes take of the directions of rays of a packet.
+/// Directions of the rays of a packet as tests of boxes read them.
 struct SlabRays {
   alignas(64) float inverse[3][kPacket];  ///< no component is 0
   /// the side of a box that the ray meets first, along each axis
@@ -40,7 +40,7 @@ struct SlabRays {
   }
 };
 
-/// Rays against what is in the cells they came to.
+/// Tests rays against the contents of the cells they came to.
 template <bool kAny>
 class CellTests {
  public:
@@ -115,7 +115,8 @@ class CellTests {
     return p_.base ? at - Block(p_.base[axis]) : at;
   }
 
-  /// Those of blocks from `first` on with a bit in `passed`.
+  /// Makes the blocks from `first` on with a bit in `passed` due; returns the new number of due
+  /// ones.
   [[gnu::always_inline]] int take_passed(
       std::uint32_t ray, std::uint32_t first, unsigned passed, const Block& enter, int due) {
     if constexpr (kWidth<Block> == kBlock) {
@@ -136,7 +137,7 @@ class CellTests {
     return due;
   }
 
-  /// Tests the blocks that are due. What was met since a box was passed may be nearer.
+  /// Tests the blocks that are due. A hit found since a box was passed may be nearer than the box.
   [[gnu::noinline]] void settle(int due) {
     count_rows<Triangle>(n_, due, kBlock);
     for (int k = 0; k < due && k < kAhead; ++k)
@@ -157,8 +158,8 @@ class CellTests {
     }
   }
 
-  /// Whether float does not tell that a ray passes beside all triangles of a block. To ask first
-  /// takes longer than a foretold branch where a block fills more than one register.
+  /// False if all triangles of a block are surely missed. If a block fills more than one register,
+  /// this test takes longer than a predicted branch.
   [[gnu::always_inline]] bool may_cross(std::uint32_t ray, const TriangleBlock& block) {
     if constexpr (kWidth<Block> < kBlock) {
       return true;
@@ -187,7 +188,7 @@ class CellTests {
       }
   }
 
-  /// Whether primitives that are missed are sorted out before others are tested.
+  /// True if missed primitives are sorted out before the others are tested.
   template <class Shape>
   static constexpr bool kSortsOut = requires(const RayLanes<Block>& ray,
                                              const typename Shape::template Fields<Block>& row) {
@@ -253,8 +254,8 @@ class CellTests {
 /// The live rays of a packet through a grid, each from p.start on and on its own (Amanatides & Woo
 /// 1987), with leaps over empty cells by their distance (Cohen & Sheffer, "Proximity Clouds",
 /// 1994). A hit is never clipped to its cell; a walk ends once the hit lies at or before the exit
-/// of the cell. Plane distances come from the plane's index, never by adding up; where float takes
-/// a ray to the wrong side of a corner it is off by less than what primitives were grown by
+/// of the cell. Plane distances come from the plane's index, never by adding up; if float takes a
+/// ray to the wrong side of a corner, the error is less than the room around primitives
 /// (docs/numerics.md).
 template <bool kAny>
 [[gnu::noinline]] void walk_apart(const GridView& g, Packet& p, Counters& n) {

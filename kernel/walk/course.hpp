@@ -12,7 +12,7 @@ inline Real clamp_cells(const Real& x, int n) {
   return whole(lesser(greater(x, Real(0)), Real(static_cast<float>(n - 1))));
 }
 
-/// Distances of cells for rays of one octant: of what lies before them alone.
+/// Distances of cells for rays of one octant: to occupied cells ahead of the rays alone.
 inline const std::uint8_t* distances_in(const GridView& g, unsigned octant) {
   return g.distance + (1 + std::size_t{octant}) * g.field_places;
 }
@@ -20,8 +20,8 @@ inline const std::uint8_t* distances_in(const GridView& g, unsigned octant) {
 /// Rays in the units of one grid's cells.
 template <class Real>
 struct Course {
-  Real place[3];    ///< at t = 0
-  Real speed[3];    ///< what they make in one t
+  Real place[3];    ///< position at t = 0
+  Real speed[3];    ///< cells per unit of t
   Real inverse[3];  ///< of the speed
   Real end;         ///< t where they leave the grid or their search
 
@@ -126,7 +126,7 @@ class CellWalk {
   explicit CellWalk(const GridView& grid) : g_(grid) {}
 
   int cell() const { return cell_; }
-  /// Of its cell to the nearest before it that holds something.
+  /// Distance from the ray's cell to the nearest cell ahead that holds something.
   int distance() const { return distance_[cell_]; }
 
   /// False: the ray does not come to the grid.
@@ -204,8 +204,8 @@ class CellWalk {
     return least(lesser(t, four(best)));
   }
 
-  /// Of the planes that are met next: of those that are met at once that of the first axis. None
-  /// where one is NaN.
+  /// Mask of the plane that is met next; of several at once, the plane of the first axis. Empty if
+  /// one is NaN.
   static FourInts first_axis(const Four& exit) {
     const Four after = __builtin_shufflevector(exit, exit, 1, 2, 0, 3);
     const Four before = __builtin_shufflevector(exit, exit, 2, 0, 1, 3);
@@ -222,7 +222,7 @@ class CellWalk {
   }
   /// t at the far side of a cell.
   Four far_side(const Four& at) const { return ((at + up_) - place_) * inverse_; }
-  /// The cell at t, of those that there are.
+  /// The cell at t, clamped to the grid.
   FourInts cell_at(const Four& t) const {
     return to_ints(lesser(greater(place_ + t * speed_, four(0)), last_));
   }

@@ -23,7 +23,7 @@ inline unsigned boxes_inside(const Frustum& f, const BlockBoxes& boxes) {
   return inside & ahead;
 }
 
-/// Of lanes of primitives i, i + 1, ... those before `end`.
+/// Lanes of primitives i, i + 1, ... that come before `end`.
 inline unsigned lanes_before(unsigned lanes, std::uint32_t i, std::uint32_t end) {
   return end - i < static_cast<unsigned>(kWidth<Block>) ? lanes & ((1u << (end - i)) - 1u) : lanes;
 }

@@ -41,8 +41,8 @@ struct Frustum {
   /// Four planes f(x) = a xu + b xk + c, negative outside, for culling; reach = length of the
   /// gradient.
   float a[4], b[4], c[4], reach[4];
-  /// The same planes for each group of a large packet alone; the a are those above. Of groups
-  /// without a ray here c = -infinity.
+  /// The same planes for each group of a large packet alone; the a are those above. A group without
+  /// a ray here has c = -infinity.
   bool by_group;
   alignas(64) float group_b[4][kGroupRow], group_c[4][kGroupRow], group_reach[4][kGroupRow];
   int across[4], along[4];  ///< which of a box's sides are farthest inside each

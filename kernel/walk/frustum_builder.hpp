@@ -6,7 +6,7 @@
 
 namespace grelha::GRELHA_ISA {
 
-/// Where the rays of each group lie on the slices `from` and `to`: least and greatest along U on
+/// Bounds of the rays of each group on the slices `from` and `to`: least and greatest along U on
 /// the first, on the last, and along V.
 struct GroupBounds {
   alignas(64) float lo[kGroupRow][4], hi[kGroupRow][4];
@@ -44,7 +44,7 @@ class FrustumBuilder {
   }
 
  private:
-  /// Where the grid begins in the coordinates of primitives, which planes are for.
+  /// Corner of the grid in the coordinates of primitives, which planes are in.
   float corner_of(int axis) const { return p_.base ? p_.base[axis] : g_.lo_f[axis]; }
 
   /// Entry and exit of every ray. Returns the first that meets the grid, or -1.
@@ -144,7 +144,7 @@ class FrustumBuilder {
     per_ = thin_ ? 0.f : 1.f / stay;
   }
 
-  /// Where the rays lie along the other axes, on the first slice and on the last.
+  /// Bounds the rays along the other axes, on the first slice and on the last.
   [[gnu::always_inline]] void bound_sides() {
     // Rays apart by more than a group are culled by groups: worth it where there are many, and
     // where a group is more than a ray.
@@ -215,11 +215,11 @@ class FrustumBuilder {
     f_.hi_slope[j] = (hi1 - hi0) * per_;
   }
 
-  /// Everything above is a few roundings of numbers no larger than the farthest place times the
-  /// steepest slope: of rays for the sides, of planes for what is culled by them.
+  /// The error of everything above is a few roundings of numbers no larger than the farthest place
+  /// times the steepest slope: of rays for the sides, of planes for culling.
   void set_margin() {
     f_.steepest = 1;
-    // the grid's corner in cells: what cancels in the planes when the grid lies far from 0
+    // the grid's corner in cells: it cancels in the planes when the grid lies far from 0
     float corner = 0;
     for (int a = 0; a < 3; ++a) {
       farthest_ = greater(static_cast<float>(g_.n[a]), farthest_);
@@ -338,14 +338,14 @@ class FrustumBuilder {
   float farthest_;        ///< from the grid's corner, of origins and of the grid, in cells
   float slope_;           ///< steepest of the rays, at least 1
   float plane_rounding_;  ///< of planes, in cells, by their slopes
-  float cull_;            ///< what culling allows for beside a plane, in cells
+  float cull_;            ///< room beside a plane in culling, in cells
   float cull_of_slope_;   ///< the same, times the plane's slope
   float along_;           ///< s = along x + start
   float start_;
 };
 
-/// Entry and exit of every ray, then the frustum around those that meet the grid, along the axis on
-/// which the first of them crosses most cells.
+/// Computes entry and exit of every ray, then the frustum around the rays that meet the grid, along
+/// the axis on which the first such ray crosses most cells.
 inline Coherence bound_rays(const GridView& g, const WalkingRays& p, Frustum& f) {
   return FrustumBuilder(g, p, f).around();
 }

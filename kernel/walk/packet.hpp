@@ -1,19 +1,19 @@
 #pragma once
-// Rays side by side, and the tests of all of them against one primitive (SIMD over rays).
+// Rays side by side, and tests of a packet's rays against one primitive (SIMD over rays).
 
 #include "grelha/stats.hpp"
 #include "kernel/walk/walking_rays.hpp"
 
 namespace grelha::GRELHA_ISA {
 
-/// How packets of a size fared in a stream: whether to ask the next one to go together.
+/// How packets of a size fared in a stream: tells whether to try the next one together.
 class Luck {
  public:
-  /// Where most fell apart one in 16 is asked all the same.
+  /// If most packets fell apart, one in 16 is tried all the same.
   bool worth_asking() { return sum_ >= 0 || ++left_out_ % 16 == 0; }
-  /// `saved`: the share of its rays' ways that a packet went together.
+  /// `saved`: the share of its rays' ways that the packet went together.
   void note(float saved) {
-    // asking costs as much as a fifth of the rays' ways (measured)
+    // trying costs as much as a fifth of the rays' ways (measured)
     sum_ += static_cast<int>(10 * saved) - 2;
     sum_ = sum_ > kMost ? kMost : sum_ < -kMost ? -kMost : sum_;
   }
@@ -33,7 +33,7 @@ struct Packet : WalkingRays {
   Luck small_luck, middle_luck, large_luck;  ///< of packets of up to 16, 64 and 256
 };
 
-/// What tests take of rays from i on.
+/// The rays from i on, as tests read them.
 [[gnu::always_inline]] inline RayLanes<Lanes> ray_lanes(const Packet& p, int i) {
   return {.org = take_vec<Lanes>(p.org, i),
           .dir = take_vec<Lanes>(p.dir, i),
@@ -48,12 +48,12 @@ struct Packet : WalkingRays {
           .step = 1};
 }
 
-/// What tests take of directions from i on.
+/// Precomputes what tests read of the directions from i on.
 [[gnu::always_inline]] inline void set_directions(Packet& p, int i, bool any_triangles) {
   const Vec3<Lanes> d = take_vec<Lanes>(p.dir, i);
   const Lanes inv_dd = Lanes(1) / dot(d, d);
   store(p.inv_dd + i, inv_dd);
-  store(p.inv_length + i, square_root(inv_dd));
+  store(p.inv_length + i, inverse_length(d, inv_dd));
   if (!any_triangles)
     return;
   const Vec3<Lanes> q = permuted(load<Lanes>(p.axis + i), d);
@@ -98,8 +98,13 @@ inline void prepare(Packet& p, const GeometryView& geometry, bool any_triangles)
       });
 }
 
-/// Whether the hit of primitive `id`, which float does not tell from what ray i met before or from
-/// the end of its search, comes first.
+/// Ids of the primitives that the rays from i on hit.
+inline LaneWords ids_at(const Packet& p, int i) {
+  return load_words<Lanes>(reinterpret_cast<const std::uint32_t*>(p.id + i));
+}
+
+/// True if the hit of primitive `id` comes first, where floats cannot tell it from ray i's hit so
+/// far or from the end of its search.
 [[gnu::noinline, gnu::cold]] inline bool wins_tie(const Packet& p, int i, std::uint32_t id) {
   const ExactRay ray = p.given.ray(i);
   const std::uint32_t held = id_of(p.id[i]);
@@ -107,11 +112,9 @@ inline void prepare(Packet& p, const GeometryView& geometry, bool any_triangles)
                               : comes_first(*p.geometry, ray, id, held);
 }
 
-/// Notes the hit of a lane that ties. What comes first is known closer then.
+/// Takes a hit of a lane that ties, and narrows the span of t of the first one.
 template <bool kAny>
 [[gnu::noinline, gnu::cold]] void note_tie(Packet& p, int i, std::uint32_t id) {
-  if (id_of(p.id[i]) == id)
-    return;
   if (wins_tie(p, i, id))
     p.id[i] = bits_of(id);
   const std::uint32_t held = id_of(p.id[i]);
@@ -136,7 +139,8 @@ inline void note(Packet& p, int i, const Found<Lanes>& found, std::uint32_t id) 
   store(p.best + i, select(closer, kAny ? over : found.hi, best));
   store(p.low + i, select(closer, kAny ? over : found.lo, low));
   store(p.id + i, select(closer, Lanes(bits_of(id)), load<Lanes>(p.id + i)));
-  each_bit(bits(but_not(candidate, closer)), [&](int k) { note_tie<kAny>(p, i + k, id); });
+  const unsigned other = lanes_where(ids_at(p, i) != id);
+  each_bit(bits(but_not(candidate, closer)) & other, [&](int k) { note_tie<kAny>(p, i + k, id); });
 }
 
 /// Tests all live rays against a primitive of a kind and counts that: runs `test(i, g)` for the

@@ -1,6 +1,6 @@
 #pragma once
-// A packet through a grid: all rays together, slice by slice along their major axis, between four
-// bounding planes (frustum.hpp).
+// Takes a packet through a grid: all rays together, slice by slice along their major axis, between
+// four bounding planes (frustum.hpp).
 
 #include "kernel/walk/culling.hpp"
 #include "kernel/walk/frustum_builder.hpp"
@@ -29,7 +29,7 @@ inline SliceSpan span_of(const Frustum& f, int slice) {
 struct Interval {
   float lo, hi;
 };
-/// Where the rays lie along U (j = 0) or V (j = 1) within a slice, in cells.
+/// Bounds of the rays along U (j = 0) or V (j = 1) within a slice, in cells.
 inline Interval side_in(const Frustum& f, int j, const SliceSpan& s) {
   return {lesser(f.lo[j] + s.begin * f.lo_slope[j], f.lo[j] + s.end * f.lo_slope[j]) - f.margin,
           greater(f.hi[j] + s.begin * f.hi_slope[j], f.hi[j] + s.end * f.hi_slope[j]) + f.margin};
@@ -243,7 +243,7 @@ class PacketVisit {
   Mailbox held_;
 };
 
-/// Lets the rays that meet the grid go on from a slice: what lies before it is done.
+/// Lets the rays that meet the grid go on from a slice; the slices before it are done.
 inline void start_from_slice(const Frustum& f, WalkingRays& p, int slice) {
   const Lanes s(static_cast<float>(slice) - f.margin);
   each_live_group(p, [&](int i, int) {
@@ -275,7 +275,7 @@ inline std::uint64_t traverse_parts(
   return apart;
 }
 
-/// Rays that do not go together in one packet may in four; what does not in these goes ray by ray.
+/// Splits a packet that does not go together into four; rays that do not there go one by one.
 template <bool kAny>
 inline std::uint64_t split_packet(
     const GridView& g, Packet& p, int width, bool use_mailbox, Counters& n) {
@@ -285,9 +285,9 @@ inline std::uint64_t split_packet(
   return traverse_parts<kAny>(g, p, width > kMiddle ? kMiddle : kSmall, use_mailbox, n);
 }
 
-/// The live rays of a packet, `width` at most, through one grid, each from p.start on, as far as
-/// they go together, if those before did. Returns the groups whose rays are to go on by themselves,
-/// from p.start on. On return `live` is what it was.
+/// Takes the live rays of a packet, `width` at most, through one grid, each from p.start on, as far
+/// as they go together, if those before did. Returns the groups whose rays are to go on by
+/// themselves, from p.start on. Leaves `live` unchanged on return.
 template <bool kAny>
 inline std::uint64_t traverse_together(
     const GridView& g, Packet& p, int width, bool use_mailbox, Counters& n) {

@@ -1,5 +1,5 @@
 #pragma once
-// One ray: by itself, or of a packet; and what tests take of either.
+// One ray, by itself or in a packet, and the values that tests read from either.
 
 #include "kernel/simd/lanes_four.hpp"
 #include "kernel/walk/packet.hpp"
@@ -11,7 +11,7 @@ struct Single {
   float org[3], dir[3], t_min, best, low;
   std::uint32_t id;
   int axis;  ///< of the shear
-  /// inverse of the direction; this and what follows with triangles only, and a place more
+  /// inverse of the direction; this and the next fields with triangles only, with a spare place
   float inv[4];
   /// the side of a box that the ray meets first, along each axis; the other is 3 places on or back
   int near[4];
@@ -33,7 +33,7 @@ struct PacketRay {
   int i;
 };
 
-/// What tests take of a ray.
+/// Values that tests read from a ray.
 inline float origin(const Single& r, int axis) {
   return r.org[axis];
 }
@@ -58,7 +58,7 @@ inline int axis_of(const Single& r) {
 inline std::uint32_t id_of(const Single& r) {
   return r.id;
 }
-/// What stands for the frame of a ray: its packet, or itself.
+/// The object that holds a ray's frame: its packet, or the ray itself.
 inline const Single& frame_of(const Single& r) {
   return r;
 }
@@ -119,7 +119,7 @@ inline float inverse_length(const PacketRay& r) {
   return r.p.inv_length[r.i];
 }
 
-/// What tests of triangles need of a direction besides the shear.
+/// Sets the inverse direction and the near sides of boxes, which tests of triangles also need.
 inline void set_inverse(Single& r, const Vec3<float>& d) {
   const Four least = four(least_headway(d.x, d.y, d.z));
   const Four dir{d.x, d.y, d.z, 1};
@@ -129,7 +129,8 @@ inline void set_inverse(Single& r, const Vec3<float>& d) {
   store(r.near, inverse < four(0) ? low + 3 : low);
 }
 
-/// A ray by itself, as prepare(Packet&) makes many. False: it meets nothing, and r is not whole.
+/// Prepares a ray by itself, as prepare(Packet&) does many. False: it meets nothing, r is
+/// incomplete.
 inline bool prepare(Single& r,
                     const Vec3<float>& org,
                     const Vec3<float>& d,
@@ -156,7 +157,7 @@ inline bool prepare(Single& r,
   r.given = {{r.org, r.org + 1, r.org + 2}, {r.dir, r.dir + 1, r.dir + 2}, &r.t_min, nullptr};
   r.end = &r.best;
   r.inv_dd = 1 / dd;
-  r.inv_length = square_root(r.inv_dd);
+  r.inv_length = inverse_length(d, r.inv_dd);
   r.axis = 0;
   if (any_triangles) {
     r.axis = shear_axis(d.x, d.y, d.z);

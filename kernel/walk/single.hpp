@@ -1,18 +1,16 @@
 #pragma once
-// One ray at a time against blocks of primitives (SIMD over primitives): the way a packet goes on
-// when its rays have nothing left in common. abreast.hpp takes such rays through grids.
+// Tests one ray at a time against blocks of primitives (SIMD over primitives), when the rays of a
+// packet have nothing left in common. abreast.hpp takes such rays through grids.
 
 #include "kernel/walk/ray_alone.hpp"
 
 namespace grelha::GRELHA_ISA {
 
-/// Takes a hit that float does not tell from what was met before, or from the end of the search.
-/// What comes first is known closer then. Returns whether the search is over.
+/// Takes a hit that floats cannot tell from the hit so far, or from the end of the search, and
+/// narrows the span of t of the first one. Returns true if the search is over.
 template <bool kAny, class Ray>
 [[gnu::noinline, gnu::cold]] bool take_tie(Ray& r, std::uint32_t id) {
   const std::uint32_t held = id_of(r);
-  if (held == id)
-    return false;
   const GivenRays& rays = frame_of(r).given;
   const ExactRay ray = rays.ray(place_of(r));
   const GeometryView& g = *frame_of(r).geometry;
@@ -31,7 +29,7 @@ template <bool kAny, class Ray>
   if (!(t.lo <= best_of(r)))
     return false;
   if (!(t.hi < low_of(r)))
-    return take_tie<kAny>(r, id);
+    return id != id_of(r) && take_tie<kAny>(r, id);
   set_hit(r, t, id);
   return kAny;
 }
@@ -77,7 +75,7 @@ inline unsigned passed_boxes(const Single& r, const BlockBoxes& boxes, float (&e
   return passed;
 }
 
-/// Bits of those eight blocks from `at` on (a multiple of eight) that lie in [first, end).
+/// Bits of the eight blocks from `at` on (a multiple of eight) that lie in [first, end).
 inline unsigned blocks_between(std::uint32_t at, std::uint32_t first, std::uint32_t end) {
   constexpr unsigned kAll = (1u << kBlock) - 1;
   const unsigned from = first > at ? kAll << (first - at) : kAll;
@@ -115,7 +113,7 @@ struct RayAndBlock {
   }
 };
 
-/// In place of Counters where nobody asks for them: to clear those took up to a twentieth of a call
+/// Replaces Counters when no caller asks for them: clearing these took up to a twentieth of a call
 /// for one ray.
 struct NoCounters {
   struct Nowhere {
@@ -124,7 +122,7 @@ struct NoCounters {
   Nowhere primitive_rows, tests[kKinds];
 };
 
-/// Counts rows of primitives that a ray is tested against.
+/// Counts the rows of primitives that a ray is tested against.
 template <class Shape, class Counts>
 inline void count_rows(Counts& n, int rows, int width) {
   n.primitive_rows += static_cast<unsigned>(rows);
@@ -193,14 +191,14 @@ template <bool kAny, class Shape, class Ray, class Counts>
   return false;
 }
 
-/// Whether anything stands in arrays in some cell.
+/// True if some cell holds primitives in arrays.
 inline bool holds_arrays(const CellLists& lists) {
   bool some = false;
   ArrayShapes::for_each([&]<class Shape>() { some = some || lists.of<Shape>().first; });
   return some;
 }
 
-/// What stands in arrays in one cell.
+/// Tests the primitives in the arrays of one cell.
 template <bool kAny, class Ray, class Counts>
 [[gnu::noinline]] bool test_arrays(Ray& r, const CellLists& lists, std::size_t cell, Counts& n) {
   bool over = false;
@@ -211,7 +209,7 @@ template <bool kAny, class Ray, class Counts>
   return over;
 }
 
-/// All primitives of one cell.
+/// Tests all primitives of one cell.
 template <bool kAny, class Ray, class Counts>
 inline bool test_cell(Ray& r, const CellLists& lists, std::size_t cell, Counts& n) {
   const Triangle::CellList& triangles = lists.of<Triangle>();

@@ -1,12 +1,12 @@
 #pragma once
-// What walks through grids allow for rounding, and where they change their ways. u = 2^-24; the
-// derivations are in docs/numerics.md ("What a frustum allows for"), which names the test that
-// pins each.
+// Bounds of rounding in walks through grids, and thresholds between ways to walk. u = 2^-24; the
+// derivations are in docs/numerics.md ("What a frustum allows for"), which names the test that pins
+// each.
 
 namespace grelha {
 
-/// Times the largest component of a direction: what is taken for smaller ones. Over a scene a ray
-/// strays by as much of it, where floats stray by 1e-7.
+/// Times the largest component of a direction: least size of the others. Over a scene a ray strays
+/// by as much of it, where floats stray by 1e-7.
 inline constexpr float kLeastHeadway = 1e-12f;
 
 /// Share of a ray's direction (sum of its components) that must lie along a packet's major axis:
@@ -18,19 +18,19 @@ inline constexpr float kLeastProgress = .15f;
 /// rounding.
 inline constexpr float kThinStay = 1e-3f;
 
-/// Times farthest place times steepest slope: what the sides of a frustum are off by, 38 u.
+/// Times farthest place times steepest slope: error of the sides of a frustum, 38 u.
 inline constexpr float kSideRounding = 2.3e-6f;
 
-/// Times the farthest place from 0 times steepest slope: what planes in world coordinates are off
-/// by beyond that, 14 u.
+/// Times the farthest place from 0 times steepest slope: further error of planes in world
+/// coordinates, 14 u.
 inline constexpr float kPlaneRounding = 1e-6f;
 
-/// Times a grid's pad: how far beside a ray of the frustum a ball or a cone may lie that its test
-/// in float finds met. That is 127 u of the scene's diagonal; half a pad is 128.
+/// Times a grid's pad: how far beside a ray of the frustum a ball or a cone may lie that its float
+/// test finds hit. That is 127 u of the scene's diagonal; half a pad is 128.
 inline constexpr float kPadOfBalls = .5f;
 
-/// Times the farthest place: what a hit may lie before its ray's start, 46 u of the way along the
-/// major axis, which is at most twice the farthest: 92 u.
+/// Times the farthest place: how far a hit may lie before its ray's start, 46 u of the way along
+/// the major axis, which is at most twice the farthest: 92 u.
 inline constexpr float kNearSlack = 6e-6f;
 
 /// Times the length of a plane's gradient, which is off by 2.5 u.

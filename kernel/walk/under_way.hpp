@@ -5,7 +5,7 @@
 
 namespace grelha::GRELHA_ISA {
 
-/// What is chosen is stored with as much behind it as a register holds.
+/// Length of arrays: storing chosen lanes writes a full register, past the last one.
 inline constexpr int kWayRow = kPacket + kWidth<Lanes>;
 
 /// Rays that came to cells with something in them.
@@ -15,7 +15,7 @@ struct Arrivals {
   alignas(64) std::uint32_t cell[kWayRow];
 };
 
-/// The rays of a packet that are under way through a grid, among others that are no longer.
+/// The rays of a packet that are still under way through a grid.
 class RaysUnderWay {
  public:
   RaysUnderWay(const GridView& g, const WalkingRays& p) : g_(g), p_(p) {
@@ -60,7 +60,7 @@ class RaysUnderWay {
     count_ += chosen.count();
   }
 
-  /// Where the distances begin that are those of the octants of rays.
+  /// Start of the distances for the octants of rays.
   Words<Lanes> field_of(const Course<Lanes>& c) const {
     const Lanes o(0);
     Lanes field(1);
@@ -127,7 +127,7 @@ class RaysUnderWay {
     const Mask<Lanes> goes = grelha::GRELHA_ISA::step(g_, c, load<Lanes>(distance_ + i), best, at);
     for (int a = 0; a < 3; ++a)
       store(cell_[a] + i, select(goes, at[a], Lanes(0)));
-    // where it ends is what tells a ray that is under way
+    // only a ray that is under way has an end
     store(end_ + i, select(goes, c.end, Lanes(-kInfinity)));
     going_ += __builtin_popcount(bits(goes) & lanes_before(i));
   }

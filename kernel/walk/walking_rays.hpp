@@ -38,7 +38,7 @@ class RowsAhead {
 /// nearest primitive so far, which is met at a t from `low` to `best`; while there is none both are
 /// the end of the search.
 ///
-/// Rays from afar are copied into the frame of a grid: what is `given` is the rays as they came.
+/// Rays from afar are copied into the frame of a grid: `given` holds the rays before that.
 struct WalkingRays {
   alignas(64) float org[3][kPacket];
   alignas(64) float dir[3][kPacket];
@@ -52,10 +52,10 @@ struct WalkingRays {
   alignas(64) float axis[kPacket];          ///< of the shear: 0, 1 or 2
   int group_axis[kPacket / kWidth<Lanes>];  ///< the axis all rays of a group share, or -1
   int size, groups;
-  RowsAhead ahead;     ///< what the next packet's rays come from, and this one's answers go to
+  RowsAhead ahead;     ///< sources of the next packet's rays, and targets of this one's answers
   std::uint64_t live;  ///< bit g: group g has a ray that still searches
   const float* base = nullptr;  ///< x, y, z of where their frame begins; null: 0
-  float off = 0;                ///< what coordinates in the frame are off by
+  float off = 0;                ///< error of coordinates in the frame
   float room = kInfinity;       ///< see RayLanes
   GivenRays given;
   const float* end = nullptr;  ///< t where the search of a ray that has met nothing ends, as given
@@ -68,8 +68,8 @@ inline float bits_of(std::uint32_t id) {
   return bits_float(static_cast<std::int32_t>(id));
 }
 
-/// A component of a direction below this meets none of its planes on any way that counts, and taken
-/// instead of it never makes NaN.
+/// Least size of a direction's components. A smaller one meets no plane across its axis on any way
+/// that counts; with this in its place, no NaN appears.
 template <class Real>
 inline Real least_headway(const Real& x, const Real& y, const Real& z) {
   return Real(kLeastHeadway) * larger(larger(x, y), z);

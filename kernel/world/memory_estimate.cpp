@@ -23,7 +23,7 @@ constexpr double kBoxed = kListed + kPlaces * kRow / kBlock;
 constexpr double kMaterial = sizeof(float) * kMaterialFields;  ///< prepared
 constexpr auto kTriangles = kNumber<Triangle>;
 
-/// What lists hold: references by kind, and blocks of triangles.
+/// The size of lists: references by kind, and blocks of triangles.
 struct Lists {
   std::array<double, kKinds> references{};
   double blocks = 0;
@@ -106,7 +106,7 @@ double prepared_bytes(const Primitives& p) {
   return sum;
 }
 
-/// The list of what has no grid, as one cell.
+/// The list of primitives without a grid, as one cell.
 Lists of_outside(const Primitives& p, const Plan& plan) {
   Lists lists;
   for (const std::uint32_t id : plan.apart)
@@ -121,11 +121,11 @@ double fields_of(double cells) {
 
 /// Bytes as a build goes on.
 struct Memory {
-  double kept = 0;     ///< by what is built
-  double waiting = 0;  ///< ids of what is to be built
+  double kept = 0;     ///< by what is built so far
+  double waiting = 0;  ///< ids of the primitives still to be built
   double peak = 0;
 
-  /// For a while: what is being built, and what that takes besides.
+  /// Raises the peak by what is being built, and by what that takes besides for a while.
   void raise(double own, double besides) { peak = std::max(peak, kept + own + waiting + besides); }
 
   /// A grid of so many cells.

@@ -1,5 +1,5 @@
 #pragma once
-// What a build will take, before it does.
+// Estimates the memory that a build will take.
 
 #include <cstdint>
 
@@ -7,13 +7,13 @@
 
 namespace grelha {
 
-/// What carrying out a plan for a scene takes, the plan's own lists included.
+/// The memory that carrying out a plan for a scene takes, including the plan's own lists.
 ///
-/// Method  sixteen thousand primitives of each grid, picked at random, say how many references
-///         there will be and how many pairs of them share a cell. From the pairs follows how many
-///         blocks of eight are not full. All else are counts.
+/// Method  sixteen thousand primitives of each grid, picked at random, tell how many references
+///         there will be and how many pairs of primitives share a cell. From the pairs follows how
+///         many blocks of eight are not full. All else are counts.
 BuildMemory memory_of(const SceneSpans& scene, const Primitives& p, const Plan& plan);
-/// No plan for so many primitives comes near so many bytes: an estimate can be spared.
+/// True if no plan for so many primitives takes nearly so many bytes: then no estimate is needed.
 bool surely_fits(const Primitives& p, std::uint64_t bytes);
 
 }  // namespace grelha

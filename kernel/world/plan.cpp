@@ -15,16 +15,16 @@ namespace {
 
 /// so few primitives are faster looped over than walked through
 constexpr std::size_t kFewest = 8;
-constexpr std::size_t kMostOutside = 32;  ///< primitives without a grid, each met by every ray
+constexpr std::size_t kMostOutside = 32;  ///< primitives without a grid, each tested by every ray
 /// triangles; smaller objects share the grid of the loose ones
 constexpr std::size_t kSmallObject = 256;
-/// of the diagonal of what it lies among: larger primitives get no grid
+/// times the diagonal of the group's box: larger primitives get no grid
 constexpr double kHuge = .5;
 /// a cell: more would not make its lists shorter
 constexpr double kMostPads = 64;
 /// Scenes' diagonals: rays seldom start further away.
 constexpr double kFarEnough = 4;
-/// Of the scene's diagonal: what rays that are moved to a grid in double are off by, 100 roundings.
+/// Times the scene's diagonal: error of rays that are moved to a grid in double, 100 roundings.
 constexpr double kDoublesOff = 0x1p-46;
 /// M; packets like it coarser than the report's 2 (docs/performance.md)
 constexpr double kDensity = .7;
@@ -42,7 +42,7 @@ bool are_numbers(Floats v) {
   return found == 0;
 }
 
-/// Whether every primitive has a place. The arrays are asked as they lie, many at a time.
+/// True if all numbers of all finite primitives are finite. Scans arrays in order, many at a time.
 bool all_are_sound(const GeometrySpans& g) {
   bool sound = true;
   for_each_finite_shape([&]<class Shape>() {
@@ -91,7 +91,7 @@ std::size_t triangles_in_objects(const Primitives& p) {
   return sum;
 }
 
-/// One group of ids a grid: first what is loose (with small objects), then each larger object.
+/// Groups of ids, one per grid: first loose primitives with small objects, then each larger object.
 std::vector<Ids> group(const Primitives& p) {
   std::vector<Ids> groups(1);
   reserve_to_fill(groups.front(), p.finite_count() - triangles_in_objects(p));
@@ -101,7 +101,8 @@ std::vector<Ids> group(const Primitives& p) {
     else
       append(groups.front(), p.ids.begin(Shape::kKind), p.ids.end(Shape::kKind));
   });
-  // What has no place is met by no ray, and would put every cell in doubt.
+  // No ray meets a primitive with numbers that are not finite, and it would leave each cell in
+  // doubt.
   if (!all_are_sound(p.geometry))
     for (Ids& ids : groups)
       std::erase_if(ids, [&](std::uint32_t id) { return !is_sound(p, id); });
@@ -110,8 +111,7 @@ std::vector<Ids> group(const Primitives& p) {
 }
 
 /// Takes primitives as large as all the rest out of a group, again and again while any is: a ground
-/// under a teapot, a stadium around that. What is left is of one scale, which is what a uniform
-/// grid wants.
+/// under a teapot, a stadium around that. The rest is of one scale, as a uniform grid needs.
 Extent set_huge_apart(const Primitives& p, Ids& ids, Extent all, Ids& outside, int threads) {
   for (;; all = extent_of(p, ids, threads)) {
     const double huge = kHuge * all.box.diagonal();
@@ -185,7 +185,7 @@ class Planner {
     }
   }
 
-  /// Plans grids for what is worth one. Crowds that are found join the groups.
+  /// Plans grids for groups that are worth one. Crowds that are found join the groups.
   void plan_groups() {
     for (std::size_t i = 0; i < groups_.size(); ++i) {
       Ids ids = std::move(groups_[i]);
@@ -209,7 +209,7 @@ class Planner {
  private:
   static void append(Ids& to, const Ids& ids) { to.insert(to.end(), ids.begin(), ids.end()); }
 
-  /// Takes out what one grid does not suit; returns the extent of what is left.
+  /// Takes out the primitives that one grid does not suit; returns the extent of the rest.
   Extent set_apart(Ids& ids, Extent before) {
     Extent extent = set_huge_apart(p_, ids, before, plan_.apart, threads_);
     if (set_few_apart(p_, ids, plan_.apart))

@@ -1,5 +1,5 @@
 #pragma once
-// Which primitives get which grid, and what that will take, before any list is written.
+// Decides which primitives get which grid, and what that will take, before any list is written.
 
 #include <cstdint>
 #include <vector>
@@ -17,7 +17,7 @@ struct PlannedGrid {
 
 struct Plan {
   std::vector<PlannedGrid> parts;
-  std::vector<std::uint32_t> apart;  ///< what has no grid, ascending
+  std::vector<std::uint32_t> apart;  ///< ids without a grid, ascending
   Box all;                           ///< of everything finite
 };
 
@@ -25,8 +25,8 @@ constexpr double kPlanShare = .08;  ///< of the time of a build, before lists ar
 
 int threads_of(const BuildOptions& options);
 /// The room around primitives for rays that start within `reach` of their box on each axis, `reach`
-/// no less than its diagonal. Such rays are at most 1 + sqrt 3 reaches from any of them. A walk in
-/// float is off by at most 32 u of the reach, and by as much along its way (derived in
+/// no less than its diagonal. Such rays are at most 1 + sqrt 3 reaches from any primitive. A walk
+/// in float is off by at most 32 u of the reach, and by as much along its way (derived in
 /// docs/numerics.md).
 double pad_of(double reach);
 /// All finite primitives that have a place.

@@ -13,7 +13,7 @@
 namespace grelha {
 namespace {
 
-/// Whether an index reaches `end`.
+/// True if an index is `end` or greater.
 bool beyond(Indices indices, std::size_t end) {
   std::uint32_t most = 0;
   for (const std::uint32_t i : indices)

@@ -1,5 +1,5 @@
 #pragma once
-// What World holds: the built grids and the views of them that the hot loops see.
+// The contents of World: the built grids and the views that the hot loops read.
 
 #include <array>
 #include <memory>

@@ -45,7 +45,7 @@ inline scalar::RayLanes<float> in_float(const ExactRay& r) {
                   static_cast<float>(r.org[2])},
           .dir = dir,
           .inv_dd = inv_dd,
-          .inv_length = std::sqrt(inv_dd),
+          .inv_length = inverse_length(dir, inv_dd),
           .t_min = static_cast<float>(r.t_min),
           .off = 0,
           .room = std::numeric_limits<float>::infinity()};
@@ -77,11 +77,16 @@ OneHit one_hit(const ExactRay& ray,
                   t_max);
     expect_bounds(scalar::bound_triangle(ray, primitive.corner), exact, t_max);
   } else {
-    expect_bounds(scalar::bound(in_float(ray), primitive, t_max), exact, t_max);
-    expect_bounds(
-        scalar::bound(scalar::in_double(ray), scalar::widened<Shape, 0, float>(primitive), kNever),
-        exact,
-        t_max);
+    const scalar::Found<float> found = scalar::bound(in_float(ray), primitive, t_max);
+    expect_bounds(found, exact, t_max);
+    const auto wide = scalar::in_double(ray);
+    const auto in_double = scalar::widened<Shape, 0, float>(primitive);
+    expect_bounds(scalar::bound(wide, in_double, kNever), exact, t_max);
+    if constexpr (Shape::kKind == PrimitiveKind::kSphere) {
+      const auto step = scalar::narrowed<double>(wide, in_double, found.lo, found.hi);
+      if (found.some && found.sure && step.sure)
+        expect_bounds(step, exact, t_max);
+    }
   }
   const bool hit = exact.some() && exact.compare(t_max) < 0;
   return {hit, hit ? exact.rounded() : -1};
