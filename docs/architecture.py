@@ -1,9 +1,8 @@
 #!/usr/bin/python3
-"""Draws docs/images/architecture.svg from the #include lines: what stands on what. Needs graphviz.
+"""Draws docs/images/architecture.svg, the dependencies of the #include lines. Needs graphviz.
 
-A box is a room of the kernel or of the frontend; arrows that follow from others are left out.
---check: say whether the picture is still of these sources. Where components include each other,
-nothing is drawn.
+A box is a component of the kernel or of the frontend; arrows that follow from others are omitted.
+--check: reports if the picture is out of date. If components include each other, nothing is drawn.
 """
 import collections
 import graphlib

@@ -1,12 +1,12 @@
-// What rays cost that start far from a small mesh in a vast scene, beside Embree's (robust, its
-// best way): one thread, one process, taking turns.
+// Measures the cost of rays that start far from a small mesh in a vast scene, and compares it with
+// Embree (robust, its fastest mode). One thread and one process; the methods take turns.
 //
 // afar [--rays N] [--rounds N] [--floor SIZES] [--scene NAME]...
 //
-// A scene is a file, or `GENERATOR SIZE`, of which triangles alone are taken. They stand on a floor
-// SIZES times as wide as they are. Rays start so many sizes away above the floor and go to points
-// in the box of the mesh: `eye`, 64 neighbours at a time from one place; `scattered`, each from a
-// place of its own. Calls are for one ray each.
+// A scene is a file or `GENERATOR SIZE`; only its triangles are used. The mesh stands on a floor
+// SIZES times as wide as the mesh. Rays start a given number of mesh sizes away above the floor and
+// go to points in the bounding box of the mesh: `eye`, 64 consecutive rays from one origin;
+// `scattered`, each ray from its own origin. Each call traces one ray.
 
 #include <algorithm>
 #include <cmath>
@@ -80,7 +80,7 @@ Scene on_a_floor(const std::string& name, double sizes, Bounds& mesh) {
   return scene;
 }
 
-/// `rays` rays from places `sizes` away; of each `share` one place.
+/// `rays` rays from origins `sizes` mesh sizes away; each run of `share` rays has one origin.
 RayBuffer rays_from(const Bounds& mesh, double sizes, int rays, int share) {
   std::mt19937 random(7);
   const auto unit = [&] { return double(random() >> 8) * 0x1p-24; };
@@ -97,7 +97,7 @@ RayBuffer rays_from(const Bounds& mesh, double sizes, int rays, int share) {
     }
     double d[3], dd = 0;
     for (int a = 0; a < 3; ++a) {
-      // neighbours see some 64 x 64 of them across the mesh
+      // the rays of one origin are as dense as 64 x 64 rays across the mesh
       const double beside = share > 1 ? (unit() - .5) / 8 * mesh.size() : 0;
       d[a] = aim[a] + beside - eye[a];
       dd += d[a] * d[a];

@@ -48,7 +48,7 @@ def write_csv(rows, path):
 
 
 def rows_from_csv():
-    """What write_csv kept in docs/."""
+    """Reads the results that write_csv stored in docs/."""
     return {
         r["scene"]: {k.replace("_", " "): float(v)
                      for k, v in r.items()

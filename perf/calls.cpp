@@ -1,12 +1,13 @@
-// What a call for one ray costs, beside streams of the same rays and Embree's rtcIntersect1 and
-// rtcOccluded1: one thread, one process, taking turns.
+// Measures the cost of a call for one ray, and compares it with streams of the same rays and with
+// Embree's rtcIntersect1 and rtcOccluded1. One thread and one process; the methods take turns.
 //
 // calls [--size N] [--rounds N] [--scene NAME]...
 //
-// A scene is a file, or `GENERATOR SIZE`; without any, 2000 spheres and a mountain. The rays are a
-// camera's, one a pixel of N x N, in the order of the picture and in none. No way is
-// timed whose answers differ from those of the stream: in a bit for Grelha, in kDisagree of the
-// rays for Embree. Empty: the same rays with nothing between t_min and t_max.
+// A scene is a file, or `GENERATOR SIZE`; without any, 2000 spheres and a mountain. The rays are
+// camera rays, one for each pixel of N x N, in the order of the picture and in random order. A
+// method is timed only if its answers agree with those of the stream: in every bit for Grelha, for
+// all but kDisagree of the rays for Embree. Empty: the same rays with nothing between t_min and
+// t_max.
 
 #include <algorithm>
 #include <cstdio>

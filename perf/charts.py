@@ -6,9 +6,9 @@
 Without a name, all. Every point tells the command that repeats it: in the CSV, in the SVG when the
 mouse rests on it, and in report.html, which opens without a network. --quick: smaller pictures,
 fewer points, and nothing kept in docs/. --draw: the charts and the page from the CSVs in docs/.
-What is measured stays in the build folder beside the references, so that the page shows all charts
-whichever was made last, with small pictures; references are made anew when their scene or options
-change (delete charts/ there when the program draws other pictures).
+Measurements are stored in the build folder beside the references, so the page shows all charts with
+small pictures, whichever chart was made last. References are rendered again when their scene or
+options change (delete charts/ there when the program draws other pictures).
 """
 import argparse
 import csv
@@ -36,7 +36,7 @@ class Plan:
     rounds: int
     seconds: float  # of CPU time for what takes turns, before rounds are added
     size: int       # side of pictures whose error is measured
-    side: int       # and of those that are only timed
+    side: int       # and of pictures that are only timed
     scenes: int     # at most so many
     settings: int   # of each method, at most
     reference: int  # samples a pixel
@@ -84,7 +84,7 @@ def wrapped(text):
 
 
 def known(name, module, kept, out):
-    """What the CSV says, with small pictures where they were measured here; None without a CSV."""
+    """Reads the CSV, with small pictures if they were measured here; None without a CSV."""
     if not (out / f"charts-{name}.csv").exists():
         return None
     rows = read_csv(f"charts-{name}", out)

@@ -1,11 +1,11 @@
-// What a ray by itself looks into, beside a tree of boxes (counts/bvh8.hpp): counts, which no noise
-// can move.
+// Counts the boxes and triangles that single rays test, and compares them with those of a BVH
+// (counts/bvh8.hpp). Counts have no timing noise.
 //
 // counts [--size N] [--most RATIO] [--scene NAME]...
 //
-// A scene is a file, or `GENERATOR SIZE`; of its primitives triangles alone are taken. Of ours rows
-// are counted, up to eight boxes or triangles against one ray; of the tree's nodes and leaves. With
-// --most the program fails where ours over the tree's is above.
+// A scene is a file or `GENERATOR SIZE`; only its triangles are used. For Grelha the program counts
+// rows: up to eight boxes or triangles against one ray. For the BVH it counts nodes and leaves.
+// With --most the program fails if the ratio of Grelha's count to the BVH's is above RATIO.
 
 #include <cmath>
 #include <cstdio>

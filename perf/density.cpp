@@ -1,13 +1,14 @@
-// What a ray costs by the density M of the grid, by kind and scene, and where the kernel's own
-// choice stands.
+// Measures the cost of a ray as a function of the grid density M, by kind of ray and scene, and
+// compares the kernel's own choice of M with it.
 //
 // density [--scene GENERATOR SIZE | FILE]... [--size N] [--rounds N] [--csv]
 //
-// All grids of a scene trace the same rays in one process, by turns: a ratio is the median over
-// rounds of two CPU times of one round. Answers must be the same bits at every density. Kinds of
-// rays are those of `trace` (perf/ray_sets.hpp); the last row of a scene is a whole plain picture,
-// twice as wide. Columns: ns a ray (a picture) of the kernel's own choice, that over the best of
-// all M, and each M over that choice.
+// All grids of a scene trace the same rays in one process and take turns. A ratio is the median
+// over the rounds of the ratio of two CPU times of one round. Answers must have the same bits at
+// every density. The kinds of rays are those of `trace` (perf/ray_sets.hpp); the last row of a
+// scene is a whole plain picture, twice as wide. Columns: ns per ray (per picture) with the
+// kernel's own choice, the ratio of that time to the best of all M, and the ratio of each M to that
+// time.
 
 #include <algorithm>
 #include <cstdio>
@@ -18,7 +19,7 @@
 #include <string>
 #include <vector>
 
-#include "kernel/world/world_impl.hpp"
+#include "kernel/grid/world_impl.hpp"
 #include "perf/ray_sets.hpp"
 #include "perf/timing.hpp"
 

@@ -265,8 +265,8 @@ class Built final : public EmbreeScene {
     attach(g, first);
   }
 
-  // What does not change from ray to ray is set once: Embree leaves it alone. It reads start and
-  // direction as vectors, which would wait for scalar stores.
+  // Fields that are equal for all rays are set once, because Embree does not write to them. Embree
+  // loads origin and direction as vectors; scalar stores would stall these loads.
   void single(const RayBuffer& r, EmbreeHint& hint) {
     using Four [[gnu::vector_size(16)]] = float;
     RTCRayHit hit;

@@ -12,7 +12,7 @@ namespace grelha::perf {
 
 #if GRELHA_EMBREE >= 4
 
-/// What Embree is told of rays besides where they are.
+/// The hints that Embree gets with a query: arguments or a context.
 struct EmbreeHint {
   RTCIntersectArguments closest;
   RTCOccludedArguments any;
@@ -25,7 +25,7 @@ struct EmbreeHint {
   }
 };
 
-/// One ray, or those of a packet whose place in `valid` is -1: what they meet first.
+/// Finds the nearest hit of one ray, or of the rays of a packet whose element in `valid` is -1.
 inline void intersect(RTCScene s, EmbreeHint& hint, RTCRayHit& r) {
   rtcIntersect1(s, &r, &hint.closest);
 }
@@ -35,7 +35,7 @@ inline void intersect(const int* valid, RTCScene s, EmbreeHint& hint, RTCRayHit8
 inline void intersect(const int* valid, RTCScene s, EmbreeHint& hint, RTCRayHit16& r) {
   rtcIntersect16(valid, s, &r, &hint.closest);
 }
-/// Whether they meet anything: their tfar is -infinity then.
+/// Tests the rays for occlusion: tfar is -infinity after a hit.
 inline void occlude(RTCScene s, EmbreeHint& hint, RTCRay& r) {
   rtcOccluded1(s, &r, &hint.any);
 }

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""What --error promises against what it keeps, on generated scenes that are hard to sample and on
-ordinary ones.
+"""Compares the true error of `--error` renders with the requested one, on generated scenes that are
+hard to sample and on ordinary ones.
 
     ./run perf error_suite [--hostile N] [--kinds A,B] [--errors A,B] [--seeds N] [--size N]
                            [--most N] [--folder F] [--long] [--keep] [SCENE...]
@@ -13,7 +13,7 @@ squares; runs whose reference stays coarser than half their E are left out. Then
 
 - kept: true RMSE at most E; beyond: above 1.3 E
 - bound: the run's own bound is at least the true RMSE
-- missed: tiny things, in %, that show less than a tenth of what the reference shows; by E
+- missed: tiny objects, in %, with less than a tenth of the light that the reference shows; by E
 - light: the pictures' mean over the reference's, on average
 - time: CPU seconds over those of the best fixed number of samples for the same true RMSE, geometric
   mean; and worst
@@ -242,7 +242,7 @@ def write_csv(runs, path):
             table.writerow({k: f"{v:.5g}" if isinstance(v, float) else v for k, v in r.items()})
 
 
-def asked_for():
+def requested():
     def names(text):
         wrong = set(text.split(",")) - set(KINDS)
         if wrong:
@@ -289,7 +289,7 @@ def ordinary_scenes(asked):
 
 
 def subjects_by_row(shop, asked):
-    """What each row of the table is of."""
+    """Yields each row of the table with the scenes that it summarises."""
     of_kind = {kind: [] for kind in asked.kinds}
     for k in range(min(asked.hostile, len(asked.kinds) * VARIANTS)):
         kind = asked.kinds[k % len(asked.kinds)]
@@ -300,7 +300,7 @@ def subjects_by_row(shop, asked):
 
 
 def main():
-    asked = asked_for()
+    asked = requested()
     shop = Workshop(asked.program, asked.folder, asked.size)
     head = ["kind", "runs", *(f"true / E at {e:g}: worst, median" for e in asked.errors), "kept",
             "bound", "missed, %", "light", "time: mean, worst"]

@@ -1,15 +1,15 @@
-// Wrong answers against time: meshes, rays at vertices, edges and faces from near and from afar,
-// each answer judged by rational numbers (GMP); beside Embree, fast and robust, on one thread.
+// Measures wrong answers and time: meshes, rays at vertices, edges and faces from near and from
+// afar. Rational numbers (GMP) decide each answer. Compares Grelha with Embree, fast and robust, on
+// one thread.
 //
 // exact [--rays N] [--rounds N] [--scene NAME]...
 //
 // Prints CSV; perf/exact.py draws it.
 //
-// A scene is a file, or `GENERATOR SIZE`, of which triangles alone are taken; without any, two real
-// scans. It stands where it is, and moved by a thousand and by a million of its diagonals. An
-// answer is wrong where something is met and nothing should be, or the other way round, and where
-// another triangle is met. Of equal t the lower id is right; Embree, which promises none, may name
-// any.
+// A scene is a file or `GENERATOR SIZE`; only its triangles are used. The default is two real
+// scans. Each is tested in place, and translated by a thousand and by a million of its diagonals.
+// An answer is wrong if it is a false hit, a missed hit or another triangle. At equal t the lower
+// id is right; Embree specifies no order, so any of the ids is accepted.
 
 #include <algorithm>
 #include <chrono>
@@ -110,7 +110,7 @@ RayBuffer buffer_of(const std::vector<Ray>& rays) {
   return b;
 }
 
-/// What is right.
+/// The exact answers.
 struct Judged {
   std::vector<test::rational::First> first;
 };

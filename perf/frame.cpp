@@ -1,5 +1,5 @@
-// What the rays of a picture cost alone beside the whole picture, and one thread beside two;
-// everything takes turns in one process.
+// Measures the time to trace all rays of a picture and the time of the whole picture, with one
+// thread and with two. The measurements take turns in one process.
 //
 // frame SCENE [ROUNDS]
 //

@@ -118,8 +118,8 @@ def file_to_file(run):
 
 
 def profile(bench, scenes):
-    """Where the time of plain pictures goes: by phase, of the fastest of whole runs on one thread,
-    and how far the others lie."""
+    """Measures the time of plain pictures by phase: of the fastest of several whole runs on one
+    thread, with the spread of the others."""
     runs = {name: [] for name, *_ in scenes}
     for _ in range(4 * bench.rounds):
         for name, scene, *_ in scenes:

@@ -201,7 +201,7 @@ int main(int argc, char** argv) {
   }
   for (const auto& place : places)
     for (const Rung& rung : kRungs) {
-      if (!variant_of(rung) || !variant_of(rung)->runs_here())
+      if (!variant_of(rung) || !variant_of(rung)->is_supported())
         continue;
       for (const float density : kDensities) {
         if (rung.brute && density != kDensities[0])

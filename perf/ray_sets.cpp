@@ -10,10 +10,10 @@
 
 #include "frontend/input/effects.hpp"
 #include "kernel/scene/frame.hpp"
-#include "kernel/render/band.hpp"
-#include "kernel/render/sampling.hpp"
+#include "kernel/shade/strip.hpp"
+#include "kernel/shade/sampling.hpp"
 #include "kernel/shapes/surface.hpp"
-#include "kernel/world/world_impl.hpp"
+#include "kernel/grid/world_impl.hpp"
 
 namespace grelha::perf {
 
@@ -27,9 +27,9 @@ constexpr int kStrip = 4;         ///< tiles side by side
 constexpr int kMostAcross = 512;  ///< pixels with rays, in a row of the picture
 constexpr float kRoughness = .1f;
 /// Rays start this many times as far from their surface as Grelha's own bound of its errors asks
-/// for, so that none of what is timed meets the surface it left.
+/// for, so that no timed ray hits the surface that it left.
 constexpr float kClearance = 8;
-/// times the scene's width: what large triangles, Embree's stand-ins for planes, are off by
+/// times the scene's width: error of the large triangles that replace planes in Embree
 constexpr float kPlaneClearance = 4e-5f;
 
 void add(RayBuffer& rays, const V& org, const V& dir, float t_end) {
@@ -52,8 +52,8 @@ struct Random {
 
 struct FirstHit {
   V point, normal, mirror;  ///< normal: geometric, unit, towards the viewer; mirror: unit
-  float away;
-  V start() const { return point + away * normal; }
+  float offset;
+  V start() const { return point + offset * normal; }
 };
 
 RayMaker::RayMaker(const SceneFile& file, const World& world, int size) : world_(world) {
@@ -142,10 +142,10 @@ std::vector<FirstHit> RayMaker::hits_of(const RayBuffer& rays) const {
     h.normal = side * s.normal;
     const V n = side * s.shading, reflected = d - (2 * dot(d, n)) * n;
     // kept above the surface, as shading does
-    h.mirror = normalize(reflected - (2 * lesser(dot(reflected, h.normal), 0.f)) * h.normal);
-    h.away = kClearance * s.away;
+    h.mirror = normalize(reflected - (2 * min(dot(reflected, h.normal), 0.f)) * h.normal);
+    h.offset = kClearance * s.offset;
     if (scene.geometry.ids.has(PrimitiveKind::kPlane, found.id[i]))
-      h.away += kPlaneClearance * (extent + largest(s.point));
+      h.offset += kPlaneClearance * (extent + largest(s.point));
     hits.push_back(h);
   }
   return hits;
@@ -169,7 +169,7 @@ struct Bounces {
   void add_rays(RayKind kind, const FirstHit& h);
 };
 
-/// Whether a render would send a shadow ray there.
+/// Returns true if a render would trace a shadow ray to `at`.
 bool Bounces::facing(const FirstHit& h, const Float3& at) const {
   return dot(h.normal, V{at.x, at.y, at.z} - h.start()) > 0;
 }
@@ -205,7 +205,7 @@ void Bounces::add_glossy(const FirstHit& h) {
   for (int i = 0; i < kSamples; ++i) {
     const Pair d = disc_point(random.jittered(i));
     const V to = h.mirror + (kRoughness * d.u) * u + (kRoughness * d.v) * v;
-    const V above = to - (2 * lesser(dot(to, h.normal), 0.f)) * h.normal;
+    const V above = to - (2 * min(dot(to, h.normal), 0.f)) * h.normal;
     add(rays, h.start(), normalize(above), kInfinity);
   }
 }
@@ -216,7 +216,7 @@ void Bounces::add_diffuse(const FirstHit& h) {
   across(h.normal, u, v);
   const float x = random(), y = random();
   const Pair d = disc_point(Pair{x, y});
-  const float up = square_root(greater(1 - (d.u * d.u + d.v * d.v), 1e-6f));
+  const float up = square_root(max(1 - (d.u * d.u + d.v * d.v), 1e-6f));
   add(rays, h.start(), normalize(d.u * u + d.v * v + up * h.normal), kInfinity);
 }
 

@@ -34,7 +34,7 @@ inline constexpr std::array<const char*, 8> kRayKinds = {"primary",
 /// mirror       from each first hit, whatever it is made of
 /// glossy 16    16 around each such direction, in a lobe of roughness .1
 /// scattered    from each first hit in a direction spread as diffuse light is
-/// shadow of mirror hits   hard shadows of what the rays of `mirror` meet
+/// shadow of mirror hits   hard shadow rays from the hits of `mirror`
 class RayMaker {
  public:
   RayMaker(const SceneFile& file, const World& world, int size);  ///< size: at least 32
@@ -44,7 +44,7 @@ class RayMaker {
     return kind == RayKind::kShadow || kind == RayKind::kMirrorShadow;
   }
   static bool any_hit(RayKind kind) { return to_point(kind) || kind == RayKind::kArea; }
-  /// Where the light is that these rays go to.
+  /// Returns the position of the light that shadow rays go to.
   Float3 light() const { return light_.position; }
 
  private:

@@ -4,11 +4,12 @@
 //
 // Pictures have 512 x 512 pixels and paths of at most 6 rays, as in the report's program.
 //
-// Without grid, with a grid of the report's M = 2 cell by cell, with mailboxes, with threads: the
-// plain scalar walk of one ray and one primitive at a time. Then packets on the grid the kernel
-// chooses. A picture's rays are recorded once and each way traces them all; where that would take
-// long without grid, every so many-th. What a picture costs besides (camera rays, shading, queues)
-// is measured in a whole render and the same for all.
+// The first methods are the plain scalar walk of one ray and one primitive at a time: without grid,
+// with a grid of the report's M = 2, with mailboxes, with threads. The last one traces packets on
+// the grid that the kernel chooses. The rays of a picture are recorded once, and each method traces
+// every ray; without grid only every n-th ray if all would take too long. The remaining cost of a
+// picture (camera rays, shading, queues) is measured in a whole render and is the same for all
+// methods.
 
 #include <algorithm>
 #include <cstdio>
@@ -60,7 +61,7 @@ std::size_t count_of(const FrameRays& rays) {
   return count;
 }
 
-/// Whole renders, and what of them is not tracing.
+/// Times whole renders, and their time outside of tracing.
 void render_packets(Picture& p, int threads) {
   RenderOptions o = p.options;
   o.threads = threads;
@@ -95,7 +96,7 @@ void print(const Picture& p, std::size_t stride, int threads) {
   std::printf("}\n");
 }
 
-/// Of so many rays one is traced without grid.
+/// Returns n if every n-th ray is traced without grid.
 std::size_t stride_without_grid(const Picture& p) {
   const double tests = static_cast<double>(count_of(p.rays) * p.primitives());
   return std::max<std::size_t>(1, static_cast<std::size_t>(tests / kMostTests + .5));

@@ -1,11 +1,11 @@
-// What breaks ray tracers, counted: the rows of tests/stability/ with many rays, Grelha beside
-// Embree, as it comes and robust.
+// Counts the errors of ray tracers in hard cases: the rows of tests/stability/ with many rays, for
+// Grelha and for Embree in its default and its robust mode.
 //
 // stability [--rays N] [--pixels N] [--rows NAME] [--seed N]
 //
-// Prints JSON: by row and tracer how many answers were asked for and how many were lost, false or
-// met what the ray had left; pictures, which only Grelha makes; and what rays that are no numbers,
-// or lie along axes, cost against ordinary ones. Exits 1 when an answer of Grelha's is wrong.
+// Prints JSON: for each row and tracer the number of answers, of missed hits, of false hits and of
+// hits on the surface that the ray had left; pictures, for Grelha alone; and the cost of rays with
+// NaN or along axes relative to ordinary rays. Exits with 1 if an answer of Grelha is wrong.
 
 #include <algorithm>
 #include <chrono>
@@ -149,7 +149,7 @@ Json run_row(const Row& row, std::vector<Column>& all, const Options& o, bool& f
   return out;
 }
 
-/// Ordinary rays at a crowd, and the same with something odd about each.
+/// Ordinary rays at a cluster, and the same with something odd about each.
 RayList odd_rays(const std::string& kind, std::size_t count) {
   Random random(3);
   RayList rays;

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""What breaks ray tracers, counted: Grelha beside Embree, as it comes and robust.
+"""Counts the errors of ray tracers in hard cases: Grelha, and Embree in default and robust mode.
 
     ./run perf stability [--rays 1000000] [--pixels 128] [--keep]
                          [options of the benchmark: --rows PART OF A NAME, --seed N]
 
-Runs perf/stability.cpp, prints its tables and says which row is not as it must be: of Grelha's
-answers none may be wrong. With --keep docs/stability.csv and a section of docs/numerics.md are
+Runs perf/stability.cpp, prints its tables and names the rows that fail: no answer of Grelha may be
+wrong. With --keep docs/stability.csv and a section of docs/numerics.md are
 written; otherwise the CSV lies beside the program.
 """
 import argparse

@@ -1,5 +1,5 @@
 #pragma once
-// What benchmarks that take turns measure with.
+// Timing helpers for benchmarks whose methods take turns.
 
 #include <algorithm>
 #include <vector>

@@ -1,14 +1,15 @@
-// What a ray costs, by kind and scene, beside Embree on the same rays: one thread, one process,
-// taking turns.
+// Measures the cost of a ray, by kind and scene, and compares it with Embree on the same rays. One
+// thread and one process; the methods take turns.
 //
 // trace [--scene NAME]... [--kind NAME]... [--size N] [--rounds N] [--scenes DIR] [Google Benchmark
 // options]
 //
-// One benchmark a scene and kind, `balls 4/mirror`; its iterations are rounds, in each of which
-// every way of tracing takes the whole set of rays once. Ratios are made within a round and their
-// median is told. No way is timed whose answers are wrong: Grelha's must be the same bits as each
-// other's and, on a sample of rays, as the reference walk's; Embree's may differ in kDisagree of
-// them. A scene is a row of the table, `GENERATOR SIZE`, or a file.
+// There is one benchmark for each scene and kind, for example `balls 4/mirror`. Its iterations are
+// rounds: in each round every method traces the whole set of rays once. Ratios are computed within
+// a round, and their median is reported. A method is timed only if its answers are right: all
+// methods of Grelha must agree with each other and, on a sample of rays, with the reference walk in
+// every bit; Embree may differ for kDisagree of the rays. A scene is a row of the table, `GENERATOR
+// SIZE`, or a file.
 
 #include <algorithm>
 #include <cstdio>
@@ -30,8 +31,8 @@ namespace {
 using namespace grelha;
 using namespace grelha::perf;
 
-constexpr int kTryRounds = 2;      ///< rounds that every way takes part in
-constexpr double kAlsoRan = 1.33;  ///< times the best of its side: a way so slow is dropped
+constexpr int kTryRounds = 2;      ///< rounds that every method takes part in
+constexpr double kAlsoRan = 1.33;  ///< times the best of its side: slower methods are dropped
 
 Results results;
 bool failed = false;
@@ -62,14 +63,14 @@ void enter_ways(Race& race) {
     }
 }
 
-/// Whether a way is told of however slow it is.
+/// Returns true if a method is reported even if it is slow.
 bool is_told(const Cell& cell, std::size_t i) {
   const Way& way = cell.ways[i];
   return i == cell.chosen || i >= cell.first_caller ||
          (way.side == kRobust && !way.name.starts_with("16"));
 }
 
-/// After some rounds, those much slower than the best of their side are known to be, and dropped.
+/// Drops methods that are much slower than the best of their side after some rounds.
 std::vector<bool> still_in(Cell& cell) {
   cell.find_best();
   std::vector<bool> in(cell.ways.size());
@@ -112,7 +113,7 @@ void count(benchmark::State& state, const Cell& cell) {
   state.counters["tests/ray"] = cell.tests();
   state.counters["cells/ray"] = cell.cells();
   state.counters["lanes busy"] = cell.lanes_busy();
-  state.counters["fell back"] = cell.fell_back();
+  state.counters["fell back"] = cell.packet_fallbacks();
   if (!cell.has_embree())
     return;
   state.counters["ratio"] = cell.ratio(cell.chosen, cell.best[kRobust]);

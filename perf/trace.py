@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What a ray costs beside Embree: runs perf/trace.cpp, keeps its figures and draws its ratios.
+"""Compares the cost of a ray with Embree: runs perf/trace.cpp, stores its results, draws ratios.
 
     ./run perf trace [--quick] [--draw] [options of the benchmark: --scene NAME, --kind NAME,
                      --size N, --rounds N, --scenes DIR, ...]
@@ -109,7 +109,7 @@ def ratios(cells, embree):
 
 
 def cells_from_csv():
-    """What write_csv kept in docs/; only what the chart shows."""
+    """Reads the results that write_csv stored in docs/; only the columns of the chart."""
     return {(r["scene"], r["kind"]):
             {"ratio": float(r["ratio"]), "ratio of the best": float(r["ratio_of_the_best"])}
             for r in read_csv("trace")

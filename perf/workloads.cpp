@@ -9,7 +9,7 @@
 
 #include "frontend/input/read_scene.hpp"
 #include "kernel/scene/frame.hpp"
-#include "kernel/world/world_impl.hpp"
+#include "kernel/grid/world_impl.hpp"
 #include "scenes/generators.hpp"
 
 #include <unistd.h>

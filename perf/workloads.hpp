@@ -31,9 +31,9 @@ struct Answers {
   /// Makes room for `count`, of occlusion with `any`.
   void resize(std::size_t count, bool any);
   std::size_t size() const { return std::max(t.size(), blocked.size()); }
-  /// Whether ray i meets something.
+  /// Returns true if ray i hits something.
   bool met(std::size_t i) const { return t.empty() ? blocked[i] != 0 : id[i] != kNoPrimitive; }
-  /// Whether answer i is the k-th of others, bit for bit.
+  /// Returns true if answer i equals the k-th of `others` bit for bit.
   bool same(std::size_t i, const Answers& others, std::size_t k) const;
   bool operator==(const Answers&) const = default;
 };
@@ -56,8 +56,8 @@ void ask_in_streams(const World& world,
                     const QueryOptions& options,
                     Answers& answers);
 
-/// Sets what a command line says by set(word, value), which is false for what it does not know, as
-/// is this.
+/// Calls set(word, value) for each option of a command line. Returns false if a value is missing or
+/// `set` does not know an option.
 template <class Set>
 bool set_options(int argc, char** argv, const Set& set) {
   for (int i = 1; i < argc; i += 2)

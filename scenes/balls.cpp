@@ -9,8 +9,8 @@ namespace grelha::scenes {
 
 namespace {
 
-/// Where the nine children of a ball that points along +z touch it: six around the equator, three
-/// above.
+/// Returns the directions from a ball that points along +z to its nine children: six around the
+/// equator, three above.
 std::array<Vec, 9> child_directions() {
   const double s = std::sqrt(0.5);
   const std::array<Vec, 3> flat{Vec{s, s, 0}, Vec{s, 0, -s}, Vec{0, s, -s}};

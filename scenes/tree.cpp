@@ -6,7 +6,7 @@ namespace grelha::scenes {
 
 namespace {
 
-/// Where a branch stands: its foot and its axes, whose length is the branch's.
+/// The coordinate frame of a branch: its foot, and its axes, which are as long as the branch.
 struct Frame {
   Vec foot, x, y, z;
   Vec axes(Vec v) const { return v.x * x + v.y * y + v.z * z; }

@@ -164,7 +164,7 @@ def tells(browser, phone=None):
 
 
 def lies(browser, phone=None):
-    """What is wrong with the page before anything is pointed at."""
+    """Returns the errors of the page before the pointer is over any element."""
     panel = browser.value(PANEL)
     if "tap" not in panel["words"] or panel["command"]:
         yield "the empty panel", panel

@@ -3,7 +3,7 @@ from fault import Fault, tolerance
 
 
 def refinement(name, file, old, new, cases):
-    return Fault(name, f"kernel/adaptive/{file}", old, new, "refinement", cases)
+    return Fault(name, f"kernel/picture/{file}", old, new, "refinement", cases)
 
 
 def adaptive(name, constant, value, planted, cases):
@@ -11,11 +11,11 @@ def adaptive(name, constant, value, planted, cases):
 
 
 FAULTS = [
-    Fault("no samples in boxes", "kernel/render/band.hpp", "if (work.boxes)", "if (false)",
+    Fault("no samples in boxes", "kernel/shade/strip.hpp", "if (work.boxes)", "if (false)",
           "sampling", "*PixelBoxes.GetHalf*"),
-    Fault("samples in boxes that weigh as all", "kernel/render/band.hpp",
+    Fault("samples in boxes that weigh as all", "kernel/shade/strip.hpp",
           "return select(has, weight, one);", "return one;", "sampling", "*PixelBoxes.Move*"),
-    Fault("no box pays", "kernel/scene/pixel_box.hpp", "kLargestBox = .25f;", "kLargestBox = 0;",
+    Fault("no box pays", "kernel/shade/pixel_box.hpp", "kLargestBox = .25f;", "kLargestBox = 0;",
           "refinement", "AimedRays.FindSpecks"),
     adaptive("no disc", "kDiscInBox", ".7853982f", "0", "AimedRays.FindSpecks"),
     adaptive("one difference too few of the young", "kYoung", "3", "2", "*.EstimateThe*"),
@@ -28,33 +28,33 @@ FAULTS = [
     adaptive("every block for itself", "kEnoughHits", "16", "0", "*.PoolRareHits"),
     adaptive("any blocks alike", "kAlike", "3", "300", "*.LendNothing*"),
     adaptive("no blocks alike", "kAlike", "3", "0", "*.PoolRareHits"),
-    adaptive("edges that lend", "kFewHits", "3", "30", "*.LendNothing*"),
-    adaptive("audits far apart", "kGrowthOfAudits", "1.5", "3", "*LetSamplesGrow*"),
-    adaptive("audits of any weight", "kMostWorse", "16", "1e9", "*WithinReason*"),
-    refinement("sums of earlier samples", "block_errors.cpp", "if (seen_[b] != r_.log[b])",
-               "if (seen_[b] == 0)", "*.FollowThePicture"),
+    adaptive("edges that lend", "kMinHits", "3", "30", "*.LendNothing*"),
+    adaptive("audits far apart", "kCheckGrowth", "1.5", "3", "*LetSamplesGrow*"),
+    adaptive("audits of any weight", "kMaxErrorRatio", "16", "1e9", "*WithinReason*"),
+    refinement("sums of earlier samples", "block_errors.cpp", "if (version_[b] != r_.log[b])",
+               "if (version_[b] == 0)", "*.FollowThePicture"),
     refinement("white that is told from differences", "block_errors.cpp", "if (mean > 1) {",
                "if (false) {", "*BeyondWhite*"),
     refinement("blocks that can have no more", "block_errors.cpp", "r_.log[b] < kMostLog ?",
                "true ?", "*.AddWhatIsFound*"),
-    refinement("the same pixels audited again", "audit.cpp",
-               "seed + static_cast<std::uint32_t>(r.audits)", "seed", "*LookAtOther*"),
-    refinement("audits as long for any error", "audit.cpp", "6 / (error * error * count)",
+    refinement("the same pixels audited again", "error_check.cpp",
+               "seed + static_cast<std::uint32_t>(r.checks)", "seed", "*LookAtOther*"),
+    refinement("audits as long for any error", "error_check.cpp", "6 / (error * error * count)",
                "1. + 0 * error",
                "*CostLittle*"),
-    refinement("rays that stop at panes", "aimed_rays.cpp", "kMostClear = 6;", "kMostClear = 0;",
+    refinement("rays that stop at panes", "target_rays.cpp", "kMostClear = 6;", "kMostClear = 0;",
                "AimedRays.AreFor*"),
-    refinement("boxes of what is hidden", "aimed_rays.cpp", "if (aim.arrives)", "if (true)",
+    refinement("boxes of what is hidden", "target_rays.cpp", "if (target.hits_target)", "if (true)",
                "AimedRays.AreFor*"),
-    refinement("one ray to each rod", "aimed_rays.cpp", "kMostParts = 256;", "kMostParts = 1;",
+    refinement("one ray to each rod", "target_rays.cpp", "kMostParts = 256;", "kMostParts = 1;",
                "AimedRays.FollowLong*"),
-    refinement("shadows beside their place", "aimed_rays.cpp", "aims[i].radius *= t;", "",
+    refinement("shadows beside their place", "target_rays.cpp", "aims[i].radius *= t;", "",
                "AimedRays.FindShadows"),
-    refinement("boxes of what is out of focus", "aimed_rays.cpp", "kMostBlur = .25;",
+    refinement("boxes of what is out of focus", "target_rays.cpp", "kMostBlur = .25;",
                "kMostBlur = 1e9;", "AimedRays.LeaveWhat*"),
-    refinement("mirrors that show all", "aimed_rays.cpp",
+    refinement("mirrors that show all", "target_rays.cpp",
                "static_cast<double>(rays.t[i]) >= near(real, from)", "true",
                "AimedRays.LookIntoFlatMirrors"),
-    refinement("pieces that touch nothing", "mesh_pieces.cpp", "  weld(triangles, sets);", "",
-               "MeshPieces.AreConnected*"),
+    refinement("pieces that touch nothing", "mesh_parts.cpp", "  merge_vertices(triangles, sets);", "",
+               "MeshParts.AreConnected*"),
 ]

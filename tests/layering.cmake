@@ -13,8 +13,8 @@ set(allowed_include "^grelha/")
 set(allowed_kernel "^(kernel|grelha)/")
 set(allowed_frontend "^(frontend|kernel|grelha)/")
 # Rooms: each may include those before it and itself.
-set(rooms_kernel simd scene exact primitive triangle shapes grid world walk trace query
-  render adaptive subdivision picture isa)
+set(rooms_kernel base scene shapes grid traverse query
+  shade picture isa)
 set(rooms_frontend files images scene ply nff input commands jobs cli)
 
 # Sets `result` to whether a file of a room includes one of a room above it, or one outside all
@@ -205,7 +205,7 @@ file(WRITE ${SCRATCH}/kernel/grid/b.hpp "#include <vector>\n")
 file(WRITE ${SCRATCH}/kernel/grid/b.cpp
   "#include \"kernel/grid/b.hpp\"\n#include \"kernel/grid/c.hpp\"\n")
 file(WRITE ${SCRATCH}/kernel/grid/c.hpp "#include \"kernel/grid/b.hpp\"\n")
-file(WRITE ${SCRATCH}/kernel/grid/d.hpp "#include \"kernel/simd/lanes.hpp\"\n")
+file(WRITE ${SCRATCH}/kernel/grid/d.hpp "#include \"kernel/base/lanes.hpp\"\n")
 find_circles(${SCRATCH})
 if(NOT circle STREQUAL "kernel/grid/a;kernel/grid/b;kernel/grid/c")
   message(FATAL_ERROR "planted circle: expected a, b and c of kernel/grid, found ${circle}")

@@ -73,7 +73,7 @@ MUTATIONS = [flip_bits, truncate, cut_out, swap_words, replace_word]
 
 
 def complaint(run, error_text):
-    """What is wrong with one run, or None."""
+    """Returns the error of one run, or None."""
     if run is None:
         return f"no end within {TIMEOUT_S} s"
     if run.returncode not in (0, 1, 2):

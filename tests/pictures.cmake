@@ -4,14 +4,14 @@ add_test(NAME readme COMMAND ${CMAKE_COMMAND} -D ROOT=${PROJECT_SOURCE_DIR}
   -D PROGRAM=$<TARGET_FILE:grelha>
   -D SCRATCH=${CMAKE_CURRENT_BINARY_DIR}/readme -P ${CMAKE_CURRENT_SOURCE_DIR}/readme.cmake)
 set_tests_properties(readme PROPERTIES LABELS image)
-grelha_test(kernel/render/sampling property grelha::kernel grelha_lane_functions)
-target_sources(sampling_test PRIVATE kernel/render/pixel_box_test.cpp
-  kernel/render/pixel_curve_test.cpp)
+grelha_test(kernel/shade/sampling property grelha::kernel grelha_lane_functions)
+target_sources(sampling_test PRIVATE kernel/shade/pixel_box_test.cpp
+  kernel/shade/pixel_curve_test.cpp)
 grelha_test(frontend/input/effects image grelha::frontend)
-grelha_test(kernel/adaptive/refinement image grelha::frontend grelha::scenes)
-target_sources(refinement_test PRIVATE kernel/adaptive/aimed_rays_test.cpp
-  kernel/adaptive/audit_test.cpp kernel/adaptive/block_errors_test.cpp
-  kernel/adaptive/specks_test.cpp)
+grelha_test(kernel/picture/refinement image grelha::frontend grelha::scenes)
+target_sources(refinement_test PRIVATE kernel/picture/target_rays_test.cpp
+  kernel/picture/error_check_test.cpp kernel/picture/block_errors_test.cpp
+  kernel/picture/specks_test.cpp)
 
 # What once failed and is no part of the project.
 add_test(NAME shared_faults COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/with_python.sh

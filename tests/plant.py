@@ -67,7 +67,7 @@ def outcome(source, fault, log):
         return False
 
 
-def place_of(fault):
+def position_of(fault):
     """The fault's text, however lines are broken: between words and signs any white space may
     stand."""
     return re.compile(r"\s*".join(
@@ -86,7 +86,7 @@ def main():
     asked = parser.parse_args()
     faults = [f for f in FAULTS if asked.only in f.name]
     for f in faults:
-        if (n := len(place_of(f).findall((ROOT / f.file).read_text()))) != 1:
+        if (n := len(position_of(f).findall((ROOT / f.file).read_text()))) != 1:
             sys.exit(f"plant: '{f.name}': the text is found {n} times in {f.file}, not once")
         if asked.list:
             print(f"{f.name}: {f.file}; {f.test}_test {f.cases}")
@@ -101,7 +101,7 @@ def main():
             sound = file.read_text()
             if not outcome(source, f, log):
                 sys.exit(f"plant: {log}: {f.test}_test {f.cases} is red without '{f.name}'")
-            file.write_text(place_of(f).sub(lambda _: f.new, sound))
+            file.write_text(position_of(f).sub(lambda _: f.new, sound))
             passed = outcome(source, f, log)
             file.write_text(sound)
             print(f"{'GREEN' if passed else 'red'}: {f.name}: {f.test}_test {f.cases}", flush=True)

@@ -1,4 +1,4 @@
-// What most tests include, read once for all of them where sources are compiled together
+// Headers that most tests include, compiled once if sources are compiled together
 // (tests/CMakeLists.txt).
 #include <gtest/gtest.h>
 

@@ -41,7 +41,7 @@ def want(truth, what):
 with tempfile.TemporaryDirectory() as folder:
     whole, picture, kept = (os.path.join(folder, n) for n in ("whole.pfm", "x.pfm", "kept"))
 
-    def want_same(who):
+    def check_same(who):
         want(open(whole, "rb").read() == open(picture, "rb").read(), f"{who}: another picture")
         want(not os.path.exists(kept), f"{who}: the checkpoint is still there")
         os.remove(picture)
@@ -51,7 +51,7 @@ with tempfile.TemporaryDirectory() as folder:
     alone = time.monotonic() - begin
     for n in range(1, 5):
         subprocess.run(ranks(n, "-o", picture), check=True, env=environment)
-        want_same(f"{n} ranks")
+        check_same(f"{n} ranks")
 
     small = ["--quiet", "--threads", "1", "--size", "30x20"]
     subprocess.run(job[:3] + small + ["-o", whole], check=True)
@@ -92,6 +92,6 @@ with tempfile.TemporaryDirectory() as folder:
             want(os.path.exists(kept), f"{what}: nothing is kept")
             subprocess.run(ranks(2, "-o", picture, "--checkpoint", kept), check=True,
                            env=environment)
-        want_same(what)
+        check_same(what)
         print(f"--- {what}:\n{said}")
 print("ranks 1 to 4: the same bytes, also after a rank died")

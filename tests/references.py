@@ -4,7 +4,7 @@
     references.py ROOT            lists references to what is not there, as FILE:LINE
     references.py --self-test     of planted references, finds the wrong ones and no others
 
-What counts as a reference:
+The following count as references:
   - a link of a page, [words](file);
   - a path that begins with a folder of the project (kernel/grid.hpp), with * or <word> for any
     letters (NAME: none in particular); a bare name of a source (plan.cpp), in pages in backticks;

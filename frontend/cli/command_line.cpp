@@ -26,26 +26,26 @@ std::vector<std::string> option_names(const CLI::App& app) {
 }
 
 /// `; did you mean --size?`, or nothing.
-std::string meant_option(const CLI::App& app, const std::string& word) {
+std::string suggested_option(const CLI::App& app, const std::string& word) {
   const std::vector<std::string> names = option_names(app);
-  return did_you_mean(word.substr(0, word.find('=')),
-                      std::vector<std::string_view>(names.begin(), names.end()));
+  return suggest(word.substr(0, word.find('=')),
+                 std::vector<std::string_view>(names.begin(), names.end()));
 }
 
 bool contains(const std::vector<std::string>& words, const std::string& word) {
   return std::ranges::find(words, word) != words.end();
 }
 
-void want_known_option(const CLI::App& app, const std::string& word) {
+void check_option(const CLI::App& app, const std::string& word) {
   if (!contains(option_names(app), word))
-    throw UsageError("The following argument was not expected: " + word + meant_option(app, word) +
-                     " (see --help)");
+    throw UsageError("The following argument was not expected: " + word +
+                     suggested_option(app, word) + " (see --help)");
 }
 
 /// CLI11 would only say that a command is missing.
-void want_known_command(const CLI::App& app, const std::string& word) {
+void check_command(const CLI::App& app, const std::string& word) {
   if (word.starts_with('-'))
-    return want_known_option(app, word);
+    return check_option(app, word);
   std::string commands;
   std::vector<std::string_view> names;
   for (const CLI::App* sub : app.get_subcommands({})) {
@@ -55,7 +55,7 @@ void want_known_command(const CLI::App& app, const std::string& word) {
     names.push_back(sub->get_name());
   }
   throw UsageError("command: expected one of " + commands + ", found \"" + word + '"' +
-                   did_you_mean(word, names));
+                   suggest(word, names));
 }
 
 std::string first_line(const std::string& text) {
@@ -69,14 +69,14 @@ const CLI::App& asked(const CLI::App& app) {
 }
 
 /// Returns `; did you mean --size?` for the first unparsed word that begins with `-`, or nothing.
-std::string meant_option_left(const CLI::App& app) {
+std::string suggested_option_left(const CLI::App& app) {
   const std::vector<std::string> left = app.remaining(true);
   const auto option = std::ranges::find_if(left, [](auto& w) { return w.starts_with('-'); });
-  return option == left.end() ? "" : meant_option(asked(app), *option);
+  return option == left.end() ? "" : suggested_option(asked(app), *option);
 }
 
 /// Refuses the first option that was given more than once: CLI11 would count.
-void refuse_twice(const CLI::App& app) {
+void reject_twice(const CLI::App& app) {
   for (const CLI::Option* o : asked(app).get_options())
     if (!o->get_positional() && o->get_expected_max() == 1 && o->count() > 1)
       throw UsageError(o->get_name() + ": expected once, found \"" + o->results()[0] + "\" and \"" +
@@ -102,7 +102,7 @@ CommandHelp help_of(const CLI::App& sub) {
   return help;
 }
 
-TextCommand asked_help(const CLI::App& app, bool all) {
+TextCommand requested_help(const CLI::App& app, bool all) {
   const CLI::App& about = asked(app);
   return {&about == &app ? program_help(all_commands(), all) : help_text(help_of(about), all)};
 }
@@ -143,7 +143,7 @@ static std::vector<std::string> words_of(int argc, const char* const* argv) {
 
 template <class C>
 static C checked(const C& command) {
-  check_together(command);
+  check_conflicts(command);
   return command;
 }
 
@@ -156,19 +156,19 @@ Command parse_command(int argc, const char* const* argv) {
   if (argc > 1 && argv[1] == std::string_view("help"))
     return help_of_command(argv[0], argc > 2 ? argv[2] : "");
   if (argc > 1)
-    want_known_command(app, argv[1]);
+    check_command(app, argv[1]);
   try {
     app.parse(words_of(argc, argv));
   } catch (const CLI::CallForHelp&) {
-    return asked_help(app, false);
+    return requested_help(app, false);
   } catch (const CLI::CallForAllHelp&) {
-    return asked_help(app, true);
+    return requested_help(app, true);
   } catch (const CLI::CallForVersion& version) {
     return TextCommand{std::string(version.what()) + '\n'};
   } catch (const CLI::ExtrasError& error) {
-    throw UsageError(first_line(error.what()) + meant_option_left(app) + " (see --help)");
+    throw UsageError(first_line(error.what()) + suggested_option_left(app) + " (see --help)");
   } catch (const CLI::ParseError& error) {
-    refuse_twice(app);
+    reject_twice(app);
     throw UsageError(first_line(error.what()) + " (see --help)");
   }
   if (app.got_subcommand("info"))
@@ -183,7 +183,7 @@ Command parse_command(int argc, const char* const* argv) {
   RenderCommand first = render;  // as commands_for() will name its picture
   if (first.image.empty() || is_folder(first.image))
     first.image += default_image(first.scenes.front(), first.format);
-  check_together(first);
+  check_conflicts(first);
   return render;
 }
 

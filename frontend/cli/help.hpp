@@ -20,7 +20,7 @@ struct CommandHelp {
   std::vector<OptionHelp> options;
   std::string footer;  ///< examples, exit status; lines
   /// Returns whether --help shows the option, or only --help-all, the man page and the completions.
-  bool shows(const OptionHelp& option) const;
+  bool prints(const OptionHelp& option) const;
 };
 
 std::string join(const std::vector<std::string>& words, const char* between = " ");

@@ -3,7 +3,7 @@
 // render that can go on. This is the one file of the frontend that knows the generators.
 #include "frontend/commands/console.hpp"
 #include "frontend/cli/command_line.hpp"
-#include "frontend/cli/compare_pictures.hpp"
+#include "frontend/cli/compare_images.hpp"
 #include "frontend/cli/render_scene.hpp"
 #include "frontend/commands/batch.hpp"
 #include "frontend/commands/nothing_seen.hpp"
@@ -71,14 +71,14 @@ int status_of(const Ranks& ranks, const Work& work) {
 }
 
 /// Returns the exit status after a signal that came while a finished picture was written.
-int stopped_between(int signal, const std::string& next) {
+int interrupted(int signal, const std::string& next) {
   warn("grelha: stopped by " + std::string(signal_name(signal)) + " before " + next);
   return kSignalled + signal;
 }
 
 void remove_checkpoint(const RenderCommand& command) {
   std::error_code ignored;
-  if (command.work.kept_till_the_last && !command.work.checkpoint.empty())
+  if (command.work.save_until_end && !command.work.checkpoint.empty())
     std::filesystem::remove(command.work.checkpoint, ignored);
 }
 
@@ -93,7 +93,7 @@ int run(const RenderCommand& command, Ranks& ranks) {
     signals.emplace();
   for (const RenderCommand& one : all) {
     if (const int signal = StopSignals::seen())
-      return stopped_between(signal, one.scene);
+      return interrupted(signal, one.scene);
     worst = std::max(worst, status_of(ranks, [&] { return render_scene(one, ranks); }));
     if (worst >= kSignalled || (ranks.count() > 1 && !ranks.in_step()))
       break;
@@ -107,9 +107,9 @@ int run(const RenderCommand& command, Ranks& ranks) {
 std::string info_of(const std::string& scene, const InfoCommand& command) {
   const bool bars = stderr_is_terminal();
   WarningLog log;
-  const SceneFile file = load_scene(scene, log.telling(), command.input.read, bars);
-  warn_of_nothing(scene, file, file.camera, log.telling());
-  log.want_none(command.input);
+  const SceneFile file = load_scene(scene, log.reporting(), command.input.read, bars);
+  warn_empty_image(scene, file, file.camera, log.reporting());
+  log.check_none(command.input);
   const SceneMemory memory = memory_of(file, command.build);
   std::optional<std::vector<GridStats>> grids;
   if (memory.peak - memory.scene < own_memory().left())
@@ -139,12 +139,12 @@ int run(const InfoCommand& command, const Ranks& ranks) {
 }
 
 int run(const CompareCommand& command) {
-  return compare_pictures(command);
+  return compare_images(command);
 }
 
 int run(const MergeCommand& command) {
-  want_no_terminal(command.output);
-  want_not_read({{"-o", command.output}}, command.parts);
+  check_no_terminal(command.output);
+  check_not_read({{"-o", command.output}}, command.parts);
   check_writable(command.output);
   const Partial joined = merge_parts(command.parts);
   const Accumulator& a = joined.sums;
@@ -156,17 +156,17 @@ int run(const MergeCommand& command) {
       throw UsageError("the parts are " + part_text(a.part) + ", the picture is " +
                        part_text(whole) + ": join them to a .grelha");
     const auto format = format_of(command.output, command.format);
-    want_room(format, a.width, a.height);
+    check_image_size(format, a.width, a.height);
     write_image(command.output,
                 picture_so_far(a),
                 {format, command.srgb ? Tone::srgb : Tone::authored, notes_of(joined.identity)});
   }
   const std::size_t n = command.parts.size();
-  const std::string summary = shown_on_a_line(name_of_file(command.output)) + ": " +
+  const std::string summary = printable_line(name_of_file(command.output)) + ": " +
                               part_text(a.part) + " from " + std::to_string(n) +
                               (n == 1 ? " part\n" : " parts\n");
   if (!command.quiet)
-    tell(summary, command.output == kStdout);
+    report_line(summary, command.output == kStdout);
   return kOk;
 }
 
@@ -209,7 +209,7 @@ int run(const SceneCommand& command) {
     std::vector<std::string_view> names;
     for (const scenes::Generator& g : scenes::generators())
       names.push_back(g.name);
-    throw UsageError("no scene \"" + command.name + '"' + did_you_mean(command.name, names) +
+    throw UsageError("no scene \"" + command.name + '"' + suggest(command.name, names) +
                      " (see grelha scene --list)");
   }
   if (command.spd && !generator->has_spd_form)

@@ -12,16 +12,16 @@
 namespace grelha {
 namespace {
 
-using option_values::refuse;
+using option_values::reject;
 
 /// Samples per pixel that --aa and --lens ask for; 0 if they do not say.
-long long samples_asked(const Effects& e) {
+long long samples_requested(const Effects& e) {
   const int lens = e.lens && e.lens->aperture > 0 ? e.lens->samples : 0;
   return e.jitter == 0 ? lens : 1LL * e.jitter * e.jitter * (lens > 0 ? lens : 1);
 }
 
 void check_samples(const Effects& e) {
-  const long long asked = samples_asked(e);
+  const long long asked = samples_requested(e);
   if (asked > kMostSamples)  // either alone is within bounds
     throw UsageError("--aa jitter:" + std::to_string(e.jitter) +
                      " and --lens APERTURE,FOCUS,N: expected at most " +
@@ -80,7 +80,7 @@ void check_output(const std::string& image, std::optional<ImageFormat> asked) {
     throw UsageError("--format " + std::string(ending_of(*asked)) +
                      " and -o: expected one format, found \"" + image + '"');
   if (!format_of(image, asked) && !part)
-    refuse("-o", "a name ending in .png, .hdr, .pfm, .exr or .grelha", image);
+    reject("-o", "a name ending in .png, .hdr, .pfm, .exr or .grelha", image);
 }
 
 void check_tone(bool srgb, const std::string& image, std::optional<ImageFormat> asked) {
@@ -103,17 +103,17 @@ void check_long_work(const RenderCommand& command) {
         "parts are of pictures with as many samples in every pixel: "
         "no --error, --time or --aa adaptive");
   if (w.is_part() && !part_file)
-    refuse("-o", "a name ending in .grelha for a part of a picture", command.image);
-  if (part_file && w.show_every > 0)
+    reject("-o", "a name ending in .grelha for a part of a picture", command.image);
+  if (part_file && w.show_interval > 0)
     throw UsageError("--preview wants a picture to write, not a .grelha");
-  if (w.show_every > 0 && command.image == kStdout)
+  if (w.show_interval > 0 && command.image == kStdout)
     throw UsageError("--preview wants a picture that can be written again, not stdout");
-  if (w.save_every && w.checkpoint.empty())
+  if (w.save_interval && w.checkpoint.empty())
     throw UsageError("--checkpoint-every wants --checkpoint");
 }
 
 /// Endings that promise another format than NFF.
-bool promises_other_format(std::string_view path) {
+bool has_other_suffix(std::string_view path) {
   constexpr std::array<std::string_view, 3> kOther{".ply", ".gz", ".grelha"};
   const auto ends = [path](std::string_view ending) { return path.ends_with(ending); };
   return std::ranges::any_of(kOther, ends) || image_format(path).has_value();
@@ -121,7 +121,7 @@ bool promises_other_format(std::string_view path) {
 
 }  // namespace
 
-void check_together(const RenderCommand& command) {
+void check_conflicts(const RenderCommand& command) {
   check_output(command.image, command.format);
   check_refined(command);
   check_samples(command.effects);
@@ -132,19 +132,19 @@ void check_together(const RenderCommand& command) {
   check_long_work(command);
   check_tone(command.srgb, command.image, command.format);
   if (command.layers.any() && format_of(command.image, command.format) != ImageFormat::exr)
-    refuse("--layers and -o", "a .exr, which alone holds layers", command.image);
+    reject("--layers and -o", "a .exr, which alone holds layers", command.image);
 }
 
-void check_together(const InfoCommand& command) {
+void check_conflicts(const InfoCommand& command) {
   check_grid(command.build);
 }
 
-void check_together(const MergeCommand& command) {
+void check_conflicts(const MergeCommand& command) {
   check_output(command.output, command.format);
   check_tone(command.srgb, command.output, command.format);
 }
 
-void check_together(const SceneCommand& command) {
+void check_conflicts(const SceneCommand& command) {
   if (command.list &&
       (!command.name.empty() || command.size || !command.output.empty() || command.spd))
     throw UsageError("--list: expected alone, it writes no scene");
@@ -152,8 +152,8 @@ void check_together(const SceneCommand& command) {
     return;
   if (command.name.empty())
     throw UsageError("NAME is required (see grelha scene --list)");
-  if (promises_other_format(command.output))
-    refuse("-o", "a name for an NFF scene, such as " + command.name + ".nff", command.output);
+  if (has_other_suffix(command.output))
+    reject("-o", "a name for an NFF scene, such as " + command.name + ".nff", command.output);
 }
 
 }  // namespace grelha

@@ -7,9 +7,9 @@
 namespace grelha {
 
 /// `command.image`: as commands_for() will name the first picture.
-void check_together(const RenderCommand& command);
-void check_together(const InfoCommand& command);
-void check_together(const MergeCommand& command);
-void check_together(const SceneCommand& command);
+void check_conflicts(const RenderCommand& command);
+void check_conflicts(const InfoCommand& command);
+void check_conflicts(const MergeCommand& command);
+void check_conflicts(const SceneCommand& command);
 
 }  // namespace grelha

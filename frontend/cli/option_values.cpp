@@ -20,7 +20,7 @@ constexpr double kMaxBytes = 1e18;
 constexpr double kLeastError = 1e-6;
 
 /// The kind of KIND:MORE that was probably meant.
-std::string meant_kind(const std::string& text, std::initializer_list<std::string_view> kinds) {
+std::string suggested_kind(const std::string& text, std::initializer_list<std::string_view> kinds) {
   const std::size_t end = std::min(text.find(':'), text.size());
   const std::string_view kind =
       nearest(std::string_view(text).substr(0, end), std::span(kinds.begin(), kinds.size()));
@@ -53,7 +53,7 @@ std::vector<std::string> parts(const std::string& option,
       found.back() += c;
   }
   if (found.size() < least || found.size() > most)
-    refuse(option, expected, text);
+    reject(option, expected, text);
   return found;
 }
 
@@ -65,7 +65,7 @@ T fitting(const std::string& option,
           bool (*fits)(T)) {
   const auto value = number<T>(text);
   if (!value || !fits(*value))
-    refuse(option, expected, text);
+    reject(option, expected, text);
   return *value;
 }
 
@@ -94,23 +94,23 @@ Subdivision subdivision(const std::string& text) {
 std::uint64_t sample_count(const std::string& text, std::size_t begin) {
   const auto count = number<std::uint64_t>(std::string_view(text).substr(begin));
   if (!count || *count == 0)
-    refuse("--time", "samples:N with N from 1 to 2^64 - 1", text);
+    reject("--time", "samples:N with N from 1 to 2^64 - 1", text);
   return *count;
 }
 
 }  // namespace
 
-void refuse(const std::string& option,
+void reject(const std::string& option,
             const std::string& expected,
             const std::string& found,
-            const std::string& meant) {
-  throw UsageError(option + ": expected " + expected + ", found \"" + found + '"' + meant);
+            const std::string& suggested) {
+  throw UsageError(option + ": expected " + expected + ", found \"" + found + '"' + suggested);
 }
 
 int whole(const std::string& option, const std::string& text, int low, int high) {
   const auto value = number<int>(text);
   if (!value || *value < low || *value > high)
-    refuse(
+    reject(
         option, "a whole number from " + std::to_string(low) + " to " + std::to_string(high), text);
   return *value;
 }
@@ -133,10 +133,10 @@ void parse_aa(const std::string& text, Effects& effects) {
   else if (text.starts_with(kAdaptive))
     effects.adaptive = subdivision(text.substr(kAdaptive.size()));
   else
-    refuse("--aa",
+    reject("--aa",
            "off, jitter:N or adaptive:THRESHOLD,DEPTH",
            text,
-           meant_kind(text, {"off", "jitter", "adaptive"}));
+           suggested_kind(text, {"off", "jitter", "adaptive"}));
 }
 
 void parse_shadows(const std::string& text, Effects& effects) {
@@ -151,10 +151,10 @@ void parse_shadows(const std::string& text, Effects& effects) {
     s.size = float(not_negative("--shadows", p[0], "a size"));
     s.positions = whole("--shadows", p[1], 1, 64);
   } else {
-    refuse("--shadows",
+    reject("--shadows",
            "hard, random:SIZE or area:SIZE,N",
            text,
-           meant_kind(text, {"hard", "random", "area"}));
+           suggested_kind(text, {"hard", "random", "area"}));
   }
   effects.shadows = s;
 }
@@ -205,7 +205,7 @@ void parse_size(const std::string& text, int& width, int& height) {
   const auto h = cross == std::string::npos ? std::nullopt
                                             : number<int>(std::string_view(text).substr(cross + 1));
   if (!w || !h || *w < 1 || *h < 1 || *w > kMaxSide || *h > kMaxSide)
-    refuse("--size", "WIDTHxHEIGHT, each from 1 to 65536", text);
+    reject("--size", "WIDTHxHEIGHT, each from 1 to 65536", text);
   width = *w;
   height = *h;
 }
@@ -217,7 +217,7 @@ Range range(const std::string& option, const std::string& text, int most) {
                        ? std::nullopt
                        : number<int>(std::string_view(text).substr(colon + 1));
   if (!begin || !end || *begin < 0 || *begin >= *end || *end > most)
-    refuse(option,
+    reject(option,
            "A:B, whole numbers, 0 or more, A below B, B at most " + std::to_string(most),
            text);
   return {*begin, *end};
@@ -239,20 +239,20 @@ double interval(const std::string& option, const std::string& text) {
   return fitting<double>(option, text, "seconds above 0 and up to 1e9", is_time);
 }
 
-void want_image_name(const std::string& option, const std::string& path) {
+void check_image_name(const std::string& option, const std::string& path) {
   if (!image_format(path))
-    refuse(option, "a name ending in .png, .hdr, .pfm or .exr", path);
+    reject(option, "a name ending in .png, .hdr, .pfm or .exr", path);
 }
 
 std::string file_name(const std::string& option, const std::string& text) {
   if (text.empty())
-    refuse(option, "a file name", text);
+    reject(option, "a file name", text);
   return text;
 }
 
 std::string regular_file_name(const std::string& option, const std::string& text) {
   if (text == kStdout)
-    refuse(option, "a file that can be read again", text);
+    reject(option, "a file that can be read again", text);
   return file_name(option, text);
 }
 
@@ -265,7 +265,7 @@ LayerChoice layers(const std::string& text) {
                       : word == "id"     ? &chosen.id
                                          : nullptr;
     if (!one || *one)
-      refuse("--layers", kExpected, text);
+      reject("--layers", kExpected, text);
     *one = true;
   }
   return chosen;
@@ -279,7 +279,7 @@ std::uint64_t memory_size(const std::string& text) {
   const double bytes =
       value ? std::ldexp(*value, unit == std::string_view::npos ? 0 : 10 * (int(unit) + 1)) : 0;
   if (!(bytes >= 1 << 26) || bytes > kMaxBytes)
-    refuse("--max-memory", "a size from 64M to 1e18 bytes, such as 512M or 6G", text);
+    reject("--max-memory", "a size from 64M to 1e18 bytes, such as 512M or 6G", text);
   return std::uint64_t(bytes);
 }
 

@@ -17,10 +17,10 @@ namespace grelha::option_values {
 
 inline constexpr int kMaxSide = 65536;  ///< of a picture
 
-[[noreturn]] void refuse(const std::string& option,
+[[noreturn]] void reject(const std::string& option,
                          const std::string& expected,
                          const std::string& found,
-                         const std::string& meant = "");
+                         const std::string& suggested = "");
 
 int whole(const std::string& option, const std::string& text, int low, int high);
 float density(const std::string& text);
@@ -40,7 +40,7 @@ void parse_samples(const std::string& text, RenderCommand& command);
 /// Seconds.
 double interval(const std::string& option, const std::string& text);
 
-void want_image_name(const std::string& option, const std::string& path);
+void check_image_name(const std::string& option, const std::string& path);
 std::string file_name(const std::string& option, const std::string& text);
 std::string regular_file_name(const std::string& option, const std::string& text);
 
@@ -64,7 +64,7 @@ T choice(const std::string& option,
     all.push_back(word);
   }
   throw UsageError(option + ": expected one of " + expected + ", found \"" + text + '"' +
-                   did_you_mean(text, all));
+                   suggest(text, all));
 }
 
 }  // namespace grelha::option_values

@@ -50,7 +50,7 @@ void positional(CLI::App& app, const char* name, std::string& target, const char
 
 void image_file(CLI::App& app, const char* name, std::string& target, const char* help) {
   value(app, name, "FILE", help, [name, &target](const std::string& text) {
-    want_image_name(name, text);
+    check_image_name(name, text);
     target = text;
   });
 }
@@ -107,13 +107,13 @@ void add_long_work(CLI::App& app, LongWork& work) {
         })
       ->group(kGroup);
   value(app, "--checkpoint-every", "SECONDS", "how often [60]", [&work](const std::string& text) {
-    work.save_every = interval("--checkpoint-every", text);
+    work.save_interval = interval("--checkpoint-every", text);
   })->group(kGroup);
   value(app,
         "--preview",
         "SECONDS",
         "write the picture so far as often",
-        [&work](const std::string& text) { work.show_every = interval("--preview", text); })
+        [&work](const std::string& text) { work.show_interval = interval("--preview", text); })
       ->group(kGroup);
 }
 
@@ -189,7 +189,7 @@ void add_sample_counts(CLI::App& sub, RenderCommand& command) {
 }
 
 /// Adds the options for the positions of samples.
-void add_sample_places(CLI::App& sub, Effects& effects) {
+void add_sample_locations(CLI::App& sub, Effects& effects) {
   value(sub,
         "--sampler",
         "sobol|blue|jitter|unshuffled|random",
@@ -263,7 +263,7 @@ void add_render(CLI::App& app, RenderCommand& command) {
   add_picture_files(sub, command);
   add_limits(sub, command);
   add_sample_counts(sub, command);
-  add_sample_places(sub, command.effects);
+  add_sample_locations(sub, command.effects);
   add_effects(sub, command.effects);
   add_build_options(sub, command.build);
   add_traversal(sub, command);

@@ -8,7 +8,7 @@
 namespace grelha {
 namespace {
 
-std::string replaced(std::string text, std::string_view what, std::string_view by) {
+std::string replace_all(std::string text, std::string_view what, std::string_view by) {
   for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += by.size())
     text.replace(at, what.size(), by);
   return text;
@@ -16,12 +16,12 @@ std::string replaced(std::string text, std::string_view what, std::string_view b
 
 /// Escapes text for roff: hyphens that can be copied, and no line that starts a request.
 std::string roff(const std::string& text) {
-  const std::string out = replaced(replaced(text, "\\", "\\e"), "-", "\\-");
+  const std::string out = replace_all(replace_all(text, "\\", "\\e"), "-", "\\-");
   const bool reads_as_command = out.starts_with('.') || out.starts_with('\'');
   return (reads_as_command ? "\\&" : "") + out;
 }
 
-std::vector<std::string> choices(const OptionHelp& o) {
+std::vector<std::string> value_words(const OptionHelp& o) {
   std::vector<std::string> words;
   if (o.placeholder.find('|') == std::string::npos)
     return words;
@@ -79,7 +79,8 @@ std::string man_page(const std::vector<CommandHelp>& commands) {
     std::istringstream lines(c.footer);
     // whoever reads this has the scenes where FILES says
     for (std::string line; std::getline(lines, line);)
-      text += roff(replaced(replaced(line, "scenes/data/", ""), "scenes/data", "scenes")) + '\n';
+      text +=
+          roff(replace_all(replace_all(line, "scenes/data/", ""), "scenes/data", "scenes")) + '\n';
     text += ".fi\n";
   }
   text +=
@@ -105,8 +106,8 @@ std::string bash_completion(const std::vector<CommandHelp>& commands) {
     for (const OptionHelp& o : c.options) {
       all.insert(all.end(), o.names.begin(), o.names.end());
       for (const std::string& n : o.names)
-        if (!choices(o).empty())
-          values += "    " + c.name + ',' + n + ") words=\"" + join(choices(o)) + "\" ;;\n";
+        if (!value_words(o).empty())
+          values += "    " + c.name + ',' + n + ") words=\"" + join(value_words(o)) + "\" ;;\n";
     }
     options += "    " + c.name + ") words=\"" + join(all) + "\" ;;\n";
   }
@@ -137,13 +138,15 @@ std::string bash_completion(const std::vector<CommandHelp>& commands) {
 std::string zsh_completion(const std::vector<CommandHelp>& commands) {
   // Within '[...]' of a specification brackets and colons are escaped, and quotes leave the string.
   const auto quoted = [](const std::string& text) {
-    return replaced(
-        replaced(replaced(replaced(text, "[", "\\["), "]", "\\]"), ":", "\\:"), "'", "'\\''");
+    return replace_all(
+        replace_all(replace_all(replace_all(text, "[", "\\["), "]", "\\]"), ":", "\\:"),
+        "'",
+        "'\\''");
   };
   std::string text = "#compdef grelha\n# zsh completion of grelha, " + std::string(kMade) +
                      "\nif (( CURRENT == 2 )); then\n  local -a commands=(\n";
   for (const CommandHelp& c : commands)
-    text += "    '" + c.name + ':' + replaced(c.text, "'", "'\\''") + "'\n";
+    text += "    '" + c.name + ':' + replace_all(c.text, "'", "'\\''") + "'\n";
   text +=
       "  )\n  _describe command commands\n  _arguments '--help' '--help-all' '(-V "
       "--version)'{-V,--version}'[say which version this is]'\n  return\nfi\n"
@@ -154,7 +157,7 @@ std::string zsh_completion(const std::vector<CommandHelp>& commands) {
       for (const std::string& n : o.names) {
         text += "      '" + n + '[' + quoted(o.text) + ']';
         if (!o.placeholder.empty()) {
-          const std::string words = replaced(join(choices(o)), ":", "\\:");
+          const std::string words = replace_all(join(value_words(o)), ":", "\\:");
           text += ':' + quoted(o.placeholder) + ':' +
                   (takes_file(o)   ? "_files"
                    : words.empty() ? " "
@@ -171,7 +174,7 @@ std::string zsh_completion(const std::vector<CommandHelp>& commands) {
 
 std::string fish_completion(const std::vector<CommandHelp>& commands) {
   const auto quoted = [](const std::string& text) {
-    return replaced(replaced(text, "\\", "\\\\"), "'", "\\'").insert(0, 1, '\'') + '\'';
+    return replace_all(replace_all(text, "\\", "\\\\"), "'", "\\'").insert(0, 1, '\'') + '\'';
   };
   std::string text = "# fish completion of grelha, " + std::string(kMade) + '\n';
   const std::string none = "complete -c grelha -n '__fish_use_subcommand' ";
@@ -187,8 +190,8 @@ std::string fish_completion(const std::vector<CommandHelp>& commands) {
         text += n.starts_with("--") ? "-l " + n.substr(2) + ' ' : "-s " + n.substr(1) + ' ';
       if (!o.placeholder.empty())
         text += takes_file(o) ? "-r " : "-x ";
-      if (!choices(o).empty())
-        text += "-a '" + join(choices(o)) + "' ";
+      if (!value_words(o).empty())
+        text += "-a '" + join(value_words(o)) + "' ";
       text += "-d " + quoted(o.text) + '\n';
     }
   }

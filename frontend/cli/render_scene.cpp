@@ -44,7 +44,7 @@ constexpr const char* kMoreIsas = "";
 #endif
 
 /// Checks the instruction set before the scene is read: a large one takes seconds to read.
-void want_isa(std::string_view name) {
+void check_isa(std::string_view name) {
   if (name == "best")
     return;
   for (const Isa& isa : isas()) {
@@ -52,7 +52,7 @@ void want_isa(std::string_view name) {
       continue;
     if (!isa.compiled)
       throw UsageError("this build has no " + std::string(name) + kMoreIsas);
-    if (!isa.runs_here)
+    if (!isa.is_supported)
       throw UsageError("this processor has no " + std::string(name));
     return;
   }
@@ -89,10 +89,10 @@ void write_map(const std::string& path,
 }
 
 /// The command for a rank that neither writes nor speaks.
-RenderCommand silent(RenderCommand command) {
+RenderCommand without_output(RenderCommand command) {
   command.work.checkpoint.clear();
   command.stats.clear();
-  command.work.show_every = 0;
+  command.work.show_interval = 0;
   command.quiet = true;
   return command;
 }
@@ -102,7 +102,7 @@ class SceneRender {
  public:
   SceneRender(const RenderCommand& given, Ranks& ranks)
       : ranks_(ranks),
-        command_(ranks.first() ? given : silent(given)),
+        command_(ranks.first() ? given : without_output(given)),
         bars_(!command_.quiet && stderr_is_terminal()) {}
 
   int run() {
@@ -115,7 +115,7 @@ class SceneRender {
     prepare();
     report_.seconds.load = load.seconds();
     const PictureMemory memory = check();
-    LongRender work(prepared_, camera_, scene_, ranks_, log_.telling());
+    LongRender work(resolved_, camera_, scene_, ranks_, log_.reporting());
     const World world = build(memory);
     SampleMaps maps;
     if (const int signal = render(work, world, maps)) {
@@ -128,43 +128,43 @@ class SceneRender {
     omp_pause_resource_all(omp_pause_soft);
     write(work, world, maps);
     report(world);
-    log_.want_none(command_.input);  // saves may have failed on the way
+    log_.check_none(command_.input);  // saves may have failed on the way
     return kOk;
   }
 
  private:
   void read() {
-    want_isa(command_.render.isa);
+    check_isa(command_.render.isa);
     if (ranks_.first())
       prepare_outputs(command_);
-    file_ = load_scene(command_.scene, log_.telling(), command_.input.read, bars_);
-    want_not_read(outputs_of(command_), file_.meshes);
+    file_ = load_scene(command_.scene, log_.reporting(), command_.input.read, bars_);
+    check_not_read(outputs_of(command_), file_.meshes);
   }
 
   /// Applies the effects of the command to the scene, before rendering.
   void prepare() {
-    want_shareable(command_, ranks_);
+    check_shareable(command_, ranks_);
     scene_ = scene_digest(file_);
-    prepared_ = command_;
-    prepared_.render.phases = !command_.stats.empty();
-    apply_effects(command_.effects, file_, prepared_.render);
+    resolved_ = command_;
+    resolved_.render.phases = !command_.stats.empty();
+    apply_effects(command_.effects, file_, resolved_.render);
   }
 
   /// Throws the errors that are known before rendering. Returns the memory for the picture.
   PictureMemory check() {
     camera_ = camera_of(file_, command_);
-    want_room(format_of(command_.image, command_.format), camera_.width, camera_.height);
-    warn_of_nothing(command_.scene, file_, camera_, log_.telling());
-    warn_of_cut_light(command_.scene, file_.scene, prepared_.render, log_.telling());
-    log_.want_none(command_.input);
-    const PictureMemory memory = picture_memory(prepared_, camera_);
-    want_memory(command_.scene, memory.sums + memory.rest);
+    check_image_size(format_of(command_.image, command_.format), camera_.width, camera_.height);
+    warn_empty_image(command_.scene, file_, camera_, log_.reporting());
+    warn_of_cut_light(command_.scene, file_.scene, resolved_.render, log_.reporting());
+    log_.check_none(command_.input);
+    const PictureMemory memory = picture_memory(resolved_, camera_);
+    check_memory(command_.scene, memory.sums + memory.tail);
     return memory;
   }
 
   World build(const PictureMemory& memory) {
     const Stopwatch build;
-    World world = build_world(command_.scene, file_.scene, command_.build, memory.rest, bars_);
+    World world = build_world(command_.scene, file_.scene, command_.build, memory.tail, bars_);
     report_.seconds.build = build.seconds();
     return world;
   }
@@ -210,10 +210,10 @@ class SceneRender {
     report_.geometry_bytes = world.geometry_bytes();
     report_.grid_bytes = world.grid_bytes();
     if (!command_.stats.empty())
-      write_file(command_.stats, stats_json(prepared_, report_));
-    const std::string summary = summary_line(command_, report_);
+      write_file(command_.stats, stats_json(resolved_, report_));
+    const std::string summary = report_line_of(command_, report_);
     if (!command_.quiet)
-      tell(summary, writes_to_stdout(command_));
+      report_line(summary, writes_to_stdout(command_));
   }
 
   Ranks& ranks_;
@@ -222,7 +222,7 @@ class SceneRender {
   WarningLog log_;
   SceneFile file_;
   std::string scene_;       ///< digest of it
-  RenderCommand prepared_;  ///< with the effects of the scene
+  RenderCommand resolved_;  ///< with the effects of the scene
   Camera camera_;
   RunReport report_;
 };
@@ -233,7 +233,7 @@ int render_scene(const RenderCommand& command, Ranks& ranks) {
   return SceneRender(command, ranks).run();
 }
 
-void want_room(std::optional<ImageFormat> format, int width, int height) {
+void check_image_size(std::optional<ImageFormat> format, int width, int height) {
   if (format && !image_fits(*format, width, height))
     throw UsageError("a picture of " + std::to_string(width) + 'x' + std::to_string(height) +
                      " is too large for .png and .hdr, write a .pfm or .exr");

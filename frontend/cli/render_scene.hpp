@@ -12,6 +12,6 @@ namespace grelha {
 int render_scene(const RenderCommand& command, Ranks& ranks);
 
 /// Throws UsageError when a picture of this size is too large for its format.
-void want_room(std::optional<ImageFormat> format, int width, int height);
+void check_image_size(std::optional<ImageFormat> format, int width, int height);
 
 }  // namespace grelha

@@ -46,13 +46,14 @@ Names files_of(const std::string& folder) {
   return files;
 }
 
-constexpr std::string_view kPlace = "{}";
+constexpr std::string_view kLocation = "{}";
 
 /// `pattern` with the scene's name in place of {}.
 std::string filled_in(std::string pattern, const std::string& scene) {
   const std::string name = fs::path(default_image(scene)).stem().string();
-  for (std::size_t at = 0; (at = pattern.find(kPlace, at)) != std::string::npos; at += name.size())
-    pattern.replace(at, kPlace.size(), name);
+  for (std::size_t at = 0; (at = pattern.find(kLocation, at)) != std::string::npos;
+       at += name.size())
+    pattern.replace(at, kLocation.size(), name);
   return pattern;
 }
 
@@ -88,10 +89,11 @@ std::vector<RenderCommand> commands_for(const RenderCommand& command) {
     one.scenes = {scene};
     one.scene = scene;
     one.image = image_for(scene, command.image, command.format);
-    one.work.kept_till_the_last = scenes.size() > 1;
+    one.work.save_until_end = scenes.size() > 1;
     const auto want_folder = [&one](const std::string& pattern, const std::string& file) {
       const fs::path folder = fs::path(file).parent_path();
-      if (!folder.empty() && (pattern.ends_with('/') || pattern.find(kPlace) != std::string::npos))
+      if (!folder.empty() &&
+          (pattern.ends_with('/') || pattern.find(kLocation) != std::string::npos))
         one.folders.push_back(folder.string());
     };
     want_folder(command.image, one.image);
@@ -99,10 +101,10 @@ std::vector<RenderCommand> commands_for(const RenderCommand& command) {
       const std::string pattern = std::exchange(file, filled_in(file, scene));
       want_folder(pattern, file);
     });
-    want_not_read(outputs_of(one), scenes);
+    check_not_read(outputs_of(one), scenes);
     all.push_back(std::move(one));
   }
-  want_apart(all);
+  check_distinct(all);
   return all;
 }
 

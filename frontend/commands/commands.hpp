@@ -28,17 +28,17 @@ struct InputOptions {
   std::uint64_t max_memory = 0;  ///< bytes; 0: as much as the machine has
 };
 
-inline constexpr double kSaveEvery = 60;  ///< seconds between saves of a checkpoint
+inline constexpr double kSaveInterval = 60;  ///< seconds between saves of a checkpoint
 
 /// A render that may be split into parts, interrupted and continued.
 struct LongWork {
-  std::optional<Range> rows, samples;  ///< the part to render; absent: all
-  std::string checkpoint;              ///< file to save to and to continue from, or empty
-  std::optional<double> save_every;    ///< seconds; absent: kSaveEvery
+  std::optional<Range> rows, samples;   ///< the part to render; absent: all
+  std::string checkpoint;               ///< file to save to and to continue from, or empty
+  std::optional<double> save_interval;  ///< seconds; absent: kSaveInterval
   /// seconds between intermediate pictures; 0: none
-  double show_every = 0;
+  double show_interval = 0;
   /// keeps the checkpoint until the pictures of all scenes are written
-  bool kept_till_the_last = false;
+  bool save_until_end = false;
   bool is_part() const { return rows || samples; }
 };
 

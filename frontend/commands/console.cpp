@@ -8,18 +8,18 @@
 namespace grelha {
 
 void warn(const std::string& line) {
-  std::cerr << shown_on_a_line(line) << '\n';
+  std::cerr << printable_line(line) << '\n';
 }
 
 void print(const std::string& text) {
-  std::cout << shown(text) << std::flush;
+  std::cout << printed(text) << std::flush;
   if (!std::cout)
     throw FileError("stdout", "cannot write");
 }
 
-void tell(const std::string& text, bool results_on_stdout) {
+void report_line(const std::string& text, bool results_on_stdout) {
   if (results_on_stdout)
-    std::cerr << shown(text);
+    std::cerr << printed(text);
   else
     print(text);
 }

@@ -8,7 +8,7 @@ namespace grelha {
 /// Exit statuses. Beyond kSignalled: the number of the signal that stopped the program.
 inline constexpr int kOk = 0, kFileFailed = 1, kBadInput = 2, kSignalled = 128;
 
-// All output passes through shown(), so no file name reaches a terminal unescaped.
+// All output passes through printed(), so no file name reaches a terminal unescaped.
 
 /// Writes a line to stderr.
 void warn(const std::string& line);
@@ -17,6 +17,6 @@ void warn(const std::string& line);
 void print(const std::string& text);
 
 /// Writes text to stdout, or to stderr where stdout has the results.
-void tell(const std::string& text, bool results_on_stdout);
+void report_line(const std::string& text, bool results_on_stdout);
 
 }  // namespace grelha

@@ -15,13 +15,13 @@ double most_of(const Float3& v) {
 
 /// Returns an upper bound of one term of a sample: a light that a surface reflects, a glow or the
 /// background, seen through as many mirrors as a path may have.
-double brightest(const Scene& scene, const RenderOptions& options) {
+double max_radiance(const Scene& scene, const RenderOptions& options) {
   double light = 0;
   for (const Light& one : scene.lights) {
     const bool is_area = one.edge1 != Float3{} || one.edge2 != Float3{};
     light = std::max(light, most_of(one.color) / (is_area ? options.sampling.light_rays : 1));
   }
-  double term = most_of(scene.background), passed_on = 1;
+  double term = most_of(scene.background), refracted_direction = 1;
   const std::vector<char> used = used_materials(scene);
   for (std::size_t i = 0; i < used.size(); ++i) {
     const Material& m = scene.materials[i];
@@ -29,10 +29,11 @@ double brightest(const Scene& scene, const RenderOptions& options) {
       continue;
     const double returned = most_of(m.diffuse) + most_of(m.specular);
     term = std::max({term, light * returned, most_of(m.emission)});
-    passed_on = std::max({passed_on, most_of(m.mirror), double(m.transmission)});
+    refracted_direction =
+        std::max({refracted_direction, most_of(m.mirror), double(m.transmission)});
   }
-  for (int bounce = 1; bounce < options.depth && passed_on > 1 && term < 1e30; ++bounce)
-    term *= passed_on;
+  for (int bounce = 1; bounce < options.depth && refracted_direction > 1 && term < 1e30; ++bounce)
+    term *= refracted_direction;
   return term;
 }
 
@@ -49,7 +50,7 @@ void warn_of_cut_light(const std::string& path,
                        const Scene& scene,
                        const RenderOptions& options,
                        const Warn& warn) {
-  const double found = brightest(scene, options), held = most_held(options);
+  const double found = max_radiance(scene, options), held = most_held(options);
   if (!(found > held))
     return;
   char text[128];

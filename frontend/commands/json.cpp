@@ -4,7 +4,7 @@
 
 namespace grelha {
 
-Json tidy(float value) {
+Json simplify(float value) {
   char text[32];
   double result = 0;
   const auto end = std::to_chars(text, text + sizeof text, value).ptr;
@@ -13,7 +13,7 @@ Json tidy(float value) {
 }
 
 Json to_json(Float3 v) {
-  return {tidy(v.x), tidy(v.y), tidy(v.z)};
+  return {simplify(v.x), simplify(v.y), simplify(v.z)};
 }
 
 Json to_json(const EntityCounts& c) {
@@ -50,7 +50,7 @@ Json to_json(const Frame& frame, const SceneBounds& bounds) {
 Json to_json(const Subdivision& s) {
   if (!s.on)
     return nullptr;
-  return {{"threshold", tidy(s.threshold)}, {"depth", s.depth}};
+  return {{"threshold", simplify(s.threshold)}, {"depth", s.depth}};
 }
 
 Json to_json(const RayCounts& rays) {

@@ -15,7 +15,7 @@ namespace grelha {
 using Json = nlohmann::ordered_json;
 
 /// A float as the shortest decimal that names it: 0.1, not 0.10000000149011612.
-Json tidy(float value);
+Json simplify(float value);
 Json to_json(Float3 v);
 Json to_json(const EntityCounts& c);
 Json to_json(const std::vector<GridStats>& grids);

@@ -17,14 +17,14 @@ struct Use {
   const RenderCommand* command;
 };
 
-[[noreturn]] void refuse(const Output& first, const Output& second) {
+[[noreturn]] void reject(const Output& first, const Output& second) {
   throw UsageError(second.first + " and " + first.first + ": expected two files, found \"" +
                    first.second + "\" twice");
 }
 
-[[noreturn]] void refuse(const Use& first, const Use& second) {
+[[noreturn]] void reject(const Use& first, const Use& second) {
   if (first.command == second.command)
-    refuse(Output(first.option, first.file), Output(second.option, second.file));
+    reject(Output(first.option, first.file), Output(second.option, second.file));
   throw UsageError(second.option + ": " + first.command->scene + " and " + second.command->scene +
                    " would both be written to " + second.file +
                    "; {} in a name stands for the scene's");
@@ -48,46 +48,46 @@ std::vector<Output> outputs_of(const RenderCommand& command) {
 }
 
 void prepare_outputs(const RenderCommand& command) {
-  want_no_terminal(command.image);
+  check_no_terminal(command.image);
   for (const std::string& folder : command.folders)
     make_folder(folder);
   for (const auto& [option, file] : outputs_of(command))
     check_writable(file, option == "--checkpoint");
 }
 
-void want_no_terminal(const std::string& file) {
+void check_no_terminal(const std::string& file) {
   if (file == kStdout && isatty(STDOUT_FILENO) == 1)
     throw UsageError("-o -: stdout is a terminal: expected a pipe or a file behind it");
 }
 
-void want_not_read(const std::vector<Output>& outputs, const std::vector<std::string>& read) {
-  std::map<Place, std::string> places;
+void check_not_read(const std::vector<Output>& outputs, const std::vector<std::string>& read) {
+  std::map<Location, std::string> locations;
   for (const std::string& file : read)
-    places.try_emplace(place_of(file), file);
+    locations.try_emplace(position_of(file), file);
   for (const auto& [option, file] : outputs) {
-    const auto found = places.find(place_of(file));
-    if (found == places.end() || is_special_file(file))
+    const auto found = locations.find(position_of(file));
+    if (found == locations.end() || is_special_file(file))
       continue;
     throw UsageError(option + ": expected another file than " + found->second +
                      ", which is read, found \"" + file + '"');
   }
 }
 
-void want_apart(const Output& first, const Output& second) {
-  if (!is_special_file(first.second) && place_of(first.second) == place_of(second.second))
-    refuse(first, second);
+void check_distinct(const Output& first, const Output& second) {
+  if (!is_special_file(first.second) && position_of(first.second) == position_of(second.second))
+    reject(first, second);
 }
 
-void want_apart(const std::vector<RenderCommand>& commands) {
-  std::map<Place, Use> written;
+void check_distinct(const std::vector<RenderCommand>& commands) {
+  std::map<Location, Use> written;
   for (const RenderCommand& command : commands)
     for (const auto& [option, file] : outputs_of(command)) {
       if (is_special_file(file))
         continue;
       const Use use{option, file, &command};
-      const auto [other, fresh] = written.try_emplace(place_of(file), use);
+      const auto [other, fresh] = written.try_emplace(position_of(file), use);
       if (!fresh)
-        refuse(other->second, use);
+        reject(other->second, use);
     }
 }
 

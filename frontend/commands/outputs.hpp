@@ -22,7 +22,7 @@ void each_output(Command& command, const Use& use) {
 /// An option and the file it names.
 using Output = std::pair<std::string, std::string>;
 
-/// Those that are named.
+/// Returns the outputs that are named.
 std::vector<Output> outputs_of(const RenderCommand& command);
 
 /// Creates missing folders, and throws now the errors of writing that would otherwise come after a
@@ -30,15 +30,15 @@ std::vector<Output> outputs_of(const RenderCommand& command);
 void prepare_outputs(const RenderCommand& command);
 
 /// Throws UsageError when binary data would go to a terminal.
-void want_no_terminal(const std::string& file);
+void check_no_terminal(const std::string& file);
 
 /// Throws UsageError when one of the outputs is a file that is read, by whatever name.
-void want_not_read(const std::vector<Output>& outputs, const std::vector<std::string>& read);
+void check_not_read(const std::vector<Output>& outputs, const std::vector<std::string>& read);
 
 /// Throws UsageError when two outputs are one file.
-void want_apart(const Output& first, const Output& second);
+void check_distinct(const Output& first, const Output& second);
 
 /// The same for all outputs, be it of one command or of two.
-void want_apart(const std::vector<RenderCommand>& commands);
+void check_distinct(const std::vector<RenderCommand>& commands);
 
 }  // namespace grelha

@@ -14,7 +14,7 @@ namespace grelha {
 namespace {
 
 constexpr int kBarWidth = 40, kLeastBar = 5;
-constexpr int kUsualColumns = 80;
+constexpr int kDefaultWidth = 80;
 constexpr std::size_t kNameWidth = 6;  ///< of the longest: "render"
 constexpr std::chrono::milliseconds kRedraw{100};
 
@@ -32,10 +32,10 @@ std::string duration_text(double seconds) {
 constexpr int kFreeColumns = 3;
 
 /// Asked anew for every line: the window may have been resized.
-int columns_of_stderr() {
+int stderr_width() {
   struct winsize size {};
   const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
-  return (known ? size.ws_col : kUsualColumns) - kFreeColumns;
+  return (known ? size.ws_col : kDefaultWidth) - kFreeColumns;
 }
 
 }  // namespace
@@ -48,12 +48,12 @@ std::string progress_text(const std::string& name, double share, double elapsed_
   std::string left =
       share > 0 ? "  " + duration_text(elapsed_s * (1 - share) / share) + " left" : "";
   std::string named = name + std::string(kNameWidth - std::min(kNameWidth, name.size()), ' ') + ' ';
-  const auto room = [&] { return columns - int(named.size() + percent.size() + left.size()); };
-  if (room() < 0)
+  const auto space = [&] { return columns - int(named.size() + percent.size() + left.size()); };
+  if (space() < 0)
     left.clear();
-  if (room() < 0)
+  if (space() < 0)
     named.clear();
-  const int width = std::min(kBarWidth, room() - int(std::string_view("[] ").size()));
+  const int width = std::min(kBarWidth, space() - int(std::string_view("[] ").size()));
   if (width < kLeastBar)
     return named + percent + left;
   const int full = int(share * width);
@@ -62,20 +62,20 @@ std::string progress_text(const std::string& name, double share, double elapsed_
 }
 
 ProgressBar::~ProgressBar() {
-  if (drawn_)
+  if (printed_)
     std::fputs("\r\033[K", stderr);
 }
 
 void ProgressBar::update(double share) {
   const auto now = Clock::now();
-  if (!shown_ || now - last_ < kRedraw)
+  if (!visible_ || now - last_ < kRedraw)
     return;
   last_ = now;
-  drawn_ = true;
+  printed_ = true;
   const std::chrono::duration<double> elapsed = now - start_;
   const double as_from_zero = share > first_ ? elapsed.count() * share / (share - first_) : 0;
   std::fprintf(
-      stderr, "\r%s\033[K", progress_text(name_, share, as_from_zero, columns_of_stderr()).c_str());
+      stderr, "\r%s\033[K", progress_text(name_, share, as_from_zero, stderr_width()).c_str());
 }
 
 bool stderr_is_terminal() {

@@ -14,8 +14,8 @@ std::string progress_text(const std::string& name, double share, double elapsed_
 class ProgressBar {
  public:
   /// `share`: the share done before the bar began. `name`: of the task.
-  explicit ProgressBar(bool shown, double share = 0, const char* name = "render")
-      : shown_(shown), first_(share), name_(name) {}
+  explicit ProgressBar(bool visible, double share = 0, const char* name = "render")
+      : visible_(visible), first_(share), name_(name) {}
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
@@ -24,10 +24,10 @@ class ProgressBar {
 
  private:
   using Clock = std::chrono::steady_clock;
-  const bool shown_;
+  const bool visible_;
   const double first_;
   const char* const name_;
-  bool drawn_ = false;
+  bool printed_ = false;
   const Clock::time_point start_ = Clock::now();
   Clock::time_point last_ = start_;
 };

@@ -115,7 +115,7 @@ Json options_json(const RenderCommand& command) {
   const SampleOptions& sampling = command.render.sampling;
   return {{"depth", command.render.depth},
           {"min_weight", command.render.min_weight},
-          {"density", tidy(command.build.density)},
+          {"density", simplify(command.build.density)},
           {"accel", command.build.grid ? "grid" : "none"},
           {"mailbox", command.render.mailbox},
           {"isa", command.render.isa},
@@ -125,7 +125,7 @@ Json options_json(const RenderCommand& command) {
           {"seed", sampling.seed},
           {"adaptive", to_json(command.render.subdivision)},
           {"light_rays", sampling.light_rays},
-          {"gloss_rays", sampling.gloss_rays},
+          {"gloss_rays", sampling.glossy_rays},
           {"threads", command.render.threads}};
 }
 
@@ -134,9 +134,9 @@ Json error_json(const RefineOptions& asked, const ErrorStats& e) {
           {"seconds", asked.seconds},
           {"rmse", e.rmse},
           {"rmse_bound", e.rmse_bound},
-          {"audited", e.audited},
-          {"audits", e.audits},
-          {"audit_samples", e.audit_samples},
+          {"audited", e.checked},
+          {"audits", e.checks},
+          {"audit_samples", e.check_samples},
           {"rounds", e.rounds},
           {"samples", e.samples},
           {"met_at", e.met_at},
@@ -150,7 +150,7 @@ Json to_json(const RowCounts& rows) {
 
 Json packets_json(const TraceCounts& trace) {
   return {{"formed", trace.packets.formed},
-          {"fell_back", trace.packets.fell_back},
+          {"fell_back", trace.packets.packet_fallbacks},
           {"lanes_busy", share(trace.packets.lanes_busy, trace.packets.lanes_issued)}};
 }
 
@@ -162,7 +162,7 @@ Json to_json(const Seconds& seconds) {
           {"render_cpu", seconds.render_cpu}};
 }
 
-/// Of all threads together.
+/// The phases of all threads together.
 Json phases_json(const RenderStats& render) {
   static constexpr const char* kPhaseNames[kPhases] = {
       "camera", "primary", "bounce", "surface", "light", "shadow", "children", "sums"};
@@ -245,10 +245,10 @@ std::string end_text(const RefineOptions& asked, const ErrorStats& e) {
 std::string error_text(const RefineOptions& asked, const ErrorStats& e, const RunReport& report) {
   std::string text =
       print("; RMSE about %.2g, at most ", e.rmse) + rounded_up(e.rmse_bound) + " (95 %)";
-  if (e.audited > 0)
+  if (e.checked > 0)
     text += print(", audited %.2g by %.1f %% more samples",
-                  e.audited,
-                  100 * double(e.audit_samples) / double(e.samples));
+                  e.checked,
+                  100 * double(e.check_samples) / double(e.samples));
   text += print("; %llu samples, %.1f a pixel, %u to %u",
                 static_cast<unsigned long long>(e.samples),
                 double(e.samples) / report.width / report.height,
@@ -341,7 +341,7 @@ std::string info_text(const std::string& path,
                       const SceneMemory& memory,
                       const std::optional<std::vector<GridStats>>& grids) {
   const Geometry& g = file.scene.geometry;
-  std::string text = shown_on_a_line(path) + ": " + size_text(file.camera) + '\n';
+  std::string text = printable_line(path) + ": " + size_text(file.camera) + '\n';
   list_entities(text, file.counts);
   text += "primitives    " +
           primitives_text(g.spheres.size(), g.triangles.size(), g.cones.size(), g.planes.size()) +
@@ -357,13 +357,13 @@ std::string info_text(const std::string& path,
     text += "coordinates   " + text_of(file.frame) + '\n';
   text += memory_text(memory);
   if (!grids)
-    text += "grid          not built: it would take more than " + memory_there_is() + '\n';
+    text += "grid          not built: it would take more than " + available_memory() + '\n';
   for (const GridStats& grid : grids.value_or(std::vector<GridStats>{}))
     text += grid_text(grid);
   return text + needs_text(file);
 }
 
-std::string summary_line(const RenderCommand& command, const RunReport& report) {
+std::string report_line_of(const RenderCommand& command, const RunReport& report) {
   const Seconds& s = report.seconds;
   const double rays = double(report.render.rays.total());
   const std::string times =
@@ -371,7 +371,7 @@ std::string summary_line(const RenderCommand& command, const RunReport& report) 
   const double speed = s.render > 0 ? rays / s.render / 1e6 : 0;
   const ErrorStats& e = report.render.error;
   const std::string error = e.samples == 0 ? "" : error_text(command.render.refine, e, report);
-  return shown_on_a_line(name_of_file(command.image)) + ": " +
+  return printable_line(name_of_file(command.image)) + ": " +
          primitives_text(report.spheres, report.triangles, report.cones, report.planes) + "; " +
          grids_text(report.grids) + "; " + print("%.3f Mrays in ", rays / 1e6) + times +
          print("; %.2f Mrays/s (%s, ", speed, report.render.isa) + ranks_text(report.ranks) +

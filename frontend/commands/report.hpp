@@ -48,6 +48,6 @@ std::string info_text(const std::string& path,
                       const SceneFile& file,
                       const SceneMemory& memory,
                       const std::optional<std::vector<GridStats>>& grids);
-std::string summary_line(const RenderCommand& command, const RunReport& report);
+std::string report_line_of(const RenderCommand& command, const RunReport& report);
 
 }  // namespace grelha

@@ -13,17 +13,17 @@ namespace grelha {
 class WarningLog {
  public:
   /// Must not outlive this.
-  std::function<void(const std::string&)> telling() {
-    return [this](const std::string& line) { tell(line); };
+  std::function<void(const std::string&)> reporting() {
+    return [this](const std::string& line) { report_line(line); };
   }
   /// Throws UsageError where a warning is one too many.
-  void want_none(const InputOptions& input) const {
+  void check_none(const InputOptions& input) const {
     if (input.strict && count_ > 0)
       throw UsageError("--strict: expected no warning, found " + std::to_string(count_));
   }
 
  private:
-  void tell(const std::string& line) {
+  void report_line(const std::string& line) {
     ++count_;
     warn(line);
   }

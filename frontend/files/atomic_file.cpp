@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kNamesToTry = 100;
 // bytes of the target's name in the temporary name: file systems limit names to 255 bytes
-constexpr std::size_t kLongestKept = 200;
+constexpr std::size_t kLongestSaved = 200;
 
 [[noreturn]] void fail(const std::string& path, const std::string& what, int error) {
   throw FileError(path, what + ": " + std::strerror(error));
@@ -55,14 +55,14 @@ void sync(const std::string& path, const std::string& file) {
 
 /// Returns true if an open file is a regular file and still has this name: its previous writer may
 /// have renamed it.
-bool stands_there(int file, const std::string& name) {
+bool exists_at(int file, const std::string& name) {
   using Stat = struct stat;
   Stat opened{}, there{};
   return fstat(file, &opened) == 0 && S_ISREG(opened.st_mode) && stat(name.c_str(), &there) == 0 &&
          opened.st_dev == there.st_dev && opened.st_ino == there.st_ino;
 }
 
-bool is_there(const std::string& name) {
+bool path_exists(const std::string& name) {
   struct stat info {};
   return lstat(name.c_str(), &info) == 0;
 }
@@ -79,24 +79,23 @@ void take_mode(int file, const std::string& from) {
 /// Creates a file in the same folder, so that renaming cannot cross file systems. Its name derives
 /// from the target's, so that it replaces the file that a killed program left. The writing process
 /// holds a lock, which dies with it; another writer of the same target takes the next name.
-void AtomicFile::create_beside() {
+void AtomicFile::create_temp() {
   const auto target = std::filesystem::path(target_);
-  const std::string name = target.filename().string().substr(0, kLongestKept);
+  const std::string name = target.filename().string().substr(0, kLongestSaved);
   for (int attempt = 0; attempt < kNamesToTry; ++attempt) {
-    const std::string beside =
-        (target.parent_path() /
-         ('.' + name + ".grelha-tmp" + (attempt > 0 ? std::to_string(attempt) : "")))
-            .string();
-    lock_ = open(beside.c_str(), O_CREAT | O_WRONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
+    const std::string temp = (target.parent_path() / ('.' + name + ".grelha-tmp" +
+                                                      (attempt > 0 ? std::to_string(attempt) : "")))
+                                 .string();
+    lock_ = open(temp.c_str(), O_CREAT | O_WRONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
     const int error = errno;
-    if (lock_ < 0 && is_there(beside))
+    if (lock_ < 0 && path_exists(temp))
       continue;  // someone else's, or no file
     if (lock_ < 0)
       fail(path_, "cannot write", error);
     // no locks here: then one program at a time
     const bool locked = flock(lock_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
-    if (locked && stands_there(lock_, beside)) {
-      beside_ = beside;
+    if (locked && exists_at(lock_, temp)) {
+      temp_ = temp;
       return take_mode(lock_, target_);
     }
     close(lock_);
@@ -106,23 +105,23 @@ void AtomicFile::create_beside() {
 }
 
 AtomicFile::AtomicFile(const std::string& path, bool durable)
-    : path_(path), target_(path == kStdout ? path : behind_links(path)), durable_(durable) {
+    : path_(path), target_(path == kStdout ? path : resolve_links(path)), durable_(durable) {
   if (is_stdout())
     return;
   const bool special = is_special(target_);
   if (durable && special)
     throw FileError(path, "cannot write: not a regular file");
   if (!special)
-    create_beside();
+    create_temp();
   errno = 0;
-  stream_.open(beside_.empty() ? target_ : beside_, std::ios::binary);
+  stream_.open(temp_.empty() ? target_ : temp_, std::ios::binary);
   if (!stream_)
     fail(path_, "cannot write", errno);
 }
 
 AtomicFile::~AtomicFile() {
-  if (!beside_.empty())
-    unlink(beside_.c_str());
+  if (!temp_.empty())
+    unlink(temp_.c_str());
   if (lock_ >= 0)
     close(lock_);
 }
@@ -145,13 +144,13 @@ void AtomicFile::commit() {
   stream_.close();
   if (!stream_)
     fail(path_, "cannot write", error);
-  if (beside_.empty())
+  if (temp_.empty())
     return;
   if (durable_)
-    sync(path_, beside_);
-  if (std::rename(beside_.c_str(), target_.c_str()) != 0)
+    sync(path_, temp_);
+  if (std::rename(temp_.c_str(), target_.c_str()) != 0)
     fail(path_, "cannot write", errno);
-  beside_.clear();
+  temp_.clear();
   const std::string folder = std::filesystem::path(target_).parent_path().string();
   if (durable_)
     sync(path_, folder.empty() ? "." : folder);

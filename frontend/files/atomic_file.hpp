@@ -27,12 +27,12 @@ class AtomicFile {
   void commit();
 
  private:
-  void create_beside();
+  void create_temp();
   bool is_stdout() const { return path_ == kStdout; }
 
-  std::string path_, target_, beside_;  ///< beside_ is empty when written directly
+  std::string path_, target_, temp_;  ///< temp_ is empty when written directly
   bool durable_;
-  int lock_ = -1;  ///< on the file named beside_
+  int lock_ = -1;  ///< on the file named temp_
   std::ofstream stream_;
 };
 

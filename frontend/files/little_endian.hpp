@@ -98,7 +98,7 @@ class Source {
   }
   template <class T>
   void list(std::vector<T>& values, std::size_t count) {
-    room(count, sizeof(T));
+    space(count, sizeof(T));
     values.resize(count);
     if (count > 0)
       std::memcpy(values.data(), left_.data(), count * sizeof(T));
@@ -111,7 +111,7 @@ class Source {
   void size(std::vector<T>& values, std::size_t bytes) {
     std::uint64_t count = 0;
     one(count);
-    room(count, bytes);
+    space(count, bytes);
     values.resize(count);
   }
   /// There must be nothing left.
@@ -123,12 +123,12 @@ class Source {
  private:
   template <class T>
   void one(T& value) {
-    room(1, sizeof value);
+    space(1, sizeof value);
     std::memcpy(&value, left_.data(), sizeof value);
     value = swapped_if_big(value);
     left_.remove_prefix(sizeof value);
   }
-  void room(std::uint64_t count, std::size_t bytes) const {
+  void space(std::uint64_t count, std::size_t bytes) const {
     if (count > left_.size() / bytes)
       throw NotOurs();
   }

@@ -17,7 +17,7 @@
 #include "frontend/files/load_progress.hpp"
 #include "frontend/files/parse_error.hpp"
 #include "frontend/files/plausible.hpp"
-#include "kernel/scene/pages.hpp"
+#include "kernel/base/pages.hpp"
 
 namespace grelha {
 namespace {
@@ -38,27 +38,27 @@ bool is_gzip(std::string_view data) {
 /// A buffer that grows with the bytes that arrive, a piece at a time, whatever size was promised.
 class Growing {
  public:
-  Growing(const Judge& judge, std::size_t promised) : judge_(judge) {
+  Growing(const Validate& validate, std::size_t promised) : validate_(validate) {
     bytes_.reserve(promised);
-    allow_large_pages(bytes_.data(), promised);
+    advise_huge_pages(bytes_.data(), promised);
   }
 
-  /// Room for up to `most` bytes more; at least one, unless `most` is none.
-  std::span<char> room(std::size_t most) {
+  /// Space for up to `most` bytes more; at least one, unless `most` is none.
+  std::span<char> space(std::size_t most) {
     if (have_ == bytes_.size())
       resize_to_fill(bytes_, have_ + std::min(most, std::clamp(have_, kLeast, kMostAtOnce)));
     return {bytes_.data() + have_, std::min(most, bytes_.size() - have_)};
   }
-  /// So many bytes of the room were filled.
+  /// So many bytes of the space were filled.
   void filled(std::size_t count) {
     have_ += count;
-    if (have_ - judged_ >= kPiece)
-      judge();
+    if (have_ - validated_ >= kPart)
+      validate();
   }
   std::size_t size() const { return have_; }
   std::string finish() {
-    if (have_ > judged_)
-      judge();
+    if (have_ > validated_)
+      validate();
     bytes_.resize(have_);
     return std::move(bytes_);
   }
@@ -68,34 +68,34 @@ class Growing {
   /// the cleared memory is still in the cache when the bytes arrive
   static constexpr std::size_t kMostAtOnce = std::size_t(1) << 18;
 
-  void judge() {
+  void validate() {
     const std::string_view all(bytes_.data(), have_);
-    if (judge_ && !is_gzip(all))
-      judge_(all, judged_);
-    judged_ = have_;
+    if (validate_ && !is_gzip(all))
+      validate_(all, validated_);
+    validated_ = have_;
   }
 
-  const Judge& judge_;
+  const Validate& validate_;
   std::string bytes_;
-  std::size_t have_ = 0, judged_ = 0;
+  std::size_t have_ = 0, validated_ = 0;
 };
 
 /// Reads a pipe to its end, which may never come: checks for a stop every kLookUp milliseconds.
-std::string read_pipe(const std::string& path, LoadProgress* progress, const Judge& judge) {
+std::string read_pipe(const std::string& path, LoadProgress* progress, const Validate& validate) {
   constexpr int kLookUp = 100;  // ms
   const int handle = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   if (handle < 0)
     throw FileError(path, std::string("cannot open: ") + std::strerror(errno));
   const File file(fdopen(handle, "rb"));
-  Growing bytes(judge, 0);
+  Growing bytes(validate, 0);
   for (;;) {
     if (pollfd asked{handle, POLLIN, 0}; poll(&asked, 1, kLookUp) <= 0) {
       if (progress)
         progress->waiting();
       continue;
     }
-    const std::span<char> room = bytes.room(kPiece);
-    const ssize_t got = read(handle, room.data(), room.size());
+    const std::span<char> space = bytes.space(kPart);
+    const ssize_t got = read(handle, space.data(), space.size());
     if (got < 0 && errno != EAGAIN && errno != EINTR)
       throw FileError(path, std::string("cannot read: ") + std::strerror(errno));
     if (got == 0)
@@ -110,14 +110,14 @@ std::string read_pipe(const std::string& path, LoadProgress* progress, const Jud
 std::string read_bytes(const std::string& path,
                        LoadProgress* progress,
                        bool pipe_too,
-                       const Judge& judge) {
+                       const Validate& validate) {
   struct stat about {};
   if (stat(path.c_str(), &about) != 0)
     throw FileError(path, std::string("cannot open: ") + std::strerror(errno));
   if (S_ISDIR(about.st_mode))
     throw FileError(path, std::string("cannot read: ") + std::strerror(EISDIR));
   if (pipe_too && S_ISFIFO(about.st_mode))
-    return read_pipe(path, progress, judge);
+    return read_pipe(path, progress, validate);
   if (!S_ISREG(about.st_mode))
     throw FileError(path, "cannot read: not a regular file");
   const File file(std::fopen(path.c_str(), "rb"));
@@ -126,10 +126,10 @@ std::string read_bytes(const std::string& path,
   const auto promised = std::size_t(about.st_size);
   if (progress)
     progress->expect((1 + kParsing) * double(promised));
-  Growing bytes(judge, promised);
+  Growing bytes(validate, promised);
   for (std::size_t got = 1; got > 0 && bytes.size() < promised;) {
-    const std::span<char> room = bytes.room(promised - bytes.size());
-    got = std::fread(room.data(), 1, room.size(), file.get());
+    const std::span<char> space = bytes.space(promised - bytes.size());
+    got = std::fread(space.data(), 1, space.size(), file.get());
     bytes.filled(got);
     if (progress)
       progress->done(double(got));
@@ -151,8 +151,8 @@ class Inflater {
   Inflater(const Inflater&) = delete;
   ~Inflater() { inflateEnd(&stream_); }
 
-  std::string run(std::size_t limit, const Judge& judge) {
-    Growing out(judge, std::min(limit, 4 * data_.size()));
+  std::string run(std::size_t limit, const Validate& validate) {
+    Growing out(validate, std::min(limit, 4 * data_.size()));
     while (!step(out, limit)) {
     }
     return out.finish();
@@ -160,29 +160,29 @@ class Inflater {
 
  private:
   [[noreturn]] void fail(const std::string& message) const {
-    throw ParseError(Position{path_, 0, 0, taken_}, message);
+    throw ParseError(Position{path_, 0, 0, parsed_}, message);
   }
 
   /// One call of inflate; true when the last member has ended.
   bool step(Growing& out, std::size_t limit) {
-    const std::size_t give = std::min(kPiece, data_.size() - taken_);
-    const std::span<char> room = out.room(limit - out.size());
-    stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(data_.data() + taken_));
+    const std::size_t give = std::min(kPart, data_.size() - parsed_);
+    const std::span<char> space = out.space(limit - out.size());
+    stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(data_.data() + parsed_));
     stream_.avail_in = uInt(give);
-    char beyond = 0;  // with no room left the end may still come
-    stream_.next_out = reinterpret_cast<Bytef*>(room.empty() ? &beyond : room.data());
-    stream_.avail_out = room.empty() ? 1 : uInt(room.size());
+    char beyond = 0;  // with no space left the end may still come
+    stream_.next_out = reinterpret_cast<Bytef*>(space.empty() ? &beyond : space.data());
+    stream_.avail_out = space.empty() ? 1 : uInt(space.size());
     const int result = inflate(&stream_, Z_NO_FLUSH);
-    taken_ += give - stream_.avail_in;
-    if (room.empty() && stream_.avail_out == 0)
+    parsed_ += give - stream_.avail_in;
+    if (space.empty() && stream_.avail_out == 0)
       fail("expected data that inflate to at most " + std::to_string(limit) + " bytes, found more");
-    if (!room.empty())
-      out.filled(room.size() - stream_.avail_out);
+    if (!space.empty())
+      out.filled(space.size() - stream_.avail_out);
     if (progress_)
       progress_->done(kInflating * double(give - stream_.avail_in));
     if (result == Z_STREAM_END) {
       // bytes behind the last member are ignored, as gzip does
-      if (!is_gzip(data_.substr(taken_)))
+      if (!is_gzip(data_.substr(parsed_)))
         return true;
       inflateReset(&stream_);
       return false;
@@ -192,7 +192,7 @@ class Inflater {
     if (result != Z_OK && result != Z_BUF_ERROR)
       fail(std::string("expected sound gzip data, found ") +
            (stream_.msg ? stream_.msg : "broken ones"));
-    if (taken_ == data_.size() && stream_.avail_out != 0)
+    if (parsed_ == data_.size() && stream_.avail_out != 0)
       fail("expected more gzip data, found end of file");
     return false;
   }
@@ -200,7 +200,7 @@ class Inflater {
   const std::string& path_;
   std::string_view data_;
   LoadProgress* progress_;
-  std::size_t taken_ = 0;
+  std::size_t parsed_ = 0;
   z_stream stream_{};
 };
 
@@ -210,8 +210,8 @@ std::string inflate_gzip(const std::string& path,
                          std::string_view data,
                          std::size_t limit,
                          LoadProgress* progress,
-                         const Judge& judge) {
-  return Inflater(path, data, progress).run(limit, judge);
+                         const Validate& validate) {
+  return Inflater(path, data, progress).run(limit, validate);
 }
 
 // Half of the machine's memory, at most 8 GiB: a scene beyond that could not be built anyway.
@@ -228,13 +228,13 @@ std::size_t inflate_limit(std::size_t bytes) {
 std::string load_file(const std::string& path,
                       LoadProgress* progress,
                       bool pipe_too,
-                      const Judge& judge) {
-  std::string bytes = read_bytes(path, progress, pipe_too, judge);
+                      const Validate& validate) {
+  std::string bytes = read_bytes(path, progress, pipe_too, validate);
   if (!is_gzip(bytes))
     return bytes;
   if (progress)
     progress->expect(kInflating * double(bytes.size()));
-  std::string inflated = inflate_gzip(path, bytes, inflate_limit(bytes.size()), progress, judge);
+  std::string inflated = inflate_gzip(path, bytes, inflate_limit(bytes.size()), progress, validate);
   if (progress)
     progress->expect(kParsing * (double(inflated.size()) - double(bytes.size())));
   return inflated;

@@ -41,18 +41,19 @@ inline constexpr double kParsing = 5;  ///< times as long as reading the bytes t
 /// reports nothing.
 class ParseProgress {
  public:
-  ParseProgress(LoadProgress* progress, const char* begin) : progress_(progress), told_(begin) {}
+  ParseProgress(LoadProgress* progress, const char* begin)
+      : progress_(progress), reported_(begin) {}
   void at(const char* here) {
     constexpr std::ptrdiff_t kStride = 1 << 20;
-    while (progress_ && here - told_ >= kStride) {
-      told_ += kStride;
+    while (progress_ && here - reported_ >= kStride) {
+      reported_ += kStride;
       progress_->done(kParsing * double(kStride));
     }
   }
 
  private:
   LoadProgress* progress_;
-  const char* told_;
+  const char* reported_;
 };
 
 }  // namespace grelha

@@ -27,7 +27,7 @@ bool memory_can_be_limited() {
   return !kSanitized;
 }
 
-std::uint64_t machine_memory() {
+std::uint64_t system_memory() {
   const long pages = sysconf(_SC_PHYS_PAGES), page_size = sysconf(_SC_PAGE_SIZE);
   return pages > 0 && page_size > 0 ? std::uint64_t(pages) * std::uint64_t(page_size) : 0;
 }
@@ -47,7 +47,7 @@ std::uint64_t memory_owned() {
   return pages[5] * std::uint64_t(sysconf(_SC_PAGE_SIZE));
 }
 
-bool asked_for = false;  ///< the limit comes from --max-memory; global, as the limit is
+bool requested = false;  ///< the limit comes from --max-memory; global, as the limit is
 
 }  // namespace
 
@@ -63,9 +63,9 @@ OwnMemory own_memory() {
 // malloc only reserves.
 void limit_memory(std::uint64_t bytes) {
   rlimit limit{};
-  asked_for = bytes > 0;
-  if (!asked_for)
-    bytes = machine_memory();
+  requested = bytes > 0;
+  if (!requested)
+    bytes = system_memory();
   if (!memory_can_be_limited() || bytes == 0 || getrlimit(RLIMIT_DATA, &limit) != 0)
     return;
   if (limit.rlim_max == RLIM_INFINITY || bytes < limit.rlim_max)
@@ -79,20 +79,20 @@ std::string gigabytes(std::uint64_t bytes) {
   return text;
 }
 
-std::string memory_there_is() {
+std::string available_memory() {
   rlimit limit{};
   const std::uint64_t least = own_memory().limit;
   if (least == std::numeric_limits<std::uint64_t>::max() || getrlimit(RLIMIT_DATA, &limit) != 0)
-    return gigabytes(machine_memory()) + ", all that this machine has";
+    return gigabytes(system_memory()) + ", all that this machine has";
   if (least == limit.rlim_max)
     return gigabytes(least) + " (ulimit -d)";
-  if (asked_for)
+  if (requested)
     return gigabytes(least) + " (--max-memory)";
   return gigabytes(least) + ", all that this machine has (--max-memory sets another bound)";
 }
 
 std::string out_of_memory() {
-  return "out of memory: needed more than " + memory_there_is();
+  return "out of memory: needed more than " + available_memory();
 }
 
 }  // namespace grelha

@@ -8,7 +8,7 @@
 namespace grelha {
 
 /// Returns the bytes of memory of this machine, or 0 if unknown.
-std::uint64_t machine_memory();
+std::uint64_t system_memory();
 
 /// Bytes that this process may own, and that it owns. Without a limit, `limit` is the largest
 /// number.
@@ -30,7 +30,7 @@ void limit_memory(std::uint64_t bytes);
 std::string gigabytes(std::uint64_t bytes);
 
 /// The memory limit of this process and its origin: `0.315 GB (--max-memory)`.
-std::string memory_there_is();
+std::string available_memory();
 
 /// `out of memory: ...`
 std::string out_of_memory();

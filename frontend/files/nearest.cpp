@@ -40,7 +40,7 @@ std::string_view nearest(std::string_view found, std::span<const std::string_vie
   return best;
 }
 
-std::string did_you_mean(std::string_view found, std::span<const std::string_view> words) {
+std::string suggest(std::string_view found, std::span<const std::string_view> words) {
   const std::string_view word = nearest(found, words);
   return word.empty() ? "" : "; did you mean " + std::string(word) + '?';
 }

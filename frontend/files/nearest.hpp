@@ -15,6 +15,6 @@ std::size_t edit_distance(std::string_view a, std::string_view b);
 std::string_view nearest(std::string_view found, std::span<const std::string_view> words);
 
 /// `; did you mean WORD?`, or nothing.
-std::string did_you_mean(std::string_view found, std::span<const std::string_view> words);
+std::string suggest(std::string_view found, std::span<const std::string_view> words);
 
 }  // namespace grelha

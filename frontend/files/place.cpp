@@ -17,7 +17,7 @@ fs::path folder_of(const fs::path& path) {
 
 }  // namespace
 
-std::string behind_links(const std::string& path) {
+std::string resolve_links(const std::string& path) {
   std::error_code error;
   fs::path at = fs::canonical(path, error);
   if (!error)
@@ -33,11 +33,11 @@ std::string behind_links(const std::string& path) {
   return at.string();
 }
 
-Place place_of(const std::string& path) {
+Location position_of(const std::string& path) {
   struct stat info {};
   if (stat(path.c_str(), &info) == 0)
     return {info.st_dev, info.st_ino, ""};
-  const fs::path target = behind_links(path);
+  const fs::path target = resolve_links(path);
   if (stat(folder_of(target).c_str(), &info) == 0)
     return {info.st_dev, info.st_ino, target.filename().string()};
   std::error_code ignored;

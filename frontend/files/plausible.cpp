@@ -16,7 +16,7 @@ bool has_digit(std::string_view text) {
 
 }  // namespace
 
-void judge_beginning(const std::string& path, bool ply, std::string_view text, std::size_t fresh) {
+void validate_start(const std::string& path, bool ply, std::string_view text, std::size_t fresh) {
   const std::string_view start = text.substr(0, kStart);
   if (start.starts_with("version https://git-lfs"))
     throw ParseError(
@@ -33,7 +33,7 @@ void judge_beginning(const std::string& path, bool ply, std::string_view text, s
   if (ply && start.find("format binary") != start.npos)
     return;
   const std::string_view piece = text.substr(fresh);
-  if (piece.size() >= kPiece && !has_digit(piece))
+  if (piece.size() >= kPart && !has_digit(piece))
     throw ParseError(Position{path, 0, 0, fresh},
                      "a scene's numbers",
                      std::to_string(piece.size()) + " bytes without a digit");

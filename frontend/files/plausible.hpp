@@ -7,12 +7,12 @@
 namespace grelha {
 
 /// bytes read or inflated between two questions
-inline constexpr std::size_t kPiece = std::size_t(1) << 24;
+inline constexpr std::size_t kPart = std::size_t(1) << 24;
 
 /// Checks the bytes of a scene's file read so far; those from `fresh` on are new. Throws ParseError
 /// when no scene begins so: a Git LFS pointer, another known format (other_format), a mesh that
 /// does not say `ply`, a whole piece of text without one digit. This detects a file that inflates
 /// without end by its first pieces.
-void judge_beginning(const std::string& path, bool ply, std::string_view text, std::size_t fresh);
+void validate_start(const std::string& path, bool ply, std::string_view text, std::size_t fresh);
 
 }  // namespace grelha

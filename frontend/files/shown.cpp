@@ -35,7 +35,7 @@ Character first_of(std::string_view text) {
   return code < kLeast[bytes] || code > 0x10FFFF || is_surrogate ? kNone : Character{code, bytes};
 }
 
-bool is_harmless(std::uint32_t code) {
+bool is_printable(std::uint32_t code) {
   const auto within = [code](std::uint32_t low, std::uint32_t high) {
     return code >= low && code <= high;
   };
@@ -47,12 +47,12 @@ bool is_harmless(std::uint32_t code) {
 
 }  // namespace
 
-std::string shown(std::string_view text) {
+std::string printed(std::string_view text) {
   std::string clean;
   clean.reserve(text.size());
   while (!text.empty()) {
     const Character first = first_of(text);
-    if (text[0] == '\n' || is_harmless(first.code))
+    if (text[0] == '\n' || is_printable(first.code))
       clean += text.substr(0, first.bytes);
     else
       clean += '?';
@@ -61,8 +61,8 @@ std::string shown(std::string_view text) {
   return clean;
 }
 
-std::string shown_on_a_line(std::string_view text) {
-  std::string line = shown(text);
+std::string printable_line(std::string_view text) {
+  std::string line = printed(text);
   std::ranges::replace(line, '\n', '?');
   return line;
 }

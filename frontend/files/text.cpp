@@ -13,7 +13,7 @@ namespace {
 bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
-bool is_blank(char c) {
+bool is_space(char c) {
   return static_cast<unsigned char>(c) <= ' ';
 }
 bool ends_line(char c) {
@@ -37,16 +37,16 @@ struct Decimal {
     if (p != end && *p == '.') {
       const char* const point = p;
       p = read_digits(p + 1, end);
-      power = -int(std::min<std::ptrdiff_t>(p - point - 1, kTooMany));
+      power = -int(std::min<std::ptrdiff_t>(p - point - 1, kCutLimit));
       count = p - first - 1;
     }
-    if (count == 0 || count >= kTooMany)
+    if (count == 0 || count >= kCutLimit)
       return nullptr;
     return p != end && (*p == 'e' || *p == 'E') ? read_power(p + 1, end) : p;
   }
 
  private:
-  static constexpr int kTooMany = 20;  ///< digits, for a number of 64 bits
+  static constexpr int kCutLimit = 20;  ///< digits, for a number of 64 bits
 
   const char* read_digits(const char* p, const char* end) {
     for (; p != end && is_digit(*p); ++p)
@@ -134,7 +134,7 @@ const char* past_name(const char* p, const char* end, std::span<const std::strin
   p = std::find_if_not(p + found->size(), end, is_digit);
   if (p != end && *p == 'e')
     p = std::find_if_not(p + 1, end, [](char c) { return is_digit(c) || c == '+' || c == '-'; });
-  return p == end || is_blank(*p) ? p : nullptr;
+  return p == end || is_space(*p) ? p : nullptr;
 }
 
 template <class Float>
@@ -213,14 +213,14 @@ std::size_t byte_order_mark(std::string_view text) {
   return text.starts_with(kMark) ? kMark.size() : 0;
 }
 
-constexpr std::size_t kLongestShown = 40;
+constexpr std::size_t kLongestPrinted = 40;
 
-constexpr auto is_unprintable = [](char c) { return c < ' ' || c > '~'; };
+constexpr auto is_not_ascii = [](char c) { return c < ' ' || c > '~'; };
 
 std::string printable(std::string_view word) {
-  std::string shown(word.substr(0, kLongestShown));
-  std::ranges::replace_if(shown, is_unprintable, '?');
-  return word.size() > kLongestShown ? shown + "..." : shown;
+  std::string printed(word.substr(0, kLongestPrinted));
+  std::ranges::replace_if(printed, is_not_ascii, '?');
+  return word.size() > kLongestPrinted ? printed + "..." : printed;
 }
 
 std::string quoted(std::string_view word) {
@@ -235,9 +235,9 @@ Words::Words(std::string file, std::string_view text, std::size_t begin, Comment
       comments_(comments),
       known_(text.data()) {}
 
-const char* Words::skip_blanks(const char* p, bool stay_on_line, bool& line_ended) const {
+const char* Words::skip_spaces(const char* p, bool stay_on_line, bool& line_ended) const {
   while (p != end_) {
-    const char* const past = is_blank(*p) ? p + 1 : past_comment(p);
+    const char* const past = is_space(*p) ? p + 1 : past_comment(p);
     if (past == p)
       break;
     if (std::any_of(p, past, ends_line)) {
@@ -254,9 +254,9 @@ const char* Words::skip_blanks(const char* p, bool stay_on_line, bool& line_ende
 /// text once.
 const char* Words::find_close(const char* from) const {
   if (!searched_ || from < searched_ || from > close_) {
-    const std::string_view rest(from, std::size_t(end_ - from));
+    const std::string_view tail(from, std::size_t(end_ - from));
     searched_ = from;
-    close_ = from + std::min(rest.find("*/"), rest.size());
+    close_ = from + std::min(tail.find("*/"), tail.size());
   }
   return close_;
 }
@@ -280,42 +280,42 @@ const char* Words::past_comment(const char* p) const {
 }
 
 const char* Words::word_end(const char* p) const {
-  while (p != end_ && !is_blank(*p) && past_comment(p) == p)
+  while (p != end_ && !is_space(*p) && past_comment(p) == p)
     ++p;
   return p;
 }
 
 std::string_view Words::next() {
-  fresh_line_ = at_ == begin_;
-  const char* first = skip_blanks(at_, false, fresh_line_);
+  at_line_start_ = at_ == begin_;
+  const char* first = skip_spaces(at_, false, at_line_start_);
   at_ = word_end(first);
   return {first, std::size_t(at_ - first)};
 }
 
 /// Returns the first byte of the next word or comment.
-const char* Words::past_blanks() const {
+const char* Words::past_spaces() const {
   const char* p = at_;
-  while (p != end_ && is_blank(*p))
+  while (p != end_ && is_space(*p))
     ++p;
   return p;
 }
 
 /// Steps over the next word if it ends at `last`.
 bool Words::take_to(const char* last) {
-  if (last != end_ && !is_blank(*last) && past_comment(last) == last)
+  if (last != end_ && !is_space(*last) && past_comment(last) == last)
     return false;
   at_ = last;
   return true;
 }
 
 bool Words::next_number(float& value) {
-  const char* const last = short_number(past_blanks(), end_, value);
+  const char* const last = short_number(past_spaces(), end_, value);
   return last && take_to(last);
 }
 
 bool Words::next_index(std::int64_t& value) {
   constexpr std::ptrdiff_t kMostDigits = 18;
-  const char *const first = past_blanks(), *p = first;
+  const char *const first = past_spaces(), *p = first;
   std::int64_t found = 0;
   for (; p != end_ && is_digit(*p) && p - first < kMostDigits; ++p)
     found = 10 * found + (*p - '0');
@@ -327,13 +327,13 @@ bool Words::next_index(std::int64_t& value) {
 
 std::string_view Words::peek() const {
   bool ignored = false;
-  const char* first = skip_blanks(at_, false, ignored);
+  const char* first = skip_spaces(at_, false, ignored);
   return {first, std::size_t(word_end(first) - first)};
 }
 
 std::string_view Words::peek_on_line() const {
   bool ignored = false;
-  const char* first = skip_blanks(at_, true, ignored);
+  const char* first = skip_spaces(at_, true, ignored);
   return {first, std::size_t(word_end(first) - first)};
 }
 
@@ -351,20 +351,20 @@ const char* Words::name_end(const char* first) const {
     if (const char* const quote = std::find(p + 1, line_end, *p); quote != line_end)
       p = quote + 1;
   for (; p != line_end; ++p) {
-    const bool is_apart = p == first || is_blank(p[-1]);
+    const bool is_apart = p == first || is_space(p[-1]);
     if ((*p == '#' || is_apart) && past_comment(p) != p)
       break;
   }
   return p;
 }
 
-std::string_view Words::rest_of_line() {
-  const auto is_gap = [](char c) { return is_blank(c) && !ends_line(c); };
+std::string_view Words::tail_of_line() {
+  const auto is_gap = [](char c) { return is_space(c) && !ends_line(c); };
   const char* const first = std::find_if_not(at_, end_, is_gap);
   const char* stop = name_end(first);
   at_ = stop;
   skip_line();
-  while (stop != first && is_blank(stop[-1]))
+  while (stop != first && is_space(stop[-1]))
     --stop;
   return {first, std::size_t(stop - first)};
 }
@@ -373,7 +373,7 @@ Position Words::position(std::string_view word) const {
   const char* at = word.data();
   if (at < known_) {
     known_ = begin_;
-    known_line_ = 1;
+    last_line_ = 1;
   }
   for (const char* p = known_; p < at; ++p) {
     if (!ends_line(*p))
@@ -384,9 +384,9 @@ Position Words::position(std::string_view word) const {
       ++p;
     }
     known_ = p + 1;
-    ++known_line_;
+    ++last_line_;
   }
-  return {file_, known_line_, std::uint64_t(at - known_) + 1, std::uint64_t(at - begin_)};
+  return {file_, last_line_, std::uint64_t(at - known_) + 1, std::uint64_t(at - begin_)};
 }
 
 }  // namespace grelha

@@ -36,8 +36,8 @@ std::string quoted(std::string_view word);
 /// well.
 enum class Comments : std::uint8_t { kNone, kOfLines, kAll };
 
-/// Text in memory as words between blanks. Every byte up to ' ' is a blank; LF, CRLF and lone CR
-/// end lines. Words are views into the text, so that their place can be asked later and costs
+/// Text in memory as words between spaces. Every byte up to ' ' is a space; LF, CRLF and lone CR
+/// end lines. Words are views into the text, so that their position can be asked later and costs
 /// nothing until then.
 class Words {
  public:
@@ -54,17 +54,17 @@ class Words {
   std::string_view peek() const;  ///< what next() would return, left in place
   /// empty when the line ends first; then data() is where it ends
   std::string_view peek_on_line() const;
-  bool fresh_line() const {
-    return fresh_line_;
+  bool at_line_start() const {
+    return at_line_start_;
     /// whether the last next() stepped over a line end, or was the first
   }
   void skip_line();  ///< to the end of this line; the next word is fresh
   /// Consumes the text up to a comment or the line end, and returns it trimmed. A quoted text
-  /// extends to the next quote. In a name, `//` and `/*` begin a comment only behind a blank.
-  std::string_view rest_of_line();
+  /// extends to the next quote. In a name, `//` and `/*` begin a comment only behind a space.
+  std::string_view tail_of_line();
 
-  /// Continues reading at a place of the text that cursor() returned or would return.
-  void go_on_at(const char* place) { at_ = place; }
+  /// Continues reading at a position of the text that cursor() returned or would return.
+  void go_on_at(const char* location) { at_ = location; }
 
   std::size_t bytes_left() const { return std::size_t(end_ - at_); }
   std::size_t size() const { return std::size_t(end_ - begin_); }
@@ -75,21 +75,21 @@ class Words {
   Position position(std::string_view word) const;
 
  private:
-  const char* skip_blanks(const char* p, bool stay_on_line, bool& line_ended) const;
+  const char* skip_spaces(const char* p, bool stay_on_line, bool& line_ended) const;
   const char* word_end(const char* p) const;
   const char* past_comment(const char* p) const;
   const char* find_close(const char* from) const;
   const char* name_end(const char* first) const;
-  const char* past_blanks() const;
+  const char* past_spaces() const;
   bool take_to(const char* last);
 
   std::string file_;
   const char *begin_, *end_, *at_;
   Comments comments_;
-  bool fresh_line_ = true;
+  bool at_line_start_ = true;
   mutable const char* known_;  ///< start of the line last counted to
-  mutable std::uint64_t known_line_ = 1;
-  /// the first "*/" (or the end) behind a place that was searched from
+  mutable std::uint64_t last_line_ = 1;
+  /// the first "*/" (or the end) behind a position that was searched from
   mutable const char *searched_ = nullptr, *close_ = nullptr;
 };
 

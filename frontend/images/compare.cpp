@@ -40,7 +40,7 @@ Comparison compare(const Image& a, const Image& b) {
         pixel = std::max(pixel, d);
       }
       if (pixel > 0)
-        ++result.differing;
+        ++result.different;
       if (pixel > result.largest) {
         result.largest = pixel;
         result.largest_x = x;

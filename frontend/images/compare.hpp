@@ -16,7 +16,7 @@ struct Comparison {
   double relative_mse = 0;
   double largest = 0;  ///< of the differences between channels
   int largest_x = 0, largest_y = 0;
-  std::uint64_t pixels = 0, differing = 0;
+  std::uint64_t pixels = 0, different = 0;
 };
 
 Comparison compare(const Image& a, const Image& b);

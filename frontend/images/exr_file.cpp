@@ -71,16 +71,16 @@ void complain(exr_const_context_t context, exr_result_t, const char* message) {
 
 /// True if an allocation failed: the library reports lack of memory for damaged blocks as well
 /// (OpenEXR 3.1, B44), and gives take_memory() no context.
-thread_local bool memory_lacked = false;
+thread_local bool allocation_failed = false;
 
 void* take_memory(std::size_t size) {
   void* const memory = std::malloc(size);
-  memory_lacked = memory_lacked || !memory;
+  allocation_failed = allocation_failed || !memory;
   return memory;
 }
 
 exr_context_initializer_t initializer(ExrMemory& memory) {
-  memory_lacked = false;
+  allocation_failed = false;
   exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
   init.alloc_fn = take_memory;
   init.free_fn = std::free;
@@ -138,7 +138,7 @@ std::vector<ExrChannel> channels_of(const Image& image, const Layers& layers) {
 }
 
 /// Throws where a step failed: here only memory can be lacking.
-void want_done(exr_result_t result) {
+void check_result(exr_result_t result) {
   if (result != EXR_ERR_SUCCESS)
     throw std::bad_alloc();
 }
@@ -154,20 +154,20 @@ void write_head(exr_context_t file,
                 const std::vector<ExrChannel>& channels,
                 const Notes& notes) {
   int part = 0;
-  want_done(exr_add_part(file, "", EXR_STORAGE_SCANLINE, &part));
-  want_done(exr_initialize_required_attr_simple(
+  check_result(exr_add_part(file, "", EXR_STORAGE_SCANLINE, &part));
+  check_result(exr_initialize_required_attr_simple(
       file, part, image.width, image.height, EXR_COMPRESSION_ZIP));
   for (const ExrChannel& c : channels)
-    want_done(exr_add_channel(file,
-                              part,
-                              c.name,
-                              c.whole ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT,
-                              EXR_PERCEPTUALLY_LOGARITHMIC,
-                              1,
-                              1));
+    check_result(exr_add_channel(file,
+                                 part,
+                                 c.name,
+                                 c.whole ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT,
+                                 EXR_PERCEPTUALLY_LOGARITHMIC,
+                                 1,
+                                 1));
   for (const auto& [key, text] : notes)
-    want_done(exr_attr_set_string(file, part, attribute_name(key).c_str(), text.c_str()));
-  want_done(exr_write_header(file));
+    check_result(exr_attr_set_string(file, part, attribute_name(key).c_str(), text.c_str()));
+  check_result(exr_write_header(file));
 }
 
 /// Readers take a block of its full size for one that is not packed; OpenEXR 3.1 writes packed
@@ -183,14 +183,14 @@ exr_result_t compress(exr_encode_pipeline_t* pipeline) {
 
 void write_blocks(exr_context_t file, const Image& image, const std::vector<ExrChannel>& channels) {
   int rows = 0;
-  want_done(exr_get_scanlines_per_chunk(file, 0, &rows));
+  check_result(exr_get_scanlines_per_chunk(file, 0, &rows));
   exr_encode_pipeline_t pipeline = EXR_ENCODE_PIPELINE_INITIALIZER;
   auto own = pipeline.compress_fn;
   for (int y = 0; y < image.height; y += rows) {
     exr_chunk_info_t block;
-    want_done(exr_write_scanline_chunk_info(file, 0, y, &block));
-    want_done(y == 0 ? exr_encoding_initialize(file, 0, &block, &pipeline)
-                     : exr_encoding_update(file, 0, &block, &pipeline));
+    check_result(exr_write_scanline_chunk_info(file, 0, y, &block));
+    check_result(y == 0 ? exr_encoding_initialize(file, 0, &block, &pipeline)
+                        : exr_encoding_update(file, 0, &block, &pipeline));
     for (std::size_t i = 0; i < channels.size(); ++i) {
       const ExrChannel& c = channels[i];
       const std::size_t line = std::size_t(c.stride) * std::size_t(image.width);
@@ -202,12 +202,12 @@ void write_blocks(exr_context_t file, const Image& image, const std::vector<ExrC
       to.encode_from_ptr = static_cast<const std::uint8_t*>(c.values) + line * std::size_t(y);
     }
     if (y == 0) {
-      want_done(exr_encoding_choose_default_routines(file, 0, &pipeline));
+      check_result(exr_encoding_choose_default_routines(file, 0, &pipeline));
       own = pipeline.compress_fn;
       pipeline.encoding_user_data = &own;
       pipeline.compress_fn = compress;
     }
-    want_done(exr_encoding_run(file, 0, &pipeline));
+    check_result(exr_encoding_run(file, 0, &pipeline));
   }
   exr_encoding_destroy(file, &pipeline);
 }
@@ -217,48 +217,48 @@ class ExrReader {
  public:
   ExrReader(const std::string& path, const std::string& bytes) : path_(path), memory_{bytes, ""} {
     const exr_context_initializer_t init = initializer(memory_);
-    want(exr_start_read(&file_.context, path.c_str(), &init));
+    expect_that(exr_start_read(&file_.context, path.c_str(), &init));
   }
 
   Image run() {
     find_part();
     exr_attr_box2i_t window;
-    want(exr_get_data_window(file_.context, part_, &window));
-    want(exr_get_display_window(file_.context, part_, &shown_));
-    const std::int64_t width = side(shown_.min.x, shown_.max.x),
-                       height = side(shown_.min.y, shown_.max.y);
+    expect_that(exr_get_data_window(file_.context, part_, &window));
+    expect_that(exr_get_display_window(file_.context, part_, &printed_));
+    const std::int64_t width = side(printed_.min.x, printed_.max.x),
+                       height = side(printed_.min.y, printed_.max.y);
     const auto data = std::uint64_t(side(window.min.x, window.max.x)) *
                       std::uint64_t(side(window.min.y, window.max.y));
     if (std::max(data, std::uint64_t(width * height)) > memory_.bytes.size() * kMostPixelsAByte)
-      refuse("it claims more pixels than its bytes can hold");
+      reject("it claims more pixels than its bytes can hold");
     image_ = Image(int(width), int(height));
     exr_storage_t storage;
-    want(exr_get_storage(file_.context, part_, &storage));
+    expect_that(exr_get_storage(file_.context, part_, &storage));
     if (storage == EXR_STORAGE_SCANLINE)
       read_rows(window);
     else if (storage == EXR_STORAGE_TILED)
       read_tiles();
     else
-      refuse("its pixels are deep");
+      reject("its pixels are deep");
     return std::move(image_);
   }
 
  private:
-  [[noreturn]] void refuse(const std::string& why) const {
+  [[noreturn]] void reject(const std::string& why) const {
     throw FileError(path_, "cannot read the picture: " + why);
   }
-  void want(exr_result_t result) const {
-    if (result == EXR_ERR_OUT_OF_MEMORY && memory_lacked)
+  void expect_that(exr_result_t result) const {
+    if (result == EXR_ERR_OUT_OF_MEMORY && allocation_failed)
       throw std::bad_alloc();
     if (result == EXR_ERR_OUT_OF_MEMORY)
-      refuse("a block of its pixels is damaged");
+      reject("a block of its pixels is damaged");
     if (result != EXR_ERR_SUCCESS)
-      refuse(memory_.error.empty() ? exr_get_default_error_message(result) : memory_.error);
+      reject(memory_.error.empty() ? exr_get_default_error_message(result) : memory_.error);
   }
   std::int64_t side(int from, int to) const {
     const std::int64_t size = std::int64_t(to) - from + 1;
     if (size < 1 || size > kMostExrSide)
-      refuse("width and height must be 1 to 65536");
+      reject("width and height must be 1 to 65536");
     return size;
   }
 
@@ -273,19 +273,19 @@ class ExrReader {
 
   void find_part() {
     int parts = 0;
-    want(exr_get_count(file_.context, &parts));
+    expect_that(exr_get_count(file_.context, &parts));
     for (part_ = 0; part_ < parts; ++part_) {
       const exr_attr_chlist_t* list = nullptr;
-      want(exr_get_channels(file_.context, part_, &list));
+      expect_that(exr_get_channels(file_.context, part_, &list));
       grey_ = has(*list, "Y");
       if (grey_ || (has(*list, "R") && has(*list, "G") && has(*list, "B")))
         return;
     }
-    refuse("no part of it has the channels R, G and B");
+    reject("no part of it has the channels R, G and B");
   }
 
   /// Which of the three colours a channel is, or -1.
-  int colour_of(const char* name) const {
+  int color_of(const char* name) const {
     const std::string_view word(name), known(grey_ ? "Y" : "RGB");
     const std::size_t at = word.size() == 1 ? known.find(word) : known.npos;
     return at == known.npos ? -1 : int(at);
@@ -299,7 +299,7 @@ class ExrReader {
     exr_result_t result = exr_decoding_initialize(file_.context, part_, &block, &pipeline);
     for (int i = 0; result == EXR_ERR_SUCCESS && i < pipeline.channel_count; ++i) {
       exr_coding_channel_info_t& c = pipeline.channels[i];
-      const int colour = colour_of(c.channel_name);
+      const int colour = color_of(c.channel_name);
       if (colour < 0)
         continue;
       planes[std::size_t(colour)].resize(pixels);
@@ -313,11 +313,11 @@ class ExrReader {
     if (result == EXR_ERR_SUCCESS)
       result = exr_decoding_run(file_.context, part_, &pipeline);
     exr_decoding_destroy(file_.context, &pipeline);
-    want(result);
-    place(planes, block.width, block.height, x - shown_.min.x, y - shown_.min.y);
+    expect_that(result);
+    location(planes, block.width, block.height, x - printed_.min.x, y - printed_.min.y);
   }
 
-  void place(
+  void location(
       const std::array<std::vector<float>, 3>& planes, int width, int height, int left, int top) {
     for (int y = std::max(0, -top); y < height && top + y < image_.height; ++y)
       for (int x = std::max(0, -left); x < width && left + x < image_.width; ++x)
@@ -328,24 +328,24 @@ class ExrReader {
 
   void read_rows(const exr_attr_box2i_t& window) {
     int rows = 0;
-    want(exr_get_scanlines_per_chunk(file_.context, part_, &rows));
+    expect_that(exr_get_scanlines_per_chunk(file_.context, part_, &rows));
     for (std::int64_t y = window.min.y; y <= window.max.y; y += rows) {
       exr_chunk_info_t block;
-      want(exr_read_scanline_chunk_info(file_.context, part_, int(y), &block));
+      expect_that(exr_read_scanline_chunk_info(file_.context, part_, int(y), &block));
       read_block(block, window.min.x, int(y));
     }
   }
 
   void read_tiles() {
     exr_attr_box2i_t window;
-    want(exr_get_data_window(file_.context, part_, &window));
+    expect_that(exr_get_data_window(file_.context, part_, &window));
     int tile_width = 0, tile_height = 0, width = 0, height = 0;
-    want(exr_get_tile_sizes(file_.context, part_, 0, 0, &tile_width, &tile_height));
-    want(exr_get_level_sizes(file_.context, part_, 0, 0, &width, &height));
+    expect_that(exr_get_tile_sizes(file_.context, part_, 0, 0, &tile_width, &tile_height));
+    expect_that(exr_get_level_sizes(file_.context, part_, 0, 0, &width, &height));
     for (int y = 0; y * tile_height < height; ++y)
       for (int x = 0; x * tile_width < width; ++x) {
         exr_chunk_info_t block;
-        want(exr_read_tile_chunk_info(file_.context, part_, x, y, 0, 0, &block));
+        expect_that(exr_read_tile_chunk_info(file_.context, part_, x, y, 0, 0, &block));
         read_block(block, window.min.x + x * tile_width, window.min.y + y * tile_height);
       }
   }
@@ -355,7 +355,7 @@ class ExrReader {
   ExrContext file_;
   int part_ = 0;
   bool grey_ = false;
-  exr_attr_box2i_t shown_{};
+  exr_attr_box2i_t printed_{};
   Image image_;
 };
 
@@ -366,7 +366,7 @@ std::string encode_exr(const Image& image, const Layers& layers, const Notes& no
   const exr_context_initializer_t init = initializer(memory);
   {
     ExrContext file;
-    want_done(exr_start_write(&file.context, "picture.exr", EXR_WRITE_FILE_DIRECTLY, &init));
+    check_result(exr_start_write(&file.context, "picture.exr", EXR_WRITE_FILE_DIRECTLY, &init));
     const std::vector<ExrChannel> channels = channels_of(image, layers);
     write_head(file.context, image, channels, notes);
     write_blocks(file.context, image, channels);

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "kernel/scene/turns.hpp"
+#include "kernel/base/parallel_for.hpp"
 
 namespace grelha {
 namespace {
@@ -32,7 +32,7 @@ double sum(const Taps& taps) {
   return std::accumulate(taps.begin(), taps.end(), 0.);
 }
 
-Taps averaging(Taps taps) {
+Taps normalized(Taps taps) {
   const double whole = sum(taps);
   for (double& weight : taps)
     weight /= whole;

@@ -12,7 +12,7 @@ struct Plane {
   int width, height;
   std::vector<double> values;  ///< [height * width]
 
-  /// Of zeros.
+  /// A plane of zeros.
   Plane(int w, int h) : width(w), height(h), values(std::size_t(w) * std::size_t(h)) {}
   double* row(int y) { return values.data() + std::size_t(y) * std::size_t(width); }
   const double* row(int y) const { return values.data() + std::size_t(y) * std::size_t(width); }
@@ -27,7 +27,7 @@ Taps bell(int radius, double sigma);
 double sum(const Taps& taps);
 
 /// Scales taps to a sum of 1.
-Taps averaging(Taps taps);
+Taps normalized(Taps taps);
 
 /// Applies a separable filter: `across` within a row times `down` within a column, both with the
 /// same number of taps. Only whole windows count, so width and height shrink by the number of taps

@@ -72,7 +72,7 @@ double hyab(const Triple& a, const Triple& b) {
 
 /// From 0 to 1: of distances up to .4 of the largest, which is that of green and blue, the share
 /// from 0 to .95.
-double colour_error(double distance) {
+double color_error(double distance) {
   static const double largest = hyab(lab({0, 1, 0}), lab({0, 0, 1}));
   const double knee = .4 * largest;
   return distance < knee ? .95 / knee * distance : .95 + .05 * (distance - knee) / (largest - knee);
@@ -117,7 +117,7 @@ Eye make_eye() {
                narrow = volume(13.5, .025, eye.blue_yellow_narrow);
   eye.narrow = narrow / (wide + narrow);
   for (Taps* taps : {&eye.light, &eye.red_green, &eye.blue_yellow, &eye.blue_yellow_narrow})
-    *taps = averaging(std::move(*taps));
+    *taps = normalized(std::move(*taps));
 
   const double sigma = .5 * .082 * kPixelsPerDegree;
   const int radius = int(std::ceil(3 * sigma));
@@ -126,7 +126,7 @@ Eye make_eye() {
     eye.edge[std::size_t(x + radius)] *= -x;
     eye.point[std::size_t(x + radius)] *= x * x / (sigma * sigma) - 1;
   }
-  eye.across = widened(averaging(std::move(eye.across)));
+  eye.across = widened(normalized(std::move(eye.across)));
   eye.edge = widened(balanced(std::move(eye.edge)));
   eye.point = widened(balanced(std::move(eye.point)));
   return eye;
@@ -160,9 +160,9 @@ Opponents opponents(const Image& image, int first, int end) {
 }
 
 /// How strongly each pixel is an edge, or a point.
-Plane feature(const Plane& y, const Taps& along, const Taps& across) {
-  Plane strength = filtered(y, along, across);
-  const Plane other = filtered(y, across, along);
+Plane feature(const Plane& y, const Taps& dot_of, const Taps& across) {
+  Plane strength = filtered(y, dot_of, across);
+  const Plane other = filtered(y, across, dot_of);
   for (std::size_t i = 0; i < strength.values.size(); ++i)
     strength.values[i] = std::hypot(strength.values[i], other.values[i]);
   return strength;
@@ -188,7 +188,7 @@ class Seen {
 
   /// FLIP of pixel i.
   friend double error_at(const Seen& a, const Seen& b, std::size_t i) {
-    const double colours = colour_error(hyab(a.colour(i), b.colour(i)));
+    const double colours = color_error(hyab(a.colour(i), b.colour(i)));
     const double features = std::max(std::abs(a.edge_.values[i] - b.edge_.values[i]),
                                      std::abs(a.point_.values[i] - b.point_.values[i]));
     return std::pow(colours, 1 - std::sqrt(features / std::numbers::sqrt2));

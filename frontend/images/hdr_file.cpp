@@ -12,19 +12,19 @@ namespace {
 using Rgbe = std::array<std::uint8_t, 4>;
 
 constexpr int kMantissa = 8, kExponentBias = 128;
-constexpr float kDarkest = 1e-38f, kLightest = 1e38f;  ///< range of the shared exponent
-constexpr int kLeastPacked = 8, kMostPacked = 32767;   ///< widths of rows that may be packed
+constexpr float kMinValue = 1e-38f, kMaxValue = 1e38f;  ///< range of the shared exponent
+constexpr int kLeastPacked = 8, kMostPacked = 32767;    ///< widths of rows that may be packed
 constexpr int kLongestRun = 127, kLongestDump = 128, kWorthARun = 4;
 
 float light(float value) {
-  return value > 0 ? std::min(value, kLightest) : 0;
+  return value > 0 ? std::min(value, kMaxValue) : 0;
 }  // a NaN is none
 
 /// To the nearest mantissa: cut off, a picture would lose a quarter of a percent of its light.
 Rgbe shared_exponent(const float* rgb) {
   const float r = light(rgb[0]), g = light(rgb[1]), b = light(rgb[2]);
   const float most = std::max({r, g, b});
-  if (most < kDarkest)
+  if (most < kMinValue)
     return {};
   int exponent = 0;
   std::frexp(most, &exponent);

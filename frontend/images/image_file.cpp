@@ -55,7 +55,7 @@ class PfmHeader {
   PfmHeader(const std::string& path, const std::string& bytes) : path_(path), bytes_(bytes) {
     const std::string kind = word();
     if (kind != "PF" && kind != "Pf")
-      refuse("expected PF or Pf at the start");
+      reject("expected PF or Pf at the start");
     channels = kind == "PF" ? 3 : 1;
     width = side();
     height = side();
@@ -63,11 +63,11 @@ class PfmHeader {
     double scale = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), scale);
     if (error != std::errc() || end != text.data() + text.size() || scale == 0)
-      refuse("the scale is no number but 0");
+      reject("the scale is no number but 0");
     big_endian = scale > 0;
   }
 
-  [[noreturn]] void refuse(const char* what) const {
+  [[noreturn]] void reject(const char* what) const {
     throw FileError(path_, std::string("not a PFM picture: ") + what);
   }
 
@@ -79,7 +79,7 @@ class PfmHeader {
   std::string word() {
     const std::size_t end = bytes_.find_first_of(" \t\r\n", data);
     if (end == std::string::npos)
-      refuse("the header ends early");
+      reject("the header ends early");
     std::string text = bytes_.substr(data, end - data);
     data = end + 1;
     return text;
@@ -90,7 +90,7 @@ class PfmHeader {
     int value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size() || value < 1 || value > kMaxSide)
-      refuse("width and height must be 1 to 65536");
+      reject("width and height must be 1 to 65536");
     return value;
   }
 
@@ -102,7 +102,7 @@ Image read_pfm(const std::string& path, const std::string& bytes) {
   const PfmHeader header(path, bytes);
   const std::size_t row = std::size_t(header.width) * std::size_t(header.channels);
   if ((bytes.size() - header.data) / sizeof(float) / row < std::size_t(header.height))
-    header.refuse("too few floats");
+    header.reject("too few floats");
   Image image(header.width, header.height);
   const bool swap = header.big_endian != (std::endian::native == std::endian::big);
   for (int y = 0; y < image.height; ++y) {

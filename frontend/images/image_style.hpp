@@ -16,17 +16,17 @@ enum class ImageFormat { png, hdr, pfm, exr };
 enum class Tone { authored, srgb };
 
 /// A note in a picture's file: key and text, both printable ASCII without line ends.
-using Note = std::pair<std::string, std::string>;
-using Notes = std::vector<Note>;
+using Record = std::pair<std::string, std::string>;
+using Notes = std::vector<Record>;
 
 /// The first hits of camera rays through the pixel centres, stored beside the picture in an OpenEXR
 /// file. An empty vector is absent.
 struct Layers {
-  /// [pixels] from the eye, scene units; infinite where nothing is met
+  /// [pixels] from the eye, scene units; infinite where nothing is hit
   std::vector<float> depth{};
-  /// [pixels * 3] unit, as shaded, towards the eye; 0 where nothing is met
+  /// [pixels * 3] unit, as shaded, towards the eye; 0 where nothing is hit
   std::vector<float> normal{};
-  /// [pixels] of the primitive, see primitive_of(); kNoPrimitive where nothing is met
+  /// [pixels] of the primitive, see primitive_of(); kNoPrimitive where nothing is hit
   std::vector<std::uint32_t> id{};
 };
 

@@ -43,9 +43,9 @@ std::vector<std::size_t> without_nans(Image& a, Image& b) {
 
 }  // namespace
 
-Likeness likeness(Image a, Image b) {
+Similarity compare_similarity(Image a, Image b) {
   const std::vector<std::size_t> alone = without_nans(a, b);
-  Likeness result{a.width, a.height, {}, {}, flip(a, b)};
+  Similarity result{a.width, a.height, {}, {}, flip(a, b)};
   for (const std::size_t pixel : alone)
     result.flip_map[pixel] = 1;
   if (!alone.empty())
@@ -56,11 +56,11 @@ Likeness likeness(Image a, Image b) {
   return result;
 }
 
-Image in_colours(const Likeness& likeness) {
-  Image image(likeness.width, likeness.height);
+Image in_colors(const Similarity& compare_similarity) {
+  Image image(compare_similarity.width, compare_similarity.height);
   constexpr int kLast = int(kMagma.size()) - 1;
   for (std::size_t i = 0; i < image.rgb.size(); ++i) {
-    const float at = likeness.flip_map[i / 3] * kLast;
+    const float at = compare_similarity.flip_map[i / 3] * kLast;
     const int below = std::min(int(at), kLast - 1), channel = int(i % 3);
     const float from = byte(kMagma[std::size_t(below)], channel),
                 to = byte(kMagma[std::size_t(below) + 1], channel);
@@ -69,10 +69,10 @@ Image in_colours(const Likeness& likeness) {
   return image;
 }
 
-Image in_numbers(const Likeness& likeness) {
-  Image image(likeness.width, likeness.height);
+Image in_numbers(const Similarity& compare_similarity) {
+  Image image(compare_similarity.width, compare_similarity.height);
   for (std::size_t i = 0; i < image.rgb.size(); ++i)
-    image.rgb[i] = likeness.flip_map[i / 3];
+    image.rgb[i] = compare_similarity.flip_map[i / 3];
   return image;
 }
 

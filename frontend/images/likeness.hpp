@@ -8,7 +8,7 @@
 namespace grelha {
 
 /// How alike two pictures look on a screen. Pixels that are NaN in both are no difference.
-struct Likeness {
+struct Similarity {
   int width, height;
   /// 1 for equal pictures; absent where a NaN is in one picture only, or no window fits
   std::optional<double> ssim;
@@ -17,13 +17,13 @@ struct Likeness {
   std::vector<float> flip_map;  ///< [height * width] from 0 to 1, which is also such a pixel's
 };
 
-/// Of sRGB values from 0 to 1, or NaN.
-Likeness likeness(Image a, Image b);
+/// Pictures hold sRGB values from 0 to 1, or NaN.
+Similarity compare_similarity(Image a, Image b);
 
 /// The map as a picture: from black for 0 by violet and orange to pale yellow for 1.
-Image in_colours(const Likeness& likeness);
+Image in_colors(const Similarity& compare_similarity);
 
 /// The map in each channel.
-Image in_numbers(const Likeness& likeness);
+Image in_numbers(const Similarity& compare_similarity);
 
 }  // namespace grelha

@@ -7,7 +7,7 @@
 namespace grelha {
 namespace {
 
-constexpr int kBeside = 5;
+constexpr int kWindowRadius = 5;
 constexpr double kSigma = 1.5;
 /// Constants that stabilize quotients of small numbers; white is 1.
 constexpr double kC1 = .01 * .01, kC2 = .03 * .03;
@@ -52,13 +52,13 @@ struct Windows {
 }  // namespace
 
 std::optional<double> ssim(const Image& a, const Image& b) {
-  const int columns = a.width - 2 * kBeside, rows = a.height - 2 * kBeside;
+  const int columns = a.width - 2 * kWindowRadius, rows = a.height - 2 * kWindowRadius;
   if (columns < 1 || rows < 1)
     return {};
-  const Taps taps = averaging(bell(kBeside, kSigma));
+  const Taps taps = normalized(bell(kWindowRadius, kSigma));
   std::vector<double> sums(static_cast<std::size_t>(rows));
   each_strip(rows, [&](int first, int end) {
-    const int last = end + 2 * kBeside;
+    const int last = end + 2 * kWindowRadius;
     const Windows windows(luma(a, first, last), luma(b, first, last), taps);
     for (std::size_t i = 0; i < windows.xy.values.size(); ++i)
       sums[std::size_t(first) + i / std::size_t(columns)] += windows.similarity(i);

@@ -8,7 +8,7 @@
 #include <new>
 #include <string>
 
-#include "kernel/scene/pages.hpp"
+#include "kernel/base/pages.hpp"
 
 namespace {
 
@@ -36,7 +36,7 @@ unsigned checksum_by_zlib(const unsigned char* data, int size) {
 void* memory_to_fill(std::size_t bytes) {
   void* const memory = std::malloc(bytes);
   if (memory)
-    grelha::ask_for_pages(memory, bytes);
+    grelha::populate_pages(memory, bytes);
   return memory;
 }
 

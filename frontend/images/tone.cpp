@@ -9,8 +9,8 @@
 #include <cstddef>
 #include <limits>
 
-#include "kernel/scene/pages.hpp"
-#include "kernel/scene/turns.hpp"
+#include "kernel/base/pages.hpp"
+#include "kernel/base/parallel_for.hpp"
 
 namespace grelha {
 
@@ -41,17 +41,17 @@ class SrgbBytes {
     const auto end = thresholds_.end() - 1;
     for (std::uint32_t i = 0; i < kStarts; ++i)
       starts_[i] = std::uint8_t(
-          std::upper_bound(thresholds_.begin(), end, std::bit_cast<float>(i << kRest)) -
+          std::upper_bound(thresholds_.begin(), end, std::bit_cast<float>(i << kTail)) -
           thresholds_.begin());
   }
   std::uint8_t of(float value) const {
-    const std::uint8_t start = starts_[std::bit_cast<std::uint32_t>(value) >> kRest];
+    const std::uint8_t start = starts_[std::bit_cast<std::uint32_t>(value) >> kTail];
     return std::uint8_t(start + (value >= thresholds_[start] ? 1 : 0));
   }
 
  private:
-  static constexpr int kRest = 16;
-  static constexpr std::uint32_t kStarts = std::bit_cast<std::uint32_t>(1.f) >> kRest;
+  static constexpr int kTail = 16;
+  static constexpr std::uint32_t kStarts = std::bit_cast<std::uint32_t>(1.f) >> kTail;
 
   Thresholds thresholds_;
   std::array<std::uint8_t, kStarts> starts_;

@@ -6,30 +6,30 @@
 #include <cstdint>
 #include <vector>
 
-#include "kernel/scene/pages.hpp"
+#include "kernel/base/pages.hpp"
 
 namespace grelha {
 namespace {
 
-using Place3 = std::array<double, 3>;
+using Point3 = std::array<double, 3>;
 
-double along(const Place3& a, const Place3& b) {
+double dot_of(const Point3& a, const Point3& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
-Place3 moved(const Place3& a, double share, const Place3& b) {
+Point3 moved(const Point3& a, double share, const Point3& b) {
   return {a[0] + share * b[0], a[1] + share * b[1], a[2] + share * b[2]};
 }
-Float3 as_floats(const Place3& v) {
+Float3 as_floats(const Point3& v) {
   return {float(v[0]), float(v[1]), float(v[2])};
 }
 
 /// Returns the vertices that triangles use; others may lie anywhere.
-std::vector<Place3> corners_of(const Triangles& t) {
+std::vector<Point3> vertices_of(const Triangles& t) {
   std::vector<std::uint8_t> named(t.vertex_count());
   for (const auto* of : {&t.a, &t.b, &t.c})
     for (const std::uint32_t v : *of)
       named[v] = 1;
-  std::vector<Place3> found;
+  std::vector<Point3> found;
   reserve_to_fill(found, t.vertex_count());
   for (std::size_t v = 0; v < t.vertex_count(); ++v)
     if (named[v])
@@ -39,9 +39,9 @@ std::vector<Place3> corners_of(const Triangles& t) {
   return found;
 }
 
-double farthest_out(const std::vector<Place3>& points) {
+double max_distance(const std::vector<Point3>& points) {
   double most = 0;
-  for (const Place3& p : points)
+  for (const Point3& p : points)
     for (const double c : p)
       most = std::max(most, std::abs(c));
   return most;
@@ -49,16 +49,16 @@ double farthest_out(const std::vector<Place3>& points) {
 
 /// The share of the box's cross-section that the lowest points along an axis span: a mesh stands on
 /// a wide base.
-double support(const std::vector<Place3>& points, std::size_t axis) {
+double support(const std::vector<Point3>& points, std::size_t axis) {
   constexpr double kLowest = .02;  // of the height
-  Place3 low = points[0], high = points[0];
-  for (const Place3& p : points)
+  Point3 low = points[0], high = points[0];
+  for (const Point3& p : points)
     for (std::size_t i = 0; i < 3; ++i) {
       low[i] = std::min(low[i], p[i]);
       high[i] = std::max(high[i], p[i]);
     }
-  Place3 from = high, to = low;
-  for (const Place3& p : points)
+  Point3 from = high, to = low;
+  for (const Point3& p : points)
     if (p[axis] <= low[axis] + kLowest * (high[axis] - low[axis]))
       for (std::size_t i = 0; i < 3; ++i) {
         from[i] = std::min(from[i], p[i]);
@@ -73,7 +73,7 @@ double support(const std::vector<Place3>& points, std::size_t axis) {
 
 /// Scans have y up, most other meshes z. Returns true if the mesh stands on its z side far more
 /// surely.
-bool stands_on_z(const std::vector<Place3>& points) {
+bool is_on_z(const std::vector<Point3>& points) {
   constexpr double kSurely = 4, kLeast = .1;
   const double z = support(points, 2);
   return z > kLeast && z > kSurely * support(points, 1);
@@ -84,12 +84,12 @@ bool stands_on_z(const std::vector<Place3>& points) {
 constexpr double kSin30 = 0.5, kCos30 = 0.8660254037844386, kSin20 = 0.3420201433256687,
                  kCos20 = 0.9396926207859084;
 struct Axes {
-  Place3 back{kSin30 * kCos20, kSin20, kCos30*kCos20}, right{kCos30, 0, -kSin30},
+  Point3 back{kSin30 * kCos20, kSin20, kCos30*kCos20}, right{kCos30, 0, -kSin30},
       up{-kSin30 * kSin20, kCos20, -kCos30*kSin20};
-  Place3 high{0, 1, 0};  ///< where the sky is
+  Point3 high{0, 1, 0};  ///< where the sky is
   /// Puts z up instead of y, seen from the y that scans turn their faces to.
   void turn() {
-    for (Place3* v : {&back, &right, &up, &high})
+    for (Point3* v : {&back, &right, &up, &high})
       *v = {-(*v)[0], (*v)[2], (*v)[1]};
   }
 };
@@ -98,7 +98,7 @@ constexpr double kFilled = .9;  ///< of the picture's height or width
 
 /// How far points reach to both sides of a pyramid's axis, along which the eye looks, when its
 /// sides have a slope: |x| <= slope (d - back).
-struct Reach {
+struct Extent {
   double plus = -1e300, minus = -1e300;
   void add(double x, double back, double slope) {
     plus = std::max(plus, x + slope * back);
@@ -120,17 +120,17 @@ Material default_mesh_material() {
 }
 
 void add_default_view(SceneFile& file) {
-  const std::vector<Place3> points = corners_of(file.scene.geometry.triangles);
+  const std::vector<Point3> points = vertices_of(file.scene.geometry.triangles);
   Axes axes;
-  if (stands_on_z(points))
+  if (is_on_z(points))
     axes.turn();
   constexpr double slope = kFilled * kTangentOfHalf;
-  Reach across, upward;
+  Extent across, upward;
   double front = -1e300, behind = 1e300;
-  for (const Place3& p : points) {
-    const double back = along(p, axes.back);
-    across.add(along(p, axes.right), back, slope);
-    upward.add(along(p, axes.up), back, slope);
+  for (const Point3& p : points) {
+    const double back = dot_of(p, axes.back);
+    across.add(dot_of(p, axes.right), back, slope);
+    upward.add(dot_of(p, axes.up), back, slope);
     front = std::max(front, back);
     behind = std::min(behind, back);
   }
@@ -139,23 +139,23 @@ void add_default_view(SceneFile& file) {
   // A tiny mesh far out must not put the eye on what it looks at in floats.
   constexpr double kFloatSteps = 1e-5, kLeast = 1e-12;
   const double middle = front + (behind - front) / 2,
-               distance = std::max({eye_back - middle, kFloatSteps * farthest_out(points), kLeast});
-  const Place3 at =
+               distance = std::max({eye_back - middle, kFloatSteps * max_distance(points), kLeast});
+  const Point3 at =
       moved(moved(moved({0, 0, 0}, across.middle(), axes.right), upward.middle(), axes.up),
             middle,
             axes.back);
-  const auto place = [&](double to_back, double to_right, double up) {
+  const auto location = [&](double to_back, double to_right, double up) {
     return as_floats(
         moved(moved(moved(at, distance * to_back, axes.back), distance * to_right, axes.right),
               distance * up,
               axes.high));
   };
-  file.camera = {place(1, 0, 0), as_floats(at), as_floats(axes.high), kAngleDeg, 512, 512};
+  file.camera = {location(1, 0, 0), as_floats(at), as_floats(axes.high), kAngleDeg, 512, 512};
   // Key light above the left shoulder, fill from the eye, which reaches all it sees, and one from
   // behind on the edges.
-  file.scene.lights = {{place(1, -0.55, 0.65), {0.82f, 0.78f, 0.70f}, {}, {}},
-                       {place(1, 0, 0), {0.30f, 0.32f, 0.37f}, {}, {}},
-                       {place(-0.6, 0.8, 0.6), {0.34f, 0.38f, 0.44f}, {}, {}}};
+  file.scene.lights = {{location(1, -0.55, 0.65), {0.82f, 0.78f, 0.70f}, {}, {}},
+                       {location(1, 0, 0), {0.30f, 0.32f, 0.37f}, {}, {}},
+                       {location(-0.6, 0.8, 0.6), {0.34f, 0.38f, 0.44f}, {}, {}}};
   file.scene.background = {0.62f, 0.68f, 0.76f};
   file.default_camera = file.default_light = true;
 }

@@ -33,7 +33,7 @@ void apply_lens(const Effects& effects, const LensHint& hint, Camera& camera) {
 }
 
 /// A point light becomes a square facing the point looked at.
-void widen(Light& light, const Float3& at, float size) {
+void extend(Light& light, const Float3& at, float size) {
   const Float3 d{at.x - light.position.x, at.y - light.position.y, at.z - light.position.z};
   const double n = length(light.position, at);
   const double z[3] = {n > 0 ? d.x / n : 0, n > 0 ? d.y / n : 0, n > 0 ? d.z / n : 1};
@@ -50,7 +50,7 @@ void apply_shadows(const Effects::Shadows& shadows, SceneFile& file) {
     if (shadows.hard)
       light.edge1 = light.edge2 = {};
     else if (!light.is_area() && shadows.size > 0)
-      widen(light, file.camera.at, shadows.size);
+      extend(light, file.camera.at, shadows.size);
   }
 }
 
@@ -115,7 +115,7 @@ void apply_effects(const Effects& e, SceneFile& file, RenderOptions& options) {
   if (e.shadows && e.shadows->positions > 1 && !options.refine.on())
     s.light_rays = ceiling_share(1LL * e.shadows->positions * e.shadows->positions, s.samples);
   if (e.glossy)
-    s.gloss_rays = e.glossy->rays;
+    s.glossy_rays = e.glossy->rays;
 }
 
 }  // namespace grelha

@@ -42,11 +42,11 @@ bool is_ply(const std::string& path, std::string_view bytes) {
   return bytes.starts_with("ply\n") || bytes.starts_with("ply\r");
 }
 
-SceneFile read_mesh_alone(const std::string& path,
-                          std::string bytes,
-                          const Warn& warn,
-                          const Frame& frame,
-                          LoadProgress& progress) {
+SceneFile read_mesh_only(const std::string& path,
+                         std::string bytes,
+                         const Warn& warn,
+                         const Frame& frame,
+                         LoadProgress& progress) {
   SceneFile file;
   file.frame = frame;
   file.source_bytes = bytes.size();
@@ -76,7 +76,7 @@ void warn_of_dropped(const std::string& path, const Dropped& dropped, const Warn
 std::string load_scene(const std::string& path, LoadProgress& progress) {
   std::string bytes =
       load_file(path, &progress, true, [&](std::string_view text, std::size_t fresh) {
-        judge_beginning(path, is_ply(path, text), text, fresh);
+        validate_start(path, is_ply(path, text), text, fresh);
       });
   if (bytes.empty())
     throw ParseError(Position{path, 1, 1, 0}, "expected a scene, found an empty file");
@@ -88,9 +88,8 @@ SceneFile parse_scene(const std::string& path,
                       const Warn& warn,
                       const ReadOptions& options,
                       LoadProgress& progress) {
-  return is_ply(path, bytes)
-             ? read_mesh_alone(path, std::move(bytes), warn, options.frame, progress)
-             : read_nff(path, bytes, warn, options, &progress);
+  return is_ply(path, bytes) ? read_mesh_only(path, std::move(bytes), warn, options.frame, progress)
+                             : read_nff(path, bytes, warn, options, &progress);
 }
 
 /// Reads the scene again in a frame, from the first bytes if the file cannot be read again. The
@@ -114,12 +113,12 @@ SceneFile read_in_frame(const std::string& path,
 SceneFile read_scene(const std::string& path, const Warn& warn, const ReadOptions& options) try {
   LoadProgress progress(options.progress);
   std::string bytes = load_scene(path, progress);
-  std::string kept = std::filesystem::is_regular_file(path) ? std::string() : bytes;
+  std::string saved = std::filesystem::is_regular_file(path) ? std::string() : bytes;
   SceneFile file = parse_scene(path, std::move(bytes), warn, options, progress);
   progress.finish();
-  if (const std::optional<Frame> frame = better_frame(file)) {
-    SceneFile framed = read_in_frame(path, std::move(kept), *frame, options);
-    if (needs_its_frame(framed))
+  if (const std::optional<Frame> frame = find_frame(file)) {
+    SceneFile framed = read_in_frame(path, std::move(saved), *frame, options);
+    if (needs_frame(framed))
       file = std::move(framed);
   }
   warn_of_dropped(path, file.dropped, warn);

@@ -31,12 +31,12 @@ class HeadWriter {
   }
 };
 
-/// Reads the lines of the header; rest() is the data behind them.
+/// Reads the lines of the header; tail() is the data behind them.
 class HeadReader {
  public:
   explicit HeadReader(std::string_view bytes) : left_(bytes) {}
 
-  std::string_view rest() const { return left_; }
+  std::string_view tail() const { return left_; }
 
   /// Returns true if the next line begins with this word.
   bool next_is(std::string_view word) const {
@@ -46,7 +46,7 @@ class HeadReader {
   /// Consumes the next line, which must begin with this word, and returns the text behind it.
   std::string_view line(std::string_view word) {
     const std::size_t end = left_.find('\n');
-    want(end != left_.npos && end > word.size() && next_is(word));
+    expect_that(end != left_.npos && end > word.size() && next_is(word));
     const std::string_view text = left_.substr(word.size() + 1, end - word.size() - 1);
     left_.remove_prefix(end + 1);
     return text;
@@ -57,10 +57,10 @@ class HeadReader {
     std::string_view text = line(word);
     bool first = true;
     ((read(text, first, values), first = false), ...);
-    want(text.empty());
+    expect_that(text.empty());
   }
 
-  static void want(bool holds) {
+  static void expect_that(bool holds) {
     if (!holds)
       throw NotOurs();
   }
@@ -69,24 +69,24 @@ class HeadReader {
   /// Takes a number from the front of a text.
   static int take(std::string_view& text, bool first) {
     if (!first) {
-      want(text.starts_with(' '));
+      expect_that(text.starts_with(' '));
       text.remove_prefix(1);
     }
     int number = 0;
     const auto [next, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    want(error == std::errc());
+    expect_that(error == std::errc());
     text.remove_prefix(static_cast<std::size_t>(next - text.data()));
     return number;
   }
   static void read(std::string_view& text, bool first, int& to) { to = take(text, first); }
   static void read(std::string_view& text, bool first, bool& to) {
     const int number = take(text, first);
-    want(number == 0 || number == 1);
+    expect_that(number == 0 || number == 1);
     to = number != 0;
   }
   static void read(std::string_view& text, bool first, std::size_t& to) {
     const int number = take(text, first);
-    want(number >= 0);
+    expect_that(number >= 0);
     to = static_cast<std::size_t>(number);
   }
 
@@ -101,11 +101,11 @@ Checkpoint parse_body(std::string_view body) {
   identity.scene = head.line("scene");
   identity.settings = head.line("settings");
   Checkpoint c{std::move(identity), Picture::load_numbers(head)};
-  HeadReader::want(c.picture.has_sound_numbers());
-  Source source(head.rest());
+  HeadReader::expect_that(c.picture.has_valid_numbers());
+  Source source(head.tail());
   c.picture.load_arrays(source);
   source.finish();
-  HeadReader::want(c.picture.is_sound());
+  HeadReader::expect_that(c.picture.is_valid());
   return c;
 }
 
@@ -192,8 +192,8 @@ void write_over_checkpoint(const std::string& path,
   std::ostream counted(&counter);
   write_picture(counted, identity, picture);
   std::error_code error;
-  const std::uint64_t room = std::filesystem::file_size(path, error);
-  if (error || room < counter.count())
+  const std::uint64_t space = std::filesystem::file_size(path, error);
+  if (error || space < counter.count())
     throw FileError(path, "cannot write over it: what there is to keep is larger");
   std::fstream stream(path, std::ios::in | std::ios::out | std::ios::binary);
   write_picture(stream, identity, picture);

@@ -90,10 +90,10 @@ std::string scene_digest(const SceneFile& file) {
   return digest.hex();
 }
 
-std::string settings_text(const RenderCommand& prepared, const Camera& camera) {
-  const RenderOptions& o = prepared.render;
+std::string settings_text(const RenderCommand& resolved, const Camera& camera) {
+  const RenderOptions& o = resolved.render;
   const SampleOptions& s = o.sampling;
-  const Effects& e = prepared.effects;
+  const Effects& e = resolved.effects;
   std::string words = "version=" GRELHA_VERSION " size=" + std::to_string(camera.width) + 'x' +
                       std::to_string(camera.height) + ' ' + samples_text(o) +
                       " sampler=" + sampler_name(s.sampler) + " seed=" + std::to_string(s.seed) +
@@ -106,7 +106,7 @@ std::string settings_text(const RenderCommand& prepared, const Camera& camera) {
     words += " aperture=" + text(camera.aperture) + " focus=" + text(camera.focus);
   if (e.glossy)
     words +=
-        " roughness=" + text(e.glossy->roughness) + " gloss-rays=" + std::to_string(s.gloss_rays);
+        " roughness=" + text(e.glossy->roughness) + " gloss-rays=" + std::to_string(s.glossy_rays);
   return words;
 }
 
@@ -115,7 +115,7 @@ std::string scene_name(const std::string& path) {
   return printable(picture.substr(0, picture.rfind('.')));
 }
 
-const Note kSoftware{"Software", "grelha " GRELHA_VERSION};
+const Record kSoftware{"Software", "grelha " GRELHA_VERSION};
 
 Notes notes_of(const Identity& identity) {
   const std::string& s = identity.settings;
@@ -147,16 +147,16 @@ std::string own_words(const WordList& here, const WordList& there) {
   std::transform(here.begin(), here.end(), std::back_inserter(keys), key_of);
   std::string own;
   int found = 0;
-  const auto say = [&](const std::string& word) {
+  const auto add_line = [&](const std::string& word) {
     if (++found <= kMost)
       own += (own.empty() ? "" : " ") + word;
   };
   for (const std::string& w : here)
     if (!has(there, w))
-      say(printable(w));
+      add_line(printable(w));
   for (const std::string& w : there)
     if (!has(keys, key_of(w)))
-      say("no " + printable(key_of(w)));
+      add_line("no " + printable(key_of(w)));
   return found > kMost ? own + " ..." : own;
 }
 

@@ -20,12 +20,12 @@ struct Identity {
 /// `file`: before apply_effects().
 std::string scene_digest(const SceneFile& file);
 
-/// `camera` and `prepared.render`: after apply_effects(). Options that change no bit (threads, isa,
+/// `camera` and `resolved.render`: after apply_effects(). Options that change no bit (threads, isa,
 /// packet, grid ...) are left out.
-std::string settings_text(const RenderCommand& prepared, const Camera& camera);
+std::string settings_text(const RenderCommand& resolved, const Camera& camera);
 
 /// The note that every picture has.
-extern const Note kSoftware;
+extern const Record kSoftware;
 
 /// The notes of a picture's file: Software, Title, Scene, Settings. Options that change no bit of
 /// the picture are left out.

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kPlacesToKeep = 10;
+constexpr int kMaxSavedNames = 10;
 
 /// The picture's name, or the one it would have in this folder.
 std::string picture_name(const RenderCommand& command) {
@@ -22,43 +22,43 @@ std::string picture_name(const RenderCommand& command) {
   return default_image(command.scene, format_of(command.image, command.format));
 }
 
-bool is_there(const fs::path& path) {
+bool path_exists(const fs::path& path) {
   std::error_code ignored;
   return fs::exists(fs::symlink_status(path, ignored));
 }
 
 }  // namespace
 
-KeptNames kept_names(const RenderCommand& command,
-                     const std::function<bool(const std::string&)>& fits) {
+SavedNames saved_names(const RenderCommand& command,
+                       const std::function<bool(const std::string&)>& fits) {
   const fs::path name = picture_name(command);
   const auto format = format_of(name.string(), command.format);
-  KeptNames names;
-  for (int i = 0; i < kPlacesToKeep; ++i) {
+  SavedNames names;
+  for (int i = 0; i < kMaxSavedNames; ++i) {
     const std::string stem = (name.parent_path() / name.stem()).string() + ".partial" +
                              (i == 0 ? "" : std::to_string(i));
     names.picture = format ? stem + '.' + std::string(ending_of(*format)) : "";
     names.work = stem + ".grelha";
-    if (!is_there(names.work) || fits(names.work))
+    if (!path_exists(names.work) || fits(names.work))
       return names;
   }
   return {};
 }
 
-std::string write_elsewhere(const std::string& work,
-                            const std::function<void(const std::string&)>& write) {
+std::string write_fallback(const std::string& work,
+                           const std::function<void(const std::string&)>& write) {
   std::error_code none;
   const fs::path own = fs::absolute(work, none).parent_path(), name = fs::path(work).filename();
   // a new folder, into which no other user can have put a file
   std::string fresh = (fs::temp_directory_path(none) / "grelha-XXXXXX").string();
   const bool is_fresh = mkdtemp(fresh.data()) != nullptr;
   for (const fs::path& folder : {fs::path(is_fresh ? fresh : ""), fs::current_path(none)}) {
-    const fs::path place = folder / name;
-    if (folder.empty() || is_there(place) || fs::equivalent(folder, own, none))
+    const fs::path location = folder / name;
+    if (folder.empty() || path_exists(location) || fs::equivalent(folder, own, none))
       continue;
     try {
-      write(place.string());
-      return place.string();
+      write(location.string());
+      return location.string();
     } catch (const FileError&) {  // there is no room either
       fs::remove(fresh, none);    // where it is empty
     }

@@ -11,19 +11,19 @@ namespace grelha {
 
 /// Two files with a common name. Those of a picture for stdout or a device are named after the
 /// scene.
-struct KeptNames {
+struct SavedNames {
   std::string work;     ///< `dir/x.partial.grelha` of `dir/x.png`; empty: there is no free name
   std::string picture;  ///< `dir/x.partial.png`; empty for a .grelha
 };
 
-/// Adds a number behind `partial` where other pictures are kept. Takes the first name that is free
+/// Adds a number behind `partial` where other pictures are saved. Takes the first name that is free
 /// or whose work `fits`.
-KeptNames kept_names(const RenderCommand& command,
-                     const std::function<bool(const std::string&)>& fits);
+SavedNames saved_names(const RenderCommand& command,
+                       const std::function<bool(const std::string&)>& fits);
 
 /// Writes the work to another folder if the picture's has no room: a new one in the system's
 /// temporary folder, or the current folder. Returns the path, or "".
-std::string write_elsewhere(const std::string& work,
-                            const std::function<void(const std::string&)>& write);
+std::string write_fallback(const std::string& work,
+                           const std::function<void(const std::string&)>& write);
 
 }  // namespace grelha

@@ -21,14 +21,14 @@ using Clock = std::chrono::steady_clock;
 Part part_of(const RenderCommand& command, const Camera& camera) {
   const LongWork& w = command.work;
   const int samples = command.render.sampling.samples;
-  const auto want = [](const char* option, const Range& r, int most, const char* of) {
+  const auto expect_that = [](const char* option, const Range& r, int most, const char* of) {
     if (r.end > most)
       throw UsageError(std::string(option) + ": " + std::to_string(r.begin) + ':' +
                        std::to_string(r.end) + " are not among the " + std::to_string(most) + of);
   };
   const Part part{w.rows.value_or(Range{0, camera.height}), w.samples.value_or(Range{0, samples})};
-  want("--rows", part.rows, camera.height, " rows of the picture");
-  want("--samples", part.samples, samples, " samples of a pixel (I:J/N: of N)");
+  expect_that("--rows", part.rows, camera.height, " rows of the picture");
+  expect_that("--samples", part.samples, samples, " samples of a pixel (I:J/N: of N)");
   return part;
 }
 
@@ -39,7 +39,7 @@ bool exists(const std::string& path) {
 }
 
 /// Returns why a checkpoint belongs to another picture than the wanted one; empty if it fits.
-std::string misfit(const Checkpoint& found, const Identity& wanted, const Picture& begun) {
+std::string find_mismatch(const Checkpoint& found, const Identity& wanted, const Picture& begun) {
   if (found.identity.scene != wanted.scene)
     return "is of another scene";
   if (found.identity.settings != wanted.settings)
@@ -54,7 +54,7 @@ std::string misfit(const Checkpoint& found, const Identity& wanted, const Pictur
 
 Picture saved_picture(const std::string& path, const Identity& wanted, const Picture& begun) {
   Checkpoint found = read_checkpoint(path);
-  const std::string why = misfit(found, wanted, begun);
+  const std::string why = find_mismatch(found, wanted, begun);
   if (!why.empty())
     throw UsageError("--checkpoint: " + path + ' ' + why +
                      ": name another file, or remove this one to begin again");
@@ -74,7 +74,7 @@ std::string repeatable(const std::string& settings, std::uint64_t samples) {
 
 }  // namespace
 
-void want_shareable(const RenderCommand& c, const Ranks& ranks) {
+void check_shareable(const RenderCommand& c, const Ranks& ranks) {
   if (ranks.count() > 1 && (c.render.refine.on() || c.effects.adaptive.on))
     throw UsageError(
         "several ranks share pictures with as many samples in every pixel: no --error, --time or "
@@ -82,70 +82,71 @@ void want_shareable(const RenderCommand& c, const Ranks& ranks) {
 }
 
 LongRender::LongRender(
-    const RenderCommand& prepared, const Camera& camera, std::string scene, Ranks& ranks, Warn warn)
-    : command_(prepared),
+    const RenderCommand& resolved, const Camera& camera, std::string scene, Ranks& ranks, Warn warn)
+    : command_(resolved),
       ranks_(ranks),
       warn_(std::move(warn)),
-      identity_{std::move(scene), settings_text(prepared, camera), scene_name(prepared.scene)},
-      picture_(camera, prepared.render, part_of(prepared, camera)) {
-  ranks_.agree_on(identity_.scene, "has read another scene than the first");
-  ranks_.agree_on(identity_.settings + part_text(picture_.part()),
-                  "was given other options than the first");
+      identity_{std::move(scene), settings_text(resolved, camera), scene_name(resolved.scene)},
+      picture_(camera, resolved.render, part_of(resolved, camera)) {
+  ranks_.check_all_ranks(identity_.scene, "has read another scene than the first");
+  ranks_.check_all_ranks(identity_.settings + part_text(picture_.part()),
+                         "was given other options than the first");
   if (!ranks.first())
     return;
-  if (!asked_to_save()) {
-    go_on_from_kept();
+  if (!save_requested()) {
+    continue_from_saved();
     return;
   }
-  kept_ = kept_names(command_, [](const std::string&) { return true; });
-  kept_.work = prepared.work.checkpoint;
-  went_on_ = exists(kept_.work);
-  if (!went_on_)
+  saved_ = saved_names(command_, [](const std::string&) { return true; });
+  saved_.work = resolved.work.checkpoint;
+  continued_ = exists(saved_.work);
+  if (!continued_)
     return;
-  picture_ = saved_picture(kept_.work, identity_, picture_);
-  note_place();
+  picture_ = saved_picture(saved_.work, identity_, picture_);
+  record_location();
 }
 
-void LongRender::note_place() {
-  kept_place_ = place_of(kept_.work);
+void LongRender::record_location() {
+  saved_location_ = position_of(saved_.work);
 }
 
-void LongRender::say(const std::string& line) const {
+void LongRender::add_line(const std::string& line) const {
   if (!command_.quiet)
     grelha::warn(line);
 }
 
-void LongRender::go_on_from_kept() {
-  kept_ = kept_names(command_, [this](const std::string& path) {
+void LongRender::continue_from_saved() {
+  saved_ = saved_names(command_, [this](const std::string& path) {
     try {
       Checkpoint found = read_checkpoint(path);
-      const std::string why = misfit(found, identity_, picture_);
-      went_on_ = why.empty();
-      if (went_on_)
+      const std::string why = find_mismatch(found, identity_, picture_);
+      continued_ = why.empty();
+      if (continued_)
         picture_ = std::move(found.picture);
       else
-        say("grelha: " + path + " stays, which keeps another picture: it " + why);
+        add_line("grelha: " + path + " stays, which keeps another picture: it " + why);
     } catch (const std::exception&) {  // the command did not name this file as a checkpoint
     }
-    return went_on_;
+    return continued_;
   });
-  if (!went_on_)
+  if (!continued_)
     return;
-  note_place();
+  record_location();
   char text[32];
   std::snprintf(text, sizeof text, ", %.1f %% done", 100 * share_done());
-  say("grelha: goes on from " + kept_.work + text);
+  add_line("grelha: goes on from " + saved_.work + text);
 }
 
-bool LongRender::is_due(const Habit& habit) {
-  return habit.every > 0 && Clock::now() - habit.last >= std::chrono::duration<double>(habit.every);
+bool LongRender::should_run(const IntervalTask& habit) {
+  return habit.period > 0 &&
+         Clock::now() - habit.last >= std::chrono::duration<double>(habit.period);
 }
 
-void LongRender::pursue(Habit& habit) {
-  if (!is_due(habit))
+void LongRender::run_task(IntervalTask& habit) {
+  if (!should_run(habit))
     return;
   try {
-    habit.act();
+    habit.install_handler();
     // a failed save must not end the render, and no exception may leave a parallel region
   } catch (const std::exception& error) {
     if (!habit.warned)
@@ -169,37 +170,37 @@ bool LongRender::tried(const std::function<void()>& write) const {
   }
 }
 
-void LongRender::keep() {
-  if (asked_to_save() || share_done() > 0)
-    tried([this] { saved_in_ = keep_somewhere(); });
-  if (share_done() > 0 && !kept_.picture.empty())
-    shown_ = tried([&] { write_image(kept_.picture, picture_.image(), style()); });
+void LongRender::save_now() {
+  if (save_requested() || share_done() > 0)
+    tried([this] { saved_in_ = save_fallback(); });
+  if (share_done() > 0 && !saved_.picture.empty())
+    printed_ = tried([&] { write_image(saved_.picture, picture_.image(), style()); });
 }
 
-/// Saves the work at its place. On a full disk, overwrites the earlier save there in place, or
-/// saves in another folder. Returns the path; throws the FileError of the first place.
-std::string LongRender::keep_somewhere() {
-  if (kept_.work.empty())
+/// Saves the work at its location. On a full disk, overwrites the earlier save in place, or
+/// saves in another folder. Returns the path; throws the FileError of the first location.
+std::string LongRender::save_fallback() {
+  if (saved_.work.empty())
     return "";
   try {
     save();
-    return kept_.work;
+    return saved_.work;
   } catch (const FileError&) {
-    const bool is_ours = kept_place_ && kept_place_ == place_of(kept_.work);
-    if (is_ours && wrote_over())
-      return kept_.work;
-    const std::string place = write_elsewhere(kept_.work, [this](const std::string& path) {
+    const bool is_ours = saved_location_ && saved_location_ == position_of(saved_.work);
+    if (is_ours && overwrote())
+      return saved_.work;
+    const std::string location = write_fallback(saved_.work, [this](const std::string& path) {
       write_checkpoint(path, identity_, picture_, true);
     });
-    if (place.empty())
+    if (location.empty())
       throw;
-    return place;
+    return location;
   }
 }
 
-bool LongRender::wrote_over() const {
+bool LongRender::overwrote() const {
   try {
-    write_over_checkpoint(kept_.work, identity_, picture_);
+    write_over_checkpoint(saved_.work, identity_, picture_);
     return true;
   } catch (const FileError&) {
     return false;
@@ -217,8 +218,8 @@ std::string LongRender::stop_text(int signal) const {
   if (!saved_in_.empty())
     all += " and saved in " + saved_in_ + ": the same command " + with_checkpoint() +
            "goes on from there";
-  if (shown_)
-    all += (saved_in_.empty() ? ": " : "; ") + kept_.picture + " is the picture so far";
+  if (printed_)
+    all += (saved_in_.empty() ? ": " : "; ") + saved_.picture + " is the picture so far";
   return all;
 }
 
@@ -227,18 +228,18 @@ int LongRender::run(const World& world,
                     const std::function<void(double)>& progress,
                     RenderStats& stats,
                     SampleMaps& maps) {
-  Habit saving{asked_to_save() ? command_.work.save_every.value_or(kSaveEvery) : 0,
-               [this] { save(); }};
-  Habit showing{command_.work.show_every, [this] { write(); }};
+  IntervalTask saving{save_requested() ? command_.work.save_interval.value_or(kSaveInterval) : 0,
+                      [this] { save(); }};
+  IntervalTask showing{command_.work.show_interval, [this] { write(); }};
   const auto should_continue = [&] {
-    pursue(saving);
-    pursue(showing);
+    run_task(saving);
+    run_task(showing);
     return stops() == 0;
   };
   RenderOptions options = command_.render;
   options.progress = [&](double share) {
     progress(share);
-    return stops() == 0 && !is_due(saving) && !is_due(showing);
+    return stops() == 0 && !should_run(saving) && !should_run(showing);
   };
   const bool done =
       ranks_.advance(world, camera, options, picture_, stats, maps, should_continue, [this] {
@@ -246,7 +247,7 @@ int LongRender::run(const World& world,
       });
   if (done || !ranks_.first())
     return 0;
-  keep();
+  save_now();
   return stops();
 }
 
@@ -255,23 +256,23 @@ void LongRender::finish(Layers layers) {
   try {
     write();
   } catch (const FileError&) {
-    keep_all();
+    save_all();
     throw;
   }
-  if (command_.work.kept_till_the_last && asked_to_save())
+  if (command_.work.save_until_end && save_requested())
     return save();
-  if (kept_place_ && kept_place_ == place_of(kept_.work))
-    unlink(kept_.work.c_str());
-  if (went_on_)
-    unlink(kept_.picture.c_str());
+  if (saved_location_ && saved_location_ == position_of(saved_.work))
+    unlink(saved_.work.c_str());
+  if (continued_)
+    unlink(saved_.picture.c_str());
 }
 
-void LongRender::keep_all() {
+void LongRender::save_all() {
   try {
-    saved_in_ = keep_somewhere();
+    saved_in_ = save_fallback();
   } catch (const FileError&) {  // the caller reports why the picture could not be written
   }
-  if (saved_in_.empty() || (asked_to_save() && saved_in_ == kept_.work))
+  if (saved_in_.empty() || (save_requested() && saved_in_ == saved_.work))
     return;
   warn_("grelha: all of the picture is kept in " + saved_in_ + ": the same command " +
         with_checkpoint() + "writes it");
@@ -279,24 +280,24 @@ void LongRender::keep_all() {
 
 /// Returns the option that the command needs to find the saved work.
 std::string LongRender::with_checkpoint() const {
-  return saved_in_ == kept_.work ? "" : "with --checkpoint " + saved_in_ + ' ';
+  return saved_in_ == saved_.work ? "" : "with --checkpoint " + saved_in_ + ' ';
 }
 
 void LongRender::save() {
-  const bool is_foreign = exists(kept_.work) && kept_place_ != place_of(kept_.work);
-  if (is_foreign && asked_to_save() && !std::exchange(is_shared_, true))
-    warn_(kept_.work +
+  const bool is_foreign = exists(saved_.work) && saved_location_ != position_of(saved_.work);
+  if (is_foreign && save_requested() && !std::exchange(is_shared_, true))
+    warn_(saved_.work +
           ": warning: another run saves there as well, and each writes over the other's: give each "
           "its own --checkpoint");
-  write_checkpoint(kept_.work, identity_, picture_, true);
-  note_place();
+  write_checkpoint(saved_.work, identity_, picture_, true);
+  record_location();
 }
 
 /// Returns the style of the picture's file, with its notes. With --time, the notes give the number
 /// of samples that repeats the picture. The notes of an unfinished picture say so.
 ImageStyle LongRender::style() const {
   Identity identity = identity_;
-  identity.settings = repeatable(identity.settings, picture_.samples_taken());
+  identity.settings = repeatable(identity.settings, picture_.sample_count_());
   ImageStyle style{format_of(command_.image, command_.format),
                    command_.srgb ? Tone::srgb : Tone::authored,
                    notes_of(identity),

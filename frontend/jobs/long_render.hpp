@@ -14,18 +14,18 @@
 namespace grelha {
 
 /// Throws UsageError when several ranks are to share a picture that only one can render.
-void want_shareable(const RenderCommand& command, const Ranks& ranks);
+void check_shareable(const RenderCommand& command, const Ranks& ranks);
 
 /// A render that saves and shows its intermediate state, and can be stopped.
 class LongRender {
  public:
   using Warn = std::function<void(const std::string&)>;
 
-  /// `prepared`: after apply_effects(); it must outlive this. Continues from the checkpoint if it
+  /// `resolved`: after apply_effects(); it must outlive this. Continues from the checkpoint if it
   /// exists: throws UsageError when it is of another picture, FileError when it cannot be read.
   /// Without --checkpoint, continues from the work that an earlier, stopped run of the command
   /// left.
-  LongRender(const RenderCommand& prepared,
+  LongRender(const RenderCommand& resolved,
              const Camera& camera,
              std::string scene_digest,
              Ranks& ranks,
@@ -34,7 +34,7 @@ class LongRender {
   double share_done() const { return picture_.share_done(); }
 
   /// `progress` receives the share done. While StopSignals live, SIGHUP, SIGINT and SIGTERM stop
-  /// the render after the pieces in work; it keeps the work and returns the signal, otherwise 0.
+  /// the render after the pieces in work; it saves the work and returns the signal, otherwise 0.
   /// Warns once of saves that fail on the way, and tries them again. `maps` are filled when samples
   /// are spent by error.
   int run(const World& world,
@@ -53,27 +53,27 @@ class LongRender {
 
  private:
   /// An action repeated at intervals. Warns once of a failure, and tries again.
-  struct Habit {
-    double every;  ///< seconds; 0: never
-    std::function<void()> act;
+  struct IntervalTask {
+    double period;  ///< seconds; 0: never
+    std::function<void()> install_handler;
     std::chrono::steady_clock::time_point last = std::chrono::steady_clock::now();
     bool warned = false;
   };
-  static bool is_due(const Habit& habit);
-  void pursue(Habit& habit);
-  bool asked_to_save() const { return !command_.work.checkpoint.empty(); }
+  static bool should_run(const IntervalTask& habit);
+  void run_task(IntervalTask& habit);
+  bool save_requested() const { return !command_.work.checkpoint.empty(); }
   int stops() const;  ///< the signal to stop for, or 0
-  void go_on_from_kept();
-  void keep();
-  std::string keep_somewhere();
-  bool wrote_over() const;
-  /// Keeps the work of a picture that cannot be written.
-  void keep_all();
+  void continue_from_saved();
+  void save_now();
+  std::string save_fallback();
+  bool overwrote() const;
+  /// Saves the work of a picture that cannot be written.
+  void save_all();
   bool tried(const std::function<void()>& write) const;  ///< warns of its exceptions
   void save();
-  void note_place();
+  void record_location();
   std::string with_checkpoint() const;
-  void say(const std::string& line) const;
+  void add_line(const std::string& line) const;
   ImageStyle style() const;
   void write() const;
 
@@ -84,13 +84,14 @@ class LongRender {
   Picture picture_;
   /// names of the work to continue, the checkpoint or a file beside the picture's, and of the
   /// unfinished picture; empty: absent
-  KeptNames kept_;
-  std::optional<Place> kept_place_;  ///< of the work's file, as this program wrote or read it
-  bool went_on_ = false;             ///< from what was there
-  bool is_shared_ = false;           ///< another program writes the checkpoint as well
-  Layers layers_;                    ///< of the picture, when it is done
-  std::string saved_in_;             ///< when stopped; empty: nowhere
-  bool shown_ = false;               ///< when stopped
+  SavedNames saved_;
+  std::optional<Location>
+      saved_location_;      ///< of the work's file, as this program wrote or read it
+  bool continued_ = false;  ///< from what was there
+  bool is_shared_ = false;  ///< another program writes the checkpoint as well
+  Layers layers_;           ///< of the picture, when it is done
+  std::string saved_in_;    ///< when stopped; empty: nowhere
+  bool printed_ = false;    ///< when stopped
 };
 
 }  // namespace grelha

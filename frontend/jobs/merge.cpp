@@ -14,7 +14,7 @@ Range common(const Range& a, const Range& b) {
 bool empty(const Range& r) {
   return r.begin >= r.end;
 }
-void widen(Range& r, const Range& by) {
+void extend(Range& r, const Range& by) {
   r = {std::min(r.begin, by.begin), std::max(r.end, by.end)};
 }
 
@@ -76,8 +76,8 @@ class Joiner {
       look_at(file, read_partial(file));
     Part whole = parts_.front();
     for (const Part& p : parts_) {
-      widen(whole.rows, p.rows);
-      widen(whole.samples, p.samples);
+      extend(whole.rows, p.rows);
+      extend(whole.samples, p.samples);
     }
     if (const auto gap = first_gap(parts_, whole))
       throw UsageError("no part has " + part_text(*gap));
@@ -93,7 +93,7 @@ class Joiner {
     if (parts_.empty())
       joined_ = {p.identity, {a.width, a.height, a.samples, {}, {}, {}}};
     else
-      want_same(file, p);
+      check_same(file, p);
     if (!is_complete(a))
       throw UsageError(file + " is not finished, " + percent(share_done(a)) +
                        " are done: the command that made it goes on");
@@ -106,7 +106,7 @@ class Joiner {
     parts_.push_back(a.part);
   }
 
-  void want_same(const std::string& file, const Partial& p) const {
+  void check_same(const std::string& file, const Partial& p) const {
     const Identity& identity = p.identity;
     const Accumulator &a = p.sums, &first = joined_.sums;
     if (identity.scene != joined_.identity.scene)
@@ -127,7 +127,7 @@ class Joiner {
   }
 
   void take(const std::string& file, const Partial& p, const Part& part) {
-    want_same(file, p);
+    check_same(file, p);
     if (p.sums.part != part || !is_complete(p.sums))
       throw UsageError(file + " was changed while it was read");
     add(joined_.sums, p.sums);

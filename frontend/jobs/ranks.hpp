@@ -22,7 +22,7 @@ class Ranks {
 
   /// Throws UsageError on ranks whose `what` differs from the first rank's. `otherwise` describes
   /// such a rank.
-  void agree_on(const std::string& what, const std::string& otherwise) const;
+  void check_all_ranks(const std::string& what, const std::string& otherwise) const;
 
   /// Runs work that each rank does by itself, and returns true if all ranks succeeded. Ranks that
   /// failed throw their error. If the first rank is among them it alone throws, and all continue
@@ -39,7 +39,7 @@ class Ranks {
 
   /// Picture::advance() by all ranks together: each rank takes one piece at a time. Only pictures
   /// that have parts can be shared. The first rank's picture receives all pieces; the pictures of
-  /// the other ranks, of the same part, are buffers. `stop_seen` tells the first rank to stop
+  /// the other ranks, of the same part, are buffers. `is_stopping` tells the first rank to stop
   /// waiting.
   bool advance(const World& world,
                const Camera& camera,
@@ -48,7 +48,7 @@ class Ranks {
                RenderStats& stats,
                SampleMaps& maps,
                const ShouldContinue& should_continue,
-               const std::function<bool()>& stop_seen);
+               const std::function<bool()>& is_stopping);
 
  private:
   int count_ = 1, rank_ = 0;

@@ -21,9 +21,9 @@
 namespace grelha {
 namespace {
 
-constexpr int kFirst = 0, kPieceTag = 1, kEndTag = 2;
+constexpr int kFirst = 0, kPartTag = 1, kEndTag = 2;
 /// messages; a rank with more waits until the first rank has received some
-constexpr std::size_t kMostOnTheWay = 64;
+constexpr std::size_t kMaxPending = 64;
 
 std::size_t sums_of_rows(const Accumulator& a, const Range& rows) {
   return static_cast<std::size_t>(rows.end - rows.begin) * static_cast<std::size_t>(a.width) * 3;
@@ -70,14 +70,14 @@ class Counter {
 /// Calls MPI every millisecond. On a network without remote memory access in hardware, a rank
 /// answers requests to its memory only inside an MPI call. The first rank's threads may take a
 /// second for a piece; with this thread, others wait for a number at most a millisecond.
-class Doorkeeper {
+class ProgressThread {
  public:
-  Doorkeeper(std::mutex& mpi, const std::function<bool()>& stop_seen)
+  ProgressThread(std::mutex& mpi, const std::function<bool()>& is_stopping)
       : thread_([&](const std::stop_token& stop) {
           while (!stop.stop_requested()) {
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
             const std::lock_guard lock(mpi);
-            if (stop_seen())
+            if (is_stopping())
               return;  // other ranks may be gone by then, and MPI would end this one too
             int there = 0;
             MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &there, MPI_STATUS_IGNORE);
@@ -89,15 +89,15 @@ class Doorkeeper {
 };
 
 /// Pieces on their way to the first rank.
-class Outbox {
+class SendQueue {
  public:
   void send(Accumulator& a, std::size_t piece) {
-    while (on_the_way_.size() >= kMostOnTheWay)
-      settle(true);
+    while (pending_.size() >= kMaxPending)
+      finish_range(true);
     const Range rows = piece_of(a.part, piece).rows;
     std::int64_t* const sums = sums_at(a, rows.begin);
     const std::size_t n = sums_of_rows(a, rows);
-    Letter& letter = on_the_way_.emplace_back();
+    Message& letter = pending_.emplace_back();
     letter.words.reserve(n + 1);
     letter.words.push_back(static_cast<std::int64_t>(piece));
     letter.words.insert(letter.words.end(), sums, sums + n);
@@ -106,33 +106,33 @@ class Outbox {
               static_cast<int>(n + 1),
               MPI_INT64_T,
               kFirst,
-              kPieceTag,
+              kPartTag,
               MPI_COMM_WORLD,
               &letter.request);
-    settle(false);
+    finish_range(false);
   }
   void finish(const RayCounts& rays) {
-    while (!on_the_way_.empty())
-      settle(true);
+    while (!pending_.empty())
+      finish_range(true);
     const std::uint64_t counts[] = {rays.primary, rays.shadow, rays.reflection, rays.refraction};
     MPI_Send(counts, 4, MPI_UINT64_T, kFirst, kEndTag, MPI_COMM_WORLD);
   }
 
  private:
-  struct Letter {
+  struct Message {
     std::vector<std::int64_t> words;
     MPI_Request request = MPI_REQUEST_NULL;
   };
-  void settle(bool wait) {
+  void finish_range(bool wait) {
     if (wait)
-      MPI_Wait(&on_the_way_.front().request, MPI_STATUS_IGNORE);
-    on_the_way_.remove_if([](Letter& letter) {
+      MPI_Wait(&pending_.front().request, MPI_STATUS_IGNORE);
+    pending_.remove_if([](Message& letter) {
       int done = 0;
       MPI_Test(&letter.request, &done, MPI_STATUS_IGNORE);
       return done != 0;
     });
   }
-  std::list<Letter> on_the_way_;
+  std::list<Message> pending_;
 };
 
 /// Receives the messages that have arrived. Returns how many ranks ended, and adds the rays that
@@ -169,10 +169,10 @@ int receive(Accumulator& a, RayCounts& rays) {
 }
 
 /// The pieces of a picture that all ranks render together.
-class SharedPieces {
+class SharedParts {
  public:
-  SharedPieces(Accumulator& a, bool first, int others, const std::function<bool()>& stop_seen)
-      : a_(a), first_(first), others_(others), stop_seen_(stop_seen) {
+  SharedParts(Accumulator& a, bool first, int others, const std::function<bool()>& is_stopping)
+      : a_(a), first_(first), peers_(others), is_stopping_(is_stopping) {
     MPI_Bcast(a.done.data(), static_cast<int>(a.done.size()), MPI_BYTE, kFirst, MPI_COMM_WORLD);
     for (std::size_t i = 0; i < a.done.size(); ++i)
       if (a.done[i] == 0)
@@ -183,7 +183,7 @@ class SharedPieces {
   /// See NextPiece.
   std::size_t next() {
     const std::lock_guard lock(mutex_);
-    if (stop_seen_())
+    if (is_stopping_())
       return a_.done.size();
     const std::size_t at = counter_->take();
     if (at >= left_.size())
@@ -193,43 +193,43 @@ class SharedPieces {
   }
 
   /// Sends the piece that this rank has finished, or takes in what others have sent.
-  void exchange() {
+  void swap_edges() {
     const std::lock_guard lock(mutex_);
     if (first_) {
-      if (!stop_seen_())
-        ended_ += receive(a_, elsewhere_);  // see Doorkeeper
+      if (!is_stopping_())
+        ended_ += receive(a_, remote_);  // see ProgressThread
       return;
     }
     const auto finished = std::find_if(
         in_work_.begin(), in_work_.end(), [&](std::size_t i) { return a_.done[i] != 0; });
-    outbox_.send(a_, *finished);
+    send_queue_.send(a_, *finished);
     in_work_.erase(finished);
   }
 
   /// For the time in which the first rank renders.
-  std::unique_ptr<Doorkeeper> keep_door() {
-    return first_ ? std::make_unique<Doorkeeper>(mutex_, stop_seen_) : nullptr;
+  std::unique_ptr<ProgressThread> start_progress() {
+    return first_ ? std::make_unique<ProgressThread>(mutex_, is_stopping_) : nullptr;
   }
 
   /// Ends the work of a rank other than the first: sends its remaining messages. Returns true.
-  bool say_goodbye(const RayCounts& rays) {
-    outbox_.finish(rays);
+  bool finish_ranks(const RayCounts& rays) {
+    send_queue_.finish(rays);
     return true;
   }
 
   /// Ends the work of the first rank: receives the remaining messages, and adds the rays of other
   /// ranks to its own. Returns true if all ranks reached their end.
-  bool wait_for_others(const std::function<bool(double)>& progress,
-                       const ShouldContinue& should_continue,
-                       RayCounts& rays) {
-    while (ended_ < others_ && !stop_seen_()) {
-      ended_ += receive(a_, elsewhere_);
+  bool wait_for_peers(const std::function<bool(double)>& progress,
+                      const ShouldContinue& should_continue,
+                      RayCounts& rays) {
+    while (ended_ < peers_ && !is_stopping_()) {
+      ended_ += receive(a_, remote_);
       if (progress && !progress(share_done(a_)) && should_continue)
         should_continue();
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
-    rays += elsewhere_;
-    if (ended_ == others_)
+    rays += remote_;
+    if (ended_ == peers_)
       return true;
     counter_.release();  // to free the counter takes all ranks
     return false;
@@ -238,15 +238,15 @@ class SharedPieces {
  private:
   Accumulator& a_;
   const bool first_;
-  const int others_;
-  const std::function<bool()>& stop_seen_;
+  const int peers_;
+  const std::function<bool()>& is_stopping_;
   std::vector<std::size_t> left_;
   std::unique_ptr<Counter> counter_;
-  Outbox outbox_;
+  SendQueue send_queue_;
   std::mutex mutex_;                  ///< for the members below, and for MPI
   std::vector<std::size_t> in_work_;  ///< of this rank
   int ended_ = 0;
-  RayCounts elsewhere_;
+  RayCounts remote_;
 };
 
 }  // namespace
@@ -272,7 +272,7 @@ Ranks::Managed Ranks::managed(bool here) const {
   return {all != 0, by_first != 0};
 }
 
-void Ranks::agree_on(const std::string& what, const std::string& otherwise) const {
+void Ranks::check_all_ranks(const std::string& what, const std::string& otherwise) const {
   Digest digest;
   digest.bytes(what.data(), what.size());
   const std::uint64_t mine = digest.low64();
@@ -289,25 +289,25 @@ bool Ranks::advance(const World& world,
                     RenderStats& stats,
                     SampleMaps& maps,
                     const ShouldContinue& should_continue,
-                    const std::function<bool()>& stop_seen) {
+                    const std::function<bool()>& is_stopping) {
   if (count_ == 1)
     return picture.advance(world, camera, options, stats, &maps, should_continue);
   Accumulator* const sums = picture.sums();
   if (!sums)
     throw std::logic_error("a picture without parts cannot be shared");
-  SharedPieces pieces(*sums, first(), count_ - 1, stop_seen);
+  SharedParts fragments(*sums, first(), count_ - 1, is_stopping);
   RenderOptions shared = options;
   shared.progress = [&](double) {
-    pieces.exchange();
+    fragments.swap_edges();
     return !options.progress || options.progress(share_done(*sums));
   };
   {
-    const auto doorkeeper = pieces.keep_door();
-    const auto next = [&] { return pieces.next(); };
+    const auto doorkeeper = fragments.start_progress();
+    const auto next = [&] { return fragments.next(); };
     accumulate(world, camera, shared, *sums, stats, next, should_continue);
   }
-  const bool all = first() ? pieces.wait_for_others(options.progress, should_continue, stats.rays)
-                           : pieces.say_goodbye(stats.rays);
+  const bool all = first() ? fragments.wait_for_peers(options.progress, should_continue, stats.rays)
+                           : fragments.finish_ranks(stats.rays);
   if (!all)
     abandon();
   in_step_ = true;

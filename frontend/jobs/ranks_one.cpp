@@ -8,7 +8,7 @@ Ranks::~Ranks() = default;
 Ranks::Managed Ranks::managed(bool here) const {
   return {here, here};
 }
-void Ranks::agree_on(const std::string&, const std::string&) const {}
+void Ranks::check_all_ranks(const std::string&, const std::string&) const {}
 
 bool Ranks::advance(const World& world,
                     const Camera& camera,

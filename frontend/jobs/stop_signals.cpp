@@ -19,11 +19,11 @@ std::atomic<int> noted = 0;
 static_assert(std::atomic<int>::is_always_lock_free, "a handler may take no lock");
 
 bool on_terminal = false;
-void (*pipe_before)(int) = SIG_DFL;
+void (*previous_pipe)(int) = SIG_DFL;
 
 /// Reports the signal in the handler itself, because the work in progress may take long. Calls only
 /// async-signal-safe functions.
-void note(int signal) {
+void record(int signal) {
   constexpr std::string_view kWipe = "\r\033[K";  // the bar
   constexpr std::string_view kAnswer = "grelha: stopping; once more ends it at once\n";
   noted = signal;
@@ -34,7 +34,7 @@ void note(int signal) {
   errno = error;
 }
 
-void act(void (*handler)(int), int flags) {
+void install_handler(void (*handler)(int), int flags) {
   struct sigaction action {};
   action.sa_handler = handler;
   action.sa_flags = flags;
@@ -53,13 +53,13 @@ void act(void (*handler)(int), int flags) {
 StopSignals::StopSignals() {
   noted = 0;
   on_terminal = isatty(STDERR_FILENO) == 1;
-  act(note, SA_RESETHAND | SA_RESTART);
-  pipe_before = ::signal(SIGPIPE, SIG_IGN);
+  install_handler(record, SA_RESETHAND | SA_RESTART);
+  previous_pipe = ::signal(SIGPIPE, SIG_IGN);
 }
 
 StopSignals::~StopSignals() {
-  act(SIG_DFL, 0);
-  ::signal(SIGPIPE, pipe_before);
+  install_handler(SIG_DFL, 0);
+  ::signal(SIGPIPE, previous_pipe);
 }
 
 int StopSignals::seen() {

@@ -20,7 +20,7 @@ bool are_pairs(const Six& n) {
   return n[0] <= n[1] && n[2] <= n[3] && n[4] <= n[5];
 }
 
-bool are_corners(const Six& n) {
+bool are_vertices(const Six& n) {
   const bool ascend = n[0] <= n[3] && n[1] <= n[4] && n[2] <= n[5];
   const bool descend = n[0] >= n[3] && n[1] >= n[4] && n[2] >= n[5];
   return ascend || descend;
@@ -35,10 +35,10 @@ BoxOrder aabb_order(Words words) {
     if (word != "aabb" || !read_six(words, numbers))
       continue;
     if (!are_pairs(numbers))
-      return BoxOrder::kCorners;
-    all_corners = all_corners && are_corners(numbers);
+      return BoxOrder::kVertices;
+    all_corners = all_corners && are_vertices(numbers);
   }
-  return all_corners ? BoxOrder::kCorners : BoxOrder::kPairs;
+  return all_corners ? BoxOrder::kVertices : BoxOrder::kPairs;
 }
 
 }  // namespace grelha

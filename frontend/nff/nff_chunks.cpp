@@ -11,7 +11,7 @@
 
 #include "frontend/nff/nff_plain.hpp"
 #include "frontend/scene/scene_parts.hpp"
-#include "kernel/scene/crew.hpp"
+#include "kernel/base/thread_pool.hpp"
 
 namespace grelha {
 namespace {
@@ -20,13 +20,13 @@ namespace {
 struct Fragment {
   const char *begin = nullptr, *stop = nullptr;  ///< entities that begin between belong to it
   SceneFile file;
-  NffChunks::Taken taken;
+  NffChunks::ParsedChunks taken;
   const char* next = nullptr;  ///< the first word that is not taken
 };
 
 /// Most corners of a polygon in a fragment: a larger one may take seconds, which are lost if it
 /// gives a warning.
-constexpr std::size_t kMostCorners = 4096;
+constexpr std::size_t kMostVertices = 4096;
 
 /// Thrown in place of a warning, which a fragment must not give.
 struct WouldWarn {};
@@ -36,22 +36,22 @@ void read_entities(const std::string& path,
                    const Frame& frame,
                    Fragment& fragment) {
   const Warn stop = [](const std::string&) { throw WouldWarn(); };
-  Warnings warnings(stop);
+  WarningList warning_list(stop);
   // a `/*` ends the fragment, because its end may lie far outside
   Words words(path, {fragment.begin, std::size_t(end - fragment.begin)}, 0, Comments::kOfLines);
-  NffInput input(words, warnings, frame);
-  NffPlain plain(input, fragment.file, kMostCorners);
+  NffInput input(words, warning_list, frame);
+  NffSimple simple(input, fragment.file, kMostVertices);
   fragment.file.scene.materials.resize(1);  // the last one before it
   for (;;) {
     const std::string_view word = words.next();
     fragment.next = word.data();
-    if (word.data() >= fragment.stop || !plain.read(word))
+    if (word.data() >= fragment.stop || !simple.read(word))
       return;
     fragment.taken = {words.cursor(), word};
   }
 }
 
-/// Drops errors and warnings: the sequential reader reads the same place again, and knows its line.
+/// Drops errors and warnings: the sequential reader reads the same text again, and knows its line.
 void read_fragment(const std::string& path,
                    const char* end,
                    const Frame& frame,
@@ -60,7 +60,7 @@ void read_fragment(const std::string& path,
   read_entities(path, end, frame, fragment);
 } catch (const WouldWarn&) {
 } catch (const ParseError&) {
-} catch (...) {  // memory ran out at an unknown place
+} catch (...) {  // memory ran out at an unknown position
   fragment.taken = {};
 }
 
@@ -68,18 +68,18 @@ bool begins_line(const char* p) {
   return p[-1] == '\n' || p[-1] == '\r';
 }
 
-/// Returns true if a plain entity's keyword and a blank stand at `p`.
-bool is_keyword_at(const char* p, const char* end) {
+/// Returns true if a simple entity's keyword and a space stand at `p`.
+bool starts_keyword(const char* p, const char* end) {
   constexpr std::size_t kLongest = 2;
   const std::string_view ahead(p, std::min(kLongest + 1, std::size_t(end - p)));
   const std::size_t length = ahead.find_first_of(" \t\r\n");
-  return length != ahead.npos && is_plain(ahead.substr(0, length));
+  return length != ahead.npos && is_simple_word(ahead.substr(0, length));
 }
 
 /// Cuts the text from an entity on into chunks.
-class Cutter {
+class Splitter {
  public:
-  Cutter(const char* begin, const char* end, std::size_t bytes)
+  Splitter(const char* begin, const char* end, std::size_t bytes)
       : begin_(begin), end_(end), bytes_(bytes) {}
 
   std::size_t count() const { return (std::size_t(end_ - begin_) + bytes_ - 1) / bytes_; }
@@ -102,7 +102,7 @@ class Cutter {
   const char* find_start(std::size_t i) const {
     const char *p = border(i), *const stop = border(i + 1);
     if (i > 0)
-      while (p != stop && !(begins_line(p) && is_keyword_at(p, end_)))
+      while (p != stop && !(begins_line(p) && starts_keyword(p, end_)))
         ++p;
     return p;
   }
@@ -111,28 +111,33 @@ class Cutter {
   std::size_t bytes_;
 };
 
-/// Threads claim chunks in order. The thread that has read the next missing chunk of the scene
+/// Threads take chunks in order. The thread that has read the next missing chunk of the scene
 /// appends it, and the chunks that wait behind it. Other threads wait only if they are too far
 /// ahead.
 class Run {
  public:
   Run(const std::string& path,
-      const Cutter& cutter,
+      const Splitter& splitter,
       const char* begin,
       const char* end,
       std::size_t ahead,
       SceneFile& file)
-      : path_(path), cutter_(cutter), end_(end), slots_(ahead), file_(file), here_(begin) {}
+      : path_(path),
+        splitter_(splitter),
+        end_(end),
+        slots_(ahead),
+        file_(file),
+        event_point_(begin) {}
 
-  /// The work of each thread. The thread that is given `tell` calls it.
-  void work(const NffChunks::Tell* tell) noexcept try {
-    for (std::size_t chunk = 0; claim(chunk);) {
-      Fragment fragment = cutter_.cut(chunk);
+  /// The work of each thread. The thread that is given `report_line` calls it.
+  void work(const NffChunks::Report* report_line) noexcept try {
+    for (std::size_t chunk = 0; take_chunk(chunk);) {
+      Fragment fragment = splitter_.cut(chunk);
       if (fragment.begin)
         read_fragment(path_, end_, file_.frame, fragment);
-      deliver(chunk, std::move(fragment));
-      if (tell)
-        (*tell)(here());
+      submit_fragment(chunk, std::move(fragment));
+      if (report_line)
+        (*report_line)(here());
     }
   } catch (...) {
     const std::lock_guard lock(mutex_);
@@ -141,14 +146,14 @@ class Run {
   }
 
   /// After all work: returns the result, or rethrows the error.
-  NffChunks::Taken finish() const {
+  NffChunks::ParsedChunks finish() const {
     if (error_)
       std::rethrow_exception(error_);
-    return taken_;
+    return parsed_;
   }
   const char* here() const {
     const std::lock_guard lock(mutex_);
-    return here_;
+    return event_point_;
   }
 
  private:
@@ -157,13 +162,13 @@ class Run {
     Fragment fragment;
   };
 
-  bool claim(std::size_t& chunk) {
+  bool take_chunk(std::size_t& chunk) {
     for (;; std::this_thread::yield()) {
       const std::lock_guard lock(mutex_);
-      if (is_over_ || claimed_ == cutter_.count())
+      if (is_over_ || taken_chunks_ == splitter_.count())
         return false;
-      if (claimed_ - joined_ < slots_.size()) {
-        chunk = claimed_++;
+      if (taken_chunks_ - joined_ < slots_.size()) {
+        chunk = taken_chunks_++;
         return true;
       }
     }
@@ -171,7 +176,7 @@ class Run {
 
   Slot& slot(std::size_t chunk) { return slots_[chunk % slots_.size()]; }
 
-  void deliver(std::size_t chunk, Fragment&& fragment) {
+  void submit_fragment(std::size_t chunk, Fragment&& fragment) {
     std::unique_lock lock(mutex_);
     slot(chunk) = {true, std::move(fragment)};
     if (std::exchange(is_joining_, true))
@@ -185,30 +190,31 @@ class Run {
   }
 
   void join(const Fragment& fragment, std::unique_lock<std::mutex>& lock) {
-    if (fragment.begin != here_ || !fragment.taken.end) {
+    if (fragment.begin != event_point_ || !fragment.taken.end) {
       is_over_ = true;
       return;
     }
     lock.unlock();
-    if (!taken_.end &&
+    if (!parsed_.end &&
         fragment.next >= fragment.stop)  // the rest is probably like the first chunk
-      reserve_for_parts(file_, fragment.file, double(end_ - here_) / double(fragment.next - here_));
+      reserve_for_parts(
+          file_, fragment.file, double(end_ - event_point_) / double(fragment.next - event_point_));
     append_part(file_, fragment.file);
     lock.lock();
-    taken_ = fragment.taken;
-    here_ = fragment.next;
+    parsed_ = fragment.taken;
+    event_point_ = fragment.next;
   }
 
   const std::string& path_;
-  const Cutter& cutter_;
+  const Splitter& splitter_;
   const char* const end_;
   mutable std::mutex mutex_;
   std::vector<Slot> slots_;
-  std::size_t claimed_ = 0, joined_ = 0;  ///< chunks
+  std::size_t taken_chunks_ = 0, joined_ = 0;  ///< chunks
   bool is_joining_ = false, is_over_ = false;
   SceneFile& file_;
-  const char* here_;  ///< the text that the scene lacks begins here
-  NffChunks::Taken taken_;
+  const char* event_point_;  ///< the text that the scene lacks begins here
+  NffChunks::ParsedChunks parsed_;
   std::exception_ptr error_;
 };
 
@@ -220,14 +226,16 @@ NffChunks::NffChunks(std::string path, std::string_view text, const ChunkSizes& 
       next_(omp_get_max_threads() > 1 ? text.data() : end_),
       sizes_(sizes) {}
 
-NffChunks::Taken NffChunks::read_run(const char* begin, SceneFile& file, const Tell& tell) {
-  const Cutter cutter(begin, end_, sizes_.bytes);
-  Run run(path_, cutter, begin, end_, sizes_.ahead, file);
+NffChunks::ParsedChunks NffChunks::read_run(const char* begin,
+                                            SceneFile& file,
+                                            const Report& report_line) {
+  const Splitter splitter(begin, end_, sizes_.bytes);
+  Run run(path_, splitter, begin, end_, sizes_.ahead, file);
   const std::thread::id here = std::this_thread::get_id();
-  by_crew(omp_get_max_threads(),
-          [&] { run.work(std::this_thread::get_id() == here ? &tell : nullptr); });
-  const Taken taken = run.finish();
-  tell(run.here());  // others may have read on since it was told
+  by_threads(omp_get_max_threads(),
+             [&] { run.work(std::this_thread::get_id() == here ? &report_line : nullptr); });
+  const ParsedChunks taken = run.finish();
+  report_line(run.here());  // others may have read on since it was told
   if (run.here() != end_)
     next_ = run.here() + std::min(sizes_.ahead * sizes_.bytes, std::size_t(end_ - run.here()));
   return taken;

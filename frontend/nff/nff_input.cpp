@@ -9,8 +9,8 @@ void NffInput::fail(std::string_view word, const std::string& expected) const {
 }
 
 void NffInput::warn_once(std::string_view kind, std::string_view word, const std::string& message) {
-  if (warnings.first(kind))
-    warnings.say(position(word), message);
+  if (warning_list.first(kind))
+    warning_list.add_line(position(word), message);
 }
 
 float NffInput::number(const char* what) {
@@ -24,7 +24,7 @@ float NffInput::number(const char* what) {
 }
 
 void NffInput::check_bounds(std::string_view word, float value, const char* what) const {
-  if (!drawable(value))
+  if (!is_finite_float(value))
     fail(word, std::string("a finite number, at most 1e18, for ") + what);
 }
 
@@ -55,20 +55,20 @@ double NffInput::wide_number(const char* what) {
   return value;
 }
 
-Float3 NffInput::place(const char* what) {
+Float3 NffInput::location(const char* what) {
   if (frame == Frame{})
     return point(what);
   const double x = wide_number(what), y = wide_number(what), z = wide_number(what);
   return frame.inside({x, y, z});
 }
 
-Float3 NffInput::bounded_place(const char* what) {
+Float3 NffInput::bounded_location(const char* what) {
   const Words before = words;
   const Float3 as_it_stands = bounded_point(what);
   if (frame == Frame{})
     return as_it_stands;
   words = before;
-  return place(what);
+  return location(what);
 }
 
 float NffInput::length(const char* what) {

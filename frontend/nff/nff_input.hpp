@@ -21,17 +21,17 @@ struct NumberWord {
 /// there. `what` completes "expected a number for ...".
 class NffInput {
  public:
-  NffInput(Words& all_words, Warnings& all_warnings, const Frame& of_scene)
-      : words(all_words), warnings(all_warnings), frame(of_scene) {}
+  NffInput(Words& all_words, WarningList& all_warnings, const Frame& of_scene)
+      : words(all_words), warning_list(all_warnings), frame(of_scene) {}
 
   /// infinite and NaN pass: the caller drops what cannot be drawn
   float number(const char* what);
   float bounded(const char* what);  ///< for what cannot be dropped: camera, lights, materials
   Float3 point(const char* what);   ///< three numbers, without checks
   Float3 bounded_point(const char* what);
-  /// A place or a length, converted to the frame of the scene.
-  Float3 place(const char* what);
-  Float3 bounded_place(const char* what);
+  /// A position or a length, converted to the frame of the scene.
+  Float3 location(const char* what);
+  Float3 bounded_location(const char* what);
   float length(const char* what);
   double wide_number(const char* what);  ///< in the file's own frame
   /// A count of things that take at least `least_bytes` each, checked against the rest of the file.
@@ -46,7 +46,7 @@ class NffInput {
   void warn_once(std::string_view kind, std::string_view word, const std::string& message);
 
   Words& words;
-  Warnings& warnings;
+  WarningList& warning_list;
   const Frame frame;
 
  private:

@@ -12,13 +12,13 @@
 namespace grelha {
 namespace {
 
-void want_room(const NffInput& input,
-               std::string_view name,
-               const Mesh& mesh,
-               const Triangles& triangles) {
+void check_image_size(const NffInput& input,
+                      std::string_view name,
+                      const Mesh& mesh,
+                      const Triangles& triangles) {
   constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max();
   if (mesh.vertex_count() > kMost - triangles.vertex_count() ||
-      mesh.corners.size() > kMost - triangles.size())
+      mesh.corner_points.size() > kMost - triangles.size())
     throw ParseError(input.position(name),
                      "expected fewer than 2^32 vertices and triangles in all, found more");
 }
@@ -84,14 +84,14 @@ Mesh NffMeshFiles::read(const NffInput& input,
                         const std::string& path,
                         SceneFile& scene) const {
   try {
-    const auto judge = [&](std::string_view text, std::size_t fresh) {
-      judge_beginning(path, true, text, fresh);
+    const auto validate = [&](std::string_view text, std::size_t fresh) {
+      validate_start(path, true, text, fresh);
     };
-    const std::string bytes = load_file(path, load_, false, judge);
+    const std::string bytes = load_file(path, load_, false, validate);
     Mesh mesh = read_ply_mesh(path, bytes, warn_, load_, scene.frame);
     const std::uint64_t held = input.words.size() + bytes.size();
     scene.source_bytes = std::max(scene.source_bytes, held);
-    want_room(input, name, mesh, scene.scene.geometry.triangles);
+    check_image_size(input, name, mesh, scene.scene.geometry.triangles);
     return mesh;
   } catch (const std::bad_alloc&) {
     throw OutOfMemory(path);

@@ -4,7 +4,7 @@
 
 namespace grelha {
 
-bool NffPlain::read(std::string_view keyword) {
+bool NffSimple::read(std::string_view keyword) {
   if (keyword == "p" || keyword == "pt")
     return read_polygon(keyword, false, keyword == "pt");
   if (keyword == "pp" || keyword == "ppt")
@@ -20,7 +20,7 @@ bool NffPlain::read(std::string_view keyword) {
   return true;
 }
 
-std::uint32_t NffPlain::material(std::string_view keyword) {
+std::uint32_t NffSimple::material(std::string_view keyword) {
   std::vector<Material>& all = file_.scene.materials;
   if (all.empty()) {
     input_.warn_once(
@@ -30,20 +30,20 @@ std::uint32_t NffPlain::material(std::string_view keyword) {
   return std::uint32_t(all.size() - 1);
 }
 
-void NffPlain::leave_out_texture(std::string_view keyword) {
+void NffSimple::leave_out_texture(std::string_view keyword) {
   input_.warn_once(
       "texture", keyword, "textures are left out: the material is seen in their place");
 }
 
-void NffPlain::read_sphere(std::string_view keyword) {
+void NffSimple::read_sphere(std::string_view keyword) {
   if (keyword == "st")
     leave_out_texture(keyword);
-  const Float3 center = input_.place("the sphere's center");
+  const Float3 center = input_.location("the sphere's center");
   build_.sphere(center, input_.length("the sphere's radius"), material(keyword));
   ++file_.counts.s;
 }
 
-bool NffPlain::read_polygon(std::string_view keyword, bool patch, bool textured) {
+bool NffSimple::read_polygon(std::string_view keyword, bool patch, bool textured) {
   if (textured)
     leave_out_texture(keyword);
   const char* const before = input_.words.cursor();
@@ -53,20 +53,20 @@ bool NffPlain::read_polygon(std::string_view keyword, bool patch, bool textured)
     input_.words.go_on_at(before);
     input_.fail(input_.words.peek(), "at least 3 corners of a polygon");
   }
-  if (size > most_corners_) {
+  if (size > most_vertices_) {
     input_.words.go_on_at(before);
     return false;
   }
-  corners_.clear();
+  corner_points_.clear();
   normals_.clear();
   for (std::size_t i = 0; i < size; ++i) {
-    corners_.push_back(input_.place("the polygon's corner"));
+    corner_points_.push_back(input_.location("the polygon's corner"));
     if (patch)
       normals_.push_back(input_.point("the corner's normal"));
     for (int k = 0; textured && k < 2; ++k)
       input_.number("the corner's place in the texture");
   }
-  build_.polygon(corners_, normals_, material(keyword), [&](SceneBuilder::Result result) {
+  build_.polygon(corner_points_, normals_, material(keyword), [&](SceneBuilder::Result result) {
     if (result == SceneBuilder::Result::kFilled)
       input_.warn_once(
           "crossed", keyword, "a polygon that crosses itself; it is filled by the even-odd rule");
@@ -79,15 +79,15 @@ bool NffPlain::read_polygon(std::string_view keyword, bool patch, bool textured)
   return true;
 }
 
-void NffPlain::read_cone(std::string_view keyword) {
-  const Float3 base = input_.place("the cone's base");
+void NffSimple::read_cone(std::string_view keyword) {
+  const Float3 base = input_.location("the cone's base");
   const float base_radius = input_.length("the cone's base radius");
-  const Float3 apex = input_.place("the cone's apex");
+  const Float3 apex = input_.location("the cone's apex");
   build_.cone(base, base_radius, apex, input_.length("the cone's apex radius"), material(keyword));
   ++file_.counts.c;
 }
 
-void NffPlain::read_fill(std::string_view keyword) {
+void NffSimple::read_fill(std::string_view keyword) {
   file_.scene.materials.push_back(read_nff_fill(input_, keyword));
   ++file_.counts.materials;
 }

@@ -12,11 +12,11 @@ namespace grelha {
 /// Reads `s`, `p`, `pp`, `c` and `f`, the entities of large files. They depend on nothing before
 /// them but the last material. Also reads `material`, and `st`, `pt` and `ppt`, the same entities
 /// with a texture that is left out.
-class NffPlain {
+class NffSimple {
  public:
-  /// `most_corners`: a polygon of more is not read.
-  NffPlain(NffInput& input, SceneFile& file, std::size_t most_corners = std::size_t(-1))
-      : input_(input), file_(file), build_(file), most_corners_(most_corners) {}
+  /// `most_vertices`: a polygon of more is not read.
+  NffSimple(NffInput& input, SceneFile& file, std::size_t most_vertices = std::size_t(-1))
+      : input_(input), file_(file), build_(file), most_vertices_(most_vertices) {}
 
   /// After such a word: reads its entity. Returns false, and reads nothing, after any other word.
   bool read(std::string_view keyword);
@@ -34,12 +34,12 @@ class NffPlain {
   NffInput& input_;
   SceneFile& file_;
   SceneBuilder build_;
-  std::size_t most_corners_;
-  std::vector<Float3> corners_, normals_;
+  std::size_t most_vertices_;
+  std::vector<Float3> corner_points_, normals_;
 };
 
-/// Returns true for the words that NffPlain reads without a warning.
-inline bool is_plain(std::string_view word) {
+/// Returns true for the words that NffSimple reads without a warning.
+inline bool is_simple_word(std::string_view word) {
   return word == "p" || word == "s" || word == "pp" || word == "c" || word == "f";
 }
 

@@ -31,11 +31,11 @@ class NffReader {
             const ChunkSizes& chunks)
       : progress_(progress, text.data()),
         words_(path, text, byte_order_mark(text), Comments::kAll),
-        warnings_(warn),
+        warning_list_(warn),
         meshes_(path, warn, options, progress),
-        input_(words_, warnings_, options.frame),
+        input_(words_, warning_list_, options.frame),
         build_(file_),
-        plain_(input_, file_),
+        simple_(input_, file_),
         chunks_(path, text, chunks),
         lights_(file_) {
     file_.source_bytes = text.size();
@@ -52,17 +52,17 @@ class NffReader {
   };
   static const Named kEntities[];
 
-  void warn_of_nul(std::string_view text);
-  NffChunks::Taken read_ahead(std::string_view word);
+  void warn_nul(std::string_view text);
+  NffChunks::ParsedChunks read_ahead(std::string_view word);
   static const Named* entity_named(std::string_view word);
   bool read_entity(std::string_view word);
   void skip_other(std::string_view word, std::string_view last_entity);
-  static std::string meant(std::string_view word);
-  void refuse_sense8();
-  std::uint32_t material(std::string_view keyword) { return plain_.material(keyword); }
-  std::vector<std::uint32_t> mesh_corners(std::size_t faces, std::size_t vertices);
+  static std::string suggested(std::string_view word);
+  void reject_sense8();
+  std::uint32_t material(std::string_view keyword) { return simple_.material(keyword); }
+  std::vector<std::uint32_t> mesh_vertices(std::size_t faces, std::size_t vertices);
 
-  void read_plain(std::string_view keyword);
+  void read_simple(std::string_view keyword);
   void read_texture(std::string_view keyword);
   void read_mat(std::string_view keyword);
   void read_l(std::string_view) { lights_.read_point(input_); }
@@ -85,11 +85,11 @@ class NffReader {
   ParseProgress progress_;
   SceneFile file_;
   Words words_;
-  Warnings warnings_;
+  WarningList warning_list_;
   NffMeshFiles meshes_;
   NffInput input_;
   SceneBuilder build_;
-  NffPlain plain_;
+  NffSimple simple_;
   NffChunks chunks_;
   NffView view_;
   NffLights lights_;
@@ -97,9 +97,9 @@ class NffReader {
 
 // The frequent ones first: the search is linear.
 const NffReader::Named NffReader::kEntities[] = {
-    {"s", &NffReader::read_plain},     {"p", &NffReader::read_plain},
-    {"pp", &NffReader::read_plain},    {"c", &NffReader::read_plain},
-    {"f", &NffReader::read_plain},     {"mat", &NffReader::read_mat},
+    {"s", &NffReader::read_simple},    {"p", &NffReader::read_simple},
+    {"pp", &NffReader::read_simple},   {"c", &NffReader::read_simple},
+    {"f", &NffReader::read_simple},    {"mat", &NffReader::read_mat},
     {"l", &NffReader::read_l},         {"b", &NffReader::read_b},
     {"bclr", &NffReader::read_b},      {"pl", &NffReader::read_pl},
     {"npl", &NffReader::read_npl},     {"box", &NffReader::read_box},
@@ -107,21 +107,21 @@ const NffReader::Named NffReader::kEntities[] = {
     {"ply", &NffReader::read_ply},     {"light", &NffReader::read_light},
     {"al", &NffReader::read_al},       {"env", &NffReader::read_env},
     {"accel", &NffReader::read_accel}, {"spp", &NffReader::read_spp},
-    {"L", &NffReader::read_glow},      {"material", &NffReader::read_plain},
-    {"t", &NffReader::read_texture},   {"ppt", &NffReader::read_plain},
-    {"pt", &NffReader::read_plain},    {"st", &NffReader::read_plain},
+    {"L", &NffReader::read_glow},      {"material", &NffReader::read_simple},
+    {"t", &NffReader::read_texture},   {"ppt", &NffReader::read_simple},
+    {"pt", &NffReader::read_simple},   {"st", &NffReader::read_simple},
 };
 
-/// Warns of NUL bytes: they separate words as blanks do, which is seldom intended.
-void NffReader::warn_of_nul(std::string_view text) {
+/// Warns of NUL bytes: they separate words as spaces do, which is seldom intended.
+void NffReader::warn_nul(std::string_view text) {
   const std::size_t nul = text.find('\0');
   if (nul != text.npos)
-    warnings_.say(words_.position(text.substr(nul)), kNulIsBlank);
+    warning_list_.add_line(words_.position(text.substr(nul)), kNulIsSpace);
 }
 
 SceneFile NffReader::read(std::string_view text) {
-  refuse_sense8();
-  warn_of_nul(text);
+  reject_sense8();
+  warn_nul(text);
   std::string_view last_entity;
   for (;;) {
     const std::string_view word = words_.next();
@@ -131,7 +131,7 @@ SceneFile NffReader::read(std::string_view text) {
       return std::move(file_);
     }
     progress_.at(words_.cursor());
-    if (const NffChunks::Taken taken = read_ahead(word); taken.end)
+    if (const NffChunks::ParsedChunks taken = read_ahead(word); taken.end)
       last_entity = taken.last_entity;
     else if (read_entity(word))
       last_entity = word;
@@ -141,12 +141,12 @@ SceneFile NffReader::read(std::string_view text) {
 }
 
 /// Reads from this entity on with all threads, if that pays. Returns the part it read.
-NffChunks::Taken NffReader::read_ahead(std::string_view word) {
-  if (!chunks_.due(word.data()) || !is_plain(word) || file_.scene.materials.empty() ||
+NffChunks::ParsedChunks NffReader::read_ahead(std::string_view word) {
+  if (!chunks_.due(word.data()) || !is_simple_word(word) || file_.scene.materials.empty() ||
       lights_.glows())
     return {};
-  const auto tell = [this](const char* here) { progress_.at(here); };
-  const NffChunks::Taken taken = chunks_.read_run(word.data(), file_, tell);
+  const auto report_line = [this](const char* here) { progress_.at(here); };
+  const NffChunks::ParsedChunks taken = chunks_.read_run(word.data(), file_, report_line);
   if (taken.end)
     words_.go_on_at(taken.end);
   return taken;
@@ -169,34 +169,35 @@ bool NffReader::read_entity(std::string_view word) {
 }
 
 /// ` (did you mean "angle"?)`, or nothing.
-std::string NffReader::meant(std::string_view word) {
+std::string NffReader::suggested(std::string_view word) {
   std::vector<std::string_view> known(NffView::words().begin(), NffView::words().end());
   for (const Named& entity : kEntities)
     known.push_back(entity.name);
-  const std::string near = meant_keyword(word, known);
+  const std::string near = suggested_keyword(word, known);
   return near.empty() ? "" : " (did you mean " + grelha::quoted(near) + "?)";
 }
 
 /// Skips a word that begins no entity, with the rest of its line, and warns once per kind. A file
-/// may hold millions of them, so only the first of a kind is searched for the intended word.
+/// may hold millions of such words, so only the first of a kind is compared with the keywords.
 void NffReader::skip_other(std::string_view word, std::string_view last_entity) {
   if (!looks_like_number(word)) {
-    if (warnings_.first("word " + std::string(word)))
-      warnings_.say(input_.position(word),
-                    "unknown word " + quoted(word) + meant(word) + "; its line is skipped");
-  } else if (words_.fresh_line() || last_entity.empty()) {
+    if (warning_list_.first("word " + std::string(word)))
+      warning_list_.add_line(
+          input_.position(word),
+          "unknown word " + quoted(word) + suggested(word) + "; its line is skipped");
+  } else if (words_.at_line_start() || last_entity.empty()) {
     input_.warn_once("stray", word, "numbers that belong to no entity; their line is skipped");
-  } else if (warnings_.first("surplus " + std::string(last_entity))) {
-    warnings_.say(
+  } else if (warning_list_.first("surplus " + std::string(last_entity))) {
+    warning_list_.add_line(
         input_.position(word),
         "more numbers than " + quoted(last_entity) + " takes; the rest of the line is skipped");
   }
   words_.skip_line();
 }
 
-/// Refuses another format named NFF (WorldToolKit): those letters stand alone on its first line,
+/// Rejects another format named NFF (WorldToolKit): those letters stand alone on its first line,
 /// and the next line has no keyword of Haines' format.
-void NffReader::refuse_sense8() {
+void NffReader::reject_sense8() {
   Words ahead = words_;
   const std::string_view word = ahead.next();
   if ((word != "nff" && word != "NFF") || !ahead.peek_on_line().empty())
@@ -208,14 +209,14 @@ void NffReader::refuse_sense8() {
                      "expected Haines' Neutral File Format, found Sense8's (WorldToolKit) NFF");
 }
 
-void NffReader::read_plain(std::string_view keyword) {
+void NffReader::read_simple(std::string_view keyword) {
   const bool is_polygon = keyword == "p" || keyword == "pp";
   if (!is_polygon || !lights_.glows() || !lights_.read_glowing(input_, keyword))
-    plain_.read(keyword);
+    simple_.read(keyword);
 }
 
 void NffReader::read_texture(std::string_view keyword) {
-  const std::string_view name = words_.rest_of_line();
+  const std::string_view name = words_.tail_of_line();
   input_.warn_once("texture", keyword, "texture " + quoted(name) + " is left out");
 }
 
@@ -225,9 +226,9 @@ void NffReader::read_mat(std::string_view keyword) {
 }
 
 void NffReader::read_pl(std::string_view keyword) {
-  const Float3 a = input_.place("the plane's first point");
-  const Float3 b = input_.place("the plane's second point");
-  build_.plane(a, b, input_.place("the plane's third point"), material(keyword));
+  const Float3 a = input_.location("the plane's first point");
+  const Float3 b = input_.location("the plane's second point");
+  build_.plane(a, b, input_.location("the plane's third point"), material(keyword));
   ++file_.counts.pl;
 }
 
@@ -245,8 +246,8 @@ void NffReader::read_npl(std::string_view keyword) {
 }
 
 void NffReader::read_box(std::string_view keyword) {
-  const Float3 corner = input_.place("the box's first corner");
-  build_.box(corner, input_.place("the box's second corner"), material(keyword));
+  const Float3 corner = input_.location("the box's first corner");
+  build_.box(corner, input_.location("the box's second corner"), material(keyword));
   ++file_.counts.box;
 }
 
@@ -264,9 +265,9 @@ void NffReader::read_aabb(std::string_view keyword) {
 }
 
 /// Counted from 1, or from -1 for the last vertex backwards.
-std::vector<std::uint32_t> NffReader::mesh_corners(std::size_t faces, std::size_t vertices) {
-  std::vector<std::uint32_t> corners;
-  corners.reserve(3 * faces);
+std::vector<std::uint32_t> NffReader::mesh_vertices(std::size_t faces, std::size_t vertices) {
+  std::vector<std::uint32_t> corner_points;
+  corner_points.reserve(3 * faces);
   const auto last = std::int64_t(vertices);
   for (std::size_t i = 0; i < 3 * faces; ++i) {
     progress_.at(words_.cursor());
@@ -276,9 +277,9 @@ std::vector<std::uint32_t> NffReader::mesh_corners(std::size_t faces, std::size_
       input_.fail(word,
                   "a vertex of the mesh, from 1 to " + std::to_string(last) + " or -" +
                       std::to_string(last) + " to -1");
-    corners.push_back(std::uint32_t(index > 0 ? index - 1 : last + index));
+    corner_points.push_back(std::uint32_t(index > 0 ? index - 1 : last + index));
   }
-  return corners;
+  return corner_points;
 }
 
 void NffReader::read_mesh(std::string_view keyword) {
@@ -290,38 +291,38 @@ void NffReader::read_mesh(std::string_view keyword) {
   mesh.z.reserve(vertices);
   for (std::size_t i = 0; i < vertices; ++i) {
     progress_.at(words_.cursor());
-    const Float3 p = input_.place("the mesh's vertex");
+    const Float3 p = input_.location("the mesh's vertex");
     mesh.x.push_back(p.x);
     mesh.y.push_back(p.y);
     mesh.z.push_back(p.z);
   }
-  mesh.corners = mesh_corners(faces, vertices);
+  mesh.corner_points = mesh_vertices(faces, vertices);
   build_.mesh(std::move(mesh), material(keyword));
   file_.counts.mesh += faces;
 }
 
 void NffReader::read_ply(std::string_view keyword) {
-  const std::string_view name = words_.rest_of_line();
+  const std::string_view name = words_.tail_of_line();
   const std::string path = meshes_.path(input_, name);
   Mesh mesh = meshes_.read(input_, name, path, file_);
   const std::size_t faces = mesh.face_count();
   if (faces == 0)
     file_.points += mesh.vertex_count();
   const CrossedFaces crossed = build_.mesh(std::move(mesh), material(keyword));
-  if (const std::string text = crossed.text(); !text.empty() && warnings_.first("of " + path))
-    warnings_.say(path + ": warning: " + text);
+  if (const std::string text = crossed.text(); !text.empty() && warning_list_.first("of " + path))
+    warning_list_.add_line(path + ": warning: " + text);
   file_.counts.ply += faces;
   file_.meshes.push_back(path);
 }
 
 void NffReader::read_env(std::string_view keyword) {
-  file_.environment = std::string(words_.rest_of_line());
+  file_.environment = std::string(words_.tail_of_line());
   input_.warn_once(
       "env", keyword, "environment maps are not rendered; the background color is seen instead");
 }
 
 void NffReader::read_accel(std::string_view) {
-  file_.accelerator = std::string(words_.rest_of_line());
+  file_.accelerator = std::string(words_.tail_of_line());
 }
 
 /// Reads a hint for the samples a pixel; a larger number is clamped, with a warning.

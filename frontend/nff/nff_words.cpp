@@ -21,15 +21,15 @@ constexpr std::pair<std::string_view, std::string_view> kFullNames[] = {
     {"fov", "angle"},     {"size", "resolution"}, {"samples", "spp"},  {"environment", "env"},
     {"include", "ply"},
 };
-constexpr std::size_t kLongestMeant = 64;  ///< no keyword is meant by more
+constexpr std::size_t kLongestSuggested = 64;  ///< no keyword is meant by more
 
-char small_letter(char c) {
+char to_lower(char c) {
   return c >= 'A' && c <= 'Z' ? char(c + ('a' - 'A')) : c;
 }
 
-std::string in_small_letters(std::string_view word) {
+std::string lower_case(std::string_view word) {
   std::string small(word);
-  std::ranges::transform(small, small.begin(), small_letter);
+  std::ranges::transform(small, small.begin(), to_lower);
   return small;
 }
 
@@ -42,10 +42,10 @@ std::string_view short_for(std::string_view word) {
 
 }  // namespace
 
-std::string meant_keyword(std::string_view word, std::span<const std::string_view> known) {
-  if (word.size() > kLongestMeant)
+std::string suggested_keyword(std::string_view word, std::span<const std::string_view> known) {
+  if (word.size() > kLongestSuggested)
     return "";
-  const std::string small = in_small_letters(word);
+  const std::string small = lower_case(word);
   if (std::find(known.begin(), known.end(), small) != known.end())
     return small;
   std::vector<std::string_view> all(known.begin(), known.end());

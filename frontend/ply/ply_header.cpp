@@ -37,11 +37,11 @@ class HeaderReader {
  public:
   HeaderReader(const std::string& path,
                std::string_view bytes,
-               Warnings& warnings,
+               WarningList& warning_list,
                LoadProgress* progress)
       : bytes_(bytes),
         whole_(path, bytes, 0, Comments::kNone),
-        warnings_(warnings),
+        warning_list_(warning_list),
         progress_(progress, bytes.data()) {}
 
   PlyHeader read();
@@ -54,7 +54,7 @@ class HeaderReader {
   }
   void find_line_end();
   void skip_stray(std::string_view keyword);
-  void warn_of_nul() const;
+  void warn_nul() const;
   bool next_line();
   std::string_view word();
   PlyType type(const char* what);
@@ -65,7 +65,7 @@ class HeaderReader {
 
   std::string_view bytes_;
   Words whole_;  ///< only to name positions
-  Warnings& warnings_;
+  WarningList& warning_list_;
   ParseProgress progress_;
   char line_end_ = '\n';
   std::size_t next_ = 0;   ///< first byte of the next line
@@ -154,17 +154,17 @@ void HeaderReader::read_property() {
     fail(line_.substr(0, 0), "an element before its properties");
   PlyElement& element = header_.elements.back();
   PlyProperty property;
-  std::string_view rest = line_;
+  std::string_view tail = line_;
   if (word() == "list") {
     property.is_list = true;
-    rest = line_;
+    tail = line_;
     property.count_type = type("the list's count");
     if (property.count_type >= PlyType::kFloat32) {
-      line_ = rest;
+      line_ = tail;
       fail(word(), "an integer type for the list's count");
     }
   } else {
-    line_ = rest;
+    line_ = tail;
   }
   property.type = type("the property");
   const std::string_view name = word();
@@ -207,17 +207,18 @@ void HeaderReader::skip_stray(std::string_view keyword) {
   if (!std::all_of(line.begin(), line.end(), is_text))
     fail(keyword,
          "a word of the header (format, comment, obj_info, element, property, end_header)");
-  if (warnings_.first("line " + std::string(keyword)))
-    warnings_.say(whole_.position(keyword),
-                  "no line of a PLY header begins with " + quoted(keyword) + "; it is skipped");
+  if (warning_list_.first("line " + std::string(keyword)))
+    warning_list_.add_line(
+        whole_.position(keyword),
+        "no line of a PLY header begins with " + quoted(keyword) + "; it is skipped");
 }
 
-/// Warns of NUL bytes: they separate words as blanks do, which is seldom intended.
-void HeaderReader::warn_of_nul() const {
+/// Warns of NUL bytes: they separate words as spaces do, which is seldom intended.
+void HeaderReader::warn_nul() const {
   const bool ascii = header_.format == PlyFormat::kAscii;
   const std::size_t nul = bytes_.substr(0, ascii ? bytes_.size() : header_.data_begin).find('\0');
   if (nul != std::string_view::npos)
-    warnings_.say(whole_.position(bytes_.substr(nul)), kNulIsBlank);
+    warning_list_.add_line(whole_.position(bytes_.substr(nul)), kNulIsSpace);
 }
 
 PlyHeader HeaderReader::read() {
@@ -251,7 +252,7 @@ PlyHeader HeaderReader::read() {
   }
   header_.data_begin = next_;
   check_counts();
-  warn_of_nul();
+  warn_nul();
   return std::move(header_);
 }
 
@@ -259,9 +260,9 @@ PlyHeader HeaderReader::read() {
 
 PlyHeader read_ply_header(const std::string& path,
                           std::string_view bytes,
-                          Warnings& warnings,
+                          WarningList& warning_list,
                           LoadProgress* progress) {
-  return HeaderReader(path, bytes, warnings, progress).read();
+  return HeaderReader(path, bytes, warning_list, progress).read();
 }
 
 }  // namespace grelha

@@ -57,7 +57,7 @@ struct PlyHeader {
 /// header, and skips it. Throws ParseError, and Stopped.
 PlyHeader read_ply_header(const std::string& path,
                           std::string_view bytes,
-                          Warnings& warnings,
+                          WarningList& warning_list,
                           LoadProgress* progress);
 
 }  // namespace grelha

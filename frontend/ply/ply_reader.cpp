@@ -4,7 +4,7 @@
 
 #include "frontend/ply/ply_ascii.hpp"
 #include "frontend/ply/ply_binary.hpp"
-#include "kernel/scene/pages.hpp"
+#include "kernel/base/pages.hpp"
 
 namespace grelha {
 namespace {
@@ -53,10 +53,10 @@ PlyPlan plan_faces(const PlyElement& element) {
 
 /// Corners of as many triangles as there are rows, if the file can hold them: most meshes are of
 /// triangles.
-std::size_t likely_corners(const PlyHeader& header,
-                           const PlyElement& element,
-                           int list,
-                           std::size_t bytes) {
+std::size_t expected_vertices(const PlyHeader& header,
+                              const PlyElement& element,
+                              int list,
+                              std::size_t bytes) {
   if (list < 0)
     return 0;
   const bool ascii = header.format == PlyFormat::kAscii;
@@ -83,7 +83,7 @@ Mesh read_rows(const PlyHeader& header, std::size_t bytes, const Frame& frame, R
       if (plan.columns[i] >= 0)
         reserve_to_fill(*column(mesh, plan, i).to, std::size_t(element.count));
     if (element.name == "face")
-      reserve_to_fill(mesh.corners, likely_corners(header, element, plan.list, bytes));
+      reserve_to_fill(mesh.corner_points, expected_vertices(header, element, plan.list, bytes));
     rows.read(element, plan, mesh, is_strips ? strips : polygons);
   }
   return mesh;
@@ -96,8 +96,8 @@ Mesh read_ply_mesh(const std::string& path,
                    const Warn& warn,
                    LoadProgress* progress,
                    const Frame& frame) {
-  Warnings warnings(warn);
-  const PlyHeader header = read_ply_header(path, bytes, warnings, progress);
+  WarningList warning_list(warn);
+  const PlyHeader header = read_ply_header(path, bytes, warning_list, progress);
   if (header.format == PlyFormat::kAscii) {
     PlyAscii rows(path, bytes, header, progress);
     return read_rows(header, bytes.size(), frame, rows);

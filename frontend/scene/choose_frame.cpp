@@ -11,24 +11,24 @@ namespace {
 
 /// Largest distance from the origin to a scene's middle, in sizes of the scene: floats then resolve
 /// a millionth of the size.
-constexpr double kFarthest = 4;
+constexpr double kMaxRatio = 4;
 /// Squares of lengths from here on are normal floats, with room for further products.
 constexpr double kSmallest = 0x1p-40;
 
-struct Place {
+struct Location {
   std::array<double, 3> middle;
   double size;  ///< of the largest side
 };
 
-Place place_of(const SceneBounds& bounds) {
+Location position_of(const SceneBounds& bounds) {
   const float low[3] = {bounds.low.x, bounds.low.y, bounds.low.z};
   const float high[3] = {bounds.high.x, bounds.high.y, bounds.high.z};
-  Place place{{}, 0};
+  Location location{{}, 0};
   for (std::size_t a = 0; a < 3; ++a) {
-    place.middle[a] = .5 * (double{low[a]} + high[a]);
-    place.size = std::max(place.size, double{high[a]} - low[a]);
+    location.middle[a] = .5 * (double{low[a]} + high[a]);
+    location.size = std::max(location.size, double{high[a]} - low[a]);
   }
-  return place;
+  return location;
 }
 
 double largest(const std::array<double, 3>& v) {
@@ -40,36 +40,36 @@ double power_of_two(double least) {
   return std::ldexp(1, std::ilogb(least) + 1);
 }
 
-std::array<double, 3> offset_of(const Place& place) {
+std::array<double, 3> offset_of(const Location& location) {
   // no finer than floats are there, if the size vanishes
-  const double step = power_of_two(std::max(place.size, 0x1p-22 * largest(place.middle)));
+  const double step = power_of_two(std::max(location.size, 0x1p-22 * largest(location.middle)));
   std::array<double, 3> offset;
   for (std::size_t a = 0; a < 3; ++a)
-    offset[a] = step * std::nearbyint(place.middle[a] / step);
+    offset[a] = step * std::nearbyint(location.middle[a] / step);
   return offset;
 }
 
-/// Calls visit(coordinates of one axis, axis) for every place of a scene but the camera's.
+/// Calls visit(coordinates of one axis, axis) for every position in a scene but the camera's.
 template <class Visit>
-void each_place(const Geometry& g, const Visit& visit) {
-  const std::span<const float> places[][3] = {
+void for_each_position(const Geometry& g, const Visit& visit) {
+  const std::span<const float> locations[][3] = {
       {g.spheres.x, g.spheres.y, g.spheres.z},
       {g.triangles.x, g.triangles.y, g.triangles.z},
       {g.cones.base_x, g.cones.base_y, g.cones.base_z},
       {g.cones.apex_x, g.cones.apex_y, g.cones.apex_z},
       {g.planes.x, g.planes.y, g.planes.z},
   };
-  for (const auto& place : places)
+  for (const auto& location : locations)
     for (std::size_t a = 0; a < 3; ++a)
-      visit(place[a], a);
+      visit(location[a], a);
 }
 
 /// Returns the largest coordinate of primitives, camera and lights.
-double reach_of(const SceneFile& file) {
+double extent_of(const SceneFile& file) {
   double most = 0;
   const auto add = [&](const Float3& p) { most = std::max(most, largest({p.x, p.y, p.z})); };
-  each_place(file.scene.geometry, [&](std::span<const float> places, std::size_t) {
-    for (const float c : places)
+  for_each_position(file.scene.geometry, [&](std::span<const float> locations, std::size_t) {
+    for (const float c : locations)
       most = std::max(most, std::abs(double{c}));
   });
   if (!file.default_camera)
@@ -83,24 +83,24 @@ double reach_of(const SceneFile& file) {
 
 }  // namespace
 
-std::optional<Frame> better_frame(const SceneFile& file) {
+std::optional<Frame> find_frame(const SceneFile& file) {
   const SceneBounds bounds = bounds_of(file.scene.geometry);
-  const double reach = reach_of(file);
-  if (reach > 0 && reach < kSmallest)
-    return Frame{{}, 1 / power_of_two(reach)};
+  const double extent = extent_of(file);
+  if (extent > 0 && extent < kSmallest)
+    return Frame{{}, 1 / power_of_two(extent)};
   if (bounds.empty)
     return {};
-  const Place place = place_of(bounds);
-  if (!std::isfinite(place.size) || !(largest(place.middle) > kFarthest * place.size))
+  const Location location = position_of(bounds);
+  if (!std::isfinite(location.size) || !(largest(location.middle) > kMaxRatio * location.size))
     return {};
-  return Frame{offset_of(place), 1};
+  return Frame{offset_of(location), 1};
 }
 
-bool needs_its_frame(const SceneFile& file) {
+bool needs_frame(const SceneFile& file) {
   const Frame& frame = file.frame;
   bool needed = frame.scale != 1;
-  each_place(file.scene.geometry, [&](std::span<const float> places, std::size_t a) {
-    needed = needed || std::ranges::any_of(places, [&](float c) {
+  for_each_position(file.scene.geometry, [&](std::span<const float> locations, std::size_t a) {
+    needed = needed || std::ranges::any_of(locations, [&](float c) {
                const double outside = frame.outside(c, a);
                return double{static_cast<float>(outside)} != outside;
              });

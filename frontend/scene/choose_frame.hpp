@@ -7,10 +7,10 @@
 namespace grelha {
 
 /// Returns a more precise frame for a scene that was read in the file's own frame, if there is one.
-std::optional<Frame> better_frame(const SceneFile& file);
+std::optional<Frame> find_frame(const SceneFile& file);
 
 /// Returns true if the file's own frame loses precision: a coordinate read in `file.frame` is not a
 /// float there.
-bool needs_its_frame(const SceneFile& file);
+bool needs_frame(const SceneFile& file);
 
 }  // namespace grelha

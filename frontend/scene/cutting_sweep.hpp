@@ -13,26 +13,26 @@ namespace grelha {
 /// A crossing of two sides of an outline.
 struct OutlineCrossing {
   std::array<std::uint32_t, 2> sides;
-  Point2 place;
+  Point2 location;
 };
 
-/// One sweep over edges, which cuts them where they meet (see Outline). Points come as they are
-/// swept; new points and edges stand behind the old ones, a crossing for each point.
+/// One sweep over edges, which cuts them where they intersect (see Outline). Points come as they
+/// are swept; new points and edges stand behind the old ones, a crossing for each point.
 class CuttingSweep {
  public:
   CuttingSweep(std::vector<Point2>& points,
-               std::vector<OutlineCrossing>& crossings,
+               std::vector<OutlineCrossing>& intersections,
                std::vector<OutlineEdge>& edges,
                double step,
                std::size_t most_cuts)
       : points_(points),
-        crossings_(crossings),
+        intersections_(intersections),
         edges_(edges),
         known_(points.size()),
         step_(step),
         events_(points.size(), edges),
         line_(points, edges),
-        places_(edges.size()),
+        locations_(edges.size()),
         most_(edges.size() + most_cuts) {}
 
   /// Returns whether there was nothing to cut.
@@ -43,44 +43,44 @@ class CuttingSweep {
   struct Before {
     bool operator()(const Point2& a, const Point2& b) const { return swept_before(a, b); }
   };
-  /// Of an edge as it was when the cut was found.
+  /// A cut of an edge, with the edge's ends when the cut was found.
   struct Cut {
     std::uint32_t edge, left, right, point;
   };
 
   std::optional<std::uint32_t> next_point();
   bool go_on();
-  void cut_passing();
-  SweepLine::Place let_begin_here(SweepLine::Place place);
-  void insert_beginning();
+  void cut_crossing();
+  SweepLine::Location insert_starting_edges(SweepLine::Location location);
+  void insert_starting();
   void pass(std::uint32_t point);
-  void check(SweepLine::Place below, SweepLine::Place above);
-  bool cut_one(SweepLine::Place a, SweepLine::Place b);
-  bool cut_at_crossing(SweepLine::Place a, SweepLine::Place b);
-  bool cut(SweepLine::Place place, std::uint32_t point);
-  std::uint32_t crossing_of(SweepLine::Place a, SweepLine::Place b);
+  void check(SweepLine::Location below, SweepLine::Location above);
+  bool cut_one(SweepLine::Location a, SweepLine::Location b);
+  bool cut_at_crossing(SweepLine::Location a, SweepLine::Location b);
+  bool cut(SweepLine::Location location, std::uint32_t point);
+  std::uint32_t crossing_of(SweepLine::Location a, SweepLine::Location b);
   std::uint32_t point_at(const Point2& p, const std::array<std::uint32_t, 2>& sides);
   OutlineEdge edge_between(std::uint32_t from, std::uint32_t to, OutlineEdge edge) const;
-  void cut_behind();
+  void cut_passed();
 
   std::vector<Point2>& points_;
-  std::vector<OutlineCrossing>& crossings_;
+  std::vector<OutlineCrossing>& intersections_;
   std::vector<OutlineEdge>& edges_;
   const std::size_t known_;                        ///< points there were before
-  const double step_;                              ///< of the grid that crossings are rounded to
+  const double step_;                              ///< of the grid that intersections are rounded to
   std::size_t next_ = 0;                           ///< the next known point
-  std::map<Point2, std::uint32_t, Before> fresh_;  ///< crossings to come
+  std::map<Point2, std::uint32_t, Before> fresh_;  ///< intersections to come
   SweepEvents events_;
   SweepLine line_;
-  std::vector<SweepLine::Place> places_;  ///< [edges] places of edges on the line
+  std::vector<SweepLine::Location> locations_;  ///< [edges] positions of edges on the line
   std::size_t most_;
-  std::uint32_t here_ = 0;  ///< the point
-  SweepLine::Place above_;  ///< the first edge above it
-  std::vector<std::uint32_t> beginning_;
-  std::vector<SweepLine::Place>
-      passing_;              ///< edges that pass the point, or so near that they are cut
-  std::vector<Cut> behind_;  ///< cuts that the sweep has passed
-  bool is_clean_ = true;
+  std::uint32_t event_point_ = 0;  ///< the point
+  SweepLine::Location above_;      ///< the first edge above it
+  std::vector<std::uint32_t> starting_;
+  std::vector<SweepLine::Location>
+      crossing_;             ///< edges that pass the point, or so near that they are cut
+  std::vector<Cut> passed_;  ///< cuts that the sweep has passed
+  bool is_valid_ = true;
 };
 
 }  // namespace grelha

@@ -21,7 +21,7 @@ inline double dot(const Double3& a, const Double3& b) {
 }
 
 /// Returns true if the vector is zero in floats: no area, or no direction.
-inline bool vanishes(const Double3& a) {
+inline bool is_zero(const Double3& a) {
   return float(a[0]) == 0 && float(a[1]) == 0 && float(a[2]) == 0;
 }
 

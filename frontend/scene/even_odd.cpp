@@ -15,7 +15,7 @@ constexpr std::uint32_t kNone = SweepEvents::kNone;
 /// between them: points from the lower edge's left end to the upper one's. Inner corners are reflex
 /// or flat.
 struct Front {
-  std::uint32_t low, high, foremost;  ///< nodes
+  std::uint32_t low, high, first_edge;  ///< nodes
 };
 
 class FillingSweep {
@@ -25,13 +25,13 @@ class FillingSweep {
         edges_(edges),
         events_(points.size(), edges),
         line_(points, edges),
-        places_(edges.size()),
+        locations_(edges.size()),
         above_(edges.size()) {}
 
   std::optional<EvenOddFill> run() {
     for (std::uint32_t point = 0; point < points_.size(); ++point) {
       pass(point);
-      if (!is_arranged_)
+      if (!is_cut_)
         return std::nullopt;
     }
     return std::move(fill_);
@@ -52,9 +52,9 @@ class FillingSweep {
 
   bool go_on(std::uint32_t point);
   void pass(std::uint32_t point);
-  Fronts end_edges(std::uint32_t point, SweepLine::Place& above);
+  Fronts end_edges(std::uint32_t point, SweepLine::Location& above);
   void begin_edges(std::uint32_t point,
-                   SweepLine::Place above,
+                   SweepLine::Location above,
                    const Gap& below,
                    const Fronts& fronts);
   std::uint32_t begin_front(std::uint32_t point);
@@ -64,15 +64,15 @@ class FillingSweep {
   void add_above(Front& front, std::uint32_t point);
   void close(std::uint32_t front, std::uint32_t point);
 
-  void note(std::int32_t winding, bool is_inside) {
+  void record(std::int32_t winding, bool is_inside) {
     fill_.is_crossed = fill_.is_crossed || winding != (is_inside ? 1 : 0);
   }
   /// Checks an edge and its new neighbour below.
-  void check_below(SweepLine::Place place) {
-    if (place != line_.begin() && place != line_.end())
-      is_arranged_ = is_arranged_ && !SweepLine::do_meet(*std::prev(place), *place);
+  void check_below(SweepLine::Location location) {
+    if (location != line_.begin() && location != line_.end())
+      is_cut_ = is_cut_ && !SweepLine::intersect_edges(*std::prev(location), *location);
   }
-  Gap& gap_above(SweepLine::Place place) { return above_[place->edge]; }
+  Gap& gap_above(SweepLine::Location location) { return above_[location->edge]; }
   std::uint32_t add_node(std::uint32_t point, std::uint32_t down, std::uint32_t up) {
     nodes_.push_back({point, down, up});
     return std::uint32_t(nodes_.size() - 1);
@@ -88,33 +88,33 @@ class FillingSweep {
   const std::vector<OutlineEdge>& edges_;
   SweepEvents events_;
   SweepLine line_;
-  std::vector<SweepLine::Place> places_;  ///< [edges] places of edges on the line
-  std::vector<Gap> above_;                ///< [edges]
+  std::vector<SweepLine::Location> locations_;  ///< [edges] positions of edges on the line
+  std::vector<Gap> above_;                      ///< [edges]
   std::vector<Node> nodes_;
   std::vector<Front> fronts_;
   std::vector<std::uint32_t> closing_;
   EvenOddFill fill_;
-  bool is_arranged_ = true;
+  bool is_cut_ = true;
 };
 
-/// One edge ends and one begins, in the same place.
+/// One edge ends and one begins, at the same position.
 bool FillingSweep::go_on(std::uint32_t point) {
   if (!events_.goes_on(point))
     return false;
-  const SweepLine::Place place = places_[events_.first_ending(point)];
-  const bool is_lowest = place == line_.begin();
-  const Gap below = is_lowest ? Gap{} : gap_above(std::prev(place));
-  const std::uint32_t above = gap_above(place).front;
+  const SweepLine::Location location = locations_[events_.first_ending(point)];
+  const bool is_lowest = location == line_.begin();
+  const Gap below = is_lowest ? Gap{} : gap_above(std::prev(location));
+  const std::uint32_t above = gap_above(location).front;
   if (below.front != kNone)
     add_above(fronts_[below.front], point);
   if (above != kNone)
     add_below(fronts_[above], point);
-  const std::uint32_t edge = events_.first_beginning(point);
-  line_.exchange(place, edge);
-  places_[edge] = place;
-  check_below(place);
-  check_below(std::next(place));
-  note(below.winding + edges_[edge].winding, above != kNone);
+  const std::uint32_t edge = events_.first_start(point);
+  line_.swap_edges(location, edge);
+  locations_[edge] = location;
+  check_below(location);
+  check_below(std::next(location));
+  record(below.winding + edges_[edge].winding, above != kNone);
   above_[edge] = {above, below.winding + edges_[edge].winding};
   return true;
 }
@@ -122,13 +122,13 @@ bool FillingSweep::go_on(std::uint32_t point) {
 void FillingSweep::pass(std::uint32_t point) {
   if (go_on(point))
     return;
-  if (events_.first_ending(point) == kNone && events_.first_beginning(point) == kNone)
+  if (events_.first_ending(point) == kNone && events_.first_start(point) == kNone)
     return;  // all its edges lay on others
-  SweepLine::Place above = line_.end();
+  SweepLine::Location above = line_.end();
   Fronts fronts = end_edges(point, above);
   const bool is_lowest = above == line_.begin();
   Gap* const below = is_lowest ? nullptr : &gap_above(std::prev(above));
-  if (events_.first_beginning(point) != kNone) {
+  if (events_.first_start(point) != kNone) {
     const Gap before = below ? *below : Gap{};
     if (below)
       below->front = fronts.below;
@@ -141,15 +141,15 @@ void FillingSweep::pass(std::uint32_t point) {
 }
 
 /// Takes the edges that end at the point off the line. Returns the fronts of the inside below and
-/// above it, which have the point, and the place above it.
-FillingSweep::Fronts FillingSweep::end_edges(std::uint32_t point, SweepLine::Place& above) {
+/// above it, which have the point, and the position above it.
+FillingSweep::Fronts FillingSweep::end_edges(std::uint32_t point, SweepLine::Location& above) {
   const std::uint32_t any = events_.first_ending(point);
   if (any == kNone) {
     above = line_.first_above(points_[point]);
     const std::uint32_t front = above == line_.begin() ? kNone : gap_above(std::prev(above)).front;
     return front == kNone ? Fronts{} : split(front, point);
   }
-  SweepLine::Place lowest = places_[any];
+  SweepLine::Location lowest = locations_[any];
   while (lowest != line_.begin() && edges_[std::prev(lowest)->edge].right == point)
     --lowest;
   Fronts fronts;
@@ -174,35 +174,34 @@ FillingSweep::Fronts FillingSweep::end_edges(std::uint32_t point, SweepLine::Pla
 
 /// Puts the edges that begin at the point on the line, each with the region above it.
 void FillingSweep::begin_edges(std::uint32_t point,
-                               SweepLine::Place above,
+                               SweepLine::Location above,
                                const Gap& below,
                                const Fronts& fronts) {
   std::uint32_t count = 0;
-  SweepLine::Place lowest = line_.end();
-  for (std::uint32_t e = events_.first_beginning(point); e != kNone;
-       e = events_.next_beginning(e)) {
-    places_[e] = line_.insert(above, e);
-    lowest = places_[e];
+  SweepLine::Location lowest = line_.end();
+  for (std::uint32_t e = events_.first_start(point); e != kNone; e = events_.next_start(e)) {
+    locations_[e] = line_.insert(above, e);
+    lowest = locations_[e];
     ++count;
   }
   while (lowest != line_.begin() && edges_[std::prev(lowest)->edge].left == point)
     --lowest;
   std::int32_t winding = below.winding;
   bool is_inside = fronts.below != kNone;
-  SweepLine::Place place = lowest;
-  for (; count-- > 0; ++place) {
-    if (place == line_.end() || edges_[place->edge].left != point) {
-      is_arranged_ = false;  // another edge passes the point
+  SweepLine::Location location = lowest;
+  for (; count-- > 0; ++location) {
+    if (location == line_.end() || edges_[location->edge].left != point) {
+      is_cut_ = false;  // another edge passes the point
       return;
     }
-    check_below(place);
-    winding += edges_[place->edge].winding;
+    check_below(location);
+    winding += edges_[location->edge].winding;
     is_inside = !is_inside;
-    note(winding, is_inside);
+    record(winding, is_inside);
     const std::uint32_t inner = is_inside && count > 0 ? begin_front(point) : kNone;
-    gap_above(place) = {count == 0 ? fronts.above : inner, winding};
+    gap_above(location) = {count == 0 ? fronts.above : inner, winding};
   }
-  check_below(place);
+  check_below(location);
 }
 
 std::uint32_t FillingSweep::begin_front(std::uint32_t point) {
@@ -215,7 +214,7 @@ std::uint32_t FillingSweep::begin_front(std::uint32_t point) {
 /// parts.
 FillingSweep::Fronts FillingSweep::split(std::uint32_t front, std::uint32_t point) {
   Front& lower = fronts_[front];
-  const std::uint32_t middle = lower.foremost, up = nodes_[middle].up;
+  const std::uint32_t middle = lower.first_edge, up = nodes_[middle].up;
   const std::uint32_t twin = add_node(nodes_[middle].point, kNone, up);
   Front upper{twin, lower.high, twin};
   if (up != kNone)
@@ -237,7 +236,7 @@ std::uint32_t FillingSweep::join(std::uint32_t below, std::uint32_t above) {
   nodes_[lower.high].up = next;
   if (next != kNone) {
     nodes_[next].down = lower.high;
-    lower.foremost = lower.high;
+    lower.first_edge = lower.high;
     lower.high = upper.high;
   }
   return below;
@@ -262,7 +261,7 @@ void FillingSweep::add_above(Front& front, std::uint32_t point) {
     emit(nodes_[next].point, point, apex);
     last = next;
   }
-  front.high = front.foremost = add_node(point, last, kNone);
+  front.high = front.first_edge = add_node(point, last, kNone);
   nodes_[last].up = front.high;
 }
 
@@ -283,7 +282,7 @@ void FillingSweep::add_below(Front& front, std::uint32_t point) {
     emit(apex, point, nodes_[next].point);
     last = next;
   }
-  front.low = front.foremost = add_node(point, kNone, last);
+  front.low = front.first_edge = add_node(point, kNone, last);
   nodes_[last].down = front.low;
 }
 

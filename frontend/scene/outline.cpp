@@ -21,7 +21,7 @@ constexpr int kGridBits = 46;
 constexpr int kFineSweeps = 4, kMostSweeps = 24;
 
 /// Shears a point to the side. Returns true if no bit was lost.
-bool lean(Point2& p) {
+bool perturb_point(Point2& p) {
   constexpr double kShare = 0x61C88p-20;  // a golden section: few drawings have such a slope
   const double off = kShare * p.y, x = p.x + off;
   const double shared = x - p.x, lost = (p.x - (x - shared)) + (off - shared);
@@ -34,10 +34,11 @@ bool lean(Point2& p) {
 /// Shears the plane: the sweep would meet sides along its line, or nearly so, all at once, in an
 /// order that depends on rounding. Shearing preserves left turns. Keeps the corners if shearing
 /// would lose a bit.
-Outline::Outline(std::span<const Point2> corners) : corners_(corners.begin(), corners.end()) {
-  if (!std::ranges::all_of(corners_, lean, [](Point2& p) -> Point2& { return p; }))
-    corners_.assign(corners.begin(), corners.end());
-  points_ = corners_;
+Outline::Outline(std::span<const Point2> corner_points)
+    : corner_points_(corner_points.begin(), corner_points.end()) {
+  if (!std::ranges::all_of(corner_points_, perturb_point, [](Point2& p) -> Point2& { return p; }))
+    corner_points_.assign(corner_points.begin(), corner_points.end());
+  points_ = corner_points_;
   numbers_.resize(points_.size());
   std::iota(numbers_.begin(), numbers_.end(), 0);
   edges_.reserve(points_.size());
@@ -50,28 +51,29 @@ Outline::Outline(std::span<const Point2> corners) : corners_(corners.begin(), co
   }
 }
 
-double Outline::share_of(std::uint32_t side, const Point2& place) const {
-  const Point2 &a = corners_[side], &b = corners_[(side + 1) % corners_.size()];
+double Outline::share_of(std::uint32_t side, const Point2& location) const {
+  const Point2 &a = corner_points_[side], &b = corner_points_[(side + 1) % corner_points_.size()];
   const double x = b.x - a.x, y = b.y - a.y;
-  return std::clamp(((place.x - a.x) * x + (place.y - a.y) * y) / (x * x + y * y), 0., 1.);
+  return std::clamp(((location.x - a.x) * x + (location.y - a.y) * y) / (x * x + y * y), 0., 1.);
 }
 
-/// Sorts the points and the edges, and merges points at one place. Returns true if there were any.
-bool Outline::tidy() {
-  struct Placed {
+/// Sorts the points and the edges, and merges points at one position. Returns true if there were
+/// any.
+bool Outline::simplify() {
+  struct Located {
     Point2 p;
     std::uint32_t number, before;
   };
-  std::vector<Placed> placed(points_.size());
+  std::vector<Located> placed(points_.size());
   for (std::uint32_t i = 0; i < points_.size(); ++i)
     placed[i] = {points_[i], numbers_[i], i};
-  std::ranges::sort(placed, [](const Placed& a, const Placed& b) {
+  std::ranges::sort(placed, [](const Located& a, const Located& b) {
     return std::tie(a.p.x, a.p.y, a.number) < std::tie(b.p.x, b.p.y, b.number);
   });
   std::vector<std::uint32_t> now(placed.size());
   points_.clear();
   numbers_.clear();
-  for (const Placed& point : placed) {
+  for (const Located& point : placed) {
     if (points_.empty() || points_.back() != point.p) {
       points_.push_back(point.p);
       numbers_.push_back(point.number);
@@ -89,7 +91,7 @@ bool Outline::tidy() {
 }
 
 void Outline::merge_equal_edges() {
-  std::size_t kept = 0;
+  std::size_t saved = 0;
   for (std::size_t i = 0, next; i < edges_.size(); i = next) {
     OutlineEdge edge = edges_[i];
     for (next = i + 1;
@@ -98,9 +100,9 @@ void Outline::merge_equal_edges() {
       edge.winding += edges_[next].winding;
     is_doubled_ = is_doubled_ || std::abs(edge.winding) > 1;
     if ((next - i) % 2 == 1)
-      edges_[kept++] = edge;
+      edges_[saved++] = edge;
   }
-  edges_.resize(kept);
+  edges_.resize(saved);
 }
 
 double Outline::grid_step() const {
@@ -128,33 +130,33 @@ bool Outline::try_fill() {
 }
 
 Outline::State Outline::arrange() {
-  bool is_changed = tidy();
+  bool is_changed = simplify();
   double step = grid_step();
   std::size_t swept = 0;
-  const std::size_t most = 4 * (kMostCuts + corners_.size());
+  const std::size_t most = 4 * (kMostCuts + corner_points_.size());
   for (int sweep = 0; sweep < kMostSweeps && swept <= most; ++sweep) {
     if (is_changed) {
       if (sweep > 0)
-        tidy();
+        simplify();
       merge_equal_edges();
       if (try_fill())
-        return State::kArranged;
+        return State::kWasCut;
     }
-    CuttingSweep cutting(points_, crossings_, edges_, step, kMostCuts);
+    CuttingSweep cutting(points_, intersections_, edges_, step, kMostCuts);
     if (cutting.run() && !is_changed)
       return State::kSimple;
     while (numbers_.size() < points_.size()) {
       const std::size_t behind = points_.size() - numbers_.size();
-      numbers_.push_back(std::uint32_t(corners_.size() + crossings_.size() - behind));
+      numbers_.push_back(std::uint32_t(corner_points_.size() + intersections_.size() - behind));
     }
     if (cutting.is_over())
-      return State::kTooMany;
+      return State::kCutLimit;
     is_changed = true;
     swept += edges_.size();
     if (sweep + 1 >= kFineSweeps)
       step *= 2;
   }
-  return State::kTooMany;
+  return State::kCutLimit;
 }
 
 }  // namespace grelha

@@ -30,7 +30,7 @@ class PointTree::Triangle {
 
  public:
   Triangle(const Point2& a, const Point2& b, const Point2& c)
-      : corners_{a, b, c},
+      : corner_points_{a, b, c},
         sides_{Side(a, b), Side(b, c), Side(c, a)},
         lower_{std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y})},
         upper_{std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y})} {
@@ -42,28 +42,28 @@ class PointTree::Triangle {
   }
   /// How far the box reaches into it, by the side it crosses least: below 0 no point is in both.
   /// Rounds as has() does for every point in the box.
-  double reach(const Node& n) const {
+  double extent(const Node& n) const {
     if (n.alive == 0 || n.x[0] > upper_.x || n.x[1] < lower_.x || n.y[0] > upper_.y ||
         n.y[1] < lower_.y)
       return -1;
     double least = std::numeric_limits<double>::infinity();
     for (const Side& s : sides_) {
-      const double reach = s.turn(n.x[s.x], n.y[s.y]);
-      if (reach < 0)
+      const double extent = s.turn(n.x[s.x], n.y[s.y]);
+      if (extent < 0)
         return -1;
-      least = std::min(least, reach * s.per_length);
+      least = std::min(least, extent * s.per_length);
     }
     return least;
   }
   /// Returns true if a point lies in it, other than at a corner; false for NaN.
-  bool has(const Place& place) const {
-    const Point2 p{place.x, place.y};
+  bool has(const Location& location) const {
+    const Point2 p{location.x, location.y};
     const auto inside = [p](const Side& s) { return s.turn(p.x, p.y) >= 0; };
-    return std::ranges::all_of(sides_, inside) && std::ranges::count(corners_, p) == 0;
+    return std::ranges::all_of(sides_, inside) && std::ranges::count(corner_points_, p) == 0;
   }
 
  private:
-  std::array<Point2, 3> corners_;
+  std::array<Point2, 3> corner_points_;
   std::array<Side, 3> sides_;
   Point2 lower_, upper_;
 };
@@ -81,21 +81,21 @@ void PointTree::build(std::span<const Point2> points, std::span<const std::uint3
   while (!todo.empty()) {
     const Range range = todo.back();
     todo.pop_back();
-    settle(range);
+    finish_range(range);
     if (range.last - range.first <= kLeaf)
       continue;
     todo.push_back(left(range));
     todo.push_back(right(range));
   }
-  places_.resize(order_.size());
+  locations_.resize(order_.size());
   for (std::uint32_t i = 0; i < order_.size(); ++i) {
     slot_[order_[i]] = i;
-    places_[i] = {float(points_[order_[i]].x), float(points_[order_[i]].y)};
+    locations_[i] = {float(points_[order_[i]].x), float(points_[order_[i]].y)};
   }
 }
 
 /// Fills one node and parts its ids in two halves along its longer side.
-void PointTree::settle(const Range& range) {
+void PointTree::finish_range(const Range& range) {
   if (range.first == range.last)
     return;
   Node& node = nodes_[range.node];
@@ -124,9 +124,9 @@ void PointTree::settle(const Range& range) {
 
 void PointTree::remove(std::uint32_t id) {
   const std::uint32_t slot = slot_[id];
-  if (places_[slot].x != places_[slot].x)
+  if (locations_[slot].x != locations_[slot].x)
     return;
-  places_[slot].x = std::numeric_limits<float>::quiet_NaN();
+  locations_[slot].x = std::numeric_limits<float>::quiet_NaN();
   Range range{0, 0, std::uint32_t(order_.size())};
   for (;;) {
     --nodes_[range.node].alive;
@@ -146,12 +146,12 @@ bool PointTree::any_in(const Point2& a,
   std::array<Range, 36> todo;  // one a level waits, and 32-bit counts halve at most 32 times
   std::size_t depth = 0;
   Range range{0, 0, std::uint32_t(order_.size())};
-  if (triangle.reach(nodes_[0]) < 0)
+  if (triangle.extent(nodes_[0]) < 0)
     return false;
   for (;;) {
     if (range.last - range.first <= kLeaf) {
       for (std::uint32_t i = range.first; i != range.last; ++i)
-        if (triangle.has(places_[i]))
+        if (triangle.has(locations_[i]))
           return true;
       if (depth == 0)
         return false;
@@ -161,8 +161,8 @@ bool PointTree::any_in(const Point2& a,
     if (--most_nodes == 0)
       return false;
     const Range l = left(range), r = right(range);
-    const double in_left = triangle.reach(nodes_[l.node]);
-    const double in_right = triangle.reach(nodes_[r.node]);
+    const double in_left = triangle.extent(nodes_[l.node]);
+    const double in_right = triangle.extent(nodes_[r.node]);
     if (in_left >= 0 && in_right >= 0)
       todo[depth++] = in_left > in_right ? r : l;
     if (in_left >= 0 || in_right >= 0)

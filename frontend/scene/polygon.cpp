@@ -17,22 +17,22 @@ constexpr int kFullPasses = 8;
 /// Outlines of so many corners are cut evenly: neighbours of an ear wait for the next pass, so that
 /// triangles grow by doubling and stay short. Ears in turn, or a fan, would all reach across, and
 /// stand in thousands of a grid's cells.
-constexpr std::uint32_t kMany = 1024;
+constexpr std::uint32_t kTreeMin = 1024;
 /// Nodes of the tree that an ear's test looks at, in turn, before it looks at all. In a star of a
 /// million uneven spikes an ear's triangle, long and thin, meets hundreds, and holds no corner.
-constexpr std::uint32_t kHopefulLooks[] = {0, 64};
+constexpr std::uint32_t kFastLooks[] = {0, 64};
 /// Corners that a forced clip searches for one with area; bounds the work on hopeless outlines.
 constexpr int kForcedLook = 64;
 
 /// The sides of outlines with so few corners are compared in pairs; for more, a sweep is faster.
-constexpr std::size_t kFew = 16;
+constexpr std::size_t kSmallPolygon = 16;
 
 double component(const Float3& p, int axis) {
   return axis == 0 ? p.x : axis == 1 ? p.y : p.z;
 }
 
 /// Returns true if two sides that are not neighbours have a point in common.
-bool do_meet(const Point2& a, const Point2& b, const Point2& c, const Point2& d) {
+bool intersect_edges(const Point2& a, const Point2& b, const Point2& c, const Point2& d) {
   const auto apart = [](double p, double q, double r, double s) {
     return std::max(p, q) < std::min(r, s) || std::max(r, s) < std::min(p, q);
   };
@@ -60,34 +60,34 @@ Float3 at_crossing(std::span<const Float3> of_corners, const SideCrossing& cross
   return {float(sum[0] / 2), float(sum[1] / 2), float(sum[2] / 2)};
 }
 
-PolygonCutter::Result PolygonCutter::cut(std::span<const Float3> corners,
-                                         std::vector<Triangle>& triangles) {
+PolygonSplitter::Result PolygonSplitter::cut(std::span<const Float3> corner_points,
+                                             std::vector<Triangle>& triangles) {
   normal_ = {};
-  crossings_.clear();
-  if (corners.size() < 3)
+  intersections_.clear();
+  if (corner_points.size() < 3)
     return Result::kNoArea;
-  normal_ = polygon_normal(corners);
-  if (vanishes(normal_))  // there is no direction to shade by
+  normal_ = polygon_normal(corner_points);
+  if (is_zero(normal_))  // there is no direction to shade by
     return Result::kNoArea;
-  if (corners.size() == 3) {
+  if (corner_points.size() == 3) {
     triangles.push_back({0, 1, 2});
     return Result::kCut;
   }
   points_.clear();
-  project(corners);
-  even_ = corners.size() >= kMany;
+  project(corner_points);
+  even_ = corner_points.size() >= kTreeMin;
   if (!even_ && convex()) {
-    for (std::uint32_t i = 2; i < corners.size(); ++i)
+    for (std::uint32_t i = 2; i < corner_points.size(); ++i)
       triangles.push_back({0, i - 1, i});
     return Result::kCut;
   }
-  return cut_up(corners, triangles);
+  return cut_up(corner_points, triangles);
 }
 
-PolygonCutter::Result PolygonCutter::cut_up(std::span<const Float3> corners,
-                                            std::vector<Triangle>& triangles) {
+PolygonSplitter::Result PolygonSplitter::cut_up(std::span<const Float3> corner_points,
+                                                std::vector<Triangle>& triangles) {
   for (bool again = false;; again = true) {
-    if (is_plainly_simple()) {
+    if (is_simple()) {
       clip(triangles);
       return Result::kCut;
     }
@@ -95,20 +95,20 @@ PolygonCutter::Result PolygonCutter::cut_up(std::span<const Float3> corners,
     const Outline::State state = outline.arrange();
     // the normal sum of an outline that crosses itself belongs to no particular plane
     if (!again && state != Outline::State::kSimple)
-      normal_ = larger_normal(corners, normal_);
-    if (again || state == Outline::State::kSimple || !project(corners))
-      return fill(corners, outline, state, triangles);
+      normal_ = larger_normal(corner_points, normal_);
+    if (again || state == Outline::State::kSimple || !project(corner_points))
+      return fill(corner_points, outline, state, triangles);
   }
 }
 
 /// An outline that touches itself, and nowhere winds twice round its inside, is clipped like a
 /// simple one.
-PolygonCutter::Result PolygonCutter::fill(std::span<const Float3> corners,
-                                          const Outline& outline,
-                                          Outline::State state,
-                                          std::vector<Triangle>& triangles) {
-  if (state == Outline::State::kTooMany)
-    return Result::kTooOften;
+PolygonSplitter::Result PolygonSplitter::fill(std::span<const Float3> corner_points,
+                                              const Outline& outline,
+                                              Outline::State state,
+                                              std::vector<Triangle>& triangles) {
+  if (state == Outline::State::kCutLimit)
+    return Result::kCutLimit;
   const EvenOddFill& fill = outline.fill();
   if (!fill.is_crossed) {
     const std::size_t before = triangles.size();
@@ -117,38 +117,39 @@ PolygonCutter::Result PolygonCutter::fill(std::span<const Float3> corners,
       return Result::kCut;
     triangles.resize(before);
   }
-  note_crossings(corners, outline);
-  std::vector<Triangle> pieces = fill.triangles;
-  mend_flat_triangles(points_, pieces);
-  triangles.insert(triangles.end(), pieces.begin(), pieces.end());
+  record_intersections(corner_points, outline);
+  std::vector<Triangle> fragments = fill.triangles;
+  fix_flat_triangles(points_, fragments);
+  triangles.insert(triangles.end(), fragments.begin(), fragments.end());
   return fill.is_crossed ? Result::kFilled : Result::kCut;
 }
 
-void PolygonCutter::note_crossings(std::span<const Float3> corners, const Outline& outline) {
-  for (const OutlineCrossing& crossing : outline.crossings()) {
-    const auto place = [&](std::uint32_t side) {
-      return PlaceOnSide{side, outline.share_of(side, crossing.place)};
+void PolygonSplitter::record_intersections(std::span<const Float3> corner_points,
+                                           const Outline& outline) {
+  for (const OutlineCrossing& crossing : outline.intersections()) {
+    const auto location = [&](std::uint32_t side) {
+      return PositionOnSide{side, outline.share_of(side, crossing.location)};
     };
-    crossings_.push_back({place(crossing.sides[0]), place(crossing.sides[1])});
-    points_.push_back(projected(at_crossing(corners, crossings_.back())));
+    intersections_.push_back({location(crossing.sides[0]), location(crossing.sides[1])});
+    points_.push_back(projected(at_crossing(corner_points, intersections_.back())));
   }
 }
 
 /// Clips ears until nothing is left.
-void PolygonCutter::clip(std::vector<Triangle>& triangles) {
+void PolygonSplitter::clip(std::vector<Triangle>& triangles) {
   forced_ = false;
   if (even_)
-    for (const std::uint32_t looks : kHopefulLooks)
-      if (clip_hopefully(looks, triangles))
+    for (const std::uint32_t looks : kFastLooks)
+      if (clip_fast(looks, triangles))
         return;
   looks_ = PointTree::kAllNodes;
-  link_corners();
-  plant_tree();
+  link_vertices();
+  build_tree();
   clip_ears(triangles);
 }
 
 /// Along the normal's largest axis. Returns whether that is another way than before.
-bool PolygonCutter::project(std::span<const Float3> corners) {
+bool PolygonSplitter::project(std::span<const Float3> corner_points) {
   int axis = std::abs(normal_[1]) > std::abs(normal_[0]) ? 1 : 0;
   if (std::abs(normal_[2]) > std::abs(normal_[std::size_t(axis)]))
     axis = 2;
@@ -156,22 +157,22 @@ bool PolygonCutter::project(std::span<const Float3> corners) {
   // seen from behind: mirror, so that it turns left
   if (normal_[std::size_t(axis)] < 0)
     std::swap(u, v);
-  if (points_.size() == corners.size() && std::exchange(axes_, {u, v}) == std::array{u, v})
+  if (points_.size() == corner_points.size() && std::exchange(axes_, {u, v}) == std::array{u, v})
     return false;
   axes_ = {u, v};
-  points_.resize(corners.size());
-  for (std::size_t i = 0; i < corners.size(); ++i)
-    points_[i] = projected(corners[i]);
+  points_.resize(corner_points.size());
+  for (std::size_t i = 0; i < corner_points.size(); ++i)
+    points_[i] = projected(corner_points[i]);
   return true;
 }
 
-Point2 PolygonCutter::projected(const Float3& p) const {
+Point2 PolygonSplitter::projected(const Float3& p) const {
   return {component(p, axes_[0]), component(p, axes_[1])};
 }
 
 /// Returns true if every corner turns left and the outline winds once: it has one leftmost and one
 /// rightmost corner.
-bool PolygonCutter::convex() const {
+bool PolygonSplitter::convex() const {
   const std::size_t n = points_.size();
   int turns_back = 0;
   for (std::size_t i = 0; i < n; ++i) {
@@ -184,10 +185,10 @@ bool PolygonCutter::convex() const {
 }
 
 /// Returns true if the outline has few corners, and its sides meet only there.
-bool PolygonCutter::is_plainly_simple() const {
-  if (points_.size() > kFew)
+bool PolygonSplitter::is_simple() const {
+  if (points_.size() > kSmallPolygon)
     return false;
-  std::array<Point2, kFew + 1> ring;
+  std::array<Point2, kSmallPolygon + 1> ring;
   std::size_t n = 0;
   for (const Point2& p : points_)
     if (n == 0 || ring[n - 1] != p)
@@ -199,14 +200,14 @@ bool PolygonCutter::is_plainly_simple() const {
     if (is_spike(at(i), at(i + 1), at(i + 2)))
       return false;
     for (std::size_t j = i + 2; j < n && j < n + i - 1; ++j)
-      if (do_meet(at(i), at(i + 1), at(j), at(j + 1)))
+      if (intersect_edges(at(i), at(i + 1), at(j), at(j + 1)))
         return false;
   }
   return true;
 }
 
 /// Links the corners to a ring, without corners that repeat the one before.
-void PolygonCutter::link_corners() {
+void PolygonSplitter::link_vertices() {
   const auto n = std::uint32_t(points_.size());
   previous_.resize(n);
   following_.resize(n);
@@ -229,7 +230,7 @@ void PolygonCutter::link_corners() {
   }
 }
 
-void PolygonCutter::plant_tree() {
+void PolygonSplitter::build_tree() {
   in_tree_.assign(points_.size(), 0);
   if (looks_ == 0)
     return;
@@ -243,31 +244,31 @@ void PolygonCutter::plant_tree() {
   tree_.build(points_, bent);
 }
 
-double PolygonCutter::turn(std::uint32_t corner) const {
+double PolygonSplitter::turn(std::uint32_t corner) const {
   return grelha::turn(points_[previous_[corner]], points_[corner], points_[following_[corner]]);
 }
 
-bool PolygonCutter::blocked(std::uint32_t corner) const {
+bool PolygonSplitter::blocked(std::uint32_t corner) const {
   return tree_.any_in(
       points_[previous_[corner]], points_[corner], points_[following_[corner]], looks_);
 }
 
-void PolygonCutter::queue(std::uint32_t corner) {
+void PolygonSplitter::queue(std::uint32_t corner) {
   if (!std::exchange(queued_[corner], 1))
     next_candidates_.push_back(corner);
 }
 
-void PolygonCutter::take_queue() {
+void PolygonSplitter::take_queue() {
   candidates_.swap(next_candidates_);
   next_candidates_.clear();
   for (const std::uint32_t corner : candidates_)
     waits_[corner] = 0;
   if (even_ && looks_ != 0 && tree_.is_thin())
-    plant_tree();
+    build_tree();
 }
 
 /// Removes a corner from the ring. Its neighbours may have become convex and are tested again.
-void PolygonCutter::remove(std::uint32_t corner) {
+void PolygonSplitter::remove(std::uint32_t corner) {
   const std::uint32_t before = previous_[corner], after = following_[corner];
   following_[before] = after;
   previous_[after] = before;
@@ -287,7 +288,7 @@ void PolygonCutter::remove(std::uint32_t corner) {
   }
 }
 
-bool PolygonCutter::try_clip(std::uint32_t corner, std::vector<Triangle>& triangles) {
+bool PolygonSplitter::try_clip(std::uint32_t corner, std::vector<Triangle>& triangles) {
   const std::uint32_t before = previous_[corner], after = following_[corner];
   const Point2 &a = points_[before], &b = points_[corner], &c = points_[after];
   const double area = turn(corner);
@@ -316,11 +317,11 @@ bool PolygonCutter::try_clip(std::uint32_t corner, std::vector<Triangle>& triang
 /// round it, so a simple outline's inside once. A corner missed inside a triangle leaves a place
 /// that is covered twice. The rest would have to make up for it, and cannot end in a triangle that
 /// turns left.
-bool PolygonCutter::clip_hopefully(std::uint32_t looks, std::vector<Triangle>& triangles) {
+bool PolygonSplitter::clip_fast(std::uint32_t looks, std::vector<Triangle>& triangles) {
   const std::size_t before = triangles.size();
   looks_ = looks;
-  link_corners();
-  plant_tree();
+  link_vertices();
+  build_tree();
   clip_candidates(triangles);
   const bool whole = left_ == 3 && turn(start_) > 0;
   if (whole)
@@ -332,7 +333,7 @@ bool PolygonCutter::clip_hopefully(std::uint32_t looks, std::vector<Triangle>& t
 
 /// No ear is left, so the outline crosses or touches itself: clip some corner all the same, so that
 /// clipping ends.
-void PolygonCutter::force_clip(std::vector<Triangle>& triangles) {
+void PolygonSplitter::force_clip(std::vector<Triangle>& triangles) {
   forced_ = true;
   std::uint32_t corner = start_;
   for (int i = 0; i < kForcedLook && !(turn(corner) > 0); ++i)
@@ -344,7 +345,7 @@ void PolygonCutter::force_clip(std::vector<Triangle>& triangles) {
 }
 
 /// Tests corners until no candidate is left. Returns true if one was clipped.
-bool PolygonCutter::clip_candidates(std::vector<Triangle>& triangles) {
+bool PolygonSplitter::clip_candidates(std::vector<Triangle>& triangles) {
   bool clipped = false;
   next_candidates_.clear();
   while (left_ > 3 && !candidates_.empty()) {
@@ -363,7 +364,7 @@ bool PolygonCutter::clip_candidates(std::vector<Triangle>& triangles) {
   return clipped;
 }
 
-void PolygonCutter::clip_ears(std::vector<Triangle>& triangles) {
+void PolygonSplitter::clip_ears(std::vector<Triangle>& triangles) {
   int full_passes = 1;
   while (left_ > 3) {
     const bool clipped = clip_candidates(triangles);

@@ -11,13 +11,13 @@
 
 namespace grelha {
 
-/// A place on a side of a polygon: the share of the way from a corner to the next one.
-struct PlaceOnSide {
+/// A position on a side of a polygon: the share of the way from a corner to the next one.
+struct PositionOnSide {
   std::uint32_t corner;
   double share;
 };
 /// A crossing of two sides.
-using SideCrossing = std::array<PlaceOnSide, 2>;
+using SideCrossing = std::array<PositionOnSide, 2>;
 
 /// Interpolates values of a polygon's corners at a crossing: the mean of both sides.
 Float3 at_crossing(std::span<const Float3> of_corners, const SideCrossing& crossing);
@@ -31,41 +31,41 @@ Float3 at_crossing(std::span<const Float3> of_corners, const SideCrossing& cross
 /// triangles' signs prove afterwards that this was enough: a million corners take .1 to 4 s.
 /// Outlines of a thousand and more are cut evenly, into short triangles. One object serves many
 /// polygons and keeps its buffers.
-class PolygonCutter {
+class PolygonSplitter {
  public:
   using Triangle = std::array<std::uint32_t, 3>;
   enum class Result {
     kCut,       ///< at most corners - 2 triangles, none without area
     kFilled,    ///< it crosses itself: its inside by the even-odd rule
     kNoArea,    ///< no triangle
-    kTooOften,  ///< it crosses itself too often (Outline::kMostCuts): no triangle
+    kCutLimit,  ///< it crosses itself too often (Outline::kMostCuts): no triangle
   };
 
   /// Appends triangles, counter-clockwise where the outline is. Coordinates must be finite and at
-  /// most 1e18. Numbers from corners.size() on are of crossings().
-  Result cut(std::span<const Float3> corners, std::vector<Triangle>& triangles);
+  /// most 1e18. Numbers from corner_points.size() on are of intersections().
+  Result cut(std::span<const Float3> corner_points, std::vector<Triangle>& triangles);
 
-  /// The crossings of sides of the last polygon cut, if it was filled.
-  std::span<const SideCrossing> crossings() const { return crossings_; }
+  /// The intersections of sides of the last polygon cut, if it was filled.
+  std::span<const SideCrossing> intersections() const { return intersections_; }
 
-  /// Of the last polygon cut: see polygon_normal(), or larger_normal() for one that was filled.
+  /// The normal of the last polygon cut: polygon_normal(), or larger_normal() if it was filled.
   const std::array<double, 3>& normal() const { return normal_; }
 
  private:
-  bool project(std::span<const Float3> corners);
+  bool project(std::span<const Float3> corner_points);
   Point2 projected(const Float3& p) const;
   bool convex() const;
-  bool is_plainly_simple() const;
-  Result cut_up(std::span<const Float3> corners, std::vector<Triangle>& triangles);
-  Result fill(std::span<const Float3> corners,
+  bool is_simple() const;
+  Result cut_up(std::span<const Float3> corner_points, std::vector<Triangle>& triangles);
+  Result fill(std::span<const Float3> corner_points,
               const Outline& outline,
               Outline::State state,
               std::vector<Triangle>& triangles);
-  void note_crossings(std::span<const Float3> corners, const Outline& outline);
+  void record_intersections(std::span<const Float3> corner_points, const Outline& outline);
   void clip(std::vector<Triangle>& triangles);
-  void link_corners();
-  void plant_tree();
-  bool clip_hopefully(std::uint32_t looks, std::vector<Triangle>& triangles);
+  void link_vertices();
+  void build_tree();
+  bool clip_fast(std::uint32_t looks, std::vector<Triangle>& triangles);
   void clip_ears(std::vector<Triangle>& triangles);
   bool clip_candidates(std::vector<Triangle>& triangles);
   bool try_clip(std::uint32_t corner, std::vector<Triangle>& triangles);
@@ -89,7 +89,7 @@ class PolygonCutter {
   std::vector<std::uint32_t> candidates_, next_candidates_;
   std::uint32_t left_ = 0, start_ = 0;
   PointTree tree_;  ///< the corners that are flat or reflex
-  std::vector<SideCrossing> crossings_;
+  std::vector<SideCrossing> intersections_;
 };
 
 }  // namespace grelha

@@ -9,10 +9,10 @@ namespace grelha {
 /// The normal of a polygon of three corners or more, with twice the area as its length (Newell's
 /// sum over all corners). If parts with opposite turns cancel in the sum, the normal of a triangle
 /// over the corners.
-Double3 polygon_normal(std::span<const Float3> corners);
+Double3 polygon_normal(std::span<const Float3> corner_points);
 
 /// `sum` or, where it is larger, the normal of a large triangle over the corners, turned as the sum
 /// is, or as the first corners are.
-Double3 larger_normal(std::span<const Float3> corners, const Double3& sum);
+Double3 larger_normal(std::span<const Float3> corner_points, const Double3& sum);
 
 }  // namespace grelha

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "frontend/scene/double3.hpp"
-#include "kernel/scene/pages.hpp"
+#include "kernel/base/pages.hpp"
 
 namespace grelha {
 namespace {
@@ -23,7 +23,7 @@ bool is_none(const Float3& n) {
 
 }  // namespace
 
-Float3 sound_normal(const Float3& n) {
+Float3 valid_normal(const Float3& n) {
   constexpr double kLeast = 1e-30, kMost = 1e30;
   const Double3 d{n.x, n.y, n.z};
   const double squared = dot(d, d);
@@ -35,7 +35,7 @@ Float3 sound_normal(const Float3& n) {
 }
 
 void SceneBuilder::sphere(Float3 center, float radius, std::uint32_t material) {
-  if (!drawable(center) || !drawable(radius))
+  if (!is_finite_float(center) || !is_finite_float(radius))
     ++file_.dropped.not_finite;
   else if (radius == 0)
     ++file_.dropped.zero_area;
@@ -45,7 +45,8 @@ void SceneBuilder::sphere(Float3 center, float radius, std::uint32_t material) {
 
 void SceneBuilder::cone(
     Float3 base, float base_radius, Float3 apex, float apex_radius, std::uint32_t material) {
-  if (!drawable(base) || !drawable(apex) || !drawable(base_radius) || !drawable(apex_radius))
+  if (!is_finite_float(base) || !is_finite_float(apex) || !is_finite_float(base_radius) ||
+      !is_finite_float(apex_radius))
     ++file_.dropped.not_finite;
   else if (base == apex || (base_radius == 0 && apex_radius == 0))
     ++file_.dropped.zero_area;
@@ -54,12 +55,12 @@ void SceneBuilder::cone(
 }
 
 void SceneBuilder::plane(Float3 a, Float3 b, Float3 c, std::uint32_t material) {
-  if (!drawable(a) || !drawable(b) || !drawable(c)) {
+  if (!is_finite_float(a) || !is_finite_float(b) || !is_finite_float(c)) {
     ++file_.dropped.not_finite;
     return;
   }
   const Double3 normal = cross(difference(b, a), difference(c, a));
-  if (vanishes(normal))
+  if (is_zero(normal))
     ++file_.dropped.zero_area;
   else
     file_.scene.geometry.planes.add(a, unit(normal), material);
@@ -68,7 +69,7 @@ void SceneBuilder::plane(Float3 a, Float3 b, Float3 c, std::uint32_t material) {
 void SceneBuilder::plane(Float3 normal, float distance, std::uint32_t material) {
   const Double3 n{normal.x, normal.y, normal.z};
   const double squared = dot(n, n);
-  if (!drawable(normal) || !drawable(distance)) {
+  if (!is_finite_float(normal) || !is_finite_float(distance)) {
     ++file_.dropped.not_finite;
     return;
   }
@@ -79,7 +80,7 @@ void SceneBuilder::plane(Float3 normal, float distance, std::uint32_t material) 
   const Float3 point{float(n[0] * distance / squared),
                      float(n[1] * distance / squared),
                      float(n[2] * distance / squared)};
-  if (!drawable(point))
+  if (!is_finite_float(point))
     ++file_.dropped.not_finite;
   else
     file_.scene.geometry.planes.add(point, unit(n), material);
@@ -130,80 +131,85 @@ void SceneBuilder::add_triangle(std::uint32_t a,
 bool SceneBuilder::has_area(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
   const Triangles& t = file_.scene.geometry.triangles;
   const Float3 p{t.x[a], t.y[a], t.z[a]}, q{t.x[b], t.y[b], t.z[b]}, r{t.x[c], t.y[c], t.z[c]};
-  return !vanishes(cross(difference(q, p), difference(r, p)));
+  return !is_zero(cross(difference(q, p), difference(r, p)));
 }
 
 /// Returns true if the normal of a piece differs from the polygon's by more than a milliradian:
 /// slivers of rounded corners do, and would shade as scratches.
-bool SceneBuilder::bends(std::span<const Float3> points) const {
+bool SceneBuilder::is_nonplanar(std::span<const Float3> points) const {
   constexpr double kSine = 1e-3;
-  const Double3& whole = cutter_.normal();
+  const Double3& whole = splitter_.normal();
   const double whole_length = length(whole);
-  return std::any_of(pieces_.begin(), pieces_.end(), [&](const PolygonCutter::Triangle& piece) {
-    const Float3& o = points[piece[0]];
-    const Double3 normal = cross(difference(points[piece[1]], o), difference(points[piece[2]], o));
-    return !(dot(normal, whole) > 0) ||
-           length(cross(normal, whole)) > kSine * length(normal) * whole_length;
-  });
+  return std::any_of(
+      fragments_.begin(), fragments_.end(), [&](const PolygonSplitter::Triangle& piece) {
+        const Float3& o = points[piece[0]];
+        const Double3 normal =
+            cross(difference(points[piece[1]], o), difference(points[piece[2]], o));
+        return !(dot(normal, whole) > 0) ||
+               length(cross(normal, whole)) > kSine * length(normal) * whole_length;
+      });
 }
 
 /// Adds a polygon of three corners, the most frequent kind in most scenes.
-void SceneBuilder::triangle(std::span<const Float3> corners,
+void SceneBuilder::triangle(std::span<const Float3> corner_points,
                             std::span<const Float3> normals,
                             std::uint32_t material) {
-  const Float3& o = corners[0];
-  if (vanishes(cross(difference(corners[1], o), difference(corners[2], o)))) {
+  const Float3& o = corner_points[0];
+  if (is_zero(cross(difference(corner_points[1], o), difference(corner_points[2], o)))) {
     ++file_.dropped.zero_area;
     return;
   }
   const auto first = std::uint32_t(file_.scene.geometry.triangles.vertex_count());
   for (std::size_t i = 0; i < 3; ++i)
-    add_vertex(corners[i], normals.empty() ? Float3{} : sound_normal(normals[i]));
+    add_vertex(corner_points[i], normals.empty() ? Float3{} : valid_normal(normals[i]));
   add_triangle(first, first + 1, first + 2, material);
 }
 
-/// Extends values of the corners by those at the crossings, if there are any.
-void SceneBuilder::with_crossings(std::span<const Float3>& of_corners, std::vector<Float3>& all) {
-  if (of_corners.empty() || cutter_.crossings().empty())
+/// Extends values of the corners by those at the intersections, if there are any.
+void SceneBuilder::with_intersections(std::span<const Float3>& of_corners,
+                                      std::vector<Float3>& all) {
+  if (of_corners.empty() || splitter_.intersections().empty())
     return;
   all.assign(of_corners.begin(), of_corners.end());
-  for (const SideCrossing& crossing : cutter_.crossings())
+  for (const SideCrossing& crossing : splitter_.intersections())
     all.push_back(at_crossing(of_corners, crossing));
   of_corners = all;
 }
 
-void SceneBuilder::polygon(std::span<const Float3> corners,
+void SceneBuilder::polygon(std::span<const Float3> corner_points,
                            std::span<const Float3> normals,
                            std::uint32_t material,
-                           const std::function<void(Result)>& tell) {
-  if (!std::all_of(corners.begin(), corners.end(), [](const Float3& p) { return drawable(p); })) {
+                           const std::function<void(Result)>& report_line) {
+  if (!std::all_of(corner_points.begin(), corner_points.end(), [](const Float3& p) {
+        return is_finite_float(p);
+      })) {
     ++file_.dropped.not_finite;
     return;
   }
-  if (corners.size() == 3)
-    return triangle(corners, normals, material);
-  pieces_.clear();
-  const Result result = cutter_.cut(corners, pieces_);
-  if (tell && (result == Result::kFilled || result == Result::kTooOften))
-    tell(result);
+  if (corner_points.size() == 3)
+    return triangle(corner_points, normals, material);
+  fragments_.clear();
+  const Result result = splitter_.cut(corner_points, fragments_);
+  if (report_line && (result == Result::kFilled || result == Result::kCutLimit))
+    report_line(result);
   file_.dropped.zero_area += result == Result::kNoArea ? 1 : 0;
-  if (pieces_.empty())
+  if (fragments_.empty())
     return;
-  with_crossings(corners, all_points_);
-  with_crossings(normals, all_normals_);
+  with_intersections(corner_points, all_points_);
+  with_intersections(normals, all_normals_);
   Float3 shared_normal;
-  if (normals.empty() && bends(corners))
-    shared_normal = unit(cutter_.normal());
+  if (normals.empty() && is_nonplanar(corner_points))
+    shared_normal = unit(splitter_.normal());
   const auto first = std::uint32_t(file_.scene.geometry.triangles.vertex_count());
-  for (std::size_t i = 0; i < corners.size(); ++i)
-    add_vertex(corners[i], normals.empty() ? shared_normal : sound_normal(normals[i]));
-  for (const auto& [a, b, c] : pieces_)
+  for (std::size_t i = 0; i < corner_points.size(); ++i)
+    add_vertex(corner_points[i], normals.empty() ? shared_normal : valid_normal(normals[i]));
+  for (const auto& [a, b, c] : fragments_)
     if (has_area(first + a, first + b, first + c))
       add_triangle(first + a, first + b, first + c, material);
 }
 
 void SceneBuilder::box(Float3 corner, Float3 opposite, std::uint32_t material) {
-  if (!drawable(corner) || !drawable(opposite)) {
+  if (!is_finite_float(corner) || !is_finite_float(opposite)) {
     ++file_.dropped.not_finite;
     return;
   }

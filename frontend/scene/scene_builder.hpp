@@ -17,18 +17,18 @@ namespace grelha {
 inline constexpr float kLargest = 1e18f;
 
 /// False for NaN as well.
-inline bool drawable(float v) {
+inline bool is_finite_float(float v) {
   return v >= -kLargest && v <= kLargest;
 }
-inline bool drawable(const Float3& v) {
-  return drawable(v.x) && drawable(v.y) && drawable(v.z);
+inline bool is_finite_float(const Float3& v) {
+  return is_finite_float(v.x) && is_finite_float(v.y) && is_finite_float(v.z);
 }
 
 /// Returns a normal whose square fits a float; (0,0,0), "none", if it has no direction.
-Float3 sound_normal(const Float3& n);
+Float3 valid_normal(const Float3& n);
 
 /// Faces of a mesh whose outlines cross themselves: those that are filled by the even-odd rule, and
-/// those that do so too often (PolygonCutter::Result).
+/// those that do so too often (PolygonSplitter::Result).
 struct CrossedFaces {
   std::uint64_t filled = 0, left_out = 0;
   std::uint64_t first = 0;  ///< number of the first one, from 0
@@ -48,13 +48,13 @@ class SceneBuilder {
   void plane(Float3 a, Float3 b, Float3 c, std::uint32_t material);
   /// The points q with normal . q = distance.
   void plane(Float3 normal, float distance, std::uint32_t material);
-  using Result = PolygonCutter::Result;
-  /// `normals`: one per corner, or empty. `tell` is called of an outline that crosses itself,
-  /// before anything is added; it may throw.
-  void polygon(std::span<const Float3> corners,
+  using Result = PolygonSplitter::Result;
+  /// `normals`: one per corner, or empty. `report_line` is called of an outline that crosses
+  /// itself, before anything is added; it may throw.
+  void polygon(std::span<const Float3> corner_points,
                std::span<const Float3> normals,
                std::uint32_t material,
-               const std::function<void(Result)>& tell = {});
+               const std::function<void(Result)>& report_line = {});
   /// Any two opposite corners. A box without thickness along one axis is drawn as its two large
   /// faces.
   void box(Float3 corner, Float3 opposite, std::uint32_t material);
@@ -67,27 +67,27 @@ class SceneBuilder {
   void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t material);
   /// Returns whether anything is left of the triangle's area in floats.
   bool has_area(std::uint32_t a, std::uint32_t b, std::uint32_t c) const;
-  void triangle(std::span<const Float3> corners,
+  void triangle(std::span<const Float3> corner_points,
                 std::span<const Float3> normals,
                 std::uint32_t material);
-  void with_crossings(std::span<const Float3>& of_corners, std::vector<Float3>& all);
-  bool bends(std::span<const Float3> corners) const;
-  void mesh_triangles(std::span<const std::uint32_t> corners,
+  void with_intersections(std::span<const Float3>& of_corners, std::vector<Float3>& all);
+  bool is_nonplanar(std::span<const Float3> corner_points) const;
+  void mesh_triangles(std::span<const std::uint32_t> corner_points,
                       std::uint32_t first_vertex,
                       std::uint32_t material);
   CrossedFaces mesh_faces(const Mesh& mesh,
                           const std::vector<bool>& bad,
                           std::uint32_t first_vertex,
                           std::uint32_t material);
-  Result mesh_face(std::span<const std::uint32_t> corners,
+  Result mesh_face(std::span<const std::uint32_t> corner_points,
                    std::uint32_t first_vertex,
                    std::uint32_t material);
-  void add_crossings();
+  void add_intersections();
   void append_vertices(Mesh& mesh);
 
   SceneFile& file_;
-  PolygonCutter cutter_;
-  std::vector<PolygonCutter::Triangle> pieces_;
+  PolygonSplitter splitter_;
+  std::vector<PolygonSplitter::Triangle> fragments_;
   std::vector<Float3> face_, all_points_, all_normals_;
   std::vector<std::uint32_t> face_vertices_;
 };

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "frontend/scene/scene_builder.hpp"
-#include "kernel/scene/pages.hpp"
+#include "kernel/base/pages.hpp"
 
 namespace grelha {
 
@@ -20,7 +20,7 @@ void SceneBuilder::append_vertices(Mesh& mesh) {
   };
   bool any_normal = false;
   for (std::size_t i = 0; i < mesh.nx.size(); ++i) {
-    const Float3 n = sound_normal({mesh.nx[i], mesh.ny[i], mesh.nz[i]});
+    const Float3 n = valid_normal({mesh.nx[i], mesh.ny[i], mesh.nz[i]});
     mesh.nx[i] = n.x;
     mesh.ny[i] = n.y;
     mesh.nz[i] = n.z;
@@ -43,12 +43,12 @@ void SceneBuilder::append_vertices(Mesh& mesh) {
   append(t.z, mesh.z);
 }
 
-SceneBuilder::Result SceneBuilder::mesh_face(std::span<const std::uint32_t> corners,
+SceneBuilder::Result SceneBuilder::mesh_face(std::span<const std::uint32_t> corner_points,
                                              std::uint32_t first_vertex,
                                              std::uint32_t material) {
-  if (corners.size() == 3) {
-    const std::uint32_t a = first_vertex + corners[0], b = first_vertex + corners[1],
-                        c = first_vertex + corners[2];
+  if (corner_points.size() == 3) {
+    const std::uint32_t a = first_vertex + corner_points[0], b = first_vertex + corner_points[1],
+                        c = first_vertex + corner_points[2];
     if (has_area(a, b, c))
       add_triangle(a, b, c, material);
     else
@@ -58,16 +58,16 @@ SceneBuilder::Result SceneBuilder::mesh_face(std::span<const std::uint32_t> corn
   const Triangles& t = file_.scene.geometry.triangles;
   face_.clear();
   face_vertices_.clear();
-  for (const std::uint32_t i : corners) {
+  for (const std::uint32_t i : corner_points) {
     const std::uint32_t v = first_vertex + i;
     face_.push_back({t.x[v], t.y[v], t.z[v]});
     face_vertices_.push_back(v);
   }
-  pieces_.clear();
-  const Result result = cutter_.cut(face_, pieces_);
+  fragments_.clear();
+  const Result result = splitter_.cut(face_, fragments_);
   file_.dropped.zero_area += result == Result::kNoArea ? 1 : 0;
-  add_crossings();
-  for (const auto& [i, j, k] : pieces_) {
+  add_intersections();
+  for (const auto& [i, j, k] : fragments_) {
     const std::uint32_t a = face_vertices_[i], b = face_vertices_[j], c = face_vertices_[k];
     if (has_area(a, b, c))
       add_triangle(a, b, c, material);
@@ -76,8 +76,8 @@ SceneBuilder::Result SceneBuilder::mesh_face(std::span<const std::uint32_t> corn
 }
 
 /// Adds vertices where sides of the face cross.
-void SceneBuilder::add_crossings() {
-  if (cutter_.crossings().empty())
+void SceneBuilder::add_intersections() {
+  if (splitter_.intersections().empty())
     return;
   const Triangles& t = file_.scene.geometry.triangles;
   all_normals_.assign(face_.size(), Float3{});
@@ -85,9 +85,9 @@ void SceneBuilder::add_crossings() {
     const std::uint32_t v = face_vertices_[i];
     all_normals_[i] = {t.nx[v], t.ny[v], t.nz[v]};
   }
-  for (const SideCrossing& crossing : cutter_.crossings())
+  for (const SideCrossing& crossing : splitter_.intersections())
     face_vertices_.push_back(add_vertex(at_crossing(face_, crossing),
-                                        sound_normal(at_crossing(all_normals_, crossing))));
+                                        valid_normal(at_crossing(all_normals_, crossing))));
 }
 
 CrossedFaces SceneBuilder::mesh(Mesh mesh, std::uint32_t material) {
@@ -96,7 +96,7 @@ CrossedFaces SceneBuilder::mesh(Mesh mesh, std::uint32_t material) {
              first_triangle = std::uint32_t(t.size());
   std::vector<bool> bad;  // empty when every vertex can be drawn
   for (std::size_t i = 0; i < mesh.vertex_count(); ++i) {
-    if (drawable(Float3{mesh.x[i], mesh.y[i], mesh.z[i]}))
+    if (is_finite_float(Float3{mesh.x[i], mesh.y[i], mesh.z[i]}))
       continue;
     bad.resize(mesh.vertex_count());
     bad[i] = true;
@@ -106,15 +106,15 @@ CrossedFaces SceneBuilder::mesh(Mesh mesh, std::uint32_t material) {
   const std::size_t wanted = t.size() + mesh.face_count();
   // at least twice as much as before: a scene may name thousands of small meshes
   if (wanted > t.a.capacity()) {
-    const std::size_t room = std::max(wanted, 2 * t.a.capacity());
-    t.a.reserve(room);
-    t.b.reserve(room);
-    t.c.reserve(room);
-    t.material.reserve(room);
+    const std::size_t space = std::max(wanted, 2 * t.a.capacity());
+    t.a.reserve(space);
+    t.b.reserve(space);
+    t.c.reserve(space);
+    t.material.reserve(space);
   }
   CrossedFaces crossed;
   if (mesh.sizes.empty() && bad.empty())
-    mesh_triangles(mesh.corners, first_vertex, material);
+    mesh_triangles(mesh.corner_points, first_vertex, material);
   else
     crossed = mesh_faces(mesh, bad, first_vertex, material);
   const auto count = std::uint32_t(t.size()) - first_triangle;
@@ -124,19 +124,20 @@ CrossedFaces SceneBuilder::mesh(Mesh mesh, std::uint32_t material) {
 }
 
 /// The common case, without a look at each face's size.
-void SceneBuilder::mesh_triangles(std::span<const std::uint32_t> corners,
+void SceneBuilder::mesh_triangles(std::span<const std::uint32_t> corner_points,
                                   std::uint32_t first_vertex,
                                   std::uint32_t material) {
   Triangles& t = file_.scene.geometry.triangles;
   std::size_t at = t.size();
-  const std::size_t most = at + corners.size() / 3;
+  const std::size_t most = at + corner_points.size() / 3;
   resize_to_fill(t.a, most);
   resize_to_fill(t.b, most);
   resize_to_fill(t.c, most);
   resize_to_fill(t.material, most, material);
-  for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
-    const std::uint32_t a = first_vertex + corners[i], b = first_vertex + corners[i + 1],
-                        c = first_vertex + corners[i + 2];
+  for (std::size_t i = 0; i + 2 < corner_points.size(); i += 3) {
+    const std::uint32_t a = first_vertex + corner_points[i],
+                        b = first_vertex + corner_points[i + 1],
+                        c = first_vertex + corner_points[i + 2];
     t.a[at] = a;
     t.b[at] = b;
     t.c[at] = c;
@@ -157,15 +158,16 @@ CrossedFaces SceneBuilder::mesh_faces(const Mesh& mesh,
   std::size_t at = 0;
   for (std::size_t f = 0, faces = mesh.face_count(); f < faces; ++f) {
     const std::size_t size = mesh.sizes.empty() ? 3 : mesh.sizes[f];
-    const std::span<const std::uint32_t> corners(mesh.corners.data() + at, size);
+    const std::span<const std::uint32_t> corner_points(mesh.corner_points.data() + at, size);
     at += size;
     if (!bad.empty() &&
-        std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return bad[v]; })) {
+        std::any_of(
+            corner_points.begin(), corner_points.end(), [&](std::uint32_t v) { return bad[v]; })) {
       ++file_.dropped.not_finite;
       continue;
     }
-    const Result result = mesh_face(corners, first_vertex, material);
-    if (result != Result::kFilled && result != Result::kTooOften)
+    const Result result = mesh_face(corner_points, first_vertex, material);
+    if (result != Result::kFilled && result != Result::kCutLimit)
       continue;
     if (crossed.filled + crossed.left_out == 0)
       crossed.first = f;

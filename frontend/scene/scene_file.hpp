@@ -42,9 +42,9 @@ struct AreaLight {
 
 /// The order in which the six numbers of a file's `aabb` were read.
 enum class BoxOrder : std::uint8_t {
-  kNone,     ///< the file has no `aabb`
-  kCorners,  ///< two opposite corners
-  kPairs,    ///< xmin xmax ymin ymax zmin zmax
+  kNone,      ///< the file has no `aabb`
+  kVertices,  ///< two opposite corners
+  kPairs,     ///< xmin xmax ymin ymax zmin zmax
 };
 
 /// A scene file after all checks: everything the kernel needs and what the file said besides.

@@ -3,7 +3,7 @@
 #include <exception>
 #include <vector>
 
-#include "kernel/scene/pages.hpp"
+#include "kernel/base/pages.hpp"
 
 namespace grelha {
 namespace {

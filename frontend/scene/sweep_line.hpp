@@ -23,19 +23,19 @@ struct OutlineEdge {
 class SweepLine {
  public:
   /// An edge with its ends, which are looked at more often than anything else. It may be exchanged
-  /// for one in the same place on the line.
+  /// for one at the same position on the line.
   struct Slot {
     mutable std::uint32_t edge;
     mutable Point2 left, right;
     int side_of(const Point2& p) const { return exact_turn(left, right, p); }
     /// Between its ends, as the sweep goes.
-    bool has_on_the_way(const Point2& p) const {
+    bool spans_point(const Point2& p) const {
       return swept_before(left, p) && swept_before(p, right);
     }
-    bool goes_through(const Point2& p) const { return has_on_the_way(p) && side_of(p) == 0; }
+    bool contains_point(const Point2& p) const { return spans_point(p) && side_of(p) == 0; }
   };
   /// Returns whether two edges have a point in common that is not an end of both.
-  static bool do_meet(const Slot& a, const Slot& b) {
+  static bool intersect_edges(const Slot& a, const Slot& b) {
     const auto [a_low, a_high] = std::minmax(a.left.y, a.right.y);
     const auto [b_low, b_high] = std::minmax(b.left.y, b.right.y);
     if (a_high < b_low || b_high < a_low)
@@ -46,8 +46,8 @@ class SweepLine {
     const int side3 = b.side_of(a.left), side4 = b.side_of(a.right);
     if (side1 * side2 < 0 && side3 * side4 < 0)
       return true;
-    return (side1 == 0 && a.has_on_the_way(b.left)) || (side2 == 0 && a.has_on_the_way(b.right)) ||
-           (side3 == 0 && b.has_on_the_way(a.left)) || (side4 == 0 && b.has_on_the_way(a.right));
+    return (side1 == 0 && a.spans_point(b.left)) || (side2 == 0 && a.spans_point(b.right)) ||
+           (side3 == 0 && b.spans_point(a.left)) || (side4 == 0 && b.spans_point(a.right));
   }
 
  private:
@@ -68,24 +68,26 @@ class SweepLine {
   };
 
  public:
-  using Place = std::pmr::multiset<Slot, Below>::iterator;
+  using Location = std::pmr::multiset<Slot, Below>::iterator;
 
   SweepLine(const std::vector<Point2>& points, const std::vector<OutlineEdge>& edges)
       : points_(points), edges_(edges) {}
 
-  /// Right below `above`, which is found by a search where that is not its place.
-  Place insert(Place above, std::uint32_t edge) { return slots_.insert(above, slot_of(edge)); }
-  Place erase(Place place) { return slots_.erase(place); }
-  /// The place is another edge's from now on.
-  void exchange(Place place, std::uint32_t edge) const {
-    const Slot slot = slot_of(edge);
-    place->edge = edge;
-    place->left = slot.left;
-    place->right = slot.right;
+  /// Right below `above`, which is found by a search where that is not its position.
+  Location insert(Location above, std::uint32_t edge) {
+    return slots_.insert(above, slot_of(edge));
   }
-  Place first_above(const Point2& p) const { return slots_.lower_bound(p); }
-  Place begin() const { return slots_.begin(); }
-  Place end() const { return slots_.end(); }
+  Location erase(Location location) { return slots_.erase(location); }
+  /// The position is another edge's from now on.
+  void swap_edges(Location location, std::uint32_t edge) const {
+    const Slot slot = slot_of(edge);
+    location->edge = edge;
+    location->left = slot.left;
+    location->right = slot.right;
+  }
+  Location first_above(const Point2& p) const { return slots_.lower_bound(p); }
+  Location begin() const { return slots_.begin(); }
+  Location end() const { return slots_.end(); }
 
  private:
   Slot slot_of(std::uint32_t edge) const {
@@ -105,33 +107,33 @@ class SweepEvents {
   static constexpr std::uint32_t kNone = 0xffffffff;
 
   SweepEvents(std::size_t points, const std::vector<OutlineEdge>& edges)
-      : first_ending_(points, kNone), first_beginning_(points, kNone) {
+      : first_ending_(points, kNone), first_start_(points, kNone) {
     for (std::uint32_t e = 0; e < edges.size(); ++e)
       add(e, edges[e]);
   }
   void add(std::uint32_t e, const OutlineEdge& edge) {
     add_ending(e, edge.right);
-    add_beginning(e, edge.left);
+    add_start(e, edge.left);
   }
   void add_ending(std::uint32_t e, std::uint32_t point) {
     push(next_ending_, first_ending_, e, point);
   }
-  void add_beginning(std::uint32_t e, std::uint32_t point) {
-    push(next_beginning_, first_beginning_, e, point);
+  void add_start(std::uint32_t e, std::uint32_t point) {
+    push(next_start_, first_start_, e, point);
   }
   void add_point() {
     first_ending_.push_back(kNone);
-    first_beginning_.push_back(kNone);
+    first_start_.push_back(kNone);
   }
 
   std::uint32_t first_ending(std::uint32_t point) const { return first_ending_[point]; }
-  std::uint32_t first_beginning(std::uint32_t point) const { return first_beginning_[point]; }
+  std::uint32_t first_start(std::uint32_t point) const { return first_start_[point]; }
   std::uint32_t next_ending(std::uint32_t edge) const { return next_ending_[edge]; }
-  std::uint32_t next_beginning(std::uint32_t edge) const { return next_beginning_[edge]; }
+  std::uint32_t next_start(std::uint32_t edge) const { return next_start_[edge]; }
   /// Returns true if one edge ends at the point and one begins, which takes its place on the line.
   bool goes_on(std::uint32_t point) const {
-    const std::uint32_t a = first_ending_[point], b = first_beginning_[point];
-    return a != kNone && b != kNone && next_ending_[a] == kNone && next_beginning_[b] == kNone;
+    const std::uint32_t a = first_ending_[point], b = first_start_[point];
+    return a != kNone && b != kNone && next_ending_[a] == kNone && next_start_[b] == kNone;
   }
 
  private:
@@ -143,8 +145,8 @@ class SweepEvents {
     first[point] = edge;
   }
 
-  List first_ending_, first_beginning_;  ///< [points]
-  List next_ending_, next_beginning_;    ///< [edges]
+  List first_ending_, first_start_;  ///< [points]
+  List next_ending_, next_start_;    ///< [edges]
 };
 
 }  // namespace grelha

@@ -10,21 +10,21 @@
 
 namespace grelha {
 
-inline constexpr std::string_view kNulIsBlank = "the text holds NUL bytes, which count as blanks";
+inline constexpr std::string_view kNulIsSpace = "the text holds NUL bytes, which count as blanks";
 
 /// Prints each kind of warning once, and at most kMost kinds, so that the output for a file of
 /// noise stays readable.
-class Warnings {
+class WarningList {
  public:
-  explicit Warnings(const Warn& warn) : warn_(warn) {}
+  explicit WarningList(const Warn& warn) : warn_(warn) {}
   /// Returns whether `kind` is new: only then is the (costlier) message worth making.
   bool first(std::string_view kind) {
-    return said_.size() < kMost && said_.insert(std::string(kind.substr(0, 64))).second;
+    return lines_.size() < kMost && lines_.insert(std::string(kind.substr(0, 64))).second;
   }
-  void say(const Position& at, std::string_view message) {
-    say(at.text() + ": warning: " + std::string(message));
+  void add_line(const Position& at, std::string_view message) {
+    add_line(at.text() + ": warning: " + std::string(message));
   }
-  void say(const std::string& line) {
+  void add_line(const std::string& line) {
     if (warn_)
       warn_(line);
   }
@@ -32,7 +32,7 @@ class Warnings {
  private:
   static constexpr std::size_t kMost = 20;
   const Warn& warn_;
-  std::set<std::string> said_;
+  std::set<std::string> lines_;
 };
 
 }  // namespace grelha

@@ -9,7 +9,7 @@ inline constexpr int kMostSide = 65536;  ///< of a picture, in pixels
 /// A camera looking from `eye` to `at`. Pixel (0,0) is the upper left one; with one sample a pixel
 /// rays go through centres.
 struct Camera {
-  /// up: neither zero nor parallel to the view (see camera_is_sound)
+  /// up: neither zero nor parallel to the view (see camera_is_valid)
   Float3 eye{0, 0, 1}, at, up{0, 1, 0};
   /// full vertical field of view, between the outer edges of the outermost rows
   double angle_deg = 45;
@@ -19,9 +19,9 @@ struct Camera {
   double focus = 1;
 };
 
-/// True where the frame can be built: finite numbers, eye != at, up not along the view,
-/// 0 < angle < 180.
-bool camera_is_sound(const Camera& camera);
+/// Returns true if rays can be made for this camera: finite numbers, eye != at, up not along the
+/// view, 0 < angle < 180.
+bool camera_is_valid(const Camera& camera);
 
 /// Width and height of a pixel at a distance of 1 from the eye, scene units. They are the same bits
 /// on every machine.

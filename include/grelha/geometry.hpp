@@ -1,6 +1,6 @@
 #pragma once
-// Plain arrays that a caller fills in, one per component, every kind apart. The kernel reads them.
-// It never parses, prints or owns a file. Units are scene units throughout.
+// Geometry as plain arrays that the caller fills in: one array per component, separate arrays for
+// each kind of primitive. The kernel only reads them. All lengths are in scene units.
 
 #include <cstddef>
 #include <cstdint>
@@ -14,12 +14,12 @@ struct Float3 {
   bool operator==(const Float3&) const = default;  ///< component by component
 };
 
-/// Balls. A negative radius shows only the inside (NFF).
+/// Spheres. With a negative radius only the inside is visible (NFF).
 struct Spheres {
   std::vector<float> x, y, z, radius;                 ///< [count]
   std::vector<std::uint32_t> material;                ///< [count] index into Scene::materials
-  std::size_t size() const { return radius.size(); }  ///< how many
-  /// Appends one; `m`: its material.
+  std::size_t size() const { return radius.size(); }  ///< number of elements
+  /// Appends one primitive with material index `m`.
   void add(Float3 center, float r, std::uint32_t m) {
     x.push_back(center.x);
     y.push_back(center.y);
@@ -29,14 +29,14 @@ struct Spheres {
   }
 };
 
-/// Sides of cone frusta without end caps; equal radii make cylinders. Both radii negative: only the
-/// inside shows.
+/// Sides of cone frusta without end caps; equal radii make cylinders. If both radii are negative,
+/// only the inside is visible.
 struct Cones {
   std::vector<float> base_x, base_y, base_z, base_radius;  ///< [count]
   std::vector<float> apex_x, apex_y, apex_z, apex_radius;  ///< [count]
   std::vector<std::uint32_t> material;                     ///< [count]
-  std::size_t size() const { return material.size(); }     ///< how many
-  /// Appends one; `m`: its material.
+  std::size_t size() const { return material.size(); }     ///< number of elements
+  /// Appends one primitive with material index `m`.
   void add(Float3 base, float rb, Float3 apex, float ra, std::uint32_t m) {
     base_x.push_back(base.x);
     base_y.push_back(base.y);
@@ -55,8 +55,8 @@ struct Planes {
   std::vector<float> x, y, z;     ///< [count] a point of the plane
   std::vector<float> nx, ny, nz;  ///< [count] normal
   std::vector<std::uint32_t> material;
-  std::size_t size() const { return material.size(); }  ///< how many
-  /// Appends one through `p` with normal `n`; `m`: its material.
+  std::size_t size() const { return material.size(); }  ///< number of elements
+  /// Appends a plane through `p` with normal `n` and material index `m`.
   void add(Float3 p, Float3 n, std::uint32_t m) {
     x.push_back(p.x);
     y.push_back(p.y);
@@ -68,48 +68,47 @@ struct Planes {
   }
 };
 
-/// Triangles over shared vertices, of all meshes and loose polygons together. Neighbours that name
-/// vertices with equal coordinates are watertight along the edge they share. Their indices need not
-/// be equal.
+/// Indexed triangles of all meshes and polygons. Two triangles that share an edge are watertight
+/// along it if the coordinates of its vertices are equal; the indices may differ.
 struct Triangles {
   std::vector<float> x, y, z;  ///< [vertices]
-  /// [vertices] normals of any length, or empty when no vertex has one; (0,0,0): none
+  /// [vertices] normals of any length, or empty if no vertex has one; (0,0,0): this vertex has none
   std::vector<float> nx, ny, nz;
   /// [count] vertices of each triangle, counter-clockwise from the front
   std::vector<std::uint32_t> a, b, c;
   std::vector<std::uint32_t> material;                   ///< [count]
-  std::size_t size() const { return a.size(); }          ///< how many
-  std::size_t vertex_count() const { return x.size(); }  ///< how many corners they share
+  std::size_t size() const { return a.size(); }          ///< number of elements
+  std::size_t vertex_count() const { return x.size(); }  ///< number of vertices
 };
 
-/// A run of triangles that belong together (a PLY file, an inline mesh) and get a grid of their
-/// own.
+/// A range of triangles that form one object (a PLY file, an inline mesh) and get their own grid.
 struct Object {
   std::uint32_t first_triangle = 0, triangle_count = 0;
 };
 
-/// Everything that rays can meet. Ids run over planes, spheres, triangles, cones, each kind in its
-/// own order.
+/// All primitives of a scene. Primitive ids count planes first, then spheres, triangles and cones,
+/// each kind in the order of its arrays.
 struct Geometry {
   Spheres spheres;
   Triangles triangles;
   Cones cones;
   Planes planes;
-  /// disjoint, ascending; triangles in none of them are loose and share a grid with spheres and
-  /// cones
+  /// disjoint, in ascending order; triangles outside all objects share one grid with the spheres
+  /// and cones
   std::vector<Object> objects;
 };
 
-/// What kinds there are, in the order of ids.
+/// The kinds of primitives, in the order of their ids.
 enum class PrimitiveKind { kPlane, kSphere, kTriangle, kCone };
 
-/// A primitive as the caller knows it.
+/// A primitive, named by its kind and its index in the caller's arrays.
 struct Primitive {
   PrimitiveKind kind;
   std::uint32_t index;  ///< into the caller's arrays of this kind
 };
 
-/// How a surface answers light; every weight is already multiplied out (Kd times colour and so on).
+/// How a surface reflects, transmits and emits light. Every weight is the final product (Kd times
+/// colour and so on).
 struct Material {
   Float3 diffuse{};   ///< weight of the Lambert term
   Float3 specular{};  ///< weight of the Blinn-Phong highlight
@@ -127,12 +126,13 @@ struct Material {
   bool operator==(const Material&) const = default;  ///< field by field
 };
 
-/// A point light, or a parallelogram of point lights. Each shadow ray goes to one point of it. A
-/// surface gets the mean light over its points. Edges of zero make it a point.
+/// A point light, or an area light in the shape of a parallelogram. Each shadow ray goes to one
+/// point of the light, and a surface receives the mean over these points. With both edges zero it
+/// is a point light.
 struct Light {
   Float3 position{}, color{};  ///< position: the centre
   Float3 edge1{}, edge2{};     ///< full edges
-  /// True where it has edges.
+  /// Returns true for an area light: an edge is not zero.
   bool is_area() const { return edge1 != Float3{} || edge2 != Float3{}; }
 };
 
@@ -141,7 +141,7 @@ struct Scene {
   Geometry geometry;
   std::vector<Material> materials;
   std::vector<Light> lights;
-  Float3 background;  ///< what a ray sees that meets nothing
+  Float3 background;  ///< radiance of rays that hit nothing
 };
 
 }  // namespace grelha

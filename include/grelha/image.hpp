@@ -14,18 +14,19 @@ struct Image {
   Image() = default;
   /// A black image.
   Image(int w, int h) : width(w), height(h), rgb(std::size_t(w) * std::size_t(h) * 3) {}
-  /// Where row y begins.
+  /// Returns a pointer to the first float of row y.
   float* row(int y) { return rgb.data() + std::size_t(y) * std::size_t(width) * 3; }
-  /// The same, to read.
+  /// The same, read-only.
   const float* row(int y) const { return rgb.data() + std::size_t(y) * std::size_t(width) * 3; }
 };
 
 /// Samples and errors by pixel, row 0 on top.
 struct SampleMaps {
-  std::vector<std::uint32_t> samples;  ///< [height * width] spent
+  std::vector<std::uint32_t> samples;  ///< [height * width] samples taken of each pixel
   /// [height * width] estimated standard error, root mean square of the channels
   std::vector<float> error;
-  /// [height * width] of the 95 % interval, what may hide from the samples counted in
+  /// [height * width] width of the 95 % interval, which allows for details that the samples may
+  /// have missed
   std::vector<float> width;
 };
 

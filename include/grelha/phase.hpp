@@ -1,5 +1,5 @@
 #pragma once
-// Phases of a thread that renders, and the observer that is told of them.
+// The phases of a rendering thread, and the observer that it notifies.
 
 #include <cstdint>
 
@@ -7,22 +7,22 @@
 
 namespace grelha {
 
-/// The phases, in the order a batch goes through them.
+/// The phases, in the order in which a batch of rays passes through them.
 enum class Phase : int {
   camera,    ///< making camera rays
-  primary,   ///< tracing them
+  primary,   ///< tracing camera rays
   bounce,    ///< tracing reflected and refracted rays
   surface,   ///< points and normals of hits, the background of misses
-  light,     ///< local light and the making of shadow rays
-  shadow,    ///< tracing those
-  children,  ///< making reflected and refracted rays, putting them by and taking them up
-  sums,      ///< sums of light to pixels
+  light,     ///< local shading, and making shadow rays
+  shadow,    ///< tracing shadow rays
+  children,  ///< making reflected and refracted rays, queueing and dequeueing them
+  sums,      ///< converting sums of light to pixels
 };
 inline constexpr int kPhases = 8;
 
-/// An observer is told whenever its thread goes from one phase to another, some ten times a batch.
-/// It gets `rays` on the way into primary, bounce and shadow, once for each run of rays. A function
-/// pointer, so the hot loops need nothing from another file.
+/// A callback that a thread calls whenever it changes from one phase to another, about ten times a
+/// batch. On entry to primary, bounce and shadow `rays` points to the rays to trace, one call for
+/// each run of rays. It is a plain function pointer, so the hot loops depend on no other file.
 struct Observer {
   void (*enter)(Observer&, Phase, const Rays* rays);
 };

@@ -1,6 +1,7 @@
 #pragma once
-// Queries: what the caller's rays meet. Any number of threads may call any function at once, on one
-// World or on many. A World does not change, and a call writes only the arrays it was given.
+// Ray queries. All functions are thread-safe: any number of threads may call them at the same time,
+// on one World or on several. A World does not change, and a call writes only to the arrays passed
+// to it.
 
 #include <cstddef>
 #include <cstdint>
@@ -14,24 +15,26 @@
 
 namespace grelha {
 
-/// How a stream of rays is traced. None of it changes an answer.
+/// How a stream of rays is traced. These options change the speed, never the results.
 struct QueryOptions {
-  /// most neighbours that march together: 1, 16, 64 or 256
+  /// largest number of consecutive rays that are traced as one packet: 1, 16, 64 or 256
   int packet = 256;
   std::string_view isa = "best";  ///< see isas()
 };
 
-/// The nearest hit of each ray of a packet, or of a stream of any length: the longer the faster,
-/// and fastest where neighbours go a similar way. Runs on the calling thread. Of two hits at equal
-/// t the lower id wins. Each ray is told the same bits alone and in any company.
-/// `counts`, where given, grows by what was done. Throws std::invalid_argument for a packet size or
-/// an instruction set that is not there, and for rays without origins or directions.
+/// Finds the nearest hit of each ray of a stream. The stream may have any length. Long streams are
+/// faster per ray, and coherent ones fastest: consecutive rays with similar origins and directions.
+/// Runs on the calling thread. Of two hits at equal t the one with the lower id is returned. The
+/// result of a ray has the same bits whatever other rays the stream contains. If `counts` is given,
+/// the work done is added to it. Throws std::invalid_argument for an unknown packet size, an
+/// instruction set that is unknown or unsupported here, and for rays without origins or directions.
 void closest(const World& world,
              const Rays& rays,
              const Hits& hits,
              const QueryOptions& options = {},
              TraceCounts* counts = nullptr);
-/// The same of an array of rays; throws as well where there are not as many hits.
+/// The same for an array of rays. Also throws std::invalid_argument if the lengths of `rays` and
+/// `hits` differ.
 void closest(const World& world,
              std::span<const Ray> rays,
              std::span<Hit> hits,
@@ -40,15 +43,16 @@ void closest(const World& world,
 /// The same of one ray.
 Hit closest(const World& world, const Ray& ray);
 
-/// Whether anything at all is in the way of each ray, between its t_min and t_max: blocked[i]
-/// becomes 1 or 0, of rays.count of them. Faster than closest(); throws as that does, and where
-/// `blocked` is null.
+/// Tests each ray for any hit between its t_min and t_max. Writes rays.count answers: blocked[i] is
+/// 1 if ray i hits something, else 0. Faster than closest(). Throws what closest() throws, and
+/// std::invalid_argument if `blocked` is null.
 void occluded(const World& world,
               const Rays& rays,
               std::uint8_t* blocked,
               const QueryOptions& options = {},
               TraceCounts* counts = nullptr);
-/// The same of an array of rays; throws as well where there are not as many answers.
+/// The same for an array of rays. Also throws std::invalid_argument if the lengths of `rays` and
+/// `blocked` differ.
 void occluded(const World& world,
               std::span<const Ray> rays,
               std::span<std::uint8_t> blocked,
@@ -57,35 +61,39 @@ void occluded(const World& world,
 /// The same of one ray.
 bool occluded(const World& world, const Ray& ray);
 
-/// How many triangles a ray crosses between its t_min and t_max. Other primitives do not count, and
-/// exact copies of a triangle may count as one. Edges and corners are decided as if the ray lay
-/// beside them by less than any number, the same way for all. So of a closed mesh the count is odd
-/// from inside and even from outside, whatever ray is chosen. Simulation of simplicity,
-/// Edelsbrunner and Mücke 1990; docs/numerics.md.
+/// Counts the triangles that a ray crosses between its t_min and t_max. Other primitives do not
+/// count, and exact copies of a triangle may count as one. A ray through an edge or a vertex is
+/// treated as if it passed at an infinitesimal distance, on the same side for all triangles. For a
+/// closed mesh the count is therefore odd from inside and even from outside, for every ray.
+/// Simulation of simplicity, Edelsbrunner and Mücke 1990; docs/numerics.md.
 std::size_t count_crossings(const World& world, const Ray& ray);
 
-/// Where a ray met a surface, and where new rays leave it.
+/// The surface at a hit point, and the start points of new rays from there.
 struct SurfacePoint {
-  Float3 point;  ///< taken from the primitive, nearer to it than org + t dir
-  /// unit; the primitive's own: outwards, of triangles to the side they are counter-clockwise from
+  Float3 point;  ///< computed on the primitive; more accurate than org + t dir
+  /// unit geometric normal; points outwards, for triangles to the side from which the vertices are
+  /// counter-clockwise
   Float3 normal;
-  /// unit, on the same side: mixed from vertex normals where a triangle has them, else `normal`
+  /// unit shading normal, on the same side: interpolated vertex normals if the triangle has them,
+  /// else `normal`
   Float3 shading;
-  float away;              ///< so far along the normal a ray is certainly off the surface
-  std::uint32_t material;  ///< the primitive's, index into the scene's
-  /// The start of a ray that leaves in direction `dir`, with t_min = 0. It does not meet a surface
-  /// it points away from again. It skips nothing farther from that than 2 away. See
-  /// docs/numerics.md, after Pharr, Jakob and Humphreys, PBR 4th ed., 6.8. A ray to a light starts
-  /// here, goes to the light itself and searches up to t = 1.
-  Float3 leave(Float3 dir) const;
+  float offset;            ///< distance along the normal where a point is certainly off the surface
+  std::uint32_t material;  ///< index into the scene's materials
+  /// Returns the origin of a ray that leaves the surface in direction `dir`, to be traced with
+  /// t_min = 0. The ray does not hit this surface again if it points away from it. It misses
+  /// nothing that is farther from the surface than 2 * `offset`. See docs/numerics.md, after Pharr,
+  /// Jakob and Humphreys, PBR 4th ed., 6.8. A shadow ray starts at this origin, its direction is
+  /// the light's position minus this origin, and its t_max is 1.
+  Float3 offset_origin(Float3 dir) const;
 };
 
-/// The surface that `ray` met: what a `hit` of closest() names, at its t. Throws
-/// std::invalid_argument for an id that no primitive has, as kNoPrimitive.
+/// Computes the surface point of a `hit` that closest() returned for `ray`. Throws
+/// std::invalid_argument if hit.id is not the id of a primitive, for example kNoPrimitive.
 SurfacePoint surface(const World& world, const Ray& ray, const Hit& hit);
 
-/// The primitive of an id that a hit named; throws as surface() does. Ids run over planes, spheres,
-/// triangles, cones, each kind in the caller's order.
+/// Returns the kind and index of the primitive with this id. Throws std::invalid_argument if there
+/// is none. Ids count planes first, then spheres, triangles and cones, each kind in the order of
+/// the caller's arrays.
 Primitive primitive_of(const World& world, std::uint32_t id);
 
 }  // namespace grelha

@@ -11,14 +11,14 @@
 
 namespace grelha {
 
-/// At most what all threads of a render work in: a band of rows each, and the rays that wait. More
-/// for a wider picture or deeper paths.
+/// Returns an upper bound of the working memory of all threads of a render, in bytes: for each
+/// thread a strip of rows and its queued rays. It grows with the picture's width and the depth.
 std::uint64_t thread_bytes(const Camera& camera, const RenderOptions& options);
 
-/// Renders. The picture is the same, bit for bit, for every value of threads, packet, mailbox, isa,
-/// density and grid. Throws std::invalid_argument for an instruction set that is unknown or does
-/// not run here, or a bad camera or option. When `progress` stops it, what has no sample yet is
-/// black. `maps` is filled when samples are spent by error.
+/// Renders a picture. It is the same, bit for bit, for every value of threads, packet, mailbox,
+/// isa, density and grid. Throws std::invalid_argument for an instruction set that is unknown or
+/// unsupported here, and for an invalid camera or option. If `progress` stops the render, pixels
+/// without samples are black. `maps` is filled if RefineOptions are on.
 Image render(const World& world,
              const Camera& camera,
              const RenderOptions& options,

@@ -1,5 +1,5 @@
 #pragma once
-// How a picture is rendered.
+// Options of a render.
 
 #include <cstdint>
 #include <functional>
@@ -12,76 +12,78 @@ namespace grelha {
 
 inline constexpr int kMostDepth = 4096, kMostSamples = 65536;
 
-/// How the samples of a picture are spread.
+/// Sample generators.
 enum class Sampler {
   kSobol,   ///< one Owen-scrambled Sobol sequence over the dimensions in use
-  kJitter,  ///< a jittered grid for each pair of dimensions, those after the pixel's shuffled
-  // jittered grids in one order: biased where two pairs matter together, to see what shuffling is
-  // for
+  kJitter,  ///< a jittered grid for each pair of dimensions, shuffled after the first pair
+  // kJitter without shuffling: biased where two pairs interact; shows the effect of shuffling
   kUnshuffled,
-  kRandom,  ///< independent
-  // one such sequence over the whole picture, of which pixels that are neighbours draw runs that
-  // follow each other: the same error, spread as blue noise
+  kRandom,  ///< independent random numbers
+  // one Owen-scrambled Sobol sequence for the whole picture; neighbouring pixels draw consecutive
+  // runs of it: the same error as kSobol, distributed as blue noise
   kBlue
 };
 
-/// True where samples lie in a grid.
+/// Returns true for the samplers that stratify samples in a grid.
 constexpr bool is_jittered(Sampler s) {
   return s == Sampler::kJitter || s == Sampler::kUnshuffled;
 }
-/// True where the samples of a pixel must be counted before the first is taken.
+/// Returns true for the samplers that need the number of samples per pixel in advance.
 constexpr bool is_counted_first(Sampler s) {
   return is_jittered(s) || s == Sampler::kBlue;
 }
 
-/// Where the samples of a picture lie: pure functions of (seed, pixel, sample, dimension).
+/// Number and distribution of samples. Every sample is a pure function of (seed, pixel, sample,
+/// dimension).
 struct SampleOptions {
-  int samples = 1;  ///< rays through each pixel; 1 with no effect to sample: through its centre
+  int samples = 1;  ///< rays per pixel; 1 without effects to sample: through its centre
   Sampler sampler = Sampler::kSobol;
   std::uint32_t seed = 0;
-  int light_rays = 1;  ///< shadow rays from each point towards each area light
-  /// on rough mirrors: so many rays around the mirror direction and that direction; 0: one in its
-  /// place
-  int gloss_rays = 0;
+  int light_rays = 1;  ///< shadow rays from each hit point to each area light.
+  /// on rough mirrors: number of rays around the mirror direction, besides the one in that
+  /// direction; 0: a single ray around it
+  int glossy_rays = 0;
 };
 
-/// Samples spent where they help most, instead of SampleOptions::samples a pixel. The sampler must
-/// be kSobol or kRandom.
+/// Adaptive sampling: samples go to the pixels where they reduce the error most, instead of
+/// SampleOptions::samples to each. The sampler must be kSobol or kRandom.
 struct RefineOptions {
-  /// > 0: until the RMSE is at most this at 95 % confidence. Of 99.9 % of the pixels 95 % intervals
-  /// are no wider than 8 times this. Display units, 0 to 1
+  /// > 0: samples until the RMSE is at most this, at 95 % confidence. In 99.9 % of the pixels the
+  /// 95 % interval is at most 8 times as wide as this. Display units, 0 to 1
   double error = 0;
-  /// > 0: until these are spent, which depends on the machine; ErrorStats::samples says what to ask
-  /// for to repeat it
+  /// > 0: samples for this many seconds. The result depends on the machine; to repeat it set
+  /// `samples` to ErrorStats::samples of the run
   double seconds = 0;
-  /// > 0: so many in the whole picture, and at least the first few of every pixel
+  /// > 0: number of samples of the whole picture; every pixel gets at least the first few
   std::uint64_t samples = 0;
-  /// True where any of them is asked for.
+  /// Returns true if any of the three limits is set.
   bool on() const { return error > 0 || seconds > 0 || samples > 0; }
 };
 
-/// How a picture is rendered.
+/// All options of a render.
 struct RenderOptions {
   int threads = 0;  ///< 0: one per processor
-  /// longest path, at most kMostDepth, the eye ray counted as 1; at its end the background is seen
+  /// maximum path length, counted in rays, at most kMostDepth; the camera ray counts as 1. A longer
+  /// path gets the background
   int depth = 5;
-  /// Ends paths whose weight, times the brightest light they can meet, is less; 0 to 1, 0: none.
-  /// The default moves no channel by more than 1/1024 at depth 5 (docs/sampling.md).
+  /// Paths end when their weight, times the brightest light they can meet, falls below this; 0 to
+  /// 1, 0: no path ends early. The default moves no channel by more than 1/1024 at depth 5
+  /// (docs/sampling.md).
   double min_weight = 1. / 16384;
-  /// most rays that march together: 1, 16, 64 or 256; see traverse_together()
+  /// largest packet of rays traced together: 1, 16, 64 or 256; see packet_traverse()
   int packet = 256;
-  bool mailbox = true;  ///< skip primitives a ray or packet has already met in another cell
+  bool mailbox = true;  ///< do not test a primitive again that was tested in another cell
   std::string_view isa = "best";
   SampleOptions sampling;
   RefineOptions refine;
-  bool phases = false;           ///< measure where the time goes
-  Observer* observer = nullptr;  ///< told of the phases by every thread, instead of measuring them
-  /// on: pixels are averages of points of a lattice, `samples` rays through each; one with no
-  /// effect to sample
+  bool phases = false;           ///< measure the time spent in each phase
+  Observer* observer = nullptr;  ///< called at each change of phase, instead of measuring.
+  /// on: pixels are averages of lattice points, with `samples` rays through each point; one ray
+  /// without effects to sample
   Subdivision subdivision;
-  /// Called now and then from one thread at a time with the share done, 0 to 1. Returns false to
-  /// stop; threads that finish what they have in work may call it once more. What it throws stops
-  /// the render as well, which throws it on.
+  /// Called repeatedly, by one thread at a time, with the fraction done, 0 to 1. Return false to
+  /// stop; it may be called again by threads that finish their current work. An exception that it
+  /// throws stops the render, which rethrows it.
   std::function<bool(double)> progress;
 };
 

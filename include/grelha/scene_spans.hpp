@@ -1,6 +1,5 @@
 #pragma once
-// A scene in the caller's own arrays. It has the members of Scene and owns
-// nothing.
+// Non-owning views of a scene in the caller's own arrays, with the same members as Scene.
 
 #include <cstddef>
 #include <cstdint>
@@ -11,17 +10,17 @@
 
 namespace grelha {
 
-using Floats = std::span<const float>;           ///< one component of many
-using Indices = std::span<const std::uint32_t>;  ///< vertices or materials of many
+using Floats = std::span<const float>;           ///< one component of all elements
+using Indices = std::span<const std::uint32_t>;  ///< vertex or material indices
 
 /// See Spheres.
 struct SphereSpans {
   Floats x, y, z, radius;
   Indices material;
   SphereSpans() = default;
-  /// Spans of what it holds.
+  /// Refers to the arrays of the argument.
   SphereSpans(const Spheres& s) : x(s.x), y(s.y), z(s.z), radius(s.radius), material(s.material) {}
-  std::size_t size() const { return radius.size(); }  ///< how many
+  std::size_t size() const { return radius.size(); }  ///< number of elements
 };
 
 /// See Cones.
@@ -29,7 +28,7 @@ struct ConeSpans {
   Floats base_x, base_y, base_z, base_radius, apex_x, apex_y, apex_z, apex_radius;
   Indices material;
   ConeSpans() = default;
-  /// Spans of what it holds.
+  /// Refers to the arrays of the argument.
   ConeSpans(const Cones& c)
       : base_x(c.base_x),
         base_y(c.base_y),
@@ -40,7 +39,7 @@ struct ConeSpans {
         apex_z(c.apex_z),
         apex_radius(c.apex_radius),
         material(c.material) {}
-  std::size_t size() const { return material.size(); }  ///< how many
+  std::size_t size() const { return material.size(); }  ///< number of elements
 };
 
 /// See Planes.
@@ -48,10 +47,10 @@ struct PlaneSpans {
   Floats x, y, z, nx, ny, nz;
   Indices material;
   PlaneSpans() = default;
-  /// Spans of what it holds.
+  /// Refers to the arrays of the argument.
   PlaneSpans(const Planes& p)
       : x(p.x), y(p.y), z(p.z), nx(p.nx), ny(p.ny), nz(p.nz), material(p.material) {}
-  std::size_t size() const { return material.size(); }  ///< how many
+  std::size_t size() const { return material.size(); }  ///< number of elements
 };
 
 /// See Triangles.
@@ -60,7 +59,7 @@ struct TriangleSpans {
   Floats nx, ny, nz;  ///< [vertices], or empty when no vertex has a normal
   Indices a, b, c, material;
   TriangleSpans() = default;
-  /// Spans of what it holds.
+  /// Refers to the arrays of the argument.
   TriangleSpans(const Triangles& t)
       : x(t.x),
         y(t.y),
@@ -72,8 +71,8 @@ struct TriangleSpans {
         b(t.b),
         c(t.c),
         material(t.material) {}
-  std::size_t size() const { return a.size(); }          ///< how many
-  std::size_t vertex_count() const { return x.size(); }  ///< how many corners they share
+  std::size_t size() const { return a.size(); }          ///< number of elements
+  std::size_t vertex_count() const { return x.size(); }  ///< number of vertices
 };
 
 /// See Geometry.
@@ -84,7 +83,7 @@ struct GeometrySpans {
   PlaneSpans planes;
   std::span<const Object> objects;
   GeometrySpans() = default;
-  /// Spans of what it holds.
+  /// Refers to the arrays of the argument.
   GeometrySpans(const Geometry& g)
       : spheres(g.spheres),
         triangles(g.triangles),
@@ -93,20 +92,21 @@ struct GeometrySpans {
         objects(g.objects) {}
 };
 
-/// See Scene; made from one, or filled in by a caller that keeps its arrays itself.
+/// See Scene. Constructed from a Scene, or filled in by a caller with arrays of its own.
 struct SceneSpans {
   GeometrySpans geometry;
   std::span<const Material> materials;
   std::span<const Light> lights;
   Float3 background;
   SceneSpans() = default;  ///< empty
-  /// Spans of what it holds.
+  /// Refers to the arrays of the argument.
   SceneSpans(const Scene& s)
       : geometry(s.geometry), materials(s.materials), lights(s.lights), background(s.background) {}
-  SceneSpans(Scene&& gone) = delete;  ///< its arrays would be gone as well
+  SceneSpans(Scene&& gone) = delete;  ///< its arrays would be destroyed
 };
 
-/// [materials] 1 where some primitive has it, 0 elsewhere. Primitives name materials that exist.
+/// Returns [materials] 1 for each material that a primitive uses, else 0. All material indices must
+/// be in range.
 inline std::vector<char> used_materials(const SceneSpans& scene) {
   std::vector<char> used(scene.materials.size());
   const GeometrySpans& g = scene.geometry;

@@ -1,6 +1,6 @@
 #pragma once
-// What a build and a render did, in numbers. Counting never changes a picture; some counts (visits,
-// tests, packets) depend on packet size and instruction set, those of rays do not.
+// Statistics of builds and renders. Counting never changes a picture. Some counts (visits, tests,
+// packets) depend on packet size and instruction set; ray counts do not.
 
 #include <array>
 #include <cstdint>
@@ -10,12 +10,12 @@
 
 namespace grelha {
 
-/// Rays by what they are for.
+/// Numbers of rays by purpose.
 struct RayCounts {
   std::uint64_t primary = 0, shadow = 0, reflection = 0, refraction = 0;
-  /// Their sum.
+  /// Returns the sum of the four.
   std::uint64_t total() const { return primary + shadow + reflection + refraction; }
-  /// Adds what another thread or call did.
+  /// Adds the counts of another thread or call.
   void operator+=(const RayCounts& o) {
     primary += o.primary;
     shadow += o.shadow;
@@ -24,32 +24,32 @@ struct RayCounts {
   }
 };
 
-/// Tests by kind of primitive.
+/// Numbers of intersection tests by kind of primitive.
 struct TestCounts {
   std::uint64_t sphere = 0, triangle = 0, cone = 0, plane = 0;  ///< one ray against one primitive
 };
 
 /// Counts of packets and of their lanes.
 struct PacketCounts {
-  std::uint64_t formed = 0;        ///< packets that marched together to the end
-  std::uint64_t fell_back = 0;     ///< packets that spread and went on as single rays
-  std::uint64_t lanes_issued = 0;  ///< SIMD lanes of the tests of many rays against one primitive
-  std::uint64_t lanes_busy = 0;    ///< those of them that carried a ray still searching
+  std::uint64_t formed = 0;            ///< packets traced together to the end
+  std::uint64_t packet_fallbacks = 0;  ///< packets that diverged and continued as single rays
+  std::uint64_t lanes_issued = 0;      ///< SIMD lanes in tests of many rays against one primitive
+  std::uint64_t lanes_busy = 0;        ///< those lanes that held an active ray
 };
 
-/// Counts of what rays that go by themselves are held against, up to eight side by side.
+/// Tests of single rays, each against up to eight boxes or primitives in one SIMD operation.
 struct RowCounts {
-  std::uint64_t boxes = 0;       ///< one ray against boxes of blocks of primitives
+  std::uint64_t boxes = 0;       ///< one ray against bounding boxes of blocks of primitives
   std::uint64_t primitives = 0;  ///< one ray against primitives
 };
 
 /// Counts of a trace.
 struct TraceCounts {
-  std::uint64_t visits = 0;  ///< grid cells looked into, by a packet or by a ray
+  std::uint64_t visits = 0;  ///< grid cells visited by a packet or a ray
   TestCounts tests;
   RowCounts rows;
   PacketCounts packets;
-  /// Adds what another thread or call did.
+  /// Adds the counts of another thread or call.
   void operator+=(const TraceCounts& o) {
     visits += o.visits;
     tests.sphere += o.tests.sphere;
@@ -59,34 +59,34 @@ struct TraceCounts {
     rows.boxes += o.rows.boxes;
     rows.primitives += o.rows.primitives;
     packets.formed += o.packets.formed;
-    packets.fell_back += o.packets.fell_back;
+    packets.packet_fallbacks += o.packets.packet_fallbacks;
     packets.lanes_issued += o.packets.lanes_issued;
     packets.lanes_busy += o.packets.lanes_busy;
   }
 };
 
-/// Estimates of the error of a picture whose samples were spent by error; display units,
-/// 0 to 1.
+/// Estimated error of a picture rendered with RefineOptions; display units, 0 to 1.
 struct ErrorStats {
-  /// of all pixels and channels against the converged picture, estimated
+  /// estimated RMSE of all pixels and channels against the converged picture
   double rmse = 0;
-  double rmse_bound = 0;  ///< not exceeded at 95 % confidence
-  /// rmse of about 5 % of the pixels by a second, independent set of samples; 0: there was none
-  double audited = 0;
-  int audits = 0;                   ///< such sets, of other pixels each
-  std::uint64_t audit_samples = 0;  ///< that they took, which are no part of the picture
-  std::uint64_t samples = 0;  ///< of all pixels. RefineOptions::samples repeats a run by time.
-  /// there were when the RMSE asked for was met: the others went to pixels with wide intervals. 0:
-  /// it was not met, or not asked for.
+  double rmse_bound = 0;  ///< upper bound of rmse at 95 % confidence
+  /// rmse of about 5 % of the pixels, estimated from a second, independent set of samples; 0: no
+  /// such set was taken
+  double checked = 0;
+  int checks = 0;                   ///< number of such sets, each of other pixels
+  std::uint64_t check_samples = 0;  ///< samples of these sets; the picture does not contain them
+  std::uint64_t samples = 0;        ///< of all pixels; see RefineOptions::seconds
+  /// samples when the requested RMSE was reached; later ones went to pixels with wide intervals. 0:
+  /// not reached, or not requested
   std::uint64_t met_at = 0;
-  std::uint32_t least = 0, most = 0;  ///< of one pixel
-  int rounds = 0;                     ///< of doubling
+  std::uint32_t least = 0, most = 0;  ///< samples of a single pixel
+  int rounds = 0;                     ///< of doubling the samples
 };
 
-/// Seconds of all threads together, by Phase.
+/// Seconds per Phase, summed over all threads.
 struct PhaseSeconds : std::array<double, kPhases> {
   PhaseSeconds() : array{} {}
-  /// Adds what another thread or call did.
+  /// Adds the counts of another thread or call.
   void operator+=(const PhaseSeconds& o) {
     for (std::size_t i = 0; i < size(); ++i)
       (*this)[i] += o[i];
@@ -103,11 +103,11 @@ struct RenderStats {
   const char* isa = "";
 };
 
-/// One grid of a World.
+/// Size of one grid of a World.
 struct GridStats {
   std::array<std::uint32_t, 3> cells{};  ///< per axis
-  std::uint64_t occupied = 0;            ///< cells that hold at least one reference
-  std::uint64_t references = 0;          ///< primitives over cells
+  std::uint64_t occupied = 0;            ///< cells that contain at least one reference
+  std::uint64_t references = 0;          ///< primitives per cell, summed over all cells
   std::uint64_t bytes = 0;
 };
 

@@ -1,6 +1,7 @@
 #pragma once
-// Adaptive supersampling by squares that share their corners: a square whose corners disagree is
-// split into four, again and again, as POV-Ray's method 2 does (Whitted 1980, section 4).
+// Adaptive supersampling by recursive subdivision: a square whose corners differ too much is split
+// into four, as in POV-Ray's method 2 (Whitted 1980, section 4). Neighbouring squares share their
+// corners.
 
 #include <cstdint>
 
@@ -21,7 +22,7 @@ struct LatticePoint {
   bool operator==(const LatticePoint&) const = default;  ///< the same place
 };
 
-/// 32 bits for a point, well mixed: what tells its random numbers from those of other points.
+/// Returns a 32-bit hash of a point, which seeds the point's random numbers.
 inline std::uint32_t lattice_hash(LatticePoint p) {
   // MurmurHash3's finalizer (A. Appleby)
   std::uint64_t x = static_cast<std::uint64_t>(p.y) << 32 | p.x;

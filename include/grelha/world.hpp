@@ -1,5 +1,5 @@
 #pragma once
-// Scenes made ready for rays.
+// A scene with the acceleration structures to trace rays through it.
 
 #include <cstddef>
 #include <cstdint>
@@ -14,61 +14,61 @@
 
 namespace grelha {
 
-/// How a World is built. None of it changes a picture.
+/// How a World is built. These options change speed and memory, never a picture.
 struct BuildOptions {
-  bool grid = true;  ///< false: every ray meets every primitive
+  bool grid = true;  ///< false: every ray is tested against every primitive
   /// M of the grid's resolution M cbrt(count / volume) per unit length; 0: the kernel chooses
   float density = 0;
   int threads = 0;  ///< 0: one per processor. The number changes no bit of the grid.
-  /// Most bytes beside the scene's own arrays; 0: any. A build that will probably take more throws
-  /// TooLarge before it begins.
+  /// Limit of the memory for building, without the scene's own arrays, in bytes; 0: no limit. If
+  /// the estimate exceeds it, the constructor throws TooLarge before it builds anything.
   std::uint64_t most_bytes = 0;
-  /// Called now and then from one thread at a time with the share done, which grows from 0 to 1.
-  /// Returns false to have the constructor throw Stopped.
+  /// Called repeatedly, by one thread at a time, with the fraction done, which grows from 0 to 1.
+  /// If it returns false, the constructor throws Stopped.
   std::function<bool(double)> progress{};
 };
 
-/// Bytes, beside the scene's own arrays.
+/// Memory in bytes, without the scene's own arrays.
 struct BuildMemory {
   std::uint64_t peak = 0;  ///< while a World is built
-  std::uint64_t kept = 0;  ///< as long as it lives
+  std::uint64_t kept = 0;  ///< during its lifetime
 };
 
-/// Thrown by a function whose progress said to stop.
+/// Thrown by a function after its progress callback returned false.
 struct Stopped : std::exception {
   const char* what() const noexcept override { return "stopped"; }  ///< no more than that
 };
 
-/// A World would take more memory than BuildOptions allow.
+/// Thrown if a World would take more memory than BuildOptions::most_bytes.
 struct TooLarge : std::runtime_error {
   /// The error of a build that needs `n`.
   explicit TooLarge(BuildMemory n)
       : std::runtime_error("the scene needs more memory than it may have"), need(n) {}
-  BuildMemory need;  ///< what the build would take, by World::estimate()
+  BuildMemory need;  ///< memory that the build would take, by World::estimate()
 };
 
-/// A scene made ready for rays. It refers to the arrays of the geometry it was built from, which
-/// must outlive it unchanged; materials and lights are copied. A built World never changes, so
-/// threads may share it. There may be many Worlds.
+/// A scene and its grids, ready for ray queries. It refers to the arrays of the geometry that it
+/// was built from, which must stay unchanged for its lifetime. Materials and lights are copied. A
+/// World is immutable, so threads may share it. A program may have any number of Worlds.
 class World {
  public:
-  /// Builds the grids. Throws std::invalid_argument for arrays of unequal lengths and for indices
-  /// beyond their arrays, TooLarge and Stopped as the options say.
+  /// Builds the grids. Throws std::invalid_argument if arrays that belong together differ in length
+  /// or an index is out of range. Throws TooLarge and Stopped as BuildOptions describe.
   World(const SceneSpans& scene, const BuildOptions& options);
   ~World();
-  /// Predicts what building will take, within a fifth (docs/performance.md), in about a tenth of
-  /// the time.
+  /// Estimates the memory that building takes, within a fifth (docs/performance.md), in about a
+  /// tenth of the building time.
   static BuildMemory estimate(const SceneSpans& scene, const BuildOptions& options);
   World(World&&) noexcept;             ///< the source can only be destroyed or assigned to
   World& operator=(World&&) noexcept;  ///< the same
 
-  /// One grid for the loose primitives and one for each larger object.
+  /// Returns the size of each grid: one for the loose primitives and one for each larger object.
   std::vector<GridStats> grids() const;
   std::size_t geometry_bytes() const;  ///< the scene's own arrays
-  std::size_t grid_bytes() const;      ///< everything built beside them
+  std::size_t grid_bytes() const;      ///< everything built in addition
 
-  struct Impl;  ///< the kernel's own
-  /// For the kernel alone.
+  struct Impl;  ///< internal to the kernel
+  /// For internal use by the kernel.
   const Impl& impl() const { return *impl_; }
 
  private:

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "kernel/grid/box_places.hpp"
-#include "kernel/primitive/rounding.hpp"
+#include "kernel/grid/box_allocator.hpp"
+#include "kernel/shapes/rounding.hpp"
 
 namespace grelha {
 namespace {
@@ -12,24 +12,24 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// Times a grid's pad: how far boxes reach beyond the error of hits. A slab test in float is off by
-/// 3 u of the distance to each plane, which is at most 2.8 reaches of the grid, and compares two
-/// such values: 17 u reaches. A quarter of a pad is 64 u.
-constexpr double kSlabRoom = .25;
+/// 3 u of the distance to each plane, which is at most 2.8 half widths of the grid, and compares
+/// two such values: 17 u half widths. A quarter of a pad is 64 u.
+constexpr double kSlabPadding = .25;
 
 /// Extent of a block along an axis; empty if the block is.
-struct Reach {
+struct BlockHalfWidth {
   float lo = kInfinity;
   float hi = -kInfinity;
 };
-Reach reach_of(const TriangleBlock& block, int a) {
+BlockHalfWidth half_width_of(const TriangleBlock& block, int a) {
   float least[kBlock], most[kBlock];
   for (int i = 0; i < kBlock; ++i)
     least[i] = std::min(std::min(block.a[a][i], block.b[a][i]), block.c[a][i]);
   for (int i = 0; i < kBlock; ++i)
     most[i] = std::max(std::max(block.a[a][i], block.b[a][i]), block.c[a][i]);
-  Reach r;
+  BlockHalfWidth r;
   for (int i = 0; i < kBlock; ++i) {
-    // unused places are NaN and change neither
+    // unused positions are NaN and change neither
     r.lo = least[i] < r.lo ? least[i] : r.lo;
     r.hi = most[i] > r.hi ? most[i] : r.hi;
   }
@@ -38,12 +38,12 @@ Reach reach_of(const TriangleBlock& block, int a) {
 
 }  // namespace
 
-std::uint64_t place_boxes(std::size_t begin,
+std::uint64_t write_boxes(std::size_t begin,
                           std::size_t end,
                           std::uint64_t row,
                           std::uint64_t block,
                           ListStore<Triangle>& s) {
-  BoxPlaces places(row);
+  BoxAllocator places(row);
   for (std::size_t c = begin; c < end; ++c) {
     const std::uint32_t blocks = s.first[c];
     const std::uint64_t free = places.next();
@@ -60,20 +60,20 @@ std::uint64_t place_boxes(std::size_t begin,
 }
 
 // A hit h is off by no more than `pad` from its triangle, and found in a cell that it lies in. It
-// is in the triangle's box grown by pad as well. So it is in the box below, kSlabRoom inside it.
+// is in the triangle's box grown by pad as well. So it is in the box below, kSlabPadding inside it.
 void bound_blocks(
     const Grid& g, double pad, std::size_t cell, std::uint32_t triangles, ListStore<Triangle>& s) {
   const CellBox box = cell_box(g, cell);
-  const double room = kSlabRoom * pad;
+  const double error_bound = kSlabPadding * pad;
   const std::uint32_t first = s.first[cell];
   const std::uint32_t block = s.list().blocks_of(cell).first;
   for (std::uint32_t b = 0; b < s.entries_of(triangles); ++b) {
     BlockBoxes& boxes = s.boxes[(first + b) / kBlock];
     const std::uint32_t at = (first + b) % kBlock;
     for (int a = 0; a < 3; ++a) {
-      const Reach r = reach_of(s.blocks[block + b], a);
-      boxes.side[a][at] = float_not_above(std::max(r.lo - pad, box.lo[a]) - room);
-      boxes.side[3 + a][at] = float_not_below(std::min(r.hi + pad, box.hi[a]) + room);
+      const BlockHalfWidth r = half_width_of(s.blocks[block + b], a);
+      boxes.side[a][at] = float_not_above(std::max(r.lo - pad, box.lo[a]) - error_bound);
+      boxes.side[3 + a][at] = float_not_below(std::min(r.hi + pad, box.hi[a]) + error_bound);
     }
   }
 }

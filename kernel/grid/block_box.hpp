@@ -8,9 +8,10 @@
 
 namespace grelha {
 
-/// Replaces the numbers of blocks in cells [begin, end) by the places where their boxes begin, from
+/// Replaces the numbers of blocks in cells [begin, end) by the positions where their boxes begin,
+/// from
 /// `row` on, whose first box is that of `block`. Returns the row behind the last.
-std::uint64_t place_boxes(std::size_t begin,
+std::uint64_t write_boxes(std::size_t begin,
                           std::size_t end,
                           std::uint64_t row,
                           std::uint64_t block,

@@ -19,8 +19,8 @@ namespace grelha {
 ///         Packing", ICDE 1997.
 class BlockOrder {
  public:
-  /// The place of each triangle of a cell, a function of the cell and its triangles alone. The span
-  /// lives until the next call.
+  /// The position of each triangle in a cell, a function of the cell and its triangles alone. The
+  /// span lives until the next call.
   std::span<const std::uint32_t> places(const Primitives& p,
                                         std::span<const std::uint32_t> ids,
                                         const Grid& grid,

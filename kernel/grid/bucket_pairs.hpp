@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "kernel/scene/raw_vector.hpp"
+#include "kernel/base/raw_vector.hpp"
 
 namespace grelha {
 

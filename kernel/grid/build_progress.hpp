@@ -33,8 +33,8 @@ class BuildProgress {
   void finish() { tell(1); }
 
   /// True if the caller stopped the build. Called by any thread.
-  bool stopped() const { return stopped_.load(std::memory_order_relaxed); }
-  void throw_if_stopped() const {
+  bool stopped() const { return cancelled_.load(std::memory_order_relaxed); }
+  void throw_if_cancelled() const {
     if (stopped())
       throw Stopped();
   }
@@ -42,13 +42,13 @@ class BuildProgress {
  private:
   void tell(double share) {
     if (report_ && !stopped() && !report_(std::min(share, 1.)))
-      stopped_ = true;
+      cancelled_ = true;
   }
   std::function<bool(double)> report_;
   double share_ = 0;
   double end_ = 0;
   double step_ = 0;
-  std::atomic<bool> stopped_ = false;
+  std::atomic<bool> cancelled_ = false;
   std::mutex mutex_;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Which cells of a grid a primitive touches.
+// Which cells of a grid a primitive overlaps.
 
 #include "kernel/grid/grid.hpp"
 
@@ -25,7 +25,7 @@ class CellFinder {
       if (range.is_one())
         visit(index(range.lo[0], range.lo[1], range.lo[2]));
       else
-        touched(range, typename Shape::Touch(all[i], frame_, range), visit);
+        overlapped(range, typename Shape::Overlap(all[i], frame_, range), visit);
     });
   }
 
@@ -45,8 +45,8 @@ class CellFinder {
     return static_cast<std::size_t>(x) + nx * static_cast<std::size_t>(y) +
            nx * ny * static_cast<std::size_t>(z);
   }
-  template <class Touch, class Visit>
-  void touched(const CellRange& range, const Touch& touch, const Visit& visit) const {
+  template <class Overlap, class Visit>
+  void overlapped(const CellRange& range, const Overlap& touch, const Visit& visit) const {
     for (int z = range.lo[2]; z <= range.hi[2]; ++z)
       for (int y = range.lo[1]; y <= range.hi[1]; ++y)
         for (int x = range.lo[0]; x <= range.hi[0]; ++x)

@@ -7,14 +7,14 @@
 #include <utility>
 
 #include "kernel/grid/view.hpp"
-#include "kernel/scene/raw_vector.hpp"
+#include "kernel/base/raw_vector.hpp"
 #include "kernel/shapes/shapes.hpp"
 
 namespace grelha {
 
 /// The primitives of one kind: an entry each, their numbers in rows, one row a field. Rows end in
-/// kBlock entries of NaN, so that a whole block can be read from any place. All rows are one piece
-/// of memory: pieces of their own would be too small for large pages.
+/// kBlock entries of NaN, so that a whole block can be read from any element. All rows are one
+/// piece of memory: pieces of their own would be too small for large pages.
 template <class Shape>
 struct ListStore {
   /// Bytes of an entry.
@@ -79,11 +79,11 @@ struct ListStore<Triangle> {
   void resize(std::size_t entries) { blocks.resize(entries); }
   /// Once blocks have their room.
   void resize_boxes(std::size_t rows);
-  /// No block has a box of this row from a place on, if that is within it.
+  /// No block has a box of this row from a position on, if that is within it.
   void end_row(std::size_t place);
-  /// Puts a triangle in one of the places of blocks from `entry` on.
+  /// Puts a triangle at one of the positions of blocks from `entry` on.
   void put(std::size_t entry, std::size_t place, const Triangle::Fields<float>&, std::uint32_t of);
-  /// The last block holds nothing from a place on.
+  /// The last block holds nothing from a position on.
   void end_block(std::size_t entry, std::size_t place);
   Triangle::CellList list() const;
   std::size_t bytes() const {

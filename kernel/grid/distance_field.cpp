@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "kernel/scene/turns.hpp"
+#include "kernel/base/parallel_for.hpp"
 
 namespace grelha {
 namespace {
@@ -31,7 +31,7 @@ class OctantSweep {
 
  private:
   bool is_down(int axis) const { return octant_ >> axis & 1; }
-  /// The i-th place along an axis, the last on the way of the octant first.
+  /// The i-th position along an axis, the last on the way of the octant first.
   std::ptrdiff_t place(int axis, std::ptrdiff_t i) const {
     return is_down(axis) ? i : n_[axis] - 1 - i;
   }
@@ -57,7 +57,7 @@ class OctantSweep {
     along_x(empty_ + start_of(y, z), to_ + start_of(y, z));
   }
 
-  /// A cell's own place in least_ and the next are x and x + 1, or the other way round.
+  /// A cell's own index in least_ and the next are x and x + 1, or the other way round.
   void along_x(const std::uint8_t* empty, std::uint8_t* to) {
     constexpr std::uint8_t kLastStep = kFarthest - 1;
     for (std::ptrdiff_t x = 0; x < n_[0]; ++x)
@@ -85,12 +85,12 @@ class OctantSweep {
   std::vector<std::uint8_t> least_;  ///< of the three rows on the way of one
 };
 
-void take_lesser(const std::uint8_t* from, std::uint8_t* to, std::size_t count) {
+void take_min(const std::uint8_t* from, std::uint8_t* to, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i)
     to[i] = std::min(to[i], from[i]);
 }
 
-/// One octant after the other, for want of place.
+/// One octant after the other, for want of memory.
 void find_in_all_directions(std::vector<std::uint8_t>& d,
                             const std::array<std::uint32_t, 3>& cells) {
   const std::size_t count = cell_count(cells);
@@ -98,16 +98,16 @@ void find_in_all_directions(std::vector<std::uint8_t>& d,
   std::vector<std::uint8_t> octant(count);
   for (std::size_t o = 0; o < kOctants; ++o) {
     OctantSweep(empty.data(), octant.data(), cells, o).run();
-    take_lesser(octant.data(), d.data(), count);
+    take_min(octant.data(), d.data(), count);
   }
 }
 
 }  // namespace
 
-void find_distances(std::vector<std::uint8_t>& d,
-                    const std::array<std::uint32_t, 3>& cells,
-                    std::size_t fields,
-                    int threads) {
+void compute_distances(std::vector<std::uint8_t>& d,
+                       const std::array<std::uint32_t, 3>& cells,
+                       std::size_t fields,
+                       int threads) {
   if (fields == 1)
     return find_in_all_directions(d, cells);
   const std::size_t count = cell_count(cells);
@@ -118,17 +118,17 @@ void find_distances(std::vector<std::uint8_t>& d,
   const std::size_t slice = std::size_t{cells[0]} * cells[1];
   each_turn(cells[2], threads, [&](std::size_t z) {
     for (std::size_t octant = 0; octant < kOctants; ++octant)
-      take_lesser(field(octant) + z * slice, d.data() + z * slice, slice);
+      take_min(field(octant) + z * slice, d.data() + z * slice, slice);
   });
 }
 
-std::vector<std::uint8_t> distances_to_occupied(const std::vector<std::uint8_t>& occupied,
-                                                const std::array<std::uint32_t, 3>& cells,
-                                                std::size_t fields) {
+std::vector<std::uint8_t> distance_transform(const std::vector<std::uint8_t>& occupied,
+                                             const std::array<std::uint32_t, 3>& cells,
+                                             std::size_t fields) {
   std::vector<std::uint8_t> d(fields * cell_count(cells) + 3);
   for (std::size_t c = 0; c < occupied.size(); ++c)
     d[c] = occupied[c] ? 0 : kFarthest;
-  find_distances(d, cells, fields, 1);
+  compute_distances(d, cells, fields, 1);
   return d;
 }
 

@@ -15,7 +15,7 @@ inline std::size_t cell_count(const std::array<std::uint32_t, 3>& cells) {
 /// Octants of directions: bit a of an octant is set where they go down along axis a. A field for
 /// each stands behind that of all directions.
 inline constexpr std::size_t kOctants = 8;
-/// Grids of more cells have only the field of all directions: places in fields are numbers of 31
+/// Grids of more cells have only the field of all directions: indices into fields are numbers of 31
 /// bits, and memory is limited.
 inline constexpr std::size_t kMostCellsOfOctants = std::size_t{1} << 26;
 
@@ -24,7 +24,7 @@ inline std::size_t distance_fields(std::size_t cells) {
   return cells > kMostCellsOfOctants ? 1 : 1 + kOctants;
 }
 
-/// [fields][cells] and 3 more, so that four bytes can be read from any place: Chebyshev distance of
+/// [fields][cells] and 3 more, so that four bytes can be read from any cell: Chebyshev distance of
 /// each cell to the nearest with occupied != 0 in the octant that the cell is the corner of, at
 /// most 255; exact. Beyond the grid there is nothing.
 ///
@@ -32,13 +32,13 @@ inline std::size_t distance_fields(std::size_t cells) {
 ///         The distance in all directions is the least of eight.
 /// Source  Cohen & Sheffer, "Proximity Clouds", 1994; by octants after Šrámek & Kaufman, "Fast
 ///         Ray-Tracing of Rectilinear Volume Data Using Distance Transforms", 2000.
-std::vector<std::uint8_t> distances_to_occupied(const std::vector<std::uint8_t>& occupied,
-                                                const std::array<std::uint32_t, 3>& cells,
-                                                std::size_t fields);
+std::vector<std::uint8_t> distance_transform(const std::vector<std::uint8_t>& occupied,
+                                             const std::array<std::uint32_t, 3>& cells,
+                                             std::size_t fields);
 /// In place: the first [cells] of `d` hold 0 where a cell is occupied and 255 elsewhere.
-void find_distances(std::vector<std::uint8_t>& d,
-                    const std::array<std::uint32_t, 3>& cells,
-                    std::size_t fields,
-                    int threads);
+void compute_distances(std::vector<std::uint8_t>& d,
+                       const std::array<std::uint32_t, 3>& cells,
+                       std::size_t fields,
+                       int threads);
 
 }  // namespace grelha

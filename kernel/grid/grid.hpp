@@ -17,20 +17,20 @@ namespace grelha {
 
 struct Grid {
   std::array<std::uint32_t, 3> cells{1, 1, 1};  ///< per axis, each >= 1; x runs fastest
-  double pad = 0;                               ///< room added around primitives
+  double pad = 0;                               ///< added around primitives
   /// corner (a float's value, so that walks subtract it exactly) and cell size
   double lo[3] = {}, cell[3] = {};
   CellStore store;
   std::vector<std::uint8_t> distance;  ///< of cells, see distance_field.hpp
   std::uint64_t occupied = 0;
-  double reach = 0;  ///< how far from their box rays start that walk it from where they start
+  double half_width = 0;  ///< how far from their box rays start that walk it from where they start
 
   GridView view() const;
   GridStats stats() const;
 
  private:
   void set_axis(GridView& v, int a) const;
-  void set_rooms(GridView& v) const;
+  void set_error_bounds(GridView& v) const;
 };
 
 /// A cell, in scene units.

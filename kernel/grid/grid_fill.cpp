@@ -9,14 +9,14 @@
 
 #include "kernel/grid/block_box.hpp"
 #include "kernel/grid/block_order.hpp"
-#include "kernel/grid/box_places.hpp"
+#include "kernel/grid/box_allocator.hpp"
 #include "kernel/grid/bucket_pairs.hpp"
 #include "kernel/grid/build_progress.hpp"
 #include "kernel/grid/cell_finder.hpp"
 #include "kernel/grid/distance_field.hpp"
 #include "kernel/grid/grid_layout.hpp"
-#include "kernel/scene/turns.hpp"
-#include "kernel/shapes/copies.hpp"
+#include "kernel/base/parallel_for.hpp"
+#include "kernel/shapes/duplicates.hpp"
 
 // A store is filled in three passes, each shared among threads that write to places of their own:
 // - emit: a chunk of primitives becomes pairs (cell, id), sorted by bucket, a run of neighbouring
@@ -31,7 +31,7 @@ namespace {
 constexpr std::size_t kChunk = 2048;
 constexpr double kEmitShare = .2;  ///< of the time; counting takes next to none
 /// entries of one kind in a cell, from which on it is looked through for copies
-constexpr std::uint32_t kCrowded = 1024;
+constexpr std::uint32_t kClustered = 1024;
 constexpr std::uint64_t kMostEntries = 0xFFFFFF00u;
 
 /// Entries by kind, and rows of boxes; of a bucket, or of all before it.
@@ -50,7 +50,7 @@ struct Filling {
   BuildProgress& progress;
   Buckets buckets{cell_count(grid.cells)};
   std::vector<PairChunk> chunks = std::vector<PairChunk>((ids.size() + kChunk - 1) / kChunk);
-  std::vector<std::uint8_t> crowded = {};  ///< [buckets] 1: of a bucket with a crowded cell
+  std::vector<std::uint8_t> clustered = {};  ///< [buckets] 1: of a bucket with a clustered cell
   CellStore store = {};
 };
 
@@ -74,7 +74,7 @@ void share_out(const Filling& f, std::size_t count, const Work& work) {
   };
   each_turn(
       count, f.threads, [] { return State(); }, take);
-  f.progress.throw_if_stopped();
+  f.progress.throw_if_cancelled();
 }
 
 /// Allocates the list starts of each kind that has primitives.
@@ -114,11 +114,11 @@ void for_each_pair(const Filling& f, std::size_t bucket, const Visit& visit) {
 /// Turns primitives of each of a bucket's cells into entries; returns their sums.
 Sums count_entries(Filling& f, std::size_t bucket) {
   Sums sums;
-  BoxPlaces places(0);
+  BoxAllocator places(0);
   for_each_list(f.store, [&]<class Shape>(ListStore<Shape>& list, std::size_t kind) {
     for (std::size_t c = f.buckets.begin(bucket); c < f.buckets.end(bucket); ++c) {
       std::uint32_t& n = list.first[c];
-      f.crowded[bucket] |= n > kCrowded;
+      f.clustered[bucket] |= n > kClustered;
       n = ListStore<Shape>::entries_of(n);
       sums.entries[kind] += n;
       if (Shape::kInBlocks && f.pad)
@@ -144,12 +144,12 @@ Sums count(Filling& f, std::size_t bucket) {
   return count_entries(f, bucket);
 }
 
-/// Primitives of buckets with a crowded cell.
-std::vector<std::uint32_t> in_crowded_buckets(const Filling& f) {
+/// Primitives of buckets with a clustered cell.
+std::vector<std::uint32_t> in_clustered_buckets(const Filling& f) {
   std::vector<bool> found(f.primitives.ids.end());
   for (const PairChunk& chunk : f.chunks)
     for (const Pair& pair : chunk.pairs)
-      if (f.crowded[pair.cell >> f.buckets.shift] != 0)
+      if (f.clustered[pair.cell >> f.buckets.shift] != 0)
         found[pair.id] = true;
   std::vector<std::uint32_t> ids;
   std::copy_if(f.ids.begin(), f.ids.end(), std::back_inserter(ids), [&](std::uint32_t id) {
@@ -158,10 +158,10 @@ std::vector<std::uint32_t> in_crowded_buckets(const Filling& f) {
   return ids;
 }
 
-/// Removes copies of primitives in crowded cells from all cells; returns true if there were any. A
-/// copy has the cells of its original.
+/// Removes copies of primitives in clustered cells from all cells; returns true if there were any.
+/// A copy has the cells of its original.
 bool drop_copies(Filling& f) {
-  const std::vector<std::uint32_t> found = copies_among(f.primitives, in_crowded_buckets(f));
+  const std::vector<std::uint32_t> found = find_duplicates(f.primitives, in_clustered_buckets(f));
   if (found.empty())
     return false;
   std::vector<bool> copies(f.primitives.ids.end());
@@ -202,10 +202,10 @@ std::vector<Sums> count_all(Filling& f) {
   std::vector<Sums> starts(f.buckets.count);
   for (const PairChunk& c : f.chunks)
     f.store.references += c.pairs.size();
-  f.crowded.assign(f.buckets.count, 0);
+  f.clustered.assign(f.buckets.count, 0);
   count_buckets(f, starts);
-  const bool crowded = std::find(f.crowded.begin(), f.crowded.end(), 1) != f.crowded.end();
-  if (crowded && drop_copies(f))
+  const bool clustered = std::find(f.clustered.begin(), f.clustered.end(), 1) != f.clustered.end();
+  if (clustered && drop_copies(f))
     count_buckets(f, starts);
   const Sums total = add_up(starts);
   for_each_list(f.store, [&]<class Shape>(ListStore<Shape>& list, std::size_t kind) {
@@ -244,13 +244,13 @@ void put_triangles(Filling& f,
 /// Working memory of a thread that writes buckets.
 struct Scratch {
   std::vector<std::uint32_t> written;  ///< primitives so far, by kind and cell
-  /// ids of the bucket, cell after cell, kBlock for each place
+  /// ids of the bucket, cell after cell, kBlock for each position
   RawVector<std::uint32_t> triangles;
   BlockOrder order;
 };
 
 /// Turns the counts of a bucket's cells into where their lists begin.
-void place_lists(Filling& f, std::size_t bucket, const Sums& start, Scratch& scratch) {
+void write_lists(Filling& f, std::size_t bucket, const Sums& start, Scratch& scratch) {
   const std::size_t begin = f.buckets.begin(bucket), end = f.buckets.end(bucket);
   for_each_list(f.store, [&]<class Shape>(ListStore<Shape>& list, std::size_t kind) {
     std::uint64_t from = start.entries[kind];
@@ -258,7 +258,7 @@ void place_lists(Filling& f, std::size_t bucket, const Sums& start, Scratch& scr
     if (Shape::kInBlocks && f.pad) {
       auto& triangles = f.store.of<Triangle>();
       from = start.rows * kBlock;
-      sum = kBlock * place_boxes(begin, end, start.rows, start.entries[kind], triangles);
+      sum = kBlock * write_boxes(begin, end, start.rows, start.entries[kind], triangles);
     } else {
       for (std::size_t c = begin; c < end; ++c)
         sum += std::exchange(list.first[c], static_cast<std::uint32_t>(sum));
@@ -279,7 +279,7 @@ class BucketLists {
         first_place_(f.pad ? start.rows * kBlock : start.entries[kTriangles]),
         scratch_(scratch) {
     scratch.written.assign(kKinds * size_, 0);
-    place_lists(f, bucket, start, scratch);
+    write_lists(f, bucket, start, scratch);
   }
 
   /// Writes the lists, but those of triangles: these stand in the scratch.
@@ -372,11 +372,11 @@ void fill_grid(const Primitives& p,
   const std::size_t fields = distance_fields(cells);
   g.distance.resize(fields * cells + 3);
   const CellFinder finder(p, g);
-  Filling filling{p, ids, g, g.pad, useful_threads(threads, ids.size()), progress};
+  Filling filling{p, ids, g, g.pad, thread_count_for(threads, ids.size()), progress};
   const auto cells_of = [&](std::uint32_t id, const auto& visit) { finder(id, visit); };
   g.occupied = fill(filling, cells_of, g.distance.data(), share);
   g.store = std::move(filling.store);
-  find_distances(g.distance, g.cells, fields, useful_threads(threads, cells));
+  compute_distances(g.distance, g.cells, fields, thread_count_for(threads, cells));
 }
 
 CellStore build_list(const Primitives& p, std::span<const std::uint32_t> ids) {

@@ -10,7 +10,7 @@
 
 namespace grelha {
 
-/// Writes the lists of a grid whose cells lay_out_grid() chose, and reports progress, `share` of
+/// Writes the lists of a grid whose cells layout_grid() chose, and reports progress, `share` of
 /// the whole.
 void fill_grid(const Primitives& primitives,
                std::span<const std::uint32_t> ids,

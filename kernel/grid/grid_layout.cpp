@@ -6,8 +6,8 @@
 #include <mutex>
 
 #include "kernel/grid/cell_finder.hpp"
-#include "kernel/primitive/rounding.hpp"
-#include "kernel/scene/turns.hpp"
+#include "kernel/shapes/rounding.hpp"
+#include "kernel/base/parallel_for.hpp"
 
 namespace grelha {
 namespace {
@@ -161,11 +161,11 @@ double cell_edge(const Box& box, std::size_t count, double density) {
   return std::max(1 / per_length, std::max({extent[0], extent[1], extent[2]}) / kMostCells);
 }
 
-Grid lay_out_grid(const Primitives& p,
-                  std::span<const std::uint32_t> ids,
-                  const Box& box,
-                  double density,
-                  double pad) {
+Grid layout_grid(const Primitives& p,
+                 std::span<const std::uint32_t> ids,
+                 const Box& box,
+                 double density,
+                 double pad) {
   Box b = box;
   b.grow(2 * pad);  // once for the cells' contents, once for the entry of rays
   Grid g;

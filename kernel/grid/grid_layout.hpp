@@ -12,7 +12,7 @@
 namespace grelha {
 
 /// Threads that have enough to do: starting one costs as much as some hundred primitives.
-inline int useful_threads(int threads, std::size_t work) {
+inline int thread_count_for(int threads, std::size_t work) {
   return static_cast<int>(
       std::clamp<std::size_t>(work / 512, 1, static_cast<std::size_t>(threads)));
 }
@@ -25,20 +25,20 @@ inline int useful_threads(int threads, std::size_t work) {
 ///             At most 1024 cells an axis, none smaller than 2 pad. Cells are coarsened by halves
 ///             if primitives of a probe would stand in more than 64 cells on average, or all
 ///             primitives together in more than 2^22 (or 4 each).
-/// Guarantee   every primitive stands in each cell that its box grown by `pad` touches, unless the
+/// Guarantee   every primitive stands in each cell that its box grown by `pad` overlaps, unless the
 ///             cell lies beyond `pad` of its surface. In each cell spheres and cones ascend by id,
 ///             triangles stand as BlockOrder says. Same lists on every machine, by any number of
 ///             threads.
 /// Source      Lagae & Dutré, "Compact, Fast and Robust Grids for Ray Tracing", 2008: count, sum,
 ///             scatter. Kalojanov & Slusallek, "A Parallel Algorithm for Construction of Uniform
 ///             Grids", 2009: pairs of cell and primitive, sorted by cell.
-Grid lay_out_grid(const Primitives& primitives,
-                  std::span<const std::uint32_t> ids,
-                  const Box& box,
-                  double density,
-                  double pad);
+Grid layout_grid(const Primitives& primitives,
+                 std::span<const std::uint32_t> ids,
+                 const Box& box,
+                 double density,
+                 double pad);
 
-/// The edge of the cells that a density asks for; what lay_out_grid() makes of it also depends on
+/// The edge of the cells that a density asks for; what layout_grid() makes of it also depends on
 /// the pad.
 double cell_edge(const Box& box, std::size_t count, double density);
 

@@ -21,20 +21,20 @@ struct GridView {
   CellLists lists;
   /// rays that start outside of this box are moved into the frame of the grid first
   float near_lo[3] = {}, near_hi[3] = {};
-  float room = 0;  ///< RayLanes::room of rays that start within it
-  float off = 0;   ///< error of coordinates in the frame of the grid
+  float error_bound = 0;  ///< SimdRays::error_bound of rays that start within it
+  float frame_error = 0;  ///< error of coordinates in the frame of the grid
   /// [cells] Chebyshev distance to the nearest cell that holds something; 0: this one does. Behind
-  /// it fields of [cells] by octants of directions, each so many places after the one before, or 0
-  /// places: there are none.
+  /// it fields of [cells] by octants of directions, each so many bytes after the one before, or 0:
+  /// there are none.
   const std::uint8_t* distance = nullptr;
-  std::uint32_t field_places = 0;
+  std::uint32_t field_offsets = 0;
   int n[3] = {};  ///< cells per axis; x runs fastest
   double lo[3] = {}, cell[3] = {}, inv_cell[3] = {};
-  float pad = 0;  ///< room added around primitives before they were put into cells
+  float pad = 0;  ///< added around primitives before they were put into cells
   float lo_f[3] = {}, hi_f[3] = {}, cell_f[3] = {}, inv_cell_f[3] = {};
 };
 
-/// The primitives that rays can meet, and their grids.
+/// The primitives that rays can hit, and their grids.
 struct SceneView {
   GeometryView geometry;
   /// one "cell" of primitives that no grid holds: few, or as large as the scene
@@ -58,7 +58,7 @@ struct Counters {
   std::uint64_t box_rows = 0;
   std::uint64_t primitive_rows = 0;
   std::uint64_t formed = 0;
-  std::uint64_t fell_back = 0;
+  std::uint64_t packet_fallbacks = 0;
   std::uint64_t issued = 0;
   std::uint64_t busy = 0;
 };

@@ -2,9 +2,9 @@
 // The hot loops behind the functions of a Variant, as each variant_*.cpp compiles them. Included
 // once per instruction set.
 
-#include "kernel/render/band.hpp"
+#include "kernel/shade/strip.hpp"
 #include "kernel/query/loops.hpp"
-#include "kernel/trace/one_ray.hpp"
+#include "kernel/traverse/one_ray.hpp"
 
 namespace grelha::GRELHA_ISA {
 
@@ -19,16 +19,16 @@ inline void tally(const Counters& n,
   ray_counts.refraction += rays.refraction;
 }
 
-inline void band(const SceneView& scene,
-                 const ShadingView& shading,
-                 const FrameView& frame,
-                 const Part& part,
-                 const BandWork& work,
-                 TraceCounts& trace_counts,
-                 RayCounts& ray_counts) {
+inline void strip(const SceneView& scene,
+                  const ShadingView& shading,
+                  const FrameView& frame,
+                  const Part& part,
+                  const StripWork& work,
+                  TraceCounts& trace_counts,
+                  RayCounts& ray_counts) {
   Counters n;
   RayTally rays;
-  render_band(scene, shading, frame, part, work, n, rays);
+  render_strip(scene, shading, frame, part, work, n, rays);
   tally(n, rays, trace_counts, ray_counts);
 }
 
@@ -37,7 +37,7 @@ inline void pixel_runs(const SceneView& scene,
                        const FrameView& frame,
                        const PixelRun* runs,
                        int count,
-                       const BandWork& work,
+                       const StripWork& work,
                        TraceCounts& trace_counts,
                        RayCounts& ray_counts) {
   Counters n;
@@ -50,7 +50,7 @@ inline void points(const SceneView& scene,
                    const ShadingView& shading,
                    const FrameView& frame,
                    const PointList& list,
-                   const BandWork& work,
+                   const StripWork& work,
                    TraceCounts& trace_counts,
                    RayCounts& ray_counts) {
   Counters n;
@@ -64,7 +64,7 @@ const VariantLoops kLoops{.closest = closest,
                           .occluded = occluded,
                           .closest_one = closest_one,
                           .occluded_one = occluded_one,
-                          .render_band = band,
+                          .render_strip = strip,
                           .render_runs = pixel_runs,
                           .render_points = points};
 

@@ -5,15 +5,15 @@
 #include <stdexcept>
 #include <string>
 
-#include "kernel/render/guarded_progress.hpp"
-#include "kernel/render/bands.hpp"
-#include "kernel/scene/forked.hpp"
-#include "kernel/scene/image_to_fill.hpp"
+#include "kernel/shade/guarded_progress.hpp"
+#include "kernel/shade/strips.hpp"
+#include "kernel/base/fork.hpp"
+#include "kernel/picture/image_to_fill.hpp"
 
 namespace grelha {
 namespace {
 
-static_assert(kPieceRows == kBandRows);
+static_assert(kPieceRows == kStripRows);
 
 int size(const Range& r) {
   return r.end - r.begin;
@@ -86,7 +86,7 @@ Accumulator make_accumulator(const Camera& camera, const RenderOptions& options)
   return make_accumulator(camera, options, {{0, camera.height}, {0, options.sampling.samples}});
 }
 
-bool is_sound(const Accumulator& a) {
+bool is_valid(const Accumulator& a) {
   return std::all_of(a.done.begin(), a.done.end(), [](std::uint8_t d) { return d <= 1; });
 }
 
@@ -138,28 +138,28 @@ bool accumulate(const World& world,
   check(a, camera, options);
   const Pieces to_render(a, next);
   GuardedProgress progress(options.progress, should_continue);
-  const auto next_band = [&](std::size_t turn, Band& band) {
-    band.number = to_render.take(turn);
-    if (band.number >= a.done.size())
+  const auto next_band = [&](std::size_t turn, Strip& strip) {
+    strip.number = to_render.take(turn);
+    if (strip.number >= a.done.size())
       return false;
-    band.part = piece_of(a.part, band.number);
+    strip.part = piece_of(a.part, strip.number);
     return true;
   };
   std::size_t done = a.done.size() - to_render.left();
-  const auto take_band = [&](const Band& band, const std::int64_t* sums) {
+  const auto take_band = [&](const Strip& strip, const std::int64_t* sums) {
 #pragma omp critical(grelha_progress)
     {
-      add_rows(a, band.part.rows, sums);
-      a.done[band.number] = 1;
+      add_rows(a, strip.part.rows, sums);
+      a.done[strip.number] = 1;
       ++done;
-      progress.tell(static_cast<double>(done) / static_cast<double>(a.done.size()));
+      progress.report(static_cast<double>(done) / static_cast<double>(a.done.size()));
       if (progress.stopped())
         progress.resume();  // no thread changes the sums meanwhile
     }
     return !progress.stopped();
   };
   run_fork_safe([&] {
-    render_bands(world.impl(), setup, options, to_render.left(), next_band, take_band, stats);
+    render_strips(world.impl(), setup, options, to_render.left(), next_band, take_band, stats);
   });
   progress.rethrow();
   return is_complete(a);

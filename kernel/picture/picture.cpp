@@ -1,9 +1,9 @@
 #include "kernel/picture/picture.hpp"
 
-#include "kernel/adaptive/adaptive_sampler.hpp"
-#include "kernel/subdivision/point_tracer.hpp"
-#include "kernel/render/setup.hpp"
-#include "kernel/scene/forked.hpp"
+#include "kernel/picture/adaptive_sampler.hpp"
+#include "kernel/picture/point_tracer.hpp"
+#include "kernel/shade/setup.hpp"
+#include "kernel/base/fork.hpp"
 
 namespace grelha {
 namespace {
@@ -110,7 +110,7 @@ std::uint64_t samples_of(const Accumulator& a) {
   return samples * static_cast<std::uint64_t>(a.width);
 }
 std::uint64_t samples_of(const Refinement& r) {
-  return samples_taken(r);
+  return sample_count_(r);
 }
 std::uint64_t samples_of(const SubdivisionState&) {
   return 0;
@@ -124,12 +124,12 @@ Part part_of(const State& whole) {
   return {{0, height_of(whole)}, {0, 1}};
 }
 
-bool numbers_are_sound(const Accumulator& a) {
+bool numbers_are_valid(const Accumulator& a) {
   return a.samples >= 1 && a.samples <= kMostSamples && is_range(a.part.rows, a.height) &&
          is_range(a.part.samples, a.samples);
 }
 template <class State>
-bool numbers_are_sound(const State&) {
+bool numbers_are_valid(const State&) {
   return true;
 }
 
@@ -184,7 +184,7 @@ Image Picture::image() const {
   return std::visit([](const auto& state) { return image_of(state); }, state_);
 }
 
-std::uint64_t Picture::samples_taken() const {
+std::uint64_t Picture::sample_count_() const {
   return std::visit([](const auto& state) { return samples_of(state); }, state_);
 }
 
@@ -197,13 +197,13 @@ Part Picture::part() const {
   return std::visit([](const auto& state) { return part_of(state); }, state_);
 }
 
-bool Picture::is_sound() const {
-  return std::visit([](const auto& state) { return grelha::is_sound(state); }, state_);
+bool Picture::is_valid() const {
+  return std::visit([](const auto& state) { return grelha::is_valid(state); }, state_);
 }
 
-bool Picture::has_sound_numbers() const {
+bool Picture::has_valid_numbers() const {
   return is_size(width(), height()) &&
-         std::visit([](const auto& state) { return numbers_are_sound(state); }, state_);
+         std::visit([](const auto& state) { return numbers_are_valid(state); }, state_);
 }
 
 }  // namespace grelha

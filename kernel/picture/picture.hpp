@@ -1,6 +1,6 @@
 #pragma once
 // A picture in the making, whatever decides where its samples go: it is rendered bit by bit,
-// stopped, kept and gone on with, to the bits of one that was rendered in one go.
+// stopped, saved and gone on with, to the bits of one that was rendered in one go.
 
 #include <cstdint>
 #include <string_view>
@@ -12,14 +12,14 @@
 #include "grelha/render_options.hpp"
 #include "grelha/stats.hpp"
 #include "grelha/world.hpp"
-#include "kernel/render/guarded_progress.hpp"
+#include "kernel/shade/guarded_progress.hpp"
 #include "kernel/picture/picture_fields.hpp"
-#include "kernel/adaptive/refinement.hpp"
-#include "kernel/subdivision/subdivision_state.hpp"
+#include "kernel/picture/refinement.hpp"
+#include "kernel/picture/subdivision_state.hpp"
 
 namespace grelha {
 
-/// The state of a picture between two pieces of its work: plain data, to be copied and kept. The
+/// The state of a picture between two pieces of its work: plain data, to be copied and saved. The
 /// options that it began with define it, and every call needs the same ones.
 class Picture {
  public:
@@ -54,7 +54,7 @@ class Picture {
   /// The picture so far; what has no sample yet is black.
   Image image() const;
   /// Samples taken, of all pixels; 0 where they are not counted: by subdivision.
-  std::uint64_t samples_taken() const;
+  std::uint64_t sample_count_() const;
 
   /// The way its samples are spent, in one word.
   std::string_view kind() const;
@@ -67,7 +67,7 @@ class Picture {
 
   /// True if rendering can produce this state. Check a loaded file with this before going on with
   /// it.
-  bool is_sound() const;
+  bool is_valid() const;
 
   /// Gives an archive the numbers that say what the picture is, then its arrays; see
   /// picture_fields.hpp.
@@ -90,7 +90,7 @@ class Picture {
     return picture;
   }
   /// True if the numbers alone are sound: check before load_arrays(), which allocates by them.
-  bool has_sound_numbers() const;
+  bool has_valid_numbers() const;
   /// Takes from an archive what save_arrays() gave it.
   template <class Archive>
   void load_arrays(Archive&& archive) {

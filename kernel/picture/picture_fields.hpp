@@ -1,5 +1,5 @@
 #pragma once
-// The fields of a picture in the order in which they are kept. The kernel knows no file format: an
+// The fields of a picture in the order in which they are saved. The kernel knows no file format: an
 // archive writes or reads the fields, and says how each looks.
 //
 // An archive of numbers has
@@ -15,12 +15,12 @@
 #include <type_traits>
 
 #include "grelha/accumulator.hpp"
-#include "kernel/adaptive/refinement.hpp"
-#include "kernel/subdivision/subdivision_state.hpp"
+#include "kernel/picture/refinement.hpp"
+#include "kernel/picture/subdivision_state.hpp"
 
 namespace grelha {
 
-/// The word for a way of rendering: the first name under which its numbers are kept.
+/// The word for a way of rendering: the first name under which its numbers are saved.
 template <class State>
 inline constexpr std::string_view kKindOf = "";
 template <>
@@ -54,7 +54,7 @@ template <class Archive, class State>
 requires std::is_same_v<std::remove_const_t<State>, Refinement>
 void visit_numbers(Archive& archive, State& r) {
   archive.numbers(
-      kKindOf<Refinement>, r.width, r.height, r.rounds, r.audits, r.last, r.met, r.finished);
+      kKindOf<Refinement>, r.width, r.height, r.rounds, r.checks, r.last, r.met, r.finished);
 }
 
 template <class Archive, class State>
@@ -62,8 +62,8 @@ requires std::is_same_v<std::remove_const_t<State>, Refinement>
 void visit_arrays(Archive& archive, State& r) {
   const std::size_t pixels = pixels_of(r.width, r.height);
   archive.values(r.variance_drop, r.variance_level, r.round_drop, r.round_level);
-  archive.values(r.worse, r.least_by_sample, r.audited, r.audited_bound, r.audited_at, r.met_at);
-  archive.values(r.audit_samples);
+  archive.values(r.worse, r.least_by_sample, r.checked, r.checked_bound, r.checked_at, r.met_at);
+  archive.values(r.check_samples);
   archive.values(r.seconds, r.share, r.rays, r.variance_ratio, r.gain_threshold);
   archive.list(r.log, r.blocks().count());
   archive.list(r.missed, r.blocks().count());

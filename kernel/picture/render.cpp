@@ -1,8 +1,8 @@
 #include "grelha/render.hpp"
 
 #include "kernel/picture/picture.hpp"
-#include "kernel/render/bands.hpp"
-#include "kernel/render/workspace.hpp"
+#include "kernel/shade/strips.hpp"
+#include "kernel/shade/workspace.hpp"
 
 namespace grelha {
 
@@ -10,7 +10,7 @@ std::vector<Isa> isas() {
   std::vector<Isa> out;
   for (const std::string_view name : {"scalar", "sse2", "avx2", "avx512"}) {
     const Variant* const v = find_variant(name);
-    out.push_back({name, v != nullptr, v != nullptr && v->runs_here()});
+    out.push_back({name, v != nullptr, v != nullptr && v->is_supported()});
   }
   return out;
 }
@@ -26,10 +26,10 @@ Image render(const World& world,
 }
 
 std::uint64_t thread_bytes(const Camera& camera, const RenderOptions& options) {
-  const auto bands = static_cast<std::size_t>((camera.height + kBandRows - 1) / kBandRows);
-  const std::size_t sums = static_cast<std::size_t>(camera.width) * kBandRows;
+  const auto bands = static_cast<std::size_t>((camera.height + kStripRows - 1) / kStripRows);
+  const std::size_t sums = static_cast<std::size_t>(camera.width) * kStripRows;
   const auto threads = static_cast<std::uint64_t>(thread_count(options, bands));
-  return threads * Workspace::bytes(sums, options.depth, options.sampling.gloss_rays);
+  return threads * Workspace::bytes(sums, options.depth, options.sampling.glossy_rays);
 }
 
 }  // namespace grelha

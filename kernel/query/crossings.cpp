@@ -2,8 +2,8 @@
 #include <vector>
 
 #include "grelha/query.hpp"
-#include "kernel/trace/one_ray.hpp"
-#include "kernel/world/world_impl.hpp"
+#include "kernel/traverse/one_ray.hpp"
+#include "kernel/grid/world_impl.hpp"
 
 namespace grelha {
 namespace {
@@ -38,19 +38,19 @@ class Crossings {
       return;
     }
     scalar::Entry to;
-    if (!scalar::enter_from_afar(g, r.org, r.dir, r.t_min, r.best, to))
+    if (!scalar::enter_far(g, r.org, r.dir, r.t_min, r.best, to))
       return;
     Single moved = r;
     for (int a = 0; a < 3; ++a)
       moved.org[a] = to.org[a];
     moved.t_min = scalar::begin_from(r.t_min, to.shift);
-    moved.best = scalar::no_later(r.best, to.shift);
+    moved.best = scalar::round_t_up(r.best, to.shift);
     moved.base = g.lo_f;
-    walk_cells(scalar::in_its_frame(g), moved);
+    walk_cells(scalar::in_grid_frame(g), moved);
   }
 
   void walk_cells(const GridView& g, const Single& r) {
-    scalar::CellWalk cells(g);
+    scalar::CellDda cells(g);
     if (!cells.start(r))
       return;
     const Triangle::CellList& list = g.lists.of<Triangle>();
@@ -65,7 +65,7 @@ class Crossings {
     const std::uint32_t end = list.first[cell + 1];
     float enters[kBlock];
     for (std::uint32_t at = first / kBlock * kBlock; at < end; at += kBlock) {
-      const unsigned passed = scalar::passed_boxes(r, list.boxes[at / kBlock], enters) &
+      const unsigned passed = scalar::hit_boxes(r, list.boxes[at / kBlock], enters) &
                               scalar::blocks_between(at, first, end);
       scalar::each_bit(passed, [&](int k) { look(list.blocks[list.block_at(at) + k]); });
     }
@@ -78,7 +78,7 @@ class Crossings {
   }
 
   bool crosses(const Triangle::Fields<float>& triangle) const {
-    const scalar::Found<double> found = scalar::bound_triangle(ray_, triangle.corner);
+    const scalar::HitInterval<double> found = scalar::bound_triangle(ray_, triangle.corner);
     if (!found.some || found.lo >= t_max_)
       return false;
     if (found.sure && found.hi < t_max_)

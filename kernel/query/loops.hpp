@@ -2,7 +2,7 @@
 // The loops of a Variant that take a caller's rays.
 
 #include "kernel/query/variants.hpp"
-#include "kernel/trace/stream.hpp"
+#include "kernel/traverse/stream.hpp"
 
 namespace grelha::GRELHA_ISA {
 
@@ -15,7 +15,7 @@ inline void add(const Counters& n, TraceCounts& to) {
   to.rows.boxes += n.box_rows;
   to.rows.primitives += n.primitive_rows;
   to.packets.formed += n.formed;
-  to.packets.fell_back += n.fell_back;
+  to.packets.packet_fallbacks += n.packet_fallbacks;
   to.packets.lanes_issued += n.issued;
   to.packets.lanes_busy += n.busy;
 }
@@ -30,7 +30,7 @@ inline void closest(const SceneView& scene,
   add(n, counts);
 }
 
-/// Stores a byte for each ray of a packet: whether it met anything.
+/// Stores a byte for each ray of a packet: whether it hit anything.
 inline void store_blocked(const Packet& p, std::uint8_t* to) {
   std::uint8_t bytes[kPacket];  // which nothing else may point to: SIMD
   for (int i = 0; i < p.size; ++i)

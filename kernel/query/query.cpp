@@ -6,7 +6,7 @@
 
 #include "kernel/shapes/surface.hpp"
 #include "kernel/query/options.hpp"
-#include "kernel/world/world_impl.hpp"
+#include "kernel/grid/world_impl.hpp"
 
 namespace grelha {
 namespace {
@@ -24,7 +24,7 @@ void expect_arrays(const Rays& rays) {
                                   (rays.org[a] ? "directions" : "origins") + ", found null");
 }
 
-void expect_as_many(std::size_t rays, std::size_t answers) {
+void expect_same_size(std::size_t rays, std::size_t answers) {
   if (rays != answers)
     throw std::invalid_argument("expected an answer for each of " + std::to_string(rays) +
                                 " rays, found room for " + std::to_string(answers));
@@ -60,7 +60,7 @@ void closest(const World& world,
              std::span<Hit> hits,
              const QueryOptions& options,
              TraceCounts* counts) {
-  expect_as_many(rays.size(), hits.size());
+  expect_same_size(rays.size(), hits.size());
   closest(world, Rays::of(rays), Hits::of(hits), options, counts);
 }
 Hit closest(const World& world, const Ray& ray) {
@@ -85,7 +85,7 @@ void occluded(const World& world,
               std::span<std::uint8_t> blocked,
               const QueryOptions& options,
               TraceCounts* counts) {
-  expect_as_many(rays.size(), blocked.size());
+  expect_same_size(rays.size(), blocked.size());
   occluded(world, Rays::of(rays), blocked.data(), options, counts);
 }
 bool occluded(const World& world, const Ray& ray) {
@@ -101,13 +101,13 @@ SurfacePoint surface(const World& world, const Ray& ray, const Hit& hit) {
       float3(s.point),
       float3(s.normal),
       float3(s.shading),
-      s.away,
+      s.offset,
       s.material,
   };
 }
 
-Float3 SurfacePoint::leave(Float3 dir) const {
-  return float3(scalar::leave(vec(point), vec(normal), away, vec(dir)));
+Float3 SurfacePoint::offset_origin(Float3 dir) const {
+  return float3(scalar::offset_origin(vec(point), vec(normal), offset, vec(dir)));
 }
 
 Primitive primitive_of(const World& world, std::uint32_t id) {

@@ -80,7 +80,7 @@ const Variant& best_variant() {
   static const Variant* const best = [] {
     const Variant* widest = &kScalar;
     for (const Variant* v : kVariants)
-      if (v->runs_here())
+      if (v->is_supported())
         widest = v;
     return widest;
   }();
@@ -100,7 +100,7 @@ const Variant& choose_variant(std::string_view name) {
   const Variant* const v = find_variant(name);
   if (!v)
     throw std::invalid_argument("this build has no instruction set \"" + std::string(name) + "\"");
-  if (!v->runs_here())
+  if (!v->is_supported())
     throw std::invalid_argument("this processor has no " + std::string(name));
   return *v;
 }

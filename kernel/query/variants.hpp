@@ -27,20 +27,20 @@ struct VariantLoops {
   /// One ray by itself.
   Hit (*closest_one)(const SceneView&, const Ray&);
   bool (*occluded_one)(const SceneView&, const Ray&);
-  void (*render_band)(const SceneView&,
-                      const ShadingView&,
-                      const FrameView&,
-                      const Part&,
-                      const BandWork&,
-                      TraceCounts&,
-                      RayCounts&);
-  /// Samples of chosen pixels, kParts sums a run; see render_runs.
+  void (*render_strip)(const SceneView&,
+                       const ShadingView&,
+                       const FrameView&,
+                       const Part&,
+                       const StripWork&,
+                       TraceCounts&,
+                       RayCounts&);
+  /// Samples of selected pixels, kParts sums a run; see render_runs.
   void (*render_runs)(const SceneView&,
                       const ShadingView&,
                       const FrameView&,
                       const PixelRun*,
                       int runs,
-                      const BandWork&,
+                      const StripWork&,
                       TraceCounts&,
                       RayCounts&);
   /// All samples of points of the picture, whose names work.pixels holds.
@@ -48,7 +48,7 @@ struct VariantLoops {
                         const ShadingView&,
                         const FrameView&,
                         const PointList&,
-                        const BandWork&,
+                        const StripWork&,
                         TraceCounts&,
                         RayCounts&);
 };
@@ -56,7 +56,7 @@ struct VariantLoops {
 struct Variant {
   std::string_view name;
   int lanes;
-  bool (*runs_here)();
+  bool (*is_supported)();
   const VariantLoops& loops;
 };
 

@@ -51,7 +51,7 @@ struct BatchHits {
   Rows3 normal;                         ///< geometric, unit, towards the viewer
   Rows3 shading;                        ///< normal for shading, unit, towards the viewer
   Rows3 viewer;                         ///< unit vector to it
-  alignas(64) float away[kBatchRow];    ///< how far along the normal a ray must start so as not to
+  alignas(64) float offset[kBatchRow];  ///< how far along the normal a ray must start so as not to
                                         ///< meet its own surface
   alignas(64) float inside[kBatchRow];  ///< 1: met from within
   Rows3 weight;                         ///< of the light from this point

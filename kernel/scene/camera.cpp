@@ -44,7 +44,7 @@ bool is_picture_side(int pixels) {
   return pixels >= 1 && pixels <= kMostSide;
 }
 
-bool lens_is_sound(const Camera& c) {
+bool lens_is_valid(const Camera& c) {
   return c.aperture >= 0 && std::isfinite(c.aperture) && c.focus > 0 && std::isfinite(c.focus);
 }
 
@@ -52,7 +52,7 @@ bool lens_is_sound(const Camera& c) {
 constexpr double kLeastSineSquared = 1e-18;
 
 /// True if the camera has a view direction, and up is not along it.
-bool directions_are_sound(const Camera& c) {
+bool directions_valid(const Camera& c) {
   const Double3 view = minus(c.at, c.eye);
   const Double3 up{c.up.x, c.up.y, c.up.z};
   const double vv = dot(view, view);
@@ -83,10 +83,10 @@ void put(float (&to)[3], const Double3& v) {
 
 }  // namespace
 
-bool camera_is_sound(const Camera& c) {
+bool camera_is_valid(const Camera& c) {
   const bool has_angle = c.angle_deg > 0 && c.angle_deg < 180;
   return finite(c.eye) && finite(c.at) && finite(c.up) && is_picture_side(c.width) &&
-         is_picture_side(c.height) && has_angle && lens_is_sound(c) && directions_are_sound(c);
+         is_picture_side(c.height) && has_angle && lens_is_valid(c) && directions_valid(c);
 }
 
 double pixel_size(const Camera& c) {

@@ -25,7 +25,7 @@ MaterialTable::MaterialTable(const SceneSpans& scene) {
   for (std::size_t i = 0; i < materials.size(); ++i) {
     set_fields(i, materials[i]);
     if (used[i])
-      note_effects(materials[i]);
+      record_effects(materials[i]);
   }
 }
 
@@ -49,7 +49,7 @@ void MaterialTable::set_fields(std::size_t i, const Material& m) {
   set(kRoughness, m.roughness);
 }
 
-void MaterialTable::note_effects(const Material& m) {
+void MaterialTable::record_effects(const Material& m) {
   const bool clear = is_clear(m);
   const bool mirrors = clear || m.mirror != Float3{};
   reflects |= mirrors;
@@ -61,7 +61,7 @@ void MaterialTable::note_effects(const Material& m) {
   gains |= !obeys_fresnel(m) && sent_on > kGain;
   lit = std::max(lit, largest_channel(m.diffuse) + largest_channel(m.specular));
   emitted = std::max(emitted, largest_channel(m.emission));
-  gloss |= m.roughness > 0 && mirrors;
+  glossy |= m.roughness > 0 && mirrors;
 }
 
 MaterialView MaterialTable::view() const {

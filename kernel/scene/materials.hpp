@@ -25,7 +25,7 @@ struct MaterialTable {
   bool fresnel = false;
   bool emits = false;
   bool highlights = false;
-  bool gloss = false;
+  bool glossy = false;
   bool gains = false;
   /// greatest radiance towards an eye: of a point, per light of 1; and of the brightest emitter
   float lit = 0;
@@ -34,7 +34,7 @@ struct MaterialTable {
  private:
   void set_fields(std::size_t i, const Material& m);
   /// Notes the effects that a used material asks for.
-  void note_effects(const Material& m);
+  void record_effects(const Material& m);
 };
 
 }  // namespace grelha

@@ -49,7 +49,7 @@ struct ShadingView {
   bool emits = false;
   bool highlights = false;
   bool area = false;
-  bool gloss = false;
+  bool glossy = false;
   bool gains = false;  ///< some material sends on more than it gets: see split()
   /// a point, what its mirror and glass show left out, or the background: sends an eye at most so
   /// much
@@ -73,16 +73,16 @@ struct SamplePlan {
   int samples = 1;  ///< a pixel
   Kind kind = kSobol;
   std::uint32_t seed = 0;
-  int lens = -1, light = -1, gloss = -1;  ///< first of the effect's two dimensions
-  int light_rays = 1;                     ///< shadow rays a hit sends to an area light
+  int lens = -1, light = -1, glossy = -1;  ///< first of the effect's two dimensions
+  int light_rays = 1;                      ///< shadow rays a hit sends to an area light
   /// rays around the mirror direction, added to that direction itself; 0: one ray in its place
-  int gloss_rays = 0;
-  Strata pixel_strata, light_strata, gloss_strata;
+  int glossy_rays = 0;
+  Strata pixel_strata, light_strata, glossy_strata;
   const std::uint32_t* places = nullptr;  ///< [pixels] of kBlue, see drawing_places()
 };
 
 /// image rows a thread takes at a time: one row of 8 x 8 packets
-inline constexpr int kBandRows = 8;
+inline constexpr int kStripRows = 8;
 inline constexpr int kTile = 8;
 /// Pixel k of a tile, along Morton's curve: any 4, 16 or 64 in a row from a multiple of that are a
 /// square.
@@ -99,17 +99,17 @@ struct PixelRun {
 };
 inline constexpr int kParts = 4;
 
-struct BandWork {
+struct StripWork {
   Batch* batch = nullptr;
   RayStack stack = {};
-  /// [rows of the band][width][3], units of 1 / kLightUnit, zero on entry
+  /// [rows of the strip][width][3], units of 1 / kLightUnit, zero on entry
   std::int64_t* sums = nullptr;
   int depth = 1;
   int packet = 64;
   float min_weight = 0;  ///< see RenderOptions
   int take = kBatch;     ///< rays taken off the stack at a time, at most kBatch
   bool mailbox = true;
-  std::uint32_t first_pixel = 0;  ///< of the band, counted through the picture
+  std::uint32_t first_pixel = 0;  ///< of the strip, counted through the picture
   float most_light = 0;           ///< bound of a term
   SamplePlan plan = {};
   /// [sums] the pixel each sum belongs to; null: sum i to first_pixel + i

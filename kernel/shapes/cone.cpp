@@ -15,7 +15,7 @@ struct ConeEnd {
   double at[3], radius;
 };
 
-Cone::Fields<float> prepared_cone(const ConeSpans& c, std::size_t i) {
+Cone::Fields<float> setup_cone(const ConeSpans& c, std::size_t i) {
   ConeEnd narrow{{c.base_x[i], c.base_y[i], c.base_z[i]},
                  std::abs(static_cast<double>(c.base_radius[i]))};
   ConeEnd wide{{c.apex_x[i], c.apex_y[i], c.apex_z[i]},
@@ -44,7 +44,7 @@ Cone::Fields<float> prepared_cone(const ConeSpans& c, std::size_t i) {
 Cone::Source::Source(const GeometrySpans& g) : spans(g.cones) {
   for_each_field([n = spans.size()](std::vector<float>& v) { v.resize(n); }, prepared);
   for (std::size_t i = 0; i < spans.size(); ++i) {
-    const Fields<float> cone = prepared_cone(spans, i);
+    const Fields<float> cone = setup_cone(spans, i);
     for_each_field(
         [i](std::vector<float>& to, const float& from) { to[i] = from; }, prepared, cone);
   }
@@ -58,7 +58,7 @@ Cone::Fields<const float*> Cone::Source::fields() const {
 }
 
 // A disc of radius r across a unit axis d reaches r sqrt(1 - d_a^2). Doubles are off by 2^-26 of r
-// where that is nearly zero, a thousandth of the room that is added to boxes.
+// where that is nearly zero, a thousandth of the pad that is added to boxes.
 Box Cone::box(const Source& source, std::size_t i) {
   const ConeSpans& c = source.spans;
   const double ends[2][4] = {{c.base_x[i], c.base_y[i], c.base_z[i], c.base_radius[i]},
@@ -71,13 +71,13 @@ Box Cone::box(const Source& source, std::size_t i) {
   }
   Box b;
   for (const auto& e : ends) {
-    double reach[3];
+    double half_width[3];
     for (int a = 0; a < 3; ++a) {
       const double across = std::max(0., 1 - axis[a] * axis[a] / height);
-      reach[a] = std::abs(e[3]) * std::sqrt(across);
+      half_width[a] = std::abs(e[3]) * std::sqrt(across);
     }
-    b.add(e[0] - reach[0], e[1] - reach[1], e[2] - reach[2]);
-    b.add(e[0] + reach[0], e[1] + reach[1], e[2] + reach[2]);
+    b.add(e[0] - half_width[0], e[1] - half_width[1], e[2] - half_width[2]);
+    b.add(e[0] + half_width[0], e[1] + half_width[1], e[2] + half_width[2]);
   }
   return b;
 }

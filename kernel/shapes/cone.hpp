@@ -15,10 +15,10 @@ inline ExactCrossing exact_crossing(const ExactRay& ray, const Cone::Fields<floa
                      c.side});
 }
 
-/// Lanes of cones i, i + 1, ... that may reach into a frustum: a cone lies in the hull of the balls
+/// Lanes of cones i, i + 1, ... that may overlap a frustum: a cone lies in the hull of the balls
 /// around its two ends.
 template <class Frustum>
-inline unsigned reaching(const Frustum& f, const FieldArrays<Cone>& cones, std::uint32_t i) {
+inline unsigned overlapping(const Frustum& f, const FieldArrays<Cone>& cones, std::uint32_t i) {
   const auto at = [i](const float* field) { return load<Block>(field + i); };
   const Block h = at(cones.height);
   const Block r0 = at(cones.radius);
@@ -29,27 +29,27 @@ inline unsigned reaching(const Frustum& f, const FieldArrays<Cone>& cones, std::
   const Block u1 = u0 + h * at(cones.axis[f.u]);
   const Block v1 = v0 + h * at(cones.axis[f.v]);
   const Block k1 = k0 + h * at(cones.axis[f.k]);
-  return f.lanes_inside([&](int j) {
+  return f.inside_mask([&](int j) {
     const Block s(f.a[j]);
     const Block q(f.b[j]);
-    const Block reach(f.reach[j]);
-    const Block base = (s * (j < 2 ? u0 : v0) + q * k0) + r0 * reach;
-    const Block apex = (s * (j < 2 ? u1 : v1) + q * k1) + r1 * reach;
-    return greater(base, apex) + Block(f.c[j]);
+    const Block half_width(f.half_width[j]);
+    const Block base = (s * (j < 2 ? u0 : v0) + q * k0) + r0 * half_width;
+    const Block apex = (s * (j < 2 ? u1 : v1) + q * k1) + r1 * half_width;
+    return max(base, apex) + Block(f.c[j]);
   });
 }
 
-/// Groups of rays in a frustum that a cone may be met by: all, it is not held against each.
+/// Groups of rays in a frustum that may hit a cone: all, it is not held against each.
 template <class Frustum>
 inline std::uint64_t groups_near(const Frustum&, const Cone::Fields<float>&) {
   return ~std::uint64_t{0};
 }
 
-/// Steeper slopes: points are placed by their radius.
+/// Steeper slopes: points are positioned by their radius.
 inline constexpr float kSteep = 8;
 
 template <class Real>
-inline SurfacePlace<Real> cone_place(const Cone::Fields<Real>& cone, const Vec3<Real>& at) {
+inline SurfacePosition<Real> cone_position(const Cone::Fields<Real>& cone, const Vec3<Real>& at) {
   const Vec3<Real> base = vec(cone.base);
   const Vec3<Real> axis = vec(cone.axis);
   const Vec3<Real> from_base = at - base;
@@ -76,9 +76,9 @@ inline SurfacePlace<Real> cone_place(const Cone::Fields<Real>& cone, const Vec3<
 template <class Real>
 inline Surface<Real> surface_on(const Cone::Arrays& cones,
                                 const Words<Real>& i,
-                                const Meeting<Real>& met) {
+                                const SurfaceHit<Real>& met) {
   const auto cone = gathered<Cone, Real>(cones.fields, i);
-  return surface_at<Real>(cone_place(cone, met.at), words_at(cones.material, i));
+  return surface_at<Real>(cone_position(cone, met.at), words_at(cones.material, i));
 }
 
 }  // namespace grelha::GRELHA_ISA

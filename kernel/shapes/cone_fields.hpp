@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "grelha/scene_spans.hpp"
-#include "kernel/primitive/arrays.hpp"
-#include "kernel/primitive/box.hpp"
-#include "kernel/primitive/surface_place.hpp"
-#include "kernel/primitive/settling.hpp"
-#include "kernel/simd/vec3.hpp"
+#include "kernel/shapes/arrays.hpp"
+#include "kernel/shapes/box.hpp"
+#include "kernel/shapes/surface_position.hpp"
+#include "kernel/shapes/refine_span.hpp"
+#include "kernel/base/vec3.hpp"
 
 namespace grelha {
 
@@ -64,7 +64,7 @@ struct Cone {
 
   /// The caller's cones, and the fields that tests read, prepared from these.
   struct Source {
-    static constexpr std::size_t kPreparedBytes = sizeof(Fields<float>);  ///< a cone
+    static constexpr std::size_t kSetupBytes = sizeof(Fields<float>);  ///< a cone
     ConeSpans spans;
     Fields<std::vector<float>> prepared;
     explicit Source(const GeometrySpans& g);
@@ -84,8 +84,8 @@ struct Cone {
   static Box box(const Source& source, std::size_t i);
 
   /// Cells of its box are not looked at again.
-  struct Touch {
-    Touch(const Fields<float>&, const CellFrame&, const CellRange&) {}
+  struct Overlap {
+    Overlap(const Fields<float>&, const CellFrame&, const CellRange&) {}
     bool operator()(const int (&)[3]) const { return true; }
   };
 };

@@ -11,43 +11,44 @@ namespace grelha::GRELHA_ISA {
 /// small the sine between ray and axis, and by 4 times the error of coordinates: (w + k)^2 <= 9/8
 /// w^2 + 9 k^2.
 inline constexpr float kWider = 1.125f;
-inline constexpr float kSineRoom = 0x1p-37f;
+inline constexpr float kSineError = 0x1p-37f;
 /// Squares of wider radii below which products of floats may underflow.
 inline constexpr float kLeastWidth = 0x1p-100f;
 
 /// Lanes whose line does not surely pass a cone's axis further away than its wider radius: most do.
 template <class Real>
-[[gnu::always_inline]] inline Mask<Real> may_meet(const RayLanes<Real>& ray,
-                                                  const Cone::Fields<Real>& cone) {
+[[gnu::always_inline]] inline Mask<Real> may_intersect(const SimdRays<Real>& ray,
+                                                       const Cone::Fields<Real>& cone) {
   const Vec3<Real> to_base = ray.to(vec(cone.base));
   const Vec3<Real> n = cross(ray.dir, vec(cone.axis));  // across the axis, turned by a quarter
   // by dir . dir, or products of four lengths overflow beyond 1e9
   const Vec3<Real> e = ray.inv_dd * n;
   const Real aside = dot(to_base, e);
   const Real wide = cone.radius + cone.slope * cone.height;
-  const Real off = Real(0x1p23f) * ray.off;
-  const Real room = Real(kWider) * (wide * wide) * dot(n, e) +
-                    Real(kSineRoom) * (dot(to_base, to_base) + off * off);
-  return either(room * ray.inv_dd - aside * aside >= Real(0), wide * wide < Real(kLeastWidth));
+  const Real frame_error = Real(0x1p23f) * ray.frame_error;
+  const Real error_bound = Real(kWider) * (wide * wide) * dot(n, e) +
+                           Real(kSineError) * (dot(to_base, to_base) + frame_error * frame_error);
+  return mask_or(error_bound * ray.inv_dd - aside * aside >= Real(0),
+                 wide * wide < Real(kLeastWidth));
 }
 
 // Error bounds of floats or doubles, in u; docs/numerics.md derives each, cone_test.cpp pins them.
 // T: the distance from the ray's origin to the cone and its size together, with the error of
-// coordinates, in u: places beside the cone are off by 8 u T. G: (1 + slope)^2.
+// coordinates, in u: points beside the cone are off by 8 u T. G: (1 + slope)^2.
 
 /// Times T R G^2 / dir^2: of the discriminant, R being how far from the narrower end the line
 /// passes and the radius there together.
 inline constexpr double kDiscError = 128;
-/// Times T R G: of the square of a place's distance to the axis less that of the side there, R
+/// Times T R G: of the square of a point's distance to the axis less that of the side there, R
 /// being both distances together.
 inline constexpr double kSideError = 64;
 /// The same of where a ray starts, T being its distance and the radius.
 inline constexpr double kStartError = 12;
-/// Times T: of heights around a root, beside kRootRoom.
+/// Times T: of heights around a root, beside kRootError.
 inline constexpr double kHeightError = 32;
 /// Times T / |dir|: how far beside a root the side is looked for. Doubles afford more.
 template <class Real>
-inline constexpr double kRootRoom = std::is_same_v<Scalar<Real>, float> ? 0x1p-14 : 0x1p-37;
+inline constexpr double kRootError = std::is_same_v<Scalar<Real>, float> ? 0x1p-14 : 0x1p-37;
 
 /// The unit vector that a float axis stands for.
 template <class Real>
@@ -80,7 +81,7 @@ struct ConeLine {
   /// coefficients are as small as the surroundings of the hit. Its discriminant is, by Lagrange's
   /// identity, also w w - m m: where the roots meet, at a tip, b b is the larger, along the side w
   /// w. The smaller of the two loses less.
-  [[gnu::always_inline]] ConeLine(const RayLanes<Real>& ray, const Cone::Fields<Real>& cone)
+  [[gnu::always_inline]] ConeLine(const SimdRays<Real>& ray, const Cone::Fields<Real>& cone)
       : axis(axis_of(cone)) {
     const Vec3<Real> to_base = ray.to(vec(cone.base));
     const Vec3<Real> n = cross(ray.dir, axis);
@@ -100,17 +101,17 @@ struct ConeLine {
     const Real ww = dot(w, w);
     disc = select(bb < ww, bb - a * c, ww - moment * moment);
     size = sum_of_sizes(to_base) + ((cone.height + cone.radius) + cone.slope * cone.height) +
-           Real(static_cast<Scalar<Real>>(.5 / kUnit<Real>)) * ray.off;
+           Real(static_cast<Scalar<Real>>(.5 / kUnit<Real>)) * ray.frame_error;
     const Real slope = Real(1) + cone.slope;
     slopes = slope * slope;
-    const Real off = units<Real>(kDiscError) * (slopes * slopes) * size;
-    error = (off * ((sum_of_sizes(p) + magnitude(r)) + off)) * ray.inv_dd;
+    const Real frame_error = units<Real>(kDiscError) * (slopes * slopes) * size;
+    error = (frame_error * ((sum_of_sizes(p) + magnitude(r)) + frame_error)) * ray.inv_dd;
     const Vec3<Real> across = cross(to_base, axis);
     const Real side = cone.radius - cone.slope * dot(to_base, axis);
     const Real above = dot(across, across) - side * side;
     const Real start_off =
         units<Real>(kStartError) * slopes * (sum_of_sizes(to_base) + cone.radius) +
-        Real(8) * (slopes * ray.off);
+        Real(8) * (slopes * ray.frame_error);
     const Real start_error = start_off * ((sum_of_sizes(across) + magnitude(side)) + start_off);
     outside = above > start_error;
     inside = above < Real(0) - start_error;
@@ -123,13 +124,13 @@ struct ConeRoot {
   Mask<Real> some, sure;  ///< not surely none; surely one
   Real lo, hi;            ///< t
 
-  /// The root is near t = line.near + s where the side is crossed within kRootRoom of it.
-  [[gnu::always_inline]] ConeRoot(const RayLanes<Real>& ray,
+  /// The root is near t = line.near + s where the side is crossed within kRootError of it.
+  [[gnu::always_inline]] ConeRoot(const SimdRays<Real>& ray,
                                   const Cone::Fields<Real>& cone,
                                   const ConeLine<Real>& line,
                                   const Real& s) {
     const Real o(0);
-    const Real part(static_cast<Scalar<Real>>(kRootRoom<Real>));
+    const Real part(static_cast<Scalar<Real>>(kRootError<Real>));
     const Real beside = (part * line.size) * ray.inv_length;
     const Vec3<Real> at = line.p + s * ray.dir;
     const Vec3<Real> by = beside * ray.dir;
@@ -144,65 +145,67 @@ struct ConeRoot {
     const Real h = dot(at, line.axis);
     const Real beyond_axis = sum_of_sizes(cross(at, line.axis)) +
                              (magnitude(cone.radius + cone.slope * h) + part * line.size);
-    const Real off = (units<Real>(kSideError) * line.slopes) * (line.size + far);
-    const Real error = off * (beyond_axis + off);
-    const Mask<Real> enters = both(before > error, after < o - error);
-    const Mask<Real> leaves = both(before<o - error, after> error);
-    const Mask<Real> known = either(enters, leaves);
-    const Real room =
-        Real(static_cast<Scalar<Real>>(2 * kRootRoom<Real> + kHeightError * kUnit<Real>)) *
+    const Real frame_error = (units<Real>(kSideError) * line.slopes) * (line.size + far);
+    const Real error = frame_error * (beyond_axis + frame_error);
+    const Mask<Real> enters = mask_and(before > error, after < o - error);
+    const Mask<Real> leaves = mask_and(before<o - error, after> error);
+    const Mask<Real> known = mask_or(enters, leaves);
+    const Real error_bound =
+        Real(static_cast<Scalar<Real>>(2 * kRootError<Real> + kHeightError * kUnit<Real>)) *
         (line.size + far);
     lo = (line.near + s) - beside;
     hi = (line.near + s) + beside;
     const Real slack = units<Real>(4) * (magnitude(line.near) + magnitude(s));
     lo = lo - slack;
     hi = hi + slack;
-    const Mask<Real> beyond = either(h<o - room, h> cone.height + room);
-    const Mask<Real> shows = either(cone.side > o, leaves);
+    const Mask<Real> beyond = mask_or(h<o - error_bound, h> cone.height + error_bound);
+    const Mask<Real> shows = mask_or(cone.side > o, leaves);
     // a ray that starts at t = 0 outside is there before it enters, and after it has left
-    const Mask<Real> from_here = both(both(ray.t_min == o, known), both(lo <= o, hi > o));
+    const Mask<Real> from_here =
+        mask_and(mask_and(ray.t_min == o, known), mask_and(lo <= o, hi > o));
     const Mask<Real> ahead =
-        both(from_here, either(both(enters, line.outside), both(leaves, line.inside)));
+        mask_and(from_here, mask_or(mask_and(enters, line.outside), mask_and(leaves, line.inside)));
     const Mask<Real> behind =
-        both(from_here, either(both(leaves, line.outside), both(enters, line.inside)));
-    const Mask<Real> counts = both(but_not(hi > ray.t_min, behind), but_not(shows, beyond));
-    some = either(counts, but_not(o == o, known));
-    const Mask<Real> between = both(h > room, h < cone.height - room);
-    sure = both(both(known, between), both(either(lo > ray.t_min, ahead), shows));
+        mask_and(from_here, mask_or(mask_and(leaves, line.outside), mask_and(enters, line.inside)));
+    const Mask<Real> counts = mask_and(and_not(hi > ray.t_min, behind), and_not(shows, beyond));
+    some = mask_or(counts, and_not(o == o, known));
+    const Mask<Real> between = mask_and(h > error_bound, h < cone.height - error_bound);
+    sure = mask_and(mask_and(known, between), mask_and(mask_or(lo > ray.t_min, ahead), shows));
   }
 };
 
 /// Bounds the crossings of rays and cones that the line may cross, in a precision.
 template <class Real>
-[[gnu::always_inline]] inline Found<Real> bound_roots(const RayLanes<Real>& ray,
-                                                      const Cone::Fields<Real>& cone) {
+[[gnu::always_inline]] inline HitInterval<Real> bound_roots(const SimdRays<Real>& ray,
+                                                            const Cone::Fields<Real>& cone) {
   const Real o(0);
   const ConeLine<Real> line(ray, cone);
-  const Mask<Real> may_cross = but_not(line.disc == line.disc, line.disc < o - line.error);
+  const Mask<Real> may_cross = and_not(line.disc == line.disc, line.disc < o - line.error);
   if (none(may_cross))
     return {may_cross, may_cross, line.near, line.near};
-  const Real root = square_root(greater(line.disc, o));
+  const Real root = square_root(max(line.disc, o));
   const Real q = select(line.b < o, root - line.b, o - (line.b + root));
   const Real one = q / line.a;
   const Real other = line.c / q;
-  const ConeRoot<Real> first(ray, cone, line, lesser(one, other));
-  const ConeRoot<Real> second(ray, cone, line, greater(one, other));
-  const Mask<Real> sure = both(may_cross, line.disc > line.error);
-  return {both(may_cross, either(first.some, second.some)),
-          both(sure, either(first.sure, but_not(second.sure, first.some))),
+  const ConeRoot<Real> first(ray, cone, line, min(one, other));
+  const ConeRoot<Real> second(ray, cone, line, max(one, other));
+  const Mask<Real> sure = mask_and(may_cross, line.disc > line.error);
+  return {mask_and(may_cross, mask_or(first.some, second.some)),
+          mask_and(sure, mask_or(first.sure, and_not(second.sure, first.some))),
           select(first.some, first.lo, second.lo),
           select(first.some, first.hi, second.hi)};
 }
 
 /// Part after part of the lanes, in double: 1 where there may be a crossing, 2 where there is.
 template <int i, class Real>
-[[gnu::always_inline]] inline void bound_parts(const RayLanes<Real>& ray,
+[[gnu::always_inline]] inline void bound_parts(const SimdRays<Real>& ray,
                                                const Cone::Fields<Real>& cone,
                                                Wide<Real> (&told)[kWideParts<Real>],
                                                Wide<Real> (&lo)[kWideParts<Real>],
                                                Wide<Real> (&hi)[kWideParts<Real>]) {
   using W = Wide<Real>;
-  const Found<W> f = bound_roots<W>(given_in_double<i>(ray), widened<Cone, i, Real>(cone));
+  const HitInterval<W> f =
+      bound_roots<W>(given_in_double<i>(ray), fields_to_double<Cone, i, Real>(cone));
   told[i] = select(f.some, select(f.sure, W(2), W(1)), W(0));
   lo[i] = rounded_down(f.lo - shift_in_double<i>(ray));
   hi[i] = rounded_up(f.hi - shift_in_double<i>(ray));
@@ -210,39 +213,39 @@ template <int i, class Real>
     bound_parts<i + 1, Real>(ray, cone, told, lo, hi);
 }
 
-/// Takes chosen lanes from double.
+/// Takes selected lanes from double.
 template <class Real>
-[[gnu::noinline]] void bound_in_double(const RayLanes<Real>& ray,
+[[gnu::noinline]] void bound_in_double(const SimdRays<Real>& ray,
                                        const Cone::Fields<Real>& cone,
-                                       const Mask<Real>& chosen,
-                                       Found<Real>& found) {
+                                       const Mask<Real>& selected,
+                                       HitInterval<Real>& found) {
   Wide<Real> told[kWideParts<Real>], lo[kWideParts<Real>], hi[kWideParts<Real>];
   bound_parts<0, Real>(ray, cone, told, lo, hi);
   const Real known = narrow<Real>(told);
-  found.some = but_not(found.some, both(chosen, known == Real(0)));
-  found.sure = both(found.some, either(found.sure, both(chosen, known > Real(1))));
-  found.lo = select(chosen, narrow<Real>(lo), found.lo);
-  found.hi = select(chosen, narrow<Real>(hi), found.hi);
+  found.some = and_not(found.some, mask_and(selected, known == Real(0)));
+  found.sure = mask_and(found.some, mask_or(found.sure, mask_and(selected, known > Real(1))));
+  found.lo = select(selected, narrow<Real>(lo), found.lo);
+  found.hi = select(selected, narrow<Real>(hi), found.hi);
 }
 
 /// Bounds the crossings of rays and cones in a precision; doubles decide what floats cannot.
 template <class Real>
-[[gnu::always_inline]] inline Found<Real> bound(const RayLanes<Real>& ray,
-                                                const Cone::Fields<Real>& cone,
-                                                const Real& best) {
+[[gnu::always_inline]] inline HitInterval<Real> bound(const SimdRays<Real>& ray,
+                                                      const Cone::Fields<Real>& cone,
+                                                      const Real& best) {
   if constexpr (sizeof(Scalar<Real>) == sizeof(double)) {
     return bound_roots<Real>(ray, cone);
   } else {
-    const Mask<Real> may_cross = may_meet(ray, cone);
+    const Mask<Real> may_cross = may_intersect(ray, cone);
     if (none(may_cross))
       return {may_cross, may_cross, best, best};
-    Found<Real> found = bound_roots<Real>(ray, cone);
+    HitInterval<Real> found = bound_roots<Real>(ray, cone);
     const Real wide = cone.radius + cone.slope * cone.height;
     const Mask<Real> tiny = wide * wide < Real(kLeastWidth);
-    const Mask<Real> before = but_not(found.some, both(found.sure, found.lo > best));
-    found.some = both(may_cross, either(before, tiny));
-    found.sure = but_not(found.sure, tiny);
-    const Mask<Real> unsure = but_not(found.some, found.sure);
+    const Mask<Real> before = and_not(found.some, mask_and(found.sure, found.lo > best));
+    found.some = mask_and(may_cross, mask_or(before, tiny));
+    found.sure = and_not(found.sure, tiny);
+    const Mask<Real> unsure = and_not(found.some, found.sure);
     if (any(unsure))
       bound_in_double(ray, cone, unsure, found);
     return found;

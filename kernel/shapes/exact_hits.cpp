@@ -21,12 +21,12 @@ One<Shape> primitive_at(const typename Shape::Arrays& all, std::uint32_t i) {
 }
 
 template <class Shape>
-scalar::Found<double> found_in_double(const ExactRay& ray, const One<Shape>& one) {
+scalar::HitInterval<double> double_interval(const ExactRay& ray, const One<Shape>& one) {
   if constexpr (Shape::kKind == PrimitiveKind::kTriangle) {
     return scalar::bound_triangle(ray, one.corner);
   } else {
-    const scalar::RayLanes<double> wide = scalar::in_double(ray);
-    return scalar::bound(wide, scalar::widened<Shape, 0, float>(one), kNoEnd);
+    const scalar::SimdRays<double> wide = scalar::in_double(ray);
+    return scalar::bound(wide, scalar::fields_to_double<Shape, 0, float>(one), kNoEnd);
   }
 }
 
@@ -47,11 +47,11 @@ auto visit_primitive(const GeometryView& g, std::uint32_t id, const Visit& visit
   });
 }
 
-scalar::Found<double> found_in_double(const GeometryView& g,
-                                      const ExactRay& ray,
-                                      std::uint32_t id) {
+scalar::HitInterval<double> double_interval(const GeometryView& g,
+                                            const ExactRay& ray,
+                                            std::uint32_t id) {
   return visit_primitive(
-      g, id, [&]<class Shape>(const One<Shape>& one) { return found_in_double<Shape>(ray, one); });
+      g, id, [&]<class Shape>(const One<Shape>& one) { return double_interval<Shape>(ray, one); });
 }
 ExactCrossing crossing_of(const GeometryView& g, const ExactRay& ray, std::uint32_t id) {
   return visit_primitive(
@@ -63,7 +63,7 @@ ExactCrossing crossing_of(const GeometryView& g, const ExactRay& ray, std::uint3
 namespace {
 template <class Shape>
 CrossingSpan span_of(const ExactRay& ray, const One<Shape>& primitive, double shift) {
-  return scalar::settle_one(found_in_double<Shape>(ray, primitive), shift, [&] {
+  return scalar::refine_span(double_interval<Shape>(ray, primitive), shift, [&] {
     return crossing_of<Shape>(ray, primitive);
   });
 }
@@ -89,20 +89,17 @@ CrossingSpan crossing_span(const GeometryView& g,
       g, id, [&]<class Shape>(const One<Shape>& one) { return span_of<Shape>(ray, one, shift); });
 }
 
-bool comes_first(const GeometryView& g,
-                 const ExactRay& ray,
-                 std::uint32_t id,
-                 std::uint32_t other) {
-  const scalar::Found<double> a = found_in_double(g, ray, id);
-  const scalar::Found<double> b = found_in_double(g, ray, other);
+bool is_closest(const GeometryView& g, const ExactRay& ray, std::uint32_t id, std::uint32_t other) {
+  const scalar::HitInterval<double> a = double_interval(g, ray, id);
+  const scalar::HitInterval<double> b = double_interval(g, ray, other);
   if (a.sure && b.sure && (a.hi < b.lo || b.hi < a.lo))
     return a.hi < b.lo;
   const int order = crossing_of(g, ray, id).compare(crossing_of(g, ray, other));
   return order != 0 ? order < 0 : id < other;
 }
 
-bool comes_before(const GeometryView& g, const ExactRay& ray, std::uint32_t id, float t_max) {
-  const scalar::Found<double> found = found_in_double(g, ray, id);
+bool is_before_end(const GeometryView& g, const ExactRay& ray, std::uint32_t id, float t_max) {
+  const scalar::HitInterval<double> found = double_interval(g, ray, id);
   const double end = t_max;
   if (found.sure && (found.hi < end || found.lo >= end))
     return found.hi < end;
@@ -110,7 +107,7 @@ bool comes_before(const GeometryView& g, const ExactRay& ray, std::uint32_t id, 
 }
 
 double double_t(const GeometryView& g, const ExactRay& ray, std::uint32_t id) {
-  const scalar::Found<double> found = found_in_double(g, ray, id);
+  const scalar::HitInterval<double> found = double_interval(g, ray, id);
   const double t = .5 * found.lo + .5 * found.hi;
   if (found.sure && found.hi - found.lo <= 0x1p-45 * std::abs(t))
     return t;
@@ -118,19 +115,22 @@ double double_t(const GeometryView& g, const ExactRay& ray, std::uint32_t id) {
 }
 
 namespace {
-scalar::Found<double> found_within(const GeometryView& g,
-                                   const ExactRay& ray,
-                                   std::uint32_t id,
-                                   const CrossingSpan& span) {
+scalar::HitInterval<double> narrow_interval(const GeometryView& g,
+                                            const ExactRay& ray,
+                                            std::uint32_t id,
+                                            const CrossingSpan& span) {
   if (g.ids.has(PrimitiveKind::kSphere, id)) {
     const One<Sphere> sphere =
         primitive_at<Sphere>(g.of<Sphere>(), id - g.ids.begin(PrimitiveKind::kSphere));
-    const scalar::Found<double> found = scalar::narrowed<double>(
-        scalar::in_double(ray), scalar::widened<Sphere, 0, float>(sphere), span.lo, span.hi);
+    const scalar::HitInterval<double> found =
+        scalar::narrowed<double>(scalar::in_double(ray),
+                                 scalar::fields_to_double<Sphere, 0, float>(sphere),
+                                 span.lo,
+                                 span.hi);
     if (found.sure)
       return found;
   }
-  return found_in_double(g, ray, id);
+  return double_interval(g, ray, id);
 }
 }  // namespace
 
@@ -138,7 +138,7 @@ float rounded_t(const GeometryView& g,
                 const ExactRay& ray,
                 std::uint32_t id,
                 const CrossingSpan& span) {
-  const scalar::Found<double> found = found_within(g, ray, id, span);
+  const scalar::HitInterval<double> found = narrow_interval(g, ray, id, span);
   const auto first = static_cast<float>(found.lo);
   const bool known = found.sure && first == static_cast<float>(found.hi);
   return (known ? first : crossing_of(g, ray, id).rounded()) + 0.f;  // no zero is -0

@@ -20,9 +20,9 @@ CrossingSpan crossing_span(const GeometryView& g,
 
 /// True if a ray that crosses two primitives beyond t_min crosses `id` first; of equal t the lower
 /// id is first.
-bool comes_first(const GeometryView& g, const ExactRay& ray, std::uint32_t id, std::uint32_t other);
+bool is_closest(const GeometryView& g, const ExactRay& ray, std::uint32_t id, std::uint32_t other);
 /// True if a ray crosses a primitive before t_max, given that it crosses it beyond t_min.
-bool comes_before(const GeometryView& g, const ExactRay& ray, std::uint32_t id, float t_max);
+bool is_before_end(const GeometryView& g, const ExactRay& ray, std::uint32_t id, float t_max);
 /// t of that crossing, within 2^-45 of itself.
 double double_t(const GeometryView& g, const ExactRay& ray, std::uint32_t id);
 /// The same rounded once; faster for a sphere if `span` holds it.
@@ -35,17 +35,17 @@ float rounded_t(const GeometryView& g,
 
 namespace grelha::GRELHA_ISA {
 
-/// Replaces the chosen lanes of crossings that floats found.
+/// Replaces the selected lanes of crossings that floats found.
 template <class Shape, class Real>
-[[gnu::noinline, gnu::cold]] void settle(const RayLanes<Real>& ray,
+[[gnu::noinline, gnu::cold]] void settle(const SimdRays<Real>& ray,
                                          const typename Shape::template Fields<Real>& primitive,
-                                         const Mask<Real>& chosen,
-                                         Found<Real>& found) {
+                                         const Mask<Real>& selected,
+                                         HitInterval<Real>& found) {
   using One = typename Shape::template Fields<float>;
   float field[sizeof(One) / sizeof(float)][kWidth<Real>];
   int count = 0;
   Shape::for_each_field([&](const Real& x) { store(field[count++], x); }, primitive);
-  replace_lanes(bits(chosen), found, [&](int k) {
+  replace_selected(bits(selected), found, [&](int k) {
     One one;
     int next = 0;
     Shape::for_each_field([&](float& x) { x = field[next++][k]; }, one);
@@ -57,12 +57,12 @@ template <class Shape, class Real>
 /// Finds crossings of rays and primitives: lanes whose ray crosses at a t beyond t_min, which is
 /// from lo to hi. Lanes whose t is surely beyond `best` are left out.
 template <class Shape, class Real>
-[[gnu::always_inline]] inline Found<Real> meet(
-    const RayLanes<Real>& ray,
+[[gnu::always_inline]] inline HitInterval<Real> intersect(
+    const SimdRays<Real>& ray,
     const typename Shape::template Fields<Real>& primitive,
     const Real& best) {
-  Found<Real> found = bound(ray, primitive, best);
-  const Mask<Real> unsure = but_not(found.some, found.sure);
+  HitInterval<Real> found = bound(ray, primitive, best);
+  const Mask<Real> unsure = and_not(found.some, found.sure);
   if (any(unsure)) [[unlikely]]
     settle<Shape>(ray, primitive, unsure, found);
   return found;

@@ -41,7 +41,7 @@ struct PrimitiveIds {
   }
 };
 
-/// Calls visit.operator()<Shape>(index) for the kind of an id, one of a set's, and its place among
+/// Calls visit.operator()<Shape>(index) for the kind of an id, one of a set's, and its index among
 /// those of that kind.
 template <class First, class... Rest, class Visit>
 [[gnu::always_inline]] constexpr auto visit_shape(ShapeSet<First, Rest...>,

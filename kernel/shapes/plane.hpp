@@ -4,10 +4,10 @@
 #include <cstddef>
 
 #include "grelha/scene_spans.hpp"
-#include "kernel/primitive/arrays.hpp"
-#include "kernel/primitive/surface_place.hpp"
-#include "kernel/primitive/settling.hpp"
-#include "kernel/simd/vec3.hpp"
+#include "kernel/shapes/arrays.hpp"
+#include "kernel/shapes/surface_position.hpp"
+#include "kernel/shapes/refine_span.hpp"
+#include "kernel/base/vec3.hpp"
 
 namespace grelha {
 
@@ -15,7 +15,7 @@ namespace grelha {
 struct Plane {
   static constexpr PrimitiveKind kKind = PrimitiveKind::kPlane;
   static constexpr bool kFinite = false;
-  static constexpr bool kPlacedByRay = true;  ///< a surface is found without t
+  static constexpr bool kPositionFromRay = true;  ///< a surface is found without t
 
   /// A plane as tests read it; or many, an array per field.
   template <class T>
@@ -46,7 +46,7 @@ struct Plane {
 
   /// The caller's planes.
   struct Source {
-    static constexpr std::size_t kPreparedBytes = 0;  ///< a plane
+    static constexpr std::size_t kSetupBytes = 0;  ///< a plane
     PlaneSpans spans;
     explicit Source(const GeometrySpans& g) : spans(g.planes) {}
     std::size_t size() const { return spans.size(); }
@@ -73,25 +73,25 @@ namespace grelha::GRELHA_ISA {
 /// do not cross. docs/numerics.md derives the bounds: 4 u of its terms for the product with the
 /// direction, 5 u for the product with the way to the point; 8 u are used here.
 template <class Real>
-[[gnu::always_inline]] inline Found<Real> bound(const RayLanes<Real>& ray,
-                                                const Plane::Fields<Real>& plane,
-                                                const Real& best) {
+[[gnu::always_inline]] inline HitInterval<Real> bound(const SimdRays<Real>& ray,
+                                                      const Plane::Fields<Real>& plane,
+                                                      const Real& best) {
   const Vec3<Real> n = vec(plane.normal);
   const Vec3<Real> to = ray.to(vec(plane.point));
   const Real along = dot(ray.dir, n);
   const Real inverse = Real(1) / along;
   const Real t = dot(to, n) * inverse;
-  const Real room = units<Real>(8) * dot(sizes(ray.dir), sizes(n)) +
-                    Real(static_cast<Scalar<Real>>(kUnderflow<Real>));
+  const Real error_bound = units<Real>(8) * dot(sizes(ray.dir), sizes(n)) +
+                           Real(static_cast<Scalar<Real>>(kUnderflow<Real>));
   const Real slack =
-      (units<Real>(16) * dot(sizes(to), sizes(n)) + Real(2) * (magnitude(t) * room)) *
+      (units<Real>(16) * dot(sizes(to), sizes(n)) + Real(2) * (magnitude(t) * error_bound)) *
           magnitude(inverse) +
       Real(static_cast<Scalar<Real>>(kUnderflow<Real>));
   const Real lo = t - slack;
   const Real hi = t + slack;
-  const Mask<Real> known = magnitude(along) > Real(2) * room;
-  const Mask<Real> some = but_not(t == t, both(known, either(hi <= ray.t_min, lo > best)));
-  return {some, both(some, both(known, lo > ray.t_min)), lo, hi};
+  const Mask<Real> known = magnitude(along) > Real(2) * error_bound;
+  const Mask<Real> some = and_not(t == t, mask_and(known, mask_or(hi <= ray.t_min, lo > best)));
+  return {some, mask_and(some, mask_and(known, lo > ray.t_min)), lo, hi};
 }
 
 inline ExactCrossing exact_crossing(const ExactRay& ray, const Plane::Fields<float>& plane) {
@@ -100,9 +100,9 @@ inline ExactCrossing exact_crossing(const ExactRay& ray, const Plane::Fields<flo
 
 /// Through `through`, across `across`, of any length.
 template <class Real>
-inline SurfacePlace<Real> plane_place(const Vec3<Real>& through,
-                                      const Vec3<Real>& across,
-                                      const Vec3<Real>& at) {
+inline SurfacePosition<Real> plane_position(const Vec3<Real>& through,
+                                            const Vec3<Real>& across,
+                                            const Vec3<Real>& at) {
   const Vec3<Real> n = normalize(across);
   return {at - dot(at - through, n) * n, n, Real(8 * kEps) * (largest(at) + largest(through))};
 }
@@ -111,13 +111,13 @@ inline SurfacePlace<Real> plane_place(const Vec3<Real>& through,
 template <class Real>
 inline Surface<Real> surface_on(const Plane::Arrays& planes,
                                 const Words<Real>& i,
-                                const Meeting<Real>& met) {
+                                const SurfaceHit<Real>& met) {
   const auto plane = gathered<Plane, Real>(planes.fields, i);
   const Vec3<Real> p = vec(plane.point);
   const Vec3<Real> n = vec(plane.normal);
   const Real t = dot(p - met.org, n) / dot(met.dir, n);
   const Vec3<Real> at = met.first ? met.org + t * met.dir : met.at;
-  return surface_at<Real>(plane_place<Real>(p, n, at), words_at(planes.material, i));
+  return surface_at<Real>(plane_position<Real>(p, n, at), words_at(planes.material, i));
 }
 
 }  // namespace grelha::GRELHA_ISA

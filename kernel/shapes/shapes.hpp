@@ -2,8 +2,8 @@
 // The list of all kinds of primitives.
 //
 // A kind is a struct in a file of its own: what its tests see (Fields, for_each_field), where they
-// read it from (Source), how far it reaches (box) and which cells it touches (Touch); beside it, in
-// the namespace of an instruction set, how rays meet it.
+// read it from (Source), its bounds (box) and which cells it overlaps (Overlap); beside it, in the
+// namespace of an instruction set, how rays intersect it.
 
 #include <cstddef>
 #include <type_traits>
@@ -11,7 +11,7 @@
 #include "kernel/shapes/cone.hpp"
 #include "kernel/shapes/plane.hpp"
 #include "kernel/shapes/sphere.hpp"
-#include "kernel/triangle/triangle_surface.hpp"
+#include "kernel/shapes/triangle_surface.hpp"
 
 namespace grelha {
 
@@ -44,9 +44,9 @@ constexpr auto those_in_blocks(ShapeSet<Shape...>) {
 
 /// The kinds whose surface points are computed from t.
 template <class... Shape>
-constexpr auto those_placed_by_t(ShapeSet<Shape...>) {
+constexpr auto shapes_positioned_by_t(ShapeSet<Shape...>) {
   return (ShapeSet<>{} + ... +
-          std::conditional_t<requires { Shape::kPlacedByRay; }, ShapeSet<>, ShapeSet<Shape>>{});
+          std::conditional_t<requires { Shape::kPositionFromRay; }, ShapeSet<>, ShapeSet<Shape>>{});
 }
 
 /// All kinds, in the order of their ids. A further kind is a line here.

@@ -6,11 +6,11 @@
 #include <cstddef>
 
 #include "grelha/scene_spans.hpp"
-#include "kernel/primitive/arrays.hpp"
-#include "kernel/primitive/box.hpp"
-#include "kernel/primitive/surface_place.hpp"
-#include "kernel/primitive/settling.hpp"
-#include "kernel/simd/vec3.hpp"
+#include "kernel/shapes/arrays.hpp"
+#include "kernel/shapes/box.hpp"
+#include "kernel/shapes/surface_position.hpp"
+#include "kernel/shapes/refine_span.hpp"
+#include "kernel/base/vec3.hpp"
 
 namespace grelha {
 
@@ -18,7 +18,7 @@ namespace grelha {
 struct Sphere {
   static constexpr PrimitiveKind kKind = PrimitiveKind::kSphere;
   static constexpr bool kFinite = true;
-  static constexpr bool kPlacedByRay = true;  ///< a surface is found without t
+  static constexpr bool kPositionFromRay = true;  ///< a surface is found without t
   static constexpr bool kInBlocks = false;
 
   /// A sphere as tests read it; or many, an array per field.
@@ -51,7 +51,7 @@ struct Sphere {
 
   /// The caller's spheres.
   struct Source {
-    static constexpr std::size_t kPreparedBytes = 0;  ///< a sphere
+    static constexpr std::size_t kSetupBytes = 0;  ///< a sphere
     SphereSpans spans;
     explicit Source(const GeometrySpans& g) : spans(g.spheres) {}
     std::size_t size() const { return spans.size(); }
@@ -82,9 +82,9 @@ struct Sphere {
 
   /// A cell grown by pad against a ball's surface: nearest point inside, farthest outside. Doubles
   /// round by a thousandth of the pad and less.
-  class Touch {
+  class Overlap {
    public:
-    Touch(const Fields<float>& s, const CellFrame& g, const CellRange&) {
+    Overlap(const Fields<float>& s, const CellFrame& g, const CellRange&) {
       const double radius = std::abs(static_cast<double>(s.radius));
       for (int a = 0; a < 3; ++a) {
         cell_[a] = g.cell[a];
@@ -92,7 +92,7 @@ struct Sphere {
       }
       const double r = radius + g.pad;
       const double inner = radius - g.pad;
-      reach_ = r * r;
+      half_width_ = r * r;
       inner_ = inner > 0 ? inner * inner : -1;
     }
     bool operator()(const int (&at)[3]) const {
@@ -106,11 +106,11 @@ struct Sphere {
         near += least * least;
         far += most * most;
       }
-      return near <= reach_ && far >= inner_;
+      return near <= half_width_ && far >= inner_;
     }
 
    private:
-    double cell_[3], center_[3], reach_, inner_;
+    double cell_[3], center_[3], half_width_, inner_;
   };
 };
 
@@ -133,7 +133,7 @@ struct Chord {
   Real rr;      ///< radius squared
   Real inside;  ///< half its length, squared; negative of rays that pass beside
 
-  [[gnu::always_inline]] Chord(const RayLanes<Real>& ray, const Sphere::Fields<Real>& sphere)
+  [[gnu::always_inline]] Chord(const SimdRays<Real>& ray, const Sphere::Fields<Real>& sphere)
       : to_center(ray.to(vec(sphere.center))),
         middle(dot(to_center, ray.dir) * ray.inv_dd),
         rr(sphere.radius * sphere.radius) {
@@ -141,8 +141,8 @@ struct Chord {
     inside = rr - dot(gap, gap);                          // b*b - a*c would cancel from afar
   }
   /// Leaves out lanes that surely have no chord, by a bound for all spheres that are near enough.
-  [[gnu::always_inline]] Mask<Real> may_be(const RayLanes<Real>& ray, const Real& radius) const {
-    return inside + ray.room * (magnitude(radius) + ray.room) >= Real(0);
+  [[gnu::always_inline]] Mask<Real> may_be(const SimdRays<Real>& ray, const Real& radius) const {
+    return inside + ray.error_bound * (magnitude(radius) + ray.error_bound) >= Real(0);
   }
 };
 
@@ -150,23 +150,23 @@ struct Chord {
 /// rays that leave a sphere or lie within, it decides more cases than the crossings do.
 template <class Real>
 struct SphereSide {
-  Real w;     ///< see kFarError
-  Real room;  ///< what the square of half a chord is off by
+  Real w;            ///< see kFarError
+  Real error_bound;  ///< what the square of half a chord is off by
   Mask<Real> outside, inside;
   Mask<Real> ahead, behind;  ///< where the middle of the chord surely is
 
-  [[gnu::always_inline]] SphereSide(const RayLanes<Real>& ray,
+  [[gnu::always_inline]] SphereSide(const SimdRays<Real>& ray,
                                     const Chord<Real>& chord,
                                     const Real& radius) {
     const Real least(static_cast<Scalar<Real>>(kUnderflow<Real>));
     const Vec3<Real> size = sizes(chord.to_center);
     const Real far = (size.x + size.y) + size.z;
-    w = units<Real>(kFarError) * (far + radius) + Real(2 * kFarError) * ray.off;
-    room = w * (radius + w) + least;
+    w = units<Real>(kFarError) * (far + radius) + Real(2 * kFarError) * ray.frame_error;
+    error_bound = w * (radius + w) + least;
     const Real square = dot(chord.to_center, chord.to_center);
     const Real power = square - chord.rr;
     const Real error = (units<Real>(6) * square + units<Real>(2) * chord.rr) +
-                       (Real(8) * ((far + ray.off) * ray.off) + least);
+                       (Real(8) * ((far + ray.frame_error) * ray.frame_error) + least);
     const Real slack = w * ray.inv_length;
     outside = power > error;
     inside = power < Real(0) - error;
@@ -182,9 +182,9 @@ struct SphereSide {
 /// Source    Haines, Günther, Akenine-Möller, "Precision Improvements for Ray/Sphere
 ///           Intersection", Ray Tracing Gems (2019), ch. 7, in units of t.
 template <class Real>
-[[gnu::always_inline]] inline Found<Real> bound(const RayLanes<Real>& ray,
-                                                const Sphere::Fields<Real>& sphere,
-                                                const Real& best) {
+[[gnu::always_inline]] inline HitInterval<Real> bound(const SimdRays<Real>& ray,
+                                                      const Sphere::Fields<Real>& sphere,
+                                                      const Real& best) {
   const Real o(0);
   const Chord<Real> chord(ray, sphere);
   const Real& middle = chord.middle;
@@ -192,27 +192,27 @@ template <class Real>
   if (none(some))
     return {some, some, middle, middle};
   const SphereSide<Real> side(ray, chord, magnitude(sphere.radius));
-  const Mask<Real> past_all = both(both(side.outside, side.behind), ray.t_min >= o);
-  some = but_not(some, either(past_all, chord.inside + side.room < o));
+  const Mask<Real> past_all = mask_and(mask_and(side.outside, side.behind), ray.t_min >= o);
+  some = and_not(some, mask_or(past_all, chord.inside + side.error_bound < o));
   if (none(some))
     return {some, some, middle, middle};
-  const Real most = square_root(greater(chord.inside + side.room, o) * ray.inv_dd);
-  const Real least = square_root(greater(chord.inside - side.room, o) * ray.inv_dd);
+  const Real most = square_root(max(chord.inside + side.error_bound, o) * ray.inv_dd);
+  const Real least = square_root(max(chord.inside - side.error_bound, o) * ray.inv_dd);
   const Real slack = side.w * ray.inv_length + units<Real>(4) * most;
   const Real enter_lo = (middle - most) - slack, enter_hi = (middle - least) + slack;
   const Real leave_lo = (middle + least) - slack, leave_hi = (middle + most) + slack;
-  const Mask<Real> crosses = chord.inside > side.room;
+  const Mask<Real> crosses = chord.inside > side.error_bound;
   const Mask<Real> from_here = ray.t_min == o;
-  const Mask<Real> from_inside = both(from_here, side.inside);
-  const Mask<Real> from_outside = both(both(from_here, side.ahead), side.outside);
+  const Mask<Real> from_inside = mask_and(from_here, side.inside);
+  const Mask<Real> from_outside = mask_and(mask_and(from_here, side.ahead), side.outside);
   // the first crossing is surely not the entry
-  const Mask<Real> past = either(either(enter_hi <= ray.t_min, from_inside), sphere.radius < o);
-  const Mask<Real> enters = but_not(either(enter_lo > ray.t_min, from_outside), past);
-  const Mask<Real> leaves = both(past, either(leave_lo > ray.t_min, from_inside));
+  const Mask<Real> past = mask_or(mask_or(enter_hi <= ray.t_min, from_inside), sphere.radius < o);
+  const Mask<Real> enters = and_not(mask_or(enter_lo > ray.t_min, from_outside), past);
+  const Mask<Real> leaves = mask_and(past, mask_or(leave_lo > ray.t_min, from_inside));
   const Real lo = select(past, leave_lo, enter_lo);
-  some = but_not(some, either(lo > best, leave_hi <= ray.t_min));
+  some = and_not(some, mask_or(lo > best, leave_hi <= ray.t_min));
   return {some,
-          both(both(some, crosses), either(enters, leaves)),
+          mask_and(mask_and(some, crosses), mask_or(enters, leaves)),
           lo,
           select(past, leave_hi, enter_hi)};
 }
@@ -222,10 +222,10 @@ template <class Real>
 /// Source    Moore, Interval Analysis (1966): one step of Newton's method from the middle of the
 ///           span, by the slope's interval over it. No square root; docs/numerics.md has the bound.
 template <class Real>
-[[gnu::always_inline]] inline Found<Real> narrowed(const RayLanes<Real>& ray,
-                                                   const Sphere::Fields<Real>& sphere,
-                                                   const Real& lo,
-                                                   const Real& hi) {
+[[gnu::always_inline]] inline HitInterval<Real> narrowed(const SimdRays<Real>& ray,
+                                                         const Sphere::Fields<Real>& sphere,
+                                                         const Real& lo,
+                                                         const Real& hi) {
   const Real t = Real(.5) * (lo + hi);
   const Vec3<Real> to_center = ray.to(vec(sphere.center));
   const Vec3<Real> way = t * ray.dir;
@@ -250,39 +250,39 @@ inline ExactCrossing exact_crossing(const ExactRay& ray, const Sphere::Fields<fl
   return cross_sphere(ray, sphere.center, sphere.radius);
 }
 
-/// Lanes of spheres that a ray may meet, at any t.
+/// Lanes of spheres that a ray may intersect, at any t.
 template <class Real>
-[[gnu::always_inline]] inline Mask<Real> may_meet(const RayLanes<Real>& ray,
-                                                  const Sphere::Fields<Real>& sphere) {
+[[gnu::always_inline]] inline Mask<Real> may_intersect(const SimdRays<Real>& ray,
+                                                       const Sphere::Fields<Real>& sphere) {
   return Chord<Real>(ray, sphere).may_be(ray, sphere.radius);
 }
 
-/// Lanes of spheres i, i + 1, ... that reach into a frustum.
+/// Lanes of spheres i, i + 1, ... that overlap a frustum.
 template <class Frustum>
-inline unsigned reaching(const Frustum& f, const FieldArrays<Sphere>& spheres, std::uint32_t i) {
+inline unsigned overlapping(const Frustum& f, const FieldArrays<Sphere>& spheres, std::uint32_t i) {
   const Block u = load<Block>(spheres.center[f.u] + i);
   const Block v = load<Block>(spheres.center[f.v] + i);
   const Block k = load<Block>(spheres.center[f.k] + i);
   const Block r = magnitude(load<Block>(spheres.radius + i));
-  return f.lanes_inside([&](int j) {
+  return f.inside_mask([&](int j) {
     return ((Block(f.a[j]) * (j < 2 ? u : v) + Block(f.b[j]) * k) + Block(f.c[j])) +
-           r * Block(f.reach[j]);
+           r * Block(f.half_width[j]);
   });
 }
 
-/// Groups of rays in a frustum that a sphere may be met by.
+/// Groups of rays in a frustum that may hit a sphere.
 template <class Frustum>
 inline std::uint64_t groups_near(const Frustum& f, const Sphere::Fields<float>& sphere) {
   const float radius = magnitude(sphere.radius);
   return f.groups_inside([&](int j, int first) {
-    const Lanes across = Lanes(f.a[j] * sphere.center[f.side(j)]) +
-                         load<Lanes>(f.group_b[j] + first) * Lanes(sphere.center[f.k]);
-    return (across + load<Lanes>(f.group_c[j] + first)) +
-           Lanes(radius) * load<Lanes>(f.group_reach[j] + first);
+    const VFloat across = VFloat(f.a[j] * sphere.center[f.side(j)]) +
+                          load<VFloat>(f.group_b[j] + first) * VFloat(sphere.center[f.k]);
+    return (across + load<VFloat>(f.group_c[j] + first)) +
+           VFloat(radius) * load<VFloat>(f.group_reach[j] + first);
   });
 }
 
-/// Point and normal where a ray meets a sphere, in double: those of the first crossing beyond t =
+/// Point and normal where a ray hits a sphere, in double: those of the first crossing beyond t =
 /// 0, or of the one next to t.
 template <class Real>
 inline void sphere_crossing(const Vec3<Real>& org,
@@ -298,24 +298,24 @@ inline void sphere_crossing(const Vec3<Real>& org,
   const Real inv_dd = Real(1) / dot(dir, dir);
   const Real middle = dot(to_center, dir) * inv_dd;
   const Vec3<Real> gap = middle * dir - to_center;
-  const Real inside = greater(radius * radius - dot(gap, gap), o);
+  const Real inside = max(radius * radius - dot(gap, gap), o);
   const Real half = square_root(inside * inv_dd);
-  const Mask<Real> enters = t ? *t < middle : both(middle > half, sphere.radius > o);
+  const Mask<Real> enters = t ? *t < middle : mask_and(middle > half, sphere.radius > o);
   normal = normalize(gap + select(enters, o - half, half) * dir);
   point = center + radius * normal;
 }
 
 template <class Real, int i = 0>
-inline void sphere_places(const Meeting<Real>& met,
-                          const Sphere::Fields<Real>& sphere,
-                          PlaceParts<Real>& to) {
+inline void sphere_positions(const SurfaceHit<Real>& met,
+                             const Sphere::Fields<Real>& sphere,
+                             PositionParts<Real>& to) {
   Vec3<Wide<Real>> point;
   Vec3<Wide<Real>> normal;
-  const Wide<Real> t = widen<i>(met.t);
-  sphere_crossing<Wide<Real>>(widen<i>(met.org),
-                              widen<i>(met.dir),
+  const Wide<Real> t = to_double<i>(met.t);
+  sphere_crossing<Wide<Real>>(to_double<i>(met.org),
+                              to_double<i>(met.dir),
                               met.first ? nullptr : &t,
-                              widened<Sphere, i, Real>(sphere),
+                              fields_to_double<Sphere, i, Real>(sphere),
                               point,
                               normal);
   int k = 0;
@@ -323,7 +323,7 @@ inline void sphere_places(const Meeting<Real>& met,
     for (const Wide<Real>* x : {&v->x, &v->y, &v->z})
       to.part[k++][i] = *x;
   if constexpr (i + 1 < kWideParts<Real>)
-    sphere_places<Real, i + 1>(met, sphere, to);
+    sphere_positions<Real, i + 1>(met, sphere, to);
 }
 
 /// Times the radius: a start that far off lets no ray meet the bulge whose cosine with the rounded
@@ -334,16 +334,16 @@ inline constexpr float kBulge = 0x1p-42f;
 template <class Real>
 inline Surface<Real> surface_on(const Sphere::Arrays& spheres,
                                 const Words<Real>& i,
-                                const Meeting<Real>& met) {
+                                const SurfaceHit<Real>& met) {
   const auto sphere = gathered<Sphere, Real>(spheres.fields, i);
-  PlaceParts<Real> parts;
-  sphere_places<Real>(met, sphere, parts);
+  PositionParts<Real> parts;
+  sphere_positions<Real>(met, sphere, parts);
   const Vec3<Real> point = parts.vector(0);
   const Real p = largest(point);
   const Real r = magnitude(sphere.radius);
   // The middle term spares most rays that leave the test in double; the result is right without it.
-  const Real away = Real(4 * kEps) * p + Real(16 * kEps) * lesser(r, p) + Real(kBulge) * r;
-  return surface_at<Real>({point, parts.vector(3), away}, words_at(spheres.material, i));
+  const Real offset = Real(4 * kEps) * p + Real(16 * kEps) * min(r, p) + Real(kBulge) * r;
+  return surface_at<Real>({point, parts.vector(3), offset}, words_at(spheres.material, i));
 }
 
 }  // namespace grelha::GRELHA_ISA

@@ -1,11 +1,11 @@
 #pragma once
 // The surface at a hit: the point, its normals, and how far away from it a new ray must start.
 //
-// A ray that leaves a surface must not meet it again, nor skip what lies close. The point is
+// A ray that leaves a surface must not hit it again, nor skip what lies close. The point is
 // computed from the primitive, not from org + t dir, which is off by eps times the distance
-// travelled; the remaining error (`away`) is bounded from the primitive's size and place: pbrt's
-// idea (Pharr, Jakob, Humphreys, PBR 4th ed., 6.8), one scalar bound for all axes. Derivations:
-// docs/numerics.md; kept by leaving_test.cpp.
+// travelled; the remaining error (`offset`) is bounded from the primitive's size and position:
+// pbrt's idea (Pharr, Jakob, Humphreys, PBR 4th ed., 6.8), one scalar bound for all axes.
+// Derivations: docs/numerics.md; kept by leaving_test.cpp.
 
 #include "kernel/shapes/geometry_view.hpp"
 
@@ -23,7 +23,7 @@ inline Surface<Real> surface_of(const GeometryView& g,
                                 bool smooth,
                                 bool first = false) {
   const Vec3<Real> at{org.x + t * dir.x, org.y + t * dir.y, org.z + t * dir.z};
-  const Meeting<Real> met{
+  const SurfaceHit<Real> met{
       .org = org,
       .dir = dir,
       .t = t,
@@ -37,15 +37,15 @@ inline Surface<Real> surface_of(const GeometryView& g,
     const std::uint32_t begin = g.ids.begin(Shape::kKind);
     const std::uint32_t count = g.ids.count(Shape::kKind);
     const auto here = id - begin < count;
-    const Mask<Real> chosen = mask_of(Words<Real>(here));
-    if (none(chosen))
+    const Mask<Real> selected = mask_of(Words<Real>(here));
+    if (none(selected))
       return;
     const typename Shape::Arrays& arrays = g.of<Shape>();
     const Surface<Real> f = surface_on(arrays, Words<Real>(here ? id - begin : Words<Real>{}), met);
-    s = {select(chosen, f.point, s.point),
-         select(chosen, f.normal, s.normal),
-         select(chosen, f.shading, s.shading),
-         select(chosen, f.away, s.away),
+    s = {select(selected, f.point, s.point),
+         select(selected, f.normal, s.normal),
+         select(selected, f.shading, s.shading),
+         select(selected, f.offset, s.offset),
          here ? f.material : s.material};
   });
   return s;
@@ -53,11 +53,11 @@ inline Surface<Real> surface_of(const GeometryView& g,
 
 /// Origin of a ray that leaves `point` on the side its direction points to. `normal` is unit.
 template <class Real>
-inline Vec3<Real> leave(const Vec3<Real>& point,
-                        const Vec3<Real>& normal,
-                        const Real& away,
-                        const Vec3<Real>& dir) {
-  return point + select(dot(dir, normal) < Real(0), Real(0) - away, away) * normal;
+inline Vec3<Real> offset_origin(const Vec3<Real>& point,
+                                const Vec3<Real>& normal,
+                                const Real& offset,
+                                const Vec3<Real>& dir) {
+  return point + select(dot(dir, normal) < Real(0), Real(0) - offset, offset) * normal;
 }
 
 }  // namespace grelha::GRELHA_ISA

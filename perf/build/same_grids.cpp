@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "kernel/world/world_impl.hpp"
+#include "kernel/grid/world_impl.hpp"
 
 namespace grelha::perf {
 namespace {

@@ -4,7 +4,7 @@
 
 namespace grelha::perf {
 
-/// Whether two worlds are the same, byte for byte.
+/// Returns true if the grids of two worlds are equal byte for byte.
 bool same_grids(const World& a, const World& b);
 
 }  // namespace grelha::perf

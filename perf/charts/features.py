@@ -34,7 +34,7 @@ KINDS = ("triangles", "balls", "cones")
 OPTIONS = {"lens": ["--lens", "1e-6"], "area lights": ["--shadows", "random:1e-6"]}
 NORMALS = "smooth normals"
 EVERYTHING = set(NAMES)
-# What goes out together, since the rest would ask for it all the same: title, features
+# Features disabled together, because the others would require them all the same: title, features
 LEFT_OUT = [("Fresnel", {"Fresnel"}), ("glass", {"glass", "Fresnel"}),
             ("rough mirrors", {"rough mirrors"}),
             ("mirrors, glass: all bounces", {"mirrors", "glass", "Fresnel", "rough mirrors"}),
@@ -145,7 +145,7 @@ def csv(result):
 
 
 def from_csv(rows):
-    """What was measured, as docs/charts-features.csv keeps it."""
+    """The measurements in the format of docs/charts-features.csv."""
     def point(row):
         return {
             "label": row["features"], "seconds": float(row["cpu_seconds"]),

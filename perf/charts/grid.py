@@ -88,7 +88,7 @@ def csv(result):
 
 
 def from_csv(rows):
-    """What was measured, as docs/charts-grid.csv keeps it."""
+    """The measurements in the format of docs/charts-grid.csv."""
     def point(row):
         grids = [[int(n) for n in grid.split("x")] for grid in row["cells"].split()]
         return {

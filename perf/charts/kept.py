@@ -1,4 +1,4 @@
-"""What the charts read back of the CSVs that docs/ keeps."""
+"""Reads the CSVs in docs/ for the charts."""
 import re
 
 

@@ -1,9 +1,9 @@
 """Error of pictures against the time they take.
 
-An effect is a panel and a method a curve in it, the Pareto front behind them.
-Error is the RMSE, and 1 - SSIM, of what a screen shows against a reference of other seeds made of
-two halves; time the CPU seconds of rendering on one thread, the least of several renders that take
-turns.
+Each effect has a panel, each method a curve in it, with the Pareto front behind the curves.
+Error is the RMSE, and 1 - SSIM, of the displayed values against a reference of other seeds made of
+two halves. Time is the CPU seconds of rendering on one thread, the least of several renders that
+take turns.
 """
 import math
 
@@ -79,8 +79,8 @@ def settings_of(effect, plan):
 
 
 class Crops:
-    """Where the first picture of an effect errs most: that part of each, and of its error, as small
-    pictures."""
+    """Crops of the pictures of an effect and of their errors, saved as small pictures: all show the
+    part where the first picture has the largest error."""
 
     def __init__(self, folder):
         self.folder, self.at = folder, None
@@ -173,7 +173,7 @@ def csv(result):
 
 
 def from_csv(rows):
-    """What was measured, as docs/charts-picture.csv keeps it; the small pictures are not in it."""
+    """The measurements in the format of docs/charts-picture.csv, without the small pictures."""
     titles, effects = {name: title for name, title, *_ in EFFECTS}, {}
     for row in rows:
         effect = effects.setdefault(

@@ -1,4 +1,4 @@
-"""What the benchmark scripts share: scenes, runs of the program, results as CSV, and sections made
+"""Helpers of the benchmark scripts: scenes, runs of the program, results as CSV, and sections made
 from them in docs/performance.md."""
 import argparse
 import csv
@@ -38,7 +38,7 @@ def arguments(doc, rounds):
 
 
 def read_csv(name, folder=DOCS):
-    """Rows of a CSV, of those that docs/ keeps if no folder is named, as dicts of words."""
+    """Reads the rows of a CSV as dicts of words; the folder is docs/ if none is named."""
     with open(folder / f"{name}.csv", newline="") as f:
         return list(csv.DictReader(f))
 

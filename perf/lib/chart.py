@@ -77,7 +77,7 @@ def plain(value, _=None):
 
 
 def set_axis(axis, low, high, how):
-    """Few and legible ticks: powers of ten, with halves and fifths of them where the axis spans
+    """Returns a few legible ticks: powers of ten, with their halves and fifths if the axis spans
     little."""
     if "names" in how:
         axis.set_ticks(range(len(how["names"])), how["names"])

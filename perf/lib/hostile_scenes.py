@@ -1,8 +1,8 @@
 """Scenes that break adaptive samplers, written as NFF: KINDS by name, twenty variants of each.
 
 `scene(kind, variant)` tells the text and the options of `render` that belong to it. Sizes are meant
-for pictures of SIDE x SIDE pixels. With `bare` the tiny things that can be counted are left out.
-What is left shows how bright their pixels are without them.
+for pictures of SIDE x SIDE pixels. `bare` omits the tiny objects that are counted.
+The rest of the scene shows how bright their pixels are without them.
 """
 import math
 import random

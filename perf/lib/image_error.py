@@ -42,7 +42,7 @@ def blurred(plane):
 
 def ssim(a, b):
     """Structural similarity of Wang, Bovik, Sheikh and Simoncelli (2004) with their window and
-    constants, of the luma (Rec. 601) of what a screen shows; 1 for equal pictures."""
+    constants, of the luma (Rec. 601) of the displayed values; 1 for equal pictures."""
     x, y = (np.clip(picture, 0, 1) @ [.299, .587, .114] for picture in (a, b))
     mx, my = blurred(x), blurred(y)
     vx, vy, both = blurred(x * x) - mx * mx, blurred(y * y) - my * my, blurred(x * y) - mx * my
@@ -75,7 +75,7 @@ class Workshop:
                            stdout=subprocess.PIPE, text=True).stdout)
 
     def command(self, source, options, tail=()):
-        """What a reader types to repeat a render; `tail`: lines added to the end of the scene."""
+        """Returns the command that repeats a render; `tail`: lines added to its scene."""
         name, make = str(source), ""
         if not isinstance(source, str):
             name = f"{source[0]}-{source[1]}.nff"

@@ -1,4 +1,4 @@
-"""Tachyon, the nearest relative: grids, threads, SPD's scenes. What frame.py asks of it."""
+"""Runs Tachyon for frame.py: the most similar ray tracer, with grids, threads and SPD's scenes."""
 import re
 import shutil
 import subprocess

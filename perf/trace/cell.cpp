@@ -27,8 +27,9 @@ double Cell::lanes_busy() const {
   return share_of(counts.packets.lanes_busy, counts.packets.lanes_issued);
 }
 
-double Cell::fell_back() const {
-  return share_of(counts.packets.fell_back, counts.packets.fell_back + counts.packets.formed);
+double Cell::packet_fallbacks() const {
+  return share_of(counts.packets.packet_fallbacks,
+                  counts.packets.packet_fallbacks + counts.packets.formed);
 }
 
 double Cell::ratio(std::size_t a, std::size_t b) const {

@@ -1,5 +1,5 @@
 #pragma once
-// What is told of one scene and kind of rays.
+// The results for one scene and kind of rays.
 
 #include <cstdint>
 #include <functional>
@@ -33,12 +33,12 @@ struct Cell {
   double tests() const;  ///< a ray
   double cells() const;  ///< a ray
   double lanes_busy() const;
-  double fell_back() const;
+  double packet_fallbacks() const;
   bool has_embree() const { return ways[best[kRobust]].side == kRobust; }
   /// Median over rounds of the times of one way over those of another.
   double ratio(std::size_t a, std::size_t b) const;
-  /// What a caller's ways take over those of Embree's that ask alike: calls of one ray, streams of
-  /// eight, and one stream over the best.
+  /// Returns the ratios of the caller's methods to the corresponding ones of Embree: calls of one
+  /// ray, streams of eight, and one stream over Embree's best method.
   std::vector<double> caller_ratios() const;
   /// Finds the best way of each side, by the rounds there were.
   void find_best();

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "kernel/world/world_impl.hpp"
+#include "kernel/grid/world_impl.hpp"
 #include "perf/trace/modes.hpp"
 #include "tests/reference/reference.hpp"
 #include "tests/support/oracle.hpp"
@@ -37,7 +37,7 @@ struct Judge {
   }
 };
 
-/// Whether that is a cone, and the point at t lies on its side.
+/// Returns true if primitive `id` is a cone and the point of ray i at t lies on its side.
 bool Judge::on_its_cone(std::size_t i, std::uint32_t id, float t) const {
   const std::uint32_t first = place.world.impl().view.geometry.ids.begin(PrimitiveKind::kCone);
   const Cones& c = place.file.scene.geometry.cones;
@@ -54,7 +54,7 @@ bool Judge::on_its_cone(std::size_t i, std::uint32_t id, float t) const {
   return side.distance(ray.point(t)) <= kConeUnits * unit;
 }
 
-/// Whether Grelha met a plane where Embree's stand-in for it has ended.
+/// Returns true if Grelha hit a plane outside the triangles that replace it in Embree.
 bool Judge::past_the_planes(std::size_t i) const {
   const SceneView& scene = place.world.impl().view;
   if (!scene.geometry.ids.has(PrimitiveKind::kPlane, truth.id[i]))
@@ -71,7 +71,7 @@ bool Judge::past_the_planes(std::size_t i) const {
   return std::sqrt(away) > .99 * kPlaneReach * width;
 }
 
-/// Whether Embree's ray i met what Grelha's did not.
+/// Returns true if Embree and Grelha disagree about ray i.
 bool Judge::something_else(const Answers& a, std::size_t i) const {
   if (any)
     return a.met(i) != truth.met(i);
@@ -118,7 +118,7 @@ double hit_share(const Judge& judge) {
   return judge.share(hits);
 }
 
-/// Share of rays that meet something else in Embree, by one of its modes.
+/// Returns the fraction of rays whose answer differs in Embree, in one of its modes.
 double disagreement(const Judge& judge, EmbreeScene& embree, const EmbreeMode& mode) {
   embree.trace(judge.rays, judge.any, mode);
   const Answers a = embree.answers();

@@ -61,7 +61,7 @@ std::string counts_text(const Row&, std::size_t, const Cell& c) {
                 100 * c.lanes_busy(),
                 c.tests(),
                 c.cells(),
-                100 * c.fell_back());
+                100 * c.packet_fallbacks());
 }
 
 std::string caller_text(const Row&, std::size_t, const Cell& c) {

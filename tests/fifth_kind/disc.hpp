@@ -18,7 +18,7 @@ struct Disc {
   static constexpr bool kFinite = true;
   static constexpr bool kInBlocks = false;
 
-  /// What tests see of a disc, or of many, an array each.
+  /// The fields that intersection tests read: of one disc, or arrays of these fields.
   template <class T>
   struct Fields {
     T center[3], normal[3];  ///< normal: unit
@@ -40,7 +40,7 @@ struct Disc {
       visit(*v);
   }
   static const DiscSpans& spans_of(const GeometrySpans& g) { return g.discs; }
-  /// Whether they have one length.
+  /// Returns true if all arrays have the same length.
   static bool is_even(const DiscSpans& spans) {
     bool even = true;
     for_each_array(spans, [&](Floats v) { even &= v.size() == spans.size(); });
@@ -50,7 +50,7 @@ struct Disc {
 
   /// The caller's discs, with normals of unit length.
   struct Source {
-    static constexpr std::size_t kPreparedBytes = 3 * sizeof(float);  ///< a disc
+    static constexpr std::size_t kSetupBytes = 3 * sizeof(float);  ///< a disc
     DiscSpans spans;
     std::vector<float> normal[3];
     explicit Source(const GeometrySpans& g) : spans(g.discs) {
@@ -79,17 +79,17 @@ struct Disc {
     Box b;
     for (int a = 0; a < 3; ++a) {
       const double d = disc.normal[a];
-      const double reach = disc.radius * std::sqrt(std::max(0., 1 - d * d) + 1e-6);
-      b.lo[a] = disc.center[a] - reach;
-      b.hi[a] = disc.center[a] + reach;
+      const double half_width = disc.radius * std::sqrt(std::max(0., 1 - d * d) + 1e-6);
+      b.lo[a] = disc.center[a] - half_width;
+      b.hi[a] = disc.center[a] + half_width;
     }
     return b;
   }
 
   /// A cell grown by pad against the disc's plane.
-  class Touch {
+  class Overlap {
    public:
-    Touch(const Fields<float>& disc, const CellFrame& g, const CellRange&) {
+    Overlap(const Fields<float>& disc, const CellFrame& g, const CellRange&) {
       reach_ = 0;
       for (int a = 0; a < 3; ++a) {
         normal_[a] = disc.normal[a];
@@ -118,31 +118,32 @@ namespace grelha::GRELHA_ISA {
 /// place are taken from the ray's point nearest to the center: what is large cancels once. They are
 /// off by 16 u w, w = |center - org| / |cosine of the angle between ray and normal|.
 template <class Real>
-[[gnu::always_inline]] inline Found<Real> bound(const RayLanes<Real>& ray,
-                                                const Disc::Fields<Real>& disc,
-                                                const Real& best) {
+[[gnu::always_inline]] inline HitInterval<Real> bound(const SimdRays<Real>& ray,
+                                                      const Disc::Fields<Real>& disc,
+                                                      const Real& best) {
   const Vec3<Real> normal = vec(disc.normal);
   const Vec3<Real> to_center = ray.to(vec(disc.center));
   const Real middle = dot(to_center, ray.dir) * ray.inv_dd;
   const Vec3<Real> gap = middle * ray.dir - to_center;
   const Real along = dot(ray.dir, normal);
   const Real rest = (Real(0) - dot(gap, normal)) / along;
-  const Vec3<Real> off = gap + rest * ray.dir;
+  const Vec3<Real> frame_error = gap + rest * ray.dir;
   const Real t = middle + rest;
   const Vec3<Real> size = sizes(to_center);
   const Real far = ((size.x + size.y) + size.z) + disc.radius;
   const Real cosine = magnitude(along) * ray.inv_length;
-  const Real room = (units<Real>(32) * far + Real(8) * ray.off) / cosine;
-  const Real lo = t - room * ray.inv_length;
-  const Real hi = t + room * ray.inv_length;
+  const Real error_bound = (units<Real>(32) * far + Real(8) * ray.frame_error) / cosine;
+  const Real lo = t - error_bound * ray.inv_length;
+  const Real hi = t + error_bound * ray.inv_length;
   const Mask<Real> known = cosine > units<Real>(64);
-  const Real outer = disc.radius + room;
-  const Real inner = disc.radius - room;
-  const Mask<Real> beside = dot(off, off) > outer * outer;
-  const Mask<Real> never = either(beside, either(hi <= ray.t_min, lo > best));
-  const Mask<Real> some = but_not(disc.radius == disc.radius, both(known, never));
-  const Mask<Real> within = both(inner > Real(0), dot(off, off) < inner * inner);
-  return {some, both(both(some, known), both(within, lo > ray.t_min)), lo, hi};
+  const Real outer = disc.radius + error_bound;
+  const Real inner = disc.radius - error_bound;
+  const Mask<Real> beside = dot(frame_error, frame_error) > outer * outer;
+  const Mask<Real> never = mask_or(beside, mask_or(hi <= ray.t_min, lo > best));
+  const Mask<Real> some = and_not(disc.radius == disc.radius, mask_and(known, never));
+  const Mask<Real> within =
+      mask_and(inner > Real(0), dot(frame_error, frame_error) < inner * inner);
+  return {some, mask_and(mask_and(some, known), mask_and(within, lo > ray.t_min)), lo, hi};
 }
 
 /// With 106 bits.
@@ -157,34 +158,34 @@ inline ExactCrossing exact_crossing(const ExactRay& ray, const Disc::Fields<floa
   if (along.high == 0)
     return {};
   const DoubleDouble t = dot(to_center, normal) / along;
-  const WideVector off = t * dir - to_center;
-  const bool within = !(dot(off, off) > DoubleDouble(radius) * radius);
+  const WideVector frame_error = t * dir - to_center;
+  const bool within = !(dot(frame_error, frame_error) > DoubleDouble(radius) * radius);
   return within && t > ray.t_min ? ExactCrossing(t) : ExactCrossing();
 }
 
-/// Lanes of discs i, i + 1, ... whose balls reach into a frustum.
+/// Lanes of discs i, i + 1, ... whose balls overlap a frustum.
 template <class Frustum>
-inline unsigned reaching(const Frustum& f, const FieldArrays<Disc>& discs, std::uint32_t i) {
+inline unsigned overlapping(const Frustum& f, const FieldArrays<Disc>& discs, std::uint32_t i) {
   const auto& [x, y, z] = discs.center;
-  return reaching(f, FieldArrays<Sphere>{{x, y, z}, discs.radius}, i);
+  return overlapping(f, FieldArrays<Sphere>{{x, y, z}, discs.radius}, i);
 }
 
-/// Groups of rays in a frustum that a disc's ball may be met by.
+/// Groups of rays in a frustum that may hit a disc's ball.
 template <class Frustum>
 inline std::uint64_t groups_near(const Frustum& f, const Disc::Fields<float>& disc) {
   const auto& [x, y, z] = disc.center;
   return groups_near(f, Sphere::Fields<float>{{x, y, z}, disc.radius});
 }
 
-/// Where rays met discs, of indices i: as on their planes.
+/// Computes the surface points of hits on discs with indices i, as for hits on planes.
 template <class Real>
 inline Surface<Real> surface_on(const Disc::Arrays& discs,
                                 const Words<Real>& i,
-                                const Meeting<Real>& met) {
+                                const SurfaceHit<Real>& met) {
   const auto disc = gathered<Disc, Real>(discs.fields, i);
   const Vec3<Real> c = vec(disc.center);
   const Vec3<Real> n = vec(disc.normal);
-  return surface_at<Real>(plane_place<Real>(c, n, met.at), words_at(discs.material, i));
+  return surface_at<Real>(plane_position<Real>(c, n, met.at), words_at(discs.material, i));
 }
 
 }  // namespace grelha::GRELHA_ISA

@@ -8,8 +8,8 @@
 #include <numeric>
 
 #include "grelha/grelha.hpp"
-#include "kernel/world/world_impl.hpp"
-#include "kernel/shapes/copies.hpp"
+#include "kernel/grid/world_impl.hpp"
+#include "kernel/shapes/duplicates.hpp"
 #include "tests/support/one_hit.hpp"
 #include "tests/support/oracle.hpp"
 #include "tests/support/random.hpp"
@@ -115,7 +115,7 @@ TEST(Disc, IsLeftByRaysThatStartOnIt) {
       continue;
     const SurfacePoint at = surface(world, ray, hit);
     const Float3 d = random.direction();
-    ASSERT_NE(closest(world, Ray{at.leave(d), d}).id, hit.id) << "ray " << i;
+    ASSERT_NE(closest(world, Ray{at.offset_origin(d), d}).id, hit.id) << "ray " << i;
     ++left;
   }
   EXPECT_GT(left, 1000);
@@ -128,7 +128,7 @@ TEST(Disc, IsACopyOfAnEqualOneAlone) {
   const Primitives primitives(g);
   std::vector<std::uint32_t> ids(30);
   std::iota(ids.begin(), ids.end(), primitives.ids.begin(PrimitiveKind::kDisc));
-  EXPECT_EQ(copies_among(primitives, ids).size(), 28u);
+  EXPECT_EQ(find_duplicates(primitives, ids).size(), 28u);
 }
 
 TEST(Disc, IsRefusedWhereArraysAreUneven) {

@@ -1,7 +1,7 @@
-// Fuzzes .grelha files: the input is one, or several in a row, each from "grelha partial" to the
-// next. As they are and with their checksums put right, which no mutation would: what reads is
-// written, read and written again to the same bytes, and gone on with if it is of a small picture;
-// all of them are merged.
+// Fuzzes .grelha files. The input is one file or several, each from "grelha partial" to the next.
+// Each file is tested unchanged and with corrected checksums, which a mutation would not produce. A
+// file that can be read is written, read and written again, which must give the same bytes; if its
+// picture is small, rendering is resumed from it. Then the files are merged.
 #include <vector>
 
 #include "frontend/commands/commands.hpp"
@@ -20,15 +20,15 @@ constexpr std::string_view kMagic = "grelha partial";
 constexpr std::size_t kChecksum = 8;
 
 std::vector<std::string> pieces_of(std::string_view bytes) {
-  std::vector<std::string> pieces;
+  std::vector<std::string> fragments;
   while (!bytes.empty()) {
     const std::size_t end = bytes.find(kMagic, 1);
-    pieces.emplace_back(bytes.substr(0, end));
+    fragments.emplace_back(bytes.substr(0, end));
     if (end == std::string_view::npos)
       break;
     bytes.remove_prefix(end);
   }
-  return pieces;
+  return fragments;
 }
 
 /// The last eight bytes as a writer would have them.

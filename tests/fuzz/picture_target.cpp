@@ -1,6 +1,6 @@
-// Fuzzes the pictures that `compare` reads, but for what stb alone reads: OpenEXR, PFM and what a
-// PNG says beside its pixels. What is read has a size, and written as OpenEXR comes back bit for
-// bit; the message of what is not is one line.
+// Fuzzes the picture formats that `compare` reads, except those that only stb parses: OpenEXR, PFM
+// and the metadata of PNG. A picture that is read must not be empty, and must keep every bit when
+// it is written and read as OpenEXR. The message for an invalid file must be a single line.
 #include <cstring>
 
 #include "frontend/files/parse_error.hpp"

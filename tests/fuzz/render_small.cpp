@@ -12,7 +12,8 @@ namespace {
 
 constexpr int kSide = 8;
 
-/// What a picture costs: primitives times the rays that each point of it may send.
+/// Returns the estimated cost of a picture: primitives times the rays that each hit point may
+/// trace.
 std::size_t cost_of(const Scene& scene) {
   const Geometry& g = scene.geometry;
   return (g.spheres.size() + g.triangles.size() + g.cones.size() + g.planes.size()) *
@@ -36,7 +37,7 @@ Effects some_effects(Choices& choices) {
   return e;
 }
 
-/// What changes no bit of a picture.
+/// Options that change no bit of a picture.
 struct Way {
   BuildOptions build;
   std::string_view isa = "scalar";
@@ -53,7 +54,7 @@ Way some_way(Choices& choices) {
   way.mailbox = choices.below(4) != 0;
   std::vector<std::string_view> names;
   for (const Isa& isa : isas())
-    if (isa.runs_here)
+    if (isa.is_supported)
       names.push_back(isa.name);
   way.isa = names[choices.below(names.size())];
   return way;
@@ -90,9 +91,9 @@ void render_small(SceneFile file, Choices choices) {
   const Image image = picture(file, options, some_way(choices));
   if (cost > kMostTwice)
     return;
-  Way plain;
-  plain.build.grid = false;
-  const Image other = picture(file, options, plain);
+  Way simple;
+  simple.build.grid = false;
+  const Image other = picture(file, options, simple);
   promise(std::memcmp(image.rgb.data(), other.rgb.data(), image.rgb.size() * sizeof(float)) == 0,
           "the same bits by every way of rendering");
 }

@@ -5,9 +5,9 @@
 
 namespace grelha::fuzz {
 
-/// Says what the scene holds, builds its grids and renders 8 x 8 pixels of it, in one of the many
-/// ways to do so. Where that is no long work a second way, one ray at a time against every
-/// primitive, must come to the same bits. Large scenes are left alone.
+/// Computes the digest of the scene, builds its grids and renders 8 x 8 pixels with randomly chosen
+/// options. If the scene is small, a second render, one ray at a time against every primitive, must
+/// give the same bits. Large scenes are skipped.
 void render_small(SceneFile file, Choices choices);
 
 }  // namespace grelha::fuzz

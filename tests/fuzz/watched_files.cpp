@@ -9,7 +9,7 @@
 
 namespace {
 
-std::filesystem::path watched;  // canonical; empty: nobody watches
+std::filesystem::path watched;  // canonical; empty: no file is watched
 std::size_t looks = 0;
 
 void look_at(const char* path) {

@@ -1,8 +1,8 @@
 #pragma once
-// What frustum.hpp promises, ray by ray: each is followed in long double through the slices that
-// the frustum covers, and held against its sides and planes.
+// Checks the guarantees of frustum.hpp ray by ray: follows each ray in long double through the
+// slices that the frustum covers, and compares it with the frustum's sides and planes.
 
-#include "kernel/walk/packet_traversal.hpp"
+#include "kernel/traverse/packet_traversal.hpp"
 #include "tests/lanes/lane_functions.hpp"
 
 namespace grelha::GRELHA_ISA {
@@ -101,10 +101,10 @@ class FrustumChecker {
         const int side = f_.side(j);
         const float value = (f_.a[j] * x[side] + f_.b[j] * x[f_.k]) + f_.c[j];
         keep_greater(out_.planes, -value);
-        keep_greater(out_.balls, passed_by(i, t) * f_.reach[j] - value);
+        keep_greater(out_.balls, passed_by(i, t) * f_.half_width[j] - value);
         if (!f_.by_group)
           continue;
-        const int group = i / kWidth<Lanes>;
+        const int group = i / kWidth<VFloat>;
         const float of_group =
             (f_.a[j] * x[side] + f_.group_b[j][group] * x[f_.k]) + f_.group_c[j][group];
         keep_greater(out_.group_planes, -of_group);
@@ -139,15 +139,15 @@ class FrustumChecker {
     point(i, t, x);
     const float s = f_.to_slice * x[f_.k] + f_.zero_slice;
     keep_greater(out_.near, f_.near - s);
-    keep_greater(out_.group_near, f_.group_near[i / kWidth<Lanes>] - s);
+    keep_greater(out_.group_near, f_.group_near[i / kWidth<VFloat>] - s);
   }
 
-  void check_reach(Wide a, Wide b, float reach) {
-    keep_greater(out_.reach, __builtin_sqrtl(a * a + b * b) / reach - 1);
+  void check_reach(Wide a, Wide b, float half_width) {
+    keep_greater(out_.half_width, __builtin_sqrtl(a * a + b * b) / half_width - 1);
   }
   void check_reaches() {
     for (int j = 0; j < 4; ++j) {
-      check_reach(f_.a[j], f_.b[j], f_.reach[j]);
+      check_reach(f_.a[j], f_.b[j], f_.half_width[j]);
       for (int group = 0; f_.by_group && group < p_.groups; ++group)
         check_reach(f_.a[j], f_.group_b[j][group], f_.group_reach[j][group]);
     }

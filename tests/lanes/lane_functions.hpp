@@ -7,7 +7,7 @@
 
 namespace grelha::test {
 
-/// How far rays pass what a frustum promises of them, at most 0 where it keeps its word.
+/// How far rays exceed the bounds that a frustum guarantees; at most 0 if the bounds hold.
 struct FrustumCheck {
   bool together = false;
   int rays = 0;              ///< of the packet, that meet the grid
@@ -15,10 +15,10 @@ struct FrustumCheck {
   double sides = -1;         ///< of a slice's cells, in cells
   double planes = -1;        ///< of the planes that cull, in cells, as the culls compute them
   double balls = -1;         ///< of the same by balls beside a ray that its test may meet
-  double group_planes = -1;  ///< of those of the ray's own group
-  double near = -1;          ///< of the plane before which nothing is met, in slices
-  double group_near = -1;    ///< of that of the ray's own group
-  double reach = -1;         ///< by which a plane's gradient is longer than is said, of itself
+  double group_planes = -1;  ///< of the same planes of the ray's own group
+  double near = -1;          ///< of the near plane, before which there is no hit, in slices
+  double group_near = -1;    ///< of the near plane of the ray's own group
+  double half_width = -1;    ///< by which a plane's gradient is longer than is said, of itself
 };
 
 struct LaneFunctions {
@@ -35,7 +35,7 @@ struct LaneFunctions {
                   float* v,
                   int count);
   /// Camera rays of the work's batch.
-  void (*camera_rays)(const FrameView&, const BandWork&, int count, bool in_pixels);
+  void (*camera_rays)(const FrameView&, const StripWork&, int count, bool in_pixels);
   /// Bounds rays in a grid, and follows each in long double.
   /// Of the rays of one packet.
   FrustumCheck (*check_frustum)(const GridView&, const Rays&);

@@ -4,11 +4,11 @@
 // 1987, with two mends: plane distances come from the plane's index instead of adding up, and
 // mailboxes stand with the ray instead of the primitive.
 //
-// It shares with the kernel what doubles and exact numbers tell of one ray and one primitive, and
-// nothing of what floats tell or of how rays are walked.
+// It shares with the kernel the double and the exact tests of one ray and one primitive, but
+// neither the float tests nor the traversal.
 
 #include "grelha/rays.hpp"
-#include "kernel/trace/trace.hpp"
+#include "kernel/traverse/trace.hpp"
 
 namespace grelha::GRELHA_ISA {
 
@@ -49,8 +49,8 @@ bool take(WalkedRay& r, std::uint32_t id) {
   if (!(span.lo <= r.hi) || id == r.id)
     return false;
   const bool first =
-      span.hi < r.lo || (r.id == kNoPrimitive ? comes_before(*r.geometry, r.given, id, r.t_max)
-                                              : comes_first(*r.geometry, r.given, id, r.id));
+      span.hi < r.lo || (r.id == kNoPrimitive ? is_before_end(*r.geometry, r.given, id, r.t_max)
+                                              : is_closest(*r.geometry, r.given, id, r.id));
   if (!first)
     return false;
   r.id = id;
@@ -103,7 +103,7 @@ bool test_planes(WalkedRay& r, const GeometryView& g, Counters& n) {
 
 template <bool kAny>
 bool walk_grid(WalkedRay& r, const GridView& g, RayMailbox* box, Counters& n) {
-  const GridRay ray = to_grid(g, r.org, r.dir);
+  const DdaState<double> ray = to_grid(g, r.org, r.dir);
   double t0 = r.t_min;
   double t1 = r.hi;
   clip_to_grid(g, ray, t0, t1);
@@ -112,10 +112,12 @@ bool walk_grid(WalkedRay& r, const GridView& g, RayMailbox* box, Counters& n) {
   int at[3];
   int step[3];
   double next[3];
-  const auto plane = [&](int a) { return (at[a] + (step[a] > 0 ? 1 : 0) - ray.p[a]) * ray.iq[a]; };
+  const auto plane = [&](int a) {
+    return (at[a] + (step[a] > 0 ? 1 : 0) - ray.place[a]) * ray.inverse[a];
+  };
   for (int a = 0; a < 3; ++a) {
-    at[a] = clamp_cell(ray.p[a] + t0 * ray.q[a], g.n[a]);
-    step[a] = ray.q[a] > 0 ? 1 : -1;
+    at[a] = clamp_cell(ray.place[a] + t0 * ray.speed[a], g.n[a]);
+    step[a] = ray.speed[a] > 0 ? 1 : -1;
     next[a] = plane(a);
   }
   const int most = g.n[0] + g.n[1] + g.n[2] + 3;
@@ -205,7 +207,7 @@ void trace_reference(
   }
 }
 
-/// What the loops of a Variant do, see VariantLoops.
+/// The query loops of a Variant, see VariantLoops.
 inline void closest(
     const SceneView& scene, const Rays& rays, bool mailbox, Counters& n, const Hits& hits) {
   const auto store = [&](std::ptrdiff_t i, const Ray& ray, const WalkedRay& r) {

@@ -1,4 +1,4 @@
-// Bodies of mirrors and of glass: what gets in and out of them.
+// Tests bodies of mirrors and of glass: rays into and out of the bodies.
 #include <cmath>
 #include <functional>
 
@@ -122,7 +122,8 @@ namespace {
 using oracle::Real;
 using oracle::V;
 
-/// What follows a face of the ball: what is seen is open, nothing more of the ball, its other face.
+/// The result of a refraction at a face of the ball: undecided, the ray leaves the ball, or it goes
+/// on to the other face.
 enum class Next { kOpen, kOutside, kInside };
 
 struct Path {
@@ -184,9 +185,9 @@ Scene ball_before_a_half(float ior) {
 
 }  // namespace
 
-/// Through a glass ball at a world whose right half glows: Snell's law twice in long double, up to
-/// rays that graze the ball. What comes down within 1e-3 of the border, or passes within 1e-5 of
-/// the rim, is open.
+/// A view through a glass ball at a world whose right half glows: Snell's law twice in long double,
+/// up to rays that graze the ball. Rays that arrive within 1e-3 of the border, or pass within 1e-5
+/// of the rim, are undecided.
 PictureCounts glass_ball(int size) {
   Camera cam;
   // the ball fills it

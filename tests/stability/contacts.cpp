@@ -84,7 +84,7 @@ void contacts(Random& random, std::size_t rays, const Sink& sink) {
       const double cosine = dot(d, walls.normal[k]);
       if (cosine < .1)
         continue;
-      Wanted w;
+      Request w;
       w.hit = true;
       w.left = 2 * k;
       w.latest = 2 * walls.gap / cosine;
@@ -120,7 +120,7 @@ void self_hits(Random& random, std::size_t rays, const Sink& sink) {
         d = flattened(random, d, s.normal);
       if (undecided(d, s.normal))
         continue;
-      Wanted w;
+      Request w;
       w.left = k;
       trial.add(s.start(d), d, w);
     }
@@ -147,7 +147,7 @@ void sphere_self_hits(Random& random, std::size_t rays, const Sink& sink) {
         continue;
       if (dot(d, s.normal) < 0)
         d = scaled(d, -1);
-      Wanted w;
+      Request w;
       w.miss = true;
       w.left = 0;
       trial.add(s.start(d), d, w);
@@ -157,7 +157,7 @@ void sphere_self_hits(Random& random, std::size_t rays, const Sink& sink) {
 }
 
 /// Shadow rays from a wall to lights above it: before its lid, behind it, and in it, where both
-/// answers are right. What tells them apart is 8 ulp of the coordinates and more.
+/// answers are right. The distances that decide are 8 ulp of the coordinates and more.
 void lights(Random& random, std::size_t rays, const Sink& sink) {
   const std::size_t each = 1000;
   for (std::size_t done = 0; done < rays;) {
@@ -183,20 +183,21 @@ void lights(Random& random, std::size_t rays, const Sink& sink) {
       const Spot s =
           spot(world, 0, eye, minus(at(walls.middle[0], .2 * size, random.direction()), eye));
       // At a point of the lid, off it by nothing or by anything from an ulp to the size.
-      const double off = random.chance(.2) ? 0 : random.sign() * size * random.log_in(1e-8, .5);
+      const double frame_error =
+          random.chance(.2) ? 0 : random.sign() * size * random.log_in(1e-8, .5);
       const Float3 on =
           at(at(walls.middle[0], size, walls.normal[0]), .3 * size, random.direction());
       const oracle::V p = oracle::V(on) - dot(oracle::V(on) - lid.a, across) * across;
       const double side = static_cast<double>(dot(across, walls.normal[0])) > 0 ? 1 : -1;
-      const oracle::V q = p + oracle::Real(off * side) * across;
+      const oracle::V q = p + oracle::Real(frame_error * side) * across;
       const Float3 light{static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z)};
       const Float3 up = minus(light, s.point);
       const Float3 start = s.start(up), dir = minus(light, start);
-      // Where the float light is: beyond the lid (positive) or before it.
+      // Signed distance of the float light: beyond the lid (positive) or before it.
       const oracle::Real beyond =
           oracle::Real(side) * dot(oracle::V(start) + oracle::V(dir) - lid.a, across);
       const oracle::Real open = allowed(extent.diagonal, extent.diagonal, extent.largest);
-      Wanted w;
+      Request w;
       w.hit = beyond > open;
       w.miss = beyond < -open;
       w.latest = 1;

@@ -16,7 +16,7 @@ using oracle::Facet;
 using oracle::Real;
 using oracle::V;
 
-/// Of t: twice the 8 eps of kernel/triangle/triangle.hpp.
+/// Of t: twice the 8 eps of kernel/shapes/triangle.hpp.
 constexpr Real kClose = 16 * oracle::kEps;
 /// Of the farthest corner's distance: what double leaves open of an edge, some 30 roundings of
 /// 2^-53, and more.
@@ -48,10 +48,10 @@ class Facets {
   }
   const Facet& operator[](std::size_t i) const { return facets_[i]; }
 
-  /// What the ray, whose origin is exact to within `coarse`, meets before t = end, but for facet
-  /// `left`.
-  Wanted wanted(const oracle::Ray& ray, Real coarse, Real end, std::uint32_t left) const {
-    Wanted w;
+  /// Returns the required hit of the ray before t = end, ignoring facet `left`. The ray's origin is
+  /// exact to within `coarse`.
+  Request wanted(const oracle::Ray& ray, Real coarse, Real end, std::uint32_t left) const {
+    Request w;
     w.left = left;
     Real earliest = end;
     Real latest = end;
@@ -68,15 +68,15 @@ class Facets {
       if (inside < -open)
         return;
       const Real t = dot(f.a - ray.org, f.normal()) / along;
-      Real off = kClose * std::abs(t) + 2 * coarse * length(f.normal()) / std::abs(along);
+      Real frame_error = kClose * std::abs(t) + 2 * coarse * length(f.normal()) / std::abs(along);
       if (inside <= open)
-        off = std::max(off, 4 * open * length(f.normal()) / std::abs(along));
-      off = std::min(off, farthest / scale);
-      if (t + off <= 0 || t - off >= end)
+        frame_error = std::max(frame_error, 4 * open * length(f.normal()) / std::abs(along));
+      frame_error = std::min(frame_error, farthest / scale);
+      if (t + frame_error <= 0 || t - frame_error >= end)
         return;
-      earliest = std::min(earliest, t - off);
-      if (inside > open && t - off > 0 && t + off < end)
-        latest = std::min(latest, t + off);
+      earliest = std::min(earliest, t - frame_error);
+      if (inside > open && t - frame_error > 0 && t + frame_error < end)
+        latest = std::min(latest, t + frame_error);
     });
     w.hit = latest < end;
     w.miss = earliest >= end;
@@ -85,7 +85,7 @@ class Facets {
     return w;
   }
 
-  /// What the ray certainly meets first; false where that is open.
+  /// Finds the first hit of the ray; returns false if it is not certain.
   bool first(const oracle::Ray& ray, Place& to) const {
     Real least = 1e300L;
     Real second = 1e300L;
@@ -208,7 +208,7 @@ void floors(Random& random, std::size_t rays, const Sink& sink) {
   });
 }
 
-/// Where a ray from `eye` to `aim` meets facet `id`: exactly, and as the renderer has it.
+/// The point where a ray from `eye` to `aim` hits its facet: exact, and as the renderer has it.
 struct Left {
   Place place;
   Spot spot;
@@ -221,8 +221,8 @@ Left left_from(const Facets& facets, const World& world, const Place& aim, const
   return {{ray.point(t), aim.normal, aim.id}, spot(world, aim.id, eye, dir, static_cast<float>(t))};
 }
 
-/// A ray that leaves for `to`, or a shadow ray to a light there. What it must meet is computed from
-/// the exact place.
+/// Adds a ray that leaves for `to`, or a shadow ray to a light there. Its required hit is computed
+/// from the exact place.
 void leave_for(Trial& trial, const Facets& facets, const Left& from, const Float3& to, bool light) {
   const Float3 d = minus(to, from.spot.point);
   if (undecided(d, from.spot.normal))
@@ -245,7 +245,7 @@ template <bool kLight>
 void lids(Random& random, std::size_t rays, const Sink& sink) {
   on_grounds(random, rays, {1e2, 1e3, 1e4, 1e5, 1e6}, [&](Ground& g, std::size_t count) {
     const double reach = random.chance(.5) ? 10 : .5 * g.half();
-    // Where floats hardly tell .02 from nothing the lid hangs a few hundred of their steps up.
+    // If floats hardly resolve .02, the lid hangs a few hundred float steps up.
     const double gap = std::max(random.log_in(1e-3, .02), 200 * 6e-8 * reach);
     const double size = std::max(random.log_in(1, 5), 30 * gap);
     const Place foot = g.place(random, reach, size);

@@ -34,9 +34,9 @@ Real farthest(const Ball& b, const V& p) {
 }
 
 /// Gathers what may be met and what must be.
-class Found {
+class HitInterval {
  public:
-  Found(Real end) : end_(end) {}
+  HitInterval(Real end) : end_(end) {}
   void operator()(Real from, Real to, bool certain) {
     const Real slack = 4 * kU * std::max(std::abs(from), std::abs(to));
     from -= slack;
@@ -50,8 +50,8 @@ class Found {
       latest_ = std::min(latest_, to);
     }
   }
-  Wanted wanted() const {
-    Wanted w;
+  Request wanted() const {
+    Request w;
     w.hit = certain_;
     w.miss = !possible_;
     w.earliest = static_cast<double>(earliest_);
@@ -64,7 +64,7 @@ class Found {
   bool possible_ = false, certain_ = false;
 };
 
-void meet(const Ball& b, const Ray& ray, Real margin, Found& found) {
+void meet(const Ball& b, const Ray& ray, Real margin, HitInterval& found) {
   const Real dd = dot(ray.dir, ray.dir), scale = std::sqrt(dd),
              foot = dot(b.center - ray.org, ray.dir) / dd;
   const Real miss = length(cross(ray.dir, b.center - ray.org)) / scale, r = std::abs(b.radius);
@@ -79,7 +79,7 @@ void meet(const Ball& b, const Ray& ray, Real margin, Found& found) {
   found(foot + inner, foot + outer, true);
 }
 
-void meet(const Facet& f, const Ray& ray, Real margin, Found& found) {
+void meet(const Facet& f, const Ray& ray, Real margin, HitInterval& found) {
   const Real dd = dot(ray.dir, ray.dir), scale = std::sqrt(dd);
   const V middle = (Real(1) / 3) * (f.a + f.b + f.c);
   const Real radius = farthest(f, middle) + margin, foot = dot(middle - ray.org, ray.dir) / dd;
@@ -91,15 +91,16 @@ void meet(const Facet& f, const Ray& ray, Real margin, Found& found) {
              half = std::sqrt((radius - miss) * (radius + miss)) / scale;
   if (std::abs(f.clearance(ray)) <= margin) {  // near an edge
     if (nn > 0 && std::abs(along) * radius > nn * scale * 4 * margin) {
-      const Real t = dot(f.a - ray.org, n) / along, off = 2 * margin * nn / std::abs(along);
-      return found(std::max(t - off, foot - half), std::min(t + off, foot + half), false);
+      const Real t = dot(f.a - ray.org, n) / along, frame_error = 2 * margin * nn / std::abs(along);
+      return found(
+          std::max(t - frame_error, foot - half), std::min(t + frame_error, foot + half), false);
     }
     return found(foot - half, foot + half, false);
   }
   if (f.clearance(ray) < 0)
     return;
-  const Real t = dot(f.a - ray.org, n) / along, off = margin * nn / std::abs(along);
-  found(std::max(t - off, foot - half), std::min(t + off, foot + half), true);
+  const Real t = dot(f.a - ray.org, n) / along, frame_error = margin * nn / std::abs(along);
+  found(std::max(t - frame_error, foot - half), std::min(t + frame_error, foot + half), true);
 }
 
 /// How far a reported hit lies beside the primitive it names, beyond what is allowed.
@@ -112,16 +113,17 @@ Real beyond(const Trial& trial, const Size& size, std::size_t i, float t, std::u
   if (id < planes || id - planes >= spheres + trial.scene.geometry.triangles.size())
     return 0;
   id -= static_cast<std::uint32_t>(planes);
-  const auto off = [&](const auto& shape) {
+  const auto frame_error = [&](const auto& shape) {
     return shape.distance(p) - allowed(farthest(shape, ray.org), size.diagonal, size.largest);
   };
-  return id < spheres ? off(ball(trial.scene, id)) : off(facet(trial.scene, id - spheres));
+  return id < spheres ? frame_error(ball(trial.scene, id))
+                      : frame_error(facet(trial.scene, id - spheres));
 }
 
 enum class Verdict { kRight, kLost, kFalse, kSelf };
 
 Verdict verdict_closest(const Trial& trial, const Size& size, std::size_t i, const Answers& a) {
-  const Wanted& w = trial.wanted[i];
+  const Request& w = trial.wanted[i];
   const float t = a.t[i];
   const std::uint32_t id = a.id[i];
   if (id == kNoPrimitive)
@@ -138,7 +140,7 @@ Verdict verdict_closest(const Trial& trial, const Size& size, std::size_t i, con
 }
 
 Verdict verdict_occluded(const Trial& trial, std::size_t i, const Answers& a) {
-  const Wanted& w = trial.wanted[i];
+  const Request& w = trial.wanted[i];
   const bool met = a.id[i] != kNoPrimitive;
   if (!met)
     return w.hit ? Verdict::kLost : Verdict::kRight;
@@ -172,7 +174,7 @@ struct Verdicts {
 };
 
 std::string Verdicts::describe(std::size_t i, Verdict v) const {
-  const Wanted& w = trial.wanted[i];
+  const Request& w = trial.wanted[i];
   const float t = answers.t[i];
   const std::uint32_t id = answers.id[i];
   std::ostringstream s;
@@ -234,10 +236,10 @@ Size size_of(const Scene& scene) {
   return out;
 }
 
-Wanted brute_force(
+Request brute_force(
     const Scene& scene, const Size& size, const Float3& org, const Float3& dir, float end) {
   const Ray ray{org, dir};
-  Found found(end);
+  HitInterval found(end);
   for (std::size_t i = 0; i < scene.geometry.spheres.size(); ++i) {
     const Ball b = ball(scene, i);
     meet(b, ray, allowed(farthest(b, ray.org), size.diagonal, size.largest), found);

@@ -43,7 +43,7 @@ void closed(Random& random,
   Trial trial;
   trial.scene = placed(body.scene, scale, offset);
   const auto place = [&](const Float3& p) { return at(offset, scale, p); };
-  Wanted w;
+  Request w;
   w.hit = true;
   for (std::size_t i = 0; i < rays; ++i) {
     const Float3& aim = targets[random.below(static_cast<std::uint32_t>(targets.size()))];
@@ -160,13 +160,13 @@ void far_small(Random& random, std::size_t rays, const Sink& sink) {
     Float3 up = random.direction();
     up.y = std::abs(up.y) + .5f;
     const Float3 org = at(aim, random.log_in(1, 1e6), up), dir = minus(aim, org);
-    Wanted w;
+    Request w;
     w.hit = true;
     const oracle::Real t = -oracle::Real(org.y) / dir.y;  // exact but for one rounding of 64 bits
     const oracle::Real d = oracle::length(dir),
-                       off = 2 * allowed(d * t, 142, 50) / std::abs(oracle::Real(dir.y));
-    w.earliest = static_cast<double>(t - off);
-    w.latest = static_cast<double>(t + off);
+                       frame_error = 2 * allowed(d * t, 142, 50) / std::abs(oracle::Real(dir.y));
+    w.earliest = static_cast<double>(t - frame_error);
+    w.latest = static_cast<double>(t + frame_error);
     const oracle::Ray ray{org, dir};
     const oracle::V p = ray.point(t);
     // the floats of ray and aim are too coarse to stay on the sheet

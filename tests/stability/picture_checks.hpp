@@ -1,5 +1,5 @@
 #pragma once
-// What pictures with a known answer are made with, and counted.
+// Helpers that render pictures with known results and count their wrong pixels.
 
 #include <functional>
 
@@ -13,20 +13,20 @@ Image picture(const Scene& scene,
               const RenderOptions& options,
               float density = 0);
 
-/// Counts pixels for which `right` does not hold of a value of theirs.
+/// Counts pixels that have a value for which `right` returns false.
 void count(PictureCounts& c,
            const Image& image,
            const char* what,
            const std::function<bool(std::size_t, float)>& right);
-/// Pixels of two pictures that differ in a bit.
+/// Counts pixels of two pictures that differ in a bit.
 void count_same(PictureCounts& c, const Image& a, const Image& b, const char* what);
-/// Those that differ by more.
+/// Counts pixels that differ by more than `by`.
 void count_close(PictureCounts& c, const Image& a, const Image& b, const char* what, float by);
 
 Camera camera(int size, const Float3& eye, const Float3& at, double angle = 60);
-/// Options of so many samples a pixel.
+/// Options with n samples per pixel.
 RenderOptions samples(int n);
-/// Sixty primitives, some of them mirrors.
+/// Returns a scene of sixty primitives, including mirrors.
 Scene stage();
 
 }  // namespace grelha::stability

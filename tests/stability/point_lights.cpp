@@ -16,8 +16,8 @@ struct LitScene {
   Float3 light;
 };
 
-/// Where a shadow ray starts: anywhere; beyond a corner or an edge as the light sees them; or in a
-/// direction in which two or three coordinates are equally far from it.
+/// Returns the origin of a shadow ray: a random point; a point beyond a corner or an edge as seen
+/// from the light; or a point whose offset from the light has two or three equal coordinates.
 Float3 start_of(Random& random, const LitScene& lit) {
   const Triangles& t = lit.scene.geometry.triangles;
   const std::uint32_t kind = random.below(3);

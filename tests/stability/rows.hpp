@@ -1,9 +1,9 @@
 #pragma once
-// Where ray tracers break, as rows of a table: a name, the condition, what is true of each ray, and
-// how one tracer did.
+// Hard cases for ray tracers, as rows of a table: a name, the condition, the property of each ray,
+// and the result of one tracer.
 //
 // A row makes scenes and rays and says, from exact or long double arithmetic on the very floats a
-// tracer gets, what each ray must meet (`Wanted`). What no float answer can tell apart is left
+// tracer gets, what each ray must meet (`Request`). A ray that no float answer can decide is left
 // open: no row asks for more than the rounding that docs/numerics.md states allows. The same rows
 // judge Grelha in stability_test.cpp, on a few rays, and Grelha beside Embree in
 // perf/stability.cpp, on millions.
@@ -25,8 +25,9 @@ using test::Answers;
 using test::Random;
 using test::RayList;
 
-/// What a ray meets first, as far as the ray's own floats say: t from `earliest` to `latest`.
-struct Wanted {
+/// The required nearest hit of a ray, as far as the ray's own floats determine it: t from
+/// `earliest` to `latest`.
+struct Request {
   bool hit = false;    ///< something certainly
   bool miss = false;   ///< nothing certainly; neither: both answers are right
   bool traces = true;  ///< false: a ray that cannot be traced, to which only "nothing" is an answer
@@ -38,11 +39,11 @@ struct Wanted {
 struct Trial {
   Scene scene;
   RayList rays;
-  std::vector<Wanted> wanted;
+  std::vector<Request> wanted;
   float density = 0;      ///< of Grelha's grid
   bool occlusion = true;  ///< whether the yes-or-no question is asked too
 
-  void add(const Float3& org, const Float3& dir, const Wanted& w, float t_max = test::kInf) {
+  void add(const Float3& org, const Float3& dir, const Request& w, float t_max = test::kInf) {
     rays.add(org, dir, 0, t_max);
     wanted.push_back(w);
   }
@@ -115,10 +116,10 @@ Size size_of(const Scene& scene);
 
 /// From every sphere and triangle of the scene in long double: what the ray must meet. `end`: open
 /// end of the search.
-Wanted brute_force(const Scene& scene,
-                   const Size& size,
-                   const Float3& org,
-                   const Float3& dir,
-                   float end = test::kInf);
+Request brute_force(const Scene& scene,
+                    const Size& size,
+                    const Float3& org,
+                    const Float3& dir,
+                    float end = test::kInf);
 
 }  // namespace grelha::stability

@@ -73,7 +73,7 @@ PictureCounts roughness_of_nothing(int size) {
   const Camera cam = camera(size, {.3f, .5f, 3.5f}, {}, 45);
   const Image wanted = picture(s, cam, samples(4));
   RenderOptions many = samples(4);
-  many.sampling.gloss_rays = 3;
+  many.sampling.glossy_rays = 3;
   count_same(c, picture(s, cam, many), wanted, "roughness 0 and rays around");
   // A lobe of 1e-20 is narrower than a rounding: what it changes is the rounding of directions.
   s.materials[1].roughness = 1e-20f;
@@ -198,7 +198,7 @@ PictureCounts one_picture(int size) {
   o.mailbox = false;
   const Image wanted = picture(s, cam, o);
   for (const Isa& isa : isas()) {
-    if (!isa.runs_here)
+    if (!isa.is_supported)
       continue;
     for (const int packet : {1, 16, 64, 256})
       for (const int threads : {1, 3}) {

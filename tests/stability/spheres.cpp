@@ -98,7 +98,7 @@ void floor_sphere(Random& random, std::size_t rays, const Sink& sink) {
                      static_cast<float>(random.in(.5, 2)),
                      static_cast<float>(random.in(-1, 1))};
     const double t = static_cast<double>(ball.first({eye, dir}, 0)->t);
-    Wanted w;
+    Request w;
     w.hit = true;
     w.earliest = .999 * t;
     w.latest = 1.001 * t;

@@ -1,11 +1,11 @@
 #pragma once
-// Where rays leave surfaces: both tracers get the same start points, those the renderer uses
-// (kernel/shapes/surface.hpp).
+// Points where rays leave surfaces. Both tracers get the same start points, those that the renderer
+// uses (kernel/shapes/surface.hpp).
 #ifndef GRELHA_ISA
 #define GRELHA_ISA scalar
 #endif
 #include "kernel/shapes/surface.hpp"
-#include "kernel/world/world_impl.hpp"
+#include "kernel/grid/world_impl.hpp"
 
 #include <cmath>
 
@@ -26,17 +26,18 @@ struct Spot {
   float away;
   Float3 start(const Float3& d) const {
     const scalar::Vec3<float> p{point.x, point.y, point.z};
-    return of(scalar::leave(p, {normal.x, normal.y, normal.z}, away, {d.x, d.y, d.z}));
+    return of(scalar::offset_origin(p, {normal.x, normal.y, normal.z}, away, {d.x, d.y, d.z}));
   }
 };
 
-/// Where the ray meets primitive `id` at t, which a triangle takes from the ray again.
+/// Returns the point where the ray hits primitive `id` at t; a triangle computes t from the ray
+/// again.
 inline Spot spot(
     const World& world, std::uint32_t id, const Float3& org, const Float3& dir, float t = 0) {
   const scalar::Vec3<float> o{org.x, org.y, org.z};
   const scalar::Vec3<float> d{dir.x, dir.y, dir.z};
   const auto s = scalar::surface_of<float>(world.impl().view.geometry, id, o, d, t, false);
-  return {of(s.point), of(s.normal), s.away};
+  return {of(s.point), of(s.normal), s.offset};
 }
 
 /// Nearly along the surface: the worst to leave it by.

@@ -1,6 +1,7 @@
-// What acceleration loses: rays on cells, odd directions, odd numbers, odd scenes. Truth is brute
-// force in long double over the same floats, so a row fails for what a grid or a tree skips as well
-// as for what a test gets wrong.
+// Tests for hits that acceleration structures miss: rays on cell borders, unusual directions,
+// unusual numbers, unusual scenes. The reference is brute force in long double over the same
+// floats, so a row fails if a grid or a tree skips a primitive as well as if an intersection test
+// is wrong.
 #include <algorithm>
 #include <cmath>
 
@@ -77,7 +78,7 @@ void unsound_rays(Random& random, std::size_t rays, const Sink& sink) {
     }
     const float odd[] = {kNaN, kInf, -kInf, 3e38f};
     component(random.chance(.5) ? org : dir, random.below(3)) = odd[random.below(4)];
-    Wanted w;
+    Request w;
     w.miss = true;
     w.traces = false;
     trial.add(org, dir, w);

@@ -16,7 +16,7 @@ inline Float3 corner_of(Random& random, const Grid& g) {
   return p;
 }
 
-/// In a plane between cells, one of those that meet in the corner.
+/// A ray in one of the planes between cells that meet in the corner.
 inline Line in_a_plane(Random& random, const Grid& g, const Float3& corner) {
   const std::uint32_t a = random.below(3);
   Float3 dir;

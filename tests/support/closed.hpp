@@ -1,5 +1,5 @@
 #pragma once
-// Where to aim at closed meshes, and where from: random rays find no leak.
+// Targets on closed meshes, and origins of rays to them. Random rays do not find leaks.
 
 #include "tests/support/scenes.hpp"
 
@@ -7,8 +7,8 @@ namespace grelha::test {
 
 inline constexpr double kTube = .4;  ///< of the tori: their tube's radius against 1 of their ring's
 
-/// What to aim at: every vertex, the middle of every edge, a random point of every edge; as near as
-/// floats get.
+/// The targets: every vertex, the middle of every edge, a random point of every edge, rounded to
+/// floats.
 struct Aims {
   std::vector<Float3> vertices, middles, along;
 };

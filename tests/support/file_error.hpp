@@ -7,7 +7,7 @@
 
 namespace grelha::test {
 
-/// What is said of a file while the action runs.
+/// Returns the message of the FileError that the action throws.
 inline std::string error_of(const std::function<void()>& action) {
   try {
     action();

@@ -1,5 +1,5 @@
 // Preloaded into the program (LD_PRELOAD): files in folders called "full" do not grow, as on a full
-// disk. What they hold can be written over.
+// disk. Their existing bytes can be overwritten.
 #include <dlfcn.h>
 #include <sys/stat.h>
 #include <sys/uio.h>

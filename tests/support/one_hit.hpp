@@ -1,5 +1,5 @@
 #pragma once
-// One ray and one primitive: what floats tell of them, what doubles do, and what exact numbers do.
+// Intersects one ray with one primitive in float, in double and in exact numbers.
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,9 @@ ExactCrossing exact_hit(const ExactRay& ray, const Fields& primitive) {
 
 /// Fails where floats or doubles tell what exact numbers do not.
 template <class Real>
-void expect_bounds(const scalar::Found<Real>& found, const ExactCrossing& exact, float t_max) {
+void expect_bounds(const scalar::HitInterval<Real>& found,
+                   const ExactCrossing& exact,
+                   float t_max) {
   const bool counts = exact.some() && exact.compare(t_max) < 0;
   EXPECT_TRUE(found.some || !counts) << "lost at t " << (counts ? exact.estimate() : 0);
   if (!found.some || !found.sure)
@@ -36,7 +38,7 @@ void expect_bounds(const scalar::Found<Real>& found, const ExactCrossing& exact,
 }
 
 /// A ray in float, of any length that is traced as it is.
-inline scalar::RayLanes<float> in_float(const ExactRay& r) {
+inline scalar::SimdRays<float> in_float(const ExactRay& r) {
   const scalar::Vec3<float> dir{
       static_cast<float>(r.dir[0]), static_cast<float>(r.dir[1]), static_cast<float>(r.dir[2])};
   const float inv_dd = 1 / dot(dir, dir);
@@ -47,8 +49,8 @@ inline scalar::RayLanes<float> in_float(const ExactRay& r) {
           .inv_dd = inv_dd,
           .inv_length = inverse_length(dir, inv_dd),
           .t_min = static_cast<float>(r.t_min),
-          .off = 0,
-          .room = std::numeric_limits<float>::infinity()};
+          .frame_error = 0,
+          .error_bound = std::numeric_limits<float>::infinity()};
 }
 
 template <class Shape>
@@ -77,10 +79,10 @@ OneHit one_hit(const ExactRay& ray,
                   t_max);
     expect_bounds(scalar::bound_triangle(ray, primitive.corner), exact, t_max);
   } else {
-    const scalar::Found<float> found = scalar::bound(in_float(ray), primitive, t_max);
+    const scalar::HitInterval<float> found = scalar::bound(in_float(ray), primitive, t_max);
     expect_bounds(found, exact, t_max);
     const auto wide = scalar::in_double(ray);
-    const auto in_double = scalar::widened<Shape, 0, float>(primitive);
+    const auto in_double = scalar::fields_to_double<Shape, 0, float>(primitive);
     expect_bounds(scalar::bound(wide, in_double, kNever), exact, t_max);
     if constexpr (Shape::kKind == PrimitiveKind::kSphere) {
       const auto step = scalar::narrowed<double>(wide, in_double, found.lo, found.hi);

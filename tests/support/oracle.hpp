@@ -1,8 +1,8 @@
 #pragma once
-// Where a ray meets a primitive, in long double (64 bits of mantissa), from the definition of the
-// primitive alone: no formula here is the kernel's. Distances to a surface judge an answer better
-// than differences of t, which grow without bound for grazing rays while the point found stays as
-// good as any.
+// Intersects a ray with a primitive in long double (64 bits of mantissa), from the definition of
+// the primitive alone: no formula is shared with the kernel. Distances to a surface judge an answer
+// better than differences of t, which grow without bound for grazing rays although the hit point
+// stays as accurate.
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,6 @@
-// What a sanitizer must see, and, without an argument, what the thread sanitizer must not complain
-// of: OpenMP used as the kernel does. It is only built with sanitizers (tests/sanitizers.cmake).
+// Contains errors that a sanitizer must report and, without an argument, code that the thread
+// sanitizer must not report: OpenMP used as in the kernel. It is only built with sanitizers
+// (tests/sanitizers.cmake).
 #include <cstdio>
 #include <limits>
 #include <numeric>

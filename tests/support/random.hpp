@@ -28,8 +28,8 @@ class Random {
   double in(double lo, double hi) { return lo + (hi - lo) * unit(); }
   std::uint32_t below(std::uint32_t n) { return static_cast<std::uint32_t>(next() % n); }
   bool chance(double p) { return unit() < p; }
-  /// As many values between 1e-3 and 1e-2 as between 10 and 100: errors show at sizes nobody thinks
-  /// of.
+  /// Returns a value whose logarithm is uniform: as many values between 1e-3 and 1e-2 as between 10
+  /// and 100. This finds errors at unusual sizes.
   double log_in(double lo, double hi) { return std::exp(in(std::log(lo), std::log(hi))); }
   double sign() { return chance(.5) ? 1 : -1; }
 

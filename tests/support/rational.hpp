@@ -1,6 +1,7 @@
 #pragma once
-// Where a ray meets triangles and planes, in rational numbers (GMP): nothing is rounded, and no
-// formula or filter is the kernel's. What long double surely leaves out is not looked at.
+// Intersects a ray with triangles and planes in rational numbers (GMP): nothing is rounded, and no
+// formula or filter is shared with the kernel. Candidates that long double certainly excludes are
+// skipped.
 
 #include <gmpxx.h>
 
@@ -55,7 +56,7 @@ inline std::optional<mpq_class> crossing(const Ray& ray,
   return t;
 }
 
-/// Whether long double tells that a line passes a triangle by.
+/// Returns true if long double shows that a line misses a triangle.
 inline bool passes_by(const Ray& ray, const Float3& a, const Float3& b, const Float3& c) {
   using L = long double;
   L p[3][3];
@@ -69,7 +70,8 @@ inline bool passes_by(const Ray& ray, const Float3& a, const Float3& b, const Fl
       size = std::max(size, std::abs(x));
   }
   const L d[3] = {ray.dir.x, ray.dir.y, ray.dir.z};
-  const L room = 1e-15L * size * size * std::max({std::abs(d[0]), std::abs(d[1]), std::abs(d[2])});
+  const L error_bound =
+      1e-15L * size * size * std::max({std::abs(d[0]), std::abs(d[1]), std::abs(d[2])});
   bool below = false;
   bool above = false;
   for (int k = 0; k < 3; ++k) {
@@ -77,8 +79,8 @@ inline bool passes_by(const Ray& ray, const Float3& a, const Float3& b, const Fl
     const L* const v = p[(k + 1) % 3];
     const L side = d[0] * (u[1] * v[2] - u[2] * v[1]) + d[1] * (u[2] * v[0] - u[0] * v[2]) +
                    d[2] * (u[0] * v[1] - u[1] * v[0]);
-    below |= side < -room;
-    above |= side > room;
+    below |= side < -error_bound;
+    above |= side > error_bound;
   }
   return below && above;
 }
@@ -96,7 +98,7 @@ inline float nearest(const mpq_class& t) {
   return f;
 }
 
-/// What a ray meets first of a scene's triangles; of equal t the lower id.
+/// The nearest hit of a ray among a scene's triangles; at equal t the lower id.
 struct First {
   std::uint32_t id = kNoPrimitive;
   float t = 0;  ///< rounded once
@@ -174,9 +176,9 @@ class FirstTriangle {
     L t0 = -1e300L;
     L t1 = 1e300L;
     for (int a = 0; a < 3; ++a) {
-      const L room = 1e-15L * (std::abs(o[a]) + std::abs(n.lo[a]) + std::abs(n.hi[a]));
-      const L x = n.lo[a] - o[a] - room;
-      const L y = n.hi[a] - o[a] + room;
+      const L error_bound = 1e-15L * (std::abs(o[a]) + std::abs(n.lo[a]) + std::abs(n.hi[a]));
+      const L x = n.lo[a] - o[a] - error_bound;
+      const L y = n.hi[a] - o[a] + error_bound;
       if (d[a] == 0 && (x > 0 || y < 0))
         return true;
       if (d[a] == 0)

@@ -82,8 +82,8 @@ inline bool sound(const RayList& rays, std::size_t i) {
   return std::isfinite(o.x + o.y + o.z) && std::isfinite(dd) && std::isfinite(1 / dd);
 }
 
-/// Same primitive and same bits of t for closest hits; same yes or no, told the same way, for
-/// occlusion. What t is left in a ray that cannot be traced at all is variants_test's to say.
+/// Compares answers: for closest hits the primitive and the bits of t; for occlusion the yes or no,
+/// in the same encoding. The t of rays that cannot be traced at all is tested in variants_test.
 inline testing::AssertionResult same(const Answers& wanted,
                                      const Answers& got,
                                      const RayList& rays,
@@ -159,7 +159,7 @@ inline std::size_t hits_of(const Answers& a) {
 class EveryVariant : public testing::TestWithParam<const Variant*> {
  protected:
   void SetUp() override {
-    if (!GetParam()->runs_here())
+    if (!GetParam()->is_supported())
       GTEST_SKIP() << "this processor has no " << GetParam()->name;
   }
   const Variant& variant() const { return *GetParam(); }

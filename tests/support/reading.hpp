@@ -41,7 +41,7 @@ inline Reading read_with_view(std::string_view text) {
   return read_text(kView + std::string(text));
 }
 
-/// The message of what `read` throws, or "" when it does not.
+/// Returns the message of the exception that `read` throws, or "" if it throws none.
 template <class Read>
 std::string message_of(Read&& read) {
   try {

@@ -15,7 +15,7 @@ constexpr char kBall[] =
     "b 0 0 1\nv\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 40\nhither 1\nresolution 24 16\n"
     "l 5 5 5 1 1 1\nf 1 0 0 1 0 1 0 1\ns 0 0 0 1\n";
 
-/// What a signal is answered with at once.
+/// The program's immediate answer to a signal.
 constexpr char kStopping[] = "grelha: stopping; once more ends it at once\n";
 
 struct Outcome {

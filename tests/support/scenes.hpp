@@ -60,7 +60,7 @@ inline Scene one_triangle(const Float3& a, const Float3& b, const Float3& c) {
   return s;
 }
 
-// ---- crowds ----
+// ---- clusters ----
 
 inline void add_spheres(Scene& s, Random& random, int n, double half, double least, double most) {
   for (int i = 0; i < n; ++i) {
@@ -128,7 +128,7 @@ inline Scene random_cones(std::uint64_t seed, int n) {
   add_cones(s, random, n, 1, .02, .4);
   return s;
 }
-/// Every kind, and planes through the crowd.
+/// Every kind, and planes through the cluster.
 inline Scene random_mixture(std::uint64_t seed, int n) {
   Random random(seed);
   Scene s = empty_scene();
@@ -189,8 +189,8 @@ inline Scene needles(std::uint64_t seed, int n) {
   }
   return s;
 }
-/// A fine teapot-like crowd in the middle of a ground and walls a thousand times larger.
-/// A crowd on two triangles, `half` from their middle to their sides.
+/// A fine teapot-like cluster in the middle of a ground and walls a thousand times larger.
+/// A cluster on two triangles, `half` from their middle to their sides.
 inline Scene crowd_on_a_plain(std::uint64_t seed, int n, float half) {
   Random random(seed);
   Scene s = empty_scene();
@@ -201,14 +201,14 @@ inline Scene crowd_on_a_plain(std::uint64_t seed, int n, float half) {
   return s;
 }
 
-/// So wide that the crowd has a grid for rays that start near and one for those that start far
+/// So wide that the cluster has a grid for rays that start near and one for those that start far
 /// away.
 inline Scene crowd_on_a_wide_plain(std::uint64_t seed, int n) {
   return crowd_on_a_plain(seed, n, 1e6f);
 }
 
-/// Two towns, and a hamlet in one of them, in a desert of few spheres: what one level of cells has
-/// nothing for.
+/// Two towns, and a hamlet in one town, in a desert of few spheres: one level of cells does not
+/// suit this scene.
 inline Scene towns_in_a_desert(std::uint64_t seed, int n) {
   Random random(seed);
   Scene s = empty_scene();

@@ -15,7 +15,7 @@
 
 namespace grelha::test {
 
-/// Whether the system gives pseudo-terminals: a bare root without /dev/pts does not.
+/// Returns true if the system provides pseudo-terminals; a bare root without /dev/pts does not.
 inline bool there_are_terminals() {
   int master = -1;
   const pid_t child = forkpty(&master, nullptr, nullptr, nullptr);
@@ -60,7 +60,7 @@ class Terminal {
   }
   void type(char key) { (void)!write(master_, &key, 1); }
 
-  /// What comes up to `text`, or to the end; what comes after it in one piece as well.
+  /// Returns the output up to `text`, or to the end, and any output that arrives in the same piece.
   std::string read_until(const std::string& text) {
     std::string all;
     while (all.find(text) == all.npos && read_some(all)) {

@@ -2,7 +2,7 @@
 // Triangles by themselves, and as the scalar kernel tests them.
 
 #define GRELHA_ISA scalar
-#include "kernel/triangle/triangle.hpp"
+#include "kernel/shapes/triangle.hpp"
 
 #include "tests/support/random.hpp"
 #include "tests/support/rays.hpp"
@@ -28,13 +28,13 @@ inline Shape random_shape(Random& random, double& size) {
   return s;
 }
 
-inline scalar::Vec3<float> permuted(const Float3& p, int k) {
+inline scalar::Vec3<float> permute_axes(const Float3& p, int k) {
   const float q[3] = {p.x, p.y, p.z};
   return {q[k == 2 ? 0 : k + 1], q[k == 0 ? 2 : k - 1], q[k]};
 }
 
-inline scalar::Corners<float> corners_of(const Shape& s, int k) {
-  return {permuted(s.a, k), permuted(s.b, k), permuted(s.c, k)};
+inline scalar::TriangleVertices<float> vertices_of(const Shape& s, int k) {
+  return {permute_axes(s.a, k), permute_axes(s.b, k), permute_axes(s.c, k)};
 }
 
 }  // namespace grelha::test

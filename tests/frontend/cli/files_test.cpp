@@ -1,4 +1,4 @@
-// What the program may write over, and what it may not, however it is called.
+// Tests which existing files each command may overwrite and which it may not.
 #include "frontend/input/read_scene.hpp"
 #include "frontend/commands/first_hits.hpp"
 #include "frontend/files/memory_limit.hpp"
@@ -42,7 +42,7 @@ TEST_F(Files, PlacesAreEqualWhereverNamesAreNot) {
   std::filesystem::create_symlink("in/new", folder_.file("link"));
   std::filesystem::create_hard_link(folder_.file("ball.nff"), folder_.file("hard"));
   const auto same = [&](const std::string& a, const std::string& b) {
-    return place_of(folder_.file(a)) == place_of(folder_.file(b));
+    return position_of(folder_.file(a)) == position_of(folder_.file(b));
   };
   EXPECT_TRUE(same("ball.nff", "in/../hard"));
   EXPECT_TRUE(same("in/new", "also-in/./new"));
@@ -166,7 +166,7 @@ TEST_F(Files, ASignalEndsTheWaitForAPipe) {
   }
 }
 
-/// Of meshes, and of what lies in a folder, one does not know that somebody will write into them.
+/// Meshes and files found in a folder must be regular files: a pipe there might never get a writer.
 TEST_F(Files, NoOtherPipeIsWaitedFor) {
   std::filesystem::create_directory(folder_.file("in"));
   folder_.write("in/scene.nff", std::string(kBall) + "ply mesh.ply\n");
@@ -212,7 +212,7 @@ TEST_F(Files, NamesTooLongAreOneLineOfOurs) {
             name + ": error: cannot write: File name too long\n");
 }
 
-/// What goes through a pipe is what a file of that name would hold, and nothing else.
+/// With `-o -` the program writes to stdout the same bytes as to a file, and nothing else.
 TEST_F(Files, ResultsGoToStdout) {
   ASSERT_EQ(run("render ball.nff -o a.png --quiet").status, 0);
   ASSERT_EQ(run("render ball.nff -o a.hdr --quiet").status, 0);
@@ -256,8 +256,8 @@ TEST_F(Files, StdoutHoldsOneResult) {
                   .err.starts_with("grelha: goes on from ball.partial.grelha, 100.0 % done\n"));
 }
 
-/// What is said of a picture makes the picture again, and is the same whatever changes no bit of
-/// it.
+/// The metadata of a picture suffices to reproduce it, and does not depend on options that change
+/// no bit of the picture.
 TEST_F(Files, PicturesSayWhatTheyAre) {
   const auto text = [&](const std::string& options) {
     EXPECT_EQ(run("render ball.nff --quiet -o x.png --size 9x7 " + options).status, 0);
@@ -283,7 +283,8 @@ TEST_F(Files, PicturesSayWhatTheyAre) {
   EXPECT_EQ(text("--time " + count.substr(5, count.find(' ') - 5)), timed) << count;
 }
 
-/// Whether a pixel is on the ball is what its colour says; what is met there, a sphere knows.
+/// Checks the layers of each pixel against the exact sphere; the colour of a pixel tells if it
+/// shows the ball.
 TEST_F(Files, LayersAreOfWhatThePictureShows) {
   ASSERT_EQ(run("render ball.nff -o a.exr --layers depth,normal,id --quiet").status, 0);
   ASSERT_EQ(run("render ball.nff -o a.pfm --quiet").status, 0);

@@ -72,7 +72,7 @@ Measured measure(const TemporaryFolder& folder, std::vector<std::string> words) 
 
 class Hostile : public testing::Test {
  protected:
-  /// `said`: a part of what is said, "" when nothing is.
+  /// `said`: expected substring of the output on stderr; "" if there must be none.
   void expect_bounded(const std::vector<std::string>& words, int status, const std::string& said) {
     const Measured run = measure(folder_, words);
     const std::string what = words[0] + ' ' + words[1];
@@ -98,10 +98,10 @@ class Hostile : public testing::Test {
 
 using Radius = std::function<double(int)>;
 
-std::string star(int corners, const Radius& radius) {
-  std::string text = std::string(test::kBall) + "p " + std::to_string(corners) + '\n';
-  for (int i = 0; i < corners; ++i) {
-    const double angle = 2 * std::numbers::pi * i / corners, r = radius(i);
+std::string star(int corner_points, const Radius& radius) {
+  std::string text = std::string(test::kBall) + "p " + std::to_string(corner_points) + '\n';
+  for (int i = 0; i < corner_points; ++i) {
+    const double angle = 2 * std::numbers::pi * i / corner_points, r = radius(i);
     char line[64];
     std::snprintf(line, sizeof line, "%.9g %.9g 0\n", r * std::cos(angle), r * std::sin(angle));
     text += line;
@@ -116,7 +116,8 @@ TEST_F(Hostile, StarsOfManyCorners) {
   std::uniform_real_distribution<double> length(1, 2);
   folder_.write("spikes.nff", star(500000, [&](int) { return length(random); }));
   expect_both_bounded("spikes.nff", 0, "");
-  // Spikes over six decades: ears are long and thin among all corners, and grids of them are full.
+  // Spikes over six decades: ears are long and thin, and each overlaps many corners, so grid cells
+  // are full.
   std::uniform_real_distribution<double> decades(-6, 0);
   folder_.write("uneven.nff", star(1000000, [&](int) { return std::pow(10, decades(random)); }));
   expect_both_bounded("uneven.nff", 0, "");
@@ -133,25 +134,25 @@ TEST_F(Hostile, PolygonsOfManyCrossings) {
   text.replace(corner, text.find('\n', corner) - corner, ".9 -.1 0");
   folder_.write("pulled.nff", text);
   expect_both_bounded("pulled.nff", 0, "it is filled by the even-odd rule");
-  for (const int corners : {1400, 1000000}) {
-    std::string noise = std::string(test::kBall) + "p " + std::to_string(corners) + '\n';
-    for (int i = 0; i < corners; ++i)
+  for (const int corner_points : {1400, 1000000}) {
+    std::string noise = std::string(test::kBall) + "p " + std::to_string(corner_points) + '\n';
+    for (int i = 0; i < corner_points; ++i)
       noise += std::to_string(random() % 100000) + ' ' + std::to_string(random() % 100000) + " 0\n";
     folder_.write("noise.nff", noise);
-    expect_both_bounded("noise.nff", 0, corners > 1400 ? "it is left out" : "it is filled");
+    expect_both_bounded("noise.nff", 0, corner_points > 1400 ? "it is left out" : "it is filled");
   }
 }
 
 /// A comb across both axes, its teeth over three decades: the row of their feet lies on the side of
 /// an ear as long as the comb.
 TEST_F(Hostile, CombOfAMillionCorners) {
-  constexpr int kCorners = 1000000;
+  constexpr int kVertices = 1000000;
   std::mt19937 random(7);
   std::uniform_real_distribution<double> decades(-3, 0);
-  std::string text = std::string(test::kBall) + "p " + std::to_string(kCorners) + '\n';
+  std::string text = std::string(test::kBall) + "p " + std::to_string(kVertices) + '\n';
   text += "-.001 .001 0\n.999 1.001 0\n";
-  for (int i = kCorners - 2; i-- > 0;) {
-    const double at = double(i) / kCorners, tooth = i % 2 == 0 ? std::pow(10, decades(random)) : 0;
+  for (int i = kVertices - 2; i-- > 0;) {
+    const double at = double(i) / kVertices, tooth = i % 2 == 0 ? std::pow(10, decades(random)) : 0;
     char line[64];
     std::snprintf(line, sizeof line, "%.9g %.9g 0\n", at + tooth, at - tooth);
     text += line;

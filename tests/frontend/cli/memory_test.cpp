@@ -1,4 +1,4 @@
-// What memory the program takes, says it takes and refuses to take. A part of program_test.
+// Tests the memory that the program uses, estimates, and refuses to use. A part of program_test.
 #include "frontend/files/memory_limit.hpp"
 #include "grelha/geometry.hpp"
 #include "tests/frontend/cli/program.hpp"
@@ -47,8 +47,8 @@ TEST_F(Program, HostileFilesAreBounded) {
   EXPECT_EQ(folder_.list(), "ball.nff claims.ply corners.nff faces.ply mesh.nff");
 }
 
-/// Of 900 million pixels a row takes megabytes, all of them 21.6 GB: what bounds these is named, be
-/// it the machine, which need not say no.
+/// A row of a picture of 900 million pixels takes megabytes, the whole picture 21.6 GB. The error
+/// message names the limit that applies: --max-memory, ulimit -d or the memory of the machine.
 TEST_F(Program, ARowOfAHugePictureTakesLittle) {
   if (!memory_can_be_limited())
     GTEST_SKIP() << "sanitizers own more memory than there is";
@@ -62,7 +62,7 @@ TEST_F(Program, ARowOfAHugePictureTakesLittle) {
   const Outcome by_system = test::run(folder_, huge, "ulimit -d 204800 &&");
   EXPECT_TRUE(by_system.err.ends_with(", found 0.21 GB (ulimit -d)\n")) << by_system.err;
   constexpr std::uint64_t kLargest = std::uint64_t{65536} * 65536 * 24;
-  if (machine_memory() > kLargest)
+  if (system_memory() > kLargest)
     GTEST_SKIP() << "this machine has room for the largest picture";
   const Outcome by_machine = run("render ball.nff --quiet --size 65536x65536 -o x.pfm");
   EXPECT_EQ(by_machine.status, 1);
@@ -70,8 +70,8 @@ TEST_F(Program, ARowOfAHugePictureTakesLittle) {
       << by_machine.err;
 }
 
-/// What is refused for want of memory names an amount, and that is enough, and not twice what is
-/// used: pictures of all kinds.
+/// An error for lack of memory names an amount that is enough and less than twice the memory used.
+/// Tests pictures of all kinds.
 TEST_F(Program, WhatMemoryIsWantedIsEnough) {
   if (!memory_can_be_limited())
     GTEST_SKIP() << "sanitizers own more memory than there is";
@@ -101,8 +101,9 @@ TEST_F(Program, WhatMemoryIsWantedIsEnough) {
   }
 }
 
-/// 205,000 triangles: 40 MB, of which the 12 taken for the program itself are the least sure; a
-/// third of these, and a fifth of what a build takes, come to a quarter.
+/// 205,000 triangles take 40 MB. The estimate contains 12 MB for the program itself, its least
+/// certain term. An error of a third of these and of a fifth of the build's memory amounts to a
+/// quarter.
 TEST_F(Program, SaysWhatMemoryItWillTake) {
   if (!memory_can_be_limited())
     GTEST_SKIP() << "sanitizers own more memory than there is";

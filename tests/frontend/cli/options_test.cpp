@@ -307,7 +307,7 @@ TEST(Errors, SayWhatWasExpectedAndFound) {
     EXPECT_EQ(error_of(line), message) << line;
 }
 
-/// What is too much is told how much there may be.
+/// Errors for values that are too large name the largest allowed value.
 TEST(Errors, SayTheUpperBoundToo) {
   const std::pair<const char*, const char*> table[] = {
       {"render a --lens 1e30,1,1", "--lens: expected an aperture from 0 to 1e18, found \"1e30\""},

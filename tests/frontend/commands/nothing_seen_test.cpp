@@ -1,4 +1,4 @@
-// Pictures of nothing: what is said of them, and that nothing is said of any other.
+// Tests the warning for pictures that show nothing, and that no other picture gets it.
 #include "frontend/commands/nothing_seen.hpp"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ Lines said(const std::string& text, double aperture = 0, int width = 8) {
   file.camera.aperture = aperture;
   file.camera.width = width;
   Lines lines;
-  warn_of_nothing(
+  warn_empty_image(
       "x.nff", file, file.camera, [&](const std::string& line) { lines.push_back(line); });
   return lines;
 }
@@ -49,7 +49,7 @@ TEST(NothingSeen, NoPrimitives) {
   SceneFile cloud = read_text(kLit).file;
   cloud.points = 3;
   Lines lines;
-  warn_of_nothing(
+  warn_empty_image(
       "x.ply", cloud, cloud.camera, [&](const std::string& line) { lines.push_back(line); });
   EXPECT_EQ(lines,
             Lines{"x.ply: warning: 3 points have no faces and will not be drawn: make a mesh of "
@@ -90,8 +90,8 @@ TEST(NothingSeen, OutsideTheView) {
       << "a plane behind";
 }
 
-/// Whether a ball is seen is known: its centre's distance to the four sides. Nothing is said of any
-/// that is.
+/// The distances from a ball's centre to the four sides of the view tell if the ball is visible.
+/// There must be no warning for a visible ball.
 TEST(NothingSeen, AgreesWithGeometry) {
   const double tan_y = std::tan(22.5 * 3.14159265358979 / 180), tan_x = tan_y * 8 / 6;
   int outside = 0;
@@ -107,7 +107,7 @@ TEST(NothingSeen, AgreesWithGeometry) {
     SceneFile file = read_text(kLit).file;
     file.scene.geometry.spheres.add({float(x), float(y), float(z)}, float(r), 0);
     bool found = false;
-    warn_of_nothing("x", file, file.camera, [&](const std::string&) { found = true; });
+    warn_empty_image("x", file, file.camera, [&](const std::string&) { found = true; });
     ASSERT_EQ(found, expected) << x << ' ' << y << ' ' << z << ' ' << r;
     outside += expected;
   }

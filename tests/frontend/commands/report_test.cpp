@@ -164,7 +164,8 @@ TEST(Stats, HoldWhatWasCounted) {
   EXPECT_EQ(json["visits"], 16);
   EXPECT_EQ(json["tests"], Json::parse(R"({"sphere":17,"triangle":18,"cone":19,"plane":20})"));
   EXPECT_EQ(json["rows"], Json::parse(R"({"boxes":23,"primitives":24})"));
-  EXPECT_EQ(json["packets"], Json::parse(R"({"formed":21,"fell_back":22,"lanes_busy":0.75})"));
+  EXPECT_EQ(json["packets"],
+            Json::parse(R"({"formed":21,"packet_fallbacks":22,"lanes_busy":0.75})"));
   EXPECT_EQ(json["seconds"],
             Json::parse(R"({"load":1.0,"build":2.0,"render":3.0,"write":4.0,"render_cpu":0.0})"));
   EXPECT_EQ(json["bytes"]["geometry"], 100);
@@ -237,7 +238,7 @@ TEST(Info, SaysHowBoxesAreRead) {
   EXPECT_EQ(Json::parse(info_json(file, {}, {}))["aabb"], "pairs");
   EXPECT_NE(info_text("x.nff", file, {}, {}).find("\naabb          read as pairs\n"),
             std::string::npos);
-  file.box_order = BoxOrder::kCorners;
+  file.box_order = BoxOrder::kVertices;
   EXPECT_EQ(Json::parse(info_json(file, {}, {}))["aabb"], "corners");
 }
 
@@ -261,7 +262,7 @@ TEST(Info, TextListsTheSame) {
 TEST(Summary, IsOneLine) {
   RenderCommand command;
   command.image = "x.png";
-  EXPECT_EQ(summary_line(command, some_run()),
+  EXPECT_EQ(report_line_of(command, some_run()),
             "x.png: 1 sphere, 30 triangles; grid 2x3x4; 0.000 Mrays in load 1.00, build 2.00, "
             "render 3.00, write 4.00 s; "
             "0.00 Mrays/s (avx2, 2 threads)\n");
@@ -272,11 +273,12 @@ TEST(Summary, IsOneLine) {
 TEST(Summary, SaysHowManyRanksAndThreadsEach) {
   RunReport shared = some_run();
   shared.ranks = 4;
-  EXPECT_NE(summary_line({}, shared).find("(avx2, 4 ranks, 2 threads each)\n"), std::string::npos);
+  EXPECT_NE(report_line_of({}, shared).find("(avx2, 4 ranks, 2 threads each)\n"),
+            std::string::npos);
   EXPECT_EQ(Json::parse(stats_json({}, shared))["ranks"], 4);
 }
 
-/// What is said of the error and of its end agree, digit by digit.
+/// The printed error bound and the statement that it was reached agree in every digit.
 TEST(Summary, SaysOfAnErrorWhetherItIsMet) {
   RenderCommand command;
   command.image = "x.png";
@@ -291,7 +293,7 @@ TEST(Summary, SaysOfAnErrorWhetherItIsMet) {
     e.met_at = met_at;
     e.least = 4;
     e.most = 128;
-    const std::string line = summary_line(command, report);
+    const std::string line = report_line_of(command, report);
     return line.substr(line.find("; RMSE"));
   };
   const std::string samples = " (95 %); 1000 samples, 10.0 a pixel, 4 to 128";

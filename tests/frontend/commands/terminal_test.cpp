@@ -38,7 +38,8 @@ TEST(Progress, FitsAnyWidth) {
       EXPECT_LE(int(progress_text("render", share, 5000, columns).size()), columns) << share;
 }
 
-/// What the program drew between carriage returns, without what wipes the rest of a line.
+/// Returns the texts between carriage returns, without the escape sequences that clear the rest of
+/// a line.
 std::vector<std::string> drawn(const std::string& output) {
   std::vector<std::string> lines(1);
   for (std::size_t i = 0; i < output.size(); ++i) {

@@ -1,4 +1,4 @@
-// What a terminal gets to see. A part of text_test.
+// Tests the text that is printed on a terminal. A part of text_test.
 #include "frontend/files/shown.hpp"
 
 #include <gtest/gtest.h>
@@ -17,9 +17,9 @@ TEST(Shown, WordsOfAnyLanguageStay) {
                            "es",
                            "\xE7\x90\x83.nff",
                            "\xF0\x9F\x8E\xB1"})
-    EXPECT_EQ(shown(text), text);
-  EXPECT_EQ(shown("a\nb\n"), "a\nb\n");
-  EXPECT_EQ(shown_on_a_line("a\nb"), "a?b");
+    EXPECT_EQ(printed(text), text);
+  EXPECT_EQ(printed("a\nb\n"), "a\nb\n");
+  EXPECT_EQ(printable_line("a\nb"), "a?b");
 }
 
 TEST(Shown, WhatATerminalObeysDoesNot) {
@@ -43,7 +43,7 @@ TEST(Shown, WhatATerminalObeysDoesNot) {
       {"\xFF\xFEx", "??x"},
   };
   for (const auto& [text, clean] : table)
-    EXPECT_EQ(shown(text), clean);
+    EXPECT_EQ(printed(text), clean);
 }
 
 }  // namespace

@@ -139,7 +139,7 @@ TEST(Words, ACommentOfManyLinesEndsTheLine) {
   words.next();
   EXPECT_EQ(words.peek_on_line(), "");
   words.next();
-  EXPECT_TRUE(words.fresh_line());
+  EXPECT_TRUE(words.at_line_start());
   words.skip_line();
   EXPECT_EQ(words.next(), "f") << "e stands on the line on which the comment began";
 }
@@ -153,7 +153,7 @@ TEST(Words, NamesMayHoldWhatCommentsBeginWith) {
                                    std::pair("", "")}) {
     const std::string text = std::string(line) + "\nnext";
     Words words("f", text, 0, Comments::kAll);
-    EXPECT_EQ(words.rest_of_line(), name) << line;
+    EXPECT_EQ(words.tail_of_line(), name) << line;
     EXPECT_EQ(words.next(), "next") << line;
   }
 }
@@ -161,33 +161,33 @@ TEST(Words, NamesMayHoldWhatCommentsBeginWith) {
 TEST(Words, KnowWhereTheLineEnds) {
   Words words("f", "a b # c\n\nd", 0, Comments::kAll);
   words.next();
-  EXPECT_TRUE(words.fresh_line());
+  EXPECT_TRUE(words.at_line_start());
   EXPECT_EQ(words.peek_on_line(), "b");
   words.next();
-  EXPECT_FALSE(words.fresh_line());
+  EXPECT_FALSE(words.at_line_start());
   EXPECT_EQ(words.peek_on_line(), "");
   EXPECT_EQ(words.peek(), "d");
   words.next();
-  EXPECT_TRUE(words.fresh_line());
+  EXPECT_TRUE(words.at_line_start());
 }
 
 TEST(Words, SkipLinesAndTakeTheirRest) {
   Words words("f", "a  b c  # d\re f\r\ng", 0, Comments::kAll);
   words.next();
-  EXPECT_EQ(words.rest_of_line(), "b c");
+  EXPECT_EQ(words.tail_of_line(), "b c");
   EXPECT_EQ(words.next(), "e");
   words.skip_line();
   EXPECT_EQ(words.next(), "g");
-  EXPECT_TRUE(words.fresh_line());
+  EXPECT_TRUE(words.at_line_start());
 }
 
 TEST(Words, CountLinesByAnyEnd) {
   Words words("f", "a\nb\r\nc\rd\n\re", 0, Comments::kAll);
   const char* const expected[] = {"f:1:1", "f:2:1", "f:3:1", "f:4:1", "f:6:1", "f:6:2"};
   std::vector<std::string_view> found;
-  for (const char* place : expected) {
+  for (const char* location : expected) {
     found.push_back(words.next());
-    EXPECT_EQ(words.position(found.back()).text(), place);
+    EXPECT_EQ(words.position(found.back()).text(), location);
   }
   EXPECT_EQ(words.position(found[1]).text(), "f:2:1");  // also backwards
 }
@@ -206,7 +206,7 @@ TEST(Gzip, InflatesMembersOneAfterTheOther) {
   EXPECT_EQ(inflate_gzip("f.gz", test::gzip(""), 100), "");
   constexpr std::size_t kMiB = std::size_t(1) << 20;
   EXPECT_LE(inflate_limit(8 * kMiB), 768 * kMiB) << "a bomb of 8 MiB holds 8 GiB";
-  EXPECT_GE(inflate_limit(0), std::min(256 * kMiB, std::size_t(machine_memory() / 2)));
+  EXPECT_GE(inflate_limit(0), std::min(256 * kMiB, std::size_t(system_memory() / 2)));
 }
 
 TEST(Gzip, RefusesBrokenAndBoundlessData) {
@@ -230,29 +230,30 @@ TEST(Gzip, RefusesBrokenAndBoundlessData) {
 TEST(Gzip, IsJudgedAsItComes) {
   const std::string bomb = test::gzip(std::string(std::size_t(256) << 20, '\0'));
   std::size_t largest = 0;
-  const Judge judge = [&](std::string_view text, std::size_t fresh) {
+  const Validate validate = [&](std::string_view text, std::size_t fresh) {
     largest = std::max(largest, text.size());
-    judge_beginning("f.gz", false, text, fresh);
+    validate_start("f.gz", false, text, fresh);
   };
-  EXPECT_EQ(message_of([&] { inflate_gzip("f.gz", bomb, std::size_t(1) << 30, nullptr, judge); }),
-            "f.gz:byte 0: error: expected a scene's numbers, found 16777216 bytes without a digit");
-  EXPECT_LT(largest, 2 * kPiece);
+  EXPECT_EQ(
+      message_of([&] { inflate_gzip("f.gz", bomb, std::size_t(1) << 30, nullptr, validate); }),
+      "f.gz:byte 0: error: expected a scene's numbers, found 16777216 bytes without a digit");
+  EXPECT_LT(largest, 2 * kPart);
   std::string late = "s 0 0 0 1\n";
-  late.resize(3 * kPiece, ' ');
+  late.resize(3 * kPart, ' ');
   EXPECT_NE(message_of([&] {
-              inflate_gzip("f.gz", test::gzip(late), std::size_t(1) << 30, nullptr, judge);
+              inflate_gzip("f.gz", test::gzip(late), std::size_t(1) << 30, nullptr, validate);
             }).find("without a digit"),
             std::string::npos);
   late.back() = '1';
-  for (std::size_t i = 0; i < late.size(); i += kPiece / 2)
+  for (std::size_t i = 0; i < late.size(); i += kPart / 2)
     late[i] = '1';
-  EXPECT_EQ(inflate_gzip("f.gz", test::gzip(late), std::size_t(1) << 30, nullptr, judge), late);
+  EXPECT_EQ(inflate_gzip("f.gz", test::gzip(late), std::size_t(1) << 30, nullptr, validate), late);
 }
 
 /// The same of files and whatever they inflate to, by the way of a scene.
 TEST(LoadFile, JudgesScenesAsTheyCome) {
   const TemporaryFolder folder;
-  const std::string zeros(2 * kPiece, '\0');
+  const std::string zeros(2 * kPart, '\0');
   for (const char* name : {"zeros.nff", "zeros.ply"}) {
     const std::string path = folder.add(name, zeros),
                       packed = folder.add(std::string(name) + ".gz", test::gzip(zeros));
@@ -287,7 +288,7 @@ TEST(LoadFile, SaysWhyItCannot) {
   EXPECT_THROW(load_file("/dev/null"), FileError);
 }
 
-/// What the library reads, which rounds to the nearest float.
+/// The result of the standard library, which rounds to the nearest float.
 float nearest_float(std::string_view word) {
   float value = 0;
   std::from_chars(word.data(), word.data() + word.size(), value);
@@ -321,7 +322,7 @@ TEST(Number, OfFewDigitsAreTheNearestFloats) {
   }
 }
 
-/// Where two floats are as near, or would be but for one of the last digits.
+/// Numbers half-way between two floats, or off half-way by one of the last digits.
 TEST(Number, BetweenTwoFloatsAreTheNearest) {
   std::mt19937 random(1);
   for (int i = 0; i < 20000; ++i) {

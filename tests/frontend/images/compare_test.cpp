@@ -24,7 +24,7 @@ TEST(Compare, EqualPictures) {
   EXPECT_EQ(c.psnr_db, std::numeric_limits<double>::infinity());
   EXPECT_EQ(c.largest, 0);
   EXPECT_EQ(c.pixels, 2u);
-  EXPECT_EQ(c.differing, 0u);
+  EXPECT_EQ(c.different, 0u);
 }
 
 /// Differences .5 and .25 in one pixel of two: RMSE sqrt((.25 + .0625) / 6).
@@ -36,7 +36,7 @@ TEST(Compare, NumbersWorkedOutByHand) {
   EXPECT_EQ(c.largest, 0.5);
   EXPECT_EQ(c.largest_x, 0);
   EXPECT_EQ(c.largest_y, 1);
-  EXPECT_EQ(c.differing, 1u);
+  EXPECT_EQ(c.different, 1u);
 }
 
 /// Of a dark reference .25 / .01, of a bright one .25 / (1 + .01); the first picture is no divisor.
@@ -60,18 +60,18 @@ TEST(Compare, NoNumberNeverPassesForSmall) {
     const Image a = image_of(1, 1, {odd, 0, 0}), b = image_of(1, 1, {0, 0, 0});
     EXPECT_EQ(compare(a, b).rmse, std::numeric_limits<double>::infinity());
     EXPECT_EQ(compare(b, a).largest, std::numeric_limits<double>::infinity());
-    EXPECT_EQ(compare(a, b).differing, 1u);
+    EXPECT_EQ(compare(a, b).different, 1u);
     EXPECT_EQ(compare(a, b).relative_mse, std::numeric_limits<double>::infinity());
     EXPECT_EQ(compare(b, a).relative_mse, std::numeric_limits<double>::infinity());
     EXPECT_EQ(compare(a, a).rmse, 0);
     EXPECT_EQ(compare(a, a).relative_mse, 0);
   }
   EXPECT_EQ(
-      compare(image_of(1, 1, {kInfinity, 0, 0}), image_of(1, 1, {-kInfinity, 0, 0})).differing, 1u);
+      compare(image_of(1, 1, {kInfinity, 0, 0}), image_of(1, 1, {-kInfinity, 0, 0})).different, 1u);
 }
 
 TEST(Compare, ZerosOfBothSignsAreEqual) {
-  EXPECT_EQ(compare(image_of(1, 1, {0, 0, 0}), image_of(1, 1, {-0.0f, -0.0f, 0})).differing, 0u);
+  EXPECT_EQ(compare(image_of(1, 1, {0, 0, 0}), image_of(1, 1, {-0.0f, -0.0f, 0})).different, 0u);
 }
 
 /// A light twice as bright as white differs from one a hundred times as bright by nothing a screen

@@ -42,9 +42,9 @@ Image transposed(const Image& image) {
   return result;
 }
 
-TEST(Likeness, EqualPictures) {
+TEST(Similarity, EqualPictures) {
   const Image a = noisy(20, 70, 1);
-  const Likeness l = likeness(a, a);
+  const Similarity l = compare_similarity(a, a);
   EXPECT_EQ(l.ssim, 1);
   EXPECT_EQ(l.flip, 0);
   EXPECT_EQ(l.flip_map, std::vector<float>(20 * 70));
@@ -53,29 +53,31 @@ TEST(Likeness, EqualPictures) {
 /// Means 0 and 1, no variance: C1 / (1 + C1) is left of SSIM. The colours lie 100 apart in L*,
 /// no feature is there. FLIP takes 100^.7 = 25.119. Green and blue lie 203.302 apart, the largest
 /// distance: 203.302^.7 = 41.276. So FLIP is .95 + .05 (25.119 - .4 41.276) / (.6 41.276).
-TEST(Likeness, BlackAgainstWhiteByHand) {
-  const Likeness l = likeness(uniform(12, 12, 0, 0, 0), uniform(12, 12, 1, 1, 1));
+TEST(Similarity, BlackAgainstWhiteByHand) {
+  const Similarity l = compare_similarity(uniform(12, 12, 0, 0, 0), uniform(12, 12, 1, 1, 1));
   EXPECT_NEAR(l.ssim.value_or(0), 1e-4 / 1.0001, 1e-15);
   EXPECT_NEAR(l.flip.value_or(0), .96738, 5e-6);
 }
 
-TEST(Likeness, GreenAndBlueAreFarthestApart) {
-  EXPECT_NEAR(likeness(uniform(9, 5, 0, 1, 0), uniform(9, 5, 0, 0, 1)).flip.value_or(0), 1, 1e-6);
+TEST(Similarity, GreenAndBlueAreFarthestApart) {
+  EXPECT_NEAR(
+      compare_similarity(uniform(9, 5, 0, 1, 0), uniform(9, 5, 0, 0, 1)).flip.value_or(0), 1, 1e-6);
 }
 
-TEST(Likeness, SsimNeedsAWholeWindow) {
-  EXPECT_TRUE(likeness(noisy(11, 11, 1), noisy(11, 11, 2)).ssim);
+TEST(Similarity, SsimNeedsAWholeWindow) {
+  EXPECT_TRUE(compare_similarity(noisy(11, 11, 1), noisy(11, 11, 2)).ssim);
   for (const auto& [width, height] : {std::pair{10, 40}, {40, 10}, {1, 1}}) {
-    const Likeness l = likeness(noisy(width, height, 1), noisy(width, height, 2));
+    const Similarity l = compare_similarity(noisy(width, height, 1), noisy(width, height, 2));
     EXPECT_FALSE(l.ssim);
     EXPECT_GT(l.flip.value_or(0), 0);
   }
 }
 
 /// Rows are filtered in strips, columns are not.
-TEST(Likeness, IsTheSameOfRowsAndColumns) {
+TEST(Similarity, IsTheSameOfRowsAndColumns) {
   const Image a = noisy(15, 150, 1), b = noisy(15, 150, 2);
-  const Likeness upright = likeness(a, b), lying = likeness(transposed(a), transposed(b));
+  const Similarity upright = compare_similarity(a, b),
+                   lying = compare_similarity(transposed(a), transposed(b));
   EXPECT_NEAR(upright.ssim.value_or(0), lying.ssim.value_or(1), 1e-13);
   for (int y = 0; y < 150; ++y)
     for (int x = 0; x < 15; ++x)
@@ -84,17 +86,17 @@ TEST(Likeness, IsTheSameOfRowsAndColumns) {
           << x << ' ' << y;
 }
 
-TEST(Likeness, NoNumberIsNoColour) {
+TEST(Similarity, NoNumberIsNoColour) {
   Image a = noisy(20, 20, 1), b = noisy(20, 20, 2);
-  const double before = likeness(a, b).flip.value_or(0);
+  const double before = compare_similarity(a, b).flip.value_or(0);
   a.rgb[3 * 50 + 1] = b.rgb[3 * 50 + 1] = kNan;
-  EXPECT_NEAR(likeness(a, b).flip.value_or(1), before, .05) << "in both: no difference";
-  EXPECT_TRUE(likeness(a, b).ssim);
-  EXPECT_EQ(likeness(a, a).flip, 0);
+  EXPECT_NEAR(compare_similarity(a, b).flip.value_or(1), before, .05) << "in both: no difference";
+  EXPECT_TRUE(compare_similarity(a, b).ssim);
+  EXPECT_EQ(compare_similarity(a, a).flip, 0);
   for (const bool in_a : {true, false}) {
     Image odd = a;
     odd.rgb[3 * 70] = kNan;
-    const Likeness l = in_a ? likeness(odd, a) : likeness(a, odd);
+    const Similarity l = in_a ? compare_similarity(odd, a) : compare_similarity(a, odd);
     EXPECT_FALSE(l.ssim) << "never passes for alike";
     EXPECT_FALSE(l.flip);
     EXPECT_EQ(l.flip_map[70], 1);
@@ -102,13 +104,13 @@ TEST(Likeness, NoNumberIsNoColour) {
   }
 }
 
-Likeness of_map(std::vector<float> map) {
+Similarity of_map(std::vector<float> map) {
   return {int(map.size()), 1, {}, {}, std::move(map)};
 }
 
 /// The ends of magma and its entries 64, 128 and 200 of 256.
 TEST(ErrorMap, IsMagmaToTheNextByte) {
-  const Image picture = in_colours(of_map({0, 64 / 255.f, 128 / 255.f, 200 / 255.f, 1}));
+  const Image picture = in_colors(of_map({0, 64 / 255.f, 128 / 255.f, 200 / 255.f, 1}));
   const std::vector<std::uint8_t> bytes = to_bytes(picture, Tone::authored);
   const std::vector<int> magma{0, 0, 4, 81, 18, 124, 183, 55, 121, 253, 152, 105, 252, 253, 191};
   ASSERT_EQ(bytes.size(), magma.size());
@@ -120,7 +122,7 @@ TEST(ErrorMap, GrowsBrighterBySmallSteps) {
   std::vector<float> map(256);
   for (std::size_t i = 0; i < map.size(); ++i)
     map[i] = float(i) / 255;
-  const Image picture = in_colours(of_map(map));
+  const Image picture = in_colors(of_map(map));
   const auto luma = [](const float* c) { return .299f * c[0] + .587f * c[1] + .114f * c[2]; };
   for (const float* c = picture.row(0); c < picture.row(0) + 3 * 255; c += 3) {
     EXPECT_GT(luma(c + 3), luma(c));

@@ -1,5 +1,5 @@
-// What makes writing a PNG quick: strips deflated side by side, bytes found by a float's first
-// bits. A part of image_file_test.
+// Tests the optimisations of the PNG writer: strips compressed in parallel, and bytes looked up by
+// the leading bits of a float. A part of image_file_test.
 #include "frontend/images/image_file.hpp"
 #include "frontend/images/strip_deflate.hpp"
 #include "frontend/images/tone.hpp"
@@ -88,7 +88,8 @@ TEST(StripDeflate, BytesAreThoseOfAnyThreads) {
   omp_set_num_threads(before);
 }
 
-/// Where byte k begins: the standard's curve (IEC 61966-2-1), rounded to a float.
+/// Returns the least value that is encoded as byte k: the curve of IEC 61966-2-1, rounded to a
+/// float.
 float limit(int k) {
   const double encoded = (k - .5) / 255;
   return float(encoded <= .04045 ? encoded / 12.92 : std::pow((encoded + .055) / 1.055, 2.4));

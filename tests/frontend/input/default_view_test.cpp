@@ -1,4 +1,4 @@
-// What a mesh alone looks like: its view, lights and samples.
+// Tests the default view, lights and samples of a mesh file without a scene.
 #include "frontend/input/default_view.hpp"
 
 #include <algorithm>
@@ -81,8 +81,8 @@ Seen seen(const SceneFile& file, int side) {
   return s;
 }
 
-/// Of nine tenths of the picture's width or height the mesh fills all, whatever its form, size and
-/// place, and none of the rest.
+/// A mesh of any form, size and position fills exactly nine tenths of the picture's width or
+/// height.
 TEST(DefaultView, FillsThePicture) {
   constexpr int kSide = 200;
   for (const Float3& size : {Float3{1, 1, 1},

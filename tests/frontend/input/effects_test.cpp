@@ -1,4 +1,5 @@
-// Pictures of effects with known answers, and the same bits of them everywhere.
+// Compares pictures of effects with known results, and checks that they have the same bits on all
+// instruction sets.
 #include <cmath>
 #include <cstring>
 #include <numbers>
@@ -158,7 +159,7 @@ TEST(Gloss, SeesItsShareOfAHalfWhiteWorld) {
     Camera c = straight_down(1, 1, 1e-4);
     EXPECT_NEAR(picture(t, c, samples(1024)).rgb[0], share, kEdge1024) << offset;
     RenderOptions o = samples(4);
-    o.sampling.gloss_rays = 255;  // and the mirror direction itself
+    o.sampling.glossy_rays = 255;  // and the mirror direction itself
     EXPECT_NEAR(picture(t, c, o).rgb[0], (255 * share + (offset < 0)) / 256, kEdge1024)
         << offset << ", rays around";
   }
@@ -176,14 +177,14 @@ TEST(Effects, GiveTheSameBitsEverywhere) {
   for (const Sampler sampler : {Sampler::kSobol, Sampler::kJitter, Sampler::kRandom})
     for (const int gloss : {0, 2}) {
       RenderOptions o = samples(9, sampler);
-      o.sampling.gloss_rays = gloss;
+      o.sampling.glossy_rays = gloss;
       o.depth = 4;
       o.threads = 1;
       o.isa = "scalar";
       o.packet = 1;
       const Image wanted = picture(s, c, o);
       for (const Isa& isa : isas()) {
-        if (!isa.runs_here)
+        if (!isa.is_supported)
           continue;
         for (const int packet : {1, 16, 64, 256})
           for (const int threads : {2, 7}) {
@@ -254,7 +255,7 @@ TEST(Effects, AreTakenFromTheCommandLine) {
   EXPECT_EQ(o.sampling.samples, 36);
   EXPECT_EQ(o.sampling.sampler, Sampler::kJitter);
   EXPECT_EQ(o.sampling.light_rays, 4) << "144 positions by 36 samples";
-  EXPECT_EQ(o.sampling.gloss_rays, 2);
+  EXPECT_EQ(o.sampling.glossy_rays, 2);
   EXPECT_EQ(f.scene.materials[0].roughness, 0);
   EXPECT_EQ(f.scene.materials[1].roughness, .3f);
   EXPECT_NEAR(

@@ -1,4 +1,4 @@
-// What is said of broken files: the exact line, for each of them.
+// Tests the exact error message for each kind of broken file.
 #include <gtest/gtest.h>
 
 #include <string>

@@ -84,7 +84,7 @@ EntityCounts expected_counts(const Row& row, const std::map<std::string, std::ui
   return expected;
 }
 
-std::string shown(const EntityCounts& c) {
+std::string printed(const EntityCounts& c) {
   std::string text;
   for (const std::uint64_t n :
        {c.s, c.p, c.pp, c.c, c.pl, c.box, c.mesh, c.ply, c.lights, c.materials})
@@ -105,7 +105,7 @@ TEST(RealScenes, HoldWhatTheirTableSays) {
     SCOPED_TRACE(row.file);
     SceneFile file;
     ASSERT_NO_THROW(file = read_scene((kFolder / row.file).string(), nullptr));
-    EXPECT_EQ(shown(file.counts), shown(expected_counts(row, faces)))
+    EXPECT_EQ(printed(file.counts), printed(expected_counts(row, faces)))
         << "order: s p pp c pl box mesh ply lights materials";
     EXPECT_EQ(file.dropped.not_finite, 0u);
     if (row.file.ends_with(".ply"))

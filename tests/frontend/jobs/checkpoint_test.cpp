@@ -6,7 +6,7 @@
 #include "frontend/files/parse_error.hpp"
 #include "frontend/jobs/checkpoint.hpp"
 #include "frontend/jobs/partial.hpp"
-#include "kernel/adaptive/adaptive_sampler.hpp"
+#include "kernel/picture/adaptive_sampler.hpp"
 #include "kernel/picture/picture.hpp"
 #include "tests/frontend/jobs/job.hpp"
 #include "tests/support/random.hpp"
@@ -17,7 +17,8 @@
 namespace grelha::test {
 namespace {
 
-/// What refinement or subdivision makes until it is done, or until step `last`; counts the steps.
+/// The picture of a refinement or subdivision after step `last` or at its end, and the number of
+/// steps.
 struct Steps {
   std::optional<Picture> picture;
   int count = 0;
@@ -43,15 +44,16 @@ Picture half_done(const Job& job, const RenderOptions& options, std::uint64_t se
   constexpr int last = 33;
   const int all = steps_until(last, job, options).count;
   EXPECT_GT(all, first);
-  const int choices = all - first;
-  const int stop = first + static_cast<int>(Random(seed).below(static_cast<unsigned>(choices)));
+  const int option_values = all - first;
+  const int stop =
+      first + static_cast<int>(Random(seed).below(static_cast<unsigned>(option_values)));
   Steps half = steps_until(stop, job, options);
   EXPECT_FALSE(half.done) << "step " << stop << " of " << all;
   return std::move(*half.picture);
 }
 
 /// In a file, as bytes.
-std::string kept(const Picture& picture) {
+std::string saved(const Picture& picture) {
   const TemporaryFolder folder;
   write_checkpoint(folder.file("x"), {"scene", "settings"}, picture, true);
   EXPECT_EQ(folder.list(), "x");
@@ -87,20 +89,20 @@ TEST_P(Checkpoints, GoOnFromAFileToTheSameBits) {
   const Image whole = render(world, job_.file.camera, o, stats);
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
     Picture half = half_done(job_, o, seed);
-    Picture picture = parse_checkpoint("x", kept(half)).picture;
+    Picture picture = parse_checkpoint("x", saved(half)).picture;
     RenderStats of_half;
     ASSERT_TRUE(half.advance(world, job_.file.camera, o, of_half));
     ASSERT_TRUE(picture.advance(world, job_.file.camera, o, stats));
     EXPECT_EQ(stats.rays.total(), of_half.rays.total()) << "or what was seen is seen again";
     EXPECT_TRUE(same_bits(picture.image(), whole));
-    EXPECT_EQ(kept(parse_checkpoint("x", kept(picture)).picture), kept(picture))
+    EXPECT_EQ(saved(parse_checkpoint("x", saved(picture)).picture), saved(picture))
         << "of what is finished as well";
   }
 }
 
 TEST_P(Checkpoints, AreRefusedWithAnyByteFlippedOrLost) {
-  const std::string good = kept(half_done(job_, job_.options, 1));
-  EXPECT_EQ(kept(parse_checkpoint("x", good).picture), good);
+  const std::string good = saved(half_done(job_, job_.options, 1));
+  EXPECT_EQ(saved(parse_checkpoint("x", good).picture), good);
   for (std::size_t i = 0; i < good.size(); i += 1 + i / 16) {
     std::string bad = good;
     bad[i] = static_cast<char>(bad[i] ^ (1 << i % 8));
@@ -115,14 +117,14 @@ TEST_P(Checkpoints, AreRefusedWithAnyByteFlippedOrLost) {
 /// work comes to an end.
 TEST_P(Checkpoints, OfHostileBytesBreakNothing) {
   const World world(job_.file.scene, {});
-  const std::string good = kept(half_done(job_, job_.options, 1));
+  const std::string good = saved(half_done(job_, job_.options, 1));
   Random random(9);
   int refused = 0, taken = 0;
   for (int turn = 0; turn < 120; ++turn) {
     std::string bad = good;
     if (random.chance(.2))
       bad.resize(bad.size() - 1 - random.below(60));
-    // half of them near the head
+    // with probability 1/2 the changes are near the head of the file
     const std::size_t most = random.chance(.5) ? 400 : bad.size() - 8;
     for (int k = 0; k < 3; ++k)
       bad[random.below(static_cast<std::uint32_t>(most))] =
@@ -162,7 +164,7 @@ TEST(Checkpoint, OfImpossibleNumbersIsRefused) {
     Refinement bad = good;
     change(bad);
     try {
-      parse_checkpoint("x", kept(bad));
+      parse_checkpoint("x", saved(bad));
     } catch (const FileError& error) {
       return std::string(error.what()) == "x: error: not a .grelha partial this program reads";
     }

@@ -48,20 +48,20 @@ TEST_F(FullDisk, KeepsAFinishedPictureElsewhere) {
     SCOPED_TRACE(job);
     ASSERT_EQ(run(job + "-o whole.pfm").status, 0);
     const Outcome outcome = run_full(job + "-o full/x.pfm");
-    const std::string kept = kept_elsewhere();
-    ASSERT_TRUE(kept.ends_with("/x.partial.grelha")) << kept;
+    const std::string saved = kept_elsewhere();
+    ASSERT_TRUE(saved.ends_with("/x.partial.grelha")) << saved;
     EXPECT_EQ(outcome.status, 1);
     EXPECT_EQ(outcome.err,
-              "grelha: all of the picture is kept in " + kept +
-                  ": the same command with --checkpoint " + kept + " writes it\n" + kNoRoom);
-    EXPECT_EQ(run(job + "-o full/x.pfm --checkpoint " + kept).status, 0);
+              "grelha: all of the picture is kept in " + saved +
+                  ": the same command with --checkpoint " + saved + " writes it\n" + kNoRoom);
+    EXPECT_EQ(run(job + "-o full/x.pfm --checkpoint " + saved).status, 0);
     EXPECT_EQ(folder_.read("full/x.pfm"), folder_.read("whole.pfm"));
     EXPECT_EQ(kept_elsewhere(), "") << "done with";
     fs::remove(folder_.file("full/x.pfm"));
   }
 }
 
-/// The checkpoint has room already, that of what it held before.
+/// The checkpoint needs no new disk space, because it overwrites its earlier content.
 TEST_F(FullDisk, TheCheckpointHoldsAllOfAFinishedPicture) {
   const std::string job = std::string(kJobs[0]) + "-o full/x.pfm --checkpoint full/kept";
   ASSERT_EQ(run(std::string(kJobs[0]) + "-o whole.pfm").status, 0);
@@ -93,17 +93,17 @@ TEST_F(FullDisk, KeepsWhatASignalStopped) {
           "timeout --foreground --preserve-status -s INT " + std::to_string(seconds) + ' ');
       fs::remove(folder_.file("full/x.pfm"));
     }
-    const std::string kept = kept_elsewhere();
+    const std::string saved = kept_elsewhere();
     if (outcome.status == 1) {
-      fs::remove(kept);
+      fs::remove(saved);
       continue;  // so fast that it had come to the end
     }
     EXPECT_EQ(outcome.status, 130);
-    EXPECT_NE(outcome.err.find("and saved in " + kept + ": the same command with --checkpoint " +
-                               kept + " goes on from there"),
+    EXPECT_NE(outcome.err.find("and saved in " + saved + ": the same command with --checkpoint " +
+                               saved + " goes on from there"),
               outcome.err.npos)
         << outcome.err;
-    EXPECT_EQ(run(job + "--checkpoint " + kept).status, 0);
+    EXPECT_EQ(run(job + "--checkpoint " + saved).status, 0);
   }
 }
 

@@ -1,4 +1,4 @@
-// What tells one picture from another: the digest of its scene, and the settings its pixels depend
+// Tests the identity of a picture: the digest of its scene, and the settings that its pixels depend
 // on.
 #include <sstream>
 #include <string>
@@ -51,12 +51,12 @@ TEST(Identity, KnowsAnotherScene) {
 TEST(Identity, NamesAllThatPixelsDependOn) {
   RenderCommand command;
   Camera camera;
-  const std::string plain = settings_text(command, camera);
+  const std::string simple = settings_text(command, camera);
   const auto words = [&](auto change) {
     RenderCommand c;
     Camera k;
     change(c, k);
-    return difference(settings_text(c, k), plain, "a");
+    return difference(settings_text(c, k), simple, "a");
   };
   EXPECT_EQ(words([](RenderCommand&, Camera& k) { k.width = 7; }),
             "size=7x512, a has size=512x512");
@@ -91,14 +91,14 @@ TEST(Identity, NamesAllThatPixelsDependOn) {
             "aperture=0.1 focus=2, a has no aperture= no focus=");
   EXPECT_EQ(words([](RenderCommand& c, Camera&) {
               c.effects.glossy = {.5f, 2};
-              c.render.sampling.gloss_rays = 2;
+              c.render.sampling.glossy_rays = 2;
             }),
             "roughness=0.5 gloss-rays=2, a has no roughness= no gloss-rays=");
   RenderCommand other;
   other.render.threads = 3;
   other.render.isa = "sse2";
   other.render.packet = 16;
-  EXPECT_EQ(settings_text(other, camera), plain);
+  EXPECT_EQ(settings_text(other, camera), simple);
 }
 
 TEST(Identity, PrintsNothingOfAFileAsItStands) {

@@ -22,7 +22,7 @@ void apply(char effect, Job& job) {
       }
       break;
     case 'n':
-      job.options.sampling.gloss_rays = 3;
+      job.options.sampling.glossy_rays = 3;
       [[fallthrough]];
     case 'g':
       for (Material& m : job.file.scene.materials)

@@ -22,7 +22,7 @@ Partial part_of(const Range& rows, const Range& samples) {
 class Merge : public testing::Test {
  protected:
   void put(const std::string& name, const Partial& p) { write_partial(folder_.file(name), p); }
-  /// What merging the named files says, their folder left out.
+  /// Returns the error message of merging the named files, without their folder.
   std::string complaint(const std::vector<std::string>& names) const {
     std::vector<std::string> files;
     for (const std::string& n : names)

@@ -92,7 +92,7 @@ TEST_F(LongWork, AFullDiskIsOneLine) {
   EXPECT_EQ(folder_.list(), "a.grelha ball.nff x.pfm");
 }
 
-/// Two at once, each of which saves all the time and ends when it likes.
+/// Two runs at the same time; each saves continually, and either may end first.
 TEST_F(LongWork, RunsThatShareACheckpointAreTold) {
   const std::string program = " '" GRELHA_PROGRAM "' ",
                     job = std::string(kJobs[0]) + "--checkpoint kept --checkpoint-every 1e-9 -o ";

@@ -20,7 +20,7 @@ using Lines = std::vector<std::string>;
 
 constexpr ChunkSizes kNoChunks{std::size_t(1) << 40, 1};
 
-const NffChunks::Tell kTellNobody = [](const char*) {};
+const NffChunks::Report kTellNobody = [](const char*) {};
 
 /// More threads than one, wherever this runs.
 class SeveralThreads {
@@ -79,7 +79,7 @@ void tell_geometry(Told& told, const Geometry& g) {
   told << p.x << p.y << p.z << p.nx << p.ny << p.nz << p.material << g.objects;
 }
 
-void tell(Told& told, const SceneFile& file) {
+void report_line(Told& told, const SceneFile& file) {
   tell_geometry(told, file.scene.geometry);
   told << file.scene.materials << file.scene.lights << file.scene.background;
   const EntityCounts& n = file.counts;
@@ -93,8 +93,8 @@ void tell(Told& told, const SceneFile& file) {
 std::string all_told(const std::string& text, const ChunkSizes& chunks) {
   Told told;
   const auto warn = [&](const std::string& line) { told << line; };
-  const std::string error =
-      test::message_of([&] { tell(told, read_nff("scene.nff", text, warn, {}, nullptr, chunks)); });
+  const std::string error = test::message_of(
+      [&] { report_line(told, read_nff("scene.nff", text, warn, {}, nullptr, chunks)); });
   return told.text + error;
 }
 
@@ -144,16 +144,16 @@ class Author {
     for (int i = 0; i < count; ++i)
       number();
   }
-  /// A polygon round the origin, of which corners may repeat or be moved.
+  /// A polygon around the origin; some of its corners may be repeated or moved.
   void polygon(bool patch) {
-    const int corners = 3 + (below(3) == 0 ? below(7) : 0);
+    const int corner_points = 3 + (below(3) == 0 ? below(7) : 0);
     text_ += patch ? "pp" : "p";
     gap();
-    text_ += std::to_string(corners);
+    text_ += std::to_string(corner_points);
     const bool flat = below(4) == 0;
-    for (int i = 0; i < corners; ++i) {
+    for (int i = 0; i < corner_points; ++i) {
       if (flat)
-        text_ += " 0 " + std::to_string(i * (corners - i)) + ' ' + std::to_string(i / 2 * 3);
+        text_ += " 0 " + std::to_string(i * (corner_points - i)) + ' ' + std::to_string(i / 2 * 3);
       else
         numbers(3);
       if (patch && below(9) == 0)
@@ -265,7 +265,7 @@ TEST(NffChunks, TakeAllThatIsPlain) {
   file.scene.materials.resize(1);
   const char* const begin = text.data() + text.find("s 0 0");
   ASSERT_TRUE(chunks.due(begin));
-  const NffChunks::Taken taken = chunks.read_run(begin, file, kTellNobody);
+  const NffChunks::ParsedChunks taken = chunks.read_run(begin, file, kTellNobody);
   EXPECT_EQ(file.counts.s, 400u);
   EXPECT_EQ(taken.end, text.data() + text.size() - 1);
   EXPECT_EQ(taken.last_entity.data(), text.data() + text.rfind('s'));
@@ -277,7 +277,7 @@ TEST(NffChunks, EndBeforeWhatIsOddAndLeaveItsSurroundings) {
   NffChunks chunks("scene.nff", text, {100, 20});
   SceneFile file;
   file.scene.materials.resize(1);
-  const NffChunks::Taken taken =
+  const NffChunks::ParsedChunks taken =
       chunks.read_run(text.data() + text.find("s 0 0"), file, kTellNobody);
   EXPECT_EQ(file.counts.s, 60u);
   const char* const odd = text.data() + text.find("s 1 1 1 zero");

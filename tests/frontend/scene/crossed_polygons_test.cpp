@@ -15,8 +15,8 @@
 namespace grelha {
 namespace {
 
-using Corners = std::vector<Float3>;
-using Result = PolygonCutter::Result;
+using Vertices = std::vector<Float3>;
+using Result = PolygonSplitter::Result;
 using Wide = long double;
 
 struct Wide2 {
@@ -67,10 +67,10 @@ struct Filled {
 };
 
 /// As a scene has it: what is drawn, with crossings as vertices.
-Filled fill(const Corners& corners) {
+Filled fill(const Vertices& corner_points) {
   SceneFile file;
   Filled filled;
-  SceneBuilder(file).polygon(corners, {}, 0, [&](Result result) { filled.result = result; });
+  SceneBuilder(file).polygon(corner_points, {}, 0, [&](Result result) { filled.result = result; });
   filled.triangles = file.scene.geometry.triangles;
   return filled;
 }
@@ -88,9 +88,9 @@ void expect_no_gaps(const Triangles& t,
                     const std::vector<Wide2>& points,
                     const std::vector<Wide2>& outline,
                     Wide slack) {
-  std::map<std::pair<Wide, Wide>, std::uint32_t> places;  // corners may repeat
+  std::map<std::pair<Wide, Wide>, std::uint32_t> locations;  // corners may repeat
   const auto at = [&](std::uint32_t i) {
-    return places.try_emplace({points[i].x, points[i].y}, i).first->second;
+    return locations.try_emplace({points[i].x, points[i].y}, i).first->second;
   };
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> sides;
   for (std::size_t i = 0; i < t.size(); ++i) {
@@ -115,10 +115,10 @@ void expect_no_gaps(const Triangles& t,
 
 /// Random points lie in one triangle where the oracle says inside, in none elsewhere; triangles
 /// share their sides. `slack` is what vertices are rounded by.
-void expect_even_odd(const Corners& corners, const View& view, int samples, Wide slack) {
-  const Filled filled = fill(corners);
+void expect_even_odd(const Vertices& corner_points, const View& view, int samples, Wide slack) {
+  const Filled filled = fill(corner_points);
   std::vector<Wide2> outline;
-  for (const Float3& p : corners)
+  for (const Float3& p : corner_points)
     outline.push_back(view(p));
   const Triangles& t = filled.triangles;
   const std::vector<Wide2> points = seen(t, view);
@@ -144,25 +144,25 @@ void expect_even_odd(const Corners& corners, const View& view, int samples, Wide
 
 constexpr Wide kSlack = 1e-6L;  ///< of coordinates up to 4, a few last places of a float
 
-Corners in_plane(const std::vector<std::array<float, 2>>& flat) {
-  Corners corners;
+Vertices in_plane(const std::vector<std::array<float, 2>>& flat) {
+  Vertices corner_points;
   for (const auto& [x, y] : flat)
-    corners.push_back({x, y, 0});
-  return corners;
+    corner_points.push_back({x, y, 0});
+  return corner_points;
 }
 
 /// Corners at equal steps round a circle, every `step`-th in turn.
-Corners star(int corners, int step) {
-  Corners star;
-  for (int i = 0; i < corners; ++i) {
-    const double angle = 2 * std::numbers::pi * i * step / corners;
+Vertices star(int corner_points, int step) {
+  Vertices star;
+  for (int i = 0; i < corner_points; ++i) {
+    const double angle = 2 * std::numbers::pi * i * step / corner_points;
     star.push_back({float(std::sin(angle)), float(std::cos(angle)), 0});
   }
   return star;
 }
 
-Corners turned(const Corners& flat) {
-  Corners tilted;
+Vertices turned(const Vertices& flat) {
+  Vertices tilted;
   for (const Float3& p : flat)  // orthogonal, no axis near another
     tilted.push_back({float(.36 * p.x + .48 * p.y + 1),
                       float(-.8 * p.x + .6 * p.y),
@@ -172,7 +172,7 @@ Corners turned(const Corners& flat) {
 
 struct Shape {
   const char* what;
-  Corners corners;
+  Vertices corner_points;
   double area;  ///< by the even-odd rule
   Result result;
 };
@@ -256,12 +256,13 @@ double area_of(const Triangles& t) {
 TEST(CrossedPolygons, AreFilledEvenOdd) {
   for (const Shape& shape : kShapes) {
     SCOPED_TRACE(shape.what);
-    Corners corners = shape.corners;
+    Vertices corner_points = shape.corner_points;
     for (std::size_t shift = 0;
-         shift < std::min<std::size_t>(corners.size(), 1 + 100 / corners.size());
+         shift < std::min<std::size_t>(corner_points.size(), 1 + 100 / corner_points.size());
          ++shift) {
-      std::ranges::rotate(corners, corners.begin() + 1);
-      for (const Corners& one : {corners, Corners(corners.rbegin(), corners.rend())}) {
+      std::ranges::rotate(corner_points, corner_points.begin() + 1);
+      for (const Vertices& one :
+           {corner_points, Vertices(corner_points.rbegin(), corner_points.rend())}) {
         const Filled filled = fill(one);
         EXPECT_EQ(filled.result, shape.result);
         if (shape.area >= 0) {
@@ -270,8 +271,8 @@ TEST(CrossedPolygons, AreFilledEvenOdd) {
         expect_even_odd(one, {0, 1}, 100, kSlack);
       }
     }
-    const double area = area_of(fill(corners).triangles);
-    const Corners tilted = turned(corners);
+    const double area = area_of(fill(corner_points).triangles);
+    const Vertices tilted = turned(corner_points);
     EXPECT_NEAR(area_of(fill(tilted).triangles), area, 1e-5) << "tilted";
     expect_even_odd(tilted, {0, 1}, 300, 4 * kSlack);
     expect_even_odd(tilted, {1, 2}, 300, 4 * kSlack);
@@ -294,7 +295,7 @@ TEST(CrossedPolygons, OfNoAreaInSumHaveAPlane) {
                     float(o[1] + s * u[1] + t * v[1]),
                     float(o[2] + s * u[2] + t * v[2])};
     };
-    const Corners tie{at(0, 0), at(1, 1), at(1, 0), at(0, 1)};
+    const Vertices tie{at(0, 0), at(1, 1), at(1, 0), at(0, 1)};
     const double whole =
         std::hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]);
     const Filled filled = fill(tie);
@@ -309,17 +310,17 @@ TEST(CrossedPolygons, OfRandomCorners) {
   for (int round = 0; round < 600; ++round) {
     const int n = 4 + int(random() % (round % 10 == 0 ? 60 : 12));
     const int lattice = round % 3 == 0 ? 3 : round % 3 == 1 ? 8 : 0;
-    Corners corners;
+    Vertices corner_points;
     for (int i = 0; i < n; ++i) {
       const auto coordinate = [&] {
         return lattice ? float(int(random() % unsigned(lattice)))
                        : std::uniform_real_distribution<float>(-2, 2)(random);
       };
       const float x = coordinate(), y = coordinate();
-      corners.push_back({x, y, 0});
+      corner_points.push_back({x, y, 0});
     }
     SCOPED_TRACE(round);
-    expect_even_odd(corners, {0, 1}, 60, kSlack);
+    expect_even_odd(corner_points, {0, 1}, 60, kSlack);
     if (testing::Test::HasFatalFailure())
       return;
   }
@@ -328,19 +329,19 @@ TEST(CrossedPolygons, OfRandomCorners) {
 /// Sides that cross right beside corners and each other, by a few last places.
 TEST(CrossedPolygons, OfNearlyCommonPoints) {
   std::mt19937 random(13);
-  std::uniform_real_distribution<double> place(-1, 1), tiny(-3, 3);
+  std::uniform_real_distribution<double> location(-1, 1), tiny(-3, 3);
   for (int round = 0; round < 200; ++round) {
-    Corners corners;
+    Vertices corner_points;
     for (int i = 0; i < 12; ++i) {  // lines through the middle, or so
-      const double angle = place(random) * 3.2, x = 1 + tiny(random) * 1e-7,
+      const double angle = location(random) * 3.2, x = 1 + tiny(random) * 1e-7,
                    off = tiny(random) * 6e-8;
       const double sign = i % 2 ? 1 : -1;
-      corners.push_back({float(1 + sign * x * std::cos(angle) + off),
-                         float(1 + sign * x * std::sin(angle) - off),
-                         0});
+      corner_points.push_back({float(1 + sign * x * std::cos(angle) + off),
+                               float(1 + sign * x * std::sin(angle) - off),
+                               0});
     }
     SCOPED_TRACE(round);
-    expect_even_odd(corners, {0, 1}, 60, kSlack);
+    expect_even_odd(corner_points, {0, 1}, 60, kSlack);
     if (testing::Test::HasFatalFailure())
       return;
   }
@@ -349,19 +350,19 @@ TEST(CrossedPolygons, OfNearlyCommonPoints) {
 /// Nobody can say where sides of a bent outline cross; they are joined half way.
 TEST(CrossedPolygons, ThatAreBentHaveNoGaps) {
   std::mt19937 random(17);
-  std::uniform_real_distribution<float> place(-1, 1);
+  std::uniform_real_distribution<float> location(-1, 1);
   for (int round = 0; round < 100; ++round) {
-    Corners corners;
+    Vertices corner_points;
     for (int i = 0; i < 8; ++i)
-      corners.push_back({3 * place(random), 3 * place(random), .3f * place(random)});
-    expect_even_odd(corners, {0, 1}, 60, kSlack);
+      corner_points.push_back({3 * location(random), 3 * location(random), .3f * location(random)});
+    expect_even_odd(corner_points, {0, 1}, 60, kSlack);
   }
 }
 
 TEST(CrossedPolygons, BringNormalsToTheirCrossings) {
   SceneFile file;
-  const Corners tie = in_plane({{0, 0}, {2, 2}, {2, 0}, {0, 2}});
-  const Corners normals{{0, 0, 1}, {1, 0, 1}, {1, 0, 1}, {0, 0, 1}};
+  const Vertices tie = in_plane({{0, 0}, {2, 2}, {2, 0}, {0, 2}});
+  const Vertices normals{{0, 0, 1}, {1, 0, 1}, {1, 0, 1}, {0, 0, 1}};
   SceneBuilder(file).polygon(tie, normals, 0);
   const Triangles& t = file.scene.geometry.triangles;
   ASSERT_EQ(t.x.size(), 5u);

@@ -81,7 +81,7 @@ std::vector<float> picture(const SceneFile& file) {
   return render(World(file.scene, {}), file.camera, {}, stats).rgb;
 }
 
-std::size_t differing(const std::vector<float>& a, const std::vector<float>& b) {
+std::size_t different(const std::vector<float>& a, const std::vector<float>& b) {
   std::size_t n = a.size() != b.size();
   for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
     n += std::abs(a[i] - b[i]) > 1e-3f;
@@ -101,7 +101,7 @@ TEST(Frame, KeepsWhatFloatsWouldLose) {
     EXPECT_NEAR(far.frame.outside(b.y[i], 1), kSurvey[1] + double{a.y[i]}, 1e-6) << i;
     EXPECT_NEAR(far.frame.outside(b.z[i], 2), kSurvey[2] + double{a.z[i]}, 1e-6) << i;
   }
-  EXPECT_EQ(differing(picture(here), picture(far)), 0u);
+  EXPECT_EQ(different(picture(here), picture(far)), 0u);
 }
 
 /// normal . x + constant = 0, and pairs of bounds, are not three numbers of a place.
@@ -122,7 +122,7 @@ TEST(Frame, TakesPlanesAndPairsAlong) {
   EXPECT_EQ(here.box_order, BoxOrder::kPairs);
   EXPECT_EQ(far.box_order, BoxOrder::kPairs);
   EXPECT_NE(far.frame, Frame{});
-  EXPECT_EQ(differing(picture(here), picture(far)), 0u);
+  EXPECT_EQ(different(picture(here), picture(far)), 0u);
 }
 
 TEST(Frame, EnlargesWhatIsTiny) {
@@ -132,7 +132,7 @@ TEST(Frame, EnlargesWhatIsTiny) {
     const std::string text = placed_text(kEverything, {}, std::ldexp(1, power));
     const SceneFile tiny = read_text(folder, "tiny.nff", text);
     EXPECT_GT(tiny.frame.scale, 1) << power;
-    EXPECT_EQ(differing(picture(here), picture(tiny)), 0u) << power;
+    EXPECT_EQ(different(picture(here), picture(tiny)), 0u) << power;
   }
 }
 
@@ -223,7 +223,7 @@ TEST(Frame, IsOneForAScene) {
   EXPECT_EQ(file.frame.outside(file.scene.lights[0].position), (Offset{500040, 3999800, 290}));
 }
 
-/// What floats hold stays where the file has it, however far out.
+/// Coordinates that floats represent exactly are not translated, however large they are.
 TEST(Frame, IsTheFilesOwnForFloats) {
   const TemporaryFolder folder;
   const Offset eighths{524288.125, -4194304.5, 1024};

@@ -1,5 +1,5 @@
-// Outlines made to waste time, and the test of sides that all of them rest on. A part of
-// polygon_test.
+// Tests outlines that are slow to triangulate, and the orientation test that triangulation depends
+// on. A part of polygon_test.
 #include "frontend/scene/scene_builder.hpp"
 
 #include <gtest/gtest.h>
@@ -15,8 +15,8 @@
 namespace grelha {
 namespace {
 
-using Corners = std::vector<Float3>;
-using Result = PolygonCutter::Result;
+using Vertices = std::vector<Float3>;
+using Result = PolygonSplitter::Result;
 
 /// Whole numbers of 50 bits, whose products integers of 128 hold; three in a line, or one off it.
 TEST(ExactTurn, IsRightToTheLastBit) {
@@ -46,11 +46,11 @@ struct Filled {
   double seconds = 0;  ///< of the processor, which others may be busy with
 };
 
-Filled fill(const Corners& corners) {
+Filled fill(const Vertices& corner_points) {
   const std::clock_t start = std::clock();
   SceneFile file;
   Filled filled;
-  SceneBuilder(file).polygon(corners, {}, 0, [&](Result result) { filled.result = result; });
+  SceneBuilder(file).polygon(corner_points, {}, 0, [&](Result result) { filled.result = result; });
   filled.triangles = file.scene.geometry.triangles.size();
   filled.seconds = double(std::clock() - start) / CLOCKS_PER_SEC;
   return filled;
@@ -60,37 +60,37 @@ constexpr double kPatience = 10;  // .1 to 4 s were measured; for all pairs of s
 
 /// Simple but for one corner that is pulled across thousands of sides.
 TEST(ManyCrossings, OfAMillionCornersEndSoon) {
-  constexpr int kCorners = 1000000;
+  constexpr int kVertices = 1000000;
   std::mt19937 random(5);
   std::uniform_real_distribution<double> decades(-6, 0);
-  Corners corners;
-  for (int i = 0; i < kCorners; ++i) {
-    const double angle = 2 * std::numbers::pi * i / kCorners, r = std::pow(10, decades(random));
-    corners.push_back({float(r * std::cos(angle)), float(r * std::sin(angle)), 0});
+  Vertices corner_points;
+  for (int i = 0; i < kVertices; ++i) {
+    const double angle = 2 * std::numbers::pi * i / kVertices, r = std::pow(10, decades(random));
+    corner_points.push_back({float(r * std::cos(angle)), float(r * std::sin(angle)), 0});
   }
-  corners[5] = {.9f, -.1f, 0};
-  const Filled filled = fill(corners);
+  corner_points[5] = {.9f, -.1f, 0};
+  const Filled filled = fill(corner_points);
   EXPECT_LT(filled.seconds, kPatience);
   EXPECT_EQ(filled.result, Result::kFilled);
-  EXPECT_GT(filled.triangles, corners.size() / 2);
+  EXPECT_GT(filled.triangles, corner_points.size() / 2);
 }
 
 TEST(ManyCrossings, OfNoiseEndSoon) {
   std::mt19937 random(11);
   for (const int n : {1000, 50000}) {
     for (const bool lattice : {true, false}) {
-      Corners corners;
+      Vertices corner_points;
       for (int i = 0; i < n; ++i) {
         const auto coordinate = [&] {
           return lattice ? float(random() % 41)
                          : std::uniform_real_distribution<float>(0, 40)(random);
         };
         const float x = coordinate(), y = coordinate();
-        corners.push_back({x, y, 0});
+        corner_points.push_back({x, y, 0});
       }
-      const Filled filled = fill(corners);
+      const Filled filled = fill(corner_points);
       EXPECT_LT(filled.seconds, kPatience);
-      EXPECT_EQ(filled.result, n > 1000 ? Result::kTooOften : Result::kFilled);
+      EXPECT_EQ(filled.result, n > 1000 ? Result::kCutLimit : Result::kFilled);
       EXPECT_EQ(filled.triangles > 0, n == 1000);
     }
   }

@@ -12,11 +12,11 @@ namespace grelha {
 namespace {
 
 using Outline = std::vector<Float3>;
-using Triangle = PolygonCutter::Triangle;
+using Triangle = PolygonSplitter::Triangle;
 
-std::vector<Triangle> cut(const Outline& corners) {
+std::vector<Triangle> cut(const Outline& corner_points) {
   std::vector<Triangle> triangles;
-  PolygonCutter().cut(corners, triangles);
+  PolygonSplitter().cut(corner_points, triangles);
   return triangles;
 }
 
@@ -65,17 +65,17 @@ void expect_cover_any_way(const Outline& outline) {
   }
 }
 
-Outline star(int corners, double inner) {
+Outline star(int corner_points, double inner) {
   Outline p;
-  for (int i = 0; i < corners; ++i) {
-    const double angle = 2 * std::numbers::pi * i / corners, r = i % 4 < 2 ? 1 : inner;
+  for (int i = 0; i < corner_points; ++i) {
+    const double angle = 2 * std::numbers::pi * i / corner_points, r = i % 4 < 2 ? 1 : inner;
     p.push_back({float(r * std::cos(angle)), float(r * std::sin(angle)), 0});
   }
   return p;
 }
 
-/// Teeth upwards from a spine: half of the corners are reflex, and the spine left at the end is one
-/// flat row of them.
+/// A comb: teeth that point up from a spine. Half of the corners are reflex, and the spine that
+/// remains at the end is a row of collinear corners.
 Outline comb(int teeth) {
   Outline p{{0, 0, 0}, {float(2 * teeth), 0, 0}};
   for (int i = teeth; i-- > 0;) {
@@ -173,21 +173,22 @@ TEST(Polygon, AnyPlaneGivesTheSameCut) {
 }
 
 TEST(Polygon, NormalIsTwiceTheArea) {
-  PolygonCutter cutter;
+  PolygonSplitter splitter;
   std::vector<Triangle> triangles;
-  ASSERT_EQ(cutter.cut(std::vector<Float3>{{0, 0, 1}, {2, 0, 1}, {2, 3, 1}, {0, 3, 1}}, triangles),
-            PolygonCutter::Result::kCut);
-  EXPECT_EQ(cutter.normal(), (std::array<double, 3>{0, 0, 12}));
+  ASSERT_EQ(
+      splitter.cut(std::vector<Float3>{{0, 0, 1}, {2, 0, 1}, {2, 3, 1}, {0, 3, 1}}, triangles),
+      PolygonSplitter::Result::kCut);
+  EXPECT_EQ(splitter.normal(), (std::array<double, 3>{0, 0, 12}));
 }
 
 TEST(Polygon, WithoutAreaThereIsNothing) {
-  PolygonCutter cutter;
+  PolygonSplitter splitter;
   std::vector<Triangle> triangles;
   for (const Outline& outline :
        {Outline{{0.1f, 0.1f, 0.1f}, {0.2f, 0.2f, 0.2f}, {0.7f, 0.7f, 0.7f}, {0.3f, 0.3f, 0.3f}},
         Outline{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}},
         Outline{{1, 1, 1}, {1, 2, 1}}})
-    EXPECT_EQ(cutter.cut(outline, triangles), PolygonCutter::Result::kNoArea);
+    EXPECT_EQ(splitter.cut(outline, triangles), PolygonSplitter::Result::kNoArea);
   EXPECT_TRUE(triangles.empty());
 }
 
@@ -212,8 +213,8 @@ double perimeter(const Outline& outline, const std::vector<Triangle>& triangles)
 /// Cut evenly, each pass of ears draws diagonals once round the circle, and each is a side of two
 /// triangles.
 TEST(Polygon, LargeOutlinesAreCutIntoShortTriangles) {
-  constexpr int kCorners = 30000;
-  for (const Outline& outline : {star(kCorners, 1), star(kCorners, .999)}) {
+  constexpr int kVertices = 30000;
+  for (const Outline& outline : {star(kVertices, 1), star(kVertices, .999)}) {
     const std::vector<Triangle> triangles = cut(outline);
     expect_cover(outline, triangles);
     double round = 0;
@@ -221,7 +222,7 @@ TEST(Polygon, LargeOutlinesAreCutIntoShortTriangles) {
       const Float3 &a = outline[i], &b = outline[(i + 1) % outline.size()];
       round += std::hypot(double(a.x) - b.x, double(a.y) - b.y);
     }
-    EXPECT_LT(perimeter(outline, triangles), 2 * round * std::log2(kCorners));
+    EXPECT_LT(perimeter(outline, triangles), 2 * round * std::log2(kVertices));
   }
 }
 
@@ -253,13 +254,13 @@ TEST(Polygon, SpiralsEndSoon) {
 /// Spikes of any length that meet near the middle: every ear is a sliver among the corners of all
 /// others.
 TEST(Polygon, StarsOfAMillionCornersEndSoon) {
-  constexpr int kCorners = 1000000;
+  constexpr int kVertices = 1000000;
   std::mt19937 random(5);
   std::uniform_real_distribution<double> length(1, 2);
   for (const bool regular : {true, false}) {
     Outline outline;
-    for (int i = 0; i < kCorners; ++i) {
-      const double angle = 2 * std::numbers::pi * i / kCorners,
+    for (int i = 0; i < kVertices; ++i) {
+      const double angle = 2 * std::numbers::pi * i / kVertices,
                    r = regular ? 1 + i % 2 : length(random);
       outline.push_back({float(r * std::cos(angle)), float(r * std::sin(angle)), 0});
     }

@@ -1,6 +1,6 @@
-// What a built grid promises: sound rows, every primitive in each cell its surface touches, exact
-// distances.
-#include "kernel/shapes/copies.hpp"
+// Tests the guarantees of a built grid: valid rows, every primitive in each cell that its surface
+// overlaps, exact distances.
+#include "kernel/shapes/duplicates.hpp"
 #include "kernel/grid/grid.hpp"
 
 #include <algorithm>
@@ -50,12 +50,12 @@ TEST(Distance, IsThatOfTheNearestOccupiedCell) {
     const double share = random.log_in(1e-3, .5);
     for (auto& o : occupied)
       o = random.chance(share);
-    const auto distance = distances_to_occupied(occupied, n, 1 + kOctants);
+    const auto distance = distance_transform(occupied, n, 1 + kOctants);
     for (std::size_t field = 0; field <= kOctants; ++field)
       for (std::uint32_t c = 0; c < occupied.size(); ++c)
         ASSERT_EQ(distance[field * occupied.size() + c], naive_distance(occupied, n, c, field))
             << "seed " << seed << ", cell " << c << ", field " << field;
-    const auto alone = distances_to_occupied(occupied, n, 1);
+    const auto alone = distance_transform(occupied, n, 1);
     EXPECT_TRUE(std::equal(alone.begin(), alone.end() - 3, distance.begin()));
   }
 }
@@ -64,7 +64,7 @@ TEST(Distance, StopsAt255) {
   const std::array<std::uint32_t, 3> n{600, 2, 1};
   std::vector<std::uint8_t> occupied(1200);
   occupied[0] = 1;
-  const auto distance = distances_to_occupied(occupied, n, 1 + kOctants);
+  const auto distance = distance_transform(occupied, n, 1 + kOctants);
   constexpr std::uint32_t up = 1200, down = 2400;  // along x
   for (std::uint32_t x = 0; x < 600; ++x) {
     EXPECT_EQ(distance[x], std::min(x, 255u)) << x;
@@ -72,7 +72,7 @@ TEST(Distance, StopsAt255) {
     EXPECT_EQ(distance[down + x], std::min(x, 255u)) << x;
   }
   // nothing anywhere
-  const auto nothing = distances_to_occupied(std::vector<std::uint8_t>(8), {2, 2, 2}, 1 + kOctants);
+  const auto nothing = distance_transform(std::vector<std::uint8_t>(8), {2, 2, 2}, 1 + kOctants);
   EXPECT_TRUE(std::all_of(nothing.begin(), nothing.begin() + 72, [](int d) { return d == 255; }));
 }
 
@@ -188,11 +188,11 @@ TEST(GridRows, HoldWhatTheyPromise) {
           ++held_by[id];
         }
         EXPECT_EQ(g.occupied, std::accumulate(occupied.begin(), occupied.end(), std::uint64_t{0}));
-        EXPECT_EQ(g.distance, distances_to_occupied(occupied, g.cells, 1 + kOctants));
+        EXPECT_EQ(g.distance, distance_transform(occupied, g.cells, 1 + kOctants));
       }
       std::vector<std::uint32_t> all(w.primitives.finite_count());
       std::iota(all.begin(), all.end(), w.primitives.first_finite());
-      const auto copies = copies_among(w.primitives, all);
+      const auto copies = find_duplicates(w.primitives, all);
       // far towns have some: floats lie far apart there
       const std::set<std::uint32_t> may_lack(copies.begin(), copies.end());
       for (const std::uint32_t id : all) {

@@ -24,8 +24,8 @@ struct Body {
 };
 
 template <class Shape>
-void add_twins(Body& body, const Shape& itself, const Shape& larger, const Shape& smaller) {
-  for (const Shape& shape : {itself, larger, smaller})
+void add_twins(Body& body, const Shape& itself, const Shape& max_abs, const Shape& smaller) {
+  for (const Shape& shape : {itself, max_abs, smaller})
     body.twins.push_back(
         [shape](const oracle::Ray& ray, oracle::Real t_min) { return shape.first(ray, t_min); });
   body.distance = [itself](const V& p) { return itself.distance(p); };
@@ -122,10 +122,10 @@ class Kinds : public testing::TestWithParam<std::tuple<const Variant*, KindCase>
   const Variant& variant() const { return *std::get<0>(GetParam()); }
   const KindCase& kind() const { return std::get<1>(GetParam()); }
   void SetUp() override {
-    if (!variant().runs_here())
+    if (!variant().is_supported())
       GTEST_SKIP() << "this processor lacks " << variant().name;
   }
-  /// t of what a ray meets beyond t_min; NaN where it meets nothing.
+  /// Returns t of the first hit beyond t_min; NaN without a hit.
   float next_hit(const World& world, const Ray& ray) const {
     const Hit hit = variant().loops.closest_one(world.impl().view, ray);
     return hit ? hit.t : kNaN;
@@ -179,19 +179,19 @@ TEST_P(Kinds, AreMetAtEachCrossing) {
     for (int i = 0; i < 50; ++i) {
       Ray ray = ray_at(random, body);
       const oracle::Ray line{ray.org, ray.dir};
-      const oracle::Real reach = length(line.org - body.middle) + 4 * size;
+      const oracle::Real half_width = length(line.org - body.middle) + 4 * size;
       const oracle::Real unit = oracle::kEps;
       // planes' and triangles' own numbers are taken as they are, those of cones once rounded
-      const oracle::Real off = kind().units * unit * reach + body.prepared;
+      const oracle::Real frame_error = kind().units * unit * half_width + body.prepared;
       const auto expected = crossings(body, line, 0);
-      if (!expected || body.distance(line.org) < 100 * oracle::kEps * reach + off)
+      if (!expected || body.distance(line.org) < 100 * oracle::kEps * half_width + frame_error)
         continue;
       ++judged;
       second += expected->size() == 2;
       for (const oracle::Crossing& truth : *expected) {
         const float found = next_hit(world, ray);
         ASSERT_LE(std::abs(found - truth.t) * length(line.dir),
-                  off / truth.cosine + unit * truth.t * length(line.dir))
+                  frame_error / truth.cosine + unit * truth.t * length(line.dir))
             << describe(seed, i, ray) << "found " << found << ", expected "
             << static_cast<double>(truth.t);
         ray.t_min = std::nextafter(found, kInf);

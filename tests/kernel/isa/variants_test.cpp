@@ -1,5 +1,5 @@
-// The compiled copies: which there are, that the one asked for is the one that ran, and that all of
-// them and every method agree on scenes of every kind.
+// Tests the compiled copies of the kernel: the list of copies, that the requested copy is the one
+// that runs, and that all copies and methods agree on scenes of every kind.
 #include "tests/support/rays.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -10,7 +10,7 @@ TEST(Variants, ScalarIsFirstAndWidthsGrow) {
   const auto all = variants();
   ASSERT_FALSE(all.empty());
   EXPECT_EQ(all.front()->name, "scalar");
-  EXPECT_TRUE(all.front()->runs_here());
+  EXPECT_TRUE(all.front()->is_supported());
   for (std::size_t i = 1; i < all.size(); ++i)
     EXPECT_GT(all[i]->lanes, all[i - 1]->lanes);
   for (const Variant* v : all)
@@ -22,7 +22,7 @@ TEST(Variants, ScalarIsFirstAndWidthsGrow) {
 TEST(Variants, BestIsTheWidestThatRuns) {
   const Variant* widest = nullptr;
   for (const Variant* v : variants())
-    if (v->runs_here())
+    if (v->is_supported())
       widest = v;
   EXPECT_EQ(find_variant("best"), widest);
 }
@@ -32,7 +32,7 @@ TEST(Variants, IsasListsAllKnown) {
   ASSERT_EQ(all.size(), 4u);
   for (const Isa& isa : all) {
     EXPECT_EQ(isa.compiled, find_variant(isa.name) != nullptr) << isa.name;
-    EXPECT_LE(isa.runs_here, isa.compiled) << isa.name;
+    EXPECT_LE(isa.is_supported, isa.compiled) << isa.name;
   }
 }
 

@@ -76,7 +76,7 @@ class Determinism : public testing::TestWithParam<const char*> {
                                               : name == "mount" ? 4
                                                                 : 2);
     p.camera.width = 67;
-    p.camera.height = 43;  // no multiple of tile, band, packet or register
+    p.camera.height = 43;  // no multiple of tile, strip, packet or register
     return p;
   }
 };
@@ -129,7 +129,7 @@ TEST_P(Determinism, OnePictureForEveryWayOfTracing) {
   const Image wanted = plainest(worlds, p.camera, 5, first);
   for (const Built& built : worlds)
     for (const Variant* v : variants()) {
-      if (!v->runs_here())
+      if (!v->is_supported())
         continue;
       for (const int packet : {1, 16, 64, 256})
         for (const bool mailbox : {true, false})
@@ -151,7 +151,7 @@ TEST_P(Determinism, OnePictureForEveryWayOfTracing) {
     }
 }
 
-/// All lengths times a power of two.
+/// Multiplies all lengths by `scale`, a power of two.
 Picture scaled_by(const Picture& picture, double scale) {
   Picture p{placed(picture.scene, scale, {}), picture.camera};
   for (Light& light : p.scene.lights)
@@ -164,9 +164,9 @@ Picture scaled_by(const Picture& picture, double scale) {
   return p;
 }
 
-/// That changes no bit of a number, and nothing but the exponents of what is computed with it,
-/// unless products of lengths leave what floats can hold: three are multiplied in a triangle's
-/// depth, so sizes from 1e-10 to 1e11 are sure to be drawn alike.
+/// Scaling by a power of two changes only exponents, also of computed numbers, unless products of
+/// lengths overflow or underflow. A triangle's depth is a product of three lengths, so sizes from
+/// 1e-10 to 1e11 must give the same picture.
 TEST_P(Determinism, AtEverySize) {
   const Picture p = make();
   RenderStats stats;
@@ -191,7 +191,7 @@ TEST_P(Determinism, AtEveryDepth) {
     EXPECT_GE(first.rays.total(), last);
     last = first.rays.total();
     for (const Variant* v : variants()) {
-      if (!v->runs_here())
+      if (!v->is_supported())
         continue;
       for (const int packet : {16, 64, 256}) {
         RenderOptions o;

@@ -157,10 +157,10 @@ TEST(AnySize, ASliverThatLiesBehindIsNotMetInCompany) {
 TEST(AnySize, APlaneInFrontOfWhatIsFarAwayIsMetWhereItIs) {
   Scene floor = empty_scene();
   floor.geometry.planes.add({0, -1, 0}, {0, 1, 0}, 0);
-  Scene both = floor;
-  both.geometry.spheres.add({3e8f, 0, 0}, 1, 0);
+  Scene mask_and = floor;
+  mask_and.geometry.spheres.add({3e8f, 0, 0}, 1, 0);
   const World alone(floor, {});
-  const World world(both, {});
+  const World world(mask_and, {});
   Random random(3);
   std::vector<Ray> rays;
   for (int i = 0; i < 500; ++i)

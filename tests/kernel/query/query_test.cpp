@@ -69,8 +69,8 @@ TEST(Query, OneRayAPacketAndAStreamSeeWhatBruteForceSees) {
   EXPECT_GT(hits, rays.size() / 10);
 }
 
-/// What one ray alone is told, against a stream of all of them: scenes of every kind, many grids,
-/// rays from near and from so far that the kernel moves them, values no caller should send.
+/// Compares calls for single rays with a stream of all rays: scenes of every kind, many grids, rays
+/// from near and from so far that the kernel moves their origins, and invalid values.
 void expect_calls_like_streams(const Scene& scene, const RayList& rays, const char* name) {
   for (const bool grid : {true, false}) {
     const World world(scene, {.grid = grid});
@@ -167,8 +167,8 @@ TEST(Query, GridsOfVeryManyCellsKnowNoOctants) {
   }
   const World many(specks, {.density = 106}), few(specks, {});
   ASSERT_GT(cell_count(many.grids()[0].cells), kMostCellsOfOctants);
-  EXPECT_EQ(many.impl().view.grids[0].field_places, 0u);
-  EXPECT_GT(few.impl().view.grids[0].field_places, 0u);
+  EXPECT_EQ(many.impl().view.grids[0].field_offsets, 0u);
+  EXPECT_GT(few.impl().view.grids[0].field_offsets, 0u);
   RayList rays;
   for (std::uint32_t i = 0; i < 600; ++i) {
     const Float3 from = random.point(2);
@@ -259,7 +259,7 @@ TEST(Query, RaysThatLeaveASurfaceDoNotMeetItAgain) {
         continue;  // rounding decides which side it points to
       if (side < 0)
         d = scaled(d, -1);
-      const Hit again = closest(world, Ray{s.leave(d), d});
+      const Hit again = closest(world, Ray{s.offset_origin(d), d});
       ASSERT_FALSE(again && again.id == hit.id)
           << rays.describe(i) << ", id " << hit.id << ", t " << again.t;
     }
@@ -287,8 +287,8 @@ TEST(Query, SurfacesAreWhatTheCallerBuilt) {
   EXPECT_EQ(ball.normal, (Float3{0, 0, 1}));
   EXPECT_EQ(ball.shading, ball.normal);
   EXPECT_EQ(ball.material, 1u);
-  EXPECT_GT(ball.leave({0, 1, 1}).z, 2.f);
-  EXPECT_LT(ball.leave({0, 1, -1}).z, 2.f);
+  EXPECT_GT(ball.offset_origin({0, 1, 1}).z, 2.f);
+  EXPECT_LT(ball.offset_origin({0, 1, -1}).z, 2.f);
   EXPECT_EQ(triangle.normal, (Float3{0, 0, 1}));
   // a product, a sum, a root, a quotient: four roundings of .6
   EXPECT_NEAR(triangle.shading.x, .6, 4 * oracle::kEps);
@@ -296,8 +296,8 @@ TEST(Query, SurfacesAreWhatTheCallerBuilt) {
   EXPECT_EQ(triangle.material, 0u);
 }
 
-/// Two scenes in one process, each asked and rendered by several threads at once, while a render of
-/// one of them is cancelled.
+/// Two scenes in one process. Several threads query and render each scene at the same time, while a
+/// render of one scene is cancelled.
 TEST(Query, ThreadsAndScenesDoNotMeet) {
   const Scene scenes[2] = {random_mixture(7, 300), random_triangles(8, 300)};
   const World worlds[2] = {World(scenes[0], {}), World(scenes[1], {})};

@@ -40,7 +40,7 @@ bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
 }
 
-/// What rays are told, each alone.
+/// The answers to single-ray calls.
 struct Alone {
   std::vector<Hit> hits;
   std::vector<std::uint8_t> blocked;

@@ -1,6 +1,6 @@
 // The camera's frame and the rays through pixel centres, against long double.
 #define GRELHA_ISA scalar
-#include "kernel/render/band.hpp"
+#include "kernel/shade/strip.hpp"
 
 #include <memory>
 #include <numbers>
@@ -49,7 +49,7 @@ TEST(Camera, FrameIsTheExactOneRounded) {
   for (std::uint64_t seed = 0; seed < 20000; ++seed) {
     Random random(seed);
     const Camera c = random_camera(random);
-    if (!camera_is_sound(c))
+    if (!camera_is_valid(c))
       continue;
     const FrameView f = make_frame(c);
     const Frame exact(c);
@@ -74,12 +74,12 @@ TEST(Camera, RaysGoThroughPixelCentres) {
   for (std::uint64_t seed = 0; seed < 2000; ++seed) {
     Random random(seed);
     const Camera c = random_camera(random);
-    if (!camera_is_sound(c))
+    if (!camera_is_valid(c))
       continue;
     const Frame exact(c);
     const int x0 = static_cast<int>(random.below(static_cast<std::uint32_t>(c.width))),
               y0 = static_cast<int>(random.below(static_cast<std::uint32_t>(c.height)));
-    const int x1 = std::min(x0 + kTile, c.width), y1 = std::min(y0 + kBandRows, c.height);
+    const int x1 = std::min(x0 + kTile, c.width), y1 = std::min(y0 + kStripRows, c.height);
     int n = 0;
     for (int y = y0; y < y1; ++y)
       for (int x = x0; x < x1; ++x) {
@@ -134,11 +134,11 @@ TEST(Camera, PictureStandsUpright) {
 
 TEST(Camera, RefusesWhatCannotSee) {
   const Camera good;
-  EXPECT_TRUE(camera_is_sound(good));
+  EXPECT_TRUE(camera_is_valid(good));
   const auto refused = [&](auto change) {
     Camera c;
     change(c);
-    EXPECT_FALSE(camera_is_sound(c));
+    EXPECT_FALSE(camera_is_valid(c));
     Scene scene = empty_scene();
     RenderStats stats;
     EXPECT_THROW(render(World(scene, {}), c, {}, stats), std::invalid_argument);
@@ -184,7 +184,7 @@ TEST(RenderOptions, RefusesWhatItCannotDo) {
   refused(o);
   o = {};
   for (const Isa& isa : isas())
-    if (isa.compiled && !isa.runs_here) {
+    if (isa.compiled && !isa.is_supported) {
       o.isa = isa.name;
       refused(o);
     }

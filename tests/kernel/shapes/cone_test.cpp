@@ -85,7 +85,7 @@ struct Case {
 
 /// What a ray is aimed at. Near a tip the quadratic's roots meet, and its coefficients may be large
 /// beside what lies between them.
-enum class Aim { kSide, kNarrowEnd, kAlongTheSide, kFlat };
+enum class Target { kSide, kNarrowEnd, kAlongTheSide, kFlat };
 
 /// A point of the wider end's rim, on the side where `out` points.
 Float3 rim_point(const oracle::V& narrow,
@@ -99,13 +99,14 @@ Float3 rim_point(const oracle::V& narrow,
 }
 
 /// One draw a statement: which of a call's arguments is evaluated first is up to the compiler.
-Case random_case(std::uint64_t seed, double farthest, Aim aim) {
+Case random_case(std::uint64_t seed, double farthest, Target aim) {
   Random random(seed);
   double size;
   Case k;
-  k.shape = aim == Aim::kFlat ? flat_shape(random, size) : random_shape(random, size);
-  if (aim == Aim::kNarrowEnd ||
-      aim == Aim::kAlongTheSide) {  // half with a tip, the others down to nearly one, at either end
+  k.shape = aim == Target::kFlat ? flat_shape(random, size) : random_shape(random, size);
+  if (aim == Target::kNarrowEnd ||
+      aim ==
+          Target::kAlongTheSide) {  // half with a tip, the others down to nearly one, at either end
     const double share = random.log_in(1e-7, 1);
     if (k.shape.r0 == 0)
       k.shape.r0 = k.shape.r1;
@@ -118,17 +119,18 @@ Case random_case(std::uint64_t seed, double farthest, Aim aim) {
   const Float3 narrow = base_is_wide ? k.shape.apex : k.shape.base,
                wide = base_is_wide ? k.shape.base : k.shape.apex;
   const double distance = random.chance(.2) ? random.unit() : random.log_in(.5, farthest);
-  const Float3 side = random.direction(), off = random.direction();
+  const Float3 side = random.direction(), frame_error = random.direction();
   k.org = at(k.shape.base, size * distance, side);
   Float3 target;
-  if (aim == Aim::kSide || aim == Aim::kFlat) {
-    const double height = random.unit(), beside = random.in(0, aim == Aim::kFlat ? 1.2 : .5);
-    target = at(at(k.shape.base, height, minus(k.shape.apex, k.shape.base)), size * beside, off);
+  if (aim == Target::kSide || aim == Target::kFlat) {
+    const double height = random.unit(), beside = random.in(0, aim == Target::kFlat ? 1.2 : .5);
+    target =
+        at(at(k.shape.base, height, minus(k.shape.apex, k.shape.base)), size * beside, frame_error);
   } else {
     const double beside = random.log_in(1e-9, 1);
-    target = at(narrow, size * beside, off);
+    target = at(narrow, size * beside, frame_error);
   }
-  if (aim == Aim::kAlongTheSide) {
+  if (aim == Target::kAlongTheSide) {
     const Float3 rim = rim_point(
         narrow, wide, std::max(std::abs(k.shape.r0), std::abs(k.shape.r1)), random.direction());
     const double sign = random.sign(), lengths = sign * random.log_in(.5, 1e2),
@@ -141,7 +143,7 @@ Case random_case(std::uint64_t seed, double farthest, Aim aim) {
   return k;
 }
 
-class ConePoints : public testing::TestWithParam<Aim> {};
+class ConePoints : public testing::TestWithParam<Target> {};
 
 TEST_P(ConePoints, LieOnTheSurface) {
   oracle::Real worst = 0;
@@ -153,10 +155,10 @@ TEST_P(ConePoints, LieOnTheSurface) {
       continue;
     ++hits;
     const oracle::Frustum f{k.shape.base, k.shape.apex, k.shape.r0, k.shape.r1};
-    const oracle::Real off = f.distance(oracle::Ray{k.org, k.dir}.point(t)) / k.unit;
-    if (!(off <= 32) && ++over <= 3)
-      ADD_FAILURE() << "seed " << seed << ": " << static_cast<double>(off) << " units off";
-    worst = std::max(worst, off);
+    const oracle::Real frame_error = f.distance(oracle::Ray{k.org, k.dir}.point(t)) / k.unit;
+    if (!(frame_error <= 32) && ++over <= 3)
+      ADD_FAILURE() << "seed " << seed << ": " << static_cast<double>(frame_error) << " units off";
+    worst = std::max(worst, frame_error);
   }
   std::printf("cone: %d hits, %d over, worst %.2f eps (|o - base| + h + r)\n",
               hits,
@@ -169,12 +171,12 @@ TEST_P(ConePoints, LieOnTheSurface) {
 INSTANTIATE_TEST_SUITE_P(
     Aims,
     ConePoints,
-    testing::Values(Aim::kSide, Aim::kNarrowEnd, Aim::kAlongTheSide, Aim::kFlat),
+    testing::Values(Target::kSide, Target::kNarrowEnd, Target::kAlongTheSide, Target::kFlat),
     [](const auto& aim) {
-      return aim.param == Aim::kSide        ? "Side"
-             : aim.param == Aim::kFlat      ? "Flat"
-             : aim.param == Aim::kNarrowEnd ? "NarrowEnd"
-                                            : "AlongTheSide";
+      return aim.param == Target::kSide        ? "Side"
+             : aim.param == Target::kFlat      ? "Flat"
+             : aim.param == Target::kNarrowEnd ? "NarrowEnd"
+                                               : "AlongTheSide";
     });
 
 /// What a ray surely meets: it, and each of six moved by twice the bound, crosses the surface, and
@@ -182,7 +184,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(ConeOracle, LosesNoHitNearATip) {
   int wanted = 0, lost = 0;
   for (std::uint64_t seed = 0; seed < 300000; ++seed) {
-    const Case k = random_case(seed, 1e3, seed % 2 ? Aim::kNarrowEnd : Aim::kAlongTheSide);
+    const Case k = random_case(seed, 1e3, seed % 2 ? Target::kNarrowEnd : Target::kAlongTheSide);
     const oracle::Frustum f{k.shape.base, k.shape.apex, k.shape.r0, k.shape.r1};
     const oracle::Real bound = 32 * k.unit, hole = std::min(std::abs(f.r0), std::abs(f.r1));
     if (hole > 0 && hole < bound)
@@ -213,13 +215,13 @@ TEST(ConeOracle, LosesNoHitNearATip) {
   EXPECT_GT(wanted, 40000);
 }
 
-/// Where the ray crosses steeply and far from the rims, the same crossing is found; where nothing
-/// is near, none.
+/// A ray that crosses the side steeply and far from the rims must hit at the same crossing as the
+/// oracle; a ray that is far from the side must miss.
 TEST(ConeOracle, FindsTheFirstCrossing) {
   int judged = 0, wrong = 0;
   oracle::Real worst = 0;
   for (std::uint64_t seed = 0; seed < 300000; ++seed) {
-    const Case k = random_case(seed, 1e3, Aim::kSide);
+    const Case k = random_case(seed, 1e3, Target::kSide);
     const oracle::Frustum f{k.shape.base, k.shape.apex, k.shape.r0, k.shape.r1};
     const oracle::Ray ray{k.org, k.dir};
     const oracle::Real tolerance = 32 * k.unit;
@@ -237,9 +239,10 @@ TEST(ConeOracle, FindsTheFirstCrossing) {
     const auto [found, t] = hit(k.org, k.dir, k.shape);
     if (found && t < wanted->t && f.distance(ray.point(t)) <= tolerance)
       continue;  // met the other rim, which is as near as none
-    const oracle::Real off = found ? std::abs(t - wanted->t) * length(ray.dir) / along * 32 : 1e9L;
-    worst = std::max(worst, off);
-    if (!(off <= 2 * 32) && ++wrong <= 3)
+    const oracle::Real frame_error =
+        found ? std::abs(t - wanted->t) * length(ray.dir) / along * 32 : 1e9L;
+    worst = std::max(worst, frame_error);
+    if (!(frame_error <= 2 * 32) && ++wrong <= 3)
       ADD_FAILURE() << "seed " << seed << ": found " << found << " t " << t << " against "
                     << static_cast<double>(wanted->t);
   }
@@ -250,12 +253,12 @@ TEST(ConeOracle, FindsTheFirstCrossing) {
   EXPECT_GT(judged, 40000);
 }
 
-/// What is shaded lies on the surface, within a quarter of what a new ray is moved away by,
-/// and where the ray met it: its height is off by up to 32 units, its radius by kSteep times that.
+/// The shading point lies on the surface, within a quarter of the offset of new rays, and at the
+/// point that the ray hit: its height is off by up to 32 units, its radius by kSteep times that.
 TEST(ConeOracle, IsShadedWhereItIs) {
-  int judged = 0, off = 0, aside = 0;
+  int judged = 0, frame_error = 0, aside = 0;
   for (std::uint64_t seed = 0; seed < 40000; ++seed) {
-    const Case k = random_case(seed, 1e3, seed % 2 ? Aim::kFlat : Aim::kSide);
+    const Case k = random_case(seed, 1e3, seed % 2 ? Target::kFlat : Target::kSide);
     const Scene scene = one_cone(k.shape.base, k.shape.r0, k.shape.apex, k.shape.r1);
     const World world(scene, {.grid = false, .threads = 1});
     const Ray ray{.org = k.org, .dir = k.dir};
@@ -268,12 +271,12 @@ TEST(ConeOracle, IsShadedWhereItIs) {
     const oracle::Real bound =
         oracle::kEps * (8 * (f.height() + std::max(std::abs(f.r0), std::abs(f.r1))) +
                         4 * length(oracle::V(at.point)));
-    off += !(f.distance(oracle::V(at.point)) <= bound);
+    frame_error += !(f.distance(oracle::V(at.point)) <= bound);
     aside +=
         !(length(oracle::V(at.point) - oracle::Ray{k.org, k.dir}.point(met.t)) <= 256 * k.unit);
   }
-  std::printf("cone: %d shaded, %d off, %d elsewhere\n", judged, off, aside);
-  EXPECT_EQ(off, 0);
+  std::printf("cone: %d shaded, %d off, %d elsewhere\n", judged, frame_error, aside);
+  EXPECT_EQ(frame_error, 0);
   EXPECT_EQ(aside, 0);
   EXPECT_GT(judged, 8000);
 }
@@ -283,22 +286,22 @@ TEST(ConeOracle, IsShadedWhereItIs) {
 TEST(ConeOracle, MeetsFlatOnesBetweenTheirRims) {
   int between = 0, lost = 0, beside = 0, met = 0;
   for (std::uint64_t seed = 0; seed < 300000; ++seed) {
-    const Case k = random_case(seed, 1e3, Aim::kFlat);
+    const Case k = random_case(seed, 1e3, Target::kFlat);
     const oracle::Frustum f{k.shape.base, k.shape.apex, k.shape.r0, k.shape.r1};
     if (k.shape.r0 + k.shape.r1 <= 0 || k.shape.r0 == k.shape.r1)
       continue;
     const oracle::V org = oracle::V(k.org), dir = oracle::V(k.dir);
     const oracle::Real along = dot(dir, f.axis()) / length(dir);
     const oracle::Real t = dot(f.base - org, f.axis()) / dot(dir, f.axis());
-    const oracle::Real room = (32 * k.unit + f.height()) / std::abs(along);
+    const oracle::Real error_bound = (32 * k.unit + f.height()) / std::abs(along);
     const oracle::V p = org + t * dir;
     const oracle::Real rho = length(cross(f.axis(), p - f.base));
-    if (std::abs(along) < .05L || t * length(dir) < room)
+    if (std::abs(along) < .05L || t * length(dir) < error_bound)
       continue;
     const oracle::Real least = std::min(f.r0, f.r1), most = std::max(f.r0, f.r1);
     const bool hits = hit(k.org, k.dir, k.shape).hit;
-    const bool inside = rho > least + room && rho < most - room;
-    const bool outside = rho < least - room || rho > most + room;
+    const bool inside = rho > least + error_bound && rho < most - error_bound;
+    const bool outside = rho < least - error_bound || rho > most + error_bound;
     between += inside;
     lost += inside && !hits;
     beside += outside;
@@ -311,9 +314,9 @@ TEST(ConeOracle, MeetsFlatOnesBetweenTheirRims) {
   EXPECT_GT(beside, 40000);
 }
 
-/// Rays that start a quarter of what surfaces are left by (`away` in surface.hpp) above the side,
-/// and go outwards: nearly along it, or nearly along a line of the cone. Convex as it is, none
-/// meets it.
+/// Traces rays that start above the side by a quarter of the offset of new rays (`away` in
+/// surface.hpp) and go outwards: nearly along the side, or nearly along a line of the cone. The
+/// cone is convex, so no ray may hit it.
 TEST(ConeOracle, IsNotMetByWhatLeavesIt) {
   int left = 0, met = 0;
   for (std::uint64_t seed = 0; seed < 600000; ++seed) {

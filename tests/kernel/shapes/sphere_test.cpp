@@ -53,9 +53,10 @@ TEST(SphereOracle, PointsLieOnTheSurface) {
     const oracle::Ball ball{c, static_cast<float>(r)};
     const oracle::Real unit =
         oracle::kEps * std::max<oracle::Real>(ball.radius, length(oracle::V(o) - ball.center));
-    const oracle::Real off = ball.distance(oracle::Ray{o, d}.point(t)) / unit;
-    ASSERT_LE(off, 8) << "seed " << seed << ": " << static_cast<double>(off) << " of the unit";
-    worst = std::max(worst, off);
+    const oracle::Real frame_error = ball.distance(oracle::Ray{o, d}.point(t)) / unit;
+    ASSERT_LE(frame_error, 8) << "seed " << seed << ": " << static_cast<double>(frame_error)
+                              << " of the unit";
+    worst = std::max(worst, frame_error);
   }
   RecordProperty("worst_in_eps", std::to_string(static_cast<double>(worst)));
   std::printf(
@@ -127,7 +128,8 @@ TEST(SphereOracle, MeasuresShortWays) {
     const Float3 o = at(c, r * (1 + height), out);
     const oracle::Ball ball{c, static_cast<float>(r)};
     const auto wanted = ball.first({o, d}, 0);
-    // Where hardly double tells on which side a ray starts or whether it touches
+    // Skip rays for which double hardly decides on which side they start or if they touch the
+    // sphere.
     if (ball.distance(o) < 0x1p-40L * r)
       continue;
     const oracle::Real foot = oracle::dot(ball.center - o, d) / oracle::dot(d, d);

@@ -1,0 +1,148 @@
+#include "kernel/base/thread_pool.hpp"
+
+#include <atomic>
+#include <mutex>
+#include <new>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+#include <pthread.h>
+
+namespace grelha {
+namespace {
+
+std::atomic<int> more_follow = 0;
+
+/// A thread that sleeps until it is asked.
+class Member {
+ public:
+  /// Throws std::system_error when there can be no more threads.
+  Member() {
+    std::thread([this] { serve(); }).detach();
+  }
+
+  void ask(const std::function<void()>& work) {
+    work_ = &work;
+    state_ = kAsked;
+    state_.notify_one();
+  }
+  /// Takes back what it was asked and has not begun; else waits until it is done.
+  void dismiss() {
+    int asked = kAsked;
+    if (state_.compare_exchange_strong(asked, kIdle))
+      return;
+    wait_while(kAtWork);
+  }
+
+ private:
+  enum : int { kIdle, kAsked, kAtWork };
+
+  [[noreturn]] void serve() {
+    for (;;) {
+      wait_while(kIdle);
+      int asked = kAsked;
+      if (!state_.compare_exchange_strong(asked, kAtWork))
+        continue;
+      (*work_)();
+      state_ = kIdle;
+      state_.notify_all();
+    }
+  }
+
+  /// To be woken takes as long as some stretches. Who yields in place of a pause stays behind the
+  /// caller, on its core.
+  void wait_while(int state) {
+    for (int i = 0; i < kPauses && state_ == state && (more_follow > 0 || state == kAtWork); ++i)
+      pause();
+    while (state_ == state)
+      state_.wait(state);
+  }
+  static void pause() {
+#if defined(__x86_64__) || defined(__i386__)
+    __builtin_ia32_pause();
+#endif
+  }
+  /// A third of a millisecond: a build has nothing to share out for about so long at a time.
+  static constexpr int kPauses = 20000;
+
+  const std::function<void()>* work_ = nullptr;
+  std::atomic<int> state_ = kIdle;
+};
+
+/// All threads that there are, lent to whoever asks.
+class Members {
+ public:
+  /// Up to so many; fewer when there can be no more threads.
+  std::vector<Member*> lend(int count) {
+    const std::lock_guard lock(mutex_);
+    std::vector<Member*> lent;
+    lent.reserve(static_cast<std::size_t>(count));
+    while (static_cast<int>(lent.size()) < count && (!idle_.empty() || add())) {
+      lent.push_back(idle_.back());
+      idle_.pop_back();
+    }
+    return lent;
+  }
+  void take_back(const std::vector<Member*>& lent) {
+    const std::lock_guard lock(mutex_);
+    idle_.insert(idle_.end(), lent.begin(), lent.end());
+  }
+
+ private:
+  /// A member is never destroyed: its thread serves on.
+  bool add() try {
+    idle_.reserve(count_ + 1);  // now, so that none that is there finds no place
+    idle_.push_back(new Member);
+    ++count_;
+    return true;
+  } catch (const std::system_error&) {
+    return false;
+  } catch (const std::bad_alloc&) {
+    return false;
+  }
+
+  std::mutex mutex_;
+  std::size_t count_ = 0;
+  std::vector<Member*> idle_;
+};
+
+Members* all_members = nullptr;
+
+/// Forgets the parent's threads, which do not exist in a forked process.
+void forget_members() {
+  all_members = new Members;
+}
+
+/// Never destroyed: the threads sleep on while the program ends.
+Members& members() {
+  static const int registered = [] {
+    forget_members();
+    return pthread_atfork(nullptr, nullptr, forget_members);
+  }();
+  static_cast<void>(registered);
+  return *all_members;
+}
+
+}  // namespace
+
+KeepThreadsAwake::KeepThreadsAwake() {
+  ++more_follow;
+}
+KeepThreadsAwake::~KeepThreadsAwake() {
+  --more_follow;
+}
+
+void by_threads(int threads, const std::function<void()>& work) {
+  if (threads < 2)
+    return work();
+  const std::vector<Member*> lent = members().lend(threads - 1);
+  for (Member* const m : lent)
+    m->ask(work);
+  work();
+  for (Member* const m : lent)
+    m->dismiss();
+  members().take_back(lent);
+}
+
+}  // namespace grelha

@@ -1,0 +1,36 @@
+#pragma once
+// Decides which primitives get which grid, and what that will take, before any list is written.
+
+#include <cstdint>
+#include <vector>
+
+#include "kernel/grid/build_progress.hpp"
+#include "kernel/grid/grid.hpp"
+#include "grelha/world.hpp"
+
+namespace grelha {
+
+struct GridPlan {
+  std::vector<std::uint32_t> ids;  ///< ascending
+  Grid grid;                       ///< over them, laid out and empty
+};
+
+struct Plan {
+  std::vector<GridPlan> parts;
+  std::vector<std::uint32_t> apart;  ///< ids without a grid, ascending
+  Box all;                           ///< of everything finite
+};
+
+constexpr double kPlanShare = .08;  ///< of the time of a build, before lists are written
+
+int threads_of(const BuildOptions& options);
+/// The pad around primitives for rays that start within `half_width` of their box on each axis,
+/// `half_width` no less than its diagonal. Such rays are at most 1 + sqrt 3 half widths from any
+/// primitive. A walk in float is off by at most 32 u of the half width, and by as much along its
+/// way (derived in docs/numerics.md).
+double pad_of(double half_width);
+/// All finite primitives that have a position.
+std::vector<std::uint32_t> valid_ids(const Primitives& p);
+Plan plan_grids(const Primitives& p, const BuildOptions& options, BuildProgress& progress);
+
+}  // namespace grelha

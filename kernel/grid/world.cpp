@@ -1,0 +1,193 @@
+#include "kernel/grid/world_impl.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "kernel/base/thread_pool.hpp"
+#include "kernel/shapes/duplicates.hpp"
+#include "kernel/grid/grid_fill.hpp"
+#include "kernel/grid/memory_estimate.hpp"
+#include "kernel/grid/plan.hpp"
+#include "kernel/base/raw_vector.hpp"
+
+namespace grelha {
+namespace {
+
+/// True if an index is `end` or greater.
+bool beyond(Indices indices, std::size_t end) {
+  std::uint32_t most = 0;
+  for (const std::uint32_t i : indices)
+    most = std::max(most, i);
+  return !indices.empty() && most >= end;
+}
+
+void check(const BuildOptions& o) {
+  if (!(o.density >= 0) || o.density == std::numeric_limits<float>::infinity())
+    throw std::invalid_argument("density must be a positive number, or 0");
+  if (o.threads < 0)
+    throw std::invalid_argument("threads must not be negative");
+}
+
+void check(const SceneSpans& scene) {
+  const GeometrySpans& g = scene.geometry;
+  std::size_t total = 0;
+  for_each_shape([&]<class Shape>() {
+    const auto& spans = Shape::spans_of(g);
+    if (!Shape::is_even(spans))
+      throw std::invalid_argument("arrays of one kind of primitive have unequal lengths");
+    total += spans.size();
+  });
+  if (total >= kNoPrimitive)
+    throw std::invalid_argument("more primitives than ids: at most 4294967294");
+  for_each_shape([&]<class Shape>() {
+    if (beyond(Shape::spans_of(g).material, scene.materials.size()))
+      throw std::invalid_argument("a primitive names a material that is not there");
+  });
+  const auto vertices = g.triangles.vertex_count();
+  for (const auto* v : {&g.triangles.a, &g.triangles.b, &g.triangles.c})
+    if (beyond(*v, vertices))
+      throw std::invalid_argument("a triangle names a vertex that is not there");
+  std::uint64_t next = 0;
+  for (const Object& o : g.objects) {
+    if (o.first_triangle < next)
+      throw std::invalid_argument("objects must be disjoint and ascend");
+    next = std::uint64_t{o.first_triangle} + o.triangle_count;
+  }
+  if (next > g.triangles.size())
+    throw std::invalid_argument("an object names a triangle that is not there");
+}
+
+}  // namespace
+
+World::Impl::Impl(const SceneSpans& s, const BuildOptions& options)
+    : scene((check(s), s)), primitives(s.geometry), materials(s) {
+  const KeepThreadsAwake awake;
+  BuildProgress progress(options.progress);
+  Plan plan = plan_grids(primitives, options, progress);
+  if (options.most_bytes > 0 && !surely_fits(primitives, options.most_bytes))
+    if (const BuildMemory need = memory_of(s, primitives, plan); need.peak > options.most_bytes)
+      throw TooLarge(need);
+  fill(plan, threads_of(options), progress);
+  outside = build_list(primitives, plan.apart);
+  progress.finish();
+  progress.throw_if_cancelled();
+  view_primitives();
+  view_grids(plan.all);
+  set_lights();
+  set_materials();
+}
+
+std::size_t World::Impl::bytes() const {
+  std::size_t sum = outside.bytes();
+  for (const Grid& g : grids)
+    sum += g.stats().bytes;
+  for_each_shape(
+      [&]<class Shape>() { sum += Shape::Source::kSetupBytes * primitives.of<Shape>().size(); });
+  return sum;
+}
+
+void World::Impl::view_primitives() {
+  view.geometry.ids = primitives.ids;
+  for_each_shape([&]<class Shape>() {
+    typename Shape::Arrays& arrays = view.geometry.of<Shape>();
+    arrays = primitives.of<Shape>().arrays();
+  });
+  view.geometry.of<Plane>().count = count_unique_planes(scene.geometry.planes);
+  view.outside = outside.lists();
+}
+
+void World::Impl::view_grids(const Box& all) {
+  for (const Grid& grid : grids)
+    grid_views.push_back(grid.view());
+  view.grids = grid_views.data();
+  view.grid_count = static_cast<int>(grid_views.size());
+  view.finite = !all.empty();
+  if (!view.finite)
+    return;
+  for (int a = 0; a < 3; ++a) {
+    view.box_lo[a] = static_cast<float>(all.lo[a]);
+    view.box_hi[a] = static_cast<float>(all.hi[a]);
+  }
+}
+
+void World::Impl::set_lights() {
+  float brightest = 0;
+  for (const Light& l : scene.lights) {
+    for (const Float3& part : {l.position, l.color, l.edge1, l.edge2})
+      lights.insert(lights.end(), {part.x, part.y, part.z});
+    shading.area |= l.is_area();
+    brightest += largest_channel(l.color);
+  }
+  const Float3& background = scene.background;
+  shading.background[0] = background.x;
+  shading.background[1] = background.y;
+  shading.background[2] = background.z;
+  shading.brightest =
+      std::max(largest_channel(background), materials.emitted + materials.lit * brightest);
+  shading.lights = lights.data();
+  shading.light_count = static_cast<int>(scene.lights.size());
+}
+
+void World::Impl::set_materials() {
+  shading.materials = materials.view();
+  shading.smooth = !scene.geometry.triangles.nx.empty();
+  shading.gains = materials.gains;
+  shading.reflects = materials.reflects;
+  shading.refracts = materials.refracts;
+  shading.fresnel = materials.fresnel;
+  shading.emits = materials.emits;
+  shading.highlights = materials.highlights;
+  shading.glossy = materials.glossy;
+}
+
+/// The plan's grids, each part's ids gone when they are done with.
+void World::Impl::fill(Plan& plan, int threads, BuildProgress& progress) {
+  double work = 0;
+  for (const GridPlan& part : plan.parts)
+    work += static_cast<double>(part.ids.size());
+  for (GridPlan& part : plan.parts) {
+    const std::vector<std::uint32_t> ids = std::move(part.ids);
+    progress.throw_if_cancelled();
+    grids.push_back(std::move(part.grid));
+    fill_grid(primitives,
+              ids,
+              grids.back(),
+              threads,
+              progress,
+              (1 - kPlanShare) * static_cast<double>(ids.size()) / work);
+  }
+}
+
+BuildMemory World::estimate(const SceneSpans& scene, const BuildOptions& options) {
+  check(scene);
+  check(options);
+  const Primitives primitives(scene.geometry);
+  BuildProgress nobody;
+  return memory_of(scene, primitives, plan_grids(primitives, options, nobody));
+}
+
+World::World(const SceneSpans& scene, const BuildOptions& options)
+    : impl_((check(options), std::make_unique<Impl>(scene, options))) {}
+World::~World() = default;
+World::World(World&&) noexcept = default;
+World& World::operator=(World&&) noexcept = default;
+
+std::vector<GridStats> World::grids() const {
+  std::vector<GridStats> out;
+  for (const Grid& g : impl_->grids)
+    out.push_back(g.stats());
+  return out;
+}
+
+std::size_t World::geometry_bytes() const {
+  std::size_t sum = 0;
+  for_each_shape(
+      [&]<class Shape>() { sum += Shape::bytes(Shape::spans_of(impl_->scene.geometry)); });
+  return sum;
+}
+
+std::size_t World::grid_bytes() const {
+  return impl_->bytes();
+}
+
+}  // namespace grelha

@@ -1,0 +1,214 @@
+#include "kernel/picture/block_errors.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace grelha {
+
+void BlockErrors::Sums::operator+=(const Sums& o) {
+  hits += o.hits;
+  squares += o.squares;
+  drop += o.drop;
+  level += o.level;
+  pixels += o.pixels;
+  samples += o.samples;
+  for (int c = 0; c < 3; ++c)
+    colour[c] += o.colour[c];
+}
+
+/// V(n) / V(n/2) of a pool: 1/2, as though a few hits had said so, unless its own say other.
+float BlockErrors::Sums::ratio() const {
+  if (!(hits > 0 && level > 0))
+    return .5f;
+  const float few = kMinHits / certainty() * level;
+  return std::clamp((drop + .5f * few) / (level + few), kLeastRatio, kMostRatio);
+}
+
+BlockErrors::BlockErrors(const Refinement& r, int threads)
+    : r_(r), blocks_(r.blocks()), threads_(threads) {
+  const std::size_t count = blocks_.count();
+  resize_to_fill(version_, count);
+  resize_to_fill(sums_, count);
+  for (std::vector<float>* const of : {&variance_, &certainty_, &gain_})
+    resize_to_fill(*of, count);
+  int columns = blocks_.columns, rows = blocks_.rows;
+  for (Level& level : levels_) {
+    level = {columns, rows, {}};
+    resize_to_fill(level.cells, static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+    columns = (columns + kCell - 1) / kCell;
+    rows = (rows + kCell - 1) / kCell;
+  }
+}
+
+/// Adds pixel p, of 2^log samples.
+void BlockErrors::measure_pixel(std::size_t p, int log, Sums& sums) const {
+  const float free = freedom(log);
+  float levels[3] = {};
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::size_t i = 3 * p + c;
+    const float mean = mean_so_far(r_, i, 1u << log);
+    const float l[3] = {r_.squares[0][i], r_.squares[1][i], r_.squares[2][i]};
+    sums.colour[c] += std::clamp(mean, 0.f, 1.f);
+    if (mean > 1) {  // a surely white pixel is white on any screen
+      constexpr float kOfAll = kTypicalRatio / (1 - kTypicalRatio) / 4;
+      const float v = kOfAll * (l[0] + kTypicalRatio * (l[1] + kTypicalRatio * l[2])) / free;
+      if (mean - 3 * std::sqrt(v) > 1)
+        continue;
+    }
+    for (int k = 0; k < 3; ++k)
+      levels[k] += l[k] / (3 * free);
+  }
+  // of independent samples, which rare hits are: times n, as though the pixel had one
+  const float n = static_cast<float>(1u << log);
+  const float hit = .25f * n * (levels[0] + .5f * (levels[1] + .5f * levels[2]));
+  for (int k = 0; k < 3; ++k)
+    sums.levels[k] += levels[k];
+  sums.hits += hit;
+  sums.squares += hit * hit;
+  const bool old = log > kFirstLog;
+  sums.drop += n * (levels[0] + (old ? levels[1] : 0));
+  sums.level += .5f * n * (levels[1] + levels[2]);
+  ++sums.pixels;
+  sums.samples += n;
+}
+
+void BlockErrors::measure(std::size_t b) {
+  Sums sums;
+  blocks_.each_pixel(b, [&](std::size_t p) { measure_pixel(p, r_.log[b], sums); });
+  sums_[b] = sums;
+  version_[b] = r_.log[b];
+  levels_[0].cells[b] = sums.has_few_hits() ? sums : Sums{};
+}
+
+/// Sums up the level below.
+void BlockErrors::fill_level(int l) {
+  Level& level = levels_[l];
+  const Level& below = levels_[l - 1];
+  std::fill(level.cells.begin(), level.cells.end(), Sums{});
+  for (int y = 0; y < below.rows; ++y)
+    for (int x = 0; x < below.columns; ++x)
+      level.cells[static_cast<std::size_t>(y / kCell * level.columns + x / kCell)] +=
+          below.cells[static_cast<std::size_t>(y * below.columns + x)];
+}
+
+/// Variance by sums of squared differences over degrees of freedom.
+float BlockErrors::own_variance(const float (&levels)[3]) const {
+  const float ratio = r_.variance_ratio;
+  return ratio / (1 - ratio) / 4 * (levels[0] + ratio * (levels[1] + ratio * levels[2]));
+}
+
+bool BlockErrors::agrees(std::size_t b) const {
+  const auto n = static_cast<float>(sample_count(r_, b));
+  return own_variance(sums_[b].levels) <= kAgreement / (n * n);
+}
+
+/// Adds to a pool the cells around (x, y), and that cell, that may show one surface with a block:
+/// means differ by no more than chance explains if samples hit as often as in the cell with most
+/// hits.
+void BlockErrors::pool_around(
+    const Level& level, int x, int y, const Sums& mine, Sums& pool) const {
+  const auto each = [&](const auto& visit) {
+    for (int j = std::max(y - 1, 0); j <= std::min(y + 1, level.rows - 1); ++j)
+      for (int i = std::max(x - 1, 0); i <= std::min(x + 1, level.columns - 1); ++i)
+        visit(level.cells[static_cast<std::size_t>(j * level.columns + i)]);
+  };
+  float by_sample = mine.by_sample();
+  each([&](const Sums& cell) { by_sample = std::max(by_sample, cell.by_sample()); });
+  if (!(by_sample > 0))
+    return;
+  each([&](const Sums& cell) {
+    if (!(cell.pixels > 0))
+      return;
+    float difference = 0;
+    for (int c = 0; c < 3; ++c) {
+      const float d = mine.colour[c] / mine.pixels - cell.colour[c] / cell.pixels;
+      difference += d * d;
+    }
+    const float chance = by_sample * (1 / mine.samples + 1 / cell.samples);
+    if (difference <= 3 * kAlike * kAlike * chance)
+      pool += cell;
+  });
+}
+
+/// Variance of a block with few hits, from as few surrounding blocks as give enough certainty.
+float BlockErrors::rare_variance(std::size_t b, float& certainty) const {
+  const Sums& mine = sums_[b];
+  const auto columns = static_cast<std::size_t>(blocks_.columns);
+  int x = static_cast<int>(b % columns), y = static_cast<int>(b / columns);
+  Sums pool = mine;
+  for (const Level& level : levels_) {
+    Sums around{};
+    pool_around(level, x, y, mine, around);
+    if (around.pixels > pool.pixels)
+      pool = around;
+    if (pool.certainty() >= kEnoughHits)
+      break;
+    x /= kCell;
+    y /= kCell;
+  }
+  certainty = pool.certainty();
+  if (pool.pixels == mine.pixels)
+    return own_variance(mine.levels) / mine.pixels;
+  // were it 1/2, as `hits` takes it, and by the ratio that it is
+  const float ratio = pool.ratio();
+  return ratio / (1 - ratio) * pool.by_sample() * mine.pixels / mine.samples;
+}
+
+void BlockErrors::estimate_block(std::size_t b) {
+  const Sums& mine = sums_[b];
+  const auto samples = static_cast<float>(sample_count(r_, b));
+  float certainty = mine.certainty();
+  float v =
+      mine.has_few_hits() ? rare_variance(b, certainty) : own_variance(mine.levels) / mine.pixels;
+  // k hits in N samples have chances of Beta(k + 1, N - k + 1), whose mean is that of one hit more
+  if (certainty > 0)
+    v *= static_cast<float>(r_.worse) * (1 + 1 / certainty);
+  if (agrees(b))
+    v = std::max(v, static_cast<float>(r_.least_by_sample) / samples);
+  v = std::min(v + r_.missed[b], 1.f);  // of displayed values, 0 to 1
+  variance_[b] = v;
+  certainty_[b] = certainty;
+  gain_[b] = r_.log[b] < kMostLog ? v * (1 - r_.variance_ratio) / (samples * r_.cost[b]) : 0;
+}
+
+void BlockErrors::estimate_block() {
+#pragma omp parallel for num_threads(threads_) schedule(static)
+  for (std::size_t b = 0; b < blocks_.count(); ++b)
+    if (version_[b] != r_.log[b])
+      measure(b);
+  for (int l = 1; l < kLevels; ++l)
+    fill_level(l);
+#pragma omp parallel for num_threads(threads_) schedule(static)
+  for (std::size_t b = 0; b < blocks_.count(); ++b)
+    estimate_block(b);
+}
+
+std::vector<float> BlockErrors::widths() const {
+  std::vector<float> widths;
+  resize_to_fill(widths, r_.box.size());
+#pragma omp parallel for num_threads(threads_) schedule(static)
+  for (std::size_t b = 0; b < blocks_.count(); ++b)
+    blocks_.each_pixel(b, [&](std::size_t p) {
+      Sums sums;
+      measure_pixel(p, r_.log[b], sums);
+      // few differences tell little: half of it is what the block says
+      const float mine = static_cast<float>(r_.worse) * own_variance(sums.levels);
+      widths[p] = 2 * kNormal * std::sqrt(.5f * (mine + variance_[b]));
+    });
+  return widths;
+}
+
+BlockErrors::Totals BlockErrors::totals() const {
+  double sum = 0;
+  double spread = 0;
+  for (std::size_t b = 0; b < variance_.size(); ++b) {
+    const double v = static_cast<double>(variance_[b]) * static_cast<double>(sums_[b].pixels);
+    sum += v;
+    spread += v * v / std::max(1., static_cast<double>(certainty_[b]));
+  }
+  const double n = static_cast<double>(r_.box.size());
+  const double bound = kStoppedLow * sum + kNormalOneSided * std::sqrt(spread);
+  return {sum, std::sqrt(bound / n), std::sqrt(sum / n)};
+}
+
+}  // namespace grelha

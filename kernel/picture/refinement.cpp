@@ -1,0 +1,134 @@
+#include "kernel/picture/refinement.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernel/picture/image_to_fill.hpp"
+
+namespace grelha {
+namespace {
+
+bool all_from_0_on(const std::vector<float>& values) {
+  return std::all_of(
+      values.begin(), values.end(), [](float v) { return v >= 0 && std::isfinite(v); });
+}
+template <class T>
+bool lies(T value, T least, T most) {
+  return value >= least && value <= most;  // NaN does not
+}
+
+/// True if r.wanted lists blocks that can take more samples, each once: threads work on all blocks
+/// of a round at the same time.
+bool is_round(const Refinement& r) {
+  std::vector<bool> there(r.log.size());
+  for (const std::uint32_t b : r.wanted) {
+    if (b >= there.size() || there[b] || r.log[b] >= kMostLog)
+      return false;
+    there[b] = true;
+  }
+  return true;
+}
+
+bool is_new(const Refinement& r) {
+  return r.rounds == 0 &&
+         std::all_of(r.log.begin(), r.log.end(), [](std::uint8_t l) { return l == 0; });
+}
+
+bool has_valid_numbers(const Refinement& r) {
+  constexpr double kMost = 1e30;  // far from where sums and products of doubles end
+  for (const double v : {r.variance_drop, r.variance_level, r.round_drop, r.round_level, r.seconds})
+    if (!lies(v, 0.0, kMost))
+      return false;
+  if (!lies(r.worse, 1.0, kMost) || !lies(r.least_by_sample, 0.0, kMost) ||
+      !lies(r.checked, 0.0, kMost) || !lies(r.checked_bound, 0.0, kMost) ||
+      !lies(r.checks, 0, 1 << 20))
+    return false;
+  return lies(r.variance_ratio, .1f, .6f) && lies(r.gain_threshold, 0.f, .25f) &&
+         lies(r.share, 0.0, 1.0) && lies(r.rounds, 0, 1 << 20);
+}
+
+std::size_t pixel_count(const Refinement& r) {
+  return static_cast<std::size_t>(r.width) * static_cast<std::size_t>(r.height);
+}
+
+bool is_valid_sum(std::int64_t s) {
+  constexpr std::int64_t kMost = std::int64_t{1} << 61;
+  return lies(s, -kMost, kMost);
+}
+
+bool is_valid_log(std::uint8_t l) {
+  return l == 0 || (l >= kFirstLog && l <= kMostLog);
+}
+
+bool has_valid_sizes(const Refinement& r) {
+  const std::size_t pixels = pixel_count(r), blocks = r.blocks().count();
+  for (const auto& level : r.squares)
+    if (level.size() != pixels * 3)
+      return false;
+  return r.sums.size() == pixels * 3 && r.box.size() == pixels && r.log.size() == blocks &&
+         r.missed.size() == blocks && r.cost.size() == blocks;
+}
+
+/// Its sides are in order; see packed().
+bool is_valid_box(std::uint32_t box) {
+  return (box & 255) <= (box >> 16 & 255) && (box >> 8 & 255) <= box >> 24;
+}
+
+bool has_valid_arrays(const Refinement& r) {
+  if (!has_valid_sizes(r))
+    return false;
+  for (const auto& level : r.squares)
+    if (!all_from_0_on(level))
+      return false;
+  return std::all_of(r.sums.begin(), r.sums.end(), is_valid_sum) &&
+         std::all_of(r.log.begin(), r.log.end(), is_valid_log) &&
+         std::all_of(r.box.begin(), r.box.end(), is_valid_box) && all_from_0_on(r.missed) &&
+         all_from_0_on(r.cost) &&
+         std::all_of(r.cost.begin(), r.cost.end(), [](float c) { return c >= 1; });
+}
+
+}  // namespace
+
+Refinement make_refinement(const Camera& camera) {
+  Refinement r;
+  r.width = camera.width;
+  r.height = camera.height;
+  const std::size_t pixels = pixel_count(r), blocks = r.blocks().count();
+  resize_to_fill(r.sums, pixels * 3);
+  for (auto& level : r.squares)
+    resize_to_fill(level, pixels * 3);
+  resize_to_fill(r.box, pixels);
+  resize_to_fill(r.missed, blocks);
+  resize_to_fill(r.cost, blocks, 1.f);
+  resize_to_fill(r.log, blocks);
+  return r;
+}
+
+bool is_valid(const Refinement& r) {
+  if (r.width < 1 || r.height < 1 || !has_valid_arrays(r) || !has_valid_numbers(r))
+    return false;
+  if (r.wanted.empty())
+    return r.finished || is_new(r);
+  return !r.finished && is_round(r);
+}
+
+std::uint64_t sample_count_(const Refinement& r) {
+  const Blocks blocks = r.blocks();
+  std::uint64_t samples = 0;
+  for (std::size_t b = 0; b < r.log.size(); ++b)
+    samples += sample_count(r, b) * blocks.pixels(b);
+  return samples;
+}
+
+Image picture_so_far(const Refinement& r) {
+  Image image = image_to_fill(r.width, r.height);
+  const Blocks blocks = r.blocks();
+  for (std::size_t b = 0; b < r.log.size(); ++b)
+    blocks.each_pixel(b, [&](std::size_t p) {
+      for (std::size_t i = 3 * p; i < 3 * p + 3; ++i)
+        image.rgb[i] = mean_so_far(r, i, 1u << r.log[b]);
+    });
+  return image;
+}
+
+}  // namespace grelha

@@ -1,0 +1,93 @@
+#pragma once
+// A picture whose samples are spent by error, see RefineOptions: rendered bit by bit, interrupted,
+// saved, gone on with, to the bits of one that was rendered in one go. docs/sampling.md has the
+// derivations.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "grelha/camera.hpp"
+#include "grelha/image.hpp"
+#include "grelha/render_options.hpp"
+#include "kernel/picture/blocks.hpp"
+#include "kernel/scene/light_unit.hpp"
+
+namespace grelha {
+
+inline constexpr int kMostLog = 16;
+static_assert(1 << kMostLog == kMostSamples);
+/// Logarithm of the samples that a pixel begins with: two packets a block, and a difference of
+/// eighths in each pixel.
+inline constexpr int kFirstLog = 3;
+
+/// All that is known of a picture between two pieces of its work.
+///
+/// Every pixel starts with 2^kFirstLog samples; each round then doubles those of the blocks whose
+/// variance would fall most for each new ray. A pixel's samples are one Owen-scrambled sequence:
+/// E[(A - B)^2] / 4 of the means A, B of its halves is V(n/2) - V(n), without a model; that V falls
+/// by `variance_ratio` a doubling, measured over the picture, gives V(n).
+struct Refinement {
+  int width = 0;
+  int height = 0;
+  std::vector<std::int64_t> sums;  ///< [pixels][3] linear RGB, units of 2^-32
+  /// [pixels][3] squared differences of halves, quarters, eighths, summed by level
+  std::array<std::vector<float>, 3> squares;
+  std::vector<std::uint32_t> box;  ///< [pixels] that target rays hit, see PixelBox; 0: none
+  /// [blocks] variance that things with boxes may add, until the block has samples in those
+  std::vector<float> missed;
+  std::vector<float> cost;  ///< [blocks] rays a sample takes, of the chunk last sampled with it
+  /// [blocks] log2 of the samples of each pixel; 0: none yet
+  std::vector<std::uint8_t> log;
+  /// blocks that the round in work has not reached yet, in its order; empty between rounds
+  std::vector<std::uint32_t> wanted;
+  /// over the last rounds, sums of squared differences of halves: of all samples, of the new ones
+  double variance_drop = 0;
+  double variance_level = 0;
+  double round_drop = 0, round_level = 0;  ///< the same of the round in work
+  float variance_ratio = .4f;              ///< V(n) / V(n/2)
+  float gain_threshold = .25f;  ///< gain a ray that a block of the round in work had to promise
+  /// found by checks: variances are `worse` times what blocks claim, and at least least_by_sample /
+  /// samples where samples agree; mean square error found by the last check
+  double worse = 1, least_by_sample = 0, checked = 0;
+  double checked_bound = 0;
+  int checks = 0;
+  bool met = false;                 ///< so the last check said
+  std::uint64_t checked_at = 0;     ///< samples there were then
+  std::uint64_t met_at = 0;         ///< samples there were when the error was met; 0: it is not
+  std::uint64_t check_samples = 0;  ///< taken for checks alone
+  int rounds = 0;                   ///< done
+  bool last = false;                ///< no round follows the one in work
+  bool finished = false;
+  std::uint64_t rays = 0;  ///< sent so far
+  double seconds = 0;      ///< spent so far
+  double share = 0;        ///< of the way to the target, as far as is known
+
+  Blocks blocks() const { return {width, height}; }
+};
+
+/// Samples that each pixel of a block has.
+inline std::uint32_t sample_count(const Refinement& r, std::size_t block) {
+  return r.log[block] == 0 ? 0 : 1u << r.log[block];
+}
+
+/// Mean of `samples` samples, of channel i % 3 of pixel i / 3.
+inline float mean_so_far(const Refinement& r, std::size_t i, std::uint32_t samples) {
+  return static_cast<float>(static_cast<double>(r.sums[i]) /
+                            (kLightUnit * static_cast<double>(samples)));
+}
+
+/// A picture without samples.
+Refinement make_refinement(const Camera& camera);
+
+/// True if the sizes of the arrays match and rendering can produce every number. Check a loaded
+/// file with this before going on with it.
+bool is_valid(const Refinement& r);
+
+/// Number of samples taken, over all pixels.
+std::uint64_t sample_count_(const Refinement& r);
+
+/// The picture so far; pixels without samples are black.
+Image picture_so_far(const Refinement& r);
+
+}  // namespace grelha

@@ -1,0 +1,391 @@
+#include "kernel/picture/target_rays.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "kernel/picture/flat_mirrors.hpp"
+#include "kernel/picture/mesh_parts.hpp"
+#include "kernel/picture/to_picture.hpp"
+#include "kernel/picture/tolerances.hpp"
+#include "kernel/query/variants.hpp"
+#include "kernel/shade/pixel_box.hpp"
+#include "kernel/base/parallel_for.hpp"
+
+namespace grelha {
+namespace {
+
+constexpr double kThin = 1;         ///< pixels: samples of a net hit everything wider
+constexpr double kMostParts = 256;  ///< parts of a rod
+constexpr int kMostClear = 6;       ///< transparent surfaces on the way to a thing
+constexpr double kMostBlur = .25;   ///< pixels: a box holds too little of a thing with more blur
+constexpr double kBoxTaken = .9 * static_cast<double>(kLargestBox);  ///< sides are rounded up
+constexpr double kMargin = .02;  ///< pixels around a box, for rounding
+constexpr std::size_t kRaysOfTurn = 256;
+
+/// A part of a rod, the target of one ray.
+struct Target : Rod {
+  bool hits_target = false;
+
+  Point3 middle() const {
+    Point3 m;
+    for (std::size_t a = 0; a < 3; ++a)
+      m[a] = .5 * (end[0][a] + end[1][a]);
+    return m;
+  }
+};
+
+std::vector<Rod> rods_of(const World::Impl& world) {
+  const GeometrySpans& g = world.primitives.geometry;
+  std::vector<Rod> rods = mesh_parts(g.triangles);
+  for (std::size_t i = 0; i < g.spheres.size(); ++i)
+    rods.push_back(rod_of(g.spheres, i));
+  for (std::size_t i = 0; i < g.cones.size(); ++i)
+    rods.push_back(rod_of(g.cones, i));
+  return rods;
+}
+
+/// Rays of one turn, from one point each.
+struct TargetRay {
+  float org[3][kRaysOfTurn], dir[3][kRaysOfTurn], t_min[kRaysOfTurn], t[kRaysOfTurn];
+  std::uint32_t id[kRaysOfTurn];
+
+  void set(std::size_t i, const Point3& from, const Point3& to, double least) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      org[a][i] = static_cast<float>(from[a]);
+      dir[a][i] = static_cast<float>(to[a] - from[a]);
+    }
+    t_min[i] = static_cast<float>(least);
+  }
+};
+
+class Targeting {
+ public:
+  Targeting(
+      const World::Impl& world, const Setup& setup, int threads, Refinement& r, TraceCounts& n)
+      : world_(world),
+        setup_(setup),
+        threads_(threads),
+        to_(setup.frame),
+        r_(r),
+        counts_(n),
+        rods_(rods_of(world)) {}
+
+  void run() {
+    std::vector<Target> aims = targets_from_camera([](const Rod& rod) { return rod; });
+    each_turn_of(aims, [&](TargetRay& rays, std::size_t first, std::size_t count, TraceCounts& n) {
+      look(rays, aims.data() + first, count, n);
+    });
+    mark(aims);
+    for (const MirrorPlane& mirror : flat_mirrors(world_))
+      look_into(mirror);
+    // blurred shadows are hit by samples; many lights leave little of each shadow to see
+    std::size_t left = r_.box.size();
+    for (int l = 0; !world_.shading.area && l < world_.shading.light_count; ++l) {
+      const float* const at = world_.shading.lights + kLightFloats * l;
+      if (left < rods_.size())
+        break;
+      left -= rods_.size();
+      throw_shadows({{at[0], at[1], at[2]}});
+    }
+  }
+
+ private:
+  template <class Work>
+  void each_turn_of(const std::vector<Target>& aims, const Work& work) {
+    const std::size_t turns = (aims.size() + kRaysOfTurn - 1) / kRaysOfTurn;
+    std::vector<TraceCounts> counts(turns);
+    each_turn(
+        turns,
+        threads_,
+        [] { return std::make_unique<TargetRay>(); },
+        [&](std::size_t turn, const std::unique_ptr<TargetRay>& rays) {
+          const std::size_t first = turn * kRaysOfTurn;
+          work(*rays, first, std::min(kRaysOfTurn, aims.size() - first), counts[turn]);
+        });
+    for (const TraceCounts& n : counts)
+      counts_ += n;
+  }
+
+  /// Radius of the disc that a point shows as, in pixels.
+  double blur(double depth) const {
+    const FrameView& f = setup_.frame;
+    if (!f.lens)
+      return 0;
+    const Point3 right{{f.lens_right[0], f.lens_right[1], f.lens_right[2]}};
+    const double focus = static_cast<double>(f.focus);
+    return std::abs(focus / depth - 1) * std::sqrt(dot(right, right)) / to_.pixel(focus);
+  }
+
+  static double parts_of(const Rod& rod, double step) {
+    return std::clamp(std::ceil(rod.length() / step), 1., kMostParts);
+  }
+  static void add_parts(const Rod& rod, double step, std::vector<Target>& aims) {
+    const double parts = parts_of(rod, step);
+    for (double k = 0; k < parts; ++k) {
+      Target target{rod};
+      for (std::size_t e = 0; e < 2; ++e)
+        for (std::size_t a = 0; a < 3; ++a)
+          target.end[e][a] = rod.end[0][a] +
+                             (k + static_cast<double>(e)) / parts * (rod.end[1][a] - rod.end[0][a]);
+      aims.push_back(target);
+    }
+  }
+
+  /// A rod that looks thin, and how wide a pixel is there.
+  struct Thin {
+    Rod rod;
+    double pixel;
+  };
+
+  /// Parts a pixel long; longer ones where there would be more than pixels of the picture.
+  std::vector<Target> parts_of(const std::vector<Thin>& thin) const {
+    const auto count = [&](double pixels) {
+      double sum = 0;
+      for (const Thin& t : thin)
+        sum += parts_of(t.rod, pixels * t.pixel);
+      return sum;
+    };
+    const auto most = static_cast<double>(r_.box.size());
+    double pixels = 1;
+    while (pixels < kMostParts && count(pixels) > most)
+      pixels *= 2;
+    std::vector<Target> aims;
+    for (const Thin& t : thin)
+      add_parts(t.rod, pixels * t.pixel, aims);
+    return aims;
+  }
+
+  /// At where rods seem to be.
+  template <class Place>
+  std::vector<Target> targets_from_camera(const Place& place) const {
+    std::vector<Thin> thin;
+    for (const Rod& real : rods_) {
+      Rod rod = place(real);
+      if (!cut_behind(to_, rod))
+        continue;
+      const double pixel = to_.pixel(std::min(to_(rod.end[0]).depth, to_(rod.end[1]).depth));
+      if (2 * rod.radius < kThin * pixel)
+        thin.push_back({rod, pixel});
+    }
+    return parts_of(thin);
+  }
+
+  void closest(const TargetRay& rays, TargetRay& hits, std::size_t count, TraceCounts& n) const {
+    const Rays in{.org = {rays.org[0], rays.org[1], rays.org[2]},
+                  .dir = {rays.dir[0], rays.dir[1], rays.dir[2]},
+                  .t_min = rays.t_min,
+                  .count = count};
+    setup_.variant.loops.closest(world_.view, in, {.t = hits.t, .id = hits.id}, {}, n);
+  }
+
+  std::uint32_t material_of(std::uint32_t id) const {
+    const GeometrySpans& g = world_.primitives.geometry;
+    const Primitive p = world_.primitives.ids.primitive(id);
+    return p.kind == PrimitiveKind::kSphere     ? g.spheres.material[p.index]
+           : p.kind == PrimitiveKind::kCone     ? g.cones.material[p.index]
+           : p.kind == PrimitiveKind::kTriangle ? g.triangles.material[p.index]
+                                                : g.planes.material[p.index];
+  }
+
+  /// Share of the way to its middle at which a ray has surely come to a thing.
+  static double near(const Target& target, const Point3& from) {
+    const Point3 d = target.middle() - from;
+    return 1 - (target.radius + .5 * target.length()) / std::sqrt(dot(d, d)) - 1e-4;
+  }
+
+  /// Which of the targets a ray from the eye hits.
+  void look(TargetRay& rays, Target* aims, std::size_t count, TraceCounts& n) const {
+    for (std::size_t i = 0; i < count; ++i)
+      rays.set(i, to_.eye, aims[i].middle(), 0);
+    closest(rays, rays, count, n);
+    const auto before = [&](std::size_t i) {
+      return rays.id[i] != kNoPrimitive && static_cast<double>(rays.t[i]) < near(aims[i], to_.eye);
+    };
+    for (int k = 0; k < kMostClear; ++k) {
+      bool any = false;
+      for (std::size_t i = 0; i < count; ++i)
+        if (before(i) &&
+            world_.shading.materials.field[kTransmission][material_of(rays.id[i])] > 0) {
+          rays.t_min[i] = rays.t[i] * 1.00001f;
+          any = true;
+        }
+      if (!any)
+        break;
+      closest(rays, rays, count, n);
+    }
+    for (std::size_t i = 0; i < count; ++i)
+      aims[i].hits_target = !before(i);
+  }
+
+  /// Marks where thin rods show in a mirror.
+  void look_into(const MirrorPlane& mirror) {
+    std::vector<Target> aims = targets_from_camera([&](Rod rod) {
+      for (Point3& end : rod.end)
+        end = mirror.image(end);
+      return rod;
+    });
+    each_turn_of(aims, [&](TargetRay& rays, std::size_t first, std::size_t count, TraceCounts& n) {
+      look_by_mirror(mirror, rays, aims.data() + first, count, n);
+    });
+    mark(aims);
+  }
+
+  /// Which of the images a ray from the eye arrives at by way of the mirror.
+  void look_by_mirror(const MirrorPlane& mirror,
+                      TargetRay& rays,
+                      Target* aims,
+                      std::size_t count,
+                      TraceCounts& n) const {
+    for (std::size_t i = 0; i < count; ++i)
+      rays.set(i, to_.eye, aims[i].middle(), 0);
+    closest(rays, rays, count, n);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Point3 image = aims[i].middle();
+      const double eye_above = mirror.above(to_.eye), all = eye_above - mirror.above(image);
+      const double t = eye_above / all;  // where the way to the image crosses the mirror
+      aims[i].hits_target = rays.id[i] != kNoPrimitive && t > 0 && t < 1 &&
+                            std::abs(static_cast<double>(rays.t[i]) - t) <= 1e-3 * t &&
+                            is_smooth_mirror(world_.shading.materials, material_of(rays.id[i]));
+      Point3 at = to_.eye;
+      for (std::size_t a = 0; a < 3 && aims[i].hits_target; ++a)
+        at[a] += t * (image[a] - to_.eye[a]);
+      rays.set(i, at, mirror.image(image), 1e-4);
+    }
+    closest(rays, rays, count, n);
+    for (std::size_t i = 0; i < count; ++i) {
+      Target real = aims[i];
+      for (Point3& end : real.end)
+        end = mirror.image(end);
+      const Point3 from{{rays.org[0][i], rays.org[1][i], rays.org[2][i]}};
+      aims[i].hits_target =
+          aims[i].hits_target &&
+          (rays.id[i] == kNoPrimitive || static_cast<double>(rays.t[i]) >= near(real, from));
+    }
+  }
+
+  /// Marks where shadows of thin rods fall, if the eye sees that.
+  void throw_shadows(const Point3& light) {
+    std::vector<Thin> thin;
+    for (const Rod& rod : rods_)
+      if (const double pixel = to_.pixel(std::abs(to_(rod.end[0]).depth));
+          rod.radius < kThin * pixel)
+        thin.push_back({rod, pixel});
+    std::vector<Target> aims = parts_of(thin);
+    each_turn_of(aims, [&](TargetRay& rays, std::size_t first, std::size_t count, TraceCounts& n) {
+      cast_shadows(rays, light, aims.data() + first, count, n);
+    });
+    mark(aims);
+  }
+
+  /// Moves things on to the surfaces behind them.
+  void cast_shadows(
+      TargetRay& rays, const Point3& light, Target* aims, std::size_t count, TraceCounts& n) const {
+    for (std::size_t i = 0; i < count; ++i)
+      rays.set(i, light, aims[i].middle(), 2 - near(aims[i], light));
+    closest(rays, rays, count, n);
+    for (std::size_t i = 0; i < count; ++i) {
+      aims[i].hits_target = rays.id[i] != kNoPrimitive;
+      if (!aims[i].hits_target)
+        continue;
+      const double t = static_cast<double>(rays.t[i]);
+      for (Point3& end : aims[i].end)
+        for (std::size_t a = 0; a < 3; ++a)
+          end[a] = light[a] + t * (end[a] - light[a]);
+      aims[i].radius *= t;
+    }
+    for (std::size_t i = 0; i < count; ++i)
+      rays.set(i, to_.eye, aims[i].middle(), 0);
+    closest(rays, rays, count, n);
+    for (std::size_t i = 0; i < count; ++i)
+      aims[i].hits_target = aims[i].hits_target && rays.id[i] != kNoPrimitive && rays.t[i] > .999f;
+  }
+
+  /// The brightest that a thing may look, over white.
+  float brightness(std::uint32_t material) const {
+    const auto of = [&](int field, std::size_t c) {
+      return world_.shading.materials.field[static_cast<std::size_t>(field) + c][material];
+    };
+    float most = 1;
+    for (std::size_t c = 0; c < 3; ++c)
+      most = std::max(most, of(kEmissionR, c));
+    return most;
+  }
+
+  void mark(const std::vector<Target>& aims) {
+    for (const Target& target : aims)
+      if (target.hits_target)
+        mark(target);
+  }
+
+  void mark(const Target& target) {
+    const ToPicture::Spot a = to_(target.end[0]), b = to_(target.end[1]);
+    const double depth = std::min(a.depth, b.depth);
+    if (!(depth > 0) || !(blur(depth) <= kMostBlur))
+      return;
+    const double half_width = to_.half_width(target.radius, depth) + blur(depth) + kMargin;
+    double wide = .5 * std::abs(b.x - a.x) + half_width,
+           high = .5 * std::abs(b.y - a.y) + half_width;
+    // a thing too large for a box is hit as surely by samples of its middle
+    const double area = 4 * wide * high;
+    if (const double shrink = std::sqrt(kBoxTaken / area); shrink < 1) {
+      wide *= shrink;
+      high *= shrink;
+    }
+    const double x0 = .5 * (a.x + b.x) - wide, x1 = .5 * (a.x + b.x) + wide;
+    const double y0 = .5 * (a.y + b.y) - high, y1 = .5 * (a.y + b.y) + high;
+    const auto first = [](double least) { return static_cast<int>(std::max(0., least)); };
+    const auto end = [](double most, int size) {
+      return most < 0 ? 0 : static_cast<int>(std::min(most + 1, static_cast<double>(size)));
+    };
+    const float bright = brightness(target.material);
+    for (int y = first(y0); y < end(y1, r_.height); ++y)
+      for (int x = first(x0); x < end(x1, r_.width); ++x)
+        add_box(x, y, {side(x0 - x), side(y0 - y), side(x1 - x), side(y1 - y)}, bright);
+  }
+
+  static float side(double v) { return static_cast<float>(std::clamp(v, 0., 1.)); }
+
+  void add_box(int x, int y, PixelBox box, float bright) {
+    std::uint32_t& word = r_.box[static_cast<std::size_t>(y) * static_cast<std::size_t>(r_.width) +
+                                 static_cast<std::size_t>(x)];
+    if (word != 0) {
+      const PixelBox other = unpacked(word);
+      box = {std::min(box.x0, other.x0),
+             std::min(box.y0, other.y0),
+             std::max(box.x1, other.x1),
+             std::max(box.y1, other.y1)};
+    }
+    const std::uint32_t packed_box = packed(box);
+    if (packed_box == 0 || unpacked(packed_box).area() > kLargestBox)
+      return;
+    word = packed_box;
+    // a disc in the box that no sample hit, as though it were black or white
+    const float most = std::min(1.f, kDiscInBox * unpacked(word).area() * bright);
+    const Blocks blocks = r_.blocks();
+    const std::size_t b = blocks.of(x, y);
+    r_.missed[b] += most * most / static_cast<float>(blocks.pixels(b));
+  }
+
+  const World::Impl& world_;
+  const Setup& setup_;
+  const int threads_;
+  const ToPicture to_;
+  Refinement& r_;
+  TraceCounts& counts_;
+  const std::vector<Rod> rods_;
+};
+
+}  // namespace
+
+std::size_t object_count(const World::Impl& world) {
+  const GeometrySpans& g = world.primitives.geometry;
+  return g.spheres.size() + g.cones.size() + g.triangles.size();
+}
+
+void target_small_objects(
+    const World::Impl& world, const Setup& setup, int threads, Refinement& r, TraceCounts& counts) {
+  Targeting(world, setup, threads, r, counts).run();
+}
+
+}  // namespace grelha

@@ -1,0 +1,228 @@
+#include "kernel/shapes/crossing.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+namespace grelha {
+namespace {
+
+/// t of spheres and cones that agree to this part of themselves are equal.
+constexpr double kEqualWide = 0x1p-90;
+
+int sign_of(const DoubleDouble& x) {
+  return x.high < 0 ? -1 : x.high > 0 ? 1 : 0;
+}
+
+struct DoubleCorner {
+  double at[3];
+};
+DoubleCorner fields_to_double(const float (&v)[3]) {
+  return {{v[0], v[1], v[2]}};
+}
+WideVector wide(const double (&v)[3]) {
+  return {v[0], v[1], v[2]};
+}
+WideVector wide_difference(const float (&a)[3], const double (&b)[3]) {
+  return {DoubleDouble(a[0]) - b[0], DoubleDouble(a[1]) - b[1], DoubleDouble(a[2]) - b[2]};
+}
+
+}  // namespace
+
+DoubleDouble ExactCrossing::wide() const {
+  return rational_ ? DoubleDouble(numerator_) / DoubleDouble(denominator_) : t_;
+}
+
+int ExactCrossing::compare(double x) const {
+  if (std::isinf(x))
+    return x > 0 ? -1 : 1;
+  if (!rational_)
+    return sign_of(t_ - x);
+  return (numerator_ - denominator_ * x).sign() * denominator_.sign();
+}
+
+int ExactCrossing::compare(const ExactCrossing& other) const {
+  if (rational_ && other.rational_) {
+    const Expansion apart = numerator_ * other.denominator_ - other.numerator_ * denominator_;
+    return apart.sign() * denominator_.sign() * other.denominator_.sign();
+  }
+  const DoubleDouble a = wide();
+  const DoubleDouble b = other.wide();
+  const DoubleDouble apart = a - b;
+  const double error_bound = kEqualWide * (std::abs(a.high) + std::abs(b.high));
+  return std::abs(apart.high) <= error_bound ? 0 : sign_of(apart);
+}
+
+double ExactCrossing::estimate() const {
+  return rational_ ? numerator_.estimate() / denominator_.estimate() : t_.high;
+}
+
+float ExactCrossing::rounded() const {
+  const double t = estimate();
+  const auto near = static_cast<float>(t);
+  const double from = near;
+  const float next = std::nextafter(near, t > from ? INFINITY : -INFINITY);
+  if (t == from || !std::isfinite(near) || !std::isfinite(next))
+    return near;
+  // the estimate may lie on the wrong side of the middle, no farther
+  const int beyond = compare(.5 * from + .5 * next) * (t > from ? 1 : -1);
+  const bool is_odd = std::bit_cast<std::uint32_t>(near) % 2 != 0;
+  return beyond > 0 || (beyond == 0 && is_odd) ? next : near;
+}
+
+ExactCrossing cross_triangle(const ExactRay& ray, const float (&corner)[3][3]) {
+  const ExactVector a = difference(fields_to_double(corner[0]).at, ray.org);
+  const ExactVector b = difference(fields_to_double(corner[1]).at, ray.org);
+  const ExactVector c = difference(fields_to_double(corner[2]).at, ray.org);
+  const ExactVector bc = cross(b, c);
+  const ExactVector next[2] = {cross(c, a), cross(a, b)};
+  Expansion sum = dot(bc, ray.dir);
+  int least = sum.sign();
+  int most = least;
+  for (const ExactVector& n : next) {
+    const Expansion edge = dot(n, ray.dir);
+    least = std::min(least, edge.sign());
+    most = std::max(most, edge.sign());
+    if (least * most < 0)
+      return {};
+    sum += edge;
+  }
+  if (sum.sign() == 0)
+    return {};
+  const ExactCrossing found(dot(bc, a), sum);
+  return found.compare(ray.t_min) > 0 ? found : ExactCrossing();
+}
+
+namespace {
+
+/// The sign of an edge function of a ray that starts beside, by e along one axis and e^2 along
+/// another, e being less than any number: of d (p x q) less e (d x u) (q - p), and so on.
+int sign_beside(const ExactRay& ray, const Expansion& edge, const ExactVector& along) {
+  if (edge.sign() != 0)
+    return edge.sign();
+  const double* const d = ray.dir;
+  const double x = std::abs(d[0]);
+  const double y = std::abs(d[1]);
+  const double z = std::abs(d[2]);
+  const Expansion* const v[3] = {&along.x, &along.y, &along.z};
+  const int k = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
+  for (const int u : {(k + 1) % 3, (k + 2) % 3}) {
+    const int after = (u + 1) % 3;
+    const int last = (u + 2) % 3;
+    const int sign = (*v[after] * d[last] - *v[last] * d[after]).sign();
+    if (sign != 0)
+      return -sign;
+  }
+  return 0;
+}
+
+}  // namespace
+
+bool crosses_beside(const ExactRay& ray, const float (&corner)[3][3], double t_max) {
+  ExactVector at[3];
+  for (int i = 0; i < 3; ++i)
+    at[i] = difference(fields_to_double(corner[i]).at, ray.org);
+  Expansion sum;
+  int signs[3];
+  for (int i = 0; i < 3; ++i) {
+    const int from = (i + 1) % 3;
+    const int to = (i + 2) % 3;
+    const Expansion edge = dot(cross(at[from], at[to]), ray.dir);
+    const ExactVector along =
+        difference(fields_to_double(corner[to]).at, fields_to_double(corner[from]).at);
+    signs[i] = sign_beside(ray, edge, along);
+    sum += edge;
+  }
+  if (signs[0] == 0 || signs[0] != signs[1] || signs[0] != signs[2] || sum.sign() == 0)
+    return false;
+  const ExactCrossing found(dot(cross(at[1], at[2]), at[0]), sum);
+  return found.compare(ray.t_min) > 0 && found.compare(t_max) < 0;
+}
+
+ExactCrossing cross_plane(const ExactRay& ray, const float (&point)[3], const float (&normal)[3]) {
+  const double n[3] = {normal[0], normal[1], normal[2]};
+  Expansion along;
+  for (int i = 0; i < 3; ++i)
+    along.add_product(n[i], ray.dir[i]);
+  if (along.sign() == 0)
+    return {};
+  const ExactCrossing found(dot(difference(fields_to_double(point).at, ray.org), n), along);
+  return found.compare(ray.t_min) > 0 ? found : ExactCrossing();
+}
+
+namespace {
+
+/// The lesser of two t beyond t_min, NaN left out.
+ExactCrossing first_of(const ExactRay& ray, DoubleDouble a, DoubleDouble b) {
+  if (b < a || std::isnan(a.high))
+    std::swap(a, b);
+  if (a > ray.t_min)
+    return ExactCrossing(a);
+  return b > ray.t_min ? ExactCrossing(b) : ExactCrossing();
+}
+
+}  // namespace
+
+ExactCrossing cross_sphere(const ExactRay& ray, const float (&center)[3], float radius) {
+  const WideVector to_center = wide_difference(center, ray.org);
+  const WideVector dir = wide(ray.dir);
+  const DoubleDouble dd = dot(dir, dir);
+  const DoubleDouble rr = DoubleDouble(radius) * radius;
+  const WideVector moment = cross(to_center, dir);
+  const DoubleDouble disc = rr * dd - dot(moment, moment);
+  if (!(dd > 0) || !(radius != 0) || disc < 0)
+    return {};
+  const DoubleDouble root = square_root(disc);
+  const DoubleDouble middle = dot(to_center, dir);
+  const DoubleDouble q = middle < 0 ? middle - root : middle + root;
+  const DoubleDouble one = q / dd;
+  const DoubleDouble other = q.high == 0 ? DoubleDouble() : (dot(to_center, to_center) - rr) / q;
+  if (radius > 0)
+    return first_of(ray, one, other);
+  const DoubleDouble leave = one < other ? other : one;
+  return leave > ray.t_min ? ExactCrossing(leave) : ExactCrossing();
+}
+
+// As cone_crossings() of shapes/cone.hpp, which derives it.
+ExactCrossing cross_cone(const ExactRay& ray, const ExactCone& cone) {
+  const DoubleDouble nowhere(std::nan(""));
+  const WideVector given{cone.axis[0], cone.axis[1], cone.axis[2]};
+  const WideVector axis = DoubleDouble(1) / square_root(dot(given, given)) * given;
+  const WideVector dir = wide(ray.dir);
+  const WideVector to_base = wide_difference(cone.base, ray.org);
+  const DoubleDouble inverse = DoubleDouble(1) / dot(dir, dir);
+  const DoubleDouble near = dot(to_base, dir) * inverse;
+  const WideVector p = near * dir - to_base;
+  const WideVector n = cross(dir, axis);
+  const WideVector e = inverse * n;
+  const WideVector pn = cross(p, axis);
+  const DoubleDouble pz = dot(p, axis);
+  const DoubleDouble dz = dot(dir, axis);
+  const DoubleDouble slope(cone.slope);
+  const DoubleDouble r = DoubleDouble(cone.radius) + slope * pz;
+  const DoubleDouble rd = slope * dz;
+  const DoubleDouble erd = inverse * rd;
+  const DoubleDouble a = dot(n, e) - rd * erd;
+  const DoubleDouble b = dot(pn, e) - r * erd;
+  const DoubleDouble c = inverse * (dot(pn, pn) - r * r);
+  const WideVector w = erd * pn - r * e;
+  const DoubleDouble moment = dot(p, e);
+  const DoubleDouble bb = b * b;
+  const DoubleDouble ww = dot(w, w);
+  const DoubleDouble disc = bb < ww ? bb - a * c : ww - moment * moment;
+  if (disc < 0)
+    return {};
+  const DoubleDouble root = square_root(disc);
+  const DoubleDouble q = b < 0 ? root - b : -(b + root);
+  const auto on_side = [&](const DoubleDouble& s) {
+    const DoubleDouble h = pz + s * dz;
+    const bool leaves = !(a * s + b < 0);
+    const bool between = !(h < 0) && !(h > cone.height) && !std::isnan(h.high);
+    return between && (cone.side > 0 || leaves) ? near + s : nowhere;
+  };
+  return first_of(ray, on_side(q / a), on_side(c / q));
+}
+
+}  // namespace grelha

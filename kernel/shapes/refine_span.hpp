@@ -1,0 +1,109 @@
+#pragma once
+// Crossings that floats cannot decide are decided by doubles, and the rest by exact numbers.
+
+#include "kernel/shapes/simd_rays.hpp"
+
+namespace grelha {
+
+/// t of a crossing, from lo to hi; NaN: there is none.
+struct CrossingSpan {
+  float lo = __builtin_nanf("");
+  float hi = __builtin_nanf("");
+};
+
+}  // namespace grelha
+
+namespace grelha::GRELHA_ISA {
+
+/// One ray in double.
+inline SimdRays<double> in_double(const ExactRay& r) {
+  const Vec3<double> dir = vec(r.dir);
+  const double inv_dd = 1 / dot(dir, dir);
+  return {.org = vec(r.org),
+          .dir = dir,
+          .inv_dd = inv_dd,
+          .inv_length = inverse_length(dir, inv_dd),
+          .t_min = r.t_min,
+          .frame_error = 0,
+          .error_bound = __builtin_inf()};
+}
+
+/// Part i of rays as they came, in double.
+template <int i, class Real>
+[[gnu::always_inline]] inline SimdRays<Wide<Real>> given_in_double(const SimdRays<Real>& ray) {
+  using W = Wide<Real>;
+  const auto of = [&](const auto& member, const Real& own) {
+    if (!ray.base)
+      return to_double<i>(own);
+    const float* const given = member(*ray.given) + ray.first;
+    return ray.step == 0 ? W(static_cast<double>(*given)) : take<W>(given + i * kWidth<W>);
+  };
+  const auto origin = [](int axis) { return [axis](const GivenRays& g) { return g.org[axis]; }; };
+  const Vec3<W> dir = to_double<i>(ray.dir);
+  const W inv_dd = W(1) / dot(dir, dir);
+  return {.org = {of(origin(0), ray.org.x), of(origin(1), ray.org.y), of(origin(2), ray.org.z)},
+          .dir = dir,
+          .inv_dd = inv_dd,
+          .inv_length = inverse_length(dir, inv_dd),
+          .t_min = of([](const GivenRays& g) { return g.t_min; }, ray.t_min),
+          .frame_error = W(0),
+          .error_bound = W(0)};
+}
+/// t of the rays as given minus t of the tested rays.
+template <int i, class Real>
+[[gnu::always_inline]] inline Wide<Real> shift_in_double(const SimdRays<Real>& ray) {
+  using W = Wide<Real>;
+  if (!ray.base)
+    return W(0);
+  return ray.step == 0 ? W(ray.given->shift[ray.first])
+                       : load<W>(ray.given->shift + ray.first + i * kWidth<W>);
+}
+/// Moves a double by more than 2 u and the least float: it rounds to a float not above, or not
+/// below.
+template <class W>
+[[gnu::always_inline]] inline W rounded_down(const W& a) {
+  return a - (magnitude(a) * W(0x1p-23) + W(0x1p-149));
+}
+template <class W>
+[[gnu::always_inline]] inline W rounded_up(const W& a) {
+  return a + (magnitude(a) * W(0x1p-23) + W(0x1p-149));
+}
+
+/// The span of a crossing from doubles, or else from cross(); t is counted from `shift` on.
+template <class Cross>
+inline CrossingSpan refine_span(const HitInterval<double>& found,
+                                double shift,
+                                const Cross& cross) {
+  if (!found.some)
+    return {};
+  double lo = found.lo;
+  double hi = found.hi;
+  if (!found.sure) {
+    const ExactCrossing exact = cross();
+    if (!exact.some())
+      return {};
+    const double t = exact.estimate();
+    lo = t - magnitude(t) * 0x1p-48;
+    hi = t + magnitude(t) * 0x1p-48;
+  }
+  const double error_bound = magnitude(shift) * 0x1p-51;
+  return {round_down((lo - shift) - error_bound), round_up((hi - shift) + error_bound)};
+}
+
+/// Replaces selected lanes of `found` by span_of(lane).
+template <class Real, class SpanOf>
+inline void replace_selected(unsigned selected, HitInterval<Real>& found, const SpanOf& span_of) {
+  Scalar<Real> lo[kWidth<Real>], hi[kWidth<Real>];
+  store(lo, found.lo);
+  store(hi, found.hi);
+  each_bit(selected, [&](int k) {
+    const CrossingSpan span = span_of(k);
+    lo[k] = span.lo;
+    hi[k] = span.hi;
+  });
+  load(lo, found.lo);
+  load(hi, found.hi);
+  found.some = mask_and(found.some, found.hi == found.hi);
+}
+
+}  // namespace grelha::GRELHA_ISA

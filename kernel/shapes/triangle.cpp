@@ -1,0 +1,34 @@
+#include "kernel/shapes/triangle.hpp"
+
+namespace grelha {
+
+bool Triangle::is_even(const TriangleSpans& spans) {
+  const std::size_t size = spans.size();
+  const std::size_t vertices = spans.vertex_count();
+  const std::size_t normals = spans.nx.empty() ? 0 : vertices;
+  return spans.b.size() == size && spans.c.size() == size && spans.material.size() == size &&
+         spans.y.size() == vertices && spans.z.size() == vertices && spans.nx.size() == normals &&
+         spans.ny.size() == normals && spans.nz.size() == normals;
+}
+
+Triangle::Arrays Triangle::Source::arrays() const {
+  Arrays out{
+      .vertex = {spans.x.data(), spans.y.data(), spans.z.data()},
+      .corner = {spans.a.data(), spans.b.data(), spans.c.data()},
+      .material = spans.material.data(),
+      .count = static_cast<std::uint32_t>(size()),
+  };
+  if (!spans.nx.empty()) {
+    out.normal[0] = spans.nx.data();
+    out.normal[1] = spans.ny.data();
+    out.normal[2] = spans.nz.data();
+  }
+  return out;
+}
+
+CrossingSpan triangle_span(const ExactRay& ray, const float (&corner)[3][3], double shift) {
+  return scalar::refine_span(
+      scalar::bound_triangle(ray, corner), shift, [&] { return cross_triangle(ray, corner); });
+}
+
+}  // namespace grelha

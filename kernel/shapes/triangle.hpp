@@ -1,0 +1,345 @@
+#pragma once
+// Triangles: their data, and the ray test. Files beside this one hold the rest: blocks of eight,
+// the cells that triangles overlap, their surfaces, and crossings in double.
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+#include "grelha/scene_spans.hpp"
+#include "kernel/shapes/box.hpp"
+#include "kernel/shapes/refine_span.hpp"
+#include "kernel/shapes/triangle_block.hpp"
+#include "kernel/shapes/triangle_crossing.hpp"
+#include "kernel/shapes/triangle_overlap.hpp"
+#include "kernel/base/vec3.hpp"
+
+namespace grelha {
+
+/// A kind of primitive, as the building of grids sees it; shapes.hpp says what each must have.
+struct Triangle {
+  static constexpr PrimitiveKind kKind = PrimitiveKind::kTriangle;
+  static constexpr bool kFinite = true;
+  static constexpr bool kPositionFromRay = true;  ///< a surface is found without t
+  static constexpr bool kInBlocks = true;         ///< a list's entry is a block
+
+  /// A triangle as tests read it.
+  template <class T>
+  struct Fields {
+    T corner[3][3];  ///< x, y, z of each
+  };
+  template <class Visit, class... F>
+  static constexpr void for_each_field(const Visit& visit, F&... of) {
+    for (int k = 0; k < 3; ++k)
+      for (int a = 0; a < 3; ++a)
+        visit(of.corner[k][a]...);
+  }
+
+  /// By index, over shared vertices.
+  struct Arrays {
+    const float* vertex[3] = {};          ///< x, y, z of each
+    const float* normal[3] = {};          ///< the same, or null
+    const std::uint32_t* corner[3] = {};  ///< which vertices a triangle has
+    const std::uint32_t* material = nullptr;
+    std::uint32_t count = 0;
+
+    Fields<float> triangle(std::uint32_t i) const {
+      Fields<float> t;
+      for (int k = 0; k < 3; ++k)
+        for (int a = 0; a < 3; ++a)
+          t.corner[k][a] = vertex[a][corner[k][i]];
+      return t;
+    }
+  };
+  /// Cell after cell: cell i owns blocks first[i] up to first[i + 1] - 1, or, if blocks have boxes,
+  /// those at positions first[i] up to first[i + 1] - 1 of box_allocator.hpp. If no cell holds any,
+  /// first == nullptr.
+  struct CellList {
+    const std::uint32_t* first = nullptr;
+    const TriangleBlock* blocks = nullptr;
+    const BlockBoxes* boxes = nullptr;           ///< of all blocks, or null
+    const std::uint32_t* first_block = nullptr;  ///< the first of each row of boxes, and the end
+
+    /// The block at a position, if blocks have boxes.
+    std::uint32_t block_at(std::uint32_t place) const {
+      return first_block[place / kBlock] + place % kBlock;
+    }
+    /// A cell's blocks: the first, and the one behind the last.
+    std::pair<std::uint32_t, std::uint32_t> blocks_of(std::size_t cell) const {
+      if (!boxes)
+        return {first[cell], first[cell + 1]};
+      return {block_at(first[cell]), block_at(first[cell + 1])};
+    }
+  };
+
+  /// The caller's arrays of coordinates.
+  template <class Visit>
+  static void for_each_array(const TriangleSpans& spans, const Visit& visit) {
+    for (const Floats* v : {&spans.x, &spans.y, &spans.z})
+      visit(*v);
+  }
+  static const TriangleSpans& spans_of(const GeometrySpans& g) { return g.triangles; }
+  /// True if all arrays of triangles have the same length, and so do all arrays of vertices.
+  static bool is_even(const TriangleSpans& spans);
+  static std::size_t bytes(const TriangleSpans& spans) {
+    return spans.size() * 4 * sizeof(std::uint32_t) +
+           (spans.vertex_count() + spans.nx.size()) * 3 * sizeof(float);
+  }
+
+  /// The caller's triangles.
+  struct Source {
+    static constexpr std::size_t kSetupBytes = 0;  ///< a triangle
+    TriangleSpans spans;
+    explicit Source(const GeometrySpans& g) : spans(g.triangles) {}
+    std::size_t size() const { return spans.size(); }
+    Arrays arrays() const;
+    Fields<float> operator[](std::size_t i) const {
+      Fields<float> t;
+      const std::uint32_t vertex[3] = {spans.a[i], spans.b[i], spans.c[i]};
+      for (int k = 0; k < 3; ++k) {
+        t.corner[k][0] = spans.x[vertex[k]];
+        t.corner[k][1] = spans.y[vertex[k]];
+        t.corner[k][2] = spans.z[vertex[k]];
+      }
+      return t;
+    }
+  };
+
+  static Box box(const Source& source, std::size_t i) {
+    const Fields<float> t = source[i];
+    Box b;
+    for (int a = 0; a < 3; ++a) {
+      b.lo[a] = std::min(std::min(t.corner[0][a], t.corner[1][a]), t.corner[2][a]);
+      b.hi[a] = std::max(std::max(t.corner[0][a], t.corner[1][a]), t.corner[2][a]);
+    }
+    return b;
+  }
+
+  class Overlap : public TriangleOverlap {
+   public:
+    Overlap(const Fields<float>& t, const CellFrame& g, const CellRange& range)
+        : TriangleOverlap(t.corner, g, range) {}
+  };
+};
+
+}  // namespace grelha
+
+namespace grelha {
+
+/// The span of t of the crossing beyond t_min of a ray and a triangle, in t - shift, as doubles and
+/// then exact numbers tell it.
+CrossingSpan triangle_span(const ExactRay& ray, const float (&corner)[3][3], double shift);
+
+}  // namespace grelha
+
+namespace grelha::GRELHA_ISA {
+
+/// A ray's own frame for triangle tests: axis `k` is where |dir| is largest (x before y before z on
+/// equality), and the shear that lays dir along it. Function of the direction alone, so every
+/// triangle sees the same frame.
+template <class Real>
+struct Shear {
+  Real x, y, z;      ///< dir[kx] / dir[kz], dir[ky] / dir[kz], 1 / dir[kz]
+  Real frame_error;  ///< what differences of coordinates are off by before they are rounded
+};
+
+/// Index of the axis the frame stands on; the other two follow cyclically.
+inline int shear_axis(float dx, float dy, float dz) {
+  const float ax = magnitude(dx), ay = magnitude(dy), az = magnitude(dz);
+  if (ax >= ay && ax >= az)
+    return 0;
+  return ay >= az ? 1 : 2;
+}
+
+/// The axes that follow each one, cyclically.
+inline constexpr int kNextAxis[3] = {1, 2, 0};
+inline constexpr int kPreviousAxis[3] = {2, 0, 1};
+
+/// A vector in the axes of rays that stand on different ones, lane by lane.
+template <class Real>
+inline Vec3<Real> permute_axes(const Real& axis, const Vec3<Real>& v) {
+  const Mask<Real> x = axis == Real(0), y = axis == Real(1);
+  return {select(x, v.y, select(y, v.z, v.x)),
+          select(x, v.z, select(y, v.x, v.y)),
+          select(x, v.x, select(y, v.y, v.z))};
+}
+
+// Error bounds of floats or doubles, in u, half an ulp of 1; docs/numerics.md derives each,
+// triangle_test.cpp pins them. S: the largest sheared coordinate of a corner, Z: the largest depth
+// of one. "Spread" is S (S + Z) over the sum of the edge functions, times the range of the corners'
+// t.
+
+/// Times S (S + Z): bound of an edge function's error. It is 24 u: a sheared corner is off by u (4
+/// (S + Z) + S).
+inline constexpr double kEdgeError = 32;
+/// Times the spread: with kDepthRounding times t, bound of the error of t. It is 72 u by the edges,
+/// a quarter of whose sum may be wrong, and 36 u by the mean.
+inline constexpr double kDepthError = 256;
+inline constexpr double kDepthRounding = 16;
+
+/// Edge functions of triangles and rays, and their error bounds.
+template <class Real>
+struct EdgeFunctions {
+  Vec3<Real> oa, ob, oc;  ///< from the rays' origins to the corners
+  Real u, v, w;           ///< of the edges opposite to a, b and c
+  Real least, most;       ///< of these
+  Real wide;              ///< added to depths, for the error of coordinates
+  Real area;              ///< S (S + Z), and a little
+
+  [[gnu::always_inline]] EdgeFunctions(const RayAndTriangle<Real>& from, const Shear<Real>& shear)
+      : oa(from.corner.a - from.org), ob(from.corner.b - from.org), oc(from.corner.c - from.org) {
+    const Real ax = oa.x - shear.x * oa.z, ay = oa.y - shear.y * oa.z;
+    const Real bx = ob.x - shear.x * ob.z, by = ob.y - shear.y * ob.z;
+    const Real cx = oc.x - shear.x * oc.z, cy = oc.y - shear.y * oc.z;
+    u = cx * by - cy * bx;
+    v = ax * cy - ay * cx;
+    w = bx * ay - by * ax;
+    const Real size =
+        max_abs(max_abs(max_abs(ax, ay), max_abs(bx, by)), max_abs(cx, cy)) + shear.frame_error;
+    const Real depth = max_abs(max_abs(oa.z, ob.z), oc.z);
+    wide = Real(static_cast<Scalar<Real>>(.25 / kUnit<Real>)) * shear.frame_error;
+    area = size * ((size + depth) + wide) + Real(static_cast<Scalar<Real>>(kUnderflow<Real>));
+    least = min(min(u, v), w);
+    most = max(max(u, v), w);
+  }
+  /// Lanes whose ray does not surely pass beside the triangle.
+  [[gnu::always_inline]] Mask<Real> may_cross() const {
+    return min(most, Real(0) - least) <= units<Real>(kEdgeError) * area;
+  }
+};
+
+/// Bounds the crossings of rays and triangles, from either side, edges and corners included.
+///
+/// Source    Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013; the
+///           filter after Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust
+///           Geometric Predicates", 1997.
+template <class Real>
+[[gnu::always_inline]] inline HitInterval<Real> bound_triangle(const RayAndTriangle<Real>& from,
+                                                               const Shear<Real>& shear,
+                                                               const Real& t_min,
+                                                               const Real& best) {
+  const EdgeFunctions<Real> edge(from, shear);
+  HitInterval<Real> found{edge.may_cross(), {}, t_min, t_min};
+  if (none(found.some)) {
+    found.sure = found.some;
+    return found;
+  }
+  const auto& [oa, ob, oc, u, v, w, least, most, wide, area] = edge;
+  const Real inverse = Real(1) / ((u + v) + w);
+  const Real ta = shear.z * oa.z, tb = shear.z * ob.z, tc = shear.z * oc.z;
+  const Real t = ((u * inverse) * ta + (v * inverse) * tb) + (w * inverse) * tc;
+  const Real range = max(max(ta, tb), tc) - min(min(ta, tb), tc);
+  const Real spread = (area * magnitude(inverse)) * range;
+  const Real size = magnitude(t) + wide * magnitude(shear.z);
+  const Real slack = units<Real>(kDepthError) * spread + units<Real>(kDepthRounding) * size;
+  found.lo = t - slack;
+  found.hi = t + slack;
+  const Mask<Real> inside = max(least, Real(0) - most) > units<Real>(kEdgeError) * area;
+  found.some = and_not(found.some, mask_or(found.hi <= t_min, found.lo > best));
+  found.sure =
+      mask_and(found.some, mask_and(inside, found.lo > t_min));  // a NaN anywhere is not sure
+  return found;
+}
+
+/// The same of one ray and one triangle, in double.
+inline HitInterval<double> bound_triangle(const ExactRay& r, const float (&corner)[3][3]) {
+  const int k = shear_axis(
+      static_cast<float>(r.dir[0]), static_cast<float>(r.dir[1]), static_cast<float>(r.dir[2]));
+  const int kx = kNextAxis[k];
+  const int ky = kPreviousAxis[k];
+  const auto turned = [&](const auto& v) { return Vec3<double>{v[kx], v[ky], v[k]}; };
+  const RayAndTriangle<double> from{
+      turned(r.org), turned(r.dir), {turned(corner[0]), turned(corner[1]), turned(corner[2])}};
+  const Shear<double> shear{from.dir.x / from.dir.z, from.dir.y / from.dir.z, 1 / from.dir.z, 0};
+  return bound_triangle<double>(from, shear, r.t_min, __builtin_inf());
+}
+
+/// Decides selected lanes that a float test cannot, in double, and then in exact numbers. `source`
+/// is copied; 16 bytes are best.
+template <class Real, class Source>
+[[gnu::noinline]] void refine_triangles(Source source,
+                                        Mask<Real> selected,
+                                        Real t_min,
+                                        HitInterval<Real>& found) {
+  if (source.frame_error() == 0) {  // of the triangle that a ray starts on
+    const Mask<Real> past = mask_and(selected, past_plane(source(), t_min));
+    selected = and_not(selected, past);
+    found.some = and_not(found.some, past);
+  }
+  replace_selected(bits(selected), found, [&](int k) {
+    float corner[3][3];
+    source.take_vertices(k, corner);
+    return triangle_span(source.given(k), corner, source.shift(k));
+  });
+}
+
+/// Finds where rays cross triangles.
+///
+/// Takes     source() gives rays and triangles. It is called again where floats cannot decide, so
+///           that registers need not hold until then what few tests read.
+/// Returns   lanes whose ray crosses its triangle at a t beyond t_min, which is from lo to hi.
+///           Those whose t is surely beyond `best` are left out. The sign of every decision is that
+///           of real arithmetic: triangles that share an edge or a corner agree about it.
+template <class Real, class Source>
+[[gnu::always_inline]] inline HitInterval<Real> intersect_triangle(const Source& source,
+                                                                   const Shear<Real>& shear,
+                                                                   const Real& t_min,
+                                                                   const Real& best) {
+  HitInterval<Real> found = bound_triangle<Real>(source(), shear, t_min, best);
+  const Mask<Real> unsure = and_not(found.some, found.sure);
+  if (any(unsure)) [[unlikely]]
+    refine_triangles<Real, Source>(source, unsure, t_min, found);
+  return found;
+}
+
+/// Triangle i of a block.
+inline Triangle::Fields<float> triangle_of(const TriangleBlock& block, int i) {
+  return {{{block.a[0][i], block.a[1][i], block.a[2][i]},
+           {block.b[0][i], block.b[1][i], block.b[2][i]},
+           {block.c[0][i], block.c[1][i], block.c[2][i]}}};
+}
+
+/// Lanes of triangles i, i + 1, ... of a block that overlap a frustum.
+template <class Frustum>
+[[gnu::noinline]] inline unsigned overlapping(const Frustum& f, const TriangleBlock& block, int i) {
+  const Block au = load<Block>(block.a[f.u] + i);
+  const Block av = load<Block>(block.a[f.v] + i);
+  const Block ak = load<Block>(block.a[f.k] + i);
+  const Block bu = load<Block>(block.b[f.u] + i);
+  const Block bv = load<Block>(block.b[f.v] + i);
+  const Block bk = load<Block>(block.b[f.k] + i);
+  const Block cu = load<Block>(block.c[f.u] + i);
+  const Block cv = load<Block>(block.c[f.v] + i);
+  const Block ck = load<Block>(block.c[f.k] + i);
+  const unsigned left = f.inside_mask([&](int j) {  // the corner farthest inside
+    const Block s(f.a[j]);
+    const Block r(f.b[j]);
+    const Block fa = s * (j < 2 ? au : av) + r * ak;
+    const Block fb = s * (j < 2 ? bu : bv) + r * bk;
+    const Block fc = s * (j < 2 ? cu : cv) + r * ck;
+    return max(max(fa, fb), fc) + Block(f.c[j]);
+  });
+  const Block s(f.to_slice);
+  const Mask<Block> ahead = max(max(s * ak, s * bk), s * ck) + Block(f.zero_slice) >= Block(f.near);
+  return left & bits(mask_and(ahead, au == au));  // padding is NaN
+}
+
+/// Groups of rays in a frustum that may hit a triangle.
+template <class Frustum>
+inline std::uint64_t groups_near(const Frustum& f, const Triangle::Fields<float>& triangle) {
+  const float(&a)[3] = triangle.corner[0];
+  const float(&b)[3] = triangle.corner[1];
+  const float(&c)[3] = triangle.corner[2];
+  const float end =
+      max(max(f.to_slice * a[f.k], f.to_slice * b[f.k]), f.to_slice * c[f.k]) + f.zero_slice;
+  return f.groups_ahead(end) & f.groups_inside([&](int j, int first) {
+    const int u = f.side(j);
+    const VFloat s = load<VFloat>(f.group_b[j] + first);
+    const VFloat fa = VFloat(f.a[j] * a[u]) + s * VFloat(a[f.k]);
+    const VFloat fb = VFloat(f.a[j] * b[u]) + s * VFloat(b[f.k]);
+    const VFloat fc = VFloat(f.a[j] * c[u]) + s * VFloat(c[f.k]);
+    return max(max(fa, fb), fc) + load<VFloat>(f.group_c[j] + first);
+  });
+}
+
+}  // namespace grelha::GRELHA_ISA

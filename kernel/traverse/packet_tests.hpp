@@ -1,0 +1,212 @@
+#pragma once
+// Tests of the rays of a packet against one primitive (SIMD over rays).
+
+#include "kernel/traverse/packet.hpp"
+
+namespace grelha::GRELHA_ISA {
+
+/// The rays from i on, as tests read them.
+[[gnu::always_inline]] inline SimdRays<VFloat> simd_rays(const Packet& p, int i) {
+  return {.org = take_vec<VFloat>(p.org, i),
+          .dir = take_vec<VFloat>(p.dir, i),
+          .inv_dd = load<VFloat>(p.inv_dd + i),
+          .inv_length = load<VFloat>(p.inv_length + i),
+          .t_min = load<VFloat>(p.t_min + i),
+          .frame_error = VFloat(p.frame_error),
+          .error_bound = VFloat(p.error_bound),
+          .base = p.base,
+          .given = &p.given,
+          .first = i,
+          .step = 1};
+}
+
+/// Precomputes what tests read of the directions from i on.
+[[gnu::always_inline]] inline void set_directions(Packet& p, int i, bool any_triangles) {
+  const Vec3<VFloat> d = take_vec<VFloat>(p.dir, i);
+  const VFloat inv_dd = VFloat(1) / dot(d, d);
+  store(p.inv_dd + i, inv_dd);
+  store(p.inv_length + i, inverse_length(d, inv_dd));
+  if (!any_triangles)
+    return;
+  const Vec3<VFloat> q = permute_axes(load<VFloat>(p.axis + i), d);
+  store(p.shear[0] + i, q.x / q.z);
+  store(p.shear[1] + i, q.y / q.z);
+  store(p.shear[2] + i, VFloat(1) / q.z);
+}
+
+/// Completes a packet whose org, dir, t_min, best and size are set.
+inline void prepare(Packet& p, const GeometryView& geometry, bool any_triangles) {
+  constexpr int w = kWidth<VFloat>;
+  p.geometry = &geometry;
+  p.error_bound = kInfinity;
+  p.given = {{p.org[0], p.org[1], p.org[2]}, {p.dir[0], p.dir[1], p.dir[2]}, p.t_min, nullptr};
+  p.end = p.best;
+  p.groups = (p.size + w - 1) / w;
+  p.live = ~std::uint64_t{0} >> (64 - p.groups);
+  p.has_units = false;
+  fill_up(p);
+  for (int g = 0; g < p.groups; ++g) {
+    const int i = g * w;
+    p.ahead.prefetch_row(i);
+    store(p.id + i, VFloat(bits_of(kNoPrimitive)));
+    check_rays(p, i);
+    store(p.low + i, load<VFloat>(p.best + i));
+    if (any_triangles)
+      set_axes(p, i, g);
+    set_directions(p, i, any_triangles);
+  }
+}
+
+/// Ids of the primitives that the rays from i on hit.
+inline VUint ids_at(const Packet& p, int i) {
+  return load_words<VFloat>(reinterpret_cast<const std::uint32_t*>(p.id + i));
+}
+
+/// True if the hit of primitive `id` comes first, where floats cannot tell it from ray i's hit so
+/// far or from the end of its search.
+[[gnu::noinline, gnu::cold]] inline bool wins_tie(const Packet& p, int i, std::uint32_t id) {
+  const ExactRay ray = p.given.ray(i);
+  const std::uint32_t held = id_of(p.id[i]);
+  return held == kNoPrimitive ? is_before_end(*p.geometry, ray, id, p.end[i])
+                              : is_closest(*p.geometry, ray, id, held);
+}
+
+/// Takes a hit of a lane that ties, and narrows the span of t of the first one.
+template <bool kAny>
+[[gnu::noinline, gnu::cold]] void record_tie(Packet& p, int i, std::uint32_t id) {
+  if (wins_tie(p, i, id))
+    p.id[i] = bits_of(id);
+  const std::uint32_t held = id_of(p.id[i]);
+  if (held == kNoPrimitive)
+    return;
+  const CrossingSpan span = crossing_span(*p.geometry, p.given.ray(i), held, p.given.shift_of(i));
+  p.best[i] = kAny ? -kInfinity : span.hi;
+  p.low[i] = kAny ? -kInfinity : span.lo;
+}
+
+/// Notes hits of lanes from i on against one primitive: nearer wins, then the lower id. With kAny a
+/// hit ends the ray's search.
+template <bool kAny>
+inline void record(Packet& p, int i, const HitInterval<VFloat>& found, std::uint32_t id) {
+  const VFloat best = load<VFloat>(p.best + i);
+  const Mask<VFloat> candidate = mask_and(found.some, found.lo <= best);
+  if (none(candidate))
+    return;
+  const VFloat low = load<VFloat>(p.low + i);
+  const Mask<VFloat> closer = mask_and(candidate, found.hi < low);
+  const VFloat over(-kInfinity);
+  store(p.best + i, select(closer, kAny ? over : found.hi, best));
+  store(p.low + i, select(closer, kAny ? over : found.lo, low));
+  store(p.id + i, select(closer, VFloat(bits_of(id)), load<VFloat>(p.id + i)));
+  const unsigned other = bits_where(ids_at(p, i) != id);
+  each_bit(bits(and_not(candidate, closer)) & other,
+           [&](int k) { record_tie<kAny>(p, i + k, id); });
+}
+
+/// Tests all live rays against a primitive of a kind and counts that: runs `test(i, g)` for the
+/// first lane i of every live group g.
+template <class Shape, class Test>
+[[gnu::always_inline]] inline void each_tested(const Packet& p, Counters& n, const Test& test) {
+  unsigned busy = 0;  // in one pass with the tests: these look at best and t_min as well
+  each_live_group(
+      p, [&](int i, int g) __attribute__((always_inline)) {
+        const unsigned on = bits(load<VFloat>(p.best + i) > load<VFloat>(p.t_min + i));
+        busy += static_cast<unsigned>(__builtin_popcount(on));
+        test(i, g);
+      });
+  n.issued += static_cast<unsigned>(__builtin_popcountll(p.live) * kWidth<VFloat>);
+  n.busy += busy;
+  n.tests[kNumber<Shape>] += busy;
+}
+
+/// All live rays against primitive `index` of many.
+template <bool kAny, class Shape>
+inline void test_one(
+    Packet& p, const FieldArrays<Shape>& of, std::uint32_t index, std::uint32_t id, Counters& n) {
+  const auto one = broadcast<Shape, VFloat>(of, index);
+  each_tested<Shape>(p, n, [&](int i, int) {
+    record<kAny>(p, i, intersect<Shape>(simd_rays(p, i), one, load<VFloat>(p.best + i)), id);
+  });
+}
+
+/// A triangle that the rays of a packet are tested against, as it is and in their frame.
+struct TestedTriangle {
+  const Packet* p;
+  const Triangle::Fields<float>& as_it_is;
+  const float (*corner)[3];
+};
+
+/// It and the rays from i on.
+struct TriangleSource {
+  const TestedTriangle* with;
+  int i;
+  float frame_error() const { return with->p->frame_error; }
+  ExactRay given(int k) const { return with->p->given.ray(i + k); }
+  double shift(int k) const { return with->p->given.shift_of(i + k); }
+  void take_vertices(int, float (&to)[3][3]) const {
+    __builtin_memcpy(to, with->as_it_is.corner, sizeof to);
+  }
+};
+
+/// The same of a group whose rays share an axis.
+struct AlignedSource : TriangleSource {
+  int axis;
+  RayAndTriangle<VFloat> operator()() const {
+    const int k = axis;
+    const int kx = kNextAxis[k];
+    const int ky = kPreviousAxis[k];
+    const Packet& p = *with->p;
+    const auto corner = [&](int c) {
+      const float* const v = with->corner[c];
+      return Vec3<VFloat>{VFloat(v[kx]), VFloat(v[ky]), VFloat(v[k])};
+    };
+    return {{load<VFloat>(p.org[kx] + i), load<VFloat>(p.org[ky] + i), load<VFloat>(p.org[k] + i)},
+            {load<VFloat>(p.dir[kx] + i), load<VFloat>(p.dir[ky] + i), load<VFloat>(p.dir[k] + i)},
+            {corner(0), corner(1), corner(2)}};
+  }
+};
+
+/// The same of a group whose rays do not.
+struct MixedSource : TriangleSource {
+  RayAndTriangle<VFloat> operator()() const {
+    const Packet& p = *with->p;
+    const VFloat axis = load<VFloat>(p.axis + i);
+    const auto corner = [&](int c) {
+      const float* const v = with->corner[c];
+      return permute_axes<VFloat>(axis, {VFloat(v[0]), VFloat(v[1]), VFloat(v[2])});
+    };
+    return {permute_axes(axis, take_vec<VFloat>(p.org, i)),
+            permute_axes(axis, take_vec<VFloat>(p.dir, i)),
+            {corner(0), corner(1), corner(2)}};
+  }
+};
+
+template <bool kAny>
+[[gnu::noinline]] void test_triangle(Packet& p,
+                                     const Triangle::Fields<float>& triangle,
+                                     std::uint32_t id,
+                                     Counters& n) {
+  Triangle::Fields<float> framed;
+  for (int k = 0; p.base && k < 3; ++k)
+    for (int a = 0; a < 3; ++a)
+      framed.corner[k][a] = triangle.corner[k][a] - p.base[a];
+  const TestedTriangle with{&p, triangle, p.base ? framed.corner : triangle.corner};
+  each_tested<Triangle>(
+      p, n, [&](int i, int g) __attribute__((always_inline)) {
+        const Shear<VFloat> shear{load<VFloat>(p.shear[0] + i),
+                                  load<VFloat>(p.shear[1] + i),
+                                  load<VFloat>(p.shear[2] + i),
+                                  VFloat(p.frame_error)};
+        const VFloat t_min = load<VFloat>(p.t_min + i);
+        const VFloat best = load<VFloat>(p.best + i);
+        const int axis = p.group_axis[g];
+        record<kAny>(p,
+                     i,
+                     axis >= 0
+                         ? intersect_triangle(AlignedSource{{&with, i}, axis}, shear, t_min, best)
+                         : intersect_triangle(MixedSource{{&with, i}}, shear, t_min, best),
+                     id);
+      });
+}
+
+}  // namespace grelha::GRELHA_ISA

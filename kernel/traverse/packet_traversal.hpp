@@ -1,0 +1,337 @@
+#pragma once
+// Takes a packet through a grid: all rays together, slice by slice along their major axis, between
+// four bounding planes (frustum.hpp).
+
+#include "kernel/traverse/culling.hpp"
+#include "kernel/traverse/frustum_builder.hpp"
+#include "kernel/traverse/mailbox.hpp"
+
+namespace grelha::GRELHA_ISA {
+
+/// Rows and columns of cells of a slice.
+struct CellRect {
+  int least[2], most[2];
+  long cells() const {
+    return static_cast<long>(most[0] - least[0] + 1) * (most[1] - least[1] + 1);
+  }
+};
+
+/// Part of a slice between a frustum's first slice and its last, counted from the first.
+struct SliceSpan {
+  float begin, end;
+};
+inline SliceSpan span_of(const Frustum& f, int slice) {
+  const float s = static_cast<float>(slice);
+  const float next = s + 1;
+  return {(s > f.from ? s : f.from) - f.from, (next < f.to ? next : f.to) - f.from};
+}
+
+struct Interval {
+  float lo, hi;
+};
+/// Bounds of the rays along U (j = 0) or V (j = 1) within a slice, in cells.
+inline Interval side_in(const Frustum& f, int j, const SliceSpan& s) {
+  return {min(f.lo[j] + s.begin * f.lo_slope[j], f.lo[j] + s.end * f.lo_slope[j]) - f.margin,
+          max(f.hi[j] + s.begin * f.hi_slope[j], f.hi[j] + s.end * f.hi_slope[j]) + f.margin};
+}
+
+/// The cells that a frustum can overlap between slices s and s + 1; false when it is outside the
+/// grid there.
+[[gnu::always_inline]] inline bool rectangle(const GridView& g,
+                                             const Frustum& f,
+                                             int slice,
+                                             CellRect& r) {
+  const SliceSpan span = span_of(f, slice);
+  for (int j = 0; j < 2; ++j) {
+    const auto [lo, hi] = side_in(f, j, span);
+    const int n = g.n[j == 0 ? f.u : f.v];
+    if (!(hi >= 0) || !(lo <= static_cast<float>(n)))
+      return false;
+    r.least[j] = clamp_cell(static_cast<double>(lo), n);
+    r.most[j] = clamp_cell(static_cast<double>(hi), n);
+  }
+  return true;
+}
+
+/// Calls visit.look(cell) for the cells with something in them that lie in a rectangle of a slice.
+/// Returns the least distance that a cell of it has to one before it with something in it.
+template <class Visit>
+[[gnu::always_inline]] inline int look_into_cells(
+    const GridView& g, const Frustum& f, int slice, const CellRect& r, Counters& n, Visit& visit) {
+  const std::size_t stride[3] = {
+      1,
+      static_cast<std::size_t>(g.n[0]),
+      static_cast<std::size_t>(g.n[0]) * static_cast<std::size_t>(g.n[1])};
+  const int k = f.flip ? g.n[f.k] - 1 - slice : slice;
+  int nearest = 255;
+  for (int v = r.least[1]; v <= r.most[1]; ++v)
+    for (int u = r.least[0]; u <= r.most[0]; ++u) {
+      const std::size_t cell = static_cast<std::size_t>(k) * stride[f.k] +
+                               static_cast<std::size_t>(u) * stride[f.u] +
+                               static_cast<std::size_t>(v) * stride[f.v];
+      ++n.visits;
+      const int distance = f.distance[cell];
+      nearest = distance < nearest ? distance : nearest;
+      if (distance == 0)
+        visit.look(cell);
+    }
+  return nearest;
+}
+
+/// Slices that hold nothing after one that has nothing within nearest - 1 cells: the frustum shifts
+/// sideways by at most `steepest` a slice.
+inline int empty_slices(const Frustum& f, int nearest) {
+  return f.steepest > 1 ? static_cast<int>(static_cast<float>(nearest - 1) / f.steepest)
+                        : nearest - 1;
+}
+
+/// Goes through the slices that a frustum crosses in a grid, front to back. visit.enter(slice,
+/// rectangle) comes before what visit.look(cell) sees of one, visit.leave(slice) after a slice with
+/// something in it; the walk ends where one of the two returns false.
+template <class Visit>
+[[gnu::always_inline]] inline void walk_frustum(const GridView& g,
+                                                const Frustum& f,
+                                                Counters& n,
+                                                Visit& visit) {
+  const int slices = g.n[f.k];
+  int slice = clamp_cell(static_cast<double>(f.from - f.margin), slices);
+  const int last = clamp_cell(static_cast<double>(f.to + f.margin), slices);
+  for (; slice <= last; ++slice) {
+    CellRect r;
+    if (!rectangle(g, f, slice, r))
+      continue;
+    if (!visit.enter(slice, r))
+      return;
+    const int nearest = look_into_cells(g, f, slice, r, n, visit);
+    if (nearest == 0) {
+      if (!visit.leave(slice))
+        return;
+    } else if (nearest > 1) {
+      slice += empty_slices(f, nearest);
+    }
+  }
+}
+
+/// Leaves live those groups with a ray whose answer may still change beyond t(s), s a plane along
+/// K. Returns how many such rays there are.
+[[gnu::always_inline]] inline int update_live(const Frustum& f, Packet& p, float s) {
+  std::uint64_t live = 0;
+  int rays = 0;
+  each_live_group(p, [&](int i, int g) {
+    const VFloat t = (VFloat(s) - load<VFloat>(f.position + i)) * load<VFloat>(f.per_slice + i);
+    const unsigned on = bits(min(load<VFloat>(p.best + i), load<VFloat>(f.leave + i)) > t);
+    if (on != 0)
+      live |= std::uint64_t{1} << g;
+    rays += __builtin_popcount(on);
+  });
+  p.live = live;
+  return rays;
+}
+
+/// Beyond this many cells a slice, looking into each costs more than every ray walking alone
+/// (measured).
+inline int most_cells(int width) {
+  return width > kMiddle ? 24 : width > kSmall ? 10 : 6;
+}
+
+/// The rays of a packet that go through a grid together.
+template <bool kAny>
+class PacketVisit {
+ public:
+  PacketVisit(const GridView& g, const Frustum& f, Packet& p, int width, bool mailbox, Counters& n)
+      : g_(g), f_(f), p_(p), n_(n), width_(width), limit_(most_cells(width)), mailbox_(mailbox) {
+    if (mailbox)
+      held_.clear();
+  }
+
+  bool start() {
+    started_ = active_ = update_live(f_, p_, f_.from - f_.margin);
+    return active_ > 0;
+  }
+
+  bool enter(int slice, const CellRect& r) {
+    const long cells = r.cells();
+    if (cells > 1 && cells * width_ > static_cast<long>(limit_) * active_)
+      split_at_ = slice;
+    return split_at_ < 0;
+  }
+
+  [[gnu::always_inline]] void look(std::size_t cell) {
+    CellShapes::for_each([&]<class Shape>() __attribute__((always_inline)) {
+      const typename Shape::CellList& list = g_.lists.of<Shape>();
+      if (!list.first)
+        return;
+      if constexpr (Shape::kInBlocks)
+        test_blocks(list, cell);
+      else
+        test_list<Shape>(list, cell);
+    });
+  }
+
+  bool leave(int slice) {
+    active_ = update_live(f_, p_, static_cast<float>(slice + 1) - f_.margin);
+    return active_ > 0;
+  }
+
+  /// The slice before which the rays no longer had enough in common, or -1.
+  int split_at() const { return split_at_; }
+  /// The share of the ways of all rays that was gone until then.
+  float saved() const {
+    const float way = f_.to + 1 - f_.from;
+    const float left = min(f_.to + 1 - static_cast<float>(split_at_), way);
+    return 1 - static_cast<float>(active_) / static_cast<float>(started_) * (left / way);
+  }
+
+ private:
+  bool seen(std::uint32_t id) { return mailbox_ && held_.seen(id); }
+
+  [[gnu::noinline]] void test_blocks(const Triangle::CellList& list, std::size_t cell) {
+    const std::uint32_t first = list.first[cell];
+    const std::uint32_t end = list.first[cell + 1];
+    for (std::uint32_t at = first / kBlock * kBlock; at < end; at += kBlock) {
+      unsigned left = boxes_inside(f_, list.boxes[at / kBlock]) & blocks_between(at, first, end);
+      const TriangleBlock* const blocks = list.blocks + list.block_at(at);
+      for (; left != 0; left &= left - 1)
+        test_block(blocks[__builtin_ctz(left)]);
+    }
+  }
+
+  void test_block(const TriangleBlock& block) {
+    each_inside_block(f_, block, [&](int at) {
+      const std::uint32_t id = block.id[at];
+      if (seen(id))
+        return;
+      const Triangle::Fields<float> triangle = triangle_of(block, at);
+      const auto test = [&] { test_triangle<kAny>(p_, triangle, id, n_); };
+      test_near_groups<Triangle>(triangle, test);
+    });
+  }
+
+  template <class Shape>
+  void test_list(const typename Shape::CellList& list, std::size_t cell) {
+    each_inside(f_, list, cell, [&](std::uint32_t i) {
+      const std::uint32_t id = list.id[i];
+      if (seen(id))
+        return;
+      const auto test = [&] { test_one<kAny, Shape>(p_, list.fields, i, id, n_); };
+      test_near_groups<Shape>(broadcast<Shape, float>(list.fields, i), test);
+    });
+  }
+
+  /// Runs a test against one primitive for the groups of rays that may hit it.
+  template <class Shape, class Test>
+  [[gnu::always_inline]] void test_near_groups(const typename Shape::template Fields<float>& one,
+                                               const Test& test) {
+    const std::uint64_t live = p_.live;
+    if (f_.by_group)
+      p_.live &= groups_near(f_, one);
+    if (p_.live != 0)
+      test();
+    p_.live = live;
+  }
+
+  const GridView& g_;
+  const Frustum& f_;
+  Packet& p_;
+  Counters& n_;
+  int width_;
+  int limit_;
+  int started_ = 0;
+  int active_ = 0;
+  int split_at_ = -1;
+  bool mailbox_;
+  Mailbox held_;
+};
+
+/// Lets the rays that meet the grid go on from a slice; the slices before it are done.
+inline void start_from_slice(const Frustum& f, Packet& p, int slice) {
+  const VFloat s(static_cast<float>(slice) - f.margin);
+  each_live_group(p, [&](int i, int) {
+    const VFloat t = (s - load<VFloat>(f.position + i)) * load<VFloat>(f.per_slice + i);
+    const Mask<VFloat> meets = load<VFloat>(f.leave + i) > VFloat(-kInfinity);
+    store(p.start + i, select(meets, max(t, load<VFloat>(p.start + i)), VFloat(kInfinity)));
+  });
+}
+
+template <bool kAny>
+inline std::uint64_t packet_traverse(
+    const GridView& g, Packet& p, int width, bool use_mailbox, Counters& n);
+
+inline FrustumStats& stats_of(Packet& p, int width) {
+  return width > kMiddle ? p.large_stats : width > kSmall ? p.middle_stats : p.small_stats;
+}
+
+/// The live rays of a packet in smaller ones of `rays` neighbours each; see packet_traverse().
+template <bool kAny>
+inline std::uint64_t traverse_parts(
+    const GridView& g, Packet& p, int rays, bool use_mailbox, Counters& n) {
+  const std::uint64_t live = p.live;
+  const int each = rays / kWidth<VFloat>;
+  std::uint64_t apart = 0;
+  for (int first = 0; first < p.groups; first += each)
+    if ((p.live = live & ((std::uint64_t{1} << each) - 1) << first) != 0)
+      apart |= packet_traverse<kAny>(g, p, rays, use_mailbox, n);
+  p.live = live;
+  return apart;
+}
+
+/// Splits a packet that does not go together into four; rays that do not there go one by one.
+template <bool kAny>
+inline std::uint64_t split_packet(
+    const GridView& g, Packet& p, int width, bool use_mailbox, Counters& n) {
+  ++n.packet_fallbacks;
+  if (width <= kSmall)
+    return p.live;
+  return traverse_parts<kAny>(g, p, width > kMiddle ? kMiddle : kSmall, use_mailbox, n);
+}
+
+/// Takes the live rays of a packet, `width` at most, through one grid, each from p.start on, as far
+/// as they go together, if those before did. Returns the groups whose rays are to go on by
+/// themselves, from p.start on. Leaves `live` unchanged on return.
+template <bool kAny>
+inline std::uint64_t packet_traverse(
+    const GridView& g, Packet& p, int width, bool use_mailbox, Counters& n) {
+  FrustumStats& luck = stats_of(p, width);
+  if (!luck.should_try())
+    return split_packet<kAny>(g, p, width, use_mailbox, n);
+  const std::uint64_t live = p.live;
+  Frustum f;
+  switch (bound_rays(g, p, f)) {
+    case Coherence::kMisses:
+      luck.record(1);
+      return 0;
+    case Coherence::kIncoherent:
+      luck.record(0);
+      return split_packet<kAny>(g, p, width, use_mailbox, n);
+    case Coherence::kTogether:
+      break;
+  }
+  PacketVisit<kAny> visit(g, f, p, width, use_mailbox, n);
+  if (visit.start())
+    walk_frustum(g, f, n, visit);
+  p.live = live;
+  if (visit.split_at() >= 0) {
+    luck.record(visit.saved());
+    start_from_slice(f, p, visit.split_at());
+    return split_packet<kAny>(g, p, width, use_mailbox, n);
+  }
+  luck.record(1);
+  ++n.formed;
+  return 0;
+}
+
+/// All rays of a packet through one grid, from p.start on, `width` neighbours together.
+template <bool kAny>
+inline void traverse_packet(
+    const GridView& g, Packet& p, int width, bool use_mailbox, Counters& n) {
+  if (width == 1)
+    return stream_traverse<kAny>(g, p, n);
+  const std::uint64_t live = p.live;
+  p.live = width < p.size ? traverse_parts<kAny>(g, p, width, use_mailbox, n)
+                          : packet_traverse<kAny>(g, p, p.size, use_mailbox, n);
+  if (p.live != 0)
+    stream_traverse<kAny>(g, p, n);
+  p.live = live;
+}
+
+}  // namespace grelha::GRELHA_ISA

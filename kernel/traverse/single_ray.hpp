@@ -1,0 +1,183 @@
+#pragma once
+// One ray, by itself or in a packet, and the values that tests read from either.
+
+#include "kernel/base/lanes_four.hpp"
+#include "kernel/traverse/packet_tests.hpp"
+
+namespace grelha::GRELHA_ISA {
+
+/// A ray by itself.
+struct Single {
+  float org[3], dir[3], t_min, best, low;
+  std::uint32_t id;
+  int axis;  ///< of the shear
+  /// inverse of the direction; this and the next fields with triangles only, with a spare place
+  float inverse[4];
+  /// the side of a box that the ray meets first, along each axis; the other is 3 places on or back
+  int near[4];
+  float inv_dd, inv_length;
+  float shear[4];  ///< and a place more
+  const float* base = nullptr;
+  float frame_error = 0;
+  float error_bound = kInfinity;
+  double shift = 0;
+  GivenRays given;  ///< the ray as it came
+  const float* end = nullptr;
+  const GeometryView* geometry = nullptr;
+  const TriangleBlock* block = nullptr;  ///< of the last triangle that came first
+};
+
+/// A ray of a packet.
+struct PacketRay {
+  Packet& p;
+  int i;
+};
+
+/// Values that tests read from a ray.
+inline float origin(const Single& r, int axis) {
+  return r.org[axis];
+}
+inline float direction(const Single& r, int axis) {
+  return r.dir[axis];
+}
+inline float t_min_of(const Single& r) {
+  return r.t_min;
+}
+inline float best_of(const Single& r) {
+  return r.best;
+}
+inline float low_of(const Single& r) {
+  return r.low;
+}
+inline float shear_of(const Single& r, int which) {
+  return r.shear[which];
+}
+inline float inverse_of(const Single& r, int axis) {
+  return r.inverse[axis];
+}
+inline int near_side(const Single& r, int axis) {
+  return r.near[axis];
+}
+inline int axis_of(const Single& r) {
+  return r.axis;
+}
+inline std::uint32_t id_of(const Single& r) {
+  return r.id;
+}
+/// The object that holds a ray's frame: its packet, or the ray itself.
+inline const Single& frame_of(const Single& r) {
+  return r;
+}
+inline void set_hit(Single& r, const CrossingSpan& t, std::uint32_t id) {
+  r.best = t.hi;
+  r.low = t.lo;
+  r.id = id;
+}
+inline int index_of(const Single&) {
+  return 0;
+}
+
+inline float origin(const PacketRay& r, int axis) {
+  return r.p.org[axis][r.i];
+}
+inline float direction(const PacketRay& r, int axis) {
+  return r.p.dir[axis][r.i];
+}
+inline float t_min_of(const PacketRay& r) {
+  return r.p.t_min[r.i];
+}
+inline float best_of(const PacketRay& r) {
+  return r.p.best[r.i];
+}
+inline float low_of(const PacketRay& r) {
+  return r.p.low[r.i];
+}
+inline float shear_of(const PacketRay& r, int which) {
+  return r.p.shear[which][r.i];
+}
+inline float inverse_of(const PacketRay& r, int axis) {
+  return r.p.inverse[axis][r.i];
+}
+inline int near_side(const PacketRay& r, int axis) {
+  return static_cast<int>(r.p.near[axis][r.i]);
+}
+inline int axis_of(const PacketRay& r) {
+  return static_cast<int>(r.p.axis[r.i]);
+}
+inline std::uint32_t id_of(const PacketRay& r) {
+  return id_of(r.p.id[r.i]);
+}
+inline const Packet& frame_of(const PacketRay& r) {
+  return r.p;
+}
+inline void set_hit(const PacketRay& r, const CrossingSpan& t, std::uint32_t id) {
+  r.p.best[r.i] = t.hi;
+  r.p.low[r.i] = t.lo;
+  r.p.id[r.i] = bits_of(id);
+}
+inline int index_of(const PacketRay& r) {
+  return r.i;
+}
+inline float inverse_square(const Single& r) {
+  return r.inv_dd;
+}
+inline float inverse_square(const PacketRay& r) {
+  return r.p.inv_dd[r.i];
+}
+inline float inverse_length(const Single& r) {
+  return r.inv_length;
+}
+inline float inverse_length(const PacketRay& r) {
+  return r.p.inv_length[r.i];
+}
+
+/// Sets the inverse direction and the near sides of boxes, which tests of triangles also need.
+inline void set_inverse(Single& r, const Vec3<float>& d) {
+  const Four least = four(min_advance(d.x, d.y, d.z));
+  const Four dir{d.x, d.y, d.z, 1};
+  const Four inverse = four(1) / (magnitude(dir) < least ? least : dir);
+  const FourInts low{0, 1, 2, 0};
+  store(r.inverse, inverse);
+  store(r.near, inverse < four(0) ? low + 3 : low);
+}
+
+/// Prepares a ray by itself, as prepare(Packet&) does many. False: it meets nothing, r is
+/// incomplete.
+inline bool prepare(Single& r,
+                    const Vec3<float>& org,
+                    const Vec3<float>& d,
+                    float t_min,
+                    float t_max,
+                    bool any_triangles) {
+  if (!(t_max > t_min))
+    return false;
+  const float dd = dot(d, d);
+  // NaN and infinity times zero are NaN
+  const float sum = ((org.x + org.y) + (org.z + dd)) + 1 / dd;
+  if (!(sum * 0 == 0))
+    return false;
+  r.org[0] = org.x;
+  r.org[1] = org.y;
+  r.org[2] = org.z;
+  r.dir[0] = d.x;
+  r.dir[1] = d.y;
+  r.dir[2] = d.z;
+  r.t_min = t_min;
+  r.best = t_max;
+  r.low = t_max;
+  r.id = kNoPrimitive;
+  r.given = {{r.org, r.org + 1, r.org + 2}, {r.dir, r.dir + 1, r.dir + 2}, &r.t_min, nullptr};
+  r.end = &r.best;
+  r.inv_dd = 1 / dd;
+  r.inv_length = inverse_length(d, r.inv_dd);
+  r.axis = 0;
+  if (any_triangles) {
+    r.axis = shear_axis(d.x, d.y, d.z);
+    const Vec3<float> q = permute_axes<float>(static_cast<float>(r.axis), d);
+    store(r.shear, Four{q.x, q.y, 1, 1} / four(q.z));
+    set_inverse(r, d);
+  }
+  return true;
+}
+
+}  // namespace grelha::GRELHA_ISA

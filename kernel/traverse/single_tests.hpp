@@ -1,0 +1,239 @@
+#pragma once
+// Tests one ray at a time against blocks of primitives (SIMD over primitives), when the rays of a
+// packet have nothing left in common. stream_traversal.hpp takes such rays through grids.
+
+#include "kernel/traverse/single_ray.hpp"
+#include "kernel/traverse/slab.hpp"
+
+namespace grelha::GRELHA_ISA {
+
+/// Takes a hit that floats cannot tell from the hit so far, or from the end of the search, and
+/// narrows the span of t of the first one. Returns true if the search is over.
+template <bool kAny, class Ray>
+[[gnu::noinline, gnu::cold]] bool record_tie_of(Ray& r, std::uint32_t id) {
+  const std::uint32_t held = id_of(r);
+  const GivenRays& rays = frame_of(r).given;
+  const ExactRay ray = rays.ray(index_of(r));
+  const GeometryView& g = *frame_of(r).geometry;
+  const bool first = held == kNoPrimitive ? is_before_end(g, ray, id, frame_of(r).end[index_of(r)])
+                                          : is_closest(g, ray, id, held);
+  if (!first && held == kNoPrimitive)
+    return false;
+  const std::uint32_t best = first ? id : held;
+  set_hit(r, crossing_span(g, ray, best, rays.shift_of(index_of(r))), best);
+  return kAny;
+}
+
+/// Takes one hit. Returns whether the search is over (kAny and something was hit).
+template <bool kAny, class Ray>
+[[gnu::always_inline]] inline bool take_hit(Ray& r, const CrossingSpan& t, std::uint32_t id) {
+  if (!(t.lo <= best_of(r)))
+    return false;
+  if (!(t.hi < low_of(r)))
+    return id != id_of(r) && record_tie_of<kAny>(r, id);
+  set_hit(r, t, id);
+  return kAny;
+}
+
+/// Takes the hits of a block in order of index. Returns whether the search is over.
+template <bool kAny, class Ray>
+inline bool record(Ray& r, const HitInterval<Block>& found, const std::uint32_t* ids) {
+  unsigned lanes = bits(mask_and(found.some, found.lo <= Block(best_of(r))));
+  if (lanes == 0)
+    return false;
+  float lo[kWidth<Block>], hi[kWidth<Block>];
+  store(lo, found.lo);
+  store(hi, found.hi);
+  for (; lanes != 0; lanes &= lanes - 1) {
+    const int k = __builtin_ctz(lanes);
+    if (take_hit<kAny>(r, {lo[k], hi[k]}, ids[k])) {
+      set_hit(r, {-kInfinity, -kInfinity}, ids[k]);
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Bits of the boxes from i on that a ray passes through before its search ends; `enter`: t where.
+template <class Ray>
+[[gnu::always_inline]] inline unsigned hit_boxes_from(const Ray& r,
+                                                      const BlockBoxes& boxes,
+                                                      int i,
+                                                      Block& enter) {
+  const float* const base = frame_of(r).base;
+  enter = Block(t_min_of(r));
+  Block leave(best_of(r));
+  for (int a = 0; a < 3; ++a) {
+    const Block org(origin(r, a)), inverse(inverse_of(r, a));
+    const auto t_of_side = [&](int side) __attribute__((always_inline)) {
+      const Block at = load<Block>(boxes.side[side] + i);
+      return ((base ? at - Block(base[a]) : at) - org) * inverse;
+    };
+    const int near = near_side(r, a);
+    clip_to_slab(t_of_side(near), t_of_side(2 * a + 3 - near), enter, leave);
+  }
+  return bits(enter <= leave);
+}
+
+/// Bits of the boxes that a ray passes through before its search ends; `enters`: t where.
+template <class Ray>
+inline unsigned hit_boxes(const Ray& r, const BlockBoxes& boxes, float (&enters)[kBlock]) {
+  unsigned hit = 0;
+  for (int i = 0; i < kBlock; i += kWidth<Block>) {
+    Block enter;
+    hit |= hit_boxes_from(r, boxes, i, enter) << i;
+    store(enters + i, enter);
+  }
+  return hit;
+}
+
+/// Bits of the eight blocks from `at` on (a multiple of eight) that lie in [first, end).
+inline unsigned blocks_between(std::uint32_t at, std::uint32_t first, std::uint32_t end) {
+  constexpr unsigned kAll = (1u << kBlock) - 1;
+  const unsigned from = first > at ? kAll << (first - at) : kAll;
+  return end - at < kBlock ? from & ~(kAll << (end - at)) & kAll : from & kAll;
+}
+
+/// A ray and triangles of a block from i on.
+template <class Ray>
+struct BlockSource {
+  const Ray* r;
+  const TriangleBlock* block;
+  int i;
+  RayAndTriangle<Block> operator()() const {
+    const int k = axis_of(*r);
+    const int kx = kNextAxis[k];
+    const int ky = kPreviousAxis[k];
+    const float* const base = frame_of(*r).base;
+    const auto corner = [&](const float(&v)[3][kBlock]) {
+      const Vec3<Block> at{load<Block>(v[kx] + i), load<Block>(v[ky] + i), load<Block>(v[k] + i)};
+      return base ? at - Vec3<Block>{Block(base[kx]), Block(base[ky]), Block(base[k])} : at;
+    };
+    return {{Block(origin(*r, kx)), Block(origin(*r, ky)), Block(origin(*r, k))},
+            {Block(direction(*r, kx)), Block(direction(*r, ky)), Block(direction(*r, k))},
+            {corner(block->a), corner(block->b), corner(block->c)}};
+  }
+  float frame_error() const { return frame_of(*r).frame_error; }
+  ExactRay given(int) const { return frame_of(*r).given.ray(index_of(*r)); }
+  double shift(int) const { return frame_of(*r).given.shift_of(index_of(*r)); }
+  void take_vertices(int k, float (&to)[3][3]) const {
+    for (int a = 0; a < 3; ++a) {
+      to[0][a] = block->a[a][i + k];
+      to[1][a] = block->b[a][i + k];
+      to[2][a] = block->c[a][i + k];
+    }
+  }
+};
+
+/// Replaces Counters when no caller asks for them: clearing these took up to a twentieth of a call
+/// for one ray.
+struct NoCounters {
+  struct Nowhere {
+    void operator+=(unsigned) const {}
+  };
+  Nowhere primitive_rows, tests[kKinds];
+};
+
+/// Counts the rows of primitives that a ray is tested against.
+template <class Shape, class Counts>
+inline void count_rows(Counts& n, int rows, int width) {
+  n.primitive_rows += static_cast<unsigned>(rows);
+  n.tests[kNumber<Shape>] += static_cast<unsigned>(rows * width);
+}
+
+/// Callers count rows.
+template <bool kAny, class Ray>
+[[gnu::noinline]] bool test_block(Ray& r, const TriangleBlock& block) {
+  const Shear<Block> shear{Block(shear_of(r, 0)),
+                           Block(shear_of(r, 1)),
+                           Block(shear_of(r, 2)),
+                           Block(frame_of(r).frame_error)};
+  const Block t_min(t_min_of(r));
+  const std::uint32_t before = id_of(r);
+  for (int i = 0; i < kBlock; i += kWidth<Block>) {
+    const BlockSource<Ray> with{&r, &block, i};
+    if (record<kAny>(r, intersect_triangle(with, shear, t_min, Block(best_of(r))), block.id + i))
+      return true;
+  }
+  if constexpr (std::is_same_v<Ray, Single>)
+    if (id_of(r) != before)
+      r.block = &block;
+  return false;
+}
+
+/// One ray, for primitives side by side.
+template <class Real, class Ray>
+[[gnu::always_inline]] inline SimdRays<Real> spread(const Ray& r) {
+  return {.org = {Real(origin(r, 0)), Real(origin(r, 1)), Real(origin(r, 2))},
+          .dir = {Real(direction(r, 0)), Real(direction(r, 1)), Real(direction(r, 2))},
+          .inv_dd = Real(inverse_square(r)),
+          .inv_length = Real(inverse_length(r)),
+          .t_min = Real(t_min_of(r)),
+          .frame_error = Real(frame_of(r).frame_error),
+          .error_bound = Real(frame_of(r).error_bound),
+          .base = frame_of(r).base,
+          .given = &frame_of(r).given,
+          .first = index_of(r),
+          .step = 0};
+}
+
+/// Primitives of one kind side by side, from element i of a list on; `ray` is r, spread. Returns
+/// whether the search is over. Callers count rows.
+template <bool kAny, class Shape, class Ray>
+[[gnu::always_inline]] inline bool test_row(Ray& r,
+                                            const SimdRays<Block>& ray,
+                                            const typename Shape::CellList& list,
+                                            std::uint32_t i) {
+  const auto row = side_by_side<Shape, Block>(list.fields, i);
+  return record<kAny>(r, intersect<Shape>(ray, row, Block(best_of(r))), list.id + i);
+}
+
+/// Primitives of one kind in one cell. Reading past its end tests those of the next, which costs
+/// nothing and is never wrong: a hit is a hit.
+template <bool kAny, class Shape, class Ray, class Counts>
+[[gnu::always_inline]] inline bool test_list(Ray& r,
+                                             const typename Shape::CellList& list,
+                                             std::size_t cell,
+                                             Counts& n) {
+  const SimdRays<Block> ray = spread<Block>(r);
+  const std::uint32_t end = list.first[cell + 1];
+  for (std::uint32_t i = list.first[cell]; i < end; i += kWidth<Block>) {
+    count_rows<Shape>(n, 1, kWidth<Block>);
+    if (test_row<kAny, Shape>(r, ray, list, i))
+      return true;
+  }
+  return false;
+}
+
+/// True if some cell holds primitives in arrays.
+inline bool holds_arrays(const CellLists& lists) {
+  bool some = false;
+  ArrayShapes::for_each([&]<class Shape>() { some = some || lists.of<Shape>().first; });
+  return some;
+}
+
+/// Tests the primitives in the arrays of one cell.
+template <bool kAny, class Ray, class Counts>
+[[gnu::noinline]] bool test_arrays(Ray& r, const CellLists& lists, std::size_t cell, Counts& n) {
+  bool over = false;
+  ArrayShapes::for_each([&]<class Shape>() __attribute__((always_inline)) {
+    const typename Shape::CellList& list = lists.of<Shape>();
+    over = over || (list.first && test_list<kAny, Shape>(r, list, cell, n));
+  });
+  return over;
+}
+
+/// Tests all primitives of one cell.
+template <bool kAny, class Ray, class Counts>
+inline bool test_cell(Ray& r, const CellLists& lists, std::size_t cell, Counts& n) {
+  const Triangle::CellList& triangles = lists.of<Triangle>();
+  if (triangles.first)
+    for (std::uint32_t i = triangles.first[cell]; i < triangles.first[cell + 1]; ++i) {
+      count_rows<Triangle>(n, 1, kBlock);
+      if (test_block<kAny>(r, triangles.blocks[i]))
+        return true;
+    }
+  return holds_arrays(lists) && test_arrays<kAny>(r, lists, cell, n);
+}
+
+}  // namespace grelha::GRELHA_ISA

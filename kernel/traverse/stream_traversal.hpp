@@ -1,0 +1,242 @@
+#pragma once
+// Takes many rays that have nothing else in common through a grid, each on its own. All rays under
+// way step side by side (SIMD over rays); then the rays that came to cells with something in them
+// are tested there, each by itself (SIMD over primitives).
+//
+// What a ray does next cannot be predicted, nor what is in the cell it came to: so except for hits
+// hardly a branch depends on one ray. Each phase goes through a list of the rays, boxes or blocks
+// that the phase before it chose, and prefetches what the phase after it reads.
+
+#include "kernel/traverse/active_rays.hpp"
+
+namespace grelha::GRELHA_ISA {
+
+/// Prefetches an object, line by line.
+template <class T>
+[[gnu::always_inline]] inline void prefetch(const T* object) {
+  const char* const bytes = reinterpret_cast<const char*>(object);
+  for (std::size_t at = 0; at < sizeof(T); at += 64)
+    __builtin_prefetch(bytes + at);
+}
+
+/// Most bytes of the fields of kinds whose primitives are prefetched: larger ones come too late.
+inline constexpr std::size_t kAskedFor = 16;
+
+/// Tests rays against the contents of the cells they came to.
+template <bool kAny>
+class CellTests {
+ public:
+  CellTests(const GridView& g, Packet& p, Counters& n) : lists_(g.lists), p_(p), n_(n) {
+    each_live_group(p, [&](int i, int) { set_slabs(p, i); });
+  }
+
+  void test(const LeafQueue& to) {
+    if (triangles_.first)
+      test_triangles(to);
+    ArrayShapes::for_each([&]<class Shape>() __attribute__((always_inline)) {
+      if (lists_.of<Shape>().first)
+        test_arrays<Shape>(to);
+    });
+  }
+
+ private:
+  static constexpr int kMost = 512;  ///< blocks that are due at once
+
+  bool searches(int ray) const { return p_.best[ray] > p_.t_min[ray]; }
+
+  [[gnu::always_inline]] void test_triangles(const LeafQueue& to) {
+    for (int k = 0; k < to.count; ++k) {
+      first_[k] = triangles_.first[to.cell[k]];
+      end_[k] = triangles_.first[to.cell[k] + 1];
+      prefetch(triangles_.boxes + first_[k] / kBlock);
+    }
+    int due = 0;
+    for (int k = 0; k < to.count; ++k)
+      for (std::uint32_t at = first_[k] / kBlock * kBlock; at < end_[k]; at += kBlock) {
+        due = take_blocks(to.ray[k], at, blocks_between(at, first_[k], end_[k]), due);
+        if (due >= kMost) {
+          flush(due);
+          due = 0;
+        }
+      }
+    flush(due);
+  }
+
+  /// Puts those of some blocks from `at` on whose boxes a ray passes behind those that are due.
+  /// Returns how many there are then.
+  [[gnu::always_inline]] int take_blocks(std::uint32_t ray,
+                                         std::uint32_t at,
+                                         unsigned blocks,
+                                         int due) {
+    const PacketRay r{p_, static_cast<int>(ray)};
+    const std::uint32_t block = triangles_.block_at(at);
+    ++n_.box_rows;
+    for (int i = 0; i < kBlock; i += kWidth<Block>) {
+      Block enter;
+      const unsigned hit = hit_boxes_from(r, triangles_.boxes[at / kBlock], i, enter);
+      due = take_passed(ray, block + static_cast<unsigned>(i), hit & blocks >> i, enter, due);
+    }
+    return due;
+  }
+
+  /// Makes the blocks from `first` on with a bit in `passed` due; returns the new number of due
+  /// ones.
+  [[gnu::always_inline]] int take_passed(
+      std::uint32_t ray, std::uint32_t first, unsigned passed, const Block& enter, int due) {
+    if constexpr (kWidth<Block> == kBlock) {
+      const CompressMask selected(passed);
+      const Words<Block> rays = Words<Block>{} + ray;
+      store_words(due_ray_ + due, rays);  // the same in each place
+      selected.store(due_block_ + due, counted_words<Block>(first));
+      selected.store(due_enter_ + due, enter);
+      return due + selected.count();
+    }
+    float enters[kWidth<Block>];
+    store(enters, enter);
+    each_bit(passed, [&](int k) {
+      due_ray_[due] = ray;
+      due_block_[due] = first + static_cast<unsigned>(k);
+      due_enter_[due++] = enters[k];
+    });
+    return due;
+  }
+
+  /// Tests the blocks that are due. A hit found since a box was passed may be nearer than the box.
+  [[gnu::noinline]] void flush(int due) {
+    count_rows<Triangle>(n_, due, kBlock);
+    for (int k = 0; k < due && k < kPrefetch; ++k)
+      prefetch(triangles_.blocks + due_block_[k]);
+    std::uint32_t met[kMost + kBlock];
+    int count = 0;
+    for (int k = 0; k < due; ++k) {
+      const int next = k + kPrefetch < due ? k + kPrefetch : due - 1;
+      prefetch(triangles_.blocks + due_block_[next]);
+      met[count] = static_cast<std::uint32_t>(k);
+      count += may_cross(due_ray_[k], triangles_.blocks[due_block_[k]]);
+    }
+    for (int j = 0; j < count; ++j) {
+      const std::uint32_t k = met[j];
+      PacketRay r{p_, static_cast<int>(due_ray_[k])};
+      if (due_enter_[k] <= p_.best[r.i])
+        test_block<kAny>(r, triangles_.blocks[due_block_[k]]);
+    }
+  }
+
+  /// False if all triangles of a block are surely missed. If a block fills more than one register,
+  /// this test takes longer than a predicted branch.
+  [[gnu::always_inline]] bool may_cross(std::uint32_t ray, const TriangleBlock& block) {
+    if constexpr (kWidth<Block> < kBlock) {
+      return true;
+    } else {
+      const PacketRay r{p_, static_cast<int>(ray)};
+      const Shear<Block> shear{Block(shear_of(r, 0)),
+                               Block(shear_of(r, 1)),
+                               Block(shear_of(r, 2)),
+                               Block(p_.frame_error)};
+      const EdgeFunctions<Block> edge(BlockSource<PacketRay>{&r, &block, 0}(), shear);
+      return any(edge.may_cross());
+    }
+  }
+
+  template <class Shape>
+  [[gnu::noinline]] void test_arrays(const LeafQueue& to) {
+    const typename Shape::CellList& list = lists_.of<Shape>();
+    if constexpr (sizeof(typename Shape::template Fields<float>) <= kAskedFor)
+      for (int k = 0; k < to.count; ++k)
+        fetch<Shape>(list, list.first[to.cell[k]]);
+    if constexpr (!kAny && kSortsOut<Shape>)
+      test_selected_rows<Shape>(list, to);
+    else
+      for (int k = 0; k < to.count; ++k) {
+        PacketRay r{p_, static_cast<int>(to.ray[k])};
+        if (searches(r.i))
+          test_list<kAny, Shape>(r, list, to.cell[k], n_);
+      }
+  }
+
+  /// True if missed primitives are sorted out before the others are tested.
+  template <class Shape>
+  static constexpr bool kSortsOut = requires(const SimdRays<Block>& ray,
+                                             const typename Shape::template Fields<Block>& row) {
+    may_intersect(ray, row);
+  };
+
+  template <class Shape>
+  [[gnu::always_inline]] void test_selected_rows(const typename Shape::CellList& list,
+                                                 const LeafQueue& to) {
+    int due = 0;
+    for (int k = 0; k < to.count; ++k) {
+      const SimdRays<Block> ray = spread<Block>(PacketRay{p_, static_cast<int>(to.ray[k])});
+      const std::uint32_t end = list.first[to.cell[k] + 1];
+      for (std::uint32_t i = list.first[to.cell[k]]; i < end; i += kWidth<Block>) {
+        count_rows<Shape>(n_, 1, kWidth<Block>);
+        due_ray_[due] = to.ray[k];
+        due_block_[due] = i;
+        due += any(may_intersect(ray, side_by_side<Shape, Block>(list.fields, i)));
+        if (due == kMost) {
+          test_rows<Shape>(list, due);
+          due = 0;
+        }
+      }
+    }
+    test_rows<Shape>(list, due);
+  }
+
+  template <class Shape>
+  [[gnu::always_inline]] void test_rows(const typename Shape::CellList& list, int due) {
+    for (int k = 0; k < due; ++k) {
+      PacketRay r{p_, static_cast<int>(due_ray_[k])};
+      if (searches(r.i))
+        test_row<kAny, Shape>(r, spread<Block>(r), list, due_block_[k]);
+    }
+  }
+
+  /// Asks for what the first two blocks of primitives from `first` on are made of, and for ids: a
+  /// hit is likely.
+  template <class Shape>
+  [[gnu::always_inline]] void fetch(const typename Shape::CellList& list, std::uint32_t first) {
+    const auto prefetch_row = [first](const float* const& field) {
+      __builtin_prefetch(field + first);
+      __builtin_prefetch(field + first + 16);
+    };
+    Shape::for_each_field(prefetch_row, list.fields);
+    __builtin_prefetch(list.id + first);
+  }
+
+  static constexpr int kPrefetch = 8;
+
+  const CellLists& lists_;
+  const Triangle::CellList& triangles_ = lists_.of<Triangle>();
+  Packet& p_;
+  Counters& n_;
+  std::uint32_t first_[kPacket];
+  std::uint32_t end_[kPacket];
+  alignas(64) std::uint32_t due_ray_[kMost + kBlock];
+  alignas(64) std::uint32_t due_block_[kMost + kBlock];
+  alignas(64) float due_enter_[kMost + kBlock];
+};
+
+/// The live rays of a packet through a grid, each from p.start on and on its own (Amanatides & Woo
+/// 1987), with leaps over empty cells by their distance (Cohen & Sheffer, "Proximity Clouds",
+/// 1994). A hit is never clipped to its cell; a walk ends once the hit lies at or before the exit
+/// of the cell. Plane distances come from the plane's index, never by adding up; if float takes a
+/// ray to the wrong side of a corner, the error is less than the pad around primitives
+/// (docs/numerics.md).
+template <bool kAny>
+[[gnu::noinline]] void stream_traverse(const GridView& g, Packet& p, Counters& n) {
+  ActiveRays rays(g, p);
+  if (!rays.any())
+    return;
+  CellTests<kAny> tests(g, p, n);
+  LeafQueue arrivals;
+  // No walk crosses more planes than there are, whatever rounding does.
+  const int most = g.n[0] + g.n[1] + g.n[2] + 3;
+  for (int round = 0; round < most && rays.any(); ++round) {
+    n.visits += static_cast<unsigned>(rays.going());
+    rays.enqueue(arrivals);
+    tests.test(arrivals);
+    rays.step();
+  }
+}
+
+}  // namespace grelha::GRELHA_ISA

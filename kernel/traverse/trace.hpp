@@ -1,0 +1,163 @@
+#pragma once
+// Traces the rays of a packet through a whole scene: planes and outside primitives first, then each
+// grid with the remaining range of t.
+
+#include "kernel/traverse/far_rays.hpp"
+#include "kernel/traverse/round_hits.hpp"
+
+namespace grelha::GRELHA_ISA {
+
+/// Tests the primitives that stand in no grid since they are infinite.
+template <bool kAny>
+inline void test_infinite(const SceneView& scene, Packet& p, Counters& n) {
+  const GeometryView& g = scene.geometry;
+  InfiniteShapes::for_each([&]<class Shape>() __attribute__((always_inline)) {
+    const typename Shape::Arrays& all = g.of<Shape>();
+    for (std::uint32_t i = 0; i < all.count; ++i)
+      test_one<kAny, Shape>(p, all.fields, i, g.ids.begin(Shape::kKind) + i, n);
+  });
+}
+
+/// Tests the triangles that lie in no grid.
+template <bool kAny>
+inline void test_outside(const Triangle::CellList& list, Packet& p, Counters& n) {
+  for (std::uint32_t b = 0; b < list.first[1]; ++b) {
+    const TriangleBlock& block = list.blocks[b];
+    for (int i = 0; i < kBlock && block.a[0][i] == block.a[0][i]; ++i)
+      test_triangle<kAny>(p, triangle_of(block, i), block.id[i], n);
+  }
+}
+
+/// The few primitives that lie in no grid, each against all rays.
+template <bool kAny>
+inline void test_outside(const CellLists& lists, Packet& p, Counters& n) {
+  if (lists.of<Triangle>().first)
+    test_outside<kAny>(lists.of<Triangle>(), p, n);
+  ArrayShapes::for_each([&]<class Shape>() __attribute__((always_inline)) {
+    const typename Shape::CellList& list = lists.of<Shape>();
+    for (std::uint32_t i = 0; list.first && i < list.first[1]; ++i)
+      test_one<kAny, Shape>(p, list.fields, i, list.id[i], n);
+  });
+}
+
+/// Which of the live rays of a packet start near a grid.
+struct Starts {
+  bool any_near, any_far;
+};
+
+/// Lets those rays be searched from their start that start near a grid, and others from nowhere.
+inline Starts set_starts(const GridView& g, Packet& p) {
+  Starts starts{false, false};
+  each_live_group(p, [&](int i, int) {
+    Mask<VFloat> away = VFloat(0) != VFloat(0);
+    for (int a = 0; a < 3; ++a) {
+      const VFloat o = load<VFloat>(p.org[a] + i);
+      away = mask_or(away, mask_or(o<VFloat(g.near_lo[a]), o> VFloat(g.near_hi[a])));
+    }
+    const VFloat start = load<VFloat>(p.t_min + i);
+    const unsigned searching = bits(load<VFloat>(p.best + i) > start);
+    starts.any_far |= (bits(away) & searching) != 0;
+    starts.any_near |= (~bits(away) & searching) != 0;
+    store(p.start + i, select(away, VFloat(kInfinity), start));
+  });
+  return starts;
+}
+
+/// SimdRays::error_bound of rays from a position on, for all finite primitives of a scene.
+template <class Real>
+inline Real error_bound_in(const SceneView& scene, const Vec3<Real>& org) {
+  const auto along = [&](const Real& o, int a) {
+    return max_abs(Real(scene.box_lo[a]) - o, Real(scene.box_hi[a]) - o);
+  };
+  const Real far = (along(org.x, 0) + along(org.y, 1)) + along(org.z, 2);
+  return Real(static_cast<float>(2 * (kFarError + 1) * kUnit<float>)) * far;
+}
+
+/// t at which a ray enters a grid; infinity if it never does, or runs along a plane of the grid.
+inline float entry(const GridView& g, const float (&org)[3], const float (&dir)[3], float t_min) {
+  float t0 = t_min;
+  float t1 = kInfinity;
+  for (int a = 0; a < 3; ++a) {
+    const float inv = 1 / dir[a];
+    const float x = (g.lo_f[a] - org[a]) * inv;
+    const float y = (g.hi_f[a] - org[a]) * inv;
+    clip_to_slab(min(x, y), max(x, y), t0, t1);
+  }
+  return t0 <= t1 ? t0 : kInfinity;
+}
+
+/// Visits the grids, for closest hits front to back as a ray meets them: early hits cut the other
+/// searches short. Answers do not depend on the order, since ties go to the lower id.
+template <bool kAny, class Visit>
+inline void each_grid(const SceneView& scene,
+                      const float (&org)[3],
+                      const float (&dir)[3],
+                      float t_min,
+                      const Visit& visit) {
+  const int count = scene.grid_count;
+  if (kAny || count < 2) {
+    for (int g = 0; g < count; ++g)
+      visit(scene.grids[g]);
+    return;
+  }
+  int order[kMostGrids];
+  float at[kMostGrids];
+  for (int g = 0; g < count; ++g) {
+    const float t = entry(scene.grids[g], org, dir, t_min);
+    int i = g;
+    for (; i > 0 && at[i - 1] > t; --i) {
+      at[i] = at[i - 1];
+      order[i] = order[i - 1];
+    }
+    at[i] = t;
+    order[i] = g;
+  }
+  for (int i = 0; i < count; ++i)
+    visit(scene.grids[order[i]]);
+}
+/// The same for a packet, as its first ray meets them.
+template <bool kAny, class Visit>
+inline void each_grid(const SceneView& scene, const Packet& p, const Visit& visit) {
+  const float org[3] = {p.org[0][0], p.org[1][0], p.org[2][0]};
+  const float dir[3] = {p.dir[0][0], p.dir[1][0], p.dir[2][0]};
+  each_grid<kAny>(scene, org, dir, p.t_min[0], visit);
+}
+
+/// The live rays of a packet through a grid.
+template <bool kAny>
+inline void search_grid(const GridView& g, Packet& p, const TraceOptions& options, Counters& n) {
+  const Starts starts = set_starts(g, p);
+  p.error_bound = g.error_bound;
+  if (starts.any_near)
+    traverse_packet<kAny>(g, p, options.packet, options.mailbox, n);
+  if (starts.any_far)
+    search_far<kAny>(g, p, options, n);
+}
+
+inline float error_bound_of(const SceneView& scene, const Packet& p) {
+  VFloat most(0);
+  each_live_group(
+      p, [&](int i, int) { most = max(error_bound_in(scene, take_vec<VFloat>(p.org, i)), most); });
+  return lane_max(most);
+}
+
+template <bool kAny>
+[[gnu::noinline]] void trace_packet(const SceneView& scene,
+                                    Packet& p,
+                                    const TraceOptions& options,
+                                    Counters& n) {
+  prepare(p, scene.geometry, scene.geometry.of<Triangle>().count > 0);
+  test_infinite<kAny>(scene, p, n);
+  if (scene.outside.of<Sphere>().first)
+    p.error_bound = error_bound_of(scene, p);
+  test_outside<kAny>(scene.outside, p, n);
+  each_grid<kAny>(scene, p, [&](const GridView& g) { search_grid<kAny>(g, p, options, n); });
+}
+
+/// t of a hit between the ends of its search, which rounding may have taken it to.
+inline float strictly_between(float t, float t_min, float t_max) {
+  const float after = t > t_min ? t : next_above(t_min);
+  return after < t_max ? after : next_below(t_max);
+}
+
+}  // namespace grelha::GRELHA_ISA
