@@ -81,7 +81,7 @@ std::size_t different(const Answers& a, const Answers& b) {
   return n;
 }
 
-/// Rays that meet something in one and nothing in the other.
+/// Rays that hit something in one and nothing in the other.
 std::size_t other_hits(const Answers& a, const Answers& b) {
   std::size_t n = 0;
   for (std::size_t i = 0; i < a.size(); ++i)

@@ -64,10 +64,10 @@ Ours count_ours(const World& world, const RayBuffer& rays, bool any) {
   };
 }
 
-/// Rays that may meet something in the one and nothing in the other.
+/// Rays that may hit something in the one and nothing in the other.
 constexpr double kDisagree = .005;
 
-/// A row of the table. False: ours is more than asked, or the tree's rays meet other things.
+/// A row of the table. False: ours is more than asked, or the tree's rays hit other things.
 bool count(const std::string& name,
            const World& world,
            const Bvh8& tree,

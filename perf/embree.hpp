@@ -21,7 +21,7 @@ inline constexpr double kPlaneReach = 100;
 
 /// A scene built by Embree, quality MEDIUM. Spheres are sphere points, cones cone curves (which
 /// have caps; Grelha's have none), planes squares of two triangles that end kPlaneReach widths of
-/// the scene away from its middle: larger ones would be met inexactly.
+/// the scene away from its middle: larger ones would be hit inexactly.
 class EmbreeScene {
  public:
   virtual ~EmbreeScene() = default;

@@ -86,7 +86,7 @@ std::vector<Column> columns() {
   return all;
 }
 
-/// Judges in a process of its own, as an assertion of Debian's Embree may end it. False: it did.
+/// Validates in a process of its own, as an assertion of Debian's Embree may end it. False: it did.
 bool judge_apart(Tracer& tracer, const Trial& trial, Counts& counts) {
   int ends[2];
   if (pipe(ends) != 0)

@@ -7,7 +7,7 @@ def refinement(name, file, old, new, cases):
 
 
 def adaptive(name, constant, value, planted, cases):
-    return tolerance(name, "adaptive", constant, value, planted, "refinement", cases)
+    return tolerance(name, "picture", constant, value, planted, "refinement", cases)
 
 
 FAULTS = [
@@ -48,13 +48,14 @@ FAULTS = [
                "AimedRays.AreFor*"),
     refinement("one ray to each rod", "target_rays.cpp", "kMostParts = 256;", "kMostParts = 1;",
                "AimedRays.FollowLong*"),
-    refinement("shadows beside their place", "target_rays.cpp", "aims[i].radius *= t;", "",
+    refinement("shadows beside their place", "target_rays.cpp", "targets[i].radius *= t;", "",
                "AimedRays.FindShadows"),
     refinement("boxes of what is out of focus", "target_rays.cpp", "kMostBlur = .25;",
                "kMostBlur = 1e9;", "AimedRays.LeaveWhat*"),
     refinement("mirrors that show all", "target_rays.cpp",
                "static_cast<double>(rays.t[i]) >= near(real, from)", "true",
                "AimedRays.LookIntoFlatMirrors"),
-    refinement("pieces that touch nothing", "mesh_parts.cpp", "  merge_vertices(triangles, sets);", "",
+    refinement("pieces that touch nothing", "mesh_parts.cpp",
+               "  merge_vertices(triangles, sets);", "",
                "MeshParts.AreConnected*"),
 ]

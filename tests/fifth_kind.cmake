@@ -3,8 +3,8 @@
 # shows it.
 # cmake -D ROOT=project -D SCRATCH=folder -D COMPILER=c++ -D LAUNCHER=... -D FLAGS=... -D
 # GENERATOR=Ninja -D SIMD=ON -P fifth_kind.cmake
-# It goes red where a kind needs more than these lines: what does not compile, is not met by every
-# way of tracing, or meets itself.
+# It goes red where a kind needs more than these lines: what does not compile, is not hit by every
+# way of tracing, or hits itself.
 cmake_minimum_required(VERSION 3.23)
 function(run what)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE out ERROR_VARIABLE out)

@@ -33,11 +33,10 @@ void write_difference(const CompareCommand& command,
               {.notes = {kSoftware, {"Comment", "difference of two pictures"}}});
 }
 
-void write_error_map(const std::string& path, const Similarity& compare_similarity) {
+void write_error_map(const std::string& path, const Similarity& similarity) {
   const auto picture = image_format(path) == ImageFormat::png ? in_colors : in_numbers;
-  write_image(path,
-              picture(compare_similarity),
-              {.notes = {kSoftware, {"Comment", "FLIP of two pictures"}}});
+  write_image(
+      path, picture(similarity), {.notes = {kSoftware, {"Comment", "FLIP of two pictures"}}});
 }
 
 void check_outputs(const CompareCommand& command) {

@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kColumns = 80, kIndent = 22;
 
 /// The options asked for most; a command with few options shows them all.
-constexpr std::size_t kSmallPolygon = 10;
+constexpr std::size_t kFewOptions = 10;
 constexpr std::array<std::string_view, 10> kCommon{"--output",
                                                    "--size",
                                                    "--samples",
@@ -62,7 +62,7 @@ std::string join(const std::vector<std::string>& words, const char* between) {
 
 bool CommandHelp::prints(const OptionHelp& option) const {
   const auto is_common = [](const std::string& n) { return std::ranges::count(kCommon, n) > 0; };
-  return options.size() <= kSmallPolygon || std::ranges::any_of(option.names, is_common);
+  return options.size() <= kFewOptions || std::ranges::any_of(option.names, is_common);
 }
 
 std::string help_text(const CommandHelp& command, bool all) {

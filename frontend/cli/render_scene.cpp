@@ -158,13 +158,13 @@ class SceneRender {
     warn_of_cut_light(command_.scene, file_.scene, resolved_.render, log_.reporting());
     log_.check_none(command_.input);
     const PictureMemory memory = picture_memory(resolved_, camera_);
-    check_memory(command_.scene, memory.sums + memory.tail);
+    check_memory(command_.scene, memory.sums + memory.other);
     return memory;
   }
 
   World build(const PictureMemory& memory) {
     const Stopwatch build;
-    World world = build_world(command_.scene, file_.scene, command_.build, memory.tail, bars_);
+    World world = build_world(command_.scene, file_.scene, command_.build, memory.other, bars_);
     report_.seconds.build = build.seconds();
     return world;
   }

@@ -46,14 +46,14 @@ Names files_of(const std::string& folder) {
   return files;
 }
 
-constexpr std::string_view kLocation = "{}";
+constexpr std::string_view kPlaceholder = "{}";
 
 /// `pattern` with the scene's name in place of {}.
 std::string filled_in(std::string pattern, const std::string& scene) {
   const std::string name = fs::path(default_image(scene)).stem().string();
-  for (std::size_t at = 0; (at = pattern.find(kLocation, at)) != std::string::npos;
+  for (std::size_t at = 0; (at = pattern.find(kPlaceholder, at)) != std::string::npos;
        at += name.size())
-    pattern.replace(at, kLocation.size(), name);
+    pattern.replace(at, kPlaceholder.size(), name);
   return pattern;
 }
 
@@ -93,7 +93,7 @@ std::vector<RenderCommand> commands_for(const RenderCommand& command) {
     const auto want_folder = [&one](const std::string& pattern, const std::string& file) {
       const fs::path folder = fs::path(file).parent_path();
       if (!folder.empty() &&
-          (pattern.ends_with('/') || pattern.find(kLocation) != std::string::npos))
+          (pattern.ends_with('/') || pattern.find(kPlaceholder) != std::string::npos))
         one.folders.push_back(folder.string());
     };
     want_folder(command.image, one.image);

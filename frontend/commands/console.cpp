@@ -12,14 +12,14 @@ void warn(const std::string& line) {
 }
 
 void print(const std::string& text) {
-  std::cout << printed(text) << std::flush;
+  std::cout << printable_text(text) << std::flush;
   if (!std::cout)
     throw FileError("stdout", "cannot write");
 }
 
 void report_line(const std::string& text, bool results_on_stdout) {
   if (results_on_stdout)
-    std::cerr << printed(text);
+    std::cerr << printable_text(text);
   else
     print(text);
 }

@@ -21,7 +21,7 @@ double max_radiance(const Scene& scene, const RenderOptions& options) {
     const bool is_area = one.edge1 != Float3{} || one.edge2 != Float3{};
     light = std::max(light, most_of(one.color) / (is_area ? options.sampling.light_rays : 1));
   }
-  double term = most_of(scene.background), refracted_direction = 1;
+  double term = most_of(scene.background), throughput = 1;
   const std::vector<char> used = used_materials(scene);
   for (std::size_t i = 0; i < used.size(); ++i) {
     const Material& m = scene.materials[i];
@@ -29,11 +29,10 @@ double max_radiance(const Scene& scene, const RenderOptions& options) {
       continue;
     const double returned = most_of(m.diffuse) + most_of(m.specular);
     term = std::max({term, light * returned, most_of(m.emission)});
-    refracted_direction =
-        std::max({refracted_direction, most_of(m.mirror), double(m.transmission)});
+    throughput = std::max({throughput, most_of(m.mirror), double(m.transmission)});
   }
-  for (int bounce = 1; bounce < options.depth && refracted_direction > 1 && term < 1e30; ++bounce)
-    term *= refracted_direction;
+  for (int bounce = 1; bounce < options.depth && throughput > 1 && term < 1e30; ++bounce)
+    term *= throughput;
   return term;
 }
 

@@ -24,8 +24,8 @@ void aim(const FrameView& frame, int y, std::vector<Ray>& rays) {
 
 /// Turns a normal towards the side that the ray comes from.
 Float3 facing(const Float3& normal, const Float3& direction) {
-  const float dot_of = (normal.x * direction.x + normal.y * direction.y) + normal.z * direction.z;
-  return dot_of > 0 ? Float3{-normal.x, -normal.y, -normal.z} : normal;
+  const float cosine = (normal.x * direction.x + normal.y * direction.y) + normal.z * direction.z;
+  return cosine > 0 ? Float3{-normal.x, -normal.y, -normal.z} : normal;
 }
 
 }  // namespace

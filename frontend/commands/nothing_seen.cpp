@@ -60,8 +60,8 @@ class View {
                half_height * forward + up,
                half_height * forward + -1 * up};
     for (const double across : {-half_width, half_width})
-      for (const double dot_of : {-half_height, half_height})
-        corner_points_.push_back(forward + across * right + dot_of * up);
+      for (const double upward : {-half_height, half_height})
+        corners_.push_back(forward + across * right + upward * up);
   }
 
   /// The sides that a ball, or a point, lies wholly beyond.
@@ -77,16 +77,16 @@ class View {
   bool meets(const Float3& point, const Float3& normal) const {
     const Direction n{normal.x, normal.y, normal.z};
     const double side = inner(between(eye_, point), n);
-    return lens_ || std::any_of(corner_points_.begin(),
-                                corner_points_.end(),
-                                [&](const Direction& d) { return inner(d, n) * side > 0; });
+    return lens_ || std::any_of(corners_.begin(), corners_.end(), [&](const Direction& d) {
+             return inner(d, n) * side > 0;
+           });
   }
 
  private:
   Float3 eye_;
   bool lens_;
   std::array<Direction, kSides> inward_;  ///< normals of the sides: eye, left, right, below, above
-  std::vector<Direction> corner_points_;
+  std::vector<Direction> corners_;
 };
 
 /// `common`: the sides that all primitives lie beyond. `all`: every primitive lies beyond some
@@ -157,7 +157,7 @@ Float3 middle_of(const SceneBounds& b) {
           b.low.z + (b.high.z - b.low.z) / 2};
 }
 
-std::string remote(const SceneFile& file, const Unseen& found) {
+std::string outside_text(const SceneFile& file, const Unseen& found) {
   if (found.common & kBehind)
     return "everything lies behind the eye: exchange \"from\" and \"at\", or turn the view round";
   const SceneBounds bounds = bounds_of(file.scene.geometry);
@@ -173,21 +173,23 @@ void warn_empty_image(const std::string& path,
                       const SceneFile& file,
                       const Camera& camera,
                       const Warn& warn) {
-  const auto add_line = [&](const std::string& message) { warn(path + ": warning: " + message); };
+  const auto add_warning = [&](const std::string& message) {
+    warn(path + ": warning: " + message);
+  };
   const Scene& scene = file.scene;
   if (file.points > 0)
-    add_line(std::to_string(file.points) + (file.points == 1 ? " point has" : " points have") +
-             " no faces and will not be drawn: make a mesh of them, or spheres");
+    add_warning(std::to_string(file.points) + (file.points == 1 ? " point has" : " points have") +
+                " no faces and will not be drawn: make a mesh of them, or spheres");
   if (is_empty(scene.geometry)) {
     if (file.points == 0)
-      add_line("nothing to draw: add an object, such as \"s 0 0 0 1\"");
+      add_warning("nothing to draw: add an object, such as \"s 0 0 0 1\"");
     return;
   }
   if (!is_lit(scene))
-    add_line("no light: surfaces will show no color of their own; add one, such as \"l " +
-             point_words(file.frame, camera.eye) + '"');
+    add_warning("no light: surfaces will show no color of their own; add one, such as \"l " +
+                point_words(file.frame, camera.eye) + '"');
   if (const Unseen found = unseen(scene.geometry, View(camera)); found.all)
-    add_line(remote(file, found));
+    add_warning(outside_text(file, found));
 }
 
 }  // namespace grelha

@@ -63,9 +63,9 @@ void check_no_terminal(const std::string& file) {
 void check_not_read(const std::vector<Output>& outputs, const std::vector<std::string>& read) {
   std::map<Location, std::string> locations;
   for (const std::string& file : read)
-    locations.try_emplace(position_of(file), file);
+    locations.try_emplace(location_of(file), file);
   for (const auto& [option, file] : outputs) {
-    const auto found = locations.find(position_of(file));
+    const auto found = locations.find(location_of(file));
     if (found == locations.end() || is_special_file(file))
       continue;
     throw UsageError(option + ": expected another file than " + found->second +
@@ -74,7 +74,7 @@ void check_not_read(const std::vector<Output>& outputs, const std::vector<std::s
 }
 
 void check_distinct(const Output& first, const Output& second) {
-  if (!is_special_file(first.second) && position_of(first.second) == position_of(second.second))
+  if (!is_special_file(first.second) && location_of(first.second) == location_of(second.second))
     reject(first, second);
 }
 
@@ -85,7 +85,7 @@ void check_distinct(const std::vector<RenderCommand>& commands) {
       if (is_special_file(file))
         continue;
       const Use use{option, file, &command};
-      const auto [other, fresh] = written.try_emplace(position_of(file), use);
+      const auto [other, fresh] = written.try_emplace(location_of(file), use);
       if (!fresh)
         reject(other->second, use);
     }

@@ -48,12 +48,14 @@ std::string progress_text(const std::string& name, double share, double elapsed_
   std::string left =
       share > 0 ? "  " + duration_text(elapsed_s * (1 - share) / share) + " left" : "";
   std::string named = name + std::string(kNameWidth - std::min(kNameWidth, name.size()), ' ') + ' ';
-  const auto space = [&] { return columns - int(named.size() + percent.size() + left.size()); };
-  if (space() < 0)
+  const auto columns_left = [&] {
+    return columns - int(named.size() + percent.size() + left.size());
+  };
+  if (columns_left() < 0)
     left.clear();
-  if (space() < 0)
+  if (columns_left() < 0)
     named.clear();
-  const int width = std::min(kBarWidth, space() - int(std::string_view("[] ").size()));
+  const int width = std::min(kBarWidth, columns_left() - int(std::string_view("[] ").size()));
   if (width < kLeastBar)
     return named + percent + left;
   const int full = int(share * width);

@@ -98,7 +98,7 @@ class Source {
   }
   template <class T>
   void list(std::vector<T>& values, std::size_t count) {
-    space(count, sizeof(T));
+    require_bytes(count, sizeof(T));
     values.resize(count);
     if (count > 0)
       std::memcpy(values.data(), left_.data(), count * sizeof(T));
@@ -111,7 +111,7 @@ class Source {
   void size(std::vector<T>& values, std::size_t bytes) {
     std::uint64_t count = 0;
     one(count);
-    space(count, bytes);
+    require_bytes(count, bytes);
     values.resize(count);
   }
   /// There must be nothing left.
@@ -123,12 +123,12 @@ class Source {
  private:
   template <class T>
   void one(T& value) {
-    space(1, sizeof value);
+    require_bytes(1, sizeof value);
     std::memcpy(&value, left_.data(), sizeof value);
     value = swapped_if_big(value);
     left_.remove_prefix(sizeof value);
   }
-  void space(std::uint64_t count, std::size_t bytes) const {
+  void require_bytes(std::uint64_t count, std::size_t bytes) const {
     if (count > left_.size() / bytes)
       throw NotOurs();
   }

@@ -160,20 +160,20 @@ class Inflater {
 
  private:
   [[noreturn]] void fail(const std::string& message) const {
-    throw ParseError(Position{path_, 0, 0, parsed_}, message);
+    throw ParseError(Position{path_, 0, 0, consumed_}, message);
   }
 
   /// One call of inflate; true when the last member has ended.
   bool step(Growing& out, std::size_t limit) {
-    const std::size_t give = std::min(kPart, data_.size() - parsed_);
+    const std::size_t give = std::min(kPart, data_.size() - consumed_);
     const std::span<char> space = out.space(limit - out.size());
-    stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(data_.data() + parsed_));
+    stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(data_.data() + consumed_));
     stream_.avail_in = uInt(give);
     char beyond = 0;  // with no space left the end may still come
     stream_.next_out = reinterpret_cast<Bytef*>(space.empty() ? &beyond : space.data());
     stream_.avail_out = space.empty() ? 1 : uInt(space.size());
     const int result = inflate(&stream_, Z_NO_FLUSH);
-    parsed_ += give - stream_.avail_in;
+    consumed_ += give - stream_.avail_in;
     if (space.empty() && stream_.avail_out == 0)
       fail("expected data that inflate to at most " + std::to_string(limit) + " bytes, found more");
     if (!space.empty())
@@ -182,7 +182,7 @@ class Inflater {
       progress_->done(kInflating * double(give - stream_.avail_in));
     if (result == Z_STREAM_END) {
       // bytes behind the last member are ignored, as gzip does
-      if (!is_gzip(data_.substr(parsed_)))
+      if (!is_gzip(data_.substr(consumed_)))
         return true;
       inflateReset(&stream_);
       return false;
@@ -192,7 +192,7 @@ class Inflater {
     if (result != Z_OK && result != Z_BUF_ERROR)
       fail(std::string("expected sound gzip data, found ") +
            (stream_.msg ? stream_.msg : "broken ones"));
-    if (parsed_ == data_.size() && stream_.avail_out != 0)
+    if (consumed_ == data_.size() && stream_.avail_out != 0)
       fail("expected more gzip data, found end of file");
     return false;
   }
@@ -200,7 +200,7 @@ class Inflater {
   const std::string& path_;
   std::string_view data_;
   LoadProgress* progress_;
-  std::size_t parsed_ = 0;
+  std::size_t consumed_ = 0;
   z_stream stream_{};
 };
 

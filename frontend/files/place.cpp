@@ -33,7 +33,7 @@ std::string resolve_links(const std::string& path) {
   return at.string();
 }
 
-Location position_of(const std::string& path) {
+Location location_of(const std::string& path) {
   struct stat info {};
   if (stat(path.c_str(), &info) == 0)
     return {info.st_dev, info.st_ino, ""};

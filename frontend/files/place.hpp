@@ -17,7 +17,7 @@ struct Location {
   auto operator<=>(const Location&) const = default;
 };
 
-Location position_of(const std::string& path);
+Location location_of(const std::string& path);
 
 /// The name behind symbolic links, also those to a file that is not there yet.
 std::string resolve_links(const std::string& path);

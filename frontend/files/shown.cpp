@@ -47,7 +47,7 @@ bool is_printable(std::uint32_t code) {
 
 }  // namespace
 
-std::string printed(std::string_view text) {
+std::string printable_text(std::string_view text) {
   std::string clean;
   clean.reserve(text.size());
   while (!text.empty()) {
@@ -62,7 +62,7 @@ std::string printed(std::string_view text) {
 }
 
 std::string printable_line(std::string_view text) {
-  std::string line = printed(text);
+  std::string line = printable_text(text);
   std::ranges::replace(line, '\n', '?');
   return line;
 }

@@ -8,7 +8,7 @@ namespace grelha {
 /// Makes text safe for a terminal. File names and words of scenes are untrusted: a control
 /// character in them could move the cursor, set a title or hide text. Each becomes `?`, as do bytes
 /// that are not UTF-8 and marks that change the direction of writing. Line ends stay.
-std::string printed(std::string_view text);
+std::string printable_text(std::string_view text);
 
 /// The same for text that must stay on one line.
 std::string printable_line(std::string_view text);

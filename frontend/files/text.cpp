@@ -37,16 +37,16 @@ struct Decimal {
     if (p != end && *p == '.') {
       const char* const point = p;
       p = read_digits(p + 1, end);
-      power = -int(std::min<std::ptrdiff_t>(p - point - 1, kCutLimit));
+      power = -int(std::min<std::ptrdiff_t>(p - point - 1, kMaxDigits));
       count = p - first - 1;
     }
-    if (count == 0 || count >= kCutLimit)
+    if (count == 0 || count >= kMaxDigits)
       return nullptr;
     return p != end && (*p == 'e' || *p == 'E') ? read_power(p + 1, end) : p;
   }
 
  private:
-  static constexpr int kCutLimit = 20;  ///< digits, for a number of 64 bits
+  static constexpr int kMaxDigits = 20;  ///< digits, for a number of 64 bits
 
   const char* read_digits(const char* p, const char* end) {
     for (; p != end && is_digit(*p); ++p)
@@ -254,9 +254,9 @@ const char* Words::skip_spaces(const char* p, bool stay_on_line, bool& line_ende
 /// text once.
 const char* Words::find_close(const char* from) const {
   if (!searched_ || from < searched_ || from > close_) {
-    const std::string_view tail(from, std::size_t(end_ - from));
+    const std::string_view rest(from, std::size_t(end_ - from));
     searched_ = from;
-    close_ = from + std::min(tail.find("*/"), tail.size());
+    close_ = from + std::min(rest.find("*/"), rest.size());
   }
   return close_;
 }

@@ -64,7 +64,7 @@ class Words {
   std::string_view tail_of_line();
 
   /// Continues reading at a position of the text that cursor() returned or would return.
-  void go_on_at(const char* location) { at_ = location; }
+  void go_on_at(const char* at) { at_ = at; }
 
   std::size_t bytes_left() const { return std::size_t(end_ - at_); }
   std::size_t size() const { return std::size_t(end_ - begin_); }

@@ -224,9 +224,9 @@ class ExrReader {
     find_part();
     exr_attr_box2i_t window;
     expect_that(exr_get_data_window(file_.context, part_, &window));
-    expect_that(exr_get_display_window(file_.context, part_, &printed_));
-    const std::int64_t width = side(printed_.min.x, printed_.max.x),
-                       height = side(printed_.min.y, printed_.max.y);
+    expect_that(exr_get_display_window(file_.context, part_, &display_));
+    const std::int64_t width = side(display_.min.x, display_.max.x),
+                       height = side(display_.min.y, display_.max.y);
     const auto data = std::uint64_t(side(window.min.x, window.max.x)) *
                       std::uint64_t(side(window.min.y, window.max.y));
     if (std::max(data, std::uint64_t(width * height)) > memory_.bytes.size() * kMostPixelsAByte)
@@ -314,10 +314,10 @@ class ExrReader {
       result = exr_decoding_run(file_.context, part_, &pipeline);
     exr_decoding_destroy(file_.context, &pipeline);
     expect_that(result);
-    location(planes, block.width, block.height, x - printed_.min.x, y - printed_.min.y);
+    copy_block(planes, block.width, block.height, x - display_.min.x, y - display_.min.y);
   }
 
-  void location(
+  void copy_block(
       const std::array<std::vector<float>, 3>& planes, int width, int height, int left, int top) {
     for (int y = std::max(0, -top); y < height && top + y < image_.height; ++y)
       for (int x = std::max(0, -left); x < width && left + x < image_.width; ++x)
@@ -355,7 +355,7 @@ class ExrReader {
   ExrContext file_;
   int part_ = 0;
   bool grey_ = false;
-  exr_attr_box2i_t printed_{};
+  exr_attr_box2i_t display_{};
   Image image_;
 };
 

@@ -16,8 +16,8 @@ enum class ImageFormat { png, hdr, pfm, exr };
 enum class Tone { authored, srgb };
 
 /// A note in a picture's file: key and text, both printable ASCII without line ends.
-using Record = std::pair<std::string, std::string>;
-using Notes = std::vector<Record>;
+using Note = std::pair<std::string, std::string>;
+using Notes = std::vector<Note>;
 
 /// The first hits of camera rays through the pixel centres, stored beside the picture in an OpenEXR
 /// file. An empty vector is absent.

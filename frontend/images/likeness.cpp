@@ -56,11 +56,11 @@ Similarity compare_similarity(Image a, Image b) {
   return result;
 }
 
-Image in_colors(const Similarity& compare_similarity) {
-  Image image(compare_similarity.width, compare_similarity.height);
+Image in_colors(const Similarity& similarity) {
+  Image image(similarity.width, similarity.height);
   constexpr int kLast = int(kMagma.size()) - 1;
   for (std::size_t i = 0; i < image.rgb.size(); ++i) {
-    const float at = compare_similarity.flip_map[i / 3] * kLast;
+    const float at = similarity.flip_map[i / 3] * kLast;
     const int below = std::min(int(at), kLast - 1), channel = int(i % 3);
     const float from = byte(kMagma[std::size_t(below)], channel),
                 to = byte(kMagma[std::size_t(below) + 1], channel);
@@ -69,10 +69,10 @@ Image in_colors(const Similarity& compare_similarity) {
   return image;
 }
 
-Image in_numbers(const Similarity& compare_similarity) {
-  Image image(compare_similarity.width, compare_similarity.height);
+Image in_numbers(const Similarity& similarity) {
+  Image image(similarity.width, similarity.height);
   for (std::size_t i = 0; i < image.rgb.size(); ++i)
-    image.rgb[i] = compare_similarity.flip_map[i / 3];
+    image.rgb[i] = similarity.flip_map[i / 3];
   return image;
 }
 

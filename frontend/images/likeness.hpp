@@ -21,9 +21,9 @@ struct Similarity {
 Similarity compare_similarity(Image a, Image b);
 
 /// The map as a picture: from black for 0 by violet and orange to pale yellow for 1.
-Image in_colors(const Similarity& compare_similarity);
+Image in_colors(const Similarity& similarity);
 
 /// The map in each channel.
-Image in_numbers(const Similarity& compare_similarity);
+Image in_numbers(const Similarity& similarity);
 
 }  // namespace grelha

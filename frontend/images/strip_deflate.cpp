@@ -52,17 +52,17 @@ class StripDeflater {
     constexpr std::size_t kFlush = 16;  // end of a part that is not the last, and some spare bytes
     deflateReset(&stream_);
     deflateSetDictionary(&stream_, bytes_of(before), uInt(before.size()));
-    space_.resize(deflateBound(&stream_, uLong(strip.size())) + kFlush);
+    buffer_.resize(deflateBound(&stream_, uLong(strip.size())) + kFlush);
     stream_.next_in = const_cast<Bytef*>(bytes_of(strip));
     stream_.avail_in = uInt(strip.size());
-    stream_.next_out = reinterpret_cast<Bytef*>(space_.data());
-    stream_.avail_out = uInt(space_.size());
+    stream_.next_out = reinterpret_cast<Bytef*>(buffer_.data());
+    stream_.avail_out = uInt(buffer_.size());
     deflate(&stream_, last ? Z_FINISH : Z_SYNC_FLUSH);
-    return space_.substr(0, space_.size() - stream_.avail_out);
+    return buffer_.substr(0, buffer_.size() - stream_.avail_out);
   }
 
   z_stream stream_{};
-  std::string space_;  ///< of one strip after another
+  std::string buffer_;  ///< of one strip after another
   bool ready_;
 };
 

@@ -41,17 +41,17 @@ class SrgbBytes {
     const auto end = thresholds_.end() - 1;
     for (std::uint32_t i = 0; i < kStarts; ++i)
       starts_[i] = std::uint8_t(
-          std::upper_bound(thresholds_.begin(), end, std::bit_cast<float>(i << kTail)) -
+          std::upper_bound(thresholds_.begin(), end, std::bit_cast<float>(i << kDroppedBits)) -
           thresholds_.begin());
   }
   std::uint8_t of(float value) const {
-    const std::uint8_t start = starts_[std::bit_cast<std::uint32_t>(value) >> kTail];
+    const std::uint8_t start = starts_[std::bit_cast<std::uint32_t>(value) >> kDroppedBits];
     return std::uint8_t(start + (value >= thresholds_[start] ? 1 : 0));
   }
 
  private:
-  static constexpr int kTail = 16;
-  static constexpr std::uint32_t kStarts = std::bit_cast<std::uint32_t>(1.f) >> kTail;
+  static constexpr int kDroppedBits = 16;
+  static constexpr std::uint32_t kStarts = std::bit_cast<std::uint32_t>(1.f) >> kDroppedBits;
 
   Thresholds thresholds_;
   std::array<std::uint8_t, kStarts> starts_;

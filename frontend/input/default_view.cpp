@@ -144,18 +144,18 @@ void add_default_view(SceneFile& file) {
       moved(moved(moved({0, 0, 0}, across.middle(), axes.right), upward.middle(), axes.up),
             middle,
             axes.back);
-  const auto location = [&](double to_back, double to_right, double up) {
+  const auto position = [&](double to_back, double to_right, double up) {
     return as_floats(
         moved(moved(moved(at, distance * to_back, axes.back), distance * to_right, axes.right),
               distance * up,
               axes.high));
   };
-  file.camera = {location(1, 0, 0), as_floats(at), as_floats(axes.high), kAngleDeg, 512, 512};
+  file.camera = {position(1, 0, 0), as_floats(at), as_floats(axes.high), kAngleDeg, 512, 512};
   // Key light above the left shoulder, fill from the eye, which reaches all it sees, and one from
   // behind on the edges.
-  file.scene.lights = {{location(1, -0.55, 0.65), {0.82f, 0.78f, 0.70f}, {}, {}},
-                       {location(1, 0, 0), {0.30f, 0.32f, 0.37f}, {}, {}},
-                       {location(-0.6, 0.8, 0.6), {0.34f, 0.38f, 0.44f}, {}, {}}};
+  file.scene.lights = {{position(1, -0.55, 0.65), {0.82f, 0.78f, 0.70f}, {}, {}},
+                       {position(1, 0, 0), {0.30f, 0.32f, 0.37f}, {}, {}},
+                       {position(-0.6, 0.8, 0.6), {0.34f, 0.38f, 0.44f}, {}, {}}};
   file.scene.background = {0.62f, 0.68f, 0.76f};
   file.default_camera = file.default_light = true;
 }

@@ -33,7 +33,7 @@ void apply_lens(const Effects& effects, const LensHint& hint, Camera& camera) {
 }
 
 /// A point light becomes a square facing the point looked at.
-void extend(Light& light, const Float3& at, float size) {
+void make_square(Light& light, const Float3& at, float size) {
   const Float3 d{at.x - light.position.x, at.y - light.position.y, at.z - light.position.z};
   const double n = length(light.position, at);
   const double z[3] = {n > 0 ? d.x / n : 0, n > 0 ? d.y / n : 0, n > 0 ? d.z / n : 1};
@@ -50,7 +50,7 @@ void apply_shadows(const Effects::Shadows& shadows, SceneFile& file) {
     if (shadows.hard)
       light.edge1 = light.edge2 = {};
     else if (!light.is_area() && shadows.size > 0)
-      extend(light, file.camera.at, shadows.size);
+      make_square(light, file.camera.at, shadows.size);
   }
 }
 

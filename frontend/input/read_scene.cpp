@@ -113,11 +113,11 @@ SceneFile read_in_frame(const std::string& path,
 SceneFile read_scene(const std::string& path, const Warn& warn, const ReadOptions& options) try {
   LoadProgress progress(options.progress);
   std::string bytes = load_scene(path, progress);
-  std::string saved = std::filesystem::is_regular_file(path) ? std::string() : bytes;
+  std::string copy = std::filesystem::is_regular_file(path) ? std::string() : bytes;
   SceneFile file = parse_scene(path, std::move(bytes), warn, options, progress);
   progress.finish();
   if (const std::optional<Frame> frame = find_frame(file)) {
-    SceneFile framed = read_in_frame(path, std::move(saved), *frame, options);
+    SceneFile framed = read_in_frame(path, std::move(copy), *frame, options);
     if (needs_frame(framed))
       file = std::move(framed);
   }

@@ -192,8 +192,8 @@ void write_over_checkpoint(const std::string& path,
   std::ostream counted(&counter);
   write_picture(counted, identity, picture);
   std::error_code error;
-  const std::uint64_t space = std::filesystem::file_size(path, error);
-  if (error || space < counter.count())
+  const std::uint64_t file_bytes = std::filesystem::file_size(path, error);
+  if (error || file_bytes < counter.count())
     throw FileError(path, "cannot write over it: what there is to keep is larger");
   std::fstream stream(path, std::ios::in | std::ios::out | std::ios::binary);
   write_picture(stream, identity, picture);

@@ -115,7 +115,7 @@ std::string scene_name(const std::string& path) {
   return printable(picture.substr(0, picture.rfind('.')));
 }
 
-const Record kSoftware{"Software", "grelha " GRELHA_VERSION};
+const Note kSoftware{"Software", "grelha " GRELHA_VERSION};
 
 Notes notes_of(const Identity& identity) {
   const std::string& s = identity.settings;
@@ -147,16 +147,16 @@ std::string own_words(const WordList& here, const WordList& there) {
   std::transform(here.begin(), here.end(), std::back_inserter(keys), key_of);
   std::string own;
   int found = 0;
-  const auto add_line = [&](const std::string& word) {
+  const auto add_word = [&](const std::string& word) {
     if (++found <= kMost)
       own += (own.empty() ? "" : " ") + word;
   };
   for (const std::string& w : here)
     if (!has(there, w))
-      add_line(printable(w));
+      add_word(printable(w));
   for (const std::string& w : there)
     if (!has(keys, key_of(w)))
-      add_line("no " + printable(key_of(w)));
+      add_word("no " + printable(key_of(w)));
   return found > kMost ? own + " ..." : own;
 }
 

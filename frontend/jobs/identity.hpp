@@ -25,7 +25,7 @@ std::string scene_digest(const SceneFile& file);
 std::string settings_text(const RenderCommand& resolved, const Camera& camera);
 
 /// The note that every picture has.
-extern const Record kSoftware;
+extern const Note kSoftware;
 
 /// The notes of a picture's file: Software, Title, Scene, Settings. Options that change no bit of
 /// the picture are left out.

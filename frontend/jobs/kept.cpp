@@ -53,12 +53,12 @@ std::string write_fallback(const std::string& work,
   std::string fresh = (fs::temp_directory_path(none) / "grelha-XXXXXX").string();
   const bool is_fresh = mkdtemp(fresh.data()) != nullptr;
   for (const fs::path& folder : {fs::path(is_fresh ? fresh : ""), fs::current_path(none)}) {
-    const fs::path location = folder / name;
-    if (folder.empty() || path_exists(location) || fs::equivalent(folder, own, none))
+    const fs::path target = folder / name;
+    if (folder.empty() || path_exists(target) || fs::equivalent(folder, own, none))
       continue;
     try {
-      write(location.string());
-      return location.string();
+      write(target.string());
+      return target.string();
     } catch (const FileError&) {  // there is no room either
       fs::remove(fresh, none);    // where it is empty
     }

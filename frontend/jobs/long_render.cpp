@@ -21,14 +21,14 @@ using Clock = std::chrono::steady_clock;
 Part part_of(const RenderCommand& command, const Camera& camera) {
   const LongWork& w = command.work;
   const int samples = command.render.sampling.samples;
-  const auto expect_that = [](const char* option, const Range& r, int most, const char* of) {
+  const auto check = [](const char* option, const Range& r, int most, const char* of) {
     if (r.end > most)
       throw UsageError(std::string(option) + ": " + std::to_string(r.begin) + ':' +
                        std::to_string(r.end) + " are not among the " + std::to_string(most) + of);
   };
   const Part part{w.rows.value_or(Range{0, camera.height}), w.samples.value_or(Range{0, samples})};
-  expect_that("--rows", part.rows, camera.height, " rows of the picture");
-  expect_that("--samples", part.samples, samples, " samples of a pixel (I:J/N: of N)");
+  check("--rows", part.rows, camera.height, " rows of the picture");
+  check("--samples", part.samples, samples, " samples of a pixel (I:J/N: of N)");
   return part;
 }
 
@@ -107,10 +107,10 @@ LongRender::LongRender(
 }
 
 void LongRender::record_location() {
-  saved_location_ = position_of(saved_.work);
+  saved_location_ = location_of(saved_.work);
 }
 
-void LongRender::add_line(const std::string& line) const {
+void LongRender::print_line(const std::string& line) const {
   if (!command_.quiet)
     grelha::warn(line);
 }
@@ -124,7 +124,7 @@ void LongRender::continue_from_saved() {
       if (continued_)
         picture_ = std::move(found.picture);
       else
-        add_line("grelha: " + path + " stays, which keeps another picture: it " + why);
+        print_line("grelha: " + path + " stays, which keeps another picture: it " + why);
     } catch (const std::exception&) {  // the command did not name this file as a checkpoint
     }
     return continued_;
@@ -134,26 +134,25 @@ void LongRender::continue_from_saved() {
   record_location();
   char text[32];
   std::snprintf(text, sizeof text, ", %.1f %% done", 100 * share_done());
-  add_line("grelha: goes on from " + saved_.work + text);
+  print_line("grelha: goes on from " + saved_.work + text);
 }
 
-bool LongRender::should_run(const IntervalTask& habit) {
-  return habit.period > 0 &&
-         Clock::now() - habit.last >= std::chrono::duration<double>(habit.period);
+bool LongRender::should_run(const IntervalTask& task) {
+  return task.period > 0 && Clock::now() - task.last >= std::chrono::duration<double>(task.period);
 }
 
-void LongRender::run_task(IntervalTask& habit) {
-  if (!should_run(habit))
+void LongRender::run_task(IntervalTask& task) {
+  if (!should_run(task))
     return;
   try {
-    habit.install_handler();
+    task.action();
     // a failed save must not end the render, and no exception may leave a parallel region
   } catch (const std::exception& error) {
-    if (!habit.warned)
+    if (!task.warned)
       warn_(std::string(error.what()) + " (rendering goes on)");
-    habit.warned = true;
+    task.warned = true;
   }
-  habit.last = Clock::now();
+  task.last = Clock::now();
 }
 
 int LongRender::stops() const {
@@ -174,7 +173,7 @@ void LongRender::save_now() {
   if (save_requested() || share_done() > 0)
     tried([this] { saved_in_ = save_fallback(); });
   if (share_done() > 0 && !saved_.picture.empty())
-    printed_ = tried([&] { write_image(saved_.picture, picture_.image(), style()); });
+    picture_saved_ = tried([&] { write_image(saved_.picture, picture_.image(), style()); });
 }
 
 /// Saves the work at its location. On a full disk, overwrites the earlier save in place, or
@@ -186,8 +185,8 @@ std::string LongRender::save_fallback() {
     save();
     return saved_.work;
   } catch (const FileError&) {
-    const bool is_ours = saved_location_ && saved_location_ == position_of(saved_.work);
-    if (is_ours && overwrote())
+    const bool is_ours = saved_location_ && saved_location_ == location_of(saved_.work);
+    if (is_ours && try_overwrite())
       return saved_.work;
     const std::string location = write_fallback(saved_.work, [this](const std::string& path) {
       write_checkpoint(path, identity_, picture_, true);
@@ -198,7 +197,7 @@ std::string LongRender::save_fallback() {
   }
 }
 
-bool LongRender::overwrote() const {
+bool LongRender::try_overwrite() const {
   try {
     write_over_checkpoint(saved_.work, identity_, picture_);
     return true;
@@ -218,7 +217,7 @@ std::string LongRender::stop_text(int signal) const {
   if (!saved_in_.empty())
     all += " and saved in " + saved_in_ + ": the same command " + with_checkpoint() +
            "goes on from there";
-  if (printed_)
+  if (picture_saved_)
     all += (saved_in_.empty() ? ": " : "; ") + saved_.picture + " is the picture so far";
   return all;
 }
@@ -261,7 +260,7 @@ void LongRender::finish(Layers layers) {
   }
   if (command_.work.save_until_end && save_requested())
     return save();
-  if (saved_location_ && saved_location_ == position_of(saved_.work))
+  if (saved_location_ && saved_location_ == location_of(saved_.work))
     unlink(saved_.work.c_str());
   if (continued_)
     unlink(saved_.picture.c_str());
@@ -284,7 +283,7 @@ std::string LongRender::with_checkpoint() const {
 }
 
 void LongRender::save() {
-  const bool is_foreign = exists(saved_.work) && saved_location_ != position_of(saved_.work);
+  const bool is_foreign = exists(saved_.work) && saved_location_ != location_of(saved_.work);
   if (is_foreign && save_requested() && !std::exchange(is_shared_, true))
     warn_(saved_.work +
           ": warning: another run saves there as well, and each writes over the other's: give each "
@@ -297,7 +296,7 @@ void LongRender::save() {
 /// of samples that repeats the picture. The notes of an unfinished picture say so.
 ImageStyle LongRender::style() const {
   Identity identity = identity_;
-  identity.settings = repeatable(identity.settings, picture_.sample_count_());
+  identity.settings = repeatable(identity.settings, picture_.total_samples());
   ImageStyle style{format_of(command_.image, command_.format),
                    command_.srgb ? Tone::srgb : Tone::authored,
                    notes_of(identity),

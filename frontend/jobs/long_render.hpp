@@ -55,25 +55,25 @@ class LongRender {
   /// An action repeated at intervals. Warns once of a failure, and tries again.
   struct IntervalTask {
     double period;  ///< seconds; 0: never
-    std::function<void()> install_handler;
+    std::function<void()> action;
     std::chrono::steady_clock::time_point last = std::chrono::steady_clock::now();
     bool warned = false;
   };
-  static bool should_run(const IntervalTask& habit);
-  void run_task(IntervalTask& habit);
+  static bool should_run(const IntervalTask& task);
+  void run_task(IntervalTask& task);
   bool save_requested() const { return !command_.work.checkpoint.empty(); }
   int stops() const;  ///< the signal to stop for, or 0
   void continue_from_saved();
   void save_now();
   std::string save_fallback();
-  bool overwrote() const;
+  bool try_overwrite() const;
   /// Saves the work of a picture that cannot be written.
   void save_all();
   bool tried(const std::function<void()>& write) const;  ///< warns of its exceptions
   void save();
   void record_location();
   std::string with_checkpoint() const;
-  void add_line(const std::string& line) const;
+  void print_line(const std::string& line) const;
   ImageStyle style() const;
   void write() const;
 
@@ -86,12 +86,12 @@ class LongRender {
   /// unfinished picture; empty: absent
   SavedNames saved_;
   std::optional<Location>
-      saved_location_;      ///< of the work's file, as this program wrote or read it
-  bool continued_ = false;  ///< from what was there
-  bool is_shared_ = false;  ///< another program writes the checkpoint as well
-  Layers layers_;           ///< of the picture, when it is done
-  std::string saved_in_;    ///< when stopped; empty: nowhere
-  bool printed_ = false;    ///< when stopped
+      saved_location_;          ///< of the work's file, as this program wrote or read it
+  bool continued_ = false;      ///< from what was there
+  bool is_shared_ = false;      ///< another program writes the checkpoint as well
+  Layers layers_;               ///< of the picture, when it is done
+  std::string saved_in_;        ///< when stopped; empty: nowhere
+  bool picture_saved_ = false;  ///< when stopped
 };
 
 }  // namespace grelha

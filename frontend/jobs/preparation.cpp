@@ -20,7 +20,7 @@ constexpr std::uint64_t kPixel = 12;  ///< bytes of a picture's pixel: three flo
 /// and of its file's, before that is written: .pfm and .hdr; a .png takes half of it
 constexpr std::uint64_t kFilePixel = 12;
 constexpr std::uint64_t kSum = 24;              ///< three sums of light
-constexpr std::uint64_t kBlueOffset = 4;        ///< where its samples begin
+constexpr std::uint64_t kBlueIndex = 4;         ///< where its samples begin
 constexpr std::uint64_t kRefined = 80;          ///< docs/architecture.md, and 9 a pixel for blocks
 constexpr std::uint64_t kTilePoint = 56;        ///< of a tile that is subdivided, with its squares
 constexpr std::uint64_t kMaps = 12;             ///< samples, errors and widths
@@ -35,8 +35,8 @@ std::uint64_t geometry_bytes(const Scene& scene) {
 
 /// `work(progress)` with a bar; a signal stops it.
 template <class Work>
-auto watched(const char* name, bool printed, const Work& work) {
-  ProgressBar bar(printed, 0, name);
+auto watched(const char* name, bool visible, const Work& work) {
+  ProgressBar bar(visible, 0, name);
   return work([&](double share) {
     bar.update(share);
     return StopSignals::seen() == 0;
@@ -45,9 +45,9 @@ auto watched(const char* name, bool printed, const Work& work) {
 
 /// The same; what came after the last question counts as well.
 template <class Work>
-auto with_interrupt(const char* name, const std::string& during, bool printed, const Work& work) {
+auto with_interrupt(const char* name, const std::string& during, bool visible, const Work& work) {
   try {
-    auto made = watched(name, printed, work);
+    auto made = watched(name, visible, work);
     if (StopSignals::seen() == 0)
       return made;
   } catch (const Stopped&) {
@@ -71,9 +71,9 @@ Interrupted::Interrupted(int number, const std::string& during)
 SceneFile load_scene(const std::string& path,
                      const Warn& warn,
                      const ReadOptions& options,
-                     bool printed) {
+                     bool visible) {
   SceneFile file = with_interrupt(
-      "load", "reading " + path, printed, [&](const std::function<bool(double)>& progress) {
+      "load", "reading " + path, visible, [&](const std::function<bool(double)>& progress) {
         ReadOptions watched_options = options;
         watched_options.progress = progress;
         return read_scene(path, warn, watched_options);
@@ -92,12 +92,12 @@ World build_world(const std::string& path,
                   const Scene& scene,
                   const BuildOptions& options,
                   std::uint64_t later,
-                  bool printed) {
+                  bool visible) {
   check_memory(path, later);
   try {
     return with_interrupt("build",
                           "building the grids of " + path,
-                          printed,
+                          visible,
                           [&](const std::function<bool(double)>& progress) {
                             BuildOptions watched_options = options;
                             watched_options.progress = progress;
@@ -116,23 +116,23 @@ PictureMemory picture_memory(const RenderCommand& command, const Camera& camera)
   const Range rows = command.work.rows.value_or(Range{0, camera.height});
   // rows outside the picture are refused later
   const auto height = std::uint64_t(std::clamp(rows.end - rows.begin, 1, camera.height));
-  const std::uint64_t saved = refined      ? kRefined * pixels
-                              : subdivided ? kPixel * pixels
-                                           : kSum * width * height;
+  const std::uint64_t sum_bytes = refined      ? kRefined * pixels
+                                  : subdivided ? kPixel * pixels
+                                               : kSum * width * height;
   const auto threads = static_cast<std::uint64_t>(
       command.render.threads > 0 ? command.render.threads : std::thread::hardware_concurrency());
   // of 32 pixels a side and three divisions, or 8 and more than five
   const std::uint64_t tile_points = 1ull << std::max(16, 6 + 2 * command.render.subdivision.depth);
   PictureMemory memory;
-  memory.sums = saved;
-  memory.tail = kProgram + thread_bytes(camera, command.render) +
-                (refined      ? kMaps * pixels
-                 : subdivided ? kTilePoint * tile_points * threads
-                              : 0);
+  memory.sums = sum_bytes;
+  memory.other = kProgram + thread_bytes(camera, command.render) +
+                 (refined      ? kMaps * pixels
+                  : subdivided ? kTilePoint * tile_points * threads
+                               : 0);
   if (!part)
-    memory.tail += (kPixel + kFilePixel) * pixels;
+    memory.other += (kPixel + kFilePixel) * pixels;
   if (command.render.sampling.sampler == Sampler::kBlue)
-    memory.tail += kBlueOffset * pixels;
+    memory.other += kBlueIndex * pixels;
   return memory;
 }
 
@@ -143,7 +143,7 @@ SceneMemory memory_of(const SceneFile& file, const BuildOptions& options) {
   memory.scene = geometry_bytes(file.scene);
   memory.grids = build.kept;
   memory.peak = memory.scene + std::max(kProgram + std::max(file.source_bytes, build.peak),
-                                        build.kept + picture.sums + picture.tail);
+                                        build.kept + picture.sums + picture.other);
   return memory;
 }
 

@@ -19,11 +19,11 @@ struct Interrupted : std::runtime_error {
   int signal;
 };
 
-/// read_scene() with `printed`, a bar on stderr. Throws Interrupted while StopSignals live.
+/// read_scene() with `visible`, a bar on stderr. Throws Interrupted while StopSignals live.
 SceneFile load_scene(const std::string& path,
                      const Warn& warn,
                      const ReadOptions& options,
-                     bool printed);
+                     bool visible);
 
 /// Builds the grids of a scene that needs `later` more bytes for rendering. Throws Interrupted, and
 /// FileError (in the scene's name) when the estimate exceeds the memory limit.
@@ -31,12 +31,12 @@ World build_world(const std::string& path,
                   const Scene& scene,
                   const BuildOptions& options,
                   std::uint64_t later,
-                  bool printed);
+                  bool visible);
 
 /// Bytes for the picture of a command, or for the part of it that --rows selects.
 struct PictureMemory {
-  std::uint64_t sums = 0;  ///< of the sums in memory: allocated before the grids are built
-  std::uint64_t tail = 0;  ///< the program, buffers of its threads, the picture, and its file
+  std::uint64_t sums = 0;   ///< of the sums in memory: allocated before the grids are built
+  std::uint64_t other = 0;  ///< the program, buffers of its threads, the picture, and its file
 };
 
 PictureMemory picture_memory(const RenderCommand& command, const Camera& camera);

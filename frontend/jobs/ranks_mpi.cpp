@@ -93,27 +93,27 @@ class SendQueue {
  public:
   void send(Accumulator& a, std::size_t piece) {
     while (pending_.size() >= kMaxPending)
-      finish_range(true);
+      complete_sends(true);
     const Range rows = piece_of(a.part, piece).rows;
     std::int64_t* const sums = sums_at(a, rows.begin);
     const std::size_t n = sums_of_rows(a, rows);
-    Message& letter = pending_.emplace_back();
-    letter.words.reserve(n + 1);
-    letter.words.push_back(static_cast<std::int64_t>(piece));
-    letter.words.insert(letter.words.end(), sums, sums + n);
+    Message& message = pending_.emplace_back();
+    message.words.reserve(n + 1);
+    message.words.push_back(static_cast<std::int64_t>(piece));
+    message.words.insert(message.words.end(), sums, sums + n);
     std::fill(sums, sums + n, 0);  // the next piece of these rows goes by itself
-    MPI_Isend(letter.words.data(),
+    MPI_Isend(message.words.data(),
               static_cast<int>(n + 1),
               MPI_INT64_T,
               kFirst,
               kPartTag,
               MPI_COMM_WORLD,
-              &letter.request);
-    finish_range(false);
+              &message.request);
+    complete_sends(false);
   }
   void finish(const RayCounts& rays) {
     while (!pending_.empty())
-      finish_range(true);
+      complete_sends(true);
     const std::uint64_t counts[] = {rays.primary, rays.shadow, rays.reflection, rays.refraction};
     MPI_Send(counts, 4, MPI_UINT64_T, kFirst, kEndTag, MPI_COMM_WORLD);
   }
@@ -123,12 +123,12 @@ class SendQueue {
     std::vector<std::int64_t> words;
     MPI_Request request = MPI_REQUEST_NULL;
   };
-  void finish_range(bool wait) {
+  void complete_sends(bool wait) {
     if (wait)
       MPI_Wait(&pending_.front().request, MPI_STATUS_IGNORE);
-    pending_.remove_if([](Message& letter) {
+    pending_.remove_if([](Message& message) {
       int done = 0;
-      MPI_Test(&letter.request, &done, MPI_STATUS_IGNORE);
+      MPI_Test(&message.request, &done, MPI_STATUS_IGNORE);
       return done != 0;
     });
   }
@@ -146,8 +146,8 @@ int receive(Accumulator& a, RayCounts& rays) {
     if (!there)
       return ended;
     MPI_Get_count(&status, MPI_INT64_T, &words);
-    std::vector<std::int64_t> letter(static_cast<std::size_t>(words));
-    MPI_Recv(letter.data(),
+    std::vector<std::int64_t> message(static_cast<std::size_t>(words));
+    MPI_Recv(message.data(),
              words,
              MPI_INT64_T,
              status.MPI_SOURCE,
@@ -155,15 +155,15 @@ int receive(Accumulator& a, RayCounts& rays) {
              MPI_COMM_WORLD,
              MPI_STATUS_IGNORE);
     if (status.MPI_TAG == kEndTag) {
-      const auto count = [&](std::size_t i) { return static_cast<std::uint64_t>(letter.at(i)); };
+      const auto count = [&](std::size_t i) { return static_cast<std::uint64_t>(message.at(i)); };
       rays += {count(0), count(1), count(2), count(3)};
       ++ended;
       continue;
     }
-    const auto piece = static_cast<std::size_t>(letter[0]);
+    const auto piece = static_cast<std::size_t>(message[0]);
     std::int64_t* const sums = sums_at(a, piece_of(a.part, piece).rows.begin);
-    for (std::size_t i = 1; i < letter.size(); ++i)
-      sums[i - 1] += letter[i];
+    for (std::size_t i = 1; i < message.size(); ++i)
+      sums[i - 1] += message[i];
     a.done[piece] = 1;
   }
 }
@@ -193,7 +193,7 @@ class SharedParts {
   }
 
   /// Sends the piece that this rank has finished, or takes in what others have sent.
-  void swap_edges() {
+  void exchange_parts() {
     const std::lock_guard lock(mutex_);
     if (first_) {
       if (!is_stopping_())
@@ -212,7 +212,7 @@ class SharedParts {
   }
 
   /// Ends the work of a rank other than the first: sends its remaining messages. Returns true.
-  bool finish_ranks(const RayCounts& rays) {
+  bool send_rest(const RayCounts& rays) {
     send_queue_.finish(rays);
     return true;
   }
@@ -295,19 +295,19 @@ bool Ranks::advance(const World& world,
   Accumulator* const sums = picture.sums();
   if (!sums)
     throw std::logic_error("a picture without parts cannot be shared");
-  SharedParts fragments(*sums, first(), count_ - 1, is_stopping);
+  SharedParts parts(*sums, first(), count_ - 1, is_stopping);
   RenderOptions shared = options;
   shared.progress = [&](double) {
-    fragments.swap_edges();
+    parts.exchange_parts();
     return !options.progress || options.progress(share_done(*sums));
   };
   {
-    const auto doorkeeper = fragments.start_progress();
-    const auto next = [&] { return fragments.next(); };
+    const auto progress_thread = parts.start_progress();
+    const auto next = [&] { return parts.next(); };
     accumulate(world, camera, shared, *sums, stats, next, should_continue);
   }
-  const bool all = first() ? fragments.wait_for_peers(options.progress, should_continue, stats.rays)
-                           : fragments.finish_ranks(stats.rays);
+  const bool all = first() ? parts.wait_for_peers(options.progress, should_continue, stats.rays)
+                           : parts.send_rest(stats.rays);
   if (!all)
     abandon();
   in_step_ = true;

@@ -127,17 +127,17 @@ class Run {
         end_(end),
         slots_(ahead),
         file_(file),
-        event_point_(begin) {}
+        parsed_end_(begin) {}
 
-  /// The work of each thread. The thread that is given `report_line` calls it.
-  void work(const NffChunks::Report* report_line) noexcept try {
+  /// The work of each thread. The thread that is given `report` calls it.
+  void work(const NffChunks::Report* report) noexcept try {
     for (std::size_t chunk = 0; take_chunk(chunk);) {
       Fragment fragment = splitter_.cut(chunk);
       if (fragment.begin)
         read_fragment(path_, end_, file_.frame, fragment);
       submit_fragment(chunk, std::move(fragment));
-      if (report_line)
-        (*report_line)(here());
+      if (report)
+        (*report)(here());
     }
   } catch (...) {
     const std::lock_guard lock(mutex_);
@@ -153,7 +153,7 @@ class Run {
   }
   const char* here() const {
     const std::lock_guard lock(mutex_);
-    return event_point_;
+    return parsed_end_;
   }
 
  private:
@@ -190,7 +190,7 @@ class Run {
   }
 
   void join(const Fragment& fragment, std::unique_lock<std::mutex>& lock) {
-    if (fragment.begin != event_point_ || !fragment.taken.end) {
+    if (fragment.begin != parsed_end_ || !fragment.taken.end) {
       is_over_ = true;
       return;
     }
@@ -198,11 +198,11 @@ class Run {
     if (!parsed_.end &&
         fragment.next >= fragment.stop)  // the rest is probably like the first chunk
       reserve_for_parts(
-          file_, fragment.file, double(end_ - event_point_) / double(fragment.next - event_point_));
+          file_, fragment.file, double(end_ - parsed_end_) / double(fragment.next - parsed_end_));
     append_part(file_, fragment.file);
     lock.lock();
     parsed_ = fragment.taken;
-    event_point_ = fragment.next;
+    parsed_end_ = fragment.next;
   }
 
   const std::string& path_;
@@ -213,7 +213,7 @@ class Run {
   std::size_t taken_chunks_ = 0, joined_ = 0;  ///< chunks
   bool is_joining_ = false, is_over_ = false;
   SceneFile& file_;
-  const char* event_point_;  ///< the text that the scene lacks begins here
+  const char* parsed_end_;  ///< the text that the scene lacks begins here
   NffChunks::ParsedChunks parsed_;
   std::exception_ptr error_;
 };
@@ -228,14 +228,14 @@ NffChunks::NffChunks(std::string path, std::string_view text, const ChunkSizes& 
 
 NffChunks::ParsedChunks NffChunks::read_run(const char* begin,
                                             SceneFile& file,
-                                            const Report& report_line) {
+                                            const Report& report) {
   const Splitter splitter(begin, end_, sizes_.bytes);
   Run run(path_, splitter, begin, end_, sizes_.ahead, file);
   const std::thread::id here = std::this_thread::get_id();
   by_threads(omp_get_max_threads(),
-             [&] { run.work(std::this_thread::get_id() == here ? &report_line : nullptr); });
+             [&] { run.work(std::this_thread::get_id() == here ? &report : nullptr); });
   const ParsedChunks taken = run.finish();
-  report_line(run.here());  // others may have read on since it was told
+  report(run.here());  // others may have read on since it was told
   if (run.here() != end_)
     next_ = run.here() + std::min(sizes_.ahead * sizes_.bytes, std::size_t(end_ - run.here()));
   return taken;

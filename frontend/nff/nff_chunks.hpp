@@ -40,9 +40,8 @@ class NffChunks {
   }
 
   /// Reads on from a simple entity's keyword. `file` has a material. Throws std::bad_alloc, and
-  /// what
-  /// `report_line` throws.
-  ParsedChunks read_run(const char* begin, SceneFile& file, const Report& report_line);
+  /// what `report` throws.
+  ParsedChunks read_run(const char* begin, SceneFile& file, const Report& report);
 
  private:
   std::string path_;

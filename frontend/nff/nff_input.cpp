@@ -55,20 +55,20 @@ double NffInput::wide_number(const char* what) {
   return value;
 }
 
-Float3 NffInput::location(const char* what) {
+Float3 NffInput::framed_point(const char* what) {
   if (frame == Frame{})
     return point(what);
   const double x = wide_number(what), y = wide_number(what), z = wide_number(what);
   return frame.inside({x, y, z});
 }
 
-Float3 NffInput::bounded_location(const char* what) {
+Float3 NffInput::bounded_framed_point(const char* what) {
   const Words before = words;
   const Float3 as_it_stands = bounded_point(what);
   if (frame == Frame{})
     return as_it_stands;
   words = before;
-  return location(what);
+  return framed_point(what);
 }
 
 float NffInput::length(const char* what) {

@@ -30,8 +30,8 @@ class NffInput {
   Float3 point(const char* what);   ///< three numbers, without checks
   Float3 bounded_point(const char* what);
   /// A position or a length, converted to the frame of the scene.
-  Float3 location(const char* what);
-  Float3 bounded_location(const char* what);
+  Float3 framed_point(const char* what);
+  Float3 bounded_framed_point(const char* what);
   float length(const char* what);
   double wide_number(const char* what);  ///< in the file's own frame
   /// A count of things that take at least `least_bytes` each, checked against the rest of the file.

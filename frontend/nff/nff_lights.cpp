@@ -13,14 +13,14 @@ Float3 triple(const std::vector<NumberWord>& n, std::size_t first) {
   return {n[first].value, n[first + 1].value, n[first + 2].value};
 }
 /// The same of a position in the scene, and of a length along each axis.
-Float3 location(const Frame& frame, const std::vector<NumberWord>& n, std::size_t first) {
+Float3 framed_point(const Frame& frame, const std::vector<NumberWord>& n, std::size_t first) {
   std::array<double, 3> p{};
   for (std::size_t a = 0; a < 3; ++a)
     to_number(n[first + a].word, p[a]);
   return frame.inside(p);
 }
 Float3 vector(const Frame& frame, const std::vector<NumberWord>& n, std::size_t first) {
-  return location({{}, frame.scale}, n, first);
+  return framed_point({{}, frame.scale}, n, first);
 }
 Float3 operator-(const Float3& a, const Float3& b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
@@ -64,7 +64,7 @@ void NffLights::add_point(Float3 position, Float3 color) {
 }
 
 void NffLights::read_point(NffInput& input) {
-  const Float3 position = input.bounded_location("the light's position");
+  const Float3 position = input.bounded_framed_point("the light's position");
   if (!looks_like_number(input.words.peek_on_line())) {
     colorless_.push_back(file_.scene.lights.size());
     add_point(position, {});
@@ -95,14 +95,14 @@ void NffLights::add_area(NffInput& input, std::string_view keyword, AreaLight li
 void NffLights::read_light(NffInput& input, std::string_view keyword) {
   const std::string_view kind = input.words.next();
   if (kind == "punctual") {
-    const Float3 position = input.bounded_location("the light's position");
+    const Float3 position = input.bounded_framed_point("the light's position");
     add_point(position, input.bounded_point("the light's color"));
   } else if (kind == "quad") {
     AreaLight light;
-    light.corner = input.bounded_location("the light's corner");
+    light.corner = input.bounded_framed_point("the light's corner");
     light.color = input.bounded_point("the light's color");
-    light.edge1 = input.bounded_location("the light's second corner") - light.corner;
-    light.edge2 = input.bounded_location("the light's third corner") - light.corner;
+    light.edge1 = input.bounded_framed_point("the light's second corner") - light.corner;
+    light.edge2 = input.bounded_framed_point("the light's third corner") - light.corner;
     const std::string_view samples = input.words.next();
     std::int64_t count = 0;
     if (!to_integer(samples, count) || count < 0 || count > 1000000)
@@ -124,13 +124,14 @@ void NffLights::read_area(NffInput& input, std::string_view keyword) {
   if (n.size() == 11) {
     const float width = frame.length(double{n[6].value});
     const float height = frame.length(double{n[7].value});
-    add_area(input,
-             keyword,
-             facing(location(frame, n, 0), location(frame, n, 3), width, height, triple(n, 8)));
+    add_area(
+        input,
+        keyword,
+        facing(framed_point(frame, n, 0), framed_point(frame, n, 3), width, height, triple(n, 8)));
     return;
   }
   AreaLight light;
-  light.corner = location(frame, n, 0);
+  light.corner = framed_point(frame, n, 0);
   light.edge1 = vector(frame, n, 3);
   light.edge2 = vector(frame, n, 6);
   light.color = triple(n, 9);
@@ -156,13 +157,13 @@ void NffLights::read_glow(NffInput& input, std::string_view keyword) {
 bool NffLights::read_glowing(NffInput& input, std::string_view keyword) {
   const char* const before = input.words.cursor();
   const std::size_t size = input.count("the polygon's corners", keyword == "pp" ? 12 : 6);
-  Float3 corner_points[4];
+  Float3 corners[4];
   for (std::size_t i = 0; size == 4 && i < size; ++i) {
-    corner_points[i] = input.location("the polygon's corner");
+    corners[i] = input.framed_point("the polygon's corner");
     if (keyword == "pp")
       input.point("the corner's normal");
   }
-  const auto& [a, b, c, d] = corner_points;
+  const auto& [a, b, c, d] = corners;
   const Float3 across = c - a, gap = (b + d) - (a + c);
   if (size != 4 || !is_finite_float(across) || !(length(gap) <= 1e-3 * length(across))) {
     input.words.go_on_at(before);

@@ -18,7 +18,7 @@ void check_image_size(const NffInput& input,
                       const Triangles& triangles) {
   constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max();
   if (mesh.vertex_count() > kMost - triangles.vertex_count() ||
-      mesh.corner_points.size() > kMost - triangles.size())
+      mesh.indices.size() > kMost - triangles.size())
     throw ParseError(input.position(name),
                      "expected fewer than 2^32 vertices and triangles in all, found more");
 }

@@ -38,7 +38,7 @@ void NffSimple::leave_out_texture(std::string_view keyword) {
 void NffSimple::read_sphere(std::string_view keyword) {
   if (keyword == "st")
     leave_out_texture(keyword);
-  const Float3 center = input_.location("the sphere's center");
+  const Float3 center = input_.framed_point("the sphere's center");
   build_.sphere(center, input_.length("the sphere's radius"), material(keyword));
   ++file_.counts.s;
 }
@@ -60,7 +60,7 @@ bool NffSimple::read_polygon(std::string_view keyword, bool patch, bool textured
   corner_points_.clear();
   normals_.clear();
   for (std::size_t i = 0; i < size; ++i) {
-    corner_points_.push_back(input_.location("the polygon's corner"));
+    corner_points_.push_back(input_.framed_point("the polygon's corner"));
     if (patch)
       normals_.push_back(input_.point("the corner's normal"));
     for (int k = 0; textured && k < 2; ++k)
@@ -80,9 +80,9 @@ bool NffSimple::read_polygon(std::string_view keyword, bool patch, bool textured
 }
 
 void NffSimple::read_cone(std::string_view keyword) {
-  const Float3 base = input_.location("the cone's base");
+  const Float3 base = input_.framed_point("the cone's base");
   const float base_radius = input_.length("the cone's base radius");
-  const Float3 apex = input_.location("the cone's apex");
+  const Float3 apex = input_.framed_point("the cone's apex");
   build_.cone(base, base_radius, apex, input_.length("the cone's apex radius"), material(keyword));
   ++file_.counts.c;
 }

@@ -145,8 +145,8 @@ NffChunks::ParsedChunks NffReader::read_ahead(std::string_view word) {
   if (!chunks_.due(word.data()) || !is_simple_word(word) || file_.scene.materials.empty() ||
       lights_.glows())
     return {};
-  const auto report_line = [this](const char* here) { progress_.at(here); };
-  const NffChunks::ParsedChunks taken = chunks_.read_run(word.data(), file_, report_line);
+  const auto report = [this](const char* here) { progress_.at(here); };
+  const NffChunks::ParsedChunks taken = chunks_.read_run(word.data(), file_, report);
   if (taken.end)
     words_.go_on_at(taken.end);
   return taken;
@@ -226,9 +226,9 @@ void NffReader::read_mat(std::string_view keyword) {
 }
 
 void NffReader::read_pl(std::string_view keyword) {
-  const Float3 a = input_.location("the plane's first point");
-  const Float3 b = input_.location("the plane's second point");
-  build_.plane(a, b, input_.location("the plane's third point"), material(keyword));
+  const Float3 a = input_.framed_point("the plane's first point");
+  const Float3 b = input_.framed_point("the plane's second point");
+  build_.plane(a, b, input_.framed_point("the plane's third point"), material(keyword));
   ++file_.counts.pl;
 }
 
@@ -246,8 +246,8 @@ void NffReader::read_npl(std::string_view keyword) {
 }
 
 void NffReader::read_box(std::string_view keyword) {
-  const Float3 corner = input_.location("the box's first corner");
-  build_.box(corner, input_.location("the box's second corner"), material(keyword));
+  const Float3 corner = input_.framed_point("the box's first corner");
+  build_.box(corner, input_.framed_point("the box's second corner"), material(keyword));
   ++file_.counts.box;
 }
 
@@ -266,8 +266,8 @@ void NffReader::read_aabb(std::string_view keyword) {
 
 /// Counted from 1, or from -1 for the last vertex backwards.
 std::vector<std::uint32_t> NffReader::mesh_vertices(std::size_t faces, std::size_t vertices) {
-  std::vector<std::uint32_t> corner_points;
-  corner_points.reserve(3 * faces);
+  std::vector<std::uint32_t> indices;
+  indices.reserve(3 * faces);
   const auto last = std::int64_t(vertices);
   for (std::size_t i = 0; i < 3 * faces; ++i) {
     progress_.at(words_.cursor());
@@ -277,9 +277,9 @@ std::vector<std::uint32_t> NffReader::mesh_vertices(std::size_t faces, std::size
       input_.fail(word,
                   "a vertex of the mesh, from 1 to " + std::to_string(last) + " or -" +
                       std::to_string(last) + " to -1");
-    corner_points.push_back(std::uint32_t(index > 0 ? index - 1 : last + index));
+    indices.push_back(std::uint32_t(index > 0 ? index - 1 : last + index));
   }
-  return corner_points;
+  return indices;
 }
 
 void NffReader::read_mesh(std::string_view keyword) {
@@ -291,12 +291,12 @@ void NffReader::read_mesh(std::string_view keyword) {
   mesh.z.reserve(vertices);
   for (std::size_t i = 0; i < vertices; ++i) {
     progress_.at(words_.cursor());
-    const Float3 p = input_.location("the mesh's vertex");
+    const Float3 p = input_.framed_point("the mesh's vertex");
     mesh.x.push_back(p.x);
     mesh.y.push_back(p.y);
     mesh.z.push_back(p.z);
   }
-  mesh.corner_points = mesh_vertices(faces, vertices);
+  mesh.indices = mesh_vertices(faces, vertices);
   build_.mesh(std::move(mesh), material(keyword));
   file_.counts.mesh += faces;
 }

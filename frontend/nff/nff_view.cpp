@@ -45,10 +45,10 @@ bool NffView::read(std::string_view word, NffInput& input, LensHint& lens) {
     begin(word, input);
   else if (word == "from" || word == "eye") {
     from_ = word;
-    camera_.eye = input.bounded_location("the view's eye");
+    camera_.eye = input.bounded_framed_point("the view's eye");
   } else if (word == "at") {
     at_ = word;
-    camera_.at = input.bounded_location("the point looked at");
+    camera_.at = input.bounded_framed_point("the point looked at");
   } else if (word == "up") {
     up_ = word;
     camera_.up = input.bounded_point("the view's up direction");

@@ -36,17 +36,17 @@ void PlyAscii::read_number(const PlyElement& element,
                            std::uint64_t row,
                            const PlyColumn& target) {
   float value = 0;
-  if (target.to && target.saves() && words_.next_number(value))
+  if (target.to && target.is_identity() && words_.next_number(value))
     return target.to->push_back(value);
   const std::string_view found = word(element, row);
   if (!target.to)
     return;
   double wide = 0;
-  if (target.saves() ? !to_number(found, value) : !to_number(found, wide))
+  if (target.is_identity() ? !to_number(found, value) : !to_number(found, wide))
     throw ParseError(words_.position(found),
                      "a number for \"" + property.name + "\" of \"" + element.name + '"',
                      quoted(found));
-  target.to->push_back(target.saves() ? value : target.value(wide));
+  target.to->push_back(target.is_identity() ? value : target.value(wide));
 }
 
 void PlyAscii::read_list(const PlyElement& element,
@@ -78,7 +78,7 @@ void PlyAscii::read_list(const PlyElement& element,
 }
 
 /// Rows that are too long, or several rows on a line? Lines enough for one row each say the former.
-PlyAscii::Extra PlyAscii::validate(const PlyElement& element, std::uint64_t row) const {
+PlyAscii::Extra PlyAscii::extra_of(const PlyElement& element, std::uint64_t row) const {
   std::uint64_t rows = element.count - row - 1;
   bool later = false;
   for (const PlyElement& other : header_.elements) {
@@ -97,7 +97,7 @@ void PlyAscii::end_row(const PlyElement& element, std::uint64_t row) {
   if (words_.peek_on_line().empty())
     return;
   if (extra_ == Extra::kUnknown)
-    extra_ = validate(element, row);
+    extra_ = extra_of(element, row);
   if (extra_ == Extra::kDropped)
     words_.skip_line();
 }

@@ -37,7 +37,7 @@ class PlyAscii {
                    std::uint64_t row,
                    const PlyColumn& target);  ///< of nothing: steps over it
   void end_row(const PlyElement& element, std::uint64_t row);
-  Extra validate(const PlyElement& element, std::uint64_t row) const;
+  Extra extra_of(const PlyElement& element, std::uint64_t row) const;
 
   Words words_;
   const PlyHeader& header_;

@@ -55,9 +55,9 @@ void append_column(PlyType type,
   out.to->resize(before + rows);
   with_type(type, [&](auto t) {
     float* to = out.to->data() + before;
-    for (std::size_t i = 0; i < rows && out.saves(); ++i, p += stride)
+    for (std::size_t i = 0; i < rows && out.is_identity(); ++i, p += stride)
       to[i] = float(load<decltype(t)>(p, swap));
-    for (std::size_t i = 0; i < rows && !out.saves(); ++i, p += stride)
+    for (std::size_t i = 0; i < rows && !out.is_identity(); ++i, p += stride)
       to[i] = out.value(double(load<decltype(t)>(p, swap)));
   });
 }
@@ -160,7 +160,7 @@ template <class Index>
 std::uint64_t PlyBinary::read_triangles(std::uint64_t rows, PlyFaces& faces) {
   constexpr std::size_t kRow = 1 + 3 * sizeof(Index), kBlock = 4096;
   const std::uint64_t whole = std::min<std::uint64_t>(rows, std::size_t(end_ - at_) / kRow);
-  std::array<std::uint32_t, 3 * kBlock> corner_points;
+  std::array<std::uint32_t, 3 * kBlock> indices;
   std::uint64_t done = 0;
   for (std::size_t count = kBlock; done < whole && count == kBlock; done += count) {
     const std::size_t most = std::size_t(std::min<std::uint64_t>(kBlock, whole - done));
@@ -169,12 +169,12 @@ std::uint64_t PlyBinary::read_triangles(std::uint64_t rows, PlyFaces& faces) {
       for (std::size_t i = 0; i < 3; ++i) {
         const auto index = std::int64_t(load<Index>(at_ + 1 + i * sizeof(Index), swap_));
         sound = sound && faces.accepts(index);
-        corner_points[3 * count + i] = std::uint32_t(index);
+        indices[3 * count + i] = std::uint32_t(index);
       }
       if (!sound)
         break;
     }
-    faces.add_triangles({corner_points.data(), 3 * count});
+    faces.add_triangles({indices.data(), 3 * count});
     progress_.at(at_);
   }
   return done;

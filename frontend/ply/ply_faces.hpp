@@ -22,24 +22,23 @@ class PlyFaces {
     if (strips_)
       add_to_strip(index);
     else
-      mesh_.corner_points.push_back(std::uint32_t(index));
+      mesh_.indices.push_back(std::uint32_t(index));
   }
   /// Adds a whole triangle at once. Returns false if it is a strip or has a bad index: then add it
   /// item by item.
   bool add_triangle(std::int64_t a, std::int64_t b, std::int64_t c) {
     if (strips_ || !accepts(a) || !accepts(b) || !accepts(c))
       return false;
-    mesh_.corner_points.insert(mesh_.corner_points.end(),
-                               {std::uint32_t(a), std::uint32_t(b), std::uint32_t(c)});
+    mesh_.indices.insert(mesh_.indices.end(),
+                         {std::uint32_t(a), std::uint32_t(b), std::uint32_t(c)});
     mesh_.close_face(3);
     return true;
   }
   /// Whole triangles, sound ones, where lists are no strips.
-  void add_triangles(std::span<const std::uint32_t> corner_points) {
-    mesh_.corner_points.insert(
-        mesh_.corner_points.end(), corner_points.begin(), corner_points.end());
+  void add_triangles(std::span<const std::uint32_t> indices) {
+    mesh_.indices.insert(mesh_.indices.end(), indices.begin(), indices.end());
     if (!mesh_.sizes.empty())
-      mesh_.sizes.insert(mesh_.sizes.end(), corner_points.size() / 3, 3);
+      mesh_.sizes.insert(mesh_.sizes.end(), indices.size() / 3, 3);
   }
   bool are_strips() const { return strips_; }
   void end(std::uint32_t size) {
@@ -58,8 +57,7 @@ class PlyFaces {
     const auto c = std::uint32_t(index);
     if (++run_ >= 3 && a_ != b_ && b_ != c && c != a_) {
       const bool turned = run_ % 2 == 0;
-      mesh_.corner_points.insert(mesh_.corner_points.end(),
-                                 {turned ? b_ : a_, turned ? a_ : b_, c});
+      mesh_.indices.insert(mesh_.indices.end(), {turned ? b_ : a_, turned ? a_ : b_, c});
       mesh_.close_face(3);
     }
     a_ = b_;
@@ -84,7 +82,7 @@ struct PlyPlan {
 struct PlyColumn {
   std::vector<float>* to = nullptr;
   double minus = 0, times = 1;
-  bool saves() const { return minus == 0 && times == 1; }
+  bool is_identity() const { return minus == 0 && times == 1; }
   float value(double number) const { return static_cast<float>((number - minus) * times); }
 };
 

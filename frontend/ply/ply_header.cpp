@@ -154,17 +154,17 @@ void HeaderReader::read_property() {
     fail(line_.substr(0, 0), "an element before its properties");
   PlyElement& element = header_.elements.back();
   PlyProperty property;
-  std::string_view tail = line_;
+  std::string_view rest = line_;
   if (word() == "list") {
     property.is_list = true;
-    tail = line_;
+    rest = line_;
     property.count_type = type("the list's count");
     if (property.count_type >= PlyType::kFloat32) {
-      line_ = tail;
+      line_ = rest;
       fail(word(), "an integer type for the list's count");
     }
   } else {
-    line_ = tail;
+    line_ = rest;
   }
   property.type = type("the property");
   const std::string_view name = word();

@@ -83,7 +83,7 @@ Mesh read_rows(const PlyHeader& header, std::size_t bytes, const Frame& frame, R
       if (plan.columns[i] >= 0)
         reserve_to_fill(*column(mesh, plan, i).to, std::size_t(element.count));
     if (element.name == "face")
-      reserve_to_fill(mesh.corner_points, expected_vertices(header, element, plan.list, bytes));
+      reserve_to_fill(mesh.indices, expected_vertices(header, element, plan.list, bytes));
     rows.read(element, plan, mesh, is_strips ? strips : polygons);
   }
   return mesh;

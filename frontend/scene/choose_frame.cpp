@@ -15,20 +15,20 @@ constexpr double kMaxRatio = 4;
 /// Squares of lengths from here on are normal floats, with room for further products.
 constexpr double kSmallest = 0x1p-40;
 
-struct Location {
+struct Cube {
   std::array<double, 3> middle;
   double size;  ///< of the largest side
 };
 
-Location position_of(const SceneBounds& bounds) {
+Cube cube_around(const SceneBounds& bounds) {
   const float low[3] = {bounds.low.x, bounds.low.y, bounds.low.z};
   const float high[3] = {bounds.high.x, bounds.high.y, bounds.high.z};
-  Location location{{}, 0};
+  Cube cube{{}, 0};
   for (std::size_t a = 0; a < 3; ++a) {
-    location.middle[a] = .5 * (double{low[a]} + high[a]);
-    location.size = std::max(location.size, double{high[a]} - low[a]);
+    cube.middle[a] = .5 * (double{low[a]} + high[a]);
+    cube.size = std::max(cube.size, double{high[a]} - low[a]);
   }
-  return location;
+  return cube;
 }
 
 double largest(const std::array<double, 3>& v) {
@@ -40,36 +40,36 @@ double power_of_two(double least) {
   return std::ldexp(1, std::ilogb(least) + 1);
 }
 
-std::array<double, 3> offset_of(const Location& location) {
+std::array<double, 3> offset_of(const Cube& cube) {
   // no finer than floats are there, if the size vanishes
-  const double step = power_of_two(std::max(location.size, 0x1p-22 * largest(location.middle)));
+  const double step = power_of_two(std::max(cube.size, 0x1p-22 * largest(cube.middle)));
   std::array<double, 3> offset;
   for (std::size_t a = 0; a < 3; ++a)
-    offset[a] = step * std::nearbyint(location.middle[a] / step);
+    offset[a] = step * std::nearbyint(cube.middle[a] / step);
   return offset;
 }
 
 /// Calls visit(coordinates of one axis, axis) for every position in a scene but the camera's.
 template <class Visit>
 void for_each_position(const Geometry& g, const Visit& visit) {
-  const std::span<const float> locations[][3] = {
+  const std::span<const float> coordinates[][3] = {
       {g.spheres.x, g.spheres.y, g.spheres.z},
       {g.triangles.x, g.triangles.y, g.triangles.z},
       {g.cones.base_x, g.cones.base_y, g.cones.base_z},
       {g.cones.apex_x, g.cones.apex_y, g.cones.apex_z},
       {g.planes.x, g.planes.y, g.planes.z},
   };
-  for (const auto& location : locations)
+  for (const auto& axes : coordinates)
     for (std::size_t a = 0; a < 3; ++a)
-      visit(location[a], a);
+      visit(axes[a], a);
 }
 
 /// Returns the largest coordinate of primitives, camera and lights.
 double extent_of(const SceneFile& file) {
   double most = 0;
   const auto add = [&](const Float3& p) { most = std::max(most, largest({p.x, p.y, p.z})); };
-  for_each_position(file.scene.geometry, [&](std::span<const float> locations, std::size_t) {
-    for (const float c : locations)
+  for_each_position(file.scene.geometry, [&](std::span<const float> coordinates, std::size_t) {
+    for (const float c : coordinates)
       most = std::max(most, std::abs(double{c}));
   });
   if (!file.default_camera)
@@ -90,17 +90,17 @@ std::optional<Frame> find_frame(const SceneFile& file) {
     return Frame{{}, 1 / power_of_two(extent)};
   if (bounds.empty)
     return {};
-  const Location location = position_of(bounds);
-  if (!std::isfinite(location.size) || !(largest(location.middle) > kMaxRatio * location.size))
+  const Cube cube = cube_around(bounds);
+  if (!std::isfinite(cube.size) || !(largest(cube.middle) > kMaxRatio * cube.size))
     return {};
-  return Frame{offset_of(location), 1};
+  return Frame{offset_of(cube), 1};
 }
 
 bool needs_frame(const SceneFile& file) {
   const Frame& frame = file.frame;
   bool needed = frame.scale != 1;
-  for_each_position(file.scene.geometry, [&](std::span<const float> locations, std::size_t a) {
-    needed = needed || std::ranges::any_of(locations, [&](float c) {
+  for_each_position(file.scene.geometry, [&](std::span<const float> coordinates, std::size_t a) {
+    needed = needed || std::ranges::any_of(coordinates, [&](float c) {
                const double outside = frame.outside(c, a);
                return double{static_cast<float>(outside)} != outside;
              });

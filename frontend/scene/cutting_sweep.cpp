@@ -26,26 +26,26 @@ bool CuttingSweep::run() {
     pass(*point);
   }
   cut_passed();
-  return is_valid_;
+  return is_uncut_;
 }
 
 /// The common case, without a search: one edge ends and one begins, and no other passes the point.
 bool CuttingSweep::go_on() {
   if (!events_.goes_on(event_point_))
     return false;
-  const SweepLine::Location location = locations_[events_.first_ending(event_point_)],
-                            next = std::next(location);
-  const bool is_lowest = location == line_.begin();
+  const SweepLine::Iterator at = iterators_[events_.first_ending(event_point_)],
+                            next = std::next(at);
+  const bool is_lowest = at == line_.begin();
   const Point2& here = points_[event_point_];
-  if ((!is_lowest && std::prev(location)->contains_point(here)) ||
+  if ((!is_lowest && std::prev(at)->contains_point(here)) ||
       (next != line_.end() && next->contains_point(here)))
     return false;
-  line_.swap_edges(location, events_.first_start(event_point_));
-  locations_[location->edge] = location;
+  line_.replace_edge(at, events_.first_start(event_point_));
+  iterators_[at->edge] = at;
   above_ = next;
   if (!is_lowest)
-    check(std::prev(location), location);
-  check(location, std::next(location));
+    check(std::prev(at), at);
+  check(at, std::next(at));
   insert_starting();
   return true;
 }
@@ -54,10 +54,10 @@ bool CuttingSweep::go_on() {
 void CuttingSweep::insert_starting() {
   for (std::size_t i = 0; i < starting_.size(); ++i) {
     const std::uint32_t e = starting_[i];
-    const SweepLine::Location location = locations_[e] = line_.insert(above_, e);
-    if (location != line_.begin())
-      check(std::prev(location), location);
-    check(location, std::next(location));
+    const SweepLine::Iterator at = iterators_[e] = line_.insert(above_, e);
+    if (at != line_.begin())
+      check(std::prev(at), at);
+    check(at, std::next(at));
   }
 }
 
@@ -71,16 +71,16 @@ void CuttingSweep::cut_crossing() {
 }
 
 /// Takes an edge off the line, and has it begin at the point where the sweep is.
-SweepLine::Location CuttingSweep::insert_starting_edges(SweepLine::Location location) {
-  is_valid_ = false;
-  const std::uint32_t edge = location->edge;
+SweepLine::Iterator CuttingSweep::insert_starting_edges(SweepLine::Iterator at) {
+  is_uncut_ = false;
+  const std::uint32_t edge = at->edge;
   starting_.push_back(edge);
   edges_.push_back(edge_between(edges_[edge].left, event_point_, edges_[edge]));
   edges_[edge].left = event_point_;
-  const SweepLine::Location next = line_.erase(location);
-  if (above_ == location)
+  const SweepLine::Iterator next = line_.erase(at);
+  if (above_ == at)
     above_ = next;
-  locations_.push_back(next);
+  iterators_.push_back(next);
   return next;
 }
 
@@ -96,7 +96,7 @@ void CuttingSweep::pass(std::uint32_t point) {
   if (ending == SweepEvents::kNone)
     above_ = line_.first_above(points_[point]);
   for (std::uint32_t e = ending; e != SweepEvents::kNone; e = events_.next_ending(e)) {
-    above_ = line_.erase(locations_[e]);
+    above_ = line_.erase(iterators_[e]);
     if (starting_.empty() && above_ != line_.begin())
       check(std::prev(above_), above_);
   }
@@ -105,41 +105,41 @@ void CuttingSweep::pass(std::uint32_t point) {
 }
 
 /// Checks two edges that have become neighbours on the line.
-void CuttingSweep::check(SweepLine::Location below, SweepLine::Location above) {
+void CuttingSweep::check(SweepLine::Iterator below, SweepLine::Iterator above) {
   if (above == line_.end())
     return;
   while (!is_over() && crossing_.empty() && cut_one(below, above)) {
   }
   if (crossing_.empty())
     return;
-  std::vector<SweepLine::Location> passing;
+  std::vector<SweepLine::Iterator> passing;
   passing.swap(crossing_);
-  SweepLine::Location next;
-  for (const SweepLine::Location location : passing)
-    next = insert_starting_edges(location);
+  SweepLine::Iterator next;
+  for (const SweepLine::Iterator at : passing)
+    next = insert_starting_edges(at);
   if (next != line_.begin())
     check(std::prev(next), next);
 }
 
 /// Cuts two edges where they intersect besides a common end, or at the first such point. Returns
 /// whether edges on the line have changed.
-bool CuttingSweep::cut_one(SweepLine::Location a, SweepLine::Location b) {
+bool CuttingSweep::cut_one(SweepLine::Iterator a, SweepLine::Iterator b) {
   if (!SweepLine::intersect_edges(*a, *b))
     return false;
   const int side1 = a->side_of(b->left), side2 = a->side_of(b->right);
   const int side3 = b->side_of(a->left), side4 = b->side_of(a->right);
   if (side1 * side2 < 0 && side3 * side4 < 0)
     return cut_at_crossing(a, b);
-  const auto cut_at = [this](SweepLine::Location location, int side, std::uint32_t point) {
-    return side == 0 && location->spans_point(points_[point]) && cut(location, point);
+  const auto cut_at = [this](SweepLine::Iterator at, int side, std::uint32_t point) {
+    return side == 0 && at->spans_point(points_[point]) && cut(at, point);
   };
   const OutlineEdge of_a = edges_[a->edge], of_b = edges_[b->edge];
   return cut_at(a, side1, of_b.left) || cut_at(a, side2, of_b.right) ||
          cut_at(b, side3, of_a.left) || cut_at(b, side4, of_a.right);
 }
 
-bool CuttingSweep::cut_at_crossing(SweepLine::Location a, SweepLine::Location b) {
-  is_valid_ = false;
+bool CuttingSweep::cut_at_crossing(SweepLine::Iterator a, SweepLine::Iterator b) {
+  is_uncut_ = false;
   const std::uint32_t point = crossing_of(a, b);
   const auto is_end_of = [&](std::uint32_t e) {
     return edges_[e].left == point || edges_[e].right == point;
@@ -150,7 +150,7 @@ bool CuttingSweep::cut_at_crossing(SweepLine::Location a, SweepLine::Location b)
 }
 
 /// Returns the rounded crossing of two edges: one of their ends, or a new point.
-std::uint32_t CuttingSweep::crossing_of(SweepLine::Location a, SweepLine::Location b) {
+std::uint32_t CuttingSweep::crossing_of(SweepLine::Iterator a, SweepLine::Iterator b) {
   const auto& [ignored_a, a1, a2] = *a;
   const auto& [ignored_b, b1, b2] = *b;
   const double at_a1 = turn(b1, b2, a1), at_a2 = turn(b1, b2, a2);
@@ -197,14 +197,14 @@ std::uint32_t CuttingSweep::point_at(const Point2& p, const std::array<std::uint
 /// Cuts an edge on the line at a point. The part left of the point stays on the line, under another
 /// number. Returns false if the sweep has passed the point, or would go back on its way along the
 /// edge: then the edge is cut after the sweep.
-bool CuttingSweep::cut(SweepLine::Location location, std::uint32_t point) {
-  is_valid_ = false;
-  const std::uint32_t edge = location->edge;
+bool CuttingSweep::cut(SweepLine::Iterator at, std::uint32_t point) {
+  is_uncut_ = false;
+  const std::uint32_t edge = at->edge;
   OutlineEdge before = edges_[edge];
-  const bool is_on_the_way = location->spans_point(points_[point]);
+  const bool is_on_the_way = at->spans_point(points_[point]);
   if (point == event_point_ && is_on_the_way) {
-    if (std::ranges::find(crossing_, location) == crossing_.end())
-      crossing_.push_back(location);
+    if (std::ranges::find(crossing_, at) == crossing_.end())
+      crossing_.push_back(at);
     return false;
   }
   if (!is_on_the_way || !swept_before(points_[event_point_], points_[point])) {
@@ -215,8 +215,8 @@ bool CuttingSweep::cut(SweepLine::Location location, std::uint32_t point) {
   const auto number = std::uint32_t(edges_.size());
   edges_.push_back(before);
   edges_[edge].left = point;
-  locations_.push_back(location);
-  line_.swap_edges(location, number);
+  iterators_.push_back(at);
+  line_.replace_edge(at, number);
   events_.add_ending(number, point);
   events_.add_start(edge, point);
   return true;

@@ -13,7 +13,7 @@ namespace grelha {
 /// A crossing of two sides of an outline.
 struct OutlineCrossing {
   std::array<std::uint32_t, 2> sides;
-  Point2 location;
+  Point2 point;
 };
 
 /// One sweep over edges, which cuts them where they intersect (see Outline). Points come as they
@@ -32,7 +32,7 @@ class CuttingSweep {
         step_(step),
         events_(points.size(), edges),
         line_(points, edges),
-        locations_(edges.size()),
+        iterators_(edges.size()),
         most_(edges.size() + most_cuts) {}
 
   /// Returns whether there was nothing to cut.
@@ -51,14 +51,14 @@ class CuttingSweep {
   std::optional<std::uint32_t> next_point();
   bool go_on();
   void cut_crossing();
-  SweepLine::Location insert_starting_edges(SweepLine::Location location);
+  SweepLine::Iterator insert_starting_edges(SweepLine::Iterator at);
   void insert_starting();
   void pass(std::uint32_t point);
-  void check(SweepLine::Location below, SweepLine::Location above);
-  bool cut_one(SweepLine::Location a, SweepLine::Location b);
-  bool cut_at_crossing(SweepLine::Location a, SweepLine::Location b);
-  bool cut(SweepLine::Location location, std::uint32_t point);
-  std::uint32_t crossing_of(SweepLine::Location a, SweepLine::Location b);
+  void check(SweepLine::Iterator below, SweepLine::Iterator above);
+  bool cut_one(SweepLine::Iterator a, SweepLine::Iterator b);
+  bool cut_at_crossing(SweepLine::Iterator a, SweepLine::Iterator b);
+  bool cut(SweepLine::Iterator at, std::uint32_t point);
+  std::uint32_t crossing_of(SweepLine::Iterator a, SweepLine::Iterator b);
   std::uint32_t point_at(const Point2& p, const std::array<std::uint32_t, 2>& sides);
   OutlineEdge edge_between(std::uint32_t from, std::uint32_t to, OutlineEdge edge) const;
   void cut_passed();
@@ -67,20 +67,20 @@ class CuttingSweep {
   std::vector<OutlineCrossing>& intersections_;
   std::vector<OutlineEdge>& edges_;
   const std::size_t known_;                        ///< points there were before
-  const double step_;                              ///< of the grid that intersections are rounded to
+  const double step_;                              ///< of the grid that points are rounded to
   std::size_t next_ = 0;                           ///< the next known point
   std::map<Point2, std::uint32_t, Before> fresh_;  ///< intersections to come
   SweepEvents events_;
   SweepLine line_;
-  std::vector<SweepLine::Location> locations_;  ///< [edges] positions of edges on the line
+  std::vector<SweepLine::Iterator> iterators_;  ///< [edges] positions of edges on the line
   std::size_t most_;
   std::uint32_t event_point_ = 0;  ///< the point
-  SweepLine::Location above_;      ///< the first edge above it
+  SweepLine::Iterator above_;      ///< the first edge above it
   std::vector<std::uint32_t> starting_;
-  std::vector<SweepLine::Location>
+  std::vector<SweepLine::Iterator>
       crossing_;             ///< edges that pass the point, or so near that they are cut
   std::vector<Cut> passed_;  ///< cuts that the sweep has passed
-  bool is_valid_ = true;
+  bool is_uncut_ = true;
 };
 
 }  // namespace grelha

@@ -15,7 +15,7 @@ constexpr std::uint32_t kNone = SweepEvents::kNone;
 /// between them: points from the lower edge's left end to the upper one's. Inner corners are reflex
 /// or flat.
 struct Front {
-  std::uint32_t low, high, first_edge;  ///< nodes
+  std::uint32_t low, high, foremost;  ///< nodes
 };
 
 class FillingSweep {
@@ -25,13 +25,13 @@ class FillingSweep {
         edges_(edges),
         events_(points.size(), edges),
         line_(points, edges),
-        locations_(edges.size()),
+        iterators_(edges.size()),
         above_(edges.size()) {}
 
   std::optional<EvenOddFill> run() {
     for (std::uint32_t point = 0; point < points_.size(); ++point) {
       pass(point);
-      if (!is_cut_)
+      if (!is_arranged_)
         return std::nullopt;
     }
     return std::move(fill_);
@@ -52,9 +52,9 @@ class FillingSweep {
 
   bool go_on(std::uint32_t point);
   void pass(std::uint32_t point);
-  Fronts end_edges(std::uint32_t point, SweepLine::Location& above);
+  Fronts end_edges(std::uint32_t point, SweepLine::Iterator& above);
   void begin_edges(std::uint32_t point,
-                   SweepLine::Location above,
+                   SweepLine::Iterator above,
                    const Gap& below,
                    const Fronts& fronts);
   std::uint32_t begin_front(std::uint32_t point);
@@ -64,15 +64,15 @@ class FillingSweep {
   void add_above(Front& front, std::uint32_t point);
   void close(std::uint32_t front, std::uint32_t point);
 
-  void record(std::int32_t winding, bool is_inside) {
+  void check_winding(std::int32_t winding, bool is_inside) {
     fill_.is_crossed = fill_.is_crossed || winding != (is_inside ? 1 : 0);
   }
   /// Checks an edge and its new neighbour below.
-  void check_below(SweepLine::Location location) {
-    if (location != line_.begin() && location != line_.end())
-      is_cut_ = is_cut_ && !SweepLine::intersect_edges(*std::prev(location), *location);
+  void check_below(SweepLine::Iterator at) {
+    if (at != line_.begin() && at != line_.end())
+      is_arranged_ = is_arranged_ && !SweepLine::intersect_edges(*std::prev(at), *at);
   }
-  Gap& gap_above(SweepLine::Location location) { return above_[location->edge]; }
+  Gap& gap_above(SweepLine::Iterator at) { return above_[at->edge]; }
   std::uint32_t add_node(std::uint32_t point, std::uint32_t down, std::uint32_t up) {
     nodes_.push_back({point, down, up});
     return std::uint32_t(nodes_.size() - 1);
@@ -88,33 +88,33 @@ class FillingSweep {
   const std::vector<OutlineEdge>& edges_;
   SweepEvents events_;
   SweepLine line_;
-  std::vector<SweepLine::Location> locations_;  ///< [edges] positions of edges on the line
+  std::vector<SweepLine::Iterator> iterators_;  ///< [edges] positions of edges on the line
   std::vector<Gap> above_;                      ///< [edges]
   std::vector<Node> nodes_;
   std::vector<Front> fronts_;
   std::vector<std::uint32_t> closing_;
   EvenOddFill fill_;
-  bool is_cut_ = true;
+  bool is_arranged_ = true;
 };
 
 /// One edge ends and one begins, at the same position.
 bool FillingSweep::go_on(std::uint32_t point) {
   if (!events_.goes_on(point))
     return false;
-  const SweepLine::Location location = locations_[events_.first_ending(point)];
-  const bool is_lowest = location == line_.begin();
-  const Gap below = is_lowest ? Gap{} : gap_above(std::prev(location));
-  const std::uint32_t above = gap_above(location).front;
+  const SweepLine::Iterator at = iterators_[events_.first_ending(point)];
+  const bool is_lowest = at == line_.begin();
+  const Gap below = is_lowest ? Gap{} : gap_above(std::prev(at));
+  const std::uint32_t above = gap_above(at).front;
   if (below.front != kNone)
     add_above(fronts_[below.front], point);
   if (above != kNone)
     add_below(fronts_[above], point);
   const std::uint32_t edge = events_.first_start(point);
-  line_.swap_edges(location, edge);
-  locations_[edge] = location;
-  check_below(location);
-  check_below(std::next(location));
-  record(below.winding + edges_[edge].winding, above != kNone);
+  line_.replace_edge(at, edge);
+  iterators_[edge] = at;
+  check_below(at);
+  check_below(std::next(at));
+  check_winding(below.winding + edges_[edge].winding, above != kNone);
   above_[edge] = {above, below.winding + edges_[edge].winding};
   return true;
 }
@@ -124,7 +124,7 @@ void FillingSweep::pass(std::uint32_t point) {
     return;
   if (events_.first_ending(point) == kNone && events_.first_start(point) == kNone)
     return;  // all its edges lay on others
-  SweepLine::Location above = line_.end();
+  SweepLine::Iterator above = line_.end();
   Fronts fronts = end_edges(point, above);
   const bool is_lowest = above == line_.begin();
   Gap* const below = is_lowest ? nullptr : &gap_above(std::prev(above));
@@ -142,14 +142,14 @@ void FillingSweep::pass(std::uint32_t point) {
 
 /// Takes the edges that end at the point off the line. Returns the fronts of the inside below and
 /// above it, which have the point, and the position above it.
-FillingSweep::Fronts FillingSweep::end_edges(std::uint32_t point, SweepLine::Location& above) {
+FillingSweep::Fronts FillingSweep::end_edges(std::uint32_t point, SweepLine::Iterator& above) {
   const std::uint32_t any = events_.first_ending(point);
   if (any == kNone) {
     above = line_.first_above(points_[point]);
     const std::uint32_t front = above == line_.begin() ? kNone : gap_above(std::prev(above)).front;
     return front == kNone ? Fronts{} : split(front, point);
   }
-  SweepLine::Location lowest = locations_[any];
+  SweepLine::Iterator lowest = iterators_[any];
   while (lowest != line_.begin() && edges_[std::prev(lowest)->edge].right == point)
     --lowest;
   Fronts fronts;
@@ -174,34 +174,34 @@ FillingSweep::Fronts FillingSweep::end_edges(std::uint32_t point, SweepLine::Loc
 
 /// Puts the edges that begin at the point on the line, each with the region above it.
 void FillingSweep::begin_edges(std::uint32_t point,
-                               SweepLine::Location above,
+                               SweepLine::Iterator above,
                                const Gap& below,
                                const Fronts& fronts) {
   std::uint32_t count = 0;
-  SweepLine::Location lowest = line_.end();
+  SweepLine::Iterator lowest = line_.end();
   for (std::uint32_t e = events_.first_start(point); e != kNone; e = events_.next_start(e)) {
-    locations_[e] = line_.insert(above, e);
-    lowest = locations_[e];
+    iterators_[e] = line_.insert(above, e);
+    lowest = iterators_[e];
     ++count;
   }
   while (lowest != line_.begin() && edges_[std::prev(lowest)->edge].left == point)
     --lowest;
   std::int32_t winding = below.winding;
   bool is_inside = fronts.below != kNone;
-  SweepLine::Location location = lowest;
-  for (; count-- > 0; ++location) {
-    if (location == line_.end() || edges_[location->edge].left != point) {
-      is_cut_ = false;  // another edge passes the point
+  SweepLine::Iterator at = lowest;
+  for (; count-- > 0; ++at) {
+    if (at == line_.end() || edges_[at->edge].left != point) {
+      is_arranged_ = false;  // another edge passes the point
       return;
     }
-    check_below(location);
-    winding += edges_[location->edge].winding;
+    check_below(at);
+    winding += edges_[at->edge].winding;
     is_inside = !is_inside;
-    record(winding, is_inside);
+    check_winding(winding, is_inside);
     const std::uint32_t inner = is_inside && count > 0 ? begin_front(point) : kNone;
-    gap_above(location) = {count == 0 ? fronts.above : inner, winding};
+    gap_above(at) = {count == 0 ? fronts.above : inner, winding};
   }
-  check_below(location);
+  check_below(at);
 }
 
 std::uint32_t FillingSweep::begin_front(std::uint32_t point) {
@@ -214,7 +214,7 @@ std::uint32_t FillingSweep::begin_front(std::uint32_t point) {
 /// parts.
 FillingSweep::Fronts FillingSweep::split(std::uint32_t front, std::uint32_t point) {
   Front& lower = fronts_[front];
-  const std::uint32_t middle = lower.first_edge, up = nodes_[middle].up;
+  const std::uint32_t middle = lower.foremost, up = nodes_[middle].up;
   const std::uint32_t twin = add_node(nodes_[middle].point, kNone, up);
   Front upper{twin, lower.high, twin};
   if (up != kNone)
@@ -236,7 +236,7 @@ std::uint32_t FillingSweep::join(std::uint32_t below, std::uint32_t above) {
   nodes_[lower.high].up = next;
   if (next != kNone) {
     nodes_[next].down = lower.high;
-    lower.first_edge = lower.high;
+    lower.foremost = lower.high;
     lower.high = upper.high;
   }
   return below;
@@ -261,7 +261,7 @@ void FillingSweep::add_above(Front& front, std::uint32_t point) {
     emit(nodes_[next].point, point, apex);
     last = next;
   }
-  front.high = front.first_edge = add_node(point, last, kNone);
+  front.high = front.foremost = add_node(point, last, kNone);
   nodes_[last].up = front.high;
 }
 
@@ -282,7 +282,7 @@ void FillingSweep::add_below(Front& front, std::uint32_t point) {
     emit(apex, point, nodes_[next].point);
     last = next;
   }
-  front.low = front.first_edge = add_node(point, kNone, last);
+  front.low = front.foremost = add_node(point, kNone, last);
   nodes_[last].down = front.low;
 }
 

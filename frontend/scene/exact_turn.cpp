@@ -22,15 +22,15 @@ class ExactSum {
 
  private:
   void add(double value) {
-    std::size_t saved = 0;
+    std::size_t count = 0;
     for (std::size_t i = 0; i < count_; ++i) {
       const double sum = value + parts_[i], shared = sum - value,
                    error = (value - (sum - shared)) + (parts_[i] - shared);
       if (error != 0)
-        parts_[saved++] = error;
+        parts_[count++] = error;
       value = sum;
     }
-    count_ = saved;
+    count_ = count;
     if (value != 0)
       parts_[count_++] = value;
   }

@@ -8,16 +8,16 @@ namespace grelha {
 
 /// Faces over shared vertices as a file gives them, indices already checked.
 struct Mesh {
-  std::vector<float> x, y, z;                ///< [vertices]
-  std::vector<float> nx, ny, nz;             ///< [vertices] or empty
-  std::vector<std::uint32_t> corner_points;  ///< vertices of all faces, one face after the other
-  std::vector<std::uint32_t> sizes;  ///< [faces] corners of each, or empty: all are triangles
+  std::vector<float> x, y, z;          ///< [vertices]
+  std::vector<float> nx, ny, nz;       ///< [vertices] or empty
+  std::vector<std::uint32_t> indices;  ///< vertices of all faces, one face after the other
+  std::vector<std::uint32_t> sizes;    ///< [faces] corners of each, or empty: all are triangles
   std::size_t vertex_count() const { return x.size(); }
-  std::size_t face_count() const { return sizes.empty() ? corner_points.size() / 3 : sizes.size(); }
+  std::size_t face_count() const { return sizes.empty() ? indices.size() / 3 : sizes.size(); }
   /// Ends the face whose `size` corners were just appended.
   void close_face(std::uint32_t size) {
     if (sizes.empty() && size != 3)
-      sizes.assign((corner_points.size() - size) / 3, 3);
+      sizes.assign((indices.size() - size) / 3, 3);
     if (size != 3 || !sizes.empty())
       sizes.push_back(size);
   }

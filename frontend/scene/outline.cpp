@@ -21,7 +21,7 @@ constexpr int kGridBits = 46;
 constexpr int kFineSweeps = 4, kMostSweeps = 24;
 
 /// Shears a point to the side. Returns true if no bit was lost.
-bool perturb_point(Point2& p) {
+bool shear_point(Point2& p) {
   constexpr double kShare = 0x61C88p-20;  // a golden section: few drawings have such a slope
   const double off = kShare * p.y, x = p.x + off;
   const double shared = x - p.x, lost = (p.x - (x - shared)) + (off - shared);
@@ -36,7 +36,7 @@ bool perturb_point(Point2& p) {
 /// would lose a bit.
 Outline::Outline(std::span<const Point2> corner_points)
     : corner_points_(corner_points.begin(), corner_points.end()) {
-  if (!std::ranges::all_of(corner_points_, perturb_point, [](Point2& p) -> Point2& { return p; }))
+  if (!std::ranges::all_of(corner_points_, shear_point, [](Point2& p) -> Point2& { return p; }))
     corner_points_.assign(corner_points.begin(), corner_points.end());
   points_ = corner_points_;
   numbers_.resize(points_.size());
@@ -51,29 +51,29 @@ Outline::Outline(std::span<const Point2> corner_points)
   }
 }
 
-double Outline::share_of(std::uint32_t side, const Point2& location) const {
+double Outline::share_of(std::uint32_t side, const Point2& point) const {
   const Point2 &a = corner_points_[side], &b = corner_points_[(side + 1) % corner_points_.size()];
   const double x = b.x - a.x, y = b.y - a.y;
-  return std::clamp(((location.x - a.x) * x + (location.y - a.y) * y) / (x * x + y * y), 0., 1.);
+  return std::clamp(((point.x - a.x) * x + (point.y - a.y) * y) / (x * x + y * y), 0., 1.);
 }
 
 /// Sorts the points and the edges, and merges points at one position. Returns true if there were
 /// any.
 bool Outline::simplify() {
-  struct Located {
+  struct NumberedPoint {
     Point2 p;
     std::uint32_t number, before;
   };
-  std::vector<Located> placed(points_.size());
+  std::vector<NumberedPoint> sorted(points_.size());
   for (std::uint32_t i = 0; i < points_.size(); ++i)
-    placed[i] = {points_[i], numbers_[i], i};
-  std::ranges::sort(placed, [](const Located& a, const Located& b) {
+    sorted[i] = {points_[i], numbers_[i], i};
+  std::ranges::sort(sorted, [](const NumberedPoint& a, const NumberedPoint& b) {
     return std::tie(a.p.x, a.p.y, a.number) < std::tie(b.p.x, b.p.y, b.number);
   });
-  std::vector<std::uint32_t> now(placed.size());
+  std::vector<std::uint32_t> now(sorted.size());
   points_.clear();
   numbers_.clear();
-  for (const Located& point : placed) {
+  for (const NumberedPoint& point : sorted) {
     if (points_.empty() || points_.back() != point.p) {
       points_.push_back(point.p);
       numbers_.push_back(point.number);
@@ -87,11 +87,11 @@ bool Outline::simplify() {
   std::erase_if(edges_, [](const OutlineEdge& e) { return e.left == e.right; });
   std::ranges::sort(
       edges_, {}, [](const OutlineEdge& e) { return std::tuple(e.left, e.right, e.side); });
-  return points_.size() < placed.size();
+  return points_.size() < sorted.size();
 }
 
 void Outline::merge_equal_edges() {
-  std::size_t saved = 0;
+  std::size_t count = 0;
   for (std::size_t i = 0, next; i < edges_.size(); i = next) {
     OutlineEdge edge = edges_[i];
     for (next = i + 1;
@@ -100,9 +100,9 @@ void Outline::merge_equal_edges() {
       edge.winding += edges_[next].winding;
     is_doubled_ = is_doubled_ || std::abs(edge.winding) > 1;
     if ((next - i) % 2 == 1)
-      edges_[saved++] = edge;
+      edges_[count++] = edge;
   }
-  edges_.resize(saved);
+  edges_.resize(count);
 }
 
 double Outline::grid_step() const {

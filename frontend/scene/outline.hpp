@@ -35,7 +35,7 @@ class Outline {
   const EvenOddFill& fill() const { return fill_; }
   const std::vector<OutlineCrossing>& intersections() const { return intersections_; }
   /// How far along a side a point is, as a share of it.
-  double share_of(std::uint32_t side, const Point2& location) const;
+  double share_of(std::uint32_t side, const Point2& point) const;
 
  private:
   bool simplify();

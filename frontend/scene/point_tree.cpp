@@ -42,22 +42,22 @@ class PointTree::Triangle {
   }
   /// How far the box reaches into it, by the side it crosses least: below 0 no point is in both.
   /// Rounds as has() does for every point in the box.
-  double extent(const Node& n) const {
+  double overlap(const Node& n) const {
     if (n.alive == 0 || n.x[0] > upper_.x || n.x[1] < lower_.x || n.y[0] > upper_.y ||
         n.y[1] < lower_.y)
       return -1;
     double least = std::numeric_limits<double>::infinity();
     for (const Side& s : sides_) {
-      const double extent = s.turn(n.x[s.x], n.y[s.y]);
-      if (extent < 0)
+      const double overlap = s.turn(n.x[s.x], n.y[s.y]);
+      if (overlap < 0)
         return -1;
-      least = std::min(least, extent * s.per_length);
+      least = std::min(least, overlap * s.per_length);
     }
     return least;
   }
   /// Returns true if a point lies in it, other than at a corner; false for NaN.
-  bool has(const Location& location) const {
-    const Point2 p{location.x, location.y};
+  bool has(const FloatPoint& at) const {
+    const Point2 p{at.x, at.y};
     const auto inside = [p](const Side& s) { return s.turn(p.x, p.y) >= 0; };
     return std::ranges::all_of(sides_, inside) && std::ranges::count(corner_points_, p) == 0;
   }
@@ -81,21 +81,21 @@ void PointTree::build(std::span<const Point2> points, std::span<const std::uint3
   while (!todo.empty()) {
     const Range range = todo.back();
     todo.pop_back();
-    finish_range(range);
+    fill_node(range);
     if (range.last - range.first <= kLeaf)
       continue;
     todo.push_back(left(range));
     todo.push_back(right(range));
   }
-  locations_.resize(order_.size());
+  positions_.resize(order_.size());
   for (std::uint32_t i = 0; i < order_.size(); ++i) {
     slot_[order_[i]] = i;
-    locations_[i] = {float(points_[order_[i]].x), float(points_[order_[i]].y)};
+    positions_[i] = {float(points_[order_[i]].x), float(points_[order_[i]].y)};
   }
 }
 
 /// Fills one node and parts its ids in two halves along its longer side.
-void PointTree::finish_range(const Range& range) {
+void PointTree::fill_node(const Range& range) {
   if (range.first == range.last)
     return;
   Node& node = nodes_[range.node];
@@ -124,9 +124,9 @@ void PointTree::finish_range(const Range& range) {
 
 void PointTree::remove(std::uint32_t id) {
   const std::uint32_t slot = slot_[id];
-  if (locations_[slot].x != locations_[slot].x)
+  if (positions_[slot].x != positions_[slot].x)
     return;
-  locations_[slot].x = std::numeric_limits<float>::quiet_NaN();
+  positions_[slot].x = std::numeric_limits<float>::quiet_NaN();
   Range range{0, 0, std::uint32_t(order_.size())};
   for (;;) {
     --nodes_[range.node].alive;
@@ -146,12 +146,12 @@ bool PointTree::any_in(const Point2& a,
   std::array<Range, 36> todo;  // one a level waits, and 32-bit counts halve at most 32 times
   std::size_t depth = 0;
   Range range{0, 0, std::uint32_t(order_.size())};
-  if (triangle.extent(nodes_[0]) < 0)
+  if (triangle.overlap(nodes_[0]) < 0)
     return false;
   for (;;) {
     if (range.last - range.first <= kLeaf) {
       for (std::uint32_t i = range.first; i != range.last; ++i)
-        if (triangle.has(locations_[i]))
+        if (triangle.has(positions_[i]))
           return true;
       if (depth == 0)
         return false;
@@ -161,8 +161,8 @@ bool PointTree::any_in(const Point2& a,
     if (--most_nodes == 0)
       return false;
     const Range l = left(range), r = right(range);
-    const double in_left = triangle.extent(nodes_[l.node]);
-    const double in_right = triangle.extent(nodes_[r.node]);
+    const double in_left = triangle.overlap(nodes_[l.node]);
+    const double in_right = triangle.overlap(nodes_[r.node]);
     if (in_left >= 0 && in_right >= 0)
       todo[depth++] = in_left > in_right ? r : l;
     if (in_left >= 0 || in_right >= 0)

@@ -32,7 +32,7 @@ class PointTree {
     float x[2] = {}, y[2] = {};  ///< least and largest of the points it was built with
     std::uint32_t alive = 0;
   };
-  struct Location {
+  struct FloatPoint {
     float x, y;
   };
   class Triangle;
@@ -45,13 +45,13 @@ class PointTree {
   Range right(const Range& r) const {
     return {2 * r.node + 2, r.first + (r.last - r.first) / 2, r.last};
   }
-  void finish_range(const Range& range);
+  void fill_node(const Range& range);
 
   std::span<const Point2> points_;
-  std::vector<std::uint32_t> order_;  ///< ids, each node's in a run
-  std::vector<std::uint32_t> slot_;   ///< [points] where an id stands in order_
-  std::vector<Location> locations_;   ///< [order_] where they are; no number once removed
-  std::vector<Node> nodes_;           ///< root 0, children 2k+1 and 2k+2
+  std::vector<std::uint32_t> order_;   ///< ids, each node's in a run
+  std::vector<std::uint32_t> slot_;    ///< [points] where an id stands in order_
+  std::vector<FloatPoint> positions_;  ///< [order_] where they are; no number once removed
+  std::vector<Node> nodes_;            ///< root 0, children 2k+1 and 2k+2
 };
 
 }  // namespace grelha

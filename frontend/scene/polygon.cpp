@@ -20,7 +20,7 @@ constexpr int kFullPasses = 8;
 constexpr std::uint32_t kTreeMin = 1024;
 /// Nodes of the tree that an ear's test looks at, in turn, before it looks at all. In a star of a
 /// million uneven spikes an ear's triangle, long and thin, meets hundreds, and holds no corner.
-constexpr std::uint32_t kFastLooks[] = {0, 64};
+constexpr std::uint32_t kMaxLooks[] = {0, 64};
 /// Corners that a forced clip searches for one with area; bounds the work on hopeless outlines.
 constexpr int kForcedLook = 64;
 
@@ -118,19 +118,19 @@ PolygonSplitter::Result PolygonSplitter::fill(std::span<const Float3> corner_poi
     triangles.resize(before);
   }
   record_intersections(corner_points, outline);
-  std::vector<Triangle> fragments = fill.triangles;
-  fix_flat_triangles(points_, fragments);
-  triangles.insert(triangles.end(), fragments.begin(), fragments.end());
+  std::vector<Triangle> filled = fill.triangles;
+  fix_flat_triangles(points_, filled);
+  triangles.insert(triangles.end(), filled.begin(), filled.end());
   return fill.is_crossed ? Result::kFilled : Result::kCut;
 }
 
 void PolygonSplitter::record_intersections(std::span<const Float3> corner_points,
                                            const Outline& outline) {
   for (const OutlineCrossing& crossing : outline.intersections()) {
-    const auto location = [&](std::uint32_t side) {
-      return PositionOnSide{side, outline.share_of(side, crossing.location)};
+    const auto on_side = [&](std::uint32_t side) {
+      return PositionOnSide{side, outline.share_of(side, crossing.point)};
     };
-    intersections_.push_back({location(crossing.sides[0]), location(crossing.sides[1])});
+    intersections_.push_back({on_side(crossing.sides[0]), on_side(crossing.sides[1])});
     points_.push_back(projected(at_crossing(corner_points, intersections_.back())));
   }
 }
@@ -139,7 +139,7 @@ void PolygonSplitter::record_intersections(std::span<const Float3> corner_points
 void PolygonSplitter::clip(std::vector<Triangle>& triangles) {
   forced_ = false;
   if (even_)
-    for (const std::uint32_t looks : kFastLooks)
+    for (const std::uint32_t looks : kMaxLooks)
       if (clip_fast(looks, triangles))
         return;
   looks_ = PointTree::kAllNodes;

@@ -47,8 +47,8 @@ Double3 larger_normal(std::span<const Float3> corner_points, const Double3& sum)
     return sum;
   const Double3 first = cross(difference(corner_points[1], corner_points[0]),
                               difference(corner_points[2], corner_points[1]));
-  const double dot_of = dot(other, sum);
-  if (dot_of < 0 || (dot_of == 0 && dot(other, first) < 0))
+  const double product = dot(other, sum);
+  if (product < 0 || (product == 0 && dot(other, first) < 0))
     other = {-other[0], -other[1], -other[2]};
   return other;
 }
@@ -67,9 +67,9 @@ Double3 polygon_normal(std::span<const Float3> corner_points) {
   if (kSmaller * kSmaller * squared(sum) >= extent * extent)
     return sum;  // no triangle is so much larger
   const Double3 other = larger_normal(corner_points, sum);
-  const double dot_of = dot(other, sum), size = squared(other);
+  const double product = dot(other, sum), size = squared(other);
   const bool is_lost = size > kSmaller * kSmaller * squared(sum) &&
-                       dot_of * dot_of <= kCosine * kCosine * size * squared(sum);
+                       product * product <= kCosine * kCosine * size * squared(sum);
   return is_lost ? other : sum;
 }
 

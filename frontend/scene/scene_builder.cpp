@@ -141,10 +141,10 @@ bool SceneBuilder::is_nonplanar(std::span<const Float3> points) const {
   const Double3& whole = splitter_.normal();
   const double whole_length = length(whole);
   return std::any_of(
-      fragments_.begin(), fragments_.end(), [&](const PolygonSplitter::Triangle& piece) {
-        const Float3& o = points[piece[0]];
+      triangles_.begin(), triangles_.end(), [&](const PolygonSplitter::Triangle& part) {
+        const Float3& o = points[part[0]];
         const Double3 normal =
-            cross(difference(points[piece[1]], o), difference(points[piece[2]], o));
+            cross(difference(points[part[1]], o), difference(points[part[2]], o));
         return !(dot(normal, whole) > 0) ||
                length(cross(normal, whole)) > kSine * length(normal) * whole_length;
       });
@@ -179,7 +179,7 @@ void SceneBuilder::with_intersections(std::span<const Float3>& of_corners,
 void SceneBuilder::polygon(std::span<const Float3> corner_points,
                            std::span<const Float3> normals,
                            std::uint32_t material,
-                           const std::function<void(Result)>& report_line) {
+                           const std::function<void(Result)>& report) {
   if (!std::all_of(corner_points.begin(), corner_points.end(), [](const Float3& p) {
         return is_finite_float(p);
       })) {
@@ -188,12 +188,12 @@ void SceneBuilder::polygon(std::span<const Float3> corner_points,
   }
   if (corner_points.size() == 3)
     return triangle(corner_points, normals, material);
-  fragments_.clear();
-  const Result result = splitter_.cut(corner_points, fragments_);
-  if (report_line && (result == Result::kFilled || result == Result::kCutLimit))
-    report_line(result);
+  triangles_.clear();
+  const Result result = splitter_.cut(corner_points, triangles_);
+  if (report && (result == Result::kFilled || result == Result::kCutLimit))
+    report(result);
   file_.dropped.zero_area += result == Result::kNoArea ? 1 : 0;
-  if (fragments_.empty())
+  if (triangles_.empty())
     return;
   with_intersections(corner_points, all_points_);
   with_intersections(normals, all_normals_);
@@ -203,7 +203,7 @@ void SceneBuilder::polygon(std::span<const Float3> corner_points,
   const auto first = std::uint32_t(file_.scene.geometry.triangles.vertex_count());
   for (std::size_t i = 0; i < corner_points.size(); ++i)
     add_vertex(corner_points[i], normals.empty() ? shared_normal : valid_normal(normals[i]));
-  for (const auto& [a, b, c] : fragments_)
+  for (const auto& [a, b, c] : triangles_)
     if (has_area(first + a, first + b, first + c))
       add_triangle(first + a, first + b, first + c, material);
 }

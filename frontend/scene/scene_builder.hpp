@@ -49,12 +49,12 @@ class SceneBuilder {
   /// The points q with normal . q = distance.
   void plane(Float3 normal, float distance, std::uint32_t material);
   using Result = PolygonSplitter::Result;
-  /// `normals`: one per corner, or empty. `report_line` is called of an outline that crosses
+  /// `normals`: one per corner, or empty. `report` is called of an outline that crosses
   /// itself, before anything is added; it may throw.
   void polygon(std::span<const Float3> corner_points,
                std::span<const Float3> normals,
                std::uint32_t material,
-               const std::function<void(Result)>& report_line = {});
+               const std::function<void(Result)>& report = {});
   /// Any two opposite corners. A box without thickness along one axis is drawn as its two large
   /// faces.
   void box(Float3 corner, Float3 opposite, std::uint32_t material);
@@ -87,7 +87,7 @@ class SceneBuilder {
 
   SceneFile& file_;
   PolygonSplitter splitter_;
-  std::vector<PolygonSplitter::Triangle> fragments_;
+  std::vector<PolygonSplitter::Triangle> triangles_;
   std::vector<Float3> face_, all_points_, all_normals_;
   std::vector<std::uint32_t> face_vertices_;
 };

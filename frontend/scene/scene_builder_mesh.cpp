@@ -43,12 +43,12 @@ void SceneBuilder::append_vertices(Mesh& mesh) {
   append(t.z, mesh.z);
 }
 
-SceneBuilder::Result SceneBuilder::mesh_face(std::span<const std::uint32_t> corner_points,
+SceneBuilder::Result SceneBuilder::mesh_face(std::span<const std::uint32_t> indices,
                                              std::uint32_t first_vertex,
                                              std::uint32_t material) {
-  if (corner_points.size() == 3) {
-    const std::uint32_t a = first_vertex + corner_points[0], b = first_vertex + corner_points[1],
-                        c = first_vertex + corner_points[2];
+  if (indices.size() == 3) {
+    const std::uint32_t a = first_vertex + indices[0], b = first_vertex + indices[1],
+                        c = first_vertex + indices[2];
     if (has_area(a, b, c))
       add_triangle(a, b, c, material);
     else
@@ -58,16 +58,16 @@ SceneBuilder::Result SceneBuilder::mesh_face(std::span<const std::uint32_t> corn
   const Triangles& t = file_.scene.geometry.triangles;
   face_.clear();
   face_vertices_.clear();
-  for (const std::uint32_t i : corner_points) {
+  for (const std::uint32_t i : indices) {
     const std::uint32_t v = first_vertex + i;
     face_.push_back({t.x[v], t.y[v], t.z[v]});
     face_vertices_.push_back(v);
   }
-  fragments_.clear();
-  const Result result = splitter_.cut(face_, fragments_);
+  triangles_.clear();
+  const Result result = splitter_.cut(face_, triangles_);
   file_.dropped.zero_area += result == Result::kNoArea ? 1 : 0;
   add_intersections();
-  for (const auto& [i, j, k] : fragments_) {
+  for (const auto& [i, j, k] : triangles_) {
     const std::uint32_t a = face_vertices_[i], b = face_vertices_[j], c = face_vertices_[k];
     if (has_area(a, b, c))
       add_triangle(a, b, c, material);
@@ -106,15 +106,15 @@ CrossedFaces SceneBuilder::mesh(Mesh mesh, std::uint32_t material) {
   const std::size_t wanted = t.size() + mesh.face_count();
   // at least twice as much as before: a scene may name thousands of small meshes
   if (wanted > t.a.capacity()) {
-    const std::size_t space = std::max(wanted, 2 * t.a.capacity());
-    t.a.reserve(space);
-    t.b.reserve(space);
-    t.c.reserve(space);
-    t.material.reserve(space);
+    const std::size_t capacity = std::max(wanted, 2 * t.a.capacity());
+    t.a.reserve(capacity);
+    t.b.reserve(capacity);
+    t.c.reserve(capacity);
+    t.material.reserve(capacity);
   }
   CrossedFaces crossed;
   if (mesh.sizes.empty() && bad.empty())
-    mesh_triangles(mesh.corner_points, first_vertex, material);
+    mesh_triangles(mesh.indices, first_vertex, material);
   else
     crossed = mesh_faces(mesh, bad, first_vertex, material);
   const auto count = std::uint32_t(t.size()) - first_triangle;
@@ -124,20 +124,19 @@ CrossedFaces SceneBuilder::mesh(Mesh mesh, std::uint32_t material) {
 }
 
 /// The common case, without a look at each face's size.
-void SceneBuilder::mesh_triangles(std::span<const std::uint32_t> corner_points,
+void SceneBuilder::mesh_triangles(std::span<const std::uint32_t> indices,
                                   std::uint32_t first_vertex,
                                   std::uint32_t material) {
   Triangles& t = file_.scene.geometry.triangles;
   std::size_t at = t.size();
-  const std::size_t most = at + corner_points.size() / 3;
+  const std::size_t most = at + indices.size() / 3;
   resize_to_fill(t.a, most);
   resize_to_fill(t.b, most);
   resize_to_fill(t.c, most);
   resize_to_fill(t.material, most, material);
-  for (std::size_t i = 0; i + 2 < corner_points.size(); i += 3) {
-    const std::uint32_t a = first_vertex + corner_points[i],
-                        b = first_vertex + corner_points[i + 1],
-                        c = first_vertex + corner_points[i + 2];
+  for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
+    const std::uint32_t a = first_vertex + indices[i], b = first_vertex + indices[i + 1],
+                        c = first_vertex + indices[i + 2];
     t.a[at] = a;
     t.b[at] = b;
     t.c[at] = c;
@@ -158,15 +157,14 @@ CrossedFaces SceneBuilder::mesh_faces(const Mesh& mesh,
   std::size_t at = 0;
   for (std::size_t f = 0, faces = mesh.face_count(); f < faces; ++f) {
     const std::size_t size = mesh.sizes.empty() ? 3 : mesh.sizes[f];
-    const std::span<const std::uint32_t> corner_points(mesh.corner_points.data() + at, size);
+    const std::span<const std::uint32_t> indices(mesh.indices.data() + at, size);
     at += size;
     if (!bad.empty() &&
-        std::any_of(
-            corner_points.begin(), corner_points.end(), [&](std::uint32_t v) { return bad[v]; })) {
+        std::any_of(indices.begin(), indices.end(), [&](std::uint32_t v) { return bad[v]; })) {
       ++file_.dropped.not_finite;
       continue;
     }
-    const Result result = mesh_face(corner_points, first_vertex, material);
+    const Result result = mesh_face(indices, first_vertex, material);
     if (result != Result::kFilled && result != Result::kCutLimit)
       continue;
     if (crossed.filled + crossed.left_out == 0)

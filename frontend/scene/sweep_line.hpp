@@ -68,26 +68,26 @@ class SweepLine {
   };
 
  public:
-  using Location = std::pmr::multiset<Slot, Below>::iterator;
+  using Iterator = std::pmr::multiset<Slot, Below>::iterator;
 
   SweepLine(const std::vector<Point2>& points, const std::vector<OutlineEdge>& edges)
       : points_(points), edges_(edges) {}
 
   /// Right below `above`, which is found by a search where that is not its position.
-  Location insert(Location above, std::uint32_t edge) {
+  Iterator insert(Iterator above, std::uint32_t edge) {
     return slots_.insert(above, slot_of(edge));
   }
-  Location erase(Location location) { return slots_.erase(location); }
+  Iterator erase(Iterator at) { return slots_.erase(at); }
   /// The position is another edge's from now on.
-  void swap_edges(Location location, std::uint32_t edge) const {
+  void replace_edge(Iterator at, std::uint32_t edge) const {
     const Slot slot = slot_of(edge);
-    location->edge = edge;
-    location->left = slot.left;
-    location->right = slot.right;
+    at->edge = edge;
+    at->left = slot.left;
+    at->right = slot.right;
   }
-  Location first_above(const Point2& p) const { return slots_.lower_bound(p); }
-  Location begin() const { return slots_.begin(); }
-  Location end() const { return slots_.end(); }
+  Iterator first_above(const Point2& p) const { return slots_.lower_bound(p); }
+  Iterator begin() const { return slots_.begin(); }
+  Iterator end() const { return slots_.end(); }
 
  private:
   Slot slot_of(std::uint32_t edge) const {

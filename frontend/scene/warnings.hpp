@@ -19,7 +19,7 @@ class WarningList {
   explicit WarningList(const Warn& warn) : warn_(warn) {}
   /// Returns whether `kind` is new: only then is the (costlier) message worth making.
   bool first(std::string_view kind) {
-    return lines_.size() < kMost && lines_.insert(std::string(kind.substr(0, 64))).second;
+    return kinds_.size() < kMost && kinds_.insert(std::string(kind.substr(0, 64))).second;
   }
   void add_line(const Position& at, std::string_view message) {
     add_line(at.text() + ": warning: " + std::string(message));
@@ -32,7 +32,7 @@ class WarningList {
  private:
   static constexpr std::size_t kMost = 20;
   const Warn& warn_;
-  std::set<std::string> lines_;
+  std::set<std::string> kinds_;
 };
 
 }  // namespace grelha

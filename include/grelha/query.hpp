@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string_view>
 
@@ -15,16 +16,29 @@
 
 namespace grelha {
 
-/// How a stream of rays is traced. These options change the speed, never the results.
+/// How a stream of rays is traced. Only `mask` changes the results.
 struct QueryOptions {
   /// largest number of consecutive rays that are traced as one packet: 1, 16, 64 or 256
   int packet = 256;
   std::string_view isa = "best";  ///< see isas()
+  int threads = 1;                ///< threads that share the rays or points; 0: one per processor
+  /// [primitives] masks by id, see Rays::mask; empty: 255 for all
+  std::span<const std::uint8_t> mask{};
+  /// Called repeatedly, by one thread at a time, with the fraction done. If it returns false, the
+  /// query throws Stopped, and some answers are not written.
+  std::function<bool(double)> progress{};
+};
+
+/// Primitives that one ray does not hit.
+struct Filter {
+  std::uint32_t skip = kNoPrimitive;      ///< id of a primitive that is left out
+  std::span<const std::uint8_t> masks{};  ///< [primitives] by id; empty: 255 for all
+  std::uint8_t mask = 255;                ///< primitives p with (masks[p] & mask) == 0 are left out
 };
 
 /// Finds the nearest hit of each ray of a stream. The stream may have any length. Long streams are
 /// faster per ray, and coherent ones fastest: consecutive rays with similar origins and directions.
-/// Runs on the calling thread. Of two hits at equal t the one with the lower id is returned. The
+/// Runs on the calling thread unless options.threads says otherwise. Of two hits at equal t the one with the lower id is returned. The
 /// result of a ray has the same bits whatever other rays the stream contains. If `counts` is given,
 /// the work done is added to it. Throws std::invalid_argument for an unknown packet size, an
 /// instruction set that is unknown or unsupported here, and for rays without origins or directions.
@@ -42,6 +56,9 @@ void closest(const World& world,
              TraceCounts* counts = nullptr);
 /// The same of one ray.
 Hit closest(const World& world, const Ray& ray);
+/// The same of one ray that leaves out some primitives. Throws std::invalid_argument if
+/// filter.masks is not empty and has another length than the scene has primitives.
+Hit closest(const World& world, const Ray& ray, const Filter& filter);
 
 /// Tests each ray for any hit between its t_min and t_max. Writes rays.count answers: blocked[i] is
 /// 1 if ray i hits something, else 0. Faster than closest(). Throws what closest() throws, and
@@ -60,13 +77,8 @@ void occluded(const World& world,
               TraceCounts* counts = nullptr);
 /// The same of one ray.
 bool occluded(const World& world, const Ray& ray);
-
-/// Counts the triangles that a ray crosses between its t_min and t_max. Other primitives do not
-/// count, and exact copies of a triangle may count as one. A ray through an edge or a vertex is
-/// treated as if it passed at an infinitesimal distance, on the same side for all triangles. For a
-/// closed mesh the count is therefore odd from inside and even from outside, for every ray.
-/// Simulation of simplicity, Edelsbrunner and Mücke 1990; docs/numerics.md.
-std::size_t count_crossings(const World& world, const Ray& ray);
+/// The same of one ray that leaves out some primitives. Throws as closest() does.
+bool occluded(const World& world, const Ray& ray, const Filter& filter);
 
 /// The surface at a hit point, and the start points of new rays from there.
 struct SurfacePoint {
@@ -90,6 +102,13 @@ struct SurfacePoint {
 /// Computes the surface point of a `hit` that closest() returned for `ray`. Throws
 /// std::invalid_argument if hit.id is not the id of a primitive, for example kNoPrimitive.
 SurfacePoint surface(const World& world, const Ray& ray, const Hit& hit);
+/// The same for many rays and their hits. Rays without a hit get a point of NaN. Throws
+/// std::invalid_argument if the lengths differ.
+void surfaces(const World& world,
+              std::span<const Ray> rays,
+              std::span<const Hit> hits,
+              std::span<SurfacePoint> points,
+              const QueryOptions& options = {});
 
 /// Returns the kind and index of the primitive with this id. Throws std::invalid_argument if there
 /// is none. Ids count planes first, then spheres, triangles and cones, each kind in the order of

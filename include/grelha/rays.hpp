@@ -39,10 +39,14 @@ struct Hit {
 /// Ensures   a ray hits nothing where t_max <= t_min, where its direction is longer or shorter,
 ///           and where a number is NaN or (of org and dir) infinite.
 struct Rays {
-  const float* org[3] = {};       ///< x, y and z of the origins
-  const float* dir[3] = {};       ///< x, y and z of the directions
-  const float* t_min = nullptr;   ///< hits at or before it do not count; null: 0 for all
-  const float* t_max = nullptr;   ///< hits at or behind it do not count; null: infinity
+  const float* org[3] = {};      ///< x, y and z of the origins
+  const float* dir[3] = {};      ///< x, y and z of the directions
+  const float* t_min = nullptr;  ///< hits at or before it do not count; null: 0 for all
+  const float* t_max = nullptr;  ///< hits at or behind it do not count; null: infinity
+  /// [i] id of a primitive that ray i does not hit, or kNoPrimitive; null: no ray has one
+  const std::uint32_t* skip = nullptr;
+  /// [i] ray i hits only primitives p with (QueryOptions::mask[p] & mask[i]) != 0; null: 255 for all
+  const std::uint8_t* mask = nullptr;
   std::size_t count = 0;          ///< number of rays
   std::ptrdiff_t org_stride = 1;  ///< from the org of one ray to that of the next
   std::ptrdiff_t dir_stride = 1;  ///< the same of dir
@@ -65,6 +69,10 @@ struct Hits {
   std::uint32_t* id = nullptr;
   /// [i] out: t in double, with a relative error of at most 2^-45
   double* t_double = nullptr;
+  /// [i] out: barycentric coordinates where the ray crosses a triangle with the vertices a, b, c:
+  /// (1 - u - v) a + u b + v c; never negative, together at most 1, within 2^-20 where the triangle
+  /// is seen as a face and not as a sliver; 0 without a hit and for other primitives
+  float *u = nullptr, *v = nullptr;
   std::ptrdiff_t stride = 1;  ///< of t and id, in units of four bytes
 
   /// Returns a view of an array of hits.

@@ -123,8 +123,8 @@ template <class T, class Vector>
 requires(sizeof(Vector) == 32) inline void compress_store(T* to, const Vector& a, unsigned lanes) {
   __m256i v;
   __builtin_memcpy(&v, &a, sizeof v);
-  const __m256i selected = _mm256_maskz_compress_epi32(static_cast<__mmask8>(lanes), v);
-  _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), selected);
+  const __m256i compressed = _mm256_maskz_compress_epi32(static_cast<__mmask8>(lanes), v);
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), compressed);
 }
 
 }  // namespace grelha::GRELHA_ISA

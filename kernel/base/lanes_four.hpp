@@ -1,5 +1,5 @@
 #pragma once
-// Four floats side by side on every instruction set: x, y and z of one ray, and a place more. They
+// Four floats side by side on every instruction set: x, y and z of one ray, and one more. They
 // are the compiler's own vectors, which exist on every processor.
 
 #include <cstdint>
@@ -54,7 +54,7 @@ inline Four to_floats(const FourInts& a) {
 }
 
 /// Elements of `a` that a mask selects; 0 elsewhere.
-inline Four selected(const FourInts& mask, const Four& a) {
+inline Four masked(const FourInts& mask, const Four& a) {
   return reinterpret_cast<Four>(reinterpret_cast<FourInts>(a) & mask);
 }
 

@@ -32,9 +32,6 @@ inline float select(bool m, float a, float b) {
 inline double select(bool m, double a, double b) {
   return m ? a : b;
 }
-inline std::int32_t select_int(bool m, std::int32_t a, std::int32_t b) {
-  return m ? a : b;
-}
 inline float min(float a, float b) {
   return a < b ? a : b;
 }  ///< b when either is NaN
@@ -117,7 +114,7 @@ inline float lane_max(float a) {
 inline bool mask_of(std::uint32_t a) {
   return a != 0;
 }
-/// Numbers and words at places `at` < 2^31 of an array.
+/// Numbers and words at indices `at` < 2^31 of an array.
 inline float floats_at(const float* from, std::uint32_t at) {
   return from[at];
 }
@@ -131,7 +128,7 @@ inline float whole(float a) {
 inline std::uint32_t to_words(float a) {
   return static_cast<std::uint32_t>(a);
 }
-/// Bytes at places `at` of an array that has three more behind its last.
+/// Bytes at indices `at` of an array that has three more behind its last.
 inline float bytes_at(const std::uint8_t* from, std::uint32_t at) {
   return from[at];
 }

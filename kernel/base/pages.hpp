@@ -23,12 +23,12 @@ void populate_pages(void* memory, std::size_t bytes);
 template <class Array>
 void reserve_to_fill(Array& v, std::size_t n) {
   if (n > v.capacity()) {
-    Array max_abs;
-    max_abs.reserve(std::max(n, 2 * v.size()));
-    advise_huge_pages(max_abs.data(), max_abs.capacity() * sizeof v[0]);
-    populate_pages(max_abs.data(), n * sizeof v[0]);
-    max_abs.insert(max_abs.end(), v.begin(), v.end());
-    v = std::move(max_abs);
+    Array grown;
+    grown.reserve(std::max(n, 2 * v.size()));
+    advise_huge_pages(grown.data(), grown.capacity() * sizeof v[0]);
+    populate_pages(grown.data(), n * sizeof v[0]);
+    grown.insert(grown.end(), v.begin(), v.end());
+    v = std::move(grown);
   } else if (n > v.size()) {
     populate_pages(v.data() + v.size(), (n - v.size()) * sizeof v[0]);
   }

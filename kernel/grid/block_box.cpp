@@ -12,22 +12,22 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// Times a grid's pad: how far boxes reach beyond the error of hits. A slab test in float is off by
-/// 3 u of the distance to each plane, which is at most 2.8 half widths of the grid, and compares
-/// two such values: 17 u half widths. A quarter of a pad is 64 u.
+/// 3 u of the distance to each plane, which is at most 2.8 near distances of the grid, and compares
+/// two such values: 17 u near distances. A quarter of a pad is 64 u.
 constexpr double kSlabPadding = .25;
 
 /// Extent of a block along an axis; empty if the block is.
-struct BlockHalfWidth {
+struct BlockExtent {
   float lo = kInfinity;
   float hi = -kInfinity;
 };
-BlockHalfWidth half_width_of(const TriangleBlock& block, int a) {
+BlockExtent block_extent(const TriangleBlock& block, int a) {
   float least[kBlock], most[kBlock];
   for (int i = 0; i < kBlock; ++i)
     least[i] = std::min(std::min(block.a[a][i], block.b[a][i]), block.c[a][i]);
   for (int i = 0; i < kBlock; ++i)
     most[i] = std::max(std::max(block.a[a][i], block.b[a][i]), block.c[a][i]);
-  BlockHalfWidth r;
+  BlockExtent r;
   for (int i = 0; i < kBlock; ++i) {
     // unused positions are NaN and change neither
     r.lo = least[i] < r.lo ? least[i] : r.lo;
@@ -43,20 +43,20 @@ std::uint64_t write_boxes(std::size_t begin,
                           std::uint64_t row,
                           std::uint64_t block,
                           ListStore<Triangle>& s) {
-  BoxAllocator places(row);
+  BoxAllocator allocator(row);
   for (std::size_t c = begin; c < end; ++c) {
     const std::uint32_t blocks = s.first[c];
-    const std::uint64_t free = places.next();
-    const std::uint64_t place = places.take(blocks);
+    const std::uint64_t free = allocator.next();
+    const std::uint64_t place = allocator.take(blocks);
     if (place != free)
       s.end_row(free);
-    for (std::uint64_t r = (place + kBlock - 1) / kBlock; r < places.rows(); ++r)
+    for (std::uint64_t r = (place + kBlock - 1) / kBlock; r < allocator.rows(); ++r)
       s.first_block[r] = static_cast<std::uint32_t>(block + r * kBlock - place);
     s.first[c] = static_cast<std::uint32_t>(place);
     block += blocks;
   }
-  s.end_row(places.next());
-  return places.rows();
+  s.end_row(allocator.next());
+  return allocator.rows();
 }
 
 // A hit h is off by no more than `pad` from its triangle, and found in a cell that it lies in. It
@@ -64,16 +64,16 @@ std::uint64_t write_boxes(std::size_t begin,
 void bound_blocks(
     const Grid& g, double pad, std::size_t cell, std::uint32_t triangles, ListStore<Triangle>& s) {
   const CellBox box = cell_box(g, cell);
-  const double error_bound = kSlabPadding * pad;
+  const double padding = kSlabPadding * pad;
   const std::uint32_t first = s.first[cell];
   const std::uint32_t block = s.list().blocks_of(cell).first;
   for (std::uint32_t b = 0; b < s.entries_of(triangles); ++b) {
     BlockBoxes& boxes = s.boxes[(first + b) / kBlock];
     const std::uint32_t at = (first + b) % kBlock;
     for (int a = 0; a < 3; ++a) {
-      const BlockHalfWidth r = half_width_of(s.blocks[block + b], a);
-      boxes.side[a][at] = float_not_above(std::max(r.lo - pad, box.lo[a]) - error_bound);
-      boxes.side[3 + a][at] = float_not_below(std::min(r.hi + pad, box.hi[a]) + error_bound);
+      const BlockExtent r = block_extent(s.blocks[block + b], a);
+      boxes.side[a][at] = float_not_above(std::max(r.lo - pad, box.lo[a]) - padding);
+      boxes.side[3 + a][at] = float_not_below(std::min(r.hi + pad, box.hi[a]) + padding);
     }
   }
 }

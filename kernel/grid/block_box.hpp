@@ -9,8 +9,7 @@
 namespace grelha {
 
 /// Replaces the numbers of blocks in cells [begin, end) by the positions where their boxes begin,
-/// from
-/// `row` on, whose first box is that of `block`. Returns the row behind the last.
+/// from `row` on, whose first box is that of `block`. Returns the row behind the last.
 std::uint64_t write_boxes(std::size_t begin,
                           std::size_t end,
                           std::uint64_t row,

@@ -25,7 +25,7 @@ class CellFinder {
       if (range.is_one())
         visit(index(range.lo[0], range.lo[1], range.lo[2]));
       else
-        overlapped(range, typename Shape::Overlap(all[i], frame_, range), visit);
+        visit_overlapped(range, typename Shape::Overlap(all[i], frame_, range), visit);
     });
   }
 
@@ -46,11 +46,11 @@ class CellFinder {
            nx * ny * static_cast<std::size_t>(z);
   }
   template <class Overlap, class Visit>
-  void overlapped(const CellRange& range, const Overlap& touch, const Visit& visit) const {
+  void visit_overlapped(const CellRange& range, const Overlap& overlaps, const Visit& visit) const {
     for (int z = range.lo[2]; z <= range.hi[2]; ++z)
       for (int y = range.lo[1]; y <= range.hi[1]; ++y)
         for (int x = range.lo[0]; x <= range.hi[0]; ++x)
-          if (touch({x, y, z}))
+          if (overlaps({x, y, z}))
             visit(index(x, y, z));
   }
 

@@ -13,16 +13,16 @@ constexpr std::size_t kCluster = 512;    ///< in one cell
 /// in the cell of the mean primitive: with fewer, more grids may cost more than they gain (balls 6:
 /// 79)
 constexpr std::size_t kBad = 4096;
-constexpr std::size_t kProbed = 8;  ///< of the probe, so that chance makes no cluster
-constexpr double kSmaller = .5;     ///< a cluster's diagonal over its box's
+constexpr std::size_t kMinProbed = 8;  ///< of the probe, so that chance makes no cluster
+constexpr double kSmaller = .5;        ///< a cluster's diagonal over its box's
 
 struct Cell {
   std::int32_t at[3];
   auto operator<=>(const Cell&) const = default;
-  bool is_within(int half_width, const Cell& o) const {
+  bool is_within(int radius, const Cell& o) const {
     bool near = true;
     for (int a = 0; a < 3; ++a)
-      near &= std::abs(at[a] - o.at[a]) <= half_width;
+      near &= std::abs(at[a] - o.at[a]) <= radius;
     return near;
   }
 };
@@ -58,7 +58,7 @@ std::vector<Cell> looked_at(const Cells& cells,
 /// Cells that many of the primitives looked at stand in, if the mean one stands among many.
 std::vector<Cell> clustered(const Cells& cells, const std::vector<std::uint32_t>& ids) {
   const std::size_t stride = std::max<std::size_t>(1, ids.size() / kLookedAt);
-  const std::size_t least = std::max(kProbed, kCluster / stride);
+  const std::size_t least = std::max(kMinProbed, kCluster / stride);
   const std::vector<Cell> seen = looked_at(cells, ids, stride);
   std::vector<Cell> out;
   std::size_t squares = 0;
@@ -88,9 +88,9 @@ struct Clusters {
         join(i, count++);
   }
 
-  /// The cell that a primitive's is at most `half_width` from, or cells.size().
-  std::size_t near(const Cell& c, int half_width) const {
-    const auto is_near = [&](const Cell& f) { return f.is_within(half_width, c); };
+  /// The cell that a primitive's is at most `radius` from, or cells.size().
+  std::size_t near(const Cell& c, int radius) const {
+    const auto is_near = [&](const Cell& f) { return f.is_within(radius, c); };
     const auto at = std::find_if(cells.begin(), cells.end(), is_near);
     return static_cast<std::size_t>(at - cells.begin());
   }
@@ -121,11 +121,11 @@ struct Sorted {
   std::vector<Ids> clusters;
   Ids rest;
 };
-Sorted sort_out(const Ids& ids, const Cells& cells, const Clusters& all, int half_width) {
+Sorted sort_out(const Ids& ids, const Cells& cells, const Clusters& all, int radius) {
   Sorted found;
   found.clusters.resize(all.count);
   for (const std::uint32_t id : ids) {
-    const std::size_t cell = all.near(cells.of(id), half_width);
+    const std::size_t cell = all.near(cells.of(id), radius);
     Ids& to = cell == all.cells.size() ? found.rest : found.clusters[all.cluster[cell]];
     to.push_back(id);
   }
@@ -155,10 +155,10 @@ std::vector<Ids> take_clusters(
   const Cells cells(p, box, cell_edge(box, ids.size(), density));
   const Clusters all(clustered(cells, ids));
   // With the outskirts, which are dense as well, or where these reach too far without.
-  for (const int half_width : {1, 0}) {
+  for (const int radius : {1, 0}) {
     if (all.count == 0 || !out.empty())
       break;
-    Sorted found = sort_out(ids, cells, all, half_width);
+    Sorted found = sort_out(ids, cells, all, radius);
     out = take_small(p, found, kSmaller * box.diagonal(), most);
     if (!out.empty())
       ids = std::move(found.rest);

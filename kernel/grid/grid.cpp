@@ -24,7 +24,7 @@ GridView Grid::view() const {
   v.lists = store.lists();
   v.distance = distance.data();
   const std::size_t count = cell_count(cells);
-  v.field_offsets = distance_fields(count) > 1 ? static_cast<std::uint32_t>(count) : 0;
+  v.field_stride = distance_fields(count) > 1 ? static_cast<std::uint32_t>(count) : 0;
   v.pad = static_cast<float>(pad);
   for (int a = 0; a < 3; ++a)
     set_axis(v, a);
@@ -33,26 +33,26 @@ GridView Grid::view() const {
 }
 
 // Rays that start near by are no further from a primitive, along each axis, than the grid is long
-// and the half width; one is no larger than the grid. In the grid's frame a coordinate of a ray and
-// one of a primitive round by u of these each.
+// and the near distance; one is no larger than the grid. In the grid's frame a coordinate of a ray
+// and one of a primitive round by u of these each.
 void Grid::set_error_bounds(GridView& v) const {
   constexpr double kUnit = 0x1p-24;
   double far = 0;
   double longest = 0;
   for (int a = 0; a < 3; ++a) {
     const double extent = cell[a] * v.n[a];
-    far += extent + half_width;
+    far += extent + near_distance;
     longest = std::max(longest, extent);
   }
   v.error_bound = float_not_below(17 * kUnit * (far + longest));
-  v.frame_error = float_not_below(4 * kUnit * (longest + half_width));
+  v.frame_error = float_not_below(4 * kUnit * (longest + near_distance));
 }
 
 void Grid::set_axis(GridView& v, int a) const {
   const std::uint32_t n = cells[static_cast<std::size_t>(a)];
   v.n[a] = static_cast<int>(n);
-  v.near_lo[a] = -float_not_above(-(lo[a] - half_width));
-  v.near_hi[a] = float_not_above(lo[a] + cell[a] * n + half_width);
+  v.near_lo[a] = -float_not_above(-(lo[a] - near_distance));
+  v.near_hi[a] = float_not_above(lo[a] + cell[a] * n + near_distance);
   v.lo[a] = lo[a];
   v.cell[a] = cell[a];
   v.inv_cell[a] = 1 / cell[a];

@@ -23,7 +23,8 @@ struct Grid {
   CellStore store;
   std::vector<std::uint8_t> distance;  ///< of cells, see distance_field.hpp
   std::uint64_t occupied = 0;
-  double half_width = 0;  ///< how far from their box rays start that walk it from where they start
+  double near_distance =
+      0;  ///< how far from their box rays start that walk it from where they start
 
   GridView view() const;
   GridStats stats() const;

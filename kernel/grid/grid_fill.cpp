@@ -31,7 +31,7 @@ namespace {
 constexpr std::size_t kChunk = 2048;
 constexpr double kEmitShare = .2;  ///< of the time; counting takes next to none
 /// entries of one kind in a cell, from which on it is looked through for copies
-constexpr std::uint32_t kClustered = 1024;
+constexpr std::uint32_t kDense = 1024;
 constexpr std::uint64_t kMostEntries = 0xFFFFFF00u;
 
 /// Entries by kind, and rows of boxes; of a bucket, or of all before it.
@@ -50,7 +50,7 @@ struct Filling {
   BuildProgress& progress;
   Buckets buckets{cell_count(grid.cells)};
   std::vector<PairChunk> chunks = std::vector<PairChunk>((ids.size() + kChunk - 1) / kChunk);
-  std::vector<std::uint8_t> clustered = {};  ///< [buckets] 1: of a bucket with a clustered cell
+  std::vector<std::uint8_t> dense = {};  ///< [buckets] 1: of a bucket with a dense cell
   CellStore store = {};
 };
 
@@ -114,18 +114,18 @@ void for_each_pair(const Filling& f, std::size_t bucket, const Visit& visit) {
 /// Turns primitives of each of a bucket's cells into entries; returns their sums.
 Sums count_entries(Filling& f, std::size_t bucket) {
   Sums sums;
-  BoxAllocator places(0);
+  BoxAllocator allocator(0);
   for_each_list(f.store, [&]<class Shape>(ListStore<Shape>& list, std::size_t kind) {
     for (std::size_t c = f.buckets.begin(bucket); c < f.buckets.end(bucket); ++c) {
       std::uint32_t& n = list.first[c];
-      f.clustered[bucket] |= n > kClustered;
+      f.dense[bucket] |= n > kDense;
       n = ListStore<Shape>::entries_of(n);
       sums.entries[kind] += n;
       if (Shape::kInBlocks && f.pad)
-        places.take(n);
+        allocator.take(n);
     }
   });
-  sums.rows = places.rows();
+  sums.rows = allocator.rows();
   return sums;
 }
 
@@ -144,12 +144,12 @@ Sums count(Filling& f, std::size_t bucket) {
   return count_entries(f, bucket);
 }
 
-/// Primitives of buckets with a clustered cell.
-std::vector<std::uint32_t> in_clustered_buckets(const Filling& f) {
+/// Primitives of buckets with a dense cell.
+std::vector<std::uint32_t> in_dense_buckets(const Filling& f) {
   std::vector<bool> found(f.primitives.ids.end());
   for (const PairChunk& chunk : f.chunks)
     for (const Pair& pair : chunk.pairs)
-      if (f.clustered[pair.cell >> f.buckets.shift] != 0)
+      if (f.dense[pair.cell >> f.buckets.shift] != 0)
         found[pair.id] = true;
   std::vector<std::uint32_t> ids;
   std::copy_if(f.ids.begin(), f.ids.end(), std::back_inserter(ids), [&](std::uint32_t id) {
@@ -158,10 +158,10 @@ std::vector<std::uint32_t> in_clustered_buckets(const Filling& f) {
   return ids;
 }
 
-/// Removes copies of primitives in clustered cells from all cells; returns true if there were any.
+/// Removes copies of primitives in dense cells from all cells; returns true if there were any.
 /// A copy has the cells of its original.
 bool drop_copies(Filling& f) {
-  const std::vector<std::uint32_t> found = find_duplicates(f.primitives, in_clustered_buckets(f));
+  const std::vector<std::uint32_t> found = find_duplicates(f.primitives, in_dense_buckets(f));
   if (found.empty())
     return false;
   std::vector<bool> copies(f.primitives.ids.end());
@@ -202,10 +202,10 @@ std::vector<Sums> count_all(Filling& f) {
   std::vector<Sums> starts(f.buckets.count);
   for (const PairChunk& c : f.chunks)
     f.store.references += c.pairs.size();
-  f.clustered.assign(f.buckets.count, 0);
+  f.dense.assign(f.buckets.count, 0);
   count_buckets(f, starts);
-  const bool clustered = std::find(f.clustered.begin(), f.clustered.end(), 1) != f.clustered.end();
-  if (clustered && drop_copies(f))
+  const bool any_dense = std::find(f.dense.begin(), f.dense.end(), 1) != f.dense.end();
+  if (any_dense && drop_copies(f))
     count_buckets(f, starts);
   const Sums total = add_up(starts);
   for_each_list(f.store, [&]<class Shape>(ListStore<Shape>& list, std::size_t kind) {

@@ -101,7 +101,7 @@ std::vector<Ids> group(const Primitives& p) {
     else
       append(groups.front(), p.ids.begin(Shape::kKind), p.ids.end(Shape::kKind));
   });
-  // No ray meets a primitive with numbers that are not finite, and it would leave each cell in
+  // No ray hits a primitive with numbers that are not finite, and it would leave each cell in
   // doubt.
   if (!all_valid(p.geometry))
     for (Ids& ids : groups)
@@ -145,16 +145,16 @@ Grid grid_over(
     const Primitives& p, const Ids& ids, const Box& box, double density, double diagonal) {
   const double edge = cell_edge(box, ids.size(), density);
   const double far = std::min(edge / pad_of(kMostPads), kFarEnough * diagonal);
-  const double half_width = std::max(box.diagonal(), far);
-  Grid g = layout_grid(p, ids, box, density, pad_of(half_width) + kDoublesOff * diagonal);
-  g.half_width = half_width;
+  const double near_distance = std::max(box.diagonal(), far);
+  Grid g = layout_grid(p, ids, box, density, pad_of(near_distance) + kDoublesOff * diagonal);
+  g.near_distance = near_distance;
   return g;
 }
 
 }  // namespace
 
-double pad_of(double half_width) {
-  return half_width * 256 / 16777216;
+double pad_of(double near_distance) {
+  return near_distance * 256 / 16777216;
 }
 
 std::vector<std::uint32_t> valid_ids(const Primitives& p) {

@@ -24,11 +24,11 @@ struct Plan {
 constexpr double kPlanShare = .08;  ///< of the time of a build, before lists are written
 
 int threads_of(const BuildOptions& options);
-/// The pad around primitives for rays that start within `half_width` of their box on each axis,
-/// `half_width` no less than its diagonal. Such rays are at most 1 + sqrt 3 half widths from any
-/// primitive. A walk in float is off by at most 32 u of the half width, and by as much along its
-/// way (derived in docs/numerics.md).
-double pad_of(double half_width);
+/// The pad around primitives for rays that start within `near_distance` of their box on each axis,
+/// `near_distance` no less than its diagonal. Such rays are at most 1 + sqrt 3 near distances from
+/// any primitive. A walk in float is off by at most 32 u of the near distance, and by as much along
+/// its way (derived in docs/numerics.md).
+double pad_of(double near_distance);
 /// All finite primitives that have a position.
 std::vector<std::uint32_t> valid_ids(const Primitives& p);
 Plan plan_grids(const Primitives& p, const BuildOptions& options, BuildProgress& progress);

@@ -27,7 +27,7 @@ struct GridView {
   /// it fields of [cells] by octants of directions, each so many bytes after the one before, or 0:
   /// there are none.
   const std::uint8_t* distance = nullptr;
-  std::uint32_t field_offsets = 0;
+  std::uint32_t field_stride = 0;
   int n[3] = {};  ///< cells per axis; x runs fastest
   double lo[3] = {}, cell[3] = {}, inv_cell[3] = {};
   float pad = 0;  ///< added around primitives before they were put into cells

@@ -96,8 +96,8 @@ std::size_t piece_count(const Part& part) {
 }
 
 Part piece_of(const Part& part, std::size_t i) {
-  const std::size_t bands = static_cast<std::size_t>(pieces(part.rows, kPieceRows));
-  return {cut(part.rows, kPieceRows, i % bands), cut(part.samples, kPieceSamples, i / bands)};
+  const std::size_t strips = static_cast<std::size_t>(pieces(part.rows, kPieceRows));
+  return {cut(part.rows, kPieceRows, i % strips), cut(part.samples, kPieceSamples, i / strips)};
 }
 
 double share_done(const Accumulator& a) {
@@ -138,7 +138,7 @@ bool accumulate(const World& world,
   check(a, camera, options);
   const Pieces to_render(a, next);
   GuardedProgress progress(options.progress, should_continue);
-  const auto next_band = [&](std::size_t turn, Strip& strip) {
+  const auto next_strip = [&](std::size_t turn, Strip& strip) {
     strip.number = to_render.take(turn);
     if (strip.number >= a.done.size())
       return false;
@@ -146,7 +146,7 @@ bool accumulate(const World& world,
     return true;
   };
   std::size_t done = a.done.size() - to_render.left();
-  const auto take_band = [&](const Strip& strip, const std::int64_t* sums) {
+  const auto take_strip = [&](const Strip& strip, const std::int64_t* sums) {
 #pragma omp critical(grelha_progress)
     {
       add_rows(a, strip.part.rows, sums);
@@ -159,7 +159,7 @@ bool accumulate(const World& world,
     return !progress.stopped();
   };
   run_fork_safe([&] {
-    render_strips(world.impl(), setup, options, to_render.left(), next_band, take_band, stats);
+    render_strips(world.impl(), setup, options, to_render.left(), next_strip, take_strip, stats);
   });
   progress.rethrow();
   return is_complete(a);
@@ -177,10 +177,10 @@ void add(Accumulator& whole, const Accumulator& part) {
 
 Image picture_so_far(const Accumulator& a) {
   Image image = image_to_fill(a.width, a.height);
-  const std::size_t bands = static_cast<std::size_t>(pieces(a.part.rows, kPieceRows));
-  for (std::size_t b = 0; b < bands; ++b) {
+  const std::size_t strips = static_cast<std::size_t>(pieces(a.part.rows, kPieceRows));
+  for (std::size_t b = 0; b < strips; ++b) {
     int samples = 0;
-    for (std::size_t i = b; i < a.done.size(); i += bands)
+    for (std::size_t i = b; i < a.done.size(); i += strips)
       if (a.done[i] != 0)
         samples += size(piece_of(a.part, i).samples);
     const Range rows = piece_of(a.part, b).rows;

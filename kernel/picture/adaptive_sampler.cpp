@@ -51,7 +51,7 @@ class AdaptiveSampler {
         seconds_before_(r.seconds),
         blocks_(r.blocks()),
         order_(blocks_.by_tiles()),
-        samples_(sample_count_(r)),
+        samples_(total_samples(r)),
         errors_(r, thread_count(options, r.log.size())),
         spaces_(run_spaces(setup, options, thread_count(options, r.log.size()))) {
     stats_ = {};
@@ -69,7 +69,7 @@ class AdaptiveSampler {
       if (!judged)
         continue;
       if (r_.rounds++ == 0)
-        target();
+        trace_targets();
       choose_next();
       if (options_.refine.error > 0 && is_check_due() && !errors_stand())
         choose_next();
@@ -88,11 +88,11 @@ class AdaptiveSampler {
     const BlockErrors::Totals totals = errors_.totals();
     ErrorStats& e = stats_.error;
     // what pixels claim and the last check, which is as likely above the truth as below
-    const bool by_audit = r_.met && !(totals.bound <= options_.refine.error);
-    e.rmse = by_audit ? std::sqrt(r_.checked) : totals.rmse;
-    e.rmse_bound = stated(by_audit ? std::sqrt(r_.checked_bound)
-                                   : std::max(totals.bound, std::sqrt(r_.checked)));
-    e.checked = std::sqrt(r_.checked);
+    const bool by_check = r_.met && !(totals.bound <= options_.refine.error);
+    e.rmse = by_check ? std::sqrt(r_.checked_mse) : totals.rmse;
+    e.rmse_bound = stated(by_check ? std::sqrt(r_.checked_bound)
+                                   : std::max(totals.bound, std::sqrt(r_.checked_mse)));
+    e.checked = std::sqrt(r_.checked_mse);
     e.checks = r_.checks;
     e.check_samples = r_.check_samples;
     // the last samples may have met it, and the last check may deny it
@@ -111,7 +111,7 @@ class AdaptiveSampler {
 
  private:
   /// Targets objects that samples may miss, unless all such objects together could not matter.
-  void target() {
+  void trace_targets() {
     const double error = options_.refine.error, pixels = static_cast<double>(r_.box.size());
     if (std::min(static_cast<double>(object_count(world_)), pixels) <= error * error * pixels)
       return;
@@ -161,13 +161,13 @@ class AdaptiveSampler {
     const CheckedPixels& agreeing = found.agreeing;
     const bool first = r_.checks++ == 0;
     const bool worse = others.exceeds_error() || agreeing.exceeds_error();
-    r_.checked = found.mean_square();
+    r_.checked_mse = found.mean_square();
     r_.checked_at = samples_;
     r_.checked_bound = found.bound();
     const double error = options_.refine.error;
     r_.met = r_.checked_bound <= error * error;
     // the blocks claim so as well, so the first check's mean suffices in place of its bound
-    if (r_.met || (first && (!worse || r_.checked <= error * error)))
+    if (r_.met || (first && (!worse || r_.checked_mse <= error * error)))
       return r_.finished;
     r_.worse = others.error_ratio(r_.worse);
     if (agreeing.count > 0)

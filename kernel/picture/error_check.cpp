@@ -196,11 +196,11 @@ double CheckedPixels::error_ratio(double so_far) const {
 }
 
 void CheckedPixels::add(double half_square, double variance, double samples, double stands_for) {
-  const double frame_error = stands_for * (half_square - variance);
+  const double excess = stands_for * (half_square - variance);
   squared += stands_for * half_square;
   by_sample += stands_for * half_square * samples;
   claimed += stands_for * variance;
-  difference += frame_error * frame_error;
+  difference += excess * excess;
   fourth += stands_for * half_square * (stands_for * half_square);
   count += stands_for;
 }
@@ -218,12 +218,12 @@ ErrorCheck check_error(const World::Impl& world,
                        RenderStats& stats) {
   std::vector<CheckedPixel> pixels =
       checked_pixels(r, errors, setup.plan.seed, options.refine.error);
-  const Checker auditor(world, setup, options, r, stats);
-  auditor.sample(pixels);
+  const Checker checker(world, setup, options, r, stats);
+  checker.sample(pixels);
   ErrorCheck sum;
   for (const CheckedPixel& a : pixels) {
     CheckedPixels& of = errors.agrees(a.block) ? sum.agreeing : sum.others;
-    of.add(auditor.half_square(a),
+    of.add(checker.half_square(a),
            static_cast<double>(errors.variance(a.block)),
            sample_count(r, a.block),
            a.stands_for);

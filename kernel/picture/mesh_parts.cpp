@@ -34,7 +34,7 @@ class Sets {
   std::vector<std::uint32_t> up_;
 };
 
-std::array<std::uint32_t, 3> corner_points(const TriangleSpans& t, std::size_t i) {
+std::array<std::uint32_t, 3> vertices_of(const TriangleSpans& t, std::size_t i) {
   return {t.a[i], t.b[i], t.c[i]};
 }
 
@@ -62,7 +62,7 @@ void merge_vertices(const TriangleSpans& t, Sets& sets) {
   for (std::size_t i = 0; i < t.size(); ++i) {
     if (sizes[sets.root(t.a[i])] > kMinTriangles)
       continue;
-    for (const std::uint32_t v : corner_points(t, i))
+    for (const std::uint32_t v : vertices_of(t, i))
       sets.join(first.try_emplace(corner_of(t, v), v).first->second, v);
   }
 }
@@ -79,7 +79,7 @@ struct MeshPart {
       end = p;
     }
   }
-  void to_double(const Point3& p) {
+  void grow_radius(const Point3& p) {
     const Point3 along = rod.end[1] - rod.end[0], c = cross(along, p - rod.end[0]);
     const double length = dot(along, along);
     if (length > 0)
@@ -106,33 +106,33 @@ class MeshParts {
 
   std::vector<Rod> rods() {
     std::vector<Point3> first;
-    for (const MeshPart& piece : parts_)
-      first.push_back(piece.rod.end[0]);
-    each_vertex([&](MeshPart& piece, std::size_t k, const Point3& p) {
-      piece.stretch_from(first[k], p, piece.rod.end[0]);
+    for (const MeshPart& part : parts_)
+      first.push_back(part.rod.end[0]);
+    each_vertex([&](MeshPart& part, std::size_t k, const Point3& p) {
+      part.stretch_from(first[k], p, part.rod.end[0]);
     });
-    for (MeshPart& piece : parts_)
-      piece.most = -1;
-    each_vertex([](MeshPart& piece, std::size_t, const Point3& p) {
-      piece.stretch_from(piece.rod.end[0], p, piece.rod.end[1]);
+    for (MeshPart& part : parts_)
+      part.most = -1;
+    each_vertex([](MeshPart& part, std::size_t, const Point3& p) {
+      part.stretch_from(part.rod.end[0], p, part.rod.end[1]);
     });
-    each_vertex([](MeshPart& piece, std::size_t, const Point3& p) { piece.to_double(p); });
+    each_vertex([](MeshPart& part, std::size_t, const Point3& p) { part.grow_radius(p); });
     std::vector<Rod> rods;
-    for (const MeshPart& piece : parts_)
-      rods.push_back(piece.rod);
+    for (const MeshPart& part : parts_)
+      rods.push_back(part.rod);
     return rods;
   }
 
  private:
   template <class Visit>
   void each_vertex(const Visit& visit) {
-    for (MeshPart& piece : parts_)
-      piece.seen = 0;
+    for (MeshPart& part : parts_)
+      part.seen = 0;
     for (std::size_t i = 0; i < t_.size(); ++i) {
-      MeshPart& piece = parts_[of_[i]];
-      if (piece.seen++ % (piece.triangles / kMaxVisited + 1) == 0)
-        for (const std::uint32_t v : corner_points(t_, i))
-          visit(piece, of_[i], corner_of(t_, v));
+      MeshPart& part = parts_[of_[i]];
+      if (part.seen++ % (part.triangles / kMaxVisited + 1) == 0)
+        for (const std::uint32_t v : vertices_of(t_, i))
+          visit(part, of_[i], corner_of(t_, v));
     }
   }
 
@@ -146,7 +146,7 @@ class MeshParts {
 std::vector<Rod> mesh_parts(const TriangleSpans& triangles) {
   Sets sets(triangles.vertex_count());
   for (std::size_t i = 0; i < triangles.size(); ++i)
-    for (const std::uint32_t v : corner_points(triangles, i))
+    for (const std::uint32_t v : vertices_of(triangles, i))
       sets.join(triangles.a[i], v);
   merge_vertices(triangles, sets);
   return MeshParts(triangles, sets).rods();

@@ -110,7 +110,7 @@ std::uint64_t samples_of(const Accumulator& a) {
   return samples * static_cast<std::uint64_t>(a.width);
 }
 std::uint64_t samples_of(const Refinement& r) {
-  return sample_count_(r);
+  return total_samples(r);
 }
 std::uint64_t samples_of(const SubdivisionState&) {
   return 0;
@@ -184,7 +184,7 @@ Image Picture::image() const {
   return std::visit([](const auto& state) { return image_of(state); }, state_);
 }
 
-std::uint64_t Picture::sample_count_() const {
+std::uint64_t Picture::total_samples() const {
   return std::visit([](const auto& state) { return samples_of(state); }, state_);
 }
 

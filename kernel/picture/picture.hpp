@@ -54,7 +54,7 @@ class Picture {
   /// The picture so far; what has no sample yet is black.
   Image image() const;
   /// Samples taken, of all pixels; 0 where they are not counted: by subdivision.
-  std::uint64_t sample_count_() const;
+  std::uint64_t total_samples() const;
 
   /// The way its samples are spent, in one word.
   std::string_view kind() const;

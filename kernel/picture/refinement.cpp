@@ -40,7 +40,7 @@ bool has_valid_numbers(const Refinement& r) {
     if (!lies(v, 0.0, kMost))
       return false;
   if (!lies(r.worse, 1.0, kMost) || !lies(r.least_by_sample, 0.0, kMost) ||
-      !lies(r.checked, 0.0, kMost) || !lies(r.checked_bound, 0.0, kMost) ||
+      !lies(r.checked_mse, 0.0, kMost) || !lies(r.checked_bound, 0.0, kMost) ||
       !lies(r.checks, 0, 1 << 20))
     return false;
   return lies(r.variance_ratio, .1f, .6f) && lies(r.gain_threshold, 0.f, .25f) &&
@@ -112,7 +112,7 @@ bool is_valid(const Refinement& r) {
   return !r.finished && is_round(r);
 }
 
-std::uint64_t sample_count_(const Refinement& r) {
+std::uint64_t total_samples(const Refinement& r) {
   const Blocks blocks = r.blocks();
   std::uint64_t samples = 0;
   for (std::size_t b = 0; b < r.log.size(); ++b)

@@ -49,7 +49,7 @@ struct Refinement {
   float gain_threshold = .25f;  ///< gain a ray that a block of the round in work had to promise
   /// found by checks: variances are `worse` times what blocks claim, and at least least_by_sample /
   /// samples where samples agree; mean square error found by the last check
-  double worse = 1, least_by_sample = 0, checked = 0;
+  double worse = 1, least_by_sample = 0, checked_mse = 0;
   double checked_bound = 0;
   int checks = 0;
   bool met = false;                 ///< so the last check said
@@ -85,7 +85,7 @@ Refinement make_refinement(const Camera& camera);
 bool is_valid(const Refinement& r);
 
 /// Number of samples taken, over all pixels.
-std::uint64_t sample_count_(const Refinement& r);
+std::uint64_t total_samples(const Refinement& r);
 
 /// The picture so far; pixels without samples are black.
 Image picture_so_far(const Refinement& r);

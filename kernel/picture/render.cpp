@@ -26,9 +26,9 @@ Image render(const World& world,
 }
 
 std::uint64_t thread_bytes(const Camera& camera, const RenderOptions& options) {
-  const auto bands = static_cast<std::size_t>((camera.height + kStripRows - 1) / kStripRows);
+  const auto strips = static_cast<std::size_t>((camera.height + kStripRows - 1) / kStripRows);
   const std::size_t sums = static_cast<std::size_t>(camera.width) * kStripRows;
-  const auto threads = static_cast<std::uint64_t>(thread_count(options, bands));
+  const auto threads = static_cast<std::uint64_t>(thread_count(options, strips));
   return threads * Workspace::bytes(sums, options.depth, options.sampling.glossy_rays);
 }
 

@@ -11,7 +11,7 @@ namespace {
 constexpr std::uint64_t kSamplesOfChunk = 8192;  ///< most work handed to a thread at a time
 /// the threshold falls by this factor in a round: two or three rounds double all samples
 constexpr float kThresholdStep = .5f;
-/// At least one of so many blocks is wanted: judging all blocks costs a twentieth of its samples
+/// At least one of so many blocks is wanted: estimating all blocks costs a twentieth of its samples
 /// (measured).
 constexpr std::size_t kBlocksAWanted = 32;
 constexpr float kLeastThreshold = 1e-20f;  ///< below it no block is worth a ray

@@ -46,7 +46,7 @@ std::vector<Rod> rods_of(const World::Impl& world) {
 }
 
 /// Rays of one turn, from one point each.
-struct TargetRay {
+struct TargetRays {
   float org[3][kRaysOfTurn], dir[3][kRaysOfTurn], t_min[kRaysOfTurn], t[kRaysOfTurn];
   std::uint32_t id[kRaysOfTurn];
 
@@ -72,11 +72,12 @@ class Targeting {
         rods_(rods_of(world)) {}
 
   void run() {
-    std::vector<Target> aims = targets_from_camera([](const Rod& rod) { return rod; });
-    each_turn_of(aims, [&](TargetRay& rays, std::size_t first, std::size_t count, TraceCounts& n) {
-      look(rays, aims.data() + first, count, n);
-    });
-    mark(aims);
+    std::vector<Target> targets = targets_from_camera([](const Rod& rod) { return rod; });
+    each_turn_of(targets,
+                 [&](TargetRays& rays, std::size_t first, std::size_t count, TraceCounts& n) {
+                   look(rays, targets.data() + first, count, n);
+                 });
+    mark(targets);
     for (const MirrorPlane& mirror : flat_mirrors(world_))
       look_into(mirror);
     // blurred shadows are hit by samples; many lights leave little of each shadow to see
@@ -92,16 +93,16 @@ class Targeting {
 
  private:
   template <class Work>
-  void each_turn_of(const std::vector<Target>& aims, const Work& work) {
-    const std::size_t turns = (aims.size() + kRaysOfTurn - 1) / kRaysOfTurn;
+  void each_turn_of(const std::vector<Target>& targets, const Work& work) {
+    const std::size_t turns = (targets.size() + kRaysOfTurn - 1) / kRaysOfTurn;
     std::vector<TraceCounts> counts(turns);
     each_turn(
         turns,
         threads_,
-        [] { return std::make_unique<TargetRay>(); },
-        [&](std::size_t turn, const std::unique_ptr<TargetRay>& rays) {
+        [] { return std::make_unique<TargetRays>(); },
+        [&](std::size_t turn, const std::unique_ptr<TargetRays>& rays) {
           const std::size_t first = turn * kRaysOfTurn;
-          work(*rays, first, std::min(kRaysOfTurn, aims.size() - first), counts[turn]);
+          work(*rays, first, std::min(kRaysOfTurn, targets.size() - first), counts[turn]);
         });
     for (const TraceCounts& n : counts)
       counts_ += n;
@@ -120,7 +121,7 @@ class Targeting {
   static double parts_of(const Rod& rod, double step) {
     return std::clamp(std::ceil(rod.length() / step), 1., kMostParts);
   }
-  static void add_parts(const Rod& rod, double step, std::vector<Target>& aims) {
+  static void add_parts(const Rod& rod, double step, std::vector<Target>& targets) {
     const double parts = parts_of(rod, step);
     for (double k = 0; k < parts; ++k) {
       Target target{rod};
@@ -128,7 +129,7 @@ class Targeting {
         for (std::size_t a = 0; a < 3; ++a)
           target.end[e][a] = rod.end[0][a] +
                              (k + static_cast<double>(e)) / parts * (rod.end[1][a] - rod.end[0][a]);
-      aims.push_back(target);
+      targets.push_back(target);
     }
   }
 
@@ -150,10 +151,10 @@ class Targeting {
     double pixels = 1;
     while (pixels < kMostParts && count(pixels) > most)
       pixels *= 2;
-    std::vector<Target> aims;
+    std::vector<Target> targets;
     for (const Thin& t : thin)
-      add_parts(t.rod, pixels * t.pixel, aims);
-    return aims;
+      add_parts(t.rod, pixels * t.pixel, targets);
+    return targets;
   }
 
   /// At where rods seem to be.
@@ -171,7 +172,7 @@ class Targeting {
     return parts_of(thin);
   }
 
-  void closest(const TargetRay& rays, TargetRay& hits, std::size_t count, TraceCounts& n) const {
+  void closest(const TargetRays& rays, TargetRays& hits, std::size_t count, TraceCounts& n) const {
     const Rays in{.org = {rays.org[0], rays.org[1], rays.org[2]},
                   .dir = {rays.dir[0], rays.dir[1], rays.dir[2]},
                   .t_min = rays.t_min,
@@ -195,12 +196,13 @@ class Targeting {
   }
 
   /// Which of the targets a ray from the eye hits.
-  void look(TargetRay& rays, Target* aims, std::size_t count, TraceCounts& n) const {
+  void look(TargetRays& rays, Target* targets, std::size_t count, TraceCounts& n) const {
     for (std::size_t i = 0; i < count; ++i)
-      rays.set(i, to_.eye, aims[i].middle(), 0);
+      rays.set(i, to_.eye, targets[i].middle(), 0);
     closest(rays, rays, count, n);
     const auto before = [&](std::size_t i) {
-      return rays.id[i] != kNoPrimitive && static_cast<double>(rays.t[i]) < near(aims[i], to_.eye);
+      return rays.id[i] != kNoPrimitive &&
+             static_cast<double>(rays.t[i]) < near(targets[i], to_.eye);
     };
     for (int k = 0; k < kMostClear; ++k) {
       bool any = false;
@@ -215,51 +217,52 @@ class Targeting {
       closest(rays, rays, count, n);
     }
     for (std::size_t i = 0; i < count; ++i)
-      aims[i].hits_target = !before(i);
+      targets[i].hits_target = !before(i);
   }
 
   /// Marks where thin rods show in a mirror.
   void look_into(const MirrorPlane& mirror) {
-    std::vector<Target> aims = targets_from_camera([&](Rod rod) {
+    std::vector<Target> targets = targets_from_camera([&](Rod rod) {
       for (Point3& end : rod.end)
         end = mirror.image(end);
       return rod;
     });
-    each_turn_of(aims, [&](TargetRay& rays, std::size_t first, std::size_t count, TraceCounts& n) {
-      look_by_mirror(mirror, rays, aims.data() + first, count, n);
-    });
-    mark(aims);
+    each_turn_of(targets,
+                 [&](TargetRays& rays, std::size_t first, std::size_t count, TraceCounts& n) {
+                   look_by_mirror(mirror, rays, targets.data() + first, count, n);
+                 });
+    mark(targets);
   }
 
   /// Which of the images a ray from the eye arrives at by way of the mirror.
   void look_by_mirror(const MirrorPlane& mirror,
-                      TargetRay& rays,
-                      Target* aims,
+                      TargetRays& rays,
+                      Target* targets,
                       std::size_t count,
                       TraceCounts& n) const {
     for (std::size_t i = 0; i < count; ++i)
-      rays.set(i, to_.eye, aims[i].middle(), 0);
+      rays.set(i, to_.eye, targets[i].middle(), 0);
     closest(rays, rays, count, n);
     for (std::size_t i = 0; i < count; ++i) {
-      const Point3 image = aims[i].middle();
+      const Point3 image = targets[i].middle();
       const double eye_above = mirror.above(to_.eye), all = eye_above - mirror.above(image);
       const double t = eye_above / all;  // where the way to the image crosses the mirror
-      aims[i].hits_target = rays.id[i] != kNoPrimitive && t > 0 && t < 1 &&
-                            std::abs(static_cast<double>(rays.t[i]) - t) <= 1e-3 * t &&
-                            is_smooth_mirror(world_.shading.materials, material_of(rays.id[i]));
+      targets[i].hits_target = rays.id[i] != kNoPrimitive && t > 0 && t < 1 &&
+                               std::abs(static_cast<double>(rays.t[i]) - t) <= 1e-3 * t &&
+                               is_smooth_mirror(world_.shading.materials, material_of(rays.id[i]));
       Point3 at = to_.eye;
-      for (std::size_t a = 0; a < 3 && aims[i].hits_target; ++a)
+      for (std::size_t a = 0; a < 3 && targets[i].hits_target; ++a)
         at[a] += t * (image[a] - to_.eye[a]);
       rays.set(i, at, mirror.image(image), 1e-4);
     }
     closest(rays, rays, count, n);
     for (std::size_t i = 0; i < count; ++i) {
-      Target real = aims[i];
+      Target real = targets[i];
       for (Point3& end : real.end)
         end = mirror.image(end);
       const Point3 from{{rays.org[0][i], rays.org[1][i], rays.org[2][i]}};
-      aims[i].hits_target =
-          aims[i].hits_target &&
+      targets[i].hits_target =
+          targets[i].hits_target &&
           (rays.id[i] == kNoPrimitive || static_cast<double>(rays.t[i]) >= near(real, from));
     }
   }
@@ -271,34 +274,39 @@ class Targeting {
       if (const double pixel = to_.pixel(std::abs(to_(rod.end[0]).depth));
           rod.radius < kThin * pixel)
         thin.push_back({rod, pixel});
-    std::vector<Target> aims = parts_of(thin);
-    each_turn_of(aims, [&](TargetRay& rays, std::size_t first, std::size_t count, TraceCounts& n) {
-      cast_shadows(rays, light, aims.data() + first, count, n);
-    });
-    mark(aims);
+    std::vector<Target> targets = parts_of(thin);
+    each_turn_of(targets,
+                 [&](TargetRays& rays, std::size_t first, std::size_t count, TraceCounts& n) {
+                   cast_shadows(rays, light, targets.data() + first, count, n);
+                 });
+    mark(targets);
   }
 
   /// Moves things on to the surfaces behind them.
-  void cast_shadows(
-      TargetRay& rays, const Point3& light, Target* aims, std::size_t count, TraceCounts& n) const {
+  void cast_shadows(TargetRays& rays,
+                    const Point3& light,
+                    Target* targets,
+                    std::size_t count,
+                    TraceCounts& n) const {
     for (std::size_t i = 0; i < count; ++i)
-      rays.set(i, light, aims[i].middle(), 2 - near(aims[i], light));
+      rays.set(i, light, targets[i].middle(), 2 - near(targets[i], light));
     closest(rays, rays, count, n);
     for (std::size_t i = 0; i < count; ++i) {
-      aims[i].hits_target = rays.id[i] != kNoPrimitive;
-      if (!aims[i].hits_target)
+      targets[i].hits_target = rays.id[i] != kNoPrimitive;
+      if (!targets[i].hits_target)
         continue;
       const double t = static_cast<double>(rays.t[i]);
-      for (Point3& end : aims[i].end)
+      for (Point3& end : targets[i].end)
         for (std::size_t a = 0; a < 3; ++a)
           end[a] = light[a] + t * (end[a] - light[a]);
-      aims[i].radius *= t;
+      targets[i].radius *= t;
     }
     for (std::size_t i = 0; i < count; ++i)
-      rays.set(i, to_.eye, aims[i].middle(), 0);
+      rays.set(i, to_.eye, targets[i].middle(), 0);
     closest(rays, rays, count, n);
     for (std::size_t i = 0; i < count; ++i)
-      aims[i].hits_target = aims[i].hits_target && rays.id[i] != kNoPrimitive && rays.t[i] > .999f;
+      targets[i].hits_target =
+          targets[i].hits_target && rays.id[i] != kNoPrimitive && rays.t[i] > .999f;
   }
 
   /// The brightest that a thing may look, over white.
@@ -312,8 +320,8 @@ class Targeting {
     return most;
   }
 
-  void mark(const std::vector<Target>& aims) {
-    for (const Target& target : aims)
+  void mark(const std::vector<Target>& targets) {
+    for (const Target& target : targets)
       if (target.hits_target)
         mark(target);
   }

@@ -1,33 +1,32 @@
 #define GRELHA_ISA scalar
 #include "grelha/query.hpp"
 
+#include <limits>
+#include <mutex>
 #include <stdexcept>
-#include <string>
 
-#include "kernel/shapes/surface.hpp"
+#include "kernel/query/filtered.hpp"
 #include "kernel/query/options.hpp"
+#include "kernel/query/runs.hpp"
+#include "kernel/shapes/surface.hpp"
 #include "kernel/grid/world_impl.hpp"
 
 namespace grelha {
 namespace {
 
-/// Arrays that have no natural default.
-void expect_arrays(const Rays& rays) {
-  if (rays.count > std::size_t{PTRDIFF_MAX})
-    throw std::invalid_argument("rays: expected a count that memory can hold, found " +
-                                std::to_string(rays.count));
-  if (rays.count == 0)
-    return;
-  for (int a = 0; a < 3; ++a)
-    if (!rays.org[a] || !rays.dir[a])
-      throw std::invalid_argument(std::string("rays: expected an array of ") + "xyz"[a] + " of " +
-                                  (rays.org[a] ? "directions" : "origins") + ", found null");
-}
-
-void expect_same_size(std::size_t rays, std::size_t answers) {
-  if (rays != answers)
-    throw std::invalid_argument("expected an answer for each of " + std::to_string(rays) +
-                                " rays, found room for " + std::to_string(answers));
+/// As each_run(), with counts of work that are added up.
+template <class Trace>
+void counted_runs(std::size_t count,
+                  const QueryOptions& options,
+                  TraceCounts& counts,
+                  const Trace& trace) {
+  std::mutex mutex;
+  each_run(count, options, [&](std::size_t first, std::size_t end) {
+    TraceCounts own;
+    trace(first, end, own);
+    const std::lock_guard lock(mutex);
+    counts += own;
+  });
 }
 
 void expect_primitive(const PrimitiveIds& ids, std::uint32_t id) {
@@ -50,21 +49,34 @@ void closest(const World& world,
              const QueryOptions& options,
              TraceCounts* counts) {
   expect_arrays(rays);
+  expect_masks(world, options.mask);
   TraceCounts unread;
-  choose_variant(options.isa)
-      .loops.closest(
-          world.impl().view, rays, hits, options_of(options.packet), counts ? *counts : unread);
+  const ClosestLoop loop = choose_variant(options.isa).loops.closest;
+  const TraceOptions how = options_of(options.packet);
+  const auto trace = [&](std::size_t first, std::size_t end, TraceCounts& to) {
+    const Rays part = part_of(rays, first, end);
+    const Hits answers = part_of(hits, first);
+    if (has_filters(rays, options) || hits.u || hits.v)
+      FilteredClosest(world, part, answers, options).trace(loop, how, to);
+    else
+      loop(world.impl().view, part, answers, how, to);
+  };
+  counted_runs(rays.count, options, counts ? *counts : unread, trace);
 }
 void closest(const World& world,
              std::span<const Ray> rays,
              std::span<Hit> hits,
              const QueryOptions& options,
              TraceCounts* counts) {
-  expect_same_size(rays.size(), hits.size());
+  expect_same_size(rays.size(), hits.size(), "rays");
   closest(world, Rays::of(rays), Hits::of(hits), options, counts);
 }
 Hit closest(const World& world, const Ray& ray) {
   return best_variant().loops.closest_one(world.impl().view, ray);
+}
+Hit closest(const World& world, const Ray& ray, const Filter& filter) {
+  expect_masks(world, filter.masks);
+  return filtered(world, ray, filter, closest(world, ray));
 }
 
 void occluded(const World& world,
@@ -73,23 +85,33 @@ void occluded(const World& world,
               const QueryOptions& options,
               TraceCounts* counts) {
   expect_arrays(rays);
+  expect_masks(world, options.mask);
   if (!blocked && rays.count > 0)
     throw std::invalid_argument("occluded: expected an array of answers, found null");
   TraceCounts unread;
-  choose_variant(options.isa)
-      .loops.occluded(
-          world.impl().view, rays, blocked, options_of(options.packet), counts ? *counts : unread);
+  const OccludedLoop loop = choose_variant(options.isa).loops.occluded;
+  const TraceOptions how = options_of(options.packet);
+  const auto trace = [&](std::size_t first, std::size_t end, TraceCounts& to) {
+    loop(world.impl().view, part_of(rays, first, end), blocked + first, how, to);
+    for (std::size_t i = first; has_filters(rays, options) && i < end; ++i)
+      if (blocked[i])
+        blocked[i] = occluded(world, ray_of(rays, i), filter_of(rays, options, i));
+  };
+  counted_runs(rays.count, options, counts ? *counts : unread, trace);
 }
 void occluded(const World& world,
               std::span<const Ray> rays,
               std::span<std::uint8_t> blocked,
               const QueryOptions& options,
               TraceCounts* counts) {
-  expect_same_size(rays.size(), blocked.size());
+  expect_same_size(rays.size(), blocked.size(), "rays");
   occluded(world, Rays::of(rays), blocked.data(), options, counts);
 }
 bool occluded(const World& world, const Ray& ray) {
   return best_variant().loops.occluded_one(world.impl().view, ray);
+}
+bool occluded(const World& world, const Ray& ray, const Filter& filter) {
+  return occluded(world, ray) && closest(world, ray, filter);
 }
 
 SurfacePoint surface(const World& world, const Ray& ray, const Hit& hit) {
@@ -104,6 +126,21 @@ SurfacePoint surface(const World& world, const Ray& ray, const Hit& hit) {
       s.offset,
       s.material,
   };
+}
+
+void surfaces(const World& world,
+              std::span<const Ray> rays,
+              std::span<const Hit> hits,
+              std::span<SurfacePoint> points,
+              const QueryOptions& options) {
+  expect_same_size(rays.size(), hits.size(), "rays");
+  expect_same_size(rays.size(), points.size(), "rays");
+  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+  each_run(rays.size(), options, [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i)
+      points[i] = hits[i] ? surface(world, rays[i], hits[i])
+                          : SurfacePoint{{kNone, kNone, kNone}, {}, {}, 0, 0};
+  });
 }
 
 Float3 SurfacePoint::offset_origin(Float3 dir) const {

@@ -52,8 +52,8 @@ struct BatchHits {
   Rows3 shading;                        ///< normal for shading, unit, towards the viewer
   Rows3 viewer;                         ///< unit vector to it
   alignas(64) float offset[kBatchRow];  ///< how far along the normal a ray must start so as not to
-                                        ///< meet its own surface
-  alignas(64) float inside[kBatchRow];  ///< 1: met from within
+                                        ///< hit its own surface
+  alignas(64) float inside[kBatchRow];  ///< 1: hit from within
   Rows3 weight;                         ///< of the light from this point
   alignas(64) float share[kBatchRow];   ///< see split()
   std::uint32_t pixel[kBatchRow], depth[kBatchRow], material[kBatchRow];

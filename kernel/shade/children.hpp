@@ -134,7 +134,7 @@ struct Bounce {
 /// Fractions of the light at hits that are reflected and transmitted.
 struct Shares {
   VFloat3 mirror;
-  VFloat refracted_dir;
+  VFloat transmitted;
 };
 
 /// Replaces the given shares by Fresnel's law where a material asks for it.
@@ -145,7 +145,7 @@ struct Shares {
   const VFloat one(1);
   const VFloat kr = schlick(ior, f);
   return {select(asked, VFloat3{kr, kr, kr}, given.mirror),
-          select(asked, one - kr, given.refracted_dir)};
+          select(asked, one - kr, given.transmitted)};
 }
 
 /// The bounce at hits where some transmit `t` > 0; the others reflect all of `mirror`. `nv`: cosine
@@ -165,10 +165,10 @@ inline Bounce refract(const Shader& s,
   Shares shares{mirror, t};
   if (s.shading.fresnel)
     shares = fresnel_shares(f, ior, fresnel > o, shares);
-  const VFloat refracted_dir = select(mask_and(clear, f.is_refracted), shares.refracted_dir, o);
+  const VFloat transmitted = select(mask_and(clear, f.is_refracted), shares.transmitted, o);
   VFloat3 up = select(clear, shares.mirror, mirror);
   up = select(and_not(clear, f.is_refracted), totally_reflected(up, t, fresnel == o), up);
-  return {up, {refracted_dir, refracted_dir, refracted_dir}, refracted_direction(f, n, v)};
+  return {up, {transmitted, transmitted, transmitted}, refracted_direction(f, n, v)};
 }
 
 /// The rays that leave mirrors.

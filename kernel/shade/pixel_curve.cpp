@@ -30,8 +30,7 @@ class PixelCurve {
   }
 
   /// The square of 2^level pixels a side whose upper left one is (x, y), and whose first position
-  /// is
-  /// `first`.
+  /// is `first`.
   void order_square(int x, int y, int level, std::uint32_t first) {
     if (x >= width_ || y >= height_)
       return;

@@ -161,7 +161,7 @@ inline float sobol_sample(std::uint32_t seed, std::uint32_t index, int dimension
 
 /// Position of i after a random permutation of [0, n): Kensler, "Correlated Multi-Jittered
 /// Sampling", 2013.
-inline std::uint32_t permute_axes(std::uint32_t i, std::uint32_t n, std::uint32_t seed) {
+inline std::uint32_t permute(std::uint32_t i, std::uint32_t n, std::uint32_t seed) {
   std::uint32_t w = n - 1;
   w |= w >> 1;
   w |= w >> 2;
@@ -202,7 +202,7 @@ template <class Real>
   for (int k = 0; k < kWidth<Real>; ++k) {
     std::uint32_t cell = i[k] % cells;
     if (order[k] != 0)
-      cell = permute_axes(cell, cells, own[k]);
+      cell = permute(cell, cells, own[k]);
     found.column[k] = static_cast<float>(cell % strata.columns);
     found.row[k] = static_cast<float>(cell / strata.columns);
   }

@@ -111,7 +111,7 @@ inline VFloat3 gather3(const Shader& s, MaterialField r, const SimdHits<kOne>& a
 }
 
 /// Tells apart the uses of a pair of dimensions along one path; 0 for the first light, or lobe,
-/// that a camera ray meets.
+/// that a camera ray hits.
 template <class Word>
 inline Word sample_keys(Word path, std::uint32_t use) {
   const Word key = scatter(path, use) | 1u;

@@ -32,9 +32,9 @@ inline unsigned overlapping(const Frustum& f, const FieldArrays<Cone>& cones, st
   return f.inside_mask([&](int j) {
     const Block s(f.a[j]);
     const Block q(f.b[j]);
-    const Block half_width(f.half_width[j]);
-    const Block base = (s * (j < 2 ? u0 : v0) + q * k0) + r0 * half_width;
-    const Block apex = (s * (j < 2 ? u1 : v1) + q * k1) + r1 * half_width;
+    const Block gradient_length(f.gradient_length[j]);
+    const Block base = (s * (j < 2 ? u0 : v0) + q * k0) + r0 * gradient_length;
+    const Block apex = (s * (j < 2 ? u1 : v1) + q * k1) + r1 * gradient_length;
     return max(base, apex) + Block(f.c[j]);
   });
 }

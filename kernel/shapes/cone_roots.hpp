@@ -25,11 +25,10 @@ template <class Real>
   const Vec3<Real> e = ray.inv_dd * n;
   const Real aside = dot(to_base, e);
   const Real wide = cone.radius + cone.slope * cone.height;
-  const Real frame_error = Real(0x1p23f) * ray.frame_error;
-  const Real error_bound = Real(kWider) * (wide * wide) * dot(n, e) +
-                           Real(kSineError) * (dot(to_base, to_base) + frame_error * frame_error);
-  return mask_or(error_bound * ray.inv_dd - aside * aside >= Real(0),
-                 wide * wide < Real(kLeastWidth));
+  const Real scaled_error = Real(0x1p23f) * ray.frame_error;
+  const Real slack = Real(kWider) * (wide * wide) * dot(n, e) +
+                     Real(kSineError) * (dot(to_base, to_base) + scaled_error * scaled_error);
+  return mask_or(slack * ray.inv_dd - aside * aside >= Real(0), wide * wide < Real(kLeastWidth));
 }
 
 // Error bounds of floats or doubles, in u; docs/numerics.md derives each, cone_test.cpp pins them.
@@ -104,8 +103,8 @@ struct ConeLine {
            Real(static_cast<Scalar<Real>>(.5 / kUnit<Real>)) * ray.frame_error;
     const Real slope = Real(1) + cone.slope;
     slopes = slope * slope;
-    const Real frame_error = units<Real>(kDiscError) * (slopes * slopes) * size;
-    error = (frame_error * ((sum_of_sizes(p) + magnitude(r)) + frame_error)) * ray.inv_dd;
+    const Real distance_error = units<Real>(kDiscError) * (slopes * slopes) * size;
+    error = (distance_error * ((sum_of_sizes(p) + magnitude(r)) + distance_error)) * ray.inv_dd;
     const Vec3<Real> across = cross(to_base, axis);
     const Real side = cone.radius - cone.slope * dot(to_base, axis);
     const Real above = dot(across, across) - side * side;
@@ -145,12 +144,12 @@ struct ConeRoot {
     const Real h = dot(at, line.axis);
     const Real beyond_axis = sum_of_sizes(cross(at, line.axis)) +
                              (magnitude(cone.radius + cone.slope * h) + part * line.size);
-    const Real frame_error = (units<Real>(kSideError) * line.slopes) * (line.size + far);
-    const Real error = frame_error * (beyond_axis + frame_error);
+    const Real distance_error = (units<Real>(kSideError) * line.slopes) * (line.size + far);
+    const Real error = distance_error * (beyond_axis + distance_error);
     const Mask<Real> enters = mask_and(before > error, after < o - error);
     const Mask<Real> leaves = mask_and(before<o - error, after> error);
     const Mask<Real> known = mask_or(enters, leaves);
-    const Real error_bound =
+    const Real height_error =
         Real(static_cast<Scalar<Real>>(2 * kRootError<Real> + kHeightError * kUnit<Real>)) *
         (line.size + far);
     lo = (line.near + s) - beside;
@@ -158,7 +157,7 @@ struct ConeRoot {
     const Real slack = units<Real>(4) * (magnitude(line.near) + magnitude(s));
     lo = lo - slack;
     hi = hi + slack;
-    const Mask<Real> beyond = mask_or(h<o - error_bound, h> cone.height + error_bound);
+    const Mask<Real> beyond = mask_or(h<o - height_error, h> cone.height + height_error);
     const Mask<Real> shows = mask_or(cone.side > o, leaves);
     // a ray that starts at t = 0 outside is there before it enters, and after it has left
     const Mask<Real> from_here =
@@ -169,7 +168,7 @@ struct ConeRoot {
         mask_and(from_here, mask_or(mask_and(leaves, line.outside), mask_and(enters, line.inside)));
     const Mask<Real> counts = mask_and(and_not(hi > ray.t_min, behind), and_not(shows, beyond));
     some = mask_or(counts, and_not(o == o, known));
-    const Mask<Real> between = mask_and(h > error_bound, h < cone.height - error_bound);
+    const Mask<Real> between = mask_and(h > height_error, h < cone.height - height_error);
     sure = mask_and(mask_and(known, between), mask_and(mask_or(lo > ray.t_min, ahead), shows));
   }
 };

@@ -19,7 +19,7 @@ int sign_of(const DoubleDouble& x) {
 struct DoubleCorner {
   double at[3];
 };
-DoubleCorner fields_to_double(const float (&v)[3]) {
+DoubleCorner double_corner(const float (&v)[3]) {
   return {{v[0], v[1], v[2]}};
 }
 WideVector wide(const double (&v)[3]) {
@@ -51,8 +51,8 @@ int ExactCrossing::compare(const ExactCrossing& other) const {
   const DoubleDouble a = wide();
   const DoubleDouble b = other.wide();
   const DoubleDouble apart = a - b;
-  const double error_bound = kEqualWide * (std::abs(a.high) + std::abs(b.high));
-  return std::abs(apart.high) <= error_bound ? 0 : sign_of(apart);
+  const double tolerance = kEqualWide * (std::abs(a.high) + std::abs(b.high));
+  return std::abs(apart.high) <= tolerance ? 0 : sign_of(apart);
 }
 
 double ExactCrossing::estimate() const {
@@ -73,9 +73,9 @@ float ExactCrossing::rounded() const {
 }
 
 ExactCrossing cross_triangle(const ExactRay& ray, const float (&corner)[3][3]) {
-  const ExactVector a = difference(fields_to_double(corner[0]).at, ray.org);
-  const ExactVector b = difference(fields_to_double(corner[1]).at, ray.org);
-  const ExactVector c = difference(fields_to_double(corner[2]).at, ray.org);
+  const ExactVector a = difference(double_corner(corner[0]).at, ray.org);
+  const ExactVector b = difference(double_corner(corner[1]).at, ray.org);
+  const ExactVector c = difference(double_corner(corner[2]).at, ray.org);
   const ExactVector bc = cross(b, c);
   const ExactVector next[2] = {cross(c, a), cross(a, b)};
   Expansion sum = dot(bc, ray.dir);
@@ -123,7 +123,7 @@ int sign_beside(const ExactRay& ray, const Expansion& edge, const ExactVector& a
 bool crosses_beside(const ExactRay& ray, const float (&corner)[3][3], double t_max) {
   ExactVector at[3];
   for (int i = 0; i < 3; ++i)
-    at[i] = difference(fields_to_double(corner[i]).at, ray.org);
+    at[i] = difference(double_corner(corner[i]).at, ray.org);
   Expansion sum;
   int signs[3];
   for (int i = 0; i < 3; ++i) {
@@ -131,7 +131,7 @@ bool crosses_beside(const ExactRay& ray, const float (&corner)[3][3], double t_m
     const int to = (i + 2) % 3;
     const Expansion edge = dot(cross(at[from], at[to]), ray.dir);
     const ExactVector along =
-        difference(fields_to_double(corner[to]).at, fields_to_double(corner[from]).at);
+        difference(double_corner(corner[to]).at, double_corner(corner[from]).at);
     signs[i] = sign_beside(ray, edge, along);
     sum += edge;
   }
@@ -148,7 +148,7 @@ ExactCrossing cross_plane(const ExactRay& ray, const float (&point)[3], const fl
     along.add_product(n[i], ray.dir[i]);
   if (along.sign() == 0)
     return {};
-  const ExactCrossing found(dot(difference(fields_to_double(point).at, ray.org), n), along);
+  const ExactCrossing found(dot(difference(double_corner(point).at, ray.org), n), along);
   return found.compare(ray.t_min) > 0 ? found : ExactCrossing();
 }
 

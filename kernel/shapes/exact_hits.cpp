@@ -12,15 +12,6 @@ template <class Shape>
 using One = typename Shape::template Fields<float>;
 
 template <class Shape>
-One<Shape> primitive_at(const typename Shape::Arrays& all, std::uint32_t i) {
-  if constexpr (Shape::kKind == PrimitiveKind::kTriangle) {
-    return all.triangle(i);
-  } else {
-    return one_of<Shape>(all.fields, i);
-  }
-}
-
-template <class Shape>
 scalar::HitInterval<double> double_interval(const ExactRay& ray, const One<Shape>& one) {
   if constexpr (Shape::kKind == PrimitiveKind::kTriangle) {
     return scalar::bound_triangle(ray, one.corner);
@@ -39,35 +30,30 @@ ExactCrossing crossing_of(const ExactRay& ray, const One<Shape>& one) {
   }
 }
 
-/// Calls visit.operator()<Shape>(fields) for a primitive.
-template <class Visit>
-auto visit_primitive(const GeometryView& g, std::uint32_t id, const Visit& visit) {
-  return visit_shape(Shapes{}, g.ids, id, [&]<class Shape>(std::uint32_t i) {
-    return visit.template operator()<Shape>(primitive_at<Shape>(g.of<Shape>(), i));
-  });
-}
-
 scalar::HitInterval<double> double_interval(const GeometryView& g,
                                             const ExactRay& ray,
                                             std::uint32_t id) {
   return visit_primitive(
       g, id, [&]<class Shape>(const One<Shape>& one) { return double_interval<Shape>(ray, one); });
 }
-ExactCrossing crossing_of(const GeometryView& g, const ExactRay& ray, std::uint32_t id) {
-  return visit_primitive(
-      g, id, [&]<class Shape>(const One<Shape>& one) { return crossing_of<Shape>(ray, one); });
-}
 
-}  // namespace
-
-namespace {
 template <class Shape>
 CrossingSpan span_of(const ExactRay& ray, const One<Shape>& primitive, double shift) {
   return scalar::refine_span(double_interval<Shape>(ray, primitive), shift, [&] {
     return crossing_of<Shape>(ray, primitive);
   });
 }
+
 }  // namespace
+
+CrossingBounds crossing_bounds(const GeometryView& g, const ExactRay& ray, std::uint32_t id) {
+  const scalar::HitInterval<double> found = double_interval(g, ray, id);
+  return {found.some, found.sure, found.lo, found.hi};
+}
+ExactCrossing crossing_of(const GeometryView& g, const ExactRay& ray, std::uint32_t id) {
+  return visit_primitive(
+      g, id, [&]<class Shape>(const One<Shape>& one) { return crossing_of<Shape>(ray, one); });
+}
 
 CrossingSpan crossing_span(PrimitiveKind kind,
                            const ExactRay& ray,

@@ -18,6 +18,16 @@ CrossingSpan crossing_span(const GeometryView& g,
                            std::uint32_t id,
                            double shift);
 
+/// t of the first crossing of a ray and a primitive beyond t_min: surely none unless `some`, and
+/// surely one from lo to hi if `sure`. By doubles alone.
+struct CrossingBounds {
+  bool some, sure;
+  double lo, hi;
+};
+CrossingBounds crossing_bounds(const GeometryView& g, const ExactRay& ray, std::uint32_t id);
+/// The same crossing, exactly.
+ExactCrossing crossing_of(const GeometryView& g, const ExactRay& ray, std::uint32_t id);
+
 /// True if a ray that crosses two primitives beyond t_min crosses `id` first; of equal t the lower
 /// id is first.
 bool is_closest(const GeometryView& g, const ExactRay& ray, std::uint32_t id, std::uint32_t other);

@@ -92,7 +92,7 @@ struct Sphere {
       }
       const double r = radius + g.pad;
       const double inner = radius - g.pad;
-      half_width_ = r * r;
+      outer_ = r * r;
       inner_ = inner > 0 ? inner * inner : -1;
     }
     bool operator()(const int (&at)[3]) const {
@@ -106,11 +106,11 @@ struct Sphere {
         near += least * least;
         far += most * most;
       }
-      return near <= half_width_ && far >= inner_;
+      return near <= outer_ && far >= inner_;
     }
 
    private:
-    double cell_[3], center_[3], half_width_, inner_;
+    double cell_[3], center_[3], outer_, inner_;
   };
 };
 
@@ -266,7 +266,7 @@ inline unsigned overlapping(const Frustum& f, const FieldArrays<Sphere>& spheres
   const Block r = magnitude(load<Block>(spheres.radius + i));
   return f.inside_mask([&](int j) {
     return ((Block(f.a[j]) * (j < 2 ? u : v) + Block(f.b[j]) * k) + Block(f.c[j])) +
-           r * Block(f.half_width[j]);
+           r * Block(f.gradient_length[j]);
   });
 }
 
@@ -278,7 +278,7 @@ inline std::uint64_t groups_near(const Frustum& f, const Sphere::Fields<float>& 
     const VFloat across = VFloat(f.a[j] * sphere.center[f.side(j)]) +
                           load<VFloat>(f.group_b[j] + first) * VFloat(sphere.center[f.k]);
     return (across + load<VFloat>(f.group_c[j] + first)) +
-           VFloat(radius) * load<VFloat>(f.group_reach[j] + first);
+           VFloat(radius) * load<VFloat>(f.group_gradient_length[j] + first);
   });
 }
 
@@ -326,7 +326,7 @@ inline void sphere_positions(const SurfaceHit<Real>& met,
     sphere_positions<Real, i + 1>(met, sphere, to);
 }
 
-/// Times the radius: a start that far off lets no ray meet the bulge whose cosine with the rounded
+/// Times the radius: a start that far off lets no ray hit the bulge whose cosine with the rounded
 /// normal has the wrong sign, 64 u^2. It takes 13 u^2.
 inline constexpr float kBulge = 0x1p-42f;
 

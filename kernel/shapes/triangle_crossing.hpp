@@ -61,10 +61,10 @@ template <class Real>
   const Real along = dot(n, dir);
   const Real inverse = Real(1) / along;
   const Real t = dot(n, to) * inverse;
-  const Real frame_error = units<Real>(16) * dot(size, sizes(dir));
+  const Real along_error = units<Real>(16) * dot(size, sizes(dir));
   const Real slack =
-      (units<Real>(16) * dot(size, sizes(to)) + magnitude(t) * frame_error) * magnitude(inverse);
-  return {magnitude(along) > frame_error + frame_error, t - slack, t + slack};
+      (units<Real>(16) * dot(size, sizes(to)) + magnitude(t) * along_error) * magnitude(inverse);
+  return {magnitude(along) > along_error + along_error, t - slack, t + slack};
 }
 
 /// Part i of the lanes of corners, in double.

@@ -100,12 +100,12 @@ inline Surface<Real> surface_on(const Triangle::Arrays& triangles,
   const Vec3<Real> point = place.vector(0);
   const Vec3<Real> n = place.vector(3);
   const Vec3<Real> weights = place.vector(6);
-  const Real corner_points = max(max(largest(c.a), largest(c.b)), largest(c.c));
+  const Real max_coordinate = max(max(largest(c.a), largest(c.b)), largest(c.c));
   Surface<Real> s{
       .point = point,
       .normal = n,
       .shading = n,
-      .offset = Real(4 * kEps) * largest(point) + Real(kWideEps) * corner_points,
+      .offset = Real(4 * kEps) * largest(point) + Real(kWideEps) * max_coordinate,
       .material = words_at(triangles.material, i),
   };
   if (met.smooth)

@@ -71,7 +71,7 @@ class ActiveRays {
     VFloat field(1);
     for (int a = 0; a < 3; ++a)
       field = field + select(c.inverse[a] < o, VFloat(static_cast<float>(1 << a)), o);
-    return g_.field_offsets * to_words(field);
+    return g_.field_stride * to_words(field);
   }
 
   [[gnu::always_inline]] void put(const CompressMask& selected,
@@ -112,7 +112,7 @@ class ActiveRays {
     return left >= kWidth<VFloat> ? ~0u : (1u << left) - 1u;
   }
 
-  [[gnu::always_inline]] DdaState<VFloat> dda(int i) const {
+  [[gnu::always_inline]] DdaState<VFloat> state(int i) const {
     DdaState<VFloat> c;
     for (int a = 0; a < 3; ++a) {
       c.place[a] = load<VFloat>(place_[a] + i);
@@ -128,7 +128,7 @@ class ActiveRays {
     for (int a = 0; a < 3; ++a)
       at[a] = load<VFloat>(cell_[a] + i);
     const VFloat best = floats_at(p_.best, load_words<VFloat>(ray_ + i));
-    const DdaState<VFloat> c = dda(i);
+    const DdaState<VFloat> c = state(i);
     const Mask<VFloat> goes =
         grelha::GRELHA_ISA::step(g_, c, load<VFloat>(distance_ + i), best, at);
     for (int a = 0; a < 3; ++a)
@@ -146,7 +146,7 @@ class ActiveRays {
       for (int a = 0; a < 3; ++a)
         cell[a] = load<VFloat>(cell_[a] + i);
       const Words<VFloat> ray = load_words<VFloat>(ray_ + i);
-      put(selected, to, dda(i), cell, ray, load_words<VFloat>(field_ + i));
+      put(selected, to, state(i), cell, ray, load_words<VFloat>(field_ + i));
       to += selected.count();
     }
     count_ = to;

@@ -21,7 +21,7 @@ inline Real clamp_cells(const Real& x, int n) {
 
 /// Distances of cells for rays of one octant: to occupied cells ahead of the rays alone.
 inline const std::uint8_t* distances_in(const GridView& g, unsigned octant) {
-  return g.distance + (1 + std::size_t{octant}) * g.field_offsets;
+  return g.distance + (1 + std::size_t{octant}) * g.field_stride;
 }
 
 /// Rays in the units of one grid's cells.
@@ -172,9 +172,9 @@ class CellDda {
     if (!(r.best > r.t_min) || !(begin <= end_))
       return false;
     const FourInts up = inverse_ > four(0);
-    up_ = selected(up, four(1));
+    up_ = masked(up, four(1));
     way_ = (up_ + up_) - four(1);
-    edge_ = selected(up, last_);
+    edge_ = masked(up, last_);
     signed_strides_ = up ? strides_ : FourInts{} - strides_;
     distance_ = distances_in(g_, bits(inverse_ < four(0)));
     go_to(cell_at(four(begin)));
@@ -186,7 +186,7 @@ class CellDda {
     const FourInts axis = first_axis(exit_);
     if (!any(axis & (at_ != edge_) & goes_on(exit_, best)))
       return false;
-    at_ = at_ + selected(axis, way_);
+    at_ = at_ + masked(axis, way_);
     cell_ += sum(signed_strides_ & axis);
     exit_ = axis ? ahead_ : exit_;
     ahead_ = far_side(at_ + way_);
@@ -250,7 +250,7 @@ class CellDda {
            ((exit < before) | ((exit <= before) & wins_ties_before));
   }
   static Four of_axis(const FourInts& axis, const Four& exit) {
-    return reinterpret_cast<Four>(any_of(reinterpret_cast<FourInts>(selected(axis, exit))));
+    return reinterpret_cast<Four>(any_of(reinterpret_cast<FourInts>(masked(axis, exit))));
   }
   FourInts goes_on(const Four& exit, float best) const {
     return (four(best) > exit) & (exit <= four(end_));

@@ -130,9 +130,9 @@ class FarRays {
       const Mask<VFloat> crosses = x - y == x - y;
       clip_to_slab(select(crosses, min(x, y), t0), select(crosses, max(x, y), t1), t0, t1);
     }
-    const VFloat error_bound = VFloat(kEntryError) * max_abs(t0, t1);
+    const VFloat entry_error = VFloat(kEntryError) * max_abs(t0, t1);
     return bits(
-        mask_and(mask_and(away, searching), and_not(away, t0 - error_bound > t1 + error_bound)));
+        mask_and(mask_and(away, searching), and_not(away, t0 - entry_error > t1 + entry_error)));
   }
 
   bool set_group(const GridView& g, int i, int group) {

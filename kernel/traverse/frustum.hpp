@@ -38,15 +38,16 @@ struct Frustum {
   alignas(64) float per_slice[kPacket];          ///< t a slice takes
   /// t at which the ray leaves the grid; -infinity: never hits it
   alignas(64) float leave[kPacket];
-  /// Four planes f(x) = a xu + b xk + c, negative outside, for culling; half_width = length
+  /// Four planes f(x) = a xu + b xk + c, negative outside, for culling; gradient_length = length
   /// of the gradient.
-  float a[4], b[4], c[4], half_width[4];
+  float a[4], b[4], c[4], gradient_length[4];
   /// The same planes for each group of a large packet alone; the a are those above. A group without
   /// a ray here has c = -infinity.
   bool by_group;
-  alignas(64) float group_b[4][kGroupRow], group_c[4][kGroupRow], group_reach[4][kGroupRow];
+  alignas(64) float group_b[4][kGroupRow], group_c[4][kGroupRow],
+      group_gradient_length[4][kGroupRow];
   int across[4], along[4];  ///< which of a box's sides are farthest inside each
-  /// s = to_slice x + zero_slice along K; nothing that ends before `near` is met, or of a group
+  /// s = to_slice x + zero_slice along K; nothing that ends before `near` is hit, or of a group
   /// before `group_near`.
   float to_slice, zero_slice, near;
   int last;  ///< which of a box's sides is farthest along

@@ -36,7 +36,7 @@ class FrustumBuilder {
     if (first_ > size_ + f_.margin || last_ < -f_.margin)
       return Coherence::kMisses;
     set_planes();
-    set_half_width();
+    set_gradient_lengths();
     set_near();
     if (f_.by_group)
       set_group_planes();
@@ -47,7 +47,7 @@ class FrustumBuilder {
   /// Corner of the grid in the coordinates of primitives, which planes are in.
   float corner_of(int axis) const { return p_.base ? p_.base[axis] : g_.lo_f[axis]; }
 
-  /// Entry and exit of every ray. Returns the first that meets the grid, or -1.
+  /// Entry and exit of every ray. Returns the first that hits the grid, or -1.
   [[gnu::always_inline]] int clip_rays() {
     int first = -1;
     each_live_group(p_, [&](int i, int) {
@@ -162,7 +162,7 @@ class FrustumBuilder {
       const VFloat k_at = load<VFloat>(f_.position + i);
       const VFloat to_first = VFloat(f_.from) - k_at;
       const VFloat to_last = VFloat(f_.to) - k_at;
-      const auto places = [&](int a) {
+      const auto positions = [&](int a) {
         const VFloat inv(g_.inv_cell_f[a]);
         const VFloat at = (load<VFloat>(p_.org[a] + i) - VFloat(g_.lo_f[a])) * inv;
         const VFloat slope = (load<VFloat>(p_.dir[a] + i) * inv) * per_slice;
@@ -171,8 +171,8 @@ class FrustumBuilder {
         taken.add(a, bits(meets), bits(slope < VFloat(0)));
         return RayPositions{at + to_first * slope, at + to_last * slope};
       };
-      const RayPositions u = places(f_.u);
-      const RayPositions v = places(f_.v);
+      const RayPositions u = positions(f_.u);
+      const RayPositions v = positions(f_.v);
       const auto least = [&](const VFloat& x) { return select(meets, x, VFloat(kInfinity)); };
       const auto most = [&](const VFloat& x) { return select(meets, x, VFloat(-kInfinity)); };
       lane_mins(
@@ -254,9 +254,10 @@ class FrustumBuilder {
     }
   }
 
-  void set_half_width() {
+  void set_gradient_lengths() {
     for (int j = 0; j < 4; ++j) {
-      f_.half_width[j] = square_root(f_.a[j] * f_.a[j] + f_.b[j] * f_.b[j]) * kWidthTolerance;
+      f_.gradient_length[j] =
+          square_root(f_.a[j] * f_.a[j] + f_.b[j] * f_.b[j]) * kGradientTolerance;
       f_.across[j] = (j < 2 ? f_.u : f_.v) + (f_.a[j] > 0 ? 3 : 0);
       f_.along[j] = f_.k + (f_.b[j] > 0 ? 3 : 0);
     }
@@ -320,7 +321,8 @@ class FrustumBuilder {
     const VFloat a(f_.a[plane & ~1]);
     store(f_.group_b[plane] + i, b);
     store(f_.group_c[plane] + i, c);
-    store(f_.group_reach[plane] + i, square_root(a * a + b * b) * VFloat(kWidthTolerance));
+    store(f_.group_gradient_length[plane] + i,
+          square_root(a * a + b * b) * VFloat(kGradientTolerance));
   }
 
   /// Along one axis, on the first slice and on the last.
@@ -346,7 +348,7 @@ class FrustumBuilder {
   float start_;
 };
 
-/// Computes entry and exit of every ray, then the frustum around the rays that meet the grid, along
+/// Computes entry and exit of every ray, then the frustum around the rays that hit the grid, along
 /// the axis on which the first such ray crosses most cells.
 inline Coherence bound_rays(const GridView& g, const Packet& p, Frustum& f) {
   return FrustumBuilder(g, p, f).around();

@@ -97,8 +97,8 @@ template <bool kAny>
 }
 
 /// t of a ray's hit, rounded once, in the units of `ray`; of a triangle from the corners that the
-/// test read, which are close in memory. `span` holds t, or is empty.
-inline float t_of(const Single& r, const ExactRay& ray, const CrossingSpan& span) {
+/// test read, which are close in memory. `known` holds t, or is empty.
+inline float t_of(const Single& r, const ExactRay& ray, const CrossingSpan& known) {
   const GeometryView& g = *r.geometry;
   if (r.block && g.ids.has(PrimitiveKind::kTriangle, r.id)) {
     int place = 0;
@@ -115,7 +115,7 @@ inline float t_of(const Single& r, const ExactRay& ray, const CrossingSpan& span
     if (r.block->id[place] == r.id && span.known && first == static_cast<float>(span.hi))
       return first;
   }
-  return rounded_t(g, ray, r.id, span);
+  return rounded_t(g, ray, r.id, known);
 }
 
 /// All that a prepared ray hits.

@@ -82,7 +82,7 @@ struct Packet {
   alignas(64) float inv_length[kPacket];
   alignas(64) float shear[3][kPacket];
   alignas(64) float inverse[3][kPacket];  ///< of directions, no component 0; set by set_slabs()
-  /// the side of a box that the ray meets first, along each axis; set by set_slabs()
+  /// the side of a box that the ray hits first, along each axis; set by set_slabs()
   alignas(64) std::uint32_t near[3][kPacket];
   const GeometryView* geometry = nullptr;
   FrustumStats small_stats, middle_stats, large_stats;  ///< of packets of up to 16, 64 and 256

@@ -243,7 +243,7 @@ class PacketVisit {
   Mailbox held_;
 };
 
-/// Lets the rays that meet the grid go on from a slice; the slices before it are done.
+/// Lets the rays that hit the grid go on from a slice; the slices before it are done.
 inline void start_from_slice(const Frustum& f, Packet& p, int slice) {
   const VFloat s(static_cast<float>(slice) - f.margin);
   each_live_group(p, [&](int i, int) {
@@ -291,17 +291,17 @@ inline std::uint64_t split_packet(
 template <bool kAny>
 inline std::uint64_t packet_traverse(
     const GridView& g, Packet& p, int width, bool use_mailbox, Counters& n) {
-  FrustumStats& luck = stats_of(p, width);
-  if (!luck.should_try())
+  FrustumStats& stats = stats_of(p, width);
+  if (!stats.should_try())
     return split_packet<kAny>(g, p, width, use_mailbox, n);
   const std::uint64_t live = p.live;
   Frustum f;
   switch (bound_rays(g, p, f)) {
     case Coherence::kMisses:
-      luck.record(1);
+      stats.record(1);
       return 0;
     case Coherence::kIncoherent:
-      luck.record(0);
+      stats.record(0);
       return split_packet<kAny>(g, p, width, use_mailbox, n);
     case Coherence::kTogether:
       break;
@@ -311,11 +311,11 @@ inline std::uint64_t packet_traverse(
     walk_frustum(g, f, n, visit);
   p.live = live;
   if (visit.split_at() >= 0) {
-    luck.record(visit.saved());
+    stats.record(visit.saved());
     start_from_slice(f, p, visit.split_at());
     return split_packet<kAny>(g, p, width, use_mailbox, n);
   }
-  luck.record(1);
+  stats.record(1);
   ++n.formed;
   return 0;
 }

@@ -11,12 +11,12 @@ struct Single {
   float org[3], dir[3], t_min, best, low;
   std::uint32_t id;
   int axis;  ///< of the shear
-  /// inverse of the direction; this and the next fields with triangles only, with a spare place
+  /// inverse of the direction; this and the next fields with triangles only, with a spare element
   float inverse[4];
-  /// the side of a box that the ray meets first, along each axis; the other is 3 places on or back
+  /// the side of a box that the ray hits first, along each axis; the other is 3 elements on or back
   int near[4];
   float inv_dd, inv_length;
-  float shear[4];  ///< and a place more
+  float shear[4];  ///< and one element more
   const float* base = nullptr;
   float frame_error = 0;
   float error_bound = kInfinity;
@@ -141,7 +141,7 @@ inline void set_inverse(Single& r, const Vec3<float>& d) {
   store(r.near, inverse < four(0) ? low + 3 : low);
 }
 
-/// Prepares a ray by itself, as prepare(Packet&) does many. False: it meets nothing, r is
+/// Prepares a ray by itself, as prepare(Packet&) does many. False: it hits nothing, r is
 /// incomplete.
 inline bool prepare(Single& r,
                     const Vec3<float>& org,

@@ -10,7 +10,7 @@ namespace grelha::GRELHA_ISA {
 /// Takes a hit that floats cannot tell from the hit so far, or from the end of the search, and
 /// narrows the span of t of the first one. Returns true if the search is over.
 template <bool kAny, class Ray>
-[[gnu::noinline, gnu::cold]] bool record_tie_of(Ray& r, std::uint32_t id) {
+[[gnu::noinline, gnu::cold]] bool record_tie(Ray& r, std::uint32_t id) {
   const std::uint32_t held = id_of(r);
   const GivenRays& rays = frame_of(r).given;
   const ExactRay ray = rays.ray(index_of(r));
@@ -30,7 +30,7 @@ template <bool kAny, class Ray>
   if (!(t.lo <= best_of(r)))
     return false;
   if (!(t.hi < low_of(r)))
-    return id != id_of(r) && record_tie_of<kAny>(r, id);
+    return id != id_of(r) && record_tie<kAny>(r, id);
   set_hit(r, t, id);
   return kAny;
 }

@@ -195,11 +195,11 @@ class CellTests {
   /// hit is likely.
   template <class Shape>
   [[gnu::always_inline]] void fetch(const typename Shape::CellList& list, std::uint32_t first) {
-    const auto prefetch_row = [first](const float* const& field) {
+    const auto prefetch_field = [first](const float* const& field) {
       __builtin_prefetch(field + first);
       __builtin_prefetch(field + first + 16);
     };
-    Shape::for_each_field(prefetch_row, list.fields);
+    Shape::for_each_field(prefetch_field, list.fields);
     __builtin_prefetch(list.id + first);
   }
 
@@ -228,13 +228,13 @@ template <bool kAny>
   if (!rays.any())
     return;
   CellTests<kAny> tests(g, p, n);
-  LeafQueue arrivals;
+  LeafQueue leaves;
   // No walk crosses more planes than there are, whatever rounding does.
   const int most = g.n[0] + g.n[1] + g.n[2] + 3;
   for (int round = 0; round < most && rays.any(); ++round) {
     n.visits += static_cast<unsigned>(rays.going());
-    rays.enqueue(arrivals);
-    tests.test(arrivals);
+    rays.enqueue(leaves);
+    tests.test(leaves);
     rays.step();
   }
 }

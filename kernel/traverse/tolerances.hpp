@@ -34,6 +34,6 @@ inline constexpr float kPadOfBalls = .5f;
 inline constexpr float kNearSlack = 6e-6f;
 
 /// Times the length of a plane's gradient, which is off by 2.5 u.
-inline constexpr float kWidthTolerance = 1.00001f;
+inline constexpr float kGradientTolerance = 1.00001f;
 
 }  // namespace grelha

@@ -86,7 +86,7 @@ inline float entry(const GridView& g, const float (&org)[3], const float (&dir)[
   return t0 <= t1 ? t0 : kInfinity;
 }
 
-/// Visits the grids, for closest hits front to back as a ray meets them: early hits cut the other
+/// Visits the grids, for closest hits front to back as a ray hits them: early hits cut the other
 /// searches short. Answers do not depend on the order, since ties go to the lower id.
 template <bool kAny, class Visit>
 inline void each_grid(const SceneView& scene,
@@ -115,7 +115,7 @@ inline void each_grid(const SceneView& scene,
   for (int i = 0; i < count; ++i)
     visit(scene.grids[order[i]]);
 }
-/// The same for a packet, as its first ray meets them.
+/// The same for a packet, as its first ray hits them.
 template <bool kAny, class Visit>
 inline void each_grid(const SceneView& scene, const Packet& p, const Visit& visit) {
   const float org[3] = {p.org[0][0], p.org[1][0], p.org[2][0]};

@@ -27,9 +27,9 @@ class Builds final : public EmbreeBuilds {
       vertices_.insert(vertices_.end(), {t.x[i], t.y[i], t.z[i]});
     vertices_.push_back(0);  // it reads four floats at a time
     for (std::size_t i = 0; i < t.size(); ++i)
-      corner_points_.insert(corner_points_.end(), {t.a[i], t.b[i], t.c[i]});
+      indices_.insert(indices_.end(), {t.a[i], t.b[i], t.c[i]});
     geometry_bytes_ = spheres_.size() * sizeof(float) + vertices_.size() * sizeof(float) +
-                      corner_points_.size() * sizeof(corner_points_[0]);
+                      indices_.size() * sizeof(indices_[0]);
   }
   Built build(Quality quality) override {
     const auto wanted = quality == Quality::kLow ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM;
@@ -49,7 +49,7 @@ class Builds final : public EmbreeBuilds {
     rtcSetSceneBuildQuality(scene, wanted);
     if (!spheres_.empty())
       attach_spheres(scene, wanted);
-    if (!corner_points_.empty())
+    if (!indices_.empty())
       attach_triangles(scene, wanted);
     const Clock clock;
     rtcCommitScene(scene);
@@ -86,7 +86,7 @@ class Builds final : public EmbreeBuilds {
   void attach_triangles(RTCScene scene, RTCBuildQuality quality) {
     const RTCGeometry g = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
     share(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, vertices_, 12);
-    share(g, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, corner_points_, 12);
+    share(g, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, indices_, 12);
     attach(scene, g, quality);
   }
 
@@ -101,7 +101,7 @@ class Builds final : public EmbreeBuilds {
   std::int64_t bytes_ = 0;
   std::size_t geometry_bytes_ = 0;
   std::vector<float> spheres_, vertices_;
-  std::vector<std::uint32_t> corner_points_;
+  std::vector<std::uint32_t> indices_;
 };
 
 }  // namespace

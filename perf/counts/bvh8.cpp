@@ -41,7 +41,7 @@ Bvh8::Bvh8(const Triangles& triangles) : t_(triangles), order_(triangles.size())
   std::iota(order_.begin(), order_.end(), 0u);
   for (std::uint32_t i = 0; i < order_.size(); ++i)
     boxes_.push_back(box_of(i));
-  root_ = to_double(build(0, static_cast<std::uint32_t>(order_.size())));
+  root_ = collapse(build(0, static_cast<std::uint32_t>(order_.size())));
 }
 
 Bvh8::Box Bvh8::box_of(std::uint32_t triangle) const {
@@ -135,7 +135,7 @@ std::uint32_t Bvh8::build(std::uint32_t first, std::uint32_t count) {
 
 /// Returns the number of the node that has a pair's children, and theirs in the place of the
 /// largest.
-std::uint32_t Bvh8::to_double(std::uint32_t pair) {
+std::uint32_t Bvh8::collapse(std::uint32_t pair) {
   std::vector<std::uint32_t> children{pair};
   while (children.size() < kWide) {
     const auto size = [&](std::uint32_t i) {
@@ -154,7 +154,7 @@ std::uint32_t Bvh8::to_double(std::uint32_t pair) {
   Node node;
   for (const std::uint32_t c : children) {
     const Pair& p = pairs_[c];
-    node.child[node.size++] = {p.box, p.first, p.count, p.count != 0 ? 0 : to_double(c)};
+    node.child[node.size++] = {p.box, p.first, p.count, p.count != 0 ? 0 : collapse(c)};
   }
   nodes_[number] = node;
   return number;

@@ -67,7 +67,7 @@ class Bvh8 {
   float middle(std::uint32_t triangle, int axis) const;
   Split best_split(std::uint32_t first, std::uint32_t count, const Box& box) const;
   std::uint32_t build(std::uint32_t first, std::uint32_t count);
-  std::uint32_t to_double(std::uint32_t pair);
+  std::uint32_t collapse(std::uint32_t pair);
   bool meets(std::uint32_t triangle, const Ray& ray, float& t) const;
 
   const Triangles& t_;

@@ -12,7 +12,7 @@
 namespace grelha::perf {
 namespace {
 
-/// share of rays that may meet something else in Embree: grazed edges
+/// share of rays that may hit something else in Embree: grazed edges
 constexpr double kDisagree = .005;
 constexpr double kClose = 1e-5;  ///< relative difference of t of one and the same place
 /// On cones t alone tells little: a ray that starts beside one has a t as small as what its start

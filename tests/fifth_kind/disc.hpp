@@ -127,7 +127,7 @@ template <class Real>
   const Vec3<Real> gap = middle * ray.dir - to_center;
   const Real along = dot(ray.dir, normal);
   const Real rest = (Real(0) - dot(gap, normal)) / along;
-  const Vec3<Real> frame_error = gap + rest * ray.dir;
+  const Vec3<Real> from_center = gap + rest * ray.dir;
   const Real t = middle + rest;
   const Vec3<Real> size = sizes(to_center);
   const Real far = ((size.x + size.y) + size.z) + disc.radius;
@@ -138,11 +138,11 @@ template <class Real>
   const Mask<Real> known = cosine > units<Real>(64);
   const Real outer = disc.radius + error_bound;
   const Real inner = disc.radius - error_bound;
-  const Mask<Real> beside = dot(frame_error, frame_error) > outer * outer;
+  const Mask<Real> beside = dot(from_center, from_center) > outer * outer;
   const Mask<Real> never = mask_or(beside, mask_or(hi <= ray.t_min, lo > best));
   const Mask<Real> some = and_not(disc.radius == disc.radius, mask_and(known, never));
   const Mask<Real> within =
-      mask_and(inner > Real(0), dot(frame_error, frame_error) < inner * inner);
+      mask_and(inner > Real(0), dot(from_center, from_center) < inner * inner);
   return {some, mask_and(mask_and(some, known), mask_and(within, lo > ray.t_min)), lo, hi};
 }
 
@@ -158,8 +158,8 @@ inline ExactCrossing exact_crossing(const ExactRay& ray, const Disc::Fields<floa
   if (along.high == 0)
     return {};
   const DoubleDouble t = dot(to_center, normal) / along;
-  const WideVector frame_error = t * dir - to_center;
-  const bool within = !(dot(frame_error, frame_error) > DoubleDouble(radius) * radius);
+  const WideVector from_center = t * dir - to_center;
+  const bool within = !(dot(from_center, from_center) > DoubleDouble(radius) * radius);
   return within && t > ray.t_min ? ExactCrossing(t) : ExactCrossing();
 }
 

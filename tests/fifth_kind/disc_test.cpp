@@ -1,4 +1,4 @@
-// A fifth kind of primitive, in the kernel that has one: discs are met where they are, by every way
+// A fifth kind of primitive, in the kernel that has one: discs are hit where they are, by every way
 // of tracing, and what else is asked of a kind holds for them.
 
 #include <gtest/gtest.h>

@@ -20,15 +20,15 @@ constexpr std::string_view kMagic = "grelha partial";
 constexpr std::size_t kChecksum = 8;
 
 std::vector<std::string> pieces_of(std::string_view bytes) {
-  std::vector<std::string> fragments;
+  std::vector<std::string> pieces;
   while (!bytes.empty()) {
     const std::size_t end = bytes.find(kMagic, 1);
-    fragments.emplace_back(bytes.substr(0, end));
+    pieces.emplace_back(bytes.substr(0, end));
     if (end == std::string_view::npos)
       break;
     bytes.remove_prefix(end);
   }
-  return fragments;
+  return pieces;
 }
 
 /// The last eight bytes as a writer would have them.

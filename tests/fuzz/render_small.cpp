@@ -91,9 +91,9 @@ void render_small(SceneFile file, Choices choices) {
   const Image image = picture(file, options, some_way(choices));
   if (cost > kMostTwice)
     return;
-  Way simple;
-  simple.build.grid = false;
-  const Image other = picture(file, options, simple);
+  Way plain;
+  plain.build.grid = false;
+  const Image other = picture(file, options, plain);
   promise(std::memcmp(image.rgb.data(), other.rgb.data(), image.rgb.size() * sizeof(float)) == 0,
           "the same bits by every way of rendering");
 }

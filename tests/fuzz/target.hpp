@@ -21,8 +21,8 @@ inline std::string_view text_of(const std::uint8_t* data, std::size_t size) {
   return {reinterpret_cast<const char*>(data), size};
 }
 
-inline void promise(bool saved, const std::string& what) {
-  if (saved)
+inline void promise(bool kept, const std::string& what) {
+  if (kept)
     return;
   std::fprintf(stderr, "broken promise: %s\n", what.c_str());
   std::abort();

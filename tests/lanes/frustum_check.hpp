@@ -101,7 +101,7 @@ class FrustumChecker {
         const int side = f_.side(j);
         const float value = (f_.a[j] * x[side] + f_.b[j] * x[f_.k]) + f_.c[j];
         keep_greater(out_.planes, -value);
-        keep_greater(out_.balls, passed_by(i, t) * f_.half_width[j] - value);
+        keep_greater(out_.balls, passed_by(i, t) * f_.gradient_length[j] - value);
         if (!f_.by_group)
           continue;
         const int group = i / kWidth<VFloat>;
@@ -112,7 +112,7 @@ class FrustumChecker {
     }
   }
 
-  /// What a ball may lie beside a ray that its test in float meets, 24 u of the way.
+  /// What a ball may lie beside a ray that its test in float hits, 24 u of the way.
   Wide passed_by(int i, Wide t) const {
     Wide way = 0;
     for (int a = 0; a < 3; ++a) {
@@ -142,14 +142,14 @@ class FrustumChecker {
     keep_greater(out_.group_near, f_.group_near[i / kWidth<VFloat>] - s);
   }
 
-  void check_reach(Wide a, Wide b, float half_width) {
-    keep_greater(out_.half_width, __builtin_sqrtl(a * a + b * b) / half_width - 1);
+  void check_gradient(Wide a, Wide b, float gradient_length) {
+    keep_greater(out_.gradient_length, __builtin_sqrtl(a * a + b * b) / gradient_length - 1);
   }
   void check_reaches() {
     for (int j = 0; j < 4; ++j) {
-      check_reach(f_.a[j], f_.b[j], f_.half_width[j]);
+      check_gradient(f_.a[j], f_.b[j], f_.gradient_length[j]);
       for (int group = 0; f_.by_group && group < p_.groups; ++group)
-        check_reach(f_.a[j], f_.group_b[j][group], f_.group_reach[j][group]);
+        check_gradient(f_.a[j], f_.group_b[j][group], f_.group_gradient_length[j][group]);
     }
   }
 

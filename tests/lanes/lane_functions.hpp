@@ -10,15 +10,15 @@ namespace grelha::test {
 /// How far rays exceed the bounds that a frustum guarantees; at most 0 if the bounds hold.
 struct FrustumCheck {
   bool together = false;
-  int rays = 0;              ///< of the packet, that meet the grid
-  float steepest = 0;        ///< slope
-  double sides = -1;         ///< of a slice's cells, in cells
-  double planes = -1;        ///< of the planes that cull, in cells, as the culls compute them
-  double balls = -1;         ///< of the same by balls beside a ray that its test may meet
-  double group_planes = -1;  ///< of the same planes of the ray's own group
-  double near = -1;          ///< of the near plane, before which there is no hit, in slices
-  double group_near = -1;    ///< of the near plane of the ray's own group
-  double half_width = -1;    ///< by which a plane's gradient is longer than is said, of itself
+  int rays = 0;                 ///< of the packet, that hit the grid
+  float steepest = 0;           ///< slope
+  double sides = -1;            ///< of a slice's cells, in cells
+  double planes = -1;           ///< of the planes that cull, in cells, as the culls compute them
+  double balls = -1;            ///< of the same by balls beside a ray that its test may hit
+  double group_planes = -1;     ///< of the same planes of the ray's own group
+  double near = -1;             ///< of the near plane, before which there is no hit, in slices
+  double group_near = -1;       ///< of the near plane of the ray's own group
+  double gradient_length = -1;  ///< by which a plane's gradient is longer than is said, of itself
 };
 
 struct LaneFunctions {

@@ -12,7 +12,7 @@
 
 namespace grelha::GRELHA_ISA {
 
-/// The primitives a ray has met (hashed; may forget, never wrong).
+/// The primitives a ray has hit (hashed; may forget, never wrong).
 struct RayMailbox {
   static constexpr unsigned kSize = 64;
   std::uint32_t held[kSize];
@@ -42,7 +42,7 @@ struct WalkedRay {
   std::uint32_t id = kNoPrimitive;
 };
 
-/// Takes primitive `id` if it is met first. Returns whether the search is over.
+/// Takes primitive `id` if it is hit first. Returns whether the search is over.
 template <bool kAny>
 bool take(WalkedRay& r, std::uint32_t id) {
   const CrossingSpan span = crossing_span(*r.geometry, r.given, id, 0);
@@ -149,7 +149,7 @@ bool test_cells(WalkedRay& r, const GridView& g, RayMailbox* box, Counters& n) {
   return false;
 }
 
-/// False when the ray can meet nothing. Lengths of directions are those of the kernel.
+/// False when the ray can hit nothing. Lengths of directions are those of the kernel.
 inline bool load_ray(Ray ray, const GeometryView& g, WalkedRay& r) {
   const float unit = r.unit = length_unit(Vec3<float>{ray.dir.x, ray.dir.y, ray.dir.z});
   if (unit != 1)

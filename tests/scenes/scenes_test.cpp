@@ -82,7 +82,7 @@ TEST_P(AgainstFile, AgreesInEveryNumber) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(DdaState,
+INSTANTIATE_TEST_SUITE_P(Course,
                          AgainstFile,
                          testing::Values(KnownFile{"balls", 4, false, "course-nff/balls_high.nff"},
                                          KnownFile{"mount", 1, false, "course-nff/mount_low.nff"},

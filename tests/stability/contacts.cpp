@@ -1,4 +1,4 @@
-// Rays that leave surfaces: none meets what it left, none skips what is close, shadow rays tell a
+// Rays that leave surfaces: none hits what it left, none skips what is close, shadow rays tell a
 // light before a wall from one behind it. The renderer's rule for start points (spots.hpp) is what
 // is judged, and each tracer's test of it.
 #include <algorithm>
@@ -84,19 +84,19 @@ void contacts(Random& random, std::size_t rays, const Sink& sink) {
       const double cosine = dot(d, walls.normal[k]);
       if (cosine < .1)
         continue;
-      Request w;
+      Expected w;
       w.hit = true;
       w.left = 2 * k;
       w.latest = 2 * walls.gap / cosine;
       trial.add(s.start(d), d, w);
     }
-    // Another wall may stand nearer: then something is met all the same, and sooner.
+    // Another wall may stand nearer: then something is hit all the same, and sooner.
     done += each;
     sink(trial);
   }
 }
 
-/// Rays from the walls along them or away from the lids: the wall they left is not met. Others may
+/// Rays from the walls along them or away from the lids: the wall they left is not hit. Others may
 /// be.
 void self_hits(Random& random, std::size_t rays, const Sink& sink) {
   const std::size_t each = 1000;
@@ -120,7 +120,7 @@ void self_hits(Random& random, std::size_t rays, const Sink& sink) {
         d = flattened(random, d, s.normal);
       if (undecided(d, s.normal))
         continue;
-      Request w;
+      Expected w;
       w.left = k;
       trial.add(s.start(d), d, w);
     }
@@ -147,7 +147,7 @@ void sphere_self_hits(Random& random, std::size_t rays, const Sink& sink) {
         continue;
       if (dot(d, s.normal) < 0)
         d = scaled(d, -1);
-      Request w;
+      Expected w;
       w.miss = true;
       w.left = 0;
       trial.add(s.start(d), d, w);
@@ -183,13 +183,12 @@ void lights(Random& random, std::size_t rays, const Sink& sink) {
       const Spot s =
           spot(world, 0, eye, minus(at(walls.middle[0], .2 * size, random.direction()), eye));
       // At a point of the lid, off it by nothing or by anything from an ulp to the size.
-      const double frame_error =
-          random.chance(.2) ? 0 : random.sign() * size * random.log_in(1e-8, .5);
+      const double off = random.chance(.2) ? 0 : random.sign() * size * random.log_in(1e-8, .5);
       const Float3 on =
           at(at(walls.middle[0], size, walls.normal[0]), .3 * size, random.direction());
       const oracle::V p = oracle::V(on) - dot(oracle::V(on) - lid.a, across) * across;
       const double side = static_cast<double>(dot(across, walls.normal[0])) > 0 ? 1 : -1;
-      const oracle::V q = p + oracle::Real(frame_error * side) * across;
+      const oracle::V q = p + oracle::Real(off * side) * across;
       const Float3 light{static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z)};
       const Float3 up = minus(light, s.point);
       const Float3 start = s.start(up), dir = minus(light, start);
@@ -197,7 +196,7 @@ void lights(Random& random, std::size_t rays, const Sink& sink) {
       const oracle::Real beyond =
           oracle::Real(side) * dot(oracle::V(start) + oracle::V(dir) - lid.a, across);
       const oracle::Real open = allowed(extent.diagonal, extent.diagonal, extent.largest);
-      Request w;
+      Expected w;
       w.hit = beyond > open;
       w.miss = beyond < -open;
       w.latest = 1;

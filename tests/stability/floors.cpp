@@ -50,8 +50,8 @@ class Facets {
 
   /// Returns the required hit of the ray before t = end, ignoring facet `left`. The ray's origin is
   /// exact to within `coarse`.
-  Request wanted(const oracle::Ray& ray, Real coarse, Real end, std::uint32_t left) const {
-    Request w;
+  Expected wanted(const oracle::Ray& ray, Real coarse, Real end, std::uint32_t left) const {
+    Expected w;
     w.left = left;
     Real earliest = end;
     Real latest = end;
@@ -68,15 +68,15 @@ class Facets {
       if (inside < -open)
         return;
       const Real t = dot(f.a - ray.org, f.normal()) / along;
-      Real frame_error = kClose * std::abs(t) + 2 * coarse * length(f.normal()) / std::abs(along);
+      Real off = kClose * std::abs(t) + 2 * coarse * length(f.normal()) / std::abs(along);
       if (inside <= open)
-        frame_error = std::max(frame_error, 4 * open * length(f.normal()) / std::abs(along));
-      frame_error = std::min(frame_error, farthest / scale);
-      if (t + frame_error <= 0 || t - frame_error >= end)
+        off = std::max(off, 4 * open * length(f.normal()) / std::abs(along));
+      off = std::min(off, farthest / scale);
+      if (t + off <= 0 || t - off >= end)
         return;
-      earliest = std::min(earliest, t - frame_error);
-      if (inside > open && t - frame_error > 0 && t + frame_error < end)
-        latest = std::min(latest, t + frame_error);
+      earliest = std::min(earliest, t - off);
+      if (inside > open && t - off > 0 && t + off < end)
+        latest = std::min(latest, t + off);
     });
     w.hit = latest < end;
     w.miss = earliest >= end;
@@ -335,7 +335,7 @@ void add_bowl(Facets& facets, const Ground& g, const V& middle, const V& up) {
     }
 }
 
-/// Mirror rays from what is met in a bowl just above a ground 4000 wide, and from the ground beside
+/// Mirror rays from what is hit in a bowl just above a ground 4000 wide, and from the ground beside
 /// it.
 void bowls(Random& random, std::size_t rays, const Sink& sink) {
   on_grounds(random, rays, {2e3}, [&](Ground& g, std::size_t count) {

@@ -33,7 +33,7 @@ Real farthest(const Ball& b, const V& p) {
   return length(b.center - p) + std::abs(b.radius);
 }
 
-/// Gathers what may be met and what must be.
+/// Gathers what may be hit and what must be.
 class HitInterval {
  public:
   HitInterval(Real end) : end_(end) {}
@@ -50,8 +50,8 @@ class HitInterval {
       latest_ = std::min(latest_, to);
     }
   }
-  Request wanted() const {
-    Request w;
+  Expected wanted() const {
+    Expected w;
     w.hit = certain_;
     w.miss = !possible_;
     w.earliest = static_cast<double>(earliest_);
@@ -91,16 +91,15 @@ void meet(const Facet& f, const Ray& ray, Real margin, HitInterval& found) {
              half = std::sqrt((radius - miss) * (radius + miss)) / scale;
   if (std::abs(f.clearance(ray)) <= margin) {  // near an edge
     if (nn > 0 && std::abs(along) * radius > nn * scale * 4 * margin) {
-      const Real t = dot(f.a - ray.org, n) / along, frame_error = 2 * margin * nn / std::abs(along);
-      return found(
-          std::max(t - frame_error, foot - half), std::min(t + frame_error, foot + half), false);
+      const Real t = dot(f.a - ray.org, n) / along, off = 2 * margin * nn / std::abs(along);
+      return found(std::max(t - off, foot - half), std::min(t + off, foot + half), false);
     }
     return found(foot - half, foot + half, false);
   }
   if (f.clearance(ray) < 0)
     return;
-  const Real t = dot(f.a - ray.org, n) / along, frame_error = margin * nn / std::abs(along);
-  found(std::max(t - frame_error, foot - half), std::min(t + frame_error, foot + half), true);
+  const Real t = dot(f.a - ray.org, n) / along, off = margin * nn / std::abs(along);
+  found(std::max(t - off, foot - half), std::min(t + off, foot + half), true);
 }
 
 /// How far a reported hit lies beside the primitive it names, beyond what is allowed.
@@ -113,17 +112,16 @@ Real beyond(const Trial& trial, const Size& size, std::size_t i, float t, std::u
   if (id < planes || id - planes >= spheres + trial.scene.geometry.triangles.size())
     return 0;
   id -= static_cast<std::uint32_t>(planes);
-  const auto frame_error = [&](const auto& shape) {
+  const auto excess = [&](const auto& shape) {
     return shape.distance(p) - allowed(farthest(shape, ray.org), size.diagonal, size.largest);
   };
-  return id < spheres ? frame_error(ball(trial.scene, id))
-                      : frame_error(facet(trial.scene, id - spheres));
+  return id < spheres ? excess(ball(trial.scene, id)) : excess(facet(trial.scene, id - spheres));
 }
 
 enum class Verdict { kRight, kLost, kFalse, kSelf };
 
 Verdict verdict_closest(const Trial& trial, const Size& size, std::size_t i, const Answers& a) {
-  const Request& w = trial.wanted[i];
+  const Expected& w = trial.wanted[i];
   const float t = a.t[i];
   const std::uint32_t id = a.id[i];
   if (id == kNoPrimitive)
@@ -140,7 +138,7 @@ Verdict verdict_closest(const Trial& trial, const Size& size, std::size_t i, con
 }
 
 Verdict verdict_occluded(const Trial& trial, std::size_t i, const Answers& a) {
-  const Request& w = trial.wanted[i];
+  const Expected& w = trial.wanted[i];
   const bool met = a.id[i] != kNoPrimitive;
   if (!met)
     return w.hit ? Verdict::kLost : Verdict::kRight;
@@ -174,7 +172,7 @@ struct Verdicts {
 };
 
 std::string Verdicts::describe(std::size_t i, Verdict v) const {
-  const Request& w = trial.wanted[i];
+  const Expected& w = trial.wanted[i];
   const float t = answers.t[i];
   const std::uint32_t id = answers.id[i];
   std::ostringstream s;
@@ -236,7 +234,7 @@ Size size_of(const Scene& scene) {
   return out;
 }
 
-Request brute_force(
+Expected brute_force(
     const Scene& scene, const Size& size, const Float3& org, const Float3& dir, float end) {
   const Ray ray{org, dir};
   HitInterval found(end);

@@ -29,7 +29,7 @@ const std::vector<Body>& bodies() {
   return all;
 }
 
-/// The first wall on the way from inside is met, and from outside no later than shortly after the
+/// The first wall on the way from inside is hit, and from outside no later than shortly after the
 /// aim.
 void closed(Random& random,
             std::size_t rays,
@@ -43,7 +43,7 @@ void closed(Random& random,
   Trial trial;
   trial.scene = placed(body.scene, scale, offset);
   const auto place = [&](const Float3& p) { return at(offset, scale, p); };
-  Request w;
+  Expected w;
   w.hit = true;
   for (std::size_t i = 0; i < rays; ++i) {
     const Float3& aim = targets[random.below(static_cast<std::uint32_t>(targets.size()))];
@@ -103,7 +103,7 @@ void slivers(Random& random, std::size_t rays, const Sink& sink) {
     closed(random, rays / 3, sink, body, what, 1, {});
 }
 
-/// Loose slivers of all widths among each other, met by rays as little as a ten-thousandth of a
+/// Loose slivers of all widths among each other, hit by rays as little as a ten-thousandth of a
 /// radian off their planes.
 void grazed(Random& random, std::size_t rays, const Sink& sink) {
   const std::size_t pieces = std::max<std::size_t>(1, rays / 2000);
@@ -142,7 +142,7 @@ void grazed(Random& random, std::size_t rays, const Sink& sink) {
   }
 }
 
-/// A rough sheet of 20,000 triangles with edges of 1, seen from up to a million away: it is met,
+/// A rough sheet of 20,000 triangles with edges of 1, seen from up to a million away: it is hit,
 /// and the triangle named lies where the exact ray comes down.
 void far_small(Random& random, std::size_t rays, const Sink& sink) {
   Trial trial;
@@ -160,13 +160,13 @@ void far_small(Random& random, std::size_t rays, const Sink& sink) {
     Float3 up = random.direction();
     up.y = std::abs(up.y) + .5f;
     const Float3 org = at(aim, random.log_in(1, 1e6), up), dir = minus(aim, org);
-    Request w;
+    Expected w;
     w.hit = true;
     const oracle::Real t = -oracle::Real(org.y) / dir.y;  // exact but for one rounding of 64 bits
     const oracle::Real d = oracle::length(dir),
-                       frame_error = 2 * allowed(d * t, 142, 50) / std::abs(oracle::Real(dir.y));
-    w.earliest = static_cast<double>(t - frame_error);
-    w.latest = static_cast<double>(t + frame_error);
+                       off = 2 * allowed(d * t, 142, 50) / std::abs(oracle::Real(dir.y));
+    w.earliest = static_cast<double>(t - off);
+    w.latest = static_cast<double>(t + off);
     const oracle::Ray ray{org, dir};
     const oracle::V p = ray.point(t);
     // the floats of ray and aim are too coarse to stay on the sheet

@@ -3,7 +3,7 @@
 // and the result of one tracer.
 //
 // A row makes scenes and rays and says, from exact or long double arithmetic on the very floats a
-// tracer gets, what each ray must meet (`Request`). A ray that no float answer can decide is left
+// tracer gets, what each ray must hit (`Expected`). A ray that no float answer can decide is left
 // open: no row asks for more than the rounding that docs/numerics.md states allows. The same rows
 // judge Grelha in stability_test.cpp, on a few rays, and Grelha beside Embree in
 // perf/stability.cpp, on millions.
@@ -27,23 +27,23 @@ using test::RayList;
 
 /// The required nearest hit of a ray, as far as the ray's own floats determine it: t from
 /// `earliest` to `latest`.
-struct Request {
+struct Expected {
   bool hit = false;    ///< something certainly
   bool miss = false;   ///< nothing certainly; neither: both answers are right
   bool traces = true;  ///< false: a ray that cannot be traced, to which only "nothing" is an answer
   double earliest = 0, latest = test::kInf;
-  std::uint32_t left = kNoPrimitive;  ///< the primitive it starts from, not to be met again
+  std::uint32_t left = kNoPrimitive;  ///< the primitive it starts from, not to be hit again
 };
 
 /// One scene with its rays.
 struct Trial {
   Scene scene;
   RayList rays;
-  std::vector<Request> wanted;
+  std::vector<Expected> wanted;
   float density = 0;      ///< of Grelha's grid
   bool occlusion = true;  ///< whether the yes-or-no question is asked too
 
-  void add(const Float3& org, const Float3& dir, const Request& w, float t_max = test::kInf) {
+  void add(const Float3& org, const Float3& dir, const Expected& w, float t_max = test::kInf) {
     rays.add(org, dir, 0, t_max);
     wanted.push_back(w);
   }
@@ -51,10 +51,10 @@ struct Trial {
 
 struct Counts {
   std::uint64_t answers = 0;
-  std::uint64_t lost = 0;  ///< went through, or met what lies behind
-  /// met what is not there, too near, or beside the primitive it names by more than `allowed`
+  std::uint64_t lost = 0;  ///< went through, or hit what lies behind
+  /// hit what is not there, too near, or beside the primitive it names by more than `allowed`
   std::uint64_t false_ = 0;
-  std::uint64_t self = 0;  ///< met what it left
+  std::uint64_t self = 0;  ///< hit what it left
   std::string first;       ///< the first wrong answer, to be pasted into a test
   std::uint64_t wrong() const { return lost + false_ + self; }
   void operator+=(const Counts& o) {
@@ -114,12 +114,12 @@ struct Size {
 };
 Size size_of(const Scene& scene);
 
-/// From every sphere and triangle of the scene in long double: what the ray must meet. `end`: open
+/// From every sphere and triangle of the scene in long double: what the ray must hit. `end`: open
 /// end of the search.
-Request brute_force(const Scene& scene,
-                    const Size& size,
-                    const Float3& org,
-                    const Float3& dir,
-                    float end = test::kInf);
+Expected brute_force(const Scene& scene,
+                     const Size& size,
+                     const Float3& org,
+                     const Float3& dir,
+                     float end = test::kInf);
 
 }  // namespace grelha::stability

@@ -81,7 +81,7 @@ void moved_spheres(Random& random, std::size_t rays, const Sink& sink) {
   sink(trial);
 }
 
-/// A sphere as a floor below an eye 1/2 to 2 above it; what is met must lie within a thousandth of
+/// A sphere as a floor below an eye 1/2 to 2 above it; what is hit must lie within a thousandth of
 /// the way.
 template <int kExponent>
 void floor_sphere(Random& random, std::size_t rays, const Sink& sink) {
@@ -98,7 +98,7 @@ void floor_sphere(Random& random, std::size_t rays, const Sink& sink) {
                      static_cast<float>(random.in(.5, 2)),
                      static_cast<float>(random.in(-1, 1))};
     const double t = static_cast<double>(ball.first({eye, dir}, 0)->t);
-    Request w;
+    Expected w;
     w.hit = true;
     w.earliest = .999 * t;
     w.latest = 1.001 * t;

@@ -1,4 +1,4 @@
-// The rows of tests/stability/rows.hpp on a few rays: none may be lost, false or meet what it left.
+// The rows of tests/stability/rows.hpp on a few rays: none may be lost, false or hit what it left.
 #include <gtest/gtest.h>
 
 #include "tests/stability/grelha_tracer.hpp"

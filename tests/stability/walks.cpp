@@ -78,7 +78,7 @@ void unsound_rays(Random& random, std::size_t rays, const Sink& sink) {
     }
     const float odd[] = {kNaN, kInf, -kInf, 3e38f};
     component(random.chance(.5) ? org : dir, random.below(3)) = odd[random.below(4)];
-    Request w;
+    Expected w;
     w.miss = true;
     w.traces = false;
     trial.add(org, dir, w);
@@ -130,7 +130,7 @@ Scene diagonals(Random& random) {
   return s;
 }
 
-/// So many copies of one triangle and one sphere: what is met must be there, and the search must
+/// So many copies of one triangle and one sphere: what is hit must be there, and the search must
 /// end.
 void copies(Random& random, std::size_t rays, const Sink& sink) {
   const std::size_t count = std::clamp<std::size_t>(rays / 2, 500, 500000);

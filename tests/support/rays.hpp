@@ -72,7 +72,7 @@ inline std::string show(float t, std::uint32_t id) {
   return s.str();
 }
 
-/// Numbers whose squares are finite, and a direction: anything else meets nothing, whatever it
+/// Numbers whose squares are finite, and a direction: anything else hits nothing, whatever it
 /// points at.
 inline bool sound(const RayList& rays, std::size_t i) {
   const Float3 o = rays.org(i), d = rays.dir(i);

@@ -151,7 +151,7 @@ inline Scene flat_sheet(std::uint64_t seed, int n) {
   }
   return s;
 }
-/// A square patch of triangles along the axes, corners on whole numbers: rays meet edges and
+/// A square patch of triangles along the axes, corners on whole numbers: rays hit edges and
 /// vertices exactly.
 inline Scene lattice_patch(int n) {
   Scene s = empty_scene();

@@ -42,7 +42,7 @@ TEST_F(Files, PlacesAreEqualWhereverNamesAreNot) {
   std::filesystem::create_symlink("in/new", folder_.file("link"));
   std::filesystem::create_hard_link(folder_.file("ball.nff"), folder_.file("hard"));
   const auto same = [&](const std::string& a, const std::string& b) {
-    return position_of(folder_.file(a)) == position_of(folder_.file(b));
+    return location_of(folder_.file(a)) == location_of(folder_.file(b));
   };
   EXPECT_TRUE(same("ball.nff", "in/../hard"));
   EXPECT_TRUE(same("in/new", "also-in/./new"));

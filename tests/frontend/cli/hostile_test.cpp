@@ -98,10 +98,10 @@ class Hostile : public testing::Test {
 
 using Radius = std::function<double(int)>;
 
-std::string star(int corner_points, const Radius& radius) {
-  std::string text = std::string(test::kBall) + "p " + std::to_string(corner_points) + '\n';
-  for (int i = 0; i < corner_points; ++i) {
-    const double angle = 2 * std::numbers::pi * i / corner_points, r = radius(i);
+std::string star(int corner_count, const Radius& radius) {
+  std::string text = std::string(test::kBall) + "p " + std::to_string(corner_count) + '\n';
+  for (int i = 0; i < corner_count; ++i) {
+    const double angle = 2 * std::numbers::pi * i / corner_count, r = radius(i);
     char line[64];
     std::snprintf(line, sizeof line, "%.9g %.9g 0\n", r * std::cos(angle), r * std::sin(angle));
     text += line;
@@ -134,12 +134,12 @@ TEST_F(Hostile, PolygonsOfManyCrossings) {
   text.replace(corner, text.find('\n', corner) - corner, ".9 -.1 0");
   folder_.write("pulled.nff", text);
   expect_both_bounded("pulled.nff", 0, "it is filled by the even-odd rule");
-  for (const int corner_points : {1400, 1000000}) {
-    std::string noise = std::string(test::kBall) + "p " + std::to_string(corner_points) + '\n';
-    for (int i = 0; i < corner_points; ++i)
+  for (const int corner_count : {1400, 1000000}) {
+    std::string noise = std::string(test::kBall) + "p " + std::to_string(corner_count) + '\n';
+    for (int i = 0; i < corner_count; ++i)
       noise += std::to_string(random() % 100000) + ' ' + std::to_string(random() % 100000) + " 0\n";
     folder_.write("noise.nff", noise);
-    expect_both_bounded("noise.nff", 0, corner_points > 1400 ? "it is left out" : "it is filled");
+    expect_both_bounded("noise.nff", 0, corner_count > 1400 ? "it is left out" : "it is filled");
   }
 }
 

@@ -305,8 +305,8 @@ TEST_F(Program, EverySceneIsRead) {
   EXPECT_EQ(list.status, 0);
   std::istringstream lines(list.out);
   int scenes = 0;
-  for (std::string name, word, size, tail;
-       lines >> name >> word >> size && std::getline(lines, tail);
+  for (std::string name, word, size, rest;
+       lines >> name >> word >> size && std::getline(lines, rest);
        ++scenes) {
     ASSERT_EQ(run("scene " + name + " --size " + size + " -o " + name + ".nff").status, 0) << name;
     const Outcome info = run("info " + name + ".nff --json");

@@ -164,8 +164,7 @@ TEST(Stats, HoldWhatWasCounted) {
   EXPECT_EQ(json["visits"], 16);
   EXPECT_EQ(json["tests"], Json::parse(R"({"sphere":17,"triangle":18,"cone":19,"plane":20})"));
   EXPECT_EQ(json["rows"], Json::parse(R"({"boxes":23,"primitives":24})"));
-  EXPECT_EQ(json["packets"],
-            Json::parse(R"({"formed":21,"packet_fallbacks":22,"lanes_busy":0.75})"));
+  EXPECT_EQ(json["packets"], Json::parse(R"({"formed":21,"fell_back":22,"lanes_busy":0.75})"));
   EXPECT_EQ(json["seconds"],
             Json::parse(R"({"load":1.0,"build":2.0,"render":3.0,"write":4.0,"render_cpu":0.0})"));
   EXPECT_EQ(json["bytes"]["geometry"], 100);

@@ -17,8 +17,8 @@ TEST(Shown, WordsOfAnyLanguageStay) {
                            "es",
                            "\xE7\x90\x83.nff",
                            "\xF0\x9F\x8E\xB1"})
-    EXPECT_EQ(printed(text), text);
-  EXPECT_EQ(printed("a\nb\n"), "a\nb\n");
+    EXPECT_EQ(printable_text(text), text);
+  EXPECT_EQ(printable_text("a\nb\n"), "a\nb\n");
   EXPECT_EQ(printable_line("a\nb"), "a?b");
 }
 
@@ -43,7 +43,7 @@ TEST(Shown, WhatATerminalObeysDoesNot) {
       {"\xFF\xFEx", "??x"},
   };
   for (const auto& [text, clean] : table)
-    EXPECT_EQ(printed(text), clean);
+    EXPECT_EQ(printable_text(text), clean);
 }
 
 }  // namespace

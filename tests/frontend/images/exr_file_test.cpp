@@ -93,14 +93,14 @@ TEST(Exr, FilesOfAnotherProgramHoldTheSamePicture) {
 TEST(Exr, WhatLiesOutsideTheDataIsBlack) {
   const std::string folder = GRELHA_SOURCE_DIR "/tests/fuzz/corpus/picture/";
   const Image small = read_image(folder + "small.exr"),
-              printed = read_image(folder + "windows.exr");
-  ASSERT_EQ(printed.width, 9);
-  ASSERT_EQ(printed.height, 9);
-  for (int y = 0; y < printed.height; ++y)
-    for (int x = 0; x < printed.width; ++x) {
+              displayed = read_image(folder + "windows.exr");
+  ASSERT_EQ(displayed.width, 9);
+  ASSERT_EQ(displayed.height, 9);
+  for (int y = 0; y < displayed.height; ++y)
+    for (int x = 0; x < displayed.width; ++x) {
       const bool inside = x >= 1 && x <= small.width && y >= 1 && y <= small.height;
       for (int c = 0; c < 3; ++c)
-        EXPECT_EQ(printed.row(y)[3 * x + c], inside ? small.row(y - 1)[3 * (x - 1) + c] : 0);
+        EXPECT_EQ(displayed.row(y)[3 * x + c], inside ? small.row(y - 1)[3 * (x - 1) + c] : 0);
     }
 }
 

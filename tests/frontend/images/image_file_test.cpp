@@ -189,21 +189,21 @@ TEST(Png, SaysWhatItIsInChunksBeforeThePixels) {
   TemporaryFolder folder;
   const Image image(4, 3);
   const Notes notes{{"Software", "grelha"}, {"Title", "balls"}};
-  const std::string simple = encode_png(image, Tone::authored),
+  const std::string plain = encode_png(image, Tone::authored),
                     told = encode_png(image, Tone::srgb, notes);
   const std::string chunks("\0\0\0\1sRGB\0\xae\xce\x1c\xe9\0\0\0\xftEXtSoftware\0grelha", 36);
   EXPECT_EQ(told.substr(33, chunks.size()), chunks);
-  EXPECT_EQ(told.substr(0, 33), simple.substr(0, 33));
-  EXPECT_TRUE(told.ends_with(simple.substr(33)));
-  EXPECT_EQ(simple.find("sRGB"), simple.npos);
+  EXPECT_EQ(told.substr(0, 33), plain.substr(0, 33));
+  EXPECT_TRUE(told.ends_with(plain.substr(33)));
+  EXPECT_EQ(plain.find("sRGB"), plain.npos);
   EXPECT_EQ(read_image(folder.write("a.png", told)).rgb, image.rgb);
   Encoding encoding;
   read_image(folder.file("a.png"), &encoding);
   EXPECT_EQ(encoding_text(encoding), "sRGB values");
   const std::string gamma("\0\0\0\4gAMA\0\0\xb1\x8f\x0b\xfc\x61\x05", 16);
-  read_image(folder.write("b.png", simple.substr(0, 33) + gamma + simple.substr(33)), &encoding);
+  read_image(folder.write("b.png", plain.substr(0, 33) + gamma + plain.substr(33)), &encoding);
   EXPECT_EQ(encoding_text(encoding), "values of gamma 0.45455");
-  read_image(folder.write("c.png", simple), &encoding);
+  read_image(folder.write("c.png", plain), &encoding);
   EXPECT_EQ(encoding_text(encoding), "light");
 }
 

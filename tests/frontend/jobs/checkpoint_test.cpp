@@ -44,9 +44,8 @@ Picture half_done(const Job& job, const RenderOptions& options, std::uint64_t se
   constexpr int last = 33;
   const int all = steps_until(last, job, options).count;
   EXPECT_GT(all, first);
-  const int option_values = all - first;
-  const int stop =
-      first + static_cast<int>(Random(seed).below(static_cast<unsigned>(option_values)));
+  const int choices = all - first;
+  const int stop = first + static_cast<int>(Random(seed).below(static_cast<unsigned>(choices)));
   Steps half = steps_until(stop, job, options);
   EXPECT_FALSE(half.done) << "step " << stop << " of " << all;
   return std::move(*half.picture);

@@ -51,12 +51,12 @@ TEST(Identity, KnowsAnotherScene) {
 TEST(Identity, NamesAllThatPixelsDependOn) {
   RenderCommand command;
   Camera camera;
-  const std::string simple = settings_text(command, camera);
+  const std::string plain = settings_text(command, camera);
   const auto words = [&](auto change) {
     RenderCommand c;
     Camera k;
     change(c, k);
-    return difference(settings_text(c, k), simple, "a");
+    return difference(settings_text(c, k), plain, "a");
   };
   EXPECT_EQ(words([](RenderCommand&, Camera& k) { k.width = 7; }),
             "size=7x512, a has size=512x512");
@@ -98,7 +98,7 @@ TEST(Identity, NamesAllThatPixelsDependOn) {
   other.render.threads = 3;
   other.render.isa = "sse2";
   other.render.packet = 16;
-  EXPECT_EQ(settings_text(other, camera), simple);
+  EXPECT_EQ(settings_text(other, camera), plain);
 }
 
 TEST(Identity, PrintsNothingOfAFileAsItStands) {

@@ -79,7 +79,7 @@ void tell_geometry(Told& told, const Geometry& g) {
   told << p.x << p.y << p.z << p.nx << p.ny << p.nz << p.material << g.objects;
 }
 
-void report_line(Told& told, const SceneFile& file) {
+void tell_scene(Told& told, const SceneFile& file) {
   tell_geometry(told, file.scene.geometry);
   told << file.scene.materials << file.scene.lights << file.scene.background;
   const EntityCounts& n = file.counts;
@@ -94,7 +94,7 @@ std::string all_told(const std::string& text, const ChunkSizes& chunks) {
   Told told;
   const auto warn = [&](const std::string& line) { told << line; };
   const std::string error = test::message_of(
-      [&] { report_line(told, read_nff("scene.nff", text, warn, {}, nullptr, chunks)); });
+      [&] { tell_scene(told, read_nff("scene.nff", text, warn, {}, nullptr, chunks)); });
   return told.text + error;
 }
 
@@ -146,14 +146,14 @@ class Author {
   }
   /// A polygon around the origin; some of its corners may be repeated or moved.
   void polygon(bool patch) {
-    const int corner_points = 3 + (below(3) == 0 ? below(7) : 0);
+    const int corner_count = 3 + (below(3) == 0 ? below(7) : 0);
     text_ += patch ? "pp" : "p";
     gap();
-    text_ += std::to_string(corner_points);
+    text_ += std::to_string(corner_count);
     const bool flat = below(4) == 0;
-    for (int i = 0; i < corner_points; ++i) {
+    for (int i = 0; i < corner_count; ++i) {
       if (flat)
-        text_ += " 0 " + std::to_string(i * (corner_points - i)) + ' ' + std::to_string(i / 2 * 3);
+        text_ += " 0 " + std::to_string(i * (corner_count - i)) + ' ' + std::to_string(i / 2 * 3);
       else
         numbers(3);
       if (patch && below(9) == 0)

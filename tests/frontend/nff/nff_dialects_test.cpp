@@ -29,7 +29,7 @@ TEST(NffDialects, CommentsOfC) {
                                    "l 4 5 6 /* no color */\nfoo 1 /* 2\n3 */ 4 5\ns 0 0 0 4");
   EXPECT_EQ(r.file.scene.geometry.spheres.radius, (std::vector<float>{1, 2, 3, 4}));
   EXPECT_EQ(r.file.scene.lights.size(), 2u);
-  EXPECT_EQ(r.warning_list,
+  EXPECT_EQ(r.warnings,
             Lines{"scene.nff:18:1: warning: unknown word \"foo\" (did you mean \"angle\"?); its "
                   "line is skipped"});
 }
@@ -38,7 +38,7 @@ TEST(NffDialects, CommentsOfC) {
 TEST(NffDialects, CommentsEnd) {
   const Reading r = read_with_view(kFill + "/* balls\ns 0 0 0 1\ns 0 0 0 2 /\n");
   EXPECT_EQ(r.file.counts.s, 2u);
-  EXPECT_EQ(r.warning_list.size(), 2u);
+  EXPECT_EQ(r.warnings.size(), 2u);
 }
 
 TEST(NffDialects, NumbersThatAreNoneAsMicrosoftWroteThem) {
@@ -47,7 +47,7 @@ TEST(NffDialects, NumbersThatAreNoneAsMicrosoftWroteThem) {
                                    "s 0 0 0 1.#a comment\ns 0 0 0 1.#INFO of no use\n");
   EXPECT_EQ(r.file.counts.s, 5u);
   EXPECT_EQ(r.file.dropped.not_finite, 3u);
-  EXPECT_EQ(r.warning_list, Lines{});
+  EXPECT_EQ(r.warnings, Lines{});
 }
 
 TEST(NffDialects, MaterialIsMat) {
@@ -58,7 +58,7 @@ TEST(NffDialects, MaterialIsMat) {
     const std::string ball = std::string(fields) + "\ns 0 0 0 1\n";
     const Reading full = read_with_view("material " + ball),
                   short_one = read_with_view("mat " + ball);
-    EXPECT_EQ(full.warning_list, Lines{});
+    EXPECT_EQ(full.warnings, Lines{});
     const Material &a = full.file.scene.materials.at(0), &b = short_one.file.scene.materials.at(0);
     EXPECT_EQ(a.diffuse, b.diffuse);
     EXPECT_EQ(a.specular, b.specular);
@@ -70,7 +70,7 @@ TEST(NffDialects, MaterialIsMat) {
       (Float3{.8f, .5f * .8f, .2f * .8f}));
   const Reading heading = read_with_view("material of the floor\n" + kFill + "s 0 0 0 1");
   EXPECT_EQ(heading.file.counts.materials, 1u);
-  EXPECT_EQ(heading.warning_list.size(), 1u);
+  EXPECT_EQ(heading.warnings.size(), 1u);
 }
 
 TEST(NffDialects, TexturesAreLeftOut) {
@@ -85,9 +85,9 @@ TEST(NffDialects, TexturesAreLeftOut) {
   EXPECT_EQ(r.file.counts.pp, 1u);
   EXPECT_EQ(r.file.counts.p, 1u);
   EXPECT_EQ(r.file.scene.geometry.spheres.radius, (std::vector<float>{1, 2}));
-  EXPECT_EQ(r.warning_list, Lines{"scene.nff:9:1: warning: texture \"wood.tga\" is left out"});
+  EXPECT_EQ(r.warnings, Lines{"scene.nff:9:1: warning: texture \"wood.tga\" is left out"});
   for (const char* alone : {"st 0 0 0 1", "pt 3 0 0 0 0 0 1 0 0 1 0 0 1 0 0 1"})
-    EXPECT_EQ(read_with_view(kFill + alone).warning_list,
+    EXPECT_EQ(read_with_view(kFill + alone).warnings,
               Lines{"scene.nff:9:1: warning: textures are left out: the material is seen in their "
                     "place"});
 }
@@ -109,7 +109,7 @@ TEST(NffDialects, PolygonsShine) {
   EXPECT_EQ(r.file.scene.lights[0].color, first.color);
   EXPECT_EQ(r.file.scene.lights[1].color, (Float3{1, 0, 0}));
   EXPECT_EQ(r.file.scene.lights[1].edge2, (Float3{0, 2, 0}));
-  EXPECT_EQ(r.warning_list,
+  EXPECT_EQ(r.warnings,
             (Lines{"scene.nff:9:1: warning: polygons behind \"L\" are area lights; light does not "
                    "fall off here, so the brightest of them gets the power 1",
                    "scene.nff:11:1: warning: a polygon behind \"L\" that is no parallelogram; it "
@@ -125,7 +125,7 @@ TEST(NffDialects, Sense8IsNamedWhateverFollows) {
     EXPECT_EQ(message_of([&] { test::read_text(text); }).substr(14),
               " error: expected Haines' Neutral File Format, found Sense8's (WorldToolKit) NFF")
         << text;
-  EXPECT_EQ(test::read_text("nff\n" + kView).warning_list.size(), 1u) << "a heading of Haines' NFF";
+  EXPECT_EQ(test::read_text("nff\n" + kView).warnings.size(), 1u) << "a heading of Haines' NFF";
 }
 
 TEST(NffDialects, NamesThatWindowsWrote) {

@@ -43,10 +43,10 @@ TEST(NffDropped, OneWarningForTheFile) {
   const TemporaryFolder folder;
   const std::string scene =
       folder.add("scene.nff", kView + kFill + "s 0 0 0 0\ns nan 0 0 1\ns 0 0 0 0\n");
-  Lines warning_list;
-  read_scene(scene, [&](const std::string& line) { warning_list.push_back(line); });
+  Lines warnings;
+  read_scene(scene, [&](const std::string& line) { warnings.push_back(line); });
   EXPECT_EQ(
-      warning_list,
+      warnings,
       Lines{scene +
             ": warning: 3 primitives are left out: 1 not finite (or beyond 1e18), 2 without area"});
 }
@@ -59,7 +59,7 @@ TEST(NffNoise, PolygonsThatCrossThemselvesAreFilledAndSaid) {
   EXPECT_EQ(r.file.scene.geometry.triangles.size(), 2u + 5 + 2);
   EXPECT_EQ(r.file.counts.p, 2u);
   EXPECT_EQ(r.file.dropped.zero_area, 0u);
-  EXPECT_EQ(r.warning_list,
+  EXPECT_EQ(r.warnings,
             Lines{"scene.nff:10:3: warning: a polygon that crosses itself; it is filled by the "
                   "even-odd rule"});
 }
@@ -70,7 +70,7 @@ TEST(NffNoise, IsWarnedOfOnceAKindAndSkipped) {
       "s 0 0 0 1 7 7\ns 0 0 0 1 8\n12 12 12\n1 2 3\nxp 3\n0 0 0\na 1 2 3\na 4 5 6\ns 0 0 0 2#end");
   EXPECT_EQ(r.file.counts.s, 3u);
   EXPECT_EQ(
-      r.warning_list,
+      r.warnings,
       (Lines{"scene.nff:9:1: warning: unknown word \"/\"; its line is skipped",
              "scene.nff:10:1: warning: unknown word \"Floor\"; its line is skipped",
              "scene.nff:12:11: warning: more numbers than \"s\" takes; the rest of the line is "
@@ -82,7 +82,7 @@ TEST(NffNoise, IsWarnedOfOnceAKindAndSkipped) {
 
 TEST(NffNoise, IsComparedWithTheWordsThereAre) {
   const Reading r = read_with_view("resoluton 3 3\nmehs 1\nsphere 0 0 0 1\n");
-  EXPECT_EQ(r.warning_list,
+  EXPECT_EQ(r.warnings,
             (Lines{"scene.nff:8:1: warning: unknown word \"resoluton\" (did you mean "
                    "\"resolution\"?); its line is skipped",
                    "scene.nff:9:1: warning: unknown word \"mehs\" (did you mean \"mesh\"?); its "
@@ -109,10 +109,10 @@ TEST(NffNoise, FullNamesAreAnsweredWithTheKeyword) {
       {"cones", "c"},
   };
   for (const auto& [word, keyword] : table) {
-    const Lines warning_list = read_with_view(std::string(word) + " 0 0 0 1\n").warning_list;
+    const Lines warnings = read_with_view(std::string(word) + " 0 0 0 1\n").warnings;
     const std::string suggested =
         *keyword ? " (did you mean \"" + std::string(keyword) + "\"?)" : "";
-    EXPECT_EQ(warning_list,
+    EXPECT_EQ(warnings,
               Lines{"scene.nff:8:1: warning: unknown word \"" + std::string(word) + '"' +
                     suggested + "; its line is skipped"});
   }
@@ -126,7 +126,7 @@ TEST(NffNoise, AMillionUnknownWordsEndSoon) {
     for (int i = 0; i < 1000000; ++i)
       text += alike ? "sphere 0\n" : "sphere" + std::to_string(i) + " 0\n";
     const std::clock_t start = std::clock();  // of the processor: others may be busy with it
-    EXPECT_EQ(read_text(text).warning_list.size(), alike ? 1u : 20u);
+    EXPECT_EQ(read_text(text).warnings.size(), alike ? 1u : 20u);
     constexpr double kPatience = 2;  // .2 s were measured
     EXPECT_LT(double(std::clock() - start) / CLOCKS_PER_SEC, kPatience);
   }
@@ -136,17 +136,17 @@ TEST(NffNoise, NulBytesAreToldOf) {
   using std::string_literals::operator""s;
   const Reading r = read_with_view(kFill + "s 0 0 0\0 1\ns 0 0\0 0 1\n"s);
   EXPECT_EQ(r.file.counts.s, 2u);
-  EXPECT_EQ(r.warning_list,
+  EXPECT_EQ(r.warnings,
             Lines{"scene.nff:9:8: warning: the text holds NUL bytes, which count as blanks"});
 }
 
 TEST(NffHints, SamplesAreBoundedAndSaid) {
   EXPECT_EQ(read_with_view("spp 65536").file.samples_per_pixel, 65536);
-  EXPECT_EQ(read_with_view("spp 65536").warning_list, Lines{});
+  EXPECT_EQ(read_with_view("spp 65536").warnings, Lines{});
   for (const std::string count : {"65537", "1000000000", "4000000000", "1e30"}) {
     const Reading r = read_with_view("spp " + count);
     EXPECT_EQ(r.file.samples_per_pixel, 65536) << count;
-    EXPECT_EQ(r.warning_list,
+    EXPECT_EQ(r.warnings,
               Lines{"scene.nff:8:5: warning: \"" + count +
                     "\" samples per pixel are more than 65536, which are taken"});
   }
@@ -156,12 +156,12 @@ TEST(NffNoise, FilesOfItStayReadable) {
   std::string text = kView;
   for (int i = 0; i < 100000; ++i)
     text += "word" + std::to_string(i) + '\n';
-  EXPECT_EQ(read_text(text).warning_list.size(), 20u);
+  EXPECT_EQ(read_text(text).warnings.size(), 20u);
 }
 
 TEST(NffNoise, ByteOrderMarkIsSkipped) {
   const Reading r = read_text("\xEF\xBB\xBF" + kView + kFill + "s 0 0 0 1");
-  EXPECT_EQ(r.warning_list, Lines{});
+  EXPECT_EQ(r.warnings, Lines{});
   EXPECT_EQ(r.file.counts.s, 1u);
 }
 

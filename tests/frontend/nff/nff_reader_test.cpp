@@ -26,7 +26,7 @@ const Triangles& triangles(const Reading& r) {
 TEST(NffView, FieldsInAnyOrder) {
   const Reading r = read_text(
       "b .1 .2 .3 v resolution 640 480.0 angle 30.5 hither 0 up 0 0 1\nat 1 2 3 from -4 +5 6e0");
-  EXPECT_EQ(r.warning_list, Lines{});
+  EXPECT_EQ(r.warnings, Lines{});
   const Camera& c = r.file.camera;
   EXPECT_EQ(c.eye, (Float3{-4, 5, 6}));
   EXPECT_EQ(c.at, (Float3{1, 2, 3}));
@@ -43,7 +43,7 @@ TEST(NffView, CameraAndEyeOf2023) {
       "accel bvh\nspp 4\nbclr 1 0 0\ncamera\neye 0 0 5\nat 0 0 0\nup 0 1 0\nangle 45\nhither "
       "1\nresolution 3 2\n"
       "aperture 0\nfocal 1.5\n");
-  EXPECT_EQ(r.warning_list, Lines{});
+  EXPECT_EQ(r.warnings, Lines{});
   EXPECT_EQ(r.file.camera.eye, (Float3{0, 0, 5}));
   EXPECT_EQ(r.file.accelerator, "bvh");
   EXPECT_EQ(r.file.samples_per_pixel, 4);
@@ -58,13 +58,13 @@ TEST(NffView, LensInsideTheViewIsKept) {
       "1\nresolution 8 6\n");
   EXPECT_EQ(r.file.lens.aperture, .5);
   EXPECT_EQ(r.file.lens.focal, 4);
-  EXPECT_EQ(r.warning_list, Lines{});
+  EXPECT_EQ(r.warnings, Lines{});
 }
 
 TEST(NffView, EnvironmentIsNamedAndLeftOut) {
   const Reading r = read_with_view("env sky box # night\nenv other");
   EXPECT_EQ(r.file.environment, "other");
-  EXPECT_EQ(r.warning_list,
+  EXPECT_EQ(r.warnings,
             Lines{"scene.nff:8:1: warning: environment maps are not rendered; the background color "
                   "is seen instead"});
 }
@@ -72,11 +72,11 @@ TEST(NffView, EnvironmentIsNamedAndLeftOut) {
 TEST(NffView, MissingResolutionAndSecondView) {
   Reading r = read_text("v from 0 0 5 at 0 0 0 up 0 1 0 angle 45");
   EXPECT_EQ(r.file.camera.width, 512);
-  EXPECT_EQ(r.warning_list,
+  EXPECT_EQ(r.warnings,
             Lines{"scene.nff:1:1: warning: the view has no resolution; 512 512 is taken"});
   r = read_with_view("v from 0 0 7 at 0 0 0 up 0 1 0 angle 60 resolution 4 4");
   EXPECT_EQ(r.file.camera.angle_deg, 60);
-  EXPECT_EQ(r.warning_list, Lines{"scene.nff:8:1: warning: a second view; the last one counts"});
+  EXPECT_EQ(r.warnings, Lines{"scene.nff:8:1: warning: a second view; the last one counts"});
 }
 
 TEST(NffLights, ColorlessOnesShare) {
@@ -118,12 +118,12 @@ TEST(NffLights, AreasKeepTheirShapeAroundTheirCentre) {
   EXPECT_EQ(facing.edge1.z, 0);
   EXPECT_EQ(r.file.scene.lights[0].edge2, quad.edge2);
   EXPECT_EQ(r.file.scene.lights[2].edge1, facing.edge1);
-  EXPECT_EQ(r.warning_list, Lines{});
+  EXPECT_EQ(r.warnings, Lines{});
 }
 
 Material only_material(const std::string& text) {
   const Reading r = read_with_view(text);
-  EXPECT_EQ(r.warning_list, Lines{});
+  EXPECT_EQ(r.warnings, Lines{});
   EXPECT_EQ(r.file.counts.materials, 1u);
   return r.file.scene.materials.at(0);
 }
@@ -166,14 +166,14 @@ TEST(NffMaterial, OtherNumbersOfFieldsAreGuessed) {
   Reading r = read_with_view("f .25 .5 1\ns 0 0 0 1");
   EXPECT_EQ(r.file.scene.materials[0].diffuse, (Float3{.25f, .5f, 1}));
   EXPECT_EQ(
-      r.warning_list,
+      r.warnings,
       Lines{"scene.nff:8:1: warning: a material with 3 fields, where 8, 11, 12 or 14 are known"});
   r = read_with_view("f 1 .5 0 .5 .25 10 0 1 .1\nf 1 .5 0 .5 .25 10 0 1 .1\ns 0 0 0 1");
   EXPECT_EQ(r.file.scene.materials[0].shine, 10);
-  EXPECT_EQ(r.warning_list.size(), 1u);
+  EXPECT_EQ(r.warnings.size(), 1u);
   r = read_with_view("f 1 .5 0 .5 .25 10 0 1 wood.jpg\ns 0 0 0 1");
   EXPECT_EQ(r.file.counts.s, 1u);
-  EXPECT_EQ(r.warning_list, Lines{"scene.nff:8:24: warning: texture \"wood.jpg\" is left out"});
+  EXPECT_EQ(r.warnings, Lines{"scene.nff:8:24: warning: texture \"wood.jpg\" is left out"});
 }
 
 TEST(NffMaterial, MissingOneIsWhiteAndNotCounted) {
@@ -182,7 +182,7 @@ TEST(NffMaterial, MissingOneIsWhiteAndNotCounted) {
   ASSERT_EQ(r.file.scene.materials.size(), 2u);
   EXPECT_EQ(r.file.scene.geometry.spheres.material, (std::vector<std::uint32_t>{0, 1}));
   EXPECT_EQ(
-      r.warning_list,
+      r.warnings,
       Lines{"scene.nff:8:1: warning: an object before the first \"f\"; it is drawn dull white"});
 }
 
@@ -191,7 +191,7 @@ TEST(NffShapes, SpheresAndConesInAnyLayout) {
       kFill + "s 1 2 3\n\t4\nc 0 0 0 1 0 0 2 .5\nc\n0 0 0 -2\n0 0 3 -2 # in\ns 0 0 0 -1");
   const Spheres& s = r.file.scene.geometry.spheres;
   const Cones& c = r.file.scene.geometry.cones;
-  EXPECT_EQ(r.warning_list, Lines{});
+  EXPECT_EQ(r.warnings, Lines{});
   EXPECT_EQ(s.radius, (std::vector<float>{4, -1}));
   EXPECT_EQ(s.z[0], 3);
   EXPECT_EQ(c.base_radius, (std::vector<float>{1, -2}));
@@ -209,7 +209,7 @@ TEST(NffShapes, AnyLineEnds) {
     for (const char c : unix_text)
       c == '\n' ? text += end : text += c;
     const Reading r = read_text(text);
-    EXPECT_EQ(r.warning_list, Lines{});
+    EXPECT_EQ(r.warnings, Lines{});
     EXPECT_EQ(r.file.counts.s, 1u);
     EXPECT_EQ(r.file.counts.p, 1u);
     EXPECT_EQ(r.file.counts.lights, 2u);
@@ -289,10 +289,9 @@ std::vector<double> box_volumes(const std::string& boxes) {
   std::vector<double> volumes;
   for (std::size_t first = 0; first + 12 <= t.size(); first += 12) {
     Triangles one = t;
-    for (auto* corner_points : {&one.a, &one.b, &one.c}) {
-      corner_points->erase(corner_points->begin() + std::ptrdiff_t(first + 12),
-                           corner_points->end());
-      corner_points->erase(corner_points->begin(), corner_points->begin() + std::ptrdiff_t(first));
+    for (auto* indices : {&one.a, &one.b, &one.c}) {
+      indices->erase(indices->begin() + std::ptrdiff_t(first + 12), indices->end());
+      indices->erase(indices->begin(), indices->begin() + std::ptrdiff_t(first));
     }
     volumes.push_back(signed_volume(one));
   }
@@ -301,16 +300,16 @@ std::vector<double> box_volumes(const std::string& boxes) {
 
 TEST(NffShapes, AabbHasOneOrderAFile) {
   using Volumes = std::vector<double>;
-  const std::string pairs = "aabb 0 4 -1 1 2 3\n";          // as corners unordered on y
-  const std::string corner_points = "aabb 5 4 -1 1 2 3\n";  // x 5..4 is no pair
-  const std::string both = "aabb 0 1 2 3 4 5\n";            // pairs: 1 x 1 x 1; corners: 3 x 3 x 3
+  const std::string pairs = "aabb 0 4 -1 1 2 3\n";    // as corners unordered on y
+  const std::string corners = "aabb 5 4 -1 1 2 3\n";  // x 5..4 is no pair
+  const std::string both = "aabb 0 1 2 3 4 5\n";      // pairs: 1 x 1 x 1; corners: 3 x 3 x 3
   EXPECT_EQ(box_volumes(pairs), Volumes{8});
-  EXPECT_EQ(box_volumes(corner_points), Volumes{32});
+  EXPECT_EQ(box_volumes(corners), Volumes{32});
   EXPECT_EQ(box_volumes(both), Volumes{27});
   EXPECT_EQ(box_volumes(both + pairs), (Volumes{1, 8})) << "the box in front of the one that tells";
   EXPECT_EQ(box_volumes(pairs + both), (Volumes{8, 1}));
-  EXPECT_EQ(box_volumes(both + corner_points + both), (Volumes{27, 32, 27}));
-  EXPECT_EQ(box_volumes(pairs + corner_points + both), (Volumes{8, 32, 27}))
+  EXPECT_EQ(box_volumes(both + corners + both), (Volumes{27, 32, 27}));
+  EXPECT_EQ(box_volumes(pairs + corners + both), (Volumes{8, 32, 27}))
       << "any numbers can be corners";
   EXPECT_EQ(box_volumes(both + "# aabb 0 4 -1 1 2 3\n"), Volumes{27}) << "a comment is no box";
   EXPECT_EQ(box_volumes(pairs + "aabb nan 4 3 1 2 3\n" + both), (Volumes{8, 1}))

@@ -22,16 +22,16 @@ TEST(PlyAlone, PolygonsAreCutAndBadFacesCounted) {
                  "element face 6\nproperty list uchar int vertex_indices\nend_header\n"
                  "0 0 0\n4 0 0\n1 1 0\n0 4 0\n0 0 0\n+inf 0 0\n8 0 0\n0 0 1e19\n-3 0 0\n"
                  "4 0 1 2 3\n3 0 0 1\n3 0 4 1\n3 0 1 5\n2 0 1\n3 0 1 7\n");
-  std::vector<std::string> warning_list;
+  std::vector<std::string> warnings;
   const SceneFile file =
-      read_scene(path, [&](const std::string& line) { warning_list.push_back(line); });
+      read_scene(path, [&](const std::string& line) { warnings.push_back(line); });
   EXPECT_EQ(file.counts.ply, 6u);
   EXPECT_EQ(file.counts.materials, 0u);
   EXPECT_EQ(file.scene.geometry.triangles.size(), 2u);
   EXPECT_EQ(file.dropped.zero_area, 3u);
   EXPECT_EQ(file.dropped.not_finite, 2u);
   EXPECT_EQ(
-      warning_list,
+      warnings,
       std::vector<std::string>{
           path +
           ": warning: 5 primitives are left out: 2 not finite (or beyond 1e18), 3 without area"});
@@ -79,14 +79,14 @@ TEST(PlyAlone, FacesThatCrossThemselvesAreFilledAndSaid) {
       ": warning: 2 faces cross themselves, face 1 from 0 is the first: filled by the "
       "even-odd rule";
   for (const std::string& file : {mesh, scene}) {
-    std::vector<std::string> warning_list;
+    std::vector<std::string> warnings;
     const SceneFile read =
-        read_scene(file, [&](const std::string& line) { warning_list.push_back(line); });
+        read_scene(file, [&](const std::string& line) { warnings.push_back(line); });
     const Triangles& t = read.scene.geometry.triangles;
     EXPECT_EQ(t.size(), 5u);
     EXPECT_EQ(t.vertex_count(), 7u);
     EXPECT_EQ((Float3{t.x.at(6), t.y.at(6), t.nz.at(6)}), (Float3{.5f, .5f, 1}));
-    EXPECT_NE(std::find(warning_list.begin(), warning_list.end(), said), warning_list.end());
+    EXPECT_NE(std::find(warnings.begin(), warnings.end(), said), warnings.end());
   }
 }
 

@@ -59,7 +59,7 @@ TEST_P(EveryType, AsCoordinateAndAsSomethingToStepOver) {
   EXPECT_EQ(mesh.z, (std::vector<float>{1, 5, 9}));
   EXPECT_EQ(mesh.x, (std::vector<float>{2, 6, 10}));
   EXPECT_EQ(mesh.y, (std::vector<float>{3, 7, 11}));
-  EXPECT_EQ(mesh.corner_points, (std::vector<std::uint32_t>{2, 0, 1}));
+  EXPECT_EQ(mesh.indices, (std::vector<std::uint32_t>{2, 0, 1}));
 }
 INSTANTIATE_TEST_SUITE_P(Ply,
                          EveryType,
@@ -104,7 +104,7 @@ TEST_P(EveryIndexType, InFacesOfAnySize) {
   const Mesh mesh = read_ply_mesh("m.ply", w.bytes());
   EXPECT_EQ(mesh.face_count(), 4u);
   EXPECT_EQ(mesh.sizes, (std::vector<std::uint32_t>{3, 5, 2, 0}));
-  EXPECT_EQ(mesh.corner_points, (std::vector<std::uint32_t>{0, 1, 2, 0, 1, 2, 3, 4, 0, 1}));
+  EXPECT_EQ(mesh.indices, (std::vector<std::uint32_t>{0, 1, 2, 0, 1, 2, 3, 4, 0, 1}));
   EXPECT_EQ(mesh.y[4], 16);
 }
 INSTANTIATE_TEST_SUITE_P(Ply,
@@ -134,7 +134,7 @@ TEST_P(EveryFormat, StripsTurnEverySecondTriangle) {
   const std::vector<double> strip{0, 1, 2, 3, -1, 2, 3, 3, 4, 5, -1, 1};
   w.value("int", double(strip.size())).values("int", strip).end_row();
   const Mesh mesh = read_ply_mesh("m.ply", w.bytes());
-  EXPECT_EQ(mesh.corner_points, (std::vector<std::uint32_t>{0, 1, 2, 2, 1, 3, 3, 4, 5}));
+  EXPECT_EQ(mesh.indices, (std::vector<std::uint32_t>{0, 1, 2, 2, 1, 3, 3, 4, 5}));
   EXPECT_EQ(mesh.face_count(), 3u);  // 2 3 3 and 3 3 4 only stitch
 }
 
@@ -286,7 +286,7 @@ TEST(PlyAscii, RowsMayBreakAndJoin) {
                            "0 0 0 1 0 0\r\n0 1 0\r\n\r\n3 0 1 2 3 2 1 0",
                            "000 0 0\r1 0 0\r0 1 0\r3 0 1 2\r3 2 1 0\rtail"}) {
     const Mesh mesh = read_ply_mesh("m.ply", kAsciiTriangle + rows);
-    EXPECT_EQ(mesh.corner_points, expected) << rows;
+    EXPECT_EQ(mesh.indices, expected) << rows;
     EXPECT_EQ(mesh.x, (std::vector<float>{0, 1, 0})) << rows;
   }
 }
@@ -294,7 +294,7 @@ TEST(PlyAscii, RowsMayBreakAndJoin) {
 TEST(PlyAscii, RowsTooLongAreCut) {
   const Mesh mesh = read_ply_mesh(
       "m.ply", kAsciiTriangle + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2 6 .5 .5 .5 .5\n3 2 1 0 6 1 1 1 1\n");
-  EXPECT_EQ(mesh.corner_points, (std::vector<std::uint32_t>{0, 1, 2, 2, 1, 0}));
+  EXPECT_EQ(mesh.indices, (std::vector<std::uint32_t>{0, 1, 2, 2, 1, 0}));
 }
 
 }  // namespace

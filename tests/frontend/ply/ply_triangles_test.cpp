@@ -17,12 +17,12 @@ INSTANTIATE_TEST_SUITE_P(Ply,
 
 /// Faces over 100 vertices, of three corners but for one of `size`.
 struct Faces {
-  std::vector<std::uint32_t> corner_points, sizes;
+  std::vector<std::uint32_t> indices, sizes;
   Faces(std::uint32_t count, std::uint32_t odd, std::uint32_t size) {
     for (std::uint32_t f = 0; f < count; ++f) {
       sizes.push_back(f == odd ? size : 3);
       for (std::uint32_t i = 0; i < sizes.back(); ++i)
-        corner_points.push_back((f * 7 + i * i) % 100);
+        indices.push_back((f * 7 + i * i) % 100);
     }
   }
 };
@@ -39,7 +39,7 @@ std::string file_of(const Faces& faces, const std::string& format, const std::st
   for (const std::uint32_t size : faces.sizes) {
     file.value("uchar", size);
     for (std::uint32_t i = 0; i < size; ++i)
-      file.value(index, faces.corner_points[at++]);
+      file.value(index, faces.indices[at++]);
     file.end_row();
   }
   return file.bytes();
@@ -52,8 +52,7 @@ TEST_P(PlyTriangles, AreReadBetweenOthers) {
       for (const std::string index : {"int", "uint", "ushort"}) {
         const Faces faces(kFaces, odd, size);
         const Mesh mesh = read_ply_mesh("m.ply", file_of(faces, GetParam(), index));
-        EXPECT_TRUE(mesh.corner_points == faces.corner_points)
-            << odd << ' ' << size << ' ' << index;
+        EXPECT_TRUE(mesh.indices == faces.indices) << odd << ' ' << size << ' ' << index;
         EXPECT_TRUE(size == 3 ? mesh.sizes.empty() : mesh.sizes == faces.sizes)
             << odd << ' ' << size << ' ' << index;
       }
@@ -70,7 +69,7 @@ TEST_P(PlyTriangles, AreNoStrips) {
   for (const std::vector<double>& strip : {std::vector<double>{0, 1, 2}, {0, 0, 1}, {2, -1, 1}})
     file.value("uchar", 3).values("int", strip).end_row();
   const Mesh mesh = read_ply_mesh("m.ply", file.bytes());
-  EXPECT_EQ(mesh.corner_points, (std::vector<std::uint32_t>{0, 1, 2}));
+  EXPECT_EQ(mesh.indices, (std::vector<std::uint32_t>{0, 1, 2}));
 }
 
 constexpr std::uint32_t kRows = 10000;
@@ -91,9 +90,9 @@ TEST(PlyRows, FaultsAmongThemAreFound) {
   for (const std::uint32_t row : {0u, 4095u, 4096u, kRows - 1})
     for (const double index : {3., -1.}) {
       const std::string bytes = rows_with(row, index);
-      const std::size_t location = bytes.size() - 13 * (kRows - row) + 9;
+      const std::size_t offset = bytes.size() - 13 * (kRows - row) + 9;
       EXPECT_EQ(test::message_of([&] { read_ply_mesh("m.ply", bytes); }),
-                "m.ply:byte " + std::to_string(location) +
+                "m.ply:byte " + std::to_string(offset) +
                     ": error: expected the index of a vertex, 0 or more and below their number, "
                     "found " +
                     std::to_string(int(index)));

@@ -88,9 +88,9 @@ void expect_no_gaps(const Triangles& t,
                     const std::vector<Wide2>& points,
                     const std::vector<Wide2>& outline,
                     Wide slack) {
-  std::map<std::pair<Wide, Wide>, std::uint32_t> locations;  // corners may repeat
+  std::map<std::pair<Wide, Wide>, std::uint32_t> first_index;  // corners may repeat
   const auto at = [&](std::uint32_t i) {
-    return locations.try_emplace({points[i].x, points[i].y}, i).first->second;
+    return first_index.try_emplace({points[i].x, points[i].y}, i).first->second;
   };
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> sides;
   for (std::size_t i = 0; i < t.size(); ++i) {
@@ -329,11 +329,11 @@ TEST(CrossedPolygons, OfRandomCorners) {
 /// Sides that cross right beside corners and each other, by a few last places.
 TEST(CrossedPolygons, OfNearlyCommonPoints) {
   std::mt19937 random(13);
-  std::uniform_real_distribution<double> location(-1, 1), tiny(-3, 3);
+  std::uniform_real_distribution<double> uniform(-1, 1), tiny(-3, 3);
   for (int round = 0; round < 200; ++round) {
     Vertices corner_points;
     for (int i = 0; i < 12; ++i) {  // lines through the middle, or so
-      const double angle = location(random) * 3.2, x = 1 + tiny(random) * 1e-7,
+      const double angle = uniform(random) * 3.2, x = 1 + tiny(random) * 1e-7,
                    off = tiny(random) * 6e-8;
       const double sign = i % 2 ? 1 : -1;
       corner_points.push_back({float(1 + sign * x * std::cos(angle) + off),
@@ -350,11 +350,11 @@ TEST(CrossedPolygons, OfNearlyCommonPoints) {
 /// Nobody can say where sides of a bent outline cross; they are joined half way.
 TEST(CrossedPolygons, ThatAreBentHaveNoGaps) {
   std::mt19937 random(17);
-  std::uniform_real_distribution<float> location(-1, 1);
+  std::uniform_real_distribution<float> uniform(-1, 1);
   for (int round = 0; round < 100; ++round) {
     Vertices corner_points;
     for (int i = 0; i < 8; ++i)
-      corner_points.push_back({3 * location(random), 3 * location(random), .3f * location(random)});
+      corner_points.push_back({3 * uniform(random), 3 * uniform(random), .3f * uniform(random)});
     expect_even_odd(corner_points, {0, 1}, 60, kSlack);
   }
 }

@@ -14,9 +14,9 @@ namespace {
 using Outline = std::vector<Float3>;
 using Triangle = PolygonSplitter::Triangle;
 
-std::vector<Triangle> cut(const Outline& corner_points) {
+std::vector<Triangle> cut(const Outline& corners) {
   std::vector<Triangle> triangles;
-  PolygonSplitter().cut(corner_points, triangles);
+  PolygonSplitter().cut(corners, triangles);
   return triangles;
 }
 
@@ -65,10 +65,10 @@ void expect_cover_any_way(const Outline& outline) {
   }
 }
 
-Outline star(int corner_points, double inner) {
+Outline star(int corner_count, double inner) {
   Outline p;
-  for (int i = 0; i < corner_points; ++i) {
-    const double angle = 2 * std::numbers::pi * i / corner_points, r = i % 4 < 2 ? 1 : inner;
+  for (int i = 0; i < corner_count; ++i) {
+    const double angle = 2 * std::numbers::pi * i / corner_count, r = i % 4 < 2 ? 1 : inner;
     p.push_back({float(r * std::cos(angle)), float(r * std::sin(angle)), 0});
   }
   return p;

@@ -108,10 +108,10 @@ TYPED_TEST(ArraysToFill, GrowByOneInFewSteps) {
   TypeParam v;
   int steps = 0;
   for (std::uint32_t i = 0; i < kCount; ++i) {
-    const std::size_t error_bound = v.capacity();
+    const std::size_t capacity = v.capacity();
     make_room(v);
     v.push_back(i);
-    steps += v.capacity() != error_bound;
+    steps += v.capacity() != capacity;
   }
   for (std::uint32_t i = 0; i < kCount; ++i)
     ASSERT_EQ(v[i], i);

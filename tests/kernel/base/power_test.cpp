@@ -59,11 +59,11 @@ TEST(Power, StaysNearTheTrueOne) {
       continue;
     }
     const long double exponent = std::abs(a.y[i] * std::log2(static_cast<long double>(a.x[i])));
-    const double frame_error = static_cast<double>(std::abs(got - wanted) / wanted /
-                                                   (3e-7L + .6931472L * 3.6e-7L * exponent));
-    ASSERT_LE(frame_error, 1) << a.x[i] << " ^ " << a.y[i] << " = " << static_cast<double>(wanted)
-                              << ", got " << got;
-    worst = std::max(worst, frame_error);
+    const double error = static_cast<double>(std::abs(got - wanted) / wanted /
+                                             (3e-7L + .6931472L * 3.6e-7L * exponent));
+    ASSERT_LE(error, 1) << a.x[i] << " ^ " << a.y[i] << " = " << static_cast<double>(wanted)
+                        << ", got " << got;
+    worst = std::max(worst, error);
   }
   std::printf("power: worst %.3f of the bound\n", worst);
 }

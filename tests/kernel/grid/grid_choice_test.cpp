@@ -89,9 +89,10 @@ TEST(Pads, HoldWhatRoundingTakes) {
   for (const Case& c : cases()) {
     const World world(c.scene, {});
     for (const Grid& g : world.impl().grids) {
-      EXPECT_GE(g.pad, kLeast * g.half_width) << c.name;
+      EXPECT_GE(g.pad, kLeast * g.near_distance) << c.name;
       for (int a = 0; a < 3; ++a) {
-        EXPECT_GE(g.half_width, .99 * g.cell[a] * g.cells[static_cast<std::size_t>(a)]) << c.name;
+        EXPECT_GE(g.near_distance, .99 * g.cell[a] * g.cells[static_cast<std::size_t>(a)])
+            << c.name;
         EXPECT_GE(g.cell[a], 1.99 * g.pad) << c.name;
       }
     }

@@ -24,8 +24,8 @@ struct Body {
 };
 
 template <class Shape>
-void add_twins(Body& body, const Shape& itself, const Shape& max_abs, const Shape& smaller) {
-  for (const Shape& shape : {itself, max_abs, smaller})
+void add_twins(Body& body, const Shape& itself, const Shape& larger, const Shape& smaller) {
+  for (const Shape& shape : {itself, larger, smaller})
     body.twins.push_back(
         [shape](const oracle::Ray& ray, oracle::Real t_min) { return shape.first(ray, t_min); });
   body.distance = [itself](const V& p) { return itself.distance(p); };
@@ -110,7 +110,7 @@ struct KindCase {
   const char* name;
   Body (*make)(Random&, const Float3&, double);
   double units;       ///< u of the largest way that surrounds a hit, which is what it may be off by
-  int fewest_second;  ///< rays that meet it twice
+  int fewest_second;  ///< rays that hit it twice
 };
 
 void PrintTo(const KindCase& kind, std::ostream* out) {
@@ -179,19 +179,19 @@ TEST_P(Kinds, AreMetAtEachCrossing) {
     for (int i = 0; i < 50; ++i) {
       Ray ray = ray_at(random, body);
       const oracle::Ray line{ray.org, ray.dir};
-      const oracle::Real half_width = length(line.org - body.middle) + 4 * size;
+      const oracle::Real extent = length(line.org - body.middle) + 4 * size;
       const oracle::Real unit = oracle::kEps;
       // planes' and triangles' own numbers are taken as they are, those of cones once rounded
-      const oracle::Real frame_error = kind().units * unit * half_width + body.prepared;
+      const oracle::Real error = kind().units * unit * extent + body.prepared;
       const auto expected = crossings(body, line, 0);
-      if (!expected || body.distance(line.org) < 100 * oracle::kEps * half_width + frame_error)
+      if (!expected || body.distance(line.org) < 100 * oracle::kEps * extent + error)
         continue;
       ++judged;
       second += expected->size() == 2;
       for (const oracle::Crossing& truth : *expected) {
         const float found = next_hit(world, ray);
         ASSERT_LE(std::abs(found - truth.t) * length(line.dir),
-                  frame_error / truth.cosine + unit * truth.t * length(line.dir))
+                  error / truth.cosine + unit * truth.t * length(line.dir))
             << describe(seed, i, ray) << "found " << found << ", expected "
             << static_cast<double>(truth.t);
         ray.t_min = std::nextafter(found, kInf);

@@ -145,7 +145,7 @@ TEST_P(Copies, TakeAnyNumberOfRays) {
     }
 }
 
-/// variants.hpp: where nothing is met t keeps its old value; so too for rays that cannot be traced.
+/// variants.hpp: where nothing is hit t keeps its old value; so too for rays that cannot be traced.
 TEST_P(Copies, LeaveTOfUnsoundRaysAlone) {
   const Scene scene = random_mixture(2, 60);
   const World world(scene, {});

@@ -124,7 +124,7 @@ TEST(BlockErrors, SeeASampleThatDiffersByATenth) {
   EXPECT_FALSE(agrees(1));
 }
 
-/// Light that one sample in `every` meets, on a black picture: hits by chance.
+/// Light that one sample in `every` hits, on a black picture: hits by chance.
 Refinement rarely_lit(std::uint32_t every, std::uint8_t log, Random& random, int side = 96) {
   Refinement r = picture(side, side, log);
   for (std::size_t p = 0; p < r.box.size(); ++p)
@@ -133,7 +133,7 @@ Refinement rarely_lit(std::uint32_t every, std::uint8_t log, Random& random, int
   return r;
 }
 
-/// Hits of one sample in so many tell every block of a surface the same, met or not.
+/// Hits of one sample in so many tell every block of a surface the same, hit or not.
 TEST(BlockErrors, PoolRareHits) {
   for (const std::uint32_t every : {500u, 2000u, 10000u}) {
     Random random(every);

@@ -114,7 +114,7 @@ TEST_F(Audits, CostLittleWhereTheErrorIsCoarse) {
     checked(picture_);
     return stats_.rays.primary - before;
   };
-  const std::uint64_t all = sample_count_(picture_);
+  const std::uint64_t all = total_samples(picture_);
   EXPECT_LT(samples(1), all / 100);
   EXPECT_GT(samples(.01), all / 25);
   EXPECT_LT(samples(.01), all / 10);
@@ -129,7 +129,7 @@ TEST_F(Audits, AreTheSameForAnyNumberOfThreads) {
 /// A check that disagrees gives only a rough estimate of the variances, so the next check follows
 /// before the number of samples has doubled.
 TEST_F(Audits, LetSamplesGrowByHalfUntilTheNext) {
-  const std::uint64_t samples = sample_count_(picture_);
+  const std::uint64_t samples = total_samples(picture_);
   BlockErrors errors(picture_, 2);
   errors.estimate_block();
   const auto in_round = [&](int checks) {

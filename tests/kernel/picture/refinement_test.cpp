@@ -160,7 +160,7 @@ TEST(Refinement, FindsDiscsOfATenthOfAPixel) {
   EXPECT_LE(seen, 4096);
 }
 
-/// A pixel between thin spokes whose first samples all meet spokes: half of it is background. An
+/// A pixel between thin spokes whose first samples all hit spokes: half of it is background. An
 /// interval of 8 E at 95 % is four standard errors wide; eight are allowed for the worst of 9216
 /// pixels, whose errors have longer tails than the normal (measured: 4.6). A pixel taken for plain
 /// was off by .52.
@@ -212,7 +212,7 @@ TEST(Refinement, GivesIndependentPicturesForTwoSeeds) {
 
 TEST(Refinement, IsOnePictureForEveryWayOfTracing) {
   for (const Case& c : cases(37)) {
-    const Outcome request = refined(c, to_error(.05));
+    const Outcome expected = refined(c, to_error(.05));
     for (const Variant* v : variants()) {
       if (!v->is_supported())
         continue;
@@ -229,11 +229,11 @@ TEST(Refinement, IsOnePictureForEveryWayOfTracing) {
           RenderStats stats;
           SampleMaps maps;
           const Image image = render(world, d.file.camera, o, stats, &maps);
-          ASSERT_EQ(differing(image, request.image), 0u)
+          ASSERT_EQ(differing(image, expected.image), 0u)
               << c.name << ' ' << v->name << ' ' << packet << ' ' << grid;
-          ASSERT_EQ(maps.samples, request.maps.samples)
+          ASSERT_EQ(maps.samples, expected.maps.samples)
               << c.name << ' ' << v->name << ' ' << packet << ' ' << grid;
-          ASSERT_EQ(maps.error, request.maps.error)
+          ASSERT_EQ(maps.error, expected.maps.error)
               << c.name << ' ' << v->name << ' ' << packet << ' ' << grid;
         }
     }
@@ -302,7 +302,7 @@ TEST(Refinement, StoppedAnywhereGoesOnToTheSameBits) {
   for (const RefineOptions& asked : {to_error(.02), of_samples})
     for (const Case& c : cases(61)) {
       SCOPED_TRACE(c.name);
-      const Outcome request = refined(c, asked);
+      const Outcome expected = refined(c, asked);
       const World world(c.file.scene, {});
       Random random(3);
       RenderOptions o = c.options;
@@ -332,18 +332,18 @@ TEST(Refinement, StoppedAnywhereGoesOnToTheSameBits) {
       }
       EXPECT_GE(stops, 4);
       EXPECT_EQ(kept.share, 1);
-      EXPECT_EQ(differing(picture_so_far(kept), request.image), 0u);
-      EXPECT_EQ(got.maps.samples, request.maps.samples);
-      EXPECT_EQ(got.maps.error, request.maps.error);
-      EXPECT_EQ(got.maps.width, request.maps.width);
-      EXPECT_EQ(got.stats.error.samples, request.stats.error.samples);
-      EXPECT_EQ(got.stats.error.rounds, request.stats.error.rounds);
-      EXPECT_EQ(rays.total(), request.stats.rays.total()) << "nothing twice";
+      EXPECT_EQ(differing(picture_so_far(kept), expected.image), 0u);
+      EXPECT_EQ(got.maps.samples, expected.maps.samples);
+      EXPECT_EQ(got.maps.error, expected.maps.error);
+      EXPECT_EQ(got.maps.width, expected.maps.width);
+      EXPECT_EQ(got.stats.error.samples, expected.stats.error.samples);
+      EXPECT_EQ(got.stats.error.rounds, expected.stats.error.rounds);
+      EXPECT_EQ(rays.total(), expected.stats.rays.total()) << "nothing twice";
       EXPECT_EQ(kept.rays, rays.total());
       EXPECT_TRUE(refine(world, c.file.camera, o, kept, got.stats, &got.maps))
           << "nothing is left to do";
       EXPECT_EQ(got.stats.rays.total(), 0u);
-      EXPECT_EQ(got.maps.error, request.maps.error);
+      EXPECT_EQ(got.maps.error, expected.maps.error);
     }
 }
 

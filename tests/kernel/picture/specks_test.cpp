@@ -94,9 +94,8 @@ TEST(Specks, AreMissedNowhere) {
     int missed = 0;
     for (std::size_t p = 0; p < stripes.mean.size(); ++p) {
       for (std::size_t c = 0; c < 3; ++c) {
-        const double frame_error =
-            double{image.rgb[3 * p + c]} - (c == 2 ? stripes.blue : stripes.mean)[p];
-        squares += frame_error * frame_error;
+        const double off = double{image.rgb[3 * p + c]} - (c == 2 ? stripes.blue : stripes.mean)[p];
+        squares += off * off;
       }
       specks += stripes.blue[p] > 0;
       missed += stripes.blue[p] > 0 && !(image.rgb[3 * p + 2] > 0);

@@ -1,6 +1,6 @@
 // A point lies inside a closed mesh or not, whatever ray is asked: through vertices, along edges,
 // in the planes of triangles.
-#include "grelha/query.hpp"
+#include "grelha/all_hits.hpp"
 #include "tests/support/closed.hpp"
 #include "tests/support/rays.hpp"
 #include "tests/support/scenes.hpp"

@@ -167,8 +167,8 @@ TEST(Query, GridsOfVeryManyCellsKnowNoOctants) {
   }
   const World many(specks, {.density = 106}), few(specks, {});
   ASSERT_GT(cell_count(many.grids()[0].cells), kMostCellsOfOctants);
-  EXPECT_EQ(many.impl().view.grids[0].field_offsets, 0u);
-  EXPECT_GT(few.impl().view.grids[0].field_offsets, 0u);
+  EXPECT_EQ(many.impl().view.grids[0].field_stride, 0u);
+  EXPECT_GT(few.impl().view.grids[0].field_stride, 0u);
   RayList rays;
   for (std::uint32_t i = 0; i < 600; ++i) {
     const Float3 from = random.point(2);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kPackets[] = {1, 16, 64, 256};
 
-/// Rays from within, from near, from so far that the kernel moves them, and some that meet nothing
+/// Rays from within, from near, from so far that the kernel moves them, and some that hit nothing
 /// whatever they point at.
 std::vector<Ray> mixed_rays() {
   Random random(31);

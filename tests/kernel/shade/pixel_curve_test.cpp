@@ -95,8 +95,8 @@ TEST(Samples, OfBlueErrAsMuchButNotTogether) {
       const PictureErrors apart = errors_of(SamplePlan::kSobol, samples, key);
       const PictureErrors blue = errors_of(SamplePlan::kBlue, samples, key);
       // runs of 9 begin anywhere in a net: .1 more
-      const double error_bound = std::has_single_bit(static_cast<unsigned>(samples)) ? .08 : .18;
-      EXPECT_NEAR(blue.pixel, apart.pixel, error_bound * apart.pixel) << samples << ", key " << key;
+      const double tolerance = std::has_single_bit(static_cast<unsigned>(samples)) ? .08 : .18;
+      EXPECT_NEAR(blue.pixel, apart.pixel, tolerance * apart.pixel) << samples << ", key " << key;
       EXPECT_NEAR(apart.square, apart.pixel / 4, .04 * apart.pixel / 4) << samples;
       EXPECT_LT(blue.square, .67 * apart.square) << samples << ", key " << key;  // .42 to .63
     }

@@ -246,7 +246,7 @@ Pair sample(const SamplePlan& plan,
   const std::uint32_t cells = strata.columns * strata.rows;
   std::uint32_t cell = index % cells;
   if (plan.kind == SamplePlan::kJitter && (dimension != 0 || key != 0))
-    cell = permute_axes(cell, cells, scatter(own, 0x51ED270Bu));
+    cell = permute(cell, cells, scatter(own, 0x51ED270Bu));
   return {(static_cast<float>(cell % strata.columns) + x) / static_cast<float>(strata.columns),
           (static_cast<float>(cell / strata.columns) + y) / static_cast<float>(strata.rows)};
 }

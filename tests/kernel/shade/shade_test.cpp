@@ -129,7 +129,7 @@ TEST(Shade, SmoothNormalsAreMixed) {
   EXPECT_NEAR(look(s, {0, 3, 1}, {0, 0, 0}).r, 1, kFew);
 }
 
-/// Something that is met head on: the normal faces the eye, where the light hangs as well.
+/// Something that is hit head on: the normal faces the eye, where the light hangs as well.
 struct HeadOn {
   const char* what;
   void (*add)(Geometry&);

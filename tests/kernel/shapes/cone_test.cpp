@@ -119,16 +119,15 @@ Case random_case(std::uint64_t seed, double farthest, Target aim) {
   const Float3 narrow = base_is_wide ? k.shape.apex : k.shape.base,
                wide = base_is_wide ? k.shape.base : k.shape.apex;
   const double distance = random.chance(.2) ? random.unit() : random.log_in(.5, farthest);
-  const Float3 side = random.direction(), frame_error = random.direction();
+  const Float3 side = random.direction(), across = random.direction();
   k.org = at(k.shape.base, size * distance, side);
   Float3 target;
   if (aim == Target::kSide || aim == Target::kFlat) {
     const double height = random.unit(), beside = random.in(0, aim == Target::kFlat ? 1.2 : .5);
-    target =
-        at(at(k.shape.base, height, minus(k.shape.apex, k.shape.base)), size * beside, frame_error);
+    target = at(at(k.shape.base, height, minus(k.shape.apex, k.shape.base)), size * beside, across);
   } else {
     const double beside = random.log_in(1e-9, 1);
-    target = at(narrow, size * beside, frame_error);
+    target = at(narrow, size * beside, across);
   }
   if (aim == Target::kAlongTheSide) {
     const Float3 rim = rim_point(
@@ -155,10 +154,10 @@ TEST_P(ConePoints, LieOnTheSurface) {
       continue;
     ++hits;
     const oracle::Frustum f{k.shape.base, k.shape.apex, k.shape.r0, k.shape.r1};
-    const oracle::Real frame_error = f.distance(oracle::Ray{k.org, k.dir}.point(t)) / k.unit;
-    if (!(frame_error <= 32) && ++over <= 3)
-      ADD_FAILURE() << "seed " << seed << ": " << static_cast<double>(frame_error) << " units off";
-    worst = std::max(worst, frame_error);
+    const oracle::Real error = f.distance(oracle::Ray{k.org, k.dir}.point(t)) / k.unit;
+    if (!(error <= 32) && ++over <= 3)
+      ADD_FAILURE() << "seed " << seed << ": " << static_cast<double>(error) << " units off";
+    worst = std::max(worst, error);
   }
   std::printf("cone: %d hits, %d over, worst %.2f eps (|o - base| + h + r)\n",
               hits,
@@ -179,7 +178,7 @@ INSTANTIATE_TEST_SUITE_P(
                                                : "AlongTheSide";
     });
 
-/// What a ray surely meets: it, and each of six moved by twice the bound, crosses the surface, and
+/// What a ray surely hits: it, and each of six moved by twice the bound, crosses the surface, and
 /// not within the bound of an end. A hole narrower than the bound may be passed or not.
 TEST(ConeOracle, LosesNoHitNearATip) {
   int wanted = 0, lost = 0;
@@ -238,11 +237,11 @@ TEST(ConeOracle, FindsTheFirstCrossing) {
     ++judged;
     const auto [found, t] = hit(k.org, k.dir, k.shape);
     if (found && t < wanted->t && f.distance(ray.point(t)) <= tolerance)
-      continue;  // met the other rim, which is as near as none
-    const oracle::Real frame_error =
+      continue;  // hit the other rim, which is as near as none
+    const oracle::Real error =
         found ? std::abs(t - wanted->t) * length(ray.dir) / along * 32 : 1e9L;
-    worst = std::max(worst, frame_error);
-    if (!(frame_error <= 2 * 32) && ++wrong <= 3)
+    worst = std::max(worst, error);
+    if (!(error <= 2 * 32) && ++wrong <= 3)
       ADD_FAILURE() << "seed " << seed << ": found " << found << " t " << t << " against "
                     << static_cast<double>(wanted->t);
   }
@@ -256,7 +255,7 @@ TEST(ConeOracle, FindsTheFirstCrossing) {
 /// The shading point lies on the surface, within a quarter of the offset of new rays, and at the
 /// point that the ray hit: its height is off by up to 32 units, its radius by kSteep times that.
 TEST(ConeOracle, IsShadedWhereItIs) {
-  int judged = 0, frame_error = 0, aside = 0;
+  int judged = 0, off = 0, aside = 0;
   for (std::uint64_t seed = 0; seed < 40000; ++seed) {
     const Case k = random_case(seed, 1e3, seed % 2 ? Target::kFlat : Target::kSide);
     const Scene scene = one_cone(k.shape.base, k.shape.r0, k.shape.apex, k.shape.r1);
@@ -271,17 +270,17 @@ TEST(ConeOracle, IsShadedWhereItIs) {
     const oracle::Real bound =
         oracle::kEps * (8 * (f.height() + std::max(std::abs(f.r0), std::abs(f.r1))) +
                         4 * length(oracle::V(at.point)));
-    frame_error += !(f.distance(oracle::V(at.point)) <= bound);
+    off += !(f.distance(oracle::V(at.point)) <= bound);
     aside +=
         !(length(oracle::V(at.point) - oracle::Ray{k.org, k.dir}.point(met.t)) <= 256 * k.unit);
   }
-  std::printf("cone: %d shaded, %d off, %d elsewhere\n", judged, frame_error, aside);
-  EXPECT_EQ(frame_error, 0);
+  std::printf("cone: %d shaded, %d off, %d elsewhere\n", judged, off, aside);
+  EXPECT_EQ(off, 0);
   EXPECT_EQ(aside, 0);
   EXPECT_GT(judged, 8000);
 }
 
-/// Flat cones are met between their rims, and not beside: as flat as can be, the ray crosses their
+/// Flat cones are hit between their rims, and not beside: as flat as can be, the ray crosses their
 /// plane where its distance from the axis says so by more than the bound.
 TEST(ConeOracle, MeetsFlatOnesBetweenTheirRims) {
   int between = 0, lost = 0, beside = 0, met = 0;
@@ -293,15 +292,15 @@ TEST(ConeOracle, MeetsFlatOnesBetweenTheirRims) {
     const oracle::V org = oracle::V(k.org), dir = oracle::V(k.dir);
     const oracle::Real along = dot(dir, f.axis()) / length(dir);
     const oracle::Real t = dot(f.base - org, f.axis()) / dot(dir, f.axis());
-    const oracle::Real error_bound = (32 * k.unit + f.height()) / std::abs(along);
+    const oracle::Real slack = (32 * k.unit + f.height()) / std::abs(along);
     const oracle::V p = org + t * dir;
     const oracle::Real rho = length(cross(f.axis(), p - f.base));
-    if (std::abs(along) < .05L || t * length(dir) < error_bound)
+    if (std::abs(along) < .05L || t * length(dir) < slack)
       continue;
     const oracle::Real least = std::min(f.r0, f.r1), most = std::max(f.r0, f.r1);
     const bool hits = hit(k.org, k.dir, k.shape).hit;
-    const bool inside = rho > least + error_bound && rho < most - error_bound;
-    const bool outside = rho < least - error_bound || rho > most + error_bound;
+    const bool inside = rho > least + slack && rho < most - slack;
+    const bool outside = rho < least - slack || rho > most + slack;
     between += inside;
     lost += inside && !hits;
     beside += outside;

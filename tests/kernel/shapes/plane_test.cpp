@@ -64,10 +64,10 @@ TEST(PlaneOracle, KeepsTheBound) {
     if (!found)
       continue;
     ++hits;
-    const oracle::Real frame_error = std::abs(t - wanted->t) / bound;
-    ASSERT_LE(frame_error, 6) << "seed " << seed << ": t " << t << " against "
-                              << static_cast<double>(wanted->t);
-    worst = std::max(worst, frame_error);
+    const oracle::Real error = std::abs(t - wanted->t) / bound;
+    ASSERT_LE(error, 6) << "seed " << seed << ": t " << t << " against "
+                        << static_cast<double>(wanted->t);
+    worst = std::max(worst, error);
   }
   std::printf("plane: %d hits, worst %.2f of eps(...)\n", hits, static_cast<double>(worst));
   EXPECT_GT(hits, 100000);

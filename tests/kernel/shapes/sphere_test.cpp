@@ -53,10 +53,9 @@ TEST(SphereOracle, PointsLieOnTheSurface) {
     const oracle::Ball ball{c, static_cast<float>(r)};
     const oracle::Real unit =
         oracle::kEps * std::max<oracle::Real>(ball.radius, length(oracle::V(o) - ball.center));
-    const oracle::Real frame_error = ball.distance(oracle::Ray{o, d}.point(t)) / unit;
-    ASSERT_LE(frame_error, 8) << "seed " << seed << ": " << static_cast<double>(frame_error)
-                              << " of the unit";
-    worst = std::max(worst, frame_error);
+    const oracle::Real error = ball.distance(oracle::Ray{o, d}.point(t)) / unit;
+    ASSERT_LE(error, 8) << "seed " << seed << ": " << static_cast<double>(error) << " of the unit";
+    worst = std::max(worst, error);
   }
   RecordProperty("worst_in_eps", std::to_string(static_cast<double>(worst)));
   std::printf(

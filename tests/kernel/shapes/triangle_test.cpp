@@ -121,17 +121,17 @@ TEST(TriangleOracle, PointsLieOnTheTriangle) {
     const oracle::Real slenderness = l * l / std::abs(dot(facet.normal(), direction));
     slivers += slenderness > 1000;
     const oracle::Real unit = oracle::kEps * extent_of(o, s);
-    const oracle::Real frame_error = facet.distance(ray.point(h.t));
+    const oracle::Real error = facet.distance(ray.point(h.t));
     const scalar::Vec3<double> w = weights(o, d, s);
     const oracle::V gap =
         (facet.a - ray.org) + w.y * (facet.b - facet.a) + w.z * (facet.c - facet.a);
     const oracle::Real beside = length(gap - dot(gap, direction) * direction);
     const oracle::Real weights_unit =
         0x1p-53L * extent_of(o, s) * std::max(slenderness, oracle::Real(1));
-    if (!(frame_error <= 46 * unit && beside <= 64 * weights_unit) && ++over <= 3)
-      ADD_FAILURE() << "seed " << seed << ": " << double(frame_error / unit) << " and "
+    if (!(error <= 46 * unit && beside <= 64 * weights_unit) && ++over <= 3)
+      ADD_FAILURE() << "seed " << seed << ": " << double(error / unit) << " and "
                     << double(beside / weights_unit) << " units off";
-    worst = std::max(worst, frame_error / unit);
+    worst = std::max(worst, error / unit);
     worst_weights = std::max(worst_weights, beside / weights_unit);
   }
   std::printf(
@@ -166,7 +166,7 @@ Floor random_floor(Random& random, double half, const Float3& middle, bool flat)
 }
 
 /// t of floors from 1 to a million units wide, flat and tilted, at the origin and away from it,
-/// seen from .03 to 2 units above at all angles down to 1e-3: within 8 eps of where the ray meets
+/// seen from .03 to 2 units above at all angles down to 1e-3: within 8 eps of where the ray hits
 /// the plane of the very corners. Floats alone were off by up to 2 %.
 TEST(TriangleOracle, FloorsOfAnySizeAreMetWhereTheyAre) {
   constexpr oracle::Real kMost = 8;
@@ -266,7 +266,7 @@ TEST(TriangleCorners, EdgesCornersAndSides) {
   EXPECT_FALSE(hit({0, 0, 5}, {0, 0, -1}, {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}).hit);
 }
 
-/// An edge function that is zero in float but not in truth: of two neighbours exactly one is met,
+/// An edge function that is zero in float but not in truth: of two neighbours exactly one is hit,
 /// the one that holds the ray. (1 + 2^-22) 1 and (1 + 2^-23)^2 round alike and differ by 2^-46.
 TEST(TriangleCorners, ZeroEdgesAreTakenAgain) {
   for (const float k : {1.f, 1e-10f, 1e10f}) {
@@ -288,7 +288,7 @@ TEST(TriangleCorners, ZeroEdgesAreTakenAgain) {
   }
 }
 
-/// Embree #387: a sliver met at half a degree was reported at twenty times the distance of its
+/// Embree #387: a sliver hit at half a degree was reported at twenty times the distance of its
 /// farthest corner.
 TEST(TriangleCorners, DepthStaysWithinThatOfTheCorners) {
   for (std::uint64_t seed = 0; seed < 100000; ++seed) {

@@ -38,8 +38,8 @@ TEST(Expansions, AreWhatRationalNumbersAre) {
         truth -= near;
       }
       ASSERT_EQ(sum.sign(), sgn(truth)) << seed;
-      const mpq_class frame_error = abs(mpq_class(sum.estimate()) - truth);
-      ASSERT_LE(frame_error, abs(truth) * mpq_class(0x1p-51)) << seed;
+      const mpq_class error = abs(mpq_class(sum.estimate()) - truth);
+      ASSERT_LE(error, abs(truth) * mpq_class(0x1p-51)) << seed;
     }
   }
 }

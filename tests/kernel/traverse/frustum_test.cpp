@@ -100,7 +100,7 @@ constexpr Promise kPromises[] = {{"sides", &FrustumCheck::sides},
                                  {"planes of a group", &FrustumCheck::group_planes},
                                  {"the near plane", &FrustumCheck::near},
                                  {"a group's near plane", &FrustumCheck::group_near},
-                                 {"a plane's gradient", &FrustumCheck::half_width}};
+                                 {"a plane's gradient", &FrustumCheck::gradient_length}};
 
 class Frusta : public EveryVariant {};
 GRELHA_FOR_EVERY_ISA(Frusta);

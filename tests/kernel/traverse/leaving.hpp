@@ -25,7 +25,7 @@ inline Answers scalar_hits(const World& world, const RayList& rays) {
   return trace(*find_variant("scalar"), world, rays, {1, true}, Query::kClosest);
 }
 
-/// The surface that a ray meets at t.
+/// The surface that a ray hits at t.
 inline Surface surface_at(
     const World& world, std::uint32_t id, const Float3& org, const Float3& dir, float t) {
   return scalar::surface_of<float>(world.impl().view.geometry, id, vec(org), vec(dir), t, false);

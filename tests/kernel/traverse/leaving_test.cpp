@@ -1,4 +1,4 @@
-// Rays that leave a surface, of every kind, size and place: none meets the surface it left.
+// Rays that leave a surface, of every kind, size and place: none hits the surface it left.
 #include "tests/kernel/traverse/leaving.hpp"
 
 #include <optional>
@@ -60,7 +60,7 @@ std::optional<Float3> way_out(Random& random, const Surface& s, bool along, bool
   return outwards && scalar::dot(to, s.normal) < 0 ? floats(V{0, 0, 0} - to) : d;
 }
 
-/// Rays that leave what others met, and the primitives they leave.
+/// Rays that leave what others hit, and the primitives they leave.
 struct Leaving {
   RayList rays;
   std::vector<std::uint32_t> from;
@@ -88,7 +88,7 @@ Leaving rays_from_hits(
 }
 
 /// `make` builds the scene of one primitive of the given size at a place; `convex`: no ray that
-/// goes out meets it again; otherwise none at all does, on either side.
+/// goes out hits it again; otherwise none at all does, on either side.
 template <class Make>
 Result leave_from(std::uint64_t seeds, const Row& row, bool convex, const Make& make) {
   Result r;
@@ -171,7 +171,7 @@ TEST(Leaving, Cones) {
 }
 
 TEST(Leaving, Planes) {
-  // A plane's error is that of the point met, which grows with the distance of the origin.
+  // A plane's error is that of the point hit, which grows with the distance of the origin.
   for (const Row& row : kRows) {
     const Result r = leave_from(4000, row, false, make_plane);
     r.print("plane" + row.name());

@@ -19,8 +19,8 @@ struct Mirrored {
 
 /// Notes how far the surface is from the exact one of normal n.
 void measure(Mirrored& m, const Surface& s, const oracle::V& n, float radius) {
-  const oracle::V frame_error = n - oracle::V(floats(s.normal));
-  m.normal = std::max(m.normal, static_cast<double>(oracle::length(frame_error) / oracle::kEps));
+  const oracle::V error = n - oracle::V(floats(s.normal));
+  m.normal = std::max(m.normal, static_cast<double>(oracle::length(error) / oracle::kEps));
   const double unit = double(scalar::largest(s.point)) * scalar::kEps;
   m.away = std::max(m.away, (double(s.offset) - 0x1p-42 * radius) / unit);
 }

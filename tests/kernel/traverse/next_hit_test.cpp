@@ -16,7 +16,7 @@ std::vector<Tracer> tracers(int packet) {
   return {{best, {.packet = packet}}, {best, {.packet = 1}}, {reference_walk(), {}}};
 }
 
-/// Rays that leave primitive 0 where others meet it, from anywhere and at any t.
+/// Rays that leave primitive 0 where others hit it, from anywhere and at any t.
 RayList rays_off_a_plane(Random& random, const World& world) {
   RayList rays;
   for (int i = 0; i < 64; ++i) {
@@ -52,7 +52,7 @@ TEST(Leaving, PlanesWithAllElseFarAway) {
   EXPECT_EQ(left, 200 * 64 * 6);
 }
 
-/// How far above the plane of FarEyes a ray meets the ball, times the length of the plane's normal.
+/// How far above the plane of FarEyes a ray hits the ball, times the length of the plane's normal.
 /// The ray goes along the unit direction u, through a place within.
 double height_of_hit(const Float3& place, const double (&u)[3]) {
   const double b = place.x * u[0] + place.y * u[1] + place.z * u[2];
@@ -99,7 +99,7 @@ TEST(FarEyes, SeeWhatStandsOnAPlane) {
   }
 }
 
-/// Rays sent inwards cross the body: what they meet is its far side, not the place they left.
+/// Rays sent inwards cross the body: what they hit is its far side, not the place they left.
 TEST(Leaving, InwardsMeetsTheFarSide) {
   std::uint64_t judged = 0;
   for (std::uint64_t seed = 0; seed < 20000; ++seed) {
@@ -149,7 +149,7 @@ Scene two_floors(const Float3& place, float size, float gap) {
   return scene;
 }
 
-/// Something a thousandth of the size above a surface is met, not skipped, wherever that is far
+/// Something a thousandth of the size above a surface is hit, not skipped, wherever that is far
 /// above the spacing of floats.
 TEST(Leaving, SeesWhatIsNear) {
   std::uint64_t rays = 0;

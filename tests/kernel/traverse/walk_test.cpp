@@ -233,8 +233,8 @@ TEST_P(FarRays, MeetMeshesOfTheirOwnScale) {
     std::size_t of_mesh = 0;
     for (std::size_t i = 0; i < met.id.size(); ++i) {
       of_mesh += met.id[i] < scene.geometry.objects[0].triangle_count;
-      const double frame_error = random.sign() * random.log_in(0x1p-25, 0x1p-18);
-      const auto t = static_cast<float>(met.t[i] * (1 + frame_error));
+      const double error = random.sign() * random.log_in(0x1p-25, 0x1p-18);
+      const auto t = static_cast<float>(met.t[i] * (1 + error));
       const bool ends = random.chance(.5);
       rays.add(rays.org(i), rays.dir(i), ends ? 0 : t, ends ? t : kInf);
     }
@@ -296,7 +296,7 @@ TEST(GridOrder, IsFrontToBack) {
 class Ties : public EveryVariant {};
 GRELHA_FOR_EVERY_ISA(Ties);
 
-/// Of copies at the same place the lower id is met, with every method, in any order of cells; and
+/// Of copies at the same place the lower id is hit, with every method, in any order of cells; and
 /// of different kinds at equal t too: planes, spheres, triangles, cones.
 TEST_P(Ties, TheLowerIdWins) {
   Scene scene = empty_scene();

@@ -94,7 +94,7 @@ void expect_none_leaks(const Variant& variant,
 }
 
 /// No ray from inside gets out, whichever way it is traced, and none from outside gets through
-/// where it meets the body steeply: it meets something no later than at its aim.
+/// where it hits the body steeply: it hits something no later than at its aim.
 void expect_no_leak(const Variant& variant,
                     const Scene& unit_scene,
                     bool torus,

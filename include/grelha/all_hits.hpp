@@ -1,0 +1,64 @@
+#pragma once
+// All hits along a ray, their number, and whether points lie inside closed meshes. Thread-safe, as
+// the queries of query.hpp.
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "grelha/query.hpp"
+
+namespace grelha {
+
+/// All hits of many rays in one array.
+struct HitLists {
+  std::vector<std::size_t> offset;  ///< [rays + 1] hits of ray i: offset[i] to offset[i + 1] - 1
+  std::vector<Hit> hits;            ///< ray after ray, each in order of (t, id)
+  /// Returns the hits of ray i.
+  std::span<const Hit> of(std::size_t i) const {
+    return std::span(hits).subspan(offset[i], offset[i + 1] - offset[i]);
+  }
+};
+
+/// Finds all hits of a ray strictly between its t_min and t_max, in order of (t, id). A ray that
+/// enters and leaves a sphere or a cone hits it twice; crossings of one sphere or cone within 2^-45
+/// of t count as one. An edge or a vertex belongs to each triangle that has it. Exact copies of a
+/// primitive count once, with the lowest id. The order is that of the exact t; the t returned are
+/// rounded, so neighbours may be equal. The first hit has the same bits as closest().
+std::vector<Hit> all_hits(const World& world, const Ray& ray, const Filter& filter = {});
+/// The same, one hit after another, until `visit` returns false.
+void all_hits(const World& world,
+              const Ray& ray,
+              const std::function<bool(const Hit&)>& visit,
+              const Filter& filter = {});
+/// The same for each ray of a stream. Throws what closest() throws.
+HitLists all_hits(const World& world, const Rays& rays, const QueryOptions& options = {});
+
+/// Counts the hits of each ray of a stream: counts[i] is the number of hits that all_hits() finds
+/// for ray i. Throws what closest() throws, and std::invalid_argument if `counts` is null.
+void count_hits(const World& world,
+                const Rays& rays,
+                std::uint32_t* counts,
+                const QueryOptions& options = {});
+
+/// Counts the triangles that a ray crosses between its t_min and t_max. Other primitives do not
+/// count, and exact copies of a triangle may count as one. A ray through an edge or a vertex is
+/// treated as if it passed at an infinitesimal distance, on the same side for all triangles. For a
+/// closed mesh the count is therefore odd from inside and even from outside, for every ray.
+/// Simulation of simplicity, Edelsbrunner and Mücke 1990; docs/numerics.md.
+std::size_t count_crossings(const World& world, const Ray& ray);
+
+/// Returns true if a point lies inside the closed meshes of a scene: inside an odd number of them.
+/// The triangles must form closed meshes; other primitives do not count. The answer is exact: it
+/// does not depend on a choice of ray. Points with a NaN or an infinity are outside.
+bool contains(const World& world, Float3 point);
+/// The same for many points: inside[i] is 1 or 0. Reads options.threads and options.progress.
+/// Throws std::invalid_argument if the lengths differ.
+void contains(const World& world,
+              std::span<const Float3> points,
+              std::span<std::uint8_t> inside,
+              const QueryOptions& options = {});
+
+}  // namespace grelha
