@@ -38,8 +38,8 @@ struct Filter {
 
 /// Finds the nearest hit of each ray of a stream. The stream may have any length. Long streams are
 /// faster per ray, and coherent ones fastest: consecutive rays with similar origins and directions.
-/// Runs on the calling thread unless options.threads says otherwise. Of two hits at equal t the one with the lower id is returned. The
-/// result of a ray has the same bits whatever other rays the stream contains. If `counts` is given,
+/// Runs on the calling thread unless options.threads says otherwise. Of two hits at equal t, the one
+/// with the lower id is returned. The result of a ray has the same bits whatever other rays the stream contains. If `counts` is given,
 /// the work done is added to it. Throws std::invalid_argument for an unknown packet size, an
 /// instruction set that is unknown or unsupported here, and for rays without origins or directions.
 void closest(const World& world,

@@ -45,7 +45,7 @@ struct Rays {
   const float* t_max = nullptr;  ///< hits at or behind it do not count; null: infinity
   /// [i] id of a primitive that ray i does not hit, or kNoPrimitive; null: no ray has one
   const std::uint32_t* skip = nullptr;
-  /// [i] ray i hits only primitives p with (QueryOptions::mask[p] & mask[i]) != 0; null: 255 for all
+  /// [i] ray i hits only primitives p with (QueryOptions::mask[p] & mask[i]) != 0; null: 255
   const std::uint8_t* mask = nullptr;
   std::size_t count = 0;          ///< number of rays
   std::ptrdiff_t org_stride = 1;  ///< from the org of one ray to that of the next
@@ -70,8 +70,8 @@ struct Hits {
   /// [i] out: t in double, with a relative error of at most 2^-45
   double* t_double = nullptr;
   /// [i] out: barycentric coordinates where the ray crosses a triangle with the vertices a, b, c:
-  /// (1 - u - v) a + u b + v c; never negative, together at most 1, within 2^-20 where the triangle
-  /// is seen as a face and not as a sliver; 0 without a hit and for other primitives
+  /// the point is (1 - u - v) a + u b + v c. Never negative, together at most 1. 0 without a hit
+  /// and for other primitives. Computed in double and rounded.
   float *u = nullptr, *v = nullptr;
   std::ptrdiff_t stride = 1;  ///< of t and id, in units of four bytes
 

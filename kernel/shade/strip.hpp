@@ -43,8 +43,8 @@ struct CameraRays {
 
 /// Rays that start from points of the lens and cross the given ones in focus.
 [[gnu::always_inline]] inline CameraRays through_lens(const FrameView& f,
-                                                    const CameraRays& pinhole,
-                                                    const PairOf<VFloat>& sample) {
+                                                      const CameraRays& pinhole,
+                                                      const PairOf<VFloat>& sample) {
   const PairOf<VFloat> p = disc_point(sample);
   const VFloat3 on_lens = p.u * splat(f.lens_right) + p.v * splat(f.lens_up);
   return {pinhole.org + on_lens, VFloat(f.focus) * pinhole.dir - on_lens};

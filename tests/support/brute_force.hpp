@@ -21,8 +21,8 @@ struct Crossing {
   std::uint32_t id;
 };
 
-/// The crossings of a ray, in order of t. `is_clear` is false where a crossing is so near an edge or
-/// an end that rounding may decide.
+/// The crossings of a ray, in order of t. `is_clear` is false where a crossing is so near an edge
+/// or an end that rounding may decide.
 struct Crossings {
   std::vector<Crossing> list;
   bool is_clear = true;
@@ -166,7 +166,7 @@ inline const std::vector<std::pair<Real, Real>> kCircle = [] {
   return circle;
 }();
 
-/// Distances from a point to every primitive, by id. Those to cones are of 2,000 lines on their side.
+/// Distances from a point to every primitive, by id. A cone is 2,000 lines on its side.
 inline std::vector<Real> distances(const Scene& s, const Float3& point) {
   const Geometry& g = s.geometry;
   const V p = v(point);
