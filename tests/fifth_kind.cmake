@@ -38,8 +38,8 @@ add_before(kernel/shapes/shapes.hpp "#include \"kernel/shapes/plane.hpp\""
 add_before(kernel/shapes/shapes.hpp ">;\n/// How many; PrimitiveKind" ", Disc")
 
 # What callers fill in: a name, arrays, and views of them.
-add_before(include/grelha/geometry.hpp " };\n\n/// A primitive as the caller knows it." ", kDisc")
-add_before(include/grelha/geometry.hpp "/// Triangles over shared vertices"
+add_before(include/grelha/geometry.hpp " };\n\n/// A primitive, named by its kind" ", kDisc")
+add_before(include/grelha/geometry.hpp "/// Indexed triangles of all meshes"
 "/// Discs of a plane around a point; the normal need not have unit length.
 struct Discs {
   std::vector<float> x, y, z, nx, ny, nz, radius;

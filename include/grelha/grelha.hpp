@@ -7,7 +7,9 @@
 /// Fill in a grelha::Scene, or a grelha::SceneSpans over arrays of your own; build a grelha::World
 /// from it; ask with grelha::closest() and grelha::occluded(), or grelha::render() a picture.
 
+#include "grelha/all_hits.hpp"
 #include "grelha/camera.hpp"
+#include "grelha/distance.hpp"
 #include "grelha/geometry.hpp"
 #include "grelha/image.hpp"
 #include "grelha/query.hpp"

@@ -38,10 +38,11 @@ struct Filter {
 
 /// Finds the nearest hit of each ray of a stream. The stream may have any length. Long streams are
 /// faster per ray, and coherent ones fastest: consecutive rays with similar origins and directions.
-/// Runs on the calling thread unless options.threads says otherwise. Of two hits at equal t, the one
-/// with the lower id is returned. The result of a ray has the same bits whatever other rays the stream contains. If `counts` is given,
-/// the work done is added to it. Throws std::invalid_argument for an unknown packet size, an
-/// instruction set that is unknown or unsupported here, and for rays without origins or directions.
+/// Runs on the calling thread unless options.threads says otherwise. Of two hits at equal t the one
+/// with the lower id is returned. The result of a ray has the same bits whatever other rays the
+/// stream contains. If `counts` is given, the work done is added to it. Throws
+/// std::invalid_argument for an unknown packet size, an instruction set that is unknown or
+/// unsupported here, a wrong number of masks, and for rays without origins or directions.
 void closest(const World& world,
              const Rays& rays,
              const Hits& hits,
@@ -109,6 +110,11 @@ void surfaces(const World& world,
               std::span<const Hit> hits,
               std::span<SurfacePoint> points,
               const QueryOptions& options = {});
+
+/// Computes the surface point of primitive `id` that is nearest to a given point: where rays start
+/// that leave a known point of a known primitive, without an epsilon. `shading` is `normal` unless
+/// the triangle has vertex normals. Throws std::invalid_argument if there is no primitive `id`.
+SurfacePoint surface_at(const World& world, std::uint32_t id, Float3 point);
 
 /// Returns the kind and index of the primitive with this id. Throws std::invalid_argument if there
 /// is none. Ids count planes first, then spheres, triangles and cones, each kind in the order of

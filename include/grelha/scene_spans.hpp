@@ -39,7 +39,7 @@ struct ConeSpans {
         apex_z(c.apex_z),
         apex_radius(c.apex_radius),
         material(c.material) {}
-  std::size_t size() const { return material.size(); }  ///< number of elements
+  std::size_t size() const { return base_radius.size(); }  ///< number of elements
 };
 
 /// See Planes.
@@ -50,7 +50,7 @@ struct PlaneSpans {
   /// Refers to the arrays of the argument.
   PlaneSpans(const Planes& p)
       : x(p.x), y(p.y), z(p.z), nx(p.nx), ny(p.ny), nz(p.nz), material(p.material) {}
-  std::size_t size() const { return material.size(); }  ///< number of elements
+  std::size_t size() const { return x.size(); }  ///< number of elements
 };
 
 /// See Triangles.
@@ -92,7 +92,8 @@ struct GeometrySpans {
         objects(g.objects) {}
 };
 
-/// See Scene. Constructed from a Scene, or filled in by a caller with arrays of its own.
+/// See Scene. Constructed from a Scene, or filled in by a caller with arrays of its own. Arrays of
+/// material indices may be empty, which means 0 for all. Without any materials there is a grey one.
 struct SceneSpans {
   GeometrySpans geometry;
   std::span<const Material> materials;

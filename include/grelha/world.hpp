@@ -62,6 +62,11 @@ class World {
   World(World&&) noexcept;             ///< the source can only be destroyed or assigned to
   World& operator=(World&&) noexcept;  ///< the same
 
+  /// Replaces the scene, for example after its vertices moved: the same as building a new World,
+  /// bit for bit. No query may run at the same time. Throws what the constructor throws, and then
+  /// leaves the World as it was.
+  void update(const SceneSpans& scene, const BuildOptions& options);
+
   /// Returns the size of each grid: one for the loose primitives and one for each larger object.
   std::vector<GridStats> grids() const;
   std::size_t geometry_bytes() const;  ///< the scene's own arrays

@@ -57,15 +57,37 @@ void check(const SceneSpans& scene) {
     throw std::invalid_argument("an object names a triangle that is not there");
 }
 
+/// The scene with indices of materials, `zeros` where the caller gave none, checked.
+SceneSpans completed(SceneSpans scene, std::vector<std::uint32_t>& zeros) {
+  static constexpr Material kGrey{.diffuse = {.8f, .8f, .8f}};
+  GeometrySpans& g = scene.geometry;
+  std::size_t most = 0;
+  for_each_shape([&]<class Shape>() {
+    if (Shape::spans_of(g).material.empty())
+      most = std::max(most, Shape::spans_of(g).size());
+  });
+  zeros.resize(most);
+  for_each_shape([&]<class Shape>() {
+    auto& spans =
+        const_cast<std::remove_cvref_t<decltype(Shape::spans_of(g))>&>(Shape::spans_of(g));
+    if (spans.material.empty())
+      spans.material = std::span(zeros).first(spans.size());
+  });
+  if (scene.materials.empty())
+    scene.materials = std::span(&kGrey, 1);
+  check(scene);
+  return scene;
+}
+
 }  // namespace
 
 World::Impl::Impl(const SceneSpans& s, const BuildOptions& options)
-    : scene((check(s), s)), primitives(s.geometry), materials(s) {
+    : scene(completed(s, no_materials)), primitives(scene.geometry), materials(scene) {
   const KeepThreadsAwake awake;
   BuildProgress progress(options.progress);
   Plan plan = plan_grids(primitives, options, progress);
   if (options.most_bytes > 0 && !surely_fits(primitives, options.most_bytes))
-    if (const BuildMemory need = memory_of(s, primitives, plan); need.peak > options.most_bytes)
+    if (const BuildMemory need = memory_of(scene, primitives, plan); need.peak > options.most_bytes)
       throw TooLarge(need);
   fill(plan, threads_of(options), progress);
   outside = build_list(primitives, plan.apart);
@@ -159,11 +181,12 @@ void World::Impl::fill(Plan& plan, int threads, BuildProgress& progress) {
 }
 
 BuildMemory World::estimate(const SceneSpans& scene, const BuildOptions& options) {
-  check(scene);
+  std::vector<std::uint32_t> zeros;
+  const SceneSpans whole = completed(scene, zeros);
   check(options);
-  const Primitives primitives(scene.geometry);
+  const Primitives primitives(whole.geometry);
   BuildProgress nobody;
-  return memory_of(scene, primitives, plan_grids(primitives, options, nobody));
+  return memory_of(whole, primitives, plan_grids(primitives, options, nobody));
 }
 
 World::World(const SceneSpans& scene, const BuildOptions& options)
@@ -171,6 +194,10 @@ World::World(const SceneSpans& scene, const BuildOptions& options)
 World::~World() = default;
 World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
+
+void World::update(const SceneSpans& scene, const BuildOptions& options) {
+  *this = World(scene, options);
+}
 
 std::vector<GridStats> World::grids() const {
   std::vector<GridStats> out;

@@ -16,6 +16,7 @@ class BuildProgress;
 struct Plan;
 
 struct World::Impl {
+  std::vector<std::uint32_t> no_materials;  ///< zeros, for kinds without material indices
   SceneSpans scene;
   Primitives primitives;
   std::vector<Grid> grids;

@@ -8,6 +8,7 @@
 #include "kernel/query/filtered.hpp"
 #include "kernel/query/options.hpp"
 #include "kernel/query/runs.hpp"
+#include "kernel/shapes/nearest.hpp"
 #include "kernel/shapes/surface.hpp"
 #include "kernel/grid/world_impl.hpp"
 
@@ -39,6 +40,10 @@ scalar::Vec3<float> vec(const Float3& p) {
 }
 Float3 float3(const scalar::Vec3<float>& v) {
   return {v.x, v.y, v.z};
+}
+
+scalar::Vec3<float> narrowed(const scalar::Point& p) {
+  return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
 }
 
 }  // namespace
@@ -126,6 +131,27 @@ SurfacePoint surface(const World& world, const Ray& ray, const Hit& hit) {
       s.offset,
       s.material,
   };
+}
+
+SurfacePoint surface_at(const World& world, std::uint32_t id, Float3 point) {
+  const World::Impl& w = world.impl();
+  expect_primitive(w.primitives.ids, id);
+  using scalar::Point;
+  const Point p{point.x, point.y, point.z};
+  Point foot{}, normal{};
+  visit_primitive(w.view.geometry, id, [&]<class Shape>(const auto& one) {
+    foot = nearest_on(p, one);
+    normal = normal_at(foot, one);
+    if constexpr (Shape::kKind == PrimitiveKind::kSphere)
+      if (one.radius < 0)  // it shows from inside alone
+        normal = -1. * normal;
+  });
+  // a short ray to that point
+  const double away = length(foot) * 0x1p-10 + 0x1p-40;
+  const Point from = foot + away * normal;
+  const Point dir = (-away) * normal;
+  const scalar::Vec3<float> org_f = narrowed(from), dir_f = narrowed(dir);
+  return surface(world, {float3(org_f), float3(dir_f)}, {1, id});
 }
 
 void surfaces(const World& world,

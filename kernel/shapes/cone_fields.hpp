@@ -56,7 +56,7 @@ struct Cone {
   static const ConeSpans& spans_of(const GeometrySpans& g) { return g.cones; }
   /// True if all arrays have the same length.
   static bool is_even(const ConeSpans& spans) {
-    bool even = true;
+    bool even = spans.material.size() == spans.size();
     for_each_array(spans, [&](Floats v) { even &= v.size() == spans.size(); });
     return even;
   }

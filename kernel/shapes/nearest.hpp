@@ -69,4 +69,23 @@ inline Point nearest_on(const Point& p, const Cone::Fields<float>& cone) {
   return nearest_on_segment(p, base + narrow * across, (base + height * axis) + wide * across);
 }
 
+// ---- unit normals at points of surfaces, outwards ----
+
+inline Point normal_at(const Point&, const Triangle::Fields<float>& triangle) {
+  const Point a = point_of(triangle.corner[0]);
+  return normalize(cross(point_of(triangle.corner[1]) - a, point_of(triangle.corner[2]) - a));
+}
+inline Point normal_at(const Point& p, const Sphere::Fields<float>& sphere) {
+  return normalize(p - point_of(sphere.center));
+}
+inline Point normal_at(const Point&, const Plane::Fields<float>& plane) {
+  return normalize(point_of(plane.normal));
+}
+inline Point normal_at(const Point& p, const Cone::Fields<float>& cone) {
+  const Point axis = normalize(point_of(cone.axis));
+  const Point from_base = p - point_of(cone.base);
+  const Point across = normalize(from_base - dot(from_base, axis) * axis);
+  return normalize(across - static_cast<double>(cone.slope) * axis);
+}
+
 }  // namespace grelha::GRELHA_ISA

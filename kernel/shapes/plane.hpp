@@ -38,7 +38,7 @@ struct Plane {
   static const PlaneSpans& spans_of(const GeometrySpans& g) { return g.planes; }
   /// True if all arrays have the same length.
   static bool is_even(const PlaneSpans& spans) {
-    bool even = true;
+    bool even = spans.material.size() == spans.size();
     for_each_array(spans, [&](Floats v) { even &= v.size() == spans.size(); });
     return even;
   }

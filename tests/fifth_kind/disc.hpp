@@ -188,4 +188,16 @@ inline Surface<Real> surface_on(const Disc::Arrays& discs,
   return surface_at<Real>(plane_position<Real>(c, n, met.at), words_at(discs.material, i));
 }
 
+inline Vec3<double> normal_at(const Vec3<double>&, const Disc::Fields<float>& disc) {
+  return normalize(Vec3<double>{disc.normal[0], disc.normal[1], disc.normal[2]});
+}
+/// The nearest point of a disc: in its plane, moved to its rim if it lies beyond.
+inline Vec3<double> nearest_on(const Vec3<double>& p, const Disc::Fields<float>& disc) {
+  const Vec3<double> center{disc.center[0], disc.center[1], disc.center[2]};
+  const Vec3<double> n = normal_at(p, disc);
+  const Vec3<double> across = (p - center) - dot(p - center, n) * n;
+  const double distance = length(across);
+  const double radius = disc.radius;
+  return center + (distance > radius ? radius / distance : 1.) * across;
+}
 }  // namespace grelha::GRELHA_ISA
