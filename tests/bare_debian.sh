@@ -1,6 +1,6 @@
 #!/bin/sh
 # bare_debian.sh DEB FOLDER [MIRROR]: installs the package in a fresh Debian 12 in FOLDER and uses
-# it: the program, the man page, and the example built against the library. As root, with
+# it: the program, the man page, and the examples built against the library. As root, with
 # debootstrap; not a test of ctest's, for it downloads some hundred megabytes.
 set -eu
 deb=$1
@@ -24,5 +24,8 @@ cp -r /usr/share/doc/grelha/examples /tmp/example
 cmake -S /tmp/example -B /tmp/example/build
 cmake --build /tmp/example/build
 /tmp/example/build/embed
+apt-get install -y -qq --no-install-recommends pkg-config
+cc /tmp/example/first_hit.c $(pkg-config --cflags --libs grelha-c) -o /tmp/first_hit
+/tmp/first_hit
 TRY
 chroot "$root" sh /tmp/try

@@ -14,12 +14,17 @@ cpack -B "$2" -C "$3" >"$2/log" 2>&1 || { cat "$2/log"; exit 1; }
 deb=$(ls "$2"/grelha_*.deb)
 dpkg-deb -c "$deb" | awk '{print $6}' >"$2/files"
 share=usr/share
-for file in usr/bin/grelha usr/lib/libgrelha.a usr/lib/cmake/grelha/grelhaConfig.cmake \
-  usr/include/grelha/grelha.hpp $share/man/man1/grelha.1 \
+of_c=
+grep -q '^GRELHA_C:BOOL=OFF' CMakeCache.txt ||
+  of_c="usr/include/grelha.h usr/lib/libgrelha.so usr/lib/pkgconfig/grelha-c.pc"
+# shellcheck disable=SC2086
+for file in usr/bin/grelha usr/lib/libgrelha_kernel.a usr/lib/cmake/grelha/grelhaConfig.cmake \
+  usr/include/grelha/grelha.hpp usr/lib/pkgconfig/grelha.pc $of_c $share/man/man1/grelha.1 \
   $share/bash-completion/completions/grelha $share/zsh/vendor-completions/_grelha \
   $share/fish/vendor_completions.d/grelha.fish $share/grelha/scenes/balls.nff \
   $share/doc/grelha/copyright $share/doc/grelha/farm.sh $share/doc/grelha/README.md \
-  $share/doc/grelha/CHANGELOG.md $share/doc/grelha/examples/embed.cpp; do
+  $share/doc/grelha/CHANGELOG.md $share/doc/grelha/examples/embed.cpp \
+  $share/doc/grelha/examples/first_hit.c; do
   grep -qx "./$file" "$2/files" || { echo "the package lacks $file"; exit 1; }
 done
 depends=$(dpkg-deb -f "$deb" Depends)

@@ -18,8 +18,9 @@ import shutil
 import subprocess
 import sys
 
-FOLDERS = ("include", "kernel", "frontend", "scenes", "tests", "perf", "examples", "cmake", "docs")
-CPP = (".hpp", ".cpp")
+FOLDERS = ("include", "kernel", "frontend", "c", "scenes", "tests", "perf", "examples", "cmake",
+           "docs")
+CPP = (".hpp", ".cpp", ".h", ".c")
 SOURCES = (*CPP, ".py", ".sh", ".cmake", ".in")
 NAMES = ("CMakeLists.txt", "run")
 WIDTH, FILE_LINES, FUNCTION_LINES, BRANCHES = 100, 400, 60, 15
@@ -88,8 +89,8 @@ def text_offences(root):
 
 def function_offences(root):
     files = sources(root, CPP)
-    command = ["ctags", "--languages=C++", "--langmap=C++:+.hpp", "--kinds-C++=f", "--fields=+ne",
-               "--output-format=json", "-f", "-", "-L", "-"]
+    command = ["ctags", "--languages=C++", "--langmap=C++:+.hpp.h.c", "--kinds-C++=f",
+               "--fields=+ne", "--output-format=json", "-f", "-", "-L", "-"]
     tags = subprocess.run(command, cwd=root, input="\n".join(map(str, files)), check=True,
                           capture_output=True, text=True).stdout
     code = {str(f): code_of((root / f).read_text(errors="replace")).splitlines() for f in files}

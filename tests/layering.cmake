@@ -1,6 +1,6 @@
 # Reads every #include "..." of ours and fails on one that points up:
 #   scenes -> scenes;  include -> include;  kernel -> kernel, include;
-#   frontend -> frontend, kernel, include;
+#   frontend -> frontend, kernel, include;  c -> c, include;
 #   tests, perf -> anything; and inside the kernel and the frontend each room those before it.
 # Nor may components, a header and its source each, include each other round in a circle.
 # Nor may any of these ask the environment: what a program does follows from its command line, and a
@@ -12,6 +12,7 @@ set(allowed_scenes "^scenes/")
 set(allowed_include "^grelha/")
 set(allowed_kernel "^(kernel|grelha)/")
 set(allowed_frontend "^(frontend|kernel|grelha)/")
+set(allowed_c "^(c|grelha)/|^grelha\\.h$")
 # Rooms: each may include those before it and itself.
 set(rooms_kernel base scene shapes grid traverse query
   shade picture isa)
@@ -89,9 +90,9 @@ endfunction()
 
 # Sets `wrong` to a list of complaints.
 function(find_wrong_arrows root)
-  set(folders "scenes|kernel|grelha|frontend|tests|perf")
+  set(folders "scenes|kernel|grelha|frontend|tests|perf|c/")
   set(complaints "")
-  foreach(layer scenes include kernel frontend)
+  foreach(layer scenes include kernel frontend c)
     file(GLOB_RECURSE files RELATIVE ${root} ${root}/${layer}/*.hpp ${root}/${layer}/*.cpp
       ${root}/${layer}/*.h
       ${root}/${layer}/*.inc)
@@ -119,7 +120,7 @@ endfunction()
 # Sets `hidden` to the files that read variables of the environment.
 function(find_hidden_settings root)
   set(complaints "")
-  foreach(layer scenes kernel frontend perf)
+  foreach(layer scenes kernel frontend c perf)
     file(GLOB_RECURSE files RELATIVE ${root} ${root}/${layer}/*.hpp ${root}/${layer}/*.cpp)
     foreach(file ${files})
       file(STRINGS ${root}/${file} lines REGEX "getenv|environ\\[")
@@ -163,13 +164,13 @@ file(WRITE ${SCRATCH}/scenes/b.cpp "#include \"scenes/x.hpp\"\n#include <vector>
 file(WRITE ${SCRATCH}/kernel/a.hpp "  #  include \"frontend/x.hpp\"\n")
 file(WRITE ${SCRATCH}/kernel/b.cpp "#include <tests/x.hpp>\n")
 file(WRITE ${SCRATCH}/kernel/c.cpp "#include \"../frontend/x.hpp\"\n")
-file(WRITE ${SCRATCH}/kernel/simd/a.hpp
-  "#include \"kernel/simd/b.hpp\"\n#include \"grelha/world.hpp\"\n")
+file(WRITE ${SCRATCH}/kernel/base/a.hpp
+  "#include \"kernel/base/b.hpp\"\n#include \"grelha/world.hpp\"\n")
 file(WRITE ${SCRATCH}/kernel/grid/a.hpp
   "#include \"kernel/shapes/a.hpp\"\n#include \"kernel/trace/a.hpp\"\n")
 file(WRITE ${SCRATCH}/kernel/isa/a.cpp
   "#include \"kernel/attic/a.hpp\"\n#include \"kernel/picture/a.hpp\"\n")
-file(WRITE ${SCRATCH}/include/grelha/a.hpp "#include \"kernel/simd/a.hpp\"\n")
+file(WRITE ${SCRATCH}/include/grelha/a.hpp "#include \"kernel/base/a.hpp\"\n")
 file(WRITE ${SCRATCH}/frontend/nff/a.cpp
   "#include \"frontend/ply/a.hpp\"\n#include \"kernel/isa/a.hpp\"\n")
 file(WRITE ${SCRATCH}/frontend/scene/a.hpp
@@ -178,8 +179,10 @@ file(WRITE ${SCRATCH}/frontend/a.cpp
   "#include \"scenes/generators.hpp\"\n#include \"kernel/x.hpp\"\n")
 file(WRITE ${SCRATCH}/frontend/cli/main.cpp
   "#include \"scenes/generators.hpp\"\n#include \"scenes/vec.hpp\"\n")
+file(WRITE ${SCRATCH}/c/a.cpp
+  "#include \"c/a.hpp\"\n#include \"grelha.h\"\n#include \"kernel/x.hpp\"\n#include <cmath>\n")
 find_wrong_arrows(${SCRATCH})
-set(expected "scenes/a.cpp includes kernel/x.hpp;include/grelha/a.hpp includes kernel/simd/a.hpp")
+set(expected "scenes/a.cpp includes kernel/x.hpp;include/grelha/a.hpp includes kernel/base/a.hpp")
 string(APPEND expected ";kernel/a.hpp includes frontend/x.hpp")
 string(APPEND expected ";kernel/b.cpp includes tests/x.hpp;kernel/c.cpp includes ../frontend/x.hpp")
 string(APPEND expected
@@ -188,6 +191,7 @@ string(APPEND expected ";frontend/a.cpp includes scenes/generators.hpp")
 string(APPEND expected ";frontend/cli/main.cpp includes scenes/vec.hpp")
 string(APPEND expected
   ";frontend/scene/a.hpp includes frontend/jobs/a.hpp;frontend/scene/a.hpp includes frontend/a.hpp")
+string(APPEND expected ";c/a.cpp includes kernel/x.hpp")
 if(NOT wrong STREQUAL expected)
   message(FATAL_ERROR "planted arrows:\n  expected ${expected}\n  found    ${wrong}")
 endif()

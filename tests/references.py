@@ -20,9 +20,11 @@ import re
 import sys
 import tempfile
 
-FOLDERS = ("include", "kernel", "frontend", "scenes", "tests", "perf", "examples", "cmake", "docs")
+FOLDERS = ("include", "kernel", "frontend", "c", "scenes", "tests", "perf", "examples", "cmake",
+           "docs")
 SOURCES = ("hpp", "cpp", "py", "sh", "cmake")
-COMMENT = {".hpp": "//", ".cpp": "//", ".py": "#", ".sh": "#", ".cmake": "#"}
+COMMENT = {".hpp": "//", ".cpp": "//", ".h": "//", ".c": "//",
+           ".py": "#", ".sh": "#", ".cmake": "#"}
 # Of the system's kernel, of its C library, and of words
 SYSTEM = {"clear_page_erms", "mmap_threshold", "trim_threshold", "snake_case"}
 LEFT_OUT = {"tests/references.py", "CHANGELOG.md"}  # its own examples; what once was

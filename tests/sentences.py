@@ -14,7 +14,7 @@ import sys
 import tempfile
 
 MOST = 30
-PAGES = ("README.md", "CONTRIBUTING.md", "docs/*.md", "include/grelha/*.hpp")
+PAGES = ("README.md", "CONTRIBUTING.md", "docs/*.md", "include/grelha/*.hpp", "include/*.h")
 
 END = re.compile(r"(?<=[.!?])[)\"'*_]*\s+")
 # Full stops that end no sentence
