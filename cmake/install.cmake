@@ -14,6 +14,12 @@ install(TARGETS grelha RUNTIME COMPONENT grelha)
 install(DIRECTORY include/grelha DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT grelha)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/grelha)
 install(TARGETS grelha_kernel EXPORT grelhaTargets ARCHIVE COMPONENT grelha)
+# libgrelha.so is the C interface. -lgrelha shall not mean one or the other as the linker likes.
+set_target_properties(grelha_kernel PROPERTIES OUTPUT_NAME grelha_kernel)
+if(GRELHA_C)
+  install(TARGETS grelha_c EXPORT grelhaTargets LIBRARY COMPONENT grelha)
+  install(FILES include/grelha.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT grelha)
+endif()
 install(EXPORT grelhaTargets NAMESPACE grelha:: DESTINATION ${package_folder} COMPONENT grelha)
 configure_package_config_file(cmake/grelhaConfig.cmake.in ${PROJECT_BINARY_DIR}/grelhaConfig.cmake
   INSTALL_DESTINATION ${package_folder})
@@ -22,6 +28,22 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/grelhaConfigVersion.cmake
 install(FILES ${PROJECT_BINARY_DIR}/grelhaConfig.cmake
   ${PROJECT_BINARY_DIR}/grelhaConfigVersion.cmake
   DESTINATION ${package_folder} COMPONENT grelha)
+
+# For pkg-config; folders count from where the file lies, so a prefix may be moved.
+set(pc_folder ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig)
+file(RELATIVE_PATH pc_prefix ${pc_folder} ${CMAKE_INSTALL_PREFIX})
+string(REGEX REPLACE "/$" "" pc_prefix ${pc_prefix})
+file(RELATIVE_PATH pc_libdir ${CMAKE_INSTALL_PREFIX} ${CMAKE_INSTALL_FULL_LIBDIR})
+file(RELATIVE_PATH pc_includedir ${CMAKE_INSTALL_PREFIX} ${CMAKE_INSTALL_FULL_INCLUDEDIR})
+set(pc_files grelha)
+if(GRELHA_C)
+  list(APPEND pc_files grelha-c)
+endif()
+foreach(name IN LISTS pc_files)
+  configure_file(cmake/${name}.pc.in ${PROJECT_BINARY_DIR}/${name}.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/${name}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
+    COMPONENT grelha)
+endforeach()
 
 install(DIRECTORY scenes/data/ DESTINATION ${CMAKE_INSTALL_DATADIR}/grelha/scenes COMPONENT grelha)
 install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT grelha)

@@ -1,0 +1,99 @@
+#pragma once
+// Points in arrays of the caller, of any stride, and an offset for those in double.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <limits>
+#include <string>
+
+#include "c/errors.hpp"
+#include "grelha/geometry.hpp"
+
+namespace grelha::c {
+
+constexpr double kLargest = 1e18;  ///< what the kernel computes with
+
+/// Coordinates x y z of points, each `stride` bytes after the one before, at any address.
+template <class Number>
+class Points {
+ public:
+  Points(const Number* data, std::ptrdiff_t stride, std::size_t count, const char* name)
+      : bytes_(reinterpret_cast<const char*>(data)), stride_(stride), count_(count), name_(name) {
+    if (count == 0)
+      return;
+    expect_there(data, name);
+    if (stride == 0)
+      refuse(name, "a stride of bytes from one to the next", "0");
+  }
+
+  std::size_t count() const { return count_; }
+  const char* name() const { return name_; }
+  Number at(std::size_t i, std::size_t axis) const {
+    Number value;
+    const char* const from = bytes_ + static_cast<std::ptrdiff_t>(i) * stride_;
+    std::memcpy(&value, from + axis * sizeof value, sizeof value);
+    return value;
+  }
+  Float3 point(std::size_t i) const {
+    return {
+        static_cast<float>(at(i, 0)), static_cast<float>(at(i, 1)), static_cast<float>(at(i, 2))};
+  }
+  /// Throws std::invalid_argument for a coordinate that the kernel cannot compute with.
+  void expect_usable(std::size_t i) const {
+    for (std::size_t a = 0; a < 3; ++a)
+      if (!(std::abs(double{at(i, a)}) <= kLargest))
+        refuse(name_,
+               "finite numbers within 1e18",
+               std::to_string(at(i, a)) + " in element " + std::to_string(i));
+  }
+
+ private:
+  const char* bytes_;
+  std::ptrdiff_t stride_;
+  std::size_t count_;
+  const char* name_;
+};
+
+/// The box of some points, and if floats hold each of their coordinates.
+class Extent {
+ public:
+  template <class Number>
+  void add(const Points<Number>& points, std::size_t i) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double value = points.at(i, a);
+      low_[a] = std::min(low_[a], value);
+      high_[a] = std::max(high_[a], value);
+      exact_ = exact_ && double{static_cast<float>(value)} == value;
+    }
+  }
+
+  /// The middle of the box, a multiple of a power of two that is at least its size, so that the
+  /// offset costs no digit; 0 where floats hold everything.
+  std::array<double, 3> offset() const {
+    std::array<double, 3> found{};
+    if (exact_)
+      return found;
+    double size = 0;
+    double far = 0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      size = std::max(size, high_[a] - low_[a]);
+      far = std::max({far, std::abs(low_[a]), std::abs(high_[a])});
+    }
+    // no finer than doubles are there, if the size vanishes
+    const double step = std::ldexp(1, std::ilogb(std::max(size, 0x1p-30 * far)) + 1);
+    for (std::size_t a = 0; a < 3; ++a)
+      found[a] = step * std::nearbyint(.5 * (low_[a] + high_[a]) / step);
+    return found;
+  }
+
+ private:
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  std::array<double, 3> low_{kInfinity, kInfinity, kInfinity};
+  std::array<double, 3> high_{-kInfinity, -kInfinity, -kInfinity};
+  bool exact_ = true;
+};
+
+}  // namespace grelha::c

@@ -1,0 +1,261 @@
+#ifndef GRELHA_H
+#define GRELHA_H
+// The C interface of Grelha: exact ray queries against triangles or spheres. C99; also C++.
+//
+//     grelha_world* world;
+//     if (grelha_new_triangles(vertices, 12, 8, indices, 12, 0, &world) != GRELHA_OK)
+//       puts(grelha_last_error());
+//     grelha_rays ray = {.count = 1, .org = org, .org_stride = 12, .dir = dir, .dir_stride = 12};
+//     grelha_closest(world, &ray, &(grelha_hits){.t = &t, .id = &id}, 1);
+//     grelha_free(world);
+//
+// Shapes    Points and directions are three floats x y z. A stride is the number of bytes from one
+//           to the next: 12 if they follow each other. All counts are numbers of elements.
+// Units     Lengths are in the caller's units, within 1e18. t counts multiples of the direction.
+// Ids       The id of a triangle is its place in the caller's indices, that of a sphere its place
+//           in the caller's arrays.
+// Threads   Queries do not change a world, so any number of threads may ask one. While
+//           grelha_update(), grelha_update_double() or grelha_free() runs, no other call may use
+//           that world. The argument `threads` says how many share one call: 1: the calling thread
+//           alone; 0: one per processor. The number changes no bit of an answer.
+// Errors    Functions that can fail return a grelha_status. They then say why by
+//           grelha_last_error(). No exception leaves a function. Nothing is printed.
+// Answers   They go to arrays of the caller. After an error their contents are unspecified.
+
+#include <stddef.h>
+#include <stdint.h>
+
+#if defined(__GNUC__)
+#define GRELHA_API __attribute__((visibility("default")))
+#else
+#define GRELHA_API
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/// What became of a call.
+typedef enum grelha_status {
+  GRELHA_OK = 0,         ///< done
+  GRELHA_INVALID = 1,    ///< an argument is wrong: null, out of range, or not a number
+  GRELHA_TOO_MANY = 2,   ///< more primitives than ids, or more hits than there is room for
+  GRELHA_NO_MEMORY = 3,  ///< the memory ran out
+  GRELHA_FAILED = 4      ///< anything else, for example threads that could not be started
+} grelha_status;
+
+/// The id where there is no primitive.
+#define GRELHA_NONE 0xFFFFFFFFu
+/// The stride of an array with one element that all rays share.
+#define GRELHA_SHARED ((ptrdiff_t)-1)
+
+/// Triangles or spheres, ready for queries. It owns copies of all it needs.
+typedef struct grelha_world grelha_world;
+
+/// Rays in arrays of the caller. Members that are left out of an initializer are 0 or null.
+///
+/// A ray hits nothing where t_max <= t_min, where its direction is shorter than 1e-18 or longer
+/// than 1e18, and where one of its numbers is NaN.
+typedef struct grelha_rays {
+  size_t count;      ///< number of rays
+  const float* org;  ///< [count] x y z of the origins, within 1e18
+  /// bytes from one origin to the next, a multiple of 4; GRELHA_SHARED; anything for one ray
+  ptrdiff_t org_stride;
+  const float* dir;      ///< [count] x y z of the directions; they need not have unit length
+  ptrdiff_t dir_stride;  ///< as org_stride
+  const float* t_min;    ///< [count] hits at or before it do not count; null: 0 for all
+  const float* t_max;    ///< [count] hits at or behind it do not count; null: infinity for all
+  const uint32_t* skip;  ///< [count] id that the ray does not hit, or GRELHA_NONE; null: no id
+} grelha_rays;
+
+/// Arrays of the caller for the nearest hits. Those that are null are not wanted.
+typedef struct grelha_hits {
+  float* t;      ///< [count] out: hit point is org + t dir; without a hit, the ray's t_max
+  uint32_t* id;  ///< [count] out: id of the primitive; GRELHA_NONE without a hit
+  /// [count] out: the point on the triangle a b c is (1 - u - v) a + u b + v c. u and v are never
+  /// negative, and together at most 1. They are 0 for spheres and without a hit.
+  float* u;
+  float* v;  ///< [count] out: see u
+} grelha_hits;
+
+/// Is called with a hit: the number of the ray, t and the id. Returns 0 if this ray needs no more
+/// hits, else another number. It must return: no longjmp.
+typedef int (*grelha_visit)(void* context, size_t ray, float t, uint32_t id);
+
+/// Returns the version of the library, for example "0.1.0".
+GRELHA_API const char* grelha_version(void);
+
+/// Returns one line that says why the last failed call of this thread failed; "" if none did. The
+/// text stays until the next call of this thread fails. It is cut after 255 bytes.
+GRELHA_API const char* grelha_last_error(void);
+
+/// Makes a world of triangles from a copy of the arrays. Stores it in *world, null after an error.
+///
+/// Shapes    vertices: vertex_count points, vertex_stride bytes apart, which may be any number but
+///           0. indices: three for each triangle, counter-clockwise from the front.
+/// Requires  finite vertices within 1e18, where a triangle names them; indices below vertex_count;
+///           fewer than 2^32 - 1 triangles and at most 2^32 vertices.
+/// Errors    GRELHA_INVALID, GRELHA_TOO_MANY, GRELHA_NO_MEMORY, GRELHA_FAILED.
+/// Ensures   no ray slips between triangles that share an edge with the same coordinates. Nothing
+///           depends on `threads`.
+GRELHA_API grelha_status grelha_new_triangles(const float* vertices,
+                                              ptrdiff_t vertex_stride,
+                                              size_t vertex_count,
+                                              const uint32_t* indices,
+                                              size_t triangle_count,
+                                              int threads,
+                                              grelha_world** world);
+
+/// The same of vertices in double, three doubles x y z each. The world chooses an offset near their
+/// middle. It subtracts the offset in double, then rounds to float. The offset is 0 where floats
+/// hold all coordinates as they are. Rays, points and answers count from the offset: see
+/// grelha_offset().
+GRELHA_API grelha_status grelha_new_triangles_double(const double* vertices,
+                                                     ptrdiff_t vertex_stride,
+                                                     size_t vertex_count,
+                                                     const uint32_t* indices,
+                                                     size_t triangle_count,
+                                                     int threads,
+                                                     grelha_world** world);
+
+/// Makes a world of spheres from a copy of the arrays. Stores it in *world, null after an error.
+///
+/// Shapes    centers: `count` points, center_stride bytes apart, which may be any number but 0.
+///           radii: `count` floats.
+/// Requires  finite centers within 1e18; radii above 0 and within 1e18; fewer than 2^32 - 1
+///           spheres.
+/// Errors    GRELHA_INVALID, GRELHA_TOO_MANY, GRELHA_NO_MEMORY, GRELHA_FAILED.
+GRELHA_API grelha_status grelha_new_spheres(const float* centers,
+                                            ptrdiff_t center_stride,
+                                            const float* radii,
+                                            size_t count,
+                                            int threads,
+                                            grelha_world** world);
+
+/// The same of centers and radii in double, with an offset as grelha_new_triangles_double().
+GRELHA_API grelha_status grelha_new_spheres_double(const double* centers,
+                                                   ptrdiff_t center_stride,
+                                                   const double* radii,
+                                                   size_t count,
+                                                   int threads,
+                                                   grelha_world** world);
+
+/// Stores the x y z that the world subtracted from coordinates in double; 0 0 0 for a world of
+/// floats. A point p of the caller is p - offset for the world. Fails with GRELHA_INVALID for null.
+GRELHA_API grelha_status grelha_offset(const grelha_world* world, double offset[3]);
+
+/// Moves the vertices of a world of triangles, or the centers of one of spheres. Indices and radii
+/// stay. The grids are built anew: answers are those of a new world, bit for bit.
+///
+/// Shapes    points: as many as the world was made of, `stride` bytes apart, not 0. They count from
+///           grelha_offset().
+/// Errors    as for the function that made the world. The world is then as it was before.
+GRELHA_API grelha_status grelha_update(
+    grelha_world* world, const float* points, ptrdiff_t stride, size_t count, int threads);
+
+/// The same of points in double, three doubles x y z each. They count from 0: the world subtracts
+/// its offset, which stays as it is.
+GRELHA_API grelha_status grelha_update_double(
+    grelha_world* world, const double* points, ptrdiff_t stride, size_t count, int threads);
+
+/// Frees a world. Null is allowed.
+GRELHA_API void grelha_free(grelha_world* world);
+
+/// Finds the nearest hit of each ray. Of two hits at equal t the one with the lower id is found.
+///
+/// Errors    GRELHA_INVALID for null and for strides that are no multiple of 4.
+/// Ensures   hit or miss, id, and t rounded once are those of real arithmetic on the floats given
+///           for triangles; spheres are decided with 106 bits.
+GRELHA_API grelha_status grelha_closest(const grelha_world* world,
+                                        const grelha_rays* rays,
+                                        const grelha_hits* hits,
+                                        int threads);
+
+/// Tests if a ray hits anything: blocked[i] is 1 or 0 for ray i. Faster than grelha_closest(), with
+/// the same errors.
+GRELHA_API grelha_status grelha_occluded(const grelha_world* world,
+                                         const grelha_rays* rays,
+                                         uint8_t* blocked,
+                                         int threads);
+
+/// Counts the hits of each ray: counts[i] is the number that grelha_all_hits() finds for ray i.
+/// Errors as for grelha_closest().
+GRELHA_API grelha_status grelha_count_hits(const grelha_world* world,
+                                           const grelha_rays* rays,
+                                           uint32_t* counts,
+                                           int threads);
+
+/// Finds all hits of each ray, in order of t, then of the id. The hits of ray i are elements
+/// offset[i] to offset[i + 1] - 1 of `t` and `id`.
+///
+/// A ray that enters and leaves a sphere hits it twice. An edge or a vertex belongs to each
+/// triangle that has it. Exact copies of a triangle or a sphere count once, with the lowest id.
+///
+/// Shapes    offset: rays->count + 1 elements, always filled. t, id: `capacity` elements each, or
+///           null if not wanted.
+/// Usage     Call with `t` and `id` null, allocate offset[count] elements, call again.
+/// Errors    GRELHA_TOO_MANY if there are more hits than `capacity` and an array is not null; as
+///           for grelha_closest() otherwise. After GRELHA_TOO_MANY `offset` is right.
+GRELHA_API grelha_status grelha_all_hits(const grelha_world* world,
+                                         const grelha_rays* rays,
+                                         size_t* offset,
+                                         float* t,
+                                         uint32_t* id,
+                                         size_t capacity,
+                                         int threads);
+
+/// Calls `visit` with each hit of ray 0, then of ray 1 and so on, each in the order of
+/// grelha_all_hits(), on the calling thread. If it returns 0, the next ray follows. `context` is
+/// passed on to it. Errors as for grelha_closest().
+GRELHA_API grelha_status grelha_each_hit(const grelha_world* world,
+                                         const grelha_rays* rays,
+                                         grelha_visit visit,
+                                         void* context);
+
+/// Tests if points lie inside the closed meshes of a world: inside[i] is 1 or 0 for point i. Inside
+/// means inside an odd number of meshes. The answer is exact, and depends on no choice of a ray.
+///
+/// Shapes    points: `count` points, `stride` bytes apart, not 0.
+/// Requires  that the triangles form closed meshes. Spheres have no inside here: the answer is 0.
+/// Errors    GRELHA_INVALID for null and for a stride of 0. A point with a NaN is outside.
+GRELHA_API grelha_status grelha_contains(const grelha_world* world,
+                                         const float* points,
+                                         ptrdiff_t stride,
+                                         size_t count,
+                                         uint8_t* inside,
+                                         int threads);
+
+/// Finds the point of all surfaces that is closest to each point, if it is within `radius`, which
+/// may be infinity. Of two primitives at equal distance the one with the lower id is found.
+///
+/// Shapes    points: as for grelha_contains(). Each of the other arrays may be null.
+///           found: [count] x y z without gaps; the point itself if there is none.
+///           distance: [count] infinity if there is none. id: [count] GRELHA_NONE if there is none.
+/// Errors    GRELHA_INVALID for null, a stride of 0, and a radius that is negative or NaN.
+/// Ensures   distances are computed in double, with a relative error of at most 2^-40 of the larger
+///           of distance and coordinates, then rounded.
+GRELHA_API grelha_status grelha_closest_points(const grelha_world* world,
+                                               const float* points,
+                                               ptrdiff_t stride,
+                                               size_t count,
+                                               float radius,
+                                               float* found,
+                                               float* distance,
+                                               uint32_t* id,
+                                               int threads);
+
+/// Stores for each point the distance to the closest surface, negative inside closed meshes as
+/// grelha_contains() says. It is infinity if the world is empty. Shapes and errors are those of
+/// grelha_contains().
+GRELHA_API grelha_status grelha_signed_distances(const grelha_world* world,
+                                                 const float* points,
+                                                 ptrdiff_t stride,
+                                                 size_t count,
+                                                 float* distance,
+                                                 int threads);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif  // GRELHA_H

@@ -1,0 +1,82 @@
+from os import PathLike
+from typing import Any, NamedTuple, Sequence, TypedDict, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+__version__: str
+
+_Path = Union[str, bytes, PathLike[str], PathLike[bytes]]
+_Point = Union[Sequence[float], NDArray[Any]]
+
+class Hits(NamedTuple):
+    t: Any
+    id: Any
+    u: Any
+    v: Any
+    face: Any
+
+class HitLists(NamedTuple):
+    offsets: NDArray[np.int64]
+    t: NDArray[np.float32]
+    id: NDArray[np.int64]
+
+class ClosestPoints(NamedTuple):
+    points: NDArray[Any]
+    distance: Any
+    id: Any
+
+class World:
+    def __init__(self, vertices: ArrayLike, faces: ArrayLike, *, threads: int = ...) -> None: ...
+    @staticmethod
+    def spheres(centers: ArrayLike, radii: ArrayLike, *, threads: int = ...) -> World: ...
+    def update(self, vertices: ArrayLike, *, threads: int = ...) -> None: ...
+    @property
+    def vertices(self) -> NDArray[Any]: ...
+    @property
+    def faces(self) -> NDArray[np.int64]: ...
+    @property
+    def offset(self) -> NDArray[np.float64]: ...
+    def closest(self, origins: ArrayLike, directions: ArrayLike, t_min: ArrayLike = ...,
+                t_max: ArrayLike = ..., skip: ArrayLike | None = ..., *,
+                threads: int = ...) -> Hits: ...
+    def occluded(self, origins: ArrayLike, directions: ArrayLike, t_min: ArrayLike = ...,
+                 t_max: ArrayLike = ..., skip: ArrayLike | None = ..., *,
+                 threads: int = ...) -> Any: ...
+    def all_hits(self, origins: ArrayLike, directions: ArrayLike, t_min: ArrayLike = ...,
+                 t_max: ArrayLike = ..., skip: ArrayLike | None = ..., *,
+                 threads: int = ...) -> HitLists: ...
+    def count_hits(self, origins: ArrayLike, directions: ArrayLike, t_min: ArrayLike = ...,
+                   t_max: ArrayLike = ..., skip: ArrayLike | None = ..., *,
+                   threads: int = ...) -> Any: ...
+    def contains(self, points: ArrayLike, *, threads: int = ...) -> Any: ...
+    def closest_points(self, points: ArrayLike, radius: float = ..., *,
+                       threads: int = ...) -> ClosestPoints: ...
+    def signed_distance(self, points: ArrayLike, *, threads: int = ...) -> Any: ...
+
+class _Camera(TypedDict):
+    eye: tuple[float, float, float]
+    at: tuple[float, float, float]
+    up: tuple[float, float, float]
+    angle: float
+    width: int
+    height: int
+
+class Scene:
+    def __init__(self, vertices: ArrayLike, faces: ArrayLike, *, threads: int = ...) -> None: ...
+    @property
+    def world(self) -> World: ...
+    @property
+    def vertices(self) -> NDArray[Any]: ...
+    @property
+    def faces(self) -> NDArray[np.int64]: ...
+    @property
+    def camera(self) -> _Camera: ...
+    def render(self, width: int | None = ..., height: int | None = ..., *,
+               samples: int | None = ..., error: float | None = ..., seed: int = ...,
+               depth: int = ..., eye: _Point | None = ..., at: _Point | None = ...,
+               up: _Point | None = ..., angle: float | None = ...,
+               threads: int = ...) -> NDArray[np.float32]: ...
+
+def read(path: _Path, *, threads: int = ...) -> Scene: ...
+def write_image(path: _Path, image: ArrayLike) -> None: ...

@@ -1,0 +1,60 @@
+#!/usr/bin/env python3
+"""Particles that leave nested closed shells, and how many get lost: `nested_shells.py`.
+
+Particles fly from inside the innermost of eight shells outwards, from wall to wall: a million in
+any direction, one at each vertex and at edges. The picture is a slice of where they crossed walls.
+"""
+import argparse
+
+import numpy as np
+
+import grelha
+
+SHELLS, PARTICLES, SIDE = 8, 1_000_000, 600
+
+
+def shell(radius, seed, rings=40):
+    """A closed ball with waves, seen whole from the origin."""
+    around = 2 * rings
+    down, along = np.meshgrid(np.linspace(0, np.pi, rings + 1)[1:-1],
+                              np.arange(around) * 2 * np.pi / around, indexing="ij")
+    p = np.stack([np.sin(down) * np.cos(along), np.sin(down) * np.sin(along), np.cos(down)], -1)
+    p = np.concatenate([p.reshape(-1, 3), [[0, 0, 1], [0, 0, -1]]])
+    waves = np.sin(p @ np.random.default_rng(seed).normal(size=(3, 4)) * 4).mean(1)
+    i, j = np.meshgrid(np.arange(rings - 2), np.arange(around), indexing="ij")
+    a, b, k = i * around + j, i * around + (j + 1) % around, np.arange(around)
+    last, top = (rings - 2) * around, len(p) - 2
+    faces = [np.stack(s, -1).reshape(-1, 3) for s in (
+        (a, a + around, b), (b, a + around, b + around), (0 * k + top, k, (k + 1) % around),
+        (0 * k + top + 1, last + (k + 1) % around, last + k))]
+    return p * (radius * (1 + 0.04 * waves))[:, None], np.concatenate(faces)
+
+
+parser = argparse.ArgumentParser(description=__doc__)
+parser.add_argument("-o", "--output", default="nested_shells.png")
+meshes = [shell(1 + 0.25 * k, k) for k in range(SHELLS)]
+vertices = np.concatenate([v for v, _ in meshes]).astype(np.float32)
+faces = np.concatenate([f + k * len(meshes[0][0]) for k, (_, f) in enumerate(meshes)])
+shell_of = np.repeat(np.arange(SHELLS), len(meshes[0][1]))
+world = grelha.World(vertices, faces)
+
+edges = vertices[faces[:, :2]].mean(1)
+aims = [np.random.default_rng(9).normal(size=(PARTICLES, 3)), vertices, edges]
+start = np.array([0.01, 0.02, 0.03], np.float32)
+directions = np.concatenate(aims).astype(np.float32)
+directions[PARTICLES:] -= start
+t, crossed = np.zeros(len(directions), np.float32), np.zeros((SHELLS, len(directions)), bool)
+picture = np.zeros((SIDE, SIDE))
+for k in range(SHELLS):  # on from the float after t: t is rounded, and a wall counts once
+    hits = world.closest(start, directions, t_min=np.nextafter(t, np.float32(np.inf)))
+    crossed[k] = (hits.face >= 0) & (shell_of[hits.face] == k)
+    t = hits.t
+    points = (start + t[:, None] * directions)[np.isfinite(t)]
+    thin = points[np.abs(points[:, 2]) < 0.06]
+    picture += np.histogram2d(thin[:, 1], thin[:, 0], SIDE, [[-3.1, 3.1]] * 2)[0]
+stray = world.occluded(start, directions, np.nextafter(t, np.float32(np.inf))).sum()
+lost = (~crossed.all(axis=0)).sum()
+ink = np.exp(-0.35 * picture)[..., None]
+grelha.write_image(parser.parse_args().output, 1 - ink * (1, 0.95, 0.8))
+print(f"{len(directions)} particles through {SHELLS} shells of {len(faces)} triangles: "
+      f"{lost} lost, {stray} crossings too many")

@@ -1,0 +1,92 @@
+#pragma once
+// What callers give: arrays of numbers, looked at without a copy where their layout allows it.
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <pybind11/numpy.h>
+
+#include "frontend/scene/frame.hpp"
+#include "grelha/geometry.hpp"
+
+namespace grelha::python {
+
+namespace py = pybind11;
+
+using Shape = std::vector<py::ssize_t>;
+
+std::string text_of(const Shape& shape);  ///< "(4, 3)"
+/// "float64 array of shape (4, 2)", or the type of what is no array.
+std::string text_of(py::handle given);
+
+/// The nearest float; infinity beyond the largest.
+inline float as_float(double value) {
+  constexpr double kLargest = std::numeric_limits<float>::max();
+  if (std::abs(value) > kLargest)
+    return std::copysign(std::numeric_limits<float>::infinity(), value > 0 ? 1.f : -1.f);
+  return static_cast<float>(value);
+}
+
+/// Throws TypeError "name: expected what, found given".
+[[noreturn]] void wrong_type(const char* name, const std::string& what, py::handle given);
+/// Throws ValueError "name: expected what, found given".
+[[noreturn]] void wrong_value(const char* name, const std::string& what, const std::string& given);
+
+/// Returns an array of float32 or float64 in the machine's byte order; other numbers become these.
+py::array numbers_in(py::handle given, const char* name, const char* shape);
+
+/// Points or directions in an array of shape (..., 3), of float32 or float64.
+class Triples {
+ public:
+  /// Throws TypeError or ValueError that name the argument.
+  Triples(py::handle given, const char* name);
+
+  const Shape& shape() const { return shape_; }  ///< without the last axis
+  std::size_t count() const { return count_; }
+  bool in_double() const { return in_double_; }
+  double at(std::size_t i, std::size_t axis) const;
+  Shape full_shape() const;  ///< with the last axis
+
+  /// True if the kernel can read the array where it lies.
+  bool lies_as_floats() const;
+  const float* floats(std::size_t axis) const;  ///< the first of this axis, where it lies so
+  std::ptrdiff_t stride() const;                ///< from one to the next, in floats
+  bool is_dense() const;                        ///< lies as an array of Float3
+
+  /// Returns a copy as floats in a frame.
+  std::vector<Float3> in_frame(const Frame& frame) const;
+
+ private:
+  py::array array_;
+  Shape shape_;
+  std::size_t count_ = 1;
+  bool in_double_ = false;
+  const char* data_ = nullptr;
+  std::ptrdiff_t stride_ = 0, axis_stride_ = 0;  ///< bytes
+};
+
+/// Throws ValueError for what is not of shape (n, 3).
+void expect_rows(const Triples& triples, const char* name);
+
+/// One number for all rays, or one for each.
+struct Numbers {
+  double all = 0;
+  std::vector<float> each;  ///< empty: `all`
+};
+Numbers numbers_for(py::handle given, const char* name, const Shape& shape);
+
+/// Returns whole numbers of an array as int64, row after row. Throws TypeError for other numbers.
+py::array_t<std::int64_t> whole_numbers(py::handle given, const char* name, const char* shape);
+
+/// One number. Throws TypeError for what is none.
+double number_in(py::handle given, const char* name);
+/// One whole number between two others. Throws TypeError or ValueError.
+int whole_number_in(py::handle given, const char* name, int least, int most);
+/// The number of threads, 0 for all.
+int threads_in(py::handle given);
+
+}  // namespace grelha::python

@@ -1,0 +1,178 @@
+#include "src/file_scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "frontend/images/image_file.hpp"
+#include "frontend/input/default_view.hpp"
+#include "frontend/input/effects.hpp"
+#include "frontend/input/read_scene.hpp"
+#include "grelha/render.hpp"
+#include "src/hear.hpp"
+
+namespace grelha::python {
+namespace {
+
+std::string path_in(py::handle given) {
+  const py::module_ os = py::module_::import("os");
+  return os.attr("fsencode")(given).cast<std::string>();
+}
+
+void warn(const std::vector<std::string>& lines) {
+  for (const std::string& line : lines)
+    if (PyErr_WarnEx(PyExc_UserWarning, line.c_str(), 1) != 0)
+      throw py::error_already_set();
+}
+
+py::tuple tuple_of(const std::array<double, 3>& v) {
+  return py::make_tuple(v[0], v[1], v[2]);
+}
+
+Float3 direction_in(py::handle given, const char* name) {
+  const Triples v(given, name);
+  if (!v.shape().empty())
+    wrong_value(name, "shape (3,)", text_of(v.full_shape()));
+  return v.in_frame({})[0];
+}
+Float3 point_in(py::handle given, const char* name, const Frame& frame) {
+  const Triples v(given, name);
+  if (!v.shape().empty())
+    wrong_value(name, "shape (3,)", text_of(v.full_shape()));
+  return v.in_frame(frame)[0];
+}
+
+}  // namespace
+
+FileScene FileScene::of(SceneFile file, bool in_double, int threads) {
+  FileScene scene;
+  RenderOptions options;
+  apply_effects({}, file, options);
+  scene.samples_ = options.sampling.samples;
+  scene.camera_ = file.camera;
+  auto model = std::make_shared<Model>();
+  model->scene = std::move(file.scene);
+  model->frame = file.frame;
+  model->in_double = in_double;
+  scene.model_ = built(std::move(model), threads);
+  return scene;
+}
+
+FileScene FileScene::read(py::handle path, int threads) {
+  const std::string name = path_in(path);
+  py::module_::import("os").attr("stat")(path);  // its errors are the ones that Python knows
+  SceneFile file;
+  std::vector<std::string> warnings;
+  hear_signals([&](const Progress& progress) {
+    ReadOptions options;
+    options.progress = progress;
+    const Warn keep = [&](const std::string& line) { warnings.push_back(line); };
+    file = read_scene(name, keep, options);
+  });
+  warn(warnings);
+  const bool framed = file.frame != Frame{};
+  return of(std::move(file), framed, threads);
+}
+
+FileScene FileScene::of_mesh(py::handle vertices, py::handle faces, int threads) {
+  const std::shared_ptr<Model> mesh = mesh_model(vertices, faces);
+  SceneFile file;
+  file.scene = std::move(mesh->scene);
+  file.scene.materials = {default_mesh_material()};
+  file.frame = mesh->frame;
+  add_default_view(file);
+  return of(std::move(file), mesh->in_double, threads);
+}
+
+py::dict FileScene::camera() const {
+  py::dict camera;
+  camera["eye"] = tuple_of(model_->frame.outside(camera_.eye));
+  camera["at"] = tuple_of(model_->frame.outside(camera_.at));
+  camera["up"] = tuple_of({camera_.up.x, camera_.up.y, camera_.up.z});
+  camera["angle"] = camera_.angle_deg;
+  camera["width"] = camera_.width;
+  camera["height"] = camera_.height;
+  return camera;
+}
+
+Camera FileScene::camera_for(const RenderArguments& given) const {
+  Camera camera = camera_;
+  const Frame& frame = model_->frame;
+  if (!given.width.is_none())
+    camera.width = whole_number_in(given.width, "width", 1, kMostSide);
+  if (!given.height.is_none())
+    camera.height = whole_number_in(given.height, "height", 1, kMostSide);
+  if (!given.eye.is_none())
+    camera.eye = point_in(given.eye, "eye", frame);
+  if (!given.at.is_none())
+    camera.at = point_in(given.at, "at", frame);
+  if (!given.up.is_none())
+    camera.up = direction_in(given.up, "up");
+  if (!given.angle.is_none())
+    camera.angle_deg = number_in(given.angle, "angle");
+  if (!camera_is_valid(camera))
+    throw py::value_error(
+        "eye, at, up, angle: expected finite numbers, eye apart from at, up not along the view, "
+        "and an angle between 0 and 180 degrees");
+  return camera;
+}
+
+RenderOptions FileScene::options_for(const RenderArguments& given) const {
+  RenderOptions options;
+  options.threads = threads_in(given.threads);
+  options.depth = whole_number_in(given.depth, "depth", 1, kMostDepth);
+  options.sampling.seed = std::uint32_t(whole_number_in(given.seed, "seed", 0, INT32_MAX));
+  options.sampling.samples = samples_;
+  if (!given.samples.is_none())
+    options.sampling.samples = whole_number_in(given.samples, "samples", 1, kMostSamples);
+  if (given.error.is_none())
+    return options;
+  if (!given.samples.is_none())
+    throw py::value_error("samples, error: expected one of them, found both");
+  options.refine.error = number_in(given.error, "error");
+  if (!(options.refine.error > 0 && options.refine.error <= 1))
+    wrong_value("error", "a number above 0, at most 1", std::to_string(options.refine.error));
+  return options;
+}
+
+py::array_t<float> FileScene::render(const RenderArguments& given) const {
+  const Camera camera = camera_for(given);
+  RenderOptions options = options_for(given);
+  py::array_t<float> pixels(Shape{camera.height, camera.width, 3});
+  float* const to = pixels.mutable_data();
+  const SharedModel model = model_;
+  hear_signals([&](const Progress& progress) {
+    options.progress = progress;
+    RenderStats stats;
+    const Image image = grelha::render(*model->world, camera, options, stats);
+    std::copy(image.rgb.begin(), image.rgb.end(), to);
+  });
+  return pixels;
+}
+
+void write_picture(py::handle path, py::handle given) {
+  const std::string name = path_in(path);
+  if (!image_format(name))
+    wrong_value("path", "a name that ends with .png, .hdr, .pfm or .exr", '"' + name + '"');
+  const py::array array = numbers_in(given, "image", "(h, w) or (h, w, 3)");
+  const Shape shape(array.shape(), array.shape() + array.ndim());
+  const bool grey = shape.size() == 2;
+  if (!grey && !(shape.size() == 3 && shape[2] == 3))
+    wrong_value("image", "shape (h, w) or (h, w, 3)", text_of(shape));
+  for (const std::size_t side : {0, 1})
+    if (shape[side] < 1 || shape[side] > kMostSide)
+      wrong_value("image", "sides of 1 to " + std::to_string(kMostSide), text_of(shape));
+  const int width = int(shape[1]);
+  const int height = int(shape[0]);
+  if (!image_fits(*image_format(name), width, height))
+    wrong_value("image", "a picture that this format holds", text_of(shape));
+  const auto floats = py::array_t<float, py::array::c_style | py::array::forcecast>(array);
+  Image image(width, height);
+  for (std::size_t i = 0; i < image.rgb.size(); ++i)
+    image.rgb[i] = floats.data()[grey ? i / 3 : i];
+  const py::gil_scoped_release unlocked;
+  write_image(name, image);
+}
+
+}  // namespace grelha::python

@@ -1,0 +1,43 @@
+#pragma once
+// A scene with camera, lights and materials, from a file or for a bare mesh.
+
+#include <memory>
+#include <string>
+
+#include "frontend/scene/scene_file.hpp"
+#include "grelha/camera.hpp"
+#include "grelha/render_options.hpp"
+#include "src/model.hpp"
+
+namespace grelha::python {
+
+/// What a caller says of a picture; None is as the scene has it.
+struct RenderArguments {
+  py::handle width, height, samples, error, seed, depth, eye, at, up, angle, threads;
+};
+
+class FileScene {
+ public:
+  /// Reads a file. Its warnings are Python's.
+  static FileScene read(py::handle path, int threads);
+  /// A mesh as the program shows a bare PLY: its own view, three lights, light grey.
+  static FileScene of_mesh(py::handle vertices, py::handle faces, int threads);
+
+  const SharedModel& model() const { return model_; }
+  py::dict camera() const;
+  py::array_t<float> render(const RenderArguments& given) const;
+
+ private:
+  static FileScene of(SceneFile file, bool in_double, int threads);
+  Camera camera_for(const RenderArguments& given) const;
+  RenderOptions options_for(const RenderArguments& given) const;
+
+  SharedModel model_;
+  Camera camera_;
+  int samples_ = 1;
+};
+
+/// Writes an array of shape (h, w) or (h, w, 3) as a picture.
+void write_picture(py::handle path, py::handle image);
+
+}  // namespace grelha::python

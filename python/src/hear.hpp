@@ -1,0 +1,20 @@
+#pragma once
+// Work without Python's lock, which Ctrl-C stops.
+
+#include <functional>
+
+namespace grelha::python {
+
+/// What long work asks whether to go on: BuildOptions::progress and the like.
+using Progress = std::function<bool(double)>;
+
+/// Calls work(progress) without the lock, on a thread of its own, and waits for it. Python's signal
+/// handlers run meanwhile. If one raises, `progress` returns false from then on, and the exception
+/// is thrown once the work has ended. Exceptions of work() are thrown on.
+void hear_signals(const std::function<void(const Progress&)>& work);
+
+/// The same for work of `count` rays or points. Few of them are done here, with an empty progress:
+/// a thread would take longer than they do.
+void hear_signals(std::size_t count, const std::function<void(const Progress&)>& work);
+
+}  // namespace grelha::python

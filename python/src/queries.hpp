@@ -1,0 +1,30 @@
+#pragma once
+// The queries of World's methods. One ray or point gives plain numbers, many give arrays.
+
+#include "src/model.hpp"
+#include "src/ray_batch.hpp"
+
+namespace grelha::python {
+
+py::object closest_hits(const Model& model, const RayArguments& rays, py::handle threads);
+py::object occluded_rays(const Model& model, const RayArguments& rays, py::handle threads);
+py::object all_ray_hits(const Model& model, const RayArguments& rays, py::handle threads);
+py::object hit_counts(const Model& model, const RayArguments& rays, py::handle threads);
+
+py::object inside_points(const Model& model, py::handle points, py::handle threads);
+py::object nearest_points(const Model& model,
+                          py::handle points,
+                          py::handle radius,
+                          py::handle threads);
+py::object signed_distances_of(const Model& model, py::handle points, py::handle threads);
+
+/// A class of grelha/_results.py.
+py::object result_class(const char* name);
+
+/// An array's only number, or the array.
+template <class T>
+py::object plain(const py::array_t<T>& array, const Shape& shape) {
+  return shape.empty() ? py::cast(*array.data()) : py::object(array);
+}
+
+}  // namespace grelha::python

@@ -1,0 +1,168 @@
+#include <limits>
+#include <memory>
+
+#include "grelha/all_hits.hpp"
+#include "grelha/query.hpp"
+#include "src/hear.hpp"
+#include "src/queries.hpp"
+
+namespace grelha::python {
+namespace {
+
+using Ids = py::array_t<std::int64_t>;
+
+QueryOptions options_of(int threads, const Progress& progress) {
+  QueryOptions options;
+  options.threads = threads;
+  options.progress = progress;
+  return options;
+}
+
+/// t in the caller's units.
+void unscale(float* t, std::size_t count, double scale) {
+  if (scale != 1)
+    for (std::size_t i = 0; i < count; ++i)
+      t[i] = as_float(t[i] / scale);
+}
+
+std::int64_t signed_id(std::uint32_t id) {
+  return id == kNoPrimitive ? -1 : std::int64_t{id};
+}
+
+/// The answers of closest(), in the arrays that are given back.
+struct Answers {
+  py::array_t<float> t, u, v;
+  Ids id, face;
+
+  Answers(const Model& model, const Shape& shape)
+      : t(shape), u(shape), v(shape), id(shape), face(model.is_one_mesh() ? id : Ids(shape)) {}
+};
+
+/// Where the answers lie; needs no lock.
+struct AnswerArrays {
+  float *t, *u, *v;
+  std::int64_t *id, *face;
+};
+
+struct AnswerOfOne {
+  float t, u, v;
+  std::int64_t id, face;
+};
+
+/// Turns the kernel's ids to the caller's, and t of misses to infinity.
+void finish(const Model& model,
+            const std::uint32_t* ids,
+            std::size_t count,
+            const AnswerArrays& to) {
+  const std::int64_t first = model.first_triangle();
+  const std::int64_t end = first + std::int64_t(model.scene.geometry.triangles.size());
+  const bool is_one_mesh = to.face == to.id;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::int64_t id = signed_id(ids[i]);
+    to.id[i] = id;
+    if (id < 0)
+      to.t[i] = std::numeric_limits<float>::infinity();
+    if (!is_one_mesh)
+      to.face[i] = id >= first && id < end ? id - first : -1;
+  }
+  unscale(to.t, count, model.frame.scale);
+}
+
+}  // namespace
+
+py::object result_class(const char* name) {
+  // never destroyed: the interpreter may be gone before it
+  static const auto* const results =
+      new py::dict(py::module_::import("grelha._results").attr("__dict__"));
+  return (*results)[name];
+}
+
+namespace {
+
+/// The answer for one ray as plain numbers.
+py::object closest_hit(const Model& model, RayBatch& batch) {
+  AnswerOfOne one;
+  std::uint32_t id;
+  Hits hits;
+  hits.t = &one.t;
+  hits.id = &id;
+  hits.u = &one.u;
+  hits.v = &one.v;
+  closest(*model.world, batch.rays(), hits);
+  finish(model, &id, 1, {&one.t, nullptr, nullptr, &one.id, &one.face});
+  return result_class("Hits")(one.t, one.id, one.u, one.v, one.face);
+}
+
+}  // namespace
+
+py::object closest_hits(const Model& model, const RayArguments& given, py::handle wanted) {
+  const int threads = threads_in(wanted);
+  RayBatch batch(model, given);
+  if (batch.shape().empty())
+    return closest_hit(model, batch);
+  Answers answers(model, batch.shape());
+  const AnswerArrays to{answers.t.mutable_data(),
+                        answers.u.mutable_data(),
+                        answers.v.mutable_data(),
+                        answers.id.mutable_data(),
+                        answers.face.mutable_data()};
+  hear_signals(batch.count(), [&](const Progress& progress) {
+    const auto ids = std::make_unique_for_overwrite<std::uint32_t[]>(batch.count());
+    Hits hits;
+    hits.t = to.t;
+    hits.id = ids.get();
+    hits.u = to.u;
+    hits.v = to.v;
+    closest(*model.world, batch.rays(), hits, options_of(threads, progress));
+    finish(model, ids.get(), batch.count(), to);
+  });
+  return result_class("Hits")(answers.t, answers.id, answers.u, answers.v, answers.face);
+}
+
+py::object occluded_rays(const Model& model, const RayArguments& given, py::handle wanted) {
+  const int threads = threads_in(wanted);
+  RayBatch batch(model, given);
+  py::array_t<bool> blocked(batch.shape());
+  static_assert(sizeof(bool) == sizeof(std::uint8_t));
+  auto* const to = reinterpret_cast<std::uint8_t*>(blocked.mutable_data());
+  hear_signals(batch.count(), [&](const Progress& progress) {
+    occluded(*model.world, batch.rays(), to, options_of(threads, progress));
+  });
+  return plain(blocked, batch.shape());
+}
+
+py::object all_ray_hits(const Model& model, const RayArguments& given, py::handle wanted) {
+  const int threads = threads_in(wanted);
+  RayBatch batch(model, given);
+  HitLists lists;
+  hear_signals(batch.count(), [&](const Progress& progress) {
+    lists = all_hits(*model.world, batch.rays(), options_of(threads, progress));
+  });
+  Ids offsets(py::ssize_t(lists.offset.size()));
+  py::array_t<float> t(py::ssize_t(lists.hits.size()));
+  Ids id(py::ssize_t(lists.hits.size()));
+  std::copy(lists.offset.begin(), lists.offset.end(), offsets.mutable_data());
+  float* const to_t = t.mutable_data();
+  std::int64_t* const to_id = id.mutable_data();
+  for (std::size_t i = 0; i < lists.hits.size(); ++i) {
+    to_t[i] = lists.hits[i].t;
+    to_id[i] = signed_id(lists.hits[i].id);
+  }
+  unscale(to_t, lists.hits.size(), model.frame.scale);
+  return result_class("HitLists")(offsets, t, id);
+}
+
+py::object hit_counts(const Model& model, const RayArguments& given, py::handle wanted) {
+  const int threads = threads_in(wanted);
+  RayBatch batch(model, given);
+  Ids counts(batch.shape());
+  std::int64_t* const to = counts.mutable_data();
+  hear_signals(batch.count(), [&](const Progress& progress) {
+    const auto found = std::make_unique_for_overwrite<std::uint32_t[]>(batch.count());
+    count_hits(*model.world, batch.rays(), found.get(), options_of(threads, progress));
+    std::copy(found.get(), found.get() + batch.count(), to);
+  });
+  return plain(counts, batch.shape());
+}
+
+}  // namespace grelha::python

@@ -1,0 +1,13 @@
+# Each file of tests/ is a test of ctest, with the label `python`.
+execute_process(COMMAND ${Python_EXECUTABLE} -c "import numpy" RESULT_VARIABLE no_numpy ERROR_QUIET)
+if(no_numpy)
+  message(STATUS "no tests of the Python module: ${Python_EXECUTABLE} has no numpy")
+  return()
+endif()
+file(GLOB files CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/tests/test_*.py)
+foreach(file IN LISTS files)
+  cmake_path(GET file STEM name)
+  add_test(NAME python.${name} COMMAND ${Python_EXECUTABLE} ${file} -v)
+  set_tests_properties(python.${name} PROPERTIES LABELS python TIMEOUT 300
+    ENVIRONMENT "PYTHONPATH=${PROJECT_BINARY_DIR}/python;PYTHONDONTWRITEBYTECODE=1")
+endforeach()

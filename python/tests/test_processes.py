@@ -1,0 +1,242 @@
+"""Pickle, fork, multiprocessing, threads, Ctrl-C."""
+import copy
+import multiprocessing
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import threading
+import time
+import unittest
+
+import numpy as np
+
+import grelha
+from meshes import CUBE, CUBE_FACES, ball, rays
+
+ORIGINS, DIRECTIONS = rays(30000, 1)
+OFFSET = np.array([1e6, -2e6, 3e6]) + 0.3
+
+
+def answers(world):
+    """What a worker computes: more rays than one thread takes, and a build."""
+    hits = world.closest(ORIGINS, DIRECTIONS)
+    world.update(world.vertices)
+    return hits.t, hits.id, world.count_hits(ORIGINS[:5000], DIRECTIONS[:5000])
+
+
+def render(scene):
+    return scene.render(64, 64)
+
+
+class Pickles(unittest.TestCase):
+    def same(self, a, b, shift=0.0):
+        for x, y in zip(a.closest(ORIGINS + shift, DIRECTIONS),
+                        b.closest(ORIGINS + shift, DIRECTIONS)):
+            np.testing.assert_array_equal(x, y)
+
+    def test_round_trip(self):
+        for protocol in range(2, pickle.HIGHEST_PROTOCOL + 1):
+            world = grelha.World(*ball())
+            self.same(world, pickle.loads(pickle.dumps(world, protocol)))
+        self.same(world, copy.copy(world))
+        self.same(world, copy.deepcopy(world))
+
+    def test_offset_stays(self):
+        vertices, faces = ball()
+        world = grelha.World(vertices + OFFSET, faces)
+        back = pickle.loads(pickle.dumps(world))
+        self.assertEqual(back.offset.tolist(), world.offset.tolist())
+        self.assertTrue(world.offset.any())
+        np.testing.assert_array_equal(back.vertices, world.vertices)
+        self.same(world, back, OFFSET)
+
+    def test_spheres_and_results(self):
+        world = grelha.World.spheres(CUBE, 0.25)
+        self.same(world, pickle.loads(pickle.dumps(world)))
+        hits = pickle.loads(pickle.dumps(world.closest(ORIGINS, DIRECTIONS)))
+        self.assertIsInstance(hits, grelha.Hits)
+
+    def test_broken_states_raise(self):
+        world = grelha.World(CUBE, CUBE_FACES)
+        state = world.__getstate__()
+        broken = [(), (2, *state[1:]), (*state[:1], 7, *state[2:]), ("1", *state[1:])]
+        short, beyond = dict(state[1]), dict(state[1])
+        short["x"], beyond["a"] = short["x"][:3], beyond["a"] + 100
+        broken += [(1, short, *state[2:]), (1, beyond, *state[2:]),
+                   (*state[:2], np.uint32([5, 1000]), *state[3:]), (*state[:3], (1.0,), *state[4:])]
+        for bad in broken:
+            new = grelha.World.__new__(grelha.World)
+            with self.assertRaises((ValueError, TypeError, RuntimeError, IndexError)):
+                new.__setstate__(bad)
+
+    def test_subclasses(self):
+        class Half(grelha.World):
+            def __init__(self):
+                pass
+
+        with self.assertRaisesRegex(TypeError, "__init__"):
+            Half()
+
+
+class Processes(unittest.TestCase):
+    def setUp(self):
+        self.world = grelha.World(*ball())
+        self.expected = answers(self.world)  # the parent has its threads already
+
+    def same(self, found):
+        for x, y in zip(found, self.expected):
+            np.testing.assert_array_equal(x, y)
+
+    def test_fork(self):
+        picture = render(grelha.Scene(*ball()))
+        read, write = os.pipe()
+        child = os.fork()
+        if child == 0:
+            status = 1
+            try:
+                again = pickle.dumps((answers(self.world), render(grelha.Scene(*ball()))))
+                with os.fdopen(write, "wb") as out:
+                    out.write(again)
+                status = 0
+            finally:
+                os._exit(status)
+        os.close(write)
+        with os.fdopen(read, "rb") as result:
+            data = result.read()
+        self.assertEqual(os.waitpid(child, 0)[1], 0)
+        found, forked = pickle.loads(data)
+        self.same(found)
+        np.testing.assert_array_equal(forked, picture)
+
+    def test_multiprocessing(self):
+        for method in ("fork", "spawn", "forkserver"):
+            with multiprocessing.get_context(method).Pool(2) as pool:
+                for found in pool.map(answers, [self.world] * 3):
+                    self.same(found)
+
+
+class Threads(unittest.TestCase):
+    def test_threads_share_a_world(self):
+        world = grelha.World(*ball())
+        expected = world.closest(ORIGINS, DIRECTIONS).t
+        wrong = []
+
+        def ask():
+            for _ in range(5):
+                if not np.array_equal(world.closest(ORIGINS, DIRECTIONS).t, expected):
+                    wrong.append(1)
+
+        threads = [threading.Thread(target=ask) for _ in range(6)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertFalse(wrong)
+
+    def test_update_meanwhile(self):
+        world = grelha.World(CUBE, CUBE_FACES)
+        stop, odd = threading.Event(), []
+
+        def ask():
+            down = np.tile(np.float32([0.4, 0.3, 9]), (9000, 1))
+            while not stop.is_set():
+                t = world.closest(down, np.float32([0, 0, -1])).t
+                if len(set(t.tolist())) != 1 or t[0] not in (8, 7):
+                    odd.append(t)
+
+        threads = [threading.Thread(target=ask) for _ in range(3)]
+        for thread in threads:
+            thread.start()
+        for k in range(200):
+            world.update(CUBE * (1 + k % 2))
+        stop.set()
+        for thread in threads:
+            thread.join()
+        self.assertFalse(odd)
+
+    def test_others_run_meanwhile(self):
+        """The lock is released: another thread counts while rays are traced."""
+        world = grelha.World(*ball(60))
+        origins, directions = rays(400000, 2)
+        done, count = threading.Event(), [0]
+
+        def tick():
+            while not done.is_set():
+                count[0] += 1
+                time.sleep(0.001)
+
+        thread = threading.Thread(target=tick)
+        thread.start()
+        before = count[0]
+        world.count_hits(origins, directions, threads=1)
+        during = count[0] - before
+        done.set()
+        thread.join()
+        self.assertGreater(during, 5)
+
+
+LONG = {
+    "query": "world.count_hits(origins, directions)",
+    "points": "world.closest_points(np.zeros((10 ** 6, 3), np.float32))",
+    "render": "scene.render(4000, 4000, samples=1000)",
+}
+
+
+class Interrupts(unittest.TestCase):
+    def interrupted(self, statement, fork=False):
+        """Ends a statement that would take minutes by SIGINT, and says how it ended."""
+        program = f"""
+import os, sys, numpy as np, grelha
+from meshes import ball, rays
+world, scene = grelha.World(*ball(60)), grelha.Scene(*ball(60))
+origins, directions = (np.tile(x, (40, 1)) for x in rays(10 ** 6, 1))
+world.closest(origins[:9000], directions[:9000])
+if {fork} and os.fork():
+    sys.exit(os.wait()[1] != 0)
+print(os.getpid(), flush=True)
+try:
+    {statement}
+    print("went through")
+except KeyboardInterrupt:
+    print("interrupted", world.closest((3, 0, 0), (-1, 0.01, 0)).id >= 0)
+"""
+        child = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True,
+                                 cwd=os.path.dirname(os.path.abspath(__file__)))
+        pid = int(child.stdout.readline())
+        time.sleep(0.5)
+        began = time.monotonic()
+        os.kill(pid, signal.SIGINT)
+        said = child.communicate(timeout=120)[0]
+        return said.strip(), time.monotonic() - began, child.returncode
+
+    def test_ctrl_c(self):
+        for name, statement in LONG.items():
+            with self.subTest(name):
+                said, seconds, status = self.interrupted(statement)
+                self.assertEqual((said, status), ("interrupted True", 0))
+                self.assertLess(seconds, 20)
+
+    def test_ctrl_c_in_a_forked_process(self):
+        said, seconds, status = self.interrupted(LONG["query"], fork=True)
+        self.assertEqual((said, status), ("interrupted True", 0))
+
+    def test_exception_of_a_handler_comes_through(self):
+        def handler(number, frame):
+            raise LookupError("from the handler")
+
+        world = grelha.World(*ball(60))
+        origins, directions = (np.tile(x, (10, 1)) for x in rays(10 ** 6, 1))
+        before = signal.signal(signal.SIGALRM, handler)
+        try:
+            signal.setitimer(signal.ITIMER_REAL, 0.2)
+            with self.assertRaisesRegex(LookupError, "from the handler"):
+                world.count_hits(origins, directions)
+        finally:
+            signal.setitimer(signal.ITIMER_REAL, 0)
+            signal.signal(signal.SIGALRM, before)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,166 @@
+"""Files, pictures and the module itself."""
+import inspect
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+import warnings
+
+import numpy as np
+
+import grelha
+from meshes import CUBE, CUBE_FACES, ball, rays
+
+DATA = pathlib.Path(__file__).resolve().parent.parent.parent / "scenes" / "data"
+FAR = np.array([5_000_000.5, 0.125, -3_000_000.25])
+
+
+def ply(vertices, faces):
+    head = ("ply\nformat ascii 1.0\n"
+            f"element vertex {len(vertices)}\nproperty double x\nproperty double y\n"
+            f"property double z\nelement face {len(faces)}\n"
+            "property list uchar int vertex_indices\nend_header\n")
+    return head + "".join(f"{float(x)!r} {float(y)!r} {float(z)!r}\n" for x, y, z in vertices) + (
+        "".join("3 {} {} {}\n".format(*f) for f in faces))
+
+
+class Files(unittest.TestCase):
+    def test_ply(self):
+        scene = grelha.read(DATA / "torus.ply")
+        self.assertEqual((scene.vertices.dtype, scene.faces.dtype), (np.float32, np.int64))
+        self.assertEqual(scene.vertices.shape[1], 3)
+        world = grelha.World(scene.vertices, scene.faces)
+        for a, b in zip(scene.world.closest(*rays(3000, 1)), world.closest(*rays(3000, 1))):
+            np.testing.assert_array_equal(a, b)
+        self.assertEqual(str(scene.world), f"<grelha.World: {len(scene.faces)} triangles>")
+
+    def test_kinds_of_primitives(self):
+        scene = grelha.read(str(DATA / "balls.nff").encode())
+        hits = scene.world.closest(*rays(3000, 1))
+        self.assertTrue((hits.id >= 0).any())
+        self.assertTrue((hits.face == -1).all() or len(scene.faces))
+        mixed = grelha.read(DATA / "columns.nff").world
+        hits = mixed.closest(*rays(9000, 1, 6.0))
+        self.assertLess(hits.face.max(), len(mixed.faces))
+        again = __import__("pickle").loads(__import__("pickle").dumps(mixed))
+        for a, b in zip(again.closest(*rays(9000, 1, 6.0)), hits):
+            np.testing.assert_array_equal(a, b)
+
+    def test_frames(self):
+        vertices, faces = ball(8)
+        for scale, shift in ((1, FAR), (1e-20, 0), (2.0 ** -60, 0)):
+            with tempfile.TemporaryDirectory() as folder:
+                path = os.path.join(folder, "far.ply")
+                pathlib.Path(path).write_text(ply(vertices * scale + shift, faces))
+                scene = grelha.read(path)
+            np.testing.assert_allclose(scene.vertices, vertices * scale + shift,
+                                       atol=1e-6 * scale, rtol=0)
+            middle = np.zeros(3) + shift
+            hit = scene.world.closest(middle + np.array([3, 0.1, 0]) * scale, (-1, 0, 0))
+            near = grelha.World(vertices, faces).closest((3, 0.1, 0), (-1, 0, 0))
+            self.assertAlmostEqual(hit.t / scale, near.t, 4)
+            self.assertEqual(hit.id, near.id)
+            self.assertTrue(scene.world.occluded(middle, (1, 0, 0), t_max=1.01 * scale))
+            self.assertFalse(scene.world.occluded(middle, (1, 0, 0), t_max=0.8 * scale))
+            self.assertTrue(scene.world.contains(middle))
+            outside = middle + np.array([0, 0, 3.0]) * scale
+            self.assertAlmostEqual(scene.world.signed_distance(outside) / scale, 2, 4)
+            found = scene.world.closest_points(outside)
+            self.assertAlmostEqual(found.distance / scale, 2, 4)
+            np.testing.assert_allclose(found.points, middle + np.array([0, 0, 1.0]) * scale,
+                                       atol=1e-6 * scale, rtol=0)
+            self.assertEqual(scene.world.closest_points(outside, 1.9 * scale).id, -1)
+            lists = scene.world.all_hits(middle + np.array([3, 0.1, 0]) * scale, (-1, 0, 0))
+            self.assertAlmostEqual(lists.t[0] / scale, near.t, 4)
+
+    def test_warnings_are_pythons(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "flat.ply")
+            pathlib.Path(path).write_text(ply(np.zeros((3, 3)), [[0, 1, 2]]))
+            with self.assertWarnsRegex(UserWarning, "left out"):
+                grelha.read(path)
+            with warnings.catch_warnings():
+                warnings.simplefilter("error")
+                with self.assertRaises(UserWarning):
+                    grelha.read(path)
+
+
+class Pictures(unittest.TestCase):
+    def test_render(self):
+        scene = grelha.read(DATA / "balls.nff")
+        picture = scene.render(64, 48)
+        self.assertEqual((picture.shape, picture.dtype), ((48, 64, 3), np.float32))
+        np.testing.assert_array_equal(picture, scene.render(64, 48, threads=1))
+        self.assertEqual(scene.render().shape, (scene.camera["height"], scene.camera["width"], 3))
+        fine = scene.render(64, 48, samples=16)
+        self.assertFalse(np.array_equal(picture, fine))
+        self.assertFalse(np.array_equal(fine, scene.render(64, 48, samples=16, seed=1)))
+        coarse = scene.render(64, 48, error=0.05)
+        self.assertLess(np.sqrt(((np.clip(coarse, 0, 1) - np.clip(fine, 0, 1)) ** 2).mean()), 0.1)
+
+    def test_camera(self):
+        scene = grelha.Scene(CUBE + FAR, CUBE_FACES)
+        view = scene.camera
+        np.testing.assert_allclose(view["at"], FAR + 0.5, atol=0.5)
+        picture = scene.render(80, 80)
+        same = scene.render(80, 80, eye=view["eye"], at=view["at"], up=view["up"],
+                            angle=view["angle"])
+        np.testing.assert_array_equal(picture, same)
+        back = picture[0, 0]
+        self.assertTrue((scene.render(20, 20, at=2 * np.array(view["eye"]) - view["at"]) == back)
+                        .all())
+        self.assertLess((picture == back).all(-1).mean(), 0.7)
+
+    def test_files_of_pictures(self):
+        image = np.random.default_rng(1).random((5, 7, 3)).astype(np.float32)
+        with tempfile.TemporaryDirectory() as folder:
+            for ending in ("png", "hdr", "exr", "pfm"):
+                grelha.write_image(os.path.join(folder, "a." + ending), image)
+            data = pathlib.Path(folder, "a.pfm").read_bytes()
+            self.assertTrue(data.startswith(b"PF\n7 5\n"))
+            found = np.frombuffer(data[-5 * 7 * 12:], "<f4").reshape(5, 7, 3)[::-1]
+            np.testing.assert_array_equal(found, image)
+            grelha.write_image(pathlib.Path(folder, "b.pfm"), image[::-1, :, 0].astype(np.float64))
+            data = pathlib.Path(folder, "b.pfm").read_bytes()
+            found = np.frombuffer(data[-5 * 7 * 12:], "<f4").reshape(5, 7, 3)
+            np.testing.assert_array_equal(found, np.repeat(image[..., :1], 3, -1))
+
+
+class Module(unittest.TestCase):
+    def test_docstrings_and_stubs_have_all_names(self):
+        stubs = pathlib.Path(grelha.__file__).with_name("__init__.pyi").read_text()
+        for owner in (grelha.World, grelha.Scene):
+            self.assertGreater(len(inspect.getdoc(owner)), 80)
+            for name, member in vars(owner).items():
+                if not name.startswith("_"):
+                    self.assertTrue(inspect.getdoc(member), name)
+                    self.assertRegex(stubs, rf"def {name}\(")
+        for name in grelha.__all__:
+            self.assertRegex(stubs, rf"(class|def) {name}\b|{name}:")
+
+    def test_stubs_hold(self):
+        """mypy accepts the recipes and this module's calls; a wrong call it does not."""
+        mypy = "/usr/bin/mypy"
+        if not os.path.exists(mypy):
+            self.skipTest("there is no mypy (apt-get install mypy)")
+        recipes = DATA.parent.parent / "python" / "recipes"
+        with tempfile.TemporaryDirectory() as folder:
+            wrong = pathlib.Path(folder, "wrong.py")
+            wrong.write_text("import grelha\ngrelha.World(1, 2).closest(nothing=3)\n")
+            for files, status in ((sorted(recipes.glob("*.py")), 0), ([wrong], 1)):
+                for file in files:
+                    done = subprocess.run([mypy, "--cache-dir", folder, file], text=True,
+                                          capture_output=True, check=False,
+                                          env={**os.environ, "MYPYPATH": os.environ["PYTHONPATH"]})
+                    self.assertEqual(done.returncode, status, done.stdout + done.stderr)
+
+    def test_program_prints_nothing(self):
+        done = subprocess.run([sys.executable, "-c", "import grelha"], capture_output=True,
+                              check=True, cwd="/")
+        self.assertEqual((done.stdout, done.stderr), (b"", b""))
+
+
+if __name__ == "__main__":
+    unittest.main()
