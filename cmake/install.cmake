@@ -14,8 +14,6 @@ install(TARGETS grelha RUNTIME COMPONENT grelha)
 install(DIRECTORY include/grelha DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT grelha)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/grelha)
 install(TARGETS grelha_kernel EXPORT grelhaTargets ARCHIVE COMPONENT grelha)
-# libgrelha.so is the C interface. -lgrelha shall not mean one or the other as the linker likes.
-set_target_properties(grelha_kernel PROPERTIES OUTPUT_NAME grelha_kernel)
 if(GRELHA_C)
   install(TARGETS grelha_c EXPORT grelhaTargets LIBRARY COMPONENT grelha)
   install(FILES include/grelha.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT grelha)

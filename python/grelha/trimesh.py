@@ -74,7 +74,7 @@ class RayMeshIntersector:
 
     def _commit(self):
         state = self._mesh_state()
-        if self._world is None or False:
+        if self._world is None or state != self._state:
             vertices = np.asarray(self.mesh.vertices)
             self._world = World(vertices, self.mesh.faces)
             self._state = state
