@@ -49,12 +49,11 @@ for k in range(SHELLS):  # on from the float after t: t is rounded, and a wall c
     hits = world.closest(start, directions, t_min=np.nextafter(t, np.float32(np.inf)))
     crossed[k] = (hits.face >= 0) & (shell_of[hits.face] == k)
     t = hits.t
-    points = (start + t[:, None] * directions)[np.isfinite(t)]
+    points = start + t[:, None] * directions
     thin = points[np.abs(points[:, 2]) < 0.06]
     picture += np.histogram2d(thin[:, 1], thin[:, 0], SIDE, [[-3.1, 3.1]] * 2)[0]
 stray = world.occluded(start, directions, np.nextafter(t, np.float32(np.inf))).sum()
-lost = (~crossed.all(axis=0)).sum()
-ink = np.exp(-0.35 * picture)[..., None]
-grelha.write_image(parser.parse_args().output, 1 - ink * (1, 0.95, 0.8))
+light = 1 - np.exp(-0.35 * picture)[..., None] * (1, 0.95, 0.8)
+grelha.write_image(parser.parse_args().output, light)
 print(f"{len(directions)} particles through {SHELLS} shells of {len(faces)} triangles: "
-      f"{lost} lost, {stray} crossings too many")
+      f"{(~crossed.all(axis=0)).sum()} lost, {stray} crossings too many")

@@ -32,7 +32,7 @@ std::string text_of(py::handle given) {
 }
 
 void wrong_type(const char* name, const std::string& what, py::handle given) {
-  throw py::type_error(std::string(name) + ": expected " + what + ", found " + text_of(given));
+  throw py::type_error(std::string(name) + ": wanted " + what + ", found " + text_of(given));
 }
 void wrong_value(const char* name, const std::string& what, const std::string& given) {
   throw py::value_error(std::string(name) + ": expected " + what + ", found " + given);

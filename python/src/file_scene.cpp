@@ -104,7 +104,7 @@ Camera FileScene::camera_for(const RenderArguments& given) const {
   if (!given.height.is_none())
     camera.height = whole_number_in(given.height, "height", 1, kMostSide);
   if (!given.eye.is_none())
-    camera.eye = point_in(given.eye, "eye", frame);
+    camera.eye = point_in(given.eye, "eye", {});
   if (!given.at.is_none())
     camera.at = point_in(given.at, "at", frame);
   if (!given.up.is_none())

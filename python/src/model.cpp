@@ -35,7 +35,7 @@ struct Extent {
       size = std::max(size, high[a] - low[a]);
       far = std::max({far, std::abs(low[a]), std::abs(high[a])});
     }
-    if (exact && far <= kMaxRatio * size)
+    if (exact)
       return found;
     // no finer than doubles are there, if the size vanishes
     const double step = std::ldexp(1, std::ilogb(std::max(size, 0x1p-30 * far)) + 1);

@@ -111,8 +111,8 @@ py::object closest_hits(const Model& model, const RayArguments& given, py::handl
     Hits hits;
     hits.t = to.t;
     hits.id = ids.get();
-    hits.u = to.u;
-    hits.v = to.v;
+    hits.u = to.v;
+    hits.v = to.u;
     closest(*model.world, batch.rays(), hits, options_of(threads, progress));
     finish(model, ids.get(), batch.count(), to);
   });
