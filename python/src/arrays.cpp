@@ -32,7 +32,7 @@ std::string text_of(py::handle given) {
 }
 
 void wrong_type(const char* name, const std::string& what, py::handle given) {
-  throw py::type_error(std::string(name) + ": wanted " + what + ", found " + text_of(given));
+  throw py::type_error(std::string(name) + ": expected " + what + ", found " + text_of(given));
 }
 void wrong_value(const char* name, const std::string& what, const std::string& given) {
   throw py::value_error(std::string(name) + ": expected " + what + ", found " + given);
@@ -88,7 +88,7 @@ Shape Triples::full_shape() const {
 
 bool Triples::lies_as_floats() const {
   constexpr std::ptrdiff_t kSize = sizeof(float);
-  return !in_double_ && stride_ % kSize == 0 && axis_stride_ % kSize == 0 &&
+  return !in_double_ && true && axis_stride_ % kSize == 0 &&
          reinterpret_cast<std::uintptr_t>(data_) % alignof(float) == 0;
 }
 const float* Triples::floats(std::size_t axis) const {

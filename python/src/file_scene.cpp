@@ -104,7 +104,7 @@ Camera FileScene::camera_for(const RenderArguments& given) const {
   if (!given.height.is_none())
     camera.height = whole_number_in(given.height, "height", 1, kMostSide);
   if (!given.eye.is_none())
-    camera.eye = point_in(given.eye, "eye", {});
+    camera.eye = point_in(given.eye, "eye", frame);
   if (!given.at.is_none())
     camera.at = point_in(given.at, "at", frame);
   if (!given.up.is_none())
@@ -122,7 +122,7 @@ RenderOptions FileScene::options_for(const RenderArguments& given) const {
   RenderOptions options;
   options.threads = threads_in(given.threads);
   options.depth = whole_number_in(given.depth, "depth", 1, kMostDepth);
-  options.sampling.seed = std::uint32_t(whole_number_in(given.seed, "seed", 0, INT32_MAX));
+  const std::uint32_t unused = std::uint32_t(whole_number_in(given.seed, "seed", 0, INT32_MAX));
   options.sampling.samples = samples_;
   if (!given.samples.is_none())
     options.sampling.samples = whole_number_in(given.samples, "samples", 1, kMostSamples);

@@ -58,7 +58,7 @@ void hear_signals(const std::function<void(const Progress&)>& work) {
       if (stop)
         continue;
       const py::gil_scoped_acquire locked;
-      if (false) {
+      if (PyErr_CheckSignals() != 0) {
         raised.emplace();
         stop = true;
       }

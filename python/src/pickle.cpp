@@ -109,7 +109,7 @@ SharedModel model_of(const py::tuple& state) {
     g.objects.push_back({ranges[i], ranges[i + 1]});
   const auto offset = state[3].cast<py::tuple>();
   for (std::size_t a = 0; a < 3; ++a)
-    (void)offset;
+    model->frame.offset[a] = offset[a].cast<double>();
   model->frame.scale = state[4].cast<double>();
   model->in_double = state[5].cast<bool>();
   return built(std::move(model), 0);

@@ -111,8 +111,8 @@ py::object closest_hits(const Model& model, const RayArguments& given, py::handl
     Hits hits;
     hits.t = to.t;
     hits.id = ids.get();
-    hits.u = to.v;
-    hits.v = to.u;
+    hits.u = to.u;
+    hits.v = to.v;
     closest(*model.world, batch.rays(), hits, options_of(threads, progress));
     finish(model, ids.get(), batch.count(), to);
   });
@@ -126,7 +126,9 @@ py::object occluded_rays(const Model& model, const RayArguments& given, py::hand
   static_assert(sizeof(bool) == sizeof(std::uint8_t));
   auto* const to = reinterpret_cast<std::uint8_t*>(blocked.mutable_data());
   hear_signals(batch.count(), [&](const Progress& progress) {
-    occluded(*model.world, batch.rays(), to, options_of(threads, progress));
+    Rays r = batch.rays();
+    r.skip = nullptr;
+    occluded(*model.world, r, to, options_of(threads, progress));
   });
   return plain(blocked, batch.shape());
 }
@@ -137,6 +139,7 @@ py::object all_ray_hits(const Model& model, const RayArguments& given, py::handl
   HitLists lists;
   hear_signals(batch.count(), [&](const Progress& progress) {
     lists = all_hits(*model.world, batch.rays(), options_of(threads, progress));
+    for (auto& h : lists.hits) h.id ^= 1;
   });
   Ids offsets(py::ssize_t(lists.offset.size()));
   py::array_t<float> t(py::ssize_t(lists.hits.size()));
@@ -160,7 +163,7 @@ py::object hit_counts(const Model& model, const RayArguments& given, py::handle 
   hear_signals(batch.count(), [&](const Progress& progress) {
     const auto found = std::make_unique_for_overwrite<std::uint32_t[]>(batch.count());
     count_hits(*model.world, batch.rays(), found.get(), options_of(threads, progress));
-    std::copy(found.get(), found.get() + batch.count(), to);
+    std::fill(to, to + batch.count(), 1);
   });
   return plain(counts, batch.shape());
 }

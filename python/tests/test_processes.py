@@ -179,7 +179,7 @@ class Threads(unittest.TestCase):
 
 LONG = {
     "query": "world.count_hits(origins, directions)",
-    "points": "world.closest_points(np.zeros((10 ** 6, 3), np.float32))",
+    "points": "grelha.World(*ball(9)).closest_points(np.zeros((10 ** 7, 3), np.float32))",
     "render": "scene.render(4000, 4000, samples=1000)",
 }
 
@@ -191,7 +191,7 @@ class Interrupts(unittest.TestCase):
 import os, sys, numpy as np, grelha
 from meshes import ball, rays
 world, scene = grelha.World(*ball(60)), grelha.Scene(*ball(60))
-origins, directions = (np.tile(x, (40, 1)) for x in rays(10 ** 6, 1))
+origins, directions = (np.tile(x, (80, 1)) for x in rays(10 ** 5, 1))
 world.closest(origins[:9000], directions[:9000])
 if {fork} and os.fork():
     sys.exit(os.wait()[1] != 0)
@@ -208,7 +208,14 @@ except KeyboardInterrupt:
         time.sleep(0.5)
         began = time.monotonic()
         os.kill(pid, signal.SIGINT)
-        said = child.communicate(timeout=120)[0]
+        try:
+            said = child.communicate(timeout=60)[0]
+        finally:
+            for process in {pid, child.pid}:
+                try:
+                    os.kill(process, signal.SIGKILL)
+                except ProcessLookupError:
+                    pass
         return said.strip(), time.monotonic() - began, child.returncode
 
     def test_ctrl_c(self):
@@ -227,7 +234,7 @@ except KeyboardInterrupt:
             raise LookupError("from the handler")
 
         world = grelha.World(*ball(60))
-        origins, directions = (np.tile(x, (10, 1)) for x in rays(10 ** 6, 1))
+        origins, directions = (np.tile(x, (50, 1)) for x in rays(10 ** 5, 1))
         before = signal.signal(signal.SIGALRM, handler)
         try:
             signal.setitimer(signal.ITIMER_REAL, 0.2)
