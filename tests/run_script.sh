@@ -7,7 +7,7 @@ rm -rf "$2"
 mkdir -p "$2/project/build/release" "$2/tools"
 cd "$2"
 cp "$1" project/run
-for folder in include kernel frontend scenes cmake examples tests perf; do
+for folder in include kernel frontend c scenes cmake examples tests perf; do
   mkdir project/$folder
 done
 touch project/CMakeLists.txt project/CMakePresets.json project/build/release/.built-grelha

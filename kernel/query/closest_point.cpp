@@ -8,6 +8,7 @@
 #include "kernel/query/runs.hpp"
 #include "kernel/shapes/exact_hits.hpp"
 #include "kernel/shapes/nearest.hpp"
+#include "kernel/traverse/dda.hpp"
 
 namespace grelha {
 namespace {

@@ -88,7 +88,7 @@ Shape Triples::full_shape() const {
 
 bool Triples::lies_as_floats() const {
   constexpr std::ptrdiff_t kSize = sizeof(float);
-  return !in_double_ && true && axis_stride_ % kSize == 0 &&
+  return !in_double_ && stride_ % kSize == 0 && axis_stride_ % kSize == 0 &&
          reinterpret_cast<std::uintptr_t>(data_) % alignof(float) == 0;
 }
 const float* Triples::floats(std::size_t axis) const {

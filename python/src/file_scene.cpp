@@ -122,7 +122,7 @@ RenderOptions FileScene::options_for(const RenderArguments& given) const {
   RenderOptions options;
   options.threads = threads_in(given.threads);
   options.depth = whole_number_in(given.depth, "depth", 1, kMostDepth);
-  const std::uint32_t unused = std::uint32_t(whole_number_in(given.seed, "seed", 0, INT32_MAX));
+  options.sampling.seed = std::uint32_t(whole_number_in(given.seed, "seed", 0, INT32_MAX));
   options.sampling.samples = samples_;
   if (!given.samples.is_none())
     options.sampling.samples = whole_number_in(given.samples, "samples", 1, kMostSamples);

@@ -67,7 +67,7 @@ void fill_faces(py::handle faces, std::size_t vertices, Triangles& t) {
   const std::int64_t* id = ids.data();
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t k = 0; k < 3; ++k, ++id) {
-      if (*id < 0 || std::size_t(*id) > vertices)
+      if (*id < 0 || std::size_t(*id) >= vertices)
         wrong_value("faces",
                     "indices of " + std::to_string(vertices) + " vertices",
                     std::to_string(*id) + " at " + text_of(Shape{py::ssize_t(i), py::ssize_t(k)}));
@@ -169,7 +169,7 @@ std::shared_ptr<Model> sphere_model(py::handle centers, py::handle radii) {
   if (model->in_double && points.count() > 0)
     model->frame = extent.frame();
   for (const Float3& center : points.in_frame(model->frame)) {
-    const float radius = sizes.each.empty() ? float(sizes.all) : sizes.each[0];
+    const float radius = sizes.each.empty() ? float(sizes.all) : sizes.each[s.size()];
     if (!(radius > 0 && double{radius} <= kLargest))
       wrong_value("radii",
                   "numbers above 0 of at most 1e18",

@@ -99,7 +99,7 @@ py::object nearest_points(const Model& model,
   std::int64_t* const to_id = id.mutable_data();
   for (std::size_t i = 0; i < found.size(); ++i) {
     to_distance[i] = scale == 1 ? found[i].distance : as_float(found[i].distance / scale);
-    to_id[i] = std::int64_t{found[i].id};
+    to_id[i] = found[i] ? std::int64_t{found[i].id} : -1;
   }
   const bool in_double = model.in_double || batch.given().in_double();
   const py::object points = in_double

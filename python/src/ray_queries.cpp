@@ -126,9 +126,7 @@ py::object occluded_rays(const Model& model, const RayArguments& given, py::hand
   static_assert(sizeof(bool) == sizeof(std::uint8_t));
   auto* const to = reinterpret_cast<std::uint8_t*>(blocked.mutable_data());
   hear_signals(batch.count(), [&](const Progress& progress) {
-    Rays r = batch.rays();
-    r.skip = nullptr;
-    occluded(*model.world, r, to, options_of(threads, progress));
+    occluded(*model.world, batch.rays(), to, options_of(threads, progress));
   });
   return plain(blocked, batch.shape());
 }
@@ -139,7 +137,6 @@ py::object all_ray_hits(const Model& model, const RayArguments& given, py::handl
   HitLists lists;
   hear_signals(batch.count(), [&](const Progress& progress) {
     lists = all_hits(*model.world, batch.rays(), options_of(threads, progress));
-    for (auto& h : lists.hits) h.id ^= 1;
   });
   Ids offsets(py::ssize_t(lists.offset.size()));
   py::array_t<float> t(py::ssize_t(lists.hits.size()));
@@ -163,7 +160,7 @@ py::object hit_counts(const Model& model, const RayArguments& given, py::handle 
   hear_signals(batch.count(), [&](const Progress& progress) {
     const auto found = std::make_unique_for_overwrite<std::uint32_t[]>(batch.count());
     count_hits(*model.world, batch.rays(), found.get(), options_of(threads, progress));
-    std::fill(to, to + batch.count(), 1);
+    std::copy(found.get(), found.get() + batch.count(), to);
   });
   return plain(counts, batch.shape());
 }

@@ -188,10 +188,11 @@ class Interrupts(unittest.TestCase):
     def interrupted(self, statement, fork=False):
         """Ends a statement that would take minutes by SIGINT, and says how it ended."""
         program = f"""
-import os, sys, numpy as np, grelha
+import os, signal, sys, numpy as np, grelha
 from meshes import ball, rays
+signal.signal(signal.SIGINT, signal.default_int_handler)  # in the background it is ignored
 world, scene = grelha.World(*ball(60)), grelha.Scene(*ball(60))
-origins, directions = (np.tile(x, (80, 1)) for x in rays(10 ** 5, 1))
+origins, directions = (np.tile(x, (160, 1)) for x in rays(10 ** 5, 1))
 world.closest(origins[:9000], directions[:9000])
 if {fork} and os.fork():
     sys.exit(os.wait()[1] != 0)
@@ -223,23 +224,25 @@ except KeyboardInterrupt:
             with self.subTest(name):
                 said, seconds, status = self.interrupted(statement)
                 self.assertEqual((said, status), ("interrupted True", 0))
-                self.assertLess(seconds, 20)
+                self.assertLess(seconds, 10)
 
     def test_ctrl_c_in_a_forked_process(self):
         said, seconds, status = self.interrupted(LONG["query"], fork=True)
         self.assertEqual((said, status), ("interrupted True", 0))
+        self.assertLess(seconds, 10)
 
     def test_exception_of_a_handler_comes_through(self):
         def handler(number, frame):
             raise LookupError("from the handler")
 
         world = grelha.World(*ball(60))
-        origins, directions = (np.tile(x, (50, 1)) for x in rays(10 ** 5, 1))
-        before = signal.signal(signal.SIGALRM, handler)
+        origins, directions = (np.tile(x, (80, 1)) for x in rays(10 ** 5, 1))
+        before, began = signal.signal(signal.SIGALRM, handler), time.monotonic()
         try:
             signal.setitimer(signal.ITIMER_REAL, 0.2)
             with self.assertRaisesRegex(LookupError, "from the handler"):
-                world.count_hits(origins, directions)
+                world.count_hits(origins, directions, threads=1)
+            self.assertLess(time.monotonic() - began, 10)
         finally:
             signal.setitimer(signal.ITIMER_REAL, 0)
             signal.signal(signal.SIGALRM, before)

@@ -22,7 +22,7 @@ namespace grelha {
 namespace {
 
 #ifdef NDEBUG
-constexpr double kMostSeconds = 5;
+constexpr double kMostSeconds = 15;
 #else
 constexpr double kMostSeconds = 60;  // nothing is optimised
 #endif
