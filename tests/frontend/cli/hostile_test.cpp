@@ -1,4 +1,4 @@
-// Files made to waste time or memory: the program ends with each in 5 s of processor time and 512
+// Files made to waste time or memory: the program ends with each in 15 s of processor time and 512
 // MiB.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
