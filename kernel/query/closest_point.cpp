@@ -64,15 +64,22 @@ class NearestSearch {
     if (r < 0)
       return 0;
     const double p[3] = {p_.x, p_.y, p_.z};
+    double outside[3];  // from p to the grid along each axis
+    for (int a = 0; a < 3; ++a)
+      outside[a] = std::max({0., g.lo[a] - p[a], p[a] - (g.lo[a] + g.n[a] * g.cell[a])});
     double least = std::numeric_limits<double>::infinity();
     for (int a = 0; a < 3; ++a) {
+      const double x = outside[(a + 1) % 3], y = outside[(a + 2) % 3];
+      const auto take = [&](double z) {
+        least = std::min(least, std::sqrt(x * x + y * y + z * z));
+      };
       if (center[a] - r > 0)
-        least = std::min(least, p[a] - (g.lo[a] + (center[a] - r) * g.cell[a]));
+        take(std::max(0., p[a] - (g.lo[a] + (center[a] - r) * g.cell[a])));
       if (center[a] + r + 1 < g.n[a])
-        least = std::min(least, (g.lo[a] + (center[a] + r + 1) * g.cell[a]) - p[a]);
+        take(std::max(0., (g.lo[a] + (center[a] + r + 1) * g.cell[a]) - p[a]));
     }
     // primitives stand in cells as much as the pad around them; doubles round by less
-    return least - static_cast<double>(g.pad);
+    return least * (1 - 0x1p-40) - 2 * static_cast<double>(g.pad);
   }
 
   void look_at_shell(const GridView& g, const int (&center)[3], int r) {
