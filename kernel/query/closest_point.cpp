@@ -146,8 +146,7 @@ class NearestSearch {
 
   void take(std::uint32_t id, const Point& at) {
     const double distance = length(at - p_);
-    const bool first = id_ == kNoPrimitive ? distance <= best_ : distance < best_;
-    if (!first && !(distance == best_ && id < id_))
+    if (!(distance < best_ || (distance == best_ && id < id_)))
       return;
     best_ = distance;
     at_ = at;
