@@ -13,7 +13,7 @@ case $PWD in
     copy=$(mktemp -d)
     trap 'rm -rf "$copy"' EXIT
     cp -r README.md CHANGELOG.md CONTRIBUTING.md LICENSE CMakePresets.json docs include examples \
-      "$copy"
+      python "$copy"
     cd "$copy"
     ;;
 esac
@@ -31,6 +31,8 @@ fi
 cp -r docs "$out/html/docs"
 cp -r docs/images docs/*.csv docs/*.sh CMakePresets.json LICENSE "$out/html"
 cp -r examples "$out"
+mkdir "$out/python"
+cp -r python/recipes "$out/python"
 cd "$out/html"
 if grep -n '@ref' ./*.html; then  # a link broken over two lines
   echo "docs/build.sh: a page shows a link as Doxygen writes it" >&2
