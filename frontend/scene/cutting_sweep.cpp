@@ -19,14 +19,13 @@ std::optional<std::uint32_t> CuttingSweep::next_point() {
   return fresh_.extract(fresh_.begin()).mapped();
 }
 
-bool CuttingSweep::run() {
+void CuttingSweep::run() {
   while (const std::optional<std::uint32_t> point = next_point()) {
     if (is_over())
-      return false;
+      return;
     pass(*point);
   }
   cut_passed();
-  return is_uncut_;
 }
 
 /// The common case, without a search: one edge ends and one begins, and no other passes the point.
@@ -72,7 +71,6 @@ void CuttingSweep::cut_crossing() {
 
 /// Takes an edge off the line, and has it begin at the point where the sweep is.
 SweepLine::Iterator CuttingSweep::insert_starting_edges(SweepLine::Iterator at) {
-  is_uncut_ = false;
   const std::uint32_t edge = at->edge;
   starting_.push_back(edge);
   edges_.push_back(edge_between(edges_[edge].left, event_point_, edges_[edge]));
@@ -139,7 +137,6 @@ bool CuttingSweep::cut_one(SweepLine::Iterator a, SweepLine::Iterator b) {
 }
 
 bool CuttingSweep::cut_at_crossing(SweepLine::Iterator a, SweepLine::Iterator b) {
-  is_uncut_ = false;
   const std::uint32_t point = crossing_of(a, b);
   const auto is_end_of = [&](std::uint32_t e) {
     return edges_[e].left == point || edges_[e].right == point;
@@ -198,7 +195,6 @@ std::uint32_t CuttingSweep::point_at(const Point2& p, const std::array<std::uint
 /// number. Returns false if the sweep has passed the point, or would go back on its way along the
 /// edge: then the edge is cut after the sweep.
 bool CuttingSweep::cut(SweepLine::Iterator at, std::uint32_t point) {
-  is_uncut_ = false;
   const std::uint32_t edge = at->edge;
   OutlineEdge before = edges_[edge];
   const bool is_on_the_way = at->spans_point(points_[point]);

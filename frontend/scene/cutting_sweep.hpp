@@ -35,8 +35,7 @@ class CuttingSweep {
         iterators_(edges.size()),
         most_(edges.size() + most_cuts) {}
 
-  /// Returns whether there was nothing to cut.
-  bool run();
+  void run();
   bool is_over() const { return edges_.size() >= most_; }
 
  private:
@@ -80,7 +79,6 @@ class CuttingSweep {
   std::vector<SweepLine::Iterator>
       crossing_;             ///< edges that pass the point, or so near that they are cut
   std::vector<Cut> passed_;  ///< cuts that the sweep has passed
-  bool is_uncut_ = true;
 };
 
 }  // namespace grelha

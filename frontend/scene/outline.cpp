@@ -135,23 +135,19 @@ Outline::State Outline::arrange() {
   std::size_t swept = 0;
   const std::size_t most = 4 * (kMostCuts + corner_points_.size());
   for (int sweep = 0; sweep < kMostSweeps && swept <= most; ++sweep) {
-    if (is_changed) {
-      if (sweep > 0)
-        simplify();
-      merge_equal_edges();
-      if (try_fill())
-        return State::kWasCut;
-    }
+    merge_equal_edges();
+    if (try_fill())
+      return is_changed ? State::kWasCut : State::kSimple;
+    is_changed = true;
     CuttingSweep cutting(points_, intersections_, edges_, step, kMostCuts);
-    if (cutting.run() && !is_changed)
-      return State::kSimple;
+    cutting.run();
+    if (cutting.is_over())
+      return State::kCutLimit;
     while (numbers_.size() < points_.size()) {
       const std::size_t behind = points_.size() - numbers_.size();
       numbers_.push_back(std::uint32_t(corner_points_.size() + intersections_.size() - behind));
     }
-    if (cutting.is_over())
-      return State::kCutLimit;
-    is_changed = true;
+    simplify();
     swept += edges_.size();
     if (sweep + 1 >= kFineSweeps)
       step *= 2;

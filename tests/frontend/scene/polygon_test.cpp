@@ -199,33 +199,6 @@ double seconds_for(const Outline& outline, std::vector<Triangle>& triangles) {
   return double(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
-double perimeter(const Outline& outline, const std::vector<Triangle>& triangles) {
-  double sum = 0;
-  for (const Triangle& t : triangles)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Float3 &a = outline[t[k]], &b = outline[t[(k + 1) % 3]];
-      sum += std::hypot(double(a.x) - b.x, double(a.y) - b.y);
-    }
-  return sum;
-}
-
-/// A fan reaches across with each of its triangles, and would put them all in every cell of a grid.
-/// Cut evenly, each pass of ears draws diagonals once round the circle, and each is a side of two
-/// triangles.
-TEST(Polygon, LargeOutlinesAreCutIntoShortTriangles) {
-  constexpr int kVertices = 30000;
-  for (const Outline& outline : {star(kVertices, 1), star(kVertices, .999)}) {
-    const std::vector<Triangle> triangles = cut(outline);
-    expect_cover(outline, triangles);
-    double round = 0;
-    for (std::size_t i = 0; i < outline.size(); ++i) {
-      const Float3 &a = outline[i], &b = outline[(i + 1) % outline.size()];
-      round += std::hypot(double(a.x) - b.x, double(a.y) - b.y);
-    }
-    EXPECT_LT(perimeter(outline, triangles), 2 * round * std::log2(kVertices));
-  }
-}
-
 // Generous: about 0.02 s were measured; testing every corner against every other took minutes.
 constexpr double kPatience = 10;
 
