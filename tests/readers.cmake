@@ -10,9 +10,8 @@ grelha_test(frontend/scene/polygon unit grelha::frontend)
 target_sources(polygon_test PRIVATE frontend/scene/crossed_polygons_test.cpp
   frontend/scene/frame_test.cpp frontend/scene/many_crossings_test.cpp)
 grelha_test(frontend/nff/nff_reader unit grelha::frontend)
-target_sources(nff_reader_test PRIVATE frontend/nff/nff_chunks_test.cpp
-  frontend/nff/nff_dialects_test.cpp frontend/nff/nff_noise_test.cpp)
-target_link_libraries(nff_reader_test PRIVATE OpenMP::OpenMP_CXX)
+target_sources(nff_reader_test PRIVATE frontend/nff/nff_dialects_test.cpp
+  frontend/nff/nff_noise_test.cpp)
 grelha_test(frontend/ply/ply_reader unit grelha::frontend)
 target_sources(ply_reader_test PRIVATE frontend/ply/ply_alone_test.cpp
   frontend/ply/ply_triangles_test.cpp)

@@ -7,11 +7,6 @@ target_sources(image_file_test PRIVATE frontend/images/exr_file_test.cpp
 find_package(ZLIB REQUIRED)
 target_link_libraries(image_file_test PRIVATE ZLIB::ZLIB OpenMP::OpenMP_CXX)
 grelha_test(frontend/images/compare unit grelha::frontend)
-target_sources(compare_test PRIVATE frontend/images/likeness_test.cpp)
-add_test(NAME picture_measures COMMAND ${CMAKE_COMMAND} -E env PATH=/usr/bin:$ENV{PATH}
-  sh ${CMAKE_CURRENT_SOURCE_DIR}/with_python.sh ${CMAKE_CURRENT_SOURCE_DIR}/picture_measures.py
-  $<TARGET_FILE:grelha>)
-set_tests_properties(picture_measures PROPERTIES LABELS image SKIP_RETURN_CODE 77)
 grelha_test(frontend/cli/options unit grelha::frontend)
 target_sources(options_test PRIVATE frontend/cli/option_checks_test.cpp
   frontend/cli/help_test.cpp)

@@ -1,7 +1,6 @@
 #include "frontend/cli/compare_images.hpp"
 
 #include <cstdio>
-#include <optional>
 #include <string>
 #include <utility>
 
@@ -9,7 +8,6 @@
 #include "frontend/commands/outputs.hpp"
 #include "frontend/images/compare.hpp"
 #include "frontend/images/image_file.hpp"
-#include "frontend/images/likeness.hpp"
 #include "frontend/images/tone.hpp"
 #include "frontend/jobs/identity.hpp"
 
@@ -33,32 +31,6 @@ void write_difference(const CompareCommand& command,
               {.notes = {kSoftware, {"Comment", "difference of two pictures"}}});
 }
 
-void write_error_map(const std::string& path, const Similarity& similarity) {
-  const auto picture = image_format(path) == ImageFormat::png ? in_colors : in_numbers;
-  write_image(
-      path, picture(similarity), {.notes = {kSoftware, {"Comment", "FLIP of two pictures"}}});
-}
-
-void check_outputs(const CompareCommand& command) {
-  const Output diff{"--diff", command.diff}, map{"--error-map", command.error_map};
-  for (const Output& output : {diff, map})
-    if (!output.second.empty())
-      check_not_read({output}, {command.a, command.b});
-  if (!command.diff.empty() && !command.error_map.empty())
-    check_distinct(diff, map);
-}
-
-/// Returns the sRGB values that a screen shows. Light passes through the sRGB curve; other numbers
-/// are sRGB values or authored colours already, and stay.
-Image on_screen(Image image, const Encoding& encoding, bool is_light) {
-  if (encoding.kind == Encoding::Kind::power && !is_light) {
-    image = as_light(std::move(image), encoding);
-    is_light = true;
-  }
-  image = displayed(std::move(image));
-  return is_light ? as_srgb(std::move(image)) : image;
-}
-
 std::string text_of(const Comparison& c) {
   char text[256];
   std::snprintf(
@@ -77,19 +49,11 @@ std::string text_of(const Comparison& c) {
   return text;
 }
 
-/// Returns "-" for an absent number.
-std::string text_of(std::optional<double> number) {
-  if (!number)
-    return "-";
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", *number);
-  return text;
-}
-
 }  // namespace
 
 int compare_images(const CompareCommand& command) {
-  check_outputs(command);
+  if (!command.diff.empty())
+    check_not_read({{"--diff", command.diff}}, {command.a, command.b});
   Encoding of_a, of_b;
   Image a = read_image(command.a, &of_a), b = read_image(command.b, &of_b);
   if (a.width != b.width || a.height != b.height)
@@ -108,11 +72,7 @@ int compare_images(const CompareCommand& command) {
   const Comparison c = compare(a, b);
   if (!command.diff.empty())
     write_difference(command, a, b, c.largest);
-  const Similarity l = compare_similarity(on_screen(std::move(a), of_a, as_light_both),
-                                          on_screen(std::move(b), of_b, as_light_both));
-  if (!command.error_map.empty())
-    write_error_map(command.error_map, l);
-  print(text_of(c) + ", SSIM " + text_of(l.ssim) + ", FLIP " + text_of(l.flip) + '\n');
+  print(text_of(c) + '\n');
   return command.max_rmse && !(c.rmse <= *command.max_rmse) ? kAboveBound : kOk;
 }
 

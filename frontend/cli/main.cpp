@@ -108,7 +108,7 @@ std::string info_of(const std::string& scene, const InfoCommand& command) {
   const bool bars = stderr_is_terminal();
   WarningLog log;
   const SceneFile file = load_scene(scene, log.reporting(), command.input.read, bars);
-  warn_empty_image(scene, file, file.camera, log.reporting());
+  warn_empty_scene(scene, file, log.reporting());
   log.check_none(command.input);
   const SceneMemory memory = memory_of(file, command.build);
   std::optional<std::vector<GridStats>> grids;

@@ -307,10 +307,6 @@ void add_compare(CLI::App& app, CompareCommand& command) {
                "compare what a screen shows: each channel cut to 0 to 1 first");
   image_file(
       sub, "--diff", command.diff, "write |A - B|; in a .png the largest difference is made white");
-  image_file(sub,
-             "--error-map",
-             command.error_map,
-             "write FLIP of each pixel; in a .png as colours, from black (0) to pale yellow (1)");
 }
 
 void add_merge(CLI::App& app, MergeCommand& command) {

@@ -20,6 +20,7 @@
 #include "frontend/files/atomic_file.hpp"
 #include "frontend/jobs/identity.hpp"
 #include "frontend/jobs/long_render.hpp"
+#include "frontend/jobs/partial.hpp"
 #include "frontend/jobs/preparation.hpp"
 #include "frontend/scene/scene_file.hpp"
 #include "grelha/isa.hpp"
@@ -127,6 +128,8 @@ class SceneRender {
     // its threads would wait on the processors where others pack the picture
     omp_pause_resource_all(omp_pause_soft);
     write(work, world, maps);
+    if (!is_partial_name(command_.image))
+      warn_empty_image(command_.scene, file_.scene, work.image(), log_.reporting());
     report(world);
     log_.check_none(command_.input);  // saves may have failed on the way
     return kOk;
@@ -154,7 +157,7 @@ class SceneRender {
   PictureMemory check() {
     camera_ = camera_of(file_, command_);
     check_image_size(format_of(command_.image, command_.format), camera_.width, camera_.height);
-    warn_empty_image(command_.scene, file_, camera_, log_.reporting());
+    warn_empty_scene(command_.scene, file_, log_.reporting());
     warn_of_cut_light(command_.scene, file_.scene, resolved_.render, log_.reporting());
     log_.check_none(command_.input);
     const PictureMemory memory = picture_memory(resolved_, camera_);

@@ -78,8 +78,7 @@ struct CompareCommand {
   std::string a, b;
   std::optional<double> max_rmse;
   bool display = false;  ///< compare displayed values, channels from 0 to 1
-  /// files for the pictures of the difference and of its visibility (FLIP), or empty
-  std::string diff, error_map;
+  std::string diff;      ///< file for the picture of the difference, or empty
 };
 
 struct MergeCommand {

@@ -1,15 +1,17 @@
 #pragma once
 
 #include "frontend/scene/scene_file.hpp"
+#include "grelha/image.hpp"
 
 namespace grelha {
 
-/// Warns of a picture that would show nothing, and says what to do: points without faces, no
-/// primitives, no light, everything behind the eye or outside the view. Each is said only when it
-/// is sure: a primitive is outside the view when all of it lies beyond one of the view's sides.
+/// Warns of a scene that has nothing to show: points without faces, no primitives, no light.
+void warn_empty_scene(const std::string& path, const SceneFile& file, const Warn& warn);
+
+/// Warns of a picture in which every pixel is background.
 void warn_empty_image(const std::string& path,
-                      const SceneFile& file,
-                      const Camera& camera,
+                      const Scene& scene,
+                      const Image& image,
                       const Warn& warn);
 
 }  // namespace grelha

@@ -17,14 +17,10 @@ struct Use {
   const RenderCommand* command;
 };
 
-[[noreturn]] void reject(const Output& first, const Output& second) {
-  throw UsageError(second.first + " and " + first.first + ": expected two files, found \"" +
-                   first.second + "\" twice");
-}
-
 [[noreturn]] void reject(const Use& first, const Use& second) {
   if (first.command == second.command)
-    reject(Output(first.option, first.file), Output(second.option, second.file));
+    throw UsageError(second.option + " and " + first.option + ": expected two files, found \"" +
+                     first.file + "\" twice");
   throw UsageError(second.option + ": " + first.command->scene + " and " + second.command->scene +
                    " would both be written to " + second.file +
                    "; {} in a name stands for the scene's");
@@ -71,11 +67,6 @@ void check_not_read(const std::vector<Output>& outputs, const std::vector<std::s
     throw UsageError(option + ": expected another file than " + found->second +
                      ", which is read, found \"" + file + '"');
   }
-}
-
-void check_distinct(const Output& first, const Output& second) {
-  if (!is_special_file(first.second) && location_of(first.second) == location_of(second.second))
-    reject(first, second);
 }
 
 void check_distinct(const std::vector<RenderCommand>& commands) {

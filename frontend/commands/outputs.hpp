@@ -35,10 +35,7 @@ void check_no_terminal(const std::string& file);
 /// Throws UsageError when one of the outputs is a file that is read, by whatever name.
 void check_not_read(const std::vector<Output>& outputs, const std::vector<std::string>& read);
 
-/// Throws UsageError when two outputs are one file.
-void check_distinct(const Output& first, const Output& second);
-
-/// The same for all outputs, be it of one command or of two.
+/// Throws UsageError when two outputs are one file, be it of one command or of two.
 void check_distinct(const std::vector<RenderCommand>& commands);
 
 }  // namespace grelha

@@ -86,7 +86,7 @@ bool is_off(std::string_view word) {
 bool is_obj(std::string_view text) {
   static constexpr std::string_view kFirst[] = {
       "v", "vn", "vt", "o", "g", "mtllib", "usemtl", "s", "f"};
-  Words words("", text, 0, Comments::kOfLines);
+  Words words("", text, 0, Comments::kAll);
   const std::string_view first = words.peek();
   if (std::ranges::find(kFirst, first) == std::end(kFirst))
     return false;
@@ -124,7 +124,7 @@ std::string_view other_format(std::string_view text) {
     if (text.starts_with(magic.bytes))
       return magic.name;
   text = text.substr(byte_order_mark(text), kLook);
-  const std::string_view first = Words("", text, 0, Comments::kOfLines).next();
+  const std::string_view first = Words("", text, 0, Comments::kAll).next();
   if (first.starts_with("MM") && has(text.substr(0, 8), "\0"sv))  // and its length
     return "a 3DS mesh: convert it to PLY";
   if (is_off(first))

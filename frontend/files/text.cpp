@@ -1,9 +1,9 @@
 #include "frontend/files/text.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <span>
 
@@ -18,104 +18,6 @@ bool is_space(char c) {
 }
 bool ends_line(char c) {
   return c == '\n' || c == '\r';
-}
-
-constexpr double kPowersOfTen[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
-                                   1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
-                                   1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
-
-/// A number without sign as it is written: its digits times a power of ten.
-struct Decimal {
-  std::uint64_t digits = 0;
-  int power = 0;
-
-  /// Returns its end, or nullptr if it is no number or too long.
-  const char* read(const char* p, const char* end) {
-    const char* const first = p;
-    p = read_digits(p, end);
-    std::ptrdiff_t count = p - first;
-    if (p != end && *p == '.') {
-      const char* const point = p;
-      p = read_digits(p + 1, end);
-      power = -int(std::min<std::ptrdiff_t>(p - point - 1, kMaxDigits));
-      count = p - first - 1;
-    }
-    if (count == 0 || count >= kMaxDigits)
-      return nullptr;
-    return p != end && (*p == 'e' || *p == 'E') ? read_power(p + 1, end) : p;
-  }
-
- private:
-  static constexpr int kMaxDigits = 20;  ///< digits, for a number of 64 bits
-
-  const char* read_digits(const char* p, const char* end) {
-    for (; p != end && is_digit(*p); ++p)
-      digits = 10 * digits + std::uint64_t(*p - '0');
-    return p;
-  }
-  const char* read_power(const char* p, const char* end) {
-    const bool negative = p != end && *p == '-';
-    if (p != end && (*p == '-' || *p == '+'))
-      ++p;
-    int value = 0;
-    const char* const first = p;
-    for (; p != end && is_digit(*p) && p - first < 3; ++p)
-      value = 10 * value + (*p - '0');
-    power += negative ? -value : value;
-    return p == first ? nullptr : p;
-  }
-};
-
-/// Decimal exponent of a well-formed number that no float can hold: its sign tells overflow from
-/// underflow.
-long decimal_exponent(std::string_view word) {
-  // digits before the point, zeros before the first other digit
-  long digits = 0, leading = 0, exponent = 0;
-  bool point = false, started = false;
-  std::size_t i = 0;
-  for (; i < word.size() && word[i] != 'e' && word[i] != 'E'; ++i) {
-    if (word[i] == '.')
-      point = true;
-    if (!is_digit(word[i]))
-      continue;
-    started = started || word[i] != '0';
-    if (started && !point)
-      ++digits;
-    if (!started && point)
-      ++leading;
-  }
-  if (i < word.size()) {
-    std::string_view power = word.substr(i + 1);
-    const bool negative = power.starts_with('-');
-    if (power.starts_with('+'))
-      power.remove_prefix(1);
-    const auto read = std::from_chars(power.data(), power.data() + power.size(), exponent);
-    if (read.ec != std::errc())
-      exponent = negative ? -1000000000000L : 1000000000000L;
-  }
-  return exponent + (digits > 0 ? digits : -leading);
-}
-
-/// Reads a number whose digits, without the point, are at most 2^53 and whose power of ten is at
-/// most 22. A double holds both exactly, so their quotient or product is the double nearest to the
-/// number. It rounds to the float nearest to the number, unless it lies exactly between two floats.
-/// Returns the end of the number, or nullptr for any other number.
-const char* short_number(const char* p, const char* end, float& value) {
-  constexpr std::uint64_t kMost = std::uint64_t(1) << 53;
-  constexpr std::uint64_t kBelow = (std::uint64_t(1) << 29) - 1, kHalf = std::uint64_t(1) << 28;
-  const bool negative = p != end && *p == '-';
-  Decimal decimal;
-  p = decimal.read(negative ? p + 1 : p, end);
-  if (!p || decimal.digits > kMost || decimal.power < -22 || decimal.power > 22)
-    return nullptr;
-  const auto whole = double(decimal.digits);
-  const double exact = decimal.power < 0 ? whole / kPowersOfTen[-decimal.power]
-                                         : whole * kPowersOfTen[decimal.power];
-  // a double has 29 bits more than a float
-  if ((std::bit_cast<std::uint64_t>(exact) & kBelow) == kHalf)
-    return nullptr;
-  value = float(negative ? -exact : exact);
-  return p;
 }
 
 /// The text that Microsoft's C library wrote behind `1.` for infinities and NaNs.
@@ -165,9 +67,7 @@ bool parse(std::string_view word, Float& value) {
   if (read.ptr != last || read.ec == std::errc::invalid_argument)
     return parse_name(word, value);
   if (read.ec == std::errc::result_out_of_range) {
-    value = decimal_exponent(word) > 0 ? std::numeric_limits<Float>::infinity() : Float(0);
-    if (*first == '-')
-      value = -value;
+    value = Float(std::strtod(std::string(first, last).c_str(), nullptr));  // infinite or zero
   }
   return true;
 }
@@ -175,8 +75,7 @@ bool parse(std::string_view word, Float& value) {
 }  // namespace
 
 bool to_number(std::string_view word, float& value) {
-  const char* const last = word.data() + word.size();
-  return short_number(word.data(), last, value) == last || parse(word, value);
+  return parse(word, value);
 }
 bool to_number(std::string_view word, double& value) {
   return parse(word, value);
@@ -273,7 +172,7 @@ const char* Words::past_comment(const char* p) const {
     return p;
   if (p[1] == '/')
     return std::find_if(p, end_, ends_line);
-  if (p[1] != '*' || comments_ == Comments::kOfLines)
+  if (p[1] != '*')
     return p;
   const char* const close = find_close(p + 2);
   return close == end_ ? p : close + 2;
@@ -308,21 +207,21 @@ bool Words::take_to(const char* last) {
   return true;
 }
 
-bool Words::next_number(float& value) {
-  const char* const last = short_number(past_spaces(), end_, value);
-  return last && take_to(last);
-}
-
-bool Words::next_index(std::int64_t& value) {
-  constexpr std::ptrdiff_t kMostDigits = 18;
-  const char *const first = past_spaces(), *p = first;
-  std::int64_t found = 0;
-  for (; p != end_ && is_digit(*p) && p - first < kMostDigits; ++p)
-    found = 10 * found + (*p - '0');
-  if (p == first || !take_to(p))
+template <class Number>
+bool Words::take_number(Number& value) {
+  Number found;
+  const auto read = std::from_chars(past_spaces(), end_, found);
+  if (read.ec != std::errc() || !take_to(read.ptr))
     return false;
   value = found;
   return true;
+}
+
+bool Words::next_number(float& value) {
+  return take_number(value);
+}
+bool Words::next_index(std::int64_t& value) {
+  return take_number(value);
 }
 
 std::string_view Words::peek() const {

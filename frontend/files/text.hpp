@@ -32,9 +32,9 @@ std::string printable(std::string_view word);
 /// empty word.
 std::string quoted(std::string_view word);
 
-/// The comments that Words steps over: none; `#` and `//` to the end of their line; `/*` to `*/` as
-/// well.
-enum class Comments : std::uint8_t { kNone, kOfLines, kAll };
+/// The comments that Words steps over: none, or `#` and `//` to the end of their line and `/*` to
+/// `*/`.
+enum class Comments : std::uint8_t { kNone, kAll };
 
 /// Text in memory as words between spaces. Every byte up to ' ' is a space; LF, CRLF and lone CR
 /// end lines. Words are views into the text, so that their position can be asked later and costs
@@ -46,10 +46,10 @@ class Words {
   Words(std::string file, std::string_view text, std::size_t begin, Comments comments);
 
   std::string_view next();  ///< next word on any line; empty at the end of the file
-  /// Steps over the next word if it is a number as most are, with few digits: `value`, as
-  /// to_number() reads it. False, and nothing is stepped over, for other words, comments, the end.
+  /// Steps over the next word if it is a number, written as most are: `value`, as to_number() reads
+  /// it. False, and nothing is stepped over, for other words, comments, the end.
   bool next_number(float& value);
-  /// The same for digits alone, as to_integer() reads them.
+  /// The same, as to_integer() reads it.
   bool next_index(std::int64_t& value);
   std::string_view peek() const;  ///< what next() would return, left in place
   /// empty when the line ends first; then data() is where it ends
@@ -82,6 +82,8 @@ class Words {
   const char* name_end(const char* first) const;
   const char* past_spaces() const;
   bool take_to(const char* last);
+  template <class Number>
+  bool take_number(Number& value);
 
   std::string file_;
   const char *begin_, *end_, *at_;

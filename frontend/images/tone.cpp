@@ -62,10 +62,6 @@ const SrgbBytes& srgb_bytes() {
   return table;
 }
 
-double srgb_of_light(double light) {
-  return light <= 0.0031308 ? light * 12.92 : 1.055 * std::pow(light, 1 / 2.4) - 0.055;
-}
-
 }  // namespace
 
 std::uint8_t to_byte(float value, Tone tone) {
@@ -94,12 +90,6 @@ Image as_light(Image image, const Encoding& encoding) {
   for (float& v : image.rgb)
     v = float(power ? std::pow(double(v), 1 / encoding.exponent) : light_of_srgb(v));
   return image;
-}
-
-Image as_srgb(Image light) {
-  for (float& v : light.rgb)
-    v = float(srgb_of_light(v));
-  return light;
 }
 
 }  // namespace grelha

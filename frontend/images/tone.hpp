@@ -21,7 +21,4 @@ std::vector<std::uint8_t> to_bytes(const Image& image, Tone tone);
 /// Decodes an image to light.
 Image as_light(Image image, const Encoding& encoding);
 
-/// Encodes light from 0 to 1 as sRGB values.
-Image as_srgb(Image light);
-
 }  // namespace grelha

@@ -32,6 +32,7 @@ class LongRender {
              Warn warn);
 
   double share_done() const { return picture_.share_done(); }
+  Image image() const { return picture_.image(); }
 
   /// `progress` receives the share done. While StopSignals live, SIGHUP, SIGINT and SIGTERM stop
   /// the render after the pieces in work; it saves the work and returns the signal, otherwise 0.

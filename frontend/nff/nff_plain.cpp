@@ -4,20 +4,17 @@
 
 namespace grelha {
 
-bool NffSimple::read(std::string_view keyword) {
+void NffSimple::read(std::string_view keyword) {
   if (keyword == "p" || keyword == "pt")
-    return read_polygon(keyword, false, keyword == "pt");
-  if (keyword == "pp" || keyword == "ppt")
-    return read_polygon(keyword, true, keyword == "ppt");
-  if (keyword == "s" || keyword == "st")
+    read_polygon(keyword, false, keyword == "pt");
+  else if (keyword == "pp" || keyword == "ppt")
+    read_polygon(keyword, true, keyword == "ppt");
+  else if (keyword == "s" || keyword == "st")
     read_sphere(keyword);
   else if (keyword == "c")
     read_cone(keyword);
-  else if (keyword == "f" || keyword == "material")
-    read_fill(keyword);
   else
-    return false;
-  return true;
+    read_fill(keyword);
 }
 
 std::uint32_t NffSimple::material(std::string_view keyword) {
@@ -43,7 +40,7 @@ void NffSimple::read_sphere(std::string_view keyword) {
   ++file_.counts.s;
 }
 
-bool NffSimple::read_polygon(std::string_view keyword, bool patch, bool textured) {
+void NffSimple::read_polygon(std::string_view keyword, bool patch, bool textured) {
   if (textured)
     leave_out_texture(keyword);
   const char* const before = input_.words.cursor();
@@ -52,10 +49,6 @@ bool NffSimple::read_polygon(std::string_view keyword, bool patch, bool textured
   if (size < 3) {
     input_.words.go_on_at(before);
     input_.fail(input_.words.peek(), "at least 3 corners of a polygon");
-  }
-  if (size > most_vertices_) {
-    input_.words.go_on_at(before);
-    return false;
   }
   corner_points_.clear();
   normals_.clear();
@@ -76,7 +69,6 @@ bool NffSimple::read_polygon(std::string_view keyword, bool patch, bool textured
                        "a polygon that crosses itself too often to be filled; it is left out");
   });
   ++(patch ? file_.counts.pp : file_.counts.p);
-  return true;
 }
 
 void NffSimple::read_cone(std::string_view keyword) {

@@ -7,7 +7,6 @@
 #include "frontend/files/load_progress.hpp"
 #include "frontend/files/plausible.hpp"
 #include "frontend/nff/nff_boxes.hpp"
-#include "frontend/nff/nff_chunks.hpp"
 #include "frontend/nff/nff_input.hpp"
 #include "frontend/nff/nff_lights.hpp"
 #include "frontend/nff/nff_material.hpp"
@@ -27,8 +26,7 @@ class NffReader {
             std::string_view text,
             const Warn& warn,
             const ReadOptions& options,
-            LoadProgress* progress,
-            const ChunkSizes& chunks)
+            LoadProgress* progress)
       : progress_(progress, text.data()),
         words_(path, text, byte_order_mark(text), Comments::kAll),
         warning_list_(warn),
@@ -36,7 +34,6 @@ class NffReader {
         input_(words_, warning_list_, options.frame),
         build_(file_),
         simple_(input_, file_),
-        chunks_(path, text, chunks),
         lights_(file_) {
     file_.source_bytes = text.size();
     file_.frame = options.frame;
@@ -53,7 +50,6 @@ class NffReader {
   static const Named kEntities[];
 
   void warn_nul(std::string_view text);
-  NffChunks::ParsedChunks read_ahead(std::string_view word);
   static const Named* entity_named(std::string_view word);
   bool read_entity(std::string_view word);
   void skip_other(std::string_view word, std::string_view last_entity);
@@ -90,7 +86,6 @@ class NffReader {
   NffInput input_;
   SceneBuilder build_;
   NffSimple simple_;
-  NffChunks chunks_;
   NffView view_;
   NffLights lights_;
 };
@@ -131,25 +126,11 @@ SceneFile NffReader::read(std::string_view text) {
       return std::move(file_);
     }
     progress_.at(words_.cursor());
-    if (const NffChunks::ParsedChunks taken = read_ahead(word); taken.end)
-      last_entity = taken.last_entity;
-    else if (read_entity(word))
+    if (read_entity(word))
       last_entity = word;
     else
       skip_other(word, last_entity);
   }
-}
-
-/// Reads from this entity on with all threads, if that pays. Returns the part it read.
-NffChunks::ParsedChunks NffReader::read_ahead(std::string_view word) {
-  if (!chunks_.due(word.data()) || !is_simple_word(word) || file_.scene.materials.empty() ||
-      lights_.glows())
-    return {};
-  const auto report = [this](const char* here) { progress_.at(here); };
-  const NffChunks::ParsedChunks taken = chunks_.read_run(word.data(), file_, report);
-  if (taken.end)
-    words_.go_on_at(taken.end);
-  return taken;
 }
 
 const NffReader::Named* NffReader::entity_named(std::string_view word) {
@@ -346,9 +327,8 @@ SceneFile read_nff(const std::string& path,
                    std::string_view text,
                    const Warn& warn,
                    const ReadOptions& options,
-                   LoadProgress* progress,
-                   const ChunkSizes& chunks) {
-  return NffReader(path, text, warn, options, progress, chunks).read(text);
+                   LoadProgress* progress) {
+  return NffReader(path, text, warn, options, progress).read(text);
 }
 
 }  // namespace grelha

@@ -3,7 +3,6 @@
 #include <string>
 #include <string_view>
 
-#include "frontend/nff/nff_chunks.hpp"
 #include "frontend/scene/scene_file.hpp"
 
 namespace grelha {
@@ -12,13 +11,11 @@ class LoadProgress;
 
 /// Reads NFF and the dialects built on it (the entities of docs/nff.md) as a stream of words. The
 /// line end matters only behind `l`, `f`, `mat`, `al` and to comments. Files named by `ply` are
-/// looked for beside `path`. Threads share long runs of simple entities, cut by `chunks`: the
-/// scene, its warnings and errors are the same for any.
+/// looked for beside `path`.
 SceneFile read_nff(const std::string& path,
                    std::string_view text,
                    const Warn& warn,
                    const ReadOptions& options = {},
-                   LoadProgress* progress = nullptr,
-                   const ChunkSizes& chunks = {});
+                   LoadProgress* progress = nullptr);
 
 }  // namespace grelha

@@ -177,8 +177,6 @@ TEST(Others, AreParsed) {
       std::get<CompareCommand>(parse("compare a.png b.png --max-rmse 0 --diff d.png"));
   EXPECT_EQ(compare.max_rmse, 0.0);
   EXPECT_EQ(compare.diff, "d.png");
-  EXPECT_EQ(compare.error_map, "");
-  EXPECT_EQ(std::get<CompareCommand>(parse("compare a b --error-map m.pfm")).error_map, "m.pfm");
   EXPECT_FALSE(std::get<CompareCommand>(parse("compare a b")).max_rmse);
   EXPECT_FALSE(compare.display);
   EXPECT_TRUE(std::get<CompareCommand>(parse("compare a b --display")).display);
@@ -296,8 +294,6 @@ const Line kWrong[] = {
      "--max-rmse: expected a number that is not negative, found \"nan\""},
     {"compare a b --diff d.txt",
      "--diff: expected a name ending in .png, .hdr, .pfm or .exr, found \"d.txt\""},
-    {"compare a b --error-map m.jpg",
-     "--error-map: expected a name ending in .png, .hdr, .pfm or .exr, found \"m.jpg\""},
     {"scene", "NAME is required (see grelha scene --list)"},
     {"scene balls --size x", "--size: expected a whole number from 0 to 1000, found \"x\""},
 };

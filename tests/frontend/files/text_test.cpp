@@ -122,11 +122,9 @@ TEST(Words, SplitAtBlanksAndComments) {
 
 TEST(Words, StepOverCommentsOfC) {
   const std::string_view text = "a//b\nc/*d*/e /*f\n*/ /*/g*/ 1.#h\ni/j 1.#INF / * /*k";
-  Words all("f", text, 0, Comments::kAll), of_lines("f", text, 0, Comments::kOfLines);
+  Words all("f", text, 0, Comments::kAll);
   for (const char* expected : {"a", "c", "e", "1.", "i/j", "1.#INF", "/", "*", "/*k", ""})
     EXPECT_EQ(all.next(), expected);
-  for (const char* expected : {"a", "c/*d*/e", "/*f", "*/", "/*/g*/", "1."})
-    EXPECT_EQ(of_lines.next(), expected);
   Words none("f", "a //b # /*c*/", 0, Comments::kNone);
   for (const char* expected : {"a", "//b", "#", "/*c*/", ""})
     EXPECT_EQ(none.next(), expected);
@@ -288,72 +286,9 @@ TEST(LoadFile, SaysWhyItCannot) {
   EXPECT_THROW(load_file("/dev/null"), FileError);
 }
 
-/// The result of the standard library, which rounds to the nearest float.
-float nearest_float(std::string_view word) {
-  float value = 0;
-  std::from_chars(word.data(), word.data() + word.size(), value);
-  return value;
-}
-
-/// One way reads words of few digits, another the rest: no word may show which.
-void expect_nearest(const std::string& word) {
-  float value = 7, again = 7;
-  ASSERT_TRUE(to_number(word, value)) << word;
-  const auto wanted = std::bit_cast<std::uint32_t>(nearest_float(word));
-  ASSERT_EQ(std::bit_cast<std::uint32_t>(value), wanted) << word;
-  for (const std::string& text : {word, " \n" + word + " 1", word + "#"}) {
-    Words words("w", text, 0, Comments::kAll);
-    if (!words.next_number(again))
-      continue;
-    ASSERT_EQ(std::bit_cast<std::uint32_t>(again), wanted) << word;
-    ASSERT_EQ(words.cursor(), text.data() + text.find(word) + word.size()) << word;
-  }
-}
-
-TEST(Number, OfFewDigitsAreTheNearestFloats) {
-  std::mt19937_64 random(1);
-  for (int i = 0; i < 200000; ++i) {
-    std::string word = std::to_string(random() >> random() % 64);
-    if (random() % 4 > 0)
-      word.insert(random() % (word.size() + 1), ".");
-    if (random() % 3 == 0)
-      word += 'e' + std::to_string(int(random() % 40) - 20);
-    expect_nearest(random() % 2 ? "-" + word : word);
-  }
-}
-
-/// Numbers half-way between two floats, or off half-way by one of the last digits.
-TEST(Number, BetweenTwoFloatsAreTheNearest) {
-  std::mt19937 random(1);
-  for (int i = 0; i < 20000; ++i) {
-    const float low = std::ldexp(float((1 << 23) + random() % (1 << 23)), int(random() % 20) - 30);
-    const double middle = (double(low) + double(std::nextafter(low, 1e30f))) / 2;
-    for (const int digits : {9, 15, 16, 17, 40}) {
-      char word[64];
-      std::snprintf(word, sizeof word, "%.*g", digits, middle);
-      if (std::string_view(word).find('e') == std::string_view::npos || digits < 40)
-        expect_nearest(word);
-    }
-  }
-}
-
 TEST(Words, NextNumberLeavesWhatIsNone) {
-  for (const std::string text : {"",
-                                 " ",
-                                 "x",
-                                 "1x",
-                                 "1.5.2",
-                                 "--1",
-                                 "-",
-                                 ".",
-                                 "e5",
-                                 "1e",
-                                 "0x10",
-                                 "#1",
-                                 "nan",
-                                 "1e400",
-                                 "123456789012345678901",
-                                 "+1"}) {
+  for (const std::string text :
+       {"", " ", "x", "1x", "1.5.2", "--1", "-", ".", "e5", "1e", "0x10", "#1", "1e400", "+1"}) {
     Words words("w", text, 0, Comments::kAll);
     float value;
     EXPECT_FALSE(words.next_number(value)) << text;
@@ -361,7 +296,7 @@ TEST(Words, NextNumberLeavesWhatIsNone) {
   }
 }
 
-TEST(Words, NextIndexReadsDigitsAlone) {
+TEST(Words, NextIndexReadsWholeNumbers) {
   for (const std::string text : {"0", " 7 8", "\n999999999999999999", "00012#", "12\t"}) {
     Words words("w", text, 0, Comments::kAll), again = words;
     const std::string_view word = again.next();
@@ -371,8 +306,7 @@ TEST(Words, NextIndexReadsDigitsAlone) {
     EXPECT_EQ(value, wanted) << text;
     EXPECT_EQ(words.cursor(), again.cursor()) << text;
   }
-  for (const std::string text :
-       {"", " ", "-1", "+1", "1.0", "1e2", "x", "#1", "1000000000000000000"}) {
+  for (const std::string text : {"", " ", "+1", "1.0", "1e2", "x", "#1", "10000000000000000000"}) {
     Words words("w", text, 0, Comments::kAll);
     std::int64_t value = -1;
     EXPECT_FALSE(words.next_index(value)) << text;
