@@ -20,8 +20,7 @@ grep -q '^GRELHA_C:BOOL=OFF' CMakeCache.txt ||
 # shellcheck disable=SC2086
 for file in usr/bin/grelha usr/lib/libgrelha_kernel.a usr/lib/cmake/grelha/grelhaConfig.cmake \
   usr/include/grelha/grelha.hpp usr/lib/pkgconfig/grelha.pc $of_c $share/man/man1/grelha.1 \
-  $share/bash-completion/completions/grelha $share/zsh/vendor-completions/_grelha \
-  $share/fish/vendor_completions.d/grelha.fish $share/grelha/scenes/balls.nff \
+  $share/bash-completion/completions/grelha $share/grelha/scenes/balls.nff \
   $share/doc/grelha/copyright $share/doc/grelha/farm.sh $share/doc/grelha/README.md \
   $share/doc/grelha/CHANGELOG.md $share/doc/grelha/examples/embed.cpp \
   $share/doc/grelha/examples/first_hit.c; do

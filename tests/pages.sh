@@ -30,8 +30,6 @@ done
 if grep -q scenes/data "$page"; then fail "the man page names a folder of the sources"; fi
 
 bash -n "$pages/grelha.bash"
-if command -v zsh >/dev/null; then zsh -n "$pages/_grelha"; fi
-if command -v fish >/dev/null; then fish -n "$pages/grelha.fish"; fi
 if command -v man >/dev/null; then
   complaints=$(LC_ALL=C.UTF-8 MANWIDTH=80 man --warnings=w -l "$pages/grelha.1" 2>&1 >/dev/null)
   [ -z "$complaints" ] || fail "$complaints"

@@ -1,5 +1,5 @@
 #pragma once
-// The man page and the shells' completions.
+// The man page and the completions of bash.
 
 #include <string>
 #include <vector>
@@ -10,7 +10,5 @@ namespace grelha {
 
 std::string man_page(const std::vector<CommandHelp>& commands);
 std::string bash_completion(const std::vector<CommandHelp>& commands);
-std::string zsh_completion(const std::vector<CommandHelp>& commands);
-std::string fish_completion(const std::vector<CommandHelp>& commands);
 
 }  // namespace grelha

@@ -16,7 +16,5 @@ int main(int argc, char** argv) {
   };
   write("grelha.1", man_page(commands));
   write("grelha.bash", bash_completion(commands));
-  write("_grelha", zsh_completion(commands));
-  write("grelha.fish", fish_completion(commands));
   return written ? 0 : 1;
 }

@@ -17,7 +17,6 @@
 #include "frontend/files/load_progress.hpp"
 #include "frontend/files/parse_error.hpp"
 #include "frontend/files/plausible.hpp"
-#include "kernel/base/pages.hpp"
 
 namespace grelha {
 namespace {
@@ -40,13 +39,12 @@ class Growing {
  public:
   Growing(const Validate& validate, std::size_t promised) : validate_(validate) {
     bytes_.reserve(promised);
-    advise_huge_pages(bytes_.data(), promised);
   }
 
   /// Space for up to `most` bytes more; at least one, unless `most` is none.
   std::span<char> space(std::size_t most) {
     if (have_ == bytes_.size())
-      resize_to_fill(bytes_, have_ + std::min(most, std::clamp(have_, kLeast, kMostAtOnce)));
+      bytes_.resize(have_ + std::min(most, std::clamp(have_, kLeast, kMostAtOnce)));
     return {bytes_.data() + have_, std::min(most, bytes_.size() - have_)};
   }
   /// So many bytes of the space were filled.

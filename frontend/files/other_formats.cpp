@@ -1,10 +1,6 @@
 #include "frontend/files/other_formats.hpp"
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
-#include <cstdint>
-#include <cstring>
 
 #include "frontend/files/text.hpp"
 
@@ -50,37 +46,6 @@ bool has(std::string_view text, std::string_view word) {
   return text.find(word) != text.npos;
 }
 
-/// Binary STL says its length: a count behind 80 bytes that may be anything, and 50 for each
-/// triangle, whose first numbers are its normal.
-bool is_binary_stl(std::string_view text) {
-  constexpr std::size_t kHeader = 84, kTriangle = 50;
-  if constexpr (std::endian::native != std::endian::little)
-    return false;
-  if (text.size() < kHeader + kTriangle)
-    return false;
-  std::uint32_t count = 0;
-  float normal[3];
-  std::memcpy(&count, text.data() + kHeader - sizeof count, sizeof count);
-  std::memcpy(normal, text.data() + kHeader, sizeof normal);
-  const float squared = normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2];
-  const std::uint64_t size = kHeader + std::uint64_t(count) * kTriangle;
-  return size == text.size() ||
-         (size > text.size() && (squared == 0 || std::abs(squared - 1) < .01f) &&
-          has(text.substr(kHeader - sizeof count, kTriangle), "\0"sv));
-}
-
-bool is_stl(std::string_view text) {
-  return (text.starts_with("solid") && has(text.substr(0, kLook), "facet")) || is_binary_stl(text);
-}
-
-/// Returns true for `OFF`, also behind letters for vertex attributes (`NOFF`).
-bool is_off(std::string_view word) {
-  for (const std::string_view letter : {"ST"sv, "C"sv, "N"sv, "4"sv, "n"sv})
-    if (word.starts_with(letter))
-      word.remove_prefix(letter.size());
-  return word == "OFF";
-}
-
 /// Returns true if the first line begins with a keyword of OBJ and an early line is a vertex: `v`
 /// and a number. NFF's `v` begins a view.
 bool is_obj(std::string_view text) {
@@ -98,47 +63,24 @@ bool is_obj(std::string_view text) {
   return false;
 }
 
-std::string_view name_of_xml(std::string_view text) {
-  if (has(text, "<COLLADA"))
-    return "a COLLADA scene: convert it to PLY";
-  if (has(text, "<X3D"))
-    return "an X3D scene: convert it to PLY";
-  if (has(text, "<html") || has(text, "<HTML") || has(text, "<!DOCTYPE html"))
-    return "a web page";
-  return "XML";
-}
-
-std::string_view name_of_json(std::string_view text) {
-  for (const std::string_view key : {"\"asset\"", "\"accessors\"", "\"bufferViews\"", "\"meshes\""})
-    if (has(text, key))
-      return "a glTF scene: convert it to PLY";
-  return "JSON";
-}
-
 }  // namespace
 
 std::string_view other_format(std::string_view text) {
-  if (is_stl(text))
-    return "an STL mesh: convert it to PLY";
   for (const Magic& magic : kMagics)
     if (text.starts_with(magic.bytes))
       return magic.name;
   text = text.substr(byte_order_mark(text), kLook);
+  if (text.starts_with("solid") && has(text, "facet"))
+    return "an STL mesh: convert it to PLY";
   const std::string_view first = Words("", text, 0, Comments::kAll).next();
-  if (first.starts_with("MM") && has(text.substr(0, 8), "\0"sv))  // and its length
-    return "a 3DS mesh: convert it to PLY";
-  if (is_off(first))
+  if (first == "OFF" || first == "NOFF" || first == "COFF")
     return "an OFF mesh: convert it to PLY";
-  if ((first == "VERSION" || first == "FIELDS") && has(text, "FIELDS"))
-    return "a PCD point cloud: convert it to PLY";
   if (is_obj(text))
     return "a Wavefront OBJ mesh: convert it to PLY";
   if (first.starts_with('<'))
-    return name_of_xml(text);
+    return "XML or a web page";
   if (first.starts_with('{'))
-    return name_of_json(text);
-  if (has(text, "\nWorldBegin"))
-    return "a pbrt scene";
+    return has(text, "\"asset\"") ? "a glTF scene: convert it to PLY" : "JSON";
   return {};
 }
 

@@ -5,9 +5,9 @@
 
 namespace grelha {
 
-/// Makes text safe for a terminal. File names and words of scenes are untrusted: a control
-/// character in them could move the cursor, set a title or hide text. Each becomes `?`, as do bytes
-/// that are not UTF-8 and marks that change the direction of writing. Line ends stay.
+/// Makes text safe for a terminal that reads UTF-8. File names and words of scenes are untrusted: a
+/// control character in them could move the cursor, set a title or hide text. Each becomes `?`.
+/// Line ends stay.
 std::string printable_text(std::string_view text);
 
 /// The same for text that must stay on one line.

@@ -191,37 +191,17 @@ std::string_view Words::next() {
   return {first, std::size_t(at_ - first)};
 }
 
-/// Returns the first byte of the next word or comment.
-const char* Words::past_spaces() const {
-  const char* p = at_;
-  while (p != end_ && is_space(*p))
-    ++p;
-  return p;
-}
-
-/// Steps over the next word if it ends at `last`.
-bool Words::take_to(const char* last) {
-  if (last != end_ && !is_space(*last) && past_comment(last) == last)
-    return false;
-  at_ = last;
-  return true;
-}
-
-template <class Number>
-bool Words::take_number(Number& value) {
-  Number found;
-  const auto read = std::from_chars(past_spaces(), end_, found);
-  if (read.ec != std::errc() || !take_to(read.ptr))
+bool Words::next_number(float& value) {
+  const char* const first = std::find_if_not(at_, end_, is_space);
+  float found;
+  const auto read = std::from_chars(first, end_, found);
+  const bool is_whole =
+      read.ptr == end_ || is_space(*read.ptr) || past_comment(read.ptr) != read.ptr;
+  if (read.ec != std::errc() || !is_whole)
     return false;
   value = found;
+  at_ = read.ptr;
   return true;
-}
-
-bool Words::next_number(float& value) {
-  return take_number(value);
-}
-bool Words::next_index(std::int64_t& value) {
-  return take_number(value);
 }
 
 std::string_view Words::peek() const {

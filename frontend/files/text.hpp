@@ -49,8 +49,6 @@ class Words {
   /// Steps over the next word if it is a number, written as most are: `value`, as to_number() reads
   /// it. False, and nothing is stepped over, for other words, comments, the end.
   bool next_number(float& value);
-  /// The same, as to_integer() reads it.
-  bool next_index(std::int64_t& value);
   std::string_view peek() const;  ///< what next() would return, left in place
   /// empty when the line ends first; then data() is where it ends
   std::string_view peek_on_line() const;
@@ -80,10 +78,6 @@ class Words {
   const char* past_comment(const char* p) const;
   const char* find_close(const char* from) const;
   const char* name_end(const char* first) const;
-  const char* past_spaces() const;
-  bool take_to(const char* last);
-  template <class Number>
-  bool take_number(Number& value);
 
   std::string file_;
   const char *begin_, *end_, *at_;

@@ -15,7 +15,7 @@ double light_of_srgb(double encoded);
 /// Rounds 0..1 to 0..255; other values are clamped, and NaN is black.
 std::uint8_t to_byte(float value, Tone tone);
 
-/// The same for a whole picture, by all threads.
+/// The same for a whole picture.
 std::vector<std::uint8_t> to_bytes(const Image& image, Tone tone);
 
 /// Decodes an image to light.

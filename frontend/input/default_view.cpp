@@ -6,8 +6,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "kernel/base/pages.hpp"
-
 namespace grelha {
 namespace {
 
@@ -30,7 +28,7 @@ std::vector<Point3> vertices_of(const Triangles& t) {
     for (const std::uint32_t v : *of)
       named[v] = 1;
   std::vector<Point3> found;
-  reserve_to_fill(found, t.vertex_count());
+  found.reserve(t.vertex_count());
   for (std::size_t v = 0; v < t.vertex_count(); ++v)
     if (named[v])
       found.push_back({t.x[v], t.y[v], t.z[v]});

@@ -1,10 +1,7 @@
 #include "frontend/jobs/checkpoint.hpp"
 
 #include <charconv>
-#include <filesystem>
-#include <fstream>
 #include <ostream>
-#include <streambuf>
 
 #include "frontend/files/atomic_file.hpp"
 #include "frontend/files/little_endian.hpp"
@@ -110,11 +107,13 @@ Checkpoint parse_body(std::string_view body) {
 }
 
 template <class Numbers, class Arrays>
-void write_to(std::ostream& stream,
-              const Identity& identity,
-              const Numbers& save_numbers,
-              const Arrays& save_arrays) {
-  Sink sink(stream);
+void write(const std::string& path,
+           const Identity& identity,
+           bool durable,
+           const Numbers& save_numbers,
+           const Arrays& save_arrays) {
+  AtomicFile file(path, durable);
+  Sink sink(file.stream());
   HeadWriter head;
   save_numbers(head);
   const std::string name = identity.name.empty() ? "" : "name " + identity.name + '\n';
@@ -122,45 +121,8 @@ void write_to(std::ostream& stream,
             identity.settings + '\n' + head.text);
   save_arrays(sink);
   sink.finish();
-}
-
-template <class Numbers, class Arrays>
-void write(const std::string& path,
-           const Identity& identity,
-           bool durable,
-           const Numbers& save_numbers,
-           const Arrays& save_arrays) {
-  AtomicFile file(path, durable);
-  write_to(file.stream(), identity, save_numbers, save_arrays);
   file.commit();
 }
-
-void write_picture(std::ostream& stream, const Identity& identity, const Picture& picture) {
-  write_to(
-      stream,
-      identity,
-      [&](HeadWriter& head) { picture.save_numbers(head); },
-      [&](Sink& sink) { picture.save_arrays(sink); });
-}
-
-/// Counts bytes and drops them.
-class Counter : public std::streambuf {
- public:
-  std::uint64_t count() const { return count_; }
-
- protected:
-  std::streamsize xsputn(const char*, std::streamsize size) override {
-    count_ += std::uint64_t(size);
-    return size;
-  }
-  int_type overflow(int_type byte) override {
-    ++count_;
-    return traits_type::not_eof(byte);
-  }
-
- private:
-  std::uint64_t count_ = 0;
-};
 
 std::uint64_t checksum_at(std::string_view bytes, std::size_t at) {
   std::uint64_t v = 0;
@@ -180,27 +142,12 @@ void write_checkpoint(const std::string& path,
                       const Identity& identity,
                       const Picture& picture,
                       bool durable) {
-  AtomicFile file(path, durable);
-  write_picture(file.stream(), identity, picture);
-  file.commit();
-}
-
-void write_over_checkpoint(const std::string& path,
-                           const Identity& identity,
-                           const Picture& picture) {
-  Counter counter;
-  std::ostream counted(&counter);
-  write_picture(counted, identity, picture);
-  std::error_code error;
-  const std::uint64_t file_bytes = std::filesystem::file_size(path, error);
-  if (error || file_bytes < counter.count())
-    throw FileError(path, "cannot write over it: what there is to keep is larger");
-  std::fstream stream(path, std::ios::in | std::ios::out | std::ios::binary);
-  write_picture(stream, identity, picture);
-  stream.close();
-  if (!stream)
-    throw FileError(path, "cannot write over it");
-  std::filesystem::resize_file(path, counter.count(), error);
+  write(
+      path,
+      identity,
+      durable,
+      [&](HeadWriter& head) { picture.save_numbers(head); },
+      [&](Sink& sink) { picture.save_arrays(sink); });
 }
 
 void write_part(const std::string& path,

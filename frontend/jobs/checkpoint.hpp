@@ -20,12 +20,6 @@ void write_checkpoint(const std::string& path,
                       const Identity& identity,
                       const Picture& picture,
                       bool durable);
-/// The same in place, over the bytes of the existing file, which works on a full disk. Throws
-/// FileError if the file would grow, and then leaves it unchanged; or if writing fails, and then
-/// the file is damaged.
-void write_over_checkpoint(const std::string& path,
-                           const Identity& identity,
-                           const Picture& picture);
 /// The same of a part.
 void write_part(const std::string& path,
                 const Identity& identity,

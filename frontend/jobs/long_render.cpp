@@ -176,8 +176,8 @@ void LongRender::save_now() {
     picture_saved_ = tried([&] { write_image(saved_.picture, picture_.image(), style()); });
 }
 
-/// Saves the work at its location. On a full disk, overwrites the earlier save in place, or
-/// saves in another folder. Returns the path; throws the FileError of the first location.
+/// Saves the work at its location or, if there is no room, in another folder. Returns the path;
+/// throws the FileError of the first location.
 std::string LongRender::save_fallback() {
   if (saved_.work.empty())
     return "";
@@ -185,24 +185,12 @@ std::string LongRender::save_fallback() {
     save();
     return saved_.work;
   } catch (const FileError&) {
-    const bool is_ours = saved_location_ && saved_location_ == location_of(saved_.work);
-    if (is_ours && try_overwrite())
-      return saved_.work;
     const std::string location = write_fallback(saved_.work, [this](const std::string& path) {
       write_checkpoint(path, identity_, picture_, true);
     });
     if (location.empty())
       throw;
     return location;
-  }
-}
-
-bool LongRender::try_overwrite() const {
-  try {
-    write_over_checkpoint(saved_.work, identity_, picture_);
-    return true;
-  } catch (const FileError&) {
-    return false;
   }
 }
 

@@ -67,7 +67,6 @@ class LongRender {
   void continue_from_saved();
   void save_now();
   std::string save_fallback();
-  bool try_overwrite() const;
   /// Saves the work of a picture that cannot be written.
   void save_all();
   bool tried(const std::function<void()>& write) const;  ///< warns of its exceptions

@@ -18,11 +18,7 @@ std::string_view PlyAscii::word(const PlyElement& element, std::uint64_t row) {
 std::int64_t PlyAscii::read_index(const PlyElement& element,
                                   std::uint64_t row,
                                   const PlyFaces& faces) {
-  const char* const before = words_.cursor();
   std::int64_t index = 0;
-  if (words_.next_index(index) && faces.accepts(index))
-    return index;
-  words_.go_on_at(before);
   const std::string_view item = word(element, row);
   if (!to_integer(item, index) || !faces.accepts(index))
     throw ParseError(words_.position(item),
@@ -35,12 +31,10 @@ void PlyAscii::read_number(const PlyElement& element,
                            const PlyProperty& property,
                            std::uint64_t row,
                            const PlyColumn& target) {
-  float value = 0;
-  if (target.to && target.is_identity() && words_.next_number(value))
-    return target.to->push_back(value);
   const std::string_view found = word(element, row);
   if (!target.to)
     return;
+  float value = 0;
   double wide = 0;
   if (target.is_identity() ? !to_number(found, value) : !to_number(found, wide))
     throw ParseError(words_.position(found),

@@ -135,14 +135,6 @@ void PlyBinary::read_list(const PlyElement& element,
   const char* p = take(std::size_t(size) * item, element, row);
   if (!faces)
     return;
-  const bool done = size == 3 && with_type(list.type, [&](auto t) {
-                      const auto index = [&](std::size_t i) {
-                        return std::int64_t(load<decltype(t)>(p + i * item, swap_));
-                      };
-                      return faces->add_triangle(index(0), index(1), index(2));
-                    });
-  if (done)
-    return;
   with_type(list.type, [&](auto t) {
     for (std::int64_t i = 0; i < size; ++i, p += item) {
       const auto index = std::int64_t(load<decltype(t)>(p, swap_));
@@ -154,47 +146,6 @@ void PlyBinary::read_list(const PlyElement& element,
   faces->end(std::uint32_t(size));
 }
 
-/// Reads rows, at most so many, as long as each is a list of three sound indices and nothing else,
-/// as nearly all are. Returns their number; the general reader reports errors in the next row.
-template <class Index>
-std::uint64_t PlyBinary::read_triangles(std::uint64_t rows, PlyFaces& faces) {
-  constexpr std::size_t kRow = 1 + 3 * sizeof(Index), kBlock = 4096;
-  const std::uint64_t whole = std::min<std::uint64_t>(rows, std::size_t(end_ - at_) / kRow);
-  std::array<std::uint32_t, 3 * kBlock> indices;
-  std::uint64_t done = 0;
-  for (std::size_t count = kBlock; done < whole && count == kBlock; done += count) {
-    const std::size_t most = std::size_t(std::min<std::uint64_t>(kBlock, whole - done));
-    for (count = 0; count < most && *at_ == 3; ++count, at_ += kRow) {
-      bool sound = true;
-      for (std::size_t i = 0; i < 3; ++i) {
-        const auto index = std::int64_t(load<Index>(at_ + 1 + i * sizeof(Index), swap_));
-        sound = sound && faces.accepts(index);
-        indices[3 * count + i] = std::uint32_t(index);
-      }
-      if (!sound)
-        break;
-    }
-    faces.add_triangles({indices.data(), 3 * count});
-    progress_.at(at_);
-  }
-  return done;
-}
-
-/// The same, for rows of any kind: none where they hold anything else.
-std::uint64_t PlyBinary::read_triangles(const PlyElement& element,
-                                        const PlyPlan& plan,
-                                        std::uint64_t rows,
-                                        PlyFaces& faces) {
-  const PlyProperty& list = element.properties[0];
-  const bool simple = element.properties.size() == 1 && plan.list == 0 && !faces.are_strips() &&
-                      size_of(list.count_type) == 1;
-  if (simple && list.type == PlyType::kInt32)
-    return read_triangles<std::int32_t>(rows, faces);
-  if (simple && list.type == PlyType::kUint32)
-    return read_triangles<std::uint32_t>(rows, faces);
-  return 0;
-}
-
 void PlyBinary::read_rows(const PlyElement& element,
                           const PlyPlan& plan,
                           Mesh& mesh,
@@ -204,9 +155,6 @@ void PlyBinary::read_rows(const PlyElement& element,
     if (plan.columns[i] >= 0)
       targets[std::size_t(plan.columns[i])] = column(mesh, plan, i);
   for (std::uint64_t row = 0; row < element.count; ++row) {
-    row += read_triangles(element, plan, element.count - row, faces);
-    if (row == element.count)
-      return;
     for (std::size_t i = 0; i < element.properties.size(); ++i) {
       const PlyProperty& property = element.properties[i];
       if (property.is_list) {

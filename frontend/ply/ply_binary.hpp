@@ -20,12 +20,6 @@ class PlyBinary {
 
  private:
   void read_fixed(const PlyElement& element, const PlyPlan& plan, Mesh& mesh);
-  template <class Index>
-  std::uint64_t read_triangles(std::uint64_t rows, PlyFaces& faces);
-  std::uint64_t read_triangles(const PlyElement& element,
-                               const PlyPlan& plan,
-                               std::uint64_t rows,
-                               PlyFaces& faces);
   void read_rows(const PlyElement& element, const PlyPlan& plan, Mesh& mesh, PlyFaces& faces);
   void read_list(const PlyElement& element,
                  const PlyProperty& list,

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
+#include <vector>
 
 #include "frontend/ply/ply_header.hpp"
 #include "frontend/scene/frame.hpp"
@@ -24,23 +24,6 @@ class PlyFaces {
     else
       mesh_.indices.push_back(std::uint32_t(index));
   }
-  /// Adds a whole triangle at once. Returns false if it is a strip or has a bad index: then add it
-  /// item by item.
-  bool add_triangle(std::int64_t a, std::int64_t b, std::int64_t c) {
-    if (strips_ || !accepts(a) || !accepts(b) || !accepts(c))
-      return false;
-    mesh_.indices.insert(mesh_.indices.end(),
-                         {std::uint32_t(a), std::uint32_t(b), std::uint32_t(c)});
-    mesh_.close_face(3);
-    return true;
-  }
-  /// Whole triangles, sound ones, where lists are no strips.
-  void add_triangles(std::span<const std::uint32_t> indices) {
-    mesh_.indices.insert(mesh_.indices.end(), indices.begin(), indices.end());
-    if (!mesh_.sizes.empty())
-      mesh_.sizes.insert(mesh_.sizes.end(), indices.size() / 3, 3);
-  }
-  bool are_strips() const { return strips_; }
   void end(std::uint32_t size) {
     run_ = 0;
     if (!strips_)

@@ -4,7 +4,6 @@
 
 #include "frontend/ply/ply_ascii.hpp"
 #include "frontend/ply/ply_binary.hpp"
-#include "kernel/base/pages.hpp"
 
 namespace grelha {
 namespace {
@@ -81,9 +80,9 @@ Mesh read_rows(const PlyHeader& header, std::size_t bytes, const Frame& frame, R
       plan = plan_faces(element);
     for (int i = 0; i < 6; ++i)
       if (plan.columns[i] >= 0)
-        reserve_to_fill(*column(mesh, plan, i).to, std::size_t(element.count));
+        column(mesh, plan, i).to->reserve(std::size_t(element.count));
     if (element.name == "face")
-      reserve_to_fill(mesh.indices, expected_vertices(header, element, plan.list, bytes));
+      mesh.indices.reserve(expected_vertices(header, element, plan.list, bytes));
     rows.read(element, plan, mesh, is_strips ? strips : polygons);
   }
   return mesh;

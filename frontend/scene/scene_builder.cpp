@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "frontend/scene/double3.hpp"
-#include "kernel/base/pages.hpp"
 
 namespace grelha {
 namespace {
@@ -40,7 +39,7 @@ void SceneBuilder::sphere(Float3 center, float radius, std::uint32_t material) {
   else if (radius == 0)
     ++file_.dropped.zero_area;
   else
-    add_sphere(center, radius, material);
+    file_.scene.geometry.spheres.add(center, radius, material);
 }
 
 void SceneBuilder::cone(
@@ -86,14 +85,6 @@ void SceneBuilder::plane(Float3 normal, float distance, std::uint32_t material) 
     file_.scene.geometry.planes.add(point, unit(n), material);
 }
 
-void SceneBuilder::add_sphere(Float3 center, float radius, std::uint32_t material) {
-  Spheres& s = file_.scene.geometry.spheres;
-  for (std::vector<float>* const of : {&s.x, &s.y, &s.z, &s.radius})
-    make_room(*of);
-  make_room(s.material);
-  s.add(center, radius, material);
-}
-
 std::uint32_t SceneBuilder::add_vertex(Float3 point, Float3 normal) {
   Triangles& t = file_.scene.geometry.triangles;
   const std::size_t index = t.x.size();
@@ -102,8 +93,6 @@ std::uint32_t SceneBuilder::add_vertex(Float3 point, Float3 normal) {
     t.ny.resize(index);
     t.nz.resize(index);
   }
-  for (std::vector<float>* const of : {&t.x, &t.y, &t.z})
-    make_room(*of);
   t.x.push_back(point.x);
   t.y.push_back(point.y);
   t.z.push_back(point.z);
@@ -120,8 +109,6 @@ void SceneBuilder::add_triangle(std::uint32_t a,
                                 std::uint32_t c,
                                 std::uint32_t material) {
   Triangles& t = file_.scene.geometry.triangles;
-  for (std::vector<std::uint32_t>* const of : {&t.a, &t.b, &t.c, &t.material})
-    make_room(*of);
   t.a.push_back(a);
   t.b.push_back(b);
   t.c.push_back(c);

@@ -62,7 +62,6 @@ class SceneBuilder {
   CrossedFaces mesh(Mesh mesh, std::uint32_t material);
 
  private:
-  void add_sphere(Float3 center, float radius, std::uint32_t material);
   std::uint32_t add_vertex(Float3 point, Float3 normal);
   void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t material);
   /// Returns whether anything is left of the triangle's area in floats.

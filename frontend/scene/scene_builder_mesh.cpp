@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "frontend/scene/scene_builder.hpp"
-#include "kernel/base/pages.hpp"
 
 namespace grelha {
 
@@ -130,10 +129,10 @@ void SceneBuilder::mesh_triangles(std::span<const std::uint32_t> indices,
   Triangles& t = file_.scene.geometry.triangles;
   std::size_t at = t.size();
   const std::size_t most = at + indices.size() / 3;
-  resize_to_fill(t.a, most);
-  resize_to_fill(t.b, most);
-  resize_to_fill(t.c, most);
-  resize_to_fill(t.material, most, material);
+  t.a.resize(most);
+  t.b.resize(most);
+  t.c.resize(most);
+  t.material.resize(most, material);
   for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
     const std::uint32_t a = first_vertex + indices[i], b = first_vertex + indices[i + 1],
                         c = first_vertex + indices[i + 2];

@@ -1,13 +1,9 @@
-// Tests the optimisations of the PNG writer: strips compressed in parallel, and bytes looked up by
-// the leading bits of a float. A part of image_file_test.
+// Tests the bytes of a PNG. A part of image_file_test.
 #include "frontend/images/image_file.hpp"
-#include "frontend/images/strip_deflate.hpp"
 #include "frontend/images/tone.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
-#include <omp.h>
-#include <zlib.h>
 
 #include <bit>
 #include <cmath>
@@ -23,69 +19,6 @@ std::string noise(std::size_t size) {
     byte = char(state >> 24);
   }
   return bytes;
-}
-
-/// Half noise, half repetitions, from as far back as a stream may refer.
-std::string some_bytes(std::size_t size) {
-  std::string bytes;
-  std::uint32_t state = 1;
-  while (bytes.size() < size) {
-    state = state * 1664525u + 1013904223u;
-    const std::size_t far = 1 + (state >> 8) % 32768;
-    if (state >> 31 && far < bytes.size())
-      bytes += bytes.substr(bytes.size() - far, 1 + far % 300);
-    else
-      bytes += char(state >> 16);
-  }
-  bytes.resize(size);
-  return bytes;
-}
-
-std::string inflated(const std::string& stream, std::size_t size) {
-  std::string out(size + 1, '\0');
-  uLongf length = uLongf(out.size());
-  const int result = uncompress(reinterpret_cast<Bytef*>(out.data()),
-                                &length,
-                                reinterpret_cast<const Bytef*>(stream.data()),
-                                uLong(stream.size()));
-  EXPECT_EQ(result, Z_OK);
-  out.resize(length);
-  return out;
-}
-
-TEST(StripDeflate, ComesBackByZlib) {
-  for (const std::size_t size : {std::size_t(0),
-                                 std::size_t(1),
-                                 kStripBytes - 1,
-                                 kStripBytes,
-                                 kStripBytes + 1,
-                                 2 * kStripBytes,
-                                 9 * kStripBytes + 17}) {
-    const std::string bytes = some_bytes(size);
-    for (const int level : {0, 1, 4, 9})
-      EXPECT_TRUE(inflated(deflate_in_strips(bytes, level), size) == bytes) << size << ' ' << level;
-  }
-}
-
-/// Bytes that no strip before has seen would take themselves again in each.
-TEST(StripDeflate, StripsReferToThoseBefore) {
-  std::string bytes = noise(20000);
-  while (bytes.size() < 8 * kStripBytes)
-    bytes += bytes.substr(bytes.size() - 20000);
-  const std::size_t once = deflate_in_strips(noise(20000), 4).size();
-  EXPECT_LT(deflate_in_strips(bytes, 4).size(), once + bytes.size() / 50);
-}
-
-TEST(StripDeflate, BytesAreThoseOfAnyThreads) {
-  const std::string bytes = some_bytes(7 * kStripBytes + 5);
-  const int before = omp_get_max_threads();
-  omp_set_num_threads(1);
-  const std::string alone = deflate_in_strips(bytes, 4);
-  for (const int threads : {2, 5}) {
-    omp_set_num_threads(threads);
-    EXPECT_TRUE(deflate_in_strips(bytes, 4) == alone) << threads;
-  }
-  omp_set_num_threads(before);
 }
 
 /// Returns the least value that is encoded as byte k: the curve of IEC 61966-2-1, rounded to a
@@ -130,14 +63,13 @@ TEST(ToByte, OfAPictureIsThatOfEachValue) {
   }
 }
 
-TEST(Png, OfManyStripsComesBack) {
+TEST(Png, OfNoiseComesBack) {
   const TemporaryFolder folder;
   Image image(301, 503);
   const std::string values = noise(image.rgb.size());
   for (std::size_t i = 0; i < values.size(); ++i)
     image.rgb[i] = float(std::uint8_t(values[i])) / 255;
   write_image(folder.file("a.png"), image);
-  ASSERT_GT(folder.read("a.png").size(), 3 * kStripBytes);
   EXPECT_TRUE(read_image(folder.file("a.png")).rgb == image.rgb);
 }
 

@@ -61,27 +61,6 @@ TEST_F(FullDisk, KeepsAFinishedPictureElsewhere) {
   }
 }
 
-/// The checkpoint needs no new disk space, because it overwrites its earlier content.
-TEST_F(FullDisk, TheCheckpointHoldsAllOfAFinishedPicture) {
-  const std::string job = std::string(kJobs[0]) + "-o full/x.pfm --checkpoint full/kept";
-  ASSERT_EQ(run(std::string(kJobs[0]) + "-o whole.pfm").status, 0);
-  Outcome outcome;
-  for (double seconds = .05; !fs::exists(folder_.file("full/kept")); seconds *= 1.3) {
-    ASSERT_LT(seconds, 20);
-    outcome = run(job, "timeout --foreground --preserve-status -s INT " + std::to_string(seconds));
-    fs::remove(folder_.file("full/x.pfm"));
-  }
-  outcome = run_full(job);
-  EXPECT_EQ(outcome.status, 1);
-  EXPECT_EQ(outcome.err, kNoRoom);
-  EXPECT_EQ(share_done(read_partial(folder_.file("full/kept")).sums), 1);
-  EXPECT_EQ(folder_.list(), "ball.nff full tmp whole.pfm");
-  EXPECT_EQ(kept_elsewhere(), "");
-  EXPECT_EQ(run(job).status, 0) << "there is only the file to write";
-  EXPECT_EQ(folder_.read("full/x.pfm"), folder_.read("whole.pfm"));
-  EXPECT_FALSE(fs::exists(folder_.file("full/kept")));
-}
-
 TEST_F(FullDisk, KeepsWhatASignalStopped) {
   const std::string job = std::string(kJobs[0]) + "-o full/x.pfm ";
   for (const std::string option : {"", "--checkpoint full/kept"}) {

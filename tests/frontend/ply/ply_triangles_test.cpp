@@ -1,4 +1,4 @@
-// Rows of three indices, which are read many at once. A part of ply_reader_test.
+// Rows of three indices. A part of ply_reader_test.
 #include <gtest/gtest.h>
 
 #include "frontend/ply/ply_reader.hpp"
@@ -14,49 +14,6 @@ class PlyTriangles : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Ply,
                          PlyTriangles,
                          testing::Values("ascii", "binary_little_endian", "binary_big_endian"));
-
-/// Faces over 100 vertices, of three corners but for one of `size`.
-struct Faces {
-  std::vector<std::uint32_t> indices, sizes;
-  Faces(std::uint32_t count, std::uint32_t odd, std::uint32_t size) {
-    for (std::uint32_t f = 0; f < count; ++f) {
-      sizes.push_back(f == odd ? size : 3);
-      for (std::uint32_t i = 0; i < sizes.back(); ++i)
-        indices.push_back((f * 7 + i * i) % 100);
-    }
-  }
-};
-
-std::string file_of(const Faces& faces, const std::string& format, const std::string& index) {
-  PlyWriter file(format);
-  file.line("element vertex 100").line("property float x");
-  file.line("property float y").line("property float z");
-  file.line("element face " + std::to_string(faces.sizes.size()));
-  file.line("property list uchar " + index + " vertex_index").line("end_header");
-  for (int v = 0; v < 100; ++v)
-    file.values("float", {double(v), 0, 1}).end_row();
-  std::size_t at = 0;
-  for (const std::uint32_t size : faces.sizes) {
-    file.value("uchar", size);
-    for (std::uint32_t i = 0; i < size; ++i)
-      file.value(index, faces.indices[at++]);
-    file.end_row();
-  }
-  return file.bytes();
-}
-
-TEST_P(PlyTriangles, AreReadBetweenOthers) {
-  constexpr std::uint32_t kFaces = 10000;
-  for (const std::uint32_t odd : {0u, 1u, 4095u, 4096u, 9000u, kFaces - 1})
-    for (const std::uint32_t size : {1u, 3u, 4u})
-      for (const std::string index : {"int", "uint", "ushort"}) {
-        const Faces faces(kFaces, odd, size);
-        const Mesh mesh = read_ply_mesh("m.ply", file_of(faces, GetParam(), index));
-        EXPECT_TRUE(mesh.indices == faces.indices) << odd << ' ' << size << ' ' << index;
-        EXPECT_TRUE(size == 3 ? mesh.sizes.empty() : mesh.sizes == faces.sizes)
-            << odd << ' ' << size << ' ' << index;
-      }
-}
 
 /// Strips of three vertices may stitch, or hold the end of one.
 TEST_P(PlyTriangles, AreNoStrips) {
