@@ -32,10 +32,6 @@ std::vector<std::string> value_words(const OptionHelp& o) {
   return words;
 }
 
-bool takes_file(const OptionHelp& o) {
-  return o.placeholder.find("FILE") != std::string::npos;
-}
-
 std::string names_of(const std::vector<CommandHelp>& commands) {
   std::vector<std::string> names;
   std::ranges::transform(commands, std::back_inserter(names), &CommandHelp::name);

@@ -20,34 +20,38 @@ bool has_normals(const Triangles& t) {
   return any(t.nx) || any(t.ny) || any(t.nz);
 }
 
-void add_needs(Needs& needs, const Material& material) {
-  const bool glass = material.transmission > 0;
-  needs.reflection |= any(material.mirror) || glass;
-  needs.refraction |= glass;
-  needs.fresnel |= material.fresnel && glass;
-  needs.emission |= any(material.emission);
-  needs.roughness |= material.roughness > 0;
+/// The materials that primitives have.
+std::vector<Material> materials_in_use(const Scene& scene) {
+  const std::vector<char> used = used_materials(scene);
+  std::vector<Material> found;
+  for (std::size_t i = 0; i < used.size(); ++i)
+    if (used[i])
+      found.push_back(scene.materials[i]);
+  return found;
 }
 
 }  // namespace
 
 Needs needs_of(const SceneFile& file) {
   const Geometry& geometry = file.scene.geometry;
-  Needs needs;
-  needs.spheres = geometry.spheres.size() > 0;
-  needs.triangles = geometry.triangles.size() > 0;
-  needs.cones = geometry.cones.size() > 0;
-  needs.planes = geometry.planes.size() > 0;
-  needs.smooth_normals = has_normals(geometry.triangles);
-  needs.lens = file.lens.present && file.lens.aperture > 0;
-  needs.area_lights = !file.area_lights.empty();
-  needs.environment = !file.environment.empty();
-  const std::vector<char> used = used_materials(file.scene);
-  for (std::size_t i = 0; i < used.size(); ++i) {
-    if (used[i])
-      add_needs(needs, file.scene.materials[i]);
-  }
-  return needs;
+  const std::vector<Material> materials = materials_in_use(file.scene);
+  const auto some = [&](bool (*has)(const Material&)) {
+    return std::ranges::any_of(materials, has);
+  };
+  const bool glass = some([](const Material& m) { return m.transmission > 0; });
+  return {{"spheres", geometry.spheres.size() > 0},
+          {"triangles", geometry.triangles.size() > 0},
+          {"cones", geometry.cones.size() > 0},
+          {"planes", geometry.planes.size() > 0},
+          {"smooth_normals", has_normals(geometry.triangles)},
+          {"reflection", glass || some([](const Material& m) { return any(m.mirror); })},
+          {"refraction", glass},
+          {"fresnel", some([](const Material& m) { return m.fresnel && m.transmission > 0; })},
+          {"emission", some([](const Material& m) { return any(m.emission); })},
+          {"roughness", some([](const Material& m) { return m.roughness > 0; })},
+          {"area_lights", !file.area_lights.empty()},
+          {"lens", file.lens.present && file.lens.aperture > 0},
+          {"environment", !file.environment.empty()}};
 }
 
 }  // namespace grelha

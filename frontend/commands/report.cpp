@@ -16,23 +16,6 @@
 namespace grelha {
 namespace {
 
-/// Names and values of the needs, in the same order for both forms of the report.
-std::vector<std::pair<const char*, bool>> listed(const Needs& n) {
-  return {{"spheres", n.spheres},
-          {"triangles", n.triangles},
-          {"cones", n.cones},
-          {"planes", n.planes},
-          {"smooth_normals", n.smooth_normals},
-          {"reflection", n.reflection},
-          {"refraction", n.refraction},
-          {"fresnel", n.fresnel},
-          {"emission", n.emission},
-          {"roughness", n.roughness},
-          {"area_lights", n.area_lights},
-          {"lens", n.lens},
-          {"environment", n.environment}};
-}
-
 std::uint64_t peak_bytes() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -217,7 +200,7 @@ std::string grid_text(const GridStats& grid) {
 
 std::string needs_text(const SceneFile& file) {
   std::string needs;
-  for (const auto& [name, needed] : listed(needs_of(file)))
+  for (const auto& [name, needed] : needs_of(file))
     if (needed)
       needs += (needs.empty() ? "" : ", ") + std::string(name);
   return "needs         " + (needs.empty() ? "nothing but the background" : needs) + '\n';
@@ -323,7 +306,7 @@ std::string info_json(const SceneFile& file,
   json["frame"] = {{"offset", file.frame.offset}, {"scale", file.frame.scale}};
   json["memory"] = {{"scene", memory.scene}, {"grids", memory.grids}, {"peak", memory.peak}};
   json["grids"] = grids ? to_json(*grids) : nullptr;
-  for (const auto& [name, needed] : listed(needs_of(file)))
+  for (const auto& [name, needed] : needs_of(file))
     json["needs"][name] = needed;
   json["made_up"] = {{"camera", file.default_camera}, {"light", file.default_light}};
   return text_of(json) + '\n';

@@ -1,5 +1,5 @@
 #pragma once
-// OpenEXR, by the library of that name (its core in C: headers that cost nothing to compile).
+// OpenEXR, by the library of that name.
 // https://openexr.com
 
 #include <cstdint>

@@ -60,8 +60,9 @@ class FillingSweep {
   std::uint32_t begin_front(std::uint32_t point);
   Fronts split(std::uint32_t front, std::uint32_t point);
   std::uint32_t join(std::uint32_t below, std::uint32_t above);
-  void add_below(Front& front, std::uint32_t point);
-  void add_above(Front& front, std::uint32_t point);
+  void add(Front& front, std::uint32_t point, bool is_above);
+  void add_below(Front& front, std::uint32_t point) { add(front, point, false); }
+  void add_above(Front& front, std::uint32_t point) { add(front, point, true); }
   void close(std::uint32_t front, std::uint32_t point);
 
   void check_winding(std::int32_t winding, bool is_inside) {
@@ -242,48 +243,38 @@ std::uint32_t FillingSweep::join(std::uint32_t below, std::uint32_t above) {
   return below;
 }
 
-/// Adds the right end of the inside's upper edge: cuts off the triangles that this point sees, from
-/// the front's upper end on. The nearest of several corners in line with the point hides the
-/// others.
-void FillingSweep::add_above(Front& front, std::uint32_t point) {
-  std::uint32_t last = front.high;
-  for (std::uint32_t next = nodes_[last].down; next != kNone; next = nodes_[last].down) {
-    if (turn_of(nodes_[next].point, point, nodes_[last].point) <= 0)
+/// Adds the right end of the inside's upper edge, or of its lower one: cuts off the triangles that
+/// this point sees, from that end of the front on. The nearest of several corners in line with the
+/// point hides the others.
+void FillingSweep::add(Front& front, std::uint32_t point, bool is_above) {
+  std::uint32_t& end = is_above ? front.high : front.low;
+  const auto inward = [&](std::uint32_t node) {
+    return is_above ? nodes_[node].down : nodes_[node].up;
+  };
+  const auto turn = [&](std::uint32_t a, std::uint32_t b) {
+    const int left = turn_of(nodes_[a].point, point, nodes_[b].point);
+    return is_above ? left : -left;
+  };
+  const auto cut_off = [&](std::uint32_t a, std::uint32_t b, std::uint32_t apex) {
+    is_above ? emit(a, b, apex) : emit(apex, b, a);
+  };
+  std::uint32_t last = end;
+  for (std::uint32_t next = inward(last); next != kNone; next = inward(last)) {
+    if (turn(next, last) <= 0)
       break;
     const std::uint32_t apex = nodes_[last].point;
-    for (std::uint32_t nearer = nodes_[next].down;
-         nearer != kNone && turn_of(nodes_[nearer].point, point, nodes_[next].point) == 0 &&
+    for (std::uint32_t nearer = inward(next);
+         nearer != kNone && turn(nearer, next) == 0 &&
          swept_before(points_[nodes_[next].point], points_[nodes_[nearer].point]);
-         nearer = nodes_[next].down) {
-      emit(nodes_[next].point, nodes_[nearer].point, apex);
+         nearer = inward(next)) {
+      cut_off(nodes_[next].point, nodes_[nearer].point, apex);
       next = nearer;
     }
-    emit(nodes_[next].point, point, apex);
+    cut_off(nodes_[next].point, point, apex);
     last = next;
   }
-  front.high = front.foremost = add_node(point, last, kNone);
-  nodes_[last].up = front.high;
-}
-
-/// The same from below.
-void FillingSweep::add_below(Front& front, std::uint32_t point) {
-  std::uint32_t last = front.low;
-  for (std::uint32_t next = nodes_[last].up; next != kNone; next = nodes_[last].up) {
-    if (turn_of(nodes_[last].point, point, nodes_[next].point) <= 0)
-      break;
-    const std::uint32_t apex = nodes_[last].point;
-    for (std::uint32_t nearer = nodes_[next].up;
-         nearer != kNone && turn_of(nodes_[next].point, point, nodes_[nearer].point) == 0 &&
-         swept_before(points_[nodes_[next].point], points_[nodes_[nearer].point]);
-         nearer = nodes_[next].up) {
-      emit(apex, nodes_[nearer].point, nodes_[next].point);
-      next = nearer;
-    }
-    emit(apex, point, nodes_[next].point);
-    last = next;
-  }
-  front.low = front.foremost = add_node(point, kNone, last);
-  nodes_[last].down = front.low;
+  end = front.foremost = is_above ? add_node(point, last, kNone) : add_node(point, kNone, last);
+  (is_above ? nodes_[last].up : nodes_[last].down) = end;
 }
 
 /// Both edges end at the point, which sees all of the front. Corners in line with it stand on one
