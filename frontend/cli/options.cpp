@@ -1,6 +1,7 @@
 #include "frontend/cli/options.hpp"
 
 #include "frontend/cli/option_values.hpp"
+#include "frontend/images/image_file.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -19,16 +20,6 @@ using Name = std::pair<std::string_view, std::string_view>;
 constexpr std::array kAccelerators{Word{"grid", 1}, Word{"none", 0}};
 constexpr std::array kSwitch{Word{"on", 1}, Word{"off", 0}};
 constexpr std::array kPackets{Word{"1", 1}, Word{"16", 16}, Word{"64", 64}, Word{"256", 256}};
-constexpr std::array kSamplers{
-    std::pair<std::string_view, Sampler>{"sobol", Sampler::kSobol},
-    std::pair<std::string_view, Sampler>{"blue", Sampler::kBlue},
-    std::pair<std::string_view, Sampler>{"jitter", Sampler::kJitter},
-    std::pair<std::string_view, Sampler>{"unshuffled", Sampler::kUnshuffled},
-    std::pair<std::string_view, Sampler>{"random", Sampler::kRandom}};
-constexpr std::array kFormats{std::pair<std::string_view, ImageFormat>{"png", ImageFormat::png},
-                              std::pair<std::string_view, ImageFormat>{"hdr", ImageFormat::hdr},
-                              std::pair<std::string_view, ImageFormat>{"pfm", ImageFormat::pfm},
-                              std::pair<std::string_view, ImageFormat>{"exr", ImageFormat::exr}};
 constexpr std::array kIsas{Name{"scalar", "scalar"},
                            Name{"sse2", "sse2"},
                            Name{"avx2", "avx2"},
@@ -122,7 +113,7 @@ void add_format(CLI::App& app, std::optional<ImageFormat>& format) {
         "--format",
         "png|hdr|pfm|exr",
         "of the picture, where its name does not say [png]",
-        [&format](const std::string& text) { format = choice("--format", text, kFormats); });
+        [&format](const std::string& text) { format = choice("--format", text, kImageFormats); });
 }
 
 void add_picture_files(CLI::App& sub, RenderCommand& command) {

@@ -3,9 +3,14 @@
 #include "frontend/files/atomic_file.hpp"
 #include "frontend/images/image_file.hpp"
 
+#include <algorithm>
 #include <filesystem>
 
 namespace grelha {
+
+std::string sampler_name(Sampler sampler) {
+  return std::string(std::ranges::find(kSamplers, sampler, &SamplerName::second)->first);
+}
 
 bool is_folder(const std::string& path) {
   std::error_code ignored;

@@ -1,10 +1,13 @@
 #pragma once
 // The commands of the program, as their options say them.
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -15,6 +18,15 @@
 #include "grelha/render.hpp"
 
 namespace grelha {
+
+using SamplerName = std::pair<std::string_view, Sampler>;
+/// The words of --sampler.
+inline constexpr std::array kSamplers{SamplerName{"sobol", Sampler::kSobol},
+                                      SamplerName{"blue", Sampler::kBlue},
+                                      SamplerName{"jitter", Sampler::kJitter},
+                                      SamplerName{"unshuffled", Sampler::kUnshuffled},
+                                      SamplerName{"random", Sampler::kRandom}};
+std::string sampler_name(Sampler sampler);
 
 /// The command line cannot be understood; what() is one line without the program's name.
 struct UsageError : std::runtime_error {

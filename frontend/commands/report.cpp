@@ -242,22 +242,6 @@ std::string error_text(const RefineOptions& asked, const ErrorStats& e, const Ru
 
 }  // namespace
 
-const char* sampler_name(Sampler sampler) {
-  switch (sampler) {
-    case Sampler::kSobol:
-      return "sobol";
-    case Sampler::kJitter:
-      return "jitter";
-    case Sampler::kUnshuffled:
-      return "unshuffled";
-    case Sampler::kBlue:
-      return "blue";
-    case Sampler::kRandom:
-      return "random";
-  }
-  return "";
-}
-
 std::string stats_json(const RenderCommand& command, const RunReport& report) {
   const RenderStats& render = report.render;
   Json json;

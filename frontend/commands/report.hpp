@@ -11,9 +11,6 @@
 
 namespace grelha {
 
-/// Returns the word of --sampler for a sampler.
-const char* sampler_name(Sampler sampler);
-
 struct Seconds {
   double load = 0, build = 0, render = 0, write = 0;
   double render_cpu = 0;  ///< of all threads together, independent of other load on the machine

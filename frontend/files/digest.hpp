@@ -2,15 +2,29 @@
 
 #include <array>
 #include <bit>
+#include <cinttypes>
 #include <cstdint>
+#include <cstdio>
 #include <span>
 #include <string>
 #include <type_traits>
+#include <utility>
 
 #define XXH_INLINE_ALL  // the library is a header then, and nothing to install beside the program
 #include <xxhash.h>
 
 namespace grelha {
+
+template <class T>
+T swapped_if_big(T v) {
+  static_assert(std::is_arithmetic_v<T>);
+  if constexpr (std::endian::native == std::endian::little || sizeof(T) == 1)
+    return v;
+  auto bytes = std::bit_cast<std::array<unsigned char, sizeof(T)>>(v);
+  for (std::size_t i = 0; i < sizeof(T) / 2; ++i)
+    std::swap(bytes[i], bytes[sizeof(T) - 1 - i]);
+  return std::bit_cast<T>(bytes);
+}
 
 /// XXH3 of numbers in little-endian order: the same on all machines, and in all versions of xxHash
 /// from 0.8 on.
@@ -27,22 +41,17 @@ class Digest {
       bytes(values.data(), values.size_bytes());
     } else {
       for (const T& v : values) {
-        auto b = std::bit_cast<std::array<unsigned char, sizeof(T)>>(v);
-        for (std::size_t i = 0; i < sizeof(T) / 2; ++i)
-          std::swap(b[i], b[sizeof(T) - 1 - i]);
-        bytes(b.data(), b.size());
+        const T little = swapped_if_big(v);
+        bytes(&little, sizeof little);
       }
     }
   }
 
   std::uint64_t low64() const { return XXH3_128bits_digest(&state_).low64; }
   std::string hex() const {
-    constexpr char kDigits[] = "0123456789abcdef";
     const XXH128_hash_t h = XXH3_128bits_digest(&state_);
-    std::string text;
-    for (const std::uint64_t half : {std::uint64_t(h.high64), std::uint64_t(h.low64)})
-      for (int shift = 60; shift >= 0; shift -= 4)
-        text += kDigits[half >> shift & 15];
+    char text[33];
+    std::snprintf(text, sizeof text, "%016" PRIx64 "%016" PRIx64, h.high64, h.low64);
     return text;
   }
 

@@ -15,17 +15,6 @@
 
 namespace grelha {
 
-template <class T>
-T swapped_if_big(T v) {
-  static_assert(std::is_arithmetic_v<T>);
-  if constexpr (std::endian::native == std::endian::little || sizeof(T) == 1)
-    return v;
-  auto bytes = std::bit_cast<std::array<unsigned char, sizeof(T)>>(v);
-  for (std::size_t i = 0; i < sizeof(T) / 2; ++i)
-    std::swap(bytes[i], bytes[sizeof(T) - 1 - i]);
-  return std::bit_cast<T>(bytes);
-}
-
 /// Writes and digests alike.
 class Sink {
  public:

@@ -10,6 +10,7 @@
 #include <stb/stb_image.h>
 #include <stb/stb_image_write.h>
 
+#include <algorithm>
 #include <bit>
 #include <cerrno>
 #include <charconv>
@@ -163,33 +164,18 @@ Image read_by_stb(const std::string& path, const std::string& bytes, ImageFormat
 std::optional<ImageFormat> image_format(std::string_view path) {
   if (path.size() < 4)
     return {};
-  std::string ending(path.substr(path.size() - 4));
+  std::string ending(path.substr(path.size() - 3));
   for (char& c : ending)
     if (c >= 'A' && c <= 'Z')
       c = char(c - 'A' + 'a');
-  if (ending == ".png")
-    return ImageFormat::png;
-  if (ending == ".hdr")
-    return ImageFormat::hdr;
-  if (ending == ".pfm")
-    return ImageFormat::pfm;
-  if (ending == ".exr")
-    return ImageFormat::exr;
-  return {};
+  const auto found = std::ranges::find(kImageFormats, ending, &FormatName::first);
+  if (path[path.size() - 4] != '.' || found == kImageFormats.end())
+    return {};
+  return found->second;
 }
 
 std::string_view ending_of(ImageFormat format) {
-  switch (format) {
-    case ImageFormat::png:
-      return "png";
-    case ImageFormat::hdr:
-      return "hdr";
-    case ImageFormat::pfm:
-      return "pfm";
-    case ImageFormat::exr:
-      return "exr";
-  }
-  return "";
+  return std::ranges::find(kImageFormats, format, &FormatName::second)->first;
 }
 
 bool image_fits(ImageFormat format, int width, int height) {

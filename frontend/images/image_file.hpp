@@ -1,14 +1,23 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "frontend/images/image_style.hpp"
 #include "grelha/image.hpp"
 
 namespace grelha {
+
+using FormatName = std::pair<std::string_view, ImageFormat>;
+/// The formats by their endings.
+inline constexpr std::array kImageFormats{FormatName{"png", ImageFormat::png},
+                                          FormatName{"hdr", ImageFormat::hdr},
+                                          FormatName{"pfm", ImageFormat::pfm},
+                                          FormatName{"exr", ImageFormat::exr}};
 
 /// The format by the name's ending, .png, .hdr, .pfm or .exr in any case; empty for others.
 std::optional<ImageFormat> image_format(std::string_view path);

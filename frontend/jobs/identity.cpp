@@ -5,7 +5,6 @@
 #include <iterator>
 #include <sstream>
 
-#include "frontend/commands/report.hpp"
 #include "frontend/files/digest.hpp"
 #include "frontend/files/text.hpp"
 

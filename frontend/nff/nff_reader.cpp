@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "frontend/files/load_progress.hpp"
+#include "frontend/files/nearest.hpp"
 #include "frontend/files/plausible.hpp"
 #include "frontend/nff/nff_boxes.hpp"
 #include "frontend/nff/nff_input.hpp"
@@ -13,7 +14,6 @@
 #include "frontend/nff/nff_mesh_files.hpp"
 #include "frontend/nff/nff_plain.hpp"
 #include "frontend/nff/nff_view.hpp"
-#include "frontend/nff/nff_words.hpp"
 #include "frontend/scene/scene_builder.hpp"
 #include "grelha/render.hpp"
 
@@ -154,7 +154,7 @@ std::string NffReader::suggested(std::string_view word) {
   std::vector<std::string_view> known(NffView::words().begin(), NffView::words().end());
   for (const Named& entity : kEntities)
     known.push_back(entity.name);
-  const std::string near = suggested_keyword(word, known);
+  const std::string_view near = nearest(word, known);
   return near.empty() ? "" : " (did you mean " + grelha::quoted(near) + "?)";
 }
 

@@ -30,8 +30,7 @@ TEST(NffDialects, CommentsOfC) {
   EXPECT_EQ(r.file.scene.geometry.spheres.radius, (std::vector<float>{1, 2, 3, 4}));
   EXPECT_EQ(r.file.scene.lights.size(), 2u);
   EXPECT_EQ(r.warnings,
-            Lines{"scene.nff:18:1: warning: unknown word \"foo\" (did you mean \"angle\"?); its "
-                  "line is skipped"});
+            Lines{"scene.nff:18:1: warning: unknown word \"foo\"; its line is skipped"});
 }
 
 /// Nothing closes it: no comment, or all behind it would be lost without a word.
