@@ -1,7 +1,5 @@
 #include "frontend/cli/render_scene.hpp"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -107,9 +105,6 @@ class SceneRender {
         bars_(!command_.quiet && stderr_is_terminal()) {}
 
   int run() {
-    // to read and to write; a thread more than there are processors would only wait there
-    if (const int threads = command_.render.threads; threads > 0)
-      omp_set_num_threads(std::min(threads, omp_get_num_procs()));
     const Stopwatch load;
     if (!ranks_.together([this] { read(); }))
       return kFileFailed;
@@ -125,8 +120,6 @@ class SceneRender {
     }
     if (!ranks_.first())
       return kOk;
-    // its threads would wait on the processors where others pack the picture
-    omp_pause_resource_all(omp_pause_soft);
     write(work, world, maps);
     if (!is_partial_name(command_.image))
       warn_empty_image(command_.scene, file_.scene, work.image(), log_.reporting());

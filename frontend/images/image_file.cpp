@@ -197,17 +197,12 @@ std::string encode_pfm(const Image& image) {
   std::string bytes =
       "PF\n" + std::to_string(image.width) + ' ' + std::to_string(image.height) + "\n-1.0\n";
   bytes.reserve(bytes.size() + image.rgb.size() * sizeof(float));
-  for (int y = image.height - 1; y >= 0; --y) {
-    if constexpr (std::endian::native == std::endian::little) {
-      bytes.append(reinterpret_cast<const char*>(image.row(y)),
-                   std::size_t(image.width) * 3 * sizeof(float));
-    } else {
-      for (int i = 0; i < 3 * image.width; ++i) {
-        const float swapped = swap_bytes(image.row(y)[i]);
-        bytes.append(reinterpret_cast<const char*>(&swapped), sizeof swapped);
-      }
+  for (int y = image.height - 1; y >= 0; --y)
+    for (int i = 0; i < 3 * image.width; ++i) {
+      const float value = image.row(y)[i];
+      const float little = std::endian::native == std::endian::little ? value : swap_bytes(value);
+      bytes.append(reinterpret_cast<const char*>(&little), sizeof little);
     }
-  }
   return bytes;
 }
 
