@@ -1,6 +1,7 @@
 // Measures wrong answers and time: meshes, rays at vertices, edges and faces from near and from
 // afar. Rational numbers (GMP) decide each answer. Compares Grelha with Embree, fast and robust, on
-// one thread.
+// one thread; and where CMake found CGAL, with its kernel of exact
+// constructions and with that of exact predicates alone.
 //
 // exact [--rays N] [--rounds N] [--scene NAME]...
 //
@@ -20,6 +21,7 @@
 #include <vector>
 
 #include "perf/embree.hpp"
+#include "perf/exact/cgal.hpp"
 #include "perf/workloads.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/rational.hpp"
@@ -188,6 +190,26 @@ void ask_embree(const Row& row,
   row.tell(robust ? "embree robust" : "embree", compare(j, a.id, a.t, true), ns);
 }
 
+void ask_cgal(const Row& row,
+              const Scene& s,
+              bool exact,
+              const std::vector<Ray>& rays,
+              const Judged& j,
+              int rounds) {
+  const auto tree = make_cgal_tree(s, exact);
+  if (!tree)
+    return;
+  std::vector<Hit> hits(rays.size());
+  const double ns = least_ns(rounds, rays.size(), [&] { tree->closest(rays, hits); });
+  std::vector<std::uint32_t> id;
+  std::vector<float> t;
+  for (const Hit& h : hits) {
+    id.push_back(h.id);
+    t.push_back(h.t);
+  }
+  row.tell(exact ? "CGAL exact" : "CGAL predicates", compare(j, id, t, true), ns);
+}
+
 void ask_all(const std::string& name, double moved, double away, const Options& o) {
   double size = 0;
   Float3 middle{};
@@ -215,6 +237,8 @@ void ask_all(const std::string& name, double moved, double away, const Options& 
   const RayBuffer buffer = buffer_of(rays);
   ask_embree(row, s, true, buffer, j, o.rounds);
   ask_embree(row, s, false, buffer, j, o.rounds);
+  ask_cgal(row, s, true, rays, j, 1);
+  ask_cgal(row, s, false, rays, j, 1);
 }
 
 }  // namespace
@@ -224,6 +248,8 @@ int main(int argc, char** argv) {
   std::printf("# %d rays a row, a third each at vertices, at edges and at faces; one thread; %s\n",
               o.rays,
               embree_name().empty() ? "no Embree here" : embree_name().c_str());
+  if (!make_cgal_tree({}, false))
+    std::fprintf(stderr, "skipped: no CGAL here\n");
   std::printf("mesh,moved,eye,who,lost,false,other,ns\n");
   for (const std::string& name : o.scenes)
     for (const double moved : {0., 1e3, 1e6})

@@ -17,7 +17,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "lib"))
 from bench import COLOURS, DOCS, DRAW_HELP, ROOT, commit, cpu_name, plt, put_section, table
 
 LOOKS = {"grelha calls": ("o", 0), "grelha streams": ("s", 2), "embree robust": ("^", 1),
-         "embree": ("v", 4)}
+         "embree": ("v", 4), "CGAL exact": ("D", 3), "CGAL predicates": ("P", 5)}
 
 
 def wrong(row):

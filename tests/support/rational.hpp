@@ -16,6 +16,7 @@
 
 #include "grelha/geometry.hpp"
 #include "grelha/rays.hpp"
+#include "tests/support/triangle_tree.hpp"
 
 namespace grelha::test::rational {
 
@@ -104,72 +105,38 @@ struct First {
   float t = 0;  ///< rounded once
 };
 
-/// Triangles in boxes of boxes, the longest side halved at the middle one. Long double leaves out
-/// boxes that a line passes by.
+/// Intersects rays with all triangles of a scene. Long double leaves out boxes that lines pass by.
 class FirstTriangle {
  public:
-  explicit FirstTriangle(const Scene& scene) : all_(scene.geometry.triangles) {
-    for (std::uint32_t i = 0; i < all_.a.size(); ++i)
-      order_.push_back(i);
-    if (!order_.empty())
-      split(0, order_.size());
-  }
+  explicit FirstTriangle(const Scene& scene)
+      : all_(scene.geometry.triangles), tree_(scene.geometry.triangles) {}
 
   First operator()(const Ray& ray) const {
     First first;
     std::optional<mpq_class> least;
-    if (!nodes_.empty())
-      look(0, ray, first, least);
+    visit(ray, [&](std::uint32_t i, const mpq_class& t) {
+      if (least && (t > *least || (t == *least && i > first.id)))
+        return;
+      least = t;
+      first.id = i;
+    });
     if (least)
       first.t = nearest(*least);
     return first;
   }
 
+  /// The hits of a ray in order of t, those of equal t in order of id.
+  std::vector<std::pair<mpq_class, std::uint32_t>> all(const Ray& ray) const {
+    std::vector<std::pair<mpq_class, std::uint32_t>> hits;
+    visit(ray, [&](std::uint32_t i, const mpq_class& t) { hits.emplace_back(t, i); });
+    std::sort(hits.begin(), hits.end());
+    return hits;
+  }
+
  private:
-  struct Node {
-    float lo[3], hi[3];
-    std::size_t begin, end;   ///< in order_
-    std::size_t left, right;  ///< nodes, or 0
-  };
-  static constexpr std::size_t kLeaf = 4;
-
   Float3 corner(std::uint32_t v) const { return {all_.x[v], all_.y[v], all_.z[v]}; }
-  float middle(std::uint32_t i, int a) const {
-    const auto& x = a == 0 ? all_.x : a == 1 ? all_.y : all_.z;
-    return x[all_.a[i]] / 3 + x[all_.b[i]] / 3 + x[all_.c[i]] / 3;
-  }
 
-  std::size_t split(std::size_t begin, std::size_t end) {
-    const std::size_t at = nodes_.size();
-    nodes_.push_back({{1e38f, 1e38f, 1e38f}, {-1e38f, -1e38f, -1e38f}, begin, end, 0, 0});
-    for (std::size_t k = begin; k < end; ++k)
-      for (const std::uint32_t v : {all_.a[order_[k]], all_.b[order_[k]], all_.c[order_[k]]}) {
-        const float p[3] = {all_.x[v], all_.y[v], all_.z[v]};
-        for (int a = 0; a < 3; ++a) {
-          nodes_[at].lo[a] = std::min(nodes_[at].lo[a], p[a]);
-          nodes_[at].hi[a] = std::max(nodes_[at].hi[a], p[a]);
-        }
-      }
-    if (end - begin <= kLeaf)
-      return at;
-    int axis = 0;
-    for (int a = 1; a < 3; ++a)
-      if (nodes_[at].hi[a] - nodes_[at].lo[a] > nodes_[at].hi[axis] - nodes_[at].lo[axis])
-        axis = a;
-    const auto from = order_.begin() + static_cast<std::ptrdiff_t>(begin);
-    const auto half = order_.begin() + static_cast<std::ptrdiff_t>((begin + end) / 2);
-    std::nth_element(
-        from, half, order_.begin() + static_cast<std::ptrdiff_t>(end), [&](auto i, auto j) {
-          return middle(i, axis) < middle(j, axis);
-        });
-    const std::size_t left = split(begin, (begin + end) / 2);
-    const std::size_t right = split((begin + end) / 2, end);
-    nodes_[at].left = left;
-    nodes_[at].right = right;
-    return at;
-  }
-
-  static bool passes_by(const Node& n, const Ray& ray) {
+  static bool passes_by(const TriangleTree::Bounds& n, const Ray& ray) {
     using L = long double;
     const L o[3] = {ray.org.x, ray.org.y, ray.org.z};
     const L d[3] = {ray.dir.x, ray.dir.y, ray.dir.z};
@@ -190,37 +157,25 @@ class FirstTriangle {
     return t0 > t1 + slack;
   }
 
-  void look(std::size_t at, const Ray& ray, First& first, std::optional<mpq_class>& least) const {
-    const Node& n = nodes_[at];
-    if (passes_by(n, ray))
-      return;
-    if (n.left != 0) {
-      look(n.left, ray, first, least);
-      look(n.right, ray, first, least);
-      return;
-    }
-    for (std::size_t k = n.begin; k < n.end; ++k)
-      judge(order_[k], ray, first, least);
-  }
-
-  void judge(std::uint32_t i, const Ray& ray, First& first, std::optional<mpq_class>& least) const {
-    const Float3 a = corner(all_.a[i]);
-    const Float3 b = corner(all_.b[i]);
-    const Float3 c = corner(all_.c[i]);
-    if (rational::passes_by(ray, a, b, c))
-      return;
-    const auto t = crossing(ray, a, b, c);
-    if (!t || *t <= ray.t_min || (std::isfinite(ray.t_max) && *t >= ray.t_max))
-      return;
-    if (least && (*t > *least || (*t == *least && i > first.id)))
-      return;
-    least = t;
-    first.id = i;
+  /// Calls found(i, t) for each triangle that a ray hits.
+  template <class Found>
+  void visit(const Ray& ray, const Found& found) const {
+    tree_.visit([&](const TriangleTree::Bounds& box) { return passes_by(box, ray); },
+                [](const TriangleTree::Bounds&) { return 0; },
+                [&](std::uint32_t i) {
+                  const Float3 a = corner(all_.a[i]);
+                  const Float3 b = corner(all_.b[i]);
+                  const Float3 c = corner(all_.c[i]);
+                  if (rational::passes_by(ray, a, b, c))
+                    return;
+                  const auto t = crossing(ray, a, b, c);
+                  if (t && *t > ray.t_min && !(std::isfinite(ray.t_max) && *t >= ray.t_max))
+                    found(i, *t);
+                });
   }
 
   const Triangles& all_;
-  std::vector<std::uint32_t> order_;
-  std::vector<Node> nodes_;
+  TriangleTree tree_;
 };
 
 }  // namespace grelha::test::rational

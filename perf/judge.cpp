@@ -1,0 +1,66 @@
+// Judges answers by independent arithmetic, and counts the wrong ones. Exit status 1 if there are
+// any.
+//
+// judge rays|inside|distance|filters [--count N] [--scene NAME]...
+//
+//   rays      a million rays each at vertices, at edges, along edges, in planes and at random, from
+//             .8 to 1e4 diagonals away, at scans, closed meshes, slivers, copies and a lattice, in
+//             place and moved by 1e3 and 1e6 diagonals: hit or miss, id, t and the order of all
+//             hits are those of rational numbers (GMP)
+//   inside    1e5 points a closed mesh: the parity of crossings is the same along five random rays
+//             and one through a vertex, contains() says the same, and for every tenth point so do
+//             rational numbers
+//   distance  1e5 points a closed mesh: the sign is that of contains(), and the distance is that of
+//             long double to 1e-6 of the mesh's diagonal
+//   filters   how many of 300 rays, in per cent, meet a triangle up to their first hit that floats
+//             do not decide, that doubles do not decide; whose first two hits are put in order by
+//             exact numbers. From afar floats test in a frame of the mesh, as grids do.
+//
+// A scene is a file or `GENERATOR SIZE`; only its triangles are used. Uses all processors.
+
+#include "perf/judge/judge.hpp"
+
+#include <cstdio>
+#include <cstdlib>
+
+#include "perf/workloads.hpp"
+
+namespace {
+
+using namespace grelha::perf;
+
+struct Subject {
+  const char* name;
+  std::size_t count;  ///< unless another is asked for
+  std::size_t (*judge)(const JudgeOptions&);
+};
+constexpr Subject kSubjects[] = {{"rays", 1'000'000, judge_rays},
+                                 {"inside", 100'000, judge_inside},
+                                 {"distance", 100'000, judge_distance},
+                                 {"filters", 300, count_filters}};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  JudgeOptions options;
+  const bool known =
+      argc > 1 && set_options(argc - 1, argv + 1, [&](std::string word, char* value) {
+        if (word == "--count")
+          options.count = std::strtoull(value, nullptr, 10);
+        else if (word == "--scene")
+          options.scenes.emplace_back(value);
+        else
+          return false;
+        return true;
+      });
+  for (const Subject& s : kSubjects)
+    if (known && std::string(argv[1]) == s.name) {
+      if (options.count == 0)
+        options.count = s.count;
+      const std::size_t wrong = s.judge(options);
+      std::printf("%zu wrong\n", wrong);
+      return wrong == 0 ? 0 : 1;
+    }
+  std::fprintf(stderr, "judge rays|inside|distance|filters [--count N] [--scene NAME]...\n");
+  return 2;
+}

@@ -1,0 +1,39 @@
+#pragma once
+// What `judge` checks. Each function prints a table and returns the number of wrong answers.
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "grelha/geometry.hpp"
+
+namespace grelha::perf {
+
+struct JudgeOptions {
+  std::size_t count = 0;            ///< rays or points
+  std::vector<std::string> scenes;  ///< files; empty: the default ones
+};
+
+/// A mesh alone: the triangles of a file or of `GENERATOR SIZE`.
+Scene mesh_named(const std::string& name);
+/// The mesh moved by so many of its diagonals, aslant. Returns its diagonal and its middle.
+struct MovedMesh {
+  Scene scene;
+  double diagonal = 0;
+  Float3 middle{};
+};
+MovedMesh moved(Scene mesh, double diagonals);
+/// The closed meshes among the options' scenes or, without any, of the scans that are there and of
+/// the generators. A mesh is closed if each edge has as many triangles on one side as on the other.
+std::vector<std::pair<std::string, Scene>> closed_meshes(const JudgeOptions& options);
+
+/// First hits and all hits, in order, against rational numbers.
+std::size_t judge_rays(const JudgeOptions& options);
+/// Parity of crossings along five random rays and one through a vertex, and contains().
+std::size_t judge_inside(const JudgeOptions& options);
+/// Signed distances against long double.
+std::size_t judge_distance(const JudgeOptions& options);
+/// The share of rays that leave each filter of the triangle test. Nothing can be wrong: returns 0.
+std::size_t count_filters(const JudgeOptions& options);
+
+}  // namespace grelha::perf
