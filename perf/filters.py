@@ -57,7 +57,8 @@ def draw(rows, path):
         ax.grid(alpha=.3)
     axes[0].set_yticks(range(len(found)), found)
     axes[0].invert_yaxis()
-    fig.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
+    fig.legend(*axes[0].get_legend_handles_labels(), loc="upper center", ncols=3)
+    fig.get_layout_engine().set(rect=(0, 0, 1, .96))
     fig.savefig(path, metadata={"Date": None})
     plt.close(fig)
 
