@@ -1,3 +1,6 @@
+if(GRELHA_INSTALL AND NOT GRELHA_TESTS)  # else it stands among the tests there
+  include(${PROJECT_SOURCE_DIR}/tests/deb.cmake)
+endif()
 # Each file of tests/ is a test of ctest, with the label `python`.
 execute_process(COMMAND ${Python_EXECUTABLE} -c "import numpy" RESULT_VARIABLE no_numpy ERROR_QUIET)
 if(no_numpy)

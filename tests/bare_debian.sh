@@ -1,6 +1,7 @@
 #!/bin/sh
 # bare_debian.sh DEB FOLDER [MIRROR]: installs the package in a fresh Debian 12 in FOLDER and uses
-# it: the program, the man page, and the examples built against the library. As root, with
+# it: the program, the man page, and the examples built against the library. A python3-grelha that
+# lies beside it is installed too, and its recipes leave pictures in FOLDER/tmp. As root, with
 # debootstrap; not a test of ctest's, for it downloads some hundred megabytes.
 set -eu
 deb=$1
@@ -9,6 +10,10 @@ root=$2
 mount -t proc proc "$root/proc"
 trap 'umount "$root/proc"' EXIT
 cp "$deb" "$root/tmp/grelha.deb"
+rm -f "$root/tmp/python3-grelha.deb"
+for python in "$(dirname "$deb")"/python3-grelha_*.deb; do
+  [ ! -e "$python" ] || cp "$python" "$root/tmp/python3-grelha.deb"
+done
 cat >"$root/tmp/try" <<'TRY'
 set -eux
 export DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8
@@ -17,6 +22,12 @@ apt-get update -qq
 apt-get install -y -qq --reinstall ./grelha.deb
 grelha --version
 grelha render /usr/share/grelha/scenes/ -o /tmp/ --size 160x120
+if [ -e python3-grelha.deb ]; then
+  apt-get install -y -qq --no-install-recommends --reinstall ./python3-grelha.deb
+  for recipe in /usr/share/doc/python3-grelha/recipes/*.py; do
+    python3 "$recipe" -o "/tmp/$(basename "$recipe" .py).png"
+  done
+fi
 apt-get install -y -qq --no-install-recommends man-db g++ cmake make
 man grelha | head -n 24
 rm -rf /tmp/example

@@ -1,5 +1,5 @@
 #!/bin/sh
-# deb.sh BUILD SCRATCH CONFIG: packs the build and looks inside.
+# deb.sh BUILD SCRATCH CONFIG FLAGS: packs the build and looks inside.
 set -eu
 case ${4:-} in
   *-fsanitize=*) echo "skipped: a package of a sanitized build is for nobody"; exit 77 ;;

@@ -16,8 +16,4 @@ add_test(NAME pkg_config COMMAND ${CMAKE_COMMAND} -D BUILD=${PROJECT_BINARY_DIR}
   -D C_COMPILER=${c_compiler} "-DFLAGS=${CMAKE_CXX_FLAGS}"
   -P ${CMAKE_CURRENT_SOURCE_DIR}/pkg_config.cmake)
 set_tests_properties(package pkg_config PROPERTIES LABELS build SKIP_REGULAR_EXPRESSION "SKIPPED: ")
-# The .deb: what is in it and what it asks for. Without Debian's tools the test is skipped, and says
-# so.
-add_test(NAME deb COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/deb.sh ${PROJECT_BINARY_DIR}
-  ${CMAKE_CURRENT_BINARY_DIR}/deb $<CONFIG> "${CMAKE_CXX_FLAGS}")
-set_tests_properties(deb PROPERTIES LABELS build SKIP_RETURN_CODE 77)
+include(${CMAKE_CURRENT_SOURCE_DIR}/deb.cmake)

@@ -11,7 +11,7 @@ import numpy as np
 import grelha
 from grelha.open3d import RaycastingScene
 
-RAYS, SIDE = 128, 600
+RAYS, SIDE = 512, 600
 
 
 def lump(rings=120):
@@ -55,5 +55,5 @@ pixels = RaycastingScene.create_rays_pinhole(view["angle"], view["at"], view["ey
 hits = world.closest(pixels[..., :3], pixels[..., 3:])
 at = (free / RAYS)[faces[hits.face]]  # of the three corners
 share = (1 - hits.u - hits.v) * at[..., 0] + hits.u * at[..., 1] + hits.v * at[..., 2]
-grelha.write_image(options.output, np.where(hits.face >= 0, share, 1))
+grelha.write_image(options.output, np.where(hits.face >= 0, share, 0.05))
 print(f"{RAYS * len(vertices)} rays; {free.mean() / RAYS:.3f} of the sky is seen on average")

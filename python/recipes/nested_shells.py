@@ -38,22 +38,22 @@ faces = np.concatenate([f + k * len(meshes[0][0]) for k, (_, f) in enumerate(mes
 shell_of = np.repeat(np.arange(SHELLS), len(meshes[0][1]))
 world = grelha.World(vertices, faces)
 
-edges = vertices[faces[:, :2]].mean(1)
-aims = [np.random.default_rng(9).normal(size=(PARTICLES, 3)), vertices, edges]
+rng, edges = np.random.default_rng(9), vertices[faces[:, :2]].mean(1)
+aims = [rng.normal(size=(PARTICLES, 3)), vertices, edges]
 start = np.array([0.01, 0.02, 0.03], np.float32)
 directions = np.concatenate(aims).astype(np.float32)
 directions[PARTICLES:] -= start
 t, crossed = np.zeros(len(directions), np.float32), np.zeros((SHELLS, len(directions)), bool)
-picture = np.zeros((SIDE, SIDE))
+picture = np.zeros((SIDE, SIDE, 3))
 for k in range(SHELLS):  # on from the float after t: t is rounded, and a wall counts once
     hits = world.closest(start, directions, t_min=np.nextafter(t, np.float32(np.inf)))
-    crossed[k] = (hits.face >= 0) & (shell_of[hits.face] == k)
-    t = hits.t
-    points = start + t[:, None] * directions
-    thin = points[np.abs(points[:, 2]) < 0.06]
-    picture += np.histogram2d(thin[:, 1], thin[:, 0], SIDE, [[-3.1, 3.1]] * 2)[0]
+    crossed[k], t = (hits.face >= 0) & (shell_of[hits.face] == k), hits.t
+    x, y, z = (start + t[:, None] * directions).T
+    thin = np.stack([x, y])[:, np.abs(z) < 0.06]
+    x, y = thin + rng.normal(scale=0.015, size=thin.shape)  # lines of some pixels
+    colour = 0.6 + 0.4 * np.cos(2 * np.pi * (k / SHELLS + np.arange(3) / 3))
+    picture += np.histogram2d(y, x, SIDE, [[-3.1, 3.1]] * 2)[0][..., None] * colour
 stray = world.occluded(start, directions, np.nextafter(t, np.float32(np.inf))).sum()
-light = 1 - np.exp(-0.35 * picture)[..., None] * (1, 0.95, 0.8)
-grelha.write_image(parser.parse_args().output, light)
+grelha.write_image(parser.parse_args().output, 1 - np.exp(-0.35 * picture))
 print(f"{len(directions)} particles through {SHELLS} shells of {len(faces)} triangles: "
       f"{(~crossed.all(axis=0)).sum()} lost, {stray} crossings too many")

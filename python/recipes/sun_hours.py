@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Hours of sun on each piece of a terrain, in one day: `sun_hours.py [MESH] [-o PICTURE]`.
 
-Without a mesh it makes hills of 2 km. z is up, y north. Blue has no hour of sun, yellow the most.
+Without a mesh it makes hills of 2 km. z is up, y north. Blue has no sun, yellow the most.
 """
 import argparse
 
@@ -12,7 +12,7 @@ import grelha
 LATITUDE, DECLINATION = np.radians(46), np.radians(-10)  # the Alps in February
 
 
-def hills(n=200, size=2000.0):
+def hills(n=300, size=2000.0):
     """A grid of heights: waves of many lengths, the longer the higher."""
     rng = np.random.default_rng(3)
     x, y = np.meshgrid(np.linspace(0, size, n), np.linspace(0, size, n))
@@ -42,18 +42,18 @@ scene = grelha.read(options.mesh) if options.mesh else grelha.Scene(*hills())
 world, vertices, faces = scene.world, scene.vertices, scene.faces
 corners = vertices[faces]
 normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-hours, step = np.zeros(len(faces)), 0.5
-for hour in np.arange(5, 19, step):
+hours = np.zeros(len(faces))
+for hour in np.arange(5, 19, 0.5):
     sun = sun_at(hour)
     if sun[2] > 0:  # a face does not shade itself: it is skipped
         lit = ~world.occluded(corners.mean(1), sun, skip=np.arange(len(faces)))
-        hours += step * (lit & (normals @ sun > 0))
-low, high = vertices.min(0), vertices.max(0)
-across = (np.arange(600) + 0.5) / 600
+        hours += 0.5 * (lit & (normals @ sun > 0))
+low, high, across = vertices.min(0), vertices.max(0), (np.arange(600) + 0.5) / 600
 x, y = np.meshgrid(low[0] + across * (high - low)[0], high[1] - across * (high - low)[1])
 hits = world.closest(np.stack([x, y, np.full_like(x, high[2] + 1)], -1), (0, 0, -1))
-share = (hours[hits.face] / hours.max())[..., None]
-normals /= np.linalg.norm(normals, axis=-1, keepdims=True)
-light = 0.75 + 0.25 * (normals @ (-0.6, 0.6, 0.5))[hits.face][..., None]
-grelha.write_image(options.output, light * ((0.05, 0.1, 0.4) + share * (0.95, 0.75, -0.1)))
+share = hours[hits.face] / hours.max()
+light = 0.75 + 0.25 * (normals @ (-0.6, 0.6, 0.5) / np.linalg.norm(normals, axis=-1))[hits.face]
+stops = (0.02, 0.7, 1), (0.03, 0.13, 0.85), (0.2, 0.05, 0.35)  # of red, green, blue
+colour = [np.interp(share, (0, 0.5, 1), stop) for stop in stops]
+grelha.write_image(options.output, np.stack(light * colour, -1))
 print(f"{hours.min():.2f} to {hours.max():.2f} hours of sun, {hours.mean():.2f} on average")

@@ -31,7 +31,7 @@ def jug():
     down = np.linspace(0, 1, 120)
     body = np.concatenate([[0], 0.3 + 0.25 * np.sin(2.6 * down + 0.3) * (1 - 0.6 * down)])
     up = np.stack([0 * body, np.concatenate([[-1e-4], 1.2 * down])], -1)
-    bend = np.linspace(-1.35, 1.35, 60)
+    bend = np.linspace(-1.5, 1.85, 60)  # both ends lie in the body
     handle = np.stack([0.42 + 0.3 * np.cos(bend), 0.36 * np.sin(bend)], -1)
     (v, f), (w, g) = turned(body, 0, up), turned(np.full(60, 0.05), 0.66, handle)
     return np.concatenate([v, w]), np.concatenate([f, g + len(v)])

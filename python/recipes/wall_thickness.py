@@ -17,7 +17,7 @@ SIDE = 600
 def bottle(around=240, along=160):
     """Outside and inside, turned round the z axis; the inside is off the axis."""
     down = np.linspace(0, 1, along)
-    outer = 0.42 + 0.10 * np.sin(5 * down + 1) - 0.26 * np.clip(3 * down - 2, 0, 1)
+    outer = 0.42 + 0.10 * np.sin(5 * down + 1) - 0.26 * down**4 * (5 - 4 * down)
     inner = np.interp(0.08 + 1.32 * down, 1.4 * down, outer) - 0.07
     radius = np.concatenate([[0], outer, inner[::-1], [0]])
     height = np.concatenate([[0], 1.4 * down, 0.08 + 1.32 * down[::-1], [0.08]])
