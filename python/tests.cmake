@@ -1,6 +1,11 @@
 if(GRELHA_INSTALL AND NOT GRELHA_TESTS)  # else it stands among the tests there
   include(${PROJECT_SOURCE_DIR}/tests/deb.cmake)
 endif()
+# Few rays at closed meshes: Grelha loses none. Embree is asked too where it is installed.
+add_test(NAME python.lost COMMAND ${Python_EXECUTABLE} ${PROJECT_SOURCE_DIR}/perf/lost.py
+  --rays 500)
+set_tests_properties(python.lost PROPERTIES LABELS python TIMEOUT 300 SKIP_RETURN_CODE 77
+  ENVIRONMENT "PYTHONPATH=${PROJECT_BINARY_DIR}/python;PYTHONDONTWRITEBYTECODE=1")
 # Each file of tests/ is a test of ctest, with the label `python`.
 execute_process(COMMAND ${Python_EXECUTABLE} -c "import numpy" RESULT_VARIABLE no_numpy ERROR_QUIET)
 if(no_numpy)
