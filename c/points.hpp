@@ -10,6 +10,7 @@
 #include <string>
 
 #include "c/errors.hpp"
+#include "grelha/coordinates.hpp"
 #include "grelha/geometry.hpp"
 
 namespace grelha::c {
@@ -70,23 +71,9 @@ class Extent {
     }
   }
 
-  /// The middle of the box, a multiple of a power of two that is at least its size, so that the
-  /// offset costs no digit; 0 where floats hold everything.
+  /// 0 where floats hold everything.
   std::array<double, 3> offset() const {
-    std::array<double, 3> found{};
-    if (exact_)
-      return found;
-    double size = 0;
-    double far = 0;
-    for (std::size_t a = 0; a < 3; ++a) {
-      size = std::max(size, high_[a] - low_[a]);
-      far = std::max({far, std::abs(low_[a]), std::abs(high_[a])});
-    }
-    // no finer than doubles are there, if the size vanishes
-    const double step = std::ldexp(1, std::ilogb(std::max(size, 0x1p-30 * far)) + 1);
-    for (std::size_t a = 0; a < 3; ++a)
-      found[a] = step * std::nearbyint(.5 * (low_[a] + high_[a]) / step);
-    return found;
+    return exact_ ? std::array<double, 3>{} : offset_of(low_, high_);
   }
 
  private:

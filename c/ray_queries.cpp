@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "c/world.hpp"
 #include "grelha/all_hits.hpp"
@@ -38,6 +39,7 @@ Rays rays_of(const grelha_rays* rays) {
           .t_min = rays->t_min,
           .t_max = rays->t_max,
           .skip = rays->skip,
+          .mask = rays->mask,
           .count = rays->count,
           .org_stride = floats_of(rays->org_stride, rays->count, "org_stride"),
           .dir_stride = floats_of(rays->dir_stride, rays->count, "dir_stride")};
@@ -57,6 +59,7 @@ Rays part_of(const Rays& rays, std::size_t first, std::size_t end) {
   part.t_min = rays.t_min ? rays.t_min + first : nullptr;
   part.t_max = rays.t_max ? rays.t_max + first : nullptr;
   part.skip = rays.skip ? rays.skip + first : nullptr;
+  part.mask = rays.mask ? rays.mask + first : nullptr;
   part.count = end - first;
   return part;
 }
@@ -74,8 +77,8 @@ Ray ray_of(const Rays& rays, std::size_t i) {
 /// Finds all hits a part of the rays at a time, so that they are in memory twice only in part.
 class AllHits {
  public:
-  AllHits(const World& world, const Rays& rays, int threads)
-      : world_(world), rays_(rays), options_{.threads = expect_threads(threads)} {}
+  AllHits(const World& world, const Rays& rays, QueryOptions options)
+      : world_(world), rays_(rays), options_(std::move(options)) {}
 
   void find(std::size_t* offset, float* t, std::uint32_t* id, std::size_t capacity) const {
     constexpr std::size_t kPart = std::size_t{1} << 17;
@@ -135,7 +138,7 @@ grelha_status grelha_closest(const grelha_world* world,
     const grelha::Rays stream = rays_of(rays);
     expect_there(hits, "hits");
     const grelha::Hits answers{.t = hits->t, .id = hits->id, .u = hits->u, .v = hits->v};
-    grelha::closest(asked, stream, answers, {.threads = expect_threads(threads)});
+    grelha::closest(asked, stream, answers, options_of(world, threads));
   });
 }
 
@@ -149,7 +152,7 @@ grelha_status grelha_occluded(const grelha_world* world,
     const grelha::Rays stream = rays_of(rays);
     if (stream.count > 0)
       expect_there(blocked, "blocked");
-    grelha::occluded(asked, stream, blocked, {.threads = expect_threads(threads)});
+    grelha::occluded(asked, stream, blocked, options_of(world, threads));
   });
 }
 
@@ -163,7 +166,7 @@ grelha_status grelha_count_hits(const grelha_world* world,
     const grelha::Rays stream = rays_of(rays);
     if (stream.count > 0)
       expect_there(counts, "counts");
-    grelha::count_hits(asked, stream, counts, {.threads = expect_threads(threads)});
+    grelha::count_hits(asked, stream, counts, options_of(world, threads));
   });
 }
 
@@ -179,7 +182,7 @@ grelha_status grelha_all_hits(const grelha_world* world,
     const grelha::World& asked = world_of(world);
     const grelha::Rays stream = rays_of(rays);
     expect_there(offset, "offset");
-    AllHits(asked, stream, threads).find(offset, t, id, capacity);
+    AllHits(asked, stream, options_of(world, threads)).find(offset, t, id, capacity);
   });
 }
 
@@ -197,7 +200,9 @@ grelha_status grelha_each_hit(const grelha_world* world,
       const auto visit_hit = [&](const grelha::Hit& hit) {
         return visit(context, i, hit.t, hit.id) != 0;
       };
-      const grelha::Filter filter{.skip = stream.skip ? stream.skip[i] : grelha::kNoPrimitive};
+      const grelha::Filter filter{.skip = stream.skip ? stream.skip[i] : grelha::kNoPrimitive,
+                                  .masks = world->masks,
+                                  .mask = stream.mask ? stream.mask[i] : std::uint8_t{255}};
       grelha::all_hits(asked, ray_of(stream, i), visit_hit, filter);
     }
   });

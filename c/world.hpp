@@ -9,6 +9,7 @@
 
 #include "c/errors.hpp"
 #include "c/points.hpp"
+#include "grelha/query.hpp"
 #include "grelha/world.hpp"
 
 namespace grelha::c {
@@ -38,6 +39,7 @@ struct grelha_world {
   grelha::c::Coordinates at;           ///< of vertices, or of centers
   std::vector<std::uint32_t> a, b, c;  ///< [triangles]
   std::vector<float> radius;           ///< [spheres]
+  std::vector<std::uint8_t> masks;     ///< [primitives], or empty
   /// refers to the arrays above
   std::unique_ptr<grelha::World> built;
 
@@ -52,6 +54,10 @@ namespace grelha::c {
 inline const World& world_of(const grelha_world* world) {
   expect_there(world, "world");
   return *world->built;
+}
+/// How its rays are traced.
+inline QueryOptions options_of(const grelha_world* world, int threads) {
+  return {.threads = expect_threads(threads), .mask = world->masks};
 }
 
 }  // namespace grelha::c

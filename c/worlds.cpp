@@ -234,6 +234,19 @@ grelha_status grelha_update_double(
   });
 }
 
+grelha_status grelha_set_masks(grelha_world* world, const uint8_t* masks, size_t count) {
+  using namespace grelha::c;
+  return guarded([&] {
+    expect_there(world, "world");
+    const std::size_t all = world->is_of_triangles() ? world->a.size() : world->radius.size();
+    if (count != 0 && count != all)
+      refuse("count", "0 or " + std::to_string(all), std::to_string(count));
+    if (count != 0)
+      expect_there(masks, "masks");
+    world->masks.assign(masks, masks + count);
+  });
+}
+
 void grelha_free(grelha_world* world) {
   delete world;
 }

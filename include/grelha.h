@@ -15,8 +15,8 @@
 // Ids       The id of a triangle is its place in the caller's indices, that of a sphere its place
 //           in the caller's arrays.
 // Threads   Queries do not change a world, so any number of threads may ask one. While
-//           grelha_update(), grelha_update_double() or grelha_free() runs, no other call may use
-//           that world. The argument `threads` says how many share one call: 1: the calling thread
+//           grelha_update(), grelha_update_double(), grelha_set_masks() or grelha_free() runs, no
+//           other call may use that world. The argument `threads` says how many share one call: 1: the calling thread
 //           alone; 0: one per processor. The number changes no bit of an answer.
 // Errors    Functions that can fail return a grelha_status. They then say why by
 //           grelha_last_error(). No exception leaves a function. Nothing is printed.
@@ -66,6 +66,9 @@ typedef struct grelha_rays {
   const float* t_min;    ///< [count] hits at or before it do not count; null: 0 for all
   const float* t_max;    ///< [count] hits at or behind it do not count; null: infinity for all
   const uint32_t* skip;  ///< [count] id that the ray does not hit, or GRELHA_NONE; null: no id
+  /// [count] a ray hits only primitives that have a bit of its mask: see grelha_set_masks(); null:
+  /// 255 for all
+  const uint8_t* mask;
 } grelha_rays;
 
 /// Arrays of the caller for the nearest hits. Those that are null are not wanted.
@@ -157,6 +160,13 @@ GRELHA_API grelha_status grelha_update(
 /// its offset, which stays as it is.
 GRELHA_API grelha_status grelha_update_double(
     grelha_world* world, const double* points, ptrdiff_t stride, size_t count, int threads);
+
+/// Gives each primitive a mask, by id. A ray hits only primitives p with (masks[p] & its own mask)
+/// != 0. Points are not masked. Copies the array; null and a count of 0 take the masks away.
+///
+/// Threads   as grelha_update(): no other call may use the world meanwhile.
+/// Errors    GRELHA_INVALID if `count` is neither 0 nor the number of primitives.
+GRELHA_API grelha_status grelha_set_masks(grelha_world* world, const uint8_t* masks, size_t count);
 
 /// Frees a world. Null is allowed.
 GRELHA_API void grelha_free(grelha_world* world);

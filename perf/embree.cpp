@@ -15,6 +15,7 @@
 
 #include "kernel/grid/view.hpp"
 #include "perf/embree_api.hpp"
+#include "perf/embree_planes.hpp"
 
 namespace grelha::perf {
 namespace {
@@ -36,96 +37,20 @@ class FlushDenormals {
 #endif
 };
 
-struct Range {
-  double lo[3] = {1e300, 1e300, 1e300}, hi[3] = {-1e300, -1e300, -1e300};
-  void add(double x, double y, double z, double r = 0) {
-    const double p[3] = {x, y, z};
-    for (int a = 0; a < 3; ++a) {
-      lo[a] = std::min(lo[a], p[a] - r);
-      hi[a] = std::max(hi[a], p[a] + r);
-    }
-  }
-  double width() const { return std::max({hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]}); }
-};
-
-/// Of all but the planes.
-Range range_of(const Geometry& scene) {
-  const Spheres& s = scene.spheres;
-  const Triangles& t = scene.triangles;
-  const Cones& c = scene.cones;
-  Range all;
-  for (std::size_t i = 0; i < s.size(); ++i)
-    all.add(s.x[i], s.y[i], s.z[i], std::abs(s.radius[i]));
-  for (std::size_t i = 0; i < t.vertex_count(); ++i)
-    all.add(t.x[i], t.y[i], t.z[i]);
-  for (std::size_t i = 0; i < c.size(); ++i) {
-    all.add(c.base_x[i], c.base_y[i], c.base_z[i]);
-    all.add(c.apex_x[i], c.apex_y[i], c.apex_z[i]);
-  }
-  return all;
-}
-
-/// Its middle, and the unit directions of its sides.
-struct Square {
-  double middle[3], u[3], w[3];
-};
-
-void normalize(double (&v)[3]) {
-  const double length = std::hypot(v[0], v[1], v[2]);
-  for (double& x : v)
-    x /= length;
-}
-
-/// A unit direction across the unit direction n: of the axis that is furthest from it, the part
-/// across.
-void across_unit(const double (&n)[3], double (&u)[3]) {
-  int least = 0;
-  for (int a = 1; a < 3; ++a)
-    if (std::abs(n[a]) < std::abs(n[least]))
-      least = a;
-  for (int a = 0; a < 3; ++a)
-    u[a] = (a == least ? 1 : 0) - n[least] * n[a];
-  normalize(u);
-}
-
-/// About the middle of the range, as it falls onto plane i.
-Square square_on_plane(const Planes& p, std::size_t i, const Range& all) {
-  double n[3] = {p.nx[i], p.ny[i], p.nz[i]};
-  const double at[3] = {p.x[i], p.y[i], p.z[i]};
-  normalize(n);
-  Square s;
-  double along = 0;
-  for (int a = 0; a < 3; ++a) {
-    s.middle[a] = (all.lo[a] + all.hi[a]) / 2;
-    along += n[a] * (s.middle[a] - at[a]);
-  }
-  across_unit(n, s.u);
-  for (int a = 0; a < 3; ++a) {
-    s.middle[a] -= along * n[a];
-    s.w[a] = n[(a + 1) % 3] * s.u[(a + 2) % 3] - n[(a + 2) % 3] * s.u[(a + 1) % 3];
-  }
-  return s;
-}
-
-/// Four corners of three floats; sides of twice `half`.
-void put_square(const Square& s, double half, float* v) {
-  constexpr int kAlongU[4] = {-1, 1, 1, -1}, kAlongW[4] = {-1, -1, 1, 1};
-  for (int k = 0; k < 4; ++k)
-    for (int a = 0; a < 3; ++a)
-      *v++ = static_cast<float>(s.middle[a] + half * (kAlongU[k] * s.u[a] + kAlongW[k] * s.w[a]));
-}
-
 template <int kWidth>
 using Wide = std::conditional_t<kWidth == 8, RTCRayHit8, RTCRayHit16>;
 
 class Built final : public EmbreeScene {
  public:
-  Built(const Scene& scene, bool robust) : device_(rtcNewDevice("threads=1")) {
+  Built(const Scene& scene, RTCSceneFlags flags, RTCBuildQuality quality)
+      : device_(rtcNewDevice("threads=1")), quality_(quality) {
     if (!device_)
       throw std::runtime_error("Embree makes no device");
     scene_ = rtcNewScene(device_);
-    rtcSetSceneFlags(scene_, robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
-    rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_MEDIUM);
+    rtcSetSceneFlags(scene_, flags);
+    // only a scene of two levels, LOW, refits the trees of its geometries
+    rtcSetSceneBuildQuality(scene_,
+                            quality == RTC_BUILD_QUALITY_REFIT ? RTC_BUILD_QUALITY_LOW : quality);
     const Geometry& g = scene.geometry;
     const auto planes = static_cast<std::uint32_t>(g.planes.size());
     const auto spheres = static_cast<std::uint32_t>(g.spheres.size());
@@ -175,9 +100,43 @@ class Built final : public EmbreeScene {
     return a;
   }
 
+  void move(const Scene& scene) override {
+    if (spheres_)
+      put_spheres(scene.geometry.spheres, vertices_of(spheres_));
+    if (triangles_)
+      put_vertices(scene.geometry.triangles, vertices_of(triangles_));
+  }
+
+  void commit() override {
+    for (const RTCGeometry g : {spheres_, triangles_})
+      if (g) {
+        rtcUpdateGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0);
+        rtcCommitGeometry(g);
+      }
+    rtcCommitScene(scene_);
+  }
+
  private:
+  static float* vertices_of(RTCGeometry g) {
+    return static_cast<float*>(rtcGetGeometryBufferData(g, RTC_BUFFER_TYPE_VERTEX, 0));
+  }
+  static void put_spheres(const Spheres& s, float* v) {
+    for (std::size_t i = 0; i < s.size(); ++i) {
+      *v++ = s.x[i];
+      *v++ = s.y[i];
+      *v++ = s.z[i];
+      *v++ = std::abs(s.radius[i]);
+    }
+  }
+  static void put_vertices(const Triangles& t, float* v) {
+    for (std::size_t i = 0; i < t.vertex_count(); ++i) {
+      *v++ = t.x[i];
+      *v++ = t.y[i];
+      *v++ = t.z[i];
+    }
+  }
   void attach(RTCGeometry g, std::uint32_t first) {
-    rtcSetGeometryBuildQuality(g, RTC_BUILD_QUALITY_MEDIUM);
+    rtcSetGeometryBuildQuality(g, quality_);
     rtcCommitGeometry(g);
     rtcAttachGeometry(scene_, g);
     rtcReleaseGeometry(g);
@@ -212,27 +171,19 @@ class Built final : public EmbreeScene {
     if (s.size() == 0)
       return;
     RTCGeometry g = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_SPHERE_POINT);
-    auto* v = static_cast<float*>(room(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, 16, s.size()));
-    for (std::size_t i = 0; i < s.size(); ++i) {
-      *v++ = s.x[i];
-      *v++ = s.y[i];
-      *v++ = s.z[i];
-      *v++ = std::abs(s.radius[i]);
-    }
+    put_spheres(
+        s, static_cast<float*>(room(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, 16, s.size())));
     attach(g, first);
+    spheres_ = g;  // the scene keeps it alive
   }
 
   void add_triangles(const Triangles& t, std::uint32_t first) {
     if (t.size() == 0)
       return;
     RTCGeometry g = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* v = static_cast<float*>(
-        room(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, 12, t.vertex_count()));
-    for (std::size_t i = 0; i < t.vertex_count(); ++i) {
-      *v++ = t.x[i];
-      *v++ = t.y[i];
-      *v++ = t.z[i];
-    }
+    put_vertices(t,
+                 static_cast<float*>(
+                     room(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, 12, t.vertex_count())));
     auto* index =
         static_cast<unsigned*>(room(g, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, 12, t.size()));
     for (std::size_t i = 0; i < t.size(); ++i) {
@@ -241,6 +192,7 @@ class Built final : public EmbreeScene {
       *index++ = t.c[i];
     }
     attach(g, first);
+    triangles_ = g;
   }
 
   void add_cones(const Cones& c, std::uint32_t first) {
@@ -333,6 +285,8 @@ class Built final : public EmbreeScene {
 
   RTCDevice device_;
   RTCScene scene_;
+  RTCBuildQuality quality_;
+  RTCGeometry spheres_ = nullptr, triangles_ = nullptr;
   std::vector<std::uint32_t> first_;  ///< of Grelha's ids, by Embree's geometry
   unsigned plane_geometry_ = RTC_INVALID_GEOMETRY_ID;
   bool any_ = false;
@@ -365,7 +319,17 @@ std::vector<EmbreeMode> embree_modes() {
           {"16 incoherent", 16, false}};
 }
 std::unique_ptr<EmbreeScene> make_embree_scene(const Scene& scene, bool robust) {
-  return std::make_unique<Built>(scene, robust);
+  return std::make_unique<Built>(
+      scene, robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE, RTC_BUILD_QUALITY_MEDIUM);
+}
+std::unique_ptr<EmbreeScene> make_moving_embree_scene(const Scene& scene, MovingScene how) {
+  constexpr RTCBuildQuality kQuality[] = {
+      RTC_BUILD_QUALITY_LOW, RTC_BUILD_QUALITY_MEDIUM, RTC_BUILD_QUALITY_REFIT};
+  const auto flags =
+      how == MovingScene::kMedium
+          ? RTC_SCENE_FLAG_ROBUST
+          : static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC);
+  return std::make_unique<Built>(scene, flags, kQuality[static_cast<int>(how)]);
 }
 
 }  // namespace grelha::perf
@@ -380,6 +344,9 @@ std::vector<EmbreeMode> embree_modes() {
   return {};
 }
 std::unique_ptr<EmbreeScene> make_embree_scene(const Scene&, bool) {
+  return nullptr;
+}
+std::unique_ptr<EmbreeScene> make_moving_embree_scene(const Scene&, MovingScene) {
   return nullptr;
 }
 }  // namespace grelha::perf

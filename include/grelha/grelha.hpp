@@ -9,6 +9,7 @@
 
 #include "grelha/all_hits.hpp"
 #include "grelha/camera.hpp"
+#include "grelha/coordinates.hpp"
 #include "grelha/distance.hpp"
 #include "grelha/geometry.hpp"
 #include "grelha/image.hpp"

@@ -1,10 +1,12 @@
 #include "src/model.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 #include <utility>
 
+#include "grelha/coordinates.hpp"
 #include "src/hear.hpp"
 
 namespace grelha::python {
@@ -16,8 +18,8 @@ constexpr std::size_t kMostPrimitives = 0xFFFFFFFF;
 
 /// The box of some points, and whether floats hold each of their coordinates.
 struct Extent {
-  double low[3] = {INFINITY, INFINITY, INFINITY};
-  double high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  std::array<double, 3> low{INFINITY, INFINITY, INFINITY};
+  std::array<double, 3> high{-INFINITY, -INFINITY, -INFINITY};
   bool exact = true;
 
   void add(double value, std::size_t axis) {
@@ -25,8 +27,7 @@ struct Extent {
     high[axis] = std::max(high[axis], value);
     exact = exact && double{float(value)} == value;
   }
-  /// The middle of the box, rounded to multiples of a power of two that is at least its size. 0
-  /// near the origin, where floats hold everything: farther out they would not hold the rays.
+  /// 0 near the origin, where floats hold everything: farther out they would not hold the rays.
   Frame frame() const {
     Frame found;
     double size = 0;
@@ -37,10 +38,7 @@ struct Extent {
     }
     if (exact && far <= kMaxRatio * size)
       return found;
-    // no finer than doubles are there, if the size vanishes
-    const double step = std::ldexp(1, std::ilogb(std::max(size, 0x1p-30 * far)) + 1);
-    for (std::size_t a = 0; a < 3; ++a)
-      found.offset[a] = step * std::nearbyint(.5 * (low[a] + high[a]) / step);
+    found.offset = offset_of(low, high);
     return found;
   }
 };

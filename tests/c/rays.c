@@ -39,6 +39,37 @@ static void test_range_and_skip(const grelha_world* cube) {
     CHECK(blocked[i] == (id[i] != GRELHA_NONE));
 }
 
+static void test_masks(grelha_world* cube) {
+  const float org[] = {.25f, .5f, 5}, dir[] = {0, 0, -2};
+  const uint8_t mask[] = {255, 1, 2, 4};
+  uint8_t masks[12], blocked[4];
+  uint32_t id[4], counts[4], ids[8];
+  size_t offset[5];
+  const grelha_rays rays = {.count = 4,
+                            .org = org,
+                            .org_stride = GRELHA_SHARED,
+                            .dir = dir,
+                            .dir_stride = GRELHA_SHARED,
+                            .mask = mask};
+  const grelha_hits hits = {.id = id};
+  for (int i = 0; i < 12; ++i)
+    masks[i] = i == 3 ? 2 : 1;
+  CHECK(grelha_set_masks(cube, masks, 11) == GRELHA_INVALID);
+  CHECK(grelha_set_masks(cube, NULL, 12) == GRELHA_INVALID);
+  CHECK_OK(grelha_set_masks(cube, masks, 12));
+  CHECK_OK(grelha_closest(cube, &rays, &hits, 1));
+  CHECK(id[0] == 3 && id[1] <= 1 && id[2] == 3 && id[3] == GRELHA_NONE);
+  CHECK_OK(grelha_occluded(cube, &rays, blocked, 1));
+  CHECK(blocked[0] == 1 && blocked[1] == 1 && blocked[2] == 1 && blocked[3] == 0);
+  CHECK_OK(grelha_count_hits(cube, &rays, counts, 1));
+  CHECK(counts[0] == 2 && counts[1] == 1 && counts[2] == 1 && counts[3] == 0);
+  CHECK_OK(grelha_all_hits(cube, &rays, offset, NULL, ids, 8, 1));
+  CHECK(offset[4] == 4 && ids[0] == 3 && ids[1] == id[1] && ids[2] == id[1] && ids[3] == 3);
+  CHECK_OK(grelha_set_masks(cube, NULL, 0));
+  CHECK_OK(grelha_closest(cube, &rays, &hits, 1));
+  CHECK(id[3] == 3);
+}
+
 /// Origins and directions of one struct, by more than one thread.
 static void test_streams(const grelha_world* cube) {
   enum { kRays = 20000 };
@@ -78,6 +109,7 @@ static void test_streams(const grelha_world* cube) {
 void test_closest(void) {
   grelha_world* const cube = new_cube();
   test_range_and_skip(cube);
+  test_masks(cube);
   test_streams(cube);
   const grelha_rays none = {0};
   const grelha_hits unwanted = {0};

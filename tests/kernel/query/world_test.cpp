@@ -1,9 +1,11 @@
 // Worlds of geometry alone, worlds whose vertices move, and points of surfaces without a ray.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <stdexcept>
 
 #include "grelha/all_hits.hpp"
+#include "grelha/coordinates.hpp"
 #include "grelha/distance.hpp"
 #include "tests/support/brute_force.hpp"
 #include "tests/support/random.hpp"
@@ -35,18 +37,49 @@ TEST(Geometry, NeedsNoMaterial) {
   EXPECT_THROW(World(bare, {}), std::invalid_argument);
 }
 
+TEST(Coordinates, OfAnyStrideAreTheCallers) {
+  const struct {
+    char tag;
+    float at[3];
+    char end;
+  } points[2] = {{0, {1, 2, 3}, 0}, {0, {4, 5, 6}, 0}};
+  const Coordinates found = coordinates_of(points[0].at, sizeof points[0], 2);
+  EXPECT_EQ(found.x, (std::vector<float>{1, 4}));
+  EXPECT_EQ(found.y, (std::vector<float>{2, 5}));
+  EXPECT_EQ(found.z, (std::vector<float>{3, 6}));
+  EXPECT_EQ(found.offset, (std::array<double, 3>{}));
+  const Coordinates back = coordinates_of(points[1].at, -static_cast<int>(sizeof points[0]), 2);
+  EXPECT_EQ(back.x, (std::vector<float>{4, 1}));
+  EXPECT_THROW(coordinates_of(static_cast<const float*>(nullptr), 12, 1), std::invalid_argument);
+}
+
+TEST(Coordinates, OfSurveysKeepTheirDigits) {
+  const double points[] = {512345.125, 5412345.5, 81.0625, 512352.375, 5412349.75, 80.5};
+  const Coordinates found = coordinates_of(points, 3 * sizeof(double), 2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(found.x[i] + found.offset[0], points[3 * i]);
+    EXPECT_EQ(found.y[i] + found.offset[1], points[3 * i + 1]);
+    EXPECT_EQ(found.z[i] + found.offset[2], points[3 * i + 2]);
+  }
+  EXPECT_NE(found.offset[1], 0);
+  const double small[] = {.5, 0, -3};
+  EXPECT_EQ(coordinates_of(small, 24, 1).offset, (std::array<double, 3>{}));
+  const double same[] = {1e17 + 16, .1, 0};
+  EXPECT_NEAR(coordinates_of(same, 24, 1).offset[0], 1e17, 1e9);
+}
+
 TEST(Update, IsANewWorldBitForBit) {
   Scene s = random_mixture(3, 400);
   World world(s, {});
   Random random(4);
-  for (int step = 0; step < 20; ++step) {
-    for (float& x : s.geometry.triangles.x)
-      x += static_cast<float>(random.in(-.1, .1));
-    for (float& y : s.geometry.spheres.y)
-      y += static_cast<float>(random.in(-.1, .1));
+  Geometry& g = s.geometry;
+  for (int step = 0; step < 100; ++step) {
+    for (auto* axis : {&g.triangles.x, &g.spheres.y, &g.cones.apex_z, &g.planes.x})
+      for (float& at : *axis)
+        at += static_cast<float>(random.in(-.1, .1));
     world.update(s, {});
     const World fresh(s, {});
-    for (int i = 0; i < 500; ++i) {
+    for (int i = 0; i < 200; ++i) {
       const Ray ray{random.point(2), random.direction()};
       const Hit a = closest(world, ray), b = closest(fresh, ray);
       ASSERT_EQ(a.id, b.id);
