@@ -16,8 +16,8 @@
 //           in the caller's arrays.
 // Threads   Queries do not change a world, so any number of threads may ask one. While
 //           grelha_update(), grelha_update_double(), grelha_set_masks() or grelha_free() runs, no
-//           other call may use that world. The argument `threads` says how many share one call: 1: the calling thread
-//           alone; 0: one per processor. The number changes no bit of an answer.
+//           other call may use that world. The argument `threads` says how many share one call: 1:
+//           the calling thread alone; 0: one per processor. The number changes no bit of an answer.
 // Errors    Functions that can fail return a grelha_status. They then say why by
 //           grelha_last_error(). No exception leaves a function. Nothing is printed.
 // Answers   They go to arrays of the caller. After an error their contents are unspecified.
@@ -66,8 +66,7 @@ typedef struct grelha_rays {
   const float* t_min;    ///< [count] hits at or before it do not count; null: 0 for all
   const float* t_max;    ///< [count] hits at or behind it do not count; null: infinity for all
   const uint32_t* skip;  ///< [count] id that the ray does not hit, or GRELHA_NONE; null: no id
-  /// [count] a ray hits only primitives that have a bit of its mask: see grelha_set_masks(); null:
-  /// 255 for all
+  /// [count] masks, see grelha_set_masks(); null: 255 for all
   const uint8_t* mask;
 } grelha_rays;
 
