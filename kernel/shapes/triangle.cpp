@@ -26,7 +26,19 @@ Triangle::Arrays Triangle::Source::arrays() const {
   return out;
 }
 
+namespace {
+
+bool is_same_point(const float (&a)[3], const float (&b)[3]) {
+  return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
+}  // namespace
+
 CrossingSpan triangle_span(const ExactRay& ray, const float (&corner)[3][3], double shift) {
+  // no area: many triangles of a mesh whose coordinates keep few digits
+  if (is_same_point(corner[0], corner[1]) || is_same_point(corner[1], corner[2]) ||
+      is_same_point(corner[2], corner[0]))
+    return {};
   return scalar::refine_span(
       scalar::bound_triangle(ray, corner), shift, [&] { return cross_triangle(ray, corner); });
 }
