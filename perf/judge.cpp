@@ -1,7 +1,7 @@
 // Judges answers by independent arithmetic, and counts the wrong ones. Exit status 1 if there are
 // any.
 //
-// judge rays|inside|distance|filters [--count N] [--scene NAME]...
+// judge rays|inside|distance|queries|filters [--count N] [--scene NAME]...
 //
 //   rays      a million rays each at vertices, at edges, along edges, in planes and at random, from
 //             .8 to 1e4 diagonals away, at scans, closed meshes, slivers, copies and a lattice, in
@@ -12,6 +12,8 @@
 //             rational numbers
 //   distance  1e5 points a closed mesh: the sign is that of contains(), and the distance is that of
 //             long double to 1e-6 of the mesh's diagonal
+//   queries   a million rays at planes, spheres, triangles and cones: all hits, counts, skip, masks,
+//             u and v are those of long double, and the same bits by every instruction set
 //   filters   how many of 300 rays, in per cent, meet a triangle up to their first hit that floats
 //             do not decide, that doubles do not decide; whose first two hits are put in order by
 //             exact numbers. From afar floats test in a frame of the mesh, as grids do.
@@ -37,6 +39,7 @@ struct Subject {
 constexpr Subject kSubjects[] = {{"rays", 1'000'000, judge_rays},
                                  {"inside", 100'000, judge_inside},
                                  {"distance", 100'000, judge_distance},
+                                 {"queries", 1'000'000, judge_queries},
                                  {"filters", 300, count_filters}};
 
 }  // namespace
@@ -61,6 +64,7 @@ int main(int argc, char** argv) {
       std::printf("%zu wrong\n", wrong);
       return wrong == 0 ? 0 : 1;
     }
-  std::fprintf(stderr, "judge rays|inside|distance|filters [--count N] [--scene NAME]...\n");
+  std::fprintf(stderr,
+               "judge rays|inside|distance|queries|filters [--count N] [--scene NAME]...\n");
   return 2;
 }
