@@ -1,7 +1,7 @@
 // Judges answers by independent arithmetic, and counts the wrong ones. Exit status 1 if there are
 // any.
 //
-// judge rays|inside|distance|queries|filters [--count N] [--scene NAME]...
+// judge SUBJECT [--count N] [--scene NAME]...
 //
 //   rays      a million rays each at vertices, at edges, along edges, in planes and at random, from
 //             .8 to 1e4 diagonals away, at scans, closed meshes, slivers, copies and a lattice, in

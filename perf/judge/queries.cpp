@@ -76,7 +76,8 @@ void judge_ray(const Scene& s, const Asked& a, std::size_t i, Wrong& w) {
   w.hits += exact.size();
   bool is_same = found.size() == exact.size();
   for (std::size_t k = 0; is_same && k < exact.size(); ++k)
-    is_same = found[k].id == exact[k].id && std::fabs(found[k].t - exact[k].t) < 1e-4L;
+    is_same = found[k].id == exact[k].id &&
+              std::fabs(found[k].t - exact[k].t) < 1e-6L * (1 + std::fabs(exact[k].t));
   w.lists += !is_same;
   w.counts += a.counts[i] != exact.size();
   std::uint32_t first = kNoPrimitive;
