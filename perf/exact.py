@@ -37,7 +37,7 @@ def draw(rows, rays, path):
              ylim=(-.002, 120))
     axes.set_yticks([0, .01, .1, 1, 10, 100], ["0", ".01", ".1", "1", "10", "100"])
     axes.grid(alpha=.3)
-    axes.legend(loc="upper right", fontsize=9)
+    axes.legend(loc="center left", bbox_to_anchor=(0, .3), fontsize=9)
     fig.savefig(path, metadata={"Date": None})
     plt.close(fig)
 
