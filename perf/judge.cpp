@@ -12,8 +12,8 @@
 //             rational numbers
 //   distance  1e5 points a closed mesh: the sign is that of contains(), and the distance is that of
 //             long double to 1e-6 of the mesh's diagonal
-//   queries   a million rays at planes, spheres, triangles and cones: all hits, counts, skip, masks,
-//             u and v are those of long double, and the same bits by every instruction set
+//   queries   a million rays at planes, spheres, triangles and cones: all hits, counts, skip,
+//             masks, u and v are those of long double, and the same bits by every instruction set
 //   filters   how many of 300 rays, in per cent, meet a triangle up to their first hit that floats
 //             do not decide, that doubles do not decide; whose first two hits are put in order by
 //             exact numbers. From afar floats test in a frame of the mesh, as grids do.
