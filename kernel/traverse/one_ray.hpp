@@ -48,7 +48,7 @@ inline bool test_triangles(Single& r, const GridView& g, std::uint32_t cell) {
 /// took 2 to 4 % longer with 2, up to 5 % with 4 and up to 12 % with 6.
 inline constexpr int kLeastLeap = 3;
 
-/// As stream_traverse().
+/// Takes one ray through a grid, cell by cell, until a hit ends it or the grid does.
 template <bool kAny>
 inline void walk_one(const GridView& g, Single& r) {
   CellDda walk(g);

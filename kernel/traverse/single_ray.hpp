@@ -8,7 +8,8 @@ namespace grelha::GRELHA_ISA {
 
 /// A ray by itself.
 struct Single {
-  float org[3], dir[3], t_min, best, low;
+  float org[3], dir[3], t_min;
+  float best, low;  ///< t of the hit so far lies from low to best; both are t_max without one
   std::uint32_t id;
   int axis;  ///< of the shear
   /// inverse of the direction; this and the next fields with triangles only, with a spare element
@@ -22,6 +23,7 @@ struct Single {
   float error_bound = kInfinity;
   double shift = 0;
   GivenRays given;  ///< the ray as it came
+  /// best of the ray as given, also in a moved copy; read while there is no hit: t_max
   const float* end = nullptr;
   const GeometryView* geometry = nullptr;
   const TriangleBlock* block = nullptr;  ///< of the last triangle that came first
