@@ -64,8 +64,12 @@ void pack(const std::vector<std::uint8_t>& row, std::string& bytes) {
   }
 }
 
+bool is_packed(int width) {
+  return width >= kLeastPacked && width <= kMostPacked;
+}
+
 void append_row(const float* rgb, int width, std::string& bytes) {
-  const bool packed = width >= kLeastPacked && width <= kMostPacked;
+  const bool packed = is_packed(width);
   std::array<std::vector<std::uint8_t>, 4> components;
   for (int x = 0; x < width; ++x) {
     const Rgbe pixel = shared_exponent(rgb + 3 * x);

@@ -138,12 +138,17 @@ std::string key_of(const std::string& word) {
   return word.substr(0, word.find('=') + 1);
 }
 
+WordList keys_of(const WordList& words) {
+  WordList keys;
+  std::transform(words.begin(), words.end(), std::back_inserter(keys), key_of);
+  return keys;
+}
+
 /// Lists the words that `here` has and `there` lacks, and the missing keys. The words are
 /// untrusted.
 std::string own_words(const WordList& here, const WordList& there) {
   constexpr int kMost = 8;
-  WordList keys;
-  std::transform(here.begin(), here.end(), std::back_inserter(keys), key_of);
+  const WordList keys = keys_of(here);
   std::string own;
   int found = 0;
   const auto add_word = [&](const std::string& word) {

@@ -87,6 +87,11 @@ void find_kinds(Filling& f) {
   });
 }
 
+std::span<const std::uint32_t> ids_of_chunk(const Filling& f, std::size_t index) {
+  const std::size_t begin = index * kChunk;
+  return f.ids.subspan(begin, std::min(kChunk, f.ids.size() - begin));
+}
+
 /// The first pass, of one chunk. `cells_of(id, visit)` names the cells.
 template <class CellsOf>
 void emit(Filling& f, std::size_t index, const CellsOf& cells_of, std::vector<Pair>& pairs) {
@@ -94,10 +99,9 @@ void emit(Filling& f, std::size_t index, const CellsOf& cells_of, std::vector<Pa
   const unsigned shift = f.buckets.shift;
   pairs.clear();
   chunk.first.assign(f.buckets.count + 1, 0);
-  const std::size_t end = std::min((index + 1) * kChunk, f.ids.size());
-  for (std::size_t i = index * kChunk; i < end; ++i)
-    cells_of(f.ids[i], [&](std::size_t c) {
-      pairs.push_back({static_cast<std::uint32_t>(c), f.ids[i]});
+  for (const std::uint32_t id : ids_of_chunk(f, index))
+    cells_of(id, [&](std::size_t c) {
+      pairs.push_back({static_cast<std::uint32_t>(c), id});
       ++chunk.first[c >> shift];
     });
   sort_pairs(pairs, shift, chunk);
@@ -373,8 +377,7 @@ void fill_grid(const Primitives& p,
   g.distance.resize(fields * cells + 3);
   const CellFinder finder(p, g);
   Filling filling{p, ids, g, g.pad, thread_count_for(threads, ids.size()), progress};
-  const auto cells_of = [&](std::uint32_t id, const auto& visit) { finder(id, visit); };
-  g.occupied = fill(filling, cells_of, g.distance.data(), share);
+  g.occupied = fill(filling, finder, g.distance.data(), share);
   g.store = std::move(filling.store);
   compute_distances(g.distance, g.cells, fields, thread_count_for(threads, cells));
 }

@@ -105,6 +105,15 @@ double cells_per_length(double (&extent)[3], std::size_t count, double density) 
   return density / cube_root(extent[0] * extent[1] * extent[2] / static_cast<double>(count));
 }
 
+/// The corner of a grid around a box, and its extent from there.
+void set_corner(Grid& g, const Box& b, double (&extent)[3]) {
+  for (int a = 0; a < 3; ++a) {
+    // a float, so that walks subtract it without an error of its own
+    g.lo[a] = float_not_above(b.lo[a]);
+    extent[a] = b.hi[a] - g.lo[a];
+  }
+}
+
 /// Cells of a grid whose corner and pad are known; returns how many.
 std::size_t divide(Grid& g, const double (&extent)[3], double per_length) {
   std::size_t cells = 1;
@@ -171,11 +180,7 @@ Grid layout_grid(const Primitives& p,
   Grid g;
   g.pad = pad;
   double extent[3];
-  for (int a = 0; a < 3; ++a) {
-    // a float, so that walks subtract it without an error of its own
-    g.lo[a] = float_not_above(b.lo[a]);
-    extent[a] = b.hi[a] - g.lo[a];
-  }
+  set_corner(g, b, extent);
   const double per_length = cells_per_length(extent, ids.size(), density);
   std::size_t cells = divide(g, extent, per_length);
   const double most = most_references(p, ids.size());

@@ -98,6 +98,13 @@ double ids_bytes(const std::vector<std::uint32_t>& ids) {
   return kId * static_cast<double>(ids.size());
 }
 
+double ids_bytes(const Plan& plan) {
+  double sum = ids_bytes(plan.apart);
+  for (const GridPlan& part : plan.parts)
+    sum += ids_bytes(part.ids);
+  return sum;
+}
+
 double setup_bytes(const Primitives& p) {
   double sum = 0;
   for_each_shape([&]<class Shape>() {
@@ -145,9 +152,7 @@ struct Memory {
 BuildMemory memory_of(const SceneSpans& scene, const Primitives& p, const Plan& plan) {
   Memory m;
   m.kept = kMaterial * static_cast<double>(scene.materials.size()) + setup_bytes(p);
-  m.waiting = ids_bytes(plan.apart);
-  for (const GridPlan& part : plan.parts)
-    m.waiting += ids_bytes(part.ids);
+  m.waiting = ids_bytes(plan);
   for (const GridPlan& part : plan.parts) {
     m.add(expected(p, part.ids, part.grid), static_cast<double>(cell_count(part.grid.cells)));
     m.waiting -= ids_bytes(part.ids);

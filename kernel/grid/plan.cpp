@@ -91,6 +91,14 @@ std::size_t triangles_in_objects(const Primitives& p) {
   return sum;
 }
 
+/// No ray hits a primitive with numbers that are not finite, and it would leave each cell in doubt.
+void drop_invalid(const Primitives& p, std::vector<Ids>& groups) {
+  if (all_valid(p.geometry))
+    return;
+  for (Ids& ids : groups)
+    std::erase_if(ids, [&](std::uint32_t id) { return !is_valid(p, id); });
+}
+
 /// Groups of ids, one per grid: first loose primitives with small objects, then each larger object.
 std::vector<Ids> group(const Primitives& p) {
   std::vector<Ids> groups(1);
@@ -101,11 +109,7 @@ std::vector<Ids> group(const Primitives& p) {
     else
       append(groups.front(), p.ids.begin(Shape::kKind), p.ids.end(Shape::kKind));
   });
-  // No ray hits a primitive with numbers that are not finite, and it would leave each cell in
-  // doubt.
-  if (!all_valid(p.geometry))
-    for (Ids& ids : groups)
-      std::erase_if(ids, [&](std::uint32_t id) { return !is_valid(p, id); });
+  drop_invalid(p, groups);
   std::erase_if(groups, [](const Ids& g) { return g.empty(); });
   return groups;
 }

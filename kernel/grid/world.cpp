@@ -79,6 +79,12 @@ SceneSpans completed(SceneSpans scene, std::vector<std::uint32_t>& zeros) {
   return scene;
 }
 
+void write_color(const Float3& color, float (&channels)[3]) {
+  channels[0] = color.x;
+  channels[1] = color.y;
+  channels[2] = color.z;
+}
+
 }  // namespace
 
 World::Impl::Impl(const SceneSpans& s, const BuildOptions& options)
@@ -140,12 +146,9 @@ void World::Impl::set_lights() {
     shading.area |= l.is_area();
     brightest += largest_channel(l.color);
   }
-  const Float3& background = scene.background;
-  shading.background[0] = background.x;
-  shading.background[1] = background.y;
-  shading.background[2] = background.z;
+  write_color(scene.background, shading.background);
   shading.brightest =
-      std::max(largest_channel(background), materials.emitted + materials.lit * brightest);
+      std::max(largest_channel(scene.background), materials.emitted + materials.lit * brightest);
   shading.lights = lights.data();
   shading.light_count = static_cast<int>(scene.lights.size());
 }

@@ -202,15 +202,20 @@ class AdaptiveSampler {
         take_chunk(chunks[c], space, trace, rays);
         report_progress();
       }
-#pragma omp critical(grelha_stats)
-      {
-        stats_.trace += trace;
-        stats_.rays += rays;
-        r_.rays += rays.total();
-        samples_ += rays.primary;
-      }
+      collect(trace, rays);
     }
     return end_round(r_, chunks, std::min(begun.load(), chunks.size()));
+  }
+
+  /// Adds what one thread has counted.
+  void collect(const TraceCounts& trace, const RayCounts& rays) {
+#pragma omp critical(grelha_stats)
+    {
+      stats_.trace += trace;
+      stats_.rays += rays;
+      r_.rays += rays.total();
+      samples_ += rays.primary;
+    }
   }
 
   void report_progress() {
@@ -229,14 +234,19 @@ class AdaptiveSampler {
     for (std::size_t w = chunk.begin; w < chunk.end; ++w) {
       const std::uint32_t b = r_.wanted[w];
       blocks_.each_pixel(b, [&](std::size_t p) {
-        const auto sum = static_cast<std::ptrdiff_t>(count) * kParts;
         const auto pixel = static_cast<std::uint32_t>(p);
-        std::fill_n(space.pixels().begin() + sum, kParts, pixel);
-        std::fill_n(space.boxes().begin() + sum, kParts, r_.box[p]);
+        name_sums(count, pixel, space);
         runs[count++] = {pixel, sample_count(r_, b), next_count(r_, b)};
       });
     }
     return count;
+  }
+
+  /// Names the pixel and box that the sums of a run are of.
+  void name_sums(int run, std::uint32_t pixel, Workspace& space) const {
+    const auto sum = static_cast<std::ptrdiff_t>(run) * kParts;
+    std::fill_n(space.pixels().begin() + sum, kParts, pixel);
+    std::fill_n(space.boxes().begin() + sum, kParts, r_.box[pixel]);
   }
 
   void take_chunk(Chunk& chunk, Workspace& space, TraceCounts& trace, RayCounts& rays) {

@@ -130,8 +130,8 @@ void BlockErrors::pool_around(
   });
 }
 
-/// Variance of a block with few hits, from as few surrounding blocks as give enough certainty.
-float BlockErrors::rare_variance(std::size_t b, float& certainty) const {
+/// Sums of a block with few hits and of as few surrounding blocks as give enough certainty.
+BlockErrors::Sums BlockErrors::pool_of(std::size_t b) const {
   const Sums& mine = sums_[b];
   const auto columns = static_cast<std::size_t>(blocks_.columns);
   int x = static_cast<int>(b % columns), y = static_cast<int>(b / columns);
@@ -146,12 +146,25 @@ float BlockErrors::rare_variance(std::size_t b, float& certainty) const {
     x /= kCell;
     y /= kCell;
   }
+  return pool;
+}
+
+/// Variance of a block with few hits.
+float BlockErrors::rare_variance(std::size_t b, float& certainty) const {
+  const Sums& mine = sums_[b];
+  const Sums pool = pool_of(b);
   certainty = pool.certainty();
   if (pool.pixels == mine.pixels)
     return own_variance(mine.levels) / mine.pixels;
   // were it 1/2, as `hits` takes it, and by the ratio that it is
   const float ratio = pool.ratio();
   return ratio / (1 - ratio) * pool.by_sample() * mine.pixels / mine.samples;
+}
+
+/// By how much a ray more lowers the variance; 0 if the block takes no more.
+float BlockErrors::gain_of(std::size_t b, float variance) const {
+  const auto samples = static_cast<float>(sample_count(r_, b));
+  return r_.log[b] < kMostLog ? variance * (1 - r_.variance_ratio) / (samples * r_.cost[b]) : 0;
 }
 
 void BlockErrors::estimate_block(std::size_t b) {
@@ -168,7 +181,7 @@ void BlockErrors::estimate_block(std::size_t b) {
   v = std::min(v + r_.missed[b], 1.f);  // of displayed values, 0 to 1
   variance_[b] = v;
   certainty_[b] = certainty;
-  gain_[b] = r_.log[b] < kMostLog ? v * (1 - r_.variance_ratio) / (samples * r_.cost[b]) : 0;
+  gain_[b] = gain_of(b, v);
 }
 
 void BlockErrors::estimate_block() {

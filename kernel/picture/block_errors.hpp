@@ -62,7 +62,9 @@ class BlockErrors {
   float freedom(int log) const { return log == kFirstLog ? kYoung : kOld; }
   float own_variance(const float (&levels)[3]) const;
   void pool_around(const Level& level, int x, int y, const Sums& mine, Sums& pool) const;
+  Sums pool_of(std::size_t b) const;
   float rare_variance(std::size_t b, float& certainty) const;
+  float gain_of(std::size_t b, float variance) const;
   void estimate_block(std::size_t b);
 
   const Refinement& r_;

@@ -32,6 +32,11 @@ struct CheckedPixel {
   std::int64_t sums[3] = {};
 };
 
+/// True if block a varies more than b; of equal ones, if it comes first.
+bool varies_more(const BlockErrors& errors, std::uint32_t a, std::uint32_t b) {
+  return errors.variance(a) != errors.variance(b) ? errors.variance(a) > errors.variance(b) : a < b;
+}
+
 /// Blocks by falling variance: the first kWorstChecked.
 std::vector<std::uint32_t> worst_blocks(const BlockErrors& errors, std::size_t count) {
   std::vector<std::uint32_t> blocks(count);
@@ -40,11 +45,7 @@ std::vector<std::uint32_t> worst_blocks(const BlockErrors& errors, std::size_t c
   std::nth_element(blocks.begin(),
                    blocks.begin() + static_cast<std::ptrdiff_t>(worst),
                    blocks.end(),
-                   [&](std::uint32_t a, std::uint32_t b) {
-                     return errors.variance(a) != errors.variance(b)
-                                ? errors.variance(a) > errors.variance(b)
-                                : a < b;
-                   });
+                   [&](std::uint32_t a, std::uint32_t b) { return varies_more(errors, a, b); });
   blocks.resize(worst);
   std::sort(blocks.begin(), blocks.end());
   return blocks;

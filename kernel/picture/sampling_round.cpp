@@ -76,12 +76,17 @@ bool select_best(List& wanted, const BlockErrors& errors, const Take& take) {
   return true;
 }
 
+/// How far the sum of variances lies above the one that meets the error.
+double excess_of(const BlockErrors::Totals& totals, double error) {
+  return totals.sum * (1 - error * error / (totals.bound * totals.bound));
+}
+
 /// Selects no more of the round than the error takes.
 void select_for_error(Refinement& r,
                       const BlockErrors& errors,
                       const BlockErrors::Totals& totals,
                       double error) {
-  const double excess = totals.sum * (1 - error * error / (totals.bound * totals.bound));
+  const double excess = excess_of(totals, error);
   const Blocks blocks = r.blocks();
   const auto drop_of = [&](std::size_t b) {
     return static_cast<double>(errors.variance(b) * (1 - r.variance_ratio)) *

@@ -115,11 +115,14 @@ class TileSubdivider {
     trace_fresh();
     std::uint32_t pixel = 0;
     for (int y = 0; y + 1 < down(); ++y)
-      for (int x = 0; x + 1 < across(); ++x, ++pixel) {
-        const std::uint32_t* const upper = &id_at(x, y);
-        const std::uint32_t* const lower = &id_at(x, y + 1);
-        resolve({corner_at(x, y), pixel, {upper[0], upper[1], lower[0], lower[1]}}, 0, split_);
-      }
+      for (int x = 0; x + 1 < across(); ++x, ++pixel)
+        resolve(whole_pixel(x, y, pixel), 0, split_);
+  }
+
+  Square whole_pixel(int x, int y, std::uint32_t pixel) {
+    const std::uint32_t* const upper = &id_at(x, y);
+    const std::uint32_t* const lower = &id_at(x, y + 1);
+    return {corner_at(x, y), pixel, {upper[0], upper[1], lower[0], lower[1]}};
   }
 
   void number_block(int x0, int y0) {
@@ -159,13 +162,8 @@ class TileSubdivider {
   /// corners. These are corners of no square but those split now: a point is born on the one level
   /// whose step it is an odd multiple of.
   void number_new_points(std::uint32_t half) {
-    requests_.resize(5 * split_.size());
+    request_new_points(half);
     ids_.resize(requests_.size());
-    for (std::size_t i = 0; i < requests_.size(); ++i)
-      requests_[i] = {morton(new_point(i, half)), static_cast<std::uint32_t>(i)};
-    std::sort(requests_.begin(), requests_.end(), [](const Request& a, const Request& b) {
-      return a.key < b.key;
-    });
     std::uint32_t id = 0;
     for (std::size_t i = 0; i < requests_.size(); ++i) {
       const auto& [key, slot] = requests_[i];
@@ -173,6 +171,16 @@ class TileSubdivider {
         id = number(new_point(slot, half));
       ids_[slot] = id;
     }
+  }
+
+  /// Requests a point for each slot, equal ones side by side.
+  void request_new_points(std::uint32_t half) {
+    requests_.resize(5 * split_.size());
+    for (std::size_t i = 0; i < requests_.size(); ++i)
+      requests_[i] = {morton(new_point(i, half)), static_cast<std::uint32_t>(i)};
+    std::sort(requests_.begin(), requests_.end(), [](const Request& a, const Request& b) {
+      return a.key < b.key;
+    });
   }
 
   /// The point of a slot, see Wanted; `half`: of the sides of the squares.

@@ -50,6 +50,12 @@ scalar::Vec3<float> narrowed(const scalar::Point& p) {
   return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
 }
 
+/// What a ray that hits nothing sees.
+SurfacePoint no_surface() {
+  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+  return {{kNone, kNone, kNone}, {}, {}, 0, 0};
+}
+
 }  // namespace
 
 void closest(const World& world,
@@ -165,11 +171,9 @@ void surfaces(const World& world,
               const QueryOptions& options) {
   expect_same_size(rays.size(), hits.size(), "rays");
   expect_same_size(rays.size(), points.size(), "rays");
-  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
   each_run(rays.size(), options, [&](std::size_t first, std::size_t end) {
     for (std::size_t i = first; i < end; ++i)
-      points[i] = hits[i] ? surface(world, rays[i], hits[i])
-                          : SurfacePoint{{kNone, kNone, kNone}, {}, {}, 0, 0};
+      points[i] = hits[i] ? surface(world, rays[i], hits[i]) : no_surface();
   });
 }
 

@@ -13,6 +13,12 @@ constexpr std::ptrdiff_t words_of() {
   return sizeof(Element) / sizeof(float);
 }
 
+void expect_directions(std::size_t origins, std::size_t directions) {
+  if (origins != directions)
+    throw std::invalid_argument("rays: expected as many directions as origins, found " +
+                                std::to_string(directions) + " and " + std::to_string(origins));
+}
+
 }  // namespace
 
 Rays Rays::of(std::span<const Ray> rays) {
@@ -34,9 +40,7 @@ Rays Rays::of(std::span<const Ray> rays) {
 }
 
 Rays Rays::of(std::span<const Float3> org, std::span<const Float3> dir) {
-  if (org.size() != dir.size())
-    throw std::invalid_argument("rays: expected as many directions as origins, found " +
-                                std::to_string(dir.size()) + " and " + std::to_string(org.size()));
+  expect_directions(org.size(), dir.size());
   constexpr std::ptrdiff_t kStride = words_of<Float3>();
   if (org.empty())
     return {};

@@ -34,6 +34,10 @@ class RunProgress {
       stopped_ = true;
   }
   bool stopped() const { return stopped_; }
+  void throw_if_stopped() const {
+    if (stopped_)
+      throw Stopped();
+  }
 
  private:
   std::size_t runs_, done_ = 0;
@@ -62,8 +66,7 @@ void each_run(std::size_t count,
     progress.finish_run();
   };
   each_turn(runs, threads, take);
-  if (progress.stopped())
-    throw Stopped();
+  progress.throw_if_stopped();
 }
 
 void expect_same_size(std::size_t count, std::size_t answers, const char* things) {

@@ -41,6 +41,13 @@ SamplePlan::Kind kind_of(Sampler sampler) {
   return SamplePlan::kSobol;
 }
 
+/// Strata for the numbers of rays that a plan has.
+void set_strata(SamplePlan& p) {
+  p.pixel_strata = strata_for(p.samples);
+  p.light_strata = strata_for(p.samples * p.light_rays);
+  p.glossy_strata = strata_for(p.samples * std::max(p.glossy_rays, 1));
+}
+
 /// Dimensions for the effects that are there, and no others.
 SamplePlan plan_samples(const SampleOptions& o, const Camera& camera, const ShadingView& shading) {
   SamplePlan p;
@@ -55,9 +62,7 @@ SamplePlan plan_samples(const SampleOptions& o, const Camera& camera, const Shad
   p.light = pair(shading.area);
   p.glossy = pair(shading.glossy);
   p.on = o.samples > 1 || next > 2;
-  p.pixel_strata = strata_for(o.samples);
-  p.light_strata = strata_for(o.samples * o.light_rays);
-  p.glossy_strata = strata_for(o.samples * std::max(p.glossy_rays, 1));
+  set_strata(p);
   return p;
 }
 
@@ -103,6 +108,17 @@ void check_refinement(const RenderOptions& o) {
   require(!o.subdivision.on, "samples are spent by error or by subdivision, not by both");
 }
 
+/// The samples asked for; a single one where rays through one point would all see the same.
+SampleOptions needed_samples(const ShadingView& shading,
+                             const Camera& camera,
+                             const RenderOptions& options) {
+  SampleOptions sampling = options.sampling;
+  const bool to_sample = camera.aperture > 0 || shading.area || shading.glossy;
+  if (options.subdivision.on && !to_sample)
+    sampling.samples = 1;
+  return sampling;
+}
+
 }  // namespace
 
 void check_options(const Camera& camera, const RenderOptions& options) {
@@ -117,11 +133,7 @@ void check_options(const Camera& camera, const RenderOptions& options) {
 Setup set_up(const World& world, const Camera& camera, const RenderOptions& options) {
   check_options(camera, options);
   const World::Impl& w = world.impl();
-  SampleOptions sampling = options.sampling;
-  const bool to_sample = camera.aperture > 0 || w.shading.area || w.shading.glossy;
-  // rays through one point would all see the same
-  if (options.subdivision.on && !to_sample)
-    sampling.samples = 1;
+  const SampleOptions sampling = needed_samples(w.shading, camera, options);
   Setup setup{.variant = choose_variant(options.isa),
               .frame = make_frame(camera),
               .plan = plan_samples(sampling, camera, w.shading),
