@@ -6,15 +6,11 @@
 --keep writes docs/exact.csv, docs/images/exact.svg and the table of docs/accuracy.md; else CSV and
 chart stand beside the program.
 """
-import argparse
-import csv
-import io
 import pathlib
-import subprocess
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "lib"))
-from bench import COLOURS, DOCS, DRAW_HELP, ROOT, commit, cpu_name, plt, put_section, table
+from bench import COLOURS, commit, cpu_name, csv_bench, plt, table
 
 LOOKS = {"grelha calls": ("o", 0), "grelha streams": ("s", 2), "embree robust": ("^", 1),
          "embree": ("v", 4), "CGAL exact": ("D", 3), "CGAL predicates": ("P", 5)}
@@ -24,7 +20,8 @@ def wrong(row):
     return sum(int(row[k]) for k in ("lost", "false", "other"))
 
 
-def draw(rows, rays, path):
+def draw(rows, about, path):
+    rays = int(about.split()[0])
     fig, axes = plt.subplots(figsize=(7, 4.6), layout="constrained")
     for who, (marker, colour) in LOOKS.items():
         own = [r for r in rows if r["who"] == who]
@@ -56,37 +53,11 @@ def told(rows, about):
         lines.append(line)
     sums = {who: sum(wrong(r) for r in rows if r["who"] == who) for who in names}
     said = ", ".join(f"{who} {n:,}" for who, n in sums.items())
-    return (f"{about} Of each: lost, false, another triangle (0: none of these); ns a ray.\n\n"
+    return (f"{about}. Of each: lost, false, another triangle (0: none of these); ns a ray.\n\n"
             + table(["mesh", "moved by, diagonals", "eye, diagonals", *names], lines)
             + f"\n\nWrong in all: {said}. {cpu_name()}, commit {commit()}, "
             + "`./run perf exact --keep`.")
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--program", default=ROOT / "build/release/grelha",
-                        help="the benchmark stands beside it [build/release/grelha]")
-    parser.add_argument("--keep", action="store_true", help="write into docs/")
-    parser.add_argument("--draw", action="store_true", help=DRAW_HELP)
-    asked, rest = parser.parse_known_args()
-    folder = pathlib.Path(asked.program).resolve().parent
-    to = DOCS if asked.keep or asked.draw else folder
-    numbers = to / "exact.csv"
-    if not asked.draw:
-        done = subprocess.run([folder / "exact", *rest], stdout=subprocess.PIPE, text=True)
-        if done.returncode:
-            sys.exit(done.returncode)
-        numbers.write_text(done.stdout)
-    about, _, text = numbers.read_text().partition("\n")
-    about = about[2:]
-    rows = list(csv.DictReader(io.StringIO(text)))
-    chart = (DOCS / "images" if to == DOCS else folder) / "exact.svg"
-    draw(rows, int(about.split()[0]), chart)
-    section = told(rows, about[0].upper() + about[1:] + ".")
-    if asked.keep:
-        put_section(DOCS / "accuracy.md", "perf/exact.py", section)
-    print(section, numbers, chart, sep="\n")
-
-
 if __name__ == "__main__":
-    main()
+    csv_bench(__doc__, "exact", lambda folder: [folder / "exact"], draw, told)

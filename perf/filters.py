@@ -6,15 +6,12 @@
 --keep writes docs/filters.csv, docs/images/filters.svg and the table of docs/accuracy.md; else CSV
 and chart stand beside the program.
 """
-import argparse
-import csv
-import io
 import pathlib
 import subprocess
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "lib"))
-from bench import COLOURS, DOCS, DRAW_HELP, ROOT, commit, cpu_name, plt, put_section, table
+from bench import COLOURS, commit, cpu_name, csv_bench, plt, table
 
 STAGES = {"floats": ("o", 0, "not by floats"), "doubles": ("s", 1, "nor by doubles"),
           "order": ("^", 2, "order of two hits by exact numbers")}
@@ -40,7 +37,7 @@ def places(rows):
     return found
 
 
-def draw(rows, path):
+def draw(rows, _, path):
     found = places(rows)
     fig, axes = plt.subplots(1, 2, figsize=(9, .21 * len(found) + 1.6), sharey=True,
                              layout="constrained")
@@ -71,42 +68,18 @@ def told(rows, about):
         return "; ".join(f"{float(row[s]):.3g}" for s in STAGES)
 
     lines = [[name, *(cell(by_kind[k]) for k in kinds)] for name, by_kind in found.items()]
-    return (f"{about} Each cell: per cent of rays that floats do not decide; that doubles do not "
+    return (f"{about}. Each cell: per cent of rays that floats do not decide; that doubles do not "
             "decide either; whose first two hits exact numbers put in order.\n\n"
             + table(["mesh", *kinds], lines)
             + f"\n\n{cpu_name()}, commit {commit()}, `./run perf filters --keep`.")
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--program", default=ROOT / "build/release/grelha",
-                        help="judge stands beside it [build/release/grelha]")
-    parser.add_argument("--keep", action="store_true", help="write into docs/")
-    parser.add_argument("--draw", action="store_true", help=DRAW_HELP)
-    asked, rest = parser.parse_known_args()
-    folder = pathlib.Path(asked.program).resolve().parent
-    to = DOCS if asked.keep or asked.draw else folder
-    numbers = to / "filters.csv"
-    if not asked.draw:
-        subprocess.run(["cmake", "--build", folder, "--target", "judge"], check=True,
-                       stdout=subprocess.DEVNULL)
-        done = subprocess.run([folder / "judge", "filters", *rest], stdout=subprocess.PIPE,
-                              text=True)
-        if done.returncode:
-            sys.exit(done.returncode)
-        numbers.write_text("".join(line for line in done.stdout.splitlines(True)
-                                   if line.startswith("# ") or "," in line))
-    lines = numbers.read_text().splitlines()
-    about = next(line for line in lines if line.endswith("rays a row"))[2:]
-    rows = list(csv.DictReader(io.StringIO(
-        "\n".join(line for line in lines if not line.startswith("#")))))
-    chart = (DOCS / "images" if to == DOCS else folder) / "filters.svg"
-    draw(rows, chart)
-    section = told(rows, about + ".")
-    if asked.keep:
-        put_section(DOCS / "accuracy.md", "perf/filters.py", section)
-    print(section, numbers, chart, sep="\n")
+def judge(folder):
+    """Builds the judge, since no program has the name of this script."""
+    subprocess.run(["cmake", "--build", folder, "--target", "judge"], check=True,
+                   stdout=subprocess.DEVNULL)
+    return [folder / "judge", "filters"]
 
 
 if __name__ == "__main__":
-    main()
+    csv_bench(__doc__, "filters", judge, draw, told)

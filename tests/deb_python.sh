@@ -17,14 +17,14 @@ mkdir -p "$2"
 cd "$1"
 cpack -B "$2" -C "$3" >"$2/log" 2>&1 || { cat "$2/log"; exit 1; }
 deb=$(ls "$2"/python3-grelha_*.deb)
-dpkg-deb -x "$deb" "$2/root"
+dpkg-deb -x "$deb" "$2/unpacked"
 packages=usr/lib/python3/dist-packages
 for file in $packages/grelha/__init__.py $packages/grelha/__init__.pyi $packages/grelha/py.typed \
   $packages/grelha/open3d.py $packages/grelha/trimesh.py \
   usr/share/doc/python3-grelha/copyright usr/share/doc/python3-grelha/recipes/turntable.py; do
-  [ -f "$2/root/$file" ] || { echo "the package lacks $file"; exit 1; }
+  [ -f "$2/unpacked/$file" ] || { echo "the package lacks $file"; exit 1; }
 done
-[ ! -e "$2/root/usr/bin" ] || { echo "the package holds the program too"; exit 1; }
+[ ! -e "$2/unpacked/usr/bin" ] || { echo "the package holds the program too"; exit 1; }
 depends=$(dpkg-deb -f "$deb" Depends)
 for package in "python3 (>= 3." "python3 (<< 3." python3-numpy libc6 libstdc++6 libgomp1; do
   case $depends in
@@ -33,7 +33,7 @@ for package in "python3 (>= 3." "python3 (<< 3." python3-numpy libc6 libstdc++6 
   esac
 done
 python=$(sed -n 's/^Python_EXECUTABLE:[A-Z]*=//p' CMakeCache.txt)
-PYTHONPATH=$2/root/$packages PYTHONDONTWRITEBYTECODE=1 "${python:-python3}" -c "
+PYTHONPATH=$2/unpacked/$packages PYTHONDONTWRITEBYTECODE=1 "${python:-python3}" -c "
 import grelha
 assert grelha.__file__.startswith('$2'), grelha.__file__
 world = grelha.World([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])

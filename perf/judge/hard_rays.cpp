@@ -4,39 +4,12 @@
 #include <filesystem>
 #include <utility>
 
-#include "tests/support/scenes.hpp"
+#include "tests/support/hard_meshes.hpp"
 
 namespace grelha::perf {
-namespace {
-
 using test::at;
 using test::minus;
 using test::Random;
-
-/// Triangles a second time, their corners in another order.
-Scene with_copies(Scene s) {
-  Triangles& t = s.geometry.triangles;
-  for (std::size_t i = 0, n = t.a.size(); i < n; ++i) {
-    t.a.push_back(t.b[i]);
-    t.b.push_back(t.c[i]);
-    t.c.push_back(t.a[i]);
-    t.material.push_back(0);
-  }
-  return s;
-}
-
-Scene slivers(int n) {
-  Random random(5);
-  Scene s = test::empty_scene();
-  for (int i = 0; i < n; ++i) {
-    const Float3 a = random.point(1);
-    const Float3 b = random.point(1);
-    test::add_triangle(s, a, b, at(at(a, random.unit(), minus(b, a)), 1e-6, random.direction()));
-  }
-  return s;
-}
-
-}  // namespace
 
 std::vector<Mesh> hard_meshes(const JudgeOptions& options) {
   std::vector<Mesh> all;
@@ -51,9 +24,9 @@ std::vector<Mesh> hard_meshes(const JudgeOptions& options) {
       std::printf("# skipped: there is no %s\n", file.c_str());
   if (options.scenes.empty()) {
     all.push_back({"ball", test::ball_mesh(24, 12, .1)});
-    all.push_back({"ball twice", with_copies(test::ball_mesh(12, 8))});
+    all.push_back({"ball twice", test::with_copies(test::ball_mesh(12, 8))});
     all.push_back({"lattice", test::lattice_patch(12)});
-    all.push_back({"slivers", slivers(300)});
+    all.push_back({"slivers", test::slivers(5, 300)});
   }
   return all;
 }

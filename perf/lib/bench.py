@@ -7,6 +7,7 @@ import os
 import pathlib
 import re
 import subprocess
+import sys
 
 import matplotlib
 matplotlib.use("Agg")
@@ -107,6 +108,37 @@ def put_section(page, maker, text, part=""):
                        re.S)
     page.write_text(marks.sub(lambda _: new, old) if marks.search(old) else
                     old.rstrip() + "\n\n" + new + "\n")
+
+
+def csv_bench(doc, name, command, draw, told):
+    """The command line of a benchmark that prints a line of its conditions after "# ", then CSV.
+
+    command(folder) gives the words that run it, from the folder it stands in. draw(rows, about,
+    path) draws the chart and told(rows, about) writes the section of docs/accuracy.md.
+    """
+    parser = argparse.ArgumentParser(description=doc.partition("\n")[0])
+    parser.add_argument("--program", default=ROOT / "build/release/grelha",
+                        help="the benchmark stands beside it [build/release/grelha]")
+    parser.add_argument("--keep", action="store_true", help="write into docs/")
+    parser.add_argument("--draw", action="store_true", help=DRAW_HELP)
+    asked, rest = parser.parse_known_args()
+    folder = pathlib.Path(asked.program).resolve().parent
+    to = DOCS if asked.keep or asked.draw else folder
+    numbers = to / f"{name}.csv"
+    if not asked.draw:
+        done = subprocess.run([*command(folder), *rest], stdout=subprocess.PIPE, text=True)
+        if done.returncode:
+            sys.exit(done.returncode)
+        numbers.write_text(done.stdout)
+    lines = numbers.read_text().splitlines()
+    about = lines[0].removeprefix("# ")
+    rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
+    chart = (DOCS / "images" if to == DOCS else folder) / f"{name}.svg"
+    draw(rows, about, chart)
+    section = told(rows, about)
+    if asked.keep:
+        put_section(DOCS / "accuracy.md", f"perf/{name}.py", section)
+    print(section, numbers, chart, sep="\n")
 
 
 def cpu_name():

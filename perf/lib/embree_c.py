@@ -40,7 +40,7 @@ class Scene:
     """One mesh; `robust` is Embree's flag of that name. Used until the program ends."""
 
     def __init__(self, library, vertices, faces, robust):
-        self.library = library
+        self.embree = library
         device = ctypes.c_void_p(library.rtcNewDevice(b"threads=1"))
         self.scene = ctypes.c_void_p(library.rtcNewScene(device))
         library.rtcSetSceneFlags(self.scene, ROBUST if robust else 0)
@@ -63,7 +63,7 @@ class Scene:
         hits["origin"], hits["direction"], hits["t_far"] = origins, directions, t_max
         hits["mask"], hits["geometry"], hits["instance"] = NONE, NONE, NONE
         context = Context(0, None, NONE)
-        self.library.rtcIntersect1M(self.scene, ctypes.byref(context),
-                                    ctypes.c_void_p(hits.ctypes.data), ctypes.c_uint(len(hits)),
-                                    ctypes.c_size_t(RAY_HIT.itemsize))
+        self.embree.rtcIntersect1M(self.scene, ctypes.byref(context),
+                                   ctypes.c_void_p(hits.ctypes.data), ctypes.c_uint(len(hits)),
+                                   ctypes.c_size_t(RAY_HIT.itemsize))
         return hits["geometry"] != NONE

@@ -1,24 +1,12 @@
 // Hit or miss, which triangle and t are those of rational numbers (GMP), whatever the mesh, however
 // rays are aimed and from wherever they come.
 #include "grelha/query.hpp"
+#include "tests/support/hard_meshes.hpp"
 #include "tests/support/rational.hpp"
 #include "tests/support/rays.hpp"
-#include "tests/support/scenes.hpp"
 
 namespace grelha::test {
 namespace {
-
-/// Triangles of a mesh a second time, their corners in another order.
-Scene with_copies(Scene s) {
-  auto& t = s.geometry.triangles;
-  for (std::size_t i = 0, n = t.a.size(); i < n; ++i) {
-    t.a.push_back(t.b[i]);
-    t.b.push_back(t.c[i]);
-    t.c.push_back(t.a[i]);
-    t.material.push_back(0);
-  }
-  return s;
-}
 
 /// Triangles in three planes of whole numbers, over one another.
 Scene coplanar_triangles(std::uint64_t seed, int n) {
@@ -28,17 +16,6 @@ Scene coplanar_triangles(std::uint64_t seed, int n) {
   for (int i = 0; i < n; ++i) {
     const float y = static_cast<float>(i % 3);
     add_triangle(s, {whole(), y, whole()}, {whole(), y, whole()}, {whole(), y, whole()});
-  }
-  return s;
-}
-
-Scene slivers(std::uint64_t seed, int n) {
-  Random random(seed);
-  Scene s = empty_scene();
-  for (int i = 0; i < n; ++i) {
-    const Float3 a = random.point(1);
-    const Float3 b = random.point(1);
-    add_triangle(s, a, b, at(at(a, random.unit(), minus(b, a)), 1e-6, random.direction()));
   }
   return s;
 }
