@@ -246,8 +246,9 @@ TEST(Contains, MatchesTheDistanceToACenter) {
   contains(world, points, inside, {.threads = 2});
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double r = static_cast<double>(length(brute::v(points[i])));
-    if (r < .97 || r > 1.001)
+    if (r < .97 || r > 1.001) {
       EXPECT_EQ(inside[i] != 0, r < 1) << r;
+    }
     EXPECT_EQ(contains(world, points[i]), inside[i] != 0);
   }
   EXPECT_FALSE(contains(world, {kNaN, 0, 0}));

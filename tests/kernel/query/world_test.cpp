@@ -30,8 +30,9 @@ TEST(Geometry, NeedsNoMaterial) {
     const Hit hit = closest(without, ray);
     ASSERT_EQ(hit.id, closest(with, ray).id);
     ASSERT_EQ(hit.t, closest(with, ray).t);
-    if (hit)
+    if (hit) {
       EXPECT_EQ(surface(without, ray, hit).material, 0u);
+    }
   }
   bare.geometry.cones.base_x = bare.geometry.cones.base_x.subspan(1);
   EXPECT_THROW(World(bare, {}), std::invalid_argument);
