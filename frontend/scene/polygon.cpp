@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "frontend/scene/double3.hpp"
-#include "frontend/scene/flat_triangles.hpp"
+#include "frontend/scene/delaunay.hpp"
 #include "frontend/scene/polygon_plane.hpp"
 
 namespace grelha {
@@ -67,7 +67,7 @@ PolygonSplitter::Result PolygonSplitter::fill(std::span<const Float3> corner_poi
     return Result::kCutLimit;
   record_intersections(corner_points, outline);
   EvenOddFill filled = outline.fill();
-  fix_flat_triangles(points_, filled.triangles);
+  make_delaunay(points_, filled.triangles);
   triangles.insert(triangles.end(), filled.triangles.begin(), filled.triangles.end());
   return filled.is_crossed ? Result::kFilled : Result::kCut;
 }

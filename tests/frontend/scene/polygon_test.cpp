@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <map>
 #include <numbers>
 #include <random>
 
@@ -157,6 +158,52 @@ TEST(Polygon, RandomOutlines) {
       p.push_back({float(r * std::cos(angle)), float(r * std::sin(angle)), 3});
     }
     expect_cover_any_way(p);
+  }
+}
+
+/// Returns the interior angle of a triangle at its first corner, in radians.
+double angle(const Float3& a, const Float3& b, const Float3& c) {
+  const double dot =
+      (double{b.x} - a.x) * (double{c.x} - a.x) + (double{b.y} - a.y) * (double{c.y} - a.y);
+  return std::atan2(2 * std::abs(area(a, b, c)), dot);
+}
+
+/// No side of two triangles has angles opposite to it that sum to more than pi, unless its two
+/// triangles have no other diagonal.
+void expect_delaunay(const Outline& p) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> opposite;
+  for (const auto& [a, b, c] : cut(p)) {
+    opposite[{a, b}] = c;
+    opposite[{b, c}] = a;
+    opposite[{c, a}] = b;
+  }
+  std::size_t shared = 0;
+  for (const auto& [side, r] : opposite) {
+    const auto [from, to] = side;
+    const auto found = opposite.find({to, from});
+    if (found == opposite.end())
+      continue;
+    ++shared;
+    const std::uint32_t s = found->second;
+    if (area(p[r], p[from], p[s]) > 0 && area(p[s], p[to], p[r]) > 0) {
+      EXPECT_LE(angle(p[r], p[from], p[to]) + angle(p[s], p[from], p[to]), std::numbers::pi + 1e-9);
+    }
+  }
+  EXPECT_GE(shared, 2 * (p.size() - 3));
+}
+
+TEST(Polygon, ConcaveOnesAreDelaunay) {
+  expect_delaunay(star(144, .8));
+  expect_delaunay(comb(50));
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> radius(.1, 10);
+  for (int round = 0; round < 100; ++round) {
+    Outline p;
+    for (int i = 0; i < 50; ++i) {
+      const double at = 2 * std::numbers::pi * i / 50, r = radius(random);
+      p.push_back({float(r * std::cos(at)), float(r * std::sin(at)), 0});
+    }
+    expect_delaunay(p);
   }
 }
 
