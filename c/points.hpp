@@ -1,12 +1,9 @@
 #pragma once
-// Points in arrays of the caller, of any stride, and an offset for those in double.
+// Points in arrays of the caller, of any stride.
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
-#include <limits>
 #include <string>
 
 #include "c/errors.hpp"
@@ -42,6 +39,10 @@ class Points {
     return {
         static_cast<float>(at(i, 0)), static_cast<float>(at(i, 1)), static_cast<float>(at(i, 2))};
   }
+  void add_to(PointBounds& bounds, std::size_t i) const {
+    for (std::size_t a = 0; a < 3; ++a)
+      bounds.add(a, at(i, a));
+  }
   /// Throws std::invalid_argument for a coordinate that the kernel cannot compute with.
   void expect_usable(std::size_t i) const {
     for (std::size_t a = 0; a < 3; ++a)
@@ -56,31 +57,6 @@ class Points {
   std::ptrdiff_t stride_;
   std::size_t count_;
   const char* name_;
-};
-
-/// The box of some points, and if floats hold each of their coordinates.
-class Extent {
- public:
-  template <class Number>
-  void add(const Points<Number>& points, std::size_t i) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      const double value = points.at(i, a);
-      low_[a] = std::min(low_[a], value);
-      high_[a] = std::max(high_[a], value);
-      exact_ = exact_ && double{static_cast<float>(value)} == value;
-    }
-  }
-
-  /// 0 where floats hold everything.
-  std::array<double, 3> offset() const {
-    return exact_ ? std::array<double, 3>{} : offset_of(low_, high_);
-  }
-
- private:
-  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  std::array<double, 3> low_{kInfinity, kInfinity, kInfinity};
-  std::array<double, 3> high_{-kInfinity, -kInfinity, -kInfinity};
-  bool exact_ = true;
 };
 
 }  // namespace grelha::c

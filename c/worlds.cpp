@@ -1,4 +1,5 @@
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "c/world.hpp"
@@ -93,6 +94,12 @@ void each_center(const Points<Number>& points, const Visit& visit) {
   }
 }
 
+/// Floats stay as the caller has them, and so do rays and points.
+template <class Number>
+std::array<double, 3> offset_for(const PointBounds& bounds) {
+  return std::is_same_v<Number, double> ? bounds.offset() : std::array<double, 3>{};
+}
+
 template <class Number>
 std::unique_ptr<grelha_world> world_of_triangles(const Points<Number>& vertices,
                                                  const std::uint32_t* indices,
@@ -104,9 +111,9 @@ std::unique_ptr<grelha_world> world_of_triangles(const Points<Number>& vertices,
     expect_there(indices, "indices");
   auto world = std::make_unique<grelha_world>();
   copy_indices(indices, count, vertices.count(), *world);
-  Extent extent;
-  each_used(vertices, *world, [&](std::size_t i) { extent.add(vertices, i); });
-  world->offset = extent.offset();
+  PointBounds bounds;
+  each_used(vertices, *world, [&](std::size_t i) { vertices.add_to(bounds, i); });
+  world->offset = offset_for<Number>(bounds);
   world->at = coordinates_of(vertices, world->offset);
   build(*world, threads);
   return world;
@@ -120,7 +127,7 @@ std::unique_ptr<grelha_world> world_of_spheres(const Points<Number>& centers,
   if (centers.count() > 0)
     expect_there(radii, "radii");
   auto world = std::make_unique<grelha_world>();
-  Extent extent;
+  PointBounds bounds;
   world->radius.reserve(centers.count());
   each_center(centers, [&](std::size_t i) {
     const float radius = static_cast<float>(radii[i]);
@@ -129,9 +136,9 @@ std::unique_ptr<grelha_world> world_of_spheres(const Points<Number>& centers,
              "numbers above 0 and within 1e18",
              std::to_string(radii[i]) + " in element " + std::to_string(i));
     world->radius.push_back(radius);
-    extent.add(centers, i);
+    centers.add_to(bounds, i);
   });
-  world->offset = extent.offset();
+  world->offset = offset_for<Number>(bounds);
   world->at = coordinates_of(centers, world->offset);
   build(*world, threads);
   return world;

@@ -23,7 +23,7 @@
 #include "frontend/input/read_scene.hpp"
 #include "perf/build/clock.hpp"
 #include "perf/build/embree_build.hpp"
-#include "perf/build/same_grids.hpp"
+#include "tests/support/same_grids.hpp"
 #include "perf/workloads.hpp"
 
 namespace {
@@ -97,7 +97,7 @@ struct Builds {
 bool Builds::check() {
   const World one(scene, {.threads = 1});
   for (const int n : {2, 3, 7})
-    if (!same_grids(one, World(scene, {.threads = n})))
+    if (!test::same_grids(one, World(scene, {.threads = n})))
       return false;
   result.bytes["grelha"] = static_cast<double>(one.grid_bytes() + one.geometry_bytes()) / count();
   return true;

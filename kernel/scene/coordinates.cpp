@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <stdexcept>
 
 namespace grelha {
 namespace {
+
+/// Largest distance from the origin to a box's middle, in sizes of the box.
+constexpr double kMaxRatio = 4;
 
 template <class Number>
 class StridedPoints {
@@ -49,22 +51,27 @@ class StridedPoints {
 
 }  // namespace
 
-std::array<double, 3> offset_of(const std::array<double, 3>& low,
-                                const std::array<double, 3>& high) {
+void PointBounds::add(std::size_t axis, double value) {
+  low_[axis] = std::min(low_[axis], value);
+  high_[axis] = std::max(high_[axis], value);
+}
+
+std::array<double, 3> PointBounds::offset() const {
+  std::array<double, 3> middle{};
   double size = 0;
   double far = 0;
   for (std::size_t a = 0; a < 3; ++a) {
-    size = std::max(size, high[a] - low[a]);
-    far = std::max({far, std::abs(low[a]), std::abs(high[a])});
+    middle[a] = .5 * (low_[a] + high_[a]);
+    size = std::max(size, high_[a] - low_[a]);
+    far = std::max(far, std::abs(middle[a]));
   }
-  if (!(far > 0))
+  if (!(far > kMaxRatio * size) || far == kInfinity)
     return {};
   // no finer than doubles are there, if the size vanishes
   const double step = std::ldexp(1, std::ilogb(std::max(size, 0x1p-30 * far)) + 1);
-  std::array<double, 3> found{};
-  for (std::size_t a = 0; a < 3; ++a)
-    found[a] = step * std::nearbyint(.5 * (low[a] + high[a]) / step);
-  return found;
+  for (double& at : middle)
+    at = step * std::nearbyint(at / step);
+  return middle;
 }
 
 Coordinates coordinates_of(const float* points, std::ptrdiff_t stride, std::size_t count) {
@@ -72,17 +79,10 @@ Coordinates coordinates_of(const float* points, std::ptrdiff_t stride, std::size
 }
 
 Coordinates coordinates_of(const double* points, std::ptrdiff_t stride, std::size_t count) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const StridedPoints<double> all(points, stride, count);
-  std::array<double, 3> low{kInfinity, kInfinity, kInfinity};
-  std::array<double, 3> high{-kInfinity, -kInfinity, -kInfinity};
-  bool exact = true;
-  all.each([&](std::size_t a, std::size_t, double value) {
-    low[a] = std::min(low[a], value);
-    high[a] = std::max(high[a], value);
-    exact = exact && double{static_cast<float>(value)} == value;
-  });
-  return all.less(exact ? std::array<double, 3>{} : offset_of(low, high));
+  PointBounds bounds;
+  all.each([&](std::size_t a, std::size_t, double value) { bounds.add(a, value); });
+  return all.less(bounds.offset());
 }
 
 }  // namespace grelha

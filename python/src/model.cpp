@@ -13,35 +13,7 @@ namespace grelha::python {
 namespace {
 
 constexpr double kLargest = 1e18;  ///< what the kernel computes with
-constexpr double kMaxRatio = 4;    ///< of the largest coordinate to the size, near the origin
 constexpr std::size_t kMostPrimitives = 0xFFFFFFFF;
-
-/// The box of some points, and whether floats hold each of their coordinates.
-struct Extent {
-  std::array<double, 3> low{INFINITY, INFINITY, INFINITY};
-  std::array<double, 3> high{-INFINITY, -INFINITY, -INFINITY};
-  bool exact = true;
-
-  void add(double value, std::size_t axis) {
-    low[axis] = std::min(low[axis], value);
-    high[axis] = std::max(high[axis], value);
-    exact = exact && double{float(value)} == value;
-  }
-  /// 0 near the origin, where floats hold everything: farther out they would not hold the rays.
-  Frame frame() const {
-    Frame found;
-    double size = 0;
-    double far = 0;
-    for (std::size_t a = 0; a < 3; ++a) {
-      size = std::max(size, high[a] - low[a]);
-      far = std::max({far, std::abs(low[a]), std::abs(high[a])});
-    }
-    if (exact && far <= kMaxRatio * size)
-      return found;
-    found.offset = offset_of(low, high);
-    return found;
-  }
-};
 
 void expect_usable(const Triples& points, std::size_t i, const char* name) {
   for (std::size_t a = 0; a < 3; ++a)
@@ -77,7 +49,7 @@ void fill_faces(py::handle faces, std::size_t vertices, Triangles& t) {
 /// Chooses the frame by the vertices that faces use, and puts all there. Others may be anything.
 void fill_vertices(const Triples& vertices, Model& model) {
   Triangles& t = model.scene.geometry.triangles;
-  Extent extent;
+  PointBounds bounds;
   std::vector<char> seen(vertices.count());
   for (const std::vector<std::uint32_t>* const corner : {&t.a, &t.b, &t.c})
     for (const std::uint32_t v : *corner) {
@@ -85,11 +57,11 @@ void fill_vertices(const Triples& vertices, Model& model) {
         continue;
       expect_usable(vertices, v, "vertices");
       for (std::size_t a = 0; a < 3; ++a)
-        extent.add(vertices.at(v, a), a);
+        bounds.add(a, vertices.at(v, a));
     }
   model.in_double = vertices.in_double();
   if (model.in_double && !t.a.empty())
-    model.frame = extent.frame();
+    model.frame.offset = bounds.offset();
   std::vector<float>* const axes[3] = {&t.x, &t.y, &t.z};
   for (std::size_t a = 0; a < 3; ++a) {
     axes[a]->resize(vertices.count());
@@ -157,15 +129,15 @@ std::shared_ptr<Model> sphere_model(py::handle centers, py::handle radii) {
   const Numbers sizes = numbers_for(radii, "radii", points.shape());
   auto model = new_model();
   Spheres& s = model->scene.geometry.spheres;
-  Extent extent;
+  PointBounds bounds;
   for (std::size_t i = 0; i < points.count(); ++i) {
     expect_usable(points, i, "centers");
     for (std::size_t a = 0; a < 3; ++a)
-      extent.add(points.at(i, a), a);
+      bounds.add(a, points.at(i, a));
   }
   model->in_double = points.in_double();
   if (model->in_double && points.count() > 0)
-    model->frame = extent.frame();
+    model->frame.offset = bounds.offset();
   for (const Float3& center : points.in_frame(model->frame)) {
     const float radius = sizes.each.empty() ? float(sizes.all) : sizes.each[s.size()];
     if (!(radius > 0 && double{radius} <= kLargest))

@@ -123,10 +123,10 @@ static void test_triangles_in_double(void) {
 
 void test_doubles(void) {
   test_triangles_in_double();
-  // floats hold these as they are
+  // near the origin floats resolve a millionth of the size
   double corners[3 * kCorners];
   double offset[3] = {1, 1, 1};
-  fill_corners(1024, 0, 0, corners);
+  fill_corners(2.1, 0, 0, corners);
   grelha_world* world = NULL;
   CHECK_OK(grelha_new_triangles_double(corners, 24, kCorners, cube_indices, kFaces, 1, &world));
   CHECK_OK(grelha_offset(world, offset));

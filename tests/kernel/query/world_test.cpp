@@ -9,6 +9,7 @@
 #include "grelha/distance.hpp"
 #include "tests/support/brute_force.hpp"
 #include "tests/support/random.hpp"
+#include "tests/support/same_grids.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace grelha::test {
@@ -63,29 +64,60 @@ TEST(Coordinates, OfSurveysKeepTheirDigits) {
     EXPECT_EQ(found.z[i] + found.offset[2], points[3 * i + 2]);
   }
   EXPECT_NE(found.offset[1], 0);
-  const double small[] = {.5, 0, -3};
-  EXPECT_EQ(coordinates_of(small, 24, 1).offset, (std::array<double, 3>{}));
+  // near the origin floats resolve a millionth of the size, whether they are exact or not
+  const double near[] = {.1, 7, -3, .2, 9, -3};
+  EXPECT_EQ(coordinates_of(near, 24, 2).offset, (std::array<double, 3>{}));
+  const double far[] = {.1, 9, -3, .2, 11, -3};
+  EXPECT_EQ(coordinates_of(far, 24, 2).offset, (std::array<double, 3>{0, 8, -4}));
   const double same[] = {1e17 + 16, .1, 0};
   EXPECT_NEAR(coordinates_of(same, 24, 1).offset[0], 1e17, 1e9);
+  EXPECT_EQ(PointBounds().offset(), (std::array<double, 3>{}));
 }
 
-TEST(Update, IsANewWorldBitForBit) {
-  Scene s = random_mixture(3, 400);
+/// The coordinates of a kind that move.
+using Axes = std::vector<std::vector<float>*>;
+
+/// Moves the coordinates a hundred times. A world that is updated has the grids of a new one and
+/// answers as it does, bit for bit.
+void expect_updates(Scene& s, const Axes& axes) {
   World world(s, {});
   Random random(4);
-  Geometry& g = s.geometry;
   for (int step = 0; step < 100; ++step) {
-    for (auto* axis : {&g.triangles.x, &g.spheres.y, &g.cones.apex_z, &g.planes.x})
+    for (std::vector<float>* const axis : axes)
       for (float& at : *axis)
         at += static_cast<float>(random.in(-.1, .1));
     world.update(s, {});
     const World fresh(s, {});
-    for (int i = 0; i < 200; ++i) {
+    ASSERT_TRUE(same_grids(world, fresh));
+    for (int i = 0; i < 50; ++i) {
       const Ray ray{random.point(2), random.direction()};
       const Hit a = closest(world, ray), b = closest(fresh, ray);
       ASSERT_EQ(a.id, b.id);
       ASSERT_EQ(a.t, b.t);
     }
+  }
+}
+
+TEST(Update, OfEachKindIsANewWorldBitForBit) {
+  Scene s = random_mixture(3, 400);
+  Geometry& g = s.geometry;
+  expect_updates(s, {&g.triangles.x, &g.triangles.y, &g.triangles.z});
+  expect_updates(s, {&g.spheres.x, &g.spheres.y, &g.spheres.z});
+  expect_updates(s, {&g.cones.base_x, &g.cones.base_y, &g.cones.apex_z, &g.cones.apex_x});
+  expect_updates(s, {&g.planes.x, &g.planes.y, &g.planes.z});
+  expect_updates(s, {&g.triangles.y, &g.spheres.x, &g.cones.apex_z, &g.planes.z});
+}
+
+/// Vertices that leave the box of the grid, meet in one point, and come back.
+TEST(Update, OfMeshesThatCollapseAndReturn) {
+  Scene s = balls_and_triangles(11, 300);
+  const std::vector<float> rest = s.geometry.triangles.x;
+  World world(s, {});
+  for (const float by : {100.f, 0.f, 1e-20f, 1e6f, 1.f}) {
+    for (std::size_t i = 0; i < rest.size(); ++i)
+      s.geometry.triangles.x[i] = by * rest[i];
+    world.update(s, {});
+    EXPECT_TRUE(same_grids(world, World(s, {}))) << by;
   }
 }
 

@@ -1,10 +1,11 @@
-#include "perf/build/same_grids.hpp"
+#include "tests/support/same_grids.hpp"
 
 #include <cstring>
+#include <span>
 
 #include "kernel/grid/world_impl.hpp"
 
-namespace grelha::perf {
+namespace grelha::test {
 namespace {
 
 template <class T>
@@ -38,9 +39,11 @@ bool same_grids(const World& a, const World& b) {
   const World::Impl &x = a.impl(), &y = b.impl();
   bool all = same(x.outside, y.outside) && x.grids.size() == y.grids.size();
   for (std::size_t i = 0; all && i < x.grids.size(); ++i)
-    all = x.grids[i].cells == y.grids[i].cells && same(x.grids[i].store, y.grids[i].store) &&
+    all = same(std::span(x.grids[i].lo), std::span(y.grids[i].lo)) &&
+          same(std::span(x.grids[i].cell), std::span(y.grids[i].cell)) &&
+          x.grids[i].cells == y.grids[i].cells && same(x.grids[i].store, y.grids[i].store) &&
           same(x.grids[i].distance, y.grids[i].distance);
   return all;
 }
 
-}  // namespace grelha::perf
+}  // namespace grelha::test
