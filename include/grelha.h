@@ -109,9 +109,9 @@ GRELHA_API grelha_status grelha_new_triangles(const float* vertices,
                                               grelha_world** world);
 
 /// The same of vertices in double, three doubles x y z each. The world chooses an offset near their
-/// middle. It subtracts the offset in double, then rounds to float. The offset is 0 if the middle is
-/// at most four sizes of the mesh from the origin. Rays, points and answers count from the offset:
-/// see grelha_offset().
+/// middle. It subtracts the offset in double, then rounds to float. The offset is 0 if that middle
+/// is at most four sizes of the mesh from the origin. Rays, points and answers count from the
+/// offset: see grelha_offset().
 GRELHA_API grelha_status grelha_new_triangles_double(const double* vertices,
                                                      ptrdiff_t vertex_stride,
                                                      size_t vertex_count,

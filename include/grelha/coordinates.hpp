@@ -17,8 +17,8 @@ struct Coordinates {
 /// Copies `count` points, each x y z, that lie `stride` bytes apart, at any address. The offset is
 /// 0. Throws std::invalid_argument if `points` is null and `count` is not 0.
 Coordinates coordinates_of(const float* points, std::ptrdiff_t stride, std::size_t count);
-/// The same of doubles. The offset is that of their PointBounds. It is subtracted in double, then the
-/// difference is rounded to float. Rays and points of queries must have it subtracted too.
+/// The same of doubles. The offset is that of their PointBounds. It is subtracted in double, then
+/// the difference is rounded to float. Rays and points of queries must have it subtracted too.
 Coordinates coordinates_of(const double* points, std::ptrdiff_t stride, std::size_t count);
 
 /// The bounding box of points, in scene units.
@@ -26,9 +26,10 @@ class PointBounds {
  public:
   void add(std::size_t axis, double value);
   /// Returns what to subtract from the points before they are rounded to float. It is 0 if the
-  /// middle of the box is at most four of its sizes from the origin: floats then resolve a millionth
-  /// of the size. Else it is the middle, rounded to multiples of a power of two that is at least the
-  /// size: subtracting it costs no digit. Scene files that floats cannot hold count from it as well.
+  /// middle of the box is at most four of its sizes from the origin: floats then resolve a
+  /// millionth of the size. Else it is the middle, rounded to multiples of a power of two that is at
+  /// least the size: subtracting it costs no digit. Scene files that floats cannot hold count from
+  /// it as well.
   std::array<double, 3> offset() const;
 
  private:
