@@ -27,9 +27,9 @@ class PointBounds {
   void add(std::size_t axis, double value);
   /// Returns what to subtract from the points before they are rounded to float. It is 0 if the
   /// middle of the box is at most four of its sizes from the origin: floats then resolve a
-  /// millionth of the size. Else it is the middle, rounded to multiples of a power of two that is at
-  /// least the size: subtracting it costs no digit. Scene files that floats cannot hold count from
-  /// it as well.
+  /// millionth of the size. Else it is the middle, rounded to multiples of a power of two that is
+  /// at least the size: subtracting it costs no digit. Scene files that floats cannot hold count
+  /// from it as well.
   std::array<double, 3> offset() const;
 
  private:
