@@ -22,18 +22,6 @@ Float3 framed_point(const Frame& frame, const std::vector<NumberWord>& n, std::s
 Float3 vector(const Frame& frame, const std::vector<NumberWord>& n, std::size_t first) {
   return framed_point({{}, frame.scale}, n, first);
 }
-Float3 operator-(const Float3& a, const Float3& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-Float3 operator+(const Float3& a, const Float3& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-Float3 operator*(float s, const Float3& a) {
-  return {s * a.x, s * a.y, s * a.z};
-}
-Float3 cross(const Float3& a, const Float3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
 double length(const Float3& a) {
   return std::sqrt(double(a.x) * a.x + double(a.y) * a.y + double(a.z) * a.z);
 }

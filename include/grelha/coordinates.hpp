@@ -3,8 +3,12 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
+
+#include "grelha/geometry.hpp"
 
 namespace grelha {
 
@@ -20,6 +24,11 @@ Coordinates coordinates_of(const float* points, std::ptrdiff_t stride, std::size
 /// The same of doubles. The offset is that of their PointBounds. It is subtracted in double, then
 /// the difference is rounded to float. Rays and points of queries must have it subtracted too.
 Coordinates coordinates_of(const double* points, std::ptrdiff_t stride, std::size_t count);
+
+/// Copies the vertices of a mesh, and the three vertices of each face, counter-clockwise from the
+/// front. The triangles have no materials and no normals.
+Triangles triangles_of(std::span<const Float3> vertices,
+                       std::span<const std::array<std::uint32_t, 3>> faces);
 
 /// The bounding box of points, in scene units.
 class PointBounds {

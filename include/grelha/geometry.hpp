@@ -2,6 +2,7 @@
 // Geometry as plain arrays that the caller fills in: one array per component, separate arrays for
 // each kind of primitive. The kernel only reads them. All lengths are in scene units.
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -12,7 +13,20 @@ namespace grelha {
 struct Float3 {
   float x = 0, y = 0, z = 0;
   bool operator==(const Float3&) const = default;  ///< component by component
+  friend Float3 operator+(Float3 a, Float3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+  friend Float3 operator-(Float3 a, Float3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  friend Float3 operator*(float s, Float3 a) { return {s * a.x, s * a.y, s * a.z}; }
 };
+inline float dot(Float3 a, Float3 b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+inline Float3 cross(Float3 a, Float3 b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+/// Returns a vector of length 1 in the same direction; NaN for (0, 0, 0).
+inline Float3 normalized(Float3 a) {
+  return 1 / std::sqrt(dot(a, a)) * a;
+}
 
 /// Spheres. With a negative radius only the inside is visible (NFF).
 struct Spheres {

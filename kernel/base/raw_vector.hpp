@@ -38,6 +38,14 @@ struct RawAllocator {
   }
   bool operator==(const RawAllocator&) const { return true; }
 
+  /// Bytes that n elements take.
+  static std::size_t bytes_for(std::size_t n) {
+    const std::size_t in_pages = up_to(alignment(n), n * sizeof(T));
+    const bool few =
+        static_cast<double>(in_pages) <= kMaxReserve * static_cast<double>(n * sizeof(T));
+    return few ? in_pages : up_to(kLine, n * sizeof(T));
+  }
+
  private:
   static constexpr std::size_t kLine = 64;
   /// Times the bytes asked for: most that is taken so that the last page is a large one too.
@@ -48,12 +56,6 @@ struct RawAllocator {
   }
   static std::size_t up_to(std::size_t unit, std::size_t bytes) {
     return (bytes + unit - 1) / unit * unit;
-  }
-  static std::size_t bytes_for(std::size_t n) {
-    const std::size_t in_pages = up_to(alignment(n), n * sizeof(T));
-    const bool few =
-        static_cast<double>(in_pages) <= kMaxReserve * static_cast<double>(n * sizeof(T));
-    return few ? in_pages : up_to(kLine, n * sizeof(T));
   }
 };
 

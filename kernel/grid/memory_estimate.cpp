@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "kernel/base/raw_vector.hpp"
 #include "kernel/grid/cell_finder.hpp"
 #include "kernel/grid/distance_field.hpp"
 #include "kernel/scene/shading_view.hpp"
@@ -126,6 +127,13 @@ double fields_of(double cells) {
   return static_cast<double>(distance_fields(static_cast<std::size_t>(cells)));
 }
 
+/// Bytes of the last large page of blocks that nothing fills.
+double unused_bytes(double blocks) {
+  const auto count = static_cast<std::size_t>(blocks);
+  return static_cast<double>(RawAllocator<TriangleBlock>::bytes_for(count) -
+                             count * sizeof(TriangleBlock));
+}
+
 /// Bytes as a build goes on.
 struct Memory {
   double kept = 0;     ///< by what is built so far
@@ -138,7 +146,7 @@ struct Memory {
   /// A grid of so many cells.
   void add(const Lists& lists, double cells) {
     const double distances = fields_of(cells) * cells;
-    double own = distances + lists.bytes(kBoxed);
+    double own = distances + lists.bytes(kBoxed) + unused_bytes(lists.blocks);
     for (const double n : lists.references)
       own += n > 0 ? kId * cells : 0;
     // the pairs, then two fields besides where there is one

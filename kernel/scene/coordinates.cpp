@@ -51,6 +51,22 @@ class StridedPoints {
 
 }  // namespace
 
+Triangles triangles_of(std::span<const Float3> vertices,
+                       std::span<const std::array<std::uint32_t, 3>> faces) {
+  Triangles made;
+  for (const Float3& p : vertices) {
+    made.x.push_back(p.x);
+    made.y.push_back(p.y);
+    made.z.push_back(p.z);
+  }
+  for (const auto& [a, b, c] : faces) {
+    made.a.push_back(a);
+    made.b.push_back(b);
+    made.c.push_back(c);
+  }
+  return made;
+}
+
 void PointBounds::add(std::size_t axis, double value) {
   low_[axis] = std::min(low_[axis], value);
   high_[axis] = std::max(high_[axis], value);

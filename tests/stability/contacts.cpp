@@ -79,9 +79,9 @@ void contacts(Random& random, std::size_t rays, const Sink& sink) {
           at(to, size * random.log_in(1, 1e3), at(random.direction(), 1.5, walls.normal[k]));
       const Spot s = spot(world, 2 * k, eye, minus(walls.middle[k], eye));
       Float3 d = random.direction();
-      if (dot(d, walls.normal[k]) < 0)
+      if (dot_in_double(d, walls.normal[k]) < 0)
         d = scaled(d, -1);
-      const double cosine = dot(d, walls.normal[k]);
+      const double cosine = dot_in_double(d, walls.normal[k]);
       if (cosine < .1)
         continue;
       Expected w;
@@ -145,7 +145,7 @@ void sphere_self_hits(Random& random, std::size_t rays, const Sink& sink) {
         d = flattened(random, d, s.normal);
       if (undecided(d, s.normal))
         continue;
-      if (dot(d, s.normal) < 0)
+      if (dot_in_double(d, s.normal) < 0)
         d = scaled(d, -1);
       Expected w;
       w.miss = true;

@@ -16,7 +16,7 @@ namespace grelha::stability {
 inline Float3 of(const scalar::Vec3<float>& v) {
   return {v.x, v.y, v.z};
 }
-inline double dot(const Float3& a, const Float3& b) {
+inline double dot_in_double(const Float3& a, const Float3& b) {
   return double(a.x) * b.x + double(a.y) * b.y + double(a.z) * b.z;
 }
 
@@ -42,12 +42,12 @@ inline Spot spot(
 
 /// Nearly along the surface: the worst to leave it by.
 inline Float3 flattened(test::Random& random, const Float3& d, const Float3& normal) {
-  return test::at(d, -dot(d, normal) * (1 - random.log_in(1e-6, 1e-1)), normal);
+  return test::at(d, -dot_in_double(d, normal) * (1 - random.log_in(1e-6, 1e-1)), normal);
 }
 
 /// So nearly along that rounding decides which side it points to: either answer is right.
 inline bool undecided(const Float3& d, const Float3& normal) {
-  return std::abs(dot(d, normal)) < 8 * 6e-8;
+  return std::abs(dot_in_double(d, normal)) < 8 * 6e-8;
 }
 
 }  // namespace grelha::stability
