@@ -133,7 +133,7 @@ int main(int argc, char** argv) {
   }
   if (meshes.empty()) {
     meshes = {"mount 7"};
-    for (const char* const scan : {"bunny", "armadillo"}) {
+    for (const char* const scan : {"armadillo", "dragon"}) {
       const std::string path = std::string(GRELHA_SHARED_SCENES "/ply/") + scan + ".ply";
       if (std::filesystem::exists(path))
         meshes.push_back(path);
