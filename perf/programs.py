@@ -21,7 +21,7 @@ def lines_of(library):
     """Lines of each program, by its heading."""
     text = (ROOT / f"perf/programs/by_{library}.cpp").read_text()
     found = {}
-    for name, body in re.findall(r"^// program: (.*)\n(.*?)(?=^// (?:program|end))", text,
+    for name, body in re.findall(r"^// program: ([^\n]*)\n(.*?)(?=^// (?:program|end))", text,
                                  re.M | re.S):
         lines = [line.strip() for line in body.splitlines()]
         found[name] = sum(bool(line) and not line.startswith("//") for line in lines)
