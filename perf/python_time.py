@@ -49,7 +49,8 @@ def least(rounds, call):
 
 def by_python(world, origins, directions, threads):
     many = least(TURN, lambda: world.closest(origins, directions, threads=threads))
-    pairs = list(zip(origins[:CALLS], directions[:CALLS]))
+    step = len(origins) // CALLS
+    pairs = list(zip(origins[::step], directions[::step]))
 
     def calls():
         for origin, direction in pairs:
@@ -103,9 +104,9 @@ def main():
     header = ["rays", "threads", "Python, ms", "C++, ms", "ratio", "one ray from Python, us",
               "C++, us"]
     count = int(asked.rays**.5)**2
-    section = (f"{table(header, rows(asked))}\n\n{count:,} rays of closest() with t, id, u and v, "
-               f"into new arrays; then calls for one ray. {cpu_name()}, commit {commit()}, "
-               "`./run perf python_time --keep`.")
+    section = (f"{table(header, rows(asked))}\n\n{count:,} rays of closest() with t, id, u and v: "
+               "from Python into new arrays, in C++ into arrays that are there. Then calls for one "
+               f"ray. {cpu_name()}, commit {commit()}, `./run perf python_time --keep`.")
     if asked.keep:
         put_section(DOCS / "python.md", "perf/python_time.py", section)
     print(section)
