@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <utility>
 
+#include "kernel/base/wide_integer.hpp"
+
 namespace grelha {
 namespace {
 
@@ -14,6 +16,13 @@ constexpr double kEqualWide = 0x1p-90;
 
 int sign_of(const DoubleDouble& x) {
   return x.high < 0 ? -1 : x.high > 0 ? 1 : 0;
+}
+
+int sign(const Expansion& x) {
+  return x.sign();
+}
+int sign(Int128 x) {
+  return sign_of(x);
 }
 
 struct DoubleCorner {
@@ -72,27 +81,85 @@ float ExactCrossing::rounded() const {
   return beyond > 0 || (beyond == 0 && is_odd) ? next : near;
 }
 
-ExactCrossing cross_triangle(const ExactRay& ray, const float (&corner)[3][3]) {
-  const ExactVector a = difference(double_corner(corner[0]).at, ray.org);
-  const ExactVector b = difference(double_corner(corner[1]).at, ray.org);
-  const ExactVector c = difference(double_corner(corner[2]).at, ray.org);
-  const ExactVector bc = cross(b, c);
-  const ExactVector next[2] = {cross(c, a), cross(a, b)};
-  Expansion sum = dot(bc, ray.dir);
-  int least = sum.sign();
-  int most = least;
-  for (const ExactVector& n : next) {
-    const Expansion edge = dot(n, ray.dir);
-    least = std::min(least, edge.sign());
-    most = std::max(most, edge.sign());
+namespace {
+
+/// Bits of lengths and of directions as integers. An edge function is the sum of six products of
+/// two lengths and a direction, less than 2^124; three of them are less than 2^126. Six products of
+/// three lengths are less than 2^123.
+constexpr int kLengthBits = 40;
+constexpr int kDirectionBits = 41;
+
+/// A ray and the corners of a triangle, counted from the ray's origin.
+struct IntegerTriangle {
+  IntegerVector corner[3], dir[1];
+  double unit, dir_unit;
+};
+
+/// Returns false if the numbers do not fit: floats of very unequal sizes.
+bool to_integers(const ExactRay& ray, const float (&corner)[3][3], IntegerTriangle& found) {
+  double from_org[3][3];
+  double lost = 0;
+  for (int i = 0; i < 3; ++i)
+    for (int a = 0; a < 3; ++a) {
+      double rest = 0;
+      two_sum(corner[i][a], -ray.org[a], from_org[i][a], rest);
+      lost += std::abs(rest);
+    }
+  const double dir[1][3] = {{ray.dir[0], ray.dir[1], ray.dir[2]}};
+  return lost == 0 && to_integers(from_org, kLengthBits, found.corner, found.unit) &&
+         to_integers(dir, kDirectionBits, found.dir, found.dir_unit);
+}
+
+/// Tells from edge functions if a ray crosses a triangle, edges and corners included; adds them.
+/// edge(i) is opposite to corner i.
+template <class Number, class Edge>
+bool crosses_inside(const Edge& edge, Number& sum) {
+  int least = 1;
+  int most = -1;
+  for (int i = 0; i < 3; ++i) {
+    const Number one = edge(i);
+    least = std::min(least, sign(one));
+    most = std::max(most, sign(one));
     if (least * most < 0)
-      return {};
-    sum += edge;
+      return false;
+    sum += one;
   }
-  if (sum.sign() == 0)
+  return sign(sum) != 0;
+}
+
+ExactCrossing cross_integers(const IntegerTriangle& t) {
+  const IntegerVector* const at = t.corner;
+  const WideIntegerVector bc = cross(at[1], at[2]);
+  const auto edge = [&](int i) {
+    return dot(i == 0 ? bc : cross(at[(i + 1) % 3], at[(i + 2) % 3]), t.dir[0]);
+  };
+  Int128 sum = 0;
+  if (!crosses_inside(edge, sum))
     return {};
-  const ExactCrossing found(dot(bc, a), sum);
-  return found.compare(ray.t_min) > 0 ? found : ExactCrossing();
+  return {expansion_of(dot(bc, at[0]), t.unit / t.dir_unit), expansion_of(sum, 1)};
+}
+
+ExactCrossing cross_expansions(const ExactRay& ray, const float (&corner)[3][3]) {
+  ExactVector at[3];
+  for (int i = 0; i < 3; ++i)
+    at[i] = difference(double_corner(corner[i]).at, ray.org);
+  const ExactVector bc = cross(at[1], at[2]);
+  const auto edge = [&](int i) {
+    return dot(i == 0 ? bc : cross(at[(i + 1) % 3], at[(i + 2) % 3]), ray.dir);
+  };
+  Expansion sum;
+  if (!crosses_inside(edge, sum))
+    return {};
+  return {dot(bc, at[0]), sum};
+}
+
+}  // namespace
+
+ExactCrossing cross_triangle(const ExactRay& ray, const float (&corner)[3][3]) {
+  IntegerTriangle integers;
+  const ExactCrossing found =
+      to_integers(ray, corner, integers) ? cross_integers(integers) : cross_expansions(ray, corner);
+  return found.some() && found.compare(ray.t_min) > 0 ? found : ExactCrossing();
 }
 
 namespace {

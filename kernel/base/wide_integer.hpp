@@ -1,0 +1,74 @@
+#pragma once
+// Integers of 128 bits, for exact products of three lengths that are no wider apart than floats of
+// one mesh are.
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "kernel/base/expansion.hpp"
+
+namespace grelha {
+
+__extension__ using Int128 = __int128;
+
+/// Three numbers as integers times a power of two.
+struct IntegerVector {
+  std::int64_t at[3];
+};
+
+/// Divides vectors by the power of two that leaves them less than 2^bits, and keeps it. Returns
+/// false if that leaves a number that is no integer, if all are 0, and of 2^100 or more.
+template <std::size_t kCount>
+bool to_integers(const double (&v)[kCount][3],
+                 int bits,
+                 IntegerVector (&integers)[kCount],
+                 double& unit) {
+  double largest = 0;
+  for (const auto& p : v)
+    for (const double x : p)
+      largest = std::abs(x) > largest ? std::abs(x) : largest;
+  if (!(largest > 0 && largest < 0x1p100))
+    return false;
+  unit = std::ldexp(1, std::ilogb(largest) + 1 - bits);
+  const double inverse = 1 / unit;
+  bool whole = true;
+  for (std::size_t i = 0; i < kCount; ++i)
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double scaled = v[i][a] * inverse;
+      whole = whole && std::trunc(scaled) == scaled;  // no NaN
+      integers[i].at[a] = whole ? static_cast<std::int64_t>(scaled) : 0;
+    }
+  return whole;
+}
+
+struct WideIntegerVector {
+  Int128 x, y, z;
+};
+inline WideIntegerVector cross(const IntegerVector& p, const IntegerVector& q) {
+  const auto& a = p.at;
+  const auto& b = q.at;
+  return {Int128{a[1]} * b[2] - Int128{a[2]} * b[1],
+          Int128{a[2]} * b[0] - Int128{a[0]} * b[2],
+          Int128{a[0]} * b[1] - Int128{a[1]} * b[0]};
+}
+inline Int128 dot(const WideIntegerVector& p, const IntegerVector& q) {
+  return p.x * q.at[0] + p.y * q.at[1] + p.z * q.at[2];
+}
+inline int sign_of(Int128 n) {
+  return n < 0 ? -1 : n > 0 ? 1 : 0;
+}
+/// n times a power of two.
+inline Expansion expansion_of(Int128 n, double unit) {
+  constexpr int kBits = 48;  // doubles hold a part
+  Expansion sum;
+  Int128 rest = n < 0 ? -n : n;
+  for (double scale = n < 0 ? -unit : unit; rest != 0; scale *= 0x1p48) {
+    const auto part = static_cast<std::int64_t>(rest & ((Int128{1} << kBits) - 1));
+    sum.add(static_cast<double>(part) * scale);
+    rest >>= kBits;
+  }
+  return sum;
+}
+
+}  // namespace grelha
