@@ -121,23 +121,26 @@ def rays(aim, inside, vertices, faces, random, count):
 
 def tracers(vertices, faces, library):
     world = grelha.World(vertices, faces)
-    yield "Grelha", lambda o, d, t: world.closest(o, d, t_max=t).id >= 0
+    yield "Grelha", lambda o, d, t: world.closest(o, d, t_max=t, threads=1).id >= 0
     if library:
         for name, robust in (("Embree robust", True), ("Embree fast", False)):
             yield name, embree_c.Scene(library, vertices, faces, robust).met
 
 
 def lost_of(vertices, faces, count, library):
-    """Lost rays by (tracer, aim)."""
+    """Lost rays by (tracer, aim), and seconds that all took."""
     random = np.random.default_rng(1)
     inside = points_inside(grelha.World(vertices, faces), vertices, faces, random)
-    asked, lost = dict(tracers(vertices, faces, library)), {}
+    asked, lost, spent = dict(tracers(vertices, faces, library)), {}, {}
     for aim in AIMS:
         for first in range(0, count, BATCH):
             batch = rays(aim, inside, vertices, faces, random, min(BATCH, count - first))
             for name, met in asked.items():
-                lost[name, aim] = lost.get((name, aim), 0) + int((~met(*batch)).sum())
-    return lost
+                start = time.perf_counter()
+                found = met(*batch)
+                spent[name, aim] = spent.get((name, aim), 0) + time.perf_counter() - start
+                lost[name, aim] = lost.get((name, aim), 0) + int((~found).sum())
+    return lost, spent
 
 
 def main():
@@ -146,21 +149,24 @@ def main():
     parser.add_argument("--rays", type=int, default=1_000_000, help="of each aim [1000000]")
     parser.add_argument("--keep", action="store_true", help="write into docs/")
     options = parser.parse_args()
-    library, lines, sums, start = embree_c.load(), [], {}, time.time()
+    library, lines, times, sums, start = embree_c.load(), [], [], {}, time.time()
     for name, *mesh in meshes():
         vertices, faces = scaled(*mesh)
         if not is_closed(faces):
             sys.exit(f"{name} is not closed")
-        lost = lost_of(vertices, faces, options.rays, library)
+        lost, spent = lost_of(vertices, faces, options.rays, library)
         who = list(dict.fromkeys(w for w, _ in lost))
         lines.append([name, f"{len(faces):,}"]
                      + [", ".join(f"{lost[w, aim]:,}" for aim in AIMS) for w in who])
+        times.append([name] + [", ".join(f"{1e6 * spent[w, aim] / options.rays:.2f}"
+                                         for aim in AIMS) for w in who])
         for w in who:
             sums[w] = sums.get(w, 0) + sum(lost[w, aim] for aim in AIMS)
     lines.append(["all", ""] + [f"{n:,}" for n in sums.values()])
     beside = "" if library else ", no Embree 3 here"
-    section = (table(["mesh", "triangles", *sums], lines)
-               + f"\n\nLost of {options.rays:,} rays each at {', '.join(AIMS)}{beside}. "
+    section = (table(["mesh, lost rays", "triangles", *sums], lines) + "\n\n"
+               + table(["mesh, us a ray", *sums], times)
+               + f"\n\n{options.rays:,} rays each at {', '.join(AIMS)}{beside}; one thread. "
                + f"{cpu_name()}, commit {commit()}, `./run perf lost --keep`.")
     if options.keep:
         put_section(DOCS / "python.md", "perf/lost.py", section)

@@ -60,14 +60,17 @@ inline int sign_of(Int128 n) {
 }
 /// n times a power of two.
 inline Expansion expansion_of(Int128 n, double unit) {
-  constexpr int kBits = 48;  // doubles hold a part
+  const Int128 size = n < 0 ? -n : n;
+  const std::uint64_t half[] = {static_cast<std::uint64_t>(size),
+                                static_cast<std::uint64_t>(size >> 64)};
   Expansion sum;
-  Int128 rest = n < 0 ? -n : n;
-  for (double scale = n < 0 ? -unit : unit; rest != 0; scale *= 0x1p48) {
-    const auto part = static_cast<std::int64_t>(rest & ((Int128{1} << kBits) - 1));
-    sum.add(static_cast<double>(part) * scale);
-    rest >>= kBits;
-  }
+  double scale = n < 0 ? -unit : unit;
+  for (const std::uint64_t h : half)
+    for (const std::uint32_t part :
+         {static_cast<std::uint32_t>(h), static_cast<std::uint32_t>(h >> 32)}) {
+      sum.add(part * scale);
+      scale *= 0x1p32;
+    }
   return sum;
 }
 
