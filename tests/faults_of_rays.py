@@ -15,6 +15,8 @@ FAULTS = [
           "kDepthRounding = 0;", "triangle", "TriangleOracle.*"),
     Fault("triangles without their edges", "kernel/shapes/crossing.cpp", "if (least * most < 0)",
           "if (least * most <= 0)", "exact", "*lattice"),
+    Fault("integers that overflow", "kernel/shapes/crossing.cpp", "kDirectionBits = 41;",
+          "kDirectionBits = 47;", "exact", "CrossTriangle.*"),
     Fault("of equal t the one met first", "kernel/shapes/exact_hits.cpp",
           "order != 0 ? order < 0 : id < other", "order < 0", "exact", "*ball_twice"),
     Fault("ties by arrival", "kernel/traverse/packet_tests.hpp", "if (wins_tie(p, i, id))",
