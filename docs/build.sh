@@ -26,6 +26,12 @@ if grep -v 'Member .* (variable) of .* is not documented' "$out/warnings"; then
   echo "docs/build.sh: Doxygen complains" >&2
   exit 1
 fi
+for page in classgrelha_1_1World structgrelha_1_1Rays structgrelha__hits; do
+  [ -e "$out/html/$page.html" ] || {
+    echo "docs/build.sh: no page $page: a folder of headers is missing" >&2
+    exit 1
+  }
+done
 # What pages link to and Doxygen does not make is put where their own links look for it: README's
 # and CONTRIBUTING's from the top, the others' from docs/, and all pages lie in html/.
 cp -r docs "$out/html/docs"

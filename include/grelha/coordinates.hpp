@@ -33,6 +33,7 @@ Triangles triangles_of(std::span<const Float3> vertices,
 /// The bounding box of points, in scene units.
 class PointBounds {
  public:
+  /// Grows the box by one coordinate of a point.
   void add(std::size_t axis, double value);
   /// Returns what to subtract from the points before they are rounded to float. It is 0 if the
   /// middle of the box is at most four of its sizes from the origin: floats then resolve a

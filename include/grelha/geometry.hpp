@@ -13,13 +13,18 @@ namespace grelha {
 struct Float3 {
   float x = 0, y = 0, z = 0;
   bool operator==(const Float3&) const = default;  ///< component by component
+  /// Adds component by component.
   friend Float3 operator+(Float3 a, Float3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+  /// Subtracts component by component.
   friend Float3 operator-(Float3 a, Float3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  /// Multiplies each component.
   friend Float3 operator*(float s, Float3 a) { return {s * a.x, s * a.y, s * a.z}; }
 };
+/// Returns the scalar product.
 inline float dot(Float3 a, Float3 b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
+/// Returns the vector product.
 inline Float3 cross(Float3 a, Float3 b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
