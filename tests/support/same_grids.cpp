@@ -30,7 +30,7 @@ bool same(const CellStore& a, const CellStore& b) {
       compare(one.rows, other.rows);
     }
   });
-  return all;
+  return all && a.references == b.references;
 }
 
 }  // namespace
@@ -42,7 +42,8 @@ bool same_grids(const World& a, const World& b) {
     all = same(std::span(x.grids[i].lo), std::span(y.grids[i].lo)) &&
           same(std::span(x.grids[i].cell), std::span(y.grids[i].cell)) &&
           x.grids[i].cells == y.grids[i].cells && same(x.grids[i].store, y.grids[i].store) &&
-          same(x.grids[i].distance, y.grids[i].distance);
+          same(x.grids[i].distance, y.grids[i].distance) &&
+          x.grids[i].occupied == y.grids[i].occupied;
   return all;
 }
 

@@ -4,13 +4,13 @@
 #include "kernel/grid/grid.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <numeric>
 #include <set>
 
 #include "kernel/grid/block_order.hpp"
 #include "kernel/grid/distance_field.hpp"
 #include "tests/support/grid_cases.hpp"
+#include "tests/support/same_grids.hpp"
 
 namespace grelha::test {
 namespace {
@@ -116,31 +116,6 @@ void expect_sound_rows(const CellStore& s, std::size_t cells) {
   EXPECT_EQ(references, s.references);
 }
 
-template <class T>
-void expect_same_bytes(const T& a, const T& b) {
-  ASSERT_EQ(a.size(), b.size());
-  if (!a.empty()) {
-    EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]), 0);
-  }
-}
-
-void expect_same_store(const CellStore& a, const CellStore& b) {
-  for_each_finite_shape([&]<class Shape>() {
-    const auto& one = a.of<Shape>();
-    const auto& other = b.of<Shape>();
-    expect_same_bytes(one.first, other.first);
-    if constexpr (Shape::kInBlocks) {
-      expect_same_bytes(one.blocks, other.blocks);
-      expect_same_bytes(one.boxes, other.boxes);
-      expect_same_bytes(one.first_block, other.first_block);
-    } else {
-      expect_same_bytes(one.id, other.id);
-      expect_same_bytes(one.rows, other.rows);
-    }
-  });
-  EXPECT_EQ(a.references, b.references);
-}
-
 TEST(GridRows, AreTheSameForAnyNumberOfThreads) {
   std::vector<Case> all = cases();
   // several chunks of primitives, several buckets of cells
@@ -150,15 +125,7 @@ TEST(GridRows, AreTheSameForAnyNumberOfThreads) {
     const World one(c.scene, {.threads = 1});
     for (const int threads : {2, 3, 8}) {
       const World many(c.scene, {.threads = threads});
-      expect_same_store(one.impl().outside, many.impl().outside);
-      ASSERT_EQ(one.impl().grids.size(), many.impl().grids.size());
-      for (std::size_t i = 0; i < one.impl().grids.size(); ++i) {
-        const Grid &a = one.impl().grids[i], &b = many.impl().grids[i];
-        EXPECT_EQ(a.cells, b.cells);
-        EXPECT_EQ(a.distance, b.distance);
-        EXPECT_EQ(a.occupied, b.occupied);
-        expect_same_store(a.store, b.store);
-      }
+      EXPECT_TRUE(same_grids(one, many)) << threads;
     }
   }
 }
