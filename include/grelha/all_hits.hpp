@@ -1,6 +1,6 @@
 #pragma once
-// All hits along a ray, their number, and whether points lie inside closed meshes. Thread-safe, as
-// the queries of query.hpp.
+// All hits along a ray, its passages through meshes, and whether points lie inside closed ones.
+// Thread-safe, as the queries of query.hpp.
 
 #include <cstddef>
 #include <cstdint>
@@ -24,8 +24,8 @@ struct HitLists {
 
 /// Finds all hits of a ray strictly between its t_min and t_max, in order of (t, id). A ray that
 /// enters and leaves a sphere or a cone hits it twice; crossings of one sphere or cone within 2^-45
-/// of t count as one. An edge or a vertex belongs to each triangle that has it. Exact copies of a
-/// primitive count once, with the lowest id. The order is that of the exact t; the t returned are
+/// of t count as one. An edge or a vertex belongs to each triangle that has it: crossings() pass it
+/// once. Each exact copy of a primitive counts. The order is that of the exact t; the t returned are
 /// rounded, so neighbours may be equal. The first hit has the same bits as closest().
 std::vector<Hit> all_hits(const World& world, const Ray& ray, const Filter& filter = {});
 /// The same, one hit after another, until `visit` returns false.
@@ -43,16 +43,46 @@ void count_hits(const World& world,
                 std::uint32_t* counts,
                 const QueryOptions& options = {});
 
-/// Counts the triangles that a ray crosses between its t_min and t_max. Other primitives do not
-/// count, and exact copies of a triangle may count as one. A ray through an edge or a vertex is
-/// treated as if it passed at an infinitesimal distance, on the same side for all triangles. For a
-/// closed mesh the count is therefore odd from inside and even from outside, for every ray.
-/// Simulation of simplicity, Edelsbrunner and Mücke 1990; docs/numerics.md.
-std::size_t count_crossings(const World& world, const Ray& ray);
+/// A passage of a ray through a triangle.
+struct Crossing {
+  float t;           ///< as that of a hit
+  std::uint32_t id;  ///< of the triangle
+  bool enters;       ///< through the side from which the vertices are counter-clockwise
+};
 
-/// Returns true if a point lies inside the closed meshes of a scene: inside an odd number of them.
-/// The triangles must form closed meshes; other primitives do not count. The answer is exact: it
-/// does not depend on a choice of ray. Points with a NaN or an infinity are outside.
+/// The crossings of many rays in one array.
+struct CrossingLists {
+  std::vector<std::size_t> offset;  ///< [rays + 1] those of ray i: offset[i] to offset[i + 1] - 1
+  std::vector<Crossing> crossings;  ///< ray after ray, each in its order
+  /// Returns the crossings of ray i.
+  std::span<const Crossing> of(std::size_t i) const {
+    return std::span(crossings).subspan(offset[i], offset[i + 1] - offset[i]);
+  }
+};
+
+/// Finds the triangles that a ray crosses strictly between its t_min and t_max, in the order in
+/// which it crosses them. Other primitives do not count; exact copies of a triangle do. A ray
+/// through an edge or a vertex is treated as if it passed at an infinitesimal distance, on the same
+/// side for all triangles. A ray that passes through a surface at an edge therefore crosses one
+/// triangle there, and one that touches it none, or two at equal t: it enters and leaves. For a
+/// closed mesh the number of crossings is odd from inside and even from outside, for every ray.
+/// Simulation of simplicity, Edelsbrunner and Mücke 1990; docs/numerics.md.
+std::vector<Crossing> crossings(const World& world, const Ray& ray, const Filter& filter = {});
+/// The same for each ray of a stream. Throws what closest() throws.
+CrossingLists crossings(const World& world, const Rays& rays, const QueryOptions& options = {});
+
+/// Counts the crossings that crossings() finds.
+std::size_t count_crossings(const World& world, const Ray& ray, const Filter& filter = {});
+/// The same for each ray of a stream. Throws what closest() throws, and std::invalid_argument if
+/// `counts` is null.
+void count_crossings(const World& world,
+                     const Rays& rays,
+                     std::uint32_t* counts,
+                     const QueryOptions& options = {});
+
+/// Returns true if a point lies inside a ball of the scene, or inside an odd number of its closed
+/// meshes. The triangles must form closed meshes; planes and cones do not count. The answer is
+/// exact: it does not depend on a choice of ray. Points with a NaN or an infinity are outside.
 bool contains(const World& world, Float3 point);
 /// The same for many points: inside[i] is 1 or 0. Reads options.threads and options.progress.
 /// Throws std::invalid_argument if the lengths differ.

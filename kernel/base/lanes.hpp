@@ -204,6 +204,11 @@ inline float next_above(float a) {
   const std::int32_t b = float_bits(a);
   return bits_float(a == 0 ? 1 : a > 0 ? b + 1 : b - 1);
 }
+template <class Real>
+inline Real next_above(const Real& a) {
+  const Int<Real> b = float_bits(Real(a + Real(0)));  // no zero is -0
+  return select(a < Real(0), bits_float(Int<Real>(b - 1)), bits_float(Int<Real>(b + 1)));
+}
 inline float next_below(float a) {
   return 0 - next_above(0 - a);
 }

@@ -94,6 +94,7 @@ struct ListStore<Triangle> {
 /// The primitives of cells, each kind apart.
 struct CellStore : PerShape<ListStore, FiniteShapes> {
   std::uint64_t references = 0;
+  std::vector<Copy> copies;  ///< what was dropped, since something in the same cells equals it
 
   CellLists lists() const;
   std::size_t bytes() const;

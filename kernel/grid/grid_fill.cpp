@@ -165,12 +165,12 @@ std::vector<std::uint32_t> in_dense_buckets(const Filling& f) {
 /// Removes copies of primitives in dense cells from all cells; returns true if there were any.
 /// A copy has the cells of its original.
 bool drop_copies(Filling& f) {
-  const std::vector<std::uint32_t> found = find_duplicates(f.primitives, in_dense_buckets(f));
-  if (found.empty())
+  f.store.copies = find_duplicates(f.primitives, in_dense_buckets(f));
+  if (f.store.copies.empty())
     return false;
   std::vector<bool> copies(f.primitives.ids.end());
-  for (const std::uint32_t id : found)
-    copies[id] = true;
+  for (const Copy& c : f.store.copies)
+    copies[c.copy] = true;
   for (PairChunk& chunk : f.chunks)
     for (Pair& pair : chunk.pairs)
       if (copies[pair.id]) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "grelha/rays.hpp"
+#include "kernel/shapes/copies.hpp"
 #include "kernel/shapes/geometry_view.hpp"
 
 namespace grelha {
@@ -43,12 +44,14 @@ struct SceneView {
   int grid_count = 0;
   float box_lo[3] = {}, box_hi[3] = {};  ///< of all finite primitives
   bool finite = false;                   ///< there is something besides planes
+  CopyTable copies;                      ///< of primitives that stand nowhere else
 };
 
-/// How rays are traced. None of it changes an answer.
+/// How rays are traced. Only masks change an answer.
 struct TraceOptions {
   int packet = 256;     ///< rays that walk together: 1, 16, 64 or 256
   bool mailbox = true;  ///< for packets
+  const std::uint8_t* masks = nullptr;  ///< [primitives], see RayFilter
 };
 
 /// Counts of a trace.

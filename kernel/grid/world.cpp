@@ -106,7 +106,7 @@ World::Impl::Impl(const SceneSpans& s, const BuildOptions& options)
 }
 
 std::size_t World::Impl::bytes() const {
-  std::size_t sum = outside.bytes();
+  std::size_t sum = outside.bytes() + copies.size() * sizeof(Copy);
   for (const Grid& g : grids)
     sum += g.stats().bytes;
   for_each_shape(
@@ -120,8 +120,21 @@ void World::Impl::view_primitives() {
     typename Shape::Arrays& arrays = view.geometry.of<Shape>();
     arrays = primitives.of<Shape>().arrays();
   });
-  view.geometry.of<Plane>().count = count_unique_planes(scene.geometry.planes);
   view.outside = outside.lists();
+  view_copies();
+}
+
+void World::Impl::view_copies() {
+  const auto add = [&](const std::vector<Copy>& some) {
+    copies.insert(copies.end(), some.begin(), some.end());
+  };
+  add(find_last_copies(scene.geometry.planes));
+  view.geometry.of<Plane>().count -= static_cast<std::uint32_t>(copies.size());
+  add(outside.copies);
+  for (const Grid& g : grids)
+    add(g.store.copies);
+  std::sort(copies.begin(), copies.end());
+  view.copies = {copies.data(), static_cast<std::uint32_t>(copies.size())};
 }
 
 void World::Impl::view_grids(const Box& all) {

@@ -21,6 +21,7 @@ struct World::Impl {
   Primitives primitives;
   std::vector<Grid> grids;
   CellStore outside;
+  std::vector<Copy> copies;
   std::vector<GridView> grid_views;
   MaterialTable materials;
   std::vector<float> lights;  ///< [kLightFloats * count], see ShadingView
@@ -34,6 +35,7 @@ struct World::Impl {
  private:
   void fill(Plan& plan, int threads, BuildProgress& progress);
   void view_primitives();
+  void view_copies();
   void view_grids(const Box& all);
   void set_lights();
   void set_materials();

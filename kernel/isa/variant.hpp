@@ -4,7 +4,6 @@
 
 #include "kernel/shade/strip.hpp"
 #include "kernel/query/loops.hpp"
-#include "kernel/traverse/one_ray.hpp"
 
 namespace grelha::GRELHA_ISA {
 

@@ -5,7 +5,7 @@
 
 #include "kernel/query/filters.hpp"
 #include "kernel/query/hit_list.hpp"
-#include "kernel/query/runs.hpp"
+#include "kernel/query/lists.hpp"
 
 namespace grelha {
 
@@ -27,22 +27,12 @@ void all_hits(const World& world,
 HitLists all_hits(const World& world, const Rays& rays, const QueryOptions& options) {
   expect_arrays(rays);
   expect_masks(world, options.mask);
-  std::vector<std::vector<Hit>> found(rays.count);
-  each_run(rays.count, options, [&](std::size_t first, std::size_t end) {
-    for (std::size_t i = first; i < end; ++i) {
-      const Filter filter = filter_of(rays, options, i);
-      HitList list(world, filter);
-      found[i] = list.find(ray_of(rays, i));
-    }
-  });
   HitLists lists;
-  lists.offset.reserve(rays.count + 1);
-  lists.offset.push_back(0);
-  for (const std::vector<Hit>& hits : found)
-    lists.offset.push_back(lists.offset.back() + hits.size());
-  lists.hits.reserve(lists.offset.back());
-  for (const std::vector<Hit>& hits : found)
-    lists.hits.insert(lists.hits.end(), hits.begin(), hits.end());
+  list_each(rays.count, options, lists.offset, lists.hits, [&](std::size_t i) {
+    const Filter filter = filter_of(rays, options, i);
+    HitList list(world, filter);
+    return list.find(ray_of(rays, i));
+  });
   return lists;
 }
 

@@ -6,15 +6,21 @@
 
 namespace grelha {
 
-/// A ray whose direction has a length that tests can work with; t counts multiples of `unit` of it.
+/// A ray whose direction has a length that tests can work with; t counts multiples of single.unit.
 struct PreparedRay {
   scalar::Single single;
-  float unit = 1;
   bool valid = false;  ///< false: it hits nothing
 
-  PreparedRay(const SceneView& scene, const Ray& ray);
+  PreparedRay(const SceneView& scene, const Ray& ray)
+      : valid(prepare(single, ray, true)) {
+    single.geometry = &scene.geometry;
+  }
   PreparedRay(const PreparedRay&) = delete;  ///< `single` points into itself
   ExactRay exact() const { return single.given.ray(0); }
+  /// Its t in the caller's unit.
+  ExactRay given(const ExactRay& ray) const {
+    return ray.in_units_of(1 / static_cast<double>(single.unit));
+  }
 };
 
 /// Calls the visitor for everything in the cells that a ray passes, and for everything in no cell:

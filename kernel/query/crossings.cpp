@@ -1,63 +1,170 @@
 #include <algorithm>
+#include <cmath>
+#include <stdexcept>
 #include <vector>
 
 #include "grelha/all_hits.hpp"
-#include "kernel/query/along_ray.hpp"
-#include "kernel/query/options.hpp"
-#include "kernel/query/runs.hpp"
+#include "kernel/query/filters.hpp"
+#include "kernel/query/hit_list.hpp"
+#include "kernel/query/lists.hpp"
 
 namespace grelha {
 namespace {
 
 /// Gathers the triangles that one ray crosses, edges and vertices decided by simulation of
 /// simplicity.
-class Crossings {
+class CrossingList {
  public:
-  Crossings(const ExactRay& ray, double t_max) : ray_(ray), t_max_(t_max) {}
+  CrossingList(const World& world, const Ray& ray, const Filter& filter)
+      : scene_(world.impl().view), filter_(filter), given_(ray), prepared_(scene_, ray) {
+    if (!prepared_.valid)
+      return;
+    ray_ = prepared_.exact();
+    AlongRay(scene_, prepared_, *this);
+    std::sort(found_.begin(), found_.end(), [](const Found& a, const Found& b) {
+      return a.id < b.id;
+    });
+    // a triangle may stand in several cells
+    const auto same = [](const Found& a, const Found& b) { return a.id == b.id; };
+    found_.erase(std::unique(found_.begin(), found_.end(), same), found_.end());
+    leave_out();
+  }
 
-  void primitive(std::uint32_t) {}
+  /// For AlongRay. A ray that starts inside a ball comes to it.
+  void primitive(std::uint32_t id) {
+    const PrimitiveIds& ids = scene_.geometry.ids;
+    if (!ids.has(PrimitiveKind::kSphere, id))
+      return;
+    const auto ball = primitive_at<Sphere>(scene_.geometry.of<Sphere>(),
+                                           id - ids.begin(PrimitiveKind::kSphere));
+    in_ball_ = in_ball_ || is_within(ray_.org, ball.center, ball.radius);
+  }
   void block(const TriangleBlock& block) {
     for (int i = 0; i < kBlock && block.id[i] != kNoPrimitive; ++i)
-      if (crosses(scalar::triangle_of(block, i)))
-        ids_.push_back(block.id[i]);
+      take(block.id[i], scalar::triangle_of(block, i));
   }
-  /// Number of triangles; one that stands in several cells counts once.
-  std::size_t count() {
-    std::sort(ids_.begin(), ids_.end());
-    return static_cast<std::size_t>(std::unique(ids_.begin(), ids_.end()) - ids_.begin());
+
+  std::size_t count() const { return found_.size(); }
+  /// True if the ray starts inside a ball.
+  bool starts_in_ball() const { return in_ball_; }
+
+  /// In the order in which the ray crosses them.
+  std::vector<Crossing> in_order() {
+    std::stable_sort(found_.begin(), found_.end(), [this](const Found& a, const Found& b) {
+      return is_before(a, b);
+    });
+    std::vector<Crossing> crossings;
+    for (const Found& f : found_)
+      crossings.push_back(
+          {scalar::strictly_between(t_of(f), given_.t_min, given_.t_max), f.id, enters(f)});
+    return crossings;
   }
 
  private:
-  bool crosses(const Triangle::Fields<float>& triangle) const {
-    const scalar::HitInterval<double> found = scalar::bound_triangle(ray_, triangle.corner);
-    if (!found.some || found.lo >= t_max_)
-      return false;
-    if (found.sure && found.hi < t_max_)
-      return true;
-    return crosses_beside(ray_, triangle.corner, t_max_);
+  struct Found {
+    std::uint32_t id;
+    Triangle::Fields<float> triangle;
+    double lo, hi;  ///< t lies between, in multiples of the prepared ray's unit
+  };
+
+  void take(std::uint32_t id, const Triangle::Fields<float>& triangle) {
+    const scalar::HitInterval<double> bound = scalar::bound_triangle(ray_, triangle.corner);
+    if (!bound.some || bound.lo >= ray_.t_max)
+      return;
+    const bool is_sure = bound.sure && bound.hi < ray_.t_max;
+    if (is_sure)
+      found_.push_back({id, triangle, bound.lo, bound.hi});
+    else if (crosses_beside(ray_, triangle.corner))
+      found_.push_back({id, triangle, -kNoEnd, kNoEnd});
   }
 
-  ExactRay ray_;
-  double t_max_;
-  std::vector<std::uint32_t> ids_;
+  /// Replaces originals by themselves and their copies, as far as these pass.
+  void leave_out() {
+    std::vector<Found> all;
+    const auto add = [&](Found f, std::uint32_t id) {
+      f.id = id;
+      if (passes(filter_, id))
+        all.push_back(f);
+    };
+    const CopyTable& copies = scene_.copies;
+    for (const Found& f : found_) {
+      add(f, f.id);
+      for (std::uint32_t i = copies.begin(f.id); copies.has(i, f.id); ++i)
+        add(f, copies.pair[i].copy);
+    }
+    found_ = std::move(all);
+  }
+
+  bool is_before(const Found& a, const Found& b) const {
+    if (a.hi < b.lo || b.hi < a.lo)
+      return a.hi < b.lo;
+    const int order = order_beside(ray_, a.triangle.corner, b.triangle.corner);
+    return order != 0 ? order < 0 : a.id < b.id;
+  }
+
+  float t_of(const Found& f) const {
+    const ExactRay ray = prepared_.given(ray_);
+    float t = 0;
+    if (!scalar::round_plane_t(ray, f.triangle.corner, t))
+      t = cross_plane_of(ray, f.triangle.corner).rounded() + 0.f;  // no zero is -0
+    return t;
+  }
+  bool enters(const Found& f) const { return crosses_front(ray_, f.triangle.corner); }
+
+  static constexpr double kNoEnd = std::numeric_limits<double>::infinity();
+
+  const SceneView& scene_;
+  const Filter& filter_;
+  Ray given_;
+  PreparedRay prepared_;
+  ExactRay ray_{};
+  std::vector<Found> found_;
+  bool in_ball_ = false;
 };
 
 }  // namespace
 
-std::size_t count_crossings(const World& world, const Ray& ray) {
-  const SceneView& scene = world.impl().view;
-  const PreparedRay prepared(scene, ray);
-  if (!prepared.valid)
-    return 0;
-  Crossings crossings(prepared.exact(), prepared.single.best);
-  AlongRay(scene, prepared, crossings);
-  return crossings.count();
+std::vector<Crossing> crossings(const World& world, const Ray& ray, const Filter& filter) {
+  expect_masks(world, filter.masks);
+  return CrossingList(world, ray, filter).in_order();
+}
+
+CrossingLists crossings(const World& world, const Rays& rays, const QueryOptions& options) {
+  expect_arrays(rays);
+  expect_masks(world, options.mask);
+  CrossingLists lists;
+  list_each(rays.count, options, lists.offset, lists.crossings, [&](std::size_t i) {
+    return CrossingList(world, ray_of(rays, i), filter_of(rays, options, i)).in_order();
+  });
+  return lists;
+}
+
+std::size_t count_crossings(const World& world, const Ray& ray, const Filter& filter) {
+  expect_masks(world, filter.masks);
+  return CrossingList(world, ray, filter).count();
+}
+
+void count_crossings(const World& world,
+                     const Rays& rays,
+                     std::uint32_t* counts,
+                     const QueryOptions& options) {
+  expect_arrays(rays);
+  expect_masks(world, options.mask);
+  if (!counts && rays.count > 0)
+    throw std::invalid_argument("count_crossings: expected an array of counts, found null");
+  each_run(rays.count, options, [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i)
+      counts[i] = static_cast<std::uint32_t>(
+          CrossingList(world, ray_of(rays, i), filter_of(rays, options, i)).count());
+  });
 }
 
 bool contains(const World& world, Float3 point) {
   // no axis, plane of a lattice or diagonal of a cube: fewer edges to decide
   constexpr Float3 kDirection{.4375f, .8125f, .3125f};
-  return count_crossings(world, {point, kDirection}) % 2 == 1;
+  const Filter all;
+  const CrossingList found(world, {point, kDirection}, all);
+  return found.starts_in_ball() || found.count() % 2 == 1;
 }
 
 void contains(const World& world,

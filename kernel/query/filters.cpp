@@ -60,4 +60,15 @@ Rays part_of(const Rays& rays, std::size_t first, std::size_t end) {
   return part;
 }
 
+Hits part_of(const Hits& hits, std::size_t first) {
+  Hits part = hits;
+  const auto by = static_cast<std::ptrdiff_t>(first);
+  part.t = hits.t ? hits.t + by * hits.stride : nullptr;
+  part.id = hits.id ? hits.id + by * hits.stride : nullptr;
+  part.t_double = hits.t_double ? hits.t_double + first : nullptr;
+  part.u = hits.u ? hits.u + first : nullptr;
+  part.v = hits.v ? hits.v + first : nullptr;
+  return part;
+}
+
 }  // namespace grelha

@@ -14,15 +14,13 @@ void expect_masks(const World& world, std::span<const std::uint8_t> masks);
 Ray ray_of(const Rays& rays, std::size_t i);
 /// Rays [first, end) of a stream.
 Rays part_of(const Rays& rays, std::size_t first, std::size_t end);
+/// Answers of the rays from `first` on.
+Hits part_of(const Hits& hits, std::size_t first);
 /// What ray i of a stream leaves out.
 inline Filter filter_of(const Rays& rays, const QueryOptions& options, std::size_t i) {
   return {rays.skip ? rays.skip[i] : kNoPrimitive,
           options.mask,
           rays.mask ? rays.mask[i] : std::uint8_t{255}};
-}
-/// True if rays of a stream may leave out primitives.
-inline bool has_filters(const Rays& rays, const QueryOptions& options) {
-  return rays.skip || !options.mask.empty();
 }
 
 }  // namespace grelha

@@ -28,16 +28,17 @@ class HitList {
   /// One crossing: the first of a primitive beyond `t_min`.
   struct Crossing {
     std::uint32_t id;
+    std::uint32_t original;  ///< see CopyTable
     double t_min, lo, hi;
   };
   ExactRay ray_from(double t_min) const;
   void add_crossings(std::uint32_t id);
+  void add_crossings(std::uint32_t id, std::uint32_t copy);
   bool is_before(const Crossing& a, const Crossing& b) const;
 
   const World::Impl& world_;
   const Filter& filter_;
   ExactRay ray_{};
-  double t_max_ = 0;
   std::vector<std::uint32_t> ids_;
   std::vector<Crossing> crossings_;
   std::vector<Hit> hits_;

@@ -2,6 +2,7 @@
 // The loops of a Variant that take a caller's rays.
 
 #include "kernel/query/variants.hpp"
+#include "kernel/traverse/one_ray.hpp"
 #include "kernel/traverse/stream.hpp"
 
 namespace grelha::GRELHA_ISA {
@@ -45,9 +46,28 @@ inline void occluded(const SceneView& scene,
                      TraceCounts& counts) {
   Counters n;
   const auto store = [&](const Packet& p, std::size_t first) { store_blocked(p, blocked + first); };
-  const auto load = [&](Packet& p, std::size_t first) { load_rays(rays, first, p); };
+  StreamFilter filter(scene, rays, options);
+  const auto load = [&](Packet& p, std::size_t first) {
+    load_rays(rays, first, p);
+    filter.set(first, p);
+  };
   trace<true>(scene, rays.count, options, n, load, store);
   add(n, counts);
+}
+
+/// A ray by itself, and what it leaves out, or null.
+template <bool kAny>
+inline Hit trace_one(const SceneView& scene, const Ray& ray, const Filter* filter) {
+  if (!filter)
+    return trace_one<kAny>(scene, ray);
+  const RayFilter of_ray{&filter->skip, &filter->mask, filter->masks.data(), scene.copies};
+  return trace_one<kAny>(scene, ray, &of_ray);
+}
+inline Hit closest_one(const SceneView& scene, const Ray& ray, const Filter* filter) {
+  return trace_one<false>(scene, ray, filter);
+}
+inline bool occluded_one(const SceneView& scene, const Ray& ray, const Filter* filter) {
+  return trace_one<true>(scene, ray, filter).id != kNoPrimitive;
 }
 
 }  // namespace grelha::GRELHA_ISA

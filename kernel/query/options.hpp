@@ -6,6 +6,6 @@
 namespace grelha {
 
 /// Throws std::invalid_argument for a packet of another size than 1, 16, 64 or 256.
-TraceOptions options_of(int packet);
+TraceOptions options_of(const QueryOptions& options);
 
 }  // namespace grelha

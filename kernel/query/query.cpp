@@ -5,7 +5,8 @@
 #include <mutex>
 #include <stdexcept>
 
-#include "kernel/query/filtered.hpp"
+#include "kernel/query/filters.hpp"
+#include "kernel/query/variants.hpp"
 #include "kernel/query/options.hpp"
 #include "kernel/query/runs.hpp"
 #include "kernel/shapes/nearest.hpp"
@@ -67,14 +68,9 @@ void closest(const World& world,
   expect_masks(world, options.mask);
   TraceCounts unread;
   const ClosestLoop loop = choose_variant(options.isa).loops.closest;
-  const TraceOptions how = options_of(options.packet);
+  const TraceOptions how = options_of(options);
   const auto trace = [&](std::size_t first, std::size_t end, TraceCounts& to) {
-    const Rays part = part_of(rays, first, end);
-    const Hits answers = part_of(hits, first);
-    if (has_filters(rays, options) || hits.u || hits.v)
-      FilteredClosest(world, part, answers, options).trace(loop, how, to);
-    else
-      loop(world.impl().view, part, answers, how, to);
+    loop(world.impl().view, part_of(rays, first, end), part_of(hits, first), how, to);
   };
   counted_runs(rays.count, options, counts ? *counts : unread, trace);
 }
@@ -87,11 +83,11 @@ void closest(const World& world,
   closest(world, Rays::of(rays), Hits::of(hits), options, counts);
 }
 Hit closest(const World& world, const Ray& ray) {
-  return best_variant().loops.closest_one(world.impl().view, ray);
+  return best_variant().loops.closest_one(world.impl().view, ray, nullptr);
 }
 Hit closest(const World& world, const Ray& ray, const Filter& filter) {
   expect_masks(world, filter.masks);
-  return filtered(world, ray, filter, closest(world, ray));
+  return best_variant().loops.closest_one(world.impl().view, ray, &filter);
 }
 
 void occluded(const World& world,
@@ -105,12 +101,9 @@ void occluded(const World& world,
     throw std::invalid_argument("occluded: expected an array of answers, found null");
   TraceCounts unread;
   const OccludedLoop loop = choose_variant(options.isa).loops.occluded;
-  const TraceOptions how = options_of(options.packet);
+  const TraceOptions how = options_of(options);
   const auto trace = [&](std::size_t first, std::size_t end, TraceCounts& to) {
     loop(world.impl().view, part_of(rays, first, end), blocked + first, how, to);
-    for (std::size_t i = first; has_filters(rays, options) && i < end; ++i)
-      if (blocked[i])
-        blocked[i] = occluded(world, ray_of(rays, i), filter_of(rays, options, i));
   };
   counted_runs(rays.count, options, counts ? *counts : unread, trace);
 }
@@ -123,10 +116,11 @@ void occluded(const World& world,
   occluded(world, Rays::of(rays), blocked.data(), options, counts);
 }
 bool occluded(const World& world, const Ray& ray) {
-  return best_variant().loops.occluded_one(world.impl().view, ray);
+  return best_variant().loops.occluded_one(world.impl().view, ray, nullptr);
 }
 bool occluded(const World& world, const Ray& ray, const Filter& filter) {
-  return occluded(world, ray) && closest(world, ray, filter);
+  expect_masks(world, filter.masks);
+  return best_variant().loops.occluded_one(world.impl().view, ray, &filter);
 }
 
 SurfacePoint surface(const World& world, const Ray& ray, const Hit& hit) {

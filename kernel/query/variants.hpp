@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "grelha/part.hpp"
-#include "grelha/rays.hpp"
+#include "grelha/query.hpp"
 #include "kernel/scene/shading_view.hpp"
 #include "grelha/stats.hpp"
 #include "kernel/grid/view.hpp"
@@ -24,9 +24,9 @@ using OccludedLoop =
 struct VariantLoops {
   ClosestLoop closest;
   OccludedLoop occluded;
-  /// One ray by itself.
-  Hit (*closest_one)(const SceneView&, const Ray&);
-  bool (*occluded_one)(const SceneView&, const Ray&);
+  /// One ray by itself, and what it leaves out, or null.
+  Hit (*closest_one)(const SceneView&, const Ray&, const Filter*);
+  bool (*occluded_one)(const SceneView&, const Ray&, const Filter*);
   void (*render_strip)(const SceneView&,
                        const ShadingView&,
                        const FrameView&,

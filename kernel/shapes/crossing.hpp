@@ -6,15 +6,18 @@
 
 namespace grelha {
 
-/// A ray as it came; every number is a float's.
+/// A ray as it came; every number is a float's, times a power of two.
 struct ExactRay {
   double org[3];
   double dir[3];
-  double t_min;
+  double t_min, t_max;
 
   /// With t counted in another length: a power of two.
   ExactRay in_units_of(double unit) const {
-    return {{org[0], org[1], org[2]}, {dir[0] / unit, dir[1] / unit, dir[2] / unit}, t_min * unit};
+    return {{org[0], org[1], org[2]},
+            {dir[0] / unit, dir[1] / unit, dir[2] / unit},
+            t_min * unit,
+            t_max * unit};
   }
 };
 
@@ -50,10 +53,23 @@ class ExactCrossing {
 /// From either side, edges and corners included. Rays in the plane of a triangle, and triangles
 /// without an area, do not cross.
 ExactCrossing cross_triangle(const ExactRay& ray, const float (&corner)[3][3]);
+/// Weights of the corners where a ray crosses a triangle, given that it does: each within 2^-30,
+/// none negative.
+void crossing_weights(const ExactRay& ray, const float (&corner)[3][3], double (&weight)[3]);
 /// True if a ray that is moved aside by an infinitesimal amount crosses between t_min and t_max.
 /// Such a ray crosses no edge and no corner of a closed mesh, so its crossings are even in number
 /// outside and odd inside. Edelsbrunner & Mücke, "Simulation of Simplicity", 1990.
-bool crosses_beside(const ExactRay& ray, const float (&corner)[3][3], double t_max);
+bool crosses_beside(const ExactRay& ray, const float (&corner)[3][3]);
+/// The order in which that ray crosses two triangles: -1, 0 (both at the same t, as if in one plane)
+/// or 1.
+int order_beside(const ExactRay& ray, const float (&corner)[3][3], const float (&other)[3][3]);
+/// Where the line of a ray crosses the plane of a triangle; it must.
+ExactCrossing cross_plane_of(const ExactRay& ray, const float (&corner)[3][3]);
+/// True if a ray that crosses a triangle comes from the side from which its corners are
+/// counter-clockwise.
+bool crosses_front(const ExactRay& ray, const float (&corner)[3][3]);
+/// True if a point lies within a distance of another: exact.
+bool is_within(const double (&point)[3], const float (&center)[3], float radius);
 /// From either side. Rays along a plane do not cross.
 ExactCrossing cross_plane(const ExactRay& ray, const float (&point)[3], const float (&normal)[3]);
 /// From outside or inside; of a negative radius from inside alone. A line that touches crosses.

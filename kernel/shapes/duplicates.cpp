@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <set>
+#include <map>
 #include <utility>
 
 namespace grelha {
@@ -33,8 +33,7 @@ bool is_duplicate(const Primitives& p, std::uint32_t id, std::uint32_t other) {
 
 }  // namespace
 
-std::vector<std::uint32_t> find_duplicates(const Primitives& p,
-                                           std::span<const std::uint32_t> ids) {
+std::vector<Copy> find_duplicates(const Primitives& p, std::span<const std::uint32_t> ids) {
   std::vector<std::pair<std::uint64_t, std::uint32_t>> hashed;
   hashed.reserve(ids.size());
   for (const std::uint32_t id : ids)
@@ -43,26 +42,28 @@ std::vector<std::uint32_t> find_duplicates(const Primitives& p,
                 [&]<class Shape>(std::uint32_t i) { return hash_of(bits_of(p.of<Shape>()[i])); }),
         id);
   std::sort(hashed.begin(), hashed.end());
-  std::vector<std::uint32_t> copies;
+  std::vector<Copy> copies;
   for (std::size_t i = 0; i < hashed.size();) {
     const auto [hash, first] = hashed[i];
     for (++i; i < hashed.size() && hashed[i].first == hash; ++i)
       if (is_duplicate(p, hashed[i].second, first))
-        copies.push_back(hashed[i].second);
+        copies.push_back({first, hashed[i].second});
   }
   return copies;
 }
 
-std::uint32_t count_unique_planes(const PlaneSpans& spans) {
+std::vector<Copy> find_last_copies(const PlaneSpans& spans) {
   GeometrySpans geometry;
   geometry.planes = spans;
   const Plane::Source planes(geometry);
-  std::set<decltype(bits_of(planes[0]))> known;
-  std::uint32_t count = 0;
+  std::map<decltype(bits_of(planes[0])), std::uint32_t> known;
+  std::vector<Copy> last;
   for (std::uint32_t i = 0; i < planes.size(); ++i)
-    if (known.insert(bits_of(planes[i])).second)
-      count = i + 1;
-  return count;
+    if (const auto [first, is_new] = known.emplace(bits_of(planes[i]), i); is_new)
+      last.clear();
+    else
+      last.push_back({first->second, i});
+  return last;
 }
 
 }  // namespace grelha

@@ -1,11 +1,12 @@
 #pragma once
-// Exact copies of primitives: a ray that hits some hits the one with the lowest id, so that the
-// others need not be tested.
+// Exact copies of primitives: a ray that hits one hits all, so that the one with the lowest id is
+// tested for them.
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "kernel/shapes/copies.hpp"
 #include "kernel/shapes/primitives.hpp"
 
 namespace grelha {
@@ -13,9 +14,9 @@ namespace grelha {
 /// Finds, among some finite primitives (ids ascending), the copies of another one with a lower id:
 /// the numbers that a test reads have the same bits. If two shapes have the same hash, a copy may
 /// be missed.
-std::vector<std::uint32_t> find_duplicates(const Primitives& p, std::span<const std::uint32_t> ids);
+std::vector<Copy> find_duplicates(const Primitives& p, std::span<const std::uint32_t> ids);
 
-/// Number of planes before the first copy: all planes behind these are copies.
-std::uint32_t count_unique_planes(const PlaneSpans& planes);
+/// The planes behind the last one that is no copy.
+std::vector<Copy> find_last_copies(const PlaneSpans& planes);
 
 }  // namespace grelha

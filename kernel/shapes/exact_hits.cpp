@@ -84,12 +84,11 @@ bool is_closest(const GeometryView& g, const ExactRay& ray, std::uint32_t id, st
   return order != 0 ? order < 0 : id < other;
 }
 
-bool is_before_end(const GeometryView& g, const ExactRay& ray, std::uint32_t id, float t_max) {
+bool is_before_end(const GeometryView& g, const ExactRay& ray, std::uint32_t id) {
   const scalar::HitInterval<double> found = double_interval(g, ray, id);
-  const double end = t_max;
-  if (found.sure && (found.hi < end || found.lo >= end))
-    return found.hi < end;
-  return crossing_of(g, ray, id).compare(end) < 0;
+  if (found.sure && (found.hi < ray.t_max || found.lo >= ray.t_max))
+    return found.hi < ray.t_max;
+  return crossing_of(g, ray, id).compare(ray.t_max) < 0;
 }
 
 double double_t(const GeometryView& g, const ExactRay& ray, std::uint32_t id) {
@@ -98,6 +97,17 @@ double double_t(const GeometryView& g, const ExactRay& ray, std::uint32_t id) {
   if (found.sure && found.hi - found.lo <= 0x1p-45 * std::abs(t))
     return t;
   return crossing_of(g, ray, id).estimate();
+}
+
+Barycentric barycentric(const GeometryView& g, const ExactRay& ray, std::uint32_t id) {
+  const One<Triangle> triangle =
+      g.of<Triangle>().triangle(id - g.ids.begin(PrimitiveKind::kTriangle));
+  double weight[3];
+  if (!scalar::double_weights(ray, triangle.corner, weight))
+    crossing_weights(ray, triangle.corner, weight);
+  const float u = static_cast<float>(weight[1]) + 0.f;  // no zero is -0
+  const float v = static_cast<float>(weight[2]) + 0.f;
+  return {u, u + v > 1 ? 1 - u : v};
 }
 
 namespace {

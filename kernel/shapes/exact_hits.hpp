@@ -32,8 +32,13 @@ ExactCrossing crossing_of(const GeometryView& g, const ExactRay& ray, std::uint3
 /// id is first.
 bool is_closest(const GeometryView& g, const ExactRay& ray, std::uint32_t id, std::uint32_t other);
 /// True if a ray crosses a primitive before t_max, given that it crosses it beyond t_min.
-bool is_before_end(const GeometryView& g, const ExactRay& ray, std::uint32_t id, float t_max);
-/// t of that crossing, within 2^-45 of itself.
+bool is_before_end(const GeometryView& g, const ExactRay& ray, std::uint32_t id);
+/// Barycentric coordinates where a ray crosses a triangle, given that it does: those of Hits.
+struct Barycentric {
+  float u = 0, v = 0;
+};
+Barycentric barycentric(const GeometryView& g, const ExactRay& ray, std::uint32_t id);
+/// t of the first crossing, within 2^-45 of itself.
 double double_t(const GeometryView& g, const ExactRay& ray, std::uint32_t id);
 /// The same rounded once; faster for a sphere if `span` holds it.
 float rounded_t(const GeometryView& g,

@@ -32,11 +32,17 @@ inline SimdRays<double> in_double(const ExactRay& r) {
 template <int i, class Real>
 [[gnu::always_inline]] inline SimdRays<Wide<Real>> given_in_double(const SimdRays<Real>& ray) {
   using W = Wide<Real>;
+  const auto given = [&](const float* of) {
+    of += ray.first;
+    return ray.step == 0 ? W(static_cast<double>(*of)) : take<W>(of + i * kWidth<W>);
+  };
   const auto of = [&](const auto& member, const Real& own) {
-    if (!ray.base)
-      return to_double<i>(own);
-    const float* const given = member(*ray.given) + ray.first;
-    return ray.step == 0 ? W(static_cast<double>(*given)) : take<W>(given + i * kWidth<W>);
+    return ray.base ? given(member(*ray.given)) : to_double<i>(own);
+  };
+  const auto t_min = [&] {
+    if (ray.given && ray.given->unit)
+      return given(ray.given->unit) * given(ray.given->t_min);
+    return of([](const GivenRays& g) { return g.t_min; }, ray.t_min);
   };
   const auto origin = [](int axis) { return [axis](const GivenRays& g) { return g.org[axis]; }; };
   const Vec3<W> dir = to_double<i>(ray.dir);
@@ -45,7 +51,7 @@ template <int i, class Real>
           .dir = dir,
           .inv_dd = inv_dd,
           .inv_length = inverse_length(dir, inv_dd),
-          .t_min = of([](const GivenRays& g) { return g.t_min; }, ray.t_min),
+          .t_min = t_min(),
           .frame_error = W(0),
           .error_bound = W(0)};
 }

@@ -13,10 +13,16 @@ struct GivenRays {
   const float* org[3] = {};
   const float* dir[3] = {};
   const float* t_min = nullptr;
+  const float* t_max = nullptr;   ///< read while a ray has hit nothing
+  const float* unit = nullptr;    ///< length in which t counts, but not t_min and t_max; null: 1
   const double* shift = nullptr;  ///< t of a given ray minus t of the tested one; null: 0
 
   ExactRay ray(int i) const {
-    return {{org[0][i], org[1][i], org[2][i]}, {dir[0][i], dir[1][i], dir[2][i]}, t_min[i]};
+    const double by = unit ? unit[i] : 1;
+    return {{org[0][i], org[1][i], org[2][i]},
+            {dir[0][i], dir[1][i], dir[2][i]},
+            by * t_min[i],
+            by * t_max[i]};
   }
   double shift_of(int i) const { return shift ? shift[i] : 0; }
 };

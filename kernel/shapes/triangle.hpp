@@ -241,17 +241,36 @@ template <class Real>
   return found;
 }
 
-/// The same of one ray and one triangle, in double.
-inline HitInterval<double> bound_triangle(const ExactRay& r, const float (&corner)[3][3]) {
+/// One ray and one triangle in double.
+inline RayAndTriangle<double> turned(const ExactRay& r, const float (&corner)[3][3]) {
   const int k = shear_axis(
       static_cast<float>(r.dir[0]), static_cast<float>(r.dir[1]), static_cast<float>(r.dir[2]));
-  const int kx = kNextAxis[k];
-  const int ky = kPreviousAxis[k];
-  const auto turned = [&](const auto& v) { return Vec3<double>{v[kx], v[ky], v[k]}; };
-  const RayAndTriangle<double> from{
-      turned(r.org), turned(r.dir), {turned(corner[0]), turned(corner[1]), turned(corner[2])}};
-  const Shear<double> shear{from.dir.x / from.dir.z, from.dir.y / from.dir.z, 1 / from.dir.z, 0};
-  return bound_triangle<double>(from, shear, r.t_min, __builtin_inf());
+  const auto turn = [k](const auto& v) {
+    return Vec3<double>{v[kNextAxis[k]], v[kPreviousAxis[k]], v[k]};
+  };
+  return {turn(r.org), turn(r.dir), {turn(corner[0]), turn(corner[1]), turn(corner[2])}};
+}
+inline Shear<double> shear_of(const RayAndTriangle<double>& from) {
+  return {from.dir.x / from.dir.z, from.dir.y / from.dir.z, 1 / from.dir.z, 0};
+}
+/// The same of one ray and one triangle, in double.
+inline HitInterval<double> bound_triangle(const ExactRay& r, const float (&corner)[3][3]) {
+  const RayAndTriangle<double> from = turned(r, corner);
+  return bound_triangle<double>(from, shear_of(from), r.t_min, __builtin_inf());
+}
+
+/// Weights of the corners where a ray crosses a triangle, each within 2^-30, none negative. Returns
+/// false where doubles do not tell.
+inline bool double_weights(const ExactRay& r, const float (&corner)[3][3], double (&weight)[3]) {
+  const RayAndTriangle<double> from = turned(r, corner);
+  const EdgeFunctions<double> edge(from, shear_of(from));
+  const double sum = (edge.u + edge.v) + edge.w;
+  if (!(units<double>(4 * kEdgeError) * edge.area < 0x1p-30 * magnitude(sum)))
+    return false;
+  weight[0] = max(edge.u / sum, 0.);
+  weight[1] = max(edge.v / sum, 0.);
+  weight[2] = max(edge.w / sum, 0.);
+  return true;
 }
 
 /// Decides selected lanes that a float test cannot, in double, and then in exact numbers. `source`

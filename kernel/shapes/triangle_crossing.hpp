@@ -21,20 +21,37 @@ struct RayAndTriangle {
 /// Barycentric weights of points where rays cross triangles: not negative, 1 together. Weights that
 /// rounding makes negative are set to 0.
 template <class Real>
-[[gnu::always_inline]] inline Vec3<Real> weights_at(const Vec3<Real>& org,
-                                                    const Vec3<Real>& dir,
-                                                    const TriangleVertices<Real>& corner) {
+struct WeightsAt {
+  Vec3<Real> weight;
+  Mask<Real> sure;  ///< they are within 2^-20
+};
+
+/// By edge functions that are off by 24 u S (S + Z): S the largest coordinate of a corner across
+/// the ray, Z the largest along it, both times the direction's largest component.
+template <class Real>
+[[gnu::always_inline]] inline WeightsAt<Real> weights_at(const Vec3<Real>& org,
+                                                         const Vec3<Real>& dir,
+                                                         const TriangleVertices<Real>& corner) {
   const Real o(0), one(1);
   const Vec3<Real> oa = corner.a - org, ob = corner.b - org, oc = corner.c - org;
   const Real ax = oa.x * dir.z - dir.x * oa.z, ay = oa.y * dir.z - dir.y * oa.z;
   const Real bx = ob.x * dir.z - dir.x * ob.z, by = ob.y * dir.z - dir.y * ob.z;
   const Real cx = oc.x * dir.z - dir.x * oc.z, cy = oc.y * dir.z - dir.y * oc.z;
   const Vec3<Real> edge{cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax};
-  const Vec3<Real> part = (one / ((edge.x + edge.y) + edge.z)) * edge;
+  const Real area = (edge.x + edge.y) + edge.z;
+  const Vec3<Real> part = (one / area) * edge;
   const Vec3<Real> w{max(part.x, o), max(part.y, o), max(part.z, o)};
   const Real sum = (w.x + w.y) + w.z;
+  const Real across = max_abs(max_abs(max_abs(ax, ay), max_abs(bx, by)), max_abs(cx, cy));
+  const Real along = max_abs(max_abs(oa.z, ob.z), oc.z) * magnitude(dir.z);
+  const Real error = units<Real>(96) * (across * (across + along));
   // NaN: rounding left nothing of the triangle as the ray sees it
-  return select(sum < Real(2), (one / sum) * w, Vec3<Real>{one, o, o});
+  return {select(sum < Real(2), (one / sum) * w, Vec3<Real>{one, o, o}),
+          error < Real(0x1p-20f) * magnitude(area)};
+}
+
+inline Vec3<double> vec_double(const float (&v)[3]) {
+  return {v[0], v[1], v[2]};
 }
 
 /// Spans of t where lines meet the planes of triangles, if known.
@@ -65,6 +82,16 @@ template <class Real>
   const Real slack =
       (units<Real>(16) * dot(size, sizes(to)) + magnitude(t) * along_error) * magnitude(inverse);
   return {magnitude(along) > along_error + along_error, t - slack, t + slack};
+}
+
+/// t of the same for one ray, rounded once. Returns false where double does not tell.
+inline bool round_plane_t(const ExactRay& ray, const float (&corner)[3][3], float& t) {
+  const PlaneSpan<double> span = plane_span<double>(
+      vec(ray.org),
+      vec(ray.dir),
+      {vec_double(corner[0]), vec_double(corner[1]), vec_double(corner[2])});
+  t = static_cast<float>(span.lo) + 0.f;  // no zero is -0
+  return span.known && t == static_cast<float>(span.hi);
 }
 
 /// Part i of the lanes of corners, in double.

@@ -12,6 +12,36 @@ struct TrianglePosition {
   Vec3<Real> point, normal, weights;
 };
 
+/// Replaces the weights of lanes in which doubles cancel by exact ones.
+template <class Real>
+[[gnu::noinline, gnu::cold]] void settle_weights(const Vec3<Real>& org,
+                                                 const Vec3<Real>& dir,
+                                                 const TriangleVertices<Real>& c,
+                                                 unsigned lanes,
+                                                 Vec3<Real>& weight) {
+  constexpr int kNumbers = 18;
+  const Vec3<Real>* const all[] = {&org, &dir, &c.a, &c.b, &c.c, &weight};
+  double number[kNumbers][kWidth<Real>];
+  for (int i = 0; i < kNumbers; i += 3) {
+    store(number[i], all[i / 3]->x);
+    store(number[i + 1], all[i / 3]->y);
+    store(number[i + 2], all[i / 3]->z);
+  }
+  each_bit(lanes, [&](int k) {
+    const auto at = [&](int i) { return number[i][k]; };
+    const ExactRay ray{{at(0), at(1), at(2)}, {at(3), at(4), at(5)}, 0, 0};
+    float corner[3][3];
+    for (int i = 0; i < 9; ++i)
+      corner[i / 3][i % 3] = static_cast<float>(at(6 + i));
+    double found[3];
+    crossing_weights(ray, corner, found);
+    const double sum = (found[0] + found[1]) + found[2];
+    for (int i = 0; sum < 2 && i < 3; ++i)
+      number[15 + i][k] = found[i] / sum;
+  });
+  weight = {load<Real>(number[15]), load<Real>(number[16]), load<Real>(number[17])};
+}
+
 /// Corners as they are, not permuted; `axis` is that of shear_axis().
 template <class Real>
 inline TrianglePosition<Real> triangle_position(const Real& axis,
@@ -19,8 +49,11 @@ inline TrianglePosition<Real> triangle_position(const Real& axis,
                                                 const Vec3<Real>& dir,
                                                 const TriangleVertices<Real>& c) {
   const auto turned = [&](const Vec3<Real>& p) { return permute_axes<Real>(axis, p); };
-  const Vec3<Real> w =
+  auto [w, sure] =
       weights_at<Real>(turned(org), turned(dir), {turned(c.a), turned(c.b), turned(c.c)});
+  constexpr unsigned kAll = (1u << kWidth<Real>) - 1;
+  if (const unsigned unsure = ~bits(sure) & kAll; unsure != 0) [[unlikely]]
+    settle_weights(org, dir, c, unsure, w);
   const Vec3<Real> e1 = c.b - c.a;
   const Vec3<Real> e2 = c.c - c.a;
   return {

@@ -42,9 +42,9 @@ inline bool enter_far(const GridView& g,
   double t0 = -static_cast<double>(kInfinity);
   double t1 = static_cast<double>(kInfinity);
   clip_to_grid(g, r, t0, t1);
-  const double slack = 0x1p-48 * t0;
+  const double slack = 0x1p-48 * max_abs(t0, t1);
   // a NaN fails these tests
-  if (!(t0 <= t1 + slack) || !(t0 > 0) || !(t_min <= t1 + slack) || !(t_max >= t0 - slack))
+  if (!(t0 <= t1 + slack) || !(t_min <= t1 + slack) || !(t_max >= t0 - slack))
     return false;
   to.shift = max(t0, t_min);
   for (int a = 0; a < 3; ++a)
@@ -92,7 +92,7 @@ class FarRays {
     w.error_bound = g.error_bound + 32 * g.frame_error;
     w.given = p.given;
     w.given.shift = shift_;
-    w.end = p.best;
+    w.filter = p.filter;
     w.live = 0;
     each_live_group(p, [&](int i, int group) {
       if (set_group(g, i, group))

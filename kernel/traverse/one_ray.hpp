@@ -105,15 +105,9 @@ inline float t_of(const Single& r, const ExactRay& ray, const CrossingSpan& know
     for (int k = 1; k < kBlock; ++k)
       place = r.block->id[k] == r.id ? k : place;
     const Triangle::Fields<float> met = triangle_of(*r.block, place);
-    const auto at = [&](int k) {
-      const auto& c = met.corner[k];
-      return Vec3<double>{c[0], c[1], c[2]};
-    };
-    const PlaneSpan<double> span =
-        plane_span<double>(vec(ray.org), vec(ray.dir), {at(0), at(1), at(2)});
-    const float first = static_cast<float>(span.lo) + 0.f;  // no zero is -0
-    if (r.block->id[place] == r.id && span.known && first == static_cast<float>(span.hi))
-      return first;
+    float t;
+    if (r.block->id[place] == r.id && round_plane_t(ray, met.corner, t))
+      return t;
   }
   return rounded_t(g, ray, r.id, known);
 }
@@ -138,33 +132,19 @@ inline void walk_scene(const SceneView& scene, Single& r) {
 
 /// The closest hit of a ray, or with kAny any hit: its t must not be used then.
 template <bool kAny>
-inline Hit trace_one(const SceneView& scene, const Ray& ray) {
-  Vec3<float> dir{ray.dir.x, ray.dir.y, ray.dir.z};
-  float t_min = ray.t_min;
-  float t_max = ray.t_max;
-  const float unit = length_unit(dir);
-  if (unit != 1) [[unlikely]] {
-    dir = {dir.x / unit, dir.y / unit, dir.z / unit};
-    count_in(unit, t_min, t_max);
-  }
+inline Hit trace_one(const SceneView& scene, const Ray& ray, const RayFilter* filter = nullptr) {
   const bool any_triangles = scene.geometry.of<Triangle>().count > 0;
   Single r;
-  if (!prepare(r, {ray.org.x, ray.org.y, ray.org.z}, dir, t_min, t_max, any_triangles))
+  if (!prepare(r, ray, any_triangles))
     return {ray.t_max, kNoPrimitive};
   r.geometry = &scene.geometry;
+  r.filter = filter;
   walk_scene<kAny>(scene, r);
   if (kAny || r.id == kNoPrimitive)
     return {ray.t_max, r.id};
-  const ExactRay given_ray = r.given.ray(0).in_units_of(1 / static_cast<double>(unit));
-  const CrossingSpan span = unit == 1 ? CrossingSpan{r.low, r.best} : CrossingSpan{};
+  const ExactRay given_ray = r.given.ray(0).in_units_of(1 / static_cast<double>(r.unit));
+  const CrossingSpan span = r.unit == 1 ? CrossingSpan{r.low, r.best} : CrossingSpan{};
   return {strictly_between(t_of(r, given_ray, span), ray.t_min, ray.t_max), r.id};
-}
-
-inline Hit closest_one(const SceneView& scene, const Ray& ray) {
-  return trace_one<false>(scene, ray);
-}
-inline bool occluded_one(const SceneView& scene, const Ray& ray) {
-  return trace_one<true>(scene, ray).id != kNoPrimitive;
 }
 
 }  // namespace grelha::GRELHA_ISA

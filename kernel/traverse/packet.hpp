@@ -5,6 +5,7 @@
 #include "kernel/base/vec3.hpp"
 #include "kernel/grid/view.hpp"
 #include "kernel/shapes/exact_hits.hpp"
+#include "kernel/traverse/ray_filter.hpp"
 #include "kernel/traverse/tolerances.hpp"
 
 namespace grelha::GRELHA_ISA {
@@ -66,7 +67,10 @@ struct Packet {
   alignas(64) float low[kPacket];
   alignas(64) float start[kPacket];  ///< t from which a grid is still to be searched
   alignas(64) float id[kPacket];
-  alignas(64) float unit[kPacket];  ///< length that t is counted in, where `has_units`
+  /// where `has_units`: the length that t is counted in, and ends of searches in the caller's
+  alignas(64) float unit[kPacket];
+  alignas(64) float given_t_min[kPacket];
+  alignas(64) float given_t_max[kPacket];
   bool has_units;
   alignas(64) float axis[kPacket];           ///< of the shear: 0, 1 or 2
   int group_axis[kPacket / kWidth<VFloat>];  ///< the axis all rays of a group share, or -1
@@ -77,7 +81,7 @@ struct Packet {
   float frame_error = 0;          ///< error of coordinates in the frame
   float error_bound = kInfinity;  ///< see SimdRays
   GivenRays given;
-  const float* end = nullptr;  ///< t where the search of a ray that has hit nothing ends, as given
+  const RayFilter* filter = nullptr;  ///< null: rays hit everything
   alignas(64) float inv_dd[kPacket];
   alignas(64) float inv_length[kPacket];
   alignas(64) float shear[3][kPacket];
@@ -147,18 +151,36 @@ inline Real length_unit(const Vec3<Real>& dir) {
   return select(and_not(sound, fine), bits_float(Int<Real>(exponent << kMantissa)), Real(1));
 }
 
-/// A search from t_min to t_max by a direction that was divided by `unit`: empty where no float
-/// lies between, and never so long that t is not finite.
+/// The end of a search by a direction that was divided by `unit`: never so far that t is no float.
+inline float finite_end(float unit, float t_max) {
+  return t_max == kInfinity && unit < 1 ? kGreatest : t_max;
+}
+/// Ends of a search in multiples of `unit`, rounded outwards: floats within are sure to be within
+/// what the caller gave, and exact tests read that.
 inline void count_in(float unit, float& t_min, float& t_max) {
-  const bool is_empty = !(next_above(t_min) < t_max);
-  const float end = t_max == kInfinity && unit < 1 ? next_above(kGreatest * unit) : t_max * unit;
-  t_max = is_empty ? -kInfinity : end;
-  t_min = t_min * unit;
+  const double by = unit;
+  t_min = round_down(by * t_min);
+  t_max = round_up(by * t_max);
+}
+
+/// Keeps the ends of searches as the caller gave them.
+inline void keep_ends(Packet& p) {
+  for (int i = 0; i < p.groups * kWidth<VFloat>; ++i) {
+    p.unit[i] = 1;
+    p.given_t_min[i] = p.t_min[i];
+    p.given_t_max[i] = p.best[i];
+  }
+  p.has_units = true;
+  p.given.t_min = p.given_t_min;
+  p.given.t_max = p.given_t_max;
+  p.given.unit = p.unit;
 }
 
 /// Divides the directions of a group that need it. That changes no bit of an answer but where
 /// something left the range of floats.
 [[gnu::noinline]] inline void set_length_units(Packet& p, int first) {
+  if (!p.has_units)
+    keep_ends(p);
   const Vec3<VFloat> d = take_vec<VFloat>(p.dir, first);
   const VFloat unit = length_unit(d);
   store(p.unit + first, unit);
@@ -166,19 +188,20 @@ inline void count_in(float unit, float& t_min, float& t_max) {
   store(p.dir[1] + first, d.y / unit);
   store(p.dir[2] + first, d.z / unit);
   for (int i = first; i < first + kWidth<VFloat>; ++i)
-    if (p.unit[i] != 1)
+    if (p.unit[i] != 1) {
+      p.given_t_max[i] = p.best[i] = finite_end(p.unit[i], p.best[i]);
       count_in(p.unit[i], p.t_min[i], p.best[i]);
+    }
 }
 
 /// Prepares directions and switches off rays with a NaN, an infinity, no direction or no way.
 [[gnu::always_inline]] inline void check_rays(Packet& p, int i) {
   Vec3<VFloat> d = take_vec<VFloat>(p.dir, i);
   VFloat dd = dot(d, d);
+  const VFloat t_max = load<VFloat>(p.best + i);
+  const Mask<VFloat> searches = next_above(load<VFloat>(p.t_min + i)) < t_max;
+  store(p.best + i, select(searches, t_max, VFloat(-kInfinity)));
   if (any(mask_or(dd<VFloat(kShortest), dd> VFloat(kLongest)))) [[unlikely]] {
-    if (!p.has_units)
-      for (float& unit : p.unit)
-        unit = 1;
-    p.has_units = true;
     set_length_units(p, i);
     d = take_vec<VFloat>(p.dir, i);
     dd = dot(d, d);
@@ -186,10 +209,8 @@ inline void count_in(float unit, float& t_min, float& t_max) {
   const Vec3<VFloat> o = take_vec<VFloat>(p.org, i);
   // NaN and infinity times zero are NaN
   const Mask<VFloat> finite = ((o.x + o.y) + (o.z + dd)) * VFloat(0) == VFloat(0);
-  const VFloat best = load<VFloat>(p.best + i);
-  const Mask<VFloat> searches = best > load<VFloat>(p.t_min + i);
-  const Mask<VFloat> sound = mask_and(mask_and(finite, dd > VFloat(kNoInverse)), searches);
-  store(p.best + i, select(sound, best, VFloat(-kInfinity)));
+  const Mask<VFloat> sound = mask_and(finite, dd > VFloat(kNoInverse));
+  store(p.best + i, select(sound, load<VFloat>(p.best + i), VFloat(-kInfinity)));
 }
 
 /// The axis along which each ray of a group goes most.

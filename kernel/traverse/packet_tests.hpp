@@ -39,8 +39,7 @@ inline void prepare(Packet& p, const GeometryView& geometry, bool any_triangles)
   constexpr int w = kWidth<VFloat>;
   p.geometry = &geometry;
   p.error_bound = kInfinity;
-  p.given = {{p.org[0], p.org[1], p.org[2]}, {p.dir[0], p.dir[1], p.dir[2]}, p.t_min, nullptr};
-  p.end = p.best;
+  p.given = {{p.org[0], p.org[1], p.org[2]}, {p.dir[0], p.dir[1], p.dir[2]}, p.t_min, p.best};
   p.groups = (p.size + w - 1) / w;
   p.live = ~std::uint64_t{0} >> (64 - p.groups);
   p.has_units = false;
@@ -67,7 +66,7 @@ inline VUint ids_at(const Packet& p, int i) {
 [[gnu::noinline, gnu::cold]] inline bool wins_tie(const Packet& p, int i, std::uint32_t id) {
   const ExactRay ray = p.given.ray(i);
   const std::uint32_t held = id_of(p.id[i]);
-  return held == kNoPrimitive ? is_before_end(*p.geometry, ray, id, p.end[i])
+  return held == kNoPrimitive ? is_before_end(*p.geometry, ray, id)
                               : is_closest(*p.geometry, ray, id, held);
 }
 
@@ -84,6 +83,28 @@ template <bool kAny>
   p.low[i] = kAny ? -kInfinity : span.lo;
 }
 
+/// As record(), of rays that leave out primitives.
+template <bool kAny>
+[[gnu::noinline]] void record_filtered(
+    Packet& p, int i, const HitInterval<VFloat>& found, unsigned candidates, std::uint32_t id) {
+  float lo[kWidth<VFloat>], hi[kWidth<VFloat>];
+  store(lo, found.lo);
+  store(hi, found.hi);
+  each_bit(candidates, [&](int k) {
+    const int ray = i + k;
+    const std::uint32_t hit = p.filter->hit_of(ray, id);
+    if (hit == kNoPrimitive || hit == id_of(p.id[ray]))
+      return;
+    if (!(hi[k] < p.low[ray])) {
+      record_tie<kAny>(p, ray, hit);
+      return;
+    }
+    p.best[ray] = kAny ? -kInfinity : hi[k];
+    p.low[ray] = kAny ? -kInfinity : lo[k];
+    p.id[ray] = bits_of(hit);
+  });
+}
+
 /// Notes hits of lanes from i on against one primitive: nearer wins, then the lower id. With kAny a
 /// hit ends the ray's search.
 template <bool kAny>
@@ -92,6 +113,10 @@ inline void record(Packet& p, int i, const HitInterval<VFloat>& found, std::uint
   const Mask<VFloat> candidate = mask_and(found.some, found.lo <= best);
   if (none(candidate))
     return;
+  if (p.filter) [[unlikely]] {
+    record_filtered<kAny>(p, i, found, bits(candidate), id);
+    return;
+  }
   const VFloat low = load<VFloat>(p.low + i);
   const Mask<VFloat> closer = mask_and(candidate, found.hi < low);
   const VFloat over(-kInfinity);

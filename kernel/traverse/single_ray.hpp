@@ -22,9 +22,10 @@ struct Single {
   float frame_error = 0;
   float error_bound = kInfinity;
   double shift = 0;
-  GivenRays given;  ///< the ray as it came
-  /// best of the ray as given, also in a moved copy; read while there is no hit: t_max
-  const float* end = nullptr;
+  float unit;                       ///< length that t is counted in
+  float given_t_min, given_t_max;   ///< in the caller's lengths
+  GivenRays given;                  ///< the ray as it came, also in a moved copy
+  const RayFilter* filter = nullptr;
   const GeometryView* geometry = nullptr;
   const TriangleBlock* block = nullptr;  ///< of the last triangle that came first
 };
@@ -143,16 +144,26 @@ inline void set_inverse(Single& r, const Vec3<float>& d) {
   store(r.near, inverse < four(0) ? low + 3 : low);
 }
 
+/// The direction and the ends of a ray, as set_length_units() has them.
+inline Vec3<float> set_length_unit(Single& r, const Ray& ray) {
+  const Vec3<float> dir{ray.dir.x, ray.dir.y, ray.dir.z};
+  r.t_min = r.given_t_min = ray.t_min;
+  r.best = r.given_t_max = ray.t_max;
+  r.unit = length_unit(dir);
+  if (r.unit == 1) [[likely]]
+    return dir;
+  r.best = r.given_t_max = finite_end(r.unit, ray.t_max);
+  count_in(r.unit, r.t_min, r.best);
+  return {dir.x / r.unit, dir.y / r.unit, dir.z / r.unit};
+}
+
 /// Prepares a ray by itself, as prepare(Packet&) does many. False: it hits nothing, r is
 /// incomplete.
-inline bool prepare(Single& r,
-                    const Vec3<float>& org,
-                    const Vec3<float>& d,
-                    float t_min,
-                    float t_max,
-                    bool any_triangles) {
-  if (!(t_max > t_min))
+inline bool prepare(Single& r, const Ray& ray, bool any_triangles) {
+  if (!(next_above(ray.t_min) < ray.t_max))
     return false;
+  const Vec3<float> d = set_length_unit(r, ray);
+  const Float3& org = ray.org;
   const float dd = dot(d, d);
   // NaN and infinity times zero are NaN
   const float sum = ((org.x + org.y) + (org.z + dd)) + 1 / dd;
@@ -164,12 +175,13 @@ inline bool prepare(Single& r,
   r.dir[0] = d.x;
   r.dir[1] = d.y;
   r.dir[2] = d.z;
-  r.t_min = t_min;
-  r.best = t_max;
-  r.low = t_max;
+  r.low = r.best;
   r.id = kNoPrimitive;
-  r.given = {{r.org, r.org + 1, r.org + 2}, {r.dir, r.dir + 1, r.dir + 2}, &r.t_min, nullptr};
-  r.end = &r.best;
+  r.given = {{r.org, r.org + 1, r.org + 2},
+             {r.dir, r.dir + 1, r.dir + 2},
+             &r.given_t_min,
+             &r.given_t_max,
+             &r.unit};
   r.inv_dd = 1 / dd;
   r.inv_length = inverse_length(d, r.inv_dd);
   r.axis = 0;

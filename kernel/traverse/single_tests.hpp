@@ -15,8 +15,8 @@ template <bool kAny, class Ray>
   const GivenRays& rays = frame_of(r).given;
   const ExactRay ray = rays.ray(index_of(r));
   const GeometryView& g = *frame_of(r).geometry;
-  const bool first = held == kNoPrimitive ? is_before_end(g, ray, id, frame_of(r).end[index_of(r)])
-                                          : is_closest(g, ray, id, held);
+  const bool first =
+      held == kNoPrimitive ? is_before_end(g, ray, id) : is_closest(g, ray, id, held);
   if (!first && held == kNoPrimitive)
     return false;
   const std::uint32_t best = first ? id : held;
@@ -29,6 +29,11 @@ template <bool kAny, class Ray>
 [[gnu::always_inline]] inline bool take_hit(Ray& r, const CrossingSpan& t, std::uint32_t id) {
   if (!(t.lo <= best_of(r)))
     return false;
+  if (const RayFilter* const filter = frame_of(r).filter) [[unlikely]] {
+    id = filter->hit_of(index_of(r), id);
+    if (id == kNoPrimitive)
+      return false;
+  }
   if (!(t.hi < low_of(r)))
     return id != id_of(r) && record_tie<kAny>(r, id);
   set_hit(r, t, id);
@@ -47,7 +52,7 @@ inline bool record(Ray& r, const HitInterval<Block>& found, const std::uint32_t*
   for (; lanes != 0; lanes &= lanes - 1) {
     const int k = __builtin_ctz(lanes);
     if (take_hit<kAny>(r, {lo[k], hi[k]}, ids[k])) {
-      set_hit(r, {-kInfinity, -kInfinity}, ids[k]);
+      set_hit(r, {-kInfinity, -kInfinity}, id_of(r));
       return true;
     }
   }

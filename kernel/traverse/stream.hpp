@@ -81,6 +81,23 @@ inline void load_own_rays(const Rays& rays, float t_max, std::size_t first, Pack
   }
 }
 
+/// What the rays of a view leave out, packet by packet.
+class StreamFilter {
+ public:
+  StreamFilter(const SceneView& scene, const Rays& rays, const TraceOptions& options)
+      : all_{rays.skip, rays.mask, options.masks, scene.copies},
+        leaves_out_(rays.skip || rays.mask || options.masks) {}
+  /// Gives a packet that begins with ray `first` its filter, which holds until the next one.
+  void set(std::size_t first, Packet& p) {
+    here_ = all_.after(first);
+    p.filter = leaves_out_ ? &here_ : nullptr;
+  }
+
+ private:
+  RayFilter all_, here_;
+  bool leaves_out_;
+};
+
 /// Number of rays that are loaded together, so that many step side by side when packets fall apart.
 /// Without a grid to walk, no more than stay in the first cache.
 inline int rays_of_a_packet(const SceneView& scene) {
@@ -143,11 +160,27 @@ inline void store_doubles(const Packet& p, const Rays& rays, std::size_t first, 
     to[i] = met(p, i) ? double_t(*p.geometry, given_ray(p, i), id_of(p.id[i])) : t_max[i];
 }
 
+/// Barycentric coordinates; 0 of rays that hit no triangle.
+inline void store_barycentric(const Packet& p, std::size_t first, const Hits& hits) {
+  for (int i = 0; i < p.size; ++i) {
+    const std::uint32_t id = id_of(p.id[i]);
+    Barycentric at;
+    if (p.geometry->ids.has(PrimitiveKind::kTriangle, id))
+      at = barycentric(*p.geometry, p.given.ray(i), id);
+    if (hits.u)
+      hits.u[first + static_cast<std::size_t>(i)] = at.u;
+    if (hits.v)
+      hits.v[first + static_cast<std::size_t>(i)] = at.v;
+  }
+}
+
 inline void store_hits(const Packet& p, const Rays& rays, std::size_t first, const Hits& hits) {
   if (hits.id)
     store_words(p.id, p.size, first, hits.stride, hits.id);
   if (hits.t_double)
     store_doubles(p, rays, first, hits.t_double + first);
+  if (hits.u || hits.v)
+    store_barycentric(p, first, hits);
   if (!hits.t)
     return;
   alignas(64) float t_max[kPacket] = {};
@@ -174,8 +207,10 @@ inline void trace_closest(const SceneView& scene,
                           const Hits& hits,
                           const TraceOptions& options,
                           Counters& n) {
+  StreamFilter filter(scene, rays, options);
   const auto load = [&](Packet& p, std::size_t first) {
     load_rays(rays, first, p);
+    filter.set(first, p);
     if (hits.stride == 1 && hits.t && hits.id) {
       p.ahead.add(hits.t + first);
       p.ahead.add(hits.id + first);

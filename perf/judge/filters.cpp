@@ -23,7 +23,7 @@ struct Candidate {
 };
 
 ExactRay exact(const Ray& r) {
-  return {{r.org.x, r.org.y, r.org.z}, {r.dir.x, r.dir.y, r.dir.z}, r.t_min};
+  return {{r.org.x, r.org.y, r.org.z}, {r.dir.x, r.dir.y, r.dir.z}, r.t_min, r.t_max};
 }
 
 /// Every triangle tested by one ray; from afar in a frame of the mesh, as grids do.

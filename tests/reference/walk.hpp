@@ -49,7 +49,7 @@ bool take(WalkedRay& r, std::uint32_t id) {
   if (!(span.lo <= r.hi) || id == r.id)
     return false;
   const bool first =
-      span.hi < r.lo || (r.id == kNoPrimitive ? is_before_end(*r.geometry, r.given, id, r.t_max)
+      span.hi < r.lo || (r.id == kNoPrimitive ? is_before_end(*r.geometry, r.given, id)
                                               : is_closest(*r.geometry, r.given, id, r.id));
   if (!first)
     return false;
@@ -152,6 +152,11 @@ bool test_cells(WalkedRay& r, const GridView& g, RayMailbox* box, Counters& n) {
 /// False when the ray can hit nothing. Lengths of directions are those of the kernel.
 inline bool load_ray(Ray ray, const GeometryView& g, WalkedRay& r) {
   const float unit = r.unit = length_unit(Vec3<float>{ray.dir.x, ray.dir.y, ray.dir.z});
+  const bool is_empty = !(next_above(ray.t_min) < ray.t_max);
+  if (unit != 1)
+    ray.t_max = finite_end(unit, ray.t_max);
+  const double begin = static_cast<double>(unit) * ray.t_min;
+  const double end = static_cast<double>(unit) * ray.t_max;
   if (unit != 1)
     count_in(unit, ray.t_min, ray.t_max);
   const float org[3] = {ray.org.x, ray.org.y, ray.org.z};
@@ -162,10 +167,10 @@ inline bool load_ray(Ray ray, const GeometryView& g, WalkedRay& r) {
   }
   r.t_min = ray.t_min;
   r.t_max = r.lo = r.hi = ray.t_max;
-  r.given = {{org[0], org[1], org[2]}, {d[0], d[1], d[2]}, ray.t_min};
+  r.given = {{org[0], org[1], org[2]}, {d[0], d[1], d[2]}, begin, end};
   r.geometry = &g;
   const float dd = (d[0] * d[0] + d[1] * d[1]) + d[2] * d[2];
-  return ((((org[0] + org[1]) + (org[2] + dd)) + 1 / dd) * 0 == 0) && r.t_max > r.t_min;
+  return ((((org[0] + org[1]) + (org[2] + dd)) + 1 / dd) * 0 == 0) && !is_empty;
 }
 
 template <bool kAny>

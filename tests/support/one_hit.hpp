@@ -95,7 +95,7 @@ OneHit one_hit(const ExactRay& ray,
 }
 
 inline ExactRay exact_ray(const Float3& o, const Float3& d, float t_min = 0) {
-  return {{o.x, o.y, o.z}, {d.x, d.y, d.z}, t_min};
+  return {{o.x, o.y, o.z}, {d.x, d.y, d.z}, t_min, std::numeric_limits<double>::infinity()};
 }
 
 }  // namespace grelha::test

@@ -161,7 +161,9 @@ TEST(GridRows, HoldWhatTheyPromise) {
       std::iota(all.begin(), all.end(), w.primitives.first_finite());
       const auto copies = find_duplicates(w.primitives, all);
       // far towns have some: floats lie far apart there
-      const std::set<std::uint32_t> may_lack(copies.begin(), copies.end());
+      std::set<std::uint32_t> may_lack;
+      for (const Copy& c : copies)
+        may_lack.insert(c.copy);
       for (const std::uint32_t id : all) {
         const bool held = held_by[id] == 1;
         const bool left_out = held_by[id] == 0 && may_lack.contains(id);

@@ -127,7 +127,7 @@ class Kinds : public testing::TestWithParam<std::tuple<const Variant*, KindCase>
   }
   /// Returns t of the first hit beyond t_min; NaN without a hit.
   float next_hit(const World& world, const Ray& ray) const {
-    const Hit hit = variant().loops.closest_one(world.impl().view, ray);
+    const Hit hit = variant().loops.closest_one(world.impl().view, ray, nullptr);
     return hit ? hit.t : kNaN;
   }
 };

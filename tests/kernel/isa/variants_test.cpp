@@ -106,11 +106,11 @@ TEST_P(Copies, AskOneRayAsInAStream) {
     EXPECT_GT(hits_of(met), 100u);
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const Ray ray{rays.org(i), rays.dir(i), rays.t_min[i], rays.t[i]};
-      const Hit hit = variant().loops.closest_one(world.impl().view, ray);
+      const Hit hit = variant().loops.closest_one(world.impl().view, ray, nullptr);
       ASSERT_EQ(hit.id, met.id[i]) << rays.describe(i);
       ASSERT_EQ(std::bit_cast<std::uint32_t>(hit.t), std::bit_cast<std::uint32_t>(met.t[i]))
           << rays.describe(i);
-      ASSERT_EQ(variant().loops.occluded_one(world.impl().view, ray), met.id[i] != kNoPrimitive)
+      ASSERT_EQ(variant().loops.occluded_one(world.impl().view, ray, nullptr), met.id[i] != kNoPrimitive)
           << rays.describe(i);
     }
   }

@@ -82,17 +82,17 @@ TEST(Copies, AreEqualToTheBit) {
   std::vector<std::uint32_t> ids;
   for (std::uint32_t id = 0; id < p.ids.end(); ++id)
     ids.push_back(id);
-  std::vector<std::uint32_t> copies = find_duplicates(p, ids);
+  std::vector<Copy> copies = find_duplicates(p, ids);
   std::sort(copies.begin(), copies.end());
-  EXPECT_EQ(copies, (std::vector<std::uint32_t>{2, 4, 7, 9}));
+  EXPECT_EQ(copies, (std::vector<Copy>{{0, 2}, {1, 4}, {5, 7}, {8, 9}}));
 }
 
 TEST(Copies, OfPlanesAtTheEndAreNotTested) {
   Planes planes;
   for (const float y : {0.f, 1.f, 0.f, 2.f, 1.f, 0.f})
     planes.add({0, y, 0}, {0, 1, 0}, 0);
-  EXPECT_EQ(count_unique_planes(planes), 4u);
-  EXPECT_EQ(count_unique_planes(Planes{}), 0u);
+  EXPECT_EQ(find_last_copies(planes), (std::vector<Copy>{{1, 4}, {0, 5}}));
+  EXPECT_TRUE(find_last_copies(Planes{}).empty());
 }
 
 TEST(PrimitiveIds, SayWhichPrimitiveTheyAre) {

@@ -48,7 +48,8 @@ scalar::Vec3<double> weights(const Float3& o, const Float3& d, const Shape& s) {
   const int k = scalar::shear_axis(d.x, d.y, d.z);
   return scalar::weights_at<double>(scalar::to_double<0>(permute_axes(o, k)),
                                     scalar::to_double<0>(permute_axes(d, k)),
-                                    scalar::to_double<0>(vertices_of(s, k)));
+                                    scalar::to_double<0>(vertices_of(s, k)))
+      .weight;
 }
 
 /// Farthest corner from the origin: a sheared corner is off by a few eps of that, and so is all

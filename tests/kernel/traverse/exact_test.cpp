@@ -138,8 +138,8 @@ struct Asked {
 void expect_calls(const Variant& variant, const World& world, const Asked& a) {
   std::size_t wrong = 0;
   for (std::size_t i = 0; i < a.rays.size(); ++i) {
-    const Hit hit = variant.loops.closest_one(world.impl().view, a.ray(i));
-    const bool blocked = variant.loops.occluded_one(world.impl().view, a.ray(i));
+    const Hit hit = variant.loops.closest_one(world.impl().view, a.ray(i), nullptr);
+    const bool blocked = variant.loops.occluded_one(world.impl().view, a.ray(i), nullptr);
     const bool met = a.closest.id[i] != kNoPrimitive;
     if (hit.id == a.closest.id[i] && hit.t == a.closest.t[i] && blocked == met)
       continue;

@@ -111,7 +111,7 @@ TEST(CrossTriangle, IsWhatRationalNumbersSay) {
     const Ray ray{org, at - org};
     const float corner[3][3] = {
         {p[0].x, p[0].y, p[0].z}, {p[1].x, p[1].y, p[1].z}, {p[2].x, p[2].y, p[2].z}};
-    const ExactRay exact{{org.x, org.y, org.z}, {ray.dir.x, ray.dir.y, ray.dir.z}, 0};
+    const ExactRay exact{{org.x, org.y, org.z}, {ray.dir.x, ray.dir.y, ray.dir.z}, 0, INFINITY};
     const ExactCrossing found = cross_triangle(exact, corner);
     const auto truth = rational::crossing(ray, p[0], p[1], p[2]);
     const bool is_there = truth && *truth > 0;
