@@ -74,56 +74,52 @@ Ray ray_of(const Rays& rays, std::size_t i) {
   return ray;
 }
 
-/// Finds all hits a part of the rays at a time, so that they are in memory twice only in part.
-class AllHits {
- public:
-  AllHits(const World& world, const Rays& rays, QueryOptions options)
-      : world_(world), rays_(rays), options_(std::move(options)) {}
+constexpr std::size_t kPart = std::size_t{1} << 17;
 
-  void find(std::size_t* offset, float* t, std::uint32_t* id, std::size_t capacity) const {
-    constexpr std::size_t kPart = std::size_t{1} << 17;
-    offset[0] = 0;
-    for (std::size_t first = 0; first < rays_.count; first += kPart) {
-      const Rays part = part_of(rays_, first, std::min(rays_.count, first + kPart));
-      if ((t || id) && offset[first] <= capacity)
-        list(part, offset + first, t, id, capacity);
-      else
-        count(part, offset + first);
+/// Finds items of many rays a part of them at a time, so that they are in memory twice only in
+/// part. `list(part)` returns a part's items with their offsets, `store(first, items)` stores them
+/// from element `first` on, and `count(part, counts)` only counts them.
+template <class List, class Store, class Count>
+void list_by_parts(const Rays& rays,
+                   std::size_t* offset,
+                   std::size_t capacity,
+                   bool stores,
+                   const List& list,
+                   const Store& store,
+                   const Count& count) {
+  offset[0] = 0;
+  for (std::size_t first = 0; first < rays.count; first += kPart) {
+    const Rays part = part_of(rays, first, std::min(rays.count, first + kPart));
+    std::size_t* const to = offset + first;
+    if (stores && to[0] <= capacity) {
+      const auto [offsets, items] = list(part);
+      for (std::size_t i = 0; i < part.count; ++i)
+        to[i + 1] = to[0] + offsets[i + 1];
+      if (to[part.count] <= capacity)
+        store(to[0], items);
+    } else {
+      std::vector<std::uint32_t> counts(part.count);
+      count(part, counts.data());
+      for (std::size_t i = 0; i < part.count; ++i)
+        to[i + 1] = to[i] + counts[i];
     }
-    const std::size_t all = offset[rays_.count];
-    if ((t || id) && all > capacity)
-      throw TooMany("capacity: expected at least " + std::to_string(all) + ", found " +
-                    std::to_string(capacity));
   }
+  if (stores && offset[rays.count] > capacity)
+    throw TooMany("capacity: expected at least " + std::to_string(offset[rays.count]) +
+                  ", found " + std::to_string(capacity));
+}
 
- private:
-  void list(const Rays& part,
-            std::size_t* offset,
-            float* t,
-            std::uint32_t* id,
-            std::size_t capacity) const {
-    const HitLists lists = all_hits(world_, part, options_);
-    const std::size_t first = offset[0];
-    for (std::size_t i = 0; i < part.count; ++i)
-      offset[i + 1] = first + lists.offset[i + 1];
-    if (offset[part.count] > capacity)
-      return;
-    for (std::size_t i = 0; t && i < lists.hits.size(); ++i)
-      t[first + i] = lists.hits[i].t;
-    for (std::size_t i = 0; id && i < lists.hits.size(); ++i)
-      id[first + i] = lists.hits[i].id;
-  }
-  void count(const Rays& part, std::size_t* offset) const {
-    std::vector<std::uint32_t> counts(part.count);
-    count_hits(world_, part, counts.data(), options_);
-    for (std::size_t i = 0; i < part.count; ++i)
-      offset[i + 1] = offset[i] + counts[i];
-  }
+/// Stores a member of each item, where an array is given.
+template <class Items, class Member, class To>
+void store_each(const Items& items, Member member, To* to) {
+  for (std::size_t i = 0; to && i < items.size(); ++i)
+    to[i] = items[i].*member;
+}
 
-  const World& world_;
-  const Rays& rays_;
-  QueryOptions options_;
-};
+template <class T>
+T* after(T* array, std::size_t by) {
+  return array ? array + by : nullptr;
+}
 
 }  // namespace
 }  // namespace grelha::c
@@ -182,7 +178,51 @@ grelha_status grelha_all_hits(const grelha_world* world,
     const grelha::World& asked = world_of(world);
     const grelha::Rays stream = rays_of(rays);
     expect_there(offset, "offset");
-    AllHits(asked, stream, options_of(world, threads)).find(offset, t, id, capacity);
+    const grelha::QueryOptions options = options_of(world, threads);
+    list_by_parts(
+        stream,
+        offset,
+        capacity,
+        t || id,
+        [&](const grelha::Rays& part) { return grelha::all_hits(asked, part, options); },
+        [&](std::size_t first, const std::vector<grelha::Hit>& hits) {
+          store_each(hits, &grelha::Hit::t, after(t, first));
+          store_each(hits, &grelha::Hit::id, after(id, first));
+        },
+        [&](const grelha::Rays& part, uint32_t* counts) {
+          grelha::count_hits(asked, part, counts, options);
+        });
+  });
+}
+
+grelha_status grelha_crossings(const grelha_world* world,
+                               const grelha_rays* rays,
+                               size_t* offset,
+                               float* t,
+                               uint32_t* id,
+                               uint8_t* enters,
+                               size_t capacity,
+                               int threads) {
+  using namespace grelha::c;
+  return guarded([&] {
+    const grelha::World& asked = world_of(world);
+    const grelha::Rays stream = rays_of(rays);
+    expect_there(offset, "offset");
+    const grelha::QueryOptions options = options_of(world, threads);
+    list_by_parts(
+        stream,
+        offset,
+        capacity,
+        t || id || enters,
+        [&](const grelha::Rays& part) { return grelha::crossings(asked, part, options); },
+        [&](std::size_t first, const std::vector<grelha::Crossing>& crossings) {
+          store_each(crossings, &grelha::Crossing::t, after(t, first));
+          store_each(crossings, &grelha::Crossing::id, after(id, first));
+          store_each(crossings, &grelha::Crossing::enters, after(enters, first));
+        },
+        [&](const grelha::Rays& part, uint32_t* counts) {
+          grelha::count_crossings(asked, part, counts, options);
+        });
   });
 }
 

@@ -198,7 +198,7 @@ GRELHA_API grelha_status grelha_count_hits(const grelha_world* world,
 /// offset[i] to offset[i + 1] - 1 of `t` and `id`.
 ///
 /// A ray that enters and leaves a sphere hits it twice. An edge or a vertex belongs to each
-/// triangle that has it. Exact copies of a triangle or a sphere count once, with the lowest id.
+/// triangle that has it. Each exact copy of a triangle or a sphere counts.
 ///
 /// Shapes    offset: rays->count + 1 elements, always filled. t, id: `capacity` elements each, or
 ///           null if not wanted.
@@ -213,6 +213,23 @@ GRELHA_API grelha_status grelha_all_hits(const grelha_world* world,
                                          size_t capacity,
                                          int threads);
 
+/// Finds the triangles that each ray crosses, in the order in which it does. Spheres do not count.
+/// A ray through an edge or a vertex is treated as if it passed at an infinitesimal distance: it
+/// crosses one triangle where it passes through a surface, none or two where it touches one. From
+/// inside a closed mesh the number of crossings is odd, from outside even, for every ray.
+///
+/// Shapes    offset, t, id: as for grelha_all_hits(). enters: `capacity` elements, or null: 1 where
+///           the ray comes from the side on which the vertices are counter-clockwise, else 0.
+/// Usage     and errors are those of grelha_all_hits().
+GRELHA_API grelha_status grelha_crossings(const grelha_world* world,
+                                          const grelha_rays* rays,
+                                          size_t* offset,
+                                          float* t,
+                                          uint32_t* id,
+                                          uint8_t* enters,
+                                          size_t capacity,
+                                          int threads);
+
 /// Calls `visit` with each hit of ray 0, then of ray 1 and so on, each in the order of
 /// grelha_all_hits(), on the calling thread. If it returns 0, the next ray follows. `context` is
 /// passed on to it. Errors as for grelha_closest().
@@ -221,11 +238,12 @@ GRELHA_API grelha_status grelha_each_hit(const grelha_world* world,
                                          grelha_visit visit,
                                          void* context);
 
-/// Tests if points lie inside the closed meshes of a world: inside[i] is 1 or 0 for point i. Inside
-/// means inside an odd number of meshes. The answer is exact, and depends on no choice of a ray.
+/// Tests if points lie inside a world: inside[i] is 1 or 0 for point i. Inside means inside an odd
+/// number of closed meshes, or inside a sphere. The answer is exact, and depends on no choice of a
+/// ray.
 ///
 /// Shapes    points: `count` points, `stride` bytes apart, not 0.
-/// Requires  that the triangles form closed meshes. Spheres have no inside here: the answer is 0.
+/// Requires  that the triangles form closed meshes.
 /// Errors    GRELHA_INVALID for null and for a stride of 0. A point with a NaN is outside.
 GRELHA_API grelha_status grelha_contains(const grelha_world* world,
                                          const float* points,
@@ -253,7 +271,7 @@ GRELHA_API grelha_status grelha_closest_points(const grelha_world* world,
                                                uint32_t* id,
                                                int threads);
 
-/// Stores for each point the distance to the closest surface, negative inside closed meshes as
+/// Stores for each point the distance to the closest surface, negative inside, as
 /// grelha_contains() says. It is infinity if the world is empty. Shapes and errors are those of
 /// grelha_contains().
 GRELHA_API grelha_status grelha_signed_distances(const grelha_world* world,

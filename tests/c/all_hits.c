@@ -63,8 +63,28 @@ static void test_many(const grelha_world* cube) {
   free(offset);
 }
 
+/// Down along the diagonal of the cube's sides, and past its edge.
+static void test_crossings(const grelha_world* cube) {
+  const float org[] = {.5f, .5f, 5, 1, .5f, 5};
+  const float dir[] = {0, 0, -1};
+  const grelha_rays rays = {
+      .count = 2, .org = org, .org_stride = 12, .dir = dir, .dir_stride = GRELHA_SHARED};
+  size_t offset[3];
+  CHECK_OK(grelha_crossings(cube, &rays, offset, NULL, NULL, NULL, 0, 1));
+  CHECK(offset[1] == 2 && (offset[2] == 2 || offset[2] == 4));
+  float t[4];
+  uint32_t id[4];
+  uint8_t enters[4];
+  CHECK_OK(grelha_crossings(cube, &rays, offset, t, id, enters, 4, 1));
+  CHECK(t[0] == 4 && t[1] == 6 && enters[0] + enters[1] == 1 && id[0] != id[1]);
+  CHECK_ERROR(grelha_crossings(cube, &rays, offset, t, NULL, NULL, 1, 1),
+              GRELHA_TOO_MANY,
+              "capacity: expected at least");
+}
+
 void test_all_hits(void) {
   grelha_world* const cube = new_cube();
+  test_crossings(cube);
   test_two_calls(cube);
   test_many(cube);
   const uint32_t skip[] = {3, 3, 3, 3};

@@ -29,10 +29,13 @@ void test_contains(void) {
   free(many);
   grelha_free(cube);
 
-  grelha_world* const ball = new_ball();  // no mesh
-  const float middle[] = {1, 2, 3};
-  CHECK_OK(grelha_contains(ball, middle, 12, 1, inside, 1));
-  CHECK(inside[0] == 0);
+  grelha_world* const ball = new_ball();
+  const float middle[] = {1, 2, 3, 1, 2, 99};
+  CHECK_OK(grelha_contains(ball, middle, 12, 2, inside, 1));
+  CHECK(inside[0] == 1 && inside[1] == 0);
+  float distance[2];
+  CHECK_OK(grelha_signed_distances(ball, middle, 12, 2, distance, 1));
+  CHECK(distance[0] < 0 && distance[1] > 0);
   grelha_free(ball);
 }
 
