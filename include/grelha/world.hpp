@@ -14,6 +14,10 @@
 
 namespace grelha {
 
+/// Least diagonal of the box around a scene, unless it is 0: cells of less have no float for their
+/// inverse.
+inline constexpr float kLeastScene = 1e-33f;
+
 /// How a World is built. These options change speed and memory, never a picture.
 struct BuildOptions {
   bool grid = true;  ///< false: every ray is tested against every primitive
@@ -52,8 +56,9 @@ struct TooLarge : std::runtime_error {
 /// World is immutable, so threads may share it. A program may have any number of Worlds.
 class World {
  public:
-  /// Builds the grids. Throws std::invalid_argument if arrays that belong together differ in length
-  /// or an index is out of range. Throws TooLarge and Stopped as BuildOptions describe.
+  /// Builds the grids. Throws std::invalid_argument if arrays that belong together differ in length,
+  /// an index is out of range, or the scene is smaller than kLeastScene. Throws TooLarge and Stopped
+  /// as BuildOptions describe.
   World(const SceneSpans& scene, const BuildOptions& options);
   ~World();
   /// Estimates the memory that building takes, within a fifth (docs/performance.md), in about a

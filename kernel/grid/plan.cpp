@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <sstream>
+#include <stdexcept>
 
 #include <omp.h>
 
@@ -189,6 +191,16 @@ class Planner {
     }
   }
 
+  /// Throws std::invalid_argument if the scene is too small.
+  void expect_size() const {
+    if (plan_.all.empty() || plan_.all.diagonal() == 0 || plan_.all.diagonal() >= kLeastScene)
+      return;
+    std::ostringstream text;
+    text << "the scene: expected a box with a diagonal of at least " << kLeastScene << ", found "
+         << plan_.all.diagonal();
+    throw std::invalid_argument(text.str());
+  }
+
   /// Plans grids for groups that are worth one. Clusters that are found join the groups.
   void plan_groups() {
     for (std::size_t i = 0; i < groups_.size(); ++i) {
@@ -253,6 +265,7 @@ Plan plan_grids(const Primitives& p, const BuildOptions& options, BuildProgress&
   std::vector<Ids> groups = group(p);
   step();
   Planner planner(p, options, std::move(groups));
+  planner.expect_size();
   step();
   if (options.grid)
     planner.plan_groups();

@@ -142,7 +142,8 @@ struct Chord {
   }
   /// Leaves out lanes that surely have no chord, by a bound for all spheres that are near enough.
   [[gnu::always_inline]] Mask<Real> may_be(const SimdRays<Real>& ray, const Real& radius) const {
-    return inside + ray.error_bound * (magnitude(radius) + ray.error_bound) >= Real(0);
+    const Real least(static_cast<Scalar<Real>>(-kUnderflow<Real>));
+    return inside + ray.error_bound * (magnitude(radius) + ray.error_bound) >= least;
   }
 };
 

@@ -129,6 +129,61 @@ TEST(AnySize, RaysAreToldTheSameAloneAndTogether) {
   }
 }
 
+/// A scene, and the same a power of two times as large.
+struct Scaled {
+  Scene scene = empty_scene();
+  void add(Random& random, float by) {
+    const auto number = [&](double lo, double hi) {
+      return by * static_cast<float>(random.in(lo, hi));
+    };
+    const auto point = [&] { return Float3{number(-1, 1), number(-1, 1), number(-1, 1)}; };
+    const Float3 a = point();
+    scene.geometry.spheres.add(a, number(.05, .15), 0);
+    const float base = number(.05, .15);
+    const Float3 apex = point();
+    scene.geometry.cones.add(a, base, apex, number(0, .1), 0);
+    const Float3 b = point();
+    add_triangle(scene, a, b, point());
+  }
+};
+
+// Squares of such sizes leave the range of floats.
+TEST(AnySize, HitsOfSmallScenesAreThoseOfLargerOnes) {
+  for (int power = -58; power >= -108; power -= 1) {
+    const float by = std::ldexp(1.f, power);
+    Scaled small, large;
+    Random one(5), other(5);
+    for (int i = 0; i < 60; ++i) {
+      small.add(one, by);
+      large.add(other, 1);
+    }
+    const World world(small.scene, {});
+    const World truth(large.scene, {});
+    Random random(7);
+    int hits = 0;
+    for (int i = 0; i < 600; ++i) {
+      const Float3 p = random.point(3);
+      const Float3 d = random.chance(.5) ? random.direction() : minus(random.point(1), p);
+      const Hit found = closest(world, {{by * p.x, by * p.y, by * p.z}, d});
+      const Hit expected = closest(truth, {p, d});
+      hits += bool(expected);
+      ASSERT_EQ(found.id, expected.id) << power << ", ray " << i;
+      ASSERT_EQ(found.t, expected ? by * expected.t : kInf) << power << ", ray " << i;
+    }
+    EXPECT_GT(hits, 100);
+  }
+}
+
+TEST(AnySize, ScenesThatAreTooSmallAreRefused) {
+  Scene tiny = empty_scene();
+  add_triangle(tiny, {0, 0, 0}, {1e-36f, 0, 0}, {0, 1e-36f, 0});
+  EXPECT_THROW(World(tiny, {}), std::invalid_argument);
+  EXPECT_THROW(World::estimate(tiny, {}), std::invalid_argument);
+  add_triangle(tiny, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  const World world(tiny, {});
+  EXPECT_EQ(closest(world, {{0, 0, 1}, {0, 0, -1}}).id, 0u);
+}
+
 // A sliver 1e12 times as long as wide, seen from beside it: t of double says that it lies ahead,
 // its normal that it lies behind.
 TEST(AnySize, ASliverThatLiesBehindIsNotMetInCompany) {
