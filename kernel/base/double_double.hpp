@@ -66,6 +66,9 @@ struct WideVector {
   DoubleDouble x, y, z;
 };
 
+inline WideVector operator+(const WideVector& a, const WideVector& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
 inline WideVector operator-(const WideVector& a, const WideVector& b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }

@@ -78,8 +78,8 @@ class NearestSearch {
       if (center[a] + r + 1 < g.n[a])
         take(std::max(0., (g.lo[a] + (center[a] + r + 1) * g.cell[a]) - p[a]));
     }
-    // primitives stand in cells as much as the pad around them; doubles round by less
-    return least * (1 - 0x1p-40) - 2 * static_cast<double>(g.pad);
+    // a primitive stands in the cell that its nearest point lies in; doubles round by less
+    return least * (1 - 0x1p-40);
   }
 
   void look_at_shell(const GridView& g, const int (&center)[3], int r) {
@@ -186,7 +186,7 @@ void closest_points(const World& world,
 
 float signed_distance(const World& world, Float3 point) {
   const float distance = closest_point(world, point).distance;
-  return contains(world, point) ? -distance : distance;
+  return contains(world, point) ? 0 - distance : distance;  // no zero is -0
 }
 
 void signed_distances(const World& world,

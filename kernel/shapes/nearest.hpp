@@ -12,31 +12,55 @@ inline Point point_of(const float (&v)[3]) {
 }
 
 /// Of a segment.
-inline Point nearest_on_segment(const Point& p, const Point& a, const Point& b) {
-  const Point along = b - a;
-  const double squared = dot(along, along);
-  const double share = squared > 0 ? dot(p - a, along) / squared : 0;
-  return a + max(0., min(1., share)) * along;
+template <class Vector>
+inline Vector nearest_on_segment(const Vector& p, const Vector& a, const Vector& b) {
+  using Number = decltype(a.x + a.x);
+  const Vector along = b - a;
+  const Number squared = dot(along, along);
+  const Number product = dot(p - a, along);
+  if (!(product > 0))
+    return a;
+  return product < squared ? a + (product / squared) * along : b;
 }
 
 /// Of the region that the vertices of a triangle belong to (Ericson, Real-Time Collision Detection,
-/// 2005, 5.1.5): a vertex, an edge or the face.
+/// 2005, 5.1.5): a vertex, an edge or the face; n is (b - a) x (c - a).
+template <class Vector>
+inline Vector nearest_on_triangle(
+    const Vector& p, const Vector& a, const Vector& b, const Vector& c, const Vector& n) {
+  const auto nn = dot(n, n);
+  const auto inside = [&](const Vector& from, const Vector& to) {
+    return !(dot(cross(to - from, p - from), n) < 0);
+  };
+  if (nn > 0 && inside(a, b) && inside(b, c) && inside(c, a)) {
+    Vector way = p - a;  // from the nearest corner: the product is off by as much less
+    for (const Vector& from : {p - b, p - c})
+      if (dot(from, from) < dot(way, way))
+        way = from;
+    return p - (dot(way, n) / nn) * n;
+  }
+  Vector best = nearest_on_segment(p, a, b);
+  for (const Vector& at : {nearest_on_segment(p, b, c), nearest_on_segment(p, c, a)})
+    if (dot(at - p, at - p) < dot(best - p, best - p))
+      best = at;
+  return best;
+}
+
+/// Squared, of what the area of a triangle is of the product of two edges: doubles lose the normal
+/// of thinner ones, so numbers of 106 bits find their points.
+inline constexpr double kThin = 0x1p-12;
+
 inline Point nearest_on(const Point& p, const Triangle::Fields<float>& triangle) {
   const Point a = point_of(triangle.corner[0]);
   const Point b = point_of(triangle.corner[1]);
   const Point c = point_of(triangle.corner[2]);
   const Point n = cross(b - a, c - a);
-  const double nn = dot(n, n);
-  const auto inside = [&](const Point& from, const Point& to) {
-    return dot(cross(to - from, p - from), n) >= 0;
-  };
-  if (nn > 0 && inside(a, b) && inside(b, c) && inside(c, a))
-    return p - (dot(p - a, n) / nn) * n;
-  Point best = nearest_on_segment(p, a, b);
-  for (const Point& at : {nearest_on_segment(p, b, c), nearest_on_segment(p, c, a)})
-    if (dot(at - p, at - p) < dot(best - p, best - p))
-      best = at;
-  return best;
+  if (dot(n, n) >= kThin * (dot(b - a, b - a) * dot(c - a, c - a)))
+    return nearest_on_triangle(p, a, b, c, n);
+  const auto wide = [](const Point& v) { return WideVector{v.x, v.y, v.z}; };
+  const WideVector found = nearest_on_triangle(
+      wide(p), wide(a), wide(b), wide(c), cross(wide(b) - wide(a), wide(c) - wide(a)));
+  return {found.x.high, found.y.high, found.z.high};
 }
 
 inline Point nearest_on(const Point& p, const Sphere::Fields<float>& sphere) {

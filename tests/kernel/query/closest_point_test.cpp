@@ -72,6 +72,47 @@ TEST(ClosestPoint, ThereIsNone) {
   EXPECT_EQ(closest_point(world, {0, 0, 0}).distance, 1);
 }
 
+TEST(ClosestPoint, OfEqualDistanceIsTheOneWithTheLowerId) {
+  Scene s = empty_scene();
+  for (const float x : {3.f, 1.f, -1.f, 1.f})  // each as far from 0 as its neighbours
+    add_triangle(s, {x, -1, -1}, {x, 1, -1}, {x, 0, 1});
+  const World world(s, {});
+  const World without_grid(s, {.grid = false});
+  EXPECT_EQ(closest_point(world, {0, 0, 0}).id, 1u);
+  EXPECT_EQ(closest_point(without_grid, {0, 0, 0}).id, 1u);
+  EXPECT_EQ(closest_point(world, {2, 0, 0}).id, 0u);
+}
+
+TEST(ClosestPoint, WithinARadiusOfZeroLiesOnTheSurface) {
+  const Scene s = torus_mesh(20, 12, .4);
+  const World world(s, {});
+  const Float3 corner{
+      s.geometry.triangles.x[7], s.geometry.triangles.y[7], s.geometry.triangles.z[7]};
+  const ClosestPoint found = closest_point(world, corner, 0);
+  EXPECT_TRUE(found);
+  EXPECT_EQ(found.distance, 0);
+  EXPECT_FALSE(closest_point(world, {corner.x * 1.001f, corner.y, corner.z}, 0));
+}
+
+TEST(ClosestPoint, OfSliversIsTheirs) {
+  Random random(12);
+  for (int i = 0; i < 20000; ++i) {
+    // as wide as floats of the long edge are apart
+    const Float3 a = random.point(1);
+    const Float3 b = random.point(1);
+    const Float3 c =
+        at(at(a, random.unit(), minus(b, a)), random.log_in(1e-8, 1e-3), random.direction());
+    Scene s = empty_scene();
+    add_triangle(s, a, b, c);
+    const World world(s, {});
+    for (const Float3& corner : {a, b, c})
+      ASSERT_EQ(closest_point(world, corner).distance, 0) << i;
+    const Float3 p = random.point(1);
+    const std::vector<oracle::Real> truth = brute::distances(s, p);
+    ASSERT_NEAR(closest_point(world, p).distance, static_cast<double>(truth[0]), 1e-6) << i;
+  }
+}
+
 TEST(ClosestPoint, OfManyByThreads) {
   const Scene s = random_mixture(8, 300);
   const World world(s, {});
@@ -106,6 +147,35 @@ TEST(SignedDistance, IsNegativeInside) {
     EXPECT_EQ(distances[i] < 0, contains(world, points[i])) << i;
     EXPECT_EQ(signed_distance(world, points[i]), distances[i]);
   }
+}
+
+TEST(SignedDistance, OnTheSurfaceIsZeroWithoutASign) {
+  const Scene s = torus_mesh(20, 12, .4);
+  const World world(s, {});
+  int inside = 0;
+  for (std::size_t i = 0; i < s.geometry.triangles.x.size(); ++i) {
+    const Float3 p{s.geometry.triangles.x[i], s.geometry.triangles.y[i], s.geometry.triangles.z[i]};
+    inside += contains(world, p);
+    EXPECT_EQ(signed_distance(world, p), 0);
+    EXPECT_FALSE(std::signbit(signed_distance(world, p)));
+  }
+  EXPECT_GT(inside, 0);
+}
+
+TEST(SignedDistance, OfBallsIsNegativeInsideAny) {
+  Scene s = empty_scene();
+  s.geometry.spheres.add({0, 0, 0}, 2, 0);
+  s.geometry.spheres.add({1, 0, 0}, 2, 0);
+  s.geometry.spheres.add({9, 0, 0}, -1, 0);
+  for (int i = 0; i < 60; ++i)
+    s.geometry.spheres.add({20 + .1f * static_cast<float>(i), 5, 0}, .3f, 0);
+  const World world(s, {});
+  for (const float x : {-1.5f, .5f, 2.5f, 8.5f})
+    EXPECT_LT(signed_distance(world, {x, 0, 0}), 0) << x;
+  for (const float x : {-2.5f, 3.5f, 7.5f, 10.5f})
+    EXPECT_GT(signed_distance(world, {x, 0, 0}), 0) << x;
+  EXPECT_LT(signed_distance(world, {20, 5, 0}), 0);
+  EXPECT_GT(signed_distance(world, {20, 6, 0}), 0);
 }
 
 }  // namespace
