@@ -105,8 +105,8 @@ void list_by_parts(const Rays& rays,
     }
   }
   if (stores && offset[rays.count] > capacity)
-    throw TooMany("capacity: expected at least " + std::to_string(offset[rays.count]) +
-                  ", found " + std::to_string(capacity));
+    throw TooMany("capacity: expected at least " + std::to_string(offset[rays.count]) + ", found " +
+                  std::to_string(capacity));
 }
 
 /// Stores a member of each item, where an array is given.

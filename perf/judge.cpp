@@ -14,6 +14,10 @@
 //             long double to 1e-6 of the mesh's diagonal
 //   queries   a million rays at planes, spheres, triangles and cones: all hits, counts, skip,
 //             masks, u and v are those of long double, and the same bits by every instruction set
+//   agreement a million rays at nearly edge-on triangles, copies, a lattice and slivers, from 0 to
+//             1e13 diagonals on either side, along axes and aslant, with ends of every kind:
+//             closest, occluded, all hits, counts, skip and masks, u and v, crossings are those of
+//             rational numbers
 //   filters   how many of 300 rays, in per cent, meet a triangle up to their first hit that floats
 //             do not decide, that doubles do not decide; whose first two hits are put in order by
 //             exact numbers. From afar floats test in a frame of the mesh, as grids do.
@@ -40,6 +44,7 @@ constexpr Subject kSubjects[] = {{"rays", 1'000'000, judge_rays},
                                  {"inside", 100'000, judge_inside},
                                  {"distance", 100'000, judge_distance},
                                  {"queries", 1'000'000, judge_queries},
+                                 {"agreement", 1'000'000, judge_agreement},
                                  {"filters", 300, count_filters}};
 
 }  // namespace
@@ -64,7 +69,8 @@ int main(int argc, char** argv) {
       std::printf("%zu wrong\n", wrong);
       return wrong == 0 ? 0 : 1;
     }
-  std::fprintf(stderr,
-               "judge rays|inside|distance|queries|filters [--count N] [--scene NAME]...\n");
+  std::fprintf(
+      stderr,
+      "judge rays|inside|distance|queries|agreement|filters [--count N] [--scene NAME]...\n");
   return 2;
 }

@@ -97,7 +97,7 @@ FAULTS = [
           "distance_fields(count) > 1 ?", "count > 1 ?", "query",
           "Query.GridsOfVeryManyCellsKnowNoOctants"),
     Fault("ends of a search met by rounding", "kernel/traverse/trace.hpp",
-          "return after < t_max ? after : next_below(t_max);", "return t;", "query",
+          "return (after < t_max ? after : next_below(t_max)) + 0.f;", "return t;", "query",
           "AnySize.RaysAreToldTheSameAloneAndTogether"),
     Fault("cones of no height", "kernel/shapes/cone.cpp", "kFlattest = 0x1p-22;",
           "kFlattest = 0;", "cone", "ConeOracle.MeetsFlatOnesBetweenTheirRims"),

@@ -27,7 +27,8 @@ grelha_test(kernel/isa/kinds property grelha::kernel)
 find_library(GRELHA_GMPXX gmpxx)
 if(GRELHA_GMPXX)
   grelha_test(kernel/traverse/exact property grelha::kernel ${GRELHA_GMPXX} gmp)
-  target_sources(exact_test PRIVATE kernel/traverse/expansion_test.cpp)
+  target_sources(exact_test PRIVATE kernel/query/agreement_test.cpp
+    kernel/traverse/expansion_test.cpp)
 else()
   add_test(NAME exact COMMAND ${CMAKE_COMMAND} -E echo
     "SKIPPED: rational numbers need GMP (Debian: libgmp-dev)")

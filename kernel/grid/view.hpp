@@ -49,8 +49,8 @@ struct SceneView {
 
 /// How rays are traced. Only masks change an answer.
 struct TraceOptions {
-  int packet = 256;     ///< rays that walk together: 1, 16, 64 or 256
-  bool mailbox = true;  ///< for packets
+  int packet = 256;                     ///< rays that walk together: 1, 16, 64 or 256
+  bool mailbox = true;                  ///< for packets
   const std::uint8_t* masks = nullptr;  ///< [primitives], see RayFilter
 };
 

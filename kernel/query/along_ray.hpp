@@ -11,8 +11,7 @@ struct PreparedRay {
   scalar::Single single;
   bool valid = false;  ///< false: it hits nothing
 
-  PreparedRay(const SceneView& scene, const Ray& ray)
-      : valid(prepare(single, ray, true)) {
+  PreparedRay(const SceneView& scene, const Ray& ray) : valid(prepare(single, ray, true)) {
     single.geometry = &scene.geometry;
   }
   PreparedRay(const PreparedRay&) = delete;  ///< `single` points into itself

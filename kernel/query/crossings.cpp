@@ -21,9 +21,8 @@ class CrossingList {
       return;
     ray_ = prepared_.exact();
     AlongRay(scene_, prepared_, *this);
-    std::sort(found_.begin(), found_.end(), [](const Found& a, const Found& b) {
-      return a.id < b.id;
-    });
+    std::sort(
+        found_.begin(), found_.end(), [](const Found& a, const Found& b) { return a.id < b.id; });
     // a triangle may stand in several cells
     const auto same = [](const Found& a, const Found& b) { return a.id == b.id; };
     found_.erase(std::unique(found_.begin(), found_.end(), same), found_.end());
@@ -35,8 +34,8 @@ class CrossingList {
     const PrimitiveIds& ids = scene_.geometry.ids;
     if (!ids.has(PrimitiveKind::kSphere, id))
       return;
-    const auto ball = primitive_at<Sphere>(scene_.geometry.of<Sphere>(),
-                                           id - ids.begin(PrimitiveKind::kSphere));
+    const auto ball =
+        primitive_at<Sphere>(scene_.geometry.of<Sphere>(), id - ids.begin(PrimitiveKind::kSphere));
     in_ball_ = in_ball_ || is_within(ray_.org, ball.center, ball.radius);
   }
   void block(const TriangleBlock& block) {

@@ -1,7 +1,10 @@
 #include "kernel/shapes/exact_hits.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "kernel/shapes/rounding.hpp"
 
 namespace grelha {
 namespace {
@@ -107,7 +110,7 @@ Barycentric barycentric(const GeometryView& g, const ExactRay& ray, std::uint32_
     crossing_weights(ray, triangle.corner, weight);
   const float u = static_cast<float>(weight[1]) + 0.f;  // no zero is -0
   const float v = static_cast<float>(weight[2]) + 0.f;
-  return {u, u + v > 1 ? 1 - u : v};
+  return {u, std::min(v, float_not_above(1 - static_cast<double>(u)))};
 }
 
 namespace {

@@ -86,10 +86,10 @@ template <class Real>
 
 /// t of the same for one ray, rounded once. Returns false where double does not tell.
 inline bool round_plane_t(const ExactRay& ray, const float (&corner)[3][3], float& t) {
-  const PlaneSpan<double> span = plane_span<double>(
-      vec(ray.org),
-      vec(ray.dir),
-      {vec_double(corner[0]), vec_double(corner[1]), vec_double(corner[2])});
+  const PlaneSpan<double> span =
+      plane_span<double>(vec(ray.org),
+                         vec(ray.dir),
+                         {vec_double(corner[0]), vec_double(corner[1]), vec_double(corner[2])});
   t = static_cast<float>(span.lo) + 0.f;  // no zero is -0
   return span.known && t == static_cast<float>(span.hi);
 }

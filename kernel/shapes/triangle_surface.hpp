@@ -51,7 +51,7 @@ inline TrianglePosition<Real> triangle_position(const Real& axis,
   const auto turned = [&](const Vec3<Real>& p) { return permute_axes<Real>(axis, p); };
   auto [w, sure] =
       weights_at<Real>(turned(org), turned(dir), {turned(c.a), turned(c.b), turned(c.c)});
-  constexpr unsigned kAll = (1u << kWidth<Real>) - 1;
+  constexpr unsigned kAll = (1u << kWidth<Real>)-1;
   if (const unsigned unsure = ~bits(sure) & kAll; unsure != 0) [[unlikely]]
     settle_weights(org, dir, c, unsure, w);
   const Vec3<Real> e1 = c.b - c.a;

@@ -22,9 +22,9 @@ struct Single {
   float frame_error = 0;
   float error_bound = kInfinity;
   double shift = 0;
-  float unit;                       ///< length that t is counted in
-  float given_t_min, given_t_max;   ///< in the caller's lengths
-  GivenRays given;                  ///< the ray as it came, also in a moved copy
+  float unit;                      ///< length that t is counted in
+  float given_t_min, given_t_max;  ///< in the caller's lengths
+  GivenRays given;                 ///< the ray as it came, also in a moved copy
   const RayFilter* filter = nullptr;
   const GeometryView* geometry = nullptr;
   const TriangleBlock* block = nullptr;  ///< of the last triangle that came first

@@ -33,6 +33,8 @@ std::size_t judge_rays(const JudgeOptions& options);
 std::size_t judge_inside(const JudgeOptions& options);
 /// Signed distances against long double.
 std::size_t judge_distance(const JudgeOptions& options);
+/// Every query about triangles, in every interval and from any distance, against rational numbers.
+std::size_t judge_agreement(const JudgeOptions& options);
 /// All hits, counts, skip, masks, u v of every kind against long double.
 std::size_t judge_queries(const JudgeOptions& options);
 /// The share of rays that leave each filter of the triangle test. Nothing can be wrong: returns 0.

@@ -38,14 +38,10 @@ inline mpq_class dot(const Vector& a, const Vector& b) {
 
 /// t of the point where a line meets the plane of a triangle, if that lies within it, edges and
 /// corners included: the point is on the inner side of each edge. None where the line is parallel.
-inline std::optional<mpq_class> crossing(const Ray& ray,
-                                         const Float3& a,
-                                         const Float3& b,
-                                         const Float3& c) {
+inline std::optional<mpq_class> crossing(
+    const Vector& org, const Vector& dir, const Vector& a, const Vector& b, const Vector& c) {
   const Vector p[3] = {a, b, c};
   const Vector n = cross(p[1] - p[0], p[2] - p[0]);
-  const Vector dir(ray.dir);
-  const Vector org(ray.org);
   const mpq_class along = dot(n, dir);
   if (along == 0)
     return {};
@@ -55,6 +51,12 @@ inline std::optional<mpq_class> crossing(const Ray& ray,
     if (dot(cross(p[(k + 1) % 3] - p[k], at - p[k]), n) < 0)
       return {};
   return t;
+}
+inline std::optional<mpq_class> crossing(const Ray& ray,
+                                         const Float3& a,
+                                         const Float3& b,
+                                         const Float3& c) {
+  return crossing(Vector(ray.org), Vector(ray.dir), Vector(a), Vector(b), Vector(c));
 }
 
 /// Returns true if long double shows that a line misses a triangle.
@@ -169,7 +171,8 @@ class FirstTriangle {
                   if (rational::passes_by(ray, a, b, c))
                     return;
                   const auto t = crossing(ray, a, b, c);
-                  if (t && *t > ray.t_min && !(std::isfinite(ray.t_max) && *t >= ray.t_max))
+                  if (t && (!std::isfinite(ray.t_min) || *t > ray.t_min) &&
+                      (!std::isfinite(ray.t_max) || *t < ray.t_max))
                     found(i, *t);
                 });
   }

@@ -162,8 +162,8 @@ TEST(GridRows, HoldWhatTheyPromise) {
       const auto copies = find_duplicates(w.primitives, all);
       // far towns have some: floats lie far apart there
       std::set<std::uint32_t> may_lack;
-      for (const Copy& c : copies)
-        may_lack.insert(c.copy);
+      for (const Copy& copy : copies)
+        may_lack.insert(copy.copy);
       for (const std::uint32_t id : all) {
         const bool held = held_by[id] == 1;
         const bool left_out = held_by[id] == 0 && may_lack.contains(id);

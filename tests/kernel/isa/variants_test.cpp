@@ -110,7 +110,8 @@ TEST_P(Copies, AskOneRayAsInAStream) {
       ASSERT_EQ(hit.id, met.id[i]) << rays.describe(i);
       ASSERT_EQ(std::bit_cast<std::uint32_t>(hit.t), std::bit_cast<std::uint32_t>(met.t[i]))
           << rays.describe(i);
-      ASSERT_EQ(variant().loops.occluded_one(world.impl().view, ray, nullptr), met.id[i] != kNoPrimitive)
+      ASSERT_EQ(variant().loops.occluded_one(world.impl().view, ray, nullptr),
+                met.id[i] != kNoPrimitive)
           << rays.describe(i);
     }
   }

@@ -213,6 +213,45 @@ TEST(Views, AnswerWhatIsAskedForAndNoMore) {
   }
 }
 
+TEST(Views, OfSeveralThreadsHaveAnswersInTheirPlaces) {
+  const Mixed m;
+  std::vector<Ray> rays;
+  while (rays.size() < 20000)
+    rays.insert(rays.end(), m.rays.begin(), m.rays.end());
+  std::vector<std::uint32_t> skip(rays.size());
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    skip[i] = i % 3 == 0 ? closest(m.world, rays[i]).id : kNoPrimitive;
+  struct Answers {
+    std::vector<float> u, v;
+    std::vector<double> t_double;
+    Answers(const World& world,
+            const std::vector<Ray>& asked,
+            const std::uint32_t* skips,
+            int threads)
+        : u(asked.size(), 77), v(asked.size(), 77), t_double(asked.size(), 77) {
+      Rays view = Rays::of(asked);
+      view.skip = skips;
+      closest(world,
+              view,
+              {.t_double = t_double.data(), .u = u.data(), .v = v.data()},
+              {.threads = threads});
+    }
+  };
+  const Answers one(m.world, rays, skip.data(), 1);
+  const Answers three(m.world, rays, skip.data(), 3);
+  EXPECT_TRUE(same_bits(one.u, three.u));
+  EXPECT_TRUE(same_bits(one.v, three.v));
+  EXPECT_TRUE(same_bits(one.t_double, three.t_double));
+  int hits = 0;
+  for (std::size_t i = 0; i < rays.size(); i += 37) {
+    const Hit alone = closest(m.world, rays[i], {.skip = skip[i]});
+    hits += bool(alone);
+    const bool is_told = alone && std::abs(alone.t) < 1e18f;
+    ASSERT_TRUE(!is_told || static_cast<float>(one.t_double[i]) == alone.t) << i;
+  }
+  EXPECT_GT(hits, 50);
+}
+
 TEST(Views, LeaveTheCallersArraysAlone) {
   const Mixed m;
   const auto arrays = m.arrays;

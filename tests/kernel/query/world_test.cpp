@@ -161,6 +161,20 @@ TEST(SurfaceAt, LetsRaysLeave) {
   EXPECT_THROW(surface_at(world, count, {}), std::invalid_argument);
 }
 
+TEST(SurfaceAt, OfABallThatShowsItsInsideIsWhereThePointIs) {
+  Scene s = empty_scene();
+  s.geometry.spheres.add({1, 2, 3}, -2, 0);
+  s.geometry.spheres.add({1, 2, 3}, 2, 0);
+  const World world(s, {});
+  for (const std::uint32_t id : {0u, 1u}) {
+    EXPECT_NEAR(surface_at(world, id, {9, 2, 3}).point.x, 3, 1e-6);
+    EXPECT_NEAR(surface_at(world, id, {9, 2, 3}).normal.x, 1, 1e-6);
+  }
+  const SurfacePoint at = surface_at(world, 0, {9, 2, 3});
+  const Float3 inwards{-1, 0, 0};
+  EXPECT_NEAR(closest(world, Ray{at.offset_origin(inwards), inwards}).t, 4, 1e-5);
+}
+
 TEST(SurfaceAt, IsTheClosestPointOfItsPrimitive) {
   const Scene s = balls_and_triangles(7, 150);
   const World world(s, {});

@@ -3,8 +3,11 @@
 #include "kernel/shapes/duplicates.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 
 #include "kernel/grid/world_impl.hpp"
+#include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
 
 #include <gtest/gtest.h>
@@ -85,6 +88,37 @@ TEST(Copies, AreEqualToTheBit) {
   std::vector<Copy> copies = find_duplicates(p, ids);
   std::sort(copies.begin(), copies.end());
   EXPECT_EQ(copies, (std::vector<Copy>{{0, 2}, {1, 4}, {5, 7}, {8, 9}}));
+}
+
+/// The words that a sphere's hash sees, one changed so that its upper half stays, the next so that
+/// the lower half does: FNV-1a of both is the same.
+TEST(Copies, AreNotTakenForEqualSinceTheirHashesAre) {
+  constexpr std::uint64_t kPrime = 0x100000001B3u;
+  constexpr std::uint64_t kStart = 0xCBF29CE484222325u;
+  Random random(4);
+  int found = 0;
+  for (int i = 0; i < 1000 && found < 10; ++i) {
+    const auto x = std::bit_cast<std::uint32_t>(static_cast<float>(random.in(-2, -1)));
+    const auto y = std::bit_cast<std::uint32_t>(static_cast<float>(random.in(1, 2)));
+    const std::uint64_t seen = kStart ^ x;
+    const std::uint64_t other_seen = seen + (151u << 24) - 1;
+    const std::uint64_t state = seen * kPrime;
+    const std::uint64_t other_state = other_seen * kPrime;
+    const auto other_x = static_cast<std::uint32_t>(kStart ^ other_seen);
+    const auto other_y = static_cast<std::uint32_t>(y ^ state ^ other_state);
+    const auto other_at = Float3{std::bit_cast<float>(other_x), std::bit_cast<float>(other_y), 0};
+    if (state >> 32 != other_state >> 32 || !std::isfinite(other_at.x) ||
+        !std::isfinite(other_at.y))
+      continue;
+    ++found;
+    Scene s;
+    s.materials.resize(1);
+    s.geometry.spheres.add({std::bit_cast<float>(x), std::bit_cast<float>(y), 0}, 1, 0);
+    s.geometry.spheres.add(other_at, 1, 0);
+    const Primitives p(s.geometry);
+    EXPECT_TRUE(find_duplicates(p, std::vector<std::uint32_t>{0, 1}).empty());
+  }
+  EXPECT_EQ(found, 10);
 }
 
 TEST(Copies, OfPlanesAtTheEndAreNotTested) {
