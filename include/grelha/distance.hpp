@@ -33,8 +33,8 @@ void closest_points(const World& world,
                     float radius = std::numeric_limits<float>::infinity(),
                     const QueryOptions& options = {});
 
-/// Returns the distance to the closest surface, negative inside the closed meshes of the scene; see
-/// contains() for what inside means. Infinity if the scene is empty.
+/// Returns the distance to the closest surface, negative inside; see contains() for what inside
+/// means. 0 has no sign. Infinity if the scene is empty.
 float signed_distance(const World& world, Float3 point);
 /// The same for many points. Reads options.threads and options.progress. Throws
 /// std::invalid_argument if the lengths differ.

@@ -16,7 +16,7 @@ inline constexpr std::uint32_t kNoPrimitive = 0xFFFFFFFFu;
 struct Ray {
   Float3 org;  ///< origin
   Float3 dir;  ///< direction, of any length from 1e-18 to 1e18; t counts multiples of it
-  /// hits count only strictly between these
+  /// hits count only strictly between these; nextafter(0, -1) as t_min includes t = 0
   float t_min = 0, t_max = std::numeric_limits<float>::infinity();
 };
 
@@ -36,8 +36,8 @@ struct Hit {
 /// Units     org: scene units, within 1e18; dir: any length from 1e-18 to 1e18; t: multiples of it.
 /// Requires  `count` floats of each array, and no null in org and dir unless count is 0: closest()
 ///           and occluded() throw std::invalid_argument.
-/// Ensures   a ray hits nothing where t_max <= t_min, where its direction is longer or shorter,
-///           and where a number is NaN or (of org and dir) infinite.
+/// Ensures   a ray hits nothing where no float lies between t_min and t_max, where its direction is
+///           longer or shorter, and where a number is NaN or (of org and dir) infinite.
 struct Rays {
   const float* org[3] = {};      ///< x, y and z of the origins
   const float* dir[3] = {};      ///< x, y and z of the directions
@@ -71,7 +71,7 @@ struct Hits {
   double* t_double = nullptr;
   /// [i] out: barycentric coordinates where the ray crosses a triangle with the vertices a, b, c:
   /// the point is (1 - u - v) a + u b + v c. Never negative, together at most 1. 0 without a hit
-  /// and for other primitives. Computed in double and rounded.
+  /// and for other primitives. Within 2^-24, from any distance.
   float *u = nullptr, *v = nullptr;
   std::ptrdiff_t stride = 1;  ///< of t and id, in units of four bytes
 
