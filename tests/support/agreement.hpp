@@ -59,6 +59,9 @@ class HardRays {
     if (random_.chance(.4)) {
       const Float3 axis = axis_or_diagonal();
       ray = {at(target, -away, axis), axis};
+    } else if (random_.chance(.3)) {
+      const Float3 along = grazing();
+      ray = {at(target, -away, along), along};
     } else {
       ray.org = at(target, away, random_.direction());
       ray.dir = away > 0 ? minus(target, ray.org) : random_.direction();
@@ -74,6 +77,7 @@ class HardRays {
   Float3 point_on_mesh() {
     const Triangles& t = scene_.geometry.triangles;
     const std::uint32_t k = random_.below(static_cast<std::uint32_t>(t.a.size()));
+    triangle_ = k;
     const Float3 a = vertex(scene_, t.a[k]);
     const Float3 on_edge = at(a, random_.unit(), minus(vertex(scene_, t.b[k]), a));
     switch (random_.below(4)) {
@@ -86,6 +90,17 @@ class HardRays {
       default:
         return at(on_edge, .5 * random_.unit(), minus(vertex(scene_, t.c[k]), on_edge));
     }
+  }
+  /// Along a side of the triangle that was chosen last, and out of its plane a little.
+  Float3 grazing() {
+    const Triangles& t = scene_.geometry.triangles;
+    const Float3 a = vertex(scene_, t.a[triangle_]);
+    const Float3 side = at(minus(vertex(scene_, t.b[triangle_]), a),
+                           random_.unit(),
+                           minus(vertex(scene_, t.c[triangle_]), a));
+    const Float3 d =
+        at(side, std::ldexp(1., -4 - static_cast<int>(random_.below(18))), random_.direction());
+    return d.x == 0 && d.y == 0 && d.z == 0 ? axis_or_diagonal() : d;
   }
   Float3 axis_or_diagonal() {
     for (;;) {
@@ -146,6 +161,7 @@ class HardRays {
   const Scene& scene_;
   Random random_;
   double diagonal_ = 1;
+  std::uint32_t triangle_ = 0;
 };
 
 /// Asks about rays at triangles, and compares with rational numbers.
