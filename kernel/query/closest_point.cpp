@@ -178,10 +178,11 @@ void closest_points(const World& world,
                     float radius,
                     const QueryOptions& options) {
   expect_same_size(points.size(), found.size(), "points");
-  each_run(points.size(), options, [&](std::size_t first, std::size_t end) {
+  const auto work = [&](std::size_t first, std::size_t end) {
     for (std::size_t i = first; i < end; ++i)
       found[i] = closest_point(world, points[i], radius);
-  });
+  };
+  each_run(points.size(), options, work, kPoints);
 }
 
 float signed_distance(const World& world, Float3 point) {
@@ -194,10 +195,11 @@ void signed_distances(const World& world,
                       std::span<float> distances,
                       const QueryOptions& options) {
   expect_same_size(points.size(), distances.size(), "points");
-  each_run(points.size(), options, [&](std::size_t first, std::size_t end) {
+  const auto work = [&](std::size_t first, std::size_t end) {
     for (std::size_t i = first; i < end; ++i)
       distances[i] = signed_distance(world, points[i]);
-  });
+  };
+  each_run(points.size(), options, work, kPoints);
 }
 
 }  // namespace grelha

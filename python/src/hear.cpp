@@ -10,12 +10,14 @@
 
 #include <pybind11/pybind11.h>
 
+#include "grelha/world.hpp"
+
 namespace py = pybind11;
 
 namespace grelha::python {
 namespace {
 
-constexpr std::size_t kFew = 4096;
+constexpr std::size_t kFew = 4096;  ///< of these the kernel asks from the calling thread alone
 constexpr std::chrono::milliseconds kInterval{50};  ///< between looks for a signal
 
 /// A flag that one thread sets and another waits for.
@@ -35,6 +37,27 @@ class Done {
   std::mutex mutex_;
   std::condition_variable changed_;
   bool done_ = false;
+};
+
+/// Lets Python's handlers run, here, at most every kInterval.
+class Listener {
+ public:
+  bool goes_on() {
+    const Clock::time_point now = Clock::now();
+    if (raised_ || now - heard_ < kInterval)
+      return !raised_;
+    heard_ = now;
+    const py::gil_scoped_acquire locked;
+    if (PyErr_CheckSignals() != 0)
+      raised_.emplace();
+    return !raised_;
+  }
+  const std::optional<py::error_already_set>& raised() const { return raised_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point heard_ = Clock::now();
+  std::optional<py::error_already_set> raised_;
 };
 
 }  // namespace
@@ -74,8 +97,14 @@ void hear_signals(const std::function<void(const Progress&)>& work) {
 void hear_signals(std::size_t count, const std::function<void(const Progress&)>& work) {
   if (count > kFew)
     return hear_signals(work);
-  const py::gil_scoped_release unlocked;
-  work({});
+  Listener listener;
+  try {
+    const py::gil_scoped_release unlocked;
+    work([&](double) { return listener.goes_on(); });
+  } catch (const Stopped&) {
+  }
+  if (listener.raised())
+    throw py::error_already_set(*listener.raised());
 }
 
 }  // namespace grelha::python

@@ -13,8 +13,8 @@ using Progress = std::function<bool(double)>;
 /// is thrown once the work has ended. Exceptions of work() are thrown on.
 void hear_signals(const std::function<void(const Progress&)>& work);
 
-/// The same for work of `count` rays or points. Few of them are done here, with an empty progress:
-/// a thread would take longer than they do.
+/// The same for work of `count` rays or points. Few of them are done here, for a thread would take
+/// longer than they do: `progress` itself runs the handlers, when it is asked late.
 void hear_signals(std::size_t count, const std::function<void(const Progress&)>& work);
 
 }  // namespace grelha::python

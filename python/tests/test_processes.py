@@ -180,20 +180,24 @@ class Threads(unittest.TestCase):
 LONG = {
     "query": "world.count_hits(origins, directions)",
     "points": "grelha.World(*ball(9)).closest_points(np.zeros((10 ** 7, 3), np.float32))",
+    "few points": "world.closest_points(np.zeros((4000, 3), np.float32))",
+    "few distances": "world.signed_distance(np.zeros((4000, 3), np.float32))",
+    "fast and slow points": "world.closest_points(mixed)",
     "render": "scene.render(4000, 4000, samples=1000)",
 }
 
 
 class Interrupts(unittest.TestCase):
     def interrupted(self, statement, fork=False):
-        """Ends a statement that would take minutes by SIGINT, and says how it ended."""
+        """Ends a statement that would take long by SIGINT: how it ended, and after how long."""
         program = f"""
-import os, signal, sys, numpy as np, grelha
+import os, signal, sys, time, numpy as np, grelha
 from meshes import ball, rays
 signal.signal(signal.SIGINT, signal.default_int_handler)  # in the background it is ignored
 world, scene = grelha.World(*ball(60)), grelha.Scene(*ball(60))
 origins, directions = (np.tile(x, (160, 1)) for x in rays(10 ** 5, 1))
 world.closest(origins[:9000], directions[:9000])
+mixed = np.concatenate([np.tile(world.vertices * 1.001, (20, 1)), np.zeros((10 ** 6, 3))])
 if {fork} and os.fork():
     sys.exit(os.wait()[1] != 0)
 print(os.getpid(), flush=True)
@@ -201,7 +205,7 @@ try:
     {statement}
     print("went through")
 except KeyboardInterrupt:
-    print("interrupted", world.closest((3, 0, 0), (-1, 0.01, 0)).id >= 0)
+    print(time.monotonic(), "interrupted", world.closest((3, 0, 0), (-1, 0.01, 0)).id >= 0)
 """
         child = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True,
                                  cwd=os.path.dirname(os.path.abspath(__file__)))
@@ -217,19 +221,18 @@ except KeyboardInterrupt:
                     os.kill(process, signal.SIGKILL)
                 except ProcessLookupError:
                     pass
-        return said.strip(), time.monotonic() - began, child.returncode
+        heard, _, said = said.strip().partition(" ")
+        self.assertEqual((said, child.returncode), ("interrupted True", 0), heard)
+        return float(heard) - began
 
     def test_ctrl_c(self):
         for name, statement in LONG.items():
             with self.subTest(name):
-                said, seconds, status = self.interrupted(statement)
-                self.assertEqual((said, status), ("interrupted True", 0))
-                self.assertLess(seconds, 10)
+                # the best of some: the machine may be busy
+                self.assertLess(min(self.interrupted(statement) for _ in range(3)), 0.2)
 
     def test_ctrl_c_in_a_forked_process(self):
-        said, seconds, status = self.interrupted(LONG["query"], fork=True)
-        self.assertEqual((said, status), ("interrupted True", 0))
-        self.assertLess(seconds, 10)
+        self.assertLess(self.interrupted(LONG["query"], fork=True), 2)
 
     def test_exception_of_a_handler_comes_through(self):
         def handler(number, frame):
