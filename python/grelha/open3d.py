@@ -9,7 +9,7 @@ may be float64. Answers do not depend on the number of threads. Inside and outsi
 import numpy as np
 
 from ._geometry import barycentric, first_of_equal, normals, numbers, points_along
-from ._grelha import World
+from ._world import World
 
 __all__ = ["RaycastingScene"]
 

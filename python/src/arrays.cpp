@@ -1,5 +1,6 @@
 #include "src/arrays.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <stdexcept>
 
@@ -14,7 +15,65 @@ py::array flattened(const py::array& array, const Shape& shape, std::size_t coun
   return array;
 }
 
+/// numpy.ma.MaskedArray, looked for where an array is not numpy's own. Its mask would be lost.
+bool is_masked(py::handle given) {
+  // never destroyed: the interpreter may be gone before it
+  static const auto* const plain = new py::object(py::module_::import("numpy").attr("ndarray"));
+  if (py::type::handle_of(given).is(*plain) || !py::isinstance<py::array>(given))
+    return false;
+  static const auto* const masked =
+      new py::object(py::module_::import("numpy").attr("ma").attr("MaskedArray"));
+  return py::isinstance(given, *masked);
+}
+
+/// Any array. Throws TypeError for what is none.
+py::array array_in(py::handle given, const char* name, const std::string& what) {
+  if (is_masked(given))
+    throw py::type_error(std::string(name) + ": expected " + what +
+                         ", found a masked array; its mask would be lost: fill it first");
+  py::array array = py::array::ensure(given);
+  if (!array || array.dtype().kind() == 'O')
+    wrong_type(name, what, given);
+  return array;
+}
+
+/// A view of a shape that the array's own broadcasts to.
+py::array repeated(const py::array& array, const Shape& shape) {
+  static const auto* const to = new py::object(py::module_::import("numpy").attr("broadcast_to"));
+  py::tuple axes(shape.size());
+  for (std::size_t i = 0; i < shape.size(); ++i)
+    axes[i] = shape[i];
+  return (*to)(array, axes);
+}
+
+Shape shape_of(const py::array& array) {
+  return {array.shape(), array.shape() + array.ndim()};
+}
+
 }  // namespace
+
+std::size_t size_of(const Shape& shape) {
+  std::size_t count = 1;
+  for (const py::ssize_t n : shape)
+    count *= std::size_t(n);
+  return count;
+}
+
+bool broadcast(Shape& shape, const Shape& with) {
+  if (with.empty() || with == shape)
+    return true;
+  Shape both = shape.size() < with.size() ? with : shape;
+  const std::size_t common = std::min(shape.size(), with.size());
+  for (std::size_t i = 1; i <= common; ++i) {
+    const py::ssize_t a = shape[shape.size() - i];
+    const py::ssize_t b = with[with.size() - i];
+    if (a != b && a != 1 && b != 1)
+      return false;
+    both[both.size() - i] = a == 1 ? b : a;
+  }
+  shape = both;
+  return true;
+}
 
 std::string text_of(const Shape& shape) {
   std::string text = "(";
@@ -39,32 +98,45 @@ void wrong_value(const char* name, const std::string& what, const std::string& g
 }
 
 py::array numbers_in(py::handle given, const char* name, const char* shape) {
-  const std::string what = std::string("numbers of shape ") + shape;
-  py::array array = py::array::ensure(given);
-  if (!array || array.dtype().kind() == 'O')
-    wrong_type(name, what, given);
+  py::array array = array_in(given, name, std::string("numbers of shape ") + shape);
   const py::dtype type = array.dtype();
   if (type.kind() != 'f' && type.kind() != 'i' && type.kind() != 'u')
-    wrong_type(name, what, array);
+    wrong_type(name, std::string("numbers of shape ") + shape, array);
   const bool native = type.byteorder() == '=' || type.byteorder() == '|';
   if (type.kind() == 'f' && (type.itemsize() == 4 || type.itemsize() == 8) && native)
     return array;
   return py::array(array.attr("astype")(type.itemsize() == 2 && type.kind() == 'f' ? "f4" : "f8"));
 }
 
-Triples::Triples(py::handle given, const char* name) : array_(numbers_in(given, name, "(..., 3)")) {
-  const py::ssize_t axes = array_.ndim();
-  if (axes == 0 || array_.shape(axes - 1) != 3)
-    wrong_value(name, "shape (..., 3)", text_of(Shape(array_.shape(), array_.shape() + axes)));
-  shape_.assign(array_.shape(), array_.shape() + axes - 1);
-  for (const py::ssize_t n : shape_)
-    count_ *= std::size_t(n);
-  if (shape_.size() > 1)
-    array_ = flattened(array_, shape_, count_);
-  in_double_ = array_.itemsize() == 8;
-  data_ = static_cast<const char*>(array_.data());
-  axis_stride_ = array_.strides(array_.ndim() - 1);
-  stride_ = array_.ndim() > 1 ? array_.strides(array_.ndim() - 2) : 0;
+Triples::Triples(py::handle given, const char* name)
+    : array_(numbers_in(given, name, "(..., 3)")), rows_(array_) {
+  const Shape all = shape_of(array_);
+  if (all.empty() || all.back() != 3)
+    wrong_value(name, "shape (..., 3)", text_of(all));
+  shape_.assign(all.begin(), all.end() - 1);
+  look();
+}
+
+void Triples::look() {
+  count_ = size_of(shape_);
+  rows_ = shape_.size() > 1 ? flattened(array_, shape_, count_) : array_;
+  in_double_ = rows_.itemsize() == 8;
+  data_ = static_cast<const char*>(rows_.data());
+  axis_stride_ = rows_.strides(rows_.ndim() - 1);
+  stride_ = rows_.ndim() > 1 ? rows_.strides(rows_.ndim() - 2) : 0;
+}
+
+void Triples::repeat(const Shape& shape) {
+  if (shape_ == shape || shape_.empty())
+    return;
+  if (count_ == 1) {  // one for all needs no copy for each
+    array_ = py::array(array_.attr("reshape")(3));
+    shape_.clear();
+  } else {
+    shape_ = shape;
+    array_ = repeated(array_, full_shape());
+  }
+  look();
 }
 
 double Triples::at(std::size_t i, std::size_t axis) const {
@@ -117,41 +189,66 @@ void expect_rows(const Triples& triples, const char* name) {
     wrong_value(name, "shape (n, 3)", text_of(triples.full_shape()));
 }
 
-Numbers numbers_for(py::handle given, const char* name, const Shape& shape) {
-  Numbers numbers;
+Numbers::Numbers(py::handle given, const char* name) {
   if (PyFloat_Check(given.ptr())) {
-    numbers.all = PyFloat_AS_DOUBLE(given.ptr());
-    return numbers;
+    all = PyFloat_AS_DOUBLE(given.ptr());
+    return;
   }
-  const std::string what = "a number or shape " + text_of(shape);
-  const py::array array = numbers_in(given, name, text_of(shape).c_str());
-  if (array.ndim() == 0) {
-    numbers.all = array.cast<double>();
-    return numbers;
-  }
-  const Shape found(array.shape(), array.shape() + array.ndim());
-  if (found != shape)
-    wrong_value(name, what, text_of(found));
-  const auto floats = py::array_t<float, py::array::c_style | py::array::forcecast>(array);
-  numbers.each.assign(floats.data(), floats.data() + floats.size());
-  return numbers;
+  const py::array array = numbers_in(given, name, "(...)");
+  shape_ = shape_of(array);
+  if (shape_.empty())
+    all = array.cast<double>();
+  array_ = array;
+}
+
+void Numbers::repeat(const Shape& shape) {
+  if (shape_.empty())
+    return;
+  using Floats = py::array_t<float, py::array::c_style | py::array::forcecast>;
+  const auto array = py::reinterpret_borrow<py::array>(array_);
+  const Floats floats(shape_ == shape ? array : repeated(array, shape));
+  each.assign(floats.data(), floats.data() + floats.size());
+}
+
+Doubles::Doubles(py::handle given, const char* name)
+    : array_(numbers_in(given, name, "(...)")), shape_(shape_of(array_)) {}
+
+std::vector<double> Doubles::repeat(const Shape& shape) const {
+  using All = py::array_t<double, py::array::c_style | py::array::forcecast>;
+  const All all(shape_ == shape ? array_ : repeated(array_, shape));
+  return {all.data(), all.data() + all.size()};
 }
 
 py::array_t<std::int64_t> whole_numbers(py::handle given, const char* name, const char* shape) {
   const std::string what = std::string("whole numbers of shape ") + shape;
-  const py::array array = py::array::ensure(given);
-  if (!array || array.dtype().kind() == 'O')
-    wrong_type(name, what, given);
+  const py::array array = array_in(given, name, what);
   const char kind = array.dtype().kind();
   if (kind != 'i' && kind != 'u' && array.size() > 0)
     wrong_type(name, what, array);
   return py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>(array);
 }
 
+Wholes::Wholes(py::handle given, const char* name) {
+  if (given.is_none())
+    return;
+  const py::array array = whole_numbers(given, name, "(...)");
+  shape_ = shape_of(array);
+  array_ = array;
+}
+
+py::array_t<std::int64_t> Wholes::repeat(const Shape& shape) const {
+  using Ids = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
+  const auto array = py::reinterpret_borrow<py::array>(array_);
+  return Ids(shape_ == shape ? array : repeated(array, shape));
+}
+
 double number_in(py::handle given, const char* name) {
   const double value = PyFloat_AsDouble(given.ptr());
   if (value == -1 && PyErr_Occurred()) {
+    const bool is_large = PyErr_ExceptionMatches(PyExc_OverflowError) != 0;
     PyErr_Clear();
+    if (is_large)
+      wrong_value(name, "a number of at most 1e308", "a larger one");
     wrong_type(name, "a number", given);
   }
   return value;

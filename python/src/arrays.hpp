@@ -19,6 +19,10 @@ namespace py = pybind11;
 
 using Shape = std::vector<py::ssize_t>;
 
+std::size_t size_of(const Shape& shape);  ///< the number of elements
+/// Broadcasts a shape with another by numpy's rules. Returns false where these forbid it.
+bool broadcast(Shape& shape, const Shape& with);
+
 std::string text_of(const Shape& shape);  ///< "(4, 3)"
 /// "float64 array of shape (4, 2)", or the type of what is no array.
 std::string text_of(py::handle given);
@@ -44,6 +48,8 @@ class Triples {
  public:
   /// Throws TypeError or ValueError that name the argument.
   Triples(py::handle given, const char* name);
+  /// Broadcasts to a shape, without the last axis. One for all stays one, of an empty shape.
+  void repeat(const Shape& shape);
 
   const Shape& shape() const { return shape_; }  ///< without the last axis
   std::size_t count() const { return count_; }
@@ -61,7 +67,9 @@ class Triples {
   std::vector<Float3> in_frame(const Frame& frame) const;
 
  private:
-  py::array array_;
+  void look();  ///< at the array: where its rows lie
+
+  py::array array_, rows_;  ///< as given; with two axes
   Shape shape_;
   std::size_t count_ = 1;
   bool in_double_ = false;
@@ -73,14 +81,50 @@ class Triples {
 void expect_rows(const Triples& triples, const char* name);
 
 /// One number for all rays, or one for each.
-struct Numbers {
+class Numbers {
+ public:
+  /// Throws TypeError that names the argument.
+  Numbers(py::handle given, const char* name);
+  const Shape& shape() const { return shape_; }
+  void repeat(const Shape& shape);  ///< broadcasts to a shape: fills `each`
+
   double all = 0;
   std::vector<float> each;  ///< empty: `all`
+
+ private:
+  py::object array_;  ///< null for a float: an empty array takes long to make
+  Shape shape_;
 };
-Numbers numbers_for(py::handle given, const char* name, const Shape& shape);
 
 /// Returns whole numbers of an array as int64, row after row. Throws TypeError for other numbers.
 py::array_t<std::int64_t> whole_numbers(py::handle given, const char* name, const char* shape);
+
+/// Numbers in double for all points, or one for each.
+class Doubles {
+ public:
+  /// Throws TypeError that names the argument.
+  Doubles(py::handle given, const char* name);
+  const Shape& shape() const { return shape_; }
+  std::vector<double> repeat(const Shape& shape) const;  ///< broadcasts to a shape
+
+ private:
+  py::array array_;
+  Shape shape_;
+};
+
+/// Whole numbers for all rays, or one for each, or None.
+class Wholes {
+ public:
+  /// Throws TypeError that names the argument.
+  Wholes(py::handle given, const char* name);
+  explicit operator bool() const { return bool(array_); }  ///< false for None
+  const Shape& shape() const { return shape_; }
+  py::array_t<std::int64_t> repeat(const Shape& shape) const;  ///< broadcasts to a shape
+
+ private:
+  py::object array_;  ///< null for None
+  Shape shape_;
+};
 
 /// One number. Throws TypeError for what is none.
 double number_in(py::handle given, const char* name);

@@ -23,6 +23,10 @@ class FileScene {
   /// A mesh as the program shows a bare PLY: its own view, three lights, light grey.
   static FileScene of_mesh(py::handle vertices, py::handle faces, int threads);
 
+  py::tuple state() const;
+  /// Throws ValueError for what state() did not make.
+  static FileScene of_state(const py::tuple& state);
+
   const SharedModel& model() const { return model_; }
   py::dict camera() const;
   py::array_t<float> render(const RenderArguments& given) const;

@@ -101,16 +101,9 @@ std::shared_ptr<Model> mesh_model(py::handle vertices, py::handle faces) {
   return model;
 }
 
-std::shared_ptr<Model> moved_model(const Model& before, py::handle vertices) {
-  if (!before.is_one_mesh())
-    throw py::value_error("update: expected a World of triangles alone");
-  const Triples points(vertices, "vertices");
-  expect_vertices(points);
-  const Triangles& old = before.scene.geometry.triangles;
-  if (points.count() != old.vertex_count())
-    wrong_value("vertices",
-                "as many as before, shape (" + std::to_string(old.vertex_count()) + ", 3)",
-                text_of(points.full_shape()));
+namespace {
+
+std::shared_ptr<Model> moved_mesh(const Triangles& old, const Triples& points) {
   auto model = new_model();
   Triangles& t = model->scene.geometry.triangles;
   t.a = old.a;
@@ -121,32 +114,109 @@ std::shared_ptr<Model> moved_model(const Model& before, py::handle vertices) {
   return model;
 }
 
+/// Radii as given, one for each center.
+std::vector<float> radii_in(py::handle given, const Shape& shape) {
+  Numbers radii(given, "radii");
+  Shape all = shape;
+  if (!broadcast(all, radii.shape()) || all != shape)
+    wrong_value("radii", "a number or shape " + text_of(shape), text_of(radii.shape()));
+  radii.repeat(shape);
+  if (radii.shape().empty())
+    radii.each.assign(size_of(shape), as_float(radii.all));
+  for (std::size_t i = 0; i < radii.each.size(); ++i)
+    if (!(radii.each[i] > 0 && double{radii.each[i]} <= kLargest))
+      wrong_value("radii",
+                  "numbers above 0 of at most 1e18",
+                  std::to_string(radii.each[i]) + " at " + std::to_string(i));
+  return radii.each;
+}
+
+std::shared_ptr<Model> model_of_spheres(const Triples& centers,
+                                        const std::vector<float>& radii,
+                                        const char* name) {
+  auto model = new_model();
+  PointBounds bounds;
+  for (std::size_t i = 0; i < centers.count(); ++i) {
+    expect_usable(centers, i, name);
+    for (std::size_t a = 0; a < 3; ++a)
+      bounds.add(a, centers.at(i, a));
+  }
+  model->in_double = centers.in_double();
+  if (model->in_double && centers.count() > 0)
+    model->frame.offset = bounds.offset();
+  Spheres& s = model->scene.geometry.spheres;
+  for (const Float3& center : centers.in_frame(model->frame))
+    s.add(center, radii[s.size()], 0);
+  return model;
+}
+
+/// The radii of before, in the caller's units.
+std::vector<float> radii_of(const Model& model) {
+  std::vector<float> radii = model.scene.geometry.spheres.radius;
+  for (float& radius : radii)
+    radius = as_float(radius / model.frame.scale);
+  return radii;
+}
+
+}  // namespace
+
+std::shared_ptr<Model> moved_model(const Model& before, py::handle vertices, py::handle radii) {
+  const Geometry& old = before.scene.geometry;
+  const bool is_spheres = before.primitives() > 0 && before.primitives() == old.spheres.size();
+  if (!is_spheres && !before.is_one_mesh())
+    throw py::value_error("update: expected a World of triangles alone, or of spheres alone");
+  if (!is_spheres && !radii.is_none())
+    throw py::value_error("radii: expected None in a World of triangles");
+  const Triples points(vertices, "vertices");
+  expect_vertices(points);
+  const std::size_t count = is_spheres ? old.spheres.size() : old.triangles.vertex_count();
+  if (points.count() != count)
+    wrong_value("vertices",
+                "as many as before, shape (" + std::to_string(count) + ", 3)",
+                text_of(points.full_shape()));
+  if (!is_spheres)
+    return moved_mesh(old.triangles, points);
+  const bool same = radii.is_none();
+  return model_of_spheres(
+      points, same ? radii_of(before) : radii_in(radii, points.shape()), "vertices");
+}
+
 std::shared_ptr<Model> sphere_model(py::handle centers, py::handle radii) {
   const Triples points(centers, "centers");
   expect_rows(points, "centers");
   if (points.count() >= kMostPrimitives)
     wrong_value("centers", "fewer than 2^32 - 1 spheres", std::to_string(points.count()));
-  const Numbers sizes = numbers_for(radii, "radii", points.shape());
-  auto model = new_model();
-  Spheres& s = model->scene.geometry.spheres;
-  PointBounds bounds;
-  for (std::size_t i = 0; i < points.count(); ++i) {
-    expect_usable(points, i, "centers");
-    for (std::size_t a = 0; a < 3; ++a)
-      bounds.add(a, points.at(i, a));
+  return model_of_spheres(points, radii_in(radii, points.shape()), "centers");
+}
+
+py::object outside_points(const Model& model, const std::vector<Float3>& points, Shape shape) {
+  shape.push_back(3);
+  const auto fill = [&](auto array) -> py::object {
+    auto* to = array.mutable_data();
+    for (const Float3& point : points)
+      for (const double x : model.frame.outside(point))
+        *to++ = static_cast<std::decay_t<decltype(*to)>>(x);
+    return array;
+  };
+  return model.in_double ? fill(py::array_t<double>(shape)) : fill(py::array_t<float>(shape));
+}
+
+py::array_t<std::uint8_t> masks_in(py::handle given, const Model& model) {
+  const std::string shape = text_of(Shape{py::ssize_t(model.primitives())});
+  const py::array_t<std::int64_t> masks = whole_numbers(given, "masks", shape.c_str());
+  if (masks.ndim() != 1 || masks.shape(0) != py::ssize_t(model.primitives()))
+    wrong_value(
+        "masks", "shape " + shape, text_of(Shape(masks.shape(), masks.shape() + masks.ndim())));
+  py::array_t<std::uint8_t> bytes(masks.size());
+  std::uint8_t* to = bytes.mutable_data();
+  for (py::ssize_t i = 0; i < masks.size(); ++i) {
+    const std::int64_t mask = masks.data()[i];
+    if (mask < 0 || mask > 255)
+      wrong_value(
+          "masks", "numbers from 0 to 255", std::to_string(mask) + " at " + std::to_string(i));
+    *to++ = std::uint8_t(mask);
   }
-  model->in_double = points.in_double();
-  if (model->in_double && points.count() > 0)
-    model->frame.offset = bounds.offset();
-  for (const Float3& center : points.in_frame(model->frame)) {
-    const float radius = sizes.each.empty() ? float(sizes.all) : sizes.each[s.size()];
-    if (!(radius > 0 && double{radius} <= kLargest))
-      wrong_value("radii",
-                  "numbers above 0 of at most 1e18",
-                  std::to_string(radius) + " at " + std::to_string(s.size()));
-    s.add(center, radius, 0);
-  }
-  return model;
+  return bytes;
 }
 
 }  // namespace grelha::python

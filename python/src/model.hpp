@@ -34,9 +34,14 @@ SharedModel built(std::shared_ptr<Model> model, int threads);
 
 /// A model of triangles, not built yet. Throws TypeError and ValueError that name the argument.
 std::shared_ptr<Model> mesh_model(py::handle vertices, py::handle faces);
-/// The same faces with other vertices, as many.
-std::shared_ptr<Model> moved_model(const Model& model, py::handle vertices);
+/// The same faces with other vertices, as many; or spheres with other centers, as many, and radii.
+std::shared_ptr<Model> moved_model(const Model& model, py::handle vertices, py::handle radii);
 /// A model of spheres.
 std::shared_ptr<Model> sphere_model(py::handle centers, py::handle radii);
+
+/// Points of the model's frame in the caller's units: (..., 3), float64 if the vertices were.
+py::object outside_points(const Model& model, const std::vector<Float3>& points, Shape shape);
+/// Masks of the primitives as uint8 (primitives,). Throws TypeError and ValueError.
+py::array_t<std::uint8_t> masks_in(py::handle given, const Model& model);
 
 }  // namespace grelha::python

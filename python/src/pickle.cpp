@@ -85,7 +85,7 @@ py::tuple state_of(const Model& model) {
                         model.in_double);
 }
 
-SharedModel model_of(const py::tuple& state) {
+std::shared_ptr<Model> unbuilt_model_of(const py::tuple& state) {
   if (state.size() != 6 || !py::isinstance<py::int_>(state[0]) || state[0].cast<int>() != kVersion)
     throw py::value_error("state: expected that of a World of this version of grelha");
   auto model = std::make_shared<Model>();
@@ -112,7 +112,11 @@ SharedModel model_of(const py::tuple& state) {
     model->frame.offset[a] = offset[a].cast<double>();
   model->frame.scale = state[4].cast<double>();
   model->in_double = state[5].cast<bool>();
-  return built(std::move(model), 0);
+  return model;
+}
+
+SharedModel model_of(const py::tuple& state) {
+  return built(unbuilt_model_of(state), 0);
 }
 
 }  // namespace grelha::python

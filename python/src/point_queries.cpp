@@ -10,6 +10,8 @@
 namespace grelha::python {
 namespace {
 
+constexpr double kLargestRadius = 1e19;  ///< more than from one end of space to the other
+
 /// The points of one call as the kernel reads them.
 class PointBatch {
  public:
@@ -80,8 +82,8 @@ py::object nearest_points(const Model& model,
                           py::handle wanted) {
   const int threads = threads_in(wanted);
   const double radius = number_in(within, "radius");
-  if (!(radius >= 0))
-    wrong_value("radius", "0 or more", std::to_string(radius));
+  if (!(radius >= 0 && (radius <= kLargestRadius || std::isinf(radius))))
+    wrong_value("radius", "0 to 1e19, or inf", std::string(py::str(within)));
   PointBatch batch(model, given);
   const double scale = model.frame.scale;
   std::vector<ClosestPoint> found(batch.count());

@@ -11,6 +11,12 @@ py::object occluded_rays(const Model& model, const RayArguments& rays, py::handl
 py::object all_ray_hits(const Model& model, const RayArguments& rays, py::handle threads);
 py::object hit_counts(const Model& model, const RayArguments& rays, py::handle threads);
 
+/// Where rays start on faces.
+struct StartArguments {
+  py::handle face, u, v, directions;
+};
+py::object start_points(const Model& model, const StartArguments& given);
+
 py::object inside_points(const Model& model, py::handle points, py::handle threads);
 py::object nearest_points(const Model& model,
                           py::handle points,

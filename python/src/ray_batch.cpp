@@ -9,52 +9,77 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// One origin serves many directions, and the other way round.
-Shape shared_shape(const Triples& origins, const Triples& directions) {
-  if (origins.shape().empty())
-    return directions.shape();
-  if (!directions.shape().empty() && directions.shape() != origins.shape())
-    wrong_value("directions",
-                "shape " + text_of(origins.full_shape()) + " as of origins, or (3,)",
-                text_of(directions.full_shape()));
-  return origins.shape();
+/// Broadcasts the rays' shape with that of one more argument.
+void add_shape(Shape& shape, const Shape& with, const char* name) {
+  if (!broadcast(shape, with))
+    wrong_value(name,
+                "a number or a shape that broadcasts with " + text_of(shape) + " of the rays",
+                text_of(with));
 }
 
-}  // namespace
-
-std::vector<std::uint32_t> skips_for(py::handle given, const Model& model, const Shape& shape) {
-  if (given.is_none())
+template <class T, class Check>
+std::vector<T> checked(const Wholes& given, const Shape& shape, const Check& check) {
+  if (!given)
     return {};
-  const py::array_t<std::int64_t> ids = whole_numbers(given, "skip", text_of(shape).c_str());
-  const Shape found(ids.shape(), ids.shape() + ids.ndim());
-  if (!found.empty() && found != shape)
-    wrong_value("skip", "a number or shape " + text_of(shape), text_of(found));
-  const auto checked = [&](std::int64_t id) {
+  const py::array_t<std::int64_t> numbers = given.repeat(shape);
+  std::vector<T> all(std::size_t(numbers.size()));
+  std::transform(numbers.data(), numbers.data() + numbers.size(), all.begin(), check);
+  return all;
+}
+
+/// Ids of primitives to skip: -1 is none.
+std::vector<std::uint32_t> skips_for(const Wholes& given, const Model& model, const Shape& shape) {
+  return checked<std::uint32_t>(given, shape, [&](std::int64_t id) {
     if (id < -1 || id >= std::int64_t{model.primitives()})
       wrong_value(
           "skip", "-1 or ids below " + std::to_string(model.primitives()), std::to_string(id));
     return id < 0 ? kNoPrimitive : std::uint32_t(id);
-  };
-  std::size_t count = 1;
-  for (const py::ssize_t n : shape)
-    count *= std::size_t(n);
-  if (found.empty())
-    return std::vector<std::uint32_t>(count, checked(*ids.data()));
-  std::vector<std::uint32_t> skips(count);
-  std::transform(ids.data(), ids.data() + ids.size(), skips.begin(), checked);
-  return skips;
+  });
 }
+
+std::vector<std::uint8_t> masks_for(const Wholes& given, const Shape& shape) {
+  return checked<std::uint8_t>(given, shape, [&](std::int64_t mask) {
+    if (mask < 0 || mask > 255)
+      wrong_value("mask", "numbers from 0 to 255", std::to_string(mask));
+    return std::uint8_t(mask);
+  });
+}
+
+}  // namespace
 
 RayBatch::RayBatch(const Model& model, const RayArguments& given)
     : model_(model),
       origins_{Triples(given.origins, "origins")},
       directions_{Triples(given.directions, "directions")},
-      shape_(shared_shape(origins_.given, directions_.given)),
-      t_min_(numbers_for(given.t_min, "t_min", shape_)),
-      t_max_(numbers_for(given.t_max, "t_max", shape_)),
-      skip_(skips_for(given.skip, model, shape_)) {
-  for (const py::ssize_t n : shape_)
-    count_ *= std::size_t(n);
+      t_min_(given.t_min, "t_min"),
+      t_max_(given.t_max, "t_max") {
+  const Wholes skip(given.skip, "skip");
+  const Wholes mask(given.mask, "mask");
+  share_shape(skip, mask);
+  skip_ = skips_for(skip, model, shape_);
+  mask_ = masks_for(mask, shape_);
+  if (given.masks.is_none())
+    return;
+  const auto masks = py::reinterpret_borrow<py::array>(given.masks);  // the caller holds it
+  masks_ = {static_cast<const std::uint8_t*>(masks.data()), std::size_t(masks.size())};
+}
+
+void RayBatch::share_shape(const Wholes& skip, const Wholes& mask) {
+  shape_ = origins_.given.shape();
+  if (!broadcast(shape_, directions_.given.shape()))
+    wrong_value(
+        "directions",
+        "a shape that broadcasts with " + text_of(origins_.given.full_shape()) + " of origins",
+        text_of(directions_.given.full_shape()));
+  add_shape(shape_, t_min_.shape(), "t_min");
+  add_shape(shape_, t_max_.shape(), "t_max");
+  add_shape(shape_, skip.shape(), "skip");
+  add_shape(shape_, mask.shape(), "mask");
+  count_ = size_of(shape_);
+  origins_.given.repeat(shape_);
+  directions_.given.repeat(shape_);
+  t_min_.repeat(shape_);
+  t_max_.repeat(shape_);
 }
 
 void RayBatch::Column::place(const Frame& frame, const float* (&axes)[3], std::ptrdiff_t& stride) {
@@ -107,6 +132,7 @@ Rays RayBatch::rays() {
   directions_.place({}, rays.dir, rays.dir_stride);
   place_range(rays);
   rays.skip = skip_.empty() ? nullptr : skip_.data();
+  rays.mask = mask_.empty() ? nullptr : mask_.data();
   return rays;
 }
 

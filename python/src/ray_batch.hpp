@@ -1,7 +1,8 @@
 #pragma once
 // The rays of one call.
 
-#include <optional>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "grelha/rays.hpp"
@@ -12,7 +13,8 @@ namespace grelha::python {
 
 /// What a caller says of rays.
 struct RayArguments {
-  py::handle origins, directions, t_min, t_max, skip;
+  py::handle origins, directions, t_min, t_max, skip, mask;
+  py::handle masks;  ///< of the primitives: uint8 (primitives,), or None
 };
 
 /// Rays as the kernel reads them, from the caller's arrays where they lie so.
@@ -26,6 +28,7 @@ class RayBatch {
 
   /// Copies what does not lie as the kernel wants it. Needs no lock.
   Rays rays();
+  std::span<const std::uint8_t> masks() const { return masks_; }  ///< QueryOptions::mask
 
  private:
   struct Column {
@@ -34,6 +37,7 @@ class RayBatch {
     /// Points to the floats, and says how far they are apart.
     void place(const Frame& frame, const float* (&axes)[3], std::ptrdiff_t& stride);
   };
+  void share_shape(const Wholes& skip, const Wholes& mask);
   void place_range(Rays& rays);
 
   const Model& model_;
@@ -42,9 +46,8 @@ class RayBatch {
   std::size_t count_ = 1;
   Numbers t_min_, t_max_;
   std::vector<std::uint32_t> skip_;
+  std::vector<std::uint8_t> mask_;
+  std::span<const std::uint8_t> masks_;
 };
-
-/// Ids of primitives to skip: -1 is none. Throws ValueError for ids that the model lacks.
-std::vector<std::uint32_t> skips_for(py::handle given, const Model& model, const Shape& shape);
 
 }  // namespace grelha::python

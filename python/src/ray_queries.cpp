@@ -11,8 +11,9 @@ namespace {
 
 using Ids = py::array_t<std::int64_t>;
 
-QueryOptions options_of(int threads, const Progress& progress) {
+QueryOptions options_of(const RayBatch& batch, int threads, const Progress& progress) {
   QueryOptions options;
+  options.mask = batch.masks();
   options.threads = threads;
   options.progress = progress;
   return options;
@@ -88,7 +89,7 @@ py::object closest_hit(const Model& model, RayBatch& batch) {
   hits.id = &id;
   hits.u = &one.u;
   hits.v = &one.v;
-  closest(*model.world, batch.rays(), hits);
+  closest(*model.world, batch.rays(), hits, options_of(batch, 1, {}));
   finish(model, &id, 1, {&one.t, nullptr, nullptr, &one.id, &one.face});
   return result_class("Hits")(one.t, one.id, one.u, one.v, one.face);
 }
@@ -113,7 +114,7 @@ py::object closest_hits(const Model& model, const RayArguments& given, py::handl
     hits.id = ids.get();
     hits.u = to.u;
     hits.v = to.v;
-    closest(*model.world, batch.rays(), hits, options_of(threads, progress));
+    closest(*model.world, batch.rays(), hits, options_of(batch, threads, progress));
     finish(model, ids.get(), batch.count(), to);
   });
   return result_class("Hits")(answers.t, answers.id, answers.u, answers.v, answers.face);
@@ -126,7 +127,7 @@ py::object occluded_rays(const Model& model, const RayArguments& given, py::hand
   static_assert(sizeof(bool) == sizeof(std::uint8_t));
   auto* const to = reinterpret_cast<std::uint8_t*>(blocked.mutable_data());
   hear_signals(batch.count(), [&](const Progress& progress) {
-    occluded(*model.world, batch.rays(), to, options_of(threads, progress));
+    occluded(*model.world, batch.rays(), to, options_of(batch, threads, progress));
   });
   return plain(blocked, batch.shape());
 }
@@ -136,7 +137,7 @@ py::object all_ray_hits(const Model& model, const RayArguments& given, py::handl
   RayBatch batch(model, given);
   HitLists lists;
   hear_signals(batch.count(), [&](const Progress& progress) {
-    lists = all_hits(*model.world, batch.rays(), options_of(threads, progress));
+    lists = all_hits(*model.world, batch.rays(), options_of(batch, threads, progress));
   });
   Ids offsets(py::ssize_t(lists.offset.size()));
   py::array_t<float> t(py::ssize_t(lists.hits.size()));
@@ -159,7 +160,7 @@ py::object hit_counts(const Model& model, const RayArguments& given, py::handle 
   std::int64_t* const to = counts.mutable_data();
   hear_signals(batch.count(), [&](const Progress& progress) {
     const auto found = std::make_unique_for_overwrite<std::uint32_t[]>(batch.count());
-    count_hits(*model.world, batch.rays(), found.get(), options_of(threads, progress));
+    count_hits(*model.world, batch.rays(), found.get(), options_of(batch, threads, progress));
     std::copy(found.get(), found.get() + batch.count(), to);
   });
   return plain(counts, batch.shape());

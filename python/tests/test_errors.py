@@ -1,6 +1,5 @@
 """Misuse: an exception of the right kind that names the argument, never a crash."""
 import os
-import pickle
 import tempfile
 import unittest
 import warnings
@@ -23,10 +22,11 @@ NO_TRIPLES = [
     ([None] * 3, TypeError), (lambda: 0, TypeError), (np.float32, TypeError),
     (1.0, ValueError), (np.float64(1), ValueError), ([], ValueError), ([1, 2], ValueError),
     (np.zeros(4), ValueError), (np.zeros((3, 2)), ValueError), (np.zeros((3, 0)), ValueError),
-    (np.zeros((2, 3, 4)), ValueError),
+    (np.zeros((2, 3, 4)), ValueError), (np.ma.masked_invalid(np.zeros((4, 3))), TypeError),
 ]
 NO_WHOLES = [(None, TypeError), ("a", TypeError), ([0.5] * 3, TypeError), ({}, TypeError),
-             (np.zeros(3, complex), TypeError), (object(), TypeError)]
+             (np.zeros(3, complex), TypeError), (object(), TypeError),
+             (np.ma.masked_less(np.zeros((1, 3), int), 0), TypeError)]
 NO_COUNTS = [("2", TypeError), (1.5, TypeError), (None, TypeError), ([1], TypeError),
              (-1, ValueError), (10 ** 9, ValueError), (10 ** 30, ValueError)]
 RAY_METHODS = ("closest", "occluded", "all_hits", "count_hits")
@@ -63,12 +63,15 @@ class Misuses(unittest.TestCase):
             for name in ("t_min", "t_max"):
                 for bad, kind in (("a", TypeError), (None, TypeError), ({}, TypeError),
                                   (1j, TypeError), ([1, 2], ValueError),
-                                  (np.zeros((4, 1)), ValueError), (np.zeros(5), ValueError)):
+                                  (np.zeros((4, 2)), ValueError), (np.zeros(5), ValueError)):
                     self.refused(name, kind, call, o, d, **{name: bad})
             for bad, kind in NO_WHOLES[1:] + [([1, 2], ValueError), (12, ValueError),
                                               (-2, ValueError), (2 ** 40, ValueError),
                                               ([0, 1, 2, 12], ValueError)]:
                 self.refused("skip", kind, call, o, d, skip=bad)
+            for bad, kind in NO_WHOLES[1:] + [([1, 2], ValueError), (256, ValueError),
+                                              (-1, ValueError)]:
+                self.refused("mask", kind, call, o, d, mask=bad)
             for bad, kind in NO_COUNTS:
                 self.refused("threads", kind, call, o, d, threads=bad)
 
@@ -80,7 +83,8 @@ class Misuses(unittest.TestCase):
             for bad, kind in NO_COUNTS:
                 self.refused("threads", kind, call, CUBE, threads=bad)
         for bad, kind in (("a", TypeError), (None, TypeError), (-1, ValueError),
-                          (np.nan, ValueError), ([1, 2], TypeError)):
+                          (np.nan, ValueError), ([1, 2], TypeError), (2 ** 64, ValueError),
+                          (2 ** 2000, ValueError)):
             self.refused("radius", kind, self.world.closest_points, CUBE, bad)
 
     def test_meshes(self):
@@ -160,10 +164,62 @@ class Misuses(unittest.TestCase):
                      lambda: self.world.closest(), lambda: self.world.closest(CUBE),
                      lambda: self.world.closest(*self.rays, what=1),
                      lambda: grelha.World.closest(3, *self.rays),
-                     lambda: pickle.dumps(self.scene), lambda: grelha.Scene()):
+                     lambda: grelha.Scene()):
             Misuses.count += 1
             with self.assertRaises((TypeError, AttributeError)):
                 call()
+
+    def test_type_errors_are_one_line_without_arrays(self):
+        big = np.ones((10, 3))
+        for call in (lambda: grelha.World(big, faced=big), lambda: grelha.World(big),
+                     lambda: grelha.World.spheres(big, radius=big),
+                     lambda: self.world.closest(big, big, tmin=big),
+                     lambda: self.world.closest(big, big, big, big, big, big),
+                     lambda: self.world.contains(points=big, rays=big),
+                     lambda: self.world.update(vertex=big),
+                     lambda: self.scene.render(with_=big), lambda: grelha.write_image(image=big),
+                     lambda: grelha.read("a", big), lambda: grelha.World.contains(3, big)):
+            Misuses.count += 1
+            with self.assertRaises((TypeError, AttributeError)) as caught:
+                call()
+            self.assertNotRegex(str(caught.exception), r"\n|1\.|array")
+
+    def test_masks(self):
+        world = grelha.World(CUBE, CUBE_FACES)
+        for bad, kind in (([1, 2], ValueError), (1, ValueError), ([256] * 12, ValueError),
+                          ([-1] * 12, ValueError), ([0.5] * 12, TypeError), ("a", TypeError)):
+            self.refused("masks", kind, setattr, world, "masks", bad)
+        self.assertIsNone(world.masks)
+
+    def test_starts(self):
+        call, down = self.world.start, (0, 0, -1)
+        for bad, kind in NO_WHOLES + [(12, ValueError), (-1, ValueError)]:
+            self.refused("face", kind, call, bad, 0, 0, down)
+        for bad, kind in (("a", TypeError), (None, TypeError), (-1, ValueError), (2, ValueError),
+                          (np.nan, ValueError)):
+            self.refused("u", kind, call, 0, bad, 0, down)
+            self.refused("v", kind, call, 0, 0, bad, down)
+        self.refused("u", ValueError, call, [0, 1], [0, 0, 0], 0, down)
+        for bad, kind in NO_TRIPLES:
+            self.refused("directions", kind, call, 0, 0, 0, bad)
+
+    def test_what_was_not_made(self):
+        """Each ended the interpreter, or was taken."""
+        for cls, ask in ((grelha.World, lambda x: x.closest((0, 0, 0), (0, 0, 1))),
+                         (grelha.World, repr), (grelha.World, lambda x: x.masks),
+                         (grelha.Scene, lambda x: x.render()), (grelha.Scene, lambda x: x.world)):
+            Misuses.count += 1
+            with self.assertRaisesRegex(TypeError, "__init__"):
+                ask(cls.__new__(cls))
+        for thing in (self.world, self.scene):
+            before = repr(thing)
+            with self.assertRaisesRegex(TypeError, "made already"):
+                thing.__init__(CUBE[:3], [[0, 1, 2]])
+            with self.assertRaises(AttributeError):
+                thing.__setstate__(thing.__reduce__()[1][1])
+            with self.assertRaises(AttributeError):
+                thing.mask = 3
+            self.assertEqual(repr(thing), before)
 
     def test_open3d(self):
         scene = RaycastingScene()

@@ -2,6 +2,7 @@
 import copy
 import multiprocessing
 import os
+import pathlib
 import pickle
 import signal
 import subprocess
@@ -16,6 +17,7 @@ import grelha
 from meshes import CUBE, CUBE_FACES, ball, rays
 
 ORIGINS, DIRECTIONS = rays(30000, 1)
+SCENES = pathlib.Path(__file__).resolve().parents[2] / "scenes" / "data"
 OFFSET = np.array([1e6, -2e6, 3e6]) + 0.3
 
 
@@ -37,7 +39,7 @@ class Pickles(unittest.TestCase):
             np.testing.assert_array_equal(x, y)
 
     def test_round_trip(self):
-        for protocol in range(2, pickle.HIGHEST_PROTOCOL + 1):
+        for protocol in range(pickle.HIGHEST_PROTOCOL + 1):
             world = grelha.World(*ball())
             self.same(world, pickle.loads(pickle.dumps(world, protocol)))
         self.same(world, copy.copy(world))
@@ -60,16 +62,39 @@ class Pickles(unittest.TestCase):
 
     def test_broken_states_raise(self):
         world = grelha.World(CUBE, CUBE_FACES)
-        state = world.__getstate__()
+        restored, (cls, state, _) = world.__reduce__()
         broken = [(), (2, *state[1:]), (*state[:1], 7, *state[2:]), ("1", *state[1:])]
         short, beyond = dict(state[1]), dict(state[1])
         short["x"], beyond["a"] = short["x"][:3], beyond["a"] + 100
-        broken += [(1, short, *state[2:]), (1, beyond, *state[2:]),
+        broken += [(1, short, *state[2:]), (1, beyond, *state[2:]), None, 3,
                    (*state[:2], np.uint32([5, 1000]), *state[3:]), (*state[:3], (1.0,), *state[4:])]
         for bad in broken:
-            new = grelha.World.__new__(grelha.World)
             with self.assertRaises((ValueError, TypeError, RuntimeError, IndexError)):
-                new.__setstate__(bad)
+                restored(cls, bad, None)
+        with self.assertRaises(ValueError):
+            restored(cls, state, [1, 2])
+
+    def test_broken_scenes_raise(self):
+        restored, (cls, state) = grelha.Scene(CUBE, CUBE_FACES).__reduce__()
+        for i in range(len(state)):
+            for bad in (None, -7, (), np.zeros((2, 2)), "a"):
+                with self.assertRaises((ValueError, TypeError, RuntimeError)):
+                    restored(cls, (*state[:i], bad, *state[i + 1:]))
+        with self.assertRaises(ValueError):
+            restored(cls, state[:5])
+
+    def test_cut_short(self):
+        """A pickle that ends early raises, or has made a whole thing before its end."""
+        for thing in (grelha.World(CUBE, CUBE_FACES), grelha.Scene(CUBE, CUBE_FACES)):
+            for protocol in range(pickle.HIGHEST_PROTOCOL + 1):
+                whole = pickle.dumps(thing, protocol)
+                for end in range(0, len(whole), 7):
+                    try:
+                        made = pickle.loads(whole[:end] + b".")
+                    except Exception:
+                        continue
+                    if isinstance(made, type(thing)):
+                        self.assertEqual(repr(made), repr(thing))
 
     def test_subclasses(self):
         class Half(grelha.World):
@@ -77,7 +102,23 @@ class Pickles(unittest.TestCase):
                 pass
 
         with self.assertRaisesRegex(TypeError, "__init__"):
-            Half()
+            Half().closest((0, 0, 0), (0, 0, 1))
+
+    def test_masks_stay(self):
+        world = grelha.World(CUBE, CUBE_FACES)
+        world.masks = np.arange(12)
+        self.assertEqual(pickle.loads(pickle.dumps(world)).masks.tolist(), list(range(12)))
+
+    def test_scenes(self):
+        balls = grelha.read(SCENES / "balls.nff")
+        for scene in (balls, grelha.Scene(*ball()), grelha.Scene(CUBE + OFFSET, CUBE_FACES),
+                      grelha.read(SCENES / "columns.nff")):
+            for protocol in range(pickle.HIGHEST_PROTOCOL + 1):
+                back = pickle.loads(pickle.dumps(scene, protocol))
+            self.assertEqual(back.camera, scene.camera)
+            self.assertEqual(repr(back), repr(scene))
+            np.testing.assert_array_equal(back.render(40, 30), scene.render(40, 30))
+        np.testing.assert_array_equal(copy.deepcopy(balls).render(40, 30), balls.render(40, 30))
 
 
 class Processes(unittest.TestCase):

@@ -105,8 +105,23 @@ class Meshes(unittest.TestCase):
         self.assertEqual(hits.face.tolist(), [-1, -1, -1])
         self.assertEqual(world.count_hits((0, 0, 9), (0, 0, -1)), 2)
         self.assertEqual(grelha.World.spheres(centers, 1).closest((5, 0, 9), (0, 0, -1)).t, 8)
-        with self.assertRaisesRegex(ValueError, "update"):
-            world.update(centers)
+
+    def test_update_of_spheres(self):
+        centers = np.array([[0, 0, 0], [5, 0, 0]], np.float32)
+        world = grelha.World.spheres(centers, [1, 2])
+        world.update(centers + [0, 0, 1])
+        down = np.float32([[0, 0, 9], [5, 0, 9]]), np.float32([0, 0, -1])
+        self.assertEqual(world.closest(*down).t.tolist(), [7, 6])
+        world.update(centers, 3)
+        self.assertEqual(world.closest(*down).t.tolist(), [6, 6])
+        world.update(centers, [3, 4])
+        self.assertEqual(world.closest(*down).t.tolist(), [6, 5])
+        for bad in ((centers[:1],), (centers, [1, 2, 3]), (centers, -1)):
+            with self.assertRaises(ValueError):
+                world.update(*bad)
+        self.assertEqual(world.closest(*down).t.tolist(), [6, 5])
+        with self.assertRaisesRegex(ValueError, "radii"):
+            grelha.World(CUBE, CUBE_FACES).update(CUBE, 1)
 
 
 class Points(unittest.TestCase):

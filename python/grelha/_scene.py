@@ -1,0 +1,100 @@
+"""Scene: what is rendered, and the functions that read and write files."""
+from . import _grelha
+from ._world import World, _expect_unmade
+
+
+def _restored(cls, state):
+    """A Scene as it was pickled."""
+    return cls._of(_grelha.scene_of(state))
+
+
+class Scene:
+    """A scene with a camera, lights and materials. read() makes one of a file.
+
+    Scene(vertices, faces) shows a mesh in light grey with three lights, as the program shows a bare
+    PLY file. The arguments are those of World.
+    """
+
+    __slots__ = ("_core", "__weakref__")
+
+    def __init__(self, vertices, faces, *, threads=0):
+        _expect_unmade(self)
+        self._core = _grelha.scene_of_mesh(vertices, faces, threads)
+
+    @classmethod
+    def _of(cls, core):
+        scene = cls.__new__(cls)
+        scene._core = core
+        return scene
+
+    def __getattr__(self, name):  # only what is not there
+        if name == "_core":
+            raise TypeError("Scene: __init__() was not called")
+        raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+
+    def __reduce__(self):
+        return _restored, (type(self), self._core.state())
+
+    def __repr__(self):
+        view = self._core.camera()
+        return (f"<grelha.Scene: {self._core.core().text()}; "
+                f"{view['width']} x {view['height']} pixels>")
+
+    @property
+    def world(self):
+        """A World of all primitives. Its update() does not change the Scene."""
+        return World._of(self._core.core())
+
+    @property
+    def vertices(self):
+        """As of World."""
+        return self._core.core().vertices()
+
+    @property
+    def faces(self):
+        """As of World."""
+        return self._core.core().faces()
+
+    @property
+    def camera(self):
+        """A dict of eye, at, up (tuples), angle (degrees), width and height (pixels)."""
+        return self._core.camera()
+
+    def render(self, width=None, height=None, *, samples=None, error=None, seed=0, depth=5,
+               eye=None, at=None, up=None, angle=None, threads=0):
+        """A picture, linear RGB, row 0 on top: float32 (height, width, 3).
+
+        width, height   pixels; None: as the scene says
+        samples         rays for each pixel; None: as the scene needs
+        error           in place of samples: as many as take the estimated RMSE below it, above 0,
+                        at most 1
+        seed            of the samples
+        depth           longest path, in rays
+        eye, at, up     (3,) where the camera is, what it looks at, what is up; None: as the scene
+                        says. The lights stay where they are.
+        angle           vertical field of view, degrees
+        threads         0: one for each processor. The number changes no bit of the picture.
+
+        Raises TypeError or ValueError that names the argument, and KeyboardInterrupt.
+        """
+        return self._core.render(width, height, samples, error, seed, depth, eye, at, up, angle,
+                                 threads)
+
+
+def read(path, *, threads=0):
+    """Reads an NFF, P3F or PLY file, each also gzipped: a Scene.
+
+    Its warnings are UserWarnings. Raises OSError for what cannot be read, ValueError with file,
+    line and column for what is no scene.
+    """
+    return Scene._of(_grelha.scene_of_file(path, threads))
+
+
+def write_image(path, image):
+    """Writes an array of shape (h, w) or (h, w, 3), 0 black and 1 white.
+
+    path   ends with .png, .hdr, .pfm or .exr
+
+    Raises OSError where that fails, TypeError or ValueError for what is no picture.
+    """
+    _grelha.write_image(path, image)

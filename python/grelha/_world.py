@@ -1,0 +1,224 @@
+"""World: what is asked of triangles and spheres."""
+import numpy as np
+
+from . import _grelha
+
+
+def _expect_unmade(thing):
+    """Raises TypeError for a second __init__(), which would change what threads share."""
+    try:
+        thing._core
+    except TypeError:
+        return
+    raise TypeError(f"{type(thing).__name__}: it is made already")
+
+
+def _restored(cls, state, masks):
+    """A World as it was pickled."""
+    return cls._of(_grelha.core_of(state), masks)
+
+
+class World:
+    """Triangles, ready for queries. It does not change, but by update() and masks.
+
+    vertices   (n, 3) numbers. float32 is taken as it is. float64 is rounded to float32 after an
+               offset is subtracted: the middle of the bounding box, on a grid of a power of two; 0
+               near the origin if float32 holds every coordinate. Rays and points are shifted by it
+               in double, and points are given back in double with the offset added.
+    faces      (m, 3) whole numbers, indices of vertices, counter-clockwise from the front
+    threads    to build with; 0: one for each processor
+
+    The arrays are copied: they may change or go afterwards. Threads may share a World.
+
+    Raises TypeError or ValueError that names the argument, for numbers that are not finite or
+    beyond 1e18 in a vertex that a face uses, for indices out of range, and for masked arrays.
+    KeyboardInterrupt on Ctrl-C.
+    """
+
+    __slots__ = ("_core", "_masks", "__weakref__")
+
+    def __init__(self, vertices, faces, *, threads=0):
+        _expect_unmade(self)
+        self._core = _grelha.mesh(vertices, faces, threads)
+        self._masks = None
+
+    @classmethod
+    def _of(cls, core, masks=None):
+        world = cls.__new__(cls)
+        world._core = core
+        world._masks = None if masks is None else core.masks_in(masks)
+        return world
+
+    @staticmethod
+    def spheres(centers, radii, *, threads=0):
+        """A World of spheres in place of triangles.
+
+        centers   (n, 3) numbers, float64 as vertices of World
+        radii     (n,) numbers above 0, or one for all
+        """
+        return World._of(_grelha.spheres(centers, radii, threads))
+
+    def __getattr__(self, name):  # only what is not there
+        if name in ("_core", "_masks"):
+            raise TypeError("World: __init__() was not called")
+        raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+
+    def __reduce__(self):
+        return _restored, (type(self), self._core.state(), self._masks)
+
+    def __repr__(self):
+        return f"<grelha.World: {self._core.text()}>"
+
+    def update(self, vertices, radii=None, *, threads=0):
+        """Moves the vertices and builds anew.
+
+        vertices   as many as before, (n, 3); the faces stay. Of a World of spheres the centers.
+        radii      of spheres, (n,) or one for all; None: as before
+        threads    to build with; 0: one for each processor
+
+        Calls that run in other threads meanwhile answer for the vertices before. Raises TypeError
+        or ValueError, and then nothing has changed.
+        """
+        self._core = self._core.moved(vertices, radii, threads)
+
+    @property
+    def vertices(self):
+        """The vertices as they were rounded: a copy, (n, 3) float32; float64 if given so."""
+        return self._core.vertices()
+
+    @property
+    def faces(self):
+        """The triangles' vertices: a copy, (m, 3) int64."""
+        return self._core.faces()
+
+    @property
+    def offset(self):
+        """What was subtracted from the vertices before they were rounded: (3,) float64."""
+        return self._core.offset()
+
+    @property
+    def masks(self):
+        """Masks of the primitives: a copy, uint8 (primitives,); None: 255 for all.
+
+        A ray with a `mask` hits the primitives with (masks[id] & mask) != 0 alone. Queries of
+        points do not read it. Set it to an array of whole numbers from 0 to 255, or to None.
+        """
+        return None if self._masks is None else self._masks.copy()
+
+    @masks.setter
+    def masks(self, masks):
+        self._masks = None if masks is None else self._core.masks_in(masks)
+
+    def closest(self, origins, directions, t_min=0.0, t_max=np.inf, skip=None, *, mask=None,
+                threads=0):
+        """The nearest hit of each ray strictly between t_min and t_max.
+
+        origins      (..., 3) in units of the vertices, within 1e18
+        directions   (..., 3) of any length from 1e-18 to 1e18
+        t_min, t_max numbers or arrays of shape (...), in lengths of the direction
+        skip         ids of a primitive that the ray does not hit, (...); -1 or None: none
+        mask         0 to 255, (...): the ray hits the primitives with (masks[id] & mask) != 0
+                     alone; None: 255
+        threads      0: one for each processor. The number changes no bit of an answer.
+
+        The shapes (...) are broadcast with each other as numpy does it.
+
+        Returns Hits(t, id, u, v, face), arrays of shape (...), plain numbers for one ray of shape
+        (3,):
+
+        t      float32, the hit point is origin + t direction; inf without a hit
+        id     int64, the primitive: of a mesh the face, of spheres the sphere; -1 without a hit
+        u, v   float32, the point is (1 - u - v) a + u b + v c of the face with the corners a, b, c
+        face   int64, the triangle's row in faces, -1 without one. In a World of triangles alone it
+               is the same array as id.
+
+        Rays that are not finite hit nothing. Of two hits at equal t the lower id is returned.
+        float32 rays in rows are read where they lie. Raises TypeError or ValueError that names the
+        argument, and KeyboardInterrupt.
+        """
+        return self._core.closest(origins, directions, t_min, t_max, skip, mask, self._masks,
+                                  threads)
+
+    def occluded(self, origins, directions, t_min=0.0, t_max=np.inf, skip=None, *, mask=None,
+                 threads=0):
+        """True for each ray that hits anything strictly between t_min and t_max.
+
+        Faster than closest(), which describes the arguments. Returns a bool array of shape (...),
+        a bool for one ray.
+        """
+        return self._core.occluded(origins, directions, t_min, t_max, skip, mask, self._masks,
+                                   threads)
+
+    def all_hits(self, origins, directions, t_min=0.0, t_max=np.inf, skip=None, *, mask=None,
+                 threads=0):
+        """All hits of each ray, in order of (t, id). closest() describes the arguments.
+
+        Returns HitLists(offsets, t, id). The hits of ray i, rays being counted in rows, are
+        t[offsets[i]:offsets[i + 1]] and id[offsets[i]:offsets[i + 1]].
+
+        offsets   int64 (rays + 1,)
+        t         float32 (hits,)
+        id        int64 (hits,)
+
+        An edge or a vertex belongs to each triangle that has it. A ray that enters and leaves a
+        sphere hits it twice.
+        """
+        return self._core.all_hits(origins, directions, t_min, t_max, skip, mask, self._masks,
+                                   threads)
+
+    def count_hits(self, origins, directions, t_min=0.0, t_max=np.inf, skip=None, *, mask=None,
+                   threads=0):
+        """The number of hits that all_hits() finds for each ray.
+
+        Returns an int64 array of shape (...), an int for one ray.
+        """
+        return self._core.count_hits(origins, directions, t_min, t_max, skip, mask, self._masks,
+                                     threads)
+
+    def start(self, face, u, v, directions):
+        """Where rays start that leave points of faces, so that they do not hit them again.
+
+        face         rows of faces, (...)
+        u, v         numbers, (...): the point is (1 - u - v) a + u b + v c of the corners a, b, c
+        directions   (..., 3) in which the rays leave
+
+        The shapes (...) are broadcast with each other. Returns origins (..., 3), float64 if the
+        vertices were, else float32. They lie off the face by what float32 rounds, on the side that
+        the direction points to: trace from there with t_min = 0. NaN for a face without area.
+        Raises ValueError for rows that are none and for u and v of points beside the face.
+        """
+        return self._core.start(face, u, v, directions)
+
+    def contains(self, points, *, threads=0):
+        """True for each point inside an odd number of closed meshes.
+
+        points   (..., 3), or (3,) for one point, which gives a bool. Points that are not finite
+                 are outside.
+
+        The triangles must form closed meshes; spheres do not count. Exact: it does not depend on a
+        choice of ray. Returns a bool array of shape (...).
+        """
+        return self._core.contains(points, threads)
+
+    def closest_points(self, points, radius=np.inf, *, threads=0):
+        """The nearest point of all surfaces within a radius of each point, the radius included.
+
+        points   (..., 3), or (3,) for one point
+        radius   a number from 0 to 1e19, or inf
+
+        Returns ClosestPoints(points, distance, id):
+
+        points     (..., 3), float64 if the vertices or the points were, else float32; the point
+                   given where there is none
+        distance   float32 (...); inf where there is none
+        id         int64 (...), as of closest(); -1 where there is none
+        """
+        return self._core.closest_points(points, radius, threads)
+
+    def signed_distance(self, points, *, threads=0):
+        """The distance to the nearest surface, negative inside closed meshes; see contains().
+
+        Returns float32 of shape (...) for points of shape (..., 3), a float for one point. inf if
+        the World is empty.
+        """
+        return self._core.signed_distance(points, threads)

@@ -1,0 +1,128 @@
+#include "src/core_class.hpp"
+
+#include <string>
+#include <vector>
+
+#include "src/pickle.hpp"
+#include "src/queries.hpp"
+
+namespace grelha::python {
+namespace {
+
+/// Vertices as an array of shape (n, 3): as they are, or in the caller's units.
+py::object rows_of(const Model& model, const Triangles& t) {
+  std::vector<Float3> points(t.vertex_count());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    points[i] = {t.x[i], t.y[i], t.z[i]};
+  return outside_points(model, points, {py::ssize_t(points.size())});
+}
+
+py::object offset_of(const Model& model) {
+  const auto& offset = model.frame.offset;
+  return py::array_t<double>(3, offset.data());
+}
+
+std::string text_of_geometry(const Model& model) {
+  const Geometry& g = model.scene.geometry;
+  std::string text;
+  const auto add = [&](std::size_t count, const char* what) {
+    if (count > 0)
+      text += (text.empty() ? "" : ", ") + std::to_string(count) + ' ' + what;
+  };
+  add(g.triangles.size(), "triangles");
+  add(g.spheres.size(), "spheres");
+  add(g.cones.size(), "cones");
+  add(g.planes.size(), "planes");
+  return text.empty() ? "empty" : text;
+}
+
+/// A method that asks rays.
+template <class Query>
+auto of_rays(const Query& query) {
+  return [query](const Core& self,
+                 py::handle origins,
+                 py::handle directions,
+                 py::handle t_min,
+                 py::handle t_max,
+                 py::handle skip,
+                 py::handle mask,
+                 py::handle masks,
+                 py::handle threads) {
+    const SharedModel model = self.model;
+    return query(
+        *model, RayArguments{origins, directions, t_min, t_max, skip, mask, masks}, threads);
+  };
+}
+
+/// A method that asks points.
+template <class Query>
+auto of_points(const Query& query) {
+  return [query](const Core& self, py::handle points, py::handle threads) {
+    const SharedModel model = self.model;
+    return query(*model, points, threads);
+  };
+}
+
+void define_making(py::module_& module, py::class_<Core>& core) {
+  module.def("mesh", [](py::handle vertices, py::handle faces, py::handle threads) {
+    const int count = threads_in(threads);
+    return Core{built(mesh_model(vertices, faces), count)};
+  });
+  module.def("spheres", [](py::handle centers, py::handle radii, py::handle threads) {
+    const int count = threads_in(threads);
+    return Core{built(sphere_model(centers, radii), count)};
+  });
+  module.def("core_of", [](const py::tuple& state) { return Core{model_of(state)}; });
+  core.def("state", [](const Core& self) { return state_of(*self.model); });
+  core.def("moved",
+           [](const Core& self, py::handle vertices, py::handle radii, py::handle threads) {
+             const int count = threads_in(threads);
+             return Core{built(moved_model(*self.model, vertices, radii), count)};
+           });
+  core.def("masks_in",
+           [](const Core& self, py::handle masks) { return masks_in(masks, *self.model); });
+}
+
+void define_members(py::class_<Core>& core) {
+  core.def("vertices", [](const Core& self) {
+    return rows_of(*self.model, self.model->scene.geometry.triangles);
+  });
+  core.def("faces", [](const Core& self) {
+    const Triangles& t = self.model->scene.geometry.triangles;
+    py::array_t<std::int64_t> faces(Shape{py::ssize_t(t.size()), 3});
+    std::int64_t* to = faces.mutable_data();
+    for (std::size_t i = 0; i < t.size(); ++i)
+      for (const std::uint32_t v : {t.a[i], t.b[i], t.c[i]})
+        *to++ = v;
+    return faces;
+  });
+  core.def("offset", [](const Core& self) { return offset_of(*self.model); });
+  core.def("text", [](const Core& self) { return text_of_geometry(*self.model); });
+}
+
+}  // namespace
+
+void define_core(py::module_& module) {
+  py::class_<Core> core(module, "Core");
+  define_making(module, core);
+  define_members(core);
+  core.def("closest", of_rays(closest_hits));
+  core.def("occluded", of_rays(occluded_rays));
+  core.def("all_hits", of_rays(all_ray_hits));
+  core.def("count_hits", of_rays(hit_counts));
+  core.def("contains", of_points(inside_points));
+  core.def("signed_distance", of_points(signed_distances_of));
+  core.def("closest_points",
+           [](const Core& self, py::handle given, py::handle radius, py::handle threads) {
+             const SharedModel model = self.model;
+             return nearest_points(*model, given, radius, threads);
+           });
+  core.def(
+      "start",
+      [](const Core& self, py::handle face, py::handle u, py::handle v, py::handle directions) {
+        const SharedModel model = self.model;
+        return start_points(*model, {face, u, v, directions});
+      });
+}
+
+}  // namespace grelha::python
