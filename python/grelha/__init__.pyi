@@ -21,6 +21,12 @@ class HitLists(NamedTuple):
     t: NDArray[np.float32]
     id: NDArray[np.int64]
 
+class CrossingLists(NamedTuple):
+    offsets: NDArray[np.int64]
+    t: NDArray[np.float32]
+    id: NDArray[np.int64]
+    enters: NDArray[np.bool_]
+
 class ClosestPoints(NamedTuple):
     points: NDArray[Any]
     distance: Any
@@ -54,6 +60,12 @@ class World:
     def count_hits(self, origins: ArrayLike, directions: ArrayLike, t_min: ArrayLike = ...,
                    t_max: ArrayLike = ..., skip: ArrayLike | None = ..., *,
                    mask: ArrayLike | None = ..., threads: int = ...) -> Any: ...
+    def crossings(self, origins: ArrayLike, directions: ArrayLike, t_min: ArrayLike = ...,
+                  t_max: ArrayLike = ..., skip: ArrayLike | None = ..., *,
+                  mask: ArrayLike | None = ..., threads: int = ...) -> CrossingLists: ...
+    def count_crossings(self, origins: ArrayLike, directions: ArrayLike, t_min: ArrayLike = ...,
+                        t_max: ArrayLike = ..., skip: ArrayLike | None = ..., *,
+                        mask: ArrayLike | None = ..., threads: int = ...) -> Any: ...
     def start(self, face: ArrayLike, u: ArrayLike, v: ArrayLike,
               directions: ArrayLike) -> NDArray[Any]: ...
     def contains(self, points: ArrayLike, *, threads: int = ...) -> Any: ...

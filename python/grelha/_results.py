@@ -18,6 +18,14 @@ class HitLists(NamedTuple):
     id: Any  # int64 (hits,)
 
 
+class CrossingLists(NamedTuple):
+    """All crossings: those of ray i are t[offsets[i]:offsets[i + 1]], and the same of the rest."""
+    offsets: Any  # int64 (rays + 1,)
+    t: Any  # float32 (crossings,)
+    id: Any  # int64 (crossings,)
+    enters: Any  # bool (crossings,)
+
+
 class ClosestPoints(NamedTuple):
     """Closest points: arrays with one element for each point, or plain numbers for one point."""
     points: Any  # float64 or float32 (..., 3)

@@ -160,8 +160,8 @@ class World:
         t         float32 (hits,)
         id        int64 (hits,)
 
-        An edge or a vertex belongs to each triangle that has it. A ray that enters and leaves a
-        sphere hits it twice.
+        An edge or a vertex belongs to each triangle that has it: crossings() pass it once. Each
+        exact copy of a primitive counts. A ray that enters and leaves a sphere hits it twice.
         """
         return self._core.all_hits(origins, directions, t_min, t_max, skip, mask, self._masks,
                                    threads)
@@ -174,6 +174,35 @@ class World:
         """
         return self._core.count_hits(origins, directions, t_min, t_max, skip, mask, self._masks,
                                      threads)
+
+    def crossings(self, origins, directions, t_min=0.0, t_max=np.inf, skip=None, *, mask=None,
+                  threads=0):
+        """The triangles that each ray crosses, in order. closest() describes the arguments.
+
+        Returns CrossingLists(offsets, t, id, enters). Those of ray i, rays being counted in rows,
+        are t[offsets[i]:offsets[i + 1]], and the same of id and enters.
+
+        offsets   int64 (rays + 1,)
+        t         float32 (crossings,)
+        id        int64 (crossings,), of the triangle
+        enters    bool (crossings,): through the side from which the corners are counter-clockwise
+
+        Other primitives do not count, exact copies of a triangle do. A ray that passes through a
+        surface at an edge or a vertex crosses one triangle there. One that touches it there crosses
+        none, or two at equal t. Of closed meshes the number is odd from inside and even from
+        outside, for every ray.
+        """
+        return self._core.crossings(origins, directions, t_min, t_max, skip, mask, self._masks,
+                                    threads)
+
+    def count_crossings(self, origins, directions, t_min=0.0, t_max=np.inf, skip=None, *,
+                        mask=None, threads=0):
+        """The number of crossings that crossings() finds for each ray.
+
+        Returns an int64 array of shape (...), an int for one ray.
+        """
+        return self._core.count_crossings(origins, directions, t_min, t_max, skip, mask,
+                                          self._masks, threads)
 
     def start(self, face, u, v, directions):
         """Where rays start that leave points of faces, so that they do not hit them again.
@@ -190,13 +219,12 @@ class World:
         return self._core.start(face, u, v, directions)
 
     def contains(self, points, *, threads=0):
-        """True for each point inside an odd number of closed meshes.
+        """True for each point inside a ball, or inside an odd number of closed meshes.
 
         points   (..., 3), or (3,) for one point, which gives a bool. Points that are not finite
                  are outside.
 
-        The triangles must form closed meshes; spheres do not count. Exact: it does not depend on a
-        choice of ray. Returns a bool array of shape (...).
+        The triangles must form closed meshes. Exact: it does not depend on a choice of ray. Returns a bool array of shape (...).
         """
         return self._core.contains(points, threads)
 
@@ -216,7 +244,7 @@ class World:
         return self._core.closest_points(points, radius, threads)
 
     def signed_distance(self, points, *, threads=0):
-        """The distance to the nearest surface, negative inside closed meshes; see contains().
+        """The distance to the nearest surface, negative inside; contains() says what that means.
 
         Returns float32 of shape (...) for points of shape (..., 3), a float for one point. inf if
         the World is empty.

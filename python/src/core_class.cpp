@@ -110,6 +110,8 @@ void define_core(py::module_& module) {
   core.def("occluded", of_rays(occluded_rays));
   core.def("all_hits", of_rays(all_ray_hits));
   core.def("count_hits", of_rays(hit_counts));
+  core.def("crossings", of_rays(ray_crossings));
+  core.def("count_crossings", of_rays(crossing_counts));
   core.def("contains", of_points(inside_points));
   core.def("signed_distance", of_points(signed_distances_of));
   core.def("closest_points",

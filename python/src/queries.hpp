@@ -9,6 +9,8 @@ namespace grelha::python {
 py::object closest_hits(const Model& model, const RayArguments& rays, py::handle threads);
 py::object occluded_rays(const Model& model, const RayArguments& rays, py::handle threads);
 py::object all_ray_hits(const Model& model, const RayArguments& rays, py::handle threads);
+py::object ray_crossings(const Model& model, const RayArguments& rays, py::handle threads);
+py::object crossing_counts(const Model& model, const RayArguments& rays, py::handle threads);
 py::object hit_counts(const Model& model, const RayArguments& rays, py::handle threads);
 
 /// Where rays start on faces.

@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <limits>
 #include <memory>
+#include <vector>
 
 #include "grelha/all_hits.hpp"
 #include "grelha/query.hpp"
@@ -132,6 +134,49 @@ py::object occluded_rays(const Model& model, const RayArguments& given, py::hand
   return plain(blocked, batch.shape());
 }
 
+namespace {
+
+/// Lists of hits or crossings as the arrays that are given back.
+struct ListArrays {
+  Ids offsets, id;
+  py::array_t<float> t;
+
+  template <class Item>
+  ListArrays(const std::vector<std::size_t>& offset, const std::vector<Item>& items, double scale)
+      : offsets(py::ssize_t(offset.size())),
+        id(py::ssize_t(items.size())),
+        t(py::ssize_t(items.size())) {
+    std::copy(offset.begin(), offset.end(), offsets.mutable_data());
+    std::int64_t* const to_id = id.mutable_data();
+    float* const to_t = t.mutable_data();
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      to_id[i] = items[i].id;
+      to_t[i] = items[i].t;
+    }
+    unscale(to_t, items.size(), scale);
+  }
+};
+
+/// The counts of one of the kernel's functions.
+template <class Count>
+py::object counted(const Model& model,
+                   const RayArguments& given,
+                   py::handle wanted,
+                   const Count& count) {
+  const int threads = threads_in(wanted);
+  RayBatch batch(model, given);
+  Ids counts(batch.shape());
+  std::int64_t* const to = counts.mutable_data();
+  hear_signals(batch.count(), [&](const Progress& progress) {
+    const auto found = std::make_unique_for_overwrite<std::uint32_t[]>(batch.count());
+    count(batch.rays(), found.get(), options_of(batch, threads, progress));
+    std::copy(found.get(), found.get() + batch.count(), to);
+  });
+  return plain(counts, batch.shape());
+}
+
+}  // namespace
+
 py::object all_ray_hits(const Model& model, const RayArguments& given, py::handle wanted) {
   const int threads = threads_in(wanted);
   RayBatch batch(model, given);
@@ -139,31 +184,36 @@ py::object all_ray_hits(const Model& model, const RayArguments& given, py::handl
   hear_signals(batch.count(), [&](const Progress& progress) {
     lists = all_hits(*model.world, batch.rays(), options_of(batch, threads, progress));
   });
-  Ids offsets(py::ssize_t(lists.offset.size()));
-  py::array_t<float> t(py::ssize_t(lists.hits.size()));
-  Ids id(py::ssize_t(lists.hits.size()));
-  std::copy(lists.offset.begin(), lists.offset.end(), offsets.mutable_data());
-  float* const to_t = t.mutable_data();
-  std::int64_t* const to_id = id.mutable_data();
-  for (std::size_t i = 0; i < lists.hits.size(); ++i) {
-    to_t[i] = lists.hits[i].t;
-    to_id[i] = signed_id(lists.hits[i].id);
-  }
-  unscale(to_t, lists.hits.size(), model.frame.scale);
-  return result_class("HitLists")(offsets, t, id);
+  const ListArrays arrays(lists.offset, lists.hits, model.frame.scale);
+  return result_class("HitLists")(arrays.offsets, arrays.t, arrays.id);
+}
+
+py::object ray_crossings(const Model& model, const RayArguments& given, py::handle wanted) {
+  const int threads = threads_in(wanted);
+  RayBatch batch(model, given);
+  CrossingLists lists;
+  hear_signals(batch.count(), [&](const Progress& progress) {
+    lists = crossings(*model.world, batch.rays(), options_of(batch, threads, progress));
+  });
+  const ListArrays arrays(lists.offset, lists.crossings, model.frame.scale);
+  py::array_t<bool> enters(py::ssize_t(lists.crossings.size()));
+  std::transform(lists.crossings.begin(),
+                 lists.crossings.end(),
+                 enters.mutable_data(),
+                 [](const Crossing& crossing) { return crossing.enters; });
+  return result_class("CrossingLists")(arrays.offsets, arrays.t, arrays.id, enters);
 }
 
 py::object hit_counts(const Model& model, const RayArguments& given, py::handle wanted) {
-  const int threads = threads_in(wanted);
-  RayBatch batch(model, given);
-  Ids counts(batch.shape());
-  std::int64_t* const to = counts.mutable_data();
-  hear_signals(batch.count(), [&](const Progress& progress) {
-    const auto found = std::make_unique_for_overwrite<std::uint32_t[]>(batch.count());
-    count_hits(*model.world, batch.rays(), found.get(), options_of(batch, threads, progress));
-    std::copy(found.get(), found.get() + batch.count(), to);
+  return counted(model, given, wanted, [&](const Rays& rays, auto* counts, const auto& options) {
+    count_hits(*model.world, rays, counts, options);
   });
-  return plain(counts, batch.shape());
+}
+
+py::object crossing_counts(const Model& model, const RayArguments& given, py::handle wanted) {
+  return counted(model, given, wanted, [&](const Rays& rays, auto* counts, const auto& options) {
+    count_crossings(*model.world, rays, counts, options);
+  });
 }
 
 }  // namespace grelha::python

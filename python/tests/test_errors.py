@@ -29,7 +29,8 @@ NO_WHOLES = [(None, TypeError), ("a", TypeError), ([0.5] * 3, TypeError), ({}, T
              (np.ma.masked_less(np.zeros((1, 3), int), 0), TypeError)]
 NO_COUNTS = [("2", TypeError), (1.5, TypeError), (None, TypeError), ([1], TypeError),
              (-1, ValueError), (10 ** 9, ValueError), (10 ** 30, ValueError)]
-RAY_METHODS = ("closest", "occluded", "all_hits", "count_hits")
+RAY_METHODS = ("closest", "occluded", "all_hits", "count_hits", "crossings",
+               "count_crossings")
 POINT_METHODS = ("contains", "closest_points", "signed_distance")
 
 

@@ -80,6 +80,47 @@ class Closest(unittest.TestCase):
                                        aims - np.float32([0.1, 0.2, 0.3])).all())
 
 
+class Crossings(unittest.TestCase):
+    def test_are_the_hits_where_no_edge_is_met(self):
+        vertices, faces = soup(300, 4)
+        origins, directions = rays(1000, 5)
+        world = grelha.World(vertices, faces)
+        *_, near = every_hit(vertices, faces, origins, directions)
+        sure = ~near.any(axis=1)
+        for options in ({}, {"t_min": 0.3, "t_max": 1.5}, {"skip": 7}):
+            hits = world.all_hits(origins[sure], directions[sure], **options)
+            found = world.crossings(origins[sure], directions[sure], **options)
+            for a, b in zip(hits, found):
+                np.testing.assert_array_equal(a, b)
+            a, b, c = (vertices[faces[found.id, k]].astype(np.float64) for k in range(3))
+            ray = np.repeat(np.flatnonzero(sure), np.diff(found.offsets))
+            front = (np.cross(b - a, c - a) * directions[ray]).sum(1) < 0
+            np.testing.assert_array_equal(found.enters, front)
+            np.testing.assert_array_equal(
+                world.count_crossings(origins[sure], directions[sure], **options),
+                np.diff(found.offsets))
+
+    def test_edges_and_corners_count_once(self):
+        vertices, faces = ball(6)
+        world = grelha.World(vertices, faces)
+        aims = np.concatenate([vertices, (vertices[faces[:, 0]] + vertices[faces[:, 1]]) / 2])
+        found = world.crossings(np.zeros(3, np.float32), aims)
+        self.assertTrue((np.diff(found.offsets) == 1).all())
+        self.assertFalse(found.enters.any())
+        through = world.crossings(-3 * aims, aims)
+        self.assertEqual(np.diff(through.offsets).tolist(), [2] * len(aims))
+        self.assertEqual(through.enters.tolist(), [True, False] * len(aims))
+        self.assertEqual([x.dtype for x in found], [np.int64, np.float32, np.int64, bool])
+
+    def test_shapes_and_masks(self):
+        world = grelha.World(CUBE, CUBE_FACES)
+        self.assertIs(type(world.count_crossings((0.3, 0.6, 4), (0, 0, -1))), int)
+        self.assertEqual(world.count_crossings(np.ones((2, 1, 3)), np.ones((5, 3))).shape, (2, 5))
+        top = world.crossings((0.3, 0.6, 4), (0, 0, -1)).id[0]
+        world.masks = np.where(np.arange(12) == top, 1, 2)
+        self.assertEqual(world.crossings((0.3, 0.6, 4), (0, 0, -1), mask=1).id.tolist(), [top])
+
+
 class Layouts(unittest.TestCase):
     def setUp(self):
         self.world = grelha.World(*ball())
