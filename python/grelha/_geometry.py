@@ -2,14 +2,22 @@
 import numpy as np
 
 
-def numbers(given, name, last):
-    """An array of numbers of shape (..., last); tensors give theirs by .numpy()."""
+def array_of(given, name):
+    """Any array; tensors give theirs by .numpy(). The masks of masked arrays would be lost."""
     if hasattr(given, "numpy"):
         given = given.numpy()
+    if isinstance(given, np.ma.MaskedArray):
+        raise TypeError(f"{name}: expected numbers, found a masked array; its mask would be lost: "
+                        "fill it first")
     try:
-        array = np.asarray(given)
+        return np.asarray(given)
     except ValueError:  # rows of unequal length
-        array = np.asarray(None)
+        return np.asarray(None)
+
+
+def numbers(given, name, last):
+    """An array of numbers of shape (..., last)."""
+    array = array_of(given, name)
     if array.dtype.kind not in "fiu":
         raise TypeError(f"{name}: expected numbers of shape (..., {last}), "
                         f"found {type(given).__name__}")
@@ -37,21 +45,52 @@ def points_along(origins, directions, t, corners):
 
 
 def barycentric(points, corners):
-    """u and v of points on triangles, (n, 2): (1 - u - v) a + u b + v c. At least 0, at most 1."""
+    """u and v of points on triangles, (n, 2): (1 - u - v) a + u b + v c. At least 0, at most 1.
+
+    Of triangles without area, or with next to none, u and v are those on an edge.
+    """
     to_b, to_c = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     across = np.cross(to_b, to_c)
-    area = np.einsum("ij,ij->i", across, across)
+    area = _dot(across, across)
     to_point = points - corners[:, 0]
-    u = np.einsum("ij,ij->i", np.cross(to_point, to_c), across)
-    v = np.einsum("ij,ij->i", np.cross(to_b, to_point), across)
-    uv = np.stack([u, v], axis=-1)
+    uv = np.stack([_dot(np.cross(to_point, to_c), across), _dot(np.cross(to_b, to_point), across)],
+                  axis=-1)
     uv = np.divide(uv, area[:, None], out=np.zeros_like(uv), where=area[:, None] > 0)
     uv = np.clip(uv, 0, 1)
-    return uv / np.maximum(uv.sum(axis=-1, keepdims=True), 1)
+    uv = uv / np.maximum(uv.sum(axis=-1, keepdims=True), 1)
+    error = _length(_off(uv, points, corners))
+    size = np.abs(corners).max(axis=(1, 2), initial=0)
+    bad = np.flatnonzero(~(error <= 1e-7 * size))
+    uv[bad] = _on_edges(points[bad], corners[bad], uv[bad])
+    return uv
 
 
-def first_of_equal(ray, t, part):
-    """True for each hit that is not at the same t of the same ray and part as the one before it."""
-    new = np.ones(len(t), bool)
-    new[1:] = (ray[1:] != ray[:-1]) | (t[1:] != t[:-1]) | (part[1:] != part[:-1])
-    return new
+def _dot(a, b):
+    return np.einsum("...j,...j->...", a, b)
+
+
+def _length(a):
+    return np.sqrt(_dot(a, a))
+
+
+def _off(uv, points, corners):
+    """From points to those that u and v give back."""
+    u, v = uv[..., :1], uv[..., 1:]
+    a, b, c = corners[..., 0, :], corners[..., 1, :], corners[..., 2, :]
+    return (1 - u - v) * a + u * b + v * c - points
+
+
+def _on_edges(points, corners, uv):
+    """u and v, of those given and of the nearest points of the edges: whose point is nearest."""
+    ends = np.array([[0, 0], [1, 0], [0, 1]], np.float64)
+    candidates = [uv]
+    for k, n in ((0, 1), (1, 2), (2, 0)):
+        along = corners[:, n] - corners[:, k]
+        square = _dot(along, along)
+        share = np.divide(_dot(points - corners[:, k], along), square, out=np.zeros_like(square),
+                          where=square > 0)
+        share = np.clip(share, 0, 1)[:, None]
+        candidates.append((1 - share) * ends[k] + share * ends[n])
+    candidates = np.array(candidates)
+    errors = _length(_off(candidates, points, corners))
+    return candidates[np.argmin(errors, axis=0), np.arange(len(points))]

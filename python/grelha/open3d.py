@@ -2,13 +2,15 @@
 
     from grelha.open3d import RaycastingScene
 
-Arguments may be arrays, lists, or tensors with .numpy(); answers are numpy arrays. Rays and points
+Arguments may be arrays, lists, or tensors with .numpy(). Answers are numpy arrays that are read like
+tensors too: they and their elements have .numpy(), .cpu(), .isfinite() and so on. Rays and points
 may be float64. Answers do not depend on the number of threads. Inside and outside are exact:
 `nsamples` is read and not needed.
 """
 import numpy as np
 
-from ._geometry import barycentric, first_of_equal, normals, numbers, points_along
+from ._answers import answer
+from ._geometry import array_of, barycentric, normals, numbers, points_along
 from ._world import World
 
 __all__ = ["RaycastingScene"]
@@ -38,6 +40,10 @@ def _mesh_arrays(mesh):
                         f"found {type(mesh).__name__}") from None
 
 
+def _answers(arrays):
+    return {name: answer(array) for name, array in arrays.items()}
+
+
 class RaycastingScene:
     """Triangle meshes for rays and closest points. Meshes are numbered as they are added."""
 
@@ -58,9 +64,7 @@ class RaycastingScene:
         vertices = numbers(vertex_positions, "vertex_positions", 3)
         if vertices.ndim != 2:
             raise ValueError(f"vertex_positions: expected shape (n, 3), found {vertices.shape}")
-        if hasattr(triangle_indices, "numpy"):
-            triangle_indices = triangle_indices.numpy()
-        triangles = np.asarray(triangle_indices)
+        triangles = array_of(triangle_indices, "triangle_indices")
         if triangles.size and triangles.dtype.kind not in "iu":
             raise TypeError("triangle_indices: expected whole numbers, found "
                             f"{triangles.dtype}")
@@ -84,42 +88,47 @@ class RaycastingScene:
         rays = _with_two_axes(rays, "rays", 6)
         world = self._commit()
         hits = world.closest(rays[..., :3], rays[..., 3:], threads=nthreads)
-        return {"t_hit": hits.t,
-                "primitive_uvs": np.stack([hits.u, hits.v], axis=-1),
-                **self._described(hits.face)}
+        return _answers({"t_hit": hits.t,
+                         "primitive_uvs": np.stack([hits.u, hits.v], axis=-1),
+                         **self._described(hits.face)})
 
     def test_occlusions(self, rays, tnear=0.0, tfar=np.inf, nthreads=0):
         """True for each ray (..., 6) that hits anything between tnear and tfar: bool (...)."""
         rays = _with_two_axes(rays, "rays", 6)
-        return self._commit().occluded(rays[..., :3], rays[..., 3:], tnear, tfar, threads=nthreads)
+        return answer(self._commit().occluded(rays[..., :3], rays[..., 3:], tnear, tfar,
+                                              threads=nthreads))
 
     def count_intersections(self, rays, nthreads=0):
-        """The number of hits of each ray (..., 6): int32 (...). An edge counts once for a mesh."""
-        rays = _with_two_axes(rays, "rays", 6)
-        _, ray, _ = self._all_hits(rays, nthreads)
-        counts = np.bincount(ray, minlength=rays[..., 0].size).astype(np.int32)
-        return counts.reshape(rays.shape[:-1])
+        """How often each ray (..., 6) passes through the surfaces: int32 (...).
 
-    def list_intersections(self, rays, nthreads=0):
-        """All hits of each ray (..., 6).
-
-        Returns a dict: ray_splits (rays + 1,) uint32, where the hits of each ray begin; ray_ids,
-        geometry_ids and primitive_ids uint32, t_hit float32, all (hits,); primitive_uvs (hits, 2)
-        float32. An edge counts once for a mesh.
+        Odd from inside a closed mesh and even from outside, also where the ray meets an edge or a
+        vertex. A ray that touches one there counts 0 or 2.
         """
         rays = _with_two_axes(rays, "rays", 6)
-        t, ray, face = self._all_hits(rays, nthreads)
+        counts = self._commit().count_crossings(rays[..., :3], rays[..., 3:], threads=nthreads)
+        return answer(counts.astype(np.int32))
+
+    def list_intersections(self, rays, nthreads=0):
+        """Where each ray (..., 6) passes through the surfaces; see count_intersections().
+
+        Returns a dict: ray_splits (rays + 1,) uint32, where those of each ray begin; ray_ids,
+        geometry_ids and primitive_ids uint32, t_hit float32, all (passages,); primitive_uvs
+        (passages, 2) float32. They are in the order of the ray.
+        """
+        rays = _with_two_axes(rays, "rays", 6)
+        offsets, t, face, _ = self._commit().crossings(rays[..., :3], rays[..., 3:],
+                                                       threads=nthreads)
+        ray = np.repeat(np.arange(len(offsets) - 1), np.diff(offsets))
         rows = rays.reshape(-1, 6).astype(np.float64)
         corners = self._corners[face]
         points = points_along(rows[ray, :3], rows[ray, 3:], t.astype(np.float64), corners)
-        counts = np.bincount(ray, minlength=len(rows))
         described = self._described(face)
-        return {"ray_splits": np.concatenate([[0], np.cumsum(counts)]).astype(np.uint32),
-                "ray_ids": ray.astype(np.uint32),
-                "t_hit": t,
-                "geometry_ids": described["geometry_ids"],
-                "primitive_ids": described["primitive_ids"],
-                "primitive_uvs": barycentric(points, corners).astype(np.float32)}
+        return _answers({"ray_splits": offsets.astype(np.uint32),
+                         "ray_ids": ray.astype(np.uint32),
+                         "t_hit": t,
+                         "geometry_ids": described["geometry_ids"],
+                         "primitive_ids": described["primitive_ids"],
+                         "primitive_uvs": barycentric(points, corners).astype(np.float32)})
 
     def compute_closest_points(self, query_points, nthreads=0):
         """The closest point of the surfaces to each point (..., 3).
@@ -133,26 +142,26 @@ class RaycastingScene:
         uvs = np.zeros((face.size, 2))
         hit = face >= 0
         uvs[hit] = barycentric(found.points.reshape(-1, 3)[hit], self._corners[face[hit]])
-        return {"points": found.points.astype(np.float32),
-                "primitive_uvs": uvs.astype(np.float32).reshape(*points.shape[:-1], 2),
-                **self._described(found.id)}
+        return _answers({"points": found.points.astype(np.float32),
+                         "primitive_uvs": uvs.astype(np.float32).reshape(*points.shape[:-1], 2),
+                         **self._described(found.id)})
 
     def compute_distance(self, query_points, nthreads=0):
         """The distance of each point (..., 3) to the surfaces: float32 (...)."""
         points = _with_two_axes(query_points, "query_points", 3)
-        return self._commit().closest_points(points, threads=nthreads).distance
+        return answer(self._commit().closest_points(points, threads=nthreads).distance)
 
     def compute_signed_distance(self, query_points, nthreads=0, nsamples=1):
         """The same, negative inside closed meshes."""
         _check_samples(nsamples)
         points = _with_two_axes(query_points, "query_points", 3)
-        return self._commit().signed_distance(points, threads=nthreads)
+        return answer(self._commit().signed_distance(points, threads=nthreads))
 
     def compute_occupancy(self, query_points, nthreads=0, nsamples=1):
         """1 for each point (..., 3) inside closed meshes, else 0: float32 (...)."""
         _check_samples(nsamples)
         points = _with_two_axes(query_points, "query_points", 3)
-        return self._commit().contains(points, threads=nthreads).astype(np.float32)
+        return answer(self._commit().contains(points, threads=nthreads).astype(np.float32))
 
     @staticmethod
     def create_rays_pinhole(*args, **kwargs):
@@ -168,7 +177,7 @@ class RaycastingScene:
         for names, make in ((by_matrix, _rays_by_matrix), (by_view, _rays_by_view)):
             given = {**dict(zip(names, args)), **kwargs}
             if len(args) + len(kwargs) == len(names) and set(given) == set(names):
-                return make(**given)
+                return answer(make(**given))
         raise TypeError(f"create_rays_pinhole: expected {', '.join(by_matrix)} or "
                         f"{', '.join(by_view)}, found {len(args)} arguments and "
                         f"{', '.join(kwargs) or 'no'} names")
@@ -198,20 +207,9 @@ class RaycastingScene:
                 "primitive_ids": np.where(hit, face - first, self.INVALID_ID).astype(np.uint32),
                 "primitive_normals": normal}
 
-    def _all_hits(self, rays, nthreads):
-        """t, ray and face of all hits, one for each mesh where they are at the same t."""
-        world = self._commit()
-        lists = world.all_hits(rays[..., :3], rays[..., 3:], threads=nthreads)
-        ray = np.repeat(np.arange(len(lists.offsets) - 1), np.diff(lists.offsets))
-        mesh = np.searchsorted(self._begins[1:], lists.id, side="right")
-        new = first_of_equal(ray, lists.t, mesh)
-        return lists.t[new], ray[new], lists.id[new]
-
 
 def _matrix(given, name, shape):
-    if hasattr(given, "numpy"):
-        given = given.numpy()
-    array = np.asarray(given)
+    array = array_of(given, name)
     if array.dtype.kind not in "fiu":
         raise TypeError(f"{name}: expected numbers of shape {shape}, found {type(given).__name__}")
     if array.shape != shape:

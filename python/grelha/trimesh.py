@@ -3,13 +3,14 @@
     from grelha.trimesh import RayMeshIntersector
     mesh.ray = RayMeshIntersector(mesh)
 
-The mesh is anything with .vertices (n, 3) and .faces (m, 3). Arguments behind the rays are given by
-name: the two classes of trimesh have them in different orders.
+The mesh is anything with .vertices (n, 3) and .faces (m, 3). Options behind the rays stand in the
+order of trimesh.ray.ray_pyembree; ray_triangle has another, for which names are safe. A ray that
+starts on a face does not hit it; trimesh's own find it at a distance of 0.
 """
 import numpy as np
 
-from ._geometry import first_of_equal, numbers, points_along
-from ._grelha import World
+from ._geometry import array_of, numbers, points_along
+from ._world import World
 
 __all__ = ["RayMeshIntersector"]
 
@@ -21,8 +22,20 @@ def _rows(given, name):
     return array
 
 
+def _same(array, before):
+    """True if the bytes are those of before, which is seen a hundred times faster than built."""
+    if array.shape != before.shape or array.dtype != before.dtype:
+        return False
+    words = f"u{array.itemsize}" if array.itemsize in (1, 2, 4, 8) else array.dtype
+    return np.array_equal(array.view(words), before.view(words))
+
+
 class RayMeshIntersector:
-    """Rays through one mesh. A mesh that changes is built anew before the next query."""
+    """Rays through one mesh. A mesh that changes is built anew before the next query.
+
+    Vertices and faces are compared with those of before, number by number. They may change in
+    place, and the mesh may make them anew each time.
+    """
 
     def __init__(self, mesh=None, geometry=None, **kwargs):
         """mesh (also `geometry`): has .vertices and .faces. Other options change nothing."""
@@ -31,30 +44,32 @@ class RayMeshIntersector:
             raise TypeError("mesh: expected an object with vertices and faces, found "
                             f"{type(mesh).__name__}")
         self.mesh = mesh
-        self._state = self._world = None
+        self._world = None
         self._commit()
 
-    def intersects_id(self, ray_origins, ray_directions, *, return_locations=False,
-                      multiple_hits=True, max_hits=None, **kwargs):
-        """The triangles that rays (n, 3) hit.
+    def intersects_id(self, ray_origins, ray_directions, multiple_hits=True, max_hits=None,
+                      return_locations=False, **kwargs):
+        """The triangles that rays (n, 3) pass through.
 
         multiple_hits      False: the first hit of each ray alone
         max_hits           at most so many of each ray, the nearest; None: all
-        return_locations   also where; hits of a ray at one place then count once
+        return_locations   also where
+
+        A ray that passes through an edge or a vertex passes through one triangle there; one that
+        touches it, through none or through two.
 
         Returns index_tri (h,) and index_ray (h,), int64, by ray and distance; with return_locations
         also locations (h, 3) float64.
         """
-        tri, ray, locations = self._hits(ray_origins, ray_directions, multiple_hits, max_hits,
-                                         unique=return_locations)
+        tri, ray, locations = self._hits(ray_origins, ray_directions, multiple_hits, max_hits)
         return (tri, ray, locations) if return_locations else (tri, ray)
 
-    def intersects_location(self, ray_origins, ray_directions, **kwargs):
+    def intersects_location(self, ray_origins, ray_directions, multiple_hits=True, **kwargs):
         """Where rays (n, 3) hit: locations (h, 3) float64, index_ray (h,), index_tri (h,), int64.
 
         Takes the options of intersects_id().
         """
-        kwargs["return_locations"] = True
+        kwargs.update(multiple_hits=multiple_hits, return_locations=True)
         tri, ray, locations = self.intersects_id(ray_origins, ray_directions, **kwargs)
         return locations, ray, tri
 
@@ -73,20 +88,14 @@ class RayMeshIntersector:
         return self._commit().contains(_rows(points, "points"))
 
     def _commit(self):
-        state = self._mesh_state()
-        if self._world is None or state != self._state:
-            vertices = np.asarray(self.mesh.vertices)
-            self._world = World(vertices, self.mesh.faces)
-            self._state = state
-            self._corners = vertices[np.asarray(self.mesh.faces, np.int64)].astype(np.float64)
+        vertices, faces = self.mesh.vertices, self.mesh.faces
+        arrays = array_of(vertices, "mesh.vertices"), array_of(faces, "mesh.faces")
+        if self._world is None or not all(map(_same, arrays, self._built)):
+            world = World(*arrays)
+            self._built = tuple(array.copy() for array in arrays)
+            self._corners = self._built[0][world.faces].astype(np.float64)
+            self._world = world
         return self._world
-
-    def _mesh_state(self):
-        """What differs once the mesh has changed: its hash, else where its arrays lie."""
-        if type(self.mesh).__hash__ not in (object.__hash__, None):
-            return hash(self.mesh)
-        vertices, faces = np.asarray(self.mesh.vertices), np.asarray(self.mesh.faces)
-        return tuple((a.__array_interface__["data"], a.shape) for a in (vertices, faces))
 
     def _rays(self, ray_origins, ray_directions):
         origins, directions = _rows(ray_origins, "ray_origins"), _rows(ray_directions,
@@ -96,18 +105,15 @@ class RayMeshIntersector:
                              f"found {directions.shape}")
         return origins, directions
 
-    def _hits(self, ray_origins, ray_directions, multiple_hits, max_hits, unique):
+    def _hits(self, ray_origins, ray_directions, multiple_hits, max_hits):
         origins, directions = self._rays(ray_origins, ray_directions)
         world = self._commit()
         if multiple_hits:
-            lists = world.all_hits(origins, directions)
-            t, tri, begin = lists.t, lists.id, lists.offsets[:-1]
-            ray = np.repeat(np.arange(len(origins)), np.diff(lists.offsets))
-            keep = first_of_equal(ray, t, np.zeros(len(t))) if unique else np.ones(len(t), bool)
+            offsets, t, tri, _ = world.crossings(origins, directions)
+            ray = np.repeat(np.arange(len(origins)), np.diff(offsets))
             if max_hits is not None:
-                rank = np.cumsum(keep) - 1
-                keep &= rank - rank[np.minimum(begin[ray], len(t) - 1)] < max_hits
-            t, tri, ray = t[keep], tri[keep], ray[keep]
+                keep = np.arange(len(t)) - offsets[ray] < max_hits
+                t, tri, ray = t[keep], tri[keep], ray[keep]
         else:
             hits = world.closest(origins, directions)
             ray = np.flatnonzero(hits.face >= 0)

@@ -224,7 +224,7 @@ class Trimesh(unittest.TestCase):
         where, index, _ = ray.intersects_location([[0.5, 0.5, 9]] * 2, [[0, 0, -4]] * 2)
         self.assertEqual(where.tolist(), [[0.5, 0.5, 1], [0.5, 0.5, 0]] * 2)
         self.assertEqual(index.tolist(), [0, 0, 1, 1])
-        self.assertEqual(len(ray.intersects_id([[0.5, 0.5, 9]], [[0, 0, -4]])[0]), 4)
+        self.assertEqual(len(ray.intersects_id([[0.5, 0.5, 9]], [[0, 0, -4]])[0]), 2)
         second = ray.intersects_id([[0.5, 0.5, 9]] * 2, [[0, 0, -4]] * 2, max_hits=1,
                                    return_locations=True)
         self.assertEqual(second[1].tolist(), [0, 1])
