@@ -5,6 +5,9 @@
 #include <utility>
 #include <vector>
 
+#include "frontend/files/atomic_file.hpp"
+#include "frontend/images/exr_file.hpp"
+#include "frontend/images/hdr_file.hpp"
 #include "frontend/images/image_file.hpp"
 #include "frontend/input/default_view.hpp"
 #include "frontend/input/effects.hpp"
@@ -151,6 +154,37 @@ py::array_t<float> FileScene::render(const RenderArguments& given) const {
   return pixels;
 }
 
+namespace {
+
+std::string encoded(ImageFormat format, const Image& image) {
+  switch (format) {
+    case ImageFormat::png:
+      return encode_png(image, {});
+    case ImageFormat::hdr:
+      return encode_hdr(image);
+    case ImageFormat::pfm:
+      return encode_pfm(image);
+    case ImageFormat::exr:
+      return encode_exr(image);
+  }
+  return {};
+}
+
+/// Encodes a picture, which may take seconds, beside a thread that hears signals; then writes it.
+void write_encoded(const std::string& name, ImageFormat format, Image image) {
+  check_writable(name);
+  struct Picture {
+    Image image;
+    std::string bytes;
+  };
+  const auto picture = std::make_shared<Picture>(Picture{std::move(image), {}});
+  hear_signals_beside([picture, format] { picture->bytes = encoded(format, picture->image); });
+  const py::gil_scoped_release unlocked;
+  write_file(name, picture->bytes);
+}
+
+}  // namespace
+
 void write_picture(py::handle path, py::handle given) {
   const std::string name = path_in(path);
   if (!image_format(name))
@@ -171,8 +205,7 @@ void write_picture(py::handle path, py::handle given) {
   Image image(width, height);
   for (std::size_t i = 0; i < image.rgb.size(); ++i)
     image.rgb[i] = floats.data()[grey ? i / 3 : i];
-  const py::gil_scoped_release unlocked;
-  write_image(name, image);
+  write_encoded(name, *image_format(name), std::move(image));
 }
 
 }  // namespace grelha::python

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -105,6 +106,34 @@ void hear_signals(std::size_t count, const std::function<void(const Progress&)>&
   }
   if (listener.raised())
     throw py::error_already_set(*listener.raised());
+}
+
+void hear_signals_beside(const std::function<void()>& work) {
+  struct Run {
+    std::function<void()> work;
+    std::exception_ptr thrown{};
+    Done done{};
+  };
+  const auto run = std::make_shared<Run>();
+  run->work = work;
+  {
+    const py::gil_scoped_release unlocked;
+    std::thread([run] {
+      try {
+        run->work();
+      } catch (...) {
+        run->thrown = std::current_exception();
+      }
+      run->done.set();
+    }).detach();
+    while (!run->done.wait()) {
+      const py::gil_scoped_acquire locked;
+      if (PyErr_CheckSignals() != 0)
+        throw py::error_already_set();
+    }
+  }
+  if (run->thrown)
+    std::rethrow_exception(run->thrown);
 }
 
 }  // namespace grelha::python

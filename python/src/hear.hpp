@@ -17,4 +17,8 @@ void hear_signals(const std::function<void(const Progress&)>& work);
 /// longer than they do: `progress` itself runs the handlers, when it is asked late.
 void hear_signals(std::size_t count, const std::function<void(const Progress&)>& work);
 
+/// The same for work that cannot be asked to stop. If a handler raises, the work goes on alone, and
+/// nobody sees what it does: it must own all that it reads and writes.
+void hear_signals_beside(const std::function<void()>& work);
+
 }  // namespace grelha::python

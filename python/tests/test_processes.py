@@ -224,7 +224,10 @@ LONG = {
     "few points": "world.closest_points(np.zeros((4000, 3), np.float32))",
     "few distances": "world.signed_distance(np.zeros((4000, 3), np.float32))",
     "fast and slow points": "world.closest_points(mixed)",
+    "crossings": "world.crossings(origins, directions)",
+    "starts": "world.start(0, 0.3, 0.3, directions)",
     "render": "scene.render(4000, 4000, samples=1000)",
+    "picture": "grelha.write_image(folder.name + '/a.exr', picture)",
 }
 
 
@@ -232,12 +235,13 @@ class Interrupts(unittest.TestCase):
     def interrupted(self, statement, fork=False):
         """Ends a statement that would take long by SIGINT: how it ended, and after how long."""
         program = f"""
-import os, signal, sys, time, numpy as np, grelha
+import os, signal, sys, tempfile, time, numpy as np, grelha
 from meshes import ball, rays
 signal.signal(signal.SIGINT, signal.default_int_handler)  # in the background it is ignored
 world, scene = grelha.World(*ball(60)), grelha.Scene(*ball(60))
 origins, directions = (np.tile(x, (160, 1)) for x in rays(10 ** 5, 1))
 world.closest(origins[:9000], directions[:9000])
+folder, picture = tempfile.TemporaryDirectory(), np.random.rand(3000, 3000)
 mixed = np.concatenate([np.tile(world.vertices * 1.001, (20, 1)), np.zeros((10 ** 6, 3))])
 if {fork} and os.fork():
     sys.exit(os.wait()[1] != 0)
