@@ -21,7 +21,7 @@ import sys
 import tempfile
 
 FOLDERS = ("include", "kernel", "frontend", "c", "scenes", "tests", "perf", "examples", "cmake",
-           "docs")
+           "docs", "python")
 SOURCES = ("hpp", "cpp", "py", "sh", "cmake")
 COMMENT = {".hpp": "//", ".cpp": "//", ".h": "//", ".c": "//",
            ".py": "#", ".sh": "#", ".cmake": "#"}

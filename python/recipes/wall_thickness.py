@@ -41,8 +41,8 @@ world, faces = scene.world, scene.faces
 corners = scene.vertices[faces]
 normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
 normals /= np.maximum(np.linalg.norm(normals, axis=-1, keepdims=True), 1e-30)
-# from the middle of the face, which is skipped: no distance to tune
-thick = world.closest(corners.mean(1), -normals, skip=np.arange(len(faces))).t
+# from just below the middle of the face: no distance to tune
+thick = world.closest(world.start(np.arange(len(faces)), 1 / 3, 1 / 3, -normals), -normals).t
 known = np.isfinite(thick)
 limit = options.limit or 0.5 * np.median(thick[known])
 
