@@ -15,6 +15,20 @@ def array_of(given, name):
         return np.asarray(None)
 
 
+def shown(given):
+    """What a message says of a wrong argument: a number as it is, of others the type."""
+    return repr(given) if isinstance(given, (int, float, np.number)) else type(given).__name__
+
+
+def whole_number(given, name, least, wanted):
+    """A whole number as an int. Raises TypeError or ValueError: expected `wanted`."""
+    if isinstance(given, np.ndarray) or not hasattr(type(given), "__index__"):
+        raise TypeError(f"{name}: expected {wanted}, found {shown(given)}")
+    if given.__index__() < least:
+        raise ValueError(f"{name}: expected {wanted}, found {shown(given)}")
+    return given.__index__()
+
+
 def numbers(given, name, last):
     """An array of numbers of shape (..., last)."""
     array = array_of(given, name)

@@ -10,7 +10,8 @@ may be float64. Answers do not depend on the number of threads. Inside and outsi
 import numpy as np
 
 from ._answers import answer
-from ._geometry import array_of, barycentric, normals, numbers, points_along
+from ._geometry import (array_of, barycentric, normals, numbers, points_along, shown,
+                        whole_number)
 from ._world import World
 
 __all__ = ["RaycastingScene"]
@@ -25,8 +26,9 @@ def _with_two_axes(given, name, last):
 
 
 def _check_samples(nsamples):
-    if not isinstance(nsamples, (int, np.integer)) or nsamples < 1 or nsamples % 2 == 0:
-        raise ValueError(f"nsamples: expected an odd number above 0, found {nsamples!r}")
+    wanted = "an odd number above 0"
+    if whole_number(nsamples, "nsamples", 1, wanted) % 2 == 0:
+        raise ValueError(f"nsamples: expected {wanted}, found {shown(nsamples)}")
 
 
 def _mesh_arrays(mesh):
@@ -221,8 +223,7 @@ def _rays_by_matrix(intrinsic_matrix, extrinsic_matrix, width_px, height_px):
     inside = _matrix(intrinsic_matrix, "intrinsic_matrix", (3, 3))
     outside = _matrix(extrinsic_matrix, "extrinsic_matrix", (4, 4))
     for name, side in (("width_px", width_px), ("height_px", height_px)):
-        if not isinstance(side, (int, np.integer)) or side < 1:
-            raise ValueError(f"{name}: expected a number of pixels above 0, found {side!r}")
+        whole_number(side, name, 1, "a number of pixels above 0")
     turn = outside[:3, :3].T
     try:
         to_world = turn @ np.linalg.inv(inside)
@@ -236,8 +237,13 @@ def _rays_by_matrix(intrinsic_matrix, extrinsic_matrix, width_px, height_px):
 
 
 def _rays_by_view(fov_deg, center, eye, up, width_px, height_px):
+    wanted = "an angle between 0 and 180 degrees"
+    if not isinstance(fov_deg, (int, float, np.number)):
+        raise TypeError(f"fov_deg: expected {wanted}, found {shown(fov_deg)}")
     if not 0 < fov_deg < 180:
-        raise ValueError(f"fov_deg: expected an angle between 0 and 180 degrees, found {fov_deg}")
+        raise ValueError(f"fov_deg: expected {wanted}, found {shown(fov_deg)}")
+    for name, side in (("width_px", width_px), ("height_px", height_px)):
+        whole_number(side, name, 1, "a number of pixels above 0")
     center, eye, up = (_matrix(v, name, (3,))
                        for v, name in ((center, "center"), (eye, "eye"), (up, "up")))
     ahead = center - eye

@@ -9,7 +9,7 @@ starts on a face does not hit it; trimesh's own find it at a distance of 0.
 """
 import numpy as np
 
-from ._geometry import array_of, numbers, points_along
+from ._geometry import array_of, numbers, points_along, shown, whole_number
 from ._world import World
 
 __all__ = ["RayMeshIntersector"]
@@ -107,6 +107,10 @@ class RayMeshIntersector:
 
     def _hits(self, ray_origins, ray_directions, multiple_hits, max_hits):
         origins, directions = self._rays(ray_origins, ray_directions)
+        if not isinstance(multiple_hits, (bool, np.bool_)):
+            raise TypeError(f"multiple_hits: expected a bool, found {shown(multiple_hits)}")
+        if max_hits is not None:
+            max_hits = whole_number(max_hits, "max_hits", 0, "a number of hits, or None")
         world = self._commit()
         if multiple_hits:
             offsets, t, tri, _ = world.crossings(origins, directions)

@@ -237,13 +237,19 @@ class Misuses(unittest.TestCase):
         for bad, kind in (([[0.5, 1, 2]], TypeError), ([0, 1, 2], ValueError),
                           ([[0, 1, 8]], ValueError), ([[0, 1, -1]], ValueError)):
             self.refused("triangle_indices", kind, scene.add_triangles, CUBE, bad)
-        for bad in (0, 2, -1, 1.5):
-            self.refused("nsamples", ValueError, scene.compute_occupancy, CUBE, nsamples=bad)
+        for bad, kind in ((0, ValueError), (2, ValueError), (-1, ValueError), (1.5, TypeError),
+                          (CUBE, TypeError), ("a", TypeError), (None, TypeError)):
+            self.refused("nsamples", kind, scene.compute_occupancy, CUBE, nsamples=bad)
         self.refused("mesh", TypeError, scene.add_triangles, 3)
         self.refused("create_rays_pinhole", TypeError, scene.create_rays_pinhole, 1, 2)
         self.refused("intrinsic_matrix", ValueError, scene.create_rays_pinhole, np.eye(4),
                      np.eye(4), 4, 4)
         self.refused("width_px", ValueError, scene.create_rays_pinhole, np.eye(3), np.eye(4), 0, 4)
+        for bad in (CUBE, "a", None):
+            self.refused("fov_deg", TypeError, scene.create_rays_pinhole, bad, (0, 0, 0),
+                         (0, 0, 1), (0, 1, 0), 4, 4)
+            self.refused("height_px", TypeError, scene.create_rays_pinhole, 60, (0, 0, 0),
+                         (0, 0, 1), (0, 1, 0), 4, bad)
         self.refused("fov_deg", ValueError, scene.create_rays_pinhole, 0, (0, 0, 0), (0, 0, 1),
                      (0, 1, 0), 4, 4)
 
@@ -257,6 +263,10 @@ class Misuses(unittest.TestCase):
                 self.refused("ray_directions", kind, getattr(ray, method), CUBE, bad)
             self.refused("points", kind, ray.contains_points, bad)
         self.refused("ray_directions", ValueError, ray.intersects_any, CUBE, CUBE[:2])
+        for bad in (CUBE, "a", None, 2):
+            self.refused("multiple_hits", TypeError, ray.intersects_location, CUBE, CUBE, bad)
+        for bad, kind in ((CUBE, TypeError), ("a", TypeError), (1.5, TypeError), (-1, ValueError)):
+            self.refused("max_hits", kind, ray.intersects_id, CUBE, CUBE, True, bad)
 
     @classmethod
     def tearDownClass(cls):
