@@ -131,6 +131,22 @@ TEST(ClosestPoint, OfManyByThreads) {
   EXPECT_THROW(closest_points(world, points, std::span(found).first(5)), std::invalid_argument);
 }
 
+/// All triangles are equally near to the middle of a ball, so each of these points takes long.
+TEST(ClosestPoint, AsksWhetherToGoOnWhatOnePointCosts) {
+  const Scene s = ball_mesh(200, 100);
+  const World world(s, {});
+  const std::vector<Float3> points(40);
+  std::vector<ClosestPoint> found(points.size());
+  std::vector<float> distances(points.size());
+  int calls = 0;
+  const QueryOptions options{.progress = [&](double) { return ++calls % 3 != 0; }};
+  EXPECT_THROW(closest_points(world, points, found, kInf, options), Stopped);
+  EXPECT_EQ(calls, 3);
+  EXPECT_FALSE(found.back()) << "what comes after is not done";
+  EXPECT_THROW(signed_distances(world, points, distances, options), Stopped);
+  EXPECT_EQ(calls, 6);
+}
+
 TEST(SignedDistance, IsNegativeInside) {
   const Scene s = torus_mesh(40, 24, .4);
   const World world(s, {});
