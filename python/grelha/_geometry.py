@@ -4,7 +4,9 @@ import numpy as np
 
 def array_of(given, name):
     """Any array; tensors give theirs by .numpy(). The masks of masked arrays would be lost."""
-    if hasattr(given, "numpy"):
+    if hasattr(given, "numpy") and not isinstance(given, np.ndarray):
+        for step in ("detach", "cpu"):  # of torch from its graph, and from other devices
+            given = getattr(given, step, lambda given=given: given)()
         given = given.numpy()
     if isinstance(given, np.ma.MaskedArray):
         raise TypeError(f"{name}: expected numbers, found a masked array; its mask would be lost: "

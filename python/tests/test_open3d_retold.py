@@ -24,6 +24,25 @@ class Tensor:
         return self.numbers
 
 
+class FarTensor(Tensor):
+    """On another device, and in a graph: .numpy() alone is refused."""
+
+    def __init__(self, numbers, is_near=False, is_free=False):
+        super().__init__(numbers)
+        self.is_near, self.is_free = is_near, is_free
+
+    def detach(self):
+        return FarTensor(self.numbers, self.is_near, True)
+
+    def cpu(self):
+        return FarTensor(self.numbers, True, self.is_free)
+
+    def numpy(self):
+        if not (self.is_near and self.is_free):
+            raise TypeError("can't convert")
+        return self.numbers
+
+
 def scene_of(*meshes):
     scene = RaycastingScene()
     for mesh in meshes:
@@ -160,6 +179,11 @@ class Tutorials(unittest.TestCase):
         self.assertIn(answer["primitive_ids"][0].item(), range(12))
         self.assertEqual({answer["geometry_ids"][0]: "cube"}[0], "cube")
         self.assertEqual(f"{scene.compute_distance(point)[0]:.3f}", "15.588")
+
+    def test_tensors_of_other_devices(self):
+        scene = RaycastingScene()
+        scene.add_triangles(FarTensor(CUBE), FarTensor(CUBE_FACES))
+        self.assertEqual(scene.count_intersections(FarTensor(THROUGH_CUBE)).tolist(), [2, 1, 0])
 
     def test_answers_are_arrays(self):
         t = scene_of((CUBE, CUBE_FACES)).cast_rays(THROUGH_CUBE)["t_hit"]

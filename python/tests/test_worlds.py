@@ -106,6 +106,12 @@ class Meshes(unittest.TestCase):
         self.assertEqual(world.count_hits((0, 0, 9), (0, 0, -1)), 2)
         self.assertEqual(grelha.World.spheres(centers, 1).closest((5, 0, 9), (0, 0, -1)).t, 8)
 
+    def test_inside_of_spheres(self):
+        world = grelha.World.spheres([[0, 0, 0], [0.5, 0, 0]], 1)
+        points = [[0, 0, 0.5], [0.2, 0, 0], [-0.9, 0, 0], [0, 0, 3]]
+        self.assertEqual(world.contains(points).tolist(), [True, True, True, False])
+        self.assertEqual((world.signed_distance(points) < 0).tolist(), [True, True, True, False])
+
     def test_update_of_spheres(self):
         centers = np.array([[0, 0, 0], [5, 0, 0]], np.float32)
         world = grelha.World.spheres(centers, [1, 2])
