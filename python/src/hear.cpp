@@ -8,6 +8,10 @@
 #include <mutex>
 #include <optional>
 #include <thread>
+#include <utility>
+#include <vector>
+
+#include <unistd.h>
 
 #include <pybind11/pybind11.h>
 
@@ -108,6 +112,21 @@ void hear_signals(std::size_t count, const std::function<void(const Progress&)>&
     throw py::error_already_set(*listener.raised());
 }
 
+namespace {
+
+/// Work that nobody waits for; of this process, for a forked one has no such thread.
+struct LeftWork {
+  pid_t process;
+  std::thread thread;
+};
+/// Python's lock guards it. Never destroyed: it is emptied when Python exits.
+std::vector<LeftWork>& left_work() {
+  static auto* const left = new std::vector<LeftWork>;
+  return *left;
+}
+
+}  // namespace
+
 void hear_signals_beside(const std::function<void()>& work) {
   struct Run {
     std::function<void()> work;
@@ -118,22 +137,35 @@ void hear_signals_beside(const std::function<void()>& work) {
   run->work = work;
   {
     const py::gil_scoped_release unlocked;
-    std::thread([run] {
+    std::thread worker([run] {
       try {
         run->work();
       } catch (...) {
         run->thrown = std::current_exception();
       }
       run->done.set();
-    }).detach();
+    });
     while (!run->done.wait()) {
       const py::gil_scoped_acquire locked;
-      if (PyErr_CheckSignals() != 0)
-        throw py::error_already_set();
+      if (PyErr_CheckSignals() == 0)
+        continue;
+      left_work().push_back({getpid(), std::move(worker)});
+      throw py::error_already_set();
     }
+    worker.join();
   }
   if (run->thrown)
     std::rethrow_exception(run->thrown);
+}
+
+void finish_left_work() {
+  std::vector<LeftWork> left = std::exchange(left_work(), {});
+  const py::gil_scoped_release unlocked;
+  for (LeftWork& work : left)
+    if (work.process == getpid())
+      work.thread.join();
+    else
+      work.thread.detach();
 }
 
 }  // namespace grelha::python

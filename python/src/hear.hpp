@@ -20,5 +20,8 @@ void hear_signals(std::size_t count, const std::function<void(const Progress&)>&
 /// The same for work that cannot be asked to stop. If a handler raises, the work goes on alone, and
 /// nobody sees what it does: it must own all that it reads and writes.
 void hear_signals_beside(const std::function<void()>& work);
+/// Waits for work that went on alone: libraries that it uses end with the process. Python calls it
+/// when it exits.
+void finish_left_work();
 
 }  // namespace grelha::python

@@ -4,6 +4,7 @@
 #include "frontend/files/parse_error.hpp"
 #include "src/core_class.hpp"
 #include "src/file_scene.hpp"
+#include "src/hear.hpp"
 
 namespace grelha::python {
 namespace {
@@ -60,4 +61,5 @@ PYBIND11_MODULE(_grelha, module) {
   define_core(module);
   define_scene(module);
   module.def("write_image", write_picture);
+  py::module_::import("atexit").attr("register")(py::cpp_function(finish_left_work));
 }
