@@ -273,8 +273,11 @@ except KeyboardInterrupt:
     def test_ctrl_c(self):
         for name, statement in LONG.items():
             with self.subTest(name):
-                # the best of some: the machine may be busy
-                self.assertLess(min(self.interrupted(statement) for _ in range(3)), 0.2)
+                # tried again where others keep the machine busy
+                waits = []
+                while min(waits, default=1) >= 0.2 and len(waits) < 10:
+                    waits.append(self.interrupted(statement))
+                self.assertLess(min(waits), 0.2)
 
     def test_ctrl_c_in_a_forked_process(self):
         self.assertLess(self.interrupted(LONG["query"], fork=True), 2)
