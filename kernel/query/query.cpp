@@ -146,9 +146,6 @@ SurfacePoint surface_at(const World& world, std::uint32_t id, Float3 point) {
   visit_primitive(w.view.geometry, id, [&]<class Shape>(const auto& one) {
     foot = nearest_on(p, one);
     normal = normal_at(foot, one);
-    if constexpr (Shape::kKind == PrimitiveKind::kSphere)
-      if (one.radius < 0)  // it shows from inside alone
-        normal = -1. * normal;
   });
   // a short ray to that point
   const double away = length(foot) * 0x1p-10 + 0x1p-40;

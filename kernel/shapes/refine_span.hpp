@@ -75,6 +75,15 @@ template <class W>
   return a + (magnitude(a) * W(0x1p-23) + W(0x1p-149));
 }
 
+/// Upper and lower bounds of t, counted from `shift` on: doubles round the difference by 2^-53 of
+/// itself.
+inline float round_t_up(double t, double shift) {
+  return round_up((t - shift) + magnitude(t - shift) * 0x1p-52);
+}
+inline float round_t_down(double t, double shift) {
+  return round_down((t - shift) - magnitude(t - shift) * 0x1p-52);
+}
+
 /// The span of a crossing from doubles, or else from cross(); t is counted from `shift` on.
 template <class Cross>
 inline CrossingSpan refine_span(const HitInterval<double>& found,
@@ -92,8 +101,7 @@ inline CrossingSpan refine_span(const HitInterval<double>& found,
     lo = t - magnitude(t) * 0x1p-48;
     hi = t + magnitude(t) * 0x1p-48;
   }
-  const double error_bound = magnitude(shift) * 0x1p-51;
-  return {round_down((lo - shift) - error_bound), round_up((hi - shift) + error_bound)};
+  return {round_t_down(lo, shift), round_t_up(hi, shift)};
 }
 
 /// Replaces selected lanes of `found` by span_of(lane).

@@ -55,13 +55,6 @@ inline bool enter_far(const GridView& g,
 /// Times t: bound of the error of entries and exits in float, which is 3 u.
 inline constexpr float kEntryError = 0x1p-20f;
 
-/// Upper and lower bounds of t, counted from `shift` on.
-inline float round_t_up(float t, double shift) {
-  return round_up((t - shift) + magnitude(shift) * 0x1p-51);
-}
-inline float round_t_down(float t, double shift) {
-  return round_down((t - shift) - magnitude(shift) * 0x1p-51);
-}
 /// Start of a search from `shift` on: unlimited if t_min comes before the shift, else 0.
 inline float begin_from(double t_min, double shift) {
   return t_min < shift ? -kInfinity : 0.f;

@@ -54,5 +54,30 @@ TEST(Rounding, KeepsFloatsBesideDoubles) {
   }
 }
 
+/// t - shift, exactly: as a double and what that is off by.
+struct Difference {
+  double high = 0, low = 0;
+  Difference(double t, double shift) { two_sum(t, -shift, high, low); }
+  bool at_most(float bound) const { return high - bound < 0 || (high == bound && low <= 0); }
+  bool at_least(float bound) const { return high - bound > 0 || (high == bound && low >= 0); }
+};
+
+// Ends and spans of rays that are moved to a grid hold what they held.
+TEST(Rounding, KeepsSpansOfMovedRays) {
+  for (std::uint64_t seed = 0; seed < 300000; ++seed) {
+    Random random(seed);
+    const auto t = static_cast<float>(random.sign() * random.log_in(1e-20, 1e20));
+    double shift = random.sign() * random.log_in(1e-20, 1e20);
+    if (random.chance(.5))  // a difference that doubles round to a float
+      shift = static_cast<float>(shift);
+    const Difference exact(t, shift);
+    ASSERT_TRUE(exact.at_most(scalar::round_t_up(t, shift))) << seed;
+    ASSERT_TRUE(exact.at_least(scalar::round_t_down(t, shift))) << seed;
+    const CrossingSpan span =
+        scalar::refine_span({true, true, t, t}, shift, [] { return ExactCrossing(); });
+    ASSERT_TRUE(exact.at_most(span.hi) && exact.at_least(span.lo)) << seed;
+  }
+}
+
 }  // namespace
 }  // namespace grelha::test
