@@ -32,20 +32,41 @@ std::string suggested_option(const CLI::App& app, const std::string& word) {
                  std::vector<std::string_view>(names.begin(), names.end()));
 }
 
-bool contains(const std::vector<std::string>& words, const std::string& word) {
-  return std::ranges::find(words, word) != words.end();
+[[noreturn]] void refuse(const CLI::App& app,
+                         const char* expected,
+                         const std::string& word,
+                         const std::string& suggested = "") {
+  throw UsageError((app.get_parent() ? app.get_name() + ": " : "") + "expected " + expected +
+                   ", found \"" + word + '"' + suggested + " (see --help)");
 }
 
-void check_option(const CLI::App& app, const std::string& word) {
-  if (!contains(option_names(app), word))
-    throw UsageError("The following argument was not expected: " + word +
-                     suggested_option(app, word) + " (see --help)");
+/// Returns the option that a word gives; refuses one that is none. `name`: of the word, without its
+/// value.
+const CLI::Option& option_of(const CLI::App& app, const std::string& word, std::string& name) {
+  name = word.starts_with("--") ? word.substr(0, word.find('=')) : word.substr(0, 2);
+  const CLI::Option* option = app.get_option_no_throw(name);
+  if (!option)
+    refuse(app, "an option", word, suggested_option(app, word));
+  return *option;
+}
+
+/// Refuses what looks like an option and is none. CLI11 would first complain of what is missing,
+/// as the scene in `render --hlep`.
+void check_options(const CLI::App& sub, const std::vector<std::string>& words) {
+  for (std::size_t i = 0; i < words.size() && words[i] != "--"; ++i) {
+    if (words[i].size() < 2 || words[i][0] != '-')
+      continue;
+    std::string name;
+    const CLI::Option& option = option_of(sub, words[i], name);
+    i += option.get_expected_max() > 0 && words[i] == name;  // its value is the next word
+  }
 }
 
 /// CLI11 would only say that a command is missing.
 void check_command(const CLI::App& app, const std::string& word) {
+  std::string name;
   if (word.starts_with('-'))
-    return check_option(app, word);
+    return void(option_of(app, word, name));
   std::string commands;
   std::vector<std::string_view> names;
   for (const CLI::App* sub : app.get_subcommands({})) {
@@ -66,13 +87,6 @@ std::string first_line(const std::string& text) {
 const CLI::App& asked(const CLI::App& app) {
   const auto commands = app.get_subcommands();
   return commands.empty() ? app : *commands.front();
-}
-
-/// Returns `; did you mean --size?` for the first unparsed word that begins with `-`, or nothing.
-std::string suggested_option_left(const CLI::App& app) {
-  const std::vector<std::string> left = app.remaining(true);
-  const auto option = std::ranges::find_if(left, [](auto& w) { return w.starts_with('-'); });
-  return option == left.end() ? "" : suggested_option(asked(app), *option);
 }
 
 /// Refuses the first option that was given more than once: CLI11 would count.
@@ -96,7 +110,7 @@ CommandHelp help_of(const CLI::App& sub) {
       option.names.push_back("-" + name);
     for (const std::string& name : o->get_lnames())
       option.names.push_back("--" + name);
-    if (o != sub.get_help_ptr() && o != sub.get_help_all_ptr())
+    if (o != sub.get_help_ptr() && o != sub.get_help_all_ptr() && o != sub.get_version_ptr())
       help.options.push_back(std::move(option));
   }
   return help;
@@ -149,7 +163,7 @@ static C checked(const C& command) {
 
 Command parse_command(int argc, const char* const* argv) {
   CLI::App app{"", "grelha"};
-  app.set_version_flag("-V,--version", "grelha " GRELHA_VERSION);
+  app.set_version_flag(kVersionFlag, kVersion);
   app.require_subcommand(1);
   Commands commands;
   add_commands(app, commands);
@@ -157,6 +171,8 @@ Command parse_command(int argc, const char* const* argv) {
     return help_of_command(argv[0], argc > 2 ? argv[2] : "");
   if (argc > 1)
     check_command(app, argv[1]);
+  if (argc > 1 && argv[1][0] != '-')
+    check_options(*app.get_subcommand(argv[1]), {argv + 2, argv + argc});
   try {
     app.parse(words_of(argc, argv));
   } catch (const CLI::CallForHelp&) {
@@ -165,8 +181,10 @@ Command parse_command(int argc, const char* const* argv) {
     return requested_help(app, true);
   } catch (const CLI::CallForVersion& version) {
     return TextCommand{std::string(version.what()) + '\n'};
-  } catch (const CLI::ExtrasError& error) {
-    throw UsageError(first_line(error.what()) + suggested_option_left(app) + " (see --help)");
+  } catch (const CLI::ExtrasError&) {
+    refuse(asked(app), "no further word", app.remaining(true).front());
+  } catch (const CLI::ValidationError& error) {
+    throw UsageError(error.what());
   } catch (const CLI::ParseError& error) {
     reject_twice(app);
     throw UsageError(first_line(error.what()) + " (see --help)");

@@ -200,12 +200,15 @@ double rmse_bound(const std::string& text) {
 }
 
 void parse_size(const std::string& text, int& width, int& height) {
-  const auto cross = text.find('x');
+  const auto cross = text.find_first_of("xX");
   const auto w = number<int>(std::string_view(text).substr(0, cross));
   const auto h = cross == std::string::npos ? std::nullopt
                                             : number<int>(std::string_view(text).substr(cross + 1));
   if (!w || !h || *w < 1 || *h < 1 || *w > kMaxSide || *h > kMaxSide)
-    reject("--size", "WIDTHxHEIGHT, each from 1 to 65536", text);
+    reject("--size",
+           "WIDTHxHEIGHT, each from 1 to 65536",
+           text,
+           w && cross == std::string::npos ? "; did you mean " + text + 'x' + text + '?' : "");
   width = *w;
   height = *h;
 }

@@ -35,8 +35,13 @@ CLI::Option* value(CLI::App& app,
   return app.add_option_function<std::string>(names, std::move(take), help)->type_name(placeholder);
 }
 
-void positional(CLI::App& app, const char* name, std::string& target, const char* help) {
-  app.add_option(name, target, help)->required()->type_name("");
+/// Adds files that stand by their place; an empty name, as an unset variable gives, is none.
+template <class Names>
+void positional(CLI::App& app, const char* name, Names& target, const char* help) {
+  const auto check = [](const std::string& text) {
+    return text.empty() ? "expected a file name, found \"\"" : "";
+  };
+  app.add_option(name, target, help)->required()->type_name("")->check(check);
 }
 
 void image_file(CLI::App& app, const char* name, std::string& target, const char* help) {
@@ -44,12 +49,6 @@ void image_file(CLI::App& app, const char* name, std::string& target, const char
     check_image_name(name, text);
     target = text;
   });
-}
-
-using Words = std::vector<std::string>;
-
-void positionals(CLI::App& app, const char* name, Words& target, const char* help) {
-  app.add_option(name, target, help)->required()->type_name("");
 }
 
 void add_input_options(CLI::App& app, InputOptions& input) {
@@ -250,7 +249,7 @@ void add_render(CLI::App& app, RenderCommand& command) {
       "Examples:\n"
       "  grelha render scenes/data/balls.nff -o balls.png --size 800x600\n"
       "  grelha render scenes/data -o pictures/ --error 0.01");
-  positionals(sub, "SCENE", command.scenes, "scene files, folders of them, - for stdin");
+  positional(sub, "SCENE", command.scenes, "scene files, folders of them, - for stdin");
   add_picture_files(sub, command);
   add_limits(sub, command);
   add_sample_counts(sub, command);
@@ -263,7 +262,7 @@ void add_render(CLI::App& app, RenderCommand& command) {
         "FILE",
         "write counts and times as JSON; - for stdout",
         [&command](const std::string& text) { command.stats = file_name("--stats", text); });
-  sub.add_flag("--quiet", command.quiet, "no progress bar, no summary line");
+  sub.add_flag("-q,--quiet", command.quiet, "no progress bar, no summary line");
   add_input_options(sub, command.input);
   sub.add_flag("--srgb", command.srgb, "PNG: colours are light, show them through the sRGB curve");
   add_long_work(sub, command.work);
@@ -272,7 +271,7 @@ void add_render(CLI::App& app, RenderCommand& command) {
 void add_info(CLI::App& app, InfoCommand& command) {
   CLI::App& sub =
       *app.add_subcommand("info", "Say what scenes hold and what they need of the renderer");
-  positionals(sub, "SCENE", command.scenes, "scene files, or folders of them");
+  positional(sub, "SCENE", command.scenes, "scene files, or folders of them");
   sub.footer("Example: grelha info scenes/data/balls.nff --json");
   sub.add_flag("--json", command.json, "as JSON");
   add_input_options(sub, command.input);
@@ -304,9 +303,7 @@ void add_merge(CLI::App& app, MergeCommand& command) {
   CLI::App& sub = *app.add_subcommand(
       "merge", "Join parts of a picture (.grelha) to the picture, or to a larger part");
   sub.footer("Example: grelha merge a.grelha b.grelha -o whole.png");
-  sub.add_option("PARTS", command.parts, "what render --rows and --samples I:J made")
-      ->required()
-      ->type_name("");
+  positional(sub, "PARTS", command.parts, "what render --rows and --samples I:J made");
   value(sub,
         "-o,--output",
         "FILE",
@@ -315,7 +312,7 @@ void add_merge(CLI::App& app, MergeCommand& command) {
       ->required();
   add_format(sub, command.format);
   sub.add_flag("--srgb", command.srgb, "PNG: colours are light, show them through the sRGB curve");
-  sub.add_flag("--quiet", command.quiet, "no summary line");
+  sub.add_flag("-q,--quiet", command.quiet, "no summary line");
 }
 
 void add_scene(CLI::App& app, SceneCommand& command) {
@@ -345,6 +342,8 @@ void add_commands(CLI::App& app, Commands& commands) {
   add_compare(app, commands.compare);
   add_merge(app, commands.merge);
   add_scene(app, commands.scene);
+  for (CLI::App* sub : app.get_subcommands({}))
+    sub->set_version_flag(kVersionFlag, kVersion);
 }
 
 }  // namespace grelha

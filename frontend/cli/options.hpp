@@ -9,6 +9,9 @@ class App;
 
 namespace grelha {
 
+inline constexpr const char* kVersionFlag = "-V,--version";
+inline constexpr const char* kVersion = "grelha " GRELHA_VERSION;
+
 /// The commands, as their options fill them in.
 struct Commands {
   RenderCommand render;

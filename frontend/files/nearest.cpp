@@ -24,11 +24,33 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
-std::string_view nearest(std::string_view found, std::span<const std::string_view> words) {
+namespace {
+
+std::string in_small_letters(std::string_view word) {
+  std::string small(word);
+  for (char& c : small)
+    c = c >= 'A' && c <= 'Z' ? char(c + 32) : c;
+  return small;
+}
+
+/// Returns the first word that begins with `found`, where that has letters enough to mean one.
+std::string_view completed(std::string_view found, std::span<const std::string_view> words) {
+  constexpr std::size_t kLetters = 3;
+  const std::size_t begin = std::min(found.find_first_not_of('-'), found.size());
+  if (found.size() - begin < kLetters)
+    return {};
+  const auto word = std::ranges::find_if(words, [&](auto w) { return w.starts_with(found); });
+  return word == words.end() ? std::string_view() : *word;
+}
+
+}  // namespace
+
+std::string_view nearest(std::string_view word_found, std::span<const std::string_view> words) {
   constexpr std::size_t kLongest = 64;  // longer words are noise, no typing errors
+  if (word_found.size() > kLongest)
+    return {};
+  const std::string found = in_small_letters(word_found);
   std::string_view best;
-  if (found.size() > kLongest)
-    return best;
   std::size_t least = found.size() / 3 + 1;
   for (const std::string_view word : words) {
     const std::size_t d = edit_distance(found, word);
@@ -37,7 +59,7 @@ std::string_view nearest(std::string_view found, std::span<const std::string_vie
       best = word;
     }
   }
-  return best;
+  return best.empty() ? completed(found, words) : best;
 }
 
 std::string suggest(std::string_view found, std::span<const std::string_view> words) {

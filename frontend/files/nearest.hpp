@@ -10,9 +10,10 @@ namespace grelha {
 /// once).
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
-/// The word that `found` was probably meant to be: the first of the nearest, at most a third of its
-/// letters away; empty when there is none.
-std::string_view nearest(std::string_view found, std::span<const std::string_view> words);
+/// The word that was probably meant by the one found: the first of the nearest, at most a third of
+/// its letters away, or one that it begins; capitals are as small letters. Empty when there is
+/// none.
+std::string_view nearest(std::string_view word_found, std::span<const std::string_view> words);
 
 /// `; did you mean WORD?`, or nothing.
 std::string suggest(std::string_view found, std::span<const std::string_view> words);

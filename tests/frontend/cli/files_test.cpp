@@ -198,6 +198,10 @@ TEST_F(Files, AnEmptyNameIsNone) {
     expect_refused("render ball.nff " + option + " ''",
                    option + ": expected a file name, found \"\"");
   expect_refused("scene balls -o ''", "-o: expected a file name, found \"\"");
+  for (const std::string command : {"render", "info"})
+    expect_refused(command + " ''", "SCENE: expected a file name, found \"\"");
+  expect_refused("compare ball.nff ''", "B: expected a file name, found \"\"");
+  expect_refused("merge '' -o x.png", "PARTS: expected a file name, found \"\"");
 }
 
 TEST_F(Files, NamesTooLongAreOneLineOfOurs) {

@@ -58,6 +58,9 @@ TEST(Nearest, CountsEdits) {
   constexpr std::string_view words[] = {"s", "resolution", "angle"};
   EXPECT_EQ(nearest("angel", words), "angle");
   EXPECT_EQ(nearest("resoluton", words), "resolution");
+  EXPECT_EQ(nearest("ANGLE", words), "angle");
+  EXPECT_EQ(nearest("resol", words), "resolution") << "its beginning";
+  EXPECT_EQ(nearest("re", words), "") << "two letters begin too many words";
   EXPECT_EQ(nearest("x", words), "") << "one letter of one is another word";
   EXPECT_EQ(nearest("teapot", words), "");
   EXPECT_EQ(nearest(std::string(1000000, 'a'), words), "");

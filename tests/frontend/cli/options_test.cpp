@@ -105,6 +105,18 @@ TEST(Render, OptionsMayStandBeforeTheSceneAndCarryTheirValue) {
   EXPECT_EQ(command.scenes, std::vector<std::string>{"x.ply"});
 }
 
+TEST(Render, SizeTakesACapitalX) {
+  const auto command = std::get<RenderCommand>(parse("render x.nff --size 32X16"));
+  EXPECT_EQ(command.width, 32);
+  EXPECT_EQ(command.height, 16);
+}
+
+TEST(Render, ValuesMayLookLikeOptions) {
+  EXPECT_EQ(std::get<RenderCommand>(parse("render x.nff -o - --stats --s.json")).stats, "--s.json");
+  EXPECT_EQ(std::get<InfoCommand>(parse("info -- --x.nff")).scenes,
+            std::vector<std::string>{"--x.nff"});
+}
+
 TEST(Render, ShortOptionsTakeTheirValueAsInOtherTools) {
   for (const char* line :
        {"render x.nff -o=y.png -j=3", "render x.nff -oy.png -j3", "render -j 3 -o y.png x.nff"}) {
@@ -115,8 +127,11 @@ TEST(Render, ShortOptionsTakeTheirValueAsInOtherTools) {
   }
   EXPECT_EQ(std::get<SceneCommand>(parse("scene balls -o=b.nff")).output, "b.nff");
   EXPECT_EQ(error_of("render x.nff -o="), "-o: expected a file name, found \"\"");
-  EXPECT_EQ(std::get<TextCommand>(parse("-V")).text,
-            std::get<TextCommand>(parse("--version")).text);
+  EXPECT_TRUE(std::get<RenderCommand>(parse("render x.nff -q")).quiet);
+  EXPECT_TRUE(std::get<MergeCommand>(parse("merge a.grelha -o b.png -q")).quiet);
+  for (const char* line : {"-V", "render --version", "scene -V", "merge a --version"})
+    EXPECT_EQ(std::get<TextCommand>(parse(line)).text,
+              std::get<TextCommand>(parse("--version")).text);
 }
 
 TEST(Render, FormatNamesWhatTheNameDoesNot) {
@@ -193,8 +208,8 @@ struct Line {
 
 const Line kWrong[] = {
     {"", "A subcommand is required (see --help)"},
-    {"--hlp", "The following argument was not expected: --hlp; did you mean --help? (see --help)"},
-    {"--quiet render a", "The following argument was not expected: --quiet (see --help)"},
+    {"--hlp", "expected an option, found \"--hlp\"; did you mean --help? (see --help)"},
+    {"--quiet render a", "expected an option, found \"--quiet\" (see --help)"},
     {"help rendr",
      "command: expected one of render, info, compare, merge, scene, found \"rendr\"; did you "
      "mean render?"},
@@ -211,17 +226,26 @@ const Line kWrong[] = {
     {"rendr x.nff",
      "command: expected one of render, info, compare, merge, scene, found \"rendr\"; did you "
      "mean render?"},
+    {"rend x.nff",
+     "command: expected one of render, info, compare, merge, scene, found \"rend\"; did you "
+     "mean render?"},
+    {"RENDER x.nff",
+     "command: expected one of render, info, compare, merge, scene, found \"RENDER\"; did you "
+     "mean render?"},
     {"nothing x.nff",
      "command: expected one of render, info, compare, merge, scene, found \"nothing\""},
     {"render", "SCENE is required (see --help)"},
-    {"compare a b c", "The following argument was not expected: c (see --help)"},
-    {"render a --foo", "The following argument was not expected: --foo (see --help)"},
+    {"render --hlep",
+     "render: expected an option, found \"--hlep\"; did you mean --help? (see --help)"},
+    {"compare a b c d e", "compare: expected no further word, found \"c\" (see --help)"},
+    {"render a --foo", "render: expected an option, found \"--foo\" (see --help)"},
+    {"render a -x", "render: expected an option, found \"-x\" (see --help)"},
     {"render a --sampels 3",
-     "The following argument was not expected: --sampels; did you mean --samples? (see --help)"},
+     "render: expected an option, found \"--sampels\"; did you mean --samples? (see --help)"},
     {"render a --dept=3",
-     "The following argument was not expected: --dept=3; did you mean --depth? (see --help)"},
+     "render: expected an option, found \"--dept=3\"; did you mean --depth? (see --help)"},
     {"info a --jsno",
-     "The following argument was not expected: --jsno; did you mean --json? (see --help)"},
+     "info: expected an option, found \"--jsno\"; did you mean --json? (see --help)"},
     {"render a --sampler sobl",
      "--sampler: expected one of sobol, blue, jitter, unshuffled, random, found \"sobl\"; did you "
      "mean "
@@ -229,7 +253,9 @@ const Line kWrong[] = {
     {"render a -o", "--output: 1 required FILE missing (see --help)"},
     {"render a -o b.jpg",
      "-o: expected a name ending in .png, .hdr, .pfm, .exr or .grelha, found \"b.jpg\""},
-    {"render a --size 640", "--size: expected WIDTHxHEIGHT, each from 1 to 65536, found \"640\""},
+    {"render a --size 640",
+     "--size: expected WIDTHxHEIGHT, each from 1 to 65536, found \"640\"; did you mean 640x640?"},
+    {"render a --size 640x", "--size: expected WIDTHxHEIGHT, each from 1 to 65536, found \"640x\""},
     {"render a --size 0x1", "--size: expected WIDTHxHEIGHT, each from 1 to 65536, found \"0x1\""},
     {"render a --size 1x65537",
      "--size: expected WIDTHxHEIGHT, each from 1 to 65536, found \"1x65537\""},
