@@ -1,6 +1,5 @@
 #include "frontend/files/atomic_file.hpp"
 
-#include "frontend/files/parse_error.hpp"
 #include "frontend/files/place.hpp"
 
 #include <fcntl.h>
@@ -23,6 +22,16 @@ constexpr std::size_t kLongestSaved = 200;
 
 [[noreturn]] void fail(const std::string& path, const std::string& what, int error) {
   throw FileError(path, what + ": " + std::strerror(error));
+}
+
+/// Sends what is left for stdout. An earlier write that failed has left its error.
+void flush_stdout() {
+  std::cout << std::flush;
+  if (std::cout)
+    return;
+  if (errno == EPIPE)
+    throw ReaderGone("stdout", std::string("cannot write: ") + std::strerror(EPIPE));
+  fail("stdout", "cannot write", errno ? errno : EIO);
 }
 
 /// Returns true if renaming must not replace the file at `path`. A rename would replace even a file
@@ -106,6 +115,7 @@ void AtomicFile::create_temp() {
 
 AtomicFile::AtomicFile(const std::string& path, bool durable)
     : path_(path), target_(path == kStdout ? path : resolve_links(path)), durable_(durable) {
+  errno = 0;
   if (is_stdout())
     return;
   const bool special = is_special(target_);
@@ -131,12 +141,8 @@ std::ostream& AtomicFile::stream() {
 }
 
 void AtomicFile::commit() {
-  if (is_stdout()) {
-    std::cout << std::flush;
-    if (!std::cout)
-      throw FileError(name_of_file(path_), "cannot write");
-    return;
-  }
+  if (is_stdout())
+    return flush_stdout();
   if (stream_)
     errno = 0;  // else it tells why an earlier write failed
   stream_.flush();

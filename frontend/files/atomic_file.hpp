@@ -3,6 +3,8 @@
 #include <fstream>
 #include <string>
 
+#include "frontend/files/parse_error.hpp"
+
 namespace grelha {
 
 /// The name that stands for stdout, as in other tools.
@@ -34,6 +36,11 @@ class AtomicFile {
   bool durable_;
   int lock_ = -1;  ///< on the file named temp_
   std::ofstream stream_;
+};
+
+/// Whoever read from stdout has closed it.
+struct ReaderGone : FileError {
+  using FileError::FileError;
 };
 
 /// Returns the name of a file for messages: its own, or stdout.

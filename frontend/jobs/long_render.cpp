@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "frontend/commands/console.hpp"
+#include "frontend/files/atomic_file.hpp"
 #include "frontend/files/parse_error.hpp"
 #include "frontend/images/image_file.hpp"
 #include "frontend/jobs/partial.hpp"
@@ -242,6 +243,10 @@ void LongRender::finish(Layers layers) {
   layers_ = std::move(layers);
   try {
     write();
+  } catch (const ReaderGone&) {
+    if (save_requested())
+      save_all();
+    throw;
   } catch (const FileError&) {
     save_all();
     throw;

@@ -253,9 +253,23 @@ TEST_F(Files, StdoutHoldsOneResult) {
   EXPECT_EQ(
       full.err,
       "grelha: all of the picture is kept in ball.partial.grelha: the same command writes it\n"
-      "stdout: error: cannot write\n");
+      "stdout: error: cannot write: No space left on device\n");
   EXPECT_TRUE(run("render ball.nff -o -")
                   .err.starts_with("grelha: goes on from ball.partial.grelha, 100.0 % done\n"));
+}
+
+/// Who closed the pipe wants no picture: nothing is kept, unless it was asked for.
+TEST_F(Files, AReaderThatIsGoneLeavesNothing) {
+  ASSERT_EQ(mkfifo(folder_.file("pipe").c_str(), 0600), 0);
+  const std::string to_no_reader = "sh -c 'exec 3<>pipe 4>pipe 3<&-; exec \"$0\" \"$@\" >&4' ";
+  const std::string gone = "stdout: error: cannot write: Broken pipe\n";
+  const std::string job = "render ball.nff -o - --quiet";
+  const Outcome outcome = run(job, to_no_reader);
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_EQ(outcome.err, gone);
+  EXPECT_EQ(folder_.list(), "ball.nff pipe");
+  EXPECT_NE(run(job + " --checkpoint kept", to_no_reader).err.find(gone), std::string::npos);
+  EXPECT_EQ(folder_.list(), "ball.nff kept pipe");
 }
 
 /// The metadata of a picture suffices to reproduce it, and does not depend on options that change
