@@ -16,6 +16,7 @@
 #include "frontend/files/nearest.hpp"
 #include "frontend/files/parse_error.hpp"
 #include "frontend/files/shown.hpp"
+#include "frontend/files/unfinished.hpp"
 #include "frontend/images/image_file.hpp"
 #include "frontend/jobs/merge.hpp"
 #include "frontend/jobs/preparation.hpp"
@@ -266,6 +267,7 @@ int run_program(int argc, char** argv, Ranks& ranks) {
 int main(int argc, char** argv) {
   std::ios::sync_with_stdio(false);
   std::signal(SIGXFSZ, SIG_IGN);  // then writing fails with an error
+  grelha::handle_stop_signals(grelha::remove_and_end);
   grelha::Ranks ranks(argc, argv);
   const int status = grelha::run_program(argc, argv, ranks);
   if (status >= grelha::kSignalled || (status != 0 && !ranks.in_step()))

@@ -105,6 +105,7 @@ void AtomicFile::create_temp() {
     const bool locked = flock(lock_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
     if (locked && exists_at(lock_, temp)) {
       temp_ = temp;
+      unfinished_.emplace(temp_.c_str());
       return take_mode(lock_, target_);
     }
     close(lock_);
@@ -156,6 +157,7 @@ void AtomicFile::commit() {
     sync(path_, temp_);
   if (std::rename(temp_.c_str(), target_.c_str()) != 0)
     fail(path_, "cannot write", errno);
+  unfinished_.reset();
   temp_.clear();
   const std::string folder = std::filesystem::path(target_).parent_path().string();
   if (durable_)

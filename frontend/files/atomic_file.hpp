@@ -1,9 +1,11 @@
 #pragma once
 
 #include <fstream>
+#include <optional>
 #include <string>
 
 #include "frontend/files/parse_error.hpp"
+#include "frontend/files/unfinished.hpp"
 
 namespace grelha {
 
@@ -32,7 +34,8 @@ class AtomicFile {
   void create_temp();
   bool is_stdout() const { return path_ == kStdout; }
 
-  std::string path_, target_, temp_;  ///< temp_ is empty when written directly
+  std::string path_, target_, temp_;      ///< temp_ is empty when written directly
+  std::optional<Unfinished> unfinished_;  ///< temp_
   bool durable_;
   int lock_ = -1;  ///< on the file named temp_
   std::ofstream stream_;

@@ -6,8 +6,9 @@
 #include <atomic>
 #include <cerrno>
 #include <csignal>
-#include <initializer_list>
 #include <string_view>
+
+#include "frontend/files/unfinished.hpp"
 
 namespace grelha {
 
@@ -27,6 +28,7 @@ void record(int signal) {
   constexpr std::string_view kWipe = "\r\033[K";  // the bar
   constexpr std::string_view kAnswer = "grelha: stopping; once more ends it at once\n";
   noted = signal;
+  ::signal(signal, remove_and_end);
   const int error = errno;
   if (on_terminal)
     (void)!::write(STDERR_FILENO, kWipe.data(), kWipe.size());
@@ -34,31 +36,17 @@ void record(int signal) {
   errno = error;
 }
 
-void install_handler(void (*handler)(int), int flags) {
-  struct sigaction action {};
-  action.sa_handler = handler;
-  action.sa_flags = flags;
-  sigemptyset(&action.sa_mask);
-  for (const int signal : {SIGHUP, SIGINT, SIGTERM}) {
-    struct sigaction old {};
-    sigaction(signal, nullptr, &old);
-    // the parent process may have set a signal to be ignored
-    if (old.sa_handler != SIG_IGN)
-      sigaction(signal, &action, nullptr);
-  }
-}
-
 }  // namespace
 
 StopSignals::StopSignals() {
   noted = 0;
   on_terminal = isatty(STDERR_FILENO) == 1;
-  install_handler(record, SA_RESETHAND | SA_RESTART);
+  handle_stop_signals(record);
   previous_pipe = ::signal(SIGPIPE, SIG_IGN);
 }
 
 StopSignals::~StopSignals() {
-  install_handler(SIG_DFL, 0);
+  handle_stop_signals(remove_and_end);
   ::signal(SIGPIPE, previous_pipe);
 }
 

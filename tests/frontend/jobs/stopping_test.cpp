@@ -186,6 +186,26 @@ TEST_F(LongWork, SignalsStopReadingAndBuilding) {
       << "the second is not begun: " << info.err;
 }
 
+TEST_F(LongWork, StoppedWritersLeaveNothing) {
+  ASSERT_EQ(run("render ball.nff -o part.grelha --size 1500x1500 --quiet").status, 0);
+  const std::string before = folder_.list();
+  for (const std::string job : {"HUP scene mount --size 8 -o x.nff",
+                                "INT scene mount --size 8 -o x.nff",
+                                "TERM merge part.grelha -o x.png -q"}) {
+    const std::size_t space = job.find(' ');
+    const std::string stop = "timeout --foreground --preserve-status -s " + job.substr(0, space);
+    int stopped = 0;
+    for (double seconds = .01;
+         run(job.substr(space), stop + ' ' + std::to_string(seconds) + ' ').status != 0;
+         seconds *= 1.2) {
+      ++stopped;
+      EXPECT_EQ(folder_.list(), before) << job;
+    }
+    EXPECT_GT(stopped, 0);
+    std::filesystem::remove(folder_.file("x.nff"));
+  }
+}
+
 /// A signal may reach any thread, and any thread may ask; the thread sanitizer sees whether that is
 /// a race.
 TEST(StopSignals, OfOneThreadAreSeenByAnother) {
