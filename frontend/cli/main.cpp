@@ -1,5 +1,5 @@
 // The program. Errors become exit statuses here and nowhere else. 1: a file cannot be read or
-// written. 2: bad usage, or a scene that cannot be one. 128 and its number: a signal stopped a
+// written. 2: bad usage, or a scene that cannot be one. 3: an error was not met. 128 and its number: a signal stopped a
 // render that can go on. This is the one file of the frontend that knows the generators.
 #include "frontend/commands/console.hpp"
 #include "frontend/cli/command_line.hpp"
@@ -77,6 +77,15 @@ int interrupted(int signal, const std::string& next) {
   return kSignalled + signal;
 }
 
+/// The worse of two exit statuses: that a picture misses its error is the least that can fail.
+int worse(int a, int b) {
+  if (a == kNotMet && b != kOk)
+    return b;
+  if (b == kNotMet && a != kOk)
+    return a;
+  return std::max(a, b);
+}
+
 void remove_checkpoint(const RenderCommand& command) {
   std::error_code ignored;
   if (command.work.save_until_end && !command.work.checkpoint.empty())
@@ -95,11 +104,11 @@ int run(const RenderCommand& command, Ranks& ranks) {
   for (const RenderCommand& one : all) {
     if (const int signal = StopSignals::seen())
       return interrupted(signal, one.scene);
-    worst = std::max(worst, status_of(ranks, [&] { return render_scene(one, ranks); }));
+    worst = worse(worst, status_of(ranks, [&] { return render_scene(one, ranks); }));
     if (worst >= kSignalled || (ranks.count() > 1 && !ranks.in_step()))
       break;
   }
-  if (worst == kOk && ranks.first())
+  if ((worst == kOk || worst == kNotMet) && ranks.first())
     for (const RenderCommand& one : all)
       remove_checkpoint(one);
   return worst;

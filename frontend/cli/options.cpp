@@ -60,7 +60,9 @@ void add_input_options(CLI::App& app, InputOptions& input) {
   app.add_flag("--allow-outside",
                input.read.allow_outside,
                "scenes may name files outside their own folder");
-  app.add_flag("--strict", input.strict, "take a warning for an error: exit status 2");
+  app.add_flag("--strict",
+               input.strict,
+               "take a warning for an error: exit status 2; 3 where --error is not met");
 }
 
 void add_build_options(CLI::App& app, BuildOptions& build) {

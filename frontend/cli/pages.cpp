@@ -91,6 +91,7 @@ std::string man_page(const std::vector<CommandHelp>& commands) {
   return text +
          ".SH EXIT STATUS\n0; 1 when reading or writing a file fails; 2 for bad usage or a scene "
          "that cannot be one;\n"
+         "3 when \\-\\-strict is given and a picture does not meet its \\-\\-error;\n"
          "129, 130 and 143 when stopped by SIGHUP, SIGINT and SIGTERM.\n"
          ".SH SEE ALSO\n.BR gzip (1),\n.BR mpirun (1),\n.BR sbatch (1)\n";
 }

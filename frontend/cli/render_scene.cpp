@@ -125,7 +125,10 @@ class SceneRender {
       warn_empty_image(command_.scene, file_.scene, work.image(), log_.reporting());
     report(world);
     log_.check_none(command_.input);  // saves may have failed on the way
-    return kOk;
+    const std::string unmet = unmet_error(command_, report_);
+    if (!unmet.empty())
+      warn(unmet);
+    return unmet.empty() || !command_.input.strict ? kOk : kNotMet;
   }
 
  private:

@@ -5,8 +5,9 @@
 
 namespace grelha {
 
-/// Exit statuses. Beyond kSignalled: the number of the signal that stopped the program.
-inline constexpr int kOk = 0, kFileFailed = 1, kBadInput = 2, kSignalled = 128;
+/// Exit statuses. Beyond kSignalled: the number of the signal that stopped the program. kNotMet:
+/// with --strict, a picture is written and does not meet its --error.
+inline constexpr int kOk = 0, kFileFailed = 1, kBadInput = 2, kNotMet = 3, kSignalled = 128;
 
 // All output passes through printed(), so no file name reaches a terminal unescaped.
 

@@ -215,12 +215,10 @@ std::string rounded_up(double value) {
   return print("%.2g", std::strtod(print("%de%d", ++tens, power).c_str(), nullptr));
 }
 
-/// Says why a picture by --error ended: the error was not met, or some pixels had wide intervals.
+/// Says how many samples a picture by --error took after it met its error.
 std::string end_text(const RefineOptions& asked, const ErrorStats& e) {
-  if (asked.error <= 0 || e.met_at == e.samples)
+  if (asked.error <= 0 || e.met_at == 0 || e.met_at == e.samples)
     return "";
-  if (e.met_at == 0)
-    return print("; %g is not met with %u samples in a pixel", asked.error, e.most);
   return print(", %.0f %% of them for pixels with wide intervals",
                100 * (1 - double(e.met_at) / double(e.samples)));
 }
@@ -241,6 +239,16 @@ std::string error_text(const RefineOptions& asked, const ErrorStats& e, const Ru
 }
 
 }  // namespace
+
+std::string unmet_error(const RenderCommand& command, const RunReport& report) {
+  const ErrorStats& e = report.render.error;
+  const double asked = command.render.refine.error;
+  if (asked <= 0 || e.met_at > 0)
+    return "";
+  return command.scene +
+         print(": warning: --error %g is not met: RMSE about %.2g, at most ", asked, e.rmse) +
+         rounded_up(e.rmse_bound) + print(" (95 %%), with up to %u samples in a pixel", e.most);
+}
 
 std::string stats_json(const RenderCommand& command, const RunReport& report) {
   const RenderStats& render = report.render;

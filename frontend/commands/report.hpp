@@ -34,6 +34,9 @@ struct SceneMemory {
   std::uint64_t peak = 0;              ///< at most, be it while reading, building or rendering
 };
 
+/// A warning where the picture does not meet the error that --error asks for, else nothing.
+std::string unmet_error(const RenderCommand& command, const RunReport& report);
+
 std::string stats_json(const RenderCommand& command, const RunReport& report);
 /// `grids`: absent when they were not built.
 std::string info_json(const SceneFile& file,

@@ -77,6 +77,21 @@ TEST_F(Program, StatsTellTheRun) {
   EXPECT_LE(phases, double(json["seconds"]["render"])) << "one thread is at one thing at a time";
 }
 
+/// The most samples that a pixel can have do not always suffice.
+TEST_F(Program, SaysThatAnErrorIsNotMet) {
+  const std::string job = "render ball.nff -o x.pfm --quiet --size 4x4 --error 0.000001";
+  const std::string why = "ball.nff: warning: --error 1e-06 is not met: RMSE about ";
+  const Outcome let = run(job), strict = run(job + " --strict");
+  EXPECT_EQ(let.status, 0);
+  EXPECT_EQ(let.err.substr(0, why.size()), why);
+  EXPECT_EQ(strict.status, 3);
+  EXPECT_EQ(strict.err, let.err);
+  EXPECT_EQ(folder_.list(), "ball.nff x.pfm");
+  const std::string both = "render ball.nff missing.nff --quiet --size 4x4 --error 0.000001";
+  EXPECT_EQ(run(both + " --strict").status, 1) << "a failure is worse";
+  EXPECT_EQ(run("render ball.nff -o x.pfm --quiet --strict --error .1").status, 0);
+}
+
 TEST_F(Program, SpendsSamplesByErrorAndSaysSo) {
   const Outcome outcome = run(
       "render ball.nff -o a.pfm --error .02 --stats s.json --samples-map n.pfm --error-map e.pfm");
@@ -322,7 +337,7 @@ TEST_F(Program, AFullOutputIsStatusOne) {
   const std::string line =
       "'" GRELHA_PROGRAM "' scene balls --size 3 >/dev/full 2>'" + folder_.file("err") + "'";
   EXPECT_EQ(WEXITSTATUS(std::system(line.c_str())), 1);
-  EXPECT_EQ(folder_.read("err"), "stdout: error: cannot write\n");
+  EXPECT_EQ(folder_.read("err"), "stdout: error: cannot write: No space left on device\n");
 }
 
 TEST_F(Program, HelpAndVersionAreStatusZero) {
