@@ -1,6 +1,7 @@
 // The program. Errors become exit statuses here and nowhere else. 1: a file cannot be read or
-// written. 2: bad usage, or a scene that cannot be one. 3: an error was not met. 128 and its number: a signal stopped a
-// render that can go on. This is the one file of the frontend that knows the generators.
+// written. 2: bad usage, or a scene that cannot be one. 3: an error that was not met. 128 and its
+// number: a signal stopped a render that can go on. This is the one file of the frontend that knows
+// the generators.
 #include "frontend/commands/console.hpp"
 #include "frontend/cli/command_line.hpp"
 #include "frontend/cli/compare_images.hpp"
@@ -101,6 +102,8 @@ int run(const RenderCommand& command, Ranks& ranks) {
   std::optional<StopSignals> signals;
   if (ranks.first())
     signals.emplace();
+  if (ranks.first() && !command.quiet)
+    std::ranges::for_each(left_out(command.scenes), warn);
   for (const RenderCommand& one : all) {
     if (const int signal = StopSignals::seen())
       return interrupted(signal, one.scene);
@@ -141,6 +144,7 @@ int run(const InfoCommand& command, const Ranks& ranks) {
                      }));
   }
   signals.reset();
+  std::ranges::for_each(left_out(command.scenes), warn);
   std::string text;
   for (const auto& [scene, of_scene] : found)
     text += (text.empty() ? "" : "\n") + of_scene;

@@ -23,22 +23,31 @@ bool ends_with_any(std::string name, std::initializer_list<std::string_view> ext
       extensions.begin(), extensions.end(), [&](std::string_view e) { return name.ends_with(e); });
 }
 
-/// Returns the scenes in a folder, or its meshes if it has no scene: a mesh beside a scene is
-/// mostly part of that scene.
-Names files_of(const std::string& folder) {
+struct FolderFiles {
   Names scenes, meshes;
+};
+
+FolderFiles files_in(const std::string& folder) {
+  FolderFiles found;
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
     const std::string name = it->path().string();
     if (it->is_fifo(error))
       continue;  // reading a FIFO blocks until a writer comes: it must be named itself
     if (ends_with_any(name, {".nff", ".p3f"}))
-      scenes.push_back(name);
+      found.scenes.push_back(name);
     if (ends_with_any(name, {".ply"}))
-      meshes.push_back(name);
+      found.meshes.push_back(name);
   }
   if (error)
     throw FileError(folder, "cannot read: " + error.message());
+  return found;
+}
+
+/// Returns the scenes in a folder, or its meshes if it has no scene: a mesh beside a scene is
+/// mostly part of that scene.
+Names files_of(const std::string& folder) {
+  auto [scenes, meshes] = files_in(folder);
   Names& files = scenes.empty() ? meshes : scenes;
   if (files.empty())
     throw FileError(folder, "no .nff, .p3f or .ply file in this folder");
@@ -79,6 +88,21 @@ Names scene_files(const Names& arguments) {
         files.push_back(std::move(file));
   }
   return files;
+}
+
+std::vector<std::string> left_out(const Names& arguments) {
+  Names lines;
+  for (const std::string& folder : arguments) {
+    if (!is_folder(folder))
+      continue;
+    auto [scenes, meshes] = files_in(folder);
+    std::erase_if(
+        meshes, [&](const auto& m) { return std::ranges::find(arguments, m) != arguments.end(); });
+    if (!scenes.empty() && !meshes.empty())
+      lines.push_back(folder + ": left out " + std::to_string(meshes.size()) +
+                      " .ply beside scenes, whose parts they may be: name what is a scene itself");
+  }
+  return lines;
 }
 
 std::vector<RenderCommand> commands_for(const RenderCommand& command) {

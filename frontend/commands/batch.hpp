@@ -13,6 +13,9 @@ namespace grelha {
 /// FileError for a folder that cannot be read or has none.
 std::vector<std::string> scene_files(const std::vector<std::string>& arguments);
 
+/// A line for each folder where scene_files() leaves out meshes beside scenes.
+std::vector<std::string> left_out(const std::vector<std::string>& arguments);
+
 /// One command for each scene, with the names of its files: -o may be a folder, and {} in a name
 /// stands for the scene's. Throws UsageError when a file would be written that is read, or one
 /// twice.

@@ -77,6 +77,18 @@ TEST_F(Program, StatsTellTheRun) {
   EXPECT_LE(phases, double(json["seconds"]["render"])) << "one thread is at one thing at a time";
 }
 
+/// Meshes beside scenes are mostly their parts.
+TEST_F(Program, AFolderSaysWhichMeshesItLeavesOut) {
+  ASSERT_EQ(run("scene boat -o boat.nff").status, 0);
+  const std::string note =
+      ".: left out 1 .ply beside scenes, whose parts they may be: name what is a scene itself\n";
+  EXPECT_EQ(run("render . -o {}.pfm --size 4x4").err, note);
+  EXPECT_EQ(run("render . -o {}.pfm --size 4x4 --quiet").err, "");
+  EXPECT_EQ(run("info .").err, note);
+  EXPECT_EQ(run("info . ./boat.ply").err, "");
+  EXPECT_EQ(run("info ball.nff").err, "");
+}
+
 /// The most samples that a pixel can have do not always suffice.
 TEST_F(Program, SaysThatAnErrorIsNotMet) {
   const std::string job = "render ball.nff -o x.pfm --quiet --size 4x4 --error 0.000001";
