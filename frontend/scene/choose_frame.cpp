@@ -37,6 +37,16 @@ void for_each_position(const Geometry& g, const Visit& visit) {
       visit(axes[a], a);
 }
 
+PointBounds around(const SceneBounds& bounds) {
+  PointBounds box;
+  for (const Float3& p : {bounds.low, bounds.high}) {
+    box.add(0, p.x);
+    box.add(1, p.y);
+    box.add(2, p.z);
+  }
+  return box;
+}
+
 /// Returns the largest coordinate of primitives, camera and lights.
 double largest_coordinate(const SceneFile& file) {
   double most = 0;
@@ -61,15 +71,8 @@ std::optional<Frame> find_frame(const SceneFile& file) {
   const double most = largest_coordinate(file);
   if (most > 0 && most < kSmallest)
     return Frame{{}, 1 / power_of_two(most)};
-  if (bounds.empty)
-    return {};
-  PointBounds around;
-  for (const Float3& p : {bounds.low, bounds.high}) {
-    around.add(0, p.x);
-    around.add(1, p.y);
-    around.add(2, p.z);
-  }
-  const std::array<double, 3> offset = around.offset();
+  const std::array<double, 3> offset =
+      bounds.empty ? file.dropped.flat.offset() : around(bounds).offset();
   if (largest(offset) == 0)
     return {};
   return Frame{offset, 1};

@@ -33,11 +33,24 @@ Float3 valid_normal(const Float3& n) {
   return unit(d);
 }
 
+void SceneBuilder::drop_flat(std::span<const Float3> corner_points) {
+  ++file_.dropped.zero_area;
+  for (const Float3& p : corner_points) {
+    file_.dropped.flat.add(0, p.x);
+    file_.dropped.flat.add(1, p.y);
+    file_.dropped.flat.add(2, p.z);
+  }
+}
+
+void SceneBuilder::drop_flat(std::initializer_list<Float3> corner_points) {
+  drop_flat(std::span(corner_points.begin(), corner_points.size()));
+}
+
 void SceneBuilder::sphere(Float3 center, float radius, std::uint32_t material) {
   if (!is_finite_float(center) || !is_finite_float(radius))
     ++file_.dropped.not_finite;
   else if (radius == 0)
-    ++file_.dropped.zero_area;
+    drop_flat({center});
   else
     file_.scene.geometry.spheres.add(center, radius, material);
 }
@@ -48,7 +61,7 @@ void SceneBuilder::cone(
       !is_finite_float(apex_radius))
     ++file_.dropped.not_finite;
   else if (base == apex || (base_radius == 0 && apex_radius == 0))
-    ++file_.dropped.zero_area;
+    drop_flat({base, apex});
   else
     file_.scene.geometry.cones.add(base, base_radius, apex, apex_radius, material);
 }
@@ -60,7 +73,7 @@ void SceneBuilder::plane(Float3 a, Float3 b, Float3 c, std::uint32_t material) {
   }
   const Double3 normal = cross(difference(b, a), difference(c, a));
   if (is_zero(normal))
-    ++file_.dropped.zero_area;
+    drop_flat({a, b, c});
   else
     file_.scene.geometry.planes.add(a, unit(normal), material);
 }
@@ -115,10 +128,14 @@ void SceneBuilder::add_triangle(std::uint32_t a,
   t.material.push_back(material);
 }
 
-bool SceneBuilder::has_area(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
+Float3 SceneBuilder::point(std::uint32_t vertex) const {
   const Triangles& t = file_.scene.geometry.triangles;
-  const Float3 p{t.x[a], t.y[a], t.z[a]}, q{t.x[b], t.y[b], t.z[b]}, r{t.x[c], t.y[c], t.z[c]};
-  return !is_zero(cross(difference(q, p), difference(r, p)));
+  return {t.x[vertex], t.y[vertex], t.z[vertex]};
+}
+
+bool SceneBuilder::has_area(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
+  const Float3 p = point(a);
+  return !is_zero(cross(difference(point(b), p), difference(point(c), p)));
 }
 
 /// Returns true if the normal of a piece differs from the polygon's by more than a milliradian:
@@ -142,10 +159,8 @@ void SceneBuilder::triangle(std::span<const Float3> corner_points,
                             std::span<const Float3> normals,
                             std::uint32_t material) {
   const Float3& o = corner_points[0];
-  if (is_zero(cross(difference(corner_points[1], o), difference(corner_points[2], o)))) {
-    ++file_.dropped.zero_area;
-    return;
-  }
+  if (is_zero(cross(difference(corner_points[1], o), difference(corner_points[2], o))))
+    return drop_flat(corner_points);
   const auto first = std::uint32_t(file_.scene.geometry.triangles.vertex_count());
   for (std::size_t i = 0; i < 3; ++i)
     add_vertex(corner_points[i], normals.empty() ? Float3{} : valid_normal(normals[i]));
@@ -179,7 +194,8 @@ void SceneBuilder::polygon(std::span<const Float3> corner_points,
   const Result result = splitter_.cut(corner_points, triangles_);
   if (report && (result == Result::kFilled || result == Result::kCutLimit))
     report(result);
-  file_.dropped.zero_area += result == Result::kNoArea ? 1 : 0;
+  if (result == Result::kNoArea)
+    drop_flat(corner_points);
   if (triangles_.empty())
     return;
   with_intersections(corner_points, all_points_);
@@ -206,10 +222,8 @@ void SceneBuilder::box(Float3 corner, Float3 opposite, std::uint32_t material) {
   const Float3 hi{std::max(corner.x, opposite.x),
                   std::max(corner.y, opposite.y),
                   std::max(corner.z, opposite.z)};
-  if (int(lo.x == hi.x) + int(lo.y == hi.y) + int(lo.z == hi.z) > 1) {
-    ++file_.dropped.zero_area;
-    return;
-  }
+  if (int(lo.x == hi.x) + int(lo.y == hi.y) + int(lo.z == hi.z) > 1)
+    return drop_flat({lo, hi});
   const auto first = std::uint32_t(file_.scene.geometry.triangles.vertex_count());
   for (unsigned i = 0; i < 8; ++i)  // bit 0: x, bit 1: y, bit 2: z
     add_vertex({i & 1 ? hi.x : lo.x, i & 2 ? hi.y : lo.y, i & 4 ? hi.z : lo.z}, {});

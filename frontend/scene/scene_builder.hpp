@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <vector>
@@ -62,7 +63,11 @@ class SceneBuilder {
   CrossedFaces mesh(Mesh mesh, std::uint32_t material);
 
  private:
+  /// Counts a primitive without area, and where it would have been.
+  void drop_flat(std::initializer_list<Float3> corner_points);
+  void drop_flat(std::span<const Float3> corner_points);
   std::uint32_t add_vertex(Float3 point, Float3 normal);
+  Float3 point(std::uint32_t vertex) const;
   void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t material);
   /// Returns whether anything is left of the triangle's area in floats.
   bool has_area(std::uint32_t a, std::uint32_t b, std::uint32_t c) const;

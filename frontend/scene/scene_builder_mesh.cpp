@@ -51,20 +51,20 @@ SceneBuilder::Result SceneBuilder::mesh_face(std::span<const std::uint32_t> indi
     if (has_area(a, b, c))
       add_triangle(a, b, c, material);
     else
-      ++file_.dropped.zero_area;
+      drop_flat({point(a), point(b), point(c)});
     return Result::kCut;
   }
-  const Triangles& t = file_.scene.geometry.triangles;
   face_.clear();
   face_vertices_.clear();
   for (const std::uint32_t i : indices) {
     const std::uint32_t v = first_vertex + i;
-    face_.push_back({t.x[v], t.y[v], t.z[v]});
+    face_.push_back(point(v));
     face_vertices_.push_back(v);
   }
   triangles_.clear();
   const Result result = splitter_.cut(face_, triangles_);
-  file_.dropped.zero_area += result == Result::kNoArea ? 1 : 0;
+  if (result == Result::kNoArea)
+    drop_flat(face_);
   add_intersections();
   for (const auto& [i, j, k] : triangles_) {
     const std::uint32_t a = face_vertices_[i], b = face_vertices_[j], c = face_vertices_[k];
@@ -139,9 +139,11 @@ void SceneBuilder::mesh_triangles(std::span<const std::uint32_t> indices,
     t.a[at] = a;
     t.b[at] = b;
     t.c[at] = c;
-    at += has_area(a, b, c) ? 1 : 0;  // the next triangle overwrites one without area
+    if (has_area(a, b, c))
+      ++at;
+    else  // the next triangle overwrites it
+      drop_flat({point(a), point(b), point(c)});
   }
-  file_.dropped.zero_area += most - at;
   t.a.resize(at);
   t.b.resize(at);
   t.c.resize(at);

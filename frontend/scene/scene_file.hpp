@@ -8,6 +8,7 @@
 
 #include "frontend/scene/frame.hpp"
 #include "grelha/camera.hpp"
+#include "grelha/coordinates.hpp"
 #include "grelha/geometry.hpp"
 
 namespace grelha {
@@ -23,6 +24,7 @@ struct EntityCounts {
 /// Primitives left out because they cannot be drawn.
 struct Dropped {
   std::uint64_t not_finite = 0, zero_area = 0;
+  PointBounds flat;  ///< of the corners of those without area, which may have some in double
 };
 
 /// Lens fields as the file states them; `present` if the file has any.

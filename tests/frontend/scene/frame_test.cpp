@@ -203,6 +203,31 @@ TEST(Frame, KeepsMeshesInDoublesAndIntegers) {
   }
 }
 
+/// Primitives that have no area in floats say where to read them.
+TEST(Frame, FindsWhatFloatsFlattenAltogether) {
+  const TemporaryFolder folder;
+  for (const std::string type : {"int", "uint", "double", "float"}) {
+    const std::string text =
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty " + type + " x\nproperty " + type +
+        " y\nproperty " + type +
+        " z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n"
+        "1677721600 0 0\n1677721601 0 0\n1677721601 1 0\n1677721600 1 0\n3 0 1 2\n4 0 1 2 3\n";
+    const SceneFile file = read_text(folder, "far.ply", text);
+    EXPECT_EQ(file.scene.geometry.triangles.size(), 3u) << type;
+    EXPECT_EQ(file.dropped.zero_area, 0u) << type;
+    EXPECT_NE(file.frame, Frame{});
+  }
+  const std::string view =
+      "v from 1677721600 0 9 at 1677721600 0 0 up 0 1 0 angle 30 hither 1 resolution 8 8\n";
+  for (const std::string one : {"p 3 1677721600 0 0 1677721601 0 0 1677721600 1 0",
+                                "p 4 1677721600 0 0 1677721601 0 0 1677721601 1 0 1677721600 1 0",
+                                "c 1677721600 0 0 .1 1677721601 0 0 .1",
+                                "box 1677721600 0 0 1677721601 1 0"})
+    EXPECT_EQ(read_text(folder, "far.nff", view + one).dropped.zero_area, 0u) << one;
+  const std::string flat = "p 3 1677721600 0 0 1677721601 0 0 1677721602 0 0";
+  EXPECT_EQ(read_text(folder, "far.nff", view + flat).dropped.zero_area, 1u);
+}
+
 /// Meshes of one scene stay together, and with what the scene itself says.
 TEST(Frame, IsOneForAScene) {
   const TemporaryFolder folder;
