@@ -63,6 +63,10 @@ void NffSimple::read_polygon(std::string_view keyword, bool patch, bool textured
     if (result == SceneBuilder::Result::kFilled)
       input_.warn_once(
           "crossed", keyword, "a polygon that crosses itself; it is filled by the even-odd rule");
+    else if (result == SceneBuilder::Result::kFolded)
+      input_.warn_once("folded",
+                       keyword,
+                       "a polygon that folds over itself; what is seen along its normal is filled");
     else
       input_.warn_once("crossed too often",
                        keyword,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 #include "grelha/geometry.hpp"
 
@@ -18,6 +19,9 @@ inline Double3 cross(const Double3& a, const Double3& b) {
 }
 inline double dot(const Double3& a, const Double3& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+inline double length(const Double3& a) {
+  return std::sqrt(dot(a, a));
 }
 
 /// Returns true if the vector is zero in floats: no area, or no direction.

@@ -69,7 +69,32 @@ PolygonSplitter::Result PolygonSplitter::fill(std::span<const Float3> corner_poi
   EvenOddFill filled = outline.fill();
   make_delaunay(points_, filled.triangles);
   triangles.insert(triangles.end(), filled.triangles.begin(), filled.triangles.end());
-  return filled.is_crossed ? Result::kFilled : Result::kCut;
+  if (filled.is_crossed)
+    return Result::kFilled;
+  if (filled.triangles.empty())
+    return Result::kNoArea;
+  return is_whole(corner_points, filled.triangles) ? Result::kCut : Result::kFolded;
+}
+
+/// Surfaces of one boundary have one sum of areas along normals. Where the outline is bent by a
+/// right angle or more, sides that cancel in the plane may bound parts that are lost.
+bool PolygonSplitter::is_whole(std::span<const Float3> corner_points,
+                               std::span<const Triangle> triangles) const {
+  constexpr double kShare = 1e-3;  // far above rounding, and too little to see
+  const auto at = [&](std::uint32_t i) {
+    return i < corner_points.size()
+               ? corner_points[i]
+               : at_crossing(corner_points, intersections_[i - corner_points.size()]);
+  };
+  Double3 missing = newell_sum(corner_points);
+  double area = 0;
+  for (const auto& [a, b, c] : triangles) {
+    const Double3 normal = cross(difference(at(b), at(a)), difference(at(c), at(a)));
+    for (std::size_t k = 0; k < 3; ++k)
+      missing[k] -= normal[k];
+    area += length(normal);
+  }
+  return length(missing) <= kShare * area;
 }
 
 void PolygonSplitter::record_intersections(std::span<const Float3> corner_points,

@@ -31,6 +31,7 @@ class PolygonSplitter {
   enum class Result {
     kCut,       ///< at most corners - 2 triangles, none without area
     kFilled,    ///< it crosses itself: its inside by the even-odd rule
+    kFolded,    ///< bent so far that it hides parts of itself: what is seen along its normal
     kNoArea,    ///< no triangle
     kCutLimit,  ///< it crosses itself too often (Outline::kMostCuts): no triangle
   };
@@ -50,6 +51,7 @@ class PolygonSplitter {
   Point2 projected(const Float3& p) const;
   bool is_convex() const;
   Result fill(std::span<const Float3> corner_points, std::vector<Triangle>& triangles);
+  bool is_whole(std::span<const Float3> corner_points, std::span<const Triangle> triangles) const;
   void record_intersections(std::span<const Float3> corner_points, const Outline& outline);
 
   std::array<double, 3> normal_{};

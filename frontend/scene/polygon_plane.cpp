@@ -10,21 +10,6 @@ double squared(const Double3& a) {
   return dot(a, a);
 }
 
-/// Sums over differences to the first corner. Differences of nearby floats are exact, so corners on
-/// one line give zero.
-Double3 newell_sum(std::span<const Float3> corner_points) {
-  Double3 sum{};
-  const Float3 o = corner_points[0];
-  Double3 p = difference(corner_points[1], o);
-  for (std::size_t i = 2; i < corner_points.size(); ++i) {
-    const Double3 q = difference(corner_points[i], o), term = cross(p, q);
-    for (std::size_t k = 0; k < 3; ++k)
-      sum[k] += term[k];
-    p = q;
-  }
-  return sum;
-}
-
 /// The normal, with twice the area as its length, of the first corner, the one farthest from it,
 /// and the one farthest from both.
 Double3 normal_of_three(std::span<const Float3> corner_points) {
@@ -40,6 +25,20 @@ Double3 normal_of_three(std::span<const Float3> corner_points) {
 }
 
 }  // namespace
+
+/// Sums over differences to the first corner: those of nearby floats are exact.
+Double3 newell_sum(std::span<const Float3> corner_points) {
+  Double3 sum{};
+  const Float3 o = corner_points[0];
+  Double3 p = difference(corner_points[1], o);
+  for (std::size_t i = 2; i < corner_points.size(); ++i) {
+    const Double3 q = difference(corner_points[i], o), term = cross(p, q);
+    for (std::size_t k = 0; k < 3; ++k)
+      sum[k] += term[k];
+    p = q;
+  }
+  return sum;
+}
 
 Double3 larger_normal(std::span<const Float3> corner_points, const Double3& sum) {
   Double3 other = normal_of_three(corner_points);

@@ -6,6 +6,10 @@
 
 namespace grelha {
 
+/// Newell's sum over the corners: twice the area of each part of any surface that the outline
+/// bounds, along its normal. Corners on one line give zero.
+Double3 newell_sum(std::span<const Float3> corner_points);
+
 /// The normal of a polygon of three corners or more, with twice the area as its length (Newell's
 /// sum over all corners). If parts with opposite turns cancel in the sum, the normal of a triangle
 /// over the corners.

@@ -9,9 +9,6 @@
 namespace grelha {
 namespace {
 
-double length(const Double3& a) {
-  return std::sqrt(dot(a, a));
-}
 Float3 unit(const Double3& a) {
   const double l = length(a);
   return {float(a[0] / l), float(a[1] / l), float(a[2] / l)};
@@ -192,7 +189,7 @@ void SceneBuilder::polygon(std::span<const Float3> corner_points,
     return triangle(corner_points, normals, material);
   triangles_.clear();
   const Result result = splitter_.cut(corner_points, triangles_);
-  if (report && (result == Result::kFilled || result == Result::kCutLimit))
+  if (report && result != Result::kCut && result != Result::kNoArea)
     report(result);
   if (result == Result::kNoArea)
     drop_flat(corner_points);

@@ -29,10 +29,11 @@ inline bool is_finite_float(const Float3& v) {
 Float3 valid_normal(const Float3& n);
 
 /// Faces of a mesh whose outlines cross themselves: those that are filled by the even-odd rule, and
-/// those that do so too often (PolygonSplitter::Result).
+/// those that do so too often; and those that fold over themselves (PolygonSplitter::Result).
 struct CrossedFaces {
-  std::uint64_t filled = 0, left_out = 0;
-  std::uint64_t first = 0;  ///< number of the first one, from 0
+  std::uint64_t filled = 0, left_out = 0, folded = 0;
+  std::uint64_t first = 0, first_folded = 0;  ///< number of the first one, from 0
+  void add(PolygonSplitter::Result result, std::uint64_t face);
   /// The text of a warning; empty if there are no such faces.
   std::string text() const;
 };
@@ -50,8 +51,8 @@ class SceneBuilder {
   /// The points q with normal . q = distance.
   void plane(Float3 normal, float distance, std::uint32_t material);
   using Result = PolygonSplitter::Result;
-  /// `normals`: one per corner, or empty. `report` is called of an outline that crosses
-  /// itself, before anything is added; it may throw.
+  /// `normals`: one per corner, or empty. `report` is called of an outline that crosses itself
+  /// or folds over itself, before anything is added; it may throw.
   void polygon(std::span<const Float3> corner_points,
                std::span<const Float3> normals,
                std::uint32_t material,

@@ -165,28 +165,45 @@ CrossedFaces SceneBuilder::mesh_faces(const Mesh& mesh,
       ++file_.dropped.not_finite;
       continue;
     }
-    const Result result = mesh_face(indices, first_vertex, material);
-    if (result != Result::kFilled && result != Result::kCutLimit)
-      continue;
-    if (crossed.filled + crossed.left_out == 0)
-      crossed.first = f;
-    ++(result == Result::kFilled ? crossed.filled : crossed.left_out);
+    crossed.add(mesh_face(indices, first_vertex, material), f);
   }
   return crossed;
 }
 
-std::string CrossedFaces::text() const {
-  const std::uint64_t all = filled + left_out;
-  if (all == 0)
-    return "";
+void CrossedFaces::add(PolygonSplitter::Result result, std::uint64_t face) {
+  using Result = PolygonSplitter::Result;
+  if (result == Result::kFolded) {
+    if (++folded == 1)
+      first_folded = face;
+  } else if (result == Result::kFilled || result == Result::kCutLimit) {
+    if (filled + left_out == 0)
+      first = face;
+    ++(result == Result::kFilled ? filled : left_out);
+  }
+}
+
+/// `face 3 from 0 crosses itself`, or the same of several.
+static std::string faces_that(std::uint64_t count,
+                              std::uint64_t first,
+                              const std::string& one,
+                              const std::string& several) {
   const std::string which = "face " + std::to_string(first) + " from 0";
-  const std::string text =
-      all == 1 ? which + " crosses itself"
-               : std::to_string(all) + " faces cross themselves, " + which + " is the first";
-  return text + ": filled by the even-odd rule" +
-         (left_out == 0 ? ""
-                        : ", but " + std::to_string(left_out) +
-                              " that cross themselves too often are left out");
+  return count == 1 ? which + one
+                    : std::to_string(count) + " faces" + several + ", " + which + " is the first";
+}
+
+std::string CrossedFaces::text() const {
+  std::string text;
+  if (filled + left_out > 0)
+    text = faces_that(filled + left_out, first, " crosses itself", " cross themselves") +
+           ": filled by the even-odd rule";
+  if (left_out > 0)
+    text += ", but " + std::to_string(left_out) + " that cross themselves too often are left out";
+  if (folded > 0)
+    text += (text.empty() ? "" : "; ") +
+            faces_that(folded, first_folded, " folds over itself", " fold over themselves") +
+            ": what is seen along the normal is filled";
+  return text;
 }
 
 }  // namespace grelha

@@ -64,6 +64,14 @@ TEST(NffNoise, PolygonsThatCrossThemselvesAreFilledAndSaid) {
                   "even-odd rule"});
 }
 
+TEST(NffNoise, PolygonsThatFoldOverThemselvesAreSaid) {
+  const Reading r = read_with_view(
+      kFill + "p 7 0 0 0 4 0 0 4 2 0 3 2 0 3 2 2 1 2 2 1 2 0\np 4 0 0 0 1 0 0 1 1 .1 0 1 0\n");
+  EXPECT_EQ(r.warnings,
+            Lines{"scene.nff:9:1: warning: a polygon that folds over itself; what is seen along "
+                  "its normal is filled"});
+}
+
 TEST(NffNoise, IsWarnedOfOnceAKindAndSkipped) {
   const Reading r = read_with_view(
       "# a comment\n/ another\nFloor of wood\n" + kFill +

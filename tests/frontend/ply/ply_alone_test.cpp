@@ -90,5 +90,21 @@ TEST(PlyAlone, FacesThatCrossThemselvesAreFilledAndSaid) {
   }
 }
 
+TEST(PlyAlone, FacesThatFoldOverThemselvesAreSaid) {
+  const TemporaryFolder folder;
+  const std::string mesh = folder.add(
+      "folded.ply",
+      "ply\nformat ascii 1.0\nelement vertex 7\nproperty float x\nproperty float y\nproperty float "
+      "z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n4 0 0\n4 2 0\n"
+      "3 2 0\n3 2 2\n1 2 2\n1 2 0\n4 0 2 1 3\n7 0 1 2 3 4 5 6\n");
+  std::vector<std::string> warnings;
+  read_scene(mesh, [&](const std::string& line) { warnings.push_back(line); });
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0],
+            mesh +
+                ": warning: face 0 from 0 crosses itself: filled by the even-odd rule; face 1 from "
+                "0 folds over itself: what is seen along the normal is filled");
+}
+
 }  // namespace
 }  // namespace grelha
