@@ -8,7 +8,8 @@ grelha_test(frontend/input/loading unit grelha::frontend grelha::scenes)
 target_link_libraries(loading_test PRIVATE ZLIB::ZLIB)
 grelha_test(frontend/scene/polygon unit grelha::frontend)
 target_sources(polygon_test PRIVATE frontend/scene/crossed_polygons_test.cpp
-  frontend/scene/folded_polygons_test.cpp frontend/scene/frame_test.cpp frontend/scene/many_crossings_test.cpp)
+  frontend/scene/folded_polygons_test.cpp frontend/scene/frame_test.cpp
+  frontend/scene/many_crossings_test.cpp)
 grelha_test(frontend/nff/nff_reader unit grelha::frontend)
 target_sources(nff_reader_test PRIVATE frontend/nff/nff_dialects_test.cpp
   frontend/nff/nff_noise_test.cpp)
