@@ -1,9 +1,15 @@
 grelha_test(scenes/spd_counts image grelha::frontend grelha::scenes)
 
-add_test(NAME readme COMMAND ${CMAKE_COMMAND} -D ROOT=${PROJECT_SOURCE_DIR}
-  -D PROGRAM=$<TARGET_FILE:grelha>
-  -D SCRATCH=${CMAKE_CURRENT_BINARY_DIR}/readme -P ${CMAKE_CURRENT_SOURCE_DIR}/readme.cmake)
-set_tests_properties(readme PROPERTIES LABELS image)
+# Every block of the pages, in order. What is installed links with g++ as the page says it.
+set(to_install "")
+if(GRELHA_INSTALL AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND
+   NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize")
+  set(to_install ${PROJECT_BINARY_DIR})
+endif()
+add_test(NAME page_blocks COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/with_python.sh
+  ${CMAKE_CURRENT_SOURCE_DIR}/page_blocks.py ${PROJECT_SOURCE_DIR} $<TARGET_FILE:grelha>
+  ${CMAKE_CURRENT_BINARY_DIR}/page_blocks ${to_install})
+set_tests_properties(page_blocks PROPERTIES LABELS image SKIP_RETURN_CODE 77)
 grelha_test(kernel/shade/sampling property grelha::kernel grelha_lane_functions)
 target_sources(sampling_test PRIVATE kernel/shade/pixel_box_test.cpp
   kernel/shade/pixel_curve_test.cpp)

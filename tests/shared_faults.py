@@ -53,7 +53,7 @@ SCRIPTS = {  # the same of scripts, with their arguments and what their status m
     "pickle_protocol.py 1": (r"^\w+Error: .|^\d+$", r"Fatal Python error", (0, 1)),
     "no_init.py": (r"^\w+Error: .", r"Fatal Python error", [1]),
 }
-CASES = (r"^RESULT right$", r"^WRONG", [0])  # of the scripts p01 to p57, by ref.py
+CASES = (r"^RESULT right$", r"^WRONG", [0])  # of the scripts p01 to p57
 SCENES = {"shells_specks.cpp": "shells_5.nff"}  # what a program reads
 
 
