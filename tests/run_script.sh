@@ -10,6 +10,9 @@ cp "$1" project/run
 for folder in include kernel frontend c scenes cmake examples tests perf; do
   mkdir project/$folder
 done
+echo 'int main() {}' >project/perf/one.cpp
+echo 'if __name__ == "__main__":' >project/perf/two.py
+touch project/perf/part.cpp project/perf/part.hpp
 touch project/CMakeLists.txt project/CMakePresets.json project/build/release/.built-grelha
 printf '#!/bin/sh\necho "here: $*"\n' >project/build/release/grelha
 chmod +x project/build/release/grelha
@@ -88,11 +91,17 @@ grep -q '^1/2 Test #1: one' "$log" || { echo "the log of tests is incomplete"; e
 rm asked
 project/run | grep -q '^  render SCENE' || { echo "no help"; exit 1; }
 project/run help | grep -q '^  perf ' || { echo "no help of perf"; exit 1; }
-said=$(project/run perf nope 2>&1) && { echo "a wrong benchmark ended well"; exit 1; }
-case $said in
-  "run: no benchmark nope; there are: "*) ;;
-  *) echo "perf nope said: $said"; exit 1 ;;
-esac
+for word in --help -h help; do
+  [ "$(project/run $word)" = "$(project/run)" ] || { echo "$word is no help"; exit 1; }
+done
+project/run help | grep -q '^ *one two *$' || { echo "it lists other benchmarks"; exit 1; }
+for word in nope part; do
+  said=$(project/run perf $word 2>&1) && { echo "perf $word ended well"; exit 1; }
+  [ "$said" = "run: no benchmark $word; there are: one two " ] || {
+    echo "perf $word said: $said"
+    exit 1
+  }
+done
 [ ! -e asked ] || { echo "help built something"; exit 1; }
 echo 'cmake GRELHA_ISAS=all' >asked
 try 'here: info x.nff|' info x.nff
