@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""No sentence of the pages and of the public headers' comments is longer than 30 words.
+"""No sentence of the pages and of the public headers' comments is longer than 30 words. No line
+of a paragraph begins as an item of a list does, by a number and a full stop: a site makes it one.
 
     sentences.py ROOT [FILE...]   lists longer sentences as FILE:LINE; without FILE all of PAGES
     sentences.py --self-test      of planted sentences, finds the long ones and no others
@@ -92,6 +93,16 @@ def long_sentences(file):
                 yield line, count, " ".join(words_of(sentence)[:8])
 
 
+def accidental_items(file):
+    """Lines within a paragraph of a page that a site takes for an item."""
+    before = ""
+    for number, line in enumerate(file.read_text().split("\n"), 1):
+        in_text = before and not re.match(r"[ |#<]|```|([-*]|\d+\.) ", before)
+        if file.suffix == ".md" and in_text and re.match(r"\d+\. ", line):
+            yield number
+        before = line
+
+
 def self_test():
     long = " ".join(["word"] * 31)
     page = (f"# Title\n\nShort one. {long}. {' '.join(['word'] * 30)}.\n\n"
@@ -105,6 +116,10 @@ def self_test():
             found = [line for line, *_ in long_sentences(file)]
             if found != wanted:
                 sys.exit(f"{name}: expected long sentences in lines {wanted}, found {found}")
+        file = pathlib.Path(folder) / "b.md"
+        file.write_text("ends with\n129 or\n143. After any\n\n1. item\n2. item\n")
+        if list(accidental_items(file)) != [3]:
+            sys.exit("expected an item by accident in line 3")
 
 
 def main():
@@ -117,8 +132,11 @@ def main():
         for line, count, start in long_sentences(file):
             print(f"{file.relative_to(root)}:{line}: {count} words: {start} ...")
             found += 1
+        for line in accidental_items(file):
+            print(f"{file.relative_to(root)}:{line}: a site makes an item of a list of this line")
+            found += 1
     if found:
-        sys.exit(f"{found} sentences of more than {MOST} words")
+        sys.exit(f"{found} sentences of more than {MOST} words, or items by accident")
     print(f"{len(files)} files, no sentence of more than {MOST} words")
 
 

@@ -81,6 +81,10 @@ TEST(Exr, FilesOfAnotherProgramHoldTheSamePicture) {
   const Image small = read_image(folder + "small.exr");
   for (const char* name : {"none", "rle", "zips", "piz", "tiled"})
     EXPECT_EQ(read_image(folder + name + ".exr").rgb, small.rgb) << name;
+  const Image lossy = read_image(folder + "dwa.exr");
+  ASSERT_EQ(lossy.rgb.size(), small.rgb.size());
+  for (std::size_t i = 0; i < lossy.rgb.size(); ++i)
+    EXPECT_NEAR(lossy.rgb[i], small.rgb[i], 1e-3) << i;
   const Image grey = read_image(folder + "grey-half.exr");
   ASSERT_EQ(grey.rgb.size(), small.rgb.size());
   for (std::size_t i = 0; i < grey.rgb.size(); ++i) {
