@@ -19,7 +19,7 @@ import sys
 from matplotlib.lines import Line2D
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "lib"))
-from bench import DRAW_HELP, ROOT, plt, read_csv
+from bench import DRAW_HELP, ROOT, plt, read_csv, record
 from chart import legend_below
 
 # Colour (after Okabe and Ito), marker, label
@@ -132,6 +132,8 @@ def main():
     table = (docs or folder) / "build.csv"
     picture = (docs / "images" if docs else folder) / "build.svg"
     write_csv(rows, table)
+    if docs:
+        record("build")
     draw(rows, picture)
     print(f"\n{table}, {picture}")
 

@@ -23,7 +23,8 @@ import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE / "lib"), str(HERE / "charts")]
-from bench import DOCS, DRAW_HELP, ROOT, cpu_name, put_section, read_csv, table  # noqa: E402
+from bench import (  # noqa: E402
+    DOCS, DRAW_HELP, ROOT, cpu_name, put_section, read_csv, record, table)
 from chart import draw  # noqa: E402
 from image_error import Workshop  # noqa: E402
 from page import make_page  # noqa: E402
@@ -115,6 +116,8 @@ def make(name, shop, asked, plan, out):
         if kept.exists():
             write_csv(out / f"charts-{name}.csv",
                       *module.csv(json.loads(kept.read_text())["result"]))
+            if out == DOCS:
+                record(f"charts-{name}")
         elif plan.quick:
             (out / f"charts-{name}.csv").unlink(missing_ok=True)
     found = known(name, module, kept, out)

@@ -33,7 +33,7 @@ import sys
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "lib"))
-from bench import DOCS, ROOT, commit, cpu_name, put_section, table
+from bench import DOCS, ROOT, commit, cpu_name, put_section, record, table
 from hostile_scenes import COUNTED, KINDS, VARIANTS, scene
 from image_error import Workshop, read_pfm, rmse, time_to_reach
 
@@ -319,7 +319,7 @@ def main():
         rows.insert(-1 if ordinary.runs else len(rows),
                     ["all hostile", *hostile.cells(asked.errors)])
     text = (f"{table(head, rows)}\n\n{cpu_name()}, one thread, {asked.size} x {asked.size}, "
-            f"{commit()}. `./run perf error_suite`; [all runs](error-suite.csv).")
+            f"commit {commit()}. `./run perf error_suite`; [all runs](error-suite.csv).")
     print("\n" + text)
     tell_worst([*hostile.runs, *ordinary.runs], shop.folder)
     if asked.keep:
@@ -327,6 +327,7 @@ def main():
             r["command"] = r["command"].replace(f"{shop.folder}/", "").replace(
                 f"{ROOT.parent}/", "../")
         write_csv(runs, DOCS / "error-suite.csv")
+        record("error-suite")
         put_section(DOCS / "sampling.md", "perf/error_suite.py", text)
     sys.exit(not verdict(hostile, ordinary))
 

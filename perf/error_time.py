@@ -18,7 +18,7 @@ import sys
 from matplotlib.ticker import NullFormatter
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "lib"))
-from bench import DRAW_HELP, ROOT, plt, read_csv
+from bench import DRAW_HELP, ROOT, plt, read_csv, record
 from image_error import Refused, Workshop, read_pfm, rmse, time_to_reach
 
 FINEST = 256                   # samples of the finest fixed setting
@@ -211,6 +211,8 @@ def main():
         table.writerow([
             "scene", "method", "setting", "samples_per_pixel", "rays", "seconds", "rmse"])
         table.writerows(rows)
+    if out == ROOT / "docs":
+        record("error-time")
     draw(results, size, images / "error-time.png")
     print(f"{out / 'error-time.csv'}, {images / 'error-time.png'}")
 

@@ -262,17 +262,7 @@ def tell_povray(bench, results):
         ["scene", "case", "program", "threads", "render_seconds", "render_cpu_seconds",
          "whole_seconds", "rays", "samples_per_pixel", "rmse", "rounds"],
         sorted(csv_rows, key=lambda r: ([n for n, *_ in SCENES].index(r[0]), r[1:4])))
-    if bench.docs == DOCS:
-        put_range([g["pov", 1]["cpu"] / g["ours", 1]["cpu"] for *_, g in results])
     return povray_section(list(dict.fromkeys(name for name, *_ in results)), rows.values())
-
-
-def put_range(ratios):
-    """Into the tables that set renderers side by side."""
-    cell = f"| {min(ratios):.1f} to {max(ratios):.1f} |"
-    for page in (ROOT / "README.md", DOCS / "others.md"):
-        page.write_text(re.sub(r"(\| time of a whole picture[^|]*\| 1 )\|[^|]*\|",
-                               lambda m: m[1] + cell, page.read_text()))
 
 
 def povray_section(names, rows):

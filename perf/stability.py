@@ -124,6 +124,7 @@ the program.
     print(text)
     write_csv(data, (bench.DOCS if asked.keep else folder) / "stability.csv")
     if asked.keep:
+        bench.record("stability")
         bench.put_section(bench.DOCS / "numerics.md", "perf/stability.py", text)
     found = list(complaints(data))
     for line in found:

@@ -23,7 +23,7 @@ from datetime import date
 from matplotlib.lines import Line2D
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "lib"))
-from bench import DRAW_HELP, ROOT, commit, cpu_name, plt, read_csv, table
+from bench import DRAW_HELP, ROOT, commit, cpu_name, plt, read_csv, record, table
 from chart import legend_below
 
 FIRST = [
@@ -188,6 +188,8 @@ def main():
     whole = not rest or rest[0] == "--rounds" and len(rest) == 2
     numbers = (ROOT / "docs" if whole else folder) / "trace.csv"
     write_csv(cells, numbers)
+    if whole:
+        record("trace")
     told = [str(numbers)]
     if all("ratio" in c for c in cells.values()):
         picture = (ROOT / "docs/images" if whole else folder) / "trace.svg"

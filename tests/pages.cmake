@@ -20,6 +20,11 @@ set_tests_properties(docs architecture references references_self_test sentences
   PROPERTIES
   LABELS build SKIP_RETURN_CODE 77)
 
+# Figures of prose are those of the CSVs, and each CSV says of what commit and machine it is.
+add_test(NAME figures COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/with_python.sh
+  ${PROJECT_SOURCE_DIR}/perf/figures.py --check)
+set_tests_properties(figures PROPERTIES LABELS build SKIP_RETURN_CODE 77)
+
 add_test(NAME summary COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/with_python.sh
   ${CMAKE_CURRENT_LIST_DIR}/summary.py --self-test)
 set_tests_properties(summary PROPERTIES LABELS build SKIP_RETURN_CODE 77)

@@ -97,11 +97,13 @@ done
 project/run help | grep -q '^ *one two *$' || { echo "it lists other benchmarks"; exit 1; }
 for word in nope part; do
   said=$(project/run perf $word 2>&1) && { echo "perf $word ended well"; exit 1; }
-  [ "$said" = "run: no benchmark $word; there are: one two " ] || {
+  [ "$said" = "run: no benchmark $word; there are: all one two " ] || {
     echo "perf $word said: $said"
     exit 1
   }
 done
+project/run perf >said 2>&1 && { echo "perf without a name ended well"; exit 1; }
+grep -q '^run: no benchmark ; there are: all one two $' said || { cat said; exit 1; }
 [ ! -e asked ] || { echo "help built something"; exit 1; }
 echo 'cmake GRELHA_ISAS=all' >asked
 try 'here: info x.nff|' info x.nff

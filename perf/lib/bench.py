@@ -8,6 +8,7 @@ import pathlib
 import re
 import subprocess
 import sys
+from datetime import date
 
 import matplotlib
 matplotlib.use("Agg")
@@ -84,6 +85,8 @@ class Bench:
             table = csv.writer(f, lineterminator="\n")
             table.writerow(header)
             table.writerows(rows)
+        if self.docs == DOCS:
+            record(name)
 
     def save(self, figure, name):
         path = self.docs / "images" / f"{name}.svg"
@@ -130,6 +133,8 @@ def csv_bench(doc, name, command, draw, told):
         if done.returncode:
             sys.exit(done.returncode)
         numbers.write_text(done.stdout)
+        if to == DOCS:
+            record(name)
     lines = numbers.read_text().splitlines()
     about = lines[0].removeprefix("# ")
     rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
@@ -153,6 +158,21 @@ def commit():
     done = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short", "HEAD"],
                           stdout=subprocess.PIPE, text=True)
     return done.stdout.strip() or "no commit"
+
+
+def machine():
+    flags = next((line for line in open("/proc/cpuinfo") if line.startswith("flags")), "").split()
+    simd = [name for flag, name in (("avx512f", "AVX-512"), ("avx2", "AVX2")) if flag in flags]
+    return cpu_name() + (f" with {simd[0]}" if simd else "")
+
+
+def record(name):
+    """Says in docs/measured.csv of what and where a CSV is; perf/figures.py puts it into pages."""
+    rows = {r["csv"]: list(r.values()) for r in read_csv("measured")}
+    rows[name] = [name, commit(), date.today().isoformat(), machine()]
+    with open(DOCS / "measured.csv", "w", newline="") as f:
+        writer = csv.writer(f, lineterminator="\n")
+        writer.writerows([["csv", "commit", "date", "machine"], *sorted(rows.values())])
 
 
 def table(header, rows):

@@ -1,0 +1,125 @@
+#!/usr/bin/env python3
+"""Puts figures of the CSVs in docs/ into prose, and says under tables when and where they are from.
+
+    perf/figures.py [--check]
+
+In a page `<!-- NAME -->figure<!-- / -->` holds one of FIGURES, or with NAME `measured CSV` the row
+of docs/measured.csv, which benchmarks write when they write the CSV. A section that a benchmark
+made gets such a line at its end where it names no commit itself. --check: exit status 1 if a page
+would change, or a CSV has no row.
+"""
+import csv
+import math
+import pathlib
+import re
+import statistics
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "lib"))
+import doc_tables
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+DOCS = ROOT / "docs"
+PAGES = [ROOT / "README.md", *sorted(DOCS.glob("*.md"))]
+SECTIONS = {  # what a section's maker measures, by its marks
+    "frame, profile": "frame-profile", "frame, povray": "frame-povray", "report": "report",
+    "scale": "scale", "stability": "stability", "ranks": "ranks", "error_suite": "error-suite",
+    "charts, picture": "charts-picture", "charts, grid": "charts-grid",
+    "charts, features": "charts-features", "exact": "exact", "filters": "filters",
+}
+
+
+def rows_of(name):
+    lines = (DOCS / f"{name}.csv").read_text().splitlines()
+    return list(csv.DictReader(line for line in lines if not line.startswith("#")))
+
+
+def measured():
+    return {row["csv"]: f"at commit {row['commit']} on {row['machine']}, {row['date']}"
+            for row in rows_of("measured")}
+
+
+def povray_ratios():
+    """POV-Ray's CPU seconds over Grelha's, one thread, by scene and case."""
+    cpu = {(r["scene"], r["case"], r["program"]): float(r["render_cpu_seconds"])
+           for r in rows_of("frame-povray") if r["threads"] == "1"}
+    return {(scene, case): cpu[scene, case, "POV-Ray"] / cpu[scene, case, "Grelha"]
+            for scene, case, who in cpu if who == "Grelha"}
+
+
+def span(values):
+    return f"{min(values):.1f} to {max(values):.1f}"
+
+
+def ratios(column):
+    return [float(r[column]) for r in rows_of("trace") if r[column]]
+
+
+def lost():
+    """Rays that were sent and lost, of the table of perf/lost.py, by tracer."""
+    page = (DOCS / "python.md").read_text()
+    section = re.search(r"<!-- made by perf/lost.py -->(.*?)<!-- end of lost -->", page, re.S)[1]
+    first = section.split("\n\n")[0]
+    meshes = sum(line.startswith("|") for line in first.splitlines()) - 3
+    each = int(re.search(r"([\d,]+) rays each", section)[1].replace(",", ""))
+    grelha, robust, fast = (cell.strip() for cell in
+                            re.search(r"^\| all \|(.*)\|$", first, re.M)[1].split("|")[1:])
+    return {"lost rays": f"{3 * each * meshes // 10**6} million", "lost by Grelha": grelha,
+            "lost by robust": robust, "lost by fast": fast}
+
+
+def figures():
+    calls = ratios("ratio_of_calls")
+    profile = {r["scene"]: {k: float(v) for k, v in r.items() if k != "scene"}
+               for r in rows_of("frame-profile")}
+    told = {"povray": span(povray_ratios().values()),
+            "targets": doc_tables.targets(povray_ratios(), profile),
+            "ladder": doc_tables.ladder(rows_of("ladder")),
+            "density": doc_tables.density(rows_of("density")),
+            "density in words": doc_tables.density_in_words(rows_of("density")),
+            "build": doc_tables.build(rows_of("build")),
+            "embree": span([1 / r for r in ratios("ratio")]), "calls": span(calls),
+            "calls in the mean": f"{math.exp(statistics.fmean(map(math.log, calls))):.2f}"}
+    told |= lost()
+    return told | {f"measured {name}": text for name, text in measured().items()}
+
+
+def with_places(text):
+    """Ends each section with the place of its figure, where it names no commit."""
+    for name, numbers in SECTIONS.items():
+        end = f"<!-- end of {name} -->"
+        at = text.find(end)
+        section = text[text.rfind("<!-- made by", 0, at):at] if at >= 0 else "commit"
+        if "commit" not in section and f"measured {numbers}" not in section:
+            text = text[:at] + f"\nMeasured <!-- measured {numbers} --><!-- / -->.\n" + text[at:]
+    return text
+
+
+def renewed(text, told):
+    for name, figure in told.items():
+        text = re.sub(rf"(<!-- {re.escape(name)} -->).*?(<!-- / -->)",
+                      lambda m: m[1] + figure + m[2], text, flags=re.S)
+    return text
+
+
+def main():
+    told, wrong = figures(), []
+    for page in PAGES:
+        text = page.read_text()
+        new = renewed(with_places(text), told)
+        unknown = set(re.findall(r"<!-- ([^>]*?) -->[^<]*<!-- / -->", new)) - set(told)
+        wrong += [f"{page.name}: no figure \"{name}\"" for name in unknown]
+        if new != text and sys.argv[1:] == ["--check"]:
+            wrong.append(f"{page.name}: its figures are not those of the CSVs: perf/figures.py")
+        elif new != text:
+            page.write_text(new)
+    known = measured()
+    wrong += [f"docs/{file.name}: no row in docs/measured.csv"
+              for file in sorted(DOCS.glob("*.csv"))
+              if file.stem != "measured" and file.stem not in known]
+    print("\n".join(wrong))
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

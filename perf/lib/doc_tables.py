@@ -1,0 +1,72 @@
+"""Tables of docs/performance.md that are made from a CSV, whenever perf/figures.py runs."""
+import statistics
+
+
+def table(header, rows):
+    lines = ["| " + " | ".join(header) + " |", "|---" + "|--:" * (len(header) - 1) + "|"]
+    return "\n" + "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows]) + "\n"
+
+
+def ladder(rows):
+    """How many times as fast as the plain grid each rung is, by scene and kind of ray."""
+    cells = {(r["rung"], r["rays"], r["scene"]): r["times"] for r in rows}
+    columns = list(dict.fromkeys((rays, scene) for _, rays, scene in cells))
+    rungs = [rung for rung in dict.fromkeys(rung for rung, *_ in cells)
+             if all((rung, *c) in cells for c in columns)]
+    return table(["", *(f"{scene}, {rays} rays" for rays, scene in columns)],
+                 [[rung, *(cells[(rung, *c)] for c in columns)] for rung in rungs])
+
+
+def density(rows):
+    """Time of a whole picture at another M over that at the kernel's."""
+    pictures = [r for r in rows if r["kind"] == "picture"]
+    of = {m: [float(r[m]) / float(r["0.7"]) for r in pictures]
+          for m in ("0.35", "0.5", "1", "1.4", "2", "3")}
+    return table(["M", "median", "largest", "smallest"],
+                 [[m, *(f"{f(v):.2f}" for f in (statistics.median, max, min))]
+                  for m, v in of.items()])
+
+
+def density_in_words(rows):
+    """What the kernel's choice costs: of pictures, and of rays of one kind."""
+    of = {kind: [float(r["over best"]) - 1 for r in rows if (r["kind"] == "picture") == kind]
+          for kind in (True, False)}
+    return (f"The choice is within {100 * max(of[True]):.0f} % of the best for each scene, in the "
+            f"median {100 * statistics.median(of[True]):.0f} %. Different kinds of rays\nneed "
+            f"different grids: {sum(v > .1 for v in of[False])} of {len(of[False])} pairs of scene "
+            "and kind are more than 10 % off their best.")
+
+
+def build(rows):
+    """Least times of building over Embree's MEDIUM tree, and two threads over one."""
+    out = []
+    for r in rows:
+        ms = {k: float(r[f"{k}_least_ms"]) for k in (
+            "grelha_1", "grelha_2", "embree_medium_1", "embree_medium_2")}
+        out.append([r["scene"], f"{ms['grelha_1'] / ms['embree_medium_1']:.2f}",
+                    f"{ms['grelha_2'] / ms['embree_medium_2']:.2f}",
+                    f"{ms['grelha_1'] / ms['grelha_2']:.2f}"])
+    return table(["", "1 thread", "2 threads", "two threads over one"], out)
+
+
+def targets(ratio, profile):
+    """Targets of whole pictures beside what is measured, in bold where they are missed.
+
+    ratio: POV-Ray's time over Grelha's, by scene and case. profile: frame-profile.csv, by scene.
+    """
+    scenes = ["balls 4", "mount 8", "Distant"]
+    of = [profile[s] for s in scenes]
+    rows = [(what, target, [ratio[s, case] for s in scenes], True, 1) for what, target, case in (
+        ("POV-Ray's time over Grelha's, plain", 8, "plain"),
+        ("the same, area light", 20, "area light 4 x 4"),
+        ("the same, lens", 20, "lens, 32 samples"))]
+    rows += [
+        ("a picture over its rays alone", 2,
+         [p["render_cpu"] / p["trace_alone_cpu"] for p in of], False, 1),
+        ("load and write over render", 1, [(p["load"] + p["write"]) / p["clock"] for p in of],
+         False, 2),
+        ("two threads over one", 1.9, [p["render"] / p["render_two_threads"] for p in of], True, 2)]
+    return table(["", "target", *scenes], [
+        [what, str(target), *(f"{v:.{digits}f}" if (v >= target) == more else f"**{v:.{digits}f}**"
+                              for v in values)]
+        for what, target, values, more, digits in rows])
