@@ -3,8 +3,8 @@
 namespace grelha {
 
 /// While an object lives, the first SIGHUP, SIGINT or SIGTERM of each kind is recorded and answered
-/// on stderr instead of ending the program. SIGPIPE is ignored: the reader of the pipe may have
-/// received the same Ctrl-C.
+/// on stderr instead of ending the program; a second one ends it by remove_and_end(). SIGPIPE is
+/// ignored: the reader of the pipe may have received the same Ctrl-C.
 class StopSignals {
  public:
   StopSignals();
