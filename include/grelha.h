@@ -214,7 +214,7 @@ GRELHA_API grelha_status grelha_all_hits(const grelha_world* world,
                                          int threads);
 
 /// Finds the triangles that each ray crosses, in the order in which it does. Spheres do not count.
-/// A ray through an edge or a vertex is treated as if it passed at an infinitesimal distance: it
+/// A ray through an edge or a vertex is treated as if it passed at an infinitesimal distance. It
 /// crosses one triangle where it passes through a surface, none or two where it touches one. From
 /// inside a closed mesh the number of crossings is odd, from outside even, for every ray.
 ///

@@ -24,9 +24,9 @@ struct HitLists {
 
 /// Finds all hits of a ray strictly between its t_min and t_max, in order of (t, id). A ray that
 /// enters and leaves a sphere or a cone hits it twice; crossings of one sphere or cone within 2^-45
-/// of t count as one. An edge or a vertex belongs to each triangle that has it: crossings() pass it
-/// once. Each exact copy of a primitive counts. The order is that of the exact t; the t returned are
-/// rounded, so neighbours may be equal. The first hit has the same bits as closest().
+/// of t count as one. An edge or a vertex belongs to each triangle that has it; crossings() pass it
+/// once. Each exact copy of a primitive counts. The order is that of the exact t. The t returned
+/// are rounded, so neighbours may be equal. The first hit has the same bits as closest().
 std::vector<Hit> all_hits(const World& world, const Ray& ray, const Filter& filter = {});
 /// The same, one hit after another, until `visit` returns false.
 void all_hits(const World& world,

@@ -20,8 +20,9 @@ struct ClosestPoint {
 
 /// Finds the closest point of all surfaces within `radius` of a point, the distance included.
 /// Computed in double, and in numbers of 106 bits on slivers, with an error of at most 2^-40 of the
-/// larger of the distance and the coordinates, then rounded. Of two primitives at equal computed distance, the one with the lower
-/// id is returned. Cones have no end caps. Points with a NaN or an infinity have none.
+/// larger of the distance and the coordinates, then rounded. Of two primitives at equal computed
+/// distance, the one with the lower id is returned. Cones have no end caps. Points with a NaN or an
+/// infinity have none.
 ClosestPoint closest_point(const World& world,
                            Float3 point,
                            float radius = std::numeric_limits<float>::infinity());

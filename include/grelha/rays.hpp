@@ -36,8 +36,9 @@ struct Hit {
 /// Units     org: scene units, within 1e18; dir: any length from 1e-18 to 1e18; t: multiples of it.
 /// Requires  `count` floats of each array, and no null in org and dir unless count is 0: closest()
 ///           and occluded() throw std::invalid_argument.
-/// Ensures   a ray hits nothing where no float lies between t_min and t_max, where its direction is
-///           longer or shorter, and where a number is NaN or (of org and dir) infinite.
+/// Ensures   a ray hits nothing where no float lies between t_min and t_max, nor where its
+///           direction is longer or shorter. Neither does one with a NaN, or an infinity in org or
+///           dir.
 struct Rays {
   const float* org[3] = {};      ///< x, y and z of the origins
   const float* dir[3] = {};      ///< x, y and z of the directions

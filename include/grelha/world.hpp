@@ -56,9 +56,9 @@ struct TooLarge : std::runtime_error {
 /// World is immutable, so threads may share it. A program may have any number of Worlds.
 class World {
  public:
-  /// Builds the grids. Throws std::invalid_argument if arrays that belong together differ in length,
-  /// an index is out of range, or the scene is smaller than kLeastScene. Throws TooLarge and Stopped
-  /// as BuildOptions describe.
+  /// Builds the grids. Throws std::invalid_argument if arrays that belong together differ in
+  /// length, an index is out of range, or the scene is smaller than kLeastScene. Throws TooLarge
+  /// and Stopped as BuildOptions describe.
   World(const SceneSpans& scene, const BuildOptions& options);
   ~World();
   /// Estimates the memory that building takes, within a fifth (docs/performance.md), in about a

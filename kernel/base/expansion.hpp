@@ -158,7 +158,9 @@ struct ExactVector {
   Expansion x, y, z;
 };
 
-inline ExactVector difference(const double (&a)[3], const double (&b)[3]) {
+/// Of floats or doubles.
+template <class A, class B>
+ExactVector difference(const A (&a)[3], const B (&b)[3]) {
   return {Expansion::difference(a[0], b[0]),
           Expansion::difference(a[1], b[1]),
           Expansion::difference(a[2], b[2])};

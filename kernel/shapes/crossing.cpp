@@ -25,12 +25,6 @@ int sign(Int128 x) {
   return sign_of(x);
 }
 
-struct DoubleCorner {
-  double at[3];
-};
-DoubleCorner double_corner(const float (&v)[3]) {
-  return {{v[0], v[1], v[2]}};
-}
 WideVector wide(const double (&v)[3]) {
   return {v[0], v[1], v[2]};
 }
@@ -142,7 +136,7 @@ ExactCrossing cross_integers(const IntegerTriangle& t) {
 ExactCrossing cross_expansions(const ExactRay& ray, const float (&corner)[3][3]) {
   ExactVector at[3];
   for (int i = 0; i < 3; ++i)
-    at[i] = difference(double_corner(corner[i]).at, ray.org);
+    at[i] = difference(corner[i], ray.org);
   const ExactVector bc = cross(at[1], at[2]);
   const auto edge = [&](int i) {
     return dot(i == 0 ? bc : cross(at[(i + 1) % 3], at[(i + 2) % 3]), ray.dir);
@@ -200,112 +194,13 @@ void crossing_weights(const ExactRay& ray, const float (&corner)[3][3], double (
   ExactVector exact[3];
   Expansion sum;
   for (int i = 0; i < 3; ++i)
-    exact[i] = difference(double_corner(corner[i]).at, ray.org);
+    exact[i] = difference(corner[i], ray.org);
   for (int i = 0; i < 3; ++i) {
     const Expansion one = dot(cross(exact[(i + 1) % 3], exact[(i + 2) % 3]), ray.dir);
     edge[i] = one.estimate();
     sum += one;
   }
   share(edge, sum.estimate(), weight);
-}
-
-namespace {
-
-/// The axis along which a direction goes most.
-int main_axis(const double (&d)[3]) {
-  const double x = std::abs(d[0]);
-  const double y = std::abs(d[1]);
-  const double z = std::abs(d[2]);
-  return x >= y && x >= z ? 0 : y >= z ? 1 : 2;
-}
-
-/// The sign of an edge function of a ray that starts beside, by e along one axis and e^2 along
-/// another, e being less than any number: of d (p x q) less e (d x u) (q - p), and so on.
-int sign_beside(const ExactRay& ray, const Expansion& edge, const ExactVector& along) {
-  if (edge.sign() != 0)
-    return edge.sign();
-  const double* const d = ray.dir;
-  const Expansion* const v[3] = {&along.x, &along.y, &along.z};
-  const int k = main_axis(ray.dir);
-  for (const int u : {(k + 1) % 3, (k + 2) % 3}) {
-    const int after = (u + 1) % 3;
-    const int last = (u + 2) % 3;
-    const int sign = (*v[after] * d[last] - *v[last] * d[after]).sign();
-    if (sign != 0)
-      return -sign;
-  }
-  return 0;
-}
-
-}  // namespace
-
-bool crosses_beside(const ExactRay& ray, const float (&corner)[3][3]) {
-  ExactVector at[3];
-  for (int i = 0; i < 3; ++i)
-    at[i] = difference(double_corner(corner[i]).at, ray.org);
-  Expansion sum;
-  int signs[3];
-  for (int i = 0; i < 3; ++i) {
-    const int from = (i + 1) % 3;
-    const int to = (i + 2) % 3;
-    const Expansion edge = dot(cross(at[from], at[to]), ray.dir);
-    const ExactVector along =
-        difference(double_corner(corner[to]).at, double_corner(corner[from]).at);
-    signs[i] = sign_beside(ray, edge, along);
-    sum += edge;
-  }
-  if (signs[0] == 0 || signs[0] != signs[1] || signs[0] != signs[2] || sum.sign() == 0)
-    return false;
-  const ExactCrossing found(dot(cross(at[1], at[2]), at[0]), sum);
-  return found.compare(ray.t_min) > 0 && found.compare(ray.t_max) < 0;
-}
-
-namespace {
-
-/// The plane of a triangle beside a ray: t = along / across at the ray, and by a step along an axis
-/// it changes by -normal / across.
-struct PlaneBeside {
-  ExactVector normal;
-  Expansion along, across;
-
-  PlaneBeside(const ExactRay& ray, const float (&corner)[3][3]) {
-    const auto edge = [&](int i) {
-      return difference(double_corner(corner[i]).at, double_corner(corner[0]).at);
-    };
-    normal = cross(edge(1), edge(2));
-    across = dot(normal, ray.dir);
-    along = dot(normal, difference(double_corner(corner[0]).at, ray.org));
-  }
-};
-
-/// The sign of a / b - c / d.
-int compare(const Expansion& a, const Expansion& b, const Expansion& c, const Expansion& d) {
-  return (a * d - c * b).sign() * b.sign() * d.sign();
-}
-
-}  // namespace
-
-int order_beside(const ExactRay& ray, const float (&corner)[3][3], const float (&other)[3][3]) {
-  const PlaneBeside a(ray, corner);
-  const PlaneBeside b(ray, other);
-  if (const int order = compare(a.along, a.across, b.along, b.across); order != 0)
-    return order;
-  const Expansion* const of_a[3] = {&a.normal.x, &a.normal.y, &a.normal.z};
-  const Expansion* const of_b[3] = {&b.normal.x, &b.normal.y, &b.normal.z};
-  const int k = main_axis(ray.dir);
-  for (const int u : {(k + 1) % 3, (k + 2) % 3})
-    if (const int order = compare(*of_a[u], a.across, *of_b[u], b.across); order != 0)
-      return -order;
-  return 0;
-}
-
-ExactCrossing cross_plane_of(const ExactRay& ray, const float (&corner)[3][3]) {
-  const PlaneBeside plane(ray, corner);
-  return {plane.along, plane.across};
-}
-
-bool crosses_front(const ExactRay& ray, const float (&corner)[3][3]) {
-  return PlaneBeside(ray, corner).across.sign() < 0;
 }
 
 bool is_within(const double (&point)[3], const float (&center)[3], float radius) {
@@ -315,7 +210,7 @@ bool is_within(const double (&point)[3], const float (&center)[3], float radius)
   const double square = static_cast<double>(radius) * radius;
   if (std::abs(squared - square) > 0x1p-48 * (squared + square))
     return squared < square;
-  const ExactVector way = difference(double_corner(center).at, point);
+  const ExactVector way = difference(center, point);
   const Expansion r(static_cast<double>(radius));
   return (dot(way, way) - r * r).sign() < 0;
 }
@@ -327,7 +222,7 @@ ExactCrossing cross_plane(const ExactRay& ray, const float (&point)[3], const fl
     along.add_product(n[i], ray.dir[i]);
   if (along.sign() == 0)
     return {};
-  const ExactCrossing found(dot(difference(double_corner(point).at, ray.org), n), along);
+  const ExactCrossing found(dot(difference(point, ray.org), n), along);
   return found.compare(ray.t_min) > 0 ? found : ExactCrossing();
 }
 

@@ -60,8 +60,7 @@ void crossing_weights(const ExactRay& ray, const float (&corner)[3][3], double (
 /// Such a ray crosses no edge and no corner of a closed mesh, so its crossings are even in number
 /// outside and odd inside. Edelsbrunner & Mücke, "Simulation of Simplicity", 1990.
 bool crosses_beside(const ExactRay& ray, const float (&corner)[3][3]);
-/// The order in which that ray crosses two triangles: -1, 0 (both at the same t, as if in one plane)
-/// or 1.
+/// The order in which that ray crosses two triangles: -1, 0 (at the same t, as in one plane) or 1.
 int order_beside(const ExactRay& ray, const float (&corner)[3][3], const float (&other)[3][3]);
 /// Where the line of a ray crosses the plane of a triangle; it must.
 ExactCrossing cross_plane_of(const ExactRay& ray, const float (&corner)[3][3]);

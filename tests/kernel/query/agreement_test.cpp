@@ -1,5 +1,5 @@
-// Every query about triangles gives the answers of rational numbers: from near, far and very far, on
-// either side, in every interval, beside nearly edge-on triangles and among copies.
+// Every query about triangles gives the answers of rational numbers: from near, far and very far,
+// on either side, in every interval, beside nearly edge-on triangles and among copies.
 #include <gtest/gtest.h>
 
 #include "tests/support/agreement.hpp"
