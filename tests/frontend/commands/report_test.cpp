@@ -198,7 +198,7 @@ TEST(Stats, NoLaneIssuedIsNoneBusy) {
 TEST(Info, JsonSaysWhatTheSceneHolds) {
   SceneFile file = one_ball(material_with([](Material& m) { m.transmission = 0.5f; }));
   file.counts = {.s = 1, .lights = 2, .materials = 1};
-  file.dropped = {3, 4};
+  file.dropped = {3, 4, {}};
   file.camera.width = 640;
   const Json json = Json::parse(info_json(file, {1, 2, 3}, std::vector<GridStats>{}));
   EXPECT_EQ(keys(json),
