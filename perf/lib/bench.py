@@ -14,6 +14,8 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
+from machine import cpu_name  # noqa: F401, scripts import it from here
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 DOCS = ROOT / "docs"
 # After Okabe and Ito: told apart by the colour-blind too.
@@ -144,13 +146,6 @@ def csv_bench(doc, name, command, draw, told):
     if asked.keep:
         put_section(DOCS / "accuracy.md", f"perf/{name}.py", section)
     print(section, numbers, chart, sep="\n")
-
-
-def cpu_name():
-    for line in open("/proc/cpuinfo"):
-        if line.startswith("model name"):
-            return line.split(":", 1)[1].strip()
-    return "an unnamed processor"
 
 
 def commit():
