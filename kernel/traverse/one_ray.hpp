@@ -9,13 +9,12 @@ namespace grelha::GRELHA_ISA {
 template <bool kAny>
 inline bool test_infinite(const SceneView& scene, Single& r) {
   const GeometryView& g = scene.geometry;
-  const SimdRays<float> ray = spread<float>(r);
   bool over = false;
   InfiniteShapes::for_each([&]<class Shape>() __attribute__((always_inline)) {
     const typename Shape::Arrays& all = g.of<Shape>();
     for (std::uint32_t i = 0; !over && i < all.count; ++i) {
       const HitInterval<float> found =
-          intersect<Shape>(ray, broadcast<Shape, float>(all.fields, i), r.best);
+          intersect<Shape>(spread<float>(r), broadcast<Shape, float>(all.fields, i), r.best);
       over = found.some && take_hit<kAny>(r, {found.lo, found.hi}, g.ids.begin(Shape::kKind) + i);
     }
   });

@@ -24,6 +24,8 @@ inline void copy_row(const float* from, int count, float* to) {
                                           float instead,
                                           float* to) {
   if (from && stride == 1) {
+    if (count <= 16)  // short streams mostly follow each other; prefetching beyond an array is safe
+      __builtin_prefetch(from + first + 4 * 16);
     copy_row(from + first, count, to);
     return;
   }
@@ -183,12 +185,16 @@ inline void store_hits(const Packet& p, const Rays& rays, std::size_t first, con
     store_barycentric(p, first, hits);
   if (!hits.t)
     return;
-  alignas(64) float t_max[kPacket] = {};
-  alignas(64) float t_min[kPacket] = {};
+  alignas(64) float t_max[kPacket];
+  alignas(64) float t_min[kPacket];
+  alignas(64) float t[kPacket];
+  const int last = (p.groups - 1) * kSimdWidth;
+  store(t_max + last, VFloat(0));
+  store(t_min + last, VFloat(0));
   load_t_max(rays, first, p.size, t_max);
   load_floats(rays.t_min, rays.t_stride, first, p.size, 0, t_min);
-  alignas(64) float t[kPacket];
-  __builtin_memcpy(t, t_max, sizeof t);
+  for (int i = 0; i < p.groups * kSimdWidth; i += kSimdWidth)
+    store(t + i, load<VFloat>(t_max + i));
   for (int i = 0; i < p.size; i += kSimdWidth) {
     round_hits<Shapes>(p, i, t + i);
     const VFloat to = load<VFloat>(t + i);
