@@ -30,7 +30,10 @@ bool to_integers(const double (&v)[kCount][3],
       largest = std::abs(x) > largest ? std::abs(x) : largest;
   if (!(largest > 0 && largest < 0x1p100))
     return false;
-  unit = std::ldexp(1, std::ilogb(largest) + 1 - bits);
+  std::uint64_t field;  // of the exponent; `largest` is no denormal
+  std::memcpy(&field, &largest, sizeof field);
+  field = ((field >> 52) + 1 - static_cast<std::uint64_t>(bits)) << 52;
+  std::memcpy(&unit, &field, sizeof unit);
   const double inverse = 1 / unit;
   bool whole = true;
   for (std::size_t i = 0; i < kCount; ++i)
@@ -57,6 +60,40 @@ inline Int128 dot(const WideIntegerVector& p, const IntegerVector& q) {
 }
 inline int sign_of(Int128 n) {
   return n < 0 ? -1 : n > 0 ? 1 : 0;
+}
+/// The number, within 2^-51 of itself.
+inline double double_of(Int128 n) {
+  const Int128 size = n < 0 ? -n : n;
+  const double d = static_cast<double>(static_cast<std::int64_t>(size >> 64)) * 0x1p64 +
+                   static_cast<double>(static_cast<std::uint64_t>(size));
+  return n < 0 ? -d : d;
+}
+/// The sign of a b - c d.
+inline int compare_products(Int128 a, Int128 b, Int128 c, Int128 d) {
+  using Word = std::uint64_t;
+  __extension__ using Wide = unsigned __int128;
+  struct Product {
+    Wide high, low;
+    int sign;
+  };
+  const auto product = [](Int128 x, Int128 y) {
+    const int sign = sign_of(x) * sign_of(y);
+    const Wide p = static_cast<Wide>(x < 0 ? -x : x), q = static_cast<Wide>(y < 0 ? -y : y);
+    const Word p0 = static_cast<Word>(p), p1 = static_cast<Word>(p >> 64);
+    const Word q0 = static_cast<Word>(q), q1 = static_cast<Word>(q >> 64);
+    const Wide low = Wide{p0} * q0, high = Wide{p1} * q1;
+    const Wide middle = Wide{p0} * q1 + (low >> 64);  // < 2^128
+    const Wide other = Wide{p1} * q0 + static_cast<Word>(middle);
+    return Product{
+        high + (middle >> 64) + (other >> 64), (other << 64) | static_cast<Word>(low), sign};
+  };
+  const Product x = product(a, b), y = product(c, d);
+  if (x.sign != y.sign)
+    return x.sign < y.sign ? -1 : 1;
+  const int larger = x.high != y.high ? (x.high > y.high ? 1 : -1)
+                     : x.low != y.low ? (x.low > y.low ? 1 : -1)
+                                      : 0;
+  return larger * x.sign;
 }
 /// n times a power of two.
 inline Expansion expansion_of(Int128 n, double unit) {

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <utility>
 
 #include "kernel/base/wide_integer.hpp"
@@ -22,7 +23,7 @@ int sign(const Expansion& x) {
   return x.sign();
 }
 int sign(Int128 x) {
-  return sign_of(x);
+  return grelha::sign_of(x);  // that of doubles stands before it here
 }
 
 WideVector wide(const double (&v)[3]) {
@@ -34,19 +35,33 @@ WideVector wide_difference(const float (&a)[3], const double (&b)[3]) {
 
 }  // namespace
 
+ExactCrossing ExactCrossing::unfolded() const {
+  return whole_ ? ExactCrossing(expansion_of(n_, unit_), expansion_of(d_, 1)) : *this;
+}
+
 DoubleDouble ExactCrossing::wide() const {
+  if (whole_)
+    return unfolded().wide();
   return rational_ ? DoubleDouble(numerator_) / DoubleDouble(denominator_) : t_;
 }
 
 int ExactCrossing::compare(double x) const {
   if (std::isinf(x))
     return x > 0 ? -1 : 1;
+  if (whole_ && x == 0)
+    return sign(n_) * sign(d_);
+  if (whole_)
+    return unfolded().compare(x);
   if (!rational_)
     return sign_of(t_ - x);
   return (numerator_ - denominator_ * x).sign() * denominator_.sign();
 }
 
 int ExactCrossing::compare(const ExactCrossing& other) const {
+  if (whole_ && other.whole_ && unit_ == other.unit_)
+    return compare_products(n_, other.d_, other.n_, d_) * sign(d_) * sign(other.d_);
+  if ((whole_ || rational_) && (other.whole_ || other.rational_) && (whole_ || other.whole_))
+    return unfolded().compare(other.unfolded());
   if (rational_ && other.rational_) {
     const Expansion apart = numerator_ * other.denominator_ - other.numerator_ * denominator_;
     return apart.sign() * denominator_.sign() * other.denominator_.sign();
@@ -59,6 +74,8 @@ int ExactCrossing::compare(const ExactCrossing& other) const {
 }
 
 double ExactCrossing::estimate() const {
+  if (whole_)
+    return double_of(n_) / double_of(d_) * unit_;
   return rational_ ? numerator_.estimate() / denominator_.estimate() : t_.high;
 }
 
@@ -121,7 +138,14 @@ bool crosses_inside(const Edge& edge, Number& sum) {
   return sign(sum) != 0;
 }
 
-ExactCrossing cross_integers(const IntegerTriangle& t) {
+/// t = numerator / denominator times a power of two, if there is a crossing.
+struct IntegerCrossing {
+  bool some = false;
+  Int128 numerator = 0, denominator = 0;
+  double unit = 0;
+};
+
+IntegerCrossing cross_integers(const IntegerTriangle& t) {
   const IntegerVector* const at = t.corner;
   const WideIntegerVector bc = cross(at[1], at[2]);
   const auto edge = [&](int i) {
@@ -130,7 +154,7 @@ ExactCrossing cross_integers(const IntegerTriangle& t) {
   Int128 sum = 0;
   if (!crosses_inside(edge, sum))
     return {};
-  return {expansion_of(dot(bc, at[0]), t.unit / t.dir_unit), expansion_of(sum, 1)};
+  return {true, dot(bc, at[0]), sum, t.unit / t.dir_unit};
 }
 
 ExactCrossing cross_expansions(const ExactRay& ray, const float (&corner)[3][3]) {
@@ -149,11 +173,76 @@ ExactCrossing cross_expansions(const ExactRay& ray, const float (&corner)[3][3])
 
 }  // namespace
 
-ExactCrossing cross_triangle(const ExactRay& ray, const float (&corner)[3][3]) {
-  IntegerTriangle integers;
-  const ExactCrossing found =
-      to_integers(ray, corner, integers) ? cross_integers(integers) : cross_expansions(ray, corner);
+namespace {
+
+/// Crossings in integers that a thread has computed: of a ray through a vertex each cell and each
+/// tie asks again about all triangles that have it. What it answers is what would be computed.
+class CrossingMemo {
+ public:
+  const IntegerCrossing* find(const ExactRay& ray, const float (&corner)[3][3]) const {
+    const Entry& e = entry_[place_of(ray, corner)];
+    return e.is_set && is_same(e, ray, corner) ? &e.found : nullptr;
+  }
+  void keep(const ExactRay& ray, const float (&corner)[3][3], const IntegerCrossing& found) {
+    Entry& e = entry_[place_of(ray, corner)];
+    e.is_set = true;
+    std::memcpy(e.org, ray.org, sizeof e.org);
+    std::memcpy(e.dir, ray.dir, sizeof e.dir);
+    std::memcpy(e.corner, corner, sizeof e.corner);
+    e.found = found;
+  }
+
+ private:
+  static constexpr std::size_t kEntries = 64;
+  struct Entry {
+    bool is_set = false;
+    double org[3], dir[3];
+    float corner[3][3];
+    IntegerCrossing found;
+  };
+
+  static bool is_same(const Entry& e, const ExactRay& ray, const float (&corner)[3][3]) {
+    return std::memcmp(e.dir, ray.dir, sizeof e.dir) == 0 &&
+           std::memcmp(e.org, ray.org, sizeof e.org) == 0 &&
+           std::memcmp(e.corner, corner, sizeof e.corner) == 0;
+  }
+  static std::size_t place_of(const ExactRay& ray, const float (&corner)[3][3]) {
+    std::uint64_t h = 0;
+    const auto add = [&h](auto x) {
+      std::uint64_t word = 0;
+      std::memcpy(&word, &x, sizeof x);
+      h = (h ^ word) * 0x9E3779B97F4A7C15u;
+    };
+    add(ray.dir[0]);
+    add(ray.dir[1]);
+    for (const auto& c : corner)
+      add(c[0]);
+    return static_cast<std::size_t>(h >> 58);
+  }
+
+  Entry entry_[kEntries];
+};
+
+ExactCrossing beyond_start(const ExactRay& ray, const ExactCrossing& found) {
   return found.some() && found.compare(ray.t_min) > 0 ? found : ExactCrossing();
+}
+ExactCrossing beyond_start(const ExactRay& ray, const IntegerCrossing& t) {
+  return t.some ? beyond_start(ray, ExactCrossing(t.numerator, t.denominator, t.unit))
+                : ExactCrossing();
+}
+
+}  // namespace
+
+ExactCrossing cross_triangle(const ExactRay& ray, const float (&corner)[3][3]) {
+  static thread_local CrossingMemo memo;
+  if (const IntegerCrossing* const known = memo.find(ray, corner))
+    return beyond_start(ray, *known);
+  IntegerTriangle integers;
+  if (!to_integers(ray, corner, integers))
+    return beyond_start(ray, cross_expansions(ray, corner));
+  const IntegerCrossing found = cross_integers(integers);
+  memo.keep(ray, corner, found);
+  return beyond_start(ray, found);
 }
 
 namespace {

@@ -3,6 +3,7 @@
 // decide. Given floats are exact numbers. Derivations: docs/numerics.md.
 
 #include "kernel/base/double_double.hpp"
+#include "kernel/base/wide_integer.hpp"
 
 namespace grelha {
 
@@ -29,6 +30,9 @@ class ExactCrossing {
   ExactCrossing(const Expansion& numerator, const Expansion& denominator)
       : exists_(true), rational_(true), numerator_(numerator), denominator_(denominator) {}
   explicit ExactCrossing(const DoubleDouble& t) : exists_(true), t_(t) {}
+  /// t = numerator / denominator times a power of two.
+  ExactCrossing(Int128 numerator, Int128 denominator, double unit)
+      : exists_(true), whole_(true), n_(numerator), d_(denominator), unit_(unit) {}
 
   bool some() const { return exists_; }
   /// The sign of t - x: exact for triangles and planes, of 100 bits for spheres and cones.
@@ -46,6 +50,11 @@ class ExactCrossing {
 
   bool exists_ = false;
   bool rational_ = false;
+  bool whole_ = false;
+  Int128 n_ = 0, d_ = 0;
+  double unit_ = 0;
+  /// The same, of expansions.
+  ExactCrossing unfolded() const;
   Expansion numerator_, denominator_;
   DoubleDouble t_;
 };

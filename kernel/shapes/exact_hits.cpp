@@ -78,13 +78,25 @@ CrossingSpan crossing_span(const GeometryView& g,
       g, id, [&]<class Shape>(const One<Shape>& one) { return span_of<Shape>(ray, one, shift); });
 }
 
-bool is_closest(const GeometryView& g, const ExactRay& ray, std::uint32_t id, std::uint32_t other) {
+bool is_closest(const GeometryView& g,
+                const ExactRay& ray,
+                std::uint32_t id,
+                std::uint32_t other,
+                double shift,
+                CrossingSpan& first) {
   const scalar::HitInterval<double> a = double_interval(g, ray, id);
   const scalar::HitInterval<double> b = double_interval(g, ray, other);
-  if (a.sure && b.sure && (a.hi < b.lo || b.hi < a.lo))
+  if (a.sure && b.sure && (a.hi < b.lo || b.hi < a.lo)) {
+    const scalar::HitInterval<double>& c = a.hi < b.lo ? a : b;
+    first = scalar::span_from(c.lo, c.hi, shift);
     return a.hi < b.lo;
-  const int order = crossing_of(g, ray, id).compare(crossing_of(g, ray, other));
-  return order != 0 ? order < 0 : id < other;
+  }
+  const ExactCrossing one = crossing_of(g, ray, id);
+  const ExactCrossing two = crossing_of(g, ray, other);
+  const int order = one.compare(two);
+  const bool is_first = order != 0 ? order < 0 : id < other;
+  first = scalar::span_of(is_first ? one : two, shift);
+  return is_first;
 }
 
 bool is_before_end(const GeometryView& g, const ExactRay& ray, std::uint32_t id) {

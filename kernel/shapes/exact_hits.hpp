@@ -29,8 +29,13 @@ CrossingBounds crossing_bounds(const GeometryView& g, const ExactRay& ray, std::
 ExactCrossing crossing_of(const GeometryView& g, const ExactRay& ray, std::uint32_t id);
 
 /// True if a ray that crosses two primitives beyond t_min crosses `id` first; of equal t the lower
-/// id is first.
-bool is_closest(const GeometryView& g, const ExactRay& ray, std::uint32_t id, std::uint32_t other);
+/// id is first. `first`: the span of t - shift of the first of the two.
+bool is_closest(const GeometryView& g,
+                const ExactRay& ray,
+                std::uint32_t id,
+                std::uint32_t other,
+                double shift,
+                CrossingSpan& first);
 /// True if a ray crosses a primitive before t_max, given that it crosses it beyond t_min.
 bool is_before_end(const GeometryView& g, const ExactRay& ray, std::uint32_t id);
 /// Barycentric coordinates where a ray crosses a triangle, given that it does: those of Hits.

@@ -84,6 +84,15 @@ inline float round_t_down(double t, double shift) {
   return round_down((t - shift) - magnitude(t - shift) * 0x1p-52);
 }
 
+/// Floats around [lo, hi], t being counted from `shift` on.
+inline CrossingSpan span_from(double lo, double hi, double shift) {
+  return {round_t_down(lo, shift), round_t_up(hi, shift)};
+}
+inline CrossingSpan span_of(const ExactCrossing& crossing, double shift) {
+  const double t = crossing.estimate();
+  return span_from(t - magnitude(t) * 0x1p-48, t + magnitude(t) * 0x1p-48, shift);
+}
+
 /// The span of a crossing from doubles, or else from cross(); t is counted from `shift` on.
 template <class Cross>
 inline CrossingSpan refine_span(const HitInterval<double>& found,
@@ -91,17 +100,10 @@ inline CrossingSpan refine_span(const HitInterval<double>& found,
                                 const Cross& cross) {
   if (!found.some)
     return {};
-  double lo = found.lo;
-  double hi = found.hi;
-  if (!found.sure) {
-    const ExactCrossing exact = cross();
-    if (!exact.some())
-      return {};
-    const double t = exact.estimate();
-    lo = t - magnitude(t) * 0x1p-48;
-    hi = t + magnitude(t) * 0x1p-48;
-  }
-  return {round_t_down(lo, shift), round_t_up(hi, shift)};
+  if (found.sure)
+    return span_from(found.lo, found.hi, shift);
+  const ExactCrossing exact = cross();
+  return exact.some() ? span_of(exact, shift) : CrossingSpan{};
 }
 
 /// Replaces selected lanes of `found` by span_of(lane).

@@ -61,24 +61,22 @@ inline VUint ids_at(const Packet& p, int i) {
   return load_words<VFloat>(reinterpret_cast<const std::uint32_t*>(p.id + i));
 }
 
-/// True if the hit of primitive `id` comes first, where floats cannot tell it from ray i's hit so
-/// far or from the end of its search.
-[[gnu::noinline, gnu::cold]] inline bool wins_tie(const Packet& p, int i, std::uint32_t id) {
-  const ExactRay ray = p.given.ray(i);
-  const std::uint32_t held = id_of(p.id[i]);
-  return held == kNoPrimitive ? is_before_end(*p.geometry, ray, id)
-                              : is_closest(*p.geometry, ray, id, held);
-}
-
-/// Takes a hit of a lane that ties, and narrows the span of t of the first one.
+/// Takes a hit that floats cannot tell from ray i's hit so far, or from the end of its search, and
+/// narrows the span of t of the first one.
 template <bool kAny>
 [[gnu::noinline, gnu::cold]] void record_tie(Packet& p, int i, std::uint32_t id) {
-  if (wins_tie(p, i, id))
-    p.id[i] = bits_of(id);
+  const ExactRay ray = p.given.ray(i);
+  const double shift = p.given.shift_of(i);
   const std::uint32_t held = id_of(p.id[i]);
-  if (held == kNoPrimitive)
-    return;
-  const CrossingSpan span = crossing_span(*p.geometry, p.given.ray(i), held, p.given.shift_of(i));
+  CrossingSpan span;
+  if (held == kNoPrimitive) {
+    if (!is_before_end(*p.geometry, ray, id))
+      return;
+    span = crossing_span(*p.geometry, ray, id, shift);
+    p.id[i] = bits_of(id);
+  } else if (is_closest(*p.geometry, ray, id, held, shift, span)) {
+    p.id[i] = bits_of(id);
+  }
   p.best[i] = kAny ? -kInfinity : span.hi;
   p.low[i] = kAny ? -kInfinity : span.lo;
 }

@@ -14,13 +14,17 @@ template <bool kAny, class Ray>
   const std::uint32_t held = id_of(r);
   const GivenRays& rays = frame_of(r).given;
   const ExactRay ray = rays.ray(index_of(r));
+  const double shift = rays.shift_of(index_of(r));
   const GeometryView& g = *frame_of(r).geometry;
-  const bool first =
-      held == kNoPrimitive ? is_before_end(g, ray, id) : is_closest(g, ray, id, held);
-  if (!first && held == kNoPrimitive)
+  CrossingSpan span;
+  if (held != kNoPrimitive) {
+    const bool is_first = is_closest(g, ray, id, held, shift, span);
+    set_hit(r, span, is_first ? id : held);
+  } else if (is_before_end(g, ray, id)) {
+    set_hit(r, crossing_span(g, ray, id, shift), id);
+  } else {
     return false;
-  const std::uint32_t best = first ? id : held;
-  set_hit(r, crossing_span(g, ray, best, rays.shift_of(index_of(r))), best);
+  }
   return kAny;
 }
 

@@ -48,9 +48,11 @@ bool take(WalkedRay& r, std::uint32_t id) {
   const CrossingSpan span = crossing_span(*r.geometry, r.given, id, 0);
   if (!(span.lo <= r.hi) || id == r.id)
     return false;
+  CrossingSpan of_first;
   const bool first =
-      span.hi < r.lo || (r.id == kNoPrimitive ? is_before_end(*r.geometry, r.given, id)
-                                              : is_closest(*r.geometry, r.given, id, r.id));
+      span.hi < r.lo ||
+      (r.id == kNoPrimitive ? is_before_end(*r.geometry, r.given, id)
+                            : is_closest(*r.geometry, r.given, id, r.id, 0, of_first));
   if (!first)
     return false;
   r.id = id;
