@@ -79,6 +79,7 @@ class FarRays {
     w.size = p.size;
     w.groups = p.groups;
     w.has_units = false;
+    w.has_slabs = false;
     w.geometry = p.geometry;
     w.base = g.lo_f;
     w.frame_error = g.frame_error;

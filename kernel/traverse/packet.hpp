@@ -12,6 +12,7 @@ namespace grelha::GRELHA_ISA {
 
 /// Most rays in a packet. A word has a bit for each group of lanes.
 inline constexpr int kPacket = kWidth<VFloat> == 1 ? 64 : 256;
+inline constexpr int kKeptFields = 9;  ///< those of a triangle; see kKept
 inline constexpr float kInfinity = __builtin_inff();
 inline constexpr float kGreatest = 0x1.fffffep127f;
 
@@ -85,9 +86,13 @@ struct Packet {
   alignas(64) float inv_dd[kPacket];
   alignas(64) float inv_length[kPacket];
   alignas(64) float shear[3][kPacket];
-  alignas(64) float inverse[3][kPacket];  ///< of directions, no component 0; set by set_slabs()
-  /// the side of a box that the ray hits first, along each axis; set by set_slabs()
+  bool has_slabs;                         ///< the next two are set
+  alignas(64) float inverse[3][kPacket];  ///< of directions, no component 0
+  /// the side of a box that the ray hits first, along each axis
   alignas(64) std::uint32_t near[3][kPacket];
+  /// Fields of the primitive that a ray hits, as for_each_field() has them, where met_id is its id
+  alignas(64) float met[kKeptFields][kPacket];
+  alignas(64) float met_id[kPacket];
   const GeometryView* geometry = nullptr;
   FrustumStats small_stats, middle_stats, large_stats;  ///< of packets of up to 16, 64 and 256
 };
@@ -225,6 +230,20 @@ inline void keep_ends(Packet& p) {
   p.group_axis[group] = none(axis != VFloat(p.axis[i])) ? static_cast<int>(p.axis[i]) : -1;
 }
 
+/// Kinds whose fields a packet keeps of what its rays hit: those of few fields.
+template <class Shape>
+inline constexpr bool kKept = Shape::kFinite && sizeof(typename Shape::template Fields<float>) <=
+                                                    sizeof(float) * kKeptFields;
+
+/// Keeps the fields of the primitive that a ray hits: t is rounded from them, and need not fetch
+/// them from the caller's arrays.
+template <class Shape>
+inline void keep_met(Packet& p, int i, const typename Shape::template Fields<float>& met) {
+  int row = 0;
+  Shape::for_each_field([&](const float& x) { p.met[row++][i] = x; }, met);
+  p.met_id[i] = p.id[i];
+}
+
 /// Sets `inverse` and `near` of the rays from i on, for tests of boxes.
 inline void set_slabs(Packet& p, int i) {
   const VFloat least = min_advance(p, i);
@@ -244,6 +263,14 @@ template <class Test>
     const int g = __builtin_ctzll(left);
     test(g * kWidth<VFloat>, g);
   }
+}
+
+/// Sets `inverse` and `near` of all groups, unless that is done: packets that stay together need
+/// neither.
+inline void need_slabs(Packet& p) {
+  for (int g = 0; !p.has_slabs && g < p.groups; ++g)
+    set_slabs(p, g * kWidth<VFloat>);
+  p.has_slabs = true;
 }
 
 }  // namespace grelha::GRELHA_ISA

@@ -43,11 +43,13 @@ inline void prepare(Packet& p, const GeometryView& geometry, bool any_triangles)
   p.groups = (p.size + w - 1) / w;
   p.live = ~std::uint64_t{0} >> (64 - p.groups);
   p.has_units = false;
+  p.has_slabs = false;
   fill_up(p);
   for (int g = 0; g < p.groups; ++g) {
     const int i = g * w;
     p.ahead.prefetch_row(i);
     store(p.id + i, VFloat(bits_of(kNoPrimitive)));
+    store(p.met_id + i, VFloat(bits_of(kNoPrimitive)));
     check_rays(p, i);
     store(p.low + i, load<VFloat>(p.best + i));
     if (any_triangles)
@@ -105,8 +107,12 @@ template <bool kAny>
 
 /// Notes hits of lanes from i on against one primitive: nearer wins, then the lower id. With kAny a
 /// hit ends the ray's search.
-template <bool kAny>
-inline void record(Packet& p, int i, const HitInterval<VFloat>& found, std::uint32_t id) {
+template <bool kAny, class Shape>
+inline void record(Packet& p,
+                   int i,
+                   const HitInterval<VFloat>& found,
+                   std::uint32_t id,
+                   const typename Shape::template Fields<float>& met) {
   const VFloat best = load<VFloat>(p.best + i);
   const Mask<VFloat> candidate = mask_and(found.some, found.lo <= best);
   if (none(candidate))
@@ -121,6 +127,16 @@ inline void record(Packet& p, int i, const HitInterval<VFloat>& found, std::uint
   store(p.best + i, select(closer, kAny ? over : found.hi, best));
   store(p.low + i, select(closer, kAny ? over : found.lo, low));
   store(p.id + i, select(closer, VFloat(bits_of(id)), load<VFloat>(p.id + i)));
+  if constexpr (!kAny && kKept<Shape>) {
+    int row = 0;
+    Shape::for_each_field(
+        [&](const float& x) __attribute__((always_inline)) {
+          store(p.met[row] + i, select(closer, VFloat(x), load<VFloat>(p.met[row] + i)));
+          ++row;
+        },
+        met);
+    store(p.met_id + i, select(closer, VFloat(bits_of(id)), load<VFloat>(p.met_id + i)));
+  }
   const unsigned other = bits_where(ids_at(p, i) != id);
   each_bit(bits(and_not(candidate, closer)) & other,
            [&](int k) { record_tie<kAny>(p, i + k, id); });
@@ -147,8 +163,10 @@ template <bool kAny, class Shape>
 inline void test_one(
     Packet& p, const FieldArrays<Shape>& of, std::uint32_t index, std::uint32_t id, Counters& n) {
   const auto one = broadcast<Shape, VFloat>(of, index);
+  const auto met = one_of<Shape>(of, index);
   each_tested<Shape>(p, n, [&](int i, int) {
-    record<kAny>(p, i, intersect<Shape>(simd_rays(p, i), one, load<VFloat>(p.best + i)), id);
+    record<kAny, Shape>(
+        p, i, intersect<Shape>(simd_rays(p, i), one, load<VFloat>(p.best + i)), id, met);
   });
 }
 
@@ -223,12 +241,13 @@ template <bool kAny>
         const VFloat t_min = load<VFloat>(p.t_min + i);
         const VFloat best = load<VFloat>(p.best + i);
         const int axis = p.group_axis[g];
-        record<kAny>(p,
-                     i,
-                     axis >= 0
-                         ? intersect_triangle(AlignedSource{{&with, i}, axis}, shear, t_min, best)
-                         : intersect_triangle(MixedSource{{&with, i}}, shear, t_min, best),
-                     id);
+        record<kAny, Triangle>(
+            p,
+            i,
+            axis >= 0 ? intersect_triangle(AlignedSource{{&with, i}, axis}, shear, t_min, best)
+                      : intersect_triangle(MixedSource{{&with, i}}, shear, t_min, best),
+            id,
+            triangle);
       });
 }
 

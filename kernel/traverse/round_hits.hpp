@@ -23,6 +23,22 @@ template <class Shape>
   }
 }
 
+/// The same of the rays from i on: what their packet kept, where it kept all.
+template <class Shape>
+[[gnu::always_inline]] inline typename Shape::template Fields<VFloat> fields_met(
+    const Packet& p, int i, unsigned lanes, const typename Shape::Arrays& all, const VUint& index) {
+  if constexpr (kKept<Shape>) {
+    const VUint met = load_words<VFloat>(reinterpret_cast<const std::uint32_t*>(p.met_id + i));
+    if ((lanes & ~bits_where(met == ids_at(p, i))) == 0) [[likely]] {
+      typename Shape::template Fields<VFloat> to;
+      int row = 0;
+      Shape::for_each_field([&](VFloat& x) { x = load<VFloat>(p.met[row++] + i); }, to);
+      return to;
+    }
+  }
+  return fields_at<Shape>(all, index);
+}
+
 /// Spans of t, part after part; NaN where double does not tell.
 template <class Shape, int k = 0>
 [[gnu::always_inline]] inline void hit_spans(const Packet& p,
@@ -79,7 +95,8 @@ inline void round_hits(const Packet& p, int i, float* t) {
       return;
     const VUint index(here ? id - first : VUint{});
     VDouble lo[kWideParts<VFloat>], hi[kWideParts<VFloat>];
-    hit_spans<Shape>(p, i, simd_rays(p, i), fields_at<Shape>(g.of<Shape>(), index), lo, hi);
+    hit_spans<Shape>(
+        p, i, simd_rays(p, i), fields_met<Shape>(p, i, lanes, g.of<Shape>(), index), lo, hi);
     if (p.has_units) [[unlikely]]
       for (int k = 0; k < kWideParts<VFloat>; ++k) {
         const auto unit = take<VDouble>(p.unit + i + k * kWidth<VDouble>);

@@ -164,9 +164,14 @@ template <bool kAny, class Ray>
     if (record<kAny>(r, intersect_triangle(with, shear, t_min, Block(best_of(r))), block.id + i))
       return true;
   }
-  if constexpr (std::is_same_v<Ray, Single>)
+  if constexpr (std::is_same_v<Ray, Single>) {
     if (id_of(r) != before)
       r.block = &block;
+  } else if (!kAny && id_of(r) != before) {
+    for (int k = 0; k < kBlock; ++k)
+      if (block.id[k] == id_of(r))
+        keep_met<Triangle>(r.p, r.i, triangle_of(block, k));
+  }
   return false;
 }
 
@@ -194,7 +199,14 @@ template <bool kAny, class Shape, class Ray>
                                             const typename Shape::CellList& list,
                                             std::uint32_t i) {
   const auto row = side_by_side<Shape, Block>(list.fields, i);
-  return record<kAny>(r, intersect<Shape>(ray, row, Block(best_of(r))), list.id + i);
+  const std::uint32_t before = id_of(r);
+  const bool over = record<kAny>(r, intersect<Shape>(ray, row, Block(best_of(r))), list.id + i);
+  if constexpr (!kAny && std::is_same_v<Ray, PacketRay> && kKept<Shape>)
+    if (id_of(r) != before)
+      for (std::uint32_t k = i; k < i + kWidth<Block>; ++k)
+        if (list.id[k] == id_of(r))
+          keep_met<Shape>(r.p, r.i, one_of<Shape>(list.fields, k));
+  return over;
 }
 
 /// Primitives of one kind in one cell. Reading past its end tests those of the next, which costs

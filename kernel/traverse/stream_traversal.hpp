@@ -8,6 +8,7 @@
 // that the phase before it chose, and prefetches what the phase after it reads.
 
 #include "kernel/traverse/active_rays.hpp"
+#include "kernel/traverse/pair_tests.hpp"
 
 namespace grelha::GRELHA_ISA {
 
@@ -26,8 +27,10 @@ inline constexpr std::size_t kAskedFor = 16;
 template <bool kAny>
 class CellTests {
  public:
-  CellTests(const GridView& g, Packet& p, Counters& n) : lists_(g.lists), p_(p), n_(n) {
-    each_live_group(p, [&](int i, int) { set_slabs(p, i); });
+  CellTests(const GridView& g, Packet& p, Counters& n)
+      : lists_(g.lists), p_(p), n_(n), pairs_(g, p) {
+    if (triangles_.first)
+      need_slabs(p);
   }
 
   void test(const LeafQueue& to) {
@@ -74,68 +77,25 @@ class CellTests {
     for (int i = 0; i < kBlock; i += kWidth<Block>) {
       Block enter;
       const unsigned hit = hit_boxes_from(r, triangles_.boxes[at / kBlock], i, enter);
-      due = take_passed(ray, block + static_cast<unsigned>(i), hit & blocks >> i, enter, due);
+      const CompressMask selected(hit & blocks >> i);
+      store_words(due_ray_ + due, Words<Block>{} + ray);
+      selected.store(due_block_ + due, counted_words<Block>(block + static_cast<unsigned>(i)));
+      due += selected.count();
     }
     return due;
   }
 
-  /// Makes the blocks from `first` on with a bit in `passed` due; returns the new number of due
-  /// ones.
-  [[gnu::always_inline]] int take_passed(
-      std::uint32_t ray, std::uint32_t first, unsigned passed, const Block& enter, int due) {
-    if constexpr (kWidth<Block> == kBlock) {
-      const CompressMask selected(passed);
-      const Words<Block> rays = Words<Block>{} + ray;
-      store_words(due_ray_ + due, rays);  // the same in each place
-      selected.store(due_block_ + due, counted_words<Block>(first));
-      selected.store(due_enter_ + due, enter);
-      return due + selected.count();
-    }
-    float enters[kWidth<Block>];
-    store(enters, enter);
-    each_bit(passed, [&](int k) {
-      due_ray_[due] = ray;
-      due_block_[due] = first + static_cast<unsigned>(k);
-      due_enter_[due++] = enters[k];
-    });
-    return due;
-  }
-
-  /// Tests the blocks that are due. A hit found since a box was passed may be nearer than the box.
+  /// Tests the blocks that are due.
   [[gnu::noinline]] void flush(int due) {
     count_rows<Triangle>(n_, due, kBlock);
     for (int k = 0; k < due && k < kPrefetch; ++k)
       prefetch(triangles_.blocks + due_block_[k]);
-    std::uint32_t met[kMost + kBlock];
-    int count = 0;
     for (int k = 0; k < due; ++k) {
       const int next = k + kPrefetch < due ? k + kPrefetch : due - 1;
       prefetch(triangles_.blocks + due_block_[next]);
-      met[count] = static_cast<std::uint32_t>(k);
-      count += may_cross(due_ray_[k], triangles_.blocks[due_block_[k]]);
+      pairs_.add(due_ray_[k], due_block_[k]);
     }
-    for (int j = 0; j < count; ++j) {
-      const std::uint32_t k = met[j];
-      PacketRay r{p_, static_cast<int>(due_ray_[k])};
-      if (due_enter_[k] <= p_.best[r.i])
-        test_block<kAny>(r, triangles_.blocks[due_block_[k]]);
-    }
-  }
-
-  /// False if all triangles of a block are surely missed. If a block fills more than one register,
-  /// this test takes longer than a predicted branch.
-  [[gnu::always_inline]] bool may_cross(std::uint32_t ray, const TriangleBlock& block) {
-    if constexpr (kWidth<Block> < kBlock) {
-      return true;
-    } else {
-      const PacketRay r{p_, static_cast<int>(ray)};
-      const Shear<Block> shear{Block(shear_of(r, 0)),
-                               Block(shear_of(r, 1)),
-                               Block(shear_of(r, 2)),
-                               Block(p_.frame_error)};
-      const EdgeFunctions<Block> edge(BlockSource<PacketRay>{&r, &block, 0}(), shear);
-      return any(edge.may_cross());
-    }
+    pairs_.test();
   }
 
   template <class Shape>
@@ -213,7 +173,7 @@ class CellTests {
   std::uint32_t end_[kPacket];
   alignas(64) std::uint32_t due_ray_[kMost + kBlock];
   alignas(64) std::uint32_t due_block_[kMost + kBlock];
-  alignas(64) float due_enter_[kMost + kBlock];
+  PairTests<kAny> pairs_;
 };
 
 /// The live rays of a packet through a grid, each from p.start on and on its own (Amanatides & Woo
