@@ -23,19 +23,40 @@ inline unsigned boxes_inside(const Frustum& f, const BlockBoxes& boxes) {
   return inside & ahead;
 }
 
+/// Groups of rays that may pass box k of a row.
+[[gnu::always_inline]] inline std::uint64_t groups_near_box(const Frustum& f,
+                                                            const BlockBoxes& boxes,
+                                                            int k) {
+  const float end = f.to_slice * boxes.side[f.last][k] + f.zero_slice;
+  return f.groups_ahead(end) & f.groups_inside([&](int j, int first) {
+    const VFloat slope = load<VFloat>(f.group_b[j] + first);
+    const VFloat along =
+        max(slope * VFloat(boxes.side[f.k][k]), slope * VFloat(boxes.side[f.k + 3][k]));
+    return VFloat(f.a[j] * boxes.side[f.across[j]][k]) + along + load<VFloat>(f.group_c[j] + first);
+  });
+}
+
+/// Bits of the rays from i on that pass box k of a row before their search ends.
+[[gnu::always_inline]] inline unsigned rays_through(const Packet& p,
+                                                    int i,
+                                                    const BlockBoxes& boxes,
+                                                    int k) {
+  VFloat enter = load<VFloat>(p.t_min + i);
+  VFloat leave = load<VFloat>(p.best + i);
+  for (int a = 0; a < 3; ++a) {
+    const float base = p.base ? p.base[a] : 0.f;
+    const VFloat org = load<VFloat>(p.org[a] + i);
+    const VFloat inverse = load<VFloat>(p.inverse[a] + i);
+    const VFloat x = (VFloat(boxes.side[a][k] - base) - org) * inverse;
+    const VFloat y = (VFloat(boxes.side[a + 3][k] - base) - org) * inverse;
+    clip_to_slab(min(x, y), max(x, y), enter, leave);
+  }
+  return bits(enter <= leave);
+}
+
 /// Lanes of primitives i, i + 1, ... that come before `end`.
 inline unsigned active_before(unsigned lanes, std::uint32_t i, std::uint32_t end) {
   return end - i < static_cast<unsigned>(kWidth<Block>) ? lanes & ((1u << (end - i)) - 1u) : lanes;
-}
-
-/// Calls visit(index in the block) for each primitive of a block that overlaps the frustum.
-template <class BlockOf, class Visit>
-[[gnu::always_inline]] inline void each_inside_block(const Frustum& f,
-                                                     const BlockOf& block,
-                                                     const Visit& visit) {
-  for (int i = 0; i < kBlock; i += kWidth<Block>)
-    for (unsigned left = overlapping(f, block, i); left != 0; left &= left - 1)
-      visit(i + __builtin_ctz(left));
 }
 
 /// Calls visit(index in the list) for each primitive of a cell that overlaps the frustum.

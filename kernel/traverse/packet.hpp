@@ -54,6 +54,22 @@ class FrustumStats {
   unsigned left_out_ = 0;
 };
 
+/// Tells whether rays that pass a block's box are worth counting: not where most times they were
+/// too many to be tested one by one.
+class RayLuck {
+ public:
+  bool should_try() { return luck_ > 0 || ++left_out_ % 16 == 0; }
+  void record(bool were_few) {
+    luck_ += were_few ? 1 : -1;
+    luck_ = luck_ > kMost ? kMost : luck_ < -kMost ? -kMost : luck_;
+  }
+
+ private:
+  static constexpr int kMost = 8;
+  int luck_ = 1;
+  unsigned left_out_ = 0;
+};
+
 /// Up to kPacket rays as arrays. A ray searches (t_min, best); best <= t_min switches it off.
 /// Elements between `size` and the end of the last group are switched off. `id` holds the bits of
 /// the nearest primitive so far, which is hit at a t from `low` to `best`; while there is none both
@@ -95,6 +111,7 @@ struct Packet {
   alignas(64) float met_id[kPacket];
   const GeometryView* geometry = nullptr;
   FrustumStats small_stats, middle_stats, large_stats;  ///< of packets of up to 16, 64 and 256
+  RayLuck ray_luck;
 };
 
 inline std::uint32_t id_of(float bits) {

@@ -134,6 +134,12 @@ inline int most_cells(int width) {
   return width > kMiddle ? 24 : width > kSmall ? 10 : 6;
 }
 
+/// Tests of a triangle against a group of rays that take as long as that of a block against one
+/// ray, which costs more where a hit is more than an end; and rays that are always so tested.
+template <bool kAny>
+inline constexpr int kRayTest = kAny ? 2 : 4;
+inline constexpr int kRaysForGranted = 3;
+
 /// The rays of a packet that go through a grid together.
 template <bool kAny>
 class PacketVisit {
@@ -191,13 +197,57 @@ class PacketVisit {
     for (std::uint32_t at = first / kBlock * kBlock; at < end; at += kBlock) {
       unsigned left = boxes_inside(f_, list.boxes[at / kBlock]) & blocks_between(at, first, end);
       const TriangleBlock* const blocks = list.blocks + list.block_at(at);
-      for (; left != 0; left &= left - 1)
-        test_block(blocks[__builtin_ctz(left)]);
+      for (; left != 0; left &= left - 1) {
+        const int k = __builtin_ctz(left);
+        test_block(list.boxes[at / kBlock], k, blocks[k]);
+      }
     }
   }
 
-  void test_block(const TriangleBlock& block) {
-    each_inside_block(f_, block, [&](int at) {
+  /// Tests the rays that pass a block's box one by one, its triangles side by side, if these are
+  /// fewer tests than of `triangles` against groups of rays. Returns false if they are not.
+  [[gnu::noinline]] bool test_rays(const BlockBoxes& boxes,
+                                   int k,
+                                   const TriangleBlock& block,
+                                   int triangles) {
+    need_slabs(p_);
+    const std::uint64_t near = f_.by_group ? p_.live & groups_near_box(f_, boxes, k) : p_.live;
+    unsigned lanes[kGroups];
+    int rays = 0;
+    int tests = kRayTest<true> * kRaysForGranted;
+    for (std::uint64_t left = near; left != 0; left &= left - 1) {
+      const int g = __builtin_ctzll(left);
+      lanes[g] = rays_through(p_, g * kWidth<VFloat>, boxes, k);
+      rays += __builtin_popcount(lanes[g]);
+      tests += lanes[g] != 0 ? triangles : 0;
+      if (kRayTest<kAny> * rays > tests)
+        return false;
+    }
+    for (std::uint64_t left = near; left != 0; left &= left - 1) {
+      const int g = __builtin_ctzll(left);
+      each_bit(lanes[g], [&](int lane) {
+        PacketRay r{p_, g * kWidth<VFloat> + lane};
+        grelha::GRELHA_ISA::test_block<kAny>(r, block);
+      });
+    }
+    count_rows<Triangle>(n_, rays, kBlock);
+    return true;
+  }
+
+  [[gnu::always_inline]] void test_block(const BlockBoxes& boxes,
+                                         int k,
+                                         const TriangleBlock& block) {
+    unsigned inside = 0;
+    for (int i = 0; i < kBlock; i += kWidth<Block>)
+      inside |= overlapping(f_, block, i) << i;
+    const int triangles = __builtin_popcount(inside);
+    if (kAny && triangles > 1 && p_.ray_luck.should_try()) {
+      const bool by_rays = test_rays(boxes, k, block, triangles);
+      p_.ray_luck.record(by_rays);
+      if (by_rays)
+        return;
+    }
+    each_bit(inside, [&](int at) {
       const std::uint32_t id = block.id[at];
       if (seen(id))
         return;
