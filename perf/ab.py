@@ -79,6 +79,8 @@ def asked_for():
 
 def commit_of(tree):
     """Its short name, "-dirty" where files differ from it."""
+    if not shutil.which("git"):
+        return "of no name: there is no git"
     def git(*words):
         return subprocess.run(["git", "-C", tree, *words], stdout=subprocess.PIPE,
                               stderr=subprocess.DEVNULL, text=True).stdout.strip()
