@@ -134,9 +134,25 @@ class NearestSearch {
     const auto [first, end] = list.blocks_of(cell);
     for (std::uint32_t i = first; i < end; ++i) {
       const TriangleBlock& block = list.blocks[i];
-      for (int k = 0; k < kBlock && block.id[k] != kNoPrimitive; ++k)
-        take(block.id[k], nearest_on(p_, scalar::triangle_of(block, k)));
+      for (int k = 0; k < kBlock && block.id[k] != kNoPrimitive; ++k) {
+        const Triangle::Fields<float> triangle = scalar::triangle_of(block, k);
+        if (!is_beyond(triangle))
+          take(block.id[k], nearest_on(p_, triangle));
+      }
     }
+  }
+
+  /// True if the box of a triangle is surely further away than what was found.
+  bool is_beyond(const Triangle::Fields<float>& triangle) const {
+    const double p[3] = {p_.x, p_.y, p_.z};
+    double squared = 0;
+    for (int a = 0; a < 3; ++a) {
+      const auto [lo, hi] =
+          std::minmax({triangle.corner[0][a], triangle.corner[1][a], triangle.corner[2][a]});
+      const double away = std::max({0., lo - p[a], p[a] - hi});
+      squared += away * away;
+    }
+    return squared * (1 - 0x1p-40) > best_ * best_;
   }
 
   void look(std::uint32_t id) {
